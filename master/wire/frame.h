@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause */
+/* EtherCAT frame and datagram headers (ETG.1000.4 clause 5). */
+#ifndef EC_WIRE_FRAME_H
+#define EC_WIRE_FRAME_H
+
+#include "env.h"
+
+#define EC_ETHERTYPE		0x88A4
+#define EC_ETH_HDR		14
+#define EC_ETH_MIN		60	/* without FCS */
+#define EC_ETH_MAX		1514
+#define EC_FRAME_HDR		2
+#define EC_FRAME_TYPE_DGRAM	1
+#define EC_FRAME_BODY_MAX	1498	/* sum of all datagrams */
+#define EC_DGRAM_HDR		10
+#define EC_DGRAM_WKC		2
+#define EC_DGRAM_OVERHEAD	(EC_DGRAM_HDR + EC_DGRAM_WKC)
+#define EC_DGRAM_DATA_MAX	(EC_FRAME_BODY_MAX - EC_DGRAM_OVERHEAD)
+
+enum ec_cmd {
+	EC_CMD_NOP = 0,
+	EC_CMD_APRD = 1,
+	EC_CMD_APWR = 2,
+	EC_CMD_APRW = 3,
+	EC_CMD_FPRD = 4,
+	EC_CMD_FPWR = 5,
+	EC_CMD_FPRW = 6,
+	EC_CMD_BRD = 7,
+	EC_CMD_BWR = 8,
+	EC_CMD_BRW = 9,
+	EC_CMD_LRD = 10,
+	EC_CMD_LWR = 11,
+	EC_CMD_LRW = 12,
+	EC_CMD_ARMW = 13,
+	EC_CMD_FRMW = 14,
+};
+
+/**
+ * struct ec_dgram - one datagram of a frame, decoded
+ * @cmd: enum ec_cmd
+ * @idx: index, never changed by slaves
+ * @circulating: passed a slave whose port 0 is closed
+ * @more: another datagram follows
+ * @adp: low 16 bits of the address (position or station)
+ * @ado: high 16 bits of the address (memory offset)
+ * @len: data bytes
+ * @irq: OR of the enabled ECAT events of all slaves passed
+ * @hdr: where the datagram starts in the frame
+ * @data: its data, in the frame; the working counter stands behind it
+ */
+struct ec_dgram {
+	u8 cmd;
+	u8 idx;
+	bool circulating;
+	bool more;
+	u16 adp;
+	u16 ado;
+	u16 len;
+	u16 irq;
+	u8 *hdr;
+	u8 *data;
+};
+
+static inline u32 ec_dgram_logical(const struct ec_dgram *d)
+{
+	return d->adp | (u32)d->ado << 16;
+}
+
+static inline u16 ec_dgram_wkc(const struct ec_dgram *d)
+{
+	return get_unaligned_le16(d->data + d->len);
+}
+
+static inline void ec_dgram_set_wkc(struct ec_dgram *d, u16 wkc)
+{
+	put_unaligned_le16(wkc, d->data + d->len);
+}
+
+/**
+ * struct ec_frame_iter - walk over the datagrams of a received frame
+ * @p: next datagram
+ * @end: end of the datagram area as the EtherCAT header says
+ * @more: the last datagram announced another one
+ */
+struct ec_frame_iter {
+	u8 *p;
+	u8 *end;
+	bool more;
+};
+
+/**
+ * struct ec_frame_buf - a frame under construction
+ * @buf: EtherCAT header and datagrams (what follows the EtherType)
+ * @cap: bytes in @buf
+ * @len: bytes used
+ * @last: last datagram header, whose "more" bit is set when one is added
+ * @count: datagrams so far
+ */
+struct ec_frame_buf {
+	u8 *buf;
+	size_t cap;
+	size_t len;
+	u8 *last;
+	unsigned int count;
+};
+
+int ec_frame_iter_init(struct ec_frame_iter *it, u8 *frame, size_t len);
+int ec_frame_iter_next(struct ec_frame_iter *it, struct ec_dgram *d);
+
+void ec_frame_begin(struct ec_frame_buf *f, u8 *buf, size_t cap);
+u8 *ec_frame_add(struct ec_frame_buf *f, u8 cmd, u8 idx, u16 adp, u16 ado, u16 len);
+size_t ec_frame_end(struct ec_frame_buf *f);
+
+u32 ec_frame_wire_ns(size_t eth_len);
+const char *ec_cmd_name(u8 cmd);
+bool ec_cmd_reads(u8 cmd);
+bool ec_cmd_writes(u8 cmd);
+
+#endif
