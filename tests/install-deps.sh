@@ -1,0 +1,88 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Installs what building and testing need, and nothing that is there already.
+# usage: tests/install-deps.sh GROUP...    (build, vm, uml, python, json)
+
+set -eu
+
+usage() {
+	echo "usage: ${0##*/} GROUP...   groups: build vm uml python json" >&2
+	exit 2
+}
+
+# A dpkg query is enough to see what is missing, so that a second run costs
+# nothing and needs neither root nor network.
+installed() {
+	[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null || true)" = installed ]
+}
+
+[ $# -gt 0 ] || usage
+command -v dpkg-query >/dev/null 2>&1 || {
+	echo "${0##*/}: this is not a Debian system; install the packages listed in $0 by hand" >&2
+	exit 1
+}
+
+want=
+for group; do
+	case $group in
+	build)	p="gcc make libc6-dev pkg-config bc bison flex libelf-dev pahole
+		   sparse kmod cpio xz-utils zstd" ;;
+	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils bats tcpdump
+		   iproute2 tshark" ;;
+	uml)	p="linux-source-6.1 xz-utils" ;;
+	python)	p="python3-venv" ;;
+	json)	p="jq" ;;
+	-h|--help) usage ;;
+	*)	echo "${0##*/}: unknown group '$group'" >&2; usage ;;
+	esac
+	want="$want $p"
+done
+
+missing=
+for p in $want; do
+	installed "$p" && continue
+	case " $missing " in *" $p "*) ;; *) missing="${missing:+$missing }$p" ;; esac
+done
+if [ -z "$missing" ]; then
+	echo "install-deps: all there ($*)"
+	exit 0
+fi
+
+if [ "$(id -u)" -eq 0 ]; then
+	sudo=
+elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+	sudo="sudo -n"
+else
+	echo "install-deps: missing: $missing" >&2
+	echo "install-deps: run this script as root, or: apt-get install $missing" >&2
+	exit 1
+fi
+
+log=$(mktemp "${TMPDIR:-/tmp}/install-deps.XXXXXX")
+trap 'rm -f "$log"' EXIT
+trap 'exit 130' INT HUP TERM
+
+# Mirrors fail now and then, so each step gets a second chance. The output is
+# shown only when both fail: it is long and says little otherwise.
+apt() {
+	for try in 1 2; do
+		# shellcheck disable=SC2086
+		$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq \
+			-o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 \
+			"$@" >"$log" 2>&1 </dev/null && return 0
+		[ $try = 2 ] || sleep 3
+	done
+	return 1
+}
+
+echo "install-deps: apt-get update"
+# A broken third-party source must not stop us: the install below decides.
+apt update || echo "install-deps: apt-get update had errors, going on" >&2
+echo "install-deps: apt-get install $missing"
+# shellcheck disable=SC2086
+if ! apt install -y --no-install-recommends $missing; then
+	cat "$log" >&2
+	echo "install-deps: could not install: $missing (see above)" >&2
+	exit 1
+fi

@@ -1,0 +1,239 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Debian kernels and their headers for building and for booting test guests,
+# unpacked into a cache. Nothing is installed on the host and the host's apt
+# configuration is not changed.
+
+set -euo pipefail
+
+usage() {
+	cat >&2 <<-END
+	usage: kernels.sh fetch FLAVOUR...    download and unpack what is not cached
+	       kernels.sh kdir FLAVOUR        print a directory for make KDIR=
+	       kernels.sh image FLAVOUR       print the path of vmlinuz
+	       kernels.sh modules FLAVOUR     print the path of lib/modules/<release>
+	       kernels.sh release FLAVOUR     print what uname -r says on it
+	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
+	                                      takes the newest version)
+	flavours: 6.1 6.1-rt 6.12 6.12-rt    cache: $cache
+	END
+	exit 2
+}
+
+die() { echo "kernels.sh: $*" >&2; exit 1; }
+say() { echo "kernels.sh: $*" >&2; }
+
+cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
+case $cache in /*) ;; *) cache=$PWD/$cache ;; esac
+
+tmp=
+trap '[ -z "$tmp" ] || rm -rf "$tmp"' EXIT
+trap 'exit 130' INT HUP TERM
+
+# Raise when the layout made by unpack() changes: old copies are then replaced.
+layout=1
+
+# Prints deb822 stanzas for the given suites with the addresses and keys that
+# the system's own apt configuration uses for Debian bookworm. --------------
+sources() {	# sources SUITE-REGEX [REPLACEMENT]
+	local f
+	for f in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
+		[ -r "$f" ] || continue
+		case $f in
+		*.sources)
+			awk -v re="$1" -v repl="${2:-}" '
+			function flush(   n, s, i, out) {
+				if (types ~ /(^|[ \t])deb([ \t]|$)/ && enabled !~ /^(no|false|0|off)$/ &&
+				    (" " comps " ") ~ /[ \t]main[ \t]/) {
+					n = split(suites, s, /[ \t]+/); out = ""
+					for (i = 1; i <= n; i++) if (s[i] ~ re) out = out " " s[i]
+					if (out != "") {
+						if (repl != "") out = " " repl
+						print "Types: deb\nURIs:" uris "\nSuites:" out "\nComponents: main" extra "\n"
+					}
+				}
+				types = uris = suites = comps = extra = enabled = field = ""
+			}
+			/^[ \t]*$/ { flush(); next }
+			/^#/ { next }
+			/^[^ \t]/ {
+				field = tolower($0); sub(/:.*/, "", field)
+				val = $0; sub(/^[^:]*:[ \t]*/, "", val); sub(/[ \t]+$/, "", val)
+				if (field == "types") types = val
+				else if (field == "uris") uris = " " val
+				else if (field == "suites") suites = val
+				else if (field == "components") comps = val
+				else if (field == "enabled") enabled = tolower(val)
+				else extra = extra "\n" $0
+				next
+			}
+			{	# continuation line, for example of a key inside Signed-By
+				if (field == "uris") uris = uris $0
+				else if (field == "suites") suites = suites $0
+				else if (field == "components") comps = comps $0
+				else extra = extra "\n" $0
+			}
+			END { flush() }' "$f" ;;
+		*.list)
+			awk -v re="$1" -v repl="${2:-}" '
+			$1 == "deb" {
+				line = $0; sub(/#.*/, "", line); opts = ""
+				sub(/^[ \t]*deb[ \t]+/, "", line)
+				if (match(line, /^\[[^]]*\][ \t]*/)) {
+					opts = substr(line, 2, index(line, "]") - 2)
+					line = substr(line, RLENGTH + 1)
+				}
+				n = split(line, w, /[ \t]+/); main = 0
+				for (i = 3; i <= n; i++) if (w[i] == "main") main = 1
+				if (!main || w[2] !~ re) next
+				print "Types: deb\nURIs: " w[1] "\nSuites: " (repl != "" ? repl : w[2]) "\nComponents: main"
+				m = split(opts, o, /[ \t]+/)
+				for (i = 1; i <= m; i++) {
+					k = o[i]; v = o[i]; sub(/=.*/, "", k); sub(/^[^=]*=/, "", v)
+					if (k == "signed-by") print "Signed-By: " v
+					if (k == "trusted") print "Trusted: " v
+				}
+				print ""
+			}' "$f" ;;
+		esac
+	done
+}
+
+# The lists of packages live in the cache, so this works without root and sees
+# the same packages whatever suites the host itself has switched on.
+apt_opts=()
+apt_setup() {	# apt_setup base|backports
+	local d=$cache/apt/$1
+	mkdir -p "$d/lists/partial" "$d/cache/archives/partial"
+	if [ "$1" = base ]; then
+		sources '^bookworm(-updates|-security|/updates)?$' >"$d/ec.sources"
+	else
+		sources '^bookworm$' bookworm-backports >"$d/ec.sources"
+	fi
+	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm 'main' found in /etc/apt/sources.list and" \
+		"/etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
+	apt_opts=(-o "Dir::Etc::SourceList=$d/ec.sources" -o Dir::Etc::SourceParts=/dev/null
+		-o "Dir::State::lists=$d/lists" -o "Dir::Cache=$d/cache" -o APT::Sandbox::User=
+		-o Acquire::Languages=none -o Acquire::Retries=2 -o APT::Get::List-Cleanup=true)
+	# Mirrors drop old versions, so lists older than some hours are useless.
+	if [ -z "$(find "$d/stamp" -mmin -360 2>/dev/null)" ]; then
+		say "reading the list of packages ($1)"
+		apt-get "${apt_opts[@]}" -qq update >"$d/update.log" 2>&1 </dev/null ||
+			apt-get "${apt_opts[@]}" -qq update >"$d/update.log" 2>&1 </dev/null || {
+			# One bad source among several does no harm: the show decides.
+			apt-cache "${apt_opts[@]}" show linux-image-amd64 >/dev/null 2>&1 || {
+				cat "$d/update.log" >&2
+				die "apt-get update failed; check the network and the system's apt sources"
+			}
+		}
+		touch "$d/stamp"
+	fi
+}
+
+depends() {	# depends PACKAGE REGEX: the names it depends on that match
+	{ apt-cache "${apt_opts[@]}" show --no-all-versions "$1" 2>/dev/null || true; } |
+		sed -n 's/^Depends: //p' | tr ',' '\n' | sed 's/^ *//; s/ .*//' | { grep -E "$2" || true; }
+}
+
+check_flavour() {
+	case ${1:-} in
+	6.1|6.1-rt|6.12|6.12-rt) ;;
+	'') usage ;;
+	*) die "unknown flavour '$1', known: 6.1 6.1-rt 6.12 6.12-rt" ;;
+	esac
+}
+
+# The stamp holds the layout and the place: the headers contain absolute paths,
+# so a cache that was moved is not usable.
+cached() { [ "$(cat "$cache/kernels/$1/.complete" 2>/dev/null || true)" = "$layout $cache" ]; }
+
+unpack() {	# unpack FLAVOUR
+	local fl=$1 base=${1%-rt} rt= suite=base image release headers pkgs p root final try f
+	[ "$fl" = "$base" ] || rt=-rt
+	[ "$base" = 6.1 ] || suite=backports
+	for p in apt-get dpkg-deb depmod flock; do
+		command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh build vm)"
+	done
+
+	final=$cache/kernels/$fl
+	for try in 1 2; do
+		apt_setup $suite
+		image=$(depends "linux-image$rt-amd64" "^linux-image-${base//./\\.}\.[0-9].*$rt-amd64\$" | head -n 1)
+		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image$rt-amd64 of" \
+			"bookworm$([ $suite = base ] || echo -backports)); see $cache/apt/$suite/update.log"
+		release=${image#linux-image-}
+		headers=linux-headers-$release
+		pkgs="$image $headers $(depends "$headers" '^linux-(headers-.*common|kbuild-)' | tr '\n' ' ')"
+		rm -rf "$tmp"
+		tmp=$(mktemp -d "$cache/kernels/.tmp.XXXXXX")
+		mkdir "$tmp/debs"
+		say "downloading $pkgs"
+		# shellcheck disable=SC2086
+		(cd "$tmp/debs" && apt-get "${apt_opts[@]}" -qq download $pkgs) >&2 </dev/null && break
+		[ $try = 1 ] || die "download failed; check the network, then run this again"
+		rm -f "$cache/apt/$suite/stamp"
+	done
+
+	root=$tmp/root
+	mkdir "$root"
+	say "unpacking $release"
+	for f in "$tmp"/debs/*.deb; do dpkg-deb -x "$f" "$root"; done
+	rm -rf "$tmp/debs"
+	# With merged /usr the modules may come as usr/lib/modules.
+	[ -d "$root/lib/modules/$release" ] || {
+		mkdir -p "$root/lib/modules"
+		[ ! -d "$root/usr/lib/modules/$release" ] ||
+			mv "$root/usr/lib/modules/$release" "$root/lib/modules/"
+	}
+	# Both may exist: the headers bring the links build and source only.
+	[ ! -d "$root/usr/lib/modules/$release" ] ||
+		cp -an "$root/usr/lib/modules/$release/." "$root/lib/modules/$release/"
+	[ -d "$root/lib/modules/$release/kernel" ] || die "the packages hold no modules for $release"
+	[ -f "$root/boot/vmlinuz-$release" ] || die "the packages hold no vmlinuz for $release"
+
+	# The headers expect to lie in /usr; point them to where they will lie.
+	grep -rlE --include=Makefile --include='.kernel*' '/usr/(src|lib)/linux-' \
+		"$root"/usr/src/linux-headers-*/Makefile "$root"/usr/src/linux-headers-*/.kernel* 2>/dev/null |
+		xargs -r sed -i -E "s,(^|[^[:alnum:]_./-])/usr/(src|lib)/linux-,\1$final/usr/\2/linux-,g"
+	find "$root/usr/src" "$root/lib/modules" -type l -lname '/usr/*' -print | while read -r p; do
+		ln -sfn "$final$(readlink "$p")" "$p"
+	done
+	ln -sfn "$final/usr/src/$headers" "$root/lib/modules/$release/build"
+	depmod -b "$root" "$release"
+	echo "$release" >"$root/.release"
+	echo "$layout $cache" >"$root/.complete"
+	rm -rf "$final"
+	mv -T "$root" "$final"	# appears only when complete
+	rm -rf "$tmp"
+	tmp=
+	say "$fl is $release, in $final"
+}
+
+fetch() {
+	cached "$1" && return 0
+	mkdir -p "$cache/kernels"
+	exec 9>"$cache/kernels/.lock"
+	flock 9		# a second caller waits and then finds it done
+	rm -rf "$cache"/kernels/.tmp.*	# left by a run that was killed
+	cached "$1" || unpack "$1"
+	exec 9>&-
+}
+
+cmd=${1:-}
+[ $# -ge 2 ] || usage
+shift
+for fl; do check_flavour "$fl"; done
+case $cmd in
+fetch|drop) ;;
+*) [ $# -eq 1 ] || usage ;;
+esac
+case $cmd in
+fetch)	for fl; do fetch "$fl"; done ;;
+drop)	for fl; do rm -rf "${cache:?}/kernels/$fl"; done ;;
+kdir)	fetch "$1"; echo "$cache/kernels/$1/usr/src/linux-headers-$(cat "$cache/kernels/$1/.release")" ;;
+image)	fetch "$1"; echo "$cache/kernels/$1/boot/vmlinuz-$(cat "$cache/kernels/$1/.release")" ;;
+modules) fetch "$1"; echo "$cache/kernels/$1/lib/modules/$(cat "$cache/kernels/$1/.release")" ;;
+release) fetch "$1"; cat "$cache/kernels/$1/.release" ;;
+*)	usage ;;
+esac
