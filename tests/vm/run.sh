@@ -1,0 +1,229 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Boots a kernel in QEMU with the host's files and runs one command there.
+# Modules and real-time code are tested this way on any machine: a crash costs
+# a guest, not the host.
+
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
+case $cache in /*) ;; *) cache=$PWD/$cache ;; esac
+export EC_CACHE=$cache
+
+usage() {
+	cat >&2 <<-'END'
+	usage: run.sh [options] [--] COMMAND [ARG...]
+	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.12, 6.12-rt
+	  --smp N            CPUs (default 2)
+	  --mem MB           memory (default 1024)
+	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
+	  --nics             two e1000e joined by a wire (eth0 and eth1; modprobe e1000e)
+	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
+	                     all other writes are lost at the end
+	  --timeout SEC      for boot and command together (default 300)
+	  --append '...'     more kernel parameters, for example loglevel=7
+	  --qemu '...'       more QEMU options
+	  --dmesg FILE       store the guest's kernel log
+	  --allow-oops       do not fail on kernel warnings
+	  -v                 print how long booting took
+	exit status: the command's; 70 the kernel reported a fault, 124 timeout,
+	  125 the guest died or something is missing here
+	environment: EC_ACCEL=kvm or tcg (else found out), EC_CACHE
+	END
+	exit 125
+}
+
+die() { echo "run.sh: $*" >&2; exit 125; }
+
+kernel=6.1-rt smp=2 mem=1024 icount=0 nics=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0
+rw=()
+need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
+while [ $# -gt 0 ]; do
+	case $1 in
+	--kernel) need "$@"; kernel=$2; shift 2 ;;
+	--smp) need "$@"; smp=$2; shift 2 ;;
+	--mem) need "$@"; mem=$2; shift 2 ;;
+	--icount) icount=1; shift ;;
+	--nics) nics=1; shift ;;
+	--rw) need "$@"; rw+=("$2"); shift 2 ;;
+	--timeout) need "$@"; timeout=$2; shift 2 ;;
+	--append) need "$@"; append="$append $2"; shift 2 ;;
+	--qemu) need "$@"; qemu_more="$qemu_more $2"; shift 2 ;;
+	--dmesg) need "$@"; dmesg=$2; shift 2 ;;
+	--allow-oops) allow_oops=1; shift ;;
+	-v) verbose=1; shift ;;
+	-h|--help) usage ;;
+	--) shift; break ;;
+	-*) echo "run.sh: unknown option $1" >&2; usage ;;
+	*) break ;;
+	esac
+done
+[ $# -gt 0 ] || usage
+[[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
+	die "--timeout, --smp and --mem take a number"
+
+for p in qemu-system-x86_64 cpio modprobe timeout awk sed; do
+	command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh vm)"
+done
+busybox=
+for p in /usr/bin/busybox /bin/busybox; do
+	# One linked against libraries would not start in the initramfs.
+	if [ -x $p ] && ! LC_ALL=C ldd $p >/dev/null 2>&1; then busybox=$p; break; fi
+done
+[ -n "$busybox" ] || die "no static busybox (run tests/install-deps.sh vm)"
+
+image=$("$here/kernels.sh" image "$kernel") || exit 125
+modules=$("$here/kernels.sh" modules "$kernel") || exit 125
+release=${modules##*/}
+
+tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-vm.XXXXXX")
+qemu_pid=
+cleanup() {
+	[ -z "$qemu_pid" ] || kill "$qemu_pid" 2>/dev/null || true
+	rm -rf "$tmp"
+}
+trap cleanup EXIT
+trap 'exit 130' INT
+trap 'exit 143' HUP TERM
+
+# --- initramfs: once per kernel and init script ------------------------------
+hash=$(cat "$here/guest-init.sh" "$here/run.sh" "$busybox" | sha256sum | cut -c1-12)
+initrd=$cache/initramfs/$release-$hash.img
+if [ ! -f "$initrd" ]; then
+	i=$tmp/initramfs
+	mkdir -p "$i/bin" "$i/mod" "$i/dev" "$i/proc" "$cache/initramfs"
+	cp "$busybox" "$i/bin/busybox"
+	install -m 755 "$here/guest-init.sh" "$i/init"
+	for m in virtio_pci 9pnet_virtio 9p overlay; do
+		modprobe -d "${modules%/lib/modules/*}" -S "$release" --show-depends "$m" ||
+			die "the kernel $release has no module $m"
+	done >"$tmp/depends" || exit 125
+	# Builtin ones appear as "builtin NAME"; dependencies come first.
+	awk '$1 == "insmod" && !seen[$2]++ { print $2 }' "$tmp/depends" | while read -r m; do
+		case $m in
+		*.xz) xz -dc "$m" >"$i/mod/$(basename "$m" .xz)"; basename "$m" .xz ;;
+		*.zst) zstd -qdc "$m" >"$i/mod/$(basename "$m" .zst)"; basename "$m" .zst ;;
+		*) cp "$m" "$i/mod/"; basename "$m" ;;
+		esac
+	done >"$i/mod/order"
+	(cd "$i" && find . | cpio --quiet -o -H newc | gzip -1) >"$tmp/initrd"
+	rm -f "$cache/initramfs/$release"-*.img
+	cp "$tmp/initrd" "$initrd.$$" && mv "$initrd.$$" "$initrd"	# never a half one
+	rm -rf "$i"
+fi
+
+base=(qemu-system-x86_64 -nodefaults -no-user-config -no-reboot -display none -kernel "$image")
+
+# --- KVM only where it works: some hosts offer it and guests hang -------------
+probe_kvm() {
+	local key state=$cache/kvm-probe
+	[ -r /dev/kvm ] && [ -w /dev/kvm ] || return 1
+	key="$(cat /proc/sys/kernel/random/boot_id) $(qemu-system-x86_64 --version | head -n 1)"
+	if [ "$(sed -n 1p "$state" 2>/dev/null)" != "$key" ]; then
+		if timeout -k 1 8 "${base[@]}" -initrd "$initrd" -accel kvm -cpu host -m 512 -serial stdio \
+			-append "console=ttyS0 quiet panic=-1 ec_probe" </dev/null 2>/dev/null |
+			grep -q 'ec-vm: probe ok'; then
+			printf '%s\nyes\n' "$key" >"$state.$$"
+		else
+			printf '%s\nno\n' "$key" >"$state.$$"
+		fi
+		mv "$state.$$" "$state"
+	fi
+	[ "$(sed -n 2p "$state")" = yes ]
+}
+
+if [ $icount = 1 ]; then
+	smp=1
+	accel=(-accel tcg -cpu max -icount "shift=0,sleep=off")
+elif [ "${EC_ACCEL:-}" = kvm ] || { [ -z "${EC_ACCEL:-}" ] && probe_kvm; }; then
+	accel=(-accel kvm -cpu host)
+else
+	accel=(-accel tcg -cpu max)
+fi
+
+# --- what the guest is told ---------------------------------------------------
+ctl=$tmp/ctl
+mkdir "$ctl"
+opts=()
+n=0
+for d in ${rw[@]+"${rw[@]}"}; do
+	d=$(cd "$d" 2>/dev/null && pwd -P) || die "--rw: no directory ${rw[$n]}"
+	printf '%s\n' "$d" >"$ctl/rw$n"
+	opts+=(-virtfs "local,path=${d//,/,,},mount_tag=rw$n,security_model=none,multidevs=remap")
+	n=$((n + 1))
+done
+{
+	printf 'release=%q\nmodules=%q\nrw=%d\n' "$release" "$modules" "$n"
+} >"$ctl/env"
+quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
+{
+	printf 'cd '; quote "$(pwd -P)"; printf '|| exit 126\nexec '
+	for a; do quote "$a"; done
+	echo
+} >"$ctl/cmd"
+
+if [ $nics = 1 ]; then
+	for n in 0 1; do
+		opts+=(-netdev "hubport,id=h$n,hubid=0"
+			-device "e1000e,netdev=h$n,mac=52:54:00:ec:00:0$n")
+	done
+fi
+
+# --- run ----------------------------------------------------------------------
+start=$(date +%s%N)
+mkfifo "$tmp/out"
+# shellcheck disable=SC2086
+timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd" \
+	-serial stdio -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
+	-virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
+	${opts[@]+"${opts[@]}"} \
+	-append "console=ttyS0 quiet panic=-1 log_buf_len=4M mitigations=off apparmor=0 audit=0 printk.devkmsg=on net.ifnames=0$append" \
+	$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
+qemu_pid=$!
+# The console adds a carriage return to each line of the kernel.
+sed -u -e '/sysrq: Resetting/d' -e 's/\r*$//' <"$tmp/out" &
+sed_pid=$!
+qemu_rc=0
+wait $qemu_pid || qemu_rc=$?
+qemu_pid=
+wait $sed_pid || true
+end=$(date +%s%N)
+
+[ $verbose = 0 ] || [ ! -s "$ctl/started" ] ||
+	echo "run.sh: ${accel[*]}: command started $(cat "$ctl/started") s after the kernel," \
+		"all took $(((end - start) / 1000000)) ms" >&2
+
+log=$tmp/dmesg
+if [ -f "$ctl/kmsg" ]; then
+	# Records are "prio,seq,usec,flags;text", continuation lines start with a blank.
+	awk '/^ / { next }
+	     { i = index($0, ";"); split($0, f, ","); printf "[%12.6f] %s\n", f[3] / 1e6, substr($0, i + 1) }' \
+		"$ctl/kmsg" >"$log"
+	[ -z "$dmesg" ] || cp "$log" "$dmesg"
+fi
+
+if [ ! -s "$ctl/rc" ]; then
+	if [ $qemu_rc = 124 ] || [ $qemu_rc = 137 ]; then
+		echo "run.sh: TIMEOUT: not finished after $timeout s (--timeout)" >&2
+		exit 124
+	fi
+	cat "$tmp/qemu.err" >&2
+	die "the guest ended without a result (panic, or it could not start);" \
+		"its last messages are above, --append loglevel=7 shows more"
+fi
+rc=$(cat "$ctl/rc")
+
+if [ $allow_oops = 0 ]; then
+	# Only what came after the command's start; the firmware and the CPU model
+	# are not under test.
+	faults=$(awk 'on; /ec-vm: the command starts/ { on = 1 }' "$log" |
+		grep -E 'BUG:|WARNING:|Oops|general protection|INFO: task|scheduling while atomic|possible recursive locking|refcount_t:|KASAN|UBSAN:|kernel BUG at|invalid opcode:|detected stall|self-detected stall|unregister_netdevice: waiting' || true)
+	if [ -n "$faults" ]; then
+		echo "run.sh: KERNEL FAULT (the command's status was $rc), see --dmesg FILE for all:" >&2
+		printf '%s\n' "$faults" >&2
+		exit 70
+	fi
+fi
+exit "$rc"
