@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Model of one EtherCAT slave controller: registers, RAM, SyncManagers, FMMUs,
+ * EEPROM interface, watchdogs, distributed clock. Pure: time comes in as an
+ * argument, memory through the ops of the segment.
+ *
+ * Two faces: ec_esc_dgram() is what the wire does, ec_esc_pdi_read() and
+ * ec_esc_pdi_write() are what the slave's own CPU does.
+ */
+#ifndef EC_SIM_ESC_H
+#define EC_SIM_ESC_H
+
+#include "../../master/wire/fmmu.h"
+#include "../../master/wire/frame.h"
+#include "../../master/wire/regs.h"
+
+struct ec_sim;
+struct ec_esc;
+
+#define EC_ESC_NEVER	(~0ULL)
+
+/* AL event bits beyond those in regs.h */
+#define EC_AL_EVENT_DC_LATCH	BIT(1)
+#define EC_AL_EVENT_SYNC0	BIT(2)
+#define EC_AL_EVENT_SYNC1	BIT(3)
+
+/**
+ * struct ec_esc_config - what a slave controller is built with
+ * @type: register 0x0000
+ * @revision: register 0x0001
+ * @build: register 0x0002
+ * @fmmus: number of FMMUs, 1..16
+ * @sms: number of SyncManagers, 1..16
+ * @ram_kib: process RAM, 1..60
+ * @ports: enum ec_port_type of the four ports
+ * @features: register 0x0008, EC_FEAT_*
+ * @eeprom_8byte: reads 8 bytes per EEPROM access, else 4
+ * @eeprom_busy_ns: time of a read access of 8 bytes; 4 bytes take half
+ * @eeprom_write_ns: time of a write access
+ * @eeprom: initial content, copied; may be NULL (all 0xff)
+ * @eeprom_len: bytes in @eeprom
+ * @eeprom_size: bytes of the memory itself, at least @eeprom_len, even;
+ *               0: as @eeprom_len
+ * @process_ns: delay through the processing unit, port 0 to the next port
+ * @forward_ns: delay between any other two ports of the way
+ * @drift_ppb: rate error of the local clock, positive runs fast
+ * @clock_start: local clock at power-on, ns
+ * @dc_noise_ns: jitter of the receive times, 0 = exact
+ *
+ * ec_esc_config_init() gives a complete set; change what differs.
+ * A 32-bit clock is one without EC_FEAT_DC64.
+ */
+struct ec_esc_config {
+	u8 type;
+	u8 revision;
+	u16 build;
+	u8 fmmus;
+	u8 sms;
+	u8 ram_kib;
+	u8 ports[EC_MAX_PORT];
+	u16 features;
+	bool eeprom_8byte;
+	u32 eeprom_busy_ns;
+	u32 eeprom_write_ns;
+	const u8 *eeprom;
+	size_t eeprom_len;
+	size_t eeprom_size;
+	u32 process_ns;
+	u32 forward_ns;
+	s32 drift_ppb;
+	u64 clock_start;
+	u32 dc_noise_ns;
+};
+
+/**
+ * struct ec_esc_app_ops - the application behind a slave controller
+ * @al_control: the master wrote 0x0120 (not with device emulation)
+ * @sm_written: the master completely wrote the buffer of an SM
+ * @sm_read: the master completely read the buffer of an SM
+ * @sm_activate: the master wrote the activate byte of an SM (enable or
+ *               repeat request, read 0x0806 + 8 * sm to see which)
+ * @watchdog: the process data watchdog expired
+ * @poll: called by ec_sim_advance() once @now reaches esc->app_wake_ns; the
+ *        wake-up is cleared before the call, set it again as needed
+ * @power_on: registers and RAM are at their reset values, start afresh
+ * @free: the segment goes away, release esc->app
+ *
+ * All may be NULL. They run inside ec_sim_frame() or ec_sim_advance(), may
+ * use the PDI functions and must not allocate (except from @free's reverse,
+ * the code which attaches the application).
+ */
+struct ec_esc_app_ops {
+	void (*al_control)(struct ec_esc *esc, u64 now);
+	void (*sm_written)(struct ec_esc *esc, int sm, u64 now);
+	void (*sm_read)(struct ec_esc *esc, int sm, u64 now);
+	void (*sm_activate)(struct ec_esc *esc, int sm, u64 now);
+	void (*watchdog)(struct ec_esc *esc, u64 now);
+	void (*poll)(struct ec_esc *esc, u64 now);
+	void (*power_on)(struct ec_esc *esc, u64 now);
+	void (*free)(struct ec_esc *esc);
+};
+
+/**
+ * struct ec_esc_port - one port and what hangs on it
+ * @peer: index of the slave at the other end; -1 nothing, -2 - n master port n
+ * @peer_port: port of the peer
+ * @cable_ns: delay of the cable
+ * @cut: the cable is cut (kept on both ends)
+ * @link: physical link as of now
+ * @open: loop open: frames leave here
+ * @auto_closed: loop mode "auto close" keeps the port shut after link down
+ */
+struct ec_esc_port {
+	int peer;
+	u8 peer_port;
+	u32 cable_ns;
+	bool cut;
+	bool link;
+	bool open;
+	bool auto_closed;
+};
+
+/**
+ * struct ec_esc_sm - state of one SyncManager behind its register page
+ * @page: decoded page
+ * @active: enabled, length and start valid
+ * @full: mailbox holds data
+ * @ecat_lock: byte 0 was accessed by the master and the end is due
+ * @pdi_lock: same for the PDI
+ * @ecat_buf: buffer the master works on (3-buffer mode), 0..2
+ * @pdi_buf: buffer the PDI works on
+ * @free_buf: the third buffer
+ * @last_buf: last completely written buffer, 3 = none yet
+ * @fresh: the third buffer holds newer data than the reader's
+ */
+struct ec_esc_sm {
+	struct ec_sm page;
+	bool active;
+	bool full;
+	bool ecat_lock;
+	bool pdi_lock;
+	u8 ecat_buf;
+	u8 pdi_buf;
+	u8 free_buf;
+	u8 last_buf;
+	bool fresh;
+};
+
+/**
+ * struct ec_esc_eeprom - EEPROM and its interface
+ * @data: content
+ * @len: bytes in @data
+ * @busy_until: end of the running command, EC_ESC_NEVER: idle
+ * @cmd: command that runs, EC_EEP_CMD_* or 0
+ * @addr: its word address
+ * @wdata: word to write
+ * @control: error bits of 0x0502
+ * @loaded: the configuration area is good
+ * @alias_loaded: 0x0012 was set once
+ */
+struct ec_esc_eeprom {
+	u8 *data;
+	size_t len;
+	u64 busy_until;
+	u16 cmd;
+	u32 addr;
+	u16 wdata;
+	u16 control;
+	bool loaded;
+	bool alias_loaded;
+};
+
+/**
+ * struct ec_esc_dc - distributed clock
+ * @base_ns: simulation time of the last change of rate
+ * @base_local: local time then
+ * @base_frac: fraction of a local ns, in 1e-9 ns
+ * @adj_ppb16: rate correction of the control loop, ppb << 16
+ * @diff: filtered time difference, ns << 8
+ * @last_diff: difference at the last comparison
+ * @last_cmp: local time of the last comparison
+ * @have_cmp: the two are valid
+ * @dev_ppb: last measured deviation of the period
+ * @next_sync0: system time of the next SYNC0, 0 = off
+ * @next_sync1: same for SYNC1
+ * @sync_wake: simulation time of the next pulse, EC_ESC_NEVER: none
+ * @sync1_skip: SYNC0 pulses until the next SYNC1
+ * @syncs: SYNC0 pulses so far
+ */
+struct ec_esc_dc {
+	u64 base_ns;
+	u64 base_local;
+	u32 base_frac;
+	s64 adj_ppb16;
+	s64 diff;
+	s64 last_diff;
+	u64 last_cmp;
+	bool have_cmp;
+	s32 dev_ppb;
+	u64 next_sync0;
+	u64 next_sync1;
+	u64 sync_wake;
+	u32 sync1_skip;
+	u64 syncs;
+};
+
+/**
+ * struct ec_esc_fault - scripted misbehaviour, set by ec_sim_add_fault()
+ * @dead: forwards frames, does nothing with them
+ * @miss_broadcast: does not see BRD, BWR, BRW
+ * @eeprom_busy: 0x0502 stays busy
+ * @eeprom_noack: this many accesses end with an acknowledge error, ~0: all
+ * @wkc_add: added to every working counter it should increment
+ * @al_refuse: AL state (low 4 bits) the application must refuse, 0 = none
+ * @al_code: AL status code to refuse with
+ * @app_mute: the application answers no mailbox and no AL request
+ */
+struct ec_esc_fault {
+	bool dead;
+	bool miss_broadcast;
+	bool eeprom_busy;
+	u32 eeprom_noack;
+	s16 wkc_add;
+	u8 al_refuse;
+	u16 al_code;
+	bool app_mute;
+};
+
+/**
+ * struct ec_esc - one slave controller
+ * @sim: segment it belongs to
+ * @index: its number in the segment, in the order of ec_sim_add()
+ * @cfg: as built
+ * @powered: power is on
+ * @mem: registers and RAM, EC_REG_RAM + ram_kib * 1024 bytes
+ * @mem_len: bytes in @mem
+ * @port: the ports
+ * @sm: SyncManager state
+ * @fmmu: decoded FMMU pages
+ * @ecat_event: 0x0210
+ * @al_event: 0x0220
+ * @eep: EEPROM
+ * @dc: clock
+ * @fault: scripted misbehaviour
+ * @al_unread: AL control was written and not yet read by the PDI
+ * @emulation: device emulation: AL status follows AL control
+ * @wd_due: time at which the process data watchdog expires
+ * @loop_restore: time at which temporary loop settings end
+ * @loop_saved: loop settings to restore
+ * @reset_step: letters of the reset sequence seen
+ * @app: private to the application side
+ * @app_ops: its entry points, may be NULL
+ * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not
+ */
+struct ec_esc {
+	struct ec_sim *sim;
+	int index;
+	struct ec_esc_config cfg;
+	bool powered;
+	u8 *mem;
+	size_t mem_len;
+	struct ec_esc_port port[EC_MAX_PORT];
+	struct ec_esc_sm sm[EC_MAX_SM];
+	struct ec_fmmu fmmu[EC_MAX_FMMU];
+	u16 ecat_event;
+	u32 al_event;
+	struct ec_esc_eeprom eep;
+	struct ec_esc_dc dc;
+	struct ec_esc_fault fault;
+	bool al_unread;
+	bool emulation;
+	u64 wd_due;
+	u64 loop_restore;
+	u8 loop_saved;
+	u8 reset_step;
+	void *app;
+	const struct ec_esc_app_ops *app_ops;
+	u64 app_wake_ns;
+};
+
+/**
+ * struct ec_frame_ctx - where and when a frame meets a slave
+ * @now: first bit arrives at the processing unit, ns
+ * @end: last bit has arrived (buffer exchanges take effect)
+ * @recv: arrival time per port, filled in by the segment for the latch of
+ *        0x0900; 0 where the frame did not come in
+ */
+struct ec_frame_ctx {
+	u64 now;
+	u64 end;
+	u64 recv[EC_MAX_PORT];
+};
+
+void ec_esc_config_init(struct ec_esc_config *cfg);
+void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
+		  struct ec_frame_ctx *ctx);
+
+/* the slave CPU's face */
+int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
+		    u64 now);
+int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
+		     u64 now);
+void ec_esc_set_al_status(struct ec_esc *esc, u16 status, u16 code, u64 now);
+bool ec_esc_sm_readable(const struct ec_esc *esc, int sm);
+bool ec_esc_sm_writable(const struct ec_esc *esc, int sm);
+void ec_esc_sm_pdi_disable(struct ec_esc *esc, int sm, bool disable);
+void ec_esc_wake_at(struct ec_esc *esc, u64 at_ns);
+
+/* looking inside, for tests and for the application side */
+u64 ec_esc_local_time(const struct ec_esc *esc, u64 now);
+u64 ec_esc_system_time(const struct ec_esc *esc, u64 now);
+void ec_esc_latch(struct ec_esc *esc, int channel, bool rising, u64 now);
+u8 ec_esc_eeprom_crc(const u8 *data);
+
+#endif

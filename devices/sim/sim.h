@@ -1,0 +1,166 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * A simulated EtherCAT segment: slave controllers, cables, faults. Pure: the
+ * caller gives time, randomness (a seed) and memory. The same seed and the
+ * same calls give the same run.
+ */
+#ifndef EC_SIM_SIM_H
+#define EC_SIM_SIM_H
+
+#include "esc.h"
+
+#define EC_SIM_MASTER0	(-1)	/* "parent" in ec_sim_wire() */
+#define EC_SIM_MASTER1	(-2)
+#define EC_SIM_PORTS	2
+
+/**
+ * struct ec_sim_ops - where memory comes from
+ * @alloc: zeroed memory, NULL when there is none; may sleep
+ * @free: gives it back, NULL is allowed
+ */
+struct ec_sim_ops {
+	void *(*alloc)(size_t bytes);
+	void (*free)(void *p);
+};
+
+/**
+ * enum ec_sim_fault_type - what goes wrong
+ * @EC_SIM_FAULT_CUT: cable at @slave, @port is cut
+ * @EC_SIM_FAULT_HEAL: and whole again
+ * @EC_SIM_FAULT_POWER_OFF: @slave loses power
+ * @EC_SIM_FAULT_POWER_ON: and gets it back
+ * @EC_SIM_FAULT_LOSE: frame is lost
+ * @EC_SIM_FAULT_DUPLICATE: frame comes back @value times more (0 as 1)
+ * @EC_SIM_FAULT_DELAY: frame comes back @value ns later
+ * @EC_SIM_FAULT_MANGLE: some bytes of the frame are changed on the way back
+ * @EC_SIM_FAULT_REFUSE_AL: @slave refuses AL state @arg with code @arg2;
+ *                          @arg 0 ends it
+ * @EC_SIM_FAULT_EEPROM_BUSY: EEPROM stays busy while @arg is 1
+ * @EC_SIM_FAULT_EEPROM_NOACK: the next @arg accesses fail, ~0 all, 0 none
+ * @EC_SIM_FAULT_MISS_BROADCAST: slave misses broadcasts while @arg is 1
+ * @EC_SIM_FAULT_DEAD: slave forwards only while @arg is 1
+ * @EC_SIM_FAULT_WKC: (s16)@arg is added to its working counters, 0 ends it
+ * @EC_SIM_FAULT_MUTE: the application does not answer while @arg is 1
+ * @EC_SIM_FAULT_ERRORS: @arg is added to the error counters of @port
+ */
+enum ec_sim_fault_type {
+	EC_SIM_FAULT_CUT,
+	EC_SIM_FAULT_HEAL,
+	EC_SIM_FAULT_POWER_OFF,
+	EC_SIM_FAULT_POWER_ON,
+	EC_SIM_FAULT_LOSE,
+	EC_SIM_FAULT_DUPLICATE,
+	EC_SIM_FAULT_DELAY,
+	EC_SIM_FAULT_MANGLE,
+	EC_SIM_FAULT_REFUSE_AL,
+	EC_SIM_FAULT_EEPROM_BUSY,
+	EC_SIM_FAULT_EEPROM_NOACK,
+	EC_SIM_FAULT_MISS_BROADCAST,
+	EC_SIM_FAULT_DEAD,
+	EC_SIM_FAULT_WKC,
+	EC_SIM_FAULT_MUTE,
+	EC_SIM_FAULT_ERRORS,
+	EC_SIM_FAULT_TYPES
+};
+
+/**
+ * struct ec_sim_fault - one scripted fault
+ * @at_ns: when it begins; 0 or past: with the next frame or advance
+ * @type: what
+ * @slave: which slave; for frame faults ignored. -1, -2: CUT and HEAL at the
+ *         master's own port
+ * @port: which port; for frame faults the master port, -1 = both
+ * @arg: frame faults: the n-th frame from @at_ns on (1 = next), 0 = by chance
+ * @arg2: frame faults by chance: probability in ppm, 0 ends the earlier one
+ * @value: see the types
+ */
+struct ec_sim_fault {
+	u64 at_ns;
+	enum ec_sim_fault_type type;
+	int slave;
+	int port;
+	u32 arg;
+	u32 arg2;
+	u64 value;
+};
+
+/* deliberate errors of the model, each to be found by a witness test */
+enum ec_sim_bug {
+	EC_SIM_BUG_NONE,
+	EC_SIM_BUG_LRW_WKC,		/* write part of LRW counts 1 */
+	EC_SIM_BUG_BRD_NO_OR,		/* BRD overwrites */
+	EC_SIM_BUG_AP_NO_INC,		/* position not incremented */
+	EC_SIM_BUG_SM_DIRECTION,	/* direction check skipped */
+	EC_SIM_BUG_MBOX_FULL,		/* full mailbox takes another write */
+	EC_SIM_BUG_MBOX_EMPTY,		/* read of an empty mailbox counts */
+	EC_SIM_BUG_EEP_NEVER_BUSY,	/* data late but busy not shown */
+	EC_SIM_BUG_EEP_ADDRESS,		/* always reads address 0 */
+	EC_SIM_BUG_EEP_READ8,		/* 8-byte flag inverted */
+	EC_SIM_BUG_FMMU_SHIFT,		/* bit position off by one */
+	EC_SIM_BUG_FMMU_LENGTH,		/* one byte too short */
+	EC_SIM_BUG_LWR_INPUTS,		/* LWR also writes read FMMUs */
+	EC_SIM_BUG_WKC_PER_FMMU,	/* counts each FMMU */
+	EC_SIM_BUG_NO_ALIAS,		/* alias never matches */
+	EC_SIM_BUG_FRMW_WKC,		/* writers of FRMW and ARMW don't count */
+	EC_SIM_BUG_LOOPS_INVERTED,	/* loop bits of DL status */
+	EC_SIM_BUG_AL_NO_OR,		/* BRD of AL status keeps the last */
+	EC_SIM_BUG_CIRCULATING,		/* circulating bit ignored */
+	EC_SIM_BUG_NO_RECV_TIMES,	/* write to 0x0900 latches nothing */
+	EC_SIM_BUG_EVENT_STUCK,		/* ECAT events never cleared */
+	EC_SIM_BUG_DC_JUMP,		/* write to 0x0910 sets the time */
+	EC_SIM_BUG_DIFF_TWOS,		/* 0x092C as two's complement */
+	EC_SIM_BUGS
+};
+
+/**
+ * struct ec_sim_result - fate of one frame
+ * @out_port: master port at which it came back
+ * @delay_ns: first bit sent to last bit received, -ENOLINK: lost
+ * @copies: how many of it arrive, 1 = as usual, 0 = lost
+ * @mangled: its content was changed by a fault
+ * @induced: a fault was at work on it
+ */
+struct ec_sim_result {
+	int out_port;
+	s64 delay_ns;
+	u8 copies;
+	bool mangled;
+	bool induced;
+};
+
+/* building */
+struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
+			  u64 seed);
+void ec_sim_free(struct ec_sim *sim);
+struct ec_esc *ec_sim_add(struct ec_sim *sim, const struct ec_esc_config *cfg);
+int ec_sim_wire(struct ec_sim *sim, int parent, int parent_port, int child,
+		int child_port, u32 cable_ns);
+void *ec_sim_alloc(struct ec_sim *sim, size_t bytes);
+void ec_sim_release(struct ec_sim *sim, void *p);
+
+/* running */
+s64 ec_sim_frame(struct ec_sim *sim, int port, u8 *frame, size_t len,
+		 u64 now_ns);
+s64 ec_sim_frame2(struct ec_sim *sim, int port, u8 *frame, size_t len,
+		  u64 now_ns, int *out_port);
+s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
+			u64 now_ns, struct ec_sim_result *res);
+void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
+u64 ec_sim_next_event(struct ec_sim *sim);
+bool ec_sim_link(const struct ec_sim *sim, int port);
+
+/* looking */
+u32 ec_sim_count(const struct ec_sim *sim);
+struct ec_esc *ec_sim_slave(struct ec_sim *sim, u32 index);
+u64 ec_sim_now(const struct ec_sim *sim);
+u32 ec_sim_random(struct ec_sim *sim);
+
+/* going wrong */
+int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault);
+void ec_sim_clear_faults(struct ec_sim *sim);
+const char *ec_sim_fault_name(enum ec_sim_fault_type type);
+void ec_sim_set_bug(struct ec_sim *sim, enum ec_sim_bug bug);
+const char *ec_sim_bug_name(enum ec_sim_bug bug);
+void ec_sim_set_slow(struct ec_sim *sim, bool slow);
+
+#endif
