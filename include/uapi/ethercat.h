@@ -1,0 +1,581 @@
+/* SPDX-License-Identifier: GPL-2.0 WITH Linux-syscall-note */
+/*
+ * Interface between /dev/EtherCAT<n> and its users.
+ *
+ * Rules: fixed-width types only; pointers travel as __u64; every structure
+ * starts with a flags word whose unknown bits are refused (-EOPNOTSUPP) and
+ * may grow at its end: the kernel takes the size from the command number,
+ * zero-fills what an older program does not send and refuses (-E2BIG) a
+ * non-zero tail it does not know. Numbers are never reused.
+ *
+ * When a command fails, EC_IOC_REASON on the same open file returns one line
+ * of text that says what was wrong and what to do.
+ */
+#ifndef EC_UAPI_ETHERCAT_H
+#define EC_UAPI_ETHERCAT_H
+
+#include <linux/ioctl.h>
+#include <linux/types.h>
+
+#define EC_UAPI_VERSION		1
+#define EC_UAPI_STRING		64
+#define EC_UAPI_REASON		256
+#define EC_UAPI_PORTS		4
+#define EC_UAPI_DEVICES		2
+#define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
+#define EC_UAPI_NONE16		0xffff
+
+/* bits of struct ec_ioc_version.features */
+#define EC_FEATURE_APP_CYCLE	(1ULL << 0)
+#define EC_FEATURE_COE		(1ULL << 1)
+
+struct ec_ioc_version {
+	__u32 flags;
+	__u32 abi;		/* EC_UAPI_VERSION of the module */
+	__u64 features;
+	__u32 master_count;
+	__u32 ecrt;		/* ECRT_VERSION_MAGIC of the module */
+	char release[EC_UAPI_STRING];
+};
+
+struct ec_ioc_reason {
+	__u32 flags;
+	__u32 len;
+	char text[EC_UAPI_REASON];
+};
+
+/* struct ec_ioc_device.state */
+#define EC_DEVICE_WAITING	0
+#define EC_DEVICE_ATTACHED	1
+
+struct ec_ioc_device {
+	__u8 address[6];
+	__u8 state;
+	__u8 link_up;
+	__u32 slaves;		/* slaves that answered the last broadcast */
+	char name[EC_UAPI_STRING];
+	__u64 tx_frames;
+	__u64 tx_bytes;
+	__u64 rx_frames;
+	__u64 rx_bytes;
+	__u64 tx_errors;
+	__u64 lost;		/* not back in time */
+	__u64 late;		/* back, but after their time limit */
+	__u64 unmatched;	/* EtherCAT, but not asked for, or mangled */
+	__u64 foreign;		/* other protocols on the wire */
+	__u32 tx_frame_rate[EC_UAPI_RATES];	/* per second */
+	__u32 rx_frame_rate[EC_UAPI_RATES];
+	__u32 tx_byte_rate[EC_UAPI_RATES];
+	__u32 rx_byte_rate[EC_UAPI_RATES];
+	__u32 loss_rate[EC_UAPI_RATES];
+	__u32 reserved;
+};
+
+/* struct ec_ioc_master.phase */
+#define EC_PHASE_WAITING	0	/* for its device */
+#define EC_PHASE_IDLE		1
+#define EC_PHASE_OPERATION	2
+
+struct ec_ioc_master {
+	__u32 flags;
+	__u32 index;
+	__u8 phase;
+	__u8 active;
+	__u8 scan_busy;
+	__u8 al_states;		/* OR of 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
+	__u32 slave_count;
+	__u32 slaves_responding;
+	__u32 scan_index;
+	__u32 config_count;
+	__u32 domain_count;
+	__u32 device_count;
+	__u32 debug_level;
+	__u64 app_time;
+	__u64 dc_ref_time;
+	__s32 ref_clock;	/* ring position, -1 none */
+	__u32 scan_us;		/* how long the last scan took */
+	__u64 scan_frames;	/* frames it needed */
+	struct ec_ioc_device devices[EC_UAPI_DEVICES];
+};
+
+struct ec_ioc_port {
+	__u8 type;		/* 0 none, 1 not configured, 2 EBUS, 3 MII */
+	__u8 link_up;
+	__u8 loop_closed;
+	__u8 signal;
+	__u32 receive_time;
+	__u16 next_slave;	/* EC_UAPI_NONE16: none */
+	__u16 reserved;
+	__u32 delay_to_next_dc;
+};
+
+/* struct ec_ioc_slave.coe_details: bits as in SII general byte 5 */
+/* struct ec_ioc_slave.error */
+#define EC_SLAVE_OK		0
+#define EC_SLAVE_SCAN_FAILED	1
+#define EC_SLAVE_CONFIG_FAILED	2
+
+struct ec_ioc_slave {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 station;
+	__u16 alias;
+	__u16 alias_pos;	/* distance to the slave with the alias */
+	__u16 alias_group;	/* alias of that slave, 0: none before */
+	__u16 al_status;	/* register 0x0130 */
+	__u16 al_code;		/* register 0x0134 */
+	__u8 al_requested;
+	__u8 error;
+	__u32 vendor_id;
+	__u32 product_code;
+	__u32 revision_number;
+	__u32 serial_number;
+	__u16 boot_rx_offset;
+	__u16 boot_rx_size;
+	__u16 boot_tx_offset;
+	__u16 boot_tx_size;
+	__u16 std_rx_offset;
+	__u16 std_rx_size;
+	__u16 std_tx_offset;
+	__u16 std_tx_size;
+	__u16 mbox_protocols;
+	__u8 has_general;
+	__u8 coe_details;
+	__u8 general_flags;
+	__u8 foe_details;
+	__s16 current_ma;
+	__u8 fmmu_bit;
+	__u8 dc_supported;	/* 0 no, 1: 32 bit, 2: 64 bit */
+	__u8 dc_delay_only;
+	__u8 sm_count;
+	__u8 fmmu_count;
+	__u8 device_index;	/* 0 main, 1 backup */
+	__u16 dl_status;
+	__u16 sdo_count;
+	__u16 features;		/* register 0x0008 */
+	__u32 transmission_delay;
+	__u32 sii_words;
+	struct ec_ioc_port ports[EC_UAPI_PORTS];
+	char group[EC_UAPI_STRING];
+	char image[EC_UAPI_STRING];
+	char order[EC_UAPI_STRING];
+	char name[EC_UAPI_STRING];
+	char why[EC_UAPI_REASON];	/* cause of @error */
+};
+
+struct ec_ioc_sm {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u8 sm;		/* in */
+	__u8 control;
+	__u16 start;
+	__u16 default_size;
+	__u8 enable;
+	__u8 type;
+	__u16 pdo_count;
+	__u32 reserved;
+};
+
+struct ec_ioc_pdo {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u8 sm;		/* in */
+	__u8 reserved;
+	__u16 pdo_pos;		/* in */
+	__u16 index;
+	__u16 entry_count;
+	__u16 reserved2;
+	char name[EC_UAPI_STRING];
+};
+
+struct ec_ioc_pdo_entry {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u8 sm;		/* in */
+	__u8 subindex;
+	__u16 pdo_pos;		/* in */
+	__u16 entry_pos;	/* in */
+	__u16 index;
+	__u8 bits;
+	__u8 reserved;
+	char name[EC_UAPI_STRING];
+};
+
+/* the EEPROM image as read by the last scan; no bus traffic */
+struct ec_ioc_sii {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 reserved;
+	__u32 offset;		/* in, bytes */
+	__u32 size;		/* in: room at @data; out: bytes copied */
+	__u64 data;
+};
+
+struct ec_ioc_reg {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 address;		/* in */
+	__u32 size;		/* in, bytes, 1..1024 */
+	__u32 reserved;
+	__u64 data;
+};
+
+#define EC_REG_FLAG_EMERGENCY	1	/* write by ring position, unscanned bus */
+
+struct ec_ioc_sdo {
+	__u32 flags;		/* EC_SDO_FLAG_* */
+	__u16 position;		/* in */
+	__u16 index;		/* in */
+	__u8 subindex;		/* in */
+	__u8 reserved[3];
+	__u32 abort_code;	/* out */
+	__u32 size;		/* download: bytes; upload: room, then result */
+	__u32 timeout_ms;	/* in; 0: default */
+	__u64 data;
+};
+
+#define EC_SDO_FLAG_COMPLETE	1
+
+struct ec_ioc_state {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u8 state;		/* in: 1, 2, 3, 4, 8 */
+	__u8 reserved;
+};
+
+struct ec_ioc_debug {
+	__u32 flags;
+	__u32 level;		/* 0, 1, 2 */
+};
+
+/* configured by the application -------------------------------------------*/
+
+struct ec_ioc_config {
+	__u32 flags;
+	__u32 index;		/* in: of the configuration */
+	__u16 alias;
+	__u16 position;
+	__u32 vendor_id;
+	__u32 product_code;
+	__s32 slave_position;	/* -1: not attached */
+	__u16 al_status;
+	__u16 watchdog_divider;
+	__u16 watchdog_intervals;
+	__u16 dc_assign_activate;
+	__u32 dc_cycle[2];
+	__s32 dc_shift[2];
+	__u32 sdo_count;
+	__u32 reserved;
+};
+
+struct ec_ioc_config_sm {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u8 sm;		/* in */
+	__u8 dir;		/* 0 not configured, 1 output, 2 input */
+	__u8 watchdog;		/* 0 default, 1 enable, 2 disable */
+	__u8 reserved;
+	__u32 pdo_count;
+};
+
+struct ec_ioc_config_pdo {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u8 sm;		/* in */
+	__u8 reserved[3];
+	__u32 pdo_pos;		/* in */
+	__u16 pdo_index;
+	__u16 entry_count;
+};
+
+struct ec_ioc_config_entry {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u8 sm;		/* in */
+	__u8 reserved[3];
+	__u32 pdo_pos;		/* in */
+	__u32 entry_pos;	/* in */
+	__u16 entry_index;
+	__u8 subindex;
+	__u8 bits;
+};
+
+struct ec_ioc_config_sdo {
+	__u32 flags;		/* out: EC_SDO_FLAG_COMPLETE */
+	__u32 index;		/* in */
+	__u32 sdo_pos;		/* in */
+	__u16 sdo_index;
+	__u8 subindex;
+	__u8 reserved;
+	__u32 size;		/* in: room; out: full size */
+	__u32 reserved2;
+	__u64 data;
+};
+
+struct ec_ioc_domain {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u32 size;
+	__u32 logical;
+	__u32 working_counter;
+	__u32 expected;
+	__u32 fmmu_count;
+	__u32 reserved;
+};
+
+struct ec_ioc_domain_fmmu {
+	__u32 flags;
+	__u32 index;		/* in: domain */
+	__u32 fmmu;		/* in */
+	__u16 alias;
+	__u16 position;
+	__u8 sm;
+	__u8 dir;
+	__u16 reserved;
+	__u32 logical;
+	__u32 size;
+	__u32 offset;		/* in the domain */
+};
+
+struct ec_ioc_domain_data {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u32 size;		/* in: room; out: bytes copied */
+	__u32 reserved;
+	__u64 data;
+};
+
+/* application ---------------------------------------------------------------*/
+
+struct ec_ioc_create_domain {
+	__u32 flags;
+	__u32 index;		/* out */
+};
+
+struct ec_ioc_slave_config {
+	__u32 flags;
+	__u16 alias;		/* in */
+	__u16 position;		/* in */
+	__u32 vendor_id;	/* in */
+	__u32 product_code;	/* in */
+	__u32 index;		/* out */
+};
+
+struct ec_ioc_sc_sync {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u8 sm;		/* in */
+	__u8 dir;		/* in: 1 output, 2 input */
+	__u8 watchdog;		/* in */
+	__u8 reserved;
+};
+
+struct ec_ioc_sc_watchdog {
+	__u32 flags;
+	__u32 config;
+	__u16 divider;
+	__u16 intervals;
+};
+
+/* op of struct ec_ioc_sc_pdo */
+#define EC_SC_PDO_ASSIGN_ADD	0	/* @pdo to @sm */
+#define EC_SC_PDO_ASSIGN_CLEAR	1	/* @sm */
+#define EC_SC_PDO_MAP_ADD	2	/* entry to @pdo */
+#define EC_SC_PDO_MAP_CLEAR	3	/* @pdo */
+
+struct ec_ioc_sc_pdo {
+	__u32 flags;
+	__u32 config;
+	__u8 op;
+	__u8 sm;
+	__u16 pdo;
+	__u16 entry_index;
+	__u8 subindex;
+	__u8 bits;
+};
+
+struct ec_ioc_sc_sdo {
+	__u32 flags;		/* EC_SDO_FLAG_COMPLETE */
+	__u32 config;
+	__u16 index;
+	__u8 subindex;
+	__u8 reserved;
+	__u32 size;
+	__u64 data;
+};
+
+#define EC_REG_ENTRY_BY_POS	1
+
+struct ec_ioc_reg_entry {
+	__u32 flags;		/* EC_REG_ENTRY_BY_POS */
+	__u32 config;		/* in */
+	__u32 domain;		/* in */
+	__u16 entry_index;	/* in, without BY_POS */
+	__u8 subindex;
+	__u8 sm;		/* in, with BY_POS */
+	__u32 pdo_pos;
+	__u32 entry_pos;
+	__u32 offset;		/* out: byte in the domain */
+	__u32 bit;		/* out: 0..7 */
+};
+
+struct ec_ioc_sc_dc {
+	__u32 flags;
+	__u32 config;
+	__u16 assign_activate;
+	__u16 reserved;
+	__u32 cycle0;
+	__s32 shift0;
+	__u32 cycle1;
+	__s32 shift1;
+	__u32 reserved2;
+};
+
+struct ec_ioc_sc_flag {
+	__u32 flags;
+	__u32 config;
+	__s32 value;
+	__u32 reserved;
+	char key[EC_UAPI_STRING];
+};
+
+struct ec_ioc_sc_timeout {
+	__u32 flags;
+	__u32 config;
+	__u8 from;
+	__u8 to;
+	__u16 reserved;
+	__u32 timeout_ms;
+};
+
+/*
+ * Activation lays out the memory to map from the device file:
+ *   EC_MMAP_IMAGE   process image of all domains, read-write
+ *   EC_MMAP_STATUS  struct ec_status, read-only
+ */
+#define EC_MMAP_IMAGE		0x00000000ULL
+#define EC_MMAP_STATUS		0x40000000ULL
+
+struct ec_ioc_activate {
+	__u32 flags;
+	__u32 image_size;	/* out, bytes, multiple of the page size */
+	__u32 status_size;	/* out, same */
+	__u32 reserved;
+};
+
+struct ec_ioc_domain_offset {
+	__u32 flags;
+	__u32 domain;		/* in */
+	__u32 offset;		/* out: in the image */
+	__u32 size;		/* out */
+};
+
+/* argument of EC_IOC_SEND; @queued: bit n queues domain n */
+struct ec_ioc_send {
+	__u32 flags;
+	__u32 reserved;
+	__u64 queued;
+};
+
+struct ec_ioc_interval {
+	__u32 flags;
+	__u32 interval_us;
+};
+
+struct ec_ioc_app_time {
+	__u32 flags;
+	__u32 reserved;
+	__u64 app_time;
+};
+
+#define EC_STATUS_MAGIC		0x45435354	/* "ECST" */
+#define EC_STATUS_DOMAINS	64
+#define EC_STATUS_CONFIGS	4096
+
+/* working counter of one domain, as of the last receive */
+struct ec_status_domain {
+	__u32 working_counter;
+	__u32 wc_state;		/* 0 zero, 1 incomplete, 2 complete */
+	__u32 redundancy_active;
+	__u32 expected;
+};
+
+/* bits 0-3 AL state, 4 online, 5 operational */
+#define EC_STATUS_SC_AL		0x0f
+#define EC_STATUS_SC_ONLINE	0x10
+#define EC_STATUS_SC_OP		0x20
+
+/*
+ * Read-only page(s) of an activated master. Each field is written by one
+ * aligned store and may be read at any time; @cycle counts receives.
+ */
+struct ec_status {
+	__u32 magic;
+	__u32 size;
+	__u64 cycle;
+	__u32 slaves_responding;
+	__u32 al_states;
+	__u32 link_up;
+	__u32 config_count;
+	__u64 frames_lost;
+	__u64 app_time;
+	struct ec_status_domain domains[EC_STATUS_DOMAINS];
+	__u8 configs[EC_STATUS_CONFIGS];
+};
+
+#define EC_IOC_TYPE		0xec
+#define EC_IOC_R(nr, t)		_IOR(EC_IOC_TYPE, nr, t)
+#define EC_IOC_W(nr, t)		_IOW(EC_IOC_TYPE, nr, t)
+#define EC_IOC_RW(nr, t)	_IOWR(EC_IOC_TYPE, nr, t)
+#define EC_IOC_N(nr)		_IO(EC_IOC_TYPE, nr)
+
+/* any open file, no bus traffic */
+#define EC_IOC_VERSION		EC_IOC_R(0x00, struct ec_ioc_version)
+#define EC_IOC_REASON		EC_IOC_R(0x01, struct ec_ioc_reason)
+#define EC_IOC_MASTER		EC_IOC_R(0x02, struct ec_ioc_master)
+#define EC_IOC_SLAVE		EC_IOC_RW(0x03, struct ec_ioc_slave)
+#define EC_IOC_SM		EC_IOC_RW(0x04, struct ec_ioc_sm)
+#define EC_IOC_PDO		EC_IOC_RW(0x05, struct ec_ioc_pdo)
+#define EC_IOC_PDO_ENTRY	EC_IOC_RW(0x06, struct ec_ioc_pdo_entry)
+#define EC_IOC_SII		EC_IOC_RW(0x07, struct ec_ioc_sii)
+#define EC_IOC_CONFIG		EC_IOC_RW(0x08, struct ec_ioc_config)
+#define EC_IOC_CONFIG_SM	EC_IOC_RW(0x09, struct ec_ioc_config_sm)
+#define EC_IOC_CONFIG_PDO	EC_IOC_RW(0x0a, struct ec_ioc_config_pdo)
+#define EC_IOC_CONFIG_ENTRY	EC_IOC_RW(0x0b, struct ec_ioc_config_entry)
+#define EC_IOC_CONFIG_SDO	EC_IOC_RW(0x0c, struct ec_ioc_config_sdo)
+#define EC_IOC_DOMAIN		EC_IOC_RW(0x0d, struct ec_ioc_domain)
+#define EC_IOC_DOMAIN_FMMU	EC_IOC_RW(0x0e, struct ec_ioc_domain_fmmu)
+#define EC_IOC_DOMAIN_DATA	EC_IOC_RW(0x0f, struct ec_ioc_domain_data)
+
+/* opened for writing: traffic or change */
+#define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)
+#define EC_IOC_SDO_DOWNLOAD	EC_IOC_RW(0x21, struct ec_ioc_sdo)
+#define EC_IOC_REG_READ		EC_IOC_RW(0x22, struct ec_ioc_reg)
+#define EC_IOC_REG_WRITE	EC_IOC_RW(0x23, struct ec_ioc_reg)
+#define EC_IOC_STATE		EC_IOC_W(0x24, struct ec_ioc_state)
+#define EC_IOC_RESCAN		EC_IOC_N(0x25)
+#define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)
+#define EC_IOC_RESET		EC_IOC_N(0x27)
+
+/* reserved by this open file: the application */
+#define EC_IOC_RESERVE		EC_IOC_N(0x40)
+#define EC_IOC_RELEASE		EC_IOC_N(0x41)
+#define EC_IOC_CREATE_DOMAIN	EC_IOC_RW(0x42, struct ec_ioc_create_domain)
+#define EC_IOC_SLAVE_CONFIG	EC_IOC_RW(0x43, struct ec_ioc_slave_config)
+#define EC_IOC_SC_SYNC		EC_IOC_W(0x44, struct ec_ioc_sc_sync)
+#define EC_IOC_SC_WATCHDOG	EC_IOC_W(0x45, struct ec_ioc_sc_watchdog)
+#define EC_IOC_SC_PDO		EC_IOC_W(0x46, struct ec_ioc_sc_pdo)
+#define EC_IOC_SC_SDO		EC_IOC_W(0x47, struct ec_ioc_sc_sdo)
+#define EC_IOC_REG_ENTRY	EC_IOC_RW(0x48, struct ec_ioc_reg_entry)
+#define EC_IOC_SC_DC		EC_IOC_W(0x49, struct ec_ioc_sc_dc)
+#define EC_IOC_SC_FLAG		EC_IOC_W(0x4a, struct ec_ioc_sc_flag)
+#define EC_IOC_SC_TIMEOUT	EC_IOC_W(0x4b, struct ec_ioc_sc_timeout)
+#define EC_IOC_ACTIVATE		EC_IOC_RW(0x4c, struct ec_ioc_activate)
+#define EC_IOC_DEACTIVATE	EC_IOC_N(0x4d)
+#define EC_IOC_DOMAIN_OFFSET	EC_IOC_RW(0x4e, struct ec_ioc_domain_offset)
+#define EC_IOC_INTERVAL		EC_IOC_W(0x4f, struct ec_ioc_interval)
+#define EC_IOC_APP_TIME		EC_IOC_W(0x50, struct ec_ioc_app_time)
+#define EC_IOC_RECEIVE		EC_IOC_N(0x51)
+#define EC_IOC_SEND		EC_IOC_W(0x52, struct ec_ioc_send)
+
+#endif
