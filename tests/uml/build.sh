@@ -1,0 +1,135 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Builds a UML kernel with KUnit and the sources of this clone built in.
+# Prints the path of the finished kernel as the last line of stdout.
+#
+#   build.sh [--debug] [--path]      --path: only prints where it would be
+#
+# EC_CACHE      folder of the cache (default ~/.cache/ethercat)
+# EC_LINUX_TAR  kernel source (default: Debian's linux-source-6.1)
+# EC_UML_SKIP   more files to leave out, e.g. 'master/broken.c tests/bus/%'
+# EC_JOBS       parallel jobs (default: number of CPUs)
+set -euo pipefail
+
+die() { echo "build.sh: $*" >&2; exit 1; }
+
+variant=plain pathonly=
+for a in "$@"; do
+	case "$a" in
+	--debug) variant=debug ;;
+	--path) pathonly=1 ;;
+	*) die "unknown argument '$a'; usage: build.sh [--debug] [--path]" ;;
+	esac
+done
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+repo=$(cd "$here/../.." && pwd -P)
+cache=${EC_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ethercat}
+tarball=${EC_LINUX_TAR:-/usr/src/linux-source-6.1.tar.xz}
+jobs=${EC_JOBS:-$(nproc)}
+
+for t in make gcc bc bison flex xz flock sha256sum; do
+	command -v $t >/dev/null || die "'$t' is missing; run tests/install-deps.sh"
+done
+[ -r "$tarball" ] || die "$tarball is missing; run tests/install-deps.sh"
+
+srckey=$(stat -Lc '%s-%Y' "$tarball")
+src=$cache/src/linux-$srckey
+
+frags=("$here/kunit.config")
+[ $variant = plain ] || frags+=("$here/debug.config")
+key=$( { echo "$srckey"; gcc --version | head -n1; cat "${frags[@]}"; } |
+	sha256sum | cut -c1-12)
+out=$cache/uml/$variant-$key
+# Objects of one clone live apart from those of another: two clones share the
+# kernel's objects but never a source of ours.
+clone=$cache/uml/clone-$(echo "$repo" | sha256sum | cut -c1-12)/$variant-$key
+farm=$clone/ethercat
+if [ -n "$pathonly" ]; then
+	echo "$clone/vmlinux"
+	exit
+fi
+
+# An unpacked tree is never changed again, so that clones can share it.
+mkdir -p "$cache/src"
+exec 9>"$cache/src/.lock"
+flock 9
+if [ ! -e "$src/.ec-ready" ]; then
+	echo "unpacking $(basename "$tarball")" >&2
+	tmp=$(mktemp -d "$cache/src/tmp.XXXXXX")
+	tar xf "$tarball" -C "$tmp" --strip-components=1
+	mkdir -p "$tmp/drivers/ethercat"
+	echo 'include $(obj)/tests/uml/Makefile.uml' \
+		>"$tmp/drivers/ethercat/Makefile"
+	echo 'obj-y += ethercat/' >>"$tmp/drivers/Makefile"
+	touch "$tmp/.ec-ready"
+	rm -rf "$src"
+	mv "$tmp" "$src"
+fi
+flock -u 9
+
+mkdir -p "$out/drivers" "$farm"
+
+exec 9>"$out/.lock"
+flock -n 9 || { echo "waiting for another build in $out" >&2; flock 9; }
+
+mk() { make -C "$src" ARCH=um O="$out" -j"$jobs" -s EC_UML_SKIP="${EC_UML_SKIP-}" "$@" </dev/null 9>&-; }
+
+if [ ! -e "$out/.ec-configured" ]; then
+	echo "configuring $variant kernel in $out" >&2
+	grep -hv '^# SPDX' "${frags[@]}" >"$out/.config"
+	mk olddefconfig >&2
+	# A dependency that is not met drops an option without a word.
+	while read -r line; do
+		case "$line" in
+		CONFIG_*=n) grep -q "^${line%=n}=" "$out/.config" || continue ;;
+		CONFIG_*) grep -qxF "$line" "$out/.config" && continue ;;
+		'# CONFIG_'*' is not set')
+			o=${line#\# }; o=${o% is not set}
+			grep -q "^$o=" "$out/.config" || continue ;;
+		*) continue ;;
+		esac
+		die "option not accepted by this kernel: $line"
+	done < <(cat "${frags[@]}")
+	touch "$out/.ec-configured"
+fi
+
+# Mirror the clone: folders are real, files are symlinks; make compares the
+# times of the files they point to.
+want=$(mktemp)
+trap 'rm -f "$want"' EXIT
+(cd "$repo" && for d in include master devices tests/unit tests/bus tests/uml; do
+	[ ! -d $d ] || find $d -type f \( -name '*.[ch]' -o -name '*.inc' -o \
+		-name '*.def' -o -name Makefile.uml -o -name skip.list \) \
+		! -name '*.mod.c' ! -name '.*' -print
+done) | sort >"$want"
+(cd "$farm" && find . -type l -printf '%P\n' | sort) | comm -13 "$want" - |
+	while read -r f; do rm -f "$farm/$f" "$farm/${f%.c}.o"; done
+(cd "$farm" && find . -type l -printf '%P\n' | sort) | comm -23 "$want" - |
+	while read -r f; do
+		mkdir -p "$farm/$(dirname "$f")"
+		ln -s "$repo/$f" "$farm/$f"
+	done
+
+link=$out/drivers/ethercat
+if [ "$(readlink "$link" || true)" != "$farm" ]; then
+	rm -rf "$link"
+	ln -s "$farm" "$link"
+	# Another clone's archive may look up to date: make it anew.
+	rm -f "$farm/built-in.a"
+fi
+
+start=$SECONDS
+log=$clone/build.log
+rc=0
+mk vmlinux >"$log" 2>&1 || rc=$?
+# Show paths as they are in the clone, without the linker's usual remarks.
+sed -e 's#[^ :]*drivers/ethercat/##g' \
+	-e '/missing .note.GNU-stack\|NOTE: This behaviour\|RWX permissions/d' \
+	"$log" >&2
+[ $rc = 0 ] || die "kernel build failed (log: $log)"
+cp --reflink=auto "$out/vmlinux" "$clone/vmlinux.new"
+mv -f "$clone/vmlinux.new" "$clone/vmlinux"
+echo "built $variant kernel in $((SECONDS - start)) s" >&2
+echo "$clone/vmlinux"
