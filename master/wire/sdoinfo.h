@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause */
+/*
+ * SDO information (ETG.1000.6 clause 5.6.3): reading the object dictionary.
+ * Client exchanges without I/O, see sdo.h; an answer may come in several
+ * fragments, for which ec_sdoinfo_rx() returns EC_WAIT. The server side encodes
+ * an answer of any size into as many fragments as it needs.
+ */
+#ifndef EC_WIRE_SDOINFO_H
+#define EC_WIRE_SDOINFO_H
+
+#include "coe.h"
+
+#define EC_SDOINFO_HDR		6	/* CoE header, opcode, reserved, fragments left */
+#define EC_SDOINFO_FRAGMENTS	4096	/* no answer has more */
+
+enum ec_sdoinfo_opcode {
+	EC_SDOINFO_LIST_REQ = 1,
+	EC_SDOINFO_LIST_RESP = 2,
+	EC_SDOINFO_OBJECT_REQ = 3,
+	EC_SDOINFO_OBJECT_RESP = 4,
+	EC_SDOINFO_ENTRY_REQ = 5,
+	EC_SDOINFO_ENTRY_RESP = 6,
+	EC_SDOINFO_ERROR = 7,
+};
+
+enum ec_sdoinfo_list {
+	EC_SDOINFO_COUNTS = 0,	/* five counts, of the lists 1 to 5 */
+	EC_SDOINFO_ALL = 1,
+	EC_SDOINFO_RXPDO = 2,
+	EC_SDOINFO_TXPDO = 3,
+	EC_SDOINFO_BACKUP = 4,
+	EC_SDOINFO_SETTINGS = 5,
+};
+
+enum ec_od_code {
+	EC_OD_NULL = 0,
+	EC_OD_DOMAIN = 2,
+	EC_OD_DEFTYPE = 5,
+	EC_OD_DEFSTRUCT = 6,
+	EC_OD_VAR = 7,
+	EC_OD_ARRAY = 8,
+	EC_OD_RECORD = 9,
+};
+
+/* object access of an entry */
+#define EC_OD_READ_PREOP	BIT(0)
+#define EC_OD_READ_SAFEOP	BIT(1)
+#define EC_OD_READ_OP		BIT(2)
+#define EC_OD_WRITE_PREOP	BIT(3)
+#define EC_OD_WRITE_SAFEOP	BIT(4)
+#define EC_OD_WRITE_OP		BIT(5)
+#define EC_OD_RXPDO		BIT(6)
+#define EC_OD_TXPDO		BIT(7)
+#define EC_OD_BACKUP		BIT(8)
+#define EC_OD_SETTINGS		BIT(9)
+#define EC_OD_READ		0x0007
+#define EC_OD_WRITE		0x0038
+
+/* value info: optional fields of an entry description */
+#define EC_OD_INFO_UNIT		BIT(3)
+#define EC_OD_INFO_DEFAULT	BIT(4)
+#define EC_OD_INFO_MIN		BIT(5)
+#define EC_OD_INFO_MAX		BIT(6)
+
+/**
+ * struct ec_od_object - object description
+ * @index: object
+ * @type: data type
+ * @max_sub: highest subindex
+ * @code: enum ec_od_code
+ * @name: not terminated, of the slave's own character set
+ * @name_len: bytes at @name
+ */
+struct ec_od_object {
+	u16 index;
+	u16 type;
+	u8 max_sub;
+	u8 code;
+	const char *name;
+	size_t name_len;
+};
+
+/**
+ * struct ec_od_entry - entry description
+ * @index: object
+ * @sub: subindex
+ * @info: which optional fields were sent
+ * @type: data type
+ * @bits: length
+ * @access: EC_OD_READ_PREOP...
+ * @name: not terminated, of the slave's own character set
+ * @name_len: bytes at @name
+ */
+struct ec_od_entry {
+	u16 index;
+	u8 sub;
+	u8 info;
+	u16 type;
+	u16 bits;
+	u16 access;
+	const char *name;
+	size_t name_len;
+};
+
+enum ec_sdoinfo_state {
+	EC_SDOINFO_REQUEST,
+	EC_SDOINFO_FRAGMENT,
+	EC_SDOINFO_DONE,
+};
+
+/**
+ * struct ec_sdoinfo - one request and its answer
+ * @state: where it is
+ * @opcode: EC_SDOINFO_LIST_REQ, ..._OBJECT_REQ or ..._ENTRY_REQ
+ * @index: object, or list type
+ * @sub: subindex
+ * @info: optional fields asked for; masters ask for none
+ * @data: where the answer goes; of a list only the indexes (or counts)
+ * @cap: bytes at @data
+ * @size: bytes received so far
+ * @left: fragments to come, as the slave says
+ * @fragments: fragments received
+ * @abort: abort code received
+ */
+struct ec_sdoinfo {
+	enum ec_sdoinfo_state state;
+	u8 opcode;
+	u16 index;
+	u8 sub;
+	u8 info;
+	u8 *data;
+	size_t cap;
+	size_t size;
+	u16 left;
+	u16 fragments;
+	u32 abort;
+};
+
+void ec_sdoinfo_init_list(struct ec_sdoinfo *s, u16 list, u8 *data, size_t cap);
+void ec_sdoinfo_init_object(struct ec_sdoinfo *s, u16 index, u8 *data, size_t cap);
+void ec_sdoinfo_init_entry(struct ec_sdoinfo *s, u16 index, u8 sub, u8 info,
+			   u8 *data, size_t cap);
+int ec_sdoinfo_tx(struct ec_sdoinfo *s, u8 *tx, size_t cap);
+int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len);
+
+size_t ec_sdoinfo_list_count(const struct ec_sdoinfo *s);
+u16 ec_sdoinfo_list_get(const struct ec_sdoinfo *s, size_t i);
+int ec_od_object_decode(const u8 *data, size_t len, struct ec_od_object *o);
+int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e);
+
+/**
+ * struct ec_sdoinfo_req - a request as the server sees it
+ * @opcode: EC_SDOINFO_LIST_REQ...
+ * @index: object, or list type
+ * @sub: subindex
+ * @info: optional fields asked for
+ */
+struct ec_sdoinfo_req {
+	u8 opcode;
+	u16 index;
+	u8 sub;
+	u8 info;
+};
+
+/**
+ * struct ec_sdoinfo_resp - an answer on its way out
+ * @opcode: EC_SDOINFO_LIST_RESP...
+ * @data: body; of a list the list type first, then the indexes
+ * @size: bytes at @data
+ * @pos: bytes sent
+ * @done: the last fragment is out
+ */
+struct ec_sdoinfo_resp {
+	u8 opcode;
+	const u8 *data;
+	size_t size;
+	size_t pos;
+	bool done;
+};
+
+int ec_sdoinfo_req_decode(const u8 *rx, size_t len, struct ec_sdoinfo_req *req);
+int ec_od_list_encode(u8 *buf, size_t cap, u16 list, const u16 *index, size_t n);
+int ec_od_object_encode(u8 *buf, size_t cap, const struct ec_od_object *o);
+int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e);
+void ec_sdoinfo_resp_init(struct ec_sdoinfo_resp *r, u8 opcode, const u8 *data, size_t size);
+int ec_sdoinfo_resp_next(struct ec_sdoinfo_resp *r, u8 *tx, size_t cap);
+int ec_sdoinfo_error_encode(u8 *tx, size_t cap, u32 abort);
+
+#endif
