@@ -7,7 +7,7 @@
 
 #define EC_MBOX_HDR		6
 #define EC_MBOX_DATA_MAX	(1486 - EC_MBOX_HDR)
-#define EC_MBOX_ERR_SIZE	4
+#define EC_MBOX_ERR_BODY	4
 
 /*
  * What the receiving side of a mailbox exchange (ec_..._rx()) says, besides 0
