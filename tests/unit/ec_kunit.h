@@ -41,7 +41,7 @@ static inline void ec_kunit_show_diff(struct kunit *test, const void *left,
 		const void *__left = (left), *__right = (right);	\
 		size_t __size = (size);					\
 									\
-		if (!memcmp(__left, __right, __size) == (equal))	\
+		if ((memcmp(__left, __right, __size) == 0) == (equal))\
 			break;						\
 		ec_kunit_show_diff(test, __left, __right, __size);	\
 		KUNIT_FAIL_ASSERTION(test, type,			\

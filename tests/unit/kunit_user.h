@@ -120,8 +120,8 @@ void kunit_kfree(struct kunit *test, const void *ptr);
 	__attribute__((constructor)) static void			\
 	KUNIT_USER_CAT(kunit_user_init_, __LINE__)(void)		\
 	{								\
-		static struct kunit_suite *s[] = { __VA_ARGS__ };	\
-		kunit_user_register(s, ARRAY_SIZE(s));			\
+		static struct kunit_suite *__suites[] = { __VA_ARGS__ };\
+		kunit_user_register(__suites, ARRAY_SIZE(__suites));\
 	}								\
 	struct ec_kunit_unused
 #define kunit_test_suite(suite) kunit_test_suites(&suite)
@@ -235,11 +235,11 @@ void kunit_kfree(struct kunit *test, const void *ptr);
 	KUNIT_USER_COND(test, KUNIT_EXPECTATION, !(c), "!(" #c ")", fmt, ##__VA_ARGS__)
 #define KUNIT_EXPECT_NULL(test, c) KUNIT_EXPECT_NULL_MSG(test, c, "%s", "")
 #define KUNIT_EXPECT_NULL_MSG(test, c, fmt, ...) \
-	KUNIT_USER_COND(test, KUNIT_EXPECTATION, !(c), #c " == NULL", fmt, ##__VA_ARGS__)
+	KUNIT_USER_PTR(test, KUNIT_EXPECTATION, c, ==, NULL, fmt, ##__VA_ARGS__)
 #define KUNIT_EXPECT_NOT_NULL(test, c) \
 	KUNIT_EXPECT_NOT_NULL_MSG(test, c, "%s", "")
 #define KUNIT_EXPECT_NOT_NULL_MSG(test, c, fmt, ...) \
-	KUNIT_USER_COND(test, KUNIT_EXPECTATION, c, #c " != NULL", fmt, ##__VA_ARGS__)
+	KUNIT_USER_PTR(test, KUNIT_EXPECTATION, c, !=, NULL, fmt, ##__VA_ARGS__)
 #define KUNIT_EXPECT_NOT_ERR_OR_NULL(test, c) \
 	KUNIT_EXPECT_NOT_ERR_OR_NULL_MSG(test, c, "%s", "")
 #define KUNIT_EXPECT_NOT_ERR_OR_NULL_MSG(test, c, fmt, ...) \
@@ -287,11 +287,11 @@ void kunit_kfree(struct kunit *test, const void *ptr);
 	KUNIT_USER_COND(test, KUNIT_ASSERTION, !(c), "!(" #c ")", fmt, ##__VA_ARGS__)
 #define KUNIT_ASSERT_NULL(test, c) KUNIT_ASSERT_NULL_MSG(test, c, "%s", "")
 #define KUNIT_ASSERT_NULL_MSG(test, c, fmt, ...) \
-	KUNIT_USER_COND(test, KUNIT_ASSERTION, !(c), #c " == NULL", fmt, ##__VA_ARGS__)
+	KUNIT_USER_PTR(test, KUNIT_ASSERTION, c, ==, NULL, fmt, ##__VA_ARGS__)
 #define KUNIT_ASSERT_NOT_NULL(test, c) \
 	KUNIT_ASSERT_NOT_NULL_MSG(test, c, "%s", "")
 #define KUNIT_ASSERT_NOT_NULL_MSG(test, c, fmt, ...) \
-	KUNIT_USER_COND(test, KUNIT_ASSERTION, c, #c " != NULL", fmt, ##__VA_ARGS__)
+	KUNIT_USER_PTR(test, KUNIT_ASSERTION, c, !=, NULL, fmt, ##__VA_ARGS__)
 #define KUNIT_ASSERT_NOT_ERR_OR_NULL(test, c) \
 	KUNIT_ASSERT_NOT_ERR_OR_NULL_MSG(test, c, "%s", "")
 #define KUNIT_ASSERT_NOT_ERR_OR_NULL_MSG(test, c, fmt, ...) \
