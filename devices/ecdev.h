@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Interface between the master and the devices that carry its frames: the
+ * generic device (any netdev), native drivers, the simulator.
+ */
+#ifndef EC_ECDEV_H
+#define EC_ECDEV_H
+
+#include <linux/types.h>
+
+struct ecdev;
+struct module;
+
+/**
+ * struct ecdev_ops - what a device driver does for the master
+ * @owner: module kept loaded while a master uses the device
+ * @kind: "generic", "virtual", "e1000e"... for messages
+ * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
+ *	preemption or interrupts off (native, virtual); otherwise thread only
+ * @start: mandatory. Takes the device for the master, brings it up. Process
+ *	context, may sleep. Return: 0 or -errno
+ * @stop: mandatory. Gives it back; no frame is delivered after it returned
+ * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
+ *	when the hardware still owns all of them
+ * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
+ *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent)
+ * @poll: optional. Delivers what has arrived through ecdev_receive()
+ * @cycle: optional. On: the caller will poll, interrupts are not wanted
+ * @link_up: mandatory. A bit test; callable from the cycle
+ */
+struct ecdev_ops {
+	struct module *owner;
+	const char *kind;
+	bool atomic;
+	int (*start)(void *priv);
+	void (*stop)(void *priv);
+	u8 *(*tx_get)(void *priv);
+	int (*tx_send)(void *priv, u8 *buf, size_t len);
+	void (*poll)(void *priv);
+	void (*cycle)(void *priv, bool on);
+	bool (*link_up)(void *priv);
+};
+
+struct ecdev *ecdev_offer(const char *name, const u8 *mac,
+			  const struct ecdev_ops *ops, void *priv);
+void ecdev_withdraw(struct ecdev *dev);
+bool ecdev_wanted(const char *name, const u8 *mac);
+void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
+void ecdev_foreign(struct ecdev *dev);
+
+#endif

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "coe.h"
+#include "mailbox.h"
+#include "slave.h"
+#include "wire/mbox.h"
+#include "wire/sdo.h"
+
+/* the two exchanges behind one loop */
+struct exchange {
+	bool down;
+	union {
+		struct ec_sdo_up up;
+		struct ec_sdo_down dn;
+	};
+};
+
+static int tx(struct exchange *x, u8 *buf, size_t cap)
+{
+	return x->down ? ec_sdo_down_tx(&x->dn, buf, cap) : ec_sdo_up_tx(&x->up, buf, cap);
+}
+
+static int rx(struct exchange *x, const u8 *buf, size_t len)
+{
+	return x->down ? ec_sdo_down_rx(&x->dn, buf, len) : ec_sdo_up_rx(&x->up, buf, len);
+}
+
+static bool send_abort(const struct exchange *x)
+{
+	return x->down ? x->dn.send_abort : x->up.send_abort;
+}
+
+static int one_step(struct ec_slave *slave, struct exchange *x, struct ec_mbox_buf *b,
+		    size_t cap, u64 until)
+{
+	int ret = tx(x, b->tx, cap);
+
+	if (ret < 0)
+		return ret;
+	ret = ec_mbox_send(slave, EC_MBOX_COE, b, ret, until);
+	if (ret)
+		return ret;
+	do {
+		ret = ec_mbox_recv(slave, EC_MBOX_COE, b, until);
+		if (ret >= 0)
+			ret = rx(x, b->rx, ret);
+	} while (ret == EC_STALE);
+	return ret;
+}
+
+static int run(struct ec_slave *slave, struct exchange *x, u32 timeout_ms)
+{
+	size_t cap = slave->info.std.rx_size - EC_MBOX_HDR;
+	struct ec_mbox_buf *b;
+	u64 until;
+	int ret;
+
+	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	if (!b)
+		return -ENOMEM;
+	ret = mutex_lock_interruptible(&slave->mbox_lock);
+	if (ret)
+		goto out;
+	ret = ec_mbox_drain(slave, b);
+	while (!ret || ret == EC_MORE) {
+		until = ktime_get_ns() + (u64)(timeout_ms ?: EC_SDO_TIMEOUT_MS) * NSEC_PER_MSEC;
+		ret = one_step(slave, x, b, cap, until);
+		if (!ret)
+			break;
+	}
+	if (send_abort(x)) {
+		int len = tx(x, b->tx, cap);
+
+		if (len > 0)
+			ec_mbox_send(slave, EC_MBOX_COE, b, len,
+				     ktime_get_ns() + 100 * NSEC_PER_MSEC);
+	}
+	mutex_unlock(&slave->mbox_lock);
+out:
+	kfree(b);
+	return ret;
+}
+
+static int check(const struct ec_slave *slave)
+{
+	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & EC_SII_PROTO_COE))
+		return -EPROTONOSUPPORT;
+	if (slave->info.std.rx_size < EC_MBOX_HDR + EC_SDO_MSG)
+		return -EMSGSIZE;
+	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
+		return -EAGAIN;
+	return 0;
+}
+
+/**
+ * ec_coe_upload() - read an object
+ * @slave: slave
+ * @index: object
+ * @sub: subindex
+ * @complete: complete access
+ * @data: result
+ * @cap: room at @data
+ * @size: bytes read
+ * @abort: abort code of the slave, or 0
+ * @timeout_ms: limit per message, 0: default
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EIO with @abort set; -ENOBUFS when the object is larger than
+ * @cap; -EPROTONOSUPPORT without CoE; -EAGAIN in INIT; -EPROTO, -EBADMSG for a
+ * wrong answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
+ */
+int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
+		  size_t *size, u32 *abort, u32 timeout_ms)
+{
+	struct exchange x = { .down = false };
+	int ret = check(slave);
+
+	*abort = 0;
+	*size = 0;
+	if (ret)
+		return ret;
+	ec_sdo_up_init(&x.up, index, sub, complete, data, cap);
+	ret = run(slave, &x, timeout_ms);
+	if (ret == -EIO)
+		*abort = x.up.abort;
+	if (!ret)
+		*size = x.up.size;
+	return ret;
+}
+
+/**
+ * ec_coe_download() - write an object
+ * @slave: slave
+ * @index: object
+ * @sub: subindex
+ * @complete: complete access
+ * @data: value
+ * @size: bytes
+ * @abort: abort code of the slave, or 0
+ * @timeout_ms: limit per message, 0: default
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_coe_upload().
+ */
+int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, const u8 *data,
+		    size_t size, u32 *abort, u32 timeout_ms)
+{
+	struct exchange x = { .down = true };
+	int ret = check(slave);
+
+	*abort = 0;
+	if (ret)
+		return ret;
+	ec_sdo_down_init(&x.dn, index, sub, complete, data, size,
+			 slave->info.std.rx_size - EC_MBOX_HDR);
+	ret = run(slave, &x, timeout_ms);
+	if (ret == -EIO)
+		*abort = x.dn.abort;
+	return ret;
+}

@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* CoE: SDO upload and download over the mailbox. */
+#ifndef EC_COE_H
+#define EC_COE_H
+
+#include <linux/types.h>
+
+struct ec_slave;
+
+#define EC_SDO_TIMEOUT_MS	1000
+
+int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
+		  size_t *size, u32 *abort, u32 timeout_ms);
+int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, const u8 *data,
+		    size_t size, u32 *abort, u32 timeout_ms);
+
+#endif

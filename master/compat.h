@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * The only place that knows kernel versions. Sources are written for the
+ * newest supported kernel; this file supplies what older ones lack.
+ */
+#ifndef EC_COMPAT_H
+#define EC_COMPAT_H
+
+#include <linux/version.h>
+
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 1, 0)
+#error "ec_master needs Linux 6.1 or newer: set KDIR= to the headers of such a kernel"
+#endif
+
+#include <linux/device.h>
+#include <linux/mm.h>
+
+/* class_create() lost its owner argument in 6.4 */
+static inline struct class *ec_class_create(const char *name)
+{
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 4, 0)
+	return class_create(THIS_MODULE, name);
+#else
+	return class_create(name);
+#endif
+}
+
+/* vm_flags are only writable through helpers since 6.3 */
+static inline void ec_vma_flags(struct vm_area_struct *vma, unsigned long set, unsigned long clear)
+{
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 3, 0)
+	vma->vm_flags = (vma->vm_flags & ~clear) | set;
+#else
+	vm_flags_mod(vma, set, clear);
+#endif
+}
+
+#endif

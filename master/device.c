@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/etherdevice.h>
+#include <linux/module.h>
+#include <linux/mutex.h>
+#include <linux/rcupdate.h>
+#include <linux/slab.h>
+#include "device.h"
+#include "master.h"
+
+/* devices and who uses them; taken before any lock of a master */
+static DEFINE_MUTEX(device_lock);
+static LIST_HEAD(devices);
+
+/* Does @spec (from the module parameters) mean this device? */
+static bool spec_matches(const char *spec, const char *name, const u8 *mac)
+{
+	u8 want[ETH_ALEN];
+
+	if (!spec || !*spec)
+		return false;
+	if (mac_pton(spec, want))
+		return is_broadcast_ether_addr(want) || ether_addr_equal(want, mac);
+	return !strcmp(spec, name);
+}
+
+/**
+ * ecdev_wanted() - is there a master configured for this device?
+ * @name: device name
+ * @mac: its address
+ *
+ * Context: Process. May sleep.
+ * Return: true when main_devices= or backup_devices= name it.
+ */
+bool ecdev_wanted(const char *name, const u8 *mac)
+{
+	unsigned int i, side;
+
+	for (i = 0; i < ec_master_count(); i++)
+		for (side = 0; side < EC_MAX_LINKS; side++)
+			if (spec_matches(ec_master_get(i)->spec[side], name, mac))
+				return true;
+	return false;
+}
+EXPORT_SYMBOL_GPL(ecdev_wanted);
+
+static int attach(struct ecdev *dev, struct ec_link *link)
+{
+	int ret;
+
+	if (!try_module_get(dev->ops->owner))
+		return -ENODEV;
+	rcu_assign_pointer(dev->link, link);
+	ret = dev->ops->start(dev->priv);
+	if (ret) {
+		ec_warn(link->master, "device %s could not be started (error %d)\n",
+			dev->name, ret);
+		rcu_assign_pointer(dev->link, NULL);
+		synchronize_rcu();
+		module_put(dev->ops->owner);
+		return ret;
+	}
+	memset(&link->stats, 0, sizeof(link->stats));
+	memset(&link->rates, 0, sizeof(link->rates));
+	ec_master_link_attach(link, dev);
+	return 0;
+}
+
+static void detach(struct ecdev *dev)
+{
+	struct ec_link *link = rcu_dereference_protected(dev->link,
+							 lockdep_is_held(&device_lock));
+
+	if (!link)
+		return;
+	ec_master_link_detach(link);
+	dev->ops->stop(dev->priv);
+	rcu_assign_pointer(dev->link, NULL);
+	synchronize_rcu();
+	module_put(dev->ops->owner);
+}
+
+static void match_locked(void)
+{
+	unsigned int i, side;
+	struct ecdev *dev;
+
+	lockdep_assert_held(&device_lock);
+	for (i = 0; i < ec_master_count(); i++) {
+		struct ec_master *m = ec_master_get(i);
+
+		for (side = 0; side < EC_MAX_LINKS; side++) {
+			if (m->link[side].dev || !m->spec[side] || m->stopping)
+				continue;
+			list_for_each_entry(dev, &devices, list)
+				if (!rcu_access_pointer(dev->link) &&
+				    spec_matches(m->spec[side], dev->name, dev->mac) &&
+				    !attach(dev, &m->link[side]))
+					break;
+		}
+	}
+}
+
+/**
+ * ec_device_match_all() - give waiting masters the devices they are waiting for
+ *
+ * Context: Process. May sleep.
+ */
+void ec_device_match_all(void)
+{
+	mutex_lock(&device_lock);
+	match_locked();
+	mutex_unlock(&device_lock);
+}
+
+/**
+ * ec_device_detach() - a master gives its device back
+ * @link: link, may be without device
+ *
+ * Context: Process. May sleep.
+ */
+void ec_device_detach(struct ec_link *link)
+{
+	mutex_lock(&device_lock);
+	if (link->dev)
+		detach(link->dev);
+	mutex_unlock(&device_lock);
+}
+
+/**
+ * ecdev_offer() - offer a device to the masters
+ * @name: how users call it
+ * @mac: its address
+ * @ops: functions, must stay valid until ecdev_withdraw()
+ * @priv: passed to @ops
+ *
+ * A master configured for it takes it at once.
+ *
+ * Context: Process. May sleep.
+ * Return: handle, or ERR_PTR(-ENOMEM).
+ */
+struct ecdev *ecdev_offer(const char *name, const u8 *mac,
+			  const struct ecdev_ops *ops, void *priv)
+{
+	struct ecdev *dev = kzalloc(sizeof(*dev), GFP_KERNEL);
+
+	if (!dev)
+		return ERR_PTR(-ENOMEM);
+	strscpy(dev->name, name, sizeof(dev->name));
+	ether_addr_copy(dev->mac, mac);
+	dev->ops = ops;
+	dev->priv = priv;
+	mutex_lock(&device_lock);
+	list_add_tail(&dev->list, &devices);
+	match_locked();
+	mutex_unlock(&device_lock);
+	return dev;
+}
+EXPORT_SYMBOL_GPL(ecdev_offer);
+
+/**
+ * ecdev_withdraw() - the device goes away
+ * @dev: handle, invalid afterwards
+ *
+ * Context: Process. May sleep.
+ */
+void ecdev_withdraw(struct ecdev *dev)
+{
+	mutex_lock(&device_lock);
+	detach(dev);
+	list_del(&dev->list);
+	mutex_unlock(&device_lock);
+	kfree(dev);
+}
+EXPORT_SYMBOL_GPL(ecdev_withdraw);
+
+/**
+ * ecdev_receive() - deliver a received EtherCAT frame
+ * @dev: device
+ * @src: source MAC address
+ * @data: what follows the EtherType; not changed
+ * @len: bytes there
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		ec_master_frame(link, src, data, len);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_receive);
+
+/**
+ * ecdev_foreign() - count a received frame that is not EtherCAT
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_foreign(struct ecdev *dev)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		atomic64_inc(&link->stats.foreign);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_foreign);

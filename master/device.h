@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Devices offered by drivers and claimed by masters. */
+#ifndef EC_DEVICE_H
+#define EC_DEVICE_H
+
+#include <linux/if_ether.h>
+#include <linux/list.h>
+#include "ethercat.h"
+#include "../devices/ecdev.h"
+
+struct ec_link;
+
+/**
+ * struct ecdev - a device a driver offers
+ * @list: in the list of all devices, under the device lock
+ * @name: "eth0", "sim0"..., immutable
+ * @mac: immutable
+ * @ops: immutable
+ * @priv: for @ops, immutable
+ * @link: who uses it, NULL: nobody; RCU for receivers
+ */
+struct ecdev {
+	struct list_head list;
+	char name[EC_UAPI_STRING];
+	u8 mac[ETH_ALEN];
+	const struct ecdev_ops *ops;
+	void *priv;
+	struct ec_link __rcu *link;
+};
+
+void ec_device_match_all(void);
+void ec_device_detach(struct ec_link *link);
+
+#endif

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Every limit of the master, with the reason for its value. */
+#ifndef EC_LIMITS_H
+#define EC_LIMITS_H
+
+#define EC_MAX_MASTERS		8	/* minors of the character device */
+#define EC_MAX_LINKS		2	/* main and backup */
+#define EC_MAX_SLAVES		65535	/* 16-bit addressing */
+#define EC_MAX_DOMAINS		64	/* bits of the queue mask, EC_STATUS_DOMAINS */
+#define EC_MAX_CONFIGS		4096	/* EC_STATUS_CONFIGS */
+#define EC_MAX_IMAGE		(256 * 1024)	/* bytes of process data per session */
+#define EC_MAX_CYCLE_DGRAMS	512	/* datagrams of one cycle */
+#define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
+#define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
+#define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
+#define EC_MAX_REG_SIZE		1024	/* bytes per register access */
+#define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
+
+#define EC_SLOTS		256	/* datagram index has 8 bits */
+#define EC_SLOTS_CYCLE		64	/* of them never taken by ec_xfer() */
+#define EC_XFER_WINDOW		48	/* frames one ec_xfer() has in flight */
+#define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)
+
+#endif

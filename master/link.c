@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/errno.h>
+#include <linux/string.h>
+#include "device.h"
+#include "link.h"
+#include "slots.h"
+
+/**
+ * ec_link_send() - send the frame of an armed slot
+ * @link: link
+ * @slot: slot in state SENT
+ *
+ * Context: The owner of the link. RT-safe.
+ * Return: 0, -ENODEV without device, -EBUSY without transmit buffer,
+ * -ENETDOWN when the link is down.
+ */
+int ec_link_send(struct ec_link *link, struct ec_slot *slot)
+{
+	struct ecdev *dev = link->dev;
+	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
+	u8 *buf;
+	int ret;
+
+	if (!dev)
+		return -ENODEV;
+	buf = dev->ops->tx_get(dev->priv);
+	if (!buf) {
+		atomic64_inc(&link->stats.tx_errors);
+		return -EBUSY;
+	}
+	memcpy(buf, slot->frame, len);
+	ret = dev->ops->tx_send(dev->priv, buf, len);
+	if (ret) {
+		atomic64_inc(&link->stats.tx_errors);
+		return ret;
+	}
+	atomic64_inc(&link->stats.tx_frames);
+	atomic64_add(len, &link->stats.tx_bytes);
+	return 0;
+}
+
+/**
+ * ec_link_poll() - deliver what the device has received
+ * @link: link
+ *
+ * Context: The owner of the link. RT-safe.
+ */
+void ec_link_poll(struct ec_link *link)
+{
+	struct ecdev *dev = link->dev;
+
+	if (dev && dev->ops->poll)
+		dev->ops->poll(dev->priv);
+}
+
+/**
+ * ec_link_is_up() - physical link state
+ * @link: link
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false also without device.
+ */
+bool ec_link_is_up(const struct ec_link *link)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);
+
+	return dev && dev->ops->link_up(dev->priv);
+}
+
+/**
+ * ec_link_rates_update() - update the averages; called once a second
+ * @link: link
+ *
+ * Context: Process. May sleep.
+ */
+void ec_link_rates_update(struct ec_link *link)
+{
+	static const unsigned int span[EC_UAPI_RATES] = { 1, 10, 60 };
+	struct ec_link_rates *r = &link->rates;
+	u64 now[5] = {
+		atomic64_read(&link->stats.tx_frames),
+		atomic64_read(&link->stats.rx_frames),
+		atomic64_read(&link->stats.tx_bytes),
+		atomic64_read(&link->stats.rx_bytes),
+		atomic64_read(&link->stats.lost),
+	};
+	unsigned int i, j;
+
+	for (i = 0; i < ARRAY_SIZE(now); i++) {
+		u32 d = (u32)(now[i] - r->last[i]);
+
+		for (j = 0; j < EC_UAPI_RATES; j++) {
+			s64 diff = (s64)d - r->rate[i][j];
+
+			/* step of at least 1, else a slow average never arrives */
+			diff = diff / (s64)span[j] ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
+			r->rate[i][j] += diff;
+		}
+		r->last[i] = now[i];
+	}
+}

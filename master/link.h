@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A link: one device of a master, with its statistics. */
+#ifndef EC_LINK_H
+#define EC_LINK_H
+
+#include <linux/atomic.h>
+#include <linux/types.h>
+#include "ethercat.h"
+
+struct ecdev;
+struct ec_master;
+struct ec_slot;
+
+/**
+ * struct ec_link_stats - counters since the device was attached
+ *
+ * Transmit counters are written by the owner of the link only, receive
+ * counters by whoever delivers frames; readers may see them mid-update of
+ * one another.
+ */
+struct ec_link_stats {
+	atomic64_t tx_frames;
+	atomic64_t tx_bytes;
+	atomic64_t tx_errors;
+	atomic64_t rx_frames;
+	atomic64_t rx_bytes;
+	atomic64_t lost;
+	atomic64_t late;
+	atomic64_t unmatched;
+	atomic64_t foreign;
+};
+
+/**
+ * struct ec_link_rates - averages, kept by the monitor
+ * @last: counters one second ago: tx frames, rx frames, tx bytes, rx bytes, lost
+ * @rate: per second, averaged over 1, 10, 60 s
+ */
+struct ec_link_rates {
+	u64 last[5];
+	u32 rate[5][EC_UAPI_RATES];
+};
+
+/**
+ * struct ec_link - port to the wire
+ * @master: immutable
+ * @side: 0 main, 1 backup, immutable
+ * @dev: attached device or NULL; changes under master->link_lock with the
+ *	master's owner stopped
+ * @up: link state as last seen by the monitor
+ * @stats: counters
+ * @rates: averages
+ */
+struct ec_link {
+	struct ec_master *master;
+	u8 side;
+	struct ecdev *dev;
+	bool up;
+	struct ec_link_stats stats;
+	struct ec_link_rates rates;
+};
+
+int ec_link_send(struct ec_link *link, struct ec_slot *slot);
+void ec_link_poll(struct ec_link *link);
+bool ec_link_is_up(const struct ec_link *link);
+void ec_link_rates_update(struct ec_link *link);
+
+#endif

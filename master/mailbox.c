@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/sched/signal.h>
+#include "mailbox.h"
+#include "master.h"
+#include "slave.h"
+#include "wire/coe.h"
+#include "wire/mbox.h"
+#include "xfer.h"
+
+/* Why an exchange has to end now; 0: go on. */
+static int over(const struct ec_slave *slave, u64 until_ns)
+{
+	if (slave->gone || slave->master->stopping)
+		return -ECANCELED;
+	if (signal_pending(current))
+		return -EINTR;
+	return ktime_get_ns() > until_ns ? -ETIMEDOUT : 0;
+}
+
+/* Short waits first: most slaves answer within a few hundred microseconds. */
+static void pause_us(unsigned int *us)
+{
+	usleep_range(*us, *us + *us / 4 + 1);
+	*us = min(*us * 2, 1000u);
+}
+
+/**
+ * ec_mbox_send() - write one message to the slave's mailbox
+ * @slave: slave with mailbox, @mbox_lock held
+ * @type: enum ec_mbox_type
+ * @b: message in @tx
+ * @len: bytes of the message
+ * @until_ns: when to give up (ktime)
+ *
+ * A full mailbox (working counter 0) is tried again. A lost frame is not: the
+ * message may have arrived; the same counter then marks a copy.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as ec_xfer().
+ */
+int ec_mbox_send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+		 u64 until_ns)
+{
+	u16 size = slave->info.std.rx_size;
+	struct ec_mbox_hdr h = { .len = len, .type = type };
+	struct ec_wbuf w;
+	unsigned int us = 50;
+	int ret;
+
+	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
+		return -EMSGSIZE;
+	slave->mbox_counter = ec_mbox_next_counter(slave->mbox_counter);
+	h.counter = slave->mbox_counter;
+	w = ec_wbuf(b->raw, size);
+	ec_mbox_hdr_encode(&w, &h);
+	ec_wbuf_bytes(&w, b->tx, len);
+	ec_wbuf_zero(&w, w.end - w.p);
+
+	for (;;) {
+		ret = ec_xfer_fpwr(slave->master, slave->station, slave->info.std.rx_offset,
+				   b->raw, size);
+		if (ret != -EIO)
+			return ret;
+		ret = over(slave, until_ns);
+		if (ret)
+			return ret;
+		pause_us(&us);
+	}
+}
+
+/* Take one message out of the slave's mailbox: bytes behind the header, or 0: empty. */
+static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_hdr *h)
+{
+	u16 size = slave->info.std.tx_size;
+	struct ec_rbuf r;
+	u8 status;
+	int ret;
+
+	if (size > EC_MBOX_MAX)
+		return -EMSGSIZE;
+	ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
+			   &status, 1);
+	if (ret || !(status & EC_SM_ST_FULL))
+		return ret;
+	ret = ec_xfer_fprd(slave->master, slave->station, slave->info.std.tx_offset, b->raw, size);
+	if (ret)
+		return ret == -EIO ? 0 : ret;
+	r = ec_rbuf(b->raw, size);
+	ret = ec_mbox_hdr_decode(&r, h);
+	if (ret)
+		return ret;
+	memcpy(b->rx, r.p, h->len);
+	return h->len;
+}
+
+/**
+ * ec_mbox_drain() - throw away what an earlier exchange has left
+ * @slave: slave with mailbox, @mbox_lock held
+ * @b: buffers
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 or as ec_xfer().
+ */
+int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
+{
+	struct ec_mbox_hdr h;
+	unsigned int i;
+	int ret = 1;
+
+	for (i = 0; i < 16 && ret; i++) {
+		ret = fetch(slave, b, &h);
+		if (ret < 0 && ret != -EBADMSG && ret != -EMSGSIZE)
+			return ret;
+	}
+	return 0;
+}
+
+static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+{
+	struct ec_coe_emergency e;
+
+	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
+		return false;
+	if (printk_ratelimit())
+		ec_slave_warn(slave, "emergency 0x%04x, error register 0x%02x\n",
+			      e.code, e.error_reg);
+	return true;
+}
+
+/**
+ * ec_mbox_recv() - wait for a message of one protocol
+ * @slave: slave with mailbox, @mbox_lock held
+ * @type: enum ec_mbox_type
+ * @b: the message is in @rx
+ * @until_ns: when to give up (ktime)
+ *
+ * Emergencies are logged and skipped, messages of other protocols dropped.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: bytes behind the mailbox header; -ETIMEDOUT; -EBADMSG for a message
+ * whose header is wrong; -EINTR; -ECANCELED; the errno of a mailbox error
+ * reply; or as ec_xfer().
+ */
+int ec_mbox_recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, u64 until_ns)
+{
+	struct ec_mbox_hdr h;
+	unsigned int us = 20;
+	u16 detail;
+	int ret;
+
+	for (;;) {
+		ret = fetch(slave, b, &h);
+		if (ret < 0 && ret != -ETIMEDOUT)
+			return ret;
+		if (ret > 0) {
+			if (h.type == EC_MBOX_ERR) {
+				struct ec_rbuf r = ec_rbuf(b->rx, h.len);
+
+				if (ec_mbox_error_decode(&r, &detail))
+					return -EBADMSG;
+				ec_slave_warn(slave, "mailbox error 0x%04x: %s\n", detail,
+					      ec_mbox_error_text(detail));
+				return ec_mbox_error_errno(detail);
+			}
+			if (h.type == type && !emergency(slave, &h, b->rx))
+				return ret;
+			continue;
+		}
+		ret = over(slave, until_ns);
+		if (ret)
+			return ret;
+		pause_us(&us);
+	}
+}

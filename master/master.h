@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* One master: links, slaves, the session that uses it. */
+#ifndef EC_MASTER_H
+#define EC_MASTER_H
+
+#include <linux/cdev.h>
+#include <linux/device.h>
+#include <linux/mutex.h>
+#include <linux/rtmutex.h>
+#include <linux/rwsem.h>
+#include <linux/spinlock.h>
+#include <linux/wait.h>
+#include <linux/workqueue.h>
+#include "ethercat.h"
+#include "cycle.h"
+#include "limits.h"
+#include "link.h"
+#include "slots.h"
+
+struct ec_session;
+struct ec_slave;
+struct task_struct;
+
+/**
+ * struct ec_master - everything below one /dev/EtherCAT<n>
+ * @index: number, immutable
+ * @spec: what the module parameters name as main and backup device, immutable
+ * @dev: device below the class
+ * @cdev: character device
+ * @max_datagrams: per acyclic frame, immutable
+ * @io_timeout_us: when a frame counts as lost, immutable
+ * @stopping: master goes away: waiters are cancelled
+ *
+ * @link: main and backup
+ * @slots: frame slots
+ * @io_lock: idle mode: serialises senders
+ * @owner: enum ec_owner; see ec_cycle_own()
+ * @cycle_busy: the cyclic caller is using the links
+ * @last_send_ns: when the cycle sent last
+ * @interval_us: distance of cyclic sends, told by the application or measured
+ * @xq_lock: protects @xq, @xq_head, @xq_tail
+ * @xq: frames left by ec_xfer() for the cyclic caller
+ *
+ * @topo: protects @slaves, @n_slaves, @scan_busy; written by the monitor only
+ * @slaves: by ring position
+ * @n_slaves: entries in @slaves
+ * @scan_busy: slaves are being scanned
+ * @scan_wq: woken when a scan ends or a slave has settled
+ * @scan_us: duration of the last scan
+ * @scan_frames: frames of the last scan
+ * @next_station: next unused station address
+ * @rescan: a scan is asked for
+ * @freeze: no scan while reserved and not active
+ *
+ * @monitor: thread
+ * @monitor_wq: wakes it
+ * @work: workers that bring slaves to their state
+ *
+ * @session_lock: protects @session and everything it owns but the cyclic part
+ * @session: what an application has configured, NULL: nobody
+ *
+ * @slaves_responding: slaves that answered the last broadcast
+ * @al_states: OR of AL states, as in struct ec_ioc_master
+ * @app_time: of the application, ns
+ * @debug: log level 0..2
+ */
+struct ec_master {
+	unsigned int index;
+	const char *spec[EC_MAX_LINKS];
+	struct device dev;
+	struct cdev cdev;
+	unsigned int max_datagrams;
+	unsigned int io_timeout_us;
+	bool stopping;
+
+	struct ec_link link[EC_MAX_LINKS];
+	struct ec_slots slots;
+	struct rt_mutex io_lock;
+	int owner;
+	atomic_t cycle_busy;
+	u64 last_send_ns;
+	u32 interval_us;
+	raw_spinlock_t xq_lock;
+	struct ec_slot *xq[EC_SLOTS];
+	unsigned int xq_head;
+	unsigned int xq_tail;
+
+	struct rw_semaphore topo;
+	struct ec_slave **slaves;
+	unsigned int n_slaves;
+	bool scan_busy;
+	wait_queue_head_t scan_wq;
+	u32 scan_us;
+	u64 scan_frames;
+	u16 next_station;
+	bool rescan;
+	bool freeze;
+
+	struct task_struct *monitor;
+	wait_queue_head_t monitor_wq;
+	struct workqueue_struct *work;
+
+	struct mutex session_lock;
+	struct ec_session *session;
+
+	u32 slaves_responding;
+	u32 al_states;
+	u64 app_time;
+	u32 debug;
+};
+
+#define ec_log(level, m, fmt, ...) \
+	printk(level "EtherCAT %u: " fmt, (m)->index, ##__VA_ARGS__)
+#define ec_info(m, fmt, ...)	ec_log(KERN_INFO, m, fmt, ##__VA_ARGS__)
+#define ec_warn(m, fmt, ...)	ec_log(KERN_WARNING, m, fmt, ##__VA_ARGS__)
+#define ec_err(m, fmt, ...)	ec_log(KERN_ERR, m, fmt, ##__VA_ARGS__)
+
+unsigned int ec_master_count(void);
+struct ec_master *ec_master_get(unsigned int index);
+int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
+		      unsigned int debug);
+void ec_masters_destroy(void);
+
+void ec_master_link_attach(struct ec_link *link, struct ecdev *dev);
+void ec_master_link_detach(struct ec_link *link);
+void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len);
+int ec_master_wait_scan(struct ec_master *m);
+void ec_master_rescan(struct ec_master *m);
+
+struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position);
+
+/* monitor.c */
+int ec_monitor_start(struct ec_master *m);
+void ec_monitor_stop(struct ec_master *m);
+void ec_monitor_kick(struct ec_master *m);
+
+/* scan.c */
+int ec_scan(struct ec_master *m, unsigned int count);
+
+#endif

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "master.h"
+#include "slave.h"
+
+/**
+ * ec_slave_alloc() - a slave found by the scan
+ * @m: master
+ * @station: its station address
+ *
+ * Context: Process. May sleep.
+ * Return: slave with one reference, or NULL.
+ */
+struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
+{
+	struct ec_slave *s = kzalloc(sizeof(*s), GFP_KERNEL);
+	unsigned int p;
+
+	if (!s)
+		return NULL;
+	kref_init(&s->kref);
+	s->master = m;
+	s->station = station;
+	s->requested = EC_AL_PREOP;
+	INIT_WORK(&s->work, ec_apply_work);
+	mutex_init(&s->lock);
+	mutex_init(&s->mbox_lock);
+	for (p = 0; p < EC_MAX_PORT; p++)
+		s->next[p] = EC_UAPI_NONE16;
+	return s;
+}
+
+static void release(struct kref *kref)
+{
+	struct ec_slave *s = container_of(kref, struct ec_slave, kref);
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++)
+		ec_pdo_list_clear(&s->sm_pdos[i]);
+	ec_pdo_list_clear(&s->free_pdos);
+	kvfree(s->sii);
+	kfree(s);
+}
+
+struct ec_slave *ec_slave_ref(struct ec_slave *slave)
+{
+	kref_get(&slave->kref);
+	return slave;
+}
+
+void ec_slave_unref(struct ec_slave *slave)
+{
+	kref_put(&slave->kref, release);
+}
+
+static void string(struct ec_slave *s, u8 index, char *buf)
+{
+	if (!index || ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+		buf[0] = '\0';
+}
+
+/**
+ * ec_slave_parse_sii() - take what the master needs from the EEPROM image
+ * @slave: slave with @sii, @sii_bytes set
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -ENOMEM, or -EBADMSG when the fixed area is missing.
+ */
+int ec_slave_parse_sii(struct ec_slave *slave)
+{
+	int ret = ec_sii_decode_info(slave->sii, slave->sii_bytes, &slave->info);
+
+	if (ret)
+		return ret;
+	slave->emulation = slave->info.pdi_control & BIT(8);
+	slave->alias = slave->info.alias;
+	slave->has_general = !ec_sii_decode_general(slave->sii, slave->sii_bytes, &slave->general);
+	if (slave->has_general) {
+		string(slave, slave->general.group, slave->group);
+		string(slave, slave->general.image, slave->image);
+		string(slave, slave->general.order, slave->order);
+		string(slave, slave->general.name, slave->name);
+	}
+	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
+	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
+	return ec_slave_read_pdos(slave);
+}
+
+/**
+ * ec_slave_fail() - note why a slave could not be scanned or configured
+ * @slave: slave
+ * @error: EC_SLAVE_SCAN_FAILED or EC_SLAVE_CONFIG_FAILED
+ * @fmt: text: what was expected, what found, what to do
+ *
+ * The same cause is logged once.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
+{
+	char text[EC_UAPI_REASON];
+	va_list args;
+
+	va_start(args, fmt);
+	vscnprintf(text, sizeof(text), fmt, args);
+	va_end(args);
+	slave->error = error;
+	if (strcmp(slave->why, text)) {
+		strscpy(slave->why, text, sizeof(slave->why));
+		ec_slave_warn(slave, "%s\n", text);
+	}
+}
+
+/**
+ * ec_slave_request() - let a worker bring the slave to a state
+ * @slave: slave
+ * @state: AL state
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_request(struct ec_slave *slave, u8 state)
+{
+	WRITE_ONCE(slave->requested, state);
+	ec_slave_ref(slave);
+	if (!queue_work(slave->master->work, &slave->work))
+		ec_slave_unref(slave);
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A slave that is present on the bus. */
+#ifndef EC_SLAVE_H
+#define EC_SLAVE_H
+
+#include <linux/kref.h>
+#include <linux/mutex.h>
+#include <linux/workqueue.h>
+#include "ethercat.h"
+#include "pdo.h"
+#include "wire/al.h"
+#include "wire/regs.h"
+#include "wire/sii.h"
+
+struct ec_config;
+struct ec_master;
+
+/**
+ * struct ec_slave - one slave
+ *
+ * Fixed after the scan:
+ * @kref: reference count; the master's table holds one
+ * @master: master
+ * @station: station address
+ * @sii: EEPROM image as read
+ * @sii_bytes: bytes at @sii
+ * @info: fixed area of the EEPROM
+ * @general: general category, with @has_general
+ * @sms: SyncManagers of the EEPROM
+ * @n_sms: entries in @sms
+ * @sm_pdos: PDOs by SyncManager
+ * @free_pdos: PDOs without SyncManager
+ * @emulation: AL status follows AL control
+ * @name: and other strings of the EEPROM
+ *
+ * Of the last scan, changed under master->topo:
+ * @position: ring position
+ * @regs: registers 0x0000-0x0009
+ * @dl_status: register 0x0110
+ * @alias: effective alias
+ * @recv: receive times at the ports
+ * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
+ * @upstream: port towards the master
+ *
+ * Changing:
+ * @al_status: last AL status seen
+ * @al_code: AL status code that belongs to it
+ * @requested: AL state it shall reach
+ * @error: EC_SLAVE_OK...
+ * @why: cause of @error
+ * @gone: not on the bus any more
+ * @work: brings it to @requested
+ * @lock: one worker or caller at a time changes its state
+ * @config: what the session wants from it, under session_lock and @lock
+ * @reconfigure: go through INIT and configure again
+ * @mbox_lock: one mailbox exchange at a time
+ * @mbox_counter: of the last message sent
+ */
+struct ec_slave {
+	struct kref kref;
+	struct ec_master *master;
+	u16 station;
+	u8 *sii;
+	size_t sii_bytes;
+	struct ec_sii_info info;
+	struct ec_sii_general general;
+	bool has_general;
+	struct ec_sii_sm sms[EC_MAX_SM];
+	unsigned int n_sms;
+	struct ec_pdo_list sm_pdos[EC_MAX_SM];
+	struct ec_pdo_list free_pdos;
+	bool emulation;
+	char group[EC_UAPI_STRING];
+	char image[EC_UAPI_STRING];
+	char order[EC_UAPI_STRING];
+	char name[EC_UAPI_STRING];
+
+	u16 position;
+	u8 regs[EC_INFO_SIZE];
+	u16 dl_status;
+	u16 alias;
+	u32 recv[EC_MAX_PORT];
+	u16 next[EC_MAX_PORT];
+	u8 upstream;
+
+	u16 al_status;
+	u16 al_code;
+	u8 requested;
+	u8 error;
+	char why[EC_UAPI_REASON];
+	bool gone;
+	struct work_struct work;
+	struct mutex lock;
+	struct ec_config *config;
+	bool reconfigure;
+	struct mutex mbox_lock;
+	u8 mbox_counter;
+};
+
+#define ec_slave_log(level, s, fmt, ...) \
+	printk(level "EtherCAT %u-%u: " fmt, (s)->master->index, (s)->position, ##__VA_ARGS__)
+#define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
+#define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
+
+struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
+struct ec_slave *ec_slave_ref(struct ec_slave *slave);
+void ec_slave_unref(struct ec_slave *slave);
+int ec_slave_parse_sii(struct ec_slave *slave);
+void ec_slave_request(struct ec_slave *slave, u8 state);
+void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
+
+static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
+{
+	return s->regs[EC_REG_PORTS] >> 2 * port & 3;
+}
+
+static inline u16 ec_slave_features(const struct ec_slave *s)
+{
+	return get_unaligned_le16(s->regs + EC_REG_FEATURES);
+}
+
+static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
+{
+	return s->info.protocols && s->info.std.rx_size && s->info.std.tx_size;
+}
+
+/* slave_pdo.c */
+int ec_slave_read_pdos(struct ec_slave *slave);
+const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
+
+/* al.c */
+int ec_al_read(struct ec_slave *slave);
+int ec_al_ack(struct ec_slave *slave);
+int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
+
+/* apply.c */
+void ec_apply_work(struct work_struct *work);
+
+/* topology.c */
+void ec_topology_build(struct ec_slave **slaves, unsigned int n);
+
+/* scan_sii.c */
+void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
+
+#endif

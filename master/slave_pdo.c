@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "limits.h"
+#include "pdo.h"
+#include "slave.h"
+#include "wire/sii.h"
+
+/**
+ * ec_pdo_add() - append a PDO
+ * @l: list
+ * @index: PDO index
+ * @name: string index
+ *
+ * Context: Process. May sleep.
+ * Return: the PDO, valid until the list changes, or NULL.
+ */
+struct ec_pdo *ec_pdo_add(struct ec_pdo_list *l, u16 index, u8 name)
+{
+	struct ec_pdo *p;
+
+	if (l->n >= EC_MAX_SC_PDOS)
+		return NULL;
+	p = krealloc_array(l->pdos, l->n + 1, sizeof(*p), GFP_KERNEL);
+	if (!p)
+		return NULL;
+	l->pdos = p;
+	p += l->n++;
+	*p = (struct ec_pdo){ .index = index, .name = name };
+	return p;
+}
+
+/**
+ * ec_pdo_add_entry() - append an entry to the mapping of a PDO
+ * @pdo: PDO
+ * @e: entry, copied
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -ENOMEM, or -ENOSPC beyond 255 entries.
+ */
+int ec_pdo_add_entry(struct ec_pdo *pdo, const struct ec_pdo_entry *e)
+{
+	struct ec_pdo_entry *p;
+
+	if (pdo->n_entries >= 255)
+		return -ENOSPC;
+	p = krealloc_array(pdo->entries, pdo->n_entries + 1, sizeof(*p), GFP_KERNEL);
+	if (!p)
+		return -ENOMEM;
+	pdo->entries = p;
+	p[pdo->n_entries++] = *e;
+	return 0;
+}
+
+int ec_pdo_copy_entries(struct ec_pdo *dst, const struct ec_pdo *src)
+{
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < src->n_entries; i++) {
+		ret = ec_pdo_add_entry(dst, &src->entries[i]);
+		if (ret)
+			return ret;
+	}
+	return 0;
+}
+
+void ec_pdo_clear_entries(struct ec_pdo *pdo)
+{
+	kfree(pdo->entries);
+	pdo->entries = NULL;
+	pdo->n_entries = 0;
+}
+
+void ec_pdo_list_clear(struct ec_pdo_list *l)
+{
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		kfree(l->pdos[i].entries);
+	kfree(l->pdos);
+	l->pdos = NULL;
+	l->n = 0;
+}
+
+struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index)
+{
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		if (l->pdos[i].index == index)
+			return &l->pdos[i];
+	return NULL;
+}
+
+u32 ec_pdo_bits(const struct ec_pdo *pdo)
+{
+	unsigned int i;
+	u32 bits = 0;
+
+	for (i = 0; i < pdo->n_entries; i++)
+		bits += pdo->entries[i].bits;
+	return bits;
+}
+
+u32 ec_pdo_list_bytes(const struct ec_pdo_list *l)
+{
+	unsigned int i;
+	u32 bits = 0;
+
+	for (i = 0; i < l->n; i++)
+		bits += ec_pdo_bits(&l->pdos[i]);
+	return DIV_ROUND_UP(bits, 8);
+}
+
+/**
+ * ec_slave_read_pdos() - take the PDOs of a slave from its EEPROM
+ * @slave: slave with EEPROM image
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_slave_read_pdos(struct ec_slave *slave)
+{
+	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
+	unsigned int t, i;
+
+	for (t = 0; t < ARRAY_SIZE(types); t++) {
+		struct ec_sii_pdo_iter it;
+		struct ec_sii_pdo pdo;
+
+		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
+			struct ec_pdo_list *l = pdo.sm < EC_MAX_SM ?
+				&slave->sm_pdos[pdo.sm] : &slave->free_pdos;
+			struct ec_pdo *p = ec_pdo_add(l, pdo.index, pdo.name);
+
+			if (!p)
+				return -ENOMEM;
+			for (i = 0; i < pdo.entries; i++) {
+				struct ec_sii_pdo_entry e;
+				struct ec_pdo_entry pe;
+
+				if (ec_sii_pdo_entry(&pdo, i, &e))
+					break;
+				pe = (struct ec_pdo_entry){
+					.index = e.index, .sub = e.sub,
+					.bits = e.bits, .name = e.name,
+				};
+				if (ec_pdo_add_entry(p, &pe))
+					return -ENOMEM;
+			}
+		}
+	}
+	return 0;
+}
+
+/**
+ * ec_slave_find_pdo() - a PDO the slave knows, assigned or not
+ * @slave: slave
+ * @index: PDO index
+ *
+ * Context: Process, with a reference to @slave.
+ * Return: the PDO or NULL.
+ */
+const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index)
+{
+	const struct ec_pdo *p;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++) {
+		p = ec_pdo_find(&slave->sm_pdos[i], index);
+		if (p)
+			return p;
+	}
+	return ec_pdo_find(&slave->free_pdos, index);
+}

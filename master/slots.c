@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/etherdevice.h>
+#include <linux/vmalloc.h>
+#include "slots.h"
+
+/**
+ * ec_slots_init() - allocate the slots
+ * @s: zeroed structure
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_slots_init(struct ec_slots *s)
+{
+	unsigned int i;
+
+	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
+	if (!s->slot)
+		return -ENOMEM;
+	for (i = 0; i < EC_SLOTS; i++)
+		s->slot[i].index = i;
+	return 0;
+}
+
+/**
+ * ec_slots_exit() - free the slots; no frame may be delivered any more
+ * @s: slots
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slots_exit(struct ec_slots *s)
+{
+	vfree(s->slot);
+	s->slot = NULL;
+}
+
+static bool take(struct ec_slot *slot, u64 now_ns)
+{
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
+		return true;
+	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
+	       now_ns - READ_ONCE(slot->sent_ns) > EC_QUARANTINE_NS &&
+	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
+	       EC_SLOT_QUARANTINE;
+}
+
+/**
+ * ec_slot_get() - take a free slot
+ * @s: slots
+ * @cyclic: for the cycle; others leave EC_SLOTS_CYCLE slots alone
+ * @now_ns: time, to release slots from quarantine
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the slot in state BUILD, or NULL when none is free.
+ */
+struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
+{
+	unsigned int i, start;
+
+	if (!cyclic && atomic_inc_return(&s->acyclic) > EC_SLOTS - EC_SLOTS_CYCLE)
+		goto none;
+	start = atomic_inc_return(&s->hint);
+	for (i = 0; i < EC_SLOTS; i++) {
+		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
+
+		if (take(slot, now_ns)) {
+			slot->xfer = NULL;
+			return slot;
+		}
+	}
+none:
+	if (!cyclic)
+		atomic_dec(&s->acyclic);
+	return NULL;
+}
+
+/**
+ * ec_slot_put() - give back a slot
+ * @s: slots
+ * @slot: in state BUILD or DONE (then free at once), or QUARANTINE
+ * @cyclic: as in ec_slot_get()
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
+{
+	int state = atomic_read(&slot->state);
+
+	if (state == EC_SLOT_BUILD || state == EC_SLOT_DONE)
+		atomic_set_release(&slot->state, EC_SLOT_FREE);
+	if (!cyclic)
+		atomic_dec(&s->acyclic);
+}
+
+/**
+ * ec_slot_cancel() - stop waiting for a frame
+ * @slot: slot that was armed
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true when the slot is in quarantine now, false when the reply came
+ * first (or is being copied at this moment).
+ */
+bool ec_slot_cancel(struct ec_slot *slot)
+{
+	return atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT;
+}
+
+/**
+ * ec_slot_arm() - write the Ethernet header and expect the reply from now on
+ * @s: slots
+ * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @side: link it is sent on
+ * @now_ns: time
+ *
+ * The source address carries side and sequence number; bit 1 of its first
+ * octet stays clear because slaves set it.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
+{
+	u8 *f = slot->frame;
+
+	slot->seq = atomic_inc_return(&s->seq);
+	slot->sent_ns = now_ns;
+	eth_broadcast_addr(f);
+	f[6] = 0;
+	f[7] = side;
+	put_unaligned_le32(slot->seq, f + 8);
+	f[12] = EC_ETHERTYPE >> 8;
+	f[13] = EC_ETHERTYPE & 0xff;
+	if (slot->eth_len < EC_ETH_MIN)
+		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
+	atomic_set_release(&slot->state, EC_SLOT_SENT);
+}
+
+/* does the reply carry the same datagrams as the frame that was sent? */
+static bool same_dgrams(struct ec_slot *slot, u8 *reply, size_t len)
+{
+	struct ec_frame_iter si, ri;
+	struct ec_dgram sd, rd;
+	int more;
+
+	if (ec_frame_iter_init(&ri, reply, len) ||
+	    ec_frame_iter_init(&si, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR))
+		return false;
+	while ((more = ec_frame_iter_next(&si, &sd)) == 1) {
+		if (ec_frame_iter_next(&ri, &rd) != 1 || rd.cmd != sd.cmd ||
+		    rd.idx != sd.idx || rd.len != sd.len || rd.ado != sd.ado)
+			return false;
+		switch (sd.cmd) {
+		case EC_CMD_APRD: case EC_CMD_APWR: case EC_CMD_APRW:
+		case EC_CMD_BRD: case EC_CMD_BWR: case EC_CMD_BRW:
+		case EC_CMD_ARMW:
+			break;		/* each slave counts the position up */
+		default:
+			if (rd.adp != sd.adp)
+				return false;
+		}
+	}
+	return !more && ec_frame_iter_next(&ri, &rd) == 0;
+}
+
+/**
+ * ec_slots_match() - find the slot a received frame belongs to and fill it
+ * @s: slots
+ * @src: source MAC address of the frame
+ * @data: what follows the EtherType
+ * @len: bytes there
+ * @done: the slot, now in state DONE, for EC_MATCH_DONE
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: what became of the frame.
+ */
+enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
+			     size_t len, struct ec_slot **done)
+{
+	struct ec_slot *slot;
+	size_t body;
+
+	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
+		return EC_MATCH_UNMATCHED;
+	slot = &s->slot[data[EC_FRAME_HDR + 1]];
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return slot->seq == get_unaligned_le32(src + 2) ?
+			EC_MATCH_LATE : EC_MATCH_UNMATCHED;
+	if (slot->seq != get_unaligned_le32(src + 2)) {
+		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		return EC_MATCH_LATE;
+	}
+	body = slot->eth_len - EC_ETH_HDR;
+	/* the iterator only reads; it has no const form */
+	if (len < body || !same_dgrams(slot, (u8 *)data, len)) {
+		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		return EC_MATCH_UNMATCHED;
+	}
+	memcpy(ec_slot_body(slot), data, body);
+	atomic_set_release(&slot->state, EC_SLOT_DONE);
+	*done = slot;
+	return EC_MATCH_DONE;
+}

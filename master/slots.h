@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Frame slots. The datagram index names the slot of the frame, so at most 256
+ * frames are on their way. A slot's life:
+ *
+ *   FREE -> BUILD -> SENT -> FILL -> DONE -> FREE
+ *                      \-> QUARANTINE -> (20 ms) -> BUILD
+ *
+ * SENT to FILL (reply) and SENT to QUARANTINE (timeout, cancel) are one atomic
+ * change each: the first wins.
+ */
+#ifndef EC_SLOTS_H
+#define EC_SLOTS_H
+
+#include <linux/atomic.h>
+#include <linux/types.h>
+#include "limits.h"
+#include "wire/frame.h"
+
+struct ec_xfer;
+
+enum ec_slot_state {
+	EC_SLOT_FREE,
+	EC_SLOT_BUILD,
+	EC_SLOT_SENT,
+	EC_SLOT_FILL,
+	EC_SLOT_DONE,
+	EC_SLOT_QUARANTINE,
+};
+
+/**
+ * struct ec_slot - one frame
+ * @state: enum ec_slot_state
+ * @index: datagram index, immutable
+ * @seq: sequence number in the source MAC address
+ * @sent_ns: when it was sent (ktime)
+ * @xfer: who waits for it, NULL: the cycle
+ * @eth_len: bytes of the Ethernet frame without padding and FCS
+ * @frame: Ethernet frame; becomes the reply in state DONE
+ */
+struct ec_slot {
+	atomic_t state;
+	u8 index;
+	u32 seq;
+	u64 sent_ns;
+	struct ec_xfer *xfer;
+	u16 eth_len;
+	u8 frame[EC_ETH_MAX];
+};
+
+/**
+ * struct ec_slots - all slots of one master
+ * @slot: the slots
+ * @hint: where to look for a free one
+ * @seq: sequence number of the last frame
+ * @acyclic: slots held by ec_xfer()
+ */
+struct ec_slots {
+	struct ec_slot *slot;
+	atomic_t hint;
+	atomic_t seq;
+	atomic_t acyclic;
+};
+
+enum ec_match {
+	EC_MATCH_DONE,		/* taken */
+	EC_MATCH_LATE,		/* of an earlier use of the slot */
+	EC_MATCH_UNMATCHED,	/* nothing of this kind is out, or mangled */
+};
+
+int ec_slots_init(struct ec_slots *s);
+void ec_slots_exit(struct ec_slots *s);
+struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
+void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic);
+bool ec_slot_cancel(struct ec_slot *slot);
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns);
+enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
+			     size_t len, struct ec_slot **done);
+
+static inline u8 *ec_slot_body(struct ec_slot *slot)
+{
+	return slot->frame + EC_ETH_HDR;
+}
+
+#endif
