@@ -100,8 +100,9 @@ while [ "$i" -lt 20 ] && kill -0 $reader 2>/dev/null; do
 done
 
 # The raw log, because the command may have cleared what dmesg shows. The read
-# ends with an error when nothing is left.
-chroot /n dd if=/dev/kmsg bs=8192 iflag=nonblock 2>/dev/null >/rw/kmsg
+# ends with an error when nothing is left. The path keeps busybox from taking
+# its own dd, which cannot do this.
+chroot /n /bin/dd if=/dev/kmsg bs=8192 iflag=nonblock 2>/dev/null >/rw/kmsg
 cp /rw/kmsg /ctl/kmsg
 echo $rc >/ctl/rc.tmp
 mv /ctl/rc.tmp /ctl/rc

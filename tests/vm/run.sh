@@ -122,9 +122,10 @@ probe_kvm() {
 	[ -r /dev/kvm ] && [ -w /dev/kvm ] || return 1
 	key="$(cat /proc/sys/kernel/random/boot_id) $(qemu-system-x86_64 --version | head -n 1)"
 	if [ "$(sed -n 1p "$state" 2>/dev/null)" != "$key" ]; then
-		if timeout -k 1 8 "${base[@]}" -initrd "$initrd" -accel kvm -cpu host -m 512 -serial stdio \
-			-append "console=ttyS0 quiet panic=-1 ec_probe" </dev/null 2>/dev/null |
-			grep -q 'ec-vm: probe ok'; then
+		# The braces hide what the shell says when QEMU aborts.
+		{ timeout -k 1 8 "${base[@]}" -initrd "$initrd" -accel kvm -cpu host -m 512 -serial stdio \
+			-append "console=ttyS0 quiet panic=-1 ec_probe" </dev/null >"$tmp/probe" || true; } 2>/dev/null
+		if grep -q 'ec-vm: probe ok' "$tmp/probe"; then
 			printf '%s\nyes\n' "$key" >"$state.$$"
 		else
 			printf '%s\nno\n' "$key" >"$state.$$"
@@ -137,10 +138,14 @@ probe_kvm() {
 if [ $icount = 1 ]; then
 	smp=1
 	accel=(-accel tcg -cpu max -icount "shift=0,sleep=off")
+	append=" tsc=reliable$append"
 elif [ "${EC_ACCEL:-}" = kvm ] || { [ -z "${EC_ACCEL:-}" ] && probe_kvm; }; then
 	accel=(-accel kvm -cpu host)
 else
 	accel=(-accel tcg -cpu max)
+	# All virtual CPUs of TCG share one counter, but the kernel does not know it
+	# and may choose the HPET, where each look at the clock leaves the guest.
+	append=" tsc=reliable$append"
 fi
 
 # --- what the guest is told ---------------------------------------------------

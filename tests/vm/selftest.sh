@@ -1,0 +1,67 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Proves that run.sh can be trusted: that it passes results on, and that it
+# does not report success when the guest dies, hangs or complains.
+# usage: selftest.sh [FLAVOUR]    (default 6.1-rt)
+
+set -u
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+kernel=${1:-6.1-rt}
+tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-selftest.XXXXXX")
+trap 'rm -rf "$tmp"' EXIT
+failed=0 count=0
+
+# check NAME WANTED-STATUS WANTED-REGEX run.sh-arguments...
+check() {
+	local name=$1 want=$2 re=$3 rc=0
+	shift 3
+	count=$((count + 1))
+	"$here/run.sh" --kernel "$kernel" "$@" </dev/null >"$tmp/out" 2>&1 || rc=$?
+	if [ $rc = "$want" ] && grep -qE -- "$re" "$tmp/out"; then
+		echo "ok $count - $name"
+	else
+		echo "not ok $count - $name (status $rc, wanted $want and output matching '$re')"
+		sed 's/^/# /' "$tmp/out"
+		failed=1
+	fi
+}
+
+# Not one of the checks: may take long when nothing is cached yet.
+"$here/kernels.sh" fetch "$kernel" || exit 1
+
+case $kernel in
+*-rt)	uname='-rt-amd64' ;;
+*)	uname='^[0-9.]+.*-amd64' ;;
+esac
+check "status 0, uname, boot time" 0 "$uname" -v -- uname -r
+boot=$(grep 'command started' "$tmp/out")
+if [ "$(grep -c $'\r' "$tmp/out")" != 0 ]; then echo "not ok - carriage returns in the output"; failed=1; fi
+
+mkdir "$tmp/rw dir"
+echo in >"$tmp/rw dir/in"
+# shellcheck disable=SC2016
+check "status 3, modules, --rw, read-only host, arguments" 3 "^args:a b|it's|\\\$x" --nics --rw "$tmp/rw dir" -- sh -ec '
+	modprobe veth
+	ip link add ecv0 type veth peer name ecv1
+	modprobe e1000e
+	ip link set eth0 up; ip link set eth1 up
+	cp "$0/in" "$0/out"
+	echo lost >"$0/../lost"
+	[ "$(pwd)" = "$1" ]
+	shift; IFS="|"; echo "args:$*"; exit 3' "$tmp/rw dir" "$(pwd -P)" "a b" "it's" '$x'
+[ "$(cat "$tmp/rw dir/out" 2>/dev/null)" = in ] || { echo "not ok - file written to --rw is missing"; failed=1; }
+[ ! -e "$tmp/lost" ] || { echo "not ok - a write outside --rw reached the host"; failed=1; }
+
+check "--icount" 0 '^cpus 1' --icount --timeout 120 -- sh -c 'sleep 60; echo cpus $(nproc)'
+check "timeout is 124" 124 'TIMEOUT' --timeout 15 -- sleep 1000
+check "panic is 125" 125 'without a result' --timeout 60 -- sh -c 'echo c >/proc/sysrq-trigger'
+check "kernel warning is 70, even after dmesg -c" 70 'KERNEL FAULT' -- \
+	sh -c 'echo "<4>WARNING: CPU: made up" >/dev/kmsg; dmesg -c >/dev/null'
+check "--allow-oops" 5 '^$|^out' --allow-oops -- sh -c 'echo "<4>BUG: made up" >/dev/kmsg; echo out; exit 5'
+check "background process does not hang the end" 0 done -- sh -c 'sleep 1000 & echo done'
+
+echo "# ${boot#run.sh: }"
+echo "1..$count"
+exit $failed
