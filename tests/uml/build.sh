@@ -46,8 +46,12 @@ out=$cache/uml/$variant-$key
 # kernel's objects but never a source of ours.
 clone=$cache/uml/clone-$(echo "$repo" | sha256sum | cut -c1-12)/$variant-$key
 farm=$clone/ethercat
+# Builds of one clone with different EC_UML_SKIP must not pass for each other.
+kernel=$clone/vmlinux
+[ -z "${EC_UML_SKIP-}" ] ||
+	kernel=$kernel-$(echo "$EC_UML_SKIP" | sha256sum | cut -c1-8)
 if [ -n "$pathonly" ]; then
-	echo "$clone/vmlinux"
+	echo "$kernel"
 	exit
 fi
 
@@ -126,10 +130,11 @@ rc=0
 mk vmlinux >"$log" 2>&1 || rc=$?
 # Show paths as they are in the clone, without the linker's usual remarks.
 sed -e 's#[^ :]*drivers/ethercat/##g' \
+	-e '/^make\(\[[0-9]*\]\)\?: /d' \
 	-e '/missing .note.GNU-stack\|NOTE: This behaviour\|RWX permissions/d' \
 	"$log" >&2
 [ $rc = 0 ] || die "kernel build failed (log: $log)"
-cp --reflink=auto "$out/vmlinux" "$clone/vmlinux.new"
-mv -f "$clone/vmlinux.new" "$clone/vmlinux"
+cp --reflink=auto "$out/vmlinux" "$kernel.new"
+mv -f "$kernel.new" "$kernel"
 echo "built $variant kernel in $((SECONDS - start)) s" >&2
-echo "$clone/vmlinux"
+echo "$kernel"

@@ -112,7 +112,7 @@ def main():
     elif done < suites_planned:
         problems.append("crash: %d of %d suites ended, last: %s"
                         % (done, suites_planned, last_seen))
-    if suites_planned is not None and passed + failed + skipped == 0:
+    elif passed + failed + skipped == 0:
         problems.append("no test ran; is the filter right?")
     if suites_planned is None or (not hung and done < (suites_planned or 0)):
         print("\n".join("  | " + x for x in lines[-40:]))
@@ -125,7 +125,9 @@ def main():
         print("KERNEL REPORT at line %d of the log:" % (n + 1))
         shown = min(n + 40, len(lines) - 1)
         for x in lines[max(0, n - 2):shown + 1]:
-            print("  | " + x)
+            # Stale return addresses and raw stack words only hide the trace.
+            if not re.search(r"\] \? |^( [0-9a-f]{8}){4}$|^Stack:$", x):
+                print("  | " + x.replace("drivers/ethercat/", ""))
     if trouble:
         problems.append("%d kernel warning line(s), see above" % len(trouble))
 

@@ -45,11 +45,16 @@ limit=${EC_UML_TIMEOUT:-300}
 start=$(date +%s.%N)
 # uml_dir keeps UML's sockets out of the home folder.  timeout kills the whole
 # process group: UML has several host processes.
-timeout -s KILL "$limit" "$dir/vmlinux" mem=512M time-travel=inf-cpu \
-	kunit.filter_glob="$filter" kunit_shutdown=halt kmemleak.verbose=1 \
-	uml_dir="$dir/" con=null con0=fd:0,fd:1 \
-	panic=-1 loglevel=8 ${EC_UML_ARGS-} \
-	</dev/null >"$log" 2>&1
+# The subshell swallows bash's remark on how it ended.
+ulimit -c 0
+(
+	timeout -s KILL "$limit" "$dir/vmlinux" mem=512M \
+		time-travel=inf-cpu kunit.filter_glob="$filter" \
+		kunit_shutdown=halt kmemleak.verbose=1 uml_dir="$dir/" \
+		con=null con0=fd:0,fd:1 panic=-1 loglevel=8 \
+		${EC_UML_ARGS-} </dev/null >"$log" 2>&1
+	exit $?
+) 2>/dev/null
 rc=$?
 [ $rc != 137 ] || echo "EC-UML-HANG" >>"$log"
 took=$(echo "$(date +%s.%N) - $start" | bc)
