@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
+#include "coe.h"
+#include "text.h"
+
+/**
+ * ec_coe_hdr_decode() - read a CoE header
+ * @r: cursor behind the mailbox header
+ * @h: result
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is not complete.
+ */
+int ec_coe_hdr_decode(struct ec_rbuf *r, struct ec_coe_hdr *h)
+{
+	u16 v = ec_rbuf_le16(r);
+
+	h->number = v & 0x01FF;
+	h->service = (u8)(v >> 12);
+	return r->bad ? -EMSGSIZE : 0;
+}
+
+/**
+ * ec_coe_hdr_encode() - write a CoE header
+ * @w: cursor
+ * @h: what to write
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_coe_hdr_encode(struct ec_wbuf *w, const struct ec_coe_hdr *h)
+{
+	ec_wbuf_le16(w, (u16)((h->number & 0x01FF) | h->service << 12));
+}
+
+static const char * const services[] = {
+	"???", "emergency", "SDO request", "SDO response", "TxPDO", "RxPDO",
+	"TxPDO remote request", "RxPDO remote request", "SDO information",
+};
+
+const char *ec_coe_service_name(u8 service)
+{
+	return services[service < ARRAY_SIZE(services) ? service : 0];
+}
+
+/**
+ * ec_coe_emergency_decode() - read an emergency
+ * @rx: message behind the mailbox header
+ * @len: bytes at @rx
+ * @e: result
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -ENOMSG when the message is something else, -EMSGSIZE when it is
+ * too short.
+ */
+int ec_coe_emergency_decode(const u8 *rx, size_t len, struct ec_coe_emergency *e)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+	struct ec_coe_hdr h;
+	const u8 *data;
+
+	if (ec_coe_hdr_decode(&r, &h))
+		return -EMSGSIZE;
+	if (h.service != EC_COE_EMERGENCY)
+		return -ENOMSG;
+	e->code = ec_rbuf_le16(&r);
+	e->reg = ec_rbuf_u8(&r);
+	data = ec_rbuf_take(&r, sizeof(e->data));
+	if (!data)
+		return -EMSGSIZE;
+	memcpy(e->data, data, sizeof(e->data));
+	return 0;
+}
+
+/**
+ * ec_coe_emergency_encode() - write an emergency
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @e: what to write
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when it does not fit.
+ */
+int ec_coe_emergency_encode(u8 *tx, size_t cap, const struct ec_coe_emergency *e)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+	struct ec_coe_hdr h = { .service = EC_COE_EMERGENCY };
+
+	ec_coe_hdr_encode(&w, &h);
+	ec_wbuf_le16(&w, e->code);
+	ec_wbuf_u8(&w, e->reg);
+	ec_wbuf_bytes(&w, e->data, sizeof(e->data));
+	return w.bad ? -EMSGSIZE : EC_COE_EMERGENCY_SIZE;
+}
+
+/**
+ * ec_coe_emergency_text() - group of an emergency error code
+ * @code: error code
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: text, never NULL.
+ */
+const char *ec_coe_emergency_text(u16 code)
+{
+	switch (code >> 8) {
+	case 0x00:
+		return "error gone";
+	case 0x10 ... 0x1F:
+		return "generic error";
+	case 0x20 ... 0x2F:
+		return "current";
+	case 0x30 ... 0x3F:
+		return "voltage";
+	case 0x40 ... 0x4F:
+		return "temperature";
+	case 0x50 ... 0x5F:
+		return "device hardware";
+	case 0x60 ... 0x6F:
+		return "device software";
+	case 0x70 ... 0x7F:
+		return "additional modules";
+	case 0x80 ... 0x8F:
+		return "monitoring or communication";
+	case 0x90 ... 0x9F:
+		return "external error";
+	case 0xA0:
+		return "state transition";
+	case 0xF0:
+		return "additional functions";
+	case 0xFF:
+		return "device specific";
+	default:
+		return "unknown emergency group";
+	}
+}
+
+static const struct ec_text aborts[] = {
+	{ 0x05030000, "toggle bit did not change" },
+	{ 0x05040000, "SDO transfer timed out" },
+	{ 0x05040001, "SDO command is unknown" },
+	{ 0x05040002, "block size is invalid" },
+	{ 0x05040003, "block sequence number is invalid" },
+	{ 0x05040004, "block checksum is wrong" },
+	{ 0x05040005, "out of memory" },
+	{ 0x06010000, "this kind of access is not supported for the object" },
+	{ 0x06010001, "object can only be written" },
+	{ 0x06010002, "object can only be read" },
+	{ 0x06010003, "subindex cannot be written while subindex 0 is not 0" },
+	{ 0x06010004, "complete access is not possible for objects of variable length" },
+	{ 0x06010005, "object is larger than the mailbox" },
+	{ 0x06010006, "object is mapped into an RxPDO and cannot be written" },
+	{ 0x06020000, "object does not exist" },
+	{ 0x06040041, "object cannot be mapped into a PDO" },
+	{ 0x06040042, "mapped objects exceed the length of the PDO" },
+	{ 0x06040043, "parameters are not compatible" },
+	{ 0x06040047, "incompatibility inside the device" },
+	{ 0x06060000, "access failed because of a hardware error" },
+	{ 0x06070010, "data type or length does not match" },
+	{ 0x06070012, "data is too long" },
+	{ 0x06070013, "data is too short" },
+	{ 0x06090011, "subindex does not exist" },
+	{ 0x06090030, "value is out of range" },
+	{ 0x06090031, "value is too high" },
+	{ 0x06090032, "value is too low" },
+	{ 0x06090033, "detected modules differ from the configured ones" },
+	{ 0x06090036, "maximum is smaller than minimum" },
+	{ 0x060A0023, "resource is not available" },
+	{ 0x08000000, "general error" },
+	{ 0x08000020, "data cannot be transferred or stored" },
+	{ 0x08000021, "data cannot be transferred or stored: the device is under local control" },
+	{ 0x08000022, "data cannot be transferred or stored in the present device state" },
+	{ 0x08000023, "there is no object dictionary" },
+	{ 0x08000024, "no data available" },
+};
+
+/**
+ * ec_coe_abort_text() - meaning of an SDO abort code
+ * @code: abort code
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: text, NULL if unknown.
+ */
+const char *ec_coe_abort_text(u32 code)
+{
+	return ec_text_find(aborts, ARRAY_SIZE(aborts), code);
+}
+
+/**
+ * ec_coe_abort_errno() - SDO abort code as errno
+ * @code: abort code
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: negative errno, -EIO for codes without a closer one.
+ */
+int ec_coe_abort_errno(u32 code)
+{
+	switch (code) {
+	case EC_ABORT_TOGGLE:
+		return -EPROTO;
+	case EC_ABORT_TIMEOUT:
+		return -ETIMEDOUT;
+	case EC_ABORT_COMMAND:
+	case EC_ABORT_ACCESS:
+	case EC_ABORT_CA_VARIABLE:
+		return -EOPNOTSUPP;
+	case EC_ABORT_MEMORY:
+		return -ENOMEM;
+	case EC_ABORT_WRITE_ONLY:
+	case EC_ABORT_READ_ONLY:
+	case EC_ABORT_SUB0_FIRST:
+		return -EACCES;
+	case EC_ABORT_TOO_LONG_MBOX:
+		return -EMSGSIZE;
+	case EC_ABORT_MAPPED:
+	case EC_ABORT_LOCAL:
+	case EC_ABORT_STATE:
+		return -EBUSY;
+	case EC_ABORT_NO_OBJECT:
+	case EC_ABORT_NO_SUB:
+	case EC_ABORT_NO_DICT:
+		return -ENOENT;
+	case EC_ABORT_NOT_MAPPABLE:
+	case EC_ABORT_PDO_LENGTH:
+	case EC_ABORT_PARAMETER:
+	case EC_ABORT_LENGTH:
+	case EC_ABORT_TOO_LONG:
+	case EC_ABORT_TOO_SHORT:
+		return -EINVAL;
+	case EC_ABORT_RANGE:
+	case EC_ABORT_TOO_HIGH:
+	case EC_ABORT_TOO_LOW:
+		return -ERANGE;
+	case 0x08000024:
+		return -ENODATA;
+	default:
+		return -EIO;
+	}
+}
+
+/**
+ * ec_coe_errno_abort() - errno as SDO abort code
+ * @err: negative errno
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: abort code, EC_ABORT_GENERAL for what has no closer one.
+ */
+u32 ec_coe_errno_abort(int err)
+{
+	switch (err) {
+	case -EPROTO:
+	case -EBADMSG:
+		return EC_ABORT_COMMAND;
+	case -ETIMEDOUT:
+		return EC_ABORT_TIMEOUT;
+	case -ENOMEM:
+	case -ENOBUFS:
+		return EC_ABORT_MEMORY;
+	case -EOPNOTSUPP:
+	case -EACCES:
+		return EC_ABORT_ACCESS;
+	case -ENOENT:
+		return EC_ABORT_NO_OBJECT;
+	case -EINVAL:
+	case -EMSGSIZE:
+		return EC_ABORT_LENGTH;
+	case -ERANGE:
+		return EC_ABORT_RANGE;
+	case -EBUSY:
+		return EC_ABORT_STATE;
+	default:
+		return EC_ABORT_GENERAL;
+	}
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
+#include "mbox.h"
+#include "text.h"
+
+/**
+ * ec_mbox_hdr_decode() - read a mailbox header
+ * @r: cursor at the header, ends where the mailbox ends
+ * @h: result; the cursor then stands on @h->len bytes of content
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when the header is not complete, -EBADMSG when its
+ * length is larger than what is there.
+ */
+int ec_mbox_hdr_decode(struct ec_rbuf *r, struct ec_mbox_hdr *h)
+{
+	u8 b;
+
+	h->len = ec_rbuf_le16(r);
+	h->address = ec_rbuf_le16(r);
+	b = ec_rbuf_u8(r);
+	h->channel = b & 0x3F;
+	h->prio = b >> 6;
+	b = ec_rbuf_u8(r);
+	h->type = b & 0x0F;
+	h->counter = b >> 4 & 0x07;
+	if (r->bad)
+		return -EMSGSIZE;
+	return h->len <= ec_rbuf_left(r) ? 0 : -EBADMSG;
+}
+
+/**
+ * ec_mbox_hdr_encode() - write a mailbox header
+ * @w: cursor
+ * @h: what to write
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_mbox_hdr_encode(struct ec_wbuf *w, const struct ec_mbox_hdr *h)
+{
+	ec_wbuf_le16(w, h->len);
+	ec_wbuf_le16(w, h->address);
+	ec_wbuf_u8(w, (u8)((h->channel & 0x3F) | h->prio << 6));
+	ec_wbuf_u8(w, (u8)((h->type & 0x0F) | (h->counter & 0x07) << 4));
+}
+
+/**
+ * ec_mbox_next_counter() - counter of the next message
+ * @counter: of the last one, 0 for none yet
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 1 to 7; 0 is skipped because it switches the check off.
+ */
+u8 ec_mbox_next_counter(u8 counter)
+{
+	return counter >= 7 ? 1 : counter + 1;
+}
+
+/**
+ * ec_mbox_type_name() - name of a mailbox protocol
+ * @type: enum ec_mbox_type
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: "CoE" and the like, "???" if unknown.
+ */
+const char *ec_mbox_type_name(u8 type)
+{
+	switch (type) {
+	case EC_MBOX_ERR:
+		return "ERR";
+	case EC_MBOX_AOE:
+		return "AoE";
+	case EC_MBOX_EOE:
+		return "EoE";
+	case EC_MBOX_COE:
+		return "CoE";
+	case EC_MBOX_FOE:
+		return "FoE";
+	case EC_MBOX_SOE:
+		return "SoE";
+	case EC_MBOX_VOE:
+		return "VoE";
+	default:
+		return "???";
+	}
+}
+
+/**
+ * ec_mbox_error_decode() - read an error reply
+ * @r: cursor behind the mailbox header
+ * @detail: result, enum ec_mbox_error
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is too short, -EBADMSG when it is no mailbox
+ * command error.
+ */
+int ec_mbox_error_decode(struct ec_rbuf *r, u16 *detail)
+{
+	u16 type = ec_rbuf_le16(r);
+
+	*detail = ec_rbuf_le16(r);
+	if (r->bad)
+		return -EMSGSIZE;
+	return type == 1 ? 0 : -EBADMSG;
+}
+
+/**
+ * ec_mbox_error_encode() - write an error reply
+ * @w: cursor behind the mailbox header
+ * @detail: enum ec_mbox_error
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_mbox_error_encode(struct ec_wbuf *w, u16 detail)
+{
+	ec_wbuf_le16(w, 1);
+	ec_wbuf_le16(w, detail);
+}
+
+static const struct ec_text errors[] = {
+	{ EC_MBOX_ERR_SYNTAX, "the mailbox header is wrong" },
+	{ EC_MBOX_ERR_PROTOCOL, "the mailbox protocol is not supported" },
+	{ EC_MBOX_ERR_CHANNEL, "the channel in the mailbox header is wrong" },
+	{ EC_MBOX_ERR_SERVICE, "the service of the mailbox protocol is not supported" },
+	{ EC_MBOX_ERR_HEADER, "the header of the mailbox protocol is wrong" },
+	{ EC_MBOX_ERR_TOO_SHORT, "the mailbox message is too short" },
+	{ EC_MBOX_ERR_NO_MEMORY, "the slave has no memory left for the mailbox message" },
+	{ EC_MBOX_ERR_SIZE, "the sizes in the mailbox message contradict each other" },
+	{ EC_MBOX_ERR_IN_WORK, "the slave still works on an earlier request" },
+};
+
+/**
+ * ec_mbox_error_text() - meaning of an error reply
+ * @detail: its detail word
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: text, never NULL.
+ */
+const char *ec_mbox_error_text(u16 detail)
+{
+	const char *text = ec_text_find(errors, ARRAY_SIZE(errors), detail);
+
+	return text ? text : "unknown mailbox error";
+}
+
+/**
+ * ec_mbox_error_errno() - error reply as errno
+ * @detail: its detail word
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: -EPROTONOSUPPORT, -EOPNOTSUPP, -ENOMEM, -EBUSY or -EPROTO.
+ */
+int ec_mbox_error_errno(u16 detail)
+{
+	switch (detail) {
+	case EC_MBOX_ERR_PROTOCOL:
+		return -EPROTONOSUPPORT;
+	case EC_MBOX_ERR_SERVICE:
+		return -EOPNOTSUPP;
+	case EC_MBOX_ERR_NO_MEMORY:
+		return -ENOMEM;
+	case EC_MBOX_ERR_IN_WORK:
+		return -EBUSY;
+	default:
+		return -EPROTO;
+	}
+}
