@@ -11,6 +11,7 @@
 #include "coe.h"
 
 #define EC_SDOINFO_HDR		6	/* CoE header, opcode, reserved, fragments left */
+#define EC_SDOINFO_MIN		10	/* smallest mailbox content a CoE slave has */
 #define EC_SDOINFO_FRAGMENTS	4096	/* no answer has more */
 
 enum ec_sdoinfo_opcode {

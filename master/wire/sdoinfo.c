@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
+#include "sdoinfo.h"
+
+#define OPCODE_MASK	0x7F
+#define INCOMPLETE	0x80
+
+static void put_info(struct ec_wbuf *w, u8 opcode, u16 left)
+{
+	struct ec_coe_hdr h = { .service = EC_COE_SDO_INFO };
+
+	ec_coe_hdr_encode(w, &h);
+	ec_wbuf_u8(w, opcode);
+	ec_wbuf_u8(w, 0);
+	ec_wbuf_le16(w, left);
+}
+
+static void set_state(struct ec_sdoinfo *s, enum ec_sdoinfo_state state)
+{
+	s->state = state;
+}
+
+static void init(struct ec_sdoinfo *s, u8 opcode, u16 index, u8 sub, u8 info,
+		 u8 *data, size_t cap)
+{
+	*s = (struct ec_sdoinfo){
+		.opcode = opcode, .index = index, .sub = sub, .info = info,
+		.data = data, .cap = cap,
+	};
+	set_state(s, EC_SDOINFO_REQUEST);
+}
+
+/**
+ * ec_sdoinfo_init_list() - ask for a list of objects
+ * @s: exchange
+ * @list: enum ec_sdoinfo_list
+ * @data: where the indexes go, see ec_sdoinfo_list_get()
+ * @cap: bytes at @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdoinfo_init_list(struct ec_sdoinfo *s, u16 list, u8 *data, size_t cap)
+{
+	init(s, EC_SDOINFO_LIST_REQ, list, 0, 0, data, cap);
+}
+
+/**
+ * ec_sdoinfo_init_object() - ask for the description of an object
+ * @s: exchange
+ * @index: object
+ * @data: where the answer goes, for ec_od_object_decode()
+ * @cap: bytes at @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdoinfo_init_object(struct ec_sdoinfo *s, u16 index, u8 *data, size_t cap)
+{
+	init(s, EC_SDOINFO_OBJECT_REQ, index, 0, 0, data, cap);
+}
+
+/**
+ * ec_sdoinfo_init_entry() - ask for the description of an entry
+ * @s: exchange
+ * @index: object
+ * @sub: subindex
+ * @info: EC_OD_INFO_*, best none
+ * @data: where the answer goes, for ec_od_entry_decode()
+ * @cap: bytes at @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdoinfo_init_entry(struct ec_sdoinfo *s, u16 index, u8 sub, u8 info,
+			   u8 *data, size_t cap)
+{
+	init(s, EC_SDOINFO_ENTRY_REQ, index, sub, info, data, cap);
+}
+
+/**
+ * ec_sdoinfo_tx() - the request
+ * @s: exchange
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit, -EINVAL when the answer has
+ * begun.
+ */
+int ec_sdoinfo_tx(struct ec_sdoinfo *s, u8 *tx, size_t cap)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+
+	if (s->state != EC_SDOINFO_REQUEST)
+		return -EINVAL;
+	put_info(&w, s->opcode, 0);
+	ec_wbuf_le16(&w, s->index);
+	if (s->opcode == EC_SDOINFO_ENTRY_REQ) {
+		ec_wbuf_u8(&w, s->sub);
+		ec_wbuf_u8(&w, s->info);
+	}
+	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
+}
+
+static int fail(struct ec_sdoinfo *s, int err)
+{
+	set_state(s, EC_SDOINFO_DONE);
+	return err;
+}
+
+/* Does the first fragment answer our question? 0, EC_STALE, -EMSGSIZE */
+static int match(const struct ec_sdoinfo *s, struct ec_rbuf r)
+{
+	u16 index = ec_rbuf_le16(&r);
+	u8 sub = s->opcode == EC_SDOINFO_ENTRY_REQ ? ec_rbuf_u8(&r) : s->sub;
+
+	if (r.bad)
+		return -EMSGSIZE;
+	return index == s->index && sub == s->sub ? 0 : EC_STALE;
+}
+
+/**
+ * ec_sdoinfo_rx() - take a fragment of the answer
+ * @s: exchange
+ * @rx: CoE message behind the mailbox header
+ * @len: bytes at @rx: the length of the mailbox header
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0 when complete, EC_WAIT: the next fragment comes unasked, EC_STALE
+ * for what is not our answer; -EIO: the slave refused, see @s->abort;
+ * -ENOBUFS: larger than @cap, fragments still to come are stale; -EPROTO: a
+ * fragment is missing or there is no end to them; -EMSGSIZE: message too
+ * short; -EINVAL: the exchange is over.
+ */
+int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+	struct ec_coe_hdr h;
+	u8 opcode;
+	u16 left;
+	size_t n;
+	int ret;
+
+	if (s->state == EC_SDOINFO_DONE)
+		return -EINVAL;
+	if (ec_coe_hdr_decode(&r, &h))
+		return fail(s, -EMSGSIZE);
+	if (h.service != EC_COE_SDO_INFO)
+		return EC_STALE;
+	opcode = ec_rbuf_u8(&r);
+	ec_rbuf_u8(&r);
+	left = ec_rbuf_le16(&r);
+	if (r.bad)
+		return fail(s, -EMSGSIZE);
+
+	if ((opcode & OPCODE_MASK) == EC_SDOINFO_ERROR) {
+		s->abort = ec_rbuf_le32(&r);
+		return fail(s, r.bad ? -EMSGSIZE : -EIO);
+	}
+	if ((opcode & OPCODE_MASK) != s->opcode + 1)
+		return EC_STALE;
+
+	if (s->state == EC_SDOINFO_REQUEST) {
+		ret = match(s, r);
+		if (ret == EC_STALE)
+			return EC_STALE;
+		if (ret)
+			return fail(s, ret);
+		if (s->opcode == EC_SDOINFO_LIST_REQ)
+			ec_rbuf_le16(&r);
+	} else if (s->left && left + 1 != s->left) {
+		return fail(s, -EPROTO);
+	}
+	if (++s->fragments > EC_SDOINFO_FRAGMENTS)
+		return fail(s, -EPROTO);
+
+	n = ec_rbuf_left(&r);
+	if (n > s->cap - s->size)
+		return fail(s, -ENOBUFS);
+	if (n)
+		memcpy(s->data + s->size, ec_rbuf_take(&r, n), n);
+	s->size += n;
+	s->left = left;
+	/* one of the two is enough: slaves forget the other */
+	if (!(opcode & INCOMPLETE) && !left)
+		return fail(s, 0);
+	set_state(s, EC_SDOINFO_FRAGMENT);
+	return EC_WAIT;
+}
+
+/**
+ * ec_sdoinfo_list_count() - how many indexes (or counts) a list has
+ * @s: exchange that is complete
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: number.
+ */
+size_t ec_sdoinfo_list_count(const struct ec_sdoinfo *s)
+{
+	return s->size / 2;
+}
+
+/**
+ * ec_sdoinfo_list_get() - one index (or count) of a list
+ * @s: exchange that is complete
+ * @i: 0 to ec_sdoinfo_list_count() - 1
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: index, 0 when @i is too large.
+ */
+u16 ec_sdoinfo_list_get(const struct ec_sdoinfo *s, size_t i)
+{
+	return i < s->size / 2 ? get_unaligned_le16(s->data + 2 * i) : 0;
+}
+
+/* What is left is a name; zeros at its end do not belong to it. */
+static size_t get_name(struct ec_rbuf *r, const char **name)
+{
+	size_t n = ec_rbuf_left(r);
+	const u8 *p = ec_rbuf_take(r, n);
+
+	*name = (const char *)p;
+	while (n && p && !p[n - 1])
+		n--;
+	return p ? n : 0;
+}
+
+/**
+ * ec_od_object_decode() - read an object description
+ * @data: body of the answer
+ * @len: bytes at @data
+ * @o: result; the name points into @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is too short.
+ */
+int ec_od_object_decode(const u8 *data, size_t len, struct ec_od_object *o)
+{
+	struct ec_rbuf r = ec_rbuf(data, len);
+
+	o->index = ec_rbuf_le16(&r);
+	o->type = ec_rbuf_le16(&r);
+	o->max_sub = ec_rbuf_u8(&r);
+	o->code = ec_rbuf_u8(&r);
+	o->name_len = get_name(&r, &o->name);
+	return r.bad ? -EMSGSIZE : 0;
+}
+
+/**
+ * ec_od_entry_decode() - read an entry description
+ * @data: body of the answer
+ * @len: bytes at @data
+ * @e: result; the name points into @data
+ *
+ * Optional fields (unit, default, minimum, maximum) are skipped; if they do
+ * not fit, the entry has no name.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is too short.
+ */
+int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e)
+{
+	struct ec_rbuf r = ec_rbuf(data, len);
+	size_t skip = 0, value;
+
+	e->index = ec_rbuf_le16(&r);
+	e->sub = ec_rbuf_u8(&r);
+	e->info = ec_rbuf_u8(&r);
+	e->type = ec_rbuf_le16(&r);
+	e->bits = ec_rbuf_le16(&r);
+	e->access = ec_rbuf_le16(&r);
+	if (r.bad)
+		return -EMSGSIZE;
+
+	value = DIV_ROUND_UP((size_t)e->bits, 8);
+	skip += e->info & EC_OD_INFO_UNIT ? 2 : 0;
+	skip += e->info & EC_OD_INFO_DEFAULT ? value : 0;
+	skip += e->info & EC_OD_INFO_MIN ? value : 0;
+	skip += e->info & EC_OD_INFO_MAX ? value : 0;
+	ec_rbuf_take(&r, min_t(size_t, skip, ec_rbuf_left(&r)));
+	e->name_len = get_name(&r, &e->name);
+	return 0;
+}
+
+/**
+ * ec_sdoinfo_req_decode() - read a request
+ * @rx: CoE message behind the mailbox header
+ * @len: bytes at @rx
+ * @req: result
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -ENOMSG when it is no SDO information, -EOPNOTSUPP for an unknown
+ * opcode, -EMSGSIZE when it is too short.
+ */
+int ec_sdoinfo_req_decode(const u8 *rx, size_t len, struct ec_sdoinfo_req *req)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+	struct ec_coe_hdr h;
+
+	if (ec_coe_hdr_decode(&r, &h))
+		return -EMSGSIZE;
+	if (h.service != EC_COE_SDO_INFO)
+		return -ENOMSG;
+	req->opcode = ec_rbuf_u8(&r) & OPCODE_MASK;
+	ec_rbuf_take(&r, 3);
+	if (!r.bad && req->opcode != EC_SDOINFO_LIST_REQ &&
+	    req->opcode != EC_SDOINFO_OBJECT_REQ && req->opcode != EC_SDOINFO_ENTRY_REQ)
+		return -EOPNOTSUPP;
+	req->index = ec_rbuf_le16(&r);
+	req->sub = 0;
+	req->info = 0;
+	if (req->opcode == EC_SDOINFO_ENTRY_REQ) {
+		req->sub = ec_rbuf_u8(&r);
+		req->info = ec_rbuf_u8(&r);
+	}
+	return r.bad ? -EMSGSIZE : 0;
+}
+
+/**
+ * ec_od_list_encode() - write the body of a list answer
+ * @buf: body
+ * @cap: bytes at @buf
+ * @list: list type
+ * @index: indexes, or the five counts
+ * @n: how many
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -ENOBUFS when they do not fit.
+ */
+int ec_od_list_encode(u8 *buf, size_t cap, u16 list, const u16 *index, size_t n)
+{
+	struct ec_wbuf w = ec_wbuf(buf, cap);
+	size_t i;
+
+	ec_wbuf_le16(&w, list);
+	for (i = 0; i < n && !w.bad; i++)
+		ec_wbuf_le16(&w, index[i]);
+	return w.bad ? -ENOBUFS : (int)(w.p - buf);
+}
+
+/**
+ * ec_od_object_encode() - write an object description
+ * @buf: body of the answer
+ * @cap: bytes at @buf
+ * @o: what to write
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -ENOBUFS when they do not fit.
+ */
+int ec_od_object_encode(u8 *buf, size_t cap, const struct ec_od_object *o)
+{
+	struct ec_wbuf w = ec_wbuf(buf, cap);
+
+	ec_wbuf_le16(&w, o->index);
+	ec_wbuf_le16(&w, o->type);
+	ec_wbuf_u8(&w, o->max_sub);
+	ec_wbuf_u8(&w, o->code);
+	ec_wbuf_bytes(&w, o->name, o->name_len);
+	return w.bad ? -ENOBUFS : (int)(w.p - buf);
+}
+
+/**
+ * ec_od_entry_encode() - write an entry description
+ * @buf: body of the answer
+ * @cap: bytes at @buf
+ * @e: what to write; optional fields are never sent, so @e->info goes out
+ *	without their bits
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -ENOBUFS when they do not fit.
+ */
+int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e)
+{
+	struct ec_wbuf w = ec_wbuf(buf, cap);
+
+	ec_wbuf_le16(&w, e->index);
+	ec_wbuf_u8(&w, e->sub);
+	ec_wbuf_u8(&w, e->info & 0x07);
+	ec_wbuf_le16(&w, e->type);
+	ec_wbuf_le16(&w, e->bits);
+	ec_wbuf_le16(&w, e->access);
+	ec_wbuf_bytes(&w, e->name, e->name_len);
+	return w.bad ? -ENOBUFS : (int)(w.p - buf);
+}
+
+/**
+ * ec_sdoinfo_resp_init() - prepare an answer
+ * @r: answer
+ * @opcode: EC_SDOINFO_LIST_RESP...
+ * @data: body from ec_od_..._encode(); must stay until the last fragment
+ * @size: bytes at @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdoinfo_resp_init(struct ec_sdoinfo_resp *r, u8 opcode, const u8 *data, size_t size)
+{
+	*r = (struct ec_sdoinfo_resp){ .opcode = opcode, .data = data, .size = size };
+}
+
+/**
+ * ec_sdoinfo_resp_next() - next fragment of an answer
+ * @r: answer
+ * @tx: message behind the mailbox header
+ * @cap: size of the slave's send mailbox less EC_MBOX_HDR
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, 0 when all are out, -EMSGSIZE when @cap is too small.
+ */
+int ec_sdoinfo_resp_next(struct ec_sdoinfo_resp *r, u8 *tx, size_t cap)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+	size_t left = r->size - r->pos;
+	size_t room, n, more;
+
+	if (r->done)
+		return 0;
+	if (cap < EC_SDOINFO_MIN)
+		return -EMSGSIZE;
+	room = (cap - EC_SDOINFO_HDR) & ~(size_t)1;	/* an index stays in one piece */
+	n = min_t(size_t, left, room);
+	more = DIV_ROUND_UP(left - n, room);
+	if (more > 0xFFFF)
+		return -EMSGSIZE;
+	put_info(&w, (u8)(r->opcode | (more ? INCOMPLETE : 0)), (u16)more);
+	ec_wbuf_bytes(&w, r->data + r->pos, n);
+	r->pos += n;
+	r->done = !more;
+	return (int)(w.p - tx);
+}
+
+/**
+ * ec_sdoinfo_error_encode() - write a refusal
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @abort: abort code
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit.
+ */
+int ec_sdoinfo_error_encode(u8 *tx, size_t cap, u32 abort)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+
+	put_info(&w, EC_SDOINFO_ERROR, 0);
+	ec_wbuf_le32(&w, abort);
+	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
+}
