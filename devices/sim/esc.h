@@ -46,6 +46,7 @@ struct ec_esc;
  * @drift_ppb: rate error of the local clock, positive runs fast
  * @clock_start: local clock at power-on, ns
  * @dc_noise_ns: jitter of the receive times, 0 = exact
+ * @refuse_unwritten: an input SM is not readable before the PDI wrote it once
  *
  * ec_esc_config_init() gives a complete set; change what differs.
  * A 32-bit clock is one without EC_FEAT_DC64.
@@ -70,6 +71,7 @@ struct ec_esc_config {
 	s32 drift_ppb;
 	u64 clock_start;
 	u32 dc_noise_ns;
+	bool refuse_unwritten;
 };
 
 /**
@@ -82,12 +84,18 @@ struct ec_esc_config {
  * @watchdog: the process data watchdog expired
  * @poll: called by ec_sim_advance() once @now reaches esc->app_wake_ns; the
  *        wake-up is cleared before the call, set it again as needed
- * @power_on: registers and RAM are at their reset values, start afresh
+ * @sync: SYNC0 (@which 0) or SYNC1 (1) pulse
+ * @power_on: registers and RAM are at their reset values, start afresh; not
+ *            called for the first power-on, which is before the application
+ *            is attached
  * @free: the segment goes away, release esc->app
  *
  * All may be NULL. They run inside ec_sim_frame() or ec_sim_advance(), may
- * use the PDI functions and must not allocate (except from @free's reverse,
- * the code which attaches the application).
+ * use the PDI functions and must not allocate. What a frame caused is told
+ * when the last bit of the frame has passed, so an application can never
+ * answer within the frame that asked. Without a good EEPROM (checksum of
+ * words 0-6) the PDI does not start and nothing but @power_on and @free is
+ * called.
  */
 struct ec_esc_app_ops {
 	void (*al_control)(struct ec_esc *esc, u64 now);
@@ -96,6 +104,7 @@ struct ec_esc_app_ops {
 	void (*sm_activate)(struct ec_esc *esc, int sm, u64 now);
 	void (*watchdog)(struct ec_esc *esc, u64 now);
 	void (*poll)(struct ec_esc *esc, u64 now);
+	void (*sync)(struct ec_esc *esc, int which, u64 now);
 	void (*power_on)(struct ec_esc *esc, u64 now);
 	void (*free)(struct ec_esc *esc);
 };
@@ -174,34 +183,38 @@ struct ec_esc_eeprom {
  * struct ec_esc_dc - distributed clock
  * @base_ns: simulation time of the last change of rate
  * @base_local: local time then
- * @base_frac: fraction of a local ns, in 1e-9 ns
+ * @base_frac: fraction of it, in 1e-9 ns
+ * @slew: phase correction still to be made since then, ns
  * @adj_ppb16: rate correction of the control loop, ppb << 16
  * @diff: filtered time difference, ns << 8
- * @last_diff: difference at the last comparison
+ * @last_diff: difference at the last comparison, ns
  * @last_cmp: local time of the last comparison
  * @have_cmp: the two are valid
- * @dev_ppb: last measured deviation of the period
- * @next_sync0: system time of the next SYNC0, 0 = off
- * @next_sync1: same for SYNC1
+ * @dev_ppb16: measured deviation of the period not yet corrected
+ * @start: system time of the first SYNC0
+ * @running: SYNC unit is active
+ * @implausible: start time was refused
  * @sync_wake: simulation time of the next pulse, EC_ESC_NEVER: none
- * @sync1_skip: SYNC0 pulses until the next SYNC1
- * @syncs: SYNC0 pulses so far
+ * @sync_next: its number, counting SYNC0 from 0
+ * @latch_status: registers 0x09AE and 0x09AF
  */
 struct ec_esc_dc {
 	u64 base_ns;
 	u64 base_local;
-	u32 base_frac;
+	s32 base_frac;
+	s64 slew;
 	s64 adj_ppb16;
 	s64 diff;
 	s64 last_diff;
 	u64 last_cmp;
 	bool have_cmp;
-	s32 dev_ppb;
-	u64 next_sync0;
-	u64 next_sync1;
+	s64 dev_ppb16;
+	u64 start;
+	bool running;
+	bool implausible;
 	u64 sync_wake;
-	u32 sync1_skip;
-	u64 syncs;
+	u64 sync_next;
+	u8 latch_status[2];
 };
 
 /**
@@ -250,7 +263,19 @@ struct ec_esc_fault {
  * @reset_step: letters of the reset sequence seen
  * @app: private to the application side
  * @app_ops: its entry points, may be NULL
- * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not
+ * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
+ *               ec_esc_wake_at()
+ * @sms_active: bit n: SM n is active
+ * @fmmus_active: bit n: FMMU n is enabled and maps something
+ * @log_first: lowest logical byte address mapped
+ * @log_last: highest logical byte address mapped
+ * @irq: an unmasked ECAT event is pending
+ * @pend: what to tell the application when the frame has passed
+ * @pend_ns: and at what time
+ * @pend_next: next slave with something to tell, -1 end, -2 not in the list
+ * @key: lower bound of the time of the next event
+ * @heap_pos: where the slave stands in the event heap
+ * @route_pos: step number on the way from master port 0 and 1, -1 none
  */
 struct ec_esc {
 	struct ec_sim *sim;
@@ -276,19 +301,38 @@ struct ec_esc {
 	void *app;
 	const struct ec_esc_app_ops *app_ops;
 	u64 app_wake_ns;
+
+	/* private to the model */
+	u16 sms_active;
+	u16 fmmus_active;
+	u32 log_first;
+	u32 log_last;
+	bool irq;
+	struct {
+		bool al_control;
+		u16 sm_written;
+		u16 sm_read;
+		u16 sm_activate;
+	} pend;
+	u64 pend_ns;
+	int pend_next;
+	u64 key;
+	u32 heap_pos;
+	s32 route_pos[2];
 };
 
 /**
  * struct ec_frame_ctx - where and when a frame meets a slave
  * @now: first bit arrives at the processing unit, ns
- * @end: last bit has arrived (buffer exchanges take effect)
- * @recv: arrival time per port, filled in by the segment for the latch of
- *        0x0900; 0 where the frame did not come in
+ * @end: last bit has arrived; the application hears of it then
+ * @recv: arrival time per port, for the latch of 0x0900
+ * @recv_mask: ports at which the frame comes in
  */
 struct ec_frame_ctx {
 	u64 now;
 	u64 end;
 	u64 recv[EC_MAX_PORT];
+	u8 recv_mask;
 };
 
 void ec_esc_config_init(struct ec_esc_config *cfg);

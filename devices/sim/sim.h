@@ -29,7 +29,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_HEAL: and whole again
  * @EC_SIM_FAULT_POWER_OFF: @slave loses power
  * @EC_SIM_FAULT_POWER_ON: and gets it back
- * @EC_SIM_FAULT_LOSE: frame is lost
+ * @EC_SIM_FAULT_LOSE: frame is lost before the first slave, with @value 1 on
+ *                     the way back
  * @EC_SIM_FAULT_DUPLICATE: frame comes back @value times more (0 as 1)
  * @EC_SIM_FAULT_DELAY: frame comes back @value ns later
  * @EC_SIM_FAULT_MANGLE: some bytes of the frame are changed on the way back

@@ -1,0 +1,171 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the files of the model share among themselves. */
+#ifndef EC_SIM_ESC_INT_H
+#define EC_SIM_ESC_INT_H
+
+#include "sim.h"
+
+#define EC_SIM_MAX_FAULTS	1024
+#define EC_SIM_SCRATCH		2048	/* >= the longest datagram */
+
+/* one passage of a frame through a processing unit */
+struct ec_sim_step {
+	struct ec_esc *esc;
+	u32 pu_ns;			/* since the master sent the first bit */
+	u32 recv_ns[EC_MAX_PORT];
+	u8 recv_mask;
+	bool circ;			/* port 0 closed automatically */
+};
+
+/**
+ * struct ec_sim_route - way of a frame, computed when the topology changes
+ * @step: processing units in order
+ * @steps: how many
+ * @delay_ns: from master port to master port without the frame's own length
+ * @out_port: where it comes out, -1: lost
+ * @circ: first step whose port 0 is closed automatically, -1: none
+ * @repeats: a slave is passed twice; no shortcuts
+ * @opens: slave whose auto-closed port hears the frame, -1: none
+ * @opens_port: that port
+ */
+struct ec_sim_route {
+	struct ec_sim_step *step;
+	u32 steps;
+	u64 delay_ns;
+	int out_port;
+	int circ;
+	bool repeats;
+	int opens;
+	u8 opens_port;
+};
+
+struct ec_sim_pending_fault {
+	struct ec_sim_fault f;
+	u32 seen;			/* frames since it became active */
+	int next;
+};
+
+struct ec_sim {
+	struct ec_sim_ops ops;
+	u64 seed;
+	u64 rng;
+	u64 now;
+	enum ec_sim_bug bug;
+	bool slow;
+	u32 max;
+	u32 count;
+	struct ec_esc **esc;
+	struct ec_esc_port mport[EC_SIM_PORTS];
+	bool dirty;			/* routes to be recomputed */
+	struct ec_sim_route route[EC_SIM_PORTS];
+	u32 *heap;			/* slaves by time of their next event */
+	u32 irqs;			/* slaves with esc->irq */
+	int pend_head;
+	int pend_tail;
+
+	/* station addresses and aliases: node 2 * slave + (0 or 1) */
+	u32 buckets;			/* power of two */
+	s32 *bucket;
+	s32 *node_next;
+	s32 *node_prev;			/* -2: not hashed */
+	u16 *node_addr;
+
+	struct ec_sim_pending_fault *fault;
+	int fault_free;
+	int fault_due;			/* sorted by time */
+	int fault_frame;		/* active faults of frames */
+
+	u8 scratch[EC_SIM_SCRATCH];	/* incoming data of read-write commands */
+	u8 scratch2[EC_SIM_SCRATCH];	/* data on their way to be merged */
+};
+
+static inline bool ec_range_hit(u32 a, u32 len, u32 reg, u32 n)
+{
+	return a < reg + n && a + len > reg;
+}
+
+static inline bool ec_esc_bug(const struct ec_esc *esc, enum ec_sim_bug bug)
+{
+	return esc->sim->bug == bug;
+}
+
+static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
+{
+	return get_unaligned_le16(esc->mem + reg);
+}
+
+/* esc.c */
+int ec_esc_setup(struct ec_esc *esc, u64 now);
+void ec_esc_power_on(struct ec_esc *esc, u64 now);
+void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear);
+u16 ec_esc_dl_status(const struct ec_esc *esc);
+bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
+		      const struct ec_frame_ctx *ctx);
+bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
+		       size_t len, const struct ec_frame_ctx *ctx);
+u64 ec_esc_next(const struct ec_esc *esc);
+void ec_esc_run(struct ec_esc *esc, u64 now);
+void ec_esc_deliver(struct ec_esc *esc);
+void ec_esc_pend(struct ec_esc *esc, u64 at_ns);
+
+/* esc_sm.c */
+void ec_esc_sm_reset(struct ec_esc *esc);
+void ec_esc_sm_config(struct ec_esc *esc, u16 ado, size_t len,
+		      const u8 *old_activate, const struct ec_frame_ctx *ctx);
+void ec_esc_sm_refresh(struct ec_esc *esc);
+u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
+		    bool write, int *smp);
+void ec_esc_sm_end(struct ec_esc *esc, int sm, u32 ado, size_t len, bool pdi,
+		   const struct ec_frame_ctx *ctx);
+
+/* esc_fmmu.c */
+void ec_esc_fmmu_config(struct ec_esc *esc);
+bool ec_esc_fmmu_hit(const struct ec_esc *esc, u32 logical, u16 len);
+int ec_esc_fmmu_access(struct ec_esc *esc, struct ec_dgram *d,
+		       const struct ec_frame_ctx *ctx);
+
+/* esc_eeprom.c */
+void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on);
+void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now);
+void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
+			 size_t len, u64 now);
+
+/* esc_wd.c */
+bool ec_esc_wd_ok(const struct ec_esc *esc);
+void ec_esc_wd_trigger(struct ec_esc *esc, u64 now);
+void ec_esc_wd_config(struct ec_esc *esc, u64 now);
+void ec_esc_wd_expire(struct ec_esc *esc, u64 now);
+
+/* esc_dc.c */
+void ec_esc_dc_reset(struct ec_esc *esc, u64 now);
+void ec_esc_dc_refresh(struct ec_esc *esc, u64 now);
+void ec_esc_dc_read(struct ec_esc *esc, u16 ado, size_t len, bool pdi);
+void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
+		     const struct ec_frame_ctx *ctx);
+void ec_esc_dc_sync(struct ec_esc *esc, u64 now);
+void ec_esc_dc_schedule(struct ec_esc *esc, u64 now);
+
+/* esc_mii.c */
+void ec_esc_mii_reset(struct ec_esc *esc);
+void ec_esc_mii_refresh(struct ec_esc *esc);
+void ec_esc_mii_write(struct ec_esc *esc, u16 ado, size_t len);
+
+/* segment.c */
+u64 ec_sim_hash(u64 x);
+void ec_sim_touch(struct ec_esc *esc);
+void ec_sim_ports(struct ec_esc *esc, u64 now);
+void ec_sim_loops(struct ec_esc *esc, bool written, u64 now);
+void ec_sim_rehash(struct ec_esc *esc);
+void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
+void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
+
+/* fault.c */
+int ec_sim_faults_init(struct ec_sim *sim);
+u64 ec_sim_faults_next(const struct ec_sim *sim);
+void ec_sim_faults_run(struct ec_sim *sim, u64 now);
+void ec_sim_faults_frame(struct ec_sim *sim, int port, bool *lose_out,
+			 bool *lose_back, struct ec_sim_result *res,
+			 u64 *extra_ns);
+void ec_sim_faults_mangle(struct ec_sim *sim, u8 *frame, size_t len);
+
+#endif
