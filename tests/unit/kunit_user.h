@@ -16,7 +16,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
 /* The few kernel words tests use, the same as in master/wire/env.h. */
 typedef uint8_t u8;
 typedef uint16_t u16;
@@ -296,5 +295,4 @@ void kunit_kfree(struct kunit *test, const void *ptr);
 	KUNIT_ASSERT_NOT_ERR_OR_NULL_MSG(test, c, "%s", "")
 #define KUNIT_ASSERT_NOT_ERR_OR_NULL_MSG(test, c, fmt, ...) \
 	KUNIT_USER_COND(test, KUNIT_ASSERTION, !IS_ERR_OR_NULL(c), "valid pointer: " #c, fmt, ##__VA_ARGS__)
-
 #endif /* KUNIT_USER_H */
