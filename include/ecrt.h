@@ -1,0 +1,1221 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/*
+ * EtherCAT real-time interface: what an application needs to run a bus, in
+ * userspace (libethercat) and in the kernel.
+ *
+ *   master = ecrt_request_master(0);
+ *   domain = ecrt_master_create_domain(master);
+ *   sc = ecrt_master_slave_config(master, 0, 1, vendor, product);
+ *   offset = ecrt_slave_config_reg_pdo_entry(sc, 0x6000, 1, domain, &bit);
+ *   ecrt_master_activate(master);
+ *   data = ecrt_domain_data(domain);
+ *   each cycle:
+ *	ecrt_master_receive(master);
+ *	ecrt_domain_process(domain);
+ *	... EC_READ_*(data + offset), EC_WRITE_*(data + offset, value) ...
+ *	ecrt_domain_queue(domain);
+ *	ecrt_master_send(master);
+ *   ecrt_release_master(master);
+ *
+ * Conventions. Integer functions return 0, or what they are said to return,
+ * on success and a negative errno on failure. Functions that return a
+ * pointer return NULL on failure. A NULL handle is answered with -EINVAL or
+ * NULL. The userspace library says on stderr, in one line, why a call of the
+ * configuration phase failed; the calls of the cycle never print. EtherCAT
+ * data is little-endian; SDO data passes unchanged.
+ *
+ * In userspace every function that needs the reservation returns -EPERM on a
+ * master that is only opened; configuration calls return -EBUSY while the
+ * master is active.
+ *
+ * "Context:" is one of
+ *   Any. RT-safe: bounded, no sleep, no allocation.
+ *   The master's single cyclic caller. RT-safe.
+ *   Process. May sleep.
+ *   Process. Waits for bus traffic.
+ */
+#ifndef __ECRT_H__
+#define __ECRT_H__
+
+#ifdef __KERNEL__
+#include <asm/byteorder.h>
+#include <linux/types.h>
+#include <linux/time.h>
+#include <linux/in.h>
+#else
+#include <stdlib.h>
+#include <stdint.h>
+#include <sys/time.h>
+#include <netinet/in.h>
+#endif
+
+/* version of this interface ------------------------------------------------*/
+
+#define ECRT_VER_MAJOR		1
+#define ECRT_VER_MINOR		6
+#define ECRT_VERSION(a, b)	(((a) << 8) + (b))
+#define ECRT_VERSION_MAGIC	ECRT_VERSION(ECRT_VER_MAJOR, ECRT_VER_MINOR)
+
+/* ecrt_master_link_state() and ec_domain_state_t.redundancy_active */
+#define EC_HAVE_REDUNDANCY
+/* ecrt_slave_config_reg_pdo_entry_pos() */
+#define EC_HAVE_REG_BY_POS
+/* ecrt_slave_config_flag() */
+#define EC_HAVE_FLAGS
+/* ecrt_master_scan_progress() */
+#define EC_HAVE_SCAN_PROGRESS
+/* ecrt_slave_config_state_timeout() */
+#define EC_HAVE_STATE_TIMEOUT
+
+#ifndef EC_PUBLIC_API
+#if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
+#define EC_PUBLIC_API __attribute__((visibility("default")))
+#else
+#define EC_PUBLIC_API
+#endif
+#endif
+
+/* ends a list of sync managers */
+#define EC_END			(~0U)
+/* sync managers of one slave */
+#define EC_MAX_SYNC_MANAGERS	16
+/* bytes of a name, its terminator included */
+#define EC_MAX_STRING_LENGTH	64
+/* ports of one slave */
+#define EC_MAX_PORTS		4
+/* bytes of a CoE emergency: code, error register, data (ETG.1000.6 5.6.4) */
+#define EC_COE_EMERGENCY_MSG_SIZE 8
+
+/* a struct timeval as nanoseconds since 2000-01-01, the epoch of EtherCAT */
+#define EC_TIMEVAL2NANO(TV) \
+	(((TV).tv_sec - 946684800ULL) * 1000000000ULL + (TV).tv_usec * 1000ULL)
+
+/* types ----------------------------------------------------------------------*/
+
+struct ec_master;
+typedef struct ec_master ec_master_t;
+
+struct ec_slave_config;
+typedef struct ec_slave_config ec_slave_config_t;
+
+struct ec_domain;
+typedef struct ec_domain ec_domain_t;
+
+struct ec_sdo_request;
+typedef struct ec_sdo_request ec_sdo_request_t;
+
+struct ec_soe_request;
+typedef struct ec_soe_request ec_soe_request_t;
+
+struct ec_voe_handler;
+typedef struct ec_voe_handler ec_voe_handler_t;
+
+struct ec_reg_request;
+typedef struct ec_reg_request ec_reg_request_t;
+
+/* what the whole bus looks like */
+typedef struct {
+	unsigned int slaves_responding;	/* to broadcasts, on all links */
+	unsigned int al_states : 4;	/* OR of ec_al_state_t; 8: all in OP */
+	unsigned int link_up : 1;	/* at least one link is up */
+} ec_master_state_t;
+
+/* the same for one link */
+typedef struct {
+	unsigned int slaves_responding;
+	unsigned int al_states : 4;
+	unsigned int link_up : 1;
+} ec_master_link_state_t;
+
+/* what became of one slave configuration */
+typedef struct {
+	unsigned int online : 1;	/* a matching slave is attached */
+	unsigned int operational : 1;	/* in OP with this configuration */
+	unsigned int al_state : 4;	/* ec_al_state_t, 3 BOOT, 0 unknown */
+} ec_slave_config_state_t;
+
+typedef struct {
+	unsigned int slave_count;
+	unsigned int link_up : 1;	/* of the main link */
+	uint8_t scan_busy;
+	uint64_t app_time;		/* ns, last one given */
+} ec_master_info_t;
+
+/* a scan is going on while scan_index < slave_count */
+typedef struct {
+	unsigned int slave_count;
+	unsigned int scan_index;
+} ec_master_scan_progress_t;
+
+/* ESC configuration of a port, register 0x0007 */
+typedef enum {
+	EC_PORT_NOT_IMPLEMENTED,
+	EC_PORT_NOT_CONFIGURED,
+	EC_PORT_EBUS,
+	EC_PORT_MII
+} ec_slave_port_desc_t;
+
+/* DL status of a port, register 0x0110 */
+typedef struct {
+	uint8_t link_up;
+	uint8_t loop_closed;
+	uint8_t signal_detected;
+} ec_slave_port_link_t;
+
+typedef struct {
+	uint16_t position;		/* in the ring, from 0 */
+	uint32_t vendor_id;
+	uint32_t product_code;
+	uint32_t revision_number;
+	uint32_t serial_number;
+	uint16_t alias;			/* 0: none */
+	int16_t current_on_ebus;	/* mA taken, negative: supplied */
+	struct {
+		ec_slave_port_desc_t desc;
+		ec_slave_port_link_t link;
+		uint32_t receive_time;	/* ns, register 0x0900 + 4 * port */
+		uint16_t next_slave;	/* ring position, 0xffff: none */
+		uint32_t delay_to_next_dc; /* ns */
+	} ports[EC_MAX_PORTS];
+	uint8_t al_state;		/* low byte of register 0x0130 */
+	uint8_t error_flag;		/* the master gave up configuring it */
+	uint8_t sync_count;
+	uint16_t sdo_count;
+	char name[EC_MAX_STRING_LENGTH];
+} ec_slave_info_t;
+
+/* working counter against what was expected of it */
+typedef enum {
+	EC_WC_ZERO = 0,			/* nobody answered */
+	EC_WC_INCOMPLETE,		/* some did */
+	EC_WC_COMPLETE			/* all did */
+} ec_wc_state_t;
+
+typedef struct {
+	unsigned int working_counter;
+	ec_wc_state_t wc_state;
+	unsigned int redundancy_active;	/* data came over the backup link */
+} ec_domain_state_t;
+
+/* seen from the master */
+typedef enum {
+	EC_DIR_INVALID,
+	EC_DIR_OUTPUT,			/* written by the master */
+	EC_DIR_INPUT,			/* read by the master */
+	EC_DIR_COUNT
+} ec_direction_t;
+
+/* watchdog trigger, bit 6 of a sync manager's control byte */
+typedef enum {
+	EC_WD_DEFAULT,			/* as the slave describes it */
+	EC_WD_ENABLE,
+	EC_WD_DISABLE
+} ec_watchdog_mode_t;
+
+typedef struct {
+	uint16_t index;			/* 0: a gap of bit_length bits */
+	uint8_t subindex;
+	uint8_t bit_length;
+} ec_pdo_entry_info_t;
+
+typedef struct {
+	uint16_t index;
+	unsigned int n_entries;		/* 0: the default mapping */
+	ec_pdo_entry_info_t const *entries;
+} ec_pdo_info_t;
+
+typedef struct {
+	uint8_t index;			/* 0xff ends a list */
+	ec_direction_t dir;
+	unsigned int n_pdos;
+	ec_pdo_info_t const *pdos;
+	ec_watchdog_mode_t watchdog_mode;
+} ec_sync_info_t;
+
+/* one line of a registration list; the line with index 0 ends it */
+typedef struct {
+	uint16_t alias;
+	uint16_t position;
+	uint32_t vendor_id;
+	uint32_t product_code;
+	uint16_t index;
+	uint8_t subindex;
+	unsigned int *offset;		/* out: byte in the domain */
+	unsigned int *bit_position;	/* out: 0..7; NULL: must be 0 */
+} ec_pdo_entry_reg_t;
+
+typedef enum {
+	EC_REQUEST_UNUSED,
+	EC_REQUEST_BUSY,
+	EC_REQUEST_SUCCESS,
+	EC_REQUEST_ERROR
+} ec_request_state_t;
+
+/* one bit each, so that the states of many slaves can be ORed */
+typedef enum {
+	EC_AL_STATE_INIT = 1,
+	EC_AL_STATE_PREOP = 2,
+	EC_AL_STATE_SAFEOP = 4,
+	EC_AL_STATE_OP = 8
+} ec_al_state_t;
+
+/* functions ------------------------------------------------------------------*/
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * ecrt_version_magic() - version of the interface that runs
+ *
+ * To compare with %ECRT_VERSION_MAGIC, the version compiled against.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: %ECRT_VERSION_MAGIC of the library or, in the kernel, the module.
+ */
+EC_PUBLIC_API unsigned int ecrt_version_magic(void);
+
+/**
+ * ecrt_request_master() - open a master and reserve it
+ * @master_index: which one, from 0
+ *
+ * ecrt_open_master() and ecrt_master_reserve() in one call.
+ *
+ * Context: Process. Waits for bus traffic (a scan that is going on).
+ * Return: the master, or NULL: no such master (%-ENOENT), no access
+ * (%-EACCES), taken (%-EBUSY), without its device (%-ENODEV), interrupted
+ * (%-EINTR).
+ */
+EC_PUBLIC_API ec_master_t *ecrt_request_master(unsigned int master_index);
+
+#ifndef __KERNEL__
+/**
+ * ecrt_open_master() - open a master without reserving it
+ * @master_index: which one, from 0: /dev/EtherCAT<index>
+ *
+ * Any number of processes may hold an opened master. It serves the calls
+ * that ask about the bus, SDO access and ecrt_master_reset(). Userspace only.
+ *
+ * Context: Process. May sleep.
+ * Return: the master, or NULL: no such master (%-ENOENT), no access
+ * (%-EACCES), a module that speaks another language (%-EPROTO).
+ */
+EC_PUBLIC_API ec_master_t *ecrt_open_master(unsigned int master_index);
+#endif
+
+/**
+ * ecrt_release_master() - give a master back
+ * @master: from ecrt_request_master() or ecrt_open_master(), or NULL
+ *
+ * Deactivates it if it is active; slaves go back to PREOP. All handles and
+ * pointers that came from @master are dead afterwards.
+ *
+ * Context: Process. May sleep.
+ */
+EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
+
+#ifndef __KERNEL__
+/**
+ * ecrt_master_reserve() - take an opened master for this application
+ * @master: from ecrt_open_master()
+ *
+ * Waits until a scan has ended, freezes the list of slaves until activation
+ * and takes all slaves to PREOP. Userspace only.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-EBUSY taken, %-ENODEV the master has no device yet, %-EPERM
+ * not opened for writing, %-EINTR, %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_reserve(ec_master_t *master);
+#endif
+
+/**
+ * ecrt_master_create_domain() - create an empty process data domain
+ * @master: a reserved master, not active
+ *
+ * Domains are exchanged and supervised each on its own. They lie in the
+ * process image in the order of creation. Freed with ecrt_master_deactivate()
+ * or ecrt_release_master().
+ *
+ * Context: Process. May sleep.
+ * Return: the domain, or NULL: no memory, not reserved, active, too many.
+ */
+EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
+
+/**
+ * ecrt_master_slave_config() - create or find the configuration of a slave
+ * @master: a reserved master, not active
+ * @alias: 0, or station alias (register 0x0012) from which to count
+ * @position: with @alias 0 the ring position, else slaves behind the alias
+ * @vendor_id: expected in the slave's EEPROM
+ * @product_code: expected in the slave's EEPROM
+ *
+ * The slave need not be there: it is attached, configured and taken to OP
+ * whenever it appears. One with another identity is never attached. The
+ * PDO assignment and mapping of a slave that is there are taken over as
+ * defaults.
+ *
+ * Context: Process. May sleep.
+ * Return: the configuration, the same one for the same @alias and @position;
+ * NULL: no memory, not reserved, active, or the configuration exists with
+ * another identity (%-ENOENT).
+ */
+EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
+		uint16_t alias, uint16_t position, uint32_t vendor_id,
+		uint32_t product_code);
+
+/**
+ * ecrt_master() - what the master knows about itself
+ * @master: an opened master
+ * @master_info: out
+ *
+ * Causes no bus traffic.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master(ec_master_t *master,
+		ec_master_info_t *master_info);
+
+/**
+ * ecrt_master_scan_progress() - how far a scan has come
+ * @master: an opened master
+ * @progress: out
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
+		ec_master_scan_progress_t *progress);
+
+/**
+ * ecrt_master_get_slave() - what the master knows about a slave
+ * @master: an opened master
+ * @slave_position: in the ring, counted on over all links
+ * @slave_info: out; the name is always terminated
+ *
+ * Causes no bus traffic.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; no such slave: %-EINVAL in userspace, %-ENOENT in the kernel;
+ * %-EINTR; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,
+		uint16_t slave_position, ec_slave_info_t *slave_info);
+
+#ifndef __KERNEL__
+/**
+ * ecrt_master_get_sync_manager() - a sync manager as its slave describes it
+ * @master: an opened master
+ * @slave_position: in the ring
+ * @sync_index: 0..15
+ * @sync: out; @sync->pdos is NULL, @sync->watchdog_mode never DEFAULT
+ *
+ * From EEPROM or, where it has been read, the CoE dictionary (0x1c00,
+ * 0x1c10 ff.), not what the application has configured. Userspace only.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave or sync
+ * manager, or an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_get_sync_manager(ec_master_t *master,
+		uint16_t slave_position, uint8_t sync_index,
+		ec_sync_info_t *sync);
+
+/**
+ * ecrt_master_get_pdo() - a PDO assigned to a sync manager by default
+ * @master: an opened master
+ * @slave_position: in the ring
+ * @sync_index: 0..15
+ * @pos: from 0, in the order of the assignment
+ * @pdo: out; @pdo->entries is NULL
+ *
+ * Userspace only.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave, sync
+ * manager or PDO, or an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_get_pdo(ec_master_t *master,
+		uint16_t slave_position, uint8_t sync_index, uint16_t pos,
+		ec_pdo_info_t *pdo);
+
+/**
+ * ecrt_master_get_pdo_entry() - an entry mapped to a PDO by default
+ * @master: an opened master
+ * @slave_position: in the ring
+ * @sync_index: 0..15
+ * @pdo_pos: position of the PDO in the sync manager
+ * @entry_pos: from 0, in the order of the mapping
+ * @entry: out; index 0 is a gap
+ *
+ * Userspace only.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave, sync
+ * manager, PDO or entry, or an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
+		uint16_t slave_position, uint8_t sync_index, uint16_t pdo_pos,
+		uint16_t entry_pos, ec_pdo_entry_info_t *entry);
+#endif
+
+/**
+ * ecrt_master_sdo_download() - write an object of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring; aliases are not looked at
+ * @index: of the object
+ * @subindex: of the object
+ * @data: little-endian
+ * @data_size: bytes, at least 1
+ * @abort_code: out, may be NULL: CoE abort code (ETG.1000.6 table 41), 0 if
+ *              the slave gave none
+ *
+ * CoE download, expedited or segmented (ETG.1000.6 5.6.2).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-EIO refused or failed, see @abort_code; %-EINVAL no such slave
+ * or bad arguments; %-EPROTONOSUPPORT slave without CoE; %-ETIMEDOUT no
+ * answer; %-EINTR; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
+		uint16_t slave_position, uint16_t index, uint8_t subindex,
+		const uint8_t *data, size_t data_size, uint32_t *abort_code);
+
+/**
+ * ecrt_master_sdo_download_complete() - write a whole object of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @index: of the object
+ * @data: little-endian, begins with subindex 0 in a 16 bit slot
+ * @data_size: bytes, at least 1
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * CoE Complete Access from subindex 0 on.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ecrt_master_sdo_download().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_download_complete(ec_master_t *master,
+		uint16_t slave_position, uint16_t index, const uint8_t *data,
+		size_t data_size, uint32_t *abort_code);
+
+/**
+ * ecrt_master_sdo_upload() - read an object of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @index: of the object
+ * @subindex: of the object
+ * @target: where to put it
+ * @target_size: room, bytes
+ * @result_size: out: bytes that were read; untouched on failure
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-ENOBUFS larger than @target_size, nothing is copied; else as
+ * ecrt_master_sdo_download().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
+		uint16_t slave_position, uint16_t index, uint8_t subindex,
+		uint8_t *target, size_t target_size, size_t *result_size,
+		uint32_t *abort_code);
+
+/**
+ * ecrt_master_activate() - end configuration, begin the cycle
+ * @master: a reserved master, not active
+ *
+ * Lays out the frames of the cycle and the process image, which begins as
+ * zeros, and returns at once: slaves are configured and taken to OP while
+ * the application cycles. In userspace the image is mapped and all its pages
+ * are present, so the cycle takes no page fault; an image of 0 bytes is
+ * fine. After a failure only ecrt_release_master() is left to call.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EBUSY active already; %-EPERM not reserved; %-ENOMEM;
+ * %-ENOSPC the cycle does not fit in the send interval; %-EINVAL.
+ */
+EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
+
+/**
+ * ecrt_master_deactivate() - leave the cycle
+ * @master: an active master
+ *
+ * Frees all domains and slave configurations: every handle and pointer
+ * obtained since the reservation is dead, except @master, which stays
+ * reserved and may be configured anew. Slaves go to PREOP.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL not active, nothing was freed.
+ */
+EC_PUBLIC_API int ecrt_master_deactivate(ec_master_t *master);
+
+/**
+ * ecrt_master_set_send_interval() - tell how often the cycle will run
+ * @master: a reserved master, not active
+ * @send_interval: microseconds between two calls of ecrt_master_send()
+ *
+ * Optional; without it the interval is measured. Bounds what is sent besides
+ * process data.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL 0 or too large; %-EBUSY active; %-EPERM not reserved.
+ */
+EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
+		size_t send_interval);
+
+/**
+ * ecrt_master_send() - send what the cycle has queued
+ * @master: an active master
+ *
+ * Once per cycle, last. Sends the domains queued since the last call, and
+ * what the master itself has to send if there is room. Reads the outputs of
+ * the process image. One system call in userspace.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL not active; %-ENETDOWN no link.
+ */
+EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
+
+/**
+ * ecrt_master_receive() - take what has come back
+ * @master: an active master
+ *
+ * Once per cycle, first. Polls the network devices and copies inputs to the
+ * process image; input bytes change nowhere else. Never waits. Inputs of a
+ * frame that is lost keep their values. One system call in userspace.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_master_receive(ec_master_t *master);
+
+/**
+ * ecrt_master_state() - state of the whole bus
+ * @master: an opened master
+ * @state: out
+ *
+ * As of the last broadcast that came back (registers 0x0130, 0x0000): some
+ * cycles old. No bus traffic; no system call while active.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_state(const ec_master_t *master,
+		ec_master_state_t *state);
+
+/**
+ * ecrt_master_link_state() - state of what one link reaches
+ * @master: an opened master
+ * @dev_idx: 0 main, 1 backup
+ * @state: out
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL no such link, or an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
+		unsigned int dev_idx, ec_master_link_state_t *state);
+
+/**
+ * ecrt_master_application_time() - give the application's time
+ * @master: a reserved master
+ * @app_time: ns, by convention since 2000-01-01; may wrap and jump
+ *
+ * Once per cycle, always at the same place.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EPERM not reserved; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
+		uint64_t app_time);
+
+/**
+ * ecrt_master_reset() - try slaves again that could not be configured
+ * @master: a master opened for writing; need not be reserved
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
+
+/*
+ * Slave configuration: applied whenever the slave is configured, which is
+ * on activation, after power loss and after it was plugged in again. All
+ * calls but ecrt_slave_config_state() belong before ecrt_master_activate()
+ * and return -EBUSY after it.
+ */
+
+/**
+ * ecrt_slave_config_sync_manager() - direction and watchdog of a sync manager
+ * @sc: slave configuration
+ * @sync_index: 0..15
+ * @direction: %EC_DIR_OUTPUT or %EC_DIR_INPUT
+ * @watchdog_mode: of the trigger bit
+ *
+ * Sets bits 2, 3 and 6 of the control byte (register 0x0804 + 8 * index).
+ * For the mailbox of a slave that has one this is accepted without effect.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL @direction or
+ * @watchdog_mode.
+ */
+EC_PUBLIC_API int ecrt_slave_config_sync_manager(ec_slave_config_t *sc,
+		uint8_t sync_index, ec_direction_t direction,
+		ec_watchdog_mode_t watchdog_mode);
+
+/**
+ * ecrt_slave_config_watchdog() - time of the process data watchdog
+ * @sc: slave configuration
+ * @watchdog_divider: for register 0x0400, units of 40 ns; 0: leave it
+ * @watchdog_intervals: for register 0x0420, units of the divided clock;
+ *                      0: leave it
+ *
+ * Context: Process. May sleep.
+ * Return: 0; negative errno.
+ */
+EC_PUBLIC_API int ecrt_slave_config_watchdog(ec_slave_config_t *sc,
+		uint16_t watchdog_divider, uint16_t watchdog_intervals);
+
+/**
+ * ecrt_slave_config_pdo_assign_add() - append a PDO to a sync manager
+ * @sc: slave configuration
+ * @sync_index: 0..15
+ * @index: of the PDO
+ *
+ * The mapping of a PDO that an attached slave knows is taken over. Goes to
+ * object 0x1c10 + @sync_index if the slave allows it.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @sync_index too large; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_pdo_assign_add(ec_slave_config_t *sc,
+		uint8_t sync_index, uint16_t index);
+
+/**
+ * ecrt_slave_config_pdo_assign_clear() - empty the assignment
+ * @sc: slave configuration
+ * @sync_index: 0..15
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @sync_index too large.
+ */
+EC_PUBLIC_API int ecrt_slave_config_pdo_assign_clear(ec_slave_config_t *sc,
+		uint8_t sync_index);
+
+/**
+ * ecrt_slave_config_pdo_mapping_add() - append an entry to a PDO
+ * @sc: slave configuration
+ * @pdo_index: a PDO that is assigned to some sync manager
+ * @entry_index: object, 0 for a gap
+ * @entry_subindex: of the object
+ * @entry_bit_length: bits
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT the PDO is not assigned; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_add(ec_slave_config_t *sc,
+		uint16_t pdo_index, uint16_t entry_index,
+		uint8_t entry_subindex, uint8_t entry_bit_length);
+
+/**
+ * ecrt_slave_config_pdo_mapping_clear() - empty the mapping of a PDO
+ * @sc: slave configuration
+ * @pdo_index: PDO; one that is not assigned is no error
+ *
+ * Context: Process. May sleep.
+ * Return: 0; negative errno.
+ */
+EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_clear(ec_slave_config_t *sc,
+		uint16_t pdo_index);
+
+/**
+ * ecrt_slave_config_pdos() - sync managers, assignment and mapping in one
+ * @sc: slave configuration
+ * @n_syncs: elements of @syncs; %EC_END: up to its end mark
+ * @syncs: ends before @n_syncs with an element whose index is 0xff; may be
+ *         NULL: nothing is done
+ *
+ * For each element in order: ecrt_slave_config_sync_manager(), empty the
+ * assignment, then assign each listed PDO, and replace its mapping by the
+ * listed entries. A PDO without entries keeps its default mapping. Stops at
+ * the first failure; what was done before stays. The arrays are copied.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT an index of 16..254; else as the calls above.
+ */
+EC_PUBLIC_API int ecrt_slave_config_pdos(ec_slave_config_t *sc,
+		unsigned int n_syncs, const ec_sync_info_t syncs[]);
+
+/**
+ * ecrt_slave_config_reg_pdo_entry() - put an entry into a domain
+ * @sc: slave configuration
+ * @entry_index: object
+ * @entry_subindex: of the object
+ * @domain: of the same master
+ * @bit_position: out: 0..7; NULL: the entry must begin on a byte
+ *
+ * Takes the whole sync manager that carries the entry into @domain, once,
+ * for which it uses an FMMU (register 0x0600 ff.). The first entry in order
+ * of sync manager, PDO and mapping is meant. Offsets are final.
+ *
+ * Context: Process. May sleep.
+ * Return: byte offset in the domain, 0 or more; %-ENOENT not mapped;
+ * %-EFAULT does not begin on a byte and @bit_position is NULL; %-EOVERFLOW
+ * no FMMU left; %-EINVAL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
+		uint16_t entry_index, uint8_t entry_subindex,
+		ec_domain_t *domain, unsigned int *bit_position);
+
+/**
+ * ecrt_slave_config_reg_pdo_entry_pos() - the same by position
+ * @sc: slave configuration
+ * @sync_index: 0..15
+ * @pdo_pos: of the PDO in the sync manager, from 0
+ * @entry_pos: of the entry in the PDO, from 0
+ * @domain: of the same master
+ * @bit_position: as in ecrt_slave_config_reg_pdo_entry()
+ *
+ * For mappings that hold an object more than once.
+ *
+ * Context: Process. May sleep.
+ * Return: as ecrt_slave_config_reg_pdo_entry(); %-EINVAL @sync_index too
+ * large.
+ */
+EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry_pos(ec_slave_config_t *sc,
+		uint8_t sync_index, unsigned int pdo_pos,
+		unsigned int entry_pos, ec_domain_t *domain,
+		unsigned int *bit_position);
+
+/**
+ * ecrt_slave_config_sdo() - write an object each time the slave is configured
+ * @sc: slave configuration
+ * @index: of the object; not one of the PDO objects 0x1c1x, 0x16xx, 0x1axx
+ * @subindex: of the object
+ * @data: little-endian; copied
+ * @size: bytes, at least 1
+ *
+ * Written in PREOP, in the order of the calls, before the PDO objects.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL no data; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_sdo(ec_slave_config_t *sc, uint16_t index,
+		uint8_t subindex, const uint8_t *data, size_t size);
+
+/**
+ * ecrt_slave_config_sdo8() - ecrt_slave_config_sdo() of one byte
+ * @sc: slave configuration
+ * @sdo_index: of the object
+ * @sdo_subindex: of the object
+ * @value: to be written
+ *
+ * Context: Process. May sleep.
+ * Return: as ecrt_slave_config_sdo().
+ */
+EC_PUBLIC_API int ecrt_slave_config_sdo8(ec_slave_config_t *sc,
+		uint16_t sdo_index, uint8_t sdo_subindex, uint8_t value);
+
+/**
+ * ecrt_slave_config_sdo16() - ecrt_slave_config_sdo() of two bytes
+ * @sc: slave configuration
+ * @sdo_index: of the object
+ * @sdo_subindex: of the object
+ * @value: to be written, of the host's byte order
+ *
+ * Context: Process. May sleep.
+ * Return: as ecrt_slave_config_sdo().
+ */
+EC_PUBLIC_API int ecrt_slave_config_sdo16(ec_slave_config_t *sc,
+		uint16_t sdo_index, uint8_t sdo_subindex, uint16_t value);
+
+/**
+ * ecrt_slave_config_sdo32() - ecrt_slave_config_sdo() of four bytes
+ * @sc: slave configuration
+ * @sdo_index: of the object
+ * @sdo_subindex: of the object
+ * @value: to be written, of the host's byte order
+ *
+ * Context: Process. May sleep.
+ * Return: as ecrt_slave_config_sdo().
+ */
+EC_PUBLIC_API int ecrt_slave_config_sdo32(ec_slave_config_t *sc,
+		uint16_t sdo_index, uint8_t sdo_subindex, uint32_t value);
+
+/**
+ * ecrt_slave_config_complete_sdo() - the same for a whole object
+ * @sc: slave configuration
+ * @index: of the object
+ * @data: little-endian, begins with subindex 0 in a 16 bit slot; copied
+ * @size: bytes, at least 1
+ *
+ * Written by CoE Complete Access.
+ *
+ * Context: Process. May sleep.
+ * Return: as ecrt_slave_config_sdo().
+ */
+EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
+		uint16_t index, const uint8_t *data, size_t size);
+
+/**
+ * ecrt_slave_config_state() - state of a configured slave
+ * @sc: slave configuration
+ * @state: out; all 0 while no slave is attached
+ *
+ * Some cycles old; what supervises each cycle is ecrt_domain_state(). No bus
+ * traffic; no system call while active.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
+		ec_slave_config_state_t *state);
+
+/**
+ * ecrt_slave_config_flag() - set a named number
+ * @sc: slave configuration
+ * @key: name, 1..63 characters; unknown ones are kept without effect
+ * @value: replaces an earlier one
+ *
+ * Known: "AssignToPdi" (not 0: leave the EEPROM to the slave, register
+ * 0x0500), "WaitBeforeSAFEOPms" (ms to wait in PREOP).
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
+		const char *key, int32_t value);
+
+/**
+ * ecrt_slave_config_state_timeout() - time allowed for a change of AL state
+ * @sc: slave configuration
+ * @from_state: INIT, PREOP, SAFEOP or OP
+ * @to_state: INIT, PREOP, SAFEOP or OP
+ * @timeout_ms: milliseconds; 0: the default again
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL a state is none of these.
+ */
+EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
+		ec_al_state_t from_state, ec_al_state_t to_state,
+		unsigned int timeout_ms);
+
+/**
+ * ecrt_domain_reg_pdo_entry_list() - put many entries into a domain
+ * @domain: domain
+ * @pdo_entry_regs: ends with an element whose index is 0; not kept
+ *
+ * For each element ecrt_master_slave_config() and
+ * ecrt_slave_config_reg_pdo_entry(). Stops at the first failure; what was
+ * registered before stays.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT no slave configuration, or entry not mapped; else as
+ * ecrt_slave_config_reg_pdo_entry().
+ */
+EC_PUBLIC_API int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
+		const ec_pdo_entry_reg_t *pdo_entry_regs);
+
+/**
+ * ecrt_domain_size() - bytes of a domain
+ * @domain: domain
+ *
+ * Final as soon as all entries are registered.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes; a negative errno as size_t on failure.
+ */
+EC_PUBLIC_API size_t ecrt_domain_size(const ec_domain_t *domain);
+
+/**
+ * ecrt_domain_data() - process data of a domain
+ * @domain: domain
+ *
+ * Offsets from registration count from here. The pointer does not change
+ * while the master is active. Outputs keep what was written last.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the data; NULL before activation or with an image of 0 bytes.
+ */
+EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
+
+/**
+ * ecrt_domain_process() - evaluate what came back for a domain
+ * @domain: of an active master
+ *
+ * Between ecrt_master_receive() and ecrt_domain_queue(). Refreshes what
+ * ecrt_domain_state() says if the domain was sent; else leaves it. No system
+ * call.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_domain_process(ec_domain_t *domain);
+
+/**
+ * ecrt_domain_queue() - exchange a domain with the next ecrt_master_send()
+ * @domain: of an active master
+ *
+ * A domain that is not queued is left out of that cycle. No system call.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_domain_queue(ec_domain_t *domain);
+
+/**
+ * ecrt_domain_state() - result of the last ecrt_domain_process()
+ * @domain: domain
+ * @state: out
+ *
+ * No system call.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_domain_state(const ec_domain_t *domain,
+		ec_domain_state_t *state);
+
+#ifndef __KERNEL__
+/**
+ * ecrt_read_real() - read a little-endian IEEE 754 single
+ * @data: 4 bytes, need not be aligned
+ *
+ * Userspace only.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: its value.
+ */
+EC_PUBLIC_API float ecrt_read_real(const void *data);
+
+/**
+ * ecrt_read_lreal() - read a little-endian IEEE 754 double
+ * @data: 8 bytes, need not be aligned
+ *
+ * Userspace only.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: its value.
+ */
+EC_PUBLIC_API double ecrt_read_lreal(const void *data);
+
+/**
+ * ecrt_write_real() - write a little-endian IEEE 754 single
+ * @data: 4 bytes, need not be aligned
+ * @value: what to write
+ *
+ * Userspace only.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+EC_PUBLIC_API void ecrt_write_real(void *data, float value);
+
+/**
+ * ecrt_write_lreal() - write a little-endian IEEE 754 double
+ * @data: 8 bytes, need not be aligned
+ * @value: what to write
+ *
+ * Userspace only.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
+#endif
+
+#ifdef __cplusplus
+}
+#endif
+
+/* access to process data -----------------------------------------------------*/
+
+#ifndef __KERNEL__
+
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+
+#define ec_swap16_(x)		((uint16_t)(x))
+#define ec_swap32_(x)		((uint32_t)(x))
+#define ec_swap64_(x)		((uint64_t)(x))
+
+#else
+
+#define ec_swap16_(x)		__builtin_bswap16((uint16_t)(x))
+#define ec_swap32_(x)		__builtin_bswap32((uint32_t)(x))
+#define ec_swap64_(x)		__builtin_bswap64((uint64_t)(x))
+
+#ifndef swap16
+#define swap16(x)		ec_swap16_(x)
+#endif
+#ifndef swap32
+#define swap32(x)		ec_swap32_(x)
+#endif
+#ifndef swap64
+#define swap64(x)		ec_swap64_(x)
+#endif
+
+#endif
+
+#ifndef le16_to_cpu
+#define le16_to_cpu(x)		ec_swap16_(x)
+#endif
+#ifndef le32_to_cpu
+#define le32_to_cpu(x)		ec_swap32_(x)
+#endif
+#ifndef le64_to_cpu
+#define le64_to_cpu(x)		ec_swap64_(x)
+#endif
+#ifndef cpu_to_le16
+#define cpu_to_le16(x)		ec_swap16_(x)
+#endif
+#ifndef cpu_to_le32
+#define cpu_to_le32(x)		ec_swap32_(x)
+#endif
+#ifndef cpu_to_le64
+#define cpu_to_le64(x)		ec_swap64_(x)
+#endif
+#ifndef le16_to_cpup
+#define le16_to_cpup(p)		ec_load16_(p)
+#endif
+#ifndef le32_to_cpup
+#define le32_to_cpup(p)		ec_load32_(p)
+#endif
+#ifndef le64_to_cpup
+#define le64_to_cpup(p)		ec_load64_(p)
+#endif
+
+#else /* __KERNEL__ */
+
+#define ec_swap16_(x)		le16_to_cpu((__force __le16)(x))
+#define ec_swap32_(x)		le32_to_cpu((__force __le32)(x))
+#define ec_swap64_(x)		le64_to_cpu((__force __le64)(x))
+
+#endif
+
+/*
+ * Process data is unaligned, of any type, and shared with the kernel: packed
+ * against the first, may_alias against the second, volatile so that each
+ * macro is one access that is neither repeated nor left out.
+ */
+struct ec_mem16_ {
+	uint16_t v;
+} __attribute__((__packed__, __may_alias__));
+
+struct ec_mem32_ {
+	uint32_t v;
+} __attribute__((__packed__, __may_alias__));
+
+struct ec_mem64_ {
+	uint64_t v;
+} __attribute__((__packed__, __may_alias__));
+
+static inline uint8_t ec_load8_(const volatile void *p)
+{
+	return *(const volatile uint8_t *)p;
+}
+
+static inline uint16_t ec_load16_(const volatile void *p)
+{
+	return ec_swap16_(((const volatile struct ec_mem16_ *)p)->v);
+}
+
+static inline uint32_t ec_load32_(const volatile void *p)
+{
+	return ec_swap32_(((const volatile struct ec_mem32_ *)p)->v);
+}
+
+static inline uint64_t ec_load64_(const volatile void *p)
+{
+	return ec_swap64_(((const volatile struct ec_mem64_ *)p)->v);
+}
+
+static inline void ec_store8_(volatile void *p, uint8_t v)
+{
+	*(volatile uint8_t *)p = v;
+}
+
+static inline void ec_store16_(volatile void *p, uint16_t v)
+{
+	((volatile struct ec_mem16_ *)p)->v = ec_swap16_(v);
+}
+
+static inline void ec_store32_(volatile void *p, uint32_t v)
+{
+	((volatile struct ec_mem32_ *)p)->v = ec_swap32_(v);
+}
+
+static inline void ec_store64_(volatile void *p, uint64_t v)
+{
+	((volatile struct ec_mem64_ *)p)->v = ec_swap64_(v);
+}
+
+/* 0 or 1: bit POS, 0..7, of the byte at DATA */
+#define EC_READ_BIT(DATA, POS)	((EC_READ_U8(DATA) >> (POS)) & 0x01)
+
+/* reads, changes and writes the byte at DATA; not atomic */
+#define EC_WRITE_BIT(DATA, POS, VAL) \
+	do { \
+		if (VAL) \
+			ec_set_bit_((volatile void *)(DATA), (POS)); \
+		else \
+			ec_clear_bit_((volatile void *)(DATA), (POS)); \
+	} while (0)
+
+static inline void ec_set_bit_(volatile void *p, unsigned int pos)
+{
+	ec_store8_(p, (uint8_t)(ec_load8_(p) | (1U << pos)));
+}
+
+static inline void ec_clear_bit_(volatile void *p, unsigned int pos)
+{
+	ec_store8_(p, (uint8_t)(ec_load8_(p) & ~(1U << pos)));
+}
+
+#define EC_READ_U8(DATA)	ec_load8_((const volatile void *)(DATA))
+#define EC_READ_S8(DATA)	((int8_t)EC_READ_U8(DATA))
+#define EC_READ_U16(DATA)	ec_load16_((const volatile void *)(DATA))
+#define EC_READ_S16(DATA)	((int16_t)EC_READ_U16(DATA))
+#define EC_READ_U32(DATA)	ec_load32_((const volatile void *)(DATA))
+#define EC_READ_S32(DATA)	((int32_t)EC_READ_U32(DATA))
+#define EC_READ_U64(DATA)	ec_load64_((const volatile void *)(DATA))
+#define EC_READ_S64(DATA)	((int64_t)EC_READ_U64(DATA))
+
+#define EC_WRITE_U8(DATA, VAL) \
+	do { \
+		ec_store8_((volatile void *)(DATA), (uint8_t)(VAL)); \
+	} while (0)
+#define EC_WRITE_S8(DATA, VAL)	EC_WRITE_U8(DATA, VAL)
+
+#define EC_WRITE_U16(DATA, VAL) \
+	do { \
+		ec_store16_((volatile void *)(DATA), (uint16_t)(VAL)); \
+	} while (0)
+#define EC_WRITE_S16(DATA, VAL)	EC_WRITE_U16(DATA, VAL)
+
+#define EC_WRITE_U32(DATA, VAL) \
+	do { \
+		ec_store32_((volatile void *)(DATA), (uint32_t)(VAL)); \
+	} while (0)
+#define EC_WRITE_S32(DATA, VAL)	EC_WRITE_U32(DATA, VAL)
+
+#define EC_WRITE_U64(DATA, VAL) \
+	do { \
+		ec_store64_((volatile void *)(DATA), (uint64_t)(VAL)); \
+	} while (0)
+#define EC_WRITE_S64(DATA, VAL)	EC_WRITE_U64(DATA, VAL)
+
+#ifndef __KERNEL__
+
+#define EC_READ_REAL(DATA)	ecrt_read_real((const void *)(DATA))
+#define EC_READ_LREAL(DATA)	ecrt_read_lreal((const void *)(DATA))
+
+#define EC_WRITE_REAL(DATA, VAL) \
+	do { \
+		ecrt_write_real((void *)(DATA), (VAL)); \
+	} while (0)
+
+#define EC_WRITE_LREAL(DATA, VAL) \
+	do { \
+		ecrt_write_lreal((void *)(DATA), (VAL)); \
+	} while (0)
+
+#endif
+
+#endif

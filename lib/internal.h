@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What the files of libethercat share. */
+#ifndef EC_LIB_INTERNAL_H
+#define EC_LIB_INTERNAL_H
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "../include/ecrt.h"
+#include "../include/uapi/ethercat.h"
+
+/*
+ * @queued, @sent, @received: bit n is domain n: to be sent, on its way, back
+ * but not processed. Only the cyclic caller touches them.
+ */
+struct ec_master {
+	int fd;
+	unsigned int index;
+	bool active;
+	__u64 queued;
+	__u64 sent;
+	__u64 received;
+
+	/* mapped by activation */
+	const struct ec_status *status;
+	size_t status_size;
+	__u8 *image;
+	size_t image_size;
+
+	struct ec_domain *domains;
+	struct ec_slave_config *configs;
+};
+
+/* @snap: status as of the last ecrt_domain_process() */
+struct ec_domain {
+	struct ec_master *master;
+	struct ec_domain *next;
+	unsigned int index;
+	__u8 *data;
+	size_t size;
+	struct ec_status_domain snap;
+};
+
+struct ec_slave_config {
+	struct ec_master *master;
+	struct ec_slave_config *next;
+	unsigned int index;
+	__u16 alias;
+	__u16 position;
+};
+
+/* status fields are written by the kernel at any time: one load each */
+#define ec_status_read(field) __atomic_load_n(&(field), __ATOMIC_RELAXED)
+
+int ec_ioctl(const struct ec_master *m, unsigned long cmd, void *arg);
+int ec_fail(int err, const char *fmt, ...)
+	__attribute__((format(printf, 2, 3)));
+int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
+	__attribute__((format(printf, 3, 4)));
+
+void ec_master_free_session(struct ec_master *m);
+void ec_master_unmap(struct ec_master *m);
+
+#endif

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* A reserved master: session, activation, cycle, state. */
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "internal.h"
+
+/* session ------------------------------------------------------------------*/
+
+void ec_master_free_session(struct ec_master *m)
+{
+	struct ec_slave_config *sc;
+	struct ec_domain *d;
+
+	while ((d = m->domains)) {
+		m->domains = d->next;
+		free(d);
+	}
+	while ((sc = m->configs)) {
+		m->configs = sc->next;
+		free(sc);
+	}
+}
+
+ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
+{
+	struct ec_ioc_create_domain arg = { 0 };
+	struct ec_domain *d, **end;
+	int ret;
+
+	if (!master) {
+		errno = EINVAL;
+		return NULL;
+	}
+	d = calloc(1, sizeof(*d));
+	if (!d) {
+		ec_fail(-ENOMEM, "create a domain");
+		return NULL;
+	}
+	ret = ec_ioctl(master, EC_IOC_CREATE_DOMAIN, &arg);
+	if (ret) {
+		ec_fail_ioctl(master, ret, "create a domain");
+		goto err_free;
+	}
+	if (arg.index >= EC_STATUS_DOMAINS) {
+		ec_fail(-ENOSPC, "create domain %u of at most %u",
+			arg.index, EC_STATUS_DOMAINS);
+		goto err_free;
+	}
+	d->master = master;
+	d->index = arg.index;
+	for (end = &master->domains; *end; end = &(*end)->next)
+		;
+	*end = d;
+	return d;
+
+err_free:
+	free(d);
+	return NULL;
+}
+
+static struct ec_slave_config *config_find(struct ec_master *m,
+					   unsigned int index)
+{
+	struct ec_slave_config *sc;
+
+	for (sc = m->configs; sc; sc = sc->next)
+		if (sc->index == index)
+			return sc;
+	return NULL;
+}
+
+ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
+					    uint16_t alias, uint16_t position,
+					    uint32_t vendor_id,
+					    uint32_t product_code)
+{
+	struct ec_ioc_slave_config arg = {
+		.alias = alias,
+		.position = position,
+		.vendor_id = vendor_id,
+		.product_code = product_code,
+	};
+	struct ec_slave_config *sc;
+	int ret;
+
+	if (!master) {
+		errno = EINVAL;
+		return NULL;
+	}
+	ret = ec_ioctl(master, EC_IOC_SLAVE_CONFIG, &arg);
+	if (ret) {
+		ec_fail_ioctl(master, ret, "configure slave %u:%u as 0x%08x/0x%08x",
+			      alias, position, vendor_id, product_code);
+		return NULL;
+	}
+	sc = config_find(master, arg.index);
+	if (sc)
+		return sc;
+	sc = calloc(1, sizeof(*sc));
+	if (!sc) {
+		ec_fail(-ENOMEM, "configure slave %u:%u", alias,
+			position);
+		return NULL;
+	}
+	sc->master = master;
+	sc->index = arg.index;
+	sc->alias = alias;
+	sc->position = position;
+	sc->next = master->configs;
+	master->configs = sc;
+	return sc;
+}
+
+int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
+{
+	struct ec_ioc_interval arg = { .interval_us = (__u32)send_interval };
+
+	if (!master || !send_interval || send_interval > UINT32_MAX)
+		return -EINVAL;
+	return ec_ioctl(master, EC_IOC_INTERVAL, &arg);
+}
+
+/* activation ---------------------------------------------------------------*/
+
+/* Maps @size bytes and touches each page, so that the cycle need not. */
+static void *map(struct ec_master *m, size_t size, int prot, __u64 offset)
+{
+	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
+	volatile __u8 *p;
+	void *at;
+
+	at = mmap(NULL, size, prot, MAP_SHARED | MAP_POPULATE, m->fd,
+		  (off_t)offset);
+	if (at == MAP_FAILED)
+		return NULL;
+	for (p = at, i = 0; i < size; i += page) {
+		__u8 byte = p[i];
+
+		if (prot & PROT_WRITE)
+			p[i] = byte;
+	}
+	return at;
+}
+
+void ec_master_unmap(struct ec_master *m)
+{
+	if (m->image)
+		munmap(m->image, m->image_size);
+	if (m->status)
+		munmap((void *)m->status, m->status_size);
+	m->image = NULL;
+	m->status = NULL;
+	m->active = false;
+}
+
+static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
+{
+	if (arg->status_size < offsetof(struct ec_status, configs))
+		return -EPROTO;
+	m->status_size = arg->status_size;
+	m->status = map(m, arg->status_size, PROT_READ, EC_MMAP_STATUS);
+	if (!m->status)
+		return -errno;
+	if (m->status->magic != EC_STATUS_MAGIC)
+		return -EPROTO;
+	m->image_size = arg->image_size;
+	if (!arg->image_size)
+		return 0;
+	m->image = map(m, arg->image_size, PROT_READ | PROT_WRITE,
+		       EC_MMAP_IMAGE);
+	return m->image ? 0 : -errno;
+}
+
+static int place_domain(struct ec_master *m, struct ec_domain *d)
+{
+	struct ec_ioc_domain_offset arg = { .domain = d->index };
+	int ret = ec_ioctl(m, EC_IOC_DOMAIN_OFFSET, &arg);
+
+	if (ret)
+		return ret;
+	if (arg.offset > m->image_size || arg.size > m->image_size - arg.offset)
+		return -EPROTO;
+	d->size = arg.size;
+	d->data = m->image ? m->image + arg.offset : NULL;
+	return 0;
+}
+
+int ecrt_master_activate(ec_master_t *master)
+{
+	struct ec_ioc_activate arg = { 0 };
+	struct ec_domain *d;
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (master->active)
+		return ec_fail(-EBUSY, "activate master %u again",
+			       master->index);
+	ret = ec_ioctl(master, EC_IOC_ACTIVATE, &arg);
+	if (ret)
+		return ec_fail_ioctl(master, ret, "activate master %u",
+				     master->index);
+	ret = map_all(master, &arg);
+	if (ret) {
+		ec_fail(ret, "map process data of master %u (%u bytes)",
+			master->index, arg.image_size);
+		goto err_deactivate;
+	}
+	for (d = master->domains; d; d = d->next) {
+		ret = place_domain(master, d);
+		if (!ret)
+			continue;
+		ec_fail(ret, "place domain %u in the process data",
+			d->index);
+		goto err_deactivate;
+	}
+	master->queued = 0;
+	master->sent = 0;
+	master->received = 0;
+	master->active = true;
+	return 0;
+
+err_deactivate:
+	for (d = master->domains; d; d = d->next)
+		d->data = NULL;
+	ec_master_unmap(master);
+	ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
+	return ret;
+}
+
+int ecrt_master_deactivate(ec_master_t *master)
+{
+	int ret;
+
+	if (!master || !master->active)
+		return -EINVAL;
+	ret = ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
+	if (ret)
+		return ret;
+	ec_master_unmap(master);
+	ec_master_free_session(master);
+	return 0;
+}
+
+/* cycle --------------------------------------------------------------------*/
+
+int ecrt_master_send(ec_master_t *master)
+{
+	struct ec_ioc_send arg = { 0 };
+
+	if (!master || !master->active)
+		return -EINVAL;
+	arg.queued = master->queued;
+	master->sent |= master->queued;
+	master->queued = 0;
+	return ec_ioctl(master, EC_IOC_SEND, &arg);
+}
+
+int ecrt_master_receive(ec_master_t *master)
+{
+	if (!master || !master->active)
+		return -EINVAL;
+	master->received |= master->sent;
+	master->sent = 0;
+	return ec_ioctl(master, EC_IOC_RECEIVE, NULL);
+}
+
+int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
+{
+	struct ec_ioc_app_time arg = { .app_time = app_time };
+
+	return master ? ec_ioctl(master, EC_IOC_APP_TIME, &arg) : -EINVAL;
+}
+
+int ecrt_master_reset(ec_master_t *master)
+{
+	return master ? ec_ioctl(master, EC_IOC_RESET, NULL) : -EINVAL;
+}
+
+/* state --------------------------------------------------------------------*/
+
+static int get_info(const struct ec_master *m, struct ec_ioc_master *info)
+{
+	int ret = ec_ioctl(m, EC_IOC_MASTER, info);
+
+	if (!ret && info->device_count > EC_UAPI_DEVICES)
+		info->device_count = EC_UAPI_DEVICES;
+	return ret;
+}
+
+int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
+{
+	struct ec_ioc_master info = { 0 };
+	int ret;
+
+	if (!master || !master_info)
+		return -EINVAL;
+	ret = get_info(master, &info);
+	if (ret)
+		return ec_fail_ioctl(master, ret, "get master %u",
+				     master->index);
+	master_info->slave_count = info.slave_count;
+	master_info->link_up = !!info.devices[0].link_up;
+	master_info->scan_busy = info.scan_busy;
+	master_info->app_time = info.app_time;
+	return 0;
+}
+
+int ecrt_master_scan_progress(ec_master_t *master,
+			      ec_master_scan_progress_t *progress)
+{
+	struct ec_ioc_master info = { 0 };
+	int ret;
+
+	if (!master || !progress)
+		return -EINVAL;
+	ret = get_info(master, &info);
+	if (ret)
+		return ec_fail_ioctl(master, ret,
+				     "get scan progress of master %u",
+				     master->index);
+	progress->slave_count = info.slave_count;
+	progress->scan_index = info.scan_index;
+	return 0;
+}
+
+int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
+{
+	struct ec_ioc_master info = { 0 };
+	const struct ec_status *st;
+	unsigned int i, up = 0;
+	int ret;
+
+	if (!master || !state)
+		return -EINVAL;
+	if (master->active) {
+		st = master->status;
+		state->slaves_responding = ec_status_read(st->slaves_responding);
+		state->al_states = ec_status_read(st->al_states) & 0xf;
+		state->link_up = !!ec_status_read(st->link_up);
+		return 0;
+	}
+	ret = get_info(master, &info);
+	if (ret)
+		return ret;
+	for (i = 0; i < info.device_count; i++)
+		up |= info.devices[i].link_up;
+	state->slaves_responding = info.slaves_responding;
+	state->al_states = info.al_states & 0xf;
+	state->link_up = !!up;
+	return 0;
+}
+
+/*
+ * The kernel has AL states for all links together only: with two links, one
+ * that nobody answers on reports none and the others report the sum.
+ */
+int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
+			   ec_master_link_state_t *state)
+{
+	struct ec_ioc_master info = { 0 };
+	const struct ec_ioc_device *dev;
+	int ret;
+
+	if (!master || !state)
+		return -EINVAL;
+	ret = get_info(master, &info);
+	if (!ret && dev_idx >= info.device_count)
+		return ec_fail(-EINVAL, "get state of link %u of %u",
+			       dev_idx, info.device_count);
+	if (ret)
+		return ec_fail_ioctl(master, ret, "get state of link %u",
+				     dev_idx);
+	dev = &info.devices[dev_idx];
+	state->slaves_responding = dev->slaves;
+	state->al_states = dev->slaves ? info.al_states & 0xf : 0;
+	state->link_up = !!dev->link_up;
+	return 0;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* Opening, reserving and releasing a master. */
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "internal.h"
+
+unsigned int ecrt_version_magic(void)
+{
+	return ECRT_VERSION_MAGIC;
+}
+
+/* Structures may grow without harm, so any version from 1 on will do. */
+static int check_version(struct ec_master *m, const char *path)
+{
+	struct ec_ioc_version version = { 0 };
+	int ret = ec_ioctl(m, EC_IOC_VERSION, &version);
+
+	if (!ret && version.abi >= 1)
+		return 0;
+	return ec_fail(-EPROTO,
+		       "talk to the kernel module behind %s (version %u)",
+		       path, version.abi);
+}
+
+ec_master_t *ecrt_open_master(unsigned int master_index)
+{
+	struct ec_master *m;
+	char path[40];
+	int err;
+
+	m = calloc(1, sizeof(*m));
+	if (!m) {
+		ec_fail(-ENOMEM, "open master %u", master_index);
+		return NULL;
+	}
+	m->index = master_index;
+	snprintf(path, sizeof(path), "/dev/EtherCAT%u", master_index);
+	m->fd = open(path, O_RDWR | O_CLOEXEC);
+	if (m->fd < 0) {
+		err = ec_fail(-errno, "open %s", path);
+		goto err_free;
+	}
+	err = check_version(m, path);
+	if (err)
+		goto err_close;
+	return m;
+
+err_close:
+	close(m->fd);
+err_free:
+	free(m);
+	errno = -err;
+	return NULL;
+}
+
+int ecrt_master_reserve(ec_master_t *master)
+{
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	ret = ec_ioctl(master, EC_IOC_RESERVE, NULL);
+	if (ret)
+		ec_fail_ioctl(master, ret, "reserve master %u", master->index);
+	return ret;
+}
+
+ec_master_t *ecrt_request_master(unsigned int master_index)
+{
+	struct ec_master *m = ecrt_open_master(master_index);
+	int err;
+
+	if (!m)
+		return NULL;
+	err = ecrt_master_reserve(m);
+	if (!err)
+		return m;
+	ecrt_release_master(m);
+	errno = -err;
+	return NULL;
+}
+
+/* Closing the file is what makes the kernel clean up. */
+void ecrt_release_master(ec_master_t *master)
+{
+	if (!master)
+		return;
+	ec_master_unmap(master);
+	close(master->fd);
+	ec_master_free_session(master);
+	free(master);
+}
