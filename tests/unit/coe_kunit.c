@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "wire_kunit.h"
+#include "../../master/wire/coe.h"
+
+static void a_header_survives_both_ways(struct kunit *test)
+{
+	struct ec_coe_hdr in = { .number = 0x1A5, .service = EC_COE_TXPDO }, out;
+	u8 msg[2];
+	struct ec_wbuf w = ec_wbuf(msg, sizeof(msg));
+	struct ec_rbuf r = ec_rbuf(msg, sizeof(msg));
+
+	ec_coe_hdr_encode(&w, &in);
+	KUNIT_EXPECT_EQ(test, ec_coe_hdr_decode(&r, &out), 0);
+	KUNIT_EXPECT_EQ(test, out.number, in.number);
+	KUNIT_EXPECT_EQ(test, out.service, in.service);
+	r = ec_rbuf(msg, 1);
+	KUNIT_EXPECT_EQ(test, ec_coe_hdr_decode(&r, &out), -EMSGSIZE);
+}
+
+static void an_emergency_survives_both_ways(struct kunit *test)
+{
+	struct ec_coe_emergency in = { 0x8130, 0x11, { 1, 2, 3, 4, 5 } }, out;
+	u8 msg[EC_COE_EMERGENCY_SIZE];
+
+	KUNIT_EXPECT_EQ(test, ec_coe_emergency_encode(msg, sizeof(msg) - 1, &in), -EMSGSIZE);
+	KUNIT_ASSERT_EQ(test, ec_coe_emergency_encode(msg, sizeof(msg), &in), 10);
+	KUNIT_ASSERT_EQ(test, ec_coe_emergency_decode(msg, sizeof(msg), &out), 0);
+	KUNIT_EXPECT_EQ(test, out.code, 0x8130);
+	KUNIT_EXPECT_EQ(test, out.reg, 0x11);
+	KUNIT_EXPECT_MEMEQ(test, out.data, in.data, 5);
+	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(msg, 9, &out), -EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(msg, 0, &out), -EMSGSIZE);
+	msg[1] = 0x30;
+	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(msg, 10, &out), -ENOMSG);
+}
+
+static void emergency_codes_have_groups(struct kunit *test)
+{
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0x0000), "error gone");
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0x2310), "current");
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xA001), "state transition");
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xFF01), "device specific");
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xB000), "unknown emergency group");
+}
+
+static void every_known_abort_code_has_a_text(struct kunit *test)
+{
+	static const u32 known[] = {
+		0x05030000, 0x05040000, 0x05040001, 0x05040002, 0x05040003, 0x05040004,
+		0x05040005, 0x06010000, 0x06010001, 0x06010002, 0x06010003, 0x06010004,
+		0x06010005, 0x06010006, 0x06020000, 0x06040041, 0x06040042, 0x06040043,
+		0x06040047, 0x06060000, 0x06070010, 0x06070012, 0x06070013, 0x06090011,
+		0x06090030, 0x06090031, 0x06090032, 0x06090033, 0x06090036, 0x060A0023,
+		0x08000000, 0x08000020, 0x08000021, 0x08000022, 0x08000023, 0x08000024,
+	};
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(known); i++) {
+		KUNIT_EXPECT_NOT_NULL_MSG(test, ec_coe_abort_text(known[i]), "0x%08x", known[i]);
+		KUNIT_EXPECT_LT(test, ec_coe_abort_errno(known[i]), 0);
+		KUNIT_EXPECT_NULL(test, ec_coe_abort_text(known[i] + 0x100));
+	}
+	KUNIT_EXPECT_NULL(test, ec_coe_abort_text(0));
+	KUNIT_EXPECT_NULL(test, ec_coe_abort_text(0xFFFFFFFF));
+	KUNIT_EXPECT_EQ(test, ec_coe_abort_errno(0x06020000), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_coe_abort_errno(0xFFFFFFFF), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_coe_errno_abort(-ENOENT), 0x06020000u);
+	KUNIT_EXPECT_EQ(test, ec_coe_errno_abort(-12345), 0x08000000u);
+}
+
+static void services_have_names(struct kunit *test)
+{
+	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(1), "emergency");
+	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(8), "SDO information");
+	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(0), "???");
+	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(15), "???");
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(a_header_survives_both_ways),
+	KUNIT_CASE(an_emergency_survives_both_ways),
+	KUNIT_CASE(emergency_codes_have_groups),
+	KUNIT_CASE(every_known_abort_code_has_a_text),
+	KUNIT_CASE(services_have_names),
+	{}
+};
+
+static struct kunit_suite suite = { .name = "coe", .test_cases = cases };
+kunit_test_suites(&suite);
+MODULE_LICENSE("GPL");
