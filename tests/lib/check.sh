@@ -1,0 +1,177 @@
+#!/bin/bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+#
+# Checks of ecrt.h and libethercat that need no kernel. The last line of
+# output is "N passed, N failed".
+
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+top=$(cd "$here/../.." && pwd)
+o=${O:-$here/build}
+mkdir -p "$o" && o=$(cd "$o" && pwd) || exit 1
+cd "$here" || exit 1
+
+: "${CC:=gcc}" "${CXX:=g++}" "${MAKE:=make}"
+warn="-Wall -Wextra -Wpedantic -Werror"
+san="-fsanitize=address,undefined -fno-sanitize-recover=all -g -O1"
+passed=0 failed=0
+
+t() {	# t NAME COMMAND...
+	local name=$1 out
+	shift
+	if out=$("$@" 2>&1); then
+		echo "ok - $name"
+		passed=$((passed + 1))
+	else
+		echo "not ok - $name"
+		printf '%s\n' "$out" | sed 's/^/# /'
+		failed=$((failed + 1))
+	fi
+}
+
+# both as the only header of a file, and with each macro used
+header_compiles() {	# header_compiles COMPILER STANDARD LANGUAGE
+	$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only access.c
+}
+
+names() {	# names of the functions a list of prototypes declares
+	grep -o 'ecrt_[a-z0-9_]*(' "$1" | tr -d '(' | sort
+}
+
+# what the preprocessor leaves of the header, one prototype a line
+declared() {
+	echo '#include "ecrt.h"' | $CC -E -P -I"$top/include" - |
+		tr '\n' ' ' | grep -o 'ecrt_[a-z0-9_]*([^(){}]*) *;' |
+		grep '[a-z_] \|(void)' >"$o/declared"
+	names "$o/declared"
+}
+
+# a second declaration that differs in any type is an error to the compiler
+prototypes_equal() {	# prototypes_equal COMPILER LANGUAGE
+	{
+		echo '#include "ecrt.h"'
+		[ "$2" = c ] || echo 'extern "C" {'
+		cat prototypes.txt
+		[ "$2" = c ] || echo '}'
+	} >"$o/prototypes.$2"
+	$1 -x $2 $warn -I"$top/include" -fsyntax-only "$o/prototypes.$2"
+}
+
+header_declares_list() { diff <(names prototypes.txt) <(declared); }
+
+# "name node" for each symbol
+map_symbols() {
+	awk '/^LIBETHERCAT/ { node = $1 } /^\t\tecrt_/ {
+		sub(/;/, ""); print $1, node }' "$top/lib/libethercat.map" | sort
+}
+
+exported() {
+	readelf -W --dyn-syms "$o/lib/libethercat.so.1.2.0" |
+		awk '$7 != "UND" && $4 != "NOTYPE" && $8 ~ /@@/ && $8 !~ /^LIBETHERCAT/ {
+			sub(/@@/, " ", $8); print $8 }' | sort
+}
+
+soname() {
+	readelf -d "$o/lib/libethercat.so.1.2.0" |
+		grep -q 'SONAME.*\[libethercat\.so\.1\]'
+}
+
+# libc only, and no more of it than the loader itself
+needs_libc_only() {
+	! readelf -d "$o/lib/libethercat.so.1.2.0" | grep NEEDED |
+		grep -v 'libc\.so\|ld-linux'
+}
+
+build_lib() { $MAKE -s -C "$top/lib" O="$o/lib" CFLAGS="-O2 -Werror" all; }
+
+installs() {
+	local d=$o/root
+	rm -rf "$d"
+	$MAKE -s -C "$top/lib" O="$o/lib" prefix=/usr DESTDIR="$d" install &&
+	echo '#include <ecrt.h>
+		int main(void) { return ecrt_version_magic() != ECRT_VERSION_MAGIC; }' \
+		>"$o/user.c" &&
+	$CC -o "$o/user" "$o/user.c" -I"$d/usr/include" -L"$d/usr/lib" \
+		-lethercat &&
+	LD_LIBRARY_PATH=$d/usr/lib "$o/user" &&
+	grep -q '^prefix=/usr$' "$d/usr/lib/pkgconfig/libethercat.pc" &&
+	$MAKE -s -C "$top/lib" O="$o/lib" prefix=/usr DESTDIR="$d" uninstall &&
+	[ -z "$(find "$d" ! -type d)" ]
+}
+
+access_works() {	# access_works COMPILER LANGUAGE
+	$1 -x $2 $warn $san -I"$top/include" -c -o "$o/access.o" access.c &&
+	$CC $san -D_GNU_SOURCE -c -o "$o/real.o" "$top/lib/real.c" &&
+	$1 $san -o "$o/access" "$o/access.o" "$o/real.o" && "$o/access"
+}
+
+# each macro is exactly one instruction that touches memory, at any -O
+one_access() {
+	$CC -O2 -I"$top/include" -x c -S -o - - <<-'END' | tee "$o/one.s" |
+		#include "ecrt.h"
+		unsigned f(void *p) { return EC_READ_U32((char *)p + 1); }
+		void g(void *p) { EC_WRITE_U32((char *)p + 1, 5); EC_WRITE_U32((char *)p + 1, 6); }
+		void h(void *p) { (void)EC_READ_U16(p); }
+	END
+	grep -c '(%rdi)' | grep -qx 4
+}
+
+kernel_words() {	# the part of the header that the kernel sees
+	$CC -std=gnu11 $warn -D__KERNEL__ -nostdinc -Ikernel -I"$top/include" \
+		-fsyntax-only -x c - <<-'END'
+		#include "ecrt.h"
+		uint16_t f(const void *p) { return EC_READ_U16(p); }
+		#ifdef EC_READ_REAL
+		#error floating point in the kernel
+		#endif
+	END
+}
+
+library_works() {
+	$CC -std=gnu11 $warn -Wno-pedantic $san -D_GNU_SOURCE \
+		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close \
+		-o "$o/session" session.c fake.c "$top"/lib/*.c &&
+	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
+}
+
+says_why() {	# needs library_works
+	grep -qx 'Failed to reserve master 0: Device or resource busy: owned by somebody' \
+		"$o/session.err" &&
+	grep -q "^Failed to register 0x6000:01 of slave 0:1: No such file or directory" \
+		"$o/session.err"
+}
+
+cyclic_is_silent() { ! grep 'Failed to \(send\|receive\|process\|queue\)' "$o/session.err"; }
+
+demo_builds() {
+	$MAKE -s -C ../apps O="$o/apps" LIB="$o/lib" CFLAGS="-O2 -Werror" all &&
+	"$o/apps/demo" --help >/dev/null
+}
+
+for std in c99 c11 gnu11; do
+	t "ecrt.h compiles as $std" header_compiles $CC $std c
+done
+for std in c++11 c++17; do
+	t "ecrt.h compiles as $std" header_compiles $CXX $std c++
+done
+t "ecrt.h compiles with the kernel's words only" kernel_words
+t "ecrt.h has the prototypes of the list, C" prototypes_equal $CC c
+t "ecrt.h has the prototypes of the list, C++" prototypes_equal $CXX c++
+t "ecrt.h declares the list and nothing else" header_declares_list
+t "data access in C" access_works $CC c
+t "data access in C++" access_works $CXX c++
+[ "$(uname -m)" != x86_64 ] || t "data access is one access" one_access
+t "library builds" build_lib
+t "map has the names of the list" \
+	diff <(names prototypes.txt) <(map_symbols | cut -d' ' -f1)
+t "library exports the map" diff <(map_symbols) <(exported)
+t "soname" soname
+t "library needs libc only" needs_libc_only
+t "install, use, uninstall" installs
+t "library against a fake kernel" library_works
+t "failures of configuration are explained" says_why
+t "cyclic calls are silent" cyclic_is_silent
+t "demo builds" demo_builds
+
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]

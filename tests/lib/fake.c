@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* The system calls of the library, answered here (ld --wrap). */
+
+#include "fake.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#define PAGE	4096U
+#define STATUS_SIZE ((sizeof(struct ec_status) + PAGE - 1) / PAGE * PAGE)
+
+struct fake fake;
+
+int __wrap_open(const char *path, int flags, ...);
+int __wrap_close(int fd);
+int __wrap_ioctl(int fd, unsigned long cmd, ...);
+void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
+		  off_t offset);
+int __real_open(const char *path, int flags, ...);
+int __real_close(int fd);
+void *__real_mmap(void *at, size_t size, int prot, int flags, int fd,
+		  off_t offset);
+
+int __wrap_open(const char *path, int flags, ...)
+{
+	if (strcmp(path, "/dev/EtherCAT0")) {
+		errno = ENOENT;
+		return -1;
+	}
+	if (flags != (O_RDWR | O_CLOEXEC))
+		abort();
+	fake.opens++;
+	return FAKE_FD;
+}
+
+int __wrap_close(int fd)
+{
+	if (fd != FAKE_FD)
+		return __real_close(fd);
+	fake.closes++;
+	return 0;
+}
+
+void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
+		  off_t offset)
+{
+	void *p;
+
+	if (fd != FAKE_FD)
+		return __real_mmap(at, size, prot, flags, fd, offset);
+	p = __real_mmap(NULL, size, PROT_READ | PROT_WRITE,
+			MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	if ((unsigned long long)offset == EC_MMAP_STATUS) {
+		fake.status = p;
+		fake.status->magic = EC_STATUS_MAGIC;
+	} else {
+		fake.image = p;
+	}
+	return p;
+}
+
+static void answer_sdo(struct ec_ioc_sdo *sdo)
+{
+	if (sdo->index == 0x1018) {
+		memcpy((void *)(uintptr_t)sdo->data, "\2\0\0\0", 4);
+		sdo->size = 4;
+	}
+}
+
+static void reg_entry(struct ec_ioc_reg_entry *r)
+{
+	r->offset = r->entry_index == 0x7000 ? 3 : 8;
+	r->bit = r->entry_index == 0x6010 ? 5 : 0;
+}
+
+static void slave(struct ec_ioc_slave *s)
+{
+	s->vendor_id = 2;
+	s->al_status = 0x14;
+	s->alias = 9;
+	s->current_ma = -2000;
+	s->error = EC_SLAVE_CONFIG_FAILED;
+	s->ports[1].type = 3;
+	s->ports[1].next_slave = 7;
+	memset(s->name, 'n', sizeof(s->name));
+}
+
+static void master(struct ec_ioc_master *m)
+{
+	m->slave_count = 3;
+	m->slaves_responding = 3;
+	m->scan_index = 2;
+	m->al_states = 2;
+	m->app_time = 12345;
+	m->device_count = 1;
+	m->devices[0].link_up = 1;
+	m->devices[0].slaves = 3;
+}
+
+static void pdo_op(struct ec_ioc_sc_pdo *p)
+{
+	if (fake.n_pdo_ops < 64)
+		fake.pdo_ops[fake.n_pdo_ops++] = (unsigned int)p->op << 24 |
+			(unsigned int)p->sm << 16 |
+			(p->op == EC_SC_PDO_MAP_ADD ? p->entry_index : p->pdo);
+}
+
+int __wrap_ioctl(int fd, unsigned long cmd, ...)
+{
+	va_list ap;
+	void *arg;
+
+	va_start(ap, cmd);
+	arg = va_arg(ap, void *);
+	va_end(ap);
+	if (fd != FAKE_FD)
+		abort();
+	if (cmd == EC_IOC_REASON) {
+		struct ec_ioc_reason *r = arg;
+
+		snprintf(r->text, sizeof(r->text), "%s",
+			 fake.reason ? fake.reason : "");
+		return 0;
+	}
+	fake.calls++;
+	fake.last = (unsigned int)cmd;
+	if (_IOC_SIZE(cmd))
+		memcpy(fake.arg, arg, _IOC_SIZE(cmd));
+	if (fake.refuse == cmd) {
+		if (cmd == EC_IOC_SDO_UPLOAD || cmd == EC_IOC_SDO_DOWNLOAD)
+			((struct ec_ioc_sdo *)arg)->abort_code = 0x06020000;
+		errno = fake.err;
+		return -1;
+	}
+	switch (cmd) {
+	case EC_IOC_VERSION:
+		((struct ec_ioc_version *)arg)->abi = EC_UAPI_VERSION;
+		break;
+	case EC_IOC_MASTER:
+		master(arg);
+		break;
+	case EC_IOC_SLAVE:
+		slave(arg);
+		break;
+	case EC_IOC_SM:
+		((struct ec_ioc_sm *)arg)->control = 0x64;
+		((struct ec_ioc_sm *)arg)->pdo_count = 2;
+		break;
+	case EC_IOC_CREATE_DOMAIN:
+		((struct ec_ioc_create_domain *)arg)->index = fake.domains++;
+		break;
+	case EC_IOC_SLAVE_CONFIG:	/* position is the index */
+		((struct ec_ioc_slave_config *)arg)->index =
+			((struct ec_ioc_slave_config *)arg)->position;
+		break;
+	case EC_IOC_CONFIG:
+		((struct ec_ioc_config *)arg)->slave_position = 1;
+		((struct ec_ioc_config *)arg)->al_status = 2;
+		break;
+	case EC_IOC_DOMAIN:
+		((struct ec_ioc_domain *)arg)->size = 11;
+		break;
+	case EC_IOC_SC_PDO:
+		pdo_op(arg);
+		break;
+	case EC_IOC_REG_ENTRY:
+		reg_entry(arg);
+		break;
+	case EC_IOC_SDO_UPLOAD:
+		answer_sdo(arg);
+		break;
+	case EC_IOC_ACTIVATE:
+		((struct ec_ioc_activate *)arg)->image_size = fake.image_size;
+		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
+		break;
+	case EC_IOC_DOMAIN_OFFSET:
+		((struct ec_ioc_domain_offset *)arg)->offset =
+			((struct ec_ioc_domain_offset *)arg)->domain * 16;
+		((struct ec_ioc_domain_offset *)arg)->size =
+			fake.image_size ? 16 : 0;
+		if (!fake.image_size)
+			((struct ec_ioc_domain_offset *)arg)->offset = 0;
+		break;
+	case EC_IOC_SEND:
+		fake.sent = ((struct ec_ioc_send *)arg)->queued;
+		break;
+	}
+	return 0;
+}

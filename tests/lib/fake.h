@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* A kernel that remembers what the library asked of it. */
+#ifndef TEST_FAKE_H
+#define TEST_FAKE_H
+
+#include "../../include/ecrt.h"
+#include "../../include/uapi/ethercat.h"
+
+#define FAKE_FD	1000
+
+/*
+ * @calls: ioctls so far, @last: the last one but EC_IOC_REASON
+ * @refuse, @err: this command fails with that errno
+ * @arg: copy of the argument of @last
+ */
+struct fake {
+	unsigned int calls;
+	unsigned int opens;
+	unsigned int closes;
+	unsigned int last;
+	unsigned int refuse;
+	int err;
+	const char *reason;
+	unsigned char arg[4096];
+	unsigned int image_size;
+	unsigned int domains;
+	unsigned int configs;
+	unsigned long long sent;
+	unsigned int pdo_ops[64];
+	unsigned int n_pdo_ops;
+	unsigned char *image;
+	struct ec_status *status;
+};
+
+extern struct fake fake;
+
+#endif
