@@ -276,6 +276,8 @@ struct ec_esc_fault {
  * @key: lower bound of the time of the next event
  * @heap_pos: where the slave stands in the event heap
  * @route_pos: step number on the way from master port 0 and 1, -1 none
+ * @route_recv_ns: arrival times while a route is computed
+ * @route_mask: the ports they are valid for
  */
 struct ec_esc {
 	struct ec_sim *sim;
@@ -319,6 +321,8 @@ struct ec_esc {
 	u64 key;
 	u32 heap_pos;
 	s32 route_pos[2];
+	u32 route_recv_ns[EC_MAX_PORT];
+	u8 route_mask;
 };
 
 /**

@@ -13,8 +13,9 @@ struct ec_sim_step {
 	struct ec_esc *esc;
 	u32 pu_ns;			/* since the master sent the first bit */
 	u32 recv_ns[EC_MAX_PORT];
+	u32 log_first;			/* as in the slave, kept near */
+	u32 log_last;
 	u8 recv_mask;
-	bool circ;			/* port 0 closed automatically */
 };
 
 /**
@@ -23,7 +24,7 @@ struct ec_sim_step {
  * @steps: how many
  * @delay_ns: from master port to master port without the frame's own length
  * @out_port: where it comes out, -1: lost
- * @circ: first step whose port 0 is closed automatically, -1: none
+ * @circ: step whose port 0 is closed for want of a link, -1: none
  * @repeats: a slave is passed twice; no shortcuts
  * @opens: slave whose auto-closed port hears the frame, -1: none
  * @opens_port: that port
@@ -95,7 +96,7 @@ static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
 }
 
 /* esc.c */
-int ec_esc_setup(struct ec_esc *esc, u64 now);
+bool ec_esc_config_valid(const struct ec_esc_config *c);
 void ec_esc_power_on(struct ec_esc *esc, u64 now);
 void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear);
 u16 ec_esc_dl_status(const struct ec_esc *esc);
@@ -155,6 +156,7 @@ u64 ec_sim_hash(u64 x);
 void ec_sim_touch(struct ec_esc *esc);
 void ec_sim_ports(struct ec_esc *esc, u64 now);
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now);
+void ec_sim_fmmus(struct ec_esc *esc);
 void ec_sim_rehash(struct ec_esc *esc);
 void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);

@@ -1,0 +1,701 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Slave controller: registers and datagrams.
+ *
+ * A write to a register that the master may only read is accepted, counts
+ * and changes nothing. Not counted are: accesses beyond the RAM, accesses
+ * across the border of registers and RAM, what a SyncManager refuses, DC
+ * registers of a slave without DC, and the AL control write before the PDI
+ * has read the last one.
+ */
+#include "esc_int.h"
+
+#define DC_FIRST	0x0900
+#define DC_SIZE		0x0100
+
+/**
+ * ec_esc_config_init() - settings of an ordinary slave controller
+ * @cfg: result; 4 MII ports, 8 FMMUs, 8 SyncManagers, 8 KiB, 64-bit DC, no
+ *       EEPROM content, exact crystal
+ *
+ * Both delays are 500 ns: 1 us per slave there and back. Different figures
+ * give the systematic error that unsymmetric slaves show.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_config_init(struct ec_esc_config *cfg)
+{
+	memset(cfg, 0, sizeof(*cfg));
+	cfg->type = 0x11;
+	cfg->build = 2;
+	cfg->fmmus = 8;
+	cfg->sms = 8;
+	cfg->ram_kib = 8;
+	memset(cfg->ports, EC_PORT_TYPE_MII, sizeof(cfg->ports));
+	cfg->features = EC_FEAT_DC | EC_FEAT_DC64 | EC_FEAT_FCS_SEPARATE |
+			EC_FEAT_DC_ENHANCED;
+	cfg->eeprom_8byte = true;
+	cfg->eeprom_busy_ns = 740000;
+	cfg->eeprom_write_ns = 5000000;
+	cfg->process_ns = 500;
+	cfg->forward_ns = 500;
+	cfg->dc_noise_ns = 10;
+}
+
+bool ec_esc_config_valid(const struct ec_esc_config *c)
+{
+	return c->fmmus && c->fmmus <= EC_MAX_FMMU && c->sms &&
+	       c->sms <= EC_MAX_SM && c->ram_kib && c->ram_kib <= 60;
+}
+
+void ec_esc_power_on(struct ec_esc *esc, u64 now)
+{
+	const struct ec_esc_config *c = &esc->cfg;
+	u8 *m = esc->mem;
+	int p;
+
+	memset(m, 0, esc->mem_len);
+	m[EC_REG_TYPE] = c->type;
+	m[EC_REG_REVISION] = c->revision;
+	put_unaligned_le16(c->build, m + EC_REG_BUILD);
+	m[EC_REG_FMMUS] = c->fmmus;
+	m[EC_REG_SMS] = c->sms;
+	m[EC_REG_RAM_KIB] = c->ram_kib;
+	for (p = 0; p < EC_MAX_PORT; p++)
+		m[EC_REG_PORTS] |= (u8)(c->ports[p] << 2 * p);
+	put_unaligned_le16(c->features, m + EC_REG_FEATURES);
+	put_unaligned_le32(0x00070001, m + EC_REG_DL_CONTROL);
+	m[EC_REG_AL_CONTROL] = 1;
+	m[EC_REG_AL_STATUS] = 1;
+	put_unaligned_le16(0x09c2, m + EC_REG_WD_DIVIDER);
+	put_unaligned_le16(1000, m + EC_REG_WD_PDI);
+	put_unaligned_le16(1000, m + EC_REG_WD_SM);
+
+	esc->ecat_event = 0;
+	esc->al_event = 0;
+	ec_esc_event(esc, 0, 0);
+	esc->al_unread = false;
+	esc->emulation = false;
+	esc->wd_due = EC_ESC_NEVER;
+	esc->loop_restore = EC_ESC_NEVER;
+	esc->app_wake_ns = EC_ESC_NEVER;
+	esc->reset_step = 0;
+	memset(&esc->pend, 0, sizeof(esc->pend));
+	ec_esc_sm_reset(esc);
+	ec_esc_fmmu_config(esc);
+	ec_esc_mii_reset(esc);
+	ec_esc_dc_reset(esc, now);
+	ec_esc_eeprom_load(esc, true);
+	ec_sim_rehash(esc);
+	ec_sim_touch(esc);
+}
+
+/* change the ECAT event register, keep count of slaves that signal one */
+void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear)
+{
+	bool irq;
+
+	if (!ec_esc_bug(esc, EC_SIM_BUG_EVENT_STUCK))
+		esc->ecat_event &= (u16)~clear;
+	esc->ecat_event |= set;
+	irq = esc->ecat_event & ec_esc_get16(esc, EC_REG_ECAT_MASK);
+	if (irq != esc->irq) {
+		esc->irq = irq;
+		esc->sim->irqs += irq ? 1 : -1u;
+	}
+}
+
+u16 ec_esc_dl_status(const struct ec_esc *esc)
+{
+	u16 v = EC_DLS_PDI_WD_OK | (esc->eep.loaded ? EC_DLS_PDI_OK : 0);
+	int p;
+
+	for (p = 0; p < EC_MAX_PORT; p++) {
+		const struct ec_esc_port *port = &esc->port[p];
+
+		if (port->link)
+			v |= (u16)(EC_DLS_LINK(p) | EC_DLS_COMM(p));
+		if (!port->open != ec_esc_bug(esc, EC_SIM_BUG_LOOPS_INVERTED))
+			v |= (u16)EC_DLS_LOOP(p);
+	}
+	return v;
+}
+
+/* put computed registers in the touched range into memory */
+static void refresh(struct ec_esc *esc, u16 ado, u32 len, u64 now)
+{
+	u8 *m = esc->mem;
+
+	if (ec_range_hit(ado, len, EC_REG_DL_STATUS, 2))
+		put_unaligned_le16(ec_esc_dl_status(esc), m + EC_REG_DL_STATUS);
+	if (ec_range_hit(ado, len, EC_REG_ECAT_EVENT, 0x14)) {
+		put_unaligned_le16(esc->ecat_event, m + EC_REG_ECAT_EVENT);
+		put_unaligned_le32(esc->al_event, m + EC_REG_AL_EVENT);
+	}
+	if (ec_range_hit(ado, len, EC_REG_WD_STATUS, 2))
+		m[EC_REG_WD_STATUS] = ec_esc_wd_ok(esc);
+	if (ec_range_hit(ado, len, EC_REG_EEP_OWNER, 16))
+		ec_esc_eeprom_refresh(esc, now);
+	if (ec_range_hit(ado, len, EC_REG_MII_CONTROL, 12))
+		ec_esc_mii_refresh(esc);
+	if (ec_range_hit(ado, len, EC_REG_SM(0), EC_MAX_SM * EC_SM_PAGE))
+		ec_esc_sm_refresh(esc);
+	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+		ec_esc_dc_refresh(esc, now);
+}
+
+/* what reading acknowledges */
+static void after_read(struct ec_esc *esc, u16 ado, u32 len)
+{
+	u16 clear = 0;
+
+	if (ec_range_hit(ado, len, EC_REG_DL_STATUS, 2))
+		clear |= EC_ECAT_EVENT_DL;
+	if (ec_range_hit(ado, len, EC_REG_AL_STATUS, 2))
+		clear |= EC_ECAT_EVENT_AL;
+	if (clear)
+		ec_esc_event(esc, 0, clear);
+	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+		ec_esc_dc_read(esc, ado, len, false);
+}
+
+/* false for a place that this slave controller does not answer at */
+static bool reg_exists(const struct ec_esc *esc, u32 ado, u32 len)
+{
+	if (ado + len > EC_REG_RAM)
+		return false;
+	return esc->cfg.features & EC_FEAT_DC || ado < DC_FIRST ||
+	       ado + len > DC_FIRST + DC_SIZE;
+}
+
+/* the master reads physical memory; false: refused, not counted */
+bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
+		      const struct ec_frame_ctx *ctx)
+{
+	const u8 *p;
+	int sm;
+
+	if (ado >= EC_REG_RAM) {
+		p = ec_esc_sm_begin(esc, ado, len, false, false, &sm);
+		if (!p)
+			return false;
+		memcpy(buf, p, len);
+		ec_esc_sm_end(esc, sm, ado, len, false, ctx);
+		return true;
+	}
+	if (!reg_exists(esc, ado, (u32)len))
+		return false;
+	refresh(esc, ado, (u32)len, ctx->now);
+	memcpy(buf, esc->mem + ado, len);
+	after_read(esc, ado, (u32)len);
+	return true;
+}
+
+/* registers without a behaviour of their own that the master may write */
+static bool is_plain(const struct ec_esc *esc, u32 a)
+{
+	if (a >= EC_REG_FMMU(0) && a < EC_REG_FMMU(0u + esc->cfg.fmmus))
+		return true;
+	if (a >= EC_REG_SM(0) && a < EC_REG_SM(0u + esc->cfg.sms)) {
+		u32 n = (a - EC_REG_SM(0)) / EC_SM_PAGE, ofs = a & 7;
+
+		/* the page can be changed while the SM is switched off */
+		return ofs == EC_SM_OFS_ACTIVATE ||
+		       (ofs <= EC_SM_OFS_CONTROL &&
+			!(esc->sm[n].page.activate & EC_SM_ACT_ENABLE));
+	}
+	return (a >= EC_REG_STATION && a < EC_REG_STATION + 2) ||
+	       (a >= EC_REG_DL_CONTROL && a < EC_REG_DL_CONTROL + 4) ||
+	       (a >= 0x0108 && a < 0x010a) ||
+	       (a >= EC_REG_ECAT_MASK && a < EC_REG_ECAT_MASK + 2) ||
+	       (a >= EC_REG_WD_DIVIDER && a < EC_REG_WD_DIVIDER + 2) ||
+	       (a >= EC_REG_WD_PDI && a < EC_REG_WD_PDI + 2) ||
+	       (a >= EC_REG_WD_SM && a < EC_REG_WD_SM + 2) ||
+	       (a >= EC_REG_MII_CONTROL && a < EC_REG_MII_ECAT + 1) ||
+	       (a >= 0x0f00 && a < 0x0f04) || (a >= 0x0f10 && a < 0x0f18) ||
+	       a >= EC_REG_USER_RAM;
+}
+
+static void clear_errors(struct ec_esc *esc, u16 ado, u32 len)
+{
+	u8 *m = esc->mem;
+
+	if (ec_range_hit(ado, len, EC_REG_ERR_RX(0), 12))
+		memset(m + EC_REG_ERR_RX(0), 0, 12);
+	if (ec_range_hit(ado, len, EC_REG_ERR_PU, 1))
+		m[EC_REG_ERR_PU] = 0;
+	if (ec_range_hit(ado, len, EC_REG_ERR_PDI, 1))
+		m[EC_REG_ERR_PDI] = 0;
+	if (ec_range_hit(ado, len, EC_REG_ERR_LOST(0), 4))
+		memset(m + EC_REG_ERR_LOST(0), 0, 4);
+	if (ec_range_hit(ado, len, EC_REG_WD_SM_COUNT, 2))
+		memset(m + EC_REG_WD_SM_COUNT, 0, 2);
+}
+
+static void al_control(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
+		       const struct ec_frame_ctx *ctx)
+{
+	u8 *m = esc->mem;
+	u32 i;
+
+	for (i = 0; i < len; i++)
+		if (ado + i >= EC_REG_AL_CONTROL &&
+		    ado + i < EC_REG_AL_CONTROL + 2)
+			m[ado + i] = buf[i];
+	if (esc->emulation) {
+		memcpy(m + EC_REG_AL_STATUS, m + EC_REG_AL_CONTROL, 2);
+		ec_esc_event(esc, EC_ECAT_EVENT_AL, 0);
+		return;
+	}
+	esc->al_event |= EC_AL_EVENT_CONTROL;
+	esc->al_unread = esc->app_ops && esc->app_ops->al_control;
+	esc->pend.al_control = true;
+	ec_esc_pend(esc, ctx->end);
+}
+
+static void dl_control(struct ec_esc *esc, u16 ado, u32 len, u8 old_loops,
+		       u64 now)
+{
+	u8 *m = esc->mem;
+
+	if (ec_range_hit(ado, len, EC_REG_DL_ALIAS, 1))
+		ec_sim_rehash(esc);
+	if (!ec_range_hit(ado, len, EC_REG_DL_LOOPS, 1))
+		return;
+	if (m[EC_REG_DL_CONTROL] & 0x02) {	/* for one second */
+		if (esc->loop_restore == EC_ESC_NEVER)
+			esc->loop_saved = old_loops;
+		esc->loop_restore = now + 1000000000;
+		ec_sim_touch(esc);
+	} else {
+		esc->loop_restore = EC_ESC_NEVER;
+	}
+	ec_sim_loops(esc, true, now);
+}
+
+/* 'R', 'E', 'S' in three accesses */
+static void reset_letter(struct ec_esc *esc, u8 v, u64 now)
+{
+	static const u8 letters[3] = { 'R', 'E', 'S' };
+
+	if (v != letters[esc->reset_step]) {
+		esc->reset_step = v == 'R';
+	} else if (++esc->reset_step == 3) {
+		ec_sim_power(esc, false, now);
+		ec_sim_power(esc, true, now);
+	}
+	esc->mem[EC_REG_RESET] = esc->reset_step;
+}
+
+static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
+		      const struct ec_frame_ctx *ctx)
+{
+	bool al = ec_range_hit(ado, len, EC_REG_AL_CONTROL, 2);
+	bool sms = ec_range_hit(ado, len, EC_REG_SM(0),
+				EC_MAX_SM * EC_SM_PAGE);
+	u8 old_loops = esc->mem[EC_REG_DL_LOOPS], act[EC_MAX_SM] = {};
+	u8 *m = esc->mem;
+	u32 i;
+
+	if (al && esc->al_unread)
+		return false;
+	for (i = 0; sms && i < esc->cfg.sms; i++)
+		act[i] = esc->sm[i].page.activate;
+
+	for (i = 0; i < len; i++)
+		if (is_plain(esc, ado + i))
+			m[ado + i] = buf[i];
+
+	if (ado < 0x0200) {
+		if (ec_range_hit(ado, len, EC_REG_STATION, 2))
+			ec_sim_rehash(esc);
+		if (ec_range_hit(ado, len, EC_REG_DL_CONTROL, 4))
+			dl_control(esc, ado, len, old_loops, ctx->now);
+		if (al)
+			al_control(esc, ado, buf, len, ctx);
+		if (ec_range_hit(ado, len, EC_REG_RESET, 1))
+			reset_letter(esc, buf[EC_REG_RESET - ado], ctx->now);
+	}
+	if (ec_range_hit(ado, len, EC_REG_ECAT_MASK, 2))
+		ec_esc_event(esc, 0, 0);
+	if (ec_range_hit(ado, len, EC_REG_ERRORS, 0x200))
+		clear_errors(esc, ado, len);
+	if (ec_range_hit(ado, len, EC_REG_WD_DIVIDER, 0x22))
+		ec_esc_wd_config(esc, ctx->now);
+	if (ec_range_hit(ado, len, EC_REG_EEP_OWNER, 16))
+		ec_esc_eeprom_write(esc, ado, buf, len, ctx->now);
+	if (ec_range_hit(ado, len, EC_REG_MII_CONTROL, 12))
+		ec_esc_mii_write(esc, ado, len);
+	if (ec_range_hit(ado, len, EC_REG_FMMU(0), EC_MAX_FMMU * EC_FMMU_PAGE))
+		ec_esc_fmmu_config(esc);
+	if (sms)
+		ec_esc_sm_config(esc, ado, len, act, ctx);
+	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+		ec_esc_dc_write(esc, ado, buf, len, ctx);
+	return true;
+}
+
+/* the master writes physical memory; false: refused, not counted */
+bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
+		       size_t len, const struct ec_frame_ctx *ctx)
+{
+	u8 *p;
+	int sm;
+
+	if (ado >= EC_REG_RAM) {
+		p = ec_esc_sm_begin(esc, ado, len, false, true, &sm);
+		if (!p)
+			return false;
+		memcpy(p, buf, len);
+		ec_esc_sm_end(esc, sm, ado, len, false, ctx);
+		return true;
+	}
+	return reg_exists(esc, ado, (u32)len) &&
+	       reg_write(esc, ado, buf, (u32)len, ctx);
+}
+
+static bool address_match(const struct ec_esc *esc, const struct ec_dgram *d)
+{
+	switch (d->cmd) {
+	case EC_CMD_FPRD:
+	case EC_CMD_FPWR:
+	case EC_CMD_FPRW:
+	case EC_CMD_FRMW:
+		if (d->adp == ec_esc_get16(esc, EC_REG_STATION))
+			return true;
+		return esc->mem[EC_REG_DL_ALIAS] & 1 &&
+		       d->adp == ec_esc_get16(esc, EC_REG_ALIAS) &&
+		       !ec_esc_bug(esc, EC_SIM_BUG_NO_ALIAS);
+	case EC_CMD_APRD:
+	case EC_CMD_APWR:
+	case EC_CMD_APRW:
+	case EC_CMD_ARMW:
+		return !d->adp;
+	case EC_CMD_BRD:
+	case EC_CMD_BWR:
+	case EC_CMD_BRW:
+		return !esc->fault.miss_broadcast;
+	default:
+		return false;
+	}
+}
+
+static bool read_data(struct ec_esc *esc, struct ec_dgram *d, bool merge,
+		      const struct ec_frame_ctx *ctx)
+{
+	u8 *tmp = esc->sim->scratch2;
+	u32 i;
+
+	if (!merge || ec_esc_bug(esc, EC_SIM_BUG_BRD_NO_OR) ||
+	    (d->ado == EC_REG_AL_STATUS &&
+	     ec_esc_bug(esc, EC_SIM_BUG_AL_NO_OR)))
+		return ec_esc_phys_read(esc, d->ado, d->data, d->len, ctx);
+	if (!ec_esc_phys_read(esc, d->ado, tmp, d->len, ctx))
+		return false;
+	for (i = 0; i < d->len; i++)
+		d->data[i] |= tmp[i];
+	return true;
+}
+
+/* a physical command that concerns this slave; returns the increment */
+static int physical(struct ec_esc *esc, struct ec_dgram *d,
+		    const struct ec_frame_ctx *ctx)
+{
+	bool match = address_match(esc, d), rd = false, wr = false;
+	bool bcast = false;
+	const u8 *in = d->data;
+	int add = 0;
+
+	switch (d->cmd) {
+	case EC_CMD_ARMW:
+	case EC_CMD_FRMW:
+		rd = match;
+		wr = !match;
+		break;
+	case EC_CMD_APRW:
+	case EC_CMD_FPRW:
+	case EC_CMD_BRW:
+		if (esc->cfg.features & EC_FEAT_NO_RW)
+			return 0;
+		fallthrough;
+	default:
+		rd = match && ec_cmd_reads(d->cmd);
+		wr = match && ec_cmd_writes(d->cmd);
+		bcast = d->cmd == EC_CMD_BRD || d->cmd == EC_CMD_BRW;
+		break;
+	}
+
+	if (rd && wr) {
+		memcpy(esc->sim->scratch, d->data, d->len);
+		in = esc->sim->scratch;
+	}
+	if (rd && read_data(esc, d, bcast, ctx))
+		add++;
+	if (wr && ec_esc_phys_write(esc, d->ado, in, d->len, ctx)) {
+		if (match)
+			add += rd || ec_cmd_reads(d->cmd) ? 2 : 1;
+		else
+			add += !ec_esc_bug(esc, EC_SIM_BUG_FRMW_WKC);
+	}
+	return add;
+}
+
+/**
+ * ec_esc_dgram() - a datagram passes the processing unit
+ * @esc: slave controller
+ * @d: datagram; address, IRQ field, data and working counter are changed in
+ *     the frame as silicon does, @d's own copies follow
+ * @ctx: when
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
+		  struct ec_frame_ctx *ctx)
+{
+	int add = 0;
+
+	if (!esc->fault.dead) {
+		if (esc->irq) {
+			d->irq |= esc->ecat_event &
+				  ec_esc_get16(esc, EC_REG_ECAT_MASK);
+			put_unaligned_le16(d->irq, d->hdr + 8);
+		}
+		switch (d->cmd) {
+		case EC_CMD_NOP:
+			break;
+		case EC_CMD_LRD:
+		case EC_CMD_LWR:
+		case EC_CMD_LRW:
+			add = ec_esc_fmmu_access(esc, d, ctx);
+			break;
+		default:
+			if (d->cmd <= EC_CMD_FRMW)
+				add = physical(esc, d, ctx);
+		}
+		if (add)
+			ec_dgram_set_wkc(d, (u16)(ec_dgram_wkc(d) + add +
+						  esc->fault.wkc_add));
+	}
+
+	switch (d->cmd) {
+	case EC_CMD_APRD:
+	case EC_CMD_APWR:
+	case EC_CMD_APRW:
+	case EC_CMD_BRD:
+	case EC_CMD_BWR:
+	case EC_CMD_BRW:
+	case EC_CMD_ARMW:
+		if (ec_esc_bug(esc, EC_SIM_BUG_AP_NO_INC))
+			break;
+		d->adp++;
+		put_unaligned_le16(d->adp, d->hdr + 2);
+	}
+}
+
+/**
+ * ec_esc_pdi_read() - the slave's CPU reads
+ * @esc: slave controller
+ * @ado: address
+ * @buf: result
+ * @len: bytes
+ * @now: simulation time, ns
+ *
+ * Reading an output window takes the latest complete buffer, if it begins at
+ * the window's start; a mailbox becomes empty with its last byte. Reading
+ * registers acknowledges AL events as hardware does: 0x0120 AL control,
+ * 0x0806 + 8n SM activation, 0x0440 watchdog.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EACCES where the PDI may not read or nothing was written yet.
+ */
+int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
+		    u64 now)
+{
+	struct ec_frame_ctx ctx = { .now = now, .end = now };
+	const u8 *p;
+	int sm, n;
+
+	if (ado >= EC_REG_RAM) {
+		p = ec_esc_sm_begin(esc, ado, len, true, false, &sm);
+		if (!p)
+			return -EACCES;
+		memcpy(buf, p, len);
+		ec_esc_sm_end(esc, sm, ado, len, true, &ctx);
+		return 0;
+	}
+	if (ado + len > EC_REG_RAM)
+		return -EACCES;
+	refresh(esc, ado, (u32)len, now);
+	memcpy(buf, esc->mem + ado, len);
+	if (ec_range_hit(ado, (u32)len, EC_REG_AL_CONTROL, 2)) {
+		esc->al_event &= (u32)~EC_AL_EVENT_CONTROL;
+		esc->al_unread = false;
+	}
+	if (ec_range_hit(ado, (u32)len, EC_REG_WD_STATUS, 2))
+		esc->al_event &= (u32)~EC_AL_EVENT_WD;
+	for (n = 0; n < esc->cfg.sms; n++)
+		if (ec_range_hit(ado, (u32)len,
+				 EC_REG_SM(n) + EC_SM_OFS_ACTIVATE, 1))
+			esc->al_event &= (u32)~EC_AL_EVENT_SM_ACT;
+	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC0_STATUS, 1))
+		esc->al_event &= (u32)~EC_AL_EVENT_SYNC0;
+	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC1_STATUS, 1))
+		esc->al_event &= (u32)~EC_AL_EVENT_SYNC1;
+	if (ec_range_hit(ado, (u32)len, DC_FIRST, DC_SIZE))
+		ec_esc_dc_read(esc, ado, len, true);
+	return 0;
+}
+
+static bool pdi_may_write(const struct ec_esc *esc, u32 a)
+{
+	if (a >= EC_REG_EEP_CONTROL && a < EC_REG_EEP_DATA + 8)
+		return esc->mem[EC_REG_EEP_PDI] & 1;
+	return (a >= EC_REG_ALIAS && a < EC_REG_ALIAS + 2) ||
+	       (a >= EC_REG_AL_STATUS && a < EC_REG_AL_STATUS + 2) ||
+	       (a >= EC_REG_AL_CODE && a < EC_REG_AL_CODE + 2) ||
+	       a == 0x0138 || a == 0x0139 ||
+	       (a >= EC_REG_AL_MASK && a < EC_REG_AL_MASK + 4) ||
+	       (a == EC_REG_EEP_PDI &&
+		esc->mem[EC_REG_EEP_OWNER] & EC_EEP_OWNER_PDI) ||
+	       (a >= EC_REG_SM(0) && a < EC_REG_SM(0u + esc->cfg.sms) &&
+		(a & 7) == EC_SM_OFS_PDI) ||
+	       a >= 0x0e00;
+}
+
+/**
+ * ec_esc_pdi_write() - the slave's CPU writes
+ * @esc: slave controller
+ * @ado: address
+ * @buf: data
+ * @len: bytes
+ * @now: simulation time, ns
+ *
+ * Writing an input window fills the PDI's own buffer and hands it over with
+ * the last byte; a mailbox must be empty. Bytes of registers that the PDI may
+ * not write keep their value.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EACCES where the PDI may not write or a mailbox is full.
+ */
+int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
+		     u64 now)
+{
+	struct ec_frame_ctx ctx = { .now = now, .end = now };
+	const u8 *src = buf;
+	u8 *p;
+	u32 i;
+	int sm, n;
+
+	if (ado >= EC_REG_RAM) {
+		p = ec_esc_sm_begin(esc, ado, len, true, true, &sm);
+		if (!p)
+			return -EACCES;
+		memcpy(p, buf, len);
+		ec_esc_sm_end(esc, sm, ado, len, true, &ctx);
+		return 0;
+	}
+	if (ado + len > EC_REG_RAM)
+		return -EACCES;
+	for (i = 0; i < len; i++)
+		if (pdi_may_write(esc, ado + i))
+			esc->mem[ado + i] = src[i];
+	if (ec_range_hit(ado, (u32)len, EC_REG_ALIAS, 2))
+		ec_sim_rehash(esc);
+	if (ec_range_hit(ado, (u32)len, EC_REG_AL_STATUS, 2))
+		ec_esc_event(esc, EC_ECAT_EVENT_AL, 0);
+	for (n = 0; n < esc->cfg.sms; n++) {
+		u32 a = EC_REG_SM(n) + EC_SM_OFS_PDI;
+
+		if (!ec_range_hit(ado, (u32)len, a, 1))
+			continue;
+		esc->sm[n].page.pdi = src[a - ado];
+		ec_esc_sm_pdi_disable(esc, n, src[a - ado] & EC_SM_PDI_DISABLE);
+	}
+	return 0;
+}
+
+/**
+ * ec_esc_set_al_status() - the slave's CPU reports its state
+ * @esc: slave controller
+ * @status: 0x0130
+ * @code: 0x0134
+ * @now: simulation time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_set_al_status(struct ec_esc *esc, u16 status, u16 code, u64 now)
+{
+	u8 b[2];
+
+	put_unaligned_le16(code, b);
+	ec_esc_pdi_write(esc, EC_REG_AL_CODE, b, 2, now);
+	put_unaligned_le16(status, b);
+	ec_esc_pdi_write(esc, EC_REG_AL_STATUS, b, 2, now);
+}
+
+/**
+ * ec_esc_wake_at() - the application wants @poll
+ * @esc: slave controller
+ * @at_ns: simulation time, ns; EC_ESC_NEVER: not at all
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_wake_at(struct ec_esc *esc, u64 at_ns)
+{
+	esc->app_wake_ns = at_ns;
+	ec_sim_touch(esc);
+}
+
+/* time of the next thing this slave does by itself */
+u64 ec_esc_next(const struct ec_esc *esc)
+{
+	u64 t = min(esc->app_wake_ns, esc->wd_due);
+
+	t = min(t, esc->loop_restore);
+	return min(t, esc->dc.sync_wake);
+}
+
+/* do what is due at @now */
+void ec_esc_run(struct ec_esc *esc, u64 now)
+{
+	if (esc->loop_restore <= now) {
+		esc->loop_restore = EC_ESC_NEVER;
+		esc->mem[EC_REG_DL_LOOPS] = esc->loop_saved;
+		esc->mem[EC_REG_DL_CONTROL] &= (u8)~0x02;
+		ec_sim_loops(esc, true, now);
+	}
+	if (esc->wd_due <= now)
+		ec_esc_wd_expire(esc, now);
+	if (esc->dc.sync_wake <= now)
+		ec_esc_dc_sync(esc, now);
+	if (esc->app_wake_ns <= now) {
+		esc->app_wake_ns = EC_ESC_NEVER;
+		if (esc->app_ops && esc->app_ops->poll && esc->eep.loaded)
+			esc->app_ops->poll(esc, now);
+		if (esc->app_wake_ns <= now)
+			esc->app_wake_ns = now + 1;
+	}
+}
+
+/* tell the application what the frame did */
+void ec_esc_deliver(struct ec_esc *esc)
+{
+	const struct ec_esc_app_ops *ops = esc->app_ops;
+	u64 now = esc->pend_ns;
+	int n;
+
+	if (ops && esc->eep.loaded && esc->powered) {
+		for (n = 0; n < esc->cfg.sms; n++)
+			if (esc->pend.sm_activate & BIT(n) && ops->sm_activate)
+				ops->sm_activate(esc, n, now);
+		if (esc->pend.al_control && ops->al_control)
+			ops->al_control(esc, now);
+		for (n = 0; n < esc->cfg.sms; n++) {
+			if (esc->pend.sm_written & BIT(n) && ops->sm_written)
+				ops->sm_written(esc, n, now);
+			if (esc->pend.sm_read & BIT(n) && ops->sm_read)
+				ops->sm_read(esc, n, now);
+		}
+	}
+	memset(&esc->pend, 0, sizeof(esc->pend));
+}

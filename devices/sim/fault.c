@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Scripted faults, and deliberate errors of the model itself. */
+#include "esc_int.h"
+
+static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
+	[EC_SIM_FAULT_CUT] = "cut",
+	[EC_SIM_FAULT_HEAL] = "heal",
+	[EC_SIM_FAULT_POWER_OFF] = "power_off",
+	[EC_SIM_FAULT_POWER_ON] = "power_on",
+	[EC_SIM_FAULT_LOSE] = "lose",
+	[EC_SIM_FAULT_DUPLICATE] = "duplicate",
+	[EC_SIM_FAULT_DELAY] = "delay",
+	[EC_SIM_FAULT_MANGLE] = "mangle",
+	[EC_SIM_FAULT_REFUSE_AL] = "refuse_al",
+	[EC_SIM_FAULT_EEPROM_BUSY] = "eeprom_busy",
+	[EC_SIM_FAULT_EEPROM_NOACK] = "eeprom_noack",
+	[EC_SIM_FAULT_MISS_BROADCAST] = "miss_broadcast",
+	[EC_SIM_FAULT_DEAD] = "dead",
+	[EC_SIM_FAULT_WKC] = "wkc",
+	[EC_SIM_FAULT_MUTE] = "mute",
+	[EC_SIM_FAULT_ERRORS] = "errors",
+};
+
+static const char * const bug_names[EC_SIM_BUGS] = {
+	[EC_SIM_BUG_NONE] = "none",
+	[EC_SIM_BUG_LRW_WKC] = "lrw_wkc",
+	[EC_SIM_BUG_BRD_NO_OR] = "brd_no_or",
+	[EC_SIM_BUG_AP_NO_INC] = "ap_no_inc",
+	[EC_SIM_BUG_SM_DIRECTION] = "sm_direction",
+	[EC_SIM_BUG_MBOX_FULL] = "mbox_full",
+	[EC_SIM_BUG_MBOX_EMPTY] = "mbox_empty",
+	[EC_SIM_BUG_EEP_NEVER_BUSY] = "eep_never_busy",
+	[EC_SIM_BUG_EEP_ADDRESS] = "eep_address",
+	[EC_SIM_BUG_EEP_READ8] = "eep_read8",
+	[EC_SIM_BUG_FMMU_SHIFT] = "fmmu_shift",
+	[EC_SIM_BUG_FMMU_LENGTH] = "fmmu_length",
+	[EC_SIM_BUG_LWR_INPUTS] = "lwr_inputs",
+	[EC_SIM_BUG_WKC_PER_FMMU] = "wkc_per_fmmu",
+	[EC_SIM_BUG_NO_ALIAS] = "no_alias",
+	[EC_SIM_BUG_FRMW_WKC] = "frmw_wkc",
+	[EC_SIM_BUG_LOOPS_INVERTED] = "loops_inverted",
+	[EC_SIM_BUG_AL_NO_OR] = "al_no_or",
+	[EC_SIM_BUG_CIRCULATING] = "circulating",
+	[EC_SIM_BUG_NO_RECV_TIMES] = "no_recv_times",
+	[EC_SIM_BUG_EVENT_STUCK] = "event_stuck",
+	[EC_SIM_BUG_DC_JUMP] = "dc_jump",
+	[EC_SIM_BUG_DIFF_TWOS] = "diff_twos",
+};
+
+/**
+ * ec_sim_fault_name() - name of a fault
+ * @type: which
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the name, NULL for an unknown type.
+ */
+const char *ec_sim_fault_name(enum ec_sim_fault_type type)
+{
+	return (u32)type < EC_SIM_FAULT_TYPES ? fault_names[type] : NULL;
+}
+
+/**
+ * ec_sim_bug_name() - name of a deliberate error
+ * @bug: which
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the name, NULL for an unknown one.
+ */
+const char *ec_sim_bug_name(enum ec_sim_bug bug)
+{
+	return (u32)bug < EC_SIM_BUGS ? bug_names[bug] : NULL;
+}
+
+/**
+ * ec_sim_set_bug() - let the model be wrong in one way
+ * @sim: segment
+ * @bug: which, EC_SIM_BUG_NONE: be right
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sim_set_bug(struct ec_sim *sim, enum ec_sim_bug bug)
+{
+	sim->bug = bug;
+}
+
+int ec_sim_faults_init(struct ec_sim *sim)
+{
+	int i;
+
+	sim->fault = sim->ops.alloc(EC_SIM_MAX_FAULTS * sizeof(*sim->fault));
+	if (!sim->fault)
+		return -ENOMEM;
+	for (i = 0; i < EC_SIM_MAX_FAULTS; i++)
+		sim->fault[i].next = i + 1 < EC_SIM_MAX_FAULTS ? i + 1 : -1;
+	sim->fault_free = 0;
+	sim->fault_due = -1;
+	sim->fault_frame = -1;
+	return 0;
+}
+
+static bool is_frame_fault(enum ec_sim_fault_type type)
+{
+	return type == EC_SIM_FAULT_LOSE || type == EC_SIM_FAULT_DUPLICATE ||
+	       type == EC_SIM_FAULT_DELAY || type == EC_SIM_FAULT_MANGLE;
+}
+
+static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
+{
+	bool cable = f->type == EC_SIM_FAULT_CUT || f->type == EC_SIM_FAULT_HEAL;
+
+	if ((u32)f->type >= EC_SIM_FAULT_TYPES)
+		return false;
+	if (is_frame_fault(f->type))
+		return f->port >= -1 && f->port < EC_SIM_PORTS;
+	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
+		return true;
+	if (f->slave < 0 || f->slave >= (int)sim->count)
+		return false;
+	return !(cable || f->type == EC_SIM_FAULT_ERRORS) ||
+	       (f->port >= 0 && f->port < EC_MAX_PORT);
+}
+
+static void give_back(struct ec_sim *sim, int i)
+{
+	sim->fault[i].next = sim->fault_free;
+	sim->fault_free = i;
+}
+
+/**
+ * ec_sim_add_fault() - script a fault
+ * @sim: segment
+ * @fault: what, where, when; copied
+ *
+ * Faults of the same time happen in the order they were added.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EINVAL for an unknown type, slave or port, -ENOSPC when 1024
+ * are waiting or active.
+ */
+int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault)
+{
+	int *at = &sim->fault_due, i = sim->fault_free;
+
+	if (!is_valid(sim, fault))
+		return -EINVAL;
+	if (i < 0)
+		return -ENOSPC;
+	sim->fault_free = sim->fault[i].next;
+	while (*at >= 0 && sim->fault[*at].f.at_ns <= fault->at_ns)
+		at = &sim->fault[*at].next;
+	sim->fault[i].f = *fault;
+	sim->fault[i].seen = 0;
+	sim->fault[i].next = *at;
+	*at = i;
+	return 0;
+}
+
+/**
+ * ec_sim_clear_faults() - forget what is scripted, end what misbehaves
+ * @sim: segment
+ *
+ * Cut cables stay cut, slaves without power stay so.
+ *
+ * Context: Any. RT-safe: bounded by the slaves, no sleep, no allocation.
+ */
+void ec_sim_clear_faults(struct ec_sim *sim)
+{
+	int *list[2] = { &sim->fault_due, &sim->fault_frame };
+	u32 i;
+
+	for (i = 0; i < 2; i++) {
+		while (*list[i] >= 0) {
+			int k = *list[i];
+
+			*list[i] = sim->fault[k].next;
+			give_back(sim, k);
+		}
+	}
+	for (i = 0; i < sim->count; i++)
+		memset(&sim->esc[i]->fault, 0, sizeof(sim->esc[i]->fault));
+}
+
+u64 ec_sim_faults_next(const struct ec_sim *sim)
+{
+	return sim->fault_due < 0 ? EC_ESC_NEVER :
+				    sim->fault[sim->fault_due].f.at_ns;
+}
+
+static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
+{
+	struct ec_esc *esc = f->slave >= 0 ? sim->esc[f->slave] : NULL;
+	u8 *count;
+
+	switch (f->type) {
+	case EC_SIM_FAULT_CUT:
+	case EC_SIM_FAULT_HEAL:
+		ec_sim_cut(sim, f->slave, f->port,
+			   f->type == EC_SIM_FAULT_CUT, now);
+		break;
+	case EC_SIM_FAULT_POWER_OFF:
+	case EC_SIM_FAULT_POWER_ON:
+		ec_sim_power(esc, f->type == EC_SIM_FAULT_POWER_ON, now);
+		break;
+	case EC_SIM_FAULT_REFUSE_AL:
+		esc->fault.al_refuse = (u8)f->arg;
+		esc->fault.al_code = (u16)f->arg2;
+		break;
+	case EC_SIM_FAULT_EEPROM_BUSY:
+		esc->fault.eeprom_busy = f->arg;
+		break;
+	case EC_SIM_FAULT_EEPROM_NOACK:
+		esc->fault.eeprom_noack = f->arg;
+		break;
+	case EC_SIM_FAULT_MISS_BROADCAST:
+		esc->fault.miss_broadcast = f->arg;
+		break;
+	case EC_SIM_FAULT_DEAD:
+		esc->fault.dead = f->arg;
+		break;
+	case EC_SIM_FAULT_WKC:
+		esc->fault.wkc_add = (s16)f->arg;
+		break;
+	case EC_SIM_FAULT_MUTE:
+		esc->fault.app_mute = f->arg;
+		break;
+	case EC_SIM_FAULT_ERRORS:
+		count = esc->mem + EC_REG_ERR_RX(f->port);
+		*count = (u8)min_t(u64, 0xff, (u64)*count + f->arg);
+		break;
+	default:
+		break;
+	}
+}
+
+/* end an earlier fault by chance of the same kind and port */
+static void end_chance(struct ec_sim *sim, const struct ec_sim_fault *f)
+{
+	int *at = &sim->fault_frame;
+
+	while (*at >= 0) {
+		int i = *at;
+		const struct ec_sim_fault *o = &sim->fault[i].f;
+
+		if (o->type == f->type && o->port == f->port && !o->arg) {
+			*at = sim->fault[i].next;
+			give_back(sim, i);
+		} else {
+			at = &sim->fault[i].next;
+		}
+	}
+}
+
+/* the first of the waiting faults is due */
+void ec_sim_faults_run(struct ec_sim *sim, u64 now)
+{
+	int i = sim->fault_due;
+	const struct ec_sim_fault *f = &sim->fault[i].f;
+
+	sim->fault_due = sim->fault[i].next;
+	if (!is_frame_fault(f->type)) {
+		strike(sim, f, now);
+		give_back(sim, i);
+		return;
+	}
+	if (!f->arg)
+		end_chance(sim, f);
+	if (!f->arg && !f->arg2) {
+		give_back(sim, i);
+		return;
+	}
+	sim->fault[i].next = sim->fault_frame;
+	sim->fault_frame = i;
+}
+
+static bool hits(struct ec_sim *sim, struct ec_sim_pending_fault *pf, int port)
+{
+	if (pf->f.port >= 0 && pf->f.port != port)
+		return false;
+	if (pf->f.arg)
+		return ++pf->seen == pf->f.arg;
+	return (u64)ec_sim_random(sim) * 1000000 >> 32 < pf->f.arg2;
+}
+
+/* what happens to the frame being sent */
+void ec_sim_faults_frame(struct ec_sim *sim, int port, bool *lose_out,
+			 bool *lose_back, struct ec_sim_result *res,
+			 u64 *extra_ns)
+{
+	int *at = &sim->fault_frame;
+
+	while (*at >= 0) {
+		int i = *at;
+		struct ec_sim_pending_fault *pf = &sim->fault[i];
+		const struct ec_sim_fault *f = &pf->f;
+
+		if (!hits(sim, pf, port)) {
+			at = &pf->next;
+			continue;
+		}
+		res->induced = true;
+		switch (f->type) {
+		case EC_SIM_FAULT_LOSE:
+			if (f->value)
+				*lose_back = true;
+			else
+				*lose_out = true;
+			break;
+		case EC_SIM_FAULT_DUPLICATE:
+			res->copies = (u8)(f->value ? f->value : 1);
+			break;
+		case EC_SIM_FAULT_DELAY:
+			*extra_ns += f->value;
+			break;
+		default:
+			res->mangled = true;
+			break;
+		}
+		if (f->arg) {			/* it was the n-th: done */
+			*at = pf->next;
+			give_back(sim, i);
+		} else {
+			at = &pf->next;
+		}
+	}
+}
+
+/* change one to four bytes behind the EtherCAT header */
+void ec_sim_faults_mangle(struct ec_sim *sim, u8 *frame, size_t len)
+{
+	u32 n = 1 + (ec_sim_random(sim) & 3);
+
+	if (len <= EC_FRAME_HDR)
+		return;
+	while (n--) {
+		u32 span = (u32)len - EC_FRAME_HDR;
+		u32 at = EC_FRAME_HDR + ec_sim_random(sim) % span;
+
+		frame[at] ^= (u8)(1u << (ec_sim_random(sim) & 7));
+	}
+}
