@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <time.h>
+
+#include "dev.h"
+#include "out.h"
+
+#define EPOCH_2000	946684800LL	/* seconds from 1970 to 2000 */
+
+/* three averages, over 1, 10 and 60 s */
+static void rates(const char *label, const char *key, const double *v, int decimals)
+{
+	out_array(key);
+	out_text("      %-22s", label);
+	for (int i = 0; i < EC_UAPI_RATES; i++)
+		out_f("", v[i], " %6.*f", decimals, v[i]);
+	out_end();
+	out_text("\n");
+}
+
+static void byte_rates(const char *label, const char *key, const __u32 *bytes)
+{
+	double kbyte[EC_UAPI_RATES];
+
+	out_array(key);
+	for (int i = 0; i < EC_UAPI_RATES; i++) {
+		out_u("", bytes[i], NULL);
+		kbyte[i] = bytes[i] / 1024.0;
+	}
+	out_end();
+	out_text("      %-22s %6.1f %6.1f %6.1f\n", label, kbyte[0], kbyte[1], kbyte[2]);
+}
+
+static void count_rates(const char *label, const char *key, const __u32 *v)
+{
+	double d[EC_UAPI_RATES] = { v[0], v[1], v[2] };
+
+	rates(label, key, d, 0);
+}
+
+static void counters(const struct ec_ioc_device *d)
+{
+	out_u("tx_frames", d->tx_frames, "      Tx frames:   %llu\n", d->tx_frames);
+	out_u("tx_bytes", d->tx_bytes, "      Tx bytes:    %llu\n", d->tx_bytes);
+	out_u("rx_frames", d->rx_frames, "      Rx frames:   %llu\n", d->rx_frames);
+	out_u("rx_bytes", d->rx_bytes, "      Rx bytes:    %llu\n", d->rx_bytes);
+}
+
+static void all_rates(const struct ec_ioc_device *d)
+{
+	count_rates("Tx frame rate [1/s]: ", "tx_frames_per_s", d->tx_frame_rate);
+	byte_rates("Tx rate [KByte/s]:   ", "tx_bytes_per_s", d->tx_byte_rate);
+	count_rates("Rx frame rate [1/s]: ", "rx_frames_per_s", d->rx_frame_rate);
+	byte_rates("Rx rate [KByte/s]:   ", "rx_bytes_per_s", d->rx_byte_rate);
+}
+
+static void device(const char *label, const struct ec_ioc_device *d)
+{
+	const __u8 *a = d->address;
+	bool attached = d->state == EC_DEVICE_ATTACHED;
+	char mac[18];
+
+	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", a[0], a[1], a[2], a[3], a[4],
+		 a[5]);
+	out_object(NULL);
+	out_str("mac", mac, "    %s: %s (", label, mac);
+	out_bool("attached", attached, "%s)\n", attached ? "attached" : "waiting...");
+	out_str("interface", d->name, NULL);
+	out_bool("link_up", d->link_up, "      Link: %s\n", d->link_up ? "UP" : "DOWN");
+	counters(d);
+	out_u("tx_errors", d->tx_errors, "      Tx errors:   %llu\n", d->tx_errors);
+	all_rates(d);
+	out_u("slaves_responding", d->slaves, NULL);
+	out_u("lost_frames", d->lost, NULL);
+	out_u("late_frames", d->late, NULL);
+	out_u("unmatched_frames", d->unmatched, NULL);
+	out_u("foreign_frames", d->foreign, NULL);
+	out_end();
+}
+
+static void sum(struct ec_ioc_device *c, const struct ec_ioc_device *d)
+{
+	c->tx_frames += d->tx_frames;
+	c->tx_bytes += d->tx_bytes;
+	c->rx_frames += d->rx_frames;
+	c->rx_bytes += d->rx_bytes;
+	c->lost += d->lost;
+	c->late += d->late;
+	c->unmatched += d->unmatched;
+	c->foreign += d->foreign;
+	for (int i = 0; i < EC_UAPI_RATES; i++) {
+		c->tx_frame_rate[i] += d->tx_frame_rate[i];
+		c->rx_frame_rate[i] += d->rx_frame_rate[i];
+		c->tx_byte_rate[i] += d->tx_byte_rate[i];
+		c->rx_byte_rate[i] += d->rx_byte_rate[i];
+		c->loss_rate[i] += d->loss_rate[i];
+	}
+}
+
+static void common(const struct ec_ioc_master *m)
+{
+	struct ec_ioc_device c = { 0 };
+	double loss[EC_UAPI_RATES];
+
+	for (unsigned int i = 0; i < m->device_count; i++)
+		sum(&c, &m->devices[i]);
+	for (int i = 0; i < EC_UAPI_RATES; i++)
+		loss[i] = c.tx_frame_rate[i] ? 100.0 * c.loss_rate[i] / c.tx_frame_rate[i] : 0;
+	out_object("common");
+	out_text("    Common:\n");
+	counters(&c);
+	out_u("lost_frames", c.lost, "      Lost frames: %llu\n", c.lost);
+	all_rates(&c);
+	count_rates("Loss rate [1/s]:     ", "lost_frames_per_s", c.loss_rate);
+	rates("Frame loss [%]:      ", "frame_loss_percent", loss, 1);
+	out_end();
+}
+
+static void clocks(const struct ec_ioc_master *m)
+{
+	time_t s = (time_t)(m->app_time / 1000000000) + EPOCH_2000;
+	char text[32];
+	struct tm tm;
+
+	out_object("dc");
+	out_text("  Distributed clocks:\n");
+	if (m->ref_clock >= 0)
+		out_i("reference_clock", m->ref_clock, "    Reference clock:   Slave %d\n",
+		      m->ref_clock);
+	else
+		out_null("reference_clock", "    Reference clock:   None\n");
+	out_u("reference_time_ns", m->dc_ref_time, "    DC reference time: %llu\n", m->dc_ref_time);
+	out_u("application_time_ns", m->app_time, "    Application time:  %llu\n", m->app_time);
+	if (gmtime_r(&s, &tm) && strftime(text, sizeof(text), "%Y-%m-%d %H:%M:%S", &tm))
+		out_text("                       %s.%09llu\n", text, m->app_time % 1000000000);
+	out_end();
+}
+
+static const char *phase_text(unsigned int phase)
+{
+	static const char *const text[] = { "Waiting for device(s)...", "Idle", "Operation" };
+
+	return phase < ARRAY_SIZE(text) ? text[phase] : "???";
+}
+
+static int show(const struct tool *t, struct dev *d)
+{
+	static const char *const phase_key[] = { "waiting", "idle", "operation" };
+	struct ec_ioc_master m;
+
+	if (dev_master(d, &m))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, "Master%u\n", d->master);
+	out_str("phase", m.phase < ARRAY_SIZE(phase_key) ? phase_key[m.phase] : "unknown",
+		"  Phase: %s\n", phase_text(m.phase));
+	out_bool("active", m.active, "  Active: %s\n", m.active ? "yes" : "no");
+	out_u("slaves", m.slave_count, "  Slaves: %u\n", m.slave_count);
+	out_text("  Ethernet devices:\n");
+	out_array("devices");
+	for (unsigned int i = 0; i < m.device_count; i++)
+		device(i ? "Backup" : "Main", &m.devices[i]);
+	out_end();
+	common(&m);
+	clocks(&m);
+	out_u("slaves_responding", m.slaves_responding, NULL);
+	out_bool("scan_busy", m.scan_busy, NULL);
+	out_u("scan_index", m.scan_index, NULL);
+	out_u("scan_duration_us", m.scan_us, NULL);
+	out_u("scan_frames", m.scan_frames, NULL);
+	out_u("debug_level", m.debug_level, NULL);
+	out_u("configs", m.config_count, NULL);
+	out_u("domains", m.domain_count, NULL);
+	out_str("module_release", d->version.release, NULL);
+	if (t->verbosity > 0) {
+		out_text("  Module: %s, interface version %u\n", d->version.release, d->version.abi);
+		out_text("  Slaves responding: %u\n", m.slaves_responding);
+		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_index,
+			 m.scan_busy ? "running" : "finished", m.scan_us, m.scan_frames);
+		out_text("  Debug level: %u\n", m.debug_level);
+	}
+	out_end();
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, false, show);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_master = {
+	.name = "master",
+	.run = run,
+	.args = "",
+	.opts = "mv",
+	.summary = "Show masters, their network interfaces and clocks",
+	.help = "Rates are averages over 1, 10 and 60 seconds; 1 KByte is 1024 bytes. Times are\n"
+		"nanoseconds since 2000-01-01 UTC. With --verbose also the last bus scan.\n",
+	.json = "masters[]: master, phase (waiting, idle, operation), active, slaves,\n"
+		"devices[] (mac, attached, interface, link_up, tx_frames, tx_bytes, rx_frames,\n"
+		"rx_bytes, tx_errors, tx_frames_per_s[], tx_bytes_per_s[], rx_frames_per_s[],\n"
+		"rx_bytes_per_s[], lost_frames, late_frames, unmatched_frames, foreign_frames),\n"
+		"common (the sums, lost_frames_per_s[], frame_loss_percent[]), dc (reference_clock,\n"
+		"reference_time_ns, application_time_ns), slaves_responding, scan_busy, scan_index,\n"
+		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
+	.flags = CMD_HISTORIC,
+};

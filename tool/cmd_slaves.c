@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <string.h>
+
+#include "dev.h"
+#include "out.h"
+#include "slave_info.h"
+
+#define WAIT_S	60.0
+
+static int digits(unsigned int v)
+{
+	return snprintf(NULL, 0, "%u", v);
+}
+
+static void row(const struct ec_ioc_slave *s, const char *indent, const int *w)
+{
+	char state[16], name[EC_UAPI_STRING];
+
+	al_state_text(s->al_status, state, sizeof(state));
+	slave_name(s, name, sizeof(name));
+	out_text("%s%*u  %*u:%-*u  %-*s  %c  %s\n", indent, w[0], s->position, w[1], s->alias_group,
+		 w[2], slave_alias_pos(s), w[3], state, s->error ? 'E' : '+', name);
+}
+
+/* ring order, each slave once; the link to the next one may be cut */
+static void table(const struct ec_ioc_slave *s, size_t n, const char *indent)
+{
+	int w[4] = { 0 };
+	char state[16];
+
+	for (size_t i = 0; i < n; i++) {
+		al_state_text(s[i].al_status, state, sizeof(state));
+		w[0] = max(w[0], digits(s[i].position));
+		w[1] = max(w[1], digits(s[i].alias_group));
+		w[2] = max(w[2], digits(slave_alias_pos(&s[i])));
+		w[3] = max(w[3], (int)strlen(state));
+	}
+	for (size_t i = 0; i < n; i++) {
+		if (i && s[i].device_index != s[i - 1].device_index)
+			out_text("xxx LINK FAILURE xxx\n");
+		row(&s[i], indent, w);
+	}
+}
+
+static size_t sort_once(struct slaves *s)
+{
+	size_t n = 0;
+
+	for (size_t i = 1; i < s->n; i++) {
+		struct ec_ioc_slave x = s->v[i];
+		size_t k = i;
+
+		for (; k && s->v[k - 1].position > x.position; k--)
+			s->v[k] = s->v[k - 1];
+		s->v[k] = x;
+	}
+	for (size_t i = 0; i < s->n; i++)
+		if (!n || s->v[n - 1].position != s->v[i].position)
+			s->v[n++] = s->v[i];
+	return n;
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_master m;
+	struct slaves sel;
+
+	if (t->wait && dev_wait_scan(d, t->wait_s >= 0 ? t->wait_s : WAIT_S))
+		return 1;
+	if (dev_master(d, &m) || dev_select(d, t, &sel, NULL))
+		return 1;
+	if (m.scan_busy)
+		note("Master%u: a bus scan is running, the list may be incomplete (see --wait)",
+		     d->master);
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_bool("scan_busy", m.scan_busy, NULL);
+	out_array("slaves");
+	if (t->verbosity <= 0)
+		sel.n = sort_once(&sel);
+	if (t->verbosity <= 0 && !out_is_json()) {
+		if (d->selected > 1)
+			out_text("Master%u\n", d->master);
+		table(sel.v, sel.n, d->selected > 1 ? "  " : "");
+	} else {
+		for (size_t i = 0; i < sel.n; i++)
+			slave_info(d->master, &sel.v[i]);
+	}
+	out_end();
+	out_end();
+	slaves_free(&sel);
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, false, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_slaves = {
+	.name = "slaves",
+	.run = run,
+	.args = "",
+	.opts = "mapvw",
+	.summary = "Show the slaves on the bus",
+	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
+		"'+ERROR' behind the state: the slave reports an error. Flag 'E': scanning or\n"
+		"configuring the slave failed. 'xxx LINK FAILURE xxx' stands where a redundant ring\n"
+		"is cut. With --verbose everything the master knows about the slaves; with --wait\n"
+		"the list is read when no bus scan is running (at most 60 s later).\n",
+	.json = "masters[]: master, scan_busy, slaves[] (position, alias, relative_position, device,\n"
+		"state, al_error, flag_error, cause, name, vendor_id, product_code, revision_number,\n"
+		"serial_number, own_alias, station_address, al_status, al_status_code,\n"
+		"al_status_text, requested_state, dl_status, fmmu_bit_operation, dc, dc_delay_ns,\n"
+		"ports[] (type, link_up, loop_closed, signal, next_slave, receive_time_ns,\n"
+		"receive_time_diff_ns, delay_to_next_dc_ns), mailboxes (bootstrap_rx_offset,\n"
+		"bootstrap_rx_size, bootstrap_tx_offset, bootstrap_tx_size, standard_..., protocols[]),\n"
+		"general (group, image, order_number, device_name, coe_details, flags, current_ma),\n"
+		"sync_managers, fmmus, sii_words)",
+	.flags = CMD_HISTORIC,
+};

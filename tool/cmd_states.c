@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <strings.h>
+
+#include "../master/wire/al.h"
+#include "dev.h"
+#include "out.h"
+
+#define WAIT_S		10.0
+#define POLL_MS		10
+
+static u8 wanted;	/* 0: show */
+
+static u8 parse_state(const char *text)
+{
+	static const u8 all[] = { EC_AL_INIT, EC_AL_PREOP, EC_AL_BOOT, EC_AL_SAFEOP, EC_AL_OP };
+
+	for (size_t i = 0; i < ARRAY_SIZE(all); i++)
+		if (!strcasecmp(text, ec_al_state_name(all[i])))
+			return all[i];
+	return 0;
+}
+
+static void show_slave(const struct ec_ioc_slave *s)
+{
+	char state[16];
+
+	al_state_text(s->al_status, state, sizeof(state));
+	out_object(NULL);
+	out_u("position", s->position, "%u  ", s->position);
+	out_u("alias", s->alias_group, "%u:", s->alias_group);
+	out_u("relative_position", slave_alias_pos(s), "%u  ", slave_alias_pos(s));
+	out_str("state", ec_al_state_name((u8)s->al_status), "%s", state);
+	out_bool("al_error", s->al_status & EC_AL_ERROR, NULL);
+	out_u("al_status_code", s->al_code, NULL);
+	out_str("al_status_text", ec_al_code_text(s->al_code), NULL);
+	if (s->al_code)
+		out_text("  0x%04x: %s", s->al_code, ec_al_code_text(s->al_code));
+	out_text("\n");
+	out_end();
+}
+
+static int failed(const struct dev *d, const struct ec_ioc_slave *s, const char *what)
+{
+	char state[16];
+
+	al_state_text(s->al_status, state, sizeof(state));
+	if (s->al_code)
+		return fail("Master%u slave %u: %s %s, it is in %s: AL status code 0x%04x: %s%s%s",
+			    d->master, s->position, what, ec_al_state_name(wanted), state,
+			    s->al_code, ec_al_code_text(s->al_code), s->why[0] ? ": " : "", s->why);
+	return fail("Master%u slave %u: %s %s, it is in %s%s%s", d->master, s->position, what,
+		    ec_al_state_name(wanted), state, s->why[0] ? ": " : "", s->why);
+}
+
+/* the error bit counts once it is new or its code differs from before the request */
+static int wait_slave(struct dev *d, const struct ec_ioc_slave *before, double end)
+{
+	struct ec_ioc_slave s;
+	double start = now_s();
+
+	for (;;) {
+		if (dev_slave(d, before->position, &s))
+			return 1;
+		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
+			return 0;
+		if (s.al_status & EC_AL_ERROR &&
+		    (!(before->al_status & EC_AL_ERROR) || s.al_code != before->al_code ||
+		     now_s() - start > 1))
+			return failed(d, &s, "refused");
+		if (now_s() >= end)
+			return failed(d, &s, "has not reached");
+		sleep_ms(POLL_MS);
+	}
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : WAIT_S);
+	struct slaves sel;
+	int ret = 0;
+
+	if (dev_select(d, t, &sel, NULL))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	if (!wanted && d->selected > 1)
+		out_text("Master%u\n", d->master);
+	out_array("slaves");
+	for (size_t i = 0; i < sel.n && wanted; i++) {
+		struct ec_ioc_state req = { .position = sel.v[i].position, .state = wanted };
+		int err = dev_ioctl(d, EC_IOC_STATE, &req);
+
+		if (err)
+			ret = dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master,
+				       req.position, ec_al_state_name(wanted));
+	}
+	for (size_t i = 0; i < sel.n && wanted && t->wait; i++)
+		ret |= wait_slave(d, &sel.v[i], end);
+	for (size_t i = 0; i < sel.n; i++)
+		if (!wanted || (t->wait && !dev_slave(d, sel.v[i].position, &sel.v[i]) &&
+				out_is_json()))
+			show_slave(&sel.v[i]);
+	out_end();
+	out_end();
+	slaves_free(&sel);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	wanted = 0;
+	if (argc) {
+		wanted = parse_state(argv[0]);
+		if (!wanted)
+			return usage_error("invalid state '%s': expected INIT, PREOP, BOOT, SAFEOP or OP",
+					   argv[0]);
+	}
+	out_array("masters");
+	ret = dev_each(t, wanted, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_states = {
+	.name = "states",
+	.run = run,
+	.args = "[STATE]",
+	.opts = "mapw",
+	.summary = "Request an AL state for slaves, or show the states",
+	.help = "STATE := { INIT | PREOP | BOOT | SAFEOP | OP }, in any case.\n"
+		"Without --wait the command returns as soon as the request is accepted. With\n"
+		"--wait it fails when a slave refuses or needs longer (default 10 s), and tells\n"
+		"the AL status code. A running application may pull slaves back to its own state.\n"
+		"Without STATE: position, alias:relative position, state, AL status code if any.\n",
+	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"
+		"al_status_code, al_status_text); empty after a request without --wait",
+	.flags = CMD_HISTORIC,
+	.max_args = 1,
+};

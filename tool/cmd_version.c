@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "out.h"
+#include "tool.h"
+
+#ifndef EC_TOOL_REVISION
+#define EC_TOOL_REVISION	"unknown"
+#endif
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	(void)t, (void)argc, (void)argv;
+	out_str("name", "EtherCAT master", "EtherCAT master ");
+	out_str("version", EC_TOOL_VERSION, "%s ", EC_TOOL_VERSION);
+	out_str("revision", EC_TOOL_REVISION, "%s\n", EC_TOOL_REVISION);
+	out_u("abi", EC_UAPI_VERSION, NULL);
+	return 0;
+}
+
+const struct cmd cmd_version = {
+	.name = "version",
+	.run = run,
+	.args = "",
+	.opts = "",
+	.summary = "Show the version of the tool",
+	.help = "One line; the first word with a dot is the version. Needs no master.\n",
+	.json = "name, version, revision, abi (interface version)",
+	.flags = CMD_HISTORIC,
+};

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "dev.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "../master/wire/al.h"
+#include "sys.h"
+
+#define SCAN_RETRIES	3
+
+double now_s(void)
+{
+	struct timespec ts;
+
+	clock_gettime(CLOCK_MONOTONIC, &ts);
+	return (double)ts.tv_sec + (double)ts.tv_nsec / 1e9;
+}
+
+void sleep_ms(unsigned int ms)
+{
+	struct timespec ts = { ms / 1000, (long)(ms % 1000) * 1000000 };
+
+	nanosleep(&ts, NULL);
+}
+
+/* strings of the EEPROM go to terminals: end them, no control characters */
+void clean_string(char *s, size_t size)
+{
+	size_t i;
+
+	for (i = 0; i + 1 < size && s[i]; i++)
+		if ((unsigned char)s[i] < 0x20 || s[i] == 0x7f)
+			s[i] = '?';
+	s[i] = 0;
+}
+
+static int open_error(struct dev *d, int err)
+{
+	const char *hint = NULL;
+
+	if (err == ENOENT || err == ENXIO || err == ENODEV)
+		hint = "load the module (modprobe ec_master, or insmod ec_master.ko)";
+	else if (err == EACCES || err == EPERM)
+		hint = "members of the group that owns the file may use it (see ls -l)";
+	return fail_full(err, hint, 0, "Failed to open %s", d->path);
+}
+
+/**
+ * dev_open() - open the device file of a master
+ * @d: result, to be closed with dev_close()
+ * @master: index
+ * @write: for traffic or changes
+ *
+ * Return: 0, or 1 after printing why not.
+ */
+int dev_open(struct dev *d, unsigned int master, bool write)
+{
+	const char *dir = getenv("EC_DEVICE_DIR");
+
+	*d = (struct dev){ .fd = -1, .master = master, .selected = 1 };
+	snprintf(d->path, sizeof(d->path), "%s/EtherCAT%u", dir ? dir : "/dev", master);
+	d->fd = sys_open(d->path, write ? O_RDWR : O_RDONLY);
+	if (d->fd < 0)
+		return open_error(d, errno);
+	if (!sys_ioctl(d->fd, EC_IOC_VERSION, &d->version))
+		return 0;
+	if (errno == ENOTTY || errno == EINVAL)
+		fail("%s belongs to another EtherCAT master, whose interface differs from "
+		     "this tool's (version %u)", d->path, EC_UAPI_VERSION);
+	else
+		dev_fail(d, errno, "%s: no version", d->path);
+	dev_close(d);
+	return 1;
+}
+
+void dev_close(struct dev *d)
+{
+	if (d->fd >= 0)
+		sys_close(d->fd);
+	d->fd = -1;
+}
+
+/* Return: 0 or the errno */
+int dev_ioctl(struct dev *d, unsigned long request, void *arg)
+{
+	int ret;
+
+	do
+		ret = sys_ioctl(d->fd, request, arg);
+	while (ret < 0 && errno == EINTR);
+	return ret < 0 ? errno : 0;
+}
+
+/* report the failure @err of the last dev_ioctl(), with the kernel's reason */
+int dev_fail(struct dev *d, int err, const char *fmt, ...)
+{
+	struct ec_ioc_reason reason = { 0 };
+	char text[512], older[128];
+	va_list ap;
+
+	if (sys_ioctl(d->fd, EC_IOC_REASON, &reason))
+		reason.text[0] = 0;
+	clean_string(reason.text, sizeof(reason.text));
+	if (err == ENOTTY && !reason.text[0] && d->version.abi != EC_UAPI_VERSION) {
+		snprintf(older, sizeof(older), "the module has interface version %u, this tool %u",
+			 d->version.abi, EC_UAPI_VERSION);
+		memcpy(reason.text, older, sizeof(older));
+	}
+	va_start(ap, fmt);
+	vsnprintf(text, sizeof(text), fmt, ap);
+	va_end(ap);
+	return fail_full(err, reason.text, 0, "%s", text);
+}
+
+static unsigned int master_count(void)
+{
+	struct dev d;
+	unsigned int n;
+
+	if (dev_open(&d, 0, false))
+		return 0;
+	n = max(d.version.master_count, 1U);
+	dev_close(&d);
+	return n;
+}
+
+int dev_open_single(struct dev *d, const struct tool *t, bool write)
+{
+	unsigned int count = master_count();
+	struct numbers m;
+	int ret;
+
+	if (!count)
+		return 1;
+	if (list_expand(&t->masters, count, &m))
+		return fail("out of memory");
+	if (m.n == 1)
+		ret = dev_open(d, m.v[0], write);
+	else if (m.n)
+		ret = usage_error("needs exactly one of the %u masters; select it with -m", count);
+	else
+		ret = usage_error("-m selects none of the %u master(s) present", count);
+	numbers_free(&m);
+	return ret;
+}
+
+int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d))
+{
+	unsigned int count = master_count();
+	struct numbers m;
+	int ret = 0;
+
+	if (!count)
+		return 1;
+	if (list_expand(&t->masters, count, &m))
+		return fail("out of memory");
+	if (!m.n)
+		note("-m selects none of the %u master(s) present", count);
+	for (size_t i = 0; i < m.n; i++) {
+		struct dev d;
+		int one = dev_open(&d, m.v[i], write);
+
+		if (!one) {
+			d.selected = (unsigned int)m.n;
+			one = fn(t, &d);
+			dev_close(&d);
+		}
+		ret = max(ret, one);
+	}
+	numbers_free(&m);
+	return ret;
+}
+
+int dev_master(struct dev *d, struct ec_ioc_master *m)
+{
+	int err;
+
+	*m = (struct ec_ioc_master){ 0 };
+	err = dev_ioctl(d, EC_IOC_MASTER, m);
+	if (err)
+		return dev_fail(d, err, "Master%u: no data", d->master);
+	for (int i = 0; i < EC_UAPI_DEVICES; i++)
+		clean_string(m->devices[i].name, sizeof(m->devices[i].name));
+	m->device_count = min(m->device_count, (u32)EC_UAPI_DEVICES);
+	return 0;
+}
+
+static int get_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
+{
+	int err;
+
+	*s = (struct ec_ioc_slave){ .position = (__u16)position };
+	err = dev_ioctl(d, EC_IOC_SLAVE, s);
+	if (err)
+		return err;
+	clean_string(s->group, sizeof(s->group));
+	clean_string(s->image, sizeof(s->image));
+	clean_string(s->order, sizeof(s->order));
+	clean_string(s->name, sizeof(s->name));
+	clean_string(s->why, sizeof(s->why));
+	return 0;
+}
+
+int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
+{
+	int err = get_slave(d, position, s);
+
+	return err ? dev_fail(d, err, "Master%u slave %u: no data", d->master, position) : 0;
+}
+
+void slaves_free(struct slaves *s)
+{
+	free(s->v);
+	*s = (struct slaves){ 0 };
+}
+
+/*
+ * The bus may change while it is read: when a scan took place meanwhile the
+ * list is read again, and a slave that is gone by then ends it.
+ */
+int dev_slaves(struct dev *d, struct slaves *all)
+{
+	*all = (struct slaves){ 0 };
+	for (int i = 0;; i++) {
+		struct ec_ioc_master before, after;
+		int err = 0;
+
+		if (dev_master(d, &before))
+			return 1;
+		slaves_free(all);
+		all->v = calloc(before.slave_count + 1, sizeof(*all->v));
+		if (!all->v)
+			return fail("out of memory");
+		while (all->n < before.slave_count) {
+			err = get_slave(d, (unsigned int)all->n, &all->v[all->n]);
+			if (err)
+				break;
+			all->n++;
+		}
+		if (dev_master(d, &after)) {
+			slaves_free(all);
+			return 1;
+		}
+		if (before.scan_index != after.scan_index && i < SCAN_RETRIES)
+			continue;
+		if (err && before.scan_index == after.scan_index && !after.scan_busy) {
+			slaves_free(all);
+			return dev_fail(d, err, "Master%u slave %zu: no data", d->master, all->n);
+		}
+		return 0;
+	}
+}
+
+int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, size_t *all)
+{
+	struct numbers pos;
+	struct slaves bus;
+
+	*selected = (struct slaves){ 0 };
+	if (dev_slaves(d, &bus))
+		return 1;
+	if (select_slaves(&t->aliases, &t->positions, bus.v, bus.n, &pos)) {
+		slaves_free(&bus);
+		return fail("out of memory");
+	}
+	selected->v = calloc(pos.n + 1, sizeof(*selected->v));
+	for (size_t i = 0; selected->v && i < pos.n; i++)
+		selected->v[selected->n++] = bus.v[pos.v[i]];
+	if (all)
+		*all = bus.n;
+	numbers_free(&pos);
+	slaves_free(&bus);
+	return selected->v ? 0 : fail("out of memory");
+}
+
+int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s)
+{
+	struct slaves sel;
+	size_t all;
+	int ret = 0;
+
+	if (dev_select(d, t, &sel, &all))
+		return 1;
+	if (sel.n == 1)
+		*s = sel.v[0];
+	else
+		ret = usage_error("selection matches %zu slaves of the %zu present, one is needed; "
+				  "use -p or -a", sel.n, all);
+	slaves_free(&sel);
+	return ret;
+}
+
+int dev_wait_scan(struct dev *d, double timeout_s)
+{
+	double end = now_s() + timeout_s;
+
+	for (;;) {
+		struct ec_ioc_master m;
+
+		if (dev_master(d, &m))
+			return 1;
+		if (!m.scan_busy && m.phase != EC_PHASE_WAITING)
+			return 0;
+		if (now_s() >= end)
+			return fail("Master%u: %s after %g s", d->master,
+				    m.scan_busy ? "the bus scan has not finished" :
+				    "no network interface", timeout_s);
+		sleep_ms(20);
+	}
+}
+
+void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size)
+{
+	if (s->name[0])
+		snprintf(buf, size, "%s", s->name);
+	else
+		snprintf(buf, size, "0x%08x:0x%08x", s->vendor_id, s->product_code);
+}
+
+void al_state_text(unsigned int al_status, char *buf, size_t size)
+{
+	snprintf(buf, size, "%s%s", ec_al_state_name((u8)al_status),
+		 al_status & EC_AL_ERROR ? "+ERROR" : "");
+}
+
+/* second number of "alias:relative" */
+unsigned int slave_alias_pos(const struct ec_ioc_slave *s)
+{
+	return s->alias_group ? s->alias_pos : s->position;
+}

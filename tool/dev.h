@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A master's device file. Functions print their error and return 0 or 1. */
+#ifndef EC_TOOL_DEV_H
+#define EC_TOOL_DEV_H
+
+#include "tool.h"
+
+struct dev {
+	int fd;
+	unsigned int master;
+	char path[256];
+	struct ec_ioc_version version;
+	unsigned int selected;		/* masters that -m leaves */
+};
+
+struct slaves {
+	size_t n;
+	struct ec_ioc_slave *v;
+};
+
+int dev_open(struct dev *d, unsigned int master, bool write);
+void dev_close(struct dev *d);
+int dev_ioctl(struct dev *d, unsigned long request, void *arg);
+int dev_fail(struct dev *d, int err, const char *fmt, ...)
+	__attribute__((format(printf, 3, 4)));
+
+/* the one master of a command that needs exactly one */
+int dev_open_single(struct dev *d, const struct tool *t, bool write);
+/* calls @fn for every selected master; its value is the largest returned */
+int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d));
+
+int dev_master(struct dev *d, struct ec_ioc_master *m);
+int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s);
+int dev_slaves(struct dev *d, struct slaves *all);
+void slaves_free(struct slaves *s);
+
+/* what -a and -p select; @all may be NULL */
+int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, size_t *all);
+/* exactly one */
+int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s);
+
+int dev_wait_scan(struct dev *d, double timeout_s);
+
+void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size);
+void al_state_text(unsigned int al_status, char *buf, size_t size);
+unsigned int slave_alias_pos(const struct ec_ioc_slave *s);
+void clean_string(char *s, size_t size);
+double now_s(void);
+void sleep_ms(unsigned int ms);
+
+#endif

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Help and the man page, both made from the tables of commands and options. */
+#include <stdio.h>
+#include <string.h>
+
+#include "../master/wire/types.h"
+#include "tool.h"
+
+static void print_opt(FILE *f, const struct opt *o)
+{
+	char text[64];
+
+	if (o->letter == 'w')
+		snprintf(text, sizeof(text), "    --%s %s", o->name, o->arg);
+	else
+		snprintf(text, sizeof(text), "-%c, --%s%s%s", o->letter, o->name,
+			 o->arg ? " " : "", o->arg ? o->arg : "");
+	fprintf(f, "  %-26s %s\n", text, o->text);
+}
+
+static bool uses(const struct cmd *c, const struct opt *o)
+{
+	return strchr("jh", o->letter) || strchr(c->opts, o->letter);
+}
+
+/* overview; on stderr when no command was typed */
+void help_all(bool to_stderr)
+{
+	FILE *f = to_stderr ? stderr : stdout;
+
+	fputs("Usage: ethercat COMMAND [OPTIONS] [ARGUMENTS]\n\nCommands:\n", f);
+	for (const struct cmd *const *c = cmds; *c; c++)
+		if ((*c)->run)
+			fprintf(f, "  %-12s %s\n", (*c)->name, (*c)->summary);
+	fputs("\nOptions (each command lists those it uses):\n", f);
+	for (const struct opt *o = opts; o->letter; o++)
+		print_opt(f, o);
+	fputs("\nLIST := { N | N-M | N- | -M | - } [,LIST]     decimal\n"
+	      "Other numbers are decimal, 0x... hexadecimal or 0... octal.\n"
+	      "Commands may be abbreviated. 'ethercat help COMMAND' tells more.\n", f);
+}
+
+/* one command */
+void help_cmd(const struct cmd *c)
+{
+	bool any = false;
+
+	printf("Usage: ethercat %s [OPTIONS]%s%s\n\n%s.\n", c->name, *c->args ? " " : "", c->args,
+	       c->summary);
+	for (const struct cmd *const *a = cmds; *a; a++) {
+		if (!(*a)->alias_of || strcmp((*a)->alias_of, c->name))
+			continue;
+		printf("%s%s", any ? ", " : "Also: ", (*a)->name);
+		any = true;
+	}
+	if (any)
+		putchar('\n');
+	if (c->help)
+		printf("\n%s", c->help);
+	puts("\nOptions:");
+	for (const struct opt *o = opts; o->letter; o++)
+		if (uses(c, o))
+			print_opt(stdout, o);
+	if (c->flags & CMD_ONE_MASTER)
+		puts("\nWorks on one master; with several, -m selects it.");
+	if (c->json)
+		printf("\nJSON: %s\n", c->json);
+}
+
+static void roff(const char *s)
+{
+	if (*s == '.' || *s == '\'')
+		fputs("\\&", stdout);
+	for (; *s; s++) {
+		if (*s == '\\')
+			fputs("\\e", stdout);
+		else if (*s == '-')
+			fputs("\\-", stdout);
+		else
+			putchar(*s);
+		if (*s == '\n' && (s[1] == '.' || s[1] == '\''))
+			fputs("\\&", stdout);
+	}
+}
+
+static void roff_opt(const struct opt *o)
+{
+	puts(".TP");
+	if (o->letter == 'w')
+		printf(".B \\-\\-%s", o->name);
+	else
+		printf(".BR \\-%c \", \" \\-\\-", o->letter);
+	if (o->letter != 'w')
+		roff(o->name);
+	if (o->arg)
+		printf(" \" %s\"", o->arg);
+	putchar('\n');
+	roff(o->text);
+	putchar('\n');
+}
+
+static void roff_cmd(const struct cmd *c)
+{
+	fputs(".SS ethercat ", stdout);
+	roff(c->name);
+	fputs(" [OPTIONS] ", stdout);
+	roff(c->args);
+	putchar('\n');
+	roff(c->summary);
+	puts(".");
+	for (const struct cmd *const *a = cmds; *a; a++)
+		if ((*a)->alias_of && !strcmp((*a)->alias_of, c->name))
+			printf("Also called\n.BR %s .\n", (*a)->name);
+	if (c->help) {
+		puts(".PP\n.nf");
+		roff(c->help);
+		puts(".fi");
+	}
+	fputs(".PP\nOptions:", stdout);
+	for (const struct opt *o = opts; o->letter; o++)
+		if (uses(c, o))
+			printf(" \\-\\-%s", o->letter == 'o' ? "output\\-file" : o->name);
+	putchar('\n');
+	if (c->json) {
+		puts(".PP\nJSON:");
+		roff(c->json);
+		putchar('\n');
+	}
+}
+
+/* the man page */
+void help_roff(void)
+{
+	puts(".\\\" SPDX-License-Identifier: GPL-2.0-only\n"
+	     ".\\\" Made by 'make -C tool man' from the tables of the tool.\n"
+	     ".TH ETHERCAT 8 \"\" \"ethercat " EC_TOOL_VERSION "\"\n"
+	     ".SH NAME\nethercat \\- look at and change EtherCAT masters and their slaves\n"
+	     ".SH SYNOPSIS\n.B ethercat\n.I COMMAND\n[OPTIONS] [ARGUMENTS]\n"
+	     ".SH DESCRIPTION\n"
+	     "Talks to the masters of this host through\n.IR /dev/EtherCAT0 ,\n"
+	     ".I /dev/EtherCAT1\nand so on.\n"
+	     "Options may stand before or behind the command and between its arguments.\n"
+	     "Commands may be abbreviated as long as that is unambiguous.\n"
+	     "Commands that only show what the master knows need read access; those that make\n"
+	     "traffic on the bus or change something need write access.\n"
+	     ".PP\nNumbers are decimal, 0x... hexadecimal or 0... octal; in lists decimal.\n"
+	     "A list is one or more of N, N\\-M, N\\-, \\-M and \\-, separated by commas.\n"
+	     ".SH OPTIONS");
+	for (const struct opt *o = opts; o->letter; o++)
+		roff_opt(o);
+	puts(".SH SELECTION\n"
+	     "Without options a command takes all slaves.\n.B \\-p\n"
+	     "selects ring positions.\n.B \\-a\n"
+	     "selects the slave with an alias and those behind it up to the next slave with an\n"
+	     "alias; with both,\n.B \\-p\nis relative to the slave with the alias.\n"
+	     "Commands for a single slave refuse any other number of slaves.\n"
+	     ".SH COMMANDS");
+	for (const struct cmd *const *c = cmds; *c; c++)
+		if ((*c)->run)
+			roff_cmd(*c);
+	puts(".SH DATA TYPES");
+	for (unsigned int i = 0; i < ec_types_count; i++)
+		printf("%s%s", i ? ", " : "", ec_types[i].name);
+	puts(".\n.PP\nInteger types are printed as 0x and all hex digits, a blank, and decimal.\n"
+	     ".SH JSON\nOne object on stdout. Keys are only ever added; units are part of the key.\n"
+	     "Errors are one object on stderr: {\"error\": {\"command\", \"kind\" (usage or\n"
+	     "runtime), \"message\", \"errno\", \"errno_text\", \"reason\", \"abort_code\",\n"
+	     "\"abort_text\"}}.\n"
+	     ".SH EXIT STATUS\n0: done; 1: anything else.\n"
+	     ".SH FILES\n.I /dev/EtherCAT*\n.SH SEE ALSO\n.BR dot (1)");
+}

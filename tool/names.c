@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Command names and their abbreviations. */
+#include <string.h>
+
+#include "tool.h"
+
+/* the letters of @text in order; a repeated letter may match the same one */
+static bool contains(const char *name, const char *text)
+{
+	for (; *text; text++) {
+		name = strchr(name, *text);
+		if (!name)
+			return false;
+	}
+	return true;
+}
+
+static bool matches(const char *name, const char *text, bool prefix)
+{
+	return prefix ? !strncmp(name, text, strlen(text)) : contains(name, text);
+}
+
+const struct cmd *cmd_exact(const char *name)
+{
+	for (const struct cmd *const *c = cmds; *c; c++)
+		if (!strcmp((*c)->name, name))
+			return *c;
+	return NULL;
+}
+
+/**
+ * cmd_lookup() - find a command by its name or an abbreviation
+ * @text: as typed
+ * @found: room for all commands; receives the candidates of the stage that
+ *	had any
+ *
+ * An exact name wins; then come the names users of older tools abbreviate, by
+ * prefix and by letters in order; then the names added since.
+ *
+ * Return: number of candidates.
+ */
+int cmd_lookup(const char *text, const struct cmd **found)
+{
+	int n = 0;
+
+	found[0] = cmd_exact(text);
+	if (found[0])
+		return 1;
+	for (int stage = 0; stage < 4 && !n && *text; stage++)
+		for (const struct cmd *const *c = cmds; *c; c++)
+			if (((*c)->flags & CMD_HISTORIC ? 0 : 1) == stage / 2 &&
+			    matches((*c)->name, text, !(stage % 2)))
+				found[n++] = *c;
+	return n;
+}

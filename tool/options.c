@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* getopt_long() does the parsing; digits are options so that "-1" can be a value. */
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tool.h"
+
+const struct opt opts[] = {
+	{ 'm', "master", "LIST", "master indices, decimal; default all" },
+	{ 'a', "alias", "LIST", "alias addresses, decimal; default any" },
+	{ 'p', "position", "LIST", "ring positions, or positions behind the alias; default any" },
+	{ 'd', "domain", "LIST", "domain indices; default all" },
+	{ 't', "type", "NAME", "data type of the value, see 'ethercat help types'" },
+	{ 'o', "output-file", "FILE", "file name of the other side" },
+	{ 's', "skin", "NAME", "form of the output: default, etherlab" },
+	{ 'e', "emergency", NULL, "by ring position, without looking at the slave list" },
+	{ 'f', "force", NULL, "override a safety check" },
+	{ 'r', "reset", NULL, "clear after reading" },
+	{ 'q', "quiet", NULL, "less output" },
+	{ 'v', "verbose", NULL, "more output" },
+	{ 'w', "wait", "[SECONDS]", "wait for the end, at most that long" },
+	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
+	{ 'h', "help", NULL, "this text" },
+	{ 0 },
+};
+
+static const struct option longs[] = {
+	{ "master", required_argument, NULL, 'm' },
+	{ "alias", required_argument, NULL, 'a' },
+	{ "position", required_argument, NULL, 'p' },
+	{ "domain", required_argument, NULL, 'd' },
+	{ "type", required_argument, NULL, 't' },
+	{ "output-file", required_argument, NULL, 'o' },
+	{ "skin", required_argument, NULL, 's' },
+	{ "emergency", no_argument, NULL, 'e' },
+	{ "force", no_argument, NULL, 'f' },
+	{ "reset", no_argument, NULL, 'r' },
+	{ "quiet", no_argument, NULL, 'q' },
+	{ "verbose", no_argument, NULL, 'v' },
+	{ "wait", optional_argument, NULL, 'w' },
+	{ "json", no_argument, NULL, 'j' },
+	{ "help", no_argument, NULL, 'h' },
+	{ 0 },
+};
+
+static int parse_list(struct list *l, char letter, const char *text)
+{
+	const char *why;
+
+	if (!list_parse(l, text, &why))
+		return 0;
+	for (const struct opt *o = opts; o->letter; o++)
+		if (o->letter == letter)
+			return usage_error("invalid list '%s' for --%s: %s", text, o->name, why);
+	return 1;
+}
+
+static bool seconds(const char *text, double *s)
+{
+	char *end;
+
+	if (!text || !*text || text[strspn(text, "0123456789.")])
+		return false;
+	*s = strtod(text, &end);
+	return !*end;
+}
+
+static int bad_option(char **argv, int c)
+{
+	const char *word = argv[optind - 1];
+
+	if (c == ':' && !strncmp(word, "--", 2))
+		return usage_error("option '%s' needs an argument", word);
+	if (c == ':')
+		return usage_error("option '-%c' needs an argument", optopt);
+	if (!optopt)
+		return usage_error("unknown or ambiguous option '%s'", word);
+	if (strchr("eqvhjrf", optopt) || optopt == 'w')
+		return usage_error("option '%s' takes no argument", word);
+	return usage_error("unknown option '-%c'", optopt);
+}
+
+/* a word that begins with "-" and a digit or a point is a value, not an option */
+static bool negative(const char *word)
+{
+	return word[0] == '-' && ((word[1] >= '0' && word[1] <= '9') ||
+				  (word[1] == '.' && word[2] >= '0' && word[2] <= '9'));
+}
+
+static int one_option(struct tool *t, int c, char **argv, int argc)
+{
+	switch (c) {
+	case 'm':
+		return parse_list(&t->masters, 'm', optarg);
+	case 'a':
+		return parse_list(&t->aliases, 'a', optarg);
+	case 'p':
+		return parse_list(&t->positions, 'p', optarg);
+	case 'd':
+		return parse_list(&t->domains, 'd', optarg);
+	case 't':
+		t->type = optarg;
+		return 0;
+	case 'o':
+		t->output_file = optarg;
+		return 0;
+	case 's':
+		t->skin = optarg;
+		return 0;
+	case 'e':
+		t->emergency = true;
+		return 0;
+	case 'f':
+		t->force = true;
+		return 0;
+	case 'r':
+		t->reset = true;
+		return 0;
+	case 'q':
+		t->verbosity = -1;
+		return 0;
+	case 'v':
+		t->verbosity = 1;
+		return 0;
+	case 'j':
+		t->json = true;
+		return 0;
+	case 'w':
+		t->wait = true;
+		if (!optarg && optind < argc && seconds(argv[optind], &t->wait_s))
+			optind++;
+		else if (optarg && !seconds(optarg, &t->wait_s))
+			return usage_error("invalid time '%s' for --wait: expected seconds", optarg);
+		return 0;
+	default:
+		return bad_option(argv, c);
+	}
+}
+
+/**
+ * options_parse() - take options and arguments apart
+ * @t: options
+ * @argc: of main()
+ * @argv: of main()
+ * @args: arguments, room for @argc; the first is the command
+ * @nargs: how many
+ * @help: -h was given
+ * @seen: letters of the options given
+ * @seen_size: room at @seen
+ *
+ * Options may stand anywhere; "--" ends them.
+ *
+ * Return: 0, or 1 after printing what is wrong.
+ */
+int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
+		  char *seen, size_t seen_size)
+{
+	static const char shorts[] = "-:m:a:p:d:t:o:s:efrqvjh"
+		"0::1::2::3::4::5::6::7::8::9::.::";
+	size_t n = 0;
+	int c, ret;
+
+	*t = (struct tool){ .wait_s = -1 };
+	*nargs = 0;
+	*help = false;
+	opterr = 0;
+	/* errors of the command line itself are JSON as well */
+	for (int i = 1; i < argc && strcmp(argv[i], "--"); i++)
+		if (!strcmp(argv[i], "--json") || !strcmp(argv[i], "-j"))
+			error_context("", true);
+	while ((c = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
+		if (c == 1 || ((c == '.' || (c >= '0' && c <= '9')) && negative(argv[optind - 1]))) {
+			args[(*nargs)++] = c == 1 ? optarg : argv[optind - 1];
+			continue;
+		}
+		if (c == '.' || (c >= '0' && c <= '9'))
+			return usage_error("unknown option '%s'", argv[optind - 1]);
+		if (c == 'h') {
+			*help = true;
+			continue;
+		}
+		ret = one_option(t, c, argv, argc);
+		if (ret)
+			return ret;
+		if (n + 1 < seen_size)
+			seen[n++] = (char)c;
+	}
+	seen[n] = 0;
+	while (optind < argc)
+		args[(*nargs)++] = argv[optind++];
+	return 0;
+}

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "out.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#define DEPTH 16
+
+static bool json;
+static char closing[DEPTH];	/* of the open containers */
+static unsigned int depth;
+static bool first;		/* in the innermost container */
+
+void out_start(bool as_json)
+{
+	json = as_json;
+	depth = 0;
+	first = true;
+	if (json)
+		out_object(NULL);
+}
+
+/* close what is open; Return: 0, or -errno when stdout did not take it all */
+int out_finish(void)
+{
+	while (depth)
+		out_end();
+	if (fflush(stdout) || ferror(stdout))
+		return errno ? -errno : -EIO;
+	return 0;
+}
+
+bool out_is_json(void)
+{
+	return json;
+}
+
+/* length of the UTF-8 sequence at @p, 0: not valid */
+static int utf8_len(const unsigned char *p)
+{
+	int n = p[0] < 0x80 ? 1 : p[0] >= 0xc2 && p[0] < 0xe0 ? 2 :
+		p[0] >= 0xe0 && p[0] < 0xf0 ? 3 : p[0] >= 0xf0 && p[0] < 0xf5 ? 4 : 0;
+
+	for (int i = 1; i < n; i++)
+		if ((p[i] & 0xc0) != 0x80)
+			return 0;
+	if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f) ||
+	    (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f))
+		return 0;
+	return n;
+}
+
+/* SII strings are often Latin-1: bytes that are no UTF-8 are taken as that */
+void out_json_string(FILE *f, const char *s)
+{
+	const unsigned char *p = (const unsigned char *)s;
+
+	fputc('"', f);
+	while (*p) {
+		int n = utf8_len(p);
+
+		if (*p == '"' || *p == '\\')
+			fprintf(f, "\\%c", *p);
+		else if (*p < 0x20 || *p == 0x7f || !n)
+			fprintf(f, "\\u%04x", *p);
+		else
+			fwrite(p, 1, (size_t)n, f);
+		p += n ? n : 1;
+	}
+	fputc('"', f);
+}
+
+/* comma, line, indent and key of the next value; false: nothing to print */
+static bool lead(const char *key)
+{
+	bool member = depth && closing[depth - 1] == '}';
+
+	if (!json || (member && !key))
+		return false;
+	if (depth) {
+		fputs(first ? "\n" : ",\n", stdout);
+		printf("%*s", (int)(2 * depth), "");
+	}
+	if (member) {
+		out_json_string(stdout, key);
+		fputs(": ", stdout);
+	}
+	first = false;
+	return true;
+}
+
+static void open_container(const char *key, char o, char c)
+{
+	if (!json || depth == DEPTH || (depth && !lead(key)))
+		return;
+	putchar(o);
+	closing[depth++] = c;
+	first = true;
+}
+
+void out_object(const char *key)
+{
+	open_container(key, '{', '}');
+}
+
+void out_array(const char *key)
+{
+	open_container(key, '[', ']');
+}
+
+void out_end(void)
+{
+	if (!json || !depth)
+		return;
+	depth--;
+	if (!first)
+		printf("\n%*s", (int)(2 * depth), "");
+	putchar(closing[depth]);
+	first = false;
+	if (!depth)
+		putchar('\n');
+}
+
+#define TEXT(fmt)				\
+	do {					\
+		va_list ap;			\
+						\
+		if (!json && (fmt)) {		\
+			va_start(ap, fmt);	\
+			vprintf(fmt, ap);	\
+			va_end(ap);		\
+		}				\
+	} while (0)
+
+void out_text(const char *fmt, ...)
+{
+	TEXT(fmt);
+}
+
+void out_u(const char *key, u64 v, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (key && lead(key))
+		printf("%llu", (unsigned long long)v);
+}
+
+void out_i(const char *key, s64 v, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (key && lead(key))
+		printf("%lld", (long long)v);
+}
+
+void out_f(const char *key, double v, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (!key || !lead(key))
+		return;
+	if (isfinite(v))
+		printf("%.17g", v);
+	else
+		fputs("null", stdout);
+}
+
+void out_bool(const char *key, bool v, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (key && lead(key))
+		fputs(v ? "true" : "false", stdout);
+}
+
+void out_str(const char *key, const char *v, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (key && lead(key))
+		out_json_string(stdout, v);
+}
+
+void out_null(const char *key, const char *fmt, ...)
+{
+	TEXT(fmt);
+	if (key && lead(key))
+		fputs("null", stdout);
+}
+
+void out_hex(const char *key, const u8 *data, size_t size, const char *indent)
+{
+	for (size_t i = 0; !json && i < size; i++)
+		printf("%s%02x %s", i % 16 ? "" : indent, data[i],
+		       i % 16 == 15 || i + 1 == size ? "\n" : "");
+	if (!key || !lead(key))
+		return;
+	putchar('"');
+	for (size_t i = 0; i < size; i++)
+		printf("%02x", data[i]);
+	putchar('"');
+}
+
+void out_binary(const char *key, const u8 *data, size_t size)
+{
+	if (json)
+		out_hex(key, data, size, "");
+	else
+		fwrite(data, 1, size, stdout);
+}

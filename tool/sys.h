@@ -1,0 +1,9 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+#ifndef EC_TOOL_SYS_H
+#define EC_TOOL_SYS_H
+
+int sys_open(const char *path, int flags);
+int sys_ioctl(int fd, unsigned long request, void *arg);
+void sys_close(int fd);
+
+#endif

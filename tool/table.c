@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Every command. A name of older tools without a function here still takes part
+ * in abbreviations, so that none of them changes its meaning later.
+ */
+#include "tool.h"
+
+#define ABSENT(n) \
+	static const struct cmd cmd_##n = { .name = #n, .opts = "", .flags = CMD_HISTORIC, \
+					    .summary = "not in this version" }
+#define ALIAS(n, of) \
+	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
+
+extern const struct cmd cmd_help, cmd_master, cmd_slaves, cmd_states, cmd_version;
+
+ABSENT(alias);
+ABSENT(eoe);
+ABSENT(foe_read);
+ABSENT(foe_write);
+ABSENT(ip);
+ABSENT(sdos);
+ABSENT(sii_write);
+ABSENT(soe_read);
+ABSENT(soe_write);
+ABSENT(xml);
+ABSENT(config);
+ABSENT(crc);
+ABSENT(cstruct);
+ABSENT(data);
+ABSENT(debug);
+ABSENT(domains);
+ABSENT(download);
+ABSENT(graph);
+ABSENT(pdos);
+ABSENT(reg_read);
+ABSENT(reg_write);
+ABSENT(rescan);
+ABSENT(sii_read);
+ABSENT(upload);
+
+ALIAS(sdo_download, "download");
+ALIAS(sdo_read, "upload");
+ALIAS(sdo_upload, "upload");
+ALIAS(sdo_write, "download");
+
+const struct cmd *const cmds[] = {
+	&cmd_alias,
+	&cmd_config,
+	&cmd_crc,
+	&cmd_cstruct,
+	&cmd_data,
+	&cmd_debug,
+	&cmd_domains,
+	&cmd_download,
+	&cmd_eoe,
+	&cmd_foe_read,
+	&cmd_foe_write,
+	&cmd_graph,
+	&cmd_help,
+	&cmd_ip,
+	&cmd_master,
+	&cmd_pdos,
+	&cmd_reg_read,
+	&cmd_reg_write,
+	&cmd_rescan,
+	&cmd_sdo_download,
+	&cmd_sdo_read,
+	&cmd_sdo_upload,
+	&cmd_sdo_write,
+	&cmd_sdos,
+	&cmd_sii_read,
+	&cmd_sii_write,
+	&cmd_slaves,
+	&cmd_soe_read,
+	&cmd_soe_write,
+	&cmd_states,
+	&cmd_upload,
+	&cmd_version,
+	&cmd_xml,
+	NULL,
+};

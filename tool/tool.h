@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the command files share: options, the command table, errors. */
+#ifndef EC_TOOL_H
+#define EC_TOOL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "../master/wire/env.h"
+#include "select.h"
+
+#ifndef EC_TOOL_VERSION
+#define EC_TOOL_VERSION		"0.1.0"
+#endif
+
+/* bits of struct cmd.flags */
+#define CMD_ONE_MASTER		1	/* -m must leave exactly one */
+#define CMD_HISTORIC		2	/* abbreviations resolve to it first */
+#define CMD_NEGATIVE		4	/* "-1" may be an argument */
+
+/**
+ * struct tool - the command line, parsed
+ * @masters: -m
+ * @aliases: -a
+ * @positions: -p
+ * @domains: -d
+ * @type: -t, NULL when not given
+ * @output_file: -o
+ * @skin: -s
+ * @emergency: -e
+ * @force: -f
+ * @reset: -r
+ * @json: -j
+ * @verbosity: -1 after -q, 1 after -v
+ * @wait: --wait was given
+ * @wait_s: its argument in seconds, negative: none
+ */
+struct tool {
+	struct list masters;
+	struct list aliases;
+	struct list positions;
+	struct list domains;
+	const char *type;
+	const char *output_file;
+	const char *skin;
+	bool emergency;
+	bool force;
+	bool reset;
+	bool json;
+	int verbosity;
+	bool wait;
+	double wait_s;
+};
+
+/**
+ * struct cmd - one command
+ * @name: as typed
+ * @run: does it; returns the exit code
+ * @args: synopsis of the arguments
+ * @opts: letters of the options it looks at; 'w' is --wait, -h and -j go unsaid
+ * @summary: one line
+ * @help: paragraphs, may be NULL
+ * @json: keys of the JSON output
+ * @flags: CMD_*
+ * @min_args: fewest arguments
+ * @max_args: most arguments
+ * @alias_of: not NULL: another name of that command
+ */
+struct cmd {
+	const char *name;
+	int (*run)(struct tool *t, int argc, char **argv);
+	const char *args;
+	const char *opts;
+	const char *summary;
+	const char *help;
+	const char *json;
+	unsigned int flags;
+	int min_args;
+	int max_args;
+	const char *alias_of;
+};
+
+extern const struct cmd *const cmds[];		/* ends with NULL */
+
+/* options.c */
+struct opt {
+	char letter;
+	const char *name;
+	const char *arg;
+	const char *text;
+};
+
+extern const struct opt opts[];			/* ends with letter 0 */
+
+int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
+		  char *seen, size_t seen_size);
+
+/* names.c */
+const struct cmd *cmd_exact(const char *name);
+int cmd_lookup(const char *text, const struct cmd **found);
+
+/* help.c */
+void help_all(bool to_stderr);
+void help_cmd(const struct cmd *c);
+void help_roff(void);
+
+/* error.c: both print to stderr, as JSON after --json, and return 1 */
+int usage_error(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+int fail(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+/* @err: errno or 0; @reason: text of the kernel or NULL; @abort: SDO abort code or 0 */
+int fail_full(int err, const char *reason, u32 abort, const char *fmt, ...)
+	__attribute__((format(printf, 4, 5)));
+void note(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+void error_context(const char *cmd, bool json);
+
+#endif
