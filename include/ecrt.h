@@ -532,7 +532,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  *
  * Context: Process. May sleep.
  * Return: 0; %-EBUSY active already; %-EPERM not reserved; %-ENOMEM;
- * %-ENOSPC the cycle does not fit in the send interval; %-EINVAL.
+ * %-EOVERFLOW too much process data; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 
@@ -873,11 +873,11 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_flag() - set a named number
  * @sc: slave configuration
- * @key: name, 1..63 characters; unknown ones are kept without effect
+ * @key: name, 1..63 characters
  * @value: replaces an earlier one
  *
- * Known: "AssignToPdi" (not 0: leave the EEPROM to the slave, register
- * 0x0500), "WaitBeforeSAFEOPms" (ms to wait in PREOP).
+ * For applications that set flags of other masters, such as "AssignToPdi" or
+ * "WaitBeforeSAFEOPms": accepted, without effect so far.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOMEM.
