@@ -9,11 +9,9 @@
 #include <linux/types.h>
 
 struct ecdev;
-struct module;
 
 /**
  * struct ecdev_ops - what a device driver does for the master
- * @owner: module kept loaded while a master uses the device
  * @kind: "generic", "virtual", "e1000e"... for messages
  * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
  *	preemption or interrupts off (native, virtual); otherwise thread only
@@ -29,7 +27,6 @@ struct module;
  * @link_up: mandatory. A bit test; callable from the cycle
  */
 struct ecdev_ops {
-	struct module *owner;
 	const char *kind;
 	bool atomic;
 	int (*start)(void *priv);

@@ -55,7 +55,7 @@ static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 un
 			if (errors && slave->al_status & EC_AL_ERROR)
 				return -EPROTO;
 		}
-		if (slave->gone || slave->master->stopping)
+		if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt))
 			return -ECANCELED;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;

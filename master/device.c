@@ -7,8 +7,12 @@
 #include "device.h"
 #include "master.h"
 
-/* devices and who uses them; taken before any lock of a master */
-static DEFINE_MUTEX(device_lock);
+/*
+ * Devices and who uses them; taken before any lock of a master.
+ * Taken with RTNL held when the device is a netdev, so nothing below may take
+ * RTNL.
+ */
+static DEFINE_MUTEX(devices_lock);
 static LIST_HEAD(devices);
 
 /* Does @spec (from the module parameters) mean this device? */
@@ -43,12 +47,10 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 }
 EXPORT_SYMBOL_GPL(ecdev_wanted);
 
-static int attach(struct ecdev *dev, struct ec_link *link)
+static void attach(struct ecdev *dev, struct ec_link *link)
 {
 	int ret;
 
-	if (!try_module_get(dev->ops->owner))
-		return -ENODEV;
 	rcu_assign_pointer(dev->link, link);
 	ret = dev->ops->start(dev->priv);
 	if (ret) {
@@ -56,19 +58,17 @@ static int attach(struct ecdev *dev, struct ec_link *link)
 			dev->name, ret);
 		rcu_assign_pointer(dev->link, NULL);
 		synchronize_rcu();
-		module_put(dev->ops->owner);
-		return ret;
+		return;
 	}
 	memset(&link->stats, 0, sizeof(link->stats));
 	memset(&link->rates, 0, sizeof(link->rates));
 	ec_master_link_attach(link, dev);
-	return 0;
 }
 
 static void detach(struct ecdev *dev)
 {
 	struct ec_link *link = rcu_dereference_protected(dev->link,
-							 lockdep_is_held(&device_lock));
+							 lockdep_is_held(&devices_lock));
 
 	if (!link)
 		return;
@@ -76,40 +76,24 @@ static void detach(struct ecdev *dev)
 	dev->ops->stop(dev->priv);
 	rcu_assign_pointer(dev->link, NULL);
 	synchronize_rcu();
-	module_put(dev->ops->owner);
 }
 
-static void match_locked(void)
+/* Give @dev to the first master that waits for it. */
+static void match_locked(struct ecdev *dev)
 {
 	unsigned int i, side;
-	struct ecdev *dev;
 
-	lockdep_assert_held(&device_lock);
+	lockdep_assert_held(&devices_lock);
 	for (i = 0; i < ec_master_count(); i++) {
 		struct ec_master *m = ec_master_get(i);
 
-		for (side = 0; side < EC_MAX_LINKS; side++) {
-			if (m->link[side].dev || !m->spec[side] || m->stopping)
-				continue;
-			list_for_each_entry(dev, &devices, list)
-				if (!rcu_access_pointer(dev->link) &&
-				    spec_matches(m->spec[side], dev->name, dev->mac) &&
-				    !attach(dev, &m->link[side]))
-					break;
-		}
+		for (side = 0; side < EC_MAX_LINKS; side++)
+			if (!m->link[side].dev && !m->stopping &&
+			    spec_matches(m->spec[side], dev->name, dev->mac)) {
+				attach(dev, &m->link[side]);
+				return;
+			}
 	}
-}
-
-/**
- * ec_device_match_all() - give waiting masters the devices they are waiting for
- *
- * Context: Process. May sleep.
- */
-void ec_device_match_all(void)
-{
-	mutex_lock(&device_lock);
-	match_locked();
-	mutex_unlock(&device_lock);
 }
 
 /**
@@ -120,10 +104,10 @@ void ec_device_match_all(void)
  */
 void ec_device_detach(struct ec_link *link)
 {
-	mutex_lock(&device_lock);
+	mutex_lock(&devices_lock);
 	if (link->dev)
 		detach(link->dev);
-	mutex_unlock(&device_lock);
+	mutex_unlock(&devices_lock);
 }
 
 /**
@@ -149,10 +133,10 @@ struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 	ether_addr_copy(dev->mac, mac);
 	dev->ops = ops;
 	dev->priv = priv;
-	mutex_lock(&device_lock);
+	mutex_lock(&devices_lock);
 	list_add_tail(&dev->list, &devices);
-	match_locked();
-	mutex_unlock(&device_lock);
+	match_locked(dev);
+	mutex_unlock(&devices_lock);
 	return dev;
 }
 EXPORT_SYMBOL_GPL(ecdev_offer);
@@ -165,10 +149,10 @@ EXPORT_SYMBOL_GPL(ecdev_offer);
  */
 void ecdev_withdraw(struct ecdev *dev)
 {
-	mutex_lock(&device_lock);
+	mutex_lock(&devices_lock);
 	detach(dev);
 	list_del(&dev->list);
-	mutex_unlock(&device_lock);
+	mutex_unlock(&devices_lock);
 	kfree(dev);
 }
 EXPORT_SYMBOL_GPL(ecdev_withdraw);

@@ -28,7 +28,6 @@ struct ecdev {
 	struct ec_link __rcu *link;
 };
 
-void ec_device_match_all(void);
 void ec_device_detach(struct ec_link *link);
 
 #endif

@@ -12,7 +12,7 @@
 /* Why an exchange has to end now; 0: go on. */
 static int over(const struct ec_slave *slave, u64 until_ns)
 {
-	if (slave->gone || slave->master->stopping)
+	if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt))
 		return -ECANCELED;
 	if (signal_pending(current))
 		return -EINTR;
@@ -125,7 +125,7 @@ static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const
 		return false;
 	if (printk_ratelimit())
 		ec_slave_warn(slave, "emergency 0x%04x, error register 0x%02x\n",
-			      e.code, e.error_reg);
+			      e.code, e.reg);
 	return true;
 }
 

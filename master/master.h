@@ -58,6 +58,8 @@ struct task_struct;
  *
  * @session_lock: protects @session and everything it owns but the cyclic part
  * @session: what an application has configured, NULL: nobody
+ * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
+ * @active: @session while it is active
  *
  * @slaves_responding: slaves that answered the last broadcast
  * @al_states: OR of AL states, as in struct ec_ioc_master
@@ -102,6 +104,8 @@ struct ec_master {
 
 	struct mutex session_lock;
 	struct ec_session *session;
+	struct mutex cyclic_lock;
+	struct ec_session *active;
 
 	u32 slaves_responding;
 	u32 al_states;

@@ -52,6 +52,7 @@ struct ec_master;
  * @work: brings it to @requested
  * @lock: one worker or caller at a time changes its state
  * @config: what the session wants from it, under session_lock and @lock
+ * @interrupt: leave what the worker is waiting for
  * @reconfigure: go through INIT and configure again
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
@@ -92,6 +93,7 @@ struct ec_slave {
 	struct work_struct work;
 	struct mutex lock;
 	struct ec_config *config;
+	bool interrupt;
 	bool reconfigure;
 	struct mutex mbox_lock;
 	u8 mbox_counter;

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Generic device: any Ethernet network device of an unmodified kernel. Claimed
+ * by rx_handler, frames are sent past the qdisc, everybody else is kept off
+ * the wire by an egress hook.
+ */
+#include <linux/etherdevice.h>
+#include <linux/if_arp.h>
+#include <linux/module.h>
+#include <linux/netdevice.h>
+#include <linux/netfilter.h>
+#include <linux/pkt_sched.h>
+#include <linux/rtnetlink.h>
+#include <linux/skbuff.h>
+#include <linux/slab.h>
+#include "ecdev.h"
+#include "master/wire/frame.h"
+
+#define RING	32	/* transmit completion is lazy (kernel-notes 1.3) */
+
+/**
+ * struct gen - one claimed or offered network device
+ * @list: all of them, under RTNL
+ * @nd: network device, with a reference
+ * @dev: offer to the master
+ * @skb: prepared frames, sent as clones
+ * @next: next of @skb to try
+ * @buf: the frame under construction: the skb behind it
+ * @hook: keeps other traffic off the wire
+ * @claimed: rx_handler is registered
+ */
+struct gen {
+	struct list_head list;
+	struct net_device *nd;
+	netdevice_tracker tracker;
+	struct ecdev *dev;
+	struct sk_buff *skb[RING];
+	unsigned int next;
+	struct sk_buff *cur;
+	struct nf_hook_ops hook;
+	bool claimed;
+};
+
+static LIST_HEAD(devices);
+
+static rx_handler_result_t receive(struct sk_buff **pskb)
+{
+	struct sk_buff *skb = skb_share_check(*pskb, GFP_ATOMIC);
+	struct gen *g;
+
+	if (!skb)
+		return RX_HANDLER_CONSUMED;
+	*pskb = skb;
+	g = rcu_dereference(skb->dev->rx_handler_data);
+	if (skb->protocol != htons(EC_ETHERTYPE)) {
+		ecdev_foreign(g->dev);
+	} else if (!skb_linearize(skb)) {
+		ecdev_receive(g->dev, eth_hdr(skb)->h_source, skb->data, skb->len);
+	}
+	consume_skb(skb);
+	return RX_HANDLER_CONSUMED;
+}
+
+/* What others send: our own frames do not pass here. */
+static unsigned int egress(void *priv, struct sk_buff *skb, const struct nf_hook_state *state)
+{
+	return NF_DROP;
+}
+
+static struct sk_buff *prepare(struct net_device *nd)
+{
+	unsigned int head = LL_RESERVED_SPACE(nd);
+	struct sk_buff *skb = alloc_skb_fclone(head + EC_ETH_MAX + nd->needed_tailroom, GFP_KERNEL);
+
+	if (!skb)
+		return NULL;
+	skb_reserve(skb, head);
+	skb->dev = nd;
+	skb->protocol = htons(EC_ETHERTYPE);
+	skb->priority = TC_PRIO_CONTROL;
+	return skb;
+}
+
+static void free_ring(struct gen *g)
+{
+	unsigned int i;
+
+	for (i = 0; i < RING; i++) {
+		kfree_skb(g->skb[i]);
+		g->skb[i] = NULL;
+	}
+}
+
+static int claim(struct gen *g)
+{
+	int ret;
+
+	ASSERT_RTNL();
+	ret = dev_open(g->nd, NULL);
+	if (ret)
+		return ret;
+	ret = netdev_rx_handler_register(g->nd, receive, g);
+	if (ret) {
+		pr_err("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
+		       g->nd->name);
+		return ret;
+	}
+	g->hook = (struct nf_hook_ops){
+		.hook = egress, .dev = g->nd, .pf = NFPROTO_NETDEV,
+		.hooknum = NF_NETDEV_EGRESS, .priority = INT_MIN,
+	};
+	ret = nf_register_net_hook(dev_net(g->nd), &g->hook);
+	if (ret) {
+		netdev_rx_handler_unregister(g->nd);
+		return ret;
+	}
+	dev_set_promiscuity(g->nd, 1);
+	g->claimed = true;
+	return 0;
+}
+
+static void unclaim(struct gen *g)
+{
+	ASSERT_RTNL();
+	if (!g->claimed)
+		return;
+	g->claimed = false;
+	dev_set_promiscuity(g->nd, -1);
+	nf_unregister_net_hook(dev_net(g->nd), &g->hook);
+	netdev_rx_handler_unregister(g->nd);
+}
+
+/* called from offer() or withdraw() only, so RTNL is held */
+static int gen_start(void *priv)
+{
+	struct gen *g = priv;
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < RING; i++) {
+		g->skb[i] = prepare(g->nd);
+		if (!g->skb[i]) {
+			free_ring(g);
+			return -ENOMEM;
+		}
+	}
+	ret = claim(g);
+	if (ret)
+		free_ring(g);
+	return ret;
+}
+
+static void gen_stop(void *priv)
+{
+	struct gen *g = priv;
+
+	unclaim(g);
+	free_ring(g);
+}
+
+static u8 *gen_tx_get(void *priv)
+{
+	struct gen *g = priv;
+	unsigned int i;
+
+	for (i = 0; i < RING; i++) {
+		struct sk_buff *skb = g->skb[(g->next + i) % RING];
+
+		if (skb_cloned(skb))
+			continue;	/* the device still has it */
+		g->next = (g->next + i + 1) % RING;
+		g->cur = skb;
+		return skb->data;
+	}
+	return NULL;
+}
+
+static int gen_tx_send(void *priv, u8 *buf, size_t len)
+{
+	struct gen *g = priv;
+	struct sk_buff *skb = g->cur, *clone;
+
+	if (!netif_running(g->nd) || !netif_carrier_ok(g->nd))
+		return -ENETDOWN;
+	skb->len = 0;
+	skb_reset_tail_pointer(skb);
+	skb_put(skb, len);
+	skb_reset_mac_header(skb);
+	skb_set_network_header(skb, ETH_HLEN);
+	clone = skb_clone(skb, GFP_ATOMIC);
+	if (!clone)
+		return -ENOMEM;
+	if (dev_nit_active(g->nd))
+		dev_queue_xmit_nit(clone, g->nd);
+	switch (__dev_direct_xmit(clone, 0)) {
+	case NETDEV_TX_OK:
+		return 0;
+	case NETDEV_TX_BUSY:
+		kfree_skb(clone);
+		return -EBUSY;
+	default:
+		return -ENETDOWN;
+	}
+}
+
+static bool gen_link_up(void *priv)
+{
+	struct gen *g = priv;
+
+	return netif_running(g->nd) && netif_carrier_ok(g->nd);
+}
+
+static const struct ecdev_ops gen_ops = {
+	.kind = "generic",
+	.start = gen_start,
+	.stop = gen_stop,
+	.tx_get = gen_tx_get,
+	.tx_send = gen_tx_send,
+	.link_up = gen_link_up,
+};
+
+static struct gen *find(const struct net_device *nd)
+{
+	struct gen *g;
+
+	list_for_each_entry(g, &devices, list)
+		if (g->nd == nd)
+			return g;
+	return NULL;
+}
+
+static void offer(struct net_device *nd)
+{
+	struct gen *g;
+
+	ASSERT_RTNL();
+	if (nd->type != ARPHRD_ETHER || find(nd) || !ecdev_wanted(nd->name, nd->dev_addr))
+		return;
+	g = kzalloc(sizeof(*g), GFP_KERNEL);
+	if (!g)
+		return;
+	g->nd = nd;
+	netdev_hold(nd, &g->tracker, GFP_KERNEL);
+	list_add(&g->list, &devices);
+	g->dev = ecdev_offer(nd->name, nd->dev_addr, &gen_ops, g);
+	if (IS_ERR(g->dev)) {
+		list_del(&g->list);
+		netdev_put(nd, &g->tracker);
+		kfree(g);
+	}
+}
+
+static void withdraw(struct gen *g)
+{
+	ASSERT_RTNL();
+	ecdev_withdraw(g->dev);
+	list_del(&g->list);
+	netdev_put(g->nd, &g->tracker);
+	kfree(g);
+}
+
+static int event(struct notifier_block *nb, unsigned long what, void *ptr)
+{
+	struct net_device *nd = netdev_notifier_info_to_dev(ptr);
+	struct gen *g;
+
+	switch (what) {
+	case NETDEV_REGISTER:
+		offer(nd);
+		break;
+	case NETDEV_UNREGISTER:
+		g = find(nd);
+		if (g)
+			withdraw(g);
+		break;
+	}
+	return NOTIFY_DONE;
+}
+
+static struct notifier_block notifier = { .notifier_call = event };
+
+static int __init gen_init(void)
+{
+	return register_netdevice_notifier(&notifier);
+}
+
+static void __exit gen_exit(void)
+{
+	/* replays UNREGISTER for every device */
+	unregister_netdevice_notifier(&notifier);
+}
+
+module_init(gen_init);
+module_exit(gen_exit);
+
+MODULE_DESCRIPTION("EtherCAT master: generic network device");
+MODULE_AUTHOR("The EtherCAT master team");
+MODULE_LICENSE("GPL");

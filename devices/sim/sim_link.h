@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A segment as a virtual device. */
+#ifndef EC_SIM_LINK_H
+#define EC_SIM_LINK_H
+
+#include "sim.h"
+
+struct ec_sim_link;
+
+extern const struct ec_sim_ops ec_sim_link_ops;
+
+struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim);
+void ec_sim_link_destroy(struct ec_sim_link *l);
+
+#endif

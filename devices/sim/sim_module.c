@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* ec_sim.ko: segment=<built-in name or path of a description> */
+#include <linux/kernel_read_file.h>
+#include <linux/module.h>
+#include <linux/string.h>
+#include <linux/vmalloc.h>
+#include "describe.h"
+#include "sim_link.h"
+
+static char *segment = "bench";
+module_param(segment, charp, 0444);
+MODULE_PARM_DESC(segment, "built-in segment (thin, three, bench, line100, line1000) or path of a description");
+
+static struct ec_sim_link *sim_link;
+
+static int load(void *ctx, const char *name, u8 *buf, size_t cap)
+{
+	void *p = buf;
+	ssize_t n = kernel_read_file_from_path(name, 0, &p, cap, NULL, READING_UNKNOWN);
+
+	return (int)n;
+}
+
+static struct ec_sim *describe(const char *text, size_t len)
+{
+	static const struct ec_sim_loader loader = { .load = load };
+	struct ec_sim_error err = { 0 };
+	struct ec_sim *sim;
+	int ret = ec_sim_describe(&sim, &ec_sim_link_ops, text, len, &loader, &err);
+
+	if (ret) {
+		pr_err("ec_sim: %s:%u: %s\n", segment, err.line, err.text);
+		return ERR_PTR(ret);
+	}
+	return sim;
+}
+
+static struct ec_sim *build(void)
+{
+	const char *text = ec_sim_builtin(segment);
+	struct ec_sim *sim;
+	void *buf = NULL;
+	ssize_t n;
+
+	if (text)
+		return describe(text, strlen(text));
+	n = kernel_read_file_from_path(segment, 0, &buf, 1 << 20, NULL, READING_UNKNOWN);
+	if (n < 0) {
+		pr_err("ec_sim: segment=%s is no built-in segment and cannot be read (error %zd)\n",
+		       segment, n);
+		return ERR_PTR(n);
+	}
+	sim = describe(buf, n);
+	vfree(buf);
+	return sim;
+}
+
+static int __init sim_init(void)
+{
+	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
+	struct ec_sim *sim = build();
+
+	if (IS_ERR(sim))
+		return PTR_ERR(sim);
+	sim_link = ec_sim_link_create("sim0", mac, sim);
+	if (IS_ERR(sim_link)) {
+		ec_sim_free(sim);
+		return PTR_ERR(sim_link);
+	}
+	return 0;
+}
+
+static void __exit sim_exit(void)
+{
+	ec_sim_link_destroy(sim_link);
+}
+
+module_init(sim_init);
+module_exit(sim_exit);
+
+MODULE_DESCRIPTION("EtherCAT master: simulated segment");
+MODULE_AUTHOR("The EtherCAT master team");
+MODULE_LICENSE("GPL");

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Bringing one slave to its state, configuring it on the way; worker. */
+#include <linux/slab.h>
+#include "coe.h"
+#include "config.h"
+#include "domain.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+#include "wire/coe.h"
+#include "wire/fmmu.h"
+#include "xfer.h"
+
+static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
+{
+	return ec_xfer_fpwr(s->master, s->station, ado, data, len);
+}
+
+static int failed(struct ec_slave *s, u8 state, int ret)
+{
+	if (ret == -EPROTO)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "refused %s: AL status code 0x%04x: %s",
+			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));
+	else if (ret == -ETIME)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "did not reach %s in time, is in %s",
+			      ec_al_state_name(state),
+			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
+	else if (ret != -ECANCELED)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "does not answer on the way to %s (error %d)",
+			      ec_al_state_name(state), ret);
+	return ret;
+}
+
+/* state-machine.md 4.1 */
+static int to_init(struct ec_slave *s)
+{
+	static const u8 zero[256], force[1] = { EC_EEP_OWNER_FORCE };
+	int ret = ec_al_set(s, EC_AL_INIT, 0);
+
+	if (ret)
+		return failed(s, EC_AL_INIT, ret);
+	write_reg(s, EC_REG_FMMU(0), zero, EC_FMMU_PAGE * min_t(u8, s->regs[EC_REG_FMMUS], 16));
+	write_reg(s, EC_REG_SM(0), zero, EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], 16));
+	write_reg(s, EC_REG_EEP_OWNER, force, 1);
+	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
+	s->mbox_counter = 0;
+	s->reconfigure = false;
+	return 0;
+}
+
+/* state-machine.md 4.2 */
+static int to_preop(struct ec_slave *s)
+{
+	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
+	const struct ec_sii_mbox *mb = &s->info.std;
+	u8 page[2 * EC_SM_PAGE];
+	int ret = 0;
+
+	if (ec_slave_has_mailbox(s)) {
+		struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
+				     .activate = EC_SM_ACT_ENABLE };
+		struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
+				    .activate = EC_SM_ACT_ENABLE };
+
+		ec_sm_encode(&out, page);
+		ec_sm_encode(&in, page + EC_SM_PAGE);
+		ret = write_reg(s, EC_REG_SM(0), page, sizeof(page));
+	}
+	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: ec_al_set(s, EC_AL_PREOP, 0);
+	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
+}
+
+static int write_sdos(struct ec_slave *s, struct ec_config *c)
+{
+	struct ec_config_sdo *sdo;
+	u32 abort;
+	int ret;
+
+	list_for_each_entry(sdo, &c->sdos, list) {
+		ret = ec_coe_download(s, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
+				      &abort, 0);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+		if (ret) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "startup SDO 0x%04x:%02x, %u byte(s): error %d, abort 0x%08x: %s",
+				      sdo->index, sdo->sub, sdo->size, ret, abort,
+				      ec_coe_abort_text(abort) ?: "none");
+			return ret;
+		}
+	}
+	return 0;
+}
+
+static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32 *abort)
+{
+	u8 b[4];
+
+	put_unaligned_le32(value, b);
+	return ec_coe_download(s, index, sub, false, b, bytes, abort, 0);
+}
+
+/* Does the object hold @n values of @bytes bytes, as @value says? */
+static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
+		    u32 (*value)(const void *ctx, unsigned int i), const void *ctx)
+{
+	unsigned int i;
+	u32 abort;
+	size_t got;
+	u8 b[4] = { 0 };
+
+	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, 0) || b[0] != n)
+		return false;
+	for (i = 0; i < n; i++) {
+		memset(b, 0, sizeof(b));
+		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, 0) ||
+		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
+			return false;
+	}
+	return true;
+}
+
+/* The CiA procedure: count 0, values, count. */
+static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
+		      u32 (*value)(const void *ctx, unsigned int i), const void *ctx,
+		      const char *what)
+{
+	unsigned int i;
+	u32 abort;
+	int ret;
+
+	if (already(s, index, n, bytes, value, ctx))
+		return 0;
+	ret = sdo_u(s, index, 0, 0, 1, &abort);
+	for (i = 0; i < n && !ret; i++)
+		ret = sdo_u(s, index, i + 1, value(ctx, i), bytes, &abort);
+	if (!ret)
+		ret = sdo_u(s, index, 0, n, 1, &abort);
+	if (ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	/* many slaves have fixed lists; the SyncManager size decides then */
+	if (ret)
+		ec_slave_warn(s, "%s 0x%04x could not be written: error %d, abort 0x%08x: %s\n",
+			      what, index, ret, abort, ec_coe_abort_text(abort) ?: "none");
+	return 0;
+}
+
+static u32 map_value(const void *ctx, unsigned int i)
+{
+	const struct ec_pdo *pdo = ctx;
+
+	return (u32)pdo->entries[i].index << 16 | pdo->entries[i].sub << 8 | pdo->entries[i].bits;
+}
+
+static u32 assign_value(const void *ctx, unsigned int i)
+{
+	const struct ec_pdo_list *l = ctx;
+
+	return l->pdos[i].index;
+}
+
+static int write_pdos(struct ec_slave *s, struct ec_config *c)
+{
+	unsigned int sm, i;
+	int ret;
+
+	if (!ec_slave_has_mailbox(s) || !(s->info.protocols & EC_SII_PROTO_COE))
+		return 0;
+	for (sm = 2; sm < EC_MAX_SM; sm++) {
+		const struct ec_pdo_list *l = &c->sm[sm].pdos;
+
+		if (!c->sm[sm].explicit)
+			continue;
+		for (i = 0; i < l->n; i++) {
+			if (!l->pdos[i].n_entries)
+				continue;
+			ret = write_list(s, l->pdos[i].index, l->pdos[i].n_entries, 4, map_value,
+					 &l->pdos[i], "PDO mapping");
+			if (ret)
+				return ret;
+		}
+		ret = write_list(s, 0x1c10 + sm, l->n, 2, assign_value, l, "PDO assignment");
+		if (ret)
+			return ret;
+	}
+	return 0;
+}
+
+/* SM page for process data; NULL configuration: the EEPROM's defaults */
+static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigned int sm, u8 *page)
+{
+	const struct ec_pdo_list *l = c ? &c->sm[sm].pdos : &s->sm_pdos[sm];
+	struct ec_sm v = {
+		.start = s->sms[sm].start, .len = ec_pdo_list_bytes(l),
+		.control = s->sms[sm].control,
+	};
+
+	if (c && c->sm[sm].dir)
+		v.control = (v.control & ~EC_SM_DIR_MASK) |
+			    (c->sm[sm].dir == EC_CFG_DIR_OUTPUT ? EC_SM_DIR_WRITE : 0);
+	if (c && c->sm[sm].watchdog == EC_CFG_WD_ENABLE)
+		v.control |= EC_SM_WATCHDOG;
+	if (c && c->sm[sm].watchdog == EC_CFG_WD_DISABLE)
+		v.control &= ~EC_SM_WATCHDOG;
+	if (v.len)
+		v.activate = EC_SM_ACT_ENABLE;
+	ec_sm_encode(&v, page);
+}
+
+static int write_sms(struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm = ec_slave_has_mailbox(s) ? 2 : 0;
+	u8 page[EC_SM_PAGE];
+	int ret = 0;
+
+	for (; sm < s->n_sms && !ret; sm++) {
+		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
+			continue;
+		sm_page(s, c, sm, page);
+		ret = write_reg(s, EC_REG_SM(sm), page, sizeof(page));
+	}
+	return ret;
+}
+
+static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
+{
+	u8 page[EC_FMMU_PAGE];
+	unsigned int i;
+	int ret = 0;
+
+	if (c->n_fmmus > s->regs[EC_REG_FMMUS]) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "needs %u FMMUs but has %u; put its SyncManagers into fewer domains",
+			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
+		return -ENOSPC;
+	}
+	for (i = 0; i < c->n_fmmus && !ret; i++) {
+		const struct ec_config_fmmu *f = &c->fmmus[i];
+		struct ec_fmmu v = {
+			.logical = f->domain->logical + f->offset, .len = f->size,
+			.lbit_stop = 7, .phys = s->sms[f->sm].start,
+			.type = f->dir == EC_CFG_DIR_OUTPUT ? EC_FMMU_WRITE : EC_FMMU_READ,
+			.enable = f->size,
+		};
+
+		ec_fmmu_encode(&v, page);
+		ret = write_reg(s, EC_REG_FMMU(i), page, sizeof(page));
+	}
+	return ret;
+}
+
+static int write_watchdog(struct ec_slave *s, const struct ec_config *c)
+{
+	u8 b[2];
+	int ret = 0;
+
+	if (c->wd_divider) {
+		put_unaligned_le16(c->wd_divider, b);
+		ret = write_reg(s, EC_REG_WD_DIVIDER, b, 2);
+	}
+	if (c->wd_intervals && !ret) {
+		put_unaligned_le16(c->wd_intervals, b);
+		ret = write_reg(s, EC_REG_WD_SM, b, 2);
+	}
+	return ret;
+}
+
+/* state-machine.md 4.3 */
+static int to_safeop(struct ec_slave *s, struct ec_config *c)
+{
+	int ret = 0;
+
+	if (c) {
+		ret = write_sdos(s, c) ?: write_pdos(s, c) ?: write_watchdog(s, c);
+		if (ret)
+			return ret;
+	}
+	ret = write_sms(s, c);
+	if (!ret && c && c->session->active)
+		ret = write_fmmus(s, c);
+	if (!ret)
+		ret = ec_al_set(s, EC_AL_SAFEOP, c ? c->timeout_ms[EC_AL_PREOP][EC_AL_SAFEOP] : 0);
+	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
+}
+
+/* One step towards the requested state; 1: there, 0: again, -errno. */
+static int step(struct ec_slave *s)
+{
+	u8 want = READ_ONCE(s->requested), cur;
+	int ret = ec_al_read(s);
+
+	if (ret)
+		return ret;
+	if (s->al_status & EC_AL_ERROR && !s->emulation) {
+		ret = ec_al_ack(s);
+		if (ret)
+			return failed(s, s->al_status & EC_AL_STATE_MASK, ret);
+	}
+	cur = s->al_status & EC_AL_STATE_MASK;
+	if (s->reconfigure && cur != EC_AL_INIT && want > EC_AL_PREOP)
+		return to_init(s);
+	if (cur == want)
+		return 1;
+	if (cur > want || cur == EC_AL_BOOT) {
+		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
+			return to_init(s);
+		ret = ec_al_set(s, want, 0);
+		return ret ? failed(s, want, ret) : 0;
+	}
+	switch (cur) {
+	case EC_AL_INIT:
+		return to_preop(s);
+	case EC_AL_PREOP:
+		return to_safeop(s, s->config);
+	case EC_AL_SAFEOP:
+		ret = ec_al_set(s, EC_AL_OP,
+				s->config ? s->config->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] : 0);
+		return ret ? failed(s, EC_AL_OP, ret) : 0;
+	default:
+		return to_init(s);
+	}
+}
+
+/**
+ * ec_apply_work() - bring a slave to the state it shall have
+ * @work: of the slave, with a reference to it
+ *
+ * Context: Worker. Waits for bus traffic.
+ */
+void ec_apply_work(struct work_struct *work)
+{
+	struct ec_slave *s = container_of(work, struct ec_slave, work);
+	struct ec_master *m = s->master;
+	unsigned int i;
+	int ret = 0;
+
+	mutex_lock(&s->lock);
+	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++)
+		ret = step(s);
+	if (ret == 1 && s->error == EC_SLAVE_CONFIG_FAILED) {
+		s->error = EC_SLAVE_OK;
+		s->why[0] = '\0';
+	}
+	mutex_unlock(&s->lock);
+	wake_up_all(&m->scan_wq);
+	ec_slave_unref(s);
+}

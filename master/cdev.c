@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/mm.h>
+#include <linux/module.h>
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include "cdev.h"
+#include "compat.h"
+#include "master.h"
+#include "session.h"
+
+static struct class *ec_class;
+static dev_t first_dev;
+
+static int ec_open(struct inode *inode, struct file *filp)
+{
+	struct ec_master *m = container_of(inode->i_cdev, struct ec_master, cdev);
+	struct ec_file *f = kzalloc(sizeof(*f), GFP_KERNEL);
+
+	if (!f)
+		return -ENOMEM;
+	get_device(&m->dev);
+	f->master = m;
+	f->writable = filp->f_mode & FMODE_WRITE;
+	mutex_init(&f->lock);
+	filp->private_data = f;
+	return nonseekable_open(inode, filp);
+}
+
+/* The only place that surely runs when a process dies. */
+static int ec_release(struct inode *inode, struct file *filp)
+{
+	struct ec_file *f = filp->private_data;
+	struct ec_master *m = f->master;
+	bool mine;
+
+	mutex_lock(&m->session_lock);
+	mine = m->session && m->session->owner == f;
+	mutex_unlock(&m->session_lock);
+	if (mine)
+		ec_session_end(m);
+	put_device(&m->dev);
+	kfree(f);
+	return 0;
+}
+
+static void vma_open(struct vm_area_struct *vma)
+{
+	ec_shared_get(vma->vm_private_data);
+}
+
+static void vma_close(struct vm_area_struct *vma)
+{
+	ec_shared_put(vma->vm_private_data);
+}
+
+static const struct vm_operations_struct vm_ops = {
+	.open = vma_open,
+	.close = vma_close,
+};
+
+static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
+{
+	u64 offset = (u64)vma->vm_pgoff << PAGE_SHIFT;
+	size_t len = vma->vm_end - vma->vm_start;
+	int ret;
+
+	if (offset == EC_MMAP_IMAGE) {
+		if (!sh->image || len > sh->image_size)
+			return -EINVAL;
+		ret = remap_vmalloc_range(vma, sh->image, 0);
+	} else if (offset == EC_MMAP_STATUS) {
+		if (vma->vm_flags & VM_WRITE)
+			return -EPERM;
+		if (len > EC_STATUS_BYTES)
+			return -EINVAL;
+		ret = remap_vmalloc_range(vma, sh->status, 0);
+		if (!ret)
+			ec_vma_flags(vma, 0, VM_MAYWRITE);
+	} else {
+		return -EINVAL;
+	}
+	if (ret)
+		return ret;
+	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, 0);
+	ec_shared_get(sh);
+	vma->vm_private_data = sh;
+	vma->vm_ops = &vm_ops;
+	return 0;
+}
+
+static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
+{
+	struct ec_file *f = filp->private_data;
+	struct ec_master *m = f->master;
+	int ret = -EPERM;
+
+	if (!(vma->vm_flags & VM_SHARED))
+		return -EINVAL;
+	mutex_lock(&m->session_lock);
+	if (m->session && m->session->owner == f && m->session->active)
+		ret = map_shared(m->session->shared, vma);
+	mutex_unlock(&m->session_lock);
+	return ret;
+}
+
+static const struct file_operations ec_fops = {
+	.owner = THIS_MODULE,
+	.open = ec_open,
+	.release = ec_release,
+	.mmap = ec_mmap,
+	.unlocked_ioctl = ec_ioctl,
+	.compat_ioctl = compat_ptr_ioctl,
+};
+
+static void dev_release(struct device *dev)
+{
+	kvfree(container_of(dev, struct ec_master, dev));
+}
+
+/**
+ * ec_cdev_init() - make the character device of a master
+ * @m: master
+ *
+ * From now on ec_cdev_put() frees the master.
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno; on failure nothing is left and the caller frees.
+ */
+int ec_cdev_init(struct ec_master *m)
+{
+	int ret;
+
+	device_initialize(&m->dev);
+	m->dev.class = ec_class;
+	m->dev.devt = first_dev + m->index;
+	m->dev.release = dev_release;
+	ret = dev_set_name(&m->dev, "EtherCAT%u", m->index);
+	if (ret)
+		goto err;
+	cdev_init(&m->cdev, &ec_fops);
+	m->cdev.owner = THIS_MODULE;
+	ret = cdev_device_add(&m->cdev, &m->dev);
+	if (ret)
+		goto err;
+	return 0;
+err:
+	/* the caller frees the master itself */
+	m->dev.release = NULL;
+	kfree_const(m->dev.kobj.name);
+	return ret;
+}
+
+void ec_cdev_exit(struct ec_master *m)
+{
+	cdev_device_del(&m->cdev, &m->dev);
+}
+
+void ec_cdev_put(struct ec_master *m)
+{
+	put_device(&m->dev);
+}
+
+int ec_cdev_class_init(void)
+{
+	int ret = alloc_chrdev_region(&first_dev, 0, EC_MAX_MASTERS, "EtherCAT");
+
+	if (ret)
+		return ret;
+	ec_class = ec_class_create("EtherCAT");
+	if (IS_ERR(ec_class)) {
+		unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
+		return PTR_ERR(ec_class);
+	}
+	return 0;
+}
+
+void ec_cdev_class_exit(void)
+{
+	class_destroy(ec_class);
+	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The character device /dev/EtherCAT<n>. */
+#ifndef EC_CDEV_H
+#define EC_CDEV_H
+
+#include <linux/fs.h>
+#include <linux/mutex.h>
+#include "ethercat.h"
+
+struct ec_master;
+struct ec_session;
+
+/**
+ * struct ec_file - one open file
+ * @master: with a reference to its device
+ * @writable: opened for writing
+ * @reason: text of the last failure, under @lock
+ * @lock: protects @reason
+ */
+struct ec_file {
+	struct ec_master *master;
+	bool writable;
+	struct mutex lock;
+	char reason[EC_UAPI_REASON];
+};
+
+int ec_cdev_class_init(void);
+void ec_cdev_class_exit(void);
+int ec_cdev_init(struct ec_master *m);
+void ec_cdev_exit(struct ec_master *m);
+void ec_cdev_put(struct ec_master *m);
+
+long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);
+int ec_refuse(struct ec_file *f, int err, const char *fmt, ...) __printf(3, 4);
+
+#endif

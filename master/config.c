@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "config.h"
+#include "domain.h"
+#include "limits.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+
+/**
+ * ec_config_defaults() - start from what the slave's EEPROM says
+ * @c: configuration without PDOs
+ * @slave: slave
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
+{
+	unsigned int sm, i;
+
+	for (sm = 0; sm < slave->n_sms; sm++) {
+		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
+
+		if (c->sm[sm].dir || c->sm[sm].pdos.n)
+			continue;
+		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
+				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
+		for (i = 0; i < l->n; i++) {
+			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
+
+			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
+				return;
+		}
+	}
+}
+
+/**
+ * ec_config_create() - a configuration, or the existing one
+ * @s: session
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: configuration, or ERR_PTR: -ENOENT when it exists with another
+ * identity, -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS.
+ */
+struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				   u32 product)
+{
+	struct ec_config *c, **p;
+	unsigned int i;
+
+	for (i = 0; i < s->n_configs; i++) {
+		c = s->configs[i];
+		if (c->alias != alias || c->position != position)
+			continue;
+		return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
+	}
+	if (s->n_configs >= EC_MAX_CONFIGS)
+		return ERR_PTR(-ENOSPC);
+	p = krealloc_array(s->configs, s->n_configs + 1, sizeof(*p), GFP_KERNEL);
+	if (!p)
+		return ERR_PTR(-ENOMEM);
+	s->configs = p;
+	c = kzalloc(sizeof(*c), GFP_KERNEL);
+	if (!c)
+		return ERR_PTR(-ENOMEM);
+	c->session = s;
+	c->index = s->n_configs;
+	c->alias = alias;
+	c->position = position;
+	c->vendor = vendor;
+	c->product = product;
+	INIT_LIST_HEAD(&c->sdos);
+	s->configs[s->n_configs++] = c;
+	ec_session_attach_one(s, c);
+	if (c->slave)
+		ec_config_defaults(c, c->slave);
+	return c;
+}
+
+void ec_config_free(struct ec_config *c)
+{
+	struct ec_config_sdo *sdo, *n;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++)
+		ec_pdo_list_clear(&c->sm[i].pdos);
+	list_for_each_entry_safe(sdo, n, &c->sdos, list)
+		kfree(sdo);
+	kfree(c);
+}
+
+int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
+{
+	if (sm >= EC_MAX_SM)
+		return -ENOENT;
+	if ((dir != EC_CFG_DIR_OUTPUT && dir != EC_CFG_DIR_INPUT) || watchdog > EC_CFG_WD_DISABLE)
+		return -EINVAL;
+	c->sm[sm].dir = dir;
+	c->sm[sm].watchdog = watchdog;
+	return 0;
+}
+
+int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
+{
+	const struct ec_pdo *known;
+	struct ec_pdo *p;
+
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	p = ec_pdo_add(&c->sm[sm].pdos, pdo, 0);
+	if (!p)
+		return -ENOMEM;
+	c->sm[sm].explicit = true;
+	known = c->slave ? ec_slave_find_pdo(c->slave, pdo) : NULL;
+	return known ? ec_pdo_copy_entries(p, known) : 0;
+}
+
+int ec_config_assign_clear(struct ec_config *c, u8 sm)
+{
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	ec_pdo_list_clear(&c->sm[sm].pdos);
+	c->sm[sm].explicit = true;
+	return 0;
+}
+
+static struct ec_pdo *find(struct ec_config *c, u16 pdo)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++) {
+		struct ec_pdo *p = ec_pdo_find(&c->sm[i].pdos, pdo);
+
+		if (p) {
+			c->sm[i].explicit = true;
+			return p;
+		}
+	}
+	return NULL;
+}
+
+int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e)
+{
+	struct ec_pdo *p = find(c, pdo);
+
+	return p ? ec_pdo_add_entry(p, e) : -ENOENT;
+}
+
+int ec_config_map_clear(struct ec_config *c, u16 pdo)
+{
+	struct ec_pdo *p = find(c, pdo);
+
+	if (p)
+		ec_pdo_clear_entries(p);
+	return 0;
+}
+
+int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
+		      u32 size)
+{
+	struct ec_config_sdo *sdo;
+
+	if (c->n_sdos >= EC_MAX_SC_SDOS)
+		return -ENOSPC;
+	sdo = kmalloc(struct_size(sdo, data, size), GFP_KERNEL);
+	if (!sdo)
+		return -ENOMEM;
+	sdo->index = index;
+	sdo->sub = sub;
+	sdo->complete = complete;
+	sdo->size = size;
+	memcpy(sdo->data, data, size);
+	list_add_tail(&sdo->list, &c->sdos);
+	c->n_sdos++;
+	return 0;
+}
+
+/* The mapping of @sm in @d, made when it is not there yet. */
+static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domain *d)
+{
+	struct ec_config_fmmu *f;
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < c->n_fmmus; i++)
+		if (c->fmmus[i].domain == d && c->fmmus[i].sm == sm)
+			return &c->fmmus[i];
+	if (c->n_fmmus >= EC_MAX_FMMU)
+		return ERR_PTR(-EOVERFLOW);
+	f = &c->fmmus[c->n_fmmus];
+	f->domain = d;
+	f->sm = sm;
+	f->dir = c->sm[sm].dir;
+	f->size = ec_pdo_list_bytes(&c->sm[sm].pdos);
+	f->offset = d->size;
+	ret = ec_domain_add(d, c, c->n_fmmus);
+	if (ret)
+		return ERR_PTR(ret);
+	d->size += f->size;
+	c->n_fmmus++;
+	return f;
+}
+
+static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *offset, u32 *bit)
+{
+	struct ec_config_fmmu *f = map_sm(c, sm, d);
+
+	if (IS_ERR(f))
+		return PTR_ERR(f);
+	*offset = f->offset + bits / 8;
+	*bit = bits % 8;
+	return 0;
+}
+
+/**
+ * ec_config_reg_entry() - put the SyncManager with an entry into a domain
+ * @c: configuration
+ * @index: object
+ * @sub: subindex
+ * @d: domain
+ * @offset: result: byte in the domain
+ * @bit: result: bit in that byte
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENOENT when the entry is not mapped; -EOVERFLOW when all FMMUs
+ * are used or the domain is full; -ENOMEM.
+ */
+int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
+			u32 *offset, u32 *bit)
+{
+	unsigned int sm, p, e;
+
+	for (sm = 0; sm < EC_MAX_SM; sm++) {
+		u32 bits = 0;
+
+		for (p = 0; p < c->sm[sm].pdos.n; p++) {
+			const struct ec_pdo *pdo = &c->sm[sm].pdos.pdos[p];
+
+			for (e = 0; e < pdo->n_entries; e++) {
+				if (pdo->entries[e].index == index && pdo->entries[e].sub == sub)
+					return reg(c, sm, bits, d, offset, bit);
+				bits += pdo->entries[e].bits;
+			}
+		}
+	}
+	return -ENOENT;
+}
+
+/**
+ * ec_config_reg_entry_pos() - the same, by SyncManager, PDO and entry position
+ * @c: configuration
+ * @sm: SyncManager
+ * @pdo_pos: PDO in it
+ * @entry_pos: entry in that
+ * @d: domain
+ * @offset: result
+ * @bit: result
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: as ec_config_reg_entry(), -EINVAL for a wrong @sm.
+ */
+int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,
+			    struct ec_domain *d, u32 *offset, u32 *bit)
+{
+	const struct ec_pdo_list *l;
+	u32 p, e, bits = 0;
+
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	l = &c->sm[sm].pdos;
+	if (pdo_pos >= l->n || entry_pos >= l->pdos[pdo_pos].n_entries)
+		return -ENOENT;
+	for (p = 0; p < pdo_pos; p++)
+		bits += ec_pdo_bits(&l->pdos[p]);
+	for (e = 0; e < entry_pos; e++)
+		bits += l->pdos[pdo_pos].entries[e].bits;
+	return reg(c, sm, bits, d, offset, bit);
+}

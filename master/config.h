@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What an application wants from one slave; exists without the slave. */
+#ifndef EC_CONFIG_H
+#define EC_CONFIG_H
+
+#include <linux/list.h>
+#include <linux/types.h>
+#include "pdo.h"
+#include "wire/regs.h"
+
+struct ec_domain;
+struct ec_session;
+struct ec_slave;
+
+/* values of the application interface */
+#define EC_CFG_DIR_OUTPUT	1
+#define EC_CFG_DIR_INPUT	2
+#define EC_CFG_WD_DEFAULT	0
+#define EC_CFG_WD_ENABLE	1
+#define EC_CFG_WD_DISABLE	2
+
+/**
+ * struct ec_config_sm - one SyncManager of a configuration
+ * @dir: EC_CFG_DIR_*, 0: not configured
+ * @watchdog: EC_CFG_WD_*
+ * @explicit: the application named PDOs itself: write the assignment
+ * @pdos: assigned PDOs
+ */
+struct ec_config_sm {
+	u8 dir;
+	u8 watchdog;
+	bool explicit;
+	struct ec_pdo_list pdos;
+};
+
+/**
+ * struct ec_config_fmmu - a SyncManager in a domain
+ * @domain: which
+ * @sm: SyncManager
+ * @dir: EC_CFG_DIR_*
+ * @offset: byte in the domain
+ * @size: bytes
+ */
+struct ec_config_fmmu {
+	struct ec_domain *domain;
+	u8 sm;
+	u8 dir;
+	u32 offset;
+	u32 size;
+};
+
+/* a startup SDO, in the order of the calls */
+struct ec_config_sdo {
+	struct list_head list;
+	u16 index;
+	u8 sub;
+	bool complete;
+	u32 size;
+	u8 data[];
+};
+
+/**
+ * struct ec_config - configuration of one slave, under session_lock
+ * @session: owner
+ * @index: number in the session
+ * @alias: 0: @position is the ring position
+ * @position: else slaves behind the one with @alias
+ * @vendor: expected
+ * @product: expected
+ * @sm: SyncManagers
+ * @fmmus: what is mapped where
+ * @n_fmmus: entries in @fmmus
+ * @sdos: startup SDOs
+ * @n_sdos: how many
+ * @wd_divider: register 0x0400, 0: leave
+ * @wd_intervals: register 0x0420, 0: leave
+ * @dc_assign: AssignActivate
+ * @dc_cycle: SYNC0, SYNC1 cycle, ns
+ * @dc_shift: SYNC0, SYNC1 shift, ns
+ * @timeout_ms: of AL transitions, by from and to state, 0: default
+ * @slave: attached slave with a reference, or NULL
+ */
+struct ec_config {
+	struct ec_session *session;
+	u32 index;
+	u16 alias;
+	u16 position;
+	u32 vendor;
+	u32 product;
+	struct ec_config_sm sm[EC_MAX_SM];
+	struct ec_config_fmmu fmmus[EC_MAX_FMMU];
+	unsigned int n_fmmus;
+	struct list_head sdos;
+	unsigned int n_sdos;
+	u16 wd_divider;
+	u16 wd_intervals;
+	u16 dc_assign;
+	u32 dc_cycle[2];
+	s32 dc_shift[2];
+	u32 timeout_ms[9][9];
+	struct ec_slave *slave;
+};
+
+struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				   u32 product);
+void ec_config_free(struct ec_config *c);
+void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave);
+int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);
+int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo);
+int ec_config_assign_clear(struct ec_config *c, u8 sm);
+int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e);
+int ec_config_map_clear(struct ec_config *c, u16 pdo);
+int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
+		      u32 size);
+int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
+			u32 *offset, u32 *bit);
+int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,
+			    struct ec_domain *d, u32 *offset, u32 *bit);
+
+#endif

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "config.h"
+#include "domain.h"
+#include "limits.h"
+#include "session.h"
+
+/**
+ * ec_domain_create() - an empty domain
+ * @s: session
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: domain, or ERR_PTR: -ENOSPC beyond EC_MAX_DOMAINS, -ENOMEM.
+ */
+struct ec_domain *ec_domain_create(struct ec_session *s)
+{
+	struct ec_domain *d;
+
+	if (s->n_domains >= EC_MAX_DOMAINS)
+		return ERR_PTR(-ENOSPC);
+	d = kzalloc(sizeof(*d), GFP_KERNEL);
+	if (!d)
+		return ERR_PTR(-ENOMEM);
+	d->session = s;
+	d->index = s->n_domains;
+	s->domains[s->n_domains++] = d;
+	return d;
+}
+
+void ec_domain_free(struct ec_domain *d)
+{
+	kfree(d->fmmus);
+	kfree(d);
+}
+
+/**
+ * ec_domain_add() - an FMMU of a configuration belongs to the domain
+ * @d: domain
+ * @c: configuration
+ * @fmmu: index in it, @offset and @size set
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0, -ENOMEM, or -EOVERFLOW when the image would be larger than
+ * EC_MAX_IMAGE.
+ */
+int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu)
+{
+	struct ec_domain_fmmu *p;
+
+	if (d->size + c->fmmus[fmmu].size > EC_MAX_IMAGE)
+		return -EOVERFLOW;
+	p = krealloc_array(d->fmmus, d->n_fmmus + 1, sizeof(*p), GFP_KERNEL);
+	if (!p)
+		return -ENOMEM;
+	d->fmmus = p;
+	p[d->n_fmmus++] = (struct ec_domain_fmmu){ .config = c, .fmmu = fmmu };
+	return 0;
+}

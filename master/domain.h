@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A domain: process data exchanged and judged together. */
+#ifndef EC_DOMAIN_H
+#define EC_DOMAIN_H
+
+#include <linux/types.h>
+
+struct ec_config;
+struct ec_session;
+
+/* reference to an FMMU of a configuration, in order of registration */
+struct ec_domain_fmmu {
+	struct ec_config *config;
+	unsigned int fmmu;
+};
+
+/**
+ * struct ec_domain - one domain, under session_lock until activation
+ * @session: owner
+ * @index: number in the session
+ * @size: bytes registered
+ * @offset: of its data in the image, set by activation
+ * @logical: base address, set by activation
+ * @fmmus: what it consists of
+ * @n_fmmus: entries in @fmmus
+ * @expected: working counter when all slaves take part
+ */
+struct ec_domain {
+	struct ec_session *session;
+	u32 index;
+	u32 size;
+	u32 offset;
+	u32 logical;
+	struct ec_domain_fmmu *fmmus;
+	unsigned int n_fmmus;
+	u32 expected;
+};
+
+struct ec_domain *ec_domain_create(struct ec_session *s);
+void ec_domain_free(struct ec_domain *d);
+int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu);
+
+#endif

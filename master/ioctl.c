@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Dispatch of /dev/EtherCAT<n>: permissions, sizes and copies in one place. */
+#include <linux/nospec.h>
+#include <linux/uaccess.h>
+#include "ioctl.h"
+
+#define MAX_ARG	1024
+
+#define F_WRITE	1	/* needs a descriptor opened for writing */
+
+struct ec_ioctl {
+	unsigned int cmd;
+	int (*fn)(struct ec_file *f, void *arg);
+	unsigned int flags;
+};
+
+#define IOC(c, f, fl) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
+	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG) }
+
+static const struct ec_ioctl table[] = {
+	IOC(EC_IOC_VERSION, ec_ioc_version, 0),
+	IOC(EC_IOC_REASON, ec_ioc_reason, 0),
+	IOC(EC_IOC_MASTER, ec_ioc_master, 0),
+	IOC(EC_IOC_SLAVE, ec_ioc_slave, 0),
+	IOC(EC_IOC_SM, ec_ioc_sm, 0),
+	IOC(EC_IOC_PDO, ec_ioc_pdo, 0),
+	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0),
+	IOC(EC_IOC_SII, ec_ioc_sii, 0),
+	IOC(EC_IOC_CONFIG, ec_ioc_config, 0),
+	IOC(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0),
+	IOC(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0),
+	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0),
+	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0),
+	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0),
+	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0),
+	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0),
+	IOC(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE),
+	IOC(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE),
+	IOC(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE),
+	IOC(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE),
+	IOC(EC_IOC_STATE, ec_ioc_state, F_WRITE),
+	IOC(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE),
+	IOC(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE),
+	IOC(EC_IOC_RESET, ec_ioc_reset, F_WRITE),
+	IOC(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE),
+	IOC(EC_IOC_RELEASE, ec_ioc_release, F_WRITE),
+	IOC(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE),
+	IOC(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE),
+	IOC(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE),
+	IOC(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE),
+	IOC(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE),
+	IOC(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE),
+	IOC(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE),
+	IOC(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE),
+	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE),
+	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE),
+	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE),
+	IOC(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE),
+	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE),
+	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE),
+	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE),
+};
+
+/**
+ * ec_refuse() - fail a command and keep the reason for EC_IOC_REASON
+ * @f: open file
+ * @err: -errno
+ * @fmt: what was wrong and what to do
+ *
+ * Context: Process. May sleep.
+ * Return: @err.
+ */
+int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
+{
+	va_list args;
+
+	va_start(args, fmt);
+	mutex_lock(&f->lock);
+	vscnprintf(f->reason, sizeof(f->reason), fmt, args);
+	mutex_unlock(&f->lock);
+	va_end(args);
+	return err;
+}
+
+/* Version request of the field's other master: old programs fail cleanly. */
+static long foreign_version(unsigned long arg)
+{
+	u32 v[2] = { 0xec000001, 0 };
+
+	return copy_to_user((void __user *)arg, v, sizeof(v)) ? -EFAULT : 0;
+}
+
+static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
+{
+	struct ec_ioc_send send;
+
+	if (_IOC_SIZE(cmd) != sizeof(send))
+		return -EINVAL;
+	if (copy_from_user(&send, (void __user *)arg, sizeof(send)))
+		return -EFAULT;
+	if (send.flags || send.reserved)
+		return -EOPNOTSUPP;
+	return ec_ioc_send(f, send.queued);
+}
+
+/* Flags a command understands; its argument starts with them. */
+static u32 known_flags(unsigned int cmd)
+{
+	switch (cmd) {
+	case EC_IOC_SDO_UPLOAD:
+	case EC_IOC_SDO_DOWNLOAD:
+	case EC_IOC_SC_SDO:
+		return EC_SDO_FLAG_COMPLETE;
+	case EC_IOC_REG_READ:
+	case EC_IOC_REG_WRITE:
+		return EC_REG_FLAG_EMERGENCY;
+	case EC_IOC_REG_ENTRY:
+		return EC_REG_ENTRY_BY_POS;
+	default:
+		return 0;
+	}
+}
+
+static int check(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd)
+{
+	if (_IOC_SIZE(cmd) < (_IOC_DIR(cmd) ? sizeof(u32) : 0) || _IOC_SIZE(cmd) > MAX_ARG)
+		return ec_refuse(f, -EINVAL, "command 0x%08x has a wrong size", cmd);
+	if (op->flags & F_WRITE && !f->writable)
+		return ec_refuse(f, -EPERM, "this needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
+	return 0;
+}
+
+/**
+ * ec_ioctl() - .unlocked_ioctl of the character device
+ * @filp: open file
+ * @cmd: EC_IOC_*
+ * @arg: user pointer
+ *
+ * Context: Process. May sleep; RECEIVE and SEND are RT-safe.
+ * Return: 0 or -errno; -ENOTTY for an unknown command, -EOPNOTSUPP for unknown
+ * flags, -E2BIG for a non-zero tail, -EPERM, -EFAULT.
+ */
+long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
+{
+	unsigned int nr = _IOC_NR(cmd), usize = _IOC_SIZE(cmd), ksize;
+	struct ec_file *f = filp->private_data;
+	void __user *uarg = (void __user *)arg;
+	u64 karg[MAX_ARG / sizeof(u64)];
+	const struct ec_ioctl *op;
+	int ret;
+
+	if (cmd == EC_IOC_RECEIVE)
+		return ec_ioc_receive(f);
+	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && nr == _IOC_NR(EC_IOC_SEND))
+		return cyclic_send(f, cmd, arg);
+	if (cmd == _IOR(0xa4, 0, u64))
+		return foreign_version(arg);
+	if (_IOC_TYPE(cmd) != EC_IOC_TYPE || nr >= ARRAY_SIZE(table))
+		return -ENOTTY;
+	op = &table[array_index_nospec(nr, ARRAY_SIZE(table))];
+	if (!op->fn || _IOC_DIR(cmd) != _IOC_DIR(op->cmd))
+		return -ENOTTY;
+	ret = check(f, op, cmd);
+	if (ret)
+		return ret;
+
+	ksize = _IOC_SIZE(op->cmd);
+	memset(karg, 0, ksize);
+	if (_IOC_DIR(cmd) & _IOC_WRITE) {
+		ret = copy_struct_from_user(karg, ksize, uarg, usize);
+		if (ret)
+			return ret;
+		if (*(u32 *)karg & ~known_flags(op->cmd))
+			return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: unknown flags 0x%x",
+					 cmd, *(u32 *)karg);
+	}
+	ret = op->fn(f, karg);
+	/* on -EIO the abort code is in the structure */
+	if ((!ret || ret == -EIO) && _IOC_DIR(cmd) & _IOC_READ &&
+	    copy_to_user(uarg, karg, min(usize, ksize)))
+		ret = -EFAULT;
+	return ret;
+}

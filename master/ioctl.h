@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Handlers of the commands; the table in ioctl.c says who may call them. */
+#ifndef EC_IOCTL_H
+#define EC_IOCTL_H
+
+#include "cdev.h"
+
+struct ec_slave;
+
+struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret);
+
+/* ioctl_info.c: no bus traffic */
+int ec_ioc_version(struct ec_file *f, void *arg);
+int ec_ioc_reason(struct ec_file *f, void *arg);
+int ec_ioc_master(struct ec_file *f, void *arg);
+int ec_ioc_slave(struct ec_file *f, void *arg);
+int ec_ioc_sm(struct ec_file *f, void *arg);
+int ec_ioc_pdo(struct ec_file *f, void *arg);
+int ec_ioc_pdo_entry(struct ec_file *f, void *arg);
+int ec_ioc_sii(struct ec_file *f, void *arg);
+
+/* ioctl_bus.c: traffic */
+int ec_ioc_sdo_upload(struct ec_file *f, void *arg);
+int ec_ioc_sdo_download(struct ec_file *f, void *arg);
+int ec_ioc_reg_read(struct ec_file *f, void *arg);
+int ec_ioc_reg_write(struct ec_file *f, void *arg);
+int ec_ioc_state(struct ec_file *f, void *arg);
+int ec_ioc_rescan(struct ec_file *f, void *arg);
+int ec_ioc_debug(struct ec_file *f, void *arg);
+int ec_ioc_reset(struct ec_file *f, void *arg);
+
+/* ioctl_config.c: what an application has configured */
+int ec_ioc_config(struct ec_file *f, void *arg);
+int ec_ioc_config_sm(struct ec_file *f, void *arg);
+int ec_ioc_config_pdo(struct ec_file *f, void *arg);
+int ec_ioc_config_entry(struct ec_file *f, void *arg);
+int ec_ioc_config_sdo(struct ec_file *f, void *arg);
+int ec_ioc_domain(struct ec_file *f, void *arg);
+int ec_ioc_domain_fmmu(struct ec_file *f, void *arg);
+int ec_ioc_domain_data(struct ec_file *f, void *arg);
+
+/* ioctl_app.c: the application that reserved the master */
+int ec_ioc_reserve(struct ec_file *f, void *arg);
+int ec_ioc_release(struct ec_file *f, void *arg);
+int ec_ioc_create_domain(struct ec_file *f, void *arg);
+int ec_ioc_slave_config(struct ec_file *f, void *arg);
+int ec_ioc_sc_sync(struct ec_file *f, void *arg);
+int ec_ioc_sc_watchdog(struct ec_file *f, void *arg);
+int ec_ioc_sc_pdo(struct ec_file *f, void *arg);
+int ec_ioc_sc_sdo(struct ec_file *f, void *arg);
+int ec_ioc_reg_entry(struct ec_file *f, void *arg);
+int ec_ioc_sc_dc(struct ec_file *f, void *arg);
+int ec_ioc_sc_flag(struct ec_file *f, void *arg);
+int ec_ioc_sc_timeout(struct ec_file *f, void *arg);
+int ec_ioc_activate(struct ec_file *f, void *arg);
+int ec_ioc_deactivate(struct ec_file *f, void *arg);
+int ec_ioc_domain_offset(struct ec_file *f, void *arg);
+int ec_ioc_interval(struct ec_file *f, void *arg);
+int ec_ioc_app_time(struct ec_file *f, void *arg);
+int ec_ioc_receive(struct ec_file *f);
+int ec_ioc_send(struct ec_file *f, u64 queued);
+
+#endif

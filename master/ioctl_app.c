@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands of the application that has reserved the master. */
+#include <linux/slab.h>
+#include <linux/uaccess.h>
+#include "config.h"
+#include "domain.h"
+#include "ioctl.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+
+int ec_ioc_reserve(struct ec_file *f, void *arg)
+{
+	int ret = ec_session_begin(f->master, f);
+
+	switch (ret) {
+	case -EBUSY:
+		return ec_refuse(f, ret, "master %u is reserved by another application; stop that first",
+				 f->master->index);
+	case -ENODEV:
+		return ec_refuse(f, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
+				 f->master->index, f->master->spec[0]);
+	default:
+		return ret;
+	}
+}
+
+/* Locks the session of this file. */
+static struct ec_session *lock(struct ec_file *f, int *ret)
+{
+	struct ec_master *m = f->master;
+
+	mutex_lock(&m->session_lock);
+	if (m->session && m->session->owner == f)
+		return m->session;
+	mutex_unlock(&m->session_lock);
+	*ret = ec_refuse(f, -EPERM, "reserve the master first (ecrt_request_master)");
+	return NULL;
+}
+
+/* The same, for changes that are only possible before activation. */
+static struct ec_session *lock_idle(struct ec_file *f, int *ret)
+{
+	struct ec_session *s = lock(f, ret);
+
+	if (s && s->active) {
+		mutex_unlock(&f->master->session_lock);
+		*ret = ec_refuse(f, -EBUSY, "the master is active; configure before ecrt_master_activate()");
+		return NULL;
+	}
+	return s;
+}
+
+static int done(struct ec_file *f, int ret)
+{
+	mutex_unlock(&f->master->session_lock);
+	return ret;
+}
+
+/* Locks the session and finds a configuration in it. */
+static struct ec_config *lock_config(struct ec_file *f, u32 index, int *ret)
+{
+	struct ec_session *s = lock_idle(f, ret);
+
+	if (!s)
+		return NULL;
+	if (index < s->n_configs)
+		return s->configs[index];
+	*ret = done(f, ec_refuse(f, -ENOENT, "there is no slave configuration %u", index));
+	return NULL;
+}
+
+int ec_ioc_release(struct ec_file *f, void *arg)
+{
+	int ret = 0;
+
+	if (!lock(f, &ret))
+		return ret;
+	mutex_unlock(&f->master->session_lock);
+	ec_session_end(f->master);
+	return 0;
+}
+
+int ec_ioc_create_domain(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_create_domain *i = arg;
+	struct ec_domain *d;
+	int ret = 0;
+	struct ec_session *s = lock_idle(f, &ret);
+
+	if (!s)
+		return ret;
+	d = ec_domain_create(s);
+	if (IS_ERR(d))
+		return done(f, ec_refuse(f, PTR_ERR(d), "at most %u domains", EC_MAX_DOMAINS));
+	i->index = d->index;
+	return done(f, 0);
+}
+
+int ec_ioc_slave_config(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_slave_config *i = arg;
+	struct ec_config *c;
+	int ret = 0;
+	struct ec_session *s = lock_idle(f, &ret);
+
+	if (!s)
+		return ret;
+	c = ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);
+	if (IS_ERR(c))
+		return done(f, ec_refuse(f, PTR_ERR(c), "slave %u:%u is configured as another device already, or there are too many",
+					 i->alias, i->position));
+	i->index = c->index;
+	return done(f, 0);
+}
+
+int ec_ioc_sc_sync(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_sync *i = arg;
+	int ret = 0;
+	struct ec_config *c = lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	ret = ec_config_sync(c, i->sm, i->dir, i->watchdog);
+	if (ret)
+		ec_refuse(f, ret, "SyncManager %u, direction %u, watchdog %u: use 0..15, 1..2, 0..2",
+			  i->sm, i->dir, i->watchdog);
+	return done(f, ret);
+}
+
+int ec_ioc_sc_watchdog(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_watchdog *i = arg;
+	int ret = 0;
+	struct ec_config *c = lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	c->wd_divider = i->divider;
+	c->wd_intervals = i->intervals;
+	return done(f, 0);
+}
+
+int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_pdo *i = arg;
+	struct ec_pdo_entry e = { .index = i->entry_index, .sub = i->subindex, .bits = i->bits };
+	int ret = 0;
+	struct ec_config *c = lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	switch (i->op) {
+	case EC_SC_PDO_ASSIGN_ADD:
+		ret = ec_config_assign_add(c, i->sm, i->pdo);
+		break;
+	case EC_SC_PDO_ASSIGN_CLEAR:
+		ret = ec_config_assign_clear(c, i->sm);
+		break;
+	case EC_SC_PDO_MAP_ADD:
+		ret = ec_config_map_add(c, i->pdo, &e);
+		break;
+	case EC_SC_PDO_MAP_CLEAR:
+		ret = ec_config_map_clear(c, i->pdo);
+		break;
+	default:
+		ret = -EINVAL;
+	}
+	if (ret)
+		ec_refuse(f, ret, "PDO 0x%04x at SM%u: operation %u failed; assign the PDO before mapping it",
+			  i->pdo, i->sm, i->op);
+	return done(f, ret);
+}
+
+int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_sdo *i = arg;
+	struct ec_config *c;
+	int ret = 0;
+	u8 *data;
+
+	if (!i->size || i->size > EC_MAX_SDO_SIZE)
+		return ec_refuse(f, -EINVAL, "size must be 1 to %u bytes, not %u", EC_MAX_SDO_SIZE,
+				 i->size);
+	data = vmemdup_user(u64_to_user_ptr(i->data), i->size);
+	if (IS_ERR(data))
+		return PTR_ERR(data);
+	c = lock_config(f, i->config, &ret);
+	if (c)
+		ret = done(f, ec_config_sdo_add(c, i->index, i->subindex,
+						i->flags & EC_SDO_FLAG_COMPLETE, data, i->size));
+	kvfree(data);
+	return ret;
+}
+
+int ec_ioc_reg_entry(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_reg_entry *i = arg;
+	struct ec_session *s;
+	int ret = 0;
+	struct ec_config *c = lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	s = c->session;
+	if (i->domain >= s->n_domains)
+		return done(f, ec_refuse(f, -ENOENT, "there is no domain %u", i->domain));
+	if (i->flags & EC_REG_ENTRY_BY_POS)
+		ret = ec_config_reg_entry_pos(c, i->sm, i->pdo_pos, i->entry_pos,
+					      s->domains[i->domain], &i->offset, &i->bit);
+	else
+		ret = ec_config_reg_entry(c, i->entry_index, i->subindex, s->domains[i->domain],
+					  &i->offset, &i->bit);
+	if (ret == -ENOENT)
+		ec_refuse(f, ret, "entry 0x%04x:%02x is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
+			  i->entry_index, i->subindex, c->alias, c->position);
+	else if (ret == -EOVERFLOW)
+		ec_refuse(f, ret, "no FMMU left, or more than %u bytes of process data",
+			  EC_MAX_IMAGE);
+	return done(f, ret);
+}
+
+int ec_ioc_sc_dc(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_dc *i = arg;
+	int ret = 0;
+	struct ec_config *c = lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	c->dc_assign = i->assign_activate;
+	c->dc_cycle[0] = i->cycle0;
+	c->dc_cycle[1] = i->cycle1;
+	c->dc_shift[0] = i->shift0;
+	c->dc_shift[1] = i->shift1;
+	return done(f, 0);
+}
+
+/* Flags of other masters' applications; none has a meaning here yet. */
+int ec_ioc_sc_flag(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_flag *i = arg;
+	int ret = 0;
+	struct ec_config *c;
+
+	i->key[sizeof(i->key) - 1] = '\0';
+	if (!i->key[0])
+		return ec_refuse(f, -EINVAL, "the name of the flag is empty");
+	c = lock_config(f, i->config, &ret);
+	if (!c)
+		return ret;
+	ec_info(f->master, "slave %u:%u: flag %s has no effect\n", c->alias, c->position, i->key);
+	return done(f, 0);
+}
+
+int ec_ioc_sc_timeout(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_timeout *i = arg;
+	int ret = 0;
+	struct ec_config *c;
+
+	if (!ec_al_state_valid(i->from) || !ec_al_state_valid(i->to) || i->from == EC_AL_BOOT ||
+	    i->to == EC_AL_BOOT)
+		return ec_refuse(f, -EINVAL, "AL states are 1, 2, 4, 8, not %u and %u", i->from,
+				 i->to);
+	c = lock_config(f, i->config, &ret);
+	if (!c)
+		return ret;
+	c->timeout_ms[i->from][i->to] = i->timeout_ms;
+	return done(f, 0);
+}
+
+int ec_ioc_activate(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_activate *i = arg;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	ret = ec_session_activate(s);
+	if (ret)
+		return done(f, ec_refuse(f, ret, "activation failed: active already, more than %u bytes of process data, or no memory",
+					 EC_MAX_IMAGE));
+	i->image_size = s->shared->image_size;
+	i->status_size = EC_STATUS_BYTES;
+	return done(f, 0);
+}
+
+int ec_ioc_deactivate(struct ec_file *f, void *arg)
+{
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	return s ? done(f, ec_session_deactivate(s)) : ret;
+}
+
+int ec_ioc_domain_offset(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain_offset *i = arg;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	if (i->domain >= s->n_domains)
+		return done(f, ec_refuse(f, -ENOENT, "there is no domain %u", i->domain));
+	i->offset = s->domains[i->domain]->offset;
+	i->size = s->domains[i->domain]->size;
+	return done(f, 0);
+}
+
+int ec_ioc_interval(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_interval *i = arg;
+	int ret = 0;
+
+	if (!i->interval_us || i->interval_us > USEC_PER_SEC)
+		return ec_refuse(f, -EINVAL, "send interval must be 1 to 1000000 us, not %u",
+				 i->interval_us);
+	if (!lock(f, &ret))
+		return ret;
+	f->master->interval_us = i->interval_us;
+	return done(f, 0);
+}
+
+int ec_ioc_app_time(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_app_time *i = arg;
+	int ret = 0;
+
+	if (!lock(f, &ret))
+		return ret;
+	WRITE_ONCE(f->master->app_time, i->app_time);
+	return done(f, 0);
+}
+
+/* Not contended: only deactivation takes the lock beside the cyclic caller. */
+static struct ec_session *enter(struct ec_file *f)
+{
+	struct ec_master *m = f->master;
+
+	mutex_lock(&m->cyclic_lock);
+	if (m->active && m->active->owner == f)
+		return m->active;
+	mutex_unlock(&m->cyclic_lock);
+	return NULL;
+}
+
+int ec_ioc_receive(struct ec_file *f)
+{
+	struct ec_session *s = enter(f);
+	int ret;
+
+	if (!s)
+		return -EPERM;
+	ret = ec_cycle_receive(s);
+	mutex_unlock(&f->master->cyclic_lock);
+	return ret;
+}
+
+int ec_ioc_send(struct ec_file *f, u64 queued)
+{
+	struct ec_session *s = enter(f);
+	int ret;
+
+	if (!s)
+		return -EPERM;
+	ret = ec_cycle_send(s, queued);
+	mutex_unlock(&f->master->cyclic_lock);
+	return ret;
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands that show what the application has configured. */
+#include <linux/uaccess.h>
+#include "config.h"
+#include "domain.h"
+#include "ioctl.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+
+/* Locks the session; NULL with the reason noted and unlocked when there is none. */
+static struct ec_session *lock(struct ec_file *f, int *ret)
+{
+	struct ec_master *m = f->master;
+
+	mutex_lock(&m->session_lock);
+	if (m->session)
+		return m->session;
+	mutex_unlock(&m->session_lock);
+	*ret = ec_refuse(f, -ENOENT, "no application has reserved master %u", m->index);
+	return NULL;
+}
+
+static int done(struct ec_file *f, int ret)
+{
+	mutex_unlock(&f->master->session_lock);
+	return ret;
+}
+
+static struct ec_config *config(struct ec_file *f, struct ec_session *s, u32 index, int *ret)
+{
+	if (index < s->n_configs)
+		return s->configs[index];
+	*ret = ec_refuse(f, -ENOENT, "there are %u slave configurations, not %u", s->n_configs,
+			 index + 1);
+	return NULL;
+}
+
+static struct ec_domain *domain(struct ec_file *f, struct ec_session *s, u32 index, int *ret)
+{
+	if (index < s->n_domains)
+		return s->domains[index];
+	*ret = ec_refuse(f, -ENOENT, "there are %u domains, not %u", s->n_domains, index + 1);
+	return NULL;
+}
+
+int ec_ioc_config(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config *i = arg;
+	struct ec_config *c;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	if (c) {
+		i->alias = c->alias;
+		i->position = c->position;
+		i->vendor_id = c->vendor;
+		i->product_code = c->product;
+		i->slave_position = c->slave ? c->slave->position : -1;
+		i->al_status = c->slave ? c->slave->al_status : 0;
+		i->watchdog_divider = c->wd_divider;
+		i->watchdog_intervals = c->wd_intervals;
+		i->dc_assign_activate = c->dc_assign;
+		memcpy(i->dc_cycle, c->dc_cycle, sizeof(i->dc_cycle));
+		memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
+		i->sdo_count = c->n_sdos;
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_config_sm(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_sm *i = arg;
+	struct ec_config *c;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	if (c && i->sm >= EC_MAX_SM)
+		ret = ec_refuse(f, -ENOENT, "SyncManagers are 0 to %u", EC_MAX_SM - 1);
+	else if (c) {
+		i->dir = c->sm[i->sm].dir;
+		i->watchdog = c->sm[i->sm].watchdog;
+		i->pdo_count = c->sm[i->sm].pdos.n;
+	}
+	return done(f, ret);
+}
+
+static const struct ec_pdo *pdo(struct ec_file *f, const struct ec_config *c, u8 sm, u32 pos,
+				int *ret)
+{
+	if (sm < EC_MAX_SM && pos < c->sm[sm].pdos.n)
+		return &c->sm[sm].pdos.pdos[pos];
+	*ret = ec_refuse(f, -ENOENT, "no PDO %u at SM%u", pos, sm);
+	return NULL;
+}
+
+int ec_ioc_config_pdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_pdo *i = arg;
+	const struct ec_pdo *p;
+	struct ec_config *c;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	p = c ? pdo(f, c, i->sm, i->pdo_pos, &ret) : NULL;
+	if (p) {
+		i->pdo_index = p->index;
+		i->entry_count = p->n_entries;
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_config_entry(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_entry *i = arg;
+	const struct ec_pdo *p;
+	struct ec_config *c;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	p = c ? pdo(f, c, i->sm, i->pdo_pos, &ret) : NULL;
+	if (p && i->entry_pos >= p->n_entries)
+		ret = ec_refuse(f, -ENOENT, "PDO 0x%04x has %u entries", p->index, p->n_entries);
+	else if (p) {
+		i->entry_index = p->entries[i->entry_pos].index;
+		i->subindex = p->entries[i->entry_pos].sub;
+		i->bits = p->entries[i->entry_pos].bits;
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_config_sdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_sdo *i = arg;
+	struct ec_config_sdo *sdo;
+	struct ec_config *c;
+	u32 k = 0;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	if (!c)
+		return done(f, ret);
+	ret = -ENOENT;
+	list_for_each_entry(sdo, &c->sdos, list) {
+		if (k++ != i->sdo_pos)
+			continue;
+		i->flags = sdo->complete ? EC_SDO_FLAG_COMPLETE : 0;
+		i->sdo_index = sdo->index;
+		i->subindex = sdo->sub;
+		ret = copy_to_user(u64_to_user_ptr(i->data), sdo->data,
+				   min(i->size, sdo->size)) ? -EFAULT : 0;
+		i->size = sdo->size;
+		break;
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_domain(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain *i = arg;
+	struct ec_domain *d;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	d = domain(f, s, i->index, &ret);
+	if (d) {
+		i->size = d->size;
+		i->logical = d->logical;
+		i->expected = d->expected;
+		i->fmmu_count = d->n_fmmus;
+		if (s->active)
+			i->working_counter =
+				READ_ONCE(s->shared->status->domains[d->index].working_counter);
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain_fmmu *i = arg;
+	const struct ec_config_fmmu *fm;
+	struct ec_domain *d;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	d = domain(f, s, i->index, &ret);
+	if (d && i->fmmu >= d->n_fmmus)
+		ret = ec_refuse(f, -ENOENT, "domain %u has %u FMMUs", i->index, d->n_fmmus);
+	else if (d) {
+		fm = &d->fmmus[i->fmmu].config->fmmus[d->fmmus[i->fmmu].fmmu];
+		i->alias = d->fmmus[i->fmmu].config->alias;
+		i->position = d->fmmus[i->fmmu].config->position;
+		i->sm = fm->sm;
+		i->dir = fm->dir;
+		i->offset = fm->offset;
+		i->size = fm->size;
+		i->logical = d->logical + fm->offset;
+	}
+	return done(f, ret);
+}
+
+int ec_ioc_domain_data(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain_data *i = arg;
+	struct ec_domain *d;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	d = domain(f, s, i->index, &ret);
+	if (d && !s->active) {
+		ret = ec_refuse(f, -ENOENT, "the application has not activated the master");
+	} else if (d) {
+		i->size = min(i->size, d->size);
+		if (copy_to_user(u64_to_user_ptr(i->data), s->shared->image + d->offset, i->size))
+			ret = -EFAULT;
+	}
+	return done(f, ret);
+}

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands that tell what the master knows; they cause no bus traffic. */
+#include <linux/etherdevice.h>
+#include <linux/uaccess.h>
+#include "device.h"
+#include "domain.h"
+#include "ioctl.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+
+#ifndef EC_RELEASE
+#define EC_RELEASE "0.1.0"
+#endif
+
+/**
+ * ec_ioc_get_slave() - the slave a command names
+ * @f: open file
+ * @position: ring position
+ * @ret: -ENOENT when there is none
+ *
+ * Context: Process. May sleep.
+ * Return: slave with a reference, or NULL with the reason noted.
+ */
+struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret)
+{
+	struct ec_slave *s = ec_master_slave(f->master, position);
+
+	if (!s)
+		*ret = ec_refuse(f, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
+				 position, f->master->n_slaves);
+	return s;
+}
+
+int ec_ioc_version(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_version *v = arg;
+
+	v->abi = EC_UAPI_VERSION;
+	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE;
+	v->master_count = ec_master_count();
+	v->ecrt = 0x0106;
+	strscpy(v->release, EC_RELEASE, sizeof(v->release));
+	return 0;
+}
+
+int ec_ioc_reason(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_reason *r = arg;
+
+	mutex_lock(&f->lock);
+	strscpy(r->text, f->reason, sizeof(r->text));
+	mutex_unlock(&f->lock);
+	r->len = strlen(r->text);
+	return 0;
+}
+
+static void device_info(struct ec_link *link, struct ec_ioc_device *d)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);
+
+	d->state = dev ? EC_DEVICE_ATTACHED : EC_DEVICE_WAITING;
+	if (dev) {
+		ether_addr_copy(d->address, dev->mac);
+		strscpy(d->name, dev->name, sizeof(d->name));
+	} else {
+		strscpy(d->name, link->master->spec[link->side] ?: "", sizeof(d->name));
+	}
+	d->link_up = link->up;
+	d->slaves = link->master->slaves_responding;
+	d->tx_frames = atomic64_read(&link->stats.tx_frames);
+	d->tx_bytes = atomic64_read(&link->stats.tx_bytes);
+	d->rx_frames = atomic64_read(&link->stats.rx_frames);
+	d->rx_bytes = atomic64_read(&link->stats.rx_bytes);
+	d->tx_errors = atomic64_read(&link->stats.tx_errors);
+	d->lost = atomic64_read(&link->stats.lost);
+	d->late = atomic64_read(&link->stats.late);
+	d->unmatched = atomic64_read(&link->stats.unmatched);
+	d->foreign = atomic64_read(&link->stats.foreign);
+	memcpy(d->tx_frame_rate, link->rates.rate[0], sizeof(d->tx_frame_rate));
+	memcpy(d->rx_frame_rate, link->rates.rate[1], sizeof(d->rx_frame_rate));
+	memcpy(d->tx_byte_rate, link->rates.rate[2], sizeof(d->tx_byte_rate));
+	memcpy(d->rx_byte_rate, link->rates.rate[3], sizeof(d->rx_byte_rate));
+	memcpy(d->loss_rate, link->rates.rate[4], sizeof(d->loss_rate));
+}
+
+int ec_ioc_master(struct ec_file *f, void *arg)
+{
+	struct ec_master *m = f->master;
+	struct ec_ioc_master *i = arg;
+	unsigned int l;
+
+	i->index = m->index;
+	i->slave_count = m->n_slaves;
+	i->slaves_responding = m->slaves_responding;
+	i->al_states = m->al_states;
+	i->scan_busy = m->scan_busy || m->rescan || m->n_slaves != m->slaves_responding;
+	i->scan_index = i->scan_busy ? 0 : m->n_slaves;
+	i->debug_level = m->debug;
+	i->app_time = m->app_time;
+	i->ref_clock = -1;
+	i->scan_us = m->scan_us;
+	i->scan_frames = m->scan_frames;
+	mutex_lock(&m->session_lock);
+	if (m->session) {
+		i->active = m->session->active;
+		i->config_count = m->session->n_configs;
+		i->domain_count = m->session->n_domains;
+	}
+	mutex_unlock(&m->session_lock);
+	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
+		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
+	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++)
+		device_info(&m->link[l], &i->devices[l]);
+	i->device_count = l;
+	return 0;
+}
+
+static void slave_ports(const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	unsigned int p;
+
+	for (p = 0; p < EC_UAPI_PORTS; p++) {
+		struct ec_ioc_port *port = &i->ports[p];
+
+		port->type = ec_slave_port_type(s, p);
+		port->link_up = !!(s->dl_status & EC_DLS_LINK(p));
+		port->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
+		port->signal = !!(s->dl_status & EC_DLS_COMM(p));
+		port->receive_time = s->recv[p];
+		port->next_slave = s->next[p];
+	}
+}
+
+/* The nearest slave at or before this one that has an alias. */
+static void slave_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int k;
+
+	i->alias_pos = s->position;
+	down_read(&m->topo);
+	for (k = min_t(int, s->position, (int)m->n_slaves - 1); k >= 0; k--) {
+		if (m->slaves[k]->alias) {
+			i->alias_group = m->slaves[k]->alias;
+			i->alias_pos = s->position - k;
+			break;
+		}
+	}
+	up_read(&m->topo);
+}
+
+static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	i->has_general = s->has_general;
+	i->coe_details = s->general.coe;
+	i->general_flags = s->general.flags;
+	i->foe_details = s->general.foe;
+	i->current_ma = s->general.current_ma;
+	strscpy(i->group, s->group, sizeof(i->group));
+	strscpy(i->image, s->image, sizeof(i->image));
+	strscpy(i->order, s->order, sizeof(i->order));
+	strscpy(i->name, s->name, sizeof(i->name));
+}
+
+int ec_ioc_slave(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_slave *i = arg;
+	u16 feat;
+	int ret;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	feat = ec_slave_features(s);
+	i->station = s->station;
+	i->alias = s->alias;
+	i->al_status = s->al_status;
+	i->al_code = s->al_code;
+	i->al_requested = s->requested;
+	i->error = s->error;
+	i->vendor_id = s->info.vendor;
+	i->product_code = s->info.product;
+	i->revision_number = s->info.revision;
+	i->serial_number = s->info.serial;
+	i->boot_rx_offset = s->info.boot.rx_offset;
+	i->boot_rx_size = s->info.boot.rx_size;
+	i->boot_tx_offset = s->info.boot.tx_offset;
+	i->boot_tx_size = s->info.boot.tx_size;
+	i->std_rx_offset = s->info.std.rx_offset;
+	i->std_rx_size = s->info.std.rx_size;
+	i->std_tx_offset = s->info.std.tx_offset;
+	i->std_tx_size = s->info.std.tx_size;
+	i->mbox_protocols = s->info.protocols;
+	i->fmmu_bit = !(feat & EC_FEAT_NO_BIT_FMMU);
+	i->dc_supported = !(feat & EC_FEAT_DC) ? 0 : feat & EC_FEAT_DC64 ? 2 : 1;
+	i->features = feat;
+	i->sm_count = s->n_sms;
+	i->fmmu_count = s->regs[EC_REG_FMMUS];
+	i->dl_status = s->dl_status;
+	i->sii_words = s->sii_bytes / 2;
+	slave_general(s, i);
+	slave_ports(s, i);
+	slave_alias(f->master, s, i);
+	strscpy(i->why, s->why, sizeof(i->why));
+	ec_slave_unref(s);
+	return 0;
+}
+
+int ec_ioc_sm(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sm *i = arg;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	if (i->sm >= s->n_sms) {
+		ret = ec_refuse(f, -EINVAL, "slave %u has %u SyncManagers, not %u", i->position,
+				s->n_sms, i->sm + 1);
+	} else {
+		i->start = s->sms[i->sm].start;
+		i->default_size = s->sms[i->sm].len;
+		i->control = s->sms[i->sm].control;
+		i->enable = s->sms[i->sm].enable;
+		i->type = s->sms[i->sm].type;
+		i->pdo_count = s->sm_pdos[i->sm].n;
+	}
+	ec_slave_unref(s);
+	return ret;
+}
+
+static void name(const struct ec_slave *s, u8 index, char *buf)
+{
+	if (!index || ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+		buf[0] = '\0';
+}
+
+static const struct ec_pdo *get_pdo(struct ec_file *f, const struct ec_slave *s, u8 sm, u16 pos,
+				    int *ret)
+{
+	if (sm >= s->n_sms || pos >= s->sm_pdos[sm].n) {
+		*ret = ec_refuse(f, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
+				 sm);
+		return NULL;
+	}
+	return &s->sm_pdos[sm].pdos[pos];
+}
+
+int ec_ioc_pdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_pdo *i = arg;
+	const struct ec_pdo *p;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	if (p) {
+		i->index = p->index;
+		i->entry_count = p->n_entries;
+		name(s, p->name, i->name);
+	}
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_pdo_entry *i = arg;
+	const struct ec_pdo *p;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	if (p && i->entry_pos >= p->n_entries) {
+		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
+				p->n_entries, i->entry_pos + 1);
+	} else if (p) {
+		i->index = p->entries[i->entry_pos].index;
+		i->subindex = p->entries[i->entry_pos].sub;
+		i->bits = p->entries[i->entry_pos].bits;
+		name(s, p->entries[i->entry_pos].name, i->name);
+	}
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_sii(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sii *i = arg;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	if (i->offset >= s->sii_bytes) {
+		i->size = 0;
+	} else {
+		i->size = min_t(u32, i->size, s->sii_bytes - i->offset);
+		if (copy_to_user(u64_to_user_ptr(i->data), s->sii + i->offset, i->size))
+			ret = -EFAULT;
+	}
+	ec_slave_unref(s);
+	return ret;
+}

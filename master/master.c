@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/etherdevice.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "cdev.h"
+#include "device.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+#include "xfer.h"
+
+static struct ec_master *masters[EC_MAX_MASTERS];
+static unsigned int n_masters;
+
+unsigned int ec_master_count(void)
+{
+	return n_masters;
+}
+
+struct ec_master *ec_master_get(unsigned int index)
+{
+	return masters[index];
+}
+
+/**
+ * ec_master_frame() - a frame has arrived on a link
+ * @link: link
+ * @src: source MAC address
+ * @data: what follows the EtherType
+ * @len: bytes there
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
+{
+	struct ec_master *m = link->master;
+	struct ec_slot *slot;
+
+	atomic64_inc(&link->stats.rx_frames);
+	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
+	switch (ec_slots_match(&m->slots, src, data, len, &slot)) {
+	case EC_MATCH_DONE:
+		if (slot->xfer)
+			ec_xfer_done(slot->xfer);
+		break;
+	case EC_MATCH_LATE:
+		atomic64_inc(&link->stats.late);
+		break;
+	case EC_MATCH_UNMATCHED:
+		atomic64_inc(&link->stats.unmatched);
+		break;
+	}
+}
+
+/* called with the device started */
+void ec_master_link_attach(struct ec_link *link, struct ecdev *dev)
+{
+	struct ec_master *m = link->master;
+
+	rt_mutex_lock(&m->io_lock);
+	WRITE_ONCE(link->dev, dev);
+	rt_mutex_unlock(&m->io_lock);
+	ec_info(m, "%s device is %s (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
+		dev->ops->kind, dev->mac);
+	ec_monitor_kick(m);
+}
+
+/* called before the device is stopped */
+void ec_master_link_detach(struct ec_link *link)
+{
+	struct ec_master *m = link->master;
+
+	ec_session_device_gone(m);
+	rt_mutex_lock(&m->io_lock);
+	ec_info(m, "%s device %s is gone\n", link->side ? "backup" : "main", link->dev->name);
+	WRITE_ONCE(link->dev, NULL);
+	WRITE_ONCE(link->up, false);
+	rt_mutex_unlock(&m->io_lock);
+}
+
+/**
+ * ec_master_slave() - a slave by its ring position
+ * @m: master
+ * @position: ring position
+ *
+ * Context: Process. May sleep.
+ * Return: the slave with a reference for the caller, or NULL.
+ */
+struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position)
+{
+	struct ec_slave *s = NULL;
+
+	down_read(&m->topo);
+	if (position < m->n_slaves)
+		s = ec_slave_ref(m->slaves[position]);
+	up_read(&m->topo);
+	return s;
+}
+
+static bool settled(struct ec_master *m)
+{
+	unsigned int i;
+	bool ok = true;
+
+	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan))
+		return false;
+	down_read(&m->topo);
+	for (i = 0; i < m->n_slaves && ok; i++)
+		ok = !work_busy(&m->slaves[i]->work);
+	/* a bus that answers is scanned first */
+	ok &= m->n_slaves == READ_ONCE(m->slaves_responding);
+	up_read(&m->topo);
+	return ok;
+}
+
+/**
+ * ec_master_wait_scan() - wait until the bus is scanned and has settled
+ * @m: master
+ *
+ * Context: Process. May sleep, at most some seconds.
+ * Return: 0, -EINTR, or -ETIMEDOUT.
+ */
+int ec_master_wait_scan(struct ec_master *m)
+{
+	unsigned int i;
+	long ret;
+
+	for (i = 0; i < 300; i++) {
+		ret = wait_event_interruptible_timeout(m->scan_wq, settled(m),
+						       msecs_to_jiffies(100));
+		if (ret < 0)
+			return -EINTR;
+		if (ret)
+			return 0;
+	}
+	return -ETIMEDOUT;
+}
+
+/**
+ * ec_master_rescan() - ask for a scan
+ * @m: master
+ *
+ * Context: Process.
+ */
+void ec_master_rescan(struct ec_master *m)
+{
+	WRITE_ONCE(m->rescan, true);
+	ec_monitor_kick(m);
+}
+
+static void destroy(struct ec_master *m)
+{
+	unsigned int i;
+
+	WRITE_ONCE(m->stopping, true);
+	ec_cdev_exit(m);
+	ec_session_end(m);
+	ec_monitor_stop(m);
+	if (m->work)
+		destroy_workqueue(m->work);
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		ec_device_detach(&m->link[i]);
+	for (i = 0; i < m->n_slaves; i++)
+		ec_slave_unref(m->slaves[i]);
+	kvfree(m->slaves);
+	m->slaves = NULL;
+	m->n_slaves = 0;
+	ec_slots_exit(&m->slots);
+	ec_cdev_put(m);
+}
+
+static struct ec_master *create(unsigned int index, const char *main, const char *backup,
+				unsigned int debug)
+{
+	struct ec_master *m = kvzalloc(sizeof(*m), GFP_KERNEL);
+	unsigned int i;
+	int ret;
+
+	if (!m)
+		return ERR_PTR(-ENOMEM);
+	m->index = index;
+	m->spec[0] = main;
+	m->spec[1] = backup;
+	m->debug = debug;
+	m->max_datagrams = 15;
+	m->io_timeout_us = 20000;
+	m->interval_us = 1000;
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		m->link[i].master = m;
+		m->link[i].side = i;
+	}
+	rt_mutex_init(&m->io_lock);
+	raw_spin_lock_init(&m->xq_lock);
+	init_rwsem(&m->topo);
+	init_waitqueue_head(&m->scan_wq);
+	mutex_init(&m->session_lock);
+	mutex_init(&m->cyclic_lock);
+	ret = ec_slots_init(&m->slots);
+	if (ret)
+		goto err_free;
+	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, index);
+	if (!m->work) {
+		ret = -ENOMEM;
+		goto err_slots;
+	}
+	ret = ec_cdev_init(m);
+	if (ret)
+		goto err_work;
+	ret = ec_monitor_start(m);
+	if (ret)
+		goto err_cdev;
+	return m;
+
+err_cdev:
+	ec_cdev_exit(m);
+	destroy_workqueue(m->work);
+	ec_slots_exit(&m->slots);
+	ec_cdev_put(m);
+	return ERR_PTR(ret);
+err_work:
+	destroy_workqueue(m->work);
+err_slots:
+	ec_slots_exit(&m->slots);
+err_free:
+	kvfree(m);
+	return ERR_PTR(ret);
+}
+
+/**
+ * ec_masters_create() - create the masters the module parameters name
+ * @main: main device of each: MAC address or device name
+ * @n_main: how many
+ * @backup: backup devices, may be empty strings
+ * @n_backup: how many
+ * @debug: log level
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -EINVAL for an empty name, -ENOMEM, or another -errno.
+ */
+int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
+		      unsigned int debug)
+{
+	unsigned int i;
+
+	for (i = 0; i < n_main; i++) {
+		struct ec_master *m;
+
+		if (!main[i] || !*main[i]) {
+			pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
+			       i);
+			ec_masters_destroy();
+			return -EINVAL;
+		}
+		m = create(i, main[i], i < n_backup && *backup[i] ? backup[i] : NULL, debug);
+		if (IS_ERR(m)) {
+			ec_masters_destroy();
+			return PTR_ERR(m);
+		}
+		masters[i] = m;
+		n_masters = i + 1;
+	}
+	return 0;
+}
+
+/**
+ * ec_masters_destroy() - take all masters down
+ *
+ * Context: Process. May sleep.
+ */
+void ec_masters_destroy(void)
+{
+	while (n_masters)
+		destroy(masters[--n_masters]);
+}

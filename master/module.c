@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/module.h>
+#include "cdev.h"
+#include "limits.h"
+#include "master.h"
+
+static char *main_devices[EC_MAX_MASTERS];
+static unsigned int n_main;
+module_param_array(main_devices, charp, &n_main, 0444);
+MODULE_PARM_DESC(main_devices, "main device of each master: MAC address, interface name or sim0");
+
+static char *backup_devices[EC_MAX_MASTERS];
+static unsigned int n_backup;
+module_param_array(backup_devices, charp, &n_backup, 0444);
+MODULE_PARM_DESC(backup_devices, "backup device of each master, may be empty");
+
+static unsigned int debug_level;
+module_param(debug_level, uint, 0444);
+MODULE_PARM_DESC(debug_level, "0 quiet, 1 more, 2 every frame");
+
+static int __init ec_init(void)
+{
+	int ret = ec_cdev_class_init();
+
+	if (ret)
+		return ret;
+	ret = ec_masters_create(main_devices, n_main, backup_devices, n_backup, debug_level);
+	if (ret)
+		goto err_class;
+	if (!n_main)
+		pr_warn("EtherCAT: no master: load with main_devices=<MAC address or interface>\n");
+	return 0;
+
+err_class:
+	ec_cdev_class_exit();
+	return ret;
+}
+
+static void __exit ec_exit(void)
+{
+	ec_masters_destroy();
+	ec_cdev_class_exit();
+}
+
+module_init(ec_init);
+module_exit(ec_exit);
+
+MODULE_DESCRIPTION("EtherCAT master");
+MODULE_AUTHOR("The EtherCAT master team");
+MODULE_LICENSE("GPL");

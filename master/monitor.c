@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* One thread per master: link, number of slaves, AL states; starts scans. */
+#include <linux/kthread.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include "config.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+#include "xfer.h"
+
+#define PERIOD_MS	20
+#define STABLE_LOOKS	2	/* equal counts before a scan starts */
+
+/* what the monitor remembers between two looks */
+struct watch {
+	struct ec_master *m;
+	bool link_up;
+	unsigned int count;	/* of the last look */
+	unsigned int same;	/* looks with that count */
+	bool scanned;		/* @count slaves are scanned */
+	u64 rates_ns;
+};
+
+static void check_links(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	u64 now = ktime_get_ns();
+	unsigned int i;
+	bool up = false;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		bool u = ec_link_is_up(&m->link[i]);
+
+		if (u != m->link[i].up) {
+			WRITE_ONCE(m->link[i].up, u);
+			ec_info(m, "link %s is %s\n", i ? "backup" : "main", u ? "up" : "down");
+		}
+		up |= u;
+	}
+	w->link_up = up;
+	if (now - w->rates_ns >= NSEC_PER_SEC) {
+		w->rates_ns = now;
+		for (i = 0; i < EC_MAX_LINKS; i++)
+			ec_link_rates_update(&m->link[i]);
+	}
+}
+
+/* AL status of every slave; used when the broadcast is not one plain state */
+static void check_slaves(struct ec_master *m)
+{
+	struct ec_dg *dg;
+	u8 (*al)[6];
+	unsigned int i;
+
+	dg = kvcalloc(m->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
+	al = kvcalloc(m->n_slaves + 1, sizeof(*al), GFP_KERNEL);
+	if (!dg || !al)
+		goto out;
+	for (i = 0; i < m->n_slaves; i++)
+		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->slaves[i]->station,
+					    EC_REG_AL_STATUS, 6, al[i]);
+	ec_xfer(m, dg, m->n_slaves);
+	for (i = 0; i < m->n_slaves; i++) {
+		struct ec_slave *s = m->slaves[i];
+		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
+
+		if (dg[i].err || dg[i].wkc != 1)
+			continue;
+		if (status & EC_AL_ERROR && !(s->al_status & EC_AL_ERROR) && !work_busy(&s->work))
+			ec_slave_warn(s, "is in %s with error 0x%04x: %s\n",
+				      ec_al_state_name(status & EC_AL_STATE_MASK), code,
+				      ec_al_code_text(code));
+		if (status != s->al_status || code != s->al_code) {
+			WRITE_ONCE(s->al_status, status);
+			WRITE_ONCE(s->al_code, code);
+		}
+		/* fallen back by itself: bring it up again */
+		if (!s->error && !work_busy(&s->work) &&
+		    (status & EC_AL_STATE_MASK) != s->requested)
+			ec_slave_request(s, s->requested);
+	}
+out:
+	kvfree(dg);
+	kvfree(al);
+}
+
+/* All slaves in the state they shall have, none with an error? */
+static bool as_wanted(const struct ec_master *m, u16 ored)
+{
+	unsigned int i;
+
+	for (i = 0; i < m->n_slaves; i++)
+		if (m->slaves[i]->requested != m->slaves[0]->requested ||
+		    m->slaves[i]->al_status != m->slaves[0]->requested)
+			return false;
+	return !m->n_slaves || ored == m->slaves[0]->requested;
+}
+
+static u32 al_bits(u16 ored)
+{
+	return ored & EC_AL_STATE_MASK;
+}
+
+static void count_slaves(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	u8 al[2] = { 0, 0 };
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, al);
+	unsigned int count;
+	u16 ored;
+
+	if (ec_xfer(m, &dg, 1)) {
+		count = 0;
+		ored = 0;
+	} else {
+		count = dg.back;
+		ored = get_unaligned_le16(al);
+	}
+	WRITE_ONCE(m->slaves_responding, count);
+	WRITE_ONCE(m->al_states, al_bits(ored));
+	if (count != w->count) {
+		if (w->scanned)
+			ec_info(m, "%u slave(s) responding, %u before\n", count, w->count);
+		w->count = count;
+		w->same = 0;
+		w->scanned = false;
+	} else {
+		w->same++;
+	}
+	if (w->scanned && !as_wanted(m, ored))
+		check_slaves(m);
+}
+
+static void want_states(struct ec_master *m)
+{
+	unsigned int i;
+
+	for (i = 0; i < m->n_slaves; i++) {
+		struct ec_slave *s = m->slaves[i];
+
+		if (s->error == EC_SLAVE_SCAN_FAILED)
+			continue;
+		ec_slave_request(s, s->requested);
+	}
+}
+
+static void maybe_scan(struct watch *w)
+{
+	struct ec_master *m = w->m;
+
+	if (READ_ONCE(m->rescan)) {
+		w->scanned = false;
+		w->same = STABLE_LOOKS;
+	}
+	if (w->scanned || w->same < STABLE_LOOKS || READ_ONCE(m->freeze)) {
+		return;
+	}
+	WRITE_ONCE(m->scan_busy, true);
+	if (READ_ONCE(m->rescan)) {
+		/* forget what is known, so that everything is read again */
+		WRITE_ONCE(m->rescan, false);
+		if (m->owner == EC_OWNER_IDLE)
+			ec_scan(m, 0);
+	}
+	if (!ec_scan(m, w->count)) {
+		w->scanned = true;
+		ec_session_attach(m);
+		want_states(m);
+	} else {
+		w->same = 0;
+	}
+	WRITE_ONCE(m->scan_busy, false);
+	wake_up_all(&m->scan_wq);
+}
+
+static int monitor(void *data)
+{
+	struct watch w = { .m = data };
+	struct ec_master *m = w.m;
+
+	while (!kthread_should_stop()) {
+		ktime_t to = ms_to_ktime(PERIOD_MS);
+
+		check_links(&w);
+		if (m->owner == EC_OWNER_CYCLE && ec_cycle_stalled(m))
+			ec_session_stalled(m);
+		if (w.link_up || m->n_slaves) {
+			count_slaves(&w);
+			maybe_scan(&w);
+		} else {
+			WRITE_ONCE(m->slaves_responding, 0);
+			WRITE_ONCE(m->al_states, 0);
+		}
+		ec_session_status(m);
+		set_current_state(TASK_IDLE);
+		if (!kthread_should_stop() && !READ_ONCE(m->rescan))
+			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
+		__set_current_state(TASK_RUNNING);
+	}
+	return 0;
+}
+
+/**
+ * ec_monitor_start() - start watching the bus
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno.
+ */
+int ec_monitor_start(struct ec_master *m)
+{
+	struct task_struct *t = kthread_run(monitor, m, "EtherCAT%u", m->index);
+
+	if (IS_ERR(t))
+		return PTR_ERR(t);
+	m->monitor = t;
+	return 0;
+}
+
+/**
+ * ec_monitor_stop() - stop watching
+ * @m: master, @stopping set
+ *
+ * Context: Process. May sleep.
+ */
+void ec_monitor_stop(struct ec_master *m)
+{
+	if (m->monitor)
+		kthread_stop(m->monitor);
+	m->monitor = NULL;
+}
+
+/**
+ * ec_monitor_kick() - let the monitor look at once
+ * @m: master
+ *
+ * Context: Any.
+ */
+void ec_monitor_kick(struct ec_master *m)
+{
+	if (m->monitor)
+		wake_up_process(m->monitor);
+}

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Finding the slaves: addresses, identity, EEPROM, topology; all in lockstep. */
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "master.h"
+#include "slave.h"
+#include "xfer.h"
+
+/* registers read from every slave in each scan */
+struct regs {
+	u8 info[EC_INFO_SIZE];
+	u8 station[4];		/* 0x0010 station, 0x0012 alias */
+	u8 dl[2];
+	u8 al[6];
+	u8 recv[16];
+};
+
+struct scan {
+	struct ec_master *m;
+	unsigned int n;
+	struct ec_slave **slaves;
+	struct regs *regs;
+	struct ec_dg *dg;
+	u8 (*addr)[2];
+	bool fresh;	/* no slave was known before: broadcasts are allowed */
+};
+
+static void bwr(struct ec_master *m, u16 ado, const void *data, u16 len)
+{
+	ec_xfer_one(m, EC_CMD_BWR, 0, ado, (void *)data, len);
+}
+
+/* ETG.1500 start-up sequence; only when nobody is in operation */
+static void reset_bus(struct ec_master *m)
+{
+	static const u8 zero[256];
+	static const u8 init[2] = { EC_AL_INIT, 0 };
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
+
+	bwr(m, EC_REG_DL_LOOPS, zero, 1);
+	bwr(m, EC_REG_AL_CONTROL, init, 2);
+	bwr(m, EC_REG_ECAT_MASK, zero, 2);
+	bwr(m, EC_REG_FMMU(0), zero, 256);
+	bwr(m, EC_REG_SM(0), zero, 128);
+	bwr(m, EC_REG_DC_ACTIVATION, zero, 1);
+	bwr(m, EC_REG_DL_ALIAS, zero, 1);
+	bwr(m, EC_REG_EEP_OWNER, force, 1);
+	bwr(m, EC_REG_EEP_OWNER, zero, 1);
+}
+
+/* Read @len bytes at @ado of all slaves by position into regs + @ofs. */
+static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
+						(u8 *)&sc->regs[i] + ofs);
+	return ec_xfer(sc->m, sc->dg, sc->n);
+}
+
+static struct ec_slave *known(struct ec_master *m, u16 station)
+{
+	unsigned int i;
+
+	for (i = 0; i < m->n_slaves; i++)
+		if (m->slaves[i]->station == station)
+			return m->slaves[i];
+	return NULL;
+}
+
+static bool taken(const struct scan *sc, u16 station, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		if (sc->slaves[i]->station == station)
+			return true;
+	return false;
+}
+
+static u16 next_station(struct scan *sc)
+{
+	do {
+		if (++sc->m->next_station == 0)
+			sc->m->next_station = 1;
+	} while (known(sc->m, sc->m->next_station));
+	return sc->m->next_station;
+}
+
+/* Slaves that kept the address we gave them are the same; others get one. */
+static int assign(struct scan *sc)
+{
+	unsigned int i, n = 0;
+	int ret;
+
+	for (i = 0; i < sc->n; i++) {
+		u16 station = get_unaligned_le16(sc->regs[i].station);
+		struct ec_slave *s = known(sc->m, station);
+
+		if (s && !s->error && !taken(sc, station, i)) {
+			sc->slaves[i] = ec_slave_ref(s);
+			continue;
+		}
+		sc->slaves[i] = ec_slave_alloc(sc->m, next_station(sc));
+		if (!sc->slaves[i])
+			return -ENOMEM;
+		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
+		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
+						sc->addr[n]);
+		n++;
+	}
+	ret = ec_xfer(sc->m, sc->dg, n);
+	for (i = 0; i < n && !ret; i++)
+		if (sc->dg[i].wkc != 1)
+			ret = -EAGAIN;	/* the bus has changed meanwhile */
+	return ret;
+}
+
+static void take_regs(struct scan *sc)
+{
+	unsigned int i, p;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+		struct regs *r = &sc->regs[i];
+
+		s->position = i;
+		memcpy(s->regs, r->info, sizeof(s->regs));
+		s->dl_status = get_unaligned_le16(r->dl);
+		s->al_status = get_unaligned_le16(r->al);
+		s->al_code = get_unaligned_le16(r->al + 4);
+		for (p = 0; p < EC_MAX_PORT; p++)
+			s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
+	}
+}
+
+/* EEPROMs of the new ones: all of them at once */
+static int read_sii(struct scan *sc)
+{
+	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
+	unsigned int i, n = 0;
+
+	if (!fresh)
+		return -ENOMEM;
+	for (i = 0; i < sc->n; i++)
+		if (!sc->slaves[i]->sii)
+			fresh[n++] = sc->slaves[i];
+	for (i = 0; i < n && !sc->fresh; i++) {
+		ec_xfer_fpwr(sc->m, fresh[i]->station, EC_REG_EEP_OWNER, force, 1);
+		ec_xfer_fpwr(sc->m, fresh[i]->station, EC_REG_EEP_OWNER, zero, 1);
+	}
+	ec_scan_sii(sc->m, fresh, n, sc->fresh);
+	for (i = 0; i < n; i++) {
+		struct ec_slave *s = fresh[i];
+
+		if (s->sii && ec_slave_parse_sii(s))
+			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+				      "EEPROM content is unusable (%zu bytes); write a valid image",
+				      s->sii_bytes);
+		else if (s->sii && !s->info.checksum_ok)
+			ec_slave_warn(s, "EEPROM checksum is 0x%02x, should be 0x%02x\n",
+				      s->info.checksum, s->info.checksum_calc);
+	}
+	kvfree(fresh);
+	return 0;
+}
+
+static int look(struct scan *sc)
+{
+	static const u8 latch[4];
+	int ret;
+
+	if (sc->fresh)
+		reset_bus(sc->m);
+	ret = read_all(sc, EC_REG_STATION, offsetof(struct regs, station), 4) ?:
+	      assign(sc) ?:
+	      read_all(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
+	      read_all(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
+	      read_all(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
+	if (ret)
+		return ret;
+	bwr(sc->m, EC_REG_DC_RECV(0), latch, 4);
+	ret = read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
+	if (ret)
+		return ret;
+	take_regs(sc);
+	ec_topology_build(sc->slaves, sc->n);
+	return read_sii(sc);
+}
+
+/* The result becomes visible; slaves that are missing are gone. */
+static void publish(struct scan *sc)
+{
+	struct ec_master *m = sc->m;
+	struct ec_slave **old;
+	unsigned int i, j, n_old;
+
+	down_write(&m->topo);
+	old = m->slaves;
+	n_old = m->n_slaves;
+	m->slaves = sc->slaves;
+	m->n_slaves = sc->n;
+	up_write(&m->topo);
+	sc->slaves = NULL;
+
+	for (i = 0; i < n_old; i++) {
+		for (j = 0; j < m->n_slaves; j++)
+			if (m->slaves[j] == old[i])
+				break;
+		if (j == m->n_slaves)
+			WRITE_ONCE(old[i]->gone, true);
+		ec_slave_unref(old[i]);
+	}
+	kvfree(old);
+}
+
+/**
+ * ec_scan() - find out who is on the bus
+ * @m: master
+ * @count: slaves that answered the last broadcast; 0 is legal
+ *
+ * Slaves that are known already keep their objects; only new ones are read.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 0; -EAGAIN when the bus changed meanwhile; -ENOMEM; or as ec_xfer().
+ */
+int ec_scan(struct ec_master *m, unsigned int count)
+{
+	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->owner == EC_OWNER_IDLE };
+	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->link[0].stats.tx_frames);
+	unsigned int i;
+	int ret = -ENOMEM;
+
+	sc.slaves = kvcalloc(count + 1, sizeof(*sc.slaves), GFP_KERNEL);
+	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
+	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
+	sc.addr = kvcalloc(count + 1, sizeof(*sc.addr), GFP_KERNEL);
+	if (sc.slaves && sc.regs && sc.dg && sc.addr)
+		ret = count ? look(&sc) : 0;
+	if (!ret) {
+		publish(&sc);
+		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
+		m->scan_frames = atomic64_read(&m->link[0].stats.tx_frames) - frames;
+		ec_info(m, "%u slave(s) found in %u us with %llu frames\n", count, m->scan_us,
+			m->scan_frames);
+	}
+	for (i = 0; sc.slaves && i < count; i++)
+		if (sc.slaves[i])
+			ec_slave_unref(sc.slaves[i]);
+	kvfree(sc.slaves);
+	kvfree(sc.regs);
+	kvfree(sc.dg);
+	kvfree(sc.addr);
+	return ret;
+}

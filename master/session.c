@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include "config.h"
+#include "domain.h"
+#include "master.h"
+#include "session.h"
+#include "slave.h"
+
+static void shared_release(struct kref *kref)
+{
+	struct ec_shared *sh = container_of(kref, struct ec_shared, kref);
+
+	vfree(sh->image);
+	vfree(sh->status);
+	kfree(sh);
+}
+
+void ec_shared_get(struct ec_shared *sh)
+{
+	kref_get(&sh->kref);
+}
+
+void ec_shared_put(struct ec_shared *sh)
+{
+	kref_put(&sh->kref, shared_release);
+}
+
+static struct ec_shared *shared_alloc(size_t image_size)
+{
+	struct ec_shared *sh = kzalloc(sizeof(*sh), GFP_KERNEL);
+
+	if (!sh)
+		return NULL;
+	kref_init(&sh->kref);
+	sh->image_size = PAGE_ALIGN(image_size);
+	sh->image = image_size ? vmalloc_user(sh->image_size) : NULL;
+	sh->status = vmalloc_user(EC_STATUS_BYTES);
+	if ((image_size && !sh->image) || !sh->status) {
+		ec_shared_put(sh);
+		return NULL;
+	}
+	sh->status->magic = EC_STATUS_MAGIC;
+	sh->status->size = sizeof(*sh->status);
+	return sh;
+}
+
+/**
+ * ec_session_begin() - an application reserves the master
+ * @m: master
+ * @owner: its open file
+ *
+ * Waits for a scan in progress, then the list of slaves is frozen until
+ * activation.
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
+ * -EINTR, -ENOMEM.
+ */
+int ec_session_begin(struct ec_master *m, const void *owner)
+{
+	struct ec_session *s;
+	int ret;
+
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	ret = ec_master_wait_scan(m);
+	if (ret == -EINTR)
+		return ret;
+	s = kvzalloc(sizeof(*s), GFP_KERNEL);
+	if (!s)
+		return -ENOMEM;
+	s->master = m;
+	s->owner = owner;
+	mutex_lock(&m->session_lock);
+	if (m->session) {
+		mutex_unlock(&m->session_lock);
+		kvfree(s);
+		return -EBUSY;
+	}
+	m->session = s;
+	WRITE_ONCE(m->freeze, true);
+	mutex_unlock(&m->session_lock);
+	return 0;
+}
+
+/* Detach slave and configuration; the slave goes back to PREOP. */
+static void detach(struct ec_config *c)
+{
+	struct ec_slave *slave = c->slave;
+
+	if (!slave)
+		return;
+	c->slave = NULL;
+	WRITE_ONCE(slave->interrupt, true);
+	mutex_lock(&slave->lock);
+	slave->config = NULL;
+	slave->reconfigure = true;
+	slave->interrupt = false;
+	mutex_unlock(&slave->lock);
+	if (!slave->gone && !slave->master->stopping)
+		ec_slave_request(slave, EC_AL_PREOP);
+	ec_slave_unref(slave);
+}
+
+static void clear(struct ec_session *s)
+{
+	unsigned int i;
+
+	for (i = 0; i < s->n_configs; i++) {
+		detach(s->configs[i]);
+		ec_config_free(s->configs[i]);
+	}
+	kfree(s->configs);
+	s->configs = NULL;
+	s->n_configs = 0;
+	for (i = 0; i < s->n_domains; i++)
+		ec_domain_free(s->domains[i]);
+	s->n_domains = 0;
+}
+
+/**
+ * ec_session_deactivate() - stop process data, free what was configured
+ * @s: session
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0, or -EINVAL when it was not active.
+ */
+int ec_session_deactivate(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	struct ec_shared *sh;
+
+	if (!s->active)
+		return -EINVAL;
+	mutex_lock(&m->cyclic_lock);
+	m->active = NULL;
+	mutex_unlock(&m->cyclic_lock);
+	ec_cycle_own(m, EC_OWNER_IDLE);
+	s->active = false;
+	clear(s);
+	ec_cycle_free(&s->cycle);
+	sh = s->shared;
+	s->shared = NULL;
+	ec_shared_put(sh);
+	m->app_time = 0;
+	ec_info(m, "session deactivated\n");
+	return 0;
+}
+
+/**
+ * ec_session_end() - the application is gone or releases the master
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_end(struct ec_master *m)
+{
+	struct ec_session *s;
+
+	mutex_lock(&m->session_lock);
+	s = m->session;
+	if (s) {
+		ec_session_deactivate(s);
+		clear(s);
+		m->session = NULL;
+		WRITE_ONCE(m->freeze, false);
+	}
+	mutex_unlock(&m->session_lock);
+	kvfree(s);
+}
+
+/* The slave @c means, with a reference, or NULL. */
+static struct ec_slave *lookup(struct ec_master *m, const struct ec_config *c)
+{
+	struct ec_slave *slave = NULL;
+	unsigned int i, pos = c->position;
+
+	down_read(&m->topo);
+	if (c->alias) {
+		for (i = 0; i < m->n_slaves && m->slaves[i]->alias != c->alias; i++)
+			;
+		pos += i;
+	}
+	if (pos < m->n_slaves && m->slaves[pos]->info.vendor == c->vendor &&
+	    m->slaves[pos]->info.product == c->product && !m->slaves[pos]->gone)
+		slave = ec_slave_ref(m->slaves[pos]);
+	up_read(&m->topo);
+	return slave;
+}
+
+/**
+ * ec_session_attach_one() - connect a configuration with its slave
+ * @s: session
+ * @c: configuration
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
+{
+	struct ec_slave *slave = lookup(s->master, c);
+
+	if (slave == c->slave) {
+		if (slave)
+			ec_slave_unref(slave);
+		return;
+	}
+	detach(c);
+	if (!slave)
+		return;
+	mutex_lock(&slave->lock);
+	if (slave->config) {
+		mutex_unlock(&slave->lock);
+		ec_slave_warn(slave, "has two configurations; use one of %u:%u and its other name\n",
+			      c->alias, c->position);
+		ec_slave_unref(slave);
+		return;
+	}
+	slave->config = c;
+	slave->reconfigure = true;
+	mutex_unlock(&slave->lock);
+	c->slave = slave;
+	if (s->active)
+		ec_slave_request(slave, EC_AL_OP);
+}
+
+/**
+ * ec_session_attach() - after a scan: connect configurations and slaves anew
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_attach(struct ec_master *m)
+{
+	unsigned int i;
+
+	mutex_lock(&m->session_lock);
+	for (i = 0; m->session && i < m->session->n_configs; i++)
+		ec_session_attach_one(m->session, m->session->configs[i]);
+	mutex_unlock(&m->session_lock);
+}
+
+/**
+ * ec_session_activate() - lay out process data, hand the links to the cycle
+ * @s: session
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -EBUSY when active already; -EOVERFLOW when the image or a cycle
+ * is too large; -ENOMEM.
+ */
+int ec_session_activate(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	u32 offset = 0;
+	unsigned int i;
+	int ret;
+
+	if (s->active)
+		return -EBUSY;
+	for (i = 0; i < s->n_domains; i++) {
+		s->domains[i]->offset = offset;
+		s->domains[i]->logical = offset;
+		offset += ALIGN(s->domains[i]->size, 8);
+	}
+	if (offset > EC_MAX_IMAGE)
+		return -EOVERFLOW;
+	s->shared = shared_alloc(offset);
+	if (!s->shared)
+		return -ENOMEM;
+	ret = ec_cycle_layout(s);
+	if (ret) {
+		ec_shared_put(s->shared);
+		s->shared = NULL;
+		return ret;
+	}
+	s->shared->status->config_count = s->n_configs;
+	for (i = 0; i < s->n_domains; i++)
+		s->shared->status->domains[i].expected = s->domains[i]->expected;
+	s->active = true;
+	WRITE_ONCE(m->freeze, false);
+	ec_cycle_own(m, EC_OWNER_CYCLE);
+	mutex_lock(&m->cyclic_lock);
+	m->active = s;
+	mutex_unlock(&m->cyclic_lock);
+	for (i = 0; i < s->n_configs; i++)
+		if (s->configs[i]->slave)
+			ec_slave_request(s->configs[i]->slave, EC_AL_OP);
+	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
+		s->n_domains, offset, s->cycle.n_dgrams);
+	return 0;
+}
+
+static u8 config_status(const struct ec_config *c)
+{
+	const struct ec_slave *slave = c->slave;
+	u8 v;
+
+	if (!slave || slave->gone)
+		return 0;
+	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
+	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
+	    !slave->reconfigure)
+		v |= EC_STATUS_SC_OP;
+	return v;
+}
+
+/**
+ * ec_session_status() - bring the mapped status up to date; monitor
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_status(struct ec_master *m)
+{
+	struct ec_session *s;
+	struct ec_status *st;
+	unsigned int i;
+
+	/* an activation in progress may hold it for long: next time then */
+	if (!mutex_trylock(&m->session_lock))
+		return;
+	s = m->session;
+	if (s && s->active) {
+		st = s->shared->status;
+		WRITE_ONCE(st->slaves_responding, m->slaves_responding);
+		WRITE_ONCE(st->al_states, m->al_states);
+		WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
+		WRITE_ONCE(st->frames_lost, (u64)atomic64_read(&m->link[0].stats.lost));
+		for (i = 0; i < s->n_configs; i++)
+			WRITE_ONCE(st->configs[i], config_status(s->configs[i]));
+	}
+	mutex_unlock(&m->session_lock);
+}
+
+/**
+ * ec_session_stalled() - the cyclic caller has not sent for too long; monitor
+ * @m: master
+ *
+ * The links go back to idle mode, so that mailboxes and tools work; process
+ * data stop, the slaves' watchdogs take care of the outputs.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_stalled(struct ec_master *m)
+{
+	ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
+		div_u64(ktime_get_ns() - READ_ONCE(m->last_send_ns), NSEC_PER_MSEC));
+	ec_cycle_own(m, EC_OWNER_IDLE);
+}
+
+/**
+ * ec_session_device_gone() - the device of a link disappears
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_device_gone(struct ec_master *m)
+{
+	if (READ_ONCE(m->owner) == EC_OWNER_CYCLE)
+		ec_cycle_own(m, EC_OWNER_IDLE);
+}

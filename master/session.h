@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What an application has configured, and the memory it shares. */
+#ifndef EC_SESSION_H
+#define EC_SESSION_H
+
+#include <linux/kref.h>
+#include <linux/mm.h>
+#include <linux/types.h>
+#include "cycle.h"
+#include "ethercat.h"
+#include "limits.h"
+
+struct ec_config;
+struct ec_domain;
+struct ec_master;
+
+/**
+ * struct ec_shared - memory mapped by the application; outlives the session
+ *	as long as it is mapped
+ * @kref: session and mappings
+ * @image: process image of all domains
+ * @image_size: bytes, multiple of the page size
+ * @status: status pages
+ */
+struct ec_shared {
+	struct kref kref;
+	u8 *image;
+	size_t image_size;
+	struct ec_status *status;
+};
+
+#define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
+
+/**
+ * struct ec_session - under master->session_lock; @cycle and @shared are the
+ *	cyclic caller's while @active
+ * @master: master
+ * @owner: open file that reserved the master
+ * @configs: slave configurations
+ * @n_configs: entries in @configs
+ * @domains: domains
+ * @n_domains: entries in @domains
+ * @active: activated
+ * @shared: memory of the activation
+ * @cycle: cyclic layout
+ */
+struct ec_session {
+	struct ec_master *master;
+	const void *owner;
+	struct ec_config **configs;
+	unsigned int n_configs;
+	struct ec_domain *domains[EC_MAX_DOMAINS];
+	unsigned int n_domains;
+	bool active;
+	struct ec_shared *shared;
+	struct ec_cycle cycle;
+};
+
+int ec_session_begin(struct ec_master *m, const void *owner);
+void ec_session_end(struct ec_master *m);
+int ec_session_activate(struct ec_session *s);
+int ec_session_deactivate(struct ec_session *s);
+
+void ec_session_attach(struct ec_master *m);
+void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
+void ec_session_status(struct ec_master *m);
+void ec_session_stalled(struct ec_master *m);
+void ec_session_device_gone(struct ec_master *m);
+
+void ec_shared_get(struct ec_shared *sh);
+void ec_shared_put(struct ec_shared *sh);
+
+#endif
