@@ -1,0 +1,563 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * The application side of simulated slaves: AL state machine, mailbox, object
+ * dictionary, process data, device profiles. A device is described by constant
+ * tables (struct ec_app_dev), a model is built from them once (EEPROM image,
+ * object dictionary) and shared by all slaves of that kind, an application is
+ * what one slave has of its own. Memory is taken while the segment is built,
+ * never afterwards.
+ */
+#ifndef EC_SIM_APP_H
+#define EC_SIM_APP_H
+
+#include "../../master/wire/al.h"
+#include "../../master/wire/sdo.h"
+#include "../../master/wire/sdoinfo.h"
+#include "../../master/wire/sii.h"
+#include "../../master/wire/types.h"
+#include "sim.h"
+
+#define EC_APP_NAME		24	/* name of a slave, with the zero */
+#define EC_APP_SDO_BUF		2048	/* largest object, complete access too */
+#define EC_APP_EMCY		8	/* emergencies waiting */
+#define EC_APP_ESC_ET1100	0x11
+#define EC_APP_ESC_ET1200	0x12
+#define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
+#define EC_APP_MAP_CAP		32	/* entries of a mapping object one may write */
+
+struct ec_app;
+
+enum ec_app_dir { EC_APP_OUT, EC_APP_IN, EC_APP_DIRS };
+
+/**
+ * enum ec_app_mapping - what the master may change about the process data
+ * @EC_APP_MAP_DEFAULT: as the device table says
+ * @EC_APP_MAP_FIXED: nothing
+ * @EC_APP_MAP_ASSIGN: which PDOs are assigned
+ * @EC_APP_MAP_FULL: also what the PDOs consist of
+ */
+enum ec_app_mapping {
+	EC_APP_MAP_DEFAULT,
+	EC_APP_MAP_FIXED,
+	EC_APP_MAP_ASSIGN,
+	EC_APP_MAP_FULL,
+};
+
+/**
+ * struct ec_app_var - an object or entry of a device table
+ * @index: object
+ * @sub: subindex; sub 0 of a record is made by itself
+ * @bits: size
+ * @type: CoE data type
+ * @access: EC_OD_READ_PREOP...
+ * @value: at power-on
+ * @name: of the entry (of the object where it has only sub 0)
+ * @object: of the object, in its first entry; NULL: @name
+ */
+struct ec_app_var {
+	u16 index;
+	u8 sub;
+	u16 bits;
+	u16 type;
+	u16 access;
+	u32 value;
+	const char *name;
+	const char *object;
+};
+
+/**
+ * struct ec_app_pdo_entry - one entry of a PDO
+ * @index: object, 0 is a gap
+ * @sub: subindex
+ * @bits: size
+ * @type: CoE data type
+ * @chan: it is channel number @chan (from 1) of its direction; 0: no channel
+ * @name: of the entry
+ * @object: of the object
+ */
+struct ec_app_pdo_entry {
+	u16 index;
+	u8 sub;
+	u8 bits;
+	u16 type;
+	u8 chan;
+	const char *name;
+	const char *object;
+};
+
+/**
+ * struct ec_app_pdo - one PDO of a device
+ * @index: 0x1600.. (outputs), 0x1a00.. (inputs)
+ * @sm: SyncManager it is assigned to at power-on, 0xff: none
+ * @count: entries
+ * @entries: the entries
+ * @name: of the PDO
+ */
+struct ec_app_pdo {
+	u16 index;
+	u8 sm;
+	u16 count;
+	const struct ec_app_pdo_entry *entries;
+	const char *name;
+};
+
+/* SyncManager as in SII category 41 */
+struct ec_app_sm {
+	u16 start;
+	u16 len;
+	u8 control;
+	u8 enable;
+	u8 type;	/* 1, 2 mailbox out, in; 3, 4 outputs, inputs */
+};
+
+/* DC operation mode as in SII category 60 */
+struct ec_app_dc_mode {
+	const char *name;
+	u16 assign_activate;
+};
+
+/* mailbox areas, word 0x14-0x1b of the SII */
+struct ec_app_mbox_area {
+	u16 rx;
+	u16 rx_len;
+	u16 tx;
+	u16 tx_len;
+};
+
+/**
+ * struct ec_app_profile - what a device does between outputs and inputs
+ * @size: bytes of private memory per slave
+ * @init: power was switched on, entries are at their defaults
+ * @run: outputs are in the dictionary, compute the inputs for time @now
+ */
+struct ec_app_profile {
+	size_t size;
+	void (*init)(struct ec_app *app);
+	void (*run)(struct ec_app *app, u64 now);
+};
+
+extern const struct ec_app_profile ec_app_profile_drive;
+
+/**
+ * struct ec_app_dev - table of a device
+ * @name: as written in a segment description, and the order number
+ * @title: device name of the SII
+ * @group: group of the SII
+ * @vendor: identity
+ * @product: identity
+ * @revision: identity
+ * @pdi_control: SII word 0, bit 8: device emulation
+ * @pdi_config: SII word 1
+ * @boot: bootstrap mailbox, all 0: BOOT not supported
+ * @std: standard mailbox, all 0: none
+ * @protocols: SII word 0x1c
+ * @coe: CoE details of the SII
+ * @flags: flags of the SII general category
+ * @current_ma: E-bus current, negative feeds
+ * @ports: enum ec_port_type per port
+ * @esc_type: register 0x0000
+ * @features: register 0x0008
+ * @fmmus: number of FMMUs
+ * @fmmu_use: SII category 40
+ * @n_fmmu_use: bytes in it
+ * @sms: SyncManagers in use
+ * @n_sms: how many
+ * @max_bytes: largest process image per direction, 0: the default one
+ * @mapping: what the master may change
+ * @pdos: all PDOs
+ * @n_pdos: how many
+ * @vars: further objects
+ * @n_vars: how many
+ * @dc: DC modes
+ * @n_dc: how many
+ * @device_type: object 0x1000
+ * @profile: behaviour, NULL: none
+ */
+struct ec_app_dev {
+	const char *name;
+	const char *title;
+	const char *group;
+	u32 vendor;
+	u32 product;
+	u32 revision;
+	u16 pdi_control;
+	u16 pdi_config;
+	struct ec_app_mbox_area boot;
+	struct ec_app_mbox_area std;
+	u16 protocols;
+	u8 coe;
+	u8 flags;
+	s16 current_ma;
+	u8 ports[EC_MAX_PORT];
+	u8 esc_type;
+	u16 features;
+	u8 fmmus;
+	u8 fmmu_use[4];
+	u8 n_fmmu_use;
+	struct ec_app_sm sms[4];
+	u8 n_sms;
+	u16 max_bytes[EC_APP_DIRS];
+	enum ec_app_mapping mapping;
+	const struct ec_app_pdo *pdos;
+	u16 n_pdos;
+	const struct ec_app_var *vars;
+	u16 n_vars;
+	const struct ec_app_dc_mode *dc;
+	u8 n_dc;
+	u32 device_type;
+	const struct ec_app_profile *profile;
+};
+
+/**
+ * struct ec_app_entry - entry of an object dictionary
+ * @index: object it belongs to
+ * @sub: subindex
+ * @type: CoE data type
+ * @bits: size
+ * @access: EC_OD_READ_PREOP...
+ * @off: where its value lies in the data of a slave, byte aligned
+ * @name: text, NULL: made from the subindex
+ */
+struct ec_app_entry {
+	u16 index;
+	u8 sub;
+	u16 type;
+	u16 bits;
+	u16 access;
+	u32 off;
+	const char *name;
+};
+
+/**
+ * struct ec_app_object - object of a dictionary
+ * @index: number
+ * @code: enum ec_od_code
+ * @max_sub: largest subindex
+ * @type: CoE data type
+ * @first: its first entry
+ * @count: its entries
+ * @name: text
+ */
+struct ec_app_object {
+	u16 index;
+	u8 code;
+	u8 max_sub;
+	u16 type;
+	u32 first;
+	u16 count;
+	const char *name;
+};
+
+/**
+ * struct ec_app_params - what a model may differ in from its device table
+ * @vendor: identity, 0: as the table
+ * @product: identity, 0: as the table
+ * @revision: identity, 0: as the table
+ * @out: generic devices: output size (drive: bytes, io: bits)
+ * @in: generic devices: input size
+ * @mbox: generic devices: mailbox size, 0: the default
+ * @mapping: what the master may change
+ * @cpu: generic io: with AL software instead of device emulation
+ * @id: value of the identification request, 0: not supported
+ */
+struct ec_app_params {
+	u32 vendor;
+	u32 product;
+	u32 revision;
+	u32 out;
+	u32 in;
+	u16 mbox;
+	enum ec_app_mapping mapping;
+	bool cpu;
+	u16 id;
+};
+
+/**
+ * struct ec_app_model - a kind of slave, built once and shared
+ * @sim: segment whose memory it uses
+ * @refs: users
+ * @dev: table it was made from (a copy, with the parameters applied)
+ * @params: the parameters, to find it again
+ * @table: the catalogue's table, to find it again; NULL: from a file
+ * @blocks: chain of all its memory
+ * @entries: dictionary entries by index and subindex
+ * @n_entries: how many
+ * @objects: dictionary objects
+ * @n_objects: how many
+ * @defaults: data of a slave at power-on
+ * @data_len: bytes in it
+ * @chan: entries which are channels, by number - 1
+ * @n_chan: how many per direction
+ * @map_cap: largest number of mapped entries per direction
+ * @max_bytes: largest process image per direction
+ * @pd_sm: SyncManager of a direction, -1: none
+ * @emulation: device emulation: no AL software
+ * @eeprom: image without alias and serial number
+ * @eeprom_len: bytes in it
+ */
+struct ec_app_model {
+	struct ec_sim *sim;
+	u32 refs;
+	struct ec_app_dev dev;
+	struct ec_app_params params;
+	const struct ec_app_dev *table;
+	struct ec_app_block *blocks;
+	struct ec_app_entry *entries;
+	u32 n_entries;
+	struct ec_app_object *objects;
+	u32 n_objects;
+	u8 *defaults;
+	u32 data_len;
+	const struct ec_app_entry **chan[EC_APP_DIRS];
+	u16 n_chan[EC_APP_DIRS];
+	u32 map_cap[EC_APP_DIRS];
+	u16 max_bytes[EC_APP_DIRS];
+	int pd_sm[EC_APP_DIRS];
+	bool emulation;
+	u8 *eeprom;
+	size_t eeprom_len;
+};
+
+/* where the value of an input channel comes from */
+enum ec_app_source_kind {
+	EC_APP_SRC_NONE,
+	EC_APP_SRC_CONST,
+	EC_APP_SRC_RAMP,
+	EC_APP_SRC_SINE,
+	EC_APP_SRC_LINK,
+};
+
+/**
+ * struct ec_app_source - source of an input channel
+ * @kind: what it is
+ * @offset: value of a constant, middle of sine and ramp
+ * @amplitude: of a sine; a ramp runs from @offset to @offset + @amplitude
+ * @period_ns: of sine and ramp
+ * @from: slave the value is taken from
+ * @from_chan: its output channel, from 0
+ */
+struct ec_app_source {
+	enum ec_app_source_kind kind;
+	s64 offset;
+	s64 amplitude;
+	u64 period_ns;
+	struct ec_app *from;
+	u16 from_chan;
+};
+
+/**
+ * struct ec_app_copy - a run of bits between process image and dictionary
+ * @off: byte in the data of the slave
+ * @pos: bit in the image
+ * @bits: how many
+ */
+struct ec_app_copy {
+	u32 off;
+	u32 pos;
+	u32 bits;
+};
+
+/**
+ * struct ec_app_mbox - mailbox of a slave
+ * @srv: SDO server
+ * @cap: bytes of each of the buffers
+ * @rx: message from the master
+ * @out: message that lies in SM1 or goes there next
+ * @last: message the master read before, for a repeat request
+ * @out_len: bytes in @out, 0: none
+ * @last_len: bytes in @last
+ * @out_due: when @out is ready
+ * @out_in_sm: @out lies in SM1
+ * @rx_waits: SM0 is full and not fetched, @out is occupied
+ * @rx_counter: counter of the last message accepted, 0: none yet
+ * @tx_counter: counter of the last message sent
+ * @emcy: emergencies to send, 8 bytes each
+ * @n_emcy: how many
+ * @info: SDO information on its way out
+ * @info_buf: its body
+ * @info_cap: bytes there
+ */
+struct ec_app_mbox {
+	struct ec_sdo_srv srv;
+	u16 cap;
+	u8 *rx;
+	u8 *out;
+	u8 *last;
+	u16 out_len;
+	u16 last_len;
+	u64 out_due;
+	bool out_in_sm;
+	bool rx_waits;
+	u8 rx_counter;
+	u8 tx_counter;
+	u8 emcy[EC_APP_EMCY][8];
+	u8 n_emcy;
+	struct ec_sdoinfo_resp info;
+	u8 *info_buf;
+	u16 info_cap;
+};
+
+/* an emergency the script asks for */
+struct ec_app_event {
+	struct ec_app_event *next;
+	u64 at_ns;
+	u8 emcy[8];
+};
+
+/**
+ * struct ec_app - application of one slave
+ * @esc: its controller
+ * @model: what it is
+ * @name: its name
+ * @serial: number in object 0x1018
+ * @transition_ns: time a state change takes
+ * @response_ns: time from mailbox request to response
+ * @outputs_wait_ns: how long it waits for outputs on the way to OP
+ * @data: values of the dictionary
+ * @sdo_buf: for the SDO server
+ * @state: AL state
+ * @error: error indication
+ * @code: AL status code
+ * @identify: the identification is shown
+ * @al_to: state on the way, 0: none
+ * @al_due: when it is reached
+ * @al_deadline: when the wait for outputs ends
+ * @al_waits: waits for outputs
+ * @outputs_seen: outputs came since SAFEOP
+ * @map: runs of mapped entries
+ * @n_map: how many
+ * @bytes: size of the process image
+ * @image: scratch for it
+ * @src: sources of the input channels
+ * @events: script
+ * @next_event: next of it
+ * @profile: private memory of the profile
+ * @ran_ns: when the profile ran last
+ * @mbox: mailbox
+ */
+struct ec_app {
+	struct ec_esc *esc;
+	struct ec_app_model *model;
+	char name[EC_APP_NAME];
+	u32 serial;
+	u32 transition_ns;
+	u32 response_ns;
+	u32 outputs_wait_ns;
+	u8 *data;
+	u8 *sdo_buf;
+	u8 state;
+	bool error;
+	u16 code;
+	bool identify;
+	u8 al_to;
+	u64 al_due;
+	u64 al_deadline;
+	bool al_waits;
+	bool outputs_seen;
+	struct ec_app_copy *map[EC_APP_DIRS];
+	u32 n_map[EC_APP_DIRS];
+	u16 bytes[EC_APP_DIRS];
+	u8 *image;
+	struct ec_app_source *src;
+	struct ec_app_event *events;
+	struct ec_app_event *next_event;
+	void *profile;
+	u64 ran_ns;
+	struct ec_app_mbox mbox;
+};
+
+/**
+ * struct ec_app_config - what one slave differs in from its model
+ * @name: its name
+ * @alias: station alias
+ * @serial: serial number
+ * @transition_ns: time a state change takes
+ * @response_ns: time from mailbox request to response
+ * @process_ns: delay through the controller, 0: default
+ * @drift_ppb: error of its clock
+ * @clock_start: its clock at power-on
+ */
+struct ec_app_config {
+	const char *name;
+	u16 alias;
+	u32 serial;
+	u32 transition_ns;
+	u32 response_ns;
+	u32 process_ns;
+	s32 drift_ppb;
+	u64 clock_start;
+};
+
+/* slave_app.c */
+struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
+			  const struct ec_app_config *cfg);
+struct ec_app *ec_app_of(const struct ec_esc *esc);
+u8 ec_app_state(const struct ec_app *app);
+void ec_app_rewake(struct ec_app *app, u64 now);
+int ec_app_add_event(struct ec_app *app, u64 at_ns, const u8 emcy[8]);
+
+/* slave_model.c */
+struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
+				      const struct ec_app_dev *dev,
+				      const struct ec_app_params *params,
+				      int *err);
+struct ec_app_model *ec_app_model_file(struct ec_sim *sim, const u8 *eeprom,
+				       size_t len,
+				       const struct ec_app_params *params,
+				       int *err);
+void ec_app_model_put(struct ec_app_model *model);
+void *ec_app_model_alloc(struct ec_app_model *model, size_t bytes);
+
+/* slave_al.c */
+void ec_app_al_reset(struct ec_app *app, u64 now);
+void ec_app_al_control(struct ec_app *app, u64 now);
+void ec_app_al_poll(struct ec_app *app, u64 now);
+void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now);
+void ec_app_al_outputs(struct ec_app *app, u64 now);
+
+/* slave_mbox.c */
+void ec_app_mbox_reset(struct ec_app *app);
+void ec_app_mbox_written(struct ec_app *app, u64 now);
+void ec_app_mbox_read(struct ec_app *app, u64 now);
+void ec_app_mbox_activate(struct ec_app *app, u64 now);
+void ec_app_mbox_poll(struct ec_app *app, u64 now);
+u64 ec_app_mbox_due(const struct ec_app *app);
+void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
+		      u64 now);
+
+/* slave_od.c */
+const struct ec_app_object *ec_app_od_object(const struct ec_app_model *m, u16 index);
+const struct ec_app_entry *ec_app_od_entry(const struct ec_app_model *m, u16 index,
+				      u8 sub);
+u64 ec_app_od_get(const struct ec_app *app, const struct ec_app_entry *e);
+s64 ec_app_od_get_signed(const struct ec_app *app, const struct ec_app_entry *e);
+void ec_app_od_set(struct ec_app *app, const struct ec_app_entry *e, u64 value);
+u32 ec_app_od_read(struct ec_app *app, u16 index, u8 sub, bool complete, u8 *buf,
+	       size_t cap, size_t *len);
+u32 ec_app_od_write(struct ec_app *app, u16 index, u8 sub, bool complete,
+		const u8 *buf, size_t len);
+bool ec_app_od_in_list(const struct ec_app_model *m,
+		       const struct ec_app_object *o, u16 list);
+size_t ec_app_od_name(const struct ec_app_model *m,
+		      const struct ec_app_entry *e, char buf[24],
+		      const char **name);
+
+/* slave_pdo.c */
+u16 ec_app_pdo_build(struct ec_app *app);
+u32 ec_app_pdo_check_write(const struct ec_app *app,
+			   const struct ec_app_entry *e, u64 value);
+bool ec_app_pdo_is_config(u16 index);
+void ec_app_outputs(struct ec_app *app, u64 now);
+void ec_app_outputs_clear(struct ec_app *app);
+void ec_app_inputs(struct ec_app *app, u64 now);
+void ec_app_run(struct ec_app *app, u64 now);
+s64 ec_app_channel(const struct ec_app *app, enum ec_app_dir dir, u16 chan);
+
+/* catalogue.c */
+const struct ec_app_dev *ec_app_catalogue(const char *name, size_t len);
+const struct ec_app_dev *ec_app_catalogue_at(u32 n);
+
+/* profile_io.c */
+s64 ec_app_source_value(const struct ec_app_source *src, u64 now);
+
+#endif

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Segments from a text. One statement a line, "#" begins a comment; names are
+ * defined before they are used. Times are written 250ns, 10us, 1.5ms, 2s; a
+ * bare number is in ns.
+ *
+ *	segment [seed=N] [response=TIME] [transition=TIME]
+ *	slave NAME DEVICE|file=IMAGE [OPTION...]
+ *	repeat N slave NAME DEVICE [OPTION...]	NAME1, NAME2...; the alias counts up
+ *		alias=N serial=N id=N vendor=N product=N revision=N
+ *		delay=TIME drift=Nppm|Nppb clock=TIME cable=TIME
+ *		response=TIME transition=TIME mapping=fixed|assign|rewritable
+ *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
+ *	branch NAME PORT		the next slave hangs there
+ *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
+ *	connect NAME.CHANNEL -> NAME.CHANNEL	an output to an input
+ *	const NAME.CHANNEL value=N
+ *	ramp NAME.CHANNEL amplitude=N period=TIME [offset=N]
+ *	sine NAME.CHANNEL amplitude=N period=TIME [offset=N]
+ *	fault [at=TIME] WHAT, where WHAT is one of
+ *		cut|heal NAME.PORT  off|on NAME  dead|alive NAME
+ *		deaf|hear NAME (broadcasts)  mute|unmute NAME (application)
+ *		refuse NAME STATE code=N  allow NAME
+ *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
+ *		wkc NAME add=N  errors NAME.PORT add=N
+ *		emergency NAME code=N [register=N]
+ *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]
+ *			[copies=N] [by=TIME]
+ *
+ * Slaves hang in a line, port 0 at port 1 of the slave before.
+ */
+#ifndef EC_SIM_DESCRIBE_H
+#define EC_SIM_DESCRIBE_H
+
+#include "app.h"
+
+/**
+ * struct ec_sim_loader - where EEPROM images come from
+ * @load: put image @name into @buf, return its bytes or -errno
+ * @ctx: first argument
+ */
+struct ec_sim_loader {
+	int (*load)(void *ctx, const char *name, u8 *buf, size_t cap);
+	void *ctx;
+};
+
+/**
+ * struct ec_sim_error - what is wrong with a description
+ * @line: where, from 1; 0: all of it
+ * @text: why, and what to do
+ */
+struct ec_sim_error {
+	unsigned int line;
+	char text[160];
+};
+
+int ec_sim_describe(struct ec_sim **out, const struct ec_sim_ops *ops,
+		    const char *text, size_t len,
+		    const struct ec_sim_loader *loader,
+		    struct ec_sim_error *err);
+struct ec_app *ec_sim_find(struct ec_sim *sim, const char *name);
+const char *ec_sim_builtin(const char *name);
+const char *ec_sim_builtin_at(u32 n);
+
+#endif

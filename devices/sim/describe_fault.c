@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The fault statement of segment descriptions. */
+#include "describe_int.h"
+
+#define NEVER_MAX	(~0ULL >> 2)
+
+/* what a verb works on, and the fault it makes */
+enum object { SLAVE, PORT, FRAME };
+
+static const struct verb {
+	const char *name;
+	enum object object;
+	enum ec_sim_fault_type type;
+	u32 arg;
+} verbs[] = {
+	{ "cut", PORT, EC_SIM_FAULT_CUT, 0 },
+	{ "heal", PORT, EC_SIM_FAULT_HEAL, 0 },
+	{ "off", SLAVE, EC_SIM_FAULT_POWER_OFF, 0 },
+	{ "on", SLAVE, EC_SIM_FAULT_POWER_ON, 0 },
+	{ "dead", SLAVE, EC_SIM_FAULT_DEAD, 1 },
+	{ "alive", SLAVE, EC_SIM_FAULT_DEAD, 0 },
+	{ "deaf", SLAVE, EC_SIM_FAULT_MISS_BROADCAST, 1 },
+	{ "hear", SLAVE, EC_SIM_FAULT_MISS_BROADCAST, 0 },
+	{ "mute", SLAVE, EC_SIM_FAULT_MUTE, 1 },
+	{ "unmute", SLAVE, EC_SIM_FAULT_MUTE, 0 },
+	{ "refuse", SLAVE, EC_SIM_FAULT_REFUSE_AL, 0 },
+	{ "allow", SLAVE, EC_SIM_FAULT_REFUSE_AL, 0 },
+	{ "busy", SLAVE, EC_SIM_FAULT_EEPROM_BUSY, 1 },
+	{ "idle", SLAVE, EC_SIM_FAULT_EEPROM_BUSY, 0 },
+	{ "noack", SLAVE, EC_SIM_FAULT_EEPROM_NOACK, 0 },
+	{ "wkc", SLAVE, EC_SIM_FAULT_WKC, 0 },
+	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
+	{ "lose", FRAME, EC_SIM_FAULT_LOSE, 0 },
+	{ "duplicate", FRAME, EC_SIM_FAULT_DUPLICATE, 0 },
+	{ "delay", FRAME, EC_SIM_FAULT_DELAY, 0 },
+	{ "mangle", FRAME, EC_SIM_FAULT_MANGLE, 0 },
+};
+
+static const struct {
+	const char *name;
+	u8 state;
+} states[] = {
+	{ "INIT", EC_AL_INIT }, { "PREOP", EC_AL_PREOP },
+	{ "BOOT", EC_AL_BOOT }, { "SAFEOP", EC_AL_SAFEOP }, { "OP", EC_AL_OP },
+};
+
+static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *w = ec_desc_next(d);
+	s64 code = EC_AL_CODE_UNSPECIFIED;
+
+	for (u32 i = 0; i < ARRAY_SIZE(states); i++)
+		if (ec_desc_is(w, states[i].name))
+			f->arg = states[i].state;
+	if (!f->arg)
+		return ec_desc_fail(d, "write it as: fault refuse NAME SAFEOP code=0x1d",
+				    NULL, "");
+	if (ec_desc_number(d, "code", 1, 0xFFFF, &code))
+		return -EINVAL;
+	f->arg2 = (u32)code;
+	return 0;
+}
+
+static int frame(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	s64 n = 0, ppb = -1, port = -1, copies = 1;
+	u64 by = 10000;
+	int ret;
+
+	ret = ec_desc_number(d, "frame", 1, 0x7FFFFFFF, &n);
+	if (!ret)
+		ret = ec_desc_rate(d, "rate", 1000000000, &ppb);
+	if (!ret)
+		ret = ec_desc_number(d, "port", 0, EC_SIM_PORTS - 1, &port);
+	if (!ret && f->type == EC_SIM_FAULT_DUPLICATE)
+		ret = ec_desc_number(d, "copies", 1, 16, &copies);
+	if (!ret && f->type == EC_SIM_FAULT_DELAY)
+		ret = ec_desc_time(d, "by", 1000000000, &by);
+	if (ret)
+		return ret;
+	if (!n == (ppb < 0))
+		return ec_desc_fail(d, "write which frames: frame=100 for the 100th, or rate=10ppm",
+				    NULL, "");
+	f->port = (int)port;
+	f->arg = (u32)n;
+	f->arg2 = n ? 0 : (u32)div64_u64((u64)ppb + 999, 1000);
+	f->value = f->type == EC_SIM_FAULT_DELAY ? by : (u64)copies;
+	return 0;
+}
+
+static int option(struct ec_desc *d, struct ec_sim_fault *f, const char *key,
+		  s64 min, s64 max)
+{
+	s64 v = max + 1;
+
+	if (ec_desc_number(d, key, min, max, &v))
+		return -EINVAL;
+	if (v == max + 1)
+		return ec_desc_fail(d, "a number is missing: ",
+			&(struct ec_desc_word){ .s = key, .n = strlen(key) },
+			"=N");
+	f->arg = (u32)v;
+	return 0;
+}
+
+static int emergency(struct ec_desc *d, u64 at)
+{
+	int slave = ec_desc_slave(d, ec_desc_next(d));
+	s64 code = 0x1000, reg = 1;
+	u8 emcy[8] = { 0 };
+
+	if (slave < 0)
+		return slave;
+	if (ec_desc_number(d, "code", 0, 0xFFFF, &code) ||
+	    ec_desc_number(d, "register", 0, 0xFF, &reg))
+		return -EINVAL;
+	put_unaligned_le16((u16)code, emcy);
+	emcy[2] = (u8)reg;
+	if (!ec_app_add_event(d->node[slave].app, at, emcy))
+		return 0;
+	ec_desc_fail(d, "out of memory", NULL, "");
+	return -ENOMEM;
+}
+
+static int target(struct ec_desc *d, const struct verb *v,
+		  struct ec_sim_fault *f)
+{
+	struct ec_desc_word *w = ec_desc_next(d), name;
+	s64 n;
+
+	if (v->object == SLAVE) {
+		f->slave = ec_desc_slave(d, w);
+		return f->slave < 0 ? f->slave : 0;
+	}
+	if (ec_desc_place(d, w, &name, &n))
+		return -EINVAL;
+	if (ec_desc_is(&name, "master")) {
+		f->slave = n ? EC_SIM_MASTER1 : EC_SIM_MASTER0;
+		return n < EC_SIM_PORTS ? 0 :
+			ec_desc_fail(d, "'", w, "': the master has ports 0 and 1");
+	}
+	if (n >= EC_MAX_PORT)
+		return ec_desc_fail(d, "'", w, "': ports are 0 to 3");
+	f->slave = ec_desc_slave(d, &name);
+	f->port = (int)n;
+	return f->slave < 0 ? f->slave : 0;
+}
+
+/**
+ * ec_desc_fault() - the fault statement, its first word is used
+ * @d: description
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -EINVAL, or -ENOMEM.
+ */
+int ec_desc_fault(struct ec_desc *d)
+{
+	struct ec_desc_word *w = ec_desc_next(d);
+	struct ec_sim_fault f = { .at_ns = 0 };
+	const struct verb *v = NULL;
+	int ret;
+
+	ret = ec_desc_time(d, "at", NEVER_MAX, &f.at_ns);
+	if (ret)
+		return ret;
+	if (ec_desc_is(w, "emergency"))
+		return emergency(d, f.at_ns);
+	for (u32 i = 0; i < ARRAY_SIZE(verbs); i++)
+		if (ec_desc_is(w, verbs[i].name))
+			v = &verbs[i];
+	if (!v)
+		return ec_desc_fail(d, "no fault '", w ? w : &d->w[0],
+			"'; there are cut, heal, off, on, lose, refuse, mute... (describe.h)");
+	f.type = v->type;
+	f.arg = v->arg;
+	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);
+	if (!ret && !strcmp(v->name, "refuse"))
+		ret = refuse(d, &f);
+	if (!ret && v->type == EC_SIM_FAULT_EEPROM_NOACK)
+		ret = option(d, &f, "count", 0, 0xFFFFFFFFll);
+	if (!ret && v->type == EC_SIM_FAULT_WKC)
+		ret = option(d, &f, "add", -32768, 32767);
+	if (!ret && v->type == EC_SIM_FAULT_ERRORS)
+		ret = option(d, &f, "add", 0, 255);
+	if (ret)
+		return ret;
+	if (!ec_sim_add_fault(d->sim, &f))
+		return 0;
+	return ec_desc_fail(d, "the segment takes no more faults, or not this one",
+			    NULL, "");
+}

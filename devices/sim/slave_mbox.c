@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Mailbox of a simulated slave. At most one message is in SM1 or on its way
+ * there; while it is, the next request stays in SM0, as in a slave with one
+ * buffer.
+ */
+#include "app.h"
+
+static u32 od_read(void *ctx, u16 index, u8 sub, bool complete, u8 *buf,
+		   size_t cap, size_t *len)
+{
+	return ec_app_od_read(ctx, index, sub, complete, buf, cap, len);
+}
+
+static u32 od_write(void *ctx, u16 index, u8 sub, bool complete,
+		    const u8 *data, size_t len)
+{
+	return ec_app_od_write(ctx, index, sub, complete, data, len);
+}
+
+static const struct ec_sdo_srv_ops od_ops = {
+	.read = od_read,
+	.write = od_write,
+};
+
+/**
+ * ec_app_mbox_reset() - start afresh: power-on, INIT to PREOP or BOOT
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_mbox_reset(struct ec_app *app)
+{
+	struct ec_app_mbox *m = &app->mbox;
+
+	m->out_len = 0;
+	m->last_len = 0;
+	m->out_in_sm = false;
+	m->rx_waits = false;
+	m->rx_counter = 0;
+	m->tx_counter = 0;
+	m->n_emcy = 0;
+	memset(&m->info, 0, sizeof(m->info));
+	m->info.done = true;
+	if (m->cap)
+		ec_sdo_srv_init(&m->srv, &od_ops, app, app->sdo_buf,
+				EC_APP_SDO_BUF);
+}
+
+/* bytes a message to the master may have, header included */
+static u16 tx_size(const struct ec_app *app)
+{
+	return min(app->mbox.cap, app->esc->sm[1].page.len);
+}
+
+/* A message of @len bytes lies behind the header place of the out buffer. */
+static void out_set(struct ec_app *app, u8 type, size_t len, u64 due)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_wbuf w = ec_wbuf(m->out, m->cap);
+	struct ec_mbox_hdr h = { .len = (u16)len, .type = type };
+
+	m->tx_counter = ec_mbox_next_counter(m->tx_counter);
+	h.counter = m->tx_counter;
+	ec_mbox_hdr_encode(&w, &h);
+	m->out_len = (u16)(EC_MBOX_HDR + len);
+	m->out_due = due;
+	m->out_in_sm = false;
+}
+
+static void out_error(struct ec_app *app, u16 detail, u64 due)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_wbuf w = ec_wbuf(m->out + EC_MBOX_HDR, EC_MBOX_ERR_BODY);
+
+	ec_mbox_error_encode(&w, detail);
+	out_set(app, EC_MBOX_ERR, EC_MBOX_ERR_BODY, due);
+}
+
+static void info_begin(struct ec_app *app, u8 opcode, size_t size)
+{
+	ec_sdoinfo_resp_init(&app->mbox.info, opcode, app->mbox.info_buf, size);
+}
+
+static u32 info_list(struct ec_app *app, u16 list)
+{
+	const struct ec_app_model *m = app->model;
+	struct ec_wbuf w = ec_wbuf(app->mbox.info_buf, app->mbox.info_cap);
+
+	if (list > EC_SDOINFO_SETTINGS)
+		return EC_ABORT_RANGE;
+	ec_wbuf_le16(&w, list);
+	for (u16 l = 1; !list && l <= EC_SDOINFO_SETTINGS; l++) {
+		u16 n = 0;
+
+		for (u32 i = 0; i < m->n_objects; i++)
+			n += ec_app_od_in_list(m, &m->objects[i], l);
+		ec_wbuf_le16(&w, n);
+	}
+	for (u32 i = 0; list && i < m->n_objects; i++)
+		if (ec_app_od_in_list(m, &m->objects[i], list))
+			ec_wbuf_le16(&w, m->objects[i].index);
+	if (w.bad)
+		return EC_ABORT_MEMORY;
+	info_begin(app, EC_SDOINFO_LIST_RESP,
+		   (size_t)(w.p - app->mbox.info_buf));
+	return 0;
+}
+
+static u32 info_object(struct ec_app *app, u16 index)
+{
+	const struct ec_app_object *o = ec_app_od_object(app->model, index);
+	struct ec_od_object d;
+	int len;
+
+	if (!o)
+		return EC_ABORT_NO_OBJECT;
+	d = (struct ec_od_object){
+		.index = index,
+		.type = o->type,
+		.max_sub = o->max_sub,
+		.code = o->code,
+		.name = o->name,
+		.name_len = strlen(o->name),
+	};
+	len = ec_od_object_encode(app->mbox.info_buf, app->mbox.info_cap, &d);
+	if (len < 0)
+		return EC_ABORT_MEMORY;
+	info_begin(app, EC_SDOINFO_OBJECT_RESP, (size_t)len);
+	return 0;
+}
+
+static u32 info_entry(struct ec_app *app, u16 index, u8 sub)
+{
+	const struct ec_app_object *o = ec_app_od_object(app->model, index);
+	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
+	struct ec_od_entry d;
+	char buf[24];
+	int len;
+
+	if (!e)
+		return o ? EC_ABORT_NO_SUB : EC_ABORT_NO_OBJECT;
+	d = (struct ec_od_entry){
+		.index = index,
+		.sub = sub,
+		.type = e->type,
+		.bits = e->bits,
+		.access = e->access,
+	};
+	d.name_len = ec_app_od_name(app->model, e, buf, &d.name);
+	len = ec_od_entry_encode(app->mbox.info_buf, app->mbox.info_cap, &d);
+	if (len < 0)
+		return EC_ABORT_MEMORY;
+	info_begin(app, EC_SDOINFO_ENTRY_RESP, (size_t)len);
+	return 0;
+}
+
+/* next fragment of SDO information into the out buffer */
+static void info_next(struct ec_app *app, u64 due)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	int len = ec_sdoinfo_resp_next(&m->info, m->out + EC_MBOX_HDR,
+				       tx_size(app) - (size_t)EC_MBOX_HDR);
+
+	if (len > 0)
+		out_set(app, EC_MBOX_COE, (size_t)len, due);
+	else
+		m->info.done = true;
+}
+
+static void info_request(struct ec_app *app, const u8 *rx, size_t len, u64 due)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_sdoinfo_req req;
+	u32 abort = EC_ABORT_COMMAND;
+	int ret;
+
+	m->info.done = true;
+	if (ec_sdoinfo_req_decode(rx, len, &req)) {
+		out_error(app, EC_MBOX_ERR_SERVICE, due);
+		return;
+	}
+	if (!(app->model->dev.coe & EC_SII_COE_SDO_INFO))
+		abort = EC_ABORT_ACCESS;
+	else if (req.opcode == EC_SDOINFO_LIST_REQ)
+		abort = info_list(app, req.index);
+	else if (req.opcode == EC_SDOINFO_OBJECT_REQ)
+		abort = info_object(app, req.index);
+	else if (req.opcode == EC_SDOINFO_ENTRY_REQ)
+		abort = info_entry(app, req.index, req.sub);
+	if (!abort) {
+		info_next(app, due);
+		return;
+	}
+	ret = ec_sdoinfo_error_encode(m->out + EC_MBOX_HDR,
+				      m->cap - (size_t)EC_MBOX_HDR, abort);
+	if (ret > 0)
+		out_set(app, EC_MBOX_COE, (size_t)ret, due);
+}
+
+static void coe(struct ec_app *app, const u8 *rx, size_t len, u64 now, u64 due)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_rbuf r = ec_rbuf(rx, len);
+	struct ec_coe_hdr h;
+	int ret;
+
+	if (ec_coe_hdr_decode(&r, &h)) {
+		out_error(app, EC_MBOX_ERR_TOO_SHORT, due);
+		return;
+	}
+	ec_app_run(app, now);	/* what an upload finds is of this moment */
+	switch (h.service) {
+	case EC_COE_SDO_REQ:
+		ret = ec_sdo_srv_handle(&m->srv, rx, len, m->out + EC_MBOX_HDR,
+					tx_size(app) - (size_t)EC_MBOX_HDR);
+		if (ret > 0)
+			out_set(app, EC_MBOX_COE, (size_t)ret, due);
+		else if (ret < 0)
+			out_error(app, EC_MBOX_ERR_TOO_SHORT, due);
+		return;
+	case EC_COE_SDO_INFO:
+		info_request(app, rx, len, due);
+		return;
+	default:
+		out_error(app, EC_MBOX_ERR_SERVICE, due);
+	}
+}
+
+static bool speaks(const struct ec_app *app, u8 type)
+{
+	u16 p = app->model->dev.protocols;
+
+	if (app->state == EC_AL_BOOT)
+		p &= (u16)EC_SII_PROTO_FOE;
+	switch (type) {
+	case EC_MBOX_COE:
+		return p & EC_SII_PROTO_COE;
+	default:
+		return false;	/* listed in the EEPROM or not: not modelled */
+	}
+}
+
+static void dispatch(struct ec_app *app, u16 size, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_rbuf r = ec_rbuf(m->rx, size);
+	u64 due = now + app->response_ns;
+	struct ec_mbox_hdr h;
+
+	if (ec_mbox_hdr_decode(&r, &h)) {
+		out_error(app, EC_MBOX_ERR_SIZE, due);
+		return;
+	}
+	if (h.counter && h.counter == m->rx_counter)
+		return;		/* sent twice, taken once */
+	m->rx_counter = h.counter;
+	if (h.channel)
+		out_error(app, EC_MBOX_ERR_CHANNEL, due);
+	else if (!speaks(app, h.type))
+		out_error(app, EC_MBOX_ERR_PROTOCOL, due);
+	else
+		coe(app, r.p, h.len, now, due);
+}
+
+/* moves what can be moved, until nothing does */
+static void step(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_esc *esc = app->esc;
+
+	for (;;) {
+		if (m->out_len && m->out_in_sm)
+			return;
+		if (m->out_len) {
+			u16 len = esc->sm[1].page.len;
+
+			if (now < m->out_due || !ec_esc_sm_writable(esc, 1))
+				return;
+			/* the last byte hands the buffer over */
+			len = min(len, m->cap);
+			memset(m->out + m->out_len, 0, len - m->out_len);
+			m->out_in_sm = true;
+			if (ec_esc_pdi_write(esc, esc->sm[1].page.start, m->out,
+					     len, now) < 0)
+				m->out_len = 0;
+			return;
+		}
+		if (m->n_emcy) {
+			struct ec_coe_emergency e = {
+				.code = get_unaligned_le16(m->emcy[0]),
+				.reg = m->emcy[0][2],
+			};
+			int len;
+
+			memcpy(e.data, m->emcy[0] + 3, 5);
+			memmove(m->emcy[0], m->emcy[1],
+				sizeof(m->emcy) - sizeof(m->emcy[0]));
+			m->n_emcy--;
+			len = ec_coe_emergency_encode(m->out + EC_MBOX_HDR,
+						      m->cap - (size_t)EC_MBOX_HDR,
+						      &e);
+			if (len > 0)
+				out_set(app, EC_MBOX_COE, (size_t)len, now);
+		} else if (!m->info.done) {
+			info_next(app, now);
+		} else if (m->rx_waits) {
+			u16 len = min(esc->sm[0].page.len, m->cap);
+
+			m->rx_waits = false;
+			if (ec_esc_pdi_read(esc, esc->sm[0].page.start, m->rx,
+					    len, now) < 0)
+				return;
+			dispatch(app, len, now);
+		} else {
+			return;
+		}
+	}
+}
+
+static bool works(const struct ec_app *app)
+{
+	return app->mbox.cap && app->state != EC_AL_INIT;
+}
+
+/**
+ * ec_app_mbox_written() - the master wrote the mailbox
+ * @app: slave
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_mbox_written(struct ec_app *app, u64 now)
+{
+	if (!works(app))
+		return;
+	app->mbox.rx_waits = true;
+	step(app, now);
+}
+
+/**
+ * ec_app_mbox_read() - the master read the mailbox
+ * @app: slave
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_mbox_read(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+
+	if (!works(app))
+		return;
+	if (m->out_len && m->out_in_sm) {
+		memcpy(m->last, m->out, m->out_len);
+		m->last_len = m->out_len;
+		m->out_len = 0;
+		m->out_in_sm = false;
+	}
+	step(app, now);
+}
+
+/**
+ * ec_app_mbox_activate() - the activate byte of SM1 was written
+ * @app: slave
+ * @now: time, ns
+ *
+ * With the repeat request toggled, the message read last goes into the
+ * mailbox again, before one that lies there unread.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_mbox_activate(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_esc *esc = app->esc;
+	struct ec_sm *p = &esc->sm[1].page;
+	u16 len = min(p->len, m->cap);
+
+	if (!works(app) || !(app->model->dev.flags & EC_SII_FLAG_MBOX_DLL))
+		return;
+	if (!(p->activate & EC_SM_ACT_REPEAT) == !(p->pdi & EC_SM_PDI_REPEAT_ACK))
+		return;
+	if (m->last_len && len >= m->last_len) {
+		if (m->out_in_sm) {
+			/* taken back, it follows later */
+			ec_esc_sm_pdi_disable(esc, 1, true);
+			ec_esc_sm_pdi_disable(esc, 1, false);
+			m->out_in_sm = false;
+			m->out_due = now;
+		}
+		memset(m->last + m->last_len, 0, (size_t)len - m->last_len);
+		ec_esc_pdi_write(esc, p->start, m->last, len, now);
+	}
+	p->pdi ^= EC_SM_PDI_REPEAT_ACK;
+	esc->mem[EC_REG_SM(1) + EC_SM_OFS_PDI] = p->pdi;
+}
+
+/**
+ * ec_app_mbox_poll() - time has passed
+ * @app: slave
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_mbox_poll(struct ec_app *app, u64 now)
+{
+	if (!works(app))
+		return;
+	/* while the application was mute nobody noted a request */
+	if (ec_esc_sm_readable(app->esc, 0))
+		app->mbox.rx_waits = true;
+	step(app, now);
+}
+
+/**
+ * ec_app_mbox_due() - when the mailbox wants to be polled
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns, EC_ESC_NEVER: not at all.
+ */
+u64 ec_app_mbox_due(const struct ec_app *app)
+{
+	const struct ec_app_mbox *m = &app->mbox;
+
+	if (!works(app) || app->model->emulation || !m->out_len ||
+	    m->out_in_sm || !ec_esc_sm_writable(app->esc, 1))
+		return EC_ESC_NEVER;
+	return m->out_due;
+}
+
+/**
+ * ec_app_emergency() - send a CoE emergency
+ * @app: slave
+ * @code: error code
+ * @reg: error register
+ * @data: manufacturer's own
+ * @now: time, ns
+ *
+ * Dropped when there is no CoE, or too many wait.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
+		      u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+
+	ec_app_od_set(app, ec_app_od_entry(app->model, 0x1001, 0), reg);
+	if (!works(app) || m->n_emcy == EC_APP_EMCY ||
+	    !(app->model->dev.protocols & EC_SII_PROTO_COE))
+		return;
+	put_unaligned_le16(code, m->emcy[m->n_emcy]);
+	m->emcy[m->n_emcy][2] = reg;
+	memcpy(m->emcy[m->n_emcy] + 3, data, 5);
+	m->n_emcy++;
+	step(app, now);
+}

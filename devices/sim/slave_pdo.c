@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Process data of a simulated slave: assignment, mapping, copying. */
+#include "app.h"
+
+static bool is_assign(u16 index)
+{
+	return index >= 0x1C12 && index <= 0x1C1F;
+}
+
+static bool is_pdo(u16 index, enum ec_app_dir dir)
+{
+	return dir == EC_APP_OUT ? index >= 0x1600 && index <= 0x17FF :
+				   index >= 0x1A00 && index <= 0x1BFF;
+}
+
+/**
+ * ec_app_pdo_is_config() - is an object a PDO assignment or mapping
+ * @index: object
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+bool ec_app_pdo_is_config(u16 index)
+{
+	return is_assign(index) || is_pdo(index, EC_APP_OUT) ||
+	       is_pdo(index, EC_APP_IN);
+}
+
+static enum ec_app_dir dir_of(const struct ec_app_model *m, u16 index)
+{
+	if (is_assign(index))
+		return index == 0x1C10 + m->pd_sm[EC_APP_OUT] ? EC_APP_OUT :
+								EC_APP_IN;
+	return is_pdo(index, EC_APP_OUT) ? EC_APP_OUT : EC_APP_IN;
+}
+
+/* the list in object @index: its n-th value (from 1), 0 behind the end */
+static u32 list_at(const struct ec_app *app, const struct ec_app_object *o,
+		   u32 n)
+{
+	const struct ec_app_entry *e;
+
+	if (!o || n > o->max_sub || n >= o->count)
+		return 0;
+	e = &app->model->entries[o->first];
+	return (u32)ec_app_od_get(app, e + n);
+}
+
+static u32 list_len(const struct ec_app *app, const struct ec_app_object *o)
+{
+	if (!o)
+		return 0;
+	return (u32)ec_app_od_get(app, &app->model->entries[o->first]);
+}
+
+static u32 pdo_bits(const struct ec_app *app, u16 pdo)
+{
+	const struct ec_app_object *o = ec_app_od_object(app->model, pdo);
+	u32 bits = 0, n = list_len(app, o);
+
+	for (u32 i = 1; i <= n; i++)
+		bits += list_at(app, o, i) & 0xFF;
+	return bits;
+}
+
+/* a value about to be written to an assignment */
+static u32 check_assign(const struct ec_app *app, const struct ec_app_entry *e,
+			u64 value)
+{
+	const struct ec_app_model *m = app->model;
+	const struct ec_app_object *o = ec_app_od_object(m, e->index);
+	enum ec_app_dir dir = dir_of(m, e->index);
+	u32 bits = 0;
+
+	if (e->sub) {
+		if (list_len(app, o))
+			return EC_ABORT_SUB0_FIRST;
+		if (!value)
+			return 0;
+		return is_pdo((u16)value, dir) &&
+		       ec_app_od_object(m, (u16)value) ? 0 : EC_ABORT_RANGE;
+	}
+	if (value > o->max_sub)
+		return EC_ABORT_TOO_HIGH;
+	for (u32 i = 1; i <= value; i++) {
+		u16 pdo = (u16)list_at(app, o, i);
+
+		if (!pdo)
+			return EC_ABORT_RANGE;
+		for (u32 k = 1; k < i; k++)
+			if (list_at(app, o, k) == pdo)
+				return EC_ABORT_PARAMETER;
+		bits += pdo_bits(app, pdo);
+	}
+	return bits > m->max_bytes[dir] * 8u ? EC_ABORT_PDO_LENGTH : 0;
+}
+
+/* a value about to be written to a mapping */
+static u32 check_mapping(const struct ec_app *app, const struct ec_app_entry *e,
+			 u64 value)
+{
+	const struct ec_app_model *m = app->model;
+	const struct ec_app_object *o = ec_app_od_object(m, e->index);
+	enum ec_app_dir dir = dir_of(m, e->index);
+	const struct ec_app_entry *var;
+	u32 bits = 0;
+
+	if (!e->sub) {
+		if (value > o->max_sub)
+			return EC_ABORT_TOO_HIGH;
+		for (u32 i = 1; i <= value; i++)
+			bits += list_at(app, o, i) & 0xFF;
+		return bits > m->max_bytes[dir] * 8u ? EC_ABORT_PDO_LENGTH : 0;
+	}
+	if (list_len(app, o))
+		return EC_ABORT_SUB0_FIRST;
+	if (!(value >> 16))
+		return 0;	/* gap */
+	var = ec_app_od_entry(m, (u16)(value >> 16), (u8)(value >> 8));
+	if (!var || !(var->access & (dir == EC_APP_OUT ? EC_OD_RXPDO :
+							 EC_OD_TXPDO)))
+		return EC_ABORT_NOT_MAPPABLE;
+	return var->bits == (value & 0xFF) ? 0 : EC_ABORT_LENGTH;
+}
+
+/**
+ * ec_app_pdo_check_write() - may a value be written as process data layout
+ * @app: slave
+ * @e: entry; of other objects than assignment and mapping: always
+ * @value: new value
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0 or an abort code.
+ */
+u32 ec_app_pdo_check_write(const struct ec_app *app,
+			   const struct ec_app_entry *e, u64 value)
+{
+	if (is_assign(e->index))
+		return check_assign(app, e, value);
+	if (ec_app_pdo_is_config(e->index))
+		return check_mapping(app, e, value);
+	return 0;
+}
+
+static void map_add(struct ec_app *app, enum ec_app_dir dir,
+		    const struct ec_app_entry *e, u32 pos)
+{
+	u32 n = app->n_map[dir];
+	struct ec_app_copy *c = app->map[dir] + n;
+
+	/* whole bytes behind each other in both places are one run */
+	if (n && !((c[-1].pos | c[-1].bits | e->bits) & 7) &&
+	    c[-1].pos + c[-1].bits == pos &&
+	    c[-1].off + c[-1].bits / 8 == e->off) {
+		c[-1].bits += e->bits;
+		return;
+	}
+	*c = (struct ec_app_copy){ .off = e->off, .pos = pos, .bits = e->bits };
+	app->n_map[dir]++;
+}
+
+static bool build(struct ec_app *app, enum ec_app_dir dir)
+{
+	const struct ec_app_model *m = app->model;
+	const struct ec_app_object *assign;
+	u32 pos = 0, n;
+
+	app->n_map[dir] = 0;
+	app->bytes[dir] = 0;
+	if (m->pd_sm[dir] < 0)
+		return true;
+	assign = ec_app_od_object(m, (u16)(0x1C10 + m->pd_sm[dir]));
+	n = list_len(app, assign);
+	for (u32 i = 1; i <= n; i++) {
+		u16 index = (u16)list_at(app, assign, i);
+		const struct ec_app_object *pdo = ec_app_od_object(m, index);
+		u32 entries = list_len(app, pdo);
+
+		for (u32 k = 1; k <= entries; k++) {
+			u32 v = list_at(app, pdo, k);
+			const struct ec_app_entry *e;
+
+			if (pos + (v & 0xFF) > m->max_bytes[dir] * 8u)
+				return false;
+			e = ec_app_od_entry(m, (u16)(v >> 16), (u8)(v >> 8));
+			if (v >> 16 && e && app->n_map[dir] < m->map_cap[dir])
+				map_add(app, dir, e, pos);
+			pos += v & 0xFF;
+		}
+	}
+	app->bytes[dir] = (u16)((pos + 7) / 8);
+	return true;
+}
+
+/**
+ * ec_app_pdo_build() - take the present assignment and mapping into use
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, or the AL status code that says what does not fit.
+ */
+u16 ec_app_pdo_build(struct ec_app *app)
+{
+	bool out = build(app, EC_APP_OUT), in = build(app, EC_APP_IN);
+
+	if (!out)
+		return 0x0025;	/* invalid output mapping */
+	return in ? 0 : 0x0024;
+}
+
+static int sm_start(const struct ec_app *app, enum ec_app_dir dir)
+{
+	int sm = app->model->pd_sm[dir];
+
+	return sm < 0 || !app->bytes[dir] || !app->esc->sm[sm].active ? -1 :
+		app->esc->sm[sm].page.start;
+}
+
+/**
+ * ec_app_outputs() - the master wrote the output SyncManager
+ * @app: slave
+ * @now: time, ns
+ *
+ * Outside OP the buffer is fetched, its content is not used.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_outputs(struct ec_app *app, u64 now)
+{
+	int start = sm_start(app, EC_APP_OUT);
+
+	if (start < 0 || ec_esc_pdi_read(app->esc, (u16)start, app->image,
+					 app->bytes[EC_APP_OUT], now) < 0)
+		return;
+	app->outputs_seen = true;
+	if (ec_app_state(app) != EC_AL_OP)
+		return;
+	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+
+		ec_bits_copy(app->data + c->off, 0, app->image, c->pos, c->bits);
+	}
+}
+
+/**
+ * ec_app_outputs_clear() - outputs go to their safe state: all 0
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_outputs_clear(struct ec_app *app)
+{
+	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+
+		memset(app->data + c->off, 0, (c->bits + 7) / 8);
+	}
+}
+
+/**
+ * ec_app_channel() - value of a channel
+ * @app: slave
+ * @dir: outputs or inputs
+ * @chan: channel from 0
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the value, 0 where there is no such channel and for outputs which
+ * are off.
+ */
+s64 ec_app_channel(const struct ec_app *app, enum ec_app_dir dir, u16 chan)
+{
+	const struct ec_app_model *m = app->model;
+
+	if (chan >= m->n_chan[dir])
+		return 0;
+	if (dir == EC_APP_OUT &&
+	    (!app->esc->powered || ec_app_state(app) != EC_AL_OP))
+		return 0;
+	return ec_app_od_get_signed(app, m->chan[dir][chan]);
+}
+
+/**
+ * ec_app_run() - compute the inputs of a slave
+ * @app: slave
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_run(struct ec_app *app, u64 now)
+{
+	const struct ec_app_model *m = app->model;
+
+	for (u32 i = 0; i < m->n_chan[EC_APP_IN]; i++)
+		if (app->src[i].kind != EC_APP_SRC_NONE)
+			ec_app_od_set(app, m->chan[EC_APP_IN][i],
+				      (u64)ec_app_source_value(&app->src[i], now));
+	if (m->dev.profile && m->dev.profile->run)
+		m->dev.profile->run(app, now);
+	app->ran_ns = now;
+}
+
+/**
+ * ec_app_inputs() - compute the inputs and hand them to the SyncManager
+ * @app: slave
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_inputs(struct ec_app *app, u64 now)
+{
+	int start = sm_start(app, EC_APP_IN);
+
+	ec_app_run(app, now);
+	if (start < 0)
+		return;
+	memset(app->image, 0, app->bytes[EC_APP_IN]);
+	for (u32 i = 0; i < app->n_map[EC_APP_IN]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_IN][i];
+
+		ec_bits_copy(app->image, c->pos, app->data + c->off, 0, c->bits);
+	}
+	ec_esc_pdi_write(app->esc, (u16)start, app->image,
+			 app->bytes[EC_APP_IN], now);
+}
