@@ -28,7 +28,7 @@ sync:
 	done
 
 modules: sync
-	$(KMAKE) modules
+	+$(KMAKE) modules
 
 lib:
 	$(MAKE) -C lib

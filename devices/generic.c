@@ -22,10 +22,11 @@
  * struct gen - one claimed or offered network device
  * @list: all of them, under RTNL
  * @nd: network device, with a reference
+ * @tracker: of that reference
  * @dev: offer to the master
  * @skb: prepared frames, sent as clones
  * @next: next of @skb to try
- * @buf: the frame under construction: the skb behind it
+ * @cur: the frame under construction
  * @hook: keeps other traffic off the wire
  * @claimed: rx_handler is registered
  */

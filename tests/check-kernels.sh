@@ -1,0 +1,25 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# The modules build, without a warning, for every supported kernel.
+
+set -u
+cd "$(dirname "$0")/.." || exit 1
+passed=0 failed=0
+out=$(mktemp)
+trap 'rm -f "$out"' EXIT
+
+for k in ${*:-6.1 6.1-rt 6.12 6.12-rt}; do
+	if tests/vm/kernels.sh fetch "$k" >&2 && kdir=$(tests/vm/kernels.sh kdir "$k") &&
+	   make -j2 modules KDIR="$kdir" MODDIR="$PWD/build/modules-$k" W=1 >"$out" 2>&1 &&
+	   ! grep -E 'warning:|WARNING:' "$out"; then
+		echo "ok: modules for $k"
+		passed=$((passed + 1))
+	else
+		grep -E 'warning|WARNING|error|ERROR|Error' "$out" | head -n 40
+		echo "FAILED: modules for $k"
+		failed=$((failed + 1))
+	fi
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]

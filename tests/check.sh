@@ -1,0 +1,62 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Every level of test, one after the other; installs what is missing. Each
+# level ends with a line of its own; the sums are the last line.
+#
+# usage: check.sh [LEVEL...]      default: all of $levels
+
+set -u
+cd "$(dirname "$0")/.." || exit 1
+levels="unit lib tool kernels system"
+passed=0 failed=0
+log=$(mktemp -d)
+trap 'rm -rf "$log"' EXIT
+
+# count OUTPUT: adds what a level's closing line says
+count() {
+	local line p f
+
+	line=$(grep -E '^[A-Za-z: ]*[0-9]+ passed, [0-9]+ failed' "$1" | tail -n 1)
+	if [ -z "$line" ]; then
+		line=$(grep -E '^# Totals: pass:[0-9]+ fail:[0-9]+' "$1" | tail -n 1 |
+		       sed -E 's/.*pass:([0-9]+) fail:([0-9]+).*/\1 passed, \2 failed/')
+	fi
+	p=$(echo "$line" | sed -nE 's/.*[^0-9]?([0-9]+) passed.*/\1/p')
+	f=$(echo "$line" | sed -nE 's/.* ([0-9]+) failed.*/\1/p')
+	passed=$((passed + ${p:-0}))
+	failed=$((failed + ${f:-0}))
+	# a level that fails without saying how is one failure
+	[ "$2" = 0 ] || [ "${f:-0}" != 0 ] || failed=$((failed + 1))
+	# a level that ran nothing has not passed
+	[ "$2" != 0 ] || [ "${p:-0}" != 0 ] || failed=$((failed + 1))
+}
+
+level_unit() { make -s -C tests/unit; }
+level_lib() { make -s -C tests/lib check; }
+level_tool() { make -s -C tests/tool check; }
+level_kernels() { tests/check-kernels.sh; }
+level_system() { tests/system/run.sh; }
+
+run() {
+	local name=$1 t0=$SECONDS rc
+
+	echo "=== $name"
+	"level_$name" >"$log/$name" 2>&1
+	rc=$?
+	count "$log/$name" $rc
+	if [ $rc = 0 ]; then
+		tail -n 1 "$log/$name"
+	else
+		tail -n 60 "$log/$name"
+		echo "=== $name failed (exit $rc)"
+	fi
+	echo "=== $name: $((SECONDS - t0)) s"
+}
+
+tests/install-deps.sh build vm json python || exit 1
+for l in ${*:-$levels}; do
+	run "$l"
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
