@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Every command. A name of older tools without a function here still takes part
+/*
+ * Every command. A name of older tools without a function here still takes part
  * in abbreviations, so that none of them changes its meaning later.
  */
 #include "tool.h"
@@ -10,7 +11,9 @@
 #define ALIAS(n, of) \
 	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
 
-extern const struct cmd cmd_help, cmd_master, cmd_slaves, cmd_states, cmd_version;
+extern const struct cmd cmd_config, cmd_crc, cmd_cstruct, cmd_data, cmd_debug, cmd_domains,
+	cmd_download, cmd_graph, cmd_help, cmd_master, cmd_pdos, cmd_reg_read, cmd_reg_write,
+	cmd_rescan, cmd_sii_read, cmd_slaves, cmd_states, cmd_upload, cmd_version;
 
 ABSENT(alias);
 ABSENT(eoe);
@@ -22,20 +25,6 @@ ABSENT(sii_write);
 ABSENT(soe_read);
 ABSENT(soe_write);
 ABSENT(xml);
-ABSENT(config);
-ABSENT(crc);
-ABSENT(cstruct);
-ABSENT(data);
-ABSENT(debug);
-ABSENT(domains);
-ABSENT(download);
-ABSENT(graph);
-ABSENT(pdos);
-ABSENT(reg_read);
-ABSENT(reg_write);
-ABSENT(rescan);
-ABSENT(sii_read);
-ABSENT(upload);
 
 ALIAS(sdo_download, "download");
 ALIAS(sdo_read, "upload");

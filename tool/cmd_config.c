@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "config_info.h"
+#include "out.h"
+
+static int digits(unsigned int v)
+{
+	return snprintf(NULL, 0, "%u", v);
+}
+
+static int order(const void *a, const void *b)
+{
+	const struct ec_ioc_config *x = a, *y = b;
+
+	if (x->alias != y->alias)
+		return x->alias < y->alias ? -1 : 1;
+	return (x->position > y->position) - (x->position < y->position);
+}
+
+static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list, size_t *n)
+{
+	struct ec_ioc_master m;
+	struct ec_ioc_config *c;
+
+	*n = 0;
+	if (dev_master(d, &m))
+		return 1;
+	c = calloc(m.config_count + 1u, sizeof(*c));
+	if (!c)
+		return fail("out of memory");
+	for (unsigned int i = 0; i < m.config_count; i++) {
+		int err;
+
+		c[*n] = (struct ec_ioc_config){ .index = i };
+		err = dev_ioctl(d, EC_IOC_CONFIG, &c[*n]);
+		if (err) {
+			free(c);
+			return dev_fail(d, err, "Master%u: configuration %u: no data", d->master, i);
+		}
+		if (select_config(&t->aliases, &t->positions, &c[*n]))
+			(*n)++;
+	}
+	qsort(c, *n, sizeof(*c), order);
+	*list = c;
+	return 0;
+}
+
+static void cells(const struct ec_ioc_config *c, char *slave, char *state)
+{
+	strcpy(slave, "-");
+	strcpy(state, "-");
+	if (c->slave_position < 0)
+		return;
+	snprintf(slave, 12, "%d", c->slave_position);
+	al_state_text(c->al_status, state, 16);
+}
+
+static void table(const struct ec_ioc_config *c, size_t n, const char *indent)
+{
+	char slave[12], state[16];
+	int w[4] = { 0 };
+
+	for (size_t i = 0; i < n; i++) {
+		cells(&c[i], slave, state);
+		w[0] = max(w[0], digits(c[i].alias));
+		w[1] = max(w[1], digits(c[i].position));
+		w[2] = max(w[2], (int)strlen(slave));
+		w[3] = max(w[3], (int)strlen(state));
+	}
+	for (size_t i = 0; i < n; i++) {
+		cells(&c[i], slave, state);
+		out_text("%s%*u:%-*u  0x%08x/0x%08x  %-*s  %-*s  \n", indent, w[0], c[i].alias, w[1],
+			 c[i].position, c[i].vendor_id, c[i].product_code, w[2], slave, w[3], state);
+	}
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_config *c;
+	int ret = 0;
+	size_t n;
+
+	if (get(t, d, &c, &n))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	if (d->selected > 1)
+		out_text("Master%u\n", d->master);
+	out_array("configs");
+	if (t->verbosity <= 0 && !out_is_json())
+		table(c, n, d->selected > 1 ? "  " : "");
+	for (size_t i = 0; i < n && (t->verbosity > 0 || out_is_json()); i++)
+		ret |= config_info(d, &c[i], d->selected > 1 ? "  " : "");
+	out_end();
+	out_end();
+	free(c);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, false, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_config = {
+	.name = "config",
+	.run = run,
+	.args = "",
+	.opts = "mapv",
+	.summary = "Show the slave configurations of the application",
+	.help = "Columns: alias:position, expected vendor/product, ring position of the attached\n"
+		"slave or '-', its state or '-'. Here -a selects by alias and -p by position; -p\n"
+		"alone selects among the configurations with alias 0.\n",
+	.json = "masters[]: master, configs[]: alias, position, vendor_id, product_code,\n"
+		"slave_position (or null), state, watchdog_divider, watchdog_intervals,\n"
+		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
+		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"
+		"data_hex), dc (assign_activate, sync[] (cycle_ns, shift_ns))",
+	.flags = CMD_HISTORIC,
+};

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "dev.h"
+#include "io.h"
+#include "out.h"
+
+static u32 level;
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_debug arg = { .level = level };
+	int err = dev_ioctl(d, EC_IOC_DEBUG, &arg);
+
+	(void)t;
+	if (err)
+		return dev_fail(d, err, "Master%u: cannot set the debug level", d->master);
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_u("debug_level", level, NULL);
+	out_end();
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	u64 v;
+	int ret;
+
+	(void)argc;
+	if (io_number("level", argv[0], 2, &v))
+		return 1;
+	level = (u32)v;
+	out_array("masters");
+	ret = dev_each(t, true, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_debug = {
+	.name = "debug",
+	.run = run,
+	.args = "LEVEL",
+	.opts = "m",
+	.summary = "Set how much the master writes to the kernel log",
+	.help = "LEVEL := { 0 normal | 1 more | 2 also the contents of all frames }\n",
+	.json = "masters[]: master, debug_level",
+	.flags = CMD_HISTORIC,
+	.min_args = 1,
+	.max_args = 1,
+};

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "domain.h"
+#include "out.h"
+
+static int fmmu(struct dev *d, const struct ec_ioc_domain *dom, unsigned int i, const char *in,
+		const u8 *data, size_t size)
+{
+	struct ec_ioc_domain_fmmu f = { .index = dom->index, .fmmu = i };
+	int err = dev_ioctl(d, EC_IOC_DOMAIN_FMMU, &f);
+	char indent[16];
+	size_t n;
+
+	if (err)
+		return dev_fail(d, err, "Master%u: FMMU %u of domain %u: no data", d->master, i,
+				dom->index);
+	n = f.offset < size ? min(size - f.offset, (size_t)f.size) : 0;
+	snprintf(indent, sizeof(indent), "%s    ", in);
+	out_object(NULL);
+	out_u("alias", f.alias, "%s  SlaveConfig %u", in, f.alias);
+	out_u("position", f.position, ":%u", f.position);
+	out_u("sync_manager", f.sm, ", SM%u", f.sm);
+	out_str("direction", f.dir == 1 ? "output" : "input", " (%6s)",
+		f.dir == 1 ? "Output" : "Input");
+	out_u("logical_address", f.logical, ", LogAddr 0x%08x", f.logical);
+	out_u("size_bytes", f.size, ", Size %u\n", f.size);
+	out_u("offset_bytes", f.offset, NULL);
+	out_hex("data_hex", data + (n ? f.offset : 0), n, indent);
+	out_end();
+	return 0;
+}
+
+static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
+{
+	const char *in = d->selected > 1 ? "  " : "";
+	u8 *data = NULL;
+	size_t size = 0;
+	int ret = 0;
+
+	out_object(NULL);
+	out_u("index", dom->index, "%sDomain%u", in, dom->index);
+	out_u("logical_address", dom->logical, ": LogBaseAddr 0x%08x", dom->logical);
+	out_u("size_bytes", dom->size, ", Size %3u", dom->size);
+	out_u("working_counter", dom->working_counter, ", WorkingCounter %u",
+	      dom->working_counter);
+	out_u("expected_working_counter", dom->expected, "/%u\n", dom->expected);
+	if (t->verbosity > 0) {
+		ret = domain_data(d, dom, &data, &size);
+		out_array("fmmus");
+		for (unsigned int i = 0; i < dom->fmmu_count && !ret; i++)
+			ret = fmmu(d, dom, i, in, data, size);
+		out_end();
+		free(data);
+	}
+	out_end();
+	return ret;
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	int ret;
+
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	if (d->selected > 1)
+		out_text("Master%u\n", d->master);
+	out_array("domains");
+	ret = domain_each(d, t, show);
+	out_end();
+	out_end();
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, false, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_domains = {
+	.name = "domains",
+	.run = run,
+	.args = "",
+	.opts = "mdv",
+	.summary = "Show the domains of the application",
+	.help = "WorkingCounter: of the last cycle / expected; equal when every slave exchanged its\n"
+		"data. With --verbose also what each slave configuration contributes.\n",
+	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
+		"working_counter, expected_working_counter, with --verbose fmmus[]: alias, position,\n"
+		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",
+	.flags = CMD_HISTORIC,
+};

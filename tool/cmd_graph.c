@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdlib.h>
+#include <strings.h>
+
+#include "errors.h"
+#include "out.h"
+#include "slave_info.h"
+
+enum info { PLAIN, DC, CRC };
+
+#define TYPE_EBUS	2
+
+/* text inside double quotes */
+static void quoted(const char *s)
+{
+	for (; *s; s++)
+		out_text(*s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
+}
+
+static void node(const struct ec_ioc_slave *s, enum info info)
+{
+	out_object(NULL);
+	out_u("position", s->position, "\n\tslave%u [", s->position);
+	out_text("shape=\"box\", label=\"%u / %u:%u", s->position, s->alias_group,
+		 slave_alias_pos(s));
+	out_u("alias", s->alias_group, NULL);
+	out_u("relative_position", slave_alias_pos(s), NULL);
+	if (s->order[0]) {
+		out_text("\\n");
+		quoted(s->order);
+	}
+	out_str("order_number", s->order, NULL);
+	if (info == DC) {
+		if (s->dc_delay_only)
+			out_text("\\nDC: delay only");
+		else if (s->dc_supported)
+			out_text("\\nDC: %u bit", s->dc_supported == 1 ? 32u : 64u);
+		if (slave_has_dc(s))
+			out_u("dc_delay_ns", s->transmission_delay, "\\nDelay: %u ns",
+			      s->transmission_delay);
+	}
+	out_text("\"]\n");
+	out_end();
+}
+
+static void label(const char *attribute, const struct ec_ioc_slave *s, unsigned int port,
+		  enum info info, const u8 *regs)
+{
+	out_text(", %s=\"%u", attribute, port);
+	if (info == DC && slave_has_dc(s))
+		out_text(" [%u]", s->ports[port].delay_to_next_dc);
+	if (info == CRC)
+		out_text(" [%u/%u]", err_rx(regs, port), err_fwd(regs, port));
+	out_text("\"");
+}
+
+static void medium(unsigned int type)
+{
+	out_str("medium", port_type_text(type), " [label=\"%s\", weight=\"%u\"",
+		port_type_text(type), type == TYPE_EBUS ? 5u : 1u);
+}
+
+static void edge(const struct slaves *all, const struct ec_ioc_slave *s, unsigned int port,
+		 enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+{
+	const struct ec_ioc_slave *to = &all->v[s->ports[port].next_slave];
+	unsigned int back;
+
+	for (back = 0; back < EC_UAPI_PORTS && to->ports[back].next_slave != s->position; back++)
+		;
+	out_object(NULL);
+	out_u("from", s->position, "\tslave%u", s->position);
+	out_u("to", to->position, " -- slave%u", to->position);
+	medium(s->ports[port].type);
+	label("taillabel", s, port, info, regs[s->position]);
+	out_u("from_port", port, NULL);
+	if (back < EC_UAPI_PORTS) {
+		label("headlabel", to, back, info, regs[to->position]);
+		out_u("to_port", back, NULL);
+	}
+	out_text("]\n");
+	out_end();
+}
+
+static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+{
+	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
+	out_text("strict graph bus {\n\trankdir=\"LR\"\n\tranksep=0.8\n\tnodesep=0.8\n"
+		 "\tnode [fontname=\"Helvetica\"]\n"
+		 "\tedge [fontname=\"Helvetica\", fontsize=\"10\"]\n\n"
+		 "\tmaster [label=\"EtherCAT\\nMaster\"]\n");
+	out_array("slaves");
+	for (size_t i = 0; i < all->n; i++)
+		node(&all->v[i], info);
+	out_end();
+	out_text("\n");
+	if (all->n) {
+		out_text("\tmaster -- slave0");
+		out_text(" [label=\"%s\", weight=\"%u\"", port_type_text(all->v[0].ports[0].type),
+			 all->v[0].ports[0].type == TYPE_EBUS ? 5u : 1u);
+		label("headlabel", &all->v[0], 0, info, regs[0]);
+		out_text("]\n");
+	}
+	out_array("links");
+	for (size_t i = 0; i < all->n; i++)
+		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++) {
+			unsigned int next = all->v[i].ports[p].next_slave;
+
+			if (next > i && next < all->n)
+				edge(all, &all->v[i], p, info, regs);
+		}
+	out_end();
+	out_text("}\n");
+}
+
+static int show(struct dev *d, enum info info)
+{
+	u8 (*regs)[EC_ERRORS_SIZE];
+	struct slaves all;
+	int ret = 0;
+
+	if (dev_slaves(d, &all))
+		return 1;
+	regs = calloc(all.n + 1, sizeof(*regs));
+	if (!regs)
+		ret = fail("out of memory");
+	for (size_t i = 0; i < all.n && info == CRC && !ret; i++)
+		ret = reg_read(d, all.v[i].position, EC_REG_ERRORS, regs[i], sizeof(*regs));
+	if (!ret) {
+		out_u("master", d->master, NULL);
+		draw(&all, info, regs);
+	}
+	free(regs);
+	slaves_free(&all);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	enum info info = PLAIN;
+	struct dev d;
+	int ret;
+
+	if (argc && !strcasecmp(argv[0], "dc"))
+		info = DC;
+	else if (argc && !strcasecmp(argv[0], "crc"))
+		info = CRC;
+	else if (argc)
+		return usage_error("invalid argument '%s': expected DC, CRC or nothing", argv[0]);
+	if (dev_open_single(&d, t, info == CRC))
+		return 1;
+	ret = show(&d, info);
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_graph = {
+	.name = "graph",
+	.run = run,
+	.args = "[DC | CRC]",
+	.opts = "m",
+	.summary = "Print the topology of the bus for Graphviz",
+	.help = "Draw it with: ethercat graph | dot -Tsvg > bus.svg\n"
+		"DC adds clocks and delays in ns, CRC the error counters [invalid frames/forwarded\n"
+		"errors] of each port.\n",
+	.json = "master, slaves[] (position, alias, relative_position, order_number, dc_delay_ns),\n"
+		"links[] (from, to, medium, from_port, to_port)",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.max_args = 1,
+};

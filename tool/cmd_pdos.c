@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <string.h>
+
+#include "layout.h"
+#include "out.h"
+
+static void entry(const struct ec_ioc_pdo_entry *e)
+{
+	out_object(NULL);
+	out_u("index", e->index, "    PDO entry 0x%04x", e->index);
+	out_u("subindex", e->subindex, ":%02x", e->subindex);
+	out_u("size_bits", e->bits, ", %2u bit", e->bits);
+	out_str("name", e->name, ", \"%s\"\n", e->name);
+	out_end();
+}
+
+static void show_pdo(const struct layout_pdo *p, bool output, bool quiet)
+{
+	out_object(NULL);
+	out_str("direction", output ? "rx" : "tx", "  %cxPDO", output ? 'R' : 'T');
+	out_u("index", p->pdo.index, " 0x%04x", p->pdo.index);
+	out_str("name", p->pdo.name, " \"%s\"\n", p->pdo.name);
+	out_array("entries");
+	for (unsigned int i = 0; i < p->pdo.entry_count && !quiet; i++)
+		entry(&p->entries[i]);
+	out_end();
+	out_end();
+}
+
+static void show(const struct layout *l, bool quiet)
+{
+	for (unsigned int i = 0; i < l->n; i++) {
+		const struct layout_sm *s = &l->sms[i];
+
+		out_object(NULL);
+		out_u("index", s->sm.sm, "SM%u", s->sm.sm);
+		out_u("address", s->sm.start, ": PhysAddr 0x%04x", s->sm.start);
+		out_u("default_size_bytes", s->sm.default_size, ", DefaultSize %4u",
+		      s->sm.default_size);
+		out_u("control", s->sm.control, ", ControlRegister 0x%02x", s->sm.control);
+		out_u("enable", s->sm.enable, ", Enable %u\n", s->sm.enable);
+		out_array("pdos");
+		for (unsigned int k = 0; k < s->sm.pdo_count; k++)
+			show_pdo(&s->pdos[k], layout_is_output(s), quiet);
+		out_end();
+		out_end();
+	}
+}
+
+/* one line of the port list for each entry that carries data */
+static void matlab_ports(const struct layout *l, bool output)
+{
+	unsigned int n = 0;
+
+	for (unsigned int i = 0; i < l->n; i++) {
+		const struct layout_sm *s = &l->sms[i];
+
+		for (unsigned int k = 0; k < s->sm.pdo_count && layout_is_output(s) == output; k++)
+			for (unsigned int e = 0; e < s->pdos[k].pdo.entry_count; e++) {
+				const struct ec_ioc_pdo_entry *x = &s->pdos[k].entries[e];
+				const char *kind = output ? "input" : "output";
+
+				if (!x->index)
+					continue;
+				n++;
+				out_text("rv.PortConfig.%s(%u).pdo = [%u %u %u 0];\n", kind, n, i, k, e);
+				out_text("rv.PortConfig.%s(%u).pdo_data_type = %u;\n", kind, n,
+					 1000u + x->bits);
+			}
+	}
+}
+
+static void matlab_sm(const struct layout_sm *s)
+{
+	out_text("    {%u, %u, {\n", s->sm.sm, !layout_is_output(s));
+	for (unsigned int k = 0; k < s->sm.pdo_count; k++) {
+		const struct layout_pdo *p = &s->pdos[k];
+
+		out_text("        {hex2dec('%04x'), [\n", p->pdo.index);
+		for (unsigned int e = 0; e < p->pdo.entry_count; e++)
+			out_text("            hex2dec('%04x'), hex2dec('%02x'), %u;\n",
+				 p->entries[e].index, p->entries[e].subindex, p->entries[e].bits);
+		out_text("        ]},\n");
+	}
+	out_text("    }},\n");
+}
+
+static void matlab(const struct ec_ioc_slave *s, const struct layout *l)
+{
+	out_text("function rv = slave%u()\n\n", s->position);
+	out_text("rv.SlaveConfig.vendor = %u;\n", s->vendor_id);
+	out_text("rv.SlaveConfig.product = hex2dec('%08x');\n", s->product_code);
+	out_text("rv.SlaveConfig.description = '");
+	for (const char *c = s->order; *c; c++)
+		out_text(*c == '\'' ? "''" : "%c", *c);
+	out_text("';\nrv.SlaveConfig.sm = {\n");
+	for (unsigned int i = 0; i < l->n; i++)
+		matlab_sm(&l->sms[i]);
+	out_text("};\n\n");
+	matlab_ports(l, true);
+	matlab_ports(l, false);
+	out_text("\nend\n\n");
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	bool etherlab = t->skin && !strcmp(t->skin, "etherlab") && !out_is_json();
+	struct slaves sel;
+	int ret = 0;
+
+	if (dev_select(d, t, &sel, NULL))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_array("slaves");
+	for (size_t i = 0; i < sel.n; i++) {
+		struct layout l;
+
+		if (layout_read(d, &sel.v[i], &l)) {
+			ret = 1;
+			continue;
+		}
+		out_object(NULL);
+		out_u("position", sel.v[i].position, NULL);
+		if (l.n && !etherlab && (sel.n > 1 || d->selected > 1))
+			out_text("=== Master %u, Slave %u ===\n", d->master, sel.v[i].position);
+		out_array("sync_managers");
+		if (l.n && etherlab)
+			matlab(&sel.v[i], &l);
+		else
+			show(&l, t->verbosity < 0);
+		out_end();
+		out_end();
+		layout_free(&l);
+	}
+	out_end();
+	out_end();
+	slaves_free(&sel);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	if (t->skin && strcmp(t->skin, "default") && strcmp(t->skin, "etherlab"))
+		return usage_error("unknown skin '%s': expected default or etherlab", t->skin);
+	out_array("masters");
+	ret = dev_each(t, false, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_pdos = {
+	.name = "pdos",
+	.run = run,
+	.args = "",
+	.opts = "mapsqv",
+	.summary = "Show sync managers, PDOs and PDO entries",
+	.help = "RxPDOs are written by the master, TxPDOs are read by it. An entry 0x0000:00 is a\n"
+		"gap. With --quiet without the entries. The skin etherlab prints a MATLAB function\n"
+		"for each slave.\n",
+	.json = "masters[]: master, slaves[]: position, sync_managers[]: index, address,\n"
+		"default_size_bytes, control, enable, pdos[]: direction (rx, tx), index, name,\n"
+		"entries[]: index, subindex, size_bits, name",
+	.flags = CMD_HISTORIC,
+};

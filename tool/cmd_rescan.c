@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "dev.h"
+#include "out.h"
+
+#define WAIT_S	60.0
+#define POLL_MS	20
+
+static int wait_scan(const struct tool *t, struct dev *d, u32 before)
+{
+	double limit = t->wait_s >= 0 ? t->wait_s : WAIT_S, end = now_s() + limit;
+	struct ec_ioc_master m;
+
+	for (;;) {
+		if (dev_master(d, &m))
+			return 1;
+		if (m.scan_index != before && !m.scan_busy)
+			return 0;
+		if (now_s() >= end)
+			return fail("Master%u: the bus scan has not finished after %g s", d->master,
+				    limit);
+		sleep_ms(POLL_MS);
+	}
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_master m;
+	int err;
+
+	if (dev_master(d, &m))
+		return 1;
+	err = dev_ioctl(d, EC_IOC_RESCAN, NULL);
+	if (err)
+		return dev_fail(d, err, "Master%u: cannot scan the bus", d->master);
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_end();
+	return t->wait ? wait_scan(t, d, m.scan_index) : 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, true, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_rescan = {
+	.name = "rescan",
+	.run = run,
+	.args = "",
+	.opts = "mw",
+	.summary = "Scan the bus again",
+	.help = "Returns at once; with --wait when the scan has finished (default at most 60 s).\n",
+	.json = "masters[]: master",
+	.flags = CMD_HISTORIC,
+};

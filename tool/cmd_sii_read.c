@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <errno.h>
+#include <stdlib.h>
+
+#include "../master/wire/sii.h"
+#include "dev.h"
+#include "out.h"
+
+static const char *category_name(unsigned int type)
+{
+	switch (type) {
+	case EC_SII_CAT_STRINGS:
+		return "STRINGS";
+	case EC_SII_CAT_DATA_TYPES:
+		return "DataTypes";
+	case EC_SII_CAT_GENERAL:
+		return "General";
+	case EC_SII_CAT_FMMU:
+		return "FMMU";
+	case EC_SII_CAT_SM:
+		return "SyncM";
+	case EC_SII_CAT_TXPDO:
+		return "TXPDO";
+	case EC_SII_CAT_RXPDO:
+		return "RXPDO";
+	case EC_SII_CAT_DC:
+		return "DC";
+	default:
+		return "unknown";
+	}
+}
+
+static void categories(const u8 *img, size_t size)
+{
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+
+	out_array("categories");
+	ec_sii_iter_init(&it, img, size);
+	while (ec_sii_iter_next(&it, &cat) == 1) {
+		out_object(NULL);
+		out_u("type", cat.type, "SII Category 0x%04x", cat.type);
+		out_str("name", category_name(cat.type), " (%s)", category_name(cat.type));
+		out_u("size_words", cat.words, ", %u words\n", cat.words);
+		out_hex("data_hex", cat.data, cat.bytes, "  ");
+		out_end();
+	}
+	out_end();
+	out_bool("complete", !it.end, NULL);
+	if (it.end)
+		note("warning: the category list is damaged at byte 0x%zx", it.pos);
+}
+
+static void decoded(const u8 *img, size_t size)
+{
+	struct ec_sii_info i;
+
+	if (ec_sii_decode_info(img, size, &i))
+		return;
+	out_bool("checksum_ok", i.checksum_ok, NULL);
+	out_u("alias", i.alias, NULL);
+	out_u("vendor_id", i.vendor, NULL);
+	out_u("product_code", i.product, NULL);
+	out_u("revision_number", i.revision, NULL);
+	out_u("serial_number", i.serial, NULL);
+	if (!i.checksum_ok)
+		note("warning: the checksum is 0x%02x, it should be 0x%02x", i.checksum,
+		     i.checksum_calc);
+}
+
+static void show(const struct tool *t, const u8 *img, size_t size)
+{
+	if (t->verbosity <= 0) {
+		out_binary("data_hex", img, size);
+		return;
+	}
+	out_text("SII Area:\n");
+	out_hex("fixed_area_hex", img, min(size, (size_t)EC_SII_FIXED_SIZE), "  ");
+	decoded(img, size);
+	if (size > EC_SII_FIXED_SIZE)
+		categories(img, size);
+}
+
+/* whatever size the image has, the kernel may give it in pieces */
+static int get(struct dev *d, const struct ec_ioc_slave *s, u8 **img, size_t *size)
+{
+	size_t want = 2 * (size_t)s->sii_words;
+	u8 *buf = calloc(1, want + 1);
+
+	*size = 0;
+	if (!buf)
+		return fail("out of memory");
+	while (*size < want) {
+		struct ec_ioc_sii a = {
+			.position = s->position,
+			.offset = (u32)*size,
+			.size = (u32)(want - *size),
+			.data = (uintptr_t)(buf + *size),
+		};
+		int err = dev_ioctl(d, EC_IOC_SII, &a);
+
+		if (err) {
+			free(buf);
+			return dev_fail(d, err, "Master%u slave %u: cannot read the SII", d->master,
+					s->position);
+		}
+		if (!a.size)
+			break;
+		*size += min((size_t)a.size, want - *size);
+	}
+	*img = buf;
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	struct ec_ioc_slave s;
+	struct dev d;
+	size_t size;
+	u8 *img = NULL;
+	int ret;
+
+	(void)argc, (void)argv;
+	if (dev_open_single(&d, t, false))
+		return 1;
+	ret = dev_select_single(&d, t, &s) || get(&d, &s, &img, &size);
+	if (!ret && !size) {
+		ret = fail("Master%u slave %u: its SII has not been read%s%s", d.master, s.position,
+			   s.why[0] ? ": " : "", s.why);
+		free(img);
+	} else if (!ret) {
+		out_u("master", d.master, NULL);
+		out_u("slave", s.position, NULL);
+		out_u("size_bytes", size, NULL);
+		show(t, img, size);
+		free(img);
+	}
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_sii_read = {
+	.name = "sii_read",
+	.run = run,
+	.args = "",
+	.opts = "mapv",
+	.summary = "Write the EEPROM image of a slave to stdout",
+	.help = "Binary, as read by the last bus scan: ethercat sii_read -p2 > backup.bin\n"
+		"With --verbose hex bytes, category by category.\n",
+	.json = "master, slave, size_bytes, data_hex; with --verbose instead of data_hex:\n"
+		"fixed_area_hex, checksum_ok, alias, vendor_id, product_code, revision_number,\n"
+		"serial_number, categories[] (type, name, size_words, data_hex), complete",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+};

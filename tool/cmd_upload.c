@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdlib.h>
+
+#include "out.h"
+#include "sdo.h"
+
+/*
+ * Without a dictionary: three objects are strings by their definition, the
+ * rest is an unsigned number if its size is one's.
+ */
+static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
+{
+	if (a->complete)
+		return ec_type_by_code(EC_TYPE_OCTET_STRING);
+	if (a->index >= 0x1008 && a->index <= 0x100a && !a->sub)
+		return ec_type_by_code(EC_TYPE_STRING);
+	switch (size) {
+	case 1:
+		return ec_type_by_code(EC_TYPE_UINT8);
+	case 2:
+		return ec_type_by_code(EC_TYPE_UINT16);
+	case 4:
+		return ec_type_by_code(EC_TYPE_UINT32);
+	case 8:
+		return ec_type_by_code(EC_TYPE_UINT64);
+	default:
+		return ec_type_by_code(EC_TYPE_RAW);
+	}
+}
+
+static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
+		  const struct ec_type *type)
+{
+	struct ec_ioc_slave s;
+	size_t size;
+	u8 *data;
+	int ret;
+
+	if (dev_select_single(d, t, &s) || sdo_upload(d, s.position, a, &data, &size))
+		return 1;
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	sdo_addr_out(a);
+	out_bool("type_guessed", !type, NULL);
+	if (!type)
+		type = guess(a, size);
+	ret = io_print(type, data, size);
+	free(data);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	const struct ec_type *type = NULL;
+	struct sdo_addr a;
+	struct dev d;
+	int ret;
+
+	if (sdo_addr_parse(&a, argv[0], argc > 1 ? argv[1] : NULL) ||
+	    (t->type && io_type(t->type, &type)) || dev_open_single(&d, t, true))
+		return 1;
+	ret = upload(t, &d, &a, type);
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_upload = {
+	.name = "upload",
+	.run = run,
+	.args = "INDEX [SUBINDEX]",
+	.opts = "mapt",
+	.summary = "Read an SDO from a slave",
+	.help = "INDEX := { 0 to 0xffff | INDEX:HH }     HH: subindex, two hex digits\n"
+		"SUBINDEX := { 0 to 0xff }\n"
+		"Without a subindex the whole object is read (complete access), by default as\n"
+		"octet_string. Without --type 0x1008 to 0x100a are strings; other data of 1, 2, 4\n"
+		"or 8 bytes are shown as unsigned numbers and the rest as hex bytes.\n",
+	.json = "master, slave, index, subindex, complete_access, type_guessed, type, size_bytes,\n"
+		"value (not for bytes without a value form), data_hex",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.min_args = 1,
+	.max_args = 2,
+};

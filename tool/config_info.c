@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Everything about one slave configuration. */
+#include "config_info.h"
+
+#include <stdio.h>
+
+#include "../master/wire/al.h"
+#include "out.h"
+
+#define SMS		16
+#define SHOWN		1024	/* bytes of an SDO */
+
+static int failed(struct dev *d, int err, const struct ec_ioc_config *c)
+{
+	return dev_fail(d, err, "Master%u: configuration %u:%u: no data", d->master, c->alias,
+			c->position);
+}
+
+static int entries(struct dev *d, const struct ec_ioc_config *c, const char *in,
+		   const struct ec_ioc_config_pdo *p)
+{
+	for (unsigned int i = 0; i < p->entry_count; i++) {
+		struct ec_ioc_config_entry e = {
+			.index = c->index, .sm = p->sm, .pdo_pos = p->pdo_pos, .entry_pos = i,
+		};
+		int err = dev_ioctl(d, EC_IOC_CONFIG_ENTRY, &e);
+
+		if (err)
+			return failed(d, err, c);
+		out_object(NULL);
+		out_u("index", e.entry_index, "%s    PDO entry 0x%04x", in, e.entry_index);
+		out_u("subindex", e.subindex, ":%02x", e.subindex);
+		out_u("size_bits", e.bits, ", %2u bit\n", e.bits);
+		out_end();
+	}
+	return 0;
+}
+
+static int sync_manager(struct dev *d, const struct ec_ioc_config *c, const char *in,
+			const struct ec_ioc_config_sm *s)
+{
+	static const char *const wd[] = { "Default", "Enable", "Disable" };
+	const char *watchdog = s->watchdog < ARRAY_SIZE(wd) ? wd[s->watchdog] : "???";
+	int ret = 0;
+
+	out_object(NULL);
+	out_u("index", s->sm, "%sSM%u", in, s->sm);
+	out_str("direction", s->dir == 1 ? "output" : "input", ", Dir: %s",
+		s->dir == 1 ? "Output" : "Input");
+	out_str("watchdog", watchdog, ", Watchdog: %s\n", watchdog);
+	out_array("pdos");
+	for (unsigned int i = 0; i < s->pdo_count && !ret; i++) {
+		struct ec_ioc_config_pdo p = { .index = c->index, .sm = s->sm, .pdo_pos = i };
+		int err = dev_ioctl(d, EC_IOC_CONFIG_PDO, &p);
+
+		if (err) {
+			ret = failed(d, err, c);
+			break;
+		}
+		out_object(NULL);
+		out_u("index", p.pdo_index, "%s  PDO 0x%04x\n", in, p.pdo_index);
+		out_array("entries");
+		ret = entries(d, c, in, &p);
+		out_end();
+		out_end();
+	}
+	out_end();
+	out_end();
+	return ret;
+}
+
+static int sync_managers(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	int ret = 0;
+
+	out_array("sync_managers");
+	for (unsigned int i = 0; i < SMS && !ret; i++) {
+		struct ec_ioc_config_sm s = { .index = c->index, .sm = (__u8)i };
+		int err = dev_ioctl(d, EC_IOC_CONFIG_SM, &s);
+
+		if (err)
+			ret = failed(d, err, c);
+		else if (s.pdo_count)
+			ret = sync_manager(d, c, in, &s);
+	}
+	out_end();
+	return ret;
+}
+
+static int sdo(struct dev *d, const struct ec_ioc_config *c, const char *in, unsigned int pos)
+{
+	u8 data[SHOWN];
+	struct ec_ioc_config_sdo s = {
+		.index = c->index, .sdo_pos = pos, .size = sizeof(data), .data = (uintptr_t)data,
+	};
+	int err = dev_ioctl(d, EC_IOC_CONFIG_SDO, &s);
+	bool complete = s.flags & EC_SDO_FLAG_COMPLETE;
+	char indent[16];
+
+	if (err)
+		return failed(d, err, c);
+	snprintf(indent, sizeof(indent), "%s    ", in);
+	out_object(NULL);
+	out_u("index", s.sdo_index, "%s  0x%04x", in, s.sdo_index);
+	if (complete)
+		out_text(" C");
+	else
+		out_u("subindex", s.subindex, ":%02x", s.subindex);
+	out_bool("complete_access", complete, NULL);
+	out_u("size_bytes", s.size, ", %u byte\n", s.size);
+	out_hex("data_hex", data, min(s.size, (u32)SHOWN), indent);
+	if (s.size > SHOWN)
+		out_text("%s...\n", indent);
+	out_end();
+	return 0;
+}
+
+static int sdos(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	int ret = 0;
+
+	out_text("%sSDO configuration:\n", in);
+	out_array("sdos");
+	for (unsigned int i = 0; i < c->sdo_count && !ret; i++)
+		ret = sdo(d, c, in, i);
+	out_end();
+	if (!c->sdo_count)
+		out_text("%s  None.\n", in);
+	return ret;
+}
+
+static void dc(const struct ec_ioc_config *c, const char *in)
+{
+	out_text("%sDC configuration:\n", in);
+	if (!c->dc_assign_activate) {
+		out_null("dc", "%s  None.\n", in);
+		return;
+	}
+	out_object("dc");
+	out_u("assign_activate", c->dc_assign_activate, "%s  AssignActivate: 0x%04x\n", in,
+	      c->dc_assign_activate);
+	out_text("%s          Cycle [ns]   Shift [ns]\n", in);
+	out_array("sync");
+	for (int i = 0; i < 2; i++) {
+		out_object(NULL);
+		out_u("cycle_ns", c->dc_cycle[i], "%s  SYNC%d  %11u", in, i, c->dc_cycle[i]);
+		out_i("shift_ns", c->dc_shift[i], "  %11d\n", c->dc_shift[i]);
+		out_end();
+	}
+	out_end();
+	out_end();
+}
+
+static void number_or_default(const char *key, unsigned int v, const char *in, const char *label)
+{
+	if (v)
+		out_u(key, v, "%s%s: %u\n", in, label, v);
+	else
+		out_null(key, "%s%s: (Default)\n", in, label);
+}
+
+static void attached(const struct ec_ioc_config *c, const char *in)
+{
+	char state[16];
+
+	if (c->slave_position < 0) {
+		out_null("slave_position", "%sAttached slave: none\n", in);
+		out_null("state", NULL);
+		return;
+	}
+	al_state_text(c->al_status, state, sizeof(state));
+	out_i("slave_position", c->slave_position, "%sAttached slave: %d", in, c->slave_position);
+	out_str("state", ec_al_state_name((u8)c->al_status), " (%s)\n", state);
+}
+
+/* Return: 0, or 1 after printing the error. */
+int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	int ret;
+
+	out_object(NULL);
+	out_u("alias", c->alias, "%sAlias: %u\n", in, c->alias);
+	out_u("position", c->position, "%sPosition: %u\n", in, c->position);
+	out_u("vendor_id", c->vendor_id, "%sVendor Id: 0x%08x\n", in, c->vendor_id);
+	out_u("product_code", c->product_code, "%sProduct code: 0x%08x\n", in, c->product_code);
+	attached(c, in);
+	number_or_default("watchdog_divider", c->watchdog_divider, in, "Watchdog divider");
+	number_or_default("watchdog_intervals", c->watchdog_intervals, in, "Watchdog intervals");
+	ret = sync_managers(d, c, in);
+	ret = ret ? ret : sdos(d, c, in);
+	if (!ret) {
+		out_text("%sIDN configuration:\n%s  None.\n", in, in);
+		out_text("%sFeature flags:\n%s  None.\n", in, in);
+		dc(c, in);
+		out_text("\n");
+	}
+	out_end();
+	return ret;
+}

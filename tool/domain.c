@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "domain.h"
+
+#include <stdlib.h>
+
+int domain_each(struct dev *d, const struct tool *t,
+		int (*fn)(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom))
+{
+	struct ec_ioc_master m;
+	struct numbers sel;
+	int ret = 0;
+
+	if (dev_master(d, &m))
+		return 1;
+	if (list_expand(&t->domains, m.domain_count, &sel))
+		return fail("out of memory");
+	for (size_t i = 0; i < sel.n && !ret; i++) {
+		struct ec_ioc_domain dom = { .index = sel.v[i] };
+		int err = dev_ioctl(d, EC_IOC_DOMAIN, &dom);
+
+		ret = err ? dev_fail(d, err, "Master%u: domain %u: no data", d->master, sel.v[i]) :
+			fn(t, d, &dom);
+	}
+	numbers_free(&sel);
+	return ret;
+}
+
+int domain_data(struct dev *d, const struct ec_ioc_domain *dom, u8 **data, size_t *size)
+{
+	struct ec_ioc_domain_data arg = { .index = dom->index, .size = dom->size };
+	u8 *buf = calloc(1, dom->size + 1u);
+	int err;
+
+	if (!buf)
+		return fail("out of memory");
+	arg.data = (uintptr_t)buf;
+	err = dev_ioctl(d, EC_IOC_DOMAIN_DATA, &arg);
+	if (err) {
+		free(buf);
+		return dev_fail(d, err, "Master%u: cannot read the data of domain %u", d->master,
+				dom->index);
+	}
+	*data = buf;
+	*size = min(arg.size, dom->size);
+	return 0;
+}

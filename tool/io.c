@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "io.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "out.h"
+
+#define MAX_INPUT	(16u << 20)
+
+int io_number(const char *what, const char *text, u64 max, u64 *v)
+{
+	const char *why;
+
+	switch (number_parse(text, max, v, &why)) {
+	case 0:
+		return 0;
+	case -ERANGE:
+		return usage_error("invalid %s '%s': expected 0 to 0x%llx", what, text,
+				   (unsigned long long)max);
+	default:
+		return usage_error("invalid %s '%s': %s", what, text, why);
+	}
+}
+
+int io_type(const char *name, const struct ec_type **t)
+{
+	*t = ec_type_by_name(name);
+	return *t ? 0 : usage_error("unknown data type '%s'; 'ethercat help types' lists them",
+				    name);
+}
+
+static int read_stream(FILE *f, u8 **data, size_t *size)
+{
+	u8 *buf = NULL, *more;
+	size_t n = 0, cap = 0, got;
+
+	do {
+		if (n == cap) {
+			cap = cap ? 2 * cap : 4096;
+			more = cap > MAX_INPUT ? NULL : realloc(buf, cap + 1);
+			if (!more) {
+				free(buf);
+				return cap > MAX_INPUT ? EFBIG : ENOMEM;
+			}
+			buf = more;
+		}
+		got = fread(buf + n, 1, cap - n, f);
+		n += got;
+	} while (got);
+	if (ferror(f)) {
+		free(buf);
+		return errno ? errno : EIO;
+	}
+	buf[n] = 0;
+	*data = buf;
+	*size = n;
+	return 0;
+}
+
+/* a whole file, "-" is stdin; a NUL follows the data, which are to be freed */
+int io_read(const char *path, u8 **data, size_t *size)
+{
+	bool in = !strcmp(path, "-");
+	FILE *f = in ? stdin : fopen(path, "rb");
+	int err;
+
+	if (!f)
+		return fail_full(errno, NULL, 0, "cannot open %s", path);
+	err = read_stream(f, data, size);
+	if (!in)
+		fclose(f);
+	if (err)
+		return fail_full(err, NULL, 0, "cannot read %s", in ? "stdin" : path);
+	if (*size)
+		return 0;
+	free(*data);
+	return fail("%s is empty", in ? "stdin" : path);
+}
+
+/* bytes of a value as typed, "-" takes it from stdin; to be freed */
+int io_value(const struct ec_type *t, const char *text, u8 **data, size_t *size)
+{
+	u8 *in = NULL, *buf;
+	size_t len = strlen(text), cap;
+	const char *why;
+	int ret;
+
+	if (!strcmp(text, "-")) {
+		if (io_read("-", &in, &len))
+			return 1;
+		/* what ends the line is no part of a number */
+		while (!value_is_text(t) && len && strchr(" \t\r\n", in[len - 1]))
+			in[--len] = 0;
+	}
+	cap = max(len, (size_t)8);
+	buf = malloc(cap);
+	if (!buf) {
+		free(in);
+		return fail("out of memory");
+	}
+	ret = value_parse(t, in ? (const char *)in : text, len, buf, cap, size, &why);
+	if (ret) {
+		usage_error("invalid value '%s' for type %s: %s", in ? "-" : text, t->name, why);
+		free(buf);
+	} else {
+		*data = buf;
+	}
+	free(in);
+	return ret ? 1 : 0;
+}
+
+static void print_json(const struct ec_type *t, const u8 *data, size_t size)
+{
+	char *text;
+
+	switch (t->kind) {
+	case EC_KIND_BOOL:
+		out_bool("value", value_unsigned(data, size), NULL);
+		break;
+	case EC_KIND_INT:
+	case EC_KIND_SM:
+		out_i("value", value_signed(t, data, size), NULL);
+		break;
+	case EC_KIND_UINT:
+	case EC_KIND_BITS:
+		out_u("value", value_unsigned(data, size), NULL);
+		break;
+	case EC_KIND_FLOAT:
+		out_f("value", value_real(data, size), NULL);
+		break;
+	case EC_KIND_STRING:
+		text = calloc(size + 1, 1);
+		if (text)
+			memcpy(text, data, size);
+		out_str("value", text ? text : "", NULL);
+		free(text);
+		break;
+	default:
+		break;
+	}
+}
+
+/* a value on stdout: text as it is, the rest formatted; JSON adds the bytes */
+int io_print(const struct ec_type *t, const u8 *data, size_t size)
+{
+	size_t bytes = value_bytes(t), cap = max((size_t)VALUE_TEXT, 5 * size + 1);
+	char *text;
+
+	if (bytes && size != bytes)
+		return fail("type %s has %zu byte(s), but %zu were received", t->name, bytes, size);
+	out_str("type", t->name, NULL);
+	out_u("size_bytes", size, NULL);
+	if (out_is_json()) {
+		print_json(t, data, size);
+		out_hex("data_hex", data, size, "");
+		return 0;
+	}
+	if (value_is_text(t)) {
+		out_binary(NULL, data, size);
+		if (t->kind != EC_KIND_OCTETS)
+			out_text("\n");
+		return 0;
+	}
+	text = malloc(cap);
+	if (!text)
+		return fail("out of memory");
+	value_format(t, data, size, text, cap);
+	out_text("%s\n", text);
+	free(text);
+	return 0;
+}

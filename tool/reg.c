@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "reg.h"
+
+#define CHUNK	1024
+
+static int transfer(struct dev *d, unsigned long request, u32 flags, u16 position, u16 address,
+		    u8 *data, size_t size)
+{
+	for (size_t done = 0; done < size; done += CHUNK) {
+		struct ec_ioc_reg r = {
+			.flags = flags,
+			.position = position,
+			.address = (u16)(address + done),
+			.size = (u32)min(size - done, (size_t)CHUNK),
+			.data = (uintptr_t)(data + done),
+		};
+		int err = dev_ioctl(d, request, &r);
+
+		if (err)
+			return dev_fail(d, err, "Master%u slave %u: cannot %s register 0x%04x",
+					d->master, position,
+					request == EC_IOC_REG_READ ? "read" : "write", r.address);
+	}
+	return 0;
+}
+
+int reg_read(struct dev *d, u16 position, u16 address, u8 *data, size_t size)
+{
+	return transfer(d, EC_IOC_REG_READ, 0, position, address, data, size);
+}
+
+int reg_write(struct dev *d, u16 position, u16 address, const u8 *data, size_t size,
+	      bool emergency)
+{
+	return transfer(d, EC_IOC_REG_WRITE, emergency ? EC_REG_FLAG_EMERGENCY : 0, position,
+			address, (u8 *)(uintptr_t)data, size);
+}

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+#ifndef EC_TOOL_REG_H
+#define EC_TOOL_REG_H
+
+#include "dev.h"
+
+#define REG_SPACE	0x10000u
+
+int reg_read(struct dev *d, u16 position, u16 address, u8 *data, size_t size);
+int reg_write(struct dev *d, u16 position, u16 address, const u8 *data, size_t size,
+	      bool emergency);
+
+#endif

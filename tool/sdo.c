@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "sdo.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "out.h"
+
+#define ROOM		(64u << 10)
+#define ROOM_MAX	(16u << 20)
+
+/**
+ * sdo_addr_parse() - parse what names an SDO
+ * @a: result
+ * @index: "0x1018", or "0x1018:01" with the subindex in hex, as listings print it
+ * @sub: subindex or NULL; without any it is complete access
+ *
+ * Return: 0, or 1 after printing what is wrong.
+ */
+int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub)
+{
+	const char *colon = strchr(index, ':');
+	char head[32], *end;
+	u64 v, s = 0;
+
+	if (colon && sub)
+		return usage_error("'%s' has a subindex already", index);
+	snprintf(head, sizeof(head), "%.*s", colon ? (int)(colon - index) : 31, index);
+	if (io_number("index", colon ? head : index, 0xffff, &v))
+		return 1;
+	if (sub && io_number("subindex", sub, 0xff, &s))
+		return 1;
+	if (colon) {
+		s = strtoul(colon + 1, &end, 16);
+		if (!colon[1] || strspn(colon + 1, "0123456789abcdefABCDEF") > 2 || *end ||
+		    end > colon + 3)
+			return usage_error("invalid subindex '%s': expected two hex digits behind ':'",
+					   colon + 1);
+	}
+	*a = (struct sdo_addr){ .index = (u16)v, .sub = (u8)s, .complete = !sub && !colon };
+	snprintf(a->text, sizeof(a->text), a->complete ? "0x%04x" : "0x%04x:%02x", a->index, a->sub);
+	return 0;
+}
+
+void sdo_addr_out(const struct sdo_addr *a)
+{
+	out_u("index", a->index, NULL);
+	if (!a->complete)
+		out_u("subindex", a->sub, NULL);
+	out_bool("complete_access", a->complete, NULL);
+}
+
+static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const struct sdo_addr *a,
+		  const char *verb)
+{
+	if (s->abort_code)
+		return fail_full(err, NULL, s->abort_code, "Master%u slave %u: SDO %s %s",
+				 d->master, s->position, verb, a->text);
+	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, s->position, verb,
+			a->text);
+}
+
+/* @data is to be freed */
+int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data, size_t *size)
+{
+	for (u32 room = ROOM;; room *= 16) {
+		struct ec_ioc_sdo s = {
+			.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
+			.position = position,
+			.index = a->index,
+			.subindex = a->sub,
+			.size = room,
+		};
+		u8 *buf = malloc(room);
+		int err;
+
+		if (!buf)
+			return fail("out of memory");
+		s.data = (uintptr_t)buf;
+		err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &s);
+		if (!err) {
+			*data = buf;
+			*size = min(s.size, room);
+			return 0;
+		}
+		free(buf);
+		if ((err != EOVERFLOW && err != ENOSPC && err != EMSGSIZE) || s.abort_code ||
+		    room >= ROOM_MAX)
+			return failed(d, err, &s, a, "upload");
+	}
+}
+
+int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data, size_t size)
+{
+	struct ec_ioc_sdo s = {
+		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
+		.position = position,
+		.index = a->index,
+		.subindex = a->sub,
+		.size = (u32)size,
+		.data = (uintptr_t)data,
+	};
+	int err = dev_ioctl(d, EC_IOC_SDO_DOWNLOAD, &s);
+
+	return err ? failed(d, err, &s, a, "download") : 0;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+#ifndef EC_TOOL_SDO_H
+#define EC_TOOL_SDO_H
+
+#include "dev.h"
+#include "io.h"
+
+struct sdo_addr {
+	u16 index;
+	u8 sub;
+	bool complete;
+	char text[16];		/* "0x1018:01" or "0x1018" */
+};
+
+int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub);
+void sdo_addr_out(const struct sdo_addr *a);
+int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data, size_t *size);
+int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data, size_t size);
+
+#endif
