@@ -42,3 +42,11 @@ clean:
 	$(MAKE) -C tool clean
 
 .PHONY: all sync modules lib tool clean
+
+check:
+	tests/check.sh
+
+check-kernels:
+	tests/check-kernels.sh
+
+.PHONY: check check-kernels

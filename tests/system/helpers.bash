@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# For the bats files that run in the VM. EC_BUILD: where things were built.
+
+ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
+
+# start SEGMENT [SLAVES]: load the modules and wait for the scan
+start() {
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1"
+	wait_for 20 all_slaves_are PREOP "$2"
+}
+
+stop() {
+	rmmod ec_sim ec_generic 2>/dev/null || true
+	rmmod ec_master 2>/dev/null || true
+}
+
+# wait_for SECONDS COMMAND...
+wait_for() {
+	local end=$((SECONDS + $1))
+
+	shift
+	until "$@"; do
+		[ $SECONDS -lt $end ] || { echo "timed out: $*"; return 1; }
+		sleep 0.1
+	done
+}
+
+# all_slaves_are STATE COUNT
+all_slaves_are() {
+	[ "$(ethercat slaves 2>/dev/null | awk -v s="$1" '$3 == s' | wc -l)" = "$2" ]
+}

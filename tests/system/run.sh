@@ -1,0 +1,41 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Builds everything, boots Debian's PREEMPT_RT kernel and runs the bats files
+# of this folder in it, one boot each.
+#
+# usage: run.sh [FILE.bats...]
+
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+kernel=${EC_KERNEL:-6.1-rt}
+export EC_BUILD=$PWD/build/system-$kernel
+passed=0 failed=0
+
+tests/vm/kernels.sh fetch "$kernel" >&2 &&
+make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" >&2 &&
+make -s -C lib O="$EC_BUILD/lib" all >&2 &&
+make -s -C tool >&2 &&
+mkdir -p "$EC_BUILD/tool" && cp tool/ethercat "$EC_BUILD/tool/" &&
+make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 || exit 1
+
+for f in ${*:-tests/system/*.bats}; do
+	echo "# $f"
+	out=$(mktemp)
+	tests/vm/run.sh --kernel "$kernel" --timeout 300 -- \
+		env EC_BUILD="$EC_BUILD" bats --tap "$f" >"$out" 2>&1
+	rc=$?
+	grep -E '^(ok|not ok|#)' "$out"
+	p=$(grep -c '^ok' "$out")
+	n=$(grep -c '^not ok' "$out")
+	# an oops, a hang, a crash of the guest
+	if [ $rc != 0 ] && [ "$n" = 0 ] || [ "$p" = 0 ]; then
+		tail -n 40 "$out"
+		echo "not ok $f ended with $rc"
+		n=$((n + 1))
+	fi
+	passed=$((passed + p)) failed=$((failed + n))
+	rm -f "$out"
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
