@@ -551,7 +551,7 @@ void ec_app_outputs(struct ec_app *app, u64 now);
 void ec_app_outputs_clear(struct ec_app *app);
 void ec_app_inputs(struct ec_app *app, u64 now);
 void ec_app_run(struct ec_app *app, u64 now);
-s64 ec_app_channel(const struct ec_app *app, enum ec_app_dir dir, u16 chan);
+s64 ec_app_channel(struct ec_app *app, enum ec_app_dir dir, u16 chan);
 
 /* catalogue.c */
 const struct ec_app_dev *ec_app_catalogue(const char *name, size_t len);

@@ -257,6 +257,24 @@ void ec_app_outputs_clear(struct ec_app *app)
 	}
 }
 
+/*
+ * Digital terminals map their outputs to registers (0x0F00), where no buffer
+ * changes hands: what is there is what is at the terminals.
+ */
+static void outputs_direct(struct ec_app *app)
+{
+	int sm = app->model->pd_sm[EC_APP_OUT];
+	u32 start = sm < 0 ? EC_REG_RAM : app->model->dev.sms[sm].start;
+
+	for (u32 i = 0; start < EC_REG_RAM && i < app->n_map[EC_APP_OUT]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+
+		if (start * 8 + c->pos + c->bits <= EC_REG_RAM * 8)
+			ec_bits_copy(app->data + c->off, 0, app->esc->mem,
+				     start * 8 + c->pos, c->bits);
+	}
+}
+
 /**
  * ec_app_channel() - value of a channel
  * @app: slave
@@ -267,7 +285,7 @@ void ec_app_outputs_clear(struct ec_app *app)
  * Return: the value, 0 where there is no such channel and for outputs which
  * are off.
  */
-s64 ec_app_channel(const struct ec_app *app, enum ec_app_dir dir, u16 chan)
+s64 ec_app_channel(struct ec_app *app, enum ec_app_dir dir, u16 chan)
 {
 	const struct ec_app_model *m = app->model;
 
@@ -276,6 +294,8 @@ s64 ec_app_channel(const struct ec_app *app, enum ec_app_dir dir, u16 chan)
 	if (dir == EC_APP_OUT &&
 	    (!app->esc->powered || ec_app_state(app) != EC_AL_OP))
 		return 0;
+	if (dir == EC_APP_OUT)
+		outputs_direct(app);
 	return ec_app_od_get_signed(app, m->chan[dir][chan]);
 }
 

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Simulated slaves: states, mailbox, process data. */
+#include "sim_app_kunit.h"
+
+static void thin(struct kunit *test)
+{
+	struct bed *b = app_bed(test, ec_sim_builtin("thin"));
+	struct ec_app *out = ec_sim_find(b->sim, "out");
+	u8 v = 0x05;
+
+	KUNIT_ASSERT_NOT_NULL(test, out);
+	/* both emulate: the status follows at once */
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_OP, 1), (u32)EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), EC_AL_OP, 1), (u32)EC_AL_OP);
+	bed_sm(b, STATION(1), 0, 0x0F00, 1, 0x44);
+	KUNIT_EXPECT_EQ(test, bed_fmmu(b, STATION(1), 0, (struct ec_fmmu){
+			.logical = 0x10000, .len = 1, .lbit_stop = 7,
+			.phys = 0x0F00, .type = EC_FMMU_WRITE, .enable = true,
+		}), 1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LWR, 0, 1, &v, 1), 1);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(out, EC_APP_OUT, 0), 1);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(out, EC_APP_OUT, 1), 0);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(out, EC_APP_OUT, 2), 1);
+	/* off outside OP */
+	app_al(b, STATION(1), EC_AL_SAFEOP, 1);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(out, EC_APP_OUT, 0), 0);
+}
+
+static void digital_loop(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave o EL2008\nslave i EL1008\n"
+				"connect o.2 -> i.5\nconst i.1 value=1\n");
+	u8 v = 0x02;
+
+	for (int i = 0; i < 2; i++)
+		app_al(b, STATION(i), EC_AL_OP, 1);
+	bed_sm(b, STATION(0), 0, 0x0F00, 1, 0x44);
+	bed_sm(b, STATION(1), 0, 0x1000, 1, 0x00);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x1000, 1), 0x01);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, STATION(0), 0x0F00, &v, 1), 1);
+	bed_get(b, STATION(1), 0x1000, 1);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x1000, 1), 0x11);
+}
+
+/* EK1100, EL2008, EL7201: the axis is slave 2 */
+#define AXIS	STATION(2)
+
+static void axis_sms(struct bed *b, u16 out, u16 in)
+{
+	bed_sm(b, AXIS, 2, 0x1200, out, 0x64);
+	bed_sm(b, AXIS, 3, 0x1300, in, 0x20);
+}
+
+static void al_illegal(struct kunit *test)
+{
+	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+
+	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), (u32)EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_OP, 1), 0x00110011u);
+	/* nothing but INIT is heard until the acknowledge */
+	app_mbox_sms(b, AXIS, 256);
+	bed_put(b, AXIS, EC_REG_AL_CONTROL, EC_AL_PREOP, 2);
+	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), 0x00110011u);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_INIT | EC_AL_ERROR, 1),
+			(u32)EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 5, 1), 0x00120011u);
+	/* acknowledge and request in one */
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_PREOP | EC_AL_ERROR, 1),
+			(u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_BOOT, 1), 0x00110012u);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_INIT, 1), (u32)EC_AL_INIT);
+}
+
+static void al_mailbox(struct kunit *test)
+{
+	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_PREOP, 1), 0x00160011u);
+	app_mbox_sms(b, AXIS, 128);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_PREOP | EC_AL_ERROR, 1),
+			0x00160011u);
+	app_mbox_sms(b, AXIS, 256);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_PREOP | EC_AL_ERROR, 1),
+			(u32)EC_AL_PREOP);
+	/* the master takes the mailbox away */
+	bed_put(b, AXIS, EC_REG_SM(1) + EC_SM_OFS_ACTIVATE, 0, 1);
+	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), 0x00160011u);
+}
+
+static void al_boot(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EL7201\nslave w 750-354\n");
+
+	app_mbox_sms(b, STATION(0), 256);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_BOOT, 1), 0x00150011u);
+	app_mbox_sms(b, STATION(0), 512);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_BOOT | EC_AL_ERROR, 1),
+			(u32)EC_AL_BOOT);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), EC_AL_BOOT, 1), 0x00130011u);
+}
+
+static void al_process_data(struct kunit *test)
+{
+	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+
+	app_mbox_sms(b, AXIS, 256);
+	app_al(b, AXIS, EC_AL_PREOP, 1);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_SAFEOP, 1), 0x001D0012u);
+	axis_sms(b, 5, 6);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 0x14, 1), 0x001D0012u);
+	axis_sms(b, 6, 7);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 0x14, 1), 0x001E0012u);
+	axis_sms(b, 6, 6);
+	bed_sm(b, AXIS, 2, 0x1200, 6, 0x60);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 0x14, 1), 0x00170012u);
+	bed_sm(b, AXIS, 2, 0x1210, 6, 0x64);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 0x14, 1), 0x001D0012u);
+	axis_sms(b, 6, 6);
+	bed_put(b, AXIS, EC_REG_WD_DIVIDER, 2, 2);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, 0x14, 1), (u32)EC_AL_SAFEOP);
+	app_al(b, AXIS, EC_AL_PREOP, 1);
+	bed_put(b, AXIS, EC_REG_WD_SM, 1, 2);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_SAFEOP, 1), 0x001F0012u);
+}
+
+static void al_outputs(struct kunit *test)
+{
+	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+	u8 v[6] = { 0 };
+
+	app_mbox_sms(b, AXIS, 256);
+	app_al(b, AXIS, EC_AL_PREOP, 1);
+	axis_sms(b, 6, 6);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_SAFEOP, 1),
+			(u32)EC_AL_SAFEOP);
+	/* the slave waits for outputs for a while */
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_OP, 50), (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_OP, 200), 0x00190014u);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, AXIS, 0x1200, v, 6), 1);
+	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_OP | EC_AL_ERROR, 1),
+			(u32)EC_AL_OP);
+	/* the watchdog takes it out of OP after 100 ms */
+	b->now += 90000000;
+	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), (u32)EC_AL_OP);
+	b->now += 20000000;
+	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), 0x001B0014u);
+	KUNIT_EXPECT_EQ(test, bed_get(b, AXIS, EC_REG_WD_SM_COUNT, 1), 1);
+}
+
+static void al_refuse(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive\n"
+				"fault refuse d SAFEOP code=0x1d\n"
+				"fault at=1s allow d\n");
+	u16 d = STATION(0);
+
+	app_mbox_sms(b, d, 256);
+	KUNIT_EXPECT_EQ(test, app_al(b, d, EC_AL_PREOP, 1), (u32)EC_AL_PREOP);
+	bed_sm(b, d, 2, 0x1200, 8, 0x64);
+	bed_sm(b, d, 3, 0x1218, 8, 0x20);
+	KUNIT_EXPECT_EQ(test, app_al(b, d, EC_AL_SAFEOP, 1), 0x001D0012u);
+	b->now = 1000000000;
+	KUNIT_EXPECT_EQ(test, app_al(b, d, EC_AL_SAFEOP | EC_AL_ERROR, 1),
+			(u32)EC_AL_SAFEOP);
+}
+
+static void al_time_and_id(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive transition=5ms id=0x1234\n");
+	u16 d = STATION(0);
+	u64 from = b->now;
+
+	KUNIT_EXPECT_EQ(test, bed_put(b, d, EC_REG_AL_CONTROL, 0x21, 2), 1);
+	KUNIT_EXPECT_EQ(test, app_al_status(b, d), 0x12340021u);
+	app_mbox_sms(b, d, 256);
+	KUNIT_EXPECT_EQ(test, app_al(b, d, EC_AL_PREOP, 20), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_GE(test, b->now - from, 5000000ull);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(thin),
+	KUNIT_CASE(digital_loop),
+	KUNIT_CASE(al_illegal),
+	KUNIT_CASE(al_mailbox),
+	KUNIT_CASE(al_boot),
+	KUNIT_CASE(al_process_data),
+	KUNIT_CASE(al_outputs),
+	KUNIT_CASE(al_refuse),
+	KUNIT_CASE(al_time_and_id),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "sim_app",
+	.exit = bed_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
