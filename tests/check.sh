@@ -8,7 +8,7 @@
 
 set -u
 cd "$(dirname "$0")/.." || exit 1
-levels="unit lib tool kernels system"
+levels="unit lib kernels system"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT

@@ -50,7 +50,7 @@ done </mod/order
 
 # cache=none for what the host reads: each write goes through at once.
 mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144,cache=none ctl /ctl || fail "no control directory"
-. /ctl/env	# release, modules, cwd, rw (number of --rw directories)
+. /ctl/env	# release, modules, mark, rw (number of --rw directories)
 mount -t 9p -o ro,trans=virtio,version=9p2000.L,msize=512000,cache=loose host /host || fail "cannot mount the host's root"
 mount -t tmpfs -o mode=755 tmpfs /rw
 mkdir /rw/upper /rw/work
@@ -84,17 +84,29 @@ echo "ec-vm: the command starts" >/dev/kmsg
 # The command gets a pipe, not the console: programs then behave as in any
 # other log (no colours, no line editing), and /dev/stdout can be reopened.
 mkfifo /out
-cat /out >/dev/console &
-reader=$!
+# A virtio port, because the emulated UART is slow and its interrupt gets
+# switched off by an -rt kernel when much is written.
+port=/dev/console
+i=0
+while [ "$i" -lt 40 ]; do
+	for p in /dev/vport*p1; do [ ! -c "$p" ] || port=$p; done
+	[ $port = /dev/console ] || break
+	usleep 50000
+	i=$((i + 1))
+done
+cat /out >$port &
+exec 7>/out	# else the reader ends with the command, before the mark
 env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
 	HOME=/root USER=root LOGNAME=root SHELL=/bin/sh TERM=dumb LANG=C.UTF-8 EC_VM=1 \
-	chroot /n /bin/sh /run/ec-vm-cmd </dev/null >/out 2>&1
+	chroot /n /bin/sh /run/ec-vm-cmd </dev/null >/out 2>&1 7>&-
 rc=$?
 
-# A process left in the background may hold the pipe open, so do not wait for
-# its end for ever.
+# All output must have reached the host before the restart throws away what is
+# queued. run.sh writes the file when the mark comes by. Waiting for the end of
+# the pipe would not do: a background process may hold it open.
+echo "$mark" >/out &
 i=0
-while [ "$i" -lt 20 ] && kill -0 $reader 2>/dev/null; do
+while [ ! -s /ctl/drained ] && [ "$i" -lt 600 ]; do
 	usleep 50000
 	i=$((i + 1))
 done

@@ -64,7 +64,7 @@ done
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
 
-for p in qemu-system-x86_64 cpio modprobe timeout awk sed; do
+for p in qemu-system-x86_64 cpio modprobe timeout awk sed stdbuf; do
 	command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh vm)"
 done
 busybox=
@@ -96,7 +96,7 @@ if [ ! -f "$initrd" ]; then
 	mkdir -p "$i/bin" "$i/mod" "$i/dev" "$i/proc" "$cache/initramfs"
 	cp "$busybox" "$i/bin/busybox"
 	install -m 755 "$here/guest-init.sh" "$i/init"
-	for m in virtio_pci 9pnet_virtio 9p overlay; do
+	for m in virtio_pci virtio_console 9pnet_virtio 9p overlay; do
 		modprobe -d "${modules%/lib/modules/*}" -S "$release" --show-depends "$m" ||
 			die "the kernel $release has no module $m"
 	done >"$tmp/depends" || exit 125
@@ -150,6 +150,7 @@ fi
 
 # --- what the guest is told ---------------------------------------------------
 ctl=$tmp/ctl
+mark="@ec-vm-end-$$-$RANDOM@"
 mkdir "$ctl"
 opts=()
 n=0
@@ -160,7 +161,7 @@ for d in ${rw[@]+"${rw[@]}"}; do
 	n=$((n + 1))
 done
 {
-	printf 'release=%q\nmodules=%q\nrw=%d\n' "$release" "$modules" "$n"
+	printf 'release=%q\nmodules=%q\nmark=%s\nrw=%d\n' "$release" "$modules" "$mark" "$n"
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
@@ -181,14 +182,21 @@ start=$(date +%s%N)
 mkfifo "$tmp/out"
 # shellcheck disable=SC2086
 timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd" \
-	-serial stdio -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
+	-serial stdio -device virtio-serial-pci -chardev "file,id=out,path=$tmp/out" \
+	-device virtserialport,chardev=out -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
 	-virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
 	${opts[@]+"${opts[@]}"} \
 	-append "console=ttyS0 quiet panic=-1 log_buf_len=4M mitigations=off apparmor=0 audit=0 printk.devkmsg=on net.ifnames=0$append" \
 	$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
 qemu_pid=$!
-# The console adds a carriage return to each line of the kernel.
-sed -u -e '/sysrq: Resetting/d' -e 's/\r*$//' <"$tmp/out" &
+# The console adds a carriage return to each line of the kernel. The file tells
+# the guest that all it wrote has arrived; sed holds back what it writes to any
+# other file than stderr. (sed -u would read byte by byte.)
+{
+	stdbuf -oL sed -e '/sysrq: Resetting/d' -e 's/\r*$//' \
+		-e "/$mark/{w /dev/stderr" -e "s/$mark//" -e '/^$/d' -e '}' <"$tmp/out" 2>"$ctl/drained" || true
+	echo closed >>"$ctl/drained"	# nobody reads us any more: do not let the guest wait
+} &
 sed_pid=$!
 qemu_rc=0
 wait $qemu_pid || qemu_rc=$?

@@ -60,6 +60,8 @@ check "panic is 125" 125 'without a result' --timeout 60 -- sh -c 'echo c >/proc
 check "kernel warning is 70, even after dmesg -c" 70 'KERNEL FAULT' -- \
 	sh -c 'echo "<4>WARNING: CPU: made up" >/dev/kmsg; dmesg -c >/dev/null'
 check "--allow-oops" 5 '^$|^out' --allow-oops -- sh -c 'echo "<4>BUG: made up" >/dev/kmsg; echo out; exit 5'
+check "much output arrives complete" 0 '^last$' -- sh -c 'seq 100000; echo last'
+[ "$(wc -l <"$tmp/out")" = 100001 ] || { echo "not ok - output was lost"; failed=1; }
 check "background process does not hang the end" 0 done -- sh -c 'sleep 1000 & echo done'
 
 echo "# ${boot#run.sh: }"

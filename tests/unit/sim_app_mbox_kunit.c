@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Simulated slaves: mailbox, object dictionary, SDO information. */
+#include "sim_app_kunit.h"
+
+struct mb {
+	struct bed *b;
+	struct app_mbox m;
+	u8 buf[2048];
+};
+
+/* one slave in PREOP, its mailboxes of @size bytes from 0x1000 */
+static struct mb *mb_new(struct kunit *test, const char *text, u16 size)
+{
+	struct mb *x = kunit_kzalloc(test, sizeof(*x), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, x);
+	x->b = app_bed(test, text);
+	x->m.station = STATION(0);
+	x->m.size = size;
+	app_mbox_sms(x->b, x->m.station, size);
+	KUNIT_ASSERT_EQ(test, app_al(x->b, x->m.station, EC_AL_PREOP, 5),
+			(u32)EC_AL_PREOP);
+	return x;
+}
+
+static void identity(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave a EL7201 serial=77\n", 256);
+	struct bed *b = x->b;
+	u32 abort = 0;
+
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1018, 0), 4);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1018, 1), 2);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1018, 2), 0x1C213052);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1018, 3), 0x00110000);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1018, 4), 77);
+	KUNIT_EXPECT_EQ(test, app_upload(b, &x->m, 0x1008, 0, false, x->buf,
+					 sizeof(x->buf), &abort), 6);
+	KUNIT_EXPECT_MEMEQ(test, x->buf, "EL7201", 6);
+	/* count as two bytes, then four values */
+	KUNIT_EXPECT_EQ(test, app_upload(b, &x->m, 0x1018, 0, true, x->buf,
+					 sizeof(x->buf), &abort), 18);
+	KUNIT_EXPECT_EQ(test, x->buf[0], 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(x->buf + 2), 2u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(x->buf + 14), 77u);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1C00, 3), 3);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1C12, 1), 0x1600);
+	KUNIT_EXPECT_EQ(test, app_get(b, &x->m, 0x1600, 1), 0x70100110);
+}
+
+static u32 up_abort(struct mb *x, u16 index, u8 sub)
+{
+	u32 abort = 0;
+
+	return app_upload(x->b, &x->m, index, sub, false, x->buf,
+			  sizeof(x->buf), &abort) == -1 ? abort : 0;
+}
+
+static void aborts(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	struct bed *b = x->b;
+	struct app_mbox *m = &x->m;
+
+	KUNIT_EXPECT_EQ(test, up_abort(x, 0x3000, 0), EC_ABORT_NO_OBJECT);
+	KUNIT_EXPECT_EQ(test, up_abort(x, 0x1018, 9), EC_ABORT_NO_SUB);
+	KUNIT_EXPECT_EQ(test, up_abort(x, 0x2002, 0), EC_ABORT_WRITE_ONLY);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1018, 1, 5, 4),
+			EC_ABORT_READ_ONLY);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2003, 0, 5, 2),
+			EC_ABORT_TOO_SHORT);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2003, 0, 5, 8),
+			EC_ABORT_TOO_LONG);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2001, 1, 2, 1),
+			EC_ABORT_TOO_HIGH);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2003, 0, 5, 4), 0u);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x2003, 0), 5);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2001, 9, 0x1122334455667788, 8),
+			0u);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x2001, 9), 0x1122334455667788);
+	bed_sm(b, STATION(0), 2, 0x1200, 8, 0x64);
+	bed_sm(b, STATION(0), 3, 0x1218, 8, 0x20);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_SAFEOP, 1),
+			(u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x2003, 0, 6, 4), EC_ABORT_STATE);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x2003, 0), 5);
+}
+
+static void segmented(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive mbox=64 response=50us\n", 64);
+	u8 *data = kunit_kmalloc(test, 1000, GFP_KERNEL);
+	u32 abort;
+
+	KUNIT_ASSERT_NOT_NULL(test, data);
+	for (int i = 0; i < 1000; i++)
+		data[i] = (u8)(i * 7);
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x2000, 0, false, data,
+					   1000), 0u);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x2000, 0, false, x->buf,
+					 sizeof(x->buf), &abort), 1000);
+	KUNIT_EXPECT_MEMEQ(test, x->buf, data, 1000);
+}
+
+static void complete_access(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	/* sub 0 twice, bit, 8, 16, 32, 64, 8, 16, 32, 64, 32, 64, string */
+	size_t len = 2 + 1 + 1 + 2 + 4 + 8 + 1 + 2 + 4 + 8 + 4 + 8 + 16;
+	u8 rec[61];
+	u32 abort;
+
+	KUNIT_ASSERT_EQ(test, len, sizeof(rec));
+	memset(rec, 0x5A, sizeof(rec));
+	rec[0] = 12;
+	rec[1] = 0;
+	rec[2] = 1;
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x2001, 0, true, rec,
+					   len), 0u);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x2001, 1), 1);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x2001, 4), 0x5A5A5A5A);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x2001, 0, true, x->buf,
+					 sizeof(x->buf), &abort), (int)len);
+	KUNIT_EXPECT_MEMEQ(test, x->buf, rec, len);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x2001, 1, true, x->buf,
+					 sizeof(x->buf), &abort), (int)len - 2);
+	rec[2] = 1;
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x1018, 0, true, rec,
+					   18), EC_ABORT_READ_ONLY);
+}
+
+static int info(struct mb *x, struct ec_sdoinfo *s)
+{
+	struct ec_mbox_hdr h;
+	int ret, len;
+
+	len = ec_sdoinfo_tx(s, x->m.tx + EC_MBOX_HDR, 100);
+	if (len < 0 || app_send(x->b, &x->m, EC_MBOX_COE, (size_t)len) != 1)
+		return -1;
+	do {
+		len = app_recv(x->b, &x->m, &h, 100);
+		if (len < 0)
+			return -2;
+		ret = ec_sdoinfo_rx(s, x->m.rx + EC_MBOX_HDR, (size_t)len);
+	} while (ret == EC_WAIT || ret == EC_STALE);
+	return ret;
+}
+
+static void information(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive mbox=64\n", 64);
+	struct ec_app *app = ec_sim_find(x->b->sim, "d");
+	struct ec_od_object o;
+	struct ec_od_entry e;
+	struct ec_sdoinfo s;
+	size_t n;
+
+	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	n = ec_sdoinfo_list_count(&s);
+	KUNIT_EXPECT_EQ(test, n, app->model->n_objects);
+	KUNIT_EXPECT_EQ(test, ec_sdoinfo_list_get(&s, 0), 0x1000);
+	KUNIT_EXPECT_GT(test, s.fragments, 1);
+
+	ec_sdoinfo_init_list(&s, EC_SDOINFO_COUNTS, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(x->buf), n);
+
+	ec_sdoinfo_init_object(&s, 0x1018, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_object_decode(x->buf, s.size, &o), 0);
+	KUNIT_EXPECT_EQ(test, o.max_sub, 4);
+	KUNIT_EXPECT_EQ(test, o.code, EC_OD_RECORD);
+	KUNIT_EXPECT_EQ(test, o.name_len, 8);
+	KUNIT_EXPECT_MEMEQ(test, o.name, "Identity", 8);
+
+	ec_sdoinfo_init_entry(&s, 0x607A, 0, 0, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
+	KUNIT_EXPECT_EQ(test, e.type, EC_TYPE_INT32);
+	KUNIT_EXPECT_EQ(test, e.bits, 32);
+	KUNIT_EXPECT_EQ(test, e.access, 0x007F);
+	KUNIT_EXPECT_MEMEQ(test, e.name, "Target position", 15);
+
+	ec_sdoinfo_init_entry(&s, 0x1600, 1, 0, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
+	KUNIT_EXPECT_MEMEQ(test, e.name, "SubIndex 001", 12);
+
+	ec_sdoinfo_init_object(&s, 0x3000, x->buf, sizeof(x->buf));
+	KUNIT_EXPECT_LT(test, info(x, &s), 0);
+	KUNIT_EXPECT_EQ(test, s.abort, EC_ABORT_NO_OBJECT);
+}
+
+static u16 error_of(struct mb *x)
+{
+	struct ec_mbox_hdr h;
+	int len = app_recv(x->b, &x->m, &h, 10);
+	struct ec_rbuf r;
+	u16 detail = 0;
+
+	if (len < 0 || h.type != EC_MBOX_ERR)
+		return 0xFFFF;
+	r = ec_rbuf(x->m.rx + EC_MBOX_HDR, (size_t)len);
+	return ec_mbox_error_decode(&r, &detail) ? 0xFFFE : detail;
+}
+
+static void errors(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	struct ec_mbox_hdr h;
+
+	memset(x->m.tx, 0, sizeof(x->m.tx));
+	app_send(x->b, &x->m, EC_MBOX_SOE, 10);
+	KUNIT_EXPECT_EQ(test, error_of(x), EC_MBOX_ERR_PROTOCOL);
+	app_send(x->b, &x->m, EC_MBOX_COE, 1);
+	KUNIT_EXPECT_EQ(test, error_of(x), EC_MBOX_ERR_TOO_SHORT);
+	put_unaligned_le16(0x4000, x->m.tx + EC_MBOX_HDR);
+	app_send(x->b, &x->m, EC_MBOX_COE, 10);
+	KUNIT_EXPECT_EQ(test, error_of(x), EC_MBOX_ERR_SERVICE);
+	/* longer than the mailbox */
+	put_unaligned_le16(300, x->m.tx);
+	x->m.tx[5] = EC_MBOX_COE;
+	bed_tx(x->b, EC_CMD_FPWR, x->m.station, 0x1000, x->m.tx, 256);
+	KUNIT_EXPECT_EQ(test, error_of(x), EC_MBOX_ERR_SIZE);
+	/* channel */
+	put_unaligned_le16(10, x->m.tx);
+	x->m.tx[4] = 1;
+	bed_tx(x->b, EC_CMD_FPWR, x->m.station, 0x1000, x->m.tx, 256);
+	KUNIT_EXPECT_EQ(test, error_of(x), EC_MBOX_ERR_CHANNEL);
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 2), -1);
+}
+
+static size_t upload_request(struct app_mbox *m, u16 index, u8 sub)
+{
+	struct ec_sdo_up u;
+	u8 buf[4];
+
+	ec_sdo_up_init(&u, index, sub, false, buf, sizeof(buf));
+	return (size_t)ec_sdo_up_tx(&u, m->tx + EC_MBOX_HDR, 100);
+}
+
+static void counter_and_repeat(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	struct app_mbox *m = &x->m;
+	struct bed *b = x->b;
+	struct ec_mbox_hdr h;
+	u8 first[16];
+
+	KUNIT_EXPECT_EQ(test, app_send(b, m, EC_MBOX_COE,
+				       upload_request(m, 0x1018, 2)), 1);
+	/* the same again: dropped, there is one answer only */
+	b->now += 1000000;
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, m->station, 0x1000, m->tx,
+				     256), 1);
+	KUNIT_EXPECT_EQ(test, app_recv(b, m, &h, 10), 10);
+	memcpy(first, m->rx, sizeof(first));
+	KUNIT_EXPECT_EQ(test, app_recv(b, m, &h, 2), -1);
+	/* the answer was lost: ask for it again */
+	KUNIT_EXPECT_EQ(test, bed_put(b, m->station,
+				      EC_REG_SM(1) + EC_SM_OFS_ACTIVATE,
+				      EC_SM_ACT_ENABLE | EC_SM_ACT_REPEAT, 1), 1);
+	KUNIT_EXPECT_EQ(test, bed_get(b, m->station,
+				      EC_REG_SM(1) + EC_SM_OFS_PDI, 1),
+			EC_SM_PDI_REPEAT_ACK);
+	KUNIT_EXPECT_EQ(test, app_recv(b, m, &h, 10), 10);
+	KUNIT_EXPECT_MEMEQ(test, m->rx, first, sizeof(first));
+	/* and once more while the next answer lies there unread */
+	KUNIT_EXPECT_EQ(test, app_send(b, m, EC_MBOX_COE,
+				       upload_request(m, 0x1018, 3)), 1);
+	b->now += 1000000;
+	bed_put(b, m->station, EC_REG_SM(1) + EC_SM_OFS_ACTIVATE,
+		EC_SM_ACT_ENABLE, 1);
+	KUNIT_EXPECT_EQ(test, bed_get(b, m->station,
+				      EC_REG_SM(1) + EC_SM_OFS_PDI, 1), 0);
+	KUNIT_EXPECT_EQ(test, app_recv(b, m, &h, 10), 10);
+	KUNIT_EXPECT_MEMEQ(test, m->rx, first, sizeof(first));
+	KUNIT_EXPECT_EQ(test, app_recv(b, m, &h, 10), 10);
+	KUNIT_EXPECT_EQ(test, m->rx[EC_MBOX_HDR + 5], 3);
+}
+
+static void delay(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive response=3ms\n", 256);
+	struct ec_mbox_hdr h;
+	u64 from = x->b->now;
+
+	app_send(x->b, &x->m, EC_MBOX_COE, upload_request(&x->m, 0x1018, 1));
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 2), -1);
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 4), 10);
+	KUNIT_EXPECT_GE(test, x->b->now - from, 3000000ull);
+}
+
+static void emergencies(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n"
+		"fault at=10ms emergency d code=0x8130 register=0x11\n"
+		"fault at=10ms emergency d code=0\n", 256);
+	struct ec_coe_emergency e;
+	struct ec_mbox_hdr h;
+
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 5), -1);
+	KUNIT_ASSERT_EQ(test, app_recv(x->b, &x->m, &h, 10), 10);
+	KUNIT_ASSERT_EQ(test, ec_coe_emergency_decode(x->m.rx + EC_MBOX_HDR, 10,
+						      &e), 0);
+	KUNIT_EXPECT_EQ(test, e.code, 0x8130);
+	KUNIT_EXPECT_EQ(test, e.reg, 0x11);
+	KUNIT_ASSERT_EQ(test, app_recv(x->b, &x->m, &h, 10), 10);
+	KUNIT_ASSERT_EQ(test, ec_coe_emergency_decode(x->m.rx + EC_MBOX_HDR, 10,
+						      &e), 0);
+	KUNIT_EXPECT_EQ(test, e.code, 0);
+}
+
+static void muted(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\nfault at=20ms mute d\n"
+			      "fault at=60ms unmute d\n", 256);
+	struct ec_mbox_hdr h;
+
+	x->b->now = 21000000;
+	app_send(x->b, &x->m, EC_MBOX_COE, upload_request(&x->m, 0x1018, 1));
+	bed_put(x->b, x->m.station, EC_REG_AL_CONTROL, EC_AL_PREOP, 2);
+	/* AL control is not taken: a second write is refused */
+	KUNIT_EXPECT_EQ(test, bed_put(x->b, x->m.station, EC_REG_AL_CONTROL,
+				      EC_AL_PREOP, 2), 0);
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 30), -1);
+	KUNIT_EXPECT_EQ(test, app_recv(x->b, &x->m, &h, 30), 10);
+	KUNIT_EXPECT_EQ(test, app_al_status(x->b, x->m.station),
+			(u32)EC_AL_PREOP);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(identity),
+	KUNIT_CASE(aborts),
+	KUNIT_CASE(segmented),
+	KUNIT_CASE(complete_access),
+	KUNIT_CASE(information),
+	KUNIT_CASE(errors),
+	KUNIT_CASE(counter_and_repeat),
+	KUNIT_CASE(delay),
+	KUNIT_CASE(emergencies),
+	KUNIT_CASE(muted),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "sim_app_mbox",
+	.exit = bed_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
