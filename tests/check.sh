@@ -22,8 +22,8 @@ count() {
 		line=$(grep -E '^# Totals: pass:[0-9]+ fail:[0-9]+' "$1" | tail -n 1 |
 		       sed -E 's/.*pass:([0-9]+) fail:([0-9]+).*/\1 passed, \2 failed/')
 	fi
-	p=$(echo "$line" | sed -nE 's/.*[^0-9]?([0-9]+) passed.*/\1/p')
-	f=$(echo "$line" | sed -nE 's/.* ([0-9]+) failed.*/\1/p')
+	p=$(echo "$line" | grep -oE '[0-9]+ passed' | grep -oE '[0-9]+')
+	f=$(echo "$line" | grep -oE '[0-9]+ failed' | grep -oE '[0-9]+')
 	passed=$((passed + ${p:-0}))
 	failed=$((failed + ${f:-0}))
 	# a level that fails without saying how is one failure
