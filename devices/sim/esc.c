@@ -10,9 +10,6 @@
  */
 #include "esc_int.h"
 
-#define DC_FIRST	0x0900
-#define DC_SIZE		0x0100
-
 /**
  * ec_esc_config_init() - settings of an ordinary slave controller
  * @cfg: result; 4 MII ports, 8 FMMUs, 8 SyncManagers, 8 KiB, 64-bit DC, no
@@ -122,7 +119,7 @@ u16 ec_esc_dl_status(const struct ec_esc *esc)
 }
 
 /* put computed registers in the touched range into memory */
-static void refresh(struct ec_esc *esc, u16 ado, u32 len, u64 now)
+void ec_esc_refresh(struct ec_esc *esc, u16 ado, u32 len, u64 now)
 {
 	u8 *m = esc->mem;
 
@@ -140,7 +137,7 @@ static void refresh(struct ec_esc *esc, u16 ado, u32 len, u64 now)
 		ec_esc_mii_refresh(esc);
 	if (ec_range_hit(ado, len, EC_REG_SM(0), EC_MAX_SM * EC_SM_PAGE))
 		ec_esc_sm_refresh(esc);
-	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+	if (ec_range_hit(ado, len, EC_DC_FIRST, EC_DC_SIZE))
 		ec_esc_dc_refresh(esc, now);
 }
 
@@ -155,7 +152,7 @@ static void after_read(struct ec_esc *esc, u16 ado, u32 len)
 		clear |= EC_ECAT_EVENT_AL;
 	if (clear)
 		ec_esc_event(esc, 0, clear);
-	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+	if (ec_range_hit(ado, len, EC_DC_FIRST, EC_DC_SIZE))
 		ec_esc_dc_read(esc, ado, len, false);
 }
 
@@ -164,8 +161,8 @@ static bool reg_exists(const struct ec_esc *esc, u32 ado, u32 len)
 {
 	if (ado + len > EC_REG_RAM)
 		return false;
-	return esc->cfg.features & EC_FEAT_DC || ado < DC_FIRST ||
-	       ado + len > DC_FIRST + DC_SIZE;
+	return esc->cfg.features & EC_FEAT_DC || ado < EC_DC_FIRST ||
+	       ado + len > EC_DC_FIRST + EC_DC_SIZE;
 }
 
 /* the master reads physical memory; false: refused, not counted */
@@ -185,7 +182,7 @@ bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 	}
 	if (!reg_exists(esc, ado, (u32)len))
 		return false;
-	refresh(esc, ado, (u32)len, ctx->now);
+	ec_esc_refresh(esc, ado, (u32)len, ctx->now);
 	memcpy(buf, esc->mem + ado, len);
 	after_read(esc, ado, (u32)len);
 	return true;
@@ -330,7 +327,7 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 		ec_esc_fmmu_config(esc);
 	if (sms)
 		ec_esc_sm_config(esc, ado, len, act, ctx);
-	if (ec_range_hit(ado, len, DC_FIRST, DC_SIZE))
+	if (ec_range_hit(ado, len, EC_DC_FIRST, EC_DC_SIZE))
 		ec_esc_dc_write(esc, ado, buf, len, ctx);
 	return true;
 }
@@ -490,160 +487,6 @@ void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
 		d->adp++;
 		put_unaligned_le16(d->adp, d->hdr + 2);
 	}
-}
-
-/**
- * ec_esc_pdi_read() - the slave's CPU reads
- * @esc: slave controller
- * @ado: address
- * @buf: result
- * @len: bytes
- * @now: simulation time, ns
- *
- * Reading an output window takes the latest complete buffer, if it begins at
- * the window's start; a mailbox becomes empty with its last byte. Reading
- * registers acknowledges AL events as hardware does: 0x0120 AL control,
- * 0x0806 + 8n SM activation, 0x0440 watchdog.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0, -EACCES where the PDI may not read or nothing was written yet.
- */
-int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
-		    u64 now)
-{
-	struct ec_frame_ctx ctx = { .now = now, .end = now };
-	const u8 *p;
-	int sm, n;
-
-	if (ado >= EC_REG_RAM) {
-		p = ec_esc_sm_begin(esc, ado, len, true, false, &sm);
-		if (!p)
-			return -EACCES;
-		memcpy(buf, p, len);
-		ec_esc_sm_end(esc, sm, ado, len, true, &ctx);
-		return 0;
-	}
-	if (ado + len > EC_REG_RAM)
-		return -EACCES;
-	refresh(esc, ado, (u32)len, now);
-	memcpy(buf, esc->mem + ado, len);
-	if (ec_range_hit(ado, (u32)len, EC_REG_AL_CONTROL, 2)) {
-		esc->al_event &= (u32)~EC_AL_EVENT_CONTROL;
-		esc->al_unread = false;
-	}
-	if (ec_range_hit(ado, (u32)len, EC_REG_WD_STATUS, 2))
-		esc->al_event &= (u32)~EC_AL_EVENT_WD;
-	for (n = 0; n < esc->cfg.sms; n++)
-		if (ec_range_hit(ado, (u32)len,
-				 EC_REG_SM(n) + EC_SM_OFS_ACTIVATE, 1))
-			esc->al_event &= (u32)~EC_AL_EVENT_SM_ACT;
-	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC0_STATUS, 1))
-		esc->al_event &= (u32)~EC_AL_EVENT_SYNC0;
-	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC1_STATUS, 1))
-		esc->al_event &= (u32)~EC_AL_EVENT_SYNC1;
-	if (ec_range_hit(ado, (u32)len, DC_FIRST, DC_SIZE))
-		ec_esc_dc_read(esc, ado, len, true);
-	return 0;
-}
-
-static bool pdi_may_write(const struct ec_esc *esc, u32 a)
-{
-	if (a >= EC_REG_EEP_CONTROL && a < EC_REG_EEP_DATA + 8)
-		return esc->mem[EC_REG_EEP_PDI] & 1;
-	return (a >= EC_REG_ALIAS && a < EC_REG_ALIAS + 2) ||
-	       (a >= EC_REG_AL_STATUS && a < EC_REG_AL_STATUS + 2) ||
-	       (a >= EC_REG_AL_CODE && a < EC_REG_AL_CODE + 2) ||
-	       a == 0x0138 || a == 0x0139 ||
-	       (a >= EC_REG_AL_MASK && a < EC_REG_AL_MASK + 4) ||
-	       (a == EC_REG_EEP_PDI &&
-		esc->mem[EC_REG_EEP_OWNER] & EC_EEP_OWNER_PDI) ||
-	       (a >= EC_REG_SM(0) && a < EC_REG_SM(0u + esc->cfg.sms) &&
-		(a & 7) == EC_SM_OFS_PDI) ||
-	       a >= 0x0e00;
-}
-
-/**
- * ec_esc_pdi_write() - the slave's CPU writes
- * @esc: slave controller
- * @ado: address
- * @buf: data
- * @len: bytes
- * @now: simulation time, ns
- *
- * Writing an input window fills the PDI's own buffer and hands it over with
- * the last byte; a mailbox must be empty. Bytes of registers that the PDI may
- * not write keep their value.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0, -EACCES where the PDI may not write or a mailbox is full.
- */
-int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
-		     u64 now)
-{
-	struct ec_frame_ctx ctx = { .now = now, .end = now };
-	const u8 *src = buf;
-	u8 *p;
-	u32 i;
-	int sm, n;
-
-	if (ado >= EC_REG_RAM) {
-		p = ec_esc_sm_begin(esc, ado, len, true, true, &sm);
-		if (!p)
-			return -EACCES;
-		memcpy(p, buf, len);
-		ec_esc_sm_end(esc, sm, ado, len, true, &ctx);
-		return 0;
-	}
-	if (ado + len > EC_REG_RAM)
-		return -EACCES;
-	for (i = 0; i < len; i++)
-		if (pdi_may_write(esc, ado + i))
-			esc->mem[ado + i] = src[i];
-	if (ec_range_hit(ado, (u32)len, EC_REG_ALIAS, 2))
-		ec_sim_rehash(esc);
-	if (ec_range_hit(ado, (u32)len, EC_REG_AL_STATUS, 2))
-		ec_esc_event(esc, EC_ECAT_EVENT_AL, 0);
-	for (n = 0; n < esc->cfg.sms; n++) {
-		u32 a = EC_REG_SM(n) + EC_SM_OFS_PDI;
-
-		if (!ec_range_hit(ado, (u32)len, a, 1))
-			continue;
-		esc->sm[n].page.pdi = src[a - ado];
-		ec_esc_sm_pdi_disable(esc, n, src[a - ado] & EC_SM_PDI_DISABLE);
-	}
-	return 0;
-}
-
-/**
- * ec_esc_set_al_status() - the slave's CPU reports its state
- * @esc: slave controller
- * @status: 0x0130
- * @code: 0x0134
- * @now: simulation time, ns
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_esc_set_al_status(struct ec_esc *esc, u16 status, u16 code, u64 now)
-{
-	u8 b[2];
-
-	put_unaligned_le16(code, b);
-	ec_esc_pdi_write(esc, EC_REG_AL_CODE, b, 2, now);
-	put_unaligned_le16(status, b);
-	ec_esc_pdi_write(esc, EC_REG_AL_STATUS, b, 2, now);
-}
-
-/**
- * ec_esc_wake_at() - the application wants @poll
- * @esc: slave controller
- * @at_ns: simulation time, ns; EC_ESC_NEVER: not at all
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_esc_wake_at(struct ec_esc *esc, u64 at_ns)
-{
-	esc->app_wake_ns = at_ns;
-	ec_sim_touch(esc);
 }
 
 /* time of the next thing this slave does by itself */

@@ -6,6 +6,8 @@
 #include "sim.h"
 
 #define EC_SIM_MAX_FAULTS	1024
+#define EC_DC_FIRST		0x0900	/* registers of the clock */
+#define EC_DC_SIZE		0x0100
 #define EC_SIM_SCRATCH		2048	/* >= the longest datagram */
 
 /* one passage of a frame through a processing unit */
@@ -99,6 +101,7 @@ static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
 bool ec_esc_config_valid(const struct ec_esc_config *c);
 void ec_esc_power_on(struct ec_esc *esc, u64 now);
 void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear);
+void ec_esc_refresh(struct ec_esc *esc, u16 ado, u32 len, u64 now);
 u16 ec_esc_dl_status(const struct ec_esc *esc);
 bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 		      const struct ec_frame_ctx *ctx);
@@ -107,7 +110,6 @@ bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
 u64 ec_esc_next(const struct ec_esc *esc);
 void ec_esc_run(struct ec_esc *esc, u64 now);
 void ec_esc_deliver(struct ec_esc *esc);
-void ec_esc_pend(struct ec_esc *esc, u64 at_ns);
 
 /* esc_sm.c */
 void ec_esc_sm_reset(struct ec_esc *esc);
@@ -154,12 +156,18 @@ void ec_esc_mii_write(struct ec_esc *esc, u16 ado, size_t len);
 /* segment.c */
 u64 ec_sim_hash(u64 x);
 void ec_sim_touch(struct ec_esc *esc);
+void ec_sim_rehash(struct ec_esc *esc);
+
+/* segment_route.c */
+void ec_sim_routes(struct ec_sim *sim);
 void ec_sim_ports(struct ec_esc *esc, u64 now);
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now);
 void ec_sim_fmmus(struct ec_esc *esc);
-void ec_sim_rehash(struct ec_esc *esc);
 void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
+
+/* segment_frame.c */
+void ec_esc_pend(struct ec_esc *esc, u64 at_ns);
 
 /* fault.c */
 int ec_sim_faults_init(struct ec_sim *sim);

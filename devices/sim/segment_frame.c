@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Frames through a segment.
+ *
+ * A frame is worked through datagram by datagram, each with all its slaves.
+ * That gives the same result as slave by slave, since slaves meet only in the
+ * datagram, and it allows to leave out slaves which a datagram does not
+ * concern (ec_sim_set_slow() switches that off, to compare).
+ */
+#include "esc_int.h"
+
+#define LEN_CIRCULATING	0x40	/* in the high byte of the length word */
+
+/* tell the application at the end of the frame */
+void ec_esc_pend(struct ec_esc *esc, u64 at_ns)
+{
+	struct ec_sim *sim = esc->sim;
+
+	esc->pend_ns = at_ns;
+	if (esc->pend_next != -2)
+		return;
+	esc->pend_next = -1;
+	if (sim->pend_head < 0)
+		sim->pend_head = esc->index;
+	else
+		sim->esc[sim->pend_tail]->pend_next = esc->index;
+	sim->pend_tail = esc->index;
+}
+
+static void deliver(struct ec_sim *sim)
+{
+	while (sim->pend_head >= 0) {
+		struct ec_esc *esc = sim->esc[sim->pend_head];
+
+		sim->pend_head = esc->pend_next;
+		esc->pend_next = -2;
+		ec_esc_deliver(esc);
+	}
+}
+
+/* one frame on its way */
+struct pass {
+	struct ec_sim *sim;
+	struct ec_sim_route *r;
+	u32 steps;
+	u64 now;
+	u32 wire_ns;
+	int mport;
+};
+
+static void visit(const struct pass *ps, u32 i, struct ec_dgram *d)
+{
+	const struct ec_sim_step *st = &ps->r->step[i];
+	struct ec_frame_ctx ctx;
+	int p;
+
+	if (!st->esc->powered)		/* reset itself by this frame */
+		return;
+	ctx.now = ps->now + st->pu_ns;
+	ctx.end = ctx.now + ps->wire_ns;
+	ctx.recv_mask = st->recv_mask;
+	for (p = 0; p < EC_MAX_PORT; p++)
+		ctx.recv[p] = ps->now + st->recv_ns[p];
+	ec_esc_dgram(st->esc, d, &ctx);
+}
+
+static void visit_all(const struct pass *ps, struct ec_dgram *d)
+{
+	u32 i;
+
+	for (i = 0; i < ps->steps; i++)
+		visit(ps, i, d);
+}
+
+/* the IRQ field of every datagram collects the events of all slaves */
+static void collect_irq(const struct pass *ps, struct ec_dgram *d)
+{
+	u32 i;
+
+	if (!ps->sim->irqs)
+		return;
+	for (i = 0; i < ps->steps; i++) {
+		const struct ec_esc *esc = ps->r->step[i].esc;
+
+		if (esc->irq && !esc->fault.dead)
+			d->irq |= esc->ecat_event &
+				  ec_esc_get16(esc, EC_REG_ECAT_MASK);
+	}
+	put_unaligned_le16(d->irq, d->hdr + 8);
+}
+
+static void by_position(const struct pass *ps, struct ec_dgram *d)
+{
+	u16 adp = d->adp, pos = (u16)-adp;
+
+	collect_irq(ps, d);
+	if (pos < ps->steps) {
+		d->adp = 0;
+		visit(ps, pos, d);
+	}
+	d->adp = (u16)(adp + ps->steps);
+	put_unaligned_le16(d->adp, d->hdr + 2);
+}
+
+static void by_station(const struct pass *ps, struct ec_dgram *d)
+{
+	const struct ec_sim *sim = ps->sim;
+	s32 node, pos = -1;
+
+	if (!d->adp) {
+		visit_all(ps, d);
+		return;
+	}
+	node = sim->bucket[d->adp & (sim->buckets - 1)];
+	for (; node >= 0; node = sim->node_next[node]) {
+		s32 p = sim->esc[node / 2]->route_pos[ps->mport];
+
+		if (sim->node_addr[node] != d->adp || p < 0 ||
+		    p >= (s32)ps->steps || p == pos)
+			continue;
+		if (pos >= 0) {		/* two of them */
+			visit_all(ps, d);
+			return;
+		}
+		pos = p;
+	}
+	collect_irq(ps, d);
+	if (pos >= 0)
+		visit(ps, (u32)pos, d);
+}
+
+static void by_logical(const struct pass *ps, struct ec_dgram *d)
+{
+	u32 first = ec_dgram_logical(d), i;
+	u64 last = (u64)first + d->len;
+
+	collect_irq(ps, d);
+	for (i = 0; i < ps->steps; i++) {
+		const struct ec_sim_step *st = &ps->r->step[i];
+
+		if (first <= st->log_last && last > st->log_first)
+			visit(ps, i, d);
+	}
+}
+
+static void datagram(const struct pass *ps, struct ec_dgram *d)
+{
+	if (ps->sim->slow || ps->r->repeats) {
+		visit_all(ps, d);
+		return;
+	}
+	switch (d->cmd) {
+	case EC_CMD_NOP:
+		collect_irq(ps, d);
+		break;
+	case EC_CMD_APRD:
+	case EC_CMD_APWR:
+	case EC_CMD_APRW:
+		if (ps->sim->bug == EC_SIM_BUG_AP_NO_INC)
+			visit_all(ps, d);
+		else
+			by_position(ps, d);
+		break;
+	case EC_CMD_FPRD:
+	case EC_CMD_FPWR:
+	case EC_CMD_FPRW:
+		by_station(ps, d);
+		break;
+	case EC_CMD_LRD:
+	case EC_CMD_LWR:
+	case EC_CMD_LRW:
+		by_logical(ps, d);
+		break;
+	default:
+		visit_all(ps, d);
+	}
+}
+
+/*
+ * Circulating bit: an ESC without upstream link sets it, and destroys a frame
+ * that has it. Returns false if this frame ends there.
+ */
+static bool circulating(struct pass *ps, u8 *frame, size_t len)
+{
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+	bool had = false;
+
+	if (ps->r->circ < 0 || ps->sim->bug == EC_SIM_BUG_CIRCULATING ||
+	    ec_frame_iter_init(&it, frame, len))
+		return true;
+	while (ec_frame_iter_next(&it, &d) > 0) {
+		had |= d.circulating;
+		d.hdr[7] |= LEN_CIRCULATING;
+	}
+	if (had)
+		ps->steps = (u32)ps->r->circ;
+	return !had;
+}
+
+static void process(struct pass *ps, u8 *frame, size_t len)
+{
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+	int ret;
+
+	if (ec_frame_iter_init(&it, frame, len))
+		return;				/* forwarded as it is */
+	while ((ret = ec_frame_iter_next(&it, &d)) > 0)
+		datagram(ps, &d);
+	if (ret < 0 && ps->steps) {
+		u8 *count = ps->r->step[0].esc->mem + EC_REG_ERR_PU;
+
+		if (*count != 0xff)
+			++*count;
+	}
+}
+
+/**
+ * ec_sim_frame_result() - pass one frame through the segment and back
+ * @sim: segment
+ * @port: master port at which it is sent, 0 or 1
+ * @frame: EtherCAT header and datagrams, modified in place
+ * @len: bytes in @frame, padding included
+ * @now_ns: when the first bit is sent
+ * @res: what became of it
+ *
+ * Context: Any. RT-safe: bounded by datagrams times slaves.
+ * Return: delay in ns until the last bit is back, or -ENOLINK if it was lost.
+ */
+s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
+			u64 now_ns, struct ec_sim_result *res)
+{
+	struct pass ps = { .sim = sim, .now = now_ns, .mport = port };
+	bool lose_out = false, lose_back = false, lost;
+	u64 extra_ns = 0;
+
+	memset(res, 0, sizeof(*res));
+	res->out_port = -1;
+	res->delay_ns = -ENOLINK;
+	ec_sim_advance(sim, now_ns);
+	ec_sim_faults_frame(sim, port, &lose_out, &lose_back, res, &extra_ns);
+	if (sim->dirty)
+		ec_sim_routes(sim);
+	ps.r = &sim->route[port];
+	if (lose_out || !ec_sim_link(sim, port)) {
+		res->copies = 0;
+		res->mangled = false;
+		return -ENOLINK;
+	}
+
+	ps.steps = ps.r->steps;
+	ps.wire_ns = ec_frame_wire_ns(EC_ETH_HDR + len) - 12 * 80;
+	lost = !circulating(&ps, frame, len);
+	process(&ps, frame, len);
+	if (ps.r->opens >= 0) {		/* heard at an auto-closed port */
+		struct ec_esc *esc = sim->esc[ps.r->opens];
+
+		esc->port[ps.r->opens_port].auto_closed = false;
+		ec_sim_loops(esc, false, now_ns);
+	}
+	deliver(sim);
+
+	if (lost || lose_back || ps.r->out_port < 0) {
+		res->copies = 0;
+		res->mangled = false;
+		return -ENOLINK;
+	}
+	if (res->mangled)
+		ec_sim_faults_mangle(sim, frame, len);
+	res->copies++;
+	res->out_port = ps.r->out_port;
+	res->delay_ns = (s64)(ps.r->delay_ns + ps.wire_ns + extra_ns);
+	return res->delay_ns;
+}
+
+/**
+ * ec_sim_frame2() - as ec_sim_frame(), for a ring
+ * @sim: segment
+ * @port: master port at which it is sent
+ * @frame: EtherCAT header and datagrams, modified in place
+ * @len: bytes in @frame
+ * @now_ns: when the first bit is sent
+ * @out_port: gets the master port at which it comes back, -1 if lost
+ *
+ * Context: Any. RT-safe: bounded by datagrams times slaves.
+ * Return: delay in ns until the last bit is back, or -ENOLINK if it was lost.
+ */
+s64 ec_sim_frame2(struct ec_sim *sim, int port, u8 *frame, size_t len,
+		  u64 now_ns, int *out_port)
+{
+	struct ec_sim_result res;
+
+	ec_sim_frame_result(sim, port, frame, len, now_ns, &res);
+	*out_port = res.out_port;
+	return res.delay_ns;
+}
+
+/**
+ * ec_sim_frame() - pass one frame through the segment and back
+ * @sim: segment
+ * @port: master port at which it is sent, 0 or 1
+ * @frame: EtherCAT header and datagrams, modified in place
+ * @len: bytes in @frame
+ * @now_ns: when the first bit is sent
+ *
+ * Context: Any. RT-safe: bounded by datagrams times slaves.
+ * Return: delay in ns until the last bit is back, or -ENOLINK if it was lost.
+ */
+s64 ec_sim_frame(struct ec_sim *sim, int port, u8 *frame, size_t len,
+		 u64 now_ns)
+{
+	struct ec_sim_result res;
+
+	return ec_sim_frame_result(sim, port, frame, len, now_ns, &res);
+}
+
+/**
+ * ec_sim_set_slow() - let every datagram visit every slave
+ * @sim: segment
+ * @slow: without shortcuts; results must not differ
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sim_set_slow(struct ec_sim *sim, bool slow)
+{
+	sim->slow = slow;
+}

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Wiring of a segment: cables, links, loops, and the way a frame takes.
+ *
+ * The way depends on the topology only, so it is computed once per change: a
+ * list of processing units with the time since the master sent the first bit.
+ */
+#include "esc_int.h"
+
+/**
+ * ec_sim_wire() - put a cable between two ports
+ * @sim: segment
+ * @parent: slave, EC_SIM_MASTER0 or EC_SIM_MASTER1
+ * @parent_port: its port, ignored for a master
+ * @child: slave
+ * @child_port: its port
+ * @cable_ns: delay, about 5 ns per metre
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EINVAL for a slave or port that is not there, -EBUSY for one
+ * that has a cable.
+ */
+int ec_sim_wire(struct ec_sim *sim, int parent, int parent_port, int child,
+		int child_port, u32 cable_ns)
+{
+	struct ec_esc_port *a, *b;
+	struct ec_esc *up = NULL, *down;
+
+	if (parent < EC_SIM_MASTER1 || parent >= (int)sim->count ||
+	    child < 0 || child >= (int)sim->count ||
+	    child_port < 0 || child_port >= EC_MAX_PORT ||
+	    (parent >= 0 && (parent_port < 0 || parent_port >= EC_MAX_PORT)))
+		return -EINVAL;
+	down = sim->esc[child];
+	b = &down->port[child_port];
+	if (parent >= 0) {
+		up = sim->esc[parent];
+		a = &up->port[parent_port];
+		if (up->cfg.ports[parent_port] <= EC_PORT_TYPE_UNCONF)
+			return -EINVAL;
+	} else {
+		a = &sim->mport[-1 - parent];
+		parent_port = 0;
+	}
+	if (down->cfg.ports[child_port] <= EC_PORT_TYPE_UNCONF || a == b)
+		return -EINVAL;
+	if (a->peer != -1 || b->peer != -1)
+		return -EBUSY;
+
+	a->peer = child;
+	a->peer_port = (u8)child_port;
+	a->cable_ns = cable_ns;
+	a->cut = false;
+	b->peer = parent >= 0 ? parent : parent - 1;
+	b->peer_port = (u8)parent_port;
+	b->cable_ns = cable_ns;
+	b->cut = false;
+	ec_sim_ports(down, sim->now);
+	if (up)
+		ec_sim_ports(up, sim->now);
+	return 0;
+}
+
+/**
+ * ec_sim_link() - what the PHY of the master says
+ * @sim: segment
+ * @port: master port, 0 or 1
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: link is up.
+ */
+bool ec_sim_link(const struct ec_sim *sim, int port)
+{
+	const struct ec_esc_port *m = &sim->mport[port];
+
+	return m->peer >= 0 && !m->cut && sim->esc[m->peer]->powered;
+}
+
+/* loop settings or links changed; @written: by a write to 0x0101 */
+void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
+{
+	u8 loops = esc->mem[EC_REG_DL_LOOPS];
+	int p;
+
+	(void)now;
+	for (p = 0; p < EC_MAX_PORT; p++) {
+		struct ec_esc_port *port = &esc->port[p];
+		bool open = port->link;
+
+		switch (loops >> 2 * p & 3) {
+		case EC_LOOP_AUTO:
+			port->auto_closed = false;
+			break;
+		case EC_LOOP_AUTO_CLOSE:
+			if (!port->link)
+				port->auto_closed = true;
+			else if (written)
+				port->auto_closed = false;
+			open = !port->auto_closed;
+			break;
+		case EC_LOOP_OPEN:
+			open = true;
+			break;
+		case EC_LOOP_CLOSED:	/* port 0 must stay reachable */
+			open = !p && port->link;
+			break;
+		}
+		if (open == port->open)
+			continue;
+		port->open = open;
+		esc->sim->dirty = true;
+		if (esc->powered)
+			ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+	}
+}
+
+/* power or cables around @esc changed */
+void ec_sim_ports(struct ec_esc *esc, u64 now)
+{
+	struct ec_sim *sim = esc->sim;
+	int p;
+
+	sim->dirty = true;
+	for (p = 0; p < EC_MAX_PORT; p++) {
+		struct ec_esc_port *port = &esc->port[p];
+		bool link = esc->powered && port->peer != -1 && !port->cut &&
+			    (port->peer < 0 || sim->esc[port->peer]->powered);
+		u8 *lost = esc->mem + EC_REG_ERR_LOST(p);
+
+		if (link == port->link)
+			continue;
+		port->link = link;
+		if (!esc->powered)
+			continue;
+		if (!link && *lost != 0xff)
+			++*lost;
+		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+	}
+	ec_sim_loops(esc, false, now);
+}
+
+void ec_sim_power(struct ec_esc *esc, bool on, u64 now)
+{
+	struct ec_sim *sim = esc->sim;
+	int p;
+
+	if (on == esc->powered)
+		return;
+	esc->powered = on;
+	if (on) {
+		ec_esc_power_on(esc, now);
+	} else {
+		esc->ecat_event = 0;
+		ec_esc_event(esc, 0, 0);
+		esc->wd_due = EC_ESC_NEVER;
+		esc->loop_restore = EC_ESC_NEVER;
+		esc->app_wake_ns = EC_ESC_NEVER;
+		esc->dc.sync_wake = EC_ESC_NEVER;
+		memset(&esc->pend, 0, sizeof(esc->pend));
+	}
+	ec_sim_ports(esc, now);
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (esc->port[p].peer >= 0)
+			ec_sim_ports(sim->esc[esc->port[p].peer], now);
+	if (on && esc->app_ops && esc->app_ops->power_on)
+		esc->app_ops->power_on(esc, now);
+}
+
+/* cut or heal the cable at one of its ends; @slave below 0: master port */
+void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now)
+{
+	struct ec_esc_port *a = slave < 0 ? &sim->mport[-1 - slave] :
+					    &sim->esc[slave]->port[port];
+
+	if (a->peer == -1)
+		return;
+	a->cut = cut;
+	if (a->peer < 0)
+		sim->mport[-2 - a->peer].cut = cut;
+	else
+		sim->esc[a->peer]->port[a->peer_port].cut = cut;
+	sim->dirty = true;
+	if (slave >= 0)
+		ec_sim_ports(sim->esc[slave], now);
+	if (a->peer >= 0)
+		ec_sim_ports(sim->esc[a->peer], now);
+}
+
+/* FMMUs of a slave changed */
+void ec_sim_fmmus(struct ec_esc *esc)
+{
+	int i;
+
+	for (i = 0; i < EC_SIM_PORTS && !esc->sim->dirty; i++) {
+		struct ec_sim_step *st;
+
+		if (esc->route_pos[i] < 0)
+			continue;
+		st = &esc->sim->route[i].step[esc->route_pos[i]];
+		st->log_first = esc->log_first;
+		st->log_last = esc->log_last;
+	}
+}
+
+/* false: the frame ends here */
+static bool add_step(struct ec_sim *sim, struct ec_sim_route *r, int mport,
+		     struct ec_esc *esc, u32 t)
+{
+	struct ec_sim_step *st;
+	bool circ = !esc->port[0].open;
+
+	/* it carries the circulating bit by now: destroyed */
+	if (circ && r->circ >= 0)
+		return false;
+	if (esc->route_pos[mport] >= 0)
+		r->repeats = true;
+	if (r->steps == sim->max)
+		return false;
+	st = &r->step[r->steps];
+	st->esc = esc;
+	st->pu_ns = t;
+	st->log_first = esc->log_first;
+	st->log_last = esc->log_last;
+	esc->route_pos[mport] = (s32)r->steps;
+	if (circ)
+		r->circ = (int)r->steps;
+	r->steps++;
+	return true;
+}
+
+static void walk(struct ec_sim *sim, int mport)
+{
+	static const u8 next_port[EC_MAX_PORT] = { 3, 2, 0, 1 };
+	struct ec_sim_route *r = &sim->route[mport];
+	const struct ec_esc_port *cable = &sim->mport[mport];
+	u32 guard = 8 * sim->count + 16;
+	u64 t = 0;
+
+	if (!ec_sim_link(sim, mport))
+		return;
+	while (guard--) {
+		struct ec_esc *esc = sim->esc[cable->peer];
+		u8 p = cable->peer_port;
+		bool processed = false;
+
+		t += cable->cable_ns;
+		if (!esc->port[p].open) {	/* nobody listens */
+			if (esc->port[p].auto_closed && esc->port[p].link) {
+				r->opens = esc->index;
+				r->opens_port = p;
+			}
+			return;
+		}
+		if (!(esc->route_mask & BIT(p))) {
+			esc->route_mask |= (u8)BIT(p);
+			esc->route_recv_ns[p] = (u32)t;
+		}
+		do {
+			if (!p) {
+				if (!add_step(sim, r, mport, esc, (u32)t))
+					return;
+				processed = true;
+			}
+			p = next_port[p];
+		} while (!esc->port[p].open);
+		t += processed ? esc->cfg.process_ns : esc->cfg.forward_ns;
+
+		cable = &esc->port[p];
+		if (!cable->link)		/* loop held open: lost */
+			return;
+		if (cable->peer < 0) {
+			r->out_port = -2 - cable->peer;
+			r->delay_ns = t + cable->cable_ns;
+			return;
+		}
+	}
+}
+
+/* compute the ways from both master ports */
+void ec_sim_routes(struct ec_sim *sim)
+{
+	u32 i, k;
+
+	for (i = 0; i < EC_SIM_PORTS; i++) {
+		struct ec_sim_route *r = &sim->route[i];
+
+		r->steps = 0;
+		r->delay_ns = 0;
+		r->out_port = -1;
+		r->circ = -1;
+		r->repeats = false;
+		r->opens = -1;
+		for (k = 0; k < sim->count; k++) {
+			sim->esc[k]->route_pos[i] = -1;
+			sim->esc[k]->route_mask = 0;
+		}
+		walk(sim, (int)i);
+		for (k = 0; k < r->steps; k++) {
+			struct ec_sim_step *st = &r->step[k];
+
+			st->recv_mask = st->esc->route_mask;
+			memcpy(st->recv_ns, st->esc->route_recv_ns,
+			       sizeof(st->recv_ns));
+		}
+	}
+	sim->dirty = false;
+}
