@@ -9,7 +9,7 @@
 #define STEP_NS		244141u	/* 2^-12 s */
 #define STEP_SHIFT	12
 #define STEPS_MAX	4096u	/* one second; longer pauses are cut to it */
-#define FRAC		8	/* bits behind the point of position and speed */
+#define FRAC		12	/* bits behind the point of position and speed */
 #define OMEGA		188	/* rad/s: 30 Hz */
 #define FOLLOW_NEVER	0xFFFFFFFFu
 
@@ -184,14 +184,18 @@ static void move(struct ec_app *app, struct drive *d, u8 mode, u64 now)
 static void echo(struct ec_app *app)
 {
 	const struct ec_app_model *m = app->model;
-	const struct ec_app_object *o = ec_app_od_object(m, 0x2100);
-	const struct ec_app_object *i = ec_app_od_object(m, 0x2200);
 
-	if (!o || !i)
-		return;
-	for (u32 k = 1; k < o->count && k < i->count; k++)
-		ec_app_od_set(app, &m->entries[i->first + k],
-			      ec_app_od_get(app, &m->entries[o->first + k]));
+	for (u16 n = 0; n < 16; n++) {
+		const struct ec_app_object *o = ec_app_od_object(m, 0x2100 + n);
+		const struct ec_app_object *i = ec_app_od_object(m, 0x2200 + n);
+
+		if (!o || !i)
+			return;
+		for (u32 k = 1; k < o->count && k < i->count; k++)
+			ec_app_od_set(app, &m->entries[i->first + k],
+				      ec_app_od_get(app,
+						    &m->entries[o->first + k]));
+	}
 }
 
 static void drive_run(struct ec_app *app, u64 now)
@@ -215,7 +219,7 @@ static void drive_run(struct ec_app *app, u64 now)
 	d->control = control;
 	move(app, d, mode, now);
 
-	pos = (s32)(d->pos >> FRAC);
+	pos = (s32)((d->pos + (1 << (FRAC - 1))) >> FRAC);
 	if (mode == 8 && d->state == ENABLED)
 		follow = (s32)((u32)ec_app_od_get(app, d->e[TARGET_POS]) -
 			       (u32)pos);
