@@ -601,12 +601,10 @@ static int srv_download(struct ec_sdo_srv *srv, u8 cmd, struct ec_rbuf *r, u8 *r
 		srv->size = ec_rbuf_le32(r);
 		n = min_t(size_t, srv->size, ec_rbuf_left(r));
 	}
-	p = ec_rbuf_take(r, n);
-	if (!p)
-		return -EMSGSIZE;
 	if (srv->size > srv->cap)
 		return srv_abort(srv, resp, cap, EC_ABORT_MEMORY);
-	if (n)
+	p = ec_rbuf_take(r, n);
+	if (n && p)
 		memcpy(srv->buf, p, n);
 	srv->pos = n;
 	if (n < srv->size)

@@ -545,8 +545,6 @@ static void close_cat(struct ec_sii_builder *b)
 		ec_wbuf_u8(&w, 0xFF);
 		bytes++;
 	}
-	if (bytes / 2 > 0xFFFF)
-		b->bad = true;
 	put_unaligned_le16((u16)(bytes / 2), b->buf + b->cat + 2);
 	b->cat = 0;
 }

@@ -36,6 +36,17 @@ static void an_emergency_survives_both_ways(struct kunit *test)
 
 static void emergency_codes_have_groups(struct kunit *test)
 {
+	/* by the upper four bits */
+	static const char * const groups[] = {
+		NULL, "generic error", "current", "voltage", "temperature", "device hardware",
+		"device software", "additional modules", "monitoring or communication",
+		"external error",
+	};
+	u32 code;
+
+	for (code = 0x1000; code < 0xA000; code++)
+		KUNIT_ASSERT_STREQ(test, ec_coe_emergency_text((u16)code), groups[code >> 12]);
+	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xF010), "additional functions");
 	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0x0000), "error gone");
 	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0x2310), "current");
 	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xA001), "state transition");
@@ -63,6 +74,7 @@ static void every_known_abort_code_has_a_text(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_coe_abort_text(0));
 	KUNIT_EXPECT_NULL(test, ec_coe_abort_text(0xFFFFFFFF));
 	KUNIT_EXPECT_EQ(test, ec_coe_abort_errno(0x06020000), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_coe_abort_errno(0x08000024), -ENODATA);
 	KUNIT_EXPECT_EQ(test, ec_coe_abort_errno(0xFFFFFFFF), -EIO);
 	KUNIT_EXPECT_EQ(test, ec_coe_errno_abort(-ENOENT), 0x06020000u);
 	KUNIT_EXPECT_EQ(test, ec_coe_errno_abort(-12345), 0x08000000u);
@@ -73,6 +85,7 @@ static void services_have_names(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(1), "emergency");
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(8), "SDO information");
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(0), "???");
+	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(9), "???");
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(15), "???");
 }
 

@@ -20,6 +20,15 @@ static void a_header_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, out.prio, in.prio);
 	KUNIT_EXPECT_EQ(test, out.type, in.type);
 	KUNIT_EXPECT_EQ(test, out.counter, in.counter);
+
+	in.channel = 0x3F;
+	in.prio = 0;
+	w = ec_wbuf(msg, sizeof(msg));
+	r = ec_rbuf(msg, sizeof(msg));
+	ec_mbox_hdr_encode(&w, &in);
+	KUNIT_EXPECT_EQ(test, msg[4], 0x3F);
+	ec_mbox_hdr_decode(&r, &out);
+	KUNIT_EXPECT_EQ(test, out.channel, 0x3F);
 }
 
 static void a_length_beyond_the_mailbox_is_refused(struct kunit *test)

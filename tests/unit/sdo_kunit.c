@@ -226,6 +226,56 @@ static void a_late_answer_between_segments_is_stale(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)8);
 }
 
+static void another_command_between_segments_is_answered_with_an_abort(struct kunit *test)
+{
+	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
+	static const u8 again[] = { 0x00, 0x30, 0x43, 0x00, 0x20, 0x01, 9, 0, 0, 0 };
+	static const u8 ack[] = { 0x00, 0x30, 0x20, 0, 0, 0, 0, 0, 0, 0 };
+	static const u8 ok[] = { 0x00, 0x30, 0x60, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
+	static const u8 other[] = { 0x00, 0x30, 0x60, 0x01, 0x20, 0x01, 0, 0, 0, 0 };
+	static const u8 other_up[] = { 0x00, 0x30, 0x43, 0x01, 0x20, 0x01, 0, 0, 0, 0 };
+	static const u8 request[] = { 0x00, 0x20, 0x20, 0, 0, 0, 0, 0, 0, 0 };
+	const u8 *bad[] = { again, ack };
+	struct ec_sdo_up u;
+	struct ec_sdo_down d;
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(bad); i++) {
+		ec_sdo_up_init(&u, 0x2000, 1, false, got, 64);
+		KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, first, 10), EC_MORE);
+		KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, bad[i], 10), -EPROTO);
+		KUNIT_EXPECT_TRUE(test, u.send_abort);
+		KUNIT_EXPECT_EQ(test, u.abort, EC_ABORT_COMMAND);
+		KUNIT_EXPECT_EQ(test, u.size, (size_t)0);
+	}
+
+	ec_sdo_down_init(&d, 0x2000, 1, false, got, 64, 24);
+	ec_sdo_down_tx(&d, tx, sizeof(tx));
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, other, 10), EC_STALE);
+	KUNIT_ASSERT_EQ(test, ec_sdo_down_rx(&d, ok, 6), EC_MORE);
+	ec_sdo_down_tx(&d, tx, sizeof(tx));
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, other, 10), EC_STALE);
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, other_up, 10), EC_STALE);
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, request, 10), EC_STALE);
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, ok, 10), -EPROTO);
+	KUNIT_EXPECT_TRUE(test, d.send_abort);
+	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, ok, 10), -EINVAL);
+}
+
+static void complete_access_may_be_answered_with_the_other_subindex(struct kunit *test)
+{
+	u8 resp[] = { 0x00, 0x30, 0x51, 0x00, 0x20, 0x00, 2, 0, 0, 0, 'a', 'b' };
+	struct ec_sdo_up u;
+
+	ec_sdo_up_init(&u, 0x2000, 1, true, got, 64);
+	resp[5] = 2;
+	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, resp, sizeof(resp)), EC_STALE);
+	resp[5] = 0;
+	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, resp, sizeof(resp)), 0);
+	ec_sdo_up_init(&u, 0x2000, 1, false, got, 64);
+	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, resp, sizeof(resp)), EC_STALE);
+}
+
 static void a_wrong_toggle_bit_is_answered_with_an_abort(struct kunit *test)
 {
 	static const u8 want[] = { 0x00, 0x20, 0x80, 0x00, 0x20, 0x01, 0x00, 0x00, 0x03, 0x05 };
@@ -285,12 +335,31 @@ static void the_server_aborts_on_a_wrong_toggle_bit(struct kunit *test)
 static void a_segment_without_a_transfer_is_aborted(struct kunit *test)
 {
 	static const u8 seg[] = { 0x00, 0x20, 0x60, 0, 0, 0, 0, 0, 0, 0 };
+	static const u8 seg2[] = { 0x00, 0x20, 0x70, 0, 0, 0, 0, 0, 0, 0 };
+	static const u8 up[] = { 0x00, 0x20, 0x40, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
 	static const u8 dseg[] = { 0x00, 0x20, 0x01, 1, 2, 3, 4, 5, 6, 7 };
 
 	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, seg, 10, rx, 24), 10);
 	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(rx + 6), EC_ABORT_COMMAND);
 	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, dseg, 10, rx, 24), 10);
+	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
+	KUNIT_EXPECT_EQ(test, od.writes, 0);
+
+	/* nor behind the end of one */
+	od.len = 14;
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, up, 10, rx, 24), 24);
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, seg, 10, rx, 24), 10);
+	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
+	od.len = 15;
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, up, 10, rx, 24), 24);
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, seg, 10, rx, 24), 10);
+	KUNIT_EXPECT_EQ(test, rx[2], 0x0D);
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, seg2, 10, rx, 24), 10);
+	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
+	/* nor one of the other direction */
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, up, 10, rx, 12), 12);
+	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, dseg, 4, rx, 24), 10);
 	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
 	KUNIT_EXPECT_EQ(test, od.writes, 0);
 }
@@ -587,6 +656,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(an_abort_sent_as_a_response_counts_too),
 	KUNIT_CASE(answers_to_other_questions_are_stale),
 	KUNIT_CASE(a_late_answer_between_segments_is_stale),
+	KUNIT_CASE(another_command_between_segments_is_answered_with_an_abort),
+	KUNIT_CASE(complete_access_may_be_answered_with_the_other_subindex),
 	KUNIT_CASE(a_wrong_toggle_bit_is_answered_with_an_abort),
 	KUNIT_CASE(the_server_aborts_on_a_wrong_toggle_bit),
 	KUNIT_CASE(a_segment_without_a_transfer_is_aborted),

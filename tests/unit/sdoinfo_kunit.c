@@ -132,6 +132,7 @@ static void answers_to_other_questions_are_stale(struct kunit *test)
 	static const u8 other_sub[] = { 0, 0x80, 6, 0, 0, 0, 0x18, 0x10, 2, 0, 0, 0, 0, 0, 0, 0 };
 	static const u8 sdo[] = { 0, 0x30, 0x60, 0, 0x10, 0, 0, 0, 0, 0 };
 	static const u8 request[] = { 0, 0x80, 1, 0, 0, 0, 1, 0 };
+	static const u8 service[] = { 0, 0x30, 2, 0, 0, 0, 1, 0 };
 	struct ec_sdoinfo s;
 
 	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
@@ -139,6 +140,7 @@ static void answers_to_other_questions_are_stale(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, object, sizeof(object)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, sdo, sizeof(sdo)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, request, sizeof(request)), EC_STALE);
+	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, service, sizeof(service)), EC_STALE);
 	ec_sdoinfo_init_object(&s, 0x1019, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, object, sizeof(object)), EC_STALE);
 	ec_sdoinfo_init_entry(&s, 0x1018, 1, 0, got, sizeof(got));
@@ -180,6 +182,7 @@ static void a_lost_fragment_is_noticed(struct kunit *test)
 
 	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), EC_WAIT);
+	KUNIT_EXPECT_EQ(test, ec_sdoinfo_tx(&s, tx, sizeof(tx)), -EINVAL);
 	msg[4] = 2;
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), EC_WAIT);
 	msg[4] = 0;

@@ -97,6 +97,7 @@ static void the_fixed_area_is_read_back(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, i.protocols, 0x000C);
 	KUNIT_EXPECT_EQ(test, i.size_kbit, 16u);
 	KUNIT_EXPECT_EQ(test, i.version, 1);
+	KUNIT_EXPECT_EQ(test, ec_sii_decode_info(img, 128, &i), 0);
 	KUNIT_EXPECT_EQ(test, ec_sii_decode_info(img, 127, &i), -EMSGSIZE);
 	KUNIT_EXPECT_EQ(test, ec_sii_decode_info(img, 0, &i), -EMSGSIZE);
 }
@@ -146,6 +147,40 @@ static void strings_are_found_and_made_printable(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_string(img, 2048, 4, s, sizeof(s)), -ENOENT);
 	KUNIT_EXPECT_STREQ(test, s, "");
 	KUNIT_EXPECT_EQ(test, ec_sii_string(img, 2048, 1, s, 0), -EINVAL);
+}
+
+static void only_printable_characters_come_out(struct kunit *test)
+{
+	/* the bytes on both sides of every limit */
+	static const u8 in[] = { 0x1F, 0x20, 0x7E, 0x7F, 0x80, 0x9F, 0xA0, 0xBF, 0xC0, 0xFF, 0, 0 };
+	u8 cat[14] = { 1, 12 };
+	char s[32];
+
+	raw((const u16[]){ 10, 7, 0, 0, 0, 0, 0, 0, 0, 0xFFFF }, 10);
+	memcpy(cat + 2, in, sizeof(in));
+	memcpy(img + EC_SII_FIXED_SIZE + 4, cat, sizeof(cat));
+	KUNIT_EXPECT_EQ(test, ec_sii_string(img, 256, 1, s, sizeof(s)), 14);
+	KUNIT_EXPECT_STREQ(test, s, "? ~???\xC2\xA0\xC2\xBF\xC3\x80\xC3\xBF");
+}
+
+static void strings_may_be_built_late(struct kunit *test)
+{
+	struct ec_sii_general g = { 0 };
+	struct ec_sii_builder b;
+	struct ec_sii_sm sm[2];
+	char s[8];
+
+	ec_sii_build_begin(&b, img, 512, &info);
+	KUNIT_EXPECT_EQ(test, ec_sii_build_string(&b, "a"), 1);
+	ec_sii_build_general(&b, &g);
+	ec_sii_build_sms(&b, sms, 1);
+	KUNIT_EXPECT_EQ(test, ec_sii_build_string(&b, "b"), 2);
+	ec_sii_build_sms(&b, sms + 1, 1);
+	KUNIT_EXPECT_GT(test, ec_sii_build_end(&b), 0);
+	KUNIT_EXPECT_EQ(test, ec_sii_string(img, 512, 2, s, sizeof(s)), 1);
+	KUNIT_EXPECT_STREQ(test, s, "b");
+	KUNIT_EXPECT_EQ(test, ec_sii_decode_sms(img, 512, sm, 2), 2);
+	KUNIT_EXPECT_MEMEQ(test, sm, sms, sizeof(sm));
 }
 
 static void a_string_is_cut_between_characters(struct kunit *test)
@@ -385,10 +420,17 @@ static void endless_categories_are_bounded(struct kunit *test)
 
 static void an_image_of_zeros_ends_early(struct kunit *test)
 {
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
 	size_t have = 8;
-	int need;
+	int need, ret, n = 0;
 
 	memset(img, 0, sizeof(img));
+	ec_sii_iter_init(&it, img, sizeof(img));
+	while ((ret = ec_sii_iter_next(&it, &cat)) == 1)
+		n++;
+	KUNIT_EXPECT_EQ(test, ret, -ENODATA);
+	KUNIT_EXPECT_EQ(test, n, 8);
 	while ((need = ec_sii_needed(img, have)) > 0) {
 		KUNIT_ASSERT_GT(test, (size_t)need, have);
 		have = ((size_t)need + 7) & ~(size_t)7;
@@ -518,6 +560,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(a_wrong_checksum_is_reported),
 	KUNIT_CASE(categories_come_in_the_order_written),
 	KUNIT_CASE(strings_are_found_and_made_printable),
+	KUNIT_CASE(only_printable_characters_come_out),
+	KUNIT_CASE(strings_may_be_built_late),
 	KUNIT_CASE(a_string_is_cut_between_characters),
 	KUNIT_CASE(string_categories_count_as_one),
 	KUNIT_CASE(a_string_longer_than_its_category_is_refused),

@@ -328,9 +328,14 @@ static void a_segmented_download(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_sdo_down_rx(&d, ack1, 10), 0);
 }
 
-static u32 nothing_to_read(void *ctx, u16 index, u8 sub, bool complete,
-			   u8 *buf, size_t cap, size_t *len)
+static u32 two_objects(void *ctx, u16 index, u8 sub, bool complete,
+		       u8 *buf, size_t cap, size_t *len)
 {
+	if (index == 0x1001) {
+		buf[0] = 0x81;
+		*len = 1;
+		return 0;
+	}
 	if (index == 0x1008) {
 		memcpy(buf, "Drive", 5);
 		*len = 5;
@@ -341,13 +346,15 @@ static u32 nothing_to_read(void *ctx, u16 index, u8 sub, bool complete,
 
 static void answers_of_the_sdo_server(struct kunit *test)
 {
-	static const struct ec_sdo_srv_ops ops = { .read = nothing_to_read };
+	static const struct ec_sdo_srv_ops ops = { .read = two_objects };
 	static const u8 req[] = { 0x00, 0x20, 0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0 };
 	static const u8 abort[] = { 0x00, 0x20, 0x80, 0x00, 0x10, 0x00, 0x00, 0x00, 0x02, 0x06 };
 	static const u8 name[] = { 0x00, 0x20, 0x40, 0x08, 0x10, 0x00, 0, 0, 0, 0 };
 	static const u8 drive[] = {
 		0x00, 0x30, 0x41, 0x08, 0x10, 0x00, 5, 0, 0, 0, 'D', 'r', 'i', 'v', 'e',
 	};
+	static const u8 reg[] = { 0x00, 0x20, 0x40, 0x01, 0x10, 0x00, 0, 0, 0, 0 };
+	static const u8 one[] = { 0x00, 0x30, 0x4F, 0x01, 0x10, 0x00, 0x81, 0, 0, 0 };
 	struct ec_sdo_srv srv;
 
 	ec_sdo_srv_init(&srv, &ops, NULL, out + 64, 64);
@@ -355,6 +362,8 @@ static void answers_of_the_sdo_server(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, abort, 10);
 	KUNIT_ASSERT_EQ(test, ec_sdo_srv_handle(&srv, name, 10, out, 64), 15);
 	KUNIT_EXPECT_MEMEQ(test, out, drive, 15);
+	KUNIT_ASSERT_EQ(test, ec_sdo_srv_handle(&srv, reg, 10, out, 10), 10);
+	KUNIT_EXPECT_MEMEQ(test, out, one, 10);
 }
 
 static void an_emergency(struct kunit *test)
