@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Descriptions of segments, and the EEPROM images of the catalogue. */
+#include "sim_app_kunit.h"
+
+static int describe(struct kunit *test, const char *text, size_t len,
+		    struct ec_sim_error *err)
+{
+	struct ec_sim *sim;
+	/* a copy of its own, so that a byte read behind it is noticed */
+	char *copy = kunit_kmalloc(test, len + !len, GFP_KERNEL);
+	int ret;
+
+	KUNIT_ASSERT_NOT_NULL(test, copy);
+	memcpy(copy, text, len);
+	ret = ec_sim_describe(&sim, &bed_ops, copy, len, NULL, err);
+	if (!ret)
+		ec_sim_free(sim);
+	kunit_kfree(test, copy);
+	return ret;
+}
+
+static void builtins(struct kunit *test)
+{
+	struct ec_sim_error err;
+	const char *name;
+
+	for (u32 i = 0; (name = ec_sim_builtin_at(i)); i++) {
+		const char *text = ec_sim_builtin(name);
+
+		KUNIT_EXPECT_EQ_MSG(test, describe(test, text, strlen(text),
+						   &err), 0,
+				    "%s:%u: %s", name, err.line, err.text);
+	}
+	KUNIT_EXPECT_NULL(test, ec_sim_builtin("nothing"));
+}
+
+/* every prefix of a long text is either right or refused with a reason */
+static void prefixes(struct kunit *test)
+{
+	const char *text = ec_sim_builtin("bench");
+	struct ec_sim_error err;
+
+	for (size_t len = 0; len < strlen(text); len++) {
+		int ret = describe(test, text, len, &err);
+
+		if (ret)
+			KUNIT_EXPECT_NE(test, err.text[0], 0);
+		KUNIT_EXPECT_TRUE(test, !ret || ret == -EINVAL);
+	}
+}
+
+static const struct {
+	const char *text;
+	unsigned int line;
+	const char *want;
+} wrong[] = {
+	{ "", 0, "no slave at all" },
+	{ "slave", 1, "needs a name" },
+	{ "slave a", 1, "needs a device" },
+	{ "slave a EL9999", 1, "no device 'EL9999'" },
+	{ "slave a.b EL2008", 1, "needs a name" },
+	{ "slave a EL2008\nslave a EL2008", 2, "exists already" },
+	{ "slave a EL2008 aliass=3", 1, "'aliass=3' is not known" },
+	{ "slave a EL2008 alias=70000", 1, "'70000' is out of range" },
+	{ "slave a EL2008 alias=x", 1, "'x' is not a number" },
+	{ "slave a EL2008 drift=5", 1, "'5' is not a rate" },
+	{ "slave a EL2008 delay=5parsec", 1, "'5parsec' is not a time" },
+	{ "slave a drive mapping=none", 1, "rewritable" },
+	{ "slave a drive in=2000", 1, "at most 1486" },
+	{ "slave a EL7201 motor=AM1", 1, "AM8121" },
+	{ "slave a file=x.bin", 1, "files cannot be read here" },
+	{ "# nothing\n\nslave a EL2008\nfoo\n", 4, "no statement 'foo'" },
+	{ "slave a EL2008\nbranch b 1", 2, "no slave 'b' so far" },
+	{ "slave a EL2008\nbranch a 7", 2, "'7' is out of range" },
+	{ "slave a EL2008\nwire a.1 - b.0", 2, "write it as" },
+	{ "slave a EL2008\nconnect a.9 -> a.1", 2, "no output channel" },
+	{ "slave a EL2008\nconnect a.1 -> a.1", 2, "no input channel" },
+	{ "slave a EL1008\nsine a.1 amplitude=3", 2, "write it as" },
+	{ "slave a EL2008\nfault explode a", 2, "no fault 'explode'" },
+	{ "slave a EL2008\nfault cut a", 2, "needs a number" },
+	{ "slave a EL2008\nfault lose", 2, "which frames" },
+	{ "slave a EL2008\nfault refuse a HEAVEN", 2, "write it as" },
+	{ "slave a EL2008\nfault wkc a", 2, "add=N" },
+	{ "repeat 0 slave a EL2008", 1, "out of range" },
+	{ "repeat 70000 slave a EL2008", 1, "out of range" },
+	{ "slave a EK1100\nslave b EL2008\nbranch a 1\nslave c EL2008", 4,
+	  "cannot be connected" },
+};
+
+static void errors(struct kunit *test)
+{
+	struct ec_sim_error err;
+
+	for (u32 i = 0; i < ARRAY_SIZE(wrong); i++) {
+		int ret = describe(test, wrong[i].text, strlen(wrong[i].text),
+				   &err);
+
+		KUNIT_EXPECT_EQ_MSG(test, ret, -EINVAL, "%s", wrong[i].text);
+		KUNIT_EXPECT_EQ_MSG(test, err.line, wrong[i].line, "%s",
+				    wrong[i].text);
+		KUNIT_EXPECT_TRUE_MSG(test, strstr(err.text, wrong[i].want),
+				      "\"%s\" says \"%s\"", wrong[i].text,
+				      err.text);
+	}
+}
+
+static void options(struct kunit *test)
+{
+	struct bed *b = app_bed(test,
+		"segment response=1ms\r\n"
+		"slave a EL2008 alias=0x3E9 drift=-1.5ppm delay=600 # first\n"
+		"repeat 3 slave d drive alias=10 serial=5 response=10us\n"
+		"slave z drive\n");
+	struct ec_app *a = ec_sim_find(b->sim, "a");
+	struct ec_app *d = ec_sim_find(b->sim, "d3");
+
+	KUNIT_ASSERT_EQ(test, ec_sim_count(b->sim), 5u);
+	KUNIT_ASSERT_TRUE(test, a && d && ec_sim_find(b->sim, "z"));
+	KUNIT_EXPECT_EQ(test, a->esc->cfg.drift_ppb, -1500);
+	KUNIT_EXPECT_EQ(test, a->esc->cfg.process_ns, 600u);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_ALIAS, 2), 1001);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(3), EC_REG_ALIAS, 2), 12);
+	KUNIT_EXPECT_EQ(test, d->serial, 7u);
+	KUNIT_EXPECT_EQ(test, d->response_ns, 10000u);
+	KUNIT_EXPECT_EQ(test, ec_sim_find(b->sim, "z")->response_ns, 1000000u);
+	KUNIT_EXPECT_PTR_EQ(test, d->model, ec_sim_find(b->sim, "d1")->model);
+}
+
+/* frames go the way the description says */
+static void wiring(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave c EK1100\nslave x EL2008\n"
+				"slave y EL1008\nbranch c 2\nslave e EK1100\n"
+				"slave z EL2004\nwire c.1 -> y.0 cable=20\n"
+				"wire y.1 -> x.0\n");
+	static const u32 want[] = { 0x044C2C52, 0x03F03052, 0x07D83052,
+				    0x044C2C52, 0x07D43052 };
+
+	for (int i = 0; i < 5; i++) {
+		u8 cmd[6] = { 0x00, 0x01, EC_SII_W_PRODUCT };
+
+		bed_tx(b, EC_CMD_APWR, (u16)-i, EC_REG_EEP_CONTROL, cmd, 6);
+		b->now += 5000000;
+		bed_station(b, (u16)-i, (u16)(2001 + i));
+		KUNIT_EXPECT_EQ(test, bed_get(b, (u16)(2001 + i),
+					      EC_REG_EEP_DATA, 4), want[i]);
+	}
+}
+
+static void faults(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EL2008\nslave b EL2008\n"
+				"fault at=100ms cut a.1\nfault at=200ms heal a.1\n"
+				"fault at=300ms off b\nfault at=1s lose frame=2\n");
+	u8 v[2];
+
+	b->now = 50000000;
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 2);
+	b->now = 150000000;
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 1);
+	b->now = 250000000;
+	bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 2);
+	b->now = 350000000;
+	bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 1);
+	b->now = 1000000000;
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), -1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 1);
+}
+
+/* the image of every device can be read back */
+static void images(struct kunit *test)
+{
+	const struct ec_app_dev *d;
+
+	for (u32 i = 0; (d = ec_app_catalogue_at(i)); i++) {
+		struct ec_app_params p = { .in = 8, .out = 8 };
+		struct ec_sim *sim = ec_sim_new(&bed_ops, 1, 1);
+		struct ec_app_model *m;
+		struct ec_sii_general g;
+		struct ec_sii_info info;
+		struct ec_sii_sm sm[8];
+		char buf[64];
+		int err;
+
+		KUNIT_ASSERT_NOT_NULL(test, sim);
+		m = ec_app_model_new(sim, d, &p, &err);
+		KUNIT_EXPECT_EQ_MSG(test, err, 0, "%s", d->name);
+		if (!m) {
+			ec_sim_free(sim);
+			continue;
+		}
+		KUNIT_EXPECT_EQ(test, ec_sii_decode_info(m->eeprom,
+							 m->eeprom_len, &info), 0);
+		KUNIT_EXPECT_TRUE(test, info.checksum_ok);
+		KUNIT_EXPECT_EQ(test, info.product, d->product);
+		KUNIT_EXPECT_EQ(test, ec_sii_decode_general(m->eeprom,
+							    m->eeprom_len, &g), 0);
+		KUNIT_EXPECT_GT(test, ec_sii_string(m->eeprom, m->eeprom_len,
+						    g.name, buf, sizeof(buf)), 0);
+		KUNIT_EXPECT_STREQ(test, buf, d->title);
+		KUNIT_EXPECT_EQ(test, ec_sii_decode_sms(m->eeprom,
+							m->eeprom_len, sm, 8),
+				m->dev.n_sms);
+		ec_app_model_put(m);
+		ec_sim_free(sim);
+	}
+}
+
+struct image {
+	u8 data[4096];
+	size_t len;
+};
+
+static int load(void *ctx, const char *name, u8 *buf, size_t cap)
+{
+	const struct image *img = ctx;
+
+	if (strcmp(name, "axis.bin") || img->len > cap)
+		return -ENOENT;
+	memcpy(buf, img->data, img->len);
+	return (int)img->len;
+}
+
+/* a slave made of the image of another does what that one does */
+static void from_file(struct kunit *test)
+{
+	struct image *img = kunit_kzalloc(test, sizeof(*img), GFP_KERNEL);
+	static const char text[] = "slave a file=axis.bin alias=5\n";
+	struct ec_sim_loader loader = { .load = load, .ctx = img };
+	struct bed *b = app_bed(test, "slave a EL7201\n");
+	struct ec_app *a = ec_sim_find(b->sim, "a");
+	struct ec_sim_error err;
+
+	KUNIT_ASSERT_TRUE(test, img && a->model->eeprom_len <= 4096);
+	img->len = a->model->eeprom_len;
+	memcpy(img->data, a->model->eeprom, img->len);
+	ec_sim_free(b->sim);
+	b->sim = NULL;
+	KUNIT_ASSERT_EQ_MSG(test, ec_sim_describe(&b->sim, &bed_ops, text,
+						  strlen(text), &loader, &err),
+			    0, "%s", err.text);
+	b->now = 1000000;
+	bed_station(b, 0, STATION(0));
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_ALIAS, 2), 5);
+	app_mbox_sms(b, STATION(0), 256);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_PREOP, 1),
+			(u32)EC_AL_PREOP);
+	bed_sm(b, STATION(0), 2, 0x1200, 6, 0x64);
+	bed_sm(b, STATION(0), 3, 0x1300, 6, 0x20);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_SAFEOP, 1),
+			(u32)EC_AL_SAFEOP);
+
+	ec_sim_free(b->sim);
+	b->sim = NULL;
+	KUNIT_EXPECT_EQ(test, ec_sim_describe(&b->sim, &bed_ops,
+					      "slave a file=other", 18, &loader,
+					      &err), -ENOENT);
+	KUNIT_EXPECT_TRUE(test, strstr(err.text, "cannot read 'other'"));
+	/* any bytes at all are taken or refused */
+	for (u32 i = 0; i < 2000; i++) {
+		struct ec_sim *sim;
+
+		img->data[(i * 7919) % img->len] ^= (u8)(i * 31 + 1);
+		if (!ec_sim_describe(&sim, &bed_ops, text, strlen(text),
+				     &loader, &err))
+			ec_sim_free(sim);
+	}
+}
+
+static u32 allocs_left;
+
+static void *scarce_alloc(size_t bytes)
+{
+	return allocs_left && allocs_left-- ? bed_alloc(bytes) : NULL;
+}
+
+/* with memory for n blocks only, for every n: refused, nothing is lost */
+static void no_memory(struct kunit *test)
+{
+	static const struct ec_sim_ops ops = { scarce_alloc, bed_free };
+	const char *text = ec_sim_builtin("bench");
+	struct ec_sim_error err;
+	struct ec_sim *sim;
+	int ret = -ENOMEM;
+
+	for (u32 n = 0; n < 2000 && ret; n++) {
+		allocs_left = n;
+		ret = ec_sim_describe(&sim, &ops, text, strlen(text), NULL,
+				      &err);
+		KUNIT_EXPECT_TRUE(test, !ret || ret == -ENOMEM);
+		if (ret)
+			KUNIT_EXPECT_STREQ(test, err.text, "out of memory");
+		else
+			ec_sim_free(sim);
+	}
+	KUNIT_EXPECT_EQ(test, ret, 0);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(no_memory),
+	KUNIT_CASE(builtins),
+	KUNIT_CASE(prefixes),
+	KUNIT_CASE(errors),
+	KUNIT_CASE(options),
+	KUNIT_CASE(wiring),
+	KUNIT_CASE(faults),
+	KUNIT_CASE(images),
+	KUNIT_CASE(from_file),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "sim_describe",
+	.exit = bed_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
