@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Bringing one slave to its state, configuring it on the way; worker. */
-#include <linux/slab.h>
+#include <linux/delay.h>
 #include "coe.h"
 #include "config.h"
 #include "domain.h"
@@ -283,6 +283,29 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
 }
 
+/*
+ * Outputs must have arrived before OP is requested (0x0019 else). Two sends:
+ * the first may have left before the FMMUs were written.
+ */
+static int wait_outputs(struct ec_slave *s)
+{
+	unsigned int i;
+	u64 from;
+
+	if (!s->config || !s->config->session->active)
+		return 0;
+	from = READ_ONCE(s->config->session->cycle.cycles);
+	for (i = 0; i < 5000; i++) {
+		if (READ_ONCE(s->config->session->cycle.cycles) - from >= 2)
+			return 0;
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		usleep_range(500, 1000);
+	}
+	/* nobody cycles: the monitor asks again later */
+	return -EAGAIN;
+}
+
 /* One step towards the requested state; 1: there, 0: again, -errno. */
 static int step(struct ec_slave *s)
 {
@@ -313,6 +336,9 @@ static int step(struct ec_slave *s)
 	case EC_AL_PREOP:
 		return to_safeop(s, s->config);
 	case EC_AL_SAFEOP:
+		ret = wait_outputs(s);
+		if (ret)
+			return ret;
 		ret = ec_al_set(s, EC_AL_OP,
 				s->config ? s->config->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] : 0);
 		return ret ? failed(s, EC_AL_OP, ret) : 0;

@@ -10,7 +10,7 @@
 static void rates(const char *label, const char *key, const double *v, int decimals)
 {
 	out_array(key);
-	out_text("      %-22s", label);
+	out_text("      %-20s", label);
 	for (int i = 0; i < EC_UAPI_RATES; i++)
 		out_f("", v[i], " %6.*f", decimals, v[i]);
 	out_end();
@@ -27,7 +27,7 @@ static void byte_rates(const char *label, const char *key, const __u32 *bytes)
 		kbyte[i] = bytes[i] / 1024.0;
 	}
 	out_end();
-	out_text("      %-22s %6.1f %6.1f %6.1f\n", label, kbyte[0], kbyte[1], kbyte[2]);
+	out_text("      %-20s %6.1f %6.1f %6.1f\n", label, kbyte[0], kbyte[1], kbyte[2]);
 }
 
 static void count_rates(const char *label, const char *key, const __u32 *v)
@@ -47,10 +47,10 @@ static void counters(const struct ec_ioc_device *d)
 
 static void all_rates(const struct ec_ioc_device *d)
 {
-	count_rates("Tx frame rate [1/s]: ", "tx_frames_per_s", d->tx_frame_rate);
-	byte_rates("Tx rate [KByte/s]:   ", "tx_bytes_per_s", d->tx_byte_rate);
-	count_rates("Rx frame rate [1/s]: ", "rx_frames_per_s", d->rx_frame_rate);
-	byte_rates("Rx rate [KByte/s]:   ", "rx_bytes_per_s", d->rx_byte_rate);
+	count_rates("Tx frame rate [1/s]:", "tx_frames_per_s", d->tx_frame_rate);
+	byte_rates("Tx rate [KByte/s]:", "tx_bytes_per_s", d->tx_byte_rate);
+	count_rates("Rx frame rate [1/s]:", "rx_frames_per_s", d->rx_frame_rate);
+	byte_rates("Rx rate [KByte/s]:", "rx_bytes_per_s", d->rx_byte_rate);
 }
 
 static void device(const char *label, const struct ec_ioc_device *d)
@@ -110,8 +110,8 @@ static void common(const struct ec_ioc_master *m)
 	counters(&c);
 	out_u("lost_frames", c.lost, "      Lost frames: %llu\n", c.lost);
 	all_rates(&c);
-	count_rates("Loss rate [1/s]:     ", "lost_frames_per_s", c.loss_rate);
-	rates("Frame loss [%]:      ", "frame_loss_percent", loss, 1);
+	count_rates("Loss rate [1/s]:", "lost_frames_per_s", c.loss_rate);
+	rates("Frame loss [%]:", "frame_loss_percent", loss, 1);
 	out_end();
 }
 

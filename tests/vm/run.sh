@@ -193,15 +193,17 @@ qemu_pid=$!
 # the guest that all it wrote has arrived; sed holds back what it writes to any
 # other file than stderr. (sed -u would read byte by byte.)
 {
+	# When nobody reads our output any more, the command ends as in any pipe.
 	stdbuf -oL sed -e '/sysrq: Resetting/d' -e 's/\r*$//' \
-		-e "/$mark/{w /dev/stderr" -e "s/$mark//" -e '/^$/d' -e '}' <"$tmp/out" 2>"$ctl/drained" || true
-	echo closed >>"$ctl/drained"	# nobody reads us any more: do not let the guest wait
+		-e "/$mark/{w /dev/stderr" -e "s/$mark//" -e '/^$/d' -e '}' <"$tmp/out" 2>"$ctl/drained" ||
+		{ kill "$qemu_pid" 2>/dev/null; exit 1; }
 } &
 sed_pid=$!
 qemu_rc=0
 wait $qemu_pid || qemu_rc=$?
 qemu_pid=
-wait $sed_pid || true
+sed_rc=0
+wait $sed_pid || sed_rc=$?
 end=$(date +%s%N)
 
 [ $verbose = 0 ] || [ ! -s "$ctl/started" ] ||
@@ -222,6 +224,7 @@ if [ ! -s "$ctl/rc" ]; then
 		echo "run.sh: TIMEOUT: not finished after $timeout s (--timeout)" >&2
 		exit 124
 	fi
+	[ $sed_rc = 0 ] || exit 141	# our output was closed
 	cat "$tmp/qemu.err" >&2
 	die "the guest ended without a result (panic, or it could not start);" \
 		"its last messages are above, --append loglevel=7 shows more"

@@ -31,7 +31,7 @@ _ethercat_values()
 			awk '/^Options/ { exit } /^  [a-z]/ { print $1 }'
 		;;
 	option)
-		ethercat help "$2" 2>/dev/null |
+		ethercat help ${2:+"$2"} 2>/dev/null |
 			grep -oE '(^|[ ,])--?[a-z][a-z-]*' | tr -d ' ,'
 		;;
 	esac

@@ -89,6 +89,19 @@ static int add_axis(struct demo *d, const struct layout *l,
 	return ret < 0 ? ret : 0;
 }
 
+/* Everything is exchanged: a slave whose outputs nobody sends refuses OP. */
+static int add_all(const struct layout *l, ec_slave_config_t *sc,
+		   ec_domain_t *domain)
+{
+	struct point unused;
+	unsigned int i;
+	int ret = 0;
+
+	for (i = 0; i < l->count && !ret; i++)
+		ret = point_register(&unused, sc, domain, &l->entries[i]);
+	return ret;
+}
+
 static int add_slave(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 		     uint16_t position)
 {
@@ -105,10 +118,10 @@ static int add_slave(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 	if (!sc)
 		return -1;
 	d->sc[d->slaves++] = sc;
+	if (layout_read(m, &info, &l) || add_all(&l, sc, domain))
+		return -1;
 	if (info.vendor_id != BECKHOFF)
 		return 0;
-	if (layout_read(m, &info, &l))
-		return -1;
 	switch (info.product_code) {
 	case EL1859:
 	case EL1004:

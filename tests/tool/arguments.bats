@@ -1,0 +1,236 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+# abbreviation -> command, as the help shows it
+resolves() {
+	run real help "$1"
+	[ "$status" -eq 0 ]
+	[[ ${lines[0]} == "Usage: ethercat $2 "* ]]
+}
+
+ambiguous() {
+	run real "$1"
+	[ "$status" -eq 1 ]
+	[[ $output == *"'$1' is ambiguous: "* ]]
+}
+
+@test "abbreviations typed for years" {
+	resolves sl slaves
+	resolves slave slaves
+	resolves slv slaves
+	resolves mas master
+	resolves m master
+	resolves ver version
+	resolves v version
+	resolves st states
+	resolves up upload
+	resolves u upload
+	resolves dow download
+	resolves deb debug
+	resolves dom domains
+	resolves da data
+	resolves g graph
+	resolves cr crc
+	resolves cs cstruct
+	resolves con config
+	resolves p pdos
+	resolves reg_r reg_read
+	resolves res rescan
+	resolves sii_r sii_read
+	resolves di domains
+}
+
+@test "new names resolve behind the historic ones" {
+	resolves help help
+	resolves he help
+	resolves sdo_r upload
+	resolves sdo_up upload
+	resolves sdo_d download
+	resolves sdo_write download
+}
+
+@test "several candidates are listed" {
+	ambiguous s
+	ambiguous d
+	ambiguous re
+	ambiguous foe
+	ambiguous foo
+	ambiguous sr
+	run real re
+	[[ $output == *"reg_read, reg_write, rescan"* ]]
+}
+
+@test "a new name does not change what an old abbreviation means" {
+	run real sdo
+	[ "$status" -eq 1 ]
+	[[ $output == *"sdos"* ]]
+}
+
+@test "unknown command, no command, help" {
+	run real nonsense
+	[ "$status" -eq 1 ]
+	[[ $output == *"unknown command 'nonsense'"* ]]
+	[[ $output == *"Try 'ethercat --help'"* ]]
+	run real ""
+	[ "$status" -eq 1 ]
+	run real
+	[ "$status" -eq 1 ]
+	[ -z "$(real 2>/dev/null)" ]
+	run real --help
+	[ "$status" -eq 0 ]
+	[ -z "$(real -h 2>&1 >/dev/null)" ]
+}
+
+@test "every command has a help with its options and JSON keys" {
+	for c in $(real help | awk '/^Options/ { exit } /^  [a-z]/ { print $1 }'); do
+		run real "$c" --help
+		[ "$status" -eq 0 ]
+		[[ ${lines[0]} == "Usage: ethercat $c [OPTIONS]"* ]]
+		[[ $output == *"--json"* ]]
+		[ "$c" = help ] || [[ $output == *"JSON: "* ]]
+		[ "$(real help "$c")" = "$(real -h "$c")" ]
+	done
+}
+
+@test "the man page is made of the same tables" {
+	diff -u "$HERE/../../tool/ethercat.8" <(real help -s roff)
+}
+
+@test "version needs no master" {
+	run real version
+	[ "$status" -eq 0 ]
+	[ "${#lines[@]}" -eq 1 ]
+	[[ $(tr ' ' '\n' <<<"$output" | grep -m1 '[.]') =~ ^[0-9]+\.[0-9]+ ]]
+	[ "$(real --version)" = "$output" ]
+}
+
+@test "options stand anywhere" {
+	want="0x00000002 2"
+	[ "$(ethercat -p2 upload 0x1018 1)" = "$want" ]
+	[ "$(ethercat upload -p 2 0x1018 1)" = "$want" ]
+	[ "$(ethercat -m 0 upload -p2 -t uint32 0x1018 1)" = "$want" ]
+	[ "$(ethercat upload 0x1018 --pos=2 1 --type uint32)" = "$want" ]
+	[ "$(ethercat upload 0x1018 1 -vp2)" = "$want" ]
+	[ "$(ethercat upload -p2 -- 0x1018 1)" = "$want" ]
+	[ "$(ethercat -v slaves)" = "$(ethercat slaves -v)" ]
+	[ "$(ethercat slaves -vq)" = "$(ethercat slaves)" ]
+	[ "$(ethercat slaves --ver)" = "$(ethercat slaves -v)" ]
+}
+
+@test "malformed lists are usage errors" {
+	for o in m a p d; do
+		for l in x 1x 0x1 1-2-3 "" , "1 2" -- 1.5; do
+			run ethercat slaves "-$o" "$l"
+			[ "$status" -eq 1 ]
+			[[ $output == *"invalid list '$l'"* ]]
+			[[ $output == *"--help"* ]]
+		done
+	done
+}
+
+@test "wrong options and arguments are usage errors" {
+	for c in "slaves --bogus" "slaves -x" "slaves -p" "slaves --position" "slaves extra" \
+		"upload" "upload 1 2 3" "download 1" "slaves -vx" "slaves --verbose=1" \
+		"debug" "debug 3" "debug x" "states NONE" "graph XY" "crc clear" \
+		"pdos -s nope" "upload -p2 -t nope 0x1018 1" "slaves --wait=x" "slaves -v5" \
+		"-5" "help nope" "reg_read 0x10000 1" "reg_read 0 0" "reg_read 0" \
+		"reg_read -p0 0xffff 2" "reg_read -p0 -tuint16 0 3" "help re"; do
+		run ethercat $c
+		[ "$status" -eq 1 ]
+		[[ ${lines[-1]} == "Try 'ethercat"*"--help'." ]]
+		[ "${#lines[@]}" -eq 2 ]
+		[ -z "$(out $c)" ]
+	done
+}
+
+@test "options without effect only warn" {
+	run ethercat slaves -t int8 --force
+	[ "$status" -eq 0 ]
+	[[ $output == *"--type has no effect"* ]]
+	[[ $output == *"--force has no effect"* ]]
+	[ "$(out slaves -t int8)" = "$(out slaves)" ]
+	[ -z "$(err slaves -a1001 -p0 -m0 -v)" ]
+}
+
+@test "negative numbers are values" {
+	[ "$(log_of download -p2 -t int8 0x6060 0 -1)" = "sdo 2 0x6060:00 ff" ]
+	[ "$(log_of download -p2 -t int8 0x6060 0 -- -1)" = "sdo 2 0x6060:00 ff" ]
+	[ "$(log_of download -t int16 0x6060 0 -0x10 -p2)" = "sdo 2 0x6060:00 f0ff" ]
+	[ "$(log_of download -t float 0x2000 0 -1.5 -p2)" = "sdo 2 0x2000:00 0000c0bf" ]
+	[ "$(log_of download -t float 0x2000 0 -.5 -p2)" = "sdo 2 0x2000:00 000000bf" ]
+}
+
+@test "trailing garbage is refused" {
+	for c in "upload -p2 2000h 0" "upload -p2 0x1018 1x" "download -p2 -tint8 0x6060 0 12abc" \
+		"upload -p2 0x1018:1x" "upload -p2 0x1018:" "upload -p2 0x1018:001" \
+		"upload -p2 0x1018:01 1" "upload -p2 0x10180 1" "upload -p2 0x1018 256" \
+		"debug 1x"; do
+		run ethercat $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"--help"* ]]
+	done
+}
+
+@test "no device file" {
+	export EC_DEVICE_DIR=$BATS_TEST_TMPDIR
+	for c in slaves master pdos "upload -p0 1 1" "reg_read 0 1" states rescan "debug 1" crc \
+		graph config domains data cstruct sii_read "download -tint8 1 1 1"; do
+		run real $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"$BATS_TEST_TMPDIR/EtherCAT0: No such file or directory"* ]]
+		[[ $output == *"modprobe ec_master"* ]]
+		[ "${#lines[@]}" -eq 1 ]
+	done
+	unset EC_DEVICE_DIR
+	[ -e /dev/EtherCAT0 ] || [[ $(real slaves 2>&1) == *"/dev/EtherCAT0: No such file"* ]]
+}
+
+@test "not our device file" {
+	ln -s /dev/null "$BATS_TEST_TMPDIR/EtherCAT0"
+	EC_DEVICE_DIR=$BATS_TEST_TMPDIR run real slaves
+	[ "$status" -eq 1 ]
+	[[ $output == *"another EtherCAT master"* ]]
+	FAKE_BUS=foreign run ethercat slaves
+	[ "$status" -eq 1 ]
+}
+
+@test "no permission" {
+	FAKE_READONLY=1 run ethercat upload -p2 0x1018 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"/dev/EtherCAT0: Permission denied"* ]]
+	for c in slaves master pdos cstruct config domains data graph "graph dc" "sii_read -p2" \
+		states; do
+		FAKE_READONLY=1 run ethercat $c
+		[ "$status" -eq 0 ]
+	done
+}
+
+@test "a full disk is an error" {
+	[ -e /dev/full ] || skip
+	run bash -c "'$HERE/build/fake/ethercat' slaves >/dev/full"
+	[ "$status" -eq 1 ]
+	[[ $output == *"cannot write the output"* ]]
+}
+
+@test "completion gives live values" {
+	mkdir -p "$BATS_TEST_TMPDIR/bin"
+	ln -s "$HERE/build/fake/ethercat" "$BATS_TEST_TMPDIR/bin/ethercat"
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH
+	. "$HERE/../../tool/completion/ethercat.bash"
+	complete_line() {
+		COMP_WORDS=("$@")
+		COMP_CWORD=$(($# - 1))
+		unset -f ethercat
+		_ethercat
+		echo "${COMPREPLY[*]}"
+	}
+	[ "$(complete_line ethercat sl)" = "slaves" ]
+	[ "$(complete_line ethercat upload -p "")" = "0 1 2" ]
+	[ "$(complete_line ethercat slaves --alias "")" = "1001" ]
+	[ "$(complete_line ethercat -p2 states S)" = "SAFEOP" ]
+	[[ " $(complete_line ethercat reg_write -) " == *" --emergency "* ]]
+	[[ " $(complete_line ethercat upload -t u) " == *" uint24 "* ]]
+	[ "$(FAKE_BUS=app complete_line ethercat data -d "")" = "0 1" ]
+}

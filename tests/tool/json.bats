@@ -1,0 +1,53 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+@test "every command gives one valid object" {
+	export FAKE_BUS=app
+	for c in version master slaves "slaves -v" "slaves -p7" pdos "pdos -q" "pdos -s etherlab" \
+		"upload -p2 0x1018 1" "upload -p2 0x1008 0" "upload -p2 0x1018" \
+		"upload -p2 -tfloat 0x2000 0" "download -p2 -tint8 0x6060 0 1" states \
+		"states OP -p0 --wait" config "config -v" domains "domains -v" data cstruct \
+		"sii_read -p2" "sii_read -v -p2" "reg_read -p2 0x130 2" \
+		"reg_write -p2 -tuint8 0x40 1" rescan "debug 1" graph "graph dc" "graph crc" crc \
+		"crc reset"; do
+		out $c --json | json 'isinstance(d, dict)' || { echo "$c"; return 1; }
+	done
+}
+
+@test "keys" {
+	out slaves -j | json 'd["masters"][0]["slaves"][2]["name"] == "EL7201 servo terminal"'
+	out slaves -j | json 'd["masters"][0]["slaves"][2]["al_status_code"] == 0x1d'
+	out slaves -j | json 'd["masters"][0]["slaves"][1]["ports"][1]["receive_time_diff_ns"] == -10'
+	out slaves -j | json '"8 bytes" in d["masters"][0]["slaves"][2]["cause"]'
+	out slaves -j | json 'd["masters"][0]["slaves"][2]["mailboxes"]["protocols"] == ["CoE", "FoE"]'
+	out master -j | json 'd["masters"][0]["phase"] == "idle"'
+	out master -j | json 'd["masters"][0]["common"]["lost_frames"] == 2'
+	out upload -j -p2 0x1018 1 | json 'd["value"] == 2 and d["data_hex"] == "02000000"'
+	out upload -j -p2 -tstring 0x1008 0 | json 'd["value"] == "EL7201"'
+	out pdos -j | json 'd["masters"][0]["slaves"][2]["sync_managers"][3]["pdos"][0]["entries"][0]["size_bits"] == 32'
+	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["slave_position"] is None'
+	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["dc"]["sync"][0]["shift_ns"] == -500'
+	FAKE_BUS=app out domains -j | json 'd["masters"][0]["domains"][1]["expected_working_counter"] == 3'
+	FAKE_BUS=app out data -j | json 'd["masters"][0]["domains"][0]["data_hex"] == "a5"'
+	out graph -j | json 'd["links"][0] == {"from": 0, "to": 1, "medium": "EBUS", "from_port": 1, "to_port": 0}'
+	out crc -j | json 'd["slaves"][0]["ports"][1]["crc_errors"] == 3'
+	FAKE_BUS=two out slaves -j | json 'len(d["masters"]) == 2'
+}
+
+@test "errors are objects on stderr" {
+	err upload -j -p2 0x5000 0 | json 'd["error"]["abort_code"] == 0x06020000'
+	err upload -j -p2 0x4000 0 | json '"1000 ms" in d["error"]["reason"] and d["error"]["errno"] > 0'
+	err upload -j 0x1018 1 | json 'd["error"]["kind"] == "usage"'
+	err slaves -j -p x | json 'd["error"]["kind"] == "usage"'
+	err slaves -p x --json | json 'd["error"]["kind"] == "usage"'
+	err nonsense -j | json 'd["error"]["kind"] == "usage"'
+	FAKE_BUS=none err slaves -j | json 'd["error"]["errno"] == 2'
+	FAKE_BUS=scanning err slaves -j | json '"scan" in d["note"]'
+}
+
+@test "stdout is whole after a failure" {
+	out upload -j -p2 0x5000 0 | json 'd == {}'
+	FAKE_BUS=none out slaves -j | json 'd == {"masters": []}'
+}

@@ -1,0 +1,266 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+@test "golden: idle bus" {
+	golden slaves slaves
+	golden slaves_v slaves -v
+	golden master master
+	golden pdos pdos
+	golden pdos_p2_q pdos -p2 -q
+	golden cstruct cstruct
+	golden upload upload -p2 0x1018 1
+	golden crc crc
+	golden graph graph
+	golden sii_v sii_read -v -p2
+}
+
+@test "golden: an application runs" {
+	export FAKE_BUS=app
+	golden config config
+	golden config_v config -v
+	golden domains domains
+	golden domains_v domains -v
+}
+
+@test "golden: cut ring, two masters" {
+	FAKE_BUS=cut golden slaves_cut slaves
+	FAKE_BUS=two golden slaves_two slaves
+}
+
+@test "nothing to show" {
+	for c in slaves "slaves -v" pdos cstruct crc config domains data; do
+		FAKE_BUS=empty run ethercat $c
+		[ "$status" -eq 0 ]
+		[ "$c" = crc ] || [ -z "$output" ]
+	done
+	for c in "slaves -p7" "slaves -a5" "slaves -a0" "pdos -p9-12"; do
+		run ethercat $c
+		[ "$status" -eq 0 ]
+		[ -z "$output" ]
+	done
+}
+
+@test "selection" {
+	[ "$(out slaves -p1 | cut -c1)" = 1 ]
+	[ "$(out slaves -p2,0,2 | cut -c1 | tr -d '\n')" = 02 ]
+	[ "$(out slaves -p1- | wc -l)" -eq 2 ]
+	[ "$(out slaves -p-1 | wc -l)" -eq 2 ]
+	[ "$(out slaves -a1001 | wc -l)" -eq 2 ]
+	[ "$(out slaves -a1001 -p1 | awk '{ print $2 }')" = 1001:1 ]
+	[ "$(out slaves -a- -p- | wc -l)" -eq 3 ]
+	[ "$(out slaves -v -p2,1,2 | grep -c ===)" -eq 3 ]
+	[ "$(out pdos -p2 | head -c3)" = SM0 ]
+	[ "$(FAKE_BUS=app out config -p0)" = "" ]
+	[[ $(FAKE_BUS=app out config -p2) == "0:2 "* ]]
+	[[ $(FAKE_BUS=app out config -a1001 -p0) == "1001:0 "* ]]
+	[ "$(FAKE_BUS=app out domains -d1)" = "$(sed -n 2p "$HERE/golden/domains.txt")" ]
+}
+
+@test "commands for one slave" {
+	for c in "upload 0x1018 1" "reg_read 0 1" "sii_read" "download -tint8 0x6060 0 1"; do
+		run ethercat $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"selection matches 3 slaves"* ]]
+		run ethercat $c -p7
+		[ "$status" -eq 1 ]
+		[[ $output == *"selection matches 0 slaves"* ]]
+	done
+}
+
+@test "commands for one master" {
+	export FAKE_BUS=two
+	run ethercat upload -p2 0x1018 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"select it with -m"* ]]
+	[ "$(out upload -m1 -p2 0x1018 1)" = "0x00000002 2" ]
+	run ethercat upload -m5 -p2 0x1018 1
+	[ "$status" -eq 1 ]
+	[ "$(out slaves -m1)" = "$(cat "$HERE/golden/slaves.txt")" ]
+	[ "$(out pdos -p2 | grep -c '=== Master')" -eq 2 ]
+}
+
+@test "what public scripts expect" {
+	# shell
+	[ "$(out slaves | grep -c '^')" -eq 3 ]
+	[ "$(out slaves | awk '{ print $3, $5 }' | head -1)" = "PREOP EK1100" ]
+	out slaves | grep -q '^ *2 .*EL7201'
+	# python wrappers
+	out slaves | python3 -c '
+import sys
+for i, l in enumerate(sys.stdin):
+    w = l.split()
+    assert w[0] == str(i) and ":" in w[1] and w[3] in "+E" and w[4].startswith("E")
+'
+	out slaves -v | python3 -c '
+import sys
+rows = [l.split() for l in sys.stdin if l[:4].strip().isdigit()]
+assert len(rows) == 12 and sum(r[3] == "closed" for r in rows) == 7
+'
+	# service scripts
+	out master | grep -qE 'Phase:\s*(Idle|Operation)'
+	FAKE_BUS=app out master | grep -qE 'Phase:\s*Operation'
+	out master | grep -qE 'Active:\s*no'
+	out master | grep -qE 'Link:\s*UP'
+	out master | grep -qE 'Slaves:\s*3'
+	out master | grep -q attached
+	out master | grep -q 'Lost frames'
+	# first token, and awk '{print $2}'
+	[ $(($(out upload -p2 0x1018 1 | awk '{ print $1 }'))) -eq 2 ]
+	[ "$(out upload -p2 -t int16 0x6041 0 | awk '{ print $2 }')" = -32672 ]
+	# a configuration generator
+	out -v slaves | python3 -c '
+import re, sys
+n = 0
+for l in sys.stdin:
+    if re.match(r"=== Master (\d+), Slave (\d+) ===$", l): n += 1
+    m = re.match(r"  (Vendor Id|Product code|Revision number|Device name):\s+(.*)$", l)
+    if m: n += 10
+assert n == 123, n
+'
+	out -m 0 pdos -p 2 | python3 -c '
+import re, sys
+sm = r"SM(\d+): PhysAddr 0x([0-9a-f]{4}), DefaultSize +(\d+), ControlRegister 0x([0-9a-f]{2}), Enable (\d+)$"
+pdo = r"  ([RT])xPDO 0x([0-9a-f]{4}) \"(.*)\"$"
+entry = r"    PDO entry 0x([0-9a-f]{4}):([0-9a-f]{2}), +(\d+) bit, \"(.*)\"$"
+for l in sys.stdin:
+    assert re.match(sm, l) or re.match(pdo, l) or re.match(entry, l), l
+'
+}
+
+@test "cstruct compiles" {
+	command -v cc >/dev/null || skip
+	{
+		cat <<'END'
+#include <stdint.h>
+#include <stddef.h>
+typedef struct { uint16_t index; uint8_t subindex; uint8_t bit_length; } ec_pdo_entry_info_t;
+typedef struct { uint16_t index; unsigned n; ec_pdo_entry_info_t *e; } ec_pdo_info_t;
+enum { EC_DIR_OUTPUT = 1, EC_DIR_INPUT, EC_WD_ENABLE = 1, EC_WD_DISABLE };
+typedef struct { uint8_t i; int dir; unsigned n; ec_pdo_info_t *p; int wd; } ec_sync_info_t;
+END
+		out cstruct
+	} >"$BATS_TEST_TMPDIR/c.c"
+	cc -Wall -Werror -c -o /dev/null "$BATS_TEST_TMPDIR/c.c"
+}
+
+@test "upload" {
+	[ "$(out upload -p2 -t int16 0x6041 0)" = "0x8060 -32672" ]
+	[ "$(out upload -p2 -t int8 0x6060 0)" = "0xff -1" ]
+	[ "$(out upload -p2 -t float 0x2000 0)" = "1.5" ]
+	[ "$(out upload -p2 0x1018:01)" = "0x00000002 2" ]
+	[ "$(out upload -p2 0x1018:02)" = "0x01 0x02 0x03" ]
+	[ "$(out sdo_upload -p2 0x1018 1)" = "0x00000002 2" ]
+	[ "$(out sdo_read -p2 0x1018 1)" = "0x00000002 2" ]
+	[ "$(out upload -p2 0x1018 | xxd -p)" = 04000200 ]
+	[ "$(out upload -p2 -t string 0x1008 0 | tr -d '\0')" = EL7201 ]
+	[ "$(out upload -p2 -t octet_string 0x1008 0 | wc -c)" -eq 8 ]
+	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 100000 ]
+}
+
+@test "upload failures" {
+	run ethercat upload -p2 0x5000 0
+	[ "$status" -eq 1 ]
+	[[ $output == *"aborted with code 0x06020000: "* ]]
+	[ "${#lines[@]}" -eq 1 ]
+	run ethercat upload -p2 0x4000 0
+	[ "$status" -eq 1 ]
+	[[ $output == *"timed out: slave 2 has not answered for 1000 ms"* ]]
+	run ethercat upload -p2 -t uint8 0x1018 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"uint8 has 1 byte(s), but 4 were received"* ]]
+}
+
+@test "download" {
+	[ "$(log_of download -p2 -t uint32 0x1010 1 0x65766173)" = "sdo 2 0x1010:01 73617665" ]
+	[ "$(log_of download -p2 -t string 0x2001 0 "ab cd")" = "sdo 2 0x2001:00 6162206364" ]
+	[ "$(log_of download -p2 -t raw 0x2001 0 "0x12 0x34")" = "sdo 2 0x2001:00 1234" ]
+	[ "$(log_of download -p2 -t int24 0x2001 0 -2)" = "sdo 2 0x2001:00 feffff" ]
+	[ "$(log_of download -p2 -t sm16 0x2001 0 -1)" = "sdo 2 0x2001:00 0180" ]
+	[ "$(log_of download -p2 0x2001 abc)" = "sdo 2 0x2001:00 C 616263" ]
+	[ "$(log_of sdo_write -p2 -t uint8 0x2001:0a 7)" = "sdo 2 0x2001:0a 07" ]
+	[ "$(printf 'a b\nc\0' | log_of download -p2 -t octet_string 0x2001 0 -)" = \
+		"sdo 2 0x2001:00 6120620a6300" ]
+	[ "$(echo 5 | log_of download -p2 -t uint16 0x2001 0 -)" = "sdo 2 0x2001:00 0500" ]
+	[ -z "$(ethercat download -p2 -t uint8 0x2001 0 1 2>&1)" ]
+	run ethercat download -p2 0x2001 0 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"--type"* ]]
+	run ethercat download -p2 -t uint32 0x1018 1 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"aborted with code 0x06010002"* ]]
+	run ethercat download -p2 -t uint8 0x2001 0 - </dev/null
+	[ "$status" -eq 1 ]
+}
+
+@test "registers" {
+	[ "$(out reg_read -p2 0x130 2)" = "0x12 0x00" ]
+	[ "$(out reg_read -p2 -t uint16 0x130)" = "0x0012 18" ]
+	[ "$(out reg_read -p2 0xffff 1)" = "0x77" ]
+	[ "$(out reg_read -p2 -t octet_string 0 4096 | wc -c)" -eq 4096 ]
+	[ "$(log_of reg_write -p1 -t uint16 0x10 0x1234)" = "reg 1 0x0010 3412" ]
+	printf 'xyz' >"$BATS_TEST_TMPDIR/f"
+	[ "$(log_of reg_write -p1 0x1000 "$BATS_TEST_TMPDIR/f")" = "reg 1 0x1000 78797a" ]
+	[ "$(log_of reg_write -e -p7 -t uint8 0x40 1)" = "reg 7 0x0040 emergency 01" ]
+	run ethercat reg_write -e -t uint8 0x40 1
+	[ "$status" -eq 1 ]
+	run ethercat reg_write -p1 0x1000 "$BATS_TEST_TMPDIR/none"
+	[ "$status" -eq 1 ]
+	[ "$(log_of crc reset | wc -l)" -eq 3 ]
+	[ "$(log_of crc RESET -p1)" = "reg 1 0x0300 $(printf '0%.0s' {1..40})" ]
+}
+
+@test "states" {
+	[ "$(log_of states SAFEOP -p0,1)" = $'state 0 4\nstate 1 4' ]
+	[ "$(log_of states preop | wc -l)" -eq 3 ]
+	run ethercat states OP -p0 --wait
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+	run ethercat states SAFEOP -p2 --wait 2
+	[ "$status" -eq 1 ]
+	[[ $output == *"0x001e"* ]]
+	run ethercat states OP -p2 --wait=0.05
+	[ "$status" -eq 1 ]
+	[[ $output == *"has not reached OP"* ]]
+	run ethercat states
+	[ "$status" -eq 0 ]
+	[[ ${lines[2]} == *PREOP+ERROR*0x001d* ]]
+}
+
+@test "a scan is running" {
+	[[ $(FAKE_BUS=scanning err slaves) == *"scan is running"* ]]
+	[ "$(FAKE_BUS=scanning out slaves | wc -l)" -eq 1 ]
+	[ "$(FAKE_BUS=scanning out slaves --wait | wc -l)" -eq 3 ]
+	[ -z "$(FAKE_BUS=scanning err slaves --wait 5)" ]
+	run env FAKE_BUS=scanning "$HERE/build/fake/ethercat" slaves --wait 0
+	[ "$status" -eq 1 ]
+}
+
+@test "other changes" {
+	[ "$(log_of rescan)" = "rescan 0" ]
+	[ "$(FAKE_BUS=two log_of debug 2)" = $'debug 0 2\ndebug 1 2' ]
+	FAKE_READONLY=1 run ethercat rescan
+	[ "$status" -eq 1 ]
+}
+
+@test "binary output" {
+	[ "$(FAKE_BUS=app out data | xxd -p)" = a501020304 ] || \
+		[ "$(FAKE_BUS=app out data | xxd -p)" = a50102030405ff ]
+	[ "$(FAKE_BUS=app out data -d1 | xxd -p)" = 0102030405ff ]
+	[ "$(out sii_read -p2 | wc -c)" -eq 160 ]
+}
+
+@test "graph draws" {
+	command -v dot >/dev/null || skip "no graphviz"
+	for a in "" dc crc; do
+		out graph $a | dot -Tsvg >/dev/null
+	done
+}
+
+@test "etherlab skin" {
+	run ethercat pdos -p2 -s etherlab
+	[ "$status" -eq 0 ]
+	[[ $output == *"function rv = slave2()"* ]]
+	[[ $output == *"pdo_data_type = 1016;"* ]]
+}
