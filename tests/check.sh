@@ -5,10 +5,13 @@
 # level ends with a line of its own; the sums are the last line.
 #
 # usage: check.sh [LEVEL...]      default: all of $levels
+#
+# DATA=FOLDER	real EEPROM images and captures, for the level "data"
 
 set -u
+[ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
-levels="unit lib kernels system"
+levels="unit lib tool fuzz data kernels system"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -35,6 +38,8 @@ count() {
 level_unit() { make -s -C tests/unit; }
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
+level_fuzz() { make -s -C tests/fuzz check SECONDS=3; }
+level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_kernels() { tests/check-kernels.sh; }
 level_system() { tests/system/run.sh; }
 
@@ -56,6 +61,10 @@ run() {
 
 tests/install-deps.sh build vm json python || exit 1
 for l in ${*:-$levels}; do
+	if [ "$l" = data ] && [ -z "${DATA:-}" ]; then
+		echo "=== data: not run: DATA= names no folder of images and captures"
+		continue
+	fi
 	run "$l"
 done
 echo "$passed passed, $failed failed"
