@@ -31,13 +31,8 @@ static int ec_release(struct inode *inode, struct file *filp)
 {
 	struct ec_file *f = filp->private_data;
 	struct ec_master *m = f->master;
-	bool mine;
 
-	mutex_lock(&m->session_lock);
-	mine = m->session && m->session->owner == f;
-	mutex_unlock(&m->session_lock);
-	if (mine)
-		ec_session_end(m);
+	ec_session_end(m, f);
 	put_device(&m->dev);
 	kfree(f);
 	return 0;

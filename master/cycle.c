@@ -26,57 +26,85 @@ static void own_devices(struct ec_master *m, bool cycle)
 	}
 }
 
-static struct ec_slot *xq_pop(struct ec_master *m)
+/* A frame left for the cyclic caller; its waiter may give up at any time. */
+static int xq_push(struct ec_master *m, struct ec_slot *slot)
 {
-	struct ec_slot *slot = NULL;
 	unsigned long flags;
+	int ret = -EBUSY;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	if (m->xq_head != m->xq_tail)
-		slot = m->xq[m->xq_tail++ % EC_SLOTS];
+	if (m->xq_head - m->xq_tail < EC_SLOTS) {
+		m->xq[m->xq_head++ % EC_SLOTS] =
+			(struct ec_queued){ .slot = slot, .seq = slot->seq };
+		ret = 0;
+	}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
-	return slot;
+	return ret;
 }
 
+/* The oldest frame somebody still waits for, or NULL; stays in the queue. */
 static struct ec_slot *xq_peek(struct ec_master *m)
 {
 	struct ec_slot *slot = NULL;
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	if (m->xq_head != m->xq_tail)
-		slot = m->xq[m->xq_tail % EC_SLOTS];
+	for (; m->xq_head != m->xq_tail; m->xq_tail++) {
+		const struct ec_queued *q = &m->xq[m->xq_tail % EC_SLOTS];
+
+		if (atomic_read_acquire(&q->slot->state) == EC_SLOT_SENT &&
+		    q->slot->seq == q->seq) {
+			slot = q->slot;
+			break;
+		}
+	}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
 	return slot;
 }
 
-/* A frame that cannot be sent: nobody shall wait for it. */
-static void drop(struct ec_slot *slot)
+static void xq_drop(struct ec_master *m)
 {
-	if (ec_slot_cancel(slot))
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&m->xq_lock, flags);
+	if (m->xq_head != m->xq_tail)
+		m->xq_tail++;
+	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
+}
+
+/* Nobody shall wait for a frame that was not sent. */
+static void disarm(struct ec_slot *slot, u64 now)
+{
+	if (ec_slot_cancel(slot, now))
 		atomic_set_release(&slot->state, EC_SLOT_BUILD);
 }
 
-/* Send an armed frame; the slot is back in BUILD on failure. */
+/* Send a built frame; the slot is back in BUILD on failure. */
 static int transmit(struct ec_master *m, struct ec_slot *slot)
 {
 	struct ec_link *link = &m->link[0];
+	u64 now = ktime_get_ns();
 	int ret;
 
-	ec_slot_arm(&m->slots, slot, link->side, ktime_get_ns());
+	ec_slot_arm(&m->slots, slot, link->side, now);
 	ret = ec_link_send(link, slot);
 	if (ret)
-		drop(slot);
+		disarm(slot, now);
 	return ret;
 }
 
-/* Frames left in the queue: their waiters time out, so send them. */
+/*
+ * What was left in the queue goes out now. When a send fails the waiter runs
+ * into its time limit: the slot is his, not ours.
+ */
 static void flush(struct ec_master *m)
 {
 	struct ec_slot *slot;
 
-	while ((slot = xq_pop(m)))
-		transmit(m, slot);
+	while ((slot = xq_peek(m))) {
+		ec_link_send(&m->link[0], slot);
+		xq_drop(m);
+	}
 }
 
 /**
@@ -162,18 +190,18 @@ u32 ec_cycle_timeout_us(const struct ec_master *m)
  */
 int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot)
 {
-	unsigned long flags;
-	int ret = 0;
+	u64 now = ktime_get_ns();
+	int ret;
 
 	rt_mutex_lock(&m->io_lock);
 	if (READ_ONCE(m->owner) == EC_OWNER_IDLE) {
 		ret = transmit(m, slot);
 	} else {
 		/* the waiter may give up from now on */
-		ec_slot_arm(&m->slots, slot, 0, ktime_get_ns());
-		raw_spin_lock_irqsave(&m->xq_lock, flags);
-		m->xq[m->xq_head++ % EC_SLOTS] = slot;
-		raw_spin_unlock_irqrestore(&m->xq_lock, flags);
+		ec_slot_arm(&m->slots, slot, 0, now);
+		ret = xq_push(m, slot);
+		if (ret)
+			disarm(slot, now);
 	}
 	rt_mutex_unlock(&m->io_lock);
 	return ret;
@@ -399,7 +427,7 @@ int ec_cycle_receive(struct ec_session *s)
 			for (k = 0; k < f->count; k++)
 				take_dgram(s, f->first + k, ec_slot_body(f->slot) + f->pos[k]);
 			ec_slot_put(&m->slots, f->slot, true);
-		} else if (now - f->slot->sent_ns > limit && ec_slot_cancel(f->slot)) {
+		} else if (now - f->slot->sent_ns > limit && ec_slot_cancel(f->slot, now)) {
 			atomic64_inc(&m->link[0].stats.lost);
 		} else {
 			c->flight[left++] = *f;
@@ -466,10 +494,8 @@ static void send_acyclic(struct ec_master *m, u32 wire_ns)
 		if (wire_ns > budget && !first)
 			break;
 		first = false;
-		xq_pop(m);
-		/* its waiter may have given up meanwhile */
-		if (atomic_read(&slot->state) == EC_SLOT_SENT)
-			ec_link_send(&m->link[0], slot);
+		ec_link_send(&m->link[0], slot);
+		xq_drop(m);
 	}
 }
 

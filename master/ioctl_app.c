@@ -77,7 +77,7 @@ int ec_ioc_release(struct ec_file *f, void *arg)
 	if (!lock(f, &ret))
 		return ret;
 	mutex_unlock(&f->master->session_lock);
-	ec_session_end(f->master);
+	ec_session_end(f->master, f);
 	return 0;
 }
 

@@ -34,14 +34,14 @@ struct ec_master *ec_master_get(unsigned int index)
 void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
 {
 	struct ec_master *m = link->master;
-	struct ec_slot *slot;
+	struct ec_xfer *xfer;
 
 	atomic64_inc(&link->stats.rx_frames);
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
-	switch (ec_slots_match(&m->slots, src, data, len, &slot)) {
+	switch (ec_slots_match(&m->slots, src, data, len, &xfer)) {
 	case EC_MATCH_DONE:
-		if (slot->xfer)
-			ec_xfer_done(slot->xfer);
+		if (xfer)
+			ec_xfer_done(xfer);
 		break;
 	case EC_MATCH_LATE:
 		atomic64_inc(&link->stats.late);
@@ -154,7 +154,7 @@ static void destroy(struct ec_master *m)
 
 	WRITE_ONCE(m->stopping, true);
 	ec_cdev_exit(m);
-	ec_session_end(m);
+	ec_session_end(m, NULL);
 	ec_monitor_stop(m);
 	if (m->work)
 		destroy_workqueue(m->work);

@@ -83,7 +83,7 @@ struct ec_master {
 	u64 last_send_ns;
 	u32 interval_us;
 	raw_spinlock_t xq_lock;
-	struct ec_slot *xq[EC_SLOTS];
+	struct ec_queued xq[EC_SLOTS];
 	unsigned int xq_head;
 	unsigned int xq_tail;
 

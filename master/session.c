@@ -151,15 +151,18 @@ int ec_session_deactivate(struct ec_session *s)
 /**
  * ec_session_end() - the application is gone or releases the master
  * @m: master
+ * @owner: its open file, NULL: whoever it is; another's session stays
  *
  * Context: Process. May sleep.
  */
-void ec_session_end(struct ec_master *m)
+void ec_session_end(struct ec_master *m, const void *owner)
 {
 	struct ec_session *s;
 
 	mutex_lock(&m->session_lock);
 	s = m->session;
+	if (s && owner && s->owner != owner)
+		s = NULL;
 	if (s) {
 		ec_session_deactivate(s);
 		clear(s);

@@ -57,7 +57,7 @@ struct ec_session {
 };
 
 int ec_session_begin(struct ec_master *m, const void *owner);
-void ec_session_end(struct ec_master *m);
+void ec_session_end(struct ec_master *m, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 

@@ -95,13 +95,15 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
 /**
  * ec_slot_cancel() - stop waiting for a frame
  * @slot: slot that was armed
+ * @now_ns: time; the quarantine begins now, the frame may have left late
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: true when the slot is in quarantine now, false when the reply came
  * first (or is being copied at this moment).
  */
-bool ec_slot_cancel(struct ec_slot *slot)
+bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
+	WRITE_ONCE(slot->sent_ns, now_ns);
 	return atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT;
 }
 
@@ -167,13 +169,14 @@ static bool same_dgrams(struct ec_slot *slot, u8 *reply, size_t len)
  * @src: source MAC address of the frame
  * @data: what follows the EtherType
  * @len: bytes there
- * @done: the slot, now in state DONE, for EC_MATCH_DONE
+ * @xfer: who waits for it (NULL: the cycle), for EC_MATCH_DONE; the slot itself
+ *	may be in use by another already
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: what became of the frame.
  */
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
-			     size_t len, struct ec_slot **done)
+			     size_t len, struct ec_xfer **xfer)
 {
 	struct ec_slot *slot;
 	size_t body;
@@ -195,7 +198,7 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 		return EC_MATCH_UNMATCHED;
 	}
 	memcpy(ec_slot_body(slot), data, body);
+	*xfer = slot->xfer;
 	atomic_set_release(&slot->state, EC_SLOT_DONE);
-	*done = slot;
 	return EC_MATCH_DONE;
 }

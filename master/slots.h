@@ -48,6 +48,12 @@ struct ec_slot {
 	u8 frame[EC_ETH_MAX];
 };
 
+/* a slot in a queue; only meant as long as it has this sequence number */
+struct ec_queued {
+	struct ec_slot *slot;
+	u32 seq;
+};
+
 /**
  * struct ec_slots - all slots of one master
  * @slot: the slots
@@ -72,10 +78,10 @@ int ec_slots_init(struct ec_slots *s);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic);
-bool ec_slot_cancel(struct ec_slot *slot);
+bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns);
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
-			     size_t len, struct ec_slot **done);
+			     size_t len, struct ec_xfer **xfer);
 
 static inline u8 *ec_slot_body(struct ec_slot *slot)
 {

@@ -136,7 +136,7 @@ static unsigned int window(struct ec_master *m, struct ec_dg *dg, unsigned int f
 
 	if (!wait_for_completion_timeout(&x.done, usecs_to_jiffies(ec_cycle_timeout_us(m)) + 1)) {
 		for (i = 0; i < frames; i++) {
-			if (bf[i].err || !ec_slot_cancel(bf[i].slot))
+			if (bf[i].err || !ec_slot_cancel(bf[i].slot, ktime_get_ns()))
 				continue;
 			atomic64_inc(&m->link[0].stats.lost);
 			bf[i].err = -ETIMEDOUT;
@@ -162,7 +162,8 @@ static unsigned int window(struct ec_master *m, struct ec_dg *dg, unsigned int f
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0 when every datagram came back (whatever its working counter), or
- * the error of the first that did not.
+ * the error of the first that did not; -EMSGSIZE when one fits no frame, then
+ * nothing was sent.
  */
 int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 {
@@ -170,11 +171,14 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 	unsigned int i, try, again;
 	int ret = 0;
 
+	for (i = 0; i < n; i++) {
+		if (dg[i].len > EC_DGRAM_DATA_MAX)
+			return -EMSGSIZE;
+		dg[i].err = -EINPROGRESS;
+	}
 	bf = kmalloc_array(EC_XFER_WINDOW, sizeof(*bf), GFP_KERNEL);
 	if (!bf)
 		return -ENOMEM;
-	for (i = 0; i < n; i++)
-		dg[i].err = -EINPROGRESS;
 	for (try = 0; try < TRIES; try++) {
 		for (i = 0; i < n;)
 			i = window(m, dg, i, n, bf);
