@@ -4,6 +4,9 @@
 # Builds everything, boots Debian's PREEMPT_RT kernel and runs the bats files
 # of this folder in it, one boot each.
 #
+# The guest's time is exact (--icount), so that a busy host fails no test; a file
+# with a line "# vm: OPTIONS" names its own options of tests/vm/run.sh instead.
+#
 # usage: run.sh [FILE.bats...]
 
 set -u
@@ -22,7 +25,8 @@ make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 || exit 1
 for f in ${*:-tests/system/*.bats}; do
 	echo "# $f"
 	out=$(mktemp)
-	tests/vm/run.sh --kernel "$kernel" --timeout 300 -- \
+	read -ra options < <(sed -n 's/^# vm: *//p' "$f" | grep . || echo --icount)
+	tests/vm/run.sh --kernel "$kernel" --timeout 300 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" bats --tap "$f" >"$out" 2>&1
 	rc=$?
 	grep -E '^(ok|not ok|#)' "$out"
