@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# make                modules, library, tool (KDIR= chooses the kernel)
+# make                modules, library, tool, simulator (KDIR= chooses the kernel)
 # make install        all of it (DESTDIR=, PREFIX=)
 # make demo           the main job in a VM
 # make check          every test; the last line is "N passed, N failed"
@@ -35,11 +35,13 @@ lib:
 
 tool:
 	$(MAKE) -C tool
+	$(MAKE) -C tool/sim
 
 clean:
 	rm -rf $(BUILD)
 	$(MAKE) -C lib clean
 	$(MAKE) -C tool clean
+	$(MAKE) -C tool/sim clean
 
 .PHONY: all sync modules lib tool clean
 

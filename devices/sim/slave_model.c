@@ -294,7 +294,7 @@ static void object_init(struct ec_app_object *o, const struct item *it,
 	for (u32 i = count; i--; )
 		if (it[i].object)
 			o->name = it[i].object;
-	if (count == 1 && !it->e.sub) {
+	if (count == 1 && !it->e.sub && !ec_app_pdo_is_config(o->index)) {
 		o->code = EC_OD_VAR;
 		o->type = it->e.type;
 		if (it->e.name)

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* ethercat-sim: a simulated segment at a network interface. */
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "load.h"
+#include "port.h"
+#include "run.h"
+
+static const char usage[] =
+"Usage: ethercat-sim [OPTIONS] INTERFACE [INTERFACE2]\n"
+"\n"
+"Answers EtherCAT frames that arrive at an interface (veth, tap, NIC) as a\n"
+"segment of slaves would. INTERFACE2 is where a second port of the master is:\n"
+"the other end of a ring.\n"
+"\n"
+"  -s, --segment NAME   built-in segment or file with a description (default: bench)\n"
+"      --seed N         in place of the seed of the segment\n"
+"      --bug NAME       a deliberate error of the model, to test other programs\n"
+"  -v, --verbose        counters every second\n"
+"  -l, --list           the built-in segments\n"
+"      --list-bugs      the deliberate errors\n"
+"  -c, --check NAME     only read a description: 'FILE:LINE: what is wrong'\n"
+"  -h, --help\n"
+"      --version\n"
+"\n"
+"Needs root or CAP_NET_RAW, and the interface up and used by nobody else.\n"
+"Real time is model time, so answers are as exact as the machine's timers.\n"
+"Ends with SIGINT or SIGTERM (status 0) or when an interface is gone (1).\n"
+"devices/sim/describe.h tells how to describe a segment.\n";
+
+struct options {
+	const char *segment;
+	const char *check;
+	long long seed;
+	enum ec_sim_bug bug;
+	bool verbose;
+	bool list;
+	bool list_bugs;
+};
+
+static int parse_seed(const char *text, long long *seed)
+{
+	char *end;
+
+	errno = 0;
+	*seed = strtoll(text, &end, 0);
+	if (!errno && end != text && !*end && *seed >= 0 && *seed <= EC_SIM_SEED_MAX)
+		return 0;
+	fprintf(stderr, "ethercat-sim: --seed takes a number from 0 to %lld, not '%s'\n",
+		EC_SIM_SEED_MAX, text);
+	return -1;
+}
+
+static int parse_bug(const char *text, enum ec_sim_bug *bug)
+{
+	for (int i = 1; i < EC_SIM_BUGS; i++) {
+		if (!strcmp(ec_sim_bug_name(i), text)) {
+			*bug = i;
+			return 0;
+		}
+	}
+	fprintf(stderr, "ethercat-sim: no bug '%s' (see --list-bugs)\n", text);
+	return -1;
+}
+
+/* 0: go on, 1: done, -1: wrong */
+static int parse(int argc, char **argv, struct options *o)
+{
+	static const struct option longs[] = {
+		{ "segment", required_argument, NULL, 's' },
+		{ "seed", required_argument, NULL, 'S' },
+		{ "bug", required_argument, NULL, 'B' },
+		{ "verbose", no_argument, NULL, 'v' },
+		{ "list", no_argument, NULL, 'l' },
+		{ "list-bugs", no_argument, NULL, 'L' },
+		{ "check", required_argument, NULL, 'c' },
+		{ "help", no_argument, NULL, 'h' },
+		{ "version", no_argument, NULL, 'V' },
+		{ }
+	};
+	int c;
+
+	while ((c = getopt_long(argc, argv, "s:vlc:h", longs, NULL)) != -1) {
+		switch (c) {
+		case 's': o->segment = optarg; break;
+		case 'c': o->check = optarg; break;
+		case 'v': o->verbose = true; break;
+		case 'l': o->list = true; break;
+		case 'L': o->list_bugs = true; break;
+		case 'S':
+			if (parse_seed(optarg, &o->seed))
+				return -1;
+			break;
+		case 'B':
+			if (parse_bug(optarg, &o->bug))
+				return -1;
+			break;
+		case 'h': fputs(usage, stdout); return 1;
+		case 'V': puts("ethercat-sim " EC_SIM_VERSION); return 1;
+		default: return -1;
+		}
+	}
+	return 0;
+}
+
+static int check(const struct options *o)
+{
+	struct ec_sim *sim = load_segment(o->check, o->seed);
+
+	if (!sim)
+		return 1;
+	printf("%s: ok, %u slave(s)\n", o->check, ec_sim_count(sim));
+	ec_sim_free(sim);
+	return 0;
+}
+
+static int list_bugs(void)
+{
+	for (int i = 1; i < EC_SIM_BUGS; i++)
+		puts(ec_sim_bug_name(i));
+	return 0;
+}
+
+static int serve(const struct options *o, char **names, int n)
+{
+	struct port ports[EC_SIM_PORTS] = { { .fd = -1 }, { .fd = -1 } };
+	struct ec_sim *sim = load_segment(o->segment, o->seed);
+	int i, ret = 1;
+
+	if (!sim)
+		return 1;
+	ec_sim_set_bug(sim, o->bug);
+	for (i = 0; i < n; i++)
+		if (port_open(&ports[i], names[i]))
+			goto out;
+	printf("segment %s, %u slave(s), at %s%s%s\n", o->segment, ec_sim_count(sim), names[0],
+	       n > 1 ? " and " : "", n > 1 ? names[1] : "");
+	fflush(stdout);
+	ret = run_segment(sim, ports, n, o->verbose);
+out:
+	for (i = 0; i < n; i++)
+		port_close(&ports[i]);
+	ec_sim_free(sim);
+	return ret;
+}
+
+int main(int argc, char **argv)
+{
+	struct options o = { .segment = "bench", .seed = -1 };
+	int ret = parse(argc, argv, &o), n = argc - optind;
+
+	if (ret > 0)
+		return 0;
+	if (ret < 0) {
+		fputs("Try 'ethercat-sim --help'.\n", stderr);
+		return 2;
+	}
+	if (o.list || o.list_bugs || o.check) {
+		if (n) {
+			fprintf(stderr, "ethercat-sim: '%s': no interface is used here\n", argv[optind]);
+			return 2;
+		}
+		return o.list ? load_list() : o.list_bugs ? list_bugs() : check(&o);
+	}
+	if (n < 1 || n > EC_SIM_PORTS) {
+		fprintf(stderr, "ethercat-sim: %s\nTry 'ethercat-sim --help'.\n",
+			n ? "at most two interfaces" : "which interface?");
+		return 2;
+	}
+	if (n == 2 && !strcmp(argv[optind], argv[optind + 1])) {
+		fprintf(stderr, "ethercat-sim: %s is named twice\n", argv[optind]);
+		return 2;
+	}
+	return serve(&o, argv + optind, n);
+}

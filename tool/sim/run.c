@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Real time is model time, from 0 at the start. A frame enters the segment
+ * when it is read from the interface, and leaves after the time the modelled
+ * wire takes, or as soon after as the machine manages.
+ */
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/prctl.h>
+#include <time.h>
+
+#include "../../master/wire/frame.h"
+#include "run.h"
+
+#define FRAMES	1024		/* on their way at once */
+#define BURST	64		/* frames read before others are sent */
+#define LOOK_NS	100000000ull	/* longest sleep */
+#define SECOND	1000000000ull
+
+/* a frame on its way back */
+struct flying {
+	struct flying *next;
+	u64 due_ns;
+	int port;
+	size_t len;
+	u8 data[EC_ETH_MAX];
+};
+
+/**
+ * struct run - a running segment
+ * @sim: the segment
+ * @ports: interfaces, of master port 0 and 1
+ * @n_ports: how many
+ * @flying: by time of arrival
+ * @free: unused frames
+ * @wire_free_ns: when the last frame has left the master, by port
+ * @start_ns: time of the clock at model time 0
+ * @rx: frames received
+ * @tx: frames sent back
+ * @lost: frames the segment lost
+ * @dropped: frames too short, too long, too many or not sent
+ */
+struct run {
+	struct ec_sim *sim;
+	struct port *ports;
+	int n_ports;
+	struct flying *flying;
+	struct flying *free;
+	u64 wire_free_ns[EC_SIM_PORTS];
+	u64 start_ns;
+	u64 rx;
+	u64 tx;
+	u64 lost;
+	u64 dropped;
+};
+
+static volatile sig_atomic_t stop;
+
+static void on_signal(int sig)
+{
+	stop = sig;
+}
+
+static u64 now_ns(const struct run *r)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (u64)t.tv_sec * SECOND + (u64)t.tv_nsec - r->start_ns;
+}
+
+static struct flying *take(struct run *r)
+{
+	struct flying *f = r->free;
+
+	if (f)
+		r->free = f->next;
+	return f;
+}
+
+static void give(struct run *r, struct flying *f)
+{
+	f->next = r->free;
+	r->free = f;
+}
+
+static void insert(struct run *r, struct flying *f)
+{
+	struct flying **p = &r->flying;
+
+	while (*p && (*p)->due_ns <= f->due_ns)
+		p = &(*p)->next;
+	f->next = *p;
+	*p = f;
+}
+
+/* Copies of a frame follow one another on the wire. */
+static void copies(struct run *r, const struct flying *f, unsigned int n)
+{
+	for (unsigned int i = 1; i < n; i++) {
+		struct flying *g = take(r);
+
+		if (!g) {
+			r->dropped++;
+			return;
+		}
+		memcpy(g->data, f->data, f->len);
+		g->len = f->len;
+		g->port = f->port;
+		g->due_ns = f->due_ns + i * ec_frame_wire_ns(f->len);
+		insert(r, g);
+	}
+}
+
+/* One frame through the segment. */
+static void launch(struct run *r, int port, struct flying *f)
+{
+	struct ec_sim_result res;
+	u64 start = max(now_ns(r), r->wire_free_ns[port]);
+	s64 delay;
+
+	r->wire_free_ns[port] = start + ec_frame_wire_ns(f->len);
+	delay = ec_sim_frame_result(r->sim, port, f->data + EC_ETH_HDR, f->len - EC_ETH_HDR,
+				    start, &res);
+	if (delay < 0 || !res.copies || res.out_port >= r->n_ports) {
+		r->lost++;
+		give(r, f);
+		return;
+	}
+	f->data[6] |= 2;	/* a slave has processed it */
+	f->port = res.out_port;
+	f->due_ns = start + (u64)delay;
+	insert(r, f);
+	copies(r, f, res.copies);
+}
+
+static void receive(struct run *r, int port)
+{
+	for (int i = 0; i < BURST; i++) {
+		struct flying *f = take(r);
+		int n;
+
+		if (!f)		/* the rest waits in the socket */
+			return;
+		n = port_receive(&r->ports[port], f->data, sizeof(f->data));
+		if (n <= 0) {
+			give(r, f);
+			return;
+		}
+		r->rx++;
+		if (n > (int)sizeof(f->data) || n < EC_ETH_HDR + EC_FRAME_HDR) {
+			r->dropped++;
+			give(r, f);
+			continue;
+		}
+		f->len = (size_t)n;
+		launch(r, port, f);
+	}
+}
+
+static void deliver(struct run *r)
+{
+	while (r->flying && r->flying->due_ns <= now_ns(r)) {
+		struct flying *f = r->flying;
+
+		r->flying = f->next;
+		if (port_send(&r->ports[f->port], f->data, f->len))
+			r->dropped++;
+		else
+			r->tx++;
+		give(r, f);
+	}
+}
+
+static void show(const struct run *r)
+{
+	printf("%llu frames in, %llu out, %llu lost in the segment, %llu dropped\n",
+	       (unsigned long long)r->rx, (unsigned long long)r->tx,
+	       (unsigned long long)r->lost, (unsigned long long)r->dropped);
+	fflush(stdout);
+}
+
+/* Sleep until a frame arrives or is due. */
+static void rest(struct run *r, const sigset_t *mask)
+{
+	struct pollfd fds[EC_SIM_PORTS];
+	u64 now = now_ns(r), left = LOOK_NS;
+	struct timespec t;
+	int i;
+
+	if (r->flying)
+		left = r->flying->due_ns > now ? min(r->flying->due_ns - now, left) : 0;
+	for (i = 0; i < r->n_ports; i++)
+		fds[i] = (struct pollfd){ .fd = r->ports[i].fd, .events = r->free ? POLLIN : 0 };
+	t = (struct timespec){ .tv_nsec = (long)left };
+	if (ppoll(fds, (nfds_t)r->n_ports, &t, mask) <= 0)
+		return;
+	for (i = 0; i < r->n_ports; i++)
+		if (fds[i].revents)
+			receive(r, i);
+}
+
+/* Now and then: time for a quiet segment, a look at the interfaces. */
+static bool look(struct run *r, u64 now)
+{
+	ec_sim_advance(r->sim, now);
+	for (int i = 0; i < r->n_ports; i++) {
+		port_check(&r->ports[i]);
+		if (r->ports[i].gone)
+			return false;
+	}
+	return true;
+}
+
+static void loop(struct run *r, const sigset_t *mask, bool verbose)
+{
+	u64 looked = 0, shown = 0;
+
+	while (!stop) {
+		u64 now = now_ns(r);
+
+		deliver(r);
+		if (now - looked >= LOOK_NS) {
+			looked = now;
+			if (!look(r, now))
+				return;
+		}
+		if (verbose && now - shown >= SECOND) {
+			shown = now;
+			show(r);
+		}
+		rest(r, mask);
+	}
+}
+
+/* Signals arrive in ppoll() only, so none is missed. */
+static void catch_signals(sigset_t *old)
+{
+	struct sigaction act = { .sa_handler = on_signal };
+	sigset_t block;
+
+	sigemptyset(&block);
+	sigaddset(&block, SIGINT);
+	sigaddset(&block, SIGTERM);
+	sigaddset(&block, SIGHUP);
+	sigprocmask(SIG_BLOCK, &block, old);
+	sigaction(SIGINT, &act, NULL);
+	sigaction(SIGTERM, &act, NULL);
+	sigaction(SIGHUP, &act, NULL);
+}
+
+/**
+ * run_segment() - answer frames until a signal comes
+ * @sim: segment
+ * @ports: interfaces, of master port 0 and 1
+ * @n_ports: how many
+ * @verbose: counters every second
+ *
+ * Return: exit status: 0 after a signal, 1 when an interface is gone.
+ */
+int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, bool verbose)
+{
+	struct run r = { .sim = sim, .ports = ports, .n_ports = n_ports };
+	struct flying *frames = calloc(FRAMES, sizeof(*frames));
+	sigset_t mask;
+
+	if (!frames) {
+		fprintf(stderr, "ethercat-sim: out of memory\n");
+		return 1;
+	}
+	for (int i = 0; i < FRAMES; i++)
+		give(&r, &frames[i]);
+	catch_signals(&mask);
+	prctl(PR_SET_TIMERSLACK, 1ul);
+	r.start_ns = now_ns(&r);
+	loop(&r, &mask, verbose);
+	show(&r);
+	free(frames);
+	return !stop;
+}
