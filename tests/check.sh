@@ -11,7 +11,7 @@
 set -u
 [ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
-levels="unit lib tool fuzz data kernels system"
+levels="unit uml lib tool fuzz data kernels system"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -36,6 +36,7 @@ count() {
 }
 
 level_unit() { make -s -C tests/unit; }
+level_uml() { tests/uml/run.sh; }
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
 level_fuzz() { make -s -C tests/fuzz check SECONDS=3; }
@@ -59,7 +60,7 @@ run() {
 	echo "=== $name: $((SECONDS - t0)) s"
 }
 
-tests/install-deps.sh build vm json python || exit 1
+tests/install-deps.sh build vm uml json python || exit 1
 for l in ${*:-$levels}; do
 	if [ "$l" = data ] && [ -z "${DATA:-}" ]; then
 		echo "=== data: not run: DATA= names no folder of images and captures"

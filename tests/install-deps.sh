@@ -30,7 +30,7 @@ for group; do
 		   sparse kmod cpio xz-utils zstd" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils bats tcpdump
 		   iproute2 tshark" ;;
-	uml)	p="linux-source-6.1 xz-utils" ;;
+	uml)	p="linux-source-6.1 xz-utils python3" ;;
 	python)	p="python3-venv" ;;
 	json)	p="jq" ;;
 	-h|--help) usage ;;
