@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/err.h>
+#include "bus.h"
+#include "master/ioctl.h"
+#include "master/wire/sii.h"
+
+static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
+
+/**
+ * bus_new() - a master waiting for its device, and a segment
+ * @test: case; its suite has bus_exit() as .exit
+ * @text: description of the segment, or the name of a built-in one
+ *
+ * Return: bus; the case fails when there is none.
+ */
+struct bus *bus_new(struct kunit *test, const char *text)
+{
+	struct bus *b = kunit_kzalloc(test, sizeof(*b), GFP_KERNEL);
+	struct ec_sim_error err = { 0 };
+	char *device = "bus0";
+	int ret;
+
+	KUNIT_ASSERT_NOT_NULL(test, b);
+	b->test = test;
+	text = ec_sim_builtin(text) ?: text;
+	ret = ec_sim_describe(&b->sim, &ec_sim_link_ops, text, strlen(text), NULL, &err);
+	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
+	test->priv = b;
+	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
+	b->m = ec_master_get(0);
+	b->app.master = b->m;
+	b->app.writable = true;
+	mutex_init(&b->app.lock);
+	return b;
+}
+
+/**
+ * bus_plug() - offer the segment to the master
+ * @b: bus
+ */
+void bus_plug(struct bus *b)
+{
+	struct ec_sim_link *l;
+
+	b->t0 = ktime_get_ns();
+	l = ec_sim_link_create("bus0", mac, b->sim);
+	KUNIT_ASSERT_FALSE(b->test, IS_ERR(l));
+	b->link = l;
+}
+
+/**
+ * bus_up() - a scanned bus with all slaves in PREOP
+ * @test: case
+ * @text: as for bus_new()
+ * @slaves: how many there must be
+ *
+ * Return: bus.
+ */
+struct bus *bus_up(struct kunit *test, const char *text, u32 slaves)
+{
+	struct bus *b = bus_new(test, text);
+
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, slaves, EC_AL_PREOP, 10000), ~0ull);
+	return b;
+}
+
+/**
+ * bus_exit() - .exit of every suite
+ * @test: case
+ */
+void bus_exit(struct kunit *test)
+{
+	struct bus *b = test->priv;
+
+	if (!b)
+		return;
+	test->priv = NULL;
+	ec_masters_destroy();
+	if (b->link)
+		ec_sim_link_destroy(b->link);
+	else
+		ec_sim_free(b->sim);
+}
+
+/**
+ * bus_settled() - no scan and no worker is busy
+ * @b: bus
+ *
+ * Return: true when nothing is going on.
+ */
+bool bus_settled(struct bus *b)
+{
+	u32 i;
+
+	if (READ_ONCE(b->m->scan_busy) || READ_ONCE(b->m->rescan))
+		return false;
+	for (i = 0; i < b->m->n_slaves; i++)
+		if (work_busy(&b->m->slaves[i]->work))
+			return false;
+	return true;
+}
+
+static bool all_in(const struct bus *b, u32 slaves, u8 state)
+{
+	u32 i;
+
+	if (b->m->n_slaves != slaves || READ_ONCE(b->m->scan_busy))
+		return false;
+	for (i = 0; i < slaves; i++)
+		if (b->m->slaves[i]->al_status != state)
+			return false;
+	return true;
+}
+
+/**
+ * bus_wait() - wait until the master knows @slaves slaves, all in @state
+ * @b: bus
+ * @slaves: how many
+ * @state: AL state without error
+ * @limit_ms: bus time
+ *
+ * Return: bus time since the device was plugged in, us; ~0 after the limit.
+ */
+u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms)
+{
+	u64 end = ktime_get_ns() + (u64)limit_ms * NSEC_PER_MSEC;
+
+	while (!all_in(b, slaves, state)) {
+		if (ktime_get_ns() > end)
+			return ~0ull;
+		usleep_range(100, 101);
+	}
+	return div_u64(ktime_get_ns() - b->t0, NSEC_PER_USEC);
+}
+
+/**
+ * bus_wait_al() - wait until the master knows that a slave is in a state
+ * @b: bus
+ * @position: ring position
+ * @al_status: state, with EC_AL_ERROR when that is expected
+ * @limit_ms: bus time
+ *
+ * Return: how long that took, us; ~0 after the limit.
+ */
+u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms)
+{
+	u64 t0 = ktime_get_ns(), end = t0 + (u64)limit_ms * NSEC_PER_MSEC;
+
+	while (READ_ONCE(bus_slave(b, position)->al_status) != al_status) {
+		if (ktime_get_ns() > end)
+			return ~0ull;
+		usleep_range(100, 101);
+	}
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+struct ec_slave *bus_slave(struct bus *b, u32 position)
+{
+	KUNIT_ASSERT_LT(b->test, position, b->m->n_slaves);
+	return b->m->slaves[position];
+}
+
+struct ec_esc *bus_esc(struct bus *b, u32 index)
+{
+	struct ec_esc *esc = ec_sim_slave(b->sim, index);
+
+	KUNIT_ASSERT_NOT_NULL(b->test, esc);
+	return esc;
+}
+
+struct ec_app *bus_app(struct bus *b, const char *name)
+{
+	struct ec_app *app = ec_sim_find(b->sim, name);
+
+	KUNIT_ASSERT_NOT_NULL_MSG(b->test, app, "no slave %s", name);
+	return app;
+}
+
+u64 bus_frames(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.tx_frames);
+}
+
+u64 bus_lost(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.lost);
+}
+
+/**
+ * bus_fault() - something goes wrong from now on
+ * @b: bus
+ * @type: what
+ * @slave: index in the segment
+ * @port: port
+ * @arg: as in struct ec_sim_fault
+ * @arg2: likewise
+ */
+void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, u32 arg,
+	       u32 arg2)
+{
+	struct ec_sim_fault f = {
+		.at_ns = ktime_get_ns(), .type = type, .slave = slave, .port = port,
+		.arg = arg, .arg2 = arg2,
+	};
+
+	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+/**
+ * bus_fill_eeprom() - let an EEPROM be used up to its end
+ * @b: bus, not plugged in yet
+ * @index: of the slave in the segment
+ * @bytes: where the end mark shall end
+ *
+ * A category of the vendor fills the room, as in real devices with texts and
+ * pictures.
+ */
+void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes)
+{
+	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
+	size_t used = ec_sii_used(e->data, e->len);
+
+	KUNIT_ASSERT_NE(b->test, used, 0ul);
+	KUNIT_ASSERT_LE(b->test, used + 4, bytes);
+	KUNIT_ASSERT_LE(b->test, bytes, e->len);
+	/* the end mark is the last word in use */
+	put_unaligned_le16(0x0900, e->data + used - 2);
+	put_unaligned_le16((bytes - used - 4) / 2, e->data + used);
+	memset(e->data + used + 2, 0x5a, bytes - used - 4);
+	put_unaligned_le16(0xffff, e->data + bytes - 2);
+	KUNIT_ASSERT_EQ(b->test, ec_sii_used(e->data, e->len), bytes);
+}
+
+/**
+ * bus_request() - what "ethercat states" does
+ * @b: bus
+ * @position: ring position
+ * @state: AL state
+ */
+void bus_request(struct bus *b, u32 position, u8 state)
+{
+	struct ec_ioc_state s = { .position = position, .state = state };
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_state(&b->app, &s), 0);
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * A master and a simulated segment in virtual time: the code of the modules as
+ * it is, joined by the virtual device "bus0". Time passes only while everybody
+ * sleeps, so a wait of a second costs nothing and a run is always the same.
+ */
+#ifndef EC_BUS_H
+#define EC_BUS_H
+
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include "ec_kunit.h"
+#include "devices/sim/describe.h"
+#include "devices/sim/sim_link.h"
+#include "master/cdev.h"
+#include "master/master.h"
+#include "master/session.h"
+#include "master/slave.h"
+#include "master/xfer.h"
+
+/**
+ * struct bus - what a case works with
+ * @test: the case
+ * @m: master 0
+ * @sim: segment
+ * @link: virtual device in between; NULL: not offered yet
+ * @app: open file of the application
+ * @t0: when the device was offered (ktime, ns)
+ */
+struct bus {
+	struct kunit *test;
+	struct ec_master *m;
+	struct ec_sim *sim;
+	struct ec_sim_link *link;
+	struct ec_file app;
+	u64 t0;
+};
+
+struct bus *bus_new(struct kunit *test, const char *text);
+void bus_plug(struct bus *b);
+struct bus *bus_up(struct kunit *test, const char *text, u32 slaves);
+void bus_exit(struct kunit *test);
+
+u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms);
+u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms);
+bool bus_settled(struct bus *b);
+
+struct ec_slave *bus_slave(struct bus *b, u32 position);
+struct ec_esc *bus_esc(struct bus *b, u32 index);
+struct ec_app *bus_app(struct bus *b, const char *name);
+u64 bus_frames(const struct bus *b);
+u64 bus_lost(const struct bus *b);
+void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, u32 arg,
+	       u32 arg2);
+void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes);
+void bus_request(struct bus *b, u32 position, u8 state);
+
+/* A figure of this run; bench scripts look for these lines. */
+#define bus_figure(fmt, ...)	pr_info("# figure: " fmt "\n", ##__VA_ARGS__)
+
+#endif

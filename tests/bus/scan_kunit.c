@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The scan: who is on the bus, and what their EEPROMs say. */
+#include "bus.h"
+
+/* the built-in bench, in ring order */
+static const struct {
+	const char *name;
+	const char *order;
+	u16 alias;
+	u8 in_bytes;
+	u8 out_bytes;
+	u16 parent;
+} bench[] = {
+	{ "coupler1", "EK1100", 1, 0, 0, EC_UAPI_NONE16 },
+	{ "dio", "EL1859", 0, 1, 1, 0 },
+	{ "ai", "EL3062", 0, 8, 0, 1 },
+	{ "ao", "EL4002", 0, 0, 4, 2 },
+	{ "axis1", "EL7201", 0, 6, 6, 3 },
+	{ "axis2", "EL7201", 0, 6, 6, 4 },
+	{ "switch", "EL6614", 0, 0, 0, 5 },
+	{ "extension", "EK1110", 0, 0, 0, 6 },
+	{ "coupler2", "EK1100", 2, 0, 0, 7 },
+	{ "di1", "EL1008", 0, 1, 0, 8 },
+	{ "di2", "EL1004", 0, 1, 0, 9 },
+	{ "do1", "EL2008", 1001, 0, 1, 10 },
+	{ "do2", "EL2004", 0, 0, 1, 11 },
+	{ "ai2", "EL3062", 0, 8, 0, 12 },
+	{ "ao2", "EL4002", 0, 0, 4, 13 },
+	{ "wago", "750-354", 3, 9, 9, 0 },
+	{ "drive1", "drive", 0, 22, 22, 15 },
+	{ "drive2", "drive", 0, 22, 22, 16 },
+	{ "io", "io", 0, 8, 8, 17 },
+	{ "coupler3", "EK1100", 4, 0, 0, 18 },
+	{ "do3", "EL2008", 0, 0, 1, 19 },
+	{ "di3", "EL1008", 0, 1, 0, 20 },
+};
+
+static u32 pd_bytes(const struct ec_slave *s, bool out)
+{
+	u32 bytes = 0;
+	unsigned int sm;
+
+	for (sm = 0; sm < s->n_sms; sm++)
+		if (!!(s->sms[sm].control & EC_SM_DIR_WRITE) == out)
+			bytes += ec_pdo_list_bytes(&s->sm_pdos[sm]);
+	return bytes;
+}
+
+static void scan_bench_identity(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(bench); i++) {
+		struct ec_slave *s = bus_slave(b, i);
+		const struct ec_app *app = bus_app(b, bench[i].name);
+		const struct ec_app_dev *d = &app->model->dev;
+
+		KUNIT_EXPECT_EQ(test, s->position, i);
+		KUNIT_EXPECT_STREQ(test, s->order, bench[i].order);
+		KUNIT_EXPECT_STREQ(test, s->order, d->name);
+		KUNIT_EXPECT_STREQ(test, s->name, d->title);
+		KUNIT_EXPECT_STREQ(test, s->group, d->group);
+		KUNIT_EXPECT_EQ(test, s->info.vendor, d->vendor);
+		KUNIT_EXPECT_EQ(test, s->info.product, d->product);
+		KUNIT_EXPECT_EQ(test, s->info.revision, d->revision);
+		KUNIT_EXPECT_EQ(test, s->alias, bench[i].alias);
+		KUNIT_EXPECT_EQ(test, s->info.protocols, d->protocols);
+		KUNIT_EXPECT_EQ(test, s->info.std.rx_size, d->std.rx_len);
+		KUNIT_EXPECT_EQ(test, ec_slave_features(s), d->features);
+		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		/* the image is the one in the slave, up to its end mark */
+		KUNIT_ASSERT_LE(test, s->sii_bytes, app->esc->eep.len);
+		KUNIT_EXPECT_GT(test, s->sii_bytes, 128ul);
+		KUNIT_EXPECT_MEMEQ(test, s->sii, app->esc->eep.data, s->sii_bytes);
+	}
+}
+
+static void scan_bench_pdos(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	const struct ec_pdo_list *l = &bus_slave(b, 4)->sm_pdos[2];
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(bench); i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		KUNIT_EXPECT_EQ_MSG(test, pd_bytes(s, false), bench[i].in_bytes, "inputs of %s",
+				    bench[i].name);
+		KUNIT_EXPECT_EQ_MSG(test, pd_bytes(s, true), bench[i].out_bytes, "outputs of %s",
+				    bench[i].name);
+	}
+	/* outputs of the servo terminal: controlword and velocity */
+	KUNIT_ASSERT_EQ(test, l->n, 2);
+	KUNIT_EXPECT_EQ(test, l->pdos[0].index, 0x1600);
+	KUNIT_EXPECT_EQ(test, l->pdos[0].entries[0].index, 0x7010);
+	KUNIT_EXPECT_EQ(test, l->pdos[0].entries[0].bits, 16);
+}
+
+static void scan_bench_topology(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	u32 i, p;
+
+	for (i = 0; i < ARRAY_SIZE(bench); i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		KUNIT_EXPECT_EQ_MSG(test, s->next[s->upstream], bench[i].parent, "parent of %s",
+				    bench[i].name);
+		for (p = 0; p < EC_MAX_PORT; p++)
+			if (p != s->upstream && s->next[p] != EC_UAPI_NONE16)
+				KUNIT_EXPECT_EQ_MSG(test, bench[s->next[p]].parent, i,
+						    "port %u of %s", p, bench[i].name);
+	}
+	/* the fieldbus coupler hangs at the second way out of the first coupler */
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->next[1], 1);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->next[2], 15);
+}
+
+/* Station addresses come from an allocator and are different. */
+static void scan_stations(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	u32 i, k;
+
+	for (i = 0; i < ARRAY_SIZE(bench); i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		KUNIT_EXPECT_EQ(test, s->station,
+				get_unaligned_le16(bus_app(b, bench[i].name)->esc->mem +
+						   EC_REG_STATION));
+		KUNIT_EXPECT_NE(test, s->station, 0);
+		for (k = 0; k < i; k++)
+			KUNIT_EXPECT_NE(test, s->station, bus_slave(b, k)->station);
+	}
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
+static struct kunit_case scan_cases[] = {
+	KUNIT_CASE(scan_bench_identity),
+	KUNIT_CASE(scan_bench_pdos),
+	KUNIT_CASE(scan_bench_topology),
+	KUNIT_CASE(scan_stations),
+	{}
+};
+
+static struct kunit_suite scan_suite = {
+	.name = "bus_scan",
+	.exit = bus_exit,
+	.test_cases = scan_cases,
+};
+
+kunit_test_suite(scan_suite);
+
+MODULE_LICENSE("GPL");
