@@ -51,4 +51,8 @@ check:
 check-kernels:
 	tests/check-kernels.sh
 
-.PHONY: check check-kernels
+# the tests of the model notice each of its deliberate errors
+check-witness:
+	tests/witness/run.sh
+
+.PHONY: check check-kernels check-witness

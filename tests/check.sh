@@ -11,7 +11,7 @@
 set -u
 [ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
-levels="unit uml lib tool fuzz data kernels system"
+levels="unit witness uml lib tool fuzz data kernels system"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -36,7 +36,7 @@ count() {
 }
 
 level_unit() { make -s -C tests/unit; }
-level_uml() { tests/uml/run.sh; }
+levels="unit witness uml lib tool fuzz data kernels system"
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
 level_fuzz() { make -s -C tests/fuzz check SECONDS=3; }

@@ -525,6 +525,11 @@ u64 ec_app_mbox_due(const struct ec_app *app);
 void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
 		      u64 now);
 
+static inline bool ec_app_bug(const struct ec_app *app, enum ec_sim_bug bug)
+{
+	return ec_sim_has_bug(app->esc->sim, bug);
+}
+
 /* slave_od.c */
 const struct ec_app_object *ec_app_od_object(const struct ec_app_model *m, u16 index);
 const struct ec_app_entry *ec_app_od_entry(const struct ec_app_model *m, u16 index,

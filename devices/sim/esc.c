@@ -95,7 +95,7 @@ void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear)
 	if (!ec_esc_bug(esc, EC_SIM_BUG_EVENT_STUCK))
 		esc->ecat_event &= (u16)~clear;
 	esc->ecat_event |= set;
-	irq = esc->ecat_event & ec_esc_get16(esc, EC_REG_ECAT_MASK);
+	irq = ec_esc_irq(esc);
 	if (irq != esc->irq) {
 		esc->irq = irq;
 		esc->sim->irqs += irq ? 1 : -1u;
@@ -217,6 +217,8 @@ static void clear_errors(struct ec_esc *esc, u16 ado, u32 len)
 {
 	u8 *m = esc->mem;
 
+	if (ec_esc_bug(esc, EC_SIM_BUG_ERRORS_KEPT))
+		return;
 	if (ec_range_hit(ado, len, EC_REG_ERR_RX(0), 12))
 		memset(m + EC_REG_ERR_RX(0), 0, 12);
 	if (ec_range_hit(ado, len, EC_REG_ERR_PU, 1))
@@ -294,13 +296,14 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 	u8 *m = esc->mem;
 	u32 i;
 
-	if (al && esc->al_unread)
+	if (al && esc->al_unread && !ec_esc_bug(esc, EC_SIM_BUG_AL_OVERWRITE))
 		return false;
 	for (i = 0; sms && i < esc->cfg.sms; i++)
 		act[i] = esc->sm[i].page.activate;
 
 	for (i = 0; i < len; i++)
-		if (is_plain(esc, ado + i))
+		if (is_plain(esc, ado + i) ||
+		    ec_esc_bug(esc, EC_SIM_BUG_READ_ONLY))
 			m[ado + i] = buf[i];
 
 	if (ado < 0x0200) {
@@ -430,7 +433,8 @@ static int physical(struct ec_esc *esc, struct ec_dgram *d,
 		add++;
 	if (wr && ec_esc_phys_write(esc, d->ado, in, d->len, ctx)) {
 		if (match)
-			add += rd || ec_cmd_reads(d->cmd) ? 2 : 1;
+			add += ec_cmd_reads(d->cmd) &&
+			       !ec_esc_bug(esc, EC_SIM_BUG_BRW_WKC) ? 2 : 1;
 		else
 			add += !ec_esc_bug(esc, EC_SIM_BUG_FRMW_WKC);
 	}
@@ -453,8 +457,7 @@ void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
 
 	if (!esc->fault.dead) {
 		if (esc->irq) {
-			d->irq |= esc->ecat_event &
-				  ec_esc_get16(esc, EC_REG_ECAT_MASK);
+			d->irq |= ec_esc_irq(esc);
 			put_unaligned_le16(d->irq, d->hdr + 8);
 		}
 		switch (d->cmd) {

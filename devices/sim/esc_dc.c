@@ -75,7 +75,9 @@ u64 ec_esc_local_time(const struct ec_esc *esc, u64 now)
 
 static u64 offset(const struct ec_esc *esc)
 {
-	return get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET);
+	u64 v = get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET);
+
+	return ec_esc_bug(esc, EC_SIM_BUG_OFFSET_SIGN) ? -v : v;
 }
 
 /**
@@ -156,8 +158,9 @@ static void compare(struct ec_esc *esc, u64 received, bool wide, u64 now)
 	done = slewed(dc, (s64)(now - dc->base_ns));
 	rebase(esc, now);
 	local = dc->base_local;
-	sys = local + offset(esc) -
-	      get_unaligned_le32(esc->mem + EC_REG_DC_DELAY);
+	sys = local + offset(esc);
+	if (!ec_esc_bug(esc, EC_SIM_BUG_DC_DELAY))
+		sys -= get_unaligned_le32(esc->mem + EC_REG_DC_DELAY);
 	if (wide && is_64bit(esc))
 		diff = clamp64((s64)(sys - received), MAX_DIFF);
 	else
@@ -184,6 +187,8 @@ static void compare(struct ec_esc *esc, u64 received, bool wide, u64 now)
 						DEV_LIMIT_PPB) * 65536;
 	}
 	step = dc->dev_ppb16 >> depth(esc, EC_REG_DC_FILTER_SPEED);
+	if (ec_esc_bug(esc, EC_SIM_BUG_DC_DRIFT))
+		step = 0;
 	dc->dev_ppb16 -= step;
 	dc->adj_ppb16 = clamp64(dc->adj_ppb16 - step, MAX_ADJ_PPB * 65536LL);
 
@@ -212,7 +217,10 @@ static u64 sync_number(const struct ec_esc *esc, u64 sys)
 static u64 sync0_time(const struct ec_esc *esc, u64 number)
 {
 	u32 cycle = get_unaligned_le32(esc->mem + EC_REG_DC_CYCLE0);
-	u64 t = esc->dc.start + number * cycle;
+	u64 t;
+
+	number += ec_esc_bug(esc, EC_SIM_BUG_SYNC_LATE);
+	t = esc->dc.start + number * cycle;
 
 	return is_64bit(esc) ? t : (u32)t;
 }
@@ -362,8 +370,8 @@ static void latch_receive(struct ec_esc *esc, const struct ec_frame_ctx *ctx)
 
 		if (!(ctx->recv_mask & BIT(p)))
 			continue;
-		t = ec_esc_local_time(esc, ctx->recv[p]) +
-		    (u64)noise(esc, ctx->recv[p], (u32)p);
+		t = ctx->recv[ec_esc_bug(esc, EC_SIM_BUG_RECV_SAME) ? 0 : p];
+		t = ec_esc_local_time(esc, t) + (u64)noise(esc, t, (u32)p);
 		put_unaligned_le32((u32)t, esc->mem + EC_REG_DC_RECV(p));
 	}
 	put_unaligned_le64(ec_esc_local_time(esc, ctx->now) +

@@ -77,6 +77,8 @@ static void finish(struct ec_esc *esc)
 				at + i < e->len ? e->data[at + i] : 0xff;
 		break;
 	case EC_EEP_CMD_WRITE:
+		if (ec_esc_bug(esc, EC_SIM_BUG_EEP_WRITE_LOST))
+			break;
 		if (at + 2 <= e->len)
 			put_unaligned_le16(e->wdata, e->data + at);
 		else
@@ -133,7 +135,8 @@ static void command(struct ec_esc *esc, u16 control, u64 now)
 	case 0:
 		return;
 	case EC_EEP_CMD_WRITE:
-		if (!(control & EC_EEP_WRITE_ENABLE)) {
+		if (!(control & EC_EEP_WRITE_ENABLE) &&
+		    !ec_esc_bug(esc, EC_SIM_BUG_EEP_ENABLE)) {
 			e->control |= EC_EEP_ERR_WRITE_EN;
 			return;
 		}

@@ -97,6 +97,13 @@ static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
 	return get_unaligned_le16(esc->mem + reg);
 }
 
+/* what the slave adds to the IRQ field of each datagram */
+static inline u16 ec_esc_irq(const struct ec_esc *esc)
+{
+	return esc->ecat_event & (ec_esc_bug(esc, EC_SIM_BUG_IRQ_NO_MASK) ?
+				  0xffff : ec_esc_get16(esc, EC_REG_ECAT_MASK));
+}
+
 /* esc.c */
 bool ec_esc_config_valid(const struct ec_esc_config *c);
 void ec_esc_power_on(struct ec_esc *esc, u64 now);

@@ -105,7 +105,8 @@ void ec_esc_sm_refresh(struct ec_esc *esc)
 
 		if (sm->active) {
 			if (is_mailbox(sm))
-				st |= sm->full ? EC_SM_ST_FULL : 0;
+				st |= sm->full && !ec_esc_bug(esc, EC_SIM_BUG_SM_STATUS) ?
+				      EC_SM_ST_FULL : 0;
 			else
 				st |= (u8)(sm->last_buf << 4);
 		}
@@ -201,7 +202,8 @@ u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
 	if (is_mailbox(sm))
 		return esc->mem + ado;
 	buf = esc->mem + sm->page.start;
-	buf += (pdi ? sm->pdi_buf : sm->ecat_buf) * sm->page.len;
+	if (!ec_esc_bug(esc, EC_SIM_BUG_SM_ONE_BUFFER))
+		buf += (pdi ? sm->pdi_buf : sm->ecat_buf) * sm->page.len;
 	return buf + (ado - sm->page.start);
 }
 

@@ -46,6 +46,10 @@ void ec_esc_wd_expire(struct ec_esc *esc, u64 now)
 {
 	u8 *count = esc->mem + EC_REG_WD_SM_COUNT;
 
+	if (ec_esc_bug(esc, EC_SIM_BUG_WD_DEAF)) {
+		ec_esc_wd_trigger(esc, now);
+		return;
+	}
 	esc->wd_due = EC_ESC_NEVER;
 	if (*count != 0xff)
 		++*count;

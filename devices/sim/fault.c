@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Scripted faults, and deliberate errors of the model itself. */
+/* Scripted faults. */
 #include "esc_int.h"
 
 static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
@@ -21,32 +21,6 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_ERRORS] = "errors",
 };
 
-static const char * const bug_names[EC_SIM_BUGS] = {
-	[EC_SIM_BUG_NONE] = "none",
-	[EC_SIM_BUG_LRW_WKC] = "lrw_wkc",
-	[EC_SIM_BUG_BRD_NO_OR] = "brd_no_or",
-	[EC_SIM_BUG_AP_NO_INC] = "ap_no_inc",
-	[EC_SIM_BUG_SM_DIRECTION] = "sm_direction",
-	[EC_SIM_BUG_MBOX_FULL] = "mbox_full",
-	[EC_SIM_BUG_MBOX_EMPTY] = "mbox_empty",
-	[EC_SIM_BUG_EEP_NEVER_BUSY] = "eep_never_busy",
-	[EC_SIM_BUG_EEP_ADDRESS] = "eep_address",
-	[EC_SIM_BUG_EEP_READ8] = "eep_read8",
-	[EC_SIM_BUG_FMMU_SHIFT] = "fmmu_shift",
-	[EC_SIM_BUG_FMMU_LENGTH] = "fmmu_length",
-	[EC_SIM_BUG_LWR_INPUTS] = "lwr_inputs",
-	[EC_SIM_BUG_WKC_PER_FMMU] = "wkc_per_fmmu",
-	[EC_SIM_BUG_NO_ALIAS] = "no_alias",
-	[EC_SIM_BUG_FRMW_WKC] = "frmw_wkc",
-	[EC_SIM_BUG_LOOPS_INVERTED] = "loops_inverted",
-	[EC_SIM_BUG_AL_NO_OR] = "al_no_or",
-	[EC_SIM_BUG_CIRCULATING] = "circulating",
-	[EC_SIM_BUG_NO_RECV_TIMES] = "no_recv_times",
-	[EC_SIM_BUG_EVENT_STUCK] = "event_stuck",
-	[EC_SIM_BUG_DC_JUMP] = "dc_jump",
-	[EC_SIM_BUG_DIFF_TWOS] = "diff_twos",
-};
-
 /**
  * ec_sim_fault_name() - name of a fault
  * @type: which
@@ -57,30 +31,6 @@ static const char * const bug_names[EC_SIM_BUGS] = {
 const char *ec_sim_fault_name(enum ec_sim_fault_type type)
 {
 	return (u32)type < EC_SIM_FAULT_TYPES ? fault_names[type] : NULL;
-}
-
-/**
- * ec_sim_bug_name() - name of a deliberate error
- * @bug: which
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: the name, NULL for an unknown one.
- */
-const char *ec_sim_bug_name(enum ec_sim_bug bug)
-{
-	return (u32)bug < EC_SIM_BUGS ? bug_names[bug] : NULL;
-}
-
-/**
- * ec_sim_set_bug() - let the model be wrong in one way
- * @sim: segment
- * @bug: which, EC_SIM_BUG_NONE: be right
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_sim_set_bug(struct ec_sim *sim, enum ec_sim_bug bug)
-{
-	sim->bug = bug;
 }
 
 int ec_sim_faults_init(struct ec_sim *sim)

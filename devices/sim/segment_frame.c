@@ -83,8 +83,7 @@ static void collect_irq(const struct pass *ps, struct ec_dgram *d)
 		const struct ec_esc *esc = ps->r->step[i].esc;
 
 		if (esc->irq && !esc->fault.dead)
-			d->irq |= esc->ecat_event &
-				  ec_esc_get16(esc, EC_REG_ECAT_MASK);
+			d->irq |= ec_esc_irq(esc);
 	}
 	put_unaligned_le16(d->irq, d->hdr + 8);
 }

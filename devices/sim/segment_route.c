@@ -90,6 +90,7 @@ void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 		switch (loops >> 2 * p & 3) {
 		case EC_LOOP_AUTO:
 			port->auto_closed = false;
+			open |= port->open && ec_esc_bug(esc, EC_SIM_BUG_CUT_OPEN);
 			break;
 		case EC_LOOP_AUTO_CLOSE:
 			if (!port->link)
@@ -132,7 +133,8 @@ void ec_sim_ports(struct ec_esc *esc, u64 now)
 		port->link = link;
 		if (!esc->powered)
 			continue;
-		if (!link && *lost != 0xff)
+		if (!link && *lost != 0xff &&
+		    !ec_esc_bug(esc, EC_SIM_BUG_LOST_UNCOUNTED))
 			++*lost;
 		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
 	}
@@ -230,7 +232,9 @@ static bool add_step(struct ec_sim *sim, struct ec_sim_route *r, int mport,
 
 static void walk(struct ec_sim *sim, int mport)
 {
-	static const u8 next_port[EC_MAX_PORT] = { 3, 2, 0, 1 };
+	static const u8 right[EC_MAX_PORT] = { 3, 2, 0, 1 };
+	static const u8 wrong[EC_MAX_PORT] = { 1, 2, 3, 0 };
+	const u8 *next_port = sim->bug == EC_SIM_BUG_PORT_ORDER ? wrong : right;
 	struct ec_sim_route *r = &sim->route[mport];
 	const struct ec_esc_port *cable = &sim->mport[mport];
 	u32 guard = 8 * sim->count + 16;
@@ -263,7 +267,8 @@ static void walk(struct ec_sim *sim, int mport)
 			}
 			p = next_port[p];
 		} while (!esc->port[p].open);
-		t += processed ? esc->cfg.process_ns : esc->cfg.forward_ns;
+		if (sim->bug != EC_SIM_BUG_NO_DELAY)
+			t += processed ? esc->cfg.process_ns : esc->cfg.forward_ns;
 
 		cable = &esc->port[p];
 		if (!cable->link)		/* loop held open: lost */

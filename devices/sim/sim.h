@@ -7,6 +7,7 @@
 #ifndef EC_SIM_SIM_H
 #define EC_SIM_SIM_H
 
+#include "bug.h"
 #include "esc.h"
 
 #define EC_SIM_MASTER0	(-1)	/* "parent" in ec_sim_wire() */
@@ -85,34 +86,6 @@ struct ec_sim_fault {
 	u64 value;
 };
 
-/* deliberate errors of the model, each to be found by a witness test */
-enum ec_sim_bug {
-	EC_SIM_BUG_NONE,
-	EC_SIM_BUG_LRW_WKC,		/* write part of LRW counts 1 */
-	EC_SIM_BUG_BRD_NO_OR,		/* BRD overwrites */
-	EC_SIM_BUG_AP_NO_INC,		/* position not incremented */
-	EC_SIM_BUG_SM_DIRECTION,	/* direction check skipped */
-	EC_SIM_BUG_MBOX_FULL,		/* full mailbox takes another write */
-	EC_SIM_BUG_MBOX_EMPTY,		/* read of an empty mailbox counts */
-	EC_SIM_BUG_EEP_NEVER_BUSY,	/* data late but busy not shown */
-	EC_SIM_BUG_EEP_ADDRESS,		/* always reads address 0 */
-	EC_SIM_BUG_EEP_READ8,		/* 8-byte flag inverted */
-	EC_SIM_BUG_FMMU_SHIFT,		/* bit position off by one */
-	EC_SIM_BUG_FMMU_LENGTH,		/* one byte too short */
-	EC_SIM_BUG_LWR_INPUTS,		/* LWR also writes read FMMUs */
-	EC_SIM_BUG_WKC_PER_FMMU,	/* counts each FMMU */
-	EC_SIM_BUG_NO_ALIAS,		/* alias never matches */
-	EC_SIM_BUG_FRMW_WKC,		/* writers of FRMW and ARMW don't count */
-	EC_SIM_BUG_LOOPS_INVERTED,	/* loop bits of DL status */
-	EC_SIM_BUG_AL_NO_OR,		/* BRD of AL status keeps the last */
-	EC_SIM_BUG_CIRCULATING,		/* circulating bit ignored */
-	EC_SIM_BUG_NO_RECV_TIMES,	/* write to 0x0900 latches nothing */
-	EC_SIM_BUG_EVENT_STUCK,		/* ECAT events never cleared */
-	EC_SIM_BUG_DC_JUMP,		/* write to 0x0910 sets the time */
-	EC_SIM_BUG_DIFF_TWOS,		/* 0x092C as two's complement */
-	EC_SIM_BUGS
-};
-
 /**
  * struct ec_sim_result - fate of one frame
  * @out_port: master port at which it came back
@@ -161,7 +134,6 @@ int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault);
 void ec_sim_clear_faults(struct ec_sim *sim);
 const char *ec_sim_fault_name(enum ec_sim_fault_type type);
 void ec_sim_set_bug(struct ec_sim *sim, enum ec_sim_bug bug);
-const char *ec_sim_bug_name(enum ec_sim_bug bug);
 void ec_sim_set_slow(struct ec_sim *sim, bool slow);
 
 #endif

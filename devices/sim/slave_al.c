@@ -9,6 +9,8 @@ static void show(struct ec_app *app, u64 now)
 {
 	u16 status = app->state, code = app->error ? app->code : 0;
 
+	if (ec_app_bug(app, EC_SIM_BUG_AL_CODE))
+		code = 0;
 	if (app->error) {
 		status |= EC_AL_ERROR;
 	} else if (app->identify && app->model->params.id) {
@@ -113,7 +115,7 @@ static u16 check_pd_sm(const struct ec_app *app, enum ec_app_dir dir)
 	const struct ec_sm *p;
 	u16 bytes = app->bytes[dir];
 
-	if (n < 0)
+	if (n < 0 || ec_app_bug(app, EC_SIM_BUG_SM_UNCHECKED))
 		return 0;
 	p = &app->esc->sm[n].page;
 	if (!bytes)
@@ -287,7 +289,8 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 
 	/* an error not acknowledged: nothing but INIT is heard */
 	if (app->error) {
-		if (!(control & EC_AL_ERROR) && to != EC_AL_INIT)
+		if (!(control & EC_AL_ERROR) && to != EC_AL_INIT &&
+		    !ec_app_bug(app, EC_SIM_BUG_AL_NO_ACK))
 			return;
 		app->error = false;
 		app->code = 0;
@@ -302,7 +305,8 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 		show(app, now);
 		return;
 	}
-	if (!ec_al_legal(app->state, to)) {
+	if (!ec_al_legal(app->state, to) &&
+	    !ec_app_bug(app, EC_SIM_BUG_AL_SKIP)) {
 		ec_app_al_fail(app, app->state, EC_AL_CODE_INVALID_CHANGE, now);
 		return;
 	}

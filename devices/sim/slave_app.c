@@ -117,7 +117,8 @@ static void watchdog(struct ec_esc *esc, u64 now)
 {
 	struct ec_app *app = esc->app;
 
-	ec_app_outputs_clear(app);
+	if (!ec_app_bug(app, EC_SIM_BUG_WD_OUTPUTS))
+		ec_app_outputs_clear(app);
 	if (!app->model->emulation && app->state == EC_AL_OP)
 		ec_app_al_fail(app, EC_AL_SAFEOP, EC_AL_CODE_SM_WATCHDOG, now);
 	ec_app_inputs(app, now);

@@ -60,7 +60,8 @@ static void out_set(struct ec_app *app, u8 type, size_t len, u64 due)
 	struct ec_wbuf w = ec_wbuf(m->out, m->cap);
 	struct ec_mbox_hdr h = { .len = (u16)len, .type = type };
 
-	m->tx_counter = ec_mbox_next_counter(m->tx_counter);
+	if (!m->tx_counter || !ec_app_bug(app, EC_SIM_BUG_MBOX_COUNTER))
+		m->tx_counter = ec_mbox_next_counter(m->tx_counter);
 	h.counter = m->tx_counter;
 	ec_mbox_hdr_encode(&w, &h);
 	m->out_len = (u16)(EC_MBOX_HDR + len);
@@ -102,6 +103,8 @@ static u32 info_list(struct ec_app *app, u16 list)
 			ec_wbuf_le16(&w, m->objects[i].index);
 	if (w.bad)
 		return EC_ABORT_MEMORY;
+	if (list && ec_app_bug(app, EC_SIM_BUG_INFO_LIST))
+		w.p -= 2;
 	info_begin(app, EC_SDOINFO_LIST_RESP,
 		   (size_t)(w.p - app->mbox.info_buf));
 	return 0;
@@ -198,6 +201,21 @@ static void info_request(struct ec_app *app, const u8 *rx, size_t len, u64 due)
 		out_set(app, EC_MBOX_COE, (size_t)ret, due);
 }
 
+/* what a wrong server would answer: @tx is a good SDO response */
+static void sdo_bugs(const struct ec_app *app, u8 *tx)
+{
+	u8 cmd = tx[EC_COE_HDR];
+
+	if (cmd == 0x80 && ec_app_bug(app, EC_SIM_BUG_SDO_ABORT))
+		put_unaligned_le32(EC_ABORT_GENERAL, tx + EC_COE_HDR + 4);
+	/* initiate upload, size given, not expedited */
+	if ((cmd & 0xe3) == 0x41 && ec_app_bug(app, EC_SIM_BUG_SDO_SIZE))
+		tx[EC_COE_HDR + 4]++;
+	/* segments of both directions */
+	if (cmd >> 5 < 2 && ec_app_bug(app, EC_SIM_BUG_SDO_TOGGLE))
+		tx[EC_COE_HDR] ^= 0x10;
+}
+
 static void coe(struct ec_app *app, const u8 *rx, size_t len, u64 now, u64 due)
 {
 	struct ec_app_mbox *m = &app->mbox;
@@ -214,10 +232,12 @@ static void coe(struct ec_app *app, const u8 *rx, size_t len, u64 now, u64 due)
 	case EC_COE_SDO_REQ:
 		ret = ec_sdo_srv_handle(&m->srv, rx, len, m->out + EC_MBOX_HDR,
 					tx_size(app) - (size_t)EC_MBOX_HDR);
-		if (ret > 0)
+		if (ret > 0) {
+			sdo_bugs(app, m->out + EC_MBOX_HDR);
 			out_set(app, EC_MBOX_COE, (size_t)ret, due);
-		else if (ret < 0)
+		} else if (ret < 0) {
 			out_error(app, EC_MBOX_ERR_TOO_SHORT, due);
+		}
 		return;
 	case EC_COE_SDO_INFO:
 		info_request(app, rx, len, due);
@@ -252,7 +272,8 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		out_error(app, EC_MBOX_ERR_SIZE, due);
 		return;
 	}
-	if (h.counter && h.counter == m->rx_counter)
+	if (h.counter && h.counter == m->rx_counter &&
+	    !ec_app_bug(app, EC_SIM_BUG_MBOX_TWICE))
 		return;		/* sent twice, taken once */
 	m->rx_counter = h.counter;
 	if (h.channel)
@@ -377,7 +398,8 @@ void ec_app_mbox_activate(struct ec_app *app, u64 now)
 	struct ec_sm *p = &esc->sm[1].page;
 	u16 len = min(p->len, m->cap);
 
-	if (!works(app) || !(app->model->dev.flags & EC_SII_FLAG_MBOX_DLL))
+	if (!works(app) || !(app->model->dev.flags & EC_SII_FLAG_MBOX_DLL) ||
+	    ec_app_bug(app, EC_SIM_BUG_MBOX_REPEAT))
 		return;
 	if (!(p->activate & EC_SM_ACT_REPEAT) == !(p->pdi & EC_SM_PDI_REPEAT_ACK))
 		return;

@@ -201,8 +201,13 @@ static bool build(struct ec_app *app, enum ec_app_dir dir)
  */
 u16 ec_app_pdo_build(struct ec_app *app)
 {
-	bool out = build(app, EC_APP_OUT), in = build(app, EC_APP_IN);
+	bool out, in;
 
+	if (app->n_map[EC_APP_OUT] + app->n_map[EC_APP_IN] &&
+	    ec_app_bug(app, EC_SIM_BUG_PDO_FIXED))
+		return 0;
+	out = build(app, EC_APP_OUT);
+	in = build(app, EC_APP_IN);
 	if (!out)
 		return 0x0025;	/* invalid output mapping */
 	return in ? 0 : 0x0024;
@@ -233,7 +238,8 @@ void ec_app_outputs(struct ec_app *app, u64 now)
 					 app->bytes[EC_APP_OUT], now) < 0)
 		return;
 	app->outputs_seen = true;
-	if (ec_app_state(app) != EC_AL_OP)
+	if (ec_app_state(app) != EC_AL_OP &&
+	    !ec_app_bug(app, EC_SIM_BUG_OUTPUTS_EARLY))
 		return;
 	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
 		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];

@@ -280,6 +280,20 @@ static void counter_and_repeat(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, m->rx[EC_MBOX_HDR + 5], 3);
 }
 
+/* from 1 to 7 and again, 0 is never sent */
+static void replies_are_counted(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	struct ec_mbox_hdr h;
+
+	for (int i = 0; i < 9; i++) {
+		app_send(x->b, &x->m, EC_MBOX_COE,
+			 upload_request(&x->m, 0x1018, 1));
+		KUNIT_ASSERT_EQ(test, app_recv(x->b, &x->m, &h, 10), 10);
+		KUNIT_EXPECT_EQ(test, h.counter, 1 + i % 7);
+	}
+}
+
 static void delay(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive response=3ms\n", 256);
@@ -338,6 +352,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(information),
 	KUNIT_CASE(errors),
 	KUNIT_CASE(counter_and_repeat),
+	KUNIT_CASE(replies_are_counted),
 	KUNIT_CASE(delay),
 	KUNIT_CASE(emergencies),
 	KUNIT_CASE(muted),

@@ -98,7 +98,7 @@ static void rewritten(struct kunit *test)
 	static const u8 map[] = { 2, 0, 0x20, 0, 0xFF, 0x60, 0x10, 0, 0x40, 0x60 };
 	static const u8 assign[] = { 1, 0, 0x00, 0x16 };
 	static const u8 bad[] = { 2, 0, 0x20, 0, 0xFF, 0x60, 0x20, 0, 0x40, 0x60 };
-	u8 out[6] = { 0xE8, 3, 0, 0, 0x0F, 0 };
+	u8 out[8] = { 0xE8, 3, 0, 0, 0x0F, 0 };
 
 	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x1600, 0, true, bad,
 					   sizeof(bad)), EC_ABORT_LENGTH);
@@ -113,6 +113,24 @@ static void rewritten(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, pd_op(x, out, 6, 0x1300, 8), (u32)EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x60FF, 0), 1000);
 	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6040, 0), 0x0F);
+}
+
+static void outputs_act_in_op_only(struct kunit *test)
+{
+	struct pd *x = pd_new(test, "slave d drive\n");
+	u8 out[8] = { 6, 0, 0, 0, 0, 0, 8, 0 };
+
+	bed_sm(x->b, x->st, 2, 0x1200, 8, 0x64);
+	bed_sm(x->b, x->st, 3, 0x1218, 8, 0x20);
+	KUNIT_ASSERT_EQ(test, app_al(x->b, x->st, EC_AL_SAFEOP, 5),
+			(u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, pd_write(x, out, 8), 1);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6040, 0), 0);
+	KUNIT_ASSERT_EQ(test, app_al(x->b, x->st, EC_AL_OP, 5), (u32)EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6040, 0), 6);
+	KUNIT_ASSERT_EQ(test, app_al(x->b, x->st, EC_AL_SAFEOP, 5),
+			(u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6040, 0), 0);
 }
 
 static u16 status(struct pd *x)
@@ -243,12 +261,17 @@ static void io_bits(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, STATION(0), 0x1000, out, 3), 1);
 	KUNIT_EXPECT_EQ(test, bed_rd(b, STATION(0), 0x100C, in, 2), 1);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(in), 0x0800);
+	/* the watchdog switches them off */
+	b->now += 200000000;
+	KUNIT_EXPECT_EQ(test, bed_rd(b, STATION(0), 0x100C, in, 2), 1);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(in), 0);
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(rules),
 	KUNIT_CASE(fixed),
 	KUNIT_CASE(rewritten),
+	KUNIT_CASE(outputs_act_in_op_only),
 	KUNIT_CASE(position),
 	KUNIT_CASE(velocity),
 	KUNIT_CASE(fillers),

@@ -152,7 +152,7 @@ static void faults(struct kunit *test)
 	struct bed *b = app_bed(test, "slave a EL2008\nslave b EL2008\n"
 				"fault at=100ms cut a.1\nfault at=200ms heal a.1\n"
 				"fault at=300ms off b\nfault at=1s lose frame=2\n");
-	u8 v[2];
+	u8 v[2] = { 0 };
 
 	b->now = 50000000;
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BRD, 0, 0x130, v, 2), 2);

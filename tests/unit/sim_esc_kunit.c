@@ -261,6 +261,21 @@ static void logical_commands_count_per_slave_and_direction(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LWR, 2, 1, v, 2), 0);
 }
 
+static void a_logical_write_leaves_inputs_alone(struct kunit *test)
+{
+	struct bed *b = start(test, 1);
+	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
+	u8 v[2] = { 0x11, 0x22 };
+
+	bed_fmmu(b, 1001, 0, (struct ec_fmmu){ 0, 2, 0, 7, 0x1100, 0, 1, 1 });
+	esc->mem[0x1100] = 0x33;
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LWR, 0, 0, v, 2), 0);
+	KUNIT_EXPECT_EQ(test, esc->mem[0x1100], 0x33);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LRW, 0, 0, v, 2), 1);
+	KUNIT_EXPECT_EQ(test, v[0], 0x33);
+	KUNIT_EXPECT_EQ(test, esc->mem[0x1100], 0x33);
+}
+
 static void overlapped_lrw_exchanges_in_place(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
@@ -513,6 +528,10 @@ static void events_show_in_every_datagram(struct kunit *test)
 	bed_put(b, 1002, 0x200, 0x000c, 2);
 	bed_tx(b, EC_CMD_NOP, 0, 0, v, 2);
 	KUNIT_EXPECT_EQ(test, b->irq, 0);
+	ec_esc_set_al_status(ec_sim_slave(b->sim, 0), 1, 0, b->now);
+	bed_tx(b, EC_CMD_NOP, 0, 0, v, 2);
+	KUNIT_EXPECT_EQ(test, b->irq, 0);	/* 1001 masks it */
+	bed_rd(b, 1001, 0x130, v, 2);
 	ec_esc_set_al_status(ec_sim_slave(b->sim, 1), 2, 0, b->now);
 	ec_esc_set_al_status(ec_sim_slave(b->sim, 0), 2, 0, b->now);
 	bed_tx(b, EC_CMD_NOP, 0, 0, v, 2);
@@ -624,6 +643,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(a_buffered_window_has_three_buffers),
 	KUNIT_CASE(an_active_window_keeps_its_page),
 	KUNIT_CASE(logical_commands_count_per_slave_and_direction),
+	KUNIT_CASE(a_logical_write_leaves_inputs_alone),
 	KUNIT_CASE(overlapped_lrw_exchanges_in_place),
 	KUNIT_CASE(bits_are_mapped_one_by_one),
 	KUNIT_CASE(eeprom_reads_take_their_time),
