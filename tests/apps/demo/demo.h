@@ -8,6 +8,7 @@
 
 #include <ecrt.h>
 
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
@@ -16,6 +17,7 @@
 #define SLAVES_MAX	256
 #define ENTRIES_MAX	512
 #define BUCKETS		20
+#define PERIODS		15	/* buckets of the cycle time */
 #define RECENT		4096	/* analog outputs remembered, power of 2 */
 
 /* layout.c: what the slaves say about themselves ----------------------------*/
@@ -102,6 +104,26 @@ struct readback {
 
 void *readback_thread(void *arg);
 
+/* trace.c: an output that is wired back to an input ------------------------*/
+
+/*
+ * @sent, @seen: what was written to the output and what the input showed, one
+ * value per measured cycle; @lag, @off, @worst: see trace_judge()
+ */
+struct trace {
+	int16_t *sent, *seen;
+	unsigned int count;
+	int min, max;
+	unsigned int lag;
+	unsigned int off;
+	unsigned int worst;
+};
+
+int trace_alloc(struct trace *t, unsigned int cycles);
+void trace_add(struct trace *t, int16_t sent, int16_t seen);
+void trace_judge(struct trace *t);
+bool trace_followed(const struct trace *t);
+
 /* all of it -----------------------------------------------------------------*/
 
 struct demo {
@@ -111,6 +133,7 @@ struct demo {
 	unsigned int period_us;
 	unsigned int wait_s;
 	bool json;
+	bool wired;
 
 	/* segment */
 	unsigned int slaves;
@@ -118,6 +141,7 @@ struct demo {
 	struct point di[BITS_MAX], dout[BITS_MAX];
 	unsigned int n_di, n_do;
 	struct point ai, ao;
+	struct point ai_back;		/* channel 2, beside @ai */
 	uint16_t ao_slave;
 	struct axis axes[AXES_MAX];
 	unsigned int n_axes;
@@ -132,17 +156,30 @@ struct demo {
 	unsigned int overruns;		/* cycles left out */
 	unsigned int call_errors;
 	unsigned long long lost;
+	bool lost_known;
 	unsigned int buckets[BUCKETS];	/* 0: below 1 us; n: below 2^n us */
+	unsigned int periods[PERIODS];	/* see period_edges */
+	double period_min_us, period_max_us;
 	double late_sum_us;
 	double late_max_us;
 	unsigned int di_changes;
 	unsigned int do_mismatches;
 	unsigned int ao_mismatches;
-	int ai_min, ai_max;
-	int16_t *in, *out;		/* one per measured cycle */
+	struct trace analog, digital;
 	struct readback rb;
 };
 
+/* segment.c */
+int segment_configure(struct demo *d, ec_master_t *m, ec_domain_t *domain);
+
+/* cycle.c; edges in percent of the period, the last bucket has none */
+extern const unsigned int period_edges[PERIODS - 1];
+extern volatile sig_atomic_t stopped;
+
+void cycle_run(struct demo *d, ec_master_t *m, ec_domain_t *domain,
+	       uint8_t *data);
+
+/* report.c */
 bool demo_passed(const struct demo *d);
 void report_text(const struct demo *d);
 void report_json(const struct demo *d);
