@@ -329,7 +329,6 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc,
 {
 	struct ec_ioc_config arg = { 0 };
 	const struct ec_master *m;
-	bool online;
 	int ret;
 
 	if (!sc || !state)
@@ -345,11 +344,7 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc,
 	ret = ec_ioctl(m, EC_IOC_CONFIG, &arg);
 	if (ret)
 		return ret;
-	online = arg.slave_position >= 0;
-	state->online = online;
-	state->operational = online && m->active &&
-			     (arg.al_status & 0x1f) == EC_AL_STATE_OP;
-	state->al_state = online ? arg.al_status & 0xf : 0;
+	state_from_page(state, (__u8)arg.state);
 	return 0;
 }
 

@@ -76,7 +76,7 @@ static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
 	}
 	if (ret)
 		return ret;
-	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, 0);
+	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, VM_MAYEXEC);
 	ec_shared_get(sh);
 	vma->vm_private_data = sh;
 	vma->vm_ops = &vm_ops;
@@ -91,6 +91,8 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 
 	if (!(vma->vm_flags & VM_SHARED))
 		return -EINVAL;
+	if (vma->vm_flags & VM_EXEC)
+		return -EPERM;
 	mutex_lock(&m->session_lock);
 	if (m->session && m->session->owner == f && m->session->active)
 		ret = map_shared(m->session->shared, vma);

@@ -45,8 +45,8 @@ static int one_step(struct ec_slave *slave, struct exchange *x, struct ec_mbox_b
 		ret = ec_mbox_recv(slave, EC_MBOX_COE, b, until);
 		if (ret >= 0)
 			ret = rx(x, b->rx, ret);
-	} while (ret == EC_STALE);
-	return ret;
+	} while (ret == EC_STALE && ktime_get_ns() <= until);
+	return ret == EC_STALE ? -ETIMEDOUT : ret;
 }
 
 static int run(struct ec_slave *slave, struct exchange *x, u32 timeout_ms)

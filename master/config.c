@@ -211,6 +211,9 @@ static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *o
 
 	if (IS_ERR(f))
 		return PTR_ERR(f);
+	/* mapped after the SyncManager got its place in the domain */
+	if (bits / 8 >= f->size)
+		return -EBUSY;
 	*offset = f->offset + bits / 8;
 	*bit = bits % 8;
 	return 0;
@@ -227,7 +230,8 @@ static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *o
  *
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -ENOENT when the entry is not mapped; -EOVERFLOW when all FMMUs
- * are used or the domain is full; -ENOMEM.
+ * are used or the domain is full; -EBUSY when the mapping grew after an entry
+ * of this SyncManager was registered; -ENOMEM.
  */
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit)

@@ -357,12 +357,40 @@ int ec_cycle_layout(struct ec_session *s)
 	for (i = 0; i < s->n_domains && !ret; i++)
 		ret = layout_domain(&s->cycle, s->domains[i]);
 	if (ret)
-		ec_cycle_free(&s->cycle);
+		ec_cycle_free(s->master, &s->cycle);
 	return ret;
 }
 
-void ec_cycle_free(struct ec_cycle *c)
+/* Nobody will receive what is still on its way. */
+static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 {
+	unsigned int i;
+
+	for (i = 0; i < c->n_flight; i++) {
+		struct ec_slot *slot = c->flight[i].slot;
+
+		while (!ec_slot_cancel(slot, ktime_get_ns())) {
+			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
+				ec_slot_put(&m->slots, slot, true);
+				break;
+			}
+			/* being copied at this moment */
+			usleep_range(20, 50);
+		}
+	}
+	c->n_flight = 0;
+}
+
+/**
+ * ec_cycle_free() - give back what a layout and its frames occupy
+ * @m: master
+ * @c: layout nobody uses any more
+ *
+ * Context: Process. May sleep.
+ */
+void ec_cycle_free(struct ec_master *m, struct ec_cycle *c)
+{
+	forget_flights(m, c);
 	kfree(c->dgrams);
 	kfree(c->inputs);
 	memset(c, 0, sizeof(*c));

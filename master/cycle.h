@@ -89,7 +89,7 @@ void ec_cycle_own(struct ec_master *m, enum ec_owner owner);
 bool ec_cycle_stalled(struct ec_master *m);
 
 int ec_cycle_layout(struct ec_session *s);
-void ec_cycle_free(struct ec_cycle *c);
+void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, u64 queued);
 

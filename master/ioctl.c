@@ -8,37 +8,56 @@
 
 #define F_WRITE	1	/* needs a descriptor opened for writing */
 
+/* bytes of an argument that must be zero */
+struct ec_reserved {
+	u16 offset;
+	u16 size;
+};
+
+/**
+ * struct ec_ioctl - one command
+ * @cmd: number; its size is what this module knows
+ * @fn: handler
+ * @flags: F_*
+ * @min: bytes the oldest program sends; less is no such argument
+ * @reserved: fields that must be zero; size 0 ends them
+ */
 struct ec_ioctl {
 	unsigned int cmd;
 	int (*fn)(struct ec_file *f, void *arg);
 	unsigned int flags;
+	unsigned int min;
+	struct ec_reserved reserved[2];
 };
 
-#define IOC(c, f, fl) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
-	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG) }
+#define RSV(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
+#define IOC(c, f, fl, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
+	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG), .min = _IOC_SIZE(c), \
+	.reserved = { __VA_ARGS__ } }
 
 static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_VERSION, ec_ioc_version, 0),
 	IOC(EC_IOC_REASON, ec_ioc_reason, 0),
 	IOC(EC_IOC_MASTER, ec_ioc_master, 0),
 	IOC(EC_IOC_SLAVE, ec_ioc_slave, 0),
-	IOC(EC_IOC_SM, ec_ioc_sm, 0),
-	IOC(EC_IOC_PDO, ec_ioc_pdo, 0),
-	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0),
-	IOC(EC_IOC_SII, ec_ioc_sii, 0),
+	IOC(EC_IOC_SM, ec_ioc_sm, 0, RSV(ec_ioc_sm, reserved)),
+	IOC(EC_IOC_PDO, ec_ioc_pdo, 0, RSV(ec_ioc_pdo, reserved), RSV(ec_ioc_pdo, reserved2)),
+	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, RSV(ec_ioc_pdo_entry, reserved)),
+	IOC(EC_IOC_SII, ec_ioc_sii, 0, RSV(ec_ioc_sii, reserved)),
 	IOC(EC_IOC_CONFIG, ec_ioc_config, 0),
-	IOC(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0),
-	IOC(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0),
-	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0),
-	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0),
-	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0),
-	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0),
-	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0),
-	IOC(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE),
-	IOC(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE),
-	IOC(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE),
-	IOC(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE),
-	IOC(EC_IOC_STATE, ec_ioc_state, F_WRITE),
+	IOC(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, RSV(ec_ioc_config_sm, reserved)),
+	IOC(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, RSV(ec_ioc_config_pdo, reserved)),
+	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, RSV(ec_ioc_config_entry, reserved)),
+	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0,
+	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
+	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved)),
+	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, RSV(ec_ioc_domain_fmmu, reserved)),
+	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, RSV(ec_ioc_domain_data, reserved)),
+	IOC(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, RSV(ec_ioc_sdo, reserved)),
+	IOC(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, RSV(ec_ioc_sdo, reserved)),
+	IOC(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, RSV(ec_ioc_reg, reserved)),
+	IOC(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, RSV(ec_ioc_reg, reserved)),
+	IOC(EC_IOC_STATE, ec_ioc_state, F_WRITE, RSV(ec_ioc_state, reserved)),
 	IOC(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE),
 	IOC(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE),
 	IOC(EC_IOC_RESET, ec_ioc_reset, F_WRITE),
@@ -46,19 +65,20 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_RELEASE, ec_ioc_release, F_WRITE),
 	IOC(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE),
 	IOC(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE),
-	IOC(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE),
+	IOC(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, RSV(ec_ioc_sc_sync, reserved)),
 	IOC(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE),
 	IOC(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE),
-	IOC(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE),
+	IOC(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE, RSV(ec_ioc_sc_sdo, reserved)),
 	IOC(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE),
-	IOC(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE),
-	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE),
-	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE),
-	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE),
+	IOC(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE,
+	    RSV(ec_ioc_sc_dc, reserved), RSV(ec_ioc_sc_dc, reserved2)),
+	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, RSV(ec_ioc_sc_flag, reserved)),
+	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, RSV(ec_ioc_sc_timeout, reserved)),
+	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, RSV(ec_ioc_activate, reserved)),
 	IOC(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE),
 	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE),
 	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE),
-	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE),
+	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV(ec_ioc_app_time, reserved)),
 };
 
 /**
@@ -94,6 +114,8 @@ static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 {
 	struct ec_ioc_send send;
 
+	if (_IOC_DIR(cmd) != _IOC_DIR(EC_IOC_SEND))
+		return -ENOTTY;
 	if (_IOC_SIZE(cmd) != sizeof(send))
 		return -EINVAL;
 	if (copy_from_user(&send, (void __user *)arg, sizeof(send)))
@@ -110,6 +132,7 @@ static u32 known_flags(unsigned int cmd)
 	case EC_IOC_SDO_UPLOAD:
 	case EC_IOC_SDO_DOWNLOAD:
 	case EC_IOC_SC_SDO:
+	case EC_IOC_CONFIG_SDO:	/* an answer may be the next question */
 		return EC_SDO_FLAG_COMPLETE;
 	case EC_IOC_REG_READ:
 	case EC_IOC_REG_WRITE:
@@ -121,13 +144,62 @@ static u32 known_flags(unsigned int cmd)
 	}
 }
 
+/* Is the caller allowed to, and is the size of the argument possible? */
 static int check(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd)
 {
-	if (_IOC_SIZE(cmd) < (_IOC_DIR(cmd) ? sizeof(u32) : 0) || _IOC_SIZE(cmd) > MAX_ARG)
-		return ec_refuse(f, -EINVAL, "command 0x%08x has a wrong size", cmd);
+	unsigned int size = _IOC_SIZE(cmd);
+
+	if (size < op->min || size > (_IOC_DIR(cmd) ? MAX_ARG : 0))
+		return ec_refuse(f, -EINVAL, "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
+				 cmd, size, op->min);
 	if (op->flags & F_WRITE && !f->writable)
 		return ec_refuse(f, -EPERM, "this needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
 	return 0;
+}
+
+/* What this module does not know must not be asked for. */
+static int check_unknown(struct ec_file *f, const struct ec_ioctl *op, const void *karg)
+{
+	u32 flags = *(const u32 *)karg & ~known_flags(op->cmd);
+	unsigned int i;
+
+	if (flags)
+		return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: unknown flags 0x%x", op->cmd,
+				 flags);
+	for (i = 0; i < ARRAY_SIZE(op->reserved); i++) {
+		const struct ec_reserved *r = &op->reserved[i];
+
+		if (memchr_inv(karg + r->offset, 0, r->size))
+			return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: reserved bytes at %u are not zero; a newer module may know them",
+					 op->cmd, r->offset);
+	}
+	return 0;
+}
+
+static int fetch_arg(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd, void *karg,
+		     void __user *uarg)
+{
+	int ret = copy_struct_from_user(karg, _IOC_SIZE(op->cmd), uarg, _IOC_SIZE(cmd));
+
+	if (ret == -E2BIG)
+		return ec_refuse(f, ret, "command 0x%08x: this module knows %u bytes of the argument, the rest must be zero",
+				 cmd, _IOC_SIZE(op->cmd));
+	return ret ?: check_unknown(f, op, karg);
+}
+
+/* An argument larger than this module knows ends with zeros. */
+static int return_arg(unsigned int ksize, unsigned int usize, const void *karg, void __user *uarg)
+{
+	if (copy_to_user(uarg, karg, min(usize, ksize)))
+		return -EFAULT;
+	return usize > ksize && clear_user(uarg + ksize, usize - ksize) ? -EFAULT : 0;
+}
+
+static void forget_reason(struct ec_file *f)
+{
+	mutex_lock(&f->lock);
+	f->reason[0] = '\0';
+	mutex_unlock(&f->lock);
 }
 
 /**
@@ -136,13 +208,14 @@ static int check(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd)
  * @cmd: EC_IOC_*
  * @arg: user pointer
  *
- * Context: Process. May sleep; RECEIVE and SEND are RT-safe.
+ * Context: Process. May sleep; RECEIVE, SEND and APP_TIME are RT-safe.
  * Return: 0 or -errno; -ENOTTY for an unknown command, -EOPNOTSUPP for unknown
- * flags, -E2BIG for a non-zero tail, -EPERM, -EFAULT.
+ * flags and reserved bytes, -EINVAL for a size that cannot be, -E2BIG for a
+ * non-zero tail, -EPERM, -EFAULT.
  */
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 {
-	unsigned int nr = _IOC_NR(cmd), usize = _IOC_SIZE(cmd), ksize;
+	unsigned int nr = _IOC_NR(cmd);
 	struct ec_file *f = filp->private_data;
 	void __user *uarg = (void __user *)arg;
 	u64 karg[MAX_ARG / sizeof(u64)];
@@ -160,24 +233,23 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 	op = &table[array_index_nospec(nr, ARRAY_SIZE(table))];
 	if (!op->fn || _IOC_DIR(cmd) != _IOC_DIR(op->cmd))
 		return -ENOTTY;
+	/* a failure without text must not show the one before */
+	if (op->fn != ec_ioc_reason)
+		forget_reason(f);
 	ret = check(f, op, cmd);
 	if (ret)
 		return ret;
 
-	ksize = _IOC_SIZE(op->cmd);
-	memset(karg, 0, ksize);
+	memset(karg, 0, _IOC_SIZE(op->cmd));
 	if (_IOC_DIR(cmd) & _IOC_WRITE) {
-		ret = copy_struct_from_user(karg, ksize, uarg, usize);
+		ret = fetch_arg(f, op, cmd, karg, uarg);
 		if (ret)
 			return ret;
-		if (*(u32 *)karg & ~known_flags(op->cmd))
-			return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: unknown flags 0x%x",
-					 cmd, *(u32 *)karg);
 	}
 	ret = op->fn(f, karg);
 	/* on -EIO the abort code is in the structure */
 	if ((!ret || ret == -EIO) && _IOC_DIR(cmd) & _IOC_READ &&
-	    copy_to_user(uarg, karg, min(usize, ksize)))
+	    return_arg(_IOC_SIZE(op->cmd), _IOC_SIZE(cmd), karg, uarg))
 		ret = -EFAULT;
 	return ret;
 }

@@ -215,6 +215,9 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 	if (ret == -ENOENT)
 		ec_refuse(f, ret, "entry 0x%04x:%02x is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
 			  i->entry_index, i->subindex, c->alias, c->position);
+	else if (ret == -EBUSY)
+		ec_refuse(f, ret, "the mapping of slave %u:%u was changed after its first entry was registered; map first, then register",
+			  c->alias, c->position);
 	else if (ret == -EOVERFLOW)
 		ec_refuse(f, ret, "no FMMU left, or more than %u bytes of process data",
 			  EC_MAX_IMAGE);
@@ -271,6 +274,26 @@ int ec_ioc_sc_timeout(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
+static int activate_failed(struct ec_file *f, const struct ec_session *s, int ret)
+{
+	u32 bytes = 0;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++)
+		bytes += s->domains[i]->size;
+	switch (ret) {
+	case -EBUSY:
+		return ec_refuse(f, ret, "the master is active already");
+	case -EOVERFLOW:
+		return ec_refuse(f, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes and %u datagrams a cycle; register fewer SyncManagers",
+				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS);
+	case -ENOMEM:
+		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
+	default:
+		return ec_refuse(f, ret, "activation failed (error %d)", ret);
+	}
+}
+
 int ec_ioc_activate(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_activate *i = arg;
@@ -281,8 +304,7 @@ int ec_ioc_activate(struct ec_file *f, void *arg)
 		return ret;
 	ret = ec_session_activate(s);
 	if (ret)
-		return done(f, ec_refuse(f, ret, "activation failed: active already, more than %u bytes of process data, or no memory",
-					 EC_MAX_IMAGE));
+		return done(f, activate_failed(f, s, ret));
 	i->image_size = s->shared->image_size;
 	i->status_size = EC_STATUS_BYTES;
 	return done(f, 0);
@@ -325,17 +347,6 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
-int ec_ioc_app_time(struct ec_file *f, void *arg)
-{
-	struct ec_ioc_app_time *i = arg;
-	int ret = 0;
-
-	if (!lock(f, &ret))
-		return ret;
-	WRITE_ONCE(f->master->app_time, i->app_time);
-	return done(f, 0);
-}
-
 /* Not contended: only deactivation takes the lock beside the cyclic caller. */
 static struct ec_session *enter(struct ec_file *f)
 {
@@ -346,6 +357,23 @@ static struct ec_session *enter(struct ec_file *f)
 		return m->active;
 	mutex_unlock(&m->cyclic_lock);
 	return NULL;
+}
+
+int ec_ioc_app_time(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_app_time *i = arg;
+	int ret = 0;
+
+	if (enter(f)) {
+		WRITE_ONCE(f->master->app_time, i->app_time);
+		mutex_unlock(&f->master->cyclic_lock);
+		return 0;
+	}
+	/* before activation there is no cycle to disturb */
+	if (!lock(f, &ret))
+		return ret;
+	WRITE_ONCE(f->master->app_time, i->app_time);
+	return done(f, 0);
 }
 
 int ec_ioc_receive(struct ec_file *f)
@@ -367,7 +395,10 @@ int ec_ioc_send(struct ec_file *f, u64 queued)
 
 	if (!s)
 		return -EPERM;
-	ret = ec_cycle_send(s, queued);
+	if (s->n_domains < 64 && queued >> s->n_domains)
+		ret = -ENOENT;
+	else
+		ret = ec_cycle_send(s, queued);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;
 }

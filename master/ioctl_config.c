@@ -67,6 +67,7 @@ int ec_ioc_config(struct ec_file *f, void *arg)
 		memcpy(i->dc_cycle, c->dc_cycle, sizeof(i->dc_cycle));
 		memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
 		i->sdo_count = c->n_sdos;
+		i->state = ec_session_config_status(c);
 	}
 	return done(f, ret);
 }
@@ -155,7 +156,9 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 	c = config(f, s, i->index, &ret);
 	if (!c)
 		return done(f, ret);
-	ret = -ENOENT;
+	if (i->sdo_pos >= c->n_sdos)
+		return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup SDOs",
+					 i->index, c->n_sdos));
 	list_for_each_entry(sdo, &c->sdos, list) {
 		if (k++ != i->sdo_pos)
 			continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that tell what the master knows; they cause no bus traffic. */
 #include <linux/etherdevice.h>
+#include <linux/rcupdate.h>
 #include <linux/uaccess.h>
 #include "device.h"
 #include "domain.h"
@@ -57,8 +58,10 @@ int ec_ioc_reason(struct ec_file *f, void *arg)
 
 static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 {
-	struct ecdev *dev = READ_ONCE(link->dev);
+	struct ecdev *dev;
 
+	rcu_read_lock();
+	dev = READ_ONCE(link->dev);
 	d->state = dev ? EC_DEVICE_ATTACHED : EC_DEVICE_WAITING;
 	if (dev) {
 		ether_addr_copy(d->address, dev->mac);
@@ -66,8 +69,10 @@ static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 	} else {
 		strscpy(d->name, link->master->spec[link->side] ?: "", sizeof(d->name));
 	}
+	rcu_read_unlock();
 	d->link_up = link->up;
-	d->slaves = link->master->slaves_responding;
+	d->slaves = READ_ONCE(link->slaves);
+	d->al_states = READ_ONCE(link->al_states);
 	d->tx_frames = atomic64_read(&link->stats.tx_frames);
 	d->tx_bytes = atomic64_read(&link->stats.tx_bytes);
 	d->rx_frames = atomic64_read(&link->stats.rx_frames);

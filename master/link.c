@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/errno.h>
+#include <linux/rcupdate.h>
 #include <linux/string.h>
 #include "device.h"
 #include "link.h"
@@ -62,9 +63,15 @@ void ec_link_poll(struct ec_link *link)
  */
 bool ec_link_is_up(const struct ec_link *link)
 {
-	struct ecdev *dev = READ_ONCE(link->dev);
+	struct ecdev *dev;
+	bool up;
 
-	return dev && dev->ops->link_up(dev->priv);
+	/* the device is freed only after a grace period */
+	rcu_read_lock();
+	dev = READ_ONCE(link->dev);
+	up = dev && dev->ops->link_up(dev->priv);
+	rcu_read_unlock();
+	return up;
 }
 
 /**

@@ -44,9 +44,11 @@ struct ec_link_rates {
  * struct ec_link - port to the wire
  * @master: immutable
  * @side: 0 main, 1 backup, immutable
- * @dev: attached device or NULL; changes under master->link_lock with the
- *	master's owner stopped
+ * @dev: attached device or NULL; changes under master->io_lock. Used by the
+ *	owner of the link; others only in an RCU read section
  * @up: link state as last seen by the monitor
+ * @slaves: that answered the last broadcast on this link
+ * @al_states: OR of their AL states
  * @stats: counters
  * @rates: averages
  */
@@ -55,6 +57,8 @@ struct ec_link {
 	u8 side;
 	struct ecdev *dev;
 	bool up;
+	u32 slaves;
+	u32 al_states;
 	struct ec_link_stats stats;
 	struct ec_link_rates rates;
 };

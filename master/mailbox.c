@@ -166,8 +166,9 @@ int ec_mbox_recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, u64 unt
 			}
 			if (h.type == type && !emergency(slave, &h, b->rx))
 				return ret;
-			continue;
+			us = 20;
 		}
+		/* also a slave that talks without end has to answer in time */
 		ret = over(slave, until_ns);
 		if (ret)
 			return ret;

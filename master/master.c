@@ -70,12 +70,17 @@ void ec_master_link_detach(struct ec_link *link)
 {
 	struct ec_master *m = link->master;
 
-	ec_session_device_gone(m);
+	struct ecdev *dev = link->dev;
+
+	/* first nobody finds it any more, then who found it has to leave */
 	rt_mutex_lock(&m->io_lock);
-	ec_info(m, "%s device %s is gone\n", link->side ? "backup" : "main", link->dev->name);
 	WRITE_ONCE(link->dev, NULL);
 	WRITE_ONCE(link->up, false);
 	rt_mutex_unlock(&m->io_lock);
+	ec_cycle_own(m, EC_OWNER_IDLE);
+	if (dev->ops->cycle)
+		dev->ops->cycle(dev->priv, false);
+	ec_info(m, "%s device %s is gone\n", link->side ? "backup" : "main", dev->name);
 }
 
 /**
@@ -184,7 +189,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	m->debug = debug;
 	m->max_datagrams = 15;
 	m->io_timeout_us = 20000;
-	m->interval_us = 1000;
+	m->interval_us = EC_INTERVAL_US;
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		m->link[i].master = m;
 		m->link[i].side = i;

@@ -119,6 +119,8 @@ static void count_slaves(struct watch *w)
 	}
 	WRITE_ONCE(m->slaves_responding, count);
 	WRITE_ONCE(m->al_states, al_bits(ored));
+	WRITE_ONCE(m->link[0].slaves, count);
+	WRITE_ONCE(m->link[0].al_states, al_bits(ored));
 	if (count != w->count) {
 		if (w->scanned)
 			ec_info(m, "%u slave(s) responding, %u before\n", count, w->count);
@@ -191,6 +193,8 @@ static int monitor(void *data)
 		} else {
 			WRITE_ONCE(m->slaves_responding, 0);
 			WRITE_ONCE(m->al_states, 0);
+			WRITE_ONCE(m->link[0].slaves, 0);
+			WRITE_ONCE(m->link[0].al_states, 0);
 		}
 		ec_session_status(m);
 		set_current_state(TASK_IDLE);

@@ -64,6 +64,8 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 
 	if (!READ_ONCE(m->link[0].dev))
 		return -ENODEV;
+	if (READ_ONCE(m->session))
+		return -EBUSY;
 	ret = ec_master_wait_scan(m);
 	if (ret == -EINTR)
 		return ret;
@@ -139,11 +141,12 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_cycle_own(m, EC_OWNER_IDLE);
 	s->active = false;
 	clear(s);
-	ec_cycle_free(&s->cycle);
+	ec_cycle_free(m, &s->cycle);
 	sh = s->shared;
 	s->shared = NULL;
 	ec_shared_put(sh);
 	m->app_time = 0;
+	m->interval_us = EC_INTERVAL_US;
 	ec_info(m, "session deactivated\n");
 	return 0;
 }
@@ -293,7 +296,14 @@ int ec_session_activate(struct ec_session *s)
 	return 0;
 }
 
-static u8 config_status(const struct ec_config *c)
+/**
+ * ec_session_config_status() - EC_STATUS_SC_* of a configuration
+ * @c: configuration
+ *
+ * Context: Process, session_lock held.
+ * Return: AL state with the bits online and operational; 0 without slave.
+ */
+u8 ec_session_config_status(const struct ec_config *c)
 {
 	const struct ec_slave *slave = c->slave;
 	u8 v;
@@ -330,7 +340,8 @@ void ec_session_status(struct ec_master *m)
 		WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
 		WRITE_ONCE(st->frames_lost, (u64)atomic64_read(&m->link[0].stats.lost));
 		for (i = 0; i < s->n_configs; i++)
-			WRITE_ONCE(st->configs[i], config_status(s->configs[i]));
+			WRITE_ONCE(st->configs[i],
+				   ec_session_config_status(s->configs[i]));
 	}
 	mutex_unlock(&m->session_lock);
 }
@@ -349,16 +360,4 @@ void ec_session_stalled(struct ec_master *m)
 	ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
 		div_u64(ktime_get_ns() - READ_ONCE(m->last_send_ns), NSEC_PER_MSEC));
 	ec_cycle_own(m, EC_OWNER_IDLE);
-}
-
-/**
- * ec_session_device_gone() - the device of a link disappears
- * @m: master
- *
- * Context: Process. May sleep.
- */
-void ec_session_device_gone(struct ec_master *m)
-{
-	if (READ_ONCE(m->owner) == EC_OWNER_CYCLE)
-		ec_cycle_own(m, EC_OWNER_IDLE);
 }

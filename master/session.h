@@ -63,9 +63,9 @@ int ec_session_deactivate(struct ec_session *s);
 
 void ec_session_attach(struct ec_master *m);
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
+u8 ec_session_config_status(const struct ec_config *c);
 void ec_session_status(struct ec_master *m);
 void ec_session_stalled(struct ec_master *m);
-void ec_session_device_gone(struct ec_master *m);
 
 void ec_shared_get(struct ec_shared *sh);
 void ec_shared_put(struct ec_shared *sh);

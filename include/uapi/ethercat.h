@@ -6,7 +6,9 @@
  * starts with a flags word whose unknown bits are refused (-EOPNOTSUPP) and
  * may grow at its end: the kernel takes the size from the command number,
  * zero-fills what an older program does not send and refuses (-E2BIG) a
- * non-zero tail it does not know. Numbers are never reused.
+ * non-zero tail it does not know. Reserved fields are zero, else -EOPNOTSUPP.
+ * Less than the first version of a structure had is -EINVAL. Numbers are never
+ * reused.
  *
  * When a command fails, EC_IOC_REASON on the same open file returns one line
  * of text that says what was wrong and what to do.
@@ -68,7 +70,7 @@ struct ec_ioc_device {
 	__u32 tx_byte_rate[EC_UAPI_RATES];
 	__u32 rx_byte_rate[EC_UAPI_RATES];
 	__u32 loss_rate[EC_UAPI_RATES];
-	__u32 reserved;
+	__u32 al_states;	/* OR of theirs: 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
 };
 
 /* struct ec_ioc_master.phase */
@@ -265,6 +267,7 @@ struct ec_ioc_config {
 	__u32 dc_cycle[2];
 	__s32 dc_shift[2];
 	__u32 sdo_count;
+	__u32 state;		/* EC_STATUS_SC_*, as in struct ec_status */
 	__u32 reserved;
 };
 

@@ -160,6 +160,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_CONFIG:
 		((struct ec_ioc_config *)arg)->slave_position = 1;
 		((struct ec_ioc_config *)arg)->al_status = 2;
+		((struct ec_ioc_config *)arg)->state = EC_STATUS_SC_ONLINE | 2;
 		break;
 	case EC_IOC_DOMAIN:
 		((struct ec_ioc_domain *)arg)->size = 11;
