@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * What a cycle costs: receive, process, queue and send of all slaves on the
+ * bus, through the library. Prints "name value" lines for tests/bench.
+ */
+#include "bench.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#define NS_PER_S	1000000000LL
+#define PRIORITY	80
+#define SETTLE		50	/* cycles before the first one that counts */
+
+static const char * const part_names[PARTS] = {
+	"receive", "process", "queue", "send", "total", "late_ns",
+};
+
+static long long now_ns(void)
+{
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return t.tv_sec * NS_PER_S + t.tv_nsec;
+}
+
+/* Time the tasks of all CPUs have run, ns. */
+static unsigned long long busy_ns(void)
+{
+	unsigned long long sum = 0, run;
+	char line[256];
+	FILE *f = fopen("/proc/schedstat", "r");
+
+	while (f && fgets(line, sizeof(line), f))
+		if (sscanf(line, "cpu%*u %*u %*u %*u %*u %*u %*u %llu", &run) == 1)
+			sum += run;
+	if (f)
+		fclose(f);
+	return sum;
+}
+
+/* cycle ---------------------------------------------------------------------*/
+
+/* Absolute: what one cycle is late is not added to the next. */
+static long long sleep_until(struct bench *b, long long *at)
+{
+	long long period = b->period_us * 1000LL, late;
+	struct timespec t;
+
+	*at += period;
+	t.tv_sec = *at / NS_PER_S;
+	t.tv_nsec = *at % NS_PER_S;
+	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, NULL) == EINTR)
+		;
+	late = now_ns() - *at;
+	if (late >= period) {
+		b->overruns++;
+		*at += late / period * period;
+	}
+	return late > 0 ? late : 0;
+}
+
+/* What a careful application asks in each cycle as well. */
+static void ask(struct bench *b, long long at)
+{
+	ec_slave_config_state_t sc;
+	ec_master_state_t ms;
+	ec_domain_state_t ds;
+	unsigned int i;
+
+	b->call_errors += !!ecrt_master_application_time(b->master, (uint64_t)at);
+	b->call_errors += !!ecrt_master_state(b->master, &ms);
+	for (i = 0; i < b->n_domains; i++)
+		b->call_errors += !!ecrt_domain_state(b->domains[i], &ds);
+	for (i = 0; i < b->slaves; i++)
+		b->call_errors += !!ecrt_slave_config_state(b->sc[i], &sc);
+}
+
+static void one_cycle(struct bench *b, long long at, uint32_t *cost)
+{
+	uint64_t t[5];
+	unsigned int i;
+
+	if (b->syscalls)
+		syscalls_mark(true);
+	t[0] = ticks();
+	b->call_errors += !!ecrt_master_receive(b->master);
+	t[1] = ticks();
+	for (i = 0; i < b->n_domains; i++)
+		b->call_errors += !!ecrt_domain_process(b->domains[i]);
+	t[2] = ticks();
+	if (b->extras)
+		ask(b, at);
+	for (i = 0; i < b->n_domains; i++) {
+		uint8_t *data = ecrt_domain_data(b->domains[i]);
+
+		if (data)
+			data[0]++;
+	}
+	t[3] = ticks();
+	cost[PART_PROCESS] = (uint32_t)(t[2] - t[1]);
+	for (i = 0; i < b->n_domains; i++)
+		b->call_errors += !!ecrt_domain_queue(b->domains[i]);
+	t[4] = ticks();
+	cost[PART_QUEUE] = (uint32_t)(t[4] - t[3]);
+	b->call_errors += !!ecrt_master_send(b->master);
+	cost[PART_SEND] = (uint32_t)(ticks() - t[4]);
+	cost[PART_RECEIVE] = (uint32_t)(t[1] - t[0]);
+	cost[PART_TOTAL] = cost[PART_RECEIVE] + cost[PART_PROCESS] +
+			   cost[PART_QUEUE] + cost[PART_SEND];
+	if (b->syscalls)
+		syscalls_mark(false);
+}
+
+static unsigned int count_operational(struct bench *b)
+{
+	ec_slave_config_state_t state;
+	unsigned int i, n = 0;
+
+	for (i = 0; i < b->slaves; i++)
+		if (!ecrt_slave_config_state(b->sc[i], &state))
+			n += state.operational;
+	return n;
+}
+
+static unsigned int wc_errors(struct bench *b)
+{
+	ec_domain_state_t state;
+	unsigned int i, n = 0;
+
+	for (i = 0; i < b->n_domains; i++) {
+		ecrt_domain_state(b->domains[i], &state);
+		n += state.wc_state != EC_WC_COMPLETE &&
+		     ecrt_domain_size(b->domains[i]);
+	}
+	return n;
+}
+
+/* Nothing of this may page-fault or print: it runs at real-time priority. */
+static void measure(struct bench *b, long long *at)
+{
+	unsigned long long lost, late, busy;
+	uint32_t cost[PARTS];
+	unsigned int i, p;
+
+	b->overruns = 0;
+	b->call_errors = 0;
+	frame_counters(b, &lost, &late);
+	busy = busy_ns();
+	*at = now_ns();
+	for (i = 0; i < SETTLE + b->cycles; i++) {
+		cost[PART_LATE] = (uint32_t)sleep_until(b, at);
+		one_cycle(b, *at, cost);
+		/* the reply of the cycle before was judged */
+		if (i)
+			b->wc_errors += wc_errors(b);
+		for (p = 0; i >= SETTLE && p < PARTS; p++)
+			b->samples[p][i - SETTLE] = cost[p];
+	}
+	b->busy_ns = busy_ns() - busy;
+	frame_counters(b, &b->lost, &b->late);
+	b->lost -= lost;
+	b->late -= late;
+	b->operational = count_operational(b);
+}
+
+static int run(struct bench *b)
+{
+	long long begin = now_ns(), at = begin;
+	bool syscalls = b->syscalls;
+	uint32_t cost[PARTS];
+	unsigned int ready = 0;
+
+	b->syscalls = false;	/* not while starting */
+	while (ready < SETTLE) {
+		sleep_until(b, &at);
+		one_cycle(b, at, cost);
+		ready = count_operational(b) == b->slaves && !wc_errors(b) ?
+			ready + 1 : 0;
+		if (!ready && now_ns() - begin > b->wait_s * NS_PER_S) {
+			fprintf(stderr, "cycle-bench: %u of %u slaves in OP after %u s; see 'ethercat slaves'\n",
+				count_operational(b), b->slaves, b->wait_s);
+			return -1;
+		}
+	}
+	b->syscalls = syscalls;
+	measure(b, &at);
+	return 0;
+}
+
+/* report --------------------------------------------------------------------*/
+
+static int ascending(const void *a, const void *b)
+{
+	uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+static void report(struct bench *b)
+{
+	unsigned int p;
+
+	printf("slaves %u\noperational %u\nimage_bytes %llu\ncycles %u\n",
+	       b->slaves, b->operational, (unsigned long long)b->image_bytes,
+	       b->cycles);
+	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
+	       b->lost, b->late, b->wc_errors, b->call_errors, b->overruns);
+	if (b->syscalls)
+		return;
+	printf("entry %u\nbusy_ns_per_cycle %llu\n", b->entry,
+	       b->busy_ns / (SETTLE + b->cycles));
+	for (p = 0; p < PARTS; p++) {
+		uint32_t *s = b->samples[p];
+
+		qsort(s, b->cycles, sizeof(*s), ascending);
+		printf("%s_min %u\n%s_median %u\n%s_p999 %u\n%s_max %u\n",
+		       part_names[p], s[0], part_names[p], s[b->cycles / 2],
+		       part_names[p], s[b->cycles - 1 - b->cycles / 1000],
+		       part_names[p], s[b->cycles - 1]);
+	}
+}
+
+/* process -------------------------------------------------------------------*/
+
+static void become_realtime(void)
+{
+	struct sched_param param = { .sched_priority = PRIORITY };
+
+	if (mlockall(MCL_CURRENT | MCL_FUTURE) ||
+	    sched_setscheduler(0, SCHED_FIFO, &param))
+		perror("cycle-bench: not real-time");
+}
+
+static int bench(void *arg)
+{
+	struct bench *b = arg;
+	int ret;
+
+	b->master = ecrt_request_master(b->index);
+	if (!b->master)
+		return 1;
+	become_realtime();
+	ret = setup(b);
+	b->entry = syscall_entry(b);
+	if (!ret)
+		ret = run(b);
+	ecrt_release_master(b->master);
+	if (ret)
+		return 1;
+	report(b);
+	return b->lost || b->wc_errors || b->call_errors ||
+	       b->operational != b->slaves ? 1 : 0;
+}
+
+static void usage(FILE *out)
+{
+	fprintf(out,
+		"usage: cycle-bench [options]\n"
+		"  --master N     index of the master, default 0\n"
+		"  --cycles N     cycles to measure, default 1000\n"
+		"  --period-us N  time between cycles, default 1000\n"
+		"  --wait-s N     seconds to wait for OP, default 60\n"
+		"  --domains N    spread the slaves over N domains, default 1\n"
+		"  --extras       ask for states and set the application time, too\n"
+		"  --syscalls     count system calls instead of time\n"
+		"Exit code 0: no frame lost, no working-counter error; 1: not; 2: usage.\n");
+}
+
+static unsigned int number(const char *name, const char *text, unsigned int max)
+{
+	char *end;
+	unsigned long n;
+
+	errno = 0;
+	n = strtoul(text, &end, 0);
+	if (*text < '0' || *text > '9' || *end || errno || n > max) {
+		fprintf(stderr, "cycle-bench: --%s %s: a number up to %u is needed\n",
+			name, text, max);
+		exit(2);
+	}
+	return (unsigned int)n;
+}
+
+static void parse(struct bench *b, int argc, char **argv)
+{
+	static const struct option options[] = {
+		{ "master", required_argument, NULL, 'm' },
+		{ "cycles", required_argument, NULL, 'c' },
+		{ "period-us", required_argument, NULL, 'p' },
+		{ "wait-s", required_argument, NULL, 'w' },
+		{ "domains", required_argument, NULL, 'd' },
+		{ "extras", no_argument, NULL, 'e' },
+		{ "syscalls", no_argument, NULL, 's' },
+		{ "help", no_argument, NULL, 'h' },
+		{ NULL, 0, NULL, 0 },
+	};
+	unsigned int *value;
+	int c, at;
+
+	while ((c = getopt_long(argc, argv, "h", options, &at)) != -1) {
+		value = c == 'm' ? &b->index : c == 'c' ? &b->cycles :
+			c == 'p' ? &b->period_us : c == 'w' ? &b->wait_s :
+			c == 'd' ? &b->n_domains : NULL;
+		if (value)
+			*value = number(options[at].name, optarg,
+					c == 'd' ? DOMAINS_MAX : 10000000);
+		else if (c == 'e')
+			b->extras = true;
+		else if (c == 's')
+			b->syscalls = true;
+		else
+			usage(c == 'h' ? stdout : stderr), exit(c == 'h' ? 0 : 2);
+	}
+	if (optind < argc || !b->cycles || !b->period_us || !b->n_domains) {
+		usage(stderr);
+		exit(2);
+	}
+}
+
+int main(int argc, char **argv)
+{
+	static struct bench b = { .cycles = 1000, .period_us = 1000,
+				  .wait_s = 60, .n_domains = 1 };
+	unsigned int p;
+
+	parse(&b, argc, argv);
+	for (p = 0; p < PARTS; p++) {
+		b.samples[p] = calloc(b.cycles, sizeof(*b.samples[p]));
+		if (!b.samples[p]) {
+			fprintf(stderr, "cycle-bench: no memory for %u cycles\n",
+				b.cycles);
+			return 1;
+		}
+	}
+	return b.syscalls ? syscalls_run(bench, &b) : bench(&b);
+}

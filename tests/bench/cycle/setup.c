@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* All process data of all slaves, spread over the domains. */
+#include "bench.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <uapi/ethercat.h>
+
+/* One entry brings the whole SyncManager into the domain. */
+static int add_sync(struct bench *b, const ec_slave_info_t *slave, uint8_t sm,
+		    ec_slave_config_t *sc, ec_domain_t *domain)
+{
+	ec_sync_info_t sync;
+	ec_pdo_info_t pdo;
+	unsigned int bit;
+	uint16_t i;
+	int ret;
+
+	if (ecrt_master_get_sync_manager(b->master, slave->position, sm, &sync))
+		return -1;
+	for (i = 0; i < sync.n_pdos; i++) {
+		if (ecrt_master_get_pdo(b->master, slave->position, sm, i, &pdo))
+			return -1;
+		if (!pdo.n_entries)
+			continue;
+		ret = ecrt_slave_config_reg_pdo_entry_pos(sc, sm, i, 0, domain,
+							  &bit);
+		return ret < 0 ? ret : 0;
+	}
+	return 0;
+}
+
+static int add_slave(struct bench *b, uint16_t position)
+{
+	ec_domain_t *domain = b->domains[position % b->n_domains];
+	ec_slave_config_t *sc;
+	ec_slave_info_t slave;
+	uint8_t sm;
+
+	if (ecrt_master_get_slave(b->master, position, &slave))
+		return -1;
+	sc = ecrt_master_slave_config(b->master, 0, position, slave.vendor_id,
+				      slave.product_code);
+	if (!sc)
+		return -1;
+	b->sc[b->slaves++] = sc;
+	for (sm = 0; sm < slave.sync_count; sm++)
+		if (add_sync(b, &slave, sm, sc, domain))
+			return -1;
+	return 0;
+}
+
+int setup(struct bench *b)
+{
+	ec_master_info_t info;
+	unsigned int i;
+
+	for (i = 0; i < b->n_domains; i++) {
+		b->domains[i] = ecrt_master_create_domain(b->master);
+		if (!b->domains[i])
+			return -1;
+	}
+	if (ecrt_master(b->master, &info))
+		return -1;
+	if (!info.slave_count || info.slave_count > SLAVES_MAX) {
+		fprintf(stderr, "cycle-bench: %u slaves; 1..%u are needed\n",
+			info.slave_count, SLAVES_MAX);
+		return -1;
+	}
+	for (i = 0; i < info.slave_count; i++)
+		if (add_slave(b, (uint16_t)i))
+			return -1;
+	for (i = 0; i < b->n_domains; i++)
+		b->image_bytes += ecrt_domain_size(b->domains[i]);
+	if (ecrt_master_set_send_interval(b->master, b->period_us))
+		return -1;
+	return ecrt_master_activate(b->master);
+}
+
+static int open_master(const struct bench *b)
+{
+	char path[40];
+
+	snprintf(path, sizeof(path), "/dev/EtherCAT%u", b->index);
+	return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+void frame_counters(const struct bench *b, unsigned long long *lost,
+		    unsigned long long *late)
+{
+	struct ec_ioc_master info;
+	unsigned int i;
+	int fd = open_master(b);
+
+	*lost = 0;
+	*late = 0;
+	if (fd < 0)
+		return;
+	memset(&info, 0, sizeof(info));
+	if (!ioctl(fd, EC_IOC_MASTER, &info))
+		for (i = 0; i < EC_UAPI_DEVICES; i++) {
+			*lost += info.devices[i].lost;
+			*late += info.devices[i].late;
+		}
+	close(fd);
+}
+
+/* Smallest price of a command that the driver refuses at once. */
+uint32_t syscall_entry(const struct bench *b)
+{
+	uint32_t best = UINT32_MAX;
+	int fd = open_master(b), i;
+
+	for (i = 0; fd >= 0 && i < 100; i++) {
+		uint64_t from = ticks();
+		uint32_t took;
+
+		ioctl(fd, _IO('E', 0));
+		took = (uint32_t)(ticks() - from);
+		best = took < best ? took : best;
+	}
+	if (fd >= 0)
+		close(fd);
+	return best;
+}

@@ -1,0 +1,28 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# All benchmarks: "ok" lines are gates, lines with # are figures.
+# usage: run.sh [NAME...]      default: every NAME.sh of this folder
+
+set -u
+cd "$(dirname "$0")" || exit 1
+passed=0 failed=0
+
+for f in ${*:-*.sh}; do
+	f=${f%.sh}
+	[ "$f" != run ] || continue
+	echo "== $f"
+	out=$(mktemp)
+	"./$f.sh" 2>&1 | tee "$out"
+	rc=${PIPESTATUS[0]}
+	last=$(tail -n 1 "$out")
+	rm -f "$out"
+	if [[ $last =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
+		passed=$((passed + BASH_REMATCH[1])) failed=$((failed + BASH_REMATCH[2]))
+	else
+		echo "not ok $f ended with $rc"
+		failed=$((failed + 1))
+	fi
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
