@@ -3,6 +3,7 @@
 # make                modules, library, tool, simulator (KDIR= chooses the kernel)
 # make install        all of it (DESTDIR=, PREFIX=)
 # make demo           the main job in a VM
+# make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
 
 KDIR ?= /lib/modules/$(shell uname -r)/build
@@ -51,8 +52,12 @@ check:
 check-kernels:
 	tests/check-kernels.sh
 
+# figures; gates where a figure has to be reached
+bench:
+	tests/bench/run.sh
+
 # the tests of the model notice each of its deliberate errors
 check-witness:
 	tests/witness/run.sh
 
-.PHONY: check check-kernels check-witness
+.PHONY: bench check check-kernels check-witness
