@@ -4,6 +4,7 @@
 #include <linux/mutex.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
+#include "capture.h"
 #include "device.h"
 #include "master.h"
 
@@ -39,6 +40,9 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 {
 	unsigned int i, side;
 
+	for (i = 0; i < ec_master_count(); i++)
+		if (ec_capture_is(ec_master_get(i)->capture, name))
+			return false;
 	for (i = 0; i < ec_master_count(); i++)
 		for (side = 0; side < EC_MAX_LINKS; side++)
 			if (spec_matches(ec_master_get(i)->spec[side], name, mac))

@@ -2,8 +2,10 @@
 #include <linux/errno.h>
 #include <linux/rcupdate.h>
 #include <linux/string.h>
+#include "capture.h"
 #include "device.h"
 #include "link.h"
+#include "master.h"
 #include "slots.h"
 
 /**
@@ -30,6 +32,7 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 		return -EBUSY;
 	}
 	memcpy(buf, slot->frame, len);
+	ec_capture_sent(link->master->capture, buf, len);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {
 		atomic64_inc(&link->stats.tx_errors);

@@ -2,6 +2,7 @@
 #include <linux/etherdevice.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
+#include "capture.h"
 #include "cdev.h"
 #include "device.h"
 #include "master.h"
@@ -38,6 +39,7 @@ void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t
 
 	atomic64_inc(&link->stats.rx_frames);
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
+	ec_capture_received(m->capture, src, data, len);
 	switch (ec_slots_match(&m->slots, src, data, len, &xfer)) {
 	case EC_MATCH_DONE:
 		if (xfer)
@@ -165,6 +167,7 @@ static void destroy(struct ec_master *m)
 		destroy_workqueue(m->work);
 	for (i = 0; i < EC_MAX_LINKS; i++)
 		ec_device_detach(&m->link[i]);
+	ec_capture_destroy(m);
 	for (i = 0; i < m->n_slaves; i++)
 		ec_slave_unref(m->slaves[i]);
 	kvfree(m->slaves);
@@ -208,9 +211,12 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		ret = -ENOMEM;
 		goto err_slots;
 	}
-	ret = ec_cdev_init(m);
+	ret = ec_capture_create(m);
 	if (ret)
 		goto err_work;
+	ret = ec_cdev_init(m);
+	if (ret)
+		goto err_capture;
 	ret = ec_monitor_start(m);
 	if (ret)
 		goto err_cdev;
@@ -218,10 +224,13 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 
 err_cdev:
 	ec_cdev_exit(m);
+	ec_capture_destroy(m);
 	destroy_workqueue(m->work);
 	ec_slots_exit(&m->slots);
 	ec_cdev_put(m);
 	return ERR_PTR(ret);
+err_capture:
+	ec_capture_destroy(m);
 err_work:
 	destroy_workqueue(m->work);
 err_slots:

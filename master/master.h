@@ -32,6 +32,8 @@ struct task_struct;
  * @stopping: master goes away: waiters are cancelled
  *
  * @link: main and backup
+ * @capture: interface for capture programs, NULL: none; immutable while there
+ *	are devices
  * @slots: frame slots
  * @io_lock: idle mode: serialises senders
  * @owner: enum ec_owner; see ec_cycle_own()
@@ -76,6 +78,7 @@ struct ec_master {
 	bool stopping;
 
 	struct ec_link link[EC_MAX_LINKS];
+	struct ec_capture *capture;
 	struct ec_slots slots;
 	struct rt_mutex io_lock;
 	int owner;

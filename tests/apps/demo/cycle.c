@@ -88,8 +88,9 @@ static void copy_analog(struct demo *d, uint8_t *data, bool measure)
 
 enum phase { START, RUN, STOP };
 
+/* @t_s: when this cycle should have begun, since the first measured one */
 static void exchange(struct demo *d, ec_master_t *m, ec_domain_t *domain,
-		     uint8_t *data, enum phase phase)
+		     uint8_t *data, enum phase phase, double t_s)
 {
 	double dt = d->period_us / 1e6, run = d->cycles * dt;
 	double turn = run / 2 > 1 ? run / 2 : 1;
@@ -106,7 +107,7 @@ static void exchange(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 	for (i = 0; i < d->n_axes; i++)
 		axis_cycle(&d->axes[i], data,
 			   phase != STOP && d->operational == d->slaves,
-			   phase == RUN ? d->done * dt : -1, dt, turn);
+			   phase == RUN ? t_s : -1, dt, turn);
 	if (phase == RUN)
 		d->done++;
 	d->call_errors += !!ecrt_domain_queue(domain);
@@ -244,7 +245,7 @@ static enum phase next_phase(struct demo *d, enum phase phase, long long begin)
 void cycle_run(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 	       uint8_t *data)
 {
-	long long begin = now_ns(), at = begin, started, last = 0;
+	long long begin = now_ns(), at = begin, first = 0, started, last = 0;
 	enum phase phase = START, next;
 	unsigned int stopping = 0;
 	bool reading = false;
@@ -254,7 +255,9 @@ void cycle_run(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 		started = next_cycle(d, &at, phase == RUN);
 		if (last)
 			count_period(d, (double)(started - last) / 1000);
-		exchange(d, m, domain, data, phase);
+		first = d->done ? first : at;
+		exchange(d, m, domain, data, phase,
+			 (double)(at - first) / NS_PER_S);
 		next = next_phase(d, phase, begin);
 		/* a change of phase takes its time: not measured */
 		last = phase == RUN && next == RUN ? started : 0;
