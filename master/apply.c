@@ -45,28 +45,43 @@ static int to_init(struct ec_slave *s)
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
 	s->mbox_counter = 0;
 	s->reconfigure = false;
+	s->ours = false;
 	return 0;
+}
+
+/**
+ * ec_apply_mailbox_sms() - SyncManager pages of the standard mailbox
+ * @slave: slave with its EEPROM
+ * @page: result, SM0 and SM1
+ *
+ * Context: Any.
+ * Return: bytes of @page, 0 without mailbox.
+ */
+unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page)
+{
+	const struct ec_sii_mbox *mb = &slave->info.std;
+	struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
+			     .activate = EC_SM_ACT_ENABLE };
+	struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
+			    .activate = EC_SM_ACT_ENABLE };
+
+	if (!ec_slave_has_mailbox(slave))
+		return 0;
+	ec_sm_encode(&out, page);
+	ec_sm_encode(&in, page + EC_SM_PAGE);
+	return 2 * EC_SM_PAGE;
 }
 
 /* state-machine.md 4.2 */
 static int to_preop(struct ec_slave *s)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
-	const struct ec_sii_mbox *mb = &s->info.std;
 	u8 page[2 * EC_SM_PAGE];
-	int ret = 0;
+	unsigned int len = ec_apply_mailbox_sms(s, page);
+	int ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
 
-	if (ec_slave_has_mailbox(s)) {
-		struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
-				     .activate = EC_SM_ACT_ENABLE };
-		struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
-				    .activate = EC_SM_ACT_ENABLE };
-
-		ec_sm_encode(&out, page);
-		ec_sm_encode(&in, page + EC_SM_PAGE);
-		ret = write_reg(s, EC_REG_SM(0), page, sizeof(page));
-	}
 	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: ec_al_set(s, EC_AL_PREOP, 0);
+	s->ours = !ret;
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
 
@@ -320,7 +335,7 @@ static int step(struct ec_slave *s)
 			return failed(s, s->al_status & EC_AL_STATE_MASK, ret);
 	}
 	cur = s->al_status & EC_AL_STATE_MASK;
-	if (s->reconfigure && cur != EC_AL_INIT && want > EC_AL_PREOP)
+	if (cur != EC_AL_INIT && (!s->ours || (s->reconfigure && want > EC_AL_PREOP)))
 		return to_init(s);
 	if (cur == want)
 		return 1;

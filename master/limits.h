@@ -19,7 +19,7 @@
 #define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */
 #define EC_SLOTS		256	/* datagram index has 8 bits */
 #define EC_SLOTS_CYCLE		64	/* of them never taken by ec_xfer() */
-#define EC_XFER_WINDOW		48	/* frames one ec_xfer() has in flight */
+#define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
 #define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)
 
 #endif

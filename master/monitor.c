@@ -10,7 +10,9 @@
 #include "xfer.h"
 
 #define PERIOD_MS	20
+#define BOUNCE_MS	5	/* between looks while the number of slaves changes */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
+#define TRIES		2	/* of the look at all slaves */
 
 /* what the monitor remembers between two looks */
 struct watch {
@@ -46,6 +48,19 @@ static void check_links(struct watch *w)
 	}
 }
 
+/* A slave nobody is bringing somewhere has another status than before. */
+static void log_change(const struct ec_slave *s, u16 status, u16 code)
+{
+	u8 state = status & EC_AL_STATE_MASK, before = s->al_status & EC_AL_STATE_MASK;
+
+	if (status & EC_AL_ERROR && !(s->al_status & EC_AL_ERROR))
+		ec_slave_warn(s, "is in %s with error 0x%04x: %s\n", ec_al_state_name(state),
+			      code, ec_al_code_text(code));
+	else if (state < before && before == s->requested)
+		ec_slave_warn(s, "fell back from %s to %s\n", ec_al_state_name(before),
+			      ec_al_state_name(state));
+}
+
 /* AL status of every slave; used when the broadcast is not one plain state */
 static void check_slaves(struct ec_master *m)
 {
@@ -67,10 +82,8 @@ static void check_slaves(struct ec_master *m)
 
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
-		if (status & EC_AL_ERROR && !(s->al_status & EC_AL_ERROR) && !work_busy(&s->work))
-			ec_slave_warn(s, "is in %s with error 0x%04x: %s\n",
-				      ec_al_state_name(status & EC_AL_STATE_MASK), code,
-				      ec_al_code_text(code));
+		if (!work_busy(&s->work))
+			log_change(s, status, code);
 		if (status != s->al_status || code != s->al_code) {
 			WRITE_ONCE(s->al_status, status);
 			WRITE_ONCE(s->al_code, code);
@@ -89,12 +102,18 @@ out:
 static bool as_wanted(const struct ec_master *m, u16 ored)
 {
 	unsigned int i;
+	u8 want = 0;
 
-	for (i = 0; i < m->n_slaves; i++)
-		if (m->slaves[i]->requested != m->slaves[0]->requested ||
-		    m->slaves[i]->al_status != m->slaves[0]->requested)
+	for (i = 0; i < m->n_slaves; i++) {
+		const struct ec_slave *s = m->slaves[i];
+
+		if (s->error == EC_SLAVE_SCAN_FAILED)
+			continue;
+		want = want ?: s->requested;
+		if (s->requested != want || s->al_status != want)
 			return false;
-	return !m->n_slaves || ored == m->slaves[0]->requested;
+	}
+	return ored == want;
 }
 
 static u32 al_bits(u16 ored)
@@ -105,17 +124,18 @@ static u32 al_bits(u16 ored)
 static void count_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
+	unsigned int count = 0, try;
 	u8 al[2] = { 0, 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, al);
-	unsigned int count;
-	u16 ored;
+	u16 ored = 0;
 
-	if (ec_xfer(m, &dg, 1)) {
-		count = 0;
-		ored = 0;
-	} else {
+	dg.repeat = false;
+	for (try = 0; try < TRIES && w->link_up; try++) {
+		if (ec_xfer(m, &dg, 1))
+			continue;
 		count = dg.back;
 		ored = get_unaligned_le16(al);
+		break;
 	}
 	WRITE_ONCE(m->slaves_responding, count);
 	WRITE_ONCE(m->al_states, al_bits(ored));
@@ -143,7 +163,8 @@ static void want_states(struct ec_master *m)
 
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
-		ec_slave_request(s, s->requested);
+		if (s->al_status != s->requested || s->reconfigure || !s->ours)
+			ec_slave_request(s, s->requested);
 	}
 }
 
@@ -182,7 +203,7 @@ static int monitor(void *data)
 	struct ec_master *m = w.m;
 
 	while (!kthread_should_stop()) {
-		ktime_t to = ms_to_ktime(PERIOD_MS);
+		ktime_t to;
 
 		check_links(&w);
 		if (m->owner == EC_OWNER_CYCLE && ec_cycle_stalled(m))
@@ -197,6 +218,7 @@ static int monitor(void *data)
 			WRITE_ONCE(m->link[0].al_states, 0);
 		}
 		ec_session_status(m);
+		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		if (!kthread_should_stop() && !READ_ONCE(m->rescan))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);

@@ -23,6 +23,7 @@ struct scan {
 	struct regs *regs;
 	struct ec_dg *dg;
 	u8 (*addr)[2];
+	struct ec_slave **known;	/* slaves of the last scan by station address */
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 };
 
@@ -60,24 +61,16 @@ static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 	return ec_xfer(sc->m, sc->dg, sc->n);
 }
 
-static struct ec_slave *known(struct ec_master *m, u16 station)
+static int index_known(struct scan *sc)
 {
 	unsigned int i;
 
-	for (i = 0; i < m->n_slaves; i++)
-		if (m->slaves[i]->station == station)
-			return m->slaves[i];
-	return NULL;
-}
-
-static bool taken(const struct scan *sc, u16 station, unsigned int n)
-{
-	unsigned int i;
-
-	for (i = 0; i < n; i++)
-		if (sc->slaves[i]->station == station)
-			return true;
-	return false;
+	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
+	if (!sc->known)
+		return -ENOMEM;
+	for (i = 0; i < sc->m->n_slaves; i++)
+		sc->known[sc->m->slaves[i]->station] = sc->m->slaves[i];
+	return 0;
 }
 
 static u16 next_station(struct scan *sc)
@@ -85,37 +78,62 @@ static u16 next_station(struct scan *sc)
 	do {
 		if (++sc->m->next_station == 0)
 			sc->m->next_station = 1;
-	} while (known(sc->m, sc->m->next_station));
+	} while (sc->known[sc->m->next_station]);
 	return sc->m->next_station;
+}
+
+/* Is the number of slaves still the one the scan began with? */
+static bool same_count(struct scan *sc)
+{
+	u8 type[1] = { 0 };
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+
+	return !ec_xfer(sc->m, &dg, 1) && dg.back == (u16)sc->n;
+}
+
+/* New slaves are told their address; who does not listen is left out. */
+static int write_stations(struct scan *sc, unsigned int n)
+{
+	unsigned int i;
+	int ret = ec_xfer(sc->m, sc->dg, n);
+
+	for (i = 0; i < n && !ret; i++) {
+		unsigned int pos = (u16)-sc->dg[i].adp;
+
+		if (sc->dg[i].wkc == 1)
+			continue;
+		if (!same_count(sc))
+			return -EAGAIN;
+		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED,
+			      "forwards frames but does not take its station address; power-cycle or replace it, then rescan");
+	}
+	return ret;
 }
 
 /* Slaves that kept the address we gave them are the same; others get one. */
 static int assign(struct scan *sc)
 {
 	unsigned int i, n = 0;
-	int ret;
 
 	for (i = 0; i < sc->n; i++) {
 		u16 station = get_unaligned_le16(sc->regs[i].station);
-		struct ec_slave *s = known(sc->m, station);
+		struct ec_slave *s = sc->known[station];
 
-		if (s && !s->error && !taken(sc, station, i)) {
+		if (s && !s->error) {
+			sc->known[station] = NULL;	/* the next one is a copy */
 			sc->slaves[i] = ec_slave_ref(s);
 			continue;
 		}
 		sc->slaves[i] = ec_slave_alloc(sc->m, next_station(sc));
 		if (!sc->slaves[i])
 			return -ENOMEM;
+		sc->slaves[i]->position = i;
 		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
 		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
 						sc->addr[n]);
 		n++;
 	}
-	ret = ec_xfer(sc->m, sc->dg, n);
-	for (i = 0; i < n && !ret; i++)
-		if (sc->dg[i].wkc != 1)
-			ret = -EAGAIN;	/* the bus has changed meanwhile */
-	return ret;
+	return write_stations(sc, n);
 }
 
 static void take_regs(struct scan *sc)
@@ -127,6 +145,11 @@ static void take_regs(struct scan *sc)
 		struct regs *r = &sc->regs[i];
 
 		s->position = i;
+		if (s->error == EC_SLAVE_SCAN_FAILED) {
+			/* the next one hangs behind it, as far as can be told */
+			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
+			continue;
+		}
 		memcpy(s->regs, r->info, sizeof(s->regs));
 		s->dl_status = get_unaligned_le16(r->dl);
 		s->al_status = get_unaligned_le16(r->al);
@@ -136,22 +159,17 @@ static void take_regs(struct scan *sc)
 	}
 }
 
-/* EEPROMs of the new ones: all of them at once */
-static int read_sii(struct scan *sc)
+/* EEPROMs of the new ones: all of them at once, then up to PREOP together */
+static int read_new(struct scan *sc)
 {
 	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
-	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	unsigned int i, n = 0;
 
 	if (!fresh)
 		return -ENOMEM;
 	for (i = 0; i < sc->n; i++)
-		if (!sc->slaves[i]->sii)
+		if (!sc->slaves[i]->sii && !sc->slaves[i]->error)
 			fresh[n++] = sc->slaves[i];
-	for (i = 0; i < n && !sc->fresh; i++) {
-		ec_xfer_fpwr(sc->m, fresh[i]->station, EC_REG_EEP_OWNER, force, 1);
-		ec_xfer_fpwr(sc->m, fresh[i]->station, EC_REG_EEP_OWNER, zero, 1);
-	}
 	ec_scan_sii(sc->m, fresh, n, sc->fresh);
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = fresh[i];
@@ -164,6 +182,7 @@ static int read_sii(struct scan *sc)
 			ec_slave_warn(s, "EEPROM checksum is 0x%02x, should be 0x%02x\n",
 				      s->info.checksum, s->info.checksum_calc);
 	}
+	ec_scan_preop(sc->m, fresh, n);
 	kvfree(fresh);
 	return 0;
 }
@@ -188,7 +207,7 @@ static int look(struct scan *sc)
 		return ret;
 	take_regs(sc);
 	ec_topology_build(sc->slaves, sc->n);
-	return read_sii(sc);
+	return read_new(sc);
 }
 
 /* The result becomes visible; slaves that are missing are gone. */
@@ -196,7 +215,7 @@ static void publish(struct scan *sc)
 {
 	struct ec_master *m = sc->m;
 	struct ec_slave **old;
-	unsigned int i, j, n_old;
+	unsigned int i, n_old;
 
 	down_write(&m->topo);
 	old = m->slaves;
@@ -207,10 +226,8 @@ static void publish(struct scan *sc)
 	sc->slaves = NULL;
 
 	for (i = 0; i < n_old; i++) {
-		for (j = 0; j < m->n_slaves; j++)
-			if (m->slaves[j] == old[i])
-				break;
-		if (j == m->n_slaves)
+		/* at its place in the new list, or not on the bus any more */
+		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i])
 			WRITE_ONCE(old[i]->gone, true);
 		ec_slave_unref(old[i]);
 	}
@@ -238,7 +255,7 @@ int ec_scan(struct ec_master *m, unsigned int count)
 	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
 	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
 	sc.addr = kvcalloc(count + 1, sizeof(*sc.addr), GFP_KERNEL);
-	if (sc.slaves && sc.regs && sc.dg && sc.addr)
+	if (sc.slaves && sc.regs && sc.dg && sc.addr && !index_known(&sc))
 		ret = count ? look(&sc) : 0;
 	if (!ret) {
 		publish(&sc);
@@ -254,5 +271,6 @@ int ec_scan(struct ec_master *m, unsigned int count)
 	kvfree(sc.regs);
 	kvfree(sc.dg);
 	kvfree(sc.addr);
+	kvfree(sc.known);
 	return ret;
 }

@@ -14,6 +14,11 @@
 #include "xfer.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
+#define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
+#define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while nobody is ready, few are asked */
+#define PROBE		8
+#define WAIT_MAX_NS	(2 * NSEC_PER_MSEC)
+#define POLL_US		40
 #define RETRIES		5
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 
@@ -25,6 +30,7 @@ struct reader {
 	size_t have;
 	size_t need;
 	u8 tries;
+	u8 len;		/* bytes of @reg that are of interest */
 	bool alone;	/* left the lockstep */
 	bool done;
 	u8 reg[14];	/* 0x0502-0x050F */
@@ -38,6 +44,9 @@ struct job {
 	u8 (*cmd)[6];
 	struct reader **who;
 	bool broadcast;
+	u64 wait_ns;	/* from the command to the first look, 0: not known */
+	u64 good_ns;	/* @wait_ns that was long enough */
+	bool settled;	/* less than that was tried in vain */
 };
 
 static void finish(struct reader *r)
@@ -88,17 +97,26 @@ static void plan(struct reader *r)
 	}
 }
 
+/* An access that ended without data; asking again does not help. */
+static bool refused(const struct reader *r)
+{
+	u16 ctl = get_unaligned_le16(r->reg);
+
+	return !(ctl & EC_EEP_BUSY) && ctl & EC_EEP_ERR_ACK;
+}
+
 /* Take a result; true when the slave has answered what was asked. */
 static bool take(struct reader *r, u16 word)
 {
 	u16 ctl = get_unaligned_le16(r->reg);
-	size_t got = ctl & EC_EEP_READ8 ? 8 : 4;
+	size_t got = min_t(size_t, ctl & EC_EEP_READ8 ? 8 : 4, r->len - 6);
 
 	if (ctl & (EC_EEP_BUSY | EC_EEP_CMD_MASK) || ctl & EC_EEP_ERR_ACK ||
 	    get_unaligned_le16(r->reg + 2) != word)
 		return false;
 	memcpy(r->buf + r->have, r->reg + 6, got);
 	r->have += got;
+	r->len = 6 + got;
 	r->tries = 0;
 	plan(r);
 	return true;
@@ -110,6 +128,21 @@ static void command(u8 *c, u16 word)
 	put_unaligned_le32(word, c + 2);
 }
 
+/* Take the EEPROM interface away from the PDI (0x0500). */
+static void take_over(struct job *j, struct reader **who, unsigned int n)
+{
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
+	unsigned int i, pass;
+
+	for (pass = 0; pass < 2; pass++) {
+		for (i = 0; i < n; i++)
+			j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+						       EC_REG_EEP_OWNER, 1,
+						       (void *)(pass ? zero : force));
+		ec_xfer(j->m, j->dg, n);
+	}
+}
+
 /* FPRD 0x0502 of @n readers */
 static void collect(struct job *j, struct reader **who, unsigned int n)
 {
@@ -117,7 +150,7 @@ static void collect(struct job *j, struct reader **who, unsigned int n)
 
 	for (i = 0; i < n; i++)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, who[i]->slave->station,
-					       EC_REG_EEP_CONTROL, sizeof(who[i]->reg),
+					       EC_REG_EEP_CONTROL, who[i]->len,
 					       who[i]->reg);
 	ec_xfer(j->m, j->dg, n);
 	for (i = 0; i < n; i++)
@@ -141,66 +174,150 @@ static void start(struct job *j, struct reader **who, unsigned int n, u16 word)
 	ec_xfer(j->m, j->dg, n);
 }
 
-/* One access for all slaves at word @word; returns how many advanced. */
-static void step(struct job *j, struct reader **who, unsigned int n, u16 word, u32 *busy_us)
+static void sleep_until(u64 ns)
 {
-	u64 t0 = ktime_get_ns();
-	unsigned int i, left = n;
+	u64 now = ktime_get_ns();
+
+	if (ns > now + NSEC_PER_USEC)
+		usleep_range(div_u64(ns - now, NSEC_PER_USEC), div_u64(ns - now, NSEC_PER_USEC) + 5);
+}
+
+/*
+ * When to look first next time: a little sooner, until that was too soon once.
+ * @first: the first look found everybody ready.
+ */
+static void learn(struct job *j, u64 ready_ns, bool first)
+{
+	if (!j->wait_ns) {
+		j->wait_ns = min_t(u64, ready_ns, WAIT_MAX_NS);
+	} else if (first) {
+		j->good_ns = j->wait_ns;
+		if (!j->settled)
+			j->wait_ns -= j->wait_ns / 16;
+	} else {
+		j->wait_ns = j->wait_ns < j->good_ns ? j->good_ns :
+			     min_t(u64, j->wait_ns + j->wait_ns / 8, WAIT_MAX_NS);
+		j->settled = true;
+	}
+}
+
+/* Ask those of @who who are left; keeps the ones that have no answer yet. */
+static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left,
+			 u16 word)
+{
+	unsigned int i, k = 0;
+
+	collect(j, who, ask);
+	for (i = 0; i < ask; i++) {
+		if (take(who[i], word))
+			continue;
+		if (refused(who[i]))
+			who[i]->alone = true;
+		else
+			who[k++] = who[i];
+	}
+	memmove(&who[k], &who[ask], (left - ask) * sizeof(*who));
+	return left - ask + k;
+}
+
+/* One access for all slaves at word @word. */
+static void step(struct job *j, struct reader **who, unsigned int n, u16 word)
+{
+	u64 t0 = ktime_get_ns(), looked, ready = 0;
+	unsigned int i, left = n, ask, before;
+	bool first = true, probe = !j->wait_ns;
 
 	start(j, who, n, word);
-	if (*busy_us > 20)
-		usleep_range(*busy_us, *busy_us + 10);
+	sleep_until(t0 + j->wait_ns);
 	for (;;) {
-		unsigned int k = 0;
-
-		collect(j, who, left);
-		for (i = 0; i < left; i++)
-			if (!take(who[i], word))
-				who[k++] = who[i];
-		left = k;
+		looked = ktime_get_ns() - t0;
+		ask = probe ? min_t(unsigned int, left, PROBE) : left;
+		before = left;
+		left = look(j, who, ask, left, word);
+		if (left < before && !ready)
+			ready = looked;
 		if (!left)
 			break;
 		/* the slowest tenth is handled apart instead of holding the others */
-		if (ktime_get_ns() - t0 > STEP_TIMEOUT_NS ||
-		    (left * 10 <= n && ktime_get_ns() - t0 > 4 * NSEC_PER_MSEC)) {
+		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
 			for (i = 0; i < left; i++)
 				who[i]->alone = true;
 			return;
 		}
-		usleep_range(20, 30);
+		probe = left == before && looked < PROBE_NS;
+		if (left < before && ask < before)
+			continue;	/* some are ready: ask all of them */
+		first = false;
+		ready = 0;
+		usleep_range(POLL_US, POLL_US + 5);
 	}
-	/* learn how long it takes, so that the first look usually succeeds */
-	*busy_us = (3 * *busy_us + (u32)div_u64(ktime_get_ns() - t0, 1000) * 7 / 8) / 4;
-	*busy_us = min_t(u32, *busy_us, 2000);
+	learn(j, ready, first);
 }
 
-/* A slave that could not keep up: by itself, with retries. */
-static void read_alone(struct job *j, struct reader *r)
+/* Each of @who reads at its own word; errors are acknowledged first. */
+static void start_apart(struct job *j, struct reader **who, unsigned int n)
 {
-	u8 zero[2] = { 0, 0 };
+	static const u8 zero[2];
+	unsigned int i, k = 0;
+
+	for (i = 0; i < n; i++)
+		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
+			j->dg[k++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+							 EC_REG_EEP_CONTROL, 2, (void *)zero);
+	ec_xfer(j->m, j->dg, k);
+	for (i = 0; i < n; i++) {
+		command(j->cmd[i], who[i]->have / 2);
+		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+					       EC_REG_EEP_CONTROL, 6, j->cmd[i]);
+	}
+	ec_xfer(j->m, j->dg, n);
+}
+
+/* Those that left the lockstep and are not done; without tries left they fail. */
+static unsigned int apart(struct job *j, struct reader **who)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < j->n; i++) {
+		struct reader *r = &j->rd[i];
+
+		if (r->done)
+			continue;
+		if (r->tries++ >= RETRIES)
+			fail(r, refused(r) ? "no acknowledge" : "busy too long");
+		else
+			who[n++] = r;
+	}
+	return n;
+}
+
+/*
+ * Slaves that could not keep up: by themselves, side by side, with retries.
+ * One that never answers costs its tries, however many of them there are.
+ */
+static void read_apart(struct job *j)
+{
+	unsigned int i, n, left;
+	bool first = true;
 	u64 t0;
 
-	while (!r->done) {
-		u16 word = r->have / 2;
-
-		if (r->tries++ >= RETRIES) {
-			fail(r, get_unaligned_le16(r->reg) & EC_EEP_ERR_ACK ?
-			     "no acknowledge" : "busy too long");
-			return;
-		}
-		if (get_unaligned_le16(r->reg) & EC_EEP_ERR_MASK)
-			ec_xfer_fpwr(j->m, r->slave->station, EC_REG_EEP_CONTROL, zero, 2);
-		command(j->cmd[0], word);
-		if (ec_xfer_fpwr(j->m, r->slave->station, EC_REG_EEP_CONTROL, j->cmd[0], 6))
-			continue;
+	while ((n = apart(j, j->who)) && !j->m->stopping) {
+		if (first)
+			take_over(j, j->who, n);
+		first = false;
+		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
-		do {
+		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS;) {
+			unsigned int k = 0;
+
 			usleep_range(300, 400);
-			collect(j, &r, 1);
-			if (take(r, word))
-				break;
-		} while (get_unaligned_le16(r->reg) & EC_EEP_BUSY &&
-			 ktime_get_ns() - t0 < STEP_TIMEOUT_NS && !j->m->stopping);
+			collect(j, j->who, left);
+			for (i = 0; i < left; i++)
+				if (!take(j->who[i], j->who[i]->have / 2) &&
+				    !refused(j->who[i]))
+					j->who[k++] = j->who[i];
+			left = k;
+		}
 	}
 }
 
@@ -224,15 +341,15 @@ static unsigned int waiting(struct job *j, u16 *word)
 
 static void run(struct job *j)
 {
-	u32 busy_us = 0;
-	unsigned int i, n;
+	unsigned int n;
 	u16 word;
 
-	while ((n = waiting(j, &word)) && !j->m->stopping)
-		step(j, j->who, n, word, &busy_us);
-	for (i = 0; i < j->n && !j->m->stopping; i++)
-		if (!j->rd[i].done)
-			read_alone(j, &j->rd[i]);
+	n = waiting(j, &word);
+	if (!j->broadcast)
+		take_over(j, j->who, n);
+	for (; n && !j->m->stopping; n = waiting(j, &word))
+		step(j, j->who, n, word);
+	read_apart(j);
 }
 
 /**
@@ -262,6 +379,7 @@ void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, 
 
 		r->slave = slaves[i];
 		r->need = FIRST_BYTES;
+		r->len = sizeof(r->reg);
 		r->cap = 2048;
 		r->buf = kvzalloc(r->cap, GFP_KERNEL);
 		if (!r->buf)

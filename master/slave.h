@@ -54,6 +54,7 @@ struct ec_master;
  * @config: what the session wants from it, under session_lock and @lock
  * @interrupt: leave what the worker is waiting for
  * @reconfigure: go through INIT and configure again
+ * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
  */
@@ -95,6 +96,7 @@ struct ec_slave {
 	struct ec_config *config;
 	bool interrupt;
 	bool reconfigure;
+	bool ours;
 	struct mutex mbox_lock;
 	u8 mbox_counter;
 };
@@ -137,11 +139,15 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
 
 /* apply.c */
 void ec_apply_work(struct work_struct *work);
+unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page);
 
 /* topology.c */
 void ec_topology_build(struct ec_slave **slaves, unsigned int n);
 
 /* scan_sii.c */
 void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
+
+/* scan_preop.c */
+void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n);
 
 #endif

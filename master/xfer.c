@@ -16,6 +16,16 @@ struct batch_frame {
 	int err;
 };
 
+/*
+ * Half of the frames a batch has in flight. While one half is waited for and
+ * taken in, the other one keeps the wire busy.
+ */
+struct half {
+	struct ec_xfer x;
+	unsigned int frames;
+	struct batch_frame f[EC_XFER_WINDOW / 2];
+};
+
 /**
  * ec_xfer_done() - one frame of a waiting caller is accounted for
  * @x: the caller's
@@ -98,58 +108,85 @@ static struct ec_slot *get_slot(struct ec_master *m, bool wait)
 	}
 }
 
-/* send a window of frames and wait for all of them */
-static unsigned int window(struct ec_master *m, struct ec_dg *dg, unsigned int first,
-			   unsigned int n, struct batch_frame *bf)
+/*
+ * Send half a window of frames from datagram @first on; with @wait a slot is
+ * waited for. Returns the first datagram that is left.
+ */
+static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg *dg,
+			      unsigned int first, unsigned int n, bool wait)
 {
-	struct ec_xfer x;
-	unsigned int i, frames = 0;
+	init_completion(&h->x.done);
+	atomic_set(&h->x.pending, 1);
+	for (h->frames = 0; h->frames < ARRAY_SIZE(h->f); h->frames++) {
+		struct batch_frame *f = &h->f[h->frames];
 
-	init_completion(&x.done);
-	atomic_set(&x.pending, 1);
-	while (first < n && frames < EC_XFER_WINDOW) {
-		struct batch_frame *f = &bf[frames];
-
-		f->slot = get_slot(m, !frames);
+		while (first < n && dg[first].err != -EINPROGRESS)
+			first++;
+		if (first >= n)
+			break;
+		f->slot = get_slot(m, wait && !h->frames);
 		if (!f->slot)
 			break;
-		f->err = 0;
 		build(m, f, dg, first, n);
 		first += f->count;
-		f->slot->xfer = &x;
-		atomic_inc(&x.pending);
-		frames++;
-		if (f->slot->eth_len == EC_ETH_HDR + EC_FRAME_HDR)
-			f->err = -ENODATA;	/* only answered ones were left */
-		else
-			f->err = ec_cycle_submit(m, f->slot);
+		f->slot->xfer = &h->x;
+		atomic_inc(&h->x.pending);
+		f->err = ec_cycle_submit(m, f->slot);
 		if (f->err)
-			ec_xfer_done(&x);
+			ec_xfer_done(&h->x);
 	}
-	ec_xfer_done(&x);
-	if (!frames) {
-		for (i = first; i < n; i++)
-			if (dg[i].err == -EINPROGRESS)
-				dg[i].err = -EBUSY;
-		return n;
-	}
+	ec_xfer_done(&h->x);
+	return first;
+}
 
-	if (!wait_for_completion_timeout(&x.done, usecs_to_jiffies(ec_cycle_timeout_us(m)) + 1)) {
-		for (i = 0; i < frames; i++) {
-			if (bf[i].err || !ec_slot_cancel(bf[i].slot, ktime_get_ns()))
+/* Wait for the frames of a half and take their results. */
+static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
+{
+	unsigned int i;
+
+	if (!wait_for_completion_timeout(&h->x.done,
+					 usecs_to_jiffies(ec_cycle_timeout_us(m)) + 1)) {
+		for (i = 0; i < h->frames; i++) {
+			struct batch_frame *f = &h->f[i];
+
+			if (f->err || !ec_slot_cancel(f->slot, ktime_get_ns()))
 				continue;
 			atomic64_inc(&m->link[0].stats.lost);
-			bf[i].err = -ETIMEDOUT;
-			ec_xfer_done(&x);
+			f->err = -ETIMEDOUT;
+			ec_xfer_done(&h->x);
 		}
 		/* the rest is being copied at this moment */
-		wait_for_completion(&x.done);
+		wait_for_completion(&h->x.done);
 	}
-	for (i = 0; i < frames; i++) {
-		collect(&bf[i], dg);
-		ec_slot_put(&m->slots, bf[i].slot, false);
+	for (i = 0; i < h->frames; i++) {
+		collect(&h->f[i], dg);
+		ec_slot_put(&m->slots, h->f[i].slot, false);
 	}
-	return first;
+	h->frames = 0;
+}
+
+/* All datagrams that are in progress, once. */
+static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, unsigned int n)
+{
+	unsigned int i, first = 0, cur = 0;
+
+	half[0].frames = 0;
+	half[1].frames = 0;
+	for (;;) {
+		struct half *h = &half[cur], *other = &half[!cur];
+
+		if (h->frames)
+			finish_half(m, h, dg);
+		if (first < n)
+			first = send_half(m, h, dg, first, n, !other->frames);
+		if (!h->frames && !other->frames)
+			break;
+		cur = !cur;
+	}
+	/* no slot became free */
+	for (i = first; i < n; i++)
+		if (dg[i].err == -EINPROGRESS)
+			dg[i].err = -EBUSY;
 }
 
 /**
@@ -167,7 +204,7 @@ static unsigned int window(struct ec_master *m, struct ec_dg *dg, unsigned int f
  */
 int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 {
-	struct batch_frame *bf;
+	struct half *half;
 	unsigned int i, try, again;
 	int ret = 0;
 
@@ -176,12 +213,11 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 			return -EMSGSIZE;
 		dg[i].err = -EINPROGRESS;
 	}
-	bf = kmalloc_array(EC_XFER_WINDOW, sizeof(*bf), GFP_KERNEL);
-	if (!bf)
+	half = kmalloc_array(2, sizeof(*half), GFP_KERNEL);
+	if (!half)
 		return -ENOMEM;
 	for (try = 0; try < TRIES; try++) {
-		for (i = 0; i < n;)
-			i = window(m, dg, i, n, bf);
+		exchange(m, half, dg, n);
 		for (i = 0, again = 0; i < n; i++) {
 			if (dg[i].err == -ETIMEDOUT && dg[i].repeat && try < TRIES - 1) {
 				dg[i].err = -EINPROGRESS;
@@ -191,7 +227,7 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 		if (!again)
 			break;
 	}
-	kfree(bf);
+	kfree(half);
 	for (i = 0; i < n && !ret; i++)
 		ret = dg[i].err;
 	return ret;
