@@ -114,6 +114,14 @@ static void dev_release(struct device *dev)
 	kvfree(container_of(dev, struct ec_master, dev));
 }
 
+/* Everybody may look: a read-only file makes no traffic and changes nothing. */
+static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
+{
+	if (mode)
+		*mode = 0664;
+	return NULL;
+}
+
 /**
  * ec_cdev_init() - make the character device of a master
  * @m: master
@@ -168,6 +176,7 @@ int ec_cdev_class_init(void)
 		unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
 		return PTR_ERR(ec_class);
 	}
+	ec_class->devnode = devnode;
 	return 0;
 }
 

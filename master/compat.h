@@ -25,6 +25,13 @@ static inline struct class *ec_class_create(const char *name)
 #endif
 }
 
+/* the device of a class's devnode() became const in 6.2 */
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 2, 0)
+#define EC_DEVNODE_DEVICE	struct device
+#else
+#define EC_DEVNODE_DEVICE	const struct device
+#endif
+
 /* vm_flags are only writable through helpers since 6.3 */
 static inline void ec_vma_flags(struct vm_area_struct *vma, unsigned long set, unsigned long clear)
 {

@@ -74,6 +74,7 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	c->vendor = vendor;
 	c->product = product;
 	INIT_LIST_HEAD(&c->sdos);
+	INIT_LIST_HEAD(&c->flags);
 	s->configs[s->n_configs++] = c;
 	ec_session_attach_one(s, c);
 	if (c->slave)
@@ -84,12 +85,15 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 void ec_config_free(struct ec_config *c)
 {
 	struct ec_config_sdo *sdo, *n;
+	struct ec_config_flag *flag, *next;
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&c->sm[i].pdos);
 	list_for_each_entry_safe(sdo, n, &c->sdos, list)
 		kfree(sdo);
+	list_for_each_entry_safe(flag, next, &c->flags, list)
+		kfree(flag);
 	kfree(c);
 }
 
@@ -176,6 +180,29 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 	memcpy(sdo->data, data, size);
 	list_add_tail(&sdo->list, &c->sdos);
 	c->n_sdos++;
+	return 0;
+}
+
+/* @key is shorter than EC_UAPI_STRING; a later value replaces an earlier one */
+int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
+{
+	struct ec_config_flag *flag;
+
+	list_for_each_entry(flag, &c->flags, list) {
+		if (strcmp(flag->key, key))
+			continue;
+		flag->value = value;
+		return 0;
+	}
+	if (c->n_flags >= EC_MAX_SC_FLAGS)
+		return -ENOSPC;
+	flag = kzalloc(sizeof(*flag), GFP_KERNEL);
+	if (!flag)
+		return -ENOMEM;
+	strscpy(flag->key, key, sizeof(flag->key));
+	flag->value = value;
+	list_add_tail(&flag->list, &c->flags);
+	c->n_flags++;
 	return 0;
 }
 

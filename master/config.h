@@ -5,6 +5,7 @@
 
 #include <linux/list.h>
 #include <linux/types.h>
+#include "../include/uapi/ethercat.h"
 #include "pdo.h"
 #include "wire/regs.h"
 
@@ -59,6 +60,13 @@ struct ec_config_sdo {
 	u8 data[];
 };
 
+/* a named number that other masters know; in the order of the calls */
+struct ec_config_flag {
+	struct list_head list;
+	s32 value;
+	char key[EC_UAPI_STRING];
+};
+
 /**
  * struct ec_config - configuration of one slave, under session_lock
  * @session: owner
@@ -72,6 +80,8 @@ struct ec_config_sdo {
  * @n_fmmus: entries in @fmmus
  * @sdos: startup SDOs
  * @n_sdos: how many
+ * @flags: named numbers
+ * @n_flags: how many
  * @wd_divider: register 0x0400, 0: leave
  * @wd_intervals: register 0x0420, 0: leave
  * @dc_assign: AssignActivate
@@ -92,6 +102,8 @@ struct ec_config {
 	unsigned int n_fmmus;
 	struct list_head sdos;
 	unsigned int n_sdos;
+	struct list_head flags;
+	unsigned int n_flags;
 	u16 wd_divider;
 	u16 wd_intervals;
 	u16 dc_assign;
@@ -112,6 +124,7 @@ int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e
 int ec_config_map_clear(struct ec_config *c, u16 pdo);
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
 		      u32 size);
+int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit);
 int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,

@@ -50,6 +50,7 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, RSV(ec_ioc_config_entry, reserved)),
 	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0,
 	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
+	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0),
 	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved)),
 	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, RSV(ec_ioc_domain_fmmu, reserved)),
 	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, RSV(ec_ioc_domain_data, reserved)),

@@ -68,6 +68,7 @@ int ec_ioc_config(struct ec_file *f, void *arg)
 		memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
 		i->sdo_count = c->n_sdos;
 		i->state = ec_session_config_status(c);
+		i->flag_count = c->n_flags;
 	}
 	return done(f, ret);
 }
@@ -171,6 +172,31 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 		break;
 	}
 	return done(f, ret);
+}
+
+int ec_ioc_config_flag(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_flag *i = arg;
+	struct ec_config_flag *flag;
+	struct ec_config *c;
+	u32 k = 0;
+	int ret = 0;
+	struct ec_session *s = lock(f, &ret);
+
+	if (!s)
+		return ret;
+	c = config(f, s, i->index, &ret);
+	if (!c)
+		return done(f, ret);
+	list_for_each_entry(flag, &c->flags, list) {
+		if (k++ != i->flag_pos)
+			continue;
+		i->value = flag->value;
+		memcpy(i->key, flag->key, sizeof(i->key));
+		return done(f, 0);
+	}
+	return done(f, ec_refuse(f, -ENOENT, "there are %u flags, not %u", c->n_flags,
+				 i->flag_pos + 1));
 }
 
 int ec_ioc_domain(struct ec_file *f, void *arg)

@@ -12,6 +12,7 @@
 #define EC_MAX_CYCLE_DGRAMS	512	/* datagrams of one cycle */
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
+#define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
 #define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
 #define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */

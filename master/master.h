@@ -48,6 +48,7 @@ struct task_struct;
  * @n_slaves: entries in @slaves
  * @scan_busy: slaves are being scanned
  * @scan_wq: woken when a scan ends or a slave has settled
+ * @scan_count: scans finished so far
  * @scan_us: duration of the last scan
  * @scan_frames: frames of the last scan
  * @next_station: next unused station address
@@ -95,6 +96,7 @@ struct ec_master {
 	unsigned int n_slaves;
 	bool scan_busy;
 	wait_queue_head_t scan_wq;
+	u32 scan_count;
 	u32 scan_us;
 	u64 scan_frames;
 	u16 next_station;

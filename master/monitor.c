@@ -182,12 +182,14 @@ static void maybe_scan(struct watch *w)
 	WRITE_ONCE(m->scan_busy, true);
 	if (READ_ONCE(m->rescan)) {
 		/* forget what is known, so that everything is read again */
+		smp_wmb();
 		WRITE_ONCE(m->rescan, false);
 		if (m->owner == EC_OWNER_IDLE)
 			ec_scan(m, 0);
 	}
 	if (!ec_scan(m, w->count)) {
 		w->scanned = true;
+		WRITE_ONCE(m->scan_count, m->scan_count + 1);
 		ec_session_attach(m);
 		want_states(m);
 	} else {

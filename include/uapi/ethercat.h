@@ -87,7 +87,7 @@ struct ec_ioc_master {
 	__u8 al_states;		/* OR of 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
 	__u32 slave_count;
 	__u32 slaves_responding;
-	__u32 scan_index;
+	__u32 scan_index;	/* slaves scanned, as of ecrt_master_scan_progress() */
 	__u32 config_count;
 	__u32 domain_count;
 	__u32 device_count;
@@ -98,6 +98,8 @@ struct ec_ioc_master {
 	__u32 scan_us;		/* how long the last scan took */
 	__u64 scan_frames;	/* frames it needed */
 	struct ec_ioc_device devices[EC_UAPI_DEVICES];
+	__u32 scan_count;	/* bus scans finished so far */
+	__u32 reserved;
 };
 
 struct ec_ioc_port {
@@ -268,7 +270,7 @@ struct ec_ioc_config {
 	__s32 dc_shift[2];
 	__u32 sdo_count;
 	__u32 state;		/* EC_STATUS_SC_*, as in struct ec_status */
-	__u32 reserved;
+	__u32 flag_count;
 };
 
 struct ec_ioc_config_sm {
@@ -313,6 +315,14 @@ struct ec_ioc_config_sdo {
 	__u32 size;		/* in: room; out: full size */
 	__u32 reserved2;
 	__u64 data;
+};
+
+struct ec_ioc_config_flag {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u32 flag_pos;		/* in */
+	__s32 value;
+	char key[EC_UAPI_STRING];
 };
 
 struct ec_ioc_domain {
@@ -549,6 +559,7 @@ struct ec_status {
 #define EC_IOC_DOMAIN		EC_IOC_RW(0x0d, struct ec_ioc_domain)
 #define EC_IOC_DOMAIN_FMMU	EC_IOC_RW(0x0e, struct ec_ioc_domain_fmmu)
 #define EC_IOC_DOMAIN_DATA	EC_IOC_RW(0x0f, struct ec_ioc_domain_data)
+#define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)
