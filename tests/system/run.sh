@@ -18,8 +18,7 @@ passed=0 failed=0
 tests/vm/kernels.sh fetch "$kernel" >&2 &&
 make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" >&2 &&
 make -s -C lib O="$EC_BUILD/lib" all >&2 &&
-make -s -C tool >&2 &&
-mkdir -p "$EC_BUILD/tool" && cp tool/ethercat "$EC_BUILD/tool/" &&
+make -s -C tool O="$EC_BUILD/tool" >&2 &&
 make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 || exit 1
 
 for f in ${*:-tests/system/*.bats}; do
