@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +37,8 @@ static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list,
 
 		c[*n] = (struct ec_ioc_config){ .index = i };
 		err = dev_ioctl(d, EC_IOC_CONFIG, &c[*n]);
+		if (err == ENOENT)
+			break;	/* the application has gone meanwhile */
 		if (err) {
 			free(c);
 			return dev_fail(d, err, "Master%u: configuration %u: no data", d->master, i);
@@ -124,6 +127,6 @@ const struct cmd cmd_config = {
 		"slave_position (or null), state, watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"
-		"data_hex), dc (assign_activate, sync[] (cycle_ns, shift_ns))",
+		"data_hex), flags[] (key, value), dc (assign_activate, sync[] (cycle_ns, shift_ns))",
 	.flags = CMD_HISTORIC,
 };

@@ -7,17 +7,24 @@
 
 #define CONTROL_WATCHDOG	0x40
 
-/* a trailing comment; nothing in a name of the EEPROM may end it */
+/* text inside a comment: it can neither end it nor begin another */
+static void comment_text(const char *s)
+{
+	for (; *s; s++) {
+		bool mark = (s[0] == '*' && s[1] == '/') || (s[0] == '/' && s[1] == '*');
+
+		out_text(mark ? "%c " : "%c", *s);
+	}
+}
+
 static void comment(const char *name)
 {
-	if (!*name) {
-		out_text("\n");
-		return;
+	if (*name) {
+		out_text(" /* ");
+		comment_text(name);
+		out_text(" */");
 	}
-	out_text(" /* ");
-	for (const char *c = name; *c; c++)
-		out_text(c[0] == '*' && c[1] == '/' ? "* " : "%c", *c);
-	out_text(" */\n");
+	out_text("\n");
 }
 
 static unsigned int entries(unsigned int pos, const struct layout *l)
@@ -125,6 +132,22 @@ static void json(const struct ec_ioc_slave *s, const struct layout *l)
 	out_end();
 }
 
+static void text(const struct dev *d, const struct ec_ioc_slave *s, const struct layout *l)
+{
+	out_text("/* Master %u, Slave %u", d->master, s->position);
+	if (s->order[0]) {
+		out_text(", \"");
+		comment_text(s->order);
+		out_text("\"");
+	}
+	out_text("\n * Vendor ID:       0x%08x\n", s->vendor_id);
+	out_text(" * Product code:    0x%08x\n", s->product_code);
+	out_text(" * Revision number: 0x%08x\n */\n\n", s->revision_number);
+	entries(s->position, l);
+	pdos(s->position, l);
+	syncs(s->position, l);
+}
+
 static int each(const struct tool *t, struct dev *d)
 {
 	struct slaves sel;
@@ -146,15 +169,7 @@ static int each(const struct tool *t, struct dev *d)
 		if (l.n) {
 			out_object(NULL);
 			json(s, &l);
-			out_text("/* Master %u, Slave %u", d->master, s->position);
-			if (s->order[0])
-				out_text(", \"%s\"", strstr(s->order, "*/") ? "?" : s->order);
-			out_text("\n * Vendor ID:       0x%08x\n", s->vendor_id);
-			out_text(" * Product code:    0x%08x\n", s->product_code);
-			out_text(" * Revision number: 0x%08x\n */\n\n", s->revision_number);
-			entries(s->position, &l);
-			pdos(s->position, &l);
-			syncs(s->position, &l);
+			text(d, s, &l);
 			out_end();
 		}
 		layout_free(&l);
@@ -182,7 +197,9 @@ const struct cmd cmd_cstruct = {
 	.args = "",
 	.opts = "map",
 	.summary = "Print the PDO layout as C arrays for ecrt.h",
-	.help = "Slaves without sync managers are left out.\n",
+	.help = "The arrays are what ecrt_slave_config_pdos() takes: ethercat cstruct -p2 > pdos.h\n"
+		"Slaves without sync managers are left out. Slaves of several masters may get the\n"
+		"same names; select one with -m.\n",
 	.json = "masters[]: master, slaves[]: position, order_number, vendor_id, product_code,\n"
 		"revision_number, syncs[]: index, direction (output, input), watchdog, pdos[]: index,\n"
 		"name, entries[]: index, subindex, size_bits, name",

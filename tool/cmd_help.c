@@ -3,20 +3,26 @@
 #include <string.h>
 
 #include "../master/wire/types.h"
+#include "out.h"
 #include "tool.h"
 
 static void types(void)
 {
-	puts("Data types for --type:\n");
+	out_text("Data types for --type:\n\n");
+	out_array("types");
 	for (unsigned int i = 0; i < ec_types_count; i++) {
 		const struct ec_type *t = &ec_types[i];
 
+		out_object(NULL);
+		out_str("name", t->name, "  %-14s ", t->name);
 		if (t->bits)
-			printf("  %-14s %2u bit\n", t->name, t->bits);
+			out_u("size_bits", t->bits, "%2u bit\n", t->bits);
 		else
-			printf("  %-14s variable\n", t->name);
+			out_null("size_bits", "variable\n");
+		out_end();
 	}
-	puts("\nRaw values are hex bytes: 0x12 0x34, or 1234.");
+	out_end();
+	out_text("\nRaw values are hex bytes: 0x12 0x34, or 1234.\n");
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -29,7 +35,10 @@ static int run(struct tool *t, int argc, char **argv)
 		return 0;
 	}
 	if (!argc) {
-		help_all(false);
+		if (out_is_json())
+			help_json(NULL);
+		else
+			help_all(false);
 		return 0;
 	}
 	if (!strcmp(argv[0], "types")) {
@@ -45,7 +54,10 @@ static int run(struct tool *t, int argc, char **argv)
 		found[0] = cmd_exact(found[0]->alias_of);
 	if (!found[0]->run)
 		return fail("'%s' is not part of version " EC_TOOL_VERSION, found[0]->name);
-	help_cmd(found[0]);
+	if (out_is_json())
+		help_json(found[0]);
+	else
+		help_cmd(found[0]);
 	return 0;
 }
 
@@ -55,5 +67,8 @@ const struct cmd cmd_help = {
 	.args = "[COMMAND | types]",
 	.opts = "s",
 	.summary = "Explain a command",
+	.json = "commands[]: name, also[], arguments, summary, text, one_master, json, options[]\n"
+		"(long, short, argument, text); without COMMAND also options[] of all; of types:\n"
+		"types[]: name, size_bits (or null)",
 	.max_args = 1,
 };

@@ -164,7 +164,7 @@ static int show(const struct tool *t, struct dev *d)
 	clocks(&m);
 	out_u("slaves_responding", m.slaves_responding, NULL);
 	out_bool("scan_busy", m.scan_busy, NULL);
-	out_u("scan_index", m.scan_index, NULL);
+	out_u("scans", m.scan_count, NULL);
 	out_u("scan_duration_us", m.scan_us, NULL);
 	out_u("scan_frames", m.scan_frames, NULL);
 	out_u("debug_level", m.debug_level, NULL);
@@ -174,7 +174,7 @@ static int show(const struct tool *t, struct dev *d)
 	if (t->verbosity > 0) {
 		out_text("  Module: %s, interface version %u\n", d->version.release, d->version.abi);
 		out_text("  Slaves responding: %u\n", m.slaves_responding);
-		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_index,
+		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_count,
 			 m.scan_busy ? "running" : "finished", m.scan_us, m.scan_frames);
 		out_text("  Debug level: %u\n", m.debug_level);
 	}
@@ -206,7 +206,7 @@ const struct cmd cmd_master = {
 		"rx_bytes, tx_errors, tx_frames_per_s[], tx_bytes_per_s[], rx_frames_per_s[],\n"
 		"rx_bytes_per_s[], lost_frames, late_frames, unmatched_frames, foreign_frames),\n"
 		"common (the sums, lost_frames_per_s[], frame_loss_percent[]), dc (reference_clock,\n"
-		"reference_time_ns, application_time_ns), slaves_responding, scan_busy, scan_index,\n"
+		"reference_time_ns, application_time_ns), slaves_responding, scan_busy, scans,\n"
 		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,
 };

@@ -13,7 +13,7 @@ static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 	for (;;) {
 		if (dev_master(d, &m))
 			return 1;
-		if (m.scan_index != before && !m.scan_busy)
+		if (m.scan_count != before && !m.scan_busy)
 			return 0;
 		if (now_s() >= end)
 			return fail("Master%u: the bus scan has not finished after %g s", d->master,
@@ -35,7 +35,7 @@ static int each(const struct tool *t, struct dev *d)
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	out_end();
-	return t->wait ? wait_scan(t, d, m.scan_index) : 0;
+	return t->wait ? wait_scan(t, d, m.scan_count) : 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)

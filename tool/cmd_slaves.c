@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "dev.h"
@@ -43,22 +44,35 @@ static void table(const struct ec_ioc_slave *s, size_t n, const char *indent)
 	}
 }
 
+static int by_position(const void *a, const void *b)
+{
+	const struct ec_ioc_slave *x = a, *y = b;
+
+	return (x->position > y->position) - (x->position < y->position);
+}
+
 static size_t sort_once(struct slaves *s)
 {
 	size_t n = 0;
 
-	for (size_t i = 1; i < s->n; i++) {
-		struct ec_ioc_slave x = s->v[i];
-		size_t k = i;
-
-		for (; k && s->v[k - 1].position > x.position; k--)
-			s->v[k] = s->v[k - 1];
-		s->v[k] = x;
-	}
+	qsort(s->v, s->n, sizeof(*s->v), by_position);
 	for (size_t i = 0; i < s->n; i++)
 		if (!n || s->v[n - 1].position != s->v[i].position)
 			s->v[n++] = s->v[i];
 	return n;
+}
+
+/* on stderr: what makes the list shorter than the bus */
+static void remark(const struct dev *d, const struct ec_ioc_master *m)
+{
+	char why[160];
+
+	dev_why_empty(m, why, sizeof(why));
+	if (m->scan_busy)
+		note("Master%u: a bus scan is running, the list may be incomplete (see --wait)",
+		     d->master);
+	else if (!m->slave_count && *why)
+		note("Master%u: %s", d->master, why);
 }
 
 static int each(const struct tool *t, struct dev *d)
@@ -70,9 +84,7 @@ static int each(const struct tool *t, struct dev *d)
 		return 1;
 	if (dev_master(d, &m) || dev_select(d, t, &sel, NULL))
 		return 1;
-	if (m.scan_busy)
-		note("Master%u: a bus scan is running, the list may be incomplete (see --wait)",
-		     d->master);
+	remark(d, &m);
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	out_bool("scan_busy", m.scan_busy, NULL);

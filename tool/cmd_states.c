@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <string.h>
 #include <strings.h>
 
 #include "../master/wire/al.h"
@@ -20,16 +22,30 @@ static u8 parse_state(const char *text)
 	return 0;
 }
 
-static void show_slave(const struct ec_ioc_slave *s)
+/* columns as wide as their widest cell */
+static void measure(const struct slaves *s, int *w)
+{
+	char state[16];
+
+	for (size_t i = 0; i < s->n; i++) {
+		al_state_text(s->v[i].al_status, state, sizeof(state));
+		w[0] = max(w[0], snprintf(NULL, 0, "%u", s->v[i].position));
+		w[1] = max(w[1], snprintf(NULL, 0, "%u", s->v[i].alias_group));
+		w[2] = max(w[2], snprintf(NULL, 0, "%u", slave_alias_pos(&s->v[i])));
+		w[3] = max(w[3], (int)strlen(state));
+	}
+}
+
+static void show_slave(const struct ec_ioc_slave *s, const char *indent, const int *w)
 {
 	char state[16];
 
 	al_state_text(s->al_status, state, sizeof(state));
 	out_object(NULL);
-	out_u("position", s->position, "%u  ", s->position);
-	out_u("alias", s->alias_group, "%u:", s->alias_group);
-	out_u("relative_position", slave_alias_pos(s), "%u  ", slave_alias_pos(s));
-	out_str("state", ec_al_state_name((u8)s->al_status), "%s", state);
+	out_u("position", s->position, "%s%*u  ", indent, w[0], s->position);
+	out_u("alias", s->alias_group, "%*u:", w[1], s->alias_group);
+	out_u("relative_position", slave_alias_pos(s), "%-*u  ", w[2], slave_alias_pos(s));
+	out_str("state", ec_al_state_name((u8)s->al_status), "%-*s", s->al_code ? w[3] : 0, state);
 	out_bool("al_error", s->al_status & EC_AL_ERROR, NULL);
 	out_u("al_status_code", s->al_code, NULL);
 	out_str("al_status_text", ec_al_code_text(s->al_code), NULL);
@@ -77,6 +93,7 @@ static int each(const struct tool *t, struct dev *d)
 {
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : WAIT_S);
 	struct slaves sel;
+	int w[4] = { 0 };
 	int ret = 0;
 
 	if (dev_select(d, t, &sel, NULL))
@@ -96,10 +113,11 @@ static int each(const struct tool *t, struct dev *d)
 	}
 	for (size_t i = 0; i < sel.n && wanted && t->wait; i++)
 		ret |= wait_slave(d, &sel.v[i], end);
+	measure(&sel, w);
 	for (size_t i = 0; i < sel.n; i++)
-		if (!wanted || (t->wait && !dev_slave(d, sel.v[i].position, &sel.v[i]) &&
-				out_is_json()))
-			show_slave(&sel.v[i]);
+		if (!wanted || (t->wait && out_is_json() &&
+				!dev_slave(d, sel.v[i].position, &sel.v[i])))
+			show_slave(&sel.v[i], d->selected > 1 ? "  " : "", w);
 	out_end();
 	out_end();
 	slaves_free(&sel);

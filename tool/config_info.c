@@ -6,6 +6,7 @@
 
 #include "../master/wire/al.h"
 #include "out.h"
+#include "text.h"
 
 #define SMS		16
 #define SHOWN		1024	/* bytes of an SDO */
@@ -129,6 +130,28 @@ static int sdos(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	return ret;
 }
 
+static int flags(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	out_text("%sFeature flags:\n", in);
+	out_array("flags");
+	for (unsigned int i = 0; i < c->flag_count; i++) {
+		struct ec_ioc_config_flag f = { .index = c->index, .flag_pos = i };
+		int err = dev_ioctl(d, EC_IOC_CONFIG_FLAG, &f);
+
+		if (err)
+			return failed(d, err, c);
+		string_clean(f.key, sizeof(f.key));
+		out_object(NULL);
+		out_str("key", f.key, "%s  %s", in, f.key);
+		out_i("value", f.value, ": %d\n", f.value);
+		out_end();
+	}
+	out_end();
+	if (!c->flag_count)
+		out_text("%s  None.\n", in);
+	return 0;
+}
+
 static void dc(const struct ec_ioc_config *c, const char *in)
 {
 	out_text("%sDC configuration:\n", in);
@@ -190,7 +213,9 @@ int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	ret = ret ? ret : sdos(d, c, in);
 	if (!ret) {
 		out_text("%sIDN configuration:\n%s  None.\n", in, in);
-		out_text("%sFeature flags:\n%s  None.\n", in, in);
+		ret = flags(d, c, in);
+	}
+	if (!ret) {
 		dc(c, in);
 		out_text("\n");
 	}

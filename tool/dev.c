@@ -11,6 +11,7 @@
 
 #include "../master/wire/al.h"
 #include "sys.h"
+#include "text.h"
 
 #define SCAN_RETRIES	3
 
@@ -27,17 +28,6 @@ void sleep_ms(unsigned int ms)
 	struct timespec ts = { ms / 1000, (long)(ms % 1000) * 1000000 };
 
 	nanosleep(&ts, NULL);
-}
-
-/* strings of the EEPROM go to terminals: end them, no control characters */
-void clean_string(char *s, size_t size)
-{
-	size_t i;
-
-	for (i = 0; i + 1 < size && s[i]; i++)
-		if ((unsigned char)s[i] < 0x20 || s[i] == 0x7f)
-			s[i] = '?';
-	s[i] = 0;
 }
 
 static int open_error(struct dev *d, int err)
@@ -106,7 +96,7 @@ int dev_fail(struct dev *d, int err, const char *fmt, ...)
 
 	if (sys_ioctl(d->fd, EC_IOC_REASON, &reason))
 		reason.text[0] = 0;
-	clean_string(reason.text, sizeof(reason.text));
+	string_clean(reason.text, sizeof(reason.text));
 	if (err == ENOTTY && !reason.text[0] && d->version.abi != EC_UAPI_VERSION) {
 		snprintf(older, sizeof(older), "the module has interface version %u, this tool %u",
 			 d->version.abi, EC_UAPI_VERSION);
@@ -186,7 +176,7 @@ int dev_master(struct dev *d, struct ec_ioc_master *m)
 	if (err)
 		return dev_fail(d, err, "Master%u: no data", d->master);
 	for (int i = 0; i < EC_UAPI_DEVICES; i++)
-		clean_string(m->devices[i].name, sizeof(m->devices[i].name));
+		string_clean(m->devices[i].name, sizeof(m->devices[i].name));
 	m->device_count = min(m->device_count, (u32)EC_UAPI_DEVICES);
 	return 0;
 }
@@ -199,11 +189,11 @@ static int get_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *
 	err = dev_ioctl(d, EC_IOC_SLAVE, s);
 	if (err)
 		return err;
-	clean_string(s->group, sizeof(s->group));
-	clean_string(s->image, sizeof(s->image));
-	clean_string(s->order, sizeof(s->order));
-	clean_string(s->name, sizeof(s->name));
-	clean_string(s->why, sizeof(s->why));
+	string_clean(s->group, sizeof(s->group));
+	string_clean(s->image, sizeof(s->image));
+	string_clean(s->order, sizeof(s->order));
+	string_clean(s->name, sizeof(s->name));
+	string_clean(s->why, sizeof(s->why));
 	return 0;
 }
 
@@ -247,9 +237,9 @@ int dev_slaves(struct dev *d, struct slaves *all)
 			slaves_free(all);
 			return 1;
 		}
-		if (before.scan_index != after.scan_index && i < SCAN_RETRIES)
+		if (before.scan_count != after.scan_count && i < SCAN_RETRIES)
 			continue;
-		if (err && before.scan_index == after.scan_index && !after.scan_busy) {
+		if (err && before.scan_count == after.scan_count && !after.scan_busy) {
 			slaves_free(all);
 			return dev_fail(d, err, "Master%u slave %zu: no data", d->master, all->n);
 		}
@@ -279,6 +269,31 @@ int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, siz
 	return selected->v ? 0 : fail("out of memory");
 }
 
+void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size)
+{
+	const struct ec_ioc_device *i = &m->devices[0];
+	bool up = i->link_up || (m->device_count > 1 && m->devices[1].link_up);
+
+	*buf = 0;
+	if (m->phase == EC_PHASE_WAITING)
+		snprintf(buf, size, "no network interface yet, waiting for %s", i->name);
+	else if (!up)
+		snprintf(buf, size, "%s has no link, check the cable", i->name);
+	else if (m->scan_busy)
+		snprintf(buf, size, "a bus scan is running");
+}
+
+static int none_present(struct dev *d)
+{
+	struct ec_ioc_master m;
+	char why[160];
+
+	if (dev_master(d, &m))
+		return 1;
+	dev_why_empty(&m, why, sizeof(why));
+	return fail("Master%u: there are no slaves%s%s", d->master, *why ? ": " : "", why);
+}
+
 int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s)
 {
 	struct slaves sel;
@@ -289,6 +304,8 @@ int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *
 		return 1;
 	if (sel.n == 1)
 		*s = sel.v[0];
+	else if (!all)
+		ret = none_present(d);
 	else
 		ret = usage_error("selection matches %zu slaves of the %zu present, one is needed; "
 				  "use -p or -a", sel.n, all);

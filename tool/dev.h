@@ -39,12 +39,13 @@ int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, siz
 /* exactly one */
 int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s);
 
+/* why nobody is on the bus, as far as the master knows; "" when it does not */
+void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size);
 int dev_wait_scan(struct dev *d, double timeout_s);
 
 void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size);
 void al_state_text(unsigned int al_status, char *buf, size_t size);
 unsigned int slave_alias_pos(const struct ec_ioc_slave *s);
-void clean_string(char *s, size_t size);
 double now_s(void);
 void sleep_ms(unsigned int ms);
 

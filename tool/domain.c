@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "domain.h"
 
+#include <errno.h>
 #include <stdlib.h>
 
 int domain_each(struct dev *d, const struct tool *t,
@@ -18,6 +19,8 @@ int domain_each(struct dev *d, const struct tool *t,
 		struct ec_ioc_domain dom = { .index = sel.v[i] };
 		int err = dev_ioctl(d, EC_IOC_DOMAIN, &dom);
 
+		if (err == ENOENT)
+			break;	/* the application has gone meanwhile */
 		ret = err ? dev_fail(d, err, "Master%u: domain %u: no data", d->master, sel.v[i]) :
 			fn(t, d, &dom);
 	}

@@ -18,6 +18,13 @@ void error_context(const char *cmd, bool json)
 	as_json = json;
 }
 
+static const char *abort_text(u32 code)
+{
+	const char *text = ec_coe_abort_text(code);
+
+	return text ? text : "???";
+}
+
 static void print(const char *kind, int err, const char *reason, u32 abort, const char *fmt,
 		  va_list ap)
 {
@@ -40,14 +47,14 @@ static void print(const char *kind, int err, const char *reason, u32 abort, cons
 		}
 		if (abort) {
 			fprintf(stderr, ", \"abort_code\": %u, \"abort_text\": ", abort);
-			out_json_string(stderr, ec_coe_abort_text(abort));
+			out_json_string(stderr, abort_text(abort));
 		}
 		fputs("}}\n", stderr);
 		return;
 	}
 	fprintf(stderr, "ethercat%s%s: %s", *command ? " " : "", command, text);
 	if (abort)
-		fprintf(stderr, " aborted with code 0x%08x: %s", abort, ec_coe_abort_text(abort));
+		fprintf(stderr, " aborted with code 0x%08x: %s", abort, abort_text(abort));
 	else if (err)
 		fprintf(stderr, ": %s", strerror(err));
 	if (reason && *reason)

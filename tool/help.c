@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../master/wire/types.h"
+#include "out.h"
 #include "tool.h"
 
 static void print_opt(FILE *f, const struct opt *o)
@@ -65,6 +66,56 @@ void help_cmd(const struct cmd *c)
 		puts("\nWorks on one master; with several, -m selects it.");
 	if (c->json)
 		printf("\nJSON: %s\n", c->json);
+}
+
+static void json_opts(const struct cmd *c)
+{
+	out_array("options");
+	for (const struct opt *o = opts; o->letter; o++) {
+		char letter[2] = { o->letter };
+
+		if (c && !uses(c, o))
+			continue;
+		out_object(NULL);
+		out_str("long", o->name, NULL);
+		if (o->letter != 'w')
+			out_str("short", letter, NULL);
+		if (o->arg)
+			out_str("argument", o->arg, NULL);
+		out_str("text", o->text, NULL);
+		out_end();
+	}
+	out_end();
+}
+
+static void json_cmd(const struct cmd *c)
+{
+	out_object(NULL);
+	out_str("name", c->name, NULL);
+	out_array("also");
+	for (const struct cmd *const *a = cmds; *a; a++)
+		if ((*a)->alias_of && !strcmp((*a)->alias_of, c->name))
+			out_str("", (*a)->name, NULL);
+	out_end();
+	out_str("arguments", c->args, NULL);
+	out_str("summary", c->summary, NULL);
+	out_str("text", c->help ? c->help : "", NULL);
+	out_bool("one_master", c->flags & CMD_ONE_MASTER, NULL);
+	out_str("json", c->json ? c->json : "", NULL);
+	json_opts(c);
+	out_end();
+}
+
+/* @c, or all commands and options when it is NULL */
+void help_json(const struct cmd *c)
+{
+	out_array("commands");
+	for (const struct cmd *const *i = cmds; *i; i++)
+		if ((*i)->run && (!c || *i == c))
+			json_cmd(*i);
+	out_end();
+	if (!c)
+		json_opts(NULL);
 }
 
 static void roff(const char *s)

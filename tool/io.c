@@ -160,7 +160,7 @@ int io_print(const struct ec_type *t, const u8 *data, size_t size)
 		return 0;
 	}
 	if (value_is_text(t)) {
-		out_binary(NULL, data, size);
+		out_text_bytes(data, size);
 		if (t->kind != EC_KIND_OCTETS)
 			out_text("\n");
 		return 0;

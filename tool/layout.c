@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "text.h"
+
 #define CONTROL_WRITE	0x04	/* direction bit of the SM's control byte */
 
 bool layout_is_output(const struct layout_sm *sm)
@@ -27,7 +29,7 @@ static int read_entries(struct dev *d, struct layout_pdo *p)
 		err = dev_ioctl(d, EC_IOC_PDO_ENTRY, e);
 		if (err)
 			return err;
-		clean_string(e->name, sizeof(e->name));
+		string_clean(e->name, sizeof(e->name));
 	}
 	return 0;
 }
@@ -47,7 +49,7 @@ static int read_pdos(struct dev *d, struct layout_sm *sm)
 		err = dev_ioctl(d, EC_IOC_PDO, &p->pdo);
 		if (err)
 			return err;
-		clean_string(p->pdo.name, sizeof(p->pdo.name));
+		string_clean(p->pdo.name, sizeof(p->pdo.name));
 		err = read_entries(d, p);
 		if (err)
 			return err;

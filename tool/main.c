@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "out.h"
 #include "tool.h"
@@ -39,6 +42,18 @@ static void check_options(const struct cmd *c, const char *seen)
 			note("warning: option --%s has no effect on '%s'", o->name, c->name);
 }
 
+/*
+ * With stdout closed, opening the device file would make it stdout. The
+ * stand-in refuses the wrong direction, so lost output is an error.
+ */
+static void fill_std_files(void)
+{
+	for (int fd = 0; fd < 3; fd++)
+		if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
+		    open("/dev/null", fd ? O_RDONLY : O_WRONLY) < 0)
+			return;
+}
+
 static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 {
 	int ret, err;
@@ -55,6 +70,22 @@ static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 	return ret;
 }
 
+/* of one command, or with NULL of all */
+static int show_help(const struct tool *t, const struct cmd *c)
+{
+	int err;
+
+	out_start(t->json);
+	if (t->json)
+		help_json(c);
+	else if (c)
+		help_cmd(c);
+	else
+		help_all(false);
+	err = out_finish();
+	return err ? fail_full(-err, NULL, 0, "cannot write the output") : 0;
+}
+
 int main(int argc, char **argv)
 {
 	const struct cmd *c, *shown;
@@ -65,6 +96,7 @@ int main(int argc, char **argv)
 	bool help;
 	int ret;
 
+	fill_std_files();
 	args = calloc((size_t)argc + 1, sizeof(*args));
 	if (!args)
 		return fail("out of memory");
@@ -75,8 +107,10 @@ int main(int argc, char **argv)
 		goto out;
 	error_context("", t.json);
 	if (!nargs) {
-		help_all(!help);
-		ret = !help;
+		if (help)
+			ret = show_help(&t, NULL);
+		else
+			help_all(true);
 		goto out;
 	}
 	c = find(args[0]);
@@ -84,9 +118,8 @@ int main(int argc, char **argv)
 		goto out;
 	shown = c->alias_of ? cmd_exact(c->alias_of) : c;
 	error_context(c->name, t.json);
-	ret = 0;
 	if (help) {
-		help_cmd(shown);
+		ret = show_help(&t, shown);
 		goto out;
 	}
 	if (!shown->run) {

@@ -5,6 +5,9 @@
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
+#include <unistd.h>
+
+#include "text.h"
 
 #define DEPTH 16
 
@@ -37,21 +40,6 @@ bool out_is_json(void)
 	return json;
 }
 
-/* length of the UTF-8 sequence at @p, 0: not valid */
-static int utf8_len(const unsigned char *p)
-{
-	int n = p[0] < 0x80 ? 1 : p[0] >= 0xc2 && p[0] < 0xe0 ? 2 :
-		p[0] >= 0xe0 && p[0] < 0xf0 ? 3 : p[0] >= 0xf0 && p[0] < 0xf5 ? 4 : 0;
-
-	for (int i = 1; i < n; i++)
-		if ((p[i] & 0xc0) != 0x80)
-			return 0;
-	if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f) ||
-	    (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f))
-		return 0;
-	return n;
-}
-
 /* SII strings are often Latin-1: bytes that are no UTF-8 are taken as that */
 void out_json_string(FILE *f, const char *s)
 {
@@ -59,14 +47,19 @@ void out_json_string(FILE *f, const char *s)
 
 	fputc('"', f);
 	while (*p) {
-		int n = utf8_len(p);
+		int n = utf8_len(p, strnlen((const char *)p, 4));
 
 		if (*p == '"' || *p == '\\')
 			fprintf(f, "\\%c", *p);
-		else if (*p < 0x20 || *p == 0x7f || !n)
+		else if (n < 2 && (!n || !text_harmless(p, n)))
 			fprintf(f, "\\u%04x", *p);
-		else
+		else if (text_harmless(p, n))
 			fwrite(p, 1, (size_t)n, f);
+		else if (n == 2)
+			fprintf(f, "\\u%04x", (p[0] & 0x1f) << 6 | (p[1] & 0x3f));
+		else
+			fprintf(f, "\\u%04x", (p[0] & 0xf) << 12 | (p[1] & 0x3f) << 6 |
+				(p[2] & 0x3f));
 		p += n ? n : 1;
 	}
 	fputc('"', f);
@@ -196,6 +189,27 @@ void out_hex(const char *key, const u8 *data, size_t size, const char *indent)
 	for (size_t i = 0; i < size; i++)
 		printf("%02x", data[i]);
 	putchar('"');
+}
+
+void out_text_bytes(const u8 *data, size_t size)
+{
+	size_t step;
+
+	if (json)
+		return;
+	if (!isatty(STDOUT_FILENO)) {
+		fwrite(data, 1, size, stdout);
+		return;
+	}
+	for (size_t i = 0; i < size; i += step) {
+		int n = utf8_len(data + i, size - i);
+
+		step = n ? (size_t)n : 1;
+		if (data[i] == '\n' || data[i] == '\t' || text_harmless(data + i, n))
+			fwrite(data + i, 1, step, stdout);
+		else if (data[i])
+			putchar('?');
+	}
 }
 
 void out_binary(const char *key, const u8 *data, size_t size)

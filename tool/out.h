@@ -31,6 +31,8 @@ void out_str(const char *key, const char *v, const char *fmt, ...) OUT_FMT(3);
 void out_null(const char *key, const char *fmt, ...) OUT_FMT(2);
 /* bytes: one string of hex digits in JSON, rows of 16 behind @indent in text */
 void out_hex(const char *key, const u8 *data, size_t size, const char *indent);
+/* as they are; on a terminal without what could control it */
+void out_text_bytes(const u8 *data, size_t size);
 /* bytes: hex digits in JSON, as they are in text */
 void out_binary(const char *key, const u8 *data, size_t size);
 

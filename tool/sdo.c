@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "sdo.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "out.h"
 
-#define ROOM		(64u << 10)
-#define ROOM_MAX	(16u << 20)
+#define ROOM	(64u << 10)	/* the largest object the kernel transfers */
 
 /**
  * sdo_addr_parse() - parse what names an SDO
@@ -65,31 +63,27 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
 /* @data is to be freed */
 int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data, size_t *size)
 {
-	for (u32 room = ROOM;; room *= 16) {
-		struct ec_ioc_sdo s = {
-			.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
-			.position = position,
-			.index = a->index,
-			.subindex = a->sub,
-			.size = room,
-		};
-		u8 *buf = malloc(room);
-		int err;
+	u8 *buf = malloc(ROOM);
+	struct ec_ioc_sdo s = {
+		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
+		.position = position,
+		.index = a->index,
+		.subindex = a->sub,
+		.size = ROOM,
+		.data = (uintptr_t)buf,
+	};
+	int err;
 
-		if (!buf)
-			return fail("out of memory");
-		s.data = (uintptr_t)buf;
-		err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &s);
-		if (!err) {
-			*data = buf;
-			*size = min(s.size, room);
-			return 0;
-		}
+	if (!buf)
+		return fail("out of memory");
+	err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &s);
+	if (err) {
 		free(buf);
-		if ((err != EOVERFLOW && err != ENOSPC && err != EMSGSIZE) || s.abort_code ||
-		    room >= ROOM_MAX)
-			return failed(d, err, &s, a, "upload");
+		return failed(d, err, &s, a, "upload");
 	}
+	*data = buf;
+	*size = min(s.size, (u32)ROOM);
+	return 0;
 }
 
 int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data, size_t size)

@@ -147,16 +147,12 @@ bool list_single(const struct list *l, unsigned int *value)
 }
 
 static int select_group(const struct list *positions, const struct ec_ioc_slave *slaves,
-			size_t count, unsigned int alias, struct numbers *out)
+			size_t count, size_t first, struct numbers *out)
 {
-	size_t first = 0, end;
 	struct numbers k;
+	size_t end;
 	int ret;
 
-	while (first < count && slaves[first].alias != alias)
-		first++;
-	if (first == count)
-		return 0;
 	for (end = first + 1; end < count && !slaves[end].alias; end++)
 		;
 	ret = list_expand(positions, (unsigned int)(end - first), &k);
@@ -164,6 +160,18 @@ static int select_group(const struct list *positions, const struct ec_ioc_slave 
 		ret = numbers_add(out, (unsigned int)first + k.v[i]);
 	numbers_free(&k);
 	return ret;
+}
+
+/* by alias: 1 + position of the first slave with it, 0: nobody; to be freed */
+static u32 *first_with(const struct ec_ioc_slave *slaves, size_t count)
+{
+	u32 *first = calloc(0x10000, sizeof(*first));
+
+	for (size_t i = count; first && i > 0; i--)
+		first[slaves[i - 1].alias] = (u32)i;
+	if (first)
+		first[0] = 0;	/* no alias, not to be selected */
+	return first;
 }
 
 /**
@@ -183,15 +191,21 @@ int select_slaves(const struct list *aliases, const struct list *positions,
 		  const struct ec_ioc_slave *slaves, size_t count, struct numbers *out)
 {
 	struct numbers a;
+	u32 *first;
 	int ret;
 
 	if (list_all(aliases))
 		return list_expand(positions, (unsigned int)count, out);
 	*out = (struct numbers){ 0 };
 	ret = list_expand(aliases, 0x10000, &a);
+	if (ret)
+		return ret;
+	first = first_with(slaves, count);
+	ret = first ? 0 : -ENOMEM;
 	for (size_t i = 0; !ret && i < a.n; i++)
-		if (a.v[i])
-			ret = select_group(positions, slaves, count, a.v[i], out);
+		if (first[a.v[i]])
+			ret = select_group(positions, slaves, count, first[a.v[i]] - 1, out);
+	free(first);
 	numbers_free(&a);
 	if (ret)
 		numbers_free(out);

@@ -9,7 +9,7 @@
 #include "../include/uapi/ethercat.h"
 
 #define LIST_OPEN	0xffffffffU	/* "up to the highest present" */
-#define LIST_ITEMS	64
+#define LIST_ITEMS	1024
 
 struct list_item {
 	unsigned int from;

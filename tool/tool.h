@@ -102,6 +102,7 @@ int cmd_lookup(const char *text, const struct cmd **found);
 /* help.c */
 void help_all(bool to_stderr);
 void help_cmd(const struct cmd *c);
+void help_json(const struct cmd *c);
 void help_roff(void);
 
 /* error.c: both print to stderr, as JSON after --json, and return 1 */

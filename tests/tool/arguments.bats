@@ -89,13 +89,56 @@ ambiguous() {
 		[ "$status" -eq 0 ]
 		[[ ${lines[0]} == "Usage: ethercat $c [OPTIONS]"* ]]
 		[[ $output == *"--json"* ]]
-		[ "$c" = help ] || [[ $output == *"JSON: "* ]]
+		[[ $output == *"JSON: "* ]]
 		[ "$(real help "$c")" = "$(real -h "$c")" ]
 	done
 }
 
 @test "the man page is made of the same tables" {
 	diff -u "$HERE/../../tool/ethercat.8" <(real help -s roff)
+}
+
+@test "the man page has every command, option and data type" {
+	man=$HERE/../../tool/ethercat.8
+	real help --json | python3 -c '
+import json, re, sys
+man = open(sys.argv[1]).read().replace("\\-", "-")
+d = json.load(sys.stdin)
+assert len(d["commands"]) >= 19 and len(d["options"]) >= 15
+section = {}
+for part in man.split(".SS ethercat ")[1:]:
+    section[part.split()[0]] = part.split("\n.SH ")[0]
+for c in d["commands"]:
+    text = section.pop(c["name"])
+    assert c["summary"] in text and c["arguments"] in text, c["name"]
+    for n in c["also"]:
+        assert re.search(r"\b%s\b" % n, text), n
+    for o in c["options"]:
+        assert "--" + o["long"] in text, (c["name"], o)
+    for line in c["text"].splitlines():
+        assert line in text, (c["name"], line)
+assert not section, section
+head = man.split(".SH OPTIONS")[1].split(".SH SELECTION")[0]
+for o in d["options"]:
+    assert "--" + o["long"] in head.replace(".BR ", "").replace("\" \", \" ", ""), o
+    assert "short" not in o or "-" + o["short"] in head, o
+    assert o["text"] in head, o
+' "$man"
+	for t in $(real help types | awk '/ bit$| variable$/ { print $1 }'); do
+		grep -q "\b$t\b" "$man"
+	done
+	! command -v man >/dev/null || [ -z "$(man --warnings -l "$man" 2>&1 >/dev/null)" ]
+}
+
+@test "install and uninstall" {
+	d=$BATS_TEST_TMPDIR/root
+	make -s -C "$HERE/../../tool" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d" prefix=/usr install
+	[ "$(cd "$d" && find . -type f | sort | tr '\n' ' ')" = "./usr/bin/ethercat \
+./usr/share/bash-completion/completions/ethercat ./usr/share/man/man8/ethercat.8 " ]
+	"$d/usr/bin/ethercat" version
+	make -s -C "$HERE/../../tool" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d" prefix=/usr uninstall
+	[ -z "$(find "$d" -type f)" ]
+	[ -z "$(cd "$HERE/../../tool" && find . -name '*.o' -not -path './build/*')" ]
 }
 
 @test "version needs no master" {

@@ -5,7 +5,7 @@
 HERE=$BATS_TEST_DIRNAME
 export ASAN_OPTIONS=detect_leaks=1
 export FAKE_BUS=idle
-unset FAKE_READONLY FAKE_LOG
+unset FAKE_READONLY FAKE_LOG FAKE_COUNT
 
 ethercat() {
 	"$HERE/build/fake/ethercat" "$@"

@@ -3,8 +3,11 @@
  * Takes the place of tool/sys.c: a master with an EK1100, an EL2008 with alias
  * 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is going on:
  *   idle (default), app (an application runs), empty, scanning, cut (ring
- *   broken behind slave 1), two (two masters), foreign (not our interface)
- * FAKE_LOG names a file that gets a line for each change.
+ *   broken behind slave 1), two (two masters), foreign (not our interface),
+ *   waiting (no network interface), evil (names that attack the reader),
+ *   big (1000 slaves)
+ * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
+ * gets the number of ioctls.
  */
 #include <errno.h>
 #include <fcntl.h>
@@ -19,12 +22,13 @@
 #include "../../tool/sys.h"
 
 #define SLAVES	3
+#define BIG	1000
 #define FD	100
 #define LEN(a)	(sizeof(a) / sizeof((a)[0]))
 
 static bool writable[2];
 static char reason[EC_UAPI_REASON];
-static unsigned int polls;
+static unsigned int polls, scans = 1, ioctls;
 
 static bool bus(const char *name)
 {
@@ -44,6 +48,17 @@ __attribute__((format(printf, 1, 2))) static void record(const char *fmt, ...)
 	va_start(ap, fmt);
 	vfprintf(f, fmt, ap);
 	va_end(ap);
+	fclose(f);
+}
+
+__attribute__((destructor)) static void store_count(void)
+{
+	const char *path = getenv("FAKE_COUNT");
+	FILE *f = path ? fopen(path, "w") : NULL;
+
+	if (!f)
+		return;
+	fprintf(f, "%u\n", ioctls);
 	fclose(f);
 }
 
@@ -163,7 +178,7 @@ static const struct ec_ioc_config configs[] = {
 	{ .alias = 1001, .vendor_id = 2, .product_code = 0x07d83052, .slave_position = 1,
 	  .al_status = 2 },
 	{ .position = 2, .vendor_id = 2, .product_code = 0x1c213052, .slave_position = -1,
-	  .sdo_count = 2, .dc_assign_activate = 0x0300, .dc_cycle = { 1000000, 0 },
+	  .sdo_count = 2, .flag_count = 2, .dc_assign_activate = 0x0300, .dc_cycle = { 1000000, 0 },
 	  .dc_shift = { -500, 0 }, .watchdog_divider = 2498 },
 };
 
@@ -196,8 +211,8 @@ static int master(struct ec_ioc_master *m, int index)
 
 	*m = (struct ec_ioc_master){
 		.index = (__u32)index, .phase = app ? EC_PHASE_OPERATION : EC_PHASE_IDLE,
-		.active = app, .slave_count = bus("empty") ? 0 : SLAVES, .slaves_responding = SLAVES,
-		.scan_index = 1, .config_count = app ? LEN(configs) : 0,
+		.active = app, .slave_count = SLAVES, .slaves_responding = SLAVES,
+		.scan_count = scans, .config_count = app ? LEN(configs) : 0,
 		.domain_count = app ? LEN(domains) : 0, .device_count = 1,
 		.app_time = 815000000123456789ULL, .scan_us = 12345, .scan_frames = 678,
 	};
@@ -207,6 +222,17 @@ static int master(struct ec_ioc_master *m, int index)
 		fill_device(&m->devices[1]);
 		m->devices[1].address[5]++;
 	}
+	if (bus("empty") || bus("waiting"))
+		m->slave_count = 0;
+	if (bus("big"))
+		m->slave_count = BIG;
+	if (bus("waiting")) {
+		m->phase = EC_PHASE_WAITING;
+		m->devices[0].state = EC_DEVICE_WAITING;
+		m->devices[0].link_up = 0;
+	}
+	if (scans % 2 == 0 && polls++ < 4)
+		m->scan_busy = 1;	/* after a request */
 	/* a scan that ends after a while */
 	if (bus("scanning") && polls++ < 4) {
 		m->scan_busy = 1;
@@ -219,6 +245,16 @@ static struct ec_ioc_slave state[SLAVES];
 
 static int slave(struct ec_ioc_slave *s)
 {
+	if (bus("big") && s->position < BIG) {
+		__u16 p = s->position;
+
+		*s = slaves[1];
+		s->position = p;
+		s->alias = p % 100 ? 0 : p / 100 + 1;
+		s->alias_group = p / 100 + 1;
+		s->alias_pos = p % 100;
+		return 0;
+	}
 	if (s->position >= SLAVES)
 		return fail(EINVAL, "there is no such slave");
 	if (!state[s->position].vendor_id)
@@ -226,6 +262,11 @@ static int slave(struct ec_ioc_slave *s)
 	*s = state[s->position];
 	if (bus("cut") && s->position == 2)
 		s->device_index = 1;
+	if (bus("evil") && s->position == 2) {
+		snprintf(s->name, sizeof(s->name), "%s", "\033[2J\302\233H\2341m\342\200\256 Gr\303\266\337e\r\n\177");
+		snprintf(s->order, sizeof(s->order), "%s", "*/ \"x\\ /* int");
+		memset(s->group, 'g', sizeof(s->group));	/* no end */
+	}
 	return 0;
 }
 
@@ -268,6 +309,11 @@ static int sm(struct ec_ioc_sm *x)
 
 static int pdo(struct ec_ioc_pdo *x)
 {
+	if (bus("evil") && x->position == 2 && x->sm == 2) {
+		*x = (struct ec_ioc_pdo){ .position = 2, .sm = 2, .index = 0x1600, .entry_count = 1,
+			.name = "*/*/ int /*/ \\" };
+		return 0;
+	}
 	FIND(pdos, t_->position == x->position && t_->sm == x->sm && t_->pdo_pos == x->pdo_pos);
 }
 
@@ -288,6 +334,17 @@ static int config_sdo(struct ec_ioc_config_sdo *x)
 	for (__u32 i = 0; i < (big ? 20u : 2u) && i < x->size; i++)
 		data[i] = (__u8)(i + 1);
 	x->size = big ? 20 : 2;
+	return 0;
+}
+
+static int config_flag(struct ec_ioc_config_flag *x)
+{
+	static const char *const key[] = { "AssignToPdi", "WaitBeforeSAFEOPms" };
+
+	if (x->flag_pos >= LEN(key))
+		return fail(ENOENT, "there is no such flag");
+	snprintf(x->key, sizeof(x->key), "%s", key[x->flag_pos]);
+	x->value = x->flag_pos ? -1 : 1;
 	return 0;
 }
 
@@ -350,14 +407,15 @@ static int upload(struct ec_ioc_sdo *x)
 		{ 0x6041, 0, 2, "\x60\x80" },
 		{ 0x6060, 0, 1, "\xff" },
 		{ 0x2000, 0, 4, "\0\0\xc0\x3f" },
+		{ 0x2002, 0, 12, "a\033[2J\302\233b\n\0\0\0" },
 	};
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
 	if (x->index == 0x3000) {
-		if (x->size < 100000)
-			return fail(EOVERFLOW, "the object has 100000 bytes");
-		memset(to, 'x', 100000);
-		x->size = 100000;
+		if (x->size < 65536)
+			return fail(EOVERFLOW, "the object has 65536 bytes");
+		memset(to, 'x', 65536);
+		x->size = 65536;
 		return 0;
 	}
 	if (x->index == 0x4000)
@@ -373,7 +431,7 @@ static int upload(struct ec_ioc_sdo *x)
 			x->size = dict[i].size;
 			return 0;
 		}
-	return abort_sdo(x, 0x06020000);
+	return abort_sdo(x, x->index == 0x5001 ? 0x12345678 : 0x06020000);
 }
 
 static int download(struct ec_ioc_sdo *x)
@@ -438,6 +496,7 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 {
 	unsigned int nr = _IOC_NR(request);
 
+	ioctls++;
 	if (bus("foreign")) {
 		errno = ENOTTY;
 		return -1;
@@ -491,6 +550,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return 0;
 	case EC_IOC_CONFIG_SDO:
 		return config_sdo(arg);
+	case EC_IOC_CONFIG_FLAG:
+		return config_flag(arg);
 	case EC_IOC_DOMAIN:
 		*(struct ec_ioc_domain *)arg = domains[((struct ec_ioc_domain *)arg)->index];
 		return 0;
@@ -510,6 +571,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return request_state(arg);
 	case EC_IOC_RESCAN:
 		record("rescan %d\n", fd - FD);
+		scans = 2;
+		polls = 0;
 		return 0;
 	case EC_IOC_DEBUG:
 		record("debug %d %u\n", fd - FD, ((struct ec_ioc_debug *)arg)->level);

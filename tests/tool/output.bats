@@ -156,7 +156,7 @@ END
 	[ "$(out upload -p2 0x1018 | xxd -p)" = 04000200 ]
 	[ "$(out upload -p2 -t string 0x1008 0 | tr -d '\0')" = EL7201 ]
 	[ "$(out upload -p2 -t octet_string 0x1008 0 | wc -c)" -eq 8 ]
-	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 100000 ]
+	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 65536 ]
 }
 
 @test "upload failures" {
@@ -164,6 +164,10 @@ END
 	[ "$status" -eq 1 ]
 	[[ $output == *"aborted with code 0x06020000: "* ]]
 	[ "${#lines[@]}" -eq 1 ]
+	run ethercat upload -p2 0x5001 0
+	[ "$status" -eq 1 ]
+	[[ $output == *"aborted with code 0x12345678: ???" ]]
+	err upload -j -p2 0x5001 0 | json 'd["error"]["abort_text"] == "???"'
 	run ethercat upload -p2 0x4000 0
 	[ "$status" -eq 1 ]
 	[[ $output == *"timed out: slave 2 has not answered for 1000 ms"* ]]
@@ -225,7 +229,11 @@ END
 	[[ $output == *"has not reached OP"* ]]
 	run ethercat states
 	[ "$status" -eq 0 ]
-	[[ ${lines[2]} == *PREOP+ERROR*0x001d* ]]
+	[ "${lines[0]}" = "0     0:0  PREOP" ]
+	[ "${lines[1]}" = "1  1001:0  PREOP" ]
+	[[ ${lines[2]} == "2  1001:1  PREOP+ERROR  0x001d: "* ]]
+	FAKE_BUS=two run ethercat states -p1
+	[ "$output" = $'Master0\n  1  1001:0  PREOP\nMaster1\n  1  1001:0  PREOP' ]
 }
 
 @test "a scan is running" {
@@ -237,8 +245,24 @@ END
 	[ "$status" -eq 1 ]
 }
 
+@test "no interface, no slaves" {
+	[ -z "$(FAKE_BUS=waiting out slaves)" ]
+	[[ $(FAKE_BUS=waiting err slaves) == *"waiting for eth0"* ]]
+	FAKE_BUS=waiting run ethercat upload 0x1018 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"there are no slaves: no network interface yet, waiting for eth0" ]]
+	[[ $(FAKE_BUS=waiting out master) == *"Waiting for device(s)..."* ]]
+	FAKE_BUS=empty run ethercat sii_read
+	[ "$status" -eq 1 ]
+	[[ $output == *"there are no slaves" ]]
+}
+
 @test "other changes" {
 	[ "$(log_of rescan)" = "rescan 0" ]
+	[ "$(log_of rescan --wait)" = "rescan 0" ]
+	run ethercat rescan --wait=0
+	[ "$status" -eq 1 ]
+	[[ $output == *"has not finished after 0 s"* ]]
 	[ "$(FAKE_BUS=two log_of debug 2)" = $'debug 0 2\ndebug 1 2' ]
 	FAKE_READONLY=1 run ethercat rescan
 	[ "$status" -eq 1 ]

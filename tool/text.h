@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Text of unknown origin: names in EEPROMs, strings of slaves. */
+#ifndef EC_TOOL_TEXT_H
+#define EC_TOOL_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+int utf8_len(const unsigned char *p, size_t size);
+bool text_harmless(const unsigned char *p, int n);
+void text_clean(char *s, size_t size);
+void string_clean(char *s, size_t size);
+
+#endif
