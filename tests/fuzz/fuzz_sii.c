@@ -56,6 +56,34 @@ static void pdos(const uint8_t *img, size_t len, u16 type)
 	MUST(ec_sii_pdo_iter_next(&it, &pdo) == ret);
 }
 
+/* all PDOs of a direction, as long as they are sound */
+static void build_pdos(struct ec_sii_builder *b, const uint8_t *img, size_t len, u16 type)
+{
+	static struct ec_sii_pdo_entry e[255];
+	struct ec_sii_pdo_iter it;
+	struct ec_sii_pdo pdo;
+	unsigned int i;
+
+	ec_sii_pdo_iter_init(&it, img, len, type);
+	while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
+		for (i = 0; i < pdo.entries; i++)
+			ec_sii_pdo_entry(&pdo, i, &e[i]);
+		ec_sii_build_pdo(b, type, &pdo, e);
+	}
+}
+
+static unsigned int count_pdos(const uint8_t *img, size_t len)
+{
+	struct ec_sii_pdo_iter it;
+	struct ec_sii_pdo pdo;
+	unsigned int n = 0;
+
+	ec_sii_pdo_iter_init(&it, img, len, EC_SII_CAT_TXPDO);
+	while (ec_sii_pdo_iter_next(&it, &pdo) == 1)
+		n += 1u + pdo.entries;
+	return n;
+}
+
 /* A decoded image, built anew, decodes to the same. */
 static void rebuild(const uint8_t *img, size_t len)
 {
@@ -64,15 +92,19 @@ static void rebuild(const uint8_t *img, size_t len)
 	struct ec_sii_info info, info2;
 	struct ec_sii_sm sm[16], sm2[16];
 	struct ec_sii_dc dc[8], dc2[8];
-	int n, m, used;
+	u8 use[16], use2[16];
+	int n, m, k, used;
 
 	if (ec_sii_decode_info(img, len, &info))
 		return;
 	n = ec_sii_decode_sms(img, len, sm, 16);
 	m = ec_sii_decode_dcs(img, len, dc, 8);
+	k = ec_sii_decode_fmmus(img, len, use, 16);
 	ec_sii_build_begin(&b, out, sizeof(out), &info);
+	ec_sii_build_fmmus(&b, use, k > 0 ? (unsigned int)k : 0);
 	ec_sii_build_sms(&b, sm, (unsigned int)n);
 	ec_sii_build_dcs(&b, dc, (unsigned int)m);
+	build_pdos(&b, img, len, EC_SII_CAT_TXPDO);
 	used = ec_sii_build_end(&b);
 	MUST(used > 0 && ec_sii_used(out, sizeof(out)) == (size_t)used);
 	MUST(!ec_sii_decode_info(out, sizeof(out), &info2) && info2.checksum_ok);
@@ -80,6 +112,9 @@ static void rebuild(const uint8_t *img, size_t len)
 	MUST(ec_sii_decode_sms(out, sizeof(out), sm2, 16) == n);
 	MUST(!memcmp(sm, sm2, sizeof(*sm) * (size_t)n));
 	MUST(ec_sii_decode_dcs(out, sizeof(out), dc2, 8) == m);
+	MUST(ec_sii_decode_fmmus(out, sizeof(out), use2, 16) == (k > 0 ? (k + 1) & ~1 : k));
+	MUST(k <= 0 || !memcmp(use, use2, (size_t)k));
+	MUST(count_pdos(out, sizeof(out)) == count_pdos(img, len));
 	for (; m; m--)
 		MUST(dc[m - 1].assign == dc2[m - 1].assign &&
 		     dc[m - 1].factor0 == dc2[m - 1].factor0);

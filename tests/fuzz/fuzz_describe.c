@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Descriptions of segments: built, or refused with a line and a reason. */
+#include "fuzz_sim.h"
+
+const struct fuzz_seed fuzz_seeds[] = {
+	SEED("segment seed=4 response=200us transition=1ms\n"
+	     "slave c EK1100 drift=12ppm alias=7\nslave o EL2008\nslave i EL1008\n"
+	     "branch c 2\nslave d drive in=22 out=22 mapping=rewritable id=11\n"
+	     "connect o.1 -> i.1\n"),
+	SEED("slave ai EL3062\nslave ao EL4002\nsine ai.1 amplitude=10 period=4ms offset=5\n"
+	     "ramp ai.2 amplitude=3 period=1s\nconst ai.1 value=-5\n"),
+	SEED("repeat 5 slave t io in=8 out=8 cpu=no alias=100\nwire t1.2 -> t5.1 cable=20\n"),
+	SEED("slave a EL7201 motor=AM8121\nslave b 750-354 serial=1 delay=2us clock=1s\n"
+	     "wire b.1 -> master.1\n"),
+	SEED("slave d drive\nfault at=1s lose frame=3\nfault mangle rate=100ppm port=1\n"
+	     "fault at=2ms cut d.0\nfault refuse d SAFEOP code=0x1d\nfault noack d count=3\n"
+	     "fault wkc d add=-1\nfault errors d.0 add=4\n"
+	     "fault emergency d code=0x8130 register=1\nfault duplicate frame=2 copies=2\n"
+	     "fault delay frame=1 by=3us\n"),
+	SEED("slave x file=image.bin\n"),
+	{ NULL, 0 }
+};
+
+static int no_image(void *ctx, const char *name, u8 *buf, size_t cap)
+{
+	(void)ctx;
+	MUST(cap && strlen(name) < 4096);
+	buf[0] = 0;
+	return -ENOENT;
+}
+
+static const struct ec_sim_loader loader = { no_image, NULL };
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
+{
+	/* broadcast read of the AL status */
+	u8 frame[] = { 0x0E, 0x10, 7, 1, 0, 0, 0x30, 1, 2, 0, 0, 0, 0, 0, 0, 0 };
+	bool starve = len % 5 == 4;
+	struct ec_sim *sim;
+	u32 i;
+
+	sim = fuzz_describe((const char *)data, len, len & 1 ? &loader : NULL,
+			    starve ? data[len / 2] % 32 : -1);
+	if (!sim)
+		return 0;
+	MUST(ec_sim_count(sim) <= 65535);
+	for (i = 0; i < 3; i++)
+		ec_sim_frame(sim, (int)(i & 1), frame, sizeof(frame), 1000000 * i);
+	ec_sim_advance(sim, 20000000);
+	fuzz_release(sim);
+	return 0;
+}
