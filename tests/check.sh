@@ -12,7 +12,7 @@ set -u
 [ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
 levels="unit witness decoders uml lib tool fuzz data kernels
-	system bench"
+	pysoem system bench"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -44,6 +44,7 @@ level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
 level_fuzz() { make -s -C tests/fuzz check SECONDS=3; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }
+level_pysoem() { tests/pysoem/run.sh; }
 level_kernels() { tests/check-kernels.sh; }
 level_system() { tests/system/run.sh; }
 level_bench() { tests/bench/run.sh; }
