@@ -46,6 +46,10 @@ clean:
 
 .PHONY: all sync modules lib tool clean
 
+# CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM
+demo:
+	@tests/demo/demo.sh $(if $(HOST),--host)
+
 check:
 	tests/check.sh
 
@@ -60,4 +64,4 @@ bench:
 check-witness:
 	tests/witness/run.sh
 
-.PHONY: bench check check-kernels check-witness
+.PHONY: demo bench check check-kernels check-witness

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # Installs what building and testing need, and nothing that is there already.
-# usage: tests/install-deps.sh GROUP...    (build, vm, uml, python, json)
+# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json)
 
 set -eu
 
 usage() {
-	echo "usage: ${0##*/} GROUP...   groups: build vm uml python json" >&2
+	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json" >&2
 	exit 2
 }
 
@@ -30,6 +30,7 @@ for group; do
 		   sparse kmod cpio xz-utils zstd" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils bats tcpdump
 		   iproute2 tshark" ;;
+	capture) p="tcpdump iproute2 tshark" ;;
 	uml)	p="linux-source-6.1 xz-utils python3" ;;
 	python)	p="python3-venv" ;;
 	json)	p="jq" ;;

@@ -27,6 +27,7 @@ usage() {
 	  --qemu '...'       more QEMU options
 	  --dmesg FILE       store the guest's kernel log
 	  --allow-oops       do not fail on kernel warnings
+	  --probe            run nothing, print what QEMU would use: kvm or tcg
 	  -v                 print how long booting took
 	exit status: the command's; 70 the kernel reported a fault, 124 timeout,
 	  125 the guest died or something is missing here
@@ -37,7 +38,7 @@ usage() {
 
 die() { echo "run.sh: $*" >&2; exit 125; }
 
-kernel=6.1-rt smp=2 mem=1024 icount=0 nics=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0
+kernel=6.1-rt smp=2 mem=1024 icount=0 nics=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
 while [ $# -gt 0 ]; do
@@ -53,6 +54,7 @@ while [ $# -gt 0 ]; do
 	--qemu) need "$@"; qemu_more="$qemu_more $2"; shift 2 ;;
 	--dmesg) need "$@"; dmesg=$2; shift 2 ;;
 	--allow-oops) allow_oops=1; shift ;;
+	--probe) probe=1; shift ;;
 	-v) verbose=1; shift ;;
 	-h|--help) usage ;;
 	--) shift; break ;;
@@ -60,7 +62,7 @@ while [ $# -gt 0 ]; do
 	*) break ;;
 	esac
 done
-[ $# -gt 0 ] || usage
+[ $# -gt 0 ] || [ $probe = 1 ] || usage
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
 
@@ -134,6 +136,14 @@ probe_kvm() {
 	fi
 	[ "$(sed -n 2p "$state")" = yes ]
 }
+
+if [ $probe = 1 ]; then
+	case ${EC_ACCEL:-} in
+	kvm|tcg) echo "$EC_ACCEL" ;;
+	*) if probe_kvm; then echo kvm; else echo tcg; fi ;;
+	esac
+	exit 0
+fi
 
 if [ $icount = 1 ]; then
 	smp=1

@@ -1,0 +1,115 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# The main job, shown: installs what is missing, builds, boots Debian's
+# PREEMPT_RT kernel in a VM and runs bench.sh there; then tshark reads the
+# captured frames.
+#
+# usage: demo.sh           in a VM
+#        demo.sh --host    on this machine, with the headers of its kernel
+#
+# CYCLES=10000 PERIOD_US=1000   length of the run
+# KDIR=DIR                      headers, for --host
+# EC_KERNEL=6.1-rt              kernel of the VM
+
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+export CYCLES=${CYCLES:-10000} PERIOD_US=${PERIOD_US:-1000}
+kernel=${EC_KERNEL:-6.1-rt}
+host=0
+case ${1:-} in
+--host)	host=1 ;;
+'')	;;
+*)	sed -n 's/^# \{0,1\}//p' "$0" | sed -n '/^usage/,/^$/p' >&2; exit 2 ;;
+esac
+out=$PWD/build/demo
+DEMO_START=$(date +%s)
+export DEMO_START
+
+step() { printf '[%3d s] %s\n' $SECONDS "$*"; }
+
+# die WHAT WHAT-TO-DO
+die() {
+	echo "demo: FAILED: $1" >&2
+	echo "demo: $2" >&2
+	exit 1
+}
+
+number() {
+	[[ $2 =~ ^[1-9][0-9]{0,7}$ ]] || die "$1=$2 is no number of 1 to 8 digits" "give for example $1=$3"
+}
+
+number CYCLES "$CYCLES" 10000
+number PERIOD_US "$PERIOD_US" 1000
+
+if [ $host = 1 ]; then
+	KDIR=${KDIR:-/lib/modules/$(uname -r)/build}
+	EC_BUILD=${EC_BUILD:-$PWD/build/host-$(uname -r)}
+	groups="build capture"
+else
+	EC_BUILD=${EC_BUILD:-$PWD/build/system-$kernel}
+	groups="build capture vm"
+fi
+export EC_BUILD
+
+# --- install -------------------------------------------------------------------
+# shellcheck disable=SC2086
+message=$(tests/install-deps.sh $groups 2>&1) ||
+	die "$message" "install the packages named above, then run this again"
+step "install: ${message##*install-deps: }"
+if [ $host = 1 ]; then
+	[ "$(id -u)" = 0 ] || die "HOST=1 loads modules" "run it as root, or without HOST=1 for a VM"
+	[ -e "$KDIR/Makefile" ] || die "no kernel headers at $KDIR" \
+		"apt-get install linux-headers-$(uname -r), or name them with KDIR="
+	lsmod | grep -qE '^ec_(master|sim) ' && die "ec_master is loaded already" \
+		"stop what uses it, then: rmmod ec_sim ec_generic ec_master"
+else
+	tests/vm/kernels.sh fetch "$kernel" ||
+		die "no kernel $kernel" "see above; a network with Debian packages is needed the first time"
+	KDIR=$(tests/vm/kernels.sh kdir "$kernel")
+	step "kernel: $(tests/vm/kernels.sh release "$kernel")"
+fi
+
+# --- build -----------------------------------------------------------------------
+mkdir -p "$out" "$EC_BUILD"
+rm -f "$out"/demo.pcap "$out"/*.log
+build() {
+	make -s -j"$(nproc)" modules KDIR="$KDIR" MODDIR="$EC_BUILD/modules" &&
+	make -s -C lib O="$EC_BUILD/lib" all &&
+	make -s -C tool O="$EC_BUILD/tool" &&
+	make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all
+}
+build >"$out/build.log" 2>&1 || {
+	grep -E 'error|Error' "$out/build.log" | head -n 20 >&2
+	die "the build" "see $out/build.log"
+}
+step "build: modules, library, tool and application are in $EC_BUILD"
+
+# --- run -------------------------------------------------------------------------
+if [ $host = 1 ]; then
+	step "run: on this machine, $(uname -r)"
+	tests/demo/bench.sh "$out"
+	rc=$?
+else
+	accel=$(tests/vm/run.sh --kernel "$kernel" --probe) ||
+		die "QEMU cannot be started" "see above"
+	case $accel in
+	kvm) step "boot: QEMU with KVM" ;;
+	*)   step "boot: QEMU without KVM (no guest starts with it here): cycles will be late at times" ;;
+	esac
+	tests/vm/run.sh --kernel "$kernel" --rw "$out" --dmesg "$out/kernel.log" \
+		--timeout $((120 + CYCLES * PERIOD_US / 200000)) -- \
+		env EC_BUILD="$EC_BUILD" CYCLES="$CYCLES" PERIOD_US="$PERIOD_US" \
+		DEMO_START="$DEMO_START" tests/demo/bench.sh "$out"
+	rc=$?
+	case $rc in
+	70)	die "the kernel reported a fault" "that is a bug of ours; its log is $out/kernel.log" ;;
+	124)	die "the VM did not finish in time" "is the machine busy? try again, or with CYCLES=2000" ;;
+	125)	die "the VM" "see above; $out/kernel.log may say more" ;;
+	esac
+fi
+[ $rc = 0 ] || die "see above" "the kernel's log: $([ $host = 1 ] && echo dmesg || echo "$out/kernel.log")"
+
+# --- capture ---------------------------------------------------------------------
+tests/demo/capture.sh "$out/demo.pcap" "$CYCLES" || exit 1
+step "demo: passed"
