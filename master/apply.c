@@ -280,11 +280,24 @@ static int write_watchdog(struct ec_slave *s, const struct ec_config *c)
 	return ret;
 }
 
+/* Is there a SyncManager whose PDOs the application did not name? */
+static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+
+	for (sm = 2; sm < s->n_sms; sm++)
+		if (!c || !c->sm[sm].explicit)
+			return true;
+	return false;
+}
+
 /* state-machine.md 4.3 */
 static int to_safeop(struct ec_slave *s, struct ec_config *c)
 {
 	int ret = 0;
 
+	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
+		ec_slave_read_coe_pdos(s);
 	if (c) {
 		ret = write_sdos(s, c) ?: write_pdos(s, c) ?: write_watchdog(s, c);
 		if (ret)
@@ -382,6 +395,8 @@ void ec_apply_work(struct work_struct *work)
 		s->error = EC_SLAVE_OK;
 		s->why[0] = '\0';
 	}
+	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
+		ec_slave_read_coe_pdos(s);
 	mutex_unlock(&s->lock);
 	wake_up_all(&m->scan_wq);
 	ec_slave_unref(s);

@@ -8,7 +8,7 @@
 #include "slave.h"
 
 /**
- * ec_config_defaults() - start from what the slave's EEPROM says
+ * ec_config_defaults() - start from the PDOs the slave has
  * @c: configuration without PDOs
  * @slave: slave
  *
@@ -18,6 +18,7 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
 	unsigned int sm, i;
 
+	down_read(&slave->master->topo);
 	for (sm = 0; sm < slave->n_sms; sm++) {
 		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
 
@@ -29,9 +30,11 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
 
 			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
-				return;
+				goto out;
 		}
 	}
+out:
+	up_read(&slave->master->topo);
 }
 
 /**
@@ -108,9 +111,21 @@ int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
 	return 0;
 }
 
-int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
+/* The mapping the slave has for this PDO, as a start. */
+static int known_entries(const struct ec_slave *slave, u16 index, struct ec_pdo *p)
 {
 	const struct ec_pdo *known;
+	int ret;
+
+	down_read(&slave->master->topo);
+	known = ec_slave_find_pdo(slave, index);
+	ret = known ? ec_pdo_copy_entries(p, known) : 0;
+	up_read(&slave->master->topo);
+	return ret;
+}
+
+int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
+{
 	struct ec_pdo *p;
 
 	if (sm >= EC_MAX_SM)
@@ -119,8 +134,7 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 	if (!p)
 		return -ENOMEM;
 	c->sm[sm].explicit = true;
-	known = c->slave ? ec_slave_find_pdo(c->slave, pdo) : NULL;
-	return known ? ec_pdo_copy_entries(p, known) : 0;
+	return c->slave ? known_entries(c->slave, pdo, p) : 0;
 }
 
 int ec_config_assign_clear(struct ec_config *c, u8 sm)

@@ -232,7 +232,9 @@ int ec_ioc_sm(struct ec_file *f, void *arg)
 		i->control = s->sms[i->sm].control;
 		i->enable = s->sms[i->sm].enable;
 		i->type = s->sms[i->sm].type;
+		down_read(&f->master->topo);
 		i->pdo_count = s->sm_pdos[i->sm].n;
+		up_read(&f->master->topo);
 	}
 	ec_slave_unref(s);
 	return ret;
@@ -264,12 +266,14 @@ int ec_ioc_pdo(struct ec_file *f, void *arg)
 
 	if (!s)
 		return ret;
+	down_read(&f->master->topo);
 	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
 	if (p) {
 		i->index = p->index;
 		i->entry_count = p->n_entries;
 		name(s, p->name, i->name);
 	}
+	up_read(&f->master->topo);
 	ec_slave_unref(s);
 	return ret;
 }
@@ -283,6 +287,7 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 
 	if (!s)
 		return ret;
+	down_read(&f->master->topo);
 	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
 	if (p && i->entry_pos >= p->n_entries) {
 		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
@@ -293,6 +298,7 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 		i->bits = p->entries[i->entry_pos].bits;
 		name(s, p->entries[i->entry_pos].name, i->name);
 	}
+	up_read(&f->master->topo);
 	ec_slave_unref(s);
 	return ret;
 }

@@ -113,7 +113,7 @@ static bool settled(struct ec_master *m)
 		return false;
 	down_read(&m->topo);
 	for (i = 0; i < m->n_slaves && ok; i++)
-		ok = !work_busy(&m->slaves[i]->work);
+		ok = !work_busy(&m->slaves[i]->work) && !ec_slave_pdos_pending(m->slaves[i]);
 	/* a bus that answers is scanned first */
 	ok &= m->n_slaves == READ_ONCE(m->slaves_responding);
 	up_read(&m->topo);

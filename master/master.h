@@ -43,7 +43,8 @@ struct task_struct;
  * @xq_lock: protects @xq, @xq_head, @xq_tail
  * @xq: frames left by ec_xfer() for the cyclic caller
  *
- * @topo: protects @slaves, @n_slaves, @scan_busy; written by the monitor only
+ * @topo: protects @slaves, @n_slaves, @scan_busy (written by the monitor only)
+ *	and the PDO lists of the slaves
  * @slaves: by ring position
  * @n_slaves: entries in @slaves
  * @scan_busy: slaves are being scanned

@@ -21,6 +21,7 @@ struct watch {
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	bool scanned;		/* @count slaves are scanned */
+	u64 scanned_ns;
 	u64 rates_ns;
 };
 
@@ -190,6 +191,7 @@ static void maybe_scan(struct watch *w)
 	if (!ec_scan(m, w->count)) {
 		w->scanned = true;
 		WRITE_ONCE(m->scan_count, m->scan_count + 1);
+		w->scanned_ns = ktime_get_ns();
 		ec_session_attach(m);
 		want_states(m);
 	} else {
@@ -197,6 +199,30 @@ static void maybe_scan(struct watch *w)
 	}
 	WRITE_ONCE(m->scan_busy, false);
 	wake_up_all(&m->scan_wq);
+}
+
+/*
+ * Reading PDOs takes many mailbox exchanges; the way to PREOP comes first. One
+ * slow slave does not hold up the others for long.
+ */
+static void read_pdos(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	bool busy = false;
+	unsigned int i;
+
+	for (i = 0; i < m->n_slaves && !busy; i++)
+		busy = work_busy(&m->slaves[i]->work);
+	if (!w->scanned || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
+		return;
+	for (i = 0; i < m->n_slaves; i++) {
+		struct ec_slave *s = m->slaves[i];
+
+		if (!ec_slave_pdos_pending(s) || work_busy(&s->work))
+			continue;
+		WRITE_ONCE(s->read_pdos, true);
+		ec_slave_request(s, s->requested);
+	}
 }
 
 static int monitor(void *data)
@@ -213,6 +239,7 @@ static int monitor(void *data)
 		if (w.link_up || m->n_slaves) {
 			count_slaves(&w);
 			maybe_scan(&w);
+			read_pdos(&w);
 		} else {
 			WRITE_ONCE(m->slaves_responding, 0);
 			WRITE_ONCE(m->al_states, 0);

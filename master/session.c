@@ -90,12 +90,16 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 static void detach(struct ec_config *c)
 {
 	struct ec_slave *slave = c->slave;
+	unsigned int sm;
 
 	if (!slave)
 		return;
 	c->slave = NULL;
 	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
+	for (sm = 0; sm < EC_MAX_SM; sm++)
+		if (c->sm[sm].explicit)	/* the slave keeps what was written */
+			WRITE_ONCE(slave->pdos_known, false);
 	slave->config = NULL;
 	slave->reconfigure = true;
 	slave->interrupt = false;

@@ -28,8 +28,6 @@ struct ec_master;
  * @general: general category, with @has_general
  * @sms: SyncManagers of the EEPROM
  * @n_sms: entries in @sms
- * @sm_pdos: PDOs by SyncManager
- * @free_pdos: PDOs without SyncManager
  * @emulation: AL status follows AL control
  * @name: and other strings of the EEPROM
  *
@@ -42,6 +40,11 @@ struct ec_master;
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
  *
+ * Of the EEPROM, then of the object dictionary, changed under master->topo:
+ * @sm_pdos: PDOs by SyncManager
+ * @free_pdos: PDOs without SyncManager
+ * @pdos_known: the object dictionary was read, or there is none
+ *
  * Changing:
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
@@ -52,6 +55,7 @@ struct ec_master;
  * @work: brings it to @requested
  * @lock: one worker or caller at a time changes its state
  * @config: what the session wants from it, under session_lock and @lock
+ * @read_pdos: read the PDOs when it is there
  * @interrupt: leave what the worker is waiting for
  * @reconfigure: go through INIT and configure again
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
@@ -69,8 +73,6 @@ struct ec_slave {
 	bool has_general;
 	struct ec_sii_sm sms[EC_MAX_SM];
 	unsigned int n_sms;
-	struct ec_pdo_list sm_pdos[EC_MAX_SM];
-	struct ec_pdo_list free_pdos;
 	bool emulation;
 	char group[EC_UAPI_STRING];
 	char image[EC_UAPI_STRING];
@@ -85,6 +87,10 @@ struct ec_slave {
 	u16 next[EC_MAX_PORT];
 	u8 upstream;
 
+	struct ec_pdo_list sm_pdos[EC_MAX_SM];
+	struct ec_pdo_list free_pdos;
+	bool pdos_known;
+
 	u16 al_status;
 	u16 al_code;
 	u8 requested;
@@ -94,6 +100,7 @@ struct ec_slave {
 	struct work_struct work;
 	struct mutex lock;
 	struct ec_config *config;
+	bool read_pdos;
 	bool interrupt;
 	bool reconfigure;
 	bool ours;
@@ -131,6 +138,10 @@ static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
 /* slave_pdo.c */
 int ec_slave_read_pdos(struct ec_slave *slave);
 const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
+
+/* pdo_coe.c */
+bool ec_slave_pdos_pending(const struct ec_slave *s);
+void ec_slave_read_coe_pdos(struct ec_slave *s);
 
 /* al.c */
 int ec_al_read(struct ec_slave *slave);

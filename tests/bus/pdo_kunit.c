@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The PDOs a slave uses now, not those it was delivered with. */
+#include "bus.h"
+#include "master/coe.h"
+
+static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
+{
+	u8 b[4];
+	u32 abort;
+
+	put_unaligned_le32(value, b);
+	return ec_coe_download(s, index, sub, false, b, bytes, &abort, 0);
+}
+
+static bool known(struct bus *b)
+{
+	u32 i;
+
+	for (i = 0; i < b->m->n_slaves; i++)
+		if (ec_slave_pdos_pending(b->m->slaves[i]))
+			return false;
+	return bus_settled(b);
+}
+
+static void wait_known(struct bus *b)
+{
+	unsigned int i;
+
+	for (i = 0; i < 5000 && !known(b); i++)
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_TRUE(b->test, known(b));
+}
+
+/* reading over CoE must agree with the EEPROM of a slave nobody changed */
+static void pdo_same_as_eeprom(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave d drive in=22 out=22 mapping=rewritable\n", 1);
+	struct ec_slave *s = bus_slave(b, 0);
+	u32 bytes[4], entries[4];
+	unsigned int sm;
+
+	for (sm = 2; sm < 4; sm++) {
+		bytes[sm] = ec_pdo_list_bytes(&s->sm_pdos[sm]);
+		entries[sm] = s->sm_pdos[sm].pdos[0].n_entries;
+		KUNIT_EXPECT_EQ(test, bytes[sm], 22u);
+	}
+	KUNIT_EXPECT_FALSE(test, s->pdos_known);
+	wait_known(b);
+	KUNIT_EXPECT_TRUE(test, s->pdos_known);
+	for (sm = 2; sm < 4; sm++) {
+		KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->sm_pdos[sm]), bytes[sm]);
+		KUNIT_EXPECT_EQ(test, s->sm_pdos[sm].pdos[0].n_entries, entries[sm]);
+		/* names come from the EEPROM still */
+		KUNIT_EXPECT_NE(test, s->sm_pdos[sm].pdos[0].name, 0);
+	}
+}
+
+static void pdo_changed_mapping_is_seen(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave d drive in=22 out=22 mapping=rewritable\n", 1);
+	struct ec_slave *s = bus_slave(b, 0);
+	u16 pdo, unassigned;
+
+	wait_known(b);
+	pdo = s->sm_pdos[2].pdos[0].index;
+	unassigned = s->sm_pdos[3].pdos[0].index;
+	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 0, 0, 1), 0);
+	KUNIT_ASSERT_EQ(test, put(s, pdo, 0, 0, 1), 0);
+	KUNIT_ASSERT_EQ(test, put(s, pdo, 1, 0x60400010, 4), 0);
+	KUNIT_ASSERT_EQ(test, put(s, pdo, 0, 1, 1), 0);
+	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 1, pdo, 2), 0);
+	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 0, 1, 1), 0);
+	KUNIT_ASSERT_EQ(test, put(s, 0x1c13, 0, 0, 1), 0);
+
+	ec_master_rescan(b->m);
+	usleep_range(50000, 50001);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
+	wait_known(b);
+	s = bus_slave(b, 0);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->sm_pdos[2]), 2u);
+	KUNIT_ASSERT_EQ(test, s->sm_pdos[2].n, 1u);
+	KUNIT_ASSERT_EQ(test, s->sm_pdos[2].pdos[0].n_entries, 1u);
+	KUNIT_EXPECT_EQ(test, s->sm_pdos[2].pdos[0].entries[0].index, 0x6040);
+	KUNIT_EXPECT_EQ(test, s->sm_pdos[3].n, 0u);
+	/* it can be assigned again with the mapping of the EEPROM */
+	KUNIT_ASSERT_NOT_NULL(test, ec_slave_find_pdo(s, unassigned));
+	KUNIT_EXPECT_EQ(test, ec_pdo_bits(ec_slave_find_pdo(s, unassigned)), 22u * 8);
+}
+
+/* a slave that does not answer keeps the PDOs of its EEPROM, and is said to */
+static void pdo_mute_slave(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave d drive in=22 out=22\nslave e drive in=8 out=8\n");
+
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 10000), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+	wait_known(b);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 0)->pdos_known);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 22u);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 1)->sm_pdos[2]), 8u);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(pdo_same_as_eeprom),
+	KUNIT_CASE(pdo_changed_mapping_is_seen),
+	KUNIT_CASE(pdo_mute_slave),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_pdo", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
