@@ -33,8 +33,12 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 	put_unaligned_le16(control, b);
 	for (;;) {
 		ret = ec_xfer_fpwr(slave->master, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
-		if (ret != -EIO || ktime_get_ns() > until_ns || slave->gone)
+		if (ret != -EIO || slave->gone)
 			return ret;
+		if (ktime_get_ns() > until_ns)
+			return -ETIME;
+		if (slave->master->stopping || READ_ONCE(slave->interrupt))
+			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
 }

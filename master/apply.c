@@ -49,6 +49,21 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
+/* SM0 and SM1 for a mailbox area; returns bytes of @page, 0 without mailbox */
+static unsigned int mailbox_sms(const struct ec_sii_mbox *mb, u8 *page)
+{
+	struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
+			     .activate = EC_SM_ACT_ENABLE };
+	struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
+			    .activate = EC_SM_ACT_ENABLE };
+
+	if (!mb->rx_size || !mb->tx_size)
+		return 0;
+	ec_sm_encode(&out, page);
+	ec_sm_encode(&in, page + EC_SM_PAGE);
+	return 2 * EC_SM_PAGE;
+}
+
 /**
  * ec_apply_mailbox_sms() - SyncManager pages of the standard mailbox
  * @slave: slave with its EEPROM
@@ -59,17 +74,25 @@ static int to_init(struct ec_slave *s)
  */
 unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page)
 {
-	const struct ec_sii_mbox *mb = &slave->info.std;
-	struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
-			     .activate = EC_SM_ACT_ENABLE };
-	struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
-			    .activate = EC_SM_ACT_ENABLE };
+	return ec_slave_has_mailbox(slave) ? mailbox_sms(&slave->info.std, page) : 0;
+}
 
-	if (!ec_slave_has_mailbox(slave))
-		return 0;
-	ec_sm_encode(&out, page);
-	ec_sm_encode(&in, page + EC_SM_PAGE);
-	return 2 * EC_SM_PAGE;
+/* state-machine.md 4.2, with the bootstrap mailbox */
+static int to_boot(struct ec_slave *s)
+{
+	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
+	u8 page[2 * EC_SM_PAGE];
+	unsigned int len = mailbox_sms(&s->info.boot, page);
+	int ret;
+
+	if (!len) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "cannot go to BOOT: its EEPROM names no bootstrap mailbox");
+		return -EOPNOTSUPP;
+	}
+	ret = write_reg(s, EC_REG_SM(0), page, len) ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?:
+	      ec_al_set(s, EC_AL_BOOT, 0);
+	return ret ? failed(s, EC_AL_BOOT, ret) : 0;
 }
 
 /* state-machine.md 4.2 */
@@ -352,6 +375,8 @@ static int step(struct ec_slave *s)
 		return to_init(s);
 	if (cur == want)
 		return 1;
+	if (want == EC_AL_BOOT)
+		return cur == EC_AL_INIT ? to_boot(s) : to_init(s);
 	if (cur > want || cur == EC_AL_BOOT) {
 		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
 			return to_init(s);
@@ -391,7 +416,7 @@ void ec_apply_work(struct work_struct *work)
 	mutex_lock(&s->lock);
 	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++)
 		ret = step(s);
-	if (ret == 1 && s->error == EC_SLAVE_CONFIG_FAILED) {
+	if (ret == 1 && s->error != EC_SLAVE_SCAN_FAILED) {
 		s->error = EC_SLAVE_OK;
 		s->why[0] = '\0';
 	}

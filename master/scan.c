@@ -37,7 +37,6 @@ static void reset_bus(struct ec_master *m)
 {
 	static const u8 zero[256];
 	static const u8 init[2] = { EC_AL_INIT, 0 };
-	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
 
 	bwr(m, EC_REG_DL_LOOPS, zero, 1);
 	bwr(m, EC_REG_AL_CONTROL, init, 2);
@@ -46,8 +45,6 @@ static void reset_bus(struct ec_master *m)
 	bwr(m, EC_REG_SM(0), zero, 128);
 	bwr(m, EC_REG_DC_ACTIVATION, zero, 1);
 	bwr(m, EC_REG_DL_ALIAS, zero, 1);
-	bwr(m, EC_REG_EEP_OWNER, force, 1);
-	bwr(m, EC_REG_EEP_OWNER, zero, 1);
 }
 
 /* Read @len bytes at @ado of all slaves by position into regs + @ofs. */

@@ -20,6 +20,7 @@
 #define WAIT_MAX_NS	(2 * NSEC_PER_MSEC)
 #define POLL_US		40
 #define RETRIES		5
+#define TAKE_OVER	3	/* datagrams to take over one EEPROM */
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 
 /* one slave being read */
@@ -128,19 +129,29 @@ static void command(u8 *c, u16 word)
 	put_unaligned_le32(word, c + 2);
 }
 
-/* Take the EEPROM interface away from the PDI (0x0500). */
+/*
+ * Take the EEPROM interface away from the PDI (0x0500). The address is set to
+ * one nobody asks for, so that a slave which misses the first command does not
+ * pass off what it shows as word 0.
+ */
 static void take_over(struct job *j, struct reader **who, unsigned int n)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
-	unsigned int i, pass;
+	static const u8 nowhere[4] = { 0xff, 0xff, 0xff, 0xff };
+	unsigned int i;
+	struct ec_dg *dg = j->dg;
 
-	for (pass = 0; pass < 2; pass++) {
-		for (i = 0; i < n; i++)
-			j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
-						       EC_REG_EEP_OWNER, 1,
-						       (void *)(pass ? zero : force));
-		ec_xfer(j->m, j->dg, n);
+	for (i = 0; i < n; i++) {
+		u16 station = who[i]->slave->station;
+
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
+					    (void *)force);
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
+					    (void *)zero);
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_ADDRESS, 4,
+					    (void *)nowhere);
 	}
+	ec_xfer(j->m, j->dg, dg - j->dg);
 }
 
 /* FPRD 0x0502 of @n readers */
@@ -298,13 +309,9 @@ static unsigned int apart(struct job *j, struct reader **who)
 static void read_apart(struct job *j)
 {
 	unsigned int i, n, left;
-	bool first = true;
 	u64 t0;
 
 	while ((n = apart(j, j->who)) && !j->m->stopping) {
-		if (first)
-			take_over(j, j->who, n);
-		first = false;
 		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
 		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS;) {
@@ -345,8 +352,7 @@ static void run(struct job *j)
 	u16 word;
 
 	n = waiting(j, &word);
-	if (!j->broadcast)
-		take_over(j, j->who, n);
+	take_over(j, j->who, n);
 	for (; n && !j->m->stopping; n = waiting(j, &word))
 		step(j, j->who, n, word);
 	read_apart(j);
@@ -369,7 +375,7 @@ void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, 
 	unsigned int i;
 
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
-	j.dg = kvcalloc(n, sizeof(*j.dg), GFP_KERNEL);
+	j.dg = kvcalloc(n, TAKE_OVER * sizeof(*j.dg), GFP_KERNEL);
 	j.cmd = kvcalloc(n, sizeof(*j.cmd), GFP_KERNEL);
 	j.who = kvcalloc(n, sizeof(*j.who), GFP_KERNEL);
 	if (!j.rd || !j.dg || !j.cmd || !j.who)

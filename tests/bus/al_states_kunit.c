@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* AL states on request, refusals, errors, and who notices them when. */
+#include "bus.h"
+#include "master/wire/al.h"
+
+#define N	4
+
+static const char line[] =
+	"segment seed=6 response=100us transition=2ms\n"
+	"slave coupler EK1100\nslave ai EL3062\nslave axis EL7201 motor=AM8121\n"
+	"slave out EL2008\n";
+
+/* position of the slave with inputs only: it may be in OP without cycle */
+#define AI	1
+#define AXIS	2
+#define OUT	3
+
+static void al_up_and_down(struct kunit *test)
+{
+	static const u8 way[] = {
+		EC_AL_SAFEOP, EC_AL_OP, EC_AL_SAFEOP, EC_AL_PREOP, EC_AL_OP, EC_AL_INIT,
+		EC_AL_SAFEOP, EC_AL_INIT, EC_AL_PREOP,
+	};
+	struct bus *b = bus_up(test, line, N);
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(way); i++) {
+		bus_request(b, AI, way[i]);
+		KUNIT_EXPECT_NE_MSG(test, bus_wait_al(b, AI, way[i], 500), ~0ull, "step %u", i);
+		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "ai")), way[i]);
+		/* the others stay where they are */
+		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "axis")), EC_AL_PREOP);
+	}
+}
+
+static void al_boot(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+
+	bus_request(b, AXIS, EC_AL_BOOT);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AXIS, EC_AL_BOOT, 500), ~0ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AXIS)->error, EC_SLAVE_OK);
+	bus_request(b, AXIS, EC_AL_PREOP);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AXIS, EC_AL_PREOP, 500), ~0ull);
+}
+
+/* A slave without bootstrap mailbox says so. */
+static void al_no_boot(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+
+	bus_request(b, OUT, EC_AL_BOOT);
+	msleep(300);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, OUT)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, OUT)->why, "bootstrap mailbox"),
+				  "why: %s", bus_slave(b, OUT)->why);
+	bus_request(b, OUT, EC_AL_PREOP);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, OUT, EC_AL_PREOP, 500), ~0ull);
+}
+
+static const struct refusal {
+	u8 from;
+	u8 to;
+	u16 code;
+} refusals[] = {
+	{ EC_AL_INIT, EC_AL_PREOP, 0x0016 },
+	{ EC_AL_PREOP, EC_AL_SAFEOP, 0x001e },
+	{ EC_AL_SAFEOP, EC_AL_OP, 0x001f },
+};
+
+static void refusal_desc(const struct refusal *r, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "%s to %s", ec_al_state_name(r->from),
+		 ec_al_state_name(r->to));
+}
+KUNIT_ARRAY_PARAM(al, refusals, refusal_desc);
+
+/* The slave stays where it was, acknowledged, and the reason can be read. */
+static void al_refused(struct kunit *test)
+{
+	const struct refusal *r = test->param_value;
+	struct bus *b = bus_up(test, line, N);
+	struct ec_slave *s = bus_slave(b, AI);
+	char code[16];
+
+	bus_request(b, AI, r->from);
+	KUNIT_ASSERT_NE(test, bus_wait_al(b, AI, r->from, 500), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, AI, 0, r->to, r->code);
+	bus_request(b, AI, r->to);
+	msleep(200);
+	KUNIT_EXPECT_EQ(test, s->al_status, r->from);
+	KUNIT_EXPECT_FALSE(test, bus_app(b, "ai")->error);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
+	snprintf(code, sizeof(code), "0x%04x", r->code);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, code), "why: %s", s->why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, ec_al_state_name(r->to)), "why: %s", s->why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, ec_al_code_text(r->code)), "why: %s",
+				  s->why);
+
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, AI, 0, 0, 0);
+	bus_request(b, AI, r->to);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, r->to, 500), ~0ull);
+	msleep(20);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_STREQ(test, s->why, "");
+}
+
+/* An error of the slave's own: seen, acknowledged, brought back. */
+static void al_falls_back(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	u64 us;
+
+	bus_request(b, AI, EC_AL_OP);
+	KUNIT_ASSERT_NE(test, bus_wait_al(b, AI, EC_AL_OP, 500), ~0ull);
+	msleep(50);
+	ec_app_al_fail(bus_app(b, "ai"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
+	us = bus_wait_al(b, AI, EC_AL_SAFEOP | EC_AL_ERROR, 1000);
+	KUNIT_EXPECT_LT(test, us, 100000ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_code, 0x001b);
+	bus_figure("a slave that falls back is noticed after %llu us", us);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_OP, 500), ~0ull);
+}
+
+/* virtual time until the master sees @n slaves; ~0 after a second */
+static u64 wait_count(struct bus *b, u32 n)
+{
+	u64 t0 = ktime_get_ns();
+
+	while (READ_ONCE(b->m->slaves_responding) != n) {
+		if (ktime_get_ns() - t0 > NSEC_PER_SEC)
+			return ~0ull;
+		usleep_range(100, 101);
+	}
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+static void al_disappears_and_returns(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	u64 gone, back;
+
+	msleep(55);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, N - 1, 0, 0, 0);
+	gone = wait_count(b, N - 1);
+	KUNIT_EXPECT_LT(test, gone, 100000ull);
+	msleep(333);
+	KUNIT_EXPECT_EQ(test, b->m->n_slaves, N - 1);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, N - 1, 0, 0, 0);
+	back = wait_count(b, N);
+	KUNIT_EXPECT_LT(test, back, 100000ull);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+	bus_figure("a slave that disappears is noticed after %llu us, one that appears after %llu us",
+		   gone, back);
+}
+
+/* The cable to the first slave: everybody is gone, then everybody is back. */
+static void al_cable_pulled(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	KUNIT_EXPECT_LT(test, wait_count(b, 0), 100000ull);
+	msleep(500);
+	KUNIT_EXPECT_EQ(test, b->m->n_slaves, 0);
+	KUNIT_EXPECT_FALSE(test, b->m->link[0].up);
+	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+	KUNIT_EXPECT_LT(test, wait_count(b, N), 100000ull);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+}
+
+static struct kunit_case al_cases[] = {
+	KUNIT_CASE(al_up_and_down),
+	KUNIT_CASE(al_boot),
+	KUNIT_CASE(al_no_boot),
+	KUNIT_CASE_PARAM(al_refused, al_gen_params),
+	KUNIT_CASE(al_falls_back),
+	KUNIT_CASE(al_disappears_and_returns),
+	KUNIT_CASE(al_cable_pulled),
+	{}
+};
+
+static struct kunit_suite al_suite = {
+	.name = "bus_al",
+	.exit = bus_exit,
+	.test_cases = al_cases,
+};
+
+kunit_test_suite(al_suite);
+
+MODULE_LICENSE("GPL");

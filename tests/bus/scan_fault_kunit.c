@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The scan of a bus where something is wrong: it never holds up the others. */
+#include "bus.h"
+
+#define N	6
+
+static const char line[] =
+	"segment seed=5 response=100us transition=200us\n"
+	"slave a EK1100\nslave b EL2008\nslave c EL3062\n"
+	"slave d EL4002\nslave e EL1008\nslave f EL2004\n";
+
+/* a segment not plugged in yet, at which something can be prepared */
+static struct bus *prepare(struct kunit *test)
+{
+	struct bus *b = bus_new(test, line);
+
+	KUNIT_ASSERT_EQ(test, ec_sim_count(b->sim), N);
+	return b;
+}
+
+/* Plug in; all but @bad (or N) reach PREOP within @limit_ms with the right EEPROM. */
+static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
+{
+	u64 end;
+	u32 i;
+
+	bus_plug(b);
+	end = b->t0 + (u64)limit_ms * NSEC_PER_MSEC;
+	while (ktime_get_ns() < end && !(b->m->n_slaves == N && bus_settled(b)))
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_EQ(b->test, b->m->n_slaves, N);
+	for (i = 0; i < N; i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		if (i == bad)
+			continue;
+		KUNIT_EXPECT_EQ_MSG(b->test, s->al_status, EC_AL_PREOP, "slave %u: %s", i, s->why);
+		KUNIT_EXPECT_EQ(b->test, s->error, EC_SLAVE_OK);
+		KUNIT_ASSERT_NOT_NULL(b->test, s->sii);
+		KUNIT_EXPECT_MEMEQ(b->test, s->sii, bus_esc(b, i)->eep.data, s->sii_bytes);
+	}
+}
+
+static void failed_with(struct bus *b, u32 position, const char *text)
+{
+	struct ec_slave *s = bus_slave(b, position);
+
+	KUNIT_EXPECT_EQ(b->test, s->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(s->why, text), "why: %s", s->why);
+}
+
+static void scan_mixed_widths(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	u32 i;
+
+	for (i = 0; i < N; i += 2)
+		bus_esc(b, i)->cfg.eeprom_8byte = false;
+	others_fine(b, N, 1000);
+}
+
+static void scan_pdi_holds_eeprom(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	u32 i;
+
+	for (i = 0; i < N; i++) {
+		bus_esc(b, i)->mem[EC_REG_EEP_OWNER] = EC_EEP_OWNER_PDI;
+		bus_esc(b, i)->mem[EC_REG_EEP_PDI] = 1;
+	}
+	others_fine(b, N, 1000);
+}
+
+static void scan_pdi_holds_eeprom_of_deaf(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_esc(b, 2)->mem[EC_REG_EEP_PDI] = 1;
+	bus_fault(b, EC_SIM_FAULT_MISS_BROADCAST, 2, 0, 1, 0);
+	others_fine(b, N, 1000);
+}
+
+static void scan_slow_eeprom(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_esc(b, 3)->cfg.eeprom_busy_ns = 6 * NSEC_PER_MSEC;
+	others_fine(b, N, 1500);
+}
+
+static void scan_refused_some(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 1, 0, 3, 0);
+	others_fine(b, N, 1000);
+}
+
+static void scan_refused_all(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 1, 0, ~0u, 0);
+	others_fine(b, 1, 400);
+	failed_with(b, 1, "no acknowledge at word 0x0000");
+}
+
+static void scan_busy_forever(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_BUSY, 4, 0, 1, 0);
+	others_fine(b, 4, 600);
+	failed_with(b, 4, "busy too long");
+}
+
+static void scan_deaf(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_fault(b, EC_SIM_FAULT_MISS_BROADCAST, 0, 0, 1, 0);
+	bus_fault(b, EC_SIM_FAULT_MISS_BROADCAST, 3, 0, 1, 0);
+	others_fine(b, N, 1000);
+}
+
+static void scan_dead(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_fault(b, EC_SIM_FAULT_DEAD, 2, 0, 1, 0);
+	others_fine(b, 2, 600);
+	failed_with(b, 2, "does not take its station address");
+}
+
+static void scan_mute(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_slave *s;
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, 2, 0, 1, 0);
+	others_fine(b, 2, 600);
+	s = bus_slave(b, 2);
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_INIT);
+	KUNIT_EXPECT_STREQ(test, s->order, "EL3062");
+	/* its own worker gives up after the time of the transition */
+	msleep(4000);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, "did not reach PREOP"), "why: %s", s->why);
+}
+
+static void scan_bad_checksum(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	/* found after power-on, so the slave itself goes on */
+	bus_esc(b, 5)->eep.data[14] ^= 0x55;
+	others_fine(b, N, 1000);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 5)->info.checksum_ok);
+}
+
+static void scan_blank(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_esc_eeprom *e = &bus_esc(b, 5)->eep;
+
+	memset(e->data, 0xff, e->len);
+	others_fine(b, 5, 1000);
+	/* nothing in it: no mailbox, no PDO, identity of all ones */
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->info.vendor, 0xffffffff);
+	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 1024ul);
+}
+
+/* Who stays is not read again. */
+static void scan_reads_what_is_new(struct kunit *test)
+{
+	struct ec_slave *old[4];
+	struct bus *b = prepare(test);
+	u64 all;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_CUT, 3, 1, 0, 0);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 1000), ~0ull);
+	all = b->m->scan_frames;
+	for (i = 0; i < 4; i++)
+		old[i] = bus_slave(b, i);
+
+	bus_fault(b, EC_SIM_FAULT_HEAL, 3, 1, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+	for (i = 0; i < 4; i++)
+		KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, i), old[i]);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 5)->order, "EL2004");
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 3)->next[1], 4);
+
+	/* nobody is new now: no EEPROM is read */
+	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
+	KUNIT_EXPECT_LT(test, b->m->scan_frames, 12ull);
+	KUNIT_EXPECT_LT(test, 8 * b->m->scan_frames, all);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 4)->next[1], EC_UAPI_NONE16);
+}
+
+/* The request of a user reads everything anew. */
+static void scan_on_request(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	u64 frames = bus_frames(b);
+	struct ec_esc_eeprom *e = &bus_esc(b, 1)->eep;
+
+	/* the serial number changes */
+	put_unaligned_le32(4711, e->data + 2 * EC_SII_W_SERIAL);
+	ec_master_rescan(b->m);
+	KUNIT_ASSERT_EQ(test, ec_master_wait_scan(b->m), 0);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->info.serial, 4711);
+	KUNIT_EXPECT_GT(test, bus_frames(b) - frames, 50ull);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+}
+
+static struct kunit_case scan_fault_cases[] = {
+	KUNIT_CASE(scan_mixed_widths),
+	KUNIT_CASE(scan_pdi_holds_eeprom),
+	KUNIT_CASE(scan_pdi_holds_eeprom_of_deaf),
+	KUNIT_CASE(scan_slow_eeprom),
+	KUNIT_CASE(scan_refused_some),
+	KUNIT_CASE(scan_refused_all),
+	KUNIT_CASE(scan_busy_forever),
+	KUNIT_CASE(scan_deaf),
+	KUNIT_CASE(scan_dead),
+	KUNIT_CASE(scan_mute),
+	KUNIT_CASE(scan_bad_checksum),
+	KUNIT_CASE(scan_blank),
+	KUNIT_CASE(scan_reads_what_is_new),
+	KUNIT_CASE(scan_on_request),
+	{}
+};
+
+static struct kunit_suite scan_fault_suite = {
+	.name = "bus_scan_fault",
+	.exit = bus_exit,
+	.test_cases = scan_fault_cases,
+};
+
+kunit_test_suite(scan_fault_suite);
+
+MODULE_LICENSE("GPL");
