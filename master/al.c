@@ -107,10 +107,13 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	if (!timeout_ms)
 		timeout_ms = ec_al_timeout_ms(slave->al_status & EC_AL_STATE_MASK, state);
 	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
+	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
+		     ec_al_state_name(slave->al_status & EC_AL_STATE_MASK), timeout_ms);
 	ret = request(slave, state, until);
-	if (ret)
-		return ret;
-	ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
+	if (!ret)
+		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
+	ec_slave_dbg(slave, 1, "AL status 0x%04x, code 0x%04x, result %d\n", slave->al_status,
+		     slave->al_code, ret);
 	if (ret == -EPROTO) {
 		code = slave->al_code;
 		ec_al_ack(slave);

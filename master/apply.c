@@ -249,11 +249,19 @@ static int write_sms(struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int sm = ec_slave_has_mailbox(s) ? 2 : 0;
 	u8 page[EC_SM_PAGE];
+	u32 bytes;
 	int ret = 0;
 
 	for (; sm < s->n_sms && !ret; sm++) {
 		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
 			continue;
+		bytes = ec_pdo_list_bytes(c ? &c->sm[sm].pdos : &s->sm_pdos[sm]);
+		if (bytes > EC_MAX_SM_BYTES) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "SM%u shall have %u bytes, an ESC has at most %u; map less",
+				      sm, bytes, EC_MAX_SM_BYTES);
+			return -EOVERFLOW;
+		}
 		sm_page(s, c, sm, page);
 		ret = write_reg(s, EC_REG_SM(sm), page, sizeof(page));
 	}

@@ -89,7 +89,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 	struct ec_master *m = f->master;
 	int ret = -EPERM;
 
-	if (!(vma->vm_flags & VM_SHARED))
+	if (!(vma->vm_flags & VM_MAYSHARE))
 		return -EINVAL;
 	if (vma->vm_flags & VM_EXEC)
 		return -EPERM;

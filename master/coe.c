@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "coe.h"
 #include "mailbox.h"
+#include "master.h"
 #include "slave.h"
 #include "wire/mbox.h"
 #include "wire/sdo.h"
@@ -126,6 +127,8 @@ int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *
 		*abort = x.up.abort;
 	if (!ret)
 		*size = x.up.size;
+	ec_slave_dbg(slave, 1, "upload 0x%04x:%02x: result %d, abort 0x%08x, %zu byte(s)\n",
+		     index, sub, ret, *abort, *size);
 	return ret;
 }
 
@@ -157,5 +160,7 @@ int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, co
 	ret = run(slave, &x, timeout_ms);
 	if (ret == -EIO)
 		*abort = x.dn.abort;
+	ec_slave_dbg(slave, 1, "download 0x%04x:%02x, %zu byte(s): result %d, abort 0x%08x\n",
+		     index, sub, size, ret, *abort);
 	return ret;
 }

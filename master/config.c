@@ -130,6 +130,8 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
+	if (c->sm[sm].pdos.n >= EC_MAX_SC_PDOS)
+		return -ENOSPC;
 	p = ec_pdo_add(&c->sm[sm].pdos, pdo, 0);
 	if (!p)
 		return -ENOMEM;
@@ -230,7 +232,10 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 	for (i = 0; i < c->n_fmmus; i++)
 		if (c->fmmus[i].domain == d && c->fmmus[i].sm == sm)
 			return &c->fmmus[i];
-	if (c->n_fmmus >= EC_MAX_FMMU)
+	if (!c->sm[sm].dir)
+		return ERR_PTR(-EINVAL);
+	if (c->n_fmmus >= EC_MAX_FMMU ||
+	    ec_pdo_list_bytes(&c->sm[sm].pdos) > EC_MAX_SM_BYTES)
 		return ERR_PTR(-EOVERFLOW);
 	f = &c->fmmus[c->n_fmmus];
 	f->domain = d;
@@ -270,8 +275,9 @@ static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *o
  * @bit: result: bit in that byte
  *
  * Context: Process, session_lock held. May sleep.
- * Return: 0; -ENOENT when the entry is not mapped; -EOVERFLOW when all FMMUs
- * are used or the domain is full; -EBUSY when the mapping grew after an entry
+ * Return: 0; -ENOENT when the entry is not mapped; -EINVAL when its SyncManager
+ * has no direction; -EOVERFLOW when all FMMUs are used or SyncManager or domain
+ * are too large; -EBUSY when the mapping grew after an entry
  * of this SyncManager was registered; -ENOMEM.
  */
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,

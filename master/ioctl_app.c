@@ -219,8 +219,11 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 		ec_refuse(f, ret, "the mapping of slave %u:%u was changed after its first entry was registered; map first, then register",
 			  c->alias, c->position);
 	else if (ret == -EOVERFLOW)
-		ec_refuse(f, ret, "no FMMU left, or more than %u bytes of process data",
-			  EC_MAX_IMAGE);
+		ec_refuse(f, ret, "slave %u:%u: no FMMU left, or more than %u bytes in the SyncManager or %u in the domain",
+			  c->alias, c->position, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
+	else if (ret == -EINVAL)
+		ec_refuse(f, ret, "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
+			  c->alias, c->position, EC_MAX_SM - 1);
 	return done(f, ret);
 }
 

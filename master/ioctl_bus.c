@@ -196,7 +196,7 @@ int ec_ioc_debug(struct ec_file *f, void *arg)
 
 	if (i->level > 2)
 		return ec_refuse(f, -EINVAL, "debug level must be 0, 1 or 2, not %u", i->level);
-	f->master->debug = i->level;
+	WRITE_ONCE(f->master->debug, i->level);
 	return 0;
 }
 

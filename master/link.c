@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/errno.h>
+#include <linux/ratelimit.h>
 #include <linux/rcupdate.h>
 #include <linux/string.h>
 #include "capture.h"
@@ -7,6 +8,27 @@
 #include "link.h"
 #include "master.h"
 #include "slots.h"
+
+/**
+ * ec_link_trace() - show a frame in the kernel log, debug level 2
+ * @link: link
+ * @what: "sent" or "received"
+ * @data: what follows the EtherType
+ * @len: bytes there
+ *
+ * At most 50 a second: the log is slower than the wire.
+ *
+ * Context: Any.
+ */
+void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len)
+{
+	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
+
+	if (__ratelimit(&rate))
+		ec_log(KERN_DEBUG, link->master, "%s %s, %zu byte(s): %*ph\n",
+		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
+		       data);
+}
 
 /**
  * ec_link_send() - send the frame of an armed slot
@@ -32,6 +54,8 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 		return -EBUSY;
 	}
 	memcpy(buf, slot->frame, len);
+	if (unlikely(READ_ONCE(link->master->debug) >= 2))
+		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
 	ec_capture_sent(link->master->capture, buf, len);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {

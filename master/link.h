@@ -63,6 +63,7 @@ struct ec_link {
 	struct ec_link_rates rates;
 };
 
+void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 int ec_link_send(struct ec_link *link, struct ec_slot *slot);
 void ec_link_poll(struct ec_link *link);
 bool ec_link_is_up(const struct ec_link *link);

@@ -123,6 +123,12 @@ struct ec_master {
 	printk(level "EtherCAT %u: " fmt, (m)->index, ##__VA_ARGS__)
 #define ec_info(m, fmt, ...)	ec_log(KERN_INFO, m, fmt, ##__VA_ARGS__)
 #define ec_warn(m, fmt, ...)	ec_log(KERN_WARNING, m, fmt, ##__VA_ARGS__)
+/* @lvl 1: steps of state machines, 2: frames; see EC_IOC_DEBUG */
+#define ec_dbg(m, lvl, fmt, ...) \
+	do { \
+		if (unlikely(READ_ONCE((m)->debug) >= (lvl))) \
+			ec_log(KERN_DEBUG, m, fmt, ##__VA_ARGS__); \
+	} while (0)
 #define ec_err(m, fmt, ...)	ec_log(KERN_ERR, m, fmt, ##__VA_ARGS__)
 
 unsigned int ec_master_count(void);

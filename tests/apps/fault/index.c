@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Arguments that name what is not there, or carry impossible values. */
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+#include "fault.h"
+
+static unsigned char data[1 << 17];
+
+/* Positions of slaves that "three" does not have. */
+static void no_such_slave(int fd, __u16 pos)
+{
+	__u64 p = (__u64)(unsigned long)data;
+	struct ec_ioc_slave slave = { .position = pos };
+	struct ec_ioc_sm sm = { .position = pos };
+	struct ec_ioc_pdo pdo = { .position = pos };
+	struct ec_ioc_pdo_entry entry = { .position = pos };
+	struct ec_ioc_sii sii = { .position = pos, .size = 4, .data = p };
+	struct ec_ioc_sdo sdo = { .position = pos, .size = 4, .data = p };
+	struct ec_ioc_reg reg = { .position = pos, .size = 4, .data = p };
+	struct ec_ioc_state state = { .position = pos, .state = 1 };
+	const struct {
+		const char *name;
+		unsigned long nr;
+		void *arg;
+	} all[] = {
+		{ "SLAVE", EC_IOC_SLAVE, &slave }, { "SM", EC_IOC_SM, &sm },
+		{ "PDO", EC_IOC_PDO, &pdo }, { "PDO_ENTRY", EC_IOC_PDO_ENTRY, &entry },
+		{ "SII", EC_IOC_SII, &sii }, { "SDO_UPLOAD", EC_IOC_SDO_UPLOAD, &sdo },
+		{ "SDO_DOWNLOAD", EC_IOC_SDO_DOWNLOAD, &sdo },
+		{ "REG_READ", EC_IOC_REG_READ, &reg }, { "REG_WRITE", EC_IOC_REG_WRITE, &reg },
+		{ "STATE", EC_IOC_STATE, &state },
+	};
+
+	for (unsigned int i = 0; i < sizeof(all) / sizeof(all[0]); i++)
+		expect_errno(call(fd, all[i].nr, all[i].arg), ENOENT, "%s of slave %u",
+			     all[i].name, pos);
+}
+
+void check_positions(void)
+{
+	static const unsigned int wrong[] = { 8, 16, 127, 255 };
+	int fd = open_master(O_RDWR);
+
+	no_such_slave(fd, 3);
+	no_such_slave(fd, 255);
+	no_such_slave(fd, 65535);
+	for (unsigned int i = 0; i < 4; i++) {
+		struct ec_ioc_sm sm = { .position = 1, .sm = wrong[i] };
+		struct ec_ioc_pdo pdo = { .position = 1, .sm = wrong[i] };
+		struct ec_ioc_pdo_entry entry = { .position = 1, .sm = wrong[i] };
+
+		expect_errno(call(fd, EC_IOC_SM, &sm), EINVAL, "SM%u", wrong[i]);
+		expect_errno(call(fd, EC_IOC_PDO, &pdo), EINVAL, "PDO at SM%u", wrong[i]);
+		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry at SM%u",
+			     wrong[i]);
+		pdo = (struct ec_ioc_pdo){ .position = 1, .pdo_pos = 0xff00 + wrong[i] };
+		expect_errno(call(fd, EC_IOC_PDO, &pdo), EINVAL, "PDO %u", pdo.pdo_pos);
+		entry = (struct ec_ioc_pdo_entry){ .position = 1, .pdo_pos = 0xff00 + wrong[i] };
+		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry of PDO %u",
+			     entry.pdo_pos);
+		entry = (struct ec_ioc_pdo_entry){ .position = 1, .entry_pos = 0xff00 + wrong[i] };
+		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry %u",
+			     entry.entry_pos);
+	}
+	close(fd);
+}
+
+static void check_reg(int fd)
+{
+	static const struct {
+		__u16 address;
+		__u32 size;
+	} wrong[] = {
+		{ 0, 0 }, { 0, 1025 }, { 0, 0x10000 }, { 0, ~0U }, { 0, 1U << 31 },
+		{ 0xffff, 2 }, { 0xff00, 0x101 }, { 0xffff, ~0U },
+	};
+
+	for (unsigned int i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		struct ec_ioc_reg r = { .address = wrong[i].address, .size = wrong[i].size,
+					.data = (__u64)(unsigned long)data };
+
+		expect_errno(call(fd, EC_IOC_REG_READ, &r), EINVAL, "read %u bytes at 0x%04x",
+			     r.size, r.address);
+		expect_errno(call(fd, EC_IOC_REG_WRITE, &r), EINVAL, "write %u bytes at 0x%04x",
+			     r.size, r.address);
+	}
+}
+
+static void check_sdo(int fd)
+{
+	static const __u32 large[] = { 64 * 1024 + 1, 1U << 20, 1U << 31, ~0U };
+	struct ec_ioc_sdo s = { .position = 2, .index = 0x1018, .subindex = 1,
+				.data = (__u64)(unsigned long)data };
+
+	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EINVAL, "upload into 0 bytes");
+	for (unsigned int i = 0; i < 4; i++) {
+		s.size = large[i];
+		expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EINVAL, "upload of %u bytes", s.size);
+		expect_errno(call(fd, EC_IOC_SDO_DOWNLOAD, &s), EINVAL, "download of %u bytes",
+			     s.size);
+	}
+	s.size = 1;
+	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), ENOBUFS, "4 bytes into 1");
+	s.size = 4;
+	s.index = 0x5fff;
+	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EIO, "object that does not exist");
+	expect(s.abort_code == 0x06020000, "abort code 0x%08x", s.abort_code);
+	s.position = 0;
+	s.size = 4;
+	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EPROTONOSUPPORT, "SDO of a coupler");
+	s = (struct ec_ioc_sdo){ .position = 2, .index = 0x1018, .subindex = 1, .size = 4,
+				 .data = (__u64)(unsigned long)data };
+	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), 0, "vendor id");
+	expect(s.size == 4 && data[0] == 2, "vendor id: %u bytes, %u", s.size, data[0]);
+}
+
+static void check_sii(int fd)
+{
+	static const __u32 beyond[] = { 1U << 16, 1U << 31, ~0U };
+	struct ec_ioc_sii s;
+
+	for (unsigned int i = 0; i < 3; i++) {
+		s = (struct ec_ioc_sii){ .offset = beyond[i], .size = ~0U,
+					 .data = (__u64)(unsigned long)data };
+		expect_errno(call(fd, EC_IOC_SII, &s), 0, "EEPROM from %u", beyond[i]);
+		expect(s.size == 0, "EEPROM from %u: %u bytes", beyond[i], s.size);
+	}
+	s = (struct ec_ioc_sii){ .size = ~0U, .data = (__u64)(unsigned long)data };
+	expect_errno(call(fd, EC_IOC_SII, &s), 0, "whole EEPROM");
+	expect(s.size && s.size <= 64 * 1024, "whole EEPROM: %u bytes", s.size);
+}
+
+void check_values(void)
+{
+	int fd = open_master(O_RDWR);
+
+	check_reg(fd);
+	check_sdo(fd);
+	check_sii(fd);
+	for (unsigned int i = 0; i < 256; i++) {
+		struct ec_ioc_state s = { .position = 1, .state = i };
+
+		if (i != 1 && i != 2 && i != 3 && i != 4 && i != 8)
+			expect_errno(call(fd, EC_IOC_STATE, &s), EINVAL, "AL state %u", i);
+	}
+	for (unsigned int bit = 0; bit < 32; bit++) {
+		struct ec_ioc_debug d = { .level = (1U << bit) + 2 };
+
+		expect_errno(call(fd, EC_IOC_DEBUG, &d), EINVAL, "debug level %u", d.level);
+	}
+	close(fd);
+}

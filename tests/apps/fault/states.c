@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands at the wrong time. */
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <unistd.h>
+#include "fault.h"
+
+#define VENDOR	0x00000002
+#define EL2008	0x07d83052
+
+static unsigned char arg[4096];
+
+static void *zeroed(void)
+{
+	memset(arg, 0, sizeof(arg));
+	return arg;
+}
+
+/* A session with one domain that holds the outputs of slave 1. */
+void session(int fd)
+{
+	struct ec_ioc_create_domain d = { 0 };
+	struct ec_ioc_slave_config sc = { .position = 1, .vendor_id = VENDOR,
+					  .product_code = EL2008 };
+	struct ec_ioc_reg_entry e = { .entry_index = 0x7000, .subindex = 1 };
+
+	expect_errno(call(fd, EC_IOC_RESERVE, NULL), 0, "reserve");
+	expect_errno(call(fd, EC_IOC_CREATE_DOMAIN, &d), 0, "domain");
+	expect_errno(call(fd, EC_IOC_SLAVE_CONFIG, &sc), 0, "configuration of slave 1");
+	expect_errno(call(fd, EC_IOC_REG_ENTRY, &e), 0, "output 1");
+}
+
+static void no_owner(int fd)
+{
+	for (unsigned int i = 0; i < n_cmds; i++) {
+		struct ec_ioc_interval interval = { .interval_us = 1000 };
+		struct ec_ioc_sc_flag flag = { .key = "x" };
+		struct ec_ioc_sc_timeout timeout = { .from = 1, .to = 2 };
+		struct ec_ioc_sc_sdo sdo = { .size = 4, .data = (__u64)(unsigned long)arg };
+		void *a = zeroed();
+
+		if (!cmds[i].owner)
+			continue;
+		if (cmds[i].nr == EC_IOC_INTERVAL)
+			a = &interval;
+		else if (cmds[i].nr == EC_IOC_SC_FLAG)
+			a = &flag;
+		else if (cmds[i].nr == EC_IOC_SC_TIMEOUT)
+			a = &timeout;
+		else if (cmds[i].nr == EC_IOC_SC_SDO)
+			a = &sdo;
+		expect_errno(call(fd, cmds[i].nr, a), EPERM, "%s without reservation",
+			     cmds[i].name);
+	}
+}
+
+/* What must not change while process data run. */
+static void while_active(int fd)
+{
+	struct ec_ioc_sc_sync sync = { .dir = 1 };
+	struct ec_ioc_sc_flag flag = { .key = "x" };
+	struct ec_ioc_sc_timeout timeout = { .from = 1, .to = 2 };
+	struct ec_ioc_sc_sdo sdo = { .size = 4, .data = (__u64)(unsigned long)arg };
+	struct ec_ioc_send send = { .queued = 2 };
+
+	expect_errno(call(fd, EC_IOC_RESERVE, NULL), EBUSY, "second reservation");
+	expect_errno(call(fd, EC_IOC_ACTIVATE, zeroed()), EBUSY, "second activation");
+	expect_errno(call(fd, EC_IOC_CREATE_DOMAIN, zeroed()), EBUSY, "domain while active");
+	expect_errno(call(fd, EC_IOC_SLAVE_CONFIG, zeroed()), EBUSY, "configuration while active");
+	expect_errno(call(fd, EC_IOC_SC_SYNC, &sync), EBUSY, "SyncManager while active");
+	expect_errno(call(fd, EC_IOC_SC_WATCHDOG, zeroed()), EBUSY, "watchdog while active");
+	expect_errno(call(fd, EC_IOC_SC_PDO, zeroed()), EBUSY, "PDO while active");
+	expect_errno(call(fd, EC_IOC_SC_SDO, &sdo), EBUSY, "startup SDO while active");
+	expect_errno(call(fd, EC_IOC_REG_ENTRY, zeroed()), EBUSY, "entry while active");
+	expect_errno(call(fd, EC_IOC_SC_DC, zeroed()), EBUSY, "clock while active");
+	expect_errno(call(fd, EC_IOC_SC_FLAG, &flag), EBUSY, "flag while active");
+	expect_errno(call(fd, EC_IOC_SC_TIMEOUT, &timeout), EBUSY, "timeout while active");
+	expect_errno(call(fd, EC_IOC_SEND, &send), ENOENT, "domain 1 of 1");
+	send.queued = 1;
+	expect_errno(call(fd, EC_IOC_SEND, &send), 0, "send");
+	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), 0, "receive");
+	expect_errno(call(fd, EC_IOC_APP_TIME, zeroed()), 0, "time");
+}
+
+void check_states(void)
+{
+	int fd = open_master(O_RDWR), other = open_master(O_RDWR);
+	struct ec_ioc_domain_data dd = { .size = 4 };
+	struct ec_ioc_config_sdo cs = { .size = 4 };
+	struct ec_ioc_sc_sdo sdo = { .index = 0x8000, .size = 4,
+				     .data = (__u64)(unsigned long)arg };
+	unsigned int i;
+
+	expect_errno(call(fd, EC_IOC_CONFIG, zeroed()), ENOENT, "configuration of nobody");
+	expect_errno(call(fd, EC_IOC_DOMAIN, zeroed()), ENOENT, "domain of nobody");
+	no_owner(fd);
+	session(fd);
+	no_owner(other);
+	expect_errno(call(other, EC_IOC_RESERVE, NULL), EBUSY, "second application");
+	expect_errno(call(other, EC_IOC_RESCAN, NULL), EBUSY, "rescan while reserved");
+	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), EPERM, "receive before activation");
+	expect_errno(call(fd, EC_IOC_SEND, zeroed()), EPERM, "send before activation");
+	expect_errno(call(fd, EC_IOC_DEACTIVATE, NULL), EINVAL, "deactivate before activation");
+	expect_errno(call(fd, EC_IOC_DOMAIN_DATA, &dd), ENOENT, "data before activation");
+	expect_errno(call(fd, EC_IOC_SC_SDO, &sdo), 0, "startup SDO");
+	for (i = 0; i < BAD_POINTERS; i++) {
+		cs.data = (__u64)(unsigned long)bad_pointers[i];
+		expect_errno(call(fd, EC_IOC_CONFIG_SDO, &cs), EFAULT, "startup SDO to %p",
+			     bad_pointers[i]);
+	}
+	expect_errno(call(fd, EC_IOC_ACTIVATE, zeroed()), 0, "activate");
+	while_active(fd);
+	for (i = 0; i < BAD_POINTERS; i++) {
+		dd = (struct ec_ioc_domain_data){ .size = 1,
+			.data = (__u64)(unsigned long)bad_pointers[i] };
+		expect_errno(call(fd, EC_IOC_DOMAIN_DATA, &dd), EFAULT, "domain data to %p",
+			     bad_pointers[i]);
+	}
+	no_owner(other);
+	expect_errno(call(fd, EC_IOC_DEACTIVATE, NULL), 0, "deactivate");
+	expect_errno(call(fd, EC_IOC_SEND, zeroed()), EPERM, "send after deactivation");
+	expect_errno(call(fd, EC_IOC_RELEASE, NULL), 0, "release");
+	expect_errno(call(fd, EC_IOC_RELEASE, NULL), EPERM, "second release");
+	expect_errno(call(other, EC_IOC_RESERVE, NULL), 0, "the other one");
+	close(other);
+	close(fd);
+}

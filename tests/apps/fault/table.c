@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Every command of uapi/ethercat.h, with what is special about its argument. */
+#include "fault.h"
+
+void *const bad_pointers[BAD_POINTERS] = {
+	NULL, (void *)0x10000000000UL, (void *)0xffff888000001000UL,
+};
+
+#define AT(type, field)	{ offsetof(struct type, field), sizeof(((struct type *)0)->field) }
+#define DATA(type)	.data = offsetof(struct type, data), .size = offsetof(struct type, size)
+#define CMD(n, ...)	{ .name = #n, .nr = EC_IOC_##n, __VA_ARGS__ }
+#define RSV1(type)	.reserved = { AT(type, reserved) }
+#define RSV2(type)	.reserved = { AT(type, reserved), AT(type, reserved2) }
+#define BUS		.write = true
+#define APP		.write = true, .owner = true
+
+const struct cmd cmds[] = {
+	CMD(VERSION),
+	CMD(REASON),
+	CMD(MASTER),
+	CMD(SLAVE),
+	CMD(SM, RSV1(ec_ioc_sm)),
+	CMD(PDO, RSV2(ec_ioc_pdo)),
+	CMD(PDO_ENTRY, RSV1(ec_ioc_pdo_entry)),
+	CMD(SII, RSV1(ec_ioc_sii), DATA(ec_ioc_sii)),
+	CMD(CONFIG),
+	CMD(CONFIG_SM, RSV1(ec_ioc_config_sm)),
+	CMD(CONFIG_PDO, RSV1(ec_ioc_config_pdo)),
+	CMD(CONFIG_ENTRY, RSV1(ec_ioc_config_entry)),
+	CMD(CONFIG_SDO, RSV2(ec_ioc_config_sdo), DATA(ec_ioc_config_sdo),
+	    .flags = EC_SDO_FLAG_COMPLETE),
+	CMD(DOMAIN, RSV1(ec_ioc_domain)),
+	CMD(DOMAIN_FMMU, RSV1(ec_ioc_domain_fmmu)),
+	CMD(DOMAIN_DATA, RSV1(ec_ioc_domain_data), DATA(ec_ioc_domain_data)),
+	CMD(CONFIG_FLAG),
+	CMD(SDO_UPLOAD, BUS, RSV1(ec_ioc_sdo), DATA(ec_ioc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
+	CMD(SDO_DOWNLOAD, BUS, RSV1(ec_ioc_sdo), DATA(ec_ioc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
+	CMD(REG_READ, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
+	CMD(REG_WRITE, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
+	CMD(STATE, BUS, RSV1(ec_ioc_state)),
+	CMD(RESCAN, BUS),
+	CMD(DEBUG, BUS),
+	CMD(RESET, BUS),
+	CMD(RESERVE, BUS),
+	CMD(RELEASE, APP),
+	CMD(CREATE_DOMAIN, APP),
+	CMD(SLAVE_CONFIG, APP),
+	CMD(SC_SYNC, APP, RSV1(ec_ioc_sc_sync)),
+	CMD(SC_WATCHDOG, APP),
+	CMD(SC_PDO, APP),
+	CMD(SC_SDO, APP, RSV1(ec_ioc_sc_sdo), DATA(ec_ioc_sc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
+	CMD(REG_ENTRY, APP, .flags = EC_REG_ENTRY_BY_POS),
+	CMD(SC_DC, APP, RSV2(ec_ioc_sc_dc)),
+	CMD(SC_FLAG, APP, RSV1(ec_ioc_sc_flag)),
+	CMD(SC_TIMEOUT, APP, RSV1(ec_ioc_sc_timeout)),
+	CMD(ACTIVATE, APP, RSV1(ec_ioc_activate)),
+	CMD(DEACTIVATE, APP),
+	CMD(DOMAIN_OFFSET, APP),
+	CMD(INTERVAL, APP),
+	CMD(APP_TIME, APP, RSV1(ec_ioc_app_time)),
+	CMD(RECEIVE, APP, .cyclic = true),
+	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true),
+};
+
+const unsigned int n_cmds = sizeof(cmds) / sizeof(cmds[0]);
