@@ -11,8 +11,21 @@
 set -u
 [ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
-levels="unit witness decoders uml lib tool fuzz data kernels
-	pysoem system bench"
+levels="
+unit
+witness
+decoders
+tshark
+uml
+lib
+tool
+fuzz
+data
+kernels
+pysoem
+system
+bench
+"
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -39,6 +52,7 @@ count() {
 level_unit() { make -s -C tests/unit; }
 level_witness() { tests/witness/run.sh; }
 level_decoders() { tests/witness/decoders.py; }
+level_tshark() { tests/tshark/run.sh; }
 level_uml() { tests/uml/run.sh; }
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }

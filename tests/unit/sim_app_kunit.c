@@ -177,9 +177,52 @@ static void al_time_and_id(struct kunit *test)
 	KUNIT_EXPECT_GE(test, b->now - from, 5000000ull);
 }
 
+static void several_datagrams_share_a_frame(struct kunit *test)
+{
+	static const struct {
+		u8 cmd;
+		u16 adp, ado, len, wkc, back;
+	} d[] = {
+		{ EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, 3, 3 },
+		{ EC_CMD_APRD, 0xffff, EC_REG_STATION, 2, 1, 2 },
+		{ EC_CMD_FPRD, STATION(2), EC_REG_TYPE, 12, 1, STATION(2) },
+		{ EC_CMD_NOP, 7, 8, 1, 0, 7 },
+		{ EC_CMD_LRW, 0, 0x10, 30, 0, 0 },
+		{ EC_CMD_ARMW, 0, EC_REG_DC_SYSTIME, 8, 3, 3 },
+		{ EC_CMD_BWR, 0, EC_REG_ERR_RX(0), 8, 3, 3 },
+	};
+	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+	struct ec_frame_buf f;
+	struct ec_frame_iter it;
+	struct ec_dgram g;
+	size_t len;
+	u32 i;
+
+	ec_frame_begin(&f, b->frame, sizeof(b->frame));
+	for (i = 0; i < ARRAY_SIZE(d); i++) {
+		u8 *p = ec_frame_add(&f, d[i].cmd, (u8)(0x40 + i), d[i].adp,
+				     d[i].ado, d[i].len);
+
+		KUNIT_ASSERT_NOT_NULL(test, p);
+		memset(p, 0, d[i].len);
+	}
+	len = ec_frame_end(&f);
+	KUNIT_ASSERT_GT(test, ec_sim_frame2(b->sim, 0, b->frame, len, b->now,
+					    &b->out), (s64)0);
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_init(&it, b->frame, len), 0);
+	for (i = 0; i < ARRAY_SIZE(d); i++) {
+		KUNIT_ASSERT_EQ(test, ec_frame_iter_next(&it, &g), 1);
+		KUNIT_EXPECT_EQ(test, g.idx, 0x40 + i);
+		KUNIT_EXPECT_EQ(test, g.adp, d[i].back);
+		KUNIT_EXPECT_EQ(test, ec_dgram_wkc(&g), d[i].wkc);
+	}
+	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &g), 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(thin),
 	KUNIT_CASE(digital_loop),
+	KUNIT_CASE(several_datagrams_share_a_frame),
 	KUNIT_CASE(al_illegal),
 	KUNIT_CASE(al_mailbox),
 	KUNIT_CASE(al_boot),
