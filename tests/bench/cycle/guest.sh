@@ -1,13 +1,34 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# Runs in the guest: a segment on the virtual device, one run of cycle-bench.
-# usage: guest.sh BUILD SEGMENT [cycle-bench options]
+# Runs in the guest: a segment, one run of cycle-bench.
+# usage: guest.sh BUILD DEVICE SEGMENT [cycle-bench options]
+#   DEVICE  virtual: the model as sim0; generic: eth0, the model answers on
+#           eth1, which is joined with it (run.sh --nics)
 
 set -u
-build=$1 segment=$2
-shift 2
+build=$1 device=$2 segment=$3
+shift 3
 
-insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
-insmod "$build/modules/devices/sim/ec_sim.ko" segment="$segment" || exit 1
+case $device in
+virtual)
+	insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
+	insmod "$build/modules/devices/sim/ec_sim.ko" segment="$segment" || exit 1
+	;;
+generic)
+	modprobe e1000e && ip link set eth1 up || exit 1
+	"$build/tool/ethercat-sim" --segment "$segment" eth1 &
+	insmod "$build/modules/master/ec_master.ko" main_devices=eth0 &&
+	insmod "$build/modules/devices/ec_generic.ko" || exit 1
+	;;
+*)
+	echo "guest.sh: there is no device $device"
+	exit 2
+	;;
+esac
+# the link of a NIC takes a moment
+for _ in {1..100}; do
+	[ -z "$("$build/tool/ethercat" slaves)" ] || break
+	sleep 0.1
+done
 "$build/bench/cycle-bench" "$@"
