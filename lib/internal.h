@@ -12,7 +12,8 @@
 
 /*
  * @queued, @sent, @received: bit n is domain n: to be sent, on its way, back
- * but not processed. Only the cyclic caller touches them.
+ * but not processed; @app_time: told with the next send when @app_time_new.
+ * Only the cyclic caller touches them.
  */
 struct ec_master {
 	int fd;
@@ -21,6 +22,8 @@ struct ec_master {
 	__u64 queued;
 	__u64 sent;
 	__u64 received;
+	__u64 app_time;
+	bool app_time_new;
 
 	/* mapped by activation */
 	const struct ec_status *status;

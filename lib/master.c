@@ -219,6 +219,7 @@ int ecrt_master_activate(ec_master_t *master)
 	master->queued = 0;
 	master->sent = 0;
 	master->received = 0;
+	master->app_time_new = false;
 	master->active = true;
 	return 0;
 
@@ -253,6 +254,11 @@ int ecrt_master_send(ec_master_t *master)
 	if (!master || !master->active)
 		return -EINVAL;
 	arg.queued = master->queued;
+	if (master->app_time_new) {
+		arg.flags = EC_SEND_FLAG_APP_TIME;
+		arg.app_time = master->app_time;
+		master->app_time_new = false;
+	}
 	master->sent |= master->queued;
 	master->queued = 0;
 	return ec_ioctl(master, EC_IOC_SEND, &arg);
@@ -271,7 +277,14 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 {
 	struct ec_ioc_app_time arg = { .app_time = app_time };
 
-	return master ? ec_ioctl(master, EC_IOC_APP_TIME, &arg) : -EINVAL;
+	if (!master)
+		return -EINVAL;
+	if (!master->active)
+		return ec_ioctl(master, EC_IOC_APP_TIME, &arg);
+	/* goes with the next send: no system call of its own */
+	master->app_time = app_time;
+	master->app_time_new = true;
+	return 0;
 }
 
 int ecrt_master_reset(ec_master_t *master)

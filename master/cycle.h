@@ -10,6 +10,7 @@
 #define EC_CYCLE_H
 
 #include <linux/types.h>
+#include "limits.h"
 
 struct ec_master;
 struct ec_session;
@@ -28,8 +29,8 @@ enum ec_owner {
  * @offset: of its data in the image of all domains
  * @len: bytes
  * @expected: working counter when every slave takes part
- * @frame: which cyclic frame of its domain set
- * @pos: of the data in the EtherCAT part of that frame
+ * @first_input: first of its entries in struct ec_cycle.inputs
+ * @n_inputs: how many
  */
 struct ec_cyc_dgram {
 	u16 domain;
@@ -38,29 +39,48 @@ struct ec_cyc_dgram {
 	u32 offset;
 	u16 len;
 	u16 expected;
-	u16 pos;
+	u32 first_input;
+	u32 n_inputs;
 };
-
-/* a frame of the cycle that is on its way */
-struct ec_cyc_flight {
-	struct ec_slot *slot;
-	u16 first;	/* datagram indexes of the layout it carries */
-	u16 count;
-	u16 pos[16];	/* of the data of each, in the EtherCAT part */
-};
-
-#define EC_CYC_FRAMES	64	/* in flight at most */
 
 /**
- * struct ec_cyc_bits - input bits to copy out of a returned datagram
- * @dgram: index in the layout
+ * struct ec_cyc_input - inputs to copy out of a returned datagram
  * @offset: byte in the image
+ * @pos: byte in the datagram
  * @len: bytes
  */
 struct ec_cyc_input {
-	u16 dgram;
 	u32 offset;
+	u16 pos;
 	u16 len;
+};
+
+/**
+ * struct ec_cyc_flight - a frame of the cycle that is on its way
+ * @slot: frame
+ * @send: number of the send it belongs to
+ * @first: first datagram of the layout it carries
+ * @count: how many
+ */
+struct ec_cyc_flight {
+	struct ec_slot *slot;
+	u32 send;
+	u16 first;
+	u16 count;
+};
+
+#define EC_CYC_FRAMES	128	/* on their way at most */
+
+/**
+ * struct ec_cyc_domain - what is back of a domain
+ * @expected: working counter when every slave takes part
+ * @send: number of the newest send that anything is back of
+ * @wkc: sum of the working counters of that send
+ */
+struct ec_cyc_domain {
+	u32 expected;
+	u32 send;
+	u32 wkc;
 };
 
 /**
@@ -69,8 +89,12 @@ struct ec_cyc_input {
  * @n_dgrams: entries in @dgrams
  * @inputs: input areas in order of their datagram
  * @n_inputs: entries in @inputs
- * @flight: frames on their way
+ * @domains: results
+ * @flight: frames on their way, the oldest first
  * @n_flight: entries in @flight
+ * @send: number of the last send
+ * @sent: domains sent since the last receive, bit n: domain n
+ * @back: domains of which something is back
  * @cycles: sends so far
  */
 struct ec_cycle {
@@ -78,8 +102,12 @@ struct ec_cycle {
 	unsigned int n_dgrams;
 	struct ec_cyc_input *inputs;
 	unsigned int n_inputs;
+	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;
+	u32 send;
+	u64 sent;
+	u64 back;
 	u64 cycles;
 };
 
@@ -88,8 +116,17 @@ u32 ec_cycle_timeout_us(const struct ec_master *m);
 void ec_cycle_own(struct ec_master *m, enum ec_owner owner);
 bool ec_cycle_stalled(struct ec_master *m);
 
+/* for the cyclic caller */
+void ec_cycle_enter(struct ec_master *m);
+void ec_cycle_leave(struct ec_master *m);
+int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now);
+void ec_cycle_send_left(struct ec_master *m, u32 wire_ns);
+
+/* layout.c */
 int ec_cycle_layout(struct ec_session *s);
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
+
+/* exchange.c */
 int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, u64 queued);
 

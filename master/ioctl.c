@@ -121,9 +121,9 @@ static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 		return -EINVAL;
 	if (copy_from_user(&send, (void __user *)arg, sizeof(send)))
 		return -EFAULT;
-	if (send.flags || send.reserved)
+	if (send.flags & ~EC_SEND_FLAG_APP_TIME || send.reserved)
 		return -EOPNOTSUPP;
-	return ec_ioc_send(f, send.queued);
+	return ec_ioc_send(f, &send);
 }
 
 /* Flags a command understands; its argument starts with them. */
@@ -203,30 +203,15 @@ static void forget_reason(struct ec_file *f)
 	mutex_unlock(&f->lock);
 }
 
-/**
- * ec_ioctl() - .unlocked_ioctl of the character device
- * @filp: open file
- * @cmd: EC_IOC_*
- * @arg: user pointer
- *
- * Context: Process. May sleep; RECEIVE, SEND and APP_TIME are RT-safe.
- * Return: 0 or -errno; -ENOTTY for an unknown command, -EOPNOTSUPP for unknown
- * flags and reserved bytes, -EINVAL for a size that cannot be, -E2BIG for a
- * non-zero tail, -EPERM, -EFAULT.
- */
-long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
+/* Apart from the cyclic commands, which must not pay for the large buffer. */
+static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long arg)
 {
 	unsigned int nr = _IOC_NR(cmd);
-	struct ec_file *f = filp->private_data;
 	void __user *uarg = (void __user *)arg;
 	u64 karg[MAX_ARG / sizeof(u64)];
 	const struct ec_ioctl *op;
 	int ret;
 
-	if (cmd == EC_IOC_RECEIVE)
-		return ec_ioc_receive(f);
-	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && nr == _IOC_NR(EC_IOC_SEND))
-		return cyclic_send(f, cmd, arg);
 	if (cmd == _IOR(0xa4, 0, u64))
 		return foreign_version(arg);
 	if (_IOC_TYPE(cmd) != EC_IOC_TYPE || nr >= ARRAY_SIZE(table))
@@ -253,4 +238,26 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 	    return_arg(_IOC_SIZE(op->cmd), _IOC_SIZE(cmd), karg, uarg))
 		ret = -EFAULT;
 	return ret;
+}
+
+/**
+ * ec_ioctl() - .unlocked_ioctl of the character device
+ * @filp: open file
+ * @cmd: EC_IOC_*
+ * @arg: user pointer
+ *
+ * Context: Process. May sleep; RECEIVE, SEND and APP_TIME are RT-safe.
+ * Return: 0 or -errno; -ENOTTY for an unknown command, -EOPNOTSUPP for unknown
+ * flags and reserved bytes, -EINVAL for a size that cannot be, -E2BIG for a
+ * non-zero tail, -EPERM, -EFAULT.
+ */
+long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
+{
+	struct ec_file *f = filp->private_data;
+
+	if (cmd == EC_IOC_RECEIVE)
+		return ec_ioc_receive(f);
+	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && _IOC_NR(cmd) == _IOC_NR(EC_IOC_SEND))
+		return cyclic_send(f, cmd, arg);
+	return dispatch(f, cmd, arg);
 }

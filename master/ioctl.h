@@ -59,6 +59,6 @@ int ec_ioc_domain_offset(struct ec_file *f, void *arg);
 int ec_ioc_interval(struct ec_file *f, void *arg);
 int ec_ioc_app_time(struct ec_file *f, void *arg);
 int ec_ioc_receive(struct ec_file *f);
-int ec_ioc_send(struct ec_file *f, u64 queued);
+int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);
 
 #endif

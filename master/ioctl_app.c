@@ -352,6 +352,7 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	if (!lock(f, &ret))
 		return ret;
 	f->master->interval_us = i->interval_us;
+	f->master->interval_told = true;
 	return done(f, 0);
 }
 
@@ -396,17 +397,19 @@ int ec_ioc_receive(struct ec_file *f)
 	return ret;
 }
 
-int ec_ioc_send(struct ec_file *f, u64 queued)
+int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 {
 	struct ec_session *s = enter(f);
 	int ret;
 
 	if (!s)
 		return -EPERM;
-	if (s->n_domains < 64 && queued >> s->n_domains)
+	if (arg->flags & EC_SEND_FLAG_APP_TIME)
+		WRITE_ONCE(f->master->app_time, arg->app_time);
+	if (s->n_domains < 64 && arg->queued >> s->n_domains)
 		ret = -ENOENT;
 	else
-		ret = ec_cycle_send(s, queued);
+		ret = ec_cycle_send(s, arg->queued);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;
 }

@@ -40,6 +40,7 @@ struct task_struct;
  * @cycle_busy: the cyclic caller is using the links
  * @last_send_ns: when the cycle sent last
  * @interval_us: distance of cyclic sends, told by the application or measured
+ * @interval_told: told
  * @xq_lock: protects @xq, @xq_head, @xq_tail
  * @xq: frames left by ec_xfer() for the cyclic caller
  *
@@ -87,6 +88,7 @@ struct ec_master {
 	atomic_t cycle_busy;
 	u64 last_send_ns;
 	u32 interval_us;
+	bool interval_told;
 	raw_spinlock_t xq_lock;
 	struct ec_queued xq[EC_SLOTS];
 	unsigned int xq_head;

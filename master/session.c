@@ -151,6 +151,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_shared_put(sh);
 	m->app_time = 0;
 	m->interval_us = EC_INTERVAL_US;
+	m->interval_told = false;
 	ec_info(m, "session deactivated\n");
 	return 0;
 }

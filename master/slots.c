@@ -34,14 +34,29 @@ void ec_slots_exit(struct ec_slots *s)
 	s->slot = NULL;
 }
 
-static bool take(struct ec_slot *slot, u64 now_ns)
+static bool take(struct ec_slot *slot, u64 now_ns, u64 quarantine_ns)
 {
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
 		return true;
 	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
-	       now_ns - READ_ONCE(slot->sent_ns) > EC_QUARANTINE_NS &&
+	       now_ns - READ_ONCE(slot->sent_ns) > quarantine_ns &&
 	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
 	       EC_SLOT_QUARANTINE;
+}
+
+static struct ec_slot *search(struct ec_slots *s, u64 now_ns, u64 quarantine_ns)
+{
+	unsigned int i, start = atomic_inc_return(&s->hint);
+
+	for (i = 0; i < EC_SLOTS; i++) {
+		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
+
+		if (take(slot, now_ns, quarantine_ns)) {
+			slot->xfer = NULL;
+			return slot;
+		}
+	}
+	return NULL;
 }
 
 /**
@@ -55,19 +70,19 @@ static bool take(struct ec_slot *slot, u64 now_ns)
  */
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 {
-	unsigned int i, start;
+	struct ec_slot *slot;
 
 	if (!cyclic && atomic_inc_return(&s->acyclic) > EC_SLOTS - EC_SLOTS_CYCLE)
 		goto none;
-	start = atomic_inc_return(&s->hint);
-	for (i = 0; i < EC_SLOTS; i++) {
-		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
-
-		if (take(slot, now_ns)) {
-			slot->xfer = NULL;
-			return slot;
-		}
-	}
+	slot = search(s, now_ns, EC_QUARANTINE_NS);
+	/*
+	 * While all frames are lost the cycle uses up slots faster than the
+	 * quarantine frees them; sequence numbers tell the frames apart, too.
+	 */
+	if (!slot && cyclic)
+		slot = search(s, now_ns, 0);
+	if (slot)
+		return slot;
 none:
 	if (!cyclic)
 		atomic_dec(&s->acyclic);
@@ -77,19 +92,30 @@ none:
 /**
  * ec_slot_put() - give back a slot
  * @s: slots
- * @slot: in state BUILD or DONE (then free at once), or QUARANTINE
+ * @slot: in state BUILD or DONE, free afterwards
  * @cyclic: as in ec_slot_get()
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
 {
-	int state = atomic_read(&slot->state);
-
-	if (state == EC_SLOT_BUILD || state == EC_SLOT_DONE)
-		atomic_set_release(&slot->state, EC_SLOT_FREE);
+	atomic_set_release(&slot->state, EC_SLOT_FREE);
 	if (!cyclic)
 		atomic_dec(&s->acyclic);
+}
+
+/**
+ * ec_slot_abandon() - give back a slot whose frame was cancelled
+ * @s: slots
+ *
+ * Not for the cycle. The slot itself must not be touched: it may be in use by
+ * another already.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_abandon(struct ec_slots *s)
+{
+	atomic_dec(&s->acyclic);
 }
 
 /**

@@ -160,7 +160,10 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 	}
 	for (i = 0; i < h->frames; i++) {
 		collect(&h->f[i], dg);
-		ec_slot_put(&m->slots, h->f[i].slot, false);
+		if (h->f[i].err == -ETIMEDOUT)
+			ec_slot_abandon(&m->slots);
+		else
+			ec_slot_put(&m->slots, h->f[i].slot, false);
 	}
 	h->frames = 0;
 }

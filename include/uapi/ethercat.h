@@ -483,11 +483,14 @@ struct ec_ioc_domain_offset {
 	__u32 size;		/* out */
 };
 
+#define EC_SEND_FLAG_APP_TIME	1	/* @app_time is set */
+
 /* argument of EC_IOC_SEND; @queued: bit n queues domain n */
 struct ec_ioc_send {
-	__u32 flags;
+	__u32 flags;		/* EC_SEND_FLAG_APP_TIME */
 	__u32 reserved;
 	__u64 queued;
+	__u64 app_time;		/* ns, as in EC_IOC_APP_TIME */
 };
 
 struct ec_ioc_interval {

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Receive and send of the cyclic caller. Nothing here allocates, prints or
+ * takes a lock that is contended while the cycle runs.
+ */
+#include <linux/bitops.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include "cycle.h"
+#include "master.h"
+#include "session.h"
+
+/* A copy of some bytes; most inputs are shorter than the call of memcpy(). */
+static __always_inline void copy_input(u8 *to, const u8 *from, unsigned int len)
+{
+	unsigned int i;
+
+	if (len < 8 || len > 64) {
+		memcpy(to, from, len);
+		return;
+	}
+	for (i = 0; i + 8 <= len; i += 8)
+		put_unaligned(get_unaligned((const u64 *)(from + i)), (u64 *)(to + i));
+	put_unaligned(get_unaligned((const u64 *)(from + len - 8)), (u64 *)(to + len - 8));
+}
+
+/*
+ * Inputs and working counter of one datagram. What belongs to an older send
+ * than the newest one that is back must not undo it.
+ */
+static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
+		       const u8 *data)
+{
+	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
+	const struct ec_cyc_input *in = &s->cycle.inputs[d->first_input];
+	u8 *image = s->shared->image;
+	u16 wkc = get_unaligned_le16(data + d->len);
+	unsigned int i;
+
+	if ((s32)(send - dom->send) < 0)
+		return;
+	if (send != dom->send) {
+		dom->send = send;
+		dom->wkc = 0;
+	}
+	dom->wkc += wkc;
+	s->cycle.back |= BIT_ULL(d->domain);
+	if (!wkc)
+		return;
+	/* a missing slave's part comes back as sent: the last value */
+	for (i = 0; i < d->n_inputs; i++, in++)
+		copy_input(image + in->offset, data + in->pos, in->len);
+}
+
+static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
+{
+	const struct ec_cyc_dgram *d = &s->cycle.dgrams[f->first];
+	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
+	unsigned int i;
+
+	for (i = 0; i < f->count; i++, d++) {
+		take_dgram(s, d, f->send, data);
+		data += d->len + EC_DGRAM_OVERHEAD;
+	}
+}
+
+/* Domains that were sent or came back since the last receive. */
+static void judge(struct ec_session *s)
+{
+	struct ec_cycle *c = &s->cycle;
+	u64 todo = c->sent | c->back;
+
+	for (; todo; todo &= todo - 1) {
+		unsigned int i = __ffs64(todo);
+		struct ec_status_domain *st = &s->shared->status->domains[i];
+		u32 wkc = c->back & BIT_ULL(i) ? c->domains[i].wkc : 0;
+
+		WRITE_ONCE(st->working_counter, wkc);
+		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == c->domains[i].expected ? 2 : 1);
+	}
+	c->sent = 0;
+	c->back = 0;
+}
+
+/**
+ * ec_cycle_receive() - take what the last sends have brought back
+ * @s: active session
+ *
+ * Inputs go to the image, working counters to the status page. Frames that
+ * are not back within the time limit are lost.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_receive(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	u64 now, limit = (u64)m->io_timeout_us * NSEC_PER_USEC;
+	unsigned int i, left = 0;
+
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(m);
+	ec_link_poll(&m->link[0]);
+	now = ktime_get_ns();
+	for (i = 0; i < c->n_flight; i++) {
+		struct ec_cyc_flight *f = &c->flight[i];
+
+		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
+			take_frame(s, f);
+			ec_slot_put(&m->slots, f->slot, true);
+		} else if (now - f->slot->sent_ns > limit && ec_slot_cancel(f->slot, now)) {
+			atomic64_inc(&m->link[0].stats.lost);
+		} else if (left++ != i) {
+			c->flight[left - 1] = *f;
+		}
+	}
+	c->n_flight = left;
+	judge(s);
+	WRITE_ONCE(s->shared->status->cycle, c->cycles);
+	ec_cycle_leave(m);
+	return 0;
+}
+
+/*
+ * Room for one more frame. When none has come back for long, the oldest is
+ * given up: a frame of now is worth more.
+ */
+static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
+{
+	struct ec_slot *oldest;
+
+	if (c->n_flight < EC_CYC_FRAMES)
+		return true;
+	oldest = c->flight[0].slot;
+	if (ec_slot_cancel(oldest, now))
+		atomic64_inc(&m->link[0].stats.lost);
+	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
+		ec_slot_put(&m->slots, oldest, true);
+	else
+		return false;	/* being copied at this moment */
+	c->n_flight--;
+	memmove(c->flight, c->flight + 1, c->n_flight * sizeof(c->flight[0]));
+	return true;
+}
+
+/* Datagrams from @g on, as many as are queued and fit; returns how many. */
+static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g, u64 queued)
+{
+	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_dgram *d = &c->dgrams[g];
+	unsigned int end = min(c->n_dgrams, g + s->master->max_datagrams);
+	struct ec_frame_buf fb;
+	u8 *p;
+
+	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	for (; g < end && queued & BIT_ULL(d->domain); g++, d++) {
+		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
+				 d->logical >> 16, d->len);
+		if (!p)
+			break;
+		memcpy(p, s->shared->image + d->offset, d->len);
+	}
+	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	return fb.count;
+}
+
+/* One frame from datagram @g on; returns the first datagram of the next. */
+static unsigned int send_frame(struct ec_session *s, unsigned int g, u64 queued, u64 now,
+			       u32 *wire_ns)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	struct ec_slot *slot = NULL;
+	unsigned int count;
+
+	if (make_room(m, c, now))
+		slot = ec_slot_get(&m->slots, true, now);
+	if (!slot) {
+		atomic64_inc(&m->link[0].stats.tx_errors);
+		return c->n_dgrams;
+	}
+	count = fill(s, slot, g, queued);
+	*wire_ns += ec_frame_wire_ns(slot->eth_len);
+	if (!ec_cycle_transmit(m, slot, now))
+		c->flight[c->n_flight++] = (struct ec_cyc_flight){
+			.slot = slot, .send = c->send, .first = g, .count = count,
+		};
+	else
+		ec_slot_put(&m->slots, slot, true);
+	return g + count;
+}
+
+/* The distance of sends, when the application does not tell it. */
+static void measure_interval(struct ec_master *m, u64 now)
+{
+	u64 ns = now - m->last_send_ns;
+
+	/* a pause is no interval */
+	if (!m->interval_told && ns < 100 * NSEC_PER_MSEC)
+		m->interval_us = max(1, (int)m->interval_us +
+				     ((int)(ns >> 10) - (int)m->interval_us) / 8);
+}
+
+/**
+ * ec_cycle_send() - send the queued domains, then what others have left
+ * @s: active session
+ * @queued: bit n: domain n
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_send(struct ec_session *s, u64 queued)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	u64 now = ktime_get_ns();
+	unsigned int g = 0;
+	u32 wire_ns = 0;
+
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(m);
+	measure_interval(m, now);
+	WRITE_ONCE(m->last_send_ns, now);
+	c->send++;
+	c->sent |= queued;
+	while (g < c->n_dgrams) {
+		if (queued & BIT_ULL(c->dgrams[g].domain))
+			g = send_frame(s, g, queued, now, &wire_ns);
+		else
+			g++;
+	}
+	ec_cycle_send_left(m, wire_ns);
+	WRITE_ONCE(c->cycles, c->cycles + 1);
+	ec_cycle_leave(m);
+	return 0;
+}
