@@ -101,6 +101,22 @@ bool bus_settled(struct bus *b)
 	return true;
 }
 
+/**
+ * bus_idle() - wait until nothing but the monitor has been at work for 100 ms
+ * @b: bus
+ */
+void bus_idle(struct bus *b)
+{
+	u32 quiet, limit;
+
+	for (quiet = 0, limit = 0; quiet < 100; quiet++, limit++) {
+		KUNIT_ASSERT_LT(b->test, limit, 20000);
+		if (!bus_settled(b))
+			quiet = 0;
+		usleep_range(1000, 1001);
+	}
+}
+
 static bool all_in(const struct bus *b, u32 slaves, u8 state)
 {
 	u32 i;

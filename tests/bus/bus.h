@@ -44,6 +44,7 @@ void bus_exit(struct kunit *test);
 u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms);
 u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms);
 bool bus_settled(struct bus *b);
+void bus_idle(struct bus *b);
 
 struct ec_slave *bus_slave(struct bus *b, u32 position);
 struct ec_esc *bus_esc(struct bus *b, u32 index);

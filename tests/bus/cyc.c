@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/hrtimer.h>
+#include "cyc.h"
+#include "master/ioctl.h"
+
+/**
+ * cyc_new() - an application reserves the master
+ * @b: bus, scanned
+ * @period_us: of its cycle
+ *
+ * Return: application.
+ */
+struct cyc *cyc_new(struct bus *b, u32 period_us)
+{
+	struct cyc *c = kunit_kzalloc(b->test, sizeof(*c), GFP_KERNEL);
+	struct ec_ioc_interval i = { .interval_us = period_us };
+
+	KUNIT_ASSERT_NOT_NULL(b->test, c);
+	c->b = b;
+	c->period_ns = (u64)period_us * NSEC_PER_USEC;
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc_reserve(&b->app, NULL), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_interval(&b->app, &i), 0);
+	return c;
+}
+
+u32 cyc_domain(struct cyc *c)
+{
+	struct ec_ioc_create_domain d = { 0 };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_create_domain(&c->b->app, &d), 0);
+	c->queued |= BIT_ULL(d.index);
+	return d.index;
+}
+
+/**
+ * cyc_config() - configure the slave at a ring position as what it is
+ * @c: application
+ * @position: ring position
+ *
+ * Return: number of the configuration.
+ */
+u32 cyc_config(struct cyc *c, u32 position)
+{
+	struct ec_slave *s = bus_slave(c->b, position);
+	struct ec_ioc_slave_config sc = {
+		.position = position, .vendor_id = s->info.vendor,
+		.product_code = s->info.product,
+	};
+
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_slave_config(&c->b->app, &sc), 0, "%s",
+			    c->b->app.reason);
+	return sc.index;
+}
+
+/**
+ * cyc_pdo() - change assignment or mapping
+ * @c: application
+ * @config: configuration
+ * @op: EC_SC_PDO_*
+ * @sm: SyncManager
+ * @pdo: PDO
+ * @entry: index << 16 | subindex << 8 | bits
+ */
+void cyc_pdo(struct cyc *c, u32 config, u8 op, u8 sm, u16 pdo, u32 entry)
+{
+	struct ec_ioc_sc_pdo p = {
+		.config = config, .op = op, .sm = sm, .pdo = pdo, .entry_index = entry >> 16,
+		.subindex = entry >> 8, .bits = entry,
+	};
+
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_pdo(&c->b->app, &p), 0, "%s", c->b->app.reason);
+}
+
+/**
+ * cyc_map() - put the process data of a SyncManager into a domain
+ * @c: application
+ * @config: configuration
+ * @sm: SyncManager with at least one entry
+ * @domain: domain
+ *
+ * Return: offset in the domain.
+ */
+u32 cyc_map(struct cyc *c, u32 config, u8 sm, u32 domain)
+{
+	struct ec_ioc_reg_entry r = {
+		.flags = EC_REG_ENTRY_BY_POS, .config = config, .domain = domain, .sm = sm,
+	};
+
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_reg_entry(&c->b->app, &r), 0, "%s",
+			    c->b->app.reason);
+	return r.offset;
+}
+
+/**
+ * cyc_map_all() - all process data of @n slaves into a domain
+ * @c: application
+ * @first: ring position of the first
+ * @n: how many; those without process data are configured too
+ * @domain: domain
+ */
+void cyc_map_all(struct cyc *c, u32 first, u32 n, u32 domain)
+{
+	u32 i, sm;
+
+	for (i = first; i < first + n; i++) {
+		struct ec_slave *s = bus_slave(c->b, i);
+		u32 config = cyc_config(c, i);
+
+		for (sm = 0; sm < s->n_sms; sm++)
+			if (ec_pdo_list_bytes(&s->sm_pdos[sm]))
+				cyc_map(c, config, sm, domain);
+	}
+}
+
+const u32 cyc_new_out[3] = { 0x60400010, 0x60FF0020, 0x60710010 };
+const u32 cyc_new_in[4] = { 0x60410010, 0x60640020, 0x606C0020, 0x60770010 };
+
+/**
+ * cyc_remap() - give a drive another mapping than the one it has
+ * @c: application
+ * @config: its configuration
+ */
+void cyc_remap(struct cyc *c, u32 config)
+{
+	u32 i;
+
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, 2, 0, 0);
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, 2, 0x1600, 0);
+	cyc_pdo(c, config, EC_SC_PDO_MAP_CLEAR, 2, 0x1600, 0);
+	for (i = 0; i < ARRAY_SIZE(cyc_new_out); i++)
+		cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, 2, 0x1600, cyc_new_out[i]);
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, 3, 0, 0);
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, 3, 0x1a00, 0);
+	cyc_pdo(c, config, EC_SC_PDO_MAP_CLEAR, 3, 0x1a00, 0);
+	for (i = 0; i < ARRAY_SIZE(cyc_new_in); i++)
+		cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, 3, 0x1a00, cyc_new_in[i]);
+}
+
+void cyc_activate(struct cyc *c)
+{
+	struct ec_ioc_activate a = { 0 };
+
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_activate(&c->b->app, &a), 0, "%s",
+			    c->b->app.reason);
+	c->next = ktime_get();
+}
+
+/**
+ * cyc_run() - some cycles: wait, receive, work, send
+ * @c: active application
+ * @cycles: how many
+ */
+void cyc_run(struct cyc *c, u32 cycles)
+{
+	struct ec_session *s = c->b->m->session;
+	u32 i, d;
+
+	for (i = 0; i < cycles; i++) {
+		bool whole = true;
+
+		c->next = ktime_add_ns(c->next, c->period_ns);
+		set_current_state(TASK_UNINTERRUPTIBLE);
+		schedule_hrtimeout(&c->next, HRTIMER_MODE_ABS);
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_receive(&c->b->app), 0);
+		for (d = 0; d < s->n_domains; d++)
+			whole &= s->shared->status->domains[d].wc_state == 2;
+		c->incomplete += !whole;
+		if (c->each)
+			c->each(c);
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_send(&c->b->app, c->queued), 0);
+		c->cycles++;
+	}
+}
+
+bool cyc_all_op(struct cyc *c)
+{
+	struct ec_session *s = c->b->m->session;
+	u32 i;
+
+	for (i = 0; i < s->n_configs; i++)
+		if (!s->configs[i]->slave || s->configs[i]->slave->al_status != EC_AL_OP ||
+		    s->configs[i]->slave->reconfigure)
+			return false;
+	return true;
+}
+
+/**
+ * cyc_wait_op() - cycle until all configured slaves are in OP
+ * @c: active application
+ * @limit_ms: bus time
+ *
+ * Return: bus time it took, us; ~0 after the limit.
+ */
+u64 cyc_wait_op(struct cyc *c, u32 limit_ms)
+{
+	u64 t0 = ktime_get_ns();
+
+	while (!cyc_all_op(c)) {
+		if (ktime_get_ns() - t0 > (u64)limit_ms * NSEC_PER_MSEC)
+			return ~0ull;
+		cyc_run(c, 1);
+	}
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+/**
+ * cyc_pd() - process data of a SyncManager
+ * @c: active application
+ * @position: ring position of the slave
+ * @sm: SyncManager
+ *
+ * Return: where they lie in the image.
+ */
+u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
+{
+	struct ec_session *s = c->b->m->session;
+	u32 i, k;
+
+	for (i = 0; i < s->n_configs; i++) {
+		struct ec_config *sc = s->configs[i];
+
+		for (k = 0; k < sc->n_fmmus; k++)
+			if (sc->position == position && sc->fmmus[k].sm == sm)
+				return cyc_data(c, sc->fmmus[k].domain->index) +
+				       sc->fmmus[k].offset;
+	}
+	KUNIT_FAIL(c->b->test, "slave %u has no SM%u in a domain", position, sm);
+	return cyc_data(c, 0);
+}
+
+u8 *cyc_data(struct cyc *c, u32 domain)
+{
+	struct ec_session *s = c->b->m->session;
+
+	return s->shared->image + s->domains[domain]->offset;
+}
+
+struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)
+{
+	return &c->b->m->session->shared->status->domains[domain];
+}
+
+void cyc_release(struct cyc *c)
+{
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_release(&c->b->app, NULL), 0);
+}

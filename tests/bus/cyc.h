@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* An application with a cycle: what a program does through libethercat. */
+#ifndef EC_CYC_H
+#define EC_CYC_H
+
+#include "bus.h"
+#include "master/config.h"
+#include "master/domain.h"
+
+/**
+ * struct cyc - an application
+ * @b: bus
+ * @period_ns: of its cycle
+ * @next: when the next cycle begins (ktime)
+ * @queued: domains sent in a cycle, bit n: domain n
+ * @each: called between receive and send, may be NULL
+ * @ctx: for @each
+ * @incomplete: cycles in which a domain was not complete
+ * @cycles: cycles so far
+ */
+struct cyc {
+	struct bus *b;
+	u64 period_ns;
+	ktime_t next;
+	u64 queued;
+	void (*each)(struct cyc *c);
+	void *ctx;
+	u64 incomplete;
+	u64 cycles;
+};
+
+/* mapping of a drive after cyc_remap() */
+extern const u32 cyc_new_out[3];
+extern const u32 cyc_new_in[4];
+
+struct cyc *cyc_new(struct bus *b, u32 period_us);
+u32 cyc_domain(struct cyc *c);
+u32 cyc_config(struct cyc *c, u32 position);
+void cyc_pdo(struct cyc *c, u32 config, u8 op, u8 sm, u16 pdo, u32 entry);
+u32 cyc_map(struct cyc *c, u32 config, u8 sm, u32 domain);
+void cyc_map_all(struct cyc *c, u32 first, u32 n, u32 domain);
+void cyc_remap(struct cyc *c, u32 config);
+void cyc_activate(struct cyc *c);
+void cyc_run(struct cyc *c, u32 cycles);
+u64 cyc_wait_op(struct cyc *c, u32 limit_ms);
+bool cyc_all_op(struct cyc *c);
+u8 *cyc_pd(struct cyc *c, u32 position, u8 sm);
+u8 *cyc_data(struct cyc *c, u32 domain);
+struct ec_status_domain *cyc_state(struct cyc *c, u32 domain);
+void cyc_release(struct cyc *c);
+
+#endif

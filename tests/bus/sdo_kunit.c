@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* SDO upload and download in their three sizes, errors, and how long they take. */
+#include "bus.h"
+#include "master/coe.h"
+#include "master/wire/coe.h"
+
+#define RESPONSE_US	500
+#define SCRATCH		0x2000	/* 1000 bytes */
+#define TYPES		0x2001	/* a record */
+
+static const char line[] =
+	"segment seed=8 response=500us transition=200us\n"
+	"slave small drive mbox=64\nslave large drive mbox=512\nslave digital EL2008\n";
+
+static struct bus *ready(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, 3);
+
+	bus_idle(b);
+	return b;
+}
+
+static void pattern(u8 *data, size_t n)
+{
+	size_t i;
+
+	for (i = 0; i < n; i++)
+		data[i] = (u8)(i * 7 + n);
+}
+
+/* down and up again; the slave holds what was sent */
+static void there_and_back(struct bus *b, u32 position, const char *name, u16 index, u8 sub,
+			   size_t n)
+{
+	struct ec_slave *s = bus_slave(b, position);
+	struct ec_app *app = bus_app(b, name);
+	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
+	u8 *out = kunit_kzalloc(b->test, 1000, GFP_KERNEL);
+	u8 *in = kunit_kzalloc(b->test, 1000, GFP_KERNEL);
+	size_t got = 0;
+	u32 abort;
+
+	KUNIT_ASSERT_NOT_NULL(b->test, out);
+	KUNIT_ASSERT_NOT_NULL(b->test, in);
+	KUNIT_ASSERT_NOT_NULL(b->test, e);
+	pattern(out, n);
+	KUNIT_EXPECT_EQ_MSG(b->test, ec_coe_download(s, index, sub, false, out, n, &abort, 0), 0,
+			    "%zu bytes to %s: abort 0x%08x", n, name, abort);
+	KUNIT_EXPECT_MEMEQ(b->test, app->data + e->off, out, n);
+	KUNIT_EXPECT_EQ(b->test, ec_coe_upload(s, index, sub, false, in, 1000, &got, &abort, 0), 0);
+	KUNIT_EXPECT_EQ(b->test, got, n);
+	KUNIT_EXPECT_MEMEQ(b->test, in, out, n);
+	KUNIT_EXPECT_EQ(b->test, abort, 0);
+}
+
+static void sdo_expedited(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	there_and_back(b, 0, "small", TYPES, 2, 1);
+	there_and_back(b, 0, "small", TYPES, 7, 2);
+	there_and_back(b, 1, "large", TYPES, 8, 4);
+}
+
+static void sdo_normal(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	/* 64 - 16 bytes fit behind the headers */
+	there_and_back(b, 0, "small", TYPES, 9, 8);
+	there_and_back(b, 0, "small", TYPES, 12, 16);
+}
+
+static void sdo_segmented(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	there_and_back(b, 0, "small", SCRATCH, 0, 1000);
+	there_and_back(b, 1, "large", SCRATCH, 0, 1000);
+}
+
+static void sdo_complete_access(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 0);
+	u8 buf[64];
+	size_t got;
+	u32 abort;
+
+	KUNIT_ASSERT_EQ(test, ec_coe_upload(s, 0x1018, 0, true, buf, sizeof(buf), &got, &abort, 0),
+			0);
+	KUNIT_EXPECT_EQ(test, got, 18ul);
+	KUNIT_EXPECT_EQ(test, buf[0], 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(buf + 2), s->info.vendor);
+}
+
+static void sdo_errors(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 0);
+	u8 buf[8] = { 0 };
+	size_t got;
+	u32 abort;
+
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x3fff, 0, false, buf, 8, &got, &abort, 0), -EIO);
+	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_NO_OBJECT);
+	KUNIT_EXPECT_EQ(test, ec_coe_download(s, 0x1018, 1, false, buf, 4, &abort, 0), -EIO);
+	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_READ_ONLY);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, SCRATCH, 0, false, buf, 8, &got, &abort, 0),
+			-ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(bus_slave(b, 2), 0x1000, 0, false, buf, 8, &got,
+					    &abort, 0), -EPROTONOSUPPORT);
+	/* and the mailbox works on */
+	there_and_back(b, 0, "small", TYPES, 8, 4);
+
+	bus_request(b, 0, EC_AL_INIT);
+	KUNIT_ASSERT_NE(test, bus_wait_al(b, 0, EC_AL_INIT, 500), ~0ull);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1000, 0, false, buf, 8, &got, &abort, 0), -EAGAIN);
+}
+
+/* Nobody answers: the time limit holds, the others are not concerned. */
+static void sdo_mute(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	u64 t0 = ktime_get_ns(), ms;
+	u8 buf[8];
+	size_t got;
+	u32 abort;
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(bus_slave(b, 0), 0x1000, 0, false, buf, 8, &got, &abort,
+					    200), -ETIMEDOUT);
+	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
+	KUNIT_EXPECT_GE(test, ms, 200ull);
+	KUNIT_EXPECT_LE(test, ms, 210ull);
+	there_and_back(b, 1, "large", TYPES, 8, 4);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
+	msleep(10);
+	/* the late answer is not taken for the one of the next request */
+	there_and_back(b, 0, "small", TYPES, 8, 4);
+}
+
+/* An emergency in between is logged, not taken for an answer. */
+static void sdo_emergency(struct kunit *test)
+{
+	static const u8 data[5] = { 1, 2, 3, 4, 5 };
+	struct bus *b = ready(test);
+	u32 i;
+
+	for (i = 0; i < 3; i++)
+		ec_app_emergency(bus_app(b, "small"), 0x8110, 0x11, data, ktime_get_ns());
+	there_and_back(b, 0, "small", TYPES, 8, 4);
+}
+
+/*
+ * The tick of this kernel is 10 ms: were anything bound to it, an upload would
+ * take at least that long.
+ */
+static void sdo_latency(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 1);
+	u64 sum = 0, worst = 0;
+	u8 buf[4];
+	size_t got;
+	u32 abort, i;
+
+	for (i = 0; i < 100; i++) {
+		u64 t0, us;
+
+		usleep_range(3000 + 137 * i, 3001 + 137 * i);
+		t0 = ktime_get_ns();
+		KUNIT_ASSERT_EQ(test, ec_coe_upload(s, 0x1000, 0, false, buf, 4, &got, &abort, 0),
+				0);
+		us = div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+		sum += us;
+		worst = max(worst, us);
+	}
+	bus_figure("SDO upload, expedited, idle bus, slave takes %u us, HZ=%u: mean %llu us, worst %llu us",
+		   RESPONSE_US, HZ, div_u64(sum, 100), worst);
+	KUNIT_EXPECT_LT(test, worst, 2000ull + RESPONSE_US);
+	KUNIT_EXPECT_LT(test, worst, 10000ull);
+	KUNIT_EXPECT_EQ(test, HZ, 100);
+}
+
+static struct kunit_case sdo_cases[] = {
+	KUNIT_CASE(sdo_expedited),
+	KUNIT_CASE(sdo_normal),
+	KUNIT_CASE(sdo_segmented),
+	KUNIT_CASE(sdo_complete_access),
+	KUNIT_CASE(sdo_errors),
+	KUNIT_CASE(sdo_mute),
+	KUNIT_CASE(sdo_emergency),
+	KUNIT_CASE(sdo_latency),
+	{}
+};
+
+static struct kunit_suite sdo_suite = {
+	.name = "bus_sdo",
+	.exit = bus_exit,
+	.test_cases = sdo_cases,
+};
+
+kunit_test_suite(sdo_suite);
+
+MODULE_LICENSE("GPL");
