@@ -15,7 +15,7 @@ static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
  */
 struct bus *bus_new(struct kunit *test, const char *text)
 {
-	struct bus *b = kunit_kzalloc(test, sizeof(*b), GFP_KERNEL);
+	struct bus *b = kzalloc(sizeof(*b), GFP_KERNEL);
 	struct ec_sim_error err = { 0 };
 	char *device = "bus0";
 	int ret;
@@ -23,9 +23,9 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	KUNIT_ASSERT_NOT_NULL(test, b);
 	b->test = test;
 	text = ec_sim_builtin(text) ?: text;
+	test->priv = b;
 	ret = ec_sim_describe(&b->sim, &ec_sim_link_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
-	test->priv = b;
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
 	b->m = ec_master_get(0);
 	b->app.master = b->m;
@@ -66,21 +66,29 @@ struct bus *bus_up(struct kunit *test, const char *text, u32 slaves)
 }
 
 /**
+ * bus_down() - take master and segment away
+ * @b: bus or NULL
+ */
+void bus_down(struct bus *b)
+{
+	if (!b)
+		return;
+	ec_masters_destroy();
+	if (b->link)
+		ec_sim_link_destroy(b->link);
+	else if (b->sim)
+		ec_sim_free(b->sim);
+	kfree(b);
+}
+
+/**
  * bus_exit() - .exit of every suite
  * @test: case
  */
 void bus_exit(struct kunit *test)
 {
-	struct bus *b = test->priv;
-
-	if (!b)
-		return;
+	bus_down(test->priv);
 	test->priv = NULL;
-	ec_masters_destroy();
-	if (b->link)
-		ec_sim_link_destroy(b->link);
-	else
-		ec_sim_free(b->sim);
 }
 
 /**

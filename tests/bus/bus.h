@@ -39,6 +39,7 @@ struct bus {
 struct bus *bus_new(struct kunit *test, const char *text);
 void bus_plug(struct bus *b);
 struct bus *bus_up(struct kunit *test, const char *text, u32 slaves);
+void bus_down(struct bus *b);
 void bus_exit(struct kunit *test);
 
 u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms);

@@ -153,6 +153,7 @@ void cyc_activate(struct cyc *c)
 void cyc_run(struct cyc *c, u32 cycles)
 {
 	struct ec_session *s = c->b->m->session;
+	struct ec_ioc_send send = { 0 };
 	u32 i, d;
 
 	for (i = 0; i < cycles; i++) {
@@ -167,7 +168,8 @@ void cyc_run(struct cyc *c, u32 cycles)
 		c->incomplete += !whole;
 		if (c->each)
 			c->each(c);
-		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_send(&c->b->app, c->queued), 0);
+		send.queued = c->queued;
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_send(&c->b->app, &send), 0);
 		c->cycles++;
 	}
 }
