@@ -34,6 +34,9 @@ static void reserved_bits_of_a_page_are_ignored(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, f.pbit, 7);
 	KUNIT_EXPECT_EQ(test, f.type, 3);
 	KUNIT_EXPECT_TRUE(test, f.enable);
+	page[12] = 0xFE;
+	ec_fmmu_decode(&f, page);
+	KUNIT_EXPECT_FALSE(test, f.enable);
 }
 
 static void mapped_bits_are_counted(struct kunit *test)

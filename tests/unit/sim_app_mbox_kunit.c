@@ -148,7 +148,7 @@ static int info(struct mb *x, struct ec_sdoinfo *s)
 
 static void information(struct kunit *test)
 {
-	struct mb *x = mb_new(test, "slave d drive mbox=64\n", 64);
+	struct mb *x = mb_new(test, "slave d drive mbox=64 mapping=rewritable\n", 64);
 	struct ec_app *app = ec_sim_find(x->b->sim, "d");
 	struct ec_od_object o;
 	struct ec_od_entry e;
@@ -186,6 +186,10 @@ static void information(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
 	KUNIT_EXPECT_MEMEQ(test, e.name, "SubIndex 001", 12);
+	ec_sdoinfo_init_entry(&s, 0x1600, 12, 0, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
+	KUNIT_EXPECT_MEMEQ(test, e.name, "SubIndex 012", 12);
 
 	ec_sdoinfo_init_object(&s, 0x3000, x->buf, sizeof(x->buf));
 	KUNIT_EXPECT_LT(test, info(x, &s), 0);

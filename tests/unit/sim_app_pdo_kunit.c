@@ -153,6 +153,23 @@ static void position(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, pd_write(x, out, 8), 1);
 		KUNIT_EXPECT_EQ(test, status(x) & 0x6F, want[i] & 0x6F);
 	}
+	/* without voltage it is off, with a quick stop it stops and stays so */
+	out[0] = 0x0D;
+	pd_write(x, out, 8);
+	KUNIT_EXPECT_EQ(test, status(x) & 0x6F, 0x40);
+	for (u32 i = 0; i < ARRAY_SIZE(steps); i++) {
+		out[0] = steps[i];
+		pd_write(x, out, 8);
+	}
+	out[0] = 0x0B;
+	pd_write(x, out, 8);
+	KUNIT_EXPECT_EQ(test, status(x) & 0x6F, 0x07);
+	out[0] = 0x0D;
+	pd_write(x, out, 8);
+	for (u32 i = 0; i < ARRAY_SIZE(steps); i++) {
+		out[0] = steps[i];
+		pd_write(x, out, 8);
+	}
 	put_unaligned_le32(100000, out + 2);
 	for (int i = 0; i < 400; i++) {
 		u64 at = x->b->now + 1000000;

@@ -183,6 +183,20 @@ static void a_window_wants_first_byte_and_last_byte(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, 1001, 0x1010, v, 4), 1);
 }
 
+/* a page with a window but not activated guards nothing */
+static void a_switched_off_window_guards_nothing(struct kunit *test)
+{
+	struct bed *b = start(test, 1);
+	u8 v[4] = { 1, 2, 3, 4 }, page[EC_SM_PAGE];
+	struct ec_sm off = { .start = 0x1000, .len = 16, .control = 0x22 };
+
+	ec_sm_encode(&off, page);
+	bed_tx(b, EC_CMD_FPWR, 1001, EC_REG_SM(0), page, sizeof(page));
+	bed_sm(b, 1001, 1, 0x1100, 16, 0x22);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, 1001, 0x1004, v, 4), 1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, 1001, 0x1104, v, 4), 0);
+}
+
 static void a_buffered_window_has_three_buffers(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
@@ -640,6 +654,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(what_is_not_there_does_not_count),
 	KUNIT_CASE(a_mailbox_is_full_or_empty),
 	KUNIT_CASE(a_window_wants_first_byte_and_last_byte),
+	KUNIT_CASE(a_switched_off_window_guards_nothing),
 	KUNIT_CASE(a_buffered_window_has_three_buffers),
 	KUNIT_CASE(an_active_window_keeps_its_page),
 	KUNIT_CASE(logical_commands_count_per_slave_and_direction),

@@ -85,6 +85,22 @@ static void a_loop_setting_may_be_temporary(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
 	b->now += 1000000000;
 	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	bed_put(b, 1001, 0x100, 0x0c01, 2);	/* this one stays */
+	b->now += 2000000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+}
+
+static void two_with_the_same_address_both_answer(struct kunit *test)
+{
+	struct bed *b = bed_new(test, 3, 3);
+	u8 v[2];
+
+	bed_station(b, (u16)-2, 1001);
+	KUNIT_EXPECT_EQ(test, bed_rd(b, 1001, 0x130, v, 2), 2);
+	bed_station(b, 0, 1003);
+	bed_station(b, (u16)-1, 1001);
+	KUNIT_EXPECT_EQ(test, bed_rd(b, 1001, 0x130, v, 2), 2);
+	KUNIT_EXPECT_EQ(test, bed_rd(b, 1003, 0x130, v, 2), 1);
 }
 
 static void auto_close_waits_for_a_write(struct kunit *test)
@@ -531,6 +547,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(foreign_frames_pass_unchanged),
 	KUNIT_CASE(dl_status_shows_links_and_loops),
 	KUNIT_CASE(a_loop_setting_may_be_temporary),
+	KUNIT_CASE(two_with_the_same_address_both_answer),
 	KUNIT_CASE(auto_close_waits_for_a_write),
 	KUNIT_CASE(a_cut_cable_shortens_the_line),
 	KUNIT_CASE(power_loss_forgets_registers),

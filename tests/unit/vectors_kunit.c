@@ -262,6 +262,9 @@ static void an_expedited_upload(struct kunit *test)
 	static const u8 req[] = { 0x00, 0x20, 0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0 };
 	static const u8 resp[] = { 0x00, 0x30, 0x43, 0x18, 0x10, 0x01, 0x37, 0x13, 0x00, 0x00 };
 	static const u8 one[] = { 0x00, 0x30, 0x4F, 0x18, 0x10, 0x00, 0x04, 0x00, 0x00, 0x00 };
+	static const u8 sizeless[] = {
+		0x00, 0x30, 0x40, 0x18, 0x10, 0x00, 0x00, 0x00, 0x00, 0x00, 'a', 'b', 'c', 'd',
+	};
 	struct ec_sdo_up u;
 
 	ec_sdo_up_init(&u, 0x1018, 1, false, out, 8);
@@ -273,6 +276,11 @@ static void an_expedited_upload(struct kunit *test)
 	ec_sdo_up_init(&u, 0x1018, 0, false, out, 8);
 	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, one, 10), 0);
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)1);
+	/* neither expedited nor with a size: what is there is all of it */
+	ec_sdo_up_init(&u, 0x1018, 0, false, out, 8);
+	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, sizeless, 14), 0);
+	KUNIT_EXPECT_EQ(test, u.size, (size_t)4);
+	KUNIT_EXPECT_MEMEQ(test, out, "abcd", 4);
 }
 
 static void expedited_downloads_of_1_to_4_bytes(struct kunit *test)
