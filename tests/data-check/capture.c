@@ -5,13 +5,15 @@
  * exchanges would have sent; the answers of the slaves are fed to them.
  */
 #include "check.h"
+#include "../../master/wire/fmmu.h"
 #include "../../master/wire/frame.h"
+#include "../../master/wire/regs.h"
 #include "../../master/wire/sdo.h"
 #include "../../master/wire/sdoinfo.h"
 
 static int faults;
 static const char *file;
-static unsigned long packet, frames, dgrams, requests, answers, emergencies, loose;
+static unsigned long packet, frames, dgrams, requests, answers, emergencies, loose, pages;
 
 static void fault(const char *what)
 {
@@ -184,6 +186,34 @@ static void mailbox(const struct ec_dgram *d)
 	}
 }
 
+/* FMMU and SyncManager pages as other masters write them */
+static void config_pages(const struct ec_dgram *d)
+{
+	u8 page[EC_FMMU_PAGE];
+	struct ec_fmmu f;
+	struct ec_sm sm;
+	u16 i;
+
+	if ((d->cmd != EC_CMD_FPWR && d->cmd != EC_CMD_APWR) || ec_dgram_wkc(d))
+		return;
+	if (d->ado >= EC_REG_FMMU(0) && d->ado < EC_REG_FMMU(EC_MAX_FMMU))
+		for (i = 0; i + EC_FMMU_PAGE <= d->len; i += EC_FMMU_PAGE) {
+			ec_fmmu_decode(&f, d->data + i);
+			ec_fmmu_encode(&f, page);
+			if (memcmp(page, d->data + i, EC_FMMU_PAGE))
+				fault("FMMU is not the same after decoding and encoding");
+			pages++;
+		}
+	if (d->ado >= EC_REG_SM(0) && d->ado < EC_REG_SM(EC_MAX_SM))
+		for (i = 0; i + EC_SM_PAGE <= d->len; i += EC_SM_PAGE) {
+			ec_sm_decode(&sm, d->data + i);
+			ec_sm_encode(&sm, page);
+			if (memcmp(page, d->data + i, EC_SM_PAGE))
+				fault("SyncManager is not the same after decoding and encoding");
+			pages++;
+		}
+}
+
 static void frame(u8 *p, size_t len)
 {
 	static u8 out[EC_FRAME_HDR + EC_FRAME_BODY_MAX];
@@ -212,6 +242,7 @@ static void frame(u8 *p, size_t len)
 		if (d.circulating)
 			data[-3] |= 0x40;
 		mailbox(&d);
+		config_pages(&d);
 	}
 	n = ec_frame_end(&f);
 	/* Some masters write a length that is too large; slaves never look at it. */
@@ -242,7 +273,7 @@ int check_capture(const char *path, const u8 *data, size_t len, char *note, size
 
 	file = path;
 	faults = 0;
-	packet = frames = dgrams = requests = answers = emergencies = loose = 0;
+	packet = frames = dgrams = requests = answers = emergencies = loose = pages = 0;
 	memset(talks, 0, sizeof(talks));
 
 	while (len - at >= 12) {
@@ -274,8 +305,8 @@ int check_capture(const char *path, const u8 *data, size_t len, char *note, size
 	if (!frames)
 		fault("no EtherCAT frame");
 	snprintf(note, cap,
-		 "%lu frames, %lu datagrams; CoE: %lu requests, %lu answers, %lu emergencies;"
+		 "%lu frames, %lu datagrams, %lu FMMU and SM pages; CoE: %lu requests, %lu answers, %lu emergencies;"
 		 " length too large in %lu frames",
-		 frames, dgrams, requests, answers, emergencies, loose);
+		 frames, dgrams, pages, requests, answers, emergencies, loose);
 	return faults;
 }
