@@ -11,5 +11,6 @@
  */
 int check_eeprom(const char *path, const u8 *data, size_t len, char *note, size_t cap);
 int check_capture(const char *path, const u8 *data, size_t len, char *note, size_t cap);
+int check_replay(const char *path, const u8 *data, size_t len, char *note, size_t cap);
 
 #endif

@@ -96,7 +96,7 @@ def main():
     columns["fuzz"] = counts(*[[link(objs[f][:-2], objs[f], *of(driver + wire + sim)), "1"]
                                for f in fuzz])
     if os.environ.get("DATA"):
-        columns["data"] = counts([link("data_check", *of(data + wire)),
+        columns["data"] = counts([link("data_check", *of(data + wire + sim)),
                                   os.path.abspath(os.environ["DATA"])])
     passed = failed = 0
     print("%-28s %-10s %s" % ("decoder", "file", "".join("%10s" % c for c in columns)))
