@@ -36,39 +36,54 @@ static void measure(const struct slaves *s, int *w)
 	}
 }
 
+/* why a slave is not where it should be: ": text" parts, "" when all is well */
+static void reason(const struct ec_ioc_slave *s, char *buf, size_t size)
+{
+	char code[8];
+	int n = 0;
+
+	*buf = 0;
+	snprintf(code, sizeof(code), "0x%04x", s->al_code);
+	if (s->al_code && (!s->error || !strstr(s->why, code)))
+		n = snprintf(buf, size, "AL status code %s: %s", code, ec_al_code_text(s->al_code));
+	if (s->error && s->why[0] && (size_t)n < size)
+		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
+}
+
 static void show_slave(const struct ec_ioc_slave *s, const char *indent, const int *w)
 {
-	char state[16];
+	char state[16], why[400];
 
 	al_state_text(s->al_status, state, sizeof(state));
+	reason(s, why, sizeof(why));
 	out_object(NULL);
 	out_u("position", s->position, "%s%*u  ", indent, w[0], s->position);
 	out_u("alias", s->alias_group, "%*u:", w[1], s->alias_group);
 	out_u("relative_position", slave_alias_pos(s), "%-*u  ", w[2], slave_alias_pos(s));
-	out_str("state", ec_al_state_name((u8)s->al_status), "%-*s", s->al_code ? w[3] : 0, state);
+	out_str("state", ec_al_state_name((u8)s->al_status), "%-*s", *why ? w[3] : 0, state);
 	out_bool("al_error", s->al_status & EC_AL_ERROR, NULL);
 	out_u("al_status_code", s->al_code, NULL);
 	out_str("al_status_text", ec_al_code_text(s->al_code), NULL);
-	if (s->al_code)
-		out_text("  0x%04x: %s", s->al_code, ec_al_code_text(s->al_code));
-	out_text("\n");
+	out_bool("flag_error", s->error, NULL);
+	out_str("cause", s->why, NULL);
+	out_text("%s%s\n", *why ? "  " : "", why);
 	out_end();
 }
 
 static int failed(const struct dev *d, const struct ec_ioc_slave *s, const char *what)
 {
-	char state[16];
+	char state[16], why[400];
 
 	al_state_text(s->al_status, state, sizeof(state));
-	if (s->al_code)
-		return fail("Master%u slave %u: %s %s, it is in %s: AL status code 0x%04x: %s%s%s",
-			    d->master, s->position, what, ec_al_state_name(wanted), state,
-			    s->al_code, ec_al_code_text(s->al_code), s->why[0] ? ": " : "", s->why);
+	reason(s, why, sizeof(why));
 	return fail("Master%u slave %u: %s %s, it is in %s%s%s", d->master, s->position, what,
-		    ec_al_state_name(wanted), state, s->why[0] ? ": " : "", s->why);
+		    ec_al_state_name(wanted), state, *why ? ": " : "", why);
 }
 
-/* the error bit counts once it is new or its code differs from before the request */
+/*
+ * The master clears its error flag when it takes the request. The slave's own
+ * error bit counts once it is new or its code differs from before.
+ */
 static int wait_slave(struct dev *d, const struct ec_ioc_slave *before, double end)
 {
 	struct ec_ioc_slave s;
@@ -79,6 +94,8 @@ static int wait_slave(struct dev *d, const struct ec_ioc_slave *before, double e
 			return 1;
 		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
 			return 0;
+		if (s.error == EC_SLAVE_CONFIG_FAILED)
+			return failed(d, &s, "cannot reach");
 		if (s.al_status & EC_AL_ERROR &&
 		    (!(before->al_status & EC_AL_ERROR) || s.al_code != before->al_code ||
 		     now_s() - start > 1))
@@ -151,9 +168,10 @@ const struct cmd cmd_states = {
 		"Without --wait the command returns as soon as the request is accepted. With\n"
 		"--wait it fails when a slave refuses or needs longer (default 10 s), and tells\n"
 		"the AL status code. A running application may pull slaves back to its own state.\n"
-		"Without STATE: position, alias:relative position, state, AL status code if any.\n",
+		"Without STATE: position, alias:relative position, state, and what is wrong if anything\n"
+		"is.\n",
 	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"
-		"al_status_code, al_status_text); empty after a request without --wait",
+		"al_status_code, al_status_text, flag_error, cause); empty after a request without --wait",
 	.flags = CMD_HISTORIC,
 	.max_args = 1,
 };

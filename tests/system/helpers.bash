@@ -30,3 +30,30 @@ wait_for() {
 all_slaves_are() {
 	[ "$(ethercat slaves 2>/dev/null | awk -v s="$1" '$3 == s' | wc -l)" = "$2" ]
 }
+
+# json FILTER COMMAND...: the JSON of a command fulfils a filter of jq
+json() {
+	local filter=$1
+
+	shift
+	ethercat "$@" --json >"$BATS_TEST_TMPDIR/json" || return
+	jq -e "$filter" "$BATS_TEST_TMPDIR/json" >/dev/null || {
+		echo "not so: $filter"
+		cat "$BATS_TEST_TMPDIR/json"
+		return 1
+	}
+}
+
+# refused PATTERN COMMAND...: exit code 1, nothing on stdout, one line of error
+refused() {
+	local pattern=$1 out rc=0
+
+	shift
+	out=$(ethercat "$@" 2>"$BATS_TEST_TMPDIR/err") || rc=$?
+	[ "$rc" = 1 ] && [ -z "$out" ] && [ "$(grep -vc '^Try ' "$BATS_TEST_TMPDIR/err")" = 1 ] &&
+		grep -qE -- "$pattern" "$BATS_TEST_TMPDIR/err" || {
+		echo "exit code $rc, stdout '$out', stderr:"
+		cat "$BATS_TEST_TMPDIR/err"
+		return 1
+	}
+}

@@ -278,6 +278,8 @@ static int request_state(const struct ec_ioc_state *r)
 		return -1;
 	record("state %u %u\n", r->position, r->state);
 	state[r->position].al_requested = r->state;
+	state[r->position].error = 0;
+	state[r->position].why[0] = 0;
 	if (r->position == 2 && r->state == 8)
 		return 0;	/* never gets there */
 	state[r->position].al_status = r->state;
@@ -285,6 +287,8 @@ static int request_state(const struct ec_ioc_state *r)
 	if (r->position == 2 && r->state == 4) {
 		state[r->position].al_status = 0x12;
 		state[r->position].al_code = 0x001e;
+		state[r->position].error = EC_SLAVE_CONFIG_FAILED;
+		strcpy(state[r->position].why, "refused SAFEOP: AL status code 0x001e: inputs");
 	}
 	return 0;
 }

@@ -223,7 +223,7 @@ END
 	[ -z "$output" ]
 	run ethercat states SAFEOP -p2 --wait 2
 	[ "$status" -eq 1 ]
-	[[ $output == *"0x001e"* ]]
+	[[ $output == *"slave 2: cannot reach SAFEOP, it is in PREOP+ERROR: refused SAFEOP: AL"*"0x001e: inputs" ]]
 	run ethercat states OP -p2 --wait=0.05
 	[ "$status" -eq 1 ]
 	[[ $output == *"has not reached OP"* ]]
@@ -231,7 +231,7 @@ END
 	[ "$status" -eq 0 ]
 	[ "${lines[0]}" = "0     0:0  PREOP" ]
 	[ "${lines[1]}" = "1  1001:0  PREOP" ]
-	[[ ${lines[2]} == "2  1001:1  PREOP+ERROR  0x001d: "* ]]
+	[[ ${lines[2]} == "2  1001:1  PREOP+ERROR  AL status code 0x001d: "*": SM2 has 8 bytes"* ]]
 	FAKE_BUS=two run ethercat states -p1
 	[ "$output" = $'Master0\n  1  1001:0  PREOP\nMaster1\n  1  1001:0  PREOP' ]
 }

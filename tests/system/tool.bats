@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# Every command of the tool on the bench without an application.
+
+load helpers
+
+setup_file() { start bench 22; }
+
+teardown_file() { stop; }
+
+@test "version" {
+	run ethercat version
+	[ "${#lines[@]}" = 1 ]
+	[[ "$output" =~ ^"EtherCAT master "[0-9]+\.[0-9]+ ]]
+	json '.abi == 1 and (.version | test("^[0-9]+[.]"))' version
+}
+
+@test "master" {
+	run ethercat master -v
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "Master0" ]
+	[ "${lines[1]}" = "  Phase: Idle" ]
+	[ "${lines[2]}" = "  Active: no" ]
+	[ "${lines[3]}" = "  Slaves: 22" ]
+	[[ "${lines[5]}" =~ ^"    Main: "([0-9a-f]{2}:){5}[0-9a-f]{2}" (attached)"$ ]]
+	[ "${lines[6]}" = "      Link: UP" ]
+	[[ "$output" == *"Lost frames: 0"* ]]
+	[[ "$output" == *"Slaves responding: 22"* ]]
+	json '.masters | length == 1 and (.[0] | .phase == "idle" and .slaves == 22 and
+		.slaves_responding == 22 and .scan_busy == false and .scans >= 1 and
+		.devices[0].attached and .devices[0].link_up and .devices[0].interface == "sim0" and
+		.common.lost_frames == 0 and .common.tx_frames > 0 and
+		.common.rx_frames <= .common.tx_frames and .dc.reference_clock == null)' master
+}
+
+@test "slaves" {
+	run ethercat slaves
+	[ "$status" = 0 ]
+	[ "${#lines[@]}" = 22 ]
+	[ "${lines[0]}" = " 0     1:0  PREOP  +  EK1100 Coupler" ]
+	[ "${lines[11]}" = "11  1001:0  PREOP  +  EL2008 8-ch output" ]
+	[ "${lines[14]}" = "14  1001:3  PREOP  +  EL4002 2-ch analog output 0-10 V" ]
+	[ "$(ethercat slaves -p4-5,1)" = "$(printf '%s\n' \
+		'1  1:1  PREOP  +  EL1859 8-ch input, 8-ch output' \
+		'4  1:4  PREOP  +  EL7201 servo terminal' \
+		'5  1:5  PREOP  +  EL7201 servo terminal')" ]
+	[ "$(ethercat slaves -a1001 | wc -l)" = 4 ]
+	[ "$(ethercat slaves -a1001 -p3 | awk '{ print $1 }')" = 14 ]
+	[ -z "$(ethercat slaves -p22- 2>&1)" ]
+	json '.masters[0].slaves | length == 22 and all(.[]; .state == "PREOP" and
+		(.al_error | not) and (.flag_error | not)) and .[11].alias == 1001 and
+		.[4].mailboxes.protocols == ["CoE", "FoE"] and .[0].ports[2].next_slave == 15' slaves
+}
+
+@test "slaves --verbose" {
+	run ethercat slaves -v -p4
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "=== Master 0, Slave 4 ===" ]
+	[ "${lines[1]}" = "Device: Main" ]
+	[ "${lines[2]}" = "State: PREOP" ]
+	[ "${lines[3]}" = "Flag: +" ]
+	[ "${lines[5]}" = "  Vendor Id:       0x00000002" ]
+	[ "${lines[6]}" = "  Product code:    0x1c213052" ]
+	[[ "$output" == *"Distributed clocks: yes, 64 bit"* ]]
+	[[ "$output" =~ "   0  EBUS  up    open    yes             3" ]]
+	[[ "$output" == *"  Standard  RX: 0x1000/256, TX: 0x1100/256"* ]]
+	[[ "$output" == *"  Device name: EL7201 servo terminal"* ]]
+	[[ "$output" == *"    Enable SDO: yes"* ]]
+	[ "$(ethercat slaves -v | grep -c '^=== Master 0, Slave [0-9]* ===$')" = 22 ]
+	# four rows of ports each
+	[ "$(ethercat slaves -v | grep -cE '^   [0-3]  (EBUS|MII |N/A |N/C )  (up  |down)  (open  |closed)')" = 88 ]
+}
+
+@test "pdos" {
+	[ "$(ethercat pdos -p10)" = "$(printf '%s\n' \
+		'SM0: PhysAddr 0x1000, DefaultSize    1, ControlRegister 0x00, Enable 1' \
+		'  TxPDO 0x1a00 "Channel 1"' '    PDO entry 0x6000:01,  1 bit, "Input"' \
+		'  TxPDO 0x1a01 "Channel 2"' '    PDO entry 0x6010:01,  1 bit, "Input"' \
+		'  TxPDO 0x1a02 "Channel 3"' '    PDO entry 0x6020:01,  1 bit, "Input"' \
+		'  TxPDO 0x1a03 "Channel 4"' '    PDO entry 0x6030:01,  1 bit, "Input"')" ]
+	run ethercat pdos -p4
+	[ "${#lines[@]}" = 12 ]
+	[ "${lines[2]}" = "SM2: PhysAddr 0x1200, DefaultSize    6, ControlRegister 0x24, Enable 1" ]
+	[ "${lines[3]}" = '  RxPDO 0x1600 "DRV Controlword"' ]
+	[ "${lines[4]}" = '    PDO entry 0x7010:01, 16 bit, "Controlword"' ]
+	[ "$(ethercat pdos -q -p4 | wc -l)" = 8 ]
+	# couplers have no sync managers and get no header
+	[ "$(ethercat pdos -q | grep -c '^=== Master 0, Slave')" = 18 ]
+	json '.masters[0].slaves[0].sync_managers[2].pdos[0] | .index == 5632 and
+		.direction == "rx" and .entries[0].size_bits == 16' pdos -p4
+	ethercat pdos -s etherlab -p4 | grep -q "function rv = slave4()"
+}
+
+@test "upload" {
+	[ "$(ethercat upload -p4 0x1018 1)" = "0x00000002 2" ]
+	[ "$(ethercat -p 4 sdo_upload --type uint32 0x1018:02)" = "0x1c213052 471937106" ]
+	[ "$(ethercat upload -a1 -p4 0x1018 1)" = "0x00000002 2" ]
+	[ "$(ethercat upload -p4 -t string 0x1008 0)" = "EL7201" ]
+	json '.value == 2 and .data_hex == "02000000" and .slave == 4' upload -p4 0x1018 1
+	# complete access: the number of entries, a gap, then the entries
+	[ "$(ethercat upload -p17 -t raw 0x1018 | cut -d' ' -f1-6)" = "0x04 0x00 0x51 0xec 0x00 0x00" ]
+}
+
+@test "download" {
+	ethercat download -p17 -t int8 0x6060 0 -1
+	[ "$(ethercat upload -p17 -t int8 0x6060 0)" = "0xff -1" ]
+	echo 8 | ethercat sdo_download -p17 -t int8 0x6060 0 -
+	[ "$(ethercat upload -p17 0x6060 0)" = "0x08 8" ]
+	[ -z "$(ethercat download -p17 -t int8 0x6060 0 0 2>&1)" ]
+	json '.index == 24672 and .size_bytes == 1' download -p17 -t int8 0x6060 0 8
+}
+
+@test "a slave refuses an SDO: abort code with its text" {
+	refused 'slave 17: SDO upload 0x9999:00 aborted with code 0x06020000: .*object' \
+		upload -p17 0x9999 0
+	refused 'aborted with code 0x06090011: .*subindex' upload -p17 0x1018 77
+	refused 'SDO download 0x1018:01 aborted with code 0x06010002: .*read' \
+		download -p17 -t uint32 0x1018 1 5
+	refused 'aborted with code 0x0607001' download -p17 -t uint32 0x6060 0 5
+	refused 'slave 0 has no CoE mailbox' upload -p0 0x1018 1
+	refused 'uint8 has 1 byte.*4 were received' upload -p4 -t uint8 0x1018 1
+	ethercat states INIT -p17 --wait
+	refused 'PREOP' upload -p17 0x1018 1
+	ethercat states PREOP -p17 --wait
+	! ethercat upload -j -p17 0x9999 0 2>"$BATS_TEST_TMPDIR/err" >/dev/null
+	jq -e '.error | .abort_code == 100794368 and .command == "upload"' "$BATS_TEST_TMPDIR/err"
+}
+
+@test "states" {
+	run ethercat states -p3,11
+	[ "$output" = "$(printf '%s\n' ' 3     1:3  PREOP' '11  1001:0  PREOP')" ]
+	run ethercat states INIT -p1,4,17 --wait
+	[ "$status" = 0 ]
+	[ -z "$output" ]
+	[ "$(ethercat slaves | grep -c INIT)" = 3 ]
+	ethercat states preop
+	wait_for 10 all_slaves_are PREOP 22
+	json '.masters[0].slaves | length == 22 and .[0].state == "PREOP"' states
+	json '.masters[0].slaves | length == 1 and .[0].state == "INIT"' states INIT -p2 --wait
+	ethercat states PREOP -p2 --wait
+}
+
+@test "states: a slave refuses" {
+	# no application has configured its process data
+	refused 'slave 4: cannot reach OP, it is in SAFEOP: .*AL status code 0x[0-9a-f]{4}: .+' \
+		states OP -p4 --wait
+	[[ "$(ethercat slaves -p4)" == "4  1:4  SAFEOP  E  EL7201"* ]]
+	ethercat slaves -v -p4 | grep -q '^  Cause: refused OP: AL status code 0x'
+	ethercat states -p4 | grep -q '^4  1:4  SAFEOP  .*0x00'
+	json '.masters[0].slaves[0] | .flag_error and .cause != ""' states -p4
+	ethercat states PREOP --wait
+	[ "$(ethercat states -p4)" = "4  1:4  PREOP" ]
+}
+
+@test "sii_read" {
+	words=$(ethercat slaves -p4 -j | jq '.masters[0].slaves[0].sii_words')
+	ethercat sii_read -p4 >"$BATS_TEST_TMPDIR/sii"
+	[ "$(wc -c <"$BATS_TEST_TMPDIR/sii")" = $((2 * words)) ]
+	# vendor and product at word 8
+	[ "$(xxd -s 16 -l 8 -p "$BATS_TEST_TMPDIR/sii")" = 020000005230211c ]
+	run ethercat sii_read -p4 -v
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "SII Area:" ]
+	[[ "$output" == *"SII Category 0x000a (STRINGS), "* ]]
+	[[ "$output" == *"SII Category 0x0029 (SyncM), 16 words"* ]]
+	json '.checksum_ok and .complete and .product_code == 471937106 and
+		(.categories | map(.name) | contains(["General", "RXPDO"]))' sii_read -v -p4
+}
+
+@test "reg_read, reg_write" {
+	[ "$(ethercat reg_read -p1 -t uint16 0x0130)" = "0x0002 2" ]
+	run ethercat reg_read -p1 0 4
+	[[ "$output" =~ ^(0x[0-9a-f]{2} ){3}0x[0-9a-f]{2}$ ]]
+	before=$(ethercat reg_read -p1 -t uint16 0x0420)
+	ethercat reg_write -p1 -t uint16 0x0420 1234
+	[ "$(ethercat reg_read -p1 -t uint16 0x0420)" = "0x04d2 1234" ]
+	printf '\001\002' >"$BATS_TEST_TMPDIR/f"
+	ethercat reg_write -p1 0x0420 "$BATS_TEST_TMPDIR/f"
+	[ "$(ethercat reg_read -p1 0x0420 2)" = "0x01 0x02" ]
+	printf '\003\004' | ethercat reg_write -e -p1 0x0420 -
+	json '.value == 1027 and .data_hex == "0304" and .address == 1056' \
+		reg_read -p1 -t uint16 0x0420
+	json '.size_bytes == 2' reg_write -p1 -t uint16 0x0420 "${before#* }"
+	refused 'expected 0 to 0xffff' reg_read -p1 0x10000 1
+	refused 'registers end at 0xffff' reg_read -p1 0xffff 2
+	refused 'cannot read register 0xfff0.*slave 1 refused' reg_read -p1 0xfff0 16
+	refused 'refused|no slave|not there|did not' reg_write -e -p99 -t uint8 0x0420 1
+}
+
+@test "wrong selection" {
+	refused 'matches 22 slaves of the 22 present' upload 0x1018 1
+	refused 'matches 0 slaves of the 22 present' upload -p22 0x1018 1
+	refused 'matches 0 slaves' reg_read -a77 0 1
+	refused 'invalid list' slaves -p 1x
+	refused 'none of the 1 master' reg_read -m3 -p0 0 1
+}
+
+@test "rescan" {
+	before=$(ethercat master -j | jq '.masters[0].scans')
+	run ethercat rescan --wait
+	[ "$status" = 0 ]
+	[ -z "$output" ]
+	after=$(ethercat master -j | jq '.masters[0].scans')
+	[ "$after" -gt "$before" ]
+	wait_for 20 all_slaves_are PREOP 22
+	json '.masters == [{"master": 0}]' rescan
+	ethercat slaves --wait >/dev/null
+	wait_for 20 all_slaves_are PREOP 22
+}
+
+@test "debug" {
+	ethercat debug 1
+	json '.masters[0].debug_level == 1' master
+	json '.masters == [{"master": 0, "debug_level": 0}]' debug 0
+	refused 'invalid level' debug 3
+}
+
+@test "graph" {
+	for a in "" DC crc; do
+		run ethercat graph $a
+		[ "$status" = 0 ]
+		[ "$(grep -c -- ' -- ' <<<"$output")" = 22 ]
+		[ "$(grep -c '^	slave[0-9]* \[' <<<"$output")" = 22 ]
+		[ "${lines[-1]}" = "}" ]
+	done
+	ethercat graph | grep -q '^	slave0 -- slave15 \[label="MII", weight="1", taillabel="2", headlabel="0"\]$'
+	ethercat graph dc | grep -q 'DC: 64 bit'
+	json '(.links | length == 21) and (.slaves | length == 22)' graph
+}
+
+@test "crc" {
+	run ethercat crc
+	[ "$status" = 0 ]
+	[ "${#lines[@]}" = 24 ]
+	[[ "${lines[3]}" == "  1|  0   0   0   ↑|  0   0   0   ↓|               |               |EL1859 8-ch" ]]
+	ethercat crc reset
+	json '.slaves | length == 22 and all(.[].ports[]; .crc_errors == 0)' crc
+}
+
+@test "no application: nothing configured" {
+	for c in config "config -v" domains "domains -v" data; do
+		run ethercat $c
+		[ "$status" = 0 ]
+		[ -z "$output" ]
+	done
+	json '.masters[0].configs == []' config
+	json '.masters[0].domains == []' domains
+	json '.masters[0].domains == []' data
+}
+
+@test "a user without write permission may look and change nothing" {
+	as_nobody() { setpriv --reuid=65534 --regid=65534 --clear-groups "$EC_BUILD/tool/ethercat" "$@"; }
+	for c in slaves master pdos "cstruct -p4" config domains "sii_read -p4 -v" graph states; do
+		run as_nobody $c
+		[ "$status" = 0 ]
+	done
+	[ "$(as_nobody slaves)" = "$(ethercat slaves)" ]
+	for c in "upload -p4 0x1018 1" "reg_read -p4 0 1" "reg_write -p4 -t uint8 0 1" rescan \
+		"states OP" "debug 1" "download -p4 -t int8 0x6060 0 1" "crc reset"; do
+		run as_nobody $c
+		[ "$status" = 1 ]
+		[[ "$output" == *"/dev/EtherCAT0: Permission denied"* ]]
+	done
+}
+
+@test "no interface, no slaves" {
+	rmmod ec_sim
+	[ -z "$(ethercat slaves 2>/dev/null)" ]
+	[[ "$(ethercat slaves 2>&1)" == *"waiting for sim0"* ]]
+	ethercat master | grep -q 'Phase: Waiting for device(s)...'
+	refused 'there are no slaves: no network interface yet, waiting for sim0' upload 0x1018 1
+	for c in slaves pdos cstruct config domains data graph; do
+		ethercat $c -j 2>/dev/null | jq -e . >/dev/null
+	done
+}
+
+@test "two masters, one waits for its interface" {
+	stop
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0,sim1
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=thin
+	wait_for 20 all_slaves_are PREOP 2
+	[ "$(ethercat slaves 2>/dev/null)" = "$(printf '%s\n' Master0 \
+		'  0  0:0  PREOP  +  EK1100 Coupler' '  1  0:1  PREOP  +  EL2008 8-ch output' \
+		Master1)" ]
+	[ "$(ethercat slaves -m0 | wc -l)" = 2 ]
+	[ -z "$(ethercat slaves -m1 2>/dev/null)" ]
+	[ "$(ethercat master | grep -c '^Master')" = 2 ]
+	json '.masters | map(.phase) == ["idle", "waiting"]' master
+	refused 'needs exactly one of the 2 masters' reg_read -p1 0 1
+	ethercat reg_read -m0 -p1 0 1
+	refused 'there are no slaves' reg_read -m1 0 1
+	ethercat pdos | grep -q '=== Master 0, Slave 1 ==='
+	ethercat debug -m 0-1 0
+}
+
+@test "a thousand slaves" {
+	stop
+	start line1000 1000
+	json '.masters[0].slaves | length == 1000' slaves -p 0-999
+	# from the first system call to the last, in the guest's time
+	t0=$(date +%s%N)
+	[ "$(ethercat slaves | wc -l)" = 1000 ]
+	[ $((($(date +%s%N) - t0) / 1000000)) -lt 2000 ]
+	[ "$(ethercat slaves -p 500)" = "500  0:500  PREOP  +  $(ethercat slaves -p 500 | cut -d+ -f2 | cut -c3-)" ]
+}
+
+@test "no module: the error says what to do" {
+	stop
+	refused '/dev/EtherCAT0: No such file or directory: load the module' slaves
+	refused 'modprobe ec_master' upload -p1 0x1018 1
+	ethercat version
+	ethercat help >/dev/null
+}
