@@ -25,7 +25,7 @@ for f in ${*:-tests/system/*.bats}; do
 	echo "# $f"
 	out=$(mktemp)
 	read -ra options < <(sed -n 's/^# vm: *//p' "$f" | grep . || echo --icount)
-	tests/vm/run.sh --kernel "$kernel" --timeout 300 "${options[@]}" -- \
+	tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" bats --tap "$f" >"$out" 2>&1
 	rc=$?
 	grep -E '^(ok|not ok|#)' "$out"
