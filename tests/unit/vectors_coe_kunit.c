@@ -237,9 +237,12 @@ static void sdo_information_of_the_slave(struct kunit *test)
 	struct ec_sdoinfo_resp r;
 	struct ec_sdoinfo s;
 
+	memset(&req, 0xAA, sizeof(req));
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_req_decode(list_req, 8, &req), 0);
 	KUNIT_EXPECT_EQ(test, req.opcode, EC_SDOINFO_LIST_REQ);
 	KUNIT_EXPECT_EQ(test, req.index, EC_SDOINFO_ALL);
+	KUNIT_EXPECT_EQ(test, req.sub, 0);
+	KUNIT_EXPECT_EQ(test, req.info, 0);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_req_decode(entry_req, 10, &req), 0);
 	KUNIT_EXPECT_EQ(test, req.opcode, EC_SDOINFO_ENTRY_REQ);
 	KUNIT_EXPECT_EQ(test, req.index, 0x1018);
