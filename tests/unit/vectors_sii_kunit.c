@@ -177,6 +177,7 @@ static void the_same_image_built(struct kunit *test)
 	struct ec_sii_builder b;
 	static u8 buf[512];
 
+	memset(buf, 0x55, sizeof(buf));
 	ec_sii_build_begin(&b, buf, sizeof(buf), &info);
 	g.group = g.order = g.name = ec_sii_build_string(&b, "Drive");
 	g.group_name = ec_sii_build_string(&b, "DC");
