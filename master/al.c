@@ -20,6 +20,7 @@ int ec_al_read(struct ec_slave *slave)
 	if (!ret) {
 		WRITE_ONCE(slave->al_status, get_unaligned_le16(b));
 		WRITE_ONCE(slave->al_code, get_unaligned_le16(b + 4));
+		WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
 	}
 	return ret;
 }

@@ -20,14 +20,14 @@ static void own_devices(struct ec_master *m, bool cycle)
 }
 
 /* A frame left for the cyclic caller; its waiter may give up at any time. */
-static int xq_push(struct ec_master *m, struct ec_slot *slot)
+static int xq_push(struct ec_master *m, struct ec_slot *slot, bool urgent)
 {
 	unsigned long flags;
 	int ret = -EBUSY;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
 	if (m->xq_head - m->xq_tail < EC_SLOTS) {
-		m->xq[m->xq_head++ % EC_SLOTS] =
+		m->xq[(urgent ? --m->xq_tail : m->xq_head++) % EC_SLOTS] =
 			(struct ec_queued){ .slot = slot, .seq = slot->seq };
 		ret = 0;
 	}
@@ -55,13 +55,19 @@ static struct ec_slot *xq_peek(struct ec_master *m)
 	return slot;
 }
 
-static void xq_drop(struct ec_master *m)
+/* @slot was sent; an urgent one may stand before it by now. */
+static void xq_drop(struct ec_master *m, const struct ec_slot *slot)
 {
 	unsigned long flags;
+	unsigned int i;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	if (m->xq_head != m->xq_tail)
-		m->xq_tail++;
+	for (i = m->xq_tail; i != m->xq_head; i++)
+		if (m->xq[i % EC_SLOTS].slot == slot) {
+			/* skipped by the next xq_peek() */
+			m->xq[i % EC_SLOTS].seq--;
+			break;
+		}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
 }
 
@@ -103,7 +109,7 @@ static void flush(struct ec_master *m)
 
 	while ((slot = xq_peek(m))) {
 		ec_link_send(&m->link[0], slot);
-		xq_drop(m);
+		xq_drop(m, slot);
 	}
 }
 
@@ -191,11 +197,12 @@ u32 ec_cycle_timeout_us(const struct ec_master *m)
  * ec_cycle_submit() - send an acyclic frame, now or with the next cycle
  * @m: master
  * @slot: built frame
+ * @urgent: before what others have left
  *
  * Context: Process. May sleep on the link's lock.
  * Return: 0, -ENODEV, -ENETDOWN, -EBUSY; the slot is in BUILD on failure.
  */
-int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot)
+int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
 {
 	u64 now = ktime_get_ns();
 	int ret;
@@ -206,7 +213,7 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot)
 	} else {
 		/* the waiter may give up from now on */
 		ec_slot_arm(&m->slots, slot, 0, now);
-		ret = xq_push(m, slot);
+		ret = xq_push(m, slot, urgent);
 		if (ret)
 			disarm(slot, now);
 	}
@@ -237,6 +244,6 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 			break;
 		first = false;
 		ec_link_send(&m->link[0], slot);
-		xq_drop(m);
+		xq_drop(m, slot);
 	}
 }

@@ -111,7 +111,7 @@ struct ec_cycle {
 	u64 cycles;
 };
 
-int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot);
+int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent);
 u32 ec_cycle_timeout_us(const struct ec_master *m);
 void ec_cycle_own(struct ec_master *m, enum ec_owner owner);
 bool ec_cycle_stalled(struct ec_master *m);

@@ -67,12 +67,16 @@ static void check_slaves(struct ec_master *m)
 {
 	struct ec_dg *dg;
 	u8 (*al)[6];
+	u32 *reads;
 	unsigned int i;
 
 	dg = kvcalloc(m->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
 	al = kvcalloc(m->n_slaves + 1, sizeof(*al), GFP_KERNEL);
-	if (!dg || !al)
+	reads = kvcalloc(m->n_slaves + 1, sizeof(*reads), GFP_KERNEL);
+	if (!dg || !al || !reads)
 		goto out;
+	for (i = 0; i < m->n_slaves; i++)
+		reads[i] = READ_ONCE(m->slaves[i]->al_reads);
 	for (i = 0; i < m->n_slaves; i++)
 		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->slaves[i]->station,
 					    EC_REG_AL_STATUS, 6, al[i]);
@@ -83,20 +87,22 @@ static void check_slaves(struct ec_master *m)
 
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
-		if (!work_busy(&s->work))
-			log_change(s, status, code);
+		/* its worker knows better */
+		if (work_busy(&s->work) || READ_ONCE(s->al_reads) != reads[i])
+			continue;
+		log_change(s, status, code);
 		if (status != s->al_status || code != s->al_code) {
 			WRITE_ONCE(s->al_status, status);
 			WRITE_ONCE(s->al_code, code);
 		}
 		/* fallen back by itself: bring it up again */
-		if (!s->error && !work_busy(&s->work) &&
-		    (status & EC_AL_STATE_MASK) != s->requested)
+		if (!s->error && (status & EC_AL_STATE_MASK) != s->requested)
 			ec_slave_request(s, s->requested);
 	}
 out:
 	kvfree(dg);
 	kvfree(al);
+	kvfree(reads);
 }
 
 /* All slaves in the state they shall have, none with an error? */
@@ -132,7 +138,11 @@ static void count_slaves(struct watch *w)
 
 	dg.repeat = false;
 	for (try = 0; try < TRIES && w->link_up; try++) {
-		if (ec_xfer(m, &dg, 1))
+		int ret = ec_xfer_urgent(m, &dg, 1);
+
+		if (ret == -EBUSY || ret == -ENOMEM)
+			return;		/* nothing was sent, so nothing is known */
+		if (ret)
 			continue;
 		count = dg.back;
 		ored = get_unaligned_le16(al);

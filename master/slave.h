@@ -48,6 +48,8 @@ struct ec_master;
  * Changing:
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
+ * @al_reads: how often a worker has read the two: what was asked for before
+ *	is older
  * @requested: AL state it shall reach
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
@@ -93,6 +95,7 @@ struct ec_slave {
 
 	u16 al_status;
 	u16 al_code;
+	u32 al_reads;
 	u8 requested;
 	u8 error;
 	char why[EC_UAPI_REASON];

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
 #include <linux/etherdevice.h>
+#include <linux/ktime.h>
 #include <linux/vmalloc.h>
 #include "slots.h"
 
@@ -19,6 +21,7 @@ int ec_slots_init(struct ec_slots *s)
 		return -ENOMEM;
 	for (i = 0; i < EC_SLOTS; i++)
 		s->slot[i].index = i;
+	sema_init(&s->acyclic, EC_SLOTS - EC_SLOTS_CYCLE);
 	return 0;
 }
 
@@ -72,8 +75,8 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 {
 	struct ec_slot *slot;
 
-	if (!cyclic && atomic_inc_return(&s->acyclic) > EC_SLOTS - EC_SLOTS_CYCLE)
-		goto none;
+	if (!cyclic && down_trylock(&s->acyclic))
+		return NULL;
 	slot = search(s, now_ns, EC_QUARANTINE_NS);
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
@@ -81,11 +84,34 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 	 */
 	if (!slot && cyclic)
 		slot = search(s, now_ns, 0);
-	if (slot)
-		return slot;
-none:
-	if (!cyclic)
-		atomic_dec(&s->acyclic);
+	if (!slot && !cyclic)
+		up(&s->acyclic);
+	return slot;
+}
+
+/**
+ * ec_slot_wait() - take a slot that is not for the cycle; first come, first served
+ * @s: slots
+ * @timeout_ms: how long to wait
+ *
+ * Context: Process. May sleep.
+ * Return: the slot in state BUILD, or NULL.
+ */
+struct ec_slot *ec_slot_wait(struct ec_slots *s, unsigned int timeout_ms)
+{
+	struct ec_slot *slot;
+	unsigned int i;
+
+	if (down_timeout(&s->acyclic, msecs_to_jiffies(timeout_ms)))
+		return NULL;
+	/* the place is ours; a slot of a lost frame may be in quarantine still */
+	for (i = 0; i < 100; i++) {
+		slot = search(s, ktime_get_ns(), EC_QUARANTINE_NS);
+		if (slot)
+			return slot;
+		usleep_range(300, 500);
+	}
+	up(&s->acyclic);
 	return NULL;
 }
 
@@ -101,7 +127,7 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
 {
 	atomic_set_release(&slot->state, EC_SLOT_FREE);
 	if (!cyclic)
-		atomic_dec(&s->acyclic);
+		up(&s->acyclic);
 }
 
 /**
@@ -115,7 +141,7 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
  */
 void ec_slot_abandon(struct ec_slots *s)
 {
-	atomic_dec(&s->acyclic);
+	up(&s->acyclic);
 }
 
 /**

@@ -13,6 +13,7 @@
 #define EC_SLOTS_H
 
 #include <linux/atomic.h>
+#include <linux/semaphore.h>
 #include <linux/types.h>
 #include "limits.h"
 #include "wire/frame.h"
@@ -59,13 +60,13 @@ struct ec_queued {
  * @slot: the slots
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
- * @acyclic: slots held by ec_xfer()
+ * @acyclic: slots ec_xfer() may still take
  */
 struct ec_slots {
 	struct ec_slot *slot;
 	atomic_t hint;
 	atomic_t seq;
-	atomic_t acyclic;
+	struct semaphore acyclic;
 };
 
 enum ec_match {
@@ -77,6 +78,7 @@ enum ec_match {
 int ec_slots_init(struct ec_slots *s);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
+struct ec_slot *ec_slot_wait(struct ec_slots *s, unsigned int timeout_ms);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic);
 void ec_slot_abandon(struct ec_slots *s);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);

@@ -7,6 +7,7 @@
 #include "xfer.h"
 
 #define TRIES	4	/* of a repeatable datagram */
+#define SLOT_WAIT_MS	1000	/* many hundred may be at work at once */
 
 /* one frame of a batch: the slot and the datagrams it carries */
 struct batch_frame {
@@ -22,6 +23,7 @@ struct batch_frame {
  */
 struct half {
 	struct ec_xfer x;
+	bool urgent;
 	unsigned int frames;
 	struct batch_frame f[EC_XFER_WINDOW / 2];
 };
@@ -94,20 +96,6 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 	}
 }
 
-/* Waits for a free slot when all are in use by others; bounded. */
-static struct ec_slot *get_slot(struct ec_master *m, bool wait)
-{
-	u64 until = ktime_get_ns() + EC_QUARANTINE_NS * 2;
-	struct ec_slot *slot;
-
-	for (;;) {
-		slot = ec_slot_get(&m->slots, false, ktime_get_ns());
-		if (slot || !wait || ktime_get_ns() > until)
-			return slot;
-		usleep_range(100, 200);
-	}
-}
-
 /*
  * Send half a window of frames from datagram @first on; with @wait a slot is
  * waited for. Returns the first datagram that is left.
@@ -124,14 +112,16 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 			first++;
 		if (first >= n)
 			break;
-		f->slot = get_slot(m, wait && !h->frames);
+		f->slot = h->urgent ? ec_slot_get(&m->slots, true, ktime_get_ns()) :
+			  wait && !h->frames ? ec_slot_wait(&m->slots, SLOT_WAIT_MS) :
+			  ec_slot_get(&m->slots, false, ktime_get_ns());
 		if (!f->slot)
 			break;
 		build(m, f, dg, first, n);
 		first += f->count;
 		f->slot->xfer = &h->x;
 		atomic_inc(&h->x.pending);
-		f->err = ec_cycle_submit(m, f->slot);
+		f->err = ec_cycle_submit(m, f->slot, h->urgent);
 		if (f->err)
 			ec_xfer_done(&h->x);
 	}
@@ -160,10 +150,10 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 	}
 	for (i = 0; i < h->frames; i++) {
 		collect(&h->f[i], dg);
-		if (h->f[i].err == -ETIMEDOUT)
+		if (h->f[i].err != -ETIMEDOUT)
+			ec_slot_put(&m->slots, h->f[i].slot, h->urgent);
+		else if (!h->urgent)
 			ec_slot_abandon(&m->slots);
-		else
-			ec_slot_put(&m->slots, h->f[i].slot, false);
 	}
 	h->frames = 0;
 }
@@ -192,20 +182,7 @@ static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, u
 			dg[i].err = -EBUSY;
 }
 
-/**
- * ec_xfer() - exchange a batch of datagrams
- * @m: master
- * @dg: datagrams; results are in them
- * @n: how many; they are packed into as few frames as fit
- *
- * Repeatable datagrams are sent again when their frame is lost, others never.
- *
- * Context: Process. Waits for bus traffic.
- * Return: 0 when every datagram came back (whatever its working counter), or
- * the error of the first that did not; -EMSGSIZE when one fits no frame, then
- * nothing was sent.
- */
-int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool urgent)
 {
 	struct half *half;
 	unsigned int i, try, again;
@@ -219,6 +196,8 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 	half = kmalloc_array(2, sizeof(*half), GFP_KERNEL);
 	if (!half)
 		return -ENOMEM;
+	half[0].urgent = urgent;
+	half[1].urgent = urgent;
 	for (try = 0; try < TRIES; try++) {
 		exchange(m, half, dg, n);
 		for (i = 0, again = 0; i < n; i++) {
@@ -234,6 +213,40 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 	for (i = 0; i < n && !ret; i++)
 		ret = dg[i].err;
 	return ret;
+}
+
+/**
+ * ec_xfer() - exchange a batch of datagrams
+ * @m: master
+ * @dg: datagrams; results are in them
+ * @n: how many; they are packed into as few frames as fit
+ *
+ * Repeatable datagrams are sent again when their frame is lost, others never.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 when every datagram came back (whatever its working counter), or
+ * the error of the first that did not; -EMSGSIZE when one fits no frame, then
+ * nothing was sent.
+ */
+int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(m, dg, n, false);
+}
+
+/**
+ * ec_xfer_urgent() - exchange a few datagrams before all others
+ * @m: master
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * For the monitor: it must see the bus while many others are at work.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(m, dg, n, true);
 }
 
 /**
