@@ -28,6 +28,11 @@ static int sdo_failed(struct ec_file *f, const struct ec_ioc_sdo *i, int ret)
 				 i->position);
 	case -ETIMEDOUT:
 		return ec_refuse(f, ret, "slave %u did not answer in time", i->position);
+	case -EBADMSG:
+	case -EMSGSIZE:
+	case -EPROTO:
+		return ec_refuse(f, ret, "SDO 0x%04x:%02x: slave %u sent a mailbox message that cannot be (length or content)",
+				 i->index, i->subindex, i->position);
 	case -ENOBUFS:
 		return ec_refuse(f, ret, "SDO 0x%04x:%02x is larger than %u bytes", i->index,
 				 i->subindex, i->size);

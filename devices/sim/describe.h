@@ -23,6 +23,7 @@
  *		refuse NAME STATE code=N  allow NAME
  *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
  *		wkc NAME add=N  errors NAME.PORT add=N
+ *		mailbox NAME good|length|short|counter|type|babble (its messages)
  *		emergency NAME code=N [register=N]
  *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]
  *			[copies=N] [by=TIME]

@@ -30,6 +30,7 @@ static const struct verb {
 	{ "noack", SLAVE, EC_SIM_FAULT_EEPROM_NOACK, 0 },
 	{ "wkc", SLAVE, EC_SIM_FAULT_WKC, 0 },
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
+	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
 	{ "lose", FRAME, EC_SIM_FAULT_LOSE, 0 },
 	{ "duplicate", FRAME, EC_SIM_FAULT_DUPLICATE, 0 },
 	{ "delay", FRAME, EC_SIM_FAULT_DELAY, 0 },
@@ -59,6 +60,23 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 		return -EINVAL;
 	f->arg2 = (u32)code;
 	return 0;
+}
+
+static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
+		"good", "length", "short", "counter", "type", "babble",
+	};
+	struct ec_desc_word *w = ec_desc_next(d);
+
+	for (u32 i = 0; i < ARRAY_SIZE(kinds); i++) {
+		if (ec_desc_is(w, kinds[i])) {
+			f->arg = i;
+			return 0;
+		}
+	}
+	return ec_desc_fail(d, "mailbox messages are good, or wrong in length, short, counter, type, babble",
+			    NULL, "");
 }
 
 static int frame(struct ec_desc *d, struct ec_sim_fault *f)
@@ -176,6 +194,8 @@ int ec_desc_fault(struct ec_desc *d)
 	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);
 	if (!ret && !strcmp(v->name, "refuse"))
 		ret = refuse(d, &f);
+	if (!ret && v->type == EC_SIM_FAULT_MAILBOX)
+		ret = mailbox(d, &f);
 	if (!ret && v->type == EC_SIM_FAULT_EEPROM_NOACK)
 		ret = option(d, &f, "count", 0, 0xFFFFFFFFll);
 	if (!ret && v->type == EC_SIM_FAULT_WKC)

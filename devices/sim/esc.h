@@ -227,6 +227,7 @@ struct ec_esc_dc {
  * @al_refuse: AL state (low 4 bits) the application must refuse, 0 = none
  * @al_code: AL status code to refuse with
  * @app_mute: the application answers no mailbox and no AL request
+ * @mailbox: enum ec_sim_mailbox_fault
  */
 struct ec_esc_fault {
 	bool dead;
@@ -237,6 +238,7 @@ struct ec_esc_fault {
 	u8 al_refuse;
 	u16 al_code;
 	bool app_mute;
+	u8 mailbox;
 };
 
 /**

@@ -19,6 +19,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_WKC] = "wkc",
 	[EC_SIM_FAULT_MUTE] = "mute",
 	[EC_SIM_FAULT_ERRORS] = "errors",
+	[EC_SIM_FAULT_MAILBOX] = "mailbox",
 };
 
 /**
@@ -65,6 +66,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
 		return true;
 	if (f->slave < 0 || f->slave >= (int)sim->count)
+		return false;
+	if (f->type == EC_SIM_FAULT_MAILBOX && f->arg >= EC_SIM_MAILBOX_FAULTS)
 		return false;
 	return !(cable || f->type == EC_SIM_FAULT_ERRORS) ||
 	       (f->port >= 0 && f->port < EC_MAX_PORT);
@@ -172,6 +175,9 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		break;
 	case EC_SIM_FAULT_MUTE:
 		esc->fault.app_mute = f->arg;
+		break;
+	case EC_SIM_FAULT_MAILBOX:
+		esc->fault.mailbox = (u8)f->arg;
 		break;
 	case EC_SIM_FAULT_ERRORS:
 		count = esc->mem + EC_REG_ERR_RX(f->port);

@@ -44,6 +44,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_WKC: (s16)@arg is added to its working counters, 0 ends it
  * @EC_SIM_FAULT_MUTE: the application does not answer while @arg is 1
  * @EC_SIM_FAULT_ERRORS: @arg is added to the error counters of @port
+ * @EC_SIM_FAULT_MAILBOX: messages from the mailbox are wrong, @arg is an
+ *                        enum ec_sim_mailbox_fault
  */
 enum ec_sim_fault_type {
 	EC_SIM_FAULT_CUT,
@@ -62,7 +64,27 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_WKC,
 	EC_SIM_FAULT_MUTE,
 	EC_SIM_FAULT_ERRORS,
+	EC_SIM_FAULT_MAILBOX,
 	EC_SIM_FAULT_TYPES
+};
+
+/**
+ * enum ec_sim_mailbox_fault - what is wrong with messages from a mailbox
+ * @EC_SIM_MAILBOX_GOOD: nothing
+ * @EC_SIM_MAILBOX_LENGTH: the header says more than the mailbox holds
+ * @EC_SIM_MAILBOX_SHORT: the header says one byte
+ * @EC_SIM_MAILBOX_COUNTER: each has the counter of the first
+ * @EC_SIM_MAILBOX_TYPE: another protocol
+ * @EC_SIM_MAILBOX_BABBLE: another protocol, again and again
+ */
+enum ec_sim_mailbox_fault {
+	EC_SIM_MAILBOX_GOOD,
+	EC_SIM_MAILBOX_LENGTH,
+	EC_SIM_MAILBOX_SHORT,
+	EC_SIM_MAILBOX_COUNTER,
+	EC_SIM_MAILBOX_TYPE,
+	EC_SIM_MAILBOX_BABBLE,
+	EC_SIM_MAILBOX_FAULTS
 };
 
 /**

@@ -371,9 +371,13 @@ int ec_app_model_parse(struct ec_app_model *m, const u8 *eeprom, size_t len)
 		info.boot.rx_offset, info.boot.rx_size,
 		info.boot.tx_offset, info.boot.tx_size,
 	};
+	/* an EEPROM with wrong contents makes a slave without mailbox */
 	if (d->std.rx_len > 1486 || d->std.tx_len > 1486 ||
-	    d->boot.rx_len > 1486 || d->boot.tx_len > 1486)
-		return -EINVAL;
+	    d->boot.rx_len > 1486 || d->boot.tx_len > 1486) {
+		memset(&d->std, 0, sizeof(d->std));
+		memset(&d->boot, 0, sizeof(d->boot));
+		d->protocols = 0;
+	}
 	d->coe = g.coe;
 	d->flags = g.flags;
 	d->current_ma = g.current_ma;

@@ -284,6 +284,30 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		coe(app, r.p, h.len, now, due);
 }
 
+/* What the script wants to be wrong with a message to the master. */
+static void spoil(struct ec_app *app)
+{
+	u8 *h = app->mbox.out;
+
+	switch (app->esc->fault.mailbox) {
+	case EC_SIM_MAILBOX_LENGTH:
+		put_unaligned_le16(0xffff, h);
+		break;
+	case EC_SIM_MAILBOX_SHORT:
+		put_unaligned_le16(1, h);
+		break;
+	case EC_SIM_MAILBOX_COUNTER:
+		h[5] = (u8)((h[5] & 0x0f) | 1 << 4);
+		break;
+	case EC_SIM_MAILBOX_TYPE:
+	case EC_SIM_MAILBOX_BABBLE:
+		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_FOE);
+		break;
+	default:
+		break;
+	}
+}
+
 /* moves what can be moved, until nothing does */
 static void step(struct ec_app *app, u64 now)
 {
@@ -302,6 +326,7 @@ static void step(struct ec_app *app, u64 now)
 			len = min(len, m->cap);
 			memset(m->out + m->out_len, 0, len - m->out_len);
 			m->out_in_sm = true;
+			spoil(app);
 			if (ec_esc_pdi_write(esc, esc->sm[1].page.start, m->out,
 					     len, now) < 0)
 				m->out_len = 0;
@@ -375,8 +400,10 @@ void ec_app_mbox_read(struct ec_app *app, u64 now)
 	if (m->out_len && m->out_in_sm) {
 		memcpy(m->last, m->out, m->out_len);
 		m->last_len = m->out_len;
-		m->out_len = 0;
 		m->out_in_sm = false;
+		if (app->esc->fault.mailbox != EC_SIM_MAILBOX_BABBLE)
+			m->out_len = 0;
+		m->out_due = now;
 	}
 	step(app, now);
 }

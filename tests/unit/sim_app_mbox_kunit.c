@@ -348,6 +348,44 @@ static void muted(struct kunit *test)
 			(u32)EC_AL_PREOP);
 }
 
+/* Header of the answer to an upload while the mailbox is wrong in way @kind. */
+static void spoiled_header(struct kunit *test, struct mb *x, u32 kind, u8 raw[6])
+{
+	struct ec_sim_fault f = { .type = EC_SIM_FAULT_MAILBOX, .arg = kind };
+
+	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(x->b->sim, &f), 0);
+	app_send(x->b, &x->m, EC_MBOX_COE, upload_request(&x->m, 0x1018, 1));
+	x->b->now += 5000000;
+	KUNIT_ASSERT_EQ(test, bed_rd(x->b, x->m.station, 0x1000 + 256, x->buf, 256), 1);
+	memcpy(raw, x->buf, 6);
+	/* the buffer is empty now, but for one that babbles */
+	x->b->now += 5000000;
+	KUNIT_EXPECT_EQ(test, !!(bed_get(x->b, x->m.station, EC_REG_SM(1) + EC_SM_OFS_STATUS, 1) &
+				 EC_SM_ST_FULL), kind == EC_SIM_MAILBOX_BABBLE);
+}
+
+static void spoiled(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n", 256);
+	struct ec_sim_fault f = { .type = EC_SIM_FAULT_MAILBOX, .arg = EC_SIM_MAILBOX_FAULTS };
+	u8 h[6];
+
+	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(x->b->sim, &f), -EINVAL);
+	spoiled_header(test, x, EC_SIM_MAILBOX_GOOD, h);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), 10);
+	KUNIT_EXPECT_EQ(test, h[5], 1 << 4 | EC_MBOX_COE);
+	spoiled_header(test, x, EC_SIM_MAILBOX_LENGTH, h);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), 0xffff);
+	spoiled_header(test, x, EC_SIM_MAILBOX_SHORT, h);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), 1);
+	spoiled_header(test, x, EC_SIM_MAILBOX_COUNTER, h);
+	KUNIT_EXPECT_EQ(test, h[5], 1 << 4 | EC_MBOX_COE);
+	spoiled_header(test, x, EC_SIM_MAILBOX_TYPE, h);
+	KUNIT_EXPECT_EQ(test, h[5], 5 << 4 | EC_MBOX_FOE);
+	spoiled_header(test, x, EC_SIM_MAILBOX_BABBLE, h);
+	KUNIT_EXPECT_EQ(test, h[5], 6 << 4 | EC_MBOX_FOE);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(identity),
 	KUNIT_CASE(aborts),
@@ -360,6 +398,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(delay),
 	KUNIT_CASE(emergencies),
 	KUNIT_CASE(muted),
+	KUNIT_CASE(spoiled),
 	{}
 };
 

@@ -84,6 +84,8 @@ static const struct {
 	{ "slave a EL2008\nfault lose", 2, "which frames" },
 	{ "slave a EL2008\nfault refuse a HEAVEN", 2, "write it as" },
 	{ "slave a EL2008\nfault wkc a", 2, "add=N" },
+	{ "slave a EL2008\nfault mailbox a", 2, "wrong in length" },
+	{ "slave a EL2008\nfault mailbox a full", 2, "wrong in length" },
 	{ "repeat 0 slave a EL2008", 1, "out of range" },
 	{ "repeat 70000 slave a EL2008", 1, "out of range" },
 	{ "slave a EK1100\nslave b EL2008\nbranch a 1\nslave c EL2008", 4,

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Frames that nobody sent, that are cut, changed, doubled, late or lost. */
+#include "bus.h"
+#include "devices/ecdev.h"
+#include "master/slots.h"
+
+static const char text[] =
+	"segment seed=11 response=100us transition=200us\n"
+	"slave a EK1100\nslave b EL2008\nslave c drive serial=9\n";
+
+#define N	3
+
+/* a frame the master waits for, and a good reply to it */
+struct expected {
+	struct ec_slot *slot;
+	u8 src[6];
+	u8 reply[EC_FRAME_HDR + EC_FRAME_BODY_MAX];
+	size_t len;
+};
+
+/* The frame has two datagrams, so that each header has a neighbour. */
+static void expect(struct bus *b, struct expected *e)
+{
+	struct ec_frame_buf fb;
+
+	e->slot = ec_slot_get(&b->m->slots, true, ktime_get_ns());
+	KUNIT_ASSERT_NOT_NULL(b->test, e->slot);
+	ec_frame_begin(&fb, e->slot->frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	memset(ec_frame_add(&fb, EC_CMD_FPRD, e->slot->index, 0x1001, 0x0130, 2), 0, 2);
+	memset(ec_frame_add(&fb, EC_CMD_LRW, e->slot->index, 0x0000, 0x0001, 8), 0, 8);
+	e->len = ec_frame_end(&fb);
+	e->slot->eth_len = EC_ETH_HDR + e->len;
+	ec_slot_arm(&b->m->slots, e->slot, 0, ktime_get_ns());
+	memcpy(e->src, e->slot->frame + 6, 6);
+	e->src[0] |= 2;
+	memcpy(e->reply, e->slot->frame + EC_ETH_HDR, e->len);
+}
+
+static void give(struct bus *b, const u8 *src, const u8 *data, size_t len)
+{
+	ecdev_receive(b->m->link[0].dev, src, data, len);
+}
+
+static u64 unmatched(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.unmatched);
+}
+
+static u64 late(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.late);
+}
+
+static int state(const struct expected *e)
+{
+	return atomic_read(&e->slot->state);
+}
+
+/* Not one changed bit of a header is taken; data and counters may be anything. */
+static void frame_changed(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct expected e;
+	u64 before = unmatched(b);
+	u32 refused = 0;
+	size_t i;
+	u8 bit;
+
+	expect(b, &e);
+	/* EtherCAT header; command, index, address, length of the first datagram */
+	for (i = 0; i < EC_FRAME_HDR + 8; i++) {
+		for (bit = 0; bit < 8; bit++) {
+			/* a slave with a closed port marks what circulates */
+			if (i == EC_FRAME_HDR + 7 && bit == 6)
+				continue;
+			/* bits the header reserves are no reason to refuse */
+			if (i == EC_FRAME_HDR + 7 && (bit == 3 || bit == 4 || bit == 5))
+				continue;
+			if (i == 1 && bit == 3)
+				continue;
+			e.reply[i] ^= 1 << bit;
+			give(b, e.src, e.reply, e.len);
+			e.reply[i] ^= 1 << bit;
+			refused++;
+			KUNIT_ASSERT_EQ_MSG(test, state(&e), EC_SLOT_SENT, "byte %zu bit %u", i,
+					    bit);
+		}
+	}
+	KUNIT_EXPECT_GE(test, unmatched(b) + late(b) - before, refused);
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
+	ec_slot_put(&b->m->slots, e.slot, true);
+}
+
+static void frame_truncated(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct expected e;
+	u64 before = unmatched(b);
+	size_t len;
+
+	expect(b, &e);
+	for (len = 0; len < e.len; len++) {
+		/* a copy, so that the tool sees a read behind it */
+		u8 *cut = kmemdup(e.reply, len, GFP_KERNEL);
+
+		give(b, e.src, cut, len);
+		kfree(cut);
+		KUNIT_ASSERT_EQ_MSG(test, state(&e), EC_SLOT_SENT, "%zu bytes", len);
+	}
+	KUNIT_EXPECT_GE(test, unmatched(b) - before, e.len);
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
+	/* a second copy is late, also when the slot is used again */
+	before = late(b);
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, late(b), before + 1);
+	ec_slot_put(&b->m->slots, e.slot, true);
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, late(b), before + 2);
+}
+
+/* The frame before, of the same slot, comes while the next is expected. */
+static void frame_of_before(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct expected e, next;
+	u64 before;
+
+	expect(b, &e);
+	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
+	msleep(50);
+	next = e;
+	ec_slot_arm(&b->m->slots, next.slot, 0, ktime_get_ns());
+	memcpy(next.src, next.slot->frame + 6, 6);
+	before = late(b);
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, late(b), before + 1);
+	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_SENT);
+	give(b, next.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_DONE);
+	ec_slot_put(&b->m->slots, next.slot, true);
+}
+
+/* Bytes by chance, of every length, while the bus works. */
+static void frame_foreign(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	u64 before = unmatched(b) + late(b);
+	u32 rnd = 12345, i, k;
+	u8 *buf = kunit_kzalloc(test, 1500, GFP_KERNEL);
+	u8 type[2];
+
+	for (i = 0; i < 3000; i++) {
+		for (k = 0; k < 1500; k += 3) {
+			rnd = rnd * 1664525 + 1013904223;
+			buf[k] = rnd >> 24;
+		}
+		give(b, buf, buf + 6, i % 1494);
+		if (i % 100)
+			continue;
+		KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 1)->station, EC_REG_TYPE,
+						   type, 2), 0);
+		KUNIT_ASSERT_MEMEQ(test, type, bus_slave(b, 1)->regs, 2);
+	}
+	KUNIT_EXPECT_EQ(test, unmatched(b) + late(b) - before, 3000);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0);
+}
+
+static const struct trouble {
+	const char *name;
+	const char *fault;
+	bool counted;	/* 300 us are within the time limit of a frame */
+} troubles[] = {
+	{ "lost", "fault at=1s lose rate=20000ppm\n", true },
+	{ "doubled", "fault at=1s duplicate rate=100000ppm copies=3\n", true },
+	{ "late", "fault at=1s delay rate=20000ppm by=50ms\n", true },
+	{ "late_a_little", "fault at=1s delay rate=100000ppm by=300us\n", false },
+};
+
+static void trouble_desc(const struct trouble *t, char *desc)
+{
+	strscpy(desc, t->name, KUNIT_PARAM_DESC_SIZE);
+}
+
+KUNIT_ARRAY_PARAM(trouble, troubles, trouble_desc);
+
+/* 2000 reads: each is right or an error, nearly all are right. */
+static void frame_trouble(struct kunit *test)
+{
+	const struct trouble *t = test->param_value;
+	char *all = kunit_kzalloc(test, 512, GFP_KERNEL);
+	struct bus *b;
+	u32 i, errors = 0;
+	u8 v[4];
+	int ret;
+
+	snprintf(all, 512, "%s%s", text, t->fault);
+	b = bus_up(test, all, N);
+	msleep(1000);
+	for (i = 0; i < 2000; i++) {
+		u32 k = i % N;
+
+		memset(v, 0xee, sizeof(v));
+		ret = ec_xfer_fprd(b->m, bus_slave(b, k)->station, EC_REG_TYPE, v, 4);
+		errors += ret != 0;
+		if (!ret)
+			KUNIT_ASSERT_MEMEQ(test, v, bus_slave(b, k)->regs, 4);
+	}
+	KUNIT_EXPECT_LT(test, errors, 3u);
+	bus_figure("fault_frame %s lost %llu late %llu unmatched %llu errors %u of 2000", t->name,
+		   bus_lost(b), late(b), unmatched(b), errors);
+	KUNIT_EXPECT_EQ(test, bus_lost(b) + late(b) > 0, t->counted);
+	KUNIT_EXPECT_EQ(test, b->m->n_slaves, N);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(frame_changed),
+	KUNIT_CASE(frame_truncated),
+	KUNIT_CASE(frame_of_before),
+	KUNIT_CASE(frame_foreign),
+	KUNIT_CASE_PARAM(frame_trouble, trouble_gen_params),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "ec_bus_fault_frame",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
