@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# vm: --smp 2
+# Applications, modules and devices that come and go at any time.
+
+load helpers
+
+setup_file() { start three 3; }
+teardown_file() { stop; }
+
+slaves() { echo 3; }
+
+# background NAME ARG...: start the application, wait until all is in OP
+background() {
+	local out=$1
+
+	shift
+	"$EC_BUILD/apps/cyclic" "$@" >"$out" 2>&1 &
+	app=$!
+	wait_for 30 grep -q ": $(slaves) of $(slaves) in OP" "$out"
+}
+
+idle() {
+	ethercat master | grep -q 'Phase: Idle' && ethercat master | grep -q 'Active: no'
+}
+
+slab() { awk '/^Slab:|^KernelStack:|^VmallocUsed:/ { s += $2 } END { print s }' /proc/meminfo; }
+
+@test "one application at a time; a tool beside it" {
+	background "$BATS_TEST_TMPDIR/out" 20
+	run timeout 5 "$EC_BUILD/apps/cyclic" 1
+	[ "$status" = 1 ]
+	[[ "$output" == *"reserved by another application"* ]]
+	run ethercat slaves
+	[ "${#lines[@]}" = "$(slaves)" ]
+	run ethercat reg_read -p1 -t uint16 0x0010
+	[ "$status" = 0 ]
+	run ethercat rescan
+	[ "$status" = 0 ] || [[ "$output" == *application* ]]
+	kill -TERM $app
+	wait $app
+	grep ' refused' "$BATS_TEST_TMPDIR/out"
+	wait_for 10 idle
+}
+
+@test "rmmod is refused while an application runs, which goes on" {
+	background "$BATS_TEST_TMPDIR/out" 20
+	run rmmod ec_master
+	[ "$status" != 0 ]
+	[ -c /dev/EtherCAT0 ]
+	ethercat master | grep -q 'Phase: Operation'
+	kill -TERM $app
+	wait $app
+	grep ', 0 refused' "$BATS_TEST_TMPDIR/out"
+}
+
+@test "the device is removed in OP and comes back" {
+	background "$BATS_TEST_TMPDIR/out" 60
+	rmmod ec_sim
+	ethercat master | grep -q 'Waiting for device'
+	sleep 1
+	kill -0 $app
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=three
+	wait_for 30 all_slaves_are OP "$(slaves)"
+	kill -TERM $app
+	wait $app
+	wait_for 20 all_slaves_are PREOP "$(slaves)"
+}
+
+@test "killed at any moment, 20 times: the bus is idle, the next one starts, nothing is lost" {
+	RANDOM=7
+	for i in $(seq 20); do
+		"$EC_BUILD/apps/cyclic" >"$BATS_TEST_TMPDIR/out" 2>&1 &
+		app=$!
+		sleep "0.$((RANDOM % 90 + 10))"
+		kill -KILL $app
+		wait $app || true
+		wait_for 10 idle
+		# the first rounds fill caches
+		[ "$i" != 5 ] || before=$(slab)
+	done
+	wait_for 20 all_slaves_are PREOP "$(slaves)"
+	after=$(slab)
+	echo "kernel memory: $before kB, then $after kB"
+	[ $((after - before)) -lt 2000 ]
+	background "$BATS_TEST_TMPDIR/out" 60
+	kill -KILL $app
+	wait $app || true
+	wait_for 10 idle
+	wait_for 20 all_slaves_are PREOP "$(slaves)"
+}
+
+@test "stopped for a while: process data stop, then go on" {
+	background "$BATS_TEST_TMPDIR/out" 60
+	kill -STOP $app
+	wait_for 10 log_has 'does not send'
+	# the tool does not wait for the application
+	run timeout 5 "$EC_BUILD/tool/ethercat" reg_read -p1 -t uint16 0x0010
+	[ "$status" = 0 ]
+	kill -CONT $app
+	wait_for 30 all_slaves_are OP "$(slaves)"
+	kill -TERM $app
+	wait $app
+}
+
+log_has() { dmesg | grep -q "$1"; }
+
+@test "modules unload and load again" {
+	rmmod ec_sim
+	rmmod ec_master
+	[ ! -e /dev/EtherCAT0 ]
+	start three 3
+}
