@@ -15,8 +15,8 @@ struct ecdev;
  * @kind: "generic", "virtual", "e1000e"... for messages
  * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
  *	preemption or interrupts off (native, virtual); otherwise thread only
- * @start: mandatory. Takes the device for the master, brings it up. Process
- *	context, may sleep. Return: 0 or -errno
+ * @start: mandatory. Takes the device for the master, brings it up; @dev is
+ *	for ecdev_receive(). Process context, may sleep. Return: 0 or -errno
  * @stop: mandatory. Gives it back; no frame is delivered after it returned
  * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
  *	when the hardware still owns all of them
@@ -29,7 +29,7 @@ struct ecdev;
 struct ecdev_ops {
 	const char *kind;
 	bool atomic;
-	int (*start)(void *priv);
+	int (*start)(void *priv, struct ecdev *dev);
 	void (*stop)(void *priv);
 	u8 *(*tx_get)(void *priv);
 	int (*tx_send)(void *priv, u8 *buf, size_t len);

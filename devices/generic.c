@@ -13,6 +13,8 @@
 #include <linux/rtnetlink.h>
 #include <linux/skbuff.h>
 #include <linux/slab.h>
+#include <linux/workqueue.h>
+#include <net/net_namespace.h>
 #include "ecdev.h"
 #include "master/wire/frame.h"
 
@@ -23,7 +25,7 @@
  * @list: all of them, under RTNL
  * @nd: network device, with a reference
  * @tracker: of that reference
- * @dev: offer to the master
+ * @dev: who gets the frames, set before the first can arrive
  * @skb: prepared frames, sent as clones
  * @next: next of @skb to try
  * @cur: the frame under construction
@@ -43,6 +45,10 @@ struct gen {
 };
 
 static LIST_HEAD(devices);
+static bool leaving;	/* under RTNL */
+
+static void look(struct work_struct *work);
+static DECLARE_WORK(look_work, look);
 
 static rx_handler_result_t receive(struct sk_buff **pskb)
 {
@@ -92,20 +98,37 @@ static void free_ring(struct gen *g)
 	}
 }
 
+static int check(const struct net_device *nd)
+{
+	if (nd->mtu < ETH_DATA_LEN) {
+		pr_err("ec_generic: %s has an MTU of %u, EtherCAT needs %d; do \"ip link set %s mtu %d\"\n",
+		       nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
+		return -EMSGSIZE;
+	}
+	if (netdev_is_rx_handler_busy((struct net_device *)nd)) {
+		pr_err("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
+		       nd->name);
+		return -EBUSY;
+	}
+	return 0;
+}
+
 static int claim(struct gen *g)
 {
 	int ret;
 
 	ASSERT_RTNL();
-	ret = dev_open(g->nd, NULL);
+	ret = check(g->nd);
 	if (ret)
 		return ret;
-	ret = netdev_rx_handler_register(g->nd, receive, g);
+	ret = dev_open(g->nd, NULL);
 	if (ret) {
-		pr_err("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
-		       g->nd->name);
+		pr_err("ec_generic: %s cannot be brought up (error %d)\n", g->nd->name, ret);
 		return ret;
 	}
+	ret = netdev_rx_handler_register(g->nd, receive, g);
+	if (ret)
+		return ret;
 	g->hook = (struct nf_hook_ops){
 		.hook = egress, .dev = g->nd, .pf = NFPROTO_NETDEV,
 		.hooknum = NF_NETDEV_EGRESS, .priority = INT_MIN,
@@ -115,7 +138,6 @@ static int claim(struct gen *g)
 		netdev_rx_handler_unregister(g->nd);
 		return ret;
 	}
-	dev_set_promiscuity(g->nd, 1);
 	g->claimed = true;
 	return 0;
 }
@@ -126,18 +148,18 @@ static void unclaim(struct gen *g)
 	if (!g->claimed)
 		return;
 	g->claimed = false;
-	dev_set_promiscuity(g->nd, -1);
 	nf_unregister_net_hook(dev_net(g->nd), &g->hook);
 	netdev_rx_handler_unregister(g->nd);
 }
 
 /* called from offer() or withdraw() only, so RTNL is held */
-static int gen_start(void *priv)
+static int gen_start(void *priv, struct ecdev *dev)
 {
 	struct gen *g = priv;
 	unsigned int i;
 	int ret;
 
+	g->dev = dev;
 	for (i = 0; i < RING; i++) {
 		g->skb[i] = prepare(g->nd);
 		if (!g->skb[i]) {
@@ -230,27 +252,6 @@ static struct gen *find(const struct net_device *nd)
 	return NULL;
 }
 
-static void offer(struct net_device *nd)
-{
-	struct gen *g;
-
-	ASSERT_RTNL();
-	if (nd->type != ARPHRD_ETHER || find(nd) || !ecdev_wanted(nd->name, nd->dev_addr))
-		return;
-	g = kzalloc(sizeof(*g), GFP_KERNEL);
-	if (!g)
-		return;
-	g->nd = nd;
-	netdev_hold(nd, &g->tracker, GFP_KERNEL);
-	list_add(&g->list, &devices);
-	g->dev = ecdev_offer(nd->name, nd->dev_addr, &gen_ops, g);
-	if (IS_ERR(g->dev)) {
-		list_del(&g->list);
-		netdev_put(nd, &g->tracker);
-		kfree(g);
-	}
-}
-
 static void withdraw(struct gen *g)
 {
 	ASSERT_RTNL();
@@ -260,19 +261,85 @@ static void withdraw(struct gen *g)
 	kfree(g);
 }
 
+/* Other namespaces have names and addresses of their own. */
+static bool wanted(const struct net_device *nd)
+{
+	return nd->type == ARPHRD_ETHER && nd->reg_state == NETREG_REGISTERED &&
+	       net_eq(dev_net(nd), &init_net) && ecdev_wanted(nd->name, nd->dev_addr);
+}
+
+static void offer(struct net_device *nd)
+{
+	struct ecdev *dev;
+	struct gen *g;
+
+	ASSERT_RTNL();
+	if (!wanted(nd) || find(nd))
+		return;
+	g = kzalloc(sizeof(*g), GFP_KERNEL);
+	if (!g)
+		return;
+	g->nd = nd;
+	netdev_hold(nd, &g->tracker, GFP_KERNEL);
+	list_add(&g->list, &devices);
+	dev = ecdev_offer(nd->name, nd->dev_addr, &gen_ops, g);
+	if (IS_ERR(dev)) {
+		list_del(&g->list);
+		netdev_put(nd, &g->tracker);
+		kfree(g);
+		return;
+	}
+	g->dev = dev;
+	/* not now: it is offered again when something has changed */
+	if (!g->claimed)
+		withdraw(g);
+}
+
+/*
+ * Not in the notifier: while a device registers it cannot be opened, and others
+ * have not heard of it yet.
+ */
+static void look(struct work_struct *work)
+{
+	struct net_device *nd;
+
+	rtnl_lock();
+	if (!leaving)
+		for_each_netdev(&init_net, nd)
+			offer(nd);
+	rtnl_unlock();
+}
+
+/* Not below what frames need; @was: MTU before, or the refused one on its way back */
+static int change_mtu(const struct net_device *nd, u32 was)
+{
+	if (nd->mtu >= ETH_DATA_LEN || was < ETH_DATA_LEN)
+		return NOTIFY_DONE;
+	pr_warn("ec_generic: %s keeps its MTU: EtherCAT needs %d\n", nd->name, ETH_DATA_LEN);
+	return notifier_from_errno(-EBUSY);
+}
+
 static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 {
 	struct net_device *nd = netdev_notifier_info_to_dev(ptr);
-	struct gen *g;
+	struct gen *g = find(nd);
 
+	if (g && what == NETDEV_CHANGEMTU)
+		return change_mtu(nd, ((struct netdev_notifier_info_ext *)ptr)->ext.mtu);
 	switch (what) {
-	case NETDEV_REGISTER:
-		offer(nd);
-		break;
 	case NETDEV_UNREGISTER:
-		g = find(nd);
-		if (g)
-			withdraw(g);
+		if (!g)
+			break;
+		withdraw(g);
+		fallthrough;	/* another one may take its place */
+	case NETDEV_REGISTER:
+	case NETDEV_UP:
+	case NETDEV_CHANGEMTU:
+	case NETDEV_CHANGENAME:
+	case NETDEV_CHANGEADDR:
+	case NETDEV_CHANGEUPPER:
+		if (!leaving)
+			schedule_work(&look_work);
 		break;
 	}
 	return NOTIFY_DONE;
@@ -282,13 +349,21 @@ static struct notifier_block notifier = { .notifier_call = event };
 
 static int __init gen_init(void)
 {
-	return register_netdevice_notifier(&notifier);
+	int ret = register_netdevice_notifier(&notifier);
+
+	/* it has told of all devices there are */
+	flush_work(&look_work);
+	return ret;
 }
 
 static void __exit gen_exit(void)
 {
+	rtnl_lock();
+	leaving = true;
+	rtnl_unlock();
 	/* replays UNREGISTER for every device */
 	unregister_netdevice_notifier(&notifier);
+	cancel_work_sync(&look_work);
 }
 
 module_init(gen_init);

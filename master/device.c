@@ -56,7 +56,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 	int ret;
 
 	rcu_assign_pointer(dev->link, link);
-	ret = dev->ops->start(dev->priv);
+	ret = dev->ops->start(dev->priv, dev);
 	if (ret) {
 		ec_warn(link->master, "device %s could not be started (error %d)\n",
 			dev->name, ret);

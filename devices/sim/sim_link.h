@@ -7,8 +7,6 @@
 
 struct ec_sim_link;
 
-extern const struct ec_sim_ops ec_sim_link_ops;
-
 struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim);
 void ec_sim_link_destroy(struct ec_sim_link *l);
 

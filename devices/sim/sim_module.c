@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* ec_sim.ko: segment=<built-in name or path of a description> */
+/*
+ * ec_sim.ko: segment=<built-in name or path of a description>, as the virtual
+ * device sim0, or with netdev=<name>[,<name>] answering at network devices.
+ */
+#include <linux/err.h>
 #include <linux/kernel_read_file.h>
 #include <linux/module.h>
 #include <linux/string.h>
 #include <linux/vmalloc.h>
 #include "describe.h"
 #include "sim_link.h"
+#include "sim_responder.h"
+#include "sim_wire.h"
 
 static char *segment = "bench";
 module_param(segment, charp, 0444);
 MODULE_PARM_DESC(segment, "built-in segment (thin, three, bench, line100, line1000) or path of a description");
 
+static char *netdev[EC_SIM_PORTS];
+static unsigned int n_netdev;
+module_param_array(netdev, charp, &n_netdev, 0444);
+MODULE_PARM_DESC(netdev, "network device to answer at instead of offering sim0; a second one for the other end of a ring");
+
 static struct ec_sim_link *sim_link;
+static struct ec_sim_responder *responder;
 
 static int load(void *ctx, const char *name, u8 *buf, size_t cap)
 {
@@ -26,7 +38,7 @@ static struct ec_sim *describe(const char *text, size_t len)
 	static const struct ec_sim_loader loader = { .load = load };
 	struct ec_sim_error err = { 0 };
 	struct ec_sim *sim;
-	int ret = ec_sim_describe(&sim, &ec_sim_link_ops, text, len, &loader, &err);
+	int ret = ec_sim_describe(&sim, &ec_sim_kernel_ops, text, len, &loader, &err);
 
 	if (ret) {
 		pr_err("ec_sim: %s:%u: %s\n", segment, err.line, err.text);
@@ -59,20 +71,28 @@ static int __init sim_init(void)
 {
 	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
 	struct ec_sim *sim = build();
+	int ret;
 
 	if (IS_ERR(sim))
 		return PTR_ERR(sim);
-	sim_link = ec_sim_link_create("sim0", mac, sim);
-	if (IS_ERR(sim_link)) {
-		ec_sim_free(sim);
-		return PTR_ERR(sim_link);
+	if (n_netdev) {
+		responder = ec_sim_responder_create(netdev, n_netdev, sim);
+		ret = PTR_ERR_OR_ZERO(responder);
+	} else {
+		sim_link = ec_sim_link_create("sim0", mac, sim);
+		ret = PTR_ERR_OR_ZERO(sim_link);
 	}
-	return 0;
+	if (ret)
+		ec_sim_free(sim);
+	return ret;
 }
 
 static void __exit sim_exit(void)
 {
-	ec_sim_link_destroy(sim_link);
+	if (n_netdev)
+		ec_sim_responder_destroy(responder);
+	else
+		ec_sim_link_destroy(sim_link);
 }
 
 module_init(sim_init);

@@ -19,6 +19,7 @@ tests/vm/kernels.sh fetch "$kernel" >&2 &&
 make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" >&2 &&
 make -s -C lib O="$EC_BUILD/lib" all >&2 &&
 make -s -C tool O="$EC_BUILD/tool" >&2 &&
+make -s -C tool/sim O="$EC_BUILD/tool" >&2 &&
 make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 || exit 1
 
 for f in ${*:-tests/system/*.bats}; do

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* A segment in the kernel's time: frames come back when the model says. */
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include "describe.h"
+#include "sim_wire.h"
+
+#define FRAMES	320	/* on their way at once; a master has 256 slots */
+
+/* a frame on its way */
+struct ec_sim_flying {
+	struct list_head list;
+	u64 due_ns;
+	int port;
+	size_t len;
+	u8 eth[EC_ETH_MAX];
+};
+
+static void *sim_alloc(size_t bytes)
+{
+	return kvzalloc(bytes, GFP_KERNEL);
+}
+
+static void sim_free(void *p)
+{
+	kvfree(p);
+}
+
+const struct ec_sim_ops ec_sim_kernel_ops = { .alloc = sim_alloc, .free = sim_free };
+
+/* Sorted by arrival; nearly always the new one is the last. */
+static void insert(struct ec_sim_wire *w, struct ec_sim_flying *f)
+{
+	struct ec_sim_flying *p;
+
+	list_for_each_entry_reverse(p, &w->flying, list)
+		if (p->due_ns <= f->due_ns) {
+			list_add(&f->list, &p->list);
+			return;
+		}
+	list_add(&f->list, &w->flying);
+}
+
+static struct ec_sim_flying *unused(struct ec_sim_wire *w)
+{
+	struct ec_sim_flying *f = list_first_entry_or_null(&w->free, struct ec_sim_flying, list);
+
+	if (f)
+		list_del(&f->list);
+	return f;
+}
+
+static void arm(struct ec_sim_wire *w)
+{
+	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
+
+	if (f && !w->polled && w->running)
+		hrtimer_start(&w->timer, ns_to_ktime(f->due_ns), HRTIMER_MODE_ABS_SOFT);
+}
+
+static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
+{
+	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
+
+	if (!f || f->due_ns > now)
+		return NULL;
+	list_del(&f->list);
+	return f;
+}
+
+/**
+ * ec_sim_wire_poll() - deliver what has arrived by now
+ * @w: wire
+ *
+ * Context: Any but hard interrupt.
+ */
+void ec_sim_wire_poll(struct ec_sim_wire *w)
+{
+	struct ec_sim_flying *f;
+
+	spin_lock_bh(&w->lock);
+	while ((f = due(w, ktime_get_ns()))) {
+		spin_unlock_bh(&w->lock);
+		w->deliver(w, f->port, f->eth, f->len);
+		spin_lock_bh(&w->lock);
+		list_add(&f->list, &w->free);
+	}
+	arm(w);
+	spin_unlock_bh(&w->lock);
+}
+
+static enum hrtimer_restart timeout(struct hrtimer *timer)
+{
+	ec_sim_wire_poll(container_of(timer, struct ec_sim_wire, timer));
+	return HRTIMER_NORESTART;
+}
+
+/**
+ * ec_sim_wire_run() - take frames from now on, or stop
+ * @w: wire
+ * @on: true: take; false: forget all, nothing is delivered after return
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sim_wire_run(struct ec_sim_wire *w, bool on)
+{
+	spin_lock_bh(&w->lock);
+	w->running = on;
+	if (!on)
+		list_splice_init(&w->flying, &w->free);
+	spin_unlock_bh(&w->lock);
+	if (!on)
+		hrtimer_cancel(&w->timer);
+}
+
+/**
+ * ec_sim_wire_set_polled() - who delivers
+ * @w: wire
+ * @on: true: whoever calls ec_sim_wire_poll(), false: a timer
+ *
+ * Context: Any but hard interrupt.
+ */
+void ec_sim_wire_set_polled(struct ec_sim_wire *w, bool on)
+{
+	spin_lock_bh(&w->lock);
+	w->polled = on;
+	arm(w);
+	spin_unlock_bh(&w->lock);
+}
+
+/* Copies of a frame follow one another. */
+static void copies(struct ec_sim_wire *w, const struct ec_sim_flying *f, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 1; i < n; i++) {
+		struct ec_sim_flying *g = unused(w);
+
+		if (!g)
+			return;
+		g->due_ns = f->due_ns + i * ec_frame_wire_ns(f->len);
+		g->port = f->port;
+		g->len = f->len;
+		memcpy(g->eth, f->eth, f->len);
+		insert(w, g);
+	}
+}
+
+static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
+{
+	struct ec_sim_flying *f = unused(w);
+	struct ec_sim_result res;
+	u64 start;
+	s64 delay;
+
+	if (!f)
+		return;
+	start = max(ktime_get_ns(), w->wire_free_ns[port]);
+	w->wire_free_ns[port] = start + ec_frame_wire_ns(len);
+	f->len = len;
+	memcpy(f->eth, eth, len);
+	delay = ec_sim_frame_result(w->sim, port, f->eth + EC_ETH_HDR, len - EC_ETH_HDR, start,
+				    &res);
+	if (delay < 0 || !res.copies) {
+		list_add(&f->list, &w->free);
+		return;
+	}
+	f->eth[6] |= 2;		/* a slave has processed it */
+	f->port = res.out_port;
+	f->due_ns = start + delay;
+	insert(w, f);
+	copies(w, f, res.copies);
+}
+
+/**
+ * ec_sim_wire_send() - a frame enters the segment
+ * @w: wire
+ * @port: master port, 0 or 1
+ * @eth: Ethernet frame; copied
+ * @len: its bytes, EC_ETH_HDR + EC_FRAME_HDR..EC_ETH_MAX
+ *
+ * Context: Any but hard interrupt.
+ * Return: 0, or -ENETDOWN: not running, or no cable at the port.
+ */
+int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
+{
+	int ret = 0;
+
+	spin_lock_bh(&w->lock);
+	if (!w->running || !ec_sim_link(w->sim, port))
+		ret = -ENETDOWN;
+	else
+		launch(w, port, eth, len);
+	arm(w);
+	spin_unlock_bh(&w->lock);
+	return ret;
+}
+
+/**
+ * ec_sim_wire_up() - is there a cable at the first master port now
+ * @w: wire
+ *
+ * Context: Any but hard interrupt.
+ * Return: whether there is.
+ */
+bool ec_sim_wire_up(struct ec_sim_wire *w)
+{
+	bool up;
+
+	spin_lock_bh(&w->lock);
+	ec_sim_advance(w->sim, ktime_get_ns());
+	up = ec_sim_link(w->sim, 0);
+	spin_unlock_bh(&w->lock);
+	return up;
+}
+
+/**
+ * ec_sim_wire_init() - put a segment into the kernel's time
+ * @w: wire
+ * @sim: segment; stays the caller's
+ * @deliver: see struct ec_sim_wire
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim,
+		     void (*deliver)(struct ec_sim_wire *w, int port, const u8 *eth, size_t len))
+{
+	unsigned int i;
+
+	w->frames = vzalloc(array_size(FRAMES, sizeof(*w->frames)));
+	if (!w->frames)
+		return -ENOMEM;
+	w->sim = sim;
+	w->deliver = deliver;
+	spin_lock_init(&w->lock);
+	hrtimer_init(&w->timer, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);
+	w->timer.function = timeout;
+	INIT_LIST_HEAD(&w->flying);
+	INIT_LIST_HEAD(&w->free);
+	for (i = 0; i < FRAMES; i++)
+		list_add(&w->frames[i].list, &w->free);
+	return 0;
+}
+
+/**
+ * ec_sim_wire_exit() - the wire is not used any more
+ * @w: wire nobody sends to
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sim_wire_exit(struct ec_sim_wire *w)
+{
+	ec_sim_wire_run(w, false);
+	vfree(w->frames);
+	w->frames = NULL;
+}

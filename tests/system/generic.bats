@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# The generic device: a master at any network device, slaves at the other end.
+
+load helpers
+
+setup_file() { modprobe veth; }
+
+setup() {
+	ip link add veth0 type veth peer name veth1
+}
+
+teardown() {
+	killall -q demo 2>/dev/null || true
+	[ -z "${SIM:-}" ] || kill "$SIM" 2>/dev/null || true
+	stop
+	for d in veth0 eth0 br0; do ip link del $d 2>/dev/null || true; done
+}
+
+# master DEVICE
+master() {
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices="$1"
+	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+}
+
+# responder SEGMENT DEVICE
+responder() {
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1" netdev="$2"
+}
+
+demo() {
+	LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"
+}
+
+# what "ethercat master" says behind NAME
+says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
+main_is() { [[ "$(says Main)" == *"($1)" ]]; }
+link_is() { [ "$(says Link)" = "$1" ]; }
+foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'; }
+
+@test "veth and ec_sim: all slaves to OP, no frame lost" {
+	master veth0
+	responder bench veth1
+	wait_for 20 all_slaves_are PREOP 22
+	run demo --cycles 2000 --wired
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "$(says 'Lost frames')" = 0 ]
+	[ "$(says 'Tx errors')" = 0 ]
+}
+
+@test "veth and ethercat-sim: all slaves to OP, no frame lost" {
+	ip link set veth1 up
+	"$EC_BUILD/tool/ethercat-sim" -s bench veth1 >"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
+	SIM=$!
+	wait_for 5 grep -q 22 "$BATS_TEST_TMPDIR/sim"
+	master veth0
+	wait_for 20 all_slaves_are PREOP 22
+	run demo --cycles 2000 --wired
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "$(says 'Lost frames')" = 0 ]
+	kill $SIM
+	wait $SIM
+	grep -q ' 0 lost in the segment, 0 dropped' "$BATS_TEST_TMPDIR/sim"
+	SIM=
+}
+
+@test "the MAC address names the device as well" {
+	ip link set veth0 address 02:00:00:00:12:34
+	master 02:00:00:00:12:34
+	responder thin veth1
+	wait_for 20 all_slaves_are PREOP 2
+}
+
+@test "the device comes after the modules, goes in OP, comes again" {
+	ip link del veth0
+	master veth0
+	main_is waiting...
+	ip link add veth0 type veth peer name veth1
+	wait_for 5 main_is attached
+	responder bench veth1
+	wait_for 20 all_slaves_are PREOP 22
+	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	wait_for 10 all_slaves_are OP 22
+	ip link del veth0
+	ended=0
+	wait $! || ended=$?
+	[ $ended = 1 ]
+	main_is waiting...
+	ip link add veth0 type veth peer name veth1
+	wait_for 20 all_slaves_are PREOP 22
+}
+
+@test "the link goes down in OP and comes back" {
+	master veth0
+	responder bench veth1
+	wait_for 20 all_slaves_are PREOP 22
+	link_is UP
+	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	wait_for 10 all_slaves_are OP 22
+	ip link set veth1 down
+	wait_for 5 link_is DOWN
+	ended=0
+	wait $! || ended=$?
+	[ $ended = 1 ]
+	ip link set veth1 up
+	wait_for 5 link_is UP
+	wait_for 20 all_slaves_are PREOP 22
+	ip link set veth0 down
+	wait_for 5 link_is DOWN
+	ip link set veth0 up
+	wait_for 20 all_slaves_are PREOP 22
+}
+
+@test "a small MTU is refused, before and while the device is used" {
+	ip link set veth0 mtu 1200
+	master veth0
+	main_is waiting...
+	dmesg | grep -q 'veth0 has an MTU of 1200, EtherCAT needs 1500'
+	ip link set veth0 mtu 1500
+	wait_for 5 main_is attached
+	run ip link set veth0 mtu 1499
+	[ "$status" != 0 ]
+	ip link set veth0 mtu 2000
+}
+
+@test "a device of a bridge is taken when the bridge lets it go; a claimed one is not given" {
+	modprobe bridge
+	ip link add br0 type bridge
+	ip link set veth0 master br0
+	master veth0
+	main_is waiting...
+	dmesg | grep -q 'veth0 is used by a bridge'
+	ip link set veth0 nomaster
+	wait_for 5 main_is attached
+	run ip link set veth0 master br0
+	[ "$status" != 0 ]
+}
+
+@test "foreign frames are counted, none of ours leaves, and all pass again afterwards" {
+	master veth0
+	responder thin veth1
+	wait_for 20 all_slaves_are PREOP 2
+	ip addr add 10.0.0.1/24 dev veth0
+	ip addr add 10.0.0.2/24 dev veth1
+	before=$(foreign)
+	tcpdump -i veth1 -nn -c 1 arp and arp src 10.0.0.1 >"$BATS_TEST_TMPDIR/seen" 2>/dev/null 3>&- &
+	tap=$!
+	sleep 0.3
+	# from the wire: counted, not answered
+	python3 "$BATS_TEST_DIRNAME/arp.py" veth1 10.0.0.2 10.0.0.1 3
+	# towards the wire: refused
+	run python3 "$BATS_TEST_DIRNAME/arp.py" veth0 10.0.0.1 10.0.0.2 3
+	[ "$status" != 0 ]
+	sleep 0.3
+	[ "$(foreign)" -ge $((before + 3)) ]
+	kill $tap
+	cat "$BATS_TEST_TMPDIR/seen"
+	[ ! -s "$BATS_TEST_TMPDIR/seen" ]
+	[ "$(says 'Lost frames')" = 0 ]
+	all_slaves_are PREOP 2
+	rmmod ec_sim ec_generic
+	tcpdump -i veth1 -nn -c 1 arp and arp src 10.0.0.1 >"$BATS_TEST_TMPDIR/seen" 2>/dev/null 3>&- &
+	tap=$!
+	sleep 0.3
+	python3 "$BATS_TEST_DIRNAME/arp.py" veth0 10.0.0.1 10.0.0.2 3
+	wait_for 5 test -s "$BATS_TEST_TMPDIR/seen"
+}
+
+@test "a capture at the device shows both directions" {
+	master veth0
+	tcpdump -i veth0 -nn -c 20 -w "$BATS_TEST_TMPDIR/pcap" ether proto 0x88a4 2>/dev/null 3>&- &
+	tap=$!
+	sleep 0.3
+	responder thin veth1
+	wait $tap
+	# replies have bit 1 of the source address set
+	tcpdump -nn -e -r "$BATS_TEST_TMPDIR/pcap" 2>/dev/null >"$BATS_TEST_TMPDIR/text"
+	grep -q ' 00:00:' "$BATS_TEST_TMPDIR/text"
+	grep -q ' 02:00:' "$BATS_TEST_TMPDIR/text"
+}
+
+@test "a renamed device stays with its master" {
+	master veth0
+	responder thin veth1
+	wait_for 20 all_slaves_are PREOP 2
+	ip link set veth0 down
+	ip link set veth0 name eth0
+	ip link set eth0 up
+	wait_for 20 all_slaves_are PREOP 2
+	ip link del eth0
+	main_is waiting...
+	# one that gets the name is taken
+	ip link add other type veth peer name veth1
+	main_is waiting...
+	ip link set other name veth0
+	wait_for 5 main_is attached
+	wait_for 20 all_slaves_are PREOP 2
+}
+
+@test "the driver is unloaded in OP" {
+	master veth0
+	responder bench veth1
+	wait_for 20 all_slaves_are PREOP 22
+	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	wait_for 10 all_slaves_are OP 22
+	rmmod ec_generic
+	ended=0
+	wait $! || ended=$?
+	[ $ended = 1 ]
+	main_is waiting...
+	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	wait_for 20 all_slaves_are PREOP 22
+}
+
+@test "the segment is unloaded in OP and loaded again" {
+	master veth0
+	responder bench veth1
+	wait_for 20 all_slaves_are PREOP 22
+	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	wait_for 10 all_slaves_are OP 22
+	rmmod ec_sim
+	ended=0
+	wait $! || ended=$?
+	[ $ended = 1 ]
+	responder thin veth1
+	wait_for 20 all_slaves_are PREOP 2
+}
+
+@test "a device in another namespace is not ours, even with the name" {
+	ip netns add other
+	ip link del veth0
+	master veth0
+	ip -n other link add veth0 type veth peer name veth1
+	sleep 0.3
+	main_is waiting...
+	ip netns del other
+}
+
+@test "ec_sim refuses a device that is not there, not Ethernet, or not free" {
+	master veth0
+	run responder thin veth7
+	[ "$status" != 0 ]
+	dmesg | grep -q "ec_sim: there is no network device 'veth7'"
+	run responder thin lo
+	[ "$status" != 0 ]
+	dmesg | grep -q 'ec_sim: lo is no Ethernet device'
+	run responder thin veth0
+	[ "$status" != 0 ]
+	dmesg | grep -q 'ec_sim: veth0 cannot be claimed'
+}
+
+@test "modules come and go under load" {
+	master veth0
+	for i in 1 2 3 4 5; do
+		responder three veth1
+		wait_for 20 all_slaves_are PREOP 3
+		rmmod ec_sim
+		wait_for 20 all_slaves_are PREOP 0
+	done
+	for i in 1 2 3 4 5; do
+		rmmod ec_generic
+		insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	done
+	main_is attached
+}
