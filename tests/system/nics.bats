@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics
+# vm: --icount --nics --timeout 600
 # The generic device at a NIC with its unmodified driver, slaves at another one.
 
 load helpers
