@@ -24,7 +24,7 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	b->test = test;
 	text = ec_sim_builtin(text) ?: text;
 	test->priv = b;
-	ret = ec_sim_describe(&b->sim, &ec_sim_link_ops, text, strlen(text), NULL, &err);
+	ret = ec_sim_describe(&b->sim, &ec_sim_kernel_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
 	b->m = ec_master_get(0);

@@ -12,6 +12,7 @@
 #include "ec_kunit.h"
 #include "devices/sim/describe.h"
 #include "devices/sim/sim_link.h"
+#include "devices/sim/sim_wire.h"
 #include "master/cdev.h"
 #include "master/master.h"
 #include "master/session.h"
