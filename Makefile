@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # make                modules, library, tool, simulator (KDIR= chooses the kernel)
-# make install        all of it (DESTDIR=, PREFIX=)
+# make install        all of it (DESTDIR=, PREFIX=); make uninstall
 # make demo           the main job in a VM
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
@@ -21,11 +21,16 @@ MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/wire/*.[ch] \
 	 devices/*.[ch] devices/Kbuild devices/sim/*.[ch] devices/sim/Kbuild \
 	 include/*.h include/uapi/*.h)
 
+# A changed file gets the time of now, as what was built of the last one may be
+# newer than it; one that is gone here must go there.
 sync:
 	@mkdir -p $(MODDIR)
 	@for f in $(MODSRC); do \
 		case $$f in */*) mkdir -p $(MODDIR)/$${f%/*};; esac; \
-		cmp -s $$f $(MODDIR)/$$f 2>/dev/null || cp -p $$f $(MODDIR)/$$f; \
+		cmp -s $$f $(MODDIR)/$$f 2>/dev/null || cp $$f $(MODDIR)/$$f; \
+	done
+	@cd $(MODDIR) && for f in $$(find . -name '*.[ch]' ! -name '*.mod.c'); do \
+		[ -e $(CURDIR)/$$f ] || rm $$f; \
 	done
 
 modules: sync
@@ -37,6 +42,48 @@ lib:
 tool:
 	$(MAKE) -C tool
 	$(MAKE) -C tool/sim
+
+# --- install -----------------------------------------------------------------
+
+# what uname -r says on the kernel of these headers
+KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(KDIR)/include/generated/utsrelease.h 2>/dev/null), \
+	$(error no kernel headers at $(KDIR): install linux-headers-$(shell uname -r) or set KDIR=))
+MODINST = $(DESTDIR)/lib/modules/$(KREL)/updates
+UDEVDIR ?= $(PREFIX)/lib/udev/rules.d
+
+install: install-modules install-lib install-tool install-udev
+
+# Debian's headers say that all modules are to be signed, but bring no key. They
+# bring no System.map either, without which kbuild leaves depmod out.
+NOSIGN = $(if $(wildcard $(KDIR)/certs/signing_key.pem),,CONFIG_MODULE_SIG_ALL=)
+
+install-modules: modules
+	+$(KMAKE) INSTALL_MOD_PATH=$(DESTDIR) INSTALL_MOD_DIR=updates/ethercat \
+		$(NOSIGN) $(if $(DESTDIR),DEPMOD=true) modules_install
+	$(if $(DESTDIR),,depmod $(KREL))
+
+install-lib:
+	$(MAKE) -C lib prefix=$(PREFIX) install
+
+install-tool:
+	$(MAKE) -C tool prefix=$(PREFIX) install
+	$(MAKE) -C tool/sim prefix=$(PREFIX) install
+
+install-udev:
+	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
+	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
+
+# the group stays: files may belong to it
+uninstall:
+	rm -rf $(MODINST)/ethercat
+	-rmdir $(MODINST) 2>/dev/null
+	$(if $(DESTDIR),,depmod $(KREL))
+	$(MAKE) -C lib prefix=$(PREFIX) uninstall
+	$(MAKE) -C tool prefix=$(PREFIX) uninstall
+	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
+	rm -f $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
+
+.PHONY: install install-modules install-lib install-tool install-udev uninstall
 
 clean:
 	rm -rf $(BUILD)

@@ -12,6 +12,12 @@
 #error "ec_master needs Linux 6.1 or newer: set KDIR= to the headers of such a kernel"
 #endif
 
+/* moved in 6.12; sparse does not know __has_include */
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 12, 0)
+#include <asm/unaligned.h>
+#else
+#include <linux/unaligned.h>
+#endif
 #include <linux/device.h>
 #include <linux/mm.h>
 

@@ -22,8 +22,10 @@ tool
 fuzz
 data
 kernels
+build
 pysoem
 system
+demo
 bench
 "
 passed=0 failed=0
@@ -60,7 +62,9 @@ level_fuzz() { make -s -C tests/fuzz check SECONDS=3; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_pysoem() { tests/pysoem/run.sh; }
 level_kernels() { tests/check-kernels.sh; }
+level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }
+level_demo() { tests/demo/check.sh; }
 level_bench() { tests/bench/run.sh; }
 
 run() {
@@ -79,7 +83,7 @@ run() {
 	echo "=== $name: $((SECONDS - t0)) s"
 }
 
-tests/install-deps.sh build vm uml json python || exit 1
+tests/install-deps.sh build vm capture uml json python || exit 1
 for l in ${*:-$levels}; do
 	if [ "$l" = data ] && [ -z "${DATA:-}" ]; then
 		echo "=== data: not run: DATA= names no folder of images and captures"

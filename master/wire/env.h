@@ -17,11 +17,7 @@
 #include <linux/minmax.h>
 #include <linux/string.h>
 #include <linux/types.h>
-#if __has_include(<linux/unaligned.h>)	/* moved there in 6.12 */
-#include <linux/unaligned.h>
-#else
-#include <asm/unaligned.h>
-#endif
+#include "../compat.h"	/* get_unaligned_le16() and so on */
 
 #else /* hosted */
 

@@ -1,0 +1,49 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# make demo in a VM does what it says. (HOST=1 and what must make it fail:
+# tests/system/demo.bats.) The last line is "N passed, N failed".
+
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+out=$(mktemp)
+trap 'rm -f "$out"' EXIT
+passed=0 failed=0
+
+t() {	# t NAME COMMAND...
+	local name=$1
+
+	shift
+	if "$@" >/dev/null 2>&1; then
+		echo "ok: $name"
+		passed=$((passed + 1))
+	else
+		echo "FAILED: $name"
+		failed=$((failed + 1))
+	fi
+}
+
+says() { grep -qE "$1" "$out"; }
+refused() { ! CYCLES=$1 tests/demo/demo.sh; }
+
+CYCLES=3000 make -s demo >"$out" 2>&1
+rc=$?
+[ $rc = 0 ] || sed 's/^/# /' "$out"
+t "make demo ends with 0" [ $rc = 0 ]
+t "22 slaves are shown in PREOP" [ "$(grep -cE '^ *[0-9]+ .* PREOP ' "$out")" = 22 ]
+t "22 slaves reach OP" says '^Slaves: 22, in OP: 22,'
+t "all cycles are done" says '^Cycles: 3000 of 3000, every 1000 us'
+t "no working counter error, no lost frame" says '^Working counter errors: 0, lost frames: 0,'
+t "the cycle time has a histogram of all cycles" \
+	[ "$(awk '/^Cycle time/ { on = 1 } /^Cycle begins/ { on = 0 } on && / us .*\|/ { s += substr($0, 22, 8) } END { print s }' "$out")" = 2999 ]
+t "the sine is drawn" [ "$(grep -cE '^ +[0-9]+ \|.*[*io]' "$out")" -ge 10 ]
+t "the analog output is measured" says '^Analog output measured: .* 0 of 3000 values off'
+t "both axes follow" [ "$(grep -cE '^Axis at slave .* correlation (1\.000|0\.9)' "$out")" = 2 ]
+t "no check failed" [ "$(grep -c FAILED "$out")" = 0 ]
+t "the capture has all cycles and nothing malformed" says '^tshark: [0-9]{4,} packets, .* malformed: 0$'
+t "the capture is where it says" [ -s "$(sed -n 's/^capture: //p' "$out")" ]
+t "steps have a time" [ "$(grep -c '^\[ *[0-9]* s\]' "$out")" -ge 8 ]
+t "a wrong number of cycles is refused" refused many
+t "the exact usage is asked for" [ "$(tests/demo/demo.sh --nonsense 2>&1 | grep -c '^usage')" = 1 ]
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
