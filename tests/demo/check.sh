@@ -26,18 +26,19 @@ t() {	# t NAME COMMAND...
 says() { grep -qE "$1" "$out"; }
 refused() { ! CYCLES=$1 tests/demo/demo.sh; }
 
-CYCLES=3000 make -s demo >"$out" 2>&1
+# exact guest time: a host that is busy elsewhere fails nothing
+CYCLES=2000 VM_OPTIONS="--icount --timeout 400" make -s demo >"$out" 2>&1
 rc=$?
 [ $rc = 0 ] || sed 's/^/# /' "$out"
 t "make demo ends with 0" [ $rc = 0 ]
 t "22 slaves are shown in PREOP" [ "$(grep -cE '^ *[0-9]+ .* PREOP ' "$out")" = 22 ]
 t "22 slaves reach OP" says '^Slaves: 22, in OP: 22,'
-t "all cycles are done" says '^Cycles: 3000 of 3000, every 1000 us'
+t "all cycles are done" says '^Cycles: 2000 of 2000, every 1000 us'
 t "no working counter error, no lost frame" says '^Working counter errors: 0, lost frames: 0,'
 t "the cycle time has a histogram of all cycles" \
-	[ "$(awk '/^Cycle time/ { on = 1 } /^Cycle begins/ { on = 0 } on && / us .*\|/ { s += substr($0, 22, 8) } END { print s }' "$out")" = 2999 ]
+	[ "$(awk '/^Cycle time/ { on = 1 } /^Cycle begins/ { on = 0 } on && / us .*\|/ { s += substr($0, 22, 8) } END { print s }' "$out")" = 1999 ]
 t "the sine is drawn" [ "$(grep -cE '^ +[0-9]+ \|.*[*io]' "$out")" -ge 10 ]
-t "the analog output is measured" says '^Analog output measured: .* 0 of 3000 values off'
+t "the analog output is measured" says '^Analog output measured: .* 0 of 2000 values off'
 t "both axes follow" [ "$(grep -cE '^Axis at slave .* correlation (1\.000|0\.9)' "$out")" = 2 ]
 t "no check failed" [ "$(grep -c FAILED "$out")" = 0 ]
 t "the capture has all cycles and nothing malformed" says '^tshark: [0-9]{4,} packets, .* malformed: 0$'

@@ -11,6 +11,7 @@
 # CYCLES=10000 PERIOD_US=1000   length of the run
 # KDIR=DIR                      headers, for --host
 # EC_KERNEL=6.1-rt              kernel of the VM
+# VM_OPTIONS=                   more options of tests/vm/run.sh
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -97,8 +98,9 @@ else
 	kvm) step "boot: QEMU with KVM" ;;
 	*)   step "boot: QEMU without KVM (no guest starts with it here): cycles will be late at times" ;;
 	esac
+	# shellcheck disable=SC2086
 	tests/vm/run.sh --kernel "$kernel" --rw "$out" --dmesg "$out/kernel.log" \
-		--timeout $((120 + CYCLES * PERIOD_US / 200000)) -- \
+		--timeout $((120 + CYCLES * PERIOD_US / 200000)) ${VM_OPTIONS:-} -- \
 		env EC_BUILD="$EC_BUILD" CYCLES="$CYCLES" PERIOD_US="$PERIOD_US" \
 		DEMO_START="$DEMO_START" tests/demo/bench.sh "$out"
 	rc=$?

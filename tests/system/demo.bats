@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# make demo HOST=1 on the running kernel: here the guest's. In real time: the
-# demo itself says which cycles were late.
-# vm: --mem 1536 --timeout 900
+# make demo HOST=1 on the running kernel: here the guest's, in exact guest time.
+# vm: --icount --mem 1536 --timeout 900
 
 bats_require_minimum_version 1.5.0
 
