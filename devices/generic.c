@@ -26,7 +26,8 @@
  * @nd: network device, with a reference
  * @tracker: of that reference
  * @dev: who gets the frames, set before the first can arrive
- * @skb: prepared frames, sent as clones
+ * @skb: prepared frames; sent as they are, or as clones
+ * @sharing: the driver leaves a frame as it is, so no clone is needed
  * @next: next of @skb to try
  * @cur: the frame under construction
  * @hook: keeps other traffic off the wire
@@ -38,6 +39,7 @@ struct gen {
 	netdevice_tracker tracker;
 	struct ecdev *dev;
 	struct sk_buff *skb[RING];
+	bool sharing;
 	unsigned int next;
 	struct sk_buff *cur;
 	struct nf_hook_ops hook;
@@ -160,6 +162,7 @@ static int gen_start(void *priv, struct ecdev *dev)
 	int ret;
 
 	g->dev = dev;
+	g->sharing = g->nd->priv_flags & IFF_TX_SKB_SHARING;
 	for (i = 0; i < RING; i++) {
 		g->skb[i] = prepare(g->nd);
 		if (!g->skb[i]) {
@@ -181,6 +184,12 @@ static void gen_stop(void *priv)
 	free_ring(g);
 }
 
+/* The device, or somebody who captures, still has it. */
+static bool in_use(const struct sk_buff *skb)
+{
+	return skb_shared(skb) || skb_cloned(skb);
+}
+
 static u8 *gen_tx_get(void *priv)
 {
 	struct gen *g = priv;
@@ -189,8 +198,8 @@ static u8 *gen_tx_get(void *priv)
 	for (i = 0; i < RING; i++) {
 		struct sk_buff *skb = g->skb[(g->next + i) % RING];
 
-		if (skb_cloned(skb))
-			continue;	/* the device still has it */
+		if (in_use(skb))
+			continue;
 		g->next = (g->next + i + 1) % RING;
 		g->cur = skb;
 		return skb->data;
@@ -198,10 +207,31 @@ static u8 *gen_tx_get(void *priv)
 	return NULL;
 }
 
+/* A reference or a clone for the device; the pair of a clone needs no memory. */
+static struct sk_buff *for_device(const struct gen *g, struct sk_buff *skb)
+{
+	return g->sharing ? skb_get(skb) : skb_clone(skb, GFP_ATOMIC);
+}
+
+/* Past the qdisc; a linear frame without offloads needs no validation. */
+static netdev_tx_t transmit(struct net_device *nd, struct sk_buff *skb)
+{
+	struct netdev_queue *txq = netdev_get_tx_queue(nd, 0);
+	netdev_tx_t ret = NETDEV_TX_BUSY;
+
+	local_bh_disable();
+	HARD_TX_LOCK(nd, txq, smp_processor_id());
+	if (!netif_xmit_frozen_or_drv_stopped(txq))
+		ret = netdev_start_xmit(skb, nd, txq, false);
+	HARD_TX_UNLOCK(nd, txq);
+	local_bh_enable();
+	return ret;
+}
+
 static int gen_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct gen *g = priv;
-	struct sk_buff *skb = g->cur, *clone;
+	struct sk_buff *skb = g->cur;
 
 	if (!netif_running(g->nd) || !netif_carrier_ok(g->nd))
 		return -ENETDOWN;
@@ -210,20 +240,16 @@ static int gen_tx_send(void *priv, u8 *buf, size_t len)
 	skb_put(skb, len);
 	skb_reset_mac_header(skb);
 	skb_set_network_header(skb, ETH_HLEN);
-	clone = skb_clone(skb, GFP_ATOMIC);
-	if (!clone)
+	skb = for_device(g, skb);
+	if (!skb)
 		return -ENOMEM;
 	if (dev_nit_active(g->nd))
-		dev_queue_xmit_nit(clone, g->nd);
-	switch (__dev_direct_xmit(clone, 0)) {
-	case NETDEV_TX_OK:
-		return 0;
-	case NETDEV_TX_BUSY:
-		kfree_skb(clone);
+		dev_queue_xmit_nit(skb, g->nd);
+	if (transmit(g->nd, skb) == NETDEV_TX_BUSY) {
+		kfree_skb(skb);
 		return -EBUSY;
-	default:
-		return -ENETDOWN;
 	}
+	return 0;
 }
 
 static bool gen_link_up(void *priv)
