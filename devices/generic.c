@@ -18,7 +18,7 @@
 #include "ecdev.h"
 #include "master/wire/frame.h"
 
-#define RING	32	/* transmit completion is lazy (kernel-notes 1.3) */
+#define RING	64	/* more than ec_xfer() sends at once; completion is lazy */
 
 /**
  * struct gen - one claimed or offered network device

@@ -233,17 +233,18 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 {
 	u32 budget = m->interval_us * 900u;
 	struct ec_slot *slot;
-	bool first = true;
+	unsigned int n;
 
 	/* one that comes at this moment has time until the next cycle */
 	if (READ_ONCE(m->xq_head) == READ_ONCE(m->xq_tail))
 		return;
-	while ((slot = xq_peek(m))) {
+	/* the next cycle needs transmit buffers, too */
+	for (n = 0; n < EC_ACYCLIC_BURST && (slot = xq_peek(m)); n++) {
 		wire_ns += ec_frame_wire_ns(slot->eth_len);
-		if (wire_ns > budget && !first)
+		if (wire_ns > budget && n)
 			break;
-		first = false;
-		ec_link_send(&m->link[0], slot);
+		if (ec_link_send(&m->link[0], slot) == -EBUSY)
+			break;	/* it stays the first */
 		xq_drop(m, slot);
 	}
 }
