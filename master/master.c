@@ -64,6 +64,7 @@ void ec_master_link_attach(struct ec_link *link, struct ecdev *dev)
 	rt_mutex_lock(&m->io_lock);
 	WRITE_ONCE(link->dev, dev);
 	rt_mutex_unlock(&m->io_lock);
+	WRITE_ONCE(m->looked, false);
 	ec_info(m, "%s device is %s (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
 		dev->ops->kind, dev->mac);
 	ec_monitor_kick(m);
@@ -111,7 +112,7 @@ static bool settled(struct ec_master *m)
 	unsigned int i;
 	bool ok = true;
 
-	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan))
+	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan) || !READ_ONCE(m->looked))
 		return false;
 	down_read(&m->topo);
 	for (i = 0; i < m->n_slaves && ok; i++)

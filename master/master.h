@@ -55,6 +55,7 @@ struct task_struct;
  * @scan_frames: frames of the last scan
  * @next_station: next unused station address
  * @rescan: a scan is asked for
+ * @looked: the bus was scanned, or there is no link, since the device came
  * @freeze: no scan while reserved and not active
  *
  * @monitor: thread
@@ -104,6 +105,7 @@ struct ec_master {
 	u64 scan_frames;
 	u16 next_station;
 	bool rescan;
+	bool looked;
 	bool freeze;
 
 	struct task_struct *monitor;

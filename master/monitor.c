@@ -11,6 +11,7 @@
 
 #define PERIOD_MS	20
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */
+#define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define TRIES		2	/* of the look at all slaves */
 
@@ -21,6 +22,7 @@ struct watch {
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	bool scanned;		/* @count slaves are scanned */
+	unsigned int silent;	/* looks in which a slave did not answer to its address */
 	u64 scanned_ns;
 	u64 rates_ns;
 };
@@ -62,9 +64,13 @@ static void log_change(const struct ec_slave *s, u16 status, u16 code)
 			      ec_al_state_name(state));
 }
 
-/* AL status of every slave; used when the broadcast is not one plain state */
-static void check_slaves(struct ec_master *m)
+/*
+ * AL status of every slave; used when the broadcast is not one plain state.
+ * Returns false when one did not answer although all are there.
+ */
+static bool check_slaves(struct ec_master *m)
 {
+	bool all = true;
 	struct ec_dg *dg;
 	u8 (*al)[6];
 	u32 *reads;
@@ -85,6 +91,8 @@ static void check_slaves(struct ec_master *m)
 		struct ec_slave *s = m->slaves[i];
 		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
 
+		if (!dg[i].err && !dg[i].wkc && s->error != EC_SLAVE_SCAN_FAILED)
+			all = false;
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
 		/* its worker knows better */
@@ -103,6 +111,7 @@ out:
 	kvfree(dg);
 	kvfree(al);
 	kvfree(reads);
+	return all;
 }
 
 /* All slaves in the state they shall have, none with an error? */
@@ -161,8 +170,17 @@ static void count_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
-	if (w->scanned && !as_wanted(m, ored))
-		check_slaves(m);
+	if (!w->scanned || as_wanted(m, ored) || check_slaves(m))
+		w->silent = 0;
+	else
+		w->silent++;
+	/* power was off for a moment: address and state are lost */
+	if (w->silent >= SILENT_LOOKS) {
+		ec_info(m, "a slave has lost its station address\n");
+		w->silent = 0;
+		w->scanned = false;
+		w->same = STABLE_LOOKS;
+	}
 }
 
 static void want_states(struct ec_master *m)
@@ -256,6 +274,8 @@ static int monitor(void *data)
 			WRITE_ONCE(m->link[0].slaves, 0);
 			WRITE_ONCE(m->link[0].al_states, 0);
 		}
+		if (w.scanned || !w.link_up)
+			WRITE_ONCE(m->looked, true);
 		ec_session_status(m);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);

@@ -24,6 +24,7 @@ struct scan {
 	struct ec_dg *dg;
 	u8 (*addr)[2];
 	struct ec_slave **known;	/* slaves of the last scan by station address */
+	u8 *claims;			/* slaves that have the address now, up to 2 */
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 };
 
@@ -63,7 +64,8 @@ static int index_known(struct scan *sc)
 	unsigned int i;
 
 	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
-	if (!sc->known)
+	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
+	if (!sc->known || !sc->claims)
 		return -ENOMEM;
 	for (i = 0; i < sc->m->n_slaves; i++)
 		sc->known[sc->m->slaves[i]->station] = sc->m->slaves[i];
@@ -75,7 +77,7 @@ static u16 next_station(struct scan *sc)
 	do {
 		if (++sc->m->next_station == 0)
 			sc->m->next_station = 1;
-	} while (sc->known[sc->m->next_station]);
+	} while (sc->known[sc->m->next_station] || sc->claims[sc->m->next_station]);
 	return sc->m->next_station;
 }
 
@@ -107,17 +109,33 @@ static int write_stations(struct scan *sc, unsigned int n)
 	return ret;
 }
 
-/* Slaves that kept the address we gave them are the same; others get one. */
+/* How many slaves have each address now, up to 2. */
+static void count_claims(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		u8 *c = &sc->claims[get_unaligned_le16(sc->regs[i].station)];
+
+		*c = min(*c + 1, 2);
+	}
+}
+
+/*
+ * A slave that kept the address we gave it is the same; others get one. When
+ * two have the same address, one comes from another master's bus, and nobody
+ * can tell which: both are new.
+ */
 static int assign(struct scan *sc)
 {
 	unsigned int i, n = 0;
 
+	count_claims(sc);
 	for (i = 0; i < sc->n; i++) {
 		u16 station = get_unaligned_le16(sc->regs[i].station);
 		struct ec_slave *s = sc->known[station];
 
-		if (s && !s->error) {
-			sc->known[station] = NULL;	/* the next one is a copy */
+		if (s && !s->error && sc->claims[station] == 1) {
 			sc->slaves[i] = ec_slave_ref(s);
 			continue;
 		}
@@ -269,5 +287,6 @@ int ec_scan(struct ec_master *m, unsigned int count)
 	kvfree(sc.dg);
 	kvfree(sc.addr);
 	kvfree(sc.known);
+	kvfree(sc.claims);
 	return ret;
 }

@@ -216,6 +216,59 @@ static void scan_on_request(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
 }
 
+/* A slave from another master's bus has an address one of ours has. */
+static void scan_foreign_address(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	u32 i, k;
+
+	bus_fault(b, EC_SIM_FAULT_CUT, 3, 1, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 1000), ~0ull);
+	/* the address of the slave in front of the cut */
+	memcpy(bus_esc(b, 4)->mem + EC_REG_STATION, bus_esc(b, 1)->mem + EC_REG_STATION, 2);
+	bus_fault(b, EC_SIM_FAULT_HEAL, 3, 1, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+	for (i = 0; i < N; i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, s->station,
+				get_unaligned_le16(bus_esc(b, i)->mem + EC_REG_STATION));
+		KUNIT_EXPECT_EQ(test, s->info.product,
+				get_unaligned_le32(bus_esc(b, i)->eep.data + 2 * EC_SII_W_PRODUCT));
+		for (k = 0; k < i; k++)
+			KUNIT_EXPECT_NE(test, s->station, bus_slave(b, k)->station);
+	}
+}
+
+/* Power off and on between two looks: the number of slaves never changes. */
+static void scan_power_blip(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, N - 1, 0, 0, 0);
+	usleep_range(1000, 1001);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, N - 1, 0, 0, 0);
+	ec_sim_advance(b->sim, ktime_get_ns());
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, N - 1)->mem + EC_REG_STATION), 0);
+	usleep_range(100000, 100001);
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, N - 1)->station,
+			get_unaligned_le16(bus_esc(b, N - 1)->mem + EC_REG_STATION));
+	KUNIT_EXPECT_EQ(test, bus_esc(b, N - 1)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
+}
+
+/* Who asks for the master right after its device came waits for the scan. */
+static void scan_comes_before_reserve(struct kunit *test)
+{
+	struct bus *b = bus_new(test, line);
+
+	bus_plug(b);
+	KUNIT_ASSERT_EQ(test, ec_master_wait_scan(b->m), 0);
+	KUNIT_EXPECT_EQ(test, b->m->n_slaves, (u32)N);
+}
+
 static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_mixed_widths),
 	KUNIT_CASE(scan_pdi_holds_eeprom),
@@ -231,6 +284,9 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_blank),
 	KUNIT_CASE(scan_reads_what_is_new),
 	KUNIT_CASE(scan_on_request),
+	KUNIT_CASE(scan_foreign_address),
+	KUNIT_CASE(scan_power_blip),
+	KUNIT_CASE(scan_comes_before_reserve),
 	{}
 };
 
