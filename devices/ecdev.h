@@ -15,6 +15,8 @@ struct ecdev;
  * @kind: "generic", "virtual", "e1000e"... for messages
  * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
  *	preemption or interrupts off (native, virtual); otherwise thread only
+ * @burst: frames that may be sent in a row so that buffers are left for the
+ *	next cycle, 0: any number
  * @start: mandatory. Takes the device for the master, brings it up; @dev is
  *	for ecdev_receive(). Process context, may sleep. Return: 0 or -errno
  * @stop: mandatory. Gives it back; no frame is delivered after it returned
@@ -29,6 +31,7 @@ struct ecdev;
 struct ecdev_ops {
 	const char *kind;
 	bool atomic;
+	unsigned int burst;
 	int (*start)(void *priv, struct ecdev *dev);
 	void (*stop)(void *priv);
 	u8 *(*tx_get)(void *priv);

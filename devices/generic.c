@@ -261,6 +261,7 @@ static bool gen_link_up(void *priv)
 
 static const struct ecdev_ops gen_ops = {
 	.kind = "generic",
+	.burst = RING - RING / 4,
 	.start = gen_start,
 	.stop = gen_stop,
 	.tx_get = gen_tx_get,

@@ -231,15 +231,15 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
  */
 void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 {
-	u32 budget = m->interval_us * 900u;
+	u64 budget = m->interval_us * 900ULL;
+	unsigned int n, burst = m->link[0].dev->ops->burst ?: EC_SLOTS;
 	struct ec_slot *slot;
-	unsigned int n;
 
 	/* one that comes at this moment has time until the next cycle */
 	if (READ_ONCE(m->xq_head) == READ_ONCE(m->xq_tail))
 		return;
 	/* the next cycle needs transmit buffers, too */
-	for (n = 0; n < EC_ACYCLIC_BURST && (slot = xq_peek(m)); n++) {
+	for (n = 0; n < burst && (slot = xq_peek(m)); n++) {
 		wire_ns += ec_frame_wire_ns(slot->eth_len);
 		if (wire_ns > budget && n)
 			break;

@@ -22,7 +22,6 @@
 #define EC_SLOTS		256	/* datagram index has 8 bits */
 #define EC_SLOTS_CYCLE		64	/* of them never taken by ec_xfer() */
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
-#define EC_ACYCLIC_BURST	16	/* acyclic frames after one send of the cycle */
 #define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)
 
 #endif
