@@ -87,7 +87,9 @@ static int check(const struct ec_slave *slave)
 {
 	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & EC_SII_PROTO_COE))
 		return -EPROTONOSUPPORT;
-	if (slave->info.std.rx_size < EC_MBOX_HDR + EC_SDO_MSG)
+	/* the EEPROM may say anything; a message is one datagram */
+	if (slave->info.std.rx_size < EC_MBOX_HDR + EC_SDO_MSG ||
+	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
 		return -EMSGSIZE;
 	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
 		return -EAGAIN;
@@ -108,8 +110,9 @@ static int check(const struct ec_slave *slave)
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EIO with @abort set; -ENOBUFS when the object is larger than
- * @cap; -EPROTONOSUPPORT without CoE; -EAGAIN in INIT; -EPROTO, -EBADMSG for a
- * wrong answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
+ * @cap; -EPROTONOSUPPORT without CoE; -EMSGSIZE for a mailbox that is too small
+ * or larger than a datagram; -EAGAIN in INIT; -EPROTO, -EBADMSG for a wrong
+ * answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
  */
 int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
 		  size_t *size, u32 *abort, u32 timeout_ms)

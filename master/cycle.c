@@ -172,9 +172,10 @@ void ec_cycle_leave(struct ec_master *m)
  */
 bool ec_cycle_stalled(struct ec_master *m)
 {
-	u64 limit = max_t(u64, 10ULL * m->interval_us * NSEC_PER_USEC, 20 * NSEC_PER_MSEC);
+	s64 limit = max_t(s64, 10LL * m->interval_us * NSEC_PER_USEC, 20 * NSEC_PER_MSEC);
 
-	return ktime_get_ns() - READ_ONCE(m->last_send_ns) > limit;
+	/* it may send between the two readings of the clock */
+	return (s64)(ktime_get_ns() - READ_ONCE(m->last_send_ns)) > limit;
 }
 
 /**

@@ -37,17 +37,18 @@ void ec_slots_exit(struct ec_slots *s)
 	s->slot = NULL;
 }
 
-static bool take(struct ec_slot *slot, u64 now_ns, u64 quarantine_ns)
+static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
 {
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
 		return true;
 	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
-	       now_ns - READ_ONCE(slot->sent_ns) > quarantine_ns &&
+	       /* another may have cancelled it after the caller looked at the clock */
+	       (s64)(now_ns - READ_ONCE(slot->sent_ns)) > quarantine_ns &&
 	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
 	       EC_SLOT_QUARANTINE;
 }
 
-static struct ec_slot *search(struct ec_slots *s, u64 now_ns, u64 quarantine_ns)
+static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
 {
 	unsigned int i, start = atomic_inc_return(&s->hint);
 

@@ -129,6 +129,29 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 	return first;
 }
 
+/* Nobody waits for the frames of a half any longer; the time limit is over. */
+static void give_up(struct ec_master *m, struct half *h)
+{
+	unsigned int i;
+
+	for (i = 0; i < h->frames; i++) {
+		struct batch_frame *f = &h->f[i];
+		bool cancelled;
+
+		if (f->err)
+			continue;
+		/* neither: a frame that need not be the reply is looked at just now */
+		while (!(cancelled = ec_slot_cancel(f->slot, ktime_get_ns())) &&
+		       atomic_read(&f->slot->state) != EC_SLOT_DONE)
+			usleep_range(20, 50);
+		if (!cancelled)
+			continue;
+		atomic64_inc(&m->link[0].stats.lost);
+		f->err = -ETIMEDOUT;
+		ec_xfer_done(&h->x);
+	}
+}
+
 /* Wait for the frames of a half and take their results. */
 static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 {
@@ -136,16 +159,7 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 
 	if (!wait_for_completion_timeout(&h->x.done,
 					 usecs_to_jiffies(ec_cycle_timeout_us(m)) + 1)) {
-		for (i = 0; i < h->frames; i++) {
-			struct batch_frame *f = &h->f[i];
-
-			if (f->err || !ec_slot_cancel(f->slot, ktime_get_ns()))
-				continue;
-			atomic64_inc(&m->link[0].stats.lost);
-			f->err = -ETIMEDOUT;
-			ec_xfer_done(&h->x);
-		}
-		/* the rest is being copied at this moment */
+		give_up(m, h);
 		wait_for_completion(&h->x.done);
 	}
 	for (i = 0; i < h->frames; i++) {

@@ -167,6 +167,60 @@ static void frame_foreign(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0);
 }
 
+/* one read in a thread of its own */
+struct reader {
+	struct work_struct work;
+	struct bus *b;
+	u16 station;
+	int ret;
+	bool done;
+};
+
+static void read_type(struct work_struct *work)
+{
+	struct reader *r = container_of(work, struct reader, work);
+	u8 type[2];
+
+	r->ret = ec_xfer_fprd(r->b->m, r->station, EC_REG_TYPE, type, 2);
+	WRITE_ONCE(r->done, true);
+}
+
+static u32 change_slots(struct bus *b, int from, int to)
+{
+	u32 i, n = 0;
+
+	for (i = 0; i < EC_SLOTS; i++)
+		n += atomic_cmpxchg(&b->m->slots.slot[i].state, from, to) == from;
+	return n;
+}
+
+/*
+ * The time limit ends while a frame is compared that then is not the reply: who
+ * waits gives up all the same.
+ */
+static void frame_compared(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct reader r;
+	u32 ms, held = 0;
+
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	r = (struct reader){ .b = b, .station = bus_slave(b, 1)->station };
+	INIT_WORK(&r.work, read_type);
+	queue_work(b->m->work, &r.work);
+	for (ms = 0; ms < 60; ms++) {
+		held += change_slots(b, EC_SLOT_SENT, EC_SLOT_FILL);
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_GT(test, held, 0u);
+	change_slots(b, EC_SLOT_FILL, EC_SLOT_SENT);
+	for (ms = 0; ms < 500 && !READ_ONCE(r.done); ms++)
+		usleep_range(1000, 1001);
+	KUNIT_EXPECT_TRUE(test, r.done);
+	KUNIT_EXPECT_EQ(test, r.ret, -ETIMEDOUT);
+}
+
 static const struct trouble {
 	const char *name;
 	const char *fault;
@@ -219,6 +273,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(frame_truncated),
 	KUNIT_CASE(frame_of_before),
 	KUNIT_CASE(frame_foreign),
+	KUNIT_CASE(frame_compared),
 	KUNIT_CASE_PARAM(frame_trouble, trouble_gen_params),
 	{}
 };

@@ -118,6 +118,29 @@ static void sdo_errors(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1000, 0, false, buf, 8, &got, &abort, 0), -EAGAIN);
 }
 
+/* An EEPROM names a mailbox larger than a datagram: nothing is sent there. */
+static void sdo_huge_mailbox(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 0);
+	const u16 tx_size = s->info.std.tx_size;
+	u8 *data = kvzalloc(60000, GFP_KERNEL);
+	size_t got;
+	u32 abort;
+
+	KUNIT_ASSERT_NOT_NULL(test, data);
+	s->info.std.rx_size = 0xf000;
+	KUNIT_EXPECT_EQ(test, ec_coe_download(s, SCRATCH, 0, false, data, 60000, &abort, 0),
+			-EMSGSIZE);
+	s->info.std.rx_size = 64;
+	s->info.std.tx_size = 0xf000;
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, SCRATCH, 0, false, data, 60000, &got, &abort, 0),
+			-EMSGSIZE);
+	kvfree(data);
+	s->info.std.tx_size = tx_size;
+	there_and_back(b, 0, "small", TYPES, 8, 4);
+}
+
 /* Nobody answers: the time limit holds, the others are not concerned. */
 static void sdo_mute(struct kunit *test)
 {
@@ -189,6 +212,7 @@ static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_segmented),
 	KUNIT_CASE(sdo_complete_access),
 	KUNIT_CASE(sdo_errors),
+	KUNIT_CASE(sdo_huge_mailbox),
 	KUNIT_CASE(sdo_mute),
 	KUNIT_CASE(sdo_emergency),
 	KUNIT_CASE(sdo_latency),
