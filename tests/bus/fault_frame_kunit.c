@@ -279,7 +279,7 @@ static struct kunit_case cases[] = {
 };
 
 static struct kunit_suite suite = {
-	.name = "ec_bus_fault_frame",
+	.name = "bus_fault_frame",
 	.exit = bus_exit,
 	.test_cases = cases,
 };

@@ -112,7 +112,7 @@ static struct kunit_case cases[] = {
 };
 
 static struct kunit_suite suite = {
-	.name = "ec_bus_fault_mbox",
+	.name = "bus_fault_mbox",
 	.exit = bus_exit,
 	.test_cases = cases,
 };

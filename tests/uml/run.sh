@@ -5,7 +5,7 @@
 #
 #   run.sh [--debug] [--no-build] [--log FILE] [FILTER]
 #
-# FILTER: glob of suites, or suite.case, e.g. 'ec_bus*' or '*.mailbox_*'.
+# FILTER: glob of suites, or suite.case, e.g. 'bus_*' or '*.mailbox_*'.
 # The raw console log is kept; its path is printed on failure.
 # EC_UML_TIMEOUT: seconds of real time until a run counts as hung (300).
 # EC_UML_ARGS: more kernel parameters.
