@@ -16,6 +16,7 @@
 #include <linux/workqueue.h>
 #include <net/net_namespace.h>
 #include "ecdev.h"
+#include "master/compat.h"
 #include "master/wire/frame.h"
 
 #define RING	64	/* more than ec_xfer() sends at once; completion is lazy */
@@ -213,17 +214,31 @@ static struct sk_buff *for_device(const struct gen *g, struct sk_buff *skb)
 	return g->sharing ? skb_get(skb) : skb_clone(skb, GFP_ATOMIC);
 }
 
-/* Past the qdisc; a linear frame without offloads needs no validation. */
+static netdev_tx_t start_xmit(struct net_device *nd, struct netdev_queue *txq, struct sk_buff *skb)
+{
+	if (netif_xmit_frozen_or_drv_stopped(txq))
+		return NETDEV_TX_BUSY;
+	return netdev_start_xmit(skb, nd, txq, false);
+}
+
+/*
+ * Past the qdisc; a linear frame without offloads needs no validation. Some
+ * drivers lock by themselves. HARD_TX_LOCK() is no choice: with PREEMPT_RT sparse
+ * sees its unlock only.
+ */
 static netdev_tx_t transmit(struct net_device *nd, struct sk_buff *skb)
 {
 	struct netdev_queue *txq = netdev_get_tx_queue(nd, 0);
-	netdev_tx_t ret = NETDEV_TX_BUSY;
+	netdev_tx_t ret;
 
 	local_bh_disable();
-	HARD_TX_LOCK(nd, txq, smp_processor_id());
-	if (!netif_xmit_frozen_or_drv_stopped(txq))
-		ret = netdev_start_xmit(skb, nd, txq, false);
-	HARD_TX_UNLOCK(nd, txq);
+	if (ec_netdev_lltx(nd)) {
+		ret = start_xmit(nd, txq, skb);
+	} else {
+		__netif_tx_lock(txq, smp_processor_id());
+		ret = start_xmit(nd, txq, skb);
+		__netif_tx_unlock(txq);
+	}
 	local_bh_enable();
 	return ret;
 }

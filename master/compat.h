@@ -48,4 +48,11 @@ static inline void ec_vma_flags(struct vm_area_struct *vma, unsigned long set, u
 #endif
 }
 
+/* does the driver lock its transmit queue itself? A feature bit before 6.12 */
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 12, 0)
+#define ec_netdev_lltx(nd)	((nd)->features & NETIF_F_LLTX)
+#else
+#define ec_netdev_lltx(nd)	((nd)->lltx)
+#endif
+
 #endif

@@ -1,0 +1,156 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Building and installing: plain kbuild with W=1 and sparse, userspace with
+# -Werror, install and uninstall, a program built against what was installed.
+# The last line is "N passed, N failed".
+
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+kernel=${EC_KERNEL:-6.1-rt}
+tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-build.XXXXXX")
+trap 'rm -rf "$tmp"' EXIT
+root=$tmp/root
+passed=0 failed=0
+
+t() {	# t NAME COMMAND...
+	local name=$1 out
+
+	shift
+	if out=$("$@" 2>&1); then
+		echo "ok: $name"
+		passed=$((passed + 1))
+	else
+		printf '%s\n' "$out" | tail -n 40 | sed 's/^/# /'
+		echo "FAILED: $name"
+		failed=$((failed + 1))
+	fi
+}
+
+tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
+KDIR=$(tests/vm/kernels.sh kdir "$kernel")
+release=$(tests/vm/kernels.sh release "$kernel")
+modules=$PWD/build/system-$kernel/modules
+prefix=/opt/ethercat
+top() { make -s KDIR="$KDIR" MODDIR="$modules" DESTDIR="$root" PREFIX=$prefix "$@"; }
+
+# --- kernel ----------------------------------------------------------------------
+mkdir "$tmp/src"
+git ls-files -z Kbuild master devices include | xargs -0 cp --parents -t "$tmp/src"
+
+# the way kernel people do it, all warnings on
+plain_kbuild() {
+	make -j2 -C "$KDIR" M="$tmp/src" CONFIG_DEBUG_INFO_BTF_MODULES= W=1 \
+		C=2 CF=-D__CHECK_ENDIAN__ modules >"$tmp/kbuild.log" 2>&1 || {
+		tail -n 30 "$tmp/kbuild.log"
+		return 1
+	}
+	[ "$(find "$tmp/src" -name '*.ko' | wc -l)" = 3 ]
+}
+
+# sparse also talks about the kernel's headers
+no_warning() { ! grep -E "^$tmp/src/.*(warning|error):|^(WARNING|ERROR):" "$tmp/kbuild.log"; }
+
+sparse_ran() { [ "$(grep -c '^  CHECK ' "$tmp/kbuild.log")" -ge 20 ]; }
+
+needs_master() { [ "$(modinfo -F depends "$tmp/src/$1")" = ec_master ]; }
+
+# else the check above could not fail
+sparse_notices() {
+	mkdir -p "$tmp/bad"
+	echo "obj-m += bad.o" >"$tmp/bad/Kbuild"
+	cat >"$tmp/bad/bad.c" <<-'END'
+	#include <linux/module.h>
+	u16 bad(__le16 x);
+	u16 bad(__le16 x) { return x; }
+	MODULE_LICENSE("GPL");
+	END
+	make -C "$KDIR" M="$tmp/bad" CONFIG_DEBUG_INFO_BTF_MODULES= C=2 CF=-D__CHECK_ENDIAN__ modules 2>&1 |
+		grep -E "^$tmp/bad/bad.c:3:.*warning: incorrect type"
+}
+
+t "make -C KDIR M=... builds three modules" plain_kbuild
+t "W=1 and sparse have nothing to say about our files" no_warning
+t "sparse has looked at them" sparse_ran
+t "sparse notices a wrong byte order" sparse_notices
+t "ec_sim and ec_generic load after ec_master" eval \
+	'needs_master devices/sim/ec_sim.ko && needs_master devices/ec_generic.ko'
+
+# --- userspace -------------------------------------------------------------------
+flags="-O2 -Wall -Wextra -Werror"
+t "library without a warning" make -s -C lib O="$tmp/lib" CFLAGS="$flags" all
+t "tool without a warning" make -s -C tool O="$tmp/tool" CFLAGS="$flags"
+t "simulator without a warning" make -s -C tool/sim O="$tmp/sim" CFLAGS="$flags"
+t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CFLAGS="$flags" all
+
+# --- install ---------------------------------------------------------------------
+expected() {
+	cat <<-END
+	./lib/modules/$release/updates/ethercat/devices/ec_generic.ko
+	./lib/modules/$release/updates/ethercat/devices/sim/ec_sim.ko
+	./lib/modules/$release/updates/ethercat/master/ec_master.ko
+	.$prefix/bin/ethercat
+	.$prefix/bin/ethercat-sim
+	.$prefix/include/ecrt.h
+	.$prefix/lib/libethercat.a
+	.$prefix/lib/libethercat.so
+	.$prefix/lib/libethercat.so.1
+	.$prefix/lib/libethercat.so.1.2.0
+	.$prefix/lib/pkgconfig/libethercat.pc
+	.$prefix/lib/udev/rules.d/60-ethercat.rules
+	.$prefix/share/bash-completion/completions/ethercat
+	.$prefix/share/man/man8/ethercat.8
+	END
+}
+
+installed() { (cd "$root" && find . ! -type d | LC_ALL=C sort); }
+
+# kbuild may compress or sign the modules, so only their names count
+t "make install DESTDIR= PREFIX=" top install
+t "it installs these files and no other" diff <(expected | LC_ALL=C sort) <(installed)
+t "the tool that was installed runs" "$root$prefix/bin/ethercat" help
+t "the simulator that was installed runs" "$root$prefix/bin/ethercat-sim" --help
+t "the completion is a bash script" bash -n "$root$prefix/share/bash-completion/completions/ethercat"
+
+cat >"$tmp/app.c" <<'END'
+#include <ecrt.h>
+#include <stdio.h>
+
+int main(void)
+{
+	printf("%u\n", ecrt_version_magic());
+	return ecrt_version_magic() != ECRT_VERSION_MAGIC;
+}
+END
+
+# app_runs COMPILER STANDARD LANGUAGE
+app_runs() {
+	local pc="env PKG_CONFIG_LIBDIR=$root$prefix/lib/pkgconfig PKG_CONFIG_SYSROOT_DIR=$root pkg-config"
+	local cflags libs
+
+	cflags=$($pc --cflags libethercat) && libs=$($pc --libs libethercat) || return 1
+	# shellcheck disable=SC2086
+	$1 -std=$2 -Wall -Wextra -pedantic -Werror $cflags -x $3 -o "$tmp/app" "$tmp/app.c" -x none $libs &&
+		LD_LIBRARY_PATH=$root$prefix/lib "$tmp/app"
+}
+
+t "an application in C99 with pkg-config" app_runs gcc c99 c
+t "an application in C++11 with pkg-config" app_runs g++ c++11 c++
+
+nothing_left() {
+	[ -z "$(installed)" ] || { installed; return 1; }
+	[ ! -e "$root/lib/modules/$release/updates" ]
+}
+
+t "make uninstall" top uninstall
+t "it leaves no file" nothing_left
+
+no_headers() {
+	! make -s KDIR="$tmp/nowhere" DESTDIR="$root" uninstall 2>"$tmp/err" &&
+		grep -q 'no kernel headers at .*/nowhere: install linux-headers-' "$tmp/err"
+}
+
+t "without kernel headers it says what to install" no_headers
+
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
