@@ -24,7 +24,8 @@ struct ecdev;
  *	when the hardware still owns all of them
  * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
  *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent)
- * @poll: optional. Delivers what has arrived through ecdev_receive()
+ * @poll: optional. Delivers what has arrived through ecdev_receive(). Also
+ *	called with @cycle off when a frame is overdue
  * @cycle: optional. On: the caller will poll, interrupts are not wanted
  * @link_up: mandatory. A bit test; callable from the cycle
  */

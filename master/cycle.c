@@ -4,6 +4,9 @@
 #include "cycle.h"
 #include "device.h"
 #include "master.h"
+#include "session.h"
+
+#define TURN_CYCLES	100	/* an acyclic frame has its turn within that many */
 
 /* owner of the links -------------------------------------------------------*/
 
@@ -121,11 +124,15 @@ static void flush(struct ec_master *m)
  * Waits until the cyclic caller has left the links.
  *
  * Context: Process. May sleep.
+ * Return: whether they had another owner before.
  */
-void ec_cycle_own(struct ec_master *m, enum ec_owner owner)
+bool ec_cycle_own(struct ec_master *m, enum ec_owner owner)
 {
+	bool change;
+
 	rt_mutex_lock(&m->io_lock);
-	if (m->owner != owner) {
+	change = m->owner != owner;
+	if (change) {
 		WRITE_ONCE(m->last_send_ns, ktime_get_ns());
 		WRITE_ONCE(m->owner, owner);
 		smp_mb();	/* owner before cycle_busy; pairs with enter() */
@@ -136,6 +143,7 @@ void ec_cycle_own(struct ec_master *m, enum ec_owner owner)
 			flush(m);
 	}
 	rt_mutex_unlock(&m->io_lock);
+	return change;
 }
 
 /**
@@ -179,19 +187,63 @@ bool ec_cycle_stalled(struct ec_master *m)
 }
 
 /**
- * ec_cycle_timeout_us() - how long ec_xfer() waits for its frames
+ * ec_cycle_wait_begin() - how long ec_xfer() waits for its frames
  * @m: master
+ * @w: all but @polls is set
  *
  * In cycle mode frames first wait for their turn.
  *
  * Context: Any.
- * Return: microseconds.
  */
-u32 ec_cycle_timeout_us(const struct ec_master *m)
+void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 {
+	w->owner = READ_ONCE(m->owner);
+	w->began_ns = ktime_get_ns();
+	w->timeout_us = m->io_timeout_us;
+	if (w->owner == EC_OWNER_CYCLE)
+		w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
+}
+
+/**
+ * ec_cycle_wait_more() - does a wait that ended in vain count?
+ * @m: master
+ * @w: the wait
+ *
+ * It does not when the machine stood still meanwhile (a paused VM), when the
+ * links changed hands, or when the cycle has hardly looked for frames. Links
+ * whose cyclic caller has stalled are taken back: the monitor may be waiting,
+ * too.
+ *
+ * Context: Process. May sleep.
+ * Return: true: the frames have had no fair chance yet.
+ */
+bool ec_cycle_wait_more(struct ec_master *m, const struct ec_cycle_wait *w)
+{
+	if (ktime_get_ns() - w->began_ns > 2ULL * NSEC_PER_USEC * w->timeout_us ||
+	    READ_ONCE(m->owner) != w->owner)
+		return true;
+	if (w->owner == EC_OWNER_IDLE || READ_ONCE(m->polls) - w->polls >= TURN_CYCLES)
+		return false;
+	if (ec_cycle_stalled(m))
+		ec_session_stalled(m);
+	return true;
+}
+
+/**
+ * ec_cycle_look() - have overdue frames arrived unnoticed?
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_cycle_look(struct ec_master *m)
+{
+	rt_mutex_lock(&m->io_lock);
+	/* a cyclic caller looks himself */
 	if (READ_ONCE(m->owner) == EC_OWNER_IDLE)
-		return m->io_timeout_us;
-	return m->io_timeout_us + 100 * max(m->interval_us, 1000u);
+		ec_link_poll(&m->link[0]);
+	rt_mutex_unlock(&m->io_lock);
+	/* without a poll function an interrupt thread delivers */
+	usleep_range(200, 500);
 }
 
 /**

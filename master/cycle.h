@@ -61,12 +61,14 @@ struct ec_cyc_input {
  * @send: number of the send it belongs to
  * @first: first datagram of the layout it carries
  * @count: how many
+ * @missed: a receive has looked for it in vain
  */
 struct ec_cyc_flight {
 	struct ec_slot *slot;
 	u32 send;
 	u16 first;
 	u16 count;
+	bool missed;
 };
 
 #define EC_CYC_FRAMES	128	/* on their way at most */
@@ -111,9 +113,25 @@ struct ec_cycle {
 	u64 cycles;
 };
 
+/**
+ * struct ec_cycle_wait - what somebody who waits for acyclic frames remembers
+ * @owner: of the links when the wait began
+ * @began_ns: when that was (ktime)
+ * @timeout_us: how long it lasts
+ * @polls: receives of the cycle when the frames were handed over
+ */
+struct ec_cycle_wait {
+	enum ec_owner owner;
+	u64 began_ns;
+	u32 timeout_us;
+	u32 polls;
+};
+
 int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent);
-u32 ec_cycle_timeout_us(const struct ec_master *m);
-void ec_cycle_own(struct ec_master *m, enum ec_owner owner);
+void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w);
+bool ec_cycle_wait_more(struct ec_master *m, const struct ec_cycle_wait *w);
+void ec_cycle_look(struct ec_master *m);
+bool ec_cycle_own(struct ec_master *m, enum ec_owner owner);
 bool ec_cycle_stalled(struct ec_master *m);
 
 /* for the cyclic caller */

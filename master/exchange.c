@@ -87,7 +87,8 @@ static void judge(struct ec_session *s)
  * @s: active session
  *
  * Inputs go to the image, working counters to the status page. Frames that
- * are not back within the time limit are lost.
+ * are not back within the time limit are lost; one that comes only after the
+ * next send has brought data that are a cycle old, and is counted as late.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
@@ -103,17 +104,24 @@ int ec_cycle_receive(struct ec_session *s)
 		return -ENODEV;
 	ec_cycle_enter(m);
 	ec_link_poll(&m->link[0]);
+	WRITE_ONCE(m->polls, m->polls + 1);
 	now = ktime_get_ns();
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];
 
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
+			if (unlikely(f->missed) && f->send != c->send)
+				atomic64_inc(&m->link[0].stats.late);
 			take_frame(s, f);
 			ec_slot_put(&m->slots, f->slot, true);
-		} else if (now - f->slot->sent_ns > limit && ec_slot_cancel(f->slot, now)) {
+		} else if (f->missed && now - f->slot->sent_ns > limit &&
+			   ec_slot_cancel(f->slot, now)) {
 			atomic64_inc(&m->link[0].stats.lost);
-		} else if (left++ != i) {
-			c->flight[left - 1] = *f;
+		} else {
+			/* the machine may have stood still: looked for twice at least */
+			f->missed = true;
+			if (left++ != i)
+				c->flight[left - 1] = *f;
 		}
 	}
 	c->n_flight = left;

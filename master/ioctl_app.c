@@ -356,7 +356,18 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
-/* Not contended: only deactivation takes the lock beside the cyclic caller. */
+/**
+ * enter() - the cyclic caller begins receive or send
+ * @f: open file
+ *
+ * A mutex is safe here in real time: nobody else but deactivation takes it,
+ * for the time of one assignment, so it is free and costs one atomic
+ * operation. Should the two meet, deactivation inherits the priority of the
+ * cyclic caller under PREEMPT_RT, where a mutex is an rt_mutex.
+ *
+ * Context: Process. The lock is held when a session is returned.
+ * Return: the active session of this file, or NULL.
+ */
 static struct ec_session *enter(struct ec_file *f)
 {
 	struct ec_master *m = f->master;

@@ -39,6 +39,7 @@ struct task_struct;
  * @owner: enum ec_owner; see ec_cycle_own()
  * @cycle_busy: the cyclic caller is using the links
  * @last_send_ns: when the cycle sent last
+ * @polls: receives of the cycle so far; wraps
  * @interval_us: distance of cyclic sends, told by the application or measured
  * @interval_told: told
  * @xq_lock: protects @xq, @xq_head, @xq_tail
@@ -88,6 +89,7 @@ struct ec_master {
 	int owner;
 	atomic_t cycle_busy;
 	u64 last_send_ns;
+	u32 polls;
 	u32 interval_us;
 	bool interval_told;
 	raw_spinlock_t xq_lock;

@@ -352,7 +352,7 @@ void ec_session_status(struct ec_master *m)
 }
 
 /**
- * ec_session_stalled() - the cyclic caller has not sent for too long; monitor
+ * ec_session_stalled() - the cyclic caller has not sent for too long
  * @m: master
  *
  * The links go back to idle mode, so that mailboxes and tools work; process
@@ -362,7 +362,9 @@ void ec_session_status(struct ec_master *m)
  */
 void ec_session_stalled(struct ec_master *m)
 {
-	ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
-		div_u64(ktime_get_ns() - READ_ONCE(m->last_send_ns), NSEC_PER_MSEC));
-	ec_cycle_own(m, EC_OWNER_IDLE);
+	u64 ns = ktime_get_ns() - READ_ONCE(m->last_send_ns);
+
+	if (ec_cycle_own(m, EC_OWNER_IDLE))
+		ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
+			div_u64(ns, NSEC_PER_MSEC));
 }

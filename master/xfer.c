@@ -7,6 +7,7 @@
 #include "xfer.h"
 
 #define TRIES	4	/* of a repeatable datagram */
+#define WAITS	8	/* for one frame, as long as it had no fair chance */
 #define SLOT_WAIT_MS	1000	/* many hundred may be at work at once */
 
 /* one frame of a batch: the slot and the datagrams it carries */
@@ -23,6 +24,7 @@ struct batch_frame {
  */
 struct half {
 	struct ec_xfer x;
+	struct ec_cycle_wait wait;
 	bool urgent;
 	unsigned int frames;
 	struct batch_frame f[EC_XFER_WINDOW / 2];
@@ -105,6 +107,7 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 {
 	init_completion(&h->x.done);
 	atomic_set(&h->x.pending, 1);
+	h->wait.polls = READ_ONCE(m->polls);
 	for (h->frames = 0; h->frames < ARRAY_SIZE(h->f); h->frames++) {
 		struct batch_frame *f = &h->f[h->frames];
 
@@ -152,13 +155,32 @@ static void give_up(struct ec_master *m, struct half *h)
 	}
 }
 
+/*
+ * Are all frames of a half back? Only the time in which they could have come
+ * back counts.
+ */
+static bool wait_half(struct ec_master *m, struct half *h)
+{
+	unsigned int n;
+
+	for (n = 0; n < WAITS; n++) {
+		ec_cycle_wait_begin(m, &h->wait);
+		if (wait_for_completion_timeout(&h->x.done,
+						usecs_to_jiffies(h->wait.timeout_us) + 1))
+			return true;
+		if (!ec_cycle_wait_more(m, &h->wait))
+			break;
+	}
+	ec_cycle_look(m);
+	return try_wait_for_completion(&h->x.done);
+}
+
 /* Wait for the frames of a half and take their results. */
 static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 {
 	unsigned int i;
 
-	if (!wait_for_completion_timeout(&h->x.done,
-					 usecs_to_jiffies(ec_cycle_timeout_us(m)) + 1)) {
+	if (!wait_half(m, h)) {
 		give_up(m, h);
 		wait_for_completion(&h->x.done);
 	}

@@ -62,7 +62,7 @@ struct ec_ioc_device {
 	__u64 rx_bytes;
 	__u64 tx_errors;
 	__u64 lost;		/* not back in time */
-	__u64 late;		/* back, but after their time limit */
+	__u64 late;		/* back, but a cycle or more late, or after the time limit */
 	__u64 unmatched;	/* EtherCAT, but not asked for, or mangled */
 	__u64 foreign;		/* other protocols on the wire */
 	__u32 tx_frame_rate[EC_UAPI_RATES];	/* per second */

@@ -21,8 +21,8 @@ declare -A v
 tests/vm/kernels.sh fetch "$kernel" >&2 &&
 make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
 make -s -C lib O="$build/lib" all >&2 &&
-make -s -C tool >&2 && mkdir -p "$build/tool" &&
-cp tool/ethercat tool/ethercat-sim "$build/tool/" &&
+make -s -C tool O="$build/tool" >&2 &&
+make -s -C tool/sim O="$build/tool" >&2 &&
 make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 || exit 1
 
 # A string copy counts once per byte with ERMS and once per word without. The
