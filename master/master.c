@@ -243,6 +243,52 @@ err_free:
 	return ERR_PTR(ret);
 }
 
+/* The broadcast address means any device, so it may be given again. */
+static bool same_device(const char *a, const char *b)
+{
+	u8 x[ETH_ALEN] __aligned(2), y[ETH_ALEN] __aligned(2);
+
+	if (mac_pton(a, x) && mac_pton(b, y))
+		return ether_addr_equal(x, y) && !is_broadcast_ether_addr(x);
+	return !strcmp(a, b);
+}
+
+/*
+ * Before the first master is there, as somebody may open it at once. One name
+ * given twice is a mistake: the second one would wait for ever.
+ */
+static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
+{
+	const char *all[EC_MAX_LINKS * EC_MAX_MASTERS];
+	unsigned int i, k, n = 0;
+
+	for (i = 0; i < n_main; i++) {
+		if (!main[i] || !*main[i]) {
+			pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
+			       i);
+			return -EINVAL;
+		}
+		all[n++] = main[i];
+	}
+	if (n_backup > n_main) {
+		pr_err("EtherCAT: backup_devices= has %u entries, main_devices= only %u\n", n_backup,
+		       n_main);
+		return -EINVAL;
+	}
+	for (i = 0; i < n_backup; i++)
+		if (*backup[i])
+			all[n++] = backup[i];
+	for (i = 0; i < n; i++) {
+		for (k = 0; k < i && !same_device(all[i], all[k]); k++)
+			;
+		if (k == i)
+			continue;
+		pr_err("EtherCAT: device %s is given twice; each link needs its own\n", all[i]);
+		return -EINVAL;
+	}
+	return 0;
+}
+
 /**
  * ec_masters_create() - create the masters the module parameters name
  * @main: main device of each: MAC address or device name
@@ -252,22 +298,19 @@ err_free:
  * @debug: log level
  *
  * Context: Process. May sleep.
- * Return: 0, -EINVAL for an empty name, -ENOMEM, or another -errno.
+ * Return: 0, -EINVAL for names that cannot be meant, -ENOMEM, or another -errno.
  */
 int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
 		      unsigned int debug)
 {
 	unsigned int i;
+	int ret = check_names(main, n_main, backup, n_backup);
 
+	if (ret)
+		return ret;
 	for (i = 0; i < n_main; i++) {
 		struct ec_master *m;
 
-		if (!main[i] || !*main[i]) {
-			pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
-			       i);
-			ec_masters_destroy();
-			return -EINVAL;
-		}
 		m = create(i, main[i], i < n_backup && *backup[i] ? backup[i] : NULL, debug);
 		if (IS_ERR(m)) {
 			ec_masters_destroy();

@@ -136,7 +136,26 @@ static void scan_stations(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 
+/* Module parameters that cannot be meant: no master at all, and no leak. */
+static void scan_device_names(struct kunit *test)
+{
+	char *empty[] = { "bus0", "" }, *twice[] = { "bus0", "bus0" };
+	char *macs[] = { "02:00:00:ec:51:0a", "02:00:00:EC:51:0A" };
+	char *any[] = { "ff:ff:ff:ff:ff:ff", "FF:FF:FF:FF:FF:FF" }, *none[] = { "" };
+
+	KUNIT_EXPECT_EQ(test, ec_masters_create(empty, 2, NULL, 0, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_masters_create(twice, 2, NULL, 0, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_masters_create(twice, 1, &twice[1], 1, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_masters_create(macs, 2, NULL, 0, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_masters_create(twice, 1, macs, 2, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_master_count(), 0u);
+	KUNIT_EXPECT_EQ(test, ec_masters_create(any, 2, none, 1, 0), 0);
+	KUNIT_EXPECT_EQ(test, ec_master_count(), 2u);
+	ec_masters_destroy();
+}
+
 static struct kunit_case scan_cases[] = {
+	KUNIT_CASE(scan_device_names),
 	KUNIT_CASE(scan_bench_identity),
 	KUNIT_CASE(scan_bench_pdos),
 	KUNIT_CASE(scan_bench_topology),
