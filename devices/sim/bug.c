@@ -59,6 +59,12 @@ static const char * const bug_names[EC_SIM_BUGS] = {
 	[EC_SIM_BUG_SDO_SIZE] = "sdo_size",
 	[EC_SIM_BUG_SDO_ABORT] = "sdo_abort",
 	[EC_SIM_BUG_INFO_LIST] = "info_list",
+	[EC_SIM_BUG_PROTECT] = "protect",
+	[EC_SIM_BUG_PROTECT_OPEN] = "protect_open",
+	[EC_SIM_BUG_WD_PDI] = "wd_pdi",
+	[EC_SIM_BUG_EEP_PDI_LATE] = "eep_pdi_late",
+	[EC_SIM_BUG_EEP_PDI_HIDDEN] = "eep_pdi_hidden",
+	[EC_SIM_BUG_SYNC_NO_ACK] = "sync_no_ack",
 };
 
 /**

@@ -66,6 +66,12 @@ enum ec_sim_bug {
 	EC_SIM_BUG_SDO_SIZE,		/* announced size one too large */
 	EC_SIM_BUG_SDO_ABORT,		/* all aborts are "general error" */
 	EC_SIM_BUG_INFO_LIST,		/* object lists lack their last one */
+	EC_SIM_BUG_PROTECT,		/* write protection does nothing */
+	EC_SIM_BUG_PROTECT_OPEN,	/* once opened, it stays open */
+	EC_SIM_BUG_WD_PDI,		/* PDI watchdog never expires */
+	EC_SIM_BUG_EEP_PDI_LATE,	/* emulated EEPROM: data not waited for */
+	EC_SIM_BUG_EEP_PDI_HIDDEN,	/* emulated EEPROM: 0x0502 bit 5 not set */
+	EC_SIM_BUG_SYNC_NO_ACK,		/* SYNC not held until acknowledged */
 	EC_SIM_BUGS
 };
 

@@ -74,10 +74,15 @@ void ec_esc_power_on(struct ec_esc *esc, u64 now)
 	esc->al_unread = false;
 	esc->emulation = false;
 	esc->wd_due = EC_ESC_NEVER;
+	esc->wd_pdi_expired = false;
+	ec_esc_wd_pdi_trigger(esc, now);
 	esc->loop_restore = EC_ESC_NEVER;
 	esc->app_wake_ns = EC_ESC_NEVER;
 	esc->reset_step = 0;
 	memset(&esc->pend, 0, sizeof(esc->pend));
+	esc->open_regs = 0;
+	esc->open_all = 0;
+	ec_esc_regs_fixed(esc);
 	ec_esc_sm_reset(esc);
 	ec_esc_fmmu_config(esc);
 	ec_esc_mii_reset(esc);
@@ -104,7 +109,8 @@ void ec_esc_event(struct ec_esc *esc, u16 set, u16 clear)
 
 u16 ec_esc_dl_status(const struct ec_esc *esc)
 {
-	u16 v = EC_DLS_PDI_WD_OK | (esc->eep.loaded ? EC_DLS_PDI_OK : 0);
+	u16 v = (esc->wd_pdi_expired ? 0 : EC_DLS_PDI_WD_OK) |
+		(esc->eep.loaded ? EC_DLS_PDI_OK : 0);
 	int p;
 
 	for (p = 0; p < EC_MAX_PORT; p++) {
@@ -156,15 +162,6 @@ static void after_read(struct ec_esc *esc, u16 ado, u32 len)
 		ec_esc_dc_read(esc, ado, len, false);
 }
 
-/* false for a place that this slave controller does not answer at */
-static bool reg_exists(const struct ec_esc *esc, u32 ado, u32 len)
-{
-	if (ado + len > EC_REG_RAM)
-		return false;
-	return esc->cfg.features & EC_FEAT_DC || ado < EC_DC_FIRST ||
-	       ado + len > EC_DC_FIRST + EC_DC_SIZE;
-}
-
 /* the master reads physical memory; false: refused, not counted */
 bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 		      const struct ec_frame_ctx *ctx)
@@ -180,37 +177,12 @@ bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 		ec_esc_sm_end(esc, sm, ado, len, false, ctx);
 		return true;
 	}
-	if (!reg_exists(esc, ado, (u32)len))
+	if (!ec_esc_reg_exists(esc, ado, (u32)len))
 		return false;
 	ec_esc_refresh(esc, ado, (u32)len, ctx->now);
 	memcpy(buf, esc->mem + ado, len);
 	after_read(esc, ado, (u32)len);
 	return true;
-}
-
-/* registers without a behaviour of their own that the master may write */
-static bool is_plain(const struct ec_esc *esc, u32 a)
-{
-	if (a >= EC_REG_FMMU(0) && a < EC_REG_FMMU(0u + esc->cfg.fmmus))
-		return true;
-	if (a >= EC_REG_SM(0) && a < EC_REG_SM(0u + esc->cfg.sms)) {
-		u32 n = (a - EC_REG_SM(0)) / EC_SM_PAGE, ofs = a & 7;
-
-		/* the page can be changed while the SM is switched off */
-		return ofs == EC_SM_OFS_ACTIVATE ||
-		       (ofs <= EC_SM_OFS_CONTROL &&
-			!(esc->sm[n].page.activate & EC_SM_ACT_ENABLE));
-	}
-	return (a >= EC_REG_STATION && a < EC_REG_STATION + 2) ||
-	       (a >= EC_REG_DL_CONTROL && a < EC_REG_DL_CONTROL + 4) ||
-	       (a >= 0x0108 && a < 0x010a) ||
-	       (a >= EC_REG_ECAT_MASK && a < EC_REG_ECAT_MASK + 2) ||
-	       (a >= EC_REG_WD_DIVIDER && a < EC_REG_WD_DIVIDER + 2) ||
-	       (a >= EC_REG_WD_PDI && a < EC_REG_WD_PDI + 2) ||
-	       (a >= EC_REG_WD_SM && a < EC_REG_WD_SM + 2) ||
-	       (a >= EC_REG_MII_CONTROL && a < EC_REG_MII_ECAT + 1) ||
-	       (a >= 0x0f00 && a < 0x0f04) || (a >= 0x0f10 && a < 0x0f18) ||
-	       a >= EC_REG_USER_RAM;
 }
 
 static void clear_errors(struct ec_esc *esc, u16 ado, u32 len)
@@ -302,11 +274,15 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 		act[i] = esc->sm[i].page.activate;
 
 	for (i = 0; i < len; i++)
-		if (is_plain(esc, ado + i) ||
+		if (ec_esc_reg_plain(esc, ado + i) ||
 		    ec_esc_bug(esc, EC_SIM_BUG_READ_ONLY))
 			m[ado + i] = buf[i];
 
+	ec_esc_regs_fixed(esc);
+
 	if (ado < 0x0200) {
+		m[EC_REG_WRITE_PROTECT] &= 1;
+		m[EC_REG_ESC_WRITE_PROTECT] &= 1;
 		if (ec_range_hit(ado, len, EC_REG_STATION, 2))
 			ec_sim_rehash(esc);
 		if (ec_range_hit(ado, len, EC_REG_DL_CONTROL, 4))
@@ -322,10 +298,13 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 		clear_errors(esc, ado, len);
 	if (ec_range_hit(ado, len, EC_REG_WD_DIVIDER, 0x22))
 		ec_esc_wd_config(esc, ctx->now);
+	if (ec_range_hit(ado, len, EC_REG_WD_DIVIDER, 0x12) &&
+	    !esc->wd_pdi_expired)
+		ec_esc_wd_pdi_trigger(esc, ctx->now);
 	if (ec_range_hit(ado, len, EC_REG_EEP_OWNER, 16))
-		ec_esc_eeprom_write(esc, ado, buf, len, ctx->now);
+		ec_esc_eeprom_write(esc, ado, buf, len, ctx);
 	if (ec_range_hit(ado, len, EC_REG_MII_CONTROL, 12))
-		ec_esc_mii_write(esc, ado, len);
+		ec_esc_mii_write(esc, ado, buf, len);
 	if (ec_range_hit(ado, len, EC_REG_FMMU(0), EC_MAX_FMMU * EC_FMMU_PAGE))
 		ec_esc_fmmu_config(esc);
 	if (sms)
@@ -339,10 +318,13 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
 		       size_t len, const struct ec_frame_ctx *ctx)
 {
+	u32 skip;
 	u8 *p;
 	int sm;
 
 	if (ado >= EC_REG_RAM) {
+		if (ec_esc_ram_locked(esc))
+			return ado + len <= esc->mem_len;
 		p = ec_esc_sm_begin(esc, ado, len, false, true, &sm);
 		if (!p)
 			return false;
@@ -350,8 +332,12 @@ bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
 		ec_esc_sm_end(esc, sm, ado, len, false, ctx);
 		return true;
 	}
-	return reg_exists(esc, ado, (u32)len) &&
-	       reg_write(esc, ado, buf, (u32)len, ctx);
+	if (!ec_esc_reg_exists(esc, ado, (u32)len))
+		return false;
+	skip = ec_esc_protect(esc, ado, buf, (u32)len);
+	return skip == len ||
+	       reg_write(esc, (u16)(ado + skip), (const u8 *)buf + skip,
+			 (u32)len - skip, ctx);
 }
 
 static bool address_match(const struct ec_esc *esc, const struct ec_dgram *d)
@@ -495,7 +481,7 @@ void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
 /* time of the next thing this slave does by itself */
 u64 ec_esc_next(const struct ec_esc *esc)
 {
-	u64 t = min(esc->app_wake_ns, esc->wd_due);
+	u64 t = min(esc->app_wake_ns, min(esc->wd_due, esc->wd_pdi_due));
 
 	t = min(t, esc->loop_restore);
 	return min(t, esc->dc.sync_wake);
@@ -512,6 +498,8 @@ void ec_esc_run(struct ec_esc *esc, u64 now)
 	}
 	if (esc->wd_due <= now)
 		ec_esc_wd_expire(esc, now);
+	if (esc->wd_pdi_due <= now)
+		ec_esc_wd_pdi_expire(esc);
 	if (esc->dc.sync_wake <= now)
 		ec_esc_dc_sync(esc, now);
 	if (esc->app_wake_ns <= now) {
@@ -536,6 +524,8 @@ void ec_esc_deliver(struct ec_esc *esc)
 				ops->sm_activate(esc, n, now);
 		if (esc->pend.al_control && ops->al_control)
 			ops->al_control(esc, now);
+		if (esc->pend.eeprom && ops->eeprom)
+			ops->eeprom(esc, now);
 		for (n = 0; n < esc->cfg.sms; n++) {
 			if (esc->pend.sm_written & BIT(n) && ops->sm_written)
 				ops->sm_written(esc, n, now);

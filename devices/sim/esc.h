@@ -23,6 +23,7 @@ struct ec_esc;
 #define EC_AL_EVENT_DC_LATCH	BIT(1)
 #define EC_AL_EVENT_SYNC0	BIT(2)
 #define EC_AL_EVENT_SYNC1	BIT(3)
+#define EC_AL_EVENT_EEPROM	BIT(5)
 
 /**
  * struct ec_esc_config - what a slave controller is built with
@@ -35,6 +36,7 @@ struct ec_esc;
  * @ports: enum ec_port_type of the four ports
  * @features: register 0x0008, EC_FEAT_*
  * @eeprom_8byte: reads 8 bytes per EEPROM access, else 4
+ * @eeprom_emulated: the PDI answers EEPROM commands (0x0502 bit 5)
  * @eeprom_busy_ns: time of a read access of 8 bytes; 4 bytes take half
  * @eeprom_write_ns: time of a write access
  * @eeprom: initial content, copied; may be NULL (all 0xff)
@@ -61,6 +63,7 @@ struct ec_esc_config {
 	u8 ports[EC_MAX_PORT];
 	u16 features;
 	bool eeprom_8byte;
+	bool eeprom_emulated;
 	u32 eeprom_busy_ns;
 	u32 eeprom_write_ns;
 	const u8 *eeprom;
@@ -77,6 +80,8 @@ struct ec_esc_config {
 /**
  * struct ec_esc_app_ops - the application behind a slave controller
  * @al_control: the master wrote 0x0120 (not with device emulation)
+ * @eeprom: a command for the emulated EEPROM is pending: read 0x0502 and
+ *          0x0504, put the data at 0x0508, write the command to 0x0502
  * @sm_written: the master completely wrote the buffer of an SM
  * @sm_read: the master completely read the buffer of an SM
  * @sm_activate: the master wrote the activate byte of an SM (enable or
@@ -99,6 +104,7 @@ struct ec_esc_config {
  */
 struct ec_esc_app_ops {
 	void (*al_control)(struct ec_esc *esc, u64 now);
+	void (*eeprom)(struct ec_esc *esc, u64 now);
 	void (*sm_written)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_read)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_activate)(struct ec_esc *esc, int sm, u64 now);
@@ -196,6 +202,7 @@ struct ec_esc_eeprom {
  * @implausible: start time was refused
  * @sync_wake: simulation time of the next pulse, EC_ESC_NEVER: none
  * @sync_next: its number, counting SYNC0 from 0
+ * @sync_acked: pulses until the PDI last acknowledged SYNC0, SYNC1
  * @latch_status: registers 0x09AE and 0x09AF
  */
 struct ec_esc_dc {
@@ -214,6 +221,7 @@ struct ec_esc_dc {
 	bool implausible;
 	u64 sync_wake;
 	u64 sync_next;
+	u64 sync_acked[2];
 	u8 latch_status[2];
 };
 
@@ -260,9 +268,13 @@ struct ec_esc_fault {
  * @al_unread: AL control was written and not yet read by the PDI
  * @emulation: device emulation: AL status follows AL control
  * @wd_due: time at which the process data watchdog expires
+ * @wd_pdi_due: time at which the PDI watchdog expires
+ * @wd_pdi_expired: it has, and the PDI was not accessed since
  * @loop_restore: time at which temporary loop settings end
  * @loop_saved: loop settings to restore
  * @reset_step: letters of the reset sequence seen
+ * @open_regs: last frame that opened the protected registers, 0: none
+ * @open_all: last frame that opened the whole controller
  * @app: private to the application side
  * @app_ops: its entry points, may be NULL
  * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
@@ -299,9 +311,13 @@ struct ec_esc {
 	bool al_unread;
 	bool emulation;
 	u64 wd_due;
+	u64 wd_pdi_due;
+	bool wd_pdi_expired;
 	u64 loop_restore;
 	u8 loop_saved;
 	u8 reset_step;
+	u64 open_regs;
+	u64 open_all;
 	void *app;
 	const struct ec_esc_app_ops *app_ops;
 	u64 app_wake_ns;
@@ -314,6 +330,7 @@ struct ec_esc {
 	bool irq;
 	struct {
 		bool al_control;
+		bool eeprom;
 		u16 sm_written;
 		u16 sm_read;
 		u16 sm_activate;

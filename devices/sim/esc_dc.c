@@ -247,6 +247,45 @@ static u8 activation(const struct ec_esc *esc)
 	return esc->mem[EC_REG_DC_ACTIVATION];
 }
 
+/* pulses of SYNC0 (@which 0) or SYNC1 (1) until now */
+static u64 sync_pulses(const struct ec_esc *esc, int which, u64 now)
+{
+	u64 sys = ec_esc_system_time(esc, now), n;
+	u32 f = sync1_factor(esc);
+
+	if (!esc->dc.running || !(activation(esc) & BIT(1 + which)))
+		return 0;
+	if (!which)
+		return sync_number(esc, sys);
+	n = sync_number(esc, sys - sync1_shift(esc));
+	return div_u64(n + f - 1, f);
+}
+
+/*
+ * Pulse length 0, acknowledge mode: the signal stays until the PDI reads
+ * 0x098e or 0x098f, and meanwhile makes no further edge.
+ */
+static bool sync_held(const struct ec_esc *esc, int which, u64 pulses)
+{
+	return !ec_esc_get16(esc, EC_REG_DC_PULSE) &&
+	       pulses > esc->dc.sync_acked[which] &&
+	       !ec_esc_bug(esc, EC_SIM_BUG_SYNC_NO_ACK);
+}
+
+/* the PDI reads 0x098e, 0x098f or both */
+void ec_esc_dc_sync_ack(struct ec_esc *esc, u16 ado, u32 len, u64 now)
+{
+	int i;
+
+	for (i = 0; i < 2; i++) {
+		if (!ec_range_hit(ado, len, EC_REG_DC_SYNC0_STATUS + (u32)i, 1))
+			continue;
+		esc->dc.sync_acked[i] = sync_pulses(esc, i, now);
+		esc->al_event &= (u32)~(i ? EC_AL_EVENT_SYNC1 :
+					    EC_AL_EVENT_SYNC0);
+	}
+}
+
 static bool wants_sync(const struct ec_esc *esc)
 {
 	return esc->dc.running && esc->app_ops && esc->app_ops->sync &&
@@ -313,7 +352,7 @@ void ec_esc_dc_sync(struct ec_esc *esc, u64 now)
 	}
 	if (!second) {
 		dc->sync_next++;
-		if (activation(esc) & 0x02) {
+		if (activation(esc) & 0x02 && !sync_held(esc, 0, n)) {
 			esc->al_event |= EC_AL_EVENT_SYNC0;
 			esc->app_ops->sync(esc, 0, now);
 		}
@@ -322,7 +361,8 @@ void ec_esc_dc_sync(struct ec_esc *esc, u64 now)
 		u64 q = div_u64(n, factor);
 
 		dc->sync_next++;
-		if (activation(esc) & 0x04 && n == q * factor) {
+		if (activation(esc) & 0x04 && n == q * factor &&
+		    !sync_held(esc, 1, q)) {
 			esc->al_event |= EC_AL_EVENT_SYNC1;
 			esc->app_ops->sync(esc, 1, now);
 		}
@@ -355,6 +395,8 @@ static void activate(struct ec_esc *esc, u8 old, u64 now)
 			(ahead <= 0 || (act & 0x40 && ahead >= 1LL << 31));
 		dc->running = ahead > 0 && !dc->implausible;
 		dc->sync_next = 0;
+		dc->sync_acked[0] = 0;
+		dc->sync_acked[1] = 0;
 	}
 	ec_esc_dc_schedule(esc, now);
 }
@@ -427,6 +469,8 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 		}
 	}
 	m[EC_REG_DC_ACT_STATUS] = (u8)v;
+	m[EC_REG_DC_SYNC0_STATUS] = sync_held(esc, 0, sync_pulses(esc, 0, now));
+	m[EC_REG_DC_SYNC1_STATUS] = sync_held(esc, 1, sync_pulses(esc, 1, now));
 	m[EC_REG_DC_LATCH0_STATUS] = dc->latch_status[0];
 	m[EC_REG_DC_LATCH1_STATUS] = dc->latch_status[1];
 }
@@ -482,15 +526,54 @@ void ec_esc_latch(struct ec_esc *esc, int channel, bool rising, u64 now)
 		ec_esc_event(esc, EC_ECAT_EVENT_DC_LATCH, 0);
 }
 
-/* registers the master may write, without those that act */
-static bool is_plain(u32 a, bool running)
+/* a register of the SYNC unit or a latch unit: the bit of 0x0980 it goes by */
+static u8 unit_of(u32 a, bool running)
 {
+	if (a == EC_REG_DC_ACTIVATION ||
+	    (a >= EC_REG_DC_START && a < EC_REG_DC_START + 8 && !running) ||
+	    (a >= EC_REG_DC_CYCLE0 && a < EC_REG_DC_LATCH0_CTRL))
+		return BIT(0);
+	return a == EC_REG_DC_LATCH0_CTRL ? BIT(4) :
+	       a == EC_REG_DC_LATCH1_CTRL ? BIT(5) : 0;
+}
+
+/* registers the master may write, without those that act */
+static bool is_plain(const struct ec_esc *esc, u32 a, bool running)
+{
+	u8 unit = unit_of(a, running);
+
+	if (unit)
+		return !(esc->mem[EC_REG_DC_CUC] & unit);
 	return (a >= EC_REG_DC_OFFSET && a < EC_REG_DC_DIFF) ||
 	       (a >= EC_REG_DC_SPEED_START && a < EC_REG_DC_SPEED_DIFF) ||
 	       (a >= EC_REG_DC_FILTER_DIFF && a <= 0x0936) ||
-	       (a >= EC_REG_DC_CUC && a <= EC_REG_DC_ACTIVATION) ||
-	       (a >= EC_REG_DC_START && a < EC_REG_DC_START + 8 && !running) ||
-	       (a >= EC_REG_DC_CYCLE0 && a <= EC_REG_DC_LATCH1_CTRL);
+	       a == EC_REG_DC_CUC;
+}
+
+/* SYNC and latch units were written */
+static void units_written(struct ec_esc *esc, u16 ado, u32 n, u8 old, u64 now)
+{
+	if (ec_range_hit(ado, n, EC_REG_DC_START, 8) && old & 0x08 &&
+	    !(old & 1))
+		esc->mem[EC_REG_DC_ACTIVATION] |= 1;	/* auto activation */
+	if (activation(esc) != old ||
+	    ec_range_hit(ado, n, EC_REG_DC_OFFSET, 8))
+		activate(esc, old, now);
+}
+
+/* the PDI writes to the units that 0x0980 gives it */
+void ec_esc_dc_pdi_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
+			 u64 now)
+{
+	u8 old = activation(esc);
+	u32 i;
+
+	if (!(esc->cfg.features & EC_FEAT_DC))
+		return;
+	for (i = 0; i < len; i++)
+		if (esc->mem[EC_REG_DC_CUC] & unit_of(ado + i, old & 1))
+			esc->mem[ado + i] = buf[i];
+	units_written(esc, ado, len, old, now);
 }
 
 void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
@@ -519,7 +602,7 @@ void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 	}
 
 	for (i = 0; i < len; i++)
-		if (is_plain(ado + (u32)i, old & 1))
+		if (is_plain(esc, ado + (u32)i, old & 1))
 			m[ado + i] = buf[i];
 	if (!is_64bit(esc))
 		put_unaligned_le32(0, m + EC_REG_DC_OFFSET + 4);
@@ -530,10 +613,5 @@ void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 	}
 	if (ec_range_hit(ado, n, EC_REG_DC_SPEED_START, 2))
 		reset_filters(esc, ctx->now);
-	if (ec_range_hit(ado, n, EC_REG_DC_START, 8) && old & 0x08 &&
-	    !(old & 1))
-		m[EC_REG_DC_ACTIVATION] |= 1;	/* auto activation */
-	if (activation(esc) != old ||
-	    ec_range_hit(ado, n, EC_REG_DC_OFFSET, 8))
-		activate(esc, old, ctx->now);
+	units_written(esc, ado, n, old, ctx->now);
 }

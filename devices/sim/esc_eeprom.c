@@ -37,7 +37,9 @@ void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on)
 		e->control = 0;
 		e->alias_loaded = false;
 	}
-	e->loaded = e->len >= CONFIG_BYTES && ec_esc_eeprom_crc(d) == d[14];
+	/* with an emulated EEPROM the configuration is built in */
+	e->loaded = e->len >= CONFIG_BYTES &&
+		    (esc->cfg.eeprom_emulated || ec_esc_eeprom_crc(d) == d[14]);
 	e->control &= (u16)~(EC_EEP_ERR_CHECKSUM | EC_EEP_ERR_LOADING);
 	if (!e->loaded) {
 		e->control |= EC_EEP_ERR_CHECKSUM;
@@ -54,6 +56,29 @@ void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on)
 		ec_sim_rehash(esc);
 	}
 	esc->emulation = d[1] & EC_ESC_CONFIG_EMULATION;
+}
+
+/* an emulated EEPROM has a command for the PDI */
+bool ec_esc_eeprom_asks(const struct ec_esc *esc)
+{
+	return esc->cfg.eeprom_emulated && esc->eep.cmd;
+}
+
+/*
+ * The PDI writes 0x0503: the command itself when it is done, with bit 5 when
+ * it failed. A word to write the PDI has taken from 0x0508 before.
+ */
+void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control)
+{
+	struct ec_esc_eeprom *e = &esc->eep;
+	u16 v = (u16)(control << 8);
+
+	if (!ec_esc_eeprom_asks(esc) || (v & EC_EEP_CMD_MASK) != e->cmd)
+		return;
+	e->control |= v & EC_EEP_ERR_ACK;
+	e->cmd = 0;
+	e->busy_until = EC_ESC_NEVER;
+	esc->al_event &= (u32)~EC_AL_EVENT_EEPROM;
 }
 
 static void finish(struct ec_esc *esc)
@@ -106,7 +131,12 @@ void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now)
 		v &= (u16)~EC_EEP_TWO_ADDR;
 	if (esc->cfg.eeprom_8byte != ec_esc_bug(esc, EC_SIM_BUG_EEP_READ8))
 		v |= EC_EEP_READ8;
+	if (esc->cfg.eeprom_emulated &&
+	    !ec_esc_bug(esc, EC_SIM_BUG_EEP_PDI_HIDDEN))
+		v |= EC_EEP_EMULATED;
 	if ((e->cmd || esc->fault.eeprom_busy) &&
+	    !(esc->cfg.eeprom_emulated &&
+	      ec_esc_bug(esc, EC_SIM_BUG_EEP_PDI_LATE)) &&
 	    !ec_esc_bug(esc, EC_SIM_BUG_EEP_NEVER_BUSY))
 		v |= (u16)(EC_EEP_BUSY | e->cmd);
 	put_unaligned_le16(v, esc->mem + EC_REG_EEP_CONTROL);
@@ -125,7 +155,8 @@ static u64 duration(const struct ec_esc *esc, u16 cmd)
 	}
 }
 
-static void command(struct ec_esc *esc, u16 control, u64 now)
+static void command(struct ec_esc *esc, u16 control,
+		    const struct ec_frame_ctx *ctx)
 {
 	struct ec_esc_eeprom *e = &esc->eep;
 	u16 cmd = control & EC_EEP_CMD_MASK;
@@ -151,7 +182,14 @@ static void command(struct ec_esc *esc, u16 control, u64 now)
 	e->cmd = cmd;
 	e->addr = get_unaligned_le32(esc->mem + EC_REG_EEP_ADDRESS);
 	e->wdata = ec_esc_get16(esc, EC_REG_EEP_DATA);
-	e->busy_until = now + duration(esc, cmd);
+	if (!esc->cfg.eeprom_emulated) {
+		e->busy_until = ctx->now + duration(esc, cmd);
+		return;
+	}
+	e->busy_until = EC_ESC_NEVER;	/* until the PDI answers */
+	esc->al_event |= EC_AL_EVENT_EEPROM;
+	esc->pend.eeprom = true;
+	ec_esc_pend(esc, ctx->end);
 }
 
 /*
@@ -159,14 +197,14 @@ static void command(struct ec_esc *esc, u16 control, u64 now)
  * while the PDI has the interface or a command runs.
  */
 void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
-			 size_t len, u64 now)
+			 size_t len, const struct ec_frame_ctx *ctx)
 {
 	u8 *m = esc->mem;
 	bool hit_lo, hit_hi, busy;
 	u16 control = 0;
 	size_t i;
 
-	ec_esc_eeprom_refresh(esc, now);
+	ec_esc_eeprom_refresh(esc, ctx->now);
 	if (ec_range_hit(ado, (u32)len, EC_REG_EEP_OWNER, 1)) {
 		u8 v = buf[EC_REG_EEP_OWNER - ado];
 
@@ -192,5 +230,5 @@ void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
 	if (hit_hi)
 		control |= (u16)(buf[EC_REG_EEP_CONTROL + 1 - ado] << 8);
 	if (hit_hi)
-		command(esc, control, now);
+		command(esc, control, ctx);
 }

@@ -86,6 +86,8 @@ static bool write_bits(struct ec_esc *esc, u32 phys_bit, const u8 *src,
 		ec_bits_copy(tmp, phys_bit % 8, src, src_bit, bits);
 		return ec_esc_phys_write(esc, (u16)ado, tmp, n, ctx);
 	}
+	if (ec_esc_ram_locked(esc))
+		return ado + n <= esc->mem_len;
 	mem = ec_esc_sm_begin(esc, ado, n, false, true, &sm);
 	if (!mem)
 		return false;

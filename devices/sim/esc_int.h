@@ -53,6 +53,7 @@ struct ec_sim {
 	u64 seed;
 	u64 rng;
 	u64 now;
+	u64 frames;			/* sent so far */
 	enum ec_sim_bug bug;
 	bool slow;
 	u32 max;
@@ -118,6 +119,15 @@ u64 ec_esc_next(const struct ec_esc *esc);
 void ec_esc_run(struct ec_esc *esc, u64 now);
 void ec_esc_deliver(struct ec_esc *esc);
 
+/* esc_regs.c */
+bool ec_esc_reg_exists(const struct ec_esc *esc, u32 ado, u32 len);
+bool ec_esc_reg_plain(const struct ec_esc *esc, u32 a);
+void ec_esc_regs_fixed(struct ec_esc *esc);
+
+/* esc_protect.c */
+bool ec_esc_ram_locked(const struct ec_esc *esc);
+u32 ec_esc_protect(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len);
+
 /* esc_sm.c */
 void ec_esc_sm_reset(struct ec_esc *esc);
 void ec_esc_sm_config(struct ec_esc *esc, u16 ado, size_t len,
@@ -138,13 +148,17 @@ int ec_esc_fmmu_access(struct ec_esc *esc, struct ec_dgram *d,
 void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on);
 void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now);
 void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
-			 size_t len, u64 now);
+			 size_t len, const struct ec_frame_ctx *ctx);
+bool ec_esc_eeprom_asks(const struct ec_esc *esc);
+void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control);
 
 /* esc_wd.c */
 bool ec_esc_wd_ok(const struct ec_esc *esc);
 void ec_esc_wd_trigger(struct ec_esc *esc, u64 now);
 void ec_esc_wd_config(struct ec_esc *esc, u64 now);
 void ec_esc_wd_expire(struct ec_esc *esc, u64 now);
+void ec_esc_wd_pdi_trigger(struct ec_esc *esc, u64 now);
+void ec_esc_wd_pdi_expire(struct ec_esc *esc);
 
 /* esc_dc.c */
 void ec_esc_dc_reset(struct ec_esc *esc, u64 now);
@@ -152,13 +166,16 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now);
 void ec_esc_dc_read(struct ec_esc *esc, u16 ado, size_t len, bool pdi);
 void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 		     const struct ec_frame_ctx *ctx);
+void ec_esc_dc_pdi_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
+			 u64 now);
+void ec_esc_dc_sync_ack(struct ec_esc *esc, u16 ado, u32 len, u64 now);
 void ec_esc_dc_sync(struct ec_esc *esc, u64 now);
 void ec_esc_dc_schedule(struct ec_esc *esc, u64 now);
 
 /* esc_mii.c */
 void ec_esc_mii_reset(struct ec_esc *esc);
 void ec_esc_mii_refresh(struct ec_esc *esc);
-void ec_esc_mii_write(struct ec_esc *esc, u16 ado, size_t len);
+void ec_esc_mii_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len);
 
 /* segment.c */
 u64 ec_sim_hash(u64 x);

@@ -2,9 +2,12 @@
 /* MII management: port status, and PHYs with the registers everyone reads. */
 #include "esc_int.h"
 
-#define CMD_READ	0x0100
-#define CMD_WRITE	0x0200
+#define CMD_READ	0x01	/* in the high byte */
+#define CMD_WRITE	0x02
 #define ERR_READ	0x2000
+#define ERR_COMMAND	0x4000
+#define PDI_ACCESS	0x01
+#define PDI_FORCE	0x02
 
 void ec_esc_mii_reset(struct ec_esc *esc)
 {
@@ -43,23 +46,39 @@ static u16 phy_read(const struct ec_esc *esc, u8 phy, u8 reg)
 	}
 }
 
-void ec_esc_mii_write(struct ec_esc *esc, u16 ado, size_t len)
+/*
+ * The master writes to 0x0510-0x051b. The PHY numbers and data lie in memory
+ * already. A command takes no time. The PDI takes part by 0x0517 only.
+ */
+void ec_esc_mii_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len)
 {
+	u8 *m = esc->mem, phy = m[EC_REG_MII_PHY] & 0x1f;
 	u16 v = ec_esc_get16(esc, EC_REG_MII_CONTROL);
-	u8 phy = esc->mem[EC_REG_MII_PHY] & 0x1f;
-	u8 reg = esc->mem[EC_REG_MII_REG] & 0x1f;
+	bool enable, known;
+	u8 cmd;
 
-	if (!ec_range_hit(ado, (u32)len, EC_REG_MII_CONTROL + 1, 1))
-		return;
-	if (v & CMD_READ) {
-		v &= (u16)~ERR_READ;
-		if (phy < EC_MAX_PORT &&
-		    esc->cfg.ports[phy] == EC_PORT_TYPE_MII)
-			put_unaligned_le16(phy_read(esc, phy, reg),
-					   esc->mem + EC_REG_MII_DATA);
-		else
-			v |= ERR_READ;
+	if (ec_range_hit(ado, len, EC_REG_MII_PDI, 1)) {
+		u8 force = buf[EC_REG_MII_PDI - ado] & PDI_FORCE;
+
+		m[EC_REG_MII_PDI] = force ? PDI_FORCE :
+					    m[EC_REG_MII_PDI] & PDI_ACCESS;
 	}
-	v &= (u16)~(CMD_READ | CMD_WRITE | 1);
-	put_unaligned_le16(v, esc->mem + EC_REG_MII_CONTROL);
+	if (!ec_range_hit(ado, len, EC_REG_MII_CONTROL + 1, 1) ||
+	    m[EC_REG_MII_PDI] & PDI_ACCESS)
+		return;
+	enable = ec_range_hit(ado, len, EC_REG_MII_CONTROL, 1) &&
+		 buf[EC_REG_MII_CONTROL - ado] & 1;
+	cmd = buf[EC_REG_MII_CONTROL + 1 - ado];
+	known = phy < EC_MAX_PORT && esc->cfg.ports[phy] == EC_PORT_TYPE_MII;
+	v &= (u16)~(ERR_READ | ERR_COMMAND);
+	if (cmd & CMD_READ && cmd & CMD_WRITE)
+		v |= ERR_COMMAND;
+	else if (cmd & CMD_READ && known)
+		put_unaligned_le16(phy_read(esc, phy, m[EC_REG_MII_REG] & 0x1f),
+				   m + EC_REG_MII_DATA);
+	else if (cmd & CMD_READ)
+		v |= ERR_READ;
+	else if (cmd & CMD_WRITE && (!enable || !known))
+		v |= ERR_COMMAND;	/* else the PHY keeps its settings */
+	put_unaligned_le16(v, m + EC_REG_MII_CONTROL);
 }

@@ -13,7 +13,7 @@
  * Reading an output window takes the latest complete buffer, if it begins at
  * the window's start; a mailbox becomes empty with its last byte. Reading
  * registers acknowledges AL events as hardware does: 0x0120 AL control,
- * 0x0806 + 8n SM activation, 0x0440 watchdog.
+ * 0x0806 + 8n SM activation, 0x0440 watchdog, 0x098e and 0x098f SYNC.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0, -EACCES where the PDI may not read or nothing was written yet.
@@ -25,6 +25,7 @@ int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 	const u8 *p;
 	int sm, n;
 
+	ec_esc_wd_pdi_trigger(esc, now);
 	if (ado >= EC_REG_RAM) {
 		p = ec_esc_sm_begin(esc, ado, len, true, false, &sm);
 		if (!p)
@@ -47,10 +48,8 @@ int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 		if (ec_range_hit(ado, (u32)len,
 				 EC_REG_SM(n) + EC_SM_OFS_ACTIVATE, 1))
 			esc->al_event &= (u32)~EC_AL_EVENT_SM_ACT;
-	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC0_STATUS, 1))
-		esc->al_event &= (u32)~EC_AL_EVENT_SYNC0;
-	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC1_STATUS, 1))
-		esc->al_event &= (u32)~EC_AL_EVENT_SYNC1;
+	if (ec_range_hit(ado, (u32)len, EC_REG_DC_SYNC0_STATUS, 2))
+		ec_esc_dc_sync_ack(esc, ado, (u32)len, now);
 	if (ec_range_hit(ado, (u32)len, EC_DC_FIRST, EC_DC_SIZE))
 		ec_esc_dc_read(esc, ado, len, true);
 	return 0;
@@ -58,6 +57,9 @@ int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 
 static bool pdi_may_write(const struct ec_esc *esc, u32 a)
 {
+	if (a >= EC_REG_EEP_DATA && a < EC_REG_EEP_DATA + 8 &&
+	    ec_esc_eeprom_asks(esc))
+		return true;
 	if (a >= EC_REG_EEP_CONTROL && a < EC_REG_EEP_DATA + 8)
 		return esc->mem[EC_REG_EEP_PDI] & 1;
 	return (a >= EC_REG_ALIAS && a < EC_REG_ALIAS + 2) ||
@@ -96,6 +98,7 @@ int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
 	u32 i;
 	int sm, n;
 
+	ec_esc_wd_pdi_trigger(esc, now);
 	if (ado >= EC_REG_RAM) {
 		p = ec_esc_sm_begin(esc, ado, len, true, true, &sm);
 		if (!p)
@@ -109,6 +112,14 @@ int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
 	for (i = 0; i < len; i++)
 		if (pdi_may_write(esc, ado + i))
 			esc->mem[ado + i] = src[i];
+	if (ec_range_hit(ado, (u32)len, EC_REG_EEP_CONTROL + 1, 1))
+		ec_esc_eeprom_answer(esc, src[EC_REG_EEP_CONTROL + 1 - ado]);
+	if (ec_range_hit(ado, (u32)len, EC_REG_MII_PDI, 1) &&
+	    !(esc->mem[EC_REG_MII_ECAT] & 1) &&
+	    !(esc->mem[EC_REG_MII_PDI] & 2))
+		esc->mem[EC_REG_MII_PDI] = src[EC_REG_MII_PDI - ado] & 1;
+	if (ec_range_hit(ado, (u32)len, EC_DC_FIRST, EC_DC_SIZE))
+		ec_esc_dc_pdi_write(esc, ado, src, (u32)len, now);
 	if (ec_range_hit(ado, (u32)len, EC_REG_ALIAS, 2))
 		ec_sim_rehash(esc);
 	if (ec_range_hit(ado, (u32)len, EC_REG_AL_STATUS, 2))

@@ -207,6 +207,15 @@ u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
 	return buf + (ado - sm->page.start);
 }
 
+/* 0x09f0, 0x09f8, 0x09fc: local time of buffer events, if the SM asks for it */
+static void latch_time(struct ec_esc *esc, const struct ec_esc_sm *sm, u8 wish,
+		       u16 reg, u64 now)
+{
+	if (sm->page.activate & wish && esc->cfg.features & EC_FEAT_DC)
+		put_unaligned_le32((u32)ec_esc_local_time(esc, now),
+				   esc->mem + reg);
+}
+
 /* the access is done; hands the buffer over after its last byte */
 void ec_esc_sm_end(struct ec_esc *esc, int n, u32 ado, size_t len, bool pdi,
 		   const struct ec_frame_ctx *ctx)
@@ -218,9 +227,18 @@ void ec_esc_sm_end(struct ec_esc *esc, int n, u32 ado, size_t len, bool pdi,
 	if (n < 0)
 		return;
 	sm = &esc->sm[n];
+	if (pdi && ado == sm->page.start)
+		latch_time(esc, sm, EC_SM_ACT_DC_PDI, EC_REG_DC_PDI_START,
+			   ctx->now);
 	if (ado + len != (u32)sm->page.start + sm->page.len)
 		return;
 
+	if (pdi)
+		latch_time(esc, sm, EC_SM_ACT_DC_PDI, EC_REG_DC_PDI_CHANGE,
+			   ctx->now);
+	else
+		latch_time(esc, sm, EC_SM_ACT_DC_ECAT, EC_REG_DC_ECAT_EVENT,
+			   ctx->now);
 	write = pdi != is_output(sm);
 	if (pdi)
 		sm->pdi_lock = false;

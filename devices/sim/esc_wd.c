@@ -1,15 +1,48 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Process data watchdog. It runs from the first write to an SM with the
- * watchdog bit, not from the activation of the SM. The PDI watchdog never
- * expires: the model's applications never hang in that way.
+ * Watchdogs. That of the process data runs from the first write to an SM with
+ * the watchdog bit, not from the activation of the SM.
+ *
+ * That of the PDI: the CPU of a slave looks at its controller all the time,
+ * so the model lets it run only while the CPU hangs (ec_esc_fault.app_mute);
+ * what it still accesses then starts it again.
  */
 #include "esc_int.h"
 
-static u64 period_ns(const struct ec_esc *esc)
+static u64 time_ns(const struct ec_esc *esc, u16 reg)
 {
 	return (ec_esc_get16(esc, EC_REG_WD_DIVIDER) + 2ull) * 40 *
-	       ec_esc_get16(esc, EC_REG_WD_SM);
+	       ec_esc_get16(esc, reg);
+}
+
+static u64 period_ns(const struct ec_esc *esc)
+{
+	return time_ns(esc, EC_REG_WD_SM);
+}
+
+/* the PDI was accessed, hangs or works again, or the time was written */
+void ec_esc_wd_pdi_trigger(struct ec_esc *esc, u64 now)
+{
+	u64 ns = time_ns(esc, EC_REG_WD_PDI);
+
+	esc->wd_pdi_due = esc->fault.app_mute && ns ? now + ns : EC_ESC_NEVER;
+	if (esc->wd_pdi_expired)
+		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+	esc->wd_pdi_expired = false;
+	ec_sim_touch(esc);
+}
+
+void ec_esc_wd_pdi_expire(struct ec_esc *esc)
+{
+	u8 *count = esc->mem + EC_REG_WD_PDI_COUNT;
+
+	esc->wd_pdi_due = EC_ESC_NEVER;
+	if (ec_esc_bug(esc, EC_SIM_BUG_WD_PDI))
+		return;
+	esc->wd_pdi_expired = true;
+	if (*count != 0xff)
+		++*count;
+	ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
 }
 
 bool ec_esc_wd_ok(const struct ec_esc *esc)

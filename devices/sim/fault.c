@@ -175,6 +175,7 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		break;
 	case EC_SIM_FAULT_MUTE:
 		esc->fault.app_mute = f->arg;
+		ec_esc_wd_pdi_trigger(esc, now);
 		break;
 	case EC_SIM_FAULT_MAILBOX:
 		esc->fault.mailbox = (u8)f->arg;

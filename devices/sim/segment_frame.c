@@ -234,6 +234,7 @@ s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 	bool lose_out = false, lose_back = false, lost;
 	u64 extra_ns = 0;
 
+	sim->frames++;
 	memset(res, 0, sizeof(*res));
 	res->out_port = -1;
 	res->delay_ns = -ENOLINK;

@@ -163,6 +163,8 @@ enum ec_loop_control {		/* two bits per port in 0x0101 */
 #define EC_SM_ST_BUFFER_MASK	0x30
 #define EC_SM_ACT_ENABLE	0x01
 #define EC_SM_ACT_REPEAT	0x02
+#define EC_SM_ACT_DC_ECAT	0x40	/* time of buffer changes to 0x09F0 */
+#define EC_SM_ACT_DC_PDI	0x80	/* to 0x09F8 and 0x09FC */
 #define EC_SM_PDI_DISABLE	0x01
 #define EC_SM_PDI_REPEAT_ACK	0x02
 
@@ -196,6 +198,8 @@ enum ec_loop_control {		/* two bits per port in 0x0101 */
 #define EC_REG_DC_LATCH1_POS	0x09C0
 #define EC_REG_DC_LATCH1_NEG	0x09C8
 #define EC_REG_DC_ECAT_EVENT	0x09F0
+#define EC_REG_DC_PDI_START	0x09F8
+#define EC_REG_DC_PDI_CHANGE	0x09FC
 #define EC_DC_DIFF_AHEAD	BIT(31)
 
 #define EC_REG_USER_RAM		0x0F80

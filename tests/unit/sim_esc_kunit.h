@@ -166,6 +166,7 @@ static inline struct bed *bed_new(struct kunit *test, u32 max, u32 n)
 		b->eeprom[i] = (u8)i;
 	memset(b->eeprom, 0, 14);
 	b->eeprom[0] = 5;
+	b->eeprom[4] = 10;		/* SYNC pulses of 100 ns */
 	b->eeprom[8] = 0x34;
 	b->eeprom[9] = 0x12;
 	bed_checksum(b);
