@@ -433,6 +433,7 @@ struct ec_app_event {
  * @next_event: next of it
  * @profile: private memory of the profile
  * @ran_ns: when the profile ran last
+ * @eep_due: when it answers for the emulated EEPROM
  * @mbox: mailbox
  */
 struct ec_app {
@@ -463,6 +464,7 @@ struct ec_app {
 	struct ec_app_event *next_event;
 	void *profile;
 	u64 ran_ns;
+	u64 eep_due;
 	struct ec_app_mbox mbox;
 };
 
@@ -476,6 +478,7 @@ struct ec_app {
  * @process_ns: delay through the controller, 0: default
  * @drift_ppb: error of its clock
  * @clock_start: its clock at power-on
+ * @eeprom_emulated: its CPU stands in for the EEPROM
  */
 struct ec_app_config {
 	const char *name;
@@ -486,6 +489,7 @@ struct ec_app_config {
 	u32 process_ns;
 	s32 drift_ppb;
 	u64 clock_start;
+	bool eeprom_emulated;
 };
 
 /* slave_app.c */
@@ -514,6 +518,10 @@ void ec_app_al_control(struct ec_app *app, u64 now);
 void ec_app_al_poll(struct ec_app *app, u64 now);
 void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now);
 void ec_app_al_outputs(struct ec_app *app, u64 now);
+
+/* slave_memory.c */
+void ec_app_memory_command(struct ec_app *app, u64 now);
+void ec_app_memory_poll(struct ec_app *app, u64 now);
 
 /* slave_mbox.c */
 void ec_app_mbox_reset(struct ec_app *app);

@@ -98,6 +98,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	u64 response = d->response_ns, transition = d->transition_ns;
 	u64 delay = 0, clock = 0;
 	s64 alias = 0, serial = 0, drift = 0;
+	struct ec_desc_word w;
 	int ret;
 
 	/* no two slaves are switched on at the same instant */
@@ -120,6 +121,10 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 		ret = ec_desc_time(d, "cable", 1000000, cable_ns);
 	if (ret)
 		return ret;
+	w = ec_desc_value(d, "eeprom");
+	c->eeprom_emulated = ec_desc_is(&w, "emulated");
+	if (w.s && !c->eeprom_emulated && !ec_desc_is(&w, "chip"))
+		return ec_desc_fail(d, "eeprom '", &w, "'? It is chip or emulated");
 	c->alias = (u16)alias;
 	c->serial = (u32)serial;
 	c->process_ns = (u32)delay;
@@ -275,6 +280,9 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 		return ret;
 	ret = file.s ? model_from_file(d, &file, &p, &m) :
 		       model_of(d, device, &p, &m);
+	if (!ret && c.eeprom_emulated && m->emulation)
+		ret = ec_desc_fail(d, "'", name,
+				   "' has no CPU that could emulate an EEPROM; leave eeprom= out");
 	for (u32 i = 0; i < count && !ret; i++) {
 		if (i)
 			c.clock_start = (u64)ec_sim_random(d->sim) << 4;

@@ -76,6 +76,11 @@ void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control)
 	if (!ec_esc_eeprom_asks(esc) || (v & EC_EEP_CMD_MASK) != e->cmd)
 		return;
 	e->control |= v & EC_EEP_ERR_ACK;
+	if (esc->fault.eeprom_noack) {
+		if (esc->fault.eeprom_noack != ~0u)
+			esc->fault.eeprom_noack--;
+		e->control |= EC_EEP_ERR_ACK;
+	}
 	e->cmd = 0;
 	e->busy_until = EC_ESC_NEVER;
 	esc->al_event &= (u32)~EC_AL_EVENT_EEPROM;

@@ -28,6 +28,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 	while (app->next_event && app->next_event->at_ns < now)
 		app->next_event = app->next_event->next;
 	app->ran_ns = now;
+	app->eep_due = EC_ESC_NEVER;
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
 	if (m->dev.profile && m->dev.profile->init)
@@ -53,6 +54,14 @@ static void al_control(struct ec_esc *esc, u64 now)
 	if (mute(app, now))
 		return;
 	ec_app_al_control(app, now);
+	ec_app_rewake(app, now);
+}
+
+static void eeprom(struct ec_esc *esc, u64 now)
+{
+	struct ec_app *app = esc->app;
+
+	ec_app_memory_command(app, now);
 	ec_app_rewake(app, now);
 }
 
@@ -140,6 +149,7 @@ static void poll(struct ec_esc *esc, u64 now)
 			ec_app_al_control(app, now);
 		ec_app_al_poll(app, now);
 		ec_app_mbox_poll(app, now);
+		ec_app_memory_poll(app, now);
 	}
 	ec_app_rewake(app, now);
 }
@@ -158,6 +168,7 @@ void ec_app_rewake(struct ec_app *app, u64 now)
 	if (app->al_to)
 		at = app->al_waits ? app->al_deadline : app->al_due;
 	at = min(at, ec_app_mbox_due(app));
+	at = min(at, app->eep_due);
 	if (app->next_event)
 		at = min(at, app->next_event->at_ns);
 	if (app->esc->fault.app_mute)
@@ -187,6 +198,7 @@ static void esc_free(struct ec_esc *esc)
 
 static const struct ec_esc_app_ops app_ops = {
 	.al_control = al_control,
+	.eeprom = eeprom,
 	.sm_written = sm_written,
 	.sm_read = sm_read,
 	.sm_activate = sm_activate,
@@ -359,6 +371,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec.eeprom = image;
 	ec.eeprom_len = model->eeprom_len;
 	ec.eeprom_size = model->eeprom_len;
+	ec.eeprom_emulated = cfg->eeprom_emulated;
 	if (cfg->process_ns)
 		ec.process_ns = cfg->process_ns;
 	ec.drift_ppb = cfg->drift_ppb;

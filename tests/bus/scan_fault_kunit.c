@@ -114,6 +114,44 @@ static void scan_busy_forever(struct kunit *test)
 	failed_with(b, 4, "busy too long");
 }
 
+/* CPUs that stand in for an EEPROM, one of them slow */
+static void scan_emulated_eeprom(struct kunit *test)
+{
+	struct bus *b = bus_new(test,
+		"segment seed=5 response=100us transition=200us\n"
+		"slave a EK1100\nslave b EL2008\nslave c EL3062 eeprom=emulated\n"
+		"slave d EL4002\nslave e EL7201 eeprom=emulated\nslave f EL2004\n");
+
+	bus_esc(b, 4)->cfg.eeprom_busy_ns = 6 * NSEC_PER_MSEC;
+	others_fine(b, N, 2500);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 2)->order, "EL3062");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 4)->order, "EL7201");
+}
+
+/* one whose CPU hangs never answers */
+static void scan_emulated_eeprom_mute(struct kunit *test)
+{
+	struct bus *b = bus_new(test,
+		"segment seed=5 response=100us transition=200us\n"
+		"slave a EK1100\nslave b EL2008\nslave c EL3062 eeprom=emulated\n"
+		"slave d EL4002\nslave e EL7201\nslave f EL2004\n");
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, 2, 0, 1, 0);
+	others_fine(b, 2, 600);
+	failed_with(b, 2, "busy too long");
+}
+
+/* no access begins or ends in unused registers, where some answer nothing */
+static void scan_no_unused_registers(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	u32 i;
+
+	for (i = 0; i < N; i++)
+		bus_esc(b, i)->cfg.features |= EC_FEAT_NO_UNUSED;
+	others_fine(b, N, 1000);
+}
+
 static void scan_deaf(struct kunit *test)
 {
 	struct bus *b = prepare(test);
@@ -277,6 +315,9 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_refused_some),
 	KUNIT_CASE(scan_refused_all),
 	KUNIT_CASE(scan_busy_forever),
+	KUNIT_CASE(scan_emulated_eeprom),
+	KUNIT_CASE(scan_emulated_eeprom_mute),
+	KUNIT_CASE(scan_no_unused_registers),
 	KUNIT_CASE(scan_deaf),
 	KUNIT_CASE(scan_dead),
 	KUNIT_CASE(scan_mute),

@@ -219,7 +219,51 @@ static void several_datagrams_share_a_frame(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &g), 0);
 }
 
+/* the whole image through the CPU, as it would come from a chip */
+static void emulated_eeprom(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EL3062\n"
+				"slave b EL3062 eeprom=emulated\n");
+	const struct ec_esc_eeprom *e = &ec_sim_slave(b->sim, 1)->eep;
+	u64 v, chip;
+	u32 w;
+
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), 0x502, 2) & 0x20, 0ull);
+	for (w = 0; w < e->len / 2; w += 4) {
+		bed_put(b, STATION(0), 0x502, EC_EEP_CMD_READ | w << 16, 6);
+		bed_put(b, STATION(1), 0x502, EC_EEP_CMD_READ | w << 16, 6);
+		b->now += 700000 - b->gap;
+		KUNIT_ASSERT_TRUE(test, bed_get(b, STATION(1), 0x502, 2) &
+				  EC_EEP_BUSY);
+		b->now += 100000;
+		KUNIT_ASSERT_EQ(test, bed_get(b, STATION(1), 0x502, 2) & 0xff20,
+				0x20ull);
+		chip = bed_get(b, STATION(0), 0x508, 8);
+		KUNIT_ASSERT_EQ_MSG(test, bed_get(b, STATION(1), 0x508, 8),
+				    chip, "word 0x%x", w);
+	}
+	/* a word written stays, and comes back */
+	bed_put(b, STATION(1), 0x508, 0xbeef, 2);
+	bed_put(b, STATION(1), 0x502, EC_EEP_CMD_WRITE | 1 | 0x28 << 16, 6);
+	b->now += 6000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x502, 2) & 0xff20, 0x20ull);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(e->data + 0x50), 0xbeef);
+	/* behind the end, and a CPU that hangs */
+	bed_put(b, STATION(1), 0x502, EC_EEP_CMD_WRITE | 1 | 0xfff0ull << 16, 6);
+	b->now += 6000000;
+	v = bed_get(b, STATION(1), 0x502, 2);
+	KUNIT_EXPECT_EQ(test, v & 0xff20, 0x2020ull);
+	ec_sim_slave(b->sim, 1)->fault.app_mute = true;
+	bed_put(b, STATION(1), 0x502, EC_EEP_CMD_READ, 6);
+	b->now += 100000000;
+	KUNIT_EXPECT_TRUE(test, bed_get(b, STATION(1), 0x502, 2) & EC_EEP_BUSY);
+	ec_sim_slave(b->sim, 1)->fault.app_mute = false;
+	b->now += 2000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x502, 2) & 0xff20, 0x20ull);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(emulated_eeprom),
 	KUNIT_CASE(thin),
 	KUNIT_CASE(digital_loop),
 	KUNIT_CASE(several_datagrams_share_a_frame),

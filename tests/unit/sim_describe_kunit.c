@@ -71,6 +71,8 @@ static const struct {
 	{ "slave a drive mapping=none", 1, "rewritable" },
 	{ "slave a drive in=2000", 1, "at most 1486" },
 	{ "slave a EL7201 motor=AM1", 1, "AM8121" },
+	{ "slave a drive eeprom=none", 1, "chip or emulated" },
+	{ "slave a EL2008 eeprom=emulated", 1, "no CPU" },
 	{ "slave a file=x.bin", 1, "files cannot be read here" },
 	{ "# nothing\n\nslave a EL2008\nfoo\n", 4, "no statement 'foo'" },
 	{ "slave a EL2008\nbranch b 1", 2, "no slave 'b' so far" },
