@@ -40,6 +40,8 @@ struct task_struct;
  * @cycle_busy: the cyclic caller is using the links
  * @last_send_ns: when the cycle sent last
  * @polls: receives of the cycle so far; wraps
+ * @stalls: how often the cycle has stalled
+ * @stalled_ns: its last send before it stalled, likewise
  * @interval_us: distance of cyclic sends, told by the application or measured
  * @interval_told: told
  * @xq_lock: protects @xq, @xq_head, @xq_tail
@@ -90,6 +92,8 @@ struct ec_master {
 	atomic_t cycle_busy;
 	u64 last_send_ns;
 	u32 polls;
+	atomic_t stalls;
+	u64 stalled_ns;
 	u32 interval_us;
 	bool interval_told;
 	raw_spinlock_t xq_lock;

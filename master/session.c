@@ -144,6 +144,7 @@ int ec_session_deactivate(struct ec_session *s)
 	mutex_unlock(&m->cyclic_lock);
 	ec_cycle_own(m, EC_OWNER_IDLE);
 	s->active = false;
+	s->stall_log.open = false;
 	clear(s);
 	ec_cycle_free(m, &s->cycle);
 	sh = s->shared;
@@ -152,6 +153,9 @@ int ec_session_deactivate(struct ec_session *s)
 	m->app_time = 0;
 	m->interval_us = EC_INTERVAL_US;
 	m->interval_told = false;
+	if ((u32)atomic_read(&m->stalls) != s->stall_log.told)
+		ec_warn(m, "application stalled %u more time(s)\n",
+			atomic_read(&m->stalls) - s->stall_log.told);
 	ec_info(m, "session deactivated\n");
 	return 0;
 }
@@ -288,6 +292,7 @@ int ec_session_activate(struct ec_session *s)
 	for (i = 0; i < s->n_domains; i++)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
 	s->active = true;
+	s->stall_log.told = atomic_read(&m->stalls);
 	WRITE_ONCE(m->freeze, false);
 	ec_cycle_own(m, EC_OWNER_CYCLE);
 	mutex_lock(&m->cyclic_lock);
@@ -322,6 +327,35 @@ u8 ec_session_config_status(const struct ec_config *c)
 	return v;
 }
 
+/*
+ * A stall and its end are two lines, and that at most once in 10 s: a busy host
+ * may stall an application many times a second.
+ */
+static void log_stalls(struct ec_session *s, u64 now)
+{
+	struct ec_master *m = s->master;
+	struct ec_stall_log *l = &s->stall_log;
+	bool stalled = READ_ONCE(m->owner) == EC_OWNER_IDLE;
+	u32 more = atomic_read(&m->stalls) - l->told;
+
+	if (l->open && !stalled) {
+		ec_info(m, "application sends again after %llu ms\n",
+			div_u64(now - l->since_ns, NSEC_PER_MSEC));
+		l->open = false;
+	} else if (!l->open && more && now >= l->next_ns) {
+		l->since_ns = m->stalled_ns;
+		l->next_ns = now + EC_STALL_LOG_NS;
+		l->told += more;
+		l->open = stalled;
+		if (more > stalled)
+			ec_warn(m, "application stalled %u more time(s) since the last message\n",
+				more - stalled);
+		if (stalled)
+			ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
+				div_u64(now - l->since_ns, NSEC_PER_MSEC));
+	}
+}
+
 /**
  * ec_session_status() - bring the mapped status up to date; monitor
  * @m: master
@@ -339,6 +373,7 @@ void ec_session_status(struct ec_master *m)
 		return;
 	s = m->session;
 	if (s && s->active) {
+		log_stalls(s, ktime_get_ns());
 		st = s->shared->status;
 		WRITE_ONCE(st->slaves_responding, m->slaves_responding);
 		WRITE_ONCE(st->al_states, m->al_states);
@@ -356,15 +391,17 @@ void ec_session_status(struct ec_master *m)
  * @m: master
  *
  * The links go back to idle mode, so that mailboxes and tools work; process
- * data stop, the slaves' watchdogs take care of the outputs.
+ * data stop, the slaves' watchdogs take care of the outputs. The log tells it with
+ * the next status.
  *
  * Context: Process. May sleep.
  */
 void ec_session_stalled(struct ec_master *m)
 {
-	u64 ns = ktime_get_ns() - READ_ONCE(m->last_send_ns);
+	u64 sent = READ_ONCE(m->last_send_ns);
 
-	if (ec_cycle_own(m, EC_OWNER_IDLE))
-		ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
-			div_u64(ns, NSEC_PER_MSEC));
+	if (!ec_cycle_own(m, EC_OWNER_IDLE))
+		return;
+	WRITE_ONCE(m->stalled_ns, sent);
+	atomic_inc(&m->stalls);
 }

@@ -31,6 +31,22 @@ struct ec_shared {
 
 #define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
 
+#define EC_STALL_LOG_NS	(10 * NSEC_PER_SEC)
+
+/**
+ * struct ec_stall_log - what the log says of stalls; under master->session_lock
+ * @told: stalls the log knows of, as master->stalls counts them
+ * @since_ns: last send before the stall the log shows
+ * @next_ns: no new stall is logged before
+ * @open: the log says it stalled, not yet that it goes on
+ */
+struct ec_stall_log {
+	u32 told;
+	u64 since_ns;
+	u64 next_ns;
+	bool open;
+};
+
 /**
  * struct ec_session - under master->session_lock; @cycle and @shared are the
  *	cyclic caller's while @active
@@ -42,6 +58,7 @@ struct ec_shared {
  * @n_domains: entries in @domains
  * @active: activated
  * @shared: memory of the activation
+ * @stall_log: stalls of the application in the log
  * @cycle: cyclic layout
  */
 struct ec_session {
@@ -53,6 +70,7 @@ struct ec_session {
 	unsigned int n_domains;
 	bool active;
 	struct ec_shared *shared;
+	struct ec_stall_log stall_log;
 	struct ec_cycle cycle;
 };
 

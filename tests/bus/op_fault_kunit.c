@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What happens in OP: cables, power, errors of slaves, the end of the session. */
+#include <linux/kmsg_dump.h>
 #include "cyc.h"
 #include "master/ioctl.h"
 
@@ -213,6 +214,65 @@ static void op_application_stalls(struct kunit *test)
 	works(c);
 }
 
+/* Lines of the kernel log since @it was last read that have @text in them. */
+static u32 logged(struct kmsg_dump_iter *it, const char *text)
+{
+	static char line[512];
+	size_t len;
+	u32 n = 0;
+
+	while (kmsg_dump_get_line(it, true, line, sizeof(line) - 1, &len)) {
+		line[len] = 0;
+		n += !!strstr(line, text);
+	}
+	return n;
+}
+
+/* One stall; the monitor may first wait 100 ms for a frame that nobody sends. */
+static void stall_once(struct cyc *c)
+{
+	msleep(250);
+	/* which says nothing about the slaves */
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->slaves_responding, N);
+	c->next = ktime_get();
+	cyc_run(c, 60);
+}
+
+/* Four stalls a second: the log has two lines, and a count 10 s later. */
+static void op_stalls_logged(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct kmsg_dump_iter first, it;
+	u32 i, before = atomic_read(&c->b->m->stalls), scans = c->b->m->scan_count;
+
+	kmsg_dump_rewind(&it);
+	logged(&it, "");
+	for (i = 0; i < 20; i++)
+		stall_once(c);
+	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->stalls), before + 20);
+	KUNIT_EXPECT_EQ(test, c->b->m->scan_count, scans);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "application"), 2);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "application does not send (last"), 1);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "application sends again after 2"), 1);
+	it = first;
+
+	/* told when the 10 s are over although it does not stall any more */
+	cyc_run(c, 9000);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "application stalled 19 more time(s)"), 1);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "application"), 1);
+	/* what the log does not know at the end is told then */
+	it = first;
+	stall_once(c);
+	KUNIT_EXPECT_EQ(test, logged(&it, "application"), 0);
+	cyc_release(c);
+	KUNIT_EXPECT_EQ(test, logged(&it, "application stalled 1 more time(s)"), 1);
+}
+
 static struct kunit_case op_fault_cases[] = {
 	KUNIT_CASE(op_power_loss),
 	KUNIT_CASE(op_missing_in_domain),
@@ -221,6 +281,7 @@ static struct kunit_case op_fault_cases[] = {
 	KUNIT_CASE(op_refused),
 	KUNIT_CASE(op_session_ends),
 	KUNIT_CASE(op_application_stalls),
+	KUNIT_CASE(op_stalls_logged),
 	{}
 };
 

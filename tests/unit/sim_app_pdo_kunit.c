@@ -7,6 +7,7 @@ struct pd {
 	struct app_mbox m;
 	u16 st;
 	u16 in;		/* start of the input SM */
+	u8 buf[1486];	/* too large for the stack of a kernel with KASAN */
 };
 
 static struct pd *pd_new(struct kunit *test, const char *text)
@@ -24,10 +25,15 @@ static struct pd *pd_new(struct kunit *test, const char *text)
 	return x;
 }
 
+static int pd_write(struct pd *x, const u8 *out, u16 n)
+{
+	memcpy(x->buf, out, n);
+	return bed_tx(x->b, EC_CMD_FPWR, x->st, 0x1200, x->buf, n);
+}
+
 /* to OP with outputs @out and inputs of @in bytes at 0x1200 and @at */
 static u32 pd_op(struct pd *x, const u8 *out, u16 n_out, u16 at, u16 n_in)
 {
-	u8 buf[1486];
 	u32 st;
 
 	x->in = at;
@@ -37,18 +43,9 @@ static u32 pd_op(struct pd *x, const u8 *out, u16 n_out, u16 at, u16 n_in)
 	st = app_al(x->b, x->st, EC_AL_SAFEOP, 5);
 	if (st != EC_AL_SAFEOP)
 		return st;
-	memcpy(buf, out, n_out);
 	if (n_out)
-		bed_tx(x->b, EC_CMD_FPWR, x->st, 0x1200, buf, n_out);
+		pd_write(x, out, n_out);
 	return app_al(x->b, x->st, EC_AL_OP, 5);
-}
-
-static int pd_write(struct pd *x, const u8 *out, u16 n)
-{
-	u8 buf[1486];
-
-	memcpy(buf, out, n);
-	return bed_tx(x->b, EC_CMD_FPWR, x->st, 0x1200, buf, n);
 }
 
 static void rules(struct kunit *test)
