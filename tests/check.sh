@@ -65,7 +65,8 @@ level_kernels() { tests/check-kernels.sh; }
 level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }
 level_demo() { tests/demo/check.sh; }
-level_bench() { tests/bench/run.sh; }
+# the bus figures are gates of the level uml
+level_bench() { tests/bench/cycle.sh --gates; }
 
 run() {
 	local name=$1 t0=$SECONDS rc

@@ -15,11 +15,12 @@ out=$(mktemp)
 trap 'rm -f "$log" "$out"' EXIT
 
 t0=$SECONDS
+export EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3600}
 EC_UML_ARGS="soak_kunit.cycles=$cycles ${EC_UML_ARGS-}" \
 	tests/uml/run.sh --log "$log" 'bus_*' >"$out" 2>&1
 rc=$?
 [ $rc = 0 ] || cat "$out"
-sed -n 's/^.*# figure: /# /p' "$log"
+sed -n -e 's/^.*# figure: /# /p' -e 's/^.*# row: /# row: /p' "$log"
 echo "# all bus tests in $((SECONDS - t0)) s of real time"
 tail -n 1 "$out"
 exit $rc

@@ -7,6 +7,8 @@
 set -u
 cd "$(dirname "$0")" || exit 1
 passed=0 failed=0
+rows=$(mktemp)
+trap 'rm -f "$rows"' EXIT
 
 for f in ${*:-*.sh}; do
 	f=${f%.sh}
@@ -15,6 +17,7 @@ for f in ${*:-*.sh}; do
 	out=$(mktemp)
 	"./$f.sh" 2>&1 | tee "$out"
 	rc=${PIPESTATUS[0]}
+	sed -n 's/^# row: //p' "$out" >>"$rows"
 	last=$(tail -n 1 "$out")
 	rm -f "$out"
 	if [[ $last =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
@@ -24,5 +27,11 @@ for f in ${*:-*.sh}; do
 		failed=$((failed + 1))
 	fi
 done
+echo "== figures and their limits"
+awk '{
+	verdict = $1 <= $2 ? "reached" : "MISSED"; value = $1; limit = $2
+	sub(/^[^ ]+ [^ ]+ /, "")
+	printf "%-68s %10s  at most %8s  %s\n", $0, value, limit, verdict
+}' "$rows"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

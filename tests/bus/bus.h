@@ -61,4 +61,8 @@ void bus_request(struct bus *b, u32 position, u8 state);
 /* A figure of this run; bench scripts look for these lines. */
 #define bus_figure(fmt, ...)	pr_info("# figure: " fmt "\n", ##__VA_ARGS__)
 
+/* One that has a limit, a row of the table "make bench" prints. */
+#define bus_row(value, limit, fmt, ...) \
+	pr_info("# row: %llu %llu " fmt "\n", (u64)(value), (u64)(limit), ##__VA_ARGS__)
+
 #endif

@@ -71,6 +71,8 @@ static void soak_cycles(struct kunit *test)
 	/* wake-ups are some ns apart from the tick */
 	ns = ktime_get_ns() - soak.t0 + NSEC_PER_MSEC / 2;
 	KUNIT_EXPECT_EQ(test, div_u64(ns, NSEC_PER_MSEC), (u64)cycles);
+	bus_row(bus_lost(soak.b) + soak.c.incomplete, 0,
+		"lost frames or wrong working counters: %u cycles in virtual time", cycles);
 	bus_figure("%u cycles at 1 kHz, %u slaves in OP: %llu lost frames, %llu cycles with a working counter incomplete, in %llu ms of bus time",
 		   cycles, BENCH, bus_lost(soak.b), soak.c.incomplete,
 		   div_u64(ns, NSEC_PER_MSEC));

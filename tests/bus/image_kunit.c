@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Layout of process data: large and small, bits, rates, and what is too much. */
+#include "cyc.h"
+#include "master/ioctl.h"
+
+#define CHANNELS	255	/* of 32 bits the model keeps */
+
+/* More than a datagram holds: it is cut between SyncManagers, none of them is. */
+static void image_several_datagrams(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=23\nrepeat 3 slave s io in=8000 out=8000\n"
+			       "connect s2.200 -> s2.200\n", 3);
+	struct ec_cycle *cycle;
+	bool split = false;
+	char name[8];
+	struct cyc *c;
+	u32 i, k;
+
+	bus_idle(b);
+	c = cyc_new(b, 2000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 3, 0);
+	cyc_activate(c);
+	cycle = &b->m->session->cycle;
+	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 5u);
+	for (i = 0; i < cycle->n_dgrams; i++)
+		split |= cycle->dgrams[i].offset % 1000 != 0;
+	KUNIT_EXPECT_FALSE(test, split);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	for (i = 0; i < 3; i++)
+		for (k = 0; k < 250; k++)
+			put_unaligned_le32(i * 31 + k * 0x01000193, cyc_pd(c, i, 0) + 4 * k);
+	cyc_run(c, 5);
+	c->incomplete = 0;
+	cyc_run(c, 50);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	for (i = 0; i < 3; i++) {
+		snprintf(name, sizeof(name), "s%u", i + 1);
+		for (k = 0; k < 250; k++)
+			KUNIT_EXPECT_EQ_MSG(test,
+					    (u32)ec_app_channel(bus_app(b, name), EC_APP_OUT, k),
+					    i * 31 + k * 0x01000193, "%s channel %u", name, k);
+	}
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 1, 1) + 4 * 199),
+			31 + 199 * 0x01000193u);
+}
+
+/* A domain of one SyncManager that fills a datagram to the last byte. */
+static void image_full_datagram(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave s io in=0 out=11888\n", 1);
+	struct ec_cyc_dgram *d;
+	struct cyc *c;
+	u32 k;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	d = b->m->session->cycle.dgrams;
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.n_dgrams, 1u);
+	KUNIT_EXPECT_EQ(test, d->len, EC_DGRAM_DATA_MAX);
+	KUNIT_EXPECT_EQ(test, d->cmd, EC_CMD_LWR);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	for (k = 0; k < CHANNELS; k++)
+		put_unaligned_le32(k * 0x01000193, cyc_pd(c, 0, 0) + 4 * k);
+	cyc_run(c, 5);
+	for (k = 0; k < CHANNELS; k++)
+		KUNIT_EXPECT_EQ(test, (u32)ec_app_channel(bus_app(b, "s"), EC_APP_OUT, k),
+				k * 0x01000193);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
+/* Entries of one bit: each has its place, and nothing beside it moves. */
+static void image_bits(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave o EL2008\nslave i EL1008\n"
+			       "connect o.6 -> i.3\n", 3);
+	u32 cfg[2], offset[2], k, n;
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	for (n = 0; n < 2; n++) {
+		cfg[n] = cyc_config(c, 1 + n);
+		for (k = 0; k < 8; k++) {
+			struct ec_ioc_reg_entry r = {
+				.config = cfg[n], .entry_index = (n ? 0x6000 : 0x7000) + 0x10 * k,
+				.subindex = 1,
+			};
+
+			KUNIT_ASSERT_EQ_MSG(test, ec_ioc_reg_entry(&b->app, &r), 0, "%s",
+					    b->app.reason);
+			KUNIT_EXPECT_EQ(test, r.bit, k);
+			if (k)
+				KUNIT_EXPECT_EQ(test, r.offset, offset[n]);
+			offset[n] = r.offset;
+		}
+	}
+	KUNIT_EXPECT_EQ(test, offset[1], offset[0] + 1);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	for (k = 0; k < 8; k++) {
+		cyc_data(c, 0)[offset[0]] = 1 << k;
+		cyc_run(c, 5);
+		for (n = 0; n < 8; n++)
+			KUNIT_EXPECT_EQ(test, ec_app_channel(bus_app(b, "o"), EC_APP_OUT, n),
+					(s64)(n == k));
+		KUNIT_EXPECT_EQ(test, cyc_data(c, 0)[offset[1]], k == 5 ? 1 << 2 : 0);
+	}
+}
+
+/* every fourth cycle the second domain, every fifth the third */
+static void by_rate(struct cyc *c)
+{
+	u64 all = BIT_ULL(0);
+
+	if (c->cycles % 4 == 0)
+		all |= BIT_ULL(1);
+	if (c->cycles % 5 == 0)
+		all |= BIT_ULL(2);
+	c->queued = all;
+	/* in its own cycles a domain's outputs change */
+	put_unaligned_le32(c->cycles, cyc_pd(c, 0, 0));
+	put_unaligned_le32(c->cycles, cyc_pd(c, 1, 0));
+	put_unaligned_le32(c->cycles, cyc_pd(c, 2, 0));
+}
+
+static void image_rates(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=24\nrepeat 3 slave s io in=512 out=512\n"
+			       "connect s1.1 -> s1.1\nconnect s2.1 -> s2.1\n"
+			       "connect s3.1 -> s3.1\n", 3);
+	static const u32 rate[3] = { 1, 4, 5 };
+	struct cyc *c;
+	u32 i, v;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	for (i = 0; i < 3; i++)
+		cyc_map_all(c, i, 1, cyc_domain(c));
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	c->each = by_rate;
+	cyc_run(c, 100);
+	c->incomplete = 0;
+	cyc_run(c, 1000);
+	/* a domain that is not sent keeps its last verdict */
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	for (i = 0; i < 3; i++) {
+		v = ec_app_channel(bus_app(b, i ? i == 1 ? "s2" : "s3" : "s1"), EC_APP_OUT, 0) &
+		    0xff;
+		/* channels of 8 bits; the slave has what its last cycle sent */
+		KUNIT_EXPECT_EQ(test, v, (u8)((c->cycles - 1) / rate[i] * rate[i]));
+		KUNIT_EXPECT_LE(test, (u8)(c->cycles - *cyc_pd(c, i, 1)), 3 * rate[i]);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, i)->wc_state, 2);
+	}
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
+/* Sixty-four domains are all the queue mask has bits for. */
+static void image_too_many_domains(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave x EL1859\n", 2);
+	struct ec_ioc_create_domain d = { 0 };
+	struct cyc *c = cyc_new(b, 1000);
+	u32 i;
+
+	for (i = 0; i < EC_MAX_DOMAINS; i++)
+		cyc_domain(c);
+	KUNIT_EXPECT_EQ(test, ec_ioc_create_domain(&b->app, &d), -ENOSPC);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "64"), "%s", b->app.reason);
+	/* what is there works, the last one too */
+	cyc_map_all(c, 1, 1, EC_MAX_DOMAINS - 1);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	cyc_run(c, 5);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, EC_MAX_DOMAINS - 1)->wc_state, 2);
+}
+
+/* a bus whose process data are too many in one way or the other */
+static struct cyc *too_much(struct kunit *test, u32 slaves, u32 bits, bool lrw, u32 domains)
+{
+	char text[80];
+	struct bus *b;
+	struct cyc *c;
+	u32 i;
+
+	snprintf(text, sizeof(text), "repeat %u slave s io in=%u out=%u\n", slaves, bits, bits);
+	b = bus_new(test, text);
+	for (i = 0; i < slaves && !lrw; i++) {
+		struct ec_esc *esc = bus_esc(b, i);
+
+		esc->cfg.features |= EC_FEAT_NO_LRW;
+		put_unaligned_le16(esc->cfg.features, esc->mem + EC_REG_FEATURES);
+	}
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, slaves, EC_AL_PREOP, 5000), ~0ull);
+	c = cyc_new(b, 1000);
+	for (i = 0; i < domains; i++)
+		cyc_domain(c);
+	for (i = 0; i < slaves; i++)
+		cyc_map_all(c, i, 1, i % domains);
+	return c;
+}
+
+/* Refused with the reason; the bus is as before and the next one may try. */
+static void refused(struct kunit *test, struct cyc *c, const char *why)
+{
+	struct bus *b = c->b;
+	struct ec_ioc_activate a = { 0 };
+
+	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -EOVERFLOW);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, why), "%s", b->app.reason);
+	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EPERM);
+	cyc_release(c);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+}
+
+static void image_too_many_datagrams(struct kunit *test)
+{
+	/* two SyncManagers of 500 bytes are LRD and LWR of 1000 bytes */
+	refused(test, too_much(test, 260, 4000, false, 1), "512 datagrams");
+}
+
+static void image_too_many_bytes(struct kunit *test)
+{
+	refused(test, too_much(test, 150, 8000, true, 2), "262144 bytes");
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(image_several_datagrams),
+	KUNIT_CASE(image_full_datagram),
+	KUNIT_CASE(image_bits),
+	KUNIT_CASE(image_rates),
+	KUNIT_CASE(image_too_many_domains),
+	KUNIT_CASE(image_too_many_datagrams),
+	KUNIT_CASE(image_too_many_bytes),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_image",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+
+kunit_test_suite(suite);
+
+MODULE_LICENSE("GPL");
