@@ -32,8 +32,8 @@ image() {
 	segment "segment seed=1" "slave first EK1100" \
 		"slave x file=$BATS_TEST_TMPDIR/eeprom" "slave last EL1008"
 	plug
-	wait_for 20 state_is 0 PREOP
-	wait_for 20 state_is 2 PREOP
+	wait_for 120 state_is 0 PREOP
+	wait_for 120 state_is 2 PREOP
 	run ethercat slaves
 	[ "${#lines[@]}" = 3 ]
 	sleep 1
@@ -49,7 +49,7 @@ image() {
 @test "EEPROM with a wrong checksum" {
 	image checksum 1
 	# an ESC does not load such a configuration, so its application stays off
-	wait_for 15 has_error 1
+	wait_for 120 has_error 1
 }
 
 @test "EEPROM with categories without end" {
@@ -80,11 +80,11 @@ image() {
 		segment "segment seed=1" "slave a EK1100" "slave out drive" "slave in EL1008" \
 			"fault refuse out $state code=0x1d"
 		plug
-		wait_for 20 state_is 2 PREOP
+		wait_for 120 state_is 2 PREOP
 		"$EC_BUILD/apps/cyclic" 90 >"$BATS_TEST_TMPDIR/out" 2>&1 &
 		app=$!
-		wait_for 20 state_is 2 OP
-		wait_for 20 grep -q ': 2 of 3 in OP' "$BATS_TEST_TMPDIR/out" ||
+		wait_for 120 state_is 2 OP
+		wait_for 120 grep -q ': 2 of 3 in OP' "$BATS_TEST_TMPDIR/out" ||
 			{ cat "$BATS_TEST_TMPDIR/out"; ethercat slaves; false; }
 		run ethercat slaves -v -p1
 		echo "$output"
@@ -101,7 +101,7 @@ image() {
 		"slave d drive" "fault at=6s lose rate=2000ppm" "fault at=6s mangle rate=2000ppm" \
 		"fault at=6s duplicate rate=2000ppm" "fault at=6s delay rate=2000ppm by=30ms"
 	plug
-	wait_for 20 all_slaves_are PREOP 4
+	wait_for 120 all_slaves_are PREOP 4
 	"$EC_BUILD/apps/cyclic" 12 >"$BATS_TEST_TMPDIR/out"
 	cat "$BATS_TEST_TMPDIR/out"
 	grep -q ': 4 of 4 in OP' "$BATS_TEST_TMPDIR/out"

@@ -41,8 +41,8 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 @test "veth and ec_sim: all slaves to OP, no frame lost" {
 	master veth0
 	responder bench veth1
-	wait_for 20 all_slaves_are PREOP 22
-	run demo --cycles 2000 --wired
+	wait_for 120 all_slaves_are PREOP 22
+	run demo --cycles 1000 --wired
 	echo "$output"
 	[ "$status" = 0 ]
 	[ "$(says 'Lost frames')" = 0 ]
@@ -53,10 +53,10 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	ip link set veth1 up
 	"$EC_BUILD/tool/ethercat-sim" -s bench veth1 >"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
 	SIM=$!
-	wait_for 5 grep -q 22 "$BATS_TEST_TMPDIR/sim"
+	wait_for 120 grep -q 22 "$BATS_TEST_TMPDIR/sim"
 	master veth0
-	wait_for 20 all_slaves_are PREOP 22
-	run demo --cycles 2000 --wired
+	wait_for 120 all_slaves_are PREOP 22
+	run demo --cycles 1000 --wired
 	echo "$output"
 	[ "$status" = 0 ]
 	[ "$(says 'Lost frames')" = 0 ]
@@ -70,7 +70,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	ip link set veth0 address 02:00:00:00:12:34
 	master 02:00:00:00:12:34
 	responder thin veth1
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 }
 
 @test "the device comes after the modules, goes in OP, comes again" {
@@ -78,39 +78,39 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	master veth0
 	main_is waiting...
 	ip link add veth0 type veth peer name veth1
-	wait_for 5 main_is attached
+	wait_for 120 main_is attached
 	responder bench veth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 10 all_slaves_are OP 22
+	wait_for 120 all_slaves_are OP 22
 	ip link del veth0
 	ended=0
 	wait $! || ended=$?
 	[ $ended = 1 ]
 	main_is waiting...
 	ip link add veth0 type veth peer name veth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "the link goes down in OP and comes back" {
 	master veth0
 	responder bench veth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	link_is UP
 	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 10 all_slaves_are OP 22
+	wait_for 120 all_slaves_are OP 22
 	ip link set veth1 down
-	wait_for 5 link_is DOWN
+	wait_for 120 link_is DOWN
 	ended=0
 	wait $! || ended=$?
 	[ $ended = 1 ]
 	ip link set veth1 up
-	wait_for 5 link_is UP
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 link_is UP
+	wait_for 120 all_slaves_are PREOP 22
 	ip link set veth0 down
-	wait_for 5 link_is DOWN
+	wait_for 120 link_is DOWN
 	ip link set veth0 up
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "a small MTU is refused, before and while the device is used" {
@@ -119,7 +119,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	main_is waiting...
 	dmesg | grep -q 'veth0 has an MTU of 1200, EtherCAT needs 1500'
 	ip link set veth0 mtu 1500
-	wait_for 5 main_is attached
+	wait_for 120 main_is attached
 	run ip link set veth0 mtu 1499
 	[ "$status" != 0 ]
 	ip link set veth0 mtu 2000
@@ -133,7 +133,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	main_is waiting...
 	dmesg | grep -q 'veth0 is used by a bridge'
 	ip link set veth0 nomaster
-	wait_for 5 main_is attached
+	wait_for 120 main_is attached
 	run ip link set veth0 master br0
 	[ "$status" != 0 ]
 }
@@ -141,7 +141,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 @test "foreign frames are counted, none of ours leaves, and all pass again afterwards" {
 	master veth0
 	responder thin veth1
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 	ip addr add 10.0.0.1/24 dev veth0
 	ip addr add 10.0.0.2/24 dev veth1
 	before=$(foreign)
@@ -165,7 +165,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	tap=$!
 	sleep 0.3
 	python3 "$BATS_TEST_DIRNAME/arp.py" veth0 10.0.0.1 10.0.0.2 3
-	wait_for 5 grep -q ARP "$BATS_TEST_TMPDIR/seen"
+	wait_for 120 grep -q ARP "$BATS_TEST_TMPDIR/seen"
 }
 
 @test "a capture at the device shows both directions" {
@@ -184,48 +184,48 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 @test "a renamed device stays with its master" {
 	master veth0
 	responder thin veth1
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 	ip link set veth0 down
 	ip link set veth0 name eth0
 	ip link set eth0 up
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 	ip link del eth0
 	main_is waiting...
 	# one that gets the name is taken
 	ip link add other type veth peer name veth1
 	main_is waiting...
 	ip link set other name veth0
-	wait_for 5 main_is attached
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 main_is attached
+	wait_for 120 all_slaves_are PREOP 2
 }
 
 @test "the driver is unloaded in OP" {
 	master veth0
 	responder bench veth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 10 all_slaves_are OP 22
+	wait_for 120 all_slaves_are OP 22
 	rmmod ec_generic
 	ended=0
 	wait $! || ended=$?
 	[ $ended = 1 ]
 	main_is waiting...
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "the segment is unloaded in OP and loaded again" {
 	master veth0
 	responder bench veth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 10 all_slaves_are OP 22
+	wait_for 120 all_slaves_are OP 22
 	rmmod ec_sim
 	ended=0
 	wait $! || ended=$?
 	[ $ended = 1 ]
 	responder thin veth1
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 }
 
 @test "a device in another namespace is not ours, even with the name" {
@@ -255,9 +255,9 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	master veth0
 	for i in 1 2 3 4 5; do
 		responder three veth1
-		wait_for 20 all_slaves_are PREOP 3
+		wait_for 120 all_slaves_are PREOP 3
 		rmmod ec_sim
-		wait_for 20 all_slaves_are PREOP 0
+		wait_for 120 all_slaves_are PREOP 0
 	done
 	for i in 1 2 3 4 5; do
 		rmmod ec_generic

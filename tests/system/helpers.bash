@@ -7,7 +7,7 @@ ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
 start() {
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1"
-	wait_for 20 all_slaves_are PREOP "$2"
+	wait_for 120 all_slaves_are PREOP "$2"
 }
 
 stop() {

@@ -44,7 +44,7 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 }
 
 @test "all of that left the bus as it was" {
-	wait_for 10 all_slaves_are PREOP 3
+	wait_for 120 all_slaves_are PREOP 3
 }
 
 @test "random commands from four threads, beside a tool" {
@@ -58,17 +58,17 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 	# what it wrote to registers and objects is gone with the segment
 	rmmod ec_sim
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=three
-	wait_for 20 all_slaves_are PREOP 3
+	wait_for 120 all_slaves_are PREOP 3
 }
 
 @test "debug levels show state changes and frames in the kernel log" {
 	dmesg -C
 	ethercat states -p1 INIT
-	wait_for 10 state_is 1 INIT
+	wait_for 120 state_is 1 INIT
 	[ -z "$(dmesg | grep -E 'requested|byte.s.: ')" ]
 	ethercat debug 1
 	ethercat states -p1 PREOP
-	wait_for 10 state_is 1 PREOP
+	wait_for 120 state_is 1 PREOP
 	dmesg | grep -q 'EtherCAT 0-1: PREOP requested, is in INIT'
 	[ -z "$(dmesg | grep 'byte(s): ')" ]
 	ethercat debug 2

@@ -16,7 +16,7 @@ background() {
 	shift
 	"$EC_BUILD/apps/cyclic" "$@" >"$out" 2>&1 &
 	app=$!
-	wait_for 30 grep -q ": $(slaves) of $(slaves) in OP" "$out"
+	wait_for 120 grep -q ": $(slaves) of $(slaves) in OP" "$out"
 }
 
 idle() {
@@ -39,7 +39,7 @@ slab() { awk '/^Slab:|^KernelStack:|^VmallocUsed:/ { s += $2 } END { print s }' 
 	kill -TERM $app
 	wait $app
 	grep ' refused' "$BATS_TEST_TMPDIR/out"
-	wait_for 10 idle
+	wait_for 120 idle
 }
 
 @test "rmmod is refused while an application runs, which goes on" {
@@ -60,10 +60,10 @@ slab() { awk '/^Slab:|^KernelStack:|^VmallocUsed:/ { s += $2 } END { print s }' 
 	sleep 1
 	kill -0 $app
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=three
-	wait_for 30 all_slaves_are OP "$(slaves)"
+	wait_for 120 all_slaves_are OP "$(slaves)"
 	kill -TERM $app
 	wait $app
-	wait_for 20 all_slaves_are PREOP "$(slaves)"
+	wait_for 120 all_slaves_are PREOP "$(slaves)"
 }
 
 @test "killed at any moment, 20 times: the bus is idle, the next one starts, nothing is lost" {
@@ -74,30 +74,30 @@ slab() { awk '/^Slab:|^KernelStack:|^VmallocUsed:/ { s += $2 } END { print s }' 
 		sleep "0.$((RANDOM % 90 + 10))"
 		kill -KILL $app
 		wait $app || true
-		wait_for 10 idle
+		wait_for 120 idle
 		# the first rounds fill caches
 		[ "$i" != 5 ] || before=$(slab)
 	done
-	wait_for 20 all_slaves_are PREOP "$(slaves)"
+	wait_for 120 all_slaves_are PREOP "$(slaves)"
 	after=$(slab)
 	echo "kernel memory: $before kB, then $after kB"
 	[ $((after - before)) -lt 2000 ]
 	background "$BATS_TEST_TMPDIR/out" 60
 	kill -KILL $app
 	wait $app || true
-	wait_for 10 idle
-	wait_for 20 all_slaves_are PREOP "$(slaves)"
+	wait_for 120 idle
+	wait_for 120 all_slaves_are PREOP "$(slaves)"
 }
 
 @test "stopped for a while: process data stop, then go on" {
 	background "$BATS_TEST_TMPDIR/out" 60
 	kill -STOP $app
-	wait_for 10 log_has 'does not send'
+	wait_for 120 log_has 'does not send'
 	# the tool does not wait for the application
 	run timeout 5 "$EC_BUILD/tool/ethercat" reg_read -p1 -t uint16 0x0010
 	[ "$status" = 0 ]
 	kill -CONT $app
-	wait_for 30 all_slaves_are OP "$(slaves)"
+	wait_for 120 all_slaves_are OP "$(slaves)"
 	kill -TERM $app
 	wait $app
 }

@@ -9,7 +9,7 @@ setup_file() {
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=52:54:00:ec:00:00
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=bench netdev=eth1
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 teardown_file() { stop; }
@@ -17,7 +17,7 @@ teardown_file() { stop; }
 says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
 
 @test "all slaves go to OP, no frame is lost" {
-	run env LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 2000 --wired
+	run env LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000 --wired
 	echo "$output"
 	[ "$status" = 0 ]
 	[ "$(says 'Lost frames')" = 0 ]
@@ -28,5 +28,5 @@ says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
 	modprobe -r e1000e
 	[[ "$(says Main)" == *"(waiting...)" ]]
 	modprobe e1000e
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }

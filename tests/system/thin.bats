@@ -30,9 +30,9 @@ teardown_file() { stop; }
 
 @test "a slave goes to SAFEOP and back" {
 	ethercat states -p1 SAFEOP
-	wait_for 10 state_is 1 SAFEOP
+	wait_for 120 state_is 1 SAFEOP
 	ethercat states -p1 PREOP
-	wait_for 10 state_is 1 PREOP
+	wait_for 120 state_is 1 PREOP
 }
 
 @test "a position that does not exist is an error" {
@@ -44,7 +44,7 @@ teardown_file() { stop; }
 	rmmod ec_sim
 	ethercat master | grep -q 'Waiting for device'
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=thin
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 }
 
 @test "the modules unload and load again" {

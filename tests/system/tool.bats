@@ -133,7 +133,7 @@ teardown_file() { stop; }
 	[ -z "$output" ]
 	[ "$(ethercat slaves | grep -c INIT)" = 3 ]
 	ethercat states preop
-	wait_for 10 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	json '.masters[0].slaves | length == 22 and .[0].state == "PREOP"' states
 	json '.masters[0].slaves | length == 1 and .[0].state == "INIT"' states INIT -p2 --wait
 	ethercat states PREOP -p2 --wait
@@ -201,10 +201,10 @@ teardown_file() { stop; }
 	[ -z "$output" ]
 	after=$(ethercat master -j | jq '.masters[0].scans')
 	[ "$after" -gt "$before" ]
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 	json '.masters == [{"master": 0}]' rescan
 	ethercat slaves --wait >/dev/null
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "debug" {
@@ -277,7 +277,7 @@ teardown_file() { stop; }
 	stop
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0,sim1
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=thin
-	wait_for 20 all_slaves_are PREOP 2
+	wait_for 120 all_slaves_are PREOP 2
 	[ "$(ethercat slaves 2>/dev/null)" = "$(printf '%s\n' Master0 \
 		'  0  0:0  PREOP  +  EK1100 Coupler' '  1  0:1  PREOP  +  EL2008 8-ch output' \
 		Master1)" ]

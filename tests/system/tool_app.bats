@@ -17,7 +17,7 @@ start_app() {
 	# bats waits for what holds its descriptor 3
 	"$EC_BUILD/apps/demo" --cycles 10000000 >/tmp/demo.out 2>&1 3>&- &
 	echo $! >/tmp/demo.pid
-	wait_for 60 all_slaves_are OP 22 && wait_for 10 all_exchanged || {
+	wait_for 120 all_slaves_are OP 22 && wait_for 10 all_exchanged || {
 		cat /tmp/demo.out
 		ethercat states
 		return 1
@@ -28,7 +28,7 @@ stop_app() {
 	[ -f /tmp/demo.pid ] || return 0
 	kill "$(cat /tmp/demo.pid)" || true
 	rm /tmp/demo.pid
-	wait_for 30 inactive
+	wait_for 120 inactive
 }
 
 inactive() { ethercat master | grep -q 'Active: no'; }
@@ -51,7 +51,7 @@ all_exchanged() {
 	echo "$output"
 	[ "$status" = 0 ]
 	[[ "$output" == *"all 18 slaves in OP"* ]]
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "an application runs: config, domains, data, master" {
@@ -97,12 +97,12 @@ all_exchanged() {
 @test "an application runs: a slave is taken out of OP and comes back" {
 	ethercat states INIT -p4 --wait
 	ethercat states OP -p4 --wait 10
-	wait_for 10 all_slaves_are OP 22
-	wait_for 10 all_exchanged
+	wait_for 120 all_slaves_are OP 22
+	wait_for 120 all_exchanged
 }
 
 @test "the application ends" {
 	stop_app
 	[ -z "$(ethercat config; ethercat domains; ethercat data)" ]
-	wait_for 20 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are PREOP 22
 }
