@@ -176,6 +176,9 @@ static int show(const struct tool *t, struct dev *d)
 		out_text("  Slaves responding: %u\n", m.slaves_responding);
 		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_count,
 			 m.scan_busy ? "running" : "finished", m.scan_us, m.scan_frames);
+		for (unsigned int i = 0; i < m.device_count; i++)
+			out_text("  Late frames, %s device: %llu\n", i ? "backup" : "main",
+				 m.devices[i].late);
 		out_text("  Debug level: %u\n", m.debug_level);
 	}
 	out_end();
