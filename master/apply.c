@@ -25,7 +25,7 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "did not reach %s in time, is in %s",
 			      ec_al_state_name(state),
 			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
-	else if (ret != -ECANCELED)
+	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP)	/* told already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "does not answer on the way to %s (error %d)",
 			      ec_al_state_name(state), ret);
 	return ret;
@@ -279,6 +279,11 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 			      "needs %u FMMUs but has %u; put its SyncManagers into fewer domains",
 			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
 		return -ENOSPC;
+	}
+	if (c->lrw && ec_slave_no_lrw(s)) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "does not know LRW and came after activation; start the application again");
+		return -EOPNOTSUPP;
 	}
 	for (i = 0; i < c->n_fmmus && !ret; i++) {
 		const struct ec_config_fmmu *f = &c->fmmus[i];

@@ -82,6 +82,7 @@ struct ec_config_flag {
  * @n_sdos: how many
  * @flags: named numbers
  * @n_flags: how many
+ * @lrw: its process data are in an LRW datagram
  * @wd_divider: register 0x0400, 0: leave
  * @wd_intervals: register 0x0420, 0: leave
  * @dc_assign: AssignActivate
@@ -104,6 +105,7 @@ struct ec_config {
 	unsigned int n_sdos;
 	struct list_head flags;
 	unsigned int n_flags;
+	bool lrw;
 	u16 wd_divider;
 	u16 wd_intervals;
 	u16 dc_assign;

@@ -206,7 +206,7 @@ static void measure_interval(struct ec_master *m, u64 now)
 	u64 ns = now - m->last_send_ns;
 
 	/* a pause is no interval */
-	if (!m->interval_told && ns < 100 * NSEC_PER_MSEC)
+	if (!m->interval_told && ns < NSEC_PER_SEC)
 		m->interval_us = max(1, (int)m->interval_us +
 				     ((int)(ns >> 10) - (int)m->interval_us) / 8);
 }

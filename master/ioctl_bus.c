@@ -59,7 +59,8 @@ int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 	buf = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (buf)
 		ret = ec_coe_upload(s, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
-				    buf, i->size, &got, &i->abort_code, i->timeout_ms);
+				    buf, i->size, &got, &i->abort_code,
+				    min(i->timeout_ms, EC_MAX_SDO_MS));
 	else
 		ret = -ENOMEM;
 	ret = sdo_failed(f, i, ret);
@@ -88,7 +89,8 @@ int ec_ioc_sdo_download(struct ec_file *f, void *arg)
 	if (s) {
 		ret = sdo_failed(f, i, ec_coe_download(s, i->index, i->subindex,
 						       i->flags & EC_SDO_FLAG_COMPLETE, buf,
-						       i->size, &i->abort_code, i->timeout_ms));
+						       i->size, &i->abort_code,
+						       min(i->timeout_ms, EC_MAX_SDO_MS)));
 		ec_slave_unref(s);
 	}
 	kvfree(buf);

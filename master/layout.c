@@ -18,14 +18,6 @@ struct stretch {
 	unsigned int last;	/* behind the last one */
 };
 
-static bool no_lrw(const struct ec_config *c)
-{
-	const struct ec_slave *s = c->slave;
-
-	return s && (ec_slave_features(s) & EC_FEAT_NO_LRW ||
-		     (s->has_general && s->general.flags & EC_SII_FLAG_NO_LRW));
-}
-
 static const struct ec_config_fmmu *fmmu(const struct ec_domain *d, unsigned int i)
 {
 	return &d->fmmus[i].config->fmmus[d->fmmus[i].fmmu];
@@ -116,8 +108,10 @@ static int add_stretch(struct ec_cycle *c, struct ec_domain *d, const struct str
 	int ret = 0;
 
 	for (i = st->first; i < st->last; i++)
-		split |= no_lrw(d->fmmus[i].config);
+		split |= d->fmmus[i].config->slave && ec_slave_no_lrw(d->fmmus[i].config->slave);
 	if (out && in && !split) {
+		for (i = st->first; i < st->last; i++)
+			d->fmmus[i].config->lrw = true;
 		d->expected += 2 * out + in;
 		return add_dgram(c, d, st, EC_CMD_LRW, 2 * out + in) ?: add_inputs(c, d, st);
 	}

@@ -15,6 +15,7 @@
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
 #define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
 #define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
+#define EC_MAX_SDO_MS		60000u	/* others wait for the mailbox meanwhile */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
 #define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
 

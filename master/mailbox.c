@@ -26,6 +26,17 @@ static void pause_us(unsigned int *us)
 	*us = min(*us * 2, 1000u);
 }
 
+/* One access that must not happen twice: 0, -EIO when the slave took no part... */
+static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
+{
+	struct ec_dg dg = EC_DG(cmd, slave->station, ado, len, data);
+	int ret;
+
+	dg.repeat = false;
+	ret = ec_xfer(slave->master, &dg, 1);
+	return ret ? ret : dg.wkc == 1 ? 0 : -EIO;
+}
+
 /**
  * ec_mbox_send() - write one message to the slave's mailbox
  * @slave: slave with mailbox, @mbox_lock held
@@ -35,7 +46,7 @@ static void pause_us(unsigned int *us)
  * @until_ns: when to give up (ktime)
  *
  * A full mailbox (working counter 0) is tried again. A lost frame is not: the
- * message may have arrived; the same counter then marks a copy.
+ * message may have arrived, and the answer tells.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as ec_xfer().
@@ -59,10 +70,9 @@ int ec_mbox_send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t 
 	ec_wbuf_zero(&w, w.end - w.p);
 
 	for (;;) {
-		ret = ec_xfer_fpwr(slave->master, slave->station, slave->info.std.rx_offset,
-				   b->raw, size);
+		ret = once(slave, EC_CMD_FPWR, slave->info.std.rx_offset, b->raw, size);
 		if (ret != -EIO)
-			return ret;
+			return ret == -ETIMEDOUT ? 0 : ret;
 		ret = over(slave, until_ns);
 		if (ret)
 			return ret;
@@ -70,23 +80,56 @@ int ec_mbox_send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t 
 	}
 }
 
+static int full(struct ec_slave *slave)
+{
+	u8 status;
+	int ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
+			       &status, 1);
+
+	return ret ? ret : !!(status & EC_SM_ST_FULL);
+}
+
+/*
+ * The frame that fetched a message is lost, and with it the message: let the
+ * slave put it there again (ETG.1000.4 clause 6.7.3, registers 0x080E, 0x080F).
+ */
+static int repeat_request(struct ec_slave *slave)
+{
+	u16 ado = EC_REG_SM(1) + EC_SM_OFS_ACTIVATE;
+	unsigned int i;
+	u8 b[2];
+	int ret = ec_xfer_fprd(slave->master, slave->station, ado, b, 2);
+
+	if (ret)
+		return ret;
+	b[0] ^= EC_SM_ACT_REPEAT;
+	ret = ec_xfer_fpwr(slave->master, slave->station, ado, b, 1);
+	for (i = 0; i < 50 && !ret; i++) {
+		ret = ec_xfer_fprd(slave->master, slave->station, ado, b, 2);
+		if (!ret && !(b[0] & EC_SM_ACT_REPEAT) == !(b[1] & EC_SM_PDI_REPEAT_ACK))
+			return 0;
+		usleep_range(200, 400);
+	}
+	return ret ?: -ETIMEDOUT;
+}
+
 /* Take one message out of the slave's mailbox: bytes behind the header, or 0: empty. */
 static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_hdr *h)
 {
 	u16 size = slave->info.std.tx_size;
 	struct ec_rbuf r;
-	u8 status;
 	int ret;
 
 	if (size > EC_MBOX_MAX)
 		return -EMSGSIZE;
-	ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
-			   &status, 1);
-	if (ret || !(status & EC_SM_ST_FULL))
+	ret = full(slave);
+	if (ret <= 0)
 		return ret;
-	ret = ec_xfer_fprd(slave->master, slave->station, slave->info.std.tx_offset, b->raw, size);
+	ret = once(slave, EC_CMD_FPRD, slave->info.std.tx_offset, b->raw, size);
+	if (ret == -ETIMEDOUT && !full(slave))
+		repeat_request(slave);
 	if (ret)
-		return ret == -EIO ? 0 : ret;
+		return ret == -EIO || ret == -ETIMEDOUT ? 0 : ret;
 	r = ec_rbuf(b->raw, size);
 	ret = ec_mbox_hdr_decode(&r, h);
 	if (ret)

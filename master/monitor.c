@@ -210,10 +210,11 @@ static void maybe_scan(struct watch *w)
 	}
 	WRITE_ONCE(m->scan_busy, true);
 	if (READ_ONCE(m->rescan)) {
-		/* forget what is known, so that everything is read again */
+		/* forget what is known, so that everything is read again; not
+		 * under an application, even one that has stalled */
 		smp_wmb();
 		WRITE_ONCE(m->rescan, false);
-		if (m->owner == EC_OWNER_IDLE)
+		if (m->owner == EC_OWNER_IDLE && !READ_ONCE(m->session))
 			ec_scan(m, 0);
 	}
 	if (!ec_scan(m, w->count)) {

@@ -167,8 +167,11 @@ static void take_regs(struct scan *sc)
 		}
 		memcpy(s->regs, r->info, sizeof(s->regs));
 		s->dl_status = get_unaligned_le16(r->dl);
-		s->al_status = get_unaligned_le16(r->al);
-		s->al_code = get_unaligned_le16(r->al + 4);
+		/* of a known slave its worker may have a newer one */
+		if (!s->sii) {
+			s->al_status = get_unaligned_le16(r->al);
+			s->al_code = get_unaligned_le16(r->al + 4);
+		}
 		for (p = 0; p < EC_MAX_PORT; p++)
 			s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
 	}

@@ -223,7 +223,10 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	detach(c);
 	if (!slave)
 		return;
+	/* the monitor must not wait for what its worker waits for */
+	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
+	WRITE_ONCE(slave->interrupt, false);
 	if (slave->config) {
 		mutex_unlock(&slave->lock);
 		ec_slave_warn(slave, "has two configurations; use one of %u:%u and its other name\n",
@@ -235,8 +238,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	slave->reconfigure = true;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
-	if (s->active)
-		ec_slave_request(slave, EC_AL_OP);
+	ec_slave_request(slave, s->active ? EC_AL_OP : slave->requested);
 }
 
 /**

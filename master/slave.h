@@ -138,6 +138,12 @@ static inline u16 ec_slave_features(const struct ec_slave *s)
 	return get_unaligned_le16(s->regs + EC_REG_FEATURES);
 }
 
+static inline bool ec_slave_no_lrw(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_NO_LRW ||
+	       (s->has_general && s->general.flags & EC_SII_FLAG_NO_LRW);
+}
+
 static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
 {
 	return s->info.protocols && s->info.std.rx_size && s->info.std.tx_size;

@@ -237,13 +237,12 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
 		return EC_MATCH_UNMATCHED;
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
+	/* first: a frame of an earlier use must not hold the slot */
+	if (READ_ONCE(slot->seq) != get_unaligned_le32(src + 2))
+		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
+								   EC_MATCH_UNMATCHED;
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
-		return slot->seq == get_unaligned_le32(src + 2) ?
-			EC_MATCH_LATE : EC_MATCH_UNMATCHED;
-	if (slot->seq != get_unaligned_le32(src + 2)) {
-		atomic_set_release(&slot->state, EC_SLOT_SENT);
 		return EC_MATCH_LATE;
-	}
 	body = slot->eth_len - EC_ETH_HDR;
 	/* the iterator only reads; it has no const form */
 	if (len < body || !same_dgrams(slot, (u8 *)data, len)) {

@@ -8,4 +8,5 @@
 #include "../../master/wire/sdo.c"
 #include "../../master/wire/sdoinfo.c"
 #include "../../master/wire/sii.c"
+#include "../../master/wire/sii_build.c"
 #include "../../master/wire/types.c"

@@ -85,6 +85,12 @@
 
 #define EC_SII_PDO_NO_SM	0xFF
 
+/* bytes of a general category, and of each entry of the others */
+#define EC_SII_GENERAL_BYTES	32
+#define EC_SII_PDO_BYTES	8
+#define EC_SII_SM_BYTES		8
+#define EC_SII_DC_BYTES		24
+
 /**
  * struct ec_sii_mbox - mailbox areas, seen from the slave
  * @rx_offset: physical address of the mailbox the master writes (SM0)

@@ -179,6 +179,42 @@ static void sdo_emergency(struct kunit *test)
  * The tick of this kernel is 10 ms: were anything bound to it, an upload would
  * take at least that long.
  */
+/*
+ * One frame of an exchange is lost, every one in turn. On the way back the
+ * slave has done its part, so the exchange succeeds; lost before, only the
+ * request may be missed. The next exchange never sees remains of this one.
+ */
+static void sdo_lost_frames(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 0);
+	u32 n, back, failed = 0, abort;
+	size_t got;
+	u8 in[8];
+
+	for (back = 0; back < 2; back++) {
+		for (n = 1; n <= 14; n++) {
+			struct ec_sim_fault f = {
+				.at_ns = ktime_get_ns(), .type = EC_SIM_FAULT_LOSE, .port = -1,
+				.arg = n, .value = back,
+			};
+			int ret;
+
+			KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
+			ret = ec_coe_upload(s, 0x1018, 2, false, in, sizeof(in), &got, &abort, 0);
+			if (back || ret != -ETIMEDOUT)
+				KUNIT_EXPECT_EQ_MSG(test, ret, 0, "frame %u, back %u", n, back);
+			failed += !!ret;
+			usleep_range(50000, 50001);
+			KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 1, false, in, sizeof(in),
+							    &got, &abort, 0), 0);
+			KUNIT_EXPECT_EQ(test, get_unaligned_le32(in), s->info.vendor);
+		}
+	}
+	KUNIT_EXPECT_LE(test, failed, 1u);
+	KUNIT_EXPECT_GE(test, bus_lost(b), 20ull);
+}
+
 static void sdo_latency(struct kunit *test)
 {
 	struct bus *b = ready(test);
@@ -216,6 +252,7 @@ static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_huge_mailbox),
 	KUNIT_CASE(sdo_mute),
 	KUNIT_CASE(sdo_emergency),
+	KUNIT_CASE(sdo_lost_frames),
 	KUNIT_CASE(sdo_latency),
 	{}
 };
