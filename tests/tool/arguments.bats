@@ -251,7 +251,7 @@ for o in d["options"]:
 }
 
 @test "a full disk is an error" {
-	[ -e /dev/full ] || skip
+	[ -e /dev/full ] || skip "no /dev/full"
 	run bash -c "'$HERE/build/fake/ethercat' slaves >/dev/full"
 	[ "$status" -eq 1 ]
 	[[ $output == *"cannot write the output"* ]]

@@ -130,7 +130,7 @@ for l in sys.stdin:
 }
 
 @test "cstruct compiles" {
-	command -v cc >/dev/null || skip
+	command -v cc >/dev/null || skip "no C compiler"
 	{
 		cat <<'END'
 #include <stdint.h>
