@@ -68,10 +68,10 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 static void judge(struct ec_session *s)
 {
 	struct ec_cycle *c = &s->cycle;
-	u64 todo = c->sent | c->back;
+	u64 left = c->sent | c->back;
 
-	for (; todo; todo &= todo - 1) {
-		unsigned int i = __ffs64(todo);
+	for (; left; left &= left - 1) {
+		unsigned int i = __ffs64(left);
 		struct ec_status_domain *st = &s->shared->status->domains[i];
 		u32 wkc = c->back & BIT_ULL(i) ? c->domains[i].wkc : 0;
 

@@ -27,65 +27,70 @@ static int done(struct ec_file *f, int ret)
 	return ret;
 }
 
-static struct ec_config *config(struct ec_file *f, struct ec_session *s, u32 index, int *ret)
+/* The same, and a configuration of the session. */
+static struct ec_config *lock_config(struct ec_file *f, u32 index, int *ret)
 {
+	struct ec_session *s = lock(f, ret);
+
+	if (!s)
+		return NULL;
 	if (index < s->n_configs)
 		return s->configs[index];
-	*ret = ec_refuse(f, -ENOENT, "there are %u slave configurations, not %u", s->n_configs,
-			 index + 1);
+	*ret = done(f, ec_refuse(f, -ENOENT, "there are %u slave configurations, not %u",
+				 s->n_configs, index + 1));
 	return NULL;
 }
 
-static struct ec_domain *domain(struct ec_file *f, struct ec_session *s, u32 index, int *ret)
+/* The same, and a domain. */
+static struct ec_domain *lock_domain(struct ec_file *f, u32 index, int *ret)
 {
+	struct ec_session *s = lock(f, ret);
+
+	if (!s)
+		return NULL;
 	if (index < s->n_domains)
 		return s->domains[index];
-	*ret = ec_refuse(f, -ENOENT, "there are %u domains, not %u", s->n_domains, index + 1);
+	*ret = done(f, ec_refuse(f, -ENOENT, "there are %u domains, not %u", s->n_domains,
+				 index + 1));
 	return NULL;
 }
 
 int ec_ioc_config(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config *i = arg;
-	struct ec_config *c;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
-	c = config(f, s, i->index, &ret);
-	if (c) {
-		i->alias = c->alias;
-		i->position = c->position;
-		i->vendor_id = c->vendor;
-		i->product_code = c->product;
-		i->slave_position = c->slave ? c->slave->position : -1;
-		i->al_status = c->slave ? c->slave->al_status : 0;
-		i->watchdog_divider = c->wd_divider;
-		i->watchdog_intervals = c->wd_intervals;
-		i->dc_assign_activate = c->dc_assign;
-		memcpy(i->dc_cycle, c->dc_cycle, sizeof(i->dc_cycle));
-		memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
-		i->sdo_count = c->n_sdos;
-		i->state = ec_session_config_status(c);
-		i->flag_count = c->n_flags;
-	}
-	return done(f, ret);
+	i->alias = c->alias;
+	i->position = c->position;
+	i->vendor_id = c->vendor;
+	i->product_code = c->product;
+	i->slave_position = c->slave ? c->slave->position : -1;
+	i->al_status = c->slave ? c->slave->al_status : 0;
+	i->watchdog_divider = c->wd_divider;
+	i->watchdog_intervals = c->wd_intervals;
+	i->dc_assign_activate = c->dc_assign;
+	memcpy(i->dc_cycle, c->dc_cycle, sizeof(i->dc_cycle));
+	memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
+	i->sdo_count = c->n_sdos;
+	i->state = ec_session_config_status(c);
+	i->flag_count = c->n_flags;
+	return done(f, 0);
 }
 
 int ec_ioc_config_sm(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_sm *i = arg;
-	struct ec_config *c;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
-	c = config(f, s, i->index, &ret);
-	if (c && i->sm >= EC_MAX_SM)
+	if (i->sm >= EC_MAX_SM)
 		ret = ec_refuse(f, -ENOENT, "SyncManagers are 0 to %u", EC_MAX_SM - 1);
-	else if (c) {
+	else {
 		i->dir = c->sm[i->sm].dir;
 		i->watchdog = c->sm[i->sm].watchdog;
 		i->pdo_count = c->sm[i->sm].pdos.n;
@@ -106,14 +111,12 @@ int ec_ioc_config_pdo(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_pdo *i = arg;
 	const struct ec_pdo *p;
-	struct ec_config *c;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
-	c = config(f, s, i->index, &ret);
-	p = c ? pdo(f, c, i->sm, i->pdo_pos, &ret) : NULL;
+	p = pdo(f, c, i->sm, i->pdo_pos, &ret);
 	if (p) {
 		i->pdo_index = p->index;
 		i->entry_count = p->n_entries;
@@ -125,14 +128,12 @@ int ec_ioc_config_entry(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_entry *i = arg;
 	const struct ec_pdo *p;
-	struct ec_config *c;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
-	c = config(f, s, i->index, &ret);
-	p = c ? pdo(f, c, i->sm, i->pdo_pos, &ret) : NULL;
+	p = pdo(f, c, i->sm, i->pdo_pos, &ret);
 	if (p && i->entry_pos >= p->n_entries)
 		ret = ec_refuse(f, -ENOENT, "PDO 0x%04x has %u entries", p->index, p->n_entries);
 	else if (p) {
@@ -147,16 +148,12 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_sdo *i = arg;
 	struct ec_config_sdo *sdo;
-	struct ec_config *c;
 	u32 k = 0;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
-		return ret;
-	c = config(f, s, i->index, &ret);
 	if (!c)
-		return done(f, ret);
+		return ret;
 	if (i->sdo_pos >= c->n_sdos)
 		return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup SDOs",
 					 i->index, c->n_sdos));
@@ -178,16 +175,12 @@ int ec_ioc_config_flag(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_flag *i = arg;
 	struct ec_config_flag *flag;
-	struct ec_config *c;
 	u32 k = 0;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_config *c = lock_config(f, i->index, &ret);
 
-	if (!s)
-		return ret;
-	c = config(f, s, i->index, &ret);
 	if (!c)
-		return done(f, ret);
+		return ret;
 	list_for_each_entry(flag, &c->flags, list) {
 		if (k++ != i->flag_pos)
 			continue;
@@ -202,39 +195,35 @@ int ec_ioc_config_flag(struct ec_file *f, void *arg)
 int ec_ioc_domain(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_domain *i = arg;
-	struct ec_domain *d;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_domain *d = lock_domain(f, i->index, &ret);
 
-	if (!s)
+	if (!d)
 		return ret;
-	d = domain(f, s, i->index, &ret);
-	if (d) {
-		i->size = d->size;
-		i->logical = d->logical;
-		i->expected = d->expected;
-		i->fmmu_count = d->n_fmmus;
-		if (s->active)
-			i->working_counter =
-				READ_ONCE(s->shared->status->domains[d->index].working_counter);
+	i->size = d->size;
+	i->logical = d->logical;
+	i->expected = d->expected;
+	i->fmmu_count = d->n_fmmus;
+	if (d->session->active) {
+		const struct ec_status *st = d->session->shared->status;
+
+		i->working_counter = READ_ONCE(st->domains[d->index].working_counter);
 	}
-	return done(f, ret);
+	return done(f, 0);
 }
 
 int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_domain_fmmu *i = arg;
 	const struct ec_config_fmmu *fm;
-	struct ec_domain *d;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_domain *d = lock_domain(f, i->index, &ret);
 
-	if (!s)
+	if (!d)
 		return ret;
-	d = domain(f, s, i->index, &ret);
-	if (d && i->fmmu >= d->n_fmmus)
+	if (i->fmmu >= d->n_fmmus)
 		ret = ec_refuse(f, -ENOENT, "domain %u has %u FMMUs", i->index, d->n_fmmus);
-	else if (d) {
+	else {
 		fm = &d->fmmus[i->fmmu].config->fmmus[d->fmmus[i->fmmu].fmmu];
 		i->alias = d->fmmus[i->fmmu].config->alias;
 		i->position = d->fmmus[i->fmmu].config->position;
@@ -250,18 +239,17 @@ int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 int ec_ioc_domain_data(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_domain_data *i = arg;
-	struct ec_domain *d;
 	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	struct ec_domain *d = lock_domain(f, i->index, &ret);
 
-	if (!s)
+	if (!d)
 		return ret;
-	d = domain(f, s, i->index, &ret);
-	if (d && !s->active) {
+	if (!d->session->active) {
 		ret = ec_refuse(f, -ENOENT, "the application has not activated the master");
-	} else if (d) {
+	} else {
 		i->size = min(i->size, d->size);
-		if (copy_to_user(u64_to_user_ptr(i->data), s->shared->image + d->offset, i->size))
+		if (copy_to_user(u64_to_user_ptr(i->data), d->session->shared->image + d->offset,
+				 i->size))
 			ret = -EFAULT;
 	}
 	return done(f, ret);
