@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
+#include "env.h"
+#include "dc.h"
+
+/* ports in the order in which a frame passes them */
+static const u8 order[EC_DC_PORTS] = { 0, 3, 1, 2 };
+
+/* Open ports of a slave as a frame meets them, the entry first; returns how many. */
+static u32 visited(const struct ec_dc_node *a, u8 port[EC_DC_PORTS])
+{
+	u32 i, start = 0, n = 0;
+
+	for (i = 0; i < EC_DC_PORTS; i++)
+		if (order[i] == a->entry)
+			start = i;
+	port[n++] = a->entry;
+	for (i = 1; i < EC_DC_PORTS; i++) {
+		u8 p = order[(start + i) % EC_DC_PORTS];
+
+		if (a->open & BIT(p))
+			port[n++] = p;
+	}
+	return n;
+}
+
+/* How long a frame is at and behind the slave, from its arrival to its return. */
+static u32 stay(const struct ec_dc_node *a)
+{
+	u8 port[EC_DC_PORTS];
+	u32 n = visited(a, port);
+
+	return a->recv[port[n - 1]] - a->recv[a->entry];
+}
+
+/*
+ * Hang every slave with a clock behind the port of the nearest slave before it
+ * that has one too; slaves without a clock count as cable. Returns the first
+ * of those that have none before them.
+ */
+static s32 link_up(struct ec_dc_node *nodes, u32 n)
+{
+	s32 top = EC_DC_NONE, top_last = EC_DC_NONE;
+	u32 i, p;
+
+	for (i = 0; i < n; i++) {
+		struct ec_dc_node *b = &nodes[i];
+		s32 a = b->parent;
+		u8 port = b->parent_port;
+
+		for (p = 0; p < EC_DC_PORTS; p++)
+			b->first[p] = b->last[p] = EC_DC_NONE;
+		b->next = EC_DC_NONE;
+		if (!b->dc)
+			continue;
+		while (a != EC_DC_NONE && !nodes[a].dc) {
+			port = nodes[a].parent_port;
+			a = nodes[a].parent;
+		}
+		if (a == EC_DC_NONE) {
+			if (top_last == EC_DC_NONE)
+				top = i;
+			else
+				nodes[top_last].next = i;
+			top_last = i;
+		} else {
+			if (nodes[a].last[port] == EC_DC_NONE)
+				nodes[a].first[port] = i;
+			else
+				nodes[nodes[a].last[port]].next = i;
+			nodes[a].last[port] = i;
+		}
+	}
+	return top;
+}
+
+/*
+ * The slaves of a chain are reached one after the other. What the frame did
+ * not stay at them it was on the way, in equal parts: there and back for one.
+ */
+static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round)
+{
+	s32 way = round;
+	u32 parts = 1;
+	s32 b;
+
+	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
+		way -= stay(&nodes[b]);
+		parts++;
+	}
+	/* noise of the receive times can make a short way negative */
+	way = way > 0 ? way / (s32)parts : 0;
+	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
+		nodes[b].hop = way;
+		nodes[b].delay = start + way;
+		start = nodes[b].delay + stay(&nodes[b]);
+	}
+}
+
+/**
+ * ec_dc_delays() - propagation delays from receive times
+ * @nodes: the slaves of a segment in ring order; results are in them
+ * @n: how many
+ * @ref: index of the reference clock
+ *
+ * Register 0x0928 of a slave is compared with a datagram that has been through
+ * all branches before it, so their round trips count too. Cables are taken as
+ * symmetric.
+ *
+ * Context: Any. RT-safe: O(@n), no sleep, no allocation.
+ */
+void ec_dc_delays(struct ec_dc_node *nodes, u32 n, u32 ref)
+{
+	u8 port[EC_DC_PORTS];
+	u32 i, k, ports, zero, at = 0;
+	s32 b;
+
+	for (b = link_up(nodes, n); b != EC_DC_NONE; b = nodes[b].next) {
+		nodes[b].hop = 0;
+		nodes[b].delay = at;
+		at += stay(&nodes[b]);
+	}
+	for (i = 0; i < n; i++) {
+		struct ec_dc_node *a = &nodes[i];
+
+		if (!a->dc)
+			continue;
+		ports = visited(a, port);
+		for (k = 1; k < ports; k++)
+			place_chain(nodes, a->first[port[k]],
+				    a->delay + a->recv[port[k - 1]] - a->recv[a->entry],
+				    a->recv[port[k]] - a->recv[port[k - 1]]);
+	}
+	zero = ref < n ? nodes[ref].delay : 0;
+	for (i = 0; i < n; i++)
+		nodes[i].delay = nodes[i].dc ? nodes[i].delay - zero : 0;
+}
+
+/**
+ * ec_dc_offset() - system time offset of a slave, register 0x0920
+ * @ref_time: system time at the reference clock when the frame latched
+ * @delay: of the slave
+ * @local: its local time of the same latch, register 0x0918
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: offset modulo 2^64; 32-bit slaves take its low half.
+ */
+u64 ec_dc_offset(u64 ref_time, u32 delay, u64 local)
+{
+	return ref_time + (s64)(s32)delay - local;
+}
+
+/**
+ * ec_dc_diff() - system time difference from register 0x092C
+ * @value: sign and magnitude
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns, positive: the slave is ahead of the reference.
+ */
+s32 ec_dc_diff(u32 value)
+{
+	s32 magnitude = value & ~(u32)EC_DC_DIFF_AHEAD;
+
+	return value & EC_DC_DIFF_AHEAD ? magnitude : -magnitude;
+}
+
+/**
+ * ec_dc_start() - start time of the SYNC signals, register 0x0990
+ * @earliest: system time before which it must not be
+ * @period: of the grid all slaves share, not 0
+ * @shift: of this slave against the grid
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the first time on the shifted grid that is not before @earliest.
+ */
+u64 ec_dc_start(u64 earliest, u32 period, s32 shift)
+{
+	u32 behind = shift < 0 ? (u32)-shift % period : 0;
+	u32 phase = shift < 0 ? (behind ? period - behind : 0) : (u32)shift % period;
+
+	if (earliest <= phase)
+		return phase;
+	return div_u64(earliest - phase + period - 1, period) * period + phase;
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "wire_kunit.h"
+#include "../../master/wire/dc.h"
+
+#define P(n) BIT(n)
+
+/* the worked example: S2 at port 3 of S1, S3 at its port 1, S4 behind S3 */
+static void delays_of_a_tree(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(3) | P(1), .dc = true,
+		  .recv = { 1000, 4000, 0, 2000 } },
+		{ .parent = 0, .parent_port = 3, .open = P(0), .dc = true, .recv = { 80000 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+		  .recv = { 5000000, 5000600 } },
+		{ .parent = 2, .parent_port = 1, .open = P(0), .dc = true, .recv = { 123456 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[0].delay, 0u);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 500u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 1700u);
+	KUNIT_EXPECT_EQ(test, n[3].delay, 2000u);
+	KUNIT_EXPECT_EQ(test, ec_dc_offset(1000000000, n[0].delay, 1000), 999999000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_offset(1000000000, n[1].delay, 80000), 999920500ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_offset(1000000000, n[2].delay, 5000000), 995001700ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_offset(1000000000, n[3].delay, 123456), 999878544ull);
+}
+
+/* receive times that wrap between two ports */
+static void delays_across_the_wrap(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true,
+		  .recv = { 0xffffff00, 0x00000100 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0), .dc = true, .recv = { 5 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 256u);
+}
+
+/* a slave without clock between two with one is a part of the cable */
+static void delays_through_a_slave_without_clock(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 2600 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0) | P(1) },
+		{ .parent = 1, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+		  .recv = { 10, 610 } },
+		{ .parent = 2, .parent_port = 1, .open = P(0), .dc = true, .recv = { 7 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 0u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 1000u);
+	KUNIT_EXPECT_EQ(test, n[3].delay, 1300u);
+}
+
+/* two behind a coupler without clock: the way is shared in equal parts */
+static void delays_behind_a_branch_without_clock(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 1500 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0) | P(3) | P(1) },
+		{ .parent = 1, .parent_port = 3, .open = P(0), .dc = true, .recv = { 99 } },
+		{ .parent = 1, .parent_port = 1, .open = P(0), .dc = true, .recv = { 98 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 500u);
+	KUNIT_EXPECT_EQ(test, n[3].delay, 1000u);
+}
+
+/* connected the wrong way round: the frame comes in by port 1 */
+static void delays_of_a_reversed_slave(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 3000 } },
+		{ .parent = 0, .parent_port = 1, .entry = 1, .open = P(0) | P(1), .dc = true,
+		  .recv = { 1600, 1000 } },
+		{ .parent = 1, .parent_port = 0, .open = P(0), .dc = true, .recv = { 0 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 1200u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 1500u);
+}
+
+static void slaves_before_the_reference_have_a_negative_delay(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 1400 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0), .dc = true, .recv = { 50 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 1);
+	KUNIT_EXPECT_EQ(test, n[0].delay, (u32)-700);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 0u);
+	KUNIT_EXPECT_EQ(test, ec_dc_offset(10000, n[0].delay, 300), 9000ull);
+}
+
+/* noise must not turn a short cable into four seconds */
+static void a_negative_way_is_none(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 590 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+		  .recv = { 0, 600 } },
+		{ .parent = 1, .parent_port = 1, .open = P(0), .dc = true },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 0u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 300u);
+}
+
+static void difference_has_sign_and_magnitude(struct kunit *test)
+{
+	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x80000005), 5);
+	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x00000005), -5);
+	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x80000000), 0);
+	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x7fffffff), -0x7fffffff);
+}
+
+static void start_is_on_the_grid(struct kunit *test)
+{
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1100123456, 1000000, 0), 1101000000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, 0), 1101000000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000001, 1000000, 250000), 1101250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101250001, 1000000, 250000), 1102250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, -250000), 1101750000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, 5250000), 1101250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(10, 1000000, 250), 250ull);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(delays_of_a_tree),
+	KUNIT_CASE(delays_across_the_wrap),
+	KUNIT_CASE(delays_through_a_slave_without_clock),
+	KUNIT_CASE(delays_behind_a_branch_without_clock),
+	KUNIT_CASE(delays_of_a_reversed_slave),
+	KUNIT_CASE(slaves_before_the_reference_have_a_negative_delay),
+	KUNIT_CASE(a_negative_way_is_none),
+	KUNIT_CASE(difference_has_sign_and_magnitude),
+	KUNIT_CASE(start_is_on_the_grid),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "dc", .test_cases = cases };
+kunit_test_suite(suite);
