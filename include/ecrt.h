@@ -58,8 +58,14 @@
 
 /* ecrt_master_link_state() and ec_domain_state_t.redundancy_active */
 #define EC_HAVE_REDUNDANCY
+/* ecrt_master_select_reference_clock() */
+#define EC_HAVE_SELECT_REF_CLOCK
+/* ecrt_master_reference_clock_time() */
+#define EC_HAVE_REF_CLOCK_TIME
 /* ecrt_slave_config_reg_pdo_entry_pos() */
 #define EC_HAVE_REG_BY_POS
+/* ecrt_master_sync_reference_clock_to() */
+#define EC_HAVE_SYNC_TO
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
 /* ecrt_master_scan_progress() */
@@ -629,6 +635,92 @@ EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
 		uint64_t app_time);
 
 /**
+ * ecrt_master_select_reference_clock() - choose the reference clock
+ * @master: a reserved master
+ * @sc: slave whose clock is the reference; NULL: the first one that can be
+ *
+ * Without its clock, or absent, there is no reference clock at all.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
+		ec_slave_config_t *sc);
+
+/**
+ * ecrt_master_sync_reference_clock() - the reference clock follows us
+ * @master: an active master
+ *
+ * With the next send the low 32 bits of the last application time go to the
+ * reference clock (register 0x0910).
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
+
+/**
+ * ecrt_master_sync_reference_clock_to() - the same with another time
+ * @master: an active master
+ * @sync_time: ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
+		uint64_t sync_time);
+
+/**
+ * ecrt_master_sync_slave_clocks() - the slaves follow the reference clock
+ * @master: an active master
+ *
+ * With the next send the time of the reference clock goes to all slaves
+ * behind it (FRMW of register 0x0910). Once per cycle; until the master has
+ * set the clocks after activation nothing is sent.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
+
+/**
+ * ecrt_master_reference_clock_time() - what the reference clock said
+ * @master: an active master
+ * @time: out: low 32 bits of its system time, ns
+ *
+ * As of the frame of the last ecrt_master_sync_slave_clocks(); valid between
+ * ecrt_master_receive() and the next of these calls. Prints nothing.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
+ * or none was sent; %-EINVAL not active, or @time is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
+		uint32_t *time);
+
+/**
+ * ecrt_master_sync_monitor_queue() - ask how far the clocks are apart
+ * @master: an active master
+ *
+ * With the next send register 0x092C of all slaves is read.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL not active.
+ */
+EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
+
+/**
+ * ecrt_master_sync_monitor_process() - how far the clocks are apart
+ * @master: an active master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: OR of the magnitudes of all slaves' differences in ns: at least the
+ * largest of them; 0xffffffff when nothing was received.
+ */
+EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
+		const ec_master_t *master);
+
+/**
  * ecrt_master_reset() - try slaves again that could not be configured
  * @master: a master opened for writing; need not be reserved
  *
@@ -785,6 +877,24 @@ EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry_pos(ec_slave_config_t *sc,
 		uint8_t sync_index, unsigned int pdo_pos,
 		unsigned int entry_pos, ec_domain_t *domain,
 		unsigned int *bit_position);
+
+/**
+ * ecrt_slave_config_dc() - SYNC signals of a slave
+ * @sc: slave configuration
+ * @assign_activate: register 0x0980, from the slave's description; 0: none
+ * @sync0_cycle: period of SYNC0, ns
+ * @sync0_shift: of the first SYNC0 against the grid of the application's
+ *	time, ns
+ * @sync1_cycle: register 0x09A4, ns
+ * @sync1_shift: stored, without effect
+ *
+ * Context: Process. May sleep. Before activation. Prints nothing.
+ * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @sc is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_dc(ec_slave_config_t *sc,
+		uint16_t assign_activate, uint32_t sync0_cycle,
+		int32_t sync0_shift, uint32_t sync1_cycle,
+		int32_t sync1_shift);
 
 /**
  * ecrt_slave_config_sdo() - write an object each time the slave is configured

@@ -12,7 +12,8 @@
 
 /*
  * @queued, @sent, @received: bit n is domain n: to be sent, on its way, back
- * but not processed; @app_time: told with the next send when @app_time_new.
+ * but not processed; @app_time: last one, told with the next send when
+ * @app_time_new; @send_flags: EC_SEND_FLAG_* of the next send.
  * Only the cyclic caller touches them.
  */
 struct ec_master {
@@ -24,6 +25,8 @@ struct ec_master {
 	__u64 received;
 	__u64 app_time;
 	bool app_time_new;
+	__u32 send_flags;
+	__u64 sync_time;
 
 	/* mapped by activation */
 	const struct ec_status *status;

@@ -220,6 +220,7 @@ int ecrt_master_activate(ec_master_t *master)
 	master->sent = 0;
 	master->received = 0;
 	master->app_time_new = false;
+	master->send_flags = 0;
 	master->active = true;
 	return 0;
 
@@ -254,8 +255,11 @@ int ecrt_master_send(ec_master_t *master)
 	if (!master || !master->active)
 		return -EINVAL;
 	arg.queued = master->queued;
+	arg.flags = master->send_flags;
+	arg.sync_time = master->sync_time;
+	master->send_flags = 0;
 	if (master->app_time_new) {
-		arg.flags = EC_SEND_FLAG_APP_TIME;
+		arg.flags |= EC_SEND_FLAG_APP_TIME;
 		arg.app_time = master->app_time;
 		master->app_time_new = false;
 	}
@@ -279,10 +283,10 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 
 	if (!master)
 		return -EINVAL;
+	master->app_time = app_time;
 	if (!master->active)
 		return ec_ioctl(master, EC_IOC_APP_TIME, &arg);
 	/* goes with the next send: no system call of its own */
-	master->app_time = app_time;
 	master->app_time_new = true;
 	return 0;
 }

@@ -43,6 +43,8 @@ static int to_init(struct ec_slave *s)
 	write_reg(s, EC_REG_SM(0), zero, EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], 16));
 	write_reg(s, EC_REG_EEP_OWNER, force, 1);
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
+	if (ec_slave_features(s) & EC_FEAT_DC)
+		ec_dc_sync_stop(s);
 	s->mbox_counter = 0;
 	s->reconfigure = false;
 	s->ours = false;
@@ -327,6 +329,25 @@ static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
 	return false;
 }
 
+/* SYNC signals, as soon as the clocks of the whole segment are set */
+static int start_sync(struct ec_slave *s, const struct ec_config *c)
+{
+	int ret;
+
+	if (!c || !c->dc_assign || !c->session->active)
+		return 0;
+	if (!(ec_slave_features(s) & EC_FEAT_DC)) {
+		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
+		return 0;
+	}
+	ret = ec_dc_wait(s);
+	if (ret == -ECANCELED)
+		return ret;
+	if (ret)
+		ec_slave_warn(s, "starts SYNC although the clocks are not set (error %d)\n", ret);
+	return ec_dc_sync_start(s, c);
+}
+
 /* state-machine.md 4.3 */
 static int to_safeop(struct ec_slave *s, struct ec_config *c)
 {
@@ -342,6 +363,8 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	ret = write_sms(s, c);
 	if (!ret && c && c->session->active)
 		ret = write_fmmus(s, c);
+	if (!ret)
+		ret = start_sync(s, c);
 	if (!ret)
 		ret = ec_al_set(s, EC_AL_SAFEOP, c ? c->timeout_ms[EC_AL_PREOP][EC_AL_SAFEOP] : 0);
 	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;

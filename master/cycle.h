@@ -12,6 +12,8 @@
 #include <linux/types.h>
 #include "limits.h"
 
+struct ec_frame_buf;
+struct ec_ioc_send;
 struct ec_master;
 struct ec_session;
 struct ec_slot;
@@ -62,6 +64,7 @@ struct ec_cyc_input {
  * @first: first datagram of the layout it carries
  * @count: how many
  * @missed: a receive has looked for it in vain
+ * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
  */
 struct ec_cyc_flight {
 	struct ec_slot *slot;
@@ -69,6 +72,7 @@ struct ec_cyc_flight {
 	u16 first;
 	u16 count;
 	bool missed;
+	u32 dc;
 };
 
 #define EC_CYC_FRAMES	128	/* on their way at most */
@@ -98,6 +102,11 @@ struct ec_cyc_domain {
  * @sent: domains sent since the last receive, bit n: domain n
  * @back: domains of which something is back
  * @cycles: sends so far
+ * @dc_sent: clock datagrams sent since the last receive, EC_SEND_FLAG_*
+ * @dc_back: which of them are back
+ * @dc_time: last time of the reference clock, ns
+ * @dc_time_ns: when the frame that brought it was sent (ktime)
+ * @dc_diff: last value of register 0x092C, of all slaves
  */
 struct ec_cycle {
 	struct ec_cyc_dgram *dgrams;
@@ -111,6 +120,11 @@ struct ec_cycle {
 	u64 sent;
 	u64 back;
 	u64 cycles;
+	u32 dc_sent;
+	u32 dc_back;
+	u64 dc_time;
+	u64 dc_time_ns;
+	u32 dc_diff;
 };
 
 /**
@@ -146,6 +160,13 @@ void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 
 /* exchange.c */
 int ec_cycle_receive(struct ec_session *s);
-int ec_cycle_send(struct ec_session *s, u64 queued);
+int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
+
+/* dc_cycle.c */
+u32 ec_dc_wanted(struct ec_master *m, u32 flags);
+void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
+		u64 now);
+const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns);
+void ec_dc_judge(struct ec_session *s);
 
 #endif

@@ -58,6 +58,8 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 
+	if (f->dc)
+		data = ec_dc_take(s, f->dc, data, f->slot->sent_ns);
 	for (i = 0; i < f->count; i++, d++) {
 		take_dgram(s, d, f->send, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
@@ -126,6 +128,7 @@ int ec_cycle_receive(struct ec_session *s)
 	}
 	c->n_flight = left;
 	judge(s);
+	ec_dc_judge(s);
 	WRITE_ONCE(s->shared->status->cycle, c->cycles);
 	ec_cycle_leave(m);
 	return 0;
@@ -153,16 +156,30 @@ static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
 	return true;
 }
 
+/* one send */
+struct send {
+	const struct ec_ioc_send *what;
+	u64 now;
+	u32 dc;		/* clock datagrams still to be sent */
+	u32 wire_ns;
+};
+
 /* Datagrams from @g on, as many as are queued and fit; returns how many. */
-static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g, u64 queued)
+static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g,
+			 const struct send *send)
 {
 	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_dgram *d = &c->dgrams[g];
-	unsigned int end = min(c->n_dgrams, g + s->master->max_datagrams);
+	unsigned int end, dc;
+	u64 queued = send->what->queued;
 	struct ec_frame_buf fb;
 	u8 *p;
 
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	if (send->dc)
+		ec_dc_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
+	dc = fb.count;
+	end = min(c->n_dgrams, g + max(s->master->max_datagrams, dc) - dc);
 	for (; g < end && queued & BIT_ULL(d->domain); g++, d++) {
 		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
 				 d->logical >> 16, d->len);
@@ -171,32 +188,34 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 		memcpy(p, s->shared->image + d->offset, d->len);
 	}
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
-	return fb.count;
+	return fb.count - dc;
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
-static unsigned int send_frame(struct ec_session *s, unsigned int g, u64 queued, u64 now,
-			       u32 *wire_ns)
+static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send *send)
 {
 	struct ec_master *m = s->master;
 	struct ec_cycle *c = &s->cycle;
 	struct ec_slot *slot = NULL;
 	unsigned int count;
 
-	if (make_room(m, c, now))
-		slot = ec_slot_get(&m->slots, true, now);
+	if (make_room(m, c, send->now))
+		slot = ec_slot_get(&m->slots, true, send->now);
 	if (!slot) {
 		atomic64_inc(&m->link[0].stats.tx_errors);
+		send->dc = 0;
 		return c->n_dgrams;
 	}
-	count = fill(s, slot, g, queued);
-	*wire_ns += ec_frame_wire_ns(slot->eth_len);
-	if (!ec_cycle_transmit(m, slot, now))
+	count = fill(s, slot, g, send);
+	send->wire_ns += ec_frame_wire_ns(slot->eth_len);
+	if (!ec_cycle_transmit(m, slot, send->now))
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
+			.dc = send->dc,
 		};
 	else
 		ec_slot_put(&m->slots, slot, true);
+	send->dc = 0;
 	return g + count;
 }
 
@@ -214,33 +233,33 @@ static void measure_interval(struct ec_master *m, u64 now)
 /**
  * ec_cycle_send() - send the queued domains, then what others have left
  * @s: active session
- * @queued: bit n: domain n
+ * @what: domains and clock datagrams; its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_send(struct ec_session *s, u64 queued)
+int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	struct ec_master *m = s->master;
 	struct ec_cycle *c = &s->cycle;
-	u64 now = ktime_get_ns();
+	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
-	u32 wire_ns = 0;
 
 	if (!READ_ONCE(m->link[0].dev))
 		return -ENODEV;
 	ec_cycle_enter(m);
-	measure_interval(m, now);
-	WRITE_ONCE(m->last_send_ns, now);
+	measure_interval(m, send.now);
+	WRITE_ONCE(m->last_send_ns, send.now);
 	c->send++;
-	c->sent |= queued;
-	while (g < c->n_dgrams) {
-		if (queued & BIT_ULL(c->dgrams[g].domain))
-			g = send_frame(s, g, queued, now, &wire_ns);
+	c->sent |= what->queued;
+	send.dc = ec_dc_wanted(m, what->flags);
+	while (g < c->n_dgrams || send.dc) {
+		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
+			g = send_frame(s, g, &send);
 		else
 			g++;
 	}
-	ec_cycle_send_left(m, wire_ns);
+	ec_cycle_send_left(m, send.wire_ns);
 	WRITE_ONCE(c->cycles, c->cycles + 1);
 	ec_cycle_leave(m);
 	return 0;

@@ -80,6 +80,7 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE),
 	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE),
 	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV(ec_ioc_app_time, reserved)),
+	IOC(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE),
 };
 
 /**
@@ -121,7 +122,7 @@ static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 		return -EINVAL;
 	if (copy_from_user(&send, (void __user *)arg, sizeof(send)))
 		return -EFAULT;
-	if (send.flags & ~EC_SEND_FLAG_APP_TIME || send.reserved)
+	if (send.flags & ~EC_SEND_FLAG_ALL || send.reserved)
 		return -EOPNOTSUPP;
 	return ec_ioc_send(f, &send);
 }

@@ -58,6 +58,7 @@ int ec_ioc_deactivate(struct ec_file *f, void *arg);
 int ec_ioc_domain_offset(struct ec_file *f, void *arg);
 int ec_ioc_interval(struct ec_file *f, void *arg);
 int ec_ioc_app_time(struct ec_file *f, void *arg);
+int ec_ioc_ref_clock(struct ec_file *f, void *arg);
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);
 

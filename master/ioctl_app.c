@@ -341,6 +341,21 @@ int ec_ioc_domain_offset(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
+int ec_ioc_ref_clock(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_ref_clock *i = arg;
+	int ret = 0;
+	struct ec_session *s = lock_idle(f, &ret);
+
+	if (!s)
+		return ret;
+	if (i->config != EC_UAPI_NONE32 && i->config >= s->n_configs)
+		return done(f, ec_refuse(f, -ENOENT, "there is no slave configuration %u",
+					 i->config));
+	s->ref_config = i->config;
+	return done(f, 0);
+}
+
 int ec_ioc_interval(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_interval *i = arg;
@@ -385,14 +400,14 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 	int ret = 0;
 
 	if (enter(f)) {
-		WRITE_ONCE(f->master->app_time, i->app_time);
+		ec_dc_app_time(f->master, i->app_time);
 		mutex_unlock(&f->master->cyclic_lock);
 		return 0;
 	}
 	/* before activation there is no cycle to disturb */
 	if (!lock(f, &ret))
 		return ret;
-	WRITE_ONCE(f->master->app_time, i->app_time);
+	ec_dc_app_time(f->master, i->app_time);
 	return done(f, 0);
 }
 
@@ -416,11 +431,11 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 	if (!s)
 		return -EPERM;
 	if (arg->flags & EC_SEND_FLAG_APP_TIME)
-		WRITE_ONCE(f->master->app_time, arg->app_time);
+		ec_dc_app_time(f->master, arg->app_time);
 	if (s->n_domains < 64 && arg->queued >> s->n_domains)
 		ret = -ENOENT;
 	else
-		ret = ec_cycle_send(s, arg->queued);
+		ret = ec_cycle_send(s, arg);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;
 }

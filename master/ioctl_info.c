@@ -106,11 +106,15 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->scan_index = i->scan_busy ? 0 : m->n_slaves;
 	i->scan_count = READ_ONCE(m->scan_count);
 	i->debug_level = m->debug;
-	i->app_time = m->app_time;
-	i->ref_clock = -1;
+	i->app_time = READ_ONCE(m->dc.app_time);
+	down_read(&m->topo);
+	i->ref_clock = m->dc.ref ? m->dc.ref->position : -1;
+	up_read(&m->topo);
 	i->scan_us = m->scan_us;
 	i->scan_frames = m->scan_frames;
 	mutex_lock(&m->session_lock);
+	if (m->session && m->session->active)
+		i->dc_ref_time = READ_ONCE(m->session->shared->status->dc_time);
 	if (m->session) {
 		i->active = m->session->active;
 		i->config_count = m->session->n_configs;
@@ -125,10 +129,24 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	return 0;
 }
 
-static void slave_ports(const struct ec_slave *s, struct ec_ioc_slave *i)
+/* Way to the neighbour at a port, where both have a clock. */
+static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int p)
+{
+	const struct ec_slave *next;
+
+	if (s->next[p] >= m->n_slaves)
+		return 0;
+	next = m->slaves[s->next[p]];
+	if (!(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
+		return 0;
+	return p == s->upstream ? s->dc_hop : next->dc_hop;
+}
+
+static void slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
 	unsigned int p;
 
+	down_read(&m->topo);
 	for (p = 0; p < EC_UAPI_PORTS; p++) {
 		struct ec_ioc_port *port = &i->ports[p];
 
@@ -138,7 +156,9 @@ static void slave_ports(const struct ec_slave *s, struct ec_ioc_slave *i)
 		port->signal = !!(s->dl_status & EC_DLS_COMM(p));
 		port->receive_time = s->recv[p];
 		port->next_slave = s->next[p];
+		port->delay_to_next_dc = way(m, s, p);
 	}
+	up_read(&m->topo);
 }
 
 /* The nearest slave at or before this one that has an alias. */
@@ -202,13 +222,17 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->mbox_protocols = s->info.protocols;
 	i->fmmu_bit = !(feat & EC_FEAT_NO_BIT_FMMU);
 	i->dc_supported = !(feat & EC_FEAT_DC) ? 0 : feat & EC_FEAT_DC64 ? 2 : 1;
+	i->transmission_delay = s->dc_delay;
+	i->dc_offset = s->dc_offset;
+	i->dc_diff = s->dc_diff;
+	i->dc_set = s->dc_set;
 	i->features = feat;
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];
 	i->dl_status = s->dl_status;
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
-	slave_ports(s, i);
+	slave_ports(f->master, s, i);
 	slave_alias(f->master, s, i);
 	strscpy(i->why, s->why, sizeof(i->why));
 	ec_slave_unref(s);

@@ -166,6 +166,7 @@ static void destroy(struct ec_master *m)
 	ec_cdev_exit(m);
 	ec_session_end(m, NULL);
 	ec_monitor_stop(m);
+	ec_dc_exit(m);
 	if (m->work)
 		destroy_workqueue(m->work);
 	for (i = 0; i < EC_MAX_LINKS; i++)
@@ -206,6 +207,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	init_waitqueue_head(&m->scan_wq);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
+	ec_dc_init(m);
 	ret = ec_slots_init(&m->slots);
 	if (ret)
 		goto err_free;

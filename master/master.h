@@ -13,6 +13,7 @@
 #include <linux/workqueue.h>
 #include "ethercat.h"
 #include "cycle.h"
+#include "dc.h"
 #include "limits.h"
 #include "link.h"
 #include "slots.h"
@@ -72,7 +73,7 @@ struct task_struct;
  *
  * @slaves_responding: slaves that answered the last broadcast
  * @al_states: OR of AL states, as in struct ec_ioc_master
- * @app_time: of the application, ns
+ * @dc: distributed clocks
  * @debug: log level 0..2
  */
 struct ec_master {
@@ -125,7 +126,7 @@ struct ec_master {
 
 	u32 slaves_responding;
 	u32 al_states;
-	u64 app_time;
+	struct ec_dc dc;
 	u32 debug;
 };
 

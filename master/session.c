@@ -74,6 +74,7 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 		return -ENOMEM;
 	s->master = m;
 	s->owner = owner;
+	s->ref_config = EC_UAPI_NONE32;
 	mutex_lock(&m->session_lock);
 	if (m->session) {
 		mutex_unlock(&m->session_lock);
@@ -123,6 +124,7 @@ static void clear(struct ec_session *s)
 	for (i = 0; i < s->n_domains; i++)
 		ec_domain_free(s->domains[i]);
 	s->n_domains = 0;
+	s->ref_config = EC_UAPI_NONE32;
 }
 
 /**
@@ -150,7 +152,7 @@ int ec_session_deactivate(struct ec_session *s)
 	sh = s->shared;
 	s->shared = NULL;
 	ec_shared_put(sh);
-	m->app_time = 0;
+	ec_dc_end(m);
 	m->interval_us = EC_INTERVAL_US;
 	m->interval_told = false;
 	if ((u32)atomic_read(&m->stalls) != s->stall_log.told)
@@ -257,6 +259,48 @@ void ec_session_attach(struct ec_master *m)
 	mutex_unlock(&m->session_lock);
 }
 
+/* Station address of the chosen reference clock, as for ec_dc_begin(). */
+static u16 ref_choice(const struct ec_session *s)
+{
+	if (s->ref_config >= s->n_configs)
+		return EC_DC_ANY;
+	return s->configs[s->ref_config]->slave ? s->configs[s->ref_config]->slave->station :
+						  EC_DC_NOBODY;
+}
+
+static bool uses_sync(const struct ec_session *s)
+{
+	unsigned int i;
+
+	for (i = 0; i < s->n_configs; i++)
+		if (s->configs[i]->dc_assign)
+			return true;
+	return false;
+}
+
+/**
+ * ec_session_clocks() - set clocks that somebody wants and nobody has set
+ * @m: master
+ * @changed: slaves have come or gone
+ *
+ * The clocks of an application begin with its activation when a slave has SYNC
+ * signals, else with the first clock datagram it sends.
+ *
+ * Context: The monitor thread. May sleep.
+ */
+void ec_session_clocks(struct ec_master *m, bool changed)
+{
+	struct ec_session *s;
+
+	/* an activation in progress may hold it for long: next time then */
+	if (!mutex_trylock(&m->session_lock))
+		return;
+	s = m->session;
+	if (s && s->active && (m->dc.begun ? changed : READ_ONCE(m->dc.wanted)))
+		ec_dc_begin(m, !m->dc.begun, ref_choice(s));
+	mutex_unlock(&m->session_lock);
+}
+
 /**
  * ec_session_activate() - lay out process data, hand the links to the cycle
  * @s: session
@@ -291,6 +335,8 @@ int ec_session_activate(struct ec_session *s)
 		return ret;
 	}
 	s->shared->status->config_count = s->n_configs;
+	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
+	s->shared->status->dc_monitor = ~0u;
 	for (i = 0; i < s->n_domains; i++)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
 	s->active = true;
@@ -300,6 +346,8 @@ int ec_session_activate(struct ec_session *s)
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
 	mutex_unlock(&m->cyclic_lock);
+	if (uses_sync(s))
+		ec_dc_begin(m, true, ref_choice(s));
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_OP);

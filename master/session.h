@@ -56,6 +56,8 @@ struct ec_stall_log {
  * @n_configs: entries in @configs
  * @domains: domains
  * @n_domains: entries in @domains
+ * @ref_config: configuration whose slave is the reference clock, or
+ *	EC_UAPI_NONE32
  * @active: activated
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
@@ -68,6 +70,7 @@ struct ec_session {
 	unsigned int n_configs;
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	unsigned int n_domains;
+	u32 ref_config;
 	bool active;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;
@@ -82,6 +85,7 @@ int ec_session_deactivate(struct ec_session *s);
 void ec_session_attach(struct ec_master *m);
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 u8 ec_session_config_status(const struct ec_config *c);
+void ec_session_clocks(struct ec_master *m, bool changed);
 void ec_session_status(struct ec_master *m);
 void ec_session_stalled(struct ec_master *m);
 

@@ -45,6 +45,13 @@ struct ec_master;
  * @free_pdos: PDOs without SyncManager
  * @pdos_known: the object dictionary was read, or there is none
  *
+ * Of the distributed clock, changed under master->dc.lock:
+ * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
+ * @dc_hop: way from the clock before it, ns
+ * @dc_offset: of its system time, ns, register 0x0920
+ * @dc_diff: last difference to the reference clock, ns, positive: ahead
+ * @dc_set: its clock was set for this session
+ *
  * Changing:
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
@@ -92,6 +99,12 @@ struct ec_slave {
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
 	struct ec_pdo_list free_pdos;
 	bool pdos_known;
+
+	u32 dc_delay;
+	u32 dc_hop;
+	u64 dc_offset;
+	s32 dc_diff;
+	bool dc_set;
 
 	u16 al_status;
 	u16 al_code;

@@ -49,6 +49,12 @@ static void data_link(const struct ec_ioc_slave *s)
 	if (dc)
 		out_u("dc_delay_ns", s->transmission_delay,
 		      "  DC system time transmission delay: %u ns\n", s->transmission_delay);
+	if (s->dc_set) {
+		out_i("dc_offset_ns", (s64)s->dc_offset, "  DC system time offset: %lld ns\n",
+		      (long long)s->dc_offset);
+		out_i("dc_difference_ns", s->dc_diff,
+		      "  DC difference to the reference clock: %d ns\n", s->dc_diff);
+	}
 }
 
 static void port(const struct ec_ioc_slave *s, unsigned int i)

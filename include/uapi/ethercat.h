@@ -26,6 +26,7 @@
 #define EC_UAPI_DEVICES		2
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
 #define EC_UAPI_NONE16		0xffff
+#define EC_UAPI_NONE32		0xffffffff
 
 /* bits of struct ec_ioc_version.features */
 #define EC_FEATURE_APP_CYCLE	(1ULL << 0)
@@ -165,6 +166,9 @@ struct ec_ioc_slave {
 	char order[EC_UAPI_STRING];
 	char name[EC_UAPI_STRING];
 	char why[EC_UAPI_REASON];	/* cause of @error */
+	__u64 dc_offset;	/* register 0x0920, ns */
+	__s32 dc_diff;		/* to the reference clock when last checked, ns */
+	__u32 dc_set;		/* the clock was set for the active application */
 };
 
 struct ec_ioc_sm {
@@ -484,13 +488,18 @@ struct ec_ioc_domain_offset {
 };
 
 #define EC_SEND_FLAG_APP_TIME	1	/* @app_time is set */
+#define EC_SEND_FLAG_SYNC_REF	2	/* write @sync_time to the reference clock */
+#define EC_SEND_FLAG_SYNC_SLAVES 4	/* reference clock's time to the slaves */
+#define EC_SEND_FLAG_MONITOR	8	/* read the differences of all slaves */
+#define EC_SEND_FLAG_ALL	15
 
 /* argument of EC_IOC_SEND; @queued: bit n queues domain n */
 struct ec_ioc_send {
-	__u32 flags;		/* EC_SEND_FLAG_APP_TIME */
+	__u32 flags;		/* EC_SEND_FLAG_* */
 	__u32 reserved;
 	__u64 queued;
 	__u64 app_time;		/* ns, as in EC_IOC_APP_TIME */
+	__u64 sync_time;	/* ns */
 };
 
 struct ec_ioc_interval {
@@ -502,6 +511,12 @@ struct ec_ioc_app_time {
 	__u32 flags;
 	__u32 reserved;
 	__u64 app_time;
+};
+
+/* which slave is the reference clock */
+struct ec_ioc_ref_clock {
+	__u32 flags;
+	__u32 config;		/* EC_UAPI_NONE32: the first that can be */
 };
 
 #define EC_STATUS_MAGIC		0x45435354	/* "ECST" */
@@ -535,6 +550,11 @@ struct ec_status {
 	__u32 config_count;
 	__u64 frames_lost;
 	__u64 app_time;
+	__u64 dc_time;		/* reference clock's, of the last EC_SEND_FLAG_SYNC_SLAVES */
+	__u32 dc_time_valid;	/* that datagram came back */
+	__u32 dc_monitor;	/* OR of the slaves' differences, ns; ~0: not back */
+	__u32 dc_ref;		/* there is a reference clock */
+	__u32 reserved;
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 	__u8 configs[EC_STATUS_CONFIGS];
 };
@@ -594,5 +614,6 @@ struct ec_status {
 #define EC_IOC_APP_TIME		EC_IOC_W(0x50, struct ec_ioc_app_time)
 #define EC_IOC_RECEIVE		EC_IOC_N(0x51)
 #define EC_IOC_SEND		EC_IOC_W(0x52, struct ec_ioc_send)
+#define EC_IOC_REF_CLOCK	EC_IOC_W(0x53, struct ec_ioc_ref_clock)
 
 #endif

@@ -169,6 +169,9 @@ void cyc_run(struct cyc *c, u32 cycles)
 		if (c->each)
 			c->each(c);
 		send.queued = c->queued;
+		send.flags = c->flags;
+		send.app_time = c->app_time;
+		send.sync_time = c->sync_time;
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_send(&c->b->app, &send), 0);
 		c->cycles++;
 	}

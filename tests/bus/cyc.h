@@ -15,6 +15,9 @@
  * @queued: domains sent in a cycle, bit n: domain n
  * @each: called between receive and send, may be NULL
  * @ctx: for @each
+ * @flags: EC_SEND_FLAG_* of the next send
+ * @app_time: for it, ns
+ * @sync_time: for it, ns
  * @incomplete: cycles in which a domain was not complete
  * @cycles: cycles so far
  */
@@ -25,6 +28,9 @@ struct cyc {
 	u64 queued;
 	void (*each)(struct cyc *c);
 	void *ctx;
+	u32 flags;
+	u64 app_time;
+	u64 sync_time;
 	u64 incomplete;
 	u64 cycles;
 };

@@ -1,0 +1,506 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "dc.h"
+#include "master.h"
+#include "slave.h"
+#include "wire/dc.h"
+#include "xfer.h"
+
+#define ROUNDS		16	/* latches; the times have 10 ns of noise */
+#define BATCH		1500	/* datagrams in one ec_xfer() */
+#define BOOST		16000	/* left to the cycle */
+#define REGS		32	/* 0x0900-0x091F */
+
+/* all slaves of the segment, in ring order */
+struct job {
+	struct ec_master *m;
+	unsigned int n;
+	struct ec_slave **slaves;
+	struct ec_dc_node *nodes;
+	u8 (*regs)[REGS];
+	s64 *sum;
+	struct ec_dg *dg;
+	unsigned int ref;	/* index, n: none */
+	u64 latch_ns;		/* when the last latch was sent */
+};
+
+static void job_free(struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; j->slaves && i < j->n; i++)
+		if (j->slaves[i])
+			ec_slave_unref(j->slaves[i]);
+	kvfree(j->slaves);
+	kvfree(j->nodes);
+	kvfree(j->regs);
+	kvfree(j->sum);
+	kvfree(j->dg);
+}
+
+static bool has_clock(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_DC && s->error != EC_SLAVE_SCAN_FAILED;
+}
+
+static void fill_node(struct job *j, unsigned int i)
+{
+	const struct ec_slave *s = j->slaves[i];
+	struct ec_dc_node *n = &j->nodes[i];
+	unsigned int p;
+
+	n->parent = s->next[s->upstream] < i ? s->next[s->upstream] : EC_DC_NONE;
+	n->entry = s->upstream;
+	n->dc = has_clock(s);
+	for (p = 0; p < EC_DC_PORTS; p++) {
+		if (s->dl_status & EC_DLS_COMM(p) && !(s->dl_status & EC_DLS_LOOP(p)))
+			n->open |= BIT(p);
+		if (n->parent != EC_DC_NONE && j->slaves[n->parent]->next[p] == i)
+			n->parent_port = p;
+	}
+}
+
+/* The chosen reference clock, else the first 64-bit one, else the first. */
+static void choose(struct job *j)
+{
+	u16 choice = READ_ONCE(j->m->dc.choice);
+	unsigned int i;
+
+	j->ref = j->n;
+	for (i = 0; i < j->n; i++) {
+		if (!j->nodes[i].dc)
+			continue;
+		if (choice != EC_DC_ANY && j->slaves[i]->station == choice)
+			j->ref = i;
+		if (choice != EC_DC_ANY)
+			continue;
+		if (ec_slave_features(j->slaves[i]) & EC_FEAT_DC64) {
+			j->ref = i;
+			return;
+		}
+		if (j->ref == j->n)
+			j->ref = i;
+	}
+}
+
+static int job_init(struct job *j, struct ec_master *m)
+{
+	unsigned int i;
+
+	*j = (struct job){ .m = m };
+	down_read(&m->topo);
+	j->n = m->n_slaves;
+	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
+	for (i = 0; j->slaves && i < j->n; i++)
+		j->slaves[i] = ec_slave_ref(m->slaves[i]);
+	up_read(&m->topo);
+	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
+	j->regs = kvcalloc(j->n + 1, sizeof(*j->regs), GFP_KERNEL);
+	j->sum = kvcalloc(j->n + 1, sizeof(*j->sum), GFP_KERNEL);
+	j->dg = kvcalloc(max_t(unsigned int, j->n + 1, BATCH), sizeof(*j->dg), GFP_KERNEL);
+	if (!j->slaves || !j->nodes || !j->regs || !j->sum || !j->dg) {
+		job_free(j);
+		return -ENOMEM;
+	}
+	for (i = 0; i < j->n; i++)
+		fill_node(j, i);
+	choose(j);
+	return 0;
+}
+
+/* all clocks; those not set yet; of these the ones with 64 and with 32 bits */
+enum who { ANY, NEW, NEW_WIDE, NEW_NARROW };
+
+static bool chosen(const struct job *j, unsigned int i, enum who who)
+{
+	const struct ec_slave *s = j->slaves[i];
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+
+	if (!j->nodes[i].dc || who == ANY)
+		return j->nodes[i].dc;
+	return !s->dc_set && (who == NEW || wide == (who == NEW_WIDE));
+}
+
+/* The same register of every slave with such a clock; its data are at @data. */
+static int all(struct job *j, enum who who, u8 cmd, u16 ado, u16 len, u8 *data, size_t stride)
+{
+	unsigned int i, n = 0;
+	int ret;
+
+	for (i = 0; i < j->n; i++)
+		if (chosen(j, i, who))
+			j->dg[n++] = (struct ec_dg)EC_DG(cmd, j->slaves[i]->station, ado, len,
+							 data + i * stride);
+	ret = ec_xfer(j->m, j->dg, n);
+	for (i = 0; i < n && !ret; i++)
+		if (j->dg[i].wkc != 1)
+			ret = -EAGAIN;	/* the bus has changed meanwhile */
+	return ret;
+}
+
+static int latch(struct job *j)
+{
+	u8 any[4] = { 0 };
+	unsigned int i, p;
+	int ret;
+
+	j->latch_ns = ktime_get_ns();
+	ret = ec_xfer_one(j->m, EC_CMD_BWR, 0, EC_REG_DC_RECV(0), any, sizeof(any));
+	if (ret < 0)
+		return ret;
+	ret = all(j, ANY, EC_CMD_FPRD, EC_REG_DC_RECV(0), REGS, j->regs[0], REGS);
+	for (i = 0; i < j->n; i++)
+		for (p = 0; p < EC_DC_PORTS; p++)
+			j->nodes[i].recv[p] = get_unaligned_le32(j->regs[i] + 4 * p);
+	return ret;
+}
+
+static int measure(struct job *j)
+{
+	unsigned int i, round;
+	int ret = 0;
+
+	for (round = 0; round < ROUNDS && !ret; round++) {
+		ret = latch(j);
+		ec_dc_delays(j->nodes, j->n, j->ref);
+		for (i = 0; i < j->n; i++)
+			j->sum[i] += (s32)j->nodes[i].delay;
+	}
+	for (i = 0; i < j->n && !ret; i++)
+		if (j->nodes[i].dc) {
+			j->slaves[i]->dc_delay = (u32)div_s64(j->sum[i], ROUNDS);
+			j->slaves[i]->dc_hop = j->nodes[i].hop;
+		}
+	return ret;
+}
+
+static void set_ref(struct job *j)
+{
+	struct ec_dc *dc = &j->m->dc;
+	struct ec_slave *old, *ref = j->ref < j->n ? ec_slave_ref(j->slaves[j->ref]) : NULL;
+
+	down_write(&j->m->topo);
+	old = dc->ref;
+	dc->ref = ref;
+	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
+	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
+	up_write(&j->m->topo);
+	if (old)
+		ec_slave_unref(old);
+}
+
+/**
+ * ec_dc_measure() - find the reference clock and the propagation delays
+ * @m: master
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -ENXIO without clocks; -EAGAIN when the bus has changed; -ENOMEM;
+ * or as ec_xfer().
+ */
+int ec_dc_measure(struct ec_master *m)
+{
+	struct job j;
+	int ret = job_init(&j, m);
+
+	if (ret)
+		return ret;
+	mutex_lock(&m->dc.lock);
+	ret = j.ref < j.n ? measure(&j) : -ENXIO;
+	if (ret)
+		j.ref = j.n;
+	set_ref(&j);
+	mutex_unlock(&m->dc.lock);
+	job_free(&j);
+	return ret;
+}
+
+/* System time offset and delay, then the filters: their depths before 0x0930 resets them. */
+static int write_clocks(struct job *j)
+{
+	static u8 depths[2] = { 0, 12 }, reset[2] = { 0x00, 0x10 };
+	struct ec_slave *ref = j->slaves[j->ref];
+	u64 t = ec_dc_now(j->m) - (ktime_get_ns() - j->latch_ns);
+	unsigned int i;
+	u8 (*v)[12];
+	int ret;
+
+	/* the reference goes on counting when others join it */
+	if (ref->dc_set)
+		t = get_unaligned_le64(j->regs[j->ref] + 0x18) + ref->dc_offset;
+
+	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
+	if (!v)
+		return -ENOMEM;
+	for (i = 0; i < j->n; i++) {
+		struct ec_slave *s = j->slaves[i];
+
+		if (!chosen(j, i, NEW))
+			continue;
+		s->dc_offset = ec_dc_offset(t, s->dc_delay,
+					    get_unaligned_le64(j->regs[i] + 0x18));
+		put_unaligned_le64(s->dc_offset, v[i]);
+		put_unaligned_le32(s->dc_delay, v[i] + 8);
+	}
+	ret = all(j, NEW_WIDE, EC_CMD_FPWR, EC_REG_DC_OFFSET, 8, v[0], sizeof(v[0])) ?:
+	      all(j, NEW_NARROW, EC_CMD_FPWR, EC_REG_DC_OFFSET, 4, v[0], sizeof(v[0])) ?:
+	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_DELAY, 4, v[0] + 8, sizeof(v[0])) ?:
+	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0) ?:
+	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
+	for (i = 0; i < j->n && !ret; i++)
+		j->slaves[i]->dc_set = j->nodes[i].dc;
+	kvfree(v);
+	return ret;
+}
+
+/*
+ * Drift compensation. Each frame gives a slave one measurement of its rate,
+ * with 10 ns of noise over the time since the last frame, and as many steps
+ * towards it as it has datagrams. So: first many short frames, to come near;
+ * then fewer and long ones with ever smaller steps, to lose the noise; then the
+ * cycle alone, with some more datagrams than usual (@boost).
+ */
+static const struct stage {
+	u16 syncs;	/* datagrams of a frame that carry the time */
+	u16 pad;	/* bytes of one without effect that makes it longer */
+	u16 batch;	/* frames at once */
+	u16 frames;	/* in all */
+} near = { .syncs = 15, .batch = 100, .frames = 1600 },
+  quiet = { .syncs = 8, .pad = 1320, .batch = 6, .frames = 1200 },
+  calm = { .syncs = 1, .pad = 1460, .batch = 4, .frames = 2400 };
+
+static int compensate(struct job *j, const struct stage *st)
+{
+	static u8 pad[EC_DGRAM_DATA_MAX];
+	struct ec_dc *dc = &j->m->dc;
+	unsigned int i, k, n, done;
+	u8 t[8];
+	int ret = 0;
+
+	for (done = 0; done < st->frames && !ret; done += st->batch) {
+		u16 ref = READ_ONCE(dc->ref_station);
+
+		if (!ref || READ_ONCE(dc->stop))
+			return -ECANCELED;
+		/* slaves in front of the reference see what was sent */
+		put_unaligned_le64(ec_dc_now(j->m), t);
+		/* far from the frame of the cycle, too */
+		n = 0;
+		if (st->pad)
+			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, sizeof(pad), pad);
+		for (i = 0; i < st->batch; i++) {
+			for (k = 0; k < st->syncs; k++)
+				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref,
+								 EC_REG_DC_SYSTIME, 8, t);
+			if (st->pad)
+				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, st->pad, pad);
+		}
+		for (i = 0; i < n; i++)
+			j->dg[i].repeat = false;
+		ret = ec_xfer(j->m, j->dg, n);
+		if (ret == -ETIMEDOUT || ret == -EBUSY)
+			ret = 0;	/* one more or less */
+	}
+	return ret;
+}
+
+/* What each slave says of its difference to the reference, register 0x092C. */
+static int check(struct job *j)
+{
+	u8 (*v)[4] = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
+	unsigned int i;
+	int ret;
+
+	if (!v)
+		return -ENOMEM;
+	ret = all(j, ANY, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0], sizeof(v[0]));
+	for (i = 0; i < j->n && !ret; i++) {
+		struct ec_slave *s = j->slaves[i];
+
+		if (!j->nodes[i].dc)
+			continue;
+		s->dc_diff = ec_dc_diff(get_unaligned_le32(v[i]));
+		if (abs(s->dc_diff) > EC_DC_LIMIT_NS)
+			ec_slave_warn(s, "its clock differs by %d ns from the reference clock, more than %d\n",
+				      s->dc_diff, EC_DC_LIMIT_NS);
+	}
+	kvfree(v);
+	return ret;
+}
+
+static void set_state(struct ec_dc *dc, int state)
+{
+	WRITE_ONCE(dc->state, state);
+	wake_up_all(&dc->wq);
+}
+
+static void work(struct work_struct *work)
+{
+	struct ec_dc *dc = container_of(work, struct ec_dc, work);
+	struct ec_master *m = container_of(dc, struct ec_master, dc);
+	u64 t0 = ktime_get_ns();
+	struct job j;
+	int ret = job_init(&j, m);
+
+	if (ret) {
+		set_state(dc, EC_DC_OFF);
+		return;
+	}
+	mutex_lock(&dc->lock);
+	/* a clock that is being corrected runs too fast or too slow to measure */
+	WRITE_ONCE(dc->running, false);
+	ret = j.ref < j.n ? measure(&j) : -ENXIO;
+	if (!ret)
+		set_ref(&j);
+	ret = ret ?: write_clocks(&j);
+	WRITE_ONCE(dc->running, !ret);
+	ret = ret ?: compensate(&j, &near) ?: check(&j);
+	mutex_unlock(&dc->lock);
+	if (!ret)
+		ec_info(m, "clocks set in %llu us, reference clock is slave %u\n",
+			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
+	else if (ret != -ENXIO && ret != -ECANCELED)
+		ec_warn(m, "clocks could not be set (error %d)\n", ret);
+	WRITE_ONCE(dc->boost, ret ? 0 : BOOST);
+	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
+	if (!ret)
+		ret = compensate(&j, &quiet) ?: compensate(&j, &calm);
+	job_free(&j);
+}
+
+static void stop(struct ec_dc *dc)
+{
+	WRITE_ONCE(dc->stop, true);
+	cancel_work_sync(&dc->work);
+}
+
+/**
+ * ec_dc_begin() - set the clocks of a session, or of slaves that join it
+ * @m: master
+ * @all: all of them, from the application's time; else only new ones, from the
+ *	reference clock
+ * @choice: station address of the reference clock, or EC_DC_ANY...
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
+{
+	unsigned int i;
+
+	down_read(&m->topo);
+	for (i = 0; all && i < m->n_slaves; i++)
+		WRITE_ONCE(m->slaves[i]->dc_set, false);
+	up_read(&m->topo);
+	stop(&m->dc);
+	WRITE_ONCE(m->dc.stop, false);
+	WRITE_ONCE(m->dc.choice, choice);
+	m->dc.begun = true;
+	set_state(&m->dc, EC_DC_BUSY);
+	queue_work(m->work, &m->dc.work);
+}
+
+/**
+ * ec_dc_end() - the session ends: its phase means nothing any more
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_end(struct ec_master *m)
+{
+	unsigned long flags;
+
+	stop(&m->dc);
+	WRITE_ONCE(m->dc.running, false);
+	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
+	m->dc.has_phase = false;
+	m->dc.app_time = 0;
+	m->dc.choice = EC_DC_ANY;
+	m->dc.begun = false;
+	m->dc.wanted = false;
+	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	set_state(&m->dc, EC_DC_OFF);
+}
+
+/**
+ * ec_dc_wait() - wait until the clocks are set
+ * @s: slave that wants to use its clock, @lock held
+ *
+ * Context: Process. May sleep, at most 5 s.
+ * Return: 0; -ETIME when they were not set in time; -ENXIO when they could not
+ * be set; -ECANCELED.
+ */
+int ec_dc_wait(struct ec_slave *s)
+{
+	struct ec_dc *dc = &s->master->dc;
+	unsigned int i;
+
+	for (i = 0; i < 50; i++) {
+		if (wait_event_timeout(dc->wq, READ_ONCE(dc->state) != EC_DC_BUSY,
+				       msecs_to_jiffies(100)))
+			return READ_ONCE(dc->state) == EC_DC_READY ? 0 : -ENXIO;
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+	}
+	return -ETIME;
+}
+
+/**
+ * ec_dc_app_time() - the application tells its time
+ * @m: master
+ * @app_time: ns; any value, also one that has jumped
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_dc_app_time(struct ec_master *m, u64 app_time)
+{
+	struct ec_dc *dc = &m->dc;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	if (!dc->has_phase && app_time) {
+		dc->phase = app_time;
+		dc->has_phase = true;
+	}
+	dc->app_time = app_time;
+	dc->app_ktime = ktime_get_ns();
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+}
+
+/**
+ * ec_dc_now() - the application's time at this moment
+ * @m: master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns; without an application the time since 2000-01-01.
+ */
+u64 ec_dc_now(struct ec_master *m)
+{
+	struct ec_dc *dc = &m->dc;
+	unsigned long flags;
+	u64 t;
+
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	t = dc->has_phase ? dc->app_time + (ktime_get_ns() - dc->app_ktime) :
+	    ktime_get_real_ns() - 946684800ULL * NSEC_PER_SEC;
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	return t;
+}
+
+void ec_dc_init(struct ec_master *m)
+{
+	struct ec_dc *dc = &m->dc;
+
+	mutex_init(&dc->lock);
+	INIT_WORK(&dc->work, work);
+	init_waitqueue_head(&dc->wq);
+	raw_spin_lock_init(&dc->time_lock);
+}
+
+void ec_dc_exit(struct ec_master *m)
+{
+	stop(&m->dc);
+	if (m->dc.ref)
+		ec_slave_unref(m->dc.ref);
+	m->dc.ref = NULL;
+}

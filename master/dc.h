@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Distributed clocks: measuring delays, setting and checking the clocks. */
+#ifndef EC_DC_H
+#define EC_DC_H
+
+#include <linux/mutex.h>
+#include <linux/types.h>
+#include <linux/wait.h>
+#include <linux/workqueue.h>
+
+struct ec_config;
+struct ec_master;
+struct ec_slave;
+
+/* choice of the reference clock that is no station address */
+#define EC_DC_ANY	0	/* the first one, preferably with 64 bits */
+#define EC_DC_NOBODY	0xffff	/* the chosen slave is not there */
+
+enum ec_dc_state {
+	EC_DC_OFF,	/* no clocks, or not measured since the last scan */
+	EC_DC_BUSY,	/* clocks are being set */
+	EC_DC_READY,	/* set and compensated; SYNC may start */
+};
+
+/* a larger difference to the reference clock is reported */
+#define EC_DC_LIMIT_NS	1000
+
+/**
+ * struct ec_dc - distributed clocks of a master
+ * @lock: one measurement at a time
+ * @state: enum ec_dc_state
+ * @choice: station address of the wanted reference clock, or EC_DC_ANY...
+ * @ref: reference clock with a reference, or NULL, under master->topo
+ * @ref_station: its station address for the cycle, 0: none
+ * @ref_wide: it has 64 bits
+ * @begun: the session's clocks were begun to be set, under session_lock
+ * @wanted: the application sends clock datagrams
+ * @running: the clocks are set: the cycle may correct them
+ * @stop: @work shall end
+ * @boost: comparisons the cycle shall make beyond one per send
+ * @work: sets the clocks while a session is active
+ * @wq: woken when @state changes
+ * @phase: first application time of the session, ns; SYNC starts on its grid
+ * @has_phase: @phase is set
+ * @app_time: last application time, ns
+ * @app_ktime: when it was told (ktime), ns
+ * @time_lock: protects @phase to @app_ktime
+ */
+struct ec_dc {
+	struct mutex lock;
+	int state;
+	u16 choice;
+	struct ec_slave *ref;
+	u16 ref_station;
+	bool ref_wide;
+	bool begun;
+	bool wanted;
+	bool running;
+	bool stop;
+	u32 boost;
+	struct work_struct work;
+	wait_queue_head_t wq;
+	raw_spinlock_t time_lock;
+	u64 phase;
+	bool has_phase;
+	u64 app_time;
+	u64 app_ktime;
+};
+
+void ec_dc_init(struct ec_master *m);
+void ec_dc_exit(struct ec_master *m);
+int ec_dc_measure(struct ec_master *m);
+void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
+void ec_dc_end(struct ec_master *m);
+int ec_dc_wait(struct ec_slave *s);
+void ec_dc_app_time(struct ec_master *m, u64 app_time);
+u64 ec_dc_now(struct ec_master *m);
+
+/* dc_sync.c */
+int ec_dc_sync_stop(struct ec_slave *s);
+int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c);
+
+#endif

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Clocks, judged by the model's true time, not by what the slaves say of it. */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+/* Largest difference of a slave's system time to that of slave 0, ns. */
+static u64 worst(struct bus *b)
+{
+	u64 now = ktime_get_ns(), max = 0;
+	u32 i;
+
+	ec_sim_advance(b->sim, now);
+	for (i = 1; i < b->m->n_slaves; i++) {
+		s64 d = ec_esc_system_time(bus_esc(b, i), now) -
+			ec_esc_system_time(bus_esc(b, 0), now);
+
+		max = max_t(u64, max, abs(d));
+	}
+	return max;
+}
+
+/* every cycle the time of the reference goes to the slaves */
+static void sync_each(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static struct cyc *start(struct kunit *test, const char *text, u32 n)
+{
+	struct bus *b = bus_up(test, text, n);
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, n, 0);
+	c->each = sync_each;
+	return c;
+}
+
+/* how long a frame is on its way from slave 0 to slave @i */
+static s32 true_delay(struct bus *b, u32 i)
+{
+	const struct ec_sim_step *step = b->sim->route[0].step;
+
+	return step[i].pu_ns - step[0].pu_ns;
+}
+
+static void dc_delays_are_true(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", 22);
+	u32 i;
+
+	bus_idle(b);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	for (i = 0; i < 22; i++) {
+		const struct ec_slave *s = bus_slave(b, i);
+
+		if (ec_slave_features(s) & EC_FEAT_DC)
+			KUNIT_EXPECT_LE(test, abs((s32)s->dc_delay - true_delay(b, i)), 5);
+	}
+}
+
+/* until the clocks are set; bus time since activation, us */
+static u64 set(struct cyc *c)
+{
+	u64 t0 = ktime_get_ns();
+	u32 i;
+
+	cyc_activate(c);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->shared->status->dc_monitor, ~0u);
+	for (i = 0; i < 2000 && READ_ONCE(c->b->m->dc.state) != EC_DC_READY; i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_EQ(c->b->test, c->b->m->dc.state, (int)EC_DC_READY);
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+static void dc_clocks_agree(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=53\n"
+			      "slave a drive in=8 out=8 drift=100ppm cable=50 clock=5s\n"
+			      "slave b drive in=8 out=8 drift=-100ppm cable=20 clock=9s\n"
+			      "slave c drive in=8 out=8 drift=60ppm cable=100\n"
+			      "slave d drive in=8 out=8 drift=-33ppm cable=10 clock=77s\n", 4);
+	u64 max = 0;
+	u32 i;
+
+	set(c);
+	KUNIT_EXPECT_LT(test, worst(c->b), 100ull);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	for (i = 0; i < 300; i++) {
+		cyc_run(c, i < 150 ? 10 : 100);
+		max = max_t(u64, max, worst(c->b));
+	}
+	KUNIT_EXPECT_LT(test, c->b->m->session->shared->status->dc_monitor, 128u);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->shared->status->dc_time_valid, 1u);
+	/* the application's time, a cycle ago */
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+			5000000ll);
+	bus_figure("4 slaves, +-100 ppm: worst true difference in 16 s: %llu ns", max);
+	KUNIT_EXPECT_LT(test, max, 100ull);
+}
+
+/* a tree of 100 with clocks of all rates: figures of the third issue */
+static void dc_hundred(struct kunit *test)
+{
+	static char text[8192];
+	u32 i, n = 0, max = 0;
+	struct cyc *c;
+	u64 us;
+
+	n = scnprintf(text, sizeof(text), "segment seed=100\n");
+	for (i = 0; i < 100; i++) {
+		if (i == 30 || i == 60)
+			n += scnprintf(text + n, sizeof(text) - n, "branch c%u 2\n", i - 25);
+		if (i % 10 == 5)
+			n += scnprintf(text + n, sizeof(text) - n, "slave c%u EK1100 drift=50ppm\n", i);
+		n += scnprintf(text + n, sizeof(text) - n,
+			       "slave d%u drive in=8 out=8 drift=%dppm clock=%ums cable=%u\n",
+			       i, (int)(i * 77 % 201) - 100, i * 313, 20 + i * 7 % 90);
+	}
+	c = start(test, text, 110);
+	us = set(c);
+	bus_figure("clocks of 100 slaves, +-100 ppm, tree: set %llu us after activation, worst true difference %llu ns",
+		   us, worst(c->b));
+	for (i = 0; i < 300; i++) {
+		cyc_run(c, 100);
+		max = max_t(u32, max, worst(c->b));
+	}
+	bus_figure("worst true difference in the 30 s after that: %u ns", max);
+	KUNIT_EXPECT_LT(test, max, 100u);
+}
+
+/* SYNC0 of two slaves has the phase that was asked for, at every start. */
+static void dc_sync0_phase(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8 drift=100ppm cable=50\n"
+			       "slave b drive in=8 out=8 drift=-80ppm clock=9s cable=200\n", 2);
+	u32 i, k, start;
+
+	bus_idle(b);
+	for (start = 0; start < 5; start++) {
+		struct cyc *c = cyc_new(b, 1000);
+		struct ec_ioc_sc_dc dc = {
+			.assign_activate = 0x0300, .cycle0 = 1000000,
+		};
+		u64 phase;
+
+		cyc_domain(c);
+		cyc_map_all(c, 0, 2, 0);
+		c->each = sync_each;
+		for (i = 0; i < 2; i++) {
+			dc.config = i;
+			dc.shift0 = 250000 * i;
+			KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+		}
+		cyc_activate(c);
+		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+		phase = b->m->dc.phase;
+		for (k = 0; k < 2; k++) {
+			const u8 *mem = bus_esc(b, k)->mem;
+			u64 t = get_unaligned_le64(mem + EC_REG_DC_START) - phase;
+
+			KUNIT_EXPECT_EQ(test, mem[EC_REG_DC_ACTIVATION], 3);
+			KUNIT_EXPECT_EQ(test, do_div(t, 1000000), 250000 * k);
+		}
+		KUNIT_EXPECT_LT(test, worst(b), 100ull);
+		cyc_release(c);
+		bus_idle(b);
+	}
+}
+
+/* A chosen reference clock behind others: all follow it. */
+static void dc_chosen_reference(struct kunit *test)
+{
+	struct cyc *c = start(test, "slave a drive in=8 out=8 drift=20ppm\n"
+			      "slave b drive in=8 out=8 drift=-30ppm clock=3s\n"
+			      "slave c drive in=8 out=8 drift=50ppm\n", 3);
+	struct ec_ioc_ref_clock ref = { .config = 1 };
+	u32 i;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&c->b->app, &ref), 0);
+	set(c);
+	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 1));
+	for (i = 0; i < 20; i++) {
+		s64 d;
+
+		cyc_run(c, 200);
+		d = ec_esc_system_time(bus_esc(c->b, 2), c->next) -
+		    ec_esc_system_time(bus_esc(c->b, 1), c->next);
+		KUNIT_EXPECT_LT(test, abs(d), 100ll);
+	}
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(dc_delays_are_true),
+	KUNIT_CASE(dc_clocks_agree),
+	KUNIT_CASE(dc_hundred),
+	KUNIT_CASE(dc_sync0_phase),
+	KUNIT_CASE(dc_chosen_reference),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_dc", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
