@@ -60,6 +60,7 @@ const struct cmd cmds[] = {
 	CMD(APP_TIME, APP, RSV1(ec_ioc_app_time)),
 	CMD(RECEIVE, APP, .cyclic = true),
 	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_APP_TIME),
+	CMD(REF_CLOCK, APP),
 };
 
 const unsigned int n_cmds = sizeof(cmds) / sizeof(cmds[0]);
