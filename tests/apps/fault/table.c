@@ -59,7 +59,7 @@ const struct cmd cmds[] = {
 	CMD(INTERVAL, APP),
 	CMD(APP_TIME, APP, RSV1(ec_ioc_app_time)),
 	CMD(RECEIVE, APP, .cyclic = true),
-	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_APP_TIME),
+	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_ALL),
 	CMD(REF_CLOCK, APP),
 };
 
