@@ -29,7 +29,7 @@ teardown_file() { stop; }
 		.slaves_responding == 22 and .scan_busy == false and .scans >= 1 and
 		.devices[0].attached and .devices[0].link_up and .devices[0].interface == "sim0" and
 		.common.lost_frames == 0 and .common.tx_frames > 0 and
-		.common.rx_frames <= .common.tx_frames and .dc.reference_clock == null)' master
+		.common.rx_frames <= .common.tx_frames and .dc.reference_clock == 0)' master
 }
 
 @test "slaves" {
