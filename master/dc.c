@@ -22,6 +22,7 @@ struct job {
 	u8 (*regs)[REGS];
 	s64 *sum;
 	struct ec_dg *dg;
+	u16 followed;		/* station address of the clock the others follow, or 0 */
 	unsigned int ref;	/* index, n: none */
 	u64 latch_ns;		/* when the last latch was sent */
 };
@@ -62,11 +63,18 @@ static void fill_node(struct job *j, unsigned int i)
 	}
 }
 
-/* The chosen reference clock, else the first 64-bit one, else the first. */
+/*
+ * The chosen reference clock; else the one the others follow already, so that
+ * a slave that comes in front of it changes nothing; else the first 64-bit one,
+ * else the first.
+ */
 static void choose(struct job *j)
 {
 	u16 choice = READ_ONCE(j->m->dc.choice);
 	unsigned int i;
+
+	if (choice == EC_DC_ANY)
+		choice = j->followed;
 
 	j->ref = j->n;
 	for (i = 0; i < j->n; i++) {
@@ -95,6 +103,8 @@ static int job_init(struct job *j, struct ec_master *m)
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
 		j->slaves[i] = ec_slave_ref(m->slaves[i]);
+	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->gone)
+		j->followed = m->dc.ref->station;
 	up_read(&m->topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	j->regs = kvcalloc(j->n + 1, sizeof(*j->regs), GFP_KERNEL);
@@ -236,16 +246,17 @@ static int write_clocks(struct job *j)
 	for (i = 0; i < j->n; i++) {
 		struct ec_slave *s = j->slaves[i];
 
+		/* counted from the reference, which may be another one now */
+		put_unaligned_le32(s->dc_delay, v[i] + 8);
 		if (!chosen(j, i, NEW))
 			continue;
 		s->dc_offset = ec_dc_offset(t, s->dc_delay,
 					    get_unaligned_le64(j->regs[i] + 0x18));
 		put_unaligned_le64(s->dc_offset, v[i]);
-		put_unaligned_le32(s->dc_delay, v[i] + 8);
 	}
 	ret = all(j, NEW_WIDE, EC_CMD_FPWR, EC_REG_DC_OFFSET, 8, v[0], sizeof(v[0])) ?:
 	      all(j, NEW_NARROW, EC_CMD_FPWR, EC_REG_DC_OFFSET, 4, v[0], sizeof(v[0])) ?:
-	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_DELAY, 4, v[0] + 8, sizeof(v[0])) ?:
+	      all(j, ANY, EC_CMD_FPWR, EC_REG_DC_DELAY, 4, v[0] + 8, sizeof(v[0])) ?:
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0) ?:
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
 	for (i = 0; i < j->n && !ret; i++)
@@ -274,6 +285,7 @@ static int compensate(struct job *j, const struct stage *st)
 {
 	static u8 pad[EC_DGRAM_DATA_MAX];
 	struct ec_dc *dc = &j->m->dc;
+	u16 bytes = READ_ONCE(dc->ref_wide) ? 8 : 4;
 	unsigned int i, k, n, done;
 	u8 t[8];
 	int ret = 0;
@@ -292,7 +304,7 @@ static int compensate(struct job *j, const struct stage *st)
 		for (i = 0; i < st->batch; i++) {
 			for (k = 0; k < st->syncs; k++)
 				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref,
-								 EC_REG_DC_SYSTIME, 8, t);
+								 EC_REG_DC_SYSTIME, bytes, t);
 			if (st->pad)
 				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, st->pad, pad);
 		}
