@@ -66,6 +66,10 @@
 #define EC_HAVE_REG_BY_POS
 /* ecrt_master_sync_reference_clock_to() */
 #define EC_HAVE_SYNC_TO
+/* ecrt_slave_config_emerg_*() */
+#define EC_HAVE_EMERGENCY
+/* ecrt_slave_config_create_reg_request() and its requests */
+#define EC_HAVE_REG_ACCESS
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
 /* ecrt_master_scan_progress() */
@@ -967,6 +971,81 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 		uint16_t index, const uint8_t *data, size_t size);
 
 /**
+ * ecrt_slave_config_emerg_size() - how many emergencies to keep
+ * @sc: slave configuration
+ * @elements: messages, at most 1024; at first 0: all are counted as lost
+ *
+ * With more than 0 the master looks about every 10 ms whether the slave has
+ * sent one (CoE emergency, ETG.1000.6 clause 5.6.4).
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: 0; %-ENOMEM; %-EPERM not reserved; %-EBUSY active; %-EINVAL @sc is
+ * NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_emerg_size(ec_slave_config_t *sc,
+		size_t elements);
+
+/**
+ * ecrt_slave_config_emerg_pop() - take the oldest emergency
+ * @sc: slave configuration
+ * @target: out: %EC_COE_EMERGENCY_MSG_SIZE bytes: error code (little-endian),
+ *	error register, 5 bytes of data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-ENOENT none, or not active; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc,
+		uint8_t *target);
+
+/**
+ * ecrt_slave_config_emerg_clear() - forget all emergencies and lost ones
+ * @sc: slave configuration
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EINVAL @sc is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_emerg_clear(ec_slave_config_t *sc);
+
+/**
+ * ecrt_slave_config_emerg_overruns() - emergencies lost for want of room
+ * @sc: slave configuration
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: number since activation or the last clear; %-EINVAL @sc is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_emerg_overruns(
+		const ec_slave_config_t *sc);
+
+/**
+ * ecrt_slave_config_create_sdo_request() - read and write an object in OP
+ * @sc: slave configuration
+ * @index: object
+ * @subindex: subindex
+ * @size: room for its data, bytes, at most 65536; set to 0
+ *
+ * It lives as long as @sc.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
+		ec_slave_config_t *sc, uint16_t index, uint8_t subindex,
+		size_t size);
+
+/**
+ * ecrt_slave_config_create_reg_request() - read and write registers in OP
+ * @sc: slave configuration
+ * @size: room for data, bytes, at most 1024; set to 0
+ *
+ * It lives as long as @sc.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_reg_request_t *ecrt_slave_config_create_reg_request(
+		ec_slave_config_t *sc, size_t size);
+
+/**
  * ecrt_slave_config_state() - state of a configured slave
  * @sc: slave configuration
  * @state: out; all 0 while no slave is attached
@@ -1130,6 +1209,135 @@ EC_PUBLIC_API void ecrt_write_real(void *data, float value);
  */
 EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
 #endif
+
+/* requests ------------------------------------------------------------------*/
+
+/**
+ * ecrt_sdo_request_index() - another object
+ * @req: request that is not BUSY
+ * @index: object
+ * @subindex: subindex
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
+		uint16_t index, uint8_t subindex);
+
+/**
+ * ecrt_sdo_request_timeout() - how long a start may wait
+ * @req: request
+ * @timeout: ms from the send that hands the start over until the transfer
+ *	begins; then the state is ERROR. 0, at first: unlimited
+ *
+ * A request waits while the slave is absent, on its way through INIT, or busy
+ * with another request. The transfer has limits of its own: 1 s per message.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_timeout(ec_sdo_request_t *req,
+		uint32_t timeout);
+
+/**
+ * ecrt_sdo_request_data() - buffer of a request
+ * @req: request
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: address, always the same; NULL when @req is.
+ */
+EC_PUBLIC_API uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req);
+
+/**
+ * ecrt_sdo_request_data_size() - bytes in the buffer
+ * @req: request
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: size it was created with; after a successful read, bytes read. So
+ * many will be written.
+ */
+EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
+
+/**
+ * ecrt_sdo_request_state() - how far a request is
+ * @req: request
+ *
+ * Data and size of a finished read are there when this has returned SUCCESS.
+ * An object that is larger than the buffer gives ERROR.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
+
+/**
+ * ecrt_sdo_request_write() - start a download of the buffer
+ * @req: request that is not BUSY, of an active master
+ *
+ * The buffer is copied; the next ecrt_master_send() hands the start over.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
+
+/**
+ * ecrt_sdo_request_read() - start an upload
+ * @req: request that is not BUSY, of an active master
+ *
+ * The next ecrt_master_send() hands the start over.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
+
+/**
+ * ecrt_reg_request_data() - buffer of a request
+ * @req: request
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: address, always the same; NULL when @req is.
+ */
+EC_PUBLIC_API uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req);
+
+/**
+ * ecrt_reg_request_state() - how far a request is
+ * @req: request
+ *
+ * The data of a finished read are there when this has returned SUCCESS. A
+ * slave that could not be configured gives ERROR; an absent one is waited for.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
+		const ec_reg_request_t *req);
+
+/**
+ * ecrt_reg_request_write() - start writing the buffer to registers
+ * @req: request that is not BUSY, of an active master
+ * @address: register
+ * @size: bytes
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0,
+ * not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
+		uint16_t address, size_t size);
+
+/**
+ * ecrt_reg_request_read() - start reading registers
+ * @req: request that is not BUSY, of an active master
+ * @address: register
+ * @size: bytes
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: as ecrt_reg_request_write().
+ */
+EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
+		uint16_t address, size_t size);
 
 #ifdef __cplusplus
 }

@@ -33,7 +33,11 @@ struct ec_master {
 	size_t status_size;
 	__u8 *image;
 	size_t image_size;
+	struct ec_request_area *area;
+	__u8 *area_base;	/* the same as bytes */
+	size_t area_size;
 
+	struct ec_request *requests;
 	struct ec_domain *domains;
 	struct ec_slave_config *configs;
 };
@@ -48,12 +52,35 @@ struct ec_domain {
 	struct ec_status_domain snap;
 };
 
+/*
+ * @room: bytes at @data, @size: of them used; @start: number of the last start;
+ * @rec, @shared: record and data in mapped memory, NULL before activation
+ */
+struct ec_request {
+	struct ec_master *master;
+	struct ec_request *next;
+	unsigned int index;
+	__u8 *data;
+	size_t room;
+	size_t size;
+	__u32 timeout_ms;
+	__u16 sdo_index;
+	__u8 subindex;
+	bool write;
+	__u32 start;
+	ec_request_state_t state;
+	struct ec_request_record *rec;
+	__u8 *shared;
+};
+
+/* @overruns: of its emergencies, when they were cleared */
 struct ec_slave_config {
 	struct ec_master *master;
 	struct ec_slave_config *next;
 	unsigned int index;
 	__u16 alias;
 	__u16 position;
+	__u32 overruns;
 };
 
 /* status fields are written by the kernel at any time: one load each */
@@ -67,5 +94,7 @@ int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
 
 void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
+int ec_requests_place(struct ec_master *m);
+void ec_requests_free(struct ec_master *m);
 
 #endif

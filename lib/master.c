@@ -13,6 +13,7 @@ void ec_master_free_session(struct ec_master *m)
 	struct ec_slave_config *sc;
 	struct ec_domain *d;
 
+	ec_requests_free(m);
 	while ((d = m->domains)) {
 		m->domains = d->next;
 		free(d);
@@ -150,13 +151,33 @@ void ec_master_unmap(struct ec_master *m)
 		munmap(m->image, m->image_size);
 	if (m->status)
 		munmap((void *)m->status, m->status_size);
+	if (m->area)
+		munmap(m->area, m->area_size);
 	m->image = NULL;
 	m->status = NULL;
+	m->area = NULL;
+	m->area_base = NULL;
 	m->active = false;
+	ec_requests_place(m);
+}
+
+static int map_requests(struct ec_master *m, size_t size)
+{
+	if (!size)
+		return 0;
+	m->area_size = size;
+	m->area = map(m, size, PROT_READ | PROT_WRITE, EC_MMAP_REQUESTS);
+	if (!m->area)
+		return -errno;
+	m->area_base = (__u8 *)m->area;
+	return m->area->magic == EC_REQUEST_MAGIC ? ec_requests_place(m) :
+						    -EPROTO;
 }
 
 static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 {
+	int ret;
+
 	if (arg->status_size < offsetof(struct ec_status, configs))
 		return -EPROTO;
 	m->status_size = arg->status_size;
@@ -165,6 +186,9 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 		return -errno;
 	if (m->status->magic != EC_STATUS_MAGIC)
 		return -EPROTO;
+	ret = map_requests(m, arg->request_size);
+	if (ret)
+		return ret;
 	m->image_size = arg->image_size;
 	if (!arg->image_size)
 		return 0;

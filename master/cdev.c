@@ -71,6 +71,10 @@ static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
 		ret = remap_vmalloc_range(vma, sh->status, 0);
 		if (!ret)
 			ec_vma_flags(vma, 0, VM_MAYWRITE);
+	} else if (offset == EC_MMAP_REQUESTS) {
+		if (!sh->requests || len > sh->request_size)
+			return -EINVAL;
+		ret = remap_vmalloc_range(vma, sh->requests, 0);
 	} else {
 		return -EINVAL;
 	}

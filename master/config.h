@@ -89,6 +89,7 @@ struct ec_config_flag {
  * @dc_cycle: SYNC0, SYNC1 cycle, ns
  * @dc_shift: SYNC0, SYNC1 shift, ns
  * @timeout_ms: of AL transitions, by from and to state, 0: default
+ * @emergencies: how many to keep
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -112,6 +113,7 @@ struct ec_config {
 	u32 dc_cycle[2];
 	s32 dc_shift[2];
 	u32 timeout_ms[9][9];
+	u32 emergencies;
 	struct ec_slave *slave;
 };
 

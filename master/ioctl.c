@@ -75,12 +75,14 @@ static const struct ec_ioctl table[] = {
 	    RSV(ec_ioc_sc_dc, reserved), RSV(ec_ioc_sc_dc, reserved2)),
 	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, RSV(ec_ioc_sc_flag, reserved)),
 	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, RSV(ec_ioc_sc_timeout, reserved)),
-	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, RSV(ec_ioc_activate, reserved)),
+	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE),
 	IOC(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE),
 	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE),
 	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE),
 	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV(ec_ioc_app_time, reserved)),
 	IOC(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE),
+	IOC(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, RSV(ec_ioc_sc_request, reserved)),
+	IOC(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, RSV(ec_ioc_sc_emerg, reserved)),
 };
 
 /**

@@ -6,6 +6,7 @@
 #include "domain.h"
 #include "ioctl.h"
 #include "master.h"
+#include "request.h"
 #include "session.h"
 #include "slave.h"
 
@@ -57,8 +58,16 @@ static int done(struct ec_file *f, int ret)
 	return ret;
 }
 
-/* Locks the session and finds a configuration in it. */
-static struct ec_config *lock_config(struct ec_file *f, u32 index, int *ret)
+/**
+ * ec_ioc_lock_config() - lock the session and find a configuration in it
+ * @f: open file
+ * @index: of the configuration
+ * @ret: why there is none
+ *
+ * Context: Process. May sleep. session_lock is held when one is returned.
+ * Return: configuration, of a session that is not active; or NULL.
+ */
+struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret)
 {
 	struct ec_session *s = lock_idle(f, ret);
 
@@ -118,7 +127,7 @@ int ec_ioc_sc_sync(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_sync *i = arg;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->config, &ret);
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
 	if (!c)
 		return ret;
@@ -133,7 +142,7 @@ int ec_ioc_sc_watchdog(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_watchdog *i = arg;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->config, &ret);
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
 	if (!c)
 		return ret;
@@ -147,7 +156,7 @@ int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 	struct ec_ioc_sc_pdo *i = arg;
 	struct ec_pdo_entry e = { .index = i->entry_index, .sub = i->subindex, .bits = i->bits };
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->config, &ret);
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
 	if (!c)
 		return ret;
@@ -186,7 +195,7 @@ int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
 	data = vmemdup_user(u64_to_user_ptr(i->data), i->size);
 	if (IS_ERR(data))
 		return PTR_ERR(data);
-	c = lock_config(f, i->config, &ret);
+	c = ec_ioc_lock_config(f, i->config, &ret);
 	if (c)
 		ret = done(f, ec_config_sdo_add(c, i->index, i->subindex,
 						i->flags & EC_SDO_FLAG_COMPLETE, data, i->size));
@@ -199,7 +208,7 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 	struct ec_ioc_reg_entry *i = arg;
 	struct ec_session *s;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->config, &ret);
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
 	if (!c)
 		return ret;
@@ -231,7 +240,7 @@ int ec_ioc_sc_dc(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_dc *i = arg;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->config, &ret);
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
 	if (!c)
 		return ret;
@@ -253,7 +262,7 @@ int ec_ioc_sc_flag(struct ec_file *f, void *arg)
 	i->key[sizeof(i->key) - 1] = '\0';
 	if (!i->key[0])
 		return ec_refuse(f, -EINVAL, "the name of the flag is empty");
-	c = lock_config(f, i->config, &ret);
+	c = ec_ioc_lock_config(f, i->config, &ret);
 	if (!c)
 		return ret;
 	ret = ec_config_flag_set(c, i->key, i->value);
@@ -275,7 +284,7 @@ int ec_ioc_sc_timeout(struct ec_file *f, void *arg)
 	    i->to == EC_AL_BOOT)
 		return ec_refuse(f, -EINVAL, "AL states are 1, 2, 4, 8, not %u and %u", i->from,
 				 i->to);
-	c = lock_config(f, i->config, &ret);
+	c = ec_ioc_lock_config(f, i->config, &ret);
 	if (!c)
 		return ret;
 	c->timeout_ms[i->from][i->to] = i->timeout_ms;
@@ -315,6 +324,7 @@ int ec_ioc_activate(struct ec_file *f, void *arg)
 		return done(f, activate_failed(f, s, ret));
 	i->image_size = s->shared->image_size;
 	i->status_size = EC_STATUS_BYTES;
+	i->request_size = s->shared->request_size;
 	return done(f, 0);
 }
 
@@ -432,6 +442,8 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 		return -EPERM;
 	if (arg->flags & EC_SEND_FLAG_APP_TIME)
 		ec_dc_app_time(f->master, arg->app_time);
+	if (arg->flags & EC_SEND_FLAG_REQUESTS && s->requests)
+		ec_requests_kick(s->requests);
 	if (s->n_domains < 64 && arg->queued >> s->n_domains)
 		ret = -ENOENT;
 	else

@@ -2,6 +2,7 @@
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
+#include "emerg.h"
 #include "mailbox.h"
 #include "master.h"
 #include "slave.h"
@@ -138,10 +139,25 @@ static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_h
 	return h->len;
 }
 
+static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+{
+	struct ec_coe_emergency e;
+
+	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
+		return false;
+	if (printk_ratelimit())
+		ec_slave_warn(slave, "emergency 0x%04x, error register 0x%02x\n",
+			      e.code, e.reg);
+	ec_emerg_push(slave, rx + EC_COE_HDR);
+	return true;
+}
+
 /**
- * ec_mbox_drain() - throw away what an earlier exchange has left
+ * ec_mbox_drain() - empty the mailbox of what nobody waits for
  * @slave: slave with mailbox, @mbox_lock held
  * @b: buffers
+ *
+ * Emergencies are kept, what an earlier exchange has left is thrown away.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0 or as ec_xfer().
@@ -156,20 +172,10 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 		ret = fetch(slave, b, &h);
 		if (ret < 0 && ret != -EBADMSG && ret != -EMSGSIZE)
 			return ret;
+		if (ret > 0)
+			emergency(slave, &h, b->rx);
 	}
 	return 0;
-}
-
-static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
-{
-	struct ec_coe_emergency e;
-
-	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
-		return false;
-	if (printk_ratelimit())
-		ec_slave_warn(slave, "emergency 0x%04x, error register 0x%02x\n",
-			      e.code, e.reg);
-	return true;
 }
 
 /**

@@ -3,7 +3,9 @@
 #include <linux/vmalloc.h>
 #include "config.h"
 #include "domain.h"
+#include "emerg.h"
 #include "master.h"
+#include "request.h"
 #include "session.h"
 #include "slave.h"
 
@@ -13,6 +15,7 @@ static void shared_release(struct kref *kref)
 
 	vfree(sh->image);
 	vfree(sh->status);
+	vfree(sh->requests);
 	kfree(sh);
 }
 
@@ -26,7 +29,7 @@ void ec_shared_put(struct ec_shared *sh)
 	kref_put(&sh->kref, shared_release);
 }
 
-static struct ec_shared *shared_alloc(size_t image_size)
+static struct ec_shared *shared_alloc(size_t image_size, size_t request_size)
 {
 	struct ec_shared *sh = kzalloc(sizeof(*sh), GFP_KERNEL);
 
@@ -36,7 +39,9 @@ static struct ec_shared *shared_alloc(size_t image_size)
 	sh->image_size = PAGE_ALIGN(image_size);
 	sh->image = image_size ? vmalloc_user(sh->image_size) : NULL;
 	sh->status = vmalloc_user(EC_STATUS_BYTES);
-	if ((image_size && !sh->image) || !sh->status) {
+	sh->request_size = PAGE_ALIGN(request_size);
+	sh->requests = request_size ? vmalloc_user(sh->request_size) : NULL;
+	if ((image_size && !sh->image) || (request_size && !sh->requests) || !sh->status) {
 		ec_shared_put(sh);
 		return NULL;
 	}
@@ -96,6 +101,7 @@ static void detach(struct ec_config *c)
 	if (!slave)
 		return;
 	c->slave = NULL;
+	ec_emerg_set(slave, NULL);
 	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
@@ -119,6 +125,10 @@ static void clear(struct ec_session *s)
 		ec_config_free(s->configs[i]);
 	}
 	kfree(s->configs);
+	kvfree(s->specs);
+	s->specs = NULL;
+	s->n_specs = 0;
+	s->request_bytes = 0;
 	s->configs = NULL;
 	s->n_configs = 0;
 	for (i = 0; i < s->n_domains; i++)
@@ -148,6 +158,7 @@ int ec_session_deactivate(struct ec_session *s)
 	s->active = false;
 	s->stall_log.open = false;
 	clear(s);
+	ec_requests_end(s);
 	ec_cycle_free(m, &s->cycle);
 	sh = s->shared;
 	s->shared = NULL;
@@ -240,6 +251,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	slave->reconfigure = true;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
+	ec_emerg_set(slave, ec_requests_emerg(s, c->index));
 	ec_slave_request(slave, s->active ? EC_AL_OP : slave->requested);
 }
 
@@ -325,11 +337,14 @@ int ec_session_activate(struct ec_session *s)
 	}
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	s->shared = shared_alloc(offset);
+	s->shared = shared_alloc(offset, ec_requests_bytes(s));
 	if (!s->shared)
 		return -ENOMEM;
-	ret = ec_cycle_layout(s);
+	ret = ec_requests_begin(s);
+	if (!ret)
+		ret = ec_cycle_layout(s);
 	if (ret) {
+		ec_requests_end(s);
 		ec_shared_put(s->shared);
 		s->shared = NULL;
 		return ret;
@@ -351,6 +366,8 @@ int ec_session_activate(struct ec_session *s)
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_OP);
+	if (s->requests)
+		ec_requests_kick(s->requests);
 	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
 		s->n_domains, offset, s->cycle.n_dgrams);
 	return 0;

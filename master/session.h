@@ -13,6 +13,8 @@
 struct ec_config;
 struct ec_domain;
 struct ec_master;
+struct ec_request_spec;
+struct ec_requests;
 
 /**
  * struct ec_shared - memory mapped by the application; outlives the session
@@ -21,12 +23,16 @@ struct ec_master;
  * @image: process image of all domains
  * @image_size: bytes, multiple of the page size
  * @status: status pages
+ * @requests: struct ec_request_area and what it names, or NULL
+ * @request_size: bytes, likewise
  */
 struct ec_shared {
 	struct kref kref;
 	u8 *image;
 	size_t image_size;
 	struct ec_status *status;
+	u8 *requests;
+	size_t request_size;
 };
 
 #define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
@@ -58,6 +64,10 @@ struct ec_stall_log {
  * @n_domains: entries in @domains
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
+ * @specs: requests to be made by activation
+ * @n_specs: entries in @specs
+ * @request_bytes: room for their data and for emergencies
+ * @requests: what works on them while @active, or NULL
  * @active: activated
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
@@ -71,6 +81,10 @@ struct ec_session {
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	unsigned int n_domains;
 	u32 ref_config;
+	struct ec_request_spec *specs;
+	unsigned int n_specs;
+	size_t request_bytes;
+	struct ec_requests *requests;
 	bool active;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;

@@ -25,6 +25,7 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	INIT_WORK(&s->work, ec_apply_work);
 	mutex_init(&s->lock);
 	mutex_init(&s->mbox_lock);
+	spin_lock_init(&s->emerg_lock);
 	for (p = 0; p < EC_MAX_PORT; p++)
 		s->next[p] = EC_UAPI_NONE16;
 	return s;

@@ -13,6 +13,7 @@
 #include "wire/sii.h"
 
 struct ec_config;
+struct ec_emerg;
 struct ec_master;
 
 /**
@@ -70,6 +71,8 @@ struct ec_master;
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
+ * @emerg_lock: protects @emerg and what it points to
+ * @emerg: where its emergencies go, NULL: only to the log
  */
 struct ec_slave {
 	struct kref kref;
@@ -122,6 +125,8 @@ struct ec_slave {
 	bool ours;
 	struct mutex mbox_lock;
 	u8 mbox_counter;
+	spinlock_t emerg_lock;
+	struct ec_emerg *emerg;
 };
 
 #define ec_slave_log(level, s, fmt, ...) \

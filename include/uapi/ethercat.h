@@ -465,19 +465,41 @@ struct ec_ioc_sc_timeout {
 	__u32 timeout_ms;
 };
 
+/* kind of struct ec_ioc_sc_request */
+#define EC_REQUEST_SDO		0
+#define EC_REQUEST_REG		1
+
+struct ec_ioc_sc_request {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u32 kind;		/* in */
+	__u32 size;		/* in: room for data, bytes */
+	__u32 index;		/* out: in the session */
+	__u32 reserved;
+};
+
+struct ec_ioc_sc_emerg {
+	__u32 flags;
+	__u32 config;
+	__u32 count;		/* emergencies to keep */
+	__u32 reserved;
+};
+
 /*
  * Activation lays out the memory to map from the device file:
- *   EC_MMAP_IMAGE   process image of all domains, read-write
- *   EC_MMAP_STATUS  struct ec_status, read-only
+ *   EC_MMAP_IMAGE     process image of all domains, read-write
+ *   EC_MMAP_STATUS    struct ec_status, read-only
+ *   EC_MMAP_REQUESTS  struct ec_request_area, read-write
  */
 #define EC_MMAP_IMAGE		0x00000000ULL
 #define EC_MMAP_STATUS		0x40000000ULL
+#define EC_MMAP_REQUESTS	0x60000000ULL
 
 struct ec_ioc_activate {
 	__u32 flags;
 	__u32 image_size;	/* out, bytes, multiple of the page size */
 	__u32 status_size;	/* out, same */
-	__u32 reserved;
+	__u32 request_size;	/* out, same; 0: neither requests nor emergencies */
 };
 
 struct ec_ioc_domain_offset {
@@ -491,7 +513,8 @@ struct ec_ioc_domain_offset {
 #define EC_SEND_FLAG_SYNC_REF	2	/* write @sync_time to the reference clock */
 #define EC_SEND_FLAG_SYNC_SLAVES 4	/* reference clock's time to the slaves */
 #define EC_SEND_FLAG_MONITOR	8	/* read the differences of all slaves */
-#define EC_SEND_FLAG_ALL	15
+#define EC_SEND_FLAG_REQUESTS	16	/* a request was started */
+#define EC_SEND_FLAG_ALL	31
 
 /* argument of EC_IOC_SEND; @queued: bit n queues domain n */
 struct ec_ioc_send {
@@ -517,6 +540,51 @@ struct ec_ioc_app_time {
 struct ec_ioc_ref_clock {
 	__u32 flags;
 	__u32 config;		/* EC_UAPI_NONE32: the first that can be */
+};
+
+/*
+ * One request. The application fills in what to do, then changes @start and
+ * sets EC_SEND_FLAG_REQUESTS in the next send. The kernel fills in the result,
+ * then @done. The data lie at @data in the area: until then the kernel's.
+ */
+struct ec_request_record {
+	/* application */
+	__u32 start;		/* any other number than before, not 0 */
+	__u32 size;		/* bytes to write; registers: to read, too */
+	__u32 timeout_ms;	/* to begin with it; 0: unlimited */
+	__u16 index;		/* object; or register address */
+	__u8 subindex;
+	__u8 write;		/* 0: read */
+	/* kernel */
+	__u32 done;		/* @start of the last one that has ended */
+	__s32 result;		/* 0 or -errno */
+	__u32 got;		/* bytes read */
+	__u32 abort_code;
+	__u32 data;		/* offset in the area */
+	__u32 reserved;
+};
+
+/* Emergencies of one configuration; both counters wrap. */
+struct ec_emerg_ring {
+	__u32 tail;		/* taken so far; application */
+	__u32 head;		/* put in so far; kernel */
+	__u32 overruns;		/* lost so far; kernel */
+	__u32 count;		/* entries */
+	__u32 data;		/* offset in the area of @count times 8 bytes */
+	__u32 reserved;
+};
+
+#define EC_REQUEST_MAGIC	0x45435251	/* "ECRQ" */
+#define EC_EMERG_BYTES		8	/* code, register, data, as in the message */
+
+/* what lies at EC_MMAP_REQUESTS; offsets from its begin */
+struct ec_request_area {
+	__u32 magic;
+	__u32 request_count;
+	__u32 requests;		/* offset of struct ec_request_record, by index */
+	__u32 ring_count;	/* one per configuration */
+	__u32 rings;		/* offset of struct ec_emerg_ring, by configuration */
+	__u32 reserved[3];
 };
 
 #define EC_STATUS_MAGIC		0x45435354	/* "ECST" */
@@ -615,5 +683,7 @@ struct ec_status {
 #define EC_IOC_RECEIVE		EC_IOC_N(0x51)
 #define EC_IOC_SEND		EC_IOC_W(0x52, struct ec_ioc_send)
 #define EC_IOC_REF_CLOCK	EC_IOC_W(0x53, struct ec_ioc_ref_clock)
+#define EC_IOC_SC_REQUEST	EC_IOC_RW(0x54, struct ec_ioc_sc_request)
+#define EC_IOC_SC_EMERG		EC_IOC_W(0x55, struct ec_ioc_sc_emerg)
 
 #endif

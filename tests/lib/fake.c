@@ -45,6 +45,27 @@ int __wrap_close(int fd)
 	return 0;
 }
 
+/* 8 requests, 8 configurations, data at 2048 */
+static void lay_out(unsigned char *p)
+{
+	struct ec_request_area *area = (void *)p;
+	struct ec_emerg_ring *ring;
+	unsigned int i;
+
+	area->magic = EC_REQUEST_MAGIC;
+	area->request_count = 8;
+	area->requests = sizeof(*area);
+	area->ring_count = 8;
+	area->rings = area->requests + 8 * sizeof(struct ec_request_record);
+	for (i = 0; i < 8; i++) {
+		fake_request(p, i)->data = 2048 + 64 * i;
+		ring = (struct ec_emerg_ring *)(p + area->rings) + i;
+		ring->count = 2;
+		ring->data = 3072 + 16 * i;
+	}
+	fake.area = p;
+}
+
 void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		  off_t offset)
 {
@@ -57,6 +78,8 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 	if ((unsigned long long)offset == EC_MMAP_STATUS) {
 		fake.status = p;
 		fake.status->magic = EC_STATUS_MAGIC;
+	} else if ((unsigned long long)offset == EC_MMAP_REQUESTS) {
+		lay_out(p);
 	} else {
 		fake.image = p;
 	}
@@ -168,6 +191,9 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SC_PDO:
 		pdo_op(arg);
 		break;
+	case EC_IOC_SC_REQUEST:
+		((struct ec_ioc_sc_request *)arg)->index = fake.requests++;
+		break;
 	case EC_IOC_REG_ENTRY:
 		reg_entry(arg);
 		break;
@@ -177,6 +203,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_ACTIVATE:
 		((struct ec_ioc_activate *)arg)->image_size = fake.image_size;
 		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
+		((struct ec_ioc_activate *)arg)->request_size = PAGE;
 		break;
 	case EC_IOC_DOMAIN_OFFSET:
 		((struct ec_ioc_domain_offset *)arg)->offset =
@@ -188,6 +215,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		break;
 	case EC_IOC_SEND:
 		fake.sent = ((struct ec_ioc_send *)arg)->queued;
+		fake.send_flags = ((struct ec_ioc_send *)arg)->flags;
 		break;
 	}
 	return 0;

@@ -30,8 +30,18 @@ struct fake {
 	unsigned int n_pdo_ops;
 	unsigned char *image;
 	struct ec_status *status;
+	unsigned char *area;
+	unsigned int requests;
+	unsigned int send_flags;
 };
 
 extern struct fake fake;
+
+static inline struct ec_request_record *fake_request(unsigned char *area,
+						     unsigned int i)
+{
+	return (struct ec_request_record *)(area +
+					    sizeof(struct ec_request_area)) + i;
+}
 
 #endif

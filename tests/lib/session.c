@@ -2,22 +2,15 @@
 /* The library from open to release, against fake.c. */
 
 #include "fake.h"
+#include "session.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-static int failures;
+int failures;
 
-#define CHECK(c) \
-	do { \
-		if (!(c)) { \
-			printf("%s:%d: %s\n", __FILE__, __LINE__, #c); \
-			failures++; \
-		} \
-	} while (0)
-
-static ec_master_t *start(void)
+ec_master_t *start(void)
 {
 	memset(&fake, 0, sizeof(fake));
 	fake.image_size = 8192;
@@ -389,5 +382,6 @@ int main(void)
 	cycle();
 	empty_image();
 	failed_activation();
+	requests();
 	return failures != 0;
 }

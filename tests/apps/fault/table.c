@@ -53,7 +53,7 @@ const struct cmd cmds[] = {
 	CMD(SC_DC, APP, RSV2(ec_ioc_sc_dc)),
 	CMD(SC_FLAG, APP, RSV1(ec_ioc_sc_flag)),
 	CMD(SC_TIMEOUT, APP, RSV1(ec_ioc_sc_timeout)),
-	CMD(ACTIVATE, APP, RSV1(ec_ioc_activate)),
+	CMD(ACTIVATE, APP),
 	CMD(DEACTIVATE, APP),
 	CMD(DOMAIN_OFFSET, APP),
 	CMD(INTERVAL, APP),
@@ -61,6 +61,8 @@ const struct cmd cmds[] = {
 	CMD(RECEIVE, APP, .cyclic = true),
 	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_ALL),
 	CMD(REF_CLOCK, APP),
+	CMD(SC_REQUEST, APP, RSV1(ec_ioc_sc_request)),
+	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
 };
 
 const unsigned int n_cmds = sizeof(cmds) / sizeof(cmds[0]);

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Emergencies of a slave, kept for the application in mapped memory. */
+#ifndef EC_EMERG_H
+#define EC_EMERG_H
+
+#include <linux/types.h>
+
+struct ec_emerg_ring;
+struct ec_slave;
+
+/**
+ * struct ec_emerg - the kernel's side of a ring; under ec_slave.emerg_lock
+ * @ring: mapped by the application; of it only @tail is read, and not trusted
+ * @data: entries, mapped
+ * @count: how many
+ * @head: put in so far
+ * @overruns: lost so far
+ */
+struct ec_emerg {
+	struct ec_emerg_ring *ring;
+	u8 *data;
+	u32 count;
+	u32 head;
+	u32 overruns;
+};
+
+void ec_emerg_set(struct ec_slave *slave, struct ec_emerg *e);
+void ec_emerg_push(struct ec_slave *slave, const u8 *message);
+void ec_emerg_poll(struct ec_slave *slave);
+
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands that prepare requests and emergencies; their use needs none. */
+#include "config.h"
+#include "ioctl.h"
+#include "master.h"
+#include "request.h"
+#include "session.h"
+
+int ec_ioc_sc_request(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_request *i = arg;
+	struct ec_config *c;
+	u32 limit;
+	int ret = 0;
+
+	if (i->kind > EC_REQUEST_REG)
+		return ec_refuse(f, -EINVAL, "%u is no kind of request", i->kind);
+	limit = i->kind == EC_REQUEST_REG ? EC_MAX_REG_SIZE : EC_MAX_SDO_SIZE;
+	if (i->size > limit)
+		return ec_refuse(f, -EINVAL, "size must be at most %u bytes, not %u", limit,
+				 i->size);
+	c = ec_ioc_lock_config(f, i->config, &ret);
+	if (!c)
+		return ret;
+	ret = ec_requests_add(c->session, i->config, i->kind, i->size, &i->index);
+	if (ret == -ENOSPC)
+		ec_refuse(f, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
+			  EC_MAX_REQUEST_BYTES);
+	mutex_unlock(&f->master->session_lock);
+	return ret;
+}
+
+int ec_ioc_sc_emerg(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_emerg *i = arg;
+	struct ec_config *c;
+	size_t bytes;
+	int ret = 0;
+
+	if (i->count > EC_MAX_EMERG)
+		return ec_refuse(f, -ENOMEM, "at most %u emergencies are kept, not %u",
+				 EC_MAX_EMERG, i->count);
+	c = ec_ioc_lock_config(f, i->config, &ret);
+	if (!c)
+		return ret;
+	bytes = c->session->request_bytes - c->emergencies * EC_EMERG_BYTES +
+		i->count * EC_EMERG_BYTES;
+	if (bytes > EC_MAX_REQUEST_BYTES) {
+		ret = ec_refuse(f, -ENOMEM, "requests and emergencies have %u bytes together",
+				EC_MAX_REQUEST_BYTES);
+	} else {
+		c->session->request_bytes = bytes;
+		c->emergencies = i->count;
+	}
+	mutex_unlock(&f->master->session_lock);
+	return ret;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Requests of the application that run beside its cycle: SDOs and registers.
+ *
+ * Their records lie in memory the application has mapped. It starts one there
+ * and says so with its next send; from then on the kernel works with its own
+ * copy. Each configuration has a lane: a worker that does its requests one
+ * after the other, so that a slow slave does not hold up the others.
+ */
+#ifndef EC_REQUEST_H
+#define EC_REQUEST_H
+
+#include <linux/types.h>
+
+struct ec_emerg;
+struct ec_requests;
+struct ec_session;
+
+/**
+ * struct ec_request_spec - a request to be made by activation
+ * @config: of the slave
+ * @kind: EC_REQUEST_*
+ * @size: room for data, bytes
+ */
+struct ec_request_spec {
+	u32 config;
+	u32 kind;
+	u32 size;
+};
+
+int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index);
+size_t ec_requests_bytes(const struct ec_session *s);
+int ec_requests_begin(struct ec_session *s);
+void ec_requests_end(struct ec_session *s);
+void ec_requests_kick(struct ec_requests *rq);
+struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
+
+#endif

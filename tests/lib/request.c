@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* Requests and emergencies: what the library writes to and reads from memory. */
+#include "session.h"
+
+#include <errno.h>
+#include <string.h>
+
+static struct ec_emerg_ring *ring(unsigned int i)
+{
+	struct ec_request_area *area = (void *)fake.area;
+
+	return (struct ec_emerg_ring *)(fake.area + area->rings) + i;
+}
+
+static void done(struct ec_request_record *rec, int result, const char *data)
+{
+	rec->result = result;
+	rec->got = (unsigned int)strlen(data);
+	memcpy(fake.area + rec->data, data, strlen(data));
+	rec->done = rec->start;
+}
+
+static void nobody(void)
+{
+	uint8_t b[8];
+
+	CHECK(!ecrt_slave_config_create_sdo_request(NULL, 0, 0, 1));
+	CHECK(!ecrt_slave_config_create_reg_request(NULL, 1));
+	CHECK(ecrt_sdo_request_index(NULL, 0, 0) == -EINVAL);
+	CHECK(ecrt_sdo_request_timeout(NULL, 0) == -EINVAL);
+	CHECK(!ecrt_sdo_request_data(NULL) && !ecrt_reg_request_data(NULL));
+	CHECK(!ecrt_sdo_request_data_size(NULL));
+	CHECK(ecrt_sdo_request_read(NULL) == -EINVAL);
+	CHECK(ecrt_sdo_request_write(NULL) == -EINVAL);
+	CHECK(ecrt_sdo_request_state(NULL) == EC_REQUEST_ERROR);
+	CHECK(ecrt_reg_request_read(NULL, 0, 1) == -EINVAL);
+	CHECK(ecrt_reg_request_write(NULL, 0, 1) == -EINVAL);
+	CHECK(ecrt_reg_request_state(NULL) == EC_REQUEST_ERROR);
+	CHECK(ecrt_slave_config_emerg_size(NULL, 1) == -EINVAL);
+	CHECK(ecrt_slave_config_emerg_pop(NULL, b) == -EINVAL);
+	CHECK(ecrt_slave_config_emerg_clear(NULL) == -EINVAL);
+	CHECK(ecrt_slave_config_emerg_overruns(NULL) == -EINVAL);
+}
+
+static void sdo(ec_master_t *m, ec_sdo_request_t *r)
+{
+	struct ec_request_record *rec = fake_request(fake.area, 0);
+	unsigned int calls = fake.calls;
+
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_UNUSED);
+	EC_WRITE_U32(ecrt_sdo_request_data(r), 0x12345678);
+	CHECK(!ecrt_sdo_request_write(r));
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_BUSY);
+	CHECK(ecrt_sdo_request_write(r) == -EBUSY);
+	CHECK(ecrt_sdo_request_read(r) == -EBUSY);
+	CHECK(ecrt_sdo_request_index(r, 1, 1) == -EBUSY);
+	CHECK(rec->index == 0x6060 && rec->subindex == 3 && rec->write == 1);
+	CHECK(rec->size == 4 && rec->start == 1 && rec->timeout_ms == 500);
+	CHECK(EC_READ_U32(fake.area + rec->data) == 0x12345678);
+	CHECK(fake.calls == calls);
+	CHECK(!ecrt_master_send(m) && fake.send_flags == EC_SEND_FLAG_REQUESTS);
+	CHECK(!ecrt_master_send(m) && !fake.send_flags);
+	calls = fake.calls;
+	done(rec, -EIO, "");
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_ERROR);
+	CHECK(ecrt_sdo_request_data_size(r) == 4);
+
+	CHECK(!ecrt_sdo_request_index(r, 0x1008, 0) && !ecrt_sdo_request_read(r));
+	CHECK(rec->index == 0x1008 && !rec->write && rec->start == 2);
+	done(rec, 0, "ab");
+	CHECK(!memcmp(ecrt_sdo_request_data(r), "\x78\x56", 2));
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(ecrt_sdo_request_data_size(r) == 2);
+	CHECK(!memcmp(ecrt_sdo_request_data(r), "ab", 2));
+
+	/* a short read shortens the next write */
+	CHECK(!ecrt_sdo_request_write(r) && rec->size == 2);
+	done(rec, 0, "");
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(ecrt_sdo_request_data_size(r) == 2);
+	CHECK(!ecrt_sdo_request_read(r));
+	done(rec, 0, "");
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(ecrt_sdo_request_write(r) == -EINVAL);	/* 0 bytes */
+	CHECK(fake.calls == calls);
+}
+
+static void reg(ec_reg_request_t *r)
+{
+	struct ec_request_record *rec = fake_request(fake.area, 1);
+
+	CHECK(ecrt_reg_request_state(r) == EC_REQUEST_UNUSED);
+	CHECK(ecrt_reg_request_read(r, 0x10, 0) == -EINVAL);
+	CHECK(ecrt_reg_request_read(r, 0x10, 3) == -ENOBUFS);
+	CHECK(ecrt_reg_request_write(r, 0x10, 3) == -ENOBUFS);
+	CHECK(!ecrt_reg_request_read(r, 0x110, 2));
+	CHECK(rec->index == 0x110 && rec->size == 2 && !rec->write);
+	CHECK(ecrt_reg_request_write(r, 0x10, 1) == -EBUSY);
+	done(rec, 0, "xy");
+	CHECK(ecrt_reg_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(!memcmp(ecrt_reg_request_data(r), "xy", 2));
+	CHECK(!ecrt_reg_request_write(r, 0x12, 1) && rec->write == 1);
+}
+
+static void emergencies(ec_slave_config_t *sc)
+{
+	struct ec_emerg_ring *r = ring(5);
+	unsigned int calls = fake.calls;
+	uint8_t b[8];
+
+	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT);
+	memcpy(fake.area + r->data, "01234567abcdefgh", 16);
+	r->head = 2;
+	r->overruns = 3;
+	CHECK(!ecrt_slave_config_emerg_pop(sc, b) && !memcmp(b, "01234567", 8));
+	CHECK(!ecrt_slave_config_emerg_pop(sc, b) && !memcmp(b, "abcdefgh", 8));
+	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT && r->tail == 2);
+	CHECK(ecrt_slave_config_emerg_overruns(sc) == 3);
+	r->head = 4;
+	CHECK(!ecrt_slave_config_emerg_clear(sc) && r->tail == 4);
+	CHECK(ecrt_slave_config_emerg_overruns(sc) == 0);
+	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT);
+	r->overruns = 4;
+	CHECK(ecrt_slave_config_emerg_overruns(sc) == 1);
+	CHECK(fake.calls == calls);
+}
+
+void requests(void)
+{
+	ec_master_t *m = start();
+	ec_slave_config_t *sc = ecrt_master_slave_config(m, 0, 5, 1, 2);
+	ec_sdo_request_t *s = ecrt_slave_config_create_sdo_request(sc, 0x6060, 3, 4);
+	ec_reg_request_t *r = ecrt_slave_config_create_reg_request(sc, 2);
+	const uint8_t *data = ecrt_sdo_request_data(s);
+	uint8_t b[8];
+
+	nobody();
+	CHECK(s && r && ecrt_sdo_request_data_size(s) == 4);
+	CHECK(data && !EC_READ_U32(data));
+	CHECK(!ecrt_sdo_request_timeout(s, 500));
+	CHECK(ecrt_sdo_request_read(s) == -EINVAL);	/* not active */
+	CHECK(ecrt_reg_request_read(r, 0, 2) == -EINVAL);
+	CHECK(!ecrt_slave_config_emerg_size(sc, 2));
+	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT);
+	CHECK(ecrt_slave_config_emerg_overruns(sc) == 0);
+	fake.refuse = EC_IOC_SC_REQUEST;
+	fake.err = ENOSPC;
+	CHECK(!ecrt_slave_config_create_sdo_request(sc, 1, 2, 3) &&
+	      errno == ENOSPC);
+	fake.refuse = 0;
+	CHECK(!ecrt_master_activate(m));
+	sdo(m, s);
+	CHECK(ecrt_sdo_request_data(s) == data);
+	reg(r);
+	emergencies(sc);
+	CHECK(!ecrt_master_deactivate(m));
+	ecrt_release_master(m);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* What the files of this test share. */
+#ifndef TEST_SESSION_H
+#define TEST_SESSION_H
+
+#include <stdio.h>
+
+#include "fake.h"
+
+extern int failures;
+
+#define CHECK(c) \
+	do { \
+		if (!(c)) { \
+			printf("%s:%d: %s\n", __FILE__, __LINE__, #c); \
+			failures++; \
+		} \
+	} while (0)
+
+ec_master_t *start(void);
+void requests(void);
+
+#endif
