@@ -31,6 +31,8 @@ static void wrong_indexes(int fd)
 		struct ec_ioc_config_entry ce = { .entry_pos = w + 7 };
 		struct ec_ioc_config_sdo s = { .sdo_pos = w };
 		struct ec_ioc_sc_watchdog wd = { .config = w };
+		struct ec_ioc_sc_request req = { .config = w };
+		struct ec_ioc_sc_emerg emerg = { .config = w };
 
 		expect_errno(call(fd, EC_IOC_REG_ENTRY, &e), ENOENT, "entry of config %u", w);
 		expect_errno(call(fd, EC_IOC_REG_ENTRY, &d), ENOENT, "entry in domain %u", w);
@@ -42,6 +44,8 @@ static void wrong_indexes(int fd)
 		expect_errno(call(fd, EC_IOC_CONFIG_ENTRY, &ce), ENOENT, "mapped entry %u", w);
 		expect_errno(call(fd, EC_IOC_CONFIG_SDO, &s), ENOENT, "startup SDO %u", w);
 		expect_errno(call(fd, EC_IOC_SC_WATCHDOG, &wd), ENOENT, "watchdog of %u", w);
+		expect_errno(call(fd, EC_IOC_SC_REQUEST, &req), ENOENT, "request of %u", w);
+		expect_errno(call(fd, EC_IOC_SC_EMERG, &emerg), ENOENT, "emergencies of %u", w);
 	}
 	for (unsigned int sm = 16; sm < 256; sm++) {
 		struct ec_ioc_sc_sync s = { .sm = sm, .dir = 1 };
