@@ -77,6 +77,13 @@
 /* ecrt_slave_config_state_timeout() */
 #define EC_HAVE_STATE_TIMEOUT
 
+/* extensions of this master ------------------------------------------------*/
+
+/* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
+#ifndef __KERNEL__
+#define EC_HAVE_KERNEL_CYCLE
+#endif
+
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
 #define EC_PUBLIC_API __attribute__((visibility("default")))
@@ -723,6 +730,162 @@ EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
  */
 EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
 		const ec_master_t *master);
+
+#ifdef EC_HAVE_KERNEL_CYCLE
+
+/* what the cycle does when there are no outputs for @stall_cycles */
+typedef enum {
+	EC_CYCLE_HOLD = 0,	/* sends the last ones */
+	EC_CYCLE_ZERO = 1,	/* sends zeros until there are new ones */
+	EC_CYCLE_STOP = 2,	/* stops; watchdogs of the slaves end OP */
+} ec_cycle_stall_t;
+
+typedef enum {
+	EC_CYCLE_NONE = 0,	/* the application runs the cycle */
+	EC_CYCLE_RUNNING = 1,
+	EC_CYCLE_STALLED = 2,	/* EC_CYCLE_HOLD or EC_CYCLE_ZERO at work */
+	EC_CYCLE_STOPPED = 3,	/* by EC_CYCLE_STOP, until deactivation */
+} ec_cycle_run_t;
+
+/* ec_cycle_config_t.dc: clock datagrams of every cycle */
+#define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
+#define EC_CYCLE_SYNC_SLAVES	4U	/* from there to all slaves */
+#define EC_CYCLE_SYNC_MONITOR	8U	/* read how far they are apart */
+
+/**
+ * struct ec_cycle_config_t - how the kernel runs the cycle
+ * @period_ns: 10000..1000000000 ns
+ * @phase_ns: cycles begin at multiples of the period of CLOCK_MONOTONIC, plus
+ *	this; less than the period
+ * @cpu: that runs the thread, -1: any
+ * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50
+ * @stall: what to do without new outputs
+ * @stall_cycles: after that many cycles in a row without; 0: never. The first
+ *	outputs may take their time.
+ * @dc: EC_CYCLE_SYNC_*
+ */
+typedef struct {
+	uint32_t period_ns;
+	uint32_t phase_ns;
+	int32_t cpu;
+	uint32_t priority;
+	ec_cycle_stall_t stall;
+	uint32_t stall_cycles;
+	uint32_t dc;
+} ec_cycle_config_t;
+
+#define EC_CYCLE_BINS		32
+
+/**
+ * struct ec_cycle_state_t - how the cycle has done since activation
+ * @run: what it does now
+ * @cycles: cycles so far
+ * @overruns: cycles left out, because a period or more had passed
+ * @missed: cycles without new outputs, after the first ones
+ * @late_min: least time from schedule to send, ns
+ * @late_mean: mean of it, ns
+ * @late_max: most of it, ns
+ * @late: cycles by that time: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last one
+ *	and above
+ */
+typedef struct {
+	ec_cycle_run_t run;
+	uint64_t cycles;
+	uint64_t overruns;
+	uint64_t missed;
+	uint32_t late_min;
+	uint32_t late_mean;
+	uint32_t late_max;
+	uint64_t late[EC_CYCLE_BINS];
+} ec_cycle_state_t;
+
+/**
+ * ecrt_master_set_cycle() - let the kernel run the cycle
+ * @master: a reserved master, not active
+ * @config: how; NULL: the application runs it
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). From activation to deactivation a real-time
+ * thread of the kernel receives and sends all domains. Then ecrt_master_receive()
+ * takes the newest inputs of all domains, and ecrt_master_send() gives the
+ * outputs of the queued ones to the next cycle; both work on mapped memory,
+ * without a system call. An image is always of one cycle, whole. The thread tells
+ * the application time and queues clock datagrams itself:
+ * ecrt_master_application_time() and the calls that queue them have no effect.
+ *
+ *   ecrt_master_set_cycle(master, &config);
+ *   ecrt_master_activate(master);
+ *   each cycle:
+ *	ecrt_master_wait_cycle(master, 0);
+ *	ecrt_master_receive(master);
+ *	ecrt_domain_process(domain);
+ *	... as always ...
+ *	ecrt_domain_queue(domain);
+ *	ecrt_master_send(master);
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL a value that cannot be; %-EBUSY active; %-EPERM not
+ * reserved.
+ */
+EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
+		const ec_cycle_config_t *config);
+
+/**
+ * ecrt_master_wait_cycle() - wait for the next cycle of the kernel
+ * @master: an active master whose cycle the kernel runs
+ * @timeout_us: limit, 0: none
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Returns at once when a cycle has passed since
+ * the last call. One system call. To wait for other files too, poll
+ * ecrt_master_cycle_fd(); to spin, compare ecrt_master_cycle_count().
+ *
+ * Context: The master's single cyclic caller. Sleeps until the next cycle.
+ * Return: number of cycles since the last call, 1 when none was missed;
+ * %-ETIMEDOUT; %-EINTR a signal; %-ECANCELED the cycle has stopped; %-EINVAL
+ * not active, or the application runs the cycle.
+ */
+EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
+		uint32_t timeout_us);
+
+/**
+ * ecrt_master_cycle_count() - number of cycles the kernel has run
+ * @master: an active master whose cycle the kernel runs
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When it has grown, the
+ * inputs of that cycle are there for ecrt_master_receive().
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: cycles since activation; 0 when not active.
+ */
+EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
+
+/**
+ * ecrt_master_cycle_fd() - file to wait on with poll() or epoll
+ * @master: an active master whose cycle the kernel runs
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). POLLIN: there are inputs that
+ * ecrt_master_receive() has not taken yet; POLLHUP: the cycle has stopped. The file
+ * is the library's: it must not be closed or read.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: file descriptor; %-EINVAL not active, or the application runs the
+ * cycle.
+ */
+EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
+
+/**
+ * ecrt_master_cycle_state() - how the kernel's cycle does
+ * @master: an active master
+ * @state: filled
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL not active, or an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
+		ec_cycle_state_t *state);
+
+#endif
 
 /**
  * ecrt_master_reset() - try slaves again that could not be configured

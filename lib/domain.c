@@ -76,6 +76,10 @@ int ecrt_domain_process(ec_domain_t *domain)
 	if (!(m->received & bit))
 		return 0;
 	m->received &= ~bit;
+	if (m->exchange) {
+		ec_cycle_process(domain);
+		return 0;
+	}
 	st = &m->status->domains[domain->index];
 	domain->snap.working_counter = ec_status_read(st->working_counter);
 	domain->snap.wc_state = ec_status_read(st->wc_state);
@@ -87,6 +91,8 @@ int ecrt_domain_queue(ec_domain_t *domain)
 {
 	if (!domain || !domain->master->active)
 		return -EINVAL;
+	if (domain->master->exchange)
+		ec_cycle_queue(domain);
 	domain->master->queued |= 1ULL << domain->index;
 	return 0;
 }

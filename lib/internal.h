@@ -15,6 +15,10 @@
  * but not processed; @app_time: last one, told with the next send when
  * @app_time_new; @send_flags: EC_SEND_FLAG_* of the next send.
  * Only the cyclic caller touches them.
+ *
+ * @exchange: with a cycle the kernel runs, else NULL; then @image is memory of
+ * our own. @out_back, @in_front: buffers we hold; @out_last: the one we gave last;
+ * @stride: distance of two; @cycle: last one waited for.
  */
 struct ec_master {
 	int fd;
@@ -38,18 +42,39 @@ struct ec_master {
 	size_t area_size;
 
 	struct ec_request *requests;
+
+	struct ec_exchange *exchange;
+	size_t exchange_size;
+	unsigned int stride;
+	unsigned int out_back;
+	unsigned int out_last;
+	unsigned int in_front;
+	__u64 cycle;
+
 	struct ec_domain *domains;
 	struct ec_slave_config *configs;
 };
 
-/* @snap: status as of the last ecrt_domain_process() */
+/* inputs side by side in a domain */
+struct ec_input {
+	unsigned int offset;
+	unsigned int size;
+};
+
+/*
+ * @snap: status as of the last ecrt_domain_process(); @offset: in the image;
+ * @inputs, @n_inputs: to copy, when the kernel runs the cycle
+ */
 struct ec_domain {
 	struct ec_master *master;
 	struct ec_domain *next;
 	unsigned int index;
 	__u8 *data;
+	size_t offset;
 	size_t size;
 	struct ec_status_domain snap;
+	struct ec_input *inputs;
+	unsigned int n_inputs;
 };
 
 /*
@@ -96,5 +121,15 @@ void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
 int ec_requests_place(struct ec_master *m);
 void ec_requests_free(struct ec_master *m);
+void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset);
+
+/* cycle.c: the kernel runs the cycle */
+int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg);
+void ec_cycle_unmap(struct ec_master *m);
+int ec_cycle_find_inputs(struct ec_domain *d);
+void ec_cycle_receive(struct ec_master *m);
+void ec_cycle_process(struct ec_domain *d);
+void ec_cycle_queue(struct ec_domain *d);
+void ec_cycle_send(struct ec_master *m);
 
 #endif

@@ -16,6 +16,7 @@ void ec_master_free_session(struct ec_master *m)
 	ec_requests_free(m);
 	while ((d = m->domains)) {
 		m->domains = d->next;
+		free(d->inputs);
 		free(d);
 	}
 	while ((sc = m->configs)) {
@@ -126,7 +127,7 @@ int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
 /* activation ---------------------------------------------------------------*/
 
 /* Maps @size bytes and touches each page, so that the cycle need not. */
-static void *map(struct ec_master *m, size_t size, int prot, __u64 offset)
+void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset)
 {
 	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
 	volatile __u8 *p;
@@ -147,6 +148,7 @@ static void *map(struct ec_master *m, size_t size, int prot, __u64 offset)
 
 void ec_master_unmap(struct ec_master *m)
 {
+	ec_cycle_unmap(m);
 	if (m->image)
 		munmap(m->image, m->image_size);
 	if (m->status)
@@ -166,7 +168,8 @@ static int map_requests(struct ec_master *m, size_t size)
 	if (!size)
 		return 0;
 	m->area_size = size;
-	m->area = map(m, size, PROT_READ | PROT_WRITE, EC_MMAP_REQUESTS);
+	m->area = ec_master_map(m, size, PROT_READ | PROT_WRITE,
+				EC_MMAP_REQUESTS);
 	if (!m->area)
 		return -errno;
 	m->area_base = (__u8 *)m->area;
@@ -181,7 +184,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 	if (arg->status_size < offsetof(struct ec_status, configs))
 		return -EPROTO;
 	m->status_size = arg->status_size;
-	m->status = map(m, arg->status_size, PROT_READ, EC_MMAP_STATUS);
+	m->status = ec_master_map(m, arg->status_size, PROT_READ, EC_MMAP_STATUS);
 	if (!m->status)
 		return -errno;
 	if (m->status->magic != EC_STATUS_MAGIC)
@@ -190,10 +193,12 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 	if (ret)
 		return ret;
 	m->image_size = arg->image_size;
+	if (arg->exchange_size)
+		return ec_cycle_map(m, arg);
 	if (!arg->image_size)
 		return 0;
-	m->image = map(m, arg->image_size, PROT_READ | PROT_WRITE,
-		       EC_MMAP_IMAGE);
+	m->image = ec_master_map(m, arg->image_size, PROT_READ | PROT_WRITE,
+				 EC_MMAP_IMAGE);
 	return m->image ? 0 : -errno;
 }
 
@@ -206,9 +211,10 @@ static int place_domain(struct ec_master *m, struct ec_domain *d)
 		return ret;
 	if (arg.offset > m->image_size || arg.size > m->image_size - arg.offset)
 		return -EPROTO;
+	d->offset = arg.offset;
 	d->size = arg.size;
 	d->data = m->image ? m->image + arg.offset : NULL;
-	return 0;
+	return m->exchange ? ec_cycle_find_inputs(d) : 0;
 }
 
 int ecrt_master_activate(ec_master_t *master)
@@ -278,6 +284,10 @@ int ecrt_master_send(ec_master_t *master)
 
 	if (!master || !master->active)
 		return -EINVAL;
+	if (master->exchange) {
+		ec_cycle_send(master);
+		return 0;
+	}
 	arg.queued = master->queued;
 	arg.flags = master->send_flags;
 	arg.sync_time = master->sync_time;
@@ -296,6 +306,10 @@ int ecrt_master_receive(ec_master_t *master)
 {
 	if (!master || !master->active)
 		return -EINVAL;
+	if (master->exchange) {
+		ec_cycle_receive(master);
+		return 0;
+	}
 	master->received |= master->sent;
 	master->sent = 0;
 	return ec_ioctl(master, EC_IOC_RECEIVE, NULL);

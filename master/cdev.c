@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/mm.h>
 #include <linux/module.h>
+#include <linux/poll.h>
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "cdev.h"
 #include "compat.h"
+#include "cycle_thread.h"
 #include "master.h"
 #include "session.h"
 
@@ -60,9 +62,14 @@ static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
 	int ret;
 
 	if (offset == EC_MMAP_IMAGE) {
-		if (!sh->image || len > sh->image_size)
+		/* the image of a cycle the kernel runs is the kernel's */
+		if (!sh->image || sh->exchange || len > sh->image_size)
 			return -EINVAL;
 		ret = remap_vmalloc_range(vma, sh->image, 0);
+	} else if (offset == EC_MMAP_EXCHANGE) {
+		if (!sh->exchange || len > sh->exchange_size)
+			return -EINVAL;
+		ret = remap_vmalloc_range(vma, sh->exchange, 0);
 	} else if (offset == EC_MMAP_STATUS) {
 		if (vma->vm_flags & VM_WRITE)
 			return -EPERM;
@@ -104,11 +111,27 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 	return ret;
 }
 
+/* For the application whose cycle the kernel runs: inputs it has not taken. */
+static __poll_t ec_poll(struct file *filp, poll_table *wait)
+{
+	struct ec_file *f = filp->private_data;
+	struct ec_master *m = f->master;
+	__poll_t mask = EPOLLERR;
+
+	poll_wait(filp, &m->kernel_wq, wait);
+	mutex_lock(&m->cyclic_lock);
+	if (m->active && m->active->owner == f && m->active->thread)
+		mask = ec_cycle_thread_poll(m->active);
+	mutex_unlock(&m->cyclic_lock);
+	return mask;
+}
+
 static const struct file_operations ec_fops = {
 	.owner = THIS_MODULE,
 	.open = ec_open,
 	.release = ec_release,
 	.mmap = ec_mmap,
+	.poll = ec_poll,
 	.unlocked_ioctl = ec_ioctl,
 	.compat_ioctl = compat_ptr_ioctl,
 };

@@ -59,6 +59,8 @@ int ec_ioc_domain_offset(struct ec_file *f, void *arg);
 int ec_ioc_interval(struct ec_file *f, void *arg);
 int ec_ioc_app_time(struct ec_file *f, void *arg);
 int ec_ioc_ref_clock(struct ec_file *f, void *arg);
+int ec_ioc_cycle(struct ec_file *f, void *arg);
+int ec_ioc_wait(struct ec_file *f, void *arg);
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);
 struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret);

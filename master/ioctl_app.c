@@ -306,6 +306,9 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS);
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
+	case -ENODEV:
+		return ec_refuse(f, ret, "CPU %d is not online; choose another one for the cycle",
+				 s->kernel.cpu);
 	default:
 		return ec_refuse(f, ret, "activation failed (error %d)", ret);
 	}
@@ -325,6 +328,7 @@ int ec_ioc_activate(struct ec_file *f, void *arg)
 	i->image_size = s->shared->image_size;
 	i->status_size = EC_STATUS_BYTES;
 	i->request_size = s->shared->request_size;
+	i->exchange_size = s->shared->exchange_size;
 	return done(f, 0);
 }
 
@@ -384,6 +388,7 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 /**
  * enter() - the cyclic caller begins receive or send
  * @f: open file
+ * @ret: error or 0
  *
  * A mutex is safe here in real time: nobody else but deactivation takes it,
  * for the time of one assignment, so it is free and costs one atomic
@@ -391,14 +396,16 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
  * cyclic caller under PREEMPT_RT, where a mutex is an rt_mutex.
  *
  * Context: Process. The lock is held when a session is returned.
- * Return: the active session of this file, or NULL.
+ * Return: the active session of this file, or NULL with @ret -EPERM, or -EBUSY
+ * when the kernel runs the cycle.
  */
-static struct ec_session *enter(struct ec_file *f)
+static struct ec_session *enter(struct ec_file *f, int *ret)
 {
 	struct ec_master *m = f->master;
 
 	mutex_lock(&m->cyclic_lock);
-	if (m->active && m->active->owner == f)
+	*ret = !m->active || m->active->owner != f ? -EPERM : m->active->thread ? -EBUSY : 0;
+	if (!*ret)
 		return m->active;
 	mutex_unlock(&m->cyclic_lock);
 	return NULL;
@@ -407,13 +414,15 @@ static struct ec_session *enter(struct ec_file *f)
 int ec_ioc_app_time(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_app_time *i = arg;
-	int ret = 0;
+	int ret;
 
-	if (enter(f)) {
+	if (enter(f, &ret)) {
 		ec_dc_app_time(f->master, i->app_time);
 		mutex_unlock(&f->master->cyclic_lock);
 		return 0;
 	}
+	if (ret == -EBUSY)
+		return ec_refuse(f, ret, "the kernel runs the cycle and tells the time");
 	/* before activation there is no cycle to disturb */
 	if (!lock(f, &ret))
 		return ret;
@@ -423,11 +432,11 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 
 int ec_ioc_receive(struct ec_file *f)
 {
-	struct ec_session *s = enter(f);
 	int ret;
+	struct ec_session *s = enter(f, &ret);
 
 	if (!s)
-		return -EPERM;
+		return ret;
 	ret = ec_cycle_receive(s);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;
@@ -435,11 +444,11 @@ int ec_ioc_receive(struct ec_file *f)
 
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 {
-	struct ec_session *s = enter(f);
 	int ret;
+	struct ec_session *s = enter(f, &ret);
 
 	if (!s)
-		return -EPERM;
+		return ret;
 	if (arg->flags & EC_SEND_FLAG_APP_TIME)
 		ec_dc_app_time(f->master, arg->app_time);
 	if (arg->flags & EC_SEND_FLAG_REQUESTS && s->requests)

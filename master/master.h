@@ -71,6 +71,10 @@ struct task_struct;
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
  *
+ * @kernel_cycle: cycles of the thread that runs the cycle
+ * @kernel_run: odd while it sends; another number than before: another run
+ * @kernel_wq: who waits for one of the two
+ *
  * @slaves_responding: slaves that answered the last broadcast
  * @al_states: OR of AL states, as in struct ec_ioc_master
  * @dc: distributed clocks
@@ -123,6 +127,10 @@ struct ec_master {
 	struct ec_session *session;
 	struct mutex cyclic_lock;
 	struct ec_session *active;
+
+	u64 kernel_cycle;
+	u32 kernel_run;
+	wait_queue_head_t kernel_wq;
 
 	u32 slaves_responding;
 	u32 al_states;

@@ -2,6 +2,7 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "config.h"
+#include "cycle_thread.h"
 #include "domain.h"
 #include "emerg.h"
 #include "master.h"
@@ -14,6 +15,7 @@ static void shared_release(struct kref *kref)
 	struct ec_shared *sh = container_of(kref, struct ec_shared, kref);
 
 	vfree(sh->image);
+	vfree(sh->exchange);
 	vfree(sh->status);
 	vfree(sh->requests);
 	kfree(sh);
@@ -135,6 +137,7 @@ static void clear(struct ec_session *s)
 		ec_domain_free(s->domains[i]);
 	s->n_domains = 0;
 	s->ref_config = EC_UAPI_NONE32;
+	memset(&s->kernel, 0, sizeof(s->kernel));
 }
 
 /**
@@ -154,6 +157,7 @@ int ec_session_deactivate(struct ec_session *s)
 	mutex_lock(&m->cyclic_lock);
 	m->active = NULL;
 	mutex_unlock(&m->cyclic_lock);
+	ec_cycle_thread_stop(s);
 	ec_cycle_own(m, EC_OWNER_IDLE);
 	s->active = false;
 	s->stall_log.open = false;
@@ -284,6 +288,8 @@ static bool uses_sync(const struct ec_session *s)
 {
 	unsigned int i;
 
+	if (s->kernel.dc)
+		return true;
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->dc_assign)
 			return true;
@@ -319,7 +325,7 @@ void ec_session_clocks(struct ec_master *m, bool changed)
  *
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOVERFLOW when the image or a cycle
- * is too large; -ENOMEM.
+ * is too large; -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -343,6 +349,11 @@ int ec_session_activate(struct ec_session *s)
 	ret = ec_requests_begin(s);
 	if (!ret)
 		ret = ec_cycle_layout(s);
+	if (!ret && s->kernel.period_ns) {
+		ret = ec_cycle_thread_create(s, offset);
+		if (ret)
+			ec_cycle_free(m, &s->cycle);
+	}
 	if (ret) {
 		ec_requests_end(s);
 		ec_shared_put(s->shared);
@@ -363,6 +374,7 @@ int ec_session_activate(struct ec_session *s)
 	mutex_unlock(&m->cyclic_lock);
 	if (uses_sync(s))
 		ec_dc_begin(m, true, ref_choice(s));
+	ec_cycle_thread_start(s);
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_OP);

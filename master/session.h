@@ -11,6 +11,7 @@
 #include "limits.h"
 
 struct ec_config;
+struct ec_cycle_thread;
 struct ec_domain;
 struct ec_master;
 struct ec_request_spec;
@@ -25,11 +26,16 @@ struct ec_requests;
  * @status: status pages
  * @requests: struct ec_request_area and what it names, or NULL
  * @request_size: bytes, likewise
+ * @exchange: struct ec_exchange and its buffers; NULL: the application runs the
+ *	cycle and maps the image
+ * @exchange_size: bytes, multiple of the page size
  */
 struct ec_shared {
 	struct kref kref;
 	u8 *image;
 	size_t image_size;
+	void *exchange;
+	size_t exchange_size;
 	struct ec_status *status;
 	u8 *requests;
 	size_t request_size;
@@ -71,6 +77,8 @@ struct ec_stall_log {
  * @active: activated
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
+ * @kernel: how the kernel shall run the cycle; period 0: it shall not
+ * @thread: runs the cycle while @active; NULL: the application does
  * @cycle: cyclic layout
  */
 struct ec_session {
@@ -88,6 +96,8 @@ struct ec_session {
 	bool active;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;
+	struct ec_ioc_cycle kernel;
+	struct ec_cycle_thread *thread;
 	struct ec_cycle cycle;
 };
 

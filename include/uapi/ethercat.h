@@ -31,6 +31,7 @@
 /* bits of struct ec_ioc_version.features */
 #define EC_FEATURE_APP_CYCLE	(1ULL << 0)
 #define EC_FEATURE_COE		(1ULL << 1)
+#define EC_FEATURE_KERNEL_CYCLE	(1ULL << 2)
 
 struct ec_ioc_version {
 	__u32 flags;
@@ -490,16 +491,20 @@ struct ec_ioc_sc_emerg {
  *   EC_MMAP_IMAGE     process image of all domains, read-write
  *   EC_MMAP_STATUS    struct ec_status, read-only
  *   EC_MMAP_REQUESTS  struct ec_request_area, read-write
+ *   EC_MMAP_EXCHANGE  instead of the image, when the kernel runs the cycle:
+ *                     struct ec_exchange and its buffers, read-write
  */
 #define EC_MMAP_IMAGE		0x00000000ULL
 #define EC_MMAP_STATUS		0x40000000ULL
 #define EC_MMAP_REQUESTS	0x60000000ULL
+#define EC_MMAP_EXCHANGE	0x80000000ULL
 
 struct ec_ioc_activate {
 	__u32 flags;
 	__u32 image_size;	/* out, bytes, multiple of the page size */
 	__u32 status_size;	/* out, same */
 	__u32 request_size;	/* out, same; 0: neither requests nor emergencies */
+	__u32 exchange_size;	/* out, same; 0: the application runs the cycle */
 };
 
 struct ec_ioc_domain_offset {
@@ -587,6 +592,29 @@ struct ec_request_area {
 	__u32 reserved[3];
 };
 
+/* what to do when the application has given no outputs for stall_cycles */
+#define EC_STALL_HOLD		0	/* send the last ones */
+#define EC_STALL_ZERO		1	/* send zeros until there are new ones */
+#define EC_STALL_STOP		2	/* send nothing any more */
+
+/* the kernel runs the cycle of the next activation; period_ns 0: it does not */
+struct ec_ioc_cycle {
+	__u32 flags;
+	__u32 period_ns;	/* 10000..1000000000 */
+	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC */
+	__s32 cpu;		/* -1: any */
+	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50 */
+	__u32 stall;		/* EC_STALL_* */
+	__u32 stall_cycles;	/* 0: no stall */
+	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR */
+};
+
+struct ec_ioc_wait {
+	__u32 flags;
+	__u32 timeout_us;	/* 0: none */
+	__u64 cycle;		/* in: the last one seen; out: a newer one */
+};
+
 #define EC_STATUS_MAGIC		0x45435354	/* "ECST" */
 #define EC_STATUS_DOMAINS	64
 #define EC_STATUS_CONFIGS	4096
@@ -603,6 +631,32 @@ struct ec_status_domain {
 #define EC_STATUS_SC_AL		0x0f
 #define EC_STATUS_SC_ONLINE	0x10
 #define EC_STATUS_SC_OP		0x20
+
+#define EC_CYCLE_BUCKETS	32
+
+/* struct ec_status_cycle.state */
+#define EC_CYCLE_STATE_NONE	0	/* the application runs the cycle */
+#define EC_CYCLE_STATE_RUNNING	1
+#define EC_CYCLE_STATE_STALLED	2	/* no outputs for stall_cycles */
+#define EC_CYCLE_STATE_STOPPED	3	/* the same, and EC_STALL_STOP */
+
+/*
+ * The cycle the kernel runs. "Late" is the time of a send against its schedule,
+ * in ns; bucket 0 counts 0 ns, bucket n 2^(n-1)..2^n - 1, the last one also all
+ * above.
+ */
+struct ec_status_cycle {
+	__u64 cycle;		/* cycles so far; their inputs are in the exchange */
+	__u64 overruns;		/* cycles left out: a period or more late */
+	__u64 missed;		/* cycles without new outputs, after the first ones */
+	__u64 late_sum;
+	__u64 late_count;	/* cycles that were sent */
+	__u32 late_min;
+	__u32 late_max;
+	__u32 state;		/* EC_CYCLE_STATE_* */
+	__u32 reserved;
+	__u64 late[EC_CYCLE_BUCKETS];
+};
 
 /*
  * Read-only page(s) of an activated master. Each field is written by one
@@ -625,6 +679,41 @@ struct ec_status {
 	__u32 reserved;
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 	__u8 configs[EC_STATUS_CONFIGS];
+	struct ec_status_cycle kernel;
+};
+
+/*
+ * Exchange of process images with a cycle the kernel runs: three buffers for
+ * outputs, three for inputs. Of each three the writer has one, the reader has
+ * one, and the third is named by a word. Who has written a buffer exchanges its
+ * number, with EC_EXCHANGE_NEW, for the word; who finds that bit set exchanges
+ * his number for the word. Both atomically; so nobody ever waits, and nobody sees
+ * half an image. At first the application has output buffer 0 and input buffer 1,
+ * the kernel output buffer 1 and input buffer 0, the words are 2.
+ *
+ * Output buffer n begins at EC_EXCHANGE_FIRST + n * stride, input buffer n at
+ * EC_EXCHANGE_FIRST + (3 + n) * stride: struct ec_exchange_buffer, then the
+ * image of all domains. The kernel takes the output areas of an output buffer.
+ */
+#define EC_EXCHANGE_BUFFERS	3
+#define EC_EXCHANGE_NEW		4U
+#define EC_EXCHANGE_FIRST	192
+
+struct ec_exchange {
+	__u32 outputs;		/* the word of the outputs */
+	__u32 reserved[15];
+	__u32 inputs;		/* the word of the inputs */
+	__u32 reserved2[15];
+	__u32 stride;		/* bytes, written before activation ends */
+	__u32 reserved3[15];
+};
+
+/* in front of an image; filled for inputs */
+struct ec_exchange_buffer {
+	__u64 cycle;		/* as struct ec_status_cycle.cycle */
+	__u64 time_ns;		/* schedule of that cycle, CLOCK_MONOTONIC */
+	__u64 reserved[6];
+	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 };
 
 #define EC_IOC_TYPE		0xec
@@ -685,5 +774,7 @@ struct ec_status {
 #define EC_IOC_REF_CLOCK	EC_IOC_W(0x53, struct ec_ioc_ref_clock)
 #define EC_IOC_SC_REQUEST	EC_IOC_RW(0x54, struct ec_ioc_sc_request)
 #define EC_IOC_SC_EMERG		EC_IOC_W(0x55, struct ec_ioc_sc_emerg)
+#define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
+#define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
 
 #endif

@@ -80,6 +80,11 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		fake.status->magic = EC_STATUS_MAGIC;
 	} else if ((unsigned long long)offset == EC_MMAP_REQUESTS) {
 		lay_out(p);
+	} else if ((unsigned long long)offset == EC_MMAP_EXCHANGE) {
+		fake.exchange = p;
+		fake.exchange->outputs = 2;
+		fake.exchange->inputs = 2;
+		fake.exchange->stride = fake.stride;
 	} else {
 		fake.image = p;
 	}
@@ -187,6 +192,14 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		break;
 	case EC_IOC_DOMAIN:
 		((struct ec_ioc_domain *)arg)->size = 11;
+		((struct ec_ioc_domain *)arg)->fmmu_count = fake.exchange ? 2 : 0;
+		break;
+	case EC_IOC_DOMAIN_FMMU:	/* 8 bytes out, 8 in */
+		((struct ec_ioc_domain_fmmu *)arg)->offset =
+			8 * ((struct ec_ioc_domain_fmmu *)arg)->fmmu;
+		((struct ec_ioc_domain_fmmu *)arg)->size = 8;
+		((struct ec_ioc_domain_fmmu *)arg)->dir =
+			(__u8)(1 + ((struct ec_ioc_domain_fmmu *)arg)->fmmu);
 		break;
 	case EC_IOC_SC_PDO:
 		pdo_op(arg);
@@ -204,6 +217,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		((struct ec_ioc_activate *)arg)->image_size = fake.image_size;
 		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
 		((struct ec_ioc_activate *)arg)->request_size = PAGE;
+		((struct ec_ioc_activate *)arg)->exchange_size = fake.exchange_size;
 		break;
 	case EC_IOC_DOMAIN_OFFSET:
 		((struct ec_ioc_domain_offset *)arg)->offset =
@@ -212,6 +226,9 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 			fake.image_size ? 16 : 0;
 		if (!fake.image_size)
 			((struct ec_ioc_domain_offset *)arg)->offset = 0;
+		break;
+	case EC_IOC_WAIT:
+		((struct ec_ioc_wait *)arg)->cycle = fake.cycle;
 		break;
 	case EC_IOC_SEND:
 		fake.sent = ((struct ec_ioc_send *)arg)->queued;

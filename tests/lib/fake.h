@@ -33,6 +33,10 @@ struct fake {
 	unsigned char *area;
 	unsigned int requests;
 	unsigned int send_flags;
+	unsigned int exchange_size;
+	unsigned int stride;
+	struct ec_exchange *exchange;
+	unsigned long long cycle;
 };
 
 extern struct fake fake;
@@ -43,5 +47,7 @@ static inline struct ec_request_record *fake_request(unsigned char *area,
 	return (struct ec_request_record *)(area +
 					    sizeof(struct ec_request_area)) + i;
 }
+
+int kernel_cycle(void);	/* returns the number of failures */
 
 #endif

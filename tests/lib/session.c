@@ -383,5 +383,6 @@ int main(void)
 	empty_image();
 	failed_activation();
 	requests();
+	failures += kernel_cycle();
 	return failures != 0;
 }

@@ -95,13 +95,20 @@ static bool too_long(const struct cmd *c, unsigned char *arg)
 {
 	if (c->nr == EC_IOC_SDO_UPLOAD || c->nr == EC_IOC_SDO_DOWNLOAD)
 		((struct ec_ioc_sdo *)arg)->timeout_ms = 5;
+	if (c->nr == EC_IOC_WAIT)
+		((struct ec_ioc_wait *)arg)->timeout_us = 1000;
+	/* a shorter cycle would take the only CPU */
+	if (c->nr == EC_IOC_CYCLE)
+		((struct ec_ioc_cycle *)arg)->period_ns |= 0x100000;
 	return c->nr == EC_IOC_DEBUG;	/* would fill the log */
 }
 
 static void map_something(struct worker *w)
 {
 	size_t size = (size_t)(1 + rnd(w) % 64) * 4096;
-	off_t offset = rnd(w) % 2 ? EC_MMAP_STATUS : (off_t)(rnd(w) % 3) * 4096;
+	static const off_t base[] = { EC_MMAP_IMAGE, EC_MMAP_STATUS, EC_MMAP_REQUESTS,
+				      EC_MMAP_EXCHANGE };
+	off_t offset = base[rnd(w) % 4] + (off_t)(rnd(w) % 3) * 4096;
 	unsigned char *p = mmap(NULL, size, rnd(w) % 8, rnd(w) % 4 ? MAP_SHARED : MAP_PRIVATE,
 				fd[rnd(w) % 2], offset);
 

@@ -58,6 +58,8 @@ const struct cmd cmds[] = {
 	CMD(DOMAIN_OFFSET, APP),
 	CMD(INTERVAL, APP),
 	CMD(APP_TIME, APP, RSV1(ec_ioc_app_time)),
+	CMD(CYCLE, APP),
+	CMD(WAIT, APP),
 	CMD(RECEIVE, APP, .cyclic = true),
 	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_ALL),
 	CMD(REF_CLOCK, APP),

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * The kernel runs the cycle. The domains' data are memory of our own, so that
+ * they stand still; whole domains are copied from and to the buffers that are
+ * exchanged with the kernel (struct ec_exchange).
+ */
+#include <string.h>
+#include <sys/mman.h>
+
+#include "internal.h"
+
+#define DIR_INPUT	2	/* struct ec_ioc_domain_fmmu.dir */
+#define INDEX_MASK	3U
+
+/* the numbers of the states are the kernel's */
+_Static_assert(EC_CYCLE_BINS == EC_CYCLE_BUCKETS, "buckets");
+_Static_assert((int)EC_CYCLE_STOPPED == EC_CYCLE_STATE_STOPPED, "state");
+_Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
+_Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
+_Static_assert(EC_CYCLE_SYNC_SLAVES == EC_SEND_FLAG_SYNC_SLAVES, "clock flags");
+_Static_assert(EC_CYCLE_SYNC_MONITOR == EC_SEND_FLAG_MONITOR, "clock flags");
+
+int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
+{
+	struct ec_ioc_cycle arg = { .cpu = -1 };
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (config) {
+		if (!config->period_ns)
+			return ec_fail(-EINVAL, "set a cycle of 0 ns");
+		arg.period_ns = config->period_ns;
+		arg.phase_ns = config->phase_ns;
+		arg.cpu = config->cpu;
+		arg.priority = config->priority;
+		arg.stall = (__u32)config->stall;
+		arg.stall_cycles = config->stall_cycles;
+		arg.dc = config->dc;
+	}
+	ret = ec_ioctl(master, EC_IOC_CYCLE, &arg);
+	return ret ? ec_fail_ioctl(master, ret, "let the kernel run the cycle") : 0;
+}
+
+/* memory -------------------------------------------------------------------*/
+
+static struct ec_exchange_buffer *buffer(const struct ec_master *m, unsigned int n)
+{
+	return (void *)((__u8 *)m->exchange + EC_EXCHANGE_FIRST +
+			(size_t)n * m->stride);
+}
+
+/* Where a domain lies in a buffer. */
+static __u8 *place(const struct ec_domain *d, unsigned int n)
+{
+	return (__u8 *)(buffer(d->master, n) + 1) + d->offset;
+}
+
+int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
+{
+	size_t least = sizeof(struct ec_exchange_buffer);
+
+	m->exchange_size = arg->exchange_size;
+	m->exchange = ec_master_map(m, arg->exchange_size, PROT_READ | PROT_WRITE,
+				    EC_MMAP_EXCHANGE);
+	if (!m->exchange)
+		return -errno;
+	m->stride = m->exchange->stride;
+	if (m->stride < least || EC_EXCHANGE_FIRST + 2ULL * EC_EXCHANGE_BUFFERS *
+	    m->stride > m->exchange_size)
+		return -EPROTO;
+	m->out_back = 0;
+	m->out_last = 0;
+	m->in_front = 1;
+	m->cycle = 0;
+	if (!m->image_size)
+		return 0;
+	m->image = mmap(NULL, m->image_size, PROT_READ | PROT_WRITE,
+			MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
+	if (m->image != MAP_FAILED)
+		return 0;
+	m->image = NULL;
+	return -errno;
+}
+
+void ec_cycle_unmap(struct ec_master *m)
+{
+	if (m->exchange)
+		munmap(m->exchange, m->exchange_size);
+	m->exchange = NULL;
+}
+
+static int get_fmmu(const struct ec_domain *d, __u32 i, struct ec_input *in)
+{
+	struct ec_ioc_domain_fmmu arg = { .index = d->index, .fmmu = i };
+	int ret = ec_ioctl(d->master, EC_IOC_DOMAIN_FMMU, &arg);
+
+	if (ret)
+		return ret;
+	if (arg.offset > d->size || arg.size > d->size - arg.offset)
+		return -EPROTO;
+	in->offset = arg.offset;
+	in->size = arg.dir == DIR_INPUT ? arg.size : 0;
+	return 0;
+}
+
+/* What of a domain is input: the rest of its data is the application's. */
+int ec_cycle_find_inputs(struct ec_domain *d)
+{
+	struct ec_ioc_domain info = { .index = d->index };
+	struct ec_input *last, in;
+	int ret = ec_ioctl(d->master, EC_IOC_DOMAIN, &info);
+	__u32 i;
+
+	if (ret)
+		return ret;
+	if (d->offset + d->size > d->master->stride - sizeof(struct ec_exchange_buffer))
+		return -EPROTO;
+	d->n_inputs = 0;
+	d->inputs = calloc(info.fmmu_count + 1UL, sizeof(*d->inputs));
+	if (!d->inputs)
+		return -ENOMEM;
+	for (i = 0; i < info.fmmu_count; i++) {
+		ret = get_fmmu(d, i, &in);
+		if (ret)
+			return ret;
+		if (!in.size)
+			continue;
+		last = d->n_inputs ? &d->inputs[d->n_inputs - 1] : NULL;
+		if (last && last->offset + last->size == in.offset)
+			last->size += in.size;
+		else
+			d->inputs[d->n_inputs++] = in;
+	}
+	return 0;
+}
+
+/* cycle --------------------------------------------------------------------*/
+
+/* Exchanges a buffer we are done with for the one named by a word. */
+static unsigned int swap_buffer(__u32 *word, __u32 mine)
+{
+	__u32 n = __atomic_exchange_n(word, mine, __ATOMIC_ACQ_REL) & INDEX_MASK;
+
+	return n < EC_EXCHANGE_BUFFERS ? n : 0;
+}
+
+/* The newest inputs; without new ones there is nothing to process. */
+void ec_cycle_receive(struct ec_master *m)
+{
+	__u32 *word = &m->exchange->inputs;
+
+	if (!(__atomic_load_n(word, __ATOMIC_RELAXED) & EC_EXCHANGE_NEW))
+		return;
+	m->in_front = swap_buffer(word, m->in_front);
+	m->received = ~0ULL;
+}
+
+void ec_cycle_process(struct ec_domain *d)
+{
+	unsigned int n = EC_EXCHANGE_BUFFERS + d->master->in_front, i;
+	const __u8 *from = place(d, n);
+
+	for (i = 0; i < d->n_inputs; i++)
+		memcpy(d->data + d->inputs[i].offset, from + d->inputs[i].offset,
+		       d->inputs[i].size);
+	d->snap = buffer(d->master, n)->domains[d->index];
+}
+
+void ec_cycle_queue(struct ec_domain *d)
+{
+	if (d->size)
+		memcpy(place(d, d->master->out_back), d->data, d->size);
+}
+
+/*
+ * Domains that are not queued keep the outputs of before. They are still in the
+ * buffer that was given last: it comes back only for the one given now.
+ */
+void ec_cycle_send(struct ec_master *m)
+{
+	struct ec_domain *d;
+
+	if (!m->queued)
+		return;
+	for (d = m->domains; d; d = d->next)
+		if (!(m->queued >> d->index & 1) && d->size && m->out_last != m->out_back)
+			memcpy(place(d, m->out_back), place(d, m->out_last), d->size);
+	m->out_last = m->out_back;
+	m->out_back = swap_buffer(&m->exchange->outputs, m->out_back | EC_EXCHANGE_NEW);
+	m->queued = 0;
+}
+
+/* waiting ------------------------------------------------------------------*/
+
+static bool runs(const struct ec_master *m)
+{
+	return m && m->active && m->exchange;
+}
+
+int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
+{
+	struct ec_ioc_wait arg = { .timeout_us = timeout_us };
+	__u64 n;
+	int ret;
+
+	if (!runs(master))
+		return -EINVAL;
+	arg.cycle = master->cycle;
+	ret = ec_ioctl(master, EC_IOC_WAIT, &arg);
+	if (ret)
+		return ret;
+	n = arg.cycle - master->cycle;
+	master->cycle = arg.cycle;
+	return n > INT32_MAX ? INT32_MAX : (int)n;
+}
+
+uint64_t ecrt_master_cycle_count(const ec_master_t *master)
+{
+	return runs(master) ? __atomic_load_n(&master->status->kernel.cycle,
+					      __ATOMIC_ACQUIRE) : 0;
+}
+
+int ecrt_master_cycle_fd(const ec_master_t *master)
+{
+	return runs(master) ? master->fd : -EINVAL;
+}
+
+int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
+{
+	const struct ec_status_cycle *st;
+	uint64_t count;
+	unsigned int i;
+
+	if (!master || !master->active || !state)
+		return -EINVAL;
+	memset(state, 0, sizeof(*state));
+	if (!runs(master))
+		return 0;
+	st = &master->status->kernel;
+	count = ec_status_read(st->late_count);
+	state->run = (ec_cycle_run_t)ec_status_read(st->state);
+	state->cycles = ec_status_read(st->cycle);
+	state->overruns = ec_status_read(st->overruns);
+	state->missed = ec_status_read(st->missed);
+	state->late_min = ec_status_read(st->late_min);
+	state->late_max = ec_status_read(st->late_max);
+	state->late_mean = count ? (uint32_t)(ec_status_read(st->late_sum) / count) : 0;
+	for (i = 0; i < EC_CYCLE_BINS; i++)
+		state->late[i] = ec_status_read(st->late[i]);
+	return 0;
+}

@@ -1,0 +1,475 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The kernel runs the cycle: a real-time thread on an absolute timer is the
+ * master's cyclic caller. Application and thread exchange whole images through
+ * three buffers each way (struct ec_exchange), so neither ever waits for the
+ * other. The application can write all of that memory: nothing that is read
+ * there is more than data or a number of a buffer, and that is cut to 0..2.
+ *
+ * Once it runs, the thread allocates nothing, prints nothing and takes no lock
+ * but those of ec_cycle_receive() and ec_cycle_send(), and the one of the wait
+ * queue when somebody waits.
+ */
+#include <linux/cpu.h>
+#include <linux/hrtimer.h>
+#include <linux/kthread.h>
+#include <linux/ktime.h>
+#include <linux/sched.h>
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include <linux/wait.h>
+#include <uapi/linux/sched/types.h>
+#include "config.h"
+#include "cycle_thread.h"
+#include "domain.h"
+#include "master.h"
+#include "session.h"
+
+#define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
+#define FIFO_DEFAULT	50
+#define INDEX_MASK	3
+
+/* outputs side by side in the image */
+struct area {
+	u32 offset;
+	u32 len;
+};
+
+/**
+ * struct ec_cycle_thread - @session, @outputs and sizes are immutable, the
+ *	rest is the thread's
+ * @session: active session; it ends the thread before it goes away
+ * @task: thread
+ * @outputs: areas that are taken from the application
+ * @n_outputs: entries in @outputs
+ * @bytes: of the image of all domains
+ * @stride: distance of two buffers in the exchange
+ * @next_ns: schedule of the next cycle (ktime)
+ * @epoch_ns: what makes ktime an application time
+ * @front: output buffer it holds
+ * @back: input buffer it holds
+ * @fed: there were outputs at least once
+ * @unfed: cycles without new outputs in a row, up to the limit
+ */
+struct ec_cycle_thread {
+	struct ec_session *session;
+	struct task_struct *task;
+	struct area *outputs;
+	unsigned int n_outputs;
+	u32 bytes;
+	u32 stride;
+	u64 next_ns;
+	u64 epoch_ns;
+	u8 front;
+	u8 back;
+	bool fed;
+	u32 unfed;
+};
+
+static struct ec_status_cycle *status(const struct ec_cycle_thread *t)
+{
+	return &t->session->shared->status->kernel;
+}
+
+static struct ec_exchange *exchange(const struct ec_cycle_thread *t)
+{
+	return t->session->shared->exchange;
+}
+
+static struct ec_exchange_buffer *buffer(const struct ec_cycle_thread *t, unsigned int n)
+{
+	return t->session->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
+}
+
+/* A number from memory of the application. */
+static u8 buffer_index(u32 word)
+{
+	return min_t(u32, word & INDEX_MASK, EC_EXCHANGE_BUFFERS - 1);
+}
+
+/* The newest outputs, or false when there are none since the last time. */
+static bool take_outputs(struct ec_cycle_thread *t)
+{
+	u8 *image = t->session->shared->image;
+	struct ec_exchange *x = exchange(t);
+	const u8 *data;
+	unsigned int i;
+
+	if (!(READ_ONCE(x->outputs) & EC_EXCHANGE_NEW))
+		return false;
+	t->front = buffer_index(xchg(&x->outputs, t->front));
+	data = (const u8 *)(buffer(t, t->front) + 1);
+	for (i = 0; i < t->n_outputs; i++)
+		memcpy(image + t->outputs[i].offset, data + t->outputs[i].offset,
+		       t->outputs[i].len);
+	return true;
+}
+
+/* No more cycles; who waits for one is told. */
+static void end_run(struct ec_master *m)
+{
+	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
+	wake_up_all(&m->kernel_wq);
+}
+
+/* The application has given no outputs for too long. */
+static void stall(struct ec_cycle_thread *t)
+{
+	u8 *image = t->session->shared->image;
+	struct ec_status_cycle *st = status(t);
+	unsigned int i;
+
+	switch (t->session->kernel.stall) {
+	case EC_STALL_STOP:
+		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
+		return;
+	case EC_STALL_ZERO:
+		for (i = 0; i < t->n_outputs; i++)
+			memset(image + t->outputs[i].offset, 0, t->outputs[i].len);
+		break;
+	}
+	WRITE_ONCE(st->state, EC_CYCLE_STATE_STALLED);
+}
+
+/* Outputs of this cycle, new ones or what the policy says. */
+static void feed(struct ec_cycle_thread *t)
+{
+	struct ec_status_cycle *st = status(t);
+	u32 limit = t->session->kernel.stall_cycles;
+
+	if (take_outputs(t)) {
+		t->fed = true;
+		t->unfed = 0;
+		if (st->state == EC_CYCLE_STATE_STALLED)
+			WRITE_ONCE(st->state, EC_CYCLE_STATE_RUNNING);
+		return;
+	}
+	if (!t->fed)
+		return;
+	WRITE_ONCE(st->missed, st->missed + 1);
+	if (!limit || t->unfed == limit)
+		return;
+	if (++t->unfed == limit)
+		stall(t);
+}
+
+/* Inputs and working counters of this cycle for the application. */
+static void publish(struct ec_cycle_thread *t, bool received)
+{
+	struct ec_session *s = t->session;
+	struct ec_master *m = s->master;
+	struct ec_exchange_buffer *b = buffer(t, EC_EXCHANGE_BUFFERS + t->back);
+	struct ec_status_cycle *st = status(t);
+	u64 cycle = st->cycle + 1;
+	unsigned int i;
+
+	b->cycle = cycle;
+	b->time_ns = t->next_ns;
+	for (i = 0; i < s->n_domains; i++) {
+		b->domains[i] = s->shared->status->domains[i];
+		/* without a device nothing has come back */
+		if (!received) {
+			b->domains[i].working_counter = 0;
+			b->domains[i].wc_state = 0;
+		}
+	}
+	memcpy(b + 1, s->shared->image, t->bytes);
+	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
+	/* who sees the number finds the inputs */
+	smp_store_release(&st->cycle, cycle);
+	WRITE_ONCE(m->kernel_cycle, cycle);
+	if (wq_has_sleeper(&m->kernel_wq))
+		wake_up_all(&m->kernel_wq);
+}
+
+/* How late the send was against its schedule. */
+static void count_late(struct ec_status_cycle *st, s64 ns)
+{
+	u32 late = clamp_t(s64, ns, 0, U32_MAX);
+	unsigned int i = min_t(unsigned int, fls(late), EC_CYCLE_BUCKETS - 1);
+
+	WRITE_ONCE(st->late[i], st->late[i] + 1);
+	WRITE_ONCE(st->late_sum, st->late_sum + late);
+	if (!st->late_count || late < st->late_min)
+		WRITE_ONCE(st->late_min, late);
+	if (late > st->late_max)
+		WRITE_ONCE(st->late_max, late);
+	WRITE_ONCE(st->late_count, st->late_count + 1);
+}
+
+/* Cycles whose time has passed are left out, so that the phase stays. */
+static void skip_missed(struct ec_cycle_thread *t)
+{
+	u32 period = t->session->kernel.period_ns;
+	s64 late = ktime_get_ns() - t->next_ns;
+	u64 skipped;
+
+	if (late < period)
+		return;
+	skipped = div_u64(late, period);
+	WRITE_ONCE(status(t)->overruns, status(t)->overruns + skipped);
+	t->next_ns += skipped * period;
+}
+
+/* One cycle; false: the last one. */
+static bool cycle(struct ec_cycle_thread *t)
+{
+	struct ec_session *s = t->session;
+	struct ec_master *m = s->master;
+	struct ec_ioc_send send = {
+		.flags = s->kernel.dc,
+		.queued = s->n_domains ? GENMASK_ULL(s->n_domains - 1, 0) : 0,
+	};
+	u64 due = t->next_ns;
+	bool received;
+
+	skip_missed(t);
+	send.sync_time = t->next_ns + t->epoch_ns;
+	received = !ec_cycle_receive(s);
+	feed(t);
+	if (status(t)->state != EC_CYCLE_STATE_STOPPED) {
+		ec_dc_app_time(m, send.sync_time);
+		if (!ec_cycle_send(s, &send))
+			count_late(status(t), m->last_send_ns - due);
+	}
+	publish(t, received);
+	t->next_ns += s->kernel.period_ns;
+	return status(t)->state != EC_CYCLE_STATE_STOPPED;
+}
+
+/* Until the next cycle; false: the thread shall end. */
+static bool sleep(const struct ec_cycle_thread *t)
+{
+	ktime_t at = ns_to_ktime(t->next_ns);
+	bool due = false;
+
+	while (!due) {
+		set_current_state(TASK_IDLE);
+		if (kthread_should_stop())
+			break;
+		due = !schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
+	}
+	__set_current_state(TASK_RUNNING);
+	return due;
+}
+
+static int run(void *data)
+{
+	struct ec_cycle_thread *t = data;
+	const struct ec_ioc_cycle *k = &t->session->kernel;
+	struct sched_attr attr = {
+		.size = sizeof(attr), .sched_policy = SCHED_FIFO,
+		.sched_priority = k->priority ?: FIFO_DEFAULT,
+	};
+	u64 now;
+
+	if (sched_setattr_nocheck(current, &attr))
+		ec_warn(t->session->master, "cycle: no real-time priority %u\n",
+			attr.sched_priority);
+	now = ktime_get_ns();
+	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
+	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
+	while (sleep(t))
+		if (!cycle(t)) {
+			end_run(t->session->master);
+			break;
+		}
+	for (;;) {
+		set_current_state(TASK_IDLE);
+		if (kthread_should_stop())
+			break;
+		schedule();
+	}
+	__set_current_state(TASK_RUNNING);
+	return 0;
+}
+
+/* Output areas of all domains; those side by side are one. */
+static int find_outputs(struct ec_cycle_thread *t)
+{
+	const struct ec_session *s = t->session;
+	struct area *a = NULL;
+	unsigned int i, k, n = 0;
+
+	for (i = 0; i < s->n_domains; i++)
+		n += s->domains[i]->n_fmmus;
+	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL);
+	if (!t->outputs)
+		return -ENOMEM;
+	for (i = 0; i < s->n_domains; i++)
+		for (k = 0; k < s->domains[i]->n_fmmus; k++) {
+			const struct ec_domain *d = s->domains[i];
+			const struct ec_config_fmmu *f =
+				&d->fmmus[k].config->fmmus[d->fmmus[k].fmmu];
+			u32 offset = d->offset + f->offset;
+
+			if (f->dir != EC_CFG_DIR_OUTPUT || !f->size)
+				continue;
+			if (a && a->offset + a->len == offset) {
+				a->len += f->size;
+				continue;
+			}
+			a = &t->outputs[t->n_outputs++];
+			*a = (struct area){ .offset = offset, .len = f->size };
+		}
+	return 0;
+}
+
+static int alloc_exchange(struct ec_cycle_thread *t)
+{
+	struct ec_shared *sh = t->session->shared;
+	struct ec_exchange *x;
+
+	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
+	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
+	x = vmalloc_user(sh->exchange_size);
+	if (!x)
+		return -ENOMEM;
+	sh->exchange = x;
+	x->outputs = EC_EXCHANGE_BUFFERS - 1;
+	x->inputs = EC_EXCHANGE_BUFFERS - 1;
+	x->stride = t->stride;
+	t->front = 1;
+	t->back = 0;
+	return 0;
+}
+
+static void free_thread(struct ec_cycle_thread *t)
+{
+	kvfree(t->outputs);
+	kfree(t);
+}
+
+/**
+ * ec_cycle_thread_create() - prepare a cycle run by the kernel
+ * @s: session with a layout and @kernel.period_ns
+ * @image_bytes: of all domains
+ *
+ * The memory of the exchange goes away with @s->shared.
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENODEV the CPU is not online; -ENOMEM.
+ */
+int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
+{
+	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL);
+	int ret, cpu = s->kernel.cpu;
+
+	if (!t)
+		return -ENOMEM;
+	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
+	t->session = s;
+	t->bytes = image_bytes;
+	ret = find_outputs(t) ?: alloc_exchange(t);
+	if (ret)
+		goto err;
+	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->index);
+	if (IS_ERR(t->task)) {
+		ret = PTR_ERR(t->task);
+		goto err;
+	}
+	if (cpu >= 0) {
+		cpus_read_lock();
+		ret = cpu < nr_cpu_ids && cpu_online(cpu) ? 0 : -ENODEV;
+		if (!ret)
+			kthread_bind(t->task, cpu);
+		cpus_read_unlock();
+	}
+	if (ret) {
+		kthread_stop(t->task);
+		goto err;
+	}
+	s->thread = t;
+	return 0;
+err:
+	free_thread(t);
+	return ret;
+}
+
+/**
+ * ec_cycle_thread_start() - the kernel begins to run the cycle
+ * @s: active session; nothing happens when the application runs the cycle
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_cycle_thread_start(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	if (!s->thread)
+		return;
+	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
+	m->interval_told = true;
+	WRITE_ONCE(status(s->thread)->state, EC_CYCLE_STATE_RUNNING);
+	WRITE_ONCE(m->kernel_cycle, 0);
+	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
+	wake_up_process(s->thread->task);
+}
+
+/**
+ * ec_cycle_thread_stop() - end the cycle run by the kernel
+ * @s: session; nothing happens when the application ran the cycle
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_cycle_thread_stop(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	if (!s->thread)
+		return;
+	kthread_stop(s->thread->task);
+	if (m->kernel_run & 1)
+		end_run(m);
+	free_thread(s->thread);
+	s->thread = NULL;
+}
+
+/**
+ * ec_cycle_thread_poll() - is there anything for the application?
+ * @s: active session with a thread
+ *
+ * Context: Process, cyclic_lock held.
+ * Return: EPOLLIN: inputs that it has not taken; EPOLLHUP: the cycle has
+ * stopped.
+ */
+__poll_t ec_cycle_thread_poll(const struct ec_session *s)
+{
+	const struct ec_cycle_thread *t = s->thread;
+	__poll_t mask = 0;
+
+	if (READ_ONCE(exchange(t)->inputs) & EC_EXCHANGE_NEW)
+		mask |= EPOLLIN | EPOLLRDNORM;
+	if (READ_ONCE(status(t)->state) == EC_CYCLE_STATE_STOPPED)
+		mask |= EPOLLHUP;
+	return mask;
+}
+
+/**
+ * ec_cycle_thread_wait() - wait for the next cycle
+ * @m: master
+ * @run: its @kernel_run while the caller's session was active
+ * @cycle: in: the last cycle the caller has seen; out: a newer one
+ * @timeout_us: limit, 0: none
+ *
+ * Context: Process. Sleeps; nothing of the session is touched, so it may end.
+ * Return: 0; -ETIMEDOUT; -EINTR; -ECANCELED the cycle has stopped.
+ */
+int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_us)
+{
+	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
+	int ret;
+
+	ret = wait_event_interruptible_hrtimeout(m->kernel_wq,
+						 READ_ONCE(m->kernel_run) != run || !(run & 1) ||
+						 READ_ONCE(m->kernel_cycle) > *cycle, limit);
+	if (ret == -ETIME)
+		return -ETIMEDOUT;
+	/* a restart would begin the time limit anew */
+	if (ret)
+		return -EINTR;
+	if (!(run & 1) || READ_ONCE(m->kernel_run) != run)
+		return -ECANCELED;
+	*cycle = READ_ONCE(m->kernel_cycle);
+	return 0;
+}

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* The library's side of a cycle the kernel runs; a thread is the kernel. */
+
+#include "fake.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#define ENOUGH	2000U	/* images each way */
+#define LIMIT_S	20
+#define STRIDE	(sizeof(struct ec_exchange_buffer) + 64)
+#define IMAGE	32	/* two domains of 8 bytes out, 8 in */
+
+static int failures;
+
+#define CHECK(c) \
+	do { \
+		if (!(c)) { \
+			printf("%s:%d: %s\n", __FILE__, __LINE__, #c); \
+			failures++; \
+		} \
+	} while (0)
+
+static unsigned char *image(unsigned int n)
+{
+	return (unsigned char *)fake.exchange + EC_EXCHANGE_FIRST + n * STRIDE +
+	       sizeof(struct ec_exchange_buffer);
+}
+
+static unsigned int swap_word(__u32 *word, __u32 mine)
+{
+	return __atomic_exchange_n(word, mine, __ATOMIC_ACQ_REL) & 3;
+}
+
+/* Eight equal bytes, or -1. */
+static int equal8(const unsigned char *p)
+{
+	for (unsigned int i = 1; i < 8; i++)
+		if (p[i] != p[0])
+			return -1;
+	return p[0];
+}
+
+struct kernel {
+	volatile int stop;
+	unsigned long taken;
+	unsigned long torn;
+};
+
+static unsigned long taken(const struct kernel *k)
+{
+	return __atomic_load_n(&k->taken, __ATOMIC_RELAXED);
+}
+
+/* Takes outputs, gives inputs, as fast as it can. */
+static void *kernel(void *arg)
+{
+	struct kernel *k = arg;
+	unsigned int front = 1, back = 0;
+	__u64 cycle = 0;
+
+	while (!k->stop) {
+		struct ec_exchange_buffer *b;
+
+		if (__atomic_load_n(&fake.exchange->outputs, __ATOMIC_RELAXED) & EC_EXCHANGE_NEW) {
+			front = swap_word(&fake.exchange->outputs, front);
+			__atomic_fetch_add(&k->taken, 1, __ATOMIC_RELAXED);
+			k->torn += equal8(image(front)) < 0 || equal8(image(front) + 16) < 0;
+		}
+		cycle++;
+		memset(image(3 + back), (int)(cycle & 0xff), IMAGE);
+		b = (void *)(image(3 + back) - sizeof(*b));
+		b->cycle = cycle;
+		b->domains[0].working_counter = (__u32)cycle;
+		b->domains[0].wc_state = 2;
+		back = swap_word(&fake.exchange->inputs, back | EC_EXCHANGE_NEW);
+	}
+	return NULL;
+}
+
+static ec_master_t *start(ec_domain_t **d)
+{
+	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	ec_master_t *m;
+
+	memset(&fake, 0, sizeof(fake));
+	fake.image_size = 4096;
+	fake.exchange_size = 4096 * 2;
+	fake.stride = STRIDE;
+	m = ecrt_request_master(0);
+	d[0] = ecrt_master_create_domain(m);
+	d[1] = ecrt_master_create_domain(m);
+	CHECK(ecrt_master_set_cycle(m, &config) == 0);
+	CHECK(fake.last == EC_IOC_CYCLE);
+	CHECK(ecrt_master_cycle_fd(m) == -EINVAL);
+	CHECK(ecrt_master_wait_cycle(m, 0) == -EINVAL);
+	CHECK(ecrt_master_activate(m) == 0);
+	return m;
+}
+
+/* What one round does, step by step. */
+static void steps(void)
+{
+	ec_domain_state_t st;
+	ec_cycle_state_t cs;
+	ec_domain_t *d[2];
+	ec_master_t *m = start(d);
+	unsigned char *data[2] = { ecrt_domain_data(d[0]), ecrt_domain_data(d[1]) };
+	unsigned int n;
+
+	CHECK(data[0] && data[1] == data[0] + 16);
+	/* nothing given without a queued domain */
+	CHECK(!ecrt_master_send(m) && fake.exchange->outputs == 2);
+	memset(data[0], 7, 8);
+	memset(data[1], 8, 8);
+	CHECK(!ecrt_domain_queue(d[0]) && !ecrt_domain_queue(d[1]));
+	CHECK(!ecrt_master_send(m) && fake.exchange->outputs == EC_EXCHANGE_NEW);
+	n = swap_word(&fake.exchange->outputs, 1);
+	CHECK(n == 0 && equal8(image(n)) == 7 && equal8(image(n) + 16) == 8);
+	/* a domain that is not queued keeps what was given last */
+	memset(data[0], 9, 8);
+	memset(data[1], 10, 8);
+	CHECK(!ecrt_domain_queue(d[0]) && !ecrt_master_send(m));
+	n = swap_word(&fake.exchange->outputs, n);
+	CHECK(n == 2 && equal8(image(n)) == 9 && equal8(image(n) + 16) == 8);
+	/* only inputs are copied, and only of new buffers */
+	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d[0]) && !data[0][8]);
+	memset(image(3), 0x55, IMAGE);
+	((struct ec_exchange_buffer *)(void *)(image(3) - sizeof(struct ec_exchange_buffer)))
+		->domains[0].working_counter = 3;
+	fake.exchange->inputs = 0 | EC_EXCHANGE_NEW;
+	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d[0]));
+	CHECK(equal8(data[0]) == 9 && equal8(data[0] + 8) == 0x55 && !data[1][8]);
+	CHECK(!ecrt_domain_state(d[0], &st) && st.working_counter == 3);
+	fake.status->kernel.cycle = 12;
+	fake.status->kernel.late_sum = 30;
+	fake.status->kernel.late_count = 10;
+	fake.status->kernel.late[31] = 4;
+	CHECK(ecrt_master_cycle_count(m) == 12 && ecrt_master_cycle_fd(m) == FAKE_FD);
+	CHECK(!ecrt_master_cycle_state(m, &cs) && cs.cycles == 12 && cs.late_mean == 3 &&
+	      cs.late[31] == 4);
+	fake.cycle = 5;
+	CHECK(ecrt_master_wait_cycle(m, 0) == 5);
+	fake.cycle = 6;
+	CHECK(ecrt_master_wait_cycle(m, 0) == 1);
+	/* a word that is none names a buffer that is one */
+	fake.exchange->inputs = 0xffffffff;
+	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d[0]));
+	ecrt_release_master(m);
+}
+
+/* Both sides at once: nothing torn, nothing older than before, no system call. */
+static void together(void)
+{
+	ec_domain_t *d[2];
+	ec_master_t *m = start(d);
+	unsigned char *data[2] = { ecrt_domain_data(d[0]), ecrt_domain_data(d[1]) };
+	unsigned long torn = 0, backwards = 0, fresh = 0;
+	unsigned int calls = fake.calls, last = 0;
+	time_t end = time(NULL) + LIMIT_S;
+	struct kernel k = { 0 };
+	ec_domain_state_t st;
+	pthread_t thread;
+
+	if (pthread_create(&thread, NULL, kernel, &k))
+		abort();
+	for (unsigned int i = 0; (fresh < ENOUGH || taken(&k) < ENOUGH) && time(NULL) < end; i++) {
+		ecrt_master_receive(m);
+		ecrt_domain_process(d[0]);
+		ecrt_domain_process(d[1]);
+		ecrt_domain_state(d[0], &st);
+		torn += equal8(data[0] + 8) < 0 || equal8(data[1] + 8) != data[0][8] ||
+			(st.working_counter & 0xff) != data[0][8];
+		backwards += st.working_counter < last;
+		fresh += st.working_counter != last;
+		last = st.working_counter;
+		memset(data[0], (int)i, 8);
+		memset(data[1], (int)i + 1, 8);
+		ecrt_domain_queue(d[0]);
+		if (i % 2)
+			ecrt_domain_queue(d[1]);
+		ecrt_master_send(m);
+	}
+	k.stop = 1;
+	pthread_join(thread, NULL);
+	CHECK(!torn && !backwards && !k.torn);
+	CHECK(fresh >= ENOUGH && k.taken >= ENOUGH);
+	CHECK(fake.calls == calls);
+	ecrt_release_master(m);
+}
+
+int kernel_cycle(void)
+{
+	CHECK(ecrt_master_set_cycle(NULL, NULL) == -EINVAL);
+	CHECK(ecrt_master_wait_cycle(NULL, 0) == -EINVAL);
+	CHECK(ecrt_master_cycle_fd(NULL) == -EINVAL);
+	CHECK(ecrt_master_cycle_count(NULL) == 0);
+	CHECK(ecrt_master_cycle_state(NULL, NULL) == -EINVAL);
+	steps();
+	together();
+	return failures;
+}
