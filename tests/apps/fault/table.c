@@ -58,6 +58,7 @@ const struct cmd cmds[] = {
 	CMD(DOMAIN_OFFSET, APP),
 	CMD(INTERVAL, APP),
 	CMD(APP_TIME, APP, RSV1(ec_ioc_app_time)),
+	CMD(REF_CLOCK, APP),
 	CMD(CYCLE, APP),
 	CMD(WAIT, APP),
 	CMD(RECEIVE, APP, .cyclic = true),
