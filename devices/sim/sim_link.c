@@ -94,11 +94,13 @@ static const struct ecdev_ops link_ops = {
  * @name: device name, "sim0"
  * @mac: its address
  * @sim: segment; belongs to the link afterwards
+ * @start_ns: kernel time (ktime) when the segment's time is 0
  *
  * Context: Process. May sleep.
  * Return: link, or ERR_PTR; then @sim still belongs to the caller.
  */
-struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim)
+struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim,
+				       u64 start_ns)
 {
 	struct ec_sim_link *l = kzalloc(sizeof(*l), GFP_KERNEL);
 	struct ecdev *dev;
@@ -106,7 +108,7 @@ struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct e
 
 	if (!l)
 		return ERR_PTR(-ENOMEM);
-	ret = ec_sim_wire_init(&l->wire, sim, deliver);
+	ret = ec_sim_wire_init(&l->wire, sim, start_ns, deliver);
 	if (ret)
 		goto err_free;
 	dev = ecdev_offer(name, mac, &link_ops, l);

@@ -7,7 +7,8 @@
 
 struct ec_sim_link;
 
-struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim);
+struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim,
+				       u64 start_ns);
 void ec_sim_link_destroy(struct ec_sim_link *l);
 
 #endif

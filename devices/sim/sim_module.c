@@ -79,7 +79,7 @@ static int __init sim_init(void)
 		responder = ec_sim_responder_create(netdev, n_netdev, sim);
 		ret = PTR_ERR_OR_ZERO(responder);
 	} else {
-		sim_link = ec_sim_link_create("sim0", mac, sim);
+		sim_link = ec_sim_link_create("sim0", mac, sim, ktime_get_ns());
 		ret = PTR_ERR_OR_ZERO(sim_link);
 	}
 	if (ret)

@@ -5,6 +5,7 @@
  */
 #include <linux/etherdevice.h>
 #include <linux/if_arp.h>
+#include <linux/ktime.h>
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include <linux/skbuff.h>
@@ -228,7 +229,7 @@ struct ec_sim_responder *ec_sim_responder_create(char *const *names, unsigned in
 
 	if (!r)
 		return ERR_PTR(-ENOMEM);
-	ret = ec_sim_wire_init(&r->wire, sim, deliver);
+	ret = ec_sim_wire_init(&r->wire, sim, ktime_get_ns(), deliver);
 	if (ret)
 		goto err_free;
 	r->n = n;

@@ -30,6 +30,12 @@ static void sim_free(void *p)
 
 const struct ec_sim_ops ec_sim_kernel_ops = { .alloc = sim_alloc, .free = sim_free };
 
+/* the model's time */
+static u64 now_ns(const struct ec_sim_wire *w)
+{
+	return ktime_get_ns() - w->start_ns;
+}
+
 /* Sorted by arrival; nearly always the new one is the last. */
 static void insert(struct ec_sim_wire *w, struct ec_sim_flying *f)
 {
@@ -57,7 +63,7 @@ static void arm(struct ec_sim_wire *w)
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
 
 	if (f && !w->polled && w->running)
-		hrtimer_start(&w->timer, ns_to_ktime(f->due_ns), HRTIMER_MODE_ABS_SOFT);
+		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + f->due_ns), HRTIMER_MODE_ABS_SOFT);
 }
 
 static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
@@ -81,7 +87,7 @@ void ec_sim_wire_poll(struct ec_sim_wire *w)
 	struct ec_sim_flying *f;
 
 	spin_lock_bh(&w->lock);
-	while ((f = due(w, ktime_get_ns()))) {
+	while ((f = due(w, now_ns(w)))) {
 		spin_unlock_bh(&w->lock);
 		w->deliver(w, f->port, f->eth, f->len);
 		spin_lock_bh(&w->lock);
@@ -157,7 +163,7 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 
 	if (!f)
 		return;
-	start = max(ktime_get_ns(), w->wire_free_ns[port]);
+	start = max(now_ns(w), w->wire_free_ns[port]);
 	w->wire_free_ns[port] = start + ec_frame_wire_ns(len);
 	f->len = len;
 	memcpy(f->eth, eth, len);
@@ -210,7 +216,7 @@ bool ec_sim_wire_up(struct ec_sim_wire *w)
 	bool up;
 
 	spin_lock_bh(&w->lock);
-	ec_sim_advance(w->sim, ktime_get_ns());
+	ec_sim_advance(w->sim, now_ns(w));
 	up = ec_sim_link(w->sim, 0);
 	spin_unlock_bh(&w->lock);
 	return up;
@@ -220,12 +226,13 @@ bool ec_sim_wire_up(struct ec_sim_wire *w)
  * ec_sim_wire_init() - put a segment into the kernel's time
  * @w: wire
  * @sim: segment; stays the caller's
+ * @start_ns: kernel time (ktime) when the segment's time is 0
  * @deliver: see struct ec_sim_wire
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim,
+int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 		     void (*deliver)(struct ec_sim_wire *w, int port, const u8 *eth, size_t len))
 {
 	unsigned int i;
@@ -234,6 +241,7 @@ int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim,
 	if (!w->frames)
 		return -ENOMEM;
 	w->sim = sim;
+	w->start_ns = start_ns;
 	w->deliver = deliver;
 	spin_lock_init(&w->lock);
 	hrtimer_init(&w->timer, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);

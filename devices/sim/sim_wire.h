@@ -13,6 +13,7 @@ struct ec_sim_flying;
 /**
  * struct ec_sim_wire - a segment with frames in it
  * @sim: segment
+ * @start_ns: kernel time (ktime) when the segment's time is 0
  * @deliver: gets each Ethernet frame that comes back at a master port, in
  *	softirq or from ec_sim_wire_poll(); no lock is held
  * @lock: protects everything below and @sim
@@ -26,6 +27,7 @@ struct ec_sim_flying;
  */
 struct ec_sim_wire {
 	struct ec_sim *sim;
+	u64 start_ns;
 	void (*deliver)(struct ec_sim_wire *w, int port, const u8 *eth, size_t len);
 	spinlock_t lock;
 	struct hrtimer timer;
@@ -39,7 +41,7 @@ struct ec_sim_wire {
 
 extern const struct ec_sim_ops ec_sim_kernel_ops;
 
-int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim,
+int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 		     void (*deliver)(struct ec_sim_wire *w, int port, const u8 *eth, size_t len));
 void ec_sim_wire_exit(struct ec_sim_wire *w);
 void ec_sim_wire_run(struct ec_sim_wire *w, bool on);

@@ -43,7 +43,7 @@ void bus_plug(struct bus *b)
 	struct ec_sim_link *l;
 
 	b->t0 = ktime_get_ns();
-	l = ec_sim_link_create("bus0", mac, b->sim);
+	l = ec_sim_link_create("bus0", mac, b->sim, 0);
 	KUNIT_ASSERT_FALSE(b->test, IS_ERR(l));
 	b->link = l;
 }
