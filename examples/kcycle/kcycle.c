@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * Example: the kernel runs the cycle, this program only has values. It needs no
+ * real-time priority: the frames keep their time whatever it does.
+ *
+ * usage: kcycle [CYCLES]
+ *
+ * All slaves run with the process data they have, at 1 kHz. The first output
+ * byte of each counts up; the program ends after CYCLES cycles (default 5000).
+ */
+#include <ecrt.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define SLAVES_MAX	128
+#define PERIOD_NS	1000000
+#define OP_TIMEOUT_S	60
+
+static ec_master_t *master;
+static ec_domain_t *domain;
+static ec_slave_config_t *slaves[SLAVES_MAX];
+static int outputs[SLAVES_MAX];		/* first output byte in the domain, or -1 */
+static unsigned int n_slaves;
+
+/* A slave as it is: every SyncManager with PDOs goes into the domain. */
+static int add_slave(uint16_t position)
+{
+	ec_slave_info_t info;
+	ec_sync_info_t sync;
+	unsigned int bit;
+
+	outputs[position] = -1;
+	if (ecrt_master_get_slave(master, position, &info))
+		return -1;
+	slaves[position] = ecrt_master_slave_config(master, 0, position, info.vendor_id,
+						    info.product_code);
+	if (!slaves[position])
+		return -1;
+	for (uint8_t i = 0; i < info.sync_count; i++) {
+		int offset;
+
+		if (ecrt_master_get_sync_manager(master, position, i, &sync))
+			return -1;
+		if (!sync.n_pdos)
+			continue;
+		offset = ecrt_slave_config_reg_pdo_entry_pos(slaves[position], i, 0, 0, domain,
+							     &bit);
+		if (offset < 0)
+			return -1;
+		if (sync.dir == EC_DIR_OUTPUT && outputs[position] < 0)
+			outputs[position] = offset;
+	}
+	return 0;
+}
+
+static int configure(void)
+{
+	/* Without outputs for 100 cycles the slaves get zeros, and stay in OP. */
+	ec_cycle_config_t cycle = {
+		.period_ns = PERIOD_NS,
+		.cpu = -1,
+		.stall = EC_CYCLE_ZERO,
+		.stall_cycles = 100,
+	};
+	ec_master_info_t info;
+
+	domain = ecrt_master_create_domain(master);
+	if (!domain || ecrt_master(master, &info))
+		return -1;
+	n_slaves = info.slave_count;
+	if (!n_slaves || n_slaves > SLAVES_MAX) {
+		fprintf(stderr, "%u slaves; 1 to %u are possible\n", n_slaves, SLAVES_MAX);
+		return -1;
+	}
+	for (unsigned int i = 0; i < n_slaves; i++)
+		if (add_slave((uint16_t)i))
+			return -1;
+	return ecrt_master_set_cycle(master, &cycle);
+}
+
+/*
+ * One cycle: wait for the kernel's, take its inputs, give outputs for the next.
+ * The wait is the only system call. Returns what ecrt_master_wait_cycle() does.
+ */
+static int cycle(ec_domain_state_t *state)
+{
+	uint8_t *data = ecrt_domain_data(domain);
+	int n = ecrt_master_wait_cycle(master, 1000000);
+
+	if (n < 0)
+		return n;
+	ecrt_master_receive(master);
+	ecrt_domain_process(domain);
+	ecrt_domain_state(domain, state);
+	for (unsigned int i = 0; i < n_slaves; i++)
+		if (outputs[i] >= 0)
+			EC_WRITE_U8(data + outputs[i], EC_READ_U8(data + outputs[i]) + 1);
+	ecrt_domain_queue(domain);
+	ecrt_master_send(master);
+	return n;
+}
+
+static int in_op(void)
+{
+	ec_slave_config_state_t state;
+
+	for (unsigned int i = 0; i < n_slaves; i++)
+		if (ecrt_slave_config_state(slaves[i], &state) || !state.operational)
+			return 0;
+	return 1;
+}
+
+static int run(unsigned long cycles)
+{
+	unsigned long skipped = 0, incomplete = 0;
+	time_t end = time(NULL) + OP_TIMEOUT_S;
+	ec_domain_state_t domain_state;
+	ec_cycle_state_t state;
+	int n = 0;
+
+	while (!in_op() && n >= 0 && time(NULL) < end)
+		n = cycle(&domain_state);
+	if (!in_op()) {
+		fprintf(stderr, "not all slaves are in OP; see 'ethercat slaves'\n");
+		return -1;
+	}
+	printf("%u slaves in OP\n", n_slaves);
+	for (unsigned long i = 0; i < cycles; i++) {
+		n = cycle(&domain_state);
+		if (n < 0) {
+			fprintf(stderr, "the cycle ended: %s\n", strerror(-n));
+			return -1;
+		}
+		/* cycles this program slept through; the frames went all the same */
+		skipped += (unsigned long)n - 1;
+		incomplete += domain_state.wc_state != EC_WC_COMPLETE;
+	}
+	ecrt_master_cycle_state(master, &state);
+	printf("%lu cycles, %lu skipped, %lu incomplete\n", cycles, skipped, incomplete);
+	printf("kernel: %" PRIu64 " cycles, %" PRIu64 " overruns, sent up to %" PRIu32
+	       " ns after the schedule\n", state.cycles, state.overruns, state.late_max);
+	return 0;
+}
+
+int main(int argc, char **argv)
+{
+	unsigned long cycles = argc > 1 ? strtoul(argv[1], NULL, 0) : 5000;
+	int ret = -1;
+
+	master = ecrt_request_master(0);
+	if (!master)
+		return 1;
+	if (!configure() && !ecrt_master_activate(master))
+		ret = run(cycles);
+	ecrt_release_master(master);
+	return ret ? 1 : 0;
+}
