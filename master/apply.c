@@ -31,15 +31,30 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 	return ret;
 }
 
+static const u8 zero[256];
+
+/*
+ * Without process data none may be left: the slave would answer, in PREOP too, at
+ * logical addresses that the next application gives to another slave.
+ */
+static int clear_fmmus(struct ec_slave *s)
+{
+	int ret = write_reg(s, EC_REG_FMMU(0), zero,
+			    EC_FMMU_PAGE * min_t(u8, s->regs[EC_REG_FMMUS], 16));
+
+	s->mapped = ret;
+	return ret;
+}
+
 /* state-machine.md 4.1 */
 static int to_init(struct ec_slave *s)
 {
-	static const u8 zero[256], force[1] = { EC_EEP_OWNER_FORCE };
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
 	int ret = ec_al_set(s, EC_AL_INIT, 0);
 
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
-	write_reg(s, EC_REG_FMMU(0), zero, EC_FMMU_PAGE * min_t(u8, s->regs[EC_REG_FMMUS], 16));
+	clear_fmmus(s);
 	write_reg(s, EC_REG_SM(0), zero, EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], 16));
 	write_reg(s, EC_REG_EEP_OWNER, force, 1);
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
@@ -287,6 +302,7 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 			      "does not know LRW and came after activation; start the application again");
 		return -EOPNOTSUPP;
 	}
+	s->mapped = c->n_fmmus;
 	for (i = 0; i < c->n_fmmus && !ret; i++) {
 		const struct ec_config_fmmu *f = &c->fmmus[i];
 		struct ec_fmmu v = {
@@ -409,6 +425,8 @@ static int step(struct ec_slave *s)
 	cur = s->al_status & EC_AL_STATE_MASK;
 	if (cur != EC_AL_INIT && (!s->ours || (s->reconfigure && want > EC_AL_PREOP)))
 		return to_init(s);
+	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
+		return clear_fmmus(s);
 	if (cur == want)
 		return 1;
 	if (want == EC_AL_BOOT)

@@ -68,6 +68,7 @@ struct ec_master;
  * @read_pdos: read the PDOs when it is there
  * @interrupt: leave what the worker is waiting for
  * @reconfigure: go through INIT and configure again
+ * @mapped: its FMMUs are set
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
@@ -122,6 +123,7 @@ struct ec_slave {
 	bool read_pdos;
 	bool interrupt;
 	bool reconfigure;
+	bool mapped;
 	bool ours;
 	struct mutex mbox_lock;
 	u8 mbox_counter;

@@ -198,6 +198,33 @@ static void op_entry_not_there(struct kunit *test)
 	KUNIT_EXPECT_NE(test, b->app.reason[0], '\0');
 }
 
+/* What one application has mapped does not answer in place of the next one's. */
+static void op_next_application(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EL1008\nslave b EL1008\nconst a.1 value=1\n"
+			       "const b.2 value=1\n", 2);
+	struct cyc *c = cyc_new(b, 1000);
+
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 2000), ~0ull);
+	cyc_run(c, 5);
+	KUNIT_EXPECT_EQ(test, cyc_data(c, 0)[0], 1);
+	cyc_release(c);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 1000), ~0ull);
+	bus_idle(b);
+
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 1, 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 2000), ~0ull);
+	cyc_run(c, 5);
+	KUNIT_EXPECT_EQ(test, cyc_data(c, 0)[0], 2);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 1);
+}
+
 static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_bench),
 	KUNIT_CASE(op_mapping_rewritten),
@@ -205,6 +232,7 @@ static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_without_lrw),
 	KUNIT_CASE(op_many_frames),
 	KUNIT_CASE(op_entry_not_there),
+	KUNIT_CASE(op_next_application),
 	{}
 };
 
