@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# make                modules, library, tool, simulator (KDIR= chooses the kernel)
+# make                modules, library, tool, simulator, examples (KDIR= chooses the kernel)
 # make install        all of it (DESTDIR=, PREFIX=); make uninstall
 # make demo           the main job in a VM
 # make bench          figures: what a cycle costs
@@ -14,7 +14,7 @@ MODDIR ?= $(BUILD)/modules
 # pahole is not always there, and nobody needs the modules' BTF
 KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) CONFIG_DEBUG_INFO_BTF_MODULES=
 
-all: modules lib tool
+all: modules lib tool examples
 
 # Modules are built in a copy: several kernels side by side, a clean clone.
 MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/wire/*.[ch] \
@@ -42,6 +42,9 @@ lib:
 tool:
 	$(MAKE) -C tool
 	$(MAKE) -C tool/sim
+
+examples: lib
+	$(MAKE) -C examples
 
 # --- install -----------------------------------------------------------------
 
@@ -90,8 +93,9 @@ clean:
 	$(MAKE) -C lib clean
 	$(MAKE) -C tool clean
 	$(MAKE) -C tool/sim clean
+	$(MAKE) -C examples clean
 
-.PHONY: all sync modules lib tool clean
+.PHONY: all sync modules lib tool examples clean
 
 # CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM
 demo:

@@ -137,6 +137,15 @@ app_runs() {
 t "an application in C99 with pkg-config" app_runs gcc c99 c
 t "an application in C++11 with pkg-config" app_runs g++ c++11 c++
 
+# copied somewhere else, as a user would do
+examples_build() {
+	cp -r examples "$tmp/examples" && rm -rf "$tmp/examples/build" &&
+		PKG_CONFIG_LIBDIR=$root$prefix/lib/pkgconfig PKG_CONFIG_SYSROOT_DIR=$root \
+		make -s -C "$tmp/examples" CFLAGS="-O2 -Werror" all &&
+		[ -x "$tmp/examples/build/mirror" ]
+}
+t "the examples with pkg-config, outside of the tree" examples_build
+
 nothing_left() {
 	[ -z "$(installed)" ] || { installed; return 1; }
 	[ ! -e "$root/lib/modules/$release/updates" ]

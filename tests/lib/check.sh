@@ -149,6 +149,11 @@ demo_builds() {
 	"$o/apps/demo" --help >/dev/null
 }
 
+examples_build() {	# examples_build STANDARD
+	rm -rf "$o/examples"
+	$MAKE -s -C "$top/examples" STD=$1 O="$o/examples" LIB="$o/lib" CFLAGS="-O2 -Werror" all
+}
+
 for std in c99 c11 gnu11; do
 	t "ecrt.h compiles as $std" header_compiles $CC $std c
 done
@@ -173,6 +178,9 @@ t "library against a fake kernel" library_works
 t "failures of configuration are explained" says_why
 t "cyclic calls are silent" cyclic_is_silent
 t "demo builds" demo_builds
+for std in c99 c11; do
+	t "examples build as $std" examples_build $std
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

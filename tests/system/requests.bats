@@ -17,7 +17,7 @@ teardown_file() { stop; }
 says() { grep -qxF "$1" <<<"$output" || { echo "not said: $1"; echo "$output"; return 1; }; }
 
 @test "SDOs, a register, an absent slave, an emergency" {
-	run timeout 100 "$EC_BUILD/apps/requests" 1
+	run timeout 100 "$EC_BUILD/examples/sdo_requests" 1
 	[ "$status" = 0 ]
 	says "slave is in OP"
 	says "serial number: SUCCESS 0x0000004d, 4 bytes"

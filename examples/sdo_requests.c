@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * requests POSITION: an example of SDO and register requests and emergencies
- * of one slave, beside a cycle of 1 ms. Reads its serial number and its station
- * address, writes object 0x2001:08 and reads it back, asks for an object that
- * it does not have and a slave that is not there. Prints what came of it, the
- * next emergencies, and for how many cycles a request was BUSY.
+ * sdo_requests: SDO and register requests and emergencies of one slave, beside a
+ * cycle of 1 ms that does not wait for them. Reads its serial number and its
+ * station address, writes object 0x2001:08 and reads it back (on a real slave
+ * choose another one), asks for an object that it does not have and for a slave
+ * that is not there. Prints what came of it, the next emergencies, and for how
+ * many cycles a request was BUSY.
+ *
+ * usage: sdo_requests POSITION
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -143,7 +146,7 @@ int main(int argc, char **argv)
 	struct timespec t;
 
 	if (argc != 2) {
-		fprintf(stderr, "usage: requests POSITION\n");
+		fprintf(stderr, "usage: sdo_requests POSITION\n");
 		return 2;
 	}
 	master = ecrt_request_master(0);

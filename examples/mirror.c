@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * mirror: eight digital inputs switch eight digital outputs, 1000 times a
+ * second. The smallest complete application: configure, activate, run the
+ * cycle in a real-time thread, stop cleanly.
+ *
+ * usage: mirror [INPUTS [OUTPUTS [SECONDS]]]
+ *   INPUTS, OUTPUTS  ring positions of an EL1008 and an EL2008, see
+ *                    "ethercat slaves"; default 1 and 2
+ *   SECONDS          to run; default: until Ctrl-C
+ *
+ * Other slaves: "ethercat cstruct" prints their tables to put in here.
+ */
+#include <ecrt.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#define PERIOD_NS	1000000L
+#define NS_PER_S	1000000000L
+#define CHANNELS	8
+#define BECKHOFF	0x00000002u
+#define EL1008		0x03f03052u
+#define EL2008		0x07d83052u
+
+static ec_master_t *master;
+static ec_domain_t *domain;
+static uint8_t *data;
+
+/* where a channel is in the domain: filled in by the registration */
+static unsigned int in_byte[CHANNELS], in_bit[CHANNELS];
+static unsigned int out_byte[CHANNELS], out_bit[CHANNELS];
+
+static volatile sig_atomic_t stop;
+
+static void on_signal(int number)
+{
+	(void)number;
+	stop = 1;
+}
+
+/* configuration --------------------------------------------------------------*/
+
+/* One PDO with one entry of one bit for each channel, in one SyncManager. */
+static int configure(uint16_t position, uint32_t product, ec_direction_t dir,
+		     unsigned int byte[], unsigned int bit[])
+{
+	const uint16_t object = dir == EC_DIR_INPUT ? 0x6000 : 0x7000;
+	const uint16_t pdo = dir == EC_DIR_INPUT ? 0x1a00 : 0x1600;
+	ec_pdo_entry_info_t entries[CHANNELS];
+	ec_pdo_info_t pdos[CHANNELS];
+	const ec_sync_info_t syncs[] = {
+		{ 0, dir, CHANNELS, pdos,
+		  dir == EC_DIR_OUTPUT ? EC_WD_ENABLE : EC_WD_DISABLE },
+		{ 0xff, EC_DIR_INVALID, 0, NULL, EC_WD_DEFAULT },
+	};
+	ec_pdo_entry_reg_t regs[CHANNELS + 1];
+	ec_slave_config_t *sc;
+	unsigned int i;
+
+	memset(regs, 0, sizeof(regs));	/* an index of 0 ends the list */
+	for (i = 0; i < CHANNELS; i++) {
+		entries[i].index = (uint16_t)(object + 0x10 * i);
+		entries[i].subindex = 1;
+		entries[i].bit_length = 1;
+		pdos[i].index = (uint16_t)(pdo + i);
+		pdos[i].n_entries = 1;
+		pdos[i].entries = &entries[i];
+		regs[i].position = position;
+		regs[i].vendor_id = BECKHOFF;
+		regs[i].product_code = product;
+		regs[i].index = entries[i].index;
+		regs[i].subindex = 1;
+		regs[i].offset = &byte[i];
+		regs[i].bit_position = &bit[i];
+	}
+	/* the slave may be absent: it is configured when it appears */
+	sc = ecrt_master_slave_config(master, 0, position, BECKHOFF, product);
+	if (!sc || ecrt_slave_config_pdos(sc, EC_END, syncs))
+		return -1;
+	return ecrt_domain_reg_pdo_entry_list(domain, regs);
+}
+
+/* Each failure is explained on stderr by the library. */
+static int setup(uint16_t inputs, uint16_t outputs)
+{
+	master = ecrt_request_master(0);
+	if (!master)
+		return -1;
+	domain = ecrt_master_create_domain(master);
+	if (!domain ||
+	    configure(inputs, EL1008, EC_DIR_INPUT, in_byte, in_bit) ||
+	    configure(outputs, EL2008, EC_DIR_OUTPUT, out_byte, out_bit) ||
+	    ecrt_master_activate(master))
+		return -1;
+	data = ecrt_domain_data(domain);
+	return data ? 0 : -1;
+}
+
+/* No page fault later, and a thread that only other real-time ones hold up. */
+static void become_realtime(void)
+{
+	struct sched_param param;
+
+	memset(&param, 0, sizeof(param));
+	param.sched_priority = 80;
+	if (mlockall(MCL_CURRENT | MCL_FUTURE))
+		perror("Not locked in memory");
+	if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &param))
+		fprintf(stderr, "Not real-time: no right to use SCHED_FIFO\n");
+}
+
+/* cycle ----------------------------------------------------------------------*/
+
+/* Sleeps until the next cycle; leaves out those that have passed already. */
+static unsigned int wait_period(struct timespec *next)
+{
+	unsigned int missed = 0;
+	struct timespec now;
+
+	for (;; missed++) {
+		next->tv_nsec += PERIOD_NS;
+		if (next->tv_nsec >= NS_PER_S) {
+			next->tv_nsec -= NS_PER_S;
+			next->tv_sec++;
+		}
+		clock_gettime(CLOCK_MONOTONIC, &now);
+		if (next->tv_sec > now.tv_sec ||
+		    (next->tv_sec == now.tv_sec && next->tv_nsec > now.tv_nsec))
+			break;
+	}
+	clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, next, NULL);
+	return missed;
+}
+
+/* one cycle; @off: outputs are switched off; returns the inputs, bit by bit */
+static unsigned int cycle(int off)
+{
+	unsigned int i, value, inputs = 0;
+
+	ecrt_master_receive(master);
+	ecrt_domain_process(domain);
+	for (i = 0; i < CHANNELS; i++) {
+		value = EC_READ_BIT(data + in_byte[i], in_bit[i]) ? 1 : 0;
+		inputs |= value << i;
+		EC_WRITE_BIT(data + out_byte[i], out_bit[i], value && !off);
+	}
+	ecrt_domain_queue(domain);
+	ecrt_master_send(master);
+	return inputs;
+}
+
+/*
+ * Says what has changed. Printing takes time that a cycle does not have: an
+ * application with hard limits hands this to a thread without priority.
+ */
+static void report(unsigned int inputs)
+{
+	static unsigned int last_inputs, last_states, last_wc;
+	ec_master_state_t ms;
+	ec_domain_state_t ds;
+
+	/* both only read memory: cheap enough for each cycle */
+	ecrt_master_state(master, &ms);
+	ecrt_domain_state(domain, &ds);
+	if (ms.al_states != last_states)
+		printf("AL states: 0x%02x of %u slaves\n", ms.al_states,
+		       ms.slaves_responding);
+	if (ds.wc_state != last_wc)
+		printf("working counter: %u, %s\n", ds.working_counter,
+		       ds.wc_state == EC_WC_COMPLETE ? "complete" : "not complete");
+	if (inputs != last_inputs)
+		printf("inputs: 0x%02x\n", inputs);
+	last_states = ms.al_states;
+	last_wc = ds.wc_state;
+	last_inputs = inputs;
+}
+
+static void run(unsigned long cycles)
+{
+	unsigned long n, missed = 0;
+	struct timespec next;
+	unsigned int i;
+
+	clock_gettime(CLOCK_MONOTONIC, &next);
+	for (n = 0; !stop && (!cycles || n < cycles); n++) {
+		missed += wait_period(&next);
+		report(cycle(0));
+	}
+	/* the slaves get the zeros before they are left alone */
+	for (i = 0; i < 10; i++) {
+		wait_period(&next);
+		cycle(1);
+	}
+	printf("%lu cycles, %lu left out\n", n, missed);
+}
+
+int main(int argc, char **argv)
+{
+	unsigned long args[3] = { 1, 2, 0 };
+	struct sigaction action;
+	char *end;
+	int i;
+
+	for (i = 1; i < argc && i <= 3; i++) {
+		args[i - 1] = strtoul(argv[i], &end, 0);
+		if (end == argv[i] || *end || args[i - 1] > 0xffff)
+			break;
+	}
+	if (i < argc) {
+		fprintf(stderr, "usage: mirror [INPUTS [OUTPUTS [SECONDS]]]\n");
+		return 2;
+	}
+	memset(&action, 0, sizeof(action));
+	action.sa_handler = on_signal;
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+
+	if (setup((uint16_t)args[0], (uint16_t)args[1])) {
+		ecrt_release_master(master);
+		return 1;
+	}
+	setvbuf(stdout, NULL, _IOLBF, 0);
+	become_realtime();
+	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
+	ecrt_release_master(master);	/* slaves go back to PREOP */
+	return 0;
+}

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# The applications of examples/, and what they did to the segment.
+
+load helpers
+
+setup_file() {
+	{
+		printf '%s\n' "segment seed=12" "slave coupler EK1100" "slave in EL1008" \
+			"slave out EL2008" "const in.2 value=1" "const in.7 value=1" \
+			"ramp in.8 amplitude=2 period=100ms"
+	} >"$BATS_FILE_TMPDIR/segment"
+	start "$BATS_FILE_TMPDIR/segment" 3
+}
+teardown_file() { stop; }
+teardown() {
+	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	wait_for 60 all_slaves_are PREOP 3
+}
+
+# example NAME [ARG...]: in the background, its output in $out
+example() {
+	out=$BATS_TEST_TMPDIR/out
+	"$EC_BUILD/examples/$1" "${@:2}" >"$out" 2>&1 3>&- &
+	app=$!
+}
+
+# the byte the terminal switches its outputs by
+outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
+
+@test "mirror: inputs switch outputs, off at the end" {
+	example mirror 1 2
+	wait_for 60 grep -qx 'working counter: 3, complete' "$out"
+	# input 8 comes and goes
+	wait_for 60 grep -qx 'inputs: 0x42' "$out"
+	wait_for 60 grep -qx 'inputs: 0xc2' "$out"
+	wait_for 60 eval '[ "$(outputs)" = 0x42 ]'
+	wait_for 60 eval '[ "$(outputs)" = 0xc2 ]'
+	# real-time, in memory
+	[ "$(ps -o cls=,rtprio= -p "$app" | xargs)" = "FF 80" ]
+	awk '/VmLck/ { exit $2 == 0 }' "/proc/$app/status"
+	kill -INT "$app"
+	wait "$app"
+	[ "$(outputs)" = 0x00 ]
+	grep -E '^[0-9]+ cycles, 0 left out$' "$out"
+	app=
+}
+
+@test "mirror: one of its slaves is not there" {
+	example mirror 1 9 2
+	wait "$app"
+	cat "$out"
+	grep -qx 'working counter: 1, not complete' "$out"
+	grep -E '^2000 cycles, ' "$out"
+	app=
+}
