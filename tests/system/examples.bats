@@ -53,3 +53,16 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	grep -E '^2000 cycles, ' "$out"
 	app=
 }
+
+@test "kcycle: values go out, the kernel keeps the cycle" {
+	example kcycle 5000
+	wait_for 60 grep -qx '3 slaves in OP' "$out"
+	# a counter: no value comes twice in a row
+	one=$(outputs)
+	wait_for 10 eval '[ "$(outputs)" != "$one" ]'
+	wait "$app"
+	cat "$out"
+	grep -E '^5000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
+	grep -E '^kernel: [0-9]+ cycles, 0 overruns, ' "$out"
+	app=
+}
