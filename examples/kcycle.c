@@ -150,6 +150,7 @@ int main(int argc, char **argv)
 	unsigned long cycles = argc > 1 ? strtoul(argv[1], NULL, 0) : 5000;
 	int ret = -1;
 
+	setvbuf(stdout, NULL, _IOLBF, 0);
 	master = ecrt_request_master(0);
 	if (!master)
 		return 1;
