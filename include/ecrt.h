@@ -74,6 +74,8 @@
 #define EC_HAVE_FLAGS
 /* ecrt_master_scan_progress() */
 #define EC_HAVE_SCAN_PROGRESS
+/* ecrt_slave_config_eoe_*() */
+#define EC_HAVE_SET_IP
 /* ecrt_slave_config_state_timeout() */
 #define EC_HAVE_STATE_TIMEOUT
 
@@ -1236,6 +1238,88 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  */
 EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
 		const char *key, int32_t value);
+
+/**
+ * ecrt_slave_config_eoe_mac_address() - MAC address the slave shall have
+ * @sc: slave configuration
+ * @mac_address: 6 bytes
+ *
+ * This and the five functions below add up to one EoE "set IP parameter"
+ * request (ETG.1000.6 clause 5.7). It is sent on the way from PREOP to SAFEOP,
+ * after the SDOs, each time the slave is configured; values that were not set
+ * are marked as not included. A slave that refuses, or has no EoE, stays in
+ * PREOP; "ethercat slaves -v" and the kernel log say why.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_mac_address(ec_slave_config_t *sc,
+		const unsigned char *mac_address);
+
+/**
+ * ecrt_slave_config_eoe_ip_address() - IP address the slave shall have
+ * @sc: slave configuration
+ * @ip_address: IPv4, network byte order
+ *
+ * Sent as described at ecrt_slave_config_eoe_mac_address().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_ip_address(
+		ec_slave_config_t *sc, struct in_addr ip_address);
+
+/**
+ * ecrt_slave_config_eoe_subnet_mask() - subnet mask of the slave
+ * @sc: slave configuration
+ * @subnet_mask: IPv4, network byte order
+ *
+ * Sent as described at ecrt_slave_config_eoe_mac_address().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_subnet_mask(
+		ec_slave_config_t *sc, struct in_addr subnet_mask);
+
+/**
+ * ecrt_slave_config_eoe_default_gateway() - default gateway of the slave
+ * @sc: slave configuration
+ * @gateway_address: IPv4, network byte order
+ *
+ * Sent as described at ecrt_slave_config_eoe_mac_address().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_default_gateway(
+		ec_slave_config_t *sc, struct in_addr gateway_address);
+
+/**
+ * ecrt_slave_config_eoe_dns_address() - DNS server of the slave
+ * @sc: slave configuration
+ * @dns_address: IPv4, network byte order
+ *
+ * Sent as described at ecrt_slave_config_eoe_mac_address().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_dns_address(
+		ec_slave_config_t *sc, struct in_addr dns_address);
+
+/**
+ * ecrt_slave_config_eoe_hostname() - host name of the slave
+ * @sc: slave configuration
+ * @name: at most 31 characters; the rest is left out
+ *
+ * Sent as described at ecrt_slave_config_eoe_mac_address().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_eoe_hostname(
+		ec_slave_config_t *sc, const char *name);
 
 /**
  * ecrt_slave_config_state_timeout() - time allowed for a change of AL state

@@ -4,6 +4,7 @@
 #include "coe.h"
 #include "config.h"
 #include "domain.h"
+#include "eoe.h"
 #include "master.h"
 #include "session.h"
 #include "slave.h"
@@ -372,7 +373,8 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (c) {
-		ret = write_sdos(s, c) ?: write_pdos(s, c) ?: write_watchdog(s, c);
+		ret = write_sdos(s, c) ?: ec_eoe_apply(s, c) ?: write_pdos(s, c) ?:
+		      write_watchdog(s, c);
 		if (ret)
 			return ret;
 	}

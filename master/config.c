@@ -222,6 +222,32 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	return 0;
 }
 
+/**
+ * ec_config_ip() - IP parameters to be written by EoE
+ * @c: configuration
+ * @p: parameters; those not in @which stay as they are
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
+{
+	struct ec_eoe_ip *ip = &c->ip;
+
+	if (p->which & EC_EOE_MAC)
+		memcpy(ip->mac, p->mac, sizeof(ip->mac));
+	if (p->which & EC_EOE_IP)
+		memcpy(ip->ip, p->ip, sizeof(ip->ip));
+	if (p->which & EC_EOE_MASK)
+		memcpy(ip->mask, p->mask, sizeof(ip->mask));
+	if (p->which & EC_EOE_GATEWAY)
+		memcpy(ip->gateway, p->gateway, sizeof(ip->gateway));
+	if (p->which & EC_EOE_DNS)
+		memcpy(ip->dns, p->dns, sizeof(ip->dns));
+	if (p->which & EC_EOE_HOSTNAME)
+		memcpy(ip->name, p->name, sizeof(ip->name));
+	ip->which |= p->which;
+}
+
 /* The mapping of @sm in @d, made when it is not there yet. */
 static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domain *d)
 {

@@ -7,6 +7,7 @@
 #include <linux/types.h>
 #include "../include/uapi/ethercat.h"
 #include "pdo.h"
+#include "wire/eoe.h"
 #include "wire/regs.h"
 
 struct ec_domain;
@@ -90,6 +91,7 @@ struct ec_config_flag {
  * @dc_shift: SYNC0, SYNC1 shift, ns
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @emergencies: how many to keep
+ * @ip: to be written by EoE, @which 0: nothing
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -114,6 +116,7 @@ struct ec_config {
 	s32 dc_shift[2];
 	u32 timeout_ms[9][9];
 	u32 emergencies;
+	struct ec_eoe_ip ip;
 	struct ec_slave *slave;
 };
 
@@ -129,6 +132,7 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo);
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
 		      u32 size);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
+void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit);
 int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,

@@ -83,6 +83,10 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE),
 	IOC(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, RSV(ec_ioc_sc_request, reserved)),
 	IOC(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, RSV(ec_ioc_sc_emerg, reserved)),
+	IOC(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, RSV(ec_ioc_sc_ip, params.reserved)),
+	IOC(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
+	IOC(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
+	IOC(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, RSV(ec_ioc_sc_ip, params.reserved)),
 	IOC(EC_IOC_CYCLE, ec_ioc_cycle, F_WRITE),
 	IOC(EC_IOC_WAIT, ec_ioc_wait, F_WRITE),
 };

@@ -69,4 +69,10 @@ struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret);
 int ec_ioc_sc_request(struct ec_file *f, void *arg);
 int ec_ioc_sc_emerg(struct ec_file *f, void *arg);
 
+/* ioctl_ip.c: IP parameters of slaves with EoE */
+int ec_ioc_ip_set(struct ec_file *f, void *arg);
+int ec_ioc_ip_get(struct ec_file *f, void *arg);
+int ec_ioc_sc_ip(struct ec_file *f, void *arg);
+int ec_ioc_config_ip(struct ec_file *f, void *arg);
+
 #endif

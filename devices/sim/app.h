@@ -11,6 +11,7 @@
 #define EC_SIM_APP_H
 
 #include "../../master/wire/al.h"
+#include "../../master/wire/eoe.h"
 #include "../../master/wire/sdo.h"
 #include "../../master/wire/sdoinfo.h"
 #include "../../master/wire/sii.h"
@@ -397,6 +398,18 @@ struct ec_app_mbox {
 	u16 info_cap;
 };
 
+/**
+ * struct ec_app_ip - IP parameters of a slave that speaks EoE
+ * @now: what it was given since power-on
+ * @sets: how often
+ * @refuse: it does not support IP
+ */
+struct ec_app_ip {
+	struct ec_eoe_ip now;
+	u32 sets;
+	bool refuse;
+};
+
 /* an emergency the script asks for */
 struct ec_app_event {
 	struct ec_app_event *next;
@@ -435,6 +448,7 @@ struct ec_app_event {
  * @ran_ns: when the profile ran last
  * @eep_due: when it answers for the emulated EEPROM
  * @mbox: mailbox
+ * @ip: IP parameters
  */
 struct ec_app {
 	struct ec_esc *esc;
@@ -466,6 +480,7 @@ struct ec_app {
 	u64 ran_ns;
 	u64 eep_due;
 	struct ec_app_mbox mbox;
+	struct ec_app_ip ip;
 };
 
 /**
@@ -479,6 +494,7 @@ struct ec_app {
  * @drift_ppb: error of its clock
  * @clock_start: its clock at power-on
  * @eeprom_emulated: its CPU stands in for the EEPROM
+ * @no_ip: its EoE does not support IP
  */
 struct ec_app_config {
 	const char *name;
@@ -490,6 +506,7 @@ struct ec_app_config {
 	s32 drift_ppb;
 	u64 clock_start;
 	bool eeprom_emulated;
+	bool no_ip;
 };
 
 /* slave_app.c */
@@ -537,6 +554,9 @@ static inline bool ec_app_bug(const struct ec_app *app, enum ec_sim_bug bug)
 {
 	return ec_sim_has_bug(app->esc->sim, bug);
 }
+
+/* slave_eoe.c */
+int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 
 /* slave_od.c */
 const struct ec_app_object *ec_app_od_object(const struct ec_app_model *m, u16 index);

@@ -125,6 +125,10 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	c->eeprom_emulated = ec_desc_is(&w, "emulated");
 	if (w.s && !c->eeprom_emulated && !ec_desc_is(&w, "chip"))
 		return ec_desc_fail(d, "eeprom '", &w, "'? It is chip or emulated");
+	w = ec_desc_value(d, "ip");
+	c->no_ip = ec_desc_is(&w, "no");
+	if (w.s && !c->no_ip && !ec_desc_is(&w, "yes"))
+		return ec_desc_fail(d, "ip '", &w, "'? It is yes or no");
 	c->alias = (u16)alias;
 	c->serial = (u32)serial;
 	c->process_ns = (u32)delay;

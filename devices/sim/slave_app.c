@@ -24,6 +24,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 
 	memcpy(app->data, m->defaults, m->data_len);
 	ec_app_od_set(app, ec_app_od_entry(m, 0x1018, 4), app->serial);
+	memset(&app->ip.now, 0, sizeof(app->ip.now));
 	app->next_event = app->events;
 	while (app->next_event && app->next_event->at_ns < now)
 		app->next_event = app->next_event->next;
@@ -347,6 +348,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->transition_ns = cfg->transition_ns;
 	app->response_ns = cfg->response_ns;
 	app->outputs_wait_ns = 100000000;
+	app->ip.refuse = cfg->no_ip;
 
 	image = ec_sim_alloc(sim, model->eeprom_len);
 	if (!image) {

@@ -247,6 +247,17 @@ static void coe(struct ec_app *app, const u8 *rx, size_t len, u64 now, u64 due)
 	}
 }
 
+static void eoe(struct ec_app *app, const u8 *rx, size_t len, u64 due)
+{
+	int ret = ec_app_eoe(app, rx, len, app->mbox.out + EC_MBOX_HDR,
+			     tx_size(app) - (size_t)EC_MBOX_HDR);
+
+	if (ret > 0)
+		out_set(app, EC_MBOX_EOE, (size_t)ret, due);
+	else if (ret < 0)
+		out_error(app, EC_MBOX_ERR_TOO_SHORT, due);
+}
+
 static bool speaks(const struct ec_app *app, u8 type)
 {
 	u16 p = app->model->dev.protocols;
@@ -256,6 +267,8 @@ static bool speaks(const struct ec_app *app, u8 type)
 	switch (type) {
 	case EC_MBOX_COE:
 		return p & EC_SII_PROTO_COE;
+	case EC_MBOX_EOE:
+		return p & EC_SII_PROTO_EOE;
 	default:
 		return false;	/* listed in the EEPROM or not: not modelled */
 	}
@@ -280,6 +293,8 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		out_error(app, EC_MBOX_ERR_CHANNEL, due);
 	else if (!speaks(app, h.type))
 		out_error(app, EC_MBOX_ERR_PROTOCOL, due);
+	else if (h.type == EC_MBOX_EOE)
+		eoe(app, r.p, h.len, due);
 	else
 		coe(app, r.p, h.len, now, due);
 }

@@ -25,6 +25,7 @@
 #define EC_UAPI_PORTS		4
 #define EC_UAPI_DEVICES		2
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
+#define EC_IP_NAME		32
 #define EC_UAPI_NONE16		0xffff
 #define EC_UAPI_NONE32		0xffffffff
 
@@ -257,6 +258,34 @@ struct ec_ioc_debug {
 	__u32 level;		/* 0, 1, 2 */
 };
 
+/* struct ec_ip_params.which */
+#define EC_IP_MAC		0x01
+#define EC_IP_ADDRESS		0x02
+#define EC_IP_MASK		0x04
+#define EC_IP_GATEWAY		0x08
+#define EC_IP_DNS		0x10
+#define EC_IP_HOSTNAME		0x20
+#define EC_IP_ALL		0x3f
+
+/* IP parameters of a slave with EoE; addresses in network order */
+struct ec_ip_params {
+	__u32 which;		/* EC_IP_*: those of the rest that count */
+	__u8 mac[6];
+	__u8 reserved[2];
+	__u8 ip[4];
+	__u8 mask[4];
+	__u8 gateway[4];
+	__u8 dns[4];
+	char name[EC_IP_NAME];	/* ends with 0 when it is shorter */
+};
+
+struct ec_ioc_ip {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 result;		/* out: EoE result code, with -EIO; 0: no answer */
+	struct ec_ip_params params;
+};
+
 /* configured by the application -------------------------------------------*/
 
 struct ec_ioc_config {
@@ -484,6 +513,12 @@ struct ec_ioc_sc_emerg {
 	__u32 config;
 	__u32 count;		/* emergencies to keep */
 	__u32 reserved;
+};
+
+struct ec_ioc_sc_ip {
+	__u32 flags;
+	__u32 config;		/* in */
+	struct ec_ip_params params;
 };
 
 /*
@@ -740,6 +775,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_DOMAIN_FMMU	EC_IOC_RW(0x0e, struct ec_ioc_domain_fmmu)
 #define EC_IOC_DOMAIN_DATA	EC_IOC_RW(0x0f, struct ec_ioc_domain_data)
 #define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
+#define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)
@@ -750,6 +786,8 @@ struct ec_exchange_buffer {
 #define EC_IOC_RESCAN		EC_IOC_N(0x25)
 #define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)
 #define EC_IOC_RESET		EC_IOC_N(0x27)
+#define EC_IOC_IP_SET		EC_IOC_RW(0x30, struct ec_ioc_ip)
+#define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
 
 /* reserved by this open file: the application */
 #define EC_IOC_RESERVE		EC_IOC_N(0x40)
@@ -774,6 +812,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_REF_CLOCK	EC_IOC_W(0x53, struct ec_ioc_ref_clock)
 #define EC_IOC_SC_REQUEST	EC_IOC_RW(0x54, struct ec_ioc_sc_request)
 #define EC_IOC_SC_EMERG		EC_IOC_W(0x55, struct ec_ioc_sc_emerg)
+#define EC_IOC_SC_IP		EC_IOC_W(0x70, struct ec_ioc_sc_ip)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
 

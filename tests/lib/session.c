@@ -22,6 +22,7 @@ static void null_arguments(void)
 	ec_domain_t *d = NULL;
 	ec_slave_config_t *sc = NULL;
 	ec_master_t *m = NULL;
+	struct in_addr addr = { 0 };
 	uint32_t code = 5;
 	size_t size;
 	uint8_t byte;
@@ -70,6 +71,12 @@ static void null_arguments(void)
 	CHECK(ecrt_slave_config_flag(sc, "a", 0) == -EINVAL);
 	CHECK(ecrt_slave_config_state_timeout(sc, EC_AL_STATE_INIT,
 					      EC_AL_STATE_OP, 1) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_mac_address(sc, &byte) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_ip_address(sc, addr) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_subnet_mask(sc, addr) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_default_gateway(sc, addr) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_dns_address(sc, addr) == -EINVAL);
+	CHECK(ecrt_slave_config_eoe_hostname(sc, "a") == -EINVAL);
 	CHECK(ecrt_domain_reg_pdo_entry_list(d, NULL) == -EINVAL);
 	CHECK(ecrt_domain_size(d) == (size_t)-EINVAL);
 	CHECK(!ecrt_domain_data(d));
@@ -378,6 +385,7 @@ int main(void)
 	information();
 	objects();
 	configuration();
+	eoe();
 	foreign_domain();
 	cycle();
 	empty_image();

@@ -19,5 +19,6 @@ extern int failures;
 
 ec_master_t *start(void);
 void requests(void);
+void eoe(void);
 
 #endif

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "wire_kunit.h"
+#include "../../master/wire/eoe.h"
+
+static const struct ec_eoe_ip all = {
+	.which = EC_EOE_ALL,
+	.mac = { 2, 0, 0, 0xec, 1, 7 },
+	.ip = { 192, 168, 0, 17 },
+	.mask = { 255, 255, 255, 0 },
+	.gateway = { 192, 168, 0, 1 },
+	.dns = { 8, 8, 4, 4 },
+	.name = "axis-17",
+};
+
+static void parameters_survive_both_ways(struct kunit *test)
+{
+	struct ec_eoe_ip out;
+	u8 msg[EC_EOE_IP_SIZE];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &all),
+			EC_EOE_IP_SIZE);
+	KUNIT_EXPECT_EQ(test, ec_eoe_type_decode(msg, sizeof(msg)), EC_EOE_SET_IP_REQ);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, sizeof(msg), &out), 0);
+	KUNIT_EXPECT_EQ(test, out.which, (u32)EC_EOE_ALL);
+	KUNIT_EXPECT_MEMEQ(test, &out, &all, sizeof(all));
+}
+
+static void what_is_not_meant_is_zero(struct kunit *test)
+{
+	struct ec_eoe_ip in = all, out;
+	u8 msg[EC_EOE_IP_SIZE];
+	unsigned int i;
+
+	in.which = EC_EOE_MASK;
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &in),
+			EC_EOE_IP_SIZE);
+	for (i = EC_EOE_HDR + 4; i < sizeof(msg); i++)
+		KUNIT_EXPECT_EQ(test, msg[i], i >= 19 && i < 22 ? 255 : 0);
+	memset(msg + 22, 0x55, sizeof(msg) - 22);	/* whatever the others hold */
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, sizeof(msg), &out), 0);
+	KUNIT_EXPECT_MEMEQ(test, out.mask, all.mask, 4);
+	KUNIT_EXPECT_EQ(test, out.dns[0] | out.gateway[0] | out.name[0] | out.mac[0], 0);
+}
+
+/* a message may end behind its last field, but not before */
+static void short_messages(struct kunit *test)
+{
+	struct ec_eoe_ip in = all, out;
+	u8 msg[EC_EOE_IP_SIZE];
+	size_t len;
+
+	in.which = EC_EOE_IP | EC_EOE_GATEWAY;
+	ec_eoe_ip_encode(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &in);
+	for (len = 0; len < sizeof(msg); len++)
+		KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, len, &out), len < 26 ? -EMSGSIZE : 0);
+	KUNIT_EXPECT_MEMEQ(test, out.gateway, all.gateway, 4);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode(msg, sizeof(msg) - 1, EC_EOE_SET_IP_REQ, &all),
+			-EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_eoe_type_decode(msg, 3), -EMSGSIZE);
+}
+
+static void results(struct kunit *test)
+{
+	u16 result = 9;
+	u8 msg[4];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_encode(msg, 3, EC_EOE_SET_IP_RESP, 0), -EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_encode(msg, 4, EC_EOE_SET_IP_RESP, EC_EOE_NO_IP), 4);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(msg, 4, EC_EOE_GET_IP_RESP, &result), -ENOMSG);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(msg, 3, EC_EOE_SET_IP_RESP, &result),
+			-EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, result, 9);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(msg, 4, EC_EOE_SET_IP_RESP, &result), 0);
+	KUNIT_EXPECT_EQ(test, result, EC_EOE_NO_IP);
+	KUNIT_EXPECT_STREQ(test, ec_eoe_result_text(EC_EOE_NO_IP), "the slave does not support IP");
+	KUNIT_EXPECT_STREQ(test, ec_eoe_result_text(0x0203), "unknown result");
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(parameters_survive_both_ways),
+	KUNIT_CASE(what_is_not_meant_is_zero),
+	KUNIT_CASE(short_messages),
+	KUNIT_CASE(results),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "eoe", .test_cases = cases };
+kunit_test_suite(suite);

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* EoE messages typed from the tables of the specification. */
+#include "wire_kunit.h"
+#include "../../master/wire/eoe.h"
+
+/* type 2, last fragment; flags; MAC; addresses as 32-bit numbers; name */
+static const u8 set[62] = {
+	0x02, 0x01, 0x00, 0x00,
+	0x3f, 0x00, 0x00, 0x00,
+	0x02, 0x00, 0x00, 0xec, 0x01, 0x07,
+	0x01, 0x00, 0xa8, 0xc0,		/* 192.168.0.1 */
+	0x00, 0xff, 0xff, 0xff,		/* 255.255.255.0 */
+	0xfe, 0x00, 0xa8, 0xc0,		/* 192.168.0.254 */
+	0x35, 0x00, 0x00, 0x0a,		/* 10.0.0.53 */
+	'm', 'i', 'x', 'e', 'r',
+};
+
+static void set_ip_request(struct kunit *test)
+{
+	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x01, 0x07 };
+	static const u8 ip[4] = { 192, 168, 0, 1 }, mask[4] = { 255, 255, 255, 0 };
+	static const u8 gateway[4] = { 192, 168, 0, 254 }, dns[4] = { 10, 0, 0, 53 };
+	struct ec_eoe_ip p;
+	u8 out[62];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_type_decode(set, sizeof(set)), 2);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(set, sizeof(set), &p), 0);
+	KUNIT_EXPECT_EQ(test, p.which, 0x3fu);
+	KUNIT_EXPECT_MEMEQ(test, p.mac, mac, 6);
+	KUNIT_EXPECT_MEMEQ(test, p.ip, ip, 4);
+	KUNIT_EXPECT_MEMEQ(test, p.mask, mask, 4);
+	KUNIT_EXPECT_MEMEQ(test, p.gateway, gateway, 4);
+	KUNIT_EXPECT_MEMEQ(test, p.dns, dns, 4);
+	KUNIT_EXPECT_STREQ(test, (const char *)p.name, "mixer");
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode(out, sizeof(out), EC_EOE_SET_IP_REQ, &p), 62);
+	KUNIT_EXPECT_MEMEQ(test, out, set, 62);
+}
+
+static void set_ip_response(struct kunit *test)
+{
+	static const u8 no_ip[] = { 0x03, 0x01, 0x01, 0x02 };
+	static const u8 port4[] = { 0x43, 0x00, 0x00, 0x00 };
+	u16 result;
+	u8 out[4];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(no_ip, 4, EC_EOE_SET_IP_RESP, &result), 0);
+	KUNIT_EXPECT_EQ(test, result, 0x0201);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(port4, 4, EC_EOE_SET_IP_RESP, &result), 0);
+	KUNIT_EXPECT_EQ(test, result, 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_encode(out, 4, EC_EOE_SET_IP_RESP, 0x0201), 4);
+	KUNIT_EXPECT_MEMEQ(test, out, no_ip, 4);
+}
+
+static void get_ip(struct kunit *test)
+{
+	static const u8 req[] = { 0x06, 0x01, 0x00, 0x00 };
+	static const u8 resp[] = {	/* ends behind the address */
+		0x07, 0x01, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,
+		0, 0, 0, 0, 0, 0, 0x11, 0x02, 0x10, 0xac,
+	};
+	static const u8 ip[4] = { 172, 16, 2, 17 };
+	struct ec_eoe_ip p;
+	u16 result;
+	u8 out[4];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_encode(out, 4, EC_EOE_GET_IP_REQ, 0), 4);
+	KUNIT_EXPECT_MEMEQ(test, out, req, 4);
+	KUNIT_EXPECT_EQ(test, ec_eoe_result_decode(resp, sizeof(resp), EC_EOE_GET_IP_RESP,
+						   &result), 0);
+	KUNIT_EXPECT_EQ(test, result, 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(resp, sizeof(resp), &p), 0);
+	KUNIT_EXPECT_EQ(test, p.which, (u32)EC_EOE_IP);
+	KUNIT_EXPECT_MEMEQ(test, p.ip, ip, 4);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(set_ip_request),
+	KUNIT_CASE(set_ip_response),
+	KUNIT_CASE(get_ip),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "vectors_eoe", .test_cases = cases };
+kunit_test_suite(suite);
