@@ -779,16 +779,24 @@ typedef struct {
 #define EC_CYCLE_BINS		32
 
 /**
- * struct ec_cycle_state_t - how the cycle has done since activation
+ * struct ec_cycle_state_t - how the cycle has done since activation, or since
+ *	'ethercat cycle --reset'
  * @run: what it does now
- * @cycles: cycles so far
+ * @cycles: cycles of the kernel so far, since activation
  * @overruns: cycles left out, because a period or more had passed
- * @missed: cycles without new outputs, after the first ones
- * @late_min: least time from schedule to send, ns
+ * @missed: cycles of the kernel without new outputs, after the first ones
+ * @late_min: least distance of a send from its schedule, ns
  * @late_mean: mean of it, ns
  * @late_max: most of it, ns
- * @late: cycles by that time: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last one
- *	and above
+ * @late_p999: 99.9 % of the sends were no further from theirs, ns; up to 1/8
+ *	more than that
+ * @late: sends by that distance: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last
+ *	one and above
+ *
+ * The schedule of a cycle the kernel runs is its timer. When the application
+ * runs the cycle, it is a grid of the interval told by
+ * ecrt_master_set_send_interval(), else of the measured one, that slowly follows
+ * the sends; they may be early or late.
  */
 typedef struct {
 	ec_cycle_run_t run;
@@ -798,6 +806,7 @@ typedef struct {
 	uint32_t late_min;
 	uint32_t late_mean;
 	uint32_t late_max;
+	uint32_t late_p999;
 	uint64_t late[EC_CYCLE_BINS];
 } ec_cycle_state_t;
 
@@ -875,7 +884,7 @@ EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
 EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
 
 /**
- * ecrt_master_cycle_state() - how the kernel's cycle does
+ * ecrt_master_cycle_state() - how the cycle does, the kernel's or one's own
  * @master: an active master
  * @state: filled
  *

@@ -13,7 +13,6 @@
 #define INDEX_MASK	3U
 
 /* the numbers of the states are the kernel's */
-_Static_assert(EC_CYCLE_BINS == EC_CYCLE_BUCKETS, "buckets");
 _Static_assert((int)EC_CYCLE_STOPPED == EC_CYCLE_STATE_STOPPED, "state");
 _Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
 _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
@@ -226,17 +225,45 @@ int ecrt_master_cycle_fd(const ec_master_t *master)
 	return runs(master) ? master->fd : -EINVAL;
 }
 
+/* Where a bucket begins, ns; as described at EC_CYCLE_BUCKETS. */
+static __u64 bucket_from(unsigned int n)
+{
+	return n < 8 ? n : (8ULL + n % 8) << (n / 8 - 1);
+}
+
+/* Number of bits of a time: the bin it belongs to. */
+static unsigned int bin(__u64 ns)
+{
+	unsigned int n = ns ? 64 - (unsigned int)__builtin_clzll(ns) : 0;
+
+	return n < EC_CYCLE_BINS ? n : EC_CYCLE_BINS - 1;
+}
+
+static void read_late(const struct ec_status_cycle *st, ec_cycle_state_t *state)
+{
+	uint64_t count = 0, above = 0;
+	unsigned int i;
+
+	for (i = 0; i < EC_CYCLE_BUCKETS; i++) {
+		state->late[bin(bucket_from(i))] += ec_status_read(st->late[i]);
+		count += ec_status_read(st->late[i]);
+	}
+	/* down from the last one, until more than 0.1 % are above */
+	for (i = EC_CYCLE_BUCKETS; i && above <= count / 1000; i--)
+		above += ec_status_read(st->late[i - 1]);
+	state->late_p999 = count ? (uint32_t)(bucket_from(i + 1) - 1) : 0;
+	if (state->late_p999 > state->late_max)
+		state->late_p999 = state->late_max;
+}
+
 int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 {
 	const struct ec_status_cycle *st;
 	uint64_t count;
-	unsigned int i;
 
 	if (!master || !master->active || !state)
 		return -EINVAL;
 	memset(state, 0, sizeof(*state));
-	if (!runs(master))
-		return 0;
 	st = &master->status->kernel;
 	count = ec_status_read(st->late_count);
 	state->run = (ec_cycle_run_t)ec_status_read(st->state);
@@ -246,7 +273,6 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	state->late_min = ec_status_read(st->late_min);
 	state->late_max = ec_status_read(st->late_max);
 	state->late_mean = count ? (uint32_t)(ec_status_read(st->late_sum) / count) : 0;
-	for (i = 0; i < EC_CYCLE_BINS; i++)
-		state->late[i] = ec_status_read(st->late[i]);
+	read_late(st, state);
 	return 0;
 }

@@ -10,6 +10,7 @@
 #define EC_CYCLE_H
 
 #include <linux/types.h>
+#include "late.h"
 #include "limits.h"
 
 struct ec_frame_buf;
@@ -102,6 +103,7 @@ struct ec_cyc_domain {
  * @sent: domains sent since the last receive, bit n: domain n
  * @back: domains of which something is back
  * @cycles: sends so far
+ * @schedule: when an application that runs the cycle should send
  * @dc_sent: clock datagrams sent since the last receive, EC_SEND_FLAG_*
  * @dc_back: which of them are back
  * @dc_time: last time of the reference clock, ns
@@ -120,6 +122,7 @@ struct ec_cycle {
 	u64 sent;
 	u64 back;
 	u64 cycles;
+	struct ec_schedule schedule;
 	u32 dc_sent;
 	u32 dc_back;
 	u64 dc_time;

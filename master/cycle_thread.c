@@ -182,21 +182,6 @@ static void publish(struct ec_cycle_thread *t, bool received)
 		wake_up_all(&m->kernel_wq);
 }
 
-/* How late the send was against its schedule. */
-static void count_late(struct ec_status_cycle *st, s64 ns)
-{
-	u32 late = clamp_t(s64, ns, 0, U32_MAX);
-	unsigned int i = min_t(unsigned int, fls(late), EC_CYCLE_BUCKETS - 1);
-
-	WRITE_ONCE(st->late[i], st->late[i] + 1);
-	WRITE_ONCE(st->late_sum, st->late_sum + late);
-	if (!st->late_count || late < st->late_min)
-		WRITE_ONCE(st->late_min, late);
-	if (late > st->late_max)
-		WRITE_ONCE(st->late_max, late);
-	WRITE_ONCE(st->late_count, st->late_count + 1);
-}
-
 /* Cycles whose time has passed are left out, so that the phase stays. */
 static void skip_missed(struct ec_cycle_thread *t)
 {
@@ -230,7 +215,7 @@ static bool cycle(struct ec_cycle_thread *t)
 	if (status(t)->state != EC_CYCLE_STATE_STOPPED) {
 		ec_dc_app_time(m, send.sync_time);
 		if (!ec_cycle_send(s, &send))
-			count_late(status(t), m->last_send_ns - due);
+			ec_late_count(s, m->last_send_ns - due);
 	}
 	publish(t, received);
 	t->next_ns += s->kernel.period_ns;

@@ -249,6 +249,8 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 		return -ENODEV;
 	ec_cycle_enter(m);
 	measure_interval(m, send.now);
+	if (!s->thread)
+		ec_late_send(s, send.now);
 	WRITE_ONCE(m->last_send_ns, send.now);
 	c->send++;
 	c->sent |= what->queued;

@@ -18,6 +18,8 @@ int ec_ioc_sm(struct ec_file *f, void *arg);
 int ec_ioc_pdo(struct ec_file *f, void *arg);
 int ec_ioc_pdo_entry(struct ec_file *f, void *arg);
 int ec_ioc_sii(struct ec_file *f, void *arg);
+int ec_ioc_cycle_stats(struct ec_file *f, void *arg);
+int ec_ioc_cycle_reset(struct ec_file *f, void *arg);
 
 /* ioctl_bus.c: traffic */
 int ec_ioc_sdo_upload(struct ec_file *f, void *arg);

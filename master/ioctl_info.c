@@ -2,6 +2,7 @@
 /* Commands that tell what the master knows; they cause no bus traffic. */
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
+#include <linux/slab.h>
 #include <linux/uaccess.h>
 #include "device.h"
 #include "domain.h"
@@ -344,4 +345,31 @@ int ec_ioc_sii(struct ec_file *f, void *arg)
 	}
 	ec_slave_unref(s);
 	return ret;
+}
+
+int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_cycle_stats *i = arg;
+	struct ec_master *m = f->master;
+	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL);
+	int ret = 0;
+
+	if (!st)
+		return -ENOMEM;
+	mutex_lock(&m->session_lock);
+	ec_late_get(m, i, st);
+	mutex_unlock(&m->session_lock);
+	i->size = min_t(u32, i->size, sizeof(*st));
+	if (copy_to_user(u64_to_user_ptr(i->data), st, i->size))
+		ret = -EFAULT;
+	kfree(st);
+	return ret;
+}
+
+int ec_ioc_cycle_reset(struct ec_file *f, void *arg)
+{
+	mutex_lock(&f->master->session_lock);
+	ec_late_reset(f->master);
+	mutex_unlock(&f->master->session_lock);
+	return 0;
 }

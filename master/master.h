@@ -14,6 +14,7 @@
 #include "ethercat.h"
 #include "cycle.h"
 #include "dc.h"
+#include "late.h"
 #include "limits.h"
 #include "link.h"
 #include "slots.h"
@@ -71,6 +72,9 @@ struct task_struct;
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
  *
+ * @late: figures of the last cycle, under @session_lock
+ * @late_reset: the cyclic caller shall forget its figures
+ *
  * @kernel_cycle: cycles of the thread that runs the cycle
  * @kernel_run: odd while it sends; another number than before: another run
  * @kernel_wq: who waits for one of the two
@@ -127,6 +131,9 @@ struct ec_master {
 	struct ec_session *session;
 	struct mutex cyclic_lock;
 	struct ec_session *active;
+
+	struct ec_late_report late;
+	bool late_reset;
 
 	u64 kernel_cycle;
 	u32 kernel_run;

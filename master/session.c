@@ -159,6 +159,7 @@ int ec_session_deactivate(struct ec_session *s)
 	mutex_unlock(&m->cyclic_lock);
 	ec_cycle_thread_stop(s);
 	ec_cycle_own(m, EC_OWNER_IDLE);
+	ec_late_end(s);
 	s->active = false;
 	s->stall_log.open = false;
 	clear(s);

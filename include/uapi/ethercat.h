@@ -392,6 +392,22 @@ struct ec_ioc_domain_data {
 	__u64 data;
 };
 
+/* struct ec_ioc_cycle_stats.kind */
+#define EC_CYCLE_BY_NOBODY	0	/* there was no cycle yet */
+#define EC_CYCLE_BY_APP		1
+#define EC_CYCLE_BY_KERNEL	2
+
+/* figures of the cycle that runs, or of the last one */
+struct ec_ioc_cycle_stats {
+	__u32 flags;
+	__u32 kind;
+	__u32 active;		/* it runs now */
+	__u32 told;		/* interval was told, not measured */
+	__u32 interval_ns;
+	__u32 size;		/* in: room; out: bytes copied */
+	__u64 data;		/* of struct ec_status_cycle */
+};
+
 /* application ---------------------------------------------------------------*/
 
 struct ec_ioc_create_domain {
@@ -667,7 +683,12 @@ struct ec_status_domain {
 #define EC_STATUS_SC_ONLINE	0x10
 #define EC_STATUS_SC_OP		0x20
 
-#define EC_CYCLE_BUCKETS	32
+/*
+ * Buckets of a histogram of times, in ns. Buckets 0 to 7 count 0 to 7 ns. Above,
+ * each power of two has eight of the same width: bucket n counts times from
+ * (8 + n % 8) << (n / 8 - 1) up to where bucket n + 1 begins. All of 32 bits.
+ */
+#define EC_CYCLE_BUCKETS	240
 
 /* struct ec_status_cycle.state */
 #define EC_CYCLE_STATE_NONE	0	/* the application runs the cycle */
@@ -676,16 +697,18 @@ struct ec_status_domain {
 #define EC_CYCLE_STATE_STOPPED	3	/* the same, and EC_STALL_STOP */
 
 /*
- * The cycle the kernel runs. "Late" is the time of a send against its schedule,
- * in ns; bucket 0 counts 0 ns, bucket n 2^(n-1)..2^n - 1, the last one also all
- * above.
+ * The cycle. "Late" is the distance of a send from its schedule, in ns: of a
+ * cycle the kernel runs, from the time of its timer. Of one the application runs,
+ * early or late, from a grid of EC_IOC_INTERVAL, or of the measured interval,
+ * that follows the sends by at most 1/1024 of the interval and 1 us each.
+ * EC_IOC_CYCLE_RESET begins all but @cycle and @state anew.
  */
 struct ec_status_cycle {
-	__u64 cycle;		/* cycles so far; their inputs are in the exchange */
+	__u64 cycle;		/* kernel: cycles so far; inputs are in the exchange */
 	__u64 overruns;		/* cycles left out: a period or more late */
-	__u64 missed;		/* cycles without new outputs, after the first ones */
+	__u64 missed;		/* kernel: without new outputs, after the first ones */
 	__u64 late_sum;
-	__u64 late_count;	/* cycles that were sent */
+	__u64 late_count;	/* sends that were counted */
 	__u32 late_min;
 	__u32 late_max;
 	__u32 state;		/* EC_CYCLE_STATE_* */
@@ -775,6 +798,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_DOMAIN_FMMU	EC_IOC_RW(0x0e, struct ec_ioc_domain_fmmu)
 #define EC_IOC_DOMAIN_DATA	EC_IOC_RW(0x0f, struct ec_ioc_domain_data)
 #define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
+#define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 
 /* opened for writing: traffic or change */
@@ -786,6 +810,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_RESCAN		EC_IOC_N(0x25)
 #define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)
 #define EC_IOC_RESET		EC_IOC_N(0x27)
+#define EC_IOC_CYCLE_RESET	EC_IOC_N(0x28)
 #define EC_IOC_IP_SET		EC_IOC_RW(0x30, struct ec_ioc_ip)
 #define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
 

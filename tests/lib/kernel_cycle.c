@@ -138,10 +138,15 @@ static void steps(void)
 	fake.status->kernel.cycle = 12;
 	fake.status->kernel.late_sum = 30;
 	fake.status->kernel.late_count = 10;
-	fake.status->kernel.late[31] = 4;
+	fake.status->kernel.late_max = 1 << 20;
+	fake.status->kernel.late[5] = 7000;
+	fake.status->kernel.late[8 + 7] = 2000;	/* 15 ns */
+	fake.status->kernel.late[16] = 991;	/* 16 and 17 ns */
+	fake.status->kernel.late[239] = 9;	/* more than 4 s */
 	CHECK(ecrt_master_cycle_count(m) == 12 && ecrt_master_cycle_fd(m) == FAKE_FD);
 	CHECK(!ecrt_master_cycle_state(m, &cs) && cs.cycles == 12 && cs.late_mean == 3 &&
-	      cs.late[31] == 4);
+	      cs.late[3] == 7000 && cs.late[4] == 2000 && cs.late[5] == 991 &&
+	      cs.late[31] == 9 && cs.late_p999 == 17);
 	fake.cycle = 5;
 	CHECK(ecrt_master_wait_cycle(m, 0) == 5);
 	fake.cycle = 6;

@@ -22,6 +22,22 @@ load common
 	golden config_v config -v
 	golden domains domains
 	golden domains_v domains -v
+	golden cycle cycle
+	golden cycle_v cycle -v
+	FAKE_BUS=kcycle golden cycle_kernel cycle
+}
+
+@test "cycle: 99.9 % of the sends, a reset on demand only" {
+	[[ $(out cycle) == *"Cycle: none yet"* ]]
+	FAKE_BUS=app out cycle -j | json 'd["masters"][0]["late_p999_ns"] == 5119'
+	FAKE_BUS=app out cycle -j | json 'sum(b["sends"] for b in d["masters"][0]["histogram"]) == d["masters"][0]["sends"] == 10000'
+	FAKE_BUS=app out cycle -j | json 'd["masters"][0]["histogram"][1] == {"from_ns": 1024, "to_ns": 1151, "sends": 5000}'
+	FAKE_BUS=kcycle out cycle -j | json '(lambda m: (m["by"], m["state"], m["overruns"], m["missed"]) == ("kernel", "stalled", 2, 3))(d["masters"][0])'
+	[ -z "$(FAKE_BUS=app log_of cycle | grep reset)" ]
+	[[ $(FAKE_BUS=app log_of cycle --reset) == *"cycle reset" ]]
+	FAKE_READONLY=1 run ethercat cycle --reset
+	[ "$status" -eq 1 ]
+	[[ $output == *"Permission denied"* ]]
 }
 
 @test "golden: cut ring, two masters" {

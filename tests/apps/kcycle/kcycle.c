@@ -294,8 +294,8 @@ static void report(void)
 	       wc_errors, skipped, torn);
 	printf("kernel: %s, cycles: %" PRIu64 ", overruns: %" PRIu64 ", missed: %" PRIu64 "\n",
 	       names[s.run], s.cycles, s.overruns, s.missed);
-	printf("send after schedule: min %" PRIu32 " mean %" PRIu32 " max %" PRIu32 " ns\n",
-	       s.late_min, s.late_mean, s.late_max);
+	printf("send after schedule: min %" PRIu32 " mean %" PRIu32 " 99.9 %% %" PRIu32
+	       " max %" PRIu32 " ns\n", s.late_min, s.late_mean, s.late_p999, s.late_max);
 	for (unsigned int i = 0; i < EC_CYCLE_BINS; i++)
 		if (s.late[i])
 			printf("  < %10" PRIu64 " ns: %" PRIu64 "\n", (uint64_t)1 << i, s.late[i]);

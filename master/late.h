@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* How far the sends of the cycle are from their schedule. */
+#ifndef EC_LATE_H
+#define EC_LATE_H
+
+#include <linux/types.h>
+#include "ethercat.h"
+
+struct ec_ioc_cycle_stats;
+struct ec_master;
+struct ec_session;
+
+/**
+ * struct ec_schedule - when the application is expected to send; owned by the
+ *	cyclic caller
+ * @due_ns: when the last send was due (ktime)
+ * @last_ns: when it was
+ * @interval_ns: distance of two sends, told or measured
+ * @sends: sends so far, up to the end of the first measurement
+ */
+struct ec_schedule {
+	u64 due_ns;
+	u64 last_ns;
+	u32 interval_ns;
+	u32 sends;
+};
+
+/**
+ * struct ec_late_report - the last cycle that has ended; under
+ *	master->session_lock
+ * @info: what EC_IOC_CYCLE_STATS tells of it
+ * @status: and its figures
+ */
+struct ec_late_report {
+	struct ec_ioc_cycle_stats info;
+	struct ec_status_cycle status;
+};
+
+void ec_late_count(struct ec_session *s, s64 ns);
+void ec_late_send(struct ec_session *s, u64 now);
+
+void ec_late_end(struct ec_session *s);
+void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
+		 struct ec_status_cycle *status);
+void ec_late_reset(struct ec_master *m);
+
+#endif

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* How far the sends of the cycle are from their schedule. */
+#include <string.h>
+
+#include "dev.h"
+#include "out.h"
+
+#define BAR	40	/* length of the longest */
+
+/* one row of the histogram: buckets that are shown together */
+struct row {
+	unsigned int first;
+	unsigned int count;
+};
+
+/* where a bucket begins, ns; as described at EC_CYCLE_BUCKETS */
+static u64 bucket_from(unsigned int n)
+{
+	return n < 8 ? n : (8ULL + n % 8) << (n / 8 - 1);
+}
+
+static u64 row_to(const struct row *r)
+{
+	return bucket_from(r->first + r->count) - 1;
+}
+
+static u64 sends_of(const struct ec_status_cycle *st, const struct row *r)
+{
+	u64 sum = 0;
+
+	for (unsigned int i = 0; i < r->count; i++)
+		sum += st->late[r->first + i];
+	return sum;
+}
+
+/* the end of the bucket below which @permille of the sends are */
+static u64 quantile(const struct ec_status_cycle *st, u64 sends, unsigned int permille)
+{
+	u64 above = 0, most = sends * (1000 - permille) / 1000;
+	unsigned int i = EC_CYCLE_BUCKETS;
+
+	if (!sends)
+		return 0;
+	while (i && above <= most)
+		above += st->late[--i];
+	return min(bucket_from(i + 1) - 1, (u64)st->late_max);
+}
+
+/* rows of @step buckets from the first to the last that is not empty */
+static void bars(const struct ec_status_cycle *st, unsigned int step)
+{
+	struct row r = { .count = step }, first = r, last = r;
+	unsigned long long most = 0, n;
+
+	for (r.first = 0; r.first < EC_CYCLE_BUCKETS; r.first += step) {
+		n = sends_of(st, &r);
+		if (n && !most)
+			first = r;
+		if (n)
+			last = r;
+		most = max(most, n);
+	}
+	if (!most)
+		return;
+	out_text("      from [us]         to      sends\n");
+	for (r = first; r.first <= last.first; r.first += step) {
+		char bar[BAR + 1];
+		size_t len;
+
+		n = sends_of(st, &r);
+		/* one send of a million is seen, too */
+		len = (size_t)((n * BAR + most - 1) / most);
+		memset(bar, '#', len);
+		bar[len] = 0;
+		out_text("    %11.3f %10.3f %10llu%s%s\n", (double)bucket_from(r.first) / 1000,
+			 (double)row_to(&r) / 1000, n, len ? "  " : "", bar);
+	}
+}
+
+static void histogram(const struct ec_status_cycle *st, unsigned int step)
+{
+	struct row r = { .count = 1 };
+
+	out_array("histogram");
+	for (; r.first < EC_CYCLE_BUCKETS; r.first++) {
+		if (!st->late[r.first])
+			continue;
+		out_object(NULL);
+		out_u("from_ns", bucket_from(r.first), NULL);
+		out_u("to_ns", row_to(&r), NULL);
+		out_u("sends", st->late[r.first], NULL);
+		out_end();
+	}
+	out_end();
+	if (!out_is_json())
+		bars(st, step);
+}
+
+static void figures(const struct ec_status_cycle *st)
+{
+	const struct row all = { .count = EC_CYCLE_BUCKETS };
+	unsigned long long sends = sends_of(st, &all), p999 = quantile(st, sends, 999);
+	double mean = st->late_count ? (double)st->late_sum / (double)st->late_count : 0;
+
+	out_u("sends", sends, "  Sends: %llu\n", sends);
+	out_u("overruns", st->overruns, "  Overruns: %llu\n", st->overruns);
+	out_u("missed", st->missed, NULL);
+	if (st->missed)
+		out_text("  Without new outputs: %llu\n", st->missed);
+	out_u("late_min_ns", st->late_min, "  From schedule [us]: min %.3f", st->late_min / 1000.0);
+	out_f("late_mean_ns", mean, ", mean %.3f", mean / 1000);
+	out_u("late_p999_ns", p999, ", 99.9 %% %.3f", (double)p999 / 1000);
+	out_u("late_max_ns", st->late_max, ", max %.3f\n", st->late_max / 1000.0);
+}
+
+static const char *state_text(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle *st)
+{
+	if (!i->active)
+		return "ended";
+	switch (st->state) {
+	case EC_CYCLE_STATE_STALLED:
+		return "stalled";
+	case EC_CYCLE_STATE_STOPPED:
+		return "stopped";
+	default:
+		return "running";
+	}
+}
+
+static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle *st)
+{
+	static const char *const by[] = { "nobody", "application", "kernel" };
+	const char *name = i->kind < ARRAY_SIZE(by) ? by[i->kind] : "unknown";
+
+	if (i->kind == EC_CYCLE_BY_NOBODY) {
+		out_str("by", name, "  Cycle: none yet\n");
+		return;
+	}
+	out_str("by", name, "  Cycle: by the %s, ", name);
+	out_str("state", state_text(i, st), "%s\n", state_text(i, st));
+	out_u("interval_ns", i->interval_ns, "  Interval: %.3f us (", i->interval_ns / 1000.0);
+	out_bool("interval_told", i->told, "%s)\n", i->told ? "told" : "measured");
+}
+
+static int show(const struct tool *t, struct dev *d)
+{
+	struct ec_status_cycle st = { 0 };
+	struct ec_ioc_cycle_stats info = { .size = sizeof(st), .data = (uintptr_t)&st };
+	int err = dev_ioctl(d, EC_IOC_CYCLE_STATS, &info);
+
+	if (err)
+		return dev_fail(d, err, "Master%u: no figures of the cycle", d->master);
+	out_object(NULL);
+	out_u("master", d->master, "Master%u\n", d->master);
+	who(&info, &st);
+	if (info.kind != EC_CYCLE_BY_NOBODY) {
+		figures(&st);
+		histogram(&st, t->verbosity > 0 ? 1 : 8);
+	}
+	out_end();
+	err = t->reset ? dev_ioctl(d, EC_IOC_CYCLE_RESET, NULL) : 0;
+	return err ? dev_fail(d, err, "Master%u: the figures were not reset", d->master) : 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, t->reset, show);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_cycle = {
+	.name = "cycle",
+	.run = run,
+	.args = "",
+	.opts = "mrv",
+	.summary = "Show how far the sends of the cycle are from their schedule",
+	.help = "Of the cycle that runs, else of the last one. The schedule of a cycle run by the\n"
+		"kernel is its timer. An application's is a grid of its interval that slowly\n"
+		"follows the sends; they count early or late. Overruns are cycles left out because\n"
+		"an interval or more had passed. 99.9 % of the sends are no further from their\n"
+		"schedule than that figure, exact to 1/8. The bars show powers of two, with\n"
+		"--verbose eighths of them. --reset begins anew and needs write access.\n",
+	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
+		"stopped, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
+		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
+		"histogram[] (from_ns, to_ns, sends; none that is empty). Of nobody master and by only",
+};
