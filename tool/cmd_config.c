@@ -127,6 +127,7 @@ const struct cmd cmd_config = {
 		"slave_position (or null), state, watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"
-		"data_hex), flags[] (key, value), dc (assign_activate, sync[] (cycle_ns, shift_ns))",
+		"data_hex), flags[] (key, value), eoe_ip (as of ip, or null),\n"
+		"dc (assign_activate, sync[] (cycle_ns, shift_ns))",
 	.flags = CMD_HISTORIC,
 };

@@ -2,9 +2,11 @@
 /* Everything about one slave configuration. */
 #include "config_info.h"
 
+#include <errno.h>
 #include <stdio.h>
 
 #include "../master/wire/al.h"
+#include "ip.h"
 #include "out.h"
 #include "text.h"
 
@@ -152,6 +154,30 @@ static int flags(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	return 0;
 }
 
+/* only when there are any */
+static int ip(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	struct ec_ioc_sc_ip i = { .config = c->index };
+	int err = dev_ioctl(d, EC_IOC_CONFIG_IP, &i);
+	char indent[16];
+
+	/* a module that is older than the command */
+	if (err == ENOTTY)
+		i.params.which = 0;
+	else if (err)
+		return failed(d, err, c);
+	if (!i.params.which) {
+		out_null("eoe_ip", NULL);
+		return 0;
+	}
+	snprintf(indent, sizeof(indent), "%s  ", in);
+	out_text("%sEoE IP parameters:\n", in);
+	out_object("eoe_ip");
+	ip_out(&i.params, indent, true);
+	out_end();
+	return 0;
+}
+
 static void dc(const struct ec_ioc_config *c, const char *in)
 {
 	out_text("%sDC configuration:\n", in);
@@ -215,6 +241,7 @@ int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 		out_text("%sIDN configuration:\n%s  None.\n", in, in);
 		ret = flags(d, c, in);
 	}
+	ret = ret ? ret : ip(d, c, in);
 	if (!ret) {
 		dc(c, in);
 		out_text("\n");

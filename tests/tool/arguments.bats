@@ -40,6 +40,7 @@ ambiguous() {
 	resolves res rescan
 	resolves sii_r sii_read
 	resolves di domains
+	resolves i ip
 }
 
 @test "new names resolve behind the historic ones" {

@@ -525,6 +525,38 @@ static int sii(struct ec_ioc_sii *x)
 	return 0;
 }
 
+static const struct ec_ip_params net = {
+	.which = EC_IP_MAC | EC_IP_ADDRESS | EC_IP_MASK | EC_IP_HOSTNAME,
+	.mac = { 2, 0, 0, 0xec, 1, 7 }, .ip = { 192, 168, 0, 17 },
+	.mask = { 255, 255, 255, 0 }, .name = "mixer",
+};
+
+/* slave 2 has EoE, slave 1 has none, slave 0 refuses */
+static int ip(struct ec_ioc_ip *x, bool write)
+{
+	const struct ec_ip_params *p = &x->params;
+
+	if (x->position == 1)
+		return fail(EPROTONOSUPPORT, "slave 1 has no EoE mailbox");
+	if (!x->position) {
+		x->result = 0x0201;
+		return fail(EIO, "slave 0 refused: EoE result 0x0201: the slave does not support IP");
+	}
+	if (!write) {
+		x->params = net;
+		if (bus("evil"))
+			memcpy(x->params.name, "\033[2J\302\233bbbbbbbbbbbbbbbbbbbbbbbbbb", 32);
+		return 0;
+	}
+	record("ip %u 0x%02x %.32s\n", x->position, p->which, p->name);
+	hex("", p->mac, sizeof(p->mac));
+	hex("", p->ip, sizeof(p->ip));
+	hex("", p->mask, sizeof(p->mask));
+	hex("", p->gateway, sizeof(p->gateway));
+	hex("", p->dns, sizeof(p->dns));
+	return 0;
+}
+
 int sys_ioctl(int fd, unsigned long request, void *arg)
 {
 	unsigned int nr = _IOC_NR(request);
@@ -597,6 +629,13 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return domain_fmmu(arg);
 	case EC_IOC_DOMAIN_DATA:
 		return domain_data(arg);
+	case EC_IOC_CONFIG_IP:
+		if (((struct ec_ioc_sc_ip *)arg)->config == 1)
+			((struct ec_ioc_sc_ip *)arg)->params = net;
+		return 0;
+	case EC_IOC_IP_GET:
+	case EC_IOC_IP_SET:
+		return ip(arg, request == EC_IOC_IP_SET);
 	case EC_IOC_SDO_UPLOAD:
 		return upload(arg);
 	case EC_IOC_SDO_DOWNLOAD:

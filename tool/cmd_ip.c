@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "dev.h"
+#include "ip.h"
+#include "out.h"
+
+static int ip(const struct tool *t, struct dev *d, struct ec_ip_params *p)
+{
+	struct ec_ioc_ip i = { .params = *p };
+	struct ec_ioc_slave s;
+	int err;
+
+	if (dev_select_single(d, t, &s))
+		return 1;
+	i.position = s.position;
+	err = dev_ioctl(d, p->which ? EC_IOC_IP_SET : EC_IOC_IP_GET, &i);
+	if (err)
+		return dev_fail(d, err, "Master%u slave %u: cannot %s IP parameters", d->master,
+				s.position, p->which ? "set" : "read");
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	if (!p->which && !i.params.which)
+		out_text("None.\n");
+	if (!p->which || out_is_json())
+		ip_out(&i.params, "", true);
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	struct ec_ip_params p = { .which = 0 };
+	struct dev d;
+	int ret;
+
+	if (argc % 2)
+		return usage_error("'%s' has no value: expected pairs of keyword and value",
+				   argv[argc - 1]);
+	for (int i = 0; i < argc; i += 2)
+		if (ip_parse(&p, argv[i], argv[i + 1]))
+			return 1;
+	ret = dev_open_single(&d, t, true);
+	if (!ret) {
+		ret = ip(t, &d, &p);
+		dev_close(&d);
+	}
+	return ret;
+}
+
+const struct cmd cmd_ip = {
+	.name = "ip",
+	.run = run,
+	.args = "[KEYWORD VALUE]...",
+	.opts = "map",
+	.summary = "Set the IP parameters of a slave with EoE, or show them",
+	.help = "KEYWORD VALUE, in any case:\n"
+		"  mac_address, link          6 bytes, as 02:00:00:ec:01:07\n"
+		"  ip_address, addr           IPv4 address or host name; with /PREFIX also the mask\n"
+		"  subnet_mask, mask          as 255.255.255.0\n"
+		"  default_gateway, default   IPv4 address or host name\n"
+		"  dns_address, dns           IPv4 address or host name\n"
+		"  hostname, name             at most 31 bytes\n"
+		"Without arguments the slave is asked for what it has. What is set here lasts as\n"
+		"long as the slave keeps it; applications have ecrt_slave_config_eoe_...().\n",
+	.json = "master, slave, mac_address, ip_address, subnet_mask, default_gateway,\n"
+		"dns_address, hostname (null: not set, or not told)",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.max_args = 12,
+};

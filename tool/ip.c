@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "ip.h"
+
+#include <arpa/inet.h>
+#include <ctype.h>
+#include <netdb.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/socket.h>
+
+#include "out.h"
+#include "text.h"
+
+/* keywords of both lines of the field's tool, and what they mean */
+static const struct {
+	const char *word;
+	u32 which;
+} words[] = {
+	{ "mac_address", EC_IP_MAC }, { "link", EC_IP_MAC },
+	{ "ip_address", EC_IP_ADDRESS }, { "addr", EC_IP_ADDRESS },
+	{ "subnet_mask", EC_IP_MASK }, { "mask", EC_IP_MASK },
+	{ "default_gateway", EC_IP_GATEWAY }, { "default", EC_IP_GATEWAY },
+	{ "dns_address", EC_IP_DNS }, { "dns_adress", EC_IP_DNS }, { "dns", EC_IP_DNS },
+	{ "hostname", EC_IP_HOSTNAME }, { "name", EC_IP_HOSTNAME },
+};
+
+static int hex(char c)
+{
+	return isdigit((unsigned char)c) ? c - '0' :
+	       isxdigit((unsigned char)c) ? tolower((unsigned char)c) - 'a' + 10 : -1;
+}
+
+/* 02:00:00:ec:01:07, 02-00-00-ec-01-07 or 020000ec0107 */
+static int parse_mac(u8 mac[6], const char *text)
+{
+	char sep = text[0] && text[1] ? text[2] : 0;
+	const char *p = text;
+	u8 v[6];
+
+	if (sep != ':' && sep != '-')
+		sep = 0;
+	for (int i = 0; i < 6; i++, p += 2) {
+		if (i && sep && *p++ != sep)
+			goto bad;
+		if (hex(p[0]) < 0 || hex(p[1]) < 0)
+			goto bad;
+		v[i] = (u8)(hex(p[0]) << 4 | hex(p[1]));
+	}
+	if (*p)
+		goto bad;
+	memcpy(mac, v, 6);
+	return 0;
+bad:
+	return usage_error("invalid MAC address '%s': expected 6 bytes, as 02:00:00:ec:01:07", text);
+}
+
+static int parse_host(u8 addr[4], const char *text)
+{
+	const struct addrinfo hints = { .ai_family = AF_INET, .ai_socktype = SOCK_STREAM };
+	struct sockaddr_in in;
+	struct addrinfo *ai;
+	int ret;
+
+	if (inet_pton(AF_INET, text, addr) == 1)
+		return 0;
+	if (!*text || !text[strspn(text, "0123456789.")])
+		return usage_error("invalid address '%s': expected IPv4, as 192.168.0.1, or a host name",
+				   text);
+	ret = getaddrinfo(text, NULL, &hints, &ai);
+	if (ret)
+		return fail("cannot find the address of '%s': %s", text, gai_strerror(ret));
+	memcpy(&in, ai->ai_addr, sizeof(in));
+	memcpy(addr, &in.sin_addr, 4);
+	freeaddrinfo(ai);
+	return 0;
+}
+
+/* ADDRESS or ADDRESS/PREFIX, which says the mask, too */
+static int parse_address(struct ec_ip_params *p, const char *text)
+{
+	const char *slash = strchr(text, '/');
+	char host[256], *end;
+	unsigned long bits;
+	u32 mask;
+
+	snprintf(host, sizeof(host), "%.*s", slash ? (int)(slash - text) : 255, text);
+	if (parse_host(p->ip, host))
+		return 1;
+	if (!slash)
+		return 0;
+	bits = strtoul(slash + 1, &end, 10);
+	if (!isdigit((unsigned char)slash[1]) || *end || bits > 32)
+		return usage_error("invalid prefix '%s': expected 0 to 32", slash + 1);
+	mask = bits ? htonl(~0u << (32 - bits)) : 0;
+	memcpy(p->mask, &mask, 4);
+	p->which |= EC_IP_MASK;
+	return 0;
+}
+
+static int parse_name(char *name, const char *text)
+{
+	if (!*text || strlen(text) >= EC_IP_NAME)
+		return usage_error("invalid host name '%s': expected 1 to %d bytes", text,
+				   EC_IP_NAME - 1);
+	memset(name, 0, EC_IP_NAME);
+	memcpy(name, text, strlen(text));
+	return 0;
+}
+
+int ip_parse(struct ec_ip_params *p, const char *key, const char *value)
+{
+	u32 which = 0;
+
+	for (size_t i = 0; i < ARRAY_SIZE(words); i++)
+		if (!strcasecmp(words[i].word, key))
+			which = words[i].which;
+	p->which |= which;
+	switch (which) {
+	case EC_IP_MAC:
+		return parse_mac(p->mac, value);
+	case EC_IP_ADDRESS:
+		return parse_address(p, value);
+	case EC_IP_MASK:
+		return parse_host(p->mask, value);
+	case EC_IP_GATEWAY:
+		return parse_host(p->gateway, value);
+	case EC_IP_DNS:
+		return parse_host(p->dns, value);
+	case EC_IP_HOSTNAME:
+		return parse_name(p->name, value);
+	default:
+		return usage_error("unknown keyword '%s': expected mac_address, ip_address, subnet_mask, default_gateway, dns_address or hostname",
+				   key);
+	}
+}
+
+static void line(bool set, bool all, const char *key, const char *value, const char *indent,
+		 const char *label)
+{
+	if (set)
+		out_str(key, value, "%s%s: %s\n", indent, label, value);
+	else if (all)
+		out_null(key, NULL);
+}
+
+static const char *dotted(const u8 a[4], char buf[16])
+{
+	return inet_ntop(AF_INET, a, buf, 16);
+}
+
+void ip_out(struct ec_ip_params *p, const char *indent, bool all)
+{
+	char mac[18], buf[16];
+	const u8 *m = p->mac;
+
+	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", m[0], m[1], m[2], m[3], m[4],
+		 m[5]);
+	string_clean(p->name, sizeof(p->name));
+	line(p->which & EC_IP_MAC, all, "mac_address", mac, indent, "MAC address");
+	line(p->which & EC_IP_ADDRESS, all, "ip_address", dotted(p->ip, buf), indent, "IP address");
+	line(p->which & EC_IP_MASK, all, "subnet_mask", dotted(p->mask, buf), indent,
+	     "Subnet mask");
+	line(p->which & EC_IP_GATEWAY, all, "default_gateway", dotted(p->gateway, buf), indent,
+	     "Default gateway");
+	line(p->which & EC_IP_DNS, all, "dns_address", dotted(p->dns, buf), indent, "DNS address");
+	line(p->which & EC_IP_HOSTNAME, all, "hostname", p->name, indent, "Hostname");
+}
