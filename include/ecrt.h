@@ -790,6 +790,9 @@ typedef struct {
  * @late_max: most of it, ns
  * @late_p999: 99.9 % of the sends were no further from theirs, ns; up to 1/8
  *	more than that
+ * @work_last: time the last cycle of the kernel took, ns
+ * @work_mean: mean of it, ns
+ * @work_max: most of it, ns
  * @late: sends by that distance: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last
  *	one and above
  *
@@ -807,6 +810,9 @@ typedef struct {
 	uint32_t late_mean;
 	uint32_t late_max;
 	uint32_t late_p999;
+	uint32_t work_last;
+	uint32_t work_mean;
+	uint32_t work_max;
 	uint64_t late[EC_CYCLE_BINS];
 } ec_cycle_state_t;
 

@@ -273,6 +273,10 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	state->late_min = ec_status_read(st->late_min);
 	state->late_max = ec_status_read(st->late_max);
 	state->late_mean = count ? (uint32_t)(ec_status_read(st->late_sum) / count) : 0;
+	count = ec_status_read(st->work_count);
+	state->work_last = ec_status_read(st->work_ns);
+	state->work_max = ec_status_read(st->work_max);
+	state->work_mean = count ? (uint32_t)(ec_status_read(st->work_sum) / count) : 0;
 	read_late(st, state);
 	return 0;
 }

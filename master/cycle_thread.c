@@ -183,10 +183,10 @@ static void publish(struct ec_cycle_thread *t, bool received)
 }
 
 /* Cycles whose time has passed are left out, so that the phase stays. */
-static void skip_missed(struct ec_cycle_thread *t)
+static void skip_missed(struct ec_cycle_thread *t, u64 now)
 {
 	u32 period = t->session->kernel.period_ns;
-	s64 late = ktime_get_ns() - t->next_ns;
+	s64 late = now - t->next_ns;
 	u64 skipped;
 
 	if (late < period)
@@ -205,10 +205,10 @@ static bool cycle(struct ec_cycle_thread *t)
 		.flags = s->kernel.dc,
 		.queued = s->n_domains ? GENMASK_ULL(s->n_domains - 1, 0) : 0,
 	};
-	u64 due = t->next_ns;
+	u64 due = t->next_ns, now = ktime_get_ns();
 	bool received;
 
-	skip_missed(t);
+	skip_missed(t, now);
 	send.sync_time = t->next_ns + t->epoch_ns;
 	received = !ec_cycle_receive(s);
 	feed(t);
@@ -218,6 +218,7 @@ static bool cycle(struct ec_cycle_thread *t)
 			ec_late_count(s, m->last_send_ns - due);
 	}
 	publish(t, received);
+	ec_late_work(s, ktime_get_ns() - now);
 	t->next_ns += s->kernel.period_ns;
 	return status(t)->state != EC_CYCLE_STATE_STOPPED;
 }

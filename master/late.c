@@ -47,6 +47,9 @@ static void forget(struct ec_status_cycle *st)
 	st->late_count = 0;
 	st->late_min = 0;
 	st->late_max = 0;
+	st->work_max = 0;
+	st->work_sum = 0;
+	st->work_count = 0;
 	memset(st->late, 0, sizeof(st->late));
 }
 
@@ -142,6 +145,25 @@ void ec_late_send(struct ec_session *s, u64 now)
 		off = skip(s, off);
 	step = (c->interval_ns >> 10) + NSEC_PER_USEC;
 	c->due_ns += clamp(off, -step, step);
+}
+
+/**
+ * ec_late_work() - count how long a cycle of the kernel took
+ * @s: active session
+ * @ns: from the wake-up of the thread until it goes to sleep
+ *
+ * Context: The thread that runs the cycle. RT-safe.
+ */
+void ec_late_work(struct ec_session *s, s64 ns)
+{
+	struct ec_status_cycle *st = status(s);
+	u32 work = clamp_t(s64, ns, 0, U32_MAX);
+
+	WRITE_ONCE(st->work_ns, work);
+	WRITE_ONCE(st->work_sum, st->work_sum + work);
+	WRITE_ONCE(st->work_count, st->work_count + 1);
+	if (work > st->work_max)
+		WRITE_ONCE(st->work_max, work);
 }
 
 /* Facts of a session beside its figures. */

@@ -38,6 +38,7 @@ struct ec_late_report {
 
 void ec_late_count(struct ec_session *s, s64 ns);
 void ec_late_send(struct ec_session *s, u64 now);
+void ec_late_work(struct ec_session *s, s64 ns);
 
 void ec_late_end(struct ec_session *s);
 void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,

@@ -113,6 +113,18 @@ static void figures(const struct ec_status_cycle *st)
 	out_u("late_max_ns", st->late_max, ", max %.3f\n", st->late_max / 1000.0);
 }
 
+/* how long a cycle of the kernel takes */
+static void work(const struct ec_status_cycle *st)
+{
+	double mean;
+
+	if (!st->work_count)
+		return;
+	mean = (double)st->work_sum / (double)st->work_count;
+	out_f("work_mean_ns", mean, "  Work of a cycle [us]: mean %.3f", mean / 1000);
+	out_u("work_max_ns", st->work_max, ", max %.3f\n", st->work_max / 1000.0);
+}
+
 static const char *state_text(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle *st)
 {
 	if (!i->active)
@@ -155,6 +167,7 @@ static int show(const struct tool *t, struct dev *d)
 	who(&info, &st);
 	if (info.kind != EC_CYCLE_BY_NOBODY) {
 		figures(&st);
+		work(&st);
 		histogram(&st, t->verbosity > 0 ? 1 : 8);
 	}
 	out_end();
@@ -188,5 +201,6 @@ const struct cmd cmd_cycle = {
 	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
 		"stopped, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
 		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
-		"histogram[] (from_ns, to_ns, sends; none that is empty). Of nobody master and by only",
+		"work_mean_ns, work_max_ns (how long a cycle of the kernel takes), histogram[] (from_ns,\n"
+		"to_ns, sends; none that is empty). Of nobody master and by only",
 };

@@ -712,7 +712,11 @@ struct ec_status_cycle {
 	__u32 late_min;
 	__u32 late_max;
 	__u32 state;		/* EC_CYCLE_STATE_* */
+	__u32 work_ns;		/* kernel: how long the last cycle took */
+	__u32 work_max;
 	__u32 reserved;
+	__u64 work_sum;
+	__u64 work_count;
 	__u64 late[EC_CYCLE_BUCKETS];
 };
 

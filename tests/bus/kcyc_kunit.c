@@ -154,6 +154,8 @@ static void kcyc_period(struct kunit *test)
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++)
 		counted += status(a)->late[i];
 	KUNIT_EXPECT_EQ(test, counted, status(a)->cycle);
+	KUNIT_EXPECT_EQ(test, status(a)->work_count, status(a)->cycle);
+	KUNIT_EXPECT_GT(test, status(a)->work_max, 0u);
 	/* time passes only when it is read */
 	bus_figure("kernel cycle: send %u to %u ns after its schedule", status(a)->late_min,
 		   status(a)->late_max);

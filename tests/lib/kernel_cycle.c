@@ -139,6 +139,9 @@ static void steps(void)
 	fake.status->kernel.late_sum = 30;
 	fake.status->kernel.late_count = 10;
 	fake.status->kernel.late_max = 1 << 20;
+	fake.status->kernel.work_sum = 5000;
+	fake.status->kernel.work_count = 2;
+	fake.status->kernel.work_max = 3000;
 	fake.status->kernel.late[5] = 7000;
 	fake.status->kernel.late[8 + 7] = 2000;	/* 15 ns */
 	fake.status->kernel.late[16] = 991;	/* 16 and 17 ns */
@@ -146,7 +149,7 @@ static void steps(void)
 	CHECK(ecrt_master_cycle_count(m) == 12 && ecrt_master_cycle_fd(m) == FAKE_FD);
 	CHECK(!ecrt_master_cycle_state(m, &cs) && cs.cycles == 12 && cs.late_mean == 3 &&
 	      cs.late[3] == 7000 && cs.late[4] == 2000 && cs.late[5] == 991 &&
-	      cs.late[31] == 9 && cs.late_p999 == 17);
+	      cs.late[31] == 9 && cs.late_p999 == 17 && cs.work_mean == 2500 && cs.work_max == 3000);
 	fake.cycle = 5;
 	CHECK(ecrt_master_wait_cycle(m, 0) == 5);
 	fake.cycle = 6;

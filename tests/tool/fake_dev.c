@@ -407,6 +407,9 @@ static int cycle_stats(struct ec_ioc_cycle_stats *x)
 	if (bus("kcycle")) {
 		st.state = EC_CYCLE_STATE_STALLED;
 		st.overruns = 2;
+		st.work_sum = 42000000;
+		st.work_count = 10000;
+		st.work_max = 9876;
 		st.missed = 3;
 	}
 	memcpy((void *)(uintptr_t)x->data, &st, sizeof(st));
