@@ -111,7 +111,7 @@ static int start(struct ec_request *r, bool write, __u16 index, __u8 subindex,
 		memcpy(r->shared, r->data, size);
 	rec->index = index;
 	rec->subindex = subindex;
-	rec->write = write;
+	rec->op = write;
 	rec->size = (__u32)size;
 	rec->timeout_ms = r->timeout_ms;
 	r->write = write;

@@ -8,8 +8,10 @@
 #include "master.h"
 #include "session.h"
 #include "slave.h"
+#include "soe.h"
 #include "wire/coe.h"
 #include "wire/fmmu.h"
+#include "wire/soe.h"
 #include "xfer.h"
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
@@ -134,7 +136,7 @@ static int write_sdos(struct ec_slave *s, struct ec_config *c)
 
 	list_for_each_entry(sdo, &c->sdos, list) {
 		ret = ec_coe_download(s, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
-				      &abort, 0);
+				      &abort, NULL);
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
@@ -148,12 +150,37 @@ static int write_sdos(struct ec_slave *s, struct ec_config *c)
 	return 0;
 }
 
+/* those of one AL state */
+static int write_idns(struct ec_slave *s, struct ec_config *c, u8 state)
+{
+	struct ec_config_idn *i;
+	char name[12];
+	u16 error;
+	int ret;
+
+	list_for_each_entry(i, &c->idns, list) {
+		if (i->state != state)
+			continue;
+		ret = ec_soe_write(s, i->drive, i->idn, i->data, i->size, &error, NULL);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+		if (ret) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "startup IDN %s of drive %u, %u byte(s): error %d, SoE error 0x%04x: %s",
+				      ec_soe_idn_text(i->idn, name), i->drive, i->size, ret, error,
+				      ec_soe_error_text(error) ?: "none");
+			return ret;
+		}
+	}
+	return 0;
+}
+
 static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32 *abort)
 {
 	u8 b[4];
 
 	put_unaligned_le32(value, b);
-	return ec_coe_download(s, index, sub, false, b, bytes, abort, 0);
+	return ec_coe_download(s, index, sub, false, b, bytes, abort, NULL);
 }
 
 /* Does the object hold @n values of @bytes bytes, as @value says? */
@@ -165,11 +192,11 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 	size_t got;
 	u8 b[4] = { 0 };
 
-	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, 0) || b[0] != n)
+	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
 		return false;
 	for (i = 0; i < n; i++) {
 		memset(b, 0, sizeof(b));
-		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, 0) ||
+		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
 		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
 			return false;
 	}
@@ -373,8 +400,8 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (c) {
-		ret = write_sdos(s, c) ?: ec_eoe_apply(s, c) ?: write_pdos(s, c) ?:
-		      write_watchdog(s, c);
+		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
+		      write_pdos(s, c) ?: write_watchdog(s, c);
 		if (ret)
 			return ret;
 	}
@@ -446,6 +473,8 @@ static int step(struct ec_slave *s)
 		return to_safeop(s, s->config);
 	case EC_AL_SAFEOP:
 		ret = wait_outputs(s);
+		if (!ret && s->config)
+			ret = write_idns(s, s->config, EC_AL_SAFEOP);
 		if (ret)
 			return ret;
 		ret = ec_al_set(s, EC_AL_OP,

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "coe.h"
 #include "mailbox.h"
@@ -22,8 +21,10 @@ static int tx(struct exchange *x, u8 *buf, size_t cap)
 	return x->down ? ec_sdo_down_tx(&x->dn, buf, cap) : ec_sdo_up_tx(&x->up, buf, cap);
 }
 
-static int rx(struct exchange *x, const u8 *buf, size_t len)
+static int rx(void *ctx, const u8 *buf, size_t len)
 {
+	struct exchange *x = ctx;
+
 	return x->down ? ec_sdo_down_rx(&x->dn, buf, len) : ec_sdo_up_rx(&x->up, buf, len);
 }
 
@@ -32,52 +33,46 @@ static bool send_abort(const struct exchange *x)
 	return x->down ? x->dn.send_abort : x->up.send_abort;
 }
 
-static int one_step(struct ec_slave *slave, struct exchange *x, struct ec_mbox_buf *b,
-		    size_t cap, u64 until)
+static void tell_abort(struct ec_slave *slave, struct exchange *x, struct ec_mbox_buf *b,
+		       size_t cap, const bool *cancel)
 {
-	int ret = tx(x, b->tx, cap);
+	struct ec_mbox_limit limit = { .timeout_ms = 100, .cancel = cancel };
+	int len = tx(x, b->tx, cap);
 
-	if (ret < 0)
-		return ret;
-	ret = ec_mbox_send(slave, EC_MBOX_COE, b, ret, until);
-	if (ret)
-		return ret;
-	do {
-		ret = ec_mbox_recv(slave, EC_MBOX_COE, b, until);
-		if (ret >= 0)
-			ret = rx(x, b->rx, ret);
-	} while (ret == EC_STALE && ktime_get_ns() <= until);
-	return ret == EC_STALE ? -ETIMEDOUT : ret;
+	if (len > 0)
+		ec_mbox_tell(slave, EC_MBOX_COE, b, len, &limit);
 }
 
-static int run(struct ec_slave *slave, struct exchange *x, u32 timeout_ms)
+/*
+ * Other protocols may use the mailbox between the messages of a transfer, another
+ * SDO transfer may not.
+ */
+static int run(struct ec_slave *slave, struct exchange *x, const struct ec_mbox_limit *limit)
 {
 	size_t cap = slave->info.std.rx_size - EC_MBOX_HDR;
+	struct ec_mbox_ask ask = {
+		.type = EC_MBOX_COE, .first = true, .rx = rx, .ctx = x,
+		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SDO_TIMEOUT_MS,
+		.cancel = limit ? limit->cancel : NULL,
+	};
 	struct ec_mbox_buf *b;
-	u64 until;
 	int ret;
 
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	ret = mutex_lock_interruptible(&slave->mbox_lock);
+	ret = mutex_lock_interruptible(&slave->sdo_lock);
 	if (ret)
 		goto out;
-	ret = ec_mbox_drain(slave, b);
-	while (!ret || ret == EC_MORE) {
-		until = ktime_get_ns() + (u64)(timeout_ms ?: EC_SDO_TIMEOUT_MS) * NSEC_PER_MSEC;
-		ret = one_step(slave, x, b, cap, until);
-		if (!ret)
-			break;
-	}
-	if (send_abort(x)) {
-		int len = tx(x, b->tx, cap);
-
-		if (len > 0)
-			ec_mbox_send(slave, EC_MBOX_COE, b, len,
-				     ktime_get_ns() + 100 * NSEC_PER_MSEC);
-	}
-	mutex_unlock(&slave->mbox_lock);
+	do {
+		ret = tx(x, b->tx, cap);
+		if (ret >= 0)
+			ret = ec_mbox_ask(slave, &ask, b, ret);
+		ask.first = false;
+	} while (ret == EC_MORE);
+	if (send_abort(x))
+		tell_abort(slave, x, b, cap, ask.cancel);
+	mutex_unlock(&slave->sdo_lock);
 out:
 	kfree(b);
 	return ret;
@@ -85,15 +80,7 @@ out:
 
 static int check(const struct ec_slave *slave)
 {
-	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & EC_SII_PROTO_COE))
-		return -EPROTONOSUPPORT;
-	/* the EEPROM may say anything; a message is one datagram */
-	if (slave->info.std.rx_size < EC_MBOX_HDR + EC_SDO_MSG ||
-	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
-		return -EMSGSIZE;
-	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
-		return -EAGAIN;
-	return 0;
+	return ec_mbox_check(slave, EC_SII_PROTO_COE, EC_SDO_MSG);
 }
 
 /**
@@ -106,7 +93,7 @@ static int check(const struct ec_slave *slave)
  * @cap: room at @data
  * @size: bytes read
  * @abort: abort code of the slave, or 0
- * @timeout_ms: limit per message, 0: default
+ * @limit: when to give up; NULL: as usual
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EIO with @abort set; -ENOBUFS when the object is larger than
@@ -115,7 +102,7 @@ static int check(const struct ec_slave *slave)
  * answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
  */
 int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
-		  size_t *size, u32 *abort, u32 timeout_ms)
+		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct exchange x = { .down = false };
 	int ret = check(slave);
@@ -125,7 +112,7 @@ int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *
 	if (ret)
 		return ret;
 	ec_sdo_up_init(&x.up, index, sub, complete, data, cap);
-	ret = run(slave, &x, timeout_ms);
+	ret = run(slave, &x, limit);
 	if (ret == -EIO)
 		*abort = x.up.abort;
 	if (!ret)
@@ -144,13 +131,13 @@ int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *
  * @data: value
  * @size: bytes
  * @abort: abort code of the slave, or 0
- * @timeout_ms: limit per message, 0: default
+ * @limit: when to give up; NULL: as usual
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_coe_upload().
  */
 int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, const u8 *data,
-		    size_t size, u32 *abort, u32 timeout_ms)
+		    size_t size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct exchange x = { .down = true };
 	int ret = check(slave);
@@ -160,7 +147,7 @@ int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, co
 		return ret;
 	ec_sdo_down_init(&x.dn, index, sub, complete, data, size,
 			 slave->info.std.rx_size - EC_MBOX_HDR);
-	ret = run(slave, &x, timeout_ms);
+	ret = run(slave, &x, limit);
 	if (ret == -EIO)
 		*abort = x.dn.abort;
 	ec_slave_dbg(slave, 1, "download 0x%04x:%02x, %zu byte(s): result %d, abort 0x%08x\n",

@@ -77,6 +77,7 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	c->vendor = vendor;
 	c->product = product;
 	INIT_LIST_HEAD(&c->sdos);
+	INIT_LIST_HEAD(&c->idns);
 	INIT_LIST_HEAD(&c->flags);
 	s->configs[s->n_configs++] = c;
 	ec_session_attach_one(s, c);
@@ -88,6 +89,7 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 void ec_config_free(struct ec_config *c)
 {
 	struct ec_config_sdo *sdo, *n;
+	struct ec_config_idn *idn, *after;
 	struct ec_config_flag *flag, *next;
 	unsigned int i;
 
@@ -95,6 +97,8 @@ void ec_config_free(struct ec_config *c)
 		ec_pdo_list_clear(&c->sm[i].pdos);
 	list_for_each_entry_safe(sdo, n, &c->sdos, list)
 		kfree(sdo);
+	list_for_each_entry_safe(idn, after, &c->idns, list)
+		kfree(idn);
 	list_for_each_entry_safe(flag, next, &c->flags, list)
 		kfree(flag);
 	kfree(c);
@@ -196,6 +200,26 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 	memcpy(sdo->data, data, size);
 	list_add_tail(&sdo->list, &c->sdos);
 	c->n_sdos++;
+	return 0;
+}
+
+/* @drive is below EC_SOE_DRIVES, @state is PREOP or SAFEOP */
+int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size)
+{
+	struct ec_config_idn *i;
+
+	if (c->n_idns >= EC_MAX_SC_IDNS)
+		return -ENOSPC;
+	i = kmalloc(struct_size(i, data, size), GFP_KERNEL);
+	if (!i)
+		return -ENOMEM;
+	i->idn = idn;
+	i->drive = drive;
+	i->state = state;
+	i->size = size;
+	memcpy(i->data, data, size);
+	list_add_tail(&i->list, &c->idns);
+	c->n_idns++;
 	return 0;
 }
 

@@ -61,6 +61,16 @@ struct ec_config_sdo {
 	u8 data[];
 };
 
+/* a startup IDN, in the order of the calls */
+struct ec_config_idn {
+	struct list_head list;
+	u16 idn;
+	u8 drive;
+	u8 state;	/* EC_AL_PREOP or EC_AL_SAFEOP */
+	u32 size;
+	u8 data[];
+};
+
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
 	struct list_head list;
@@ -81,6 +91,8 @@ struct ec_config_flag {
  * @n_fmmus: entries in @fmmus
  * @sdos: startup SDOs
  * @n_sdos: how many
+ * @idns: startup IDNs
+ * @n_idns: how many
  * @flags: named numbers
  * @n_flags: how many
  * @lrw: its process data are in an LRW datagram
@@ -106,6 +118,8 @@ struct ec_config {
 	unsigned int n_fmmus;
 	struct list_head sdos;
 	unsigned int n_sdos;
+	struct list_head idns;
+	unsigned int n_idns;
 	struct list_head flags;
 	unsigned int n_flags;
 	bool lrw;
@@ -131,6 +145,7 @@ int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e
 int ec_config_map_clear(struct ec_config *c, u16 pdo);
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
 		      u32 size);
+int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
 void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "config.h"
 #include "eoe.h"
@@ -10,48 +9,40 @@
 
 #define TIMEOUT_MS	1000
 
-/* Frames of the slave's network may come in between. */
-static int answer(struct ec_slave *slave, struct ec_mbox_buf *b, u8 type, u16 *result, u64 until)
-{
-	int len, ret;
+/* the answer that is waited for */
+struct answer {
+	u8 type;
+	u16 *result;
+	int len;
+};
 
-	do {
-		len = ec_mbox_recv(slave, EC_MBOX_EOE, b, until);
-		if (len < 0)
-			return len;
-		ret = ec_eoe_result_decode(b->rx, len, type, result);
-	} while (ret == -ENOMSG && ktime_get_ns() <= until);
+/* Frames of the slave's network may come in between. */
+static int rx(void *ctx, const u8 *buf, size_t len)
+{
+	struct answer *a = ctx;
+	int ret = ec_eoe_result_decode(buf, len, a->type, a->result);
+
 	if (ret)
-		return ret == -ENOMSG ? -ETIMEDOUT : -EBADMSG;
-	return *result ? -EREMOTEIO : len;
+		return ret == -ENOMSG ? EC_STALE : -EBADMSG;
+	a->len = len;
+	return *a->result ? -EREMOTEIO : 0;
 }
 
-/* @len bytes of @b->tx go out, the answer of type @resp comes to @b->rx. */
+/* @len bytes of @b->tx go out, the answer of type @resp comes to @b->rx: its length. */
 static int exchange(struct ec_slave *slave, struct ec_mbox_buf *b, size_t len, u8 resp,
 		    u16 *result)
 {
-	u64 until;
-	int ret = mutex_lock_interruptible(&slave->mbox_lock);
+	struct answer a = { .type = resp, .result = result };
+	struct ec_mbox_ask ask = {
+		.type = EC_MBOX_EOE, .first = true, .timeout_ms = TIMEOUT_MS, .rx = rx, .ctx = &a,
+	};
 
-	if (ret)
-		return ret;
-	until = ktime_get_ns() + TIMEOUT_MS * NSEC_PER_MSEC;
-	ret = ec_mbox_drain(slave, b) ?: ec_mbox_send(slave, EC_MBOX_EOE, b, len, until) ?:
-	      answer(slave, b, resp, result, until);
-	mutex_unlock(&slave->mbox_lock);
-	return ret;
+	return ec_mbox_ask(slave, &ask, b, len) ?: a.len;
 }
 
 static int check(const struct ec_slave *slave)
 {
-	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & EC_SII_PROTO_EOE))
-		return -EPROTONOSUPPORT;
-	if (slave->info.std.rx_size < EC_MBOX_HDR + EC_EOE_IP_SIZE ||
-	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
-		return -EMSGSIZE;
-	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
-		return -EAGAIN;
-	return 0;
+	return ec_mbox_check(slave, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
 }
 
 /**

@@ -4,6 +4,7 @@
 #include <linux/uaccess.h>
 #include "coe.h"
 #include "ioctl.h"
+#include "mailbox.h"
 #include "master.h"
 #include "session.h"
 #include "slave.h"
@@ -45,6 +46,7 @@ static int sdo_failed(struct ec_file *f, const struct ec_ioc_sdo *i, int ret)
 int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sdo *i = arg;
+	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
 	struct ec_slave *s;
 	size_t got = 0;
 	int ret = 0;
@@ -59,8 +61,7 @@ int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 	buf = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (buf)
 		ret = ec_coe_upload(s, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
-				    buf, i->size, &got, &i->abort_code,
-				    min(i->timeout_ms, EC_MAX_SDO_MS));
+				    buf, i->size, &got, &i->abort_code, &limit);
 	else
 		ret = -ENOMEM;
 	ret = sdo_failed(f, i, ret);
@@ -75,6 +76,7 @@ int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 int ec_ioc_sdo_download(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sdo *i = arg;
+	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
 	struct ec_slave *s;
 	int ret = 0;
 	u8 *buf;
@@ -89,8 +91,7 @@ int ec_ioc_sdo_download(struct ec_file *f, void *arg)
 	if (s) {
 		ret = sdo_failed(f, i, ec_coe_download(s, i->index, i->subindex,
 						       i->flags & EC_SDO_FLAG_COMPLETE, buf,
-						       i->size, &i->abort_code,
-						       min(i->timeout_ms, EC_MAX_SDO_MS)));
+						       i->size, &i->abort_code, &limit));
 		ec_slave_unref(s);
 	}
 	kvfree(buf);

@@ -39,7 +39,8 @@ int ec_ioc_version(struct ec_file *f, void *arg)
 	struct ec_ioc_version *v = arg;
 
 	v->abi = EC_UAPI_VERSION;
-	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE;
+	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
+		      EC_FEATURE_SOE | EC_FEATURE_VOE;
 	v->master_count = ec_master_count();
 	v->ecrt = 0x0106;
 	strscpy(v->release, EC_RELEASE, sizeof(v->release));

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that prepare requests and emergencies; their use needs none. */
+#include <linux/nospec.h>
 #include "config.h"
 #include "ioctl.h"
 #include "master.h"
 #include "request.h"
 #include "session.h"
+
+static const u32 limits[] = {
+	[EC_REQUEST_SDO] = EC_MAX_SDO_SIZE,
+	[EC_REQUEST_REG] = EC_MAX_REG_SIZE,
+	[EC_REQUEST_SOE] = EC_MAX_SOE_SIZE,
+	[EC_REQUEST_VOE] = EC_MAX_VOE_SIZE,
+};
 
 int ec_ioc_sc_request(struct ec_file *f, void *arg)
 {
@@ -13,9 +21,9 @@ int ec_ioc_sc_request(struct ec_file *f, void *arg)
 	u32 limit;
 	int ret = 0;
 
-	if (i->kind > EC_REQUEST_REG)
+	if (i->kind >= ARRAY_SIZE(limits))
 		return ec_refuse(f, -EINVAL, "%u is no kind of request", i->kind);
-	limit = i->kind == EC_REQUEST_REG ? EC_MAX_REG_SIZE : EC_MAX_SDO_SIZE;
+	limit = limits[array_index_nospec(i->kind, ARRAY_SIZE(limits))];
 	if (i->size > limit)
 		return ec_refuse(f, -EINVAL, "size must be at most %u bytes, not %u", limit,
 				 i->size);

@@ -13,12 +13,15 @@
 #define EC_MAX_SM_BYTES		0xf000	/* of one SyncManager: what an ESC has from 0x1000 on */
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
+#define EC_MAX_SC_IDNS		1024	/* startup IDNs of one configuration */
 #define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
 #define EC_MAX_REQUESTS		4096	/* of one session */
 #define EC_MAX_REQUEST_BYTES	(16 * 1024 * 1024)	/* of one session, emergencies included */
 #define EC_MAX_EMERG		1024	/* emergencies kept per configuration */
 #define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
 #define EC_MAX_SDO_MS		60000u	/* others wait for the mailbox meanwhile */
+#define EC_MAX_SOE_SIZE		(64 * 1024)	/* bytes; the length of a list has 16 bits */
+#define EC_MAX_VOE_SIZE		1474	/* bytes; one message in one datagram */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
 #define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
 

@@ -2,6 +2,7 @@
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
+#include <linux/slab.h>
 #include "emerg.h"
 #include "mailbox.h"
 #include "master.h"
@@ -10,14 +11,33 @@
 #include "wire/mbox.h"
 #include "xfer.h"
 
-/* Why an exchange has to end now; 0: go on. */
-static int over(const struct ec_slave *slave, u64 until_ns)
+/* a message that was taken out of the mailbox for who reads it later */
+struct kept {
+	struct list_head list;
+	u16 len;
+	u8 data[];
+};
+
+/* when somebody who waits has to give up */
+struct until {
+	u64 ns;
+	const bool *cancel;
+};
+
+static struct until in_ms(u32 ms, const bool *cancel)
 {
-	if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt))
+	return (struct until){ ktime_get_ns() + (u64)ms * NSEC_PER_MSEC, cancel };
+}
+
+/* Why an exchange has to end now; 0: go on. */
+static int over(const struct ec_slave *slave, const struct until *u)
+{
+	if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt) ||
+	    (u->cancel && READ_ONCE(*u->cancel)))
 		return -ECANCELED;
 	if (signal_pending(current))
 		return -EINTR;
-	return ktime_get_ns() > until_ns ? -ETIMEDOUT : 0;
+	return ktime_get_ns() > u->ns ? -ETIMEDOUT : 0;
 }
 
 /* Short waits first: most slaves answer within a few hundred microseconds. */
@@ -38,22 +58,12 @@ static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 	return ret ? ret : dg.wkc == 1 ? 0 : -EIO;
 }
 
-/**
- * ec_mbox_send() - write one message to the slave's mailbox
- * @slave: slave with mailbox, @mbox_lock held
- * @type: enum ec_mbox_type
- * @b: message in @tx
- * @len: bytes of the message
- * @until_ns: when to give up (ktime)
- *
+/*
  * A full mailbox (working counter 0) is tried again. A lost frame is not: the
  * message may have arrived, and the answer tells.
- *
- * Context: Process. Waits for bus traffic.
- * Return: 0, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as ec_xfer().
  */
-int ec_mbox_send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
-		 u64 until_ns)
+static int send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+		const struct until *until)
 {
 	u16 size = slave->info.std.rx_size;
 	struct ec_mbox_hdr h = { .len = len, .type = type };
@@ -74,7 +84,7 @@ int ec_mbox_send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t 
 		ret = once(slave, EC_CMD_FPWR, slave->info.std.rx_offset, b->raw, size);
 		if (ret != -EIO)
 			return ret == -ETIMEDOUT ? 0 : ret;
-		ret = over(slave, until_ns);
+		ret = over(slave, until);
 		if (ret)
 			return ret;
 		pause_us(&us);
@@ -114,8 +124,11 @@ static int repeat_request(struct ec_slave *slave)
 	return ret ?: -ETIMEDOUT;
 }
 
-/* Take one message out of the slave's mailbox: bytes behind the header, or 0: empty. */
-static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_hdr *h)
+/*
+ * Take one message out of the slave's mailbox: bytes behind the header, or 0:
+ * empty. @blind: without a look whether there is one.
+ */
+static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind)
 {
 	u16 size = slave->info.std.tx_size;
 	struct ec_rbuf r;
@@ -123,7 +136,7 @@ static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_h
 
 	if (size > EC_MBOX_MAX)
 		return -EMSGSIZE;
-	ret = full(slave);
+	ret = blind ? 1 : full(slave);
 	if (ret <= 0)
 		return ret;
 	ret = once(slave, EC_CMD_FPRD, slave->info.std.tx_offset, b->raw, size);
@@ -152,12 +165,106 @@ static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const
 	return true;
 }
 
+static void flush(struct ec_slave *slave, unsigned int left)
+{
+	while (slave->n_kept > left) {
+		struct kept *k = list_first_entry(&slave->kept, struct kept, list);
+
+		list_del(&k->list);
+		slave->n_kept--;
+		kfree(k);
+	}
+}
+
+/* A VoE message somebody may read later; the oldest go when there are too many. */
+static void keep(struct ec_slave *slave, const u8 *rx, u16 len)
+{
+	struct kept *k;
+
+	if (!READ_ONCE(slave->keep_voe))
+		return;
+	k = kmalloc(struct_size(k, data, len), GFP_KERNEL);
+	if (!k)
+		return;
+	k->len = len;
+	memcpy(k->data, rx, len);
+	spin_lock(&slave->kept_lock);
+	if (slave->keep_voe && slave->n_kept == EC_MBOX_KEPT && printk_ratelimit())
+		ec_slave_warn(slave, "sends VoE messages that nobody reads; the oldest is lost\n");
+	flush(slave, EC_MBOX_KEPT - 1);
+	list_add_tail(&k->list, &slave->kept);
+	slave->n_kept++;
+	if (!slave->keep_voe)
+		flush(slave, 0);
+	spin_unlock(&slave->kept_lock);
+}
+
+/**
+ * ec_mbox_keep_voe() - are there readers of VoE messages?
+ * @slave: slave
+ * @on: keep those that come while somebody else uses the mailbox; false: drop
+ *	them, those that are kept too
+ *
+ * Context: Process.
+ */
+void ec_mbox_keep_voe(struct ec_slave *slave, bool on)
+{
+	spin_lock(&slave->kept_lock);
+	WRITE_ONCE(slave->keep_voe, on);
+	if (!on)
+		flush(slave, 0);
+	spin_unlock(&slave->kept_lock);
+}
+
+/* The oldest kept message to @rx: its length; -ENOMSG: there is none. */
+static int take_kept(struct ec_slave *slave, u8 *rx)
+{
+	struct kept *k;
+	int len;
+
+	spin_lock(&slave->kept_lock);
+	k = list_first_entry_or_null(&slave->kept, struct kept, list);
+	if (k) {
+		list_del(&k->list);
+		slave->n_kept--;
+	}
+	spin_unlock(&slave->kept_lock);
+	if (!k)
+		return -ENOMSG;
+	len = k->len;
+	memcpy(rx, k->data, len);
+	kfree(k);
+	return len;
+}
+
+/* What comes unasked goes where it belongs. True: it was such a message. */
+static bool unasked(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+{
+	if (h->type == EC_MBOX_VOE) {
+		keep(slave, rx, h->len);
+		return true;
+	}
+	return emergency(slave, h, rx);
+}
+
+static int error_reply(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+{
+	struct ec_rbuf r = ec_rbuf(rx, h->len);
+	u16 detail;
+
+	if (ec_mbox_error_decode(&r, &detail))
+		return -EBADMSG;
+	ec_slave_warn(slave, "mailbox error 0x%04x: %s\n", detail, ec_mbox_error_text(detail));
+	return ec_mbox_error_errno(detail);
+}
+
 /**
  * ec_mbox_drain() - empty the mailbox of what nobody waits for
  * @slave: slave with mailbox, @mbox_lock held
  * @b: buffers
  *
- * Emergencies are kept, what an earlier exchange has left is thrown away.
+ * Emergencies and VoE messages are kept, what an earlier exchange has left is
+ * thrown away.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0 or as ec_xfer().
@@ -169,58 +276,189 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 	int ret = 1;
 
 	for (i = 0; i < 16 && ret; i++) {
-		ret = fetch(slave, b, &h);
+		ret = fetch(slave, b, &h, false);
 		if (ret < 0 && ret != -EBADMSG && ret != -EMSGSIZE)
 			return ret;
 		if (ret > 0)
-			emergency(slave, &h, b->rx);
+			unasked(slave, &h, b->rx);
 	}
 	return 0;
 }
 
-/**
- * ec_mbox_recv() - wait for a message of one protocol
- * @slave: slave with mailbox, @mbox_lock held
- * @type: enum ec_mbox_type
- * @b: the message is in @rx
- * @until_ns: when to give up (ktime)
- *
- * Emergencies are logged and skipped, messages of other protocols dropped.
- *
- * Context: Process. Waits for bus traffic.
- * Return: bytes behind the mailbox header; -ETIMEDOUT; -EBADMSG for a message
- * whose header is wrong; -EINTR; -ECANCELED; the errno of a mailbox error
- * reply; or as ec_xfer().
+/*
+ * Wait for a message of one protocol: bytes behind the mailbox header; or
+ * -errno, that of a mailbox error reply, too. What comes unasked is kept,
+ * answers of other protocols are of nobody: who asks holds the lock.
  */
-int ec_mbox_recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, u64 until_ns)
+static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const struct until *until)
 {
 	struct ec_mbox_hdr h;
 	unsigned int us = 20;
-	u16 detail;
 	int ret;
 
 	for (;;) {
-		ret = fetch(slave, b, &h);
+		ret = fetch(slave, b, &h, false);
 		if (ret < 0 && ret != -ETIMEDOUT)
 			return ret;
 		if (ret > 0) {
-			if (h.type == EC_MBOX_ERR) {
-				struct ec_rbuf r = ec_rbuf(b->rx, h.len);
-
-				if (ec_mbox_error_decode(&r, &detail))
-					return -EBADMSG;
-				ec_slave_warn(slave, "mailbox error 0x%04x: %s\n", detail,
-					      ec_mbox_error_text(detail));
-				return ec_mbox_error_errno(detail);
-			}
-			if (h.type == type && !emergency(slave, &h, b->rx))
+			if (h.type == EC_MBOX_ERR)
+				return error_reply(slave, &h, b->rx);
+			if (!unasked(slave, &h, b->rx) && h.type == type)
 				return ret;
 			us = 20;
 		}
 		/* also a slave that talks without end has to answer in time */
-		ret = over(slave, until_ns);
+		ret = over(slave, until);
 		if (ret)
 			return ret;
+		pause_us(&us);
+	}
+}
+
+/**
+ * ec_mbox_check() - can this protocol be used with the slave now?
+ * @slave: slave
+ * @protocol: EC_SII_PROTO_*
+ * @message: bytes behind the mailbox header it needs at least
+ *
+ * Context: Process.
+ * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EMSGSIZE for a
+ * mailbox that is too small or larger than a datagram; -EAGAIN in INIT.
+ */
+int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message)
+{
+	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & protocol))
+		return -EPROTONOSUPPORT;
+	/* the EEPROM may say anything; a message is one datagram */
+	if (slave->info.std.rx_size < EC_MBOX_HDR + message ||
+	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
+		return -EMSGSIZE;
+	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
+		return -EAGAIN;
+	return 0;
+}
+
+/**
+ * ec_mbox_ask() - send one message, wait for the answer
+ * @slave: slave that ec_mbox_check() is content with
+ * @a: what is asked
+ * @b: message in @tx, the answer will be in @rx
+ * @len: bytes of the message
+ *
+ * Nobody else asks this slave meanwhile. Emergencies and VoE messages that
+ * come first go where they belong.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: what @a->rx said last; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
+ * -EBADMSG for a message whose header is wrong; the errno of a mailbox error
+ * reply; or as ec_xfer().
+ */
+int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
+		size_t len)
+{
+	struct until until;
+	int ret = mutex_lock_interruptible(&slave->mbox_lock);
+
+	if (ret)
+		return ret;
+	if (a->first)
+		ret = ec_mbox_drain(slave, b);
+	until = in_ms(a->timeout_ms, a->cancel);
+	if (!ret)
+		ret = send(slave, a->type, b, len, &until);
+	if (ret)
+		goto out;
+	do {
+		ret = recv(slave, a->type, b, &until);
+		if (ret >= 0)
+			ret = a->rx(a->ctx, b->rx, ret);
+		if (ret == EC_WAIT)
+			until = in_ms(a->timeout_ms, a->cancel);
+	} while (ret == EC_WAIT || (ret == EC_STALE && ktime_get_ns() <= until.ns));
+	if (ret == EC_STALE)
+		ret = -ETIMEDOUT;
+out:
+	mutex_unlock(&slave->mbox_lock);
+	return ret;
+}
+
+/**
+ * ec_mbox_tell() - send one message that has no answer
+ * @slave: slave that ec_mbox_check() is content with
+ * @type: enum ec_mbox_type
+ * @b: message in @tx
+ * @len: bytes of the message
+ * @limit: when to give up
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as ec_xfer().
+ */
+int ec_mbox_tell(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+		 const struct ec_mbox_limit *limit)
+{
+	struct until until = in_ms(limit->timeout_ms, limit->cancel);
+	int ret = mutex_lock_interruptible(&slave->mbox_lock);
+
+	if (ret)
+		return ret;
+	ret = over(slave, &until) ?: send(slave, type, b, len, &until);
+	mutex_unlock(&slave->mbox_lock);
+	return ret;
+}
+
+/* One look for a VoE message with the lock held: its length, or -ENOMSG, or -errno. */
+static int look_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind)
+{
+	struct ec_mbox_hdr h;
+	int ret = take_kept(slave, b->rx);
+
+	if (ret != -ENOMSG)
+		return ret;
+	ret = fetch(slave, b, &h, blind);
+	if (ret == -ETIMEDOUT || !ret)
+		return -ENOMSG;
+	if (ret < 0 || h.type == EC_MBOX_VOE)
+		return ret;
+	if (h.type == EC_MBOX_ERR)
+		return error_reply(slave, &h, b->rx);
+	unasked(slave, &h, b->rx);
+	return -ENOMSG;
+}
+
+/**
+ * ec_mbox_wait_voe() - wait for a VoE message
+ * @slave: slave that ec_mbox_check() is content with
+ * @b: the message is in @rx
+ * @blind: one access to the mailbox without a look whether it is full, no wait
+ * @limit: when to give up; @timeout_ms 0: no wait
+ *
+ * It may have come earlier, while somebody else used the mailbox. Others can
+ * use it meanwhile.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: bytes behind the mailbox header; -ENOMSG, when @blind and there is
+ * none; -ETIMEDOUT, -EINTR, -ECANCELED; -EBADMSG; the errno of a mailbox error
+ * reply; or as ec_xfer().
+ */
+int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
+		     const struct ec_mbox_limit *limit)
+{
+	struct until until = in_ms(limit->timeout_ms, limit->cancel);
+	unsigned int us = 20;
+	int ret, end;
+
+	for (;;) {
+		ret = take_kept(slave, b->rx);
+		/* who holds the lock keeps what comes for us */
+		if (ret == -ENOMSG && mutex_trylock(&slave->mbox_lock)) {
+			ret = look_voe(slave, b, blind);
+			mutex_unlock(&slave->mbox_lock);
+		}
+		if (ret != -ENOMSG || blind)
+			return ret;
+		end = over(slave, &until);
+		if (end)
+			return end;
 		pause_us(&us);
 	}
 }

@@ -14,7 +14,7 @@ static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
 	u8 b[4] = { 0 };
 	size_t got;
 	u32 abort;
-	int ret = ec_coe_upload(s, index, sub, false, b, sizeof(b), &got, &abort, 0);
+	int ret = ec_coe_upload(s, index, sub, false, b, sizeof(b), &got, &abort, NULL);
 
 	*value = get_unaligned_le32(b);
 	return ret == -EIO && abort ? -ENOENT : ret;

@@ -3,64 +3,28 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "coe.h"
 #include "config.h"
 #include "emerg.h"
+#include "mailbox.h"
 #include "master.h"
 #include "request.h"
+#include "request_int.h"
 #include "session.h"
 #include "slave.h"
-#include "xfer.h"
 
 #define WATCH_US	10000	/* between looks while anything waits */
 
-enum state {
-	IDLE,
-	PENDING,
-	RUNNING,
-};
-
 /**
- * struct ec_request - the kernel's side of one request
- * @list: in its lane
- * @rec: mapped by the application; read once, when a start is seen
- * @kind: EC_REQUEST_*
- * @cap: room for data
- * @data: that, mapped
- * @seq: number of the last start seen
- * @state: enum state
- * @since_ns: when that start was seen (ktime)
- * @timeout_ms: to begin with it, 0: unlimited
- * @index: object or register address
- * @sub: subindex
- * @write: write, not read
- * @size: bytes of @buf
- * @buf: private copy of the data, while not IDLE
- */
-struct ec_request {
-	struct list_head list;
-	struct ec_request_record *rec;
-	u32 kind;
-	u32 cap;
-	u8 *data;
-	u32 seq;
-	enum state state;
-	u64 since_ns;
-	u32 timeout_ms;
-	u16 index;
-	u8 sub;
-	bool write;
-	u32 size;
-	u8 *buf;
-};
-
-/**
- * struct ec_lane - requests and emergencies of one configuration
+ * struct ec_lane - requests done one after the other
  * @work: does them
  * @rq: all lanes
- * @config: number of the configuration
+ * @config: number of the configuration they belong to
  * @requests: of this lane
- * @emerg: ring of emergencies
+ * @emerg: ring of emergencies of the configuration
+ * @voe: the configuration has VoE handlers
+ *
+ * First one lane by configuration, with @emerg and @voe. Then one for each VoE
+ * handler, so that one that waits for a message does not hold up the others.
  */
 struct ec_lane {
 	struct work_struct work;
@@ -68,6 +32,7 @@ struct ec_lane {
 	u32 config;
 	struct list_head requests;
 	struct ec_emerg emerg;
+	bool voe;
 };
 
 /**
@@ -80,8 +45,9 @@ struct ec_lane {
  * @watch: looks again and again while anything waits
  * @reqs: requests
  * @n_reqs: entries in @reqs
- * @lanes: by configuration
+ * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
+ * @ended: the session has; transfers end, too
  */
 struct ec_requests {
 	struct kref kref;
@@ -94,6 +60,7 @@ struct ec_requests {
 	unsigned int n_reqs;
 	struct ec_lane *lanes;
 	unsigned int n_lanes;
+	bool ended;
 };
 
 /* works ---------------------------------------------------------------------*/
@@ -134,45 +101,52 @@ static struct ec_session *session_of(const struct ec_requests *rq)
 
 /* begin and end of a request ------------------------------------------------*/
 
-static void finish(struct ec_request *r, int result, u32 got, u32 abort)
+static void finish(struct ec_request *r, const struct ec_request_result *res)
 {
-	if (!result && !r->write)
-		memcpy(r->data, r->buf, got);
+	if (!res->err && ec_request_reads(r))
+		memcpy(r->data, r->buf, res->got);
 	kvfree(r->buf);
 	r->buf = NULL;
-	r->state = IDLE;
-	WRITE_ONCE(r->rec->result, result);
-	WRITE_ONCE(r->rec->got, got);
-	WRITE_ONCE(r->rec->abort_code, abort);
+	r->phase = EC_REQUEST_IDLE;
+	WRITE_ONCE(r->rec->result, res->err);
+	WRITE_ONCE(r->rec->got, res->got);
+	WRITE_ONCE(r->rec->abort_code, res->code);
+	WRITE_ONCE(r->rec->got_vendor_id, res->vendor);
+	WRITE_ONCE(r->rec->got_type, res->type);
 	smp_store_release(&r->rec->done, r->seq);
+}
+
+static void fail(struct ec_request *r, int err)
+{
+	finish(r, &(struct ec_request_result){ .err = err });
 }
 
 /* Nothing in a record can be trusted: each field is read once, then checked. */
 static void pick_up(struct ec_request *r, u64 now)
 {
-	u32 start = smp_load_acquire(&r->rec->start), size = READ_ONCE(r->rec->size);
+	u32 start = smp_load_acquire(&r->rec->start);
+	int ret;
 
-	if (r->state != IDLE || start == r->seq)
+	if (r->phase != EC_REQUEST_IDLE || start == r->seq)
 		return;
 	r->seq = start;
-	r->state = PENDING;
+	r->phase = EC_REQUEST_PENDING;
 	r->since_ns = now;
 	r->timeout_ms = READ_ONCE(r->rec->timeout_ms);
 	r->index = READ_ONCE(r->rec->index);
 	r->sub = READ_ONCE(r->rec->subindex);
-	r->write = READ_ONCE(r->rec->write);
-	if (!r->write && r->kind == EC_REQUEST_SDO)
-		size = r->cap;
-	else if (!size || size > r->cap) {
-		finish(r, -EINVAL, 0, 0);
+	r->op = READ_ONCE(r->rec->op);
+	r->vendor = READ_ONCE(r->rec->vendor_id);
+	ret = ec_request_accept(r, READ_ONCE(r->rec->flags), READ_ONCE(r->rec->size));
+	if (ret) {
+		fail(r, ret);
 		return;
 	}
-	r->size = size;
-	r->buf = kvzalloc(max(size, 1u), GFP_KERNEL);
+	r->buf = kvzalloc(max(r->size, 1u), GFP_KERNEL);
 	if (!r->buf)
-		finish(r, -ENOMEM, 0, 0);
-	else if (r->write)
-		memcpy(r->buf, r->data, size);
+		fail(r, -ENOMEM);
+	else if (ec_request_writes(r))
+		memcpy(r->buf, r->data, r->size);
 }
 
 static bool expired(const struct ec_request *r, u64 now)
@@ -198,17 +172,22 @@ static bool look(struct ec_requests *rq)
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_lanes; i++) {
 		struct ec_lane *lane = &rq->lanes[i];
-		bool todo = lane->emerg.count;
+		bool there = s->configs[lane->config]->slave, todo = lane->emerg.count;
 		struct ec_request *r;
 
 		list_for_each_entry(r, &lane->requests, list) {
 			pick_up(r, now);
-			if (r->state == PENDING && expired(r, now))
-				finish(r, -ETIMEDOUT, 0, 0);
-			todo |= r->state == PENDING;
+			if (r->phase != EC_REQUEST_PENDING)
+				continue;
+			if (r->kind == EC_REQUEST_VOE && !there)
+				fail(r, -ENOTCONN);
+			else if (expired(r, now))
+				fail(r, -ETIMEDOUT);
+			else
+				todo = true;
 		}
 		more |= todo;
-		if (todo && s->configs[i]->slave)
+		if (todo && there)
 			queue(rq, &lane->work);
 	}
 	mutex_unlock(&rq->lock);
@@ -270,15 +249,15 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 	ec_slave_ref(*slave);
 	mutex_lock(&rq->lock);
 	list_for_each_entry(r, &lane->requests, list) {
-		if (r->state != PENDING || !ready(*slave, r))
+		if (r->phase != EC_REQUEST_PENDING || !ready(*slave, r))
 			continue;
 		if (expired(r, now))
-			finish(r, -ETIMEDOUT, 0, 0);
+			fail(r, -ETIMEDOUT);
 		else if (!oldest || r->since_ns < oldest->since_ns)
 			oldest = r;
 	}
 	if (oldest)
-		oldest->state = RUNNING;
+		oldest->phase = EC_REQUEST_RUNNING;
 	mutex_unlock(&rq->lock);
 out:
 	mutex_unlock(&rq->master->session_lock);
@@ -287,21 +266,11 @@ out:
 
 static void run(struct ec_requests *rq, struct ec_request *r, struct ec_slave *s)
 {
-	size_t got = r->write ? 0 : r->size;
-	u32 abort = 0;
-	int ret;
+	struct ec_request_result res;
 
-	if (r->kind == EC_REQUEST_REG) {
-		ret = s->error != EC_SLAVE_OK ? -EIO : r->write ?
-		      ec_xfer_fpwr(s->master, s->station, r->index, r->buf, r->size) :
-		      ec_xfer_fprd(s->master, s->station, r->index, r->buf, r->size);
-	} else if (r->write) {
-		ret = ec_coe_download(s, r->index, r->sub, false, r->buf, r->size, &abort, 0);
-	} else {
-		ret = ec_coe_upload(s, r->index, r->sub, false, r->buf, r->size, &got, &abort, 0);
-	}
+	ec_request_run(r, s, &rq->ended, &res);
 	mutex_lock(&rq->lock);
-	finish(r, ret, got, abort);
+	finish(r, &res);
 	mutex_unlock(&rq->lock);
 }
 
@@ -377,13 +346,40 @@ size_t ec_requests_bytes(const struct ec_session *s)
 	return s->n_configs ? data_offset(s) + s->request_bytes : 0;
 }
 
+static void lane_init(struct ec_requests *rq, struct ec_lane *lane, u32 config)
+{
+	lane->rq = rq;
+	lane->config = config;
+	INIT_LIST_HEAD(&lane->requests);
+	INIT_WORK(&lane->work, lane_work);
+}
+
+static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_emerg_ring *ring = (void *)(base + rings_offset(s));
+	size_t at = data_offset(s);
+	unsigned int i;
+
+	for (i = 0; i < s->n_configs; i++, ring++) {
+		ring->count = s->configs[i]->emergencies;
+		ring->data = at;
+		lane_init(rq, &rq->lanes[i], i);
+		rq->lanes[i].emerg = (struct ec_emerg){
+			.ring = ring, .data = base + at, .count = ring->count,
+		};
+		at += ring->count * EC_EMERG_BYTES;
+	}
+	return at;
+}
+
 static void lay_out(struct ec_session *s, struct ec_requests *rq)
 {
 	u8 *base = rq->shared->requests;
 	struct ec_request_area *area = (void *)base;
 	struct ec_request_record *rec = (void *)(base + sizeof(*area));
-	struct ec_emerg_ring *ring = (void *)(base + rings_offset(s));
-	size_t at = data_offset(s);
+	struct ec_lane *own = &rq->lanes[s->n_configs];
+	size_t at = lay_out_rings(s, rq);
 	unsigned int i;
 
 	area->magic = EC_REQUEST_MAGIC;
@@ -391,32 +387,33 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 	area->requests = sizeof(*area);
 	area->ring_count = s->n_configs;
 	area->rings = rings_offset(s);
-	for (i = 0; i < s->n_configs; i++, ring++) {
-		struct ec_lane *lane = &rq->lanes[i];
-
-		lane->rq = rq;
-		lane->config = i;
-		INIT_LIST_HEAD(&lane->requests);
-		INIT_WORK(&lane->work, lane_work);
-		ring->count = s->configs[i]->emergencies;
-		ring->data = at;
-		lane->emerg = (struct ec_emerg){
-			.ring = ring, .data = base + at, .count = ring->count,
-		};
-		at += ring->count * EC_EMERG_BYTES;
-	}
 	for (i = 0; i < s->n_specs; i++, rec++) {
 		const struct ec_request_spec *spec = &s->specs[i];
+		struct ec_lane *lane = &rq->lanes[spec->config];
 		struct ec_request *r = &rq->reqs[i];
 
+		if (spec->kind == EC_REQUEST_VOE) {
+			lane->voe = true;
+			lane = own++;
+			lane_init(rq, lane, spec->config);
+		}
 		rec->data = at;
 		r->rec = rec;
 		r->kind = spec->kind;
 		r->cap = spec->size;
 		r->data = base + at;
-		list_add_tail(&r->list, &rq->lanes[spec->config].requests);
+		list_add_tail(&r->list, &lane->requests);
 		at += ALIGN(spec->size, 8);
 	}
+}
+
+static unsigned int count_lanes(const struct ec_session *s)
+{
+	unsigned int i, n = s->n_configs;
+
+	for (i = 0; i < s->n_specs; i++)
+		n += s->specs[i].kind == EC_REQUEST_VOE;
+	return n;
 }
 
 /**
@@ -444,18 +441,17 @@ int ec_requests_begin(struct ec_session *s)
 	rq->shared = s->shared;
 	ec_shared_get(rq->shared);
 	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL);
-	rq->lanes = kvcalloc(s->n_configs, sizeof(*rq->lanes), GFP_KERNEL);
+	rq->n_lanes = count_lanes(s);
+	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL);
 	if (!rq->reqs || !rq->lanes) {
 		put(rq);
 		return -ENOMEM;
 	}
 	rq->n_reqs = s->n_specs;
-	rq->n_lanes = s->n_configs;
 	lay_out(s, rq);
 	s->requests = rq;
 	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->slave)
-			ec_emerg_set(s->configs[i]->slave, &rq->lanes[i].emerg);
+		ec_requests_attach(s, i);
 	return 0;
 }
 
@@ -463,7 +459,7 @@ int ec_requests_begin(struct ec_session *s)
  * ec_requests_end() - nothing is started any more
  * @s: session
  *
- * What is on its way ends by itself, within its limits; nobody waits for it.
+ * What is on its way is cancelled; nobody waits for it.
  *
  * Context: Process, session_lock held. May sleep.
  */
@@ -474,10 +470,10 @@ void ec_requests_end(struct ec_session *s)
 
 	if (!rq)
 		return;
+	WRITE_ONCE(rq->ended, true);
 	s->requests = NULL;
 	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->slave)
-			ec_emerg_set(s->configs[i]->slave, NULL);
+		ec_requests_attach(s, i);
 	put(rq);
 }
 
@@ -493,14 +489,20 @@ void ec_requests_kick(struct ec_requests *rq)
 }
 
 /**
- * ec_requests_emerg() - ring of a configuration
+ * ec_requests_attach() - where what comes unasked from a slave goes
  * @s: session
- * @config: number
+ * @config: number of a configuration that has got its slave, or whose session
+ *	has begun or ended
  *
  * Context: Process, session_lock held.
- * Return: ring, or NULL while not active.
  */
-struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config)
+void ec_requests_attach(const struct ec_session *s, u32 config)
 {
-	return s->requests ? &s->requests->lanes[config].emerg : NULL;
+	struct ec_lane *lane = s->requests ? &s->requests->lanes[config] : NULL;
+	struct ec_slave *slave = s->configs[config]->slave;
+
+	if (!slave)
+		return;
+	ec_emerg_set(slave, lane ? &lane->emerg : NULL);
+	ec_mbox_keep_voe(slave, lane && lane->voe);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Requests of the application that run beside its cycle: SDOs and registers.
+ * Requests of the application that run beside its cycle: SDOs, registers, IDNs,
+ * VoE messages.
  *
  * Their records lie in memory the application has mapped. It starts one there
  * and says so with its next send; from then on the kernel works with its own
@@ -12,7 +13,6 @@
 
 #include <linux/types.h>
 
-struct ec_emerg;
 struct ec_requests;
 struct ec_session;
 
@@ -33,6 +33,6 @@ size_t ec_requests_bytes(const struct ec_session *s);
 int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
 void ec_requests_kick(struct ec_requests *rq);
-struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
+void ec_requests_attach(const struct ec_session *s, u32 config);
 
 #endif

@@ -5,6 +5,7 @@
 #include "cycle_thread.h"
 #include "domain.h"
 #include "emerg.h"
+#include "mailbox.h"
 #include "master.h"
 #include "request.h"
 #include "session.h"
@@ -104,6 +105,7 @@ static void detach(struct ec_config *c)
 		return;
 	c->slave = NULL;
 	ec_emerg_set(slave, NULL);
+	ec_mbox_keep_voe(slave, false);
 	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
@@ -162,8 +164,8 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_late_end(s);
 	s->active = false;
 	s->stall_log.open = false;
-	clear(s);
 	ec_requests_end(s);
+	clear(s);
 	ec_cycle_free(m, &s->cycle);
 	sh = s->shared;
 	s->shared = NULL;
@@ -256,7 +258,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	slave->reconfigure = true;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
-	ec_emerg_set(slave, ec_requests_emerg(s, c->index));
+	ec_requests_attach(s, c->index);
 	ec_slave_request(slave, s->active ? EC_AL_OP : slave->requested);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
+#include "mailbox.h"
 #include "master.h"
 #include "slave.h"
 
@@ -24,8 +25,11 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	s->requested = EC_AL_PREOP;
 	INIT_WORK(&s->work, ec_apply_work);
 	mutex_init(&s->lock);
+	mutex_init(&s->sdo_lock);
 	mutex_init(&s->mbox_lock);
 	spin_lock_init(&s->emerg_lock);
+	spin_lock_init(&s->kept_lock);
+	INIT_LIST_HEAD(&s->kept);
 	for (p = 0; p < EC_MAX_PORT; p++)
 		s->next[p] = EC_UAPI_NONE16;
 	return s;
@@ -39,6 +43,7 @@ static void release(struct kref *kref)
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
+	ec_mbox_keep_voe(s, false);
 	kvfree(s->sii);
 	kfree(s);
 }

@@ -70,10 +70,15 @@ struct ec_master;
  * @reconfigure: go through INIT and configure again
  * @mapped: its FMMUs are set
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
+ * @sdo_lock: one SDO transfer at a time
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
  * @emerg_lock: protects @emerg and what it points to
  * @emerg: where its emergencies go, NULL: only to the log
+ * @kept_lock: protects the next three
+ * @kept: VoE messages, the oldest first
+ * @n_kept: how many
+ * @keep_voe: somebody may read them
  */
 struct ec_slave {
 	struct kref kref;
@@ -125,10 +130,15 @@ struct ec_slave {
 	bool reconfigure;
 	bool mapped;
 	bool ours;
+	struct mutex sdo_lock;
 	struct mutex mbox_lock;
 	u8 mbox_counter;
 	spinlock_t emerg_lock;
 	struct ec_emerg *emerg;
+	spinlock_t kept_lock;
+	struct list_head kept;
+	unsigned int n_kept;
+	bool keep_voe;
 };
 
 #define ec_slave_log(level, s, fmt, ...) \

@@ -33,6 +33,8 @@
 #define EC_FEATURE_APP_CYCLE	(1ULL << 0)
 #define EC_FEATURE_COE		(1ULL << 1)
 #define EC_FEATURE_KERNEL_CYCLE	(1ULL << 2)
+#define EC_FEATURE_SOE		(1ULL << 3)
+#define EC_FEATURE_VOE		(1ULL << 4)
 
 struct ec_ioc_version {
 	__u32 flags;
@@ -245,6 +247,19 @@ struct ec_ioc_sdo {
 };
 
 #define EC_SDO_FLAG_COMPLETE	1
+
+/* the value of an IDN of a servo drive */
+struct ec_ioc_soe {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 idn;		/* in */
+	__u8 drive;		/* in: 0..7 */
+	__u8 reserved[3];
+	__u32 error_code;	/* out: of the slave, after -EIO */
+	__u32 size;		/* write: bytes; read: room, then result */
+	__u32 timeout_ms;	/* in; 0: default */
+	__u64 data;
+};
 
 struct ec_ioc_state {
 	__u32 flags;
@@ -511,9 +526,22 @@ struct ec_ioc_sc_timeout {
 	__u32 timeout_ms;
 };
 
+/* an IDN to be written while the slave is configured */
+struct ec_ioc_sc_idn {
+	__u32 flags;
+	__u32 config;
+	__u16 idn;
+	__u8 drive;		/* 0..7 */
+	__u8 state;		/* in: 2 PREOP, 4 SAFEOP */
+	__u32 size;
+	__u64 data;
+};
+
 /* kind of struct ec_ioc_sc_request */
 #define EC_REQUEST_SDO		0
 #define EC_REQUEST_REG		1
+#define EC_REQUEST_SOE		2
+#define EC_REQUEST_VOE		3
 
 struct ec_ioc_sc_request {
 	__u32 flags;
@@ -598,6 +626,12 @@ struct ec_ioc_ref_clock {
 	__u32 config;		/* EC_UAPI_NONE32: the first that can be */
 };
 
+/* struct ec_request_record.op */
+#define EC_REQUEST_OP_READ	0
+#define EC_REQUEST_OP_WRITE	1
+#define EC_REQUEST_OP_READWRITE	2	/* registers: writes, gets what was there */
+#define EC_REQUEST_OP_READ_NOW	3	/* VoE: what is in the mailbox, else an error */
+
 /*
  * One request. The application fills in what to do, then changes @start and
  * sets EC_SEND_FLAG_REQUESTS in the next send. The kernel fills in the result,
@@ -607,17 +641,22 @@ struct ec_request_record {
 	/* application */
 	__u32 start;		/* any other number than before, not 0 */
 	__u32 size;		/* bytes to write; registers: to read, too */
-	__u32 timeout_ms;	/* to begin with it; 0: unlimited */
-	__u16 index;		/* object; or register address */
-	__u8 subindex;
-	__u8 write;		/* 0: read */
+	__u32 timeout_ms;	/* to begin with it; 0: unlimited. VoE: none of it */
+	__u16 index;		/* object; register address; IDN; VoE: type */
+	__u8 subindex;		/* SoE: drive */
+	__u8 op;		/* EC_REQUEST_OP_* */
+	__u32 flags;		/* SDO: EC_SDO_FLAG_COMPLETE */
+	__u32 vendor_id;	/* VoE */
 	/* kernel */
 	__u32 done;		/* @start of the last one that has ended */
 	__s32 result;		/* 0 or -errno */
 	__u32 got;		/* bytes read */
-	__u32 abort_code;
+	__u32 abort_code;	/* of the slave: SDO abort code, SoE error code */
 	__u32 data;		/* offset in the area */
-	__u32 reserved;
+	__u32 got_vendor_id;	/* VoE: of the message read last */
+	__u16 got_type;
+	__u16 reserved;
+	__u32 reserved2[3];
 };
 
 /* Emergencies of one configuration; both counters wrap. */
@@ -817,6 +856,8 @@ struct ec_exchange_buffer {
 #define EC_IOC_CYCLE_RESET	EC_IOC_N(0x28)
 #define EC_IOC_IP_SET		EC_IOC_RW(0x30, struct ec_ioc_ip)
 #define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
+#define EC_IOC_SOE_READ		EC_IOC_RW(0x29, struct ec_ioc_soe)
+#define EC_IOC_SOE_WRITE	EC_IOC_RW(0x2a, struct ec_ioc_soe)
 
 /* reserved by this open file: the application */
 #define EC_IOC_RESERVE		EC_IOC_N(0x40)
@@ -842,6 +883,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_SC_REQUEST	EC_IOC_RW(0x54, struct ec_ioc_sc_request)
 #define EC_IOC_SC_EMERG		EC_IOC_W(0x55, struct ec_ioc_sc_emerg)
 #define EC_IOC_SC_IP		EC_IOC_W(0x70, struct ec_ioc_sc_ip)
+#define EC_IOC_SC_IDN		EC_IOC_W(0x56, struct ec_ioc_sc_idn)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
 

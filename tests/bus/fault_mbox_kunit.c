@@ -2,6 +2,7 @@
 /* Mailboxes that answer wrongly, endlessly or not at all. */
 #include "bus.h"
 #include "master/coe.h"
+#include "master/mailbox.h"
 
 static const char text[] =
 	"segment seed=9 response=200us transition=200us\n"
@@ -32,7 +33,7 @@ static s64 serial(struct bus *b, u32 position)
 	int ret;
 
 	ret = ec_coe_upload(bus_slave(b, position), 0x1018, 4, false, v, sizeof(v), &got, &abort,
-			    100);
+			    &(struct ec_mbox_limit){ .timeout_ms = 100 });
 	KUNIT_EXPECT_LE_MSG(b->test, ktime_get_ns() - t0, 300 * NSEC_PER_MSEC,
 			    "slave %u kept its caller", position);
 	if (ret)

@@ -9,7 +9,7 @@ static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
 	u32 abort;
 
 	put_unaligned_le32(value, b);
-	return ec_coe_download(s, index, sub, false, b, bytes, &abort, 0);
+	return ec_coe_download(s, index, sub, false, b, bytes, &abort, NULL);
 }
 
 static bool known(struct bus *b)

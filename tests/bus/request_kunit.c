@@ -42,13 +42,13 @@ static struct ec_emerg_ring *ring(struct cyc *c, u32 config)
 }
 
 /* what the library does */
-static void begin(struct cyc *c, u32 i, u16 index, u8 sub, bool write, u32 size)
+static void begin(struct cyc *c, u32 i, u16 index, u8 sub, u8 op, u32 size)
 {
 	struct ec_request_record *r = rec(c, i);
 
 	r->index = index;
 	r->subindex = sub;
-	r->write = write;
+	r->op = op;
 	r->size = size;
 	smp_store_release(&r->start, r->start + 1);
 	c->flags = EC_SEND_FLAG_REQUESTS;
@@ -251,7 +251,7 @@ static void req_bounds(struct kunit *test)
 {
 	static const u32 sizes[] = { 0, 5, 4096, 0x7fffffff, ~0u };
 	struct ec_ioc_sc_request big = { .kind = EC_REQUEST_SDO, .size = EC_MAX_SDO_SIZE + 1 };
-	struct ec_ioc_sc_request kind = { .kind = 2 }, none = { .config = 3 };
+	struct ec_ioc_sc_request kind = { .kind = 4 }, none = { .config = 3 };
 	struct cyc *c = prepare(test);
 	u32 a = add(c, 0, EC_REQUEST_SDO, 4), r = add(c, 0, EC_REQUEST_REG, 4), i;
 	u32 guard = add(c, 1, EC_REQUEST_SDO, 8);
@@ -316,6 +316,69 @@ static void req_killed(struct kunit *test)
 	begin(c, a, 0x1018, 4, false, 0);
 }
 
+/* How long until the mailbox of slave 0 is free, ms; at most 5000. */
+static u64 until_free(struct bus *b)
+{
+	u64 t0 = ktime_get_ns();
+	u32 i;
+
+	for (i = 0; i < 50000 && (mutex_is_locked(&bus_slave(b, 0)->sdo_lock) ||
+				  mutex_is_locked(&bus_slave(b, 0)->mbox_lock)); i++)
+		usleep_range(100, 101);
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
+}
+
+/* A transfer ends with its session: one nobody answers, and one that would take long. */
+static void req_cancelled(struct kunit *test)
+{
+	struct cyc *c = prepare(test);
+	struct bus *b = c->b;
+	u32 a = add(c, 0, EC_REQUEST_SDO, 1000);
+	u8 value[1000] = { 0 };
+
+	go(c);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+	begin(c, a, 0x1018, 4, false, 0);
+	cyc_run(c, 10);
+	KUNIT_ASSERT_TRUE(test, mutex_is_locked(&bus_slave(b, 0)->mbox_lock));
+	ec_session_end(b->m, &b->app);
+	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	a = add(c, 0, EC_REQUEST_SDO, 1000);
+	go(c);
+	bus_app(b, "a")->response_ns = 100 * NSEC_PER_MSEC;	/* 18 segments */
+	memcpy(data(c, a), value, 1000);
+	begin(c, a, SCRATCH, 0, true, 1000);
+	cyc_run(c, 250);
+	KUNIT_ASSERT_TRUE(test, mutex_is_locked(&bus_slave(b, 0)->sdo_lock));
+	ec_session_end(b->m, &b->app);
+	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
+}
+
+static void req_complete_access(struct kunit *test)
+{
+	struct cyc *c = prepare(test);
+	u32 a = add(c, 0, EC_REQUEST_SDO, 64);
+
+	go(c);
+	rec(c, a)->flags = EC_SDO_FLAG_COMPLETE;
+	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), 0);
+	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 18);
+	KUNIT_EXPECT_EQ(test, data(c, a)[0], 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a) + 14), 11);
+	rec(c, a)->flags = 2;
+	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), -EOPNOTSUPP);
+	rec(c, a)->flags = 0;
+	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), 0);
+	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 1);
+}
+
 static void req_registers(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
@@ -327,14 +390,28 @@ static void req_registers(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), bus_slave(c->b, 1)->station);
 	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
 	put_unaligned_le16(0x1234, data(c, r));
-	begin(c, r, 0x0012, 0, true, 2);
+	begin(c, r, EC_REG_WD_DIVIDER, 0, true, 2);
 	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
 	memset(data(c, r), 0, 8);
-	begin(c, r, 0x0012, 0, false, 2);
+	begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
 	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
 	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
-	begin(c, n, 0x0012, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x1234);
+	begin(c, n, EC_REG_WD_DIVIDER, 0, false, 2);
 	KUNIT_EXPECT_EQ(test, end(c, n, 1000), 1);
+	/* what was there comes back, what was sent is there */
+	put_unaligned_le16(0x5678, data(c, r));
+	begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READWRITE, 2);
+	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x1234);
+	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
+	begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x5678);
+	begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READ_NOW, 2);
+	KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
+	begin(c, r, EC_REG_WD_DIVIDER, 0, 200, 2);
+	KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
 }
 
 static void req_emergencies(struct kunit *test)
@@ -401,6 +478,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(req_comes_back),
 	KUNIT_CASE(req_bounds),
 	KUNIT_CASE(req_killed),
+	KUNIT_CASE(req_cancelled),
+	KUNIT_CASE(req_complete_access),
 	KUNIT_CASE(req_registers),
 	KUNIT_CASE(req_emergencies),
 	KUNIT_CASE(req_emergency_without_room),

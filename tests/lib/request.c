@@ -54,7 +54,7 @@ static void sdo(ec_master_t *m, ec_sdo_request_t *r)
 	CHECK(ecrt_sdo_request_write(r) == -EBUSY);
 	CHECK(ecrt_sdo_request_read(r) == -EBUSY);
 	CHECK(ecrt_sdo_request_index(r, 1, 1) == -EBUSY);
-	CHECK(rec->index == 0x6060 && rec->subindex == 3 && rec->write == 1);
+	CHECK(rec->index == 0x6060 && rec->subindex == 3 && rec->op == 1);
 	CHECK(rec->size == 4 && rec->start == 1 && rec->timeout_ms == 500);
 	CHECK(EC_READ_U32(fake.area + rec->data) == 0x12345678);
 	CHECK(fake.calls == calls);
@@ -66,7 +66,7 @@ static void sdo(ec_master_t *m, ec_sdo_request_t *r)
 	CHECK(ecrt_sdo_request_data_size(r) == 4);
 
 	CHECK(!ecrt_sdo_request_index(r, 0x1008, 0) && !ecrt_sdo_request_read(r));
-	CHECK(rec->index == 0x1008 && !rec->write && rec->start == 2);
+	CHECK(rec->index == 0x1008 && !rec->op && rec->start == 2);
 	done(rec, 0, "ab");
 	CHECK(!memcmp(ecrt_sdo_request_data(r), "\x78\x56", 2));
 	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
@@ -94,12 +94,12 @@ static void reg(ec_reg_request_t *r)
 	CHECK(ecrt_reg_request_read(r, 0x10, 3) == -ENOBUFS);
 	CHECK(ecrt_reg_request_write(r, 0x10, 3) == -ENOBUFS);
 	CHECK(!ecrt_reg_request_read(r, 0x110, 2));
-	CHECK(rec->index == 0x110 && rec->size == 2 && !rec->write);
+	CHECK(rec->index == 0x110 && rec->size == 2 && !rec->op);
 	CHECK(ecrt_reg_request_write(r, 0x10, 1) == -EBUSY);
 	done(rec, 0, "xy");
 	CHECK(ecrt_reg_request_state(r) == EC_REQUEST_SUCCESS);
 	CHECK(!memcmp(ecrt_reg_request_data(r), "xy", 2));
-	CHECK(!ecrt_reg_request_write(r, 0x12, 1) && rec->write == 1);
+	CHECK(!ecrt_reg_request_write(r, 0x12, 1) && rec->op == 1);
 }
 
 static void emergencies(ec_slave_config_t *sc)

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* One request, as the files that work on requests see it. */
+#ifndef EC_REQUEST_INT_H
+#define EC_REQUEST_INT_H
+
+#include <linux/list.h>
+#include <linux/types.h>
+#include "../include/uapi/ethercat.h"
+
+struct ec_slave;
+
+enum ec_request_phase {
+	EC_REQUEST_IDLE,
+	EC_REQUEST_PENDING,
+	EC_REQUEST_RUNNING,
+};
+
+/**
+ * struct ec_request - the kernel's side of one request
+ * @list: in its lane
+ * @rec: mapped by the application; read once, when a start is seen
+ * @kind: EC_REQUEST_SDO...
+ * @cap: room for data
+ * @data: that, mapped
+ * @seq: number of the last start seen
+ * @phase: how far it is
+ * @since_ns: when that start was seen (ktime)
+ * @timeout_ms: to begin with it, 0: unlimited
+ * @index: object, register address, IDN or type of a VoE message
+ * @sub: subindex or drive
+ * @op: EC_REQUEST_OP_*
+ * @complete: SDO: complete access
+ * @vendor: VoE: vendor id
+ * @size: bytes of @buf
+ * @buf: private copy of the data, while not idle
+ */
+struct ec_request {
+	struct list_head list;
+	struct ec_request_record *rec;
+	u32 kind;
+	u32 cap;
+	u8 *data;
+	u32 seq;
+	enum ec_request_phase phase;
+	u64 since_ns;
+	u32 timeout_ms;
+	u16 index;
+	u8 sub;
+	u8 op;
+	bool complete;
+	u32 vendor;
+	u32 size;
+	u8 *buf;
+};
+
+/**
+ * struct ec_request_result - how a request has ended
+ * @err: 0 or -errno
+ * @got: bytes read
+ * @code: of the slave: SDO abort code, SoE error code
+ * @vendor: VoE: of the message read
+ * @type: likewise
+ */
+struct ec_request_result {
+	int err;
+	u32 got;
+	u32 code;
+	u32 vendor;
+	u16 type;
+};
+
+static inline bool ec_request_reads(const struct ec_request *r)
+{
+	return r->op != EC_REQUEST_OP_WRITE;
+}
+
+static inline bool ec_request_writes(const struct ec_request *r)
+{
+	return r->op == EC_REQUEST_OP_WRITE || r->op == EC_REQUEST_OP_READWRITE;
+}
+
+int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
+void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel,
+		    struct ec_request_result *res);
+
+#endif
