@@ -753,18 +753,26 @@ typedef enum {
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
 #define EC_CYCLE_SYNC_SLAVES	4U	/* from there to all slaves */
 #define EC_CYCLE_SYNC_MONITOR	8U	/* read how far they are apart */
+/*
+ * The cycle follows the reference clock: period and phase of its timer are
+ * controlled, by at most 1/100 of the period from one cycle to the next, so that
+ * its frame passes that clock @phase_ns after a SYNC0 without shift. With EC_CYCLE_SYNC_SLAVES,
+ * without EC_CYCLE_SYNC_REFERENCE.
+ */
+#define EC_CYCLE_FOLLOW_REFERENCE	256U
 
 /**
  * struct ec_cycle_config_t - how the kernel runs the cycle
  * @period_ns: 10000..1000000000 ns
  * @phase_ns: cycles begin at multiples of the period of CLOCK_MONOTONIC, plus
- *	this; less than the period
+ *	this; less than the period. With EC_CYCLE_FOLLOW_REFERENCE it counts
+ *	from the grid of the SYNC signals.
  * @cpu: that runs the thread, -1: any
  * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50
  * @stall: what to do without new outputs
  * @stall_cycles: after that many cycles in a row without; 0: never. The first
  *	outputs may take their time.
- * @dc: EC_CYCLE_SYNC_*
+ * @dc: EC_CYCLE_SYNC_* and EC_CYCLE_FOLLOW_REFERENCE
  */
 typedef struct {
 	uint32_t period_ns;
@@ -777,6 +785,13 @@ typedef struct {
 } ec_cycle_config_t;
 
 #define EC_CYCLE_BINS		32
+
+typedef enum {
+	EC_CYCLE_UNLOCKED = 0,	/* not wanted, or no reference clock yet */
+	EC_CYCLE_SEEKING = 1,
+	EC_CYCLE_LOCKED = 2,	/* period and phase are the reference clock's */
+	EC_CYCLE_HOLDING = 3,	/* no answer from it: goes on at the last rate */
+} ec_cycle_lock_t;
 
 /**
  * struct ec_cycle_state_t - how the cycle has done since activation, or since
@@ -795,6 +810,10 @@ typedef struct {
  * @work_max: most of it, ns
  * @late: sends by that distance: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last
  *	one and above
+ * @lock: to the reference clock, with EC_CYCLE_FOLLOW_REFERENCE
+ * @lock_losses: how often it was lost
+ * @phase_error: how late a cycle is by the reference clock, ns
+ * @rate_ppb: how much faster than CLOCK_MONOTONIC that runs, 1e-9
  *
  * The schedule of a cycle the kernel runs is its timer. When the application
  * runs the cycle, it is a grid of the interval told by
@@ -814,6 +833,10 @@ typedef struct {
 	uint32_t work_mean;
 	uint32_t work_max;
 	uint64_t late[EC_CYCLE_BINS];
+	ec_cycle_lock_t lock;
+	uint32_t lock_losses;
+	int32_t phase_error;
+	int32_t rate_ppb;
 } ec_cycle_state_t;
 
 /**

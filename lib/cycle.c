@@ -19,6 +19,9 @@ _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_SLAVES == EC_SEND_FLAG_SYNC_SLAVES, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_MONITOR == EC_SEND_FLAG_MONITOR, "clock flags");
 
+_Static_assert(EC_CYCLE_FOLLOW_REFERENCE == EC_CYCLE_DC_FOLLOW, "clock flags");
+_Static_assert((int)EC_CYCLE_HOLDING == EC_CYCLE_LOCK_HOLD, "lock");
+
 int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 {
 	struct ec_ioc_cycle arg = { .cpu = -1 };
@@ -278,5 +281,9 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	state->work_max = ec_status_read(st->work_max);
 	state->work_mean = count ? (uint32_t)(ec_status_read(st->work_sum) / count) : 0;
 	read_late(st, state);
+	state->lock = (ec_cycle_lock_t)ec_status_read(st->lock);
+	state->lock_losses = ec_status_read(st->lock_losses);
+	state->phase_error = ec_status_read(st->phase_error);
+	state->rate_ppb = ec_status_read(st->rate_ppb);
 	return 0;
 }

@@ -20,6 +20,7 @@
 #include <linux/wait.h>
 #include <uapi/linux/sched/types.h>
 #include "config.h"
+#include "cycle_lock.h"
 #include "cycle_thread.h"
 #include "domain.h"
 #include "master.h"
@@ -46,6 +47,7 @@ struct area {
  * @stride: distance of two buffers in the exchange
  * @next_ns: schedule of the next cycle (ktime)
  * @epoch_ns: what makes ktime an application time
+ * @lock: application time; lets the cycle follow the reference clock
  * @front: output buffer it holds
  * @back: input buffer it holds
  * @fed: there were outputs at least once
@@ -60,6 +62,7 @@ struct ec_cycle_thread {
 	u32 stride;
 	u64 next_ns;
 	u64 epoch_ns;
+	struct ec_cycle_lock lock;
 	u8 front;
 	u8 back;
 	bool fed;
@@ -207,19 +210,20 @@ static bool cycle(struct ec_cycle_thread *t)
 	};
 	u64 due = t->next_ns, now = ktime_get_ns();
 	bool received;
+	s32 correction;
 
 	skip_missed(t, now);
-	send.sync_time = t->next_ns + t->epoch_ns;
 	received = !ec_cycle_receive(s);
+	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
+	send.sync_time = t->lock.time;
 	feed(t);
 	if (status(t)->state != EC_CYCLE_STATE_STOPPED) {
-		ec_dc_app_time(m, send.sync_time);
 		if (!ec_cycle_send(s, &send))
 			ec_late_count(s, m->last_send_ns - due);
 	}
 	publish(t, received);
 	ec_late_work(s, ktime_get_ns() - now);
-	t->next_ns += s->kernel.period_ns;
+	t->next_ns += s->kernel.period_ns + correction;
 	return status(t)->state != EC_CYCLE_STATE_STOPPED;
 }
 
@@ -254,6 +258,7 @@ static int run(void *data)
 			attr.sched_priority);
 	now = ktime_get_ns();
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
+	ec_cycle_lock_init(&t->lock, t->session);
 	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
 	while (sleep(t))
 		if (!cycle(t)) {

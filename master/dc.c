@@ -65,8 +65,9 @@ static void fill_node(struct job *j, unsigned int i)
 
 /*
  * The chosen reference clock; else the one the others follow already, so that
- * a slave that comes in front of it changes nothing; else the first 64-bit one,
- * else the first.
+ * a slave that comes in front of it changes nothing; else the first one, though
+ * it may have only 32 bits: what is in front of the reference gets no time from
+ * it.
  */
 static void choose(struct job *j)
 {
@@ -80,16 +81,10 @@ static void choose(struct job *j)
 	for (i = 0; i < j->n; i++) {
 		if (!j->nodes[i].dc)
 			continue;
-		if (choice != EC_DC_ANY && j->slaves[i]->station == choice)
-			j->ref = i;
-		if (choice != EC_DC_ANY)
-			continue;
-		if (ec_slave_features(j->slaves[i]) & EC_FEAT_DC64) {
+		if (choice == EC_DC_ANY || j->slaves[i]->station == choice) {
 			j->ref = i;
 			return;
 		}
-		if (j->ref == j->n)
-			j->ref = i;
 	}
 }
 
@@ -461,10 +456,11 @@ int ec_dc_wait(struct ec_slave *s)
  * ec_dc_app_time() - the application tells its time
  * @m: master
  * @app_time: ns; any value, also one that has jumped
+ * @at_ns: when it was, or will be, that time (ktime)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_dc_app_time(struct ec_master *m, u64 app_time)
+void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
 {
 	struct ec_dc *dc = &m->dc;
 	unsigned long flags;
@@ -475,7 +471,7 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time)
 		dc->has_phase = true;
 	}
 	dc->app_time = app_time;
-	dc->app_ktime = ktime_get_ns();
+	dc->app_ktime = at_ns;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 }
 

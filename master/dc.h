@@ -13,7 +13,7 @@ struct ec_master;
 struct ec_slave;
 
 /* choice of the reference clock that is no station address */
-#define EC_DC_ANY	0	/* the first one, preferably with 64 bits */
+#define EC_DC_ANY	0	/* the first one that has a clock */
 #define EC_DC_NOBODY	0xffff	/* the chosen slave is not there */
 
 enum ec_dc_state {
@@ -43,7 +43,7 @@ enum ec_dc_state {
  * @phase: first application time of the session, ns; SYNC starts on its grid
  * @has_phase: @phase is set
  * @app_time: last application time, ns
- * @app_ktime: when it was told (ktime), ns
+ * @app_ktime: when it was that time (ktime), ns
  * @time_lock: protects @phase to @app_ktime
  */
 struct ec_dc {
@@ -73,7 +73,7 @@ int ec_dc_measure(struct ec_master *m);
 void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
 void ec_dc_end(struct ec_master *m);
 int ec_dc_wait(struct ec_slave *s);
-void ec_dc_app_time(struct ec_master *m, u64 app_time);
+void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
 u64 ec_dc_now(struct ec_master *m);
 
 /* dc_sync.c */

@@ -417,7 +417,7 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 	int ret;
 
 	if (enter(f, &ret)) {
-		ec_dc_app_time(f->master, i->app_time);
+		ec_dc_app_time(f->master, i->app_time, ktime_get_ns());
 		mutex_unlock(&f->master->cyclic_lock);
 		return 0;
 	}
@@ -426,7 +426,7 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 	/* before activation there is no cycle to disturb */
 	if (!lock(f, &ret))
 		return ret;
-	ec_dc_app_time(f->master, i->app_time);
+	ec_dc_app_time(f->master, i->app_time, ktime_get_ns());
 	return done(f, 0);
 }
 
@@ -450,7 +450,7 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 	if (!s)
 		return ret;
 	if (arg->flags & EC_SEND_FLAG_APP_TIME)
-		ec_dc_app_time(f->master, arg->app_time);
+		ec_dc_app_time(f->master, arg->app_time, ktime_get_ns());
 	if (arg->flags & EC_SEND_FLAG_REQUESTS && s->requests)
 		ec_requests_kick(s->requests);
 	if (s->n_domains < 64 && arg->queued >> s->n_domains)

@@ -9,7 +9,8 @@
 #define PERIOD_MIN_NS	10000
 #define PERIOD_MAX_NS	((u32)NSEC_PER_SEC)
 #define PRIORITY_MAX	98	/* above are the kernel's own */
-#define DC_FLAGS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR)
+#define DC_FLAGS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
+			 EC_SEND_FLAG_MONITOR | EC_CYCLE_DC_FOLLOW)
 
 static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 {
@@ -33,6 +34,10 @@ static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 	if (i->dc & ~DC_FLAGS)
 		return ec_refuse(f, -EOPNOTSUPP, "unknown clock flags 0x%x; use 0x%x or less of it",
 				 i->dc, DC_FLAGS);
+	if (i->dc & EC_CYCLE_DC_FOLLOW && !(i->dc & EC_SEND_FLAG_SYNC_SLAVES))
+		return ec_refuse(f, -EINVAL, "the cycle cannot follow a reference clock it never reads; add the flag that tells the slaves its time");
+	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
+		return ec_refuse(f, -EINVAL, "the cycle cannot follow the reference clock while that follows the cycle; use one of both");
 	return 0;
 }
 

@@ -91,6 +91,24 @@ static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 	memcpy(d->loss_rate, link->rates.rate[4], sizeof(d->loss_rate));
 }
 
+/* What the session adds. */
+static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
+{
+	const struct ec_status *st;
+
+	i->active = s->active;
+	i->config_count = s->n_configs;
+	i->domain_count = s->n_domains;
+	if (!s->active)
+		return;
+	st = s->shared->status;
+	i->dc_ref_time = READ_ONCE(st->dc_time);
+	i->cycle_lock = READ_ONCE(st->kernel.lock);
+	i->lock_losses = READ_ONCE(st->kernel.lock_losses);
+	i->phase_error = READ_ONCE(st->kernel.phase_error);
+	i->rate_ppb = READ_ONCE(st->kernel.rate_ppb);
+}
+
 int ec_ioc_master(struct ec_file *f, void *arg)
 {
 	struct ec_master *m = f->master;
@@ -115,13 +133,8 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->scan_us = m->scan_us;
 	i->scan_frames = m->scan_frames;
 	mutex_lock(&m->session_lock);
-	if (m->session && m->session->active)
-		i->dc_ref_time = READ_ONCE(m->session->shared->status->dc_time);
-	if (m->session) {
-		i->active = m->session->active;
-		i->config_count = m->session->n_configs;
-		i->domain_count = m->session->n_domains;
-	}
+	if (m->session)
+		session_info(m->session, i);
 	mutex_unlock(&m->session_lock);
 	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;

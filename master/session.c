@@ -2,6 +2,7 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "config.h"
+#include "cycle_lock.h"
 #include "cycle_thread.h"
 #include "domain.h"
 #include "emerg.h"
@@ -370,6 +371,7 @@ int ec_session_activate(struct ec_session *s)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
 	s->active = true;
 	s->stall_log.told = atomic_read(&m->stalls);
+	s->lock_told = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->freeze, false);
 	ec_cycle_own(m, EC_OWNER_CYCLE);
 	mutex_lock(&m->cyclic_lock);
@@ -456,6 +458,7 @@ void ec_session_status(struct ec_master *m)
 	s = m->session;
 	if (s && s->active) {
 		log_stalls(s, ktime_get_ns());
+		ec_cycle_lock_log(s);
 		st = s->shared->status;
 		WRITE_ONCE(st->slaves_responding, m->slaves_responding);
 		WRITE_ONCE(st->al_states, m->al_states);

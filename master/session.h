@@ -77,6 +77,7 @@ struct ec_stall_log {
  * @active: activated
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
+ * @lock_told: EC_CYCLE_LOCK_* as the log knows it
  * @kernel: how the kernel shall run the cycle; period 0: it shall not
  * @thread: runs the cycle while @active; NULL: the application does
  * @cycle: cyclic layout
@@ -96,6 +97,7 @@ struct ec_session {
 	bool active;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;
+	u32 lock_told;
 	struct ec_ioc_cycle kernel;
 	struct ec_cycle_thread *thread;
 	struct ec_cycle cycle;

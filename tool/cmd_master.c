@@ -115,6 +115,23 @@ static void common(const struct ec_ioc_master *m)
 	out_end();
 }
 
+/* a cycle of the kernel that follows the reference clock */
+static void lock(const struct ec_ioc_master *m)
+{
+	static const char *const text[] = { "", "seeking", "locked", "holding its rate" };
+	static const char *const key[] = { "", "seeking", "locked", "holding" };
+	bool known = m->cycle_lock && m->cycle_lock < ARRAY_SIZE(text);
+
+	if (!known) {
+		out_null("cycle_lock", NULL);
+		return;
+	}
+	out_str("cycle_lock", key[m->cycle_lock], "    Cycle follows it:  %s, ", text[m->cycle_lock]);
+	out_i("phase_error_ns", m->phase_error, "phase error %d ns, ", m->phase_error);
+	out_i("rate_ppb", m->rate_ppb, "rate %+d ppb, ", m->rate_ppb);
+	out_u("lock_losses", m->lock_losses, "lost %u time(s)\n", m->lock_losses);
+}
+
 static void clocks(const struct ec_ioc_master *m)
 {
 	time_t s = (time_t)(m->app_time / 1000000000) + EPOCH_2000;
@@ -128,6 +145,7 @@ static void clocks(const struct ec_ioc_master *m)
 		      m->ref_clock);
 	else
 		out_null("reference_clock", "    Reference clock:   None\n");
+	lock(m);
 	out_u("reference_time_ns", m->dc_ref_time, "    DC reference time: %llu\n", m->dc_ref_time);
 	out_u("application_time_ns", m->app_time, "    Application time:  %llu\n", m->app_time);
 	if (gmtime_r(&s, &tm) && strftime(text, sizeof(text), "%Y-%m-%d %H:%M:%S", &tm))
@@ -209,7 +227,9 @@ const struct cmd cmd_master = {
 		"rx_bytes, tx_errors, tx_frames_per_s[], tx_bytes_per_s[], rx_frames_per_s[],\n"
 		"rx_bytes_per_s[], lost_frames, late_frames, unmatched_frames, foreign_frames),\n"
 		"common (the sums, lost_frames_per_s[], frame_loss_percent[]), dc (reference_clock,\n"
-		"reference_time_ns, application_time_ns), slaves_responding, scan_busy, scans,\n"
+		"cycle_lock (seeking, locked, holding; null: does not follow), phase_error_ns,\n"
+		"rate_ppb, lock_losses (when it follows), reference_time_ns,\n"
+		"application_time_ns), slaves_responding, scan_busy, scans,\n"
 		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,
 };

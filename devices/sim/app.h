@@ -495,6 +495,7 @@ struct ec_app {
  * @clock_start: its clock at power-on
  * @eeprom_emulated: its CPU stands in for the EEPROM
  * @no_ip: its EoE does not support IP
+ * @clock_bits: of its clock, 64, 32 or EC_APP_NO_CLOCK; 0: as the model
  */
 struct ec_app_config {
 	const char *name;
@@ -507,7 +508,10 @@ struct ec_app_config {
 	u64 clock_start;
 	bool eeprom_emulated;
 	bool no_ip;
+	u8 clock_bits;
 };
+
+#define EC_APP_NO_CLOCK	1
 
 /* slave_app.c */
 struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,

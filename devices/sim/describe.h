@@ -8,7 +8,7 @@
  *	slave NAME DEVICE|file=IMAGE [OPTION...]
  *	repeat N slave NAME DEVICE [OPTION...]	NAME1, NAME2...; the alias counts up
  *		alias=N serial=N id=N vendor=N product=N revision=N
- *		delay=TIME drift=Nppm|Nppb clock=TIME cable=TIME
+ *		delay=TIME drift=Nppm|Nppb clock=TIME dc=64|32|none cable=TIME
  *		response=TIME transition=TIME mapping=fixed|assign|rewritable
  *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
  *	branch NAME PORT		the next slave hangs there

@@ -197,7 +197,7 @@ struct ec_esc_eeprom {
  * @last_cmp: local time of the last comparison
  * @have_cmp: the two are valid
  * @dev_ppb16: measured deviation of the period not yet corrected
- * @start: system time of the first SYNC0
+ * @start: system time of the first SYNC0, of 64 bits even when that has 32
  * @running: SYNC unit is active
  * @implausible: start time was refused
  * @sync_wake: simulation time of the next pulse, EC_ESC_NEVER: none

@@ -95,6 +95,15 @@ u64 ec_esc_system_time(const struct ec_esc *esc, u64 now)
 	return is_64bit(esc) ? t : (u32)t;
 }
 
+/*
+ * System time that does not wrap: the comparators of a 32-bit SYNC unit go on
+ * from one pulse to the next, so only the start has to be within half its range.
+ */
+static u64 long_time(const struct ec_esc *esc, u64 now)
+{
+	return ec_esc_local_time(esc, now) + offset(esc);
+}
+
 static s64 noise(const struct ec_esc *esc, u64 now, u32 salt)
 {
 	u32 n = esc->cfg.dc_noise_ns;
@@ -207,9 +216,7 @@ static u64 sync_number(const struct ec_esc *esc, u64 sys)
 	u32 cycle = get_unaligned_le32(esc->mem + EC_REG_DC_CYCLE0);
 	u64 since = sys - esc->dc.start;
 
-	if (!is_64bit(esc))
-		since = (u32)since;
-	if (since >> (is_64bit(esc) ? 63 : 31))	/* start lies ahead */
+	if (since >> 63)	/* start lies ahead */
 		return 0;
 	return cycle ? div_u64(since, cycle) + 1 : 1;
 }
@@ -217,12 +224,9 @@ static u64 sync_number(const struct ec_esc *esc, u64 sys)
 static u64 sync0_time(const struct ec_esc *esc, u64 number)
 {
 	u32 cycle = get_unaligned_le32(esc->mem + EC_REG_DC_CYCLE0);
-	u64 t;
 
 	number += ec_esc_bug(esc, EC_SIM_BUG_SYNC_LATE);
-	t = esc->dc.start + number * cycle;
-
-	return is_64bit(esc) ? t : (u32)t;
+	return esc->dc.start + number * cycle;
 }
 
 /* SYNC0 pulses per SYNC1 pulse */
@@ -250,7 +254,7 @@ static u8 activation(const struct ec_esc *esc)
 /* pulses of SYNC0 (@which 0) or SYNC1 (1) until now */
 static u64 sync_pulses(const struct ec_esc *esc, int which, u64 now)
 {
-	u64 sys = ec_esc_system_time(esc, now), n;
+	u64 sys = long_time(esc, now), n;
 	u32 f = sync1_factor(esc);
 
 	if (!esc->dc.running || !(activation(esc) & BIT(1 + which)))
@@ -300,9 +304,7 @@ static u64 sim_time(const struct ec_esc *esc, u64 sys, u64 now)
 	int i;
 
 	for (i = 0; i < 4; i++) {
-		u64 at = ec_esc_system_time(esc, t);
-
-		d = is_64bit(esc) ? (s64)(sys - at) : (s32)(u32)(sys - at);
+		d = (s64)(sys - long_time(esc, t));
 		if (!d)
 			break;
 		if (d > 0x3fffffffffffffffLL)
@@ -338,14 +340,14 @@ void ec_esc_dc_sync(struct ec_esc *esc, u64 now)
 	struct ec_esc_dc *dc = &esc->dc;
 	u64 n = dc->sync_next >> 1, due;
 	bool second = dc->sync_next & 1;
-	u64 sys = ec_esc_system_time(esc, now);
+	u64 sys = long_time(esc, now);
 	s64 ahead;
 
 	dc->sync_wake = EC_ESC_NEVER;
 	if (!wants_sync(esc))
 		return;
 	due = sync0_time(esc, n) + (second ? sync1_shift(esc) : 0);
-	ahead = is_64bit(esc) ? (s64)(due - sys) : (s32)(u32)(due - sys);
+	ahead = (s64)(due - sys);
 	if (ahead > 0) {
 		ec_esc_dc_schedule(esc, now);
 		return;
@@ -375,7 +377,7 @@ static void activate(struct ec_esc *esc, u8 old, u64 now)
 {
 	struct ec_esc_dc *dc = &esc->dc;
 	u8 act = activation(esc);
-	u64 sys = ec_esc_system_time(esc, now);
+	u64 sys = long_time(esc, now);
 	s64 ahead;
 
 	if (!(act & 1)) {
@@ -383,10 +385,9 @@ static void activate(struct ec_esc *esc, u8 old, u64 now)
 		dc->implausible = false;
 	} else if (!(old & 1)) {
 		dc->start = get_unaligned_le64(esc->mem + EC_REG_DC_START);
-		if (!is_64bit(esc))
-			dc->start = (u32)dc->start;
 		ahead = is_64bit(esc) ? (s64)(dc->start - sys) :
 					(s32)(u32)(dc->start - sys);
+		dc->start = sys + (u64)ahead;
 		/*
 		 * A start in the past: with the check it is refused, without
 		 * it the comparator waits for the next wrap (64 bit: never).
@@ -423,6 +424,11 @@ static void latch_receive(struct ec_esc *esc, const struct ec_frame_ctx *ctx)
 		put_unaligned_le32(0, esc->mem + EC_REG_DC_RECV_PU + 4);
 }
 
+static void put_sync_time(struct ec_esc *esc, u16 reg, u64 t)
+{
+	put_unaligned_le64(is_64bit(esc) ? t : (u32)t, esc->mem + reg);
+}
+
 /* bring the computed registers up to date */
 void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 {
@@ -434,8 +440,8 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 
 	if (!(esc->cfg.features & EC_FEAT_DC))
 		return;
-	sys = ec_esc_system_time(esc, now);
-	put_unaligned_le64(sys, m + EC_REG_DC_SYSTIME);
+	put_unaligned_le64(ec_esc_system_time(esc, now), m + EC_REG_DC_SYSTIME);
+	sys = long_time(esc, now);
 
 	mag = (u64)(dc->diff < 0 ? -dc->diff : dc->diff) >> 8;
 	v = (u32)mag;
@@ -456,7 +462,7 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 		if (!n)
 			v |= (activation(esc) & 0x02 ? 1u : 0u) |
 			     (activation(esc) & 0x04 ? 2u : 0u);
-		put_unaligned_le64(sync0_time(esc, n), m + EC_REG_DC_START);
+		put_sync_time(esc, EC_REG_DC_START, sync0_time(esc, n));
 		if (dc->running && activation(esc) & 0x04) {
 			u32 f = sync1_factor(esc), c = sync1_shift(esc);
 			u64 k = n ? div_u64(n - 1, f) * f : 0;
@@ -464,8 +470,7 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 			/* the one of the current group may still be due */
 			if (n && (s64)(sync0_time(esc, k) + c - sys) <= 0)
 				k += f;
-			put_unaligned_le64(sync0_time(esc, k) + c,
-					   m + EC_REG_DC_NEXT_SYNC1);
+			put_sync_time(esc, EC_REG_DC_NEXT_SYNC1, sync0_time(esc, k) + c);
 		}
 	}
 	m[EC_REG_DC_ACT_STATUS] = (u8)v;

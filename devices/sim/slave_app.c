@@ -370,6 +370,11 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec.ram_kib = ram_kib(model);
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
 	ec.features = d->features;
+	if (cfg->clock_bits) {
+		ec.features &= (u16)~(EC_FEAT_DC | EC_FEAT_DC64);
+		ec.features |= cfg->clock_bits == 64 ? EC_FEAT_DC | EC_FEAT_DC64 :
+			       cfg->clock_bits == 32 ? EC_FEAT_DC : 0;
+	}
 	ec.eeprom = image;
 	ec.eeprom_len = model->eeprom_len;
 	ec.eeprom_size = model->eeprom_len;

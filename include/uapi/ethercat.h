@@ -105,6 +105,10 @@ struct ec_ioc_master {
 	struct ec_ioc_device devices[EC_UAPI_DEVICES];
 	__u32 scan_count;	/* bus scans finished so far */
 	__u32 reserved;
+	__u32 cycle_lock;	/* EC_CYCLE_LOCK_*, of struct ec_status_cycle */
+	__u32 lock_losses;	/* likewise */
+	__s32 phase_error;	/* likewise */
+	__s32 rate_ppb;		/* likewise */
 };
 
 struct ec_ioc_port {
@@ -691,13 +695,16 @@ struct ec_request_area {
 struct ec_ioc_cycle {
 	__u32 flags;
 	__u32 period_ns;	/* 10000..1000000000 */
-	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC */
+	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC; of the SYNC grid */
 	__s32 cpu;		/* -1: any */
 	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50 */
 	__u32 stall;		/* EC_STALL_* */
 	__u32 stall_cycles;	/* 0: no stall */
-	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR */
+	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR, or below */
 };
+
+/* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */
+#define EC_CYCLE_DC_FOLLOW	256U	/* the cycle follows the reference clock */
 
 struct ec_ioc_wait {
 	__u32 flags;
@@ -735,6 +742,12 @@ struct ec_status_domain {
 #define EC_CYCLE_STATE_STALLED	2	/* no outputs for stall_cycles */
 #define EC_CYCLE_STATE_STOPPED	3	/* the same, and EC_STALL_STOP */
 
+/* struct ec_status_cycle.lock */
+#define EC_CYCLE_LOCK_OFF	0	/* not wanted, or no reference clock yet */
+#define EC_CYCLE_LOCK_SEEK	1
+#define EC_CYCLE_LOCK_LOCKED	2
+#define EC_CYCLE_LOCK_HOLD	3	/* no answer; goes on at the last rate */
+
 /*
  * The cycle. "Late" is the distance of a send from its schedule, in ns: of a
  * cycle the kernel runs, from the time of its timer. Of one the application runs,
@@ -757,6 +770,10 @@ struct ec_status_cycle {
 	__u64 work_sum;
 	__u64 work_count;
 	__u64 late[EC_CYCLE_BUCKETS];
+	__u32 lock;		/* EC_CYCLE_LOCK_* */
+	__s32 phase_error;	/* to the reference clock, ns, positive: late */
+	__s32 rate_ppb;		/* of the reference clock against ktime */
+	__u32 lock_losses;
 };
 
 /*

@@ -138,6 +138,10 @@ static void steps(void)
 	fake.status->kernel.cycle = 12;
 	fake.status->kernel.late_sum = 30;
 	fake.status->kernel.late_count = 10;
+	fake.status->kernel.lock = EC_CYCLE_LOCK_HOLD;
+	fake.status->kernel.phase_error = -7;
+	fake.status->kernel.rate_ppb = -100000;
+	fake.status->kernel.lock_losses = 2;
 	fake.status->kernel.late_max = 1 << 20;
 	fake.status->kernel.work_sum = 5000;
 	fake.status->kernel.work_count = 2;
@@ -150,6 +154,8 @@ static void steps(void)
 	CHECK(!ecrt_master_cycle_state(m, &cs) && cs.cycles == 12 && cs.late_mean == 3 &&
 	      cs.late[3] == 7000 && cs.late[4] == 2000 && cs.late[5] == 991 &&
 	      cs.late[31] == 9 && cs.late_p999 == 17 && cs.work_mean == 2500 && cs.work_max == 3000);
+	CHECK(cs.lock == EC_CYCLE_HOLDING && cs.phase_error == -7 && cs.rate_ppb == -100000 &&
+	      cs.lock_losses == 2);
 	fake.cycle = 5;
 	CHECK(ecrt_master_wait_cycle(m, 0) == 5);
 	fake.cycle = 6;

@@ -217,6 +217,12 @@ static int master(struct ec_ioc_master *m, int index)
 		.domain_count = app ? LEN(domains) : 0, .device_count = 1,
 		.app_time = 815000000123456789ULL, .scan_us = 12345, .scan_frames = 678,
 	};
+	if (app) {
+		m->cycle_lock = EC_CYCLE_LOCK_LOCKED;
+		m->phase_error = -12;
+		m->rate_ppb = -8700;
+		m->lock_losses = 1;
+	}
 	fill_device(&m->devices[0]);
 	if (bus("cut")) {
 		m->device_count = 2;

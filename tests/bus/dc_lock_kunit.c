@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The kernel's cycle follows the reference clock: when do its frames leave? */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/cycle_thread.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+#include "master/wire/dc_lock.h"
+
+#define PERIOD_NS	1000000
+
+static const char two[] = "segment seed=9\n"
+	"slave a drive in=8 out=8 drift=87ppm cable=50 clock=5s\n"
+	"slave b drive in=8 out=8 drift=-93ppm cable=20 clock=900s\n";
+
+/**
+ * struct app - an application whose cycle the kernel runs
+ * @c: its configuration
+ * @cfg: cycle
+ */
+struct app {
+	struct cyc *c;
+	struct ec_ioc_cycle cfg;
+};
+
+static struct ec_status_cycle *status(const struct app *a)
+{
+	return &a->c->b->m->session->shared->status->kernel;
+}
+
+/* All slaves with SYNC0, shifts of a quarter of a period from one to the next. */
+static void activate(struct app *a, struct bus *b, u32 slaves)
+{
+	u32 i;
+
+	a->c = cyc_new(b, PERIOD_NS / 1000);
+	cyc_domain(a->c);
+	cyc_map_all(a->c, 0, slaves, 0);
+	for (i = 0; i < slaves; i++) {
+		struct ec_ioc_sc_dc dc = {
+			.config = i, .assign_activate = 0x0300, .cycle0 = a->cfg.period_ns,
+			.shift0 = (i % 4) * (a->cfg.period_ns / 4),
+		};
+
+		KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	}
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc_cycle(&b->app, &a->cfg), 0, "%s", b->app.reason);
+	cyc_activate(a->c);
+}
+
+static struct app *start(struct kunit *test, const char *text, u32 slaves, u32 phase_ns)
+{
+	struct bus *b = bus_up(test, text, slaves);
+	struct app *a = kunit_kzalloc(test, sizeof(*a), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, a);
+	bus_idle(b);
+	a->cfg = (struct ec_ioc_cycle){
+		.period_ns = PERIOD_NS, .phase_ns = phase_ns, .cpu = -1,
+		.dc = EC_SEND_FLAG_SYNC_SLAVES | EC_CYCLE_DC_FOLLOW,
+	};
+	activate(a, b, slaves);
+	return a;
+}
+
+/* until it is locked and all are in OP; bus time, ms */
+static u32 until_locked(struct app *a)
+{
+	u32 ms;
+
+	for (ms = 0; ms < 5000; ms++) {
+		if (READ_ONCE(status(a)->lock) == EC_CYCLE_LOCK_LOCKED && cyc_all_op(a->c))
+			break;
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_LT(a->c->b->test, ms, 5000u);
+	return ms;
+}
+
+/*
+ * When the last frame passed the reference, counted from the SYNC0 of a slave
+ * before it, by that slave's true clock; ns.
+ */
+static u32 phase(struct app *a, u32 slave)
+{
+	struct bus *b = a->c->b;
+	u64 sent = READ_ONCE(b->m->last_send_ns) + b->sim->route[0].step[0].pu_ns, since;
+	const struct ec_esc *esc = bus_esc(b, slave);
+
+	ec_sim_advance(b->sim, ktime_get_ns());
+	since = ec_esc_local_time(esc, sent) + get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET) -
+		esc->dc.start;
+	return do_div(since, a->cfg.period_ns);
+}
+
+static s32 phase_error(struct app *a, u32 slave, u32 wanted)
+{
+	return ec_dc_lock_wrap((s64)phase(a, slave) - wanted, a->cfg.period_ns);
+}
+
+/*
+ * Mean distance to the phase that was asked for, looked at so many times. A
+ * single cycle may be a microsecond late: virtual time passes when it is read.
+ */
+static s32 mean(struct app *a, u32 slave, u32 wanted, u32 times)
+{
+	s64 sum = 0;
+	u32 i;
+
+	for (i = 0; i < times; i++) {
+		s32 e;
+
+		usleep_range(1370, 1371);
+		e = phase_error(a, slave, wanted);
+		KUNIT_EXPECT_LT(a->c->b->test, abs(e), 3000);
+		sum += e;
+	}
+	return abs((s32)div_s64(sum, times));
+}
+
+/* Cycles keep phase and rate of the slaves' SYNC0. */
+static void lock_keeps_the_phase(struct kunit *test)
+{
+	struct app *a = start(test, two, 2, 300000);
+	u32 ms = until_locked(a);
+	s32 off;
+
+	msleep(1000);
+	off = mean(a, 0, 300000, 1000);
+	bus_figure("cycle locked and slaves in OP %u ms after activation, its mean phase to SYNC0 then %d ns off",
+		   ms, off);
+	KUNIT_EXPECT_LT(test, off, 200);
+	/* SYNC0 of the other one is shifted by a quarter */
+	KUNIT_EXPECT_LT(test, mean(a, 1, 50000, 500), 200);
+	KUNIT_EXPECT_EQ(test, status(a)->lock_losses, 0u);
+	KUNIT_EXPECT_EQ(test, status(a)->overruns, 0ull);
+	KUNIT_EXPECT_LT(test, abs(status(a)->phase_error), 1000);
+	KUNIT_EXPECT_LT(test, abs(status(a)->rate_ppb - 87000), 500);
+	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
+}
+
+/* A reference with 32 bits: it wraps each 4.3 s. */
+static void lock_to_a_short_clock(struct kunit *test)
+{
+	struct app *a = start(test, "slave a drive in=8 out=8 dc=32 drift=-60ppm clock=3s\n"
+			      "slave b drive in=8 out=8 dc=32 drift=40ppm cable=90\n", 2, 0);
+	u32 i;
+
+	until_locked(a);
+	msleep(1000);
+	for (i = 0; i < 10; i++)
+		KUNIT_EXPECT_LT(test, mean(a, 0, 0, 1000), 200);
+	KUNIT_EXPECT_EQ(test, status(a)->lock_losses, 0u);
+	KUNIT_EXPECT_EQ(test, status(a)->overruns, 0ull);
+}
+
+/* One frame in ten is lost, then all for a while: the rate is kept. */
+static void lock_survives_lost_frames(struct kunit *test)
+{
+	struct app *a = start(test, two, 2, 500000);
+	struct bus *b = a->c->b;
+
+	until_locked(a);
+	msleep(2000);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 100000);
+	KUNIT_EXPECT_LT(test, mean(a, 0, 500000, 500), 200);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, status(a)->lock, EC_CYCLE_LOCK_LOCKED);
+	/* for longer than any watchdog: the slaves fall back, the cycle goes on */
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	msleep(150);
+	KUNIT_EXPECT_EQ(test, status(a)->lock, EC_CYCLE_LOCK_HOLD);
+	KUNIT_EXPECT_LT(test, abs(phase_error(a, 0, 500000)), 1000);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+	until_locked(a);
+	KUNIT_EXPECT_LT(test, mean(a, 0, 500000, 100), 200);
+}
+
+/* What makes no sense is refused with a reason. */
+static void lock_refused(struct kunit *test)
+{
+	struct bus *b = bus_up(test, two, 2);
+	struct ec_ioc_cycle cfg = {
+		.period_ns = PERIOD_NS, .cpu = -1, .dc = EC_CYCLE_DC_FOLLOW,
+	};
+
+	cyc_new(b, 1000);
+	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "never reads"));
+	cfg.dc |= EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_SYNC_REF;
+	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "one of both"));
+	cfg.dc &= ~EC_SEND_FLAG_SYNC_REF;
+	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(lock_keeps_the_phase),
+	KUNIT_CASE(lock_to_a_short_clock),
+	KUNIT_CASE(lock_survives_lost_frames),
+	KUNIT_CASE(lock_refused),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_lock", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
