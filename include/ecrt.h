@@ -85,6 +85,14 @@
 #ifndef __KERNEL__
 #define EC_HAVE_KERNEL_CYCLE
 #endif
+/* ecrt_slave_config_overlapping_pdos(), of the field's community patches; in userspace */
+#ifndef __KERNEL__
+#define EC_HAVE_OVERLAPPING_PDOS
+#endif
+/* ecrt_domain_set_options(): how a domain is sent; in userspace */
+#ifndef __KERNEL__
+#define EC_HAVE_DOMAIN_OPTIONS
+#endif
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -1372,6 +1380,62 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_hostname(
 EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
 		ec_al_state_t from_state, ec_al_state_t to_state,
 		unsigned int timeout_ms);
+
+#ifdef EC_HAVE_OVERLAPPING_PDOS
+/**
+ * ecrt_slave_config_overlapping_pdos() - inputs in the place of outputs
+ * @sc: slave configuration
+ * @allow_overlapping_pdos: 1: its inputs may have logical addresses of its
+ *	outputs; 0, and at first: they have addresses of their own
+ *
+ * Extension (%EC_HAVE_OVERLAPPING_PDOS). For the next activation. The LRW datagram
+ * gets shorter: a slave with 8 bytes each way needs 8 bytes instead of 16. The
+ * domain's data stay as they are: inputs and outputs have bytes of their own
+ * there. What is given up: while any slave takes no part in the datagram, the
+ * inputs of all slaves that overlap in it keep their values. See
+ * %EC_DOMAIN_OVERLAP for inputs in the place of other slaves' outputs.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
+ */
+EC_PUBLIC_API int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc,
+		uint8_t allow_overlapping_pdos);
+#endif
+
+#ifdef EC_HAVE_DOMAIN_OPTIONS
+/**
+ * enum ec_domain_option_t - how a domain is sent; to be ORed
+ * @EC_DOMAIN_OVERLAP: inputs may have logical addresses of outputs, of the same
+ *	slave and of slaves in front of it; the shortest datagrams there are. While
+ *	any slave takes no part in a datagram, the inputs in it keep their values. A
+ *	slave with an alias that is not there at activation shares with itself only;
+ *	one that is at another place in the ring later is not started.
+ * @EC_DOMAIN_SEPARATE: LRD and LWR instead of LRW, as for slaves that lack LRW.
+ *	A missing slave never holds the inputs of others.
+ * @EC_DOMAIN_OWN_FRAME: its datagrams share no frame with other domains: what
+ *	is lost together belongs together. Clock datagrams may be in it.
+ */
+typedef enum {
+	EC_DOMAIN_OVERLAP = 1,
+	EC_DOMAIN_SEPARATE = 2,
+	EC_DOMAIN_OWN_FRAME = 4
+} ec_domain_option_t;
+
+/**
+ * ecrt_domain_set_options() - choose how a domain is sent
+ * @domain: domain
+ * @options: ec_domain_option_t, ORed; 0, and at first: none
+ *
+ * Extension (%EC_HAVE_DOMAIN_OPTIONS). For the next activation. A domain is a sync
+ * unit: it has datagrams and a working counter of its own in any case. Size, data
+ * and offsets do not depend on the options.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL overlap and separate at once; %-EOPNOTSUPP an unknown
+ * option; %-EPERM, %-EBUSY.
+ */
+EC_PUBLIC_API int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options);
+#endif
 
 /**
  * ecrt_domain_reg_pdo_entry_list() - put many entries into a domain

@@ -330,11 +330,17 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 			      "does not know LRW and came after activation; start the application again");
 		return -EOPNOTSUPP;
 	}
+	if (c->in_ring && s->position != c->ring_position) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "was at position %u when its inputs and others' outputs got the same logical addresses; start the application again, or let it overlap by itself only",
+			      c->ring_position);
+		return -EOPNOTSUPP;
+	}
 	s->mapped = c->n_fmmus;
 	for (i = 0; i < c->n_fmmus && !ret; i++) {
 		const struct ec_config_fmmu *f = &c->fmmus[i];
 		struct ec_fmmu v = {
-			.logical = f->domain->logical + f->offset, .len = f->size,
+			.logical = f->domain->logical + f->logical, .len = f->size,
 			.lbit_stop = 7, .phys = s->sms[f->sm].start,
 			.type = f->dir == EC_CFG_DIR_OUTPUT ? EC_FMMU_WRITE : EC_FMMU_READ,
 			.enable = f->size,

@@ -293,6 +293,7 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 	f->dir = c->sm[sm].dir;
 	f->size = ec_pdo_list_bytes(&c->sm[sm].pdos);
 	f->offset = d->size;
+	f->logical = d->size;
 	ret = ec_domain_add(d, c, c->n_fmmus);
 	if (ret)
 		return ERR_PTR(ret);

@@ -40,14 +40,18 @@ struct ec_config_sm {
  * @domain: which
  * @sm: SyncManager
  * @dir: EC_CFG_DIR_*
- * @offset: byte in the domain
+ * @shared: inputs at logical addresses of outputs; set by activation
+ * @offset: byte in the domain's data
+ * @logical: byte in the domain's logical addresses; set by activation
  * @size: bytes
  */
 struct ec_config_fmmu {
 	struct ec_domain *domain;
 	u8 sm;
 	u8 dir;
+	bool shared;
 	u32 offset;
+	u32 logical;
 	u32 size;
 };
 
@@ -95,7 +99,11 @@ struct ec_config_flag {
  * @n_idns: how many
  * @flags: named numbers
  * @n_flags: how many
+ * @overlap: its inputs may share logical addresses with its outputs
  * @lrw: its process data are in an LRW datagram
+ * @in_ring: they share logical addresses with those of other slaves, as long as
+ *	it is where it was: at @ring_position
+ * @ring_position: when it was activated
  * @wd_divider: register 0x0400, 0: leave
  * @wd_intervals: register 0x0420, 0: leave
  * @dc_assign: AssignActivate
@@ -122,7 +130,10 @@ struct ec_config {
 	unsigned int n_idns;
 	struct list_head flags;
 	unsigned int n_flags;
+	bool overlap;
 	bool lrw;
+	bool in_ring;
+	u32 ring_position;
 	u16 wd_divider;
 	u16 wd_intervals;
 	u16 dc_assign;

@@ -28,34 +28,62 @@ enum ec_owner {
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use
  * @domain: index
  * @cmd: LRD, LWR or LRW
+ * @new_frame: shares no frame with the datagrams before
+ * @holes: @n_copies areas do not cover it: clear it first
  * @logical: logical address
- * @offset: of its data in the image of all domains
  * @len: bytes
  * @expected: working counter when every slave takes part
- * @first_input: first of its entries in struct ec_cycle.inputs
- * @n_inputs: how many
+ * @first_copy: first of what is copied into it, in struct ec_cycle.areas
+ * @n_copies: how many
+ * @first_input: first of its inputs there
+ * @n_plain: inputs that were sent with their last value
+ * @n_whole: these, and inputs that come in the place of outputs
+ * @n_inputs: these, and inputs of which other datagrams have a part
  */
 struct ec_cyc_dgram {
 	u16 domain;
 	u8 cmd;
+	bool new_frame;
+	bool holes;
 	u32 logical;
-	u32 offset;
 	u16 len;
 	u16 expected;
+	u32 first_copy;
+	u16 n_copies;
+	u16 n_plain;
+	u16 n_whole;
+	u16 n_inputs;
 	u32 first_input;
-	u32 n_inputs;
 };
 
 /**
- * struct ec_cyc_input - inputs to copy out of a returned datagram
+ * struct ec_cyc_area - process data to copy into or out of a datagram
  * @offset: byte in the image
  * @pos: byte in the datagram
  * @len: bytes
+ * @cut: number in struct ec_cycle.cuts, for inputs of several datagrams
  */
-struct ec_cyc_input {
+struct ec_cyc_area {
 	u32 offset;
 	u16 pos;
 	u16 len;
+	u16 cut;
+};
+
+/**
+ * struct ec_cyc_cut - inputs that are larger than a datagram
+ * @offset: byte in the image
+ * @len: bytes
+ * @parts: datagrams that have a part of them
+ * @have: of them back
+ * @send: number of the send they belong to
+ */
+struct ec_cyc_cut {
+	u32 offset;
+	u32 len;
+	u16 parts;
+	u16 have;
+	u32 send;
 };
 
 /**
@@ -94,8 +122,15 @@ struct ec_cyc_domain {
  * struct ec_cycle - cyclic layout and its state; owned by the cyclic caller
  * @dgrams: layout
  * @n_dgrams: entries in @dgrams
- * @inputs: input areas in order of their datagram
- * @n_inputs: entries in @inputs
+ * @areas: what is copied, in order of the datagrams
+ * @n_areas: entries in @areas
+ * @cuts: inputs of several datagrams
+ * @n_cuts: entries in @cuts
+ * @stage: an image in which their parts come together, or NULL
+ * @n_frames: frames of a cycle that sends all domains
+ * @wire_ns: how long they occupy the wire
+ * @sent_frames: frames of the last send
+ * @sent_wire_ns: how long they occupied the wire
  * @domains: results
  * @flight: frames on their way, the oldest first
  * @n_flight: entries in @flight
@@ -113,8 +148,15 @@ struct ec_cyc_domain {
 struct ec_cycle {
 	struct ec_cyc_dgram *dgrams;
 	unsigned int n_dgrams;
-	struct ec_cyc_input *inputs;
-	unsigned int n_inputs;
+	struct ec_cyc_area *areas;
+	unsigned int n_areas;
+	struct ec_cyc_cut *cuts;
+	unsigned int n_cuts;
+	u8 *stage;
+	u32 n_frames;
+	u32 wire_ns;
+	u32 sent_frames;
+	u32 sent_wire_ns;
 	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;

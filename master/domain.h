@@ -24,6 +24,9 @@ struct ec_domain_fmmu {
  * @fmmus: what it consists of
  * @n_fmmus: entries in @fmmus
  * @expected: working counter when all slaves take part
+ * @options: EC_DOMAIN_OPT_*
+ * @n_dgrams: datagrams, set by activation
+ * @dgram_bytes: their bytes, header and working counter included
  */
 struct ec_domain {
 	struct ec_session *session;
@@ -34,6 +37,9 @@ struct ec_domain {
 	struct ec_domain_fmmu *fmmus;
 	unsigned int n_fmmus;
 	u32 expected;
+	u32 options;
+	u32 n_dgrams;
+	u32 dgram_bytes;
 };
 
 struct ec_domain *ec_domain_create(struct ec_session *s);

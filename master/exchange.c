@@ -10,8 +10,8 @@
 #include "master.h"
 #include "session.h"
 
-/* A copy of some bytes; most inputs are shorter than the call of memcpy(). */
-static __always_inline void copy_input(u8 *to, const u8 *from, unsigned int len)
+/* A copy of some bytes; most areas are shorter than the call of memcpy(). */
+static __always_inline void copy_area(u8 *to, const u8 *from, unsigned int len)
 {
 	unsigned int i;
 
@@ -24,6 +24,27 @@ static __always_inline void copy_input(u8 *to, const u8 *from, unsigned int len)
 	put_unaligned(get_unaligned((const u64 *)(from + len - 8)), (u64 *)(to + len - 8));
 }
 
+/* Parts of inputs that are larger than a datagram; the last one completes them. */
+static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
+		      const u8 *data)
+{
+	struct ec_cycle *c = &s->cycle;
+	unsigned int i;
+
+	for (i = d->n_whole; i < d->n_inputs; i++) {
+		const struct ec_cyc_area *in = &c->areas[d->first_input + i];
+		struct ec_cyc_cut *cut = &c->cuts[in->cut];
+
+		if (cut->send != send) {
+			cut->send = send;
+			cut->have = 0;
+		}
+		memcpy(c->stage + in->offset, data + in->pos, in->len);
+		if (++cut->have == cut->parts)
+			memcpy(s->shared->image + cut->offset, c->stage + cut->offset, cut->len);
+	}
+}
+
 /*
  * Inputs and working counter of one datagram. What belongs to an older send
  * than the newest one that is back must not undo it.
@@ -32,10 +53,10 @@ static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 s
 		       const u8 *data)
 {
 	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
-	const struct ec_cyc_input *in = &s->cycle.inputs[d->first_input];
+	const struct ec_cyc_area *in = &s->cycle.areas[d->first_input];
 	u8 *image = s->shared->image;
 	u16 wkc = get_unaligned_le16(data + d->len);
-	unsigned int i;
+	unsigned int i, n;
 
 	if ((s32)(send - dom->send) < 0)
 		return;
@@ -47,9 +68,15 @@ static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 s
 	s->cycle.back |= BIT_ULL(d->domain);
 	if (!wkc)
 		return;
-	/* a missing slave's part comes back as sent: the last value */
-	for (i = 0; i < d->n_inputs; i++, in++)
-		copy_input(image + in->offset, data + in->pos, in->len);
+	/*
+	 * A missing slave's part comes back as sent: the last value. Where outputs
+	 * were sent, or a part may be of another cycle, all must have taken part.
+	 */
+	n = wkc == d->expected ? d->n_whole : d->n_plain;
+	for (i = 0; i < n; i++, in++)
+		copy_area(image + in->offset, data + in->pos, in->len);
+	if (unlikely(d->n_inputs != d->n_whole) && wkc == d->expected)
+		take_cuts(s, d, send, data);
 }
 
 static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
@@ -162,7 +189,21 @@ struct send {
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
 	u32 wire_ns;
+	u32 frames;
 };
+
+/* Outputs, and the last value of inputs. */
+static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
+{
+	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
+	const u8 *image = s->shared->image;
+	unsigned int i;
+
+	if (d->holes)
+		memset(data, 0, d->len);
+	for (i = 0; i < d->n_copies; i++, a++)
+		copy_area(data + a->pos, image + a->offset, a->len);
+}
 
 /* Datagrams from @g on, as many as are queued and fit; returns how many. */
 static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g,
@@ -181,11 +222,13 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 	dc = fb.count;
 	end = min(c->n_dgrams, g + max(s->master->max_datagrams, dc) - dc);
 	for (; g < end && queued & BIT_ULL(d->domain); g++, d++) {
+		if (d->new_frame && fb.count > dc)
+			break;
 		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
 				 d->logical >> 16, d->len);
 		if (!p)
 			break;
-		memcpy(p, s->shared->image + d->offset, d->len);
+		fill_dgram(s, d, p);
 	}
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return fb.count - dc;
@@ -208,6 +251,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	}
 	count = fill(s, slot, g, send);
 	send->wire_ns += ec_frame_wire_ns(slot->eth_len);
+	send->frames++;
 	if (!ec_cycle_transmit(m, slot, send->now))
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
@@ -261,6 +305,8 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 		else
 			g++;
 	}
+	WRITE_ONCE(c->sent_frames, send.frames);
+	WRITE_ONCE(c->sent_wire_ns, send.wire_ns);
 	ec_cycle_send_left(m, send.wire_ns);
 	WRITE_ONCE(c->cycles, c->cycles + 1);
 	ec_cycle_leave(m);

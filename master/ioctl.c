@@ -51,7 +51,8 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0,
 	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
 	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0),
-	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved)),
+	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved),
+	    RSV(ec_ioc_domain, reserved2)),
 	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, RSV(ec_ioc_domain_fmmu, reserved)),
 	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, RSV(ec_ioc_domain_data, reserved)),
 	IOC(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0),
@@ -94,6 +95,9 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, RSV(ec_ioc_sc_ip, params.reserved)),
 	IOC(EC_IOC_CYCLE, ec_ioc_cycle, F_WRITE),
 	IOC(EC_IOC_WAIT, ec_ioc_wait, F_WRITE),
+	IOC(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, RSV(ec_ioc_sc_overlap, reserved)),
+	IOC(EC_IOC_DOMAIN_OPTIONS, ec_ioc_domain_options, F_WRITE,
+	    RSV(ec_ioc_domain_options, reserved)),
 };
 
 /**

@@ -68,7 +68,12 @@ int ec_ioc_cycle(struct ec_file *f, void *arg);
 int ec_ioc_wait(struct ec_file *f, void *arg);
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);
+struct ec_session *ec_ioc_lock_idle(struct ec_file *f, int *ret);
 struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret);
+
+/* ioctl_layout.c: how process data are sent */
+int ec_ioc_sc_overlap(struct ec_file *f, void *arg);
+int ec_ioc_domain_options(struct ec_file *f, void *arg);
 
 /* ioctl_request.c: requests and emergencies */
 int ec_ioc_sc_request(struct ec_file *f, void *arg);

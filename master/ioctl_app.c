@@ -39,8 +39,15 @@ static struct ec_session *lock(struct ec_file *f, int *ret)
 	return NULL;
 }
 
-/* The same, for changes that are only possible before activation. */
-static struct ec_session *lock_idle(struct ec_file *f, int *ret)
+/**
+ * ec_ioc_lock_idle() - lock the session, for changes before activation
+ * @f: open file
+ * @ret: why it is not possible
+ *
+ * Context: Process. May sleep. session_lock is held when one is returned.
+ * Return: session of this file that is not active, or NULL.
+ */
+struct ec_session *ec_ioc_lock_idle(struct ec_file *f, int *ret)
 {
 	struct ec_session *s = lock(f, ret);
 
@@ -69,7 +76,7 @@ static int done(struct ec_file *f, int ret)
  */
 struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret)
 {
-	struct ec_session *s = lock_idle(f, ret);
+	struct ec_session *s = ec_ioc_lock_idle(f, ret);
 
 	if (!s)
 		return NULL;
@@ -95,7 +102,7 @@ int ec_ioc_create_domain(struct ec_file *f, void *arg)
 	struct ec_ioc_create_domain *i = arg;
 	struct ec_domain *d;
 	int ret = 0;
-	struct ec_session *s = lock_idle(f, &ret);
+	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
 
 	if (!s)
 		return ret;
@@ -111,7 +118,7 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg)
 	struct ec_ioc_slave_config *i = arg;
 	struct ec_config *c;
 	int ret = 0;
-	struct ec_session *s = lock_idle(f, &ret);
+	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
 
 	if (!s)
 		return ret;
@@ -302,8 +309,9 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 	case -EBUSY:
 		return ec_refuse(f, ret, "the master is active already");
 	case -EOVERFLOW:
-		return ec_refuse(f, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes and %u datagrams a cycle; register fewer SyncManagers",
-				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS);
+		return ec_refuse(f, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes, %u datagrams and %u frames a cycle; register fewer SyncManagers, or let inputs overlap outputs",
+				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
+				 EC_MAX_CYCLE_FRAMES);
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
 	case -ENODEV:
@@ -359,7 +367,7 @@ int ec_ioc_ref_clock(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_ref_clock *i = arg;
 	int ret = 0;
-	struct ec_session *s = lock_idle(f, &ret);
+	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
 
 	if (!s)
 		return ret;

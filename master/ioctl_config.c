@@ -204,9 +204,12 @@ int ec_ioc_domain(struct ec_file *f, void *arg)
 	i->logical = d->logical;
 	i->expected = d->expected;
 	i->fmmu_count = d->n_fmmus;
+	i->options = d->options;
 	if (d->session->active) {
 		const struct ec_status *st = d->session->shared->status;
 
+		i->datagram_count = d->n_dgrams;
+		i->datagram_bytes = d->dgram_bytes;
 		i->working_counter = READ_ONCE(st->domains[d->index].working_counter);
 	}
 	return done(f, 0);
@@ -231,7 +234,7 @@ int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 		i->dir = fm->dir;
 		i->offset = fm->offset;
 		i->size = fm->size;
-		i->logical = d->logical + fm->offset;
+		i->logical = d->logical + fm->logical;
 	}
 	return done(f, ret);
 }

@@ -91,6 +91,18 @@ static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 	memcpy(d->loss_rate, link->rates.rate[4], sizeof(d->loss_rate));
 }
 
+static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)
+{
+	const struct ec_cycle *c = &s->cycle;
+
+	i->cycle_interval_us = READ_ONCE(s->master->interval_us);
+	i->cycle_datagrams = c->n_dgrams;
+	i->cycle_frames = c->n_frames;
+	i->cycle_wire_ns = c->wire_ns;
+	i->sent_frames = READ_ONCE(c->sent_frames);
+	i->sent_wire_ns = READ_ONCE(c->sent_wire_ns);
+}
+
 /* What the session adds. */
 static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 {
@@ -101,6 +113,7 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	i->domain_count = s->n_domains;
 	if (!s->active)
 		return;
+	cycle_info(s, i);
 	st = s->shared->status;
 	i->dc_ref_time = READ_ONCE(st->dc_time);
 	i->cycle_lock = READ_ONCE(st->kernel.lock);

@@ -6,150 +6,276 @@
 #include "config.h"
 #include "cycle.h"
 #include "domain.h"
+#include "logical.h"
 #include "master.h"
 #include "session.h"
 #include "slave.h"
 
-/* one stretch of a domain that becomes one datagram, or LRD plus LWR */
-struct stretch {
-	u32 start;
-	u32 end;
-	unsigned int first;	/* FMMU reference in the domain */
-	unsigned int last;	/* behind the last one */
+#define DC_BYTES	(4 + 8 + 4)	/* of the three clock datagrams */
+#define DC_DGRAMS	3
+
+/* a domain on its way into the layout */
+struct layout {
+	struct ec_cycle *c;
+	struct ec_domain *d;
+	struct ec_logical l;
 };
 
-static const struct ec_config_fmmu *fmmu(const struct ec_domain *d, unsigned int i)
+static const struct ec_config_fmmu *fmmu(const struct layout *o, unsigned int i)
 {
-	return &d->fmmus[i].config->fmmus[d->fmmus[i].fmmu];
+	return &o->l.refs[i].config->fmmus[o->l.refs[i].fmmu];
 }
 
 /* Slaves with data of @dir in the stretch; each counts once. */
-static u16 count_slaves(const struct ec_domain *d, const struct stretch *st, u8 dir)
+static u16 count_slaves(const struct layout *o, const struct ec_stretch *st, u8 dir)
 {
+	const struct ec_domain_fmmu *r = o->l.refs;
 	unsigned int i, j;
 	u16 n = 0;
 
 	for (i = st->first; i < st->last; i++) {
-		if (fmmu(d, i)->dir != dir || !fmmu(d, i)->size)
+		if (fmmu(o, i)->dir != dir || !fmmu(o, i)->size)
 			continue;
 		for (j = st->first; j < i; j++)
-			if (d->fmmus[j].config == d->fmmus[i].config && fmmu(d, j)->dir == dir &&
-			    fmmu(d, j)->size)
+			if (r[j].config == r[i].config && fmmu(o, j)->dir == dir &&
+			    fmmu(o, j)->size)
 				break;
 		n += j == i;
 	}
 	return n;
 }
 
-static int add_dgram(struct ec_cycle *c, const struct ec_domain *d, const struct stretch *st,
-		     u8 cmd, u16 expected)
+/* Append to an array; NULL without memory. */
+static void *append(void *array, unsigned int n, size_t size)
 {
+	return krealloc_array(array, n + 1, size, GFP_KERNEL);
+}
+
+static struct ec_cyc_dgram *add_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd,
+				      u16 expected)
+{
+	struct ec_cycle *c = o->c;
 	struct ec_cyc_dgram *g;
 
 	if (c->n_dgrams >= EC_MAX_CYCLE_DGRAMS)
-		return -EOVERFLOW;
-	g = krealloc_array(c->dgrams, c->n_dgrams + 1, sizeof(*g), GFP_KERNEL);
+		return ERR_PTR(-EOVERFLOW);
+	g = append(c->dgrams, c->n_dgrams, sizeof(*g));
 	if (!g)
-		return -ENOMEM;
+		return ERR_PTR(-ENOMEM);
 	c->dgrams = g;
 	g += c->n_dgrams++;
 	*g = (struct ec_cyc_dgram){
-		.domain = d->index, .cmd = cmd, .logical = d->logical + st->start,
-		.offset = d->offset + st->start, .len = st->end - st->start,
-		.expected = expected, .first_input = c->n_inputs,
+		.domain = o->d->index, .cmd = cmd, .logical = o->d->logical + st->start,
+		.expected = expected, .first_copy = c->n_areas,
 	};
-	return 0;
+	return g;
 }
 
-/* Inputs side by side are one copy. */
-static int add_input(struct ec_cycle *c, u32 offset, u16 pos, u16 len)
+/* One more area of the datagram added last; whole ones side by side are one copy. */
+static int add_area(struct ec_cycle *c, u16 *count, u32 offset, u16 pos, u16 len, bool cut)
 {
-	struct ec_cyc_dgram *g = &c->dgrams[c->n_dgrams - 1];
-	struct ec_cyc_input *in = c->inputs;
+	struct ec_cyc_area *a = c->areas + c->n_areas - 1;
 
-	if (g->n_inputs) {
-		in += c->n_inputs - 1;
-		if (in->pos + in->len == pos) {
-			in->len += len;
-			return 0;
-		}
+	if (*count && !cut && a->pos + a->len == pos && a->offset + a->len == offset) {
+		a->len += len;
+		return 0;
 	}
-	in = krealloc_array(c->inputs, c->n_inputs + 1, sizeof(*in), GFP_KERNEL);
-	if (!in)
+	a = append(c->areas, c->n_areas, sizeof(*a));
+	if (!a)
 		return -ENOMEM;
-	c->inputs = in;
-	in[c->n_inputs++] = (struct ec_cyc_input){ .offset = offset, .pos = pos, .len = len };
-	g->n_inputs++;
+	c->areas = a;
+	a[c->n_areas++] = (struct ec_cyc_area){ .offset = offset, .pos = pos, .len = len };
+	++*count;
 	return 0;
 }
 
-/* The inputs of the datagram added last; FMMUs are in order of their offset. */
-static int add_inputs(struct ec_cycle *c, const struct ec_domain *d, const struct stretch *st)
+/* which part of the stretch's process data */
+enum part {
+	SENT,	/* outputs, and inputs that keep their last value on the way */
+	PLAIN,	/* inputs that nobody's outputs share the addresses of */
+	SHARED,	/* inputs that came in the place of outputs */
+	CUT,	/* inputs of which this datagram has only a part */
+};
+
+static bool belongs(const struct ec_cyc_dgram *g, const struct ec_config_fmmu *f, bool whole,
+		    enum part part)
 {
+	bool out = f->dir == EC_CFG_DIR_OUTPUT;
+
+	switch (part) {
+	case SENT:
+		return out ? g->cmd != EC_CMD_LRD : g->cmd != EC_CMD_LWR && !f->shared;
+	case PLAIN:
+		return !out && whole && !f->shared;
+	case SHARED:
+		return !out && whole && f->shared;
+	default:
+		return !out && !whole;
+	}
+}
+
+/* An input area of several datagrams: it is taken when all of them are back. */
+static int add_cut(struct ec_cycle *c, u32 offset, u32 len)
+{
+	struct ec_cyc_cut *k = c->cuts;
+
+	if (c->n_cuts && k[c->n_cuts - 1].offset == offset) {
+		k[c->n_cuts - 1].parts++;
+		return 0;
+	}
+	k = append(c->cuts, c->n_cuts, sizeof(*k));
+	if (!k)
+		return -ENOMEM;
+	c->cuts = k;
+	k[c->n_cuts++] = (struct ec_cyc_cut){ .offset = offset, .len = len, .parts = 1 };
+	return 0;
+}
+
+/* Areas of the datagram added last, of one part. */
+static int add_areas(struct layout *o, const struct ec_stretch *st, enum part part, u16 *count)
+{
+	struct ec_cycle *c = o->c;
+	struct ec_cyc_dgram *g = &c->dgrams[c->n_dgrams - 1];
 	unsigned int i;
 	int ret = 0;
 
 	for (i = st->first; i < st->last && !ret; i++) {
-		const struct ec_config_fmmu *f = fmmu(d, i);
-		u32 from = max(f->offset, st->start), to = min(f->offset + f->size, st->end);
+		const struct ec_config_fmmu *f = fmmu(o, i);
+		u32 from = max(f->logical, st->start), to = min(f->logical + f->size, st->end);
+		u32 offset = o->d->offset + f->offset;
 
-		if (f->dir == EC_CFG_DIR_INPUT && from < to)
-			ret = add_input(c, d->offset + from, from - st->start, to - from);
+		if (from >= to || !belongs(g, f, to - from == f->size, part))
+			continue;
+		if (part == CUT) {
+			ret = add_cut(c, offset, f->size);
+			if (ret)
+				break;
+		}
+		ret = add_area(c, count, offset + from - f->logical, from - st->start, to - from,
+			       part == CUT);
+		if (part == CUT && !ret)
+			c->areas[c->n_areas - 1].cut = c->n_cuts - 1;
+		g->len = max_t(u16, g->len, to - st->start);
 	}
 	return ret;
 }
 
-static int add_stretch(struct ec_cycle *c, struct ec_domain *d, const struct stretch *st)
+static u32 area_bytes(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 {
-	u16 out = count_slaves(d, st, EC_CFG_DIR_OUTPUT);
-	u16 in = count_slaves(d, st, EC_CFG_DIR_INPUT);
-	bool split = false;
+	u32 i, n = 0;
+
+	for (i = 0; i < g->n_copies; i++)
+		n += c->areas[g->first_copy + i].len;
+	return n;
+}
+
+static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
+{
+	struct ec_cyc_dgram *g = add_dgram(o, st, cmd, expected);
+	u16 plain = 0, shared = 0, cut = 0;
+	int ret;
+
+	if (IS_ERR(g))
+		return PTR_ERR(g);
+	ret = add_areas(o, st, SENT, &g->n_copies);
+	g->first_input = o->c->n_areas;
+	if (cmd != EC_CMD_LWR && !ret)
+		ret = add_areas(o, st, PLAIN, &plain) ?: add_areas(o, st, SHARED, &shared) ?:
+		      add_areas(o, st, CUT, &cut);
+	g->n_plain = plain;
+	g->n_whole = plain + shared;
+	g->n_inputs = plain + shared + cut;
+	g->holes = area_bytes(o->c, g) != g->len;
+	return ret;
+}
+
+static int add_stretch(struct layout *o, const struct ec_stretch *st)
+{
+	u16 out = count_slaves(o, st, EC_CFG_DIR_OUTPUT);
+	u16 in = count_slaves(o, st, EC_CFG_DIR_INPUT);
 	unsigned int i;
 	int ret = 0;
 
-	for (i = st->first; i < st->last; i++)
-		split |= d->fmmus[i].config->slave && ec_slave_no_lrw(d->fmmus[i].config->slave);
-	if (out && in && !split) {
+	if (out && in && !o->l.separate) {
 		for (i = st->first; i < st->last; i++)
-			d->fmmus[i].config->lrw = true;
-		d->expected += 2 * out + in;
-		return add_dgram(c, d, st, EC_CMD_LRW, 2 * out + in) ?: add_inputs(c, d, st);
+			o->l.refs[i].config->lrw = true;
+		o->d->expected += 2 * out + in;
+		return fill_dgram(o, st, EC_CMD_LRW, 2 * out + in);
 	}
-	d->expected += out + in;
+	o->d->expected += out + in;
 	if (out)
-		ret = add_dgram(c, d, st, EC_CMD_LWR, out);
+		ret = fill_dgram(o, st, EC_CMD_LWR, out);
 	if (in && !ret)
-		ret = add_dgram(c, d, st, EC_CMD_LRD, in) ?: add_inputs(c, d, st);
+		ret = fill_dgram(o, st, EC_CMD_LRD, in);
 	return ret;
 }
 
-/* Cut a domain into stretches that fit a datagram, between FMMUs where possible. */
-static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
+/* The first datagram of a domain that wants frames of its own, or comes behind one. */
+static void begin_frame(struct ec_session *s, const struct ec_domain *d, unsigned int first)
 {
-	struct stretch st = { 0 };
-	unsigned int i;
-	int ret = 0;
+	struct ec_cyc_dgram *g = s->cycle.dgrams + first;
+	u32 options = d->options;
+
+	if (first)
+		options |= s->domains[g[-1].domain]->options;
+	g->new_frame = options & EC_DOMAIN_OPT_OWN_FRAME;
+}
+
+static int layout_domain(struct ec_session *s, struct ec_domain *d)
+{
+	struct ec_cycle *c = &s->cycle;
+	struct layout o = { .c = c, .d = d };
+	unsigned int i, first = c->n_dgrams;
+	int ret = ec_logical_place(d, &o.l);
 
 	d->expected = 0;
-	for (i = 0; i < d->n_fmmus && !ret; i++) {
-		u32 end = fmmu(d, i)->offset + fmmu(d, i)->size;
-
-		if (end - st.start > EC_DGRAM_DATA_MAX && st.end > st.start) {
-			ret = add_stretch(c, d, &st);
-			st.start = st.end;
-			st.first = i;
-		}
-		st.last = i + 1;
-		while (!ret && end - st.start > EC_DGRAM_DATA_MAX) {
-			st.end = st.start + EC_DGRAM_DATA_MAX;
-			ret = add_stretch(c, d, &st);
-			st.start = st.end;
-		}
-		st.end = end;
-	}
-	if (!ret && st.end > st.start)
-		ret = add_stretch(c, d, &st);
+	for (i = 0; i < o.l.n_stretches && !ret; i++)
+		ret = add_stretch(&o, &o.l.stretches[i]);
+	ec_logical_free(&o.l);
+	d->n_dgrams = c->n_dgrams - first;
+	d->dgram_bytes = 0;
+	for (i = first; i < c->n_dgrams; i++)
+		d->dgram_bytes += EC_DGRAM_OVERHEAD + c->dgrams[i].len;
+	if (!ret && d->n_dgrams)
+		begin_frame(s, d, first);
 	return ret;
+}
+
+/*
+ * Frames of a cycle that sends all domains, packed as the send packs them, and
+ * how long they occupy the wire.
+ */
+static void plan_frames(struct ec_cycle *c, unsigned int max_datagrams, bool clocks)
+{
+	unsigned int count = clocks ? DC_DGRAMS : 0, own = 0, i;
+	size_t body = clocks ? DC_BYTES + DC_DGRAMS * EC_DGRAM_OVERHEAD : 0;
+
+	c->n_frames = 0;
+	c->wire_ns = 0;
+	for (i = 0; i <= c->n_dgrams; i++) {
+		const struct ec_cyc_dgram *g = c->dgrams + i;
+		bool end = i == c->n_dgrams;
+
+		if (count && (end || count >= max_datagrams || (own && g->new_frame) ||
+			      body + EC_DGRAM_OVERHEAD + g->len > EC_FRAME_BODY_MAX)) {
+			c->n_frames++;
+			c->wire_ns += ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + body);
+			body = count = own = 0;
+		}
+		if (end)
+			break;
+		body += EC_DGRAM_OVERHEAD + g->len;
+		count++;
+		own++;
+	}
+}
+
+static int alloc_stage(struct ec_cycle *c, const struct ec_session *s)
+{
+	if (!c->n_cuts)
+		return 0;
+	c->stage = kvzalloc(s->shared->image_size, GFP_KERNEL);
+	return c->stage ? 0 : -ENOMEM;
 }
 
 /**
@@ -157,20 +283,32 @@ static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
  * @s: session whose domains have offsets
  *
  * Context: Process, session_lock held. May sleep.
- * Return: 0, -EOVERFLOW beyond EC_MAX_CYCLE_DGRAMS, -ENOMEM.
+ * Return: 0; -EOVERFLOW beyond EC_MAX_CYCLE_DGRAMS or EC_MAX_CYCLE_FRAMES;
+ * -ENOMEM.
  */
 int ec_cycle_layout(struct ec_session *s)
 {
+	struct ec_cycle *c = &s->cycle;
 	unsigned int i;
 	int ret = 0;
 
-	memset(&s->cycle, 0, sizeof(s->cycle));
+	memset(c, 0, sizeof(*c));
+	for (i = 0; i < s->n_configs; i++) {
+		s->configs[i]->lrw = false;
+		s->configs[i]->in_ring = false;
+	}
 	for (i = 0; i < s->n_domains && !ret; i++)
-		ret = layout_domain(&s->cycle, s->domains[i]);
+		ret = layout_domain(s, s->domains[i]);
 	for (i = 0; i < s->n_domains; i++)
-		s->cycle.domains[i].expected = s->domains[i]->expected;
+		c->domains[i].expected = s->domains[i]->expected;
+	if (!ret)
+		ret = alloc_stage(c, s);
+	if (!ret)
+		plan_frames(c, s->master->max_datagrams, ec_session_uses_clocks(s));
+	if (!ret && c->n_frames > EC_MAX_CYCLE_FRAMES)
+		ret = -EOVERFLOW;
 	if (ret)
-		ec_cycle_free(s->master, &s->cycle);
+		ec_cycle_free(s->master, c);
 	return ret;
 }
 
@@ -205,6 +343,8 @@ void ec_cycle_free(struct ec_master *m, struct ec_cycle *c)
 {
 	forget_flights(m, c);
 	kfree(c->dgrams);
-	kfree(c->inputs);
+	kfree(c->areas);
+	kfree(c->cuts);
+	kvfree(c->stage);
 	memset(c, 0, sizeof(*c));
 }

@@ -10,6 +10,7 @@
 #define EC_MAX_CONFIGS		4096	/* EC_STATUS_CONFIGS */
 #define EC_MAX_IMAGE		(256 * 1024)	/* bytes of process data per session */
 #define EC_MAX_CYCLE_DGRAMS	512	/* datagrams of one cycle */
+#define EC_MAX_CYCLE_FRAMES	64	/* frames of one cycle; two cycles of them may be on their way */
 #define EC_MAX_SM_BYTES		0xf000	/* of one SyncManager: what an ESC has from 0x1000 on */
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */

@@ -288,7 +288,14 @@ static u16 ref_choice(const struct ec_session *s)
 						  EC_DC_NOBODY;
 }
 
-static bool uses_sync(const struct ec_session *s)
+/**
+ * ec_session_uses_clocks() - does the session need distributed clocks for sure?
+ * @s: session
+ *
+ * Context: Process, session_lock held.
+ * Return: true: a slave has SYNC signals, or the kernel's cycle keeps clocks.
+ */
+bool ec_session_uses_clocks(const struct ec_session *s)
 {
 	unsigned int i;
 
@@ -377,7 +384,7 @@ int ec_session_activate(struct ec_session *s)
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
 	mutex_unlock(&m->cyclic_lock);
-	if (uses_sync(s))
+	if (ec_session_uses_clocks(s))
 		ec_dc_begin(m, true, ref_choice(s));
 	ec_cycle_thread_start(s);
 	for (i = 0; i < s->n_configs; i++)

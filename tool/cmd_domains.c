@@ -5,6 +5,8 @@
 #include "domain.h"
 #include "out.h"
 
+#define WIRE_NS_PER_BYTE	80	/* at 100 Mbit/s */
+
 static int fmmu(struct dev *d, const struct ec_ioc_domain *dom, unsigned int i, const char *in,
 		const u8 *data, size_t size)
 {
@@ -32,6 +34,43 @@ static int fmmu(struct dev *d, const struct ec_ioc_domain *dom, unsigned int i, 
 	return 0;
 }
 
+/* how the application wants it sent, and what became of that */
+static void layout(const struct tool *t, const char *in, const struct ec_ioc_domain *dom)
+{
+	static const struct {
+		__u32 bit;
+		const char *key;
+		const char *text;
+	} options[] = {
+		{ EC_DOMAIN_OPT_OVERLAP, "overlap", "overlap" },
+		{ EC_DOMAIN_OPT_SEPARATE, "separate", "separate" },
+		{ EC_DOMAIN_OPT_OWN_FRAME, "own_frame", "own frame" },
+	};
+	bool text = t->verbosity > 0;
+	const char *sep = ": ";
+
+	if (text)
+		out_text("%s  Options", in);
+	out_array("options");
+	for (unsigned int i = 0; i < ARRAY_SIZE(options); i++) {
+		if (!(dom->options & options[i].bit))
+			continue;
+		out_str("", options[i].key, NULL);
+		if (text)
+			out_text("%s%s", sep, options[i].text);
+		sep = ", ";
+	}
+	out_end();
+	if (text)
+		out_text("%s\n", dom->options ? "" : ": none");
+	out_u("datagrams", dom->datagram_count, NULL);
+	out_u("datagram_bytes", dom->datagram_bytes, NULL);
+	if (text && dom->datagram_count)
+		out_text("%s  Datagrams: %u, %u bytes, %.2f us of wire time\n", in,
+			 dom->datagram_count, dom->datagram_bytes,
+			 dom->datagram_bytes * WIRE_NS_PER_BYTE / 1000.0);
+}
+
 static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
 {
 	const char *in = d->selected > 1 ? "  " : "";
@@ -46,6 +85,7 @@ static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain 
 	out_u("working_counter", dom->working_counter, ", WorkingCounter %u",
 	      dom->working_counter);
 	out_u("expected_working_counter", dom->expected, "/%u\n", dom->expected);
+	layout(t, in, dom);
 	if (t->verbosity > 0) {
 		ret = domain_data(d, dom, &data, &size);
 		out_array("fmmus");
@@ -91,9 +131,12 @@ const struct cmd cmd_domains = {
 	.opts = "mdv",
 	.summary = "Show the domains of the application",
 	.help = "WorkingCounter: of the last cycle / expected; equal when every slave exchanged its\n"
-		"data. With --verbose also what each slave configuration contributes.\n",
+		"data. With --verbose also the options of the domain (overlap: inputs at logical\n"
+		"addresses of outputs; separate: LRD and LWR; own frame), its datagrams, and what each\n"
+		"slave configuration contributes. The wire time of a whole cycle: ethercat master -v.\n",
 	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
-		"working_counter, expected_working_counter, with --verbose fmmus[]: alias, position,\n"
+		"working_counter, expected_working_counter, options[] (overlap, separate, own_frame),\n"
+		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, position,\n"
 		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",
 	.flags = CMD_HISTORIC,
 };

@@ -53,9 +53,9 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 	if (!ret)
 		ret = ec_desc_number(d, "revision", 0, 0xFFFFFFFFll, &revision);
 	if (!ret)
-		ret = ec_desc_number(d, "out", 0, 11888, &out);
+		ret = ec_desc_number(d, "out", 0, 32768, &out);
 	if (!ret)
-		ret = ec_desc_number(d, "in", 0, 11888, &in);
+		ret = ec_desc_number(d, "in", 0, 32768, &in);
 	if (!ret)
 		ret = ec_desc_number(d, "mbox", 32, 1486, &mbox);
 	if (!ret)

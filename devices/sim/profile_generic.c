@@ -2,7 +2,7 @@
 /* Generic slaves of any size: "drive" (bytes) and "io" (bits). */
 #include "app_int.h"
 
-#define MAX_BYTES	1486u
+#define MAX_BYTES	4096u	/* more than a datagram holds */
 #define PDO_ENTRIES	64u	/* then the next PDO begins */
 
 static const struct ec_app_pdo_entry drive_out[] = {

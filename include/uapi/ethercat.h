@@ -109,6 +109,13 @@ struct ec_ioc_master {
 	__u32 lock_losses;	/* likewise */
 	__s32 phase_error;	/* likewise */
 	__s32 rate_ppb;		/* likewise */
+	/* while active; wire times of 100 Mbit/s, preamble and gap included */
+	__u32 cycle_interval_us;	/* distance of cyclic sends, told or measured */
+	__u32 cycle_datagrams;	/* of a cycle that sends all domains */
+	__u32 cycle_frames;
+	__u32 cycle_wire_ns;
+	__u32 sent_frames;	/* of the last send, clock datagrams included */
+	__u32 sent_wire_ns;
 };
 
 struct ec_ioc_port {
@@ -378,6 +385,12 @@ struct ec_ioc_config_flag {
 	char key[EC_UAPI_STRING];
 };
 
+/* how a domain is sent, see struct ec_ioc_domain_options */
+#define EC_DOMAIN_OPT_OVERLAP	1	/* inputs at logical addresses of outputs */
+#define EC_DOMAIN_OPT_SEPARATE	2	/* LRD and LWR instead of LRW */
+#define EC_DOMAIN_OPT_OWN_FRAME	4	/* no frame together with another domain */
+#define EC_DOMAIN_OPT_ALL	7
+
 struct ec_ioc_domain {
 	__u32 flags;
 	__u32 index;		/* in */
@@ -387,6 +400,10 @@ struct ec_ioc_domain {
 	__u32 expected;
 	__u32 fmmu_count;
 	__u32 reserved;
+	__u32 options;		/* EC_DOMAIN_OPT_* */
+	__u32 datagram_count;	/* while active */
+	__u32 datagram_bytes;	/* their headers and working counters included */
+	__u32 reserved2;
 };
 
 struct ec_ioc_domain_fmmu {
@@ -432,6 +449,20 @@ struct ec_ioc_cycle_stats {
 struct ec_ioc_create_domain {
 	__u32 flags;
 	__u32 index;		/* out */
+};
+
+struct ec_ioc_domain_options {
+	__u32 flags;
+	__u32 domain;		/* in */
+	__u32 options;		/* in: EC_DOMAIN_OPT_* */
+	__u32 reserved;
+};
+
+struct ec_ioc_sc_overlap {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u32 overlap;		/* in: 0 or 1: inputs at logical addresses of its outputs */
+	__u32 reserved;
 };
 
 struct ec_ioc_slave_config {
@@ -903,5 +934,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_SC_IDN		EC_IOC_W(0x56, struct ec_ioc_sc_idn)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
+#define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
+#define EC_IOC_DOMAIN_OPTIONS	EC_IOC_W(0x79, struct ec_ioc_domain_options)
 
 #endif

@@ -24,7 +24,7 @@ static void image_several_datagrams(struct kunit *test)
 	cycle = &b->m->session->cycle;
 	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 5u);
 	for (i = 0; i < cycle->n_dgrams; i++)
-		split |= cycle->dgrams[i].offset % 1000 != 0;
+		split |= cycle->dgrams[i].logical % 1000 != 0;
 	KUNIT_EXPECT_FALSE(test, split);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	for (i = 0; i < 3; i++)
@@ -43,6 +43,140 @@ static void image_several_datagrams(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 1, 1) + 4 * 199),
 			31 + 199 * 0x01000193u);
+}
+
+/* 16 KiB in one domain, apart and overlapped: the application sees it whole. */
+static void image_16k(struct kunit *test, u32 options, u32 frames)
+{
+	struct bus *b = bus_up(test, "segment seed=25\nrepeat 16 slave s io in=4096 out=4096\n"
+			       "connect s1.1 -> s1.1\nconnect s16.128 -> s16.128\n"
+			       "connect s8.128 -> s8.128\n", 16);
+	struct ec_ioc_domain_options o = { .options = options };
+	struct ec_session *s;
+	struct cyc *c;
+	char name[8];
+	u32 i, k, round;
+
+	bus_idle(b);
+	c = cyc_new(b, 4000);
+	cyc_domain(c);
+	KUNIT_ASSERT_EQ(test, ec_ioc_domain_options(&b->app, &o), 0);
+	cyc_map_all(c, 0, 16, 0);
+	cyc_activate(c);
+	s = b->m->session;
+	KUNIT_EXPECT_EQ(test, s->domains[0]->size, 16384u);
+	KUNIT_EXPECT_EQ(test, s->cycle.n_frames, frames);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
+	for (round = 1; round < 4; round++) {
+		for (i = 0; i < 16; i++)
+			for (k = 0; k < 128; k++)
+				put_unaligned_le32(i * 31 + (k + round) * 0x01000193,
+						   cyc_pd(c, i, 0) + 4 * k);
+		cyc_run(c, 4);
+		c->incomplete = 0;
+		cyc_run(c, 4);
+		KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+		for (i = 0; i < 16; i++) {
+			snprintf(name, sizeof(name), "s%u", i + 1);
+			for (k = 0; k < 128; k++)
+				KUNIT_EXPECT_EQ(test, (u32)ec_app_channel(bus_app(b, name),
+									  EC_APP_OUT, k),
+						i * 31 + (k + round) * 0x01000193);
+		}
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 15, 1) + 4 * 127),
+				15 * 31 + (127 + round) * 0x01000193u);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 7, 1) + 4 * 127),
+				7 * 31 + (127 + round) * 0x01000193u);
+	}
+	KUNIT_EXPECT_EQ(test, s->cycle.sent_frames, frames);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
+static void image_16k_apart(struct kunit *test)
+{
+	image_16k(test, 0, 16);
+}
+
+static void image_16k_overlap(struct kunit *test)
+{
+	/* two slaves a datagram: 1024 bytes, each way in the same place */
+	image_16k(test, EC_DOMAIN_OPT_OVERLAP, 8);
+}
+
+/* both outputs of the slave carry the number of the cycle */
+static void count_outputs(struct cyc *c)
+{
+	put_unaligned_le32(c->cycles, cyc_pd(c, 0, 0));
+}
+
+/*
+ * A SyncManager of several datagrams in several frames: its inputs change only
+ * when all parts of one cycle are back.
+ */
+static void image_cut(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=26\nslave s io in=32000 out=32000\n"
+			       "slave t io in=512 out=512\nconnect s.1 -> s.1\n"
+			       "connect t.1 -> t.1\n", 2);
+	struct ec_sim_fault f = { .type = EC_SIM_FAULT_LOSE, .slave = -1 };
+	struct ec_cycle *cycle;
+	struct cyc *c;
+	u32 i, v;
+
+	bus_idle(b);
+	c = cyc_new(b, 2000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	cyc_activate(c);
+	cycle = &b->m->session->cycle;
+	KUNIT_ASSERT_EQ(test, cycle->n_cuts, 1u);
+	KUNIT_EXPECT_EQ(test, cycle->cuts[0].parts, 3);
+	KUNIT_EXPECT_EQ(test, cycle->cuts[0].len, 4000u);
+	KUNIT_EXPECT_EQ(test, cycle->n_frames, 6u);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	c->each = count_outputs;
+	cyc_run(c, 10);
+	c->incomplete = 0;
+	for (i = 0; i < 10; i++) {
+		v = get_unaligned_le32(cyc_pd(c, 0, 1));
+		cyc_run(c, 1);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 0, 1)), v + 1);
+	}
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	v = get_unaligned_le32(cyc_pd(c, 0, 1));
+	/* the frame with the last part of the inputs does not come back */
+	f.at_ns = ktime_get_ns();
+	f.arg = 6;
+	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
+	cyc_run(c, 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 0, 1)), v + 1);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 1);
+	cyc_run(c, 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 0, 1)), v + 4);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
+/* Domains with frames of their own are not joined with their neighbours. */
+static void image_own_frame(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=27\nrepeat 4 slave s io in=64 out=64\n", 4);
+	struct ec_ioc_domain_options o = { .domain = 1, .options = EC_DOMAIN_OPT_OWN_FRAME };
+	struct cyc *c;
+	u32 i;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	for (i = 0; i < 4; i++)
+		cyc_map_all(c, i, 1, cyc_domain(c));
+	KUNIT_ASSERT_EQ(test, ec_ioc_domain_options(&b->app, &o), 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	cyc_run(c, 5);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.n_frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.sent_frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.sent_wire_ns, (84 + 84 + 96) * 80u);
+	for (i = 0; i < 4; i++)
+		KUNIT_EXPECT_EQ(test, cyc_state(c, i)->wc_state, 2);
 }
 
 /* A domain of one SyncManager that fills a datagram to the last byte. */
@@ -225,10 +359,23 @@ static void refused(struct kunit *test, struct cyc *c, const char *why)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 }
 
-static void image_too_many_datagrams(struct kunit *test)
+/* 65 frames of one SyncManager each; 64 are possible */
+static void image_too_many_frames(struct kunit *test)
 {
-	/* two SyncManagers of 500 bytes are LRD and LWR of 1000 bytes */
-	refused(test, too_much(test, 260, 4000, false, 1), "512 datagrams");
+	refused(test, too_much(test, 33, 8000, true, 1), "64 frames");
+}
+
+static void image_many_frames(struct kunit *test)
+{
+	struct cyc *c = too_much(test, 32, 8000, true, 1);
+
+	c->period_ns = 10 * NSEC_PER_MSEC;
+	cyc_activate(c);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.n_frames, (u32)EC_MAX_CYCLE_FRAMES);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 60000), ~0ull);
+	cyc_run(c, 5);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
 static void image_too_many_bytes(struct kunit *test)
@@ -238,11 +385,16 @@ static void image_too_many_bytes(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(image_several_datagrams),
+	KUNIT_CASE(image_16k_apart),
+	KUNIT_CASE(image_16k_overlap),
+	KUNIT_CASE(image_cut),
+	KUNIT_CASE(image_own_frame),
 	KUNIT_CASE(image_full_datagram),
 	KUNIT_CASE(image_bits),
 	KUNIT_CASE(image_rates),
 	KUNIT_CASE(image_too_many_domains),
-	KUNIT_CASE(image_too_many_datagrams),
+	KUNIT_CASE(image_too_many_frames),
+	KUNIT_CASE(image_many_frames),
 	KUNIT_CASE(image_too_many_bytes),
 	{}
 };

@@ -352,6 +352,34 @@ static void cycle(void)
 	ecrt_release_master(m);
 }
 
+/* How process data are sent: what is asked for reaches the kernel. */
+static void layout(void)
+{
+	const struct ec_ioc_domain_options *o = (const void *)fake.arg;
+	const struct ec_ioc_sc_overlap *v = (const void *)fake.arg;
+	ec_master_t *m = start();
+	ec_domain_t *d;
+	ec_slave_config_t *sc;
+
+	ecrt_master_create_domain(m);
+	d = ecrt_master_create_domain(m);
+	sc = ecrt_master_slave_config(m, 0, 5, 2, 3);
+	CHECK(ecrt_domain_set_options(NULL, 0) == -EINVAL);
+	CHECK(ecrt_slave_config_overlapping_pdos(NULL, 1) == -EINVAL);
+	CHECK(!ecrt_domain_set_options(d, EC_DOMAIN_OVERLAP | EC_DOMAIN_OWN_FRAME));
+	CHECK(fake.last == EC_IOC_DOMAIN_OPTIONS && o->domain == 1 && o->options == 5);
+	CHECK(!ecrt_slave_config_overlapping_pdos(sc, 2));
+	CHECK(fake.last == EC_IOC_SC_OVERLAP && v->config == 5 && v->overlap == 1);
+	CHECK(!ecrt_slave_config_overlapping_pdos(sc, 0) && !v->overlap);
+	fake.refuse = EC_IOC_DOMAIN_OPTIONS;
+	fake.err = EOPNOTSUPP;
+	CHECK(ecrt_domain_set_options(d, 8) == -EOPNOTSUPP);
+	fake.refuse = EC_IOC_SC_OVERLAP;
+	fake.err = EBUSY;
+	CHECK(ecrt_slave_config_overlapping_pdos(sc, 1) == -EBUSY);
+	ecrt_release_master(m);
+}
+
 static void empty_image(void)
 {
 	ec_master_t *m = start();
@@ -388,6 +416,7 @@ int main(void)
 	eoe();
 	foreign_domain();
 	cycle();
+	layout();
 	empty_image();
 	failed_activation();
 	requests();

@@ -185,9 +185,10 @@ static const struct ec_ioc_config configs[] = {
 
 static const struct ec_ioc_domain domains[] = {
 	{ .index = 0, .size = 1, .logical = 0, .working_counter = 1, .expected = 1,
-	  .fmmu_count = 1 },
+	  .fmmu_count = 1, .datagram_count = 1, .datagram_bytes = 13 },
 	{ .index = 1, .size = 6, .logical = 1, .working_counter = 3, .expected = 3,
-	  .fmmu_count = 1 },
+	  .fmmu_count = 1, .options = EC_DOMAIN_OPT_OVERLAP | EC_DOMAIN_OPT_OWN_FRAME,
+	  .datagram_count = 2, .datagram_bytes = 30 },
 };
 
 static const __u8 images[2][6] = { { 0xa5 }, { 1, 2, 3, 4, 5, 0xff } };
@@ -222,6 +223,12 @@ static int master(struct ec_ioc_master *m, int index)
 		m->phase_error = -12;
 		m->rate_ppb = -8700;
 		m->lock_losses = 1;
+		m->cycle_interval_us = 1000;
+		m->cycle_datagrams = 3;
+		m->cycle_frames = 2;
+		m->cycle_wire_ns = 13440;
+		m->sent_frames = 1;
+		m->sent_wire_ns = 6720;
 	}
 	fill_device(&m->devices[0]);
 	if (bus("cut")) {

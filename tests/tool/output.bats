@@ -121,6 +121,8 @@ assert len(rows) == 12 and sum(r[3] == "closed" for r in rows) == 7
 	out master | grep -qE 'Link:\s*UP'
 	out master | grep -qE 'Slaves:\s*3'
 	out master | grep -q attached
+	FAKE_BUS=app out master -v | grep -q 'All domains: 3 datagram(s), 2 frame(s), 13.44 us'
+	FAKE_BUS=app out master -v | grep -q 'Last send:   1 frame(s), 6.72 us'
 	out master | grep -q 'Lost frames'
 	# first token, and awk '{print $2}'
 	[ $(($(out upload -p2 0x1018 1 | awk '{ print $1 }'))) -eq 2 ]

@@ -69,7 +69,7 @@ static const struct {
 	{ "slave a EL2008 drift=5", 1, "'5' is not a rate" },
 	{ "slave a EL2008 delay=5parsec", 1, "'5parsec' is not a time" },
 	{ "slave a drive mapping=none", 1, "rewritable" },
-	{ "slave a drive in=2000", 1, "at most 1486" },
+	{ "slave a drive in=5000", 1, "at most 1486" },
 	{ "slave a EL7201 motor=AM1", 1, "AM8121" },
 	{ "slave a drive eeprom=none", 1, "chip or emulated" },
 	{ "slave a EL2008 eeprom=emulated", 1, "no CPU" },

@@ -29,7 +29,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_ENTRY, RSV1(ec_ioc_config_entry)),
 	CMD(CONFIG_SDO, RSV2(ec_ioc_config_sdo), DATA(ec_ioc_config_sdo),
 	    .flags = EC_SDO_FLAG_COMPLETE),
-	CMD(DOMAIN, RSV1(ec_ioc_domain)),
+	CMD(DOMAIN, RSV2(ec_ioc_domain)),
 	CMD(DOMAIN_FMMU, RSV1(ec_ioc_domain_fmmu)),
 	CMD(DOMAIN_DATA, RSV1(ec_ioc_domain_data), DATA(ec_ioc_domain_data)),
 	CMD(CONFIG_FLAG),
@@ -75,6 +75,8 @@ const struct cmd cmds[] = {
 	CMD(REF_CLOCK, APP),
 	CMD(SC_REQUEST, APP, RSV1(ec_ioc_sc_request)),
 	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
+	CMD(SC_OVERLAP, APP, RSV1(ec_ioc_sc_overlap)),
+	CMD(DOMAIN_OPTIONS, APP, RSV1(ec_ioc_domain_options)),
 };
 
 const unsigned int n_cmds = sizeof(cmds) / sizeof(cmds[0]);
