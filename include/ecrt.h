@@ -81,9 +81,21 @@
 
 /* extensions of this master ------------------------------------------------*/
 
-/* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
 #ifndef __KERNEL__
+/* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
 #define EC_HAVE_KERNEL_CYCLE
+/* ecrt_master_setup_domain_memory(); in userspace */
+#define EC_HAVE_DOMAIN_MEMORY
+/* ecrt_master_deactivate_slaves(); in userspace */
+#define EC_HAVE_DEACTIVATE_SLAVES
+/* ecrt_master_sdo_upload_complete(); in userspace */
+#define EC_HAVE_SDO_UPLOAD_COMPLETE
+/* ecrt_master_64bit_reference_clock_time(); in userspace */
+#define EC_HAVE_REF_CLOCK_TIME_64
+/* ecrt_master_reason(), ecrt_slave_config_reason(); in userspace */
+#define EC_HAVE_REASON
+/* ecrt_slave_config_dc_state(); in userspace */
+#define EC_HAVE_DC_STATE
 #endif
 /* ecrt_slave_config_overlapping_pdos(), of the field's community patches; in userspace */
 #ifndef __KERNEL__
@@ -761,6 +773,7 @@ typedef enum {
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
 #define EC_CYCLE_SYNC_SLAVES	4U	/* from there to all slaves */
 #define EC_CYCLE_SYNC_MONITOR	8U	/* read how far they are apart */
+#define EC_CYCLE_REFERENCE_TIME	32U	/* read the whole time of the reference */
 /*
  * The cycle follows the reference clock: period and phase of its timer are
  * controlled, by at most 1/100 of the period from one cycle to the next, so that
@@ -943,6 +956,171 @@ EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
  * Return: 0; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
+
+#ifdef EC_HAVE_DOMAIN_MEMORY
+/**
+ * ecrt_master_setup_domain_memory() - process data before activation
+ * @master: a reserved master, not active, all entries registered
+ *
+ * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. It
+ * stays the same until deactivation or release, or until an activation fails. What
+ * is written there before ecrt_master_activate() is what the first cycle sends; the
+ * rest is zeros. No further domains or entries are taken until deactivation.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EBUSY active, or called before; %-EINVAL there is no domain;
+ * %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
+#endif
+
+#ifdef EC_HAVE_DEACTIVATE_SLAVES
+/**
+ * ecrt_master_deactivate_slaves() - take the slaves to PREOP, cycle on
+ * @master: an active master
+ *
+ * Extension (%EC_HAVE_DEACTIVATE_SLAVES). For an end without faults: the configured
+ * slaves leave OP while process data and SYNC signals still run, so that no
+ * watchdog expires and no synchronisation is lost; in PREOP their SYNC signals are
+ * switched off (register 0x0980). Go on with the cycle until
+ * ecrt_slave_config_state() or ecrt_master_state() shows PREOP, then call
+ * ecrt_master_deactivate(). Nothing brings the slaves up again before that. Without
+ * effect on a master that is not active.
+ *
+ * One system call; it waits for nothing on the bus.
+ *
+ * Context: Process. May sleep.
+ */
+EC_PUBLIC_API void ecrt_master_deactivate_slaves(ec_master_t *master);
+#endif
+
+#ifdef EC_HAVE_SDO_UPLOAD_COMPLETE
+/**
+ * ecrt_master_sdo_upload_complete() - read a whole object (complete access)
+ * @master: a master opened for writing
+ * @slave_position: in the ring
+ * @index: of the object
+ * @target: out: subindex 0 as 16 bits, then the others, packed
+ * @target_size: bytes at @target
+ * @result_size: out: bytes read; unchanged on failure
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * Extension (%EC_HAVE_SDO_UPLOAD_COMPLETE).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ecrt_master_sdo_upload().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
+		uint16_t slave_position, uint16_t index, uint8_t *target,
+		size_t target_size, size_t *result_size, uint32_t *abort_code);
+#endif
+
+#ifdef EC_HAVE_REF_CLOCK_TIME_64
+/**
+ * ecrt_master_64bit_reference_clock_time_queue() - ask for the whole time
+ * @master: an active master
+ *
+ * Extension (%EC_HAVE_REF_CLOCK_TIME_64). The next send reads the system time of the
+ * reference clock (registers 0x0910 to 0x0917). No system call of its own. Nothing
+ * is sent without reference clock, or until the master has set the clocks after
+ * activation. When the kernel runs the cycle, %EC_CYCLE_REFERENCE_TIME does the same
+ * in every cycle.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+EC_PUBLIC_API void ecrt_master_64bit_reference_clock_time_queue(
+		ec_master_t *master);
+
+/**
+ * ecrt_master_64bit_reference_clock_time() - what the reference clock said
+ * @master: an active master
+ * @time: out: its system time, ns; of a clock of 32 bits the upper half is that
+ *        of the application time
+ *
+ * Extension (%EC_HAVE_REF_CLOCK_TIME_64). As of the last frame that
+ * ecrt_master_64bit_reference_clock_time_queue() has asked for, from the
+ * ecrt_master_receive() on that took it. Reads mapped memory, prints nothing.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
+ * or none was sent; %-EINVAL not active, or @time is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_64bit_reference_clock_time(ec_master_t *master,
+		uint64_t *time);
+#endif
+
+#ifdef EC_HAVE_REASON
+/**
+ * ecrt_master_reason() - why the last call failed
+ * @master: an opened master
+ * @buf: out: one line of text, with terminator
+ * @size: of @buf; 256 bytes are always enough
+ *
+ * Extension (%EC_HAVE_REASON). The text that the configuration calls print on
+ * stderr behind the error, of any call that failed in the kernel: what was wrong and
+ * what to do. Empty when the kernel knows none, and after a call that succeeded.
+ *
+ * Context: Process. May sleep.
+ * Return: length of the text, also when @buf is too small for it; %-EINVAL
+ * @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_reason(const ec_master_t *master, char *buf,
+		size_t size);
+
+/**
+ * ecrt_slave_config_reason() - why a slave is not in OP
+ * @sc: slave configuration
+ * @buf: out: one line of text, with terminator
+ * @size: of @buf; 256 bytes are always enough
+ *
+ * Extension (%EC_HAVE_REASON). What stands in the way: nobody at that place, another
+ * device, a refused SDO or state with the slave's code, or what is being waited
+ * for. Empty when the slave is in OP. No bus traffic.
+ *
+ * Context: Process. May sleep.
+ * Return: length of the text, also when @buf is too small for it; %-EINVAL @sc
+ * is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_reason(const ec_slave_config_t *sc,
+		char *buf, size_t size);
+#endif
+
+#ifdef EC_HAVE_DC_STATE
+/**
+ * struct ec_slave_config_dc_state_t - distributed clock of a slave
+ * @bits: of its clock: 64 or 32; 0: it has none, all else is 0
+ * @reference: it is the reference clock
+ * @set: it was set since activation
+ * @in_window: it was within 1 us of the reference when the master last looked
+ * @delay_ns: way of a frame from the reference clock (register 0x0928)
+ * @offset_ns: of its system time (register 0x0920)
+ * @difference_ns: to the reference then, positive: ahead (register 0x092C)
+ */
+typedef struct {
+	unsigned int bits;
+	unsigned int reference : 1;
+	unsigned int set : 1;
+	unsigned int in_window : 1;
+	uint32_t delay_ns;
+	uint64_t offset_ns;
+	int32_t difference_ns;
+} ec_slave_config_dc_state_t;
+
+/**
+ * ecrt_slave_config_dc_state() - how the clock of a slave does
+ * @sc: slave configuration
+ * @state: out
+ *
+ * Extension (%EC_HAVE_DC_STATE). What the master knows; no bus traffic. Some system
+ * calls: for outside of the cycle. ecrt_master_sync_monitor_process() tells in each
+ * cycle how far all slaves together are apart.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENODEV no slave is attached; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_slave_config_dc_state(const ec_slave_config_t *sc,
+		ec_slave_config_dc_state_t *state);
+#endif
 
 /*
  * Slave configuration: applied whenever the slave is configured, which is

@@ -17,6 +17,7 @@ _Static_assert((int)EC_CYCLE_STOPPED == EC_CYCLE_STATE_STOPPED, "state");
 _Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
 _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_SLAVES == EC_SEND_FLAG_SYNC_SLAVES, "clock flags");
+_Static_assert(EC_CYCLE_REFERENCE_TIME == EC_SEND_FLAG_REF_TIME, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_MONITOR == EC_SEND_FLAG_MONITOR, "clock flags");
 
 _Static_assert(EC_CYCLE_FOLLOW_REFERENCE == EC_CYCLE_DC_FOLLOW, "clock flags");
@@ -75,6 +76,9 @@ int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
 	m->out_last = 0;
 	m->in_front = 1;
 	m->cycle = 0;
+	if (m->image)	/* the application has it already */
+		return arg->image_size == m->image_size ? 0 : -EPROTO;
+	m->image_size = arg->image_size;
 	if (!m->image_size)
 		return 0;
 	m->image = mmap(NULL, m->image_size, PROT_READ | PROT_WRITE,

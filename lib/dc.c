@@ -3,6 +3,8 @@
  * Distributed clocks. The cyclic calls only note what the next send shall do
  * and read what the last receive has left in the mapped status.
  */
+#include <string.h>
+
 #include "internal.h"
 
 #define NO_DIFFERENCE	0xffffffffu
@@ -100,4 +102,68 @@ uint32_t ecrt_master_sync_monitor_process(const ec_master_t *master)
 	if (!master || !master->active)
 		return NO_DIFFERENCE;
 	return ec_status_read(master->status->dc_monitor);
+}
+
+void ecrt_master_64bit_reference_clock_time_queue(ec_master_t *master)
+{
+	if (!check(master))
+		master->send_flags |= EC_SEND_FLAG_REF_TIME;
+}
+
+int ecrt_master_64bit_reference_clock_time(ec_master_t *master, uint64_t *time)
+{
+	int ret = check(master);
+
+	if (ret)
+		return ret;
+	if (!time)
+		return -EINVAL;
+	if (!ec_status_read(master->status->dc_time64_valid))
+		return -EIO;
+	*time = ec_status_read(master->status->dc_time64);
+	return 0;
+}
+
+static void fill_dc_state(ec_slave_config_dc_state_t *state,
+			  const struct ec_ioc_slave *s, int reference)
+{
+	static const unsigned int bits[] = { 0, 32, 64 };
+	__s64 diff = s->dc_diff;
+
+	memset(state, 0, sizeof(*state));
+	if (!s->dc_supported || s->dc_supported > 2)
+		return;
+	state->bits = bits[s->dc_supported];
+	state->reference = s->position == reference;
+	state->set = !!s->dc_set;
+	state->in_window = s->dc_set && diff <= EC_UAPI_DC_WINDOW_NS &&
+			   diff >= -EC_UAPI_DC_WINDOW_NS;
+	state->delay_ns = s->transmission_delay;
+	state->offset_ns = s->dc_offset;
+	state->difference_ns = s->dc_diff;
+}
+
+int ecrt_slave_config_dc_state(const ec_slave_config_t *sc,
+			       ec_slave_config_dc_state_t *state)
+{
+	struct ec_ioc_config config = { 0 };
+	struct ec_ioc_master info = { 0 };
+	struct ec_ioc_slave slave = { 0 };
+	int ret;
+
+	if (!sc || !state)
+		return -EINVAL;
+	config.index = sc->index;
+	ret = ec_ioctl(sc->master, EC_IOC_CONFIG, &config);
+	if (ret)
+		return ret;
+	if (config.slave_position < 0)
+		return -ENODEV;
+	slave.position = (__u16)config.slave_position;
+	ret = ec_ioctl(sc->master, EC_IOC_SLAVE, &slave);
+	if (!ret)
+		ret = ec_ioctl(sc->master, EC_IOC_MASTER, &info);
+	if (!ret)
+		fill_dc_state(state, &slave, info.ref_clock);
+	return ret;
 }

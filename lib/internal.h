@@ -16,6 +16,9 @@
  * @app_time_new; @send_flags: EC_SEND_FLAG_* of the next send.
  * Only the cyclic caller touches them.
  *
+ * @frozen: ecrt_master_setup_domain_memory() was called; @preset_size: bytes of
+ * all domains then.
+ *
  * @exchange: with a cycle the kernel runs, else NULL; then @image is memory of
  * our own. @out_back, @in_front: buffers we hold; @out_last: the one we gave last;
  * @stride: distance of two; @cycle: last one waited for.
@@ -37,6 +40,8 @@ struct ec_master {
 	size_t status_size;
 	__u8 *image;
 	size_t image_size;
+	bool frozen;
+	size_t preset_size;
 	struct ec_request_area *area;
 	__u8 *area_base;	/* the same as bytes */
 	size_t area_size;
@@ -122,6 +127,12 @@ void ec_master_unmap(struct ec_master *m);
 int ec_requests_place(struct ec_master *m);
 void ec_requests_free(struct ec_master *m);
 void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset);
+
+void ec_touch_pages(volatile __u8 *p, size_t size);
+
+/* memory.c: process data before activation */
+int ec_memory_frozen(const struct ec_master *m, const char *what);
+int ec_memory_map_image(struct ec_master *m, size_t size);
 
 /* cycle.c: the kernel runs the cycle */
 int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg);

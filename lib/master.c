@@ -35,6 +35,8 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 		errno = EINVAL;
 		return NULL;
 	}
+	if (ec_memory_frozen(master, "create a domain"))
+		return NULL;
 	d = calloc(1, sizeof(*d));
 	if (!d) {
 		ec_fail(-ENOMEM, "create a domain");
@@ -126,6 +128,14 @@ int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
 
 /* activation ---------------------------------------------------------------*/
 
+void ec_touch_pages(volatile __u8 *p, size_t size)
+{
+	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
+
+	for (i = 0; i < size; i += page)
+		p[i] = p[i];
+}
+
 /* Maps @size bytes and touches each page, so that the cycle need not. */
 void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset)
 {
@@ -160,6 +170,7 @@ void ec_master_unmap(struct ec_master *m)
 	m->area = NULL;
 	m->area_base = NULL;
 	m->active = false;
+	m->frozen = false;
 	ec_requests_place(m);
 }
 
@@ -192,14 +203,9 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 	ret = map_requests(m, arg->request_size);
 	if (ret)
 		return ret;
-	m->image_size = arg->image_size;
 	if (arg->exchange_size)
 		return ec_cycle_map(m, arg);
-	if (!arg->image_size)
-		return 0;
-	m->image = ec_master_map(m, arg->image_size, PROT_READ | PROT_WRITE,
-				 EC_MMAP_IMAGE);
-	return m->image ? 0 : -errno;
+	return arg->image_size ? ec_memory_map_image(m, arg->image_size) : 0;
 }
 
 static int place_domain(struct ec_master *m, struct ec_domain *d)
@@ -210,6 +216,9 @@ static int place_domain(struct ec_master *m, struct ec_domain *d)
 	if (ret)
 		return ret;
 	if (arg.offset > m->image_size || arg.size > m->image_size - arg.offset)
+		return -EPROTO;
+	/* the application has the pointer already */
+	if (d->data && (arg.offset != d->offset || arg.size != d->size))
 		return -EPROTO;
 	d->offset = arg.offset;
 	d->size = arg.size;
@@ -228,6 +237,10 @@ int ecrt_master_activate(ec_master_t *master)
 	if (master->active)
 		return ec_fail(-EBUSY, "activate master %u again",
 			       master->index);
+	if (master->frozen && master->preset_size) {
+		arg.preset = (uintptr_t)master->image;
+		arg.preset_size = (__u32)master->preset_size;
+	}
 	ret = ec_ioctl(master, EC_IOC_ACTIVATE, &arg);
 	if (ret)
 		return ec_fail_ioctl(master, ret, "activate master %u",
@@ -274,6 +287,12 @@ int ecrt_master_deactivate(ec_master_t *master)
 	ec_master_unmap(master);
 	ec_master_free_session(master);
 	return 0;
+}
+
+void ecrt_master_deactivate_slaves(ec_master_t *master)
+{
+	if (master && master->active)
+		ec_ioctl(master, EC_IOC_SLAVES_DOWN, NULL);
 }
 
 /* cycle --------------------------------------------------------------------*/

@@ -185,12 +185,13 @@ int ecrt_master_sdo_download_complete(ec_master_t *master,
 			data, data_size, abort_code);
 }
 
-int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position,
-			   uint16_t index, uint8_t subindex, uint8_t *target,
-			   size_t target_size, size_t *result_size,
-			   uint32_t *abort_code)
+static int upload(ec_master_t *master, uint16_t slave_position,
+		  uint16_t index, uint8_t subindex, uint32_t flags,
+		  uint8_t *target, size_t target_size, size_t *result_size,
+		  uint32_t *abort_code)
 {
 	struct ec_ioc_sdo sdo = {
+		.flags = flags,
 		.position = slave_position,
 		.index = index,
 		.subindex = subindex,
@@ -214,4 +215,22 @@ int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position,
 	return ec_fail_ioctl(master, not_there(ret),
 			     "upload SDO 0x%04x:%02x from slave %u", index,
 			     subindex, slave_position);
+}
+
+int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position,
+			   uint16_t index, uint8_t subindex, uint8_t *target,
+			   size_t target_size, size_t *result_size,
+			   uint32_t *abort_code)
+{
+	return upload(master, slave_position, index, subindex, 0, target,
+		      target_size, result_size, abort_code);
+}
+
+int ecrt_master_sdo_upload_complete(ec_master_t *master,
+				    uint16_t slave_position, uint16_t index,
+				    uint8_t *target, size_t target_size,
+				    size_t *result_size, uint32_t *abort_code)
+{
+	return upload(master, slave_position, index, 0, EC_SDO_FLAG_COMPLETE,
+		      target, target_size, result_size, abort_code);
 }

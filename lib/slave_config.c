@@ -196,6 +196,8 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *arg,
 {
 	int ret;
 
+	if (ec_memory_frozen(sc->master, "register an entry"))
+		return -EBUSY;
 	if (domain->master != sc->master)
 		return fail_sc(sc, -EINVAL,
 			       "register %s in another master's domain", name);

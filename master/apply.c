@@ -444,6 +444,16 @@ static int wait_outputs(struct ec_slave *s)
 	return -EAGAIN;
 }
 
+/* In PREOP nobody needs the SYNC signals of a slave any more. */
+static int step_down(struct ec_slave *s, u8 want)
+{
+	int ret = ec_al_set(s, want, 0);
+
+	if (!ret && want == EC_AL_PREOP && ec_slave_features(s) & EC_FEAT_DC)
+		ec_dc_sync_stop(s);
+	return ret ? failed(s, want, ret) : 0;
+}
+
 /* One step towards the requested state; 1: there, 0: again, -errno. */
 static int step(struct ec_slave *s)
 {
@@ -469,8 +479,7 @@ static int step(struct ec_slave *s)
 	if (cur > want || cur == EC_AL_BOOT) {
 		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
 			return to_init(s);
-		ret = ec_al_set(s, want, 0);
-		return ret ? failed(s, want, ret) : 0;
+		return step_down(s, want);
 	}
 	switch (cur) {
 	case EC_AL_INIT:

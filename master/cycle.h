@@ -143,6 +143,7 @@ struct ec_cyc_domain {
  * @dc_back: which of them are back
  * @dc_time: last time of the reference clock, ns
  * @dc_time_ns: when the frame that brought it was sent (ktime)
+ * @dc_time64: whole time of the reference clock when it was last asked for, ns
  * @dc_diff: last value of register 0x092C, of all slaves
  */
 struct ec_cycle {
@@ -169,6 +170,7 @@ struct ec_cycle {
 	u32 dc_back;
 	u64 dc_time;
 	u64 dc_time_ns;
+	u64 dc_time64;
 	u32 dc_diff;
 };
 

@@ -23,7 +23,7 @@ enum ec_dc_state {
 };
 
 /* a larger difference to the reference clock is reported */
-#define EC_DC_LIMIT_NS	1000
+#define EC_DC_LIMIT_NS	EC_UAPI_DC_WINDOW_NS
 
 /**
  * struct ec_dc - distributed clocks of a master

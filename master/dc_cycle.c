@@ -13,6 +13,7 @@
 #define SYNC_REF	EC_SEND_FLAG_SYNC_REF
 #define SYNC_SLAVES	EC_SEND_FLAG_SYNC_SLAVES
 #define MONITOR		EC_SEND_FLAG_MONITOR
+#define REF_TIME	EC_SEND_FLAG_REF_TIME
 #define SHIFT		16	/* above it: how many more SYNC_SLAVES */
 #define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
 
@@ -47,7 +48,7 @@ static u32 boost(struct ec_master *m)
  */
 u32 ec_dc_wanted(struct ec_master *m, u32 flags)
 {
-	flags &= SYNC_REF | SYNC_SLAVES | MONITOR;
+	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
 	if (!flags)
 		return 0;
 	if (!READ_ONCE(m->dc.wanted))
@@ -98,6 +99,10 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_FRMW, index, ref, EC_REG_DC_SYSTIME, time_bytes(m));
 		memcpy(p, t, time_bytes(m));
 	}
+	if (dc & REF_TIME) {
+		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(m));
+		memset(p, 0, time_bytes(m));
+	}
 	if (dc & MONITOR) {
 		p = ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4);
 		put_unaligned_le32(0, p);
@@ -108,6 +113,17 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 static const u8 *skip(const u8 *data, u16 len)
 {
 	return data + len + EC_DGRAM_OVERHEAD;
+}
+
+/* The upper half of a 32-bit clock is the one of the application's time. */
+static u64 whole_time(struct ec_master *m, const u8 *data, u16 len)
+{
+	u64 app;
+
+	if (len == 8)
+		return get_unaligned_le64(data);
+	app = ec_dc_now(m);
+	return app + (s32)(get_unaligned_le32(data) - (u32)app);
 }
 
 /**
@@ -138,6 +154,13 @@ const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns)
 		for (i = 0; i < syncs(dc); i++)
 			data = skip(data, len);
 	}
+	if (dc & REF_TIME) {
+		if (get_unaligned_le16(data + len)) {
+			c->dc_time64 = whole_time(s->master, data, len);
+			c->dc_back |= REF_TIME;
+		}
+		data = skip(data, len);
+	}
 	if (dc & MONITOR) {
 		if (get_unaligned_le16(data + 4)) {
 			c->dc_diff = get_unaligned_le32(data);
@@ -163,6 +186,10 @@ void ec_dc_judge(struct ec_session *s)
 	if (c->dc_sent & SYNC_SLAVES) {
 		WRITE_ONCE(st->dc_time, c->dc_time);
 		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));
+	}
+	if (c->dc_sent & REF_TIME) {
+		WRITE_ONCE(st->dc_time64, c->dc_time64);
+		WRITE_ONCE(st->dc_time64_valid, !!(c->dc_back & REF_TIME));
 	}
 	if (c->dc_sent & MONITOR)
 		WRITE_ONCE(st->dc_monitor, c->dc_back & MONITOR ?

@@ -90,6 +90,8 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, RSV(ec_ioc_sc_request, reserved)),
 	IOC(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, RSV(ec_ioc_sc_emerg, reserved)),
 	IOC(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, RSV(ec_ioc_sc_ip, params.reserved)),
+	IOC(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, RSV(ec_ioc_config_why, reserved)),
+	IOC(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE),
 	IOC(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
 	IOC(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
 	IOC(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, RSV(ec_ioc_sc_ip, params.reserved)),

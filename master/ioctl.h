@@ -85,4 +85,8 @@ int ec_ioc_ip_get(struct ec_file *f, void *arg);
 int ec_ioc_sc_ip(struct ec_file *f, void *arg);
 int ec_ioc_config_ip(struct ec_file *f, void *arg);
 
+/* ioctl_state.c: states of an application's slaves */
+int ec_ioc_config_why(struct ec_file *f, void *arg);
+int ec_ioc_slaves_down(struct ec_file *f, void *arg);
+
 #endif

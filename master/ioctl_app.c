@@ -322,22 +322,48 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 	}
 }
 
-int ec_ioc_activate(struct ec_file *f, void *arg)
+static int activate(struct ec_file *f, struct ec_session *s, const void *preset, u32 size)
 {
-	struct ec_ioc_activate *i = arg;
-	int ret = 0;
-	struct ec_session *s = lock(f, &ret);
+	int ret;
 
-	if (!s)
-		return ret;
+	if (size && !s->active && size != ec_session_place(s))
+		return ec_refuse(f, -EINVAL, "%u bytes to begin with, the domains have %u; register all entries first",
+				 size, ec_session_place(s));
+	s->preset = preset;
 	ret = ec_session_activate(s);
-	if (ret)
-		return done(f, activate_failed(f, s, ret));
+	s->preset = NULL;
+	return ret ? activate_failed(f, s, ret) : 0;
+}
+
+static void tell_sizes(const struct ec_session *s, struct ec_ioc_activate *i)
+{
 	i->image_size = s->shared->image_size;
 	i->status_size = EC_STATUS_BYTES;
 	i->request_size = s->shared->request_size;
 	i->exchange_size = s->shared->exchange_size;
-	return done(f, 0);
+}
+
+int ec_ioc_activate(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_activate *i = arg;
+	void *preset = NULL;
+	struct ec_session *s;
+	int ret = 0;
+
+	if (i->preset_size && i->preset_size <= EC_MAX_IMAGE) {
+		preset = vmemdup_user(u64_to_user_ptr(i->preset), i->preset_size);
+		if (IS_ERR(preset))
+			return PTR_ERR(preset);
+	}
+	s = lock(f, &ret);
+	if (s) {
+		ret = activate(f, s, preset, i->preset_size);
+		if (!ret)
+			tell_sizes(s, i);
+		done(f, ret);
+	}
+	kvfree(preset);
+	return ret;
 }
 
 int ec_ioc_deactivate(struct ec_file *f, void *arg)
@@ -358,6 +384,8 @@ int ec_ioc_domain_offset(struct ec_file *f, void *arg)
 		return ret;
 	if (i->domain >= s->n_domains)
 		return done(f, ec_refuse(f, -ENOENT, "there is no domain %u", i->domain));
+	if (!s->active)
+		ec_session_place(s);
 	i->offset = s->domains[i->domain]->offset;
 	i->size = s->domains[i->domain]->size;
 	return done(f, 0);

@@ -10,7 +10,7 @@
 #define PERIOD_MAX_NS	((u32)NSEC_PER_SEC)
 #define PRIORITY_MAX	98	/* above are the kernel's own */
 #define DC_FLAGS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
-			 EC_SEND_FLAG_MONITOR | EC_CYCLE_DC_FOLLOW)
+			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME | EC_CYCLE_DC_FOLLOW)
 
 static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 {

@@ -101,18 +101,17 @@ int ec_ioc_sc_ip(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_ip *i = arg;
 	struct ec_eoe_ip p;
-	int ret = check_params(f, &i->params);
-	struct ec_config *c;
+	int ret = 0;
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
 
-	if (ret)
-		return ret;
-	c = ec_ioc_lock_config(f, i->config, &ret);
 	if (!c)
 		return ret;
+	ret = check_params(f, &i->params);
 	from_user(&p, &i->params);
-	ec_config_ip(c, &p);
+	if (!ret)
+		ec_config_ip(c, &p);
 	mutex_unlock(&f->master->session_lock);
-	return 0;
+	return ret;
 }
 
 int ec_ioc_config_ip(struct ec_file *f, void *arg)

@@ -164,6 +164,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_cycle_own(m, EC_OWNER_IDLE);
 	ec_late_end(s);
 	s->active = false;
+	s->ending = false;
 	s->stall_log.open = false;
 	ec_requests_end(s);
 	clear(s);
@@ -260,7 +261,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
 	ec_requests_attach(s, c->index);
-	ec_slave_request(slave, s->active ? EC_AL_OP : slave->requested);
+	ec_slave_request(slave, s->active && !s->ending ? EC_AL_OP : slave->requested);
 }
 
 /**
@@ -331,6 +332,26 @@ void ec_session_clocks(struct ec_master *m, bool changed)
 }
 
 /**
+ * ec_session_place() - give the domains their places in the image
+ * @s: session, not active
+ *
+ * Context: Process, session_lock held.
+ * Return: bytes of all domains.
+ */
+u32 ec_session_place(struct ec_session *s)
+{
+	u32 offset = 0;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++) {
+		s->domains[i]->offset = offset;
+		s->domains[i]->logical = offset;
+		offset += ALIGN(s->domains[i]->size, 8);
+	}
+	return offset;
+}
+
+/**
  * ec_session_activate() - lay out process data, hand the links to the cycle
  * @s: session
  *
@@ -341,22 +362,20 @@ void ec_session_clocks(struct ec_master *m, bool changed)
 int ec_session_activate(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
-	u32 offset = 0;
 	unsigned int i;
+	u32 offset;
 	int ret;
 
 	if (s->active)
 		return -EBUSY;
-	for (i = 0; i < s->n_domains; i++) {
-		s->domains[i]->offset = offset;
-		s->domains[i]->logical = offset;
-		offset += ALIGN(s->domains[i]->size, 8);
-	}
+	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
 	s->shared = shared_alloc(offset, ec_requests_bytes(s));
 	if (!s->shared)
 		return -ENOMEM;
+	if (s->preset)
+		memcpy(s->shared->image, s->preset, offset);
 	ret = ec_requests_begin(s);
 	if (!ret)
 		ret = ec_cycle_layout(s);
@@ -394,6 +413,29 @@ int ec_session_activate(struct ec_session *s)
 		ec_requests_kick(s->requests);
 	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
 		s->n_domains, offset, s->cycle.n_dgrams);
+	return 0;
+}
+
+/**
+ * ec_session_slaves_down() - take the slaves to PREOP, the cycle goes on
+ * @s: session
+ *
+ * The state changes while process data and SYNC signals still run, so that no
+ * slave sees a fault; the SYNC signals are switched off in PREOP.
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0, or -EINVAL when it is not active.
+ */
+int ec_session_slaves_down(struct ec_session *s)
+{
+	unsigned int i;
+
+	if (!s->active)
+		return -EINVAL;
+	s->ending = true;
+	for (i = 0; i < s->n_configs; i++)
+		if (s->configs[i]->slave)
+			ec_slave_request(s->configs[i]->slave, EC_AL_PREOP);
 	return 0;
 }
 

@@ -75,6 +75,8 @@ struct ec_stall_log {
  * @request_bytes: room for their data and for emergencies
  * @requests: what works on them while @active, or NULL
  * @active: activated
+ * @ending: slaves shall go to PREOP while the application still cycles
+ * @preset: what the image begins with, for the time of an activation; NULL: zeros
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
  * @lock_told: EC_CYCLE_LOCK_* as the log knows it
@@ -95,6 +97,8 @@ struct ec_session {
 	size_t request_bytes;
 	struct ec_requests *requests;
 	bool active;
+	bool ending;
+	const void *preset;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;
 	u32 lock_told;
@@ -105,7 +109,9 @@ struct ec_session {
 
 int ec_session_begin(struct ec_master *m, const void *owner);
 void ec_session_end(struct ec_master *m, const void *owner);
+u32 ec_session_place(struct ec_session *s);
 int ec_session_activate(struct ec_session *s);
+int ec_session_slaves_down(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
 void ec_session_attach(struct ec_master *m);

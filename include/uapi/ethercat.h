@@ -26,6 +26,7 @@
 #define EC_UAPI_DEVICES		2
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
 #define EC_IP_NAME		32
+#define EC_UAPI_DC_WINDOW_NS	1000	/* a clock within it keeps the time */
 #define EC_UAPI_NONE16		0xffff
 #define EC_UAPI_NONE32		0xffffffff
 
@@ -391,6 +392,15 @@ struct ec_ioc_config_flag {
 #define EC_DOMAIN_OPT_OWN_FRAME	4	/* no frame together with another domain */
 #define EC_DOMAIN_OPT_ALL	7
 
+/* why a configured slave is not in OP; empty: it is */
+struct ec_ioc_config_why {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u32 len;
+	__u32 reserved;
+	char text[EC_UAPI_REASON];
+};
+
 struct ec_ioc_domain {
 	__u32 flags;
 	__u32 index;		/* in */
@@ -619,8 +629,11 @@ struct ec_ioc_activate {
 	__u32 status_size;	/* out, same */
 	__u32 request_size;	/* out, same; 0: neither requests nor emergencies */
 	__u32 exchange_size;	/* out, same; 0: the application runs the cycle */
+	__u32 preset_size;	/* in, bytes at @preset: all domains', or 0 */
+	__u64 preset;		/* in: what the image begins with; else zeros */
 };
 
+/* before activation: where it would be, with what is registered by then */
 struct ec_ioc_domain_offset {
 	__u32 flags;
 	__u32 domain;		/* in */
@@ -633,7 +646,8 @@ struct ec_ioc_domain_offset {
 #define EC_SEND_FLAG_SYNC_SLAVES 4	/* reference clock's time to the slaves */
 #define EC_SEND_FLAG_MONITOR	8	/* read the differences of all slaves */
 #define EC_SEND_FLAG_REQUESTS	16	/* a request was started */
-#define EC_SEND_FLAG_ALL	31
+#define EC_SEND_FLAG_REF_TIME	32	/* read the whole time of the reference clock */
+#define EC_SEND_FLAG_ALL	63
 
 /* argument of EC_IOC_SEND; @queued: bit n queues domain n */
 struct ec_ioc_send {
@@ -731,7 +745,8 @@ struct ec_ioc_cycle {
 	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50 */
 	__u32 stall;		/* EC_STALL_* */
 	__u32 stall_cycles;	/* 0: no stall */
-	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR, or below */
+	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR,
+				 * _REF_TIME, or below */
 };
 
 /* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */
@@ -829,6 +844,9 @@ struct ec_status {
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 	__u8 configs[EC_STATUS_CONFIGS];
 	struct ec_status_cycle kernel;
+	__u64 dc_time64;	/* reference clock's, of the last EC_SEND_FLAG_REF_TIME */
+	__u32 dc_time64_valid;	/* that datagram came back */
+	__u32 reserved2;
 };
 
 /*
@@ -891,6 +909,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
+#define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)
@@ -930,6 +949,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_REF_CLOCK	EC_IOC_W(0x53, struct ec_ioc_ref_clock)
 #define EC_IOC_SC_REQUEST	EC_IOC_RW(0x54, struct ec_ioc_sc_request)
 #define EC_IOC_SC_EMERG		EC_IOC_W(0x55, struct ec_ioc_sc_emerg)
+#define EC_IOC_SLAVES_DOWN	EC_IOC_N(0x71)
 #define EC_IOC_SC_IP		EC_IOC_W(0x70, struct ec_ioc_sc_ip)
 #define EC_IOC_SC_IDN		EC_IOC_W(0x56, struct ec_ioc_sc_idn)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)

@@ -17,6 +17,18 @@ struct fake fake;
 
 int __wrap_open(const char *path, int flags, ...);
 int __wrap_close(int fd);
+static void preset(const struct ec_ioc_activate *a)
+{
+	size_t n = a->preset_size;
+
+	fake.preset_size = a->preset_size;
+	memset(fake.preset, 0, sizeof(fake.preset));
+	if (n > sizeof(fake.preset))
+		n = sizeof(fake.preset);
+	if (n)
+		memcpy(fake.preset, (void *)(uintptr_t)a->preset, n);
+}
+
 int __wrap_ioctl(int fd, unsigned long cmd, ...);
 void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		  off_t offset);
@@ -73,8 +85,8 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 
 	if (fd != FAKE_FD)
 		return __real_mmap(at, size, prot, flags, fd, offset);
-	p = __real_mmap(NULL, size, PROT_READ | PROT_WRITE,
-			MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+	p = __real_mmap(at, size, PROT_READ | PROT_WRITE, MAP_SHARED |
+			MAP_ANONYMOUS | (flags & MAP_FIXED), -1, 0);
 	if ((unsigned long long)offset == EC_MMAP_STATUS) {
 		fake.status = p;
 		fake.status->magic = EC_STATUS_MAGIC;
@@ -87,6 +99,8 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		fake.exchange->stride = fake.stride;
 	} else {
 		fake.image = p;
+		if (size >= sizeof(fake.preset))	/* what activation gave */
+			memcpy(p, fake.preset, sizeof(fake.preset));
 	}
 	return p;
 }
@@ -114,6 +128,11 @@ static void slave(struct ec_ioc_slave *s)
 	s->error = EC_SLAVE_CONFIG_FAILED;
 	s->ports[1].type = 3;
 	s->ports[1].next_slave = 7;
+	s->dc_supported = (__u8)fake.dc_bits;
+	s->transmission_delay = 145;
+	s->dc_offset = 5;
+	s->dc_diff = fake.dc_diff;
+	s->dc_set = 1;
 	memset(s->name, 'n', sizeof(s->name));
 }
 
@@ -213,7 +232,12 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SDO_UPLOAD:
 		answer_sdo(arg);
 		break;
+	case EC_IOC_CONFIG_WHY:
+		strcpy(((struct ec_ioc_config_why *)arg)->text,
+		       "refused OP\nand more");
+		break;
 	case EC_IOC_ACTIVATE:
+		preset(arg);
 		((struct ec_ioc_activate *)arg)->image_size = fake.image_size;
 		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
 		((struct ec_ioc_activate *)arg)->request_size = PAGE;

@@ -37,6 +37,10 @@ struct fake {
 	unsigned int stride;
 	struct ec_exchange *exchange;
 	unsigned long long cycle;
+	unsigned char preset[64];
+	unsigned int preset_size;
+	unsigned int dc_bits;
+	int dc_diff;
 };
 
 extern struct fake fake;

@@ -414,6 +414,7 @@ int main(void)
 	objects();
 	configuration();
 	eoe();
+	extensions();
 	foreign_domain();
 	cycle();
 	layout();

@@ -20,5 +20,6 @@ extern int failures;
 ec_master_t *start(void);
 void requests(void);
 void eoe(void);
+void extensions(void);
 
 #endif

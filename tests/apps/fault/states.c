@@ -76,6 +76,7 @@ static void while_active(int fd)
 	expect_errno(call(fd, EC_IOC_SC_DC, zeroed()), EBUSY, "clock while active");
 	expect_errno(call(fd, EC_IOC_SC_FLAG, &flag), EBUSY, "flag while active");
 	expect_errno(call(fd, EC_IOC_SC_TIMEOUT, &timeout), EBUSY, "timeout while active");
+	expect_errno(call(fd, EC_IOC_SC_IP, zeroed()), EBUSY, "IP parameters while active");
 	expect_errno(call(fd, EC_IOC_SEND, &send), ENOENT, "domain 1 of 1");
 	send.queued = 1;
 	expect_errno(call(fd, EC_IOC_SEND, &send), 0, "send");

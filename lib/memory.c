@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * Process data before activation: memory of our own, at an address that stays.
+ * Activation gives its content to the kernel as what the image begins with;
+ * then the image itself takes its place, or, when the kernel runs the cycle,
+ * the memory is kept.
+ */
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "internal.h"
+
+static size_t to_pages(size_t size)
+{
+	size_t page = (size_t)sysconf(_SC_PAGESIZE);
+
+	return (size + page - 1) / page * page;
+}
+
+/* Where the kernel would put the domains; returns bytes of all, or -errno. */
+static int measure(struct ec_master *m, size_t *total)
+{
+	struct ec_domain *d;
+	int ret;
+
+	*total = 0;
+	for (d = m->domains; d; d = d->next) {
+		struct ec_ioc_domain_offset arg = { .domain = d->index };
+
+		ret = ec_ioctl(m, EC_IOC_DOMAIN_OFFSET, &arg);
+		if (ret)
+			return ret;
+		d->offset = arg.offset;
+		d->size = arg.size;
+		/* each begins at a multiple of 8 */
+		if (arg.offset + (size_t)arg.size > *total)
+			*total = (arg.offset + (size_t)arg.size + 7) & ~(size_t)7;
+	}
+	return 0;
+}
+
+int ecrt_master_setup_domain_memory(ec_master_t *master)
+{
+	struct ec_domain *d;
+	size_t total;
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (master->active || master->frozen)
+		return ec_fail(-EBUSY, "set up domain memory of master %u again",
+			       master->index);
+	if (!master->domains)
+		return ec_fail(-EINVAL, "set up domain memory of master %u: create domains first",
+			       master->index);
+	ret = measure(master, &total);
+	if (ret)
+		return ec_fail_ioctl(master, ret, "set up domain memory of master %u",
+				     master->index);
+	master->frozen = true;
+	master->preset_size = total;
+	if (!total)
+		return 0;
+	master->image_size = to_pages(total);
+	master->image = mmap(NULL, master->image_size, PROT_READ | PROT_WRITE,
+			     MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
+	if (master->image == MAP_FAILED) {
+		ret = -errno;
+		master->image = NULL;
+		master->frozen = false;
+		return ec_fail(ret, "set up %zu bytes of domain memory", total);
+	}
+	for (d = master->domains; d; d = d->next)
+		d->data = master->image + d->offset;
+	return 0;
+}
+
+/* 0, or says that nothing can be registered any more. */
+int ec_memory_frozen(const struct ec_master *m, const char *what)
+{
+	return m->frozen ? ec_fail(-EBUSY, "%s after ecrt_master_setup_domain_memory()",
+				   what) : 0;
+}
+
+/* Maps the image; where the application has it already, in the same place. */
+int ec_memory_map_image(struct ec_master *m, size_t size)
+{
+	void *at;
+
+	if (!m->image) {
+		m->image_size = size;
+		m->image = ec_master_map(m, size, PROT_READ | PROT_WRITE,
+					 EC_MMAP_IMAGE);
+		return m->image ? 0 : -errno;
+	}
+	if (size != m->image_size)
+		return -EPROTO;
+	at = mmap(m->image, size, PROT_READ | PROT_WRITE,
+		  MAP_SHARED | MAP_POPULATE | MAP_FIXED, m->fd,
+		  (off_t)EC_MMAP_IMAGE);
+	if (at == MAP_FAILED)
+		return -errno;
+	ec_touch_pages(m->image, size);
+	return 0;
+}
