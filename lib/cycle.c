@@ -211,7 +211,7 @@ int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
 	int ret;
 
 	if (!runs(master))
-		return -EINVAL;
+		return ec_inactive(master);
 	arg.cycle = master->cycle;
 	ret = ec_ioctl(master, EC_IOC_WAIT, &arg);
 	if (ret)
@@ -229,7 +229,7 @@ uint64_t ecrt_master_cycle_count(const ec_master_t *master)
 
 int ecrt_master_cycle_fd(const ec_master_t *master)
 {
-	return runs(master) ? master->fd : -EINVAL;
+	return runs(master) ? master->fd : ec_inactive(master);
 }
 
 /* Where a bucket begins, ns; as described at EC_CYCLE_BUCKETS. */
@@ -268,7 +268,9 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	const struct ec_status_cycle *st;
 	uint64_t count;
 
-	if (!master || !master->active || !state)
+	if (!master || !master->active)
+		return ec_inactive(master);
+	if (!state)
 		return -EINVAL;
 	memset(state, 0, sizeof(*state));
 	st = &master->status->kernel;

@@ -43,7 +43,7 @@ int ecrt_slave_config_dc(ec_slave_config_t *sc, uint16_t assign_activate,
 static int check(const ec_master_t *master)
 {
 	if (!master || !master->active)
-		return -EINVAL;
+		return ec_inactive(master);
 	return ec_status_read(master->status->dc_ref) ? 0 : -ENXIO;
 }
 
@@ -92,7 +92,7 @@ int ecrt_master_reference_clock_time(const ec_master_t *master,
 int ecrt_master_sync_monitor_queue(ec_master_t *master)
 {
 	if (!master || !master->active)
-		return -EINVAL;
+		return ec_inactive(master);
 	master->send_flags |= EC_SEND_FLAG_MONITOR;
 	return 0;
 }

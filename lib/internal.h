@@ -26,6 +26,7 @@
 struct ec_master {
 	int fd;
 	unsigned int index;
+	bool reserved;
 	bool active;
 	__u64 queued;
 	__u64 sent;
@@ -121,6 +122,12 @@ int ec_fail(int err, const char *fmt, ...)
 	__attribute__((format(printf, 2, 3)));
 int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
 	__attribute__((format(printf, 3, 4)));
+
+/* why a call that needs an active master fails */
+static inline int ec_inactive(const struct ec_master *m)
+{
+	return m && !m->reserved ? -EPERM : -EINVAL;
+}
 
 void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);

@@ -280,7 +280,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 	int ret;
 
 	if (!master || !master->active)
-		return -EINVAL;
+		return ec_inactive(master);
 	ret = ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
 	if (ret)
 		return ret;
@@ -302,7 +302,7 @@ int ecrt_master_send(ec_master_t *master)
 	struct ec_ioc_send arg = { 0 };
 
 	if (!master || !master->active)
-		return -EINVAL;
+		return ec_inactive(master);
 	if (master->exchange) {
 		ec_cycle_send(master);
 		return 0;
@@ -324,7 +324,7 @@ int ecrt_master_send(ec_master_t *master)
 int ecrt_master_receive(ec_master_t *master)
 {
 	if (!master || !master->active)
-		return -EINVAL;
+		return ec_inactive(master);
 	if (master->exchange) {
 		ec_cycle_receive(master);
 		return 0;

@@ -64,8 +64,9 @@ int ecrt_master_reserve(ec_master_t *master)
 		return -EINVAL;
 	ret = ec_ioctl(master, EC_IOC_RESERVE, NULL);
 	if (ret)
-		ec_fail_ioctl(master, ret, "reserve master %u", master->index);
-	return ret;
+		return ec_fail_ioctl(master, ret, "reserve master %u", master->index);
+	master->reserved = true;
+	return 0;
 }
 
 ec_master_t *ecrt_request_master(unsigned int master_index)
