@@ -414,7 +414,7 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	if (!i->interval_us || i->interval_us > USEC_PER_SEC)
 		return ec_refuse(f, -EINVAL, "send interval must be 1 to 1000000 us, not %u",
 				 i->interval_us);
-	if (!lock(f, &ret))
+	if (!ec_ioc_lock_idle(f, &ret))
 		return ret;
 	f->master->interval_us = i->interval_us;
 	f->master->interval_told = true;

@@ -62,11 +62,13 @@ static void while_active(int fd)
 	struct ec_ioc_sc_flag flag = { .key = "x" };
 	struct ec_ioc_sc_timeout timeout = { .from = 1, .to = 2 };
 	struct ec_ioc_sc_sdo sdo = { .size = 4, .data = (__u64)(unsigned long)arg };
+	struct ec_ioc_interval interval = { .interval_us = 1000 };
 	struct ec_ioc_send send = { .queued = 2 };
 
 	expect_errno(call(fd, EC_IOC_RESERVE, NULL), EBUSY, "second reservation");
 	expect_errno(call(fd, EC_IOC_ACTIVATE, zeroed()), EBUSY, "second activation");
 	expect_errno(call(fd, EC_IOC_CREATE_DOMAIN, zeroed()), EBUSY, "domain while active");
+	expect_errno(call(fd, EC_IOC_INTERVAL, &interval), EBUSY, "interval while active");
 	expect_errno(call(fd, EC_IOC_SLAVE_CONFIG, zeroed()), EBUSY, "configuration while active");
 	expect_errno(call(fd, EC_IOC_SC_SYNC, &sync), EBUSY, "SyncManager while active");
 	expect_errno(call(fd, EC_IOC_SC_WATCHDOG, zeroed()), EBUSY, "watchdog while active");
