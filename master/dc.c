@@ -360,6 +360,8 @@ static void work(struct work_struct *work)
 	ret = j.ref < j.n ? measure(&j) : -ENXIO;
 	if (!ret)
 		set_ref(&j);
+	else if (j.ref >= j.n)	/* until the session ends; the bus has not lost it */
+		WRITE_ONCE(dc->ref_station, 0);
 	ret = ret ?: write_clocks(&j);
 	WRITE_ONCE(dc->running, !ret);
 	ret = ret ?: compensate(&j, &near) ?: check(&j);
@@ -426,6 +428,9 @@ void ec_dc_end(struct ec_master *m)
 	m->dc.begun = false;
 	m->dc.wanted = false;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	down_read(&m->topo);
+	WRITE_ONCE(m->dc.ref_station, m->dc.ref ? m->dc.ref->station : 0);
+	up_read(&m->topo);
 	set_state(&m->dc, EC_DC_OFF);
 }
 
