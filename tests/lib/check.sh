@@ -71,6 +71,13 @@ exported() {
 			sub(/@@/, " ", $8); print $8 }' | sort
 }
 
+# tests/apps/api calls every function in the VM; a missing one shows here already
+api_calls() {
+	diff <(names prototypes.txt) \
+		<(grep -oh 'CALL(ecrt_[a-z0-9_]*)' ../apps/api/*.c | tr -d '()' | sed 's/CALL//' |
+		  sort -u) || { echo "add CALL(function)(...) to a case in tests/apps/api"; return 1; }
+}
+
 soname() {
 	readelf -d "$o/lib/libethercat.so.1.2.0" |
 		grep -q 'SONAME.*\[libethercat\.so\.1\]'
@@ -170,6 +177,7 @@ t "data access in C++" access_works $CXX c++
 t "library builds" build_lib
 t "map has the names of the list" \
 	diff <(names prototypes.txt) <(map_symbols | cut -d' ' -f1)
+t "each function has a case in tests/apps/api" api_calls
 t "library exports the map" diff <(map_symbols) <(exported)
 t "soname" soname
 t "library needs libc only" needs_libc_only

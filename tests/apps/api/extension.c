@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Beyond ecrt: memory before activation, an orderly end, reasons, clocks. */
+#include "api.h"
+
+static void preset(void)
+{
+	unsigned int bit;
+	struct bench b;
+	uint8_t *data;
+
+	NEED(bench_request(&b));
+	SAYS(CALL(ecrt_master_setup_domain_memory)(b.m), -EINVAL);
+	NEED(bench_configure(&b));
+	YES(!CALL(ecrt_domain_data)(b.d));
+	SILENT(CALL(ecrt_master_setup_domain_memory)(b.m), 0);
+	SAYS(CALL(ecrt_master_setup_domain_memory)(b.m), -EBUSY);
+	data = CALL(ecrt_domain_data)(b.d);
+	NEED(data);
+	IS(data[b.out_byte], 0);
+	EC_WRITE_BIT(data + b.out_byte, b.out_bit, 1);
+	SAYS(CALL(ecrt_slave_config_reg_pdo_entry)(b.out, 0x7010, 1, b.d, &bit), -EBUSY);
+	errno = 0;
+	YES(!CALL(ecrt_master_create_domain)(b.m));
+	IS(errno, EBUSY);
+	NEED(bench_activate(&b));
+	YES(b.data == data);
+	IS(EC_READ_BIT(data + b.out_byte, b.out_bit), 1);
+	NEED(bench_op(&b));
+	bench_cycle(&b, 5);
+	IS(EC_READ_BIT(data + b.in_byte, b.in_bit), 1);
+	SAYS(CALL(ecrt_master_setup_domain_memory)(b.m), -EBUSY);
+	bench_down(&b);
+}
+
+static void orderly(void)
+{
+	ec_slave_config_state_t s = { 0 };
+	struct bench b;
+	int i;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	CALL(ecrt_master_deactivate_slaves)(b.m);
+	NEED(bench_activate(&b) && bench_op(&b));
+	CALL(ecrt_master_deactivate_slaves)(b.m);
+	for (i = 0; i < 20000 && s.al_state != EC_AL_STATE_PREOP; i++) {
+		bench_cycle(&b, 1);
+		IS(CALL(ecrt_slave_config_state)(b.motor, &s), 0);
+	}
+	IS(s.al_state, EC_AL_STATE_PREOP);
+	bench_cycle(&b, 500);
+	IS(CALL(ecrt_slave_config_state)(b.motor, &s), 0);
+	IS(s.al_state, EC_AL_STATE_PREOP);
+	IS(s.operational, 0);
+	IS(CALL(ecrt_master_deactivate)(b.m), 0);
+	bench_down(&b);
+}
+
+static void complete(void)
+{
+	ec_master_t *m = CALL(ecrt_open_master)(0);
+	uint32_t abort = 99;
+	uint8_t data[64];
+	size_t size = 0;
+
+	NEED(m);
+	/* identity: 4 entries of 32 bit behind the number of entries in 16 */
+	IS(CALL(ecrt_master_sdo_upload_complete)(m, MOTOR, 0x1018, data, sizeof(data), &size, &abort),
+	   0);
+	IS(abort, 0);
+	IS(size, 18);
+	IS(data[0], 4);
+	IS(EC_READ_U32(data + 14), 77);
+	SAYS(CALL(ecrt_master_sdo_upload_complete)(m, MOTOR, 0x1018, data, 17, &size, &abort),
+	     -ENOBUFS);
+	SAYS(CALL(ecrt_master_sdo_upload_complete)(m, MOTOR, 0x3fff, data, 64, &size, &abort), -EIO);
+	IS(abort, 0x06020000);
+	SAYS(CALL(ecrt_master_sdo_upload_complete)(m, NOWHERE, 0x1018, data, 64, &size, &abort),
+	     -EINVAL);
+	IS(size, 18);
+	CALL(ecrt_release_master)(m);
+}
+
+static void reasons(void)
+{
+	ec_slave_config_t *nobody, *other;
+	char text[256], small[5];
+	struct bench b;
+	int len;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	nobody = CALL(ecrt_master_slave_config)(b.m, 0, NOWHERE, BECKHOFF, EL2008);
+	other = CALL(ecrt_master_slave_config)(b.m, 0, SERVO, BECKHOFF, EL2008);
+	NEED(nobody && other);
+	IS(CALL(ecrt_slave_config_watchdog)(b.motor, 0, 0), 0);
+	IS(CALL(ecrt_master_reason)(b.m, text, sizeof(text)), 0);
+	IS(text[0], 0);
+	YES(CALL(ecrt_slave_config_reg_pdo_entry)(b.motor, 0x5555, 0, b.d, NULL) < 0);
+	len = CALL(ecrt_master_reason)(b.m, text, sizeof(text));
+	YES(len > 0 && len == (int)strlen(text) && strstr(text, "0x5555"));
+	IS(CALL(ecrt_master_reason)(b.m, NULL, 1), -EINVAL);
+	NEED(bench_activate(&b) && bench_op(&b));
+	IS(CALL(ecrt_slave_config_reason)(b.motor, text, sizeof(text)), 0);
+	len = CALL(ecrt_slave_config_reason)(nobody, text, sizeof(text));
+	YES(len > 0 && len == (int)strlen(text));
+	/* too small: cut, and the whole length told */
+	IS(CALL(ecrt_slave_config_reason)(nobody, small, sizeof(small)), len);
+	IS(strlen(small), 4);
+	YES(CALL(ecrt_slave_config_reason)(other, text, sizeof(text)) > 0);
+	IS(CALL(ecrt_slave_config_reason)(other, NULL, 1), -EINVAL);
+	bench_down(&b);
+}
+
+static void ask_time(struct bench *b)
+{
+	CALL(ecrt_master_application_time)(b->m, 0x500000000ULL + b->cycles * 1000000);
+	CALL(ecrt_master_sync_slave_clocks)(b->m);
+	CALL(ecrt_master_64bit_reference_clock_time_queue)(b->m);
+}
+
+static void clocks(void)
+{
+	ec_slave_config_dc_state_t s;
+	ec_slave_config_t *nobody;
+	uint64_t time = 0, last;
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	nobody = CALL(ecrt_master_slave_config)(b.m, 0, NOWHERE, BECKHOFF, EL2008);
+	IS(CALL(ecrt_master_application_time)(b.m, 0x500000000ULL), 0);
+	IS(CALL(ecrt_slave_config_dc)(b.motor, 0x0300, 1000000, 0, 0, 0), 0);
+	SILENT(CALL(ecrt_master_64bit_reference_clock_time)(b.m, &time), -EINVAL);
+	NEED(bench_activate(&b));
+	SILENT(CALL(ecrt_master_64bit_reference_clock_time)(b.m, &time), -EIO);
+	b.each = ask_time;
+	NEED(bench_op(&b));
+	bench_cycle(&b, 2000);
+	SILENT(CALL(ecrt_master_64bit_reference_clock_time)(b.m, &time), 0);
+	IS(time >> 32, 5);
+	last = time;
+	bench_cycle(&b, 100);
+	SILENT(CALL(ecrt_master_64bit_reference_clock_time)(b.m, &time), 0);
+	YES(time - last > 90000000 && time - last < 110000000);
+	IS(CALL(ecrt_master_64bit_reference_clock_time)(b.m, NULL), -EINVAL);
+	IS(CALL(ecrt_slave_config_dc_state)(b.motor, &s), 0);
+	YES(s.bits == 64 && s.set && s.in_window && !s.reference);
+	YES(s.delay_ns > 0 && s.delay_ns < 100000);
+	IS(CALL(ecrt_slave_config_dc_state)(nobody, &s), -ENODEV);
+	IS(CALL(ecrt_slave_config_dc_state)(b.motor, NULL), -EINVAL);
+	bench_down(&b);
+}
+
+const struct api_case extension_cases[] = {
+	{ "memory before activation", preset },
+	{ "an orderly end", orderly },
+	{ "whole objects are read", complete },
+	{ "reasons", reasons },
+	{ "the whole time, the state of a clock", clocks },
+	{ NULL, NULL },
+};

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* How domains are sent: the same data each way. */
+#include "api.h"
+
+/* the bench in OP, its wire works, with these options */
+static void with(uint32_t options, uint8_t overlap, unsigned int working_counter)
+{
+	ec_domain_state_t ds;
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	SILENT(CALL(ecrt_domain_set_options)(b.d, options), 0);
+	SILENT(CALL(ecrt_slave_config_overlapping_pdos)(b.motor, overlap), 0);
+	IS(CALL(ecrt_domain_size)(b.d), 20);
+	NEED(bench_activate(&b) && bench_op(&b));
+	EC_WRITE_BIT(b.data + b.out_byte, b.out_bit, 1);
+	EC_WRITE_U16(b.data + b.control, 0x0006);
+	bench_cycle(&b, 20);
+	IS(EC_READ_BIT(b.data + b.in_byte, b.in_bit), 1);
+	IS(EC_READ_U16(b.data + b.status) & 0x6f, 0x21);
+	IS(EC_READ_U16(b.data + b.control), 0x0006);
+	IS(CALL(ecrt_domain_state)(b.d, &ds), 0);
+	IS(ds.wc_state, EC_WC_COMPLETE);
+	IS(ds.working_counter, working_counter);
+	SAYS(CALL(ecrt_domain_set_options)(b.d, 0), -EBUSY);
+	SAYS(CALL(ecrt_slave_config_overlapping_pdos)(b.motor, 0), -EBUSY);
+	bench_down(&b);
+}
+
+static void plain(void) { with(0, 0, 6); }
+static void overlapping(void) { with(0, 1, 6); }
+static void overlap(void) { with(EC_DOMAIN_OVERLAP, 0, 6); }
+static void own_frame(void) { with(EC_DOMAIN_OWN_FRAME, 0, 6); }
+/* LRD and LWR: one for each slave that is read, one for each that is written */
+static void separate(void) { with(EC_DOMAIN_SEPARATE, 0, 4); }
+
+static void refused(void)
+{
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	SAYS(CALL(ecrt_domain_set_options)(b.d, EC_DOMAIN_OVERLAP | EC_DOMAIN_SEPARATE), -EINVAL);
+	SAYS(CALL(ecrt_domain_set_options)(b.d, 0x8000), -EOPNOTSUPP);
+	bench_down(&b);
+}
+
+const struct api_case layout_cases[] = {
+	{ "as it is without options", plain },
+	{ "a slave whose process data overlap", overlapping },
+	{ "overlap", overlap },
+	{ "separate", separate },
+	{ "own frame", own_frame },
+	{ "what cannot be is refused", refused },
+	{ NULL, NULL },
+};

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# Every function of ecrt.h, through the device, against a simulated segment.
+
+load helpers
+
+setup_file() {
+	{
+		printf '%s\n' "segment seed=6" "slave coupler EK1100" "slave out EL2008 alias=1001" \
+			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm" \
+			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1"
+		# an emergency every 0.2 s for 100 s, whenever its application comes
+		for i in $(seq 500); do
+			printf 'fault at=%ums emergency motor code=0x8110 register=0x11\n' $((i * 200))
+		done
+	} >"$BATS_FILE_TMPDIR/segment"
+	start "$BATS_FILE_TMPDIR/segment" 6
+	export API_CALLED=$BATS_FILE_TMPDIR/called
+}
+teardown_file() { stop; }
+
+# group NAME: all cases of it pass
+group() {
+	run timeout 300 "$EC_BUILD/apps/api" "$1"
+	echo "$output"
+	[ "$status" = 0 ]
+	wait_for 60 all_slaves_are PREOP 6
+}
+
+@test "open, reserve, release" { group open; }
+@test "information and SDOs of an open master" { group info; }
+@test "slave configuration" {
+	group config
+	# what it was told last
+	ethercat ip -p5 | grep -q '^IP address: 192\.168\.0\.5$'
+	ethercat ip -p5 | grep -q '^Hostname: a-name-of-more-than-thirty-one-$'
+}
+@test "PDOs and registration" { group pdo; }
+@test "the cycle" { group cycle; }
+@test "options of domains" { group layout; }
+@test "extensions" { group extension; }
+@test "configuration after activation" { group after; }
+@test "distributed clocks" { group dc; }
+@test "requests and emergencies" { group request; }
+@test "the kernel's cycle" { group kcycle; }
+@test "NULL handles" { group null; }
+@test "floating point" { group access; }
+
+@test "that was every function of the library" {
+	diff <(sed -n 's/^\t\t\(ecrt_[a-z0-9_]*\);/\1/p' "$EC_BUILD/../../lib/libethercat.map" | sort) \
+		<(sort -u "$API_CALLED")
+}
