@@ -648,6 +648,8 @@ EC_PUBLIC_API int ecrt_master_state(const ec_master_t *master,
  * @dev_idx: 0 main, 1 backup
  * @state: out
  *
+ * As ecrt_master_state(); no system call while active.
+ *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-EINVAL no such link, or an argument is NULL.
  */

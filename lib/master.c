@@ -192,7 +192,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 {
 	int ret;
 
-	if (arg->status_size < offsetof(struct ec_status, configs))
+	if (arg->status_size < sizeof(struct ec_status))
 		return -EPROTO;
 	m->status_size = arg->status_size;
 	m->status = ec_master_map(m, arg->status_size, PROT_READ, EC_MMAP_STATUS);
@@ -440,6 +440,15 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 
 	if (!master || !state)
 		return -EINVAL;
+	/* until the kernel has filled it in, it has to be asked */
+	if (master->active && dev_idx < ec_status_read(master->status->link_count)) {
+		const struct ec_status_link *link = &master->status->links[dev_idx];
+
+		state->slaves_responding = ec_status_read(link->slaves_responding);
+		state->al_states = ec_status_read(link->al_states) & 0xf;
+		state->link_up = !!ec_status_read(link->link_up);
+		return 0;
+	}
 	ret = get_info(master, &info);
 	if (!ret && dev_idx >= info.device_count)
 		return ec_fail(-EINVAL, "get state of link %u of %u",

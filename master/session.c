@@ -489,6 +489,20 @@ static void log_stalls(struct ec_session *s, u64 now)
 	}
 }
 
+static void status_links(struct ec_master *m, struct ec_status *st)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->spec[i]); i++) {
+		u32 slaves = READ_ONCE(m->link[i].slaves);
+
+		WRITE_ONCE(st->links[i].slaves_responding, slaves);
+		WRITE_ONCE(st->links[i].al_states, slaves ? m->al_states : 0);
+		WRITE_ONCE(st->links[i].link_up, m->link[i].up);
+	}
+	WRITE_ONCE(st->link_count, i);
+}
+
 /**
  * ec_session_status() - bring the mapped status up to date; monitor
  * @m: master
@@ -513,6 +527,7 @@ void ec_session_status(struct ec_master *m)
 		WRITE_ONCE(st->al_states, m->al_states);
 		WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
 		WRITE_ONCE(st->frames_lost, (u64)atomic64_read(&m->link[0].stats.lost));
+		status_links(m, st);
 		for (i = 0; i < s->n_configs; i++)
 			WRITE_ONCE(st->configs[i],
 				   ec_session_config_status(s->configs[i]));

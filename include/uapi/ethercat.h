@@ -822,6 +822,14 @@ struct ec_status_cycle {
 	__u32 lock_losses;
 };
 
+/* what the main or the backup device reaches */
+struct ec_status_link {
+	__u32 slaves_responding;
+	__u32 al_states;
+	__u32 link_up;
+	__u32 reserved;
+};
+
 /*
  * Read-only page(s) of an activated master. Each field is written by one
  * aligned store and may be read at any time; @cycle counts receives.
@@ -846,7 +854,8 @@ struct ec_status {
 	struct ec_status_cycle kernel;
 	__u64 dc_time64;	/* reference clock's, of the last EC_SEND_FLAG_REF_TIME */
 	__u32 dc_time64_valid;	/* that datagram came back */
-	__u32 reserved2;
+	__u32 link_count;
+	struct ec_status_link links[EC_UAPI_DEVICES];
 };
 
 /*

@@ -296,6 +296,7 @@ static void cycle(void)
 	ec_slave_config_state_t sstate;
 	ec_domain_state_t state;
 	ec_master_state_t mstate;
+	ec_master_link_state_t link;
 	unsigned int calls;
 
 	CHECK(!ecrt_domain_data(d0) && ecrt_domain_size(d0) == 11);
@@ -337,6 +338,11 @@ static void cycle(void)
 	      mstate.al_states == 8 && mstate.link_up);
 	CHECK(!ecrt_slave_config_state(sc, &sstate) && sstate.online &&
 	      sstate.operational && sstate.al_state == 8);
+	fake.status->links[1].slaves_responding = 4;
+	fake.status->links[1].al_states = 2;
+	fake.status->link_count = 2;
+	CHECK(!ecrt_master_link_state(m, 1, &link) && link.slaves_responding == 4 &&
+	      link.al_states == 2 && !link.link_up);
 	CHECK(fake.calls == calls);
 	CHECK(!ecrt_master_application_time(m, ~0ULL));
 

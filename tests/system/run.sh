@@ -16,7 +16,8 @@ export EC_BUILD=$PWD/build/system-$kernel
 passed=0 failed=0
 # Time of an --icount guest leaps while it waits for a file of the host: what the
 # tests load and run is read once, before they begin. The guest caches it.
-preload='find "$EC_BUILD/modules" "$EC_BUILD/lib" "$EC_BUILD/tool" "$EC_BUILD/apps" "$EC_BUILD/examples" -type f \
+preload='find "$EC_BUILD/modules" "$EC_BUILD/lib" "$EC_BUILD/tool" "$EC_BUILD/apps" "$EC_BUILD/examples" \
+	"$EC_BUILD/bench" -type f \
 	\( -perm -100 -o -name "*.ko" -o -name "*.so*" \) -exec cat {} + >/dev/null
 exec bats --tap "$1"'
 
@@ -25,6 +26,7 @@ make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUI
 make -s -C lib O="$EC_BUILD/lib" all >&2 &&
 make -s -C tool O="$EC_BUILD/tool" >&2 &&
 make -s -C tool/sim O="$EC_BUILD/tool" >&2 &&
+make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" >&2 &&
 make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 &&
 make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all >&2 || exit 1
 

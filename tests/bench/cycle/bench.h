@@ -18,10 +18,21 @@ enum part {
 	PART_PROCESS,
 	PART_QUEUE,
 	PART_SEND,
+	PART_WORK,	/* of the kernel's thread, when it runs the cycle */
 	PART_TOTAL,
 	PART_LATE,	/* of the wake-up, ns */
 	PARTS,
 };
+
+/* who runs the cycle, and how its application waits */
+enum mode {
+	MODE_OWN,	/* the application */
+	MODE_WAIT,	/* the kernel; one system call to wait */
+	MODE_SPIN,	/* the kernel; a counter in memory */
+	MODE_TIMER,	/* the kernel; sleeps until the middle of the period */
+};
+
+#define REQUESTS_MAX	16	/* slaves that are asked by requests */
 
 /* options, what is used, and what came out */
 struct bench {
@@ -32,11 +43,19 @@ struct bench {
 	unsigned int n_domains;
 	bool extras;	/* call what a careful application calls, too */
 	bool syscalls;	/* count them instead of instructions */
+	bool trace;	/* switch ftrace on while measuring */
+	bool violate;	/* do what a cycle must not do, now and then */
+	enum mode mode;
 
 	ec_master_t *master;
 	ec_domain_t *domains[DOMAINS_MAX];
 	ec_slave_config_t *sc[SLAVES_MAX];
 	unsigned int slaves;
+	ec_sdo_request_t *sdo[REQUESTS_MAX];
+	ec_reg_request_t *reg[REQUESTS_MAX];
+	unsigned int n_requests;
+	bool measuring;
+	uint64_t seen;		/* last cycle of the kernel */
 
 	uint32_t *samples[PARTS];	/* of @cycles cycles each */
 	uint32_t entry;			/* of a refused system call */
@@ -45,6 +64,7 @@ struct bench {
 	unsigned long long late;	/* frames */
 	unsigned int wc_errors;
 	unsigned int call_errors;
+	unsigned int requests_done;
 	unsigned int overruns;
 	unsigned long long busy_ns;	/* all CPUs, while measured */
 	uint64_t image_bytes;
@@ -55,6 +75,16 @@ int setup(struct bench *b);
 void frame_counters(const struct bench *b, unsigned long long *lost,
 		    unsigned long long *late);
 uint32_t syscall_entry(const struct bench *b);
+
+/* extras.c */
+int extras_setup(struct bench *b);
+void extras_ask(struct bench *b, long long at);
+void extras_queue(struct bench *b, long long at);
+
+/* trace.c */
+int trace_open(void);
+void trace_switch(bool on);
+void trace_violate(struct bench *b, unsigned int cycle);
 
 /* syscalls.c */
 int syscalls_run(int (*child)(void *), void *arg);

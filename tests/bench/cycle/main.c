@@ -18,7 +18,7 @@
 #define SETTLE		50	/* cycles before the first one that counts */
 
 static const char * const part_names[PARTS] = {
-	"receive", "process", "queue", "send", "total", "late_ns",
+	"receive", "process", "queue", "send", "work", "total", "late_ns",
 };
 
 static long long now_ns(void)
@@ -65,29 +65,51 @@ static long long sleep_until(struct bench *b, long long *at)
 	return late > 0 ? late : 0;
 }
 
-/* What a careful application asks in each cycle as well. */
-static void ask(struct bench *b, long long at)
+/* Until the kernel has run a cycle. */
+static void wait_cycle(struct bench *b, long long *at)
 {
-	ec_slave_config_state_t sc;
-	ec_master_state_t ms;
-	ec_domain_state_t ds;
-	unsigned int i;
+	uint64_t now;
 
-	b->call_errors += !!ecrt_master_application_time(b->master, (uint64_t)at);
-	b->call_errors += !!ecrt_master_state(b->master, &ms);
-	for (i = 0; i < b->n_domains; i++)
-		b->call_errors += !!ecrt_domain_state(b->domains[i], &ds);
-	for (i = 0; i < b->slaves; i++)
-		b->call_errors += !!ecrt_slave_config_state(b->sc[i], &sc);
+	if (b->mode == MODE_WAIT || (b->mode == MODE_SPIN && !b->measuring)) {
+		b->call_errors += ecrt_master_wait_cycle(b->master, 0) < 0;
+	} else if (b->mode == MODE_TIMER) {
+		/* half a period behind the begin of the kernel's cycle */
+		if (!b->seen)
+			*at += 500LL * b->period_us - *at % (1000LL * b->period_us);
+		sleep_until(b, at);
+	} else {
+		while (ecrt_master_cycle_count(b->master) == b->seen)
+			;
+	}
+	now = ecrt_master_cycle_count(b->master);
+	if (b->seen && now > b->seen + 1)
+		b->overruns += (unsigned int)(now - b->seen - 1);
+	b->seen = now;
 }
 
-static void one_cycle(struct bench *b, long long at, uint32_t *cost)
+/* What the thread of the kernel did in the last cycle; ns are instructions. */
+static uint32_t kernel_work(struct bench *b)
 {
+	ec_cycle_state_t state;
+
+	b->call_errors += !!ecrt_master_cycle_state(b->master, &state);
+	return state.work_last;
+}
+
+/* Waits for its time; its lateness is what is returned. */
+static long long one_cycle(struct bench *b, long long *next, uint32_t *cost)
+{
+	long long at, late = 0;
 	uint64_t t[5];
 	unsigned int i;
 
+	if (b->mode == MODE_OWN)
+		late = sleep_until(b, next);
 	if (b->syscalls)
 		syscalls_mark(true);
+	if (b->mode != MODE_OWN)
+		wait_cycle(b, next);
+	at = *next;
 	t[0] = ticks();
 	b->call_errors += !!ecrt_master_receive(b->master);
 	t[1] = ticks();
@@ -95,7 +117,7 @@ static void one_cycle(struct bench *b, long long at, uint32_t *cost)
 		b->call_errors += !!ecrt_domain_process(b->domains[i]);
 	t[2] = ticks();
 	if (b->extras)
-		ask(b, at);
+		extras_ask(b, at);
 	for (i = 0; i < b->n_domains; i++) {
 		uint8_t *data = ecrt_domain_data(b->domains[i]);
 
@@ -106,15 +128,19 @@ static void one_cycle(struct bench *b, long long at, uint32_t *cost)
 	cost[PART_PROCESS] = (uint32_t)(t[2] - t[1]);
 	for (i = 0; i < b->n_domains; i++)
 		b->call_errors += !!ecrt_domain_queue(b->domains[i]);
+	if (b->extras)
+		extras_queue(b, at);
 	t[4] = ticks();
 	cost[PART_QUEUE] = (uint32_t)(t[4] - t[3]);
 	b->call_errors += !!ecrt_master_send(b->master);
 	cost[PART_SEND] = (uint32_t)(ticks() - t[4]);
 	cost[PART_RECEIVE] = (uint32_t)(t[1] - t[0]);
+	cost[PART_WORK] = b->mode == MODE_OWN ? 0 : kernel_work(b);
 	cost[PART_TOTAL] = cost[PART_RECEIVE] + cost[PART_PROCESS] +
-			   cost[PART_QUEUE] + cost[PART_SEND];
+			   cost[PART_QUEUE] + cost[PART_SEND] + cost[PART_WORK];
 	if (b->syscalls)
 		syscalls_mark(false);
+	return late;
 }
 
 static unsigned int count_operational(struct bench *b)
@@ -148,20 +174,27 @@ static void measure(struct bench *b, long long *at)
 	uint32_t cost[PARTS];
 	unsigned int i, p;
 
-	b->overruns = 0;
-	b->call_errors = 0;
 	frame_counters(b, &lost, &late);
 	busy = busy_ns();
 	*at = now_ns();
+	b->seen = 0;
+	b->measuring = true;
 	for (i = 0; i < SETTLE + b->cycles; i++) {
-		cost[PART_LATE] = (uint32_t)sleep_until(b, at);
-		one_cycle(b, *at, cost);
+		if (i == SETTLE) {
+			b->overruns = 0;
+			b->call_errors = 0;
+			trace_switch(true);
+		}
+		cost[PART_LATE] = (uint32_t)one_cycle(b, at, cost);
+		if (b->violate)
+			trace_violate(b, i);
 		/* the reply of the cycle before was judged */
 		if (i)
 			b->wc_errors += wc_errors(b);
 		for (p = 0; i >= SETTLE && p < PARTS; p++)
 			b->samples[p][i - SETTLE] = cost[p];
 	}
+	trace_switch(false);
 	b->busy_ns = busy_ns() - busy;
 	frame_counters(b, &b->lost, &b->late);
 	b->lost -= lost;
@@ -178,8 +211,7 @@ static int run(struct bench *b)
 
 	b->syscalls = false;	/* not while starting */
 	while (ready < SETTLE) {
-		sleep_until(b, &at);
-		one_cycle(b, at, cost);
+		one_cycle(b, &at, cost);
 		ready = count_operational(b) == b->slaves && !wc_errors(b) ?
 			ready + 1 : 0;
 		if (!ready && now_ns() - begin > b->wait_s * NS_PER_S) {
@@ -209,6 +241,8 @@ static void report(struct bench *b)
 	printf("slaves %u\noperational %u\nimage_bytes %llu\ncycles %u\n",
 	       b->slaves, b->operational, (unsigned long long)b->image_bytes,
 	       b->cycles);
+	if (b->extras)
+		printf("requests_done %u\n", b->requests_done);
 	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
 	       b->lost, b->late, b->wc_errors, b->call_errors, b->overruns);
 	if (b->syscalls)
@@ -267,8 +301,12 @@ static void usage(FILE *out)
 		"  --period-us N  time between cycles, default 1000\n"
 		"  --wait-s N     seconds to wait for OP, default 60\n"
 		"  --domains N    spread the slaves over N domains, default 1\n"
-		"  --extras       ask for states and set the application time, too\n"
+		"  --extras       clocks, states, emergencies and requests, too\n"
+		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
+		"                 wait (a system call), spin, timer (one of its own)\n"
 		"  --syscalls     count system calls instead of time\n"
+		"  --trace        switch ftrace on while measuring\n"
+		"  --violate      sleep, fault and print in the cycle, now and then\n"
 		"Exit code 0: no frame lost, no working-counter error; 1: not; 2: usage.\n");
 }
 
@@ -287,6 +325,12 @@ static unsigned int number(const char *name, const char *text, unsigned int max)
 	return (unsigned int)n;
 }
 
+static int kernel_mode(const char *how)
+{
+	return !strcmp(how, "wait") ? MODE_WAIT : !strcmp(how, "spin") ? MODE_SPIN :
+	       !strcmp(how, "timer") ? MODE_TIMER : -1;
+}
+
 static void parse(struct bench *b, int argc, char **argv)
 {
 	static const struct option options[] = {
@@ -297,6 +341,9 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "domains", required_argument, NULL, 'd' },
 		{ "extras", no_argument, NULL, 'e' },
 		{ "syscalls", no_argument, NULL, 's' },
+		{ "kernel", required_argument, NULL, 'k' },
+		{ "trace", no_argument, NULL, 't' },
+		{ "violate", no_argument, NULL, 'v' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -314,6 +361,12 @@ static void parse(struct bench *b, int argc, char **argv)
 			b->extras = true;
 		else if (c == 's')
 			b->syscalls = true;
+		else if (c == 't')
+			b->trace = true;
+		else if (c == 'v')
+			b->violate = true;
+		else if (c == 'k' && kernel_mode(optarg) > 0)
+			b->mode = (enum mode)kernel_mode(optarg);
 		else
 			usage(c == 'h' ? stdout : stderr), exit(c == 'h' ? 0 : 2);
 	}
@@ -330,6 +383,8 @@ int main(int argc, char **argv)
 	unsigned int p;
 
 	parse(&b, argc, argv);
+	if (b.trace && trace_open())
+		return 1;
 	for (p = 0; p < PARTS; p++) {
 		b.samples[p] = calloc(b.cycles, sizeof(*b.samples[p]));
 		if (!b.samples[p]) {

@@ -54,6 +54,17 @@ static int add_slave(struct bench *b, uint16_t position)
 	return 0;
 }
 
+static int kernel_cycle(struct bench *b)
+{
+	ec_cycle_config_t config = {
+		.period_ns = b->period_us * 1000, .cpu = -1, .priority = 90,
+		.dc = b->extras ? EC_CYCLE_SYNC_REFERENCE | EC_CYCLE_SYNC_SLAVES |
+				  EC_CYCLE_SYNC_MONITOR : 0,
+	};
+
+	return ecrt_master_set_cycle(b->master, &config);
+}
+
 int setup(struct bench *b)
 {
 	ec_master_info_t info;
@@ -76,7 +87,10 @@ int setup(struct bench *b)
 			return -1;
 	for (i = 0; i < b->n_domains; i++)
 		b->image_bytes += ecrt_domain_size(b->domains[i]);
-	if (ecrt_master_set_send_interval(b->master, b->period_us))
+	if (b->extras && extras_setup(b))
+		return -1;
+	if (b->mode == MODE_OWN ? ecrt_master_set_send_interval(b->master, b->period_us) :
+				  kernel_cycle(b))
 		return -1;
 	return ecrt_master_activate(b->master);
 }
