@@ -363,6 +363,7 @@ static void work(struct work_struct *work)
 	else if (j.ref >= j.n)	/* until the session ends; the bus has not lost it */
 		WRITE_ONCE(dc->ref_station, 0);
 	ret = ret ?: write_clocks(&j);
+	WRITE_ONCE(dc->begun_ns, ktime_get_ns());
 	WRITE_ONCE(dc->running, !ret);
 	ret = ret ?: compensate(&j, &near) ?: check(&j);
 	mutex_unlock(&dc->lock);

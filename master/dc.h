@@ -37,6 +37,7 @@ enum ec_dc_state {
  * @wanted: the application sends clock datagrams
  * @running: the clocks are set: the cycle may correct them
  * @stop: @work shall end
+ * @begun_ns: since when drift is compensated (ktime)
  * @boost: comparisons the cycle shall make beyond one per send
  * @work: sets the clocks while a session is active
  * @wq: woken when @state changes
@@ -57,6 +58,7 @@ struct ec_dc {
 	bool wanted;
 	bool running;
 	bool stop;
+	u64 begun_ns;
 	u32 boost;
 	struct work_struct work;
 	wait_queue_head_t wq;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Figures of distributed clocks: random trees of 100 slaves with clocks of all
+ * rates that were switched on at any time. What counts is the true difference of
+ * the modelled clocks to the reference, not what the slaves say of it.
+ */
+#include <linux/moduleparam.h>
+#include <linux/prandom.h>
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+#define SLAVES		100
+#define LIMIT_NS	100
+#define SETTLE_MS	100	/* of bus time, after the first frame that compensates */
+
+/* how long each of them is watched, s of virtual time */
+static unsigned int seconds = 20;
+module_param(seconds, uint, 0444);
+
+/* how many trees, and the first of them */
+static unsigned int trees = 3;
+module_param(trees, uint, 0444);
+static unsigned int first = 1;
+module_param(first, uint, 0444);
+
+/* A tree: every line may go on behind any junction that has a port left. */
+static void describe(char *text, size_t size, u32 seed)
+{
+	u32 i, n, junction[SLAVES], open = 0;
+	struct rnd_state r;
+
+	prandom_seed_state(&r, seed);
+	n = scnprintf(text, size, "segment seed=%u\n", seed);
+	for (i = 0; i < SLAVES; i++) {
+		u32 v = prandom_u32_state(&r);
+		bool fork = i && v % 8 == 0;
+
+		if (open && v % 11 == 0) {
+			u32 k = (v >> 8) % open;
+
+			n += scnprintf(text + n, size - n, "branch s%u 2\n", junction[k]);
+			junction[k] = junction[--open];
+		}
+		n += scnprintf(text + n, size - n,
+			       "slave s%u %s drift=%dppb clock=%ums cable=%u\n", i,
+			       fork ? "EK1100" : "drive in=8 out=8",
+			       (int)(prandom_u32_state(&r) % 200001) - 100000,
+			       prandom_u32_state(&r), 5 + prandom_u32_state(&r) % 500);
+		if (fork)
+			junction[open++] = i;
+	}
+}
+
+/* Largest difference of a slave's system time to that of the reference, ns. */
+static u64 worst(struct bus *b)
+{
+	u64 now = ktime_get_ns(), max = 0, ref;
+	u32 i;
+
+	ec_sim_advance(b->sim, now);
+	ref = ec_esc_system_time(bus_esc(b, 0), now);
+	for (i = 1; i < SLAVES; i++) {
+		s64 d = ec_esc_system_time(bus_esc(b, i), now) - ref;
+
+		max = max_t(u64, max, abs(d));
+	}
+	return max;
+}
+
+static void sync_each(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void one_tree(struct kunit *test, u32 seed)
+{
+	char *text = kunit_kzalloc(test, 16384, GFP_KERNEL);
+	u64 max = 0, settled = 0, at;
+	struct bus *b;
+	struct cyc *c;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, text);
+	describe(text, 16384, seed);
+	b = bus_up(test, text, SLAVES);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, SLAVES, 0);
+	c->each = sync_each;
+	cyc_activate(c);
+	for (i = 0; i < 2000 && !READ_ONCE(b->m->dc.running); i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_TRUE(test, b->m->dc.running);
+	/* the first half second: when was it the last time too much? */
+	for (i = 0; i < 500; i++) {
+		cyc_run(c, 1);
+		if (worst(b) > LIMIT_NS)
+			settled = ktime_get_ns() - b->m->dc.begun_ns;
+	}
+	at = div_u64(settled, NSEC_PER_USEC);
+	for (i = 0; i < seconds * 10; i++) {
+		cyc_run(c, 100);
+		max = max_t(u64, max, worst(b));
+	}
+	bus_figure("tree %u, 100 slaves, +-100 ppm: within %d ns of the reference after %llu us, then %u s within %llu ns",
+		   seed, LIMIT_NS, at, seconds, max);
+	bus_row(at, SETTLE_MS * 1000, "clocks of 100 slaves, tree %u: within 100 ns after, us", seed);
+	bus_row(max, LIMIT_NS, "and then for %u s within, ns", seconds);
+	KUNIT_EXPECT_LT(test, at, SETTLE_MS * 1000ull);
+	KUNIT_EXPECT_LT(test, max, (u64)LIMIT_NS);
+	cyc_release(c);
+	bus_exit(test);
+}
+
+static void dc_trees(struct kunit *test)
+{
+	u32 i;
+
+	for (i = 0; i < trees; i++)
+		one_tree(test, first + i);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(dc_trees),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_dc_figures", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
