@@ -293,6 +293,8 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 		return;
 	/* the next cycle needs transmit buffers, too */
 	for (n = 0; n < burst && (slot = xq_peek(m)); n++) {
+		/* behind what this cycle has sent before */
+		WRITE_ONCE(slot->sent_ns, m->last_send_ns + wire_ns);
 		wire_ns += ec_frame_wire_ns(slot->eth_len);
 		if (wire_ns > budget && n)
 			break;

@@ -144,6 +144,9 @@ struct ec_cyc_domain {
  * @dc_time: last time of the reference clock, ns
  * @dc_time_ns: when the frame that brought it was sent (ktime)
  * @dc_time64: whole time of the reference clock when it was last asked for, ns
+ * @dc_then: the same some time ago, to learn the rate of that clock
+ * @dc_then_ns: likewise
+ * @dc_ppb: how much faster than ktime it runs, 1e-9
  * @dc_diff: last value of register 0x092C, of all slaves
  */
 struct ec_cycle {
@@ -171,6 +174,9 @@ struct ec_cycle {
 	u64 dc_time;
 	u64 dc_time_ns;
 	u64 dc_time64;
+	u64 dc_then;
+	u64 dc_then_ns;
+	s32 dc_ppb;
 	u32 dc_diff;
 };
 

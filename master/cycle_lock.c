@@ -78,8 +78,7 @@ static bool measured(struct ec_cycle_lock *l, const struct ec_session *s, s32 *e
 	if (!origin(l, c->dc_time_ns, &time))
 		return false;
 	then = c->dc_time - l->phase;
-	ahead = READ_ONCE(s->master->dc.ref_wide) ? (s64)(then - time) :
-						    (s32)((u32)then - (u32)time);
+	ahead = (s64)(then - time);
 	*error = ec_dc_lock_wrap(ahead, l->pi.period);
 	if (ahead != *error)
 		shift(l, ahead - *error);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
@@ -12,6 +13,10 @@
 #define BATCH		1500	/* datagrams in one ec_xfer() */
 #define BOOST		16000	/* left to the cycle */
 #define REGS		32	/* 0x0900-0x091F */
+#define APP_WAIT_MS	2000	/* for the first time an application's cycle tells */
+#define APP_CYCLES	20	/* or for so many that tell none */
+#define CYCLE_BOOST	12000	/* comparisons when the cycle alone compensates */
+#define CYCLE_WAIT_MS	3000	/* for them */
 
 /* all slaves of the segment, in ring order */
 struct job {
@@ -148,13 +153,14 @@ static int all(struct job *j, enum who who, u8 cmd, u16 ado, u16 len, u8 *data, 
 static int latch(struct job *j)
 {
 	u8 any[4] = { 0 };
+	struct ec_dg dg = EC_DG(EC_CMD_BWR, 0, EC_REG_DC_RECV(0), sizeof(any), any);
 	unsigned int i, p;
 	int ret;
 
-	j->latch_ns = ktime_get_ns();
-	ret = ec_xfer_one(j->m, EC_CMD_BWR, 0, EC_REG_DC_RECV(0), any, sizeof(any));
+	ret = ec_xfer(j->m, &dg, 1);
 	if (ret < 0)
 		return ret;
+	j->latch_ns = dg.sent_ns;
 	ret = all(j, ANY, EC_CMD_FPRD, EC_REG_DC_RECV(0), REGS, j->regs[0], REGS);
 	for (i = 0; i < j->n; i++)
 		for (p = 0; p < EC_DC_PORTS; p++)
@@ -181,6 +187,16 @@ static int measure(struct job *j)
 	return ret;
 }
 
+static bool has_front(const struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->ref; i++)
+		if (j->nodes[i].dc)
+			return true;
+	return false;
+}
+
 static void set_ref(struct job *j)
 {
 	struct ec_dc *dc = &j->m->dc;
@@ -190,6 +206,7 @@ static void set_ref(struct job *j)
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
+	WRITE_ONCE(dc->front, ref && has_front(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
 	up_write(&j->m->topo);
 	if (old)
@@ -221,19 +238,35 @@ int ec_dc_measure(struct ec_master *m)
 	return ret;
 }
 
+/*
+ * System time at the reference clock when the last latch was made: what those
+ * clocks say that are set already, so that they go on when others join them.
+ */
+static u64 latch_time(const struct job *j)
+{
+	u64 app = ec_dc_now(j->m) - (ktime_get_ns() - j->latch_ns), t;
+	unsigned int i, set = j->ref;
+
+	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
+		if (j->nodes[i].dc && j->slaves[i]->dc_set)
+			set = i;
+	if (!j->slaves[set]->dc_set)
+		return app;
+	t = get_unaligned_le64(j->regs[set] + 0x18) + j->slaves[set]->dc_offset -
+	    (s64)(s32)j->slaves[set]->dc_delay;
+	if (ec_slave_features(j->slaves[set]) & EC_FEAT_DC64)
+		return t;
+	return app + (s32)((u32)t - (u32)app);
+}
+
 /* System time offset and delay, then the filters: their depths before 0x0930 resets them. */
 static int write_clocks(struct job *j)
 {
 	static u8 depths[2] = { 0, 12 }, reset[2] = { 0x00, 0x10 };
-	struct ec_slave *ref = j->slaves[j->ref];
-	u64 t = ec_dc_now(j->m) - (ktime_get_ns() - j->latch_ns);
+	u64 t = latch_time(j);
 	unsigned int i;
 	u8 (*v)[12];
 	int ret;
-
-	/* the reference goes on counting when others join it */
-	if (ref->dc_set)
-		t = get_unaligned_le64(j->regs[j->ref] + 0x18) + ref->dc_offset;
 
 	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
 	if (!v)
@@ -276,6 +309,23 @@ static const struct stage {
   quiet = { .syncs = 8, .pad = 1320, .batch = 6, .frames = 1200 },
   calm = { .syncs = 1, .pad = 1460, .batch = 4, .frames = 2400 };
 
+/*
+ * With slaves in front of the reference only the cycle may tell the time: what
+ * waits in a queue tells them one that has passed.
+ */
+static int compensate_by_cycle(struct ec_dc *dc)
+{
+	unsigned int ms;
+
+	WRITE_ONCE(dc->boost, CYCLE_BOOST);
+	for (ms = 0; ms < CYCLE_WAIT_MS && READ_ONCE(dc->boost); ms++) {
+		if (READ_ONCE(dc->stop))
+			return -ECANCELED;
+		usleep_range(1000, 1100);
+	}
+	return 0;
+}
+
 static int compensate(struct job *j, const struct stage *st)
 {
 	static u8 pad[EC_DGRAM_DATA_MAX];
@@ -285,12 +335,14 @@ static int compensate(struct job *j, const struct stage *st)
 	u8 t[8];
 	int ret = 0;
 
+	if (READ_ONCE(dc->front))
+		return st == &near ? compensate_by_cycle(dc) : 0;
 	for (done = 0; done < st->frames && !ret; done += st->batch) {
 		u16 ref = READ_ONCE(dc->ref_station);
 
 		if (!ref || READ_ONCE(dc->stop))
 			return -ECANCELED;
-		/* slaves in front of the reference see what was sent */
+		/* for the case that the reference does not answer */
 		put_unaligned_le64(ec_dc_now(j->m), t);
 		/* far from the frame of the cycle, too */
 		n = 0;
@@ -342,14 +394,54 @@ static void set_state(struct ec_dc *dc, int state)
 	wake_up_all(&dc->wq);
 }
 
+/*
+ * The time an application tells before its cycle runs may be of another decade
+ * than those of the cycle: the clocks shall have the latter.
+ */
+static void await_cycle(struct ec_master *m)
+{
+	u32 polls = READ_ONCE(m->polls);
+	struct ec_dc *dc = &m->dc;
+	unsigned int ms;
+
+	WRITE_ONCE(dc->idle, true);
+	for (ms = 0; ms < APP_WAIT_MS && !READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
+	     READ_ONCE(m->polls) - polls < APP_CYCLES; ms++)
+		usleep_range(1000, 1100);
+	WRITE_ONCE(dc->idle, false);
+}
+
+/* Another reference than before, or none, is worth a line. */
+static void change_ref(struct job *j, bool found)
+{
+	struct ec_master *m = j->m;
+	u16 before = READ_ONCE(m->dc.ref_station), now;
+
+	if (found)
+		set_ref(j);
+	else	/* until it is back or the session ends; the bus has not lost it */
+		WRITE_ONCE(m->dc.ref_station, 0);
+	now = READ_ONCE(m->dc.ref_station);
+	if (m->dc.fresh || before == now)
+		return;
+	if (now)
+		ec_info(m, "slave %u is the reference clock now\n", j->slaves[j->ref]->position);
+	else
+		ec_warn(m, "the reference clock is gone; the clocks run free until it is back\n");
+}
+
 static void work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
 	struct ec_master *m = container_of(dc, struct ec_master, dc);
-	u64 t0 = ktime_get_ns();
 	struct job j;
-	int ret = job_init(&j, m);
+	u64 t0;
+	int ret;
 
+	if (dc->fresh)
+		await_cycle(m);
+	t0 = ktime_get_ns();
+	ret = job_init(&j, m);
 	if (ret) {
 		set_state(dc, EC_DC_OFF);
 		return;
@@ -358,10 +450,8 @@ static void work(struct work_struct *work)
 	/* a clock that is being corrected runs too fast or too slow to measure */
 	WRITE_ONCE(dc->running, false);
 	ret = j.ref < j.n ? measure(&j) : -ENXIO;
-	if (!ret)
-		set_ref(&j);
-	else if (j.ref >= j.n)	/* until the session ends; the bus has not lost it */
-		WRITE_ONCE(dc->ref_station, 0);
+	if (!ret || ret == -ENXIO)
+		change_ref(&j, !ret);
 	ret = ret ?: write_clocks(&j);
 	WRITE_ONCE(dc->begun_ns, ktime_get_ns());
 	WRITE_ONCE(dc->running, !ret);
@@ -372,7 +462,7 @@ static void work(struct work_struct *work)
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
 		ec_warn(m, "clocks could not be set (error %d)\n", ret);
-	WRITE_ONCE(dc->boost, ret ? 0 : BOOST);
+	WRITE_ONCE(dc->boost, ret || READ_ONCE(dc->front) ? 0 : BOOST);
 	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
 	if (!ret)
 		ret = compensate(&j, &quiet) ?: compensate(&j, &calm);
@@ -404,6 +494,8 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	up_read(&m->topo);
 	stop(&m->dc);
 	WRITE_ONCE(m->dc.stop, false);
+	m->dc.fresh = all;
+	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);
 	m->dc.begun = true;
 	set_state(&m->dc, EC_DC_BUSY);
@@ -439,7 +531,7 @@ void ec_dc_end(struct ec_master *m)
  * ec_dc_wait() - wait until the clocks are set
  * @s: slave that wants to use its clock, @lock held
  *
- * Context: Process. May sleep, at most 5 s.
+ * Context: Process. May sleep, at most 5 s from the first cycle on.
  * Return: 0; -ETIME when they were not set in time; -ENXIO when they could not
  * be set; -ECANCELED.
  */
@@ -449,6 +541,9 @@ int ec_dc_wait(struct ec_slave *s)
 	unsigned int i;
 
 	for (i = 0; i < 50; i++) {
+		/* the cycle has not begun yet */
+		if (READ_ONCE(dc->idle))
+			i = 0;
 		if (wait_event_timeout(dc->wq, READ_ONCE(dc->state) != EC_DC_BUSY,
 				       msecs_to_jiffies(100)))
 			return READ_ONCE(dc->state) == EC_DC_READY ? 0 : -ENXIO;
@@ -476,6 +571,7 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
 		dc->phase = app_time;
 		dc->has_phase = true;
 	}
+	dc->told = true;
 	dc->app_time = app_time;
 	dc->app_ktime = at_ns;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);

@@ -33,10 +33,15 @@ enum ec_dc_state {
  * @ref: reference clock with a reference, or NULL, under master->topo
  * @ref_station: its station address for the cycle, 0: none
  * @ref_wide: it has 64 bits
+ * @front: slaves with a clock are in front of it: they get the time the cycle
+ *	predicts, and nothing that waits in a queue
  * @begun: the session's clocks were begun to be set, under session_lock
  * @wanted: the application sends clock datagrams
  * @running: the clocks are set: the cycle may correct them
  * @stop: @work shall end
+ * @fresh: @work sets all clocks from the application's time
+ * @idle: and waits for the first one of its cycle
+ * @told: which has come
  * @begun_ns: since when drift is compensated (ktime)
  * @boost: comparisons the cycle shall make beyond one per send
  * @work: sets the clocks while a session is active
@@ -54,10 +59,14 @@ struct ec_dc {
 	struct ec_slave *ref;
 	u16 ref_station;
 	bool ref_wide;
+	bool front;
 	bool begun;
 	bool wanted;
 	bool running;
 	bool stop;
+	bool fresh;
+	bool idle;
+	bool told;
 	u64 begun_ns;
 	u32 boost;
 	struct work_struct work;

@@ -14,6 +14,7 @@
 #define SYNC_SLAVES	EC_SEND_FLAG_SYNC_SLAVES
 #define MONITOR		EC_SEND_FLAG_MONITOR
 #define REF_TIME	EC_SEND_FLAG_REF_TIME
+#define WIDE		0x8000	/* of this frame: times of 8 bytes */
 #define SHIFT		16	/* above it: how many more SYNC_SLAVES */
 #define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
 
@@ -22,9 +23,9 @@ static unsigned int syncs(u32 dc)
 	return dc & SYNC_SLAVES ? (dc >> SHIFT) + 1 : 0;
 }
 
-static u16 time_bytes(const struct ec_master *m)
+static u16 time_bytes(u32 dc)
 {
-	return m->dc.ref_wide ? 8 : 4;
+	return dc & WIDE ? 8 : 4;
 }
 
 /* Comparisons of this send beyond one. */
@@ -43,8 +44,8 @@ static u32 boost(struct ec_master *m)
  * @flags: EC_SEND_FLAG_*
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: those of @flags that make datagrams, and in the upper half how many
- * more times the time goes to the slaves; 0 without reference clock.
+ * Return: those of @flags that make datagrams, how wide they are, and in the upper
+ * half how many more times the time goes to the slaves; 0 without reference clock.
  */
 u32 ec_dc_wanted(struct ec_master *m, u32 flags)
 {
@@ -57,16 +58,57 @@ u32 ec_dc_wanted(struct ec_master *m, u32 flags)
 		return 0;
 	if (flags & SYNC_SLAVES)
 		flags |= boost(m) << SHIFT;
+	/* slaves in front of the reference have a negative delay, of 32 bits */
+	if (READ_ONCE(m->dc.ref_wide) && !READ_ONCE(m->dc.front))
+		flags |= WIDE;
 	return flags;
 }
 
 /*
- * Slaves in front of the reference see what was sent: the time it will have,
- * as far as the last answer tells.
+ * Slaves in front of the reference, and all when it is gone, see what was sent:
+ * the time it will have, as far as its answers tell.
  */
 static u64 predicted(const struct ec_cycle *c, u64 now)
 {
-	return c->dc_time ? c->dc_time + (now - c->dc_time_ns) : 0;
+	u64 since = now - c->dc_time_ns;
+
+	if (!c->dc_time)
+		return 0;
+	return c->dc_time + since +
+	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
+}
+
+#define RATE_NS	(100 * NSEC_PER_MSEC)
+
+/* The rate of the reference over some time; a jump is none. */
+static void learn_rate(struct ec_cycle *c)
+{
+	u64 since = c->dc_time_ns - c->dc_then_ns;
+	s64 more = (s64)(c->dc_time - c->dc_then - since);
+
+	if (c->dc_then_ns && since < RATE_NS)
+		return;
+	if (c->dc_then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS)
+		c->dc_ppb = (s32)div64_s64(more * (s64)NSEC_PER_SEC, since);
+	c->dc_then = c->dc_time;
+	c->dc_then_ns = c->dc_time_ns;
+}
+
+/* What the reference says; with 32 bits the rest is what it was before. */
+static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns)
+{
+	struct ec_cycle *c = &s->cycle;
+	u64 about;
+
+	if (len == 8) {
+		c->dc_time = get_unaligned_le64(data);
+	} else {
+		about = c->dc_time ? predicted(c, sent_ns) : ec_dc_now(s->master);
+		c->dc_time = about + (s32)(get_unaligned_le32(data) - (u32)about);
+	}
+	c->dc_time_ns = sent_ns;
+	c->dc_back |= SYNC_SLAVES;
+	learn_rate(c);
 }
 
 /**
@@ -87,6 +129,8 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 {
 	const struct ec_master *m = s->master;
 	u16 ref = READ_ONCE(m->dc.ref_station);
+	/* those in front must not be told a time nobody knows */
+	u8 cmd = m->dc.front && !s->cycle.dc_time ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;
 	u8 t[8], *p;
 
@@ -96,12 +140,12 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 	}
 	put_unaligned_le64(predicted(&s->cycle, now), t);
 	for (i = 0; i < syncs(dc); i++) {
-		p = ec_frame_add(fb, EC_CMD_FRMW, index, ref, EC_REG_DC_SYSTIME, time_bytes(m));
-		memcpy(p, t, time_bytes(m));
+		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		memcpy(p, t, time_bytes(dc));
 	}
 	if (dc & REF_TIME) {
-		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(m));
-		memset(p, 0, time_bytes(m));
+		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		memset(p, 0, time_bytes(dc));
 	}
 	if (dc & MONITOR) {
 		p = ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4);
@@ -139,18 +183,14 @@ static u64 whole_time(struct ec_master *m, const u8 *data, u16 len)
 const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns)
 {
 	struct ec_cycle *c = &s->cycle;
-	u16 len = time_bytes(s->master);
+	u16 len = time_bytes(dc);
 	unsigned int i;
 
 	if (dc & SYNC_REF)
 		data = skip(data, 4);
 	if (dc & SYNC_SLAVES) {
-		if (get_unaligned_le16(data + len)) {
-			c->dc_time = len == 8 ? get_unaligned_le64(data) :
-				     get_unaligned_le32(data);
-			c->dc_time_ns = sent_ns;
-			c->dc_back |= SYNC_SLAVES;
-		}
+		if (get_unaligned_le16(data + len))
+			take_time(s, data, len, sent_ns);
 		for (i = 0; i < syncs(dc); i++)
 			data = skip(data, len);
 	}

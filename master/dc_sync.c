@@ -47,7 +47,7 @@ static int start_time(struct ec_slave *s, const struct ec_config *c, u8 *b)
 
 		now = app + (s32)((u32)now - (u32)app);
 	}
-	put_unaligned_le64(ec_dc_start(now + LEAD_NS - phase, period, c->dc_shift[0]) + phase, b);
+	put_unaligned_le64(ec_dc_start(now + LEAD_NS, phase, period, c->dc_shift[0]), b);
 	return 0;
 }
 

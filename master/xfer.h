@@ -20,6 +20,7 @@ struct ec_master;
  * @data: sent for writing commands, filled for reading ones
  * @wkc: result: working counter
  * @back: result: @adp as it came back (position plus slaves passed)
+ * @sent_ns: result: when its frame left, as far as the master knows (ktime)
  * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN, -ENODEV,
  *	-ECANCELED (master stops)
  */
@@ -32,6 +33,7 @@ struct ec_dg {
 	void *data;
 	u16 wkc;
 	u16 back;
+	u64 sent_ns;
 	int err;
 };
 

@@ -163,21 +163,28 @@ s32 ec_dc_diff(u32 value)
 	return value & EC_DC_DIFF_AHEAD ? magnitude : -magnitude;
 }
 
+/* what is left of a time, which may be negative, by whole periods */
+static u32 modulo(s64 t, u32 period)
+{
+	u64 magnitude = t < 0 ? 0 - (u64)t : (u64)t;
+	u32 rest = (u32)(magnitude - div_u64(magnitude, period) * period);
+
+	return t < 0 && rest ? period - rest : rest;
+}
+
 /**
  * ec_dc_start() - start time of the SYNC signals, register 0x0990
  * @earliest: system time before which it must not be
- * @period: of the grid all slaves share, not 0
+ * @phase: any point of the grid all slaves share; may be decades away
+ * @period: of the grid, not 0
  * @shift: of this slave against the grid
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: the first time on the shifted grid that is not before @earliest.
  */
-u64 ec_dc_start(u64 earliest, u32 period, s32 shift)
+u64 ec_dc_start(u64 earliest, u64 phase, u32 period, s32 shift)
 {
-	u32 behind = shift < 0 ? (u32)-shift % period : 0;
-	u32 phase = shift < 0 ? (behind ? period - behind : 0) : (u32)shift % period;
+	u32 now = modulo((s64)(earliest - phase), period), want = modulo(shift, period);
 
-	if (earliest <= phase)
-		return phase;
-	return div_u64(earliest - phase + period - 1, period) * period + phase;
+	return earliest + (want >= now ? want - now : want + period - now);
 }

@@ -174,26 +174,246 @@ static void dc_sync0_phase(struct kunit *test)
 	}
 }
 
-/* A chosen reference clock behind others: all follow it. */
+/* Largest true difference of all with a clock to slave @ref, but for @but. */
+static u64 worst_to(struct bus *b, u32 ref, u32 but)
+{
+	u64 now = ktime_get_ns(), max = 0;
+	u32 i;
+
+	ec_sim_advance(b->sim, now);
+	for (i = 0; i < ec_sim_count(b->sim); i++) {
+		u32 d;
+
+		if (i == but || !(bus_esc(b, i)->cfg.features & EC_FEAT_DC))
+			continue;
+		d = (u32)ec_esc_system_time(bus_esc(b, i), now) -
+		    (u32)ec_esc_system_time(bus_esc(b, ref), now);
+		max = max_t(u64, max, abs((s32)d));
+	}
+	return max;
+}
+
+/* the largest of so many looks, one each 50 cycles */
+static u64 watch(struct cyc *c, u32 ref, u32 but, u32 looks)
+{
+	u64 max = 0;
+
+	while (looks--) {
+		cyc_run(c, 50);
+		max = max(max, worst_to(c->b, ref, but));
+	}
+	return max;
+}
+
+/*
+ * A chosen reference clock: all follow it, those in front of it, too, which only
+ * see what the master predicts.
+ */
 static void dc_chosen_reference(struct kunit *test)
 {
-	struct cyc *c = start(test, "slave a drive in=8 out=8 drift=20ppm\n"
-			      "slave b drive in=8 out=8 drift=-30ppm clock=3s\n"
-			      "slave c drive in=8 out=8 drift=50ppm\n", 3);
-	struct ec_ioc_ref_clock ref = { .config = 1 };
-	u32 i;
+	struct cyc *c = start(test, "slave a drive in=8 out=8 drift=90ppm\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+			      "slave c drive in=8 out=8 drift=-30ppm clock=3s\n"
+			      "slave d drive in=8 out=8 drift=50ppm\n", 4);
+	struct ec_ioc_ref_clock ref = { .config = 2 };
+	u64 max;
 
 	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&c->b->app, &ref), 0);
 	set(c);
-	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 1));
-	for (i = 0; i < 20; i++) {
-		s64 d;
+	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 2));
+	max = watch(c, 2, 2, 100);
+	bus_figure("reference behind two others: worst true difference %llu ns", max);
+	/* a prediction is as good as the cycle is punctual */
+	KUNIT_EXPECT_LT(test, max, 500ull);
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+			5000000ll);
+}
 
-		cyc_run(c, 200);
-		d = ec_esc_system_time(bus_esc(c->b, 2), c->next) -
-		    ec_esc_system_time(bus_esc(c->b, 1), c->next);
-		KUNIT_EXPECT_LT(test, abs(d), 100ll);
-	}
+/* Clocks of 32 and 64 bits and none in a tree, the first one short. */
+static void dc_mixed(struct kunit *test)
+{
+	struct cyc *c = start(test, "slave x drive in=8 out=8 dc=none\n"
+			      "slave a drive in=8 out=8 dc=32 drift=90ppm clock=4294s\n"
+			      "slave k EK1100 drift=-100ppm\n"
+			      "slave n EK1100 dc=none cable=200\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+			      "branch n 2\n"
+			      "slave c drive in=8 out=8 dc=32 drift=30ppm clock=1234s cable=90\n"
+			      "branch k 2\n"
+			      "slave d drive in=8 out=8 drift=50ppm clock=900s\n", 7);
+	u64 max;
+
+	set(c);
+	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 1));
+	/* longer than 32 bits of ns; n has no clock, so its branches share a guess */
+	max = watch(c, 1, 1, 200);
+	bus_figure("32 and 64 bits, without clock between: worst true difference %llu ns", max);
+	KUNIT_EXPECT_LT(test, max, 500ull);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+			5000000ll);
+}
+
+static void sync_config(struct cyc *c, u32 config, u32 c0, s32 s0, u32 c1)
+{
+	struct ec_ioc_sc_dc dc = {
+		.config = config, .assign_activate = c1 ? 0x0700 : 0x0300,
+		.cycle0 = c0, .shift0 = s0, .cycle1 = c1,
+	};
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+}
+
+/* where the SYNC0 of a slave lies against the application's grid */
+static u32 grid_phase(struct bus *b, u32 slave, u32 period)
+{
+	u64 since = bus_esc(b, slave)->dc.start - b->m->dc.phase;
+
+	return do_div(since, period);
+}
+
+/*
+ * What the field does to shifts and times: nearly a period, negative ones, SYNC1
+ * with a longer grid, and a time before activation that is of another decade
+ * and wraps below zero.
+ */
+static void dc_odd_starts(struct kunit *test)
+{
+	struct cyc *c = start(test, "repeat 5 slave s drive in=8 out=8 drift=40ppm\n", 5);
+	struct ec_ioc_app_time early = { .app_time = 0 - 946684799000123456ULL };
+	struct bus *b = c->b;
+	u32 i;
+
+	sync_config(c, 0, 1000000, 999999, 0);
+	sync_config(c, 1, 1000000, -250000, 0);
+	sync_config(c, 2, 1000000, -1000000, 0);
+	sync_config(c, 3, 1000000, 0, 1000000);
+	sync_config(c, 4, 1000000, 100000, 500000);
+	KUNIT_ASSERT_EQ(test, ec_ioc_app_time(&b->app, &early), 0);
+	cyc_activate(c);
+	msleep(200);		/* slow to begin its cycle */
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	/* the clocks have the cycle's time, not the other one */
+	KUNIT_EXPECT_LT(test, abs((s64)(ec_esc_system_time(bus_esc(b, 0), ktime_get_ns()) -
+					c->app_time)), 5000000ll);
+	KUNIT_EXPECT_EQ(test, b->m->dc.phase, (u64)early.app_time);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 0, 1000000), 999999u);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 1, 1000000), 750000u);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 2, 1000000), 0u);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 3, 2000000), 0u);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 4, 1500000), 100000u);
+	cyc_run(c, 500);
+	for (i = 0; i < 5; i++)
+		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
+}
+
+/*
+ * A slave comes back in OP: it is set and started again, the others do not
+ * notice.
+ */
+static void dc_slave_comes_back(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave a drive in=8 out=8 drift=60ppm\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+			      "slave c drive in=8 out=8 drift=100ppm clock=88s cable=99\n", 3);
+	struct bus *b = c->b;
+	u64 max;
+	u32 i;
+
+	for (i = 0; i < 3; i++)
+		sync_config(c, i, 1000000, 100000 * i, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 2000);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 2, 0, 0, 0);
+	max = watch(c, 0, 2, 20);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 2, 0, 0, 0);
+	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && cyc_all_op(c)); i++)
+		max = max(max, watch(c, 0, 2, 1));
+	KUNIT_EXPECT_LT(test, i, 100u);
+	bus_figure("a slave comes back: the others differ by %llu ns at most, the slave by %llu ns",
+		   max, worst_to(b, 0, 1));
+	KUNIT_EXPECT_LT(test, max, 100ull);
+	max = watch(c, 0, 3, 20);
+	KUNIT_EXPECT_LT(test, max, 100ull);
+	KUNIT_EXPECT_EQ(test, grid_phase(b, 2, 1000000), 200000u);
+	KUNIT_EXPECT_TRUE(test, bus_esc(b, 2)->dc.running);
+}
+
+/*
+ * The chosen reference clock is cut off, and comes back: the others stay
+ * together meanwhile, and it joins their time.
+ */
+static void dc_reference_is_lost(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave k EK1100 drift=-20ppm\n"
+			      "slave a drive in=8 out=8 drift=60ppm\n"
+			      "branch k 2\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n", 3);
+	struct bus *b = c->b;
+	u64 max;
+	u32 i;
+
+	cyc_activate(c);
+	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 0));
+	cyc_run(c, 3000);
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	cyc_run(c, 300);
+	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && cyc_all_op(c)); i++)
+		cyc_run(c, 50);
+	KUNIT_EXPECT_LT(test, i, 100u);
+	cyc_run(c, 1000);
+	max = watch(c, 0, 3, 50);
+	KUNIT_EXPECT_LT(test, max, 100ull);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 0));
+}
+
+/* Without power at the chosen one, which is the last of a line. */
+static void dc_chosen_is_lost(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave k EK1100 drift=-20ppm\n"
+			      "slave a drive in=8 out=8 drift=60ppm\n"
+			      "branch k 2\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n", 3);
+	struct ec_ioc_ref_clock ref = { .config = 2 };
+	struct bus *b = c->b;
+	u64 max;
+	u32 i;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&b->app, &ref), 0);
+	cyc_activate(c);
+	for (i = 0; i < 5000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 2));
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_LT(test, worst_to(b, 2, 2), 500ull);
+	bus_fault(b, EC_SIM_FAULT_CUT, 0, 2, 0, 0);
+	for (i = 0; i < 100 && READ_ONCE(b->m->dc.ref_station); i++)
+		cyc_run(c, 10);
+	KUNIT_EXPECT_LT(test, i, 100u);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_EQ(test, b->m->session->shared->status->dc_ref, 0u);
+	max = watch(c, 0, 2, 20);
+	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
+	KUNIT_EXPECT_LT(test, max, 10000ull);
+	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
+	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
+	     i++)
+		cyc_run(c, 50);
+	KUNIT_EXPECT_LT(test, i, 100u);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 2));
+	cyc_run(c, 2000);
+	max = watch(c, 2, 3, 50);
+	KUNIT_EXPECT_LT(test, max, 500ull);
+	/* time went on */
+	KUNIT_EXPECT_LT(test, abs((s64)(ec_esc_system_time(bus_esc(b, 0), ktime_get_ns()) -
+					c->app_time)), 5000000ll);
 }
 
 static struct kunit_case cases[] = {
@@ -202,6 +422,11 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_hundred),
 	KUNIT_CASE(dc_sync0_phase),
 	KUNIT_CASE(dc_chosen_reference),
+	KUNIT_CASE(dc_mixed),
+	KUNIT_CASE(dc_odd_starts),
+	KUNIT_CASE(dc_slave_comes_back),
+	KUNIT_CASE(dc_reference_is_lost),
+	KUNIT_CASE(dc_chosen_is_lost),
 	{ }
 };
 

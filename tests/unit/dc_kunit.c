@@ -125,13 +125,31 @@ static void difference_has_sign_and_magnitude(struct kunit *test)
 
 static void start_is_on_the_grid(struct kunit *test)
 {
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1100123456, 1000000, 0), 1101000000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, 0), 1101000000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000001, 1000000, 250000), 1101250000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1101250001, 1000000, 250000), 1102250000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, -250000), 1101750000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 1000000, 5250000), 1101250000ull);
-	KUNIT_EXPECT_EQ(test, ec_dc_start(10, 1000000, 250), 250ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1100123456, 0, 1000000, 0), 1101000000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, 0), 1101000000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000001, 0, 1000000, 250000), 1101250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101250001, 0, 1000000, 250000), 1102250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, -250000), 1101750000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, 5250000), 1101250000ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(10, 0, 1000000, 250), 250ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, 999999), 1101999999ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, -999999), 1101000001ull);
+	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, -1000000), 1101000000ull);
+}
+
+/* an application time that wraps below zero, or is of another decade */
+static void start_is_on_a_grid_far_away(struct kunit *test)
+{
+	u64 phase = 0 - 946684799999000123ULL;
+	u64 start = ec_dc_start(815000000000000000ULL, phase, 1000000, 0);
+
+	KUNIT_EXPECT_GE(test, start, 815000000000000000ULL);
+	KUNIT_EXPECT_LT(test, start, 815000000001000000ULL);
+	KUNIT_EXPECT_EQ(test, (start - phase) % 1000000, 0ull);
+	phase = 815000000000123456ULL;
+	start = ec_dc_start(5000000, phase, 1000000, -1);
+	KUNIT_EXPECT_EQ(test, start, 5123455ull);
+	KUNIT_EXPECT_EQ(test, (phase - start) % 1000000, 1ull);
 }
 
 static struct kunit_case cases[] = {
@@ -144,6 +162,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(a_negative_way_is_none),
 	KUNIT_CASE(difference_has_sign_and_magnitude),
 	KUNIT_CASE(start_is_on_the_grid),
+	KUNIT_CASE(start_is_on_a_grid_far_away),
 	{ }
 };
 
