@@ -166,6 +166,28 @@ void ec_cycle_enter(struct ec_master *m)
 	}
 }
 
+/**
+ * ec_cycle_try_enter() - take the links for one call, or say why not
+ * @m: master
+ *
+ * For a caller that must not sleep. While the links are entered the active session
+ * stays: deactivation waits for the caller in ec_cycle_own().
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; -EBUSY somebody else is in them; -EAGAIN they were taken back after a
+ * stall: somebody who may sleep has to call ec_cycle_own().
+ */
+int ec_cycle_try_enter(struct ec_master *m)
+{
+	if (atomic_cmpxchg(&m->cycle_busy, 0, 1))
+		return -EBUSY;
+	smp_mb();	/* cycle_busy before owner; pairs with ec_cycle_own() */
+	if (READ_ONCE(m->owner) == EC_OWNER_CYCLE)
+		return 0;
+	ec_cycle_leave(m);
+	return -EAGAIN;
+}
+
 void ec_cycle_leave(struct ec_master *m)
 {
 	atomic_set_release(&m->cycle_busy, 0);
@@ -302,4 +324,21 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 			break;	/* it stays the first */
 		xq_drop(m, slot);
 	}
+}
+
+/**
+ * ec_cycle_send_between() - send what others have left, between two cycles
+ * @m: master whose links are entered
+ *
+ * Nothing is sent when the next cycle is so near that even one frame might be in
+ * its way; what is left goes with it.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_cycle_send_between(struct ec_master *m)
+{
+	u64 since = ktime_get_ns() - READ_ONCE(m->last_send_ns);
+
+	if (since + ec_frame_wire_ns(EC_ETH_MAX) < m->interval_us * 900ULL)
+		ec_cycle_send_left(m, since);
 }

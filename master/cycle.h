@@ -111,8 +111,10 @@ struct ec_cyc_flight {
  * @expected: working counter when every slave takes part
  * @send: number of the newest send that anything is back of
  * @wkc: sum of the working counters of that send
+ * @image: what the offsets of its datagrams count from
  */
 struct ec_cyc_domain {
+	u8 *image;
 	u32 expected;
 	u32 send;
 	u32 wkc;
@@ -203,15 +205,20 @@ bool ec_cycle_stalled(struct ec_master *m);
 
 /* for the cyclic caller */
 void ec_cycle_enter(struct ec_master *m);
+int ec_cycle_try_enter(struct ec_master *m);
 void ec_cycle_leave(struct ec_master *m);
 int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now);
 void ec_cycle_send_left(struct ec_master *m, u32 wire_ns);
+void ec_cycle_send_between(struct ec_master *m);
 
 /* layout.c */
 int ec_cycle_layout(struct ec_session *s);
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 
 /* exchange.c */
+int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what);
+int ec_cycle_do_receive(struct ec_session *s);
+int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
 

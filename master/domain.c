@@ -34,6 +34,18 @@ void ec_domain_free(struct ec_domain *d)
 }
 
 /**
+ * ec_domain_data() - where the process data of a domain lie
+ * @d: domain of an active session
+ *
+ * Context: Any, while the session is active.
+ * Return: its first byte.
+ */
+u8 *ec_domain_data(const struct ec_domain *d)
+{
+	return d->memory ?: d->session->shared->image + d->offset;
+}
+
+/**
  * ec_domain_add() - an FMMU of a configuration belongs to the domain
  * @d: domain
  * @c: configuration

@@ -4,6 +4,7 @@
 #define EC_DOMAIN_H
 
 #include <linux/types.h>
+#include "ethercat.h"
 
 struct ec_config;
 struct ec_session;
@@ -27,6 +28,8 @@ struct ec_domain_fmmu {
  * @options: EC_DOMAIN_OPT_*
  * @n_dgrams: datagrams, set by activation
  * @dgram_bytes: their bytes, header and working counter included
+ * @memory: of a kernel application, for its data; NULL: they lie in the image
+ * @snap: for a kernel application: result as of its last ecrt_domain_process()
  */
 struct ec_domain {
 	struct ec_session *session;
@@ -40,10 +43,13 @@ struct ec_domain {
 	u32 options;
 	u32 n_dgrams;
 	u32 dgram_bytes;
+	u8 *memory;
+	struct ec_status_domain snap;
 };
 
 struct ec_domain *ec_domain_create(struct ec_session *s);
 void ec_domain_free(struct ec_domain *d);
+u8 *ec_domain_data(const struct ec_domain *d);
 int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu);
 
 #endif

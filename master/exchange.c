@@ -8,6 +8,7 @@
 #include <linux/mm.h>
 #include "cycle.h"
 #include "master.h"
+#include "request.h"
 #include "session.h"
 
 /* A copy of some bytes; most areas are shorter than the call of memcpy(). */
@@ -29,6 +30,7 @@ static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 se
 		      const u8 *data)
 {
 	struct ec_cycle *c = &s->cycle;
+	u8 *image = c->domains[d->domain].image;
 	unsigned int i;
 
 	for (i = d->n_whole; i < d->n_inputs; i++) {
@@ -41,7 +43,7 @@ static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 se
 		}
 		memcpy(c->stage + in->offset, data + in->pos, in->len);
 		if (++cut->have == cut->parts)
-			memcpy(s->shared->image + cut->offset, c->stage + cut->offset, cut->len);
+			memcpy(image + cut->offset, c->stage + cut->offset, cut->len);
 	}
 }
 
@@ -54,7 +56,7 @@ static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 s
 {
 	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
 	const struct ec_cyc_area *in = &s->cycle.areas[d->first_input];
-	u8 *image = s->shared->image;
+	u8 *image = dom->image;
 	u16 wkc = get_unaligned_le16(data + d->len);
 	unsigned int i, n;
 
@@ -112,8 +114,8 @@ static void judge(struct ec_session *s)
 }
 
 /**
- * ec_cycle_receive() - take what the last sends have brought back
- * @s: active session
+ * ec_cycle_do_receive() - take what the last sends have brought back
+ * @s: active session; the links of its master are entered
  *
  * Inputs go to the image, working counters to the status page. Frames that
  * are not back within the time limit are lost; one that comes only after the
@@ -122,16 +124,15 @@ static void judge(struct ec_session *s)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_receive(struct ec_session *s)
+int ec_cycle_do_receive(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 	struct ec_cycle *c = &s->cycle;
 	u64 now, limit = (u64)m->io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
 
-	if (!READ_ONCE(m->link[0].dev))
+	if (!m->link[0].dev)
 		return -ENODEV;
-	ec_cycle_enter(m);
 	ec_link_poll(&m->link[0]);
 	WRITE_ONCE(m->polls, m->polls + 1);
 	now = ktime_get_ns();
@@ -157,8 +158,26 @@ int ec_cycle_receive(struct ec_session *s)
 	judge(s);
 	ec_dc_judge(s);
 	WRITE_ONCE(s->shared->status->cycle, c->cycles);
-	ec_cycle_leave(m);
 	return 0;
+}
+
+/**
+ * ec_cycle_receive() - ec_cycle_do_receive(), links and all
+ * @s: active session
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_receive(struct ec_session *s)
+{
+	int ret;
+
+	if (!READ_ONCE(s->master->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(s->master);
+	ret = ec_cycle_do_receive(s);
+	ec_cycle_leave(s->master);
+	return ret;
 }
 
 /*
@@ -196,7 +215,7 @@ struct send {
 static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
 {
 	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
-	const u8 *image = s->shared->image;
+	const u8 *image = s->cycle.domains[d->domain].image;
 	unsigned int i;
 
 	if (d->holes)
@@ -275,23 +294,39 @@ static void measure_interval(struct ec_master *m, u64 now)
 }
 
 /**
- * ec_cycle_send() - send the queued domains, then what others have left
+ * ec_cycle_told() - what the application tells with a send
  * @s: active session
+ * @what: its flags are known ones
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; -ENOENT a domain is queued that there is not.
+ */
+int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	if (what->flags & EC_SEND_FLAG_APP_TIME)
+		ec_dc_app_time(s->master, what->app_time, ktime_get_ns());
+	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
+		ec_requests_kick(s->requests);
+	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;
+}
+
+/**
+ * ec_cycle_do_send() - send the queued domains, then what others have left
+ * @s: active session; the links of its master are entered
  * @what: domains and clock datagrams; its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
+int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	struct ec_master *m = s->master;
 	struct ec_cycle *c = &s->cycle;
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!READ_ONCE(m->link[0].dev))
+	if (!m->link[0].dev)
 		return -ENODEV;
-	ec_cycle_enter(m);
 	measure_interval(m, send.now);
 	if (!s->thread)
 		ec_late_send(s, send.now);
@@ -309,6 +344,25 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->sent_wire_ns, send.wire_ns);
 	ec_cycle_send_left(m, send.wire_ns);
 	WRITE_ONCE(c->cycles, c->cycles + 1);
-	ec_cycle_leave(m);
 	return 0;
+}
+
+/**
+ * ec_cycle_send() - ec_cycle_do_send(), links and all
+ * @s: active session
+ * @what: as there
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	int ret;
+
+	if (!READ_ONCE(s->master->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(s->master);
+	ret = ec_cycle_do_send(s, what);
+	ec_cycle_leave(s->master);
+	return ret;
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Handlers of the commands; the table in ioctl.c says who may call them. */
+/*
+ * Commands of an application or a tool. A process calls them through the table in
+ * ioctl.c, which says who may; an application in the kernel through api_*.c.
+ */
 #ifndef EC_IOCTL_H
 #define EC_IOCTL_H
 
@@ -22,6 +25,8 @@ int ec_ioc_cycle_stats(struct ec_file *f, void *arg);
 int ec_ioc_cycle_reset(struct ec_file *f, void *arg);
 
 /* ioctl_bus.c: traffic */
+int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data);
+int ec_ioc_download(struct ec_file *f, struct ec_ioc_sdo *i, const u8 *data);
 int ec_ioc_sdo_upload(struct ec_file *f, void *arg);
 int ec_ioc_sdo_download(struct ec_file *f, void *arg);
 int ec_ioc_reg_read(struct ec_file *f, void *arg);
@@ -52,6 +57,7 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg);
 int ec_ioc_sc_sync(struct ec_file *f, void *arg);
 int ec_ioc_sc_watchdog(struct ec_file *f, void *arg);
 int ec_ioc_sc_pdo(struct ec_file *f, void *arg);
+int ec_ioc_store_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i, const u8 *data);
 int ec_ioc_sc_sdo(struct ec_file *f, void *arg);
 int ec_ioc_sc_idn(struct ec_file *f, void *arg);
 int ec_ioc_reg_entry(struct ec_file *f, void *arg);

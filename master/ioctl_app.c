@@ -189,23 +189,50 @@ int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 	return done(f, ret);
 }
 
-int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
+static int check_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i)
 {
-	struct ec_ioc_sc_sdo *i = arg;
-	struct ec_config *c;
-	int ret = 0;
-	u8 *data;
-
 	if (!i->size || i->size > EC_MAX_SDO_SIZE)
 		return ec_refuse(f, -EINVAL, "size must be 1 to %u bytes, not %u", EC_MAX_SDO_SIZE,
 				 i->size);
+	return 0;
+}
+
+/**
+ * ec_ioc_store_sdo() - one more startup SDO
+ * @f: open file
+ * @i: which; its @data is not used
+ * @data: the value, @i->size bytes; copied
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno, with the reason noted.
+ */
+int ec_ioc_store_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i, const u8 *data)
+{
+	int ret = check_sdo(f, i);
+	struct ec_config *c = ret ? NULL : ec_ioc_lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	ret = ec_config_sdo_add(c, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE, data,
+				i->size);
+	if (ret == -ENOSPC)
+		ec_refuse(f, ret, "a slave configuration has at most %u startup SDOs",
+			  EC_MAX_SC_SDOS);
+	return done(f, ret);
+}
+
+int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_sdo *i = arg;
+	int ret = check_sdo(f, i);
+	u8 *data;
+
+	if (ret)
+		return ret;
 	data = vmemdup_user(u64_to_user_ptr(i->data), i->size);
 	if (IS_ERR(data))
 		return PTR_ERR(data);
-	c = ec_ioc_lock_config(f, i->config, &ret);
-	if (c)
-		ret = done(f, ec_config_sdo_add(c, i->index, i->subindex,
-						i->flags & EC_SDO_FLAG_COMPLETE, data, i->size));
+	ret = ec_ioc_store_sdo(f, i, data);
 	kvfree(data);
 	return ret;
 }
@@ -485,14 +512,7 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 
 	if (!s)
 		return ret;
-	if (arg->flags & EC_SEND_FLAG_APP_TIME)
-		ec_dc_app_time(f->master, arg->app_time, ktime_get_ns());
-	if (arg->flags & EC_SEND_FLAG_REQUESTS && s->requests)
-		ec_requests_kick(s->requests);
-	if (s->n_domains < 64 && arg->queued >> s->n_domains)
-		ret = -ENOENT;
-	else
-		ret = ec_cycle_send(s, arg);
+	ret = ec_cycle_told(s, arg) ?: ec_cycle_send(s, arg);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;
 }

@@ -43,15 +43,24 @@ static int sdo_failed(struct ec_file *f, const struct ec_ioc_sdo *i, int ret)
 	}
 }
 
-int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
+/**
+ * ec_ioc_upload() - read an object of a slave
+ * @f: open file
+ * @i: what to read; its @data is not used. Out: bytes read and abort code
+ * @data: out: the value, to be freed by kvfree(); NULL on failure
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 or -errno, with the reason noted.
+ */
+int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data)
 {
-	struct ec_ioc_sdo *i = arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
 	struct ec_slave *s;
 	size_t got = 0;
 	int ret = 0;
 	u8 *buf;
 
+	*data = NULL;
 	if (!i->size || i->size > EC_MAX_SDO_SIZE)
 		return ec_refuse(f, -EINVAL, "size must be 1 to %u bytes, not %u", EC_MAX_SDO_SIZE,
 				 i->size);
@@ -65,10 +74,55 @@ int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 	else
 		ret = -ENOMEM;
 	ret = sdo_failed(f, i, ret);
-	if (!ret && copy_to_user(u64_to_user_ptr(i->data), buf, got))
-		ret = -EFAULT;
 	i->size = got;
-	kvfree(buf);
+	if (ret)
+		kvfree(buf);
+	else
+		*data = buf;
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sdo *i = arg;
+	u8 *data;
+	int ret = ec_ioc_upload(f, i, &data);
+
+	if (!ret && copy_to_user(u64_to_user_ptr(i->data), data, i->size))
+		ret = -EFAULT;
+	kvfree(data);
+	return ret;
+}
+
+static int check_download(struct ec_file *f, const struct ec_ioc_sdo *i)
+{
+	if (i->size > EC_MAX_SDO_SIZE)
+		return ec_refuse(f, -EINVAL, "size must be at most %u bytes, not %u",
+				 EC_MAX_SDO_SIZE, i->size);
+	return 0;
+}
+
+/**
+ * ec_ioc_download() - write an object of a slave
+ * @f: open file
+ * @i: what to write; its @data is not used. Out: abort code
+ * @data: the value, @i->size bytes
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 or -errno, with the reason noted.
+ */
+int ec_ioc_download(struct ec_file *f, struct ec_ioc_sdo *i, const u8 *data)
+{
+	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
+	int ret = check_download(f, i);
+	struct ec_slave *s = ret ? NULL : ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	ret = sdo_failed(f, i, ec_coe_download(s, i->index, i->subindex,
+					       i->flags & EC_SDO_FLAG_COMPLETE, data, i->size,
+					       &i->abort_code, &limit));
 	ec_slave_unref(s);
 	return ret;
 }
@@ -76,25 +130,16 @@ int ec_ioc_sdo_upload(struct ec_file *f, void *arg)
 int ec_ioc_sdo_download(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sdo *i = arg;
-	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
-	struct ec_slave *s;
-	int ret = 0;
-	u8 *buf;
+	int ret = check_download(f, i);
+	u8 *data;
 
-	if (i->size > EC_MAX_SDO_SIZE)
-		return ec_refuse(f, -EINVAL, "size must be at most %u bytes, not %u",
-				 EC_MAX_SDO_SIZE, i->size);
-	buf = vmemdup_user(u64_to_user_ptr(i->data), i->size);
-	if (IS_ERR(buf))
-		return PTR_ERR(buf);
-	s = ec_ioc_get_slave(f, i->position, &ret);
-	if (s) {
-		ret = sdo_failed(f, i, ec_coe_download(s, i->index, i->subindex,
-						       i->flags & EC_SDO_FLAG_COMPLETE, buf,
-						       i->size, &i->abort_code, &limit));
-		ec_slave_unref(s);
-	}
-	kvfree(buf);
+	if (ret)
+		return ret;
+	data = vmemdup_user(u64_to_user_ptr(i->data), i->size);
+	if (IS_ERR(data))
+		return PTR_ERR(data);
+	ret = ec_ioc_download(f, i, data);
+	kvfree(data);
 	return ret;
 }
 

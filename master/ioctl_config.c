@@ -251,8 +251,7 @@ int ec_ioc_domain_data(struct ec_file *f, void *arg)
 		ret = ec_refuse(f, -ENOENT, "the application has not activated the master");
 	} else {
 		i->size = min(i->size, d->size);
-		if (copy_to_user(u64_to_user_ptr(i->data), d->session->shared->image + d->offset,
-				 i->size))
+		if (copy_to_user(u64_to_user_ptr(i->data), ec_domain_data(d), i->size))
 			ret = -EFAULT;
 	}
 	return done(f, ret);

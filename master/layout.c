@@ -299,8 +299,13 @@ int ec_cycle_layout(struct ec_session *s)
 	}
 	for (i = 0; i < s->n_domains && !ret; i++)
 		ret = layout_domain(s, s->domains[i]);
-	for (i = 0; i < s->n_domains; i++)
-		c->domains[i].expected = s->domains[i]->expected;
+	for (i = 0; i < s->n_domains; i++) {
+		const struct ec_domain *d = s->domains[i];
+
+		c->domains[i].expected = d->expected;
+		/* offsets are those of the image of all domains */
+		c->domains[i].image = d->memory ? d->memory - d->offset : s->shared->image;
+	}
 	if (!ret)
 		ret = alloc_stage(c, s);
 	if (!ret)
