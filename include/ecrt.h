@@ -611,9 +611,49 @@ EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
  * the process image. One system call in userspace.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; %-EINVAL not active; %-ENETDOWN no link.
+ * Return: 0; %-EINVAL not active; %-ENODEV the device is gone. In the kernel
+ * also %-EAGAIN: after a stall the links are being given back, try again in the
+ * next cycle; %-EBUSY: another call is using them; %-EWOULDBLOCK: the device needs
+ * a thread and this is none.
  */
 EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
+
+#ifdef __KERNEL__
+/**
+ * ecrt_master_callbacks() - let others use the wire between two cycles
+ * @master: a requested master, not active
+ * @send_cb: called when there is something to send; to take the application's
+ *	lock, if it can be had, and call ecrt_master_send_ext()
+ * @receive_cb: the same with ecrt_master_receive()
+ * @cb_data: for both
+ *
+ * Without, what the master itself and tools have to send goes with the cycle, and
+ * each answer takes a cycle. With both, a thread of the master asks for it in
+ * between; that pays when the cycle is slow. A hook may also just return. It is
+ * called by one thread, may sleep, and is not called any more when
+ * ecrt_master_deactivate() or ecrt_release_master() returns; the lock it takes
+ * must not be held while these are called. Every ecrt_request_master() removes
+ * them. Kernel only.
+ *
+ * Context: Process. May sleep.
+ */
+EC_PUBLIC_API void ecrt_master_callbacks(ec_master_t *master,
+		void (*send_cb)(void *), void (*receive_cb)(void *),
+		void *cb_data);
+
+/**
+ * ecrt_master_send_ext() - send what others have left, between two cycles
+ * @master: an active master
+ *
+ * For the send hook of ecrt_master_callbacks(). Sends no process data, and
+ * nothing at all when the next cycle is near. Kernel only.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EAGAIN another call is using the links, or they are on their way
+ * back after a stall; else as ecrt_master_send().
+ */
+EC_PUBLIC_API int ecrt_master_send_ext(ec_master_t *master);
+#endif
 
 /**
  * ecrt_master_receive() - take what has come back
@@ -624,7 +664,7 @@ EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
  * frame that is lost keep their values. One system call in userspace.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; %-EINVAL not active.
+ * Return: as ecrt_master_send().
  */
 EC_PUBLIC_API int ecrt_master_receive(ec_master_t *master);
 
@@ -1644,6 +1684,21 @@ EC_PUBLIC_API int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
  */
 EC_PUBLIC_API size_t ecrt_domain_size(const ec_domain_t *domain);
 
+#ifdef __KERNEL__
+/**
+ * ecrt_domain_external_memory() - memory for the process data of a domain
+ * @domain: domain whose entries are registered; not active
+ * @memory: ecrt_domain_size() bytes that stay until deactivation; their content
+ *	is sent as it is. NULL: memory of the master again
+ *
+ * Kernel only.
+ *
+ * Context: Process. May sleep.
+ */
+EC_PUBLIC_API void ecrt_domain_external_memory(ec_domain_t *domain,
+		uint8_t *memory);
+#endif
+
 /**
  * ecrt_domain_data() - process data of a domain
  * @domain: domain
@@ -1652,7 +1707,8 @@ EC_PUBLIC_API size_t ecrt_domain_size(const ec_domain_t *domain);
  * while the master is active. Outputs keep what was written last.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: the data; NULL before activation or with an image of 0 bytes.
+ * Return: the data; NULL before activation, but for external memory, or with an
+ * image of 0 bytes.
  */
 EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
 
@@ -1797,7 +1853,12 @@ EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
+#ifdef __KERNEL__
+EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(
+		const ec_sdo_request_t *req);
+#else
 EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
+#endif
 
 /**
  * ecrt_sdo_request_write() - start a download of the buffer
@@ -1850,8 +1911,8 @@ EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
  * @size: bytes
  *
  * Context: The master's single cyclic caller. RT-safe, no system call.
- * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0,
- * not active, or @req is NULL.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer, in the kernel it is cut
+ * instead; %-EINVAL @size is 0, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
 		uint16_t address, size_t size);

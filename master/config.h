@@ -112,6 +112,7 @@ struct ec_config_flag {
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @emergencies: how many to keep
  * @ip: to be written by EoE, @which 0: nothing
+ * @emerg_cleared: by an application in the kernel, of the lost ones
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -141,6 +142,7 @@ struct ec_config {
 	s32 dc_shift[2];
 	u32 timeout_ms[9][9];
 	u32 emergencies;
+	u32 emerg_cleared;
 	struct ec_eoe_ip ip;
 	struct ec_slave *slave;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include "api.h"
 #include "cycle.h"
 #include "device.h"
 #include "master.h"
@@ -291,6 +292,8 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
 		ret = xq_push(m, slot, urgent);
 		if (ret)
 			disarm(slot, now);
+		else
+			ec_api_left(m);
 	}
 	rt_mutex_unlock(&m->io_lock);
 	return ret;

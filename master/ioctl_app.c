@@ -2,6 +2,7 @@
 /* Commands of the application that has reserved the master. */
 #include <linux/slab.h>
 #include <linux/uaccess.h>
+#include "api.h"
 #include "config.h"
 #include "domain.h"
 #include "ioctl.h"
@@ -16,7 +17,9 @@ int ec_ioc_reserve(struct ec_file *f, void *arg)
 
 	switch (ret) {
 	case -EBUSY:
-		return ec_refuse(f, ret, "master %u is reserved by another application; stop that first",
+		return ec_refuse(f, ret, READ_ONCE(f->master->api->reserved) ?
+				 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows who uses ec_master" :
+				 "master %u is reserved by another application; stop that first",
 				 f->master->index);
 	case -ENODEV:
 		return ec_refuse(f, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",

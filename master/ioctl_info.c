@@ -132,10 +132,7 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->slave_count = m->n_slaves;
 	i->slaves_responding = m->slaves_responding;
 	i->al_states = m->al_states;
-	/* in this order: a request disappears only after @scan_busy is set */
-	i->scan_busy = READ_ONCE(m->rescan);
-	smp_rmb();
-	i->scan_busy |= READ_ONCE(m->scan_busy) || m->n_slaves != m->slaves_responding;
+	i->scan_busy = ec_master_scan_busy(m);
 	i->scan_index = i->scan_busy ? 0 : m->n_slaves;
 	i->scan_count = READ_ONCE(m->scan_count);
 	i->debug_level = m->debug;

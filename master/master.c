@@ -2,6 +2,7 @@
 #include <linux/etherdevice.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
+#include "api.h"
 #include "capture.h"
 #include "cdev.h"
 #include "device.h"
@@ -147,6 +148,23 @@ int ec_master_wait_scan(struct ec_master *m)
 }
 
 /**
+ * ec_master_scan_busy() - is the bus scanned, or about to be?
+ * @m: master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+bool ec_master_scan_busy(const struct ec_master *m)
+{
+	bool busy = READ_ONCE(m->rescan);
+
+	/* in this order: a request disappears only after @scan_busy is set */
+	smp_rmb();
+	return busy || READ_ONCE(m->scan_busy) ||
+	       READ_ONCE(m->n_slaves) != READ_ONCE(m->slaves_responding);
+}
+
+/**
  * ec_master_rescan() - ask for a scan
  * @m: master
  *
@@ -165,6 +183,7 @@ static void destroy(struct ec_master *m)
 	WRITE_ONCE(m->stopping, true);
 	ec_cdev_exit(m);
 	ec_session_end(m, NULL);
+	ec_api_destroy(m);
 	ec_monitor_stop(m);
 	ec_dc_exit(m);
 	if (m->work)
@@ -217,9 +236,12 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		ret = -ENOMEM;
 		goto err_slots;
 	}
-	ret = ec_capture_create(m);
+	ret = ec_api_create(m);
 	if (ret)
 		goto err_work;
+	ret = ec_capture_create(m);
+	if (ret)
+		goto err_api;
 	ret = ec_cdev_init(m);
 	if (ret)
 		goto err_capture;
@@ -231,12 +253,15 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 err_cdev:
 	ec_cdev_exit(m);
 	ec_capture_destroy(m);
+	ec_api_destroy(m);
 	destroy_workqueue(m->work);
 	ec_slots_exit(&m->slots);
 	ec_cdev_put(m);
 	return ERR_PTR(ret);
 err_capture:
 	ec_capture_destroy(m);
+err_api:
+	ec_api_destroy(m);
 err_work:
 	destroy_workqueue(m->work);
 err_slots:

@@ -19,6 +19,7 @@
 #include "link.h"
 #include "slots.h"
 
+struct ec_api;
 struct ec_session;
 struct ec_slave;
 struct task_struct;
@@ -69,6 +70,7 @@ struct task_struct;
  *
  * @session_lock: protects @session and everything it owns but the cyclic part
  * @session: what an application has configured, NULL: nobody
+ * @api: for applications in the kernel, immutable
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
  *
@@ -129,6 +131,7 @@ struct ec_master {
 
 	struct mutex session_lock;
 	struct ec_session *session;
+	struct ec_api *api;
 	struct mutex cyclic_lock;
 	struct ec_session *active;
 
@@ -167,6 +170,7 @@ void ec_master_link_attach(struct ec_link *link, struct ecdev *dev);
 void ec_master_link_detach(struct ec_link *link);
 void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len);
 int ec_master_wait_scan(struct ec_master *m);
+bool ec_master_scan_busy(const struct ec_master *m);
 void ec_master_rescan(struct ec_master *m);
 
 struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position);

@@ -506,3 +506,33 @@ void ec_requests_attach(const struct ec_session *s, u32 config)
 	ec_emerg_set(slave, lane ? &lane->emerg : NULL);
 	ec_mbox_keep_voe(slave, lane && lane->voe);
 }
+
+/**
+ * ec_requests_record() - where a request of an active session is started
+ * @s: session
+ * @index: number from ec_requests_add()
+ * @data: result: its data
+ *
+ * Context: Process, session_lock held or the session kept active.
+ * Return: record.
+ */
+struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data)
+{
+	const struct ec_request *r = &s->requests->reqs[index];
+
+	*data = r->data;
+	return r->rec;
+}
+
+/**
+ * ec_requests_emerg() - emergencies of a configuration of an active session
+ * @s: session
+ * @config: number
+ *
+ * Context: Any, while the session is kept active.
+ * Return: ring.
+ */
+struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config)
+{
+	return &s->requests->lanes[config].emerg;
+}

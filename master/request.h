@@ -13,6 +13,8 @@
 
 #include <linux/types.h>
 
+struct ec_emerg;
+struct ec_request_record;
 struct ec_requests;
 struct ec_session;
 
@@ -34,5 +36,7 @@ int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
 void ec_requests_kick(struct ec_requests *rq);
 void ec_requests_attach(const struct ec_session *s, u32 config);
+struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);
+struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
 
 #endif

@@ -76,6 +76,15 @@ t "sparse notices a wrong byte order" sparse_notices
 t "ec_sim and ec_generic load after ec_master" eval \
 	'needs_master devices/sim/ec_sim.ko && needs_master devices/ec_generic.ko'
 
+# what an application in the kernel finds, all of it for GPL modules
+exports_ecrt() {
+	diff <(grep -o 'ecrt_[a-z0-9_]*(' tests/lib/prototypes_kernel.txt | tr -d '(' | sort) \
+	     <(awk '$2 ~ /^ecrt_/ && $3 ~ /ec_master$/ && $4 == "EXPORT_SYMBOL_GPL" { print $2 }' \
+		"$tmp/src/Module.symvers" | sort)
+}
+
+t "ec_master exports ecrt.h" exports_ecrt
+
 # --- userspace -------------------------------------------------------------------
 flags="-O2 -Wall -Wextra -Werror"
 t "library without a warning" make -s -C lib O="$tmp/lib" CFLAGS="$flags" all

@@ -39,9 +39,9 @@ names() {	# names of the functions a list of prototypes declares
 }
 
 # what the preprocessor leaves of the header, one prototype a line
-declared() {
-	echo '#include "ecrt.h"' | $CC -E -P -I"$top/include" - |
-		tr '\n' ' ' | grep -o 'ecrt_[a-z0-9_]*([^(){}]*) *;' |
+declared() {	# declared OPTION...
+	echo '#include "ecrt.h"' | $CC -E -P -I"$top/include" "$@" - |
+		tr '\n' ' ' | grep -o 'ecrt_[a-z0-9_]*(\([^(){}]\|([^(){}]*)\)*) *;' |
 		grep '[a-z_] \|(void)' >"$o/declared"
 	names "$o/declared"
 }
@@ -124,14 +124,25 @@ one_access() {
 }
 
 kernel_words() {	# the part of the header that the kernel sees
-	$CC -std=gnu11 $warn -D__KERNEL__ -nostdinc -Ikernel -I"$top/include" \
-		-fsyntax-only -x c - <<-'END'
+	kernel_cc -fsyntax-only -x c - <<-'END'
 		#include "ecrt.h"
 		uint16_t f(const void *p) { return EC_READ_U16(p); }
 		#ifdef EC_READ_REAL
 		#error floating point in the kernel
 		#endif
 	END
+}
+
+# the same three questions for applications in the kernel
+kernel_cc() { $CC -std=gnu11 $warn -D__KERNEL__ -nostdinc -Ikernel -I"$top/include" "$@"; }
+
+kernel_prototypes_equal() {
+	{ echo '#include "ecrt.h"'; cat prototypes_kernel.txt; } >"$o/prototypes_kernel.c"
+	kernel_cc -fsyntax-only "$o/prototypes_kernel.c"
+}
+
+kernel_declares_list() {
+	diff <(names prototypes_kernel.txt) <(declared -D__KERNEL__ -nostdinc -Ikernel)
 }
 
 library_works() {
@@ -171,6 +182,8 @@ t "ecrt.h compiles with the kernel's words only" kernel_words
 t "ecrt.h has the prototypes of the list, C" prototypes_equal $CC c
 t "ecrt.h has the prototypes of the list, C++" prototypes_equal $CXX c++
 t "ecrt.h declares the list and nothing else" header_declares_list
+t "ecrt.h has the prototypes of the list, kernel" kernel_prototypes_equal
+t "ecrt.h declares the list and nothing else, kernel" kernel_declares_list
 t "data access in C" access_works $CC c
 t "data access in C++" access_works $CXX c++
 [ "$(uname -m)" != x86_64 ] || t "data access is one access" one_access

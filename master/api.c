@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What the functions for applications in the kernel share. */
+#include <linux/slab.h>
+#include "api.h"
+
+/**
+ * ec_api_create() - a master can be requested by applications in the kernel
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_api_create(struct ec_master *m)
+{
+	struct ec_api *api = kzalloc(sizeof(*api), GFP_KERNEL);
+
+	if (!api)
+		return -ENOMEM;
+	api->file.master = m;
+	api->file.writable = true;
+	mutex_init(&api->file.lock);
+	INIT_LIST_HEAD(&api->requests);
+	INIT_WORK(&api->work, ec_api_work);
+	init_waitqueue_head(&api->between_wq);
+	m->api = api;
+	return 0;
+}
+
+/**
+ * ec_api_destroy() - nobody in the kernel uses the master any more
+ * @m: master whose session has ended
+ *
+ * Context: Process. May sleep.
+ */
+void ec_api_destroy(struct ec_master *m)
+{
+	if (!m->api)
+		return;
+	ec_api_between_stop(m);
+	cancel_work_sync(&m->api->work);
+	ec_api_requests_free(m);
+	kfree(m->api);
+	m->api = NULL;
+}
+
+/* A failure without text must not show the one before. */
+void ec_api_begin(struct ec_master *m)
+{
+	struct ec_file *f = &m->api->file;
+
+	mutex_lock(&f->lock);
+	f->reason[0] = '\0';
+	mutex_unlock(&f->lock);
+}
+
+/**
+ * ec_api_do() - give a command
+ * @m: master
+ * @command: handler, see ioctl.h
+ * @arg: its argument
+ *
+ * Context: Process. As @command.
+ * Return: as @command.
+ */
+int ec_api_do(struct ec_master *m, int (*command)(struct ec_file *f, void *arg), void *arg)
+{
+	ec_api_begin(m);
+	return command(&m->api->file, arg);
+}
+
+static void complain(struct ec_master *m, int err, struct va_format *what, const char *slave)
+{
+	struct ec_file *f = &m->api->file;
+
+	mutex_lock(&f->lock);
+	ec_err(m, "kernel application: cannot %pV%s (error %d)%s%s\n", what, slave, err,
+	       f->reason[0] ? ": " : "", f->reason);
+	f->reason[0] = '\0';
+	mutex_unlock(&f->lock);
+}
+
+/**
+ * ec_api_fail() - one line in the log that says what failed and why
+ * @m: master
+ * @err: -errno
+ * @fmt: what was tried, after "cannot"
+ *
+ * Context: Process. May sleep.
+ * Return: @err.
+ */
+int ec_api_fail(struct ec_master *m, int err, const char *fmt, ...)
+{
+	struct va_format vaf = { .fmt = fmt };
+	va_list args;
+
+	va_start(args, fmt);
+	vaf.va = &args;
+	complain(m, err, &vaf, "");
+	va_end(args);
+	return err;
+}
+
+/* The same for a slave configuration; the line ends with its name. */
+int ec_api_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...)
+{
+	struct va_format vaf = { .fmt = fmt };
+	char slave[32];
+	va_list args;
+
+	snprintf(slave, sizeof(slave), " of slave %u:%u", ec_api_config(sc)->alias,
+		 ec_api_config(sc)->position);
+	va_start(args, fmt);
+	vaf.va = &args;
+	complain(ec_api_master(sc), err, &vaf, slave);
+	va_end(args);
+	return err;
+}

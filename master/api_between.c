@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Frames of others between two cycles of an application in the kernel: with
+ * ecrt_master_callbacks() it lets the master's own thread send and receive while
+ * its cycle rests. One thread calls both hooks, and only while the session is
+ * active, so that a module may go as soon as it has deactivated the master.
+ */
+#include <linux/delay.h>
+#include <linux/kthread.h>
+#include <linux/sched.h>
+#include "api.h"
+
+#define LOOK_US	50	/* between two looks for what has come back */
+
+void ecrt_master_callbacks(ec_master_t *master, void (*send_cb)(void *),
+			   void (*receive_cb)(void *), void *cb_data)
+{
+	if (!master)
+		return;
+	if (!master->api->reserved || READ_ONCE(master->api->active)) {
+		ec_err(master, "kernel application: callbacks are set between ecrt_request_master() and ecrt_master_activate()\n");
+		return;
+	}
+	master->api->send_cb = send_cb;
+	master->api->receive_cb = receive_cb;
+	master->api->cb_data = cb_data;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
+
+/* Frames are left for the cycle, and it runs. */
+static bool left(const struct ec_master *m)
+{
+	return READ_ONCE(m->xq_head) != READ_ONCE(m->xq_tail) &&
+	       READ_ONCE(m->owner) == EC_OWNER_CYCLE;
+}
+
+/* Somebody has a slot, so a frame of his may be on its way. */
+static bool awaited(const struct ec_master *m)
+{
+	return READ_ONCE(m->slots.acyclic.count) != EC_SLOTS - EC_SLOTS_CYCLE &&
+	       READ_ONCE(m->owner) == EC_OWNER_CYCLE;
+}
+
+static int between(void *data)
+{
+	struct ec_master *m = data;
+	struct ec_api *api = m->api;
+
+	while (!kthread_should_stop()) {
+		wait_event_idle(api->between_wq, left(m) || kthread_should_stop());
+		while (!kthread_should_stop() && awaited(m)) {
+			if (left(m))
+				api->send_cb(api->cb_data);
+			usleep_range(LOOK_US, LOOK_US + LOOK_US / 5);
+			api->receive_cb(api->cb_data);
+		}
+	}
+	return 0;
+}
+
+/**
+ * ec_api_between_start() - begin to call the hooks of the application
+ * @m: master that has just become active; nothing happens without both hooks
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno.
+ */
+int ec_api_between_start(struct ec_master *m)
+{
+	struct ec_api *api = m->api;
+	struct task_struct *t;
+
+	if (!api->send_cb || !api->receive_cb)
+		return 0;
+	t = kthread_create(between, m, "EtherCAT%u-btw", m->index);
+	if (IS_ERR(t))
+		return PTR_ERR(t);
+	/* before it runs: ec_api_is_between() */
+	WRITE_ONCE(api->between, t);
+	wake_up_process(t);
+	return 0;
+}
+
+/**
+ * ec_api_between_stop() - call the hooks no more
+ * @m: master
+ *
+ * Context: Process. Waits for a hook that is being called.
+ */
+void ec_api_between_stop(struct ec_master *m)
+{
+	struct task_struct *t = m->api->between;
+
+	if (!t)
+		return;
+	kthread_stop(t);
+	WRITE_ONCE(m->api->between, NULL);
+}
+
+/**
+ * ec_api_is_between() - is this call made by a hook?
+ * @api: application
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+bool ec_api_is_between(const struct ec_api *api)
+{
+	return READ_ONCE(api->between) == current && in_task();
+}
+
+/**
+ * ec_api_left() - a frame was left for the cyclic caller
+ * @m: master
+ *
+ * Context: Process.
+ */
+void ec_api_left(struct ec_master *m)
+{
+	if (m->api && READ_ONCE(m->api->between))
+		wake_up(&m->api->between_wq);
+}

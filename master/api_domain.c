@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Domains, for applications in the kernel. */
+#include "api.h"
+
+static int reg_entry(struct ec_domain *d, const ec_pdo_entry_reg_t *reg)
+{
+	struct ec_master *m = d->session->master;
+	ec_slave_config_t *sc;
+	int ret;
+
+	if (!reg->offset)
+		return ec_api_fail(m, -EINVAL, "register 0x%04x:%02x without a place for its offset",
+				   reg->index, reg->subindex);
+	sc = ecrt_master_slave_config(m, reg->alias, reg->position, reg->vendor_id,
+				      reg->product_code);
+	if (!sc)
+		return -ENOENT;
+	ret = ecrt_slave_config_reg_pdo_entry(sc, reg->index, reg->subindex, d,
+					      reg->bit_position);
+	if (ret < 0)
+		return ret;
+	*reg->offset = ret;
+	return 0;
+}
+
+int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
+				   const ec_pdo_entry_reg_t *pdo_entry_regs)
+{
+	const ec_pdo_entry_reg_t *reg;
+	int ret = 0;
+
+	if (!domain || !pdo_entry_regs)
+		return -EINVAL;
+	for (reg = pdo_entry_regs; reg->index && !ret; reg++)
+		ret = reg_entry(domain, reg);
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_reg_pdo_entry_list);
+
+size_t ecrt_domain_size(const ec_domain_t *domain)
+{
+	return domain ? READ_ONCE(domain->size) : (size_t)-EINVAL;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_size);
+
+void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
+{
+	struct ec_master *m;
+
+	if (!domain)
+		return;
+	m = domain->session->master;
+	mutex_lock(&m->session_lock);
+	if (!domain->session->active)
+		domain->memory = memory;
+	else
+		ec_err(m, "kernel application: memory for domain %u comes after activation; it is not used\n",
+		       domain->index);
+	mutex_unlock(&m->session_lock);
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_external_memory);
+
+static struct ec_api *active(const struct ec_domain *d)
+{
+	struct ec_api *api = d ? d->session->master->api : NULL;
+
+	return api && smp_load_acquire(&api->active) ? api : NULL;
+}
+
+uint8_t *ecrt_domain_data(const ec_domain_t *domain)
+{
+	if (!domain || !domain->size)
+		return NULL;
+	return domain->memory || active(domain) ? ec_domain_data(domain) : NULL;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_data);
+
+int ecrt_domain_process(ec_domain_t *domain)
+{
+	struct ec_api *api = active(domain);
+	const struct ec_status_domain *st;
+
+	if (!api)
+		return -EINVAL;
+	if (!(api->received & BIT_ULL(domain->index)))
+		return 0;
+	api->received &= ~BIT_ULL(domain->index);
+	st = &domain->session->shared->status->domains[domain->index];
+	domain->snap.working_counter = READ_ONCE(st->working_counter);
+	domain->snap.wc_state = READ_ONCE(st->wc_state);
+	domain->snap.redundancy_active = READ_ONCE(st->redundancy_active);
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_process);
+
+int ecrt_domain_queue(ec_domain_t *domain)
+{
+	struct ec_api *api = active(domain);
+
+	if (!api)
+		return -EINVAL;
+	api->next.queued |= BIT_ULL(domain->index);
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_queue);
+
+int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
+{
+	if (!domain || !state)
+		return -EINVAL;
+	state->working_counter = domain->snap.working_counter;
+	state->wc_state = (ec_wc_state_t)domain->snap.wc_state;
+	state->redundancy_active = domain->snap.redundancy_active;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_state);

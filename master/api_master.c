@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Requesting a master, activating and giving it back; for the kernel. */
+#include "api.h"
+
+unsigned int ecrt_version_magic(void)
+{
+	return ECRT_VERSION_MAGIC;
+}
+EXPORT_SYMBOL_GPL(ecrt_version_magic);
+
+ec_master_t *ecrt_request_master(unsigned int master_index)
+{
+	struct ec_master *m;
+	int ret;
+
+	if (master_index >= ec_master_count()) {
+		pr_err("EtherCAT: kernel application: there is no master %u; main_devices= names %u\n",
+		       master_index, ec_master_count());
+		return NULL;
+	}
+	m = ec_master_get(master_index);
+	/* who found the symbols by symbol_get() has no lasting hold on the module */
+	__module_get(THIS_MODULE);
+	ret = ec_api_do(m, ec_ioc_reserve, NULL);
+	if (ret) {
+		ec_api_fail(m, ret, "reserve the master");
+		module_put(THIS_MODULE);
+		return NULL;
+	}
+	m->api->reserved = true;
+	m->api->send_cb = NULL;
+	m->api->receive_cb = NULL;
+	return m;
+}
+EXPORT_SYMBOL_GPL(ecrt_request_master);
+
+/* Cyclic calls find nothing from now on; their state begins anew. */
+static void forget(struct ec_master *m)
+{
+	struct ec_api *api = m->api;
+
+	ec_api_between_stop(m);
+	WRITE_ONCE(api->active, NULL);
+	memset(&api->next, 0, sizeof(api->next));
+	api->app_time = 0;
+	api->sent = 0;
+	api->received = 0;
+}
+
+void ecrt_release_master(ec_master_t *master)
+{
+	if (!master)
+		return;
+	if (!master->api->reserved) {
+		ec_warn(master, "kernel application: releases a master it has not requested\n");
+		return;
+	}
+	forget(master);
+	ec_session_end(master, &master->api->file);
+	ec_api_requests_free(master);
+	master->api->reserved = false;
+	module_put(THIS_MODULE);
+}
+EXPORT_SYMBOL_GPL(ecrt_release_master);
+
+ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
+{
+	struct ec_ioc_create_domain i = { 0 };
+	int ret;
+
+	if (!master)
+		return NULL;
+	ret = ec_api_do(master, ec_ioc_create_domain, &i);
+	if (ret) {
+		ec_api_fail(master, ret, "create a domain");
+		return NULL;
+	}
+	return master->session->domains[i.index];
+}
+EXPORT_SYMBOL_GPL(ecrt_master_create_domain);
+
+ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
+					    uint16_t position, uint32_t vendor_id,
+					    uint32_t product_code)
+{
+	struct ec_ioc_slave_config i = {
+		.alias = alias, .position = position, .vendor_id = vendor_id,
+		.product_code = product_code,
+	};
+	int ret;
+
+	if (!master)
+		return NULL;
+	ret = ec_api_do(master, ec_ioc_slave_config, &i);
+	if (ret) {
+		ec_api_fail(master, ret, "configure slave %u:%u as 0x%08x/0x%08x", alias, position,
+			    vendor_id, product_code);
+		return NULL;
+	}
+	return (ec_slave_config_t *)master->session->configs[i.index];
+}
+EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
+
+int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *sc)
+{
+	struct ec_ioc_ref_clock i = { .config = EC_UAPI_NONE32 };
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (sc)
+		i.config = ec_api_config(sc)->index;
+	ret = ec_api_do(master, ec_ioc_ref_clock, &i);
+	return ret ? ec_api_fail(master, ret, "select the reference clock") : 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_select_reference_clock);
+
+int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
+{
+	struct ec_ioc_interval i = { .interval_us = min_t(size_t, send_interval, U32_MAX) };
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	ret = ec_api_do(master, ec_ioc_interval, &i);
+	return ret ? ec_api_fail(master, ret, "set the send interval") : 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_set_send_interval);
+
+int ecrt_master_activate(ec_master_t *master)
+{
+	struct ec_ioc_activate i = { 0 };
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (READ_ONCE(master->api->active)) {
+		ec_warn(master, "kernel application: the master is active already\n");
+		return 0;
+	}
+	ret = ec_api_do(master, ec_ioc_activate, &i);
+	if (ret)
+		return ec_api_fail(master, ret, "activate the master");
+	ec_api_requests_place(master);
+	master->api->atomic = false;
+	master->api->told = false;
+	/* who sees the session finds all that belongs to it */
+	smp_store_release(&master->api->active, master->session);
+	ret = ec_api_between_start(master);
+	if (ret) {
+		ecrt_master_deactivate(master);
+		return ec_api_fail(master, ret, "start the thread for callbacks");
+	}
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_activate);
+
+int ecrt_master_deactivate(ec_master_t *master)
+{
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	if (!READ_ONCE(master->api->active)) {
+		ec_warn(master, "kernel application: the master is not active\n");
+		return -EINVAL;
+	}
+	forget(master);
+	ret = ec_api_do(master, ec_ioc_deactivate, NULL);
+	ec_api_requests_free(master);
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_deactivate);
+
+int ecrt_master_reset(ec_master_t *master)
+{
+	if (!master)
+		return -EINVAL;
+	/* slaves are locked for it, which the caller need not be able to wait for */
+	WRITE_ONCE(master->api->reset, true);
+	queue_work(master->work, &master->api->work);
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_reset);

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Objects of slaves read and written at once, for applications in the kernel. */
+#include <linux/mm.h>
+#include <linux/string.h>
+#include "api.h"
+
+/* The end of a transfer; a slave that is not there has a word of its own here. */
+static int ended(struct ec_master *m, const struct ec_ioc_sdo *i, int ret, u32 *abort_code,
+		 const char *what)
+{
+	if (abort_code)
+		*abort_code = ret == -EIO ? i->abort_code : 0;
+	if (!ret)
+		return 0;
+	return ec_api_fail(m, ret == -ENOENT ? -EINVAL : ret, "%s SDO 0x%04x:%02x of slave %u",
+			   what, i->index, i->subindex, i->position);
+}
+
+static int download(struct ec_master *m, struct ec_ioc_sdo *i, const u8 *data, size_t size,
+		    u32 *abort_code)
+{
+	if (!m || !data || !size)
+		return -EINVAL;
+	i->size = min_t(size_t, size, U32_MAX);
+	ec_api_begin(m);
+	return ended(m, i, ec_ioc_download(&m->api->file, i, data), abort_code, "write");
+}
+
+int ecrt_master_sdo_download(ec_master_t *master, uint16_t slave_position, uint16_t index,
+			     uint8_t subindex, const uint8_t *data, size_t data_size,
+			     uint32_t *abort_code)
+{
+	struct ec_ioc_sdo i = {
+		.position = slave_position, .index = index, .subindex = subindex,
+	};
+
+	return download(master, &i, data, data_size, abort_code);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_sdo_download);
+
+int ecrt_master_sdo_download_complete(ec_master_t *master, uint16_t slave_position,
+				      uint16_t index, const uint8_t *data, size_t data_size,
+				      uint32_t *abort_code)
+{
+	struct ec_ioc_sdo i = {
+		.flags = EC_SDO_FLAG_COMPLETE, .position = slave_position, .index = index,
+	};
+
+	return download(master, &i, data, data_size, abort_code);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_sdo_download_complete);
+
+int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position, uint16_t index,
+			   uint8_t subindex, uint8_t *target, size_t target_size,
+			   size_t *result_size, uint32_t *abort_code)
+{
+	struct ec_ioc_sdo i = {
+		.position = slave_position, .index = index, .subindex = subindex,
+	};
+	u8 *data;
+	int ret;
+
+	if (!master || !target || !result_size)
+		return -EINVAL;
+	i.size = min_t(size_t, target_size, U32_MAX);
+	*result_size = 0;
+	ec_api_begin(master);
+	ret = ec_ioc_upload(&master->api->file, &i, &data);
+	if (!ret) {
+		memcpy(target, data, i.size);
+		*result_size = i.size;
+	}
+	kvfree(data);
+	return ended(master, &i, ret, abort_code, "read");
+}
+EXPORT_SYMBOL_GPL(ecrt_master_sdo_upload);
