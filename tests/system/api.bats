@@ -7,7 +7,7 @@ setup_file() {
 	{
 		printf '%s\n' "segment seed=6" "slave coupler EK1100" "slave out EL2008 alias=1001" \
 			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm" \
-			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1"
+			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1" "connect out.2 -> in.2"
 		# an emergency every 0.2 s for 100 s, whenever its application comes
 		for i in $(seq 500); do
 			printf 'fault at=%ums emergency motor code=0x8110 register=0x11\n' $((i * 200))
@@ -44,6 +44,17 @@ group() {
 @test "the kernel's cycle" { group kcycle; }
 @test "NULL handles" { group null; }
 @test "floating point" { group access; }
+
+# behaviour applications rely on, by clients with the habits of real ones
+@test "a machine controller" { group lcec; }
+@test "a robot driver" { group ros2; }
+@test "beside other processes" { group beside; }
+
+@test "a request while the bus is scanned" {
+	rmmod ec_sim
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+	group open
+}
 
 @test "that was every function of the library" {
 	diff <(sed -n 's/^\t\t\(ecrt_[a-z0-9_]*\);/\1/p' "$EC_BUILD/../../lib/libethercat.map" | sort) \

@@ -40,6 +40,11 @@
 		api_printed(0, __FILE__, __LINE__, #have); \
 	} while (0)
 
+struct api_counts {
+	unsigned int failures;
+};
+
+struct api_counts api_counts(void);
 void api_called(const char *name);
 bool api_yes(bool ok, const char *file, int line, const char *what);
 bool api_is(long long have, long long want, const char *file, int line, const char *a,
@@ -60,7 +65,7 @@ struct api_group {
 
 extern const struct api_case open_cases[], info_cases[], config_cases[], pdo_cases[],
 	cycle_cases[], dc_cases[], request_cases[], kcycle_cases[], null_cases[], access_cases[],
-	after_cases[], layout_cases[], extension_cases[];
+	after_cases[], layout_cases[], extension_cases[], lcec_cases[], ros2_cases[], beside_cases[];
 
 /* the segment, see tests/system/api.bats */
 enum { COUPLER, OUT, IN, MOTOR, SERVO, SWITCH, SLAVES };

@@ -16,12 +16,18 @@ static const struct api_group groups[] = {
 	{ "null", null_cases }, { "access", access_cases },
 	{ "layout", layout_cases },
 	{ "extension", extension_cases },
+	{ "lcec", lcec_cases }, { "ros2", ros2_cases }, { "beside", beside_cases },
 };
 
 static FILE *called;
 static unsigned int failures;	/* of the case that runs */
 static int err_fd = -1;		/* stderr goes here */
 static off_t err_seen;
+
+struct api_counts api_counts(void)
+{
+	return (struct api_counts){ .failures = failures };
+}
 
 void api_called(const char *name)
 {
@@ -94,6 +100,8 @@ int main(int argc, char **argv)
 	unsigned int failed = 0, n = 0;
 
 	called = file ? fopen(file, "a") : NULL;
+	if (called)	/* whole lines, also of a process that is killed */
+		setvbuf(called, NULL, _IOLBF, 0);
 	err_fd = memfd_create("stderr", 0);
 	if (err_fd < 0 || dup2(err_fd, STDERR_FILENO) < 0) {
 		perror("stderr to a file");
