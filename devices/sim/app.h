@@ -15,12 +15,15 @@
 #include "../../master/wire/sdo.h"
 #include "../../master/wire/sdoinfo.h"
 #include "../../master/wire/sii.h"
+#include "../../master/wire/soe.h"
 #include "../../master/wire/types.h"
+#include "../../master/wire/voe.h"
 #include "sim.h"
 
 #define EC_APP_NAME		24	/* name of a slave, with the zero */
 #define EC_APP_SDO_BUF		2048	/* largest object, complete access too */
 #define EC_APP_EMCY		8	/* emergencies waiting */
+#define EC_APP_VOE		4	/* VoE messages waiting */
 #define EC_APP_ESC_ET1100	0x11
 #define EC_APP_ESC_ET1200	0x12
 #define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
@@ -260,6 +263,8 @@ struct ec_app_object {
  * @mapping: what the master may change
  * @cpu: generic io: with AL software instead of device emulation
  * @id: value of the identification request, 0: not supported
+ * @soe: SoE with so many drives, 0: no SoE
+ * @voe: VoE with this type in the answers, 0: no VoE
  */
 struct ec_app_params {
 	u32 vendor;
@@ -271,6 +276,8 @@ struct ec_app_params {
 	enum ec_app_mapping mapping;
 	bool cpu;
 	u16 id;
+	u8 soe;
+	u16 voe;
 };
 
 /**
@@ -359,6 +366,28 @@ struct ec_app_copy {
 };
 
 /**
+ * struct ec_app_voe - a VoE message nobody has asked for
+ * @hdr: its header
+ * @size: bytes of the vendor
+ */
+struct ec_app_voe {
+	struct ec_voe_hdr hdr;
+	u16 size;
+};
+
+/**
+ * struct ec_app_soe - SoE server of a slave
+ * @drives: how many
+ * @values: of all IDNs, drive after drive
+ * @writes: values written since power-on
+ */
+struct ec_app_soe {
+	u8 drives;
+	u8 *values;
+	u32 writes;
+};
+
+/**
  * struct ec_app_mbox - mailbox of a slave
  * @srv: SDO server
  * @cap: bytes of each of the buffers
@@ -374,6 +403,8 @@ struct ec_app_copy {
  * @tx_counter: counter of the last message sent
  * @emcy: emergencies to send, 8 bytes each
  * @n_emcy: how many
+ * @voe: VoE messages to send
+ * @n_voe: how many
  * @info: SDO information on its way out
  * @info_buf: its body
  * @info_cap: bytes there
@@ -393,6 +424,8 @@ struct ec_app_mbox {
 	u8 tx_counter;
 	u8 emcy[EC_APP_EMCY][8];
 	u8 n_emcy;
+	struct ec_app_voe voe[EC_APP_VOE];
+	u8 n_voe;
 	struct ec_sdoinfo_resp info;
 	u8 *info_buf;
 	u16 info_cap;
@@ -410,11 +443,20 @@ struct ec_app_ip {
 	bool refuse;
 };
 
-/* an emergency the script asks for */
+/**
+ * struct ec_app_event - a message the script asks for
+ * @next: later one
+ * @at_ns: when
+ * @is_voe: it is @voe, else @emcy
+ * @emcy: emergency: error code, error register, five bytes
+ * @voe: VoE message
+ */
 struct ec_app_event {
 	struct ec_app_event *next;
 	u64 at_ns;
+	bool is_voe;
 	u8 emcy[8];
+	struct ec_app_voe voe;
 };
 
 /**
@@ -448,6 +490,7 @@ struct ec_app_event {
  * @ran_ns: when the profile ran last
  * @eep_due: when it answers for the emulated EEPROM
  * @mbox: mailbox
+ * @soe: SoE server
  * @ip: IP parameters
  */
 struct ec_app {
@@ -480,6 +523,7 @@ struct ec_app {
 	u64 ran_ns;
 	u64 eep_due;
 	struct ec_app_mbox mbox;
+	struct ec_app_soe soe;
 	struct ec_app_ip ip;
 };
 
@@ -519,7 +563,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 struct ec_app *ec_app_of(const struct ec_esc *esc);
 u8 ec_app_state(const struct ec_app *app);
 void ec_app_rewake(struct ec_app *app, u64 now);
-int ec_app_add_event(struct ec_app *app, u64 at_ns, const u8 emcy[8]);
+int ec_app_add_event(struct ec_app *app, const struct ec_app_event *event);
 
 /* slave_model.c */
 struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
@@ -553,11 +597,19 @@ void ec_app_mbox_poll(struct ec_app *app, u64 now);
 u64 ec_app_mbox_due(const struct ec_app *app);
 void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
 		      u64 now);
+void ec_app_voe_send(struct ec_app *app, const struct ec_app_voe *voe, u64 now);
 
 static inline bool ec_app_bug(const struct ec_app *app, enum ec_sim_bug bug)
 {
 	return ec_sim_has_bug(app->esc->sim, bug);
 }
+
+/* slave_soe.c, slave_voe.c */
+size_t ec_app_soe_bytes(void);
+void ec_app_soe_reset(struct ec_app *app);
+int ec_app_soe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
+int ec_app_voe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
+int ec_app_voe_unasked(const struct ec_app_voe *m, u8 *tx, size_t cap);
 
 /* slave_eoe.c */
 int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);

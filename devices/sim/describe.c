@@ -44,7 +44,7 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 {
 	s64 vendor = 0, product = 0, revision = 0, out = -1, in = -1, mbox = 0;
 	struct ec_desc_word w;
-	s64 id = 0;
+	s64 id = 0, soe = 0, voe = 0;
 	int ret;
 
 	ret = ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor);
@@ -60,6 +60,10 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		ret = ec_desc_number(d, "mbox", 32, 1486, &mbox);
 	if (!ret)
 		ret = ec_desc_number(d, "id", 0, 0xFFFF, &id);
+	if (!ret)
+		ret = ec_desc_number(d, "soe", 0, EC_SOE_DRIVES, &soe);
+	if (!ret)
+		ret = ec_desc_number(d, "voe", 0, 0xFFFF, &voe);
 	if (ret)
 		return ret;
 	p->vendor = (u32)vendor;
@@ -69,6 +73,8 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 	p->in = in < 0 ? 8 : (u32)in;
 	p->mbox = (u16)mbox;
 	p->id = (u16)id;
+	p->soe = (u8)soe;
+	p->voe = (u16)voe;
 
 	w = ec_desc_value(d, "mapping");
 	if (ec_desc_is(&w, "fixed"))
@@ -149,7 +155,8 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	return a->vendor == b->vendor && a->product == b->product &&
 	       a->revision == b->revision && a->out == b->out &&
 	       a->in == b->in && a->mbox == b->mbox &&
-	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id;
+	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
+	       a->soe == b->soe && a->voe == b->voe;
 }
 
 static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
@@ -292,6 +299,8 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	if (!ret && c.eeprom_emulated && m->emulation)
 		ret = ec_desc_fail(d, "'", name,
 				   "' has no CPU that could emulate an EEPROM; leave eeprom= out");
+	if (!ret && (p.soe || p.voe) && (m->emulation || !m->dev.std.rx_len))
+		ret = ec_desc_fail(d, "'", name, "' has no mailbox; leave soe= and voe= out");
 	for (u32 i = 0; i < count && !ret; i++) {
 		if (i)
 			c.clock_start = (u64)ec_sim_random(d->sim) << 4;

@@ -11,6 +11,7 @@
  *		delay=TIME drift=Nppm|Nppb clock=TIME dc=64|32|none cable=TIME
  *		response=TIME transition=TIME mapping=fixed|assign|rewritable
  *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
+ *		soe=N (SoE with N drives)  voe=TYPE (VoE, type of the answers)
  *	branch NAME PORT		the next slave hangs there
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
  *	connect NAME.CHANNEL -> NAME.CHANNEL	an output to an input
@@ -25,6 +26,7 @@
  *		wkc NAME add=N  errors NAME.PORT add=N
  *		mailbox NAME good|length|short|counter|type|babble (its messages)
  *		emergency NAME code=N [register=N]
+ *		voe NAME [vendor=N] [type=N] [size=N] (a VoE message)
  *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]
  *			[copies=N] [by=TIME]
  *

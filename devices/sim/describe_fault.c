@@ -121,23 +121,48 @@ static int option(struct ec_desc *d, struct ec_sim_fault *f, const char *key,
 	return 0;
 }
 
+static int add_event(struct ec_desc *d, int slave, const struct ec_app_event *e)
+{
+	if (!ec_app_add_event(d->node[slave].app, e))
+		return 0;
+	ec_desc_fail(d, "out of memory", NULL, "");
+	return -ENOMEM;
+}
+
 static int emergency(struct ec_desc *d, u64 at)
 {
 	int slave = ec_desc_slave(d, ec_desc_next(d));
+	struct ec_app_event e = { .at_ns = at };
 	s64 code = 0x1000, reg = 1;
-	u8 emcy[8] = { 0 };
 
 	if (slave < 0)
 		return slave;
 	if (ec_desc_number(d, "code", 0, 0xFFFF, &code) ||
 	    ec_desc_number(d, "register", 0, 0xFF, &reg))
 		return -EINVAL;
-	put_unaligned_le16((u16)code, emcy);
-	emcy[2] = (u8)reg;
-	if (!ec_app_add_event(d->node[slave].app, at, emcy))
-		return 0;
-	ec_desc_fail(d, "out of memory", NULL, "");
-	return -ENOMEM;
+	put_unaligned_le16((u16)code, e.emcy);
+	e.emcy[2] = (u8)reg;
+	return add_event(d, slave, &e);
+}
+
+static int voe(struct ec_desc *d, u64 at)
+{
+	int slave = ec_desc_slave(d, ec_desc_next(d));
+	struct ec_app_event e = { .at_ns = at, .is_voe = true };
+	s64 vendor = 0, type = 0, size = 0;
+
+	if (slave < 0)
+		return slave;
+	if (!d->node[slave].app->model->params.voe)
+		return ec_desc_fail(d, "this slave has no VoE; give it voe=TYPE", NULL, "");
+	if (ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor) ||
+	    ec_desc_number(d, "type", 0, 0xFFFF, &type) ||
+	    ec_desc_number(d, "size", 0, 1474, &size))
+		return -EINVAL;
+	e.voe = (struct ec_app_voe){
+		.hdr = { .vendor = (u32)vendor, .type = (u16)type }, .size = (u16)size,
+	};
+	return add_event(d, slave, &e);
 }
 
 static int target(struct ec_desc *d, const struct verb *v,
@@ -183,6 +208,8 @@ int ec_desc_fault(struct ec_desc *d)
 		return ret;
 	if (ec_desc_is(w, "emergency"))
 		return emergency(d, f.at_ns);
+	if (ec_desc_is(w, "voe"))
+		return voe(d, f.at_ns);
 	for (u32 i = 0; i < ARRAY_SIZE(verbs); i++)
 		if (ec_desc_is(w, verbs[i].name))
 			v = &verbs[i];

@@ -32,6 +32,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 	app->eep_due = EC_ESC_NEVER;
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
+	ec_app_soe_reset(app);
 	if (m->dev.profile && m->dev.profile->init)
 		m->dev.profile->init(app);
 	if (!m->emulation)
@@ -142,7 +143,10 @@ static void poll(struct ec_esc *esc, u64 now)
 	while (app->next_event && app->next_event->at_ns <= now) {
 		const u8 *e = app->next_event->emcy;
 
-		ec_app_emergency(app, get_unaligned_le16(e), e[2], e + 3, now);
+		if (app->next_event->is_voe)
+			ec_app_voe_send(app, &app->next_event->voe, now);
+		else
+			ec_app_emergency(app, get_unaligned_le16(e), e[2], e + 3, now);
 		app->next_event = app->next_event->next;
 	}
 	if (!mute(app, now) && !app->model->emulation) {
@@ -222,24 +226,22 @@ struct ec_app *ec_app_of(const struct ec_esc *esc)
 }
 
 /**
- * ec_app_add_event() - let a slave send an emergency
+ * ec_app_add_event() - let a slave send a message by itself
  * @app: slave
- * @at_ns: when
- * @emcy: error code, error register, five bytes
+ * @event: what and when; copied
  *
  * Context: Process. May sleep.
  * Return: 0, or -ENOMEM.
  */
-int ec_app_add_event(struct ec_app *app, u64 at_ns, const u8 emcy[8])
+int ec_app_add_event(struct ec_app *app, const struct ec_app_event *event)
 {
 	struct ec_app_event *e, **p = &app->events;
 
 	e = ec_sim_alloc(app->model->sim, sizeof(*e));
 	if (!e)
 		return -ENOMEM;
-	e->at_ns = at_ns;
-	memcpy(e->emcy, emcy, 8);
-	while (*p && (*p)->at_ns <= at_ns)
+	*e = *event;
+	while (*p && (*p)->at_ns <= e->at_ns)
 		p = &(*p)->next;
 	e->next = *p;
 	*p = e;
@@ -261,7 +263,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 		       max(d->boot.rx_len, d->boot.tx_len));
 	u16 info = (u16)max_t(u32, 2 + 2 * m->n_objects, 300);
 	u16 image = max(m->max_bytes[EC_APP_OUT], m->max_bytes[EC_APP_IN]);
-	size_t size, at[9];
+	size_t size, at[10];
 	struct ec_app *app;
 	u8 *p;
 
@@ -276,7 +278,8 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	at[6] = at[5] + image;
 	at[7] = at[6] + 3 * (size_t)mbox;
 	at[8] = at[7] + info;
-	size = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
+	at[9] = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
+	size = at[9] + m->params.soe * ec_app_soe_bytes();
 
 	app = ec_sim_alloc(m->sim, size);
 	if (!app)
@@ -295,6 +298,8 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	app->mbox.info_buf = p + at[7];
 	app->mbox.info_cap = info;
 	app->sdo_buf = p + at[8];
+	app->soe.values = p + at[9];
+	app->soe.drives = m->params.soe;
 	app->model = m;
 	m->refs++;
 	return app;

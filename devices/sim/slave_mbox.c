@@ -40,6 +40,7 @@ void ec_app_mbox_reset(struct ec_app *app)
 	m->rx_counter = 0;
 	m->tx_counter = 0;
 	m->n_emcy = 0;
+	m->n_voe = 0;
 	memset(&m->info, 0, sizeof(m->info));
 	m->info.done = true;
 	if (m->cap)
@@ -247,13 +248,19 @@ static void coe(struct ec_app *app, const u8 *rx, size_t len, u64 now, u64 due)
 	}
 }
 
-static void eoe(struct ec_app *app, const u8 *rx, size_t len, u64 due)
+/* a protocol with a server in a file of its own */
+typedef int server_fn(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
+
+static void serve(struct ec_app *app, u8 type, server_fn *server, const u8 *rx, size_t len,
+		  u64 due)
 {
-	int ret = ec_app_eoe(app, rx, len, app->mbox.out + EC_MBOX_HDR,
-			     tx_size(app) - (size_t)EC_MBOX_HDR);
+	int ret = server(app, rx, len, app->mbox.out + EC_MBOX_HDR,
+			 tx_size(app) - (size_t)EC_MBOX_HDR);
 
 	if (ret > 0)
-		out_set(app, EC_MBOX_EOE, (size_t)ret, due);
+		out_set(app, type, (size_t)ret, due);
+	else if (ret == -EINVAL)
+		out_error(app, EC_MBOX_ERR_SERVICE, due);
 	else if (ret < 0)
 		out_error(app, EC_MBOX_ERR_TOO_SHORT, due);
 }
@@ -269,6 +276,10 @@ static bool speaks(const struct ec_app *app, u8 type)
 		return p & EC_SII_PROTO_COE;
 	case EC_MBOX_EOE:
 		return p & EC_SII_PROTO_EOE;
+	case EC_MBOX_SOE:
+		return p & EC_SII_PROTO_SOE && app->soe.drives;
+	case EC_MBOX_VOE:
+		return p & EC_SII_PROTO_VOE && app->model->params.voe;
 	default:
 		return false;	/* listed in the EEPROM or not: not modelled */
 	}
@@ -294,7 +305,11 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 	else if (!speaks(app, h.type))
 		out_error(app, EC_MBOX_ERR_PROTOCOL, due);
 	else if (h.type == EC_MBOX_EOE)
-		eoe(app, r.p, h.len, due);
+		serve(app, EC_MBOX_EOE, ec_app_eoe, r.p, h.len, due);
+	else if (h.type == EC_MBOX_SOE)
+		serve(app, EC_MBOX_SOE, ec_app_soe, r.p, h.len, due);
+	else if (h.type == EC_MBOX_VOE)
+		serve(app, EC_MBOX_VOE, ec_app_voe, r.p, h.len, due);
 	else
 		coe(app, r.p, h.len, now, due);
 }
@@ -323,6 +338,37 @@ static void spoil(struct ec_app *app)
 	}
 }
 
+/* the oldest emergency into the out buffer */
+static void next_emergency(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	struct ec_coe_emergency e = {
+		.code = get_unaligned_le16(m->emcy[0]),
+		.reg = m->emcy[0][2],
+	};
+	int len;
+
+	memcpy(e.data, m->emcy[0] + 3, 5);
+	memmove(m->emcy[0], m->emcy[1], sizeof(m->emcy) - sizeof(m->emcy[0]));
+	m->n_emcy--;
+	len = ec_coe_emergency_encode(m->out + EC_MBOX_HDR, m->cap - (size_t)EC_MBOX_HDR, &e);
+	if (len > 0)
+		out_set(app, EC_MBOX_COE, (size_t)len, now);
+}
+
+/* the oldest VoE message nobody has asked for */
+static void next_voe(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	int len = ec_app_voe_unasked(&m->voe[0], m->out + EC_MBOX_HDR,
+				     tx_size(app) - (size_t)EC_MBOX_HDR);
+
+	memmove(&m->voe[0], &m->voe[1], sizeof(m->voe) - sizeof(m->voe[0]));
+	m->n_voe--;
+	if (len > 0)
+		out_set(app, EC_MBOX_VOE, (size_t)len, now);
+}
+
 /* moves what can be moved, until nothing does */
 static void step(struct ec_app *app, u64 now)
 {
@@ -348,21 +394,9 @@ static void step(struct ec_app *app, u64 now)
 			return;
 		}
 		if (m->n_emcy) {
-			struct ec_coe_emergency e = {
-				.code = get_unaligned_le16(m->emcy[0]),
-				.reg = m->emcy[0][2],
-			};
-			int len;
-
-			memcpy(e.data, m->emcy[0] + 3, 5);
-			memmove(m->emcy[0], m->emcy[1],
-				sizeof(m->emcy) - sizeof(m->emcy[0]));
-			m->n_emcy--;
-			len = ec_coe_emergency_encode(m->out + EC_MBOX_HDR,
-						      m->cap - (size_t)EC_MBOX_HDR,
-						      &e);
-			if (len > 0)
-				out_set(app, EC_MBOX_COE, (size_t)len, now);
+			next_emergency(app, now);
+		} else if (m->n_voe) {
+			next_voe(app, now);
 		} else if (!m->info.done) {
 			info_next(app, now);
 		} else if (m->rx_waits) {
@@ -519,5 +553,25 @@ void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
 	m->emcy[m->n_emcy][2] = reg;
 	memcpy(m->emcy[m->n_emcy] + 3, data, 5);
 	m->n_emcy++;
+	step(app, now);
+}
+
+/**
+ * ec_app_voe_send() - send a VoE message nobody has asked for
+ * @app: slave
+ * @voe: what
+ * @now: time, ns
+ *
+ * Dropped when there is no VoE, or too many wait.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_voe_send(struct ec_app *app, const struct ec_app_voe *voe, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+
+	if (!works(app) || m->n_voe == EC_APP_VOE || !speaks(app, EC_MBOX_VOE))
+		return;
+	m->voe[m->n_voe++] = *voe;
 	step(app, now);
 }

@@ -494,6 +494,10 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 		m->dev.mapping = params->mapping;
 	if (params->id)
 		m->dev.flags |= EC_SII_FLAG_ID_AL;
+	if (params->soe)
+		m->dev.protocols |= EC_SII_PROTO_SOE;
+	if (params->voe)
+		m->dev.protocols |= EC_SII_PROTO_VOE;
 	*err = ec_app_dev_is_generic(dev) ? ec_app_dev_generic(m) : 0;
 	if (!*err && m->dev.protocols & EC_SII_PROTO_COE) {
 		m->dev.coe &= (u8)~(EC_SII_COE_PDO_ASSIGN |
@@ -516,7 +520,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
  * @sim: segment whose memory it takes
  * @eeprom: image
  * @len: bytes in it
- * @params: of these only @mapping and @id count
+ * @params: of these only @mapping and @id count, and @soe and @voe where the
+ *          image has the protocol
  * @err: -ENOMEM without memory, -EINVAL: not an image
  *
  * The dictionary is made from the PDOs of the image.
