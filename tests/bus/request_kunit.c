@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Requests beside the cycle: SDOs, registers; emergencies. */
-#include "cyc.h"
+#include "req.h"
 #include "devices/sim/app.h"
 #include "master/ioctl.h"
 #include "master/wire/coe.h"
@@ -12,76 +12,22 @@ static const char text[] =
 	"segment seed=8 response=500us transition=200us\n"
 	"slave a drive mbox=64 serial=11\nslave b drive mbox=512 serial=12\n";
 
-static u32 add(struct cyc *c, u32 config, u32 kind, u32 size)
-{
-	struct ec_ioc_sc_request r = { .config = config, .kind = kind, .size = size };
-
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_request(&c->b->app, &r), 0, "%s",
-			    c->b->app.reason);
-	return r.index;
-}
-
-static struct ec_request_area *area(struct cyc *c)
-{
-	return (void *)c->b->m->session->shared->requests;
-}
-
-static struct ec_request_record *rec(struct cyc *c, u32 i)
-{
-	return (struct ec_request_record *)((u8 *)area(c) + area(c)->requests) + i;
-}
-
-static u8 *data(struct cyc *c, u32 i)
-{
-	return (u8 *)area(c) + rec(c, i)->data;
-}
-
 static struct ec_emerg_ring *ring(struct cyc *c, u32 config)
 {
-	return (struct ec_emerg_ring *)((u8 *)area(c) + area(c)->rings) + config;
-}
-
-/* what the library does */
-static void begin(struct cyc *c, u32 i, u16 index, u8 sub, u8 op, u32 size)
-{
-	struct ec_request_record *r = rec(c, i);
-
-	r->index = index;
-	r->subindex = sub;
-	r->op = op;
-	r->size = size;
-	smp_store_release(&r->start, r->start + 1);
-	c->flags = EC_SEND_FLAG_REQUESTS;
-	cyc_run(c, 1);
-	c->flags = 0;
-}
-
-static bool over(struct cyc *c, u32 i)
-{
-	return smp_load_acquire(&rec(c, i)->done) == rec(c, i)->start;
-}
-
-/* Cycles until request @i has ended; its result. */
-static int end(struct cyc *c, u32 i, u32 limit_ms)
-{
-	u64 until = ktime_get_ns() + (u64)limit_ms * NSEC_PER_MSEC;
-
-	while (!over(c, i) && ktime_get_ns() < until)
-		cyc_run(c, 1);
-	return over(c, i) ? rec(c, i)->result : 1;
+	return (struct ec_emerg_ring *)((u8 *)req_area(c) + req_area(c)->rings) + config;
 }
 
 static int download(struct cyc *c, u32 i, u16 index, u8 sub, const void *value, u32 size)
 {
-	memcpy(data(c, i), value, size);
-	begin(c, i, index, sub, true, size);
-	return end(c, i, 5000);
+	memcpy(req_data(c, i), value, size);
+	req_begin(c, i, index, sub, true, size);
+	return req_end(c, i, 5000);
 }
 
 static int upload(struct cyc *c, u32 i, u16 index, u8 sub)
 {
-	begin(c, i, index, sub, false, 0);
-	return end(c, i, 5000);
+	req_begin(c, i, index, sub, false, 0);
+	return req_end(c, i, 5000);
 }
 
 #define ABSENT	2	/* configuration without slave */
@@ -121,23 +67,23 @@ static void go(struct cyc *c)
 static void req_sdo(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4), b = add(c, 1, EC_REQUEST_SDO, 1000), i;
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), b = req_add(c, 1, EC_REQUEST_SDO, 1000), i;
 	u8 value[1000];
 
 	go(c);
 	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
-	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 4);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a)), 11);
+	KUNIT_EXPECT_EQ(test, req_rec(c, a)->got, 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a)), 11);
 	KUNIT_EXPECT_EQ(test, upload(c, b, 0x1018, 4), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, b)), 12);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, b)), 12);
 	for (i = 0; i < 1000; i++)
 		value[i] = i * 7;
 	KUNIT_EXPECT_EQ(test, download(c, b, SCRATCH, 0, value, 1000), 0);
-	memset(data(c, b), 0, 1000);
+	memset(req_data(c, b), 0, 1000);
 	KUNIT_EXPECT_EQ(test, upload(c, b, SCRATCH, 0), 0);
-	KUNIT_EXPECT_EQ(test, rec(c, b)->got, 1000);
-	KUNIT_EXPECT_MEMEQ(test, data(c, b), value, 1000);
-	KUNIT_EXPECT_EQ(test, rec(c, b)->abort_code, 0);
+	KUNIT_EXPECT_EQ(test, req_rec(c, b)->got, 1000);
+	KUNIT_EXPECT_MEMEQ(test, req_data(c, b), value, 1000);
+	KUNIT_EXPECT_EQ(test, req_rec(c, b)->abort_code, 0);
 	/* the cycle did not notice */
 	KUNIT_EXPECT_TRUE(test, both_op(c));
 	c->incomplete = 0;
@@ -149,17 +95,17 @@ static void req_sdo(struct kunit *test)
 static void req_abort_restart(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4), i;
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), i;
 
 	go(c);
 	for (i = 0; i < 3; i++) {
 		KUNIT_EXPECT_EQ(test, upload(c, a, 0x3fff, 0), -EIO);
-		KUNIT_EXPECT_EQ(test, rec(c, a)->abort_code, EC_ABORT_NO_OBJECT);
+		KUNIT_EXPECT_EQ(test, req_rec(c, a)->abort_code, EC_ABORT_NO_OBJECT);
 		KUNIT_EXPECT_EQ(test, download(c, a, 0x1018, 1, "abcd", 4), -EIO);
-		KUNIT_EXPECT_EQ(test, rec(c, a)->abort_code, EC_ABORT_READ_ONLY);
+		KUNIT_EXPECT_EQ(test, req_rec(c, a)->abort_code, EC_ABORT_READ_ONLY);
 		KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
-		KUNIT_EXPECT_EQ(test, rec(c, a)->abort_code, 0);
-		KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a)), 11);
+		KUNIT_EXPECT_EQ(test, req_rec(c, a)->abort_code, 0);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a)), 11);
 		KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
 	}
 }
@@ -168,42 +114,42 @@ static void req_abort_restart(struct kunit *test)
 static void req_restart_busy(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4);
 
 	go(c);
-	begin(c, a, 0x1018, 4, false, 0);
-	KUNIT_ASSERT_FALSE(test, over(c, a));
-	begin(c, a, 0x1018, 1, false, 0);
+	req_begin(c, a, 0x1018, 4, false, 0);
+	KUNIT_ASSERT_FALSE(test, req_over(c, a));
+	req_begin(c, a, 0x1018, 1, false, 0);
 	/* the second start may have been seen too early: told again, as with the next one */
-	while (!over(c, a) && c->cycles < 20000) {
+	while (!req_over(c, a) && c->cycles < 20000) {
 		c->flags = EC_SEND_FLAG_REQUESTS;
 		cyc_run(c, 1);
 	}
-	KUNIT_EXPECT_EQ(test, rec(c, a)->done, 2);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a)), bus_slave(c->b, 0)->info.vendor);
+	KUNIT_EXPECT_EQ(test, req_rec(c, a)->done, 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a)), bus_slave(c->b, 0)->info.vendor);
 }
 
 /* The application of the slave says nothing: an error, the other slave goes on. */
 static void req_mute(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4), a2 = add(c, 0, EC_REQUEST_SDO, 4);
-	u32 b = add(c, 1, EC_REQUEST_SDO, 4);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), a2 = req_add(c, 0, EC_REQUEST_SDO, 4);
+	u32 b = req_add(c, 1, EC_REQUEST_SDO, 4);
 	u64 t0;
 
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	t0 = ktime_get_ns();
-	begin(c, a, 0x1018, 4, false, 0);
-	rec(c, a2)->timeout_ms = 100;
-	begin(c, a2, 0x1018, 4, false, 0);
+	req_begin(c, a, 0x1018, 4, false, 0);
+	req_rec(c, a2)->timeout_ms = 100;
+	req_begin(c, a2, 0x1018, 4, false, 0);
 	KUNIT_EXPECT_EQ(test, upload(c, b, 0x1018, 4), 0);
-	KUNIT_EXPECT_FALSE(test, over(c, a));
+	KUNIT_EXPECT_FALSE(test, req_over(c, a));
 	/* the second waits behind the first, but not longer than it may */
-	KUNIT_EXPECT_EQ(test, end(c, a2, 500), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, req_end(c, a2, 500), -ETIMEDOUT);
 	KUNIT_EXPECT_GE(test, ktime_get_ns() - t0, 100 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 150 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_EQ(test, end(c, a, 3000), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, req_end(c, a, 3000), -ETIMEDOUT);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 1100 * NSEC_PER_MSEC);
 	bus_fault(c->b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
 	cyc_run(c, 100);
@@ -213,37 +159,38 @@ static void req_mute(struct kunit *test)
 static void req_absent(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 timed = add(c, ABSENT, EC_REQUEST_SDO, 4), ever = add(c, ABSENT, EC_REQUEST_SDO, 4);
+	u32 timed = req_add(c, ABSENT, EC_REQUEST_SDO, 4);
+	u32 ever = req_add(c, ABSENT, EC_REQUEST_SDO, 4);
 	u64 t0, ms;
 
 	go(c);
-	begin(c, ever, 0x1018, 4, false, 0);
-	rec(c, timed)->timeout_ms = 300;
+	req_begin(c, ever, 0x1018, 4, false, 0);
+	req_rec(c, timed)->timeout_ms = 300;
 	t0 = ktime_get_ns();
-	begin(c, timed, 0x1018, 4, false, 0);
-	KUNIT_EXPECT_EQ(test, end(c, timed, 2000), -ETIMEDOUT);
+	req_begin(c, timed, 0x1018, 4, false, 0);
+	KUNIT_EXPECT_EQ(test, req_end(c, timed, 2000), -ETIMEDOUT);
 	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 	KUNIT_EXPECT_GE(test, ms, 300ull);
 	KUNIT_EXPECT_LE(test, ms, 330ull);
-	KUNIT_EXPECT_EQ(test, end(c, ever, 3000), 1);
+	KUNIT_EXPECT_EQ(test, req_end(c, ever, 3000), 1);
 }
 
 /* A request waits for a slave that is away; when it is back it is done. */
 static void req_comes_back(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 b = add(c, 1, EC_REQUEST_SDO, 4), i;
+	u32 b = req_add(c, 1, EC_REQUEST_SDO, 4), i;
 
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
 	for (i = 0; i < 2000 && c->b->m->session->configs[1]->slave; i++)
 		cyc_run(c, 1);
 	KUNIT_ASSERT_NULL(test, c->b->m->session->configs[1]->slave);
-	begin(c, b, 0x1018, 4, false, 0);
-	KUNIT_EXPECT_EQ(test, end(c, b, 500), 1);
+	req_begin(c, b, 0x1018, 4, false, 0);
+	KUNIT_EXPECT_EQ(test, req_end(c, b, 500), 1);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
-	KUNIT_EXPECT_EQ(test, end(c, b, 5000), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, b)), 12);
+	KUNIT_EXPECT_EQ(test, req_end(c, b, 5000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, b)), 12);
 }
 
 /* Numbers in the record that cannot be. */
@@ -253,8 +200,8 @@ static void req_bounds(struct kunit *test)
 	struct ec_ioc_sc_request big = { .kind = EC_REQUEST_SDO, .size = EC_MAX_SDO_SIZE + 1 };
 	struct ec_ioc_sc_request kind = { .kind = 4 }, none = { .config = 3 };
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4), r = add(c, 0, EC_REQUEST_REG, 4), i;
-	u32 guard = add(c, 1, EC_REQUEST_SDO, 8);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), r = req_add(c, 0, EC_REQUEST_REG, 4), i;
+	u32 guard = req_add(c, 1, EC_REQUEST_SDO, 8);
 
 	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &big), -EINVAL);
 	big.kind = EC_REQUEST_REG;
@@ -263,24 +210,24 @@ static void req_bounds(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &kind), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &none), -ENOENT);
 	go(c);
-	memset(data(c, guard), 0x55, 8);
+	memset(req_data(c, guard), 0x55, 8);
 	for (i = 0; i < ARRAY_SIZE(sizes); i++) {
-		begin(c, a, TYPES, 8, true, sizes[i]);
-		KUNIT_EXPECT_EQ(test, end(c, a, 1000), -EINVAL);
-		begin(c, r, 0x1000, 0, true, sizes[i]);
-		KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
-		begin(c, r, 0, 0, false, sizes[i]);
-		KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
+		req_begin(c, a, TYPES, 8, true, sizes[i]);
+		KUNIT_EXPECT_EQ(test, req_end(c, a, 1000), -EINVAL);
+		req_begin(c, r, 0x1000, 0, true, sizes[i]);
+		KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), -EINVAL);
+		req_begin(c, r, 0, 0, false, sizes[i]);
+		KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), -EINVAL);
 	}
 	/* an object larger than the room */
 	KUNIT_EXPECT_EQ(test, upload(c, a, SCRATCH, 0), -ENOBUFS);
-	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 0);
+	KUNIT_EXPECT_EQ(test, req_rec(c, a)->got, 0);
 	/* what the kernel has laid out is not read back */
-	rec(c, a)->data = 0xfffffff0;
-	begin(c, a, 0x1018, 4, false, 0);
-	KUNIT_EXPECT_EQ(test, end(c, a, 1000), 0);
+	req_rec(c, a)->data = 0xfffffff0;
+	req_begin(c, a, 0x1018, 4, false, 0);
+	KUNIT_EXPECT_EQ(test, req_end(c, a, 1000), 0);
 	for (i = 0; i < 8; i++)
-		KUNIT_EXPECT_EQ(test, data(c, guard)[i], 0x55);
+		KUNIT_EXPECT_EQ(test, req_data(c, guard)[i], 0x55);
 	KUNIT_EXPECT_EQ(test, upload(c, guard, 0x1018, 4), 0);
 }
 
@@ -289,15 +236,15 @@ static void req_killed(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
 	struct bus *b = c->b;
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4), n = add(c, ABSENT, EC_REQUEST_SDO, 4);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), n = req_add(c, ABSENT, EC_REQUEST_SDO, 4);
 	u64 t0;
 
 	go(c);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	begin(c, n, 0x1018, 4, false, 0);
-	begin(c, a, 0x1018, 4, false, 0);
+	req_begin(c, n, 0x1018, 4, false, 0);
+	req_begin(c, a, 0x1018, 4, false, 0);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_FALSE(test, over(c, a));
+	KUNIT_ASSERT_FALSE(test, req_over(c, a));
 	t0 = ktime_get_ns();
 	ec_session_end(b->m, &b->app);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 100 * NSEC_PER_MSEC);
@@ -307,13 +254,13 @@ static void req_killed(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	a = add(c, 0, EC_REQUEST_SDO, 4);
+	a = req_add(c, 0, EC_REQUEST_SDO, 4);
 	go(c);
 	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a)), 11);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a)), 11);
 	/* and the master goes away with one BUSY */
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	begin(c, a, 0x1018, 4, false, 0);
+	req_begin(c, a, 0x1018, 4, false, 0);
 }
 
 /* How long until the mailbox of slave 0 is free, ms; at most 5000. */
@@ -333,12 +280,12 @@ static void req_cancelled(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
 	struct bus *b = c->b;
-	u32 a = add(c, 0, EC_REQUEST_SDO, 1000);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 1000);
 	u8 value[1000] = { 0 };
 
 	go(c);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	begin(c, a, 0x1018, 4, false, 0);
+	req_begin(c, a, 0x1018, 4, false, 0);
 	cyc_run(c, 10);
 	KUNIT_ASSERT_TRUE(test, mutex_is_locked(&bus_slave(b, 0)->mbox_lock));
 	ec_session_end(b->m, &b->app);
@@ -350,11 +297,11 @@ static void req_cancelled(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	a = add(c, 0, EC_REQUEST_SDO, 1000);
+	a = req_add(c, 0, EC_REQUEST_SDO, 1000);
 	go(c);
 	bus_app(b, "a")->response_ns = 100 * NSEC_PER_MSEC;	/* 18 segments */
-	memcpy(data(c, a), value, 1000);
-	begin(c, a, SCRATCH, 0, true, 1000);
+	memcpy(req_data(c, a), value, 1000);
+	req_begin(c, a, SCRATCH, 0, true, 1000);
 	cyc_run(c, 250);
 	KUNIT_ASSERT_TRUE(test, mutex_is_locked(&bus_slave(b, 0)->sdo_lock));
 	ec_session_end(b->m, &b->app);
@@ -364,54 +311,54 @@ static void req_cancelled(struct kunit *test)
 static void req_complete_access(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 64);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 64);
 
 	go(c);
-	rec(c, a)->flags = EC_SDO_FLAG_COMPLETE;
+	req_rec(c, a)->flags = EC_SDO_FLAG_COMPLETE;
 	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), 0);
-	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 18);
-	KUNIT_EXPECT_EQ(test, data(c, a)[0], 4);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le32(data(c, a) + 14), 11);
-	rec(c, a)->flags = 2;
+	KUNIT_EXPECT_EQ(test, req_rec(c, a)->got, 18);
+	KUNIT_EXPECT_EQ(test, req_data(c, a)[0], 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a) + 14), 11);
+	req_rec(c, a)->flags = 2;
 	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), -EOPNOTSUPP);
-	rec(c, a)->flags = 0;
+	req_rec(c, a)->flags = 0;
 	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 0), 0);
-	KUNIT_EXPECT_EQ(test, rec(c, a)->got, 1);
+	KUNIT_EXPECT_EQ(test, req_rec(c, a)->got, 1);
 }
 
 static void req_registers(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
-	u32 r = add(c, 1, EC_REQUEST_REG, 8), n = add(c, ABSENT, EC_REQUEST_REG, 8);
+	u32 r = req_add(c, 1, EC_REQUEST_REG, 8), n = req_add(c, ABSENT, EC_REQUEST_REG, 8);
 
 	go(c);
-	begin(c, r, 0x0010, 0, false, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), bus_slave(c->b, 1)->station);
-	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
-	put_unaligned_le16(0x1234, data(c, r));
-	begin(c, r, EC_REG_WD_DIVIDER, 0, true, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
-	memset(data(c, r), 0, 8);
-	begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
-	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x1234);
-	begin(c, n, EC_REG_WD_DIVIDER, 0, false, 2);
-	KUNIT_EXPECT_EQ(test, end(c, n, 1000), 1);
+	req_begin(c, r, 0x0010, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r)), bus_slave(c->b, 1)->station);
+	KUNIT_EXPECT_EQ(test, req_rec(c, r)->got, 2);
+	put_unaligned_le16(0x1234, req_data(c, r));
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, true, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), 0);
+	memset(req_data(c, r), 0, 8);
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, req_rec(c, r)->got, 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r)), 0x1234);
+	req_begin(c, n, EC_REG_WD_DIVIDER, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, n, 1000), 1);
 	/* what was there comes back, what was sent is there */
-	put_unaligned_le16(0x5678, data(c, r));
-	begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READWRITE, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x1234);
-	KUNIT_EXPECT_EQ(test, rec(c, r)->got, 2);
-	begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), 0);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(data(c, r)), 0x5678);
-	begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READ_NOW, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
-	begin(c, r, EC_REG_WD_DIVIDER, 0, 200, 2);
-	KUNIT_EXPECT_EQ(test, end(c, r, 1000), -EINVAL);
+	put_unaligned_le16(0x5678, req_data(c, r));
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READWRITE, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r)), 0x1234);
+	KUNIT_EXPECT_EQ(test, req_rec(c, r)->got, 2);
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, false, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), 0);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r)), 0x5678);
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READ_NOW, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), -EINVAL);
+	req_begin(c, r, EC_REG_WD_DIVIDER, 0, 200, 2);
+	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), -EINVAL);
 }
 
 static void req_emergencies(struct kunit *test)
@@ -430,7 +377,7 @@ static void req_emergencies(struct kunit *test)
 	ec_app_emergency(bus_app(c->b, "a"), 0x8110, 0x11, five, ktime_get_ns());
 	cyc_run(c, 40);
 	KUNIT_ASSERT_EQ(test, ring(c, 0)->head, 1);
-	first = (u8 *)area(c) + ring(c, 0)->data;
+	first = (u8 *)req_area(c) + ring(c, 0)->data;
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(first), 0x8110);
 	KUNIT_EXPECT_EQ(test, first[2], 0x11);
 	KUNIT_EXPECT_MEMEQ(test, first + 3, five, 5);
@@ -459,7 +406,7 @@ static void req_emergency_without_room(struct kunit *test)
 {
 	static const u8 five[5] = { 0 };
 	struct cyc *c = prepare(test);
-	u32 a = add(c, 0, EC_REQUEST_SDO, 4);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4);
 
 	go(c);
 	ec_app_emergency(bus_app(c->b, "a"), 0x8110, 0x11, five, ktime_get_ns());
