@@ -72,6 +72,8 @@
 #define EC_HAVE_REG_ACCESS
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
+/* ec_soe_request_t and its functions */
+#define EC_HAVE_SOE_REQUESTS
 /* ecrt_master_scan_progress() */
 #define EC_HAVE_SCAN_PROGRESS
 /* ecrt_slave_config_eoe_*() */
@@ -84,6 +86,10 @@
 #ifndef __KERNEL__
 /* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
 #define EC_HAVE_KERNEL_CYCLE
+/* ecrt_slave_config_create_sdo_request_complete() and its kin; in userspace */
+#define EC_HAVE_SDO_REQUEST_COMPLETE
+/* ecrt_reg_request_readwrite(); in userspace */
+#define EC_HAVE_REG_READWRITE
 /* ecrt_master_setup_domain_memory(); in userspace */
 #define EC_HAVE_DOMAIN_MEMORY
 /* ecrt_master_deactivate_slaves(); in userspace */
@@ -558,6 +564,48 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint32_t *abort_code);
+
+/**
+ * ecrt_master_write_idn() - write an IDN of a servo drive
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring; aliases are not looked at
+ * @drive_no: drive of the slave, 0 to 7
+ * @idn: bit 15: P, else S; bits 12-14 parameter set; bits 0-11 number
+ * @data: little-endian; a list begins with its length and largest length, 16
+ *	bit each
+ * @data_size: bytes, at least 1; it must fit into one message of the mailbox
+ * @error_code: out, may be NULL: SoE error code, 0 if the slave gave none
+ *
+ * SoE write of the value (ETG.1000.6 5.7).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-EIO refused, see @error_code; %-EINVAL no such slave or drive,
+ * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
+ * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EINTR; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
+		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
+		const uint8_t *data, size_t data_size, uint16_t *error_code);
+
+/**
+ * ecrt_master_read_idn() - read an IDN of a servo drive
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @drive_no: drive of the slave, 0 to 7
+ * @idn: as in ecrt_master_write_idn()
+ * @target: where to put it
+ * @target_size: room, bytes
+ * @result_size: out: bytes that were read; untouched on failure
+ * @error_code: as in ecrt_master_write_idn()
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-ENOBUFS larger than @target_size, nothing is copied; else as
+ * ecrt_master_write_idn().
+ */
+EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
+		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
+		uint8_t *target, size_t target_size, size_t *result_size,
+		uint16_t *error_code);
 
 /**
  * ecrt_master_activate() - end configuration, begin the cycle
@@ -1402,6 +1450,26 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 		uint16_t index, const uint8_t *data, size_t size);
 
 /**
+ * ecrt_slave_config_idn() - write an IDN each time the slave is configured
+ * @sc: slave configuration
+ * @drive_no: drive of the slave, 0 to 7
+ * @idn: as in ecrt_master_write_idn()
+ * @state: %EC_AL_STATE_PREOP or %EC_AL_STATE_SAFEOP: when, behind the SDOs or
+ *	before OP
+ * @data: little-endian, copied
+ * @size: bytes, at least 1
+ *
+ * Written in the order of the calls. One that is refused keeps the slave where
+ * it is.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: 0; %-EINVAL; %-ENOSPC more than 1024; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
+		uint8_t drive_no, uint16_t idn, ec_al_state_t state,
+		const uint8_t *data, size_t size);
+
+/**
  * ecrt_slave_config_emerg_size() - how many emergencies to keep
  * @sc: slave configuration
  * @elements: messages, at most 1024; at first 0: all are counted as lost
@@ -1462,6 +1530,51 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_overruns(
 EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 		ec_slave_config_t *sc, uint16_t index, uint8_t subindex,
 		size_t size);
+
+/**
+ * ecrt_slave_config_create_sdo_request_complete() - the same for a whole object
+ * @sc: slave configuration
+ * @index: object
+ * @size: room for its data, bytes, at most 65536; set to 0
+ *
+ * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE). CoE Complete Access from subindex 0 on.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_sdo_request_t *
+ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
+		uint16_t index, size_t size);
+
+/**
+ * ecrt_slave_config_create_soe_request() - read and write an IDN in OP
+ * @sc: slave configuration
+ * @drive_no: drive of the slave, 0 to 7
+ * @idn: as in ecrt_master_write_idn()
+ * @size: room for its data, bytes, at most 65536; set to 0
+ *
+ * It lives as long as @sc.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
+		ec_slave_config_t *sc, uint8_t drive_no, uint16_t idn,
+		size_t size);
+
+/**
+ * ecrt_slave_config_create_voe_handler() - exchange vendor specific messages
+ * @sc: slave configuration
+ * @size: room for data behind the VoE header, bytes, at most 1474; set to 0
+ *
+ * It lives as long as @sc. A slave may have several; those that read share
+ * what comes.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: handler; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_voe_handler_t *ecrt_slave_config_create_voe_handler(
+		ec_slave_config_t *sc, size_t size);
 
 /**
  * ecrt_slave_config_create_reg_request() - read and write registers in OP
@@ -1810,6 +1923,20 @@ EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
 		uint16_t index, uint8_t subindex);
 
 /**
+ * ecrt_sdo_request_index_complete() - another object, as a whole
+ * @req: request that is not BUSY
+ * @index: object
+ *
+ * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE). From now on CoE Complete Access, until
+ * ecrt_sdo_request_index().
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
+		uint16_t index);
+
+/**
  * ecrt_sdo_request_timeout() - how long a start may wait
  * @req: request
  * @timeout: ms from the send that hands the start over until the transfer
@@ -1872,6 +1999,20 @@ EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
 EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
 
 /**
+ * ecrt_sdo_request_write_with_size() - the same for so many bytes
+ * @req: request that is not BUSY, of an active master
+ * @size: bytes, from then on ecrt_sdo_request_data_size()
+ *
+ * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE).
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0,
+ * not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
+		size_t size);
+
+/**
  * ecrt_sdo_request_read() - start an upload
  * @req: request that is not BUSY, of an active master
  *
@@ -1881,6 +2022,179 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
+
+/**
+ * ecrt_soe_request_idn() - another IDN
+ * @req: request that is not BUSY
+ * @drive_no: drive of the slave, 0 to 7
+ * @idn: as in ecrt_master_write_idn()
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL no such drive, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_soe_request_idn(ec_soe_request_t *req,
+		uint8_t drive_no, uint16_t idn);
+
+/**
+ * ecrt_soe_request_timeout() - how long a start may wait
+ * @req: request
+ * @timeout: as in ecrt_sdo_request_timeout()
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_soe_request_timeout(ec_soe_request_t *req,
+		uint32_t timeout);
+
+/**
+ * ecrt_soe_request_data() - buffer of a request
+ * @req: request
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: address, always the same; NULL when @req is.
+ */
+EC_PUBLIC_API uint8_t *ecrt_soe_request_data(const ec_soe_request_t *req);
+
+/**
+ * ecrt_soe_request_data_size() - bytes in the buffer
+ * @req: request
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: size it was created with; after a successful read, bytes read. So
+ * many will be written.
+ */
+EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
+
+/**
+ * ecrt_soe_request_state() - how far a request is
+ * @req: request
+ *
+ * Data and size of a finished read are there when this has returned SUCCESS.
+ * A value that is larger than the buffer gives ERROR.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_soe_request_state(ec_soe_request_t *req);
+
+/**
+ * ecrt_soe_request_write() - start writing the buffer to the IDN
+ * @req: request that is not BUSY, of an active master
+ *
+ * The buffer is copied; the next ecrt_master_send() hands the start over.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
+
+/**
+ * ecrt_soe_request_read() - start reading the IDN
+ * @req: request that is not BUSY, of an active master
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
+
+/**
+ * ecrt_voe_handler_send_header() - header of the messages to be sent
+ * @voe: handler
+ * @vendor_id: vendor id
+ * @vendor_type: type, the vendor's own
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EINVAL @voe is NULL.
+ */
+EC_PUBLIC_API int ecrt_voe_handler_send_header(ec_voe_handler_t *voe,
+		uint32_t vendor_id, uint16_t vendor_type);
+
+/**
+ * ecrt_voe_handler_received_header() - header of the message read last
+ * @voe: handler
+ * @vendor_id: out, may be NULL: vendor id
+ * @vendor_type: out, may be NULL: type
+ *
+ * There after ecrt_voe_handler_execute() has returned SUCCESS for a read; 0
+ * before.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: 0; %-EINVAL @voe is NULL.
+ */
+EC_PUBLIC_API int ecrt_voe_handler_received_header(
+		const ec_voe_handler_t *voe, uint32_t *vendor_id,
+		uint16_t *vendor_type);
+
+/**
+ * ecrt_voe_handler_data() - buffer of a handler
+ * @voe: handler
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: address of what is behind the VoE header, always the same; NULL when
+ * @voe is.
+ */
+EC_PUBLIC_API uint8_t *ecrt_voe_handler_data(const ec_voe_handler_t *voe);
+
+/**
+ * ecrt_voe_handler_data_size() - bytes in the buffer
+ * @voe: handler
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: size it was created with; then that of the last write or successful
+ * read.
+ */
+EC_PUBLIC_API size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe);
+
+/**
+ * ecrt_voe_handler_write() - start sending a message
+ * @voe: handler that is not BUSY, of an active master
+ * @size: bytes of the buffer
+ *
+ * The buffer is copied; the next ecrt_master_send() hands the start over. Then
+ * ecrt_voe_handler_execute() tells how it goes; 500 ms at most.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL not active, or
+ * @voe is NULL.
+ */
+EC_PUBLIC_API int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size);
+
+/**
+ * ecrt_voe_handler_read() - start waiting for a message
+ * @voe: handler that is not BUSY, of an active master
+ *
+ * The mailbox is looked at until there is one; after 500 ms the state is ERROR.
+ * A message that came while somebody else used the mailbox is not lost.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL not active, or @voe is NULL.
+ */
+EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
+
+/**
+ * ecrt_voe_handler_read_nosync() - start fetching a message that must be there
+ * @voe: handler that is not BUSY, of an active master
+ *
+ * One access to the mailbox without a look whether it is full; without a message
+ * the state is ERROR.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: as ecrt_voe_handler_read().
+ */
+EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
+
+/**
+ * ecrt_voe_handler_execute() - how far the operation is; once a cycle
+ * @voe: handler
+ *
+ * A slave that is not there, or has no VoE, gives ERROR, as does a message
+ * that is larger than the buffer.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
+		ec_voe_handler_t *voe);
 
 /**
  * ecrt_reg_request_data() - buffer of a request
@@ -1927,6 +2241,21 @@ EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
  * Return: as ecrt_reg_request_write().
  */
 EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
+		uint16_t address, size_t size);
+
+/**
+ * ecrt_reg_request_readwrite() - write registers, get what was there
+ * @req: request that is not BUSY, of an active master
+ * @address: register
+ * @size: bytes
+ *
+ * Extension (%EC_HAVE_REG_READWRITE). One datagram (FPRW); clears a counter without
+ * losing a count. The old content is in the buffer after SUCCESS.
+ *
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: as ecrt_reg_request_write().
+ */
+EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,
 		uint16_t address, size_t size);
 
 #ifdef __cplusplus

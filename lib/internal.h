@@ -84,8 +84,10 @@ struct ec_domain {
 };
 
 /*
- * @room: bytes at @data, @size: of them used; @start: number of the last start;
- * @rec, @shared: record and data in mapped memory, NULL before activation
+ * @room: bytes at @data, @size: of them used; @index16: object, IDN, register,
+ * type of a VoE message; @subindex: or drive; @flags: EC_SDO_FLAG_COMPLETE;
+ * @vendor_id: of a VoE message; @op: EC_REQUEST_OP_* of the last start, @start: its
+ * number; @got_vendor_id, @got_type: of the VoE message read last; @rec, @shared: record and data in mapped memory, NULL before activation
  */
 struct ec_request {
 	struct ec_master *master;
@@ -95,9 +97,13 @@ struct ec_request {
 	size_t room;
 	size_t size;
 	__u32 timeout_ms;
-	__u16 sdo_index;
+	__u16 index16;
 	__u8 subindex;
-	bool write;
+	__u8 op;
+	__u32 flags;
+	__u32 vendor_id;
+	__u32 got_vendor_id;
+	__u16 got_type;
 	__u32 start;
 	ec_request_state_t state;
 	struct ec_request_record *rec;
@@ -120,6 +126,7 @@ struct ec_slave_config {
 int ec_ioctl(const struct ec_master *m, unsigned long cmd, void *arg);
 int ec_fail(int err, const char *fmt, ...)
 	__attribute__((format(printf, 2, 3)));
+int ec_not_there(int err);
 int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
 	__attribute__((format(printf, 3, 4)));
 
@@ -131,6 +138,10 @@ static inline int ec_inactive(const struct ec_master *m)
 
 void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
+/* request.c: what all kinds of requests have in common */
+void *ec_request_create(struct ec_slave_config *sc, __u32 kind, size_t size);
+ec_request_state_t ec_request_state(struct ec_request *r);
+int ec_request_start(struct ec_request *r, __u8 op, size_t size);
 int ec_requests_place(struct ec_master *m);
 void ec_requests_free(struct ec_master *m);
 void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset);

@@ -1,53 +1,66 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * SDO and register requests. Starting one writes to mapped memory and notes
- * that the next send has to tell; the state is read from there. No system
- * call, and nothing is printed, once they are created.
+ * Requests of all kinds. Starting one writes to mapped memory and notes that
+ * the next send has to tell; the state is read from there. No system call,
+ * and nothing is printed, once they are created.
  */
 #include <string.h>
 
 #include "internal.h"
 
-struct ec_sdo_request {
-	struct ec_request r;
-};
-
-struct ec_reg_request {
-	struct ec_request r;
-};
-
-/* creation and activation ----------------------------------------------------*/
-
-static int create(struct ec_slave_config *sc, struct ec_request *r, __u32 kind,
-		  size_t size)
+/**
+ * ec_request_create() - a request and its buffer, set to 0
+ * @sc: slave configuration
+ * @kind: EC_REQUEST_*
+ * @size: of the buffer
+ *
+ * Return: request, freed with the session; NULL with errno set.
+ */
+void *ec_request_create(struct ec_slave_config *sc, __u32 kind, size_t size)
 {
 	struct ec_ioc_sc_request arg = {
-		.config = sc->index,
 		.kind = kind,
 		.size = (__u32)size,
 	};
-	struct ec_master *m = sc->master;
-	int ret;
+	struct ec_request *r;
+	int ret = -ENOMEM;
 
-	if (size > UINT32_MAX)
-		return ec_fail(-EINVAL, "create a request of %zu bytes", size);
-	r->data = calloc(1, size ? size : 1);
-	if (!r->data)
-		return ec_fail(-ENOMEM, "create a request of %zu bytes", size);
-	ret = ec_ioctl(m, EC_IOC_SC_REQUEST, &arg);
-	if (ret) {
-		free(r->data);
-		return ec_fail_ioctl(m, ret,
-				     "create a request of %zu bytes for slave %u:%u",
-				     size, sc->alias, sc->position);
+	if (!sc) {
+		errno = EINVAL;
+		return NULL;
 	}
-	r->master = m;
+	if (size > UINT32_MAX) {
+		ec_fail(-EINVAL, "create a request of %zu bytes", size);
+		return NULL;
+	}
+	r = calloc(1, sizeof(*r));
+	if (r)
+		r->data = calloc(1, size ? size : 1);
+	if (!r || !r->data) {
+		ec_fail(ret, "create a request of %zu bytes", size);
+		goto failed;
+	}
+	arg.config = sc->index;
+	ret = ec_ioctl(sc->master, EC_IOC_SC_REQUEST, &arg);
+	if (ret) {
+		ec_fail_ioctl(sc->master, ret,
+			      "create a request of %zu bytes for slave %u:%u",
+			      size, sc->alias, sc->position);
+		goto failed;
+	}
+	r->master = sc->master;
 	r->index = arg.index;
 	r->room = size;
 	r->size = size;
-	r->next = m->requests;
-	m->requests = r;
-	return 0;
+	r->next = sc->master->requests;
+	sc->master->requests = r;
+	return r;
+failed:
+	if (r)
+		free(r->data);
+	free(r);
+	errno = -ret;
+	return NULL;
 }
 
 void ec_requests_free(struct ec_master *m)
@@ -57,7 +70,7 @@ void ec_requests_free(struct ec_master *m)
 	while ((r = m->requests)) {
 		m->requests = r->next;
 		free(r->data);
-		free(r);	/* first member of what was allocated */
+		free(r);
 	}
 }
 
@@ -81,9 +94,13 @@ int ec_requests_place(struct ec_master *m)
 	return 0;
 }
 
-/* start and state ------------------------------------------------------------*/
-
-static ec_request_state_t state(struct ec_request *r)
+/**
+ * ec_request_state() - how far a request is; takes the result of a finished one
+ * @r: request
+ *
+ * Return: state.
+ */
+ec_request_state_t ec_request_state(struct ec_request *r)
 {
 	struct ec_request_record *rec = r->rec;
 
@@ -91,30 +108,41 @@ static ec_request_state_t state(struct ec_request *r)
 	    __atomic_load_n(&rec->done, __ATOMIC_ACQUIRE) != r->start)
 		return r->state;
 	r->state = rec->result ? EC_REQUEST_ERROR : EC_REQUEST_SUCCESS;
-	if (r->state == EC_REQUEST_SUCCESS && !r->write) {
+	if (r->state == EC_REQUEST_SUCCESS && r->op != EC_REQUEST_OP_WRITE) {
 		r->size = rec->got < r->room ? rec->got : r->room;
 		memcpy(r->data, r->shared, r->size);
+		r->got_vendor_id = rec->got_vendor_id;
+		r->got_type = rec->got_type;
 	}
 	return r->state;
 }
 
-static int start(struct ec_request *r, bool write, __u16 index, __u8 subindex,
-		 size_t size)
+/**
+ * ec_request_start() - start a request; the next send tells
+ * @r: request
+ * @op: EC_REQUEST_OP_*
+ * @size: bytes to write; registers: to read, too
+ *
+ * Return: 0; -EBUSY; -EINVAL not active.
+ */
+int ec_request_start(struct ec_request *r, __u8 op, size_t size)
 {
 	struct ec_request_record *rec = r->rec;
 
 	if (!rec)
 		return -EINVAL;
-	if (state(r) == EC_REQUEST_BUSY)
+	if (ec_request_state(r) == EC_REQUEST_BUSY)
 		return -EBUSY;
-	if (write)
+	if (op == EC_REQUEST_OP_WRITE || op == EC_REQUEST_OP_READWRITE)
 		memcpy(r->shared, r->data, size);
-	rec->index = index;
-	rec->subindex = subindex;
-	rec->op = write;
+	rec->index = r->index16;
+	rec->subindex = r->subindex;
+	rec->op = op;
+	rec->flags = r->flags;
+	rec->vendor_id = r->vendor_id;
 	rec->size = (__u32)size;
 	rec->timeout_ms = r->timeout_ms;
-	r->write = write;
+	r->op = op;
 	r->start = r->start + 1 ? r->start + 1 : 1;
 	r->state = EC_REQUEST_BUSY;
 	__atomic_store_n(&rec->start, r->start, __ATOMIC_RELEASE);
@@ -122,104 +150,16 @@ static int start(struct ec_request *r, bool write, __u16 index, __u8 subindex,
 	return 0;
 }
 
-/* SDO requests ---------------------------------------------------------------*/
-
-ec_sdo_request_t *ecrt_slave_config_create_sdo_request(ec_slave_config_t *sc,
-						       uint16_t index,
-						       uint8_t subindex,
-						       size_t size)
-{
-	ec_sdo_request_t *req;
-
-	if (!sc) {
-		errno = EINVAL;
-		return NULL;
-	}
-	req = calloc(1, sizeof(*req));
-	if (!req) {
-		ec_fail(-ENOMEM, "create an SDO request");
-		return NULL;
-	}
-	if (create(sc, &req->r, EC_REQUEST_SDO, size)) {
-		free(req);
-		return NULL;
-	}
-	req->r.sdo_index = index;
-	req->r.subindex = subindex;
-	return req;
-}
-
-int ecrt_sdo_request_index(ec_sdo_request_t *req, uint16_t index,
-			   uint8_t subindex)
-{
-	if (!req)
-		return -EINVAL;
-	if (state(&req->r) == EC_REQUEST_BUSY)
-		return -EBUSY;
-	req->r.sdo_index = index;
-	req->r.subindex = subindex;
-	return 0;
-}
-
-int ecrt_sdo_request_timeout(ec_sdo_request_t *req, uint32_t timeout)
-{
-	if (!req)
-		return -EINVAL;
-	req->r.timeout_ms = timeout;
-	return 0;
-}
-
-uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req)
-{
-	return req ? req->r.data : NULL;
-}
-
-size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req)
-{
-	return req ? req->r.size : 0;
-}
-
-ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req)
-{
-	return req ? state(&req->r) : EC_REQUEST_ERROR;
-}
-
-int ecrt_sdo_request_write(ec_sdo_request_t *req)
-{
-	if (!req || !req->r.size)
-		return -EINVAL;
-	return start(&req->r, true, req->r.sdo_index, req->r.subindex,
-		     req->r.size);
-}
-
-int ecrt_sdo_request_read(ec_sdo_request_t *req)
-{
-	if (!req)
-		return -EINVAL;
-	return start(&req->r, false, req->r.sdo_index, req->r.subindex, 0);
-}
-
 /* register requests ----------------------------------------------------------*/
+
+struct ec_reg_request {
+	struct ec_request r;
+};
 
 ec_reg_request_t *ecrt_slave_config_create_reg_request(ec_slave_config_t *sc,
 						       size_t size)
 {
-	ec_reg_request_t *req;
-
-	if (!sc) {
-		errno = EINVAL;
-		return NULL;
-	}
-	req = calloc(1, sizeof(*req));
-	if (!req) {
-		ec_fail(-ENOMEM, "create a register request");
-		return NULL;
-	}
-	if (create(sc, &req->r, EC_REQUEST_REG, size)) {
-		free(req);
-		return NULL;
-	}
-	return req;
+	return ec_request_create(sc, EC_REQUEST_REG, size);
 }
 
 uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req)
@@ -230,26 +170,36 @@ uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req)
 /* The prototype says const; what it points to never is. */
 ec_request_state_t ecrt_reg_request_state(const ec_reg_request_t *req)
 {
-	return req ? state((struct ec_request *)&req->r) : EC_REQUEST_ERROR;
+	return req ? ec_request_state((struct ec_request *)&req->r) :
+		     EC_REQUEST_ERROR;
 }
 
-static int start_reg(ec_reg_request_t *req, bool write, uint16_t address,
+static int start_reg(ec_reg_request_t *req, __u8 op, uint16_t address,
 		     size_t size)
 {
 	if (!req || !size)
 		return -EINVAL;
 	if (size > req->r.room)
 		return -ENOBUFS;
-	return start(&req->r, write, address, 0, size);
+	if (ec_request_state(&req->r) == EC_REQUEST_BUSY)
+		return -EBUSY;
+	req->r.index16 = address;
+	return ec_request_start(&req->r, op, size);
 }
 
 int ecrt_reg_request_write(ec_reg_request_t *req, uint16_t address,
 			   size_t size)
 {
-	return start_reg(req, true, address, size);
+	return start_reg(req, EC_REQUEST_OP_WRITE, address, size);
 }
 
 int ecrt_reg_request_read(ec_reg_request_t *req, uint16_t address, size_t size)
 {
-	return start_reg(req, false, address, size);
+	return start_reg(req, EC_REQUEST_OP_READ, address, size);
+}
+
+int ecrt_reg_request_readwrite(ec_reg_request_t *req, uint16_t address,
+			       size_t size)
+{
+	return start_reg(req, EC_REQUEST_OP_READWRITE, address, size);
 }

@@ -9,7 +9,7 @@
 #define SM_CONTROL_WATCHDOG	0x40
 
 /* The kernel says -ENOENT for what is not there, this interface -EINVAL. */
-static int not_there(int err)
+int ec_not_there(int err)
 {
 	return err == -ENOENT ? -EINVAL : err;
 }
@@ -54,7 +54,7 @@ int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
 		return -EINVAL;
 	ret = ec_ioctl(master, EC_IOC_SLAVE, &s);
 	if (ret)
-		return ec_fail_ioctl(master, not_there(ret), "get slave %u",
+		return ec_fail_ioctl(master, ec_not_there(ret), "get slave %u",
 				     slave_position);
 	slave_from_uapi(slave_info, &s);
 	return 0;
@@ -72,7 +72,7 @@ int ecrt_master_get_sync_manager(ec_master_t *master, uint16_t slave_position,
 		return -ENOENT;
 	ret = ec_ioctl(master, EC_IOC_SM, &sm);
 	if (ret)
-		return ec_fail_ioctl(master, not_there(ret),
+		return ec_fail_ioctl(master, ec_not_there(ret),
 				     "get SM%u of slave %u", sync_index,
 				     slave_position);
 	sync->index = sync_index;
@@ -101,7 +101,7 @@ int ecrt_master_get_pdo(ec_master_t *master, uint16_t slave_position,
 		return -ENOENT;
 	ret = ec_ioctl(master, EC_IOC_PDO, &p);
 	if (ret)
-		return ec_fail_ioctl(master, not_there(ret),
+		return ec_fail_ioctl(master, ec_not_there(ret),
 				     "get PDO %u of SM%u of slave %u", pos,
 				     sync_index, slave_position);
 	pdo->index = p.index;
@@ -128,7 +128,7 @@ int ecrt_master_get_pdo_entry(ec_master_t *master, uint16_t slave_position,
 		return -ENOENT;
 	ret = ec_ioctl(master, EC_IOC_PDO_ENTRY, &e);
 	if (ret)
-		return ec_fail_ioctl(master, not_there(ret),
+		return ec_fail_ioctl(master, ec_not_there(ret),
 				     "get entry %u of PDO %u of SM%u of slave %u",
 				     entry_pos, pdo_pos, sync_index,
 				     slave_position);
@@ -162,7 +162,7 @@ static int download(ec_master_t *master, uint16_t slave_position,
 		return 0;
 	if (ret == -EIO && abort_code)
 		*abort_code = sdo.abort_code;
-	return ec_fail_ioctl(master, not_there(ret),
+	return ec_fail_ioctl(master, ec_not_there(ret),
 			     "download SDO 0x%04x:%02x to slave %u", index,
 			     subindex, slave_position);
 }
@@ -212,7 +212,7 @@ static int upload(ec_master_t *master, uint16_t slave_position,
 	}
 	if (ret == -EIO && abort_code)
 		*abort_code = sdo.abort_code;
-	return ec_fail_ioctl(master, not_there(ret),
+	return ec_fail_ioctl(master, ec_not_there(ret),
 			     "upload SDO 0x%04x:%02x from slave %u", index,
 			     subindex, slave_position);
 }

@@ -180,6 +180,8 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	if (fake.refuse == cmd) {
 		if (cmd == EC_IOC_SDO_UPLOAD || cmd == EC_IOC_SDO_DOWNLOAD)
 			((struct ec_ioc_sdo *)arg)->abort_code = 0x06020000;
+		if (cmd == EC_IOC_SOE_READ || cmd == EC_IOC_SOE_WRITE)
+			((struct ec_ioc_soe *)arg)->error_code = 0x1001;
 		errno = fake.err;
 		return -1;
 	}
@@ -235,6 +237,10 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_CONFIG_WHY:
 		strcpy(((struct ec_ioc_config_why *)arg)->text,
 		       "refused OP\nand more");
+		break;
+	case EC_IOC_SOE_READ:
+		memcpy((void *)(uintptr_t)((struct ec_ioc_soe *)arg)->data, "\x34\x12", 2);
+		((struct ec_ioc_soe *)arg)->size = 2;
 		break;
 	case EC_IOC_ACTIVATE:
 		preset(arg);

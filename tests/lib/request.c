@@ -35,6 +35,10 @@ static void nobody(void)
 	CHECK(ecrt_sdo_request_state(NULL) == EC_REQUEST_ERROR);
 	CHECK(ecrt_reg_request_read(NULL, 0, 1) == -EINVAL);
 	CHECK(ecrt_reg_request_write(NULL, 0, 1) == -EINVAL);
+	CHECK(ecrt_reg_request_readwrite(NULL, 0, 1) == -EINVAL);
+	CHECK(!ecrt_slave_config_create_sdo_request_complete(NULL, 0, 1));
+	CHECK(ecrt_sdo_request_index_complete(NULL, 0) == -EINVAL);
+	CHECK(ecrt_sdo_request_write_with_size(NULL, 1) == -EINVAL);
 	CHECK(ecrt_reg_request_state(NULL) == EC_REQUEST_ERROR);
 	CHECK(ecrt_slave_config_emerg_size(NULL, 1) == -EINVAL);
 	CHECK(ecrt_slave_config_emerg_pop(NULL, b) == -EINVAL);
@@ -85,6 +89,36 @@ static void sdo(ec_master_t *m, ec_sdo_request_t *r)
 	CHECK(fake.calls == calls);
 }
 
+/* @r is of request 2, of a whole object */
+static void complete(ec_sdo_request_t *r)
+{
+	struct ec_request_record *rec = fake_request(fake.area, 2);
+
+	CHECK(!ecrt_sdo_request_read(r));
+	CHECK(rec->index == 0x1c12 && !rec->subindex && !rec->op &&
+	      rec->flags == EC_SDO_FLAG_COMPLETE);
+	CHECK(ecrt_sdo_request_index_complete(r, 1) == -EBUSY);
+	CHECK(ecrt_sdo_request_write_with_size(r, 4) == -EBUSY);
+	CHECK(ecrt_sdo_request_data_size(r) == 16);
+	done(rec, 0, "ab");
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(ecrt_sdo_request_data_size(r) == 2);
+	CHECK(ecrt_sdo_request_write_with_size(r, 0) == -EINVAL);
+	CHECK(ecrt_sdo_request_write_with_size(r, 17) == -ENOBUFS);
+	memcpy(ecrt_sdo_request_data(r), "0123456789", 10);
+	CHECK(!ecrt_sdo_request_write_with_size(r, 10));
+	CHECK(rec->size == 10 && rec->op == EC_REQUEST_OP_WRITE);
+	CHECK(!memcmp(fake.area + rec->data, "0123456789", 10));
+	CHECK(ecrt_sdo_request_data_size(r) == 10);
+	done(rec, 0, "");
+	CHECK(!ecrt_sdo_request_index(r, 0x1018, 1));
+	CHECK(!ecrt_sdo_request_read(r) && !rec->flags && rec->subindex == 1);
+	done(rec, 0, "");
+	CHECK(!ecrt_sdo_request_index_complete(r, 0x1c13));
+	CHECK(!ecrt_sdo_request_read(r) && !rec->subindex &&
+	      rec->index == 0x1c13 && rec->flags == EC_SDO_FLAG_COMPLETE);
+}
+
 static void reg(ec_reg_request_t *r)
 {
 	struct ec_request_record *rec = fake_request(fake.area, 1);
@@ -100,6 +134,17 @@ static void reg(ec_reg_request_t *r)
 	CHECK(ecrt_reg_request_state(r) == EC_REQUEST_SUCCESS);
 	CHECK(!memcmp(ecrt_reg_request_data(r), "xy", 2));
 	CHECK(!ecrt_reg_request_write(r, 0x12, 1) && rec->op == 1);
+	CHECK(ecrt_reg_request_readwrite(r, 0x14, 1) == -EBUSY);
+	CHECK(rec->index == 0x12);
+	done(rec, 0, "");
+	CHECK(ecrt_reg_request_readwrite(r, 0x14, 3) == -ENOBUFS);
+	memcpy(ecrt_reg_request_data(r), "no", 2);
+	CHECK(!ecrt_reg_request_readwrite(r, 0x14, 2) && rec->index == 0x14 &&
+	      rec->op == EC_REQUEST_OP_READWRITE);
+	CHECK(!memcmp(fake.area + rec->data, "no", 2));
+	done(rec, 0, "ok");
+	CHECK(ecrt_reg_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(!memcmp(ecrt_reg_request_data(r), "ok", 2));
 }
 
 static void emergencies(ec_slave_config_t *sc)
@@ -131,11 +176,13 @@ void requests(void)
 	ec_slave_config_t *sc = ecrt_master_slave_config(m, 0, 5, 1, 2);
 	ec_sdo_request_t *s = ecrt_slave_config_create_sdo_request(sc, 0x6060, 3, 4);
 	ec_reg_request_t *r = ecrt_slave_config_create_reg_request(sc, 2);
+	ec_sdo_request_t *c =
+		ecrt_slave_config_create_sdo_request_complete(sc, 0x1c12, 16);
 	const uint8_t *data = ecrt_sdo_request_data(s);
 	uint8_t b[8];
 
 	nobody();
-	CHECK(s && r && ecrt_sdo_request_data_size(s) == 4);
+	CHECK(s && r && c && ecrt_sdo_request_data_size(s) == 4);
 	CHECK(data && !EC_READ_U32(data));
 	CHECK(!ecrt_sdo_request_timeout(s, 500));
 	CHECK(ecrt_sdo_request_read(s) == -EINVAL);	/* not active */
@@ -152,6 +199,7 @@ void requests(void)
 	sdo(m, s);
 	CHECK(ecrt_sdo_request_data(s) == data);
 	reg(r);
+	complete(c);
 	emergencies(sc);
 	CHECK(!ecrt_master_deactivate(m));
 	ecrt_release_master(m);

@@ -427,6 +427,7 @@ int main(void)
 	empty_image();
 	failed_activation();
 	requests();
+	idns_and_vendor_messages();
 	failures += kernel_cycle();
 	return failures != 0;
 }
