@@ -6,7 +6,7 @@ load helpers
 setup_file() {
 	{
 		printf '%s\n' "segment seed=6" "slave coupler EK1100" "slave out EL2008 alias=1001" \
-			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm" \
+			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm soe=2 voe=0x4321" \
 			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1" "connect out.2 -> in.2"
 		# an emergency every 0.2 s for 100 s, whenever its application comes
 		for i in $(seq 500); do
@@ -41,6 +41,7 @@ group() {
 @test "configuration after activation" { group after; }
 @test "distributed clocks" { group dc; }
 @test "requests and emergencies" { group request; }
+@test "IDNs, VoE messages, whole objects" { group soe; }
 @test "the kernel's cycle" { group kcycle; }
 @test "NULL handles" { group null; }
 @test "floating point" { group access; }

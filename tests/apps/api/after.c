@@ -56,7 +56,11 @@ static void slave(void)
 	SAYS(CALL(ecrt_slave_config_state_timeout)(b.motor, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP, 1),
 	     -EBUSY);
 	errno = 0;
+	SAYS(CALL(ecrt_slave_config_idn)(b.motor, 0, 15, EC_AL_STATE_PREOP, data, 2), -EBUSY);
 	YES(!CALL(ecrt_slave_config_create_sdo_request)(b.motor, 0x2001, 8, 4));
+	YES(!CALL(ecrt_slave_config_create_sdo_request_complete)(b.motor, 0x2001, 4));
+	YES(!CALL(ecrt_slave_config_create_soe_request)(b.motor, 0, 15, 4));
+	YES(!CALL(ecrt_slave_config_create_voe_handler)(b.motor, 4));
 	IS(errno, EBUSY);
 	errno = 0;
 	YES(!CALL(ecrt_slave_config_create_reg_request)(b.motor, 4));

@@ -98,6 +98,10 @@ static void slave_config(void)
 	IS(ecrt_slave_config_emerg_overruns(NULL), -EINVAL);
 	YES(!ecrt_slave_config_create_sdo_request(NULL, 1, 1, 4));
 	YES(!ecrt_slave_config_create_reg_request(NULL, 4));
+	YES(!ecrt_slave_config_create_sdo_request_complete(NULL, 1, 4));
+	YES(!ecrt_slave_config_create_soe_request(NULL, 0, 1, 4));
+	YES(!ecrt_slave_config_create_voe_handler(NULL, 4));
+	IS(ecrt_slave_config_idn(NULL, 0, 1, EC_AL_STATE_PREOP, data, 1), -EINVAL);
 	IS(ecrt_slave_config_state(NULL, &state), -EINVAL);
 	IS(ecrt_slave_config_flag(NULL, "a", 1), -EINVAL);
 	IS(ecrt_slave_config_state_timeout(NULL, EC_AL_STATE_INIT, EC_AL_STATE_PREOP, 1), -EINVAL);
@@ -143,6 +147,24 @@ static void requests(void)
 	IS(ecrt_reg_request_state(NULL), EC_REQUEST_ERROR);
 	IS(ecrt_reg_request_write(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_read(NULL, 1, 1), -EINVAL);
+	IS(ecrt_reg_request_readwrite(NULL, 1, 1), -EINVAL);
+	IS(ecrt_sdo_request_index_complete(NULL, 1), -EINVAL);
+	IS(ecrt_sdo_request_write_with_size(NULL, 1), -EINVAL);
+	IS(ecrt_soe_request_idn(NULL, 0, 1), -EINVAL);
+	IS(ecrt_soe_request_timeout(NULL, 1), -EINVAL);
+	YES(!ecrt_soe_request_data(NULL));
+	IS(ecrt_soe_request_data_size(NULL), 0);
+	IS(ecrt_soe_request_state(NULL), EC_REQUEST_ERROR);
+	IS(ecrt_soe_request_write(NULL), -EINVAL);
+	IS(ecrt_soe_request_read(NULL), -EINVAL);
+	IS(ecrt_voe_handler_send_header(NULL, 1, 1), -EINVAL);
+	IS(ecrt_voe_handler_received_header(NULL, NULL, NULL), -EINVAL);
+	YES(!ecrt_voe_handler_data(NULL));
+	IS(ecrt_voe_handler_data_size(NULL), 0);
+	IS(ecrt_voe_handler_write(NULL, 1), -EINVAL);
+	IS(ecrt_voe_handler_read(NULL), -EINVAL);
+	IS(ecrt_voe_handler_read_nosync(NULL), -EINVAL);
+	IS(ecrt_voe_handler_execute(NULL), EC_REQUEST_ERROR);
 	IS(api_lines(), 0);
 }
 
