@@ -72,8 +72,10 @@
 #define EC_HAVE_REG_ACCESS
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
-/* ec_soe_request_t and its functions */
+/* ec_soe_request_t and its functions; in userspace */
+#ifndef __KERNEL__
 #define EC_HAVE_SOE_REQUESTS
+#endif
 /* ecrt_master_scan_progress() */
 #define EC_HAVE_SCAN_PROGRESS
 /* ecrt_slave_config_eoe_*() */
@@ -565,6 +567,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint32_t *abort_code);
 
+#ifndef __KERNEL__
 /**
  * ecrt_master_write_idn() - write an IDN of a servo drive
  * @master: a master opened for writing; need not be reserved
@@ -606,6 +609,7 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint16_t *error_code);
+#endif
 
 /**
  * ecrt_master_activate() - end configuration, begin the cycle
@@ -1449,6 +1453,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo32(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 		uint16_t index, const uint8_t *data, size_t size);
 
+#ifndef __KERNEL__
 /**
  * ecrt_slave_config_idn() - write an IDN each time the slave is configured
  * @sc: slave configuration
@@ -1468,6 +1473,7 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
 		uint8_t drive_no, uint16_t idn, ec_al_state_t state,
 		const uint8_t *data, size_t size);
+#endif
 
 /**
  * ecrt_slave_config_emerg_size() - how many emergencies to keep
@@ -1531,6 +1537,7 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 		ec_slave_config_t *sc, uint16_t index, uint8_t subindex,
 		size_t size);
 
+#ifndef __KERNEL__
 /**
  * ecrt_slave_config_create_sdo_request_complete() - the same for a whole object
  * @sc: slave configuration
@@ -1575,6 +1582,7 @@ EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
  */
 EC_PUBLIC_API ec_voe_handler_t *ecrt_slave_config_create_voe_handler(
 		ec_slave_config_t *sc, size_t size);
+#endif
 
 /**
  * ecrt_slave_config_create_reg_request() - read and write registers in OP
@@ -1922,6 +1930,7 @@ EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
 EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
 		uint16_t index, uint8_t subindex);
 
+#ifndef __KERNEL__
 /**
  * ecrt_sdo_request_index_complete() - another object, as a whole
  * @req: request that is not BUSY
@@ -1935,6 +1944,7 @@ EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
  */
 EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
 		uint16_t index);
+#endif
 
 /**
  * ecrt_sdo_request_timeout() - how long a start may wait
@@ -1998,6 +2008,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
  */
 EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
 
+#ifndef __KERNEL__
 /**
  * ecrt_sdo_request_write_with_size() - the same for so many bytes
  * @req: request that is not BUSY, of an active master
@@ -2011,6 +2022,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
  */
 EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
 		size_t size);
+#endif
 
 /**
  * ecrt_sdo_request_read() - start an upload
@@ -2023,6 +2035,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
  */
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
 
+#ifndef __KERNEL__
 /**
  * ecrt_soe_request_idn() - another IDN
  * @req: request that is not BUSY
@@ -2195,6 +2208,7 @@ EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
  */
 EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
 		ec_voe_handler_t *voe);
+#endif
 
 /**
  * ecrt_reg_request_data() - buffer of a request
@@ -2243,6 +2257,7 @@ EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
 EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
 		uint16_t address, size_t size);
 
+#ifndef __KERNEL__
 /**
  * ecrt_reg_request_readwrite() - write registers, get what was there
  * @req: request that is not BUSY, of an active master
@@ -2257,6 +2272,7 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
  */
 EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,
 		uint16_t address, size_t size);
+#endif
 
 #ifdef __cplusplus
 }
