@@ -18,9 +18,19 @@
 #define SHIFT		16	/* above it: how many more SYNC_SLAVES */
 #define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
 
+/* When the reference follows, it gets half of what is more than one. */
+static unsigned int refs(u32 dc)
+{
+	return dc & SYNC_REF ? (dc >> SHIFT) / 2 + 1 : 0;
+}
+
 static unsigned int syncs(u32 dc)
 {
-	return dc & SYNC_SLAVES ? (dc >> SHIFT) + 1 : 0;
+	unsigned int more = dc >> SHIFT;
+
+	if (!(dc & SYNC_SLAVES))
+		return 0;
+	return dc & SYNC_REF ? more - more / 2 + 1 : more + 1;
 }
 
 static u16 time_bytes(u32 dc)
@@ -134,7 +144,7 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 	unsigned int i;
 	u8 t[8], *p;
 
-	if (dc & SYNC_REF) {
+	for (i = 0; i < refs(dc); i++) {
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)sync_time, p);
 	}
@@ -186,7 +196,7 @@ const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns)
 	u16 len = time_bytes(dc);
 	unsigned int i;
 
-	if (dc & SYNC_REF)
+	for (i = 0; i < refs(dc); i++)
 		data = skip(data, 4);
 	if (dc & SYNC_SLAVES) {
 		if (get_unaligned_le16(data + len))

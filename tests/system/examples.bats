@@ -5,16 +5,18 @@ load helpers
 
 setup_file() {
 	{
-		printf '%s\n' "segment seed=12" "slave coupler EK1100" "slave in EL1008" \
+		printf '%s\n' "segment seed=12" "slave coupler EK1100 drift=500ppm" "slave in EL1008" \
 			"slave out EL2008" "const in.2 value=1" "const in.7 value=1" \
-			"ramp in.8 amplitude=2 period=100ms"
+			"ramp in.8 amplitude=2 period=100ms" \
+			"slave axis1 drive mapping=rewritable drift=40ppm" \
+			"slave axis2 drive mapping=rewritable drift=-70ppm"
 	} >"$BATS_FILE_TMPDIR/segment"
-	start "$BATS_FILE_TMPDIR/segment" 3
+	start "$BATS_FILE_TMPDIR/segment" 5
 }
 teardown_file() { stop; }
 teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
-	wait_for 60 all_slaves_are PREOP 3
+	wait_for 60 all_slaves_are PREOP 5
 }
 
 # example NAME [ARG...]: in the background, its output in $out
@@ -56,7 +58,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 
 @test "kcycle: values go out, the kernel keeps the cycle" {
 	example kcycle 5000
-	wait_for 60 grep -qx '3 slaves in OP' "$out"
+	wait_for 60 grep -qx '5 slaves in OP' "$out"
 	# a counter: no value comes twice in a row
 	one=$(outputs)
 	wait_for 10 eval '[ "$(outputs)" != "$one" ]'
@@ -65,4 +67,34 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	grep -E '^5000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	grep -E '^kernel: [0-9]+ cycles, 0 overruns, ' "$out"
 	app=
+}
+
+@test "dc_motion: the reference clock follows, both axes move" {
+	example dc_motion lead 3 4 8
+	wait "$app"
+	cat "$out"
+	moved
+	# a clock that is 500 ppm too fast learns our rate from frames that jitter
+	error=$(sed -n 's/^reference clock +\([0-9]*\) ns.*/\1/p' "$out")
+	[ "$(echo "$error" | tail -n 1)" -lt 20000 ]
+	[ "$(echo "$error" | sort -n | tail -n 1)" -lt 100000 ]
+	app=
+}
+
+@test "dc_motion: the application follows the reference clock" {
+	example dc_motion follow 3 4 8
+	wait "$app"
+	cat "$out"
+	moved
+	# it is 500 ppm too fast; late wake-ups are noise on that
+	ppm=$(sed -n 's/^the reference clock runs +\([0-9]*\) ppm .*/\1/p' "$out")
+	[ "$ppm" -ge 250 ] && [ "$ppm" -le 750 ]
+	apart=$(sed -n "s/.* within \([0-9]*\) ns .*/\1/p" "$out" | tail -n 1)
+	[ "$apart" -lt 1000 ]
+	app=
+}
+
+# both axes to 100000 counts and back, in step
+moved() {
+	[ "$(awk '/^axis/ && $NF >= 90000 && $NF <= 110000' "$out" | wc -l)" = 2 ]
 }

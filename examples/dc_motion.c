@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * dc_motion: two CiA 402 drives follow a sine of their position, on distributed
+ * clocks: both take over their targets at the same SYNC0, a third of a cycle
+ * after the frame. One of two clocks has to give way to the other:
+ *
+ *   lead    this program keeps its own time, the reference clock follows it;
+ *           for machines with a better clock than the drives have
+ *   follow  the reference clock keeps its time, this program follows it with a
+ *           small controller; the best for the drives
+ *
+ * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the
+ * latter, see kcycle.c.)
+ *
+ * usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]
+ *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 0 and 1
+ *   SECONDS        to run; default: until Ctrl-C
+ */
+#include <ecrt.h>
+#include <math.h>
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <time.h>
+
+#define PERIOD_NS	1000000
+#define SHIFT_NS	(PERIOD_NS / 3)	/* the frame has passed by then */
+#define NS_PER_S	1000000000L
+#define AXES		2
+#define AMPLITUDE	100000.0	/* counts, from end to end */
+#define TURN_S		2.0		/* for once forth and back */
+#define TWO_PI		6.283185307179586
+#define MODE_CSP	8		/* cyclic synchronous position */
+
+/* one drive; offsets in the domain are filled in by the registration */
+struct axis {
+	unsigned int control, target, mode;	/* 0x6040, 0x607a, 0x6060 */
+	unsigned int status, actual;		/* 0x6041, 0x6064 */
+	int moving;
+	int32_t origin, last, low, high;
+};
+
+static ec_master_t *master;
+static ec_domain_t *domain;
+static uint8_t *data;
+static struct axis axes[AXES];
+static int follow;
+
+static volatile sig_atomic_t stop;
+
+static void on_signal(int number)
+{
+	(void)number;
+	stop = 1;
+}
+
+/* configuration --------------------------------------------------------------*/
+
+static int configure(struct axis *a, uint16_t position)
+{
+	ec_pdo_entry_info_t out[] = { { 0x6040, 0, 16 }, { 0x607a, 0, 32 }, { 0x6060, 0, 8 } };
+	ec_pdo_entry_info_t in[] = { { 0x6041, 0, 16 }, { 0x6064, 0, 32 } };
+	ec_pdo_info_t rx[] = { { 0x1600, 3, out } }, tx[] = { { 0x1a00, 2, in } };
+	ec_sync_info_t syncs[] = {
+		{ 2, EC_DIR_OUTPUT, 1, rx, EC_WD_ENABLE },
+		{ 3, EC_DIR_INPUT, 1, tx, EC_WD_DISABLE },
+		{ 0xff, EC_DIR_INVALID, 0, NULL, EC_WD_DEFAULT },
+	};
+	struct {
+		uint16_t index;
+		unsigned int *offset;
+	} regs[] = {
+		{ 0x6040, &a->control }, { 0x607a, &a->target }, { 0x6060, &a->mode },
+		{ 0x6041, &a->status }, { 0x6064, &a->actual },
+	};
+	ec_slave_info_t info;
+	ec_slave_config_t *sc;
+	size_t i;
+	int ret;
+
+	if (ecrt_master_get_slave(master, position, &info))
+		return -1;
+	sc = ecrt_master_slave_config(master, 0, position, info.vendor_id, info.product_code);
+	if (!sc || ecrt_slave_config_pdos(sc, EC_END, syncs))
+		return -1;
+	for (i = 0; i < sizeof(regs) / sizeof(regs[0]); i++) {
+		ret = ecrt_slave_config_reg_pdo_entry(sc, regs[i].index, 0, domain, NULL);
+		if (ret < 0)
+			return -1;
+		*regs[i].offset = (unsigned int)ret;
+	}
+	/* SYNC0 each cycle; 0x0300 is what most drives have in their description */
+	return ecrt_slave_config_dc(sc, 0x0300, PERIOD_NS, SHIFT_NS, 0, 0);
+}
+
+/* Time of a clock in ns; for EtherCAT it begins in 2000, but any begin will do. */
+static uint64_t ns(const struct timespec *t)
+{
+	return (uint64_t)t->tv_sec * (uint64_t)NS_PER_S + (uint64_t)t->tv_nsec;
+}
+
+/* Each failure is explained on stderr by the library. */
+static int setup(uint16_t first, uint16_t second)
+{
+	master = ecrt_request_master(0);
+	if (!master)
+		return -1;
+	domain = ecrt_master_create_domain(master);
+	if (!domain || configure(&axes[0], first) || configure(&axes[1], second) ||
+	    ecrt_master_set_send_interval(master, PERIOD_NS / 1000))
+		return -1;
+	if (ecrt_master_activate(master))
+		return -1;
+	data = ecrt_domain_data(domain);
+	return data ? 0 : -1;
+}
+
+/* No page fault later, and a thread that only other real-time ones hold up. */
+static void become_realtime(void)
+{
+	struct sched_param param;
+
+	memset(&param, 0, sizeof(param));
+	param.sched_priority = 80;
+	if (mlockall(MCL_CURRENT | MCL_FUTURE))
+		perror("Not locked in memory");
+	if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &param))
+		fprintf(stderr, "Not real-time: no right to use SCHED_FIFO\n");
+}
+
+/* time -----------------------------------------------------------------------*/
+
+/* what the reference clock has to do with our cycle */
+static struct {
+	uint64_t told;		/* application time of the last cycle */
+	int32_t error;		/* how late that frame was by the reference clock */
+	int64_t integral;	/* correction that keeps its rate, ns * 512 */
+	int64_t corrected;	/* sum of all corrections, ns */
+} clock_state;
+
+/*
+ * The reference clock's time of the last frame against the time we told then
+ * is our error. A part of it, and of the sum of all, goes into the next period:
+ * never more than 1/100 of it.
+ */
+static long correction(void)
+{
+	uint32_t time;
+	int64_t c;
+
+	if (ecrt_master_reference_clock_time(master, &time))
+		return 0;	/* not set yet, or that frame was lost */
+	clock_state.error = (int32_t)(time - (uint32_t)clock_state.told);
+	if (!follow)
+		return 0;
+	c = -(clock_state.error / 16 + clock_state.integral / 512);
+	if (c > PERIOD_NS / 100)
+		c = PERIOD_NS / 100;
+	else if (c < -PERIOD_NS / 100)
+		c = -PERIOD_NS / 100;
+	else
+		clock_state.integral += clock_state.error;
+	clock_state.corrected += c;
+	return (long)c;
+}
+
+static void add(struct timespec *t, long add_ns)
+{
+	t->tv_nsec += add_ns;
+	if (t->tv_nsec >= NS_PER_S) {
+		t->tv_nsec -= NS_PER_S;
+		t->tv_sec++;
+	}
+}
+
+/*
+ * Sleeps until the next cycle; leaves out those that have passed already.
+ * Application time goes on by whole periods: when we lead, that is our clock;
+ * when we follow, the periods are those of the reference clock.
+ */
+static unsigned int wait_period(struct timespec *next, uint64_t *app_time, long correct)
+{
+	unsigned int missed = 0;
+	struct timespec now;
+
+	for (;; missed++, correct = 0) {
+		add(next, PERIOD_NS + correct);
+		*app_time += PERIOD_NS;
+		clock_gettime(CLOCK_MONOTONIC, &now);
+		if (ns(next) > ns(&now))
+			break;
+	}
+	clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, next, NULL);
+	return missed;
+}
+
+/* motion ---------------------------------------------------------------------*/
+
+/* Control word that leads from the state in the status word to operation. */
+static uint16_t next_control(uint16_t status, unsigned long n)
+{
+	if ((status & 0x4f) == 0x08)		/* fault: reset is an edge */
+		return n % 2 ? 0x80 : 0x00;
+	if ((status & 0x4f) == 0x40)		/* switch on disabled */
+		return 0x06;
+	if ((status & 0x6f) == 0x21)		/* ready to switch on */
+		return 0x07;
+	return (status & 0x6f) == 0x23 || (status & 0x6f) == 0x27 ? 0x0f : 0x00;
+}
+
+/* @t_s: time since the motion began; negative: not all are enabled */
+static void move(struct axis *a, unsigned long n, double t_s, int off)
+{
+	int32_t at = EC_READ_S32(data + a->actual), target = at;
+
+	if (t_s >= 0) {
+		if (!a->moving)
+			a->origin = at;
+		a->moving = 1;
+		target = a->origin +
+			 (int32_t)lrint(AMPLITUDE / 2 * (1 - cos(TWO_PI * t_s / TURN_S)));
+		a->last = at - a->origin;
+		a->low = a->last < a->low ? a->last : a->low;
+		a->high = a->last > a->high ? a->last : a->high;
+	}
+	EC_WRITE_S8(data + a->mode, MODE_CSP);
+	EC_WRITE_S32(data + a->target, target);
+	EC_WRITE_U16(data + a->control,
+		     off ? 0x06 : next_control(EC_READ_U16(data + a->status), n));
+}
+
+static int all_enabled(void)
+{
+	int i, enabled = 0;
+
+	for (i = 0; i < AXES; i++)
+		enabled += (EC_READ_U16(data + axes[i].status) & 0x6f) == 0x27;
+	return enabled == AXES;
+}
+
+/* cycle ----------------------------------------------------------------------*/
+
+/* Returns what to add to the period until the next one, ns. */
+static long cycle(unsigned long n, uint64_t app_time, int off)
+{
+	static uint64_t began;
+	double t_s = -1;
+	long correct;
+	int i;
+
+	ecrt_master_receive(master);
+	ecrt_domain_process(domain);
+	correct = correction();
+	if (!began && all_enabled())
+		began = app_time;
+	if (began)
+		t_s = (double)(app_time - began) / NS_PER_S;
+	for (i = 0; i < AXES; i++)
+		move(&axes[i], n, t_s, off);
+
+	/* the same order at the same place in each cycle, DC last before send */
+	ecrt_domain_queue(domain);
+	ecrt_master_application_time(master, app_time);
+	if (!follow)
+		ecrt_master_sync_reference_clock(master);
+	ecrt_master_sync_slave_clocks(master);
+	if (n % 100 == 0)
+		ecrt_master_sync_monitor_queue(master);
+	clock_state.told = app_time;
+	ecrt_master_send(master);
+	return correct;
+}
+
+/*
+ * Printing takes time that a cycle does not have: an application with hard
+ * limits hands this to a thread without priority.
+ */
+static void report(unsigned long n)
+{
+	uint32_t apart = ecrt_master_sync_monitor_process(master);
+
+	if (n % (NS_PER_S / PERIOD_NS) || apart == 0xffffffff)
+		return;
+	if (!axes[0].moving)
+		printf("not moving yet: status words 0x%04x 0x%04x\n",
+		       EC_READ_U16(data + axes[0].status), EC_READ_U16(data + axes[1].status));
+	printf("reference clock %+d ns, slaves' clocks within %u ns of it, axes at %d %d\n",
+	       clock_state.error, apart, axes[0].last, axes[1].last);
+}
+
+static void run(unsigned long cycles)
+{
+	unsigned long n, missed = 0;
+	uint64_t app_time;
+	struct timespec next;
+	long correct = 0;
+	int i;
+
+	clock_gettime(CLOCK_MONOTONIC, &next);
+	app_time = ns(&next);
+	for (n = 0; !stop && (!cycles || n < cycles); n++) {
+		missed += wait_period(&next, &app_time, correct);
+		correct = cycle(n, app_time, 0);
+		report(n);
+	}
+	for (i = 0; i < 10; i++) {	/* drives off before they are left alone */
+		wait_period(&next, &app_time, 0);
+		cycle(n + 1 + (unsigned long)i, app_time, 1);
+	}
+	printf("%lu cycles, %lu left out\n", n, missed);
+	for (i = 0; i < AXES; i++)
+		printf("axis %d: from %d to %d\n", i, axes[i].low, axes[i].high);
+	if (follow && n)
+		printf("the reference clock runs %+.0f ppm faster than ours\n",
+		       -1e6 * (double)clock_state.corrected / PERIOD_NS / (double)n);
+}
+
+int main(int argc, char **argv)
+{
+	unsigned long args[3] = { 0, 1, 0 };
+	struct sigaction action;
+	char *end;
+	int i;
+
+	follow = argc > 1 && !strcmp(argv[1], "follow");
+	for (i = 2; i < argc && i <= 4; i++) {
+		args[i - 2] = strtoul(argv[i], &end, 0);
+		if (end == argv[i] || *end || args[i - 2] > 0xffff)
+			break;
+	}
+	if (i < argc || (argc > 1 && !follow && strcmp(argv[1], "lead"))) {
+		fprintf(stderr, "usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]\n");
+		return 2;
+	}
+	memset(&action, 0, sizeof(action));
+	action.sa_handler = on_signal;
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+
+	if (setup((uint16_t)args[0], (uint16_t)args[1])) {
+		ecrt_release_master(master);
+		return 1;
+	}
+	setvbuf(stdout, NULL, _IOLBF, 0);
+	become_realtime();
+	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
+	ecrt_release_master(master);	/* slaves go back to PREOP */
+	return 0;
+}
