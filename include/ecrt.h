@@ -861,7 +861,12 @@ typedef enum {
 	EC_CYCLE_RUNNING = 1,
 	EC_CYCLE_STALLED = 2,	/* EC_CYCLE_HOLD or EC_CYCLE_ZERO at work */
 	EC_CYCLE_STOPPED = 3,	/* by EC_CYCLE_STOP, until deactivation */
+	EC_CYCLE_WAITING = 4,	/* EC_CYCLE_WAIT_OUTPUTS: nothing sent yet */
 } ec_cycle_run_t;
+
+/* ec_cycle_config_t.flags */
+#define EC_CYCLE_DETACH		1U	/* goes on when the application dies */
+#define EC_CYCLE_WAIT_OUTPUTS	2U	/* the first frame waits for outputs */
 
 /* ec_cycle_config_t.dc: clock datagrams of every cycle */
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
@@ -888,6 +893,15 @@ typedef enum {
  * @stall_cycles: after that many cycles in a row without; 0: never. The first
  *	outputs may take their time.
  * @dc: EC_CYCLE_SYNC_* and EC_CYCLE_FOLLOW_REFERENCE
+ * @flags: %EC_CYCLE_DETACH: when the application dies, or releases the master
+ *	without ecrt_master_deactivate(), the cycle goes on: @stall says with which
+ *	outputs (%EC_CYCLE_STOP is refused), slaves stay in OP. An application that
+ *	requests the master, configures exactly the same, in the same order, and
+ *	activates it, takes over the running cycle with its outputs and inputs as they
+ *	are; no slave is disturbed. See also ecrt_master_end_detached().
+ *	%EC_CYCLE_WAIT_OUTPUTS: cycles are counted and can be waited for, but nothing
+ *	is sent until the first ecrt_master_send() with a queued domain; without, the
+ *	first frame goes with the first cycle, with zeros as outputs.
  */
 typedef struct {
 	uint32_t period_ns;
@@ -897,6 +911,7 @@ typedef struct {
 	ec_cycle_stall_t stall;
 	uint32_t stall_cycles;
 	uint32_t dc;
+	uint32_t flags;
 } ec_cycle_config_t;
 
 #define EC_CYCLE_BINS		32
@@ -929,6 +944,8 @@ typedef enum {
  * @lock_losses: how often it was lost
  * @phase_error: how late a cycle is by the reference clock, ns
  * @rate_ppb: how much faster than CLOCK_MONOTONIC that runs, 1e-9
+ * @takeovers: applications that have taken over the cycle; 0: it is that of the
+ *	one that activated it
  *
  * The schedule of a cycle the kernel runs is its timer. When the application
  * runs the cycle, it is a grid of the interval told by
@@ -952,6 +969,7 @@ typedef struct {
 	uint32_t lock_losses;
 	int32_t phase_error;
 	int32_t rate_ppb;
+	uint32_t takeovers;
 } ec_cycle_state_t;
 
 /**
@@ -1039,6 +1057,66 @@ EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
  */
 EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
 		ec_cycle_state_t *state);
+
+/**
+ * ecrt_domain_set_division() - a domain that is not exchanged in each cycle
+ * @domain: domain of a master that is not active
+ * @division: cycles from one exchange to the next, 1..1000
+ * @phase: cycle of the first one, 0..@division - 1; cycles count from activation,
+ *	those left out are counted, too
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE), for a cycle the kernel runs. In the cycles
+ * between, state and inputs of the domain are those of the last exchange. When
+ * a cycle is left out in which it was its turn, it goes with the next one. The
+ * watchdogs of its slaves must be longer than @division cycles.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL a value that cannot be; %-EBUSY active.
+ */
+EC_PUBLIC_API int ecrt_domain_set_division(ec_domain_t *domain,
+		unsigned int division, unsigned int phase);
+
+/**
+ * ecrt_domain_copy() - input of one slave to output of another
+ * @to: domain with the output
+ * @to_offset: byte in @to, as ecrt_slave_config_reg_pdo_entry() returned it
+ * @to_bit: bit in that byte
+ * @from: domain with the input, of the same master; may be @to
+ * @from_offset: byte in @from
+ * @from_bit: bit in that byte
+ * @bits: how many
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Configured once, before activation; done by
+ * the kernel between receive and send of each cycle: what came in with a
+ * cycle goes out with its next frame. Also when the application does not work any
+ * more. What the application writes to these outputs has no effect. While the
+ * working counter of @from is not complete, the last value stays; before it was
+ * complete for the first time, 0. When the application runs the cycle, it finds
+ * the value in its process data after ecrt_master_send().
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL the bits are not input, or not output, of one slave, or the
+ * domains are of two masters; %-EEXIST another copy writes to some of these bits;
+ * %-EBUSY active; %-ENOSPC more than 1024; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset,
+		unsigned int to_bit, const ec_domain_t *from,
+		unsigned int from_offset, unsigned int from_bit,
+		unsigned int bits);
+
+/**
+ * ecrt_master_end_detached() - end a cycle that has outlived its application
+ * @master: a master opened for writing; need not be reserved
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Its slaves go to PREOP. For an application that
+ * is not of the same configuration, so that ecrt_master_activate() was refused with
+ * %-EEXIST: it may activate after this call. 'ethercat release' does the same.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ENOENT nothing is active; %-EBUSY the application that activated
+ * the master is still there; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
 
 #endif
 

@@ -13,7 +13,9 @@
 #define INDEX_MASK	3U
 
 /* the numbers of the states are the kernel's */
-_Static_assert((int)EC_CYCLE_STOPPED == EC_CYCLE_STATE_STOPPED, "state");
+_Static_assert((int)EC_CYCLE_WAITING == EC_CYCLE_STATE_WAITING, "state");
+_Static_assert(EC_CYCLE_DETACH == EC_CYCLE_FLAG_DETACH, "flags");
+_Static_assert(EC_CYCLE_WAIT_OUTPUTS == EC_CYCLE_FLAG_WAIT, "flags");
 _Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
 _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_SLAVES == EC_SEND_FLAG_SYNC_SLAVES, "clock flags");
@@ -40,9 +42,63 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 		arg.stall = (__u32)config->stall;
 		arg.stall_cycles = config->stall_cycles;
 		arg.dc = config->dc;
+		arg.flags = config->flags;
 	}
 	ret = ec_ioctl(master, EC_IOC_CYCLE, &arg);
 	return ret ? ec_fail_ioctl(master, ret, "let the kernel run the cycle") : 0;
+}
+
+int ecrt_master_end_detached(ec_master_t *master)
+{
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	ret = ec_ioctl(master, EC_IOC_END_DETACHED, NULL);
+	return ret ? ec_fail_ioctl(master, ret, "end the detached session of master %u",
+				   master->index) : 0;
+}
+
+int ecrt_domain_set_division(ec_domain_t *domain, unsigned int division,
+			     unsigned int phase)
+{
+	struct ec_ioc_division arg = { .division = division, .phase = phase };
+	int ret;
+
+	if (!domain)
+		return -EINVAL;
+	arg.domain = domain->index;
+	ret = ec_ioctl(domain->master, EC_IOC_DIVISION, &arg);
+	return ret ? ec_fail_ioctl(domain->master, ret, "set the division of domain %u",
+				   domain->index) : 0;
+}
+
+/* Bit in a domain; domains are far smaller than 2^28 bytes. */
+static int bit_of(unsigned int offset, unsigned int bit, __u32 *result)
+{
+	if (offset >= UINT32_MAX / 16 || bit >= UINT32_MAX / 16)
+		return -EINVAL;
+	*result = 8 * offset + bit;
+	return 0;
+}
+
+int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset, unsigned int to_bit,
+		     const ec_domain_t *from, unsigned int from_offset,
+		     unsigned int from_bit, unsigned int bits)
+{
+	struct ec_ioc_copy arg = { .bits = bits };
+	int ret;
+
+	if (!to || !from || to->master != from->master)
+		return -EINVAL;
+	arg.to_domain = to->index;
+	arg.from_domain = from->index;
+	if (bit_of(to_offset, to_bit, &arg.to_bit) ||
+	    bit_of(from_offset, from_bit, &arg.from_bit))
+		return ec_fail(-EINVAL, "copy to byte %u from byte %u", to_offset, from_offset);
+	ret = ec_ioctl(to->master, EC_IOC_COPY, &arg);
+	return ret ? ec_fail_ioctl(to->master, ret, "copy %u bits from domain %u to domain %u",
+				   bits, from->index, to->index) : 0;
 }
 
 /* memory -------------------------------------------------------------------*/
@@ -72,10 +128,12 @@ int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
 	if (m->stride < least || EC_EXCHANGE_FIRST + 2ULL * EC_EXCHANGE_BUFFERS *
 	    m->stride > m->exchange_size)
 		return -EPROTO;
-	m->out_back = 0;
-	m->out_last = 0;
-	m->in_front = 1;
-	m->cycle = 0;
+	m->out_back = m->exchange->app_output;
+	m->out_last = m->out_back;
+	m->in_front = m->exchange->app_input;
+	if (m->out_back >= EC_EXCHANGE_BUFFERS || m->in_front >= EC_EXCHANGE_BUFFERS)
+		return -EPROTO;
+	m->cycle = ec_status_read(m->status->kernel.cycle);
 	if (m->image)	/* the application has it already */
 		return arg->image_size == m->image_size ? 0 : -EPROTO;
 	m->image_size = arg->image_size;
@@ -122,6 +180,9 @@ int ec_cycle_find_inputs(struct ec_domain *d)
 		return ret;
 	if (d->offset + d->size > d->master->stride - sizeof(struct ec_exchange_buffer))
 		return -EPROTO;
+	/* of a cycle that runs already: outputs and inputs as they are */
+	if (d->size)
+		memcpy(d->data, place(d, d->master->out_back), d->size);
 	d->n_inputs = 0;
 	d->inputs = calloc(info.fmmu_count + 1UL, sizeof(*d->inputs));
 	if (!d->inputs)
@@ -291,5 +352,6 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	state->lock_losses = ec_status_read(st->lock_losses);
 	state->phase_error = ec_status_read(st->phase_error);
 	state->rate_ppb = ec_status_read(st->rate_ppb);
+	state->takeovers = ec_status_read(st->takeovers);
 	return 0;
 }

@@ -271,7 +271,9 @@ err_deactivate:
 	for (d = master->domains; d; d = d->next)
 		d->data = NULL;
 	ec_master_unmap(master);
-	ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
+	/* what another application has started goes on */
+	if (!arg.taken_over)
+		ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
 	return ret;
 }
 

@@ -90,6 +90,11 @@ int ec_requests_place(struct ec_master *m)
 		r->rec = (struct ec_request_record *)(base + area->requests) +
 			 r->index;
 		r->shared = base + r->rec->data;
+		/* the application before may have started it */
+		r->start = r->rec->start;
+		r->op = r->rec->op;
+		if (r->rec->done != r->start)
+			r->state = EC_REQUEST_BUSY;
 	}
 	return 0;
 }
@@ -146,7 +151,9 @@ int ec_request_start(struct ec_request *r, __u8 op, size_t size)
 	r->start = r->start + 1 ? r->start + 1 : 1;
 	r->state = EC_REQUEST_BUSY;
 	__atomic_store_n(&rec->start, r->start, __ATOMIC_RELEASE);
+	/* told by the next send, or seen by the cycle the kernel runs */
 	r->master->send_flags |= EC_SEND_FLAG_REQUESTS;
+	__atomic_fetch_add(&r->master->area->starts, 1, __ATOMIC_RELEASE);
 	return 0;
 }
 

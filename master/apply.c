@@ -421,20 +421,34 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
 }
 
+/* Cycles after which all domains of a slave have been sent twice. */
+static u32 cycles_twice(const struct ec_config *c)
+{
+	u32 division = 1;
+	unsigned int i;
+
+	for (i = 0; i < c->n_fmmus; i++)
+		division = max(division, c->fmmus[i].domain->division);
+	return 2 * division;
+}
+
 /*
  * Outputs must have arrived before OP is requested (0x0019 else). Two sends:
  * the first may have left before the FMMUs were written.
  */
 static int wait_outputs(struct ec_slave *s)
 {
+	u32 cycles, limit;
 	unsigned int i;
 	u64 from;
 
 	if (!s->config || !s->config->session->active)
 		return 0;
+	cycles = cycles_twice(s->config);
+	limit = 5000 + div_u64((u64)cycles * s->master->interval_us, 500);
 	from = READ_ONCE(s->config->session->cycle.cycles);
-	for (i = 0; i < 5000; i++) {
-		if (READ_ONCE(s->config->session->cycle.cycles) - from >= 2)
+	for (i = 0; i < limit; i++) {
+		if (READ_ONCE(s->config->session->cycle.cycles) - from >= cycles)
 			return 0;
 		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
 			return -ECANCELED;

@@ -83,7 +83,8 @@ struct ec_config_flag {
 };
 
 /**
- * struct ec_config - configuration of one slave, under session_lock
+ * struct ec_config - configuration of one slave, under session_lock; what is
+ *	configured is compared in takeover.c
  * @session: owner
  * @index: number in the session
  * @alias: 0: @position is the ring position

@@ -90,8 +90,9 @@ struct ec_cyc_cut {
  * struct ec_cyc_flight - a frame of the cycle that is on its way
  * @slot: frame
  * @send: number of the send it belongs to
- * @first: first datagram of the layout it carries
- * @count: how many
+ * @first: first datagram of the layout it may carry
+ * @count: how many; those of @queued it does
+ * @queued: domains of that send, bit n: domain n
  * @missed: a receive has looked for it in vain
  * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
  */
@@ -100,6 +101,7 @@ struct ec_cyc_flight {
 	u32 send;
 	u16 first;
 	u16 count;
+	u64 queued;
 	bool missed;
 	u32 dc;
 };

@@ -24,16 +24,25 @@
 #include "cycle_thread.h"
 #include "domain.h"
 #include "master.h"
+#include "request.h"
 #include "session.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
 #define FIFO_DEFAULT	50
 #define INDEX_MASK	3
+#define ADOPT_MS	1000	/* for a takeover, besides two periods */
 
 /* outputs side by side in the image */
 struct area {
 	u32 offset;
 	u32 len;
+};
+
+/* a domain that is not sent in each cycle */
+struct slow {
+	u32 domain;
+	s32 left;	/* cycles until its turn */
+	s32 division;
 };
 
 /**
@@ -43,6 +52,9 @@ struct area {
  * @task: thread
  * @outputs: areas that are taken from the application
  * @n_outputs: entries in @outputs
+ * @always: domains of each cycle, bit n: domain n
+ * @slow: the others
+ * @n_slow: entries in @slow
  * @bytes: of the image of all domains
  * @stride: distance of two buffers in the exchange
  * @next_ns: schedule of the next cycle (ktime)
@@ -52,12 +64,16 @@ struct area {
  * @back: input buffer it holds
  * @fed: there were outputs at least once
  * @unfed: cycles without new outputs in a row, up to the limit
+ * @adopt: another application shall get the buffers; cleared when it has them
  */
 struct ec_cycle_thread {
 	struct ec_session *session;
 	struct task_struct *task;
 	struct area *outputs;
 	unsigned int n_outputs;
+	u64 always;
+	struct slow slow[EC_MAX_DOMAINS];
+	unsigned int n_slow;
 	u32 bytes;
 	u32 stride;
 	u64 next_ns;
@@ -67,6 +83,7 @@ struct ec_cycle_thread {
 	u8 back;
 	bool fed;
 	u32 unfed;
+	bool adopt;
 };
 
 static struct ec_status_cycle *status(const struct ec_cycle_thread *t)
@@ -143,7 +160,7 @@ static void feed(struct ec_cycle_thread *t)
 	if (take_outputs(t)) {
 		t->fed = true;
 		t->unfed = 0;
-		if (st->state == EC_CYCLE_STATE_STALLED)
+		if (st->state != EC_CYCLE_STATE_RUNNING)
 			WRITE_ONCE(st->state, EC_CYCLE_STATE_RUNNING);
 		return;
 	}
@@ -156,6 +173,27 @@ static void feed(struct ec_cycle_thread *t)
 		stall(t);
 }
 
+/* The buffers of an application: first those after the thread's, nothing waits. */
+static void deal(struct ec_cycle_thread *t)
+{
+	struct ec_exchange *x = exchange(t);
+
+	x->stride = t->stride;
+	x->app_output = (t->front + 1) % EC_EXCHANGE_BUFFERS;
+	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
+	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
+	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
+}
+
+/* The application before may have died anywhere: the next one begins anew. */
+static void adopt(struct ec_cycle_thread *t)
+{
+	deal(t);
+	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->session->shared->image,
+	       t->bytes);
+	smp_store_release(&t->adopt, false);
+}
+
 /* Inputs and working counters of this cycle for the application. */
 static void publish(struct ec_cycle_thread *t, bool received)
 {
@@ -166,6 +204,8 @@ static void publish(struct ec_cycle_thread *t, bool received)
 	u64 cycle = st->cycle + 1;
 	unsigned int i;
 
+	if (unlikely(READ_ONCE(t->adopt)))
+		adopt(t);
 	b->cycle = cycle;
 	b->time_ns = t->next_ns;
 	for (i = 0; i < s->n_domains; i++) {
@@ -185,18 +225,54 @@ static void publish(struct ec_cycle_thread *t, bool received)
 		wake_up_all(&m->kernel_wq);
 }
 
-/* Cycles whose time has passed are left out, so that the phase stays. */
-static void skip_missed(struct ec_cycle_thread *t, u64 now)
+/* Cycles whose time has passed are left out, so that the phase stays; how many. */
+static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 {
 	u32 period = t->session->kernel.period_ns;
 	s64 late = now - t->next_ns;
 	u64 skipped;
 
 	if (late < period)
-		return;
+		return 0;
 	skipped = div_u64(late, period);
 	WRITE_ONCE(status(t)->overruns, status(t)->overruns + skipped);
 	t->next_ns += skipped * period;
+	return skipped;
+}
+
+/* Domains of this cycle; those whose turn was left out go now, then as before. */
+static u64 turn(struct ec_cycle_thread *t, u64 skipped)
+{
+	u64 domains = t->always;
+	unsigned int i;
+
+	for (i = 0; i < t->n_slow; i++) {
+		struct slow *s = &t->slow[i];
+
+		s->left -= min_t(u64, skipped, S32_MAX / 2);
+		if (s->left <= 0) {
+			domains |= BIT_ULL(s->domain);
+			s->left = s->division - -s->left % s->division;
+		}
+		s->left--;
+	}
+	return domains;
+}
+
+static void find_turns(struct ec_cycle_thread *t)
+{
+	const struct ec_session *s = t->session;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++) {
+		if (s->domains[i]->division == 1)
+			t->always |= BIT_ULL(i);
+		else
+			t->slow[t->n_slow++] = (struct slow){
+				.domain = i, .left = s->domains[i]->phase,
+				.division = s->domains[i]->division,
+			};
+	}
 }
 
 /* One cycle; false: the last one. */
@@ -204,20 +280,20 @@ static bool cycle(struct ec_cycle_thread *t)
 {
 	struct ec_session *s = t->session;
 	struct ec_master *m = s->master;
-	struct ec_ioc_send send = {
-		.flags = s->kernel.dc,
-		.queued = s->n_domains ? GENMASK_ULL(s->n_domains - 1, 0) : 0,
-	};
+	struct ec_ioc_send send = { .flags = s->kernel.dc };
 	u64 due = t->next_ns, now = ktime_get_ns();
 	bool received;
 	s32 correction;
 
-	skip_missed(t, now);
-	received = !ec_cycle_receive(s);
+	send.queued = turn(t, skip_missed(t, now));
+	/* before the first frame the links are not ours */
+	received = status(t)->state != EC_CYCLE_STATE_WAITING && !ec_cycle_receive(s);
 	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
-	if (status(t)->state != EC_CYCLE_STATE_STOPPED) {
+	if (s->requests)
+		ec_requests_notice(s->requests);
+	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		if (!ec_cycle_send(s, &send))
 			ec_late_count(s, m->last_send_ns - due);
 	}
@@ -309,19 +385,16 @@ static int find_outputs(struct ec_cycle_thread *t)
 static int alloc_exchange(struct ec_cycle_thread *t)
 {
 	struct ec_shared *sh = t->session->shared;
-	struct ec_exchange *x;
 
 	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
 	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
-	x = vmalloc_user(sh->exchange_size);
-	if (!x)
+	sh->exchange = vmalloc_user(sh->exchange_size);
+	if (!sh->exchange)
 		return -ENOMEM;
-	sh->exchange = x;
-	x->outputs = EC_EXCHANGE_BUFFERS - 1;
-	x->inputs = EC_EXCHANGE_BUFFERS - 1;
-	x->stride = t->stride;
-	t->front = 1;
-	t->back = 0;
+	deal(t);
+	/* it may begin with something */
+	if (t->bytes)
+		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, sh->image, t->bytes);
 	return 0;
 }
 
@@ -351,6 +424,7 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
 	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
 	t->session = s;
 	t->bytes = image_bytes;
+	find_turns(t);
 	ret = find_outputs(t) ?: alloc_exchange(t);
 	if (ret)
 		goto err;
@@ -391,7 +465,8 @@ void ec_cycle_thread_start(struct ec_session *s)
 		return;
 	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
 	m->interval_told = true;
-	WRITE_ONCE(status(s->thread)->state, EC_CYCLE_STATE_RUNNING);
+	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?
+		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
 	WRITE_ONCE(m->kernel_cycle, 0);
 	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
 	wake_up_process(s->thread->task);
@@ -414,6 +489,29 @@ void ec_cycle_thread_stop(struct ec_session *s)
 		end_run(m);
 	free_thread(s->thread);
 	s->thread = NULL;
+}
+
+/**
+ * ec_cycle_thread_adopt() - another application gets the exchange
+ * @s: active session without an application
+ *
+ * Its output buffer has the image as it is, outputs and inputs; none of the
+ * buffers that the application before has given is used any more.
+ *
+ * Context: Process, session_lock held. Sleeps until the next cycle has begun.
+ * Return: 0; -ETIMEDOUT the cycle does not run.
+ */
+int ec_cycle_thread_adopt(struct ec_session *s)
+{
+	struct ec_cycle_thread *t = s->thread;
+	u32 limit_ms = 2 * s->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
+
+	WRITE_ONCE(t->adopt, true);
+	if (!wait_event_timeout(s->master->kernel_wq, !smp_load_acquire(&t->adopt),
+				msecs_to_jiffies(limit_ms)))
+		return -ETIMEDOUT;
+	WRITE_ONCE(status(t)->takeovers, status(t)->takeovers + 1);
+	return 0;
 }
 
 /**
@@ -444,7 +542,8 @@ __poll_t ec_cycle_thread_poll(const struct ec_session *s)
  * @timeout_us: limit, 0: none
  *
  * Context: Process. Sleeps; nothing of the session is touched, so it may end.
- * Return: 0; -ETIMEDOUT; -EINTR; -ECANCELED the cycle has stopped.
+ * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
+ * stopped.
  */
 int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_us)
 {
@@ -456,9 +555,9 @@ int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_u
 						 READ_ONCE(m->kernel_cycle) > *cycle, limit);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
-	/* a restart would begin the time limit anew */
+	/* a signal handler runs first, and ends it; after a stop it goes on */
 	if (ret)
-		return -EINTR;
+		return -ERESTARTNOHAND;
 	if (!(run & 1) || READ_ONCE(m->kernel_run) != run)
 		return -ECANCELED;
 	*cycle = READ_ONCE(m->kernel_cycle);

@@ -23,6 +23,7 @@ struct ec_domain *ec_domain_create(struct ec_session *s)
 		return ERR_PTR(-ENOMEM);
 	d->session = s;
 	d->index = s->n_domains;
+	d->division = 1;
 	s->domains[s->n_domains++] = d;
 	return d;
 }

@@ -30,6 +30,8 @@ struct ec_domain_fmmu {
  * @dgram_bytes: their bytes, header and working counter included
  * @memory: of a kernel application, for its data; NULL: they lie in the image
  * @snap: for a kernel application: result as of its last ecrt_domain_process()
+ * @division: it takes part in every so many cycles the kernel runs
+ * @phase: first time in that cycle, from 0 on
  */
 struct ec_domain {
 	struct ec_session *session;
@@ -45,6 +47,8 @@ struct ec_domain {
 	u32 dgram_bytes;
 	u8 *memory;
 	struct ec_status_domain snap;
+	u32 division;
+	u32 phase;
 };
 
 struct ec_domain *ec_domain_create(struct ec_session *s);

@@ -6,6 +6,7 @@
 #include <linux/bitops.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
+#include "copy.h"
 #include "cycle.h"
 #include "master.h"
 #include "request.h"
@@ -90,6 +91,8 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	if (f->dc)
 		data = ec_dc_take(s, f->dc, data, f->slot->sent_ns);
 	for (i = 0; i < f->count; i++, d++) {
+		if (!(f->queued & BIT_ULL(d->domain)))
+			continue;
 		take_dgram(s, d, f->send, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
@@ -224,13 +227,13 @@ static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d,
 		copy_area(data + a->pos, image + a->offset, a->len);
 }
 
-/* Datagrams from @g on, as many as are queued and fit; returns how many. */
+/* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
 static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g,
 			 const struct send *send)
 {
 	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_dgram *d = &c->dgrams[g];
-	unsigned int end, dc;
+	unsigned int room, dc, first = g;
 	u64 queued = send->what->queued;
 	struct ec_frame_buf fb;
 	u8 *p;
@@ -239,8 +242,10 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 	if (send->dc)
 		ec_dc_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
 	dc = fb.count;
-	end = min(c->n_dgrams, g + max(s->master->max_datagrams, dc) - dc);
-	for (; g < end && queued & BIT_ULL(d->domain); g++, d++) {
+	room = max(s->master->max_datagrams, dc) - dc;
+	for (; g < c->n_dgrams && room; g++, d++) {
+		if (!(queued & BIT_ULL(d->domain)))
+			continue;
 		if (d->new_frame && fb.count > dc)
 			break;
 		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
@@ -248,9 +253,10 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 		if (!p)
 			break;
 		fill_dgram(s, d, p);
+		room--;
 	}
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
-	return fb.count - dc;
+	return g - first;
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
@@ -274,7 +280,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	if (!ec_cycle_transmit(m, slot, send->now))
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
-			.dc = send->dc,
+			.queued = send->what->queued, .dc = send->dc,
 		};
 	else
 		ec_slot_put(&m->slots, slot, true);
@@ -331,6 +337,8 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	if (!s->thread)
 		ec_late_send(s, send.now);
 	WRITE_ONCE(m->last_send_ns, send.now);
+	if (s->copying)
+		ec_copies_run(s);
 	c->send++;
 	c->sent |= what->queued;
 	send.dc = ec_dc_wanted(m, what->flags);

@@ -67,6 +67,7 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE),
 	IOC(EC_IOC_RESET, ec_ioc_reset, F_WRITE),
 	IOC(EC_IOC_CYCLE_RESET, ec_ioc_cycle_reset, F_WRITE),
+	IOC(EC_IOC_END_DETACHED, ec_ioc_end_detached, F_WRITE),
 	IOC(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE),
 	IOC(EC_IOC_RELEASE, ec_ioc_release, F_WRITE),
 	IOC(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE),
@@ -100,6 +101,8 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, RSV(ec_ioc_sc_overlap, reserved)),
 	IOC(EC_IOC_DOMAIN_OPTIONS, ec_ioc_domain_options, F_WRITE,
 	    RSV(ec_ioc_domain_options, reserved)),
+	IOC(EC_IOC_DIVISION, ec_ioc_division, F_WRITE),
+	IOC(EC_IOC_COPY, ec_ioc_copy, F_WRITE),
 };
 
 /**
@@ -160,6 +163,8 @@ static u32 known_flags(unsigned int cmd)
 		return EC_REG_FLAG_EMERGENCY;
 	case EC_IOC_REG_ENTRY:
 		return EC_REG_ENTRY_BY_POS;
+	case EC_IOC_CYCLE:
+		return EC_CYCLE_FLAG_ALL;
 	default:
 		return 0;
 	}

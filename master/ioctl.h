@@ -37,6 +37,7 @@ int ec_ioc_state(struct ec_file *f, void *arg);
 int ec_ioc_rescan(struct ec_file *f, void *arg);
 int ec_ioc_debug(struct ec_file *f, void *arg);
 int ec_ioc_reset(struct ec_file *f, void *arg);
+int ec_ioc_end_detached(struct ec_file *f, void *arg);
 
 /* ioctl_config.c: what an application has configured */
 int ec_ioc_config(struct ec_file *f, void *arg);
@@ -72,6 +73,8 @@ int ec_ioc_app_time(struct ec_file *f, void *arg);
 int ec_ioc_ref_clock(struct ec_file *f, void *arg);
 int ec_ioc_cycle(struct ec_file *f, void *arg);
 int ec_ioc_wait(struct ec_file *f, void *arg);
+int ec_ioc_division(struct ec_file *f, void *arg);
+int ec_ioc_copy(struct ec_file *f, void *arg);
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);
 struct ec_session *ec_ioc_lock_idle(struct ec_file *f, int *ret);

@@ -33,10 +33,12 @@ int ec_ioc_reserve(struct ec_file *f, void *arg)
 static struct ec_session *lock(struct ec_file *f, int *ret)
 {
 	struct ec_master *m = f->master;
+	struct ec_session *s;
 
 	mutex_lock(&m->session_lock);
-	if (m->session && m->session->owner == f)
-		return m->session;
+	s = ec_session_of(m, f);
+	if (s)
+		return s;
 	mutex_unlock(&m->session_lock);
 	*ret = ec_refuse(f, -EPERM, "reserve the master first (ecrt_request_master)");
 	return NULL;
@@ -344,12 +346,28 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 				 EC_MAX_CYCLE_FRAMES);
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
+	case -EOPNOTSUPP:
+		return ec_refuse(f, ret, "only a cycle the kernel runs has divisions: call ecrt_master_set_cycle(), or queue the domain when it is its turn");
 	case -ENODEV:
 		return ec_refuse(f, ret, "CPU %d is not online; choose another one for the cycle",
 				 s->kernel.cpu);
 	default:
 		return ec_refuse(f, ret, "activation failed (error %d)", ret);
 	}
+}
+
+/* The application of a detached session has come back, or another one. */
+static int take_over(struct ec_file *f)
+{
+	char why[96];
+	int ret = ec_session_take_over(f->master, why, sizeof(why));
+
+	if (ret == -EEXIST)
+		return ec_refuse(f, ret, "the detached session of master %u was configured otherwise: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
+				 f->master->index, why);
+	if (ret)
+		return ec_refuse(f, ret, "the cycle of the detached session does not answer; end it with 'ethercat release'");
+	return 0;
 }
 
 static int activate(struct ec_file *f, struct ec_session *s, const void *preset, u32 size)
@@ -387,9 +405,10 @@ int ec_ioc_activate(struct ec_file *f, void *arg)
 	}
 	s = lock(f, &ret);
 	if (s) {
-		ret = activate(f, s, preset, i->preset_size);
+		i->taken_over = s == f->master->heir;
+		ret = i->taken_over ? take_over(f) : activate(f, s, preset, i->preset_size);
 		if (!ret)
-			tell_sizes(s, i);
+			tell_sizes(f->master->session, i);
 		done(f, ret);
 	}
 	kvfree(preset);
@@ -439,13 +458,18 @@ int ec_ioc_ref_clock(struct ec_file *f, void *arg)
 int ec_ioc_interval(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_interval *i = arg;
+	struct ec_session *s;
 	int ret = 0;
 
 	if (!i->interval_us || i->interval_us > USEC_PER_SEC)
 		return ec_refuse(f, -EINVAL, "send interval must be 1 to 1000000 us, not %u",
 				 i->interval_us);
-	if (!ec_ioc_lock_idle(f, &ret))
+	s = ec_ioc_lock_idle(f, &ret);
+	if (!s)
 		return ret;
+	/* the interval is that of the session which runs */
+	if (s == f->master->heir)
+		return done(f, 0);
 	f->master->interval_us = i->interval_us;
 	f->master->interval_told = true;
 	return done(f, 0);
@@ -480,6 +504,7 @@ static struct ec_session *enter(struct ec_file *f, int *ret)
 int ec_ioc_app_time(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_app_time *i = arg;
+	struct ec_session *s;
 	int ret;
 
 	if (enter(f, &ret)) {
@@ -489,10 +514,12 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 	}
 	if (ret == -EBUSY)
 		return ec_refuse(f, ret, "the kernel runs the cycle and tells the time");
-	/* before activation there is no cycle to disturb */
-	if (!lock(f, &ret))
+	s = lock(f, &ret);
+	if (!s)
 		return ret;
-	ec_dc_app_time(f->master, i->app_time, ktime_get_ns());
+	/* before activation there is no cycle to disturb, but of a detached session */
+	if (s != f->master->heir)
+		ec_dc_app_time(f->master, i->app_time, ktime_get_ns());
 	return done(f, 0);
 }
 

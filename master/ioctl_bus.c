@@ -272,3 +272,16 @@ int ec_ioc_reset(struct ec_file *f, void *arg)
 	up_read(&m->topo);
 	return 0;
 }
+
+int ec_ioc_end_detached(struct ec_file *f, void *arg)
+{
+	switch (ec_session_end_detached(f->master)) {
+	case 0:
+		return 0;
+	case -ENOENT:
+		return ec_refuse(f, -ENOENT, "master %u runs no session", f->master->index);
+	default:
+		return ec_refuse(f, -EBUSY, "the application of master %u is there; stop that",
+				 f->master->index);
+	}
+}

@@ -12,10 +12,13 @@
 static struct ec_session *lock(struct ec_file *f, int *ret)
 {
 	struct ec_master *m = f->master;
+	struct ec_session *s;
 
 	mutex_lock(&m->session_lock);
-	if (m->session)
-		return m->session;
+	/* an application sees its own */
+	s = ec_session_of(m, f) ?: m->session;
+	if (s)
+		return s;
 	mutex_unlock(&m->session_lock);
 	*ret = ec_refuse(f, -ENOENT, "no application has reserved master %u", m->index);
 	return NULL;

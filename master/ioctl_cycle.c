@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands of the application whose cycle the kernel runs. */
 #include <linux/cpumask.h>
+#include "copy.h"
 #include "cycle_thread.h"
+#include "domain.h"
 #include "ioctl.h"
 #include "master.h"
 #include "session.h"
@@ -38,29 +40,86 @@ static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 		return ec_refuse(f, -EINVAL, "the cycle cannot follow a reference clock it never reads; add the flag that tells the slaves its time");
 	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
 		return ec_refuse(f, -EINVAL, "the cycle cannot follow the reference clock while that follows the cycle; use one of both");
+	if (i->flags & EC_CYCLE_FLAG_DETACH && i->stall == EC_STALL_STOP)
+		return ec_refuse(f, -EINVAL, "a session that survives its application cannot stop without it; hold its outputs or zero them");
 	return 0;
 }
 
 int ec_ioc_cycle(struct ec_file *f, void *arg)
 {
-	struct ec_master *m = f->master;
 	struct ec_ioc_cycle *i = arg;
 	int ret = check_cycle(f, i);
+	struct ec_session *s;
 
 	if (ret)
 		return ret;
-	mutex_lock(&m->session_lock);
-	if (!m->session || m->session->owner != f)
-		ret = -EPERM;
-	else if (m->session->active)
-		ret = -EBUSY;
-	else
-		m->session->kernel = *i;
-	mutex_unlock(&m->session_lock);
-	if (ret == -EPERM)
-		ec_refuse(f, ret, "reserve the master first (ecrt_request_master)");
-	else if (ret)
-		ec_refuse(f, ret, "the master is active; choose who runs the cycle before ecrt_master_activate()");
+	s = ec_ioc_lock_idle(f, &ret);
+	if (!s)
+		return ret;
+	s->kernel = *i;
+	mutex_unlock(&f->master->session_lock);
+	return 0;
+}
+
+int ec_ioc_division(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_division *i = arg;
+	int ret = 0;
+	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
+
+	if (!s)
+		return ret;
+	if (!i->division || i->division > EC_MAX_DIVISION || i->phase >= i->division) {
+		ret = ec_refuse(f, -EINVAL, "every %u cycles, phase %u: use 1 to %u, and a phase below that",
+				i->division, i->phase, EC_MAX_DIVISION);
+	} else if (i->domain >= s->n_domains) {
+		ret = ec_refuse(f, -ENOENT, "there is no domain %u", i->domain);
+	} else {
+		s->domains[i->domain]->division = i->division;
+		s->domains[i->domain]->phase = i->phase;
+	}
+	mutex_unlock(&f->master->session_lock);
+	return ret;
+}
+
+static int copy_failed(struct ec_file *f, const struct ec_ioc_copy *i, int ret)
+{
+	switch (ret) {
+	case -ENOENT:
+		return ec_refuse(f, ret, "there is no domain %u or %u", i->from_domain,
+				 i->to_domain);
+	case -EDOM:
+		return ec_refuse(f, -EINVAL, "%u bits from bit %u of domain %u on are not inputs of one slave; register them first",
+				 i->bits, i->from_bit, i->from_domain);
+	case -ERANGE:
+		return ec_refuse(f, -EINVAL, "%u bits from bit %u of domain %u on are not outputs of one slave; register them first",
+				 i->bits, i->to_bit, i->to_domain);
+	case -EEXIST:
+		return ec_refuse(f, ret, "another copy writes to some of these %u bits from bit %u of domain %u on",
+				 i->bits, i->to_bit, i->to_domain);
+	case -ENOSPC:
+		return ec_refuse(f, ret, "at most %u copies", EC_MAX_COPIES);
+	default:
+		return ret;
+	}
+}
+
+int ec_ioc_copy(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_copy *i = arg;
+	struct ec_copy copy = {
+		.from_domain = i->from_domain, .from_bit = i->from_bit,
+		.to_domain = i->to_domain, .to_bit = i->to_bit, .bits = i->bits,
+	};
+	int ret = 0;
+	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
+
+	if (!s)
+		return ret;
+	ret = ec_copy_add(s, &copy);
+	if (ret)
+		ret = copy_failed(f, i, ret);
+	mutex_unlock(&f->master->session_lock);
 	return ret;
 }
 

@@ -109,6 +109,8 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	const struct ec_status *st;
 
 	i->active = s->active;
+	i->session = !s->owner ? EC_SESSION_DETACHED :
+		     s->active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
 	i->config_count = s->n_configs;
 	i->domain_count = s->n_domains;
 	if (!s->active)

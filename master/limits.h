@@ -7,6 +7,8 @@
 #define EC_MAX_LINKS		2	/* main and backup */
 #define EC_MAX_SLAVES		65535	/* 16-bit addressing */
 #define EC_MAX_DOMAINS		64	/* bits of the queue mask, EC_STATUS_DOMAINS */
+#define EC_MAX_DIVISION		1000	/* cycles from one exchange of a domain to the next */
+#define EC_MAX_COPIES		1024	/* of one session, done in each cycle */
 #define EC_MAX_CONFIGS		4096	/* EC_STATUS_CONFIGS */
 #define EC_MAX_IMAGE		(256 * 1024)	/* bytes of process data per session */
 #define EC_MAX_CYCLE_DGRAMS	512	/* datagrams of one cycle */

@@ -68,9 +68,11 @@ struct task_struct;
  * @monitor_wq: wakes it
  * @work: workers that bring slaves to their state
  *
- * @session_lock: protects @session and everything it owns but the cyclic part
+ * @session_lock: protects @session, @heir and everything they own but the
+ *	cyclic part
  * @session: what an application has configured, NULL: nobody
  * @api: for applications in the kernel, immutable
+ * @heir: what another one configures to take over @session, which is detached
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
  *
@@ -132,6 +134,7 @@ struct ec_master {
 	struct mutex session_lock;
 	struct ec_session *session;
 	struct ec_api *api;
+	struct ec_session *heir;
 	struct mutex cyclic_lock;
 	struct ec_session *active;
 

@@ -41,6 +41,7 @@ struct ec_lane {
  * @master: master
  * @shared: mapped memory, with a reference
  * @lock: protects the requests; inside session_lock
+ * @starts: the area's, when a cycle of the kernel last looked
  * @kick: looks once
  * @watch: looks again and again while anything waits
  * @reqs: requests
@@ -54,6 +55,7 @@ struct ec_requests {
 	struct ec_master *master;
 	struct ec_shared *shared;
 	struct mutex lock;
+	u32 starts;
 	struct work_struct kick;
 	struct work_struct watch;
 	struct ec_request *reqs;
@@ -362,24 +364,28 @@ static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
 	unsigned int i;
 
 	for (i = 0; i < s->n_configs; i++, ring++) {
-		ring->count = s->configs[i]->emergencies;
-		ring->data = at;
 		lane_init(rq, &rq->lanes[i], i);
 		rq->lanes[i].emerg = (struct ec_emerg){
-			.ring = ring, .data = base + at, .count = ring->count,
+			.ring = ring, .data = base + at, .count = s->configs[i]->emergencies,
 		};
-		at += ring->count * EC_EMERG_BYTES;
+		at += rq->lanes[i].emerg.count * EC_EMERG_BYTES;
 	}
 	return at;
 }
 
-static void lay_out(struct ec_session *s, struct ec_requests *rq)
+/**
+ * ec_requests_describe() - tell an application where everything lies
+ * @s: session with requests
+ *
+ * Once more for one that takes over: the one before could write there.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_requests_describe(const struct ec_session *s)
 {
+	struct ec_requests *rq = s->requests;
 	u8 *base = rq->shared->requests;
 	struct ec_request_area *area = (void *)base;
-	struct ec_request_record *rec = (void *)(base + sizeof(*area));
-	struct ec_lane *own = &rq->lanes[s->n_configs];
-	size_t at = lay_out_rings(s, rq);
 	unsigned int i;
 
 	area->magic = EC_REQUEST_MAGIC;
@@ -387,6 +393,34 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 	area->requests = sizeof(*area);
 	area->ring_count = s->n_configs;
 	area->rings = rings_offset(s);
+	for (i = 0; i < s->n_configs; i++) {
+		const struct ec_emerg *e = &rq->lanes[i].emerg;
+
+		e->ring->count = e->count;
+		e->ring->data = e->data - base;
+		if (e->head - READ_ONCE(e->ring->tail) > e->count)
+			WRITE_ONCE(e->ring->tail, e->head);
+	}
+	mutex_lock(&rq->lock);
+	for (i = 0; i < rq->n_reqs; i++) {
+		const struct ec_request *r = &rq->reqs[i];
+
+		r->rec->data = r->data - base;
+		WRITE_ONCE(r->rec->start, r->seq);
+		WRITE_ONCE(r->rec->done, r->phase == EC_REQUEST_IDLE ? r->seq :
+								     r->seq - 1);
+	}
+	mutex_unlock(&rq->lock);
+}
+
+static void lay_out(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
+	struct ec_lane *own = &rq->lanes[s->n_configs];
+	size_t at = lay_out_rings(s, rq);
+	unsigned int i;
+
 	for (i = 0; i < s->n_specs; i++, rec++) {
 		const struct ec_request_spec *spec = &s->specs[i];
 		struct ec_lane *lane = &rq->lanes[spec->config];
@@ -397,7 +431,6 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 			lane = own++;
 			lane_init(rq, lane, spec->config);
 		}
-		rec->data = at;
 		r->rec = rec;
 		r->kind = spec->kind;
 		r->cap = spec->size;
@@ -450,6 +483,7 @@ int ec_requests_begin(struct ec_session *s)
 	rq->n_reqs = s->n_specs;
 	lay_out(s, rq);
 	s->requests = rq;
+	ec_requests_describe(s);
 	for (i = 0; i < s->n_configs; i++)
 		ec_requests_attach(s, i);
 	return 0;
@@ -485,6 +519,25 @@ void ec_requests_end(struct ec_session *s)
  */
 void ec_requests_kick(struct ec_requests *rq)
 {
+	queue(rq, &rq->kick);
+}
+
+/**
+ * ec_requests_notice() - has the application started a request?
+ * @rq: requests of its session
+ *
+ * Without a send of its own it counts starts in mapped memory.
+ *
+ * Context: The thread that runs the cycle. RT-safe.
+ */
+void ec_requests_notice(struct ec_requests *rq)
+{
+	const struct ec_request_area *area = (void *)rq->shared->requests;
+	u32 starts = READ_ONCE(area->starts);
+
+	if (starts == rq->starts)
+		return;
+	rq->starts = starts;
 	queue(rq, &rq->kick);
 }
 

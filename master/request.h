@@ -4,9 +4,10 @@
  * VoE messages.
  *
  * Their records lie in memory the application has mapped. It starts one there
- * and says so with its next send; from then on the kernel works with its own
- * copy. Each configuration has a lane: a worker that does its requests one
- * after the other, so that a slow slave does not hold up the others.
+ * and says so with its next send, or counts it there for a cycle of the kernel;
+ * from then on the kernel works with its own copy. Each configuration has a lane:
+ * a worker that does its requests one after the other, so that a slow slave does
+ * not hold up the others.
  */
 #ifndef EC_REQUEST_H
 #define EC_REQUEST_H
@@ -34,9 +35,11 @@ int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *i
 size_t ec_requests_bytes(const struct ec_session *s);
 int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
+void ec_requests_describe(const struct ec_session *s);
 void ec_requests_kick(struct ec_requests *rq);
 void ec_requests_attach(const struct ec_session *s, u32 config);
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);
 struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
+void ec_requests_notice(struct ec_requests *rq);
 
 #endif

@@ -2,6 +2,7 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "config.h"
+#include "copy.h"
 #include "cycle_lock.h"
 #include "cycle_thread.h"
 #include "domain.h"
@@ -55,12 +56,56 @@ static struct ec_shared *shared_alloc(size_t image_size, size_t request_size)
 }
 
 /**
+ * ec_session_of() - the session an application works with
+ * @m: master
+ * @owner: its open file
+ *
+ * Context: Process, session_lock held.
+ * Return: session, or NULL when it has not reserved the master.
+ */
+struct ec_session *ec_session_of(const struct ec_master *m, const void *owner)
+{
+	if (m->session && m->session->owner == owner)
+		return m->session;
+	return m->heir && m->heir->owner == owner ? m->heir : NULL;
+}
+
+/* One application at a time; one more may prepare to take a detached session over. */
+static bool taken(struct ec_master *m)
+{
+	bool ret;
+
+	mutex_lock(&m->session_lock);
+	ret = m->heir || (m->session && m->session->owner);
+	mutex_unlock(&m->session_lock);
+	return ret;
+}
+
+static int begin(struct ec_master *m, struct ec_session *s)
+{
+	int ret = 0;
+
+	mutex_lock(&m->session_lock);
+	if (m->heir || (m->session && m->session->owner)) {
+		ret = -EBUSY;
+	} else if (m->session) {
+		m->heir = s;
+	} else {
+		m->session = s;
+		WRITE_ONCE(m->freeze, true);
+	}
+	mutex_unlock(&m->session_lock);
+	return ret;
+}
+
+/**
  * ec_session_begin() - an application reserves the master
  * @m: master
  * @owner: its open file
  *
  * Waits for a scan in progress, then the list of slaves is frozen until
- * activation.
+ * activation. While a detached session runs, the new one is its heir: it touches
+ * no slave until activation.
  *
  * Context: Process. May sleep.
  * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
@@ -73,7 +118,7 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 
 	if (!READ_ONCE(m->link[0].dev))
 		return -ENODEV;
-	if (READ_ONCE(m->session))
+	if (taken(m))
 		return -EBUSY;
 	ret = ec_master_wait_scan(m);
 	if (ret == -EINTR)
@@ -84,16 +129,10 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 	s->master = m;
 	s->owner = owner;
 	s->ref_config = EC_UAPI_NONE32;
-	mutex_lock(&m->session_lock);
-	if (m->session) {
-		mutex_unlock(&m->session_lock);
+	ret = begin(m, s);
+	if (ret)
 		kvfree(s);
-		return -EBUSY;
-	}
-	m->session = s;
-	WRITE_ONCE(m->freeze, true);
-	mutex_unlock(&m->session_lock);
-	return 0;
+	return ret;
 }
 
 /* Detach slave and configuration; the slave goes back to PREOP. */
@@ -105,6 +144,10 @@ static void detach(struct ec_config *c)
 	if (!slave)
 		return;
 	c->slave = NULL;
+	if (slave->config != c) {	/* only looked at by an heir */
+		ec_slave_unref(slave);
+		return;
+	}
 	ec_emerg_set(slave, NULL);
 	ec_mbox_keep_voe(slave, false);
 	WRITE_ONCE(slave->interrupt, true);
@@ -139,6 +182,9 @@ static void clear(struct ec_session *s)
 	for (i = 0; i < s->n_domains; i++)
 		ec_domain_free(s->domains[i]);
 	s->n_domains = 0;
+	kvfree(s->copies);
+	s->copies = NULL;
+	s->n_copies = 0;
 	s->ref_config = EC_UAPI_NONE32;
 	memset(&s->kernel, 0, sizeof(s->kernel));
 }
@@ -169,6 +215,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_requests_end(s);
 	clear(s);
 	ec_cycle_free(m, &s->cycle);
+	ec_copies_end(s);
 	sh = s->shared;
 	s->shared = NULL;
 	ec_shared_put(sh);
@@ -183,9 +230,63 @@ int ec_session_deactivate(struct ec_session *s)
 }
 
 /**
+ * ec_session_free() - a session that is not active goes away
+ * @s: session nobody finds any more
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_free(struct ec_session *s)
+{
+	clear(s);
+	kvfree(s);
+}
+
+/* The heir of a session that has ended: from now on its slaves are its own. */
+static void inherit(struct ec_master *m)
+{
+	struct ec_session *s = m->heir;
+	unsigned int i;
+
+	m->heir = NULL;
+	m->session = s;
+	WRITE_ONCE(m->freeze, s != NULL);
+	for (i = 0; s && i < s->n_configs; i++) {
+		detach(s->configs[i]);
+		ec_session_attach_one(s, s->configs[i]);
+	}
+}
+
+static void end(struct ec_master *m)
+{
+	struct ec_session *s = m->session;
+
+	ec_session_deactivate(s);
+	m->session = NULL;
+	ec_session_free(s);
+	inherit(m);
+}
+
+/**
+ * ec_session_set_owner() - an active session changes hands
+ * @s: session
+ * @owner: open file, or NULL
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_set_owner(struct ec_session *s, const void *owner)
+{
+	mutex_lock(&s->master->cyclic_lock);
+	s->owner = owner;
+	mutex_unlock(&s->master->cyclic_lock);
+}
+
+/**
  * ec_session_end() - the application is gone or releases the master
  * @m: master
  * @owner: its open file, NULL: whoever it is; another's session stays
+ *
+ * An active session whose cycle the kernel runs is detached instead, when it was
+ * configured so; with @owner NULL it ends, too.
  *
  * Context: Process. May sleep.
  */
@@ -194,17 +295,46 @@ void ec_session_end(struct ec_master *m, const void *owner)
 	struct ec_session *s;
 
 	mutex_lock(&m->session_lock);
+	s = m->heir;
+	if (s && (!owner || s->owner == owner)) {
+		m->heir = NULL;
+		ec_session_free(s);
+	}
 	s = m->session;
 	if (s && owner && s->owner != owner)
 		s = NULL;
-	if (s) {
-		ec_session_deactivate(s);
-		clear(s);
-		m->session = NULL;
-		WRITE_ONCE(m->freeze, false);
+	if (s && owner && s->thread && !s->ending &&
+	    s->kernel.flags & EC_CYCLE_FLAG_DETACH) {
+		ec_session_set_owner(s, NULL);
+		ec_info(m, "application is gone, its cycle goes on: session detached\n");
+	} else if (s) {
+		end(m);
 	}
 	mutex_unlock(&m->session_lock);
-	kvfree(s);
+}
+
+/**
+ * ec_session_end_detached() - end the cycle of an application that has gone
+ * @m: master
+ *
+ * Slaves go to PREOP. One who wanted to take over has the master then.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; -ENOENT nothing is active; -EBUSY its application is there.
+ */
+int ec_session_end_detached(struct ec_master *m)
+{
+	int ret = 0;
+
+	mutex_lock(&m->session_lock);
+	if (!m->session)
+		ret = -ENOENT;
+	else if (m->session->owner)
+		ret = -EBUSY;
+	else
+		end(m);
+	mutex_unlock(&m->session_lock);
+	return ret;
 }
 
 /* The slave @c means, with a reference, or NULL. */
@@ -245,6 +375,10 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	detach(c);
 	if (!slave)
 		return;
+	if (s == s->master->heir) {	/* only to look at */
+		c->slave = slave;
+		return;
+	}
 	/* the monitor must not wait for what its worker waits for */
 	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
@@ -356,7 +490,8 @@ u32 ec_session_place(struct ec_session *s)
  * @s: session
  *
  * Context: Process, session_lock held. May sleep.
- * Return: 0; -EBUSY when active already; -EOVERFLOW when the image or a cycle
+ * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
+ * the application runs the cycle; -EOVERFLOW when the image or a cycle
  * is too large; -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
@@ -368,6 +503,9 @@ int ec_session_activate(struct ec_session *s)
 
 	if (s->active)
 		return -EBUSY;
+	for (i = 0; i < s->n_domains; i++)
+		if (s->domains[i]->division > 1 && !s->kernel.period_ns)
+			return -EOPNOTSUPP;
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
@@ -378,6 +516,8 @@ int ec_session_activate(struct ec_session *s)
 		memcpy(s->shared->image, s->preset, offset);
 	ret = ec_requests_begin(s);
 	if (!ret)
+		ret = ec_copies_begin(s);
+	if (!ret)
 		ret = ec_cycle_layout(s);
 	if (!ret && s->kernel.period_ns) {
 		ret = ec_cycle_thread_create(s, offset);
@@ -385,6 +525,7 @@ int ec_session_activate(struct ec_session *s)
 			ec_cycle_free(m, &s->cycle);
 	}
 	if (ret) {
+		ec_copies_end(s);
 		ec_requests_end(s);
 		ec_shared_put(s->shared);
 		s->shared = NULL;
@@ -399,7 +540,9 @@ int ec_session_activate(struct ec_session *s)
 	s->stall_log.told = atomic_read(&m->stalls);
 	s->lock_told = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->freeze, false);
-	ec_cycle_own(m, EC_OWNER_CYCLE);
+	/* one that waits for outputs takes the links with its first frame */
+	if (!s->thread || !(s->kernel.flags & EC_CYCLE_FLAG_WAIT))
+		ec_cycle_own(m, EC_OWNER_CYCLE);
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
 	mutex_unlock(&m->cyclic_lock);

@@ -11,6 +11,8 @@
 #include "limits.h"
 
 struct ec_config;
+struct ec_copy;
+struct ec_copying;
 struct ec_cycle_thread;
 struct ec_domain;
 struct ec_master;
@@ -63,7 +65,8 @@ struct ec_stall_log {
  * struct ec_session - under master->session_lock; @cycle and @shared are the
  *	cyclic caller's while @active
  * @master: master
- * @owner: open file that reserved the master
+ * @owner: open file that reserved the master; NULL: detached, its cycle goes on
+ *	without an application
  * @configs: slave configurations
  * @n_configs: entries in @configs
  * @domains: domains
@@ -83,6 +86,9 @@ struct ec_stall_log {
  * @kernel: how the kernel shall run the cycle; period 0: it shall not
  * @thread: runs the cycle while @active; NULL: the application does
  * @cycle: cyclic layout
+ * @copies: from inputs to outputs, before each send
+ * @n_copies: entries in @copies
+ * @copying: what they need while @active, or NULL
  */
 struct ec_session {
 	struct ec_master *master;
@@ -105,11 +111,16 @@ struct ec_session {
 	struct ec_ioc_cycle kernel;
 	struct ec_cycle_thread *thread;
 	struct ec_cycle cycle;
+	struct ec_copy *copies;
+	unsigned int n_copies;
+	struct ec_copying *copying;
 };
 
 int ec_session_begin(struct ec_master *m, const void *owner);
 void ec_session_end(struct ec_master *m, const void *owner);
 u32 ec_session_place(struct ec_session *s);
+int ec_session_end_detached(struct ec_master *m);
+struct ec_session *ec_session_of(const struct ec_master *m, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_slaves_down(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
@@ -122,6 +133,11 @@ void ec_session_clocks(struct ec_master *m, bool changed);
 void ec_session_status(struct ec_master *m);
 void ec_session_stalled(struct ec_master *m);
 
+/* takeover.c */
+int ec_session_take_over(struct ec_master *m, char *why, size_t size);
+
+void ec_session_set_owner(struct ec_session *s, const void *owner);
+void ec_session_free(struct ec_session *s);
 void ec_shared_get(struct ec_shared *sh);
 void ec_shared_put(struct ec_shared *sh);
 

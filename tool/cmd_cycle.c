@@ -134,6 +134,8 @@ static const char *state_text(const struct ec_ioc_cycle_stats *i, const struct e
 		return "stalled";
 	case EC_CYCLE_STATE_STOPPED:
 		return "stopped";
+	case EC_CYCLE_STATE_WAITING:
+		return "waiting";
 	default:
 		return "running";
 	}
@@ -199,7 +201,7 @@ const struct cmd cmd_cycle = {
 		"schedule than that figure, exact to 1/8. The bars show powers of two, with\n"
 		"--verbose eighths of them. --reset begins anew and needs write access.\n",
 	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
-		"stopped, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
+		"stopped, waiting, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
 		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
 		"work_mean_ns, work_max_ns (how long a cycle of the kernel takes), histogram[] (from_ns,\n"
 		"to_ns, sends; none that is empty). Of nobody master and by only",

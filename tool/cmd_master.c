@@ -183,6 +183,7 @@ static const char *phase_text(unsigned int phase)
 static int show(const struct tool *t, struct dev *d)
 {
 	static const char *const phase_key[] = { "waiting", "idle", "operation" };
+	static const char *const session_key[] = { "none", "reserved", "active", "detached" };
 	struct ec_ioc_master m;
 
 	if (dev_master(d, &m))
@@ -192,6 +193,10 @@ static int show(const struct tool *t, struct dev *d)
 	out_str("phase", m.phase < ARRAY_SIZE(phase_key) ? phase_key[m.phase] : "unknown",
 		"  Phase: %s\n", phase_text(m.phase));
 	out_bool("active", m.active, "  Active: %s\n", m.active ? "yes" : "no");
+	out_str("session", m.session < ARRAY_SIZE(session_key) ? session_key[m.session] : "unknown",
+		NULL);
+	if (m.session == EC_SESSION_DETACHED)
+		out_text("  Session: detached, its application is gone\n");
 	out_u("slaves", m.slave_count, "  Slaves: %u\n", m.slave_count);
 	out_text("  Ethernet devices:\n");
 	out_array("devices");
@@ -245,7 +250,8 @@ const struct cmd cmd_master = {
 		"nanoseconds since 2000-01-01 UTC. With --verbose also the last bus scan, and the\n"
 		"wire time of a cycle at 100 Mbit/s, preamble and gap included: with all domains\n"
 		"and, when they are used, clock datagrams; and of the last send.\n",
-	.json = "masters[]: master, phase (waiting, idle, operation), active, slaves,\n"
+	.json = "masters[]: master, phase (waiting, idle, operation), active, session (none,\n"
+		"reserved, active, detached), slaves,\n"
 		"devices[] (mac, attached, interface, link_up, tx_frames, tx_bytes, rx_frames,\n"
 		"rx_bytes, tx_errors, tx_frames_per_s[], tx_bytes_per_s[], rx_frames_per_s[],\n"
 		"rx_bytes_per_s[], lost_frames, late_frames, unmatched_frames, foreign_frames),\n"

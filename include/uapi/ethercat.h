@@ -84,6 +84,12 @@ struct ec_ioc_device {
 #define EC_PHASE_IDLE		1
 #define EC_PHASE_OPERATION	2
 
+/* struct ec_ioc_master.session */
+#define EC_SESSION_NONE		0	/* nobody has reserved the master */
+#define EC_SESSION_RESERVED	1
+#define EC_SESSION_ACTIVE	2
+#define EC_SESSION_DETACHED	3	/* active, its application has gone */
+
 struct ec_ioc_master {
 	__u32 flags;
 	__u32 index;
@@ -105,7 +111,7 @@ struct ec_ioc_master {
 	__u64 scan_frames;	/* frames it needed */
 	struct ec_ioc_device devices[EC_UAPI_DEVICES];
 	__u32 scan_count;	/* bus scans finished so far */
-	__u32 reserved;
+	__u32 session;		/* EC_SESSION_* */
 	__u32 cycle_lock;	/* EC_CYCLE_LOCK_*, of struct ec_status_cycle */
 	__u32 lock_losses;	/* likewise */
 	__s32 phase_error;	/* likewise */
@@ -631,6 +637,8 @@ struct ec_ioc_activate {
 	__u32 exchange_size;	/* out, same; 0: the application runs the cycle */
 	__u32 preset_size;	/* in, bytes at @preset: all domains', or 0 */
 	__u64 preset;		/* in: what the image begins with; else zeros */
+	__u32 taken_over;	/* out: 1: a detached session, which went on */
+	__u32 reserved;
 };
 
 /* before activation: where it would be, with what is registered by then */
@@ -683,7 +691,8 @@ struct ec_ioc_ref_clock {
 
 /*
  * One request. The application fills in what to do, then changes @start and
- * sets EC_SEND_FLAG_REQUESTS in the next send. The kernel fills in the result,
+ * sets EC_SEND_FLAG_REQUESTS in the next send; when the kernel runs the cycle it
+ * adds 1 to @starts of the area instead. The kernel fills in the result,
  * then @done. The data lie at @data in the area: until then the kernel's.
  */
 struct ec_request_record {
@@ -728,7 +737,8 @@ struct ec_request_area {
 	__u32 requests;		/* offset of struct ec_request_record, by index */
 	__u32 ring_count;	/* one per configuration */
 	__u32 rings;		/* offset of struct ec_emerg_ring, by configuration */
-	__u32 reserved[3];
+	__u32 starts;		/* requests started; application */
+	__u32 reserved[2];
 };
 
 /* what to do when the application has given no outputs for stall_cycles */
@@ -736,9 +746,14 @@ struct ec_request_area {
 #define EC_STALL_ZERO		1	/* send zeros until there are new ones */
 #define EC_STALL_STOP		2	/* send nothing any more */
 
+/* flags of struct ec_ioc_cycle */
+#define EC_CYCLE_FLAG_DETACH	1	/* the session survives its application */
+#define EC_CYCLE_FLAG_WAIT	2	/* the first frame waits for outputs */
+#define EC_CYCLE_FLAG_ALL	3
+
 /* the kernel runs the cycle of the next activation; period_ns 0: it does not */
 struct ec_ioc_cycle {
-	__u32 flags;
+	__u32 flags;		/* EC_CYCLE_FLAG_* */
 	__u32 period_ns;	/* 10000..1000000000 */
 	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC; of the SYNC grid */
 	__s32 cpu;		/* -1: any */
@@ -751,6 +766,24 @@ struct ec_ioc_cycle {
 
 /* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */
 #define EC_CYCLE_DC_FOLLOW	256U	/* the cycle follows the reference clock */
+
+/* the domain takes part in every @division-th cycle the kernel runs */
+struct ec_ioc_division {
+	__u32 flags;
+	__u32 domain;
+	__u32 division;		/* 1..1000 */
+	__u32 phase;		/* < division: first time in that cycle */
+};
+
+/* before each send: input bits of one slave to output bits of another */
+struct ec_ioc_copy {
+	__u32 flags;
+	__u32 from_domain;
+	__u32 from_bit;		/* bit in the domain */
+	__u32 to_domain;
+	__u32 to_bit;
+	__u32 bits;
+};
 
 struct ec_ioc_wait {
 	__u32 flags;
@@ -787,6 +820,7 @@ struct ec_status_domain {
 #define EC_CYCLE_STATE_RUNNING	1
 #define EC_CYCLE_STATE_STALLED	2	/* no outputs for stall_cycles */
 #define EC_CYCLE_STATE_STOPPED	3	/* the same, and EC_STALL_STOP */
+#define EC_CYCLE_STATE_WAITING	4	/* for outputs: EC_CYCLE_FLAG_WAIT */
 
 /* struct ec_status_cycle.lock */
 #define EC_CYCLE_LOCK_OFF	0	/* not wanted, or no reference clock yet */
@@ -812,7 +846,7 @@ struct ec_status_cycle {
 	__u32 state;		/* EC_CYCLE_STATE_* */
 	__u32 work_ns;		/* kernel: how long the last cycle took */
 	__u32 work_max;
-	__u32 reserved;
+	__u32 takeovers;	/* by another application, after the first detached */
 	__u64 work_sum;
 	__u64 work_count;
 	__u64 late[EC_CYCLE_BUCKETS];
@@ -864,8 +898,8 @@ struct ec_status {
  * one, and the third is named by a word. Who has written a buffer exchanges its
  * number, with EC_EXCHANGE_NEW, for the word; who finds that bit set exchanges
  * his number for the word. Both atomically; so nobody ever waits, and nobody sees
- * half an image. At first the application has output buffer 0 and input buffer 1,
- * the kernel output buffer 1 and input buffer 0, the words are 2.
+ * half an image. @app_output and @app_input are the buffers the application has
+ * at first; that output buffer has the whole image as it is at this time.
  *
  * Output buffer n begins at EC_EXCHANGE_FIRST + n * stride, input buffer n at
  * EC_EXCHANGE_FIRST + (3 + n) * stride: struct ec_exchange_buffer, then the
@@ -881,7 +915,9 @@ struct ec_exchange {
 	__u32 inputs;		/* the word of the inputs */
 	__u32 reserved2[15];
 	__u32 stride;		/* bytes, written before activation ends */
-	__u32 reserved3[15];
+	__u32 app_output;	/* the same */
+	__u32 app_input;	/* the same */
+	__u32 reserved3[13];
 };
 
 /* in front of an image; filled for inputs */
@@ -934,6 +970,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
 #define EC_IOC_SOE_READ		EC_IOC_RW(0x29, struct ec_ioc_soe)
 #define EC_IOC_SOE_WRITE	EC_IOC_RW(0x2a, struct ec_ioc_soe)
+#define EC_IOC_END_DETACHED	EC_IOC_N(0x2b)
 
 /* reserved by this open file: the application */
 #define EC_IOC_RESERVE		EC_IOC_N(0x40)
@@ -963,6 +1000,8 @@ struct ec_exchange_buffer {
 #define EC_IOC_SC_IDN		EC_IOC_W(0x56, struct ec_ioc_sc_idn)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
+#define EC_IOC_DIVISION		EC_IOC_W(0x62, struct ec_ioc_division)
+#define EC_IOC_COPY		EC_IOC_W(0x63, struct ec_ioc_copy)
 #define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
 #define EC_IOC_DOMAIN_OPTIONS	EC_IOC_W(0x79, struct ec_ioc_domain_options)
 

@@ -1,188 +1,69 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The kernel runs the cycle; a case is the application. */
 #include <linux/poll.h>
-#include "cyc.h"
-#include "master/cycle_thread.h"
-#include "master/ioctl.h"
-
-#define PERIOD_NS	1000000
-#define CHANNELS	200	/* of 32 bits, each output wired to an input */
-
-/**
- * struct app - what the library has of an exchange
- * @c: configured application
- * @back: output buffer it holds
- * @front: input buffer it holds
- * @seen: last cycle
- */
-struct app {
-	struct cyc *c;
-	u32 back;
-	u32 front;
-	u64 seen;
-};
-
-static struct ec_shared *shared(const struct app *a)
-{
-	return a->c->b->m->session->shared;
-}
-
-static struct ec_status_cycle *status(const struct app *a)
-{
-	return &shared(a)->status->kernel;
-}
-
-static struct ec_exchange_buffer *buffer(const struct app *a, u32 n)
-{
-	struct ec_exchange *x = shared(a)->exchange;
-
-	return shared(a)->exchange + EC_EXCHANGE_FIRST + n * x->stride;
-}
-
-/* Image in the output buffer the application may write. */
-static u8 *outputs(const struct app *a)
-{
-	return (u8 *)(buffer(a, a->back) + 1);
-}
-
-static void give(struct app *a)
-{
-	struct ec_exchange *x = shared(a)->exchange;
-
-	a->back = xchg(&x->outputs, a->back | EC_EXCHANGE_NEW) & 3;
-	KUNIT_ASSERT_LT(a->c->b->test, a->back, (u32)EC_EXCHANGE_BUFFERS);
-}
-
-/* The newest inputs, or NULL when there are no new ones. */
-static struct ec_exchange_buffer *take(struct app *a)
-{
-	struct ec_exchange *x = shared(a)->exchange;
-
-	if (!(READ_ONCE(x->inputs) & EC_EXCHANGE_NEW))
-		return NULL;
-	a->front = xchg(&x->inputs, a->front) & 3;
-	KUNIT_ASSERT_LT(a->c->b->test, a->front, (u32)EC_EXCHANGE_BUFFERS);
-	return buffer(a, EC_EXCHANGE_BUFFERS + a->front);
-}
-
-static int wait(struct app *a, u32 timeout_us)
-{
-	struct ec_ioc_wait w = { .cycle = a->seen, .timeout_us = timeout_us };
-	int ret = ec_ioc_wait(&a->c->b->app, &w);
-
-	a->seen = w.cycle;
-	return ret;
-}
-
-/* Two slaves whose inputs are their outputs of before, in one domain. */
-static struct app *start(struct kunit *test, struct ec_ioc_cycle cfg)
-{
-	struct bus *b = bus_up(test, "segment seed=31\nrepeat 2 slave s io in=6400 out=6400\n"
-			       "connect s1.1 -> s1.1\nconnect s1.200 -> s1.200\n"
-			       "connect s2.1 -> s2.1\nconnect s2.200 -> s2.200\n", 2);
-	struct app *a = kunit_kzalloc(test, sizeof(*a), GFP_KERNEL);
-	u32 i;
-
-	KUNIT_ASSERT_NOT_NULL(test, a);
-	bus_idle(b);
-	a->c = cyc_new(b, 1000);
-	a->front = 1;
-	cyc_domain(a->c);
-	cyc_map_all(a->c, 0, 2, 0);
-	if (!cfg.period_ns)
-		cfg.period_ns = PERIOD_NS;
-	cfg.cpu = -1;
-	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_cycle(&b->app, &cfg), 0, "%s", b->app.reason);
-	cyc_activate(a->c);
-	for (i = 0; i < 3000 && !cyc_all_op(a->c); i++)
-		KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-	KUNIT_ASSERT_TRUE(test, cyc_all_op(a->c));
-	return a;
-}
-
-static u32 place(struct app *a, u32 slave, u32 sm, u32 channel)
-{
-	return cyc_pd(a->c, slave, sm) - cyc_data(a->c, 0) + 4 * (channel - 1);
-}
-
-static s64 output(struct app *a, const char *slave, u32 channel)
-{
-	return ec_app_channel(bus_app(a->c->b, slave), EC_APP_OUT, channel - 1);
-}
-
-/* The same number at the four far ends of the image. */
-static void write_number(struct app *a, u32 number)
-{
-	u8 *image = outputs(a);
-	u32 i;
-
-	for (i = 0; i < 2; i++) {
-		put_unaligned_le32(number, image + place(a, i, 0, 1));
-		put_unaligned_le32(number, image + place(a, i, 0, CHANNELS));
-	}
-}
+#include "kcyc.h"
 
 /* Period and phase are exact, nothing is lost, each cycle has its inputs. */
 static void kcyc_period(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ .phase_ns = 250000 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .phase_ns = 250000 });
 	u64 frames = bus_frames(a->c->b), lost = bus_lost(a->c->b), cycle = 0, counted = 0;
 	u32 i, wrong = 0;
 
-	take(a);
+	kcyc_take(a);
 	for (i = 0; i < 1000; i++) {
 		const struct ec_exchange_buffer *in;
 
-		KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-		in = take(a);
+		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+		in = kcyc_take(a);
 		KUNIT_ASSERT_NOT_NULL(test, in);
 		if (cycle)
 			KUNIT_EXPECT_EQ(test, in->cycle, cycle + 1);
 		cycle = in->cycle;
 		KUNIT_EXPECT_EQ(test, in->cycle, a->seen);
-		KUNIT_EXPECT_EQ(test, in->time_ns % PERIOD_NS, 250000ull);
+		KUNIT_EXPECT_EQ(test, in->time_ns % KCYC_PERIOD_NS, 250000ull);
 		wrong += in->domains[0].wc_state != 2;
-		write_number(a, i);
-		give(a);
+		kcyc_write(a, i);
+		kcyc_give(a);
 	}
 	KUNIT_EXPECT_EQ(test, wrong, 0u);
 	KUNIT_EXPECT_GE(test, bus_frames(a->c->b) - frames, 1000ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), lost);
-	KUNIT_EXPECT_EQ(test, status(a)->overruns, 0ull);
-	KUNIT_EXPECT_EQ(test, status(a)->missed, 0ull);
-	KUNIT_EXPECT_EQ(test, status(a)->late_count, status(a)->cycle);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->late_count, kcyc_status(a)->cycle);
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++)
-		counted += status(a)->late[i];
-	KUNIT_EXPECT_EQ(test, counted, status(a)->cycle);
-	KUNIT_EXPECT_EQ(test, status(a)->work_count, status(a)->cycle);
-	KUNIT_EXPECT_GT(test, status(a)->work_max, 0u);
+		counted += kcyc_status(a)->late[i];
+	KUNIT_EXPECT_EQ(test, counted, kcyc_status(a)->cycle);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->work_count, kcyc_status(a)->cycle);
+	KUNIT_EXPECT_GT(test, kcyc_status(a)->work_max, 0u);
 	/* time passes only when it is read */
-	bus_figure("kernel cycle: send %u to %u ns after its schedule", status(a)->late_min,
-		   status(a)->late_max);
-	KUNIT_EXPECT_LT(test, status(a)->late_max, 10000u);
+	bus_figure("kernel cycle: send %u to %u ns after its schedule", kcyc_status(a)->late_min,
+		   kcyc_status(a)->late_max);
+	KUNIT_EXPECT_LT(test, kcyc_status(a)->late_max, 10000u);
 }
 
 /* Outputs reach the slaves whole and come back as inputs of one cycle. */
 static void kcyc_whole_images(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	u32 i, last = 0, torn = 0, fresh = 0;
 
 	for (i = 1; i <= 500; i++) {
 		const struct ec_exchange_buffer *in;
 		u32 k, v[4];
 
-		KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-		in = take(a);
+		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+		in = kcyc_take(a);
 		KUNIT_ASSERT_NOT_NULL(test, in);
 		for (k = 0; k < 4; k++)
 			v[k] = get_unaligned_le32((u8 *)(in + 1) +
-						  place(a, k / 2, 1, k % 2 ? CHANNELS : 1));
+						  kcyc_place(a, k / 2, 1, k % 2 ? KCYC_CHANNELS : 1));
 		torn += v[0] != v[1] || v[0] != v[2] || v[0] != v[3];
 		fresh += v[0] == last + 1;
 		last = v[0];
-		write_number(a, i);
-		give(a);
+		kcyc_write(a, i);
+		kcyc_give(a);
 	}
 	KUNIT_EXPECT_EQ(test, torn, 0u);
 	/* a value is back three cycles after it was given */
@@ -193,111 +74,105 @@ static void kcyc_whole_images(struct kunit *test)
 /* Only the newest of several outputs counts; the kernel never takes half. */
 static void kcyc_newest_wins(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	u32 i;
 
 	for (i = 0; i < 10; i++) {
-		write_number(a, 100 + i);
-		give(a);
+		kcyc_write(a, 100 + i);
+		kcyc_give(a);
 	}
-	write_number(a, 7);	/* not given */
-	KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-	KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-	KUNIT_EXPECT_EQ(test, output(a, "s1", 1), 109ll);
-	KUNIT_EXPECT_EQ(test, output(a, "s2", CHANNELS), 109ll);
-}
-
-static void wait_cycles(struct app *a, u32 n)
-{
-	while (n--)
-		KUNIT_ASSERT_EQ(a->c->b->test, wait(a, 0), 0);
+	kcyc_write(a, 7);	/* not given */
+	KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+	KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 109ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 109ll);
 }
 
 static void kcyc_stall_hold(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
 		.stall = EC_STALL_HOLD, .stall_cycles = 5 });
 
 	/* before the first outputs nobody has stalled */
-	KUNIT_EXPECT_EQ(test, status(a)->missed, 0ull);
-	KUNIT_EXPECT_EQ(test, status(a)->state, EC_CYCLE_STATE_RUNNING);
-	write_number(a, 42);
-	give(a);
-	wait_cycles(a, 5);
-	KUNIT_EXPECT_EQ(test, status(a)->state, EC_CYCLE_STATE_RUNNING);
-	wait_cycles(a, 1);
-	KUNIT_EXPECT_EQ(test, status(a)->state, EC_CYCLE_STATE_STALLED);
-	wait_cycles(a, 20);
-	KUNIT_EXPECT_EQ(test, status(a)->missed, 25ull);
-	KUNIT_EXPECT_EQ(test, output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 5);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
+	kcyc_wait_cycles(a, 1);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STALLED);
+	kcyc_wait_cycles(a, 20);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 25ull);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
-	give(a);
-	wait_cycles(a, 1);
-	KUNIT_EXPECT_EQ(test, status(a)->state, EC_CYCLE_STATE_RUNNING);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 1);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
 }
 
 static void kcyc_stall_zero(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
 		.stall = EC_STALL_ZERO, .stall_cycles = 5 });
 
-	write_number(a, 42);
-	give(a);
-	wait_cycles(a, 5);
-	KUNIT_EXPECT_EQ(test, output(a, "s1", 1), 42ll);
-	wait_cycles(a, 3);
-	KUNIT_EXPECT_EQ(test, output(a, "s1", 1), 0ll);
-	KUNIT_EXPECT_EQ(test, output(a, "s2", CHANNELS), 0ll);
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 5);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 0ll);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
-	write_number(a, 43);
-	give(a);
-	wait_cycles(a, 3);
-	KUNIT_EXPECT_EQ(test, output(a, "s1", 1), 43ll);
+	kcyc_write(a, 43);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 43ll);
 }
 
 static void kcyc_stall_stop(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
 		.stall = EC_STALL_STOP, .stall_cycles = 5 });
 	u64 cycle;
 
-	write_number(a, 42);
-	give(a);
-	while (!wait(a, 0))
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	while (!kcyc_wait(a, 0))
 		;
-	KUNIT_EXPECT_EQ(test, wait(a, 0), -ECANCELED);
-	KUNIT_EXPECT_EQ(test, status(a)->state, EC_CYCLE_STATE_STOPPED);
-	KUNIT_EXPECT_EQ(test, status(a)->missed, 5ull);
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STOPPED);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 5ull);
 	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(a->c->b->m->session) & EPOLLHUP);
-	cycle = status(a)->cycle;
+	cycle = kcyc_status(a)->cycle;
 	msleep(200);
-	KUNIT_EXPECT_EQ(test, status(a)->cycle, cycle);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->cycle, cycle);
 	KUNIT_EXPECT_EQ(test, READ_ONCE(a->c->b->m->owner), (int)EC_OWNER_IDLE);
 }
 
 /* Nobody gets the processor for 3.5 ms: three cycles are left out. */
 static void kcyc_overrun(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	const struct ec_exchange_buffer *in;
 	u64 counted = 0;
 	u32 i;
 
-	KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-	KUNIT_EXPECT_EQ(test, status(a)->overruns, 0ull);
+	KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	udelay(4500);
-	KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
-	KUNIT_EXPECT_EQ(test, status(a)->overruns, 3ull);
-	KUNIT_EXPECT_GE(test, status(a)->late_max, 3000000u);
-	KUNIT_EXPECT_LT(test, status(a)->late_max, 4000000u);
+	KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 3ull);
+	KUNIT_EXPECT_GE(test, kcyc_status(a)->late_max, 3000000u);
+	KUNIT_EXPECT_LT(test, kcyc_status(a)->late_max, 4000000u);
 	for (i = 0; i < 8; i++)		/* 2.1 to 4.2 ms */
-		counted += status(a)->late[152 + i];
+		counted += kcyc_status(a)->late[152 + i];
 	KUNIT_EXPECT_EQ(test, counted, 1ull);
-	wait_cycles(a, 10);
-	in = take(a);
+	kcyc_wait_cycles(a, 10);
+	in = kcyc_take(a);
 	KUNIT_ASSERT_NOT_NULL(test, in);
-	KUNIT_EXPECT_EQ(test, in->time_ns % PERIOD_NS, 0ull);
-	KUNIT_EXPECT_EQ(test, status(a)->overruns, 3ull);
+	KUNIT_EXPECT_EQ(test, in->time_ns % KCYC_PERIOD_NS, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 3ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
 }
 
@@ -308,7 +183,7 @@ static void kcyc_clocks(struct kunit *test)
 			       "slave b drive in=8 out=8 drift=-100ppm clock=9s\n", 2);
 	struct cyc *c;
 	struct ec_ioc_cycle cfg = {
-		.period_ns = PERIOD_NS, .cpu = -1,
+		.period_ns = KCYC_PERIOD_NS, .cpu = -1,
 		.dc = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR,
 	};
 	struct ec_status *st;
@@ -336,10 +211,10 @@ static void kcyc_clocks(struct kunit *test)
 /* What only the kernel may do, and what cannot be. */
 static void kcyc_refused(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	struct bus *b = a->c->b;
 	struct ec_ioc_app_time time = { .app_time = 5 };
-	struct ec_ioc_cycle cfg = { .period_ns = PERIOD_NS, .cpu = -1 };
+	struct ec_ioc_cycle cfg = { .period_ns = KCYC_PERIOD_NS, .cpu = -1 };
 	struct ec_ioc_send send = { 0 };
 
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EBUSY);
@@ -348,12 +223,12 @@ static void kcyc_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EBUSY);
 	cyc_release(a->c);
 	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EPERM);
-	KUNIT_EXPECT_EQ(test, wait(a, 1000), -EPERM);
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 1000), -EPERM);
 	cyc_new(b, 1000);
 	cfg.period_ns = 9999;
 	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
-	cfg.period_ns = PERIOD_NS;
-	cfg.phase_ns = PERIOD_NS;
+	cfg.period_ns = KCYC_PERIOD_NS;
+	cfg.phase_ns = KCYC_PERIOD_NS;
 	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
 	cfg.phase_ns = 0;
 	cfg.cpu = nr_cpu_ids;
@@ -372,15 +247,15 @@ static void kcyc_refused(struct kunit *test)
 /* Whatever the application writes into the exchange, its session goes on. */
 static void kcyc_hostile_exchange(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
-	struct ec_exchange *x = shared(a)->exchange;
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct ec_exchange *x = kcyc_shared(a)->exchange;
 	u32 i;
 
 	for (i = 0; i < 200; i++) {
 		WRITE_ONCE(x->outputs, i * 0x9e3779b9u);
 		WRITE_ONCE(x->inputs, i * 0x85ebca6bu);
 		WRITE_ONCE(x->stride, i * 0xc2b2ae35u);
-		KUNIT_ASSERT_EQ(test, wait(a, 0), 0);
+		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
 	}
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
@@ -388,7 +263,7 @@ static void kcyc_hostile_exchange(struct kunit *test)
 
 struct ending {
 	struct delayed_work work;
-	struct app *a;
+	struct kcyc *a;
 };
 
 static void release(struct work_struct *w)
@@ -401,7 +276,7 @@ static void release(struct work_struct *w)
 /* The session ends while the application waits for a cycle. */
 static void kcyc_end_while_running(struct kunit *test)
 {
-	struct app *a = start(test, (struct ec_ioc_cycle){ 0 });
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	struct bus *b = a->c->b;
 	struct ending e = { .a = a };
 	u32 round;
@@ -409,15 +284,15 @@ static void kcyc_end_while_running(struct kunit *test)
 	INIT_DELAYED_WORK_ONSTACK(&e.work, release);
 	schedule_delayed_work(&e.work, msecs_to_jiffies(20));
 	a->seen = ~0ull;
-	KUNIT_EXPECT_EQ(test, wait(a, 2000), -ETIMEDOUT);
-	KUNIT_EXPECT_EQ(test, wait(a, 0), -ECANCELED);
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 2000), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	flush_delayed_work(&e.work);
 	destroy_delayed_work_on_stack(&e.work);
 	KUNIT_EXPECT_NULL(test, b->m->session);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	/* and again, as often as one likes */
 	for (round = 0; round < 20; round++) {
-		struct ec_ioc_cycle cfg = { .period_ns = PERIOD_NS, .cpu = -1 };
+		struct ec_ioc_cycle cfg = { .period_ns = KCYC_PERIOD_NS, .cpu = -1 };
 		struct ec_ioc_activate act = { 0 };
 
 		cyc_new(b, 1000);
@@ -426,7 +301,7 @@ static void kcyc_end_while_running(struct kunit *test)
 		KUNIT_EXPECT_GT(test, act.exchange_size, 0u);
 		a->seen = 0;
 		if (round % 2)
-			wait_cycles(a, round);
+			kcyc_wait_cycles(a, round);
 		KUNIT_ASSERT_EQ(test, ec_ioc_release(&b->app, NULL), 0);
 	}
 }

@@ -75,6 +75,8 @@ static void lay_out(unsigned char *p)
 		ring->count = 2;
 		ring->data = 3072 + 16 * i;
 	}
+	/* the application before has started the first one */
+	fake_request(p, 0)->start = fake.running;
 	fake.area = p;
 }
 
@@ -90,6 +92,8 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 	if ((unsigned long long)offset == EC_MMAP_STATUS) {
 		fake.status = p;
 		fake.status->magic = EC_STATUS_MAGIC;
+		fake.status->kernel.cycle = fake.cycle;
+		fake.status->kernel.takeovers = fake.running != 0;
 	} else if ((unsigned long long)offset == EC_MMAP_REQUESTS) {
 		lay_out(p);
 	} else if ((unsigned long long)offset == EC_MMAP_EXCHANGE) {
@@ -97,6 +101,14 @@ void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		fake.exchange->outputs = 2;
 		fake.exchange->inputs = 2;
 		fake.exchange->stride = fake.stride;
+		fake.exchange->app_input = 1;
+		if (fake.running) {
+			fake.exchange->app_output = 2;
+			fake.exchange->outputs = 0;
+			memset((unsigned char *)p + EC_EXCHANGE_FIRST +
+			       2 * fake.stride + sizeof(struct ec_exchange_buffer),
+			       fake.running, 32);
+		}
 	} else {
 		fake.image = p;
 		if (size >= sizeof(fake.preset))	/* what activation gave */
@@ -248,6 +260,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
 		((struct ec_ioc_activate *)arg)->request_size = PAGE;
 		((struct ec_ioc_activate *)arg)->exchange_size = fake.exchange_size;
+		((struct ec_ioc_activate *)arg)->taken_over = fake.running != 0;
 		break;
 	case EC_IOC_DOMAIN_OFFSET:
 		((struct ec_ioc_domain_offset *)arg)->offset =

@@ -41,6 +41,7 @@ struct fake {
 	unsigned int preset_size;
 	unsigned int dc_bits;
 	int dc_diff;
+	unsigned char running;	/* activation takes over; the image is of this */
 };
 
 extern struct fake fake;

@@ -81,12 +81,16 @@ static void *kernel(void *arg)
 	return NULL;
 }
 
-static ec_master_t *start(ec_domain_t **d)
+static ec_master_t *start(ec_domain_t **d, unsigned char running)
 {
-	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	ec_cycle_config_t config = {
+		.period_ns = 1000000, .cpu = -1, .flags = EC_CYCLE_DETACH,
+	};
 	ec_master_t *m;
 
 	memset(&fake, 0, sizeof(fake));
+	fake.running = running;
+	fake.cycle = running;
 	fake.image_size = 4096;
 	fake.exchange_size = 4096 * 2;
 	fake.stride = STRIDE;
@@ -95,6 +99,7 @@ static ec_master_t *start(ec_domain_t **d)
 	d[1] = ecrt_master_create_domain(m);
 	CHECK(ecrt_master_set_cycle(m, &config) == 0);
 	CHECK(fake.last == EC_IOC_CYCLE);
+	CHECK(((struct ec_ioc_cycle *)(void *)fake.arg)->flags == EC_CYCLE_FLAG_DETACH);
 	CHECK(ecrt_master_cycle_fd(m) == -EINVAL);
 	CHECK(ecrt_master_wait_cycle(m, 0) == -EINVAL);
 	CHECK(ecrt_master_activate(m) == 0);
@@ -107,7 +112,7 @@ static void steps(void)
 	ec_domain_state_t st;
 	ec_cycle_state_t cs;
 	ec_domain_t *d[2];
-	ec_master_t *m = start(d);
+	ec_master_t *m = start(d, 0);
 	unsigned char *data[2] = { ecrt_domain_data(d[0]), ecrt_domain_data(d[1]) };
 	unsigned int n;
 
@@ -166,11 +171,115 @@ static void steps(void)
 	ecrt_release_master(m);
 }
 
+/* An application that takes over finds everything as the other has left it. */
+static void takeover(void)
+{
+	ec_domain_t *d[2];
+	ec_master_t *m = start(d, 66);
+	unsigned char *data[2] = { ecrt_domain_data(d[0]), ecrt_domain_data(d[1]) };
+	ec_cycle_state_t cs;
+	unsigned int n;
+
+	CHECK(equal8(data[0]) == 66 && equal8(data[0] + 8) == 66 && equal8(data[1]) == 66);
+	CHECK(!ecrt_master_cycle_state(m, &cs) && cs.takeovers == 1);
+	/* cycles before are not its own */
+	fake.cycle = 68;
+	CHECK(ecrt_master_wait_cycle(m, 0) == 2);
+	/* what it does not queue stays */
+	memset(data[0], 7, 8);
+	CHECK(!ecrt_domain_queue(d[0]) && !ecrt_master_send(m));
+	n = swap_word(&fake.exchange->outputs, 1);
+	CHECK(n == 2 && equal8(image(n)) == 7 && equal8(image(n) + 16) == 66);
+	fake.refuse = EC_IOC_END_DETACHED;
+	fake.err = EBUSY;
+	CHECK(ecrt_master_end_detached(m) == -EBUSY);
+	fake.refuse = 0;
+	CHECK(ecrt_master_end_detached(m) == 0 && fake.last == EC_IOC_END_DETACHED);
+	ecrt_release_master(m);
+}
+
+/* A takeover that fails half-way does not end what it has found. */
+static void takeover_fails(void)
+{
+	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	ec_master_t *m;
+
+	memset(&fake, 0, sizeof(fake));
+	fake.running = 1;
+	fake.exchange_size = 4096;
+	fake.stride = 1;	/* cannot be */
+	m = ecrt_request_master(0);
+	CHECK(!ecrt_master_set_cycle(m, &config));
+	CHECK(ecrt_master_activate(m) == -EPROTO && fake.last == EC_IOC_ACTIVATE);
+	fake.running = 0;
+	CHECK(ecrt_master_activate(m) == -EPROTO && fake.last == EC_IOC_DEACTIVATE);
+	ecrt_release_master(m);
+}
+
+/* Commands before activation carry what they were told. */
+static void divisions_and_copies(void)
+{
+	const struct ec_ioc_division *div = (void *)fake.arg;
+	const struct ec_ioc_copy *copy = (void *)fake.arg;
+	ec_domain_t *d[2];
+	ec_master_t *m;
+
+	memset(&fake, 0, sizeof(fake));
+	m = ecrt_request_master(0);
+	d[0] = ecrt_master_create_domain(m);
+	d[1] = ecrt_master_create_domain(m);
+	CHECK(!ecrt_domain_set_division(d[1], 10, 3) && fake.last == EC_IOC_DIVISION);
+	CHECK(div->domain == 1 && div->division == 10 && div->phase == 3);
+	CHECK(!ecrt_domain_copy(d[1], 5, 3, d[0], 7, 1, 12) && fake.last == EC_IOC_COPY);
+	CHECK(copy->to_domain == 1 && copy->to_bit == 43 && copy->from_domain == 0 &&
+	      copy->from_bit == 57 && copy->bits == 12);
+	CHECK(ecrt_domain_copy(d[1], ~0U, 0, d[0], 0, 0, 1) == -EINVAL);
+	fake.refuse = EC_IOC_COPY;
+	fake.err = EEXIST;
+	CHECK(ecrt_domain_copy(d[1], 0, 0, d[0], 0, 0, 1) == -EEXIST);
+	CHECK(ecrt_domain_copy(NULL, 0, 0, d[0], 0, 0, 1) == -EINVAL);
+	CHECK(ecrt_domain_set_division(NULL, 1, 0) == -EINVAL);
+	ecrt_release_master(m);
+}
+
+/* Requests are counted where the kernel looks; one that runs is waited for. */
+static void requests(void)
+{
+	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	struct ec_request_area *area;
+	struct ec_request_record *rec;
+	ec_sdo_request_t *r[2];
+	ec_slave_config_t *sc;
+	unsigned int calls;
+	ec_master_t *m;
+
+	memset(&fake, 0, sizeof(fake));
+	fake.running = 3;
+	fake.exchange_size = 4096 * 2;
+	fake.stride = STRIDE;
+	m = ecrt_request_master(0);
+	sc = ecrt_master_slave_config(m, 0, 0, 1, 2);
+	r[0] = ecrt_slave_config_create_sdo_request(sc, 0x8000, 1, 4);
+	r[1] = ecrt_slave_config_create_sdo_request(sc, 0x8000, 2, 4);
+	CHECK(!ecrt_master_set_cycle(m, &config) && !ecrt_master_activate(m));
+	calls = fake.calls;
+	area = (void *)fake.area;
+	rec = fake_request(fake.area, 0);
+	CHECK(ecrt_sdo_request_state(r[0]) == EC_REQUEST_BUSY);
+	CHECK(ecrt_sdo_request_read(r[0]) == -EBUSY && area->starts == 0);
+	rec->done = 3;
+	CHECK(ecrt_sdo_request_state(r[0]) == EC_REQUEST_SUCCESS);
+	CHECK(!ecrt_sdo_request_read(r[0]) && rec->start == 4 && area->starts == 1);
+	CHECK(!ecrt_sdo_request_read(r[1]) && area->starts == 2);
+	CHECK(fake.calls == calls);
+	ecrt_release_master(m);
+}
+
 /* Both sides at once: nothing torn, nothing older than before, no system call. */
 static void together(void)
 {
 	ec_domain_t *d[2];
-	ec_master_t *m = start(d);
+	ec_master_t *m = start(d, 0);
 	unsigned char *data[2] = { ecrt_domain_data(d[0]), ecrt_domain_data(d[1]) };
 	unsigned long torn = 0, backwards = 0, fresh = 0;
 	unsigned int calls = fake.calls, last = 0;
@@ -213,7 +322,12 @@ int kernel_cycle(void)
 	CHECK(ecrt_master_cycle_fd(NULL) == -EINVAL);
 	CHECK(ecrt_master_cycle_count(NULL) == 0);
 	CHECK(ecrt_master_cycle_state(NULL, NULL) == -EINVAL);
+	CHECK(ecrt_master_end_detached(NULL) == -EINVAL);
 	steps();
+	takeover();
+	takeover_fails();
+	requests();
+	divisions_and_copies();
 	together();
 	return failures;
 }

@@ -19,10 +19,27 @@ setup_file() {
 teardown_file() { stop; }
 teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	ethercat release 2>/dev/null || true
 	wait_for 60 all_slaves_are PREOP 3
 }
 
 kcycle() { "$EC_BUILD/apps/kcycle" "$@"; }
+# background ARG...: start it, wait until all is in OP
+background() {
+	"$EC_BUILD/apps/kcycle" cycles=1000000 "$@" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 60 grep -q 'slaves in OP' "$BATS_TEST_TMPDIR/out"
+}
+die() {
+	kill -9 $app
+	wait $app || true
+	app=
+	wait_for 10 is_detached
+}
+is_detached() { ethercat master | grep -q 'Session: detached'; }
+cycle_is() { [ "$(ethercat cycle --json | jq -r '.masters[0].state')" = "$1" ]; }
+frames() { ethercat master --json | jq '.masters[0].common.tx_frames'; }
+sent() { [ "$(frames)" -ge "$1" ]; }
 lost() { ethercat master | sed -n 's/.*Lost frames: //p' | head -n 1; }
 
 @test "10000 cycles at 1 kHz, none lost, no working counter error" {
@@ -114,4 +131,98 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	run kcycle cpu=4000
 	[ "$status" = 1 ]
 	[[ "$output" == *"there is no CPU 4000"* ]]
+}
+
+@test "killed, the cycle goes on; the same program takes it over" {
+	before=$(lost)
+	background flags=1 value=4711
+	die
+	wait_for 60 sent $(($(frames) + 1000))
+	all_slaves_are OP 3
+	json '.masters[0].session == "detached" and .masters[0].active' master
+	# it finds the image as it was, and leaves it so; its end is no end either
+	for n in 1 2; do
+		run kcycle cycles=500 flags=1
+		echo "$output"
+		[ "$status" = 0 ]
+		[[ "$output" == *"takeovers: $n, output: 4711, input: 4711, all in OP"* ]]
+		[[ "$output" == *"cycles: 500, working counter errors: 0, "* ]]
+		[[ "$output" == *"overruns: 0, "* ]]
+		is_detached
+	done
+	[ "$(lost)" = "$before" ]
+	ethercat release
+	wait_for 60 all_slaves_are PREOP 3
+	ethercat master | grep -q 'Active: no'
+	refused 'runs no session' release
+}
+
+@test "another program than the one that was killed is refused, then may" {
+	background flags=1 stall=1 stall_cycles=50 value=4711
+	refused 'application of master 0 is there' release
+	die
+	run kcycle cycles=100 period=2000
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ "$output" == *"the period is 1000000 ns, not 2000000; "*"'ethercat release'"* ]]
+	run "$EC_BUILD/apps/cyclic" 1
+	[ "$status" = 1 ]
+	all_slaves_are OP 3
+	# the policy has zeroed the outputs meanwhile
+	run kcycle cycles=100 flags=1 stall=1 stall_cycles=50
+	echo "$output"
+	[[ "$output" == *"takeovers: 1, output: 0, "* ]]
+	ethercat release
+	run kcycle cycles=100 period=2000
+	[ "$status" = 0 ]
+	[[ "$output" == *"takeovers: 0, "* ]]
+}
+
+@test "stopped and continued: frames go on" {
+	background flags=1 stall_cycles=10
+	before=$(lost)
+	kill -STOP $app
+	wait_for 60 sent $(($(frames) + 500))
+	all_slaves_are OP 3
+	wait_for 60 cycle_is stalled
+	kill -CONT $app
+	wait_for 60 cycle_is running
+	kill -0 $app
+	[ "$(lost)" = "$before" ]
+}
+
+@test "the first frame waits for outputs when asked to" {
+	run kcycle cycles=100 flags=2
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"cycles: 100, working counter errors: 0, "* ]]
+}
+
+@test "the device is taken away and comes back under a detached session" {
+	background flags=1 value=4711
+	die
+	rmmod ec_sim
+	ethercat master | grep -q 'Waiting for device'
+	sleep 0.2
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+	wait_for 120 all_slaves_are OP 3
+	run kcycle cycles=100 flags=1
+	echo "$output"
+	[[ "$output" == *"takeovers: 1, output: 4711, input: 4711, all in OP"* ]]
+}
+
+@test "the modules go although a detached session sends" {
+	background flags=1
+	die
+	rmmod ec_sim
+	rmmod ec_master
+	run pgrep -x 'EtherCAT0-cyc'
+	[ "$status" != 0 ]
+	start "$BATS_FILE_TMPDIR/segment" 3
+	background flags=1
+	die
+	# the master first, in spite of frames on their way
+	run rmmod ec_master
+	[ "$status" != 0 ]
+	[[ "$output" == *"in use by: ec_sim"* ]]
 }

@@ -46,6 +46,7 @@ ambiguous() {
 @test "new names resolve behind the historic ones" {
 	resolves help help
 	resolves he help
+	resolves rel release
 	resolves sdo_r upload
 	resolves sdo_up upload
 	resolves sdo_d download

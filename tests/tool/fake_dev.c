@@ -5,7 +5,7 @@
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
  *   broken behind slave 1), two (two masters), foreign (not our interface),
- *   waiting (no network interface), evil (names that attack the reader),
+ *   detached (its application is gone), waiting (no network interface), evil (names that attack the reader),
  *   big (1000 slaves)
  * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
  * gets the number of ioctls.
@@ -209,11 +209,14 @@ static void fill_device(struct ec_ioc_device *d)
 
 static int master(struct ec_ioc_master *m, int index)
 {
-	bool app = bus("app");
+	bool app = bus("app") || bus("detached");
 
 	*m = (struct ec_ioc_master){
 		.index = (__u32)index, .phase = app ? EC_PHASE_OPERATION : EC_PHASE_IDLE,
-		.active = app, .slave_count = SLAVES, .slaves_responding = SLAVES,
+		.active = app,
+		.session = bus("detached") ? EC_SESSION_DETACHED : app ? EC_SESSION_ACTIVE :
+			   EC_SESSION_NONE,
+		.slave_count = SLAVES, .slaves_responding = SLAVES,
 		.scan_count = scans, .config_count = app ? LEN(configs) : 0,
 		.domain_count = app ? LEN(domains) : 0, .device_count = 1,
 		.app_time = 815000000123456789ULL, .scan_us = 12345, .scan_frames = 678,
@@ -666,6 +669,11 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		record("rescan %d\n", fd - FD);
 		scans = 2;
 		polls = 0;
+		return 0;
+	case EC_IOC_END_DETACHED:
+		if (!bus("detached"))
+			return fail(ENOENT, "master 0 runs no session");
+		record("release %d\n", fd - FD);
 		return 0;
 	case EC_IOC_DEBUG:
 		record("debug %d %u\n", fd - FD, ((struct ec_ioc_debug *)arg)->level);

@@ -23,6 +23,8 @@ load common
 	out slaves -j | json '"8 bytes" in d["masters"][0]["slaves"][2]["cause"]'
 	out slaves -j | json 'd["masters"][0]["slaves"][2]["mailboxes"]["protocols"] == ["CoE", "FoE"]'
 	out master -j | json 'd["masters"][0]["phase"] == "idle"'
+	FAKE_BUS=detached out master -j | json 'd["masters"][0]["session"] == "detached"'
+	FAKE_BUS=detached out release -j | json 'd["master"] == 0'
 	out master -j | json 'd["masters"][0]["common"]["lost_frames"] == 2'
 	out master -j | json 'd["masters"][0]["dc"]["cycle_lock"] is None'
 	FAKE_BUS=app out master -j | json 'd["masters"][0]["dc"]["cycle_lock"] == "locked"'

@@ -284,6 +284,17 @@ END
 	[ "$(FAKE_BUS=two log_of debug 2)" = $'debug 0 2\ndebug 1 2' ]
 	FAKE_READONLY=1 run ethercat rescan
 	[ "$status" -eq 1 ]
+	[ "$(FAKE_BUS=detached log_of release)" = "release 0" ]
+	run ethercat release
+	[ "$status" -eq 1 ]
+	[[ $output == *"Master0: cannot end its session: "*"master 0 runs no session"* ]]
+	FAKE_BUS=two run ethercat release
+	[ "$status" -eq 1 ]
+}
+
+@test "a session without its application" {
+	[[ $(FAKE_BUS=detached out master) == *$'Active: yes\n  Session: detached'* ]]
+	! out master | grep Session:
 }
 
 @test "binary output" {

@@ -79,7 +79,7 @@ enum { COUPLER, OUT, IN, MOTOR, SERVO, SWITCH, SLAVES };
 #define NOWHERE		77	/* a ring position where nobody is */
 
 /*
- * An application with one domain: EL2008 and EL1008, whose channels 1 are wired,
+ * An application with one domain: EL2008 and EL1008, whose channels 1 and 2 are wired,
  * and a drive that is mapped anew. Offsets are of the domain.
  */
 struct bench {

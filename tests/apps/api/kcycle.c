@@ -94,8 +94,124 @@ static void runs(void)
 	bench_down(&b);
 }
 
+/* Cycles until all is in OP, and ten more for values to come round. */
+static bool until_op(struct bench *b)
+{
+	ec_slave_config_state_t motor = { 0 }, out = { 0 };
+	int i;
+
+	for (i = 0; i < 20000 && !(motor.operational && out.operational); i++) {
+		if (!YES(cycle(b) >= 1))
+			return false;
+		CALL(ecrt_slave_config_state)(b->motor, &motor);
+		CALL(ecrt_slave_config_state)(b->out, &out);
+	}
+	for (i = 0; i < 10; i++)
+		cycle(b);
+	return YES(motor.operational && out.operational);
+}
+
+/* A domain that goes every tenth cycle brings no more than one change in that time. */
+static void divided(void)
+{
+	uint64_t first, changes = 0;
+	struct bench b;
+	int i, last;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_set_cycle)(b.m, &config), 0);
+	SAYS(CALL(ecrt_domain_set_division)(b.d, 0, 0), -EINVAL);
+	SAYS(CALL(ecrt_domain_set_division)(b.d, 10, 10), -EINVAL);
+	IS(CALL(ecrt_domain_set_division)(b.d, 10, 9), 0);
+	NEED(bench_activate(&b) && until_op(&b));
+	SAYS(CALL(ecrt_domain_set_division)(b.d, 1, 0), -EBUSY);
+	first = CALL(ecrt_master_cycle_count)(b.m);
+	last = EC_READ_BIT(b.data + b.in_byte, b.in_bit);
+	for (i = 0; i < 100; i++) {
+		ec_domain_state_t ds;
+
+		YES(cycle(&b) >= 1);
+		CALL(ecrt_domain_state)(b.d, &ds);
+		IS(ds.wc_state, EC_WC_COMPLETE);
+		changes += EC_READ_BIT(b.data + b.in_byte, b.in_bit) != last;
+		last = EC_READ_BIT(b.data + b.in_byte, b.in_bit);
+		EC_WRITE_BIT(b.data + b.out_byte, b.out_bit, !last);
+	}
+	YES(changes >= 2);
+	YES(changes <= (CALL(ecrt_master_cycle_count)(b.m) - first) / 10 + 1);
+	CALL(ecrt_master_deactivate)(b.m);
+	bench_down(&b);
+}
+
+/* Input 1 becomes output 2, whatever the application writes there. */
+static void copied(void)
+{
+	struct bench b;
+	int i;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_set_cycle)(b.m, &config), 0);
+	SAYS(CALL(ecrt_domain_copy)(b.d, b.in_byte, b.in_bit, b.d, b.in_byte, b.in_bit, 1), -EINVAL);
+	SAYS(CALL(ecrt_domain_copy)(b.d, b.out_byte, 1, b.d, b.out_byte, 0, 1), -EINVAL);
+	IS(CALL(ecrt_domain_copy)(b.d, b.out_byte, b.out_bit + 1, b.d, b.in_byte, b.in_bit, 1), 0);
+	SAYS(CALL(ecrt_domain_copy)(b.d, b.out_byte, b.out_bit + 1, b.d, b.in_byte, 5, 1), -EEXIST);
+	NEED(bench_activate(&b) && until_op(&b));
+	SAYS(CALL(ecrt_domain_copy)(b.d, b.out_byte, 5, b.d, b.in_byte, 5, 1), -EBUSY);
+	for (i = 0; i < 4; i++) {
+		EC_WRITE_BIT(b.data + b.out_byte, b.out_bit, i % 2);
+		EC_WRITE_BIT(b.data + b.out_byte, b.out_bit + 1, i < 2);
+		for (int k = 0; k < 10; k++)
+			YES(cycle(&b) >= 1);
+		IS(EC_READ_BIT(b.data + b.in_byte, b.in_bit), i % 2);
+		IS(EC_READ_BIT(b.data + b.in_byte, b.in_bit + 1), i % 2);
+	}
+	CALL(ecrt_master_deactivate)(b.m);
+	bench_down(&b);
+}
+
+/* Released without deactivation, taken over, ended by somebody else. */
+static void detached(void)
+{
+	ec_cycle_config_t c = config;
+	ec_cycle_state_t s;
+	struct bench b;
+	ec_master_t *m;
+
+	c.flags = EC_CYCLE_DETACH;
+	c.stall = EC_CYCLE_STOP;
+	NEED(bench_request(&b) && bench_configure(&b));
+	SAYS(CALL(ecrt_master_set_cycle)(b.m, &c), -EINVAL);
+	c.stall = EC_CYCLE_HOLD;
+	IS(CALL(ecrt_master_set_cycle)(b.m, &c), 0);
+	NEED(bench_activate(&b) && until_op(&b));
+	SAYS(CALL(ecrt_master_end_detached)(b.m), -EBUSY);
+	EC_WRITE_BIT(b.data + b.out_byte, b.out_bit, 1);
+	cycle(&b);
+	cycle(&b);
+	bench_down(&b);
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	SAYS(CALL(ecrt_master_activate)(b.m), -EEXIST);
+	IS(CALL(ecrt_master_set_cycle)(b.m, &c), 0);
+	NEED(bench_activate(&b));
+	IS(EC_READ_BIT(b.data + b.out_byte, b.out_bit), 1);
+	IS(CALL(ecrt_master_cycle_state)(b.m, &s), 0);
+	IS(s.takeovers, 1);
+	YES(cycle(&b) >= 1);
+	bench_down(&b);
+
+	m = CALL(ecrt_open_master)(0);
+	NEED(m);
+	SILENT(CALL(ecrt_master_end_detached)(m), 0);
+	SAYS(CALL(ecrt_master_end_detached)(m), -ENOENT);
+	CALL(ecrt_release_master)(m);
+}
+
 const struct api_case kcycle_cases[] = {
 	{ "what cannot be is refused", refused },
 	{ "it runs", runs },
+	{ "a domain now and then", divided },
+	{ "from slave to slave", copied },
+	{ "it survives its application", detached },
 	{ NULL, NULL },
 };

@@ -65,6 +65,7 @@ static void master(void)
 	IS(ecrt_master_cycle_count(NULL), 0);
 	IS(ecrt_master_cycle_fd(NULL), -EINVAL);
 	IS(ecrt_master_cycle_state(NULL, &u.cycle_state), -EINVAL);
+	IS(ecrt_master_end_detached(NULL), -EINVAL);
 	IS(api_lines(), 0);
 }
 
@@ -130,6 +131,8 @@ static void domain(void)
 	IS(ecrt_domain_queue(NULL), -EINVAL);
 	IS(ecrt_domain_state(NULL, &state), -EINVAL);
 	IS(ecrt_domain_set_options(NULL, 0), -EINVAL);
+	IS(ecrt_domain_set_division(NULL, 1, 0), -EINVAL);
+	IS(ecrt_domain_copy(NULL, 0, 0, NULL, 0, 0, 1), -EINVAL);
 	IS(api_lines(), 0);
 }
 

@@ -165,6 +165,9 @@ int main(int argc, char **argv)
 		calls += w[i].calls;
 		taken += w[i].taken;
 	}
+	/* one that was told to survive its application */
+	ioctl(fd[0], EC_IOC_RELEASE);
+	ioctl(fd[0], EC_IOC_END_DETACHED);
 	printf("seed %s: %lu calls, %lu taken\n", argv[1], calls, taken);
 	/* all refused would mean that nothing was tried */
 	return !(taken > calls / 100 && taken < calls);

@@ -14,6 +14,9 @@
  *   dc=0           1: keep the clocks of the slaves in step
  *   spin=0         how to wait: 0 one system call, 1 spin, 2 poll()
  *   pause=0        ms without outputs, in the middle
+ *   flags=0        1: the cycle survives this program, 2: it waits for outputs
+ *   value=0        number in the first 32 bits of every slave's outputs; with 0
+ *                  they stay as they are
  *   loop=0         1: the first and last 32 bits of the image of every slave's
  *                  outputs are wired to its inputs: check that no image is torn
  */
@@ -31,7 +34,7 @@
 #define OP_TIMEOUT_S	60
 
 static long opt_cycles = 10000, opt_period = 1000, opt_cpu = -1, opt_priority, opt_stall,
-	    opt_stall_cycles, opt_dc, opt_spin, opt_pause, opt_loop;
+	    opt_stall_cycles, opt_dc, opt_spin, opt_pause, opt_flags, opt_value, opt_loop;
 
 static const struct {
 	const char *name;
@@ -40,7 +43,8 @@ static const struct {
 	{ "cycles", &opt_cycles }, { "period", &opt_period }, { "cpu", &opt_cpu },
 	{ "priority", &opt_priority }, { "stall", &opt_stall },
 	{ "stall_cycles", &opt_stall_cycles }, { "dc", &opt_dc }, { "spin", &opt_spin },
-	{ "pause", &opt_pause }, { "loop", &opt_loop },
+	{ "pause", &opt_pause }, { "flags", &opt_flags },
+	{ "value", &opt_value }, { "loop", &opt_loop },
 };
 
 /* one slave; @out, @in: offset of its first SyncManager of that direction, or -1 */
@@ -145,6 +149,7 @@ static int configure(void)
 		.stall = (ec_cycle_stall_t)opt_stall,
 		.stall_cycles = (uint32_t)opt_stall_cycles,
 		.dc = opt_dc ? EC_CYCLE_SYNC_SLAVES | EC_CYCLE_SYNC_MONITOR : 0,
+		.flags = (uint32_t)opt_flags,
 	};
 	ec_master_info_t info;
 
@@ -218,6 +223,13 @@ static void loop_check(uint8_t *data, uint32_t number)
 	}
 }
 
+static void write_value(uint8_t *data)
+{
+	for (unsigned int i = 0; i < n_slaves; i++)
+		if (slaves[i].out >= 0 && slaves[i].out_bytes >= 4)
+			EC_WRITE_U32(data + slaves[i].out, (uint32_t)opt_value);
+}
+
 static int one_cycle(uint8_t *data, bool count)
 {
 	static uint32_t number;
@@ -231,6 +243,8 @@ static int one_cycle(uint8_t *data, bool count)
 	ecrt_domain_state(domain, &state);
 	if (opt_loop)
 		loop_check(data, ++number);
+	else if (opt_value)
+		write_value(data);
 	ecrt_domain_queue(domain);
 	ecrt_master_send(master);
 	if (count) {
@@ -251,11 +265,24 @@ static bool all_operational(void)
 	return true;
 }
 
+/* What is there before the first cycle: zeros, or another program's image. */
+static void found(const uint8_t *data)
+{
+	ec_cycle_state_t s;
+
+	if (ecrt_master_cycle_state(master, &s) || slaves[0].out < 0 || slaves[0].in < 0)
+		return;
+	printf("takeovers: %" PRIu32 ", output: %" PRIu32 ", input: %" PRIu32 ", %s in OP\n",
+	       s.takeovers, EC_READ_U32(data + slaves[0].out), EC_READ_U32(data + slaves[0].in),
+	       all_operational() ? "all" : "not all");
+}
+
 static int run(uint8_t *data)
 {
 	time_t end = time(NULL) + OP_TIMEOUT_S;
 	int ret;
 
+	found(data);
 	while (!all_operational()) {
 		if (time(NULL) > end) {
 			fprintf(stderr, "not all slaves in OP after %u s\n", OP_TIMEOUT_S);
@@ -285,7 +312,8 @@ static int run(uint8_t *data)
 
 static void report(void)
 {
-	static const char *const names[] = { "none", "running", "stalled", "stopped" };
+	static const char *const names[] = { "none", "running", "stalled", "stopped",
+					     "waiting" };
 	ec_cycle_state_t s;
 
 	if (ecrt_master_cycle_state(master, &s))

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The cycle goes on without its application, and another one takes it over. */
+#include "kcyc.h"
+#include "master/request.h"
+
+static const struct ec_ioc_cycle hold = { .flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10 };
+static const struct ec_ioc_cycle zero = {
+	.flags = EC_CYCLE_FLAG_DETACH, .stall = EC_STALL_ZERO, .stall_cycles = 10,
+};
+
+/* What the kernel does when the process has gone. */
+static void die(struct kcyc *a)
+{
+	ec_session_end(a->c->b->m, &a->c->b->app);
+}
+
+static u32 session_state(struct bus *b)
+{
+	struct ec_ioc_master i = { 0 };
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_master(&b->app, &i), 0);
+	return i.session;
+}
+
+static bool plant_in_op(struct bus *b)
+{
+	u32 i;
+
+	for (i = 0; i < b->m->n_slaves; i++)
+		if (bus_esc(b, i)->mem[EC_REG_AL_STATUS] != EC_AL_OP)
+			return false;
+	return true;
+}
+
+/* Frames go on, outputs are held, slaves stay in OP. */
+static void detach_holds(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	u64 cycle, frames;
+
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_ACTIVE);
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	cycle = kcyc_status(a)->cycle;
+	frames = bus_frames(b);
+	die(a);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_DETACHED);
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 1000), -EPERM);
+	msleep(2000);
+	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle - cycle, 1999ull);
+	KUNIT_EXPECT_GE(test, bus_frames(b) - frames, 1999ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STALLED);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 42ll);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	/* what is left is freed with the master */
+}
+
+static void detach_zeroes(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, zero);
+
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	die(a);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 0ll);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(a->c->b));
+}
+
+/* Without the flag, or when the application says so, nothing stays. */
+static void detach_only_when_asked(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct bus *b = a->c->b;
+
+	die(a);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	a = kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_until_op(a);
+	KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+	die(a);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
+	/* one that was never active, or whose application runs the cycle, likewise */
+	a = kcyc_configure(b, hold);
+	die(a);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+}
+
+/* The next one goes on where the other has stopped; no slave notices. */
+static void takeover(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	u64 cycle, missed, frames = 0, sent;
+	const struct ec_exchange_buffer *in;
+	struct kcyc *n;
+	u32 i;
+
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 5);
+	die(a);
+	msleep(100);
+	cycle = kcyc_status(a)->cycle;
+	frames = bus_frames(b);
+	n = kcyc_configure(b, hold);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_DETACHED);
+	msleep(200);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(n), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_TRUE(test, n->taken_over);
+	KUNIT_EXPECT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_ACTIVE);
+	/* outputs and inputs as they are, before anything is given */
+	for (i = 0; i < 2; i++) {
+		u32 sm;
+
+		for (sm = 0; sm < 2; sm++)
+			KUNIT_EXPECT_EQ(test, get_unaligned_le32(kcyc_outputs(n) +
+				kcyc_place(n, i, sm, KCYC_CHANNELS)), 42u);
+	}
+	missed = kcyc_status(n)->missed;
+	for (i = 0; i < 200; i++) {
+		KUNIT_ASSERT_EQ(test, kcyc_wait(n, 0), 0);
+		in = kcyc_take(n);
+		KUNIT_ASSERT_NOT_NULL(test, in);
+		KUNIT_EXPECT_EQ(test, in->cycle, n->seen);
+		KUNIT_EXPECT_EQ(test, in->domains[0].wc_state, 2u);
+		KUNIT_EXPECT_EQ(test, kcyc_output(n, "s1", 1), i ? 43ll : 42ll);
+		kcyc_write(n, 43);
+		kcyc_give(n);
+	}
+	sent = bus_frames(b) - frames;
+	KUNIT_EXPECT_GE(test, sent, kcyc_status(n)->cycle - cycle);
+	KUNIT_EXPECT_EQ(test, kcyc_status(n)->overruns, 0ull);
+	KUNIT_EXPECT_LE(test, kcyc_status(n)->missed, missed + 2);
+	KUNIT_EXPECT_EQ(test, kcyc_status(n)->takeovers, 1u);
+	KUNIT_EXPECT_EQ(test, kcyc_status(n)->late_count, kcyc_status(n)->cycle);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_EXPECT_EQ(test, kcyc_status(n)->state, EC_CYCLE_STATE_RUNNING);
+}
+
+/* Killed and taken over again and again. */
+static void takeover_often(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	u32 i;
+
+	for (i = 1; i <= 20; i++) {
+		kcyc_write(a, i);
+		if (i % 3)
+			kcyc_give(a);
+		kcyc_wait_cycles(a, i % 4);
+		die(a);
+		a = kcyc_configure(b, hold);
+		KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+		KUNIT_EXPECT_TRUE(test, a->taken_over);
+	}
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->takeovers, 20u);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 20ll);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+}
+
+/* Whatever the one before has left in the memory, the next one finds its way. */
+static void takeover_of_a_mess(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_request_area *area = (void *)kcyc_shared(a)->requests;
+	struct ec_exchange *x = kcyc_shared(a)->exchange;
+	u32 i, stride = x->stride, rings = area->rings;
+
+	for (i = 0; i < 20; i++) {
+		WRITE_ONCE(x->outputs, i * 0x9e3779b9u);
+		WRITE_ONCE(x->inputs, i * 0x85ebca6bu);
+		x->stride = i * 0xc2b2ae35u;
+		x->app_output = 77;
+		memset(area, 0xa5 + i, sizeof(*area));
+		msleep(i % 3);
+		die(a);
+		a = kcyc_configure(b, hold);
+		KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+		KUNIT_EXPECT_EQ(test, x->stride, stride);
+		KUNIT_EXPECT_EQ(test, area->magic, (u32)EC_REQUEST_MAGIC);
+		KUNIT_EXPECT_EQ(test, area->rings, rings);
+		kcyc_write(a, i);
+		kcyc_give(a);
+		kcyc_wait_cycles(a, 3);
+		KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), (s64)i);
+		KUNIT_EXPECT_NOT_NULL(test, kcyc_take(a));
+	}
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+}
+
+/* Everything else than the same is refused, and what is different is told. */
+static void refused(struct bus *b, const char *what)
+{
+	struct ec_ioc_activate act = { 0 };
+
+	KUNIT_EXPECT_EQ(b->test, ec_ioc_activate(&b->app, &act), -EEXIST);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, what), "%s", b->app.reason);
+	KUNIT_EXPECT_NOT_NULL(b->test, strstr(b->app.reason, "ethercat release"));
+	ec_session_end(b->m, &b->app);
+	KUNIT_EXPECT_EQ(b->test, session_state(b), (u32)EC_SESSION_DETACHED);
+}
+
+static void takeover_refused(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_ioc_cycle cfg = hold, none = { .cpu = -1 };
+	struct ec_ioc_sc_watchdog wd = { .intervals = 7 };
+	struct ec_ioc_sc_dc dc = { .assign_activate = 0x300, .cycle0 = 1000000 };
+	struct ec_ioc_sc_request rq = { .config = 1, .kind = EC_REQUEST_REG, .size = 4 };
+	struct ec_ioc_sc_emerg em = { .config = 1, .count = 4 };
+	struct ec_ioc_sc_flag flag = { .key = "Key", .value = 1 };
+	u64 lost;
+
+	die(a);
+	lost = bus_lost(b);
+	cfg.period_ns = 2000000;
+	kcyc_configure(b, cfg);
+	refused(b, "the period is 1000000 ns, not 2000000");
+	cfg.period_ns = 0;
+	cfg.priority = 9;
+	kcyc_configure(b, cfg);
+	refused(b, "how the kernel runs");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &none), 0);
+	refused(b, "the kernel runs its cycle");
+	cyc_new(b, 1000);
+	refused(b, "it has 2 slaves, not 0");
+	a = kcyc_configure(b, hold);
+	cyc_domain(a->c);
+	refused(b, "it has 1 domains, not 2");
+	a = kcyc_configure(b, hold);
+	cyc_pdo(a->c, 1, EC_SC_PDO_ASSIGN_CLEAR, 1, 0, 0);
+	refused(b, "slave 0:1, SM1");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_watchdog(&b->app, &wd), 0);
+	refused(b, "slave 0:0, watchdog");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	refused(b, "slave 0:0, distributed clock");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_request(&b->app, &rq), 0);
+	refused(b, "requests");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_emerg(&b->app, &em), 0);
+	refused(b, "slave 0:1 keeps 0 emergencies, not 4");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &flag), 0);
+	refused(b, "slave 0:0 has 0 flags, not 1");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_config_sdo_add(b->m->heir->configs[1], 0x8000, 1, false,
+						(const u8 *)"\1", 1), 0);
+	refused(b, "slave 0:1 has 0 startup SDOs, not 1");
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_EXPECT_EQ(test, bus_lost(b), lost);
+	/* and the same one still may */
+	a = kcyc_configure(b, hold);
+	KUNIT_EXPECT_EQ(test, kcyc_activate(a), 0);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+}
+
+/* One heir at a time; it cannot change what runs. */
+static void heir_is_harmless(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_file other = { .master = b->m, .writable = true };
+	struct ec_ioc_interval interval = { .interval_us = 77 };
+	struct ec_ioc_app_time time = { .app_time = 77 };
+	struct ec_ioc_domain d = { 0 };
+	u64 app_time;
+
+	mutex_init(&other.lock);
+	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &interval), -EBUSY);
+	die(a);
+	cyc_new(b, 500);
+	KUNIT_EXPECT_EQ(test, b->m->interval_us, 1000u);
+	app_time = b->m->dc.app_time;
+	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &time), 0);
+	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&other, NULL), -EBUSY);
+	cyc_domain(a->c);
+	/* it sees its own domain, the others the one that runs */
+	KUNIT_EXPECT_EQ(test, ec_ioc_domain(&b->app, &d), 0);
+	KUNIT_EXPECT_EQ(test, d.size, 0u);
+	KUNIT_EXPECT_EQ(test, ec_ioc_domain(&other, &d), 0);
+	KUNIT_EXPECT_EQ(test, d.size, 3200u);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), -EBUSY);
+	mutex_destroy(&other.lock);
+}
+
+/* The detached session ends; the one that wanted to take over has the master. */
+static void end_detached(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_ioc_cycle cfg = hold;
+
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), -EBUSY);
+	die(a);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), -ENOENT);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+
+	a = kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_until_op(a);
+	die(a);
+	cfg.period_ns = 2000000;
+	a = kcyc_configure(b, cfg);
+	KUNIT_EXPECT_EQ(test, kcyc_activate(a), -EEXIST);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_RESERVED);
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_FALSE(test, a->taken_over);
+	kcyc_until_op(a);
+	kcyc_write(a, 5);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 5ll);
+}
+
+/* A slave that loses its power meanwhile is brought back to OP. */
+static void slave_returns(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	u32 i;
+
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	die(a);
+	bus_request(b, 1, EC_AL_INIT);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, 1, EC_AL_INIT, 2000), ~0ull);
+	a = kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	bus_request(b, 1, EC_AL_OP);
+	for (i = 0; i < 3000 && !plant_in_op(b); i++)
+		msleep(1);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 42ll);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(detach_holds),
+	KUNIT_CASE(detach_zeroes),
+	KUNIT_CASE(detach_only_when_asked),
+	KUNIT_CASE(takeover),
+	KUNIT_CASE(takeover_often),
+	KUNIT_CASE(takeover_of_a_mess),
+	KUNIT_CASE(takeover_refused),
+	KUNIT_CASE(heir_is_harmless),
+	KUNIT_CASE(end_detached),
+	KUNIT_CASE(slave_returns),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_kcyc_detach", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);

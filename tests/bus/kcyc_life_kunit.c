@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Beginning, requests and misfortunes of a cycle the kernel runs. */
+#include <linux/poll.h>
+#include "kcyc.h"
+#include "devices/sim/app.h"
+#include "master/device.h"
+
+/* Cycles pass, but no process data are sent before there are outputs. */
+static void life_waits_for_outputs(struct kunit *test)
+{
+	struct bus *b = kcyc_bus(test);
+	struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_WAIT });
+	u64 sends;
+
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_wait_cycles(a, 500);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
+	sends = b->m->session->cycle.cycles;
+	KUNIT_EXPECT_EQ(test, sends, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
+	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->stalls), 0u);
+	/* meanwhile everybody may use the bus */
+	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->owner), (int)EC_OWNER_IDLE);
+	KUNIT_EXPECT_FALSE(test, cyc_all_op(a->c));
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 2);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
+	KUNIT_EXPECT_GE(test, b->m->session->cycle.cycles, 1ull);
+	kcyc_until_op(a);
+	kcyc_wait_cycles(a, 5);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
+/* One that never gives any ends as any other. */
+static void life_never_begins(struct kunit *test)
+{
+	struct bus *b = kcyc_bus(test);
+	struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_ALL });
+
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_wait_cycles(a, 20);
+	ec_session_end(b->m, &b->app);
+	a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_ALL });
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
+	ec_session_end(b->m, &b->app);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+}
+
+/* poll() sees inputs that were not taken, once. */
+static void life_poll(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct ec_session *s = a->c->b->m->session;
+	u32 i;
+
+	for (i = 0; i < 100; i++) {
+		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+		KUNIT_EXPECT_EQ(test, ec_cycle_thread_poll(s), EPOLLIN | EPOLLRDNORM);
+		KUNIT_EXPECT_NOT_NULL(test, kcyc_take(a));
+		KUNIT_EXPECT_EQ(test, ec_cycle_thread_poll(s), 0u);
+	}
+}
+
+/* The device goes away: cycles go on, with nothing in them; nothing is freed early. */
+static void life_without_device(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
+	struct bus *b = a->c->b;
+	struct ec_exchange_buffer *x;
+	u64 cycle;
+
+	kcyc_wait_cycles(a, 10);
+	ec_device_detach(&b->m->link[0]);
+	cycle = kcyc_status(a)->cycle;
+	a->seen = cycle;
+	kcyc_wait_cycles(a, 500);
+	x = kcyc_take(a);
+	KUNIT_ASSERT_NOT_NULL(test, x);
+	KUNIT_EXPECT_EQ(test, x->domains[0].working_counter, 0u);
+	KUNIT_EXPECT_EQ(test, x->domains[0].wc_state, 0u);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	ec_session_end(b->m, &b->app);
+	msleep(100);
+	/* without a device nobody can reserve it, but end it */
+	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), -ENODEV);
+	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle, cycle + 590);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+}
+
+/* requests and emergencies --------------------------------------------------*/
+
+static const char drive[] = "segment seed=8 response=500us transition=200us\n"
+			    "slave a drive mbox=64 serial=11\n";
+
+/* A drive with an SDO request and room for emergencies. */
+static struct kcyc *with_request(struct bus *b)
+{
+	struct kcyc *a = kunit_kzalloc(b->test, sizeof(*a), GFP_KERNEL);
+	struct ec_ioc_cycle cfg = {
+		.flags = EC_CYCLE_FLAG_DETACH, .period_ns = KCYC_PERIOD_NS, .cpu = -1,
+	};
+	struct ec_ioc_sc_request r = { .kind = EC_REQUEST_SDO, .size = 4 };
+	struct ec_ioc_sc_emerg e = { .count = 8 };
+
+	KUNIT_ASSERT_NOT_NULL(b->test, a);
+	a->c = cyc_new(b, 1000);
+	cyc_domain(a->c);
+	cyc_map_all(a->c, 0, 1, 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_request(&b->app, &r), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_emerg(&b->app, &e), 0);
+	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(a), 0, "%s", b->app.reason);
+	return a;
+}
+
+static struct ec_request_area *area(struct kcyc *a)
+{
+	return (void *)kcyc_shared(a)->requests;
+}
+
+static struct ec_request_record *record(struct kcyc *a)
+{
+	return (struct ec_request_record *)((u8 *)area(a) + area(a)->requests);
+}
+
+/* what the library does: no system call */
+static void begin(struct kcyc *a, u16 index, u8 sub)
+{
+	struct ec_request_record *r = record(a);
+
+	r->index = index;
+	r->subindex = sub;
+	r->op = EC_REQUEST_OP_READ;
+	smp_store_release(&r->start, r->start + 1);
+	smp_store_release(&area(a)->starts, area(a)->starts + 1);
+}
+
+static bool over(struct kcyc *a)
+{
+	u32 i;
+
+	for (i = 0; i < 2000 && smp_load_acquire(&record(a)->done) != record(a)->start; i++)
+		KUNIT_ASSERT_EQ(a->c->b->test, kcyc_wait(a, 0), 0);
+	return i < 2000;
+}
+
+static u32 value(struct kcyc *a)
+{
+	return get_unaligned_le32((u8 *)area(a) + record(a)->data);
+}
+
+static void life_requests(struct kunit *test)
+{
+	struct bus *b = bus_up(test, drive, 1);
+	const u8 five[5] = { 0 };
+	struct ec_emerg_ring *ring;
+	struct kcyc *a;
+	u32 i;
+
+	bus_idle(b);
+	a = with_request(b);
+	kcyc_until_op(a);
+	for (i = 1; i <= 3; i++) {
+		begin(a, 0x1018, 4);
+		KUNIT_ASSERT_TRUE(test, over(a));
+		KUNIT_EXPECT_EQ(test, record(a)->result, 0);
+		KUNIT_EXPECT_EQ(test, value(a), 11u);
+	}
+	ring = (struct ec_emerg_ring *)((u8 *)area(a) + area(a)->rings);
+	KUNIT_EXPECT_EQ(test, ring->count, 8u);
+	ec_app_emergency(bus_app(b, "a"), 0x8110, 0x11, five, ktime_get_ns());
+	for (i = 0; i < 200 && ring->head == ring->tail; i++)
+		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
+	KUNIT_EXPECT_EQ(test, ring->head, 1u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16((u8 *)area(a) + ring->data), 0x8110u);
+}
+
+/* What the dead one has begun ends; the next one sees that, and begins its own. */
+static void life_requests_taken_over(struct kunit *test)
+{
+	struct bus *b = bus_up(test, drive, 1);
+	struct kcyc *a;
+
+	bus_idle(b);
+	a = with_request(b);
+	kcyc_until_op(a);
+	begin(a, 0x1018, 4);
+	KUNIT_ASSERT_TRUE(test, over(a));
+	begin(a, 0x1018, 4);
+	kcyc_wait_cycles(a, 2);
+	ec_session_end(b->m, &b->app);
+	a = with_request(b);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+	KUNIT_EXPECT_EQ(test, record(a)->start, 2u);
+	KUNIT_ASSERT_TRUE(test, over(a));
+	KUNIT_EXPECT_EQ(test, value(a), 11u);
+	/* one that was put there, but not told: never happened */
+	record(a)->start = 77;
+	record(a)->done = 5;
+	ec_session_end(b->m, &b->app);
+	a = with_request(b);
+	KUNIT_EXPECT_EQ(test, record(a)->start, record(a)->done);
+	begin(a, 0x1018, 1);
+	KUNIT_ASSERT_TRUE(test, over(a));
+	KUNIT_EXPECT_EQ(test, record(a)->result, 0);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(life_waits_for_outputs),
+	KUNIT_CASE(life_never_begins),
+	KUNIT_CASE(life_poll),
+	KUNIT_CASE(life_without_device),
+	KUNIT_CASE(life_requests),
+	KUNIT_CASE(life_requests_taken_over),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_kcyc_life", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
