@@ -27,6 +27,7 @@ done
 [[ $cycles =~ ^[1-9][0-9]*$ ]] || { echo "cycle.sh: --cycles needs a number" >&2; exit 2; }
 passed=0 failed=0
 declare -A v
+costs=()
 
 tests/vm/kernels.sh fetch "$kernel" >&2 &&
 make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
@@ -39,7 +40,8 @@ make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 || exit 1
 # incumbent's figures grow by too little from 1 to 100 drives for the former.
 icount=(--icount --qemu "-cpu max,-erms,-fsrm")
 
-# run NAME [run.sh options] -- DEVICE SEGMENT [cycle-bench options]; fills v
+# run NAME [run.sh options] -- DEVICE SEGMENT [cycle-bench options]
+#     [+ PREFIX options]...; fills v
 run() {
 	local name=$1 out line opts=()
 
@@ -83,6 +85,17 @@ reliable() {
 
 ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", a / b }'; }
 
+# the kernel's cycle: work of its thread, and of the application around it
+kernel_cost() {
+	printf '# %-8s %4u slave(s) %5u bytes: receive %6u process %4u queue %4u send %7u, thread %6u = %7u\n' \
+		kernel "${v[kernel_slaves]}" "${v[kernel_image_bytes]}" "${v[kernel_receive_median]}" \
+		"${v[kernel_process_median]}" "${v[kernel_queue_median]}" "${v[kernel_send_median]}" \
+		"${v[kernel_work_median]}" "${v[kernel_total_median]}"
+	gate "cycle of the kernel: ${v[kernel_cycles]} cycles, ${v[kernel_slaves]} slaves: ${v[kernel_lost]} frames lost, ${v[kernel_wc_errors]} working-counter errors" \
+		"${v[kernel_lost]} == 0 && ${v[kernel_wc_errors]} == 0 && ${v[kernel_call_errors]} == 0 &&
+		 ${v[kernel_operational]} == ${v[kernel_slaves]}"
+}
+
 # cost DEVICE SLAVES: a row of the table
 cost() {
 	printf '# %-8s %4u slave(s) %5u bytes: receive %6u process %4u queue %4u send %7u = %7u (a refused ioctl: %u)\n' \
@@ -118,17 +131,38 @@ generic_cost() {
 	echo "# instructions per cycle, generic device on e1000e"
 	for n in 1 ${all:+10} 100; do
 		run "drive$n, generic" "${icount[@]}" --nics -- generic "drive$n.seg" --cycles 500 \
-			--period-us 4000 || return
+			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer || return
 		cost generic
 		reference $n
+		kernel_cost
+		costs[$n]=${v[total_median]}
 		reliable "generic device"
 		[ $n = 10 ] || row "${v[total_median]}" $((n == 1 ? 6000 : 12000)) \
 			"instructions a cycle through the library: $n drive(s)"
+		[ $n = 10 ] || row "${v[kernel_total_median]}" $((n == 1 ? 6000 : 12000)) \
+			"the same, the kernel runs the cycle, no system call: $n drive(s)"
+		[ $n != 1 ] || gate "1 slave, the kernel runs the cycle: ${v[kernel_total_median]} instructions, at most those of the application's ${v[total_median]}" \
+			"${v[kernel_total_median]} <= ${v[total_median]}"
 		[ $n != 1 ] || gate "1 slave: ${v[total_median]} instructions, at most 6000" \
 			"${v[total_median]} <= 6000"
 		[ $n != 100 ] || gate "100 slaves: ${v[total_median]} instructions, at most 12000" \
 			"${v[total_median]} <= 12000"
 	done
+}
+
+# Differences of runs in which one thing changes. A datagram holds 1486 bytes at
+# most, so 4400 bytes are three, each a frame of its own.
+unit_costs() {
+	run "drive10 in 10 domains" "${icount[@]}" --nics -- generic drive10.seg --cycles 300 \
+		--period-us 4000 --domains 10 || return
+	awk -v c1="${costs[1]}" -v c10="${costs[10]}" -v c100="${costs[100]}" \
+	    -v apart="${v[total_median]}" 'BEGIN {
+		byte = (c10 - c1) / (440 - 44)
+		datagram = (apart - c10) / 9
+		frame = (c100 - c10 - byte * 3960 - datagram * 2) / 2
+		printf "# a byte costs %.2f instructions (process data of 22 bytes a direction and slave), a datagram and its domain %.0f, a frame %.0f, a cycle %.0f more\n",
+			byte, datagram, frame, c1 - frame - datagram - byte * 44
+	}'
 }
 
 virtual_cost() {
@@ -138,14 +172,21 @@ virtual_cost() {
 }
 
 system_calls() {
-	local n
+	local n options
 
 	for n in ${all:+1} 8; do
-		run "system calls" "${icount[@]}" -- virtual drive10.seg --cycles 100 --domains $n --extras \
-			--syscalls || return
-		gate "$n domain(s), state queries, application time: ${v[syscalls_max]} system calls per cycle, at most 2" \
-			"${v[syscalls_max]} <= 2"
+		options="--cycles 100 --domains $n --extras --syscalls"
+		run "system calls" "${icount[@]}" -- virtual drive10.seg $options \
+			+ wait $options --kernel wait + spin $options --kernel spin || return
+		gate "$n domain(s), clocks, state queries, emergencies, requests: ${v[syscalls_max]} system calls per cycle, at most 2" \
+			"${v[syscalls_max]} <= 2 && ${v[requests_done]} > 0"
 		row "${v[syscalls_max]}" 2 "system calls a cycle: $n domain(s)"
+		gate "the same, the kernel runs the cycle: ${v[wait_syscalls_max]} when the application waits, at most 1" \
+			"${v[wait_syscalls_max]} <= 1 && ${v[wait_requests_done]} > 0"
+		row "${v[wait_syscalls_max]}" 1 "the same, the kernel runs the cycle, the application waits"
+		gate "and ${v[spin_syscalls_max]} when it spins" \
+			"${v[spin_syscalls_max]} == 0 && ${v[spin_cycles]} == 100"
+		row "${v[spin_syscalls_max]}" 0 "the same, it spins"
 	done
 }
 
@@ -157,6 +198,7 @@ real_time() {
 
 long_run
 generic_cost
+[ -z "$all" ] || unit_costs
 [ -z "$all" ] || virtual_cost
 system_calls
 [ -z "$all" ] || real_time

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# Runs in the guest: a segment, one run of cycle-bench.
-# usage: guest.sh BUILD DEVICE SEGMENT [cycle-bench options]
+# Runs in the guest: a segment, one run of cycle-bench, or several.
+# usage: guest.sh BUILD DEVICE SEGMENT [cycle-bench options] [+ NAME options]...
+#   NAME    stands before each name of what that run prints: NAME_cycles
 #   DEVICE  virtual: the model as sim0; generic: eth0, the model answers on
 #           eth1, which is joined with it (run.sh --nics)
 
@@ -32,4 +33,19 @@ for _ in {1..100}; do
 	[ -z "$("$build/tool/ethercat" slaves)" ] || break
 	sleep 0.1
 done
-"$build/bench/cycle-bench" "$@"
+
+rc=0 name=
+while :; do
+	options=()
+	while [ $# -gt 0 ] && [ "$1" != + ]; do options+=("$1"); shift; done
+	"$build/bench/cycle-bench" ${options[@]+"${options[@]}"} | sed "s/^/$name/"
+	[ "${PIPESTATUS[0]}" = 0 ] || rc=1
+	[ $# -gt 0 ] || exit $rc
+	name=$2_
+	shift 2
+	# the session before has ended when its slaves are back
+	for _ in {1..300}; do
+		"$build/tool/ethercat" slaves | awk '$3 != "PREOP" { n++ } END { exit n }' && break
+		sleep 0.1
+	done
+done
