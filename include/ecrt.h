@@ -1695,8 +1695,10 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * @key: name, 1..63 characters
  * @value: replaces an earlier one
  *
- * For applications that set flags of other masters, such as "AssignToPdi" or
- * "WaitBeforeSAFEOPms": accepted, without effect so far.
+ * "WaitBeforeSAFEOPms": milliseconds, at most 60000, between the configuration of
+ * the slave and the request of SAFEOP. "AssignToPdi": the EEPROM belongs to the
+ * slave from PREOP on in any case. Other names are kept and shown by
+ * "ethercat config -v", without effect.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOMEM.

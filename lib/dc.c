@@ -17,6 +17,8 @@ int ecrt_master_select_reference_clock(ec_master_t *master,
 
 	if (!master)
 		return -EINVAL;
+	if (sc && sc->master != master)
+		return ec_fail(-EINVAL, "select another master's slave as the reference clock");
 	arg.config = sc ? sc->index : EC_UAPI_NONE32;
 	ret = ec_ioctl(master, EC_IOC_REF_CLOCK, &arg);
 	return ret ? ec_fail_ioctl(master, ret, "select the reference clock") :

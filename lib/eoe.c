@@ -19,13 +19,21 @@ static int set(ec_slave_config_t *sc, struct ec_ioc_sc_ip *arg, __u32 which,
 				   sc->alias, sc->position) : 0;
 }
 
+static int nothing(const ec_slave_config_t *sc, const char *what)
+{
+	return ec_fail(-EINVAL, "set no EoE %s of slave %u:%u", what, sc->alias,
+		       sc->position);
+}
+
 int ecrt_slave_config_eoe_mac_address(ec_slave_config_t *sc,
 				      const unsigned char *mac_address)
 {
 	struct ec_ioc_sc_ip arg = { 0 };
 
-	if (!sc || !mac_address)
+	if (!sc)
 		return -EINVAL;
+	if (!mac_address)
+		return nothing(sc, "MAC address");
 	memcpy(arg.params.mac, mac_address, sizeof(arg.params.mac));
 	return set(sc, &arg, EC_IP_MAC, "MAC address");
 }
@@ -71,8 +79,10 @@ int ecrt_slave_config_eoe_hostname(ec_slave_config_t *sc, const char *name)
 {
 	struct ec_ioc_sc_ip arg = { 0 };
 
-	if (!sc || !name)
+	if (!sc)
 		return -EINVAL;
+	if (!name)
+		return nothing(sc, "host name");
 	memcpy(arg.params.name, name,
 	       strnlen(name, sizeof(arg.params.name) - 1));
 	return set(sc, &arg, EC_IP_HOSTNAME, "host name");

@@ -288,6 +288,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 		return ret;
 	ec_master_unmap(master);
 	ec_master_free_session(master);
+	master->app_time = 0;	/* the next session has its own */
 	return 0;
 }
 

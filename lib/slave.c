@@ -60,6 +60,12 @@ int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
 	return 0;
 }
 
+static int no_sm(uint8_t sync_index)
+{
+	return ec_fail(-ENOENT, "get SM%u of at most %u", sync_index,
+		       EC_MAX_SYNC_MANAGERS);
+}
+
 int ecrt_master_get_sync_manager(ec_master_t *master, uint16_t slave_position,
 				 uint8_t sync_index, ec_sync_info_t *sync)
 {
@@ -69,7 +75,7 @@ int ecrt_master_get_sync_manager(ec_master_t *master, uint16_t slave_position,
 	if (!master || !sync)
 		return -EINVAL;
 	if (sync_index >= EC_MAX_SYNC_MANAGERS)
-		return -ENOENT;
+		return no_sm(sync_index);
 	ret = ec_ioctl(master, EC_IOC_SM, &sm);
 	if (ret)
 		return ec_fail_ioctl(master, ec_not_there(ret),
@@ -98,7 +104,7 @@ int ecrt_master_get_pdo(ec_master_t *master, uint16_t slave_position,
 	if (!master || !pdo)
 		return -EINVAL;
 	if (sync_index >= EC_MAX_SYNC_MANAGERS)
-		return -ENOENT;
+		return no_sm(sync_index);
 	ret = ec_ioctl(master, EC_IOC_PDO, &p);
 	if (ret)
 		return ec_fail_ioctl(master, ec_not_there(ret),
@@ -125,7 +131,7 @@ int ecrt_master_get_pdo_entry(ec_master_t *master, uint16_t slave_position,
 	if (!master || !entry)
 		return -EINVAL;
 	if (sync_index >= EC_MAX_SYNC_MANAGERS)
-		return -ENOENT;
+		return no_sm(sync_index);
 	ret = ec_ioctl(master, EC_IOC_PDO_ENTRY, &e);
 	if (ret)
 		return ec_fail_ioctl(master, ec_not_there(ret),
@@ -155,8 +161,12 @@ static int download(ec_master_t *master, uint16_t slave_position,
 
 	if (abort_code)
 		*abort_code = 0;
-	if (!master || !data || !data_size || data_size > UINT32_MAX)
+	if (!master)
 		return -EINVAL;
+	if (!data || !data_size || data_size > UINT32_MAX)
+		return ec_fail(-EINVAL,
+			       "download %zu bytes to SDO 0x%04x:%02x of slave %u",
+			       data_size, index, subindex, slave_position);
 	ret = ec_ioctl(master, EC_IOC_SDO_DOWNLOAD, &sdo);
 	if (!ret)
 		return 0;
@@ -203,8 +213,12 @@ static int upload(ec_master_t *master, uint16_t slave_position,
 
 	if (abort_code)
 		*abort_code = 0;
-	if (!master || !result_size || (!target && target_size))
+	if (!master)
 		return -EINVAL;
+	if (!result_size || (!target && target_size))
+		return ec_fail(-EINVAL,
+			       "upload SDO 0x%04x:%02x from slave %u to nowhere",
+			       index, subindex, slave_position);
 	ret = ec_ioctl(master, EC_IOC_SDO_UPLOAD, &sdo);
 	if (!ret) {
 		*result_size = sdo.size;

@@ -198,6 +198,8 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *arg,
 
 	if (ec_memory_frozen(sc->master, "register an entry"))
 		return -EBUSY;
+	if (!domain)
+		return fail_sc(sc, -EINVAL, "register %s without domain", name);
 	if (domain->master != sc->master)
 		return fail_sc(sc, -EINVAL,
 			       "register %s in another master's domain", name);
@@ -229,7 +231,7 @@ int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
 	};
 	char name[32];
 
-	if (!sc || !domain)
+	if (!sc)
 		return -EINVAL;
 	snprintf(name, sizeof(name), "0x%04x:%02x", entry_index,
 		 entry_subindex);
@@ -251,7 +253,7 @@ int ecrt_slave_config_reg_pdo_entry_pos(ec_slave_config_t *sc,
 	};
 	char name[64];
 
-	if (!sc || !domain)
+	if (!sc)
 		return -EINVAL;
 	snprintf(name, sizeof(name), "SM%u PDO %u entry %u", sync_index,
 		 pdo_pos, entry_pos);
@@ -356,8 +358,10 @@ int ecrt_slave_config_flag(ec_slave_config_t *sc, const char *key,
 	struct ec_ioc_sc_flag arg = { .value = value };
 	int ret;
 
-	if (!sc || !key)
+	if (!sc)
 		return -EINVAL;
+	if (!key)
+		return fail_sc(sc, -EINVAL, "set a flag without name");
 	if (!*key || strlen(key) >= sizeof(arg.key))
 		return fail_sc(sc, -EINVAL, "set flag '%.64s'", key);
 	memcpy(arg.key, key, strlen(key));

@@ -14,6 +14,8 @@
 #include "wire/soe.h"
 #include "xfer.h"
 
+#define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
+
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 {
 	return ec_xfer_fpwr(s->master, s->station, ado, data, len);
@@ -398,6 +400,19 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 	return ec_dc_sync_start(s, c);
 }
 
+/* Some slaves need time between their configuration and SAFEOP. */
+static int wait_flag(struct ec_slave *s, s32 ms)
+{
+	u64 until = ktime_get_ns() + (u64)clamp(ms, 0, FLAG_MAX_MS) * NSEC_PER_MSEC;
+
+	while (ms > 0 && ktime_get_ns() < until) {
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		usleep_range(1000, 1500);
+	}
+	return 0;
+}
+
 /* state-machine.md 4.3 */
 static int to_safeop(struct ec_slave *s, struct ec_config *c)
 {
@@ -414,6 +429,8 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	ret = write_sms(s, c);
 	if (!ret && c && c->session->active)
 		ret = write_fmmus(s, c);
+	if (!ret && c)
+		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
 	if (!ret)
 		ret = start_sync(s, c);
 	if (!ret)

@@ -180,6 +180,9 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 
 	if (p)
 		ec_pdo_clear_entries(p);
+	else
+		ec_warn(c->session->master, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
+			c->alias, c->position, pdo);
 	return 0;
 }
 
@@ -200,6 +203,9 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 	memcpy(sdo->data, data, size);
 	list_add_tail(&sdo->list, &c->sdos);
 	c->n_sdos++;
+	if (c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
+		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n", index,
+			      sub);
 	return 0;
 }
 
@@ -240,6 +246,10 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	if (!flag)
 		return -ENOMEM;
 	strscpy(flag->key, key, sizeof(flag->key));
+	/* the EEPROM is the slave's from PREOP on anyway */
+	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, "AssignToPdi"))
+		ec_info(c->session->master, "slave %u:%u: flag %s has no effect\n", c->alias,
+			c->position, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);
 	c->n_flags++;
@@ -270,6 +280,24 @@ void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
 	if (p->which & EC_EOE_HOSTNAME)
 		memcpy(ip->name, p->name, sizeof(ip->name));
 	ip->which |= p->which;
+}
+
+/**
+ * ec_config_flag() - value of a flag
+ * @c: configuration
+ * @key: its name
+ *
+ * Context: Process, session_lock or the slave's lock held.
+ * Return: value; 0 when it was not set.
+ */
+s32 ec_config_flag(const struct ec_config *c, const char *key)
+{
+	const struct ec_config_flag *flag;
+
+	list_for_each_entry(flag, &c->flags, list)
+		if (!strcmp(flag->key, key))
+			return flag->value;
+	return 0;
 }
 
 /* The mapping of @sm in @d, made when it is not there yet. */

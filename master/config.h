@@ -75,6 +75,9 @@ struct ec_config_idn {
 	u8 data[];
 };
 
+/* milliseconds between configuration and the request of SAFEOP */
+#define EC_FLAG_WAIT_SAFEOP	"WaitBeforeSAFEOPms"
+
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
 	struct list_head list;
@@ -160,6 +163,7 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo);
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
 		      u32 size);
 int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size);
+s32 ec_config_flag(const struct ec_config *c, const char *key);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
 void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,

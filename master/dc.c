@@ -388,6 +388,25 @@ static int check(struct job *j)
 	return ret;
 }
 
+/*
+ * Applications may tell quite another time in their cycle than before activation.
+ * Their first cycle is awaited, so that the clocks begin with what they go on with.
+ */
+static void await_time(struct ec_master *m, u64 since)
+{
+	u32 polls = READ_ONCE(m->polls);
+	unsigned int i;
+
+	for (i = 0; i < 500; i++) {
+		if (!READ_ONCE(m->dc.has_phase) || READ_ONCE(m->dc.stop) ||
+		    READ_ONCE(m->dc.wanted) ||
+		    (s64)(READ_ONCE(m->dc.app_ktime) - since) >= 0 ||
+		    READ_ONCE(m->polls) - polls >= 3)
+			return;
+		usleep_range(900, 1100);
+	}
+}
+
 static void set_state(struct ec_dc *dc, int state)
 {
 	WRITE_ONCE(dc->state, state);
@@ -446,6 +465,8 @@ static void work(struct work_struct *work)
 		set_state(dc, EC_DC_OFF);
 		return;
 	}
+	if (j.ref < j.n && !j.slaves[j.ref]->dc_set)
+		await_time(m, t0);
 	mutex_lock(&dc->lock);
 	/* a clock that is being corrected runs too fast or too slow to measure */
 	WRITE_ONCE(dc->running, false);

@@ -291,7 +291,7 @@ int ec_ioc_sc_dc(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
-/* Flags of other masters' applications; they are kept and shown, none has a meaning here yet. */
+/* Flags of other masters' applications; they are kept and shown, few have a meaning here. */
 int ec_ioc_sc_flag(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_flag *i = arg;
@@ -307,9 +307,6 @@ int ec_ioc_sc_flag(struct ec_file *f, void *arg)
 	ret = ec_config_flag_set(c, i->key, i->value);
 	if (ret == -ENOSPC)
 		ec_refuse(f, ret, "a slave configuration has at most %u flags", EC_MAX_SC_FLAGS);
-	else if (!ret)
-		ec_info(f->master, "slave %u:%u: flag %s has no effect\n", c->alias, c->position,
-			i->key);
 	return done(f, ret);
 }
 

@@ -421,6 +421,7 @@ int main(void)
 	configuration();
 	eoe();
 	extensions();
+	rules();
 	foreign_domain();
 	cycle();
 	layout();

@@ -22,5 +22,6 @@ void requests(void);
 void idns_and_vendor_messages(void);
 void eoe(void);
 void extensions(void);
+void rules(void);
 
 #endif
