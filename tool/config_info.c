@@ -222,6 +222,20 @@ static void attached(const struct ec_ioc_config *c, const char *in)
 	out_str("state", ec_al_state_name((u8)c->al_status), " (%s)\n", state);
 }
 
+/* An older module does not tell; nor does one for a slave in OP. */
+static void reason(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	struct ec_ioc_config_why w = { .index = c->index };
+
+	if (dev_ioctl(d, EC_IOC_CONFIG_WHY, &w))
+		w.text[0] = '\0';
+	string_clean(w.text, sizeof(w.text));
+	if (w.text[0])
+		out_str("not_in_op", w.text, "%sNot in OP: %s\n", in, w.text);
+	else
+		out_null("not_in_op", NULL);
+}
+
 /* Return: 0, or 1 after printing the error. */
 int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 {
@@ -233,6 +247,7 @@ int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	out_u("vendor_id", c->vendor_id, "%sVendor Id: 0x%08x\n", in, c->vendor_id);
 	out_u("product_code", c->product_code, "%sProduct code: 0x%08x\n", in, c->product_code);
 	attached(c, in);
+	reason(d, c, in);
 	number_or_default("watchdog_divider", c->watchdog_divider, in, "Watchdog divider");
 	number_or_default("watchdog_intervals", c->watchdog_intervals, in, "Watchdog intervals");
 	ret = sync_managers(d, c, in);

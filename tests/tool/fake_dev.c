@@ -652,6 +652,11 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		if (((struct ec_ioc_sc_ip *)arg)->config == 1)
 			((struct ec_ioc_sc_ip *)arg)->params = net;
 		return 0;
+	case EC_IOC_CONFIG_WHY:
+		if (((struct ec_ioc_config_why *)arg)->index == 1)
+			strcpy(((struct ec_ioc_config_why *)arg)->text,
+			       bus("evil") ? "\033[2J" : "is not on the bus: there are 2 slave(s)");
+		return 0;
 	case EC_IOC_IP_GET:
 	case EC_IOC_IP_SET:
 		return ip(arg, request == EC_IOC_IP_SET);
