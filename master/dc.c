@@ -379,10 +379,7 @@ static int check(struct job *j)
 
 		if (!j->nodes[i].dc)
 			continue;
-		s->dc_diff = ec_dc_diff(get_unaligned_le32(v[i]));
-		if (abs(s->dc_diff) > EC_DC_LIMIT_NS)
-			ec_slave_warn(s, "its clock differs by %d ns from the reference clock, more than %d\n",
-				      s->dc_diff, EC_DC_LIMIT_NS);
+		ec_dc_verdict(s, get_unaligned_le32(v[i]));
 	}
 	kvfree(v);
 	return ret;
@@ -494,6 +491,7 @@ static void stop(struct ec_dc *dc)
 {
 	WRITE_ONCE(dc->stop, true);
 	cancel_work_sync(&dc->work);
+	ec_dc_watch_stop(dc);
 }
 
 /**
@@ -521,6 +519,7 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	m->dc.begun = true;
 	set_state(&m->dc, EC_DC_BUSY);
 	queue_work(m->work, &m->dc.work);
+	ec_dc_watch_start(m);
 }
 
 /**
@@ -624,6 +623,7 @@ void ec_dc_init(struct ec_master *m)
 
 	mutex_init(&dc->lock);
 	INIT_WORK(&dc->work, work);
+	ec_dc_watch_init(dc);
 	init_waitqueue_head(&dc->wq);
 	raw_spin_lock_init(&dc->time_lock);
 }

@@ -45,6 +45,7 @@ enum ec_dc_state {
  * @begun_ns: since when drift is compensated (ktime)
  * @boost: comparisons the cycle shall make beyond one per send
  * @work: sets the clocks while a session is active
+ * @watch: looks at the sync window of all slaves, once a second
  * @wq: woken when @state changes
  * @phase: first application time of the session, ns; SYNC starts on its grid
  * @has_phase: @phase is set
@@ -70,6 +71,7 @@ struct ec_dc {
 	u64 begun_ns;
 	u32 boost;
 	struct work_struct work;
+	struct delayed_work watch;
 	wait_queue_head_t wq;
 	raw_spinlock_t time_lock;
 	u64 phase;
@@ -86,6 +88,12 @@ void ec_dc_end(struct ec_master *m);
 int ec_dc_wait(struct ec_slave *s);
 void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
 u64 ec_dc_now(struct ec_master *m);
+
+/* dc_watch.c */
+void ec_dc_verdict(struct ec_slave *s, u32 value);
+void ec_dc_watch_init(struct ec_dc *dc);
+void ec_dc_watch_start(struct ec_master *m);
+void ec_dc_watch_stop(struct ec_dc *dc);
 
 /* dc_sync.c */
 int ec_dc_sync_stop(struct ec_slave *s);

@@ -52,6 +52,7 @@ struct ec_master;
  * @dc_offset: of its system time, ns, register 0x0920
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
  * @dc_set: its clock was set for this session
+ * @dc_far: the log says that it differs too much
  *
  * Changing:
  * @al_status: last AL status seen
@@ -114,6 +115,7 @@ struct ec_slave {
 	u64 dc_offset;
 	s32 dc_diff;
 	bool dc_set;
+	bool dc_far;
 
 	u16 al_status;
 	u16 al_code;

@@ -131,7 +131,7 @@ const struct cmd cmd_slaves = {
 		"state, al_error, flag_error, cause, name, vendor_id, product_code, revision_number,\n"
 		"serial_number, own_alias, station_address, al_status, al_status_code,\n"
 		"al_status_text, requested_state, dl_status, fmmu_bit_operation, dc, dc_delay_ns,\n"
-		"dc_offset_ns, dc_difference_ns (when set),\n"
+		"dc_state (not_set, in_step, off), dc_offset_ns, dc_difference_ns (when set),\n"
 		"ports[] (type, link_up, loop_closed, signal, next_slave, receive_time_ns,\n"
 		"receive_time_diff_ns, delay_to_next_dc_ns), mailboxes (bootstrap_rx_offset,\n"
 		"bootstrap_rx_size, bootstrap_tx_offset, bootstrap_tx_size, standard_..., protocols[]),\n"

@@ -49,6 +49,15 @@ static void data_link(const struct ec_ioc_slave *s)
 	if (dc)
 		out_u("dc_delay_ns", s->transmission_delay,
 		      "  DC system time transmission delay: %u ns\n", s->transmission_delay);
+	if (dc && dc < 3) {
+		bool off = s->dc_diff > EC_UAPI_DC_WINDOW_NS || s->dc_diff < -EC_UAPI_DC_WINDOW_NS;
+		unsigned int state = !s->dc_set ? 0 : off ? 2 : 1;
+		static const char *const word[] = { "not_set", "in_step", "off" };
+
+		out_str("dc_state", word[state], NULL);
+		if (state)
+			out_text("  DC state: %s\n", off ? "differs too much" : "in step");
+	}
 	if (s->dc_set) {
 		out_i("dc_offset_ns", (s64)s->dc_offset, "  DC system time offset: %lld ns\n",
 		      (long long)s->dc_offset);

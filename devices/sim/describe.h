@@ -25,6 +25,7 @@
  *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
  *		wkc NAME add=N  errors NAME.PORT add=N
  *		mailbox NAME good|length|short|counter|type|babble (its messages)
+ *		latch NAME 0|1 [edge=rising|falling|pulse] (an input of its clock)
  *		emergency NAME code=N [register=N]
  *		voe NAME [vendor=N] [type=N] [size=N] (a VoE message)
  *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]

@@ -31,6 +31,7 @@ static const struct verb {
 	{ "wkc", SLAVE, EC_SIM_FAULT_WKC, 0 },
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
+	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
 	{ "lose", FRAME, EC_SIM_FAULT_LOSE, 0 },
 	{ "duplicate", FRAME, EC_SIM_FAULT_DUPLICATE, 0 },
 	{ "delay", FRAME, EC_SIM_FAULT_DELAY, 0 },
@@ -77,6 +78,23 @@ static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 	}
 	return ec_desc_fail(d, "mailbox messages are good, or wrong in length, short, counter, type, babble",
 			    NULL, "");
+}
+
+static int latch(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *w = ec_desc_next(d), edge;
+
+	if (!ec_desc_is(w, "0") && !ec_desc_is(w, "1"))
+		return ec_desc_fail(d, "write it as: fault latch NAME 0|1 [edge=rising|falling|pulse]",
+				    NULL, "");
+	f->arg = ec_desc_is(w, "1");
+	edge = ec_desc_value(d, "edge");
+	f->arg2 = !edge.s || ec_desc_is(&edge, "rising") ? EC_SIM_EDGE_RISING :
+		  ec_desc_is(&edge, "falling") ? EC_SIM_EDGE_FALLING :
+		  ec_desc_is(&edge, "pulse") ? EC_SIM_EDGE_RISING | EC_SIM_EDGE_FALLING : 0;
+	if (!f->arg2)
+		return ec_desc_fail(d, "edge '", &edge, "'? It is rising, falling or pulse");
+	return 0;
 }
 
 static int frame(struct ec_desc *d, struct ec_sim_fault *f)
@@ -223,6 +241,8 @@ int ec_desc_fault(struct ec_desc *d)
 		ret = refuse(d, &f);
 	if (!ret && v->type == EC_SIM_FAULT_MAILBOX)
 		ret = mailbox(d, &f);
+	if (!ret && v->type == EC_SIM_FAULT_LATCH)
+		ret = latch(d, &f);
 	if (!ret && v->type == EC_SIM_FAULT_EEPROM_NOACK)
 		ret = option(d, &f, "count", 0, 0xFFFFFFFFll);
 	if (!ret && v->type == EC_SIM_FAULT_WKC)

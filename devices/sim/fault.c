@@ -20,6 +20,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_MUTE] = "mute",
 	[EC_SIM_FAULT_ERRORS] = "errors",
 	[EC_SIM_FAULT_MAILBOX] = "mailbox",
+	[EC_SIM_FAULT_LATCH] = "latch",
 };
 
 /**
@@ -66,6 +67,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
 		return true;
 	if (f->slave < 0 || f->slave >= (int)sim->count)
+		return false;
+	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
 		return false;
 	if (f->type == EC_SIM_FAULT_MAILBOX && f->arg >= EC_SIM_MAILBOX_FAULTS)
 		return false;
@@ -179,6 +182,12 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		break;
 	case EC_SIM_FAULT_MAILBOX:
 		esc->fault.mailbox = (u8)f->arg;
+		break;
+	case EC_SIM_FAULT_LATCH:
+		if (f->arg2 & EC_SIM_EDGE_RISING)
+			ec_esc_latch(esc, (int)f->arg, true, now);
+		if (f->arg2 & EC_SIM_EDGE_FALLING)
+			ec_esc_latch(esc, (int)f->arg, false, now);
 		break;
 	case EC_SIM_FAULT_ERRORS:
 		count = esc->mem + EC_REG_ERR_RX(f->port);

@@ -46,6 +46,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_ERRORS: @arg is added to the error counters of @port
  * @EC_SIM_FAULT_MAILBOX: messages from the mailbox are wrong, @arg is an
  *                        enum ec_sim_mailbox_fault
+ * @EC_SIM_FAULT_LATCH: no fault: an edge, EC_SIM_EDGE_* in @arg2, at latch input
+ *                      @arg of its clock
  */
 enum ec_sim_fault_type {
 	EC_SIM_FAULT_CUT,
@@ -65,8 +67,12 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_MUTE,
 	EC_SIM_FAULT_ERRORS,
 	EC_SIM_FAULT_MAILBOX,
+	EC_SIM_FAULT_LATCH,
 	EC_SIM_FAULT_TYPES
 };
+
+#define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
+#define EC_SIM_EDGE_FALLING	2
 
 /**
  * enum ec_sim_mailbox_fault - what is wrong with messages from a mailbox

@@ -416,6 +416,64 @@ static void dc_chosen_is_lost(struct kunit *test)
 					c->app_time)), 5000000ll);
 }
 
+/*
+ * Edges at the latch inputs of a slave: the times are those all clocks have, and
+ * reading them makes room for the next.
+ */
+static void dc_latch(struct kunit *test)
+{
+	struct cyc *c = start(test, "slave a drive in=8 out=8 drift=20ppm\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n", 2);
+	struct bus *b = c->b;
+	u8 control[1] = { EC_SIM_EDGE_RISING };	/* single event at the rising edge */
+	u8 status[1], times[16];
+	u64 at;
+	u16 station;
+	s64 off;
+
+	/* set, then left to themselves, so that registers can be read at will */
+	set(c);
+	cyc_run(c, 3000);
+	station = bus_slave(b, 1)->station;
+	cyc_release(c);
+	bus_idle(b);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fpwr(b->m, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
+	at = ktime_get_ns();
+	bus_fault(b, EC_SIM_FAULT_LATCH, 1, 0, 0, EC_SIM_EDGE_RISING);
+	usleep_range(2000, 2001);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_EXPECT_EQ(test, status[0], 5);	/* event, pin high */
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_POS, times, 16), 0);
+	ec_sim_advance(b->sim, ktime_get_ns());
+	/* the edge was when the fault was added, by the reference clock, too */
+	off = get_unaligned_le64(times) - ec_esc_system_time(bus_esc(b, 0), at);
+	KUNIT_EXPECT_LT(test, abs(off), 5000ll);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_EXPECT_EQ(test, status[0], 4);
+}
+
+/* A clock leaves its sync window in operation, and comes back. */
+static void dc_window(struct kunit *test)
+{
+	struct cyc *c = start(test, "slave a drive in=8 out=8 drift=20ppm\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n", 2);
+	struct bus *b = c->b;
+
+	set(c);
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->dc_far);
+	KUNIT_EXPECT_LT(test, abs(bus_slave(b, 1)->dc_diff), 100);
+	/* more than its loop can correct */
+	bus_esc(b, 1)->cfg.drift_ppb = 990000;
+	cyc_run(c, 20000);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 1)->dc_far);
+	KUNIT_EXPECT_GT(test, bus_slave(b, 1)->dc_diff, 1000);
+	bus_esc(b, 1)->cfg.drift_ppb = 0;
+	cyc_run(c, 40000);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->dc_far);
+	KUNIT_EXPECT_LT(test, abs(bus_slave(b, 1)->dc_diff), 500);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_are_true),
 	KUNIT_CASE(dc_clocks_agree),
@@ -427,6 +485,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_slave_comes_back),
 	KUNIT_CASE(dc_reference_is_lost),
 	KUNIT_CASE(dc_chosen_is_lost),
+	KUNIT_CASE(dc_window),
+	KUNIT_CASE(dc_latch),
 	{ }
 };
 

@@ -11,7 +11,7 @@ load common
 		"states OP -p0 --wait" config "config -v" domains "domains -v" data cstruct \
 		"sii_read -p2" "sii_read -v -p2" "reg_read -p2 0x130 2" \
 		"reg_write -p2 -tuint8 0x40 1" rescan "debug 1" graph "graph dc" "graph crc" crc \
-		"crc reset" cycle "cycle -v" "cycle -r" "ip -p2" "ip -p2 name a"; do
+		"crc reset" "latch -p2" "latch -p2 single" cycle "cycle -v" "cycle -r" "ip -p2" "ip -p2 name a"; do
 		out $c --json | json 'isinstance(d, dict)' || { echo "$c"; return 1; }
 	done
 }
@@ -30,6 +30,10 @@ load common
 	FAKE_BUS=app out master -j | json 'd["masters"][0]["dc"]["cycle_lock"] == "locked"'
 	FAKE_BUS=app out master -j | json 'd["masters"][0]["dc"]["phase_error_ns"] == -12 and d["masters"][0]["dc"]["rate_ppb"] == -8700'
 	FAKE_BUS=app out master | grep -q 'Cycle follows it:  locked, phase error -12 ns, rate -8700 ppb, lost 1 time(s)'
+	out latch -j -p2 | json 'd["latches"][0]["rising_ns"] == 0x15 and d["latches"][0]["falling_ns"] is None'
+	out latch -j -p2 | json 'd["latches"][1]["owner"] == "slave" and not d["latches"][1]["single"]'
+	[ "$(out latch -p2 | head -n 1)" = "Latch 0: high, rising 21 ns, falling none; last edge counts" ]
+	[ "$(out latch -p2 | tail -n 1)" = "Latch 1: low, rising none, falling none; the slave has this input" ]
 	out upload -j -p2 0x1018 1 | json 'd["value"] == 2 and d["data_hex"] == "02000000"'
 	out upload -j -p2 -tstring 0x1008 0 | json 'd["value"] == "EL7201"'
 	out pdos -j | json 'd["masters"][0]["slaves"][2]["sync_managers"][3]["pdos"][0]["entries"][0]["size_bits"] == 32'

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The sync window of every slave: once a second, while an application's clocks
+ * run, each says how far it is from the time it was told (register 0x092C). One
+ * that leaves the window, or comes back, is worth a line.
+ */
+#include <linux/slab.h>
+#include "dc.h"
+#include "master.h"
+#include "slave.h"
+#include "wire/dc.h"
+#include "xfer.h"
+
+#define PERIOD_MS	1000
+#define BATCH		60	/* slaves asked at once */
+
+struct batch {
+	unsigned int n;
+	struct ec_slave *slaves[BATCH];
+	struct ec_dg dg[BATCH];
+	u8 value[BATCH][4];
+};
+
+/**
+ * ec_dc_verdict() - a slave has said how far its clock is off
+ * @s: slave
+ * @value: register 0x092C
+ *
+ * Of the reference clock it is the distance to the application's time, which
+ * only means something when it follows that.
+ *
+ * Context: Process, one at a time per slave.
+ */
+void ec_dc_verdict(struct ec_slave *s, u32 value)
+{
+	bool ref = s->station == READ_ONCE(s->master->dc.ref_station), far;
+	s32 diff = ec_dc_diff(value);
+
+	/* not back and forth at the limit */
+	far = abs(diff) > (s->dc_far ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
+	WRITE_ONCE(s->dc_diff, diff);
+	if (far == s->dc_far || ref)
+		return;
+	s->dc_far = far;
+	if (far)
+		ec_slave_warn(s, "its clock differs by %d ns from the reference clock, more than %d\n",
+			      diff, EC_DC_LIMIT_NS);
+	else
+		ec_slave_info(s, "its clock differs by %d ns from the reference clock, as it should\n",
+			      diff);
+}
+
+/* The next slaves with a clock that was set; returns the position to go on from. */
+static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int from)
+{
+	b->n = 0;
+	down_read(&m->topo);
+	for (; from < m->n_slaves && b->n < BATCH; from++) {
+		struct ec_slave *s = m->slaves[from];
+
+		if (!READ_ONCE(s->dc_set) || s->gone)
+			continue;
+		b->dg[b->n] = (struct ec_dg)EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_DIFF, 4,
+						  b->value[b->n]);
+		b->slaves[b->n++] = ec_slave_ref(s);
+	}
+	up_read(&m->topo);
+	return from;
+}
+
+static void watch(struct work_struct *work)
+{
+	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
+	struct ec_master *m = container_of(dc, struct ec_master, dc);
+	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
+	unsigned int i, at = 0;
+
+	/* while clocks are being set they have a verdict of their own */
+	if (!b || READ_ONCE(dc->state) != EC_DC_READY)
+		goto out;
+	do {
+		at = collect(m, b, at);
+		ec_xfer(m, b->dg, b->n);
+		for (i = 0; i < b->n; i++) {
+			if (!b->dg[i].err && b->dg[i].wkc == 1)
+				ec_dc_verdict(b->slaves[i], get_unaligned_le32(b->value[i]));
+			ec_slave_unref(b->slaves[i]);
+		}
+	} while (b->n == BATCH && !READ_ONCE(dc->stop));
+out:
+	kfree(b);
+	if (!READ_ONCE(dc->stop))
+		queue_delayed_work(m->work, &dc->watch, msecs_to_jiffies(PERIOD_MS));
+}
+
+/**
+ * ec_dc_watch_init() - prepare
+ * @dc: clocks of a master
+ *
+ * Context: Process.
+ */
+void ec_dc_watch_init(struct ec_dc *dc)
+{
+	INIT_DELAYED_WORK(&dc->watch, watch);
+}
+
+/**
+ * ec_dc_watch_start() - look from now on
+ * @m: master
+ *
+ * Context: Process.
+ */
+void ec_dc_watch_start(struct ec_master *m)
+{
+	queue_delayed_work(m->work, &m->dc.watch, msecs_to_jiffies(PERIOD_MS));
+}
+
+/**
+ * ec_dc_watch_stop() - and no longer
+ * @dc: clocks of a master, @stop set
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_watch_stop(struct ec_dc *dc)
+{
+	cancel_delayed_work_sync(&dc->watch);
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Latch inputs of a slave's clock: the times of edges (ETG.1000.4 clause 6.8.6). */
+#include <string.h>
+
+#include "io.h"
+#include "out.h"
+#include "reg.h"
+#include "slave_info.h"
+
+#include "../master/wire/regs.h"
+
+#define INPUTS	2
+#define BOTH	3	/* rising and falling edge */
+
+/* registers of both inputs */
+struct latches {
+	u8 owner;		/* 0x0980 bits 4, 5: the slave's own CPU has it */
+	u8 control[INPUTS];	/* 0x09A8: bit per edge, 0: each edge, 1: the first */
+	u8 status[INPUTS];	/* 0x09AE: bit per edge; bit 2: the pin */
+	u8 times[INPUTS][16];	/* 0x09B0: rising, falling */
+};
+
+static int read_all(struct dev *d, u16 position, struct latches *l)
+{
+	if (reg_read(d, position, EC_REG_DC_CUC, &l->owner, 1) ||
+	    reg_read(d, position, EC_REG_DC_LATCH0_CTRL, l->control, INPUTS) ||
+	    reg_read(d, position, EC_REG_DC_LATCH0_STATUS, l->status, INPUTS))
+		return 1;
+	/* reading a time makes room for the next edge, so only where there is one */
+	for (u16 i = 0; i < INPUTS; i++)
+		if (l->status[i] & BOTH &&
+		    reg_read(d, position, (u16)(EC_REG_DC_LATCH0_POS + 16 * i), l->times[i], 16))
+			return 1;
+	return 0;
+}
+
+static void edge(const struct latches *l, unsigned int i, unsigned int which)
+{
+	static const char *const key[] = { "rising_ns", "falling_ns" };
+	static const char *const text[] = { "rising", "falling" };
+	unsigned long long t = get_unaligned_le64(l->times[i] + 8 * which);
+
+	if (l->status[i] >> which & 1)
+		out_u(key[which], t, ", %s %llu ns", text[which], t);
+	else
+		out_null(key[which], ", %s none", text[which]);
+}
+
+static void input(const struct latches *l, unsigned int i)
+{
+	bool high = l->status[i] & 4, slave = l->owner >> (4 + i) & 1;
+
+	out_object(NULL);
+	out_u("input", i, "Latch %u: ", i);
+	out_bool("high", high, "%s", high ? "high" : "low");
+	edge(l, i, 0);
+	edge(l, i, 1);
+	out_bool("single", (l->control[i] & BOTH) == BOTH, NULL);
+	out_str("owner", slave ? "slave" : "master", "%s\n",
+		slave ? "; the slave has this input" :
+		(l->control[i] & BOTH) == BOTH ? "; first edge counts" : "; last edge counts");
+	out_end();
+}
+
+static int set_mode(struct dev *d, u16 position, const char *mode)
+{
+	const u8 v = !strcmp(mode, "single") ? BOTH : 0, control[INPUTS] = { v, v };
+
+	return reg_write(d, position, EC_REG_DC_LATCH0_CTRL, control, INPUTS, false);
+}
+
+static int show(const struct tool *t, struct dev *d, const char *mode)
+{
+	struct latches l = { 0 };
+	struct ec_ioc_slave s;
+
+	if (dev_select_single(d, t, &s))
+		return 1;
+	if (!slave_has_dc(&s))
+		return fail("slave %u has no distributed clock, so no latch inputs", s.position);
+	if (mode)
+		return set_mode(d, s.position, mode);
+	if (read_all(d, s.position, &l))
+		return 1;
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	out_array("latches");
+	for (unsigned int i = 0; i < INPUTS; i++)
+		input(&l, i);
+	out_end();
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	const char *mode = argc ? argv[0] : NULL;
+	struct dev d;
+	int ret;
+
+	if (mode && strcmp(mode, "single") && strcmp(mode, "continuous"))
+		return usage_error("invalid mode '%s': expected single or continuous", mode);
+	if (dev_open_single(&d, t, true))
+		return 1;
+	ret = show(t, &d, mode);
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_latch = {
+	.name = "latch",
+	.run = run,
+	.args = "[MODE]",
+	.opts = "map",
+	.summary = "Show when edges came at the latch inputs of a slave's clock",
+	.help = "MODE := { single: the first edge counts until it is read;\n"
+		"          continuous: the last one }; sets both inputs\n"
+		"Times are those of the distributed clocks, ns. A time that was shown makes room\n"
+		"for the next edge.\n",
+	.json = "master, slave, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"
+		"owner (master, slave: its own CPU takes the times))",
+	.flags = CMD_ONE_MASTER,
+	.max_args = 1,
+};
