@@ -41,7 +41,16 @@ group() {
 @test "configuration after activation" { group after; }
 @test "distributed clocks" { group dc; }
 @test "requests and emergencies" { group request; }
-@test "IDNs, VoE messages, whole objects" { group soe; }
+@test "IDNs, VoE messages, whole objects" {
+	group soe
+	# what it was told at startup, and by the tool
+	[ "$(ethercat soe_read -p3 -t uint16 1 P-0-170)" = "0x5aa5 23205" ]
+	ethercat soe_write -p3 -t string P-0-160 "a text"
+	[ "$(ethercat soe_read -p3 -t string P-0-160)" = "a text" ]
+	run ethercat soe_write -p3 -t uint16 P-0-170 1
+	[ "$status" = 1 ]
+	grep -q '0x7005: the value is write protected at this time' <<<"$output"
+}
 @test "the kernel's cycle" { group kcycle; }
 @test "NULL handles" { group null; }
 @test "floating point" { group access; }

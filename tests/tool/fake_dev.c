@@ -498,6 +498,48 @@ static int download(struct ec_ioc_sdo *x)
 	return 0;
 }
 
+static int soe_error(struct ec_ioc_soe *x, __u16 code)
+{
+	x->error_code = code;
+	return fail(EIO, "the slave refuses");
+}
+
+static int soe_read(struct ec_ioc_soe *x)
+{
+	static const struct {
+		__u16 idn;
+		__u8 size;
+		const char *data;
+	} idns[] = {
+		{ 15, 2, "\7\0" },
+		{ 30, 11, "\7\0\x10\0SIM 1.0" },
+		{ 0x8096, 2, "\x34\x12" },
+	};
+
+	if (x->drive > 1)
+		return soe_error(x, 0x800a);
+	if (x->idn == 99)
+		return fail(ETIMEDOUT, "slave 2 did not answer in time");
+	for (size_t i = 0; i < LEN(idns); i++)
+		if (idns[i].idn == x->idn) {
+			memcpy((void *)(uintptr_t)x->data, idns[i].data, idns[i].size);
+			x->size = idns[i].size;
+			return 0;
+		}
+	return soe_error(x, x->idn == 100 ? 0x7fff : 0x1001);
+}
+
+static int soe_write(struct ec_ioc_soe *x)
+{
+	char what[64];
+
+	if (x->idn == 30)
+		return soe_error(x, 0x7004);
+	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->position, x->drive, x->idn);
+	hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
+	return 0;
+}
+
 static int reg_read(struct ec_ioc_reg *x)
 {
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
@@ -667,6 +709,10 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return upload(arg);
 	case EC_IOC_SDO_DOWNLOAD:
 		return download(arg);
+	case EC_IOC_SOE_READ:
+		return soe_read(arg);
+	case EC_IOC_SOE_WRITE:
+		return soe_write(arg);
 	case EC_IOC_REG_READ:
 		return reg_read(arg);
 	case EC_IOC_REG_WRITE:

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "out.h"
+#include "idn.h"
+
+static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *a,
+		    const struct ec_type *type)
+{
+	static u8 data[65536];
+	struct ec_ioc_soe soe = {
+		.idn = a->idn, .drive = a->drive, .size = sizeof(data), .data = (uintptr_t)data,
+	};
+	struct ec_ioc_slave s;
+	const u8 *from = data;
+	int err;
+
+	if (dev_select_single(d, t, &s))
+		return 1;
+	soe.position = s.position;
+	err = dev_ioctl(d, EC_IOC_SOE_READ, &soe);
+	if (err)
+		return soe_failed(d, err, &soe, a, "read");
+	soe.size = min(soe.size, (u32)sizeof(data));
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	soe_addr_out(a);
+	/* a text is a list: length and largest length, then the characters */
+	if (value_is_text(type) && soe.size >= 4 && get_unaligned_le16(data) == soe.size - 4) {
+		from += 4;
+		soe.size -= 4;
+	}
+	return io_print(type, from, soe.size);
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	const struct ec_type *type;
+	struct soe_addr a;
+	struct dev d;
+	int ret;
+
+	if (soe_addr_parse(&a, argc > 1 ? argv[0] : NULL, argv[argc - 1]) ||
+	    io_type(t->type ? t->type : "raw", &type) || dev_open_single(&d, t, true))
+		return 1;
+	ret = soe_read(t, &d, &a, type);
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_soe_read = {
+	.name = "soe_read",
+	.run = run,
+	.args = "[DRIVE] IDN",
+	.opts = "mapt",
+	.summary = "Read an IDN of a servo drive (SoE)",
+	.help = "DRIVE := { 0 to 7 }, default 0\n"
+		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
+		"The value is read. Without --type it is shown as hex bytes, those of a list with the\n"
+		"two lengths at its begin; a text is shown without them.\n",
+	.json = "master, slave, drive, idn, name, type, size_bytes,\n"
+		"value (not for bytes without a value form), data_hex",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.min_args = 1,
+	.max_args = 2,
+};

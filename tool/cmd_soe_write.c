@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdlib.h>
+#include <string.h>
+
+#include "out.h"
+#include "idn.h"
+
+/* A text becomes a list: its length, the same as the largest one, the characters. */
+static int as_list(u8 **data, size_t *size)
+{
+	u8 *list;
+
+	if (*size > 0xffff - 4)
+		return fail("the text has %zu bytes, a list at most 65531", *size);
+	list = malloc(*size + 4);
+	if (!list)
+		return fail("out of memory");
+	put_unaligned_le16((u16)*size, list);
+	put_unaligned_le16((u16)*size, list + 2);
+	memcpy(list + 4, *data, *size);
+	free(*data);
+	*data = list;
+	*size += 4;
+	return 0;
+}
+
+static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr *a, u8 *data,
+		     size_t size)
+{
+	struct ec_ioc_soe soe = {
+		.idn = a->idn, .drive = a->drive, .size = (u32)size, .data = (uintptr_t)data,
+	};
+	struct ec_ioc_slave s;
+	int err;
+
+	if (dev_select_single(d, t, &s))
+		return 1;
+	soe.position = s.position;
+	err = dev_ioctl(d, EC_IOC_SOE_WRITE, &soe);
+	if (err)
+		return soe_failed(d, err, &soe, a, "write");
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	soe_addr_out(a);
+	out_u("size_bytes", size, NULL);
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	const struct ec_type *type;
+	struct soe_addr a;
+	struct dev d;
+	size_t size;
+	u8 *data;
+	int ret;
+
+	if (soe_addr_parse(&a, argc > 2 ? argv[0] : NULL, argv[argc - 2]))
+		return 1;
+	if (!t->type)
+		return usage_error("the data type of %s is not known; give it with --type", a.text);
+	if (io_type(t->type, &type) || io_value(type, argv[argc - 1], &data, &size))
+		return 1;
+	ret = (value_is_text(type) && as_list(&data, &size)) || dev_open_single(&d, t, true);
+	if (!ret) {
+		ret = soe_write(t, &d, &a, data, size);
+		dev_close(&d);
+	}
+	free(data);
+	return ret;
+}
+
+const struct cmd cmd_soe_write = {
+	.name = "soe_write",
+	.run = run,
+	.args = "[DRIVE] IDN VALUE",
+	.opts = "mapt",
+	.summary = "Write an IDN of a servo drive (SoE)",
+	.help = "DRIVE := { 0 to 7 }, default 0\n"
+		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
+		"VALUE := { a value of the type given by --type | - for stdin }\n"
+		"The value is written; --type is needed. A text is sent as a list with its length;\n"
+		"other lists are written as raw bytes. Negative numbers need no '--' before them.\n",
+	.json = "master, slave, drive, idn, name, size_bytes",
+	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.min_args = 2,
+	.max_args = 3,
+};
