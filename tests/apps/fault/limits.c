@@ -33,6 +33,8 @@ static void wrong_indexes(int fd)
 		struct ec_ioc_sc_watchdog wd = { .config = w };
 		struct ec_ioc_sc_request req = { .config = w };
 		struct ec_ioc_sc_emerg emerg = { .config = w };
+		struct ec_ioc_sc_idn idn = { .config = w, .state = 2, .size = 2,
+					     .data = (__u64)(unsigned long)arg };
 
 		expect_errno(call(fd, EC_IOC_REG_ENTRY, &e), ENOENT, "entry of config %u", w);
 		expect_errno(call(fd, EC_IOC_REG_ENTRY, &d), ENOENT, "entry in domain %u", w);
@@ -46,6 +48,7 @@ static void wrong_indexes(int fd)
 		expect_errno(call(fd, EC_IOC_SC_WATCHDOG, &wd), ENOENT, "watchdog of %u", w);
 		expect_errno(call(fd, EC_IOC_SC_REQUEST, &req), ENOENT, "request of %u", w);
 		expect_errno(call(fd, EC_IOC_SC_EMERG, &emerg), ENOENT, "emergencies of %u", w);
+		expect_errno(call(fd, EC_IOC_SC_IDN, &idn), ENOENT, "startup IDN of %u", w);
 	}
 	for (unsigned int sm = 16; sm < 256; sm++) {
 		struct ec_ioc_sc_sync s = { .sm = sm, .dir = 1 };
@@ -57,6 +60,13 @@ static void wrong_indexes(int fd)
 		expect_errno(call(fd, EC_IOC_CONFIG_SM, &c), ENOENT, "configured SM%u", sm);
 	}
 	for (unsigned int v = 0; v < 256; v++) {
+		struct ec_ioc_sc_idn state = { .state = v, .size = 2,
+					       .data = (__u64)(unsigned long)arg };
+		struct ec_ioc_sc_idn drive = { .drive = v, .state = 4, .size = 2,
+					       .data = (__u64)(unsigned long)arg };
+		struct ec_ioc_soe soe = { .drive = v, .size = 2,
+					  .data = (__u64)(unsigned long)arg };
+		struct ec_ioc_sc_request kind = { .kind = v };
 		struct ec_ioc_sc_sync dir = { .dir = v }, wd = { .dir = 1, .watchdog = v };
 		struct ec_ioc_sc_pdo op = { .op = v };
 
@@ -64,8 +74,17 @@ static void wrong_indexes(int fd)
 			expect_errno(call(fd, EC_IOC_SC_SYNC, &dir), EINVAL, "direction %u", v);
 		if (v > 2)
 			expect_errno(call(fd, EC_IOC_SC_SYNC, &wd), EINVAL, "watchdog %u", v);
-		if (v > 3)
+		if (v > 3) {
 			expect_errno(call(fd, EC_IOC_SC_PDO, &op), EINVAL, "operation %u", v);
+			expect_errno(call(fd, EC_IOC_SC_REQUEST, &kind), EINVAL, "kind %u", v);
+		}
+		if (v != 2 && v != 4)
+			expect_errno(call(fd, EC_IOC_SC_IDN, &state), EINVAL, "IDN in state %u", v);
+		if (v > 7) {
+			expect_errno(call(fd, EC_IOC_SC_IDN, &drive), EINVAL, "IDN of drive %u", v);
+			expect_errno(call(fd, EC_IOC_SOE_READ, &soe), EINVAL, "read drive %u", v);
+			expect_errno(call(fd, EC_IOC_SOE_WRITE, &soe), EINVAL, "write drive %u", v);
+		}
 	}
 }
 
@@ -125,6 +144,8 @@ void check_limits(void)
 {
 	struct ec_ioc_sc_sdo sdo = { .index = 0x8000, .size = 1,
 				     .data = (__u64)(unsigned long)arg };
+	struct ec_ioc_sc_idn idn = { .idn = 15, .state = 2, .size = 2,
+				     .data = (__u64)(unsigned long)arg };
 	struct ec_ioc_sc_pdo pdo = { .sm = 3, .pdo = 0x1a00 };
 	int fd = open_master(O_RDWR), err = 0;
 	unsigned int n;
@@ -133,6 +154,8 @@ void check_limits(void)
 	wrong_indexes(fd);
 	n = until_refused(fd, EC_IOC_SC_SDO, &sdo, 100000, &err);
 	expect(n == 1024 && err == ENOSPC, "%u startup SDOs, then error %d", n, err);
+	n = until_refused(fd, EC_IOC_SC_IDN, &idn, 100000, &err);
+	expect(n == 1024 && err == ENOSPC, "%u startup IDNs, then error %d", n, err);
 	n = until_refused(fd, EC_IOC_SC_PDO, &pdo, 100000, &err);
 	expect(n == 1024 && err == ENOSPC, "%u PDOs, then error %d", n, err);
 	n = until_refused(fd, EC_IOC_CREATE_DOMAIN, zeroed(), 1000, &err);
