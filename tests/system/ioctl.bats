@@ -5,7 +5,12 @@
 
 load helpers
 
-setup_file() { start three 3; }
+# "three", its axis with SoE
+setup_file() {
+	printf '%s\n' "segment seed=3" "slave coupler EK1100" "slave out EL2008 alias=1001" \
+		"slave axis EL7201 motor=AM8121 soe=1" >"$BATS_FILE_TMPDIR/segment"
+	start "$BATS_FILE_TMPDIR/segment" 3
+}
 teardown_file() { stop; }
 
 check() {

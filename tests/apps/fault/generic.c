@@ -133,7 +133,7 @@ static void *at_the_edge(size_t inside)
 	return page + 4096 - inside;
 }
 
-/* Data of an argument that is right otherwise: slave 2 of "three" has CoE. */
+/* Data of an argument that is right otherwise: slave 2 has CoE and SoE. */
 static void check_data_pointer(int fd, const struct cmd *c)
 {
 	__u64 p;
@@ -145,6 +145,10 @@ static void check_data_pointer(int fd, const struct cmd *c)
 			((struct ec_ioc_sdo *)arg)->position = 2;
 			((struct ec_ioc_sdo *)arg)->index = 0x1018;
 			((struct ec_ioc_sdo *)arg)->subindex = 1;
+		}
+		if (c->nr == EC_IOC_SOE_READ || c->nr == EC_IOC_SOE_WRITE) {
+			((struct ec_ioc_soe *)arg)->position = 2;
+			((struct ec_ioc_soe *)arg)->idn = 91;
 		}
 		p = (__u64)(unsigned long)bad_pointers[b];
 		memcpy(arg + c->data, &p, sizeof(p));

@@ -116,6 +116,37 @@ static void check_sdo(int fd)
 	expect(s.size == 4 && data[0] == 2, "vendor id: %u bytes, %u", s.size, data[0]);
 }
 
+static void check_soe(int fd)
+{
+	static const __u32 wrong[] = { 0, 64 * 1024 + 1, 1U << 20, 1U << 31, ~0U };
+	struct ec_ioc_soe s = { .position = 2, .idn = 91, .data = (__u64)(unsigned long)data };
+
+	for (unsigned int i = 0; i < 5; i++) {
+		s.size = wrong[i];
+		expect_errno(call(fd, EC_IOC_SOE_READ, &s), EINVAL, "read %u bytes", s.size);
+		expect_errno(call(fd, EC_IOC_SOE_WRITE, &s), EINVAL, "write %u bytes", s.size);
+	}
+	s.size = 3;
+	expect_errno(call(fd, EC_IOC_SOE_READ, &s), ENOBUFS, "4 bytes into 3");
+	s.size = 300;
+	expect_errno(call(fd, EC_IOC_SOE_WRITE, &s), EMSGSIZE, "more than a message");
+	s.size = 4;
+	s.idn = 92;
+	expect_errno(call(fd, EC_IOC_SOE_READ, &s), EIO, "IDN that does not exist");
+	expect(s.error_code == 0x1001, "error code 0x%08x", s.error_code);
+	s.position = 0;
+	s.size = 4;
+	expect_errno(call(fd, EC_IOC_SOE_READ, &s), EPROTONOSUPPORT, "IDN of a coupler");
+	s.position = 3;
+	s.size = 4;
+	expect(call(fd, EC_IOC_SOE_READ, &s) != 0, "IDN of nobody");
+	s = (struct ec_ioc_soe){ .position = 2, .idn = 91, .size = 4,
+				 .data = (__u64)(unsigned long)data };
+	expect_errno(call(fd, EC_IOC_SOE_READ, &s), 0, "velocity limit");
+	expect(s.size == 4 && data[0] == (3000 & 255), "velocity limit: %u bytes, %u", s.size,
+	       data[0]);
+}
+
 static void check_sii(int fd)
 {
 	static const __u32 beyond[] = { 1U << 16, 1U << 31, ~0U };
@@ -138,6 +169,7 @@ void check_values(void)
 
 	check_reg(fd);
 	check_sdo(fd);
+	check_soe(fd);
 	check_sii(fd);
 	for (unsigned int i = 0; i < 256; i++) {
 		struct ec_ioc_state s = { .position = 1, .state = i };

@@ -38,6 +38,8 @@ static void no_owner(int fd)
 		struct ec_ioc_sc_flag flag = { .key = "x" };
 		struct ec_ioc_sc_timeout timeout = { .from = 1, .to = 2 };
 		struct ec_ioc_sc_sdo sdo = { .size = 4, .data = (__u64)(unsigned long)arg };
+		struct ec_ioc_sc_idn idn = { .state = 2, .size = 4,
+					     .data = (__u64)(unsigned long)arg };
 		void *a = zeroed();
 
 		if (!cmds[i].owner)
@@ -50,6 +52,8 @@ static void no_owner(int fd)
 			a = &timeout;
 		else if (cmds[i].nr == EC_IOC_SC_SDO)
 			a = &sdo;
+		else if (cmds[i].nr == EC_IOC_SC_IDN)
+			a = &idn;
 		expect_errno(call(fd, cmds[i].nr, a), EPERM, "%s without reservation",
 			     cmds[i].name);
 	}
