@@ -7,7 +7,7 @@ setup_file() {
 	# the ends of each slave's outputs are wired to its inputs
 	cat >"$BATS_FILE_TMPDIR/segment" <<-END
 	segment seed=31
-	repeat 2 slave s io in=6400 out=6400
+	repeat 2 slave s io in=6400 out=6400 drift=90ppm
 	slave d io in=8 out=8
 	connect s1.1 -> s1.1
 	connect s1.200 -> s1.200
@@ -118,6 +118,17 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	echo "$output"
 	[ "$status" = 0 ]
 	[[ "$output" == *"cycles: 2000, working counter errors: 0, "* ]]
+}
+
+@test "the cycle follows the reference clock" {
+	run kcycle cycles=4000 dc=2
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"cycles: 4000, working counter errors: 0, "* ]]
+	[[ "$output" == *"reference clock: locked, "*", lost 0 time(s)"* ]]
+	# it runs 90 ppm faster
+	ppb=$(echo "$output" | sed -n 's/^reference clock: .* rate +\([0-9]*\) ppb.*/\1/p')
+	[ "$ppb" -gt 80000 ] && [ "$ppb" -lt 100000 ]
 }
 
 @test "what cannot be is refused with the reason" {

@@ -11,7 +11,7 @@
  *   priority=0     of the thread, 1 to 98, 0: 50
  *   stall=0        without outputs: 0 hold, 1 zero, 2 stop
  *   stall_cycles=0 after that many cycles
- *   dc=0           1: keep the clocks of the slaves in step
+ *   dc=0           1: keep the clocks of the slaves in step; 2: and follow them
  *   spin=0         how to wait: 0 one system call, 1 spin, 2 poll()
  *   pause=0        ms without outputs, in the middle
  *   flags=0        1: the cycle survives this program, 2: it waits for outputs
@@ -148,7 +148,8 @@ static int configure(void)
 		.priority = (uint32_t)opt_priority,
 		.stall = (ec_cycle_stall_t)opt_stall,
 		.stall_cycles = (uint32_t)opt_stall_cycles,
-		.dc = opt_dc ? EC_CYCLE_SYNC_SLAVES | EC_CYCLE_SYNC_MONITOR : 0,
+		.dc = !opt_dc ? 0 : EC_CYCLE_SYNC_SLAVES | EC_CYCLE_SYNC_MONITOR |
+				    (opt_dc == 2 ? EC_CYCLE_FOLLOW_REFERENCE : 0),
 		.flags = (uint32_t)opt_flags,
 	};
 	ec_master_info_t info;
@@ -324,6 +325,10 @@ static void report(void)
 	       names[s.run], s.cycles, s.overruns, s.missed);
 	printf("send after schedule: min %" PRIu32 " mean %" PRIu32 " 99.9 %% %" PRIu32
 	       " max %" PRIu32 " ns\n", s.late_min, s.late_mean, s.late_p999, s.late_max);
+	if (opt_dc == 2)
+		printf("reference clock: %s, phase error %" PRId32 " ns, rate %+" PRId32
+		       " ppb, lost %" PRIu32 " time(s)\n", s.lock == EC_CYCLE_LOCKED ? "locked" :
+		       "not locked", s.phase_error, s.rate_ppb, s.lock_losses);
 	for (unsigned int i = 0; i < EC_CYCLE_BINS; i++)
 		if (s.late[i])
 			printf("  < %10" PRIu64 " ns: %" PRIu64 "\n", (uint64_t)1 << i, s.late[i]);
