@@ -80,6 +80,7 @@ static bool link_up(void *priv)
 
 static const struct ecdev_ops link_ops = {
 	.kind = "virtual",
+	.atomic = true,
 	.start = link_start,
 	.stop = link_stop,
 	.tx_get = link_tx_get,

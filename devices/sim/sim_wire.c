@@ -80,21 +80,22 @@ static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
  * ec_sim_wire_poll() - deliver what has arrived by now
  * @w: wire
  *
- * Context: Any but hard interrupt.
+ * Context: Any.
  */
 void ec_sim_wire_poll(struct ec_sim_wire *w)
 {
 	struct ec_sim_flying *f;
+	unsigned long flags;
 
-	spin_lock_bh(&w->lock);
+	raw_spin_lock_irqsave(&w->lock, flags);
 	while ((f = due(w, now_ns(w)))) {
-		spin_unlock_bh(&w->lock);
+		raw_spin_unlock_irqrestore(&w->lock, flags);
 		w->deliver(w, f->port, f->eth, f->len);
-		spin_lock_bh(&w->lock);
+		raw_spin_lock_irqsave(&w->lock, flags);
 		list_add(&f->list, &w->free);
 	}
 	arm(w);
-	spin_unlock_bh(&w->lock);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 }
 
 static enum hrtimer_restart timeout(struct hrtimer *timer)
@@ -112,11 +113,13 @@ static enum hrtimer_restart timeout(struct hrtimer *timer)
  */
 void ec_sim_wire_run(struct ec_sim_wire *w, bool on)
 {
-	spin_lock_bh(&w->lock);
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
 	w->running = on;
 	if (!on)
 		list_splice_init(&w->flying, &w->free);
-	spin_unlock_bh(&w->lock);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 	if (!on)
 		hrtimer_cancel(&w->timer);
 }
@@ -126,14 +129,16 @@ void ec_sim_wire_run(struct ec_sim_wire *w, bool on)
  * @w: wire
  * @on: true: whoever calls ec_sim_wire_poll(), false: a timer
  *
- * Context: Any but hard interrupt.
+ * Context: Any.
  */
 void ec_sim_wire_set_polled(struct ec_sim_wire *w, bool on)
 {
-	spin_lock_bh(&w->lock);
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
 	w->polled = on;
 	arm(w);
-	spin_unlock_bh(&w->lock);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 }
 
 /* Copies of a frame follow one another. */
@@ -187,20 +192,21 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
  * @eth: Ethernet frame; copied
  * @len: its bytes, EC_ETH_HDR + EC_FRAME_HDR..EC_ETH_MAX
  *
- * Context: Any but hard interrupt.
+ * Context: Any.
  * Return: 0, or -ENETDOWN: not running, or no cable at the port.
  */
 int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
+	unsigned long flags;
 	int ret = 0;
 
-	spin_lock_bh(&w->lock);
+	raw_spin_lock_irqsave(&w->lock, flags);
 	if (!w->running || !ec_sim_link(w->sim, port))
 		ret = -ENETDOWN;
 	else
 		launch(w, port, eth, len);
 	arm(w);
-	spin_unlock_bh(&w->lock);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return ret;
 }
 
@@ -208,17 +214,18 @@ int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
  * ec_sim_wire_up() - is there a cable at the first master port now
  * @w: wire
  *
- * Context: Any but hard interrupt.
+ * Context: Any.
  * Return: whether there is.
  */
 bool ec_sim_wire_up(struct ec_sim_wire *w)
 {
+	unsigned long flags;
 	bool up;
 
-	spin_lock_bh(&w->lock);
+	raw_spin_lock_irqsave(&w->lock, flags);
 	ec_sim_advance(w->sim, now_ns(w));
 	up = ec_sim_link(w->sim, 0);
-	spin_unlock_bh(&w->lock);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return up;
 }
 
@@ -243,7 +250,7 @@ int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 	w->sim = sim;
 	w->start_ns = start_ns;
 	w->deliver = deliver;
-	spin_lock_init(&w->lock);
+	raw_spin_lock_init(&w->lock);
 	hrtimer_init(&w->timer, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);
 	w->timer.function = timeout;
 	INIT_LIST_HEAD(&w->flying);

@@ -29,7 +29,7 @@ struct ec_sim_wire {
 	struct ec_sim *sim;
 	u64 start_ns;
 	void (*deliver)(struct ec_sim_wire *w, int port, const u8 *eth, size_t len);
-	spinlock_t lock;
+	raw_spinlock_t lock;
 	struct hrtimer timer;
 	struct list_head flying;
 	struct list_head free;
