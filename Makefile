@@ -14,7 +14,7 @@ MODDIR ?= $(BUILD)/modules
 # pahole is not always there, and nobody needs the modules' BTF
 KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) CONFIG_DEBUG_INFO_BTF_MODULES=
 
-all: modules lib tool examples
+all: modules lib tool examples mini
 
 # Modules are built in a copy: several kernels side by side, a clean clone.
 MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/wire/*.[ch] \
@@ -46,6 +46,17 @@ tool:
 examples: lib
 	$(MAKE) -C examples
 
+# the example that is a kernel module, built as an application's would be
+MINIDIR ?= $(BUILD)/mini
+
+mini: modules
+	@mkdir -p $(MINIDIR)
+	@for f in Kbuild ec_mini.c; do \
+		cmp -s examples/mini/$$f $(MINIDIR)/$$f || cp examples/mini/$$f $(MINIDIR)/$$f; \
+	done
+	+$(MAKE) -C $(KDIR) M=$(MINIDIR) CONFIG_DEBUG_INFO_BTF_MODULES= ECRT=$(CURDIR)/include \
+		KBUILD_EXTRA_SYMBOLS=$(MODDIR)/Module.symvers modules
+
 # --- install -----------------------------------------------------------------
 
 # what uname -r says on the kernel of these headers
@@ -63,6 +74,7 @@ NOSIGN = $(if $(wildcard $(KDIR)/certs/signing_key.pem),,CONFIG_MODULE_SIG_ALL=)
 install-modules: modules
 	+$(KMAKE) INSTALL_MOD_PATH=$(DESTDIR) INSTALL_MOD_DIR=updates/ethercat \
 		$(NOSIGN) $(if $(DESTDIR),DEPMOD=true) modules_install
+	install -D -m 644 $(MODDIR)/Module.symvers $(MODINST)/ethercat/Module.symvers
 	$(if $(DESTDIR),,depmod $(KREL))
 
 install-lib:
@@ -95,7 +107,7 @@ clean:
 	$(MAKE) -C tool/sim clean
 	$(MAKE) -C examples clean
 
-.PHONY: all sync modules lib tool examples clean
+.PHONY: all sync modules lib tool examples mini clean
 
 # CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM
 demo:

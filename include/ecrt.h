@@ -72,10 +72,8 @@
 #define EC_HAVE_REG_ACCESS
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
-/* ec_soe_request_t and its functions; in userspace */
-#ifndef __KERNEL__
+/* ec_soe_request_t and its functions */
 #define EC_HAVE_SOE_REQUESTS
-#endif
 /* ecrt_master_scan_progress() */
 #define EC_HAVE_SCAN_PROGRESS
 /* ecrt_slave_config_eoe_*() */
@@ -567,7 +565,6 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint32_t *abort_code);
 
-#ifndef __KERNEL__
 /**
  * ecrt_master_write_idn() - write an IDN of a servo drive
  * @master: a master opened for writing; need not be reserved
@@ -609,7 +606,6 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint16_t *error_code);
-#endif
 
 /**
  * ecrt_master_activate() - end configuration, begin the cycle
@@ -1531,7 +1527,6 @@ EC_PUBLIC_API int ecrt_slave_config_sdo32(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 		uint16_t index, const uint8_t *data, size_t size);
 
-#ifndef __KERNEL__
 /**
  * ecrt_slave_config_idn() - write an IDN each time the slave is configured
  * @sc: slave configuration
@@ -1551,7 +1546,6 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
 		uint8_t drive_no, uint16_t idn, ec_al_state_t state,
 		const uint8_t *data, size_t size);
-#endif
 
 /**
  * ecrt_slave_config_emerg_size() - how many emergencies to keep
@@ -1630,6 +1624,7 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 EC_PUBLIC_API ec_sdo_request_t *
 ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
 		uint16_t index, size_t size);
+#endif
 
 /**
  * ecrt_slave_config_create_soe_request() - read and write an IDN in OP
@@ -1660,7 +1655,6 @@ EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
  */
 EC_PUBLIC_API ec_voe_handler_t *ecrt_slave_config_create_voe_handler(
 		ec_slave_config_t *sc, size_t size);
-#endif
 
 /**
  * ecrt_slave_config_create_reg_request() - read and write registers in OP
@@ -2115,7 +2109,6 @@ EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
  */
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
 
-#ifndef __KERNEL__
 /**
  * ecrt_soe_request_idn() - another IDN
  * @req: request that is not BUSY
@@ -2168,7 +2161,12 @@ EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
+#ifdef __KERNEL__
+EC_PUBLIC_API ec_request_state_t ecrt_soe_request_state(
+		const ec_soe_request_t *req);
+#else
 EC_PUBLIC_API ec_request_state_t ecrt_soe_request_state(ec_soe_request_t *req);
+#endif
 
 /**
  * ecrt_soe_request_write() - start writing the buffer to the IDN
@@ -2288,7 +2286,6 @@ EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
  */
 EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
 		ec_voe_handler_t *voe);
-#endif
 
 /**
  * ecrt_reg_request_data() - buffer of a request

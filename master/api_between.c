@@ -27,14 +27,13 @@ void ecrt_master_callbacks(ec_master_t *master, void (*send_cb)(void *),
 }
 EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
 
-/* Frames are left for the cycle, and it runs. */
+/* The queue for the cycle is not empty; what it has may be sent already. */
 static bool left(const struct ec_master *m)
 {
-	return READ_ONCE(m->xq_head) != READ_ONCE(m->xq_tail) &&
-	       READ_ONCE(m->owner) == EC_OWNER_CYCLE;
+	return READ_ONCE(m->xq_head) != READ_ONCE(m->xq_tail);
 }
 
-/* Somebody has a slot, so a frame of his may be on its way. */
+/* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
 static bool awaited(const struct ec_master *m)
 {
 	return READ_ONCE(m->slots.acyclic.count) != EC_SLOTS - EC_SLOTS_CYCLE &&
@@ -47,7 +46,8 @@ static int between(void *data)
 	struct ec_api *api = m->api;
 
 	while (!kthread_should_stop()) {
-		wait_event_idle(api->between_wq, left(m) || kthread_should_stop());
+		wait_event_idle(api->between_wq,
+				(left(m) && awaited(m)) || kthread_should_stop());
 		while (!kthread_should_stop() && awaited(m)) {
 			if (left(m))
 				api->send_cb(api->cb_data);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What else is configured of a slave, for applications in the kernel. */
-#include "compat.h"
 #include "api.h"
 
 int ecrt_slave_config_watchdog(ec_slave_config_t *sc, uint16_t watchdog_divider,

@@ -63,6 +63,17 @@ void ecrt_release_master(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_release_master);
 
+/* It may be the heir of a detached one. */
+static struct ec_session *session_of(struct ec_master *m)
+{
+	struct ec_session *s;
+
+	mutex_lock(&m->session_lock);
+	s = ec_session_of(m, &m->api->file);
+	mutex_unlock(&m->session_lock);
+	return s;
+}
+
 ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 {
 	struct ec_ioc_create_domain i = { 0 };
@@ -75,7 +86,7 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 		ec_api_fail(master, ret, "create a domain");
 		return NULL;
 	}
-	return master->session->domains[i.index];
+	return session_of(master)->domains[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_create_domain);
 
@@ -97,7 +108,7 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 			    vendor_id, product_code);
 		return NULL;
 	}
-	return (ec_slave_config_t *)master->session->configs[i.index];
+	return (ec_slave_config_t *)session_of(master)->configs[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
 

@@ -182,12 +182,13 @@ static void destroy(struct ec_master *m)
 
 	WRITE_ONCE(m->stopping, true);
 	ec_cdev_exit(m);
+	ec_api_between_stop(m);
 	ec_session_end(m, NULL);
-	ec_api_destroy(m);
 	ec_monitor_stop(m);
 	ec_dc_exit(m);
 	if (m->work)
 		destroy_workqueue(m->work);
+	ec_api_destroy(m);
 	for (i = 0; i < EC_MAX_LINKS; i++)
 		ec_device_detach(&m->link[i]);
 	ec_capture_destroy(m);

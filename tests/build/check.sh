@@ -95,6 +95,7 @@ t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CF
 # --- install ---------------------------------------------------------------------
 expected() {
 	cat <<-END
+	./lib/modules/$release/updates/ethercat/Module.symvers
 	./lib/modules/$release/updates/ethercat/devices/ec_generic.ko
 	./lib/modules/$release/updates/ethercat/devices/sim/ec_sim.ko
 	./lib/modules/$release/updates/ethercat/master/ec_master.ko
@@ -154,6 +155,18 @@ examples_build() {
 		[ -x "$tmp/examples/build/mirror" ]
 }
 t "the examples with pkg-config, outside of the tree" examples_build
+
+# what Documentation/kernel-api.rst says, with what was installed
+kernel_app_builds() {
+	cp -r examples/mini "$tmp/mini" &&
+	make -s -C "$KDIR" M="$tmp/mini" CONFIG_DEBUG_INFO_BTF_MODULES= W=1 ECRT="$root$prefix/include" \
+		KBUILD_EXTRA_SYMBOLS="$root/lib/modules/$release/updates/ethercat/Module.symvers" \
+		modules >"$tmp/mini.log" 2>&1 || { cat "$tmp/mini.log"; return 1; }
+	! grep -E 'warning:|WARNING:' "$tmp/mini.log" &&
+		[ "$(modinfo -F depends "$tmp/mini/ec_mini.ko")" = ec_master ]
+}
+
+t "a kernel application against what was installed" kernel_app_builds
 
 nothing_left() {
 	[ -z "$(installed)" ] || { installed; return 1; }
