@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * A small application in the kernel: 1000 times a second it copies the first
+ * bytes of the inputs of one slave to its outputs. Beside the cycle it reads an
+ * object, and it says in the log when something changes.
+ *
+ *   make -C /lib/modules/$(uname -r)/build M=$PWD ECRT=/usr/local/include \
+ *	KBUILD_EXTRA_SYMBOLS=/lib/modules/$(uname -r)/updates/ethercat/Module.symvers
+ *   insmod ec_mini.ko position=0
+ *
+ * In the source tree "make mini" builds it.
+ */
+#include <linux/delay.h>
+#include <linux/err.h>
+#include <linux/hrtimer.h>
+#include <linux/kthread.h>
+#include <linux/module.h>
+#include <linux/sched.h>
+#include <ecrt.h>
+
+#define PERIOD_US	1000
+#define BYTES		2	/* copied in each cycle */
+#define READ_CYCLES	1000	/* between two reads of the object */
+
+static unsigned int master_index;
+module_param_named(master, master_index, uint, 0444);
+MODULE_PARM_DESC(master, "which master");
+
+static ushort position;
+module_param(position, ushort, 0444);
+MODULE_PARM_DESC(position, "ring position of the slave: SM2 outputs, SM3 inputs, CoE");
+
+static ec_master_t *master;
+static ec_domain_t *domain;
+static ec_slave_config_t *slave;
+static ec_sdo_request_t *serial;
+static struct task_struct *task;
+static int out, in;
+
+/* Beside the cycle: the serial number, again and again. */
+static void read_serial(u64 cycle)
+{
+	static ec_request_state_t last;
+	ec_request_state_t now = ecrt_sdo_request_state(serial);
+
+	if (now != last && now == EC_REQUEST_SUCCESS)
+		pr_info("ec_mini: serial number %u\n",
+			EC_READ_U32(ecrt_sdo_request_data(serial)));
+	if (now != last && now == EC_REQUEST_ERROR)
+		pr_info("ec_mini: the serial number cannot be read\n");
+	last = now;
+	if (now != EC_REQUEST_BUSY && cycle % READ_CYCLES == 0)
+		ecrt_sdo_request_read(serial);
+}
+
+/* None of this sleeps or waits; only a change is printed. */
+static void show_changes(void)
+{
+	static ec_slave_config_state_t last;
+	static ec_domain_state_t last_data;
+	ec_slave_config_state_t now;
+	ec_domain_state_t data;
+
+	ecrt_slave_config_state(slave, &now);
+	if (now.al_state != last.al_state || now.operational != last.operational)
+		pr_info("ec_mini: slave is in state %u%s\n", now.al_state,
+			now.operational ? ", operational" : "");
+	last = now;
+	ecrt_domain_state(domain, &data);
+	if (data.wc_state != last_data.wc_state)
+		pr_info("ec_mini: working counter %u, %s\n", data.working_counter,
+			data.wc_state == EC_WC_COMPLETE ? "complete" : "incomplete");
+	last_data = data;
+}
+
+static void cycle(u64 n)
+{
+	u8 *data = ecrt_domain_data(domain);
+
+	ecrt_master_receive(master);
+	ecrt_domain_process(domain);
+	show_changes();
+	read_serial(n);
+	memcpy(data + out, data + in, BYTES);
+	ecrt_domain_queue(domain);
+	ecrt_master_send(master);
+}
+
+static int run(void *unused)
+{
+	ktime_t next = ktime_get();
+	u64 n;
+
+	sched_set_fifo(current);
+	for (n = 0; !kthread_should_stop(); n++) {
+		next = ktime_add_us(next, PERIOD_US);
+		set_current_state(TASK_IDLE);
+		schedule_hrtimeout(&next, HRTIMER_MODE_ABS);
+		cycle(n);
+	}
+	return 0;
+}
+
+/* Process data of the slave as it describes them itself. */
+static int configure(void)
+{
+	ec_slave_info_t info;
+	int ret = ecrt_master_get_slave(master, position, &info);
+
+	if (ret)
+		return ret;
+	domain = ecrt_master_create_domain(master);
+	slave = ecrt_master_slave_config(master, 0, position, info.vendor_id, info.product_code);
+	if (!domain || !slave)
+		return -ENOMEM;
+	out = ecrt_slave_config_reg_pdo_entry_pos(slave, 2, 0, 0, domain, NULL);
+	if (out < 0)
+		return out;
+	in = ecrt_slave_config_reg_pdo_entry_pos(slave, 3, 0, 0, domain, NULL);
+	if (in < 0)
+		return in;
+	serial = ecrt_slave_config_create_sdo_request(slave, 0x1018, 4, 4);
+	if (!serial)
+		return -ENOMEM;
+	ecrt_sdo_request_timeout(serial, 500);
+	return ecrt_master_set_send_interval(master, PERIOD_US);
+}
+
+/* The master says in the log what went wrong. */
+static int __init ec_mini_init(void)
+{
+	int ret;
+
+	master = ecrt_request_master(master_index);
+	if (!master)
+		return -EBUSY;
+	ret = configure() ?: ecrt_master_activate(master);
+	if (ret)
+		goto err;
+	task = kthread_run(run, NULL, "ec_mini");
+	if (!IS_ERR(task))
+		return 0;
+	ret = PTR_ERR(task);
+err:
+	ecrt_release_master(master);
+	return ret;
+}
+
+/* First the cycle, then what it uses. */
+static void __exit ec_mini_exit(void)
+{
+	kthread_stop(task);
+	ecrt_release_master(master);
+}
+
+module_init(ec_mini_init);
+module_exit(ec_mini_exit);
+
+MODULE_DESCRIPTION("EtherCAT: a small application in the kernel");
+MODULE_AUTHOR("The EtherCAT master team");
+MODULE_LICENSE("GPL");
