@@ -7,6 +7,10 @@
  *
  * All slaves run with the process data they have, at 1 kHz. The first output
  * byte of each counts up; the program ends after CYCLES cycles (default 5000).
+ *
+ * Kill it, and the kernel goes on; start it again, and it goes on counting where
+ * it was. 'ethercat release' ends what a killed one has left.
+ * See Documentation/kernel-cycle.rst.
  */
 #include <ecrt.h>
 #include <inttypes.h>
@@ -58,12 +62,12 @@ static int add_slave(uint16_t position)
 
 static int configure(void)
 {
-	/* Without outputs for 100 cycles the slaves get zeros, and stay in OP. */
+	/* Without outputs the slaves get the last ones, also when we are dead. */
 	ec_cycle_config_t cycle = {
 		.period_ns = PERIOD_NS,
 		.cpu = -1,
-		.stall = EC_CYCLE_ZERO,
-		.stall_cycles = 100,
+		.stall = EC_CYCLE_HOLD,
+		.flags = EC_CYCLE_DETACH,
 	};
 	ec_master_info_t info;
 
@@ -127,7 +131,8 @@ static int run(unsigned long cycles)
 		fprintf(stderr, "not all slaves are in OP; see 'ethercat slaves'\n");
 		return -1;
 	}
-	printf("%u slaves in OP\n", n_slaves);
+	ecrt_master_cycle_state(master, &state);
+	printf("%u slaves in OP%s\n", n_slaves, state.takeovers ? ", as they were" : "");
 	for (unsigned long i = 0; i < cycles; i++) {
 		n = cycle(&domain_state);
 		if (n < 0) {
@@ -154,8 +159,11 @@ int main(int argc, char **argv)
 	master = ecrt_request_master(0);
 	if (!master)
 		return 1;
-	if (!configure() && !ecrt_master_activate(master))
+	if (!configure() && !ecrt_master_activate(master)) {
 		ret = run(cycles);
+		/* without this the kernel would go on */
+		ecrt_master_deactivate(master);
+	}
 	ecrt_release_master(master);
 	return ret ? 1 : 0;
 }

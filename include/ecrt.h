@@ -352,8 +352,9 @@ EC_PUBLIC_API ec_master_t *ecrt_open_master(unsigned int master_index);
  * ecrt_release_master() - give a master back
  * @master: from ecrt_request_master() or ecrt_open_master(), or NULL
  *
- * Deactivates it if it is active; slaves go back to PREOP. All handles and
- * pointers that came from @master are dead afterwards.
+ * Deactivates it if it is active; slaves go back to PREOP. But a cycle of the
+ * kernel with %EC_CYCLE_DETACH goes on. All handles and pointers that came from
+ * @master are dead afterwards.
  *
  * Context: Process. May sleep.
  */
@@ -365,7 +366,8 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
  * @master: from ecrt_open_master()
  *
  * Waits until a scan has ended, freezes the list of slaves until activation
- * and takes all slaves to PREOP. Userspace only.
+ * and takes all slaves to PREOP. While a detached cycle of the kernel runs
+ * (%EC_CYCLE_DETACH), it touches no slave. Userspace only.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EBUSY taken, %-ENODEV the master has no device yet, %-EPERM
@@ -615,11 +617,15 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * zeros, and returns at once: slaves are configured and taken to OP while
  * the application cycles. In userspace the image is mapped and all its pages
  * are present, so the cycle takes no page fault; an image of 0 bytes is
- * fine. After a failure only ecrt_release_master() is left to call.
+ * fine. After a failure only ecrt_release_master() is left to call; but after
+ * %-EEXIST also ecrt_master_end_detached() and this call again. When a detached
+ * cycle of the kernel runs (%EC_CYCLE_DETACH), it is taken over.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EBUSY active already; %-EPERM not reserved; %-ENOMEM;
- * %-EOVERFLOW too much process data; %-EINVAL @master is NULL.
+ * %-EOVERFLOW too much process data; %-EEXIST a detached cycle of another
+ * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
+ * runs the cycle; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 

@@ -37,6 +37,40 @@ out:
 	up_read(&slave->master->topo);
 }
 
+/* What the session that an heir wants to take over has for the same slave, or NULL. */
+static const struct ec_config *predecessor(const struct ec_config *c)
+{
+	const struct ec_master *m = c->session->master;
+	unsigned int i;
+
+	for (i = 0; c->session == m->heir && i < m->session->n_configs; i++) {
+		const struct ec_config *p = m->session->configs[i];
+
+		if (p->alias == c->alias && p->position == c->position &&
+		    p->vendor == c->vendor && p->product == c->product)
+			return p;
+	}
+	return NULL;
+}
+
+/* The same start as that one had, whether the slave was there then, or is now. */
+static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
+{
+	unsigned int sm, i;
+
+	for (sm = 0; sm < EC_MAX_SM; sm++) {
+		const struct ec_pdo_list *l = &from->sm[sm].pdos;
+
+		c->sm[sm].dir = from->sm[sm].dir;
+		for (i = 0; !from->sm[sm].explicit && i < l->n; i++) {
+			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
+
+			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
+				return;
+		}
+	}
+}
+
 /**
  * ec_config_create() - a configuration, or the existing one
  * @s: session
@@ -52,6 +86,7 @@ out:
 struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
 				   u32 product)
 {
+	const struct ec_config *before;
 	struct ec_config *c, **p;
 	unsigned int i;
 
@@ -81,7 +116,10 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	INIT_LIST_HEAD(&c->flags);
 	s->configs[s->n_configs++] = c;
 	ec_session_attach_one(s, c);
-	if (c->slave)
+	before = predecessor(c);
+	if (before)
+		inherit_defaults(c, before);
+	else if (c->slave)
 		ec_config_defaults(c, c->slave);
 	return c;
 }
@@ -116,11 +154,21 @@ int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
 }
 
 /* The mapping the slave has for this PDO, as a start. */
-static int known_entries(const struct ec_slave *slave, u16 index, struct ec_pdo *p)
+static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
 {
+	const struct ec_config *before = predecessor(c);
+	const struct ec_slave *slave = c->slave;
 	const struct ec_pdo *known;
+	unsigned int sm;
 	int ret;
 
+	for (sm = 0; before && sm < EC_MAX_SM; sm++) {
+		known = ec_pdo_find(&before->sm[sm].pdos, index);
+		if (known)
+			return ec_pdo_copy_entries(p, known);
+	}
+	if (!slave)
+		return 0;
 	down_read(&slave->master->topo);
 	known = ec_slave_find_pdo(slave, index);
 	ret = known ? ec_pdo_copy_entries(p, known) : 0;
@@ -140,7 +188,7 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 	if (!p)
 		return -ENOMEM;
 	c->sm[sm].explicit = true;
-	return c->slave ? known_entries(c->slave, pdo, p) : 0;
+	return known_entries(c, pdo, p);
 }
 
 int ec_config_assign_clear(struct ec_config *c, u8 sm)

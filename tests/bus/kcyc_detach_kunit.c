@@ -341,7 +341,55 @@ static void end_detached(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 5ll);
 }
 
-/* A slave that loses its power meanwhile is brought back to OP. */
+/* Configures the second slave as the first one: it is not there to be asked. */
+static u32 absent(struct kcyc *a, u32 position)
+{
+	const struct ec_slave *s = bus_slave(a->c->b, 0);
+	struct ec_ioc_slave_config sc = {
+		.position = position, .vendor_id = s->info.vendor,
+		.product_code = s->info.product,
+	};
+
+	KUNIT_ASSERT_EQ(a->c->b->test, ec_ioc_slave_config(&a->c->b->app, &sc), 0);
+	return sc.index;
+}
+
+/* A slave is away, with the PDOs that were found in it: still the same configuration. */
+static void slave_is_away(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	u32 i, config;
+
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	die(a);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	for (i = 0; i < 3000 && b->m->n_slaves != 1; i++)
+		msleep(1);
+	KUNIT_ASSERT_EQ(test, b->m->n_slaves, 1u);
+	a = kunit_kzalloc(test, sizeof(*a), GFP_KERNEL);
+	a->c = cyc_new(b, 1000);
+	cyc_domain(a->c);
+	cyc_map_all(a->c, 0, 1, 0);
+	config = absent(a, 1);
+	cyc_map(a->c, config, 0, 0);
+	cyc_map(a->c, config, 1, 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &(struct ec_ioc_cycle){
+		.flags = hold.flags, .stall_cycles = hold.stall_cycles,
+		.period_ns = KCYC_PERIOD_NS, .cpu = -1 }), 0);
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+	for (i = 0; i < 5000 && !(b->m->n_slaves == 2 && plant_in_op(b)); i++)
+		msleep(1);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 42ll);
+}
+
+/* A slave that loses its state meanwhile is brought back to OP. */
 static void slave_returns(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
@@ -364,6 +412,7 @@ static void slave_returns(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
+	KUNIT_CASE(slave_is_away),
 	KUNIT_CASE(detach_holds),
 	KUNIT_CASE(detach_zeroes),
 	KUNIT_CASE(detach_only_when_asked),

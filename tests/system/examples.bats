@@ -69,6 +69,23 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "kcycle: killed, the kernel goes on, and the next one takes over" {
+	example kcycle 1000000
+	wait_for 60 grep -qx '5 slaves in OP' "$out"
+	kill -9 "$app"
+	wait "$app" || true
+	ethercat master | grep -q 'Session: detached'
+	one=$(outputs)
+	all_slaves_are OP 5
+	[ "$(outputs)" = "$one" ]
+	example kcycle 500
+	wait "$app"
+	cat "$out"
+	grep -qx '5 slaves in OP, as they were' "$out"
+	grep -E '^500 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
+	app=
+}
+
 @test "dc_motion: the reference clock follows, both axes move" {
 	example dc_motion lead 3 4 8
 	wait "$app"

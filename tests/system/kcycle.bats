@@ -78,8 +78,8 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	kcycle cycles=100
 }
 
-@test "spinning and poll() see each cycle, too" {
-	for how in 1 2; do
+@test "spinning, poll() and epoll see each cycle, too" {
+	for how in 1 2 3; do
 		run kcycle cycles=1000 spin=$how
 		echo "$output"
 		[ "$status" = 0 ]

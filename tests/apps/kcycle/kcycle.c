@@ -12,7 +12,7 @@
  *   stall=0        without outputs: 0 hold, 1 zero, 2 stop
  *   stall_cycles=0 after that many cycles
  *   dc=0           1: keep the clocks of the slaves in step; 2: and follow them
- *   spin=0         how to wait: 0 one system call, 1 spin, 2 poll()
+ *   spin=0         how to wait: 0 one system call, 1 spin, 2 poll(), 3 epoll
  *   pause=0        ms without outputs, in the middle
  *   flags=0        1: the cycle survives this program, 2: it waits for outputs
  *   value=0        number in the first 32 bits of every slave's outputs; with 0
@@ -28,6 +28,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <time.h>
 
 #define SLAVES_MAX	128
@@ -175,6 +176,19 @@ static int configure(void)
 
 /* cycle --------------------------------------------------------------------*/
 
+static int wait_epoll(void)
+{
+	static int fd = -1;
+	struct epoll_event e = { .events = EPOLLIN };
+
+	if (fd < 0) {
+		fd = epoll_create1(EPOLL_CLOEXEC);
+		if (fd < 0 || epoll_ctl(fd, EPOLL_CTL_ADD, ecrt_master_cycle_fd(master), &e))
+			return -1;
+	}
+	return epoll_wait(fd, &e, 1, -1) != 1 || e.events & (EPOLLHUP | EPOLLERR);
+}
+
 /* Until the next cycle; returns how many there were, or a negative errno. */
 static int wait_cycle(void)
 {
@@ -184,6 +198,8 @@ static int wait_cycle(void)
 
 	if (!opt_spin)
 		return ecrt_master_wait_cycle(master, 0);
+	if (opt_spin == 3 && wait_epoll())
+		return -ECANCELED;
 	if (opt_spin == 2) {
 		struct pollfd p = { .fd = ecrt_master_cycle_fd(master), .events = POLLIN };
 
