@@ -223,14 +223,42 @@ void ec_cycle_receive(struct ec_master *m)
 	m->received = ~0ULL;
 }
 
+/* 16 bytes; a move of that size where the processor has one */
+typedef struct { __u64 v[2]; } two_words;
+
+/*
+ * A value, most shorter than a call of memcpy(): the first and the last part may
+ * overlap.
+ */
+static inline void copy(__u8 *to, const __u8 *from, size_t size)
+{
+	if (size >= 16 && size <= 32) {
+		two_words first, last;
+
+		memcpy(&first, from, 16);
+		memcpy(&last, from + size - 16, 16);
+		memcpy(to, &first, 16);
+		memcpy(to + size - 16, &last, 16);
+	} else if (size >= 4 && size <= 8) {
+		__u32 first, last;
+
+		memcpy(&first, from, 4);
+		memcpy(&last, from + size - 4, 4);
+		memcpy(to, &first, 4);
+		memcpy(to + size - 4, &last, 4);
+	} else {
+		memcpy(to, from, size);
+	}
+}
+
 void ec_cycle_process(struct ec_domain *d)
 {
 	unsigned int n = EC_EXCHANGE_BUFFERS + d->master->in_front, i;
 	const __u8 *from = place(d, n);
 
 	for (i = 0; i < d->n_inputs; i++)
-		memcpy(d->data + d->inputs[i].offset, from + d->inputs[i].offset,
-		       d->inputs[i].size);
+		copy(d->data + d->inputs[i].offset, from + d->inputs[i].offset,
+		     d->inputs[i].size);
 	d->snap = buffer(d->master, n)->domains[d->index];
 }
 

@@ -20,6 +20,7 @@
 #include <linux/wait.h>
 #include <uapi/linux/sched/types.h>
 #include "config.h"
+#include "bytes.h"
 #include "cycle_lock.h"
 #include "cycle_thread.h"
 #include "domain.h"
@@ -120,8 +121,8 @@ static bool take_outputs(struct ec_cycle_thread *t)
 	t->front = buffer_index(xchg(&x->outputs, t->front));
 	data = (const u8 *)(buffer(t, t->front) + 1);
 	for (i = 0; i < t->n_outputs; i++)
-		memcpy(image + t->outputs[i].offset, data + t->outputs[i].offset,
-		       t->outputs[i].len);
+		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
+			t->outputs[i].len);
 	return true;
 }
 

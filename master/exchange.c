@@ -6,25 +6,12 @@
 #include <linux/bitops.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
+#include "bytes.h"
 #include "copy.h"
 #include "cycle.h"
 #include "master.h"
 #include "request.h"
 #include "session.h"
-
-/* A copy of some bytes; most areas are shorter than the call of memcpy(). */
-static __always_inline void copy_area(u8 *to, const u8 *from, unsigned int len)
-{
-	unsigned int i;
-
-	if (len < 8 || len > 64) {
-		memcpy(to, from, len);
-		return;
-	}
-	for (i = 0; i + 8 <= len; i += 8)
-		put_unaligned(get_unaligned((const u64 *)(from + i)), (u64 *)(to + i));
-	put_unaligned(get_unaligned((const u64 *)(from + len - 8)), (u64 *)(to + len - 8));
-}
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
 static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
@@ -77,7 +64,7 @@ static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 s
 	 */
 	n = wkc == d->expected ? d->n_whole : d->n_plain;
 	for (i = 0; i < n; i++, in++)
-		copy_area(image + in->offset, data + in->pos, in->len);
+		ec_bytes_copy(image + in->offset, data + in->pos, in->len);
 	if (unlikely(d->n_inputs != d->n_whole) && wkc == d->expected)
 		take_cuts(s, d, send, data);
 }
@@ -224,7 +211,7 @@ static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d,
 	if (d->holes)
 		memset(data, 0, d->len);
 	for (i = 0; i < d->n_copies; i++, a++)
-		copy_area(data + a->pos, image + a->offset, a->len);
+		ec_bytes_copy(data + a->pos, image + a->offset, a->len);
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were looked at. */

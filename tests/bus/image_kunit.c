@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Layout of process data: large and small, bits, rates, and what is too much. */
 #include "cyc.h"
+#include "master/bytes.h"
 #include "master/ioctl.h"
 
 #define CHANNELS	255	/* of 32 bits the model keeps */
@@ -383,7 +384,28 @@ static void image_too_many_bytes(struct kunit *test)
 	refused(test, too_much(test, 150, 8000, true, 2), "262144 bytes");
 }
 
+/* Every length and place: all of it, and nothing beside it. */
+static void image_copy(struct kunit *test)
+{
+	u8 from[96], to[96];
+	u32 i, len, at;
+
+	for (i = 0; i < sizeof(from); i++)
+		from[i] = i + 1;
+	for (len = 0; len <= 70; len++)
+		for (at = 0; at < 8; at++) {
+			u32 wrong = 0;
+
+			memset(to, 0, sizeof(to));
+			ec_bytes_copy(to + 8 + at, from + at, len);
+			for (i = 0; i < sizeof(to); i++)
+				wrong += to[i] != (i >= 8 + at && i < 8 + at + len ? i - 7 : 0);
+			KUNIT_EXPECT_EQ_MSG(test, wrong, 0u, "%u bytes at %u", len, at);
+		}
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(image_copy),
 	KUNIT_CASE(image_several_datagrams),
 	KUNIT_CASE(image_16k_apart),
 	KUNIT_CASE(image_16k_overlap),

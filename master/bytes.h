@@ -1,0 +1,48 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Copies of process values: many of them, most shorter than a call of memcpy(). */
+#ifndef EC_BYTES_H
+#define EC_BYTES_H
+
+#include <linux/string.h>
+#include <linux/types.h>
+#include "compat.h"
+
+/**
+ * ec_bytes_copy() - copy some bytes
+ * @to: destination, apart from @from
+ * @from: source
+ * @len: bytes, best 1 to 32
+ *
+ * The first and the last part of a value may overlap, so that a few moves do
+ * for any length.
+ *
+ * Context: Any. RT-safe.
+ */
+static __always_inline void ec_bytes_copy(u8 *to, const u8 *from, unsigned int len)
+{
+	if (len > 32) {
+		memcpy(to, from, len);
+	} else if (len >= 8) {
+		u64 first = get_unaligned((const u64 *)from);
+		u64 last = get_unaligned((const u64 *)(from + len - 8));
+
+		if (len > 16) {
+			put_unaligned(get_unaligned((const u64 *)(from + 8)), (u64 *)(to + 8));
+			put_unaligned(get_unaligned((const u64 *)(from + len - 16)),
+				      (u64 *)(to + len - 16));
+		}
+		put_unaligned(first, (u64 *)to);
+		put_unaligned(last, (u64 *)(to + len - 8));
+	} else if (len >= 4) {
+		u32 first = get_unaligned((const u32 *)from);
+		u32 last = get_unaligned((const u32 *)(from + len - 4));
+
+		put_unaligned(first, (u32 *)to);
+		put_unaligned(last, (u32 *)(to + len - 4));
+	} else {
+		while (len--)
+			to[len] = from[len];
+	}
+}
+
+#endif
