@@ -17,12 +17,13 @@ passed=0 failed=0
 # Time of an --icount guest leaps while it waits for a file of the host: what the
 # tests load and run is read once, before they begin. The guest caches it.
 preload='find "$EC_BUILD/modules" "$EC_BUILD/lib" "$EC_BUILD/tool" "$EC_BUILD/apps" "$EC_BUILD/examples" \
-	"$EC_BUILD/bench" -type f \
+	"$EC_BUILD/bench" "$EC_BUILD/mini" -type f \
 	\( -perm -100 -o -name "*.ko" -o -name "*.so*" \) -exec cat {} + >/dev/null
 exec bats --tap "$1"'
 
 tests/vm/kernels.sh fetch "$kernel" >&2 &&
-make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" >&2 &&
+make -s -j2 mini KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" \
+	MINIDIR="$EC_BUILD/mini" >&2 &&
 make -s -C lib O="$EC_BUILD/lib" all >&2 &&
 make -s -C tool O="$EC_BUILD/tool" >&2 &&
 make -s -C tool/sim O="$EC_BUILD/tool" >&2 &&

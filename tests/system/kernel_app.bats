@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# vm: --smp 2
+# An application in the kernel, examples/mini, and who lives beside it.
+
+load helpers
+
+setup_file() {
+	printf '%s\n' "segment seed=4" "slave coupler EK1100" \
+		"slave motor drive in=8 out=8 serial=77" \
+		>"$BATS_FILE_TMPDIR/segment"
+	start "$BATS_FILE_TMPDIR/segment" 2
+}
+teardown_file() { rmmod ec_mini 2>/dev/null; stop; }
+setup() {
+	dmesg -C
+	wait_for 60 all_slaves_are PREOP 2
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=1
+	wait_for 60 all_slaves_are OP 1
+}
+teardown() {
+	rmmod ec_mini 2>/dev/null || true
+	! dmesg | grep -E 'BUG:|WARNING:|Oops|lockup'
+}
+
+said() { dmesg | grep -qF "ec_mini: $1"; }
+
+# the first bytes of the outputs are those of the inputs, a status word; 8 bytes each
+copied() {
+	ethercat data | od -An -tx1 -v | awk '{ exit !($1 == $9 && $2 == $10 && $1 $2 != "0000") }'
+}
+
+@test "it cycles, copies inputs to outputs, reads an object, says what changes" {
+	wait_for 60 said "slave is in state 8, operational"
+	wait_for 60 said "working counter 3, complete"
+	wait_for 60 said "serial number 77"
+	wait_for 60 copied
+}
+
+@test "the tool works beside it, a process is told who has the master" {
+	json '.masters[0].active and .masters[0].phase == "operation"' master
+	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]
+	run timeout 60 "$EC_BUILD/examples/mirror" 0 1
+	[ "$status" != 0 ]
+	[[ "$output" == *"reserved by an application in the kernel"*"lsmod"* ]]
+	run insmod "$EC_BUILD/mini/ec_mini.ko"
+	[ "$status" != 0 ]
+	run rmmod ec_master
+	[ "$status" != 0 ]
+	all_slaves_are OP 1
+}
+
+@test "it goes while others are at work, again and again" {
+	while :; do ethercat upload -p1 -t uint32 0x1018 4; ethercat slaves; done >/dev/null 2>&1 3>&- &
+	load=$!
+	for i in 1 2 3; do
+		rmmod ec_mini
+		wait_for 60 all_slaves_are PREOP 2
+		insmod "$EC_BUILD/mini/ec_mini.ko" position=1
+		wait_for 60 all_slaves_are OP 1
+	done
+	kill "$load"
+	wait "$load" || true
+}
+
+@test "its device goes first, then it, then the master" {
+	rmmod ec_sim
+	wait_for 60 json '.masters[0].phase == "waiting"' master
+	rmmod ec_mini
+	rmmod ec_master
+	start "$BATS_FILE_TMPDIR/segment" 2
+}
+
+@test "without its slave or the master it is not loaded, and leaves nothing" {
+	rmmod ec_mini
+	run insmod "$EC_BUILD/mini/ec_mini.ko" position=5
+	[ "$status" != 0 ]
+	dmesg | grep -qF "kernel application: cannot get slave 5"
+	run insmod "$EC_BUILD/mini/ec_mini.ko" master=3
+	[ "$status" != 0 ]
+	dmesg | grep -qF "there is no master 3; main_devices= names 1"
+	[ "$(awk '$1 == "ec_master" { print $3 }' /proc/modules)" = 1 ]
+	json '.masters[0].active == false' master
+}
