@@ -60,6 +60,8 @@ group() {
 @test "a robot driver" { group ros2; }
 @test "beside other processes" { group beside; }
 
+@test "system calls of a cycle with everything in it" { group syscalls; }
+
 @test "a request while the bus is scanned" {
 	rmmod ec_sim
 	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"

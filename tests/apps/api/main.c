@@ -18,6 +18,7 @@ static const struct api_group groups[] = {
 	{ "extension", extension_cases },
 	{ "lcec", lcec_cases }, { "ros2", ros2_cases }, { "beside", beside_cases },
 	{ "soe", soe_cases },
+	{ "syscalls", syscall_cases },
 };
 
 static FILE *called;
