@@ -54,6 +54,7 @@ public:
 		/* nearly a whole period of shift */
 		shift_ = static_cast<int32_t>(period - nanoseconds(CLOCK_MONOTONIC) % period);
 		ecrt_slave_config_dc(drive_, 0x300, period, shift_, 0, 0);
+		clock_regs = ecrt_slave_config_create_reg_request(drive_, 0x88);
 		pdos_result = ecrt_slave_config_pdos(drive_, static_cast<unsigned int>(syncs_.size()),
 						     syncs_.data());
 	}
@@ -120,6 +121,7 @@ public:
 
 	uint8_t *data = nullptr;
 	uint32_t control = 0, status = 0, out = 0, in = 0;
+	ec_reg_request_t *clock_regs = nullptr;
 	int pdos_result = -1, list_result = -1;
 	ec_domain_state_t domain_state = {};
 	ec_master_state_t master_state = {};
@@ -186,6 +188,16 @@ void whole_life()
 	IS(c.domain_state.wc_state, EC_WC_COMPLETE);
 	IS(ecrt_slave_config_dc_state(c.drive(), &dc), 0);
 	YES(dc.set);
+	/* its next SYNC0 (0x0990) is at most a period after its time (0x0910) */
+	IS(ecrt_reg_request_read(c.clock_regs, 0x0910, 0x88), 0);
+	for (int i = 0; i < 2000 && ecrt_reg_request_state(c.clock_regs) == EC_REQUEST_BUSY; i++) {
+		bench_sleep();
+		c.cycle();
+	}
+	IS(ecrt_reg_request_state(c.clock_regs), EC_REQUEST_SUCCESS);
+	const uint8_t *regs = ecrt_reg_request_data(c.clock_regs);
+	IS(EC_READ_U8(regs + 0x71), 0x03);
+	YES(EC_READ_U64(regs + 0x80) - EC_READ_U64(regs) <= period);
 	/* a whole byte of the terminal is written, whatever bit was registered */
 	c.data[c.out] = static_cast<uint8_t>(c.data[c.out] | 0x02);
 	c.data[c.out] = static_cast<uint8_t>(c.data[c.out] & ~0x01);
