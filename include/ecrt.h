@@ -768,7 +768,8 @@ EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
  * @master: a reserved master
  * @sc: slave whose clock is the reference; NULL: the first one that can be
  *
- * Without its clock, or absent, there is no reference clock at all.
+ * Without its clock, or absent, there is no reference clock at all. A reference
+ * clock that is not configured goes to OP with the others, unless it has outputs.
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @master is NULL.

@@ -168,6 +168,7 @@ static void clear(struct ec_session *s)
 {
 	unsigned int i;
 
+	ec_session_lower_ref(s);
 	for (i = 0; i < s->n_configs; i++) {
 		detach(s->configs[i]);
 		ec_config_free(s->configs[i]);
@@ -462,6 +463,8 @@ void ec_session_clocks(struct ec_master *m, bool changed)
 	s = m->session;
 	if (s && s->active && (m->dc.begun ? changed : READ_ONCE(m->dc.wanted)))
 		ec_dc_begin(m, !m->dc.begun, ref_choice(s));
+	if (s && s->active && !s->ending)
+		ec_session_raise_ref(s);
 	mutex_unlock(&m->session_lock);
 }
 
@@ -552,6 +555,7 @@ int ec_session_activate(struct ec_session *s)
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_OP);
+	ec_session_raise_ref(s);
 	if (s->requests)
 		ec_requests_kick(s->requests);
 	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
@@ -576,6 +580,7 @@ int ec_session_slaves_down(struct ec_session *s)
 	if (!s->active)
 		return -EINVAL;
 	s->ending = true;
+	ec_session_lower_ref(s);
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_PREOP);

@@ -79,6 +79,7 @@ struct ec_stall_log {
  * @requests: what works on them while @active, or NULL
  * @active: activated
  * @ending: slaves shall go to PREOP while the application still cycles
+ * @raised: reference clock without configuration that was taken to OP, or NULL
  * @preset: what the image begins with, for the time of an activation; NULL: zeros
  * @shared: memory of the activation
  * @stall_log: stalls of the application in the log
@@ -104,6 +105,7 @@ struct ec_session {
 	struct ec_requests *requests;
 	bool active;
 	bool ending;
+	struct ec_slave *raised;
 	const void *preset;
 	struct ec_shared *shared;
 	struct ec_stall_log stall_log;
@@ -123,6 +125,8 @@ int ec_session_end_detached(struct ec_master *m);
 struct ec_session *ec_session_of(const struct ec_master *m, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_slaves_down(struct ec_session *s);
+void ec_session_raise_ref(struct ec_session *s);
+void ec_session_lower_ref(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
 void ec_session_attach(struct ec_master *m);

@@ -225,6 +225,38 @@ static void op_next_application(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 1);
 }
 
+/* AL state of the first slave, which nobody has configured, beside one in OP */
+static u8 beside(struct kunit *test, const char *text)
+{
+	struct bus *b = bus_up(test, text, 2);
+	struct cyc *c;
+	u8 state;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 1, 1, 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
+	cyc_run(c, 500);
+	state = bus_slave(b, 0)->al_status;
+	KUNIT_EXPECT_EQ(test, b->m->al_states, EC_AL_OP | state);
+	cyc_release(c);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 1000), ~0ull);
+	return state;
+}
+
+/* The reference clock goes to OP with the others, unless it has outputs. */
+static void op_reference(struct kunit *test)
+{
+	KUNIT_EXPECT_EQ(test, beside(test, "slave a EK1100\nslave b EL2008\n"), EC_AL_OP);
+}
+
+static void op_reference_outputs(struct kunit *test)
+{
+	KUNIT_EXPECT_EQ(test, beside(test, "slave a EL2008\nslave b EL2008\n"), EC_AL_PREOP);
+}
+
 static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_bench),
 	KUNIT_CASE(op_mapping_rewritten),
@@ -233,6 +265,8 @@ static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_many_frames),
 	KUNIT_CASE(op_entry_not_there),
 	KUNIT_CASE(op_next_application),
+	KUNIT_CASE(op_reference),
+	KUNIT_CASE(op_reference_outputs),
 	{}
 };
 
