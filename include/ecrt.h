@@ -103,14 +103,12 @@
 /* ecrt_slave_config_dc_state(); in userspace */
 #define EC_HAVE_DC_STATE
 #endif
-/* ecrt_slave_config_overlapping_pdos(), of the field's community patches; in userspace */
-#ifndef __KERNEL__
+/* ecrt_slave_config_overlapping_pdos(), of the field's community patches */
 #define EC_HAVE_OVERLAPPING_PDOS
-#endif
-/* ecrt_domain_set_options(): how a domain is sent; in userspace */
-#ifndef __KERNEL__
+/* ecrt_master_set_late_cycles(): acyclic frames beside a full wire */
+#define EC_HAVE_LATE_CYCLES
+/* ecrt_domain_set_options(): how a domain is sent */
 #define EC_HAVE_DOMAIN_OPTIONS
-#endif
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -1802,6 +1800,27 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_hostname(
 EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
 		ec_al_state_t from_state, ec_al_state_t to_state,
 		unsigned int timeout_ms);
+
+#ifdef EC_HAVE_LATE_CYCLES
+/**
+ * ecrt_master_set_late_cycles() - acyclic frames beside a full wire
+ * @master: master
+ * @per_second: cycles a second that acyclic frames may make late, 0 to 100000;
+ *	100 at first
+ *
+ * Extension (%EC_HAVE_LATE_CYCLES). For the next activation. Mailboxes, registers and
+ * states of the slaves share the wire with the process data; a frame of them goes
+ * out when it fits before the next cycle, nine tenths of the interval being in
+ * use. One that is too long for any cycle waits for its turn among these late cycles.
+ * Mailbox messages are cut so that they fit. With 0 no cycle is late, such frames run
+ * into their time limit, and activation fails when not even the shortest frame, 6.72
+ * us, fits. "ethercat master -v" shows wire time, what is left, and late cycles.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
+ */
+EC_PUBLIC_API int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second);
+#endif
 
 #ifdef EC_HAVE_OVERLAPPING_PDOS
 /**

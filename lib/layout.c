@@ -33,3 +33,14 @@ int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc, uint8_t allow_over
 	return ret ? ec_fail_ioctl(sc->master, ret, "let process data of slave %u:%u overlap",
 				   sc->alias, sc->position) : 0;
 }
+
+int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
+{
+	struct ec_ioc_late arg = { .per_s = per_second };
+	int ret;
+
+	if (!master)
+		return -EINVAL;
+	ret = ec_ioctl(master, EC_IOC_LATE, &arg);
+	return ret ? ec_fail_ioctl(master, ret, "allow %u late cycles a second", per_second) : 0;
+}

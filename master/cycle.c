@@ -223,8 +223,12 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 	w->owner = READ_ONCE(m->owner);
 	w->began_ns = ktime_get_ns();
 	w->timeout_us = m->io_timeout_us;
-	if (w->owner == EC_OWNER_CYCLE)
-		w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
+	if (w->owner != EC_OWNER_CYCLE)
+		return;
+	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
+	/* all that wait have their turn among the late cycles */
+	if (ec_cycle_slack_ns(m) < ec_cycle_need_ns() && m->late_per_s)
+		w->timeout_us += EC_SLOTS * (USEC_PER_SEC / m->late_per_s);
 }
 
 /**
@@ -300,8 +304,60 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
 }
 
 /**
+ * ec_cycle_slack_ns() - wire time that a cycle leaves for acyclic frames
+ * @m: master
+ *
+ * A tenth of the interval is kept free: the next send may be early.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns; ~0 while nobody runs a cycle.
+ */
+u32 ec_cycle_slack_ns(const struct ec_master *m)
+{
+	u64 budget = READ_ONCE(m->interval_us) * 900ULL;
+	u32 used = READ_ONCE(m->cycle_wire_ns);
+
+	if (READ_ONCE(m->owner) != EC_OWNER_CYCLE)
+		return ~0u;
+	return budget > used ? min_t(u64, budget - used, ~0u) : 0;
+}
+
+/**
+ * ec_cycle_room() - data of one acyclic datagram that fits before the next
+ *	cyclic send
+ * @m: master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, at least what a minimum Ethernet frame holds.
+ */
+u16 ec_cycle_room(const struct ec_master *m)
+{
+	u32 bytes = ec_cycle_slack_ns(m) / 80;
+
+	/* what ec_frame_wire_ns() adds, and the headers */
+	bytes -= min(bytes, 8u + 4 + 12 + EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD);
+	return clamp_t(u32, bytes, EC_ROOM_MIN, EC_DGRAM_DATA_MAX);
+}
+
+/*
+ * May a frame that does not fit go nevertheless, and make the next cycle late?
+ * So many times a second, evenly: then also a full wire carries acyclic frames.
+ */
+static bool may_be_late(struct ec_master *m)
+{
+	u32 per_s = READ_ONCE(m->late_per_s);
+	u64 now = ktime_get_ns();
+
+	if (!per_s || now < m->late_next_ns)
+		return false;
+	m->late_next_ns = now + NSEC_PER_SEC / per_s;
+	WRITE_ONCE(m->late_cycles, m->late_cycles + 1);
+	return true;
+}
+
+/**
  * ec_cycle_send_left() - send what others have left, as far as it fits before
- *	the next cycle
+ *	the next cycle; see ecrt_master_set_late_cycles() for what does not
  * @m: master
  * @wire_ns: wire time this cycle has used
  *
@@ -321,7 +377,7 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 		/* behind what this cycle has sent before */
 		WRITE_ONCE(slot->sent_ns, m->last_send_ns + wire_ns);
 		wire_ns += ec_frame_wire_ns(slot->eth_len);
-		if (wire_ns > budget && n)
+		if (wire_ns > budget && (n || !may_be_late(m)))
 			break;
 		if (ec_link_send(&m->link[0], slot) == -EBUSY)
 			break;	/* it stays the first */

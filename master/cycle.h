@@ -123,6 +123,16 @@ struct ec_cyc_domain {
 };
 
 /**
+ * struct ec_cyc_wire - frames, and how long they occupy the wire
+ * @frames: how many
+ * @ns: at 100 Mbit/s, preamble, padding, FCS and gap included
+ */
+struct ec_cyc_wire {
+	u32 frames;
+	u32 ns;
+};
+
+/**
  * struct ec_cycle - cyclic layout and its state; owned by the cyclic caller
  * @dgrams: layout
  * @n_dgrams: entries in @dgrams
@@ -131,10 +141,9 @@ struct ec_cyc_domain {
  * @cuts: inputs of several datagrams
  * @n_cuts: entries in @cuts
  * @stage: an image in which their parts come together, or NULL
- * @n_frames: frames of a cycle that sends all domains
- * @wire_ns: how long they occupy the wire
- * @sent_frames: frames of the last send
- * @sent_wire_ns: how long they occupied the wire
+ * @plain: frames of a cycle that sends all domains
+ * @clocked: the same with all clock datagrams
+ * @last: frames of the last send
  * @domains: results
  * @flight: frames on their way, the oldest first
  * @n_flight: entries in @flight
@@ -161,10 +170,9 @@ struct ec_cycle {
 	struct ec_cyc_cut *cuts;
 	unsigned int n_cuts;
 	u8 *stage;
-	u32 n_frames;
-	u32 wire_ns;
-	u32 sent_frames;
-	u32 sent_wire_ns;
+	struct ec_cyc_wire plain;
+	struct ec_cyc_wire clocked;
+	struct ec_cyc_wire last;
 	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;
@@ -213,8 +221,16 @@ int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now);
 void ec_cycle_send_left(struct ec_master *m, u32 wire_ns);
 void ec_cycle_send_between(struct ec_master *m);
 
+/* acyclic frames beside it */
+#define EC_ROOM_MIN	32	/* data bytes of a minimum Ethernet frame */
+u32 ec_cycle_slack_ns(const struct ec_master *m);
+u16 ec_cycle_room(const struct ec_master *m);
+
 /* layout.c */
 int ec_cycle_layout(struct ec_session *s);
+u32 ec_cycle_need_ns(void);
+int ec_cycle_check_room(struct ec_session *s);
+void ec_cycle_tell_room(struct ec_session *s);
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 
 /* exchange.c */
@@ -225,7 +241,8 @@ int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
 
 /* dc_cycle.c */
-u32 ec_dc_wanted(struct ec_master *m, u32 flags);
+u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
+u32 ec_dc_wanted(struct ec_master *m, const struct ec_cycle *c, u32 flags);
 void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now);
 const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns);

@@ -326,6 +326,17 @@ static int compensate_by_cycle(struct ec_dc *dc)
 	return 0;
 }
 
+/*
+ * Bytes that make a frame longer: less beside a short cycle, whose own frames keep
+ * them apart.
+ */
+static u16 pad_bytes(const struct job *j, const struct stage *st, u16 bytes)
+{
+	u16 syncs = st->syncs * (bytes + EC_DGRAM_OVERHEAD), room = ec_cycle_room(j->m);
+
+	return room > syncs ? min_t(u16, st->pad, room - syncs) : 0;
+}
+
 static int compensate(struct job *j, const struct stage *st)
 {
 	static u8 pad[EC_DGRAM_DATA_MAX];
@@ -338,7 +349,7 @@ static int compensate(struct job *j, const struct stage *st)
 	if (READ_ONCE(dc->front))
 		return st == &near ? compensate_by_cycle(dc) : 0;
 	for (done = 0; done < st->frames && !ret; done += st->batch) {
-		u16 ref = READ_ONCE(dc->ref_station);
+		u16 ref = READ_ONCE(dc->ref_station), len = pad_bytes(j, st, bytes);
 
 		if (!ref || READ_ONCE(dc->stop))
 			return -ECANCELED;
@@ -347,13 +358,14 @@ static int compensate(struct job *j, const struct stage *st)
 		/* far from the frame of the cycle, too */
 		n = 0;
 		if (st->pad)
-			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, sizeof(pad), pad);
+			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, ec_cycle_room(j->m),
+							 pad);
 		for (i = 0; i < st->batch; i++) {
 			for (k = 0; k < st->syncs; k++)
 				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref,
 								 EC_REG_DC_SYSTIME, bytes, t);
-			if (st->pad)
-				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, st->pad, pad);
+			if (len)
+				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, len, pad);
 		}
 		for (i = 0; i < n; i++)
 			j->dg[i].repeat = false;

@@ -16,6 +16,7 @@
 #define REF_TIME	EC_SEND_FLAG_REF_TIME
 #define WIDE		0x8000	/* of this frame: times of 8 bytes */
 #define SHIFT		16	/* above it: how many more SYNC_SLAVES */
+#define ONE_MORE_NS	((8 + EC_DGRAM_OVERHEAD) * 80u)	/* on the wire */
 #define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
 
 /* When the reference follows, it gets half of what is more than one. */
@@ -38,10 +39,19 @@ static u16 time_bytes(u32 dc)
 	return dc & WIDE ? 8 : 4;
 }
 
-/* Comparisons of this send beyond one. */
-static u32 boost(struct ec_master *m)
+/* Comparisons a send may have beyond one: half of what the cycle leaves. */
+static u32 most(const struct ec_master *m, const struct ec_cycle *c)
 {
-	u32 left = READ_ONCE(m->dc.boost), n = min_t(u32, left, BOOST);
+	u64 used = c->clocked.ns + ec_cycle_need_ns();
+	u64 budget = READ_ONCE(m->interval_us) * 900ULL;
+
+	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
+}
+
+/* Comparisons of this send beyond one. */
+static u32 boost(struct ec_master *m, const struct ec_cycle *c)
+{
+	u32 left = READ_ONCE(m->dc.boost), n = min(left, most(m, c));
 
 	if (n)
 		WRITE_ONCE(m->dc.boost, left - n);
@@ -49,15 +59,34 @@ static u32 boost(struct ec_master *m)
 }
 
 /**
+ * ec_dc_reserve_ns() - wire time of more comparisons that are to come
+ * @m: master
+ * @c: its cyclic layout
+ *
+ * Known as long as the clocks are being set, so that acyclic frames are not made
+ * longer than what is left then.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: ns.
+ */
+u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
+{
+	if (READ_ONCE(m->dc.state) != EC_DC_BUSY && !READ_ONCE(m->dc.boost))
+		return 0;
+	return most(m, c) * ONE_MORE_NS;
+}
+
+/**
  * ec_dc_wanted() - clock datagrams of this send
  * @m: master
+ * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0 without reference clock.
  */
-u32 ec_dc_wanted(struct ec_master *m, u32 flags)
+u32 ec_dc_wanted(struct ec_master *m, const struct ec_cycle *c, u32 flags)
 {
 	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
 	if (!flags)
@@ -67,7 +96,7 @@ u32 ec_dc_wanted(struct ec_master *m, u32 flags)
 	if (!READ_ONCE(m->dc.running))
 		return 0;
 	if (flags & SYNC_SLAVES)
-		flags |= boost(m) << SHIFT;
+		flags |= boost(m, c) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */
 	if (READ_ONCE(m->dc.ref_wide) && !READ_ONCE(m->dc.front))
 		flags |= WIDE;

@@ -197,8 +197,7 @@ struct send {
 	const struct ec_ioc_send *what;
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
-	u32 wire_ns;
-	u32 frames;
+	struct ec_cyc_wire wire;
 };
 
 /* Outputs, and the last value of inputs. */
@@ -262,8 +261,8 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 		return c->n_dgrams;
 	}
 	count = fill(s, slot, g, send);
-	send->wire_ns += ec_frame_wire_ns(slot->eth_len);
-	send->frames++;
+	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
+	send->wire.frames++;
 	if (!ec_cycle_transmit(m, slot, send->now))
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
@@ -284,6 +283,12 @@ static void measure_interval(struct ec_master *m, u64 now)
 	if (!m->interval_told && ns < NSEC_PER_SEC)
 		m->interval_us = max(1, (int)m->interval_us +
 				     ((int)(ns >> 10) - (int)m->interval_us) / 8);
+}
+
+/* What a send of all domains and clock datagrams takes at most. */
+static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
+{
+	return READ_ONCE(m->dc.begun) ? c->clocked.ns + ec_dc_reserve_ns(m, c) : c->plain.ns;
 }
 
 /**
@@ -328,16 +333,17 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 		ec_copies_run(s);
 	c->send++;
 	c->sent |= what->queued;
-	send.dc = ec_dc_wanted(m, what->flags);
+	send.dc = ec_dc_wanted(m, c, what->flags);
 	while (g < c->n_dgrams || send.dc) {
 		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
 			g = send_frame(s, g, &send);
 		else
 			g++;
 	}
-	WRITE_ONCE(c->sent_frames, send.frames);
-	WRITE_ONCE(c->sent_wire_ns, send.wire_ns);
-	ec_cycle_send_left(m, send.wire_ns);
+	WRITE_ONCE(c->last.frames, send.wire.frames);
+	WRITE_ONCE(c->last.ns, send.wire.ns);
+	WRITE_ONCE(m->cycle_wire_ns, max(send.wire.ns, wire_ns(m, c)));
+	ec_cycle_send_left(m, send.wire.ns);
 	WRITE_ONCE(c->cycles, c->cycles + 1);
 	return 0;
 }

@@ -341,6 +341,9 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 		return ec_refuse(f, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes, %u datagrams and %u frames a cycle; register fewer SyncManagers, or let inputs overlap outputs",
 				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
 				 EC_MAX_CYCLE_FRAMES);
+	case -ENOSPC:
+		return ec_refuse(f, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and no cycle may be late; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
+				 ec_cycle_need_ns());
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
 	case -EOPNOTSUPP:

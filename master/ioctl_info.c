@@ -94,13 +94,18 @@ static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)
 {
 	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_wire *w = READ_ONCE(s->master->dc.begun) ? &c->clocked : &c->plain;
 
 	i->cycle_interval_us = READ_ONCE(s->master->interval_us);
 	i->cycle_datagrams = c->n_dgrams;
-	i->cycle_frames = c->n_frames;
-	i->cycle_wire_ns = c->wire_ns;
-	i->sent_frames = READ_ONCE(c->sent_frames);
-	i->sent_wire_ns = READ_ONCE(c->sent_wire_ns);
+	i->cycle_frames = w->frames;
+	i->cycle_wire_ns = w->ns;
+	i->sent_frames = READ_ONCE(c->last.frames);
+	i->sent_wire_ns = READ_ONCE(c->last.ns);
+	i->acyclic_slack_ns = ec_cycle_slack_ns(s->master);
+	i->acyclic_need_ns = ec_cycle_need_ns();
+	i->late_per_s = s->master->late_per_s;
+	i->late_cycles = READ_ONCE(s->master->late_cycles);
 }
 
 /* What the session adds. */

@@ -6,6 +6,8 @@
 #include "master.h"
 #include "session.h"
 
+#define LATE_MAX	100000	/* a second */
+
 int ec_ioc_sc_overlap(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_overlap *i = arg;
@@ -44,4 +46,21 @@ int ec_ioc_domain_options(struct ec_file *f, void *arg)
 		ret = ec_refuse(f, -ENOENT, "there is no domain %u", i->domain);
 	mutex_unlock(&f->master->session_lock);
 	return ret;
+}
+
+int ec_ioc_late(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_late *i = arg;
+	struct ec_session *s;
+	int ret = 0;
+
+	if (i->per_s > LATE_MAX)
+		return ec_refuse(f, -EINVAL, "%u late cycles a second; use 0 to %u", i->per_s,
+				 LATE_MAX);
+	s = ec_ioc_lock_idle(f, &ret);
+	if (!s)
+		return ret;
+	s->late_per_s = i->per_s;
+	mutex_unlock(&f->master->session_lock);
+	return 0;
 }

@@ -13,6 +13,7 @@
 
 #define DC_BYTES	(4 + 8 + 4)	/* of the three clock datagrams */
 #define DC_DGRAMS	3
+#define MEASURED	1000	/* sends after which the measured interval is right */
 
 /* a domain on its way into the layout */
 struct layout {
@@ -245,21 +246,20 @@ static int layout_domain(struct ec_session *s, struct ec_domain *d)
  * Frames of a cycle that sends all domains, packed as the send packs them, and
  * how long they occupy the wire.
  */
-static void plan_frames(struct ec_cycle *c, unsigned int max_datagrams, bool clocks)
+static struct ec_cyc_wire plan(const struct ec_cycle *c, unsigned int max_datagrams, bool clocks)
 {
 	unsigned int count = clocks ? DC_DGRAMS : 0, own = 0, i;
 	size_t body = clocks ? DC_BYTES + DC_DGRAMS * EC_DGRAM_OVERHEAD : 0;
+	struct ec_cyc_wire w = { 0 };
 
-	c->n_frames = 0;
-	c->wire_ns = 0;
 	for (i = 0; i <= c->n_dgrams; i++) {
 		const struct ec_cyc_dgram *g = c->dgrams + i;
 		bool end = i == c->n_dgrams;
 
 		if (count && (end || count >= max_datagrams || (own && g->new_frame) ||
 			      body + EC_DGRAM_OVERHEAD + g->len > EC_FRAME_BODY_MAX)) {
-			c->n_frames++;
-			c->wire_ns += ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + body);
+			w.frames++;
+			w.ns += ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + body);
 			body = count = own = 0;
 		}
 		if (end)
@@ -268,6 +268,7 @@ static void plan_frames(struct ec_cycle *c, unsigned int max_datagrams, bool clo
 		count++;
 		own++;
 	}
+	return w;
 }
 
 static int alloc_stage(struct ec_cycle *c, const struct ec_session *s)
@@ -308,13 +309,75 @@ int ec_cycle_layout(struct ec_session *s)
 	}
 	if (!ret)
 		ret = alloc_stage(c, s);
-	if (!ret)
-		plan_frames(c, s->master->max_datagrams, ec_session_uses_clocks(s));
-	if (!ret && c->n_frames > EC_MAX_CYCLE_FRAMES)
+	c->plain = plan(c, s->master->max_datagrams, false);
+	c->clocked = plan(c, s->master->max_datagrams, true);
+	if (!ret && c->clocked.frames > EC_MAX_CYCLE_FRAMES)
 		ret = -EOVERFLOW;
 	if (ret)
 		ec_cycle_free(s->master, c);
 	return ret;
+}
+
+/* Wire time of a minimum Ethernet frame: less does no acyclic frame need. */
+u32 ec_cycle_need_ns(void)
+{
+	return ec_frame_wire_ns(EC_ETH_MIN);
+}
+
+/* Does an acyclic frame fit beside a cycle of @interval_ns? If not the log says so. */
+static bool has_room(struct ec_session *s, u64 interval_ns, u32 frames, u32 wire_ns)
+{
+	u64 budget = div_u64(interval_ns * 9, 10);
+	u32 slack = budget > wire_ns ? min_t(u64, budget - wire_ns, ~0u) : 0;
+
+	if (slack >= ec_cycle_need_ns())
+		return true;
+	s->room_told = true;
+	ec_warn(s->master,
+		"a cycle of %u frame(s) takes %u ns of wire time; %llu ns leave %u ns for others, who need %u ns at least: choose a longer cycle or let inputs overlap outputs\n",
+		frames, wire_ns, interval_ns, slack, ec_cycle_need_ns());
+	return false;
+}
+
+/**
+ * ec_cycle_check_room() - do acyclic frames fit beside the cycle?
+ * @s: session with a layout
+ *
+ * Without them no slave gets to OP. As long as the interval is not told it is not
+ * known yet; ec_cycle_tell_room() looks later.
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENOSPC: they do not, and may make no cycle late.
+ */
+int ec_cycle_check_room(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	u64 interval = s->kernel.period_ns ?: m->interval_us * (u64)NSEC_PER_USEC;
+	const struct ec_cyc_wire *w = ec_session_uses_clocks(s) ? &s->cycle.clocked :
+								  &s->cycle.plain;
+
+	s->room_told = false;
+	m->cycle_wire_ns = w->ns;
+	m->late_per_s = s->late_per_s;
+	m->late_cycles = 0;
+	if (!s->kernel.period_ns && !m->interval_told)
+		return 0;
+	return has_room(s, interval, w->frames, w->ns) || s->late_per_s ? 0 : -ENOSPC;
+}
+
+/**
+ * ec_cycle_tell_room() - the same in the log, once the interval is measured
+ * @s: active session
+ *
+ * Context: The monitor thread. May sleep.
+ */
+void ec_cycle_tell_room(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	if (!s->room_told && !m->interval_told && READ_ONCE(s->cycle.cycles) > MEASURED)
+		has_room(s, READ_ONCE(m->interval_us) * (u64)NSEC_PER_USEC,
+			 READ_ONCE(s->cycle.last.frames), READ_ONCE(m->cycle_wire_ns));
 }
 
 /* Nobody will receive what is still on its way. */

@@ -29,6 +29,7 @@
 #define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
 
 #define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */
+#define EC_LATE_PER_S		100	/* cycles acyclic frames may make late, until told */
 #define EC_SLOTS		256	/* datagram index has 8 bits */
 #define EC_SLOTS_CYCLE		64	/* of them never taken by ec_xfer() */
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */

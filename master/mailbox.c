@@ -47,15 +47,28 @@ static void pause_us(unsigned int *us)
 	*us = min(*us * 2, 1000u);
 }
 
-/* One access that must not happen twice: 0, -EIO when the slave took no part... */
+/*
+ * One access to a mailbox: 0, or -EIO when the slave took no part. What does not
+ * fit beside the process data of a short cycle goes in pieces: the first byte
+ * opens the mailbox, the last byte hands it over (ETG.1000.4 clause 6.7.2).
+ * That one must not happen twice.
+ */
 static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 {
-	struct ec_dg dg = EC_DG(cmd, slave->station, ado, len, data);
-	int ret;
+	u16 room = ec_cycle_room(slave->master), at, n;
 
-	dg.repeat = false;
-	ret = ec_xfer(slave->master, &dg, 1);
-	return ret ? ret : dg.wkc == 1 ? 0 : -EIO;
+	for (at = 0; at < len; at += n) {
+		struct ec_dg dg;
+		int ret;
+
+		n = min_t(u16, len - at, room);
+		dg = (struct ec_dg)EC_DG(cmd, slave->station, ado + at, n, data + at);
+		dg.repeat = at + n < len;
+		ret = ec_xfer(slave->master, &dg, 1);
+		if (ret || dg.wkc != 1)
+			return ret ?: -EIO;
+	}
+	return 0;
 }
 
 /*

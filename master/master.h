@@ -47,6 +47,11 @@ struct task_struct;
  * @stalled_ns: its last send before it stalled, likewise
  * @interval_us: distance of cyclic sends, told by the application or measured
  * @interval_told: told
+ * @cycle_wire_ns: wire time of a cycle: of its layout, or of the last send if
+ *	that was longer
+ * @late_per_s: how many cycles a second acyclic frames may make late
+ * @late_next_ns: no more before that time (ktime)
+ * @late_cycles: cycles they have made late since activation
  * @xq_lock: protects @xq, @xq_head, @xq_tail
  * @xq: frames left by ec_xfer() for the cyclic caller
  *
@@ -109,6 +114,10 @@ struct ec_master {
 	u64 stalled_ns;
 	u32 interval_us;
 	bool interval_told;
+	u32 cycle_wire_ns;
+	u32 late_per_s;
+	u64 late_next_ns;
+	u32 late_cycles;
 	raw_spinlock_t xq_lock;
 	struct ec_queued xq[EC_SLOTS];
 	unsigned int xq_head;

@@ -129,6 +129,7 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 	s->master = m;
 	s->owner = owner;
 	s->ref_config = EC_UAPI_NONE32;
+	s->late_per_s = EC_LATE_PER_S;
 	ret = begin(m, s);
 	if (ret)
 		kvfree(s);
@@ -187,6 +188,7 @@ static void clear(struct ec_session *s)
 	s->copies = NULL;
 	s->n_copies = 0;
 	s->ref_config = EC_UAPI_NONE32;
+	s->late_per_s = EC_LATE_PER_S;
 	memset(&s->kernel, 0, sizeof(s->kernel));
 }
 
@@ -495,7 +497,7 @@ u32 ec_session_place(struct ec_session *s)
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
- * is too large; -ENODEV when the CPU of the cycle is offline; -ENOMEM.
+ * is too large; -ENOSPC as ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -517,17 +519,12 @@ int ec_session_activate(struct ec_session *s)
 		return -ENOMEM;
 	if (s->preset)
 		memcpy(s->shared->image, s->preset, offset);
-	ret = ec_requests_begin(s);
-	if (!ret)
-		ret = ec_copies_begin(s);
-	if (!ret)
-		ret = ec_cycle_layout(s);
-	if (!ret && s->kernel.period_ns) {
+	ret = ec_requests_begin(s) ?: ec_copies_begin(s) ?: ec_cycle_layout(s) ?:
+	      ec_cycle_check_room(s);
+	if (!ret && s->kernel.period_ns)
 		ret = ec_cycle_thread_create(s, offset);
-		if (ret)
-			ec_cycle_free(m, &s->cycle);
-	}
 	if (ret) {
+		ec_cycle_free(m, &s->cycle);
 		ec_copies_end(s);
 		ec_requests_end(s);
 		ec_shared_put(s->shared);
@@ -670,6 +667,7 @@ void ec_session_status(struct ec_master *m)
 	if (s && s->active) {
 		log_stalls(s, ktime_get_ns());
 		ec_cycle_lock_log(s);
+		ec_cycle_tell_room(s);
 		st = s->shared->status;
 		WRITE_ONCE(st->slaves_responding, m->slaves_responding);
 		WRITE_ONCE(st->al_states, m->al_states);

@@ -86,6 +86,8 @@ struct ec_stall_log {
  * @lock_told: EC_CYCLE_LOCK_* as the log knows it
  * @kernel: how the kernel shall run the cycle; period 0: it shall not
  * @thread: runs the cycle while @active; NULL: the application does
+ * @late_per_s: how many cycles a second acyclic frames may make late
+ * @room_told: the log says that they do not fit
  * @cycle: cyclic layout
  * @copies: from inputs to outputs, before each send
  * @n_copies: entries in @copies
@@ -112,6 +114,8 @@ struct ec_session {
 	u32 lock_told;
 	struct ec_ioc_cycle kernel;
 	struct ec_cycle_thread *thread;
+	u32 late_per_s;
+	bool room_told;
 	struct ec_cycle cycle;
 	struct ec_copy *copies;
 	unsigned int n_copies;

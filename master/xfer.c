@@ -47,10 +47,12 @@ static void build(struct ec_master *m, struct batch_frame *bf, struct ec_dg *dg,
 		  unsigned int first, unsigned int n)
 {
 	struct ec_slot *slot = bf->slot;
+	/* a frame that fits before the next cycle, but at least the first datagram */
+	u16 room = max(ec_cycle_room(m), dg[first].len);
 	struct ec_frame_buf fb;
 	unsigned int i;
 
-	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_DGRAM_OVERHEAD + room);
 	for (i = first; i < n && fb.count < m->max_datagrams; i++) {
 		u8 *p;
 

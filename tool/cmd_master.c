@@ -163,6 +163,10 @@ static void cycle(const struct tool *t, const struct ec_ioc_master *m)
 	out_u("wire_ns", m->cycle_wire_ns, NULL);
 	out_u("last_frames", m->sent_frames, NULL);
 	out_u("last_wire_ns", m->sent_wire_ns, NULL);
+	out_u("acyclic_slack_ns", m->acyclic_slack_ns, NULL);
+	out_u("acyclic_need_ns", m->acyclic_need_ns, NULL);
+	out_u("late_cycles", m->late_cycles, NULL);
+	out_u("late_cycles_per_s", m->late_per_s, NULL);
 	out_end();
 	if (!t->verbosity || !m->active)
 		return;
@@ -171,6 +175,11 @@ static void cycle(const struct tool *t, const struct ec_ioc_master *m)
 		 m->cycle_datagrams, m->cycle_frames, m->cycle_wire_ns / 1000.0);
 	out_text("    Last send:   %u frame(s), %.2f us of wire time\n", m->sent_frames,
 		 m->sent_wire_ns / 1000.0);
+	out_text("    Acyclic:     %.2f us left, %.2f us needed at least%s\n",
+		 m->acyclic_slack_ns / 1000.0, m->acyclic_need_ns / 1000.0,
+		 m->acyclic_slack_ns < m->acyclic_need_ns ? " (!)" : "");
+	out_text("    Made late:   %u cycle(s), at most %u a second\n", m->late_cycles,
+		 m->late_per_s);
 }
 
 static const char *phase_text(unsigned int phase)
@@ -249,7 +258,9 @@ const struct cmd cmd_master = {
 	.help = "Rates are averages over 1, 10 and 60 seconds; 1 KByte is 1024 bytes. Times are\n"
 		"nanoseconds since 2000-01-01 UTC. With --verbose also the last bus scan, and the\n"
 		"wire time of a cycle at 100 Mbit/s, preamble and gap included: with all domains\n"
-		"and, when they are used, clock datagrams; and of the last send.\n",
+		"and, when they are used, clock datagrams; and of the last send. Acyclic: what is left\n"
+		"of it for mailboxes, registers and states, and what the shortest frame needs; cycles\n"
+		"made late by such frames that did not fit.\n",
 	.json = "masters[]: master, phase (waiting, idle, operation), active, session (none,\n"
 		"reserved, active, detached), slaves,\n"
 		"devices[] (mac, attached, interface, link_up, tx_frames, tx_bytes, rx_frames,\n"
@@ -259,7 +270,8 @@ const struct cmd cmd_master = {
 		"cycle_lock (seeking, locked, holding; null: does not follow), phase_error_ns,\n"
 		"rate_ppb, lock_losses (when it follows), reference_time_ns,\n"
 		"application_time_ns), cycle (interval_us, datagrams, frames, wire_ns, last_frames,\n"
-		"last_wire_ns), slaves_responding, scan_busy, scans,\n"
+		"last_wire_ns, acyclic_slack_ns, acyclic_need_ns, late_cycles, late_cycles_per_s),\n"
+		"slaves_responding, scan_busy, scans,\n"
 		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,
 };

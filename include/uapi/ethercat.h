@@ -123,6 +123,10 @@ struct ec_ioc_master {
 	__u32 cycle_wire_ns;
 	__u32 sent_frames;	/* of the last send, clock datagrams included */
 	__u32 sent_wire_ns;
+	__u32 acyclic_slack_ns;	/* what the cycle leaves for acyclic frames */
+	__u32 acyclic_need_ns;	/* what the shortest one needs */
+	__u32 late_per_s;	/* cycles a second they may make late */
+	__u32 late_cycles;	/* cycles they have made late */
 };
 
 struct ec_ioc_port {
@@ -472,6 +476,11 @@ struct ec_ioc_domain_options {
 	__u32 domain;		/* in */
 	__u32 options;		/* in: EC_DOMAIN_OPT_* */
 	__u32 reserved;
+};
+
+struct ec_ioc_late {
+	__u32 flags;
+	__u32 per_s;		/* in: cycles a second acyclic frames may make late; 0: none */
 };
 
 struct ec_ioc_sc_overlap {
@@ -1003,6 +1012,7 @@ struct ec_exchange_buffer {
 #define EC_IOC_DIVISION		EC_IOC_W(0x62, struct ec_ioc_division)
 #define EC_IOC_COPY		EC_IOC_W(0x63, struct ec_ioc_copy)
 #define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
+#define EC_IOC_LATE		EC_IOC_W(0x7a, struct ec_ioc_late)
 #define EC_IOC_DOMAIN_OPTIONS	EC_IOC_W(0x79, struct ec_ioc_domain_options)
 
 #endif

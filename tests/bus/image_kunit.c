@@ -66,7 +66,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 	cyc_activate(c);
 	s = b->m->session;
 	KUNIT_EXPECT_EQ(test, s->domains[0]->size, 16384u);
-	KUNIT_EXPECT_EQ(test, s->cycle.n_frames, frames);
+	KUNIT_EXPECT_EQ(test, s->cycle.plain.frames, frames);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	for (round = 1; round < 4; round++) {
 		for (i = 0; i < 16; i++)
@@ -89,7 +89,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 7, 1) + 4 * 127),
 				7 * 31 + (127 + round) * 0x01000193u);
 	}
-	KUNIT_EXPECT_EQ(test, s->cycle.sent_frames, frames);
+	KUNIT_EXPECT_EQ(test, s->cycle.last.frames, frames);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 
@@ -133,7 +133,7 @@ static void image_cut(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, cycle->n_cuts, 1u);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].parts, 3);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].len, 4000u);
-	KUNIT_EXPECT_EQ(test, cycle->n_frames, 6u);
+	KUNIT_EXPECT_EQ(test, cycle->plain.frames, 6u);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	c->each = count_outputs;
 	cyc_run(c, 10);
@@ -173,9 +173,9 @@ static void image_own_frame(struct kunit *test)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	cyc_run(c, 5);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.n_frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.sent_frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.sent_wire_ns, (84 + 84 + 96) * 80u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.plain.frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.last.frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.last.ns, (84 + 84 + 96) * 80u);
 	for (i = 0; i < 4; i++)
 		KUNIT_EXPECT_EQ(test, cyc_state(c, i)->wc_state, 2);
 }
@@ -372,7 +372,7 @@ static void image_many_frames(struct kunit *test)
 
 	c->period_ns = 10 * NSEC_PER_MSEC;
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.n_frames, (u32)EC_MAX_CYCLE_FRAMES);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.plain.frames, (u32)EC_MAX_CYCLE_FRAMES);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 60000), ~0ull);
 	cyc_run(c, 5);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);

@@ -214,8 +214,8 @@ static void layout_echo(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, l->expected);
-	KUNIT_EXPECT_EQ(test, cycle->sent_frames, cycle->n_frames);
-	KUNIT_EXPECT_EQ(test, cycle->sent_wire_ns, cycle->wire_ns);
+	KUNIT_EXPECT_EQ(test, cycle->last.frames, cycle->plain.frames);
+	KUNIT_EXPECT_EQ(test, cycle->last.ns, cycle->plain.ns);
 }
 
 /*

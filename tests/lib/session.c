@@ -377,9 +377,14 @@ static void layout(void)
 	CHECK(!ecrt_slave_config_overlapping_pdos(sc, 2));
 	CHECK(fake.last == EC_IOC_SC_OVERLAP && v->config == 5 && v->overlap == 1);
 	CHECK(!ecrt_slave_config_overlapping_pdos(sc, 0) && !v->overlap);
+	CHECK(ecrt_master_set_late_cycles(NULL, 1) == -EINVAL);
+	CHECK(!ecrt_master_set_late_cycles(m, 7) && fake.last == EC_IOC_LATE &&
+	      ((const struct ec_ioc_late *)fake.arg)->per_s == 7);
 	fake.refuse = EC_IOC_DOMAIN_OPTIONS;
 	fake.err = EOPNOTSUPP;
 	CHECK(ecrt_domain_set_options(d, 8) == -EOPNOTSUPP);
+	fake.refuse = EC_IOC_LATE;
+	CHECK(ecrt_master_set_late_cycles(m, 0) == -EOPNOTSUPP);
 	fake.refuse = EC_IOC_SC_OVERLAP;
 	fake.err = EBUSY;
 	CHECK(ecrt_slave_config_overlapping_pdos(sc, 1) == -EBUSY);

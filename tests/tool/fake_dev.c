@@ -232,6 +232,10 @@ static int master(struct ec_ioc_master *m, int index)
 		m->cycle_wire_ns = 13440;
 		m->sent_frames = 1;
 		m->sent_wire_ns = 6720;
+		m->acyclic_slack_ns = 5000;
+		m->acyclic_need_ns = 6720;
+		m->late_per_s = 100;
+		m->late_cycles = 9;
 	}
 	fill_device(&m->devices[0]);
 	if (bus("cut")) {

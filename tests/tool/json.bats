@@ -45,7 +45,7 @@ load common
 	FAKE_BUS=app out domains -j | json 'd["masters"][0]["domains"][1]["options"] == ["overlap", "own_frame"]'
 	FAKE_BUS=app out domains -j | json 'd["masters"][0]["domains"][0]["options"] == []'
 	FAKE_BUS=app out domains -j | json 'd["masters"][0]["domains"][1]["datagram_bytes"] == 30'
-	FAKE_BUS=app out master -j | json 'd["masters"][0]["cycle"]["wire_ns"] == 13440'
+	FAKE_BUS=app out master -j | json 'd["masters"][0]["cycle"]["wire_ns"] == 13440 and d["masters"][0]["cycle"]["late_cycles"] == 9'
 	FAKE_BUS=app out data -j | json 'd["masters"][0]["domains"][0]["data_hex"] == "a5"'
 	out graph -j | json 'd["links"][0] == {"from": 0, "to": 1, "medium": "EBUS", "from_port": 1, "to_port": 0}'
 	out crc -j | json 'd["slaves"][0]["ports"][1]["crc_errors"] == 3'

@@ -122,6 +122,8 @@ assert len(rows) == 12 and sum(r[3] == "closed" for r in rows) == 7
 	out master | grep -qE 'Slaves:\s*3'
 	out master | grep -q attached
 	FAKE_BUS=app out master -v | grep -q 'All domains: 3 datagram(s), 2 frame(s), 13.44 us'
+	FAKE_BUS=app out master -v | grep -q 'Acyclic:     5.00 us left, 6.72 us needed at least (!)'
+	FAKE_BUS=app out master -v | grep -q 'Made late:   9 cycle(s), at most 100 a second'
 	FAKE_BUS=app out master -v | grep -q 'Last send:   1 frame(s), 6.72 us'
 	out master | grep -q 'Lost frames'
 	# first token, and awk '{print $2}'

@@ -34,6 +34,22 @@ static void own_frame(void) { with(EC_DOMAIN_OWN_FRAME, 0, 6); }
 /* LRD and LWR: one for each slave that is read, one for each that is written */
 static void separate(void) { with(EC_DOMAIN_SEPARATE, 0, 4); }
 
+/* A cycle in which nothing else fits is refused, or makes so many late. */
+static void late_cycles(void)
+{
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	SAYS(CALL(ecrt_master_set_late_cycles)(b.m, 100001), -EINVAL);
+	SILENT(CALL(ecrt_master_set_late_cycles)(b.m, 0), 0);
+	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 10), 0);
+	SAYS(CALL(ecrt_master_activate)(b.m), -ENOSPC);
+	SILENT(CALL(ecrt_master_set_late_cycles)(b.m, 1000), 0);
+	SILENT(CALL(ecrt_master_activate)(b.m), 0);
+	SAYS(CALL(ecrt_master_set_late_cycles)(b.m, 0), -EBUSY);
+	bench_down(&b);
+}
+
 static void refused(void)
 {
 	struct bench b;
@@ -50,6 +66,7 @@ const struct api_case layout_cases[] = {
 	{ "overlap", overlap },
 	{ "separate", separate },
 	{ "own frame", own_frame },
+	{ "late cycles", late_cycles },
 	{ "what cannot be is refused", refused },
 	{ NULL, NULL },
 };

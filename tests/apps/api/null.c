@@ -41,6 +41,7 @@ static void master(void)
 	IS(ecrt_master_sdo_upload(NULL, 0, 1, 1, data, 4, &size, &time), -EINVAL);
 	IS(ecrt_master_activate(NULL), -EINVAL);
 	IS(ecrt_master_deactivate(NULL), -EINVAL);
+	IS(ecrt_master_set_late_cycles(NULL, 1), -EINVAL);
 	IS(ecrt_master_set_send_interval(NULL, 1000), -EINVAL);
 	IS(ecrt_master_send(NULL), -EINVAL);
 	IS(ecrt_master_receive(NULL), -EINVAL);

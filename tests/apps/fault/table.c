@@ -82,6 +82,7 @@ const struct cmd cmds[] = {
 	CMD(SC_REQUEST, APP, RSV1(ec_ioc_sc_request)),
 	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
 	CMD(SC_OVERLAP, APP, RSV1(ec_ioc_sc_overlap)),
+	CMD(LATE, APP),
 	CMD(DOMAIN_OPTIONS, APP, RSV1(ec_ioc_domain_options)),
 };
 

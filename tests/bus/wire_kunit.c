@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Wire time of short cycles: many axes, many digital terminals, and what is
+ * left for acyclic frames. Figures of the frames that were sent.
+ */
+#include <linux/kthread.h>
+#include "cyc.h"
+#include "master/coe.h"
+#include "master/ioctl.h"
+
+#define AXES	100
+
+static void options(struct cyc *c, u32 options)
+{
+	struct ec_ioc_domain_options o = { .options = options };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_domain_options(&c->b->app, &o), 0);
+}
+
+static void late_cycles(struct cyc *c, u32 per_s)
+{
+	struct ec_ioc_late l = { .per_s = per_s };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_late(&c->b->app, &l), 0);
+}
+
+static u64 late(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.late);
+}
+
+/* Slaves as terminals have them: what passes is back within the cycle. */
+static struct bus *short_bus(struct kunit *test, const char *text, u32 slaves)
+{
+	struct bus *b = bus_new(test, text);
+	u32 i;
+
+	for (i = 0; i < slaves; i++) {
+		bus_esc(b, i)->cfg.process_ns = 60;
+		bus_esc(b, i)->cfg.forward_ns = 30;
+	}
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, slaves, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	return b;
+}
+
+/* A bus in OP, its process data complete and in time for 1000 cycles. */
+static void runs(struct cyc *c, u32 domain_bytes)
+{
+	struct kunit *test = c->b->test;
+
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
+	/* the clocks are set with more datagrams a cycle */
+	cyc_run(c, 20000);
+	c->incomplete = 0;
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, c->b->m->session->domains[0]->size, domain_bytes);
+}
+
+static struct cyc *axes(struct kunit *test, u32 period_us, u32 domain_options)
+{
+	struct bus *b = short_bus(test, "segment seed=51 response=100us transition=1ms\n"
+				  "repeat 100 slave d drive in=8 out=8 cable=0\n", AXES);
+	struct cyc *c = cyc_new(b, period_us);
+
+	cyc_domain(c);
+	options(c, domain_options);
+	cyc_map_all(c, 0, AXES, 0);
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR;
+	return c;
+}
+
+/* 100 axes of 8 and 8 bytes, with clock datagrams, in a cycle of 100 us */
+static void wire_axes(struct kunit *test)
+{
+	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
+	const struct ec_cycle *cycle;
+	u64 before;
+
+	cyc_activate(c);
+	cycle = &c->b->m->session->cycle;
+	runs(c, 1600);
+	before = late(c->b);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, late(c->b), before);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->expected, 300u);
+	KUNIT_EXPECT_NE(test, cycle->dc_time, 0ull);
+	/* 800 bytes and three headers of datagrams, two with clocks */
+	KUNIT_EXPECT_EQ(test, cycle->last.ns,
+			(8 + 14 + 2 + 12 + 8 + 12 + 4 + 12 + 800 + 4 + 12) * 80u);
+	bus_row(cycle->last.ns, 100000,
+		"ns of wire time: cycle of 100 axes, 8 and 8 bytes, overlapped, with clocks");
+	KUNIT_EXPECT_LE(test, cycle->last.ns, 100000u);
+}
+
+/* the same without overlap, for comparison: it needs a longer cycle */
+static void wire_axes_apart(struct kunit *test)
+{
+	struct cyc *c = axes(test, 200, 0);
+	const struct ec_cycle *cycle;
+
+	cyc_activate(c);
+	cycle = &c->b->m->session->cycle;
+	runs(c, 1600);
+	KUNIT_EXPECT_EQ(test, cycle->last.frames, 3u);
+	KUNIT_EXPECT_GT(test, cycle->last.ns, 100000u);
+	bus_figure("wire time of 100 axes, 8 and 8 bytes, inputs and outputs apart, with clocks: %u ns in %u frames",
+		   cycle->last.ns, cycle->last.frames);
+}
+
+static const struct digital {
+	const char *name;
+	const char *text;
+	u32 slaves;
+	u32 bytes;
+	u32 options;
+	u32 wire_bytes;
+} digitals[] = {
+	{ "8 channels each", "segment seed=52\nslave k EK1100\nrepeat 63 slave i EL1008\n"
+	  "repeat 63 slave o EL2008\n", 127, 126, 0, 126 },
+	{ "16 channels each", "segment seed=53\nrepeat 32 slave i io in=16 out=0 cable=0\n"
+	  "repeat 32 slave o io in=0 out=16 cable=0\n", 64, 128, 0, 128 },
+	{ "4 channels each", "segment seed=54\nslave k EK1100\nrepeat 125 slave o EL2004\n"
+	  "repeat 125 slave i EL1004\n", 251, 250, 0, 250 },
+	{ "4 channels each, overlapped", "segment seed=54\nslave k EK1100\n"
+	  "repeat 125 slave o EL2004\nrepeat 125 slave i EL1004\n", 251, 250,
+	  EC_DOMAIN_OPT_OVERLAP, 125 },
+};
+
+static void digital_desc(const struct digital *d, char *desc)
+{
+	strscpy(desc, d->name, KUNIT_PARAM_DESC_SIZE);
+}
+
+KUNIT_ARRAY_PARAM(digital, digitals, digital_desc);
+
+/* 1000 digital inputs and outputs, half of each */
+static void wire_digital(struct kunit *test)
+{
+	const struct digital *d = test->param_value;
+	struct bus *b = short_bus(test, d->text, d->slaves);
+	struct cyc *c = cyc_new(b, 100);
+	const struct ec_cycle *cycle;
+
+	cyc_domain(c);
+	options(c, d->options);
+	cyc_map_all(c, 0, d->slaves, 0);
+	cyc_activate(c);
+	cycle = &b->m->session->cycle;
+	runs(c, d->bytes);
+	KUNIT_EXPECT_EQ(test, cycle->last.ns, (8 + 14 + 2 + 12 + d->wire_bytes + 4 + 12) * 80);
+	bus_row(cycle->last.ns, 30000, "ns of wire time: 1000 digital I/O, %s", d->name);
+	KUNIT_EXPECT_LE(test, cycle->last.ns, 30000u);
+}
+
+/* a tool that reads one object after the other */
+struct reader {
+	struct cyc *c;
+	u32 done;
+	u32 failed;
+	bool stop;
+	struct completion end;
+};
+
+static int read_objects(void *arg)
+{
+	struct reader *r = arg;
+	u32 abort, n;
+
+	for (n = 0; !READ_ONCE(r->stop); n++) {
+		char text[64] = { 0 };
+		size_t got;
+		int ret = ec_coe_upload(bus_slave(r->c->b, n % AXES), 0x1008, 0, false, text,
+					sizeof(text), &got, &abort, 0);
+
+		if (ret || !got || text[0] < ' ')
+			r->failed++;
+		else
+			r->done++;
+	}
+	complete(&r->end);
+	return 0;
+}
+
+static struct reader *uploads(struct cyc *c, u32 cycles)
+{
+	struct kunit *test = c->b->test;
+	struct reader *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, r);
+	r->c = c;
+	init_completion(&r->end);
+	KUNIT_ASSERT_FALSE(test, IS_ERR(kthread_run(read_objects, r, "reader")));
+	cyc_run(c, cycles);
+	WRITE_ONCE(r->stop, true);
+	while (!try_wait_for_completion(&r->end))
+		cyc_run(c, 1);
+	return r;
+}
+
+/* SDOs beside 100 axes in 100 us: mailboxes of 256 bytes go in pieces, nothing is late. */
+static void wire_sdo_beside_axes(struct kunit *test)
+{
+	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
+	struct ec_master *m = c->b->m;
+	struct reader *r;
+	u64 before;
+
+	late_cycles(c, 0);
+	cyc_activate(c);
+	runs(c, 1600);
+	KUNIT_EXPECT_FALSE(test, m->session->room_told);
+	KUNIT_EXPECT_EQ(test, ec_cycle_slack_ns(m), 90000 - m->session->cycle.clocked.ns);
+	KUNIT_EXPECT_LT(test, ec_cycle_room(m), 256);
+	before = late(c->b);
+	r = uploads(c, 10000);
+	bus_figure("SDO uploads beside 100 axes in a cycle of 100 us, %u ns left: %u in 1 s, %u failed",
+		   ec_cycle_slack_ns(m), r->done, r->failed);
+	KUNIT_EXPECT_GE(test, r->done, 100u);
+	KUNIT_EXPECT_EQ(test, r->failed, 0u);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	KUNIT_EXPECT_EQ(test, late(c->b), before);
+	KUNIT_EXPECT_EQ(test, m->late_cycles, 0u);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
+}
+
+/* Not even the shortest frame fits: so many late cycles a second, and they are counted. */
+static void wire_full(struct kunit *test)
+{
+	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
+	struct ec_master *m = c->b->m;
+	struct reader *r;
+	u32 before;
+
+	late_cycles(c, 400);
+	cyc_activate(c);
+	runs(c, 1600);
+	KUNIT_EXPECT_EQ(test, m->late_cycles, 0u);
+	/* the application goes faster */
+	m->interval_us = 75;
+	c->period_ns = 75000;
+	cyc_run(c, 10);
+	KUNIT_EXPECT_LT(test, ec_cycle_slack_ns(m), ec_cycle_need_ns());
+	before = m->late_cycles;
+	/* a second */
+	r = uploads(c, 13333);
+	bus_figure("SDO uploads beside 100 axes in a cycle of 75 us, 400 late cycles a second allowed: %u in 1 s, %u failed, %u late",
+		   r->done, r->failed, m->late_cycles - before);
+	KUNIT_EXPECT_GE(test, r->done, 5u);
+	KUNIT_EXPECT_EQ(test, r->failed, 0u);
+	KUNIT_EXPECT_GE(test, m->late_cycles - before, 100u);
+	KUNIT_EXPECT_LE(test, m->late_cycles - before, 450u);
+}
+
+/* The same at activation: with late cycles allowed it is told. */
+static void wire_told(struct kunit *test)
+{
+	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
+
+	cyc_activate(c);
+	KUNIT_EXPECT_TRUE(test, c->b->m->session->room_told);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
+}
+
+/* With no late cycle allowed that is refused; the bus stays as it was. */
+static void wire_refused(struct kunit *test)
+{
+	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
+	struct bus *b = c->b;
+	struct ec_ioc_activate a = { 0 };
+
+	late_cycles(c, 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -ENOSPC);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "6720 ns"), "%s", b->app.reason);
+	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	/* in a longer cycle the same session works */
+	c->period_ns = 200000;
+	b->m->interval_us = 200;
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
+	KUNIT_EXPECT_FALSE(test, b->m->session->room_told);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(wire_axes),
+	KUNIT_CASE(wire_axes_apart),
+	KUNIT_CASE_PARAM(wire_digital, digital_gen_params),
+	KUNIT_CASE(wire_sdo_beside_axes),
+	KUNIT_CASE(wire_full),
+	KUNIT_CASE(wire_told),
+	KUNIT_CASE(wire_refused),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_wire",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+
+kunit_test_suite(suite);
+
+MODULE_LICENSE("GPL");
