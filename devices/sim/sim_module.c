@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * ec_sim.ko: segment=<built-in name or path of a description>, as the virtual
- * device sim0, or with netdev=<name>[,<name>] answering at network devices.
+ * ec_sim.ko: segment=<built-in name or path of a description>[,<another>], as the
+ * virtual devices sim0, sim1..., or one segment with netdev=<name>[,<name>]
+ * answering at network devices.
  */
 #include <linux/err.h>
 #include <linux/kernel_read_file.h>
@@ -13,16 +14,19 @@
 #include "sim_responder.h"
 #include "sim_wire.h"
 
-static char *segment = "bench";
-module_param(segment, charp, 0444);
-MODULE_PARM_DESC(segment, "built-in segment (thin, three, bench, line100, line1000) or path of a description");
+#define SEGMENTS	8
+
+static char *segment[SEGMENTS] = { "bench" };
+static unsigned int n_segment;
+module_param_array(segment, charp, &n_segment, 0444);
+MODULE_PARM_DESC(segment, "built-in segments (thin, three, bench, line100, line1000) or paths of descriptions: sim0, sim1...");
 
 static char *netdev[EC_SIM_PORTS];
 static unsigned int n_netdev;
 module_param_array(netdev, charp, &n_netdev, 0444);
 MODULE_PARM_DESC(netdev, "network device to answer at instead of offering sim0; a second one for the other end of a ring");
 
-static struct ec_sim_link *sim_link;
+static struct ec_sim_link *sim_link[SEGMENTS];
 static struct ec_sim_responder *responder;
 
 static int load(void *ctx, const char *name, u8 *buf, size_t cap)
@@ -33,7 +37,7 @@ static int load(void *ctx, const char *name, u8 *buf, size_t cap)
 	return (int)n;
 }
 
-static struct ec_sim *describe(const char *text, size_t len)
+static struct ec_sim *describe(const char *name, const char *text, size_t len)
 {
 	static const struct ec_sim_loader loader = { .load = load };
 	struct ec_sim_error err = { 0 };
@@ -41,49 +45,90 @@ static struct ec_sim *describe(const char *text, size_t len)
 	int ret = ec_sim_describe(&sim, &ec_sim_kernel_ops, text, len, &loader, &err);
 
 	if (ret) {
-		pr_err("ec_sim: %s:%u: %s\n", segment, err.line, err.text);
+		pr_err("ec_sim: %s:%u: %s\n", name, err.line, err.text);
 		return ERR_PTR(ret);
 	}
 	return sim;
 }
 
-static struct ec_sim *build(void)
+static struct ec_sim *build(const char *name)
 {
-	const char *text = ec_sim_builtin(segment);
+	const char *text = ec_sim_builtin(name);
 	struct ec_sim *sim;
 	void *buf = NULL;
 	ssize_t n;
 
 	if (text)
-		return describe(text, strlen(text));
-	n = kernel_read_file_from_path(segment, 0, &buf, 1 << 20, NULL, READING_UNKNOWN);
+		return describe(name, text, strlen(text));
+	n = kernel_read_file_from_path(name, 0, &buf, 1 << 20, NULL, READING_UNKNOWN);
 	if (n < 0) {
 		pr_err("ec_sim: segment=%s is no built-in segment and cannot be read (error %zd)\n",
-		       segment, n);
+		       name, n);
 		return ERR_PTR(n);
 	}
-	sim = describe(buf, n);
+	sim = describe(name, buf, n);
 	vfree(buf);
 	return sim;
 }
 
-static int __init sim_init(void)
+/* Segment @i as a virtual device. */
+static int offer(unsigned int i)
 {
-	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
-	struct ec_sim *sim = build();
-	int ret;
+	const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, i };
+	struct ec_sim *sim = build(segment[i]);
+	struct ec_sim_link *l;
+	char name[8];
 
 	if (IS_ERR(sim))
 		return PTR_ERR(sim);
-	if (n_netdev) {
-		responder = ec_sim_responder_create(netdev, n_netdev, sim);
-		ret = PTR_ERR_OR_ZERO(responder);
-	} else {
-		sim_link = ec_sim_link_create("sim0", mac, sim, ktime_get_ns());
-		ret = PTR_ERR_OR_ZERO(sim_link);
-	}
-	if (ret)
+	snprintf(name, sizeof(name), "sim%u", i);
+	l = ec_sim_link_create(name, mac, sim, ktime_get_ns());
+	if (IS_ERR(l)) {
 		ec_sim_free(sim);
+		return PTR_ERR(l);
+	}
+	sim_link[i] = l;
+	return 0;
+}
+
+static int respond(void)
+{
+	struct ec_sim *sim;
+
+	if (n_segment > 1) {
+		pr_err("ec_sim: netdev= takes one segment, not %u\n", n_segment);
+		return -EINVAL;
+	}
+	sim = build(segment[0]);
+	if (IS_ERR(sim))
+		return PTR_ERR(sim);
+	responder = ec_sim_responder_create(netdev, n_netdev, sim);
+	if (!IS_ERR(responder))
+		return 0;
+	ec_sim_free(sim);
+	return PTR_ERR(responder);
+}
+
+static void withdraw(void)
+{
+	unsigned int i;
+
+	for (i = 0; i < SEGMENTS; i++)
+		if (sim_link[i])
+			ec_sim_link_destroy(sim_link[i]);
+}
+
+static int __init sim_init(void)
+{
+	unsigned int i, n = max(n_segment, 1u);
+	int ret = 0;
+
+	if (n_netdev)
+		return respond();
+	for (i = 0; i < n && !ret; i++)
+		ret = offer(i);
+	if (ret)
+		withdraw();
 	return ret;
 }
 
@@ -92,7 +137,7 @@ static void __exit sim_exit(void)
 	if (n_netdev)
 		ec_sim_responder_destroy(responder);
 	else
-		ec_sim_link_destroy(sim_link);
+		withdraw();
 }
 
 module_init(sim_init);

@@ -19,6 +19,8 @@
  *                  they stay as they are
  *   loop=0         1: the first and last 32 bits of the image of every slave's
  *                  outputs are wired to its inputs: check that no image is torn
+ *   master=0       which one
+ *   options=0      of the domain, ec_domain_option_t
  */
 #include <ecrt.h>
 #include <errno.h>
@@ -35,7 +37,8 @@
 #define OP_TIMEOUT_S	60
 
 static long opt_cycles = 10000, opt_period = 1000, opt_cpu = -1, opt_priority, opt_stall,
-	    opt_stall_cycles, opt_dc, opt_spin, opt_pause, opt_flags, opt_value, opt_loop;
+	    opt_stall_cycles, opt_dc, opt_spin, opt_pause, opt_flags, opt_value, opt_loop,
+	    opt_master, opt_options;
 
 static const struct {
 	const char *name;
@@ -46,6 +49,7 @@ static const struct {
 	{ "stall_cycles", &opt_stall_cycles }, { "dc", &opt_dc }, { "spin", &opt_spin },
 	{ "pause", &opt_pause }, { "flags", &opt_flags },
 	{ "value", &opt_value }, { "loop", &opt_loop },
+	{ "master", &opt_master }, { "options", &opt_options },
 };
 
 /* one slave; @out, @in: offset of its first SyncManager of that direction, or -1 */
@@ -160,7 +164,8 @@ static int configure(void)
 		return -1;
 	}
 	domain = ecrt_master_create_domain(master);
-	if (!domain || ecrt_master(master, &info))
+	if (!domain || ecrt_domain_set_options(domain, (uint32_t)opt_options) ||
+	    ecrt_master(master, &info))
 		return -1;
 	if (!info.slave_count || info.slave_count > SLAVES_MAX) {
 		fprintf(stderr, "%u slaves; 1 to %u are possible\n", info.slave_count, SLAVES_MAX);
@@ -357,7 +362,7 @@ int main(int argc, char **argv)
 	if (parse(argc, argv))
 		return 2;
 	setvbuf(stdout, NULL, _IOLBF, 0);
-	master = ecrt_request_master(0);
+	master = ecrt_request_master((unsigned int)opt_master);
 	if (!master)
 		return 1;
 	if (!configure() && !ecrt_master_activate(master)) {
