@@ -29,9 +29,10 @@ t() {	# t NAME COMMAND...
 	fi
 }
 
-# both as the only header of a file, and with each macro used
+# with each macro used, and with all numbers and sizes looked at
 header_compiles() {	# header_compiles COMPILER STANDARD LANGUAGE
-	$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only access.c
+	$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only access.c &&
+	$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only types.c
 }
 
 names() {	# names of the functions a list of prototypes declares
@@ -173,10 +174,10 @@ examples_build() {	# examples_build STANDARD
 	$MAKE -s -C "$top/examples" STD=$1 O="$o/examples" LIB="$o/lib" CFLAGS="-O2 -Werror" all
 }
 
-for std in c99 c11 gnu11; do
+for std in c99 c11 gnu11 c17; do
 	t "ecrt.h compiles as $std" header_compiles $CC $std c
 done
-for std in c++11 c++17; do
+for std in c++11 c++14 c++17 c++20; do
 	t "ecrt.h compiles as $std" header_compiles $CXX $std c++
 done
 t "ecrt.h compiles with the kernel's words only" kernel_words
