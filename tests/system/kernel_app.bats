@@ -15,7 +15,7 @@ setup() {
 	dmesg -C
 	wait_for 60 all_slaves_are PREOP 2
 	insmod "$EC_BUILD/mini/ec_mini.ko" position=1
-	wait_for 60 all_slaves_are OP 1
+	wait_for 60 all_slaves_are OP 2
 }
 teardown() {
 	rmmod ec_mini 2>/dev/null || true
@@ -46,7 +46,7 @@ copied() {
 	[ "$status" != 0 ]
 	run rmmod ec_master
 	[ "$status" != 0 ]
-	all_slaves_are OP 1
+	all_slaves_are OP 2
 }
 
 @test "it goes while others are at work, again and again" {
@@ -56,7 +56,7 @@ copied() {
 		rmmod ec_mini
 		wait_for 60 all_slaves_are PREOP 2
 		insmod "$EC_BUILD/mini/ec_mini.ko" position=1
-		wait_for 60 all_slaves_are OP 1
+		wait_for 60 all_slaves_are OP 2
 	done
 	kill "$load"
 	wait "$load" || true
