@@ -51,6 +51,11 @@ count() {
 	[ "$2" != 0 ] || [ "${p:-0}" != 0 ] || failed=$((failed + 1))
 }
 
+# failures OUTPUT: the failed cases of a level, each with what it said
+failures() {
+	grep -E -A 12 '^[[:space:]]*(not ok|FAILED:|demo: FAILED)' "$1" | head -n 120
+}
+
 level_unit() { make -s -C tests/unit; }
 level_witness() { tests/witness/run.sh; }
 level_decoders() { tests/witness/decoders.py; }
@@ -78,7 +83,8 @@ run() {
 	if [ $rc = 0 ]; then
 		tail -n 1 "$log/$name"
 	else
-		tail -n 60 "$log/$name"
+		failures "$log/$name"
+		tail -n 20 "$log/$name"
 		echo "=== $name failed (exit $rc)"
 	fi
 	echo "=== $name: $((SECONDS - t0)) s"
