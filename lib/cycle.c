@@ -163,16 +163,33 @@ static int get_fmmu(const struct ec_domain *d, __u32 i, struct ec_input *in)
 		return ret;
 	if (arg.offset > d->size || arg.size > d->size - arg.offset)
 		return -EPROTO;
-	in->offset = arg.offset;
-	in->size = arg.dir == DIR_INPUT ? arg.size : 0;
+	*in = (struct ec_input){ .offset = arg.offset, .count = 1,
+				 .size = arg.dir == DIR_INPUT ? arg.size : 0 };
 	return 0;
+}
+
+/* Slaves of a kind in a row have their inputs at equal distances: one loop copies all. */
+static void add_input(struct ec_domain *d, const struct ec_input *in)
+{
+	struct ec_input *last = d->n_inputs ? &d->inputs[d->n_inputs - 1] : NULL;
+	unsigned int distance = last ? in->offset - last->offset : 0;
+
+	if (!in->size)
+		return;
+	if (last && last->size == in->size && in->offset > last->offset &&
+	    (last->count == 1 || distance == last->count * last->stride)) {
+		if (last->count++ == 1)
+			last->stride = distance;
+		return;
+	}
+	d->inputs[d->n_inputs++] = *in;
 }
 
 /* What of a domain is input: the rest of its data is the application's. */
 int ec_cycle_find_inputs(struct ec_domain *d)
 {
 	struct ec_ioc_domain info = { .index = d->index };
-	struct ec_input *last, in;
+	struct ec_input side = { .count = 1 }, in;
 	int ret = ec_ioctl(d->master, EC_IOC_DOMAIN, &info);
 	__u32 i;
 
@@ -191,14 +208,14 @@ int ec_cycle_find_inputs(struct ec_domain *d)
 		ret = get_fmmu(d, i, &in);
 		if (ret)
 			return ret;
-		if (!in.size)
+		if (in.size && side.offset + side.size == in.offset) {
+			side.size += in.size;
 			continue;
-		last = d->n_inputs ? &d->inputs[d->n_inputs - 1] : NULL;
-		if (last && last->offset + last->size == in.offset)
-			last->size += in.size;
-		else
-			d->inputs[d->n_inputs++] = in;
+		}
+		add_input(d, &side);
+		side = in;
 	}
+	add_input(d, &side);
 	return 0;
 }
 
@@ -223,32 +240,40 @@ void ec_cycle_receive(struct ec_master *m)
 	m->received = ~0ULL;
 }
 
-/* 16 bytes; a move of that size where the processor has one */
-typedef struct { __u64 v[2]; } two_words;
-
 /*
- * A value, most shorter than a call of memcpy(): the first and the last part may
- * overlap.
+ * Values of one size, the first and the last @part bytes of each; they may overlap.
+ * With a constant @part that is four moves, less than a call of memcpy().
  */
-static inline void copy(__u8 *to, const __u8 *from, size_t size)
+static inline void copy_parts(__u8 *to, const __u8 *from, const struct ec_input *in,
+			      size_t part)
 {
-	if (size >= 16 && size <= 32) {
-		two_words first, last;
+	const size_t at_last = in->size - part, stride = in->stride;
+	unsigned int left = in->count;
+	__u8 first[16], last[16];
 
-		memcpy(&first, from, 16);
-		memcpy(&last, from + size - 16, 16);
-		memcpy(to, &first, 16);
-		memcpy(to + size - 16, &last, 16);
-	} else if (size >= 4 && size <= 8) {
-		__u32 first, last;
-
-		memcpy(&first, from, 4);
-		memcpy(&last, from + size - 4, 4);
-		memcpy(to, &first, 4);
-		memcpy(to + size - 4, &last, 4);
-	} else {
-		memcpy(to, from, size);
+	for (; left; left--, to += stride, from += stride) {
+		memcpy(first, from, part);
+		memcpy(last, from + at_last, part);
+		memcpy(to, first, part);
+		memcpy(to + at_last, last, part);
 	}
+}
+
+static void copy_inputs(__u8 *to, const __u8 *from, const struct ec_input *in)
+{
+	unsigned int i;
+
+	to += in->offset;
+	from += in->offset;
+	if (in->size >= 16 && in->size <= 32)
+		copy_parts(to, from, in, 16);
+	else if (in->size >= 8 && in->size <= 16)
+		copy_parts(to, from, in, 8);
+	else if (in->size >= 4 && in->size <= 8)
+		copy_parts(to, from, in, 4);
+	else
+		for (i = 0; i < in->count; i++, to += in->stride, from += in->stride)
+			memcpy(to, from, in->size);
 }
 
 void ec_cycle_process(struct ec_domain *d)
@@ -257,8 +282,7 @@ void ec_cycle_process(struct ec_domain *d)
 	const __u8 *from = place(d, n);
 
 	for (i = 0; i < d->n_inputs; i++)
-		copy(d->data + d->inputs[i].offset, from + d->inputs[i].offset,
-		     d->inputs[i].size);
+		copy_inputs(d->data, from, &d->inputs[i]);
 	d->snap = buffer(d->master, n)->domains[d->index];
 }
 

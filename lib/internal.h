@@ -61,10 +61,12 @@ struct ec_master {
 	struct ec_slave_config *configs;
 };
 
-/* inputs side by side in a domain */
+/* inputs of a domain: @count times @size bytes, each @stride behind the one before */
 struct ec_input {
 	unsigned int offset;
 	unsigned int size;
+	unsigned int stride;
+	unsigned int count;
 };
 
 /*

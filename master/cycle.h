@@ -30,6 +30,7 @@ enum ec_owner {
  * @cmd: LRD, LWR or LRW
  * @new_frame: shares no frame with the datagrams before
  * @holes: @n_copies areas do not cover it: clear it first
+ * @solid: all of it lies in the image as it lies in the datagram
  * @logical: logical address
  * @len: bytes
  * @expected: working counter when every slave takes part
@@ -45,6 +46,7 @@ struct ec_cyc_dgram {
 	u8 cmd;
 	bool new_frame;
 	bool holes;
+	bool solid;
 	u32 logical;
 	u16 len;
 	u16 expected;
@@ -94,6 +96,7 @@ struct ec_cyc_cut {
  * @count: how many; those of @queued it does
  * @queued: domains of that send, bit n: domain n
  * @missed: a receive has looked for it in vain
+ * @direct: sent from struct ec_cycle.direct
  * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
  */
 struct ec_cyc_flight {
@@ -103,6 +106,7 @@ struct ec_cyc_flight {
 	u16 count;
 	u64 queued;
 	bool missed;
+	bool direct;
 	u32 dc;
 };
 
@@ -145,6 +149,9 @@ struct ec_cyc_wire {
  * @clocked: the same with all clock datagrams
  * @last: frames of the last send
  * @domains: results
+ * @direct: image of the application to send from, its inputs are what it likes;
+ *	NULL: those of @domains. While it is used, what the outputs of the latter
+ *	are is undefined
  * @flight: frames on their way, the oldest first
  * @n_flight: entries in @flight
  * @send: number of the last send
@@ -174,6 +181,7 @@ struct ec_cycle {
 	struct ec_cyc_wire clocked;
 	struct ec_cyc_wire last;
 	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
+	const u8 *direct;
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;
 	u32 send;

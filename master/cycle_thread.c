@@ -62,6 +62,8 @@ struct slow {
  * @epoch_ns: what makes ktime an application time
  * @lock: application time; lets the cycle follow the reference clock
  * @front: output buffer it holds
+ * @given: the application has given that buffer, and its outputs are still valid
+ * @ahead: outputs of that buffer are not in the image
  * @back: input buffer it holds
  * @fed: there were outputs at least once
  * @unfed: cycles without new outputs in a row, up to the limit
@@ -81,6 +83,8 @@ struct ec_cycle_thread {
 	u64 epoch_ns;
 	struct ec_cycle_lock lock;
 	u8 front;
+	bool given;
+	bool ahead;
 	u8 back;
 	bool fed;
 	u32 unfed;
@@ -108,22 +112,61 @@ static u8 buffer_index(u32 word)
 	return min_t(u32, word & INDEX_MASK, EC_EXCHANGE_BUFFERS - 1);
 }
 
-/* The newest outputs, or false when there are none since the last time. */
+/* Takes the newest outputs, or returns false when there are none since the last time. */
 static bool take_outputs(struct ec_cycle_thread *t)
 {
-	u8 *image = t->session->shared->image;
 	struct ec_exchange *x = exchange(t);
-	const u8 *data;
-	unsigned int i;
 
 	if (!(READ_ONCE(x->outputs) & EC_EXCHANGE_NEW))
 		return false;
 	t->front = buffer_index(xchg(&x->outputs, t->front));
-	data = (const u8 *)(buffer(t, t->front) + 1);
-	for (i = 0; i < t->n_outputs; i++)
+	t->given = true;
+	t->ahead = true;
+	return true;
+}
+
+/* From now on the image is what is sent: its outputs are the newest ones. */
+static void use_image(struct ec_cycle_thread *t)
+{
+	u8 *image = t->session->shared->image;
+	const u8 *data = (const u8 *)(buffer(t, t->front) + 1);
+	unsigned int i;
+
+	for (i = 0; t->ahead && i < t->n_outputs; i++)
 		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
 			t->outputs[i].len);
+	t->ahead = false;
+	t->session->cycle.direct = NULL;
+}
+
+/* Did all slaves take part when their domain was sent last? */
+static bool all_take_part(const struct ec_session *s)
+{
+	const struct ec_status_domain *st = s->shared->status->domains;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++)
+		if (s->domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
+			return false;
 	return true;
+}
+
+/*
+ * The buffer of the application is sent as it is, which spares a copy of each
+ * slave's outputs, and of its inputs when they are back. The inputs in it are no
+ * last values that a missing slave could leave: then, and where the kernel itself
+ * writes outputs, the image is sent.
+ */
+static void choose_source(struct ec_cycle_thread *t)
+{
+	struct ec_session *s = t->session;
+
+	if (!t->given || s->copying || !all_take_part(s)) {
+		use_image(t);
+		return;
+	}
+	t->ahead = true;
+	s->cycle.direct = (const u8 *)(buffer(t, t->front) + 1);
 }
 
 /* No more cycles; who waits for one is told. */
@@ -145,6 +188,8 @@ static void stall(struct ec_cycle_thread *t)
 		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
 		return;
 	case EC_STALL_ZERO:
+		t->given = false;
+		t->ahead = false;
 		for (i = 0; i < t->n_outputs; i++)
 			memset(image + t->outputs[i].offset, 0, t->outputs[i].len);
 		break;
@@ -189,6 +234,8 @@ static void deal(struct ec_cycle_thread *t)
 /* The application before may have died anywhere: the next one begins anew. */
 static void adopt(struct ec_cycle_thread *t)
 {
+	use_image(t);
+	t->given = false;
 	deal(t);
 	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->session->shared->image,
 	       t->bytes);
@@ -292,6 +339,7 @@ static bool cycle(struct ec_cycle_thread *t)
 	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
+	choose_source(t);
 	if (s->requests)
 		ec_requests_notice(s->requests);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {

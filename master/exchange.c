@@ -35,38 +35,52 @@ static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 se
 	}
 }
 
+/* Inputs of a datagram in which at least one slave has taken part. */
+static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
+			const struct ec_cyc_flight *f, const u8 *data, bool complete)
+{
+	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_area *in = &c->areas[d->first_input];
+	u8 *image = c->domains[d->domain].image;
+	unsigned int i, n;
+
+	/* the outputs come back as well: nobody needs those of the image now */
+	if (complete && d->solid && f->direct && c->direct) {
+		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
+		return;
+	}
+	/*
+	 * A missing slave's part comes back as sent: the last value, if it was sent
+	 * from the image. Where outputs were sent, or a part may be of another cycle,
+	 * all must have taken part.
+	 */
+	n = complete ? d->n_whole : f->direct ? 0 : d->n_plain;
+	for (i = 0; i < n; i++, in++)
+		ec_bytes_copy(image + in->offset, data + in->pos, in->len);
+	if (unlikely(d->n_inputs != d->n_whole) && complete)
+		take_cuts(s, d, f->send, data);
+}
+
 /*
  * Inputs and working counter of one datagram. What belongs to an older send
  * than the newest one that is back must not undo it.
  */
-static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
-		       const u8 *data)
+static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d,
+		       const struct ec_cyc_flight *f, const u8 *data)
 {
 	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
-	const struct ec_cyc_area *in = &s->cycle.areas[d->first_input];
-	u8 *image = dom->image;
 	u16 wkc = get_unaligned_le16(data + d->len);
-	unsigned int i, n;
 
-	if ((s32)(send - dom->send) < 0)
+	if ((s32)(f->send - dom->send) < 0)
 		return;
-	if (send != dom->send) {
-		dom->send = send;
+	if (f->send != dom->send) {
+		dom->send = f->send;
 		dom->wkc = 0;
 	}
 	dom->wkc += wkc;
 	s->cycle.back |= BIT_ULL(d->domain);
-	if (!wkc)
-		return;
-	/*
-	 * A missing slave's part comes back as sent: the last value. Where outputs
-	 * were sent, or a part may be of another cycle, all must have taken part.
-	 */
-	n = wkc == d->expected ? d->n_whole : d->n_plain;
-	for (i = 0; i < n; i++, in++)
-		ec_bytes_copy(image + in->offset, data + in->pos, in->len);
-	if (unlikely(d->n_inputs != d->n_whole) && wkc == d->expected)
-		take_cuts(s, d, send, data);
+	if (wkc)
+		take_inputs(s, d, f, data, wkc == d->expected);
 }
 
 static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
@@ -80,7 +94,7 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
-		take_dgram(s, d, f->send, data);
+		take_dgram(s, d, f, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 }
@@ -204,7 +218,7 @@ struct send {
 static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
 {
 	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
-	const u8 *image = s->cycle.domains[d->domain].image;
+	const u8 *image = s->cycle.direct ?: s->cycle.domains[d->domain].image;
 	unsigned int i;
 
 	if (d->holes)
@@ -266,7 +280,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	if (!ec_cycle_transmit(m, slot, send->now))
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
-			.queued = send->what->queued, .dc = send->dc,
+			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
 		};
 	else
 		ec_slot_put(&m->slots, slot, true);

@@ -170,6 +170,12 @@ static u32 area_bytes(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 	return n;
 }
 
+/* A single area covers it, so nothing of it lies elsewhere, and it brings inputs. */
+static bool is_solid(const struct ec_cyc_dgram *g)
+{
+	return !g->holes && g->n_copies == 1 && g->n_plain && g->n_inputs == g->n_plain;
+}
+
 static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
 {
 	struct ec_cyc_dgram *g = add_dgram(o, st, cmd, expected);
@@ -187,6 +193,7 @@ static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16
 	g->n_whole = plain + shared;
 	g->n_inputs = plain + shared + cut;
 	g->holes = area_bytes(o->c, g) != g->len;
+	g->solid = is_solid(g);
 	return ret;
 }
 

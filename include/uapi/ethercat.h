@@ -912,7 +912,8 @@ struct ec_status {
  *
  * Output buffer n begins at EC_EXCHANGE_FIRST + n * stride, input buffer n at
  * EC_EXCHANGE_FIRST + (3 + n) * stride: struct ec_exchange_buffer, then the
- * image of all domains. The kernel takes the output areas of an output buffer.
+ * image of all domains. The kernel takes the outputs of an output buffer; what lies in
+ * the places of inputs there means nothing.
  */
 #define EC_EXCHANGE_BUFFERS	3
 #define EC_EXCHANGE_NEW		4U
