@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -263,8 +262,7 @@ void cycle_run(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 		last = phase == RUN && next == RUN ? started : 0;
 		if (next == RUN && phase != RUN) {
 			d->rb.run = d->ai.bits && d->ao.bits;
-			reading = d->rb.run && !pthread_create(&reader, NULL,
-						readback_thread, &d->rb);
+			reading = d->rb.run && readback_start(&d->rb, &reader);
 			at = now_ns();
 		} else if (next == STOP) {
 			d->rb.run = false;

@@ -8,6 +8,7 @@
 
 #include <ecrt.h>
 
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -102,7 +103,7 @@ struct readback {
 	bool unavailable;
 };
 
-void *readback_thread(void *arg);
+bool readback_start(struct readback *rb, pthread_t *thread);
 
 /* trace.c: an output that is wired back to an input ------------------------*/
 

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #define SLACK	16	/* cycles an output may be old */
+#define STACK_BYTES	(128 * 1024)
 
 static bool was_written(struct readback *rb, int16_t value, unsigned int from,
 			unsigned int to)
@@ -23,7 +24,7 @@ static bool was_written(struct readback *rb, int16_t value, unsigned int from,
 	return false;
 }
 
-void *readback_thread(void *arg)
+static void *read_back(void *arg)
 {
 	struct timespec pause = { .tv_nsec = 50000000 };
 	struct readback *rb = arg;
@@ -51,4 +52,18 @@ void *readback_thread(void *arg)
 	}
 	ecrt_release_master(m);
 	return NULL;
+}
+
+/* With a small stack: all of it is locked, and that takes its time in the cycle. */
+bool readback_start(struct readback *rb, pthread_t *thread)
+{
+	pthread_attr_t attr;
+	bool started;
+
+	if (pthread_attr_init(&attr))
+		return false;
+	started = !pthread_attr_setstacksize(&attr, STACK_BYTES) &&
+		  !pthread_create(thread, &attr, read_back, rb);
+	pthread_attr_destroy(&attr);
+	return started;
 }
