@@ -4,8 +4,9 @@
 # Builds everything, boots Debian's PREEMPT_RT kernel and runs the bats files
 # of this folder in it, one boot each.
 #
-# The guest's time is exact (--icount), so that a busy host fails no test; a file
-# with a line "# vm: OPTIONS" names its own options of tests/vm/run.sh instead.
+# The guest's time is exact (--icount), so that a busy host fails no test and as many
+# run at a time as there are CPUs; a file with a line "# vm: OPTIONS" names its own
+# options of tests/vm/run.sh instead and runs alone, after them.
 #
 # usage: run.sh [FILE.bats...]
 
@@ -31,26 +32,52 @@ make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" >&2 &&
 make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 &&
 make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all >&2 || exit 1
 
-for f in ${*:-tests/system/*.bats}; do
-	echo "# $f"
-	began=$SECONDS
-	out=$(mktemp)
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
+
+# run FILE: boots, writes what it prints and the status
+run() {
+	local f=$1 began=$SECONDS options
+
 	read -ra options < <(sed -n 's/^# vm: *//p' "$f" | grep . || echo --icount)
 	tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
-		env EC_BUILD="$EC_BUILD" sh -c "$preload" sh "$f" >"$out" 2>&1
-	rc=$?
+		env EC_BUILD="$EC_BUILD" sh -c "$preload" sh "$f" >"$logs/${f##*/}" 2>&1
+	echo "$? $((SECONDS - began))" >"$logs/${f##*/}.end"
+}
+
+# report FILE: its results, and counts them
+report() {
+	local f=$1 out=$logs/${1##*/} rc seconds p n
+
+	read -r rc seconds <"$out.end"
+	echo "# $f"
 	grep -E '^(ok|not ok|#)' "$out"
 	p=$(grep -c '^ok' "$out")
 	n=$(grep -c '^not ok' "$out")
 	# an oops, a hang, a crash of the guest
-	if [ $rc != 0 ] && [ "$n" = 0 ] || [ "$p" = 0 ]; then
+	if [ "$rc" != 0 ] && [ "$n" = 0 ] || [ "$p" = 0 ]; then
 		tail -n 40 "$out"
 		echo "not ok $f ended with $rc"
 		n=$((n + 1))
 	fi
 	passed=$((passed + p)) failed=$((failed + n))
-	echo "# $f: $((SECONDS - began)) s"
-	rm -f "$out"
+	echo "# $f: $seconds s"
+}
+
+side=() alone=()
+for f in ${*:-tests/system/*.bats}; do
+	if grep -q '^# vm: ' "$f"; then alone+=("$f"); else side+=("$f"); fi
+done
+at_once=$(nproc)
+for f in ${side[@]+"${side[@]}"}; do
+	while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do wait -n; done
+	run "$f" &
+done
+wait
+for f in ${side[@]+"${side[@]}"}; do report "$f"; done
+for f in ${alone[@]+"${alone[@]}"}; do
+	run "$f"
+	report "$f"
 done
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
