@@ -5,8 +5,8 @@
 # of this folder in it, one boot each.
 #
 # The guest's time is exact (--icount), so that a busy host fails no test and as many
-# run at a time as there are CPUs; a file with a line "# vm: OPTIONS" names its own
-# options of tests/vm/run.sh instead and runs alone, after them.
+# run at a time as there are CPUs. A file with a line "# vm: OPTIONS" names its own
+# options of tests/vm/run.sh instead; without --icount it runs alone, after the others.
 #
 # usage: run.sh [FILE.bats...]
 
@@ -35,11 +35,14 @@ make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all >&2 || exit 1
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 
+# vm_options FILE
+vm_options() { sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount; }
+
 # run FILE: boots, writes what it prints and the status
 run() {
 	local f=$1 began=$SECONDS options
 
-	read -ra options < <(sed -n 's/^# vm: *//p' "$f" | grep . || echo --icount)
+	read -ra options < <(vm_options "$f")
 	tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" sh -c "$preload" sh "$f" >"$logs/${f##*/}" 2>&1
 	echo "$? $((SECONDS - began))" >"$logs/${f##*/}.end"
@@ -66,7 +69,7 @@ report() {
 
 side=() alone=()
 for f in ${*:-tests/system/*.bats}; do
-	if grep -q '^# vm: ' "$f"; then alone+=("$f"); else side+=("$f"); fi
+	if [[ $(vm_options "$f") == *--icount* ]]; then side+=("$f"); else alone+=("$f"); fi
 done
 at_once=$(nproc)
 for f in ${side[@]+"${side[@]}"}; do
