@@ -49,8 +49,10 @@ examples: lib
 # the example that is a kernel module, built as an application's would be
 MINIDIR ?= $(BUILD)/mini
 
+# kbuild does not look again whether symbols of other modules have changed
 mini: modules
 	@mkdir -p $(MINIDIR)
+	@[ ! $(MODDIR)/Module.symvers -nt $(MINIDIR)/Module.symvers ] || rm -f $(MINIDIR)/Module.symvers
 	@for f in Kbuild ec_mini.c; do \
 		cmp -s examples/mini/$$f $(MINIDIR)/$$f || cp examples/mini/$$f $(MINIDIR)/$$f; \
 	done
