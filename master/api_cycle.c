@@ -96,6 +96,9 @@ int ecrt_master_receive(ec_master_t *master)
 	if (!master)
 		return -EINVAL;
 	ret = enter(master, &s);
+	if (ret == -ENODEV)
+		/* what an application finds that does not look at this */
+		master->api->received = ~0ULL;
 	if (ret)
 		return ret;
 	if (ec_api_is_between(master->api)) {

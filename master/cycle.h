@@ -159,7 +159,8 @@ struct ec_cyc_wire {
  * @back: domains of which something is back
  * @cycles: sends so far
  * @schedule: when an application that runs the cycle should send
- * @dc_sent: clock datagrams sent since the last receive, EC_SEND_FLAG_*
+ * @dc_asked: clock datagrams the application wanted since the last receive,
+ *	EC_SEND_FLAG_*
  * @dc_back: which of them are back
  * @dc_time: last time of the reference clock, ns
  * @dc_time_ns: when the frame that brought it was sent (ktime)
@@ -189,7 +190,7 @@ struct ec_cycle {
 	u64 back;
 	u64 cycles;
 	struct ec_schedule schedule;
-	u32 dc_sent;
+	u32 dc_asked;
 	u32 dc_back;
 	u64 dc_time;
 	u64 dc_time_ns;
@@ -244,13 +245,14 @@ void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 /* exchange.c */
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_do_receive(struct ec_session *s);
+void ec_cycle_nothing_back(struct ec_session *s);
 int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
 
 /* dc_cycle.c */
 u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
-u32 ec_dc_wanted(struct ec_master *m, const struct ec_cycle *c, u32 flags);
+u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
 void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now);
 const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns);

@@ -32,6 +32,7 @@
 #define FIFO_DEFAULT	50
 #define INDEX_MASK	3
 #define ADOPT_MS	1000	/* for a takeover, besides two periods */
+#define STEADY		1000	/* cycles in which all take part, before that is relied on */
 
 /* outputs side by side in the image */
 struct area {
@@ -64,6 +65,7 @@ struct slow {
  * @front: output buffer it holds
  * @given: the application has given that buffer, and its outputs are still valid
  * @ahead: outputs of that buffer are not in the image
+ * @steady: cycles in which all slaves took part in a row, up to STEADY
  * @back: input buffer it holds
  * @fed: there were outputs at least once
  * @unfed: cycles without new outputs in a row, up to the limit
@@ -85,6 +87,7 @@ struct ec_cycle_thread {
 	u8 front;
 	bool given;
 	bool ahead;
+	u32 steady;
 	u8 back;
 	bool fed;
 	u32 unfed;
@@ -154,14 +157,15 @@ static bool all_take_part(const struct ec_session *s)
 /*
  * The buffer of the application is sent as it is, which spares a copy of each
  * slave's outputs, and of its inputs when they are back. The inputs in it are no
- * last values that a missing slave could leave: then, and where the kernel itself
- * writes outputs, the image is sent.
+ * last values that a missing slave could leave: then and for a while after it, and
+ * where the kernel itself writes outputs, the image is sent.
  */
 static void choose_source(struct ec_cycle_thread *t)
 {
 	struct ec_session *s = t->session;
 
-	if (!t->given || s->copying || !all_take_part(s)) {
+	t->steady = all_take_part(s) ? min(t->steady + 1, STEADY) : 0;
+	if (!t->given || s->copying || t->steady < STEADY) {
 		use_image(t);
 		return;
 	}
@@ -243,7 +247,7 @@ static void adopt(struct ec_cycle_thread *t)
 }
 
 /* Inputs and working counters of this cycle for the application. */
-static void publish(struct ec_cycle_thread *t, bool received)
+static void publish(struct ec_cycle_thread *t)
 {
 	struct ec_session *s = t->session;
 	struct ec_master *m = s->master;
@@ -256,14 +260,8 @@ static void publish(struct ec_cycle_thread *t, bool received)
 		adopt(t);
 	b->cycle = cycle;
 	b->time_ns = t->next_ns;
-	for (i = 0; i < s->n_domains; i++) {
+	for (i = 0; i < s->n_domains; i++)
 		b->domains[i] = s->shared->status->domains[i];
-		/* without a device nothing has come back */
-		if (!received) {
-			b->domains[i].working_counter = 0;
-			b->domains[i].wc_state = 0;
-		}
-	}
 	memcpy(b + 1, s->shared->image, t->bytes);
 	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
 	/* who sees the number finds the inputs */
@@ -330,12 +328,12 @@ static bool cycle(struct ec_cycle_thread *t)
 	struct ec_master *m = s->master;
 	struct ec_ioc_send send = { .flags = s->kernel.dc };
 	u64 due = t->next_ns, now = ktime_get_ns();
-	bool received;
 	s32 correction;
 
 	send.queued = turn(t, skip_missed(t, now));
 	/* before the first frame the links are not ours */
-	received = status(t)->state != EC_CYCLE_STATE_WAITING && !ec_cycle_receive(s);
+	if (status(t)->state != EC_CYCLE_STATE_WAITING)
+		ec_cycle_receive(s);
 	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
@@ -346,7 +344,7 @@ static bool cycle(struct ec_cycle_thread *t)
 		if (!ec_cycle_send(s, &send))
 			ec_late_count(s, m->last_send_ns - due);
 	}
-	publish(t, received);
+	publish(t);
 	ec_late_work(s, ktime_get_ns() - now);
 	t->next_ns += s->kernel.period_ns + correction;
 	return status(t)->state != EC_CYCLE_STATE_STOPPED;
@@ -561,6 +559,34 @@ int ec_cycle_thread_adopt(struct ec_session *s)
 		return -ETIMEDOUT;
 	WRITE_ONCE(status(t)->takeovers, status(t)->takeovers + 1);
 	return 0;
+}
+
+/**
+ * ec_cycle_thread_outputs() - outputs as they are sent
+ * @s: active session; nothing happens when its cycle sends them from the image
+ * @image: copy of a part of the image
+ * @offset: where in the image that part begins, bytes
+ * @size: its bytes
+ *
+ * The cycle may go on meanwhile: outputs may be of several cycles.
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size)
+{
+	const struct ec_cycle_thread *t = s->thread;
+	const u8 *direct = READ_ONCE(s->cycle.direct);
+	unsigned int i;
+
+	if (!t || !direct)
+		return;
+	for (i = 0; i < t->n_outputs; i++) {
+		u32 from = max(offset, t->outputs[i].offset);
+		u32 to = min(offset + size, t->outputs[i].offset + t->outputs[i].len);
+
+		if (from < to)
+			memcpy(image + (from - offset), direct + from, to - from);
+	}
 }
 
 /**

@@ -82,15 +82,18 @@ u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
  * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
  *
+ * The application is told that those it wants and that are held back are not back.
+ *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0 without reference clock.
  */
-u32 ec_dc_wanted(struct ec_master *m, const struct ec_cycle *c, u32 flags)
+u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
 {
 	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
 	if (!flags)
 		return 0;
+	c->dc_asked |= flags;
 	if (!READ_ONCE(m->dc.wanted))
 		WRITE_ONCE(m->dc.wanted, true);
 	if (!READ_ONCE(m->dc.running))
@@ -190,7 +193,6 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4);
 		put_unaligned_le32(0, p);
 	}
-	s->cycle.dc_sent |= dc & EC_SEND_FLAG_ALL;
 }
 
 static const u8 *skip(const u8 *data, u16 len)
@@ -262,17 +264,17 @@ void ec_dc_judge(struct ec_session *s)
 	struct ec_status *st = s->shared->status;
 
 	WRITE_ONCE(st->dc_ref, READ_ONCE(s->master->dc.ref_station) != 0);
-	if (c->dc_sent & SYNC_SLAVES) {
+	if (c->dc_asked & SYNC_SLAVES) {
 		WRITE_ONCE(st->dc_time, c->dc_time);
 		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));
 	}
-	if (c->dc_sent & REF_TIME) {
+	if (c->dc_asked & REF_TIME) {
 		WRITE_ONCE(st->dc_time64, c->dc_time64);
 		WRITE_ONCE(st->dc_time64_valid, !!(c->dc_back & REF_TIME));
 	}
-	if (c->dc_sent & MONITOR)
+	if (c->dc_asked & MONITOR)
 		WRITE_ONCE(st->dc_monitor, c->dc_back & MONITOR ?
 			   c->dc_diff & ~(u32)EC_DC_DIFF_AHEAD : ~0u);
-	c->dc_sent = 0;
+	c->dc_asked = 0;
 	c->dc_back = 0;
 }

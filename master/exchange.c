@@ -35,6 +35,12 @@ static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 se
 	}
 }
 
+/* It has inputs only, and their last values are in the image. */
+static bool from_image(const struct ec_cyc_dgram *d)
+{
+	return d->cmd == EC_CMD_LRD;
+}
+
 /* Inputs of a datagram in which at least one slave has taken part. */
 static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
@@ -42,10 +48,11 @@ static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
 	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_area *in = &c->areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
+	bool direct = f->direct && !from_image(d);
 	unsigned int i, n;
 
 	/* the outputs come back as well: nobody needs those of the image now */
-	if (complete && d->solid && f->direct && c->direct) {
+	if (complete && d->solid && direct && c->direct) {
 		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
 		return;
 	}
@@ -54,7 +61,7 @@ static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
 	 * from the image. Where outputs were sent, or a part may be of another cycle,
 	 * all must have taken part.
 	 */
-	n = complete ? d->n_whole : f->direct ? 0 : d->n_plain;
+	n = complete ? d->n_whole : direct ? 0 : d->n_plain;
 	for (i = 0; i < n; i++, in++)
 		ec_bytes_copy(image + in->offset, data + in->pos, in->len);
 	if (unlikely(d->n_inputs != d->n_whole) && complete)
@@ -115,6 +122,28 @@ static void judge(struct ec_session *s)
 	}
 	c->sent = 0;
 	c->back = 0;
+}
+
+/**
+ * ec_cycle_nothing_back() - the device is gone, and with it what was on its way
+ * @s: active session, nobody is in its links
+ *
+ * Applications that look at working counters only must see it as well.
+ *
+ * Context: Process.
+ */
+void ec_cycle_nothing_back(struct ec_session *s)
+{
+	struct ec_status *st = s->shared->status;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++) {
+		WRITE_ONCE(st->domains[i].working_counter, 0);
+		WRITE_ONCE(st->domains[i].wc_state, 0);
+	}
+	WRITE_ONCE(st->dc_time_valid, 0);
+	WRITE_ONCE(st->dc_time64_valid, 0);
+	WRITE_ONCE(st->dc_monitor, ~0u);
 }
 
 /**
@@ -218,9 +247,11 @@ struct send {
 static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
 {
 	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
-	const u8 *image = s->cycle.direct ?: s->cycle.domains[d->domain].image;
+	const u8 *image = s->cycle.domains[d->domain].image;
 	unsigned int i;
 
+	if (s->cycle.direct && !from_image(d))
+		image = s->cycle.direct;
 	if (d->holes)
 		memset(data, 0, d->len);
 	for (i = 0; i < d->n_copies; i++, a++)

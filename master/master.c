@@ -86,6 +86,12 @@ void ec_master_link_detach(struct ec_link *link)
 	ec_cycle_own(m, EC_OWNER_IDLE);
 	if (dev->ops->cycle)
 		dev->ops->cycle(dev->priv, false);
+	if (!link->side) {
+		mutex_lock(&m->cyclic_lock);
+		if (m->active)
+			ec_cycle_nothing_back(m->active);
+		mutex_unlock(&m->cyclic_lock);
+	}
 	ec_info(m, "%s device %s is gone\n", link->side ? "backup" : "main", dev->name);
 }
 

@@ -156,8 +156,14 @@ void ec_slot_abandon(struct ec_slots *s)
  */
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
+	u64 sent_ns = slot->sent_ns;
+
 	WRITE_ONCE(slot->sent_ns, now_ns);
-	return atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT;
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT)
+		return true;
+	/* who takes the reply wants to know when it was sent */
+	WRITE_ONCE(slot->sent_ns, sent_ns);
+	return false;
 }
 
 /**

@@ -239,6 +239,20 @@ static void exchange_end_in_flight(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
 }
 
+/* Who looks at working counters only sees that the device is gone. */
+static void exchange_device_gone(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct ec_file *app = &c->b->app;
+
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	ec_device_detach(&c->b->m->link[0]);
+	KUNIT_EXPECT_EQ(test, ec_ioc_receive(app), -ENODEV);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 0u);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
+	KUNIT_EXPECT_EQ(test, send(c), -ENODEV);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(exchange_late, delay_gen_params),
 	KUNIT_CASE(exchange_always_late),
@@ -246,6 +260,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(exchange_receive_twice),
 	KUNIT_CASE(exchange_all_lost),
 	KUNIT_CASE(exchange_end_in_flight),
+	KUNIT_CASE(exchange_device_gone),
 	{}
 };
 
