@@ -220,6 +220,8 @@ bool ec_cycle_stalled(struct ec_master *m)
  */
 void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 {
+	u32 late_per_s = READ_ONCE(m->late_per_s);	/* a takeover may change it */
+
 	w->owner = READ_ONCE(m->owner);
 	w->began_ns = ktime_get_ns();
 	w->timeout_us = m->io_timeout_us;
@@ -227,8 +229,8 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 		return;
 	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
 	/* all that wait have their turn among the late cycles */
-	if (ec_cycle_slack_ns(m) < ec_cycle_need_ns() && m->late_per_s)
-		w->timeout_us += EC_SLOTS * (USEC_PER_SEC / m->late_per_s);
+	if (ec_cycle_slack_ns(m) < ec_cycle_need_ns() && late_per_s)
+		w->timeout_us += EC_SLOTS * (USEC_PER_SEC / late_per_s);
 }
 
 /**

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/minmax.h>
 #include <linux/slab.h>
 #include <linux/string.h>
 #include "emerg.h"
@@ -17,6 +18,34 @@ void ec_emerg_set(struct ec_slave *slave, struct ec_emerg *e)
 	spin_lock(&slave->emerg_lock);
 	slave->emerg = e;
 	spin_unlock(&slave->emerg_lock);
+}
+
+/**
+ * ec_emerg_describe() - write the mapped side of a ring anew
+ * @slave: slave whose emergencies go there, or NULL
+ * @e: ring
+ * @data: offset of the entries in the mapped memory
+ *
+ * Of what the application can write only the number of those it has taken is not
+ * known here. It stays, unless there cannot be so many left: then none is.
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_emerg_describe(struct ec_slave *slave, struct ec_emerg *e, u32 data)
+{
+	struct ec_emerg_ring *ring = e->ring;
+
+	if (slave)
+		spin_lock(&slave->emerg_lock);
+	ring->count = e->count;
+	ring->data = data;
+	ring->reserved = 0;
+	WRITE_ONCE(ring->head, e->head);
+	WRITE_ONCE(ring->overruns, e->overruns);
+	if (e->head - READ_ONCE(ring->tail) > min(e->count, e->head))
+		WRITE_ONCE(ring->tail, e->head);
+	if (slave)
+		spin_unlock(&slave->emerg_lock);
 }
 
 /**

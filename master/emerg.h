@@ -25,6 +25,7 @@ struct ec_emerg {
 };
 
 void ec_emerg_set(struct ec_slave *slave, struct ec_emerg *e);
+void ec_emerg_describe(struct ec_slave *slave, struct ec_emerg *e, u32 data);
 void ec_emerg_push(struct ec_slave *slave, const u8 *message);
 void ec_emerg_poll(struct ec_slave *slave);
 

@@ -360,11 +360,14 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 static int take_over(struct ec_file *f)
 {
 	char why[96];
+	const struct ec_session *heir = f->master->heir;
 	int ret = ec_session_take_over(f->master, why, sizeof(why));
 
 	if (ret == -EEXIST)
 		return ec_refuse(f, ret, "the detached session of master %u was configured otherwise: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
 				 f->master->index, why);
+	if (ret == -ENOSPC)
+		return activate_failed(f, heir, ret);
 	if (ret)
 		return ec_refuse(f, ret, "the cycle of the detached session does not answer; end it with 'ethercat release'");
 	return 0;

@@ -394,18 +394,16 @@ void ec_requests_describe(const struct ec_session *s)
 	area->ring_count = s->n_configs;
 	area->rings = rings_offset(s);
 	for (i = 0; i < s->n_configs; i++) {
-		const struct ec_emerg *e = &rq->lanes[i].emerg;
+		struct ec_emerg *e = &rq->lanes[i].emerg;
 
-		e->ring->count = e->count;
-		e->ring->data = e->data - base;
-		if (e->head - READ_ONCE(e->ring->tail) > e->count)
-			WRITE_ONCE(e->ring->tail, e->head);
+		ec_emerg_describe(s->configs[i]->slave, e, e->data - base);
 	}
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_reqs; i++) {
 		const struct ec_request *r = &rq->reqs[i];
 
 		r->rec->data = r->data - base;
+		r->rec->op = r->op;
 		WRITE_ONCE(r->rec->start, r->seq);
 		WRITE_ONCE(r->rec->done, r->phase == EC_REQUEST_IDLE ? r->seq :
 								     r->seq - 1);

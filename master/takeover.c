@@ -219,6 +219,16 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 	return cycle_differs(&a->kernel, &b->kernel, t);
 }
 
+/*
+ * How many cycles may be late is not part of what is compared: no slave gets it,
+ * and nothing is laid out by it. The new application's word counts from now on.
+ */
+static void adopt_late(struct ec_session *s, u32 per_s)
+{
+	s->late_per_s = per_s;
+	WRITE_ONCE(s->master->late_per_s, per_s);
+}
+
 /**
  * ec_session_take_over() - the heir's application gets the detached session
  * @m: master with a heir
@@ -228,7 +238,8 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
  * The cycle goes on; the heir's configuration is freed.
  *
  * Context: Process, session_lock held. Sleeps until the next cycle has begun.
- * Return: 0; -EEXIST another configuration; -ETIMEDOUT the cycle does not run.
+ * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
+ * -ETIMEDOUT the cycle does not run.
  */
 int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 {
@@ -238,11 +249,14 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 
 	if (session_differs(s, heir, &t))
 		return -EEXIST;
+	if (!heir->late_per_s && ec_cycle_slack_ns(m) < ec_cycle_need_ns())
+		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(s);
 	if (ret)
 		return ret;
 	if (s->requests)
 		ec_requests_describe(s);
+	adopt_late(s, heir->late_per_s);
 	m->heir = NULL;
 	ec_session_set_owner(s, heir->owner);
 	ec_session_free(heir);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The cycle goes on without its application, and another one takes it over. */
 #include "kcyc.h"
+#include "master/emerg.h"
+#include "master/limits.h"
 #include "master/request.h"
 
 static const struct ec_ioc_cycle hold = { .flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10 };
@@ -175,28 +177,87 @@ static void takeover_often(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 }
 
+#define MESS_EMERG	4	/* kept of each slave */
+
+/* With emergencies and a request of the second slave. */
+static struct kcyc *configure_area(struct bus *b)
+{
+	struct ec_ioc_sc_request rq = { .config = 1, .kind = EC_REQUEST_REG, .size = 4 };
+	struct ec_ioc_sc_emerg em = { .config = 1, .count = MESS_EMERG };
+	struct kcyc *a = kcyc_configure(b, hold);
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_request(&b->app, &rq), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_emerg(&b->app, &em), 0);
+	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(a), 0, "%s", b->app.reason);
+	return a;
+}
+
+static struct ec_emerg_ring *ring_of(const struct kcyc *a, u32 config)
+{
+	u8 *area = kcyc_shared(a)->requests;
+
+	return (struct ec_emerg_ring *)(area + ((struct ec_request_area *)area)->rings) + config;
+}
+
+/* As the library does; -1: there is none. */
+static int emerg_pop(const struct kcyc *a, u32 config)
+{
+	struct ec_emerg_ring *r = ring_of(a, config);
+	u32 at;
+
+	if (r->tail == r->head)
+		return -1;
+	KUNIT_ASSERT_NE(a->c->b->test, r->count, 0u);
+	at = r->data + r->tail++ % r->count * EC_EMERG_BYTES;
+	KUNIT_ASSERT_LE(a->c->b->test, at + EC_EMERG_BYTES, kcyc_shared(a)->request_size);
+	return get_unaligned_le16(kcyc_shared(a)->requests + at);
+}
+
+static void emerg_put(const struct kcyc *a, u16 code)
+{
+	u8 message[EC_EMERG_BYTES] = { code & 0xff, code >> 8 };
+
+	ec_emerg_push(bus_slave(a->c->b, 1), message);
+}
+
+/* What an application that runs wild may do to all it can write. */
+static void make_a_mess(struct kcyc *a, u32 i)
+{
+	struct ec_shared *sh = kcyc_shared(a);
+	struct ec_exchange *x = sh->exchange;
+
+	memset(sh->requests, 0xa5 + i, sh->request_size);
+	WRITE_ONCE(x->outputs, i * 0x9e3779b9u);
+	WRITE_ONCE(x->inputs, i * 0x85ebca6bu);
+	x->stride = i * 0xc2b2ae35u;
+	x->app_output = 77;
+}
+
 /* Whatever the one before has left in the memory, the next one finds its way. */
 static void takeover_of_a_mess(struct kunit *test)
 {
-	struct kcyc *a = kcyc_start(test, hold);
-	struct bus *b = a->c->b;
+	struct bus *b = kcyc_bus(test);
+	struct kcyc *a = configure_area(b);
 	struct ec_request_area *area = (void *)kcyc_shared(a)->requests;
 	struct ec_exchange *x = kcyc_shared(a)->exchange;
 	u32 i, stride = x->stride, rings = area->rings;
 
+	kcyc_until_op(a);
 	for (i = 0; i < 20; i++) {
-		WRITE_ONCE(x->outputs, i * 0x9e3779b9u);
-		WRITE_ONCE(x->inputs, i * 0x85ebca6bu);
-		x->stride = i * 0xc2b2ae35u;
-		x->app_output = 77;
-		memset(area, 0xa5 + i, sizeof(*area));
+		make_a_mess(a, i);
 		msleep(i % 3);
 		die(a);
-		a = kcyc_configure(b, hold);
-		KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+		a = configure_area(b);
 		KUNIT_EXPECT_EQ(test, x->stride, stride);
 		KUNIT_EXPECT_EQ(test, area->magic, (u32)EC_REQUEST_MAGIC);
 		KUNIT_EXPECT_EQ(test, area->rings, rings);
+		KUNIT_EXPECT_EQ(test, ring_of(a, 1)->head, i);
+		KUNIT_EXPECT_EQ(test, ring_of(a, 1)->overruns, 0u);
+		KUNIT_EXPECT_EQ(test, emerg_pop(a, 0), -1);
+		KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), -1);
+		emerg_put(a, 0x1000 + i);
+		KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), 0x1000 + (int)i);
+		KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), -1);
 		kcyc_write(a, i);
 		kcyc_give(a);
 		kcyc_wait_cycles(a, 3);
@@ -204,6 +265,70 @@ static void takeover_of_a_mess(struct kunit *test)
 		KUNIT_EXPECT_NOT_NULL(test, kcyc_take(a));
 	}
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+}
+
+/* Emergencies the one before has not taken are the next one's; no others. */
+static void takeover_of_emergencies(struct kunit *test)
+{
+	struct bus *b = kcyc_bus(test);
+	struct kcyc *a = configure_area(b);
+	u32 i;
+
+	kcyc_until_op(a);
+	/* as many as the ring has, but there never were any */
+	ring_of(a, 1)->tail -= MESS_EMERG;
+	die(a);
+	a = configure_area(b);
+	KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), -1);
+	for (i = 0; i < MESS_EMERG + 2; i++)
+		emerg_put(a, 0x1000 + i);
+	KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), 0x1000);
+	die(a);
+	a = configure_area(b);
+	KUNIT_EXPECT_EQ(test, ring_of(a, 1)->overruns, 2u);
+	for (i = 1; i < MESS_EMERG; i++)
+		KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), 0x1000 + (int)i);
+	KUNIT_EXPECT_EQ(test, emerg_pop(a, 1), -1);
+}
+
+static void set_late(struct bus *b, u32 per_s)
+{
+	struct ec_ioc_late late = { .per_s = per_s };
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_late(&b->app, &late), 0);
+}
+
+/* How many cycles may be late is the new application's to say. */
+static void takeover_late_cycles(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_ioc_cycle tight = hold;
+
+	KUNIT_EXPECT_EQ(test, b->m->late_per_s, (u32)EC_LATE_PER_S);
+	die(a);
+	a = kcyc_configure(b, hold);
+	set_late(b, 7);
+	KUNIT_EXPECT_EQ(test, b->m->late_per_s, (u32)EC_LATE_PER_S);
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+	KUNIT_EXPECT_EQ(test, b->m->late_per_s, 7u);
+	KUNIT_EXPECT_EQ(test, b->m->session->late_per_s, 7u);
+	die(a);
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	/* without them a cycle that leaves no room is refused, as any is */
+	tight.period_ns = 250000;
+	a = kcyc_configure(b, tight);
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	die(a);
+	a = kcyc_configure(b, tight);
+	set_late(b, 0);
+	KUNIT_EXPECT_EQ(test, kcyc_activate(a), -ENOSPC);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "ecrt_master_set_late_cycles()"));
+	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_DETACHED);
+	set_late(b, 1);
+	KUNIT_EXPECT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_EQ(test, b->m->late_per_s, 1u);
 }
 
 /* Everything else than the same is refused, and what is different is told. */
@@ -419,6 +544,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(takeover),
 	KUNIT_CASE(takeover_often),
 	KUNIT_CASE(takeover_of_a_mess),
+	KUNIT_CASE(takeover_of_emergencies),
+	KUNIT_CASE(takeover_late_cycles),
 	KUNIT_CASE(takeover_refused),
 	KUNIT_CASE(heir_is_harmless),
 	KUNIT_CASE(end_detached),
