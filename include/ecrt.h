@@ -94,15 +94,15 @@
 #define EC_HAVE_DOMAIN_MEMORY
 /* ecrt_master_deactivate_slaves(); in userspace */
 #define EC_HAVE_DEACTIVATE_SLAVES
-/* ecrt_master_sdo_upload_complete(); in userspace */
-#define EC_HAVE_SDO_UPLOAD_COMPLETE
-/* ecrt_master_64bit_reference_clock_time(); in userspace */
-#define EC_HAVE_REF_CLOCK_TIME_64
-/* ecrt_master_reason(), ecrt_slave_config_reason(); in userspace */
-#define EC_HAVE_REASON
-/* ecrt_slave_config_dc_state(); in userspace */
-#define EC_HAVE_DC_STATE
 #endif
+/* ecrt_master_sdo_upload_complete() */
+#define EC_HAVE_SDO_UPLOAD_COMPLETE
+/* ecrt_master_64bit_reference_clock_time() */
+#define EC_HAVE_REF_CLOCK_TIME_64
+/* ecrt_master_reason(), ecrt_slave_config_reason() */
+#define EC_HAVE_REASON
+/* ecrt_slave_config_dc_state() */
+#define EC_HAVE_DC_STATE
 /* ecrt_slave_config_overlapping_pdos(), of the field's community patches */
 #define EC_HAVE_OVERLAPPING_PDOS
 /* ecrt_master_set_late_cycles(): acyclic frames beside a full wire */

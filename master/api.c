@@ -75,7 +75,6 @@ static void complain(struct ec_master *m, int err, struct va_format *what, const
 	mutex_lock(&f->lock);
 	ec_err(m, "kernel application: cannot %pV%s (error %d)%s%s\n", what, slave, err,
 	       f->reason[0] ? ": " : "", f->reason);
-	f->reason[0] = '\0';
 	mutex_unlock(&f->lock);
 }
 

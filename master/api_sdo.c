@@ -50,6 +50,26 @@ int ecrt_master_sdo_download_complete(ec_master_t *master, uint16_t slave_positi
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_download_complete);
 
+static int upload(struct ec_master *m, struct ec_ioc_sdo *i, u8 *target, size_t target_size,
+		  size_t *result_size, u32 *abort_code)
+{
+	u8 *data;
+	int ret;
+
+	if (!m || !target || !result_size)
+		return -EINVAL;
+	i->size = min_t(size_t, target_size, U32_MAX);
+	*result_size = 0;
+	ec_api_begin(m);
+	ret = ec_ioc_upload(&m->api->file, i, &data);
+	if (!ret) {
+		memcpy(target, data, i->size);
+		*result_size = i->size;
+	}
+	kvfree(data);
+	return ended(m, i, ret, abort_code, "read");
+}
+
 int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position, uint16_t index,
 			   uint8_t subindex, uint8_t *target, size_t target_size,
 			   size_t *result_size, uint32_t *abort_code)
@@ -57,20 +77,19 @@ int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position, uint16_
 	struct ec_ioc_sdo i = {
 		.position = slave_position, .index = index, .subindex = subindex,
 	};
-	u8 *data;
-	int ret;
 
-	if (!master || !target || !result_size)
-		return -EINVAL;
-	i.size = min_t(size_t, target_size, U32_MAX);
-	*result_size = 0;
-	ec_api_begin(master);
-	ret = ec_ioc_upload(&master->api->file, &i, &data);
-	if (!ret) {
-		memcpy(target, data, i.size);
-		*result_size = i.size;
-	}
-	kvfree(data);
-	return ended(master, &i, ret, abort_code, "read");
+	return upload(master, &i, target, target_size, result_size, abort_code);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_upload);
+
+int ecrt_master_sdo_upload_complete(ec_master_t *master, uint16_t slave_position,
+				    uint16_t index, uint8_t *target, size_t target_size,
+				    size_t *result_size, uint32_t *abort_code)
+{
+	struct ec_ioc_sdo i = {
+		.flags = EC_SDO_FLAG_COMPLETE, .position = slave_position, .index = index,
+	};
+
+	return upload(master, &i, target, target_size, result_size, abort_code);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_sdo_upload_complete);

@@ -33,6 +33,7 @@ static void kapi_sdo(struct kunit *test)
 	u8 value[8] = { 0x11, 0x22, 0x33, 0x44 }, back[8];
 	size_t got = 99;
 	u32 abort = 1;
+	char text[256];
 
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x2001, 8, value, 4, &abort), 0);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
@@ -46,6 +47,11 @@ static void kapi_sdo(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x1018, 1, value, 4, &abort), -EIO);
 	KUNIT_EXPECT_EQ(test, abort, (u32)EC_ABORT_READ_ONLY);
+	KUNIT_EXPECT_GT(test, ecrt_master_reason(k->m, text, sizeof(text)), 0);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(text, "0x06010002"));
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x2001, 8, value, 4, &abort), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_reason(k->m, text, sizeof(text)), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_reason(NULL, text, sizeof(text)), -EINVAL);
 	/* too small a buffer stays as it is */
 	memset(back, 0x5a, 8);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 2, &got, &abort), -ENOBUFS);
@@ -66,6 +72,17 @@ static void kapi_sdo_complete(struct kunit *test)
 
 	/* what it is, then one value of it changed */
 	KUNIT_ASSERT_EQ(test, ecrt_master_sdo_upload(k->m, 1, 0x2001, 8, back, 4, &got, &abort), 0);
+	memset(whole, 0, sizeof(whole));
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload_complete(k->m, 1, 0x1018, whole, 128, &got,
+							      &abort), 0);
+	/* four of 32 bits behind the number of them */
+	KUNIT_EXPECT_EQ(test, got, (size_t)18);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(whole), 4u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(whole + 14), 12u);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload_complete(k->m, 1, 0x1018, whole, 17, &got,
+							      &abort), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload_complete(k->m, 1, 0x3fff, whole, 128, &got,
+							      &abort), -EIO);
 	memset(whole, 0, sizeof(whole));
 	whole[0] = 12;
 	whole[2] = 1;
@@ -285,12 +302,15 @@ static void clocks_each(struct kapp *k)
 	ecrt_master_application_time(k->m, ktime_get_ns());
 	ecrt_master_sync_slave_clocks(k->m);
 	ecrt_master_sync_monitor_queue(k->m);
+	ecrt_master_64bit_reference_clock_time_queue(k->m);
 }
 
 static void kapi_clocks(struct kunit *test)
 {
 	struct kapp *k = start(test, 1000);
-	u64 ref, now;
+	ec_slave_config_dc_state_t state;
+	u64 ref, now, time64;
+	char text[256];
 	u32 time;
 	int ret;
 
@@ -298,9 +318,12 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(k->m, k->sc[0]), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, ktime_get_ns()), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_slave_clocks(k->m), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_64bit_reference_clock_time(k->m, &time64), -EINVAL);
+	KUNIT_EXPECT_GT(test, ecrt_slave_config_reason(k->sc[1], text, sizeof(text)), 0);
 	k->each = clocks_each;
 	kapp_op(k);
 	kapp_run(k, 500);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reason(k->sc[1], text, sizeof(text)), 0);
 	kapp_wait(k);
 	KUNIT_ASSERT_EQ(test, ecrt_master_receive(k->m), 0);
 	ret = ecrt_master_reference_clock_time(k->m, &time);
@@ -310,6 +333,15 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ret, 0);
 	/* of the last cycle, in the application's time */
 	KUNIT_EXPECT_LT(test, abs((s32)(time - (u32)ref)), 200000);
+	KUNIT_EXPECT_EQ(test, ecrt_master_64bit_reference_clock_time(k->m, &time64), 0);
+	KUNIT_EXPECT_LT(test, abs((s64)(time64 - ref)), 200000ll);
+	KUNIT_EXPECT_EQ(test, ecrt_master_64bit_reference_clock_time(k->m, NULL), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_dc_state(k->sc[0], &state), 0);
+	KUNIT_EXPECT_TRUE(test, state.reference && state.set && state.bits);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_dc_state(k->sc[1], &state), 0);
+	KUNIT_EXPECT_TRUE(test, !state.reference && state.set && state.in_window);
+	KUNIT_EXPECT_GT(test, state.delay_ns, 0u);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_dc_state(k->sc[1], NULL), -EINVAL);
 	KUNIT_EXPECT_LT(test, ecrt_master_sync_monitor_process(k->m), 1000u);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock_to(k->m, now), 0);
