@@ -384,7 +384,7 @@ static void kapi_hardirq(struct kunit *test)
 	kapp_activate(c.k);
 	pd = ecrt_domain_data(c.k->d);
 	EC_WRITE_U16(pd + c.k->out[0], 0x0f0f);
-	hrtimer_init(&c.timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
+	hrtimer_init_on_stack(&c.timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
 	c.timer.function = timer_cycle;
 	hrtimer_start(&c.timer, ms_to_ktime(1), HRTIMER_MODE_REL_HARD);
 	while (READ_ONCE(c.left) > 1000)
@@ -394,6 +394,7 @@ static void kapi_hardirq(struct kunit *test)
 	while (READ_ONCE(c.left))
 		msleep(10);
 	hrtimer_cancel(&c.timer);
+	destroy_hrtimer_on_stack(&c.timer);
 	KUNIT_EXPECT_TRUE(test, c.hard);
 	KUNIT_EXPECT_EQ(test, c.error, 0);
 	KUNIT_EXPECT_EQ(test, c.k->incomplete, 0ull);
