@@ -753,7 +753,8 @@ EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
  * @master: a reserved master
  * @app_time: ns, by convention since 2000-01-01; may wrap and jump
  *
- * Once per cycle, always at the same place.
+ * Once per cycle, always at the same place. When the clocks are set, which begins
+ * with the first cycle, they go on without the jumps it makes.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-EPERM not reserved; %-EINVAL @master is NULL.
@@ -766,8 +767,9 @@ EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
  * @master: a reserved master
  * @sc: slave whose clock is the reference; NULL: the first one that can be
  *
- * Without its clock, or absent, there is no reference clock at all. A reference
- * clock that is not configured goes to OP with the others, unless it has outputs.
+ * Without its clock, or absent, there is no reference clock at all. When it is
+ * lost later, another one stands in for it until it is back. A reference clock
+ * that is not configured goes to OP with the others, unless it has outputs.
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @master is NULL.

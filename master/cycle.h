@@ -169,6 +169,8 @@ struct ec_cyc_wire {
  * @dc_then_ns: likewise
  * @dc_ppb: how much faster than ktime it runs, 1e-9
  * @dc_diff: last value of register 0x092C, of all slaves
+ * @dc_hold: the time for the reference clock is off: it is not sent
+ * @dc_skip: jumps of that time, ns; they are taken off
  */
 struct ec_cycle {
 	struct ec_cyc_dgram *dgrams;
@@ -199,6 +201,8 @@ struct ec_cycle {
 	u64 dc_then_ns;
 	s32 dc_ppb;
 	u32 dc_diff;
+	bool dc_hold;
+	u64 dc_skip;
 };
 
 /**

@@ -17,6 +17,8 @@
 #define APP_CYCLES	20	/* or for so many that tell none */
 #define CYCLE_BOOST	12000	/* comparisons when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000	/* for them */
+#define TRIES		20	/* to set the clocks while frames are lost */
+#define TRY_MS		50	/* between them */
 
 /* all slaves of the segment, in ring order */
 struct job {
@@ -68,29 +70,46 @@ static void fill_node(struct job *j, unsigned int i)
 	}
 }
 
+/* The clock with this station address, or the first one; @n: there is none. */
+static unsigned int find(const struct job *j, u16 station)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (j->nodes[i].dc && (station == EC_DC_ANY || j->slaves[i]->station == station))
+			break;
+	return i;
+}
+
+static bool any_set(const struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (j->slaves[i]->dc_set)
+			return true;
+	return false;
+}
+
 /*
  * The chosen reference clock; else the one the others follow already, so that
  * a slave that comes in front of it changes nothing; else the first one, though
  * it may have only 32 bits: what is in front of the reference gets no time from
- * it.
+ * it. When the chosen one is lost, another stands in, so that the clocks stay
+ * together; without it they are not set at all.
  */
 static void choose(struct job *j)
 {
 	u16 choice = READ_ONCE(j->m->dc.choice);
-	unsigned int i;
-
-	if (choice == EC_DC_ANY)
-		choice = j->followed;
 
 	j->ref = j->n;
-	for (i = 0; i < j->n; i++) {
-		if (!j->nodes[i].dc)
-			continue;
-		if (choice == EC_DC_ANY || j->slaves[i]->station == choice) {
-			j->ref = i;
+	if (choice != EC_DC_ANY) {
+		j->ref = find(j, choice);
+		if (j->ref == j->n && !any_set(j))
 			return;
-		}
 	}
+	if (j->ref == j->n)
+		j->ref = find(j, j->followed);
 }
 
 static int job_init(struct job *j, struct ec_master *m)
@@ -244,7 +263,7 @@ int ec_dc_measure(struct ec_master *m)
  */
 static u64 latch_time(const struct job *j)
 {
-	u64 app = ec_dc_now(j->m) - (ktime_get_ns() - j->latch_ns), t;
+	u64 app = ec_dc_app_at(j->m, j->latch_ns), t;
 	unsigned int i, set = j->ref;
 
 	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
@@ -289,6 +308,8 @@ static int write_clocks(struct job *j)
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
 	for (i = 0; i < j->n && !ret; i++)
 		j->slaves[i]->dc_set = j->nodes[i].dc;
+	if (!ret)
+		ec_dc_app_set(j->m, t - j->latch_ns, true);
 	kvfree(v);
 	return ret;
 }
@@ -298,16 +319,18 @@ static int write_clocks(struct job *j)
  * with 10 ns of noise over the time since the last frame, and as many steps
  * towards it as it has datagrams. So: first many short frames, to come near;
  * then fewer and long ones with ever smaller steps, to lose the noise; then the
- * cycle alone, with some more datagrams than usual (@boost).
+ * cycle alone, with some more datagrams than usual (@boost). What noise is left
+ * after the first stage, some ppm, must go soon: the second one is quick, too.
  */
 static const struct stage {
 	u16 syncs;	/* datagrams of a frame that carry the time */
 	u16 pad;	/* bytes of one without effect that makes it longer */
-	u16 batch;	/* frames at once */
+	u16 batch;	/* frames at once, at most */
 	u16 frames;	/* in all */
 } near = { .syncs = 15, .batch = 100, .frames = 1600 },
-  quiet = { .syncs = 8, .pad = 1320, .batch = 6, .frames = 1200 },
-  calm = { .syncs = 1, .pad = 1460, .batch = 4, .frames = 2400 };
+  nearer = { .syncs = 8, .pad = 560, .batch = 30, .frames = 900 },
+  quiet = { .syncs = 8, .pad = 1320, .batch = 15, .frames = 1200 },
+  calm = { .syncs = 1, .pad = 1460, .batch = 15, .frames = 2400 };
 
 /*
  * With slaves in front of the reference only the cycle may tell the time: what
@@ -337,22 +360,36 @@ static u16 pad_bytes(const struct job *j, const struct stage *st, u16 bytes)
 	return room > syncs ? min_t(u16, st->pad, room - syncs) : 0;
 }
 
+/*
+ * Frames at once. Half of the cycle stays free, so that none of them is close before
+ * the cycle's: over a short distance the noise looks like some 1000 ppm.
+ */
+static u16 batch(const struct job *j, const struct stage *st, u16 bytes, u16 pad)
+{
+	u32 frame_ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD + pad +
+					st->syncs * (bytes + EC_DGRAM_OVERHEAD));
+	u32 fit = READ_ONCE(j->m->interval_us) * (u32)(NSEC_PER_USEC / 2) / frame_ns;
+
+	return st->pad ? clamp_t(u32, fit, 1, st->batch) : st->batch;
+}
+
 static int compensate(struct job *j, const struct stage *st)
 {
 	static u8 pad[EC_DGRAM_DATA_MAX];
 	struct ec_dc *dc = &j->m->dc;
 	u16 bytes = READ_ONCE(dc->ref_wide) ? 8 : 4;
-	unsigned int i, k, n, done;
+	unsigned int i, k, n, done, frames;
 	u8 t[8];
 	int ret = 0;
 
 	if (READ_ONCE(dc->front))
 		return st == &near ? compensate_by_cycle(dc) : 0;
-	for (done = 0; done < st->frames && !ret; done += st->batch) {
+	for (done = 0; done < st->frames && !ret; done += frames) {
 		u16 ref = READ_ONCE(dc->ref_station), len = pad_bytes(j, st, bytes);
 
 		if (!ref || READ_ONCE(dc->stop))
 			return -ECANCELED;
+		frames = batch(j, st, bytes, len);
 		/* for the case that the reference does not answer */
 		put_unaligned_le64(ec_dc_now(j->m), t);
 		/* far from the frame of the cycle, too */
@@ -360,7 +397,7 @@ static int compensate(struct job *j, const struct stage *st)
 		if (st->pad)
 			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, ec_cycle_room(j->m),
 							 pad);
-		for (i = 0; i < st->batch; i++) {
+		for (i = 0; i < frames; i++) {
 			for (k = 0; k < st->syncs; k++)
 				j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref,
 								 EC_REG_DC_SYSTIME, bytes, t);
@@ -440,22 +477,63 @@ static void await_cycle(struct ec_master *m)
 }
 
 /* Another reference than before, or none, is worth a line. */
+static void tell_ref(const struct job *j, bool lost)
+{
+	struct ec_master *m = j->m;
+	u16 choice = READ_ONCE(m->dc.choice);
+	u16 now = READ_ONCE(m->dc.ref_station), at = now ? j->slaves[j->ref]->position : 0;
+
+	if (!now)
+		ec_warn(m, "the reference clock is gone; the clocks run free until it is back\n");
+	else if (choice != EC_DC_ANY && choice != now)
+		ec_warn(m, "the reference clock is gone; slave %u stands in for it until it is back\n",
+			at);
+	else if (lost)
+		ec_warn(m, "the reference clock is gone; slave %u is the reference clock now\n", at);
+	else
+		ec_info(m, "slave %u is the reference clock now\n", at);
+}
+
 static void change_ref(struct job *j, bool found)
 {
 	struct ec_master *m = j->m;
 	u16 before = READ_ONCE(m->dc.ref_station), now;
+	bool lost = before && m->dc.ref && m->dc.ref->gone;
 
 	if (found)
 		set_ref(j);
 	else	/* until it is back or the session ends; the bus has not lost it */
 		WRITE_ONCE(m->dc.ref_station, 0);
 	now = READ_ONCE(m->dc.ref_station);
-	if (m->dc.fresh || before == now)
-		return;
-	if (now)
-		ec_info(m, "slave %u is the reference clock now\n", j->slaves[j->ref]->position);
-	else
-		ec_warn(m, "the reference clock is gone; the clocks run free until it is back\n");
+	if (!m->dc.fresh && before != now)
+		tell_ref(j, lost);
+}
+
+static bool passes(int ret)
+{
+	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY;
+}
+
+/* Frames may be lost, and slaves may be busy with leaving or coming. */
+static int set(struct job *j)
+{
+	struct ec_dc *dc = &j->m->dc;
+	unsigned int try;
+	int ret = -ENXIO;
+
+	if (j->ref == j->n)
+		change_ref(j, false);
+	for (try = 0; j->ref < j->n && try < TRIES; try++) {
+		memset(j->sum, 0, j->n * sizeof(*j->sum));
+		ret = measure(j);
+		if (!ret)
+			change_ref(j, true);
+		ret = ret ?: write_clocks(j);
+		if (!passes(ret) || READ_ONCE(dc->stop))
+			break;
+		msleep(TRY_MS);
+	}
+	return ret;
 }
 
 static void work(struct work_struct *work)
@@ -463,6 +541,7 @@ static void work(struct work_struct *work)
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
 	struct ec_master *m = container_of(dc, struct ec_master, dc);
 	struct job j;
+	bool was;
 	u64 t0;
 	int ret;
 
@@ -477,14 +556,13 @@ static void work(struct work_struct *work)
 	if (j.ref < j.n && !j.slaves[j.ref]->dc_set)
 		await_time(m, t0);
 	mutex_lock(&dc->lock);
+	was = READ_ONCE(dc->running);
 	/* a clock that is being corrected runs too fast or too slow to measure */
 	WRITE_ONCE(dc->running, false);
-	ret = j.ref < j.n ? measure(&j) : -ENXIO;
-	if (!ret || ret == -ENXIO)
-		change_ref(&j, !ret);
-	ret = ret ?: write_clocks(&j);
+	ret = set(&j);
 	WRITE_ONCE(dc->begun_ns, ktime_get_ns());
-	WRITE_ONCE(dc->running, !ret);
+	/* those that were set before need the cycle in any case */
+	WRITE_ONCE(dc->running, !ret || (was && ret != -ENXIO));
 	ret = ret ?: compensate(&j, &near) ?: check(&j);
 	mutex_unlock(&dc->lock);
 	if (!ret)
@@ -495,7 +573,8 @@ static void work(struct work_struct *work)
 	WRITE_ONCE(dc->boost, ret || READ_ONCE(dc->front) ? 0 : BOOST);
 	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
 	if (!ret)
-		ret = compensate(&j, &quiet) ?: compensate(&j, &calm);
+		ret = compensate(&j, &nearer) ?: compensate(&j, &quiet) ?:
+		      compensate(&j, &calm);
 	job_free(&j);
 }
 
@@ -525,6 +604,8 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	up_read(&m->topo);
 	stop(&m->dc);
 	WRITE_ONCE(m->dc.stop, false);
+	if (all)
+		ec_dc_app_set(m, 0, false);
 	m->dc.fresh = all;
 	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);
@@ -553,6 +634,7 @@ void ec_dc_end(struct ec_master *m)
 	m->dc.begun = false;
 	m->dc.wanted = false;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	ec_dc_app_set(m, 0, false);
 	down_read(&m->topo);
 	WRITE_ONCE(m->dc.ref_station, m->dc.ref ? m->dc.ref->station : 0);
 	up_read(&m->topo);
@@ -583,50 +665,6 @@ int ec_dc_wait(struct ec_slave *s)
 			return -ECANCELED;
 	}
 	return -ETIME;
-}
-
-/**
- * ec_dc_app_time() - the application tells its time
- * @m: master
- * @app_time: ns; any value, also one that has jumped
- * @at_ns: when it was, or will be, that time (ktime)
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
-{
-	struct ec_dc *dc = &m->dc;
-	unsigned long flags;
-
-	raw_spin_lock_irqsave(&dc->time_lock, flags);
-	if (!dc->has_phase && app_time) {
-		dc->phase = app_time;
-		dc->has_phase = true;
-	}
-	dc->told = true;
-	dc->app_time = app_time;
-	dc->app_ktime = at_ns;
-	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
-}
-
-/**
- * ec_dc_now() - the application's time at this moment
- * @m: master
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: ns; without an application the time since 2000-01-01.
- */
-u64 ec_dc_now(struct ec_master *m)
-{
-	struct ec_dc *dc = &m->dc;
-	unsigned long flags;
-	u64 t;
-
-	raw_spin_lock_irqsave(&dc->time_lock, flags);
-	t = dc->has_phase ? dc->app_time + (ktime_get_ns() - dc->app_ktime) :
-	    ktime_get_real_ns() - 946684800ULL * NSEC_PER_SEC;
-	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
-	return t;
 }
 
 void ec_dc_init(struct ec_master *m)

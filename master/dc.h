@@ -9,7 +9,9 @@
 #include <linux/workqueue.h>
 
 struct ec_config;
+struct ec_ioc_send;
 struct ec_master;
+struct ec_session;
 struct ec_slave;
 
 /* choice of the reference clock that is no station address */
@@ -24,6 +26,40 @@ enum ec_dc_state {
 
 /* a larger difference to the reference clock is reported */
 #define EC_DC_LIMIT_NS	EC_UAPI_DC_WINDOW_NS
+
+#define EC_DC_APP_PAST	15
+
+/**
+ * struct ec_dc_app - the application's time as the clocks have it
+ * @base: that time less ktime, ns
+ * @skip: what it has jumped since, ns
+ * @set: the clocks are set: it may not jump
+ * @past: @base of the last cycles, until then
+ * @n_past: cycles so far
+ * @odd: last times told in a row that were off
+ * @first: by how much the first of them was, ns
+ * @sum: how much more the others were, ns
+ * @jumps: since the log has told
+ * @jump_ns: the last one
+ * @ignored: times that were far off, since the log has told
+ * @ignored_ns: by how much the last one was
+ * @log_ns: when the log may tell again (ktime)
+ */
+struct ec_dc_app {
+	u64 base;
+	u64 skip;
+	bool set;
+	u64 past[EC_DC_APP_PAST];
+	u32 n_past;
+	u32 odd;
+	s64 first;
+	s64 sum;
+	u32 jumps;
+	s64 jump_ns;
+	u32 ignored;
+	s64 ignored_ns;
+	u64 log_ns;
+};
 
 /**
  * struct ec_dc - distributed clocks of a master
@@ -51,7 +87,9 @@ enum ec_dc_state {
  * @has_phase: @phase is set
  * @app_time: last application time, ns
  * @app_ktime: when it was that time (ktime), ns
- * @time_lock: protects @phase to @app_ktime
+ * @leads: the application tells the reference clock its time
+ * @app: its time as the clocks have it
+ * @time_lock: protects @phase to @app
  */
 struct ec_dc {
 	struct mutex lock;
@@ -78,6 +116,8 @@ struct ec_dc {
 	bool has_phase;
 	u64 app_time;
 	u64 app_ktime;
+	bool leads;
+	struct ec_dc_app app;
 };
 
 void ec_dc_init(struct ec_master *m);
@@ -86,8 +126,14 @@ int ec_dc_measure(struct ec_master *m);
 void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
 void ec_dc_end(struct ec_master *m);
 int ec_dc_wait(struct ec_slave *s);
+
+/* dc_app.c */
 void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
+void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what, u64 at_ns);
 u64 ec_dc_now(struct ec_master *m);
+u64 ec_dc_app_at(struct ec_master *m, u64 at_ns);
+void ec_dc_app_set(struct ec_master *m, u64 base, bool set);
+void ec_dc_app_log(struct ec_master *m);
 
 /* dc_watch.c */
 void ec_dc_verdict(struct ec_slave *s, u32 value);

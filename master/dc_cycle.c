@@ -98,6 +98,8 @@ u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
 		WRITE_ONCE(m->dc.wanted, true);
 	if (!READ_ONCE(m->dc.running))
 		return 0;
+	if (c->dc_hold)
+		flags &= ~SYNC_REF;
 	if (flags & SYNC_SLAVES)
 		flags |= boost(m, c) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */
@@ -178,7 +180,7 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 
 	for (i = 0; i < refs(dc); i++) {
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)sync_time, p);
+		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
 	}
 	put_unaligned_le64(predicted(&s->cycle, now), t);
 	for (i = 0; i < syncs(dc); i++) {

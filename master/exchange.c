@@ -346,8 +346,7 @@ static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
  */
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
 {
-	if (what->flags & EC_SEND_FLAG_APP_TIME)
-		ec_dc_app_time(s->master, what->app_time, ktime_get_ns());
+	ec_dc_told(s, what, ktime_get_ns());
 	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
 		ec_requests_kick(s->requests);
 	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;

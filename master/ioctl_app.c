@@ -507,11 +507,13 @@ static struct ec_session *enter(struct ec_file *f, int *ret)
 int ec_ioc_app_time(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_app_time *i = arg;
+	struct ec_ioc_send told = { .flags = EC_SEND_FLAG_APP_TIME, .app_time = i->app_time };
 	struct ec_session *s;
 	int ret;
 
-	if (enter(f, &ret)) {
-		ec_dc_app_time(f->master, i->app_time, ktime_get_ns());
+	s = enter(f, &ret);
+	if (s) {
+		ec_dc_told(s, &told, ktime_get_ns());
 		mutex_unlock(&f->master->cyclic_lock);
 		return 0;
 	}

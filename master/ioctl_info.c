@@ -145,7 +145,9 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->debug_level = m->debug;
 	i->app_time = READ_ONCE(m->dc.app_time);
 	down_read(&m->topo);
-	i->ref_clock = m->dc.ref ? m->dc.ref->position : -1;
+	/* one that is gone has left its position to another slave */
+	i->ref_clock = m->dc.ref && !m->dc.ref->gone && READ_ONCE(m->dc.ref_station) ?
+		       m->dc.ref->position : -1;
 	up_read(&m->topo);
 	i->scan_us = m->scan_us;
 	i->scan_frames = m->scan_frames;

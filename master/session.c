@@ -667,6 +667,7 @@ void ec_session_status(struct ec_master *m)
 	if (s && s->active) {
 		log_stalls(s, ktime_get_ns());
 		ec_cycle_lock_log(s);
+		ec_dc_app_log(m);
 		ec_cycle_tell_room(s);
 		st = s->shared->status;
 		WRITE_ONCE(st->slaves_responding, m->slaves_responding);

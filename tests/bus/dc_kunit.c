@@ -127,12 +127,47 @@ static void dc_hundred(struct kunit *test)
 	us = set(c);
 	bus_figure("clocks of 100 slaves, +-100 ppm, tree: set %llu us after activation, worst true difference %llu ns",
 		   us, worst(c->b));
-	for (i = 0; i < 300; i++) {
-		cyc_run(c, 100);
+	/* noise of the first stage would show within some 100 ms */
+	for (i = 0; i < 800; i++) {
+		cyc_run(c, i < 500 ? 1 : 100);
 		max = max_t(u32, max, worst(c->b));
 	}
 	bus_figure("worst true difference in the 30 s after that: %u ns", max);
-	KUNIT_EXPECT_LT(test, max, 100u);
+	KUNIT_EXPECT_LT(test, max, 60u);
+}
+
+#define SEEDS	12u
+
+/*
+ * While the clocks lose the noise of the first stage, no other noise comes in: with
+ * frames close before the cycle's a third of these had more than 60 ns, one 122.
+ */
+static void dc_settles_quietly(struct kunit *test)
+{
+	u32 seed, i, max = 0;
+	char text[1200];
+
+	for (seed = 1; seed <= SEEDS; seed++) {
+		u32 n = scnprintf(text, sizeof(text), "segment seed=%u\n", seed * 1001);
+		struct cyc *c;
+
+		for (i = 0; i < 16; i++)
+			n += scnprintf(text + n, sizeof(text) - n,
+				       "slave d%u drive in=8 out=8 drift=%dppm clock=%ums cable=%u\n",
+				       i, (int)((i + seed) * 77 % 201) - 100, i * 313,
+				       20 + i * 7 % 90);
+		c = start(test, text, 16);
+		set(c);
+		for (i = 0; i < 700; i++) {
+			cyc_run(c, 1);
+			max = max_t(u32, max, worst(c->b));
+		}
+		bus_down(c->b);
+		test->priv = NULL;
+	}
+	bus_figure("16 slaves, %u times: worst true difference in the 0.7 s after they are set: %u ns",
+		   SEEDS, max);
+	KUNIT_EXPECT_LT(test, max, 50u);
 }
 
 /* SYNC0 of two slaves has the phase that was asked for, at every start. */
@@ -394,14 +429,15 @@ static void dc_chosen_is_lost(struct kunit *test)
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_LT(test, worst_to(b, 2, 2), 500ull);
 	bus_fault(b, EC_SIM_FAULT_CUT, 0, 2, 0, 0);
-	for (i = 0; i < 100 && READ_ONCE(b->m->dc.ref_station); i++)
+	for (i = 0; i < 100 && READ_ONCE(b->m->dc.ref_station) != bus_slave(b, 0)->station; i++)
 		cyc_run(c, 10);
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 10);
-	KUNIT_EXPECT_EQ(test, b->m->session->shared->status->dc_ref, 0u);
+	/* another one stands in */
+	KUNIT_EXPECT_EQ(test, b->m->session->shared->status->dc_ref, 1u);
 	max = watch(c, 0, 2, 20);
 	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
-	KUNIT_EXPECT_LT(test, max, 10000ull);
+	KUNIT_EXPECT_LT(test, max, 200ull);
 	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
 	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
 	     i++)
@@ -478,6 +514,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_are_true),
 	KUNIT_CASE(dc_clocks_agree),
 	KUNIT_CASE(dc_hundred),
+	KUNIT_CASE(dc_settles_quietly),
 	KUNIT_CASE(dc_sync0_phase),
 	KUNIT_CASE(dc_chosen_reference),
 	KUNIT_CASE(dc_mixed),

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The application's time jumps after the clocks are set to it: they go on, SYNC0
+ * keeps its place to the frames, and nothing of it is silent.
+ */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+#include "master/wire/dc_lock.h"
+
+#define PERIOD_NS	1000000
+#define STARTS		5u
+
+/**
+ * struct told - what an application tells of its time
+ * @leads: and the reference clock has to follow
+ * @narrow: as it has only 32 bits of it for that
+ * @add: its time is so much later than the machine's
+ * @once: another time for the next cycle, 0: none
+ * @still: the same time again and again
+ * @late_us: two of five sends are so late
+ * @late: which of them
+ */
+struct told {
+	bool leads;
+	bool narrow;
+	u64 add;
+	u64 once;
+	bool still;
+	u32 late_us;
+	u32 late;
+};
+
+static void each(struct cyc *c)
+{
+	struct told *t = c->ctx;
+
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	if (t->leads)
+		c->flags |= EC_SEND_FLAG_SYNC_REF;
+	if (!t->still)
+		c->app_time = ktime_to_ns(c->next) + t->add;
+	if (t->once)
+		c->app_time = t->once;
+	t->once = 0;
+	c->sync_time = t->narrow ? (u32)c->app_time : c->app_time;
+	if (t->late_us && (c->cycles + t->late) % 5 < 2)
+		usleep_range(t->late_us, t->late_us + 1);
+}
+
+static const struct variant {
+	const char *name;
+	struct told told;
+	const char *text;
+} variants[] = {
+	{ "follows", { .add = 123456789 }, "" },
+	{ "leads", { .leads = true, .add = 848584520973327310 }, "" },
+	{ "leads with 32 bits", { .leads = true, .narrow = true, .add = 848584520973327310 }, "" },
+	{ "leads clocks of 32 bits", { .leads = true, .add = 848584520973327310 }, "dc=32" },
+};
+
+static void variant_name(const struct variant *v, char *desc)
+{
+	strscpy(desc, v->name, KUNIT_PARAM_DESC_SIZE);
+}
+
+KUNIT_ARRAY_PARAM(variant, variants, variant_name);
+
+/* In OP with SYNC0, and @t as it is told. */
+static struct cyc *start(struct kunit *test, struct told *t, const char *clocks)
+{
+	struct bus *b;
+	struct cyc *c;
+	char text[256];
+	u32 i;
+
+	snprintf(text, sizeof(text), "segment seed=7\n"
+		 "slave a drive in=8 out=8 drift=87ppm cable=50 clock=5s %s\n"
+		 "slave b drive in=8 out=8 drift=-93ppm cable=20 clock=900s %s\n", clocks, clocks);
+	b = bus_up(test, text, 2);
+	bus_idle(b);
+	c = cyc_new(b, PERIOD_NS / 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	for (i = 0; i < 2; i++) {
+		struct ec_ioc_sc_dc dc = {
+			.config = i, .assign_activate = 0x0300, .cycle0 = PERIOD_NS,
+		};
+
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	}
+	c->each = each;
+	c->ctx = t;
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	return c;
+}
+
+static s64 since_start(struct bus *b, u32 slave, u64 now)
+{
+	struct ec_esc *esc = bus_esc(b, slave);
+
+	ec_sim_advance(b->sim, now);
+	return ec_esc_local_time(esc, now) + get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET) -
+	       esc->dc.start;
+}
+
+/*
+ * Cycles in which SYNC0, less the machine's time, moves by no more than @drift_ns and
+ * the slaves differ by no more than @apart_ns.
+ */
+static void expect_steady(struct cyc *c, u32 cycles, u64 drift_ns, s64 apart_ns,
+			  const char *what)
+{
+	u64 now = ktime_get_ns();
+	s64 was = since_start(c->b, 0, now) - now, most = 0, apart = 0;
+
+	while (cycles--) {
+		s64 t;
+
+		cyc_run(c, 1);
+		now = ktime_get_ns();
+		t = since_start(c->b, 0, now);
+		most = max_t(s64, most, abs(t - (s64)now - was));
+		apart = max_t(s64, apart, abs((s32)((u32)ec_esc_system_time(bus_esc(c->b, 1), now) -
+						    (u32)ec_esc_system_time(bus_esc(c->b, 0), now))));
+	}
+	bus_figure("%s: SYNC0 moves by %lld ns against the frames, slaves %lld ns apart", what, most,
+		   apart);
+	KUNIT_EXPECT_LT(c->b->test, most, (s64)drift_ns);
+	KUNIT_EXPECT_LT(c->b->test, apart, apart_ns);
+	KUNIT_EXPECT_TRUE(c->b->test, bus_esc(c->b, 0)->dc.running);
+	KUNIT_EXPECT_TRUE(c->b->test, cyc_all_op(c));
+}
+
+/* the log tells nothing more until expect_told() */
+static void hush(struct cyc *c)
+{
+	c->b->m->dc.app.log_ns = ~0ull;
+}
+
+/* What it was given to tell since then; now it does, and not again for 10 s. */
+static void expect_told(struct cyc *c, u32 jumps, bool ignored)
+{
+	struct ec_dc_app *a = &c->b->m->dc.app;
+	struct kunit *test = c->b->test;
+
+	KUNIT_EXPECT_EQ(test, a->jumps, jumps);
+	KUNIT_EXPECT_EQ(test, a->ignored != 0, ignored);
+	a->log_ns = 0;
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, a->jumps, 0u);
+	KUNIT_EXPECT_EQ(test, a->ignored, 0u);
+	KUNIT_EXPECT_GT(test, a->log_ns, ktime_get_ns());
+	hush(c);
+}
+
+/* where the clocks may drift within so many cycles when nobody leads them */
+static u64 drift(const struct told *t, u32 cycles)
+{
+	return 10000 + (t->leads ? 0 : cycles * 100);
+}
+
+/* One second forth, as a time service does, and back to 0 as after a new start. */
+static void app_jumps(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = v->told;
+	struct cyc *c = start(test, &t, v->text);
+
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, c->b->m->dc.app.log_ns, 0ull);
+	hush(c);
+	t.add += NSEC_PER_SEC;
+	expect_steady(c, 2000, drift(&t, 2000), 2000, "1 s forth");
+	KUNIT_EXPECT_LT(test, abs(c->b->m->dc.app.jump_ns - NSEC_PER_SEC), 10000l);
+	expect_told(c, 1, false);
+	t.add -= c->app_time + PERIOD_NS;
+	expect_steady(c, 2000, drift(&t, 2000), 2000, "begins with 0 again");
+	expect_told(c, 1, false);
+	/* and it is followed */
+	KUNIT_EXPECT_FALSE(test, c->b->m->session->cycle.dc_hold);
+}
+
+/* A single 0, and a time that stands still. */
+static void app_is_off(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = v->told;
+	struct cyc *c = start(test, &t, v->text);
+
+	cyc_run(c, 3000);
+	hush(c);
+	t.once = 1;
+	expect_steady(c, 1000, drift(&t, 1000), 2000, "1 ns once");
+	expect_told(c, 0, true);
+	/* nobody leads meanwhile */
+	t.still = true;
+	expect_steady(c, 1000, drift(&t, 1000) + 20000, 2000, "stands still");
+	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.dc_hold, t.leads);
+	t.still = false;
+	expect_steady(c, 3000, drift(&t, 3000) + 20000, 5000, "goes on");
+	expect_told(c, 0, true);
+	expect_steady(c, 1000, drift(&t, 1000), 1000, "a while later");
+}
+
+/* A slave that comes after a jump has its SYNC0 where the others have it. */
+static void app_jumps_then_slave(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = v->told;
+	struct cyc *c = start(test, &t, v->text);
+	struct bus *b = c->b;
+	u64 now;
+	u32 i;
+
+	cyc_run(c, 2000);
+	t.add -= 17 * NSEC_PER_SEC + 12345;
+	cyc_run(c, 1000);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	for (i = 0; i < 100 && b->m->n_slaves != 1; i++)
+		cyc_run(c, 10);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+	for (i = 0; i < 100 && b->m->n_slaves != 2; i++)
+		cyc_run(c, 10);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 1000);
+	now = ktime_get_ns();
+	KUNIT_EXPECT_TRUE(test, bus_esc(b, 1)->dc.running);
+	/* both at the same place of the period */
+	KUNIT_EXPECT_LT(test, abs(ec_dc_lock_wrap(since_start(b, 1, now) - since_start(b, 0, now),
+						  PERIOD_NS)), 2000);
+}
+
+/* Time of the reference clock less the application's when the clocks were just set. */
+static s64 begin(struct cyc *c, const struct told *t)
+{
+	u64 now;
+	u32 i;
+
+	for (i = 0; i < 1000 && !READ_ONCE(c->b->m->dc.running); i++)
+		cyc_run(c, 1);
+	now = ktime_get_ns();
+	ec_sim_advance(c->b->sim, now);
+	return ec_esc_system_time(bus_esc(c->b, 0), now) - now - t->add;
+}
+
+/* The clocks begin with the time of most cycles, whatever one of them is. */
+static void app_is_late(struct kunit *test)
+{
+	struct told t = { .leads = true, .add = 123456789, .late_us = 320 };
+	struct bus *b = bus_up(test, "repeat 2 slave s drive in=8 out=8", 2);
+	s64 worst = 0;
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < STARTS; i++) {
+		struct cyc *c = cyc_new(b, PERIOD_NS / 1000);
+
+		cyc_domain(c);
+		cyc_map_all(c, 0, 2, 0);
+		c->each = each;
+		c->ctx = &t;
+		t.late = i;
+		cyc_activate(c);
+		worst = max_t(s64, worst, abs(begin(c, &t)));
+		/* lateness is no jump */
+		cyc_run(c, 500);
+		KUNIT_EXPECT_EQ(test, b->m->dc.app.log_ns, 0ull);
+		cyc_release(c);
+		bus_idle(b);
+	}
+	bus_figure("of 5 sends 2 are 320 us late: in %u starts the reference begins %lld ns off at most",
+		   STARTS, worst);
+	KUNIT_EXPECT_LT(test, worst, 20000ll);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE_PARAM(app_jumps, variant_gen_params),
+	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
+	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
+	KUNIT_CASE(app_is_late),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_dc_app", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
