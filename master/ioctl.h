@@ -42,6 +42,7 @@ int ec_ioc_reset(struct ec_file *f, void *arg);
 int ec_ioc_end_detached(struct ec_file *f, void *arg);
 
 /* ioctl_config.c: what an application has configured */
+struct ec_config *ec_ioc_show_config(struct ec_file *f, u32 index, int *ret);
 int ec_ioc_config(struct ec_file *f, void *arg);
 int ec_ioc_config_sm(struct ec_file *f, void *arg);
 int ec_ioc_config_pdo(struct ec_file *f, void *arg);

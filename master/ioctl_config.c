@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that show what the application has configured. */
+#include <linux/mm.h>
+#include <linux/slab.h>
 #include <linux/uaccess.h>
 #include "config.h"
 #include "domain.h"
@@ -7,6 +9,30 @@
 #include "master.h"
 #include "session.h"
 #include "slave.h"
+
+/*
+ * mmap() takes session_lock with the memory of the process locked, and a page of
+ * that may be missing: nothing is copied to the process with session_lock held.
+ */
+static void *keep(const void *data, u32 size, int *ret)
+{
+	void *copy = kvmalloc(size, GFP_KERNEL_ACCOUNT);
+
+	if (copy)
+		memcpy(copy, data, size);
+	else
+		*ret = -ENOMEM;
+	return copy;
+}
+
+/* Without the lock: what keep() has kept, which is freed; NULL: nothing. */
+static int hand_over(u64 to, void *copy, u32 size, int ret)
+{
+	if (copy && copy_to_user(u64_to_user_ptr(to), copy, size))
+		ret = -EFAULT;
+	kvfree(copy);
+	return ret;
+}
 
 /* Locks the session; NULL with the reason noted and unlocked when there is none. */
 static struct ec_session *lock(struct ec_file *f, int *ret)
@@ -30,8 +56,18 @@ static int done(struct ec_file *f, int ret)
 	return ret;
 }
 
-/* The same, and a configuration of the session. */
-static struct ec_config *lock_config(struct ec_file *f, u32 index, int *ret)
+/**
+ * ec_ioc_show_config() - lock a session and find a configuration in it, to look
+ * @f: open file
+ * @index: of the configuration
+ * @ret: why there is none
+ *
+ * An application sees its own session, everybody else that which runs.
+ *
+ * Context: Process. May sleep. session_lock is held when one is returned.
+ * Return: configuration, or NULL with the reason noted.
+ */
+struct ec_config *ec_ioc_show_config(struct ec_file *f, u32 index, int *ret)
 {
 	struct ec_session *s = lock(f, ret);
 
@@ -44,7 +80,7 @@ static struct ec_config *lock_config(struct ec_file *f, u32 index, int *ret)
 	return NULL;
 }
 
-/* The same, and a domain. */
+/* The same with a domain. */
 static struct ec_domain *lock_domain(struct ec_file *f, u32 index, int *ret)
 {
 	struct ec_session *s = lock(f, ret);
@@ -62,7 +98,7 @@ int ec_ioc_config(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config *i = arg;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -87,7 +123,7 @@ int ec_ioc_config_sm(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_sm *i = arg;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -115,7 +151,7 @@ int ec_ioc_config_pdo(struct ec_file *f, void *arg)
 	struct ec_ioc_config_pdo *i = arg;
 	const struct ec_pdo *p;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -132,7 +168,7 @@ int ec_ioc_config_entry(struct ec_file *f, void *arg)
 	struct ec_ioc_config_entry *i = arg;
 	const struct ec_pdo *p;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -151,9 +187,10 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_sdo *i = arg;
 	struct ec_config_sdo *sdo;
-	u32 k = 0;
+	void *copy = NULL;
+	u32 k = 0, size = 0;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -166,12 +203,13 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 		i->flags = sdo->complete ? EC_SDO_FLAG_COMPLETE : 0;
 		i->sdo_index = sdo->index;
 		i->subindex = sdo->sub;
-		ret = copy_to_user(u64_to_user_ptr(i->data), sdo->data,
-				   min(i->size, sdo->size)) ? -EFAULT : 0;
+		size = min(i->size, sdo->size);
+		copy = keep(sdo->data, size, &ret);
 		i->size = sdo->size;
 		break;
 	}
-	return done(f, ret);
+	done(f, ret);
+	return hand_over(i->data, copy, size, ret);
 }
 
 int ec_ioc_config_flag(struct ec_file *f, void *arg)
@@ -180,7 +218,7 @@ int ec_ioc_config_flag(struct ec_file *f, void *arg)
 	struct ec_config_flag *flag;
 	u32 k = 0;
 	int ret = 0;
-	struct ec_config *c = lock_config(f, i->index, &ret);
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
@@ -245,6 +283,7 @@ int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 int ec_ioc_domain_data(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_domain_data *i = arg;
+	void *copy = NULL;
 	int ret = 0;
 	struct ec_domain *d = lock_domain(f, i->index, &ret);
 
@@ -254,8 +293,8 @@ int ec_ioc_domain_data(struct ec_file *f, void *arg)
 		ret = ec_refuse(f, -ENOENT, "the application has not activated the master");
 	} else {
 		i->size = min(i->size, d->size);
-		if (copy_to_user(u64_to_user_ptr(i->data), ec_domain_data(d), i->size))
-			ret = -EFAULT;
+		copy = keep(ec_domain_data(d), i->size, &ret);
 	}
-	return done(f, ret);
+	done(f, ret);
+	return hand_over(i->data, copy, i->size, ret);
 }

@@ -116,15 +116,13 @@ int ec_ioc_sc_ip(struct ec_file *f, void *arg)
 
 int ec_ioc_config_ip(struct ec_file *f, void *arg)
 {
-	struct ec_master *m = f->master;
 	struct ec_ioc_sc_ip *i = arg;
 	int ret = 0;
+	struct ec_config *c = ec_ioc_show_config(f, i->config, &ret);
 
-	mutex_lock(&m->session_lock);
-	if (!m->session || i->config >= m->session->n_configs)
-		ret = ec_refuse(f, -ENOENT, "there is no slave configuration %u", i->config);
-	else
-		to_user(&i->params, &m->session->configs[i->config]->ip);
-	mutex_unlock(&m->session_lock);
-	return ret;
+	if (!c)
+		return ret;
+	to_user(&i->params, &c->ip);
+	mutex_unlock(&f->master->session_lock);
+	return 0;
 }

@@ -7,17 +7,15 @@
 
 int ec_ioc_config_why(struct ec_file *f, void *arg)
 {
-	struct ec_master *m = f->master;
 	struct ec_ioc_config_why *i = arg;
 	int ret = 0;
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
-	mutex_lock(&m->session_lock);
-	if (!m->session || i->index >= m->session->n_configs)
-		ret = ec_refuse(f, -ENOENT, "there is no slave configuration %u", i->index);
-	else
-		i->len = ec_config_why(m->session->configs[i->index], i->text, sizeof(i->text));
-	mutex_unlock(&m->session_lock);
-	return ret;
+	if (!c)
+		return ret;
+	i->len = ec_config_why(c, i->text, sizeof(i->text));
+	mutex_unlock(&f->master->session_lock);
+	return 0;
 }
 
 int ec_ioc_slaves_down(struct ec_file *f, void *arg)

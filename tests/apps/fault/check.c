@@ -60,6 +60,7 @@ static const struct {
 	{ "states", check_states },
 	{ "limits", check_limits },
 	{ "mmap", check_mmap },
+	{ "pages", check_pages },
 };
 
 int main(int argc, char **argv)

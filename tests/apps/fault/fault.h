@@ -76,4 +76,7 @@ void check_limits(void);
 /* map.c */
 void check_mmap(void);
 
+/* pages.c: pages that are not there, while another thread maps */
+void check_pages(void);
+
 #endif
