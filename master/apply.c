@@ -36,6 +36,17 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 	return ret;
 }
 
+/* What the application allows for a transition, ms; 0: the default. */
+static u32 limit(const struct ec_slave *s, u8 from, u8 to)
+{
+	return s->config && ec_al_state_valid(from) ? s->config->timeout_ms[from][to] : 0;
+}
+
+static int set_state(struct ec_slave *s, u8 state)
+{
+	return ec_al_set(s, state, limit(s, s->al_status & EC_AL_STATE_MASK, state));
+}
+
 static const u8 zero[256];
 
 /*
@@ -55,7 +66,7 @@ static int clear_fmmus(struct ec_slave *s)
 static int to_init(struct ec_slave *s)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
-	int ret = ec_al_set(s, EC_AL_INIT, 0);
+	int ret = set_state(s, EC_AL_INIT);
 
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
@@ -113,7 +124,7 @@ static int to_boot(struct ec_slave *s)
 		return -EOPNOTSUPP;
 	}
 	ret = write_reg(s, EC_REG_SM(0), page, len) ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?:
-	      ec_al_set(s, EC_AL_BOOT, 0);
+	      set_state(s, EC_AL_BOOT);
 	return ret ? failed(s, EC_AL_BOOT, ret) : 0;
 }
 
@@ -125,7 +136,7 @@ static int to_preop(struct ec_slave *s)
 	unsigned int len = ec_apply_mailbox_sms(s, page);
 	int ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
 
-	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: ec_al_set(s, EC_AL_PREOP, 0);
+	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
 	s->ours = !ret;
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
@@ -434,7 +445,7 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 	if (!ret)
 		ret = start_sync(s, c);
 	if (!ret)
-		ret = ec_al_set(s, EC_AL_SAFEOP, c ? c->timeout_ms[EC_AL_PREOP][EC_AL_SAFEOP] : 0);
+		ret = set_state(s, EC_AL_SAFEOP);
 	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
 }
 
@@ -478,7 +489,7 @@ static int wait_outputs(struct ec_slave *s)
 /* In PREOP nobody needs the SYNC signals of a slave any more. */
 static int step_down(struct ec_slave *s, u8 want)
 {
-	int ret = ec_al_set(s, want, 0);
+	int ret = set_state(s, want);
 
 	if (!ret && want == EC_AL_PREOP && ec_slave_features(s) & EC_FEAT_DC)
 		ec_dc_sync_stop(s);
@@ -523,8 +534,7 @@ static int step(struct ec_slave *s)
 			ret = write_idns(s, s->config, EC_AL_SAFEOP);
 		if (ret)
 			return ret;
-		ret = ec_al_set(s, EC_AL_OP,
-				s->config ? s->config->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] : 0);
+		ret = set_state(s, EC_AL_OP);
 		return ret ? failed(s, EC_AL_OP, ret) : 0;
 	default:
 		return to_init(s);
