@@ -322,9 +322,11 @@ EC_PUBLIC_API unsigned int ecrt_version_magic(void);
  * ecrt_request_master() - open a master and reserve it
  * @master_index: which one, from 0
  *
- * ecrt_open_master() and ecrt_master_reserve() in one call.
+ * ecrt_open_master() and ecrt_master_reserve() in one call: it waits until a scan
+ * has ended, freezes the list of slaves until activation and takes all slaves to
+ * PREOP.
  *
- * Context: Process. Waits for bus traffic (a scan that is going on).
+ * Context: Process. Waits for bus traffic.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
  * (%-EACCES), taken (%-EBUSY), without its device (%-ENODEV), interrupted
  * (%-EINTR).
@@ -363,8 +365,9 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
  * ecrt_master_reserve() - take an opened master for this application
  * @master: from ecrt_open_master()
  *
- * Waits until a scan has ended, freezes the list of slaves until activation
- * and takes all slaves to PREOP. While a detached cycle of the kernel runs
+ * Waits until a scan has ended, freezes the list of slaves until activation,
+ * takes all slaves to PREOP and waits for that, for 10 s at most; only one that has
+ * failed on the way to PREOP already is left alone. While a detached cycle of the kernel runs
  * (%EC_CYCLE_DETACH), it touches no slave. Userspace only.
  *
  * Context: Process. Waits for bus traffic.
@@ -416,7 +419,8 @@ EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
  *
  * Causes no bus traffic.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
+ * no allocation. For a cycle in userspace there is ecrt_master_state().
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master(ec_master_t *master,
@@ -425,9 +429,11 @@ EC_PUBLIC_API int ecrt_master(ec_master_t *master,
 /**
  * ecrt_master_scan_progress() - how far a scan has come
  * @master: an opened master
- * @progress: out
+ * @progress: out: slaves that answer and how many of them have been read; without
+ *	a scan all that are known, twice
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
+ * no allocation.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
@@ -1127,7 +1133,8 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
  * ecrt_master_reset() - try slaves again that could not be configured
  * @master: a master opened for writing; need not be reserved
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
+ * no allocation.
  * Return: 0; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);

@@ -398,7 +398,7 @@ int ecrt_master_scan_progress(ec_master_t *master,
 		return ec_fail_ioctl(master, ret,
 				     "get scan progress of master %u",
 				     master->index);
-	progress->slave_count = info.slave_count;
+	progress->slave_count = info.scan_slaves;
 	progress->scan_index = info.scan_index;
 	return 0;
 }

@@ -164,8 +164,11 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	if (READ_ONCE(api->active)) {
 		api->next.app_time = app_time;
 		api->next.flags |= EC_SEND_FLAG_APP_TIME;
-	} else {
-		/* before activation there is no cycle it could go with */
+	} else if (!READ_ONCE(master->heir)) {
+		/*
+		 * Before activation there is no cycle it could go with. An heir can only
+		 * be this application: the cycle that runs has its own time then.
+		 */
 		ec_dc_app_time(master, app_time, ktime_get_ns());
 	}
 	return 0;

@@ -19,8 +19,7 @@ int ecrt_master_scan_progress(ec_master_t *master, ec_master_scan_progress_t *pr
 {
 	if (!master || !progress)
 		return -EINVAL;
-	progress->slave_count = READ_ONCE(master->n_slaves);
-	progress->scan_index = ec_master_scan_busy(master) ? 0 : progress->slave_count;
+	ec_master_scan_progress(master, &progress->scan_index, &progress->slave_count);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_scan_progress);

@@ -119,6 +119,9 @@ int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *s
 
 	if (!master)
 		return -EINVAL;
+	if (sc && ec_api_master(sc) != master)
+		return ec_api_fail(master, -EINVAL,
+				   "select another master's slave as the reference clock");
 	if (sc)
 		i.config = ec_api_config(sc)->index;
 	ret = ec_api_do(master, ec_ioc_ref_clock, &i);

@@ -140,7 +140,7 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->slaves_responding = m->slaves_responding;
 	i->al_states = m->al_states;
 	i->scan_busy = ec_master_scan_busy(m);
-	i->scan_index = i->scan_busy ? 0 : m->n_slaves;
+	ec_master_scan_progress(m, &i->scan_index, &i->scan_slaves);
 	i->scan_count = READ_ONCE(m->scan_count);
 	i->debug_level = m->debug;
 	i->app_time = READ_ONCE(m->dc.app_time);

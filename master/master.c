@@ -114,20 +114,43 @@ struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position)
 	return s;
 }
 
-static bool settled(struct ec_master *m)
+/* No slave on its way to another state, PDOs read. */
+static bool slaves_settled(struct ec_master *m)
 {
 	unsigned int i;
 	bool ok = true;
 
-	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan) || !READ_ONCE(m->looked))
-		return false;
 	down_read(&m->topo);
 	for (i = 0; i < m->n_slaves && ok; i++)
 		ok = !work_busy(&m->slaves[i]->work) && !ec_slave_pdos_pending(m->slaves[i]);
-	/* a bus that answers is scanned first */
-	ok &= m->n_slaves == READ_ONCE(m->slaves_responding);
 	up_read(&m->topo);
 	return ok;
+}
+
+static bool settled(struct ec_master *m)
+{
+	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan) || !READ_ONCE(m->looked))
+		return false;
+	/* a bus that answers is scanned first */
+	return slaves_settled(m) && READ_ONCE(m->n_slaves) == READ_ONCE(m->slaves_responding);
+}
+
+/* The last step of a worker wakes nobody, so that is looked at now and then. */
+static int wait_until(struct ec_master *m, bool (*there)(struct ec_master *m), unsigned int looks,
+		      unsigned int look_ms)
+{
+	unsigned int i;
+	long ret;
+
+	for (i = 0; i < looks; i++) {
+		ret = wait_event_interruptible_timeout(m->scan_wq, there(m),
+						       msecs_to_jiffies(look_ms));
+		if (ret < 0)
+			return -EINTR;
+		if (ret)
+			return 0;
+	}
+	return -ETIMEDOUT;
 }
 
 /**
@@ -139,18 +162,19 @@ static bool settled(struct ec_master *m)
  */
 int ec_master_wait_scan(struct ec_master *m)
 {
-	unsigned int i;
-	long ret;
+	return wait_until(m, settled, 300, 100);
+}
 
-	for (i = 0; i < 300; i++) {
-		ret = wait_event_interruptible_timeout(m->scan_wq, settled(m),
-						       msecs_to_jiffies(100));
-		if (ret < 0)
-			return -EINTR;
-		if (ret)
-			return 0;
-	}
-	return -ETIMEDOUT;
+/**
+ * ec_master_wait_slaves() - wait until no slave is on its way to another state
+ * @m: master
+ *
+ * Context: Process. May sleep, at most 10 s.
+ * Return: 0, -EINTR, or -ETIMEDOUT.
+ */
+int ec_master_wait_slaves(struct ec_master *m)
+{
+	return wait_until(m, slaves_settled, 1000, 10);
 }
 
 /**
@@ -168,6 +192,32 @@ bool ec_master_scan_busy(const struct ec_master *m)
 	smp_rmb();
 	return busy || READ_ONCE(m->scan_busy) ||
 	       READ_ONCE(m->n_slaves) != READ_ONCE(m->slaves_responding);
+}
+
+/**
+ * ec_master_scan_progress() - how far the scan has come
+ * @m: master
+ * @index: result: slaves that have been read
+ * @count: result: slaves that the scan will find; @index is less until it has
+ *	ended, unless there are none
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_master_scan_progress(const struct ec_master *m, u32 *index, u32 *count)
+{
+	*count = READ_ONCE(m->n_slaves);
+	*index = *count;
+	if (!ec_master_scan_busy(m))
+		return;
+	*count = READ_ONCE(m->slaves_responding);
+	*index = 0;
+	if (!READ_ONCE(m->scan_busy))
+		return;
+	smp_rmb();	/* written before */
+	*count = READ_ONCE(m->scan_slaves);
+	/* what was read is yet to be shown to the others */
+	if (*count)
+		*index = min(READ_ONCE(m->scan_index), *count - 1);
 }
 
 /**

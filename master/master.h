@@ -60,6 +60,8 @@ struct task_struct;
  * @slaves: by ring position
  * @n_slaves: entries in @slaves
  * @scan_busy: slaves are being scanned
+ * @scan_slaves: how many the scan has to do with
+ * @scan_index: how many of them have been read
  * @scan_wq: woken when a scan ends or a slave has settled
  * @scan_count: scans finished so far
  * @scan_us: duration of the last scan
@@ -127,6 +129,8 @@ struct ec_master {
 	struct ec_slave **slaves;
 	unsigned int n_slaves;
 	bool scan_busy;
+	u32 scan_slaves;
+	u32 scan_index;
 	wait_queue_head_t scan_wq;
 	u32 scan_count;
 	u32 scan_us;
@@ -182,7 +186,9 @@ void ec_master_link_attach(struct ec_link *link, struct ecdev *dev);
 void ec_master_link_detach(struct ec_link *link);
 void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len);
 int ec_master_wait_scan(struct ec_master *m);
+int ec_master_wait_slaves(struct ec_master *m);
 bool ec_master_scan_busy(const struct ec_master *m);
+void ec_master_scan_progress(const struct ec_master *m, u32 *index, u32 *count);
 void ec_master_rescan(struct ec_master *m);
 
 struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position);

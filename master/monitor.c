@@ -209,6 +209,9 @@ static void maybe_scan(struct watch *w)
 	if (w->scanned || w->same < STABLE_LOOKS || READ_ONCE(m->freeze)) {
 		return;
 	}
+	WRITE_ONCE(m->scan_index, 0);
+	WRITE_ONCE(m->scan_slaves, w->count);
+	smp_wmb();
 	WRITE_ONCE(m->scan_busy, true);
 	if (READ_ONCE(m->rescan)) {
 		/* forget what is known, so that everything is read again; not

@@ -188,6 +188,7 @@ static int read_new(struct scan *sc)
 	for (i = 0; i < sc->n; i++)
 		if (!sc->slaves[i]->sii && !sc->slaves[i]->error)
 			fresh[n++] = sc->slaves[i];
+	WRITE_ONCE(sc->m->scan_index, sc->n - n);
 	ec_scan_sii(sc->m, fresh, n, sc->fresh);
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = fresh[i];

@@ -50,11 +50,19 @@ struct job {
 	bool settled;	/* less than that was tried in vain */
 };
 
+static void is_done(struct reader *r)
+{
+	struct ec_master *m = r->slave->master;
+
+	r->done = true;
+	WRITE_ONCE(m->scan_index, m->scan_index + 1);
+}
+
 static void finish(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
 
-	r->done = true;
+	is_done(r);
 	s->sii = r->buf;
 	s->sii_bytes = r->have;
 	r->buf = NULL;
@@ -62,7 +70,7 @@ static void finish(struct reader *r)
 
 static void fail(struct reader *r, const char *what)
 {
-	r->done = true;
+	is_done(r);
 	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED,
 		      "EEPROM: %s at word 0x%04zx; check the slave, then rescan", what, r->have / 2);
 }

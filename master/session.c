@@ -81,6 +81,27 @@ static bool taken(struct ec_master *m)
 	return ret;
 }
 
+/*
+ * Mailboxes shall work from now on, whatever a tool has left behind. Who has
+ * failed on the way to PREOP is left alone: that takes its time and helps nobody.
+ */
+static void to_preop(struct ec_master *m)
+{
+	unsigned int i;
+
+	down_read(&m->topo);
+	for (i = 0; i < m->n_slaves; i++) {
+		struct ec_slave *s = m->slaves[i];
+
+		if (s->error == EC_SLAVE_SCAN_FAILED ||
+		    (s->requested == EC_AL_PREOP && (s->error || s->al_status == EC_AL_PREOP)))
+			continue;
+		s->error = EC_SLAVE_OK;
+		ec_slave_request(s, EC_AL_PREOP);
+	}
+	up_read(&m->topo);
+}
+
 static int begin(struct ec_master *m, struct ec_session *s)
 {
 	int ret = 0;
@@ -93,6 +114,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 	} else {
 		m->session = s;
 		WRITE_ONCE(m->freeze, true);
+		to_preop(m);
 	}
 	mutex_unlock(&m->session_lock);
 	return ret;
@@ -104,8 +126,8 @@ static int begin(struct ec_master *m, struct ec_session *s)
  * @owner: its open file
  *
  * Waits for a scan in progress, then the list of slaves is frozen until
- * activation. While a detached session runs, the new one is its heir: it touches
- * no slave until activation.
+ * activation and all go to PREOP; that is waited for, too. While a detached
+ * session runs, the new one is its heir: it touches no slave until activation.
  *
  * Context: Process. May sleep.
  * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
@@ -131,8 +153,16 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 	s->ref_config = EC_UAPI_NONE32;
 	s->late_per_s = EC_LATE_PER_S;
 	ret = begin(m, s);
-	if (ret)
+	if (ret) {
 		kvfree(s);
+		return ret;
+	}
+	if (READ_ONCE(m->heir) == s)
+		return 0;
+	ret = ec_master_wait_slaves(m);
+	if (ret != -EINTR)
+		return 0;	/* one that is slow is no reason to refuse */
+	ec_session_end(m, owner);
 	return ret;
 }
 
@@ -192,6 +222,14 @@ static void clear(struct ec_session *s)
 	memset(&s->kernel, 0, sizeof(s->kernel));
 }
 
+/* The next application begins with what it tells itself. */
+static void forget_told(struct ec_master *m)
+{
+	ec_dc_end(m);
+	m->interval_us = EC_INTERVAL_US;
+	m->interval_told = false;
+}
+
 /**
  * ec_session_deactivate() - stop process data, free what was configured
  * @s: session
@@ -222,9 +260,7 @@ int ec_session_deactivate(struct ec_session *s)
 	sh = s->shared;
 	s->shared = NULL;
 	ec_shared_put(sh);
-	ec_dc_end(m);
-	m->interval_us = EC_INTERVAL_US;
-	m->interval_told = false;
+	forget_told(m);
 	if ((u32)atomic_read(&m->stalls) != s->stall_log.told)
 		ec_warn(m, "application stalled %u more time(s)\n",
 			atomic_read(&m->stalls) - s->stall_log.told);
@@ -253,6 +289,8 @@ static void inherit(struct ec_master *m)
 	m->heir = NULL;
 	m->session = s;
 	WRITE_ONCE(m->freeze, s != NULL);
+	if (s)
+		to_preop(m);
 	for (i = 0; s && i < s->n_configs; i++) {
 		detach(s->configs[i]);
 		ec_session_attach_one(s, s->configs[i]);
@@ -263,7 +301,9 @@ static void end(struct ec_master *m)
 {
 	struct ec_session *s = m->session;
 
-	ec_session_deactivate(s);
+	/* one that was never active may have told its time and interval, too */
+	if (ec_session_deactivate(s))
+		forget_told(m);
 	m->session = NULL;
 	ec_session_free(s);
 	inherit(m);

@@ -99,7 +99,7 @@ struct ec_ioc_master {
 	__u8 al_states;		/* OR of 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
 	__u32 slave_count;
 	__u32 slaves_responding;
-	__u32 scan_index;	/* slaves scanned, as of ecrt_master_scan_progress() */
+	__u32 scan_index;	/* slaves read; less than scan_slaves while a scan goes on */
 	__u32 config_count;
 	__u32 domain_count;
 	__u32 device_count;
@@ -127,6 +127,8 @@ struct ec_ioc_master {
 	__u32 acyclic_need_ns;	/* what the shortest one needs */
 	__u32 late_per_s;	/* cycles a second they may make late */
 	__u32 late_cycles;	/* cycles they have made late */
+	__u32 scan_slaves;	/* slaves the scan has to do with; without scan slave_count */
+	__u32 reserved;
 };
 
 struct ec_ioc_port {

@@ -153,6 +153,7 @@ static void master(struct ec_ioc_master *m)
 	m->slave_count = 3;
 	m->slaves_responding = 3;
 	m->scan_index = 2;
+	m->scan_slaves = 5;
 	m->al_states = 2;
 	m->app_time = 12345;
 	m->device_count = 1;

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What a reservation takes over from those before it, and what it leaves behind. */
+#include <linux/delay.h>
+#include "kapp.h"
+#include "kcyc.h"
+
+static const char one[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11\n";
+
+static const struct ec_ioc_cycle hold = { .flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10 };
+
+static struct bus *one_up(struct kunit *test)
+{
+	struct bus *b = bus_up(test, one, 1);
+
+	bus_idle(b);
+	return b;
+}
+
+static void expect_nothing_told(struct bus *b)
+{
+	KUNIT_EXPECT_FALSE(b->test, b->m->dc.has_phase);
+	KUNIT_EXPECT_EQ(b->test, b->m->dc.app_time, 0ull);
+	KUNIT_EXPECT_EQ(b->test, b->m->interval_us, (u32)EC_INTERVAL_US);
+	KUNIT_EXPECT_FALSE(b->test, b->m->interval_told);
+}
+
+/* Time and interval of an application that was never active are its own. */
+static void session_forgets(struct kunit *test)
+{
+	struct ec_ioc_app_time t = { .app_time = 12345 };
+	struct ec_ioc_interval i = { .interval_us = 50 };
+	struct bus *b = one_up(test);
+	ec_master_t *m;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &t), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &i), 0);
+	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase);
+	ec_session_end(b->m, &b->app);
+	expect_nothing_told(b);
+
+	m = ecrt_request_master(0);
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(m, 777), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_set_send_interval(m, 70), 0);
+	KUNIT_EXPECT_EQ(test, b->m->dc.phase, 777ull);
+	ecrt_release_master(m);
+	expect_nothing_told(b);
+}
+
+/* An heir that goes leaves the cycle of the detached session what it has. */
+static void session_heir_goes(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
+		.flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10, .dc = EC_SEND_FLAG_SYNC_SLAVES });
+	struct bus *b = a->c->b;
+	u64 phase = b->m->dc.phase;
+
+	KUNIT_ASSERT_TRUE(test, b->m->dc.has_phase);
+	ec_session_end(b->m, &b->app);
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	ec_session_end(b->m, &b->app);
+	KUNIT_EXPECT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && b->m->dc.begun);
+	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
+	KUNIT_EXPECT_TRUE(test, b->m->interval_told);
+}
+
+/* Mailboxes work when the call returns, wherever a tool has left the slave. */
+static void session_reserve_preop(struct kunit *test)
+{
+	static const u8 states[] = { EC_AL_INIT, EC_AL_SAFEOP, EC_AL_OP };
+	struct bus *b = one_up(test);
+	u32 i, round, abort, value;
+	size_t size;
+	u8 *data;
+
+	for (i = 0; i < 2 * ARRAY_SIZE(states); i++) {
+		struct ec_ioc_sdo sdo = { .index = 0x1018, .subindex = 1, .size = 4 };
+
+		round = i / ARRAY_SIZE(states);
+		bus_request(b, 0, states[i % ARRAY_SIZE(states)]);
+		bus_idle(b);
+		KUNIT_ASSERT_NE(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
+		if (round) {
+			ec_master_t *m = ecrt_request_master(0);
+
+			KUNIT_ASSERT_NOT_NULL(test, m);
+			KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
+			KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(m, 0, 0x1018, 1, (u8 *)&value,
+								     4, &size, &abort), 0);
+			ecrt_release_master(m);
+			continue;
+		}
+		KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+		KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
+		KUNIT_EXPECT_EQ_MSG(test, ec_ioc_upload(&b->app, &sdo, &data), 0, "%s",
+				    b->app.reason);
+		kvfree(data);
+		ec_session_end(b->m, &b->app);
+	}
+}
+
+/* One that does not get there holds nobody up for long, and only once. */
+static void session_reserve_refused(struct kunit *test)
+{
+	struct bus *b = one_up(test);
+	u64 t0;
+
+	bus_request(b, 0, EC_AL_INIT);
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+	t0 = ktime_get_ns();
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 10 * NSEC_PER_SEC);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+	ec_session_end(b->m, &b->app);
+	bus_idle(b);
+	t0 = ktime_get_ns();
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 200 * NSEC_PER_MSEC);
+}
+
+/* ms until the slave, which does not move any more, is given up; 0: never */
+static u32 given_up_after(struct cyc *c)
+{
+	struct ec_slave *s = bus_slave(c->b, 0);
+	u64 t0 = ktime_get_ns();
+	u32 i;
+
+	for (i = 0; i < 20000 && s->error == EC_SLAVE_OK; i++) {
+		if (c->b->m->session->active)
+			cyc_run(c, 1);
+		else
+			usleep_range(1000, 1001);
+	}
+	return s->error ? div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC) : 0;
+}
+
+/* The limit an application sets holds for each transition. */
+static void session_state_timeouts(struct kunit *test)
+{
+	static const struct ec_ioc_sc_timeout t[] = {
+		{ .from = EC_AL_INIT, .to = EC_AL_PREOP, .timeout_ms = 700 },
+		{ .from = EC_AL_PREOP, .to = EC_AL_INIT, .timeout_ms = 600 },
+		{ .from = EC_AL_PREOP, .to = EC_AL_SAFEOP, .timeout_ms = 500 },
+		{ .from = EC_AL_OP, .to = EC_AL_SAFEOP, .timeout_ms = 800 },
+		{ .from = EC_AL_OP, .to = EC_AL_PREOP, .timeout_ms = 400 },
+		{ .from = EC_AL_OP, .to = EC_AL_INIT, .timeout_ms = 300 },
+	};
+	u32 i, ms;
+
+	for (i = 0; i < ARRAY_SIZE(t); i++) {
+		struct bus *b = one_up(test);
+		struct cyc *c = cyc_new(b, 1000);
+		struct ec_ioc_sc_timeout v = t[i];
+
+		cyc_domain(c);
+		cyc_map_all(c, 0, 1, 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_timeout(&b->app, &v), 0);
+		if (v.from == EC_AL_OP) {
+			cyc_activate(c);
+			KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+		} else {
+			bus_request(b, 0, EC_AL_INIT);
+			bus_idle(b);
+			bus_request(b, 0, v.from);
+			bus_idle(b);
+		}
+		KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->al_status, v.from);
+		bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+		bus_request(b, 0, v.to);
+		ms = given_up_after(c);
+		KUNIT_EXPECT_GE_MSG(test, ms, v.timeout_ms, "%u to %u", v.from, v.to);
+		KUNIT_EXPECT_LE_MSG(test, ms, v.timeout_ms + 50, "%u to %u", v.from, v.to);
+		bus_exit(test);
+	}
+}
+
+/* Watch a scan of @n slaves until it has ended. */
+static void watch_scan(struct bus *b, u32 n)
+{
+	ec_master_scan_progress_t p;
+	u32 i, looks = 0, between = 0, last = 0;
+
+	for (i = 0; i < 20000; i++) {
+		struct ec_ioc_master mi = { 0 };
+
+		KUNIT_ASSERT_EQ(b->test, ec_ioc_master(&b->app, &mi), 0);
+		KUNIT_ASSERT_EQ(b->test, ecrt_master_scan_progress(b->m, &p), 0);
+		KUNIT_EXPECT_EQ(b->test, mi.scan_index, p.scan_index);
+		KUNIT_EXPECT_EQ(b->test, mi.scan_slaves, p.slave_count);
+		if (looks && !mi.scan_busy)
+			break;
+		if (mi.scan_busy) {
+			looks++;
+			KUNIT_EXPECT_EQ(b->test, p.slave_count, n);
+			KUNIT_EXPECT_LT(b->test, p.scan_index, p.slave_count);
+			KUNIT_EXPECT_GE(b->test, p.scan_index, last);
+			between += p.scan_index && p.scan_index < n - 1;
+			last = p.scan_index;
+		}
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_GT(b->test, looks, 10u);
+	KUNIT_EXPECT_GT(b->test, between, 0u);
+	KUNIT_EXPECT_EQ(b->test, p.slave_count, n);
+	KUNIT_EXPECT_EQ(b->test, p.scan_index, n);
+}
+
+static void session_scan_progress(struct kunit *test)
+{
+	/* EEPROMs of several sizes */
+	struct bus *b = bus_new(test, "segment seed=8\nrepeat 20 slave s drive in=8 out=8 mbox=128\n"
+				"repeat 20 slave t EL2008\n"
+				"repeat 10 slave u io in=64 out=64\n");
+
+	bus_plug(b);
+	watch_scan(b, 50);
+	bus_idle(b);
+	ec_master_rescan(b->m);
+	watch_scan(b, 50);
+}
+
+static struct bus *detached(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+
+	ec_session_end(a->c->b->m, &a->c->b->app);
+	return a->c->b;
+}
+
+/* An heir asks about its own slaves, others about those that run. */
+static void session_heir_asks(struct kunit *test)
+{
+	struct bus *b = detached(test);
+	struct ec_file other = { .master = b->m };
+	struct ec_ioc_slave_config sc = { .position = 40, .vendor_id = 1, .product_code = 2 };
+	struct ec_ioc_config_why why = { 0 }, running = { 0 };
+	struct ec_ioc_sc_ip set = { .params = { .which = EC_IP_NAME, .name = "heir" } }, ip = { 0 };
+
+	mutex_init(&other.lock);
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_ip(&b->app, &set), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &why), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(why.text, "40"), "%s", why.text);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&other, &running), 0);
+	KUNIT_EXPECT_STRNEQ(test, running.text, why.text);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ip.params.which, (u32)EC_IP_NAME);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&other, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ip.params.which, 0u);
+	/* the running one has two, the heir one */
+	why.index = 1;
+	ip.config = 1;
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&other, &why), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&other, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &why), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &ip), -ENOENT);
+	mutex_destroy(&other.lock);
+}
+
+/* An application in the kernel as the heir: it cannot take over, and disturbs nothing. */
+static void session_kernel_heir(struct kunit *test)
+{
+	struct bus *b = detached(test);
+	struct ec_session *runs = b->m->session;
+	struct kapp *k = kapp_new(b, 500);
+	u64 app_time = b->m->dc.app_time, cycle;
+	bool phase = b->m->dc.has_phase;
+
+	KUNIT_ASSERT_PTR_EQ(test, b->m->session, runs);
+	KUNIT_ASSERT_NOT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 77), 0);
+	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
+	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
+	KUNIT_EXPECT_EQ(test, b->m->dc.has_phase, phase);
+	KUNIT_EXPECT_EQ(test, b->m->interval_us, 1000u);
+	kapp_map(k, 0);
+	kapp_map(k, 1);
+	cycle = runs->shared->status->kernel.cycle;
+	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EEXIST);
+	KUNIT_EXPECT_EQ(test, kapp_exchange(k), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_domain_queue(k->d), -EINVAL);
+	KUNIT_EXPECT_NULL(test, ecrt_domain_data(k->d));
+	KUNIT_EXPECT_EQ(test, ecrt_master_sync_slave_clocks(k->m), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_deactivate(k->m), -EINVAL);
+	msleep(500);
+	KUNIT_EXPECT_GE(test, runs->shared->status->kernel.cycle - cycle, 499ull);
+	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	/* the way the refusal names; then the bus is its own */
+	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
+	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
+	kapp_op(k);
+	kapp_run(k, 10);
+	ecrt_release_master(k->m);
+	KUNIT_EXPECT_NULL(test, b->m->session);
+}
+
+/* A configuration is of one master. */
+static void session_foreign_config(struct kunit *test)
+{
+	struct bus *b = one_up(test);
+	struct ec_master *other = kunit_kzalloc(test, sizeof(*other), GFP_KERNEL);
+	struct ec_session *s = kunit_kzalloc(test, sizeof(*s), GFP_KERNEL);
+	struct ec_config *sc = kunit_kzalloc(test, sizeof(*sc), GFP_KERNEL);
+	ec_master_t *m = ecrt_request_master(0);
+	struct kapp k = { .b = b, .m = m };
+
+	KUNIT_ASSERT_TRUE(test, other && s && sc && m);
+	s->master = other;
+	sc->session = s;
+	kapp_config(&k, 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, (ec_slave_config_t *)sc),
+			-EINVAL);
+	KUNIT_EXPECT_EQ(test, b->m->session->ref_config, EC_UAPI_NONE32);
+	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, k.sc[0]), 0);
+	KUNIT_EXPECT_EQ(test, b->m->session->ref_config, 0u);
+	ecrt_release_master(m);
+}
+
+static struct kunit_case session_cases[] = {
+	KUNIT_CASE(session_forgets),
+	KUNIT_CASE(session_heir_goes),
+	KUNIT_CASE(session_reserve_preop),
+	KUNIT_CASE(session_reserve_refused),
+	KUNIT_CASE(session_state_timeouts),
+	KUNIT_CASE(session_scan_progress),
+	KUNIT_CASE(session_heir_asks),
+	KUNIT_CASE(session_kernel_heir),
+	KUNIT_CASE(session_foreign_config),
+	{}
+};
+
+static struct kunit_suite session_suite = {
+	.name = "bus_session",
+	.exit = bus_exit,
+	.test_cases = session_cases,
+};
+
+kunit_test_suite(session_suite);
