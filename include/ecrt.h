@@ -401,7 +401,8 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
  * The slave need not be there: it is attached, configured and taken to OP
  * whenever it appears. One with another identity is never attached. The
  * PDO assignment and mapping of a slave that is there are taken over as
- * defaults.
+ * defaults. From activation on a slave that is there keeps its configuration,
+ * also when one in front of it is pulled and its position is another.
  *
  * Context: Process. May sleep.
  * Return: the configuration, the same one for the same @alias and @position;

@@ -399,17 +399,37 @@ static struct ec_slave *lookup(struct ec_master *m, const struct ec_config *c)
 	return slave;
 }
 
+/* Another configuration has @slave; it is told once, to who waits for this one. */
+static void tell_taken(const struct ec_session *s, const struct ec_config *c,
+		       struct ec_slave *slave)
+{
+	const struct ec_config *has = slave->config;
+
+	if (s->active)
+		ec_slave_warn(slave, "is where %u:%u is expected, but was at %u:%u on activation and stays that; put back what is missing or restart the application\n",
+			      c->alias, c->position, has->alias, has->position);
+	else
+		ec_slave_warn(slave, "has two configurations; use one of %u:%u and %u:%u\n",
+			      has->alias, has->position, c->alias, c->position);
+}
+
 /**
  * ec_session_attach_one() - connect a configuration with its slave
  * @s: session
  * @c: configuration
  *
+ * An active session keeps a slave as long as it is there: when one in front of it is
+ * pulled its position changes, but its outputs must not be those of another.
+ *
  * Context: Process, session_lock held. May sleep.
  */
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 {
-	struct ec_slave *slave = lookup(s->master, c);
+	struct ec_slave *slave;
 
+	if (s->active && c->slave && !c->slave->gone)
+		return;
+	slave = lookup(s->master, c);
 	if (slave == c->slave) {
 		if (slave)
 			ec_slave_unref(slave);
@@ -427,9 +447,8 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	mutex_lock(&slave->lock);
 	WRITE_ONCE(slave->interrupt, false);
 	if (slave->config) {
+		tell_taken(s, c, slave);
 		mutex_unlock(&slave->lock);
-		ec_slave_warn(slave, "has two configurations; use one of %u:%u and its other name\n",
-			      c->alias, c->position);
 		ec_slave_unref(slave);
 		return;
 	}

@@ -27,6 +27,9 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
+	if (s->config && c->session->active)
+		return scnprintf(buf, size, "is missing, or one in front of it: slave %u was at %u:%u on activation",
+				 pos, s->config->alias, s->config->position);
 	if (s->config)
 		return scnprintf(buf, size, "slave %u has another configuration, %u:%u; use one of the two",
 				 pos, s->config->alias, s->config->position);

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Which slave a configuration belongs to when positions in the ring change. */
+#include "cyc.h"
+#include "master/ioctl.h"
+
+/* a slave on a branch stands before three of the same kind */
+static const char tree[] =
+	"segment seed=41 response=100us transition=1ms\n"
+	"slave hub EK1100\nslave leaf io in=512 out=512\n"
+	"branch hub 2\nrepeat 3 slave s io in=512 out=512\n"
+	"connect leaf.1 -> leaf.1\nconnect s1.1 -> s1.1\nconnect s2.1 -> s2.1\n"
+	"connect s3.1 -> s3.1\n";
+
+#define N	5
+#define LEAF	1
+
+static s64 output(struct cyc *c, const char *name)
+{
+	return ec_app_channel(bus_app(c->b, name), EC_APP_OUT, 0);
+}
+
+static struct cyc *in_op(struct kunit *test)
+{
+	struct bus *b = bus_up(test, tree, N);
+	struct cyc *c;
+	u32 i;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 1, N - 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	for (i = 1; i < N; i++)
+		*cyc_pd(c, i, 0) = 10 * i;
+	cyc_run(c, 20);
+	KUNIT_ASSERT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	KUNIT_ASSERT_EQ(test, output(c, "leaf"), 10ll);
+	KUNIT_ASSERT_EQ(test, output(c, "s1"), 20ll);
+	return c;
+}
+
+static void why(struct cyc *c, u32 config, char *text)
+{
+	struct ec_ioc_config_why w = { .index = config };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_config_why(&c->b->app, &w), 0);
+	strscpy(text, w.text, sizeof(w.text));
+}
+
+/* The others keep their outputs although each stands where another did. */
+static void attach_one_pulled(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct bus *b = c->b;
+	struct ec_slave *s1 = bus_slave(b, 2);
+	char text[EC_UAPI_REASON];
+	u32 i, not_op = 0;
+
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
+	for (i = 0; i < 1000; i++) {
+		cyc_run(c, 1);
+		not_op += (READ_ONCE(s1->al_status) & 0xf) != EC_AL_OP;
+	}
+	KUNIT_ASSERT_EQ(test, b->m->n_slaves, (u32)N - 1);
+	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
+	KUNIT_EXPECT_EQ(test, not_op, 0u);
+	for (i = 1; i < N - 1; i++)
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, output(c, "s1"), 20ll);
+	KUNIT_EXPECT_EQ(test, output(c, "s2"), 30ll);
+	KUNIT_EXPECT_EQ(test, output(c, "s3"), 40ll);
+	KUNIT_EXPECT_EQ(test, *cyc_pd(c, 4, 1), 40);
+	why(c, 0, text);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(text, "is missing"), "%s", text);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, LEAF, 0, 0, 0);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	KUNIT_EXPECT_EQ(test, output(c, "leaf"), 10ll);
+	KUNIT_EXPECT_EQ(test, output(c, "s1"), 20ll);
+}
+
+/* With its fall the next application finds slaves by the positions of now. */
+static void attach_next_application(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct bus *b = c->b;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
+	cyc_run(c, 500);
+	cyc_release(c);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 1, N - 2, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	for (i = 1; i < N - 1; i++)
+		*cyc_pd(c, i, 0) = 50 + i;
+	cyc_run(c, 20);
+	KUNIT_EXPECT_EQ(test, output(c, "s1"), 51ll);
+	KUNIT_EXPECT_EQ(test, output(c, "s3"), 53ll);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(attach_one_pulled),
+	KUNIT_CASE(attach_next_application),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_attach", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
