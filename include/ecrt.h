@@ -670,7 +670,8 @@ EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
  * the process image. One system call in userspace.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; %-EINVAL not active; %-ENODEV the device is gone. In the kernel
+ * Return: 0; %-EINVAL not active; %-ENODEV the device is gone; %-ECANCELED the
+ * kernel ran the cycle and has stopped it (%EC_CYCLE_STOP). In the kernel
  * also %-EAGAIN: after a stall the links are being given back, try again in the
  * next cycle; %-EBUSY: another call is using them; %-EWOULDBLOCK: the device needs
  * a thread and this is none.
@@ -863,7 +864,11 @@ EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
 typedef enum {
 	EC_CYCLE_HOLD = 0,	/* sends the last ones */
 	EC_CYCLE_ZERO = 1,	/* sends zeros until there are new ones */
-	EC_CYCLE_STOP = 2,	/* stops; watchdogs of the slaves end OP */
+	/*
+	 * stops; watchdogs of the slaves end OP. ecrt_master_receive() and
+	 * ecrt_master_send() return -ECANCELED, domains have working counter 0
+	 */
+	EC_CYCLE_STOP = 2,
 } ec_cycle_stall_t;
 
 typedef enum {
@@ -1019,7 +1024,8 @@ EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Returns at once when a cycle has passed since
  * the last call. One system call. To wait for other files too, poll
- * ecrt_master_cycle_fd(); to spin, compare ecrt_master_cycle_count().
+ * ecrt_master_cycle_fd(); to spin, call ecrt_master_receive() until
+ * ecrt_master_cycle_count() has grown or it fails.
  *
  * Context: The master's single cyclic caller. Sleeps until the next cycle.
  * Return: number of cycles since the last call, 1 when none was missed;
@@ -1034,12 +1040,30 @@ EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
  * @master: an active master whose cycle the kernel runs
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When it has grown, the
- * inputs of that cycle are there for ecrt_master_receive().
+ * inputs of that cycle are there for ecrt_master_receive(). After %EC_CYCLE_STOP
+ * it does not grow any more, which ecrt_master_receive() tells.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: cycles since activation; 0 when not active.
  */
 EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
+
+/**
+ * ecrt_master_cycle_inputs() - which cycle the inputs are of
+ * @master: an active master whose cycle the kernel runs
+ * @cycle: out: its number, as ecrt_master_cycle_count() counts; may be NULL
+ * @time_ns: out: its schedule, ns of CLOCK_MONOTONIC; may be NULL
+ *
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Of what the last ecrt_master_receive() that found
+ * new inputs has taken. The frames that brought them were sent one cycle before.
+ * No system call.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-ENODATA none were taken yet; %-EINVAL not active, or the application
+ * runs the cycle.
+ */
+EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
+		uint64_t *cycle, uint64_t *time_ns);
 
 /**
  * ecrt_master_cycle_fd() - file to wait on with poll() or epoll
@@ -1423,12 +1447,14 @@ EC_PUBLIC_API int ecrt_slave_config_pdos(ec_slave_config_t *sc,
  *
  * Takes the whole sync manager that carries the entry into @domain, once,
  * for which it uses an FMMU (register 0x0600 ff.). The first entry in order
- * of sync manager, PDO and mapping is meant. Offsets are final.
+ * of sync manager, PDO and mapping is meant. Offsets are final: directions, PDOs
+ * and mapping come before. After a failure the domain is as it was.
  *
  * Context: Process. May sleep.
  * Return: byte offset in the domain, 0 or more; %-ENOENT not mapped;
  * %-EFAULT does not begin on a byte and @bit_position is NULL; %-EOVERFLOW
- * no FMMU left; %-EINVAL.
+ * no FMMU left; %-EBUSY active, or the bytes or the direction of the sync manager were
+ * changed after its first entry was registered; %-EINVAL.
  */
 EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
 		uint16_t entry_index, uint8_t entry_subindex,

@@ -131,6 +131,7 @@ int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
 	m->out_back = m->exchange->app_output;
 	m->out_last = m->out_back;
 	m->in_front = m->exchange->app_input;
+	m->in_taken = false;
 	if (m->out_back >= EC_EXCHANGE_BUFFERS || m->in_front >= EC_EXCHANGE_BUFFERS)
 		return -EPROTO;
 	m->cycle = ec_status_read(m->status->kernel.cycle);
@@ -229,15 +230,42 @@ static unsigned int swap_buffer(__u32 *word, __u32 mine)
 	return n < EC_EXCHANGE_BUFFERS ? n : 0;
 }
 
+/* Why nothing comes back any more, or for now; 0: it does. */
+static int halted(const struct ec_master *m)
+{
+	if (ec_status_read(m->status->kernel.state) == EC_CYCLE_STATE_STOPPED)
+		return -ECANCELED;
+	return ec_status_read(m->status->no_device) ? -ENODEV : 0;
+}
+
+/* No more cycles: also who looks at working counters only shall see it. */
+static void nothing_back(struct ec_master *m)
+{
+	struct ec_domain *d;
+
+	for (d = m->domains; d; d = d->next) {
+		d->snap.working_counter = 0;
+		d->snap.wc_state = 0;
+	}
+	m->received = 0;
+}
+
 /* The newest inputs; without new ones there is nothing to process. */
-void ec_cycle_receive(struct ec_master *m)
+int ec_cycle_receive(struct ec_master *m)
 {
 	__u32 *word = &m->exchange->inputs;
+	int ret = halted(m);
 
+	if (ret == -ECANCELED) {
+		nothing_back(m);
+		return ret;
+	}
 	if (!(__atomic_load_n(word, __ATOMIC_RELAXED) & EC_EXCHANGE_NEW))
-		return;
+		return ret;
 	m->in_front = swap_buffer(word, m->in_front);
+	m->in_taken = true;
 	m->received = ~0ULL;
+	return ret;
 }
 
 /*
@@ -296,18 +324,20 @@ void ec_cycle_queue(struct ec_domain *d)
  * Domains that are not queued keep the outputs of before. They are still in the
  * buffer that was given last: it comes back only for the one given now.
  */
-void ec_cycle_send(struct ec_master *m)
+int ec_cycle_send(struct ec_master *m)
 {
+	int ret = halted(m);
 	struct ec_domain *d;
 
 	if (!m->queued)
-		return;
+		return ret;
 	for (d = m->domains; d; d = d->next)
 		if (!(m->queued >> d->index & 1) && d->size && m->out_last != m->out_back)
 			memcpy(place(d, m->out_back), place(d, m->out_last), d->size);
 	m->out_last = m->out_back;
 	m->out_back = swap_buffer(&m->exchange->outputs, m->out_back | EC_EXCHANGE_NEW);
 	m->queued = 0;
+	return ret;
 }
 
 /* waiting ------------------------------------------------------------------*/
@@ -338,6 +368,22 @@ uint64_t ecrt_master_cycle_count(const ec_master_t *master)
 {
 	return runs(master) ? __atomic_load_n(&master->status->kernel.cycle,
 					      __ATOMIC_ACQUIRE) : 0;
+}
+
+int ecrt_master_cycle_inputs(const ec_master_t *master, uint64_t *cycle, uint64_t *time_ns)
+{
+	const struct ec_exchange_buffer *b;
+
+	if (!runs(master))
+		return ec_inactive(master);
+	if (!master->in_taken)
+		return -ENODATA;
+	b = buffer(master, EC_EXCHANGE_BUFFERS + master->in_front);
+	if (cycle)
+		*cycle = b->cycle;
+	if (time_ns)
+		*time_ns = b->time_ns;
+	return 0;
 }
 
 int ecrt_master_cycle_fd(const ec_master_t *master)

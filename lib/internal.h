@@ -20,7 +20,8 @@
  * all domains then.
  *
  * @exchange: with a cycle the kernel runs, else NULL; then @image is memory of
- * our own. @out_back, @in_front: buffers we hold; @out_last: the one we gave last;
+ * our own. @out_back, @in_front: buffers we hold; @in_taken: that has inputs; @out_last: the
+ * one we gave last;
  * @stride: distance of two; @cycle: last one waited for.
  */
 struct ec_master {
@@ -55,6 +56,7 @@ struct ec_master {
 	unsigned int out_back;
 	unsigned int out_last;
 	unsigned int in_front;
+	bool in_taken;
 	__u64 cycle;
 
 	struct ec_domain *domains;
@@ -158,9 +160,9 @@ int ec_memory_map_image(struct ec_master *m, size_t size);
 int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg);
 void ec_cycle_unmap(struct ec_master *m);
 int ec_cycle_find_inputs(struct ec_domain *d);
-void ec_cycle_receive(struct ec_master *m);
+int ec_cycle_receive(struct ec_master *m);
 void ec_cycle_process(struct ec_domain *d);
 void ec_cycle_queue(struct ec_domain *d);
-void ec_cycle_send(struct ec_master *m);
+int ec_cycle_send(struct ec_master *m);
 
 #endif

@@ -306,10 +306,8 @@ int ecrt_master_send(ec_master_t *master)
 
 	if (!master || !master->active)
 		return ec_inactive(master);
-	if (master->exchange) {
-		ec_cycle_send(master);
-		return 0;
-	}
+	if (master->exchange)
+		return ec_cycle_send(master);
 	arg.queued = master->queued;
 	arg.flags = master->send_flags;
 	arg.sync_time = master->sync_time;
@@ -328,10 +326,8 @@ int ecrt_master_receive(ec_master_t *master)
 {
 	if (!master || !master->active)
 		return ec_inactive(master);
-	if (master->exchange) {
-		ec_cycle_receive(master);
-		return 0;
-	}
+	if (master->exchange)
+		return ec_cycle_receive(master);
 	master->received |= master->sent;
 	master->sent = 0;
 	return ec_ioctl(master, EC_IOC_RECEIVE, NULL);

@@ -246,6 +246,16 @@ static void adopt(struct ec_cycle_thread *t)
 	smp_store_release(&t->adopt, false);
 }
 
+/* Receive and send of the application answer without a system call. */
+static void tell_device(const struct ec_session *s)
+{
+	u32 *no_device = &s->shared->status->no_device;
+	bool gone = !READ_ONCE(s->master->link[0].dev);
+
+	if (unlikely(*no_device != gone))
+		WRITE_ONCE(*no_device, gone);
+}
+
 /* Inputs and working counters of this cycle for the application. */
 static void publish(struct ec_cycle_thread *t)
 {
@@ -262,6 +272,7 @@ static void publish(struct ec_cycle_thread *t)
 	b->time_ns = t->next_ns;
 	for (i = 0; i < s->n_domains; i++)
 		b->domains[i] = s->shared->status->domains[i];
+	tell_device(s);
 	memcpy(b + 1, s->shared->image, t->bytes);
 	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
 	/* who sees the number finds the inputs */

@@ -893,7 +893,7 @@ struct ec_status {
 	__u32 dc_time_valid;	/* that datagram came back */
 	__u32 dc_monitor;	/* OR of the slaves' differences, ns; ~0: not back */
 	__u32 dc_ref;		/* there is a reference clock */
-	__u32 reserved;
+	__u32 no_device;	/* kernel: the last cycle had none to send with */
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 	__u8 configs[EC_STATUS_CONFIGS];
 	struct ec_status_cycle kernel;

@@ -75,6 +75,7 @@ static void life_without_device(struct kunit *test)
 	u64 cycle;
 
 	kcyc_wait_cycles(a, 10);
+	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 0u);
 	ec_device_detach(&b->m->link[0]);
 	cycle = kcyc_status(a)->cycle;
 	a->seen = cycle;
@@ -84,6 +85,7 @@ static void life_without_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, x->domains[0].working_counter, 0u);
 	KUNIT_EXPECT_EQ(test, x->domains[0].wc_state, 0u);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
 	ec_session_end(b->m, &b->app);
 	msleep(100);
 	/* without a device nobody can reserve it, but end it */

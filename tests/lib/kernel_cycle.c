@@ -171,6 +171,77 @@ static void steps(void)
 	ecrt_release_master(m);
 }
 
+/* Inputs of cycle @n in buffer @buffer, published; all domains complete. */
+static void publish(unsigned int buffer, __u64 n)
+{
+	struct ec_exchange_buffer *b =
+		(void *)(image(3 + buffer) - sizeof(struct ec_exchange_buffer));
+
+	b->cycle = n;
+	b->time_ns = n * 1000000;
+	b->domains[0].working_counter = b->domains[1].working_counter = 3;
+	b->domains[0].wc_state = b->domains[1].wc_state = 2;
+	fake.exchange->inputs = buffer | EC_EXCHANGE_NEW;
+}
+
+/* Inputs know their cycle, those that were taken. */
+static void numbers(void)
+{
+	uint64_t cycle = 0, time_ns = 0;
+	ec_domain_t *d[2];
+	ec_master_t *m = start(d, 66);
+	unsigned int calls = fake.calls;
+
+	/* what lies in the buffer of one who takes over is another's */
+	CHECK(ecrt_master_cycle_inputs(m, &cycle, &time_ns) == -ENODATA);
+	CHECK(!ecrt_master_receive(m) && ecrt_master_cycle_inputs(m, &cycle, NULL) == -ENODATA);
+	publish(0, 70);
+	CHECK(ecrt_master_cycle_inputs(m, &cycle, &time_ns) == -ENODATA);
+	CHECK(!ecrt_master_receive(m) && !ecrt_master_cycle_inputs(m, &cycle, &time_ns));
+	CHECK(cycle == 70 && time_ns == 70000000);
+	publish(2, 73);
+	CHECK(!ecrt_master_cycle_inputs(m, &cycle, NULL) && cycle == 70);
+	CHECK(!ecrt_master_receive(m) && !ecrt_master_cycle_inputs(m, NULL, &time_ns));
+	CHECK(time_ns == 73000000);
+	CHECK(!ecrt_master_receive(m) && !ecrt_master_cycle_inputs(m, &cycle, NULL) && cycle == 73);
+	CHECK(fake.calls == calls);
+	ecrt_master_deactivate(m);
+	CHECK(ecrt_master_cycle_inputs(m, &cycle, NULL) == -EINVAL);
+	ecrt_release_master(m);
+}
+
+/* The kernel has stopped the cycle, or has no device: all calls of a cycle tell it. */
+static void halts(void)
+{
+	ec_domain_state_t st;
+	ec_domain_t *d[2];
+	ec_master_t *m = start(d, 0);
+	unsigned int calls = fake.calls;
+
+	publish(0, 1);
+	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d[0]) && !ecrt_domain_process(d[1]));
+	CHECK(!ecrt_domain_state(d[1], &st) && st.wc_state == EC_WC_COMPLETE);
+	fake.status->no_device = 1;
+	CHECK(ecrt_master_receive(m) == -ENODEV);
+	/* outputs are given all the same: it may come back */
+	CHECK(!ecrt_domain_queue(d[0]) && ecrt_master_send(m) == -ENODEV);
+	CHECK(fake.exchange->outputs & EC_EXCHANGE_NEW);
+	fake.status->no_device = 0;
+	CHECK(!ecrt_master_receive(m) && !ecrt_master_send(m));
+	CHECK(!ecrt_domain_state(d[0], &st) && st.wc_state == EC_WC_COMPLETE);
+	publish(2, 2);
+	fake.status->kernel.state = EC_CYCLE_STATE_STOPPED;
+	CHECK(ecrt_master_receive(m) == -ECANCELED);
+	for (unsigned int i = 0; i < 2; i++) {
+		CHECK(!ecrt_domain_process(d[i]) && !ecrt_domain_state(d[i], &st));
+		CHECK(st.working_counter == 0 && st.wc_state == EC_WC_ZERO);
+		CHECK(!ecrt_domain_queue(d[i]));
+	}
+	CHECK(ecrt_master_send(m) == -ECANCELED && ecrt_master_send(m) == -ECANCELED);
+	CHECK(fake.calls == calls);
+	ecrt_release_master(m);
+}
+
 /* An application that takes over finds everything as the other has left it. */
 static void takeover(void)
 {
@@ -322,8 +393,11 @@ int kernel_cycle(void)
 	CHECK(ecrt_master_cycle_fd(NULL) == -EINVAL);
 	CHECK(ecrt_master_cycle_count(NULL) == 0);
 	CHECK(ecrt_master_cycle_state(NULL, NULL) == -EINVAL);
+	CHECK(ecrt_master_cycle_inputs(NULL, NULL, NULL) == -EINVAL);
 	CHECK(ecrt_master_end_detached(NULL) == -EINVAL);
 	steps();
+	numbers();
+	halts();
 	takeover();
 	takeover_fails();
 	requests();

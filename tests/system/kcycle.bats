@@ -111,6 +111,11 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	[ "$status" = 1 ]
 	[[ "$output" == *"the cycle ended: Operation canceled"* ]]
 	[[ "$output" == *"kernel: stopped, "* ]]
+	# also for one that makes no system call
+	run timeout 60 "$EC_BUILD/apps/kcycle" cycles=2000 pause=200 stall=2 stall_cycles=20 spin=1
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ "$output" == *"the cycle ended: Operation canceled"* ]]
 }
 
 @test "the clocks are kept in step by the kernel" {

@@ -32,6 +32,7 @@ static void refused(void)
 	SILENT(CALL(ecrt_master_set_cycle)(b.m, &config), 0);
 	SILENT(CALL(ecrt_master_wait_cycle)(b.m, 1000), -EINVAL);
 	SILENT(CALL(ecrt_master_cycle_fd)(b.m), -EINVAL);
+	SILENT(CALL(ecrt_master_cycle_inputs)(b.m, NULL, NULL), -EINVAL);
 	SILENT(CALL(ecrt_master_cycle_state)(b.m, &s), -EINVAL);
 	IS(CALL(ecrt_master_cycle_count)(b.m), 0);
 	/* and back: the application runs it */
@@ -62,7 +63,7 @@ static void runs(void)
 	ec_cycle_state_t s;
 	struct pollfd fd;
 	struct bench b;
-	uint64_t count;
+	uint64_t count, number = 0, at = 0;
 	int i;
 
 	NEED(bench_request(&b) && bench_configure(&b));
@@ -80,6 +81,9 @@ static void runs(void)
 	IS(EC_READ_BIT(b.data + b.in_byte, b.in_bit), 1);
 	count = CALL(ecrt_master_cycle_count)(b.m);
 	YES(count > 10);
+	IS(CALL(ecrt_master_cycle_inputs)(b.m, &number, &at), 0);
+	YES(number > 10 && number <= count);
+	IS(at % config.period_ns, 0);
 	fd.fd = CALL(ecrt_master_cycle_fd)(b.m);
 	fd.events = POLLIN;
 	CALL(ecrt_master_receive)(b.m);
@@ -109,6 +113,36 @@ static bool until_op(struct bench *b)
 	for (i = 0; i < 10; i++)
 		cycle(b);
 	return YES(motor.operational && out.operational);
+}
+
+/* Who spins and waits for nothing learns that the cycle has stopped. */
+static void stops(void)
+{
+	ec_cycle_config_t c = config;
+	ec_domain_state_t ds;
+	struct bench b;
+	int ret;
+
+	c.stall = EC_CYCLE_STOP;
+	c.stall_cycles = 100;
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_set_cycle)(b.m, &c), 0);
+	NEED(bench_activate(&b) && until_op(&b));
+	CALL(ecrt_domain_state)(b.d, &ds);
+	IS(ds.wc_state, EC_WC_COMPLETE);
+	do
+		ret = CALL(ecrt_master_receive)(b.m);
+	while (!ret);
+	IS(ret, -ECANCELED);
+	CALL(ecrt_domain_process)(b.d);
+	CALL(ecrt_domain_state)(b.d, &ds);
+	IS(ds.working_counter, 0);
+	IS(ds.wc_state, EC_WC_ZERO);
+	CALL(ecrt_domain_queue)(b.d);
+	SILENT(CALL(ecrt_master_send)(b.m), -ECANCELED);
+	SILENT(CALL(ecrt_master_wait_cycle)(b.m, 0), -ECANCELED);
+	CALL(ecrt_master_deactivate)(b.m);
+	bench_down(&b);
 }
 
 /* A domain that goes every tenth cycle brings no more than one change in that time. */
@@ -210,6 +244,7 @@ static void detached(void)
 const struct api_case kcycle_cases[] = {
 	{ "what cannot be is refused", refused },
 	{ "it runs", runs },
+	{ "it stops when nothing is given", stops },
 	{ "a domain now and then", divided },
 	{ "from slave to slave", copied },
 	{ "it survives its application", detached },

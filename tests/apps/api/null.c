@@ -65,6 +65,7 @@ static void master(void)
 	IS(ecrt_master_wait_cycle(NULL, 1), -EINVAL);
 	IS(ecrt_master_cycle_count(NULL), 0);
 	IS(ecrt_master_cycle_fd(NULL), -EINVAL);
+	IS(ecrt_master_cycle_inputs(NULL, NULL, NULL), -EINVAL);
 	IS(ecrt_master_cycle_state(NULL, &u.cycle_state), -EINVAL);
 	IS(ecrt_master_end_detached(NULL), -EINVAL);
 	IS(api_lines(), 0);

@@ -213,8 +213,12 @@ static int wait_cycle(void)
 		if (p.revents & (POLLHUP | POLLERR))
 			return -ECANCELED;
 	}
-	while ((now = ecrt_master_cycle_count(master)) == last)
-		;
+	while ((now = ecrt_master_cycle_count(master)) == last) {
+		n = ecrt_master_receive(master);
+		/* without a device cycles go on */
+		if (n && n != -ENODEV)
+			return n;
+	}
 	n = (int)(now - last);
 	last = now;
 	return n;
