@@ -627,7 +627,8 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * cycle of the kernel runs (%EC_CYCLE_DETACH), it is taken over.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EBUSY active already; %-EPERM not reserved; %-ENOMEM;
+ * Return: 0; %-EBUSY active already, or process data were changed after they were
+ * registered (see ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
  * %-EOVERFLOW too much process data; %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
  * runs the cycle; %-EINVAL @master is NULL.

@@ -205,6 +205,8 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *arg,
 			       "register %s in another master's domain", name);
 	arg->config = sc->index;
 	arg->domain = domain->index;
+	if (!bit_position)
+		arg->flags |= EC_REG_ENTRY_ALIGNED;
 	ret = ec_ioctl(sc->master, EC_IOC_REG_ENTRY, arg);
 	if (ret)
 		return fail_sc_ioctl(sc, ret, "register %s", name);
@@ -212,10 +214,6 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *arg,
 		return fail_sc(sc, -EOVERFLOW, "register %s", name);
 	if (bit_position)
 		*bit_position = arg->bit;
-	else if (arg->bit)
-		return fail_sc(sc, -EFAULT,
-			       "register %s, at bit %u, without bit position",
-			       name, arg->bit);
 	return (int)arg->offset;
 }
 

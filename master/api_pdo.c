@@ -136,14 +136,13 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *i, ec_domai
 		return ec_api_fail_sc(sc, -EINVAL, "register an entry in another master's domain:");
 	i->config = ec_api_config(sc)->index;
 	i->domain = domain->index;
+	if (!bit_position)
+		i->flags |= EC_REG_ENTRY_ALIGNED;
 	ret = ec_api_do(ec_api_master(sc), ec_ioc_reg_entry, i);
 	if (ret)
 		return ec_api_fail_sc(sc, ret, "register an entry");
 	if (bit_position)
 		*bit_position = i->bit;
-	else if (i->bit)
-		return ec_api_fail_sc(sc, -EFAULT, "register at bit %u without bit position an entry",
-				      i->bit);
 	return i->offset;
 }
 

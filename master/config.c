@@ -348,6 +348,24 @@ s32 ec_config_flag(const struct ec_config *c, const char *key)
 	return 0;
 }
 
+/**
+ * ec_config_changed() - is what a SyncManager has in a domain still what it has?
+ * @c: configuration
+ * @f: one of its FMMUs
+ *
+ * Offsets have been handed out, so what was registered does not change any more.
+ *
+ * Context: Process, session_lock held.
+ * Return: true: bytes or direction were changed after the first entry was
+ * registered.
+ */
+bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f)
+{
+	const struct ec_config_sm *sm = &c->sm[f->sm];
+
+	return sm->dir != f->dir || ec_pdo_list_bytes(&sm->pdos) != f->size;
+}
+
 /* The mapping of @sm in @d, made when it is not there yet. */
 static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domain *d)
 {
@@ -380,15 +398,19 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 
 static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *offset, u32 *bit)
 {
-	struct ec_config_fmmu *f = map_sm(c, sm, d);
+	struct ec_config_fmmu *f;
 
+	/* first, so that nothing is left behind */
+	if (!bit && bits % 8)
+		return -EFAULT;
+	f = map_sm(c, sm, d);
 	if (IS_ERR(f))
 		return PTR_ERR(f);
-	/* mapped after the SyncManager got its place in the domain */
-	if (bits / 8 >= f->size)
+	if (ec_config_changed(c, f))
 		return -EBUSY;
 	*offset = f->offset + bits / 8;
-	*bit = bits % 8;
+	if (bit)
+		*bit = bits % 8;
 	return 0;
 }
 
@@ -399,13 +421,13 @@ static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *o
  * @sub: subindex
  * @d: domain
  * @offset: result: byte in the domain
- * @bit: result: bit in that byte
+ * @bit: result: bit in that byte; NULL: it has to begin with a byte
  *
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -ENOENT when the entry is not mapped; -EINVAL when its SyncManager
  * has no direction; -EOVERFLOW when all FMMUs are used or SyncManager or domain
- * are too large; -EBUSY when the mapping grew after an entry
- * of this SyncManager was registered; -ENOMEM.
+ * are too large; -EBUSY as ec_config_changed(); -EFAULT it begins within a byte and
+ * @bit is NULL; -ENOMEM.
  */
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit)

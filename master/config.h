@@ -166,6 +166,7 @@ int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8
 s32 ec_config_flag(const struct ec_config *c, const char *key);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
 void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
+bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit);
 int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,

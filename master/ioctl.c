@@ -163,7 +163,7 @@ static u32 known_flags(unsigned int cmd)
 	case EC_IOC_REG_WRITE:
 		return EC_REG_FLAG_EMERGENCY;
 	case EC_IOC_REG_ENTRY:
-		return EC_REG_ENTRY_BY_POS;
+		return EC_REG_ENTRY_BY_POS | EC_REG_ENTRY_ALIGNED;
 	case EC_IOC_CYCLE:
 		return EC_CYCLE_FLAG_ALL;
 	default:

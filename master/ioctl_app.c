@@ -242,9 +242,33 @@ int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
 	return ret;
 }
 
+static const char *dir_name(u8 dir)
+{
+	return dir == EC_CFG_DIR_OUTPUT ? "outputs" : "inputs";
+}
+
+/* -EBUSY when process data were changed after they got their place in a domain. */
+static int check_maps(struct ec_file *f, const struct ec_config *c)
+{
+	unsigned int i;
+
+	for (i = 0; i < c->n_fmmus; i++) {
+		const struct ec_config_fmmu *fm = &c->fmmus[i];
+
+		if (ec_config_changed(c, fm))
+			return ec_refuse(f, -EBUSY, "slave %u:%u: SM%u was registered in domain %u with %u bytes of %s; now it has %u of %s: set directions, PDOs and entries before the first of them is registered",
+					 c->alias, c->position, fm->sm, fm->domain->index,
+					 fm->size, dir_name(fm->dir),
+					 ec_pdo_list_bytes(&c->sm[fm->sm].pdos),
+					 dir_name(c->sm[fm->sm].dir));
+	}
+	return 0;
+}
+
 int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_reg_entry *i = arg;
+	u32 *bit = i->flags & EC_REG_ENTRY_ALIGNED ? NULL : &i->bit;
 	struct ec_session *s;
 	int ret = 0;
 	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
@@ -252,19 +276,22 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 	if (!c)
 		return ret;
 	s = c->session;
+	i->bit = 0;
 	if (i->domain >= s->n_domains)
 		return done(f, ec_refuse(f, -ENOENT, "there is no domain %u", i->domain));
 	if (i->flags & EC_REG_ENTRY_BY_POS)
 		ret = ec_config_reg_entry_pos(c, i->sm, i->pdo_pos, i->entry_pos,
-					      s->domains[i->domain], &i->offset, &i->bit);
+					      s->domains[i->domain], &i->offset, bit);
 	else
 		ret = ec_config_reg_entry(c, i->entry_index, i->subindex, s->domains[i->domain],
-					  &i->offset, &i->bit);
+					  &i->offset, bit);
 	if (ret == -ENOENT)
 		ec_refuse(f, ret, "entry 0x%04x:%02x is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
 			  i->entry_index, i->subindex, c->alias, c->position);
 	else if (ret == -EBUSY)
-		ec_refuse(f, ret, "the mapping of slave %u:%u was changed after its first entry was registered; map first, then register",
+		check_maps(f, c);
+	else if (ret == -EFAULT)
+		ec_refuse(f, ret, "it does not begin with a byte in slave %u:%u; give a place for its bit position",
 			  c->alias, c->position);
 	else if (ret == -EOVERFLOW)
 		ec_refuse(f, ret, "slave %u:%u: no FMMU left, or more than %u bytes in the SyncManager or %u in the domain",
@@ -375,8 +402,14 @@ static int take_over(struct ec_file *f)
 
 static int activate(struct ec_file *f, struct ec_session *s, const void *preset, u32 size)
 {
+	unsigned int i;
 	int ret;
 
+	for (i = 0; !s->active && i < s->n_configs; i++) {
+		ret = check_maps(f, s->configs[i]);
+		if (ret)
+			return ret;
+	}
 	if (size && !s->active && size != ec_session_place(s))
 		return ec_refuse(f, -EINVAL, "%u bytes to begin with, the domains have %u; register all entries first",
 				 size, ec_session_place(s));

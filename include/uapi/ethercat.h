@@ -545,9 +545,10 @@ struct ec_ioc_sc_sdo {
 };
 
 #define EC_REG_ENTRY_BY_POS	1
+#define EC_REG_ENTRY_ALIGNED	2	/* -EFAULT if it does not begin with a byte */
 
 struct ec_ioc_reg_entry {
-	__u32 flags;		/* EC_REG_ENTRY_BY_POS */
+	__u32 flags;		/* EC_REG_ENTRY_* */
 	__u32 config;		/* in */
 	__u32 domain;		/* in */
 	__u16 entry_index;	/* in, without BY_POS */

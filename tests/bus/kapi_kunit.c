@@ -246,6 +246,67 @@ static void kapi_pdos(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
+/* What was registered does not change any more; a refusal leaves nothing behind. */
+static void kapi_map_first(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8 mapping=rewritable\n", 1);
+	unsigned int bit = 9;
+	ec_slave_config_t *sc;
+	ec_domain_t *other;
+	struct kapp *k;
+
+	bus_idle(b);
+	k = kapp_new(b, 1000);
+	sc = kapp_config(k, 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_clear(sc, 0x1600), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_add(sc, 0x1600, 0, 0, 3), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_add(sc, 0x1600, 0x6040, 0, 16), 0);
+	/* bit 3, and no place for that */
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), -EFAULT);
+	KUNIT_EXPECT_EQ(test, ecrt_domain_size(k->d), 0ul);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry_pos(sc, 2, 0, 1, k->d, NULL), -EFAULT);
+	KUNIT_EXPECT_EQ(test, ecrt_domain_size(k->d), 0ul);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, &bit), 0);
+	KUNIT_EXPECT_EQ(test, bit, 3u);
+	KUNIT_EXPECT_EQ(test, ecrt_domain_size(k->d), 3ul);
+	/* another one is larger: the entry would lie in the neighbour's place, or beside it */
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_clear(sc, 0x1600), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_add(sc, 0x1600, 0x6040, 0, 16), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_mapping_add(sc, 0x1600, 0x607A, 0, 32), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x607A, 0, k->d, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), -EBUSY);
+	/* in another domain it is the first */
+	other = ecrt_master_create_domain(k->m);
+	KUNIT_ASSERT_NOT_NULL(test, other);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x607A, 0, other, NULL), 2);
+	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EBUSY);
+	ecrt_release_master(k->m);
+}
+
+/* The direction counts, too; what is the same in the end is no change. */
+static void kapi_map_again(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8 mapping=rewritable\n", 1);
+	ec_slave_config_t *sc;
+	struct kapp *k;
+
+	bus_idle(b);
+	k = kapp_new(b, 1000);
+	sc = kapp_config(k, 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_clear(sc, 2), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_add(sc, 2, 0x1600), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_clear(sc, 2), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_add(sc, 2, 0x1600), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_INPUT, EC_WD_DEFAULT), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EBUSY);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_OUTPUT, EC_WD_DEFAULT), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), 0);
+	ecrt_release_master(k->m);
+}
+
 /* All that is kept for each time a slave is configured. */
 static void kapi_stored(struct kunit *test)
 {
@@ -336,6 +397,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_cycle),
 	KUNIT_CASE(kapi_external_memory),
 	KUNIT_CASE(kapi_pdos),
+	KUNIT_CASE(kapi_map_first),
+	KUNIT_CASE(kapi_map_again),
 	KUNIT_CASE(kapi_stored),
 	KUNIT_CASE(kapi_null),
 	{}

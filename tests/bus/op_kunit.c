@@ -198,6 +198,23 @@ static void op_entry_not_there(struct kunit *test)
 	KUNIT_EXPECT_NE(test, b->app.reason[0], '\0');
 }
 
+/* Process data that were changed after they were registered are refused, with what is wrong. */
+static void op_map_first(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave s io in=64 out=64\n", 1);
+	struct ec_ioc_activate act = { 0 };
+	struct cyc *c = cyc_new(b, 1000);
+
+	cyc_domain(c);
+	cyc_config(c, 0);
+	cyc_map(c, 0, 0, 0);
+	cyc_pdo(c, 0, EC_SC_PDO_ASSIGN_CLEAR, 0, 0, 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &act), -EBUSY);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason,
+		"slave 0:0: SM0 was registered in domain 0 with 8 bytes of outputs; now it has 0 of outputs"),
+				  "%s", b->app.reason);
+}
+
 /* What one application has mapped does not answer in place of the next one's. */
 static void op_next_application(struct kunit *test)
 {
@@ -264,6 +281,7 @@ static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_without_lrw),
 	KUNIT_CASE(op_many_frames),
 	KUNIT_CASE(op_entry_not_there),
+	KUNIT_CASE(op_map_first),
 	KUNIT_CASE(op_next_application),
 	KUNIT_CASE(op_reference),
 	KUNIT_CASE(op_reference_outputs),

@@ -125,10 +125,14 @@ static void answer_sdo(struct ec_ioc_sdo *sdo)
 	}
 }
 
-static void reg_entry(struct ec_ioc_reg_entry *r)
+static int reg_entry(struct ec_ioc_reg_entry *r)
 {
 	r->offset = r->entry_index == 0x7000 ? 3 : 8;
 	r->bit = r->entry_index == 0x6010 ? 5 : 0;
+	if (!r->bit || !(r->flags & EC_REG_ENTRY_ALIGNED))
+		return 0;
+	errno = EFAULT;
+	return -1;
 }
 
 static void slave(struct ec_ioc_slave *s)
@@ -242,8 +246,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		((struct ec_ioc_sc_request *)arg)->index = fake.requests++;
 		break;
 	case EC_IOC_REG_ENTRY:
-		reg_entry(arg);
-		break;
+		return reg_entry(arg);
 	case EC_IOC_SDO_UPLOAD:
 		answer_sdo(arg);
 		break;

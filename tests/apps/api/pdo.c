@@ -50,9 +50,14 @@ static void single_steps(void)
 	SAYS(CALL(ecrt_slave_config_pdo_assign_add)(sc, 16, 0x1600), -EINVAL);
 	SAYS(CALL(ecrt_slave_config_pdo_assign_clear)(sc, 16), -EINVAL);
 	/* 3 + 8 bits before it */
+	SAYS(offset(0x6040, NULL), -EFAULT);
+	IS(CALL(ecrt_domain_size)(d), 0);
 	IS(offset(0x6040, &bit), 1);
 	IS(bit, 3);
-	SAYS(offset(0x6040, NULL), -EFAULT);
+	/* what was registered does not change any more */
+	IS(CALL(ecrt_slave_config_pdo_mapping_add)(sc, 0x1600, 0x60ff, 0, 32), 0);
+	SAYS(offset(0x6040, &bit), -EBUSY);
+	SAYS(CALL(ecrt_master_activate)(b.m), -EBUSY);
 	bench_down(&b);
 }
 

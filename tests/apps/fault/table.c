@@ -61,7 +61,7 @@ const struct cmd cmds[] = {
 	CMD(SC_PDO, APP),
 	CMD(SC_SDO, APP, RSV1(ec_ioc_sc_sdo), DATA(ec_ioc_sc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
 	CMD(SC_IDN, APP, DATA(ec_ioc_sc_idn)),
-	CMD(REG_ENTRY, APP, .flags = EC_REG_ENTRY_BY_POS),
+	CMD(REG_ENTRY, APP, .flags = EC_REG_ENTRY_BY_POS | EC_REG_ENTRY_ALIGNED),
 	CMD(SC_DC, APP, RSV2(ec_ioc_sc_dc)),
 	CMD(SC_FLAG, APP, RSV1(ec_ioc_sc_flag)),
 	CMD(SC_TIMEOUT, APP, RSV1(ec_ioc_sc_timeout)),
