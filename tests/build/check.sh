@@ -106,6 +106,8 @@ expected() {
 	.$prefix/lib/libethercat.so
 	.$prefix/lib/libethercat.so.1
 	.$prefix/lib/libethercat.so.1.2.0
+	.$prefix/lib/cmake/ethercat/ethercat-config-version.cmake
+	.$prefix/lib/cmake/ethercat/ethercat-config.cmake
 	.$prefix/lib/pkgconfig/libethercat.pc
 	.$prefix/lib/udev/rules.d/60-ethercat.rules
 	.$prefix/share/bash-completion/completions/ethercat
@@ -146,6 +148,30 @@ app_runs() {
 
 t "an application in C99 with pkg-config" app_runs gcc c99 c
 t "an application in C++11 with pkg-config" app_runs g++ c++11 c++
+
+# find_package() in a project of its own; without cmake what the files say
+cmake_app() {
+	local dir=$root$prefix/lib/cmake/ethercat
+
+	grep -q '@' "$dir"/*.cmake && return 1
+	[ "$(realpath "$dir/$(sed -n 's|.*{CMAKE_CURRENT_LIST_DIR}/\(.*include\)".*|\1|p' \
+		"$dir/ethercat-config.cmake")")" = "$(realpath "$root$prefix/include")" ] || return 1
+	command -v cmake >/dev/null || return 0
+	mkdir -p "$tmp/cmake" && cp "$tmp/app.c" "$tmp/cmake" || return 1
+	cat >"$tmp/cmake/CMakeLists.txt" <<-'END'
+	cmake_minimum_required(VERSION 3.10)
+	project(app C)
+	find_package(ethercat 1.5 REQUIRED)
+	add_executable(app app.c)
+	target_link_libraries(app EtherLab::ethercat)
+	END
+	cmake -S "$tmp/cmake" -B "$tmp/cmake/build" -DCMAKE_PREFIX_PATH="$root$prefix" &&
+		cmake --build "$tmp/cmake/build" && "$tmp/cmake/build/app" || return 1
+	# one that needs more than we have
+	sed -i 's/ethercat 1.5/ethercat 99/' "$tmp/cmake/CMakeLists.txt"
+	! cmake -S "$tmp/cmake" -B "$tmp/cmake/later" -DCMAKE_PREFIX_PATH="$root$prefix"
+}
+t "an application with cmake" cmake_app
 
 # copied somewhere else, as a user would do
 examples_build() {
