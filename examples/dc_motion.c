@@ -10,7 +10,7 @@
  *           small controller; the best for the drives
  *
  * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the
- * latter, see kcycle.c.)
+ * latter, see kcycle.c with "follow".)
  *
  * usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]
  *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 0 and 1

@@ -3,10 +3,15 @@
  * Example: the kernel runs the cycle, this program only has values. It needs no
  * real-time priority: the frames keep their time whatever it does.
  *
- * usage: kcycle [CYCLES]
+ * usage: kcycle [CYCLES [follow]]
  *
  * All slaves run with the process data they have, at 1 kHz. The first output
  * byte of each counts up; the program ends after CYCLES cycles (default 5000).
+ *
+ *   follow  the clocks of the slaves are kept in step, and the cycle follows the
+ *           reference clock, which keeps its own time: its frames pass that clock
+ *           always at the same distance from the SYNC signals. (A slave that shall have
+ *           such signals is told with ecrt_slave_config_dc(), see dc_motion.c.)
  *
  * Kill it, and the kernel goes on; start it again, and it goes on counting where
  * it was. 'ethercat release' ends what a killed one has left.
@@ -21,6 +26,7 @@
 
 #define SLAVES_MAX	128
 #define PERIOD_NS	1000000
+#define PHASE_NS	250000		/* of the frame, after SYNC0 */
 #define OP_TIMEOUT_S	60
 
 static ec_master_t *master;
@@ -28,6 +34,7 @@ static ec_domain_t *domain;
 static ec_slave_config_t *slaves[SLAVES_MAX];
 static int outputs[SLAVES_MAX];		/* first output byte in the domain, or -1 */
 static unsigned int n_slaves;
+static int follow;
 
 /* A slave as it is: every SyncManager with PDOs goes into the domain. */
 static int add_slave(uint16_t position)
@@ -62,15 +69,21 @@ static int add_slave(uint16_t position)
 
 static int configure(void)
 {
-	/* Without outputs the slaves get the last ones, also when we are dead. */
+	/*
+	 * Without outputs the slaves get the last ones, also when we are dead. Any CPU
+	 * may run it; to name one: .flags = EC_CYCLE_BIND_CPU, .cpu = 1.
+	 */
 	ec_cycle_config_t cycle = {
 		.period_ns = PERIOD_NS,
-		.cpu = -1,
 		.stall = EC_CYCLE_HOLD,
 		.flags = EC_CYCLE_DETACH,
 	};
 	ec_master_info_t info;
 
+	if (follow) {
+		cycle.dc = EC_CYCLE_SYNC_SLAVES | EC_CYCLE_FOLLOW_REFERENCE;
+		cycle.phase_ns = PHASE_NS;
+	}
 	domain = ecrt_master_create_domain(master);
 	if (!domain || ecrt_master(master, &info))
 		return -1;
@@ -107,6 +120,27 @@ static int cycle(ec_domain_state_t *state)
 	return n;
 }
 
+/* How old the inputs are that were taken last, ns: since their cycle began. */
+static int64_t age(void)
+{
+	struct timespec now;
+	uint64_t began;
+
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	if (ecrt_master_cycle_inputs(master, NULL, &began))
+		return 0;
+	return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec - (int64_t)began;
+}
+
+/* The clocks need a second or so to be set, then the cycle finds its place. */
+static int locked(void)
+{
+	ec_cycle_state_t state;
+
+	return !follow || (!ecrt_master_cycle_state(master, &state) &&
+			   state.lock == EC_CYCLE_LOCKED);
+}
+
 static int in_op(void)
 {
 	ec_slave_config_state_t state;
@@ -117,18 +151,34 @@ static int in_op(void)
 	return 1;
 }
 
+static void report(int64_t oldest)
+{
+	ec_cycle_state_t state;
+
+	ecrt_master_cycle_state(master, &state);
+	printf("kernel: %" PRIu64 " cycles, %" PRIu64 " overruns, sent up to %" PRIu32
+	       " ns after the schedule\n", state.cycles, state.overruns, state.late_max);
+	printf("inputs taken up to %" PRId64 " ns after their cycle began\n", oldest);
+	if (follow)
+		printf("reference clock: runs %+" PRId32 " ppb, phase error %" PRId32
+		       " ns, lost %" PRIu32 " times\n", state.rate_ppb, state.phase_error,
+		       state.lock_losses);
+}
+
 static int run(unsigned long cycles)
 {
 	unsigned long skipped = 0, incomplete = 0;
+	int64_t oldest = 0, ns;
 	time_t end = time(NULL) + OP_TIMEOUT_S;
 	ec_domain_state_t domain_state;
 	ec_cycle_state_t state;
 	int n = 0;
 
-	while (!in_op() && n >= 0 && time(NULL) < end)
+	while (!(in_op() && locked()) && n >= 0 && time(NULL) < end)
 		n = cycle(&domain_state);
-	if (!in_op()) {
-		fprintf(stderr, "not all slaves are in OP; see 'ethercat slaves'\n");
+	if (!in_op() || !locked()) {
+		fprintf(stderr, "not all slaves are in OP, or the clock has no lock; see "
+			"'ethercat slaves' and 'ethercat master'\n");
 		return -1;
 	}
 	ecrt_master_cycle_state(master, &state);
@@ -142,11 +192,11 @@ static int run(unsigned long cycles)
 		/* cycles this program slept through; the frames went all the same */
 		skipped += (unsigned long)n - 1;
 		incomplete += domain_state.wc_state != EC_WC_COMPLETE;
+		ns = age();
+		oldest = ns > oldest ? ns : oldest;
 	}
-	ecrt_master_cycle_state(master, &state);
 	printf("%lu cycles, %lu skipped, %lu incomplete\n", cycles, skipped, incomplete);
-	printf("kernel: %" PRIu64 " cycles, %" PRIu64 " overruns, sent up to %" PRIu32
-	       " ns after the schedule\n", state.cycles, state.overruns, state.late_max);
+	report(oldest);
 	return 0;
 }
 
@@ -155,6 +205,7 @@ int main(int argc, char **argv)
 	unsigned long cycles = argc > 1 ? strtoul(argv[1], NULL, 0) : 5000;
 	int ret = -1;
 
+	follow = argc > 2 && !strcmp(argv[2], "follow");
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	master = ecrt_request_master(0);
 	if (!master)

@@ -883,6 +883,7 @@ typedef enum {
 /* ec_cycle_config_t.flags */
 #define EC_CYCLE_DETACH		1U	/* goes on when the application dies */
 #define EC_CYCLE_WAIT_OUTPUTS	2U	/* the first frame waits for outputs */
+#define EC_CYCLE_BIND_CPU	4U	/* the thread runs on @cpu only */
 
 /* ec_cycle_config_t.dc: clock datagrams of every cycle */
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
@@ -903,7 +904,8 @@ typedef enum {
  * @phase_ns: cycles begin at multiples of the period of CLOCK_MONOTONIC, plus
  *	this; less than the period. With EC_CYCLE_FOLLOW_REFERENCE it counts
  *	from the grid of the SYNC signals.
- * @cpu: that runs the thread, -1: any
+ * @cpu: that runs the thread, with %EC_CYCLE_BIND_CPU. Without that flag any CPU
+ *	may, and this must not name one: 0 or -1
  * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50
  * @stall: what to do without new outputs
  * @stall_cycles: after that many cycles in a row without; 0: never. The first

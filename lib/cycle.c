@@ -16,6 +16,7 @@
 _Static_assert((int)EC_CYCLE_WAITING == EC_CYCLE_STATE_WAITING, "state");
 _Static_assert(EC_CYCLE_DETACH == EC_CYCLE_FLAG_DETACH, "flags");
 _Static_assert(EC_CYCLE_WAIT_OUTPUTS == EC_CYCLE_FLAG_WAIT, "flags");
+_Static_assert(!(EC_CYCLE_BIND_CPU & EC_CYCLE_FLAG_ALL), "flags");	/* the library's own */
 _Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
 _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");
 _Static_assert(EC_CYCLE_SYNC_SLAVES == EC_SEND_FLAG_SYNC_SLAVES, "clock flags");
@@ -28,6 +29,7 @@ _Static_assert((int)EC_CYCLE_HOLDING == EC_CYCLE_LOCK_HOLD, "lock");
 int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 {
 	struct ec_ioc_cycle arg = { .cpu = -1 };
+	bool bind;
 	int ret;
 
 	if (!master)
@@ -35,14 +37,18 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 	if (config) {
 		if (!config->period_ns)
 			return ec_fail(-EINVAL, "set a cycle of 0 ns");
+		bind = config->flags & EC_CYCLE_BIND_CPU;
+		if (bind ? config->cpu < 0 : config->cpu > 0)
+			return ec_fail(-EINVAL, "set a cycle on CPU %d %s EC_CYCLE_BIND_CPU",
+				       config->cpu, bind ? "with" : "without");
 		arg.period_ns = config->period_ns;
 		arg.phase_ns = config->phase_ns;
-		arg.cpu = config->cpu;
+		arg.cpu = bind ? config->cpu : -1;
 		arg.priority = config->priority;
 		arg.stall = (__u32)config->stall;
 		arg.stall_cycles = config->stall_cycles;
 		arg.dc = config->dc;
-		arg.flags = config->flags;
+		arg.flags = config->flags & ~EC_CYCLE_BIND_CPU;
 	}
 	ret = ec_ioctl(master, EC_IOC_CYCLE, &arg);
 	return ret ? ec_fail_ioctl(master, ret, "let the kernel run the cycle") : 0;

@@ -84,7 +84,7 @@ static void *kernel(void *arg)
 static ec_master_t *start(ec_domain_t **d, unsigned char running)
 {
 	ec_cycle_config_t config = {
-		.period_ns = 1000000, .cpu = -1, .flags = EC_CYCLE_DETACH,
+		.period_ns = 1000000, .flags = EC_CYCLE_DETACH,
 	};
 	ec_master_t *m;
 
@@ -272,7 +272,7 @@ static void takeover(void)
 /* A takeover that fails half-way does not end what it has found. */
 static void takeover_fails(void)
 {
-	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	ec_cycle_config_t config = { .period_ns = 1000000 };
 	ec_master_t *m;
 
 	memset(&fake, 0, sizeof(fake));
@@ -284,6 +284,31 @@ static void takeover_fails(void)
 	CHECK(ecrt_master_activate(m) == -EPROTO && fake.last == EC_IOC_ACTIVATE);
 	fake.running = 0;
 	CHECK(ecrt_master_activate(m) == -EPROTO && fake.last == EC_IOC_DEACTIVATE);
+	ecrt_release_master(m);
+}
+
+/* One CPU only when it is said twice: zeros in a structure choose none. */
+static void cpus(void)
+{
+	const struct ec_ioc_cycle *arg = (void *)fake.arg;
+	ec_cycle_config_t config = { .period_ns = 1000000, .flags = EC_CYCLE_DETACH };
+	ec_master_t *m;
+
+	memset(&fake, 0, sizeof(fake));
+	m = ecrt_request_master(0);
+	CHECK(!ecrt_master_set_cycle(m, &config) && arg->cpu == -1);
+	config.cpu = -1;
+	CHECK(!ecrt_master_set_cycle(m, &config) && arg->cpu == -1);
+	config.cpu = 3;
+	CHECK(ecrt_master_set_cycle(m, &config) == -EINVAL);
+	config.flags |= EC_CYCLE_BIND_CPU;
+	CHECK(!ecrt_master_set_cycle(m, &config) && arg->cpu == 3);
+	CHECK(arg->flags == EC_CYCLE_FLAG_DETACH);
+	config.cpu = 0;
+	CHECK(!ecrt_master_set_cycle(m, &config) && arg->cpu == 0);
+	config.cpu = -1;
+	CHECK(ecrt_master_set_cycle(m, &config) == -EINVAL);
+	CHECK(!ecrt_master_set_cycle(m, NULL) && arg->cpu == -1);
 	ecrt_release_master(m);
 }
 
@@ -316,7 +341,7 @@ static void divisions_and_copies(void)
 /* Requests are counted where the kernel looks; one that runs is waited for. */
 static void requests(void)
 {
-	ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+	ec_cycle_config_t config = { .period_ns = 1000000 };
 	struct ec_request_area *area;
 	struct ec_request_record *rec;
 	ec_sdo_request_t *r[2];
@@ -395,6 +420,7 @@ int kernel_cycle(void)
 	CHECK(ecrt_master_cycle_state(NULL, NULL) == -EINVAL);
 	CHECK(ecrt_master_cycle_inputs(NULL, NULL, NULL) == -EINVAL);
 	CHECK(ecrt_master_end_detached(NULL) == -EINVAL);
+	cpus();
 	steps();
 	numbers();
 	halts();

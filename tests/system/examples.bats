@@ -69,6 +69,20 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "kcycle: the kernel's cycle follows the reference clock" {
+	example kcycle 3000 follow
+	wait "$app"
+	cat "$out"
+	grep -E '^3000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
+	grep -E '^inputs taken up to [0-9]+ ns after their cycle began$' "$out"
+	# that clock is 500 ppm too fast
+	ppb=$(sed -n 's/^reference clock: runs +\([0-9]*\) ppb, .* lost 0 times$/\1/p' "$out")
+	[ "$ppb" -ge 450000 ] && [ "$ppb" -le 550000 ]
+	error=$(sed -n 's/.* phase error -\{0,1\}\([0-9]*\) ns.*/\1/p' "$out")
+	[ "$error" -lt 15625 ]
+	app=
+}
+
 @test "kcycle: killed, the kernel goes on, and the next one takes over" {
 	example kcycle 1000000
 	wait_for 60 grep -qx '5 slaves in OP' "$out"

@@ -9,7 +9,7 @@ static void end(void) { bench_down(&b); }
 
 static void master(void)
 {
-	ec_cycle_config_t cycle = { .period_ns = 1000000, .cpu = -1 };
+	ec_cycle_config_t cycle = { .period_ns = 1000000 };
 
 	NEED(b.m);
 	errno = 0;

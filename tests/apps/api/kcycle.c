@@ -4,7 +4,7 @@
 
 #include "api.h"
 
-static ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1 };
+static ec_cycle_config_t config = { .period_ns = 1000000 };
 
 static void refused(void)
 {
@@ -25,6 +25,12 @@ static void refused(void)
 	SAYS(CALL(ecrt_master_set_cycle)(b.m, &bad), -EINVAL);
 	bad = config;
 	bad.cpu = 4000;
+	bad.flags = EC_CYCLE_BIND_CPU;
+	SAYS(CALL(ecrt_master_set_cycle)(b.m, &bad), -EINVAL);
+	bad.cpu = -1;
+	SAYS(CALL(ecrt_master_set_cycle)(b.m, &bad), -EINVAL);
+	bad.cpu = 1;	/* without the flag: does it want that one or not? */
+	bad.flags = 0;
 	SAYS(CALL(ecrt_master_set_cycle)(b.m, &bad), -EINVAL);
 	bad = config;
 	bad.stall = (ec_cycle_stall_t)3;

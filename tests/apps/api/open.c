@@ -59,7 +59,7 @@ static void requesting(void)
 static void not_reserved(void)
 {
 	ec_master_t *m = CALL(ecrt_open_master)(0);
-	ec_cycle_config_t cycle = { .period_ns = 1000000, .cpu = -1 };
+	ec_cycle_config_t cycle = { .period_ns = 1000000 };
 	uint32_t time;
 
 	NEED(m);

@@ -90,7 +90,7 @@ static void cycle(struct app *a, bool count)
 
 static bool configure(struct app *a)
 {
-	const ec_cycle_config_t config = { .period_ns = 1000000, .cpu = -1,
+	const ec_cycle_config_t config = { .period_ns = 1000000,
 					   .dc = EC_CYCLE_SYNC_SLAVES | EC_CYCLE_SYNC_MONITOR };
 	ec_slave_info_t info;
 	unsigned int bit;

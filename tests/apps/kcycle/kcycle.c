@@ -155,7 +155,7 @@ static int configure(void)
 		.stall_cycles = (uint32_t)opt_stall_cycles,
 		.dc = !opt_dc ? 0 : EC_CYCLE_SYNC_SLAVES | EC_CYCLE_SYNC_MONITOR |
 				    (opt_dc == 2 ? EC_CYCLE_FOLLOW_REFERENCE : 0),
-		.flags = (uint32_t)opt_flags,
+		.flags = (uint32_t)opt_flags | (opt_cpu >= 0 ? EC_CYCLE_BIND_CPU : 0),
 	};
 	ec_master_info_t info;
 

@@ -57,7 +57,7 @@ static int add_slave(struct bench *b, uint16_t position)
 static int kernel_cycle(struct bench *b)
 {
 	ec_cycle_config_t config = {
-		.period_ns = b->period_us * 1000, .cpu = -1, .priority = 90,
+		.period_ns = b->period_us * 1000, .priority = 90,
 		.dc = b->extras ? EC_CYCLE_SYNC_REFERENCE | EC_CYCLE_SYNC_SLAVES |
 				  EC_CYCLE_SYNC_MONITOR : 0,
 	};
