@@ -629,7 +629,8 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * Context: Process. May sleep.
  * Return: 0; %-EBUSY active already, or process data were changed after they were
  * registered (see ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
- * %-EOVERFLOW too much process data; %-EEXIST a detached cycle of another
+ * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may make no
+ * cycle late (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
  * runs the cycle; %-EINVAL @master is NULL.
  */
@@ -1853,7 +1854,8 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
  * use. One that is too long for any cycle waits for its turn among these late cycles.
  * Mailbox messages are cut so that they fit. With 0 no cycle is late, such frames run
  * into their time limit, and activation fails when not even the shortest frame, 6.72
- * us, fits. "ethercat master -v" shows wire time, what is left, and late cycles.
+ * us, fits. An application that takes over a cycle of the kernel says it anew.
+ * "ethercat master -v" shows wire time, what is left, and late cycles.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
