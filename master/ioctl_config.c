@@ -4,6 +4,7 @@
 #include <linux/slab.h>
 #include <linux/uaccess.h>
 #include "config.h"
+#include "cycle_thread.h"
 #include "domain.h"
 #include "ioctl.h"
 #include "master.h"
@@ -294,6 +295,8 @@ int ec_ioc_domain_data(struct ec_file *f, void *arg)
 	} else {
 		i->size = min(i->size, d->size);
 		copy = keep(ec_domain_data(d), i->size, &ret);
+		if (copy)
+			ec_cycle_thread_outputs(d->session, copy, d->offset, i->size);
 	}
 	done(f, ret);
 	return hand_over(i->data, copy, i->size, ret);

@@ -78,6 +78,19 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	kcycle cycles=100
 }
 
+@test "the tool shows the outputs that are sent, also those of the application's buffer" {
+	"$EC_BUILD/apps/kcycle" cycles=1000000 options=1 loop=1 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 60 grep -q 'in OP' "$BATS_TEST_TMPDIR/out"
+	sleep 1.5	# from then on frames are filled from there
+	first=$(ethercat data | od -An -tu4 -N4)
+	sleep 0.1
+	[ "$(ethercat data | od -An -tu4 -N4)" -gt "$first" ]
+	kill -9 $app
+	wait $app || true
+	wait_for 60 all_slaves_are PREOP 3
+}
+
 @test "spinning, poll() and epoll see each cycle, too" {
 	for how in 1 2 3; do
 		run kcycle cycles=1000 spin=$how
