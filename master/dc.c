@@ -10,6 +10,9 @@
 #include "xfer.h"
 
 #define ROUNDS		16	/* latches; the times have 10 ns of noise */
+#define TOGETHER	4	/* of them before clocks that are set are corrected again */
+#define CORRECT_CYCLES	8	/* in so many cycles */
+#define CORRECT_MS	20	/* and within that time */
 #define BATCH		1500	/* datagrams in one ec_xfer() */
 #define BOOST		16000	/* left to the cycle */
 #define REGS		32	/* 0x0900-0x091F */
@@ -32,6 +35,7 @@ struct job {
 	u16 followed;		/* station address of the clock the others follow, or 0 */
 	unsigned int ref;	/* index, n: none */
 	u64 latch_ns;		/* when the last latch was sent */
+	bool running;		/* the cycle has corrected clocks until now */
 };
 
 static void job_free(struct job *j)
@@ -187,12 +191,29 @@ static int latch(struct job *j)
 	return ret;
 }
 
+/*
+ * A clock that is being corrected runs too fast or too slow to measure; but those
+ * that are set drift apart as long as they are not.
+ */
+static void correct_between(struct job *j)
+{
+	u32 polls = READ_ONCE(j->m->polls);
+	unsigned int ms;
+
+	WRITE_ONCE(j->m->dc.running, true);
+	for (ms = 0; ms < CORRECT_MS && READ_ONCE(j->m->polls) - polls < CORRECT_CYCLES; ms++)
+		usleep_range(1000, 1100);
+	WRITE_ONCE(j->m->dc.running, false);
+}
+
 static int measure(struct job *j)
 {
 	unsigned int i, round;
 	int ret = 0;
 
 	for (round = 0; round < ROUNDS && !ret; round++) {
+		if (j->running && round && round % TOGETHER == 0)
+			correct_between(j);
 		ret = latch(j);
 		ec_dc_delays(j->nodes, j->n, j->ref);
 		for (i = 0; i < j->n; i++)
@@ -320,7 +341,8 @@ static int write_clocks(struct job *j)
  * towards it as it has datagrams. So: first many short frames, to come near;
  * then fewer and long ones with ever smaller steps, to lose the noise; then the
  * cycle alone, with some more datagrams than usual (@boost). What noise is left
- * after the first stage, some ppm, must go soon: the second one is quick, too.
+ * after the first stage, some ppm, must go soon: the second one is quick, too, and
+ * ends before slaves begin to use their clocks, whose frames would slow it down.
  */
 static const struct stage {
 	u16 syncs;	/* datagrams of a frame that carry the time */
@@ -557,13 +579,13 @@ static void work(struct work_struct *work)
 		await_time(m, t0);
 	mutex_lock(&dc->lock);
 	was = READ_ONCE(dc->running);
-	/* a clock that is being corrected runs too fast or too slow to measure */
+	j.running = was;
 	WRITE_ONCE(dc->running, false);
 	ret = set(&j);
 	WRITE_ONCE(dc->begun_ns, ktime_get_ns());
 	/* those that were set before need the cycle in any case */
 	WRITE_ONCE(dc->running, !ret || (was && ret != -ENXIO));
-	ret = ret ?: compensate(&j, &near) ?: check(&j);
+	ret = ret ?: compensate(&j, &near) ?: compensate(&j, &nearer) ?: check(&j);
 	mutex_unlock(&dc->lock);
 	if (!ret)
 		ec_info(m, "clocks set in %llu us, reference clock is slave %u\n",
@@ -573,8 +595,7 @@ static void work(struct work_struct *work)
 	WRITE_ONCE(dc->boost, ret || READ_ONCE(dc->front) ? 0 : BOOST);
 	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
 	if (!ret)
-		ret = compensate(&j, &nearer) ?: compensate(&j, &quiet) ?:
-		      compensate(&j, &calm);
+		ret = compensate(&j, &quiet) ?: compensate(&j, &calm);
 	job_free(&j);
 }
 

@@ -510,6 +510,54 @@ static void dc_window(struct kunit *test)
 	KUNIT_EXPECT_LT(test, abs(bus_slave(b, 1)->dc_diff), 500);
 }
 
+/* what the application reads of the reference's time */
+struct read_time {
+	u64 last;
+	u32 fresh;
+	u32 old;
+	u32 none;
+};
+
+static void time_each(struct cyc *c)
+{
+	const struct ec_status *st = c->b->m->session->shared->status;
+	struct read_time *r = c->ctx;
+
+	if (!st->dc_time_valid)
+		r->none++;
+	else if (st->dc_time == r->last)
+		r->old++;
+	else
+		r->fresh++;
+	r->last = st->dc_time;
+	sync_each(c);
+}
+
+/* While delays are measured anew there is no time, rather than the one of before. */
+static void dc_time_not_old(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave a drive in=8 out=8 drift=60ppm\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+			      "slave c drive in=8 out=8 drift=100ppm clock=88s cable=99\n", 3);
+	struct read_time r = { 0 };
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 1000);
+	c->each = time_each;
+	c->ctx = &r;
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, r.fresh, 100u);
+	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, 2, 0, 0, 0);
+	cyc_run(c, 1000);
+	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, 2, 0, 0, 0);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_EQ(test, r.old, 0u);
+	KUNIT_EXPECT_GT(test, r.none, 0u);
+	KUNIT_EXPECT_GT(test, r.fresh, 2500u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_are_true),
 	KUNIT_CASE(dc_clocks_agree),
@@ -523,6 +571,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_reference_is_lost),
 	KUNIT_CASE(dc_chosen_is_lost),
 	KUNIT_CASE(dc_window),
+	KUNIT_CASE(dc_time_not_old),
 	KUNIT_CASE(dc_latch),
 	{ }
 };
