@@ -45,4 +45,44 @@ static __always_inline void ec_bytes_copy(u8 *to, const u8 *from, unsigned int l
 	}
 }
 
+/* @count values; the first and the last part of @part bytes of each may overlap. */
+static __always_inline void ec_bytes_parts(u8 *to, unsigned int to_stride, const u8 *from,
+					   unsigned int from_stride, unsigned int len,
+					   unsigned int count, unsigned int part)
+{
+	const unsigned int at_last = len - part;
+	u64 first[2], last[2];
+
+	for (; count; count--, to += to_stride, from += from_stride) {
+		__builtin_memcpy(first, from, part);
+		__builtin_memcpy(last, from + at_last, part);
+		__builtin_memcpy(to, first, part);
+		__builtin_memcpy(to + at_last, last, part);
+	}
+}
+
+/**
+ * ec_bytes_run() - copy values of one size that stand at equal distances
+ * @to: first destination
+ * @to_stride: from one to the next, bytes
+ * @from: first source, apart from all destinations
+ * @from_stride: from one to the next, bytes
+ * @len: of each value, bytes
+ * @count: values
+ *
+ * Context: Any. RT-safe.
+ */
+static __always_inline void ec_bytes_run(u8 *to, unsigned int to_stride, const u8 *from,
+					 unsigned int from_stride, unsigned int len,
+					 unsigned int count)
+{
+	if (len >= 16 && len <= 32)
+		ec_bytes_parts(to, to_stride, from, from_stride, len, count, 16);
+	else if (len >= 8 && len <= 16)
+		ec_bytes_parts(to, to_stride, from, from_stride, len, count, 8);
+	else
+		for (; count; count--, to += to_stride, from += from_stride)
+			ec_bytes_copy(to, from, len);
+}
+
 #endif

@@ -59,16 +59,23 @@ struct ec_cyc_dgram {
 };
 
 /**
- * struct ec_cyc_area - process data to copy into or out of a datagram
+ * struct ec_cyc_area - process data to copy into or out of a datagram: values of one
+ *	size at equal distances, as slaves of a kind in a row have them
  * @offset: byte in the image
  * @pos: byte in the datagram
- * @len: bytes
+ * @len: bytes of a value
+ * @count: values
+ * @offset_stride: from one to the next in the image, bytes
+ * @pos_stride: in the datagram
  * @cut: number in struct ec_cycle.cuts, for inputs of several datagrams
  */
 struct ec_cyc_area {
 	u32 offset;
 	u16 pos;
 	u16 len;
+	u16 count;
+	u16 offset_stride;
+	u16 pos_stride;
 	u16 cut;
 };
 

@@ -129,7 +129,7 @@ int ec_dc_wait(struct ec_slave *s);
 
 /* dc_app.c */
 void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
-void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what, u64 at_ns);
+void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what);
 u64 ec_dc_now(struct ec_master *m);
 u64 ec_dc_app_at(struct ec_master *m, u64 at_ns);
 void ec_dc_app_set(struct ec_master *m, u64 base, bool set);

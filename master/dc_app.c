@@ -110,22 +110,22 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
  * ec_dc_told() - the application tells its time with a send
  * @s: active session
  * @what: its flags, @app_time and @sync_time; any value, also one that has jumped
- * @at_ns: now (ktime)
  *
  * An application that leads the clocks means the time it wants to be written: of
  * that its other time only gives the upper half.
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what, u64 at_ns)
+void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	bool leads = what->flags & EC_SEND_FLAG_SYNC_REF, good = true;
 	struct ec_dc *dc = &s->master->dc;
 	unsigned long flags;
-	u64 time;
+	u64 time, at_ns;
 
 	if (!(what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF)))
 		return;
+	at_ns = ktime_get_ns();
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	if (what->flags & EC_SEND_FLAG_APP_TIME)
 		time = what->app_time;

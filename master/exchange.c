@@ -63,7 +63,8 @@ static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
 	 */
 	n = complete ? d->n_whole : direct ? 0 : d->n_plain;
 	for (i = 0; i < n; i++, in++)
-		ec_bytes_copy(image + in->offset, data + in->pos, in->len);
+		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
+			     in->pos_stride, in->len, in->count);
 	if (unlikely(d->n_inputs != d->n_whole) && complete)
 		take_cuts(s, d, f->send, data);
 }
@@ -255,7 +256,8 @@ static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d,
 	if (d->holes)
 		memset(data, 0, d->len);
 	for (i = 0; i < d->n_copies; i++, a++)
-		ec_bytes_copy(data + a->pos, image + a->offset, a->len);
+		ec_bytes_run(data + a->pos, a->pos_stride, image + a->offset,
+			     a->offset_stride, a->len, a->count);
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
@@ -346,7 +348,7 @@ static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
  */
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
 {
-	ec_dc_told(s, what, ktime_get_ns());
+	ec_dc_told(s, what);
 	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
 		ec_requests_kick(s->requests);
 	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;

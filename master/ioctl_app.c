@@ -546,7 +546,7 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 
 	s = enter(f, &ret);
 	if (s) {
-		ec_dc_told(s, &told, ktime_get_ns());
+		ec_dc_told(s, &told);
 		mutex_unlock(&f->master->cyclic_lock);
 		return 0;
 	}

@@ -85,7 +85,8 @@ static int add_area(struct ec_cycle *c, u16 *count, u32 offset, u16 pos, u16 len
 	if (!a)
 		return -ENOMEM;
 	c->areas = a;
-	a[c->n_areas++] = (struct ec_cyc_area){ .offset = offset, .pos = pos, .len = len };
+	a[c->n_areas++] = (struct ec_cyc_area){ .offset = offset, .pos = pos, .len = len,
+						.count = 1 };
 	++*count;
 	return 0;
 }
@@ -132,6 +133,39 @@ static int add_cut(struct ec_cycle *c, u32 offset, u32 len)
 	return 0;
 }
 
+/* Is @b the next value of @a? */
+static bool follows(const struct ec_cyc_area *a, const struct ec_cyc_area *b)
+{
+	u32 offset = b->offset - a->offset, pos = b->pos - a->pos;
+
+	if (b->len != a->len || b->offset < a->offset || b->pos < a->pos || offset > U16_MAX)
+		return false;
+	return a->count == 1 || (offset == (u32)a->count * a->offset_stride &&
+				 pos == (u32)a->count * a->pos_stride);
+}
+
+/* The last @count areas, as few as it takes. */
+static void fold_areas(struct ec_cycle *c, u16 *count)
+{
+	struct ec_cyc_area *a = c->areas + c->n_areas - *count, *last = a;
+	unsigned int i;
+
+	for (i = 1; i < *count; i++) {
+		if (!follows(last, &a[i])) {
+			*++last = a[i];
+			continue;
+		}
+		if (last->count++ == 1) {
+			last->offset_stride = a[i].offset - last->offset;
+			last->pos_stride = a[i].pos - last->pos;
+		}
+	}
+	if (*count) {
+		*count = last - a + 1;
+		c->n_areas = last - c->areas + 1;
+	}
+}
+
 /* Areas of the datagram added last, of one part. */
 static int add_areas(struct layout *o, const struct ec_stretch *st, enum part part, u16 *count)
 {
@@ -158,6 +192,8 @@ static int add_areas(struct layout *o, const struct ec_stretch *st, enum part pa
 			c->areas[c->n_areas - 1].cut = c->n_cuts - 1;
 		g->len = max_t(u16, g->len, to - st->start);
 	}
+	if (!ret && part != CUT)
+		fold_areas(c, count);
 	return ret;
 }
 
@@ -166,14 +202,15 @@ static u32 area_bytes(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 	u32 i, n = 0;
 
 	for (i = 0; i < g->n_copies; i++)
-		n += c->areas[g->first_copy + i].len;
+		n += c->areas[g->first_copy + i].len * c->areas[g->first_copy + i].count;
 	return n;
 }
 
 /* A single area covers it, so nothing of it lies elsewhere, and it brings inputs. */
-static bool is_solid(const struct ec_cyc_dgram *g)
+static bool is_solid(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 {
-	return !g->holes && g->n_copies == 1 && g->n_plain && g->n_inputs == g->n_plain;
+	return !g->holes && g->n_copies == 1 && c->areas[g->first_copy].count == 1 &&
+	       g->n_plain && g->n_inputs == g->n_plain;
 }
 
 static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
@@ -193,7 +230,7 @@ static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16
 	g->n_whole = plain + shared;
 	g->n_inputs = plain + shared + cut;
 	g->holes = area_bytes(o->c, g) != g->len;
-	g->solid = is_solid(g);
+	g->solid = is_solid(o->c, g);
 	return ret;
 }
 
