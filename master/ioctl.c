@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Dispatch of /dev/EtherCAT<n>: permissions, sizes and copies in one place. */
+#include <linux/mm.h>
 #include <linux/nospec.h>
 #include <linux/uaccess.h>
 #include "ioctl.h"
@@ -125,6 +126,25 @@ int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
 	mutex_unlock(&f->lock);
 	va_end(args);
 	return err;
+}
+
+/**
+ * ec_ioc_hand_over() - give a result to the process and free it
+ * @to: address in the process
+ * @data: result, as for kvfree(); NULL when there is none
+ * @size: its bytes
+ * @ret: -errno when there is nothing to give, else 0
+ *
+ * Context: Process, session_lock not held: mmap() takes that with the memory of the
+ * process locked. May sleep.
+ * Return: @ret or -EFAULT.
+ */
+int ec_ioc_hand_over(u64 to, void *data, u32 size, int ret)
+{
+	if (!ret && data && copy_to_user(u64_to_user_ptr(to), data, size))
+		ret = -EFAULT;
+	kvfree(data);
+	return ret;
 }
 
 /* Version request of the field's other master: old programs fail cleanly. */

@@ -11,6 +11,7 @@
 struct ec_slave;
 
 struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret);
+int ec_ioc_hand_over(u64 to, void *data, u32 size, int ret);
 
 /* ioctl_info.c: no bus traffic */
 int ec_ioc_version(struct ec_file *f, void *arg);
@@ -25,21 +26,29 @@ int ec_ioc_cycle_stats(struct ec_file *f, void *arg);
 int ec_ioc_cycle_reset(struct ec_file *f, void *arg);
 
 /* ioctl_bus.c: traffic */
-int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data);
-int ec_ioc_download(struct ec_file *f, struct ec_ioc_sdo *i, const u8 *data);
-int ec_ioc_sdo_upload(struct ec_file *f, void *arg);
-int ec_ioc_sdo_download(struct ec_file *f, void *arg);
 int ec_ioc_reg_read(struct ec_file *f, void *arg);
 int ec_ioc_reg_write(struct ec_file *f, void *arg);
-int ec_ioc_soe_read(struct ec_file *f, void *arg);
-int ec_ioc_soe_write(struct ec_file *f, void *arg);
-int ec_ioc_read_idn(struct ec_file *f, struct ec_ioc_soe *i, u8 **data);
-int ec_ioc_write_idn(struct ec_file *f, struct ec_ioc_soe *i, const u8 *data);
 int ec_ioc_state(struct ec_file *f, void *arg);
 int ec_ioc_rescan(struct ec_file *f, void *arg);
 int ec_ioc_debug(struct ec_file *f, void *arg);
 int ec_ioc_reset(struct ec_file *f, void *arg);
 int ec_ioc_end_detached(struct ec_file *f, void *arg);
+
+/* ioctl_mbox.c: values in slaves, at once and while a slave is configured */
+int ec_ioc_mbox_failed(struct ec_file *f, int ret, u16 position, const char *protocol,
+		       const char *what);
+int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data);
+int ec_ioc_download(struct ec_file *f, void *arg, const u8 *data);
+int ec_ioc_store_sdo(struct ec_file *f, void *arg, const u8 *data);
+int ec_ioc_read_idn(struct ec_file *f, struct ec_ioc_soe *i, u8 **data);
+int ec_ioc_write_idn(struct ec_file *f, void *arg, const u8 *data);
+int ec_ioc_store_idn(struct ec_file *f, void *arg, const u8 *data);
+int ec_ioc_sdo_upload(struct ec_file *f, void *arg);
+int ec_ioc_sdo_download(struct ec_file *f, void *arg);
+int ec_ioc_sc_sdo(struct ec_file *f, void *arg);
+int ec_ioc_soe_read(struct ec_file *f, void *arg);
+int ec_ioc_soe_write(struct ec_file *f, void *arg);
+int ec_ioc_sc_idn(struct ec_file *f, void *arg);
 
 /* ioctl_config.c: what an application has configured */
 struct ec_config *ec_ioc_show_config(struct ec_file *f, u32 index, int *ret);
@@ -61,10 +70,6 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg);
 int ec_ioc_sc_sync(struct ec_file *f, void *arg);
 int ec_ioc_sc_watchdog(struct ec_file *f, void *arg);
 int ec_ioc_sc_pdo(struct ec_file *f, void *arg);
-int ec_ioc_store_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i, const u8 *data);
-int ec_ioc_sc_sdo(struct ec_file *f, void *arg);
-int ec_ioc_sc_idn(struct ec_file *f, void *arg);
-int ec_ioc_store_idn(struct ec_file *f, const struct ec_ioc_sc_idn *i, const u8 *data);
 int ec_ioc_reg_entry(struct ec_file *f, void *arg);
 int ec_ioc_sc_dc(struct ec_file *f, void *arg);
 int ec_ioc_sc_flag(struct ec_file *f, void *arg);

@@ -194,54 +194,6 @@ int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 	return done(f, ret);
 }
 
-static int check_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i)
-{
-	if (!i->size || i->size > EC_MAX_SDO_SIZE)
-		return ec_refuse(f, -EINVAL, "size must be 1 to %u bytes, not %u", EC_MAX_SDO_SIZE,
-				 i->size);
-	return 0;
-}
-
-/**
- * ec_ioc_store_sdo() - one more startup SDO
- * @f: open file
- * @i: which; its @data is not used
- * @data: the value, @i->size bytes; copied
- *
- * Context: Process. May sleep.
- * Return: 0 or -errno, with the reason noted.
- */
-int ec_ioc_store_sdo(struct ec_file *f, const struct ec_ioc_sc_sdo *i, const u8 *data)
-{
-	int ret = check_sdo(f, i);
-	struct ec_config *c = ret ? NULL : ec_ioc_lock_config(f, i->config, &ret);
-
-	if (!c)
-		return ret;
-	ret = ec_config_sdo_add(c, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE, data,
-				i->size);
-	if (ret == -ENOSPC)
-		ec_refuse(f, ret, "a slave configuration has at most %u startup SDOs",
-			  EC_MAX_SC_SDOS);
-	return done(f, ret);
-}
-
-int ec_ioc_sc_sdo(struct ec_file *f, void *arg)
-{
-	struct ec_ioc_sc_sdo *i = arg;
-	int ret = check_sdo(f, i);
-	u8 *data;
-
-	if (ret)
-		return ret;
-	data = vmemdup_user(u64_to_user_ptr(i->data), i->size);
-	if (IS_ERR(data))
-		return PTR_ERR(data);
-	ret = ec_ioc_store_sdo(f, i, data);
-	kvfree(data);
-	return ret;
-}
-
 static const char *dir_name(u8 dir)
 {
 	return dir == EC_CFG_DIR_OUTPUT ? "outputs" : "inputs";

@@ -2,7 +2,6 @@
 /* Commands that show what the application has configured. */
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include <linux/uaccess.h>
 #include "config.h"
 #include "cycle_thread.h"
 #include "domain.h"
@@ -24,15 +23,6 @@ static void *keep(const void *data, u32 size, int *ret)
 	else
 		*ret = -ENOMEM;
 	return copy;
-}
-
-/* Without the lock: what keep() has kept, which is freed; NULL: nothing. */
-static int hand_over(u64 to, void *copy, u32 size, int ret)
-{
-	if (copy && copy_to_user(u64_to_user_ptr(to), copy, size))
-		ret = -EFAULT;
-	kvfree(copy);
-	return ret;
 }
 
 /* Locks the session; NULL with the reason noted and unlocked when there is none. */
@@ -210,7 +200,7 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 		break;
 	}
 	done(f, ret);
-	return hand_over(i->data, copy, size, ret);
+	return ec_ioc_hand_over(i->data, copy, size, ret);
 }
 
 int ec_ioc_config_flag(struct ec_file *f, void *arg)
@@ -299,5 +289,5 @@ int ec_ioc_domain_data(struct ec_file *f, void *arg)
 			ec_cycle_thread_outputs(d->session, copy, d->offset, i->size);
 	}
 	done(f, ret);
-	return hand_over(i->data, copy, i->size, ret);
+	return ec_ioc_hand_over(i->data, copy, i->size, ret);
 }

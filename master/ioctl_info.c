@@ -385,7 +385,6 @@ int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
 	struct ec_ioc_cycle_stats *i = arg;
 	struct ec_master *m = f->master;
 	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL);
-	int ret = 0;
 
 	if (!st)
 		return -ENOMEM;
@@ -393,10 +392,7 @@ int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
 	ec_late_get(m, i, st);
 	mutex_unlock(&m->session_lock);
 	i->size = min_t(u32, i->size, sizeof(*st));
-	if (copy_to_user(u64_to_user_ptr(i->data), st, i->size))
-		ret = -EFAULT;
-	kfree(st);
-	return ret;
+	return ec_ioc_hand_over(i->data, st, i->size, 0);
 }
 
 int ec_ioc_cycle_reset(struct ec_file *f, void *arg)

@@ -42,24 +42,14 @@ static int check_params(struct ec_file *f, const struct ec_ip_params *u)
 static int failed(struct ec_file *f, const struct ec_ioc_ip *i, int ret)
 {
 	switch (ret) {
-	case 0:
-		return 0;
 	case -EREMOTEIO:
 		return ec_refuse(f, -EIO, "slave %u refused: EoE result 0x%04x: %s", i->position,
 				 i->result, ec_eoe_result_text(i->result));
-	case -EPROTONOSUPPORT:
-		return ec_refuse(f, ret, "slave %u has no EoE mailbox", i->position);
 	case -EMSGSIZE:
 		return ec_refuse(f, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
 				 i->position);
-	case -EAGAIN:
-		return ec_refuse(f, ret, "slave %u is not in PREOP or above, so its mailbox is off; request PREOP first",
-				 i->position);
-	case -ETIMEDOUT:
-		return ec_refuse(f, ret, "slave %u did not answer in time", i->position);
 	default:
-		return ec_refuse(f, ret, "IP parameters: transfer with slave %u failed",
-				 i->position);
+		return ec_ioc_mbox_failed(f, ret, i->position, "EoE", "IP parameters");
 	}
 }
 
