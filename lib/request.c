@@ -128,12 +128,14 @@ ec_request_state_t ec_request_state(struct ec_request *r)
  * @op: EC_REQUEST_OP_*
  * @size: bytes to write; registers: to read, too
  *
- * Return: 0; -EBUSY; -EINVAL not active.
+ * Return: 0; -ENOBUFS larger than the buffer; -EBUSY; -EINVAL not active.
  */
 int ec_request_start(struct ec_request *r, __u8 op, size_t size)
 {
 	struct ec_request_record *rec = r->rec;
 
+	if (size > r->room)
+		return -ENOBUFS;
 	if (!rec)
 		return -EINVAL;
 	if (ec_request_state(r) == EC_REQUEST_BUSY)
@@ -186,10 +188,7 @@ static int start_reg(ec_reg_request_t *req, __u8 op, uint16_t address,
 {
 	if (!req || !size)
 		return -EINVAL;
-	if (size > req->r.room)
-		return -ENOBUFS;
-	if (ec_request_state(&req->r) == EC_REQUEST_BUSY)
-		return -EBUSY;
+	/* one that is busy has its address already */
 	req->r.index16 = address;
 	return ec_request_start(&req->r, op, size);
 }

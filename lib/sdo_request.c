@@ -94,8 +94,6 @@ int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req, size_t size)
 
 	if (!req || !size)
 		return -EINVAL;
-	if (size > req->r.room)
-		return -ENOBUFS;
 	ret = ec_request_start(&req->r, EC_REQUEST_OP_WRITE, size);
 	if (!ret)
 		req->r.size = size;

@@ -115,12 +115,14 @@ ec_request_state_t ec_api_request_state(struct ec_api_request *r)
  * @size: bytes to write; registers: to read, too
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; -EBUSY; -EINVAL not active.
+ * Return: 0; -ENOBUFS larger than the buffer; -EBUSY; -EINVAL not active.
  */
 int ec_api_request_start(struct ec_api_request *r, u8 op, size_t size)
 {
 	struct ec_request_record *rec = r->rec;
 
+	if (size > r->room)
+		return -ENOBUFS;
 	if (!rec)
 		return -EINVAL;
 	if (ec_api_request_state(r) == EC_REQUEST_BUSY)
@@ -168,8 +170,7 @@ static int start_reg(ec_reg_request_t *req, u8 op, u16 address, size_t size)
 {
 	if (!req || !size)
 		return -EINVAL;
-	if (ec_api_request_state(&req->r) == EC_REQUEST_BUSY)
-		return -EBUSY;
+	/* one that is busy has its address already */
 	req->r.index = address;
 	return ec_api_request_start(&req->r, op, min(size, req->r.room));
 }

@@ -52,8 +52,6 @@ int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size)
 
 	if (!voe)
 		return -EINVAL;
-	if (size > voe->r.room)
-		return -ENOBUFS;
 	ret = ec_api_request_start(&voe->r, EC_REQUEST_OP_WRITE, size);
 	if (!ret)
 		voe->r.size = size;
