@@ -29,10 +29,13 @@ static void leave_to_work(struct ec_master *m)
  */
 static int enter(struct ec_master *m, struct ec_session **s)
 {
-	struct ec_api *api = m->api;
 	const struct ecdev *dev;
+	struct ec_api *api;
 	int ret;
 
+	if (!m)
+		return -EINVAL;
+	api = m->api;
 	*s = smp_load_acquire(&api->active);
 	if (!*s)
 		return -EINVAL;
@@ -91,11 +94,8 @@ void ec_api_work(struct work_struct *work)
 int ecrt_master_receive(ec_master_t *master)
 {
 	struct ec_session *s;
-	int ret;
+	int ret = enter(master, &s);
 
-	if (!master)
-		return -EINVAL;
-	ret = enter(master, &s);
 	if (ret == -ENODEV)
 		/* what an application finds that does not look at this */
 		master->api->received = ~0ULL;
@@ -118,11 +118,8 @@ int ecrt_master_send(ec_master_t *master)
 {
 	struct ec_ioc_send *next;
 	struct ec_session *s;
-	int ret;
+	int ret = enter(master, &s);
 
-	if (!master)
-		return -EINVAL;
-	ret = enter(master, &s);
 	if (ret)
 		return ret;
 	next = &master->api->next;
@@ -138,11 +135,8 @@ EXPORT_SYMBOL_GPL(ecrt_master_send);
 int ecrt_master_send_ext(ec_master_t *master)
 {
 	struct ec_session *s;
-	int ret;
+	int ret = enter(master, &s);
 
-	if (!master)
-		return -EINVAL;
-	ret = enter(master, &s);
 	if (ret)
 		return ret == -EBUSY ? -EAGAIN : ret;
 	ec_cycle_send_between(master);
