@@ -321,17 +321,6 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	return g + count;
 }
 
-/* The distance of sends, when the application does not tell it. */
-static void measure_interval(struct ec_master *m, u64 now)
-{
-	u64 ns = now - m->last_send_ns;
-
-	/* a pause is no interval */
-	if (!m->interval_told && ns < NSEC_PER_SEC)
-		m->interval_us = max(1, (int)m->interval_us +
-				     ((int)(ns >> 10) - (int)m->interval_us) / 8);
-}
-
 /* What a send of all domains and clock datagrams takes at most. */
 static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
 {
@@ -371,7 +360,6 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 
 	if (!m->link[0].dev)
 		return -ENODEV;
-	measure_interval(m, send.now);
 	if (!s->thread)
 		ec_late_send(s, send.now);
 	WRITE_ONCE(m->last_send_ns, send.now);

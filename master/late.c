@@ -80,16 +80,23 @@ void ec_late_count(struct ec_session *s, s64 ns)
 	WRITE_ONCE(st->late_count, st->late_count + 1);
 }
 
-/* The interval, when nobody tells it: a mean that single sends hardly change. */
-static void measure(struct ec_schedule *c, u64 now)
+/*
+ * The interval, when nobody tells it. The schedule needs a mean that single sends hardly
+ * change; the frames between two sends need to know soon what it has become.
+ */
+static void measure(struct ec_master *m, struct ec_schedule *c, u64 ns)
 {
-	s64 off = now - c->last_ns - c->interval_ns;
+	int us = READ_ONCE(m->interval_us);
+	s64 off = ns - c->interval_ns;
 	s64 limit = c->sends < MEASURE_SENDS ? NSEC_PER_SEC : c->interval_ns >> OUTLIER_SHIFT;
 
 	if (c->sends < 2)
-		c->interval_ns = min_t(u64, now - c->last_ns, NSEC_PER_SEC);
+		c->interval_ns = min_t(u64, ns, NSEC_PER_SEC);
 	else
 		c->interval_ns += (s32)clamp(off, -limit, limit) / 16;
+	/* a pause is no interval */
+	if (ns < NSEC_PER_SEC)
+		WRITE_ONCE(m->interval_us, max(1, us + ((int)(ns >> 10) - us) / 8));
 }
 
 /* A whole interval late or more: what was due in between is left out. */
@@ -113,7 +120,7 @@ static s64 go_back(struct ec_schedule *c, s64 off)
 /**
  * ec_late_send() - an application that runs the cycle sends
  * @s: active session
- * @now: time of the send (ktime, ns)
+ * @now: time of the send (ktime, ns); @last_send_ns is still that of the one before
  *
  * The first send only begins the schedule; without a told interval so do the
  * first %MEASURE_SENDS.
@@ -129,7 +136,7 @@ void ec_late_send(struct ec_session *s, u64 now)
 	if (told)
 		c->interval_ns = READ_ONCE(s->master->interval_us) * (u32)NSEC_PER_USEC;
 	else if (c->sends)
-		measure(c, now);
+		measure(s->master, c, now - s->master->last_send_ns);
 	c->last_ns = now;
 	if (unlikely(c->sends < (told ? 1 : MEASURE_SENDS) || !c->interval_ns)) {
 		c->sends++;
