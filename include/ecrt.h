@@ -402,7 +402,9 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
  * whenever it appears. One with another identity is never attached. The
  * PDO assignment and mapping of a slave that is there are taken over as
  * defaults. From activation on a slave that is there keeps its configuration,
- * also when one in front of it is pulled and its position is another.
+ * also when one in front of it is pulled and its position is another. After a
+ * loss of the whole link or of power nobody can tell slaves of a kind apart:
+ * they are found by position again. An alias is safe there, too.
  *
  * Context: Process. May sleep.
  * Return: the configuration, the same one for the same @alias and @position;

@@ -8,6 +8,7 @@ static int reg_entry(struct ec_domain *d, const ec_pdo_entry_reg_t *reg)
 	ec_slave_config_t *sc;
 	int ret;
 
+	ec_api_begin(m);
 	if (!reg->offset)
 		return ec_api_fail(m, -EINVAL, "register 0x%04x:%02x without a place for its offset",
 				   reg->index, reg->subindex);

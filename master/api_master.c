@@ -119,6 +119,7 @@ int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *s
 
 	if (!master)
 		return -EINVAL;
+	ec_api_begin(master);
 	if (sc && ec_api_master(sc) != master)
 		return ec_api_fail(master, -EINVAL,
 				   "select another master's slave as the reference clock");

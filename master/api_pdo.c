@@ -132,6 +132,7 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *i, ec_domai
 {
 	int ret;
 
+	ec_api_begin(ec_api_master(sc));
 	if (domain->session != ec_api_config(sc)->session)
 		return ec_api_fail_sc(sc, -EINVAL, "register an entry in another master's domain:");
 	i->config = ec_api_config(sc)->index;

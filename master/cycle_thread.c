@@ -139,7 +139,8 @@ static void use_image(struct ec_cycle_thread *t)
 		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
 			t->outputs[i].len);
 	t->ahead = false;
-	t->session->cycle.direct = NULL;
+	/* who looks at the image then finds these */
+	smp_store_release(&t->session->cycle.direct, NULL);
 }
 
 /* Did all slaves take part when their domain was sent last? */
@@ -574,7 +575,7 @@ int ec_cycle_thread_adopt(struct ec_session *s)
 
 /**
  * ec_cycle_thread_outputs() - outputs as they are sent
- * @s: active session; nothing happens when its cycle sends them from the image
+ * @s: active session; nothing happens when the application runs its cycle
  * @image: copy of a part of the image
  * @offset: where in the image that part begins, bytes
  * @size: its bytes
@@ -586,17 +587,15 @@ int ec_cycle_thread_adopt(struct ec_session *s)
 void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size)
 {
 	const struct ec_cycle_thread *t = s->thread;
-	const u8 *direct = READ_ONCE(s->cycle.direct);
+	const u8 *source = smp_load_acquire(&s->cycle.direct) ?: s->shared->image;
 	unsigned int i;
 
-	if (!t || !direct)
-		return;
-	for (i = 0; i < t->n_outputs; i++) {
+	for (i = 0; t && i < t->n_outputs; i++) {
 		u32 from = max(offset, t->outputs[i].offset);
 		u32 to = min(offset + size, t->outputs[i].offset + t->outputs[i].len);
 
 		if (from < to)
-			memcpy(image + (from - offset), direct + from, to - from);
+			memcpy(image + (from - offset), source + from, to - from);
 	}
 }
 

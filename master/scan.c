@@ -121,6 +121,12 @@ static void count_claims(struct scan *sc)
 	}
 }
 
+/* One that failed in the scan is read anew; one that refused a state is the same. */
+static bool is_usable(const struct ec_slave *s)
+{
+	return !s->error || (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
+}
+
 /*
  * A slave that kept the address we gave it is the same; others get one. When
  * two have the same address, one comes from another master's bus, and nobody
@@ -135,7 +141,7 @@ static int assign(struct scan *sc)
 		u16 station = get_unaligned_le16(sc->regs[i].station);
 		struct ec_slave *s = sc->known[station];
 
-		if (s && !s->error && sc->claims[station] == 1) {
+		if (s && is_usable(s) && sc->claims[station] == 1) {
 			sc->slaves[i] = ec_slave_ref(s);
 			continue;
 		}

@@ -7,7 +7,7 @@
 static const char tree[] =
 	"segment seed=41 response=100us transition=1ms\n"
 	"slave hub EK1100\nslave leaf io in=512 out=512\n"
-	"branch hub 2\nrepeat 3 slave s io in=512 out=512\n"
+	"branch hub 2\nrepeat 3 slave s io in=512 out=512 cpu=yes\n"
 	"connect leaf.1 -> leaf.1\nconnect s1.1 -> s1.1\nconnect s2.1 -> s2.1\n"
 	"connect s3.1 -> s3.1\n";
 
@@ -19,16 +19,23 @@ static s64 output(struct cyc *c, const char *name)
 	return ec_app_channel(bus_app(c->b, name), EC_APP_OUT, 0);
 }
 
-static struct cyc *in_op(struct kunit *test)
+static struct cyc *configure(struct kunit *test)
 {
 	struct bus *b = bus_up(test, tree, N);
 	struct cyc *c;
-	u32 i;
 
 	bus_idle(b);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 1, N - 1, 0);
+	return c;
+}
+
+static struct cyc *in_op(struct kunit *test)
+{
+	struct cyc *c = configure(test);
+	u32 i;
+
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	for (i = 1; i < N; i++)
@@ -81,7 +88,29 @@ static void attach_one_pulled(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, output(c, "s1"), 20ll);
 }
 
-/* With its fall the next application finds slaves by the positions of now. */
+/* So does one that has refused a state before: it is the same. */
+static void attach_failed_one(struct kunit *test)
+{
+	struct cyc *c = configure(test);
+	struct bus *b = c->b;
+	struct ec_slave *s1 = bus_slave(b, 2);
+
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, 2, 0, EC_AL_OP, 0x001e);
+	cyc_activate(c);
+	*cyc_pd(c, LEAF, 0) = 10;
+	cyc_run(c, 2000);
+	KUNIT_ASSERT_EQ(test, (u32)s1->error, (u32)EC_SLAVE_CONFIG_FAILED);
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, 2, 0, 0, 0);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_ASSERT_EQ(test, b->m->n_slaves, (u32)N - 1);
+	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
+	KUNIT_ASSERT_NOT_NULL(test, s1->config);
+	KUNIT_EXPECT_EQ(test, s1->config->position, 2u);
+	KUNIT_EXPECT_NE(test, output(c, "s1"), 10ll);
+}
+
+/* The next application finds slaves by the positions of now. */
 static void attach_next_application(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
@@ -106,6 +135,7 @@ static void attach_next_application(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(attach_one_pulled),
+	KUNIT_CASE(attach_failed_one),
 	KUNIT_CASE(attach_next_application),
 	{ }
 };
