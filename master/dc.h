@@ -34,8 +34,8 @@ enum ec_dc_state {
  * @base: that time less ktime, ns
  * @skip: what it has jumped since, ns
  * @set: the clocks are set: it may not jump
- * @past: @base of the last cycles, until then
- * @n_past: cycles so far
+ * @past: @base of the last cycles before that
+ * @n_past: such cycles so far, 0: @base counts
  * @odd: last times told in a row that were off
  * @first: by how much the first of them was, ns
  * @sum: how much more the others were, ns

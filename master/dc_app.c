@@ -223,6 +223,7 @@ void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
 	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
 	if (set && !a->set) {
 		a->base = base;
+		a->n_past = 0;	/* from now on follow() keeps @base true */
 	} else if (!set) {
 		a->n_past = 0;
 		a->skip = 0;

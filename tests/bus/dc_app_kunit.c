@@ -19,6 +19,7 @@
  * @add: its time is so much later than the machine's
  * @once: another time for the next cycle, 0: none
  * @still: the same time again and again
+ * @drift_ns: and later by so much with each cycle
  * @late_us: two of five sends are so late
  * @late: which of them
  */
@@ -28,6 +29,7 @@ struct told {
 	u64 add;
 	u64 once;
 	bool still;
+	s64 drift_ns;
 	u32 late_us;
 	u32 late;
 };
@@ -39,6 +41,7 @@ static void each(struct cyc *c)
 	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
 	if (t->leads)
 		c->flags |= EC_SEND_FLAG_SYNC_REF;
+	t->add += t->drift_ns;
 	if (!t->still)
 		c->app_time = ktime_to_ns(c->next) + t->add;
 	if (t->once)
@@ -246,6 +249,42 @@ static s64 begin(struct cyc *c, const struct told *t)
 	return ec_esc_system_time(bus_esc(c->b, 0), now) - now - t->add;
 }
 
+static void power(struct cyc *c, bool on)
+{
+	u32 i;
+
+	for (i = 0; i < 2; i++)
+		bus_fault(c->b, on ? EC_SIM_FAULT_POWER_ON : EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
+	for (i = 0; i < 100 && (c->b->m->n_slaves != (on ? 2 : 0) ||
+			       (!on && READ_ONCE(c->b->m->dc.running))); i++)
+		cyc_run(c, 10);
+	KUNIT_ASSERT_EQ(c->b->test, c->b->m->n_slaves, on ? 2u : 0u);
+}
+
+/* All clocks are set anew within a session: to the time of now, not of its start. */
+static void app_drifts_then_all_anew(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = v->told;
+	struct cyc *c = start(test, &t, v->text);
+	s64 off;
+
+	cyc_run(c, 1000);
+	hush(c);
+	t.drift_ns = 5000;
+	cyc_run(c, 4000);
+	t.drift_ns = 0;
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, c->b->m->dc.app.jumps, 0u);
+	power(c, false);
+	power(c, true);
+	off = (s32)begin(c, &t);
+	bus_figure("after 20 ms of drift all clocks are set anew: the reference begins %lld ns off",
+		   off);
+	KUNIT_EXPECT_LT(test, abs(off), 100000ll);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+}
+
 /* The clocks begin with the time of most cycles, whatever one of them is. */
 static void app_is_late(struct kunit *test)
 {
@@ -280,6 +319,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(app_jumps, variant_gen_params),
 	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
 	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
+	KUNIT_CASE_PARAM(app_drifts_then_all_anew, variant_gen_params),
 	KUNIT_CASE(app_is_late),
 	{ }
 };
