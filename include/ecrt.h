@@ -793,8 +793,9 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
  * ecrt_master_sync_reference_clock() - the reference clock follows us
  * @master: an active master
  *
- * With the next send the low 32 bits of the last application time go to the
- * reference clock (register 0x0910).
+ * With the next send the low 32 bits of the last application time, less what it
+ * has jumped since the clocks were set, go to the reference clock (register
+ * 0x0910). A time that is off, or may have jumped, is held back: none goes then.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
@@ -804,7 +805,7 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
 /**
  * ecrt_master_sync_reference_clock_to() - the same with another time
  * @master: an active master
- * @sync_time: ns
+ * @sync_time: ns; it is this one that must not jump then
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.

@@ -32,12 +32,15 @@ enum ec_dc_state {
 /**
  * struct ec_dc_app - the application's time as the clocks have it
  * @base: that time less ktime, ns
+ * @base_ns: when it was told so (ktime)
+ * @off: by how much the last time told was, ns
  * @skip: what it has jumped since, ns
  * @set: the clocks are set: it may not jump
  * @past: @base of the last cycles before that
  * @n_past: such cycles so far, 0: @base counts
  * @odd: last times told in a row that were off
  * @first: by how much the first of them was, ns
+ * @first_ns: when (ktime)
  * @sum: how much more the others were, ns
  * @jumps: since the log has told
  * @jump_ns: the last one
@@ -47,12 +50,15 @@ enum ec_dc_state {
  */
 struct ec_dc_app {
 	u64 base;
+	u64 base_ns;
+	s64 off;
 	u64 skip;
 	bool set;
 	u64 past[EC_DC_APP_PAST];
 	u32 n_past;
 	u32 odd;
 	s64 first;
+	u64 first_ns;
 	s64 sum;
 	u32 jumps;
 	s64 jump_ns;
@@ -88,6 +94,8 @@ struct ec_dc_app {
  * @app_time: last application time, ns
  * @app_ktime: when it was that time (ktime), ns
  * @leads: the application tells the reference clock its time
+ * @led_ns: when it did so last (ktime), 0: never
+ * @led_gap: how long after the time before, ns
  * @app: its time as the clocks have it
  * @time_lock: protects @phase to @app
  */
@@ -117,6 +125,8 @@ struct ec_dc {
 	u64 app_time;
 	u64 app_ktime;
 	bool leads;
+	u64 led_ns;
+	u64 led_gap;
 	struct ec_dc_app app;
 };
 

@@ -10,6 +10,8 @@
  * their place between the SYNC signals. The log tells both.
  */
 #include <linux/ktime.h>
+#include <linux/math64.h>
+#include <linux/minmax.h>
 #include <linux/sort.h>
 #include "cycle.h"
 #include "dc.h"
@@ -21,6 +23,8 @@
 #define LIMIT_MIN_NS	(100 * NSEC_PER_USEC)
 #define TELL_NS		(100 * (s64)NSEC_PER_MSEC)	/* no cycle is that late */
 #define LOG_NS		(10 * (u64)NSEC_PER_SEC)
+#define HELD_NS		((u64)NSEC_PER_SEC)	/* a hold that lasts so long is told */
+#define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without leading: it is over */
 
 /* More than that is no lateness of a cycle, and would take SYNC to another one. */
 static s64 limit(const struct ec_master *m)
@@ -28,12 +32,19 @@ static s64 limit(const struct ec_master *m)
 	return max_t(s64, READ_ONCE(m->interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }
 
-/* off by @dev: true when it has been so for long enough, then @dev is the mean */
-static bool stays(struct ec_dc_app *a, s64 *dev, s64 lim)
+/* It may have been told long ago; two clocks differ by less than 244 ppm. */
+static s64 drift(u64 since_ns, u64 at_ns)
 {
-	if (!a->odd || abs(*dev - a->first) > lim) {
+	return max_t(s64, at_ns - since_ns, 0) >> 12;
+}
+
+/* off by @dev: true when it has been so for long enough, then @dev is the mean */
+static bool stays(struct ec_dc_app *a, s64 *dev, u64 at_ns, s64 lim)
+{
+	if (!a->odd || abs(*dev - a->first) > lim + drift(a->first_ns, at_ns)) {
 		a->odd = 0;
 		a->first = *dev;
+		a->first_ns = at_ns;
 		a->sum = 0;
 	}
 	a->sum += *dev - a->first;
@@ -43,13 +54,24 @@ static bool stays(struct ec_dc_app *a, s64 *dev, s64 lim)
 	return true;
 }
 
+/* The mean of about 8 cycles; of what is told less often, the last. */
+static void approach(struct ec_dc_app *a, s64 dev, u64 at_ns, s64 lim)
+{
+	s64 since = at_ns - a->base_ns, span = 16 * lim;
+
+	if (since > 0)
+		a->base += since < span ? div64_s64(dev * since, span) : dev;
+	a->base_ns = at_ns;
+}
+
 /* A time of the set clocks; false: it is not to be used. */
 static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 {
 	s64 dev = time - a->skip - at_ns - a->base;
 
-	if (abs(dev) <= lim) {
-		a->base += div_s64(dev, 8);
+	a->off = dev;
+	if (abs(dev) <= lim + drift(a->base_ns, at_ns)) {
+		approach(a, dev, at_ns, lim);
 		a->odd = 0;
 		return true;
 	}
@@ -57,8 +79,9 @@ static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 		a->ignored++;
 		a->ignored_ns = dev;
 	}
-	if (!stays(a, &dev, lim))
+	if (!stays(a, &dev, at_ns, lim))
 		return false;
+	a->base_ns = a->first_ns;
 	a->ignored -= min(a->ignored, a->odd);
 	a->odd = 0;
 	a->skip += dev;
@@ -71,7 +94,26 @@ static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 static void note(struct ec_dc_app *a, u64 time, u64 at_ns)
 {
 	a->base = time - at_ns;
+	a->base_ns = at_ns;
 	a->past[a->n_past++ % EC_DC_APP_PAST] = a->base;
+}
+
+/*
+ * Whether the application leads the clocks; @now: with this send. It may do so in few
+ * cycles, or no longer: then its other time counts again.
+ */
+static bool leading(struct ec_dc *dc, bool now, u64 at_ns)
+{
+	u64 gap = at_ns - dc->led_ns;
+
+	if (now) {
+		dc->led_gap = dc->led_ns ? gap : 0;
+		dc->led_ns = at_ns;
+		dc->leads = true;
+	} else if (gap > clamp(4 * dc->led_gap, LEAD_NS, 30 * LEAD_NS)) {
+		dc->leads = false;
+	}
+	return dc->leads;
 }
 
 /* under time_lock */
@@ -103,6 +145,7 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
 	dc->app_ktime = at_ns;
 	dc->app.n_past = 0;
 	dc->app.base = app_time - at_ns;
+	dc->app.base_ns = at_ns;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 }
 
@@ -135,12 +178,10 @@ void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what)
 	dc->told = true;
 	dc->app_time = time;
 	dc->app_ktime = at_ns;
-	if (leads) {
-		dc->leads = true;
+	if (leads)
 		time += (s32)((u32)what->sync_time - (u32)time);
-	}
 	/* the one that is written counts, though it may be told less often */
-	if (leads || !dc->leads) {
+	if (leading(dc, leads, at_ns) == leads) {
 		if (dc->app.set)
 			good = follow(&dc->app, time, at_ns, limit(s->master));
 		else
@@ -223,6 +264,7 @@ void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
 	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
 	if (set && !a->set) {
 		a->base = base;
+		a->base_ns = ktime_get_ns();
 		a->n_past = 0;	/* from now on follow() keeps @base true */
 	} else if (!set) {
 		a->n_past = 0;
@@ -232,6 +274,7 @@ void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
 		a->ignored = 0;
 		a->log_ns = 0;
 		m->dc.leads = false;
+		m->dc.led_ns = 0;
 	}
 	a->set = set;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
@@ -248,24 +291,26 @@ void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
 void ec_dc_app_log(struct ec_master *m)
 {
 	struct ec_dc_app *a = &m->dc.app;
-	u64 now = ktime_get_ns();
+	u64 now = ktime_get_ns(), held = 0;
 	u32 jumps, ignored;
 	unsigned long flags;
-	s64 jump, off;
+	s64 jump, single, off;
 
 	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
 	jumps = a->jumps;
 	ignored = a->odd ? 0 : a->ignored;	/* it is not clear yet which it is */
-	if (a->odd && a->ignored > 10 * STAYS)
-		ignored = a->ignored;
+	if (a->odd && (s64)(now - a->base_ns) > (s64)HELD_NS)
+		held = now - a->base_ns;
 	jump = a->jump_ns;
-	off = a->ignored_ns;
-	if ((!jumps && !ignored) || now < a->log_ns) {
+	single = a->ignored_ns;
+	off = a->off;
+	if ((!jumps && !ignored && !held) || now < a->log_ns) {
 		raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
 		return;
 	}
 	a->jumps = 0;
-	a->ignored -= ignored;
+	if (ignored || held)
+		a->ignored = 0;
 	a->log_ns = now + LOG_NS;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
 	if (jumps)
@@ -273,5 +318,8 @@ void ec_dc_app_log(struct ec_master *m)
 			jump, jumps > 1 ? ", and before" : "");
 	if (ignored)
 		ec_warn(m, "the application's time was %lld ns off and did not go on from there; ignored in %u cycle(s)\n",
-			off, ignored);
+			single, ignored);
+	if (held)
+		ec_warn(m, "the application's time is %lld ns off and ignored, for %llu ms by now\n",
+			off, div_u64(held, NSEC_PER_MSEC));
 }

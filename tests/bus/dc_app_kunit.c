@@ -15,6 +15,7 @@
 /**
  * struct told - what an application tells of its time
  * @leads: and the reference clock has to follow
+ * @every: but only in one of so many cycles, 0: in all
  * @narrow: as it has only 32 bits of it for that
  * @add: its time is so much later than the machine's
  * @once: another time for the next cycle, 0: none
@@ -25,6 +26,7 @@
  */
 struct told {
 	bool leads;
+	u32 every;
 	bool narrow;
 	u64 add;
 	u64 once;
@@ -39,7 +41,7 @@ static void each(struct cyc *c)
 	struct told *t = c->ctx;
 
 	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
-	if (t->leads)
+	if (t->leads && (!t->every || c->cycles % t->every == 0))
 		c->flags |= EC_SEND_FLAG_SYNC_REF;
 	t->add += t->drift_ns;
 	if (!t->still)
@@ -285,6 +287,62 @@ static void app_drifts_then_all_anew(struct kunit *test)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 }
 
+/* Times for the reference clock that are held back, of so many that are told. */
+static u32 held(struct cyc *c, const struct told *t, u32 tellings)
+{
+	u32 n = 0;
+
+	while (tellings--) {
+		while (c->cycles % t->every)
+			cyc_run(c, 1);
+		cyc_run(c, 1);
+		n += c->b->m->session->cycle.dc_hold;
+	}
+	return n;
+}
+
+/* Once a second the reference clock is told a time that is 100 ppm off the machine's. */
+static void app_leads_rarely(struct kunit *test)
+{
+	struct told t = { .leads = true, .every = 1000, .add = 123456789, .drift_ns = 100 };
+	struct cyc *c = start(test, &t, "");
+	struct ec_dc_app *a = &c->b->m->dc.app;
+	u32 n = held(c, &t, 20);
+
+	bus_figure("leads once a second, 100 ppm off: %u of 20 times are held back", n);
+	KUNIT_EXPECT_EQ(test, n, 0u);
+	KUNIT_EXPECT_EQ(test, a->log_ns, 0ull);
+	/* a jump is held, which is told, and then followed */
+	t.add += NSEC_PER_SEC;
+	KUNIT_EXPECT_EQ(test, held(c, &t, 3), 3u);
+	KUNIT_EXPECT_GT(test, a->log_ns, ktime_get_ns());
+	n = held(c, &t, 30);
+	bus_figure("jumps: %u times more are held back", n);
+	KUNIT_EXPECT_LT(test, n, 14u);
+	KUNIT_EXPECT_EQ(test, held(c, &t, 5), 0u);
+	KUNIT_EXPECT_LT(test, abs((s64)(a->skip - NSEC_PER_SEC)), 5000000ll);
+}
+
+/* Who no longer leads is followed by his other time. */
+static void app_led_once(struct kunit *test)
+{
+	struct told t = { .leads = true, .add = 123456789 };
+	struct cyc *c = start(test, &t, "");
+	struct ec_dc_app *a = &c->b->m->dc.app;
+
+	cyc_run(c, 1000);
+	t.leads = false;
+	t.drift_ns = 100;
+	cyc_run(c, 10000);
+	bus_figure("led once, then 1 ms of drift: %lld ns of it not seen", (s64)(t.add - a->base));
+	KUNIT_EXPECT_LT(test, abs((s64)(t.add - a->base)), 50000ll);
+	t.drift_ns = 0;
+	hush(c);
+	t.add += NSEC_PER_SEC;
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, a->jumps, 1u);
+}
+
 /* The clocks begin with the time of most cycles, whatever one of them is. */
 static void app_is_late(struct kunit *test)
 {
@@ -320,6 +378,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
 	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
 	KUNIT_CASE_PARAM(app_drifts_then_all_anew, variant_gen_params),
+	KUNIT_CASE(app_leads_rarely),
+	KUNIT_CASE(app_led_once),
 	KUNIT_CASE(app_is_late),
 	{ }
 };
