@@ -195,13 +195,13 @@ static int latch(struct job *j)
  * A clock that is being corrected runs too fast or too slow to measure; but those
  * that are set drift apart as long as they are not.
  */
-static void correct_between(struct job *j)
+static void correct_between(struct job *j, u32 cycles, unsigned int limit_ms)
 {
 	u32 polls = READ_ONCE(j->m->polls);
 	unsigned int ms;
 
-	WRITE_ONCE(j->m->dc.running, true);
-	for (ms = 0; ms < CORRECT_MS && READ_ONCE(j->m->polls) - polls < CORRECT_CYCLES; ms++)
+	WRITE_ONCE(j->m->dc.running, j->running);
+	for (ms = 0; ms < limit_ms && READ_ONCE(j->m->polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(j->m->dc.running, false);
 }
@@ -213,7 +213,7 @@ static int measure(struct job *j)
 
 	for (round = 0; round < ROUNDS && !ret; round++) {
 		if (j->running && round && round % TOGETHER == 0)
-			correct_between(j);
+			correct_between(j, CORRECT_CYCLES, CORRECT_MS);
 		ret = latch(j);
 		ec_dc_delays(j->nodes, j->n, j->ref);
 		for (i = 0; i < j->n; i++)
@@ -536,7 +536,10 @@ static bool passes(int ret)
 	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY;
 }
 
-/* Frames may be lost, and slaves may be busy with leaving or coming. */
+/*
+ * Frames may be lost, and slaves may be busy with leaving or coming. Until a new
+ * reference clock is set, the cycle goes on with the one before.
+ */
 static int set(struct job *j)
 {
 	struct ec_dc *dc = &j->m->dc;
@@ -547,13 +550,12 @@ static int set(struct job *j)
 		change_ref(j, false);
 	for (try = 0; j->ref < j->n && try < TRIES; try++) {
 		memset(j->sum, 0, j->n * sizeof(*j->sum));
-		ret = measure(j);
+		ret = measure(j) ?: write_clocks(j);
 		if (!ret)
 			change_ref(j, true);
-		ret = ret ?: write_clocks(j);
 		if (!passes(ret) || READ_ONCE(dc->stop))
 			break;
-		msleep(TRY_MS);
+		correct_between(j, ~0, TRY_MS);
 	}
 	return ret;
 }

@@ -422,12 +422,35 @@ static void ref_lost_frames(struct kunit *test)
 	expect_quiet(r, "frames lost meanwhile");
 }
 
+/* Setting the clocks fails for a while: those that were set are corrected meanwhile. */
+static void ref_set_again(struct kunit *test)
+{
+	struct run *r = start(test, TREE("drift=-20ppm"), 4, -1);
+	struct bus *b = r->b;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
+	until(r, 3);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
+	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_BUSY; i++)
+		run(r, 1);
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
+	forget(r, 0, 2);
+	run(r, 800);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_BUSY);
+	expect_within(r, "setting fails for 0.8 s", r->v->together / 2);
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
+	until(r, 4);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(ref_power_off, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_remains_alone, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_chosen_power_off, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_was_the_only_one, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_lost_frames, variant_gen_params),
+	KUNIT_CASE_PARAM(ref_set_again, variant_gen_params),
 	{ }
 };
 
