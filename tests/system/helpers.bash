@@ -31,6 +31,13 @@ all_slaves_are() {
 	[ "$(ethercat slaves 2>/dev/null | awk -v s="$1" '$3 == s' | wc -l)" = "$2" ]
 }
 
+# what "ethercat master" says behind NAME
+says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
+
+# Frames lost since the device came. A frame that is sent before the slaves at the
+# other end of the wire are there counts too: compare with what it was before.
+lost_frames() { says 'Lost frames'; }
+
 # json FILTER COMMAND...: the JSON of a command fulfils a filter of jq
 json() {
 	local filter=$1

@@ -40,10 +40,9 @@ is_detached() { ethercat master | grep -q 'Session: detached'; }
 cycle_is() { [ "$(ethercat cycle --json | jq -r '.masters[0].state')" = "$1" ]; }
 frames() { ethercat master --json | jq '.masters[0].common.tx_frames'; }
 sent() { [ "$(frames)" -ge "$1" ]; }
-lost() { ethercat master | sed -n 's/.*Lost frames: //p' | head -n 1; }
 
 @test "10000 cycles at 1 kHz, none lost, no working counter error" {
-	before=$(lost)
+	before=$(lost_frames)
 	# the frames keep their time whatever the application does: it has no priority
 	run kcycle cycles=10000 period=1000
 	echo "$output"
@@ -51,7 +50,7 @@ lost() { ethercat master | sed -n 's/.*Lost frames: //p' | head -n 1; }
 	[[ "$output" == *"3 slaves in OP"* ]]
 	[[ "$output" == *"cycles: 10000, working counter errors: 0, "* ]]
 	[[ "$output" == *"kernel: running, "*"overruns: 0, "* ]]
-	[ "$(lost)" = "$before" ]
+	[ "$(lost_frames)" = "$before" ]
 }
 
 @test "the thread is real-time, of the priority asked for, on its CPU" {
@@ -163,7 +162,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 }
 
 @test "killed, the cycle goes on; the same program takes it over" {
-	before=$(lost)
+	before=$(lost_frames)
 	background flags=1 value=4711
 	die
 	wait_for 60 sent $(($(frames) + 1000))
@@ -179,7 +178,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 		[[ "$output" == *"overruns: 0, "* ]]
 		is_detached
 	done
-	[ "$(lost)" = "$before" ]
+	[ "$(lost_frames)" = "$before" ]
 	ethercat release
 	wait_for 60 all_slaves_are PREOP 3
 	ethercat master | grep -q 'Active: no'
@@ -209,7 +208,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 
 @test "stopped and continued: frames go on" {
 	background flags=1 stall_cycles=10
-	before=$(lost)
+	before=$(lost_frames)
 	kill -STOP $app
 	wait_for 60 sent $(($(frames) + 500))
 	all_slaves_are OP 3
@@ -217,7 +216,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	kill -CONT $app
 	wait_for 60 cycle_is running
 	kill -0 $app
-	[ "$(lost)" = "$before" ]
+	[ "$(lost_frames)" = "$before" ]
 }
 
 @test "the first frame waits for outputs when asked to" {
