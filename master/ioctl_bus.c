@@ -129,7 +129,7 @@ int ec_ioc_reset(struct ec_file *f, void *arg)
 			continue;
 		s->error = EC_SLAVE_OK;
 		s->reconfigure = true;
-		ec_slave_request(s, s->requested);
+		ec_slave_kick(s);
 	}
 	up_read(&m->topo);
 	return 0;

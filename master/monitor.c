@@ -106,7 +106,7 @@ static bool check_slaves(struct ec_master *m)
 		}
 		/* fallen back by itself: bring it up again */
 		if (!s->error && (status & EC_AL_STATE_MASK) != s->requested)
-			ec_slave_request(s, s->requested);
+			ec_slave_kick(s);
 	}
 out:
 	kvfree(dg);
@@ -194,7 +194,7 @@ static void want_states(struct ec_master *m)
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
 		if (s->al_status != s->requested || s->reconfigure || !s->ours)
-			ec_slave_request(s, s->requested);
+			ec_slave_kick(s);
 	}
 }
 
@@ -257,7 +257,7 @@ static void read_pdos(struct watch *w)
 		if (!ec_slave_pdos_pending(s) || work_busy(&s->work))
 			continue;
 		WRITE_ONCE(s->read_pdos, true);
-		ec_slave_request(s, s->requested);
+		ec_slave_kick(s);
 	}
 }
 

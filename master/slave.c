@@ -118,16 +118,30 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 }
 
 /**
+ * ec_slave_kick() - let the worker look at the slave again
+ * @slave: slave
+ *
+ * The state it shall have stays what it was requested last, by whomever: who only
+ * wants it brought there must not write back what he has read a moment ago.
+ *
+ * Context: Process.
+ */
+void ec_slave_kick(struct ec_slave *slave)
+{
+	ec_slave_ref(slave);
+	if (!queue_work(slave->master->work, &slave->work))
+		ec_slave_unref(slave);
+}
+
+/**
  * ec_slave_request() - let a worker bring the slave to a state
  * @slave: slave
  * @state: AL state
  *
- * Context: Process. May sleep.
+ * Context: Process.
  */
 void ec_slave_request(struct ec_slave *slave, u8 state)
 {
 	WRITE_ONCE(slave->requested, state);
-	ec_slave_ref(slave);
-	if (!queue_work(slave->master->work, &slave->work))
-		ec_slave_unref(slave);
+	ec_slave_kick(slave);
 }

@@ -157,6 +157,7 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
+void ec_slave_kick(struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
 

@@ -122,6 +122,23 @@ static void al_falls_back(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_OP, 500), ~0ull);
 }
 
+/* Who only lets the worker look again leaves alone what is requested meanwhile. */
+static void al_kicked(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	struct ec_slave *s = bus_slave(b, AI);
+
+	bus_idle(b);
+	ec_slave_kick(s);
+	bus_request(b, AI, EC_AL_SAFEOP);
+	ec_slave_kick(s);
+	KUNIT_EXPECT_EQ(test, s->requested, EC_AL_SAFEOP);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_SAFEOP, 500), ~0ull);
+	WRITE_ONCE(s->requested, EC_AL_PREOP);
+	ec_slave_kick(s);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_PREOP, 500), ~0ull);
+}
+
 /* virtual time until the master sees @n slaves; ~0 after a second */
 static u64 wait_count(struct bus *b, u32 n)
 {
@@ -175,6 +192,7 @@ static struct kunit_case al_cases[] = {
 	KUNIT_CASE(al_no_boot),
 	KUNIT_CASE_PARAM(al_refused, al_gen_params),
 	KUNIT_CASE(al_falls_back),
+	KUNIT_CASE(al_kicked),
 	KUNIT_CASE(al_disappears_and_returns),
 	KUNIT_CASE(al_cable_pulled),
 	{}
