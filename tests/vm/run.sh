@@ -66,7 +66,7 @@ done
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
 
-for p in qemu-system-x86_64 cpio modprobe timeout awk sed stdbuf; do
+for p in qemu-system-x86_64 cpio modprobe timeout awk sed stdbuf flock; do
 	command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh vm)"
 done
 busybox=
@@ -93,9 +93,11 @@ trap 'exit 143' HUP TERM
 # --- initramfs: once per kernel and init script ------------------------------
 hash=$(cat "$here/guest-init.sh" "$here/run.sh" "$busybox" | sha256sum | cut -c1-12)
 initrd=$cache/initramfs/$release-$hash.img
-if [ ! -f "$initrd" ]; then
-	i=$tmp/initramfs
-	mkdir -p "$i/bin" "$i/mod" "$i/dev" "$i/proc" "$cache/initramfs"
+
+build_initrd() {
+	local i=$tmp/initramfs m
+
+	mkdir -p "$i/bin" "$i/mod" "$i/dev" "$i/proc"
 	cp "$busybox" "$i/bin/busybox"
 	install -m 755 "$here/guest-init.sh" "$i/init"
 	for m in virtio_pci virtio_console 9pnet_virtio 9p overlay; do
@@ -111,10 +113,21 @@ if [ ! -f "$initrd" ]; then
 		esac
 	done >"$i/mod/order"
 	(cd "$i" && find . | cpio --quiet -o -H newc | gzip -1) >"$tmp/initrd"
-	rm -f "$cache/initramfs/$release"-*.img
 	cp "$tmp/initrd" "$initrd.$$" && mv "$initrd.$$" "$initrd"	# never a half one
 	rm -rf "$i"
+	# Those of other versions of this script, which nobody uses any more.
+	find "$cache/initramfs" -name "$release-*.img*" ! -name "${initrd##*/}" -mtime +0 -delete
+}
+
+# Guests may start together: the first one builds, the others wait for it.
+if [ ! -f "$initrd" ]; then
+	mkdir -p "$cache/initramfs"
+	exec 9>"$cache/initramfs/.lock"
+	flock 9
+	if [ ! -f "$initrd" ]; then build_initrd; fi
+	exec 9>&-
 fi
+touch -c "$initrd" 2>/dev/null || true	# it is in use
 
 base=(qemu-system-x86_64 -nodefaults -no-user-config -no-reboot -display none -kernel "$image")
 
