@@ -10,7 +10,7 @@
 #include <time.h>
 
 #define ENOUGH	2000U	/* images each way */
-#define LIMIT_S	20
+#define LIMIT_S	300	/* where one CPU is free they take turns of milliseconds */
 #define STRIDE	(sizeof(struct ec_exchange_buffer) + 64)
 #define IMAGE	32	/* two domains of 8 bytes out, 8 in */
 
