@@ -202,13 +202,15 @@ static void maybe_scan(struct watch *w)
 {
 	struct ec_master *m = w->m;
 
+	/* also one that is asked for then has to wait */
+	if (READ_ONCE(m->freeze))
+		return;
 	if (READ_ONCE(m->rescan)) {
 		w->scanned = false;
 		w->same = STABLE_LOOKS;
 	}
-	if (w->scanned || w->same < STABLE_LOOKS || READ_ONCE(m->freeze)) {
+	if (w->scanned || w->same < STABLE_LOOKS)
 		return;
-	}
 	WRITE_ONCE(m->scan_index, 0);
 	WRITE_ONCE(m->scan_slaves, w->count);
 	smp_wmb();
@@ -261,6 +263,21 @@ static void read_pdos(struct watch *w)
 	}
 }
 
+/* No link, and nobody is known: a scan that is asked for has been done with that. */
+static void nobody_there(struct ec_master *m)
+{
+	WRITE_ONCE(m->slaves_responding, 0);
+	WRITE_ONCE(m->al_states, 0);
+	WRITE_ONCE(m->link[0].slaves, 0);
+	WRITE_ONCE(m->link[0].al_states, 0);
+	if (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze))
+		return;
+	WRITE_ONCE(m->rescan, false);
+	WRITE_ONCE(m->scan_count, m->scan_count + 1);
+	WRITE_ONCE(m->looked, true);
+	wake_up_all(&m->scan_wq);
+}
+
 static int monitor(void *data)
 {
 	struct watch w = { .m = data };
@@ -277,10 +294,7 @@ static int monitor(void *data)
 			maybe_scan(&w);
 			read_pdos(&w);
 		} else {
-			WRITE_ONCE(m->slaves_responding, 0);
-			WRITE_ONCE(m->al_states, 0);
-			WRITE_ONCE(m->link[0].slaves, 0);
-			WRITE_ONCE(m->link[0].al_states, 0);
+			nobody_there(m);
 		}
 		if (w.scanned || !w.link_up)
 			WRITE_ONCE(m->looked, true);
@@ -291,7 +305,7 @@ static int monitor(void *data)
 		ec_session_status(m);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
-		if (!kthread_should_stop() && !READ_ONCE(m->rescan))
+		if (!kthread_should_stop() && (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 	}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The scan: who is on the bus, and what their EEPROMs say. */
 #include "bus.h"
+#include "master/ioctl.h"
 
 /* the built-in bench, in ring order */
 static const struct {
@@ -136,6 +137,51 @@ static void scan_stations(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 
+/* Asked for without device: that is done, and nobody who wants the master has to wait. */
+static void scan_nothing(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "bench");
+	u32 scans = b->m->scan_count;
+	u64 t0;
+
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, ec_ioc_rescan(&b->app, NULL), 0);
+	msleep(100);
+	KUNIT_EXPECT_FALSE(test, b->m->rescan);
+	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans + 1);
+	t0 = ktime_get_ns();
+	KUNIT_EXPECT_EQ(test, ec_master_wait_scan(b->m), 0);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 1000000ull);
+	bus_plug(b);
+	KUNIT_EXPECT_NE(test, bus_wait(b, ARRAY_SIZE(bench), EC_AL_PREOP, 10000), ~0ull);
+}
+
+/* One that is too late for a reservation waits for its end; the bus is watched as ever. */
+static void scan_while_reserved(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	u32 scans = b->m->scan_count;
+	u64 frames;
+
+	bus_idle(b);
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_rescan(&b->app, NULL), -EBUSY);
+	ec_master_rescan(b->m);
+	msleep(100);
+	frames = bus_frames(b);
+	msleep(1000);
+	/* looks every 20 ms, some of them in two frames */
+	KUNIT_EXPECT_GE(test, bus_frames(b) - frames, 40ull);
+	KUNIT_EXPECT_LE(test, bus_frames(b) - frames, 100ull);
+	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans);
+	ec_app_al_fail(bus_app(b, "ai"), EC_AL_INIT, 0x001b, ktime_get_ns());
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, 2, EC_AL_INIT | EC_AL_ERROR, 200), ~0ull);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, 2, EC_AL_PREOP, 1000), ~0ull);
+	ec_session_end(b->m, &b->app);
+	bus_idle(b);
+	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans + 1);
+}
+
 /* Module parameters that cannot be meant: no master at all, and no leak. */
 static void scan_device_names(struct kunit *test)
 {
@@ -156,6 +202,8 @@ static void scan_device_names(struct kunit *test)
 
 static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_device_names),
+	KUNIT_CASE(scan_nothing),
+	KUNIT_CASE(scan_while_reserved),
 	KUNIT_CASE(scan_bench_identity),
 	KUNIT_CASE(scan_bench_pdos),
 	KUNIT_CASE(scan_bench_topology),
