@@ -48,7 +48,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 			leave_to_work(m);
 		return ret;
 	}
-	dev = m->link[0].dev;
+	dev = READ_ONCE(m->link[0].dev);
 	if (!dev)
 		ret = -ENODEV;
 	else if (READ_ONCE(m->active) != *s)

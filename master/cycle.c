@@ -367,13 +367,18 @@ static bool may_be_late(struct ec_master *m)
  */
 void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 {
+	const struct ecdev *dev = READ_ONCE(m->link[0].dev);
 	u64 budget = m->interval_us * 900ULL;
-	unsigned int n, burst = m->link[0].dev->ops->burst ?: EC_SLOTS;
 	struct ec_slot *slot;
+	unsigned int n, burst;
 
 	/* one that comes at this moment has time until the next cycle */
 	if (READ_ONCE(m->xq_head) == READ_ONCE(m->xq_tail))
 		return;
+	/* it may be withdrawn now; who does that waits for us before it goes */
+	if (!dev)
+		return;
+	burst = dev->ops->burst ?: EC_SLOTS;
 	/* the next cycle needs transmit buffers, too */
 	for (n = 0; n < burst && (slot = xq_peek(m)); n++) {
 		/* behind what this cycle has sent before */

@@ -165,7 +165,7 @@ int ec_cycle_do_receive(struct ec_session *s)
 	u64 now, limit = (u64)m->io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
 
-	if (!m->link[0].dev)
+	if (!READ_ONCE(m->link[0].dev))
 		return -ENODEV;
 	ec_link_poll(&m->link[0]);
 	WRITE_ONCE(m->polls, m->polls + 1);
@@ -358,7 +358,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!m->link[0].dev)
+	if (!READ_ONCE(m->link[0].dev))
 		return -ENODEV;
 	if (!s->thread)
 		ec_late_send(s, send.now);

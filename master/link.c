@@ -41,7 +41,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
  */
 int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 {
-	struct ecdev *dev = link->dev;
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
 	u8 *buf;
 	int ret;
@@ -75,7 +75,7 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
  */
 void ec_link_poll(struct ec_link *link)
 {
-	struct ecdev *dev = link->dev;
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 
 	if (dev && dev->ops->poll)
 		dev->ops->poll(dev->priv);

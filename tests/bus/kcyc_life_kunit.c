@@ -94,6 +94,47 @@ static void life_without_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
 }
 
+static const struct ecdev_ops *real_ops;
+static struct bus *victim;
+static u32 times;
+
+/* What a withdrawal on another CPU does first, while a frame of the cycle is sent. */
+static int gone_tx_send(void *priv, u8 *buf, size_t len)
+{
+	struct ec_master *m = victim->m;
+	int ret = real_ops->tx_send(priv, buf, len);
+
+	/* somebody's frame is to go after those of the cycle */
+	if (!times && m->owner == EC_OWNER_CYCLE && m->xq_head != m->xq_tail) {
+		WRITE_ONCE(m->link[0].dev, NULL);
+		times++;
+	}
+	return ret;
+}
+
+static void life_device_gone_in_send(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
+	struct bus *b = a->c->b;
+	struct ecdev *dev = b->m->link[0].dev;
+	struct ecdev_ops ops = *dev->ops;
+	u32 i;
+
+	real_ops = dev->ops;
+	victim = b;
+	times = 0;
+	ops.tx_send = gone_tx_send;
+	dev->ops = &ops;
+	for (i = 0; i < 1000 && !times; i++)
+		kcyc_wait_cycles(a, 1);
+	KUNIT_EXPECT_EQ(test, times, 1u);
+	dev->ops = real_ops;
+	kcyc_wait_cycles(a, 10);
+	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
+	WRITE_ONCE(b->m->link[0].dev, dev);
+	kcyc_until_op(a);
+}
+
 /* requests and emergencies --------------------------------------------------*/
 
 static const char drive[] = "segment seed=8 response=500us transition=200us\n"
@@ -217,6 +258,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(life_never_begins),
 	KUNIT_CASE(life_poll),
 	KUNIT_CASE(life_without_device),
+	KUNIT_CASE(life_device_gone_in_send),
 	KUNIT_CASE(life_requests),
 	KUNIT_CASE(life_requests_taken_over),
 	{ }
