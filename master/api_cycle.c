@@ -20,7 +20,7 @@ static bool place_is_right(const struct ecdev_ops *ops)
 
 static void leave_to_work(struct ec_master *m)
 {
-	queue_work(m->work, &m->api->work);
+	queue_work(m->service, &m->api->work);
 }
 
 /*

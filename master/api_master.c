@@ -193,7 +193,7 @@ int ecrt_master_reset(ec_master_t *master)
 		return -EINVAL;
 	/* slaves are locked for it, which the caller need not be able to wait for */
 	WRITE_ONCE(master->api->reset, true);
-	queue_work(master->work, &master->api->work);
+	queue_work(master->service, &master->api->work);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_reset);

@@ -634,7 +634,7 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	WRITE_ONCE(m->dc.choice, choice);
 	m->dc.begun = true;
 	set_state(&m->dc, EC_DC_BUSY);
-	queue_work(m->work, &m->dc.work);
+	queue_work(m->service, &m->dc.work);
 	ec_dc_watch_start(m);
 }
 

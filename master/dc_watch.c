@@ -90,7 +90,7 @@ static void watch(struct work_struct *work)
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))
-		queue_delayed_work(m->work, &dc->watch, msecs_to_jiffies(PERIOD_MS));
+		queue_delayed_work(m->service, &dc->watch, msecs_to_jiffies(PERIOD_MS));
 }
 
 /**
@@ -112,7 +112,7 @@ void ec_dc_watch_init(struct ec_dc *dc)
  */
 void ec_dc_watch_start(struct ec_master *m)
 {
-	queue_delayed_work(m->work, &m->dc.watch, msecs_to_jiffies(PERIOD_MS));
+	queue_delayed_work(m->service, &m->dc.watch, msecs_to_jiffies(PERIOD_MS));
 }
 
 /**

@@ -232,6 +232,29 @@ void ec_master_rescan(struct ec_master *m)
 	ec_monitor_kick(m);
 }
 
+/*
+ * So many workers run at once, and the others queue behind them. So what a worker
+ * waits for is not in the queue he is in.
+ */
+static int queues_create(struct ec_master *m)
+{
+	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->index);
+	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->index);
+	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->index);
+	return m->work && m->lanes && m->service ? 0 : -ENOMEM;
+}
+
+/* Service begins requests, and kicks slaves. */
+static void queues_destroy(struct ec_master *m)
+{
+	if (m->service)
+		destroy_workqueue(m->service);
+	if (m->lanes)
+		destroy_workqueue(m->lanes);
+	if (m->work)
+		destroy_workqueue(m->work);
+}
+
 static void destroy(struct ec_master *m)
 {
 	unsigned int i;
@@ -242,8 +265,7 @@ static void destroy(struct ec_master *m)
 	ec_session_end(m, NULL);
 	ec_monitor_stop(m);
 	ec_dc_exit(m);
-	if (m->work)
-		destroy_workqueue(m->work);
+	queues_destroy(m);
 	ec_api_destroy(m);
 	for (i = 0; i < EC_MAX_LINKS; i++)
 		ec_device_detach(&m->link[i]);
@@ -288,11 +310,9 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_slots_init(&m->slots);
 	if (ret)
 		goto err_free;
-	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, index);
-	if (!m->work) {
-		ret = -ENOMEM;
-		goto err_slots;
-	}
+	ret = queues_create(m);
+	if (ret)
+		goto err_work;
 	ret = ec_api_create(m);
 	if (ret)
 		goto err_work;
@@ -311,7 +331,7 @@ err_cdev:
 	ec_cdev_exit(m);
 	ec_capture_destroy(m);
 	ec_api_destroy(m);
-	destroy_workqueue(m->work);
+	queues_destroy(m);
 	ec_slots_exit(&m->slots);
 	ec_cdev_put(m);
 	return ERR_PTR(ret);
@@ -320,8 +340,7 @@ err_capture:
 err_api:
 	ec_api_destroy(m);
 err_work:
-	destroy_workqueue(m->work);
-err_slots:
+	queues_destroy(m);
 	ec_slots_exit(&m->slots);
 err_free:
 	kvfree(m);

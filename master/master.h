@@ -73,7 +73,10 @@ struct task_struct;
  *
  * @monitor: thread
  * @monitor_wq: wakes it
- * @work: workers that bring slaves to their state
+ * @work: workers that bring slaves to their state; they wait for clocks and cycles
+ * @lanes: workers of requests; they wait for slaves
+ * @service: what others wait for, never many at once: clocks, looks at requests,
+ *	calls of an application in the kernel
  *
  * @session_lock: protects @session, @heir and everything they own but the
  *	cyclic part
@@ -143,6 +146,8 @@ struct ec_master {
 	struct task_struct *monitor;
 	wait_queue_head_t monitor_wq;
 	struct workqueue_struct *work;
+	struct workqueue_struct *lanes;
+	struct workqueue_struct *service;
 
 	struct mutex session_lock;
 	struct ec_session *session;

@@ -86,10 +86,10 @@ static void put(struct ec_requests *rq)
 }
 
 /* The work has a reference while it is queued or runs. */
-static void queue(struct ec_requests *rq, struct work_struct *work)
+static void queue(struct ec_requests *rq, struct workqueue_struct *wq, struct work_struct *work)
 {
 	kref_get(&rq->kref);
-	if (!queue_work(rq->master->work, work))
+	if (!queue_work(wq, work))
 		put(rq);
 }
 
@@ -190,7 +190,7 @@ static bool look(struct ec_requests *rq)
 		}
 		more |= todo;
 		if (todo && there)
-			queue(rq, &lane->work);
+			queue(rq, rq->master->lanes, &lane->work);
 	}
 	mutex_unlock(&rq->lock);
 out:
@@ -203,7 +203,7 @@ static void kick_work(struct work_struct *work)
 	struct ec_requests *rq = container_of(work, struct ec_requests, kick);
 
 	if (look(rq))
-		queue(rq, &rq->watch);
+		queue(rq, rq->master->service, &rq->watch);
 	put(rq);
 }
 
@@ -517,7 +517,7 @@ void ec_requests_end(struct ec_session *s)
  */
 void ec_requests_kick(struct ec_requests *rq)
 {
-	queue(rq, &rq->kick);
+	queue(rq, rq->master->service, &rq->kick);
 }
 
 /**
@@ -536,7 +536,7 @@ void ec_requests_notice(struct ec_requests *rq)
 	if (starts == rq->starts)
 		return;
 	rq->starts = starts;
-	queue(rq, &rq->kick);
+	queue(rq, rq->master->service, &rq->kick);
 }
 
 /**

@@ -73,6 +73,7 @@ void bus_down(struct bus *b)
 {
 	if (!b)
 		return;
+	bus_crowd_leaves(b);
 	ec_masters_destroy();
 	if (b->link)
 		ec_sim_link_destroy(b->link);
@@ -123,6 +124,55 @@ void bus_idle(struct bus *b)
 			quiet = 0;
 		usleep_range(1000, 1001);
 	}
+}
+
+struct bus_crowd {
+	struct completion leave;
+	struct bus_guest {
+		struct work_struct work;
+		struct bus_crowd *crowd;
+	} guests[];
+};
+
+static void stay(struct work_struct *work)
+{
+	wait_for_completion(&container_of(work, struct bus_guest, work)->crowd->leave);
+}
+
+/**
+ * bus_crowd() - as if very many slaves waited: no worker of slaves is free
+ * @b: bus
+ */
+void bus_crowd(struct bus *b)
+{
+	u32 i, n = WQ_UNBOUND_MAX_ACTIVE;
+
+	b->crowd = kvzalloc(struct_size(b->crowd, guests, n), GFP_KERNEL);
+	KUNIT_ASSERT_NOT_NULL(b->test, b->crowd);
+	init_completion(&b->crowd->leave);
+	for (i = 0; i < n; i++) {
+		b->crowd->guests[i].crowd = b->crowd;
+		INIT_WORK(&b->crowd->guests[i].work, stay);
+		queue_work(b->m->work, &b->crowd->guests[i].work);
+	}
+	msleep(20);
+}
+
+/**
+ * bus_crowd_leaves() - workers are free again
+ * @b: bus
+ */
+void bus_crowd_leaves(struct bus *b)
+{
+	u32 i;
+
+	if (!b->crowd)
+		return;
+	complete_all(&b->crowd->leave);
+	for (i = 0; i < WQ_UNBOUND_MAX_ACTIVE; i++)
+		flush_work(&b->crowd->guests[i].work);
+	kvfree(b->crowd);
+	b->crowd = NULL;
 }
 
 static bool all_in(const struct bus *b, u32 slaves, u8 state)

@@ -27,6 +27,7 @@
  * @link: virtual device in between; NULL: not offered yet
  * @app: open file of the application
  * @t0: when the device was offered (ktime, ns)
+ * @crowd: works that keep all workers of slaves busy, or NULL
  */
 struct bus {
 	struct kunit *test;
@@ -35,6 +36,7 @@ struct bus {
 	struct ec_sim_link *link;
 	struct ec_file app;
 	u64 t0;
+	struct bus_crowd *crowd;
 };
 
 struct bus *bus_new(struct kunit *test, const char *text);
@@ -47,6 +49,8 @@ u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms);
 u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms);
 bool bus_settled(struct bus *b);
 void bus_idle(struct bus *b);
+void bus_crowd(struct bus *b);
+void bus_crowd_leaves(struct bus *b);
 
 struct ec_slave *bus_slave(struct bus *b, u32 position);
 struct ec_esc *bus_esc(struct bus *b, u32 index);

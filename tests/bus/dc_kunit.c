@@ -105,6 +105,19 @@ static void dc_clocks_agree(struct kunit *test)
 	KUNIT_EXPECT_LT(test, max, 100ull);
 }
 
+/* So many slaves wait for their clocks that no worker is free: they are set all the same. */
+static void dc_all_wait(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=54\nslave a drive in=8 out=8 drift=40ppm\n"
+			      "slave b drive in=8 out=8 drift=-40ppm clock=9s\n", 2);
+
+	bus_crowd(c->b);
+	set(c);
+	KUNIT_EXPECT_LT(test, worst(c->b), 100ull);
+	bus_crowd_leaves(c->b);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+}
+
 /* a tree of 100 with clocks of all rates: figures of the third issue */
 static void dc_hundred(struct kunit *test)
 {
@@ -562,6 +575,7 @@ static void dc_time_not_old(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_are_true),
 	KUNIT_CASE(dc_clocks_agree),
+	KUNIT_CASE(dc_all_wait),
 	KUNIT_CASE(dc_hundred),
 	KUNIT_CASE(dc_settles_quietly),
 	KUNIT_CASE(dc_sync0_phase),

@@ -91,6 +91,18 @@ static void req_sdo(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 }
 
+/* Slaves that wait, however many, hold up no request. */
+static void req_beside_many(struct kunit *test)
+{
+	struct cyc *c = prepare(test);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4);
+
+	go(c);
+	bus_crowd(c->b);
+	KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
+	bus_crowd_leaves(c->b);
+}
+
 /* abort, then restarts from ERROR and from SUCCESS */
 static void req_abort_restart(struct kunit *test)
 {
@@ -418,6 +430,7 @@ static void req_emergency_without_room(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(req_sdo),
+	KUNIT_CASE(req_beside_many),
 	KUNIT_CASE(req_abort_restart),
 	KUNIT_CASE(req_restart_busy),
 	KUNIT_CASE(req_mute),
