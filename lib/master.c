@@ -439,7 +439,7 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 
 	if (!master || !state)
 		return -EINVAL;
-	/* until the kernel has filled it in, it has to be asked */
+	/* why there is no such link is the kernel's to say */
 	if (master->active && dev_idx < ec_status_read(master->status->link_count)) {
 		const struct ec_status_link *link = &master->status->links[dev_idx];
 

@@ -85,6 +85,27 @@ static unsigned int find(const struct job *j, u16 station)
 	return i;
 }
 
+/**
+ * ec_dc_can_be() - is there a clock to be the reference?
+ * @m: master
+ * @choice: station address of the reference clock, or EC_DC_ANY...
+ *
+ * Context: Process. May sleep.
+ * Return: whether there is.
+ */
+bool ec_dc_can_be(struct ec_master *m, u16 choice)
+{
+	bool ret = false;
+	unsigned int i;
+
+	down_read(&m->topo);
+	for (i = 0; i < m->n_slaves && !ret; i++)
+		ret = has_clock(m->slaves[i]) &&
+		      (choice == EC_DC_ANY || m->slaves[i]->station == choice);
+	up_read(&m->topo);
+	return ret;
+}
+
 static bool any_set(const struct job *j)
 {
 	unsigned int i;
@@ -629,6 +650,9 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	WRITE_ONCE(m->dc.stop, false);
 	if (all)
 		ec_dc_app_set(m, 0, false);
+	/* that of the application before is none of this one */
+	if (all && !ec_dc_can_be(m, choice))
+		WRITE_ONCE(m->dc.ref_station, 0);
 	m->dc.fresh = all;
 	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);

@@ -133,6 +133,7 @@ struct ec_dc {
 void ec_dc_init(struct ec_master *m);
 void ec_dc_exit(struct ec_master *m);
 int ec_dc_measure(struct ec_master *m);
+bool ec_dc_can_be(struct ec_master *m, u16 choice);
 void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
 void ec_dc_end(struct ec_master *m);
 int ec_dc_wait(struct ec_slave *s);

@@ -504,6 +504,16 @@ bool ec_session_uses_clocks(const struct ec_session *s)
 	return false;
 }
 
+/*
+ * One that was chosen and is not there is told at once: its clock calls fail, so
+ * nothing else would ever begin to look for it.
+ */
+static bool begins_clocks(const struct ec_session *s)
+{
+	return ec_session_uses_clocks(s) ||
+	       (s->ref_config < s->n_configs && !ec_dc_can_be(s->master, ref_choice(s)));
+}
+
 /**
  * ec_session_clocks() - set clocks that somebody wants and nobody has set
  * @m: master
@@ -591,7 +601,6 @@ int ec_session_activate(struct ec_session *s)
 		return ret;
 	}
 	s->shared->status->config_count = s->n_configs;
-	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
 	s->shared->status->dc_monitor = ~0u;
 	for (i = 0; i < s->n_domains; i++)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
@@ -605,8 +614,10 @@ int ec_session_activate(struct ec_session *s)
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
 	mutex_unlock(&m->cyclic_lock);
-	if (ec_session_uses_clocks(s))
+	if (begins_clocks(s))
 		ec_dc_begin(m, true, ref_choice(s));
+	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
+	ec_session_fill_status(s);
 	ec_cycle_thread_start(s);
 	for (i = 0; i < s->n_configs; i++)
 		if (s->configs[i]->slave)
@@ -641,122 +652,4 @@ int ec_session_slaves_down(struct ec_session *s)
 		if (s->configs[i]->slave)
 			ec_slave_request(s->configs[i]->slave, EC_AL_PREOP);
 	return 0;
-}
-
-/**
- * ec_session_config_status() - EC_STATUS_SC_* of a configuration
- * @c: configuration
- *
- * Context: Process, session_lock held.
- * Return: AL state with the bits online and operational; 0 without slave.
- */
-u8 ec_session_config_status(const struct ec_config *c)
-{
-	const struct ec_slave *slave = c->slave;
-	u8 v;
-
-	if (!slave || slave->gone)
-		return 0;
-	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
-	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
-	    !slave->reconfigure)
-		v |= EC_STATUS_SC_OP;
-	return v;
-}
-
-/*
- * A stall and its end are two lines, and that at most once in 10 s: a busy host
- * may stall an application many times a second.
- */
-static void log_stalls(struct ec_session *s, u64 now)
-{
-	struct ec_master *m = s->master;
-	struct ec_stall_log *l = &s->stall_log;
-	bool stalled = READ_ONCE(m->owner) == EC_OWNER_IDLE;
-	u32 more = atomic_read(&m->stalls) - l->told;
-
-	if (l->open && !stalled) {
-		ec_info(m, "application sends again after %llu ms\n",
-			div_u64(now - l->since_ns, NSEC_PER_MSEC));
-		l->open = false;
-	} else if (!l->open && more && now >= l->next_ns) {
-		l->since_ns = m->stalled_ns;
-		l->next_ns = now + EC_STALL_LOG_NS;
-		l->told += more;
-		l->open = stalled;
-		if (more > stalled)
-			ec_warn(m, "application stalled %u more time(s) since the last message\n",
-				more - stalled);
-		if (stalled)
-			ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
-				div_u64(now - l->since_ns, NSEC_PER_MSEC));
-	}
-}
-
-static void status_links(struct ec_master *m, struct ec_status *st)
-{
-	unsigned int i;
-
-	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->spec[i]); i++) {
-		u32 slaves = READ_ONCE(m->link[i].slaves);
-
-		WRITE_ONCE(st->links[i].slaves_responding, slaves);
-		WRITE_ONCE(st->links[i].al_states, slaves ? m->al_states : 0);
-		WRITE_ONCE(st->links[i].link_up, m->link[i].up);
-	}
-	WRITE_ONCE(st->link_count, i);
-}
-
-/**
- * ec_session_status() - bring the mapped status up to date; monitor
- * @m: master
- *
- * Context: Process. May sleep.
- */
-void ec_session_status(struct ec_master *m)
-{
-	struct ec_session *s;
-	struct ec_status *st;
-	unsigned int i;
-
-	/* an activation in progress may hold it for long: next time then */
-	if (!mutex_trylock(&m->session_lock))
-		return;
-	s = m->session;
-	if (s && s->active) {
-		log_stalls(s, ktime_get_ns());
-		ec_cycle_lock_log(s);
-		ec_dc_app_log(m);
-		ec_cycle_tell_room(s);
-		st = s->shared->status;
-		WRITE_ONCE(st->slaves_responding, m->slaves_responding);
-		WRITE_ONCE(st->al_states, m->al_states);
-		WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
-		WRITE_ONCE(st->frames_lost, (u64)atomic64_read(&m->link[0].stats.lost));
-		status_links(m, st);
-		for (i = 0; i < s->n_configs; i++)
-			WRITE_ONCE(st->configs[i],
-				   ec_session_config_status(s->configs[i]));
-	}
-	mutex_unlock(&m->session_lock);
-}
-
-/**
- * ec_session_stalled() - the cyclic caller has not sent for too long
- * @m: master
- *
- * The links go back to idle mode, so that mailboxes and tools work; process
- * data stop, the slaves' watchdogs take care of the outputs. The log tells it with
- * the next status.
- *
- * Context: Process. May sleep.
- */
-void ec_session_stalled(struct ec_master *m)
-{
-	u64 sent = READ_ONCE(m->last_send_ns);
-
-	if (!ec_cycle_own(m, EC_OWNER_IDLE))
-		return;
-	WRITE_ONCE(m->stalled_ns, sent);
-	atomic_inc(&m->stalls);
 }

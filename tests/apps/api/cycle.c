@@ -152,11 +152,42 @@ static void nothing(void)
 	bench_down(&b);
 }
 
+/* Whoever looks for changes finds none until there is one. */
+static void no_flicker(void)
+{
+	ec_slave_config_state_t s, was;
+	ec_master_link_state_t l;
+	ec_master_state_t ms;
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_slave_config_state)(b.in, &was), 0);
+	IS(was.online, 1);
+	IS(was.al_state, EC_AL_STATE_PREOP);
+	NEED(bench_activate(&b));
+	for (int i = 0; i < 100; i++) {
+		IS(CALL(ecrt_master_state)(b.m, &ms), 0);
+		IS(ms.slaves_responding, SLAVES);
+		IS(ms.link_up, 1);
+		YES(ms.al_states != 0);
+		IS(CALL(ecrt_master_link_state)(b.m, 0, &l), 0);
+		IS(l.slaves_responding, SLAVES);
+		IS(l.link_up, 1);
+		IS(CALL(ecrt_slave_config_state)(b.in, &s), 0);
+		IS(s.online, 1);
+		if (!i)
+			IS(s.al_state, EC_AL_STATE_PREOP);
+		bench_cycle(&b, 1);
+	}
+	bench_down(&b);
+}
+
 const struct api_case cycle_cases[] = {
 	{ "activation, states, deactivation", activation },
 	{ "process data", process_data },
 	{ "domains and frames left out", left_out },
 	{ "deactivate, configure, activate", again },
 	{ "no process data", nothing },
+	{ "states after activation", no_flicker },
 	{ NULL, NULL },
 };
