@@ -1162,7 +1162,7 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
 #endif
 
 /**
- * ecrt_master_reset() - try slaves again that could not be configured
+ * ecrt_master_reset() - bring the slaves to OP again
  * @master: a master opened for writing; need not be reserved
  *
  * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
@@ -1179,6 +1179,11 @@ EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
  * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. It
  * stays the same until deactivation or release, or until an activation fails. What
  * is written there before ecrt_master_activate() is what the first cycle sends; the
+ * Each slave that is configured by an active application and could not be brought to
+ * OP is configured again; so is one that a tool has taken to another state. After
+ * ecrt_master_deactivate_slaves() it brings none up. Of other slaves those that could
+ * not be configured are tried again. It does not wait for them.
+ *
  * rest is zeros. No further domains or entries are taken until deactivation.
  *
  * Context: Process. May sleep.

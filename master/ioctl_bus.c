@@ -115,23 +115,40 @@ int ec_ioc_debug(struct ec_file *f, void *arg)
 	return 0;
 }
 
-/* Try again to bring every slave to its state. */
+/* What an active session wants from a slave is OP, whatever a tool has requested since. */
+static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
+{
+	return session && session->active && !session->ending &&
+	       (s->config || s == session->raised);
+}
+
+static void try_again(const struct ec_session *session, struct ec_slave *s)
+{
+	bool op = wanted_in_op(session, s) && s->error != EC_SLAVE_SCAN_FAILED;
+
+	if (s->error == EC_SLAVE_CONFIG_FAILED) {
+		s->error = EC_SLAVE_OK;
+		s->reconfigure = true;
+	} else if (!op || s->requested == EC_AL_OP) {
+		return;
+	}
+	if (op)
+		ec_slave_request(s, EC_AL_OP);
+	else
+		ec_slave_kick(s);
+}
+
 int ec_ioc_reset(struct ec_file *f, void *arg)
 {
 	struct ec_master *m = f->master;
 	unsigned int k;
 
+	mutex_lock(&m->session_lock);
 	down_read(&m->topo);
-	for (k = 0; k < m->n_slaves; k++) {
-		struct ec_slave *s = m->slaves[k];
-
-		if (s->error != EC_SLAVE_CONFIG_FAILED)
-			continue;
-		s->error = EC_SLAVE_OK;
-		s->reconfigure = true;
-		ec_slave_kick(s);
-	}
+	for (k = 0; k < m->n_slaves; k++)
+		try_again(m->session, m->slaves[k]);
 	up_read(&m->topo);
+	mutex_unlock(&m->session_lock);
 	return 0;
 }
 

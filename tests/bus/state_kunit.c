@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What an application is told about the bus from activation on. */
+/* What an application is told about the bus from activation on, and a reset. */
 #include "cyc.h"
 #include "kapp.h"
 #include "master/dc.h"
@@ -14,6 +14,7 @@ static const char line[] =
 #define N	4
 #define A	1
 #define B	2
+#define C	3
 
 #define PREOP	(EC_AL_PREOP | EC_STATUS_SC_ONLINE)
 
@@ -119,10 +120,79 @@ static void state_no_reference(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->dc.ref_station, bus_slave(b, B)->station);
 }
 
+static u16 al(struct bus *b, u32 position)
+{
+	return bus_slave(b, position)->al_status;
+}
+
+/* A tool has taken one away, another has failed: both come back, the rest stays. */
+static void state_reset(struct kunit *test)
+{
+	struct cyc *c = configure(test);
+	struct bus *b = c->b;
+
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, B, 0, EC_AL_OP, 0x001e);
+	cyc_activate(c);
+	cyc_run(c, 2000);
+	KUNIT_ASSERT_EQ(test, al(b, A), EC_AL_OP);
+	KUNIT_ASSERT_EQ(test, (u32)bus_slave(b, B)->error, (u32)EC_SLAVE_CONFIG_FAILED);
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, B, 0, 0, 0);
+	/* what it is to reach does not count for one that has failed, either */
+	bus_slave(b, B)->requested = EC_AL_PREOP;
+	bus_request(b, A, EC_AL_PREOP);
+	bus_request(b, C, EC_AL_INIT);
+	cyc_run(c, 500);
+	KUNIT_ASSERT_EQ(test, al(b, A), EC_AL_PREOP);
+	KUNIT_ASSERT_EQ(test, al(b, C), EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, al(b, B), EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, al(b, C), EC_AL_INIT);
+	/* one in OP is not disturbed */
+	c->incomplete = 0;
+	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	/* the way down is not turned back */
+	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->session), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_PREOP);
+	cyc_release(c);
+	/* without an application nobody wants OP */
+	bus_request(b, A, EC_AL_INIT);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, A, EC_AL_INIT, 1000), ~0ull);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	msleep(500);
+	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_INIT);
+}
+
+static void state_reset_kernel(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	struct kapp *k;
+
+	bus_idle(b);
+	k = kapp_new(b, 1000);
+	kapp_map(k, A);
+	kapp_op(k);
+	bus_request(b, A, EC_AL_PREOP);
+	kapp_run(k, 500);
+	KUNIT_ASSERT_EQ(test, al(b, A), EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, ecrt_master_reset(k->m), 0);
+	kapp_run(k, 1000);
+	KUNIT_EXPECT_TRUE(test, kapp_all_op(k));
+	ecrt_release_master(k->m);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(state_at_once),
 	KUNIT_CASE(state_at_once_kernel),
 	KUNIT_CASE(state_no_reference),
+	KUNIT_CASE(state_reset),
+	KUNIT_CASE(state_reset_kernel),
 	{}
 };
 

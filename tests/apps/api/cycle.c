@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Activation and the cycle. */
+#include <stdlib.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -182,6 +183,24 @@ static void no_flicker(void)
 	bench_down(&b);
 }
 
+/* One that a tool has taken out of OP comes back. */
+static void reset(void)
+{
+	ec_slave_config_state_t s = { 0 };
+	struct bench b;
+
+	NEED(bench_up(&b));
+	IS(system("$EC_BUILD/tool/ethercat states -p3 PREOP"), 0);
+	for (int i = 0; i < 20000 && s.al_state != EC_AL_STATE_PREOP; i++) {
+		bench_cycle(&b, 1);
+		IS(CALL(ecrt_slave_config_state)(b.motor, &s), 0);
+	}
+	IS(s.al_state, EC_AL_STATE_PREOP);
+	SILENT(CALL(ecrt_master_reset)(b.m), 0);
+	NEED(bench_op(&b));
+	bench_down(&b);
+}
+
 const struct api_case cycle_cases[] = {
 	{ "activation, states, deactivation", activation },
 	{ "process data", process_data },
@@ -189,5 +208,6 @@ const struct api_case cycle_cases[] = {
 	{ "deactivate, configure, activate", again },
 	{ "no process data", nothing },
 	{ "states after activation", no_flicker },
+	{ "reset", reset },
 	{ NULL, NULL },
 };
