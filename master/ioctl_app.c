@@ -10,6 +10,7 @@
 #include "request.h"
 #include "session.h"
 #include "slave.h"
+#include "why.h"
 
 int ec_ioc_reserve(struct ec_file *f, void *arg)
 {
@@ -217,6 +218,27 @@ static int check_maps(struct ec_file *f, const struct ec_config *c)
 	return 0;
 }
 
+/* What no slave describes has to be named; that there is none is worth telling why. */
+static void not_mapped(struct ec_file *f, const struct ec_config *c,
+		       const struct ec_ioc_reg_entry *i)
+{
+	char entry[32], why[96];
+
+	if (i->flags & EC_REG_ENTRY_BY_POS)
+		scnprintf(entry, sizeof(entry), "entry %u of PDO %u of SM%u", i->entry_pos,
+			  i->pdo_pos, i->sm);
+	else
+		scnprintf(entry, sizeof(entry), "entry 0x%04x:%02x", i->entry_index, i->subindex);
+	if (c->slave) {
+		ec_refuse(f, -ENOENT, "%s is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
+			  entry, c->alias, c->position);
+		return;
+	}
+	ec_config_why(c, why, sizeof(why));
+	ec_refuse(f, -ENOENT, "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
+		  entry, c->alias, c->position, why);
+}
+
 int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_reg_entry *i = arg;
@@ -238,8 +260,7 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 		ret = ec_config_reg_entry(c, i->entry_index, i->subindex, s->domains[i->domain],
 					  &i->offset, bit);
 	if (ret == -ENOENT)
-		ec_refuse(f, ret, "entry 0x%04x:%02x is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
-			  i->entry_index, i->subindex, c->alias, c->position);
+		not_mapped(f, c, i);
 	else if (ret == -EBUSY)
 		check_maps(f, c);
 	else if (ret == -EFAULT)

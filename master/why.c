@@ -5,21 +5,36 @@
 #include "slave.h"
 #include "why.h"
 
+/* The ring position @c names now; false: nobody has its alias. @topo is held. */
+static bool place(const struct ec_config *c, unsigned int *pos)
+{
+	const struct ec_master *m = c->session->master;
+	unsigned int i = 0;
+
+	while (c->alias && i < m->n_slaves && m->slaves[i]->alias != c->alias)
+		i++;
+	*pos = i + c->position;
+	return !c->alias || i < m->n_slaves;
+}
+
+/* Do both name the slave at @pos, which is not only where another one has been? */
+static bool twice(const struct ec_config *has, unsigned int pos)
+{
+	unsigned int p;
+
+	return place(has, &p) && p == pos;
+}
+
 /* Nobody is attached: who is there instead? @topo is held. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_master *m = c->session->master;
-	unsigned int i, pos = c->position;
 	const struct ec_slave *s;
+	unsigned int pos;
 
-	if (c->alias) {
-		for (i = 0; i < m->n_slaves && m->slaves[i]->alias != c->alias; i++)
-			;
-		if (i == m->n_slaves)
-			return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
-					 m->n_slaves, c->alias);
-		pos += i;
-	}
+	if (!place(c, &pos))
+		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
+				 m->n_slaves, c->alias);
 	if (pos >= m->n_slaves)
 		return scnprintf(buf, size, "is not on the bus: there are %u slave(s), it would be number %u",
 				 m->n_slaves, pos);
@@ -27,7 +42,7 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
-	if (s->config && c->session->active)
+	if (s->config && c->session->active && !twice(s->config, pos))
 		return scnprintf(buf, size, "is missing, or one in front of it: slave %u was at %u:%u on activation",
 				 pos, s->config->alias, s->config->position);
 	if (s->config)

@@ -210,6 +210,7 @@ static void ext_why(struct kunit *test)
 	struct bus *b = bus_up(test, "slave a drive in=8 out=8 alias=7\nslave b drive in=8 out=8\n"
 			       "slave c EL2008\nfault refuse b OP code=0x0027\n", 3);
 	struct ec_ioc_config_why none = { .index = 9 };
+	struct ec_ioc_reg_entry reg = { .entry_index = 0x6040 };
 	struct ec_ioc_slave_config sc = { 0 };
 	struct cyc *c = cyc_new(b, 1000);
 	static const struct {
@@ -221,7 +222,7 @@ static void ext_why(struct kunit *test)
 		{ 7, 5, 1, 2, "is not on the bus: there are 3 slave(s), it would be number 5" },
 		{ 0, 2, 1, 2, "slave 2 is 0x00000002/0x07d83052, configured is 0x00000001/0x00000002" },
 	};
-	u32 i;
+	u32 i, second;
 
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
@@ -240,12 +241,24 @@ static void ext_why(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
 	KUNIT_EXPECT_STREQ(test, why(b, sc.index),
 			   "slave 0 has another configuration, 0:0; use one of the two");
+	second = sc.index;
+	reg.config = second;
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &reg), -ENOENT);
+	KUNIT_EXPECT_STREQ(test, b->app.reason,
+			   "entry 0x6040:00 is not known, no slave is attached to 7:0 (slave 0 has another configuration, 0:0; use one of the two); name its PDOs with ecrt_slave_config_pdos()");
+	reg.config = 0;
+	reg.entry_index = 0x5555;
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &reg), -ENOENT);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "0x5555:00 is not mapped in slave 0:0"));
 	KUNIT_EXPECT_STREQ(test, why(b, 0), "is in PREOP; the master is not active");
 	cyc_activate(c);
 	cyc_run(c, 2);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(why(b, 0), ", on its way to OP"));
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_STREQ(test, why(b, 0), "");
+	/* nobody is missing */
+	KUNIT_EXPECT_STREQ(test, why(b, second),
+			   "slave 0 has another configuration, 0:0; use one of the two");
 	KUNIT_EXPECT_NOT_NULL(test, strstr(why(b, 1), "refused OP: AL status code 0x0027"));
 	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &none), -ENOENT);
 	cyc_release(c);

@@ -110,6 +110,26 @@ static void reasons(void)
 	bench_down(&b);
 }
 
+/* One slave, two configurations: both say so, one when it is registered. */
+static void twins(void)
+{
+	ec_slave_config_t *twin;
+	unsigned int bit;
+	char text[256];
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	twin = CALL(ecrt_master_slave_config)(b.m, 1001, 0, BECKHOFF, EL2008);
+	NEED(twin && twin != b.out);
+	SAYS(CALL(ecrt_slave_config_reg_pdo_entry)(twin, 0x7000, 1, b.d, &bit), -ENOENT);
+	YES(CALL(ecrt_master_reason)(b.m, text, sizeof(text)) > 0);
+	YES(strstr(text, "another configuration, 0:1") != NULL);
+	NEED(bench_activate(&b) && bench_op(&b));
+	YES(CALL(ecrt_slave_config_reason)(twin, text, sizeof(text)) > 0);
+	YES(strstr(text, "another configuration, 0:1") != NULL);
+	bench_down(&b);
+}
+
 static void ask_time(struct bench *b)
 {
 	CALL(ecrt_master_application_time)(b->m, 0x500000000ULL + b->cycles * 1000000);
@@ -154,6 +174,7 @@ const struct api_case extension_cases[] = {
 	{ "an orderly end", orderly },
 	{ "whole objects are read", complete },
 	{ "reasons", reasons },
+	{ "two configurations of one slave", twins },
 	{ "the whole time, the state of a clock", clocks },
 	{ NULL, NULL },
 };
