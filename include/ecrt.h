@@ -656,11 +656,11 @@ EC_PUBLIC_API int ecrt_master_deactivate(ec_master_t *master);
  * @master: a reserved master, not active
  * @send_interval: microseconds between two calls of ecrt_master_send()
  *
- * Optional; without it the interval is measured. Bounds what is sent besides
- * process data.
+ * Optional; without it, or with more than 1 s, the interval is measured; what is
+ * measured counts as 1 s at most. Bounds what is sent besides process data.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL 0 or too large; %-EBUSY active; %-EPERM not reserved.
+ * Return: 0; %-EINVAL 0; %-EBUSY active; %-EPERM not reserved.
  */
 EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
 		size_t send_interval);

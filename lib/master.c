@@ -119,9 +119,12 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 
 int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
 {
-	struct ec_ioc_interval arg = { .interval_us = (__u32)send_interval };
+	struct ec_ioc_interval arg = {
+		.interval_us = send_interval > UINT32_MAX ? UINT32_MAX :
+							    (__u32)send_interval,
+	};
 
-	if (!master || !send_interval || send_interval > UINT32_MAX)
+	if (!master || !send_interval)
 		return -EINVAL;
 	return ec_ioctl(master, EC_IOC_INTERVAL, &arg);
 }

@@ -470,17 +470,16 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	struct ec_session *s;
 	int ret = 0;
 
-	if (!i->interval_us || i->interval_us > USEC_PER_SEC)
-		return ec_refuse(f, -EINVAL, "send interval must be 1 to 1000000 us, not %u",
-				 i->interval_us);
+	if (!i->interval_us)
+		return ec_refuse(f, -EINVAL, "send interval must be 1 us or more");
 	s = ec_ioc_lock_idle(f, &ret);
 	if (!s)
 		return ret;
 	/* the interval is that of the session which runs */
 	if (s == f->master->heir)
 		return done(f, 0);
-	f->master->interval_us = i->interval_us;
-	f->master->interval_told = true;
+	f->master->interval_us = min_t(u32, i->interval_us, EC_MAX_INTERVAL_US);
+	f->master->interval_told = i->interval_us <= EC_MAX_INTERVAL_US;
 	return done(f, 0);
 }
 

@@ -28,6 +28,7 @@
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
 #define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
 
+#define EC_MAX_INTERVAL_US	1000000	/* longer ones are measured; waits are a multiple */
 #define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */
 #define EC_LATE_PER_S		100	/* cycles acyclic frames may make late, until told */
 #define EC_SLOTS		256	/* datagram index has 8 bits */

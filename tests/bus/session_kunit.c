@@ -341,6 +341,32 @@ static void session_foreign_config(struct kunit *test)
 	ecrt_release_master(m);
 }
 
+/* One that is longer than what the master reckons with is no error; it is measured. */
+static void session_interval(struct kunit *test)
+{
+	static const struct {
+		u32 us, is;
+		bool told;
+	} told[] = {
+		{ 1, 1, true }, { 1000000, 1000000, true }, { 1000001, 1000000, false },
+		{ ~0u, 1000000, false }, { 70, 70, true },
+	};
+	struct bus *b = one_up(test);
+	struct cyc *c = cyc_new(b, 1000);
+	struct ec_ioc_interval none = { 0 };
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(told); i++) {
+		struct ec_ioc_interval t = { .interval_us = told[i].us };
+
+		KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &t), 0);
+		KUNIT_EXPECT_EQ(test, b->m->interval_us, told[i].is);
+		KUNIT_EXPECT_EQ(test, b->m->interval_told, told[i].told);
+	}
+	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &none), -EINVAL);
+	cyc_release(c);
+}
+
 static struct kunit_case session_cases[] = {
 	KUNIT_CASE(session_forgets),
 	KUNIT_CASE(session_heir_goes),
@@ -351,6 +377,7 @@ static struct kunit_case session_cases[] = {
 	KUNIT_CASE(session_heir_asks),
 	KUNIT_CASE(session_kernel_heir),
 	KUNIT_CASE(session_foreign_config),
+	KUNIT_CASE(session_interval),
 	{}
 };
 

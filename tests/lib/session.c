@@ -272,6 +272,7 @@ static void configuration(void)
 	      !state.operational && state.al_state == 2);
 	CHECK(!ecrt_master_set_send_interval(m, 1000));
 	CHECK(ecrt_master_set_send_interval(m, 0) == -EINVAL);
+	CHECK(!ecrt_master_set_send_interval(m, SIZE_MAX));
 	ecrt_release_master(m);
 }
 

@@ -157,6 +157,9 @@ static void settings(void)
 	IS(CALL(ecrt_master_select_reference_clock)(b.m, NULL), 0);
 	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 1000), 0);
 	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 0), -EINVAL);
+	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 2000000), 0);
+	SILENT(CALL(ecrt_master_set_send_interval)(b.m, SIZE_MAX), 0);
+	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 1000), 0);
 	SILENT(CALL(ecrt_master_application_time)(b.m, ~0ULL), 0);
 	bench_down(&b);
 }
