@@ -521,7 +521,7 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * @index: of the object
  * @subindex: of the object
  * @data: little-endian
- * @data_size: bytes, at least 1
+ * @data_size: bytes, 1 to 65536
  * @abort_code: out, may be NULL: CoE abort code (ETG.1000.6 table 41), 0 if
  *              the slave gave none
  *
@@ -542,7 +542,7 @@ EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
  * @slave_position: in the ring
  * @index: of the object
  * @data: little-endian, begins with subindex 0 in a 16 bit slot
- * @data_size: bytes, at least 1
+ * @data_size: bytes, 1 to 65536
  * @abort_code: as in ecrt_master_sdo_download()
  *
  * CoE Complete Access from subindex 0 on.
@@ -562,12 +562,13 @@ EC_PUBLIC_API int ecrt_master_sdo_download_complete(ec_master_t *master,
  * @subindex: of the object
  * @target: where to put it
  * @target_size: room, bytes
- * @result_size: out: bytes that were read; untouched on failure
+ * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
+ *	the kernel
  * @abort_code: as in ecrt_master_sdo_download()
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; %-ENOBUFS larger than @target_size, nothing is copied; else as
- * ecrt_master_sdo_download().
+ * Return: 0; %-ENOBUFS larger than @target_size or than 65536 bytes, nothing is
+ * copied; else as ecrt_master_sdo_download().
  */
 EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
@@ -604,12 +605,13 @@ EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
  * @idn: as in ecrt_master_write_idn()
  * @target: where to put it
  * @target_size: room, bytes
- * @result_size: out: bytes that were read; untouched on failure
+ * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
+ *	the kernel
  * @error_code: as in ecrt_master_write_idn()
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; %-ENOBUFS larger than @target_size, nothing is copied; else as
- * ecrt_master_write_idn().
+ * Return: 0; %-ENOBUFS larger than @target_size or than 65536 bytes, nothing is
+ * copied; else as ecrt_master_write_idn().
  */
 EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
@@ -1221,7 +1223,7 @@ EC_PUBLIC_API void ecrt_master_deactivate_slaves(ec_master_t *master);
  * @index: of the object
  * @target: out: subindex 0 as 16 bits, then the others, packed
  * @target_size: bytes at @target
- * @result_size: out: bytes read; unchanged on failure
+ * @result_size: out: bytes read; as in ecrt_master_sdo_upload()
  * @abort_code: as in ecrt_master_sdo_download()
  *
  * Extension (%EC_HAVE_SDO_UPLOAD_COMPLETE).
@@ -1516,12 +1518,12 @@ EC_PUBLIC_API int ecrt_slave_config_dc(ec_slave_config_t *sc,
  * @index: of the object; not one of the PDO objects 0x1c1x, 0x16xx, 0x1axx
  * @subindex: of the object
  * @data: little-endian; copied
- * @size: bytes, at least 1
+ * @size: bytes, 1 to 65536
  *
  * Written in PREOP, in the order of the calls, before the PDO objects.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL no data; %-ENOMEM.
+ * Return: 0; %-EINVAL no data, or too much; %-ENOSPC more than 1024; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_slave_config_sdo(ec_slave_config_t *sc, uint16_t index,
 		uint8_t subindex, const uint8_t *data, size_t size);
@@ -1570,7 +1572,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo32(ec_slave_config_t *sc,
  * @sc: slave configuration
  * @index: of the object
  * @data: little-endian, begins with subindex 0 in a 16 bit slot; copied
- * @size: bytes, at least 1
+ * @size: bytes, 1 to 65536
  *
  * Written by CoE Complete Access.
  *
@@ -1588,7 +1590,7 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
  * @state: %EC_AL_STATE_PREOP or %EC_AL_STATE_SAFEOP: when, behind the SDOs or
  *	before OP
  * @data: little-endian, copied
- * @size: bytes, at least 1
+ * @size: bytes, 1 to 65536
  *
  * Written in the order of the calls. One that is refused keeps the slave where
  * it is.

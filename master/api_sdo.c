@@ -19,6 +19,8 @@ static int ended(struct ec_master *m, const struct ec_ioc_sdo *i, int ret, u32 *
 static int download(struct ec_master *m, struct ec_ioc_sdo *i, const u8 *data, size_t size,
 		    u32 *abort_code)
 {
+	if (abort_code)
+		*abort_code = 0;
 	if (!m || !data || !size)
 		return -EINVAL;
 	i->size = min_t(size_t, size, U32_MAX);
@@ -56,10 +58,13 @@ static int upload(struct ec_master *m, struct ec_ioc_sdo *i, u8 *target, size_t 
 	u8 *data;
 	int ret;
 
-	if (!m || !target || !result_size)
+	if (abort_code)
+		*abort_code = 0;
+	if (result_size)
+		*result_size = 0;
+	if (!m || (!target && target_size) || !result_size)
 		return -EINVAL;
 	i->size = min_t(size_t, target_size, U32_MAX);
-	*result_size = 0;
 	ec_api_begin(m);
 	ret = ec_ioc_upload(&m->api->file, i, &data);
 	if (!ret) {

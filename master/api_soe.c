@@ -27,6 +27,8 @@ int ecrt_master_write_idn(ec_master_t *master, uint16_t slave_position, uint8_t 
 		.size = min_t(size_t, data_size, U32_MAX),
 	};
 
+	if (error_code)
+		*error_code = 0;
 	if (!master || !data)
 		return -EINVAL;
 	ec_api_begin(master);
@@ -46,9 +48,12 @@ int ecrt_master_read_idn(ec_master_t *master, uint16_t slave_position, uint8_t d
 	u8 *data;
 	int ret;
 
-	if (!master || !target || !result_size)
+	if (error_code)
+		*error_code = 0;
+	if (result_size)
+		*result_size = 0;
+	if (!master || (!target && target_size) || !result_size)
 		return -EINVAL;
-	*result_size = 0;
 	ec_api_begin(master);
 	ret = ec_ioc_read_idn(&master->api->file, &i, &data);
 	if (!ret) {

@@ -26,6 +26,12 @@ static int check_size(struct ec_file *f, u32 size, u32 most)
 	return 0;
 }
 
+/* Room of any size is welcome; it may have none, for what is empty or to see it refused. */
+static u32 room(u32 size, u32 most)
+{
+	return min(size, most);
+}
+
 /* Runs a command with the value a process has at @from; the size is checked already. */
 static int with_value(struct ec_file *f, void *arg, u64 from, u32 size,
 		      int (*command)(struct ec_file *f, void *arg, const u8 *data))
@@ -104,13 +110,14 @@ static int sdo_failed(struct ec_file *f, const struct ec_ioc_sdo *i, int ret)
 int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data)
 {
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
-	int ret = check_size(f, i->size, EC_MAX_SDO_SIZE);
-	struct ec_slave *s = ret ? NULL : ec_ioc_get_slave(f, i->position, &ret);
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
 	size_t got = 0;
 
 	*data = NULL;
 	if (!s)
 		return ret;
+	i->size = room(i->size, EC_MAX_SDO_SIZE);
 	*data = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (*data)
 		ret = ec_coe_upload(s, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
@@ -252,7 +259,7 @@ static int idn_failed(struct ec_file *f, const struct ec_ioc_soe *i, int ret)
 int ec_ioc_read_idn(struct ec_file *f, struct ec_ioc_soe *i, u8 **data)
 {
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
-	int ret = check_idn(f, i);
+	int ret = check_drive(f, i->drive);
 	struct ec_slave *s = ret ? NULL : ec_ioc_get_slave(f, i->position, &ret);
 	size_t got = 0;
 	u16 error = 0;
@@ -260,6 +267,7 @@ int ec_ioc_read_idn(struct ec_file *f, struct ec_ioc_soe *i, u8 **data)
 	*data = NULL;
 	if (!s)
 		return ret;
+	i->size = room(i->size, EC_MAX_SOE_SIZE);
 	*data = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (*data)
 		ret = ec_soe_read(s, i->drive, i->idn, *data, i->size, &got, &error, &limit);

@@ -236,9 +236,9 @@ static int up_initiate(struct ec_sdo_up *u, struct answer *a)
 		p = ec_rbuf_take(&a->r, n);
 		if (!p)
 			return up_fail(u, -EMSGSIZE, EC_ABORT_COMMAND, false);
-		/* without a size the object may well be smaller */
+		/* without a size the object may well be smaller, but it is not empty */
 		if (!(a->cmd & CMD_SIZE))
-			n = min_t(size_t, n, u->cap);
+			n = min_t(size_t, n, u->cap ?: 1);
 		u->total = n;
 		return up_take(u, p, n, false);
 	}

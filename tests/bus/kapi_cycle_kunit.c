@@ -57,9 +57,21 @@ static void kapi_sdo(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 2, &got, &abort), -ENOBUFS);
 	KUNIT_EXPECT_EQ(test, back[0], 0x5a);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 0, &got, &abort), -ENOBUFS);
+	/* more room than any object needs */
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, U32_MAX, &got, &abort), 0);
+	KUNIT_EXPECT_EQ(test, got, (size_t)4);
+	abort = 1;
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, NULL, 4, &got, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, abort, 0u);
+	KUNIT_EXPECT_EQ(test, got, (size_t)0);
+	abort = 1;
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 7, 0x1018, 4, back, 8, &got, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, abort, 0u);
+	abort = 1;
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 7, 0x1018, 4, value, 4, &abort), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x2001, 8, NULL, 4, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, abort, 0u);
 	ecrt_release_master(k->m);
 }
 
@@ -204,6 +216,13 @@ static void kapi_idns(struct kunit *test)
 	KUNIT_EXPECT_NE(test, error, 0);
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 7, 0, 91, value, 8, &got, &error), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, U32_MAX, &got, &error), 0);
+	KUNIT_EXPECT_EQ(test, got, (size_t)4);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, 0, &got, &error), -ENOBUFS);
+	error = 1;
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, NULL, 4, &got, &error), -EINVAL);
+	KUNIT_EXPECT_EQ(test, error, 0);
+	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	put_unaligned_le32(4000, value);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_PREOP, value, 4), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_OP, value, 4), -EINVAL);

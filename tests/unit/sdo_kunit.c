@@ -526,6 +526,10 @@ static void expedited_data_without_a_size_fills_the_buffer(struct kunit *test)
 	ec_sdo_up_tx(&u, tx, sizeof(tx));
 	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, exp, sizeof(exp)), 0);
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)1);
+	/* without room it is too large, of whatever size */
+	ec_sdo_up_init(&u, 0x2000, 1, false, got, 0);
+	ec_sdo_up_tx(&u, tx, sizeof(tx));
+	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, exp, sizeof(exp)), -ENOBUFS);
 }
 
 static void short_messages_are_refused_at_every_length(struct kunit *test)

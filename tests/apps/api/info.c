@@ -152,6 +152,12 @@ static void uploads(void)
 	SAYS(CALL(ecrt_master_sdo_upload)(m, NOWHERE, 0x1018, 1, back, 4, &size, &abort), -EINVAL);
 	SAYS(CALL(ecrt_master_sdo_upload)(m, OUT, 0x1018, 1, back, 4, &size, &abort),
 	     -EPROTONOSUPPORT);
+	SAYS(CALL(ecrt_master_sdo_upload)(m, MOTOR, 0x1018, 1, back, 0, &size, &abort), -ENOBUFS);
+	SAYS(CALL(ecrt_master_sdo_upload)(m, MOTOR, 0x1018, 1, NULL, 0, &size, &abort), -ENOBUFS);
+	IS(size, 99);
+	/* more room than any object needs; it is not touched */
+	IS(CALL(ecrt_master_sdo_upload)(m, MOTOR, 0x1018, 1, back, SIZE_MAX, &size, &abort), 0);
+	IS(size, 4);
 	/* in segments */
 	for (unsigned int i = 0; i < sizeof(big); i++)
 		big[i] = (uint8_t)(i * 7 + 1);

@@ -41,6 +41,7 @@ static void at_once(void)
 	IS(error, 0x7004);
 	SAYS(CALL(ecrt_master_write_idn)(b.m, MOTOR, 0, 91, data, 3, NULL), -EIO);
 	SAYS(CALL(ecrt_master_read_idn)(b.m, MOTOR, 0, 91, data, 3, &size, &error), -ENOBUFS);
+	SAYS(CALL(ecrt_master_read_idn)(b.m, MOTOR, 0, 91, data, 0, &size, &error), -ENOBUFS);
 	SAYS(CALL(ecrt_master_read_idn)(b.m, MOTOR, 8, 91, data, 4, &size, &error), -EINVAL);
 	SAYS(CALL(ecrt_master_write_idn)(b.m, MOTOR, 8, 91, data, 4, &error), -EINVAL);
 	SAYS(CALL(ecrt_master_read_idn)(b.m, NOWHERE, 0, 91, data, 4, &size, &error), -EINVAL);
