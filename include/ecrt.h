@@ -30,6 +30,8 @@
  *
  * "Context:" is one of
  *   Any. RT-safe: bounded, no sleep, no allocation.
+ *   One caller at a time. RT-safe. Of all calls so marked for the same request,
+ *	handler or slave, which nothing protects against each other.
  *   The master's single cyclic caller. RT-safe.
  *   Process. May sleep.
  *   Process. Waits for bus traffic.
@@ -530,7 +532,9 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused or failed, see @abort_code; %-EINVAL no such slave
  * or bad arguments; %-EPROTONOSUPPORT slave without CoE; %-ETIMEDOUT no
- * answer; %-EINTR; %-ENOMEM.
+ * answer; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
+ * %-EBADMSG, %-EMSGSIZE an answer that cannot be, or a mailbox too small;
+ * %-ECANCELED the slave has gone or is being configured; %-EINTR; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
@@ -591,7 +595,9 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused, see @error_code; %-EINVAL no such slave or drive,
  * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
- * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EINTR; %-ENOMEM.
+ * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EBADMSG an answer
+ * that cannot be; %-ECANCELED the slave has gone or is being configured;
+ * %-EINTR; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
@@ -636,7 +642,10 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may make no
  * cycle late (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
- * runs the cycle; %-EINVAL @master is NULL.
+ * runs the cycle; %-ENODEV the CPU chosen for the cycle is offline; %-ETIMEDOUT the
+ * cycle to be taken over does not answer; %-EPROTO in userspace: what is mapped is not
+ * what the library knows; %-EINVAL @master is NULL. In the kernel a second call is
+ * only told in the log, and returns 0.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 
@@ -742,7 +751,8 @@ EC_PUBLIC_API int ecrt_master_receive(ec_master_t *master);
  * As of the last broadcast that came back (registers 0x0130, 0x0000): some
  * cycles old. No bus traffic; no system call while active.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation. In
+ * userspace before activation: Process. May sleep.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_state(const ec_master_t *master,
@@ -756,7 +766,8 @@ EC_PUBLIC_API int ecrt_master_state(const ec_master_t *master,
  *
  * As ecrt_master_state(); no system call while active.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation. In
+ * userspace before activation: Process. May sleep.
  * Return: 0; %-EINVAL no such link, or an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
@@ -770,7 +781,8 @@ EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
  * Once per cycle, always at the same place. When the clocks are set, which begins
  * with the first cycle, they go on without the jumps it makes.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe. In userspace before
+ * activation: Process. May sleep.
  * Return: 0; %-EPERM not reserved; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
@@ -799,7 +811,7 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
  * has jumped since the clocks were set, go to the reference clock (register
  * 0x0910). A time that is off, or may have jumped, is held back: none goes then.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
@@ -809,7 +821,7 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
  * @master: an active master
  * @sync_time: ns; it is this one that must not jump then
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
@@ -823,7 +835,7 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
  * behind it (FRMW of register 0x0910). Once per cycle; until the master has
  * set the clocks after activation nothing is sent.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
@@ -849,7 +861,7 @@ EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
  *
  * With the next send register 0x092C of all slaves is read.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
@@ -1167,6 +1179,11 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
  * ecrt_master_reset() - bring the slaves to OP again
  * @master: a master opened for writing; need not be reserved
  *
+ * Each slave that is configured by an active application and could not be brought to
+ * OP is configured again; so is one that a tool has taken to another state. After
+ * ecrt_master_deactivate_slaves() it brings none up. Of other slaves those that could
+ * not be configured are tried again. It does not wait for them.
+ *
  * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
  * no allocation.
  * Return: 0; %-EINVAL @master is NULL.
@@ -1181,11 +1198,6 @@ EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
  * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. It
  * stays the same until deactivation or release, or until an activation fails. What
  * is written there before ecrt_master_activate() is what the first cycle sends; the
- * Each slave that is configured by an active application and could not be brought to
- * OP is configured again; so is one that a tool has taken to another state. After
- * ecrt_master_deactivate_slaves() it brings none up. Of other slaves those that could
- * not be configured are tried again. It does not wait for them.
- *
  * rest is zeros. No further domains or entries are taken until deactivation.
  *
  * Context: Process. May sleep.
@@ -1247,7 +1259,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
  * activation. When the kernel runs the cycle, %EC_CYCLE_REFERENCE_TIME does the same
  * in every cycle.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: The master's single cyclic caller. RT-safe.
  */
 EC_PUBLIC_API void ecrt_master_64bit_reference_clock_time_queue(
 		ec_master_t *master);
@@ -1391,7 +1403,8 @@ EC_PUBLIC_API int ecrt_slave_config_watchdog(ec_slave_config_t *sc,
  * object 0x1c10 + @sync_index if the slave allows it.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL @sync_index too large; %-ENOMEM.
+ * Return: 0; %-EINVAL @sync_index too large; %-ENOSPC more than 1024 of the slave;
+ * %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_slave_config_pdo_assign_add(ec_slave_config_t *sc,
 		uint8_t sync_index, uint16_t index);
@@ -1416,7 +1429,8 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_assign_clear(ec_slave_config_t *sc,
  * @entry_bit_length: bits
  *
  * Context: Process. May sleep.
- * Return: 0; %-ENOENT the PDO is not assigned; %-ENOMEM.
+ * Return: 0; %-ENOENT the PDO is not assigned; %-ENOSPC more than 255 entries in
+ * it; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_add(ec_slave_config_t *sc,
 		uint16_t pdo_index, uint16_t entry_index,
@@ -1623,7 +1637,7 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_size(ec_slave_config_t *sc,
  * @target: out: %EC_COE_EMERGENCY_MSG_SIZE bytes: error code (little-endian),
  *	error register, 5 bytes of data
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-ENOENT none, or not active; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc,
@@ -1633,7 +1647,7 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc,
  * ecrt_slave_config_emerg_clear() - forget all emergencies and lost ones
  * @sc: slave configuration
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @sc is NULL.
  */
 EC_PUBLIC_API int ecrt_slave_config_emerg_clear(ec_slave_config_t *sc);
@@ -1733,6 +1747,7 @@ EC_PUBLIC_API ec_reg_request_t *ecrt_slave_config_create_reg_request(
  * traffic; no system call while active.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Before activation: Process. May sleep.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
@@ -1750,7 +1765,8 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * "ethercat config -v", without effect.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOMEM.
+ * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOSPC more than 64 of the
+ * slave; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
 		const char *key, int32_t value);
@@ -1951,7 +1967,8 @@ EC_PUBLIC_API int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
  *
  * Final as soon as all entries are registered.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation. In
+ * userspace before activation: Process. May sleep.
  * Return: bytes; a negative errno as size_t on failure.
  */
 EC_PUBLIC_API size_t ecrt_domain_size(const ec_domain_t *domain);
@@ -2075,7 +2092,7 @@ EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
  * @index: object
  * @subindex: subindex
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
@@ -2090,7 +2107,7 @@ EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
  * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE). From now on CoE Complete Access, until
  * ecrt_sdo_request_index().
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
@@ -2106,7 +2123,7 @@ EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
  * A request waits while the slave is absent, on its way through INIT, or busy
  * with another request. The transfer has limits of its own: 1 s per message.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_timeout(ec_sdo_request_t *req,
@@ -2125,7 +2142,7 @@ EC_PUBLIC_API uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req);
  * ecrt_sdo_request_data_size() - bytes in the buffer
  * @req: request
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: size it was created with; after a successful read, bytes read. So
  * many will be written.
  */
@@ -2138,7 +2155,7 @@ EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
  * Data and size of a finished read are there when this has returned SUCCESS.
  * An object that is larger than the buffer gives ERROR.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
 #ifdef __KERNEL__
@@ -2192,7 +2209,7 @@ EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL no such drive, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_idn(ec_soe_request_t *req,
@@ -2203,7 +2220,7 @@ EC_PUBLIC_API int ecrt_soe_request_idn(ec_soe_request_t *req,
  * @req: request
  * @timeout: as in ecrt_sdo_request_timeout()
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_timeout(ec_soe_request_t *req,
@@ -2222,7 +2239,7 @@ EC_PUBLIC_API uint8_t *ecrt_soe_request_data(const ec_soe_request_t *req);
  * ecrt_soe_request_data_size() - bytes in the buffer
  * @req: request
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: size it was created with; after a successful read, bytes read. So
  * many will be written.
  */
@@ -2235,7 +2252,7 @@ EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
  * Data and size of a finished read are there when this has returned SUCCESS.
  * A value that is larger than the buffer gives ERROR.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
 #ifdef __KERNEL__
@@ -2271,7 +2288,7 @@ EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
  * @vendor_id: vendor id
  * @vendor_type: type, the vendor's own
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @voe is NULL.
  */
 EC_PUBLIC_API int ecrt_voe_handler_send_header(ec_voe_handler_t *voe,
@@ -2286,7 +2303,7 @@ EC_PUBLIC_API int ecrt_voe_handler_send_header(ec_voe_handler_t *voe,
  * There after ecrt_voe_handler_execute() has returned SUCCESS for a read; 0
  * before.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @voe is NULL.
  */
 EC_PUBLIC_API int ecrt_voe_handler_received_header(
@@ -2307,7 +2324,7 @@ EC_PUBLIC_API uint8_t *ecrt_voe_handler_data(const ec_voe_handler_t *voe);
  * ecrt_voe_handler_data_size() - bytes in the buffer
  * @voe: handler
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: size it was created with; then that of the last write or successful
  * read.
  */
@@ -2358,7 +2375,7 @@ EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
  * A slave that is not there, or has no VoE, gives ERROR, as does a message
  * that is larger than the buffer.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
 EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
@@ -2380,7 +2397,7 @@ EC_PUBLIC_API uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req);
  * The data of a finished read are there when this has returned SUCCESS. A
  * slave that could not be configured gives ERROR; an absent one is waited for.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
  */
 EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
