@@ -3,7 +3,7 @@
  * Plain fuzz driver: mutates the seeds with a xorshift generator, the same
  * way in every run. Sanitizers judge.
  *
- *   prog [SECONDS [SEED]]	mutate
+ *   prog [INPUTS [SEED]]	mutate
  *   prog FILE...		run saved inputs, e.g. a crash
  *
  * On a crash the input is written to crash-<prog>.bin.
@@ -11,7 +11,6 @@
 #include "fuzz.h"
 #include <signal.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define MAX_LEN 8192
@@ -160,10 +159,8 @@ int main(int argc, char **argv)
 {
 	static uint8_t cur[MAX_LEN];
 	size_t seeds = 0, len = 0;
-	unsigned long count = 0;
+	unsigned long count, inputs = 100000;
 	char *end;
-	double seconds = 1;
-	time_t stop;
 	int i;
 
 	name = strrchr(argv[0], '/') ? strrchr(argv[0], '/') + 1 : argv[0];
@@ -171,7 +168,7 @@ int main(int argc, char **argv)
 	__sanitizer_set_death_callback(save);
 
 	if (argc > 1) {
-		seconds = strtod(argv[1], &end);
+		inputs = strtoul(argv[1], &end, 0);
 		if (*end) {
 			for (i = 1; i < argc; i++)
 				run_file(argv[i]);
@@ -186,8 +183,7 @@ int main(int argc, char **argv)
 	for (i = 0; i < (int)seeds; i++)
 		run(fuzz_seeds[i].data, fuzz_seeds[i].len);
 
-	stop = time(NULL) + (time_t)seconds;
-	do {
+	for (count = 0; count < inputs; count++) {
 		if (!rnd(8) || !count) {
 			const struct fuzz_seed *s = &fuzz_seeds[rnd((uint32_t)seeds)];
 
@@ -196,8 +192,7 @@ int main(int argc, char **argv)
 		}
 		len = mutate(cur, len, &fuzz_seeds[rnd((uint32_t)seeds)]);
 		run(cur, len);
-		count++;
-	} while ((count & 63) || time(NULL) < stop);
+	}
 	printf("%s: %lu inputs, no fault\n", name, count);
 	return 0;
 }

@@ -93,7 +93,7 @@ def main():
     of = lambda files: [objs[f] for f in files]
 
     columns = {"vectors": counts([link("vectors", *of(vectors + wire))])}
-    columns["fuzz"] = counts(*[[link(objs[f][:-2], objs[f], *of(driver + wire + sim)), "1"]
+    columns["fuzz"] = counts(*[[link(objs[f][:-2], objs[f], *of(driver + wire + sim)), "10000"]
                                for f in fuzz])
     if os.environ.get("DATA"):
         columns["data"] = counts([link("data_check", *of(data + wire + sim)),
