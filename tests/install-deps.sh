@@ -26,10 +26,10 @@ command -v dpkg-query >/dev/null 2>&1 || {
 want=
 for group; do
 	case $group in
-	build)	p="gcc make libc6-dev pkg-config bc bison flex libelf-dev pahole
-		   sparse kmod cpio xz-utils zstd" ;;
+	build)	p="gcc g++ make libc6-dev pkg-config bc bison flex libelf-dev pahole
+		   sparse kmod cpio xz-utils zstd git" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils bats tcpdump
-		   iproute2 tshark" ;;
+		   iproute2 tshark procps psmisc python3 xxd" ;;
 	capture) p="tcpdump iproute2 tshark" ;;
 	uml)	p="linux-source-6.1 xz-utils python3" ;;
 	python)	p="python3-venv" ;;
@@ -70,7 +70,7 @@ apt() {
 	for try in 1 2; do
 		# shellcheck disable=SC2086
 		$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq \
-			-o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 \
+			-o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 -o Acquire::Retries=5 \
 			"$@" >"$log" 2>&1 </dev/null && return 0
 		[ $try = 2 ] || sleep 3
 	done

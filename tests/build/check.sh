@@ -36,7 +36,8 @@ top() { make -s KDIR="$KDIR" MODDIR="$modules" DESTDIR="$root" PREFIX=$prefix "$
 
 # --- kernel ----------------------------------------------------------------------
 mkdir "$tmp/src"
-git ls-files -z Kbuild master devices include | xargs -0 cp --parents -t "$tmp/src"
+# the clone may be another user's
+git -c safe.directory='*' ls-files -z Kbuild master devices include | xargs -0 cp --parents -t "$tmp/src"
 
 # the way kernel people do it, all warnings on
 plain_kbuild() {
