@@ -13,7 +13,7 @@
 #include "fault.h"
 
 #define PAGE	4096
-#define LOOKS	20
+#define LOOKS	20	/* so often it must have gone on, so long it may stand still */
 #define LOOK_US	250000
 
 static struct counts {
@@ -75,15 +75,22 @@ static void child(void *(*reader)(void *))
 
 static bool both_go_on(const char *what, void *(*reader)(void *), volatile unsigned long *reads)
 {
+	unsigned int moved = 0, still = 0;
 	unsigned long r = 0, m = 0;
 	pid_t pid = fork();
 	bool good = pid > 0;
 
 	if (!pid)
 		child(reader);
-	for (unsigned int i = 0; i < LOOKS && good; i++) {
+	while (good && moved < LOOKS) {
 		usleep(LOOK_US);
-		good = *reads != r && done->maps != m;
+		/* on a busy machine it may not have had its turn; a deadlock stays */
+		if (*reads == r || done->maps == m) {
+			good = ++still < LOOKS;
+			continue;
+		}
+		moved++;
+		still = 0;
 		r = *reads;
 		m = done->maps;
 	}
