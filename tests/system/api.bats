@@ -8,7 +8,7 @@ setup_file() {
 		printf '%s\n' "segment seed=6" "slave coupler EK1100" "slave out EL2008 alias=1001" \
 			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm soe=2 voe=0x4321" \
 			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1" "connect out.2 -> in.2"
-		# an emergency every 0.2 s for 100 s, whenever its application comes
+		# an emergency every 0.2 s for 100 s, from its load on
 		for i in $(seq 500); do
 			printf 'fault at=%ums emergency motor code=0x8110 register=0x11\n' $((i * 200))
 		done
@@ -17,6 +17,12 @@ setup_file() {
 	export API_CALLED=$BATS_FILE_TMPDIR/called
 }
 teardown_file() { stop; }
+
+# the segment from its begin: its emergencies come now
+reload() {
+	rmmod ec_sim
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+}
 
 # group NAME: all cases of it pass
 group() {
@@ -40,7 +46,11 @@ group() {
 @test "extensions" { group extension; }
 @test "configuration after activation" { group after; }
 @test "distributed clocks" { group dc; }
-@test "requests and emergencies" { group request; }
+@test "requests and emergencies" {
+	reload
+	wait_for 120 all_slaves_are PREOP 6
+	group request
+}
 @test "IDNs, VoE messages, whole objects" {
 	group soe
 	# what it was told at startup, and by the tool
@@ -63,8 +73,7 @@ group() {
 @test "system calls of a cycle with everything in it" { group syscalls; }
 
 @test "a request while the bus is scanned" {
-	rmmod ec_sim
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+	reload
 	group open
 }
 

@@ -65,7 +65,7 @@ on_segment() {
 
 @test "lost frames fail the demo" {
 	on_segment "connect ao.1 -> ai.2
-	fault lose rate=5000ppm"
+	fault lose rate=20000ppm"
 	[ "$status" = 1 ]
 	[[ "$output" == *"FAILED no frame lost, no call failed"* ]]
 }

@@ -11,7 +11,7 @@ setup() {
 }
 
 teardown() {
-	killall -q demo 2>/dev/null || true
+	killall -q demo tcpdump 2>/dev/null || true
 	[ -z "${SIM:-}" ] || kill "$SIM" 2>/dev/null || true
 	stop
 	for d in veth0 eth0 br0; do ip link del $d 2>/dev/null || true; done
@@ -32,8 +32,42 @@ demo() {
 	LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"
 }
 
+# in the background with all slaves in OP, until it is told to end: how long the
+# guest needs for what a test does to it, nobody knows
+demo_runs() {
+	LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000000 \
+		>"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	app=$!
+	wait_for 120 all_slaves_are OP 22
+	sleep 1		# its axes are enabled then, it measures
+}
+
+# it did not end by itself, and tells what happened
+demo_noticed() {
+	local ended=0
+
+	kill -TERM $app
+	wait $app || ended=$?
+	cat "$BATS_TEST_TMPDIR/demo"
+	[ $ended = 1 ]
+	grep -q 'FAILED no frame lost, no call failed' "$BATS_TEST_TMPDIR/demo"
+	grep -qE '^Cycles: [1-9][0-9]* of 1000000' "$BATS_TEST_TMPDIR/demo"
+}
+
+# capture DEVICE NAME ARG...: tcpdump, what it prints in the file NAME at once
+capture() {
+	tcpdump -i "$1" -nn --immediate-mode -l "${@:3}" \
+		>"$BATS_TEST_TMPDIR/$2" 2>"$BATS_TEST_TMPDIR/$2.err" 3>&- &
+	tap=$!
+	wait_for 60 grep -q listening "$BATS_TEST_TMPDIR/$2.err"
+}
+
+# arp DEVICE FROM TO COUNT
+arp() { python3 "$BATS_TEST_DIRNAME/arp.py" "$@"; }
+
 main_is() { [[ "$(says Main)" == *"($1)" ]]; }
 link_is() { [ "$(says Link)" = "$1" ]; }
+foreign_are() { [ "$(foreign)" -ge "$1" ]; }
 foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'; }
 
 @test "veth and ec_sim: all slaves to OP, no frame lost" {
@@ -81,12 +115,9 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	wait_for 120 main_is attached
 	responder bench veth1
 	wait_for 120 all_slaves_are PREOP 22
-	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 120 all_slaves_are OP 22
+	demo_runs
 	ip link del veth0
-	ended=0
-	wait $! || ended=$?
-	[ $ended = 1 ]
+	demo_noticed
 	main_is waiting...
 	ip link add veth0 type veth peer name veth1
 	wait_for 120 all_slaves_are PREOP 22
@@ -97,13 +128,10 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	responder bench veth1
 	wait_for 120 all_slaves_are PREOP 22
 	link_is UP
-	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 120 all_slaves_are OP 22
+	demo_runs
 	ip link set veth1 down
 	wait_for 120 link_is DOWN
-	ended=0
-	wait $! || ended=$?
-	[ $ended = 1 ]
+	demo_noticed
 	ip link set veth1 up
 	wait_for 120 link_is UP
 	wait_for 120 all_slaves_are PREOP 22
@@ -146,34 +174,33 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	ip addr add 10.0.0.1/24 dev veth0
 	ip addr add 10.0.0.2/24 dev veth1
 	before=$(foreign)
-	tcpdump -i veth1 -nn -c 1 arp and arp src 10.0.0.1 >"$BATS_TEST_TMPDIR/seen" 2>/dev/null 3>&- &
-	tap=$!
-	sleep 0.3
+	capture veth1 seen arp
 	# from the wire: counted, not answered
-	python3 "$BATS_TEST_DIRNAME/arp.py" veth1 10.0.0.2 10.0.0.1 3
+	arp veth1 10.0.0.2 10.0.0.1 3
 	# towards the wire: refused
-	run python3 "$BATS_TEST_DIRNAME/arp.py" veth0 10.0.0.1 10.0.0.2 3
+	run arp veth0 10.0.0.1 10.0.0.2 3
 	[ "$status" != 0 ]
-	sleep 0.3
-	[ "$(foreign)" -ge $((before + 3)) ]
+	wait_for 60 foreign_are $((before + 3))
+	# the last one: what has left before it is in the file as well
+	arp veth1 10.0.0.3 10.0.0.1 1
+	wait_for 60 grep -q 'tell 10\.0\.0\.3,' "$BATS_TEST_TMPDIR/seen"
 	kill $tap
-	run grep ARP "$BATS_TEST_TMPDIR/seen"
+	cat "$BATS_TEST_TMPDIR/seen"
+	[ "$(grep -c 'tell 10\.0\.0\.2,' "$BATS_TEST_TMPDIR/seen")" = 3 ]
+	run grep -E 'tell 10\.0\.0\.1,|10\.0\.0\.1 is-at' "$BATS_TEST_TMPDIR/seen"
 	[ "$status" = 1 ]
 	[ "$(lost_frames)" = "$lost" ]
 	all_slaves_are PREOP 2
 	rmmod ec_sim ec_generic
-	tcpdump -i veth1 -nn -c 1 arp and arp src 10.0.0.1 >"$BATS_TEST_TMPDIR/seen" 2>/dev/null 3>&- &
-	tap=$!
-	sleep 0.3
-	python3 "$BATS_TEST_DIRNAME/arp.py" veth0 10.0.0.1 10.0.0.2 3
-	wait_for 120 grep -q ARP "$BATS_TEST_TMPDIR/seen"
+	capture veth1 seen arp
+	arp veth0 10.0.0.1 10.0.0.2 3
+	wait_for 60 grep -q 'tell 10\.0\.0\.1,' "$BATS_TEST_TMPDIR/seen"
+	kill $tap
 }
 
 @test "a capture at the device shows both directions" {
 	master veth0
-	tcpdump -i veth0 -nn -c 20 -w "$BATS_TEST_TMPDIR/pcap" ether proto 0x88a4 2>/dev/null 3>&- &
-	tap=$!
-	sleep 0.3
+	capture veth0 text -c 20 -w "$BATS_TEST_TMPDIR/pcap" ether proto 0x88a4
 	responder thin veth1
 	wait $tap
 	# replies have bit 1 of the source address set
@@ -204,12 +231,9 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	master veth0
 	responder bench veth1
 	wait_for 120 all_slaves_are PREOP 22
-	demo --cycles 3000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 120 all_slaves_are OP 22
+	demo_runs
 	rmmod ec_generic
-	ended=0
-	wait $! || ended=$?
-	[ $ended = 1 ]
+	demo_noticed
 	main_is waiting...
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
 	wait_for 120 all_slaves_are PREOP 22
@@ -219,12 +243,9 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	master veth0
 	responder bench veth1
 	wait_for 120 all_slaves_are PREOP 22
-	demo --cycles 1000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
-	wait_for 120 all_slaves_are OP 22
+	demo_runs
 	rmmod ec_sim
-	ended=0
-	wait $! || ended=$?
-	[ $ended = 1 ]
+	demo_noticed
 	responder thin veth1
 	wait_for 120 all_slaves_are PREOP 2
 }

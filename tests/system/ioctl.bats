@@ -57,8 +57,8 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 	"$EC_BUILD/apps/ioctl_fuzz" "${EC_SEED:-1}" 10 &
 	fuzz=$!
 	while kill -0 $fuzz 2>/dev/null; do
-		timeout 10 "$EC_BUILD/tool/ethercat" master >/dev/null || [ $? != 124 ]
-		timeout 10 "$EC_BUILD/tool/ethercat" slaves >/dev/null || [ $? != 124 ]
+		timeout 60 "$EC_BUILD/tool/ethercat" master >/dev/null || [ $? != 124 ]
+		timeout 60 "$EC_BUILD/tool/ethercat" slaves >/dev/null || [ $? != 124 ]
 	done
 	wait $fuzz
 	# what it wrote to registers and objects is gone with the segment

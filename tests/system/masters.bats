@@ -37,10 +37,10 @@ lost() { ethercat master -m "$1" --json | jq '.masters[0].common.lost_frames'; }
 @test "the kernel's cycle on one, a program's on the other, the tool on both" {
 	# the domain is sent overlapped; loop: its outputs come back whole. Above the
 	# program's priority of 80, which locks memory for milliseconds when it begins
-	"$EC_BUILD/apps/kcycle" master=1 cycles=30000 loop=1 options=1 priority=90 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	"$EC_BUILD/apps/kcycle" master=1 cycles=60000 loop=1 options=1 priority=90 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!
 	wait_for 60 grep -q 'in OP' "$BATS_TEST_TMPDIR/out"
-	"$EC_BUILD/apps/demo" --master 0 --cycles 3000 --wired >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	"$EC_BUILD/apps/demo" --master 0 --cycles 15000 --wired >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
 	demo=$!
 	wait_for 60 json '.masters | all(.active)' master
 	ethercat upload -m0 -p4 0x1008 0
@@ -50,7 +50,9 @@ lost() { ethercat master -m "$1" --json | jq '.masters[0].common.lost_frames'; }
 		.working_counter == .expected_working_counter' domains -m1
 	json '.masters[0].cycle | .frames == 2 and .wire_ns == 136400 and .late_cycles == 0' master -m1
 	json '.masters[0].domains[0].options == []' domains -m0
+	kill -0 $demo
 	wait $demo || { cat "$BATS_TEST_TMPDIR/demo"; false; }
+	kill -0 $app
 	wait $app
 	app=
 	cat "$BATS_TEST_TMPDIR/out"
@@ -64,13 +66,14 @@ lost() { ethercat master -m "$1" --json | jq '.masters[0].common.lost_frames'; }
 	"$EC_BUILD/apps/kcycle" master=1 cycles=1000000 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!
 	wait_for 60 grep -q 'in OP' "$BATS_TEST_TMPDIR/out"
-	"$EC_BUILD/apps/demo" --master 0 --cycles 3000 --wired >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	"$EC_BUILD/apps/demo" --master 0 --cycles 15000 --wired >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
 	demo=$!
 	wait_for 60 json '.masters | all(.active)' master
 	kill -9 $app
 	wait $app || true
 	app=
 	wait_for 60 json '.masters[0].active | not' master -m1
+	kill -0 $demo
 	wait $demo || { cat "$BATS_TEST_TMPDIR/demo"; false; }
 	[ "$(lost 0)" = 0 ]
 }

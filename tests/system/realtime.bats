@@ -47,10 +47,14 @@ generic() {
 	wait_for 120 all_slaves_are PREOP 1
 }
 
-# traced [OPTION...]: run the benchmark's application, trace its cycles
+# traced [OPTION...]: run the benchmark's application, which loses nothing; trace its cycles
 traced() {
 	echo >$TRACING/trace
-	"$EC_BUILD/bench/cycle-bench" --trace "$@" || rc=$?
+	"$EC_BUILD/bench/cycle-bench" --trace "$@" || return
+	trace_is_whole
+}
+
+trace_is_whole() {
 	[ "$(cat $TRACING/per_cpu/cpu*/stats | awk '/^overrun/ { n += $2 } END { print n }')" = 0 ]
 }
 
@@ -100,7 +104,10 @@ clean() {
 	local name
 
 	virtual
-	traced --cycles 200 --violate
+	echo >$TRACING/trace
+	# its cycles are late, what that does to the frames is not asked here
+	"$EC_BUILD/bench/cycle-bench" --trace --cycles 200 --violate || true
+	trace_is_whole
 	judge cycle-bench $SLEEP
 	[ "$(count cycles)" = 200 ]
 	for name in sleeps faults allocs prints; do
@@ -122,9 +129,10 @@ clean() {
 	ethercat cycle
 	[[ "$(ethercat cycle)" == *"Cycle: by the application, running"* ]]
 	[[ "$(ethercat cycle)" == *"Interval: 1000.000 us (told)"* ]]
-	# forgotten after it was shown, by a command that may write
+	# forgotten after it was shown, by a command that may write; the next one takes its time
+	wait_for 120 json '.masters[0].sends > 15000' cycle
 	ethercat cycle --reset >/dev/null
-	json '.masters[0].sends < 500' cycle
+	json '.masters[0].sends < 15000' cycle
 	sends=$(ethercat cycle --json | jq '.masters[0].sends')
 	wait_for 60 json ".masters[0].sends > $sends" cycle
 	kill -9 $app

@@ -7,7 +7,7 @@ setup_file() {
 	{
 		printf '%s\n' "segment seed=4" "slave coupler EK1100" "slave motor drive serial=77"
 		# one each second, while the application runs
-		printf 'fault at=%us emergency motor code=0x8110 register=0x11\n' $(seq 100)
+		printf 'fault at=%us emergency motor code=0x8110 register=0x11\n' $(seq 400)
 	} >"$BATS_FILE_TMPDIR/segment"
 	start "$BATS_FILE_TMPDIR/segment" 2
 }

@@ -17,7 +17,7 @@ start_app() {
 	# bats waits for what holds its descriptor 3
 	"$EC_BUILD/apps/demo" --cycles 10000000 >/tmp/demo.out 2>&1 3>&- &
 	echo $! >/tmp/demo.pid
-	wait_for 120 all_slaves_are OP 22 && wait_for 10 all_exchanged || {
+	wait_for 120 all_slaves_are OP 22 && wait_for 60 all_exchanged || {
 		cat /tmp/demo.out
 		ethercat states
 		return 1
@@ -96,7 +96,7 @@ all_exchanged() {
 
 @test "an application runs: a slave is taken out of OP and comes back" {
 	ethercat states INIT -p4 --wait
-	ethercat states OP -p4 --wait 10
+	ethercat states OP -p4 --wait 60
 	wait_for 120 all_slaves_are OP 22
 	wait_for 120 all_exchanged
 }
