@@ -30,7 +30,8 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "did not reach %s in time, is in %s",
 			      ec_al_state_name(state),
 			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
-	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP)	/* told already */
+	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
+		 ret != -ERANGE)	/* told already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "does not answer on the way to %s (error %d)",
 			      ec_al_state_name(state), ret);
 	return ret;
@@ -407,7 +408,8 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
-		ec_slave_warn(s, "starts SYNC although the clocks are not set (error %d)\n", ret);
+		ec_slave_warn(s, "starts SYNC although its clock is not %s (error %d)\n",
+			      READ_ONCE(s->dc_set) ? "near the others yet" : "set", ret);
 	return ec_dc_sync_start(s, c);
 }
 
@@ -534,7 +536,7 @@ static int step(struct ec_slave *s)
 			ret = write_idns(s, s->config, EC_AL_SAFEOP);
 		if (ret)
 			return ret;
-		ret = set_state(s, EC_AL_OP);
+		ret = (s->config ? ec_dc_sync_check(s, s->config) : 0) ?: set_state(s, EC_AL_OP);
 		return ret ? failed(s, EC_AL_OP, ret) : 0;
 	default:
 		return to_init(s);

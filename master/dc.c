@@ -21,6 +21,7 @@
 #define CYCLE_BOOST	12000	/* comparisons when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000	/* for them */
 #define TRIES		20	/* to set the clocks while frames are lost */
+#define OUT_TRIES	5	/* of them that one slave may spoil */
 #define TRY_MS		50	/* between them */
 
 /* all slaves of the segment, in ring order */
@@ -32,6 +33,8 @@ struct job {
 	u8 (*regs)[REGS];
 	s64 *sum;
 	struct ec_dg *dg;
+	u8 *spoiled;		/* tries, by it */
+	bool *silent;		/* in the last all() */
 	u16 followed;		/* station address of the clock the others follow, or 0 */
 	unsigned int ref;	/* index, n: none */
 	u64 latch_ns;		/* when the last latch was sent */
@@ -50,6 +53,8 @@ static void job_free(struct job *j)
 	kvfree(j->regs);
 	kvfree(j->sum);
 	kvfree(j->dg);
+	kvfree(j->spoiled);
+	kvfree(j->silent);
 }
 
 static bool has_clock(const struct ec_slave *s)
@@ -154,7 +159,10 @@ static int job_init(struct job *j, struct ec_master *m)
 	j->regs = kvcalloc(j->n + 1, sizeof(*j->regs), GFP_KERNEL);
 	j->sum = kvcalloc(j->n + 1, sizeof(*j->sum), GFP_KERNEL);
 	j->dg = kvcalloc(max_t(unsigned int, j->n + 1, BATCH), sizeof(*j->dg), GFP_KERNEL);
-	if (!j->slaves || !j->nodes || !j->regs || !j->sum || !j->dg) {
+	j->spoiled = kvcalloc(j->n + 1, sizeof(*j->spoiled), GFP_KERNEL);
+	j->silent = kvcalloc(j->n + 1, sizeof(*j->silent), GFP_KERNEL);
+	if (!j->slaves || !j->nodes || !j->regs || !j->sum || !j->dg || !j->spoiled ||
+	    !j->silent) {
 		job_free(j);
 		return -ENOMEM;
 	}
@@ -180,7 +188,7 @@ static bool chosen(const struct job *j, unsigned int i, enum who who)
 /* The same register of every slave with such a clock; its data are at @data. */
 static int all(struct job *j, enum who who, u8 cmd, u16 ado, u16 len, u8 *data, size_t stride)
 {
-	unsigned int i, n = 0;
+	unsigned int i, k, n = 0;
 	int ret;
 
 	for (i = 0; i < j->n; i++)
@@ -188,10 +196,36 @@ static int all(struct job *j, enum who who, u8 cmd, u16 ado, u16 len, u8 *data, 
 			j->dg[n++] = (struct ec_dg)EC_DG(cmd, j->slaves[i]->station, ado, len,
 							 data + i * stride);
 	ret = ec_xfer(j->m, j->dg, n);
-	for (i = 0; i < n && !ret; i++)
-		if (j->dg[i].wkc != 1)
+	for (i = 0, k = 0; i < j->n; i++) {
+		j->silent[i] = chosen(j, i, who) && j->dg[k++].wkc != 1;
+		if (!ret && j->silent[i])
 			ret = -EAGAIN;	/* the bus has changed meanwhile */
+	}
 	return ret;
+}
+
+/*
+ * Who does not answer while others do is left out after some tries: one bad slave
+ * does not keep the others from being set. ec_dc_watch_start() goes on asking it.
+ */
+static void leave_out(struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++) {
+		struct ec_slave *s = j->slaves[i];
+
+		if (!j->silent[i] || ++j->spoiled[i] < OUT_TRIES)
+			continue;
+		j->nodes[i].dc = false;
+		if (!s->dc_out && !s->gone)
+			ec_slave_warn(s, "does not answer as it should while the clocks are set: its clock is left out and tried again later\n");
+		WRITE_ONCE(s->dc_out, true);
+		if (s->station == j->followed)
+			j->followed = 0;
+		if (i == j->ref)
+			choose(j);
+	}
 }
 
 static int latch(struct job *j)
@@ -284,13 +318,22 @@ static void set_ref(struct job *j)
  */
 int ec_dc_measure(struct ec_master *m)
 {
+	unsigned int try;
 	struct job j;
 	int ret = job_init(&j, m);
 
 	if (ret)
 		return ret;
 	mutex_lock(&m->dc.lock);
-	ret = j.ref < j.n ? measure(&j) : -ENXIO;
+	ret = -EAGAIN;
+	for (try = 0; j.ref < j.n && ret == -EAGAIN && try <= OUT_TRIES; try++) {
+		memset(j.sum, 0, j.n * sizeof(*j.sum));
+		ret = measure(&j);
+		if (ret == -EAGAIN)
+			leave_out(&j);
+	}
+	if (j.ref == j.n)
+		ret = -ENXIO;
 	if (ret)
 		j.ref = j.n;
 	set_ref(&j);
@@ -349,7 +392,10 @@ static int write_clocks(struct job *j)
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0) ?:
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
 	for (i = 0; i < j->n && !ret; i++)
-		j->slaves[i]->dc_set = j->nodes[i].dc;
+		if (j->nodes[i].dc) {
+			WRITE_ONCE(j->slaves[i]->dc_out, false);
+			WRITE_ONCE(j->slaves[i]->dc_set, true);
+		}
 	if (!ret)
 		ec_dc_app_set(j->m, t - j->latch_ns, true);
 	kvfree(v);
@@ -466,13 +512,12 @@ static int check(struct job *j)
 	if (!v)
 		return -ENOMEM;
 	ret = all(j, ANY, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0], sizeof(v[0]));
-	for (i = 0; i < j->n && !ret; i++) {
-		struct ec_slave *s = j->slaves[i];
-
-		if (!j->nodes[i].dc)
-			continue;
-		ec_dc_verdict(s, get_unaligned_le32(v[i]));
-	}
+	/* one that is silent now was set before */
+	if (ret == -EAGAIN)
+		ret = 0;
+	for (i = 0; i < j->n && !ret; i++)
+		if (j->nodes[i].dc && !j->silent[i])
+			ec_dc_verdict(j->slaves[i], get_unaligned_le32(v[i]));
 	kvfree(v);
 	return ret;
 }
@@ -576,15 +621,22 @@ static int set(struct job *j)
 			change_ref(j, true);
 		if (!passes(ret) || READ_ONCE(dc->stop))
 			break;
+		if (ret == -EAGAIN)
+			leave_out(j);
 		correct_between(j, ~0, TRY_MS);
 	}
-	return ret;
+	if (j->ref < j->n || !try)
+		return ret;
+	/* the only one there may be does not answer */
+	change_ref(j, false);
+	return -ENXIO;
 }
 
 static void work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
 	struct ec_master *m = container_of(dc, struct ec_master, dc);
+	unsigned int i;
 	struct job j;
 	bool was;
 	u64 t0;
@@ -616,7 +668,13 @@ static void work(struct work_struct *work)
 	else if (ret != -ENXIO && ret != -ECANCELED)
 		ec_warn(m, "clocks could not be set (error %d)\n", ret);
 	WRITE_ONCE(dc->boost, ret || READ_ONCE(dc->front) ? 0 : BOOST);
+	WRITE_ONCE(dc->failed, passes(ret));
 	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
+	/* ec_dc_sync_start() has the other half of this barrier */
+	smp_mb();
+	for (i = 0; !ret && i < j.n; i++)
+		if (READ_ONCE(j.slaves[i]->dc_set))
+			ec_dc_sync_again(j.slaves[i]);
 	if (!ret)
 		ret = compensate(&j, &quiet) ?: compensate(&j, &calm);
 	job_free(&j);
@@ -654,6 +712,7 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	if (all && !ec_dc_can_be(m, choice))
 		WRITE_ONCE(m->dc.ref_station, 0);
 	m->dc.fresh = all;
+	ec_dc_watch_begun(&m->dc);
 	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);
 	m->dc.begun = true;
@@ -680,38 +739,14 @@ void ec_dc_end(struct ec_master *m)
 	m->dc.choice = EC_DC_ANY;
 	m->dc.begun = false;
 	m->dc.wanted = false;
+	m->dc.again = false;
+	m->dc.failed = false;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
 	ec_dc_app_set(m, 0, false);
 	down_read(&m->topo);
 	WRITE_ONCE(m->dc.ref_station, m->dc.ref ? m->dc.ref->station : 0);
 	up_read(&m->topo);
 	set_state(&m->dc, EC_DC_OFF);
-}
-
-/**
- * ec_dc_wait() - wait until the clocks are set
- * @s: slave that wants to use its clock, @lock held
- *
- * Context: Process. May sleep, at most 5 s from the first cycle on.
- * Return: 0; -ETIME when they were not set in time; -ENXIO when they could not
- * be set; -ECANCELED.
- */
-int ec_dc_wait(struct ec_slave *s)
-{
-	struct ec_dc *dc = &s->master->dc;
-	unsigned int i;
-
-	for (i = 0; i < 50; i++) {
-		/* the cycle has not begun yet */
-		if (READ_ONCE(dc->idle))
-			i = 0;
-		if (wait_event_timeout(dc->wq, READ_ONCE(dc->state) != EC_DC_BUSY,
-				       msecs_to_jiffies(100)))
-			return READ_ONCE(dc->state) == EC_DC_READY ? 0 : -ENXIO;
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
-			return -ECANCELED;
-	}
-	return -ETIME;
 }
 
 void ec_dc_init(struct ec_master *m)

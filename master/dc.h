@@ -84,6 +84,12 @@ struct ec_dc_app {
  * @fresh: @work sets all clocks from the application's time
  * @idle: and waits for the first one of its cycle
  * @told: which has come
+ * @changed: slaves have come or gone since the clocks were begun to be set; only the
+ *	monitor writes it
+ * @again: so it is without that: setting them is worth another try
+ * @failed: the last try has failed, but another may not
+ * @again_ms: between two tries
+ * @again_ns: not before (ktime)
  * @begun_ns: since when drift is compensated (ktime)
  * @boost: comparisons the cycle shall make beyond one per send
  * @work: sets the clocks while a session is active
@@ -114,6 +120,11 @@ struct ec_dc {
 	bool fresh;
 	bool idle;
 	bool told;
+	bool changed;
+	bool again;
+	bool failed;
+	u32 again_ms;
+	u64 again_ns;
 	u64 begun_ns;
 	u32 boost;
 	struct work_struct work;
@@ -136,7 +147,6 @@ int ec_dc_measure(struct ec_master *m);
 bool ec_dc_can_be(struct ec_master *m, u16 choice);
 void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
 void ec_dc_end(struct ec_master *m);
-int ec_dc_wait(struct ec_slave *s);
 
 /* dc_app.c */
 void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
@@ -151,9 +161,13 @@ void ec_dc_verdict(struct ec_slave *s, u32 value);
 void ec_dc_watch_init(struct ec_dc *dc);
 void ec_dc_watch_start(struct ec_master *m);
 void ec_dc_watch_stop(struct ec_dc *dc);
+void ec_dc_watch_begun(struct ec_dc *dc);
 
 /* dc_sync.c */
+int ec_dc_wait(struct ec_slave *s);
+void ec_dc_sync_again(struct ec_slave *s);
 int ec_dc_sync_stop(struct ec_slave *s);
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c);
+int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c);
 
 #endif

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SYNC0 and SYNC1 of one slave (ETG.1000.4 clause 6.8.5). */
+#include <linux/delay.h>
+#include <linux/ktime.h>
 #include "config.h"
 #include "dc.h"
 #include "master.h"
@@ -7,7 +9,57 @@
 #include "wire/dc.h"
 #include "xfer.h"
 
-#define LEAD_NS	(100 * NSEC_PER_MSEC)	/* first SYNC0 is in the future */
+#define LEAD_NS		(100 * NSEC_PER_MSEC)	/* first SYNC0 is in the future */
+#define LEAD_CYCLES	4			/* and later when the cycle is long */
+#define LEAD_MAX_NS	(16 * NSEC_PER_SEC)
+#define LEAD_MAX32_NS	NSEC_PER_SEC		/* 32 bits tell past and future up to 2.1 s */
+#define STARTS		6			/* tries, each with a later start */
+#define CHECKS		3			/* starts that were in time and had no effect */
+#define CHECK_NS	(2 * NSEC_PER_MSEC)	/* after the first SYNC signals */
+#define WAIT_MS		5000			/* for clocks to come near */
+#define WAIT_SET_MS	60000			/* to be set at all */
+#define POLL_MS		100
+
+#define RUN		BIT(8)	/* of AssignActivate: cyclic operation */
+#define PENDING		7	/* of 0x0984: SYNC0, SYNC1 to come, implausible start */
+
+/*
+ * The clocks are set, or cannot be. Those of slaves that have just come
+ * are still to be set although those of the others are.
+ */
+static bool settled(const struct ec_dc *dc)
+{
+	return !READ_ONCE(dc->changed) && READ_ONCE(dc->state) != EC_DC_BUSY;
+}
+
+/**
+ * ec_dc_wait() - wait until the clocks are set
+ * @s: slave that wants to use its clock, @lock held
+ *
+ * Context: Process. May sleep: from the first cycle on at most 5 s for clocks
+ * that are set to come near each other, and a minute for them to be set.
+ * Return: 0; -ETIME when they were not set in time; -ENXIO when the one of @s
+ * could not be set; -ECANCELED.
+ */
+int ec_dc_wait(struct ec_slave *s)
+{
+	struct ec_dc *dc = &s->master->dc;
+	unsigned int ms, near = 0;
+
+	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
+		/* the cycle has not begun yet */
+		if (READ_ONCE(dc->idle))
+			ms = 0;
+		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
+			return READ_ONCE(dc->state) == EC_DC_READY && READ_ONCE(s->dc_set) ?
+			       0 : -ENXIO;
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		if (READ_ONCE(s->dc_set) && !READ_ONCE(dc->changed))
+			near += POLL_MS;
+	}
+	return -ETIME;
+}
 
 /**
  * ec_dc_sync_stop() - no SYNC signals, the unit belongs to the master
@@ -22,33 +74,132 @@ int ec_dc_sync_stop(struct ec_slave *s)
 {
 	static const u8 off[2];
 
+	WRITE_ONCE(s->sync_free, false);
+	s->sync_due_ns = 0;
 	return ec_xfer_fpwr(s->master, s->station, EC_REG_DC_CUC, off, sizeof(off));
 }
 
-/* Start time on the grid of the application's phase, from the slave's own clock. */
-static int start_time(struct ec_slave *s, const struct ec_config *c, u8 *b)
+/**
+ * ec_dc_sync_again() - SYNC was started before the clock was set, and now it is
+ * @s: slave whose clock was just set
+ *
+ * Its signals have another phase than those of the others, or none are left. In
+ * OP they cannot be moved: the slave is configured once more.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_sync_again(struct ec_slave *s)
 {
-	struct ec_dc *dc = &s->master->dc;
-	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->gone)
+		return;
+	ec_slave_warn(s, "its clock is set now, after SYNC was started: goes through INIT to start it in step with the others\n");
+	WRITE_ONCE(s->reconfigure, true);
+	ec_slave_kick(s);
+}
+
+/* A batch in all of which the slave must take part. */
+static int together(struct ec_slave *s, struct ec_dg *dg, unsigned int n)
+{
+	int ret = ec_xfer(s->master, dg, n);
+	unsigned int i;
+
+	for (i = 0; i < n && !ret; i++)
+		if (dg[i].wkc != 1)
+			ret = -EIO;
+	return ret;
+}
+
+/*
+ * Off first: while SYNC runs a new start time is ignored. Returns in @now the time
+ * the slave had at @at_ns.
+ */
+static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 *at_ns)
+{
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
-	u64 now, phase = dc->has_phase ? dc->phase : 0;
-	u8 t[8] = { 0 };
+	u8 off[2] = { 0 }, cycles[8], t[8] = { 0 };
+	struct ec_dg dg[] = {
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CUC, sizeof(off), off),
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CYCLE0, sizeof(cycles), cycles),
+		EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_SYSTIME, wide ? 8 : 4, t),
+	};
 	int ret;
 
-	if (period < c->dc_cycle[0] || !period)
-		return -ERANGE;
-	ret = ec_xfer_fprd(s->master, s->station, EC_REG_DC_SYSTIME, t, wide ? 8 : 4);
+	put_unaligned_le32(c->dc_cycle[0], cycles);
+	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
+	ret = together(s, dg, ARRAY_SIZE(dg));
 	if (ret)
 		return ret;
-	now = get_unaligned_le64(t);
+	*at_ns = dg[2].sent_ns;
+	*now = get_unaligned_le64(t);
 	if (!wide) {
 		/* the upper half comes from the application's time */
-		u64 app = ec_dc_now(s->master);
+		u64 app = ec_dc_app_at(s->master, *at_ns);
 
-		now = app + (s32)((u32)now - (u32)app);
+		*now = app + (s32)((u32)*now - (u32)app);
 	}
-	put_unaligned_le64(ec_dc_start(now + LEAD_NS, phase, period, c->dc_shift[0]), b);
 	return 0;
+}
+
+/* From the first SYNC0 to the first SYNC1. */
+static u32 sync1_after(const struct ec_config *c)
+{
+	u32 c0 = c->dc_cycle[0], c1 = c->dc_cycle[1];
+
+	return c0 ? c1 % c0 : c1;
+}
+
+/*
+ * Start time, activation, and whether that was in time: the slave says what time it
+ * was then, in the same frame. -EAGAIN: it was too late.
+ */
+static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
+{
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+	u8 start[8], assign[2], t[8] = { 0 };
+	struct ec_dg dg[] = {
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_START, wide ? 8 : 4, start),
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CUC, sizeof(assign), assign),
+		EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_SYSTIME, wide ? 8 : 4, t),
+	};
+	unsigned int i;
+	s64 ahead;
+	int ret;
+
+	put_unaligned_le64(first, start);
+	put_unaligned_le16(c->dc_assign, assign);
+	/* the second half alone would start it at whatever time is there */
+	for (i = 0; i < ARRAY_SIZE(dg); i++)
+		dg[i].repeat = false;
+	ret = together(s, dg, ARRAY_SIZE(dg));
+	if (ret || !(c->dc_assign & RUN))
+		return ret;
+	ahead = first - get_unaligned_le64(t);
+	if (!wide)
+		ahead = (s32)ahead;
+	if (ahead <= 0)
+		return -EAGAIN;
+	s->sync_due_ns = dg[2].sent_ns + ahead + sync1_after(c);
+	return 0;
+}
+
+/* Once; the longer transfers to the slave take, the later it starts. */
+static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try)
+{
+	struct ec_dc *dc = &s->master->dc;
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	u64 now, at_ns, t0 = ktime_get_ns(), took, lead;
+	int ret = prepare(s, c, &now, &at_ns);
+
+	if (ret)
+		return ret;
+	took = ktime_get_ns() - t0;
+	lead = LEAD_NS + LEAD_CYCLES * NSEC_PER_USEC * READ_ONCE(s->master->interval_us) +
+	       (took << (try + 1));
+	lead = min_t(u64, lead, wide ? LEAD_MAX_NS : LEAD_MAX32_NS);
+	return activate(s, c, ec_dc_start(now + ktime_get_ns() - at_ns + lead,
+					  dc->has_phase ? dc->phase : 0, period,
+					  c->dc_shift[0]));
 }
 
 /**
@@ -56,22 +207,92 @@ static int start_time(struct ec_slave *s, const struct ec_config *c, u8 *b)
  * @s: slave whose clock is set, @lock held
  * @c: its configuration with @dc_assign
  *
- * Registers 0x09A0, 0x09A4, 0x0990, then 0x0980.
+ * Registers 0x0980 off, 0x09A0, 0x0990, then 0x0980. A start that came too late is
+ * repeated.
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; -ERANGE when the cycle times are 0 or too long; or as
- * ec_xfer_fpwr().
+ * Return: 0; -ERANGE when the cycle times are 0 or too long, -EOPNOTSUPP when the
+ * start always comes too late (both noted as the slave's error); -ECANCELED;
+ * or as ec_xfer_fpwr().
  */
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
 {
-	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
-	u8 cycles[8], start[8], assign[2];
+	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	unsigned int try;
+	int ret = -EAGAIN;
 
-	put_unaligned_le32(c->dc_cycle[0], cycles);
-	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
-	put_unaligned_le16(c->dc_assign, assign);
-	return ec_xfer_fpwr(s->master, s->station, EC_REG_DC_CYCLE0, cycles, sizeof(cycles)) ?:
-	       start_time(s, c, start) ?:
-	       ec_xfer_fpwr(s->master, s->station, EC_REG_DC_START, start, wide ? 8 : 4) ?:
-	       ec_xfer_fpwr(s->master, s->station, EC_REG_DC_CUC, assign, sizeof(assign));
+	if (period < c->dc_cycle[0] || !period) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "SYNC cycle times are 0 or too long: SYNC0 %u ns, SYNC1 %u ns with AssignActivate 0x%04x",
+			      c->dc_cycle[0], c->dc_cycle[1], c->dc_assign);
+		return -ERANGE;
+	}
+	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
+		bool set = READ_ONCE(s->dc_set);
+
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		s->sync_due_ns = 0;
+		WRITE_ONCE(s->sync_free, !set);
+		/* who sets the clock meanwhile sees that, or is seen below */
+		smp_mb();
+		ret = start(s, c, try);
+		if (!ret && !set && READ_ONCE(s->dc_set))
+			ret = -EAGAIN;
+	}
+	if (ret == -EAGAIN) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "the start time of SYNC0 was over each time it arrived; fewer slaves at once or more late cycles for acyclic frames would help");
+		ret = -EOPNOTSUPP;
+	}
+	return ret;
+}
+
+static int wait_until(struct ec_slave *s, u64 ns)
+{
+	while (ktime_get_ns() < ns) {
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		usleep_range(1000, 1500);
+	}
+	return 0;
+}
+
+/**
+ * ec_dc_sync_check() - do the SYNC signals run that were started?
+ * @s: slave on its way to OP, @lock held
+ * @c: its configuration
+ *
+ * Waits for the first ones and reads register 0x0984; starts them again when they
+ * have not come. Controllers without that register are believed.
+ *
+ * Context: Process. Waits for bus traffic, and for the start time.
+ * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
+ * -ECANCELED; or as ec_dc_sync_start().
+ */
+int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
+{
+	u8 status[1] = { 0 };
+	unsigned int try;
+	int ret;
+
+	for (try = 0; s->sync_due_ns; try++) {
+		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
+		ret = ret ?: ec_xfer_fprd(s->master, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		if (ret && (ret != -EIO || ec_slave_features(s) & EC_FEAT_DC_ENHANCED))
+			return ret;
+		if (!(status[0] & PENDING))
+			break;
+		if (try == CHECKS) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "its SYNC signals do not run although they were started (register 0x0984 is 0x%02x); AssignActivate 0x%04x is not what it needs",
+				      status[0], c->dc_assign);
+			return -EOPNOTSUPP;
+		}
+		ret = ec_dc_sync_start(s, c);
+		if (ret)
+			return ret;
+	}
+	s->sync_due_ns = 0;
+	return 0;
 }

@@ -2,8 +2,10 @@
 /*
  * The sync window of every slave: once a second, while an application's clocks
  * run, each says how far it is from the time it was told (register 0x092C). One
- * that leaves the window, or comes back, is worth a line.
+ * that leaves the window, or comes back, is worth a line. One whose clock could not
+ * be set is asked, too: when it answers, setting the clocks is worth another try.
  */
+#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "dc.h"
 #include "master.h"
@@ -13,6 +15,8 @@
 
 #define PERIOD_MS	1000
 #define BATCH		60	/* slaves asked at once */
+#define AGAIN_MS	2000	/* between tries to set the clocks, then twice that... */
+#define AGAIN_MAX_MS	60000
 
 struct batch {
 	unsigned int n;
@@ -50,7 +54,7 @@ void ec_dc_verdict(struct ec_slave *s, u32 value)
 			      diff);
 }
 
-/* The next slaves with a clock that was set; returns the position to go on from. */
+/* The next slaves with a clock that was or shall be set; returns the position to go on from. */
 static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int from)
 {
 	b->n = 0;
@@ -58,7 +62,7 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 	for (; from < m->n_slaves && b->n < BATCH; from++) {
 		struct ec_slave *s = m->slaves[from];
 
-		if (!READ_ONCE(s->dc_set) || s->gone)
+		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->gone)
 			continue;
 		b->dg[b->n] = (struct ec_dg)EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_DIFF, 4,
 						  b->value[b->n]);
@@ -68,25 +72,53 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 	return from;
 }
 
+/* Each try disturbs the clocks that are set a little: they are measured again. */
+static void try_again(struct ec_dc *dc)
+{
+	if (ktime_get_ns() >= dc->again_ns)
+		WRITE_ONCE(dc->again, true);
+}
+
+/**
+ * ec_dc_watch_begun() - clocks are begun to be set; when is another try due?
+ * @dc: clocks of a master, nobody watches them
+ *
+ * Context: Process.
+ */
+void ec_dc_watch_begun(struct ec_dc *dc)
+{
+	dc->again_ms = !dc->again || dc->changed ? AGAIN_MS : min_t(u32, 2 * dc->again_ms, AGAIN_MAX_MS);
+	dc->again_ns = ktime_get_ns() + dc->again_ms * NSEC_PER_MSEC;
+	dc->again = false;
+	dc->failed = false;
+}
+
 static void watch(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
 	struct ec_master *m = container_of(dc, struct ec_master, dc);
 	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
+	bool worth = READ_ONCE(dc->failed);
 	unsigned int i, at = 0;
 
 	/* while clocks are being set they have a verdict of their own */
-	if (!b || READ_ONCE(dc->state) != EC_DC_READY)
+	if (!b || READ_ONCE(dc->state) == EC_DC_BUSY)
 		goto out;
 	do {
 		at = collect(m, b, at);
 		ec_xfer(m, b->dg, b->n);
 		for (i = 0; i < b->n; i++) {
-			if (!b->dg[i].err && b->dg[i].wkc == 1)
-				ec_dc_verdict(b->slaves[i], get_unaligned_le32(b->value[i]));
+			if (!b->dg[i].err && b->dg[i].wkc == 1) {
+				worth |= READ_ONCE(b->slaves[i]->dc_out);
+				if (READ_ONCE(b->slaves[i]->dc_set))
+					ec_dc_verdict(b->slaves[i],
+						      get_unaligned_le32(b->value[i]));
+			}
 			ec_slave_unref(b->slaves[i]);
 		}
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
+	if (worth)
+		try_again(dc);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))

@@ -22,7 +22,6 @@ struct watch {
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	bool scanned;		/* @count slaves are scanned */
-	bool clocks;		/* slaves have come or gone */
 	unsigned int silent;	/* looks in which a slave did not answer to its address */
 	u64 scanned_ns;
 	u64 rates_ns;
@@ -227,10 +226,11 @@ static void maybe_scan(struct watch *w)
 		w->scanned = true;
 		WRITE_ONCE(m->scan_count, m->scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
+		/* before their workers ask for their clocks */
+		WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(m);
 		if (!READ_ONCE(m->active))
 			ec_dc_measure(m);
-		w->clocks = true;
 		want_states(m);
 	} else {
 		w->same = 0;
@@ -298,10 +298,8 @@ static int monitor(void *data)
 		}
 		if (w.scanned || !w.link_up)
 			WRITE_ONCE(m->looked, true);
-		if (w.scanned) {
-			ec_session_clocks(m, w.clocks);
-			w.clocks = false;
-		}
+		if (w.scanned)
+			ec_session_clocks(m);
 		ec_session_status(m);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);

@@ -517,23 +517,29 @@ static bool begins_clocks(const struct ec_session *s)
 /**
  * ec_session_clocks() - set clocks that somebody wants and nobody has set
  * @m: master
- * @changed: slaves have come or gone
  *
  * The clocks of an application begin with its activation when a slave has SYNC
- * signals, else with the first clock datagram it sends.
+ * signals, else with the first clock datagram it sends. They begin anew when slaves
+ * have come or gone, and when one that did not answer does.
  *
  * Context: The monitor thread. May sleep.
  */
-void ec_session_clocks(struct ec_master *m, bool changed)
+void ec_session_clocks(struct ec_master *m)
 {
+	struct ec_dc *dc = &m->dc;
 	struct ec_session *s;
 
 	/* an activation in progress may hold it for long: next time then */
 	if (!mutex_trylock(&m->session_lock))
 		return;
 	s = m->session;
-	if (s && s->active && (m->dc.begun ? changed : READ_ONCE(m->dc.wanted)))
-		ec_dc_begin(m, !m->dc.begun, ref_choice(s));
+	if (s && s->active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
+					   READ_ONCE(dc->wanted)))
+		ec_dc_begin(m, !dc->begun, ref_choice(s));
+	if (dc->changed) {
+		WRITE_ONCE(dc->changed, false);
+		wake_up_all(&dc->wq);
+	}
 	if (s && s->active && !s->ending)
 		ec_session_raise_ref(s);
 	mutex_unlock(&m->session_lock);

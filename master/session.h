@@ -136,7 +136,7 @@ int ec_session_deactivate(struct ec_session *s);
 void ec_session_attach(struct ec_master *m);
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 bool ec_session_uses_clocks(const struct ec_session *s);
-void ec_session_clocks(struct ec_master *m, bool changed);
+void ec_session_clocks(struct ec_master *m);
 
 /* session_status.c */
 u8 ec_session_config_status(const struct ec_config *c);

@@ -53,6 +53,7 @@ struct ec_master;
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
  * @dc_set: its clock was set for this session
  * @dc_far: the log says that it differs too much
+ * @dc_out: it did not answer when it should be set
  *
  * Changing:
  * @al_status: last AL status seen
@@ -70,6 +71,8 @@ struct ec_master;
  * @interrupt: leave what the worker is waiting for
  * @reconfigure: go through INIT and configure again
  * @mapped: its FMMUs are set
+ * @sync_free: its SYNC signals run by a clock that was not set
+ * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @sdo_lock: one SDO transfer at a time
  * @mbox_lock: one mailbox exchange at a time
@@ -116,6 +119,7 @@ struct ec_slave {
 	s32 dc_diff;
 	bool dc_set;
 	bool dc_far;
+	bool dc_out;
 
 	u16 al_status;
 	u16 al_code;
@@ -132,6 +136,8 @@ struct ec_slave {
 	bool reconfigure;
 	bool mapped;
 	bool ours;
+	bool sync_free;
+	u64 sync_due_ns;
 	struct mutex sdo_lock;
 	struct mutex mbox_lock;
 	u8 mbox_counter;

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * SYNC signals run in each slave that is in OP, by a clock that was set: whatever
+ * comes late, does not answer or falls back. By the model, not by what the master
+ * has written.
+ */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+#define PERIOD_NS	1000000
+
+static void each(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void sync0(struct cyc *c, u32 config, u32 c0, u32 c1)
+{
+	struct ec_ioc_sc_dc dc = {
+		.config = config, .assign_activate = c1 ? 0x0700 : 0x0300,
+		.cycle0 = c0, .cycle1 = c1,
+	};
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+}
+
+/* @n slaves at hand, each with SYNC0 of @sync_ns, in a cycle of @us */
+static struct cyc *start(struct kunit *test, const char *text, u32 n, u32 us, u32 sync_ns)
+{
+	struct bus *b = bus_up(test, text, n);
+	struct cyc *c;
+	u32 i;
+
+	bus_idle(b);
+	c = cyc_new(b, us);
+	cyc_domain(c);
+	cyc_map_all(c, 0, n, 0);
+	c->each = each;
+	for (i = 0; i < n; i++)
+		sync0(c, i, sync_ns, 0);
+	return c;
+}
+
+static const char four[] = "segment seed=3\n"
+	"slave a drive in=8 out=8 drift=60ppm cable=50\n"
+	"slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+	"slave c drive in=8 out=8 drift=-70ppm clock=77s\n"
+	"slave d drive in=8 out=8 drift=-70ppm clock=5s\n";
+
+/* where SYNC0 of a slave is in its period, by its own clock */
+static u32 phase(struct bus *b, u32 i, u64 now)
+{
+	const struct ec_esc *esc = bus_esc(b, i);
+	u64 t = ec_esc_local_time(esc, now) + get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET) -
+		esc->dc.start;
+
+	return do_div(t, PERIOD_NS);
+}
+
+/* SYNC0 of the slaves of a mask runs in OP, at the same time */
+static void expect_in_step(struct bus *b, u32 mask)
+{
+	u64 now = ktime_get_ns();
+	u32 first = __ffs(mask), i;
+
+	ec_sim_advance(b->sim, now);
+	for (i = first; mask >> i; i++) {
+		s32 off = phase(b, i, now) - phase(b, first, now);
+
+		if (!(mask & BIT(i)))
+			continue;
+		off = abs(off) > PERIOD_NS / 2 ? PERIOD_NS - abs(off) : abs(off);
+		KUNIT_EXPECT_EQ(b->test, bus_esc(b, i)->mem[EC_REG_AL_STATUS], EC_AL_OP);
+		KUNIT_EXPECT_TRUE(b->test, bus_esc(b, i)->dc.running);
+		KUNIT_EXPECT_LT_MSG(b->test, off, 1000, "slave %u", i);
+	}
+}
+
+/* some slaves in OP; bus time, ms */
+static u32 until_op(struct cyc *c, u32 mask, u32 limit_ms)
+{
+	struct bus *b = c->b;
+	u32 ms, i;
+
+	for (ms = 0; ms < limit_ms; ms++) {
+		for (i = 0; mask >> i; i++)
+			if (mask & BIT(i) && (b->m->n_slaves <= i || b->m->slaves[i]->reconfigure ||
+					      b->m->slaves[i]->al_status != EC_AL_OP))
+				break;
+		if (!(mask >> i))
+			break;
+		cyc_run(c, 1);
+	}
+	KUNIT_EXPECT_LT(b->test, ms, limit_ms);
+	return ms;
+}
+
+/* Frames to a slave take some cycles each, and these are long. */
+static void sync_long_cycle(struct kunit *test)
+{
+	static const u32 cycle_ms[] = { 20, 40, 100, 300 };
+	u32 i, k;
+
+	for (k = 0; k < ARRAY_SIZE(cycle_ms); k++) {
+		u32 us = 1000 * cycle_ms[k];
+		struct cyc *c = start(test, four, 4, us, PERIOD_NS);
+		struct bus *b = c->b;
+		u64 op;
+
+		for (i = 0; i < 4; i++) {
+			/* longer than the time it has at power-on */
+			struct ec_ioc_sc_sync sm = {
+				.config = i, .sm = 2, .dir = EC_CFG_DIR_OUTPUT,
+				.watchdog = EC_CFG_WD_DISABLE,
+			};
+
+			KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+		}
+		cyc_activate(c);
+		op = cyc_wait_op(c, 120000);
+		bus_figure("cycle of %u ms, SYNC0 of 1 ms: OP %llu us after activation", us / 1000, op);
+		KUNIT_EXPECT_NE(test, op, ~0ull);
+		cyc_run(c, 10);
+		for (i = 0; i < 4; i++)
+			KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
+		bus_down(b);
+		test->priv = NULL;
+	}
+}
+
+/* Acyclic frames only leave in some late cycles, and many slaves want to. */
+static void sync_few_frames(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "repeat 30 slave s drive in=8 out=8 drift=30ppm\n", 30, 50,
+			      PERIOD_NS);
+	struct ec_ioc_late late = { .per_s = 100 };
+	u64 op;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_late(&c->b->app, &late), 0);
+	cyc_activate(c);
+	op = cyc_wait_op(c, 60000);
+	bus_figure("30 axes in 50 us, 100 late cycles a second: OP %llu us after activation", op);
+	KUNIT_ASSERT_NE(test, op, ~0ull);
+	cyc_run(c, 20);
+	expect_in_step(c->b, BIT(30) - 1);
+}
+
+/*
+ * The chosen reference clock is not there when slaves go to OP, so that their clocks
+ * are not set. When it has come they are, and SYNC0 is in step.
+ */
+static void sync_reference_is_late(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct ec_ioc_ref_clock ref = { .config = 3 };
+	struct bus *b = c->b;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&b->app, &ref), 0);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
+	msleep(200);
+	cyc_activate(c);
+	until_op(c, 7, 10000);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->dc_set);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
+	cyc_run(c, 1000);
+	until_op(c, 15, 10000);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
+/* One with wrong working counters: the others do not wait for it, and it is set later. */
+static void sync_bad_slave(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	u64 starts[3];
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
+	cyc_activate(c);
+	bus_figure("three of four slaves in OP %u ms after activation, the clock of the last one silent",
+		   until_op(c, 7, 3000));
+	cyc_run(c, 8000);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 3)->dc_set);
+	expect_in_step(b, 7);
+	for (i = 0; i < 3; i++)
+		starts[i] = bus_esc(b, i)->dc.start;
+	/* well again: its clock, and the slave when somebody asks for it */
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
+	for (i = 0; i < 10000 && !READ_ONCE(bus_slave(b, 3)->dc_set); i++)
+		cyc_run(c, 1);
+	bus_figure("its clock is set %u ms after it answers", i);
+	KUNIT_EXPECT_LT(test, i, 10000u);
+	bus_request(b, 3, EC_AL_OP);
+	until_op(c, 15, 5000);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+	for (i = 0; i < 3; i++)
+		KUNIT_EXPECT_EQ(test, bus_esc(b, i)->dc.start, starts[i]);
+}
+
+/* The reference that nobody has chosen is the bad one: another stands in. */
+static void sync_bad_reference(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+
+	bus_fault(b, EC_SIM_FAULT_WKC, 0, 0, 1, 0);
+	cyc_activate(c);
+	until_op(c, 14, 3000);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 1));
+	expect_in_step(b, 14);
+}
+
+/*
+ * A slave has come while somebody holds the session: until its clock is set it
+ * does not start SYNC, however long that is and though the others' are set.
+ */
+static void sync_waits_for_its_clock(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	struct ec_slave *s;
+	u32 ms;
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 1000);
+	s = bus_slave(b, 1);
+	mutex_lock(&b->m->session_lock);
+	/* as the scan leaves it */
+	WRITE_ONCE(s->dc_set, false);
+	WRITE_ONCE(b->m->dc.changed, true);
+	WRITE_ONCE(s->reconfigure, true);
+	bus_request(b, 1, EC_AL_OP);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_TRUE(test, READ_ONCE(b->m->dc.changed));
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_DC_ACTIVATION], 0);
+	mutex_unlock(&b->m->session_lock);
+	ms = until_op(c, 15, 5000);
+	KUNIT_EXPECT_GT(test, ms, 50u);
+	KUNIT_EXPECT_FALSE(test, READ_ONCE(b->m->dc.changed));
+	KUNIT_EXPECT_TRUE(test, s->dc_set);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
+/* Back in PREOP by itself, with SYNC still on: it is started anew. */
+static void sync_from_preop(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	u64 was;
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 1000);
+	was = bus_esc(b, 1)->dc.start;
+	ec_app_al_fail(bus_esc(b, 1)->app, EC_AL_PREOP, 0x0060, ktime_get_ns());
+	cyc_run(c, 200);
+	until_op(c, 15, 5000);
+	KUNIT_EXPECT_GT(test, bus_esc(b, 1)->dc.start, was);
+	expect_in_step(b, 15);
+}
+
+static void expect_reason(struct bus *b, u32 i, const char *what)
+{
+	KUNIT_EXPECT_NE(b->test, b->m->slaves[i]->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(b->test, b->m->slaves[i]->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->m->slaves[i]->why, what), "%s",
+				  b->m->slaves[i]->why);
+}
+
+/* Without any cycle time there is nothing to start. */
+static void sync_without_time(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+
+	sync0(c, 1, 0, 0);
+	sync0(c, 2, 4000000000u, 4000000000u);
+	cyc_activate(c);
+	until_op(c, 9, 5000);
+	cyc_run(c, 200);
+	expect_reason(c->b, 1, "cycle times are 0 or too long");
+	expect_reason(c->b, 2, "cycle times are 0 or too long");
+	expect_in_step(c->b, 9);
+}
+
+static void no_sync_of_1(struct cyc *c)
+{
+	bus_esc(c->b, 1)->dc.running = false;
+	each(c);
+}
+
+/* Started in time, and yet nothing comes: no OP, and a reason. */
+static void sync_has_no_effect(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+
+	c->each = no_sync_of_1;
+	cyc_activate(c);
+	until_op(c, 13, 5000);
+	cyc_run(c, 1000);
+	expect_reason(c->b, 1, "SYNC signals do not run");
+	expect_in_step(c->b, 13);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_long_cycle),
+	KUNIT_CASE(sync_few_frames),
+	KUNIT_CASE(sync_reference_is_late),
+	KUNIT_CASE(sync_bad_slave),
+	KUNIT_CASE(sync_bad_reference),
+	KUNIT_CASE(sync_waits_for_its_clock),
+	KUNIT_CASE(sync_from_preop),
+	KUNIT_CASE(sync_without_time),
+	KUNIT_CASE(sync_has_no_effect),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_dc_sync", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
