@@ -265,6 +265,24 @@ static u64 sync_pulses(const struct ec_esc *esc, int which, u64 now)
 	return div_u64(n + f - 1, f);
 }
 
+/**
+ * ec_esc_dc_sync_ran() - did the SYNC signals begin that are switched on?
+ * @esc: slave controller
+ * @now: simulation time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false: one of them has made no pulse since it was started.
+ */
+bool ec_esc_dc_sync_ran(const struct ec_esc *esc, u64 now)
+{
+	int i;
+
+	for (i = 0; i < 2; i++)
+		if (activation(esc) & BIT(1 + i) && !sync_pulses(esc, i, now))
+			return false;
+	return true;
+}
+
 /*
  * Pulse length 0, acknowledge mode: the signal stays until the PDI reads
  * 0x098e or 0x098f, and meanwhile makes no further edge.

@@ -179,6 +179,16 @@ static u16 check_dc(const struct ec_app *app)
 	return cycle && cycle < DC_MIN_CYCLE_NS ? 0x0035 : 0;
 }
 
+/* What SAFEOP still waits for on the way to OP: outputs, SYNC signals; 0: nothing. */
+static u16 missing(const struct ec_app *app, u64 now)
+{
+	if (app->bytes[EC_APP_OUT] && !app->outputs_seen)
+		return EC_AL_CODE_NO_OUTPUTS;
+	if (app->esc->mem[EC_REG_DC_ACTIVATION] & 1 && !ec_esc_dc_sync_ran(app->esc, now))
+		return EC_AL_CODE_NO_SYNC;
+	return 0;
+}
+
 static u16 check(struct ec_app *app, u8 to)
 {
 	const struct ec_app_dev *d = &app->model->dev;
@@ -215,7 +225,7 @@ static u16 check(struct ec_app *app, u8 to)
 	}
 }
 
-/* the transition time is over, or the outputs waited for have come */
+/* the transition time is over, or what was waited for may have come */
 static void finish(struct ec_app *app, u64 now)
 {
 	u8 to = app->al_to;
@@ -225,8 +235,9 @@ static void finish(struct ec_app *app, u64 now)
 		ec_app_al_fail(app, app->state, code, now);
 		return;
 	}
-	if (to == EC_AL_OP && app->state == EC_AL_SAFEOP &&
-	    app->bytes[EC_APP_OUT] && !app->outputs_seen) {
+	if (to == EC_AL_OP && app->state == EC_AL_SAFEOP)
+		code = missing(app, now);
+	if (code) {
 		if (!app->al_waits) {
 			app->al_waits = true;
 			app->al_deadline = now + app->outputs_wait_ns;
@@ -234,7 +245,7 @@ static void finish(struct ec_app *app, u64 now)
 		}
 		if (now < app->al_deadline)
 			return;
-		ec_app_al_fail(app, EC_AL_SAFEOP, EC_AL_CODE_NO_OUTPUTS, now);
+		ec_app_al_fail(app, EC_AL_SAFEOP, code, now);
 		return;
 	}
 	app->al_to = 0;

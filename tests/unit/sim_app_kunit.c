@@ -147,6 +147,36 @@ static void al_outputs(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, AXIS, EC_REG_WD_SM_COUNT, 1), 1);
 }
 
+/* SYNC0 that starts so many ns from now; SAFEOP and outputs, then OP is requested */
+static u32 al_with_sync(struct bed *b, s64 start)
+{
+	u8 v[8] = { 0 };
+
+	app_al(b, STATION(0), EC_AL_PREOP | EC_AL_ERROR, 1);
+	bed_put(b, STATION(0), EC_REG_DC_CUC, 0, 2);
+	bed_put(b, STATION(0), EC_REG_DC_CYCLE0, 1000000, 4);
+	start += bed_get(b, STATION(0), EC_REG_DC_SYSTIME, 8);
+	bed_put(b, STATION(0), EC_REG_DC_START, start, 8);
+	bed_put(b, STATION(0), EC_REG_DC_CUC, 0x0300, 2);
+	app_al(b, STATION(0), EC_AL_SAFEOP, 1);
+	bed_tx(b, EC_CMD_FPWR, STATION(0), 0x1200, v, 8);
+	return app_al(b, STATION(0), EC_AL_OP, 200);
+}
+
+static void al_sync(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive in=8 out=8\n");
+
+	app_mbox_sms(b, STATION(0), 256);
+	app_al(b, STATION(0), EC_AL_PREOP, 1);
+	bed_sm(b, STATION(0), 2, 0x1200, 8, 0x24);
+	bed_sm(b, STATION(0), 3, 0x1218, 8, 0x20);
+	KUNIT_EXPECT_EQ(test, al_with_sync(b, -1000), 0x002D0014u);
+	/* it waits for a start that is near */
+	KUNIT_EXPECT_EQ(test, al_with_sync(b, 50000000), (u32)EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, al_with_sync(b, 500000000), 0x002D0014u);
+}
+
 static void al_refuse(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive\n"
@@ -272,6 +302,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(al_boot),
 	KUNIT_CASE(al_process_data),
 	KUNIT_CASE(al_outputs),
+	KUNIT_CASE(al_sync),
 	KUNIT_CASE(al_refuse),
 	KUNIT_CASE(al_time_and_id),
 	{}
