@@ -182,7 +182,7 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
 {
 	u8 *f = slot->frame;
 
-	slot->seq = atomic_inc_return(&s->seq);
+	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	slot->sent_ns = now_ns;
 	eth_broadcast_addr(f);
 	f[6] = 0;
@@ -237,6 +237,7 @@ static bool same_dgrams(struct ec_slot *slot, u8 *reply, size_t len)
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 			     size_t len, struct ec_xfer **xfer)
 {
+	u32 seq = get_unaligned_le32(src + 2);
 	struct ec_slot *slot;
 	size_t body;
 
@@ -244,11 +245,16 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 		return EC_MATCH_UNMATCHED;
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
 	/* first: a frame of an earlier use must not hold the slot */
-	if (READ_ONCE(slot->seq) != get_unaligned_le32(src + 2))
+	if (READ_ONCE(slot->seq) != seq)
 		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
 								   EC_MATCH_UNMATCHED;
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
 		return EC_MATCH_LATE;
+	/* it may have been given up and be in use again since; now it stays */
+	if (READ_ONCE(slot->seq) != seq) {
+		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		return EC_MATCH_LATE;
+	}
 	body = slot->eth_len - EC_ETH_HDR;
 	/* the iterator only reads; it has no const form */
 	if (len < body || !same_dgrams(slot, (u8 *)data, len)) {
