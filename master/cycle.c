@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include <linux/sched/signal.h>
 #include "api.h"
 #include "cycle.h"
 #include "device.h"
@@ -23,27 +24,44 @@ static void own_devices(struct ec_master *m, bool cycle)
 	}
 }
 
+/*
+ * The place of an urgent frame: before all others, but between two urgent ones one of
+ * the others goes. Where hardly any frame fits the urgent ones would be the only ones.
+ */
+static unsigned int xq_first(struct ec_master *m)
+{
+	unsigned int i = --m->xq_tail;
+
+	if (!m->xq_urgent || i + 1 == m->xq_head)
+		return i;
+	m->xq[i % EC_SLOTS] = m->xq[(i + 1) % EC_SLOTS];
+	return i + 1;
+}
+
 /* A frame left for the cyclic caller; its waiter may give up at any time. */
 static int xq_push(struct ec_master *m, struct ec_slot *slot, bool urgent)
 {
 	unsigned long flags;
+	unsigned int i;
 	int ret = -EBUSY;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
 	if (m->xq_head - m->xq_tail < EC_SLOTS) {
-		m->xq[(urgent ? --m->xq_tail : m->xq_head++) % EC_SLOTS] =
-			(struct ec_queued){ .slot = slot, .seq = slot->seq };
+		i = urgent ? xq_first(m) : m->xq_head++;
+		m->xq[i % EC_SLOTS] = (struct ec_queued){
+			.slot = slot, .seq = slot->seq, .urgent = urgent,
+		};
 		ret = 0;
 	}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
 	return ret;
 }
 
-/* The oldest frame somebody still waits for, or NULL; stays in the queue. */
-static struct ec_slot *xq_peek(struct ec_master *m)
+/* The oldest frame somebody still waits for; stays in the queue. */
+static bool xq_peek(struct ec_master *m, struct ec_queued *next)
 {
-	struct ec_slot *slot = NULL;
 	unsigned long flags;
+	bool found = false;
 
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
 	for (; m->xq_head != m->xq_tail; m->xq_tail++) {
@@ -51,27 +69,32 @@ static struct ec_slot *xq_peek(struct ec_master *m)
 
 		if (atomic_read_acquire(&q->slot->state) == EC_SLOT_SENT &&
 		    q->slot->seq == q->seq) {
-			slot = q->slot;
+			*next = *q;
+			found = true;
 			break;
 		}
 	}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
-	return slot;
+	return found;
 }
 
-/* @slot was sent; an urgent one may stand before it by now. */
-static void xq_drop(struct ec_master *m, const struct ec_slot *slot)
+/* A frame was sent, or cannot be; an urgent one may stand before it by now. */
+static void xq_drop(struct ec_master *m, const struct ec_queued *sent)
 {
 	unsigned long flags;
 	unsigned int i;
 
+	WRITE_ONCE(sent->slot->left, sent->seq);
 	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	for (i = m->xq_tail; i != m->xq_head; i++)
-		if (m->xq[i % EC_SLOTS].slot == slot) {
-			/* skipped by the next xq_peek() */
-			m->xq[i % EC_SLOTS].seq--;
+	m->xq_urgent = sent->urgent;
+	for (i = m->xq_tail; i != m->xq_head; i++) {
+		struct ec_queued *q = &m->xq[i % EC_SLOTS];
+
+		if (q->slot == sent->slot && q->seq == sent->seq) {
+			q->seq--;	/* skipped by the next xq_peek() */
 			break;
 		}
+	}
 	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
 }
 
@@ -97,6 +120,7 @@ int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now)
 	int ret;
 
 	ec_slot_arm(&m->slots, slot, link->side, now);
+	WRITE_ONCE(slot->left, slot->seq);
 	ret = ec_link_send(link, slot);
 	if (ret)
 		disarm(slot, now);
@@ -109,11 +133,11 @@ int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now)
  */
 static void flush(struct ec_master *m)
 {
-	struct ec_slot *slot;
+	struct ec_queued next;
 
-	while ((slot = xq_peek(m))) {
-		ec_link_send(&m->link[0], slot);
-		xq_drop(m, slot);
+	while (xq_peek(m, &next)) {
+		ec_link_send(&m->link[0], next.slot);
+		xq_drop(m, &next);
 	}
 }
 
@@ -214,23 +238,44 @@ bool ec_cycle_stalled(struct ec_master *m)
  * @m: master
  * @w: all but @polls is set
  *
- * In cycle mode frames first wait for their turn.
+ * In cycle mode frames first wait for their turn, see ec_cycle_wait_turn().
  *
  * Context: Any.
  */
 void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 {
 	u32 late_per_s = READ_ONCE(m->late_per_s);	/* a takeover may change it */
+	u32 turns;
 
 	w->owner = READ_ONCE(m->owner);
 	w->began_ns = ktime_get_ns();
+	w->turn_ns = w->began_ns;
 	w->timeout_us = m->io_timeout_us;
 	if (w->owner != EC_OWNER_CYCLE)
 		return;
 	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
-	/* all that wait have their turn among the late cycles */
-	if (ec_cycle_slack_ns(m) < ec_cycle_need_ns() && late_per_s)
-		w->timeout_us += EC_SLOTS * (USEC_PER_SEC / late_per_s);
+	if (!late_per_s)
+		return;
+	/* the worst: all that wait go in late cycles, an urgent one before each */
+	turns = 2 * (READ_ONCE(m->xq_head) - READ_ONCE(m->xq_tail) + 1);
+	w->turn_ns += (u64)min(turns, 2u * EC_SLOTS) * (NSEC_PER_SEC / late_per_s);
+}
+
+/**
+ * ec_cycle_wait_turn() - may frames that are still in the queue have their turn yet?
+ * @m: master
+ * @w: the wait
+ *
+ * They have all the time limit of @w when they have left. Who is killed does not wait
+ * for that.
+ *
+ * Context: Process.
+ * Return: whether it is worth waiting for.
+ */
+bool ec_cycle_wait_turn(struct ec_master *m, const struct ec_cycle_wait *w)
+{
+	return ktime_get_ns() < w->turn_ns && READ_ONCE(m->owner) == w->owner &&
+	       !ec_cycle_stalled(m) && !fatal_signal_pending(current);
 }
 
 /**
@@ -369,7 +414,7 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 {
 	const struct ecdev *dev = READ_ONCE(m->link[0].dev);
 	u64 budget = m->interval_us * 900ULL;
-	struct ec_slot *slot;
+	struct ec_queued next;
 	unsigned int n, burst;
 
 	/* one that comes at this moment has time until the next cycle */
@@ -380,15 +425,15 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 		return;
 	burst = dev->ops->burst ?: EC_SLOTS;
 	/* the next cycle needs transmit buffers, too */
-	for (n = 0; n < burst && (slot = xq_peek(m)); n++) {
+	for (n = 0; n < burst && xq_peek(m, &next); n++) {
 		/* behind what this cycle has sent before */
-		WRITE_ONCE(slot->sent_ns, m->last_send_ns + wire_ns);
-		wire_ns += ec_frame_wire_ns(slot->eth_len);
+		WRITE_ONCE(next.slot->sent_ns, m->last_send_ns + wire_ns);
+		wire_ns += ec_frame_wire_ns(next.slot->eth_len);
 		if (wire_ns > budget && (n || !may_be_late(m)))
 			break;
-		if (ec_link_send(&m->link[0], slot) == -EBUSY)
+		if (ec_link_send(&m->link[0], next.slot) == -EBUSY)
 			break;	/* it stays the first */
-		xq_drop(m, slot);
+		xq_drop(m, &next);
 	}
 }
 

@@ -216,18 +216,21 @@ struct ec_cycle {
  * struct ec_cycle_wait - what somebody who waits for acyclic frames remembers
  * @owner: of the links when the wait began
  * @began_ns: when that was (ktime)
- * @timeout_us: how long it lasts
+ * @timeout_us: how long it lasts once they have left
+ * @turn_ns: until when they may be in the queue (ktime)
  * @polls: receives of the cycle when the frames were handed over
  */
 struct ec_cycle_wait {
 	enum ec_owner owner;
 	u64 began_ns;
+	u64 turn_ns;
 	u32 timeout_us;
 	u32 polls;
 };
 
 int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent);
 void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w);
+bool ec_cycle_wait_turn(struct ec_master *m, const struct ec_cycle_wait *w);
 bool ec_cycle_wait_more(struct ec_master *m, const struct ec_cycle_wait *w);
 void ec_cycle_look(struct ec_master *m);
 bool ec_cycle_own(struct ec_master *m, enum ec_owner owner);

@@ -52,8 +52,9 @@ struct task_struct;
  * @late_per_s: how many cycles a second acyclic frames may make late
  * @late_next_ns: no more before that time (ktime)
  * @late_cycles: cycles they have made late since activation
- * @xq_lock: protects @xq, @xq_head, @xq_tail
+ * @xq_lock: protects @xq, @xq_head, @xq_tail, @xq_urgent
  * @xq: frames left by ec_xfer() for the cyclic caller
+ * @xq_urgent: the last of them that was sent was an urgent one
  *
  * @topo: protects @slaves, @n_slaves, @scan_busy (written by the monitor only)
  *	and the PDO lists of the slaves
@@ -127,6 +128,7 @@ struct ec_master {
 	struct ec_queued xq[EC_SLOTS];
 	unsigned int xq_head;
 	unsigned int xq_tail;
+	bool xq_urgent;
 
 	struct rw_semaphore topo;
 	struct ec_slave **slaves;

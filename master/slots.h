@@ -34,6 +34,7 @@ enum ec_slot_state {
  * @state: enum ec_slot_state
  * @index: datagram index, immutable
  * @seq: sequence number in the source MAC address
+ * @left: sequence number of the last frame that waits for no turn any more
  * @sent_ns: when it was sent (ktime)
  * @xfer: who waits for it, NULL: the cycle
  * @eth_len: bytes of the Ethernet frame without padding and FCS
@@ -43,6 +44,7 @@ struct ec_slot {
 	atomic_t state;
 	u8 index;
 	u32 seq;
+	u32 left;
 	u64 sent_ns;
 	struct ec_xfer *xfer;
 	u16 eth_len;
@@ -53,6 +55,7 @@ struct ec_slot {
 struct ec_queued {
 	struct ec_slot *slot;
 	u32 seq;
+	bool urgent;
 };
 
 /**

@@ -8,6 +8,7 @@
 
 #define TRIES	4	/* of a repeatable datagram */
 #define WAITS	8	/* for one frame, as long as it had no fair chance */
+#define LOOK_MS	10	/* between looks whether a frame has left */
 #define SLOT_WAIT_MS	1000	/* many hundred may be at work at once */
 
 /* one frame of a batch: the slot and the datagrams it carries */
@@ -158,6 +159,34 @@ static void give_up(struct ec_master *m, struct half *h)
 	}
 }
 
+/* Has a frame of a half not left yet? */
+static bool in_queue(const struct half *h)
+{
+	unsigned int i;
+
+	for (i = 0; i < h->frames; i++) {
+		const struct batch_frame *f = &h->f[i];
+
+		if (!f->err && READ_ONCE(f->slot->left) != f->slot->seq)
+			return true;
+	}
+	return false;
+}
+
+/* The time limit begins when the last frame has left, or cannot leave any more. */
+static bool wait_once(struct ec_master *m, struct half *h)
+{
+	ec_cycle_wait_begin(m, &h->wait);
+	while (in_queue(h) && ec_cycle_wait_turn(m, &h->wait)) {
+		if (wait_for_completion_timeout(&h->x.done, msecs_to_jiffies(LOOK_MS)))
+			return true;
+		h->wait.began_ns = ktime_get_ns();
+		h->wait.polls = READ_ONCE(m->polls);
+	}
+	return wait_for_completion_timeout(&h->x.done,
+					   usecs_to_jiffies(h->wait.timeout_us) + 1);
+}
+
 /*
  * Are all frames of a half back? Only the time in which they could have come
  * back counts.
@@ -167,9 +196,7 @@ static bool wait_half(struct ec_master *m, struct half *h)
 	unsigned int n;
 
 	for (n = 0; n < WAITS; n++) {
-		ec_cycle_wait_begin(m, &h->wait);
-		if (wait_for_completion_timeout(&h->x.done,
-						usecs_to_jiffies(h->wait.timeout_us) + 1))
+		if (wait_once(m, h))
 			return true;
 		if (!ec_cycle_wait_more(m, &h->wait))
 			break;

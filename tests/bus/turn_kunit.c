@@ -4,6 +4,7 @@
  * still, a cycle that is slower than it said. None of them is lost.
  */
 #include <linux/kthread.h>
+#include <linux/sched/signal.h>
 #include "cyc.h"
 #include "master/device.h"
 #include "master/ioctl.h"
@@ -41,18 +42,23 @@ static int read_much(void *arg)
 	return 0;
 }
 
-static struct cyc *in_op(struct kunit *test)
+/* The last slave but @behind is in OP, the others in PREOP. */
+static struct cyc *in_op_of(struct bus *b, u32 behind)
 {
-	struct bus *b = bus_up(test, text, N);
 	struct cyc *c;
 
 	bus_idle(b);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
-	cyc_map_all(c, 1, 1, 0);
+	cyc_map_all(c, b->m->n_slaves - 1 - behind, 1, 0);
 	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 3000), ~0ull);
 	return c;
+}
+
+static struct cyc *in_op(struct kunit *test)
+{
+	return in_op_of(bus_up(test, text, N), 1);
 }
 
 /* A cycle of 1 ms that comes every 15 ms: the frames' turn is late. */
@@ -122,10 +128,138 @@ static void turn_overdue(struct kunit *test)
 	dev->ops->cycle(dev->priv, false);
 }
 
+/* The wire is full: not even the shortest frame fits, so many cycles a second are late. */
+static struct cyc *full(struct cyc *c, u32 late_per_s)
+{
+	struct kunit *test = c->b->test;
+
+	c->b->m->late_per_s = late_per_s;
+	c->b->m->interval_us = 5;
+	cyc_run(c, 10);
+	KUNIT_ASSERT_EQ(test, c->b->m->owner, EC_OWNER_CYCLE);
+	KUNIT_ASSERT_LT(test, ec_cycle_slack_ns(c->b->m), ec_cycle_need_ns());
+	return c;
+}
+
+/* somebody who reads registers, one frame after the other */
+struct few {
+	struct bus *b;
+	u16 station;
+	u32 count;
+	int ret;
+	struct completion done;
+};
+
+static int read_few(void *arg)
+{
+	struct few *f = arg;
+	u8 v[4];
+	u32 i;
+
+	allow_signal(SIGKILL);
+	for (i = 0; i < f->count && !f->ret; i++) {
+		struct ec_dg dg = EC_DG(EC_CMD_FPRD, f->station, 0, sizeof(v), v);
+
+		dg.repeat = false;
+		f->ret = ec_xfer(f->b->m, &dg, 1);
+	}
+	complete(&f->done);
+	return 0;
+}
+
+/* ms until it is done; at most @limit_ms cycles are run before that counts as too long */
+static u32 run_few(struct cyc *c, struct few *f, u32 count, u32 kill_after_ms, u32 limit_ms)
+{
+	struct task_struct *t;
+	u32 ms;
+
+	*f = (struct few){ .b = c->b, .station = bus_slave(c->b, 0)->station, .count = count };
+	init_completion(&f->done);
+	t = kthread_run(read_few, f, "few");
+	KUNIT_ASSERT_FALSE(c->b->test, IS_ERR(t));
+	for (ms = 0; ms < limit_ms && !try_wait_for_completion(&f->done); ms++) {
+		if (kill_after_ms && ms == kill_after_ms)
+			send_sig(SIGKILL, t, 1);
+		cyc_run(c, 1);
+	}
+	if (ms < limit_ms)
+		return ms;
+	KUNIT_FAIL(c->b->test, "not done in %u ms", ms);
+	while (!try_wait_for_completion(&f->done))
+		cyc_run(c, 1);
+	return ms;
+}
+
+/* Each has its turn, though the monitor looks often and its frames go first. */
+static void turn_beside_monitor(struct kunit *test)
+{
+	/* all in OP: no other frames of the monitor than the urgent ones */
+	struct cyc *c = full(in_op_of(bus_up(test, "slave x EL1859\n", 1), 0), 10);
+	struct few f;
+
+	/* one of them before each */
+	KUNIT_EXPECT_LT(test, run_few(c, &f, 10, 0, 20000), 2500u);
+	KUNIT_EXPECT_EQ(test, f.ret, 0);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
+	KUNIT_EXPECT_EQ(test, c->b->m->slaves_responding, 1u);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+}
+
+/* Many wait for their turn, for longer than the time limit of a frame that has left. */
+static void turn_of_many(struct kunit *test)
+{
+	struct cyc *c = full(in_op(test), 50);
+	struct reader *r = kvcalloc(1, sizeof(*r), GFP_KERNEL);
+	u32 ms;
+
+	KUNIT_ASSERT_NOT_NULL(test, r);
+	r->b = c->b;
+	init_completion(&r->done);
+	kthread_run(read_much, r, "reader");
+	for (ms = 0; ms < 10000 && !try_wait_for_completion(&r->done); ms++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_LT(test, ms, 3000u);
+	KUNIT_EXPECT_EQ(test, r->ret, 0);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
+	kvfree(r);
+}
+
+/* A frame that is lost is waited for from when it has left, not from all others' turns. */
+static void turn_lost(struct kunit *test)
+{
+	struct cyc *c = full(in_op(test), 1);
+	struct few f;
+	u32 ms;
+
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	ms = run_few(c, &f, 1, 0, 10000);
+	KUNIT_EXPECT_LT(test, ms, 3500u);
+	KUNIT_EXPECT_EQ(test, f.ret, -ETIMEDOUT);
+}
+
+/* Who is killed does not wait for his turn. */
+static void turn_killed(struct kunit *test)
+{
+	struct cyc *c = full(in_op(test), 1);
+	struct few f;
+	u32 ms;
+
+	/* the one late cycle of this second is over */
+	while (!c->b->m->late_cycles)
+		cyc_run(c, 1);
+	ms = run_few(c, &f, 5, 200, 10000);
+	KUNIT_EXPECT_LT(test, ms, 600u);
+	KUNIT_EXPECT_EQ(test, f.ret, -ETIMEDOUT);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(turn_slow_cycle),
 	KUNIT_CASE(turn_stalled_cycle),
 	KUNIT_CASE(turn_overdue),
+	KUNIT_CASE(turn_beside_monitor),
+	KUNIT_CASE(turn_of_many),
+	KUNIT_CASE(turn_lost),
+	KUNIT_CASE(turn_killed),
 	{}
 };
 
