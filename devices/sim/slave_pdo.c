@@ -95,6 +95,18 @@ static u32 check_assign(const struct ec_app *app, const struct ec_app_entry *e,
 	return bits > m->max_bytes[dir] * 8u ? EC_ABORT_PDO_LENGTH : 0;
 }
 
+static bool assigned(const struct ec_app *app, enum ec_app_dir dir, u16 pdo)
+{
+	const struct ec_app_object *o =
+		ec_app_od_object(app->model, (u16)(0x1C10 + app->model->pd_sm[dir]));
+	u32 n = o ? list_len(app, o) : 0;
+
+	for (u32 i = 1; i <= n; i++)
+		if (list_at(app, o, i) == pdo)
+			return true;
+	return false;
+}
+
 /* a value about to be written to a mapping */
 static u32 check_mapping(const struct ec_app *app, const struct ec_app_entry *e,
 			 u64 value)
@@ -105,6 +117,8 @@ static u32 check_mapping(const struct ec_app *app, const struct ec_app_entry *e,
 	const struct ec_app_entry *var;
 	u32 bits = 0;
 
+	if (assigned(app, dir, e->index))
+		return EC_ABORT_STATE;
 	if (!e->sub) {
 		if (value > o->max_sub)
 			return EC_ABORT_TOO_HIGH;

@@ -97,6 +97,10 @@ static void rewritten(struct kunit *test)
 	static const u8 bad[] = { 2, 0, 0x20, 0, 0xFF, 0x60, 0x20, 0, 0x40, 0x60 };
 	u8 out[8] = { 0xE8, 3, 0, 0, 0x0F, 0 };
 
+	/* not while it is assigned */
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x1600, 0, true, map,
+					   sizeof(map)), EC_ABORT_STATE);
+	KUNIT_EXPECT_EQ(test, app_put(x->b, &x->m, 0x1C12, 0, 0, 1), 0u);
 	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, 0x1600, 0, true, bad,
 					   sizeof(bad)), EC_ABORT_LENGTH);
 	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x1600, 1), 0x60400010);
