@@ -5,6 +5,7 @@
 #include "config.h"
 #include "domain.h"
 #include "eoe.h"
+#include "mailbox.h"
 #include "master.h"
 #include "session.h"
 #include "slave.h"
@@ -15,6 +16,7 @@
 #include "xfer.h"
 
 #define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
+#define HOLD_MS		1000	/* a transfer that takes longer is cut off */
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 {
@@ -31,7 +33,7 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 			      ec_al_state_name(state),
 			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
-		 ret != -ERANGE)	/* told already */
+		 ret != -EOVERFLOW && ret != -ERANGE)	/* told already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "does not answer on the way to %s (error %d)",
 			      ec_al_state_name(state), ret);
 	return ret;
@@ -63,12 +65,61 @@ static int clear_fmmus(struct ec_slave *s)
 	return ret;
 }
 
+/*
+ * A transfer of somebody else is not cut off by the way through INIT: it comes before,
+ * unless it takes long, or after. The worker has the mailbox until PREOP.
+ */
+static void hold_mailbox(struct ec_slave *s)
+{
+	if (s->holds || READ_ONCE(s->requested) < EC_AL_PREOP ||
+	    ec_mbox_lock(s, &s->sdo_lock, HOLD_MS))
+		return;
+	if (ec_mbox_lock(s, &s->mbox_lock, HOLD_MS))
+		up(&s->sdo_lock);
+	else
+		s->holds = true;
+}
+
+static void release_mailbox(struct ec_slave *s)
+{
+	if (!s->holds)
+		return;
+	s->holds = false;
+	up(&s->mbox_lock);
+	up(&s->sdo_lock);
+}
+
+/* SyncManagers that the EEPROM wants on in OP only, state-machine.md 4.4 */
+static int op_only_sms(struct ec_slave *s, bool on)
+{
+	unsigned int sm;
+	int ret = 0;
+
+	for (sm = 0; sm < s->n_sms && !ret; sm++) {
+		u8 active = on ? EC_SM_ACT_ENABLE : 0;
+
+		if (s->sms[sm].enable & EC_SII_SM_OP_ONLY &&
+		    ec_pdo_list_bytes(ec_apply_pdos_of(s, s->plan, sm)))
+			ret = write_reg(s, EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE, &active, 1);
+	}
+	return ret;
+}
+
+static bool in_op(const struct ec_slave *s)
+{
+	return (s->al_status & EC_AL_STATE_MASK) == EC_AL_OP;
+}
+
 /* state-machine.md 4.1 */
 static int to_init(struct ec_slave *s)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
-	int ret = set_state(s, EC_AL_INIT);
+	int ret;
 
+	hold_mailbox(s);
+	if (in_op(s))
+		op_only_sms(s, false);
+	ret = set_state(s, EC_AL_INIT);
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
 	clear_fmmus(s);
@@ -139,6 +190,7 @@ static int to_preop(struct ec_slave *s)
 
 	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
 	s->ours = !ret;
+	release_mailbox(s);
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
 
@@ -189,106 +241,11 @@ static int write_idns(struct ec_slave *s, struct ec_config *c, u8 state)
 	return 0;
 }
 
-static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32 *abort)
-{
-	u8 b[4];
-
-	put_unaligned_le32(value, b);
-	return ec_coe_download(s, index, sub, false, b, bytes, abort, NULL);
-}
-
-/* Does the object hold @n values of @bytes bytes, as @value says? */
-static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
-		    u32 (*value)(const void *ctx, unsigned int i), const void *ctx)
-{
-	unsigned int i;
-	u32 abort;
-	size_t got;
-	u8 b[4] = { 0 };
-
-	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
-		return false;
-	for (i = 0; i < n; i++) {
-		memset(b, 0, sizeof(b));
-		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
-		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
-			return false;
-	}
-	return true;
-}
-
-/* The CiA procedure: count 0, values, count. */
-static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
-		      u32 (*value)(const void *ctx, unsigned int i), const void *ctx,
-		      const char *what)
-{
-	unsigned int i;
-	u32 abort;
-	int ret;
-
-	if (already(s, index, n, bytes, value, ctx))
-		return 0;
-	ret = sdo_u(s, index, 0, 0, 1, &abort);
-	for (i = 0; i < n && !ret; i++)
-		ret = sdo_u(s, index, i + 1, value(ctx, i), bytes, &abort);
-	if (!ret)
-		ret = sdo_u(s, index, 0, n, 1, &abort);
-	if (ret == -ECANCELED || ret == -EINTR)
-		return ret;
-	/* many slaves have fixed lists; the SyncManager size decides then */
-	if (ret)
-		ec_slave_warn(s, "%s 0x%04x could not be written: error %d, abort 0x%08x: %s\n",
-			      what, index, ret, abort, ec_coe_abort_text(abort) ?: "none");
-	return 0;
-}
-
-static u32 map_value(const void *ctx, unsigned int i)
-{
-	const struct ec_pdo *pdo = ctx;
-
-	return (u32)pdo->entries[i].index << 16 | pdo->entries[i].sub << 8 | pdo->entries[i].bits;
-}
-
-static u32 assign_value(const void *ctx, unsigned int i)
-{
-	const struct ec_pdo_list *l = ctx;
-
-	return l->pdos[i].index;
-}
-
-static int write_pdos(struct ec_slave *s, struct ec_config *c)
-{
-	unsigned int sm, i;
-	int ret;
-
-	if (!ec_slave_has_mailbox(s) || !(s->info.protocols & EC_SII_PROTO_COE))
-		return 0;
-	for (sm = 2; sm < EC_MAX_SM; sm++) {
-		const struct ec_pdo_list *l = &c->sm[sm].pdos;
-
-		if (!c->sm[sm].explicit)
-			continue;
-		for (i = 0; i < l->n; i++) {
-			if (!l->pdos[i].n_entries)
-				continue;
-			ret = write_list(s, l->pdos[i].index, l->pdos[i].n_entries, 4, map_value,
-					 &l->pdos[i], "PDO mapping");
-			if (ret)
-				return ret;
-		}
-		ret = write_list(s, 0x1c10 + sm, l->n, 2, assign_value, l, "PDO assignment");
-		if (ret)
-			return ret;
-	}
-	return 0;
-}
-
 /* SM page for process data; NULL configuration: the EEPROM's defaults */
 static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigned int sm, u8 *page)
 {
-	const struct ec_pdo_list *l = c ? &c->sm[sm].pdos : &s->sm_pdos[sm];
 	struct ec_sm v = {
-		.start = s->sms[sm].start, .len = ec_pdo_list_bytes(l),
+		.start = s->sms[sm].start, .len = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm)),
 		.control = s->sms[sm].control,
 	};
 
@@ -299,7 +256,7 @@ static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigne
 		v.control |= EC_SM_WATCHDOG;
 	if (c && c->sm[sm].watchdog == EC_CFG_WD_DISABLE)
 		v.control &= ~EC_SM_WATCHDOG;
-	if (v.len)
+	if (v.len && !(s->sms[sm].enable & EC_SII_SM_OP_ONLY))
 		v.activate = EC_SM_ACT_ENABLE;
 	ec_sm_encode(&v, page);
 }
@@ -314,7 +271,7 @@ static int write_sms(struct ec_slave *s, const struct ec_config *c)
 	for (; sm < s->n_sms && !ret; sm++) {
 		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
 			continue;
-		bytes = ec_pdo_list_bytes(c ? &c->sm[sm].pdos : &s->sm_pdos[sm]);
+		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
 		if (bytes > EC_MAX_SM_BYTES) {
 			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 				      "SM%u shall have %u bytes, an ESC has at most %u; map less",
@@ -325,6 +282,16 @@ static int write_sms(struct ec_slave *s, const struct ec_config *c)
 		ret = write_reg(s, EC_REG_SM(sm), page, sizeof(page));
 	}
 	return ret;
+}
+
+/*
+ * An FMMU that leads anywhere else than to process data would write registers, or the
+ * mailbox, with each frame.
+ */
+static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
+{
+	return sm < s->n_sms && !(s->sms[sm].enable & EC_SII_SM_VIRTUAL) &&
+	       !(sm < 2 && ec_slave_has_mailbox(s)) && s->sms[sm].start >= EC_REG_DIGITAL_OUT;
 }
 
 static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
@@ -348,6 +315,14 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      "was at position %u when its inputs and others' outputs got the same logical addresses; start the application again, or let it overlap by itself only",
 			      c->ring_position);
+		return -EOPNOTSUPP;
+	}
+	for (i = 0; i < c->n_fmmus; i++) {
+		if (holds_pdos(s, c->fmmus[i].sm))
+			continue;
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "has no SyncManager %u for process data by its EEPROM; map its PDOs to one it has",
+			      c->fmmus[i].sm);
 		return -EOPNOTSUPP;
 	}
 	s->mapped = c->n_fmmus;
@@ -398,7 +373,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret;
 
-	if (!c || !c->dc_assign || !c->session->active)
+	if (!c || !c->dc_assign)
 		return 0;
 	if (!(ec_slave_features(s) & EC_FEAT_DC)) {
 		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
@@ -427,7 +402,7 @@ static int wait_flag(struct ec_slave *s, s32 ms)
 }
 
 /* state-machine.md 4.3 */
-static int to_safeop(struct ec_slave *s, struct ec_config *c)
+static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret = 0;
 
@@ -435,12 +410,12 @@ static int to_safeop(struct ec_slave *s, struct ec_config *c)
 		ec_slave_read_coe_pdos(s);
 	if (c) {
 		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
-		      write_pdos(s, c) ?: write_watchdog(s, c);
+		      ec_apply_pdos(s, c) ?: write_watchdog(s, c);
 		if (ret)
 			return ret;
 	}
 	ret = write_sms(s, c);
-	if (!ret && c && c->session->active)
+	if (!ret && c)
 		ret = write_fmmus(s, c);
 	if (!ret && c)
 		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
@@ -472,13 +447,13 @@ static int wait_outputs(struct ec_slave *s)
 	unsigned int i;
 	u64 from;
 
-	if (!s->config || !s->config->session->active)
+	if (!s->plan)
 		return 0;
-	cycles = cycles_twice(s->config);
+	cycles = cycles_twice(s->plan);
 	limit = 5000 + div_u64((u64)cycles * s->master->interval_us, 500);
-	from = READ_ONCE(s->config->session->cycle.cycles);
+	from = READ_ONCE(s->plan->session->cycle.cycles);
 	for (i = 0; i < limit; i++) {
-		if (READ_ONCE(s->config->session->cycle.cycles) - from >= cycles)
+		if (READ_ONCE(s->plan->session->cycle.cycles) - from >= cycles)
 			return 0;
 		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
 			return -ECANCELED;
@@ -491,11 +466,23 @@ static int wait_outputs(struct ec_slave *s)
 /* In PREOP nobody needs the SYNC signals of a slave any more. */
 static int step_down(struct ec_slave *s, u8 want)
 {
-	int ret = set_state(s, want);
+	int ret = in_op(s) ? op_only_sms(s, false) : 0;
 
+	ret = ret ?: set_state(s, want);
 	if (!ret && want == EC_AL_PREOP && ec_slave_features(s) & EC_FEAT_DC)
 		ec_dc_sync_stop(s);
 	return ret ? failed(s, want, ret) : 0;
+}
+
+/* Before activation the application may change its configuration at any time. */
+static void take_plan(struct ec_slave *s)
+{
+	const struct ec_config *c = s->config;
+
+	if (!c || !smp_load_acquire(&c->session->active) || s->plan == c)
+		return;
+	s->plan = c;
+	s->reconfigure = true;
 }
 
 /* One step towards the requested state; 1: there, 0: again, -errno. */
@@ -529,14 +516,15 @@ static int step(struct ec_slave *s)
 	case EC_AL_INIT:
 		return to_preop(s);
 	case EC_AL_PREOP:
-		return to_safeop(s, s->config);
+		return to_safeop(s, s->plan);
 	case EC_AL_SAFEOP:
 		ret = wait_outputs(s);
-		if (!ret && s->config)
-			ret = write_idns(s, s->config, EC_AL_SAFEOP);
+		if (!ret && s->plan)
+			ret = write_idns(s, s->plan, EC_AL_SAFEOP);
 		if (ret)
 			return ret;
-		ret = (s->config ? ec_dc_sync_check(s, s->config) : 0) ?: set_state(s, EC_AL_OP);
+		ret = (s->plan ? ec_dc_sync_check(s, s->plan) : 0) ?: set_state(s, EC_AL_OP) ?:
+		      op_only_sms(s, true);
 		return ret ? failed(s, EC_AL_OP, ret) : 0;
 	default:
 		return to_init(s);
@@ -557,14 +545,19 @@ void ec_apply_work(struct work_struct *work)
 	int ret = 0;
 
 	mutex_lock(&s->lock);
-	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++)
+	WRITE_ONCE(s->worker, current);
+	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++) {
+		take_plan(s);
 		ret = step(s);
+	}
+	release_mailbox(s);
 	if (ret == 1 && s->error != EC_SLAVE_SCAN_FAILED) {
 		s->error = EC_SLAVE_OK;
 		s->why[0] = '\0';
 	}
 	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
+	WRITE_ONCE(s->worker, NULL);
 	mutex_unlock(&s->lock);
 	wake_up_all(&m->scan_wq);
 	ec_slave_unref(s);

@@ -61,7 +61,7 @@ static int run(struct ec_slave *slave, struct exchange *x, const struct ec_mbox_
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	ret = mutex_lock_interruptible(&slave->sdo_lock);
+	ret = ec_mbox_lock(slave, &slave->sdo_lock, 0);
 	if (ret)
 		goto out;
 	do {
@@ -72,7 +72,7 @@ static int run(struct ec_slave *slave, struct exchange *x, const struct ec_mbox_
 	} while (ret == EC_MORE);
 	if (send_abort(x))
 		tell_abort(slave, x, b, cap, ask.cancel);
-	mutex_unlock(&slave->sdo_lock);
+	up(&slave->sdo_lock);
 out:
 	kfree(b);
 	return ret;

@@ -88,11 +88,11 @@ void ec_emerg_poll(struct ec_slave *slave)
 
 	if (!ec_slave_has_mailbox(slave) || slave->gone ||
 	    (READ_ONCE(slave->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ||
-	    !mutex_trylock(&slave->mbox_lock))
+	    down_trylock(&slave->mbox_lock))
 		return;
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (b)
 		ec_mbox_drain(slave, b);
 	kfree(b);
-	mutex_unlock(&slave->mbox_lock);
+	up(&slave->mbox_lock);
 }

@@ -119,13 +119,34 @@ int ec_ioc_create_domain(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
+/* A configuration begins with the PDOs of its slave: they may be being read yet. */
+static void wait_pdos(struct ec_file *f, const struct ec_ioc_slave_config *i)
+{
+	struct ec_slave *slave;
+
+	slave = ec_session_find(f->master, i->alias, i->position, i->vendor_id, i->product_code);
+	if (!slave)
+		return;
+	ec_master_wait_slave(slave);
+	ec_slave_unref(slave);
+}
+
 int ec_ioc_slave_config(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_slave_config *i = arg;
 	struct ec_config *c;
+	struct ec_session *s;
+	bool heir;
 	int ret = 0;
-	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
 
+	s = ec_ioc_lock_idle(f, &ret);
+	if (!s)
+		return ret;
+	heir = s == f->master->heir;
+	done(f, 0);
+	if (!heir)	/* else the running session has them */
+		wait_pdos(f, i);
+	s = ec_ioc_lock_idle(f, &ret);
 	if (!s)
 		return ret;
 	c = ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);

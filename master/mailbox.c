@@ -29,10 +29,42 @@ static struct until in_ms(u32 ms, const bool *cancel)
 	return (struct until){ ktime_get_ns() + (u64)ms * NSEC_PER_MSEC, cancel };
 }
 
+/* Others who use the mailbox do not care what happens to the configuration. */
+static bool interrupted(const struct ec_slave *slave)
+{
+	return READ_ONCE(slave->interrupt) && READ_ONCE(slave->worker) == current;
+}
+
+/**
+ * ec_mbox_lock() - wait for one's turn
+ * @slave: slave
+ * @lock: its @sdo_lock or @mbox_lock
+ * @ms: the slave's worker waits at most so long; 0: as long as it takes
+ *
+ * In the order of coming, so that nobody who asks all the time keeps the worker off.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; -EINTR; the slave's worker: -ECANCELED when it shall leave, -ETIMEDOUT.
+ */
+int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms)
+{
+	u64 until = ktime_get_ns() + (u64)ms * NSEC_PER_MSEC;
+
+	if (READ_ONCE(slave->worker) != current)
+		return down_interruptible(lock);
+	while (down_timeout(lock, msecs_to_jiffies(20))) {
+		if (interrupted(slave))
+			return -ECANCELED;
+		if (ms && ktime_get_ns() > until)
+			return -ETIMEDOUT;
+	}
+	return 0;
+}
+
 /* Why an exchange has to end now; 0: go on. */
 static int over(const struct ec_slave *slave, const struct until *u)
 {
-	if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt) ||
+	if (slave->gone || slave->master->stopping || interrupted(slave) ||
 	    (u->cancel && READ_ONCE(*u->cancel)))
 		return -ECANCELED;
 	if (signal_pending(current))
@@ -329,14 +361,14 @@ static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const st
 }
 
 /**
- * ec_mbox_check() - can this protocol be used with the slave now?
+ * ec_mbox_check() - can this protocol be used with the slave, in PREOP or above?
  * @slave: slave
  * @protocol: EC_SII_PROTO_*
  * @message: bytes behind the mailbox header it needs at least
  *
  * Context: Process.
  * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EMSGSIZE for a
- * mailbox that is too small or larger than a datagram; -EAGAIN in INIT.
+ * mailbox that is too small or larger than a datagram.
  */
 int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message)
 {
@@ -346,9 +378,13 @@ int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message)
 	if (slave->info.std.rx_size < EC_MBOX_HDR + message ||
 	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
 		return -EMSGSIZE;
-	if ((slave->al_status & EC_AL_STATE_MASK) < EC_AL_PREOP)
-		return -EAGAIN;
 	return 0;
+}
+
+/* In INIT there is no mailbox. The lock is held: a slave that only passes INIT is waited for. */
+static int off(const struct ec_slave *slave)
+{
+	return (READ_ONCE(slave->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ? -EAGAIN : 0;
 }
 
 /**
@@ -362,7 +398,7 @@ int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message)
  * come first go where they belong.
  *
  * Context: Process. Waits for bus traffic.
- * Return: what @a->rx said last; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
+ * Return: what @a->rx said last; -EAGAIN in INIT; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
  * -EBADMSG for a message whose header is wrong; the errno of a mailbox error
  * reply; or as ec_xfer().
  */
@@ -370,11 +406,12 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 		size_t len)
 {
 	struct until until;
-	int ret = mutex_lock_interruptible(&slave->mbox_lock);
+	int ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
 
 	if (ret)
 		return ret;
-	if (a->first)
+	ret = off(slave);
+	if (!ret && a->first)
 		ret = ec_mbox_drain(slave, b);
 	until = in_ms(a->timeout_ms, a->cancel);
 	if (!ret)
@@ -391,7 +428,7 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 	if (ret == EC_STALE)
 		ret = -ETIMEDOUT;
 out:
-	mutex_unlock(&slave->mbox_lock);
+	up(&slave->mbox_lock);
 	return ret;
 }
 
@@ -404,18 +441,19 @@ out:
  * @limit: when to give up
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as ec_xfer().
+ * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as
+ * ec_xfer().
  */
 int ec_mbox_tell(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit)
 {
 	struct until until = in_ms(limit->timeout_ms, limit->cancel);
-	int ret = mutex_lock_interruptible(&slave->mbox_lock);
+	int ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
 
 	if (ret)
 		return ret;
-	ret = over(slave, &until) ?: send(slave, type, b, len, &until);
-	mutex_unlock(&slave->mbox_lock);
+	ret = over(slave, &until) ?: off(slave) ?: send(slave, type, b, len, &until);
+	up(&slave->mbox_lock);
 	return ret;
 }
 
@@ -451,7 +489,7 @@ static int look_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind)
  * Context: Process. Waits for bus traffic.
  * Return: bytes behind the mailbox header; -ENOMSG, when @blind and there is
  * none; -ETIMEDOUT, -EINTR, -ECANCELED; -EBADMSG; the errno of a mailbox error
- * reply; or as ec_xfer().
+ * reply; -EAGAIN in INIT; or as ec_xfer().
  */
 int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit)
@@ -463,9 +501,9 @@ int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
 	for (;;) {
 		ret = take_kept(slave, b->rx);
 		/* who holds the lock keeps what comes for us */
-		if (ret == -ENOMSG && mutex_trylock(&slave->mbox_lock)) {
-			ret = look_voe(slave, b, blind);
-			mutex_unlock(&slave->mbox_lock);
+		if (ret == -ENOMSG && !down_trylock(&slave->mbox_lock)) {
+			ret = off(slave) ?: look_voe(slave, b, blind);
+			up(&slave->mbox_lock);
 		}
 		if (ret != -ENOMSG || blind)
 			return ret;

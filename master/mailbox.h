@@ -6,6 +6,7 @@
 #include <linux/types.h>
 
 struct ec_slave;
+struct semaphore;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
 #define EC_MBOX_KEPT	16	/* messages kept for who reads them later */
@@ -50,6 +51,7 @@ struct ec_mbox_ask {
 	void *ctx;
 };
 
+int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms);
 int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message);
 int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
 		size_t len);

@@ -115,6 +115,11 @@ struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position)
 }
 
 /* No slave on its way to another state, PDOs read. */
+static bool slave_settled(struct ec_slave *s)
+{
+	return s->gone || (!work_busy(&s->work) && !ec_slave_pdos_pending(s));
+}
+
 static bool slaves_settled(struct ec_master *m)
 {
 	unsigned int i;
@@ -122,7 +127,7 @@ static bool slaves_settled(struct ec_master *m)
 
 	down_read(&m->topo);
 	for (i = 0; i < m->n_slaves && ok; i++)
-		ok = !work_busy(&m->slaves[i]->work) && !ec_slave_pdos_pending(m->slaves[i]);
+		ok = slave_settled(m->slaves[i]);
 	up_read(&m->topo);
 	return ok;
 }
@@ -175,6 +180,22 @@ int ec_master_wait_scan(struct ec_master *m)
 int ec_master_wait_slaves(struct ec_master *m)
 {
 	return wait_until(m, slaves_settled, 1000, 10);
+}
+
+/**
+ * ec_master_wait_slave() - wait until a slave is in its state and its PDOs are known
+ * @slave: slave
+ *
+ * Context: Process. May sleep, at most 5 s.
+ */
+void ec_master_wait_slave(struct ec_slave *slave)
+{
+	unsigned int i;
+
+	for (i = 0; i < 500; i++)
+		if (wait_event_timeout(slave->master->scan_wq, slave_settled(slave),
+				       msecs_to_jiffies(10)))
+			return;
 }
 
 /**

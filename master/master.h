@@ -194,6 +194,7 @@ void ec_master_link_detach(struct ec_link *link);
 void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len);
 int ec_master_wait_scan(struct ec_master *m);
 int ec_master_wait_slaves(struct ec_master *m);
+void ec_master_wait_slave(struct ec_slave *slave);
 bool ec_master_scan_busy(const struct ec_master *m);
 void ec_master_scan_progress(const struct ec_master *m, u32 *index, u32 *count);
 void ec_master_rescan(struct ec_master *m);

@@ -51,5 +51,6 @@ void ec_pdo_list_clear(struct ec_pdo_list *l);
 struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index);
 u32 ec_pdo_bits(const struct ec_pdo *pdo);
 u32 ec_pdo_list_bytes(const struct ec_pdo_list *l);
+bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b);
 
 #endif

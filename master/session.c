@@ -166,6 +166,12 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 	return ret;
 }
 
+/* An heir only looks at slaves. */
+static bool owned(const struct ec_config *c)
+{
+	return c->slave && c->slave->config == c;
+}
+
 /* Detach slave and configuration; the slave goes back to PREOP. */
 static void detach(struct ec_config *c)
 {
@@ -174,19 +180,23 @@ static void detach(struct ec_config *c)
 
 	if (!slave)
 		return;
-	c->slave = NULL;
-	if (slave->config != c) {	/* only looked at by an heir */
+	if (!owned(c)) {
+		c->slave = NULL;
 		ec_slave_unref(slave);
 		return;
 	}
+	c->slave = NULL;
 	ec_emerg_set(slave, NULL);
 	ec_mbox_keep_voe(slave, false);
 	WRITE_ONCE(slave->interrupt, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
-		if (c->sm[sm].explicit)	/* the slave keeps what was written */
+		/* the slave keeps what was written */
+		if (c->sm[sm].explicit ||
+		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
 			WRITE_ONCE(slave->pdos_known, false);
 	slave->config = NULL;
+	slave->plan = NULL;
 	slave->reconfigure = true;
 	slave->interrupt = false;
 	mutex_unlock(&slave->lock);
@@ -200,6 +210,10 @@ static void clear(struct ec_session *s)
 	unsigned int i;
 
 	ec_session_lower_ref(s);
+	/* all at once: a worker may need a moment to leave */
+	for (i = 0; i < s->n_configs; i++)
+		if (owned(s->configs[i]))
+			WRITE_ONCE(s->configs[i]->slave->interrupt, true);
 	for (i = 0; i < s->n_configs; i++) {
 		detach(s->configs[i]);
 		ec_config_free(s->configs[i]);
@@ -380,20 +394,31 @@ int ec_session_end_detached(struct ec_master *m)
 	return ret;
 }
 
-/* The slave @c means, with a reference, or NULL. */
-static struct ec_slave *lookup(struct ec_master *m, const struct ec_config *c)
+/**
+ * ec_session_find() - the slave that a configuration means
+ * @m: master
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process. May sleep.
+ * Return: slave with a reference, or NULL.
+ */
+struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+				 u32 product)
 {
 	struct ec_slave *slave = NULL;
-	unsigned int i, pos = c->position;
+	unsigned int i, pos = position;
 
 	down_read(&m->topo);
-	if (c->alias) {
-		for (i = 0; i < m->n_slaves && m->slaves[i]->alias != c->alias; i++)
+	if (alias) {
+		for (i = 0; i < m->n_slaves && m->slaves[i]->alias != alias; i++)
 			;
 		pos += i;
 	}
-	if (pos < m->n_slaves && m->slaves[pos]->info.vendor == c->vendor &&
-	    m->slaves[pos]->info.product == c->product && !m->slaves[pos]->gone)
+	if (pos < m->n_slaves && m->slaves[pos]->info.vendor == vendor &&
+	    m->slaves[pos]->info.product == product && !m->slaves[pos]->gone)
 		slave = ec_slave_ref(m->slaves[pos]);
 	up_read(&m->topo);
 	return slave;
@@ -429,7 +454,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 
 	if (s->active && c->slave && !c->slave->gone)
 		return;
-	slave = lookup(s->master, c);
+	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
 	if (slave == c->slave) {
 		if (slave)
 			ec_slave_unref(slave);
@@ -610,7 +635,8 @@ int ec_session_activate(struct ec_session *s)
 	s->shared->status->dc_monitor = ~0u;
 	for (i = 0; i < s->n_domains; i++)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
-	s->active = true;
+	/* from now on workers go by the configurations, which stay as they are */
+	smp_store_release(&s->active, true);
 	s->stall_log.told = atomic_read(&m->stalls);
 	s->lock_told = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->freeze, false);

@@ -134,6 +134,8 @@ void ec_session_lower_ref(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
 void ec_session_attach(struct ec_master *m);
+struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+				 u32 product);
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 bool ec_session_uses_clocks(const struct ec_session *s);
 void ec_session_clocks(struct ec_master *m);

@@ -25,8 +25,8 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	s->requested = EC_AL_PREOP;
 	INIT_WORK(&s->work, ec_apply_work);
 	mutex_init(&s->lock);
-	mutex_init(&s->sdo_lock);
-	mutex_init(&s->mbox_lock);
+	sema_init(&s->sdo_lock, 1);
+	sema_init(&s->mbox_lock, 1);
 	spin_lock_init(&s->emerg_lock);
 	spin_lock_init(&s->kept_lock);
 	INIT_LIST_HEAD(&s->kept);

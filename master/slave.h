@@ -5,6 +5,7 @@
 
 #include <linux/kref.h>
 #include <linux/mutex.h>
+#include <linux/semaphore.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
 #include "pdo.h"
@@ -69,12 +70,15 @@ struct ec_master;
  * @config: what the session wants from it, under session_lock and @lock
  * @read_pdos: read the PDOs when it is there
  * @interrupt: leave what the worker is waiting for
+ * @worker: who works on it now, under @lock
+ * @plan: what the worker goes by: @config, once its session is active; under @lock
+ * @holds: the worker has @sdo_lock and @mbox_lock
  * @reconfigure: go through INIT and configure again
  * @mapped: its FMMUs are set
  * @sync_free: its SYNC signals run by a clock that was not set
  * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
- * @sdo_lock: one SDO transfer at a time
+ * @sdo_lock: one SDO transfer at a time; see ec_mbox_lock()
  * @mbox_lock: one mailbox exchange at a time
  * @mbox_counter: of the last message sent
  * @emerg_lock: protects @emerg and what it points to
@@ -133,13 +137,16 @@ struct ec_slave {
 	struct ec_config *config;
 	bool read_pdos;
 	bool interrupt;
+	const struct task_struct *worker;
+	const struct ec_config *plan;
+	bool holds;
 	bool reconfigure;
 	bool mapped;
 	bool ours;
 	bool sync_free;
 	u64 sync_due_ns;
-	struct mutex sdo_lock;
-	struct mutex mbox_lock;
+	struct semaphore sdo_lock;
+	struct semaphore mbox_lock;
 	u8 mbox_counter;
 	spinlock_t emerg_lock;
 	struct ec_emerg *emerg;
@@ -204,6 +211,11 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
 /* apply.c */
 void ec_apply_work(struct work_struct *work);
 unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page);
+
+/* apply_pdo.c */
+int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
+const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
+					   unsigned int sm);
 
 /* topology.c */
 void ec_topology_build(struct ec_slave **slaves, unsigned int n);

@@ -112,6 +112,33 @@ u32 ec_pdo_list_bytes(const struct ec_pdo_list *l)
 	return DIV_ROUND_UP(bits, 8);
 }
 
+static bool same_entries(const struct ec_pdo *a, const struct ec_pdo *b)
+{
+	unsigned int i;
+
+	if (a->index != b->index || a->n_entries != b->n_entries)
+		return false;
+	for (i = 0; i < a->n_entries; i++)
+		if (a->entries[i].index != b->entries[i].index ||
+		    a->entries[i].sub != b->entries[i].sub ||
+		    a->entries[i].bits != b->entries[i].bits)
+			return false;
+	return true;
+}
+
+/* Is it the same process data, whatever it is called? */
+bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
+{
+	unsigned int i;
+
+	if (a->n != b->n)
+		return false;
+	for (i = 0; i < a->n; i++)
+		if (!same_entries(&a->pdos[i], &b->pdos[i]))
+			return false;
+	return true;
+}
+
 /**
  * ec_slave_read_pdos() - take the PDOs of a slave from its EEPROM
  * @slave: slave with EEPROM image

@@ -202,6 +202,7 @@ enum ec_loop_control {		/* two bits per port in 0x0101 */
 #define EC_REG_DC_PDI_CHANGE	0x09FC
 #define EC_DC_DIFF_AHEAD	BIT(31)
 
+#define EC_REG_DIGITAL_OUT	0x0F00	/* of a digital I/O ESC, process data begin here */
 #define EC_REG_USER_RAM		0x0F80
 #define EC_REG_RAM		0x1000
 

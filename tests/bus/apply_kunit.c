@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What a slave is configured to, and when: PDOs, SyncManagers, and others' transfers. */
+#include <linux/completion.h>
+#include <linux/kthread.h>
+#include "cyc.h"
+#include "master/coe.h"
+#include "master/ioctl.h"
+
+static const char drive[] =
+	"segment seed=17 response=2ms\nslave a drive in=22 out=22 mapping=rewritable\n";
+
+static struct cyc *reserve(struct kunit *test, const char *text, u32 slaves)
+{
+	struct bus *b = bus_up(test, text, slaves);
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	return c;
+}
+
+static void write_obj(struct bus *b, u16 index, u8 sub, u32 value, size_t bytes)
+{
+	u8 v[4];
+	u32 abort;
+
+	put_unaligned_le32(value, v);
+	KUNIT_ASSERT_EQ(b->test, ec_coe_download(bus_slave(b, 0), index, sub, false, v, bytes,
+						 &abort, NULL), 0);
+}
+
+/* what an earlier application has left: two bytes of outputs */
+static void map_two_bytes(struct bus *b)
+{
+	write_obj(b, 0x1c12, 0, 0, 1);
+	write_obj(b, 0x1600, 0, 0, 1);
+	write_obj(b, 0x1600, 1, 0x60400010, 4);
+	write_obj(b, 0x1600, 0, 1, 1);
+	write_obj(b, 0x1c12, 1, 0x1600, 2);
+	write_obj(b, 0x1c12, 0, 1, 1);
+}
+
+static u8 sm_active(struct bus *b, u32 slave, u32 sm)
+{
+	return bus_esc(b, slave)->mem[EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE] & EC_SM_ACT_ENABLE;
+}
+
+/* An FMMU without a SyncManager would lead to the registers: address, reset, ports. */
+static void apply_unknown_sm(struct kunit *test)
+{
+	struct cyc *c = reserve(test, "slave a io in=16 out=16\nslave b io in=16 out=16\n", 2);
+	struct ec_ioc_sc_sync sm = { .sm = 7, .dir = EC_CFG_DIR_OUTPUT };
+	struct bus *b = c->b;
+	u32 i;
+
+	sm.config = cyc_config(c, 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+	cyc_pdo(c, sm.config, EC_SC_PDO_ASSIGN_ADD, 7, 0x1700, 0);
+	for (i = 0; i < 16; i++)
+		cyc_pdo(c, sm.config, EC_SC_PDO_MAP_ADD, 7, 0x1700, 0x70000120 + (i << 8));
+	cyc_map(c, sm.config, 7, 0);
+	cyc_map_all(c, 1, 1, 0);
+	cyc_activate(c);
+	memset(cyc_data(c, 0), 0x5a, 64);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_STATION),
+			bus_slave(b, 0)->station);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 0)->why, "no SyncManager 7"), "%s",
+				  bus_slave(b, 0)->why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+}
+
+/* A SyncManager that its EEPROM wants on in OP only. */
+static void apply_op_only(struct kunit *test)
+{
+	struct cyc *c = reserve(test, "slave a io in=8 out=8\n", 1);
+	struct ec_ioc_state safeop = { .state = EC_AL_SAFEOP };
+	struct bus *b = c->b;
+
+	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	while (bus_slave(b, 0)->al_status != EC_AL_SAFEOP && c->cycles < 2000)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	cyc_run(c, 20);
+	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	KUNIT_ASSERT_EQ(test, ec_ioc_state(&b->app, &safeop), 0);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
+}
+
+/* The mapping that was found is not the slave's any more after its power was off. */
+static void apply_found_pdos(struct kunit *test)
+{
+	struct cyc *c = reserve(test, drive, 1);
+	struct bus *b = c->b;
+
+	map_two_bytes(b);
+	WRITE_ONCE(bus_slave(b, 0)->pdos_known, false);
+	bus_request(b, 0, EC_AL_PREOP);
+	cyc_map_all(c, 0, 1, 0);
+	KUNIT_ASSERT_EQ(test, b->m->session->configs[0]->fmmus[0].size, 2u);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 0, 0, 0, 0);
+	cyc_run(c, 500);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 0, 0, 0, 0);
+	cyc_run(c, 500);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
+/* The slave is on its way back, and its PDOs are read, when it is configured again. */
+static void apply_second_round(struct kunit *test)
+{
+	struct cyc *c = reserve(test, drive, 1);
+	struct bus *b = c->b;
+	u32 i;
+
+	for (i = 0; i < 3; i++) {
+		u32 config = cyc_config(c, 0);
+
+		if (i % 2) {
+			cyc_map(c, config, 2, 0);
+			cyc_map(c, config, 3, 0);
+		} else {
+			cyc_remap(c, config);
+			cyc_map(c, config, 2, 0);
+			cyc_map(c, config, 3, 0);
+		}
+		cyc_activate(c);
+		KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 5000), ~0ull, "round %u: %s", i,
+				    bus_slave(b, 0)->why);
+		KUNIT_ASSERT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+		cyc_domain(c);
+	}
+}
+
+/* A tool takes the slave up while the application still says what it wants. */
+static void apply_changes_meanwhile(struct kunit *test)
+{
+	struct cyc *c = reserve(test, drive, 1);
+	struct bus *b = c->b;
+	u32 config = cyc_config(c, 0), i, k, ups = 0;
+	void *other[16];
+
+	for (i = 0; i < 300; i++) {
+		if (i % 30 == 10) {
+			WRITE_ONCE(bus_slave(b, 0)->reconfigure, i % 60 == 10);
+			bus_request(b, 0, i % 60 == 10 ? EC_AL_SAFEOP : EC_AL_PREOP);
+		}
+		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, 2, 0, 0);
+		for (k = 0; k < ARRAY_SIZE(other); k++) {	/* whose memory it is now */
+			other[k] = kmalloc(sizeof(struct ec_pdo), GFP_KERNEL);
+			memset(other[k], 0xee, sizeof(struct ec_pdo));
+		}
+		usleep_range(2300, 2310);
+		for (k = 0; k < ARRAY_SIZE(other); k++)
+			kfree(other[k]);
+		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, 2, 0x1600, 0);
+		usleep_range(2300, 2310);
+		ups += bus_slave(b, 0)->al_status == EC_AL_SAFEOP;
+	}
+	KUNIT_EXPECT_GT(test, ups, 0u);
+	/* nothing of that has reached the slave */
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 22u);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+}
+
+struct reader {
+	struct bus *b;
+	struct completion done;
+	bool stop;
+	u32 good;
+	u32 bad;
+	int err;
+};
+
+static int read_on(void *arg)
+{
+	struct reader *r = arg;
+	struct ec_slave *s = ec_slave_ref(bus_slave(r->b, 0));
+
+	while (!READ_ONCE(r->stop)) {
+		size_t got;
+		u32 abort;
+		u8 v[4];
+		int ret = ec_coe_upload(s, 0x1018, 1, false, v, sizeof(v), &got, &abort, NULL);
+
+		if (ret)
+			r->err = ret;
+		ret ? r->bad++ : r->good++;
+		usleep_range(100, 110);
+	}
+	ec_slave_unref(s);
+	complete(&r->done);
+	return 0;
+}
+
+/* Reading an object of the slave all the time, as a tool does, while applications come and go. */
+static void apply_sdo_beside(struct kunit *test)
+{
+	struct cyc *c = reserve(test, drive, 1);
+	struct reader r = { .b = c->b };
+	u32 i;
+
+	init_completion(&r.done);
+	KUNIT_ASSERT_FALSE(test, IS_ERR(kthread_run(read_on, &r, "reader")));
+	for (i = 0; i < 8; i++) {
+		cyc_map_all(c, 0, 1, 0);
+		cyc_activate(c);
+		if (cyc_wait_op(c, 5000) == ~0ull)
+			break;
+		cyc_run(c, 20);
+		ec_ioc_deactivate(&c->b->app, NULL);
+		cyc_domain(c);
+	}
+	WRITE_ONCE(r.stop, true);
+	wait_for_completion(&r.done);
+	KUNIT_EXPECT_EQ(test, i, 8u);
+	KUNIT_EXPECT_GT(test, r.good, 20u);
+	KUNIT_EXPECT_EQ_MSG(test, r.bad, 0u, "%d", r.err);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(apply_unknown_sm),
+	KUNIT_CASE(apply_op_only),
+	KUNIT_CASE(apply_found_pdos),
+	KUNIT_CASE(apply_second_round),
+	KUNIT_CASE(apply_changes_meanwhile),
+	KUNIT_CASE(apply_sdo_beside),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_apply", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
