@@ -71,9 +71,9 @@ kernel_memory() {
 	wait_for 120 all_slaves_are PREOP "$(slaves)"
 }
 
-@test "killed at any moment, 20 times: the bus is idle, the next one starts, nothing is lost" {
+@test "killed at any moment, 28 times: the bus is idle, the next one starts, nothing is lost" {
 	RANDOM=7
-	for i in $(seq 20); do
+	for i in $(seq 28); do
 		"$EC_BUILD/apps/cyclic" >"$BATS_TEST_TMPDIR/out" 2>&1 &
 		app=$!
 		sleep "0.$((RANDOM % 90 + 10))"
@@ -81,13 +81,13 @@ kernel_memory() {
 		wait $app || true
 		wait_for 120 idle
 		# the first rounds fill caches
-		[ "$i" != 5 ] || before=$(kernel_memory)
+		[ "$i" != 8 ] || before=$(kernel_memory)
 	done
 	wait_for 120 all_slaves_are PREOP "$(slaves)"
 	after=$(kernel_memory)
 	echo "kernel memory: $before kB, then $after kB"
-	# a session has 32 kB
-	[ $((after - before)) -lt 300 ]
+	# 20 sessions of up to 32 kB each; caches still grow by some 100 kB
+	[ $((after - before)) -lt 250 ]
 	background "$BATS_TEST_TMPDIR/out" 600
 	kill -KILL $app
 	wait $app || true
