@@ -1324,7 +1324,8 @@ EC_PUBLIC_API int ecrt_slave_config_reason(const ec_slave_config_t *sc,
  * @bits: of its clock: 64 or 32; 0: it has none, all else is 0
  * @reference: it is the reference clock
  * @set: it was set since activation
- * @in_window: it was within 1 us of the reference when the master last looked
+ * @in_window: it was within 1 us of the reference when the master last looked, and
+ *	the master is certain of @delay_ns (else the log says what is odd)
  * @delay_ns: way of a frame from the reference clock (register 0x0928)
  * @offset_ns: of its system time (register 0x0920)
  * @difference_ns: to the reference then, positive: ahead (register 0x092C)

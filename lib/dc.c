@@ -138,7 +138,7 @@ static void fill_dc_state(ec_slave_config_dc_state_t *state,
 	state->bits = bits[s->dc_supported];
 	state->reference = s->position == reference;
 	state->set = !!s->dc_set;
-	state->in_window = s->dc_set && diff <= EC_UAPI_DC_WINDOW_NS &&
+	state->in_window = s->dc_set && !s->dc_odd && diff <= EC_UAPI_DC_WINDOW_NS &&
 			   diff >= -EC_UAPI_DC_WINDOW_NS;
 	state->delay_ns = s->transmission_delay;
 	state->offset_ns = s->dc_offset;

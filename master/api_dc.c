@@ -122,7 +122,7 @@ static void fill_dc_state(ec_slave_config_dc_state_t *state, const struct ec_ioc
 	state->reference = READ_ONCE(m->dc.ref_station) &&
 			   s->station == READ_ONCE(m->dc.ref_station);
 	state->set = !!s->dc_set;
-	state->in_window = s->dc_set && abs((s64)s->dc_diff) <= EC_UAPI_DC_WINDOW_NS;
+	state->in_window = s->dc_set && !s->dc_odd && abs((s64)s->dc_diff) <= EC_UAPI_DC_WINDOW_NS;
 	state->delay_ns = s->transmission_delay;
 	state->offset_ns = s->dc_offset;
 	state->difference_ns = s->dc_diff;

@@ -68,7 +68,7 @@ static void fill_node(struct job *j, unsigned int i)
 	struct ec_dc_node *n = &j->nodes[i];
 	unsigned int p;
 
-	n->parent = s->next[s->upstream] < i ? s->next[s->upstream] : EC_DC_NONE;
+	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
 	n->entry = s->upstream;
 	n->dc = has_clock(s);
 	for (p = 0; p < EC_DC_PORTS; p++) {
@@ -278,6 +278,7 @@ static int measure(struct job *j)
 		if (j->nodes[i].dc) {
 			j->slaves[i]->dc_delay = (u32)div_s64(j->sum[i], ROUNDS);
 			j->slaves[i]->dc_hop = j->nodes[i].hop;
+			WRITE_ONCE(j->slaves[i]->dc_odd, j->nodes[i].odd);
 		}
 	return ret;
 }
@@ -308,6 +309,21 @@ static void set_ref(struct job *j)
 		ec_slave_unref(old);
 }
 
+/* Receive times no cables make are worth a line. */
+static void tell_odd(const struct job *j)
+{
+	unsigned int i, n = 0, first = 0;
+
+	for (i = j->n; i-- > 0;)
+		if (j->nodes[i].odd) {
+			first = i;
+			n++;
+		}
+	if (n)
+		ec_slave_warn(j->slaves[first], "its receive times and those of %u more slave(s) do not fit to the topology: their clocks may be off; check the cables, then rescan\n",
+			      n - 1);
+}
+
 /**
  * ec_dc_measure() - find the reference clock and the propagation delays
  * @m: master
@@ -336,6 +352,8 @@ int ec_dc_measure(struct ec_master *m)
 		ret = -ENXIO;
 	if (ret)
 		j.ref = j.n;
+	else
+		tell_odd(&j);
 	set_ref(&j);
 	mutex_unlock(&m->dc.lock);
 	job_free(&j);

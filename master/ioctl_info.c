@@ -260,6 +260,7 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->dc_offset = s->dc_offset;
 	i->dc_diff = s->dc_diff;
 	i->dc_set = s->dc_set;
+	i->dc_odd = i->dc_supported && (READ_ONCE(s->dc_odd) || READ_ONCE(s->topology_odd));
 	i->features = feat;
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];

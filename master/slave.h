@@ -41,6 +41,7 @@ struct ec_master;
  * @recv: receive times at the ports
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
+ * @topology_odd: open ports and slaves do not fit together, here or before
  *
  * Of the EEPROM, then of the object dictionary, changed under master->topo:
  * @sm_pdos: PDOs by SyncManager
@@ -50,6 +51,7 @@ struct ec_master;
  * Of the distributed clock, changed under master->dc.lock:
  * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
  * @dc_hop: way from the clock before it, ns
+ * @dc_odd: receive times make no sense: the two are not certain
  * @dc_offset: of its system time, ns, register 0x0920
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
  * @dc_set: its clock was set for this session
@@ -112,6 +114,7 @@ struct ec_slave {
 	u32 recv[EC_MAX_PORT];
 	u16 next[EC_MAX_PORT];
 	u8 upstream;
+	bool topology_odd;
 
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
 	struct ec_pdo_list free_pdos;
@@ -119,6 +122,7 @@ struct ec_slave {
 
 	u32 dc_delay;
 	u32 dc_hop;
+	bool dc_odd;
 	u64 dc_offset;
 	s32 dc_diff;
 	bool dc_set;

@@ -82,6 +82,27 @@ static void edge(const struct slaves *all, const struct ec_ioc_slave *s, unsigne
 	out_end();
 }
 
+/* The open port behind which nobody is; slave 0 is not there if it hangs at a later one. */
+static void to_master(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+{
+	unsigned int at = 0, port = 0;
+
+	for (size_t i = all->n; i-- > 0;)
+		for (unsigned int p = EC_UAPI_PORTS; p-- > 0;) {
+			const struct ec_ioc_port *x = &all->v[i].ports[p];
+
+			if (!x->signal || x->loop_closed || x->next_slave != EC_UAPI_NONE16)
+				continue;
+			at = i;
+			port = p;
+		}
+	out_text("\tmaster -- slave%u [label=\"%s\", weight=\"%u\"", at,
+		 port_type_text(all->v[at].ports[port].type),
+		 all->v[at].ports[port].type == TYPE_EBUS ? 5u : 1u);
+	label("headlabel", &all->v[at], port, info, regs[at]);
+	out_text("]\n");
+}
+
 static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_SIZE])
 {
 	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
@@ -94,13 +115,8 @@ static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_
 		node(&all->v[i], info);
 	out_end();
 	out_text("\n");
-	if (all->n) {
-		out_text("\tmaster -- slave0");
-		out_text(" [label=\"%s\", weight=\"%u\"", port_type_text(all->v[0].ports[0].type),
-			 all->v[0].ports[0].type == TYPE_EBUS ? 5u : 1u);
-		label("headlabel", &all->v[0], 0, info, regs[0]);
-		out_text("]\n");
-	}
+	if (all->n)
+		to_master(all, info, regs);
 	out_array("links");
 	for (size_t i = 0; i < all->n; i++)
 		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++) {

@@ -131,10 +131,11 @@ const struct cmd cmd_slaves = {
 		"state, al_error, flag_error, cause, name, vendor_id, product_code, revision_number,\n"
 		"serial_number, own_alias, station_address, al_status, al_status_code,\n"
 		"al_status_text, requested_state, dl_status, fmmu_bit_operation, dc, dc_delay_ns,\n"
-		"dc_state (not_set, in_step, off), dc_offset_ns, dc_difference_ns (when set),\n"
-		"ports[] (type, link_up, loop_closed, signal, next_slave, receive_time_ns,\n"
-		"receive_time_diff_ns, delay_to_next_dc_ns), mailboxes (bootstrap_rx_offset,\n"
-		"bootstrap_rx_size, bootstrap_tx_offset, bootstrap_tx_size, standard_..., protocols[]),\n"
+		"dc_state (not_set, in_step, off, delay_uncertain), dc_offset_ns,\n"
+		"dc_difference_ns (when set), ports[] (type, link_up, loop_closed, signal,\n"
+		"next_slave, receive_time_ns, receive_time_diff_ns, delay_to_next_dc_ns),\n"
+		"mailboxes (bootstrap_rx_offset, bootstrap_rx_size, bootstrap_tx_offset,\n"
+		"bootstrap_tx_size, standard_..., protocols[]),\n"
 		"general (group, image, order_number, device_name, coe_details, flags, current_ma),\n"
 		"sync_managers, fmmus, sii_words)",
 	.flags = CMD_HISTORIC,

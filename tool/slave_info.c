@@ -51,12 +51,15 @@ static void data_link(const struct ec_ioc_slave *s)
 		      "  DC system time transmission delay: %u ns\n", s->transmission_delay);
 	if (dc && dc < 3) {
 		bool off = s->dc_diff > EC_UAPI_DC_WINDOW_NS || s->dc_diff < -EC_UAPI_DC_WINDOW_NS;
-		unsigned int state = !s->dc_set ? 0 : off ? 2 : 1;
-		static const char *const word[] = { "not_set", "in_step", "off" };
+		unsigned int state = s->dc_odd ? 3 : !s->dc_set ? 0 : off ? 2 : 1;
+		static const char *const word[] = { "not_set", "in_step", "off",
+						    "delay_uncertain" };
+		static const char *const line[] = { "", "in step", "differs too much",
+			"delay uncertain, cables and receive times do not fit together" };
 
 		out_str("dc_state", word[state], NULL);
 		if (state)
-			out_text("  DC state: %s\n", off ? "differs too much" : "in step");
+			out_text("  DC state: %s\n", line[state]);
 	}
 	if (s->dc_set) {
 		out_i("dc_offset_ns", (s64)s->dc_offset, "  DC system time offset: %lld ns\n",
@@ -66,10 +69,20 @@ static void data_link(const struct ec_ioc_slave *s)
 	}
 }
 
+/* usually port 0; what a closed one has latched is old */
+static const struct ec_ioc_port *first_open(const struct ec_ioc_slave *s)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_UAPI_PORTS - 1 && s->ports[i].loop_closed; i++)
+		;
+	return &s->ports[i];
+}
+
 static void port(const struct ec_ioc_slave *s, unsigned int i)
 {
 	const struct ec_ioc_port *p = &s->ports[i];
-	s32 diff = (s32)(p->receive_time - s->ports[0].receive_time);
+	s32 diff = (s32)(p->receive_time - first_open(s)->receive_time);
 	bool open = !p->loop_closed;
 
 	out_object(NULL);

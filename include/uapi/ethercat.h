@@ -196,7 +196,8 @@ struct ec_ioc_slave {
 	char why[EC_UAPI_REASON];	/* cause of @error */
 	__u64 dc_offset;	/* register 0x0920, ns */
 	__s32 dc_diff;		/* to the reference clock when last checked, ns */
-	__u32 dc_set;		/* the clock was set for the active application */
+	__u16 dc_set;		/* the clock was set for the active application */
+	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
 };
 
 struct ec_ioc_sm {

@@ -5,14 +5,23 @@
 /* ports in the order in which a frame passes them */
 static const u8 order[EC_DC_PORTS] = { 0, 3, 1, 2 };
 
+#define NOISE_NS	50	/* of a way, from that of the receive times */
+#define WAY_MAX_NS	1000000	/* some km of fibre, or hundreds of slaves without a clock */
+
+static u32 place(u8 port)
+{
+	u32 i = 0;
+
+	while (order[i] != port)
+		i++;
+	return i;
+}
+
 /* Open ports of a slave as a frame meets them, the entry first; returns how many. */
 static u32 visited(const struct ec_dc_node *a, u8 port[EC_DC_PORTS])
 {
-	u32 i, start = 0, n = 0;
+	u32 i, start = place(a->entry), n = 0;
 
-	for (i = 0; i < EC_DC_PORTS; i++)
-		if (order[i] == a->entry)
-			start = i;
 	port[n++] = a->entry;
 	for (i = 1; i < EC_DC_PORTS; i++) {
 		u8 p = order[(start + i) % EC_DC_PORTS];
@@ -33,35 +42,56 @@ static u32 stay(const struct ec_dc_node *a)
 }
 
 /*
- * Hang every slave with a clock behind the port of the nearest slave before it
- * that has one too; slaves without a clock count as cable. Returns the first
- * of those that have none before them.
+ * How long it takes from there to the processing unit. That is behind port 0, open or
+ * not: with another entry the frame has been behind some ports by then.
  */
-static s32 link_up(struct ec_dc_node *nodes, u32 n)
+static u32 to_unit(const struct ec_dc_node *a)
 {
-	s32 top = EC_DC_NONE, top_last = EC_DC_NONE;
-	u32 i, p;
+	u8 port[EC_DC_PORTS], last = a->entry;
+	u32 i, n = a->entry ? visited(a, port) : 0;
 
+	for (i = 1; i < n; i++) {
+		if (port[i] && place(port[i]) < place(a->entry))
+			break;
+		last = port[i];
+	}
+	return a->recv[last] - a->recv[a->entry];
+}
+
+/*
+ * Hang every slave with a clock behind the port of the nearest slave towards the master
+ * that has one too; slaves without a clock count as cable. Returns the first
+ * of those that have none before them, and the last one in @last.
+ */
+static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
+{
+	s32 top = EC_DC_NONE;
+	u32 i, k, p;
+
+	for (i = 0; i < n; i++)
+		for (p = 0; p < EC_DC_PORTS; p++)
+			nodes[i].first[p] = nodes[i].last[p] = EC_DC_NONE;
+	*last = EC_DC_NONE;
 	for (i = 0; i < n; i++) {
 		struct ec_dc_node *b = &nodes[i];
 		s32 a = b->parent;
 		u8 port = b->parent_port;
 
-		for (p = 0; p < EC_DC_PORTS; p++)
-			b->first[p] = b->last[p] = EC_DC_NONE;
 		b->next = EC_DC_NONE;
+		b->odd = false;
+		b->delay = 0;
 		if (!b->dc)
 			continue;
-		while (a != EC_DC_NONE && !nodes[a].dc) {
+		for (k = 0; k < n && a != EC_DC_NONE && !nodes[a].dc; k++) {
 			port = nodes[a].parent_port;
 			a = nodes[a].parent;
 		}
 		if (a == EC_DC_NONE) {
-			if (top_last == EC_DC_NONE)
+			if (*last == EC_DC_NONE)
 				top = i;
 			else
-				nodes[top_last].next = i;
-			top_last = i;
+				nodes[*last].next = i;
+			*last = i;
 		} else {
 			if (nodes[a].last[port] == EC_DC_NONE)
 				nodes[a].first[port] = i;
@@ -77,23 +107,45 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n)
  * The slaves of a chain are reached one after the other. What the frame did
  * not stay at them it was on the way, in equal parts: there and back for one.
  */
-static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round)
+static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round, bool odd)
 {
 	s32 way = round;
-	u32 parts = 1;
+	s32 parts = 1;
 	s32 b;
 
 	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
 		way -= stay(&nodes[b]);
 		parts++;
 	}
+	way /= parts;
+	odd |= way < -NOISE_NS || way > WAY_MAX_NS;
 	/* noise of the receive times can make a short way negative */
-	way = way > 0 ? way / (s32)parts : 0;
+	way = way > 0 ? way : 0;
 	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
+		nodes[b].odd = odd;
 		nodes[b].hop = way;
 		nodes[b].delay = start + way;
 		start = nodes[b].delay + stay(&nodes[b]);
 	}
+}
+
+/* Everything behind the ports of @a, which was placed; it goes behind @last, too. */
+static s32 place_behind(struct ec_dc_node *nodes, const struct ec_dc_node *a, s32 last)
+{
+	u8 port[EC_DC_PORTS];
+	u32 k, ports = visited(a, port);
+
+	for (k = 1; k < ports; k++) {
+		s32 first = a->first[port[k]];
+
+		place_chain(nodes, first, a->delay + a->recv[port[k - 1]] - a->recv[a->entry],
+			    a->recv[port[k]] - a->recv[port[k - 1]], a->odd);
+		if (first == EC_DC_NONE)
+			continue;
+		nodes[last].next = first;
+		last = a->last[port[k]];
+	}
+	return last;
 }
 
 /**
@@ -110,26 +162,19 @@ static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 roun
  */
 void ec_dc_delays(struct ec_dc_node *nodes, u32 n, u32 ref)
 {
-	u8 port[EC_DC_PORTS];
-	u32 i, k, ports, zero, at = 0;
-	s32 b;
+	u32 i, zero, at = 0;
+	s32 last, b, top = link_up(nodes, n, &last);
 
-	for (b = link_up(nodes, n); b != EC_DC_NONE; b = nodes[b].next) {
+	for (b = top; b != EC_DC_NONE; b = nodes[b].next) {
 		nodes[b].hop = 0;
 		nodes[b].delay = at;
 		at += stay(&nodes[b]);
 	}
-	for (i = 0; i < n; i++) {
-		struct ec_dc_node *a = &nodes[i];
-
-		if (!a->dc)
-			continue;
-		ports = visited(a, port);
-		for (k = 1; k < ports; k++)
-			place_chain(nodes, a->first[port[k]],
-				    a->delay + a->recv[port[k - 1]] - a->recv[a->entry],
-				    a->recv[port[k]] - a->recv[port[k - 1]]);
-	}
+	/* so far when a frame comes in; the list grows on the way */
+	for (b = top; b != EC_DC_NONE; b = nodes[b].next)
+		last = place_behind(nodes, &nodes[b], last);
+	for (i = 0; i < n; i++)
+		nodes[i].delay += nodes[i].dc ? to_unit(&nodes[i]) : 0;
 	zero = ref < n ? nodes[ref].delay : 0;
 	for (i = 0; i < n; i++)
 		nodes[i].delay = nodes[i].dc ? nodes[i].delay - zero : 0;

@@ -10,17 +10,19 @@
 
 /**
  * struct ec_dc_node - one slave of the segment, in ring order
- * @parent: index of the slave it hangs at, EC_DC_NONE: the first one
+ * @parent: index of the slave it hangs at, EC_DC_NONE: the first one; a later one when
+ *	that is entered by another port than 0
  * @parent_port: port there
  * @entry: its own port towards the master
  * @open: bit per open port, @entry included
  * @dc: has receive times
  * @recv: receive times at the ports, registers 0x0900-0x090F, all latched by
  *	the same frame
- * @delay: result: when a frame reaches it, counted from the reference clock,
+ * @delay: result: when a frame reaches its processing unit, counted from the reference clock,
  *	for register 0x0928; modulo 2^32, so that slaves in front of the
  *	reference have a negative one
  * @hop: result: way from the clock before it, ns
+ * @odd: result: no cables make such receive times; the two are not certain
  * @first: for ec_dc_delays(): first slave with a clock behind each port
  * @last: the last one
  * @next: the next behind the same port
@@ -34,6 +36,7 @@ struct ec_dc_node {
 	u32 recv[EC_DC_PORTS];
 	u32 delay;
 	u32 hop;
+	bool odd;
 	s32 first[EC_DC_PORTS];
 	s32 last[EC_DC_PORTS];
 	s32 next;

@@ -153,6 +153,9 @@ static void clock_state(void)
 	CHECK(!ecrt_slave_config_dc_state(sc, &s) && s.bits == 64 && s.set &&
 	      s.in_window && !s.reference && s.delay_ns == 145 &&
 	      s.offset_ns == 5 && s.difference_ns == -1000);
+	fake.dc_odd = 1;
+	CHECK(!ecrt_slave_config_dc_state(sc, &s) && s.set && !s.in_window);
+	fake.dc_odd = 0;
 	fake.dc_bits = 1;
 	fake.dc_diff = 1001;
 	CHECK(!ecrt_slave_config_dc_state(sc, &s) && s.bits == 32 && !s.in_window);

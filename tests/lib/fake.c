@@ -149,6 +149,7 @@ static void slave(struct ec_ioc_slave *s)
 	s->dc_offset = 5;
 	s->dc_diff = fake.dc_diff;
 	s->dc_set = 1;
+	s->dc_odd = (__u16)fake.dc_odd;
 	memset(s->name, 'n', sizeof(s->name));
 }
 

@@ -41,6 +41,7 @@ struct fake {
 	unsigned int preset_size;
 	unsigned int dc_bits;
 	int dc_diff;
+	unsigned int dc_odd;
 	unsigned char running;	/* activation takes over; the image is of this */
 };
 

@@ -264,6 +264,20 @@ static int master(struct ec_ioc_master *m, int index)
 
 static struct ec_ioc_slave state[SLAVES];
 
+/* slave 2 hangs at the master by its port 1, slave 0 behind its port 0 */
+static void reversed(struct ec_ioc_slave *s)
+{
+	if (s->position == 0) {
+		s->ports[0].next_slave = 2;
+	} else if (s->position == 1) {
+		s->ports[1] = (struct ec_ioc_port){ 2, 0, 1, 0, 0, EC_UAPI_NONE16, 0, 0 };
+	} else {
+		s->ports[0].next_slave = 0;
+		s->ports[1] = (struct ec_ioc_port){ 3, 1, 0, 1, 4000, EC_UAPI_NONE16, 0, 0 };
+		s->dc_odd = 1;
+	}
+}
+
 static int slave(struct ec_ioc_slave *s)
 {
 	if (bus("big") && s->position < BIG) {
@@ -283,6 +297,8 @@ static int slave(struct ec_ioc_slave *s)
 	*s = state[s->position];
 	if (bus("cut") && s->position == 2)
 		s->device_index = 1;
+	if (bus("reversed"))
+		reversed(s);
 	if (bus("evil") && s->position == 2) {
 		snprintf(s->name, sizeof(s->name), "%s", "\033[2J\302\233H\2341m\342\200\256 Gr\303\266\337e\r\n\177");
 		snprintf(s->order, sizeof(s->order), "%s", "*/ \"x\\ /* int");

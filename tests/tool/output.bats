@@ -306,6 +306,19 @@ END
 	[ "$(out sii_read -p2 | wc -c)" -eq 160 ]
 }
 
+@test "a slave that is connected by another port than 0" {
+	export FAKE_BUS=reversed
+	local g
+	g=$(out graph dc)
+	[[ $g == *'master -- slave2 [label="MII", weight="1", headlabel="1 [0]"]'* ]]
+	[[ $g == *'slave0 -- slave2 ['*'taillabel="0 [0]", headlabel="0 [145]"]'* ]]
+	[[ $g == *'slave0 -- slave1 ['* ]]
+	[[ $g != *'slave1 -- slave2'* ]]
+	out graph -j | json '[(l["from"], l["to"]) for l in d["links"]] == [(0, 2), (0, 1)]'
+	[[ $(out slaves -v -p2) == *"DC state: delay uncertain, cables"* ]]
+	out slaves -j -p2 | json 'd["masters"][0]["slaves"][0]["dc_state"] == "delay_uncertain"'
+}
+
 @test "graph draws" {
 	command -v dot >/dev/null || skip "no graphviz"
 	for a in "" dc crc; do

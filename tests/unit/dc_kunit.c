@@ -72,19 +72,81 @@ static void delays_behind_a_branch_without_clock(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, n[3].delay, 1000u);
 }
 
-/* connected the wrong way round: the frame comes in by port 1 */
+/*
+ * Connected the wrong way round: the frame comes in by port 1, and is at the processing
+ * unit when it comes back to port 0, after the slave that hangs there.
+ */
 static void delays_of_a_reversed_slave(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 3000 } },
+		{ .parent = 2, .parent_port = 0, .open = P(0), .dc = true, .recv = { 0 } },
 		{ .parent = 0, .parent_port = 1, .entry = 1, .open = P(0) | P(1), .dc = true,
 		  .recv = { 1600, 1000 } },
-		{ .parent = 1, .parent_port = 0, .open = P(0), .dc = true, .recv = { 0 } },
 	};
 
 	ec_dc_delays(n, ARRAY_SIZE(n), 0);
-	KUNIT_EXPECT_EQ(test, n[1].delay, 1200u);
-	KUNIT_EXPECT_EQ(test, n[2].delay, 1500u);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 1500u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 1800u);
+	KUNIT_EXPECT_EQ(test, n[2].hop, 1200u);
+	KUNIT_EXPECT_FALSE(test, n[0].odd || n[1].odd || n[2].odd);
+}
+
+/* the same at the end of a branch: port 0 is closed, and what it latched once is old */
+static void delays_of_a_reversed_end(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1) | P(2), .dc = true,
+		  .recv = { 0, 1000, 3000 } },
+		{ .parent = 0, .parent_port = 1, .entry = 1, .open = P(1), .dc = true,
+		  .recv = { 77, 999999999 } },
+		{ .parent = 0, .parent_port = 2, .open = P(0), .dc = true },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 500u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 2000u);
+	KUNIT_EXPECT_FALSE(test, n[1].odd || n[2].odd);
+}
+
+/* in by port 1, out by 2, then the processing unit, then out by 3; and a clock at each */
+static void delays_on_both_sides_of_the_unit(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = 1, .parent_port = 2, .open = P(0), .dc = true },
+		{ .parent = EC_DC_NONE, .entry = 1, .open = P(1) | P(2) | P(3), .dc = true,
+		  .recv = { 5, 1000, 1600, 2600 } },
+		{ .parent = 1, .parent_port = 3, .open = P(0), .dc = true },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[0].delay, 0u);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 300u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 800u);
+}
+
+/* times of a closed port, or of another latch: said, not taken for a way */
+static void times_no_cable_makes_are_odd(struct kunit *test)
+{
+	static const u32 back[] = { 500000000, 0x80000000, 0xfffffc00, 3000000 };
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(back); i++) {
+		struct ec_dc_node n[] = {
+			{ .parent = EC_DC_NONE, .open = P(0) | P(1) | P(2), .dc = true,
+			  .recv = { 0, 1000, 1000 + back[i] } },
+			{ .parent = 0, .parent_port = 1, .open = P(0), .dc = true },
+			{ .parent = 0, .parent_port = 2, .open = P(0) | P(1), .dc = true,
+			  .recv = { 0, 600 } },
+			{ .parent = 2, .parent_port = 1, .open = P(0), .dc = true },
+		};
+
+		ec_dc_delays(n, ARRAY_SIZE(n), 0);
+		KUNIT_EXPECT_FALSE(test, n[0].odd);
+		KUNIT_EXPECT_FALSE(test, n[1].odd);
+		KUNIT_EXPECT_TRUE_MSG(test, n[2].odd, "%x", back[i]);
+		KUNIT_EXPECT_TRUE(test, n[3].odd);
+	}
 }
 
 static void slaves_before_the_reference_have_a_negative_delay(struct kunit *test)
@@ -158,6 +220,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(delays_through_a_slave_without_clock),
 	KUNIT_CASE(delays_behind_a_branch_without_clock),
 	KUNIT_CASE(delays_of_a_reversed_slave),
+	KUNIT_CASE(delays_of_a_reversed_end),
+	KUNIT_CASE(delays_on_both_sides_of_the_unit),
+	KUNIT_CASE(times_no_cable_makes_are_odd),
 	KUNIT_CASE(slaves_before_the_reference_have_a_negative_delay),
 	KUNIT_CASE(a_negative_way_is_none),
 	KUNIT_CASE(difference_has_sign_and_magnitude),

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Who hangs at which port, and propagation delays, also of slaves connected by other ports. */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+/* how long a frame is on its way from slave 0 to slave @i */
+static s32 true_delay(struct bus *b, u32 i)
+{
+	const struct ec_sim_step *step = b->sim->route[0].step;
+
+	return step[i].pu_ns - step[0].pu_ns;
+}
+
+/* Neighbours and delays as they are in truth; returns the largest error of a delay, ns. */
+static u32 expect_wiring(struct bus *b, const char *text)
+{
+	const struct ec_sim_route *r = &b->sim->route[0];
+	u32 i, p, max = 0;
+
+	for (i = 0; i < r->steps; i++) {
+		const struct ec_slave *s = bus_slave(b, i);
+		const struct ec_esc *esc = r->step[i].esc;
+
+		for (p = 0; p < EC_MAX_PORT; p++) {
+			s32 peer = esc->port[p].peer;
+
+			KUNIT_EXPECT_EQ_MSG(b->test, s->next[p], peer < 0 ? EC_UAPI_NONE16 :
+					    (u16)b->sim->esc[peer]->route_pos[0],
+					    "slave %u port %u of\n%s", i, p, text);
+			if (peer == -2)
+				KUNIT_EXPECT_EQ(b->test, s->upstream, p);
+		}
+		KUNIT_EXPECT_FALSE(b->test, s->topology_odd);
+		if (!(ec_slave_features(s) & EC_FEAT_DC))
+			continue;
+		KUNIT_EXPECT_FALSE(b->test, s->dc_odd);
+		max = max_t(u32, max, abs((s32)s->dc_delay - true_delay(b, i)));
+	}
+	return max;
+}
+
+/* every cycle the time of the reference goes to the slaves */
+static void each(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void judge_wiring(struct kunit *test, const char *text, u32 n)
+{
+	struct bus *b = bus_up(test, text, n);
+	struct cyc *c;
+	u64 now;
+	u32 i;
+
+	bus_idle(b);
+	KUNIT_EXPECT_LE(test, expect_wiring(b, text), 10u);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, n, 0);
+	c->each = each;
+	cyc_activate(c);
+	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	cyc_run(c, 2000);
+	now = ktime_get_ns();
+	ec_sim_advance(b->sim, now);
+	for (i = 1; i < n; i++) {
+		s64 d = ec_esc_system_time(bus_esc(b, i), now) -
+			ec_esc_system_time(bus_esc(b, 0), now);
+
+		if (bus_esc(b, i)->cfg.features & EC_FEAT_DC)
+			KUNIT_EXPECT_LT(test, abs(d), 100ll);
+	}
+	bus_down(b);
+	test->priv = NULL;
+}
+
+/* IN and OUT swapped: at the end of a line or branch, in the middle, at the master */
+static void wiring_reversed(struct kunit *test)
+{
+	judge_wiring(test, "slave a drive in=8 out=8 drift=60ppm cable=50\n"
+		     "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+		     "slave c drive in=8 out=8 drift=30ppm clock=9s\n"
+		     "wire b.1 -> c.1 cable=100ns\n", 3);
+	judge_wiring(test, "slave k EK1100 drift=-20ppm\n"
+		     "slave a drive in=8 out=8 drift=60ppm clock=1s\n"
+		     "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+		     "slave d drive in=8 out=8 drift=-70ppm clock=3s\n"
+		     "wire k.1 -> a.1 cable=300ns\n"
+		     "wire k.2 -> b.0 cable=900ns\n"
+		     "wire b.1 -> d.0 cable=900ns\n", 4);
+	judge_wiring(test, "slave a drive in=8 out=8 drift=60ppm cable=50\n"
+		     "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+		     "slave c drive in=8 out=8 drift=30ppm clock=9s\n"
+		     "slave d drive in=8 out=8 drift=30ppm clock=9s\n"
+		     "wire a.1 -> b.1 cable=100ns\n"
+		     "wire b.0 -> c.0 cable=100ns\n"
+		     "wire c.1 -> d.0 cable=700ns\n", 4);
+	judge_wiring(test, "slave a drive in=8 out=8 drift=60ppm\n"
+		     "slave b drive in=8 out=8 drift=-70ppm clock=3s\n"
+		     "slave c drive in=8 out=8 drift=30ppm clock=9s\n"
+		     "wire master.0 -> a.1 cable=100ns\n"
+		     "wire a.0 -> b.0 cable=100ns\n"
+		     "wire b.1 -> c.1 cable=700ns\n", 3);
+	/* only the last one has no clock, and is known by its single open port */
+	judge_wiring(test, "slave a drive in=8 out=8 drift=60ppm\n"
+		     "slave b drive in=8 out=8 drift=-70ppm clock=3s dc=none\n"
+		     "wire a.1 -> b.1 cable=100ns\n", 2);
+}
+
+#define TREES	24u
+#define TREE	20u
+
+/* a tree of slaves with two and three ports that are entered by any of them */
+struct tree {
+	u32 random;
+	u8 ports[TREE];		/* bit per port there is */
+	u8 used[TREE];		/* with a cable */
+	u8 entry[TREE];
+	u8 parent[TREE];
+	u8 at[TREE];		/* port there */
+};
+
+static u32 dice(struct tree *t, u32 n)
+{
+	t->random = t->random * 1664525 + 1013904223;
+	return (t->random >> 8) % n;
+}
+
+static u8 free_port(struct tree *t, u32 i)
+{
+	u8 free = t->ports[i] & ~t->used[i], p;
+
+	do
+		p = dice(t, EC_MAX_PORT);
+	while (!(free & BIT(p)));
+	t->used[i] |= BIT(p);
+	return p;
+}
+
+static void grow(struct tree *t)
+{
+	u32 i, closed = 0;
+
+	for (i = 0; i < TREE; i++) {
+		t->ports[i] = i % 3 == 1 ? 7 : 3;
+		t->used[i] = 0;
+		t->entry[i] = dice(t, 2) ? 0 : free_port(t, i);
+		t->used[i] |= BIT(t->entry[i]);
+		if (!i)
+			continue;
+		do
+			t->parent[i] = dice(t, i);
+		while (t->used[t->parent[i]] == t->ports[t->parent[i]]);
+		t->at[i] = free_port(t, t->parent[i]);
+	}
+	/* a frame passes one closed port 0 at most */
+	for (i = 0; i < TREE; i++)
+		if (!(t->used[i] & BIT(0)) && closed++)
+			t->entry[i] = 0;
+}
+
+static u32 describe(struct tree *t, char *text, u32 size)
+{
+	u32 i, n = scnprintf(text, size, "segment seed=%u\n", t->random);
+
+	for (i = 0; i < TREE; i++)
+		n += scnprintf(text + n, size - n, "slave s%u %s drift=%dppm clock=%ums dc=%d\n",
+			       i, t->ports[i] == 7 ? "EK1100" : "drive in=8 out=8",
+			       (int)dice(t, 200) - 100, dice(t, 9000), dice(t, 2) ? 32 : 64);
+	n += scnprintf(text + n, size - n, "wire master.0 -> s0.%u\n", t->entry[0]);
+	for (i = 1; i < TREE; i++)
+		n += scnprintf(text + n, size - n, "wire s%u.%u -> s%u.%u cable=%uns\n",
+			       t->parent[i], t->at[i], i, t->entry[i], 20 + dice(t, 900));
+	return n;
+}
+
+static void wiring_by_any_port(struct kunit *test)
+{
+	struct tree *t = kunit_kzalloc(test, sizeof(*t), GFP_KERNEL);
+	static char text[8192];
+	u32 i, max = 0;
+
+	KUNIT_ASSERT_NOT_NULL(test, t);
+	for (i = 0; i < TREES; i++) {
+		struct bus *b;
+
+		grow(t);
+		describe(t, text, sizeof(text));
+		b = bus_up(test, text, TREE);
+		bus_idle(b);
+		KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+		max = max(max, expect_wiring(b, text));
+		bus_down(b);
+		test->priv = NULL;
+	}
+	bus_figure("%u random trees of slaves connected by any port: worst delay error %u ns",
+		   TREES, max);
+	KUNIT_EXPECT_LE(test, max, 10u);
+}
+
+static bool shown_odd(struct bus *b, u32 position)
+{
+	struct ec_ioc_slave *s = kunit_kzalloc(b->test, sizeof(*s), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(b->test, s);
+	s->position = position;
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_slave(&b->app, s), 0);
+	return s->dc_odd;
+}
+
+/* Receive times no cable makes, and ports that lead nowhere, are told. */
+static void wiring_that_does_not_fit(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8\nslave b drive in=8 out=8\n"
+			       "slave c drive in=8 out=8\n", 3);
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < 3; i++)
+		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
+	bus_esc(b, 1)->cfg.drift_ppb = 2000000000;
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	KUNIT_EXPECT_FALSE(test, shown_odd(b, 0));
+	KUNIT_EXPECT_TRUE(test, shown_odd(b, 1));
+	KUNIT_EXPECT_TRUE(test, shown_odd(b, 2));
+	bus_esc(b, 1)->cfg.drift_ppb = 0;
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	for (i = 0; i < 3; i++)
+		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
+	bus_down(b);
+
+	/* b is reversed, and has no clock to tell: it seems to come behind c */
+	b = bus_up(test, "slave a drive in=8 out=8\nslave b drive in=8 out=8 dc=none\n"
+		   "slave c drive in=8 out=8\n"
+		   "wire a.1 -> b.1\nwire b.0 -> c.0\n", 3);
+	bus_idle(b);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->topology_odd);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_odd);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(wiring_reversed),
+	KUNIT_CASE(wiring_by_any_port),
+	KUNIT_CASE(wiring_that_does_not_fit),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_dc_wiring", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
