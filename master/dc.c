@@ -366,19 +366,20 @@ int ec_dc_measure(struct ec_master *m)
  */
 static u64 latch_time(const struct job *j)
 {
-	u64 app = ec_dc_app_at(j->m, j->latch_ns), t;
+	u64 t = ec_dc_app_at(j->m, j->latch_ns);
 	unsigned int i, set = j->ref;
 
 	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
 		if (j->nodes[i].dc && j->slaves[i]->dc_set)
 			set = i;
-	if (!j->slaves[set]->dc_set)
-		return app;
-	t = get_unaligned_le64(j->regs[set] + 0x18) + j->slaves[set]->dc_offset -
-	    (s64)(s32)j->slaves[set]->dc_delay;
-	if (ec_slave_features(j->slaves[set]) & EC_FEAT_DC64)
-		return t;
-	return app + (s32)((u32)t - (u32)app);
+	if (j->slaves[set]->dc_set) {
+		t = get_unaligned_le64(j->regs[set] + 0x18) + j->slaves[set]->dc_offset -
+		    (s64)(s32)j->slaves[set]->dc_delay;
+		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
+			t = ec_dc_whole(j->m, (u32)t, j->latch_ns);
+	}
+	ec_dc_clock(j->m, t, j->latch_ns);
+	return t;
 }
 
 /* System time offset and delay, then the filters: their depths before 0x0930 resets them. */
@@ -498,7 +499,7 @@ static int compensate(struct job *j, const struct stage *st)
 			return -ECANCELED;
 		frames = batch(j, st, bytes, len);
 		/* for the case that the reference does not answer */
-		put_unaligned_le64(ec_dc_now(j->m), t);
+		put_unaligned_le64(ec_dc_clock_now(j->m), t);
 		/* far from the frame of the cycle, too */
 		n = 0;
 		if (st->pad)

@@ -3,6 +3,7 @@
 #ifndef EC_DC_H
 #define EC_DC_H
 
+#include <linux/atomic.h>
 #include <linux/mutex.h>
 #include <linux/types.h>
 #include <linux/wait.h>
@@ -91,6 +92,7 @@ struct ec_dc_app {
  * @again_ms: between two tries
  * @again_ns: not before (ktime)
  * @begun_ns: since when drift is compensated (ktime)
+ * @ahead: time of the reference clock less ktime, when they are set, ns
  * @boost: comparisons the cycle shall make beyond one per send
  * @work: sets the clocks while a session is active
  * @watch: looks at the sync window of all slaves, once a second
@@ -126,6 +128,7 @@ struct ec_dc {
 	u32 again_ms;
 	u64 again_ns;
 	u64 begun_ns;
+	atomic64_t ahead;
 	u32 boost;
 	struct work_struct work;
 	struct delayed_work watch;
@@ -155,6 +158,11 @@ u64 ec_dc_now(struct ec_master *m);
 u64 ec_dc_app_at(struct ec_master *m, u64 at_ns);
 void ec_dc_app_set(struct ec_master *m, u64 base, bool set);
 void ec_dc_app_log(struct ec_master *m);
+
+/* dc_cycle.c */
+void ec_dc_clock(struct ec_master *m, u64 time, u64 at_ns);
+u64 ec_dc_clock_now(struct ec_master *m);
+u64 ec_dc_whole(struct ec_master *m, u32 low, u64 at_ns);
 
 /* dc_watch.c */
 void ec_dc_verdict(struct ec_slave *s, u32 value);

@@ -108,16 +108,67 @@ u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
 	return flags;
 }
 
+/**
+ * ec_dc_clock() - the reference clock has told its time
+ * @m: master
+ * @time: all of it, ns
+ * @at_ns: when it was that time (ktime)
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_dc_clock(struct ec_master *m, u64 time, u64 at_ns)
+{
+	atomic64_set(&m->dc.ahead, time - at_ns);
+}
+
+static u64 clock_at(struct ec_master *m, u64 at_ns)
+{
+	return atomic64_read(&m->dc.ahead) + at_ns;
+}
+
+/**
+ * ec_dc_clock_now() - time of the reference clock at this moment
+ * @m: master whose clocks are set
+ *
+ * By what it was last; it drifts.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns.
+ */
+u64 ec_dc_clock_now(struct ec_master *m)
+{
+	return clock_at(m, ktime_get_ns());
+}
+
+/**
+ * ec_dc_whole() - time of a clock with 32 bits
+ * @m: master whose clocks are set
+ * @low: what the clock says
+ * @at_ns: when (ktime)
+ *
+ * The rest is that of the time the clocks have gone through since they were set. The
+ * application's time may be any number of seconds away by now.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: all 64 bits, ns.
+ */
+u64 ec_dc_whole(struct ec_master *m, u32 low, u64 at_ns)
+{
+	u64 about = clock_at(m, at_ns);
+
+	return about + (s32)(low - (u32)about);
+}
+
 /*
  * Slaves in front of the reference, and all when it is gone, see what was sent:
  * the time it will have, as far as its answers tell.
  */
-static u64 predicted(const struct ec_cycle *c, u64 now)
+static u64 predicted(struct ec_master *m, const struct ec_cycle *c, u64 now)
 {
 	u64 since = now - c->dc_time_ns;
 
 	if (!c->dc_time)
-		return 0;
+		return clock_at(m, now);
 	return c->dc_time + since +
 	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
 }
@@ -138,18 +189,20 @@ static void learn_rate(struct ec_cycle *c)
 	c->dc_then_ns = c->dc_time_ns;
 }
 
-/* What the reference says; with 32 bits the rest is what it was before. */
+static u64 clock_time(struct ec_master *m, const u8 *data, u16 len, u64 sent_ns)
+{
+	u64 t = len == 8 ? get_unaligned_le64(data) :
+			   ec_dc_whole(m, get_unaligned_le32(data), sent_ns);
+
+	ec_dc_clock(m, t, sent_ns);
+	return t;
+}
+
 static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns)
 {
 	struct ec_cycle *c = &s->cycle;
-	u64 about;
 
-	if (len == 8) {
-		c->dc_time = get_unaligned_le64(data);
-	} else {
-		about = c->dc_time ? predicted(c, sent_ns) : ec_dc_now(s->master);
-		c->dc_time = about + (s32)(get_unaligned_le32(data) - (u32)about);
-	}
+	c->dc_time = clock_time(s->master, data, len, sent_ns);
 	c->dc_time_ns = sent_ns;
 	c->dc_back |= SYNC_SLAVES;
 	learn_rate(c);
@@ -171,7 +224,7 @@ static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns
 void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now)
 {
-	const struct ec_master *m = s->master;
+	struct ec_master *m = s->master;
 	u16 ref = READ_ONCE(m->dc.ref_station);
 	/* those in front must not be told a time nobody knows */
 	u8 cmd = m->dc.front && !s->cycle.dc_time ? EC_CMD_FPRD : EC_CMD_FRMW;
@@ -182,7 +235,7 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
 	}
-	put_unaligned_le64(predicted(&s->cycle, now), t);
+	put_unaligned_le64(predicted(m, &s->cycle, now), t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
@@ -200,17 +253,6 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 static const u8 *skip(const u8 *data, u16 len)
 {
 	return data + len + EC_DGRAM_OVERHEAD;
-}
-
-/* The upper half of a 32-bit clock is the one of the application's time. */
-static u64 whole_time(struct ec_master *m, const u8 *data, u16 len)
-{
-	u64 app;
-
-	if (len == 8)
-		return get_unaligned_le64(data);
-	app = ec_dc_now(m);
-	return app + (s32)(get_unaligned_le32(data) - (u32)app);
 }
 
 /**
@@ -239,7 +281,7 @@ const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns)
 	}
 	if (dc & REF_TIME) {
 		if (get_unaligned_le16(data + len)) {
-			c->dc_time64 = whole_time(s->master, data, len);
+			c->dc_time64 = clock_time(s->master, data, len, sent_ns);
 			c->dc_back |= REF_TIME;
 		}
 		data = skip(data, len);

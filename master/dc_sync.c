@@ -130,13 +130,8 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 	if (ret)
 		return ret;
 	*at_ns = dg[2].sent_ns;
-	*now = get_unaligned_le64(t);
-	if (!wide) {
-		/* the upper half comes from the application's time */
-		u64 app = ec_dc_app_at(s->master, *at_ns);
-
-		*now = app + (s32)((u32)*now - (u32)app);
-	}
+	*now = wide ? get_unaligned_le64(t) :
+		      ec_dc_whole(s->master, get_unaligned_le32(t), *at_ns);
 	return 0;
 }
 

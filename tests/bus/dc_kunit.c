@@ -572,6 +572,79 @@ static void dc_time_not_old(struct kunit *test)
 	KUNIT_EXPECT_GT(test, r.fresh, 2500u);
 }
 
+/* the last SYNC0 of a slave with a period of 1 ms was so many ns ago */
+static u32 since_sync0(struct bus *b, u32 slave, u64 now)
+{
+	const struct ec_esc *esc = bus_esc(b, slave);
+	u64 since = ec_esc_local_time(esc, now) +
+		    get_unaligned_le64(esc->mem + EC_REG_DC_OFFSET) - esc->dc.start;
+
+	return do_div(since, 1000000);
+}
+
+/* what an application reads of a reference that is ever further from its own time */
+static void far_each(struct cyc *c)
+{
+	const struct ec_status *st = c->b->m->session->shared->status;
+	struct read_time *r = c->ctx;
+
+	sync_each(c);
+	c->flags |= EC_SEND_FLAG_REF_TIME;
+	if (!r || !st->dc_time64_valid)
+		return;
+	if (r->last && abs((s64)(st->dc_time64 - r->last)) > NSEC_PER_SEC)
+		r->old++;
+	r->last = st->dc_time64;
+}
+
+/*
+ * A reference of 32 bits that is by more than half of them away from the application's
+ * time: its time goes on, and who joins has it, too.
+ */
+static void dc_far_from_the_application(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave a drive in=8 out=8 dc=32\n"
+			      "slave b drive in=8 out=8 dc=32 clock=3s\n"
+			      "slave d drive in=8 out=8 clock=5s\n", 3);
+	struct read_time r = { 0 };
+	struct bus *b = c->b;
+	s64 off;
+	u64 now;
+	u32 i;
+
+	c->each = far_each;
+	c->ctx = &r;
+	for (i = 0; i < 3; i++)
+		sync_config(c, i, 1000000, 0, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	ec_sim_advance(b->sim, ktime_get_ns());
+	for (i = 0; i < 3; i++)
+		bus_esc(b, i)->cfg.drift_ppb += 100000000;
+	cyc_run(c, 26000);
+	off = r.last - c->app_time;
+	KUNIT_EXPECT_GT(test, off, 1ll << 31);
+	KUNIT_EXPECT_LT(test, off, 1ll << 32);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	cyc_run(c, 1000);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, r.old, 0u);
+	now = ktime_get_ns();
+	ec_sim_advance(b->sim, now);
+	for (i = 1; i < 3; i++) {
+		s32 apart = since_sync0(b, i, now) - since_sync0(b, 0, now);
+
+		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
+		KUNIT_EXPECT_LT(test, abs(apart), 1000);
+	}
+	off = ec_esc_system_time(bus_esc(b, 2), now) - r.last;
+	KUNIT_EXPECT_LT(test, abs(off), 5000000ll);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_are_true),
 	KUNIT_CASE(dc_clocks_agree),
@@ -588,6 +661,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_window),
 	KUNIT_CASE(dc_time_not_old),
 	KUNIT_CASE(dc_latch),
+	KUNIT_CASE(dc_far_from_the_application),
 	{ }
 };
 
