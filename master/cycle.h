@@ -105,6 +105,7 @@ struct ec_cyc_cut {
  * @missed: a receive has looked for it in vain
  * @direct: sent from struct ec_cycle.direct
  * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
+ * @dc_sent: time that was sent in them
  */
 struct ec_cyc_flight {
 	struct ec_slot *slot;
@@ -115,6 +116,7 @@ struct ec_cyc_flight {
 	bool missed;
 	bool direct;
 	u32 dc;
+	u64 dc_sent;
 };
 
 #define EC_CYC_FRAMES	128	/* on their way at most */
@@ -169,6 +171,9 @@ struct ec_cyc_wire {
  * @dc_asked: clock datagrams the application wanted since the last receive,
  *	EC_SEND_FLAG_*
  * @dc_back: which of them are back
+ * @dc_sent: time in the last send that went to the slaves, ns
+ * @dc_wkc: working counter with the last answer of the reference clock
+ * @dc_silent: since then it has not answered so often, as far as can be told
  * @dc_time: last time of the reference clock, ns
  * @dc_time_ns: when the frame that brought it was sent (ktime)
  * @dc_time64: whole time of the reference clock when it was last asked for, ns
@@ -201,6 +206,9 @@ struct ec_cycle {
 	struct ec_schedule schedule;
 	u32 dc_asked;
 	u32 dc_back;
+	u64 dc_sent;
+	u16 dc_wkc;
+	u32 dc_silent;
 	u64 dc_time;
 	u64 dc_time_ns;
 	u64 dc_time64;
@@ -269,7 +277,7 @@ u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
 u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
 void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now);
-const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns);
+const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data);
 void ec_dc_judge(struct ec_session *s);
 
 #endif

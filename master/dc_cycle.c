@@ -208,6 +208,28 @@ static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns
 	learn_rate(c);
 }
 
+/*
+ * Slaves that take the time are counted, too, so when the reference clock does not answer,
+ * what was sent comes back with a working counter that looks good. An answer is another
+ * time, or the same with the working counter as ever; once it was silent, only another.
+ */
+static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data,
+		     u16 len)
+{
+	u16 wkc = get_unaligned_le16(data + len);
+	u8 sent[8];
+
+	put_unaligned_le64(f->dc_sent, sent);
+	if (!wkc || (!memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
+		c->dc_silent++;
+		return false;
+	}
+	/* those in front have not been told the first time */
+	c->dc_wkc = data[-EC_DGRAM_HDR] == EC_CMD_FRMW ? wkc : 0;
+	c->dc_silent = 0;
+	return true;
+}
+
 /**
  * ec_dc_fill() - add the clock datagrams to an empty frame
  * @s: active session
@@ -235,7 +257,9 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
 	}
-	put_unaligned_le64(predicted(m, &s->cycle, now), t);
+	/* if it is silent: one that is exactly as predicted is told apart by some ns */
+	s->cycle.dc_sent = predicted(m, &s->cycle, now) + s->cycle.dc_silent % 4;
+	put_unaligned_le64(s->cycle.dc_sent, t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
@@ -258,23 +282,24 @@ static const u8 *skip(const u8 *data, u16 len)
 /**
  * ec_dc_take() - results of the clock datagrams of a returned frame
  * @s: active session
- * @dc: what ec_dc_fill() has put there
+ * @f: the frame
  * @data: data of the first datagram, matched against what was sent
- * @sent_ns: when the frame was sent (ktime)
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: data of the first datagram of process data.
  */
-const u8 *ec_dc_take(struct ec_session *s, u32 dc, const u8 *data, u64 sent_ns)
+const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data)
 {
 	struct ec_cycle *c = &s->cycle;
-	u16 len = time_bytes(dc);
+	u64 sent_ns = f->slot->sent_ns;
+	u16 len = time_bytes(f->dc);
+	u32 dc = f->dc;
 	unsigned int i;
 
 	for (i = 0; i < refs(dc); i++)
 		data = skip(data, 4);
 	if (dc & SYNC_SLAVES) {
-		if (get_unaligned_le16(data + len))
+		if (answered(c, f, data, len))
 			take_time(s, data, len, sent_ns);
 		for (i = 0; i < syncs(dc); i++)
 			data = skip(data, len);

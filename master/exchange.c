@@ -98,7 +98,7 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	unsigned int i;
 
 	if (f->dc)
-		data = ec_dc_take(s, f->dc, data, f->slot->sent_ns);
+		data = ec_dc_take(s, f, data);
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
@@ -314,6 +314,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
 			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
+			.dc_sent = c->dc_sent,
 		};
 	else
 		ec_slot_put(&m->slots, slot, true);

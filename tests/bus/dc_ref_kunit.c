@@ -451,7 +451,56 @@ static void ref_set_again(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
 }
 
+/* Sends in which the application is told a time of the reference clock. */
+static u32 heard(struct run *r, u32 cycles)
+{
+	u32 n = 0;
+
+	while (cycles--) {
+		run(r, 1);
+		n += READ_ONCE(r->b->m->session->shared->status->dc_time_valid);
+	}
+	return n;
+}
+
+/*
+ * A reference clock without power: what the others have made of the datagram is no answer
+ * of it, neither to the application nor to the prediction.
+ */
+static void ref_silent(struct kunit *test)
+{
+	struct run *r = start(test, TREE("drift=-20ppm"), 4, 1);
+	struct bus *b = r->b;
+	struct ec_cycle *c = &b->m->session->cycle;
+	u64 last;
+
+	run(r, 1000);
+	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	run(r, 3);
+	last = c->dc_time_ns;
+	KUNIT_EXPECT_EQ(test, heard(r, 20), 0u);
+	KUNIT_EXPECT_EQ(test, c->dc_time_ns, last);
+	/* another stands in */
+	until(r, 3);
+	run(r, 1000);
+	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
+}
+
+/* One that follows goes: the reference answers as before, with fewer that count. */
+static void ref_heard_by_fewer(struct kunit *test)
+{
+	struct run *r = start(test, TREE("drift=0ppm"), 4, -1);
+
+	run(r, 1000);
+	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
+	bus_fault(r->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	KUNIT_EXPECT_GE(test, heard(r, 20), 18u);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE_PARAM(ref_silent, variant_gen_params),
+	KUNIT_CASE_PARAM(ref_heard_by_fewer, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_power_off, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_remains_alone, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_chosen_power_off, variant_gen_params),
