@@ -482,7 +482,10 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
 	ec_requests_attach(s, c->index);
-	ec_slave_request(slave, s->active && !s->ending ? EC_AL_OP : slave->requested);
+	if (s->active && !s->ending)
+		ec_slave_request(slave, EC_AL_OP);
+	else
+		ec_slave_kick(slave);
 }
 
 /**
