@@ -194,7 +194,7 @@ static int to_preop(struct ec_slave *s)
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
 
-static int write_sdos(struct ec_slave *s, struct ec_config *c)
+static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 {
 	struct ec_config_sdo *sdo;
 	u32 abort;
@@ -217,7 +217,7 @@ static int write_sdos(struct ec_slave *s, struct ec_config *c)
 }
 
 /* those of one AL state */
-static int write_idns(struct ec_slave *s, struct ec_config *c, u8 state)
+static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 {
 	struct ec_config_idn *i;
 	char name[12];
