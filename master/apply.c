@@ -89,25 +89,45 @@ static void release_mailbox(struct ec_slave *s)
 	up(&s->sdo_lock);
 }
 
-/* SyncManagers that the EEPROM wants on in OP only, state-machine.md 4.4 */
-static int op_only_sms(struct ec_slave *s, bool on)
+static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
 {
-	unsigned int sm;
-	int ret = 0;
-
-	for (sm = 0; sm < s->n_sms && !ret; sm++) {
-		u8 active = on ? EC_SM_ACT_ENABLE : 0;
-
-		if (s->sms[sm].enable & EC_SII_SM_OP_ONLY &&
-		    ec_pdo_list_bytes(ec_apply_pdos_of(s, s->plan, sm)))
-			ret = write_reg(s, EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE, &active, 1);
-	}
-	return ret;
+	return write_reg(s, EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE, &active, 1);
 }
 
-static bool in_op(const struct ec_slave *s)
+/*
+ * SyncManagers that the EEPROM wants on in OP only, state-machine.md 4.4: on with the
+ * request, as some slaves want to see outputs before. How many were off, or -errno.
+ */
+static int op_only_on(struct ec_slave *s)
 {
-	return (s->al_status & EC_AL_STATE_MASK) == EC_AL_OP;
+	unsigned int sm, n = 0;
+	int ret;
+
+	for (sm = 0; sm < s->n_sms; sm++) {
+		if (!(s->sms[sm].enable & EC_SII_SM_OP_ONLY) || s->op_only & BIT(sm) ||
+		    !ec_pdo_list_bytes(ec_apply_pdos_of(s, s->plan, sm)))
+			continue;
+		ret = activate_sm(s, sm, EC_SM_ACT_ENABLE);
+		if (ret)
+			return ret;
+		s->op_only |= BIT(sm);
+		n++;
+	}
+	return n;
+}
+
+static int op_only_off(struct ec_slave *s)
+{
+	unsigned int sm;
+	int ret;
+
+	for (sm = 0; s->op_only; sm++) {
+		ret = s->op_only & BIT(sm) ? activate_sm(s, sm, 0) : 0;
+		if (ret)
+			return ret;
+		s->op_only &= ~BIT(sm);
+	}
+	return 0;
 }
 
 /* state-machine.md 4.1 */
@@ -117,8 +137,7 @@ static int to_init(struct ec_slave *s)
 	int ret;
 
 	hold_mailbox(s);
-	if (in_op(s))
-		op_only_sms(s, false);
+	op_only_off(s);
 	ret = set_state(s, EC_AL_INIT);
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
@@ -129,6 +148,7 @@ static int to_init(struct ec_slave *s)
 	if (ec_slave_features(s) & EC_FEAT_DC)
 		ec_dc_sync_stop(s);
 	s->mbox_counter = 0;
+	s->op_only = 0;
 	s->reconfigure = false;
 	s->ours = false;
 	return 0;
@@ -290,8 +310,8 @@ static int write_sms(struct ec_slave *s, const struct ec_config *c)
  */
 static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
 {
-	return sm < s->n_sms && !(s->sms[sm].enable & EC_SII_SM_VIRTUAL) &&
-	       !(sm < 2 && ec_slave_has_mailbox(s)) && s->sms[sm].start >= EC_REG_DIGITAL_OUT;
+	return sm < s->n_sms && s->sms[sm].start >= EC_REG_DIGITAL_OUT &&
+	       !(sm < 2 && ec_slave_has_mailbox(s));
 }
 
 static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
@@ -463,12 +483,31 @@ static int wait_outputs(struct ec_slave *s)
 	return -EAGAIN;
 }
 
+/* state-machine.md 4.4 */
+static int to_op(struct ec_slave *s)
+{
+	int ret = wait_outputs(s);
+
+	if (!ret && s->plan)
+		ret = write_idns(s, s->plan, EC_AL_SAFEOP);
+	if (ret)
+		return ret;
+	ret = s->plan ? ec_dc_sync_check(s, s->plan) : 0;
+	if (!ret)
+		ret = op_only_on(s);
+	if (ret > 0)
+		ret = wait_outputs(s);
+	ret = ret ?: set_state(s, EC_AL_OP);
+	if (ret == -EPROTO)
+		op_only_off(s);
+	return ret ? failed(s, EC_AL_OP, ret) : 0;
+}
+
 /* In PREOP nobody needs the SYNC signals of a slave any more. */
 static int step_down(struct ec_slave *s, u8 want)
 {
-	int ret = in_op(s) ? op_only_sms(s, false) : 0;
+	int ret = op_only_off(s) ?: set_state(s, want);
 
-	ret = ret ?: set_state(s, want);
 	if (!ret && want == EC_AL_PREOP && ec_slave_features(s) & EC_FEAT_DC)
 		ec_dc_sync_stop(s);
 	return ret ? failed(s, want, ret) : 0;
@@ -503,8 +542,10 @@ static int step(struct ec_slave *s)
 		return to_init(s);
 	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
 		return clear_fmmus(s);
+	if (s->op_only && cur != EC_AL_OP)
+		return op_only_off(s);
 	if (cur == want)
-		return 1;
+		return want == EC_AL_OP && op_only_on(s) < 0 ? -EIO : 1;
 	if (want == EC_AL_BOOT)
 		return cur == EC_AL_INIT ? to_boot(s) : to_init(s);
 	if (cur > want || cur == EC_AL_BOOT) {
@@ -518,14 +559,7 @@ static int step(struct ec_slave *s)
 	case EC_AL_PREOP:
 		return to_safeop(s, s->plan);
 	case EC_AL_SAFEOP:
-		ret = wait_outputs(s);
-		if (!ret && s->plan)
-			ret = write_idns(s, s->plan, EC_AL_SAFEOP);
-		if (ret)
-			return ret;
-		ret = (s->plan ? ec_dc_sync_check(s, s->plan) : 0) ?: set_state(s, EC_AL_OP) ?:
-		      op_only_sms(s, true);
-		return ret ? failed(s, EC_AL_OP, ret) : 0;
+		return to_op(s);
 	default:
 		return to_init(s);
 	}

@@ -41,7 +41,8 @@ static bool interrupted(const struct ec_slave *slave)
  * @lock: its @sdo_lock or @mbox_lock
  * @ms: the slave's worker waits at most so long; 0: as long as it takes
  *
- * In the order of coming, so that nobody who asks all the time keeps the worker off.
+ * Who comes later than the worker lets it in first, so that those who ask all the time
+ * do not keep it off.
  *
  * Context: Process. May sleep.
  * Return: 0; -EINTR; the slave's worker: -ECANCELED when it shall leave, -ETIMEDOUT.
@@ -49,16 +50,22 @@ static bool interrupted(const struct ec_slave *slave)
 int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms)
 {
 	u64 until = ktime_get_ns() + (u64)ms * NSEC_PER_MSEC;
+	int ret = 0;
 
-	if (READ_ONCE(slave->worker) != current)
-		return down_interruptible(lock);
-	while (down_timeout(lock, msecs_to_jiffies(20))) {
-		if (interrupted(slave))
-			return -ECANCELED;
-		if (ms && ktime_get_ns() > until)
-			return -ETIMEDOUT;
+	if (READ_ONCE(slave->worker) != current) {
+		ret = wait_event_interruptible(slave->turn, READ_ONCE(slave->awaits) != lock);
+		return ret ? -EINTR : down_interruptible(lock);
 	}
-	return 0;
+	WRITE_ONCE(slave->awaits, lock);
+	while (!ret && down_timeout(lock, msecs_to_jiffies(20))) {
+		if (interrupted(slave))
+			ret = -ECANCELED;
+		else if (ms && ktime_get_ns() > until)
+			ret = -ETIMEDOUT;
+	}
+	WRITE_ONCE(slave->awaits, NULL);
+	wake_up_all(&slave->turn);
+	return ret;
 }
 
 /* Why an exchange has to end now; 0: go on. */

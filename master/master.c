@@ -186,15 +186,18 @@ int ec_master_wait_slaves(struct ec_master *m)
  * ec_master_wait_slave() - wait until a slave is in its state and its PDOs are known
  * @slave: slave
  *
+ * Not without link: nobody reads them then.
+ *
  * Context: Process. May sleep, at most 5 s.
  */
 void ec_master_wait_slave(struct ec_slave *slave)
 {
+	struct ec_master *m = slave->master;
 	unsigned int i;
 
-	for (i = 0; i < 500; i++)
-		if (wait_event_timeout(slave->master->scan_wq, slave_settled(slave),
-				       msecs_to_jiffies(10)))
+	for (i = 0; i < 500 && READ_ONCE(m->link[0].up); i++)
+		if (wait_event_killable_timeout(m->scan_wq, slave_settled(slave),
+						msecs_to_jiffies(10)))
 			return;
 }
 

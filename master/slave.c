@@ -27,6 +27,7 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	mutex_init(&s->lock);
 	sema_init(&s->sdo_lock, 1);
 	sema_init(&s->mbox_lock, 1);
+	init_waitqueue_head(&s->turn);
 	spin_lock_init(&s->emerg_lock);
 	spin_lock_init(&s->kept_lock);
 	INIT_LIST_HEAD(&s->kept);

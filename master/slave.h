@@ -6,6 +6,7 @@
 #include <linux/kref.h>
 #include <linux/mutex.h>
 #include <linux/semaphore.h>
+#include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
 #include "pdo.h"
@@ -77,11 +78,14 @@ struct ec_master;
  * @holds: the worker has @sdo_lock and @mbox_lock
  * @reconfigure: go through INIT and configure again
  * @mapped: its FMMUs are set
+ * @op_only: SyncManagers that are on in OP only and are on, a bit each
  * @sync_free: its SYNC signals run by a clock that was not set
  * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @sdo_lock: one SDO transfer at a time; see ec_mbox_lock()
  * @mbox_lock: one mailbox exchange at a time
+ * @awaits: which of the two the worker waits for
+ * @turn: who waits until the worker has it
  * @mbox_counter: of the last message sent
  * @emerg_lock: protects @emerg and what it points to
  * @emerg: where its emergencies go, NULL: only to the log
@@ -146,11 +150,14 @@ struct ec_slave {
 	bool holds;
 	bool reconfigure;
 	bool mapped;
+	u16 op_only;
 	bool ours;
 	bool sync_free;
 	u64 sync_due_ns;
 	struct semaphore sdo_lock;
 	struct semaphore mbox_lock;
+	const struct semaphore *awaits;
+	wait_queue_head_t turn;
 	u8 mbox_counter;
 	spinlock_t emerg_lock;
 	struct ec_emerg *emerg;

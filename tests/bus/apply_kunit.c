@@ -72,27 +72,47 @@ static void apply_unknown_sm(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
 }
 
-/* A SyncManager that its EEPROM wants on in OP only. */
+/* A SyncManager that its EEPROM wants on in OP only; the slave wants outputs before OP. */
 static void apply_op_only(struct kunit *test)
 {
-	struct cyc *c = reserve(test, "slave a io in=8 out=8\n", 1);
+	struct cyc *c = reserve(test, "segment seed=17 transition=60ms\n"
+				      "slave a io in=8 out=8 cpu=yes\n", 1);
 	struct ec_ioc_state safeop = { .state = EC_AL_SAFEOP };
 	struct bus *b = c->b;
 
 	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
+	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	while (bus_slave(b, 0)->al_status != EC_AL_SAFEOP && c->cycles < 2000)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
 	cyc_run(c, 20);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_ASSERT_EQ(test, ec_ioc_state(&b->app, &safeop), 0);
-	cyc_run(c, 100);
+	cyc_run(c, 300);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
+}
+
+/* It comes to OP later than the application allows: its outputs are on then, too. */
+static void apply_op_only_late(struct kunit *test)
+{
+	struct cyc *c = reserve(test, "segment seed=17 transition=60ms\n"
+				      "slave a io in=8 out=8\n", 1);
+	struct bus *b = c->b;
+
+	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
+	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
+	cyc_map_all(c, 0, 1, 0);
+	b->m->session->configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
+	cyc_activate(c);
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
 /* The mapping that was found is not the slave's any more after its power was off. */
@@ -229,13 +249,42 @@ static void apply_sdo_beside(struct kunit *test)
 	KUNIT_EXPECT_EQ_MSG(test, r.bad, 0u, "%d", r.err);
 }
 
+/* So many that there is always one waiting: the slave's worker has its turn. */
+static void apply_sdo_crowd(struct kunit *test)
+{
+	struct cyc *c = reserve(test, drive, 1);
+	struct reader r[4] = { 0 };
+	u32 config = cyc_config(c, 0), i;
+
+	cyc_remap(c, config);
+	cyc_map(c, config, 2, 0);
+	cyc_map(c, config, 3, 0);
+	bus_app(c->b, "a")->response_ns = 15 * NSEC_PER_MSEC;
+	for (i = 0; i < ARRAY_SIZE(r); i++) {
+		r[i].b = c->b;
+		init_completion(&r[i].done);
+		KUNIT_ASSERT_FALSE(test, IS_ERR(kthread_run(read_on, &r[i], "reader%u", i)));
+	}
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
+	for (i = 0; i < ARRAY_SIZE(r); i++) {
+		WRITE_ONCE(r[i].stop, true);
+		while (!try_wait_for_completion(&r[i].done))
+			cyc_run(c, 1);
+		KUNIT_EXPECT_GT(test, r[i].good, 5u);
+		KUNIT_EXPECT_EQ_MSG(test, r[i].bad, 0u, "%d", r[i].err);
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_unknown_sm),
 	KUNIT_CASE(apply_op_only),
+	KUNIT_CASE(apply_op_only_late),
 	KUNIT_CASE(apply_found_pdos),
 	KUNIT_CASE(apply_second_round),
 	KUNIT_CASE(apply_changes_meanwhile),
 	KUNIT_CASE(apply_sdo_beside),
+	KUNIT_CASE(apply_sdo_crowd),
 	{ }
 };
 
