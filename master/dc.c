@@ -663,6 +663,8 @@ static void work(struct work_struct *work)
 
 	if (dc->fresh)
 		await_cycle(m);
+	if (READ_ONCE(dc->stop))
+		return;
 	t0 = ktime_get_ns();
 	ret = job_init(&j, m);
 	if (ret) {
@@ -671,6 +673,10 @@ static void work(struct work_struct *work)
 	}
 	if (j.ref < j.n && !j.slaves[j.ref]->dc_set)
 		await_time(m, t0);
+	if (READ_ONCE(dc->stop)) {
+		job_free(&j);
+		return;
+	}
 	mutex_lock(&dc->lock);
 	was = READ_ONCE(dc->running);
 	j.running = was;
@@ -730,7 +736,8 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	/* that of the application before is none of this one */
 	if (all && !ec_dc_can_be(m, choice))
 		WRITE_ONCE(m->dc.ref_station, 0);
-	m->dc.fresh = all;
+	/* who joins before the application has told its time does not set another one */
+	m->dc.fresh = all || (m->dc.fresh && !m->dc.app.set);
 	ec_dc_watch_begun(&m->dc);
 	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);

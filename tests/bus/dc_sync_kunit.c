@@ -313,7 +313,42 @@ static void sync_has_no_effect(struct kunit *test)
 	expect_in_step(c->b, 13);
 }
 
+/* A slave comes before the first cycle: the clocks get the time of the cycle all the same. */
+static void sync_late_cycle(struct kunit *test)
+{
+	u32 after, i;
+
+	for (after = 0; after < 2; after++) {
+		struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+		struct bus *b = c->b;
+
+		bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
+		msleep(300);
+		if (!after)
+			bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
+		cyc_activate(c);
+		msleep(200);
+		if (after)
+			bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
+		msleep(700);
+		for (i = 0; i < 3; i++)
+			KUNIT_EXPECT_FALSE(test, bus_slave(b, i)->dc_set);
+		until_op(c, 15, 8000);
+		cyc_run(c, 500);
+		expect_in_step(b, 15);
+		for (i = 0; i < 4; i++) {
+			u64 now = ktime_get_ns();
+			u64 off = abs((s64)(ec_esc_system_time(bus_esc(b, i), now) - now));
+
+			KUNIT_EXPECT_LT_MSG(test, off, (u64)PERIOD_NS, "slave %u", i);
+		}
+		bus_down(b);
+		test->priv = NULL;
+	}
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_late_cycle),
 	KUNIT_CASE(sync_long_cycle),
 	KUNIT_CASE(sync_few_frames),
 	KUNIT_CASE(sync_reference_is_late),
