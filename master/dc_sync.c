@@ -21,6 +21,7 @@
 #define POLL_MS		100
 
 #define RUN		BIT(8)	/* of AssignActivate: cyclic operation */
+#define SYNC1		BIT(10)
 #define PENDING		7	/* of 0x0984: SYNC0, SYNC1 to come, implausible start */
 
 /*
@@ -135,12 +136,10 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 	return 0;
 }
 
-/* From the first SYNC0 to the first SYNC1. */
+/* From the first SYNC0 to the first SYNC1, also when that is slower. */
 static u32 sync1_after(const struct ec_config *c)
 {
-	u32 c0 = c->dc_cycle[0], c1 = c->dc_cycle[1];
-
-	return c0 ? c1 % c0 : c1;
+	return c->dc_assign & SYNC1 ? c->dc_cycle[1] : 0;
 }
 
 /*

@@ -229,7 +229,11 @@ static u64 sync0_time(const struct ec_esc *esc, u64 number)
 	return esc->dc.start + number * cycle;
 }
 
-/* SYNC0 pulses per SYNC1 pulse */
+/*
+ * SYNC0 pulses per SYNC1 pulse. SYNC1 comes its time after a SYNC0, and the next
+ * SYNC0 starts that time anew (Beckhoff ESC data sheet, section I, 9.2.3.5): of n
+ * pulses it belongs to the last one, so that the first one comes 0x09A4 after the start.
+ */
 static u32 sync1_factor(const struct ec_esc *esc)
 {
 	u32 c0 = get_unaligned_le32(esc->mem + EC_REG_DC_CYCLE0);
@@ -262,7 +266,7 @@ static u64 sync_pulses(const struct ec_esc *esc, int which, u64 now)
 	if (!which)
 		return sync_number(esc, sys);
 	n = sync_number(esc, sys - sync1_shift(esc));
-	return div_u64(n + f - 1, f);
+	return div_u64(n, f);
 }
 
 /**
@@ -381,7 +385,7 @@ void ec_esc_dc_sync(struct ec_esc *esc, u64 now)
 		u64 q = div_u64(n, factor);
 
 		dc->sync_next++;
-		if (activation(esc) & 0x04 && n == q * factor &&
+		if (activation(esc) & 0x04 && n == q * factor + factor - 1 &&
 		    !sync_held(esc, 1, q)) {
 			esc->al_event |= EC_AL_EVENT_SYNC1;
 			esc->app_ops->sync(esc, 1, now);
@@ -477,18 +481,15 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 	v = dc->implausible ? 0x04 : 0;
 	if (activation(esc) & 1) {
 		n = dc->running ? sync_number(esc, sys) : 0;
-		if (!n)
-			v |= (activation(esc) & 0x02 ? 1u : 0u) |
-			     (activation(esc) & 0x04 ? 2u : 0u);
+		for (s = 0; s < 2; s++)
+			if (activation(esc) & BIT(1 + s) && !sync_pulses(esc, (int)s, now))
+				v |= BIT(s);
 		put_sync_time(esc, EC_REG_DC_START, sync0_time(esc, n));
 		if (dc->running && activation(esc) & 0x04) {
-			u32 f = sync1_factor(esc), c = sync1_shift(esc);
-			u64 k = n ? div_u64(n - 1, f) * f : 0;
+			u64 k = sync_pulses(esc, 1, now) + 1;
 
-			/* the one of the current group may still be due */
-			if (n && (s64)(sync0_time(esc, k) + c - sys) <= 0)
-				k += f;
-			put_sync_time(esc, EC_REG_DC_NEXT_SYNC1, sync0_time(esc, k) + c);
+			put_sync_time(esc, EC_REG_DC_NEXT_SYNC1, sync1_shift(esc) +
+				      sync0_time(esc, k * sync1_factor(esc) - 1));
 		}
 	}
 	m[EC_REG_DC_ACT_STATUS] = (u8)v;

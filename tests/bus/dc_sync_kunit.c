@@ -347,7 +347,27 @@ static void sync_late_cycle(struct kunit *test)
 	}
 }
 
+/* SYNC1 slower than SYNC0: the first one comes after all of its time. */
+static void sync1_is_slower(struct kunit *test)
+{
+	static const u32 each_nth[] = { 8, 3, 2 };
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	u32 i;
+
+	for (i = 0; i < 3; i++)
+		sync0(c, i, PERIOD_NS, (each_nth[i] - 1) * PERIOD_NS);
+	/* as long before the first one as somebody may wait */
+	sync0(c, 3, PERIOD_NS, 1000 * PERIOD_NS);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
+	expect_in_step(b, 15);
+	for (i = 0; i < 4; i++)
+		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync1_is_slower),
 	KUNIT_CASE(sync_late_cycle),
 	KUNIT_CASE(sync_long_cycle),
 	KUNIT_CASE(sync_few_frames),

@@ -292,7 +292,17 @@ static void sync1_may_be_slower(struct kunit *test)
 	bed_tx(b, EC_CMD_FPWR, 1001, 0x9a0, v, 8);
 	bed_put(b, 1001, 0x990, 10 * MS, 8);
 	bed_put(b, 1001, 0x980, 0x0700, 2);
-	ec_sim_advance(b->sim, 49 * MS + 500000);
+	/* the first one after all of its time */
+	ec_sim_advance(b->sim, b->now = 12 * MS + 500000);
+	KUNIT_EXPECT_EQ(test, syncs[0], 3);
+	KUNIT_EXPECT_EQ(test, syncs[1], 0);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x984, 1), 2ull);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x998, 8), 13 * MS);
+	ec_sim_advance(b->sim, b->now = 13 * MS + 500000);
+	KUNIT_EXPECT_EQ(test, syncs[1], 1);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x984, 1), 0ull);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x998, 8), 17 * MS);
+	ec_sim_advance(b->sim, b->now = 49 * MS + 500000);
 	KUNIT_EXPECT_EQ(test, syncs[0], 40);
 	KUNIT_EXPECT_EQ(test, syncs[1], 10);
 }

@@ -186,7 +186,7 @@ static void on_sync(struct ec_esc *esc, int which, u64 now)
 
 static const struct ec_esc_app_ops sync_ops = { .sync = on_sync };
 
-/* 1 ms, SYNC1 every second one, the first in 1 ms */
+/* 1 ms, the first in 1 ms, SYNC1 with every second one */
 static u64 start_sync(struct bed *b)
 {
 	u64 t = b->now + MS + 10000;
@@ -217,6 +217,8 @@ static void sync_waits_for_its_acknowledge(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x98e, 2), 0ull);
 	ec_sim_advance(b->sim, b->now = t0 + 1500000);
 	KUNIT_EXPECT_EQ(test, syncs[0], 1);
+	KUNIT_EXPECT_EQ(test, syncs[1], 0);
+	ec_sim_advance(b->sim, b->now = t0 + 2500000);
 	KUNIT_EXPECT_EQ(test, syncs[1], 1);
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x98e, 2), 0x0101ull);
 	/* the master's read acknowledges nothing: no further edge */
