@@ -21,8 +21,8 @@
 #define POLL_MS		100
 
 #define RUN		BIT(8)	/* of AssignActivate: cyclic operation */
+#define SYNC0		BIT(9)
 #define SYNC1		BIT(10)
-#define PENDING		7	/* of 0x0984: SYNC0, SYNC1 to come, implausible start */
 
 /*
  * The clocks are set, or cannot be. Those of slaves that have just come
@@ -252,13 +252,20 @@ static int wait_until(struct ec_slave *s, u64 ns)
 	return 0;
 }
 
+/* What register 0x0984 says of SYNC signals in use: pending, or an implausible start. */
+static u8 missing(const struct ec_config *c, u8 status)
+{
+	return status & (4 | (c->dc_assign & SYNC0 ? 1 : 0) | (c->dc_assign & SYNC1 ? 2 : 0));
+}
+
 /**
  * ec_dc_sync_check() - do the SYNC signals run that were started?
  * @s: slave on its way to OP, @lock held
  * @c: its configuration
  *
  * Waits for the first ones and reads register 0x0984; starts them again when they
- * have not come. Controllers without that register are believed.
+ * have not come. Controllers without that register may answer anything there: they
+ * are believed.
  *
  * Context: Process. Waits for bus traffic, and for the start time.
  * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
@@ -266,6 +273,7 @@ static int wait_until(struct ec_slave *s, u64 ns)
  */
 int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 {
+	bool known = ec_slave_features(s) & EC_FEAT_DC_ENHANCED;
 	u8 status[1] = { 0 };
 	unsigned int try;
 	int ret;
@@ -273,10 +281,15 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
 		ret = ret ?: ec_xfer_fprd(s->master, s->station, EC_REG_DC_ACT_STATUS, status, 1);
-		if (ret && (ret != -EIO || ec_slave_features(s) & EC_FEAT_DC_ENHANCED))
+		if (ret && (ret != -EIO || known))
 			return ret;
-		if (!(status[0] & PENDING))
+		if (!missing(c, status[0]))
 			break;
+		if (!known) {
+			ec_slave_warn(s, "its SYNC signals may not run, or it has no register 0x0984 to tell (0x%02x); OP is tried\n",
+				      status[0]);
+			break;
+		}
 		if (try == CHECKS) {
 			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 				      "its SYNC signals do not run although they were started (register 0x0984 is 0x%02x); AssignActivate 0x%04x is not what it needs",

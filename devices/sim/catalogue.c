@@ -21,8 +21,8 @@
 #define COE_READ	(EC_SII_COE_SDO | EC_SII_COE_SDO_INFO)
 #define COE_ALL		(COE_READ | EC_SII_COE_COMPLETE)
 
-#define FEAT_DC		EC_FEAT_DC
-#define FEAT_DC64	(EC_FEAT_DC | EC_FEAT_DC64)
+#define FEAT_DC		(EC_FEAT_DC | EC_FEAT_DC_ENHANCED)
+#define FEAT_DC64	(FEAT_DC | EC_FEAT_DC64)
 
 /* digital channel @n (0..7), objects from @base */
 #define DIGITAL(base, n, text)						\

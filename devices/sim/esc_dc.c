@@ -492,7 +492,9 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 				      sync0_time(esc, k * sync1_factor(esc) - 1));
 		}
 	}
-	m[EC_REG_DC_ACT_STATUS] = (u8)v;
+	/* without it there is anything in its place */
+	if (esc->cfg.features & EC_FEAT_DC_ENHANCED)
+		m[EC_REG_DC_ACT_STATUS] = (u8)v;
 	m[EC_REG_DC_SYNC0_STATUS] = sync_held(esc, 0, sync_pulses(esc, 0, now));
 	m[EC_REG_DC_SYNC1_STATUS] = sync_held(esc, 1, sync_pulses(esc, 1, now));
 	m[EC_REG_DC_LATCH0_STATUS] = dc->latch_status[0];

@@ -376,9 +376,11 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
 	ec.features = d->features;
 	if (cfg->clock_bits) {
-		ec.features &= (u16)~(EC_FEAT_DC | EC_FEAT_DC64);
-		ec.features |= cfg->clock_bits == 64 ? EC_FEAT_DC | EC_FEAT_DC64 :
-			       cfg->clock_bits == 32 ? EC_FEAT_DC : 0;
+		ec.features &= (u16)~(EC_FEAT_DC | EC_FEAT_DC64 | EC_FEAT_DC_ENHANCED);
+		if (cfg->clock_bits != EC_APP_NO_CLOCK)
+			ec.features |= EC_FEAT_DC | EC_FEAT_DC_ENHANCED;
+		if (cfg->clock_bits == 64)
+			ec.features |= EC_FEAT_DC64;
 	}
 	ec.eeprom = image;
 	ec.eeprom_len = model->eeprom_len;

@@ -401,7 +401,7 @@ int ec_app_model_parse(struct ec_app_model *m, const u8 *eeprom, size_t len)
 		d->ports[1] = EC_PORT_TYPE_MII;
 	}
 	d->esc_type = EC_APP_ESC_ET1100;
-	d->features = EC_FEAT_DC | EC_FEAT_DC64;
+	d->features = EC_FEAT_DC | EC_FEAT_DC64 | EC_FEAT_DC_ENHANCED;
 	d->fmmus = 8;
 	d->n_dc = (u8)ec_sii_decode_dcs(eeprom, len, dc, ARRAY_SIZE(dc));
 	take_sms(d, eeprom, len);

@@ -27,21 +27,27 @@ static void sync0(struct cyc *c, u32 config, u32 c0, u32 c1)
 	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
 }
 
-/* @n slaves at hand, each with SYNC0 of @sync_ns, in a cycle of @us */
-static struct cyc *start(struct kunit *test, const char *text, u32 n, u32 us, u32 sync_ns)
+/* @n slaves, each with SYNC0 of @sync_ns, in a cycle of @us */
+static struct cyc *configure(struct bus *b, u32 n, u32 us, u32 sync_ns)
 {
-	struct bus *b = bus_up(test, text, n);
-	struct cyc *c;
+	struct cyc *c = cyc_new(b, us);
 	u32 i;
 
-	bus_idle(b);
-	c = cyc_new(b, us);
 	cyc_domain(c);
 	cyc_map_all(c, 0, n, 0);
 	c->each = each;
 	for (i = 0; i < n; i++)
 		sync0(c, i, sync_ns, 0);
 	return c;
+}
+
+/* the same at hand */
+static struct cyc *start(struct kunit *test, const char *text, u32 n, u32 us, u32 sync_ns)
+{
+	struct bus *b = bus_up(test, text, n);
+
+	bus_idle(b);
+	return configure(b, n, us, sync_ns);
 }
 
 static const char four[] = "segment seed=3\n"
@@ -366,7 +372,34 @@ static void sync1_is_slower(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
 }
 
+/* What a controller without register 0x0984 answers there means nothing: OP is tried. */
+static void sync_without_status(struct kunit *test)
+{
+	static const u8 value[] = { 0x00, 0x07, 0x03, 0xff };
+	struct bus *b = bus_new(test, four);
+	struct cyc *c;
+	u32 i;
+
+	for (i = 1; i < 4; i++)
+		bus_esc(b, i)->cfg.features &= ~EC_FEAT_DC_ENHANCED;
+	bus_esc(b, 3)->cfg.features &= ~EC_FEAT_DC64;
+	for (i = 1; i < 4; i++) {
+		put_unaligned_le16(bus_esc(b, i)->cfg.features, bus_esc(b, i)->mem + EC_REG_FEATURES);
+		bus_esc(b, i)->mem[EC_REG_DC_ACT_STATUS] = value[i];
+	}
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	c = configure(b, 4, 1000, PERIOD_NS);
+	cyc_activate(c);
+	until_op(c, 15, 5000);
+	expect_in_step(b, 15);
+	for (i = 0; i < 4; i++)
+		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_without_status),
 	KUNIT_CASE(sync1_is_slower),
 	KUNIT_CASE(sync_late_cycle),
 	KUNIT_CASE(sync_long_cycle),
