@@ -297,8 +297,11 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 			return -EOPNOTSUPP;
 		}
 		ret = ec_dc_sync_start(s, c);
-		if (ret)
+		if (ret) {
+			/* SYNC may be off now: it is started where that belongs */
+			WRITE_ONCE(s->reconfigure, true);
 			return ret;
+		}
 	}
 	s->sync_due_ns = 0;
 	return 0;

@@ -398,7 +398,38 @@ static void sync_without_status(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
 }
 
+static void not_started_again(struct cyc *c)
+{
+	const u8 *mem = bus_esc(c->b, 1)->mem;
+
+	no_sync_of_1(c);
+	if (mem[EC_REG_AL_STATUS] == EC_AL_SAFEOP && !mem[EC_REG_DC_ACTIVATION])
+		bus_fault(c->b, EC_SIM_FAULT_WKC, 1, 0, 1, 0);
+}
+
+/* In SAFEOP SYNC is started again, and that fails half way: no OP is tried without it. */
+static void sync_lost_on_the_way(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+
+	c->each = not_started_again;
+	cyc_activate(c);
+	until_op(c, 13, 5000);
+	cyc_run(c, 1000);
+	expect_reason(b, 1, "does not answer on the way to OP");
+	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_SAFEOP);
+	/* well again */
+	c->each = each;
+	bus_fault(b, EC_SIM_FAULT_WKC, 1, 0, 0, 0);
+	bus_request(b, 1, EC_AL_OP);
+	until_op(c, 15, 5000);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_lost_on_the_way),
 	KUNIT_CASE(sync_without_status),
 	KUNIT_CASE(sync1_is_slower),
 	KUNIT_CASE(sync_late_cycle),
