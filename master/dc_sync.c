@@ -33,6 +33,13 @@ static bool settled(const struct ec_dc *dc)
 	return !READ_ONCE(dc->changed) && READ_ONCE(dc->state) != EC_DC_BUSY;
 }
 
+/* Nobody needs the way to this state to be gone on with; who has changed that has kicked. */
+static bool canceled(const struct ec_slave *s, u8 state)
+{
+	return READ_ONCE(s->interrupt) || READ_ONCE(s->requested) < state || s->gone ||
+	       s->master->stopping;
+}
+
 /**
  * ec_dc_wait() - wait until the clocks are set
  * @s: slave that wants to use its clock, @lock held
@@ -54,7 +61,7 @@ int ec_dc_wait(struct ec_slave *s)
 		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
 			return READ_ONCE(dc->state) == EC_DC_READY && READ_ONCE(s->dc_set) ?
 			       0 : -ENXIO;
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+		if (canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
 		if (READ_ONCE(s->dc_set) && !READ_ONCE(dc->changed))
 			near += POLL_MS;
@@ -224,7 +231,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
 	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
 		bool set = READ_ONCE(s->dc_set);
 
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+		if (canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
 		s->sync_due_ns = 0;
 		WRITE_ONCE(s->sync_free, !set);
@@ -245,7 +252,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
 static int wait_until(struct ec_slave *s, u64 ns)
 {
 	while (ktime_get_ns() < ns) {
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+		if (canceled(s, EC_AL_OP))
 			return -ECANCELED;
 		usleep_range(1000, 1500);
 	}

@@ -428,7 +428,50 @@ static void sync_lost_on_the_way(struct kunit *test)
 	expect_in_step(b, 15);
 }
 
+/* On its way up and waiting, for its clock or for the first SYNC1: PREOP is asked for. */
+static void sync_is_called_off(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	struct ec_slave *s;
+	u32 i;
+
+	sync0(c, 1, PERIOD_NS, 2000 * PERIOD_NS);
+	cyc_activate(c);
+	s = bus_slave(b, 1);
+	for (i = 0; i < 3000 && s->al_status != EC_AL_SAFEOP; i++)
+		cyc_run(c, 1);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_SAFEOP);
+	bus_request(b, 1, EC_AL_PREOP);
+	cyc_run(c, 50);
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	bus_request(b, 1, EC_AL_OP);
+	until_op(c, 15, 5000);
+
+	mutex_lock(&b->m->session_lock);
+	/* as the scan leaves it */
+	WRITE_ONCE(s->dc_set, false);
+	WRITE_ONCE(b->m->dc.changed, true);
+	WRITE_ONCE(s->reconfigure, true);
+	bus_request(b, 1, EC_AL_OP);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	bus_request(b, 1, EC_AL_PREOP);
+	cyc_run(c, 150);
+	KUNIT_EXPECT_NULL(test, READ_ONCE(s->worker));
+	mutex_unlock(&b->m->session_lock);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	bus_request(b, 1, EC_AL_OP);
+	until_op(c, 15, 5000);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_is_called_off),
 	KUNIT_CASE(sync_lost_on_the_way),
 	KUNIT_CASE(sync_without_status),
 	KUNIT_CASE(sync1_is_slower),
