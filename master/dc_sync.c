@@ -11,8 +11,8 @@
 
 #define LEAD_NS		(100 * NSEC_PER_MSEC)	/* first SYNC0 is in the future */
 #define LEAD_CYCLES	4			/* and later when the cycle is long */
-#define LEAD_MAX_NS	(16 * NSEC_PER_SEC)
-#define LEAD_MAX32_NS	NSEC_PER_SEC		/* 32 bits tell past and future up to 2.1 s */
+#define LEAD_MAX_NS	(16ll * NSEC_PER_SEC)
+#define HALF32_NS	(1ll << 31)		/* 32 bits tell past and future up to 2.1 s */
 #define STARTS		6			/* tries, each with a later start */
 #define CHECKS		3			/* starts that were in time and had no effect */
 #define CHECK_NS	(2 * NSEC_PER_MSEC)	/* after the first SYNC signals */
@@ -183,23 +183,33 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
 	return 0;
 }
 
+/*
+ * How far the start shall be away at least. At most a period later it is on the grid,
+ * and 32 bits must still tell it from the past then, with some time to spare.
+ */
+static u64 lead(struct ec_slave *s, u32 period, u64 took)
+{
+	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->master->interval_us) * NSEC_PER_USEC;
+	s64 most = HALF32_NS - period - LEAD_NS;
+
+	if (ec_slave_features(s) & EC_FEAT_DC64)
+		most = LEAD_MAX_NS;
+	return min_t(u64, LEAD_NS + cycles + took, max_t(s64, most, LEAD_NS));
+}
+
 /* Once; the longer transfers to the slave take, the later it starts. */
 static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try)
 {
 	struct ec_dc *dc = &s->master->dc;
-	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
-	u64 now, at_ns, t0 = ktime_get_ns(), took, lead;
+	u64 now, at_ns, t0 = ktime_get_ns(), took;
 	int ret = prepare(s, c, &now, &at_ns);
 
 	if (ret)
 		return ret;
 	took = ktime_get_ns() - t0;
-	lead = LEAD_NS + LEAD_CYCLES * NSEC_PER_USEC * READ_ONCE(s->master->interval_us) +
-	       (took << (try + 1));
-	lead = min_t(u64, lead, wide ? LEAD_MAX_NS : LEAD_MAX32_NS);
-	return activate(s, c, ec_dc_start(now + ktime_get_ns() - at_ns + lead,
-					  dc->has_phase ? dc->phase : 0, period,
+	now += ktime_get_ns() - at_ns + lead(s, period, took << (try + 1));
+	return activate(s, c, ec_dc_start(now, dc->has_phase ? dc->phase : 0, period,
 					  c->dc_shift[0]));
 }
 

@@ -137,6 +137,30 @@ static void sync_long_cycle(struct kunit *test)
 	}
 }
 
+/* Half the range of 32 bits is not much beside such a cycle. */
+static void sync_long_cycle_of_32_bits(struct kunit *test)
+{
+	struct cyc *c = start(test, "segment seed=3\n"
+			      "slave a drive in=8 out=8 drift=60ppm dc=32\n"
+			      "slave b drive in=8 out=8 drift=-70ppm clock=3s dc=32\n", 2, 1200000,
+			      PERIOD_NS);
+	struct bus *b = c->b;
+	u32 i;
+
+	for (i = 0; i < 2; i++) {
+		struct ec_ioc_sc_sync sm = {
+			.config = i, .sm = 2, .dir = EC_CFG_DIR_OUTPUT,
+			.watchdog = EC_CFG_WD_DISABLE,
+		};
+
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+	}
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 200000), ~0ull);
+	for (i = 0; i < 2; i++)
+		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
+}
+
 /* Acyclic frames only leave in some late cycles, and many slaves want to. */
 static void sync_few_frames(struct kunit *test)
 {
@@ -477,6 +501,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sync1_is_slower),
 	KUNIT_CASE(sync_late_cycle),
 	KUNIT_CASE(sync_long_cycle),
+	KUNIT_CASE(sync_long_cycle_of_32_bits),
 	KUNIT_CASE(sync_few_frames),
 	KUNIT_CASE(sync_reference_is_late),
 	KUNIT_CASE(sync_bad_slave),
