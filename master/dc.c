@@ -725,11 +725,13 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 {
 	unsigned int i;
 
-	down_read(&m->topo);
-	for (i = 0; all && i < m->n_slaves; i++)
-		WRITE_ONCE(m->slaves[i]->dc_set, false);
-	up_read(&m->topo);
 	stop(&m->dc);
+	down_read(&m->topo);
+	for (i = 0; all && i < m->n_slaves; i++) {
+		WRITE_ONCE(m->slaves[i]->dc_set, false);
+		m->slaves[i]->dc_vain = 0;
+	}
+	up_read(&m->topo);
 	WRITE_ONCE(m->dc.stop, false);
 	if (all)
 		ec_dc_app_set(m, 0, false);

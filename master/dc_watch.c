@@ -17,6 +17,7 @@
 #define BATCH		60	/* slaves asked at once */
 #define AGAIN_MS	2000	/* between tries to set the clocks, then twice that... */
 #define AGAIN_MAX_MS	60000
+#define VAIN		3	/* tries for one slave that answers only when nothing is at stake */
 
 struct batch {
 	unsigned int n;
@@ -72,11 +73,28 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 	return from;
 }
 
-/* Each try disturbs the clocks that are set a little: they are measured again. */
-static void try_again(struct ec_dc *dc)
+static bool due(const struct ec_dc *dc)
 {
-	if (ktime_get_ns() >= dc->again_ns)
-		WRITE_ONCE(dc->again, true);
+	return !READ_ONCE(dc->again) && ktime_get_ns() >= dc->again_ns;
+}
+
+/*
+ * A slave has answered: is that worth a try, which is due? Each one disturbs the clocks
+ * that are set a little, as they are measured again: not for ever because of one slave.
+ */
+static bool worth_try(struct ec_slave *s)
+{
+	if (!READ_ONCE(s->dc_out)) {
+		s->dc_vain = 0;
+		return false;
+	}
+	if (s->dc_vain > VAIN)
+		return false;
+	if (s->dc_vain++ < VAIN)
+		return true;
+	ec_slave_warn(s, "its clock could not be set in %d more tries although it answers: it is left out until the slave comes anew or the next activation\n",
+		      VAIN);
+	return false;
 }
 
 /**
@@ -98,7 +116,7 @@ static void watch(struct work_struct *work)
 	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
 	struct ec_master *m = container_of(dc, struct ec_master, dc);
 	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
-	bool worth = READ_ONCE(dc->failed);
+	bool try = due(dc), worth = READ_ONCE(dc->failed);
 	unsigned int i, at = 0;
 
 	/* while clocks are being set they have a verdict of their own */
@@ -109,7 +127,7 @@ static void watch(struct work_struct *work)
 		ec_xfer(m, b->dg, b->n);
 		for (i = 0; i < b->n; i++) {
 			if (!b->dg[i].err && b->dg[i].wkc == 1) {
-				worth |= READ_ONCE(b->slaves[i]->dc_out);
+				worth |= try && worth_try(b->slaves[i]);
 				if (READ_ONCE(b->slaves[i]->dc_set))
 					ec_dc_verdict(b->slaves[i],
 						      get_unaligned_le32(b->value[i]));
@@ -117,8 +135,8 @@ static void watch(struct work_struct *work)
 			ec_slave_unref(b->slaves[i]);
 		}
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
-	if (worth)
-		try_again(dc);
+	if (try && worth)
+		WRITE_ONCE(dc->again, true);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))

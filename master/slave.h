@@ -58,6 +58,7 @@ struct ec_master;
  * @dc_set: its clock was set for this session
  * @dc_far: the log says that it differs too much
  * @dc_out: it did not answer when it should be set
+ * @dc_vain: tries to set it since then for which it had answered; only the watch counts
  *
  * Changing:
  * @al_status: last AL status seen
@@ -132,6 +133,7 @@ struct ec_slave {
 	bool dc_set;
 	bool dc_far;
 	bool dc_out;
+	u8 dc_vain;
 
 	u16 al_status;
 	u16 al_code;

@@ -494,7 +494,54 @@ static void sync_is_called_off(struct kunit *test)
 	expect_in_step(b, 15);
 }
 
+static u32 begun;
+
+/* the last slave answers, but not while the clocks are set */
+static void never_set(struct cyc *c)
+{
+	static bool was;
+	bool busy = READ_ONCE(c->b->m->dc.state) == EC_DC_BUSY;
+
+	each(c);
+	if (busy != was)
+		bus_fault(c->b, EC_SIM_FAULT_WKC, 3, 0, busy, 0);
+	begun += busy && !was;
+	was = busy;
+}
+
+/* The others' clocks are not measured for ever because of one that cannot be set. */
+static void sync_gives_up(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	u32 i;
+
+	begun = 0;
+	c->each = never_set;
+	cyc_activate(c);
+	until_op(c, 7, 20000);
+	cyc_run(c, 45000);
+	KUNIT_EXPECT_EQ(test, begun, 4u);
+	cyc_run(c, 60000);
+	KUNIT_EXPECT_EQ(test, begun, 4u);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 3)->dc_out);
+	expect_in_step(b, 7);
+	/* well again when it comes anew */
+	c->each = each;
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
+	cyc_run(c, 500);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
+	for (i = 0; i < 10000 && (b->m->n_slaves < 4 || !bus_slave(b, 3)->dc_set); i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_LT(test, i, 10000u);
+	until_op(c, 15, 5000);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(sync_gives_up),
 	KUNIT_CASE(sync_is_called_off),
 	KUNIT_CASE(sync_lost_on_the_way),
 	KUNIT_CASE(sync_without_status),
