@@ -105,8 +105,9 @@ static bool worth_try(struct ec_slave *s)
  */
 void ec_dc_watch_begun(struct ec_dc *dc)
 {
-	dc->again_ms = !dc->again || dc->changed ? AGAIN_MS : min_t(u32, 2 * dc->again_ms, AGAIN_MAX_MS);
-	dc->again_ns = ktime_get_ns() + dc->again_ms * NSEC_PER_MSEC;
+	dc->again_ms = !dc->again || dc->changed ?
+		       AGAIN_MS : min_t(u32, 2 * dc->again_ms, AGAIN_MAX_MS);
+	dc->again_ns = ktime_get_ns() + (u64)dc->again_ms * NSEC_PER_MSEC;
 	dc->again = false;
 	dc->failed = false;
 }
