@@ -88,6 +88,7 @@ void ec_esc_power_on(struct ec_esc *esc, u64 now)
 	ec_esc_mii_reset(esc);
 	ec_esc_dc_reset(esc, now);
 	ec_esc_eeprom_load(esc, true);
+	ec_esc_quick_forget(esc);
 	ec_sim_rehash(esc);
 	ec_sim_touch(esc);
 }
@@ -311,6 +312,7 @@ static bool reg_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 		ec_esc_sm_config(esc, ado, len, act, ctx);
 	if (ec_range_hit(ado, len, EC_DC_FIRST, EC_DC_SIZE))
 		ec_esc_dc_write(esc, ado, buf, len, ctx);
+	ec_esc_quick_forget(esc);
 	return true;
 }
 
@@ -340,7 +342,8 @@ bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
 			 (u32)len - skip, ctx);
 }
 
-static bool address_match(const struct ec_esc *esc, const struct ec_dgram *d)
+/* does a physical command address this slave */
+bool ec_esc_addressed(const struct ec_esc *esc, const struct ec_dgram *d)
 {
 	switch (d->cmd) {
 	case EC_CMD_FPRD:
@@ -387,7 +390,7 @@ static bool read_data(struct ec_esc *esc, struct ec_dgram *d, bool merge,
 static int physical(struct ec_esc *esc, struct ec_dgram *d,
 		    const struct ec_frame_ctx *ctx)
 {
-	bool match = address_match(esc, d), rd = false, wr = false;
+	bool match = ec_esc_addressed(esc, d), rd = false, wr = false;
 	bool bcast = false;
 	const u8 *in = d->data;
 	int add = 0;
@@ -478,15 +481,6 @@ void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
 	}
 }
 
-/* time of the next thing this slave does by itself */
-u64 ec_esc_next(const struct ec_esc *esc)
-{
-	u64 t = min(esc->app_wake_ns, min(esc->wd_due, esc->wd_pdi_due));
-
-	t = min(t, esc->loop_restore);
-	return min(t, esc->dc.sync_wake);
-}
-
 /* do what is due at @now */
 void ec_esc_run(struct ec_esc *esc, u64 now)
 {
@@ -516,17 +510,18 @@ void ec_esc_deliver(struct ec_esc *esc)
 {
 	const struct ec_esc_app_ops *ops = esc->app_ops;
 	u64 now = esc->pend_ns;
+	u32 sms = esc->pend.sm_written | esc->pend.sm_read;
 	int n;
 
 	if (ops && esc->eep.loaded && esc->powered) {
-		for (n = 0; n < esc->cfg.sms; n++)
+		for (n = 0; esc->pend.sm_activate >> n; n++)
 			if (esc->pend.sm_activate & BIT(n) && ops->sm_activate)
 				ops->sm_activate(esc, n, now);
 		if (esc->pend.al_control && ops->al_control)
 			ops->al_control(esc, now);
 		if (esc->pend.eeprom && ops->eeprom)
 			ops->eeprom(esc, now);
-		for (n = 0; n < esc->cfg.sms; n++) {
+		for (n = 0; sms >> n; n++) {
 			if (esc->pend.sm_written & BIT(n) && ops->sm_written)
 				ops->sm_written(esc, n, now);
 			if (esc->pend.sm_read & BIT(n) && ops->sm_read)

@@ -250,6 +250,44 @@ struct ec_esc_fault {
 };
 
 /**
+ * struct ec_esc_window - process data that one FMMU maps to one whole SyncManager
+ * @logical: first logical byte
+ * @len: bytes, 0: there is no such FMMU
+ * @phys: start of the SyncManager
+ * @sm: its number
+ */
+struct ec_esc_window {
+	u32 logical;
+	u16 len;
+	u16 phys;
+	u8 sm;
+};
+
+/**
+ * struct ec_esc_quick - what spares a frame the long way through the registers
+ * @known: the rest is up to date; ec_esc_quick_update() makes it so
+ * @data: @in and @out may be accessed the short way
+ * @time: so may the system time, 0x0910
+ * @bcast: so may broadcast reads of plain registers
+ * @in: window of the inputs
+ * @out: window of the outputs
+ * @other_first: lowest logical byte of all other FMMUs
+ * @other_last: highest one
+ * @wd_ns: time of the process data watchdog
+ */
+struct ec_esc_quick {
+	bool known;
+	bool data;
+	bool time;
+	bool bcast;
+	struct ec_esc_window in;
+	struct ec_esc_window out;
+	u32 other_first;
+	u32 other_last;
+	u64 wd_ns;
+};
+
+/**
  * struct ec_esc - one slave controller
  * @sim: segment it belongs to
  * @index: its number in the segment, in the order of ec_sim_add()
@@ -279,6 +317,7 @@ struct ec_esc_fault {
  * @app_ops: its entry points, may be NULL
  * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
  *               ec_esc_wake_at()
+ * @quick: short ways
  * @sms_active: bit n: SM n is active
  * @fmmus_active: bit n: FMMU n is enabled and maps something
  * @log_first: lowest logical byte address mapped
@@ -323,6 +362,7 @@ struct ec_esc {
 	u64 app_wake_ns;
 
 	/* private to the model */
+	struct ec_esc_quick quick;
 	u16 sms_active;
 	u16 fmmus_active;
 	u32 log_first;

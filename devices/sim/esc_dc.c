@@ -602,6 +602,19 @@ void ec_esc_dc_pdi_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 	units_written(esc, ado, len, old, now);
 }
 
+/* the master writes the system time, 4 bytes or, if @wide, 8 */
+void ec_esc_dc_time(struct ec_esc *esc, const u8 *buf, bool wide, u64 now)
+{
+	u64 t = wide ? get_unaligned_le64(buf) : get_unaligned_le32(buf);
+
+	if (ec_esc_bug(esc, EC_SIM_BUG_DC_JUMP)) {
+		rebase(esc, now);
+		esc->dc.base_local = t - offset(esc) +
+			get_unaligned_le32(esc->mem + EC_REG_DC_DELAY);
+	}
+	compare(esc, t, wide, now);
+}
+
 void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 		     const struct ec_frame_ctx *ctx)
 {
@@ -614,18 +627,9 @@ void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 		return;
 	if (ec_range_hit(ado, n, EC_REG_DC_RECV(0), 4))
 		latch_receive(esc, ctx);
-	if (ado <= EC_REG_DC_SYSTIME && ado + n >= EC_REG_DC_SYSTIME + 4) {
-		const u8 *p = buf + (EC_REG_DC_SYSTIME - ado);
-		bool wide = ado + n >= EC_REG_DC_SYSTIME + 8;
-		u64 t = wide ? get_unaligned_le64(p) : get_unaligned_le32(p);
-
-		if (ec_esc_bug(esc, EC_SIM_BUG_DC_JUMP)) {
-			rebase(esc, ctx->now);
-			esc->dc.base_local = t - offset(esc) +
-				get_unaligned_le32(m + EC_REG_DC_DELAY);
-		}
-		compare(esc, t, wide, ctx->now);
-	}
+	if (ado <= EC_REG_DC_SYSTIME && ado + n >= EC_REG_DC_SYSTIME + 4)
+		ec_esc_dc_time(esc, buf + (EC_REG_DC_SYSTIME - ado),
+			       ado + n >= EC_REG_DC_SYSTIME + 8, ctx->now);
 
 	for (i = 0; i < len; i++)
 		if (is_plain(esc, ado + (u32)i, old & 1))

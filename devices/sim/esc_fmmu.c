@@ -108,13 +108,16 @@ int ec_esc_fmmu_access(struct ec_esc *esc, struct ec_dgram *d,
 	int n, reads = 0, writes = 0, write_count;
 	u64 base = (u64)logical * 8, first, end;
 	const u8 *in = d->data;
+	u32 at, n_in;
 
 	if (!ec_esc_fmmu_hit(esc, logical, d->len))
 		return 0;
 	if (d->cmd == EC_CMD_LRW && esc->cfg.features & EC_FEAT_NO_LRW)
 		return 0;
-	if (rd && wr) {
-		memcpy(esc->sim->scratch, d->data, d->len);
+	if (rd && wr) {		/* what came in, as far as it is mapped */
+		at = max(esc->log_first, logical) - logical;
+		n_in = (u32)min_t(u64, d->len, (u64)esc->log_last - logical + 1) - at;
+		memcpy(esc->sim->scratch + at, d->data + at, n_in);
 		in = esc->sim->scratch;
 	}
 

@@ -63,6 +63,8 @@ struct ec_sim {
 	bool dirty;			/* routes to be recomputed */
 	struct ec_sim_route route[EC_SIM_PORTS];
 	u32 *heap;			/* slaves by time of their next event */
+	u64 wd_next;			/* no process data watchdog expires earlier */
+	u32 wd_slave;			/* whose it is, if it is that exactly */
 	u32 irqs;			/* slaves with esc->irq */
 	int pend_head;
 	int pend_tail;
@@ -98,6 +100,15 @@ static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
 	return get_unaligned_le16(esc->mem + reg);
 }
 
+/* time of the next thing a slave does by itself, but for its process data watchdog */
+static inline u64 ec_esc_next(const struct ec_esc *esc)
+{
+	u64 t = min(esc->app_wake_ns, esc->wd_pdi_due);
+
+	t = min(t, esc->loop_restore);
+	return min(t, esc->dc.sync_wake);
+}
+
 /* what the slave adds to the IRQ field of each datagram */
 static inline u16 ec_esc_irq(const struct ec_esc *esc)
 {
@@ -115,7 +126,7 @@ bool ec_esc_phys_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 		      const struct ec_frame_ctx *ctx);
 bool ec_esc_phys_write(struct ec_esc *esc, u16 ado, const void *buf,
 		       size_t len, const struct ec_frame_ctx *ctx);
-u64 ec_esc_next(const struct ec_esc *esc);
+bool ec_esc_addressed(const struct ec_esc *esc, const struct ec_dgram *d);
 void ec_esc_run(struct ec_esc *esc, u64 now);
 void ec_esc_deliver(struct ec_esc *esc);
 
@@ -132,6 +143,7 @@ u32 ec_esc_protect(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len);
 void ec_esc_sm_reset(struct ec_esc *esc);
 void ec_esc_sm_config(struct ec_esc *esc, u16 ado, size_t len,
 		      const u8 *old_activate, const struct ec_frame_ctx *ctx);
+int ec_esc_sm_find(const struct ec_esc *esc, u32 ado, size_t len);
 void ec_esc_sm_refresh(struct ec_esc *esc);
 u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
 		    bool write, int *smp);
@@ -152,9 +164,21 @@ void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
 bool ec_esc_eeprom_asks(const struct ec_esc *esc);
 void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control);
 
+/* esc_quick.c */
+void ec_esc_quick_update(struct ec_esc *esc);
+bool ec_esc_quick_data(struct ec_esc *esc, struct ec_dgram *d, u64 now, u64 end, u16 *wkc);
+
+/* the registers, their protection or what is wrong with the slave changed */
+static inline void ec_esc_quick_forget(struct ec_esc *esc)
+{
+	esc->quick.known = false;
+}
+
 /* esc_wd.c */
 bool ec_esc_wd_ok(const struct ec_esc *esc);
+u64 ec_esc_wd_ns(const struct ec_esc *esc);
 void ec_esc_wd_trigger(struct ec_esc *esc, u64 now);
+void ec_esc_wd_start(struct ec_esc *esc, u64 now, u64 ns);
 void ec_esc_wd_config(struct ec_esc *esc, u64 now);
 void ec_esc_wd_expire(struct ec_esc *esc, u64 now);
 void ec_esc_wd_pdi_trigger(struct ec_esc *esc, u64 now);
@@ -164,6 +188,7 @@ void ec_esc_wd_pdi_expire(struct ec_esc *esc);
 void ec_esc_dc_reset(struct ec_esc *esc, u64 now);
 void ec_esc_dc_refresh(struct ec_esc *esc, u64 now);
 void ec_esc_dc_read(struct ec_esc *esc, u16 ado, size_t len, bool pdi);
+void ec_esc_dc_time(struct ec_esc *esc, const u8 *buf, bool wide, u64 now);
 void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 		     const struct ec_frame_ctx *ctx);
 void ec_esc_dc_pdi_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
@@ -179,7 +204,17 @@ void ec_esc_mii_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len);
 
 /* segment.c */
 u64 ec_sim_hash(u64 x);
-void ec_sim_touch(struct ec_esc *esc);
+void ec_sim_key(struct ec_esc *esc, u64 t);
+
+/* a slave's next event may have come nearer */
+static inline void ec_sim_touch(struct ec_esc *esc)
+{
+	u64 t = ec_esc_next(esc);
+
+	if (t < esc->key)
+		ec_sim_key(esc, t);
+}
+
 void ec_sim_rehash(struct ec_esc *esc);
 
 /* segment_route.c */

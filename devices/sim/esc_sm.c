@@ -51,6 +51,7 @@ static void update_active(struct ec_esc *esc, int n)
 	if (active == sm->active)
 		return;
 	clear_state(sm);
+	ec_esc_quick_forget(esc);
 	sm->active = active;
 	if (active)
 		esc->sms_active |= (u16)BIT(n);
@@ -116,7 +117,7 @@ void ec_esc_sm_refresh(struct ec_esc *esc)
 }
 
 /* the SM whose area the access touches; -1: none, -2: refused */
-static int find(const struct ec_esc *esc, u32 ado, size_t len)
+int ec_esc_sm_find(const struct ec_esc *esc, u32 ado, size_t len)
 {
 	u32 end = ado + (u32)len, left = esc->sms_active;
 	int n;
@@ -159,7 +160,7 @@ u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
 	*smp = -1;
 	if (ado + len > esc->mem_len)
 		return NULL;
-	n = len ? find(esc, ado, len) : -1;
+	n = len ? ec_esc_sm_find(esc, ado, len) : -1;
 	if (n == -1)
 		return esc->mem + ado;
 	if (n < 0)

@@ -15,7 +15,8 @@ static u64 time_ns(const struct ec_esc *esc, u16 reg)
 	       ec_esc_get16(esc, reg);
 }
 
-static u64 period_ns(const struct ec_esc *esc)
+/* time of the process data watchdog, 0: off */
+u64 ec_esc_wd_ns(const struct ec_esc *esc)
 {
 	return time_ns(esc, EC_REG_WD_SM);
 }
@@ -23,8 +24,13 @@ static u64 period_ns(const struct ec_esc *esc)
 /* the PDI was accessed, hangs or works again, or the time was written */
 void ec_esc_wd_pdi_trigger(struct ec_esc *esc, u64 now)
 {
-	u64 ns = time_ns(esc, EC_REG_WD_PDI);
+	u64 ns;
 
+	if (!esc->fault.app_mute && !esc->wd_pdi_expired) {
+		esc->wd_pdi_due = EC_ESC_NEVER;
+		return;
+	}
+	ns = time_ns(esc, EC_REG_WD_PDI);
 	esc->wd_pdi_due = esc->fault.app_mute && ns ? now + ns : EC_ESC_NEVER;
 	if (esc->wd_pdi_expired)
 		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
@@ -47,15 +53,19 @@ void ec_esc_wd_pdi_expire(struct ec_esc *esc)
 
 bool ec_esc_wd_ok(const struct ec_esc *esc)
 {
-	return !period_ns(esc) || esc->wd_due != EC_ESC_NEVER;
+	return !ec_esc_wd_ns(esc) || esc->wd_due != EC_ESC_NEVER;
+}
+
+/* @ns: ec_esc_wd_ns() */
+void ec_esc_wd_start(struct ec_esc *esc, u64 now, u64 ns)
+{
+	esc->wd_due = ns ? now + ns : EC_ESC_NEVER;
+	esc->sim->wd_next = min(esc->sim->wd_next, esc->wd_due);
 }
 
 void ec_esc_wd_trigger(struct ec_esc *esc, u64 now)
 {
-	u64 ns = period_ns(esc);
-
-	esc->wd_due = ns ? now + ns : EC_ESC_NEVER;
-	ec_sim_touch(esc);
+	ec_esc_wd_start(esc, now, ec_esc_wd_ns(esc));
 }
 
 /* SM pages or watchdog times were written */
@@ -69,9 +79,9 @@ void ec_esc_wd_config(struct ec_esc *esc, u64 now)
 		if (esc->sm[n].active &&
 		    esc->sm[n].page.control & EC_SM_WATCHDOG)
 			break;
-	if (n == esc->cfg.sms || !period_ns(esc))
+	if (n == esc->cfg.sms || !ec_esc_wd_ns(esc))
 		esc->wd_due = EC_ESC_NEVER;
-	else if (esc->wd_due > now + period_ns(esc))
+	else if (esc->wd_due > now + ec_esc_wd_ns(esc))
 		ec_esc_wd_trigger(esc, now);
 }
 

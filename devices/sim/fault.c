@@ -132,8 +132,10 @@ void ec_sim_clear_faults(struct ec_sim *sim)
 			give_back(sim, k);
 		}
 	}
-	for (i = 0; i < sim->count; i++)
+	for (i = 0; i < sim->count; i++) {
 		memset(&sim->esc[i]->fault, 0, sizeof(sim->esc[i]->fault));
+		ec_esc_quick_forget(sim->esc[i]);
+	}
 }
 
 u64 ec_sim_faults_next(const struct ec_sim *sim)
@@ -147,6 +149,8 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	struct ec_esc *esc = f->slave >= 0 ? sim->esc[f->slave] : NULL;
 	u8 *count;
 
+	if (esc)
+		ec_esc_quick_forget(esc);
 	switch (f->type) {
 	case EC_SIM_FAULT_CUT:
 	case EC_SIM_FAULT_HEAL:

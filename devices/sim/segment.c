@@ -64,15 +64,32 @@ static void heap_down(struct ec_sim *sim, u32 pos)
 	}
 }
 
-/* a slave's next event may have come nearer */
-void ec_sim_touch(struct ec_esc *esc)
+/* a slave's next event has come nearer */
+void ec_sim_key(struct ec_esc *esc, u64 t)
 {
-	u64 t = ec_esc_next(esc);
+	esc->key = t;
+	heap_up(esc->sim, esc->heap_pos);
+}
 
-	if (t < esc->key) {
-		esc->key = t;
-		heap_up(esc->sim, esc->heap_pos);
+/*
+ * When the next process data watchdog expires. They are started by every frame
+ * and hardly ever expire, so they are not in the heap: a lower bound is kept, and
+ * all are looked through when the bound is reached.
+ */
+static u64 watchdogs_next(struct ec_sim *sim, u64 limit)
+{
+	u32 i;
+
+	if (sim->wd_next > limit)
+		return EC_ESC_NEVER;
+	sim->wd_next = EC_ESC_NEVER;
+	for (i = 0; i < sim->count; i++) {
+		if (sim->esc[i]->wd_due >= sim->wd_next)
+			continue;
+		sim->wd_next = sim->esc[i]->wd_due;
+		sim->wd_slave = i;
 	}
+	return sim->wd_next;
 }
 
 static u64 slaves_next(struct ec_sim *sim)
@@ -100,6 +117,8 @@ u64 ec_sim_next_event(struct ec_sim *sim)
 {
 	u64 a = slaves_next(sim), b = ec_sim_faults_next(sim);
 
+	a = min(a, b);
+	b = watchdogs_next(sim, a);
 	return min(a, b);
 }
 
@@ -117,13 +136,17 @@ void ec_sim_advance(struct ec_sim *sim, u64 now_ns)
 {
 	for (;;) {
 		u64 a = slaves_next(sim), b = ec_sim_faults_next(sim);
-		u64 t = min(a, b);
+		u64 t = min(a, b), wd;
 
+		wd = watchdogs_next(sim, min(t, now_ns));
+		t = min(t, wd);
 		if (t > now_ns || t == EC_ESC_NEVER)
 			break;
 		sim->now = max(sim->now, t);
-		if (b <= a)
+		if (b <= t)
 			ec_sim_faults_run(sim, sim->now);
+		else if (wd <= t)
+			ec_esc_run(sim->esc[sim->wd_slave], sim->now);
 		else
 			ec_esc_run(sim->esc[sim->heap[0]], sim->now);
 	}
@@ -194,6 +217,7 @@ struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
 	sim->max = max_slaves;
 	sim->seed = ec_sim_hash(seed);
 	sim->pend_head = -1;
+	sim->wd_next = EC_ESC_NEVER;
 	sim->dirty = true;
 	sim->buckets = 16;
 	while (sim->buckets < max_slaves)

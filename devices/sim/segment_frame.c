@@ -132,14 +132,89 @@ static void by_logical(const struct pass *ps, struct ec_dgram *d)
 {
 	u32 first = ec_dgram_logical(d), i;
 	u64 last = (u64)first + d->len;
+	bool quick = last <= 1ULL << 32;
+	u16 wkc = 0;
 
 	collect_irq(ps, d);
 	for (i = 0; i < ps->steps; i++) {
 		const struct ec_sim_step *st = &ps->r->step[i];
+		u64 now = ps->now + st->pu_ns;
 
-		if (first <= st->log_last && last > st->log_first)
+		if (first > st->log_last || last <= st->log_first)
+			continue;
+		if (!quick || !st->esc->powered ||
+		    !ec_esc_quick_data(st->esc, d, now, now + ps->wire_ns, &wkc))
 			visit(ps, i, d);
 	}
+	if (wkc)
+		ec_dgram_set_wkc(d, (u16)(ec_dgram_wkc(d) + wkc));
+}
+
+static void quick_update(struct ec_esc *esc)
+{
+	if (!esc->quick.known)
+		ec_esc_quick_update(esc);
+}
+
+/* registers which are read as they lie in the memory */
+static bool plain_read(const struct ec_dgram *d)
+{
+	u32 end = d->ado + (u32)d->len;
+
+	return d->cmd == EC_CMD_BRD && d->len &&
+	       (end <= EC_REG_DL_STATUS ||
+		(d->ado >= EC_REG_DL_STATUS + 2 && end <= EC_REG_ECAT_EVENT));
+}
+
+static void plain_broadcast(const struct pass *ps, struct ec_dgram *d)
+{
+	bool al = d->ado < EC_REG_AL_STATUS + 2 && d->ado + d->len > EC_REG_AL_STATUS;
+	u16 wkc = 0, passed = 0;
+	u32 i, k;
+
+	collect_irq(ps, d);
+	for (i = 0; i < ps->steps; i++) {
+		struct ec_esc *esc = ps->r->step[i].esc;
+		const u8 *m = esc->mem + d->ado;
+
+		quick_update(esc);
+		if (!esc->quick.bcast || !esc->powered) {
+			visit(ps, i, d);
+			continue;
+		}
+		for (k = 0; k < d->len; k++)
+			d->data[k] |= m[k];
+		if (al && esc->ecat_event & EC_ECAT_EVENT_AL)
+			ec_esc_event(esc, 0, EC_ECAT_EVENT_AL);
+		wkc++;
+		passed++;
+	}
+	d->adp = (u16)(d->adp + passed);
+	put_unaligned_le16(d->adp, d->hdr + 2);
+	ec_dgram_set_wkc(d, (u16)(ec_dgram_wkc(d) + wkc));
+}
+
+/* FRMW to 0x0910: the time of one slave for those behind it */
+static void spread_time(const struct pass *ps, struct ec_dgram *d)
+{
+	u16 wkc = 0;
+	u32 i;
+
+	collect_irq(ps, d);
+	for (i = 0; i < ps->steps; i++) {
+		const struct ec_sim_step *st = &ps->r->step[i];
+		struct ec_esc *esc = st->esc;
+
+		quick_update(esc);
+		if (!esc->quick.time || !esc->powered || ec_esc_addressed(esc, d)) {
+			visit(ps, i, d);
+			continue;
+		}
+		ec_esc_dc_time(esc, d->data, d->len == 8, ps->now + st->pu_ns);
+		wkc++;
+	}
+	if (wkc)
+		ec_dgram_set_wkc(d, (u16)(ec_dgram_wkc(d) + wkc));
 }
 
 static void datagram(const struct pass *ps, struct ec_dgram *d)
@@ -170,8 +245,17 @@ static void datagram(const struct pass *ps, struct ec_dgram *d)
 	case EC_CMD_LRW:
 		by_logical(ps, d);
 		break;
+	case EC_CMD_FRMW:
+		if (d->ado == EC_REG_DC_SYSTIME && (d->len == 4 || d->len == 8))
+			spread_time(ps, d);
+		else
+			visit_all(ps, d);
+		break;
 	default:
-		visit_all(ps, d);
+		if (plain_read(d))
+			plain_broadcast(ps, d);
+		else
+			visit_all(ps, d);
 	}
 }
 
