@@ -20,6 +20,7 @@ tshark
 uml
 lib
 tool
+bats
 fuzz
 data
 kernels
@@ -64,6 +65,7 @@ level_tshark() { tests/tshark/run.sh; }
 level_uml() { tests/uml/run.sh; }
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
+level_bats() { tests/check-bats.sh; }
 level_fuzz() { make -s -C tests/fuzz check; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_pysoem() { tests/pysoem/run.sh; }

@@ -3,6 +3,7 @@
 #include <linux/delay.h>
 #include "kapp.h"
 #include "devices/sim/app.h"
+#include "master/api.h"
 #include "master/config.h"
 #include "master/ioctl.h"
 
@@ -43,8 +44,19 @@ static void kapi_request(struct kunit *test)
 
 static void kapi_without_device(struct kunit *test)
 {
-	bus_new(test, pair);
+	struct bus *b = bus_new(test, pair);
+	ec_master_t *m;
+
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->m->api->file.reason, "waiting for its device bus0"),
+				  "%s", b->m->api->file.reason);
+	/* nothing but the device was missing */
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	m = ecrt_request_master(0);
+	KUNIT_EXPECT_NOT_NULL(test, m);
+	ecrt_release_master(m);
 }
 
 /* What the master knows, without any lock or traffic. */

@@ -220,7 +220,7 @@ static void wire_sdo_beside_axes(struct kunit *test)
 	r = uploads(c, 10000);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 100 us, %u ns left: %u in 1 s, %u failed",
 		   ec_cycle_slack_ns(m), r->done, r->failed);
-	KUNIT_EXPECT_GE(test, r->done, 100u);
+	KUNIT_EXPECT_GE(test, r->done, 800u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, late(c->b), before);
@@ -250,7 +250,7 @@ static void wire_full(struct kunit *test)
 	r = uploads(c, 13333);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 75 us, 400 late cycles a second allowed: %u in 1 s, %u failed, %u late",
 		   r->done, r->failed, m->late_cycles - before);
-	KUNIT_EXPECT_GE(test, r->done, 5u);
+	KUNIT_EXPECT_GE(test, r->done, 15u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
 	KUNIT_EXPECT_GE(test, m->late_cycles - before, 100u);
 	KUNIT_EXPECT_LE(test, m->late_cycles - before, 450u);

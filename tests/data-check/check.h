@@ -6,10 +6,11 @@
 #include <stdio.h>
 
 /*
- * Both print what they find wrong, each line with the file's name in front,
+ * They print what they find wrong, each line with the file's name in front,
  * and fill @note for the line of a good file. Return the number of faults.
  */
 int check_eeprom(const char *path, const u8 *data, size_t len, char *note, size_t cap);
+int check_damaged(const char *path, const u8 *data, size_t len, char *note, size_t cap);
 int check_capture(const char *path, const u8 *data, size_t len, char *note, size_t cap);
 int check_replay(const char *path, const u8 *data, size_t len, char *note, size_t cap);
 

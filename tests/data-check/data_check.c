@@ -70,6 +70,7 @@ int main(int argc, char **argv)
 		return 0;
 	}
 	all(argv[1], "eeprom/*.bin", check_eeprom);
+	all(argv[1], "damaged/*.bin", check_damaged);
 	all(argv[1], "captures/*.pcapng", check_capture);
 	all(argv[1], "captures/twincat-run-ek1100-el1004.pcapng", check_replay);
 	printf("%u passed, %u failed\n", passed, failed);

@@ -5,6 +5,7 @@
  */
 #include "check.h"
 #include "../../master/wire/sii.h"
+#include <stdlib.h>
 
 static const struct image {
 	const char *name;
@@ -162,6 +163,116 @@ static void rebuild_all(const u8 *img, size_t len, size_t used)
 	}
 }
 
+/* Everything a decoder may be asked, of an image without a byte behind it. */
+static void decode_all(const u8 *img, size_t len)
+{
+	static const u16 dirs[] = { EC_SII_CAT_TXPDO, EC_SII_CAT_RXPDO };
+	struct ec_sii_general g;
+	struct ec_sii_info info;
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+	struct ec_sii_sm sm[16];
+	struct ec_sii_dc dc[16];
+	char text[256];
+	unsigned int i, k;
+
+	ec_sii_decode_info(img, len, &info);
+	ec_sii_decode_general(img, len, &g);
+	ec_sii_decode_sms(img, len, sm, 16);
+	ec_sii_decode_dcs(img, len, dc, 16);
+	for (i = 0; i < 256; i++)
+		ec_sii_string(img, len, (u8)i, text, sizeof(text));
+	ec_sii_iter_init(&it, img, len);
+	while (ec_sii_iter_next(&it, &cat) == 1)
+		EXPECT(cat.data >= img && cat.data + cat.bytes <= img + len);
+	for (i = 0; i < ARRAY_SIZE(dirs); i++) {
+		struct ec_sii_pdo_iter pit;
+		struct ec_sii_pdo_entry e;
+		struct ec_sii_pdo pdo;
+
+		ec_sii_pdo_iter_init(&pit, img, len, dirs[i]);
+		while (ec_sii_pdo_iter_next(&pit, &pdo) == 1)
+			for (k = 0; k < pdo.entries; k++)
+				ec_sii_pdo_entry(&pdo, k, &e);
+	}
+	ec_sii_used(img, len);
+	ec_sii_needed(img, len);
+}
+
+/* ... of each of its beginnings, too. */
+static void decode_cut(const u8 *img, size_t len)
+{
+	size_t n;
+
+	for (n = 0; n <= len; n++) {
+		u8 *cut = malloc(n);
+
+		memcpy(cut, img, n);
+		decode_all(cut, n);
+		free(cut);
+	}
+}
+
+/*
+ * Reads an image as a scan does, 8 bytes at a time, from a chip of @size bytes. Returns the
+ * number of bytes read when no more are needed, 0 if the chip ends before.
+ */
+static size_t fetch(const u8 *chip, size_t size)
+{
+	size_t have = 0;
+	int need;
+
+	for (;;) {
+		u8 *copy = malloc(have);
+
+		memcpy(copy, chip, have);
+		need = ec_sii_needed(copy, have);
+		free(copy);
+		if (need <= 0)
+			return need ? 0 : have;
+		have = ((size_t)need + 7) & ~(size_t)7;
+		if (have > size)
+			return 0;
+	}
+}
+
+/* A scan ends where the image ends. A chip is empty behind a shorter file. */
+static void scan(const u8 *data, size_t len, size_t used)
+{
+	size_t have, size = (len + 7) & ~(size_t)7;
+	u8 *chip = malloc(size);
+
+	memset(chip, 0xff, size);
+	memcpy(chip, data, len);
+	have = fetch(chip, size);
+	EXPECT(have >= used && have < used + 8);
+	EXPECT(ec_sii_used(chip, have) == used);
+	free(chip);
+}
+
+/* A damaged image: no decoder reads beyond it, whatever it says. */
+int check_damaged(const char *path, const u8 *data, size_t len, char *note, size_t cap)
+{
+	struct ec_sii_info info = { 0 };
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+	unsigned int cats = 0;
+	int ret;
+
+	file = path;
+	faults = 0;
+	decode_cut(data, len);
+	fetch(data, len);
+	EXPECT(!ec_sii_decode_info(data, len, &info));
+	ec_sii_iter_init(&it, data, len);
+	while ((ret = ec_sii_iter_next(&it, &cat)) == 1)
+		cats++;
+	EXPECT(ret < 0);
+	snprintf(note, cap, "%zu bytes, vendor 0x%x product 0x%08x, refused after %u categories",
+		 len, info.vendor, info.product, cats);
+	return faults;
+}
+
 int check_eeprom(const char *path, const u8 *data, size_t len, char *note, size_t cap)
 {
 	const struct image *want = find(path);
@@ -169,9 +280,9 @@ int check_eeprom(const char *path, const u8 *data, size_t len, char *note, size_
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
 	char cats[256] = "";
-	size_t have, used = 0;
+	size_t n, used;
 	unsigned int i, pdos = 0;
-	int need, ret;
+	int ret;
 
 	file = path;
 	faults = 0;
@@ -193,16 +304,14 @@ int check_eeprom(const char *path, const u8 *data, size_t len, char *note, size_
 	else
 		printf("%s: not in the table, decoded only\n", path);
 
-	/* a scan that fetches 8 bytes at a time ends where the image ends */
-	for (have = 0; (need = ec_sii_needed(data, have)) > 0 && have < len;)
-		have = ((size_t)need + 7) & ~(size_t)7;
-	EXPECT(need == 0 && have <= len);
-	if (have <= len) {
-		used = ec_sii_used(data, have);
-		EXPECT(used == ec_sii_used(data, len) && have < used + 8);
-		rebuild_cats(data, len);
-		rebuild_all(data, len, used);
-	}
+	used = ec_sii_used(data, len);
+	/* files of all sizes */
+	for (n = used; n < used + 8 && n < len; n++)
+		scan(data, n, used);
+	scan(data, len, used);
+	rebuild_cats(data, len);
+	rebuild_all(data, len, used);
+	decode_cut(data, len);
 	for (i = EC_SII_CAT_TXPDO; i <= EC_SII_CAT_RXPDO; i++) {
 		struct ec_sii_pdo_iter pit;
 		struct ec_sii_pdo pdo;

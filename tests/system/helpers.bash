@@ -38,6 +38,18 @@ says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
 # other end of the wire are there counts too: compare with what it was before.
 lost_frames() { says 'Lost frames'; }
 
+# cases COMMAND...: its TAP lines, of which there is at least one, become lines of this
+# run (run.sh counts what begins with "# ok" and "# not ok"), each before its comments
+cases() {
+	local rc=0 out=$BATS_TEST_TMPDIR/cases
+
+	"$@" >"$out" 2>&1 3>&- || rc=$?
+	awk '/^#/ { said = said $0 "\n"; next } { printf "# %s\n%s", $0, said; said = "" }
+		END { printf "%s", said }' "$out" >&3
+	[ "$rc" = 0 ] || { echo "ended with $rc: $*"; tail -n 3 "$out"; return 1; }
+	grep -q '^ok' "$out"
+}
+
 # json FILTER COMMAND...: the JSON of a command fulfils a filter of jq
 json() {
 	local filter=$1

@@ -19,7 +19,7 @@ setup() {
 }
 teardown() {
 	rmmod ec_mini 2>/dev/null || true
-	! dmesg | grep -E 'BUG:|WARNING:|Oops|lockup'
+	[ -z "$(dmesg | grep -E 'BUG:|WARNING:|Oops|lockup')" ]
 }
 
 said() { dmesg | grep -qF "ec_mini: $1"; }

@@ -73,6 +73,8 @@ report() {
 
 	read -r rc seconds <"$out.end"
 	echo "# $f"
+	# cases of a C program, see cases() of helpers.bash
+	sed -i -E 's/^# (ok|not ok) /\1 /' "$out"
 	grep -E '^(ok|not ok|#)' "$out"
 	p=$(grep -c '^ok' "$out")
 	n=$(grep -c '^not ok' "$out")

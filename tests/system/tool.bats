@@ -121,7 +121,9 @@ teardown_file() { stop; }
 	ethercat states INIT -p17 --wait
 	refused 'PREOP' upload -p17 0x1018 1
 	ethercat states PREOP -p17 --wait
-	! ethercat upload -j -p17 0x9999 0 2>"$BATS_TEST_TMPDIR/err" >/dev/null
+	rc=0
+	ethercat upload -j -p17 0x9999 0 2>"$BATS_TEST_TMPDIR/err" >/dev/null || rc=$?
+	[ "$rc" = 1 ]
 	jq -e '.error | .abort_code == 100794368 and .command == "upload"' "$BATS_TEST_TMPDIR/err"
 }
 

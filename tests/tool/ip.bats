@@ -8,7 +8,7 @@ load common
 	out ip -p2 -j | json 'd["ip_address"] == "192.168.0.17" and d["slave"] == 2'
 	out ip -p2 -j | json 'd["default_gateway"] is None and d["hostname"] == "mixer"'
 	FAKE_BUS=evil out ip -p2 | grep -q '^Hostname: '
-	! FAKE_BUS=evil out ip -p2 | LC_ALL=C grep -q '[^ -~]'
+	[ -z "$(FAKE_BUS=evil out ip -p2 | LC_ALL=C grep '[^ -~]')" ]
 }
 
 @test "ip sets what is named, in every spelling" {
