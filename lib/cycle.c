@@ -140,7 +140,7 @@ int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
 	m->in_taken = false;
 	if (m->out_back >= EC_EXCHANGE_BUFFERS || m->in_front >= EC_EXCHANGE_BUFFERS)
 		return -EPROTO;
-	m->cycle = ec_status_read(m->status->kernel.cycle);
+	m->cycle = ec_status_read64(m->status, &m->status->kernel.cycle);
 	if (m->image)	/* the application has it already */
 		return arg->image_size == m->image_size ? 0 : -EPROTO;
 	m->image_size = arg->image_size;
@@ -372,8 +372,7 @@ int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
 
 uint64_t ecrt_master_cycle_count(const ec_master_t *master)
 {
-	return runs(master) ? __atomic_load_n(&master->status->kernel.cycle,
-					      __ATOMIC_ACQUIRE) : 0;
+	return runs(master) ? ec_status_read64(master->status, &master->status->kernel.cycle) : 0;
 }
 
 int ecrt_master_cycle_inputs(const ec_master_t *master, uint64_t *cycle, uint64_t *time_ns)
@@ -411,18 +410,20 @@ static unsigned int bin(__u64 ns)
 	return n < EC_CYCLE_BINS ? n : EC_CYCLE_BINS - 1;
 }
 
-static void read_late(const struct ec_status_cycle *st, ec_cycle_state_t *state)
+static void read_late(const struct ec_status *status, ec_cycle_state_t *state)
 {
-	uint64_t count = 0, above = 0;
+	const __u64 *late = status->kernel.late;
+	uint64_t count = 0, above = 0, n;
 	unsigned int i;
 
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++) {
-		state->late[bin(bucket_from(i))] += ec_status_read(st->late[i]);
-		count += ec_status_read(st->late[i]);
+		n = ec_status_read64(status, &late[i]);
+		state->late[bin(bucket_from(i))] += n;
+		count += n;
 	}
 	/* down from the last one, until more than 0.1 % are above */
 	for (i = EC_CYCLE_BUCKETS; i && above <= count / 1000; i--)
-		above += ec_status_read(st->late[i - 1]);
+		above += ec_status_read64(status, &late[i - 1]);
 	state->late_p999 = count ? (uint32_t)(bucket_from(i + 1) - 1) : 0;
 	if (state->late_p999 > state->late_max)
 		state->late_p999 = state->late_max;
@@ -431,7 +432,7 @@ static void read_late(const struct ec_status_cycle *st, ec_cycle_state_t *state)
 int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 {
 	const struct ec_status_cycle *st;
-	uint64_t count;
+	uint64_t count, n;
 
 	if (!master || !master->active)
 		return ec_inactive(master);
@@ -439,19 +440,21 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 		return -EINVAL;
 	memset(state, 0, sizeof(*state));
 	st = &master->status->kernel;
-	count = ec_status_read(st->late_count);
+	count = ec_status_read64(master->status, &st->late_count);
 	state->run = (ec_cycle_run_t)ec_status_read(st->state);
-	state->cycles = ec_status_read(st->cycle);
-	state->overruns = ec_status_read(st->overruns);
-	state->missed = ec_status_read(st->missed);
+	state->cycles = ec_status_read64(master->status, &st->cycle);
+	state->overruns = ec_status_read64(master->status, &st->overruns);
+	state->missed = ec_status_read64(master->status, &st->missed);
 	state->late_min = ec_status_read(st->late_min);
 	state->late_max = ec_status_read(st->late_max);
-	state->late_mean = count ? (uint32_t)(ec_status_read(st->late_sum) / count) : 0;
-	count = ec_status_read(st->work_count);
+	n = ec_status_read64(master->status, &st->late_sum);
+	state->late_mean = count ? (uint32_t)(n / count) : 0;
+	count = ec_status_read64(master->status, &st->work_count);
 	state->work_last = ec_status_read(st->work_ns);
 	state->work_max = ec_status_read(st->work_max);
-	state->work_mean = count ? (uint32_t)(ec_status_read(st->work_sum) / count) : 0;
-	read_late(st, state);
+	n = ec_status_read64(master->status, &st->work_sum);
+	state->work_mean = count ? (uint32_t)(n / count) : 0;
+	read_late(master->status, state);
 	state->lock = (ec_cycle_lock_t)ec_status_read(st->lock);
 	state->lock_losses = ec_status_read(st->lock_losses);
 	state->phase_error = ec_status_read(st->phase_error);

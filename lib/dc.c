@@ -87,7 +87,7 @@ int ecrt_master_reference_clock_time(const ec_master_t *master,
 		return -EINVAL;
 	if (!ec_status_read(master->status->dc_time_valid))
 		return -EIO;
-	*time = (uint32_t)ec_status_read(master->status->dc_time);
+	*time = (uint32_t)ec_status_read64(master->status, &master->status->dc_time);
 	return 0;
 }
 
@@ -122,7 +122,7 @@ int ecrt_master_64bit_reference_clock_time(ec_master_t *master, uint64_t *time)
 		return -EINVAL;
 	if (!ec_status_read(master->status->dc_time64_valid))
 		return -EIO;
-	*time = ec_status_read(master->status->dc_time64);
+	*time = ec_status_read64(master->status, &master->status->dc_time64);
 	return 0;
 }
 

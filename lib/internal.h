@@ -125,7 +125,31 @@ struct ec_slave_config {
 };
 
 /* status fields are written by the kernel at any time: one load each */
-#define ec_status_read(field) __atomic_load_n(&(field), __ATOMIC_RELAXED)
+#define ec_status_read(field) ({					\
+	_Static_assert(sizeof(field) <= 4, "ec_status_read64()");	\
+	__atomic_load_n(&(field), __ATOMIC_RELAXED); })
+
+/*
+ * Those of 64 bits take a program of 32 bits two loads, which belong together when
+ * the kernel has written nothing in between. What is read later is not older.
+ */
+static inline __u64 ec_status_read64(const struct ec_status *st, const __u64 *field)
+{
+#if __SIZEOF_LONG__ == 8
+	(void)st;
+	return __atomic_load_n(field, __ATOMIC_ACQUIRE);
+#else
+	__u32 sequence;
+	__u64 value;
+
+	do {
+		sequence = __atomic_load_n(&st->sequence, __ATOMIC_ACQUIRE);
+		value = *(const volatile __u64 *)field;
+		__atomic_thread_fence(__ATOMIC_ACQUIRE);
+	} while (sequence & 1 || ec_status_read(st->sequence) != sequence);
+	return value;
+#endif
+}
 
 int ec_ioctl(const struct ec_master *m, unsigned long cmd, void *arg);
 int ec_fail(int err, const char *fmt, ...)

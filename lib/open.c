@@ -12,13 +12,18 @@ unsigned int ecrt_version_magic(void)
 	return ECRT_VERSION_MAGIC;
 }
 
-/* Structures may grow without harm, so any version from 1 on will do. */
+/*
+ * Structures may grow without harm, so any version from 1 on will do; programs of 32 bits
+ * need @sequence of struct ec_status.
+ */
+#define VERSION_MIN	(sizeof(long) == 8 ? 1 : 2)
+
 static int check_version(struct ec_master *m, const char *path)
 {
 	struct ec_ioc_version version = { 0 };
 	int ret = ec_ioctl(m, EC_IOC_VERSION, &version);
 
-	if (!ret && version.abi >= 1)
+	if (!ret && version.abi >= VERSION_MIN)
 		return 0;
 	return ec_fail(-EPROTO,
 		       "talk to the kernel module behind %s (version %u)",

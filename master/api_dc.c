@@ -5,6 +5,7 @@
  */
 #include <linux/slab.h>
 #include "api.h"
+#include "once64.h"
 
 #define NO_DIFFERENCE	0xffffffffu
 
@@ -105,7 +106,7 @@ int ecrt_master_64bit_reference_clock_time(ec_master_t *master, uint64_t *time)
 		return -EINVAL;
 	if (!READ_ONCE(st->dc_time64_valid))
 		return -EIO;
-	*time = READ_ONCE(st->dc_time64);
+	ec_status_copy(st, time, &st->dc_time64, sizeof(*time));
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_64bit_reference_clock_time);

@@ -2,6 +2,7 @@
 /* What the master knows, for applications in the kernel. */
 #include <linux/slab.h>
 #include "api.h"
+#include "once64.h"
 
 int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 {
@@ -10,7 +11,7 @@ int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 	master_info->slave_count = READ_ONCE(master->n_slaves);
 	master_info->link_up = READ_ONCE(master->link[0].up);
 	master_info->scan_busy = ec_master_scan_busy(master);
-	master_info->app_time = READ_ONCE(master->dc.app_time);
+	master_info->app_time = ec_read64(&master->dc.app_time);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master);

@@ -6,6 +6,7 @@
 #include "cycle.h"
 #include "device.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 
 #define TURN_CYCLES	100	/* an acyclic frame has its turn within that many */
@@ -158,7 +159,7 @@ bool ec_cycle_own(struct ec_master *m, enum ec_owner owner)
 	rt_mutex_lock(&m->io_lock);
 	change = m->owner != owner;
 	if (change) {
-		WRITE_ONCE(m->last_send_ns, ktime_get_ns());
+		ec_write64(&m->last_send_ns, ktime_get_ns());
 		WRITE_ONCE(m->owner, owner);
 		smp_mb();	/* owner before cycle_busy; pairs with enter() */
 		while (owner == EC_OWNER_IDLE && atomic_read(&m->cycle_busy))
@@ -230,7 +231,7 @@ bool ec_cycle_stalled(struct ec_master *m)
 	s64 limit = max_t(s64, 10LL * m->interval_us * NSEC_PER_USEC, 20 * NSEC_PER_MSEC);
 
 	/* it may send between the two readings of the clock */
-	return (s64)(ktime_get_ns() - READ_ONCE(m->last_send_ns)) > limit;
+	return (s64)(ktime_get_ns() - ec_read64(&m->last_send_ns)) > limit;
 }
 
 /**
@@ -427,7 +428,7 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 	/* the next cycle needs transmit buffers, too */
 	for (n = 0; n < burst && xq_peek(m, &next); n++) {
 		/* behind what this cycle has sent before */
-		WRITE_ONCE(next.slot->sent_ns, m->last_send_ns + wire_ns);
+		ec_write64(&next.slot->sent_ns, m->last_send_ns + wire_ns);
 		wire_ns += ec_frame_wire_ns(next.slot->eth_len);
 		if (wire_ns > budget && (n || !may_be_late(m)))
 			break;
@@ -448,7 +449,7 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
  */
 void ec_cycle_send_between(struct ec_master *m)
 {
-	u64 since = ktime_get_ns() - READ_ONCE(m->last_send_ns);
+	u64 since = ktime_get_ns() - ec_read64(&m->last_send_ns);
 
 	if (since + ec_frame_wire_ns(EC_ETH_MAX) < m->interval_us * 900ULL)
 		ec_cycle_send_left(m, since);

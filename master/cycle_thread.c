@@ -25,6 +25,7 @@
 #include "cycle_thread.h"
 #include "domain.h"
 #include "master.h"
+#include "once64.h"
 #include "request.h"
 #include "session.h"
 
@@ -217,7 +218,7 @@ static void feed(struct ec_cycle_thread *t)
 	}
 	if (!t->fed)
 		return;
-	WRITE_ONCE(st->missed, st->missed + 1);
+	ec_status_add(t->session->shared->status, &st->missed, 1);
 	if (!limit || t->unfed == limit)
 		return;
 	if (++t->unfed == limit)
@@ -276,9 +277,11 @@ static void publish(struct ec_cycle_thread *t)
 	tell_device(s);
 	memcpy(b + 1, s->shared->image, t->bytes);
 	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
-	/* who sees the number finds the inputs */
-	smp_store_release(&st->cycle, cycle);
-	WRITE_ONCE(m->kernel_cycle, cycle);
+	/* the application that sees the number finds the inputs */
+	ec_status_begin(s->shared->status);
+	WRITE_ONCE(st->cycle, cycle);
+	ec_status_end(s->shared->status);
+	ec_write64(&m->kernel_cycle, cycle);
 	if (wq_has_sleeper(&m->kernel_wq))
 		wake_up_all(&m->kernel_wq);
 }
@@ -293,7 +296,7 @@ static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 	if (late < period)
 		return 0;
 	skipped = div_u64(late, period);
-	WRITE_ONCE(status(t)->overruns, status(t)->overruns + skipped);
+	ec_status_add(t->session->shared->status, &status(t)->overruns, skipped);
 	t->next_ns += skipped * period;
 	return skipped;
 }
@@ -526,7 +529,7 @@ void ec_cycle_thread_start(struct ec_session *s)
 	m->interval_told = true;
 	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
-	WRITE_ONCE(m->kernel_cycle, 0);
+	ec_write64(&m->kernel_cycle, 0);
 	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
 	wake_up_process(s->thread->task);
 }
@@ -637,7 +640,7 @@ int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_u
 
 	ret = wait_event_interruptible_hrtimeout(m->kernel_wq,
 						 READ_ONCE(m->kernel_run) != run || !(run & 1) ||
-						 READ_ONCE(m->kernel_cycle) > *cycle, limit);
+						 ec_read64(&m->kernel_cycle) > *cycle, limit);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
 	/* a signal handler runs first, and ends it; after a stop it goes on */
@@ -645,6 +648,6 @@ int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_u
 		return -ERESTARTNOHAND;
 	if (!(run & 1) || READ_ONCE(m->kernel_run) != run)
 		return -ECANCELED;
-	*cycle = READ_ONCE(m->kernel_cycle);
+	*cycle = ec_read64(&m->kernel_cycle);
 	return 0;
 }

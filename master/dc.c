@@ -5,6 +5,7 @@
 #include <linux/slab.h>
 #include "dc.h"
 #include "master.h"
+#include "once64.h"
 #include "slave.h"
 #include "wire/dc.h"
 #include "xfer.h"
@@ -553,7 +554,7 @@ static void await_time(struct ec_master *m, u64 since)
 	for (i = 0; i < 500; i++) {
 		if (!READ_ONCE(m->dc.has_phase) || READ_ONCE(m->dc.stop) ||
 		    READ_ONCE(m->dc.wanted) ||
-		    (s64)(READ_ONCE(m->dc.app_ktime) - since) >= 0 ||
+		    (s64)(ec_read64(&m->dc.app_ktime) - since) >= 0 ||
 		    READ_ONCE(m->polls) - polls >= 3)
 			return;
 		usleep_range(900, 1100);
@@ -763,7 +764,7 @@ void ec_dc_end(struct ec_master *m)
 	WRITE_ONCE(m->dc.running, false);
 	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
 	m->dc.has_phase = false;
-	m->dc.app_time = 0;
+	ec_write64(&m->dc.app_time, 0);
 	m->dc.choice = EC_DC_ANY;
 	m->dc.begun = false;
 	m->dc.wanted = false;

@@ -136,8 +136,8 @@ struct ec_dc {
 	raw_spinlock_t time_lock;
 	u64 phase;
 	bool has_phase;
-	u64 app_time;
-	u64 app_ktime;
+	aligned_u64 app_time;
+	aligned_u64 app_ktime;
 	bool leads;
 	u64 led_ns;
 	u64 led_gap;

@@ -16,6 +16,7 @@
 #include "cycle.h"
 #include "dc.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
@@ -141,8 +142,8 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	set_phase(dc, app_time);
 	dc->told = true;
-	dc->app_time = app_time;
-	dc->app_ktime = at_ns;
+	ec_write64(&dc->app_time, app_time);
+	ec_write64(&dc->app_ktime, at_ns);
 	dc->app.n_past = 0;
 	dc->app.base = app_time - at_ns;
 	dc->app.base_ns = at_ns;
@@ -176,8 +177,8 @@ void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what)
 		time = dc->has_phase ? dc->app_time + (at_ns - dc->app_ktime) : what->sync_time;
 	set_phase(dc, time);
 	dc->told = true;
-	dc->app_time = time;
-	dc->app_ktime = at_ns;
+	ec_write64(&dc->app_time, time);
+	ec_write64(&dc->app_ktime, at_ns);
 	if (leads)
 		time += (s32)((u32)what->sync_time - (u32)time);
 	/* the one that is written counts, though it may be told less often */

@@ -10,6 +10,7 @@
 #include "copy.h"
 #include "cycle.h"
 #include "master.h"
+#include "once64.h"
 #include "request.h"
 #include "session.h"
 
@@ -190,8 +191,10 @@ int ec_cycle_do_receive(struct ec_session *s)
 	}
 	c->n_flight = left;
 	judge(s);
+	ec_status_begin(s->shared->status);
 	ec_dc_judge(s);
 	WRITE_ONCE(s->shared->status->cycle, c->cycles);
+	ec_status_end(s->shared->status);
 	return 0;
 }
 
@@ -363,7 +366,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 		return -ENODEV;
 	if (!s->thread)
 		ec_late_send(s, send.now);
-	WRITE_ONCE(m->last_send_ns, send.now);
+	ec_write64(&m->last_send_ns, send.now);
 	if (s->copying)
 		ec_copies_run(s);
 	c->send++;

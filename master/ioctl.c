@@ -5,7 +5,7 @@
 #include <linux/uaccess.h>
 #include "ioctl.h"
 
-#define MAX_ARG	1024
+#define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
 
 #define F_WRITE	1	/* needs a descriptor opened for writing */
 

@@ -8,6 +8,7 @@
 #include "domain.h"
 #include "ioctl.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 #include "slave.h"
 
@@ -143,7 +144,7 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	ec_master_scan_progress(m, &i->scan_index, &i->scan_slaves);
 	i->scan_count = READ_ONCE(m->scan_count);
 	i->debug_level = m->debug;
-	i->app_time = READ_ONCE(m->dc.app_time);
+	i->app_time = ec_read64(&m->dc.app_time);
 	down_read(&m->topo);
 	/* one that is gone has left its position to another slave */
 	i->ref_clock = m->dc.ref && !m->dc.ref->gone && READ_ONCE(m->dc.ref_station) ?

@@ -18,6 +18,7 @@
 #include <linux/string.h>
 #include "late.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 
 #define MEASURE_SENDS	64	/* to know the interval when nobody tells it */
@@ -67,10 +68,13 @@ void ec_late_count(struct ec_session *s, s64 ns)
 	unsigned int i = bucket(late);
 
 	if (unlikely(READ_ONCE(s->master->late_reset))) {
+		ec_status_begin(s->shared->status);
 		forget(st);
+		ec_status_end(s->shared->status);
 		/* the figures are zero before anybody may read them again */
 		smp_store_release(&s->master->late_reset, false);
 	}
+	ec_status_begin(s->shared->status);
 	WRITE_ONCE(st->late[i], st->late[i] + 1);
 	WRITE_ONCE(st->late_sum, st->late_sum + late);
 	if (!st->late_count || late < st->late_min)
@@ -78,6 +82,7 @@ void ec_late_count(struct ec_session *s, s64 ns)
 	if (late > st->late_max)
 		WRITE_ONCE(st->late_max, late);
 	WRITE_ONCE(st->late_count, st->late_count + 1);
+	ec_status_end(s->shared->status);
 }
 
 /*
@@ -105,7 +110,7 @@ static s64 skip(struct ec_session *s, s64 off)
 	struct ec_schedule *c = &s->cycle.schedule;
 	u64 n = div_u64(off, c->interval_ns);
 
-	WRITE_ONCE(status(s)->overruns, status(s)->overruns + n);
+	ec_status_add(s->shared->status, &status(s)->overruns, n);
 	c->due_ns += n * c->interval_ns;
 	return c->last_ns - c->due_ns;
 }
@@ -166,11 +171,13 @@ void ec_late_work(struct ec_session *s, s64 ns)
 	struct ec_status_cycle *st = status(s);
 	u32 work = clamp_t(s64, ns, 0, U32_MAX);
 
+	ec_status_begin(s->shared->status);
 	WRITE_ONCE(st->work_ns, work);
 	WRITE_ONCE(st->work_sum, st->work_sum + work);
 	WRITE_ONCE(st->work_count, st->work_count + 1);
 	if (work > st->work_max)
 		WRITE_ONCE(st->work_max, work);
+	ec_status_end(s->shared->status);
 }
 
 /* Facts of a session beside its figures. */
@@ -192,7 +199,7 @@ static void get(struct ec_session *s, struct ec_ioc_cycle_stats *info,
 	bool forgotten = smp_load_acquire(&s->master->late_reset);
 
 	describe(s, info);
-	memcpy(st, status(s), sizeof(*st));
+	ec_status_copy(s->shared->status, st, status(s), sizeof(*st));
 	if (forgotten)
 		forget(st);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/errno.h>
+#include <linux/math64.h>
 #include <linux/ratelimit.h>
 #include <linux/rcupdate.h>
 #include <linux/string.h>
@@ -109,7 +110,7 @@ bool ec_link_is_up(const struct ec_link *link)
  */
 void ec_link_rates_update(struct ec_link *link)
 {
-	static const unsigned int span[EC_UAPI_RATES] = { 1, 10, 60 };
+	static const s32 span[EC_UAPI_RATES] = { 1, 10, 60 };
 	struct ec_link_rates *r = &link->rates;
 	u64 now[5] = {
 		atomic64_read(&link->stats.tx_frames),
@@ -127,7 +128,7 @@ void ec_link_rates_update(struct ec_link *link)
 			s64 diff = (s64)d - r->rate[i][j];
 
 			/* step of at least 1, else a slow average never arrives */
-			diff = diff / (s64)span[j] ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
+			diff = div_s64(diff, span[j]) ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
 			r->rate[i][j] += diff;
 		}
 		r->last[i] = now[i];

@@ -114,10 +114,10 @@ struct ec_master {
 	struct rt_mutex io_lock;
 	int owner;
 	atomic_t cycle_busy;
-	u64 last_send_ns;
+	aligned_u64 last_send_ns;
 	u32 polls;
 	atomic_t stalls;
-	u64 stalled_ns;
+	aligned_u64 stalled_ns;
 	u32 interval_us;
 	bool interval_told;
 	u32 cycle_wire_ns;
@@ -161,7 +161,7 @@ struct ec_master {
 	struct ec_late_report late;
 	bool late_reset;
 
-	u64 kernel_cycle;
+	aligned_u64 kernel_cycle;
 	u32 kernel_run;
 	wait_queue_head_t kernel_wq;
 

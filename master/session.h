@@ -45,7 +45,7 @@ struct ec_shared {
 
 #define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
 
-#define EC_STALL_LOG_NS	(10 * NSEC_PER_SEC)
+#define EC_STALL_LOG_NS	(10ULL * NSEC_PER_SEC)
 
 /**
  * struct ec_stall_log - what the log says of stalls; under master->session_lock

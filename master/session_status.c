@@ -3,6 +3,7 @@
 #include "config.h"
 #include "cycle_lock.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 #include "slave.h"
 
@@ -43,7 +44,7 @@ static void log_stalls(struct ec_session *s, u64 now)
 			div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
-		l->since_ns = m->stalled_ns;
+		l->since_ns = ec_read64(&m->stalled_ns);
 		l->next_ns = now + EC_STALL_LOG_NS;
 		l->told += more;
 		l->open = stalled;
@@ -88,7 +89,6 @@ void ec_session_fill_status(struct ec_session *s)
 	WRITE_ONCE(st->slaves_responding, m->slaves_responding);
 	WRITE_ONCE(st->al_states, m->al_states);
 	WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
-	WRITE_ONCE(st->frames_lost, (u64)atomic64_read(&m->link[0].stats.lost));
 	status_links(m, st);
 	for (i = 0; i < s->n_configs; i++)
 		WRITE_ONCE(st->configs[i], ec_session_config_status(s->configs[i]));
@@ -130,10 +130,10 @@ void ec_session_status(struct ec_master *m)
  */
 void ec_session_stalled(struct ec_master *m)
 {
-	u64 sent = READ_ONCE(m->last_send_ns);
+	u64 sent = ec_read64(&m->last_send_ns);
 
 	if (!ec_cycle_own(m, EC_OWNER_IDLE))
 		return;
-	WRITE_ONCE(m->stalled_ns, sent);
+	ec_write64(&m->stalled_ns, sent);
 	atomic_inc(&m->stalls);
 }

@@ -3,6 +3,7 @@
 #include <linux/etherdevice.h>
 #include <linux/ktime.h>
 #include <linux/vmalloc.h>
+#include "once64.h"
 #include "slots.h"
 
 /**
@@ -43,7 +44,7 @@ static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
 		return true;
 	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
 	       /* another may have cancelled it after the caller looked at the clock */
-	       (s64)(now_ns - READ_ONCE(slot->sent_ns)) > quarantine_ns &&
+	       (s64)(now_ns - ec_read64(&slot->sent_ns)) > quarantine_ns &&
 	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
 	       EC_SLOT_QUARANTINE;
 }
@@ -158,11 +159,11 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
 	u64 sent_ns = slot->sent_ns;
 
-	WRITE_ONCE(slot->sent_ns, now_ns);
+	ec_write64(&slot->sent_ns, now_ns);
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT)
 		return true;
 	/* who takes the reply wants to know when it was sent */
-	WRITE_ONCE(slot->sent_ns, sent_ns);
+	ec_write64(&slot->sent_ns, sent_ns);
 	return false;
 }
 
@@ -183,7 +184,7 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
 	u8 *f = slot->frame;
 
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
-	slot->sent_ns = now_ns;
+	ec_write64(&slot->sent_ns, now_ns);
 	eth_broadcast_addr(f);
 	f[6] = 0;
 	f[7] = side;

@@ -45,7 +45,7 @@ struct ec_slot {
 	u8 index;
 	u32 seq;
 	u32 left;
-	u64 sent_ns;
+	aligned_u64 sent_ns;
 	struct ec_xfer *xfer;
 	u16 eth_len;
 	u8 frame[EC_ETH_MAX];

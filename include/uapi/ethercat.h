@@ -2,8 +2,9 @@
 /*
  * Interface between /dev/EtherCAT<n> and its users.
  *
- * Rules: fixed-width types only; pointers travel as __u64; every structure
- * starts with a flags word whose unknown bits are refused (-EOPNOTSUPP) and
+ * Rules: fixed-width types only; pointers travel as __u64; no padding that the
+ * compiler adds, so that structures are the same for programs of 32 and 64 bits;
+ * every structure starts with a flags word whose unknown bits are refused (-EOPNOTSUPP) and
  * may grow at its end: the kernel takes the size from the command number,
  * zero-fills what an older program does not send and refuses (-E2BIG) a
  * non-zero tail it does not know. Reserved fields are zero, else -EOPNOTSUPP.
@@ -20,7 +21,7 @@
 #include <linux/types.h>
 #include "ethercat_map.h"
 
-#define EC_UAPI_VERSION		1
+#define EC_UAPI_VERSION		2	/* 2: struct ec_status has @sequence */
 #define EC_UAPI_STRING		64
 #define EC_UAPI_REASON		256
 #define EC_UAPI_PORTS		4
@@ -62,6 +63,7 @@ struct ec_ioc_device {
 	__u8 link_up;
 	__u32 slaves;		/* slaves that answered the last broadcast */
 	char name[EC_UAPI_STRING];
+	__u32 reserved;
 	__u64 tx_frames;
 	__u64 tx_bytes;
 	__u64 rx_frames;

@@ -158,7 +158,10 @@ struct ec_status_link {
 
 /*
  * Read-only page(s) of an activated master. Each field is written by one
- * aligned store and may be read at any time; @cycle counts receives.
+ * aligned store and may be read at any time; @cycle counts receives. A 64-bit field
+ * is that for kernels and programs of 64 bits only. Others read @sequence until it
+ * is even, then the field, then @sequence, until both are the same. The kernel is not
+ * preempted while it is odd.
  */
 struct ec_status {
 	__u32 magic;
@@ -168,8 +171,7 @@ struct ec_status {
 	__u32 al_states;
 	__u32 link_up;
 	__u32 config_count;
-	__u64 frames_lost;
-	__u64 app_time;
+	__u64 reserved1[2];
 	__u64 dc_time;		/* reference clock's, of the last EC_SEND_FLAG_SYNC_SLAVES */
 	__u32 dc_time_valid;	/* that datagram came back */
 	__u32 dc_monitor;	/* OR of the slaves' differences, ns; ~0: not back */
@@ -182,6 +184,8 @@ struct ec_status {
 	__u32 dc_time64_valid;	/* that datagram came back */
 	__u32 link_count;
 	struct ec_status_link links[EC_UAPI_DEVICES];
+	__u32 sequence;		/* odd: 64-bit values are being written */
+	__u32 reserved;
 };
 
 /*

@@ -14,9 +14,13 @@ usage() {
 	       kernels.sh image FLAVOUR       print the path of vmlinuz
 	       kernels.sh modules FLAVOUR     print the path of lib/modules/<release>
 	       kernels.sh release FLAVOUR     print what uname -r says on it
+	       kernels.sh arch FLAVOUR        print the name Debian has for its architecture
+	       kernels.sh root ARCH           print a folder with programs of another
+	                                      architecture: i386, arm64, s390x
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
 	                                      takes the newest version)
-	flavours: 6.1 6.1-rt 6.12 6.12-rt    cache: $cache
+	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
+	          6.1-armhf (headers only)    cache: $cache
 	END
 	exit 2
 }
@@ -33,6 +37,18 @@ trap 'exit 130' INT HUP TERM
 
 # Raise when the layout made by unpack() changes: old copies are then replaced.
 layout=1
+
+# What Debian calls the kernel of a flavour, and its architecture.
+flavour_of() {	# flavour_of FLAVOUR: sets base, arch, name
+	base=${1%%-*} arch=${1#*-}
+	case $1 in
+	*-i386)	name=686-pae ;;
+	*-armhf) name=armmp ;;
+	*-arm64|*-s390x) name=$arch ;;
+	*-rt)	arch=amd64 name=rt-amd64 ;;
+	*)	arch=amd64 name=amd64 ;;
+	esac
+}
 
 # Prints deb822 stanzas for the given suites with the addresses and keys that
 # the system's own apt configuration uses for Debian bookworm. --------------
@@ -65,6 +81,7 @@ sources() {	# sources SUITE-REGEX [REPLACEMENT]
 				else if (field == "suites") suites = val
 				else if (field == "components") comps = val
 				else if (field == "enabled") enabled = tolower(val)
+				else if (field == "architectures") ;	# apt_setup says which
 				else extra = extra "\n" $0
 				next
 			}
@@ -103,8 +120,10 @@ sources() {	# sources SUITE-REGEX [REPLACEMENT]
 # The lists of packages live in the cache, so this works without root and sees
 # the same packages whatever suites the host itself has switched on.
 apt_opts=()
-apt_setup() {	# apt_setup base|backports
-	local d=$cache/apt/$1
+apt_setup() {	# apt_setup base|backports [ARCHITECTURE]
+	local arch=${2:-amd64} d
+	d=$cache/apt/$1
+	[ "$arch" = amd64 ] || d=$d-$arch
 	mkdir -p "$d/lists/partial" "$d/cache/archives/partial"
 	if [ "$1" = base ]; then
 		sources '^bookworm(-updates|-security|/updates)?$' >"$d/ec.sources"
@@ -115,6 +134,7 @@ apt_setup() {	# apt_setup base|backports
 		"/etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
 	apt_opts=(-o "Dir::Etc::SourceList=$d/ec.sources" -o Dir::Etc::SourceParts=/dev/null
 		-o "Dir::State::lists=$d/lists" -o "Dir::Cache=$d/cache" -o APT::Sandbox::User=
+		-o "APT::Architecture=$arch" -o "APT::Architectures::=$arch"
 		-o Acquire::Languages=none -o Acquire::Retries=2 -o APT::Get::List-Cleanup=true)
 	# Mirrors drop old versions, so lists older than some hours are useless.
 	if [ -z "$(find "$d/stamp" -mmin -360 2>/dev/null)" ]; then
@@ -122,7 +142,7 @@ apt_setup() {	# apt_setup base|backports
 		apt-get "${apt_opts[@]}" -qq update >"$d/update.log" 2>&1 </dev/null ||
 			apt-get "${apt_opts[@]}" -qq update >"$d/update.log" 2>&1 </dev/null || {
 			# One bad source among several does no harm: the show decides.
-			apt-cache "${apt_opts[@]}" show linux-image-amd64 >/dev/null 2>&1 || {
+			apt-cache "${apt_opts[@]}" show linux-libc-dev >/dev/null 2>&1 || {
 				cat "$d/update.log" >&2
 				die "apt-get update failed; check the network and the system's apt sources"
 			}
@@ -138,9 +158,9 @@ depends() {	# depends PACKAGE REGEX: the names it depends on that match
 
 check_flavour() {
 	case ${1:-} in
-	6.1|6.1-rt|6.12|6.12-rt) ;;
+	6.1|6.1-rt|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
 	'') usage ;;
-	*) die "unknown flavour '$1', known: 6.1 6.1-rt 6.12 6.12-rt" ;;
+	*) die "unknown flavour '$1' (see kernels.sh --help)" ;;
 	esac
 }
 
@@ -148,9 +168,18 @@ check_flavour() {
 # so a cache that was moved is not usable.
 cached() { [ "$(cat "$cache/kernels/$1/.complete" 2>/dev/null || true)" = "$layout $cache" ]; }
 
+# Programs of this machine build modules of any other: the same scripts, unpacked
+# beside the headers. Their package is called the same everywhere.
+download() {	# download SUITE ARCHITECTURE PACKAGE...: to $tmp/debs
+	local suite=$1 arch=$2
+	shift 2
+	apt_setup "$suite" "$arch"
+	(cd "$tmp/debs" && apt-get "${apt_opts[@]}" -qq download "$@") >&2 </dev/null
+}
+
 unpack() {	# unpack FLAVOUR
-	local fl=$1 base=${1%-rt} rt= suite=base image release headers pkgs p root final try f
-	[ "$fl" = "$base" ] || rt=-rt
+	local fl=$1 base arch name suite=base image release headers pkgs kbuild p root final try f
+	flavour_of "$fl"
 	[ "$base" = 6.1 ] || suite=backports
 	for p in apt-get dpkg-deb depmod flock; do
 		command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh build vm)"
@@ -158,21 +187,23 @@ unpack() {	# unpack FLAVOUR
 
 	final=$cache/kernels/$fl
 	for try in 1 2; do
-		apt_setup $suite
-		image=$(depends "linux-image$rt-amd64" "^linux-image-${base//./\\.}\.[0-9].*$rt-amd64\$" | head -n 1)
-		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image$rt-amd64 of" \
+		apt_setup $suite "$arch"
+		image=$(depends "linux-image-$name" "^linux-image-${base//./\\.}\.[0-9].*-$name\$" | head -n 1)
+		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image-$name of" \
 			"bookworm$([ $suite = base ] || echo -backports)); see $cache/apt/$suite/update.log"
 		release=${image#linux-image-}
 		headers=linux-headers-$release
-		pkgs="$image $headers $(depends "$headers" '^linux-(headers-.*common|kbuild-)' | tr '\n' ' ')"
+		kbuild=$(depends "$headers" '^linux-kbuild-')
+		pkgs="$headers $(depends "$headers" '^linux-headers-.*common' | tr '\n' ' ')"
+		[ "$arch" = armhf ] || pkgs="$image $pkgs"	# nobody boots it
 		rm -rf "$tmp"
 		tmp=$(mktemp -d "$cache/kernels/.tmp.XXXXXX")
 		mkdir "$tmp/debs"
-		say "downloading $pkgs"
+		say "downloading $pkgs $kbuild"
 		# shellcheck disable=SC2086
-		(cd "$tmp/debs" && apt-get "${apt_opts[@]}" -qq download $pkgs) >&2 </dev/null && break
+		download $suite "$arch" $pkgs && download $suite amd64 $kbuild && break
 		[ $try = 1 ] || die "download failed; check the network, then run this again"
-		rm -f "$cache/apt/$suite/stamp"
+		rm -f "$cache"/apt/$suite*/stamp
 	done
 
 	root=$tmp/root
@@ -189,8 +220,8 @@ unpack() {	# unpack FLAVOUR
 	# Both may exist: the headers bring the links build and source only.
 	[ ! -d "$root/usr/lib/modules/$release" ] ||
 		cp -an "$root/usr/lib/modules/$release/." "$root/lib/modules/$release/"
-	[ -d "$root/lib/modules/$release/kernel" ] || die "the packages hold no modules for $release"
-	[ -f "$root/boot/vmlinuz-$release" ] || die "the packages hold no vmlinuz for $release"
+	[ "$arch" = armhf ] || [ -d "$root/lib/modules/$release/kernel" ] || die "the packages hold no modules for $release"
+	[ "$arch" = armhf ] || [ -f "$root/boot/vmlinuz-$release" ] || die "the packages hold no vmlinuz for $release"
 
 	# The headers expect to lie in /usr; point them to where they will lie.
 	grep -rlE --include=Makefile --include='.kernel*' '/usr/(src|lib)/linux-' \
@@ -200,7 +231,7 @@ unpack() {	# unpack FLAVOUR
 		ln -sfn "$final$(readlink "$p")" "$p"
 	done
 	ln -sfn "$final/usr/src/$headers" "$root/lib/modules/$release/build"
-	depmod -b "$root" "$release"
+	[ "$arch" = armhf ] || depmod -b "$root" "$release"
 	echo "$release" >"$root/.release"
 	echo "$layout $cache" >"$root/.complete"
 	rm -rf "$final"
@@ -208,6 +239,57 @@ unpack() {	# unpack FLAVOUR
 	rm -rf "$tmp"
 	tmp=
 	say "$fl is $release, in $final"
+}
+
+# What guests of another architecture run: the programs of tests/system, unpacked from
+# their packages and those they depend on. No script of a package runs.
+root_packages="base-files base-passwd bash bats busybox-static coreutils dash diffutils findutils gawk grep hostname
+	iproute2 jq kmod libc-bin procps psmisc python3-minimal sed tcpdump util-linux xxd"
+
+unpack_root() {	# unpack_root ARCHITECTURE
+	local arch=$1 final=$cache/roots/$1 f d
+	command -v dpkg-deb >/dev/null || die "dpkg-deb is missing"
+	apt_setup base "$arch"
+	tmp=$(mktemp -d "$cache/roots/.tmp.XXXXXX")
+	mkdir -p "$tmp/cache/archives/partial" "$tmp/root"/usr/{bin,sbin,lib}
+	: >"$tmp/status"
+	for d in bin sbin lib; do ln -s "usr/$d" "$tmp/root/$d"; done
+	say "downloading programs for $arch"
+	# shellcheck disable=SC2086
+	apt-get "${apt_opts[@]}" -o "Dir::State::status=$tmp/status" -o "Dir::Cache=$tmp/cache" \
+		-o Debug::NoLocking=true -qq -y --no-install-recommends --download-only \
+		install $root_packages >&2 </dev/null || die "download failed; check the network, then run this again"
+	# a folder of a package must not take the place of the links made above
+	for f in "$tmp"/cache/archives/*.deb; do
+		dpkg-deb --fsys-tarfile "$f" | tar -x --keep-directory-symlink -C "$tmp/root"
+	done
+	ln -sfn gawk "$tmp/root/usr/bin/awk"
+	[ -e "$tmp/root/usr/bin/sh" ] || ln -sn dash "$tmp/root/usr/bin/sh"
+	for f in group passwd; do cp "$tmp/root/usr/share/base-passwd/$f.master" "$tmp/root/etc/$f"; done
+	mkdir -p "$tmp/root"/{dev,proc,sys,run,tmp,root}
+	echo "$layout $root_packages" >"$tmp/root/.complete"
+	rm -rf "$final"
+	mv -T "$tmp/root" "$final"
+	rm -rf "$tmp"
+	tmp=
+}
+
+root_complete() {
+	[ "$(cat "$cache/roots/$1/.complete" 2>/dev/null || true)" = "$layout $root_packages" ]
+}
+
+fetch_root() {
+	case $1 in
+	i386|arm64|s390x) ;;
+	*) die "no programs for '$1', only for i386, arm64, s390x" ;;
+	esac
+	root_complete "$1" && return 0
+	mkdir -p "$cache/roots"
+	exec 9>"$cache/roots/.lock"
+	flock 9
+	rm -rf "$cache"/roots/.tmp.*
+	root_complete "$1" || unpack_root "$1"
+	exec 9>&-
 }
 
 fetch() {
@@ -223,6 +305,12 @@ fetch() {
 cmd=${1:-}
 [ $# -ge 2 ] || usage
 shift
+if [ "$cmd" = root ]; then
+	[ $# -eq 1 ] || usage
+	fetch_root "$1"
+	echo "$cache/roots/$1"
+	exit 0
+fi
 for fl; do check_flavour "$fl"; done
 case $cmd in
 fetch|drop) ;;
@@ -234,6 +322,7 @@ drop)	for fl; do rm -rf "${cache:?}/kernels/$fl"; done ;;
 kdir)	fetch "$1"; echo "$cache/kernels/$1/usr/src/linux-headers-$(cat "$cache/kernels/$1/.release")" ;;
 image)	fetch "$1"; echo "$cache/kernels/$1/boot/vmlinuz-$(cat "$cache/kernels/$1/.release")" ;;
 modules) fetch "$1"; echo "$cache/kernels/$1/lib/modules/$(cat "$cache/kernels/$1/.release")" ;;
+arch)	flavour_of "$1"; echo "$arch" ;;
 release) fetch "$1"; cat "$cache/kernels/$1/.release" ;;
 *)	usage ;;
 esac

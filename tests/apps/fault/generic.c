@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include "fault.h"
 
-#define MAX_ARG	1024	/* of the module */
+#define MAX_ARG	896	/* of the module */
 
 static unsigned char arg[1 << _IOC_SIZEBITS];
 

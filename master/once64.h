@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * 64-bit values that one thread writes and others read without a lock. READ_ONCE() and
+ * WRITE_ONCE() take two accesses on a 32-bit kernel, and half of each of two values is
+ * a time that is 4 seconds off.
+ */
+#ifndef EC_ONCE64_H
+#define EC_ONCE64_H
+
+#include <linux/atomic.h>
+#include <linux/compiler.h>
+#include <linux/preempt.h>
+#include <linux/processor.h>
+#include <linux/string.h>
+#include <linux/types.h>
+#include "ethercat_map.h"
+
+/**
+ * ec_read64() - read a value that another thread may write
+ * @v: an aligned_u64 that is written by ec_write64() only
+ *
+ * Context: Any. RT-safe.
+ * Return: one of the values that were written.
+ */
+static inline u64 ec_read64(const u64 *v)
+{
+	if (BITS_PER_LONG == 64)
+		return READ_ONCE(*v);
+	return atomic64_read((const atomic64_t *)v);
+}
+
+/**
+ * ec_write64() - write a value that another thread may read
+ * @v: an aligned_u64 that is read by ec_read64()
+ * @to: value
+ *
+ * Context: Any. RT-safe.
+ */
+static inline void ec_write64(u64 *v, u64 to)
+{
+	if (BITS_PER_LONG == 64)
+		WRITE_ONCE(*v, to);
+	else
+		atomic64_set((atomic64_t *)v, to);
+}
+
+/**
+ * ec_status_begin() - write 64-bit values of the status page from now on
+ * @st: status page of an active session
+ *
+ * Readers that read such a value in two parts try again until ec_status_end(). One of
+ * a higher priority must not do so on our CPU, so we are not preempted.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+static inline void ec_status_begin(struct ec_status *st)
+{
+	preempt_disable();
+	WRITE_ONCE(st->sequence, st->sequence + 1);
+	smp_wmb();
+}
+
+/**
+ * ec_status_end() - the values are written
+ * @st: as for ec_status_begin()
+ *
+ * Context: As ec_status_begin().
+ */
+static inline void ec_status_end(struct ec_status *st)
+{
+	smp_wmb();
+	WRITE_ONCE(st->sequence, st->sequence + 1);
+	preempt_enable();
+}
+
+/**
+ * ec_status_add() - add to a 64-bit value of the status page
+ * @st: status page of an active session
+ * @v: value in it
+ * @n: how much
+ *
+ * Context: As ec_status_begin().
+ */
+static inline void ec_status_add(struct ec_status *st, __u64 *v, u64 n)
+{
+	ec_status_begin(st);
+	WRITE_ONCE(*v, *v + n);
+	ec_status_end(st);
+}
+
+/**
+ * ec_status_copy() - read from the status page
+ * @st: status page of an active session
+ * @to: gets values of one moment
+ * @from: values in the page
+ * @size: their bytes
+ *
+ * Context: Any. RT-safe: waits for a few stores at most.
+ */
+static inline void ec_status_copy(const struct ec_status *st, void *to, const void *from,
+				  size_t size)
+{
+	u32 sequence;
+
+	do {
+		while ((sequence = smp_load_acquire(&st->sequence)) & 1)
+			cpu_relax();
+		memcpy(to, from, size);
+		smp_rmb();
+	} while (READ_ONCE(st->sequence) != sequence);
+}
+
+#endif
