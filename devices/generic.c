@@ -104,13 +104,13 @@ static void free_ring(struct gen *g)
 static int check(const struct net_device *nd)
 {
 	if (nd->mtu < ETH_DATA_LEN) {
-		pr_err("ec_generic: %s has an MTU of %u, EtherCAT needs %d; do \"ip link set %s mtu %d\"\n",
-		       nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
+		pr_err_ratelimited("ec_generic: %s has an MTU of %u, EtherCAT needs %d; do \"ip link set %s mtu %d\"\n",
+				   nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
 		return -EMSGSIZE;
 	}
 	if (netdev_is_rx_handler_busy((struct net_device *)nd)) {
-		pr_err("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
-		       nd->name);
+		pr_err_ratelimited("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
+				   nd->name);
 		return -EBUSY;
 	}
 	return 0;
@@ -126,7 +126,8 @@ static int claim(struct gen *g)
 		return ret;
 	ret = dev_open(g->nd, NULL);
 	if (ret) {
-		pr_err("ec_generic: %s cannot be brought up (error %d)\n", g->nd->name, ret);
+		pr_err_ratelimited("ec_generic: %s cannot be brought up (%pe)\n", g->nd->name,
+				   ERR_PTR(ret));
 		return ret;
 	}
 	ret = netdev_rx_handler_register(g->nd, receive, g);
@@ -357,7 +358,7 @@ static int change_mtu(const struct net_device *nd, u32 was)
 {
 	if (nd->mtu >= ETH_DATA_LEN || was < ETH_DATA_LEN)
 		return NOTIFY_DONE;
-	pr_warn("ec_generic: %s keeps its MTU: EtherCAT needs %d\n", nd->name, ETH_DATA_LEN);
+	pr_warn_ratelimited("ec_generic: %s keeps its MTU: EtherCAT needs %d\n", nd->name, ETH_DATA_LEN);
 	return notifier_from_errno(-EBUSY);
 }
 

@@ -14,8 +14,8 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	int ret;
 
 	if (master_index >= ec_master_count()) {
-		pr_err("EtherCAT: kernel application: there is no master %u; main_devices= names %u\n",
-		       master_index, ec_master_count());
+		pr_err_ratelimited("EtherCAT: kernel application: there is no master %u; main_devices= names %u\n",
+				   master_index, ec_master_count());
 		return NULL;
 	}
 	m = ec_master_get(master_index);

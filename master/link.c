@@ -26,7 +26,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
 
 	if (__ratelimit(&rate))
-		ec_log(KERN_DEBUG, link->master, "%s %s, %zu byte(s): %*ph\n",
+		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->master->index,
 		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
 		       data);
 }

@@ -210,9 +210,8 @@ static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const
 
 	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
 		return false;
-	if (printk_ratelimit())
-		ec_slave_warn(slave, "emergency 0x%04x, error register 0x%02x\n",
-			      e.code, e.reg);
+	ec_slave_warn(slave, "CoE emergency: code 0x%04x, error register 0x%02x\n", e.code,
+		      e.reg);
 	ec_emerg_push(slave, rx + EC_COE_HDR);
 	return true;
 }
@@ -241,7 +240,7 @@ static void keep(struct ec_slave *slave, const u8 *rx, u16 len)
 	k->len = len;
 	memcpy(k->data, rx, len);
 	spin_lock(&slave->kept_lock);
-	if (slave->keep_voe && slave->n_kept == EC_MBOX_KEPT && printk_ratelimit())
+	if (slave->keep_voe && slave->n_kept == EC_MBOX_KEPT)
 		ec_slave_warn(slave, "sends VoE messages that nobody reads; the oldest is lost\n");
 	flush(slave, EC_MBOX_KEPT - 1);
 	list_add_tail(&k->list, &slave->kept);

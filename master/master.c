@@ -300,6 +300,7 @@ static void destroy(struct ec_master *m)
 	m->slaves = NULL;
 	m->n_slaves = 0;
 	ec_slots_exit(&m->slots);
+	ec_log_flush(m, true);
 	ec_cdev_put(m);
 }
 
@@ -323,6 +324,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		m->link[i].master = m;
 		m->link[i].side = i;
 	}
+	ec_log_init(&m->log);
 	rt_mutex_init(&m->io_lock);
 	raw_spin_lock_init(&m->xq_lock);
 	init_rwsem(&m->topo);

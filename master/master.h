@@ -17,6 +17,7 @@
 #include "late.h"
 #include "limits.h"
 #include "link.h"
+#include "log.h"
 #include "slots.h"
 
 struct ec_api;
@@ -98,6 +99,7 @@ struct task_struct;
  * @al_states: OR of AL states, as in struct ec_ioc_master
  * @dc: distributed clocks
  * @debug: log level 0..2
+ * @log: what was logged lately
  */
 struct ec_master {
 	unsigned int index;
@@ -169,19 +171,13 @@ struct ec_master {
 	u32 al_states;
 	struct ec_dc dc;
 	u32 debug;
+	struct ec_log log;
 };
 
-#define ec_log(level, m, fmt, ...) \
-	printk(level "EtherCAT %u: " fmt, (m)->index, ##__VA_ARGS__)
-#define ec_info(m, fmt, ...)	ec_log(KERN_INFO, m, fmt, ##__VA_ARGS__)
-#define ec_warn(m, fmt, ...)	ec_log(KERN_WARNING, m, fmt, ##__VA_ARGS__)
-/* @lvl 1: steps of state machines, 2: frames; see EC_IOC_DEBUG */
-#define ec_dbg(m, lvl, fmt, ...) \
-	do { \
-		if (unlikely(READ_ONCE((m)->debug) >= (lvl))) \
-			ec_log(KERN_DEBUG, m, fmt, ##__VA_ARGS__); \
-	} while (0)
-#define ec_err(m, fmt, ...)	ec_log(KERN_ERR, m, fmt, ##__VA_ARGS__)
+/* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
+#define ec_info(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_INFO, fmt, ##__VA_ARGS__)
+#define ec_warn(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_WARNING, fmt, ##__VA_ARGS__)
+#define ec_err(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_ERR, fmt, ##__VA_ARGS__)
 
 unsigned int ec_master_count(void);
 struct ec_master *ec_master_get(unsigned int index);

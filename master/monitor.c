@@ -301,6 +301,7 @@ static int monitor(void *data)
 		if (w.scanned)
 			ec_session_clocks(m);
 		ec_session_status(m);
+		ec_log_flush(m, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		if (!kthread_should_stop() && (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze)))

@@ -169,14 +169,16 @@ struct ec_slave {
 	bool keep_voe;
 };
 
+/* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
 #define ec_slave_log(level, s, fmt, ...) \
-	printk(level "EtherCAT %u-%u: " fmt, (s)->master->index, (s)->position, ##__VA_ARGS__)
+	ec_log_event((s)->master, (s)->position, level, fmt, ##__VA_ARGS__)
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
 	do { \
-		if (unlikely(READ_ONCE((s)->master->debug) >= (lvl))) \
-			ec_slave_log(KERN_DEBUG, s, fmt, ##__VA_ARGS__); \
+		if (unlikely(READ_ONCE((s)->master->debug) >= (lvl)) && ec_log_debug()) \
+			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->index, \
+			       (s)->position, ##__VA_ARGS__); \
 	} while (0)
 
 struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);

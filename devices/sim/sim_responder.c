@@ -108,26 +108,28 @@ static int attach(struct end *e, struct net_device *nd)
 
 	ASSERT_RTNL();
 	if (nd->type != ARPHRD_ETHER) {
-		pr_err("ec_sim: %s is no Ethernet device\n", e->name);
+		pr_err_ratelimited("ec_sim: %s is no Ethernet device\n", e->name);
 		return -EINVAL;
 	}
 	ret = dev_open(nd, NULL);
 	if (ret) {
-		pr_err("ec_sim: %s cannot be brought up (error %d)\n", e->name, ret);
+		pr_err_ratelimited("ec_sim: %s cannot be brought up (%pe)\n", e->name,
+				   ERR_PTR(ret));
 		return ret;
 	}
 	netdev_hold(nd, &e->tracker, GFP_KERNEL);
 	rcu_assign_pointer(e->nd, nd);
 	ret = netdev_rx_handler_register(nd, receive, e);
 	if (ret) {
-		pr_err("ec_sim: %s cannot be claimed (error %d)%s\n", e->name, ret,
-		       ret == -EBUSY ? ": a master, bridge, bond or the like has it" : "");
+		pr_err_ratelimited("ec_sim: %s cannot be claimed (%pe)%s\n", e->name,
+				   ERR_PTR(ret),
+				   ret == -EBUSY ? ": a master, bridge, bond or the like has it" : "");
 		rcu_assign_pointer(e->nd, NULL);
 		synchronize_net();
 		netdev_put(nd, &e->tracker);
 		return ret;
 	}
-	pr_info("ec_sim: %u slave(s) at %s\n", ec_sim_count(e->wire->sim), e->name);
+	pr_info_ratelimited("ec_sim: %u slave(s) at %s\n", ec_sim_count(e->wire->sim), e->name);
 	return 0;
 }
 
@@ -173,7 +175,7 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 			if (rtnl_dereference(r->end[i].nd) != nd)
 				continue;
 			if (!r->leaving)
-				pr_info("ec_sim: %s is gone, waiting for it\n", r->end[i].name);
+				pr_info_ratelimited("ec_sim: %s is gone, waiting for it\n", r->end[i].name);
 			detach(&r->end[i]);
 		}
 		break;

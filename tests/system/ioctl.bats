@@ -33,6 +33,17 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 @test "wrong mappings" { check mmap; }
 @test "data into pages that are not there, beside mmap" { check pages; }
 
+@test "a user cannot flood the kernel log" {
+	dmesg -C
+	check flood
+	dmesg | cut -c 1-160
+	[ "$(dmesg | wc -l)" -le 40 ]
+	dmesg | grep -q 'PDO 0x1700 is not assigned'
+	# what was counted comes at the end of the ten seconds
+	wait_for 30 eval 'dmesg | grep -q "not assigned.* more in the last 10 s"'
+	[ "$(dmesg | wc -l)" -le 60 ]
+}
+
 @test "a user without rights reads only, one of another group nothing" {
 	chmod 0664 /dev/EtherCAT0
 	run setpriv --reuid 65534 --regid 65534 --clear-groups "$EC_BUILD/apps/ioctl_check" readonly

@@ -61,6 +61,7 @@ static const struct {
 	{ "limits", check_limits },
 	{ "mmap", check_mmap },
 	{ "pages", check_pages },
+	{ "flood", check_flood },
 };
 
 int main(int argc, char **argv)

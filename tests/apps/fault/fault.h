@@ -79,4 +79,7 @@ void check_mmap(void);
 /* pages.c: pages that are not there, while another thread maps */
 void check_pages(void);
 
+/* flood.c: what is logged, again and again */
+void check_flood(void);
+
 #endif

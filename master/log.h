@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The kernel log: at most some lines in ten seconds, whatever repeats. */
+#ifndef EC_LOG_H
+#define EC_LOG_H
+
+#include <linux/printk.h>
+#include <linux/spinlock.h>
+#include <linux/types.h>
+
+#define EC_LOG_WINDOW_NS	(10 * NSEC_PER_SEC)
+#define EC_LOG_TEXT		224	/* a line has 200 characters, a reason of 160 fits */
+#define EC_LOG_REPEATED		1	/* lines of equal text in a window */
+#define EC_LOG_VARIED		3	/* lines of one event with different texts */
+#define EC_LOG_CHANGES		5	/* lines of a change of state (KERN_INFO) */
+#define EC_LOG_OF_MASTER	48	/* events of a window that belong to no slave */
+#define EC_LOG_OF_SLAVES	256
+#define EC_LOG_ANY		-1	/* "slave" of an event of the master */
+
+/**
+ * struct ec_log_event - one event of one subject: a call site, and a slave or the master
+ * @fmt: its format, which identifies the call site; NULL: free
+ * @slave: ring position or EC_LOG_ANY
+ * @level: KERN_*
+ * @since: start of its window, ktime
+ * @lines: logged in this window
+ * @missed: counted only; the last of them is @text
+ * @text: last text
+ */
+struct ec_log_event {
+	const char *fmt;
+	int slave;
+	const char *level;
+	u64 since;
+	u32 lines;
+	u32 missed;
+	char text[EC_LOG_TEXT];
+};
+
+/**
+ * struct ec_log - what a master has logged lately
+ * @lock: of all below
+ * @events: those of the master, then those of slaves
+ * @pending: an event has been counted only
+ * @lost: lines without a place in @events
+ * @lost_since: when the first of them came
+ * @lines: logged in all
+ */
+struct ec_log {
+	raw_spinlock_t lock;
+	struct ec_log_event events[EC_LOG_OF_MASTER + EC_LOG_OF_SLAVES];
+	bool pending;
+	u32 lost;
+	u64 lost_since;
+	u64 lines;
+};
+
+struct ec_master;
+
+void ec_log_init(struct ec_log *l);
+__printf(4, 5) void ec_log_event(struct ec_master *m, int slave, const char *level,
+				 const char *fmt, ...);
+void ec_log_flush(struct ec_master *m, bool all);
+bool ec_log_debug(void);
+
+#endif
