@@ -286,8 +286,9 @@ int ec_scan(struct ec_master *m, unsigned int count)
 		publish(&sc);
 		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
 		m->scan_frames = atomic64_read(&m->link[0].stats.tx_frames) - frames;
-		ec_info(m, "%u slave(s) found in %u us with %llu frames\n", count, m->scan_us,
-			m->scan_frames);
+		if (count)
+			ec_info(m, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
+				m->scan_us, m->scan_frames);
 	}
 	for (i = 0; sc.slaves && i < count; i++)
 		if (sc.slaves[i])
