@@ -45,6 +45,7 @@ struct ecdev_ops {
 struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 			  const struct ecdev_ops *ops, void *priv);
 void ecdev_withdraw(struct ecdev *dev);
+const char *ecdev_waiting(unsigned int *index, unsigned int *master);
 bool ecdev_wanted(const char *name, const u8 *mac);
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
 void ecdev_foreign(struct ecdev *dev);

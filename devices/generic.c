@@ -390,13 +390,51 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 
 static struct notifier_block notifier = { .notifier_call = event };
 
+static bool has_address(const struct net_device *nd, const char *spec)
+{
+	u8 mac[ETH_ALEN];
+
+	return mac_pton(spec, mac) && ether_addr_equal(mac, nd->dev_addr);
+}
+
+/* Why no network device is what main_devices= says; NULL: one is, and was refused. */
+static const char * __init why_waiting(const char *spec)
+{
+	struct net_device *nd;
+	const char *why = "is neither the name nor the MAC address of a network interface";
+
+	rtnl_lock();
+	for_each_netdev(&init_net, nd)
+		if (!strcmp(spec, nd->name) || has_address(nd, spec))
+			why = nd->type == ARPHRD_ETHER ? NULL : "is no Ethernet interface";
+	rtnl_unlock();
+	return why;
+}
+
+/* A name that is mistyped waits for ever, one whose driver comes later does not. */
+static void __init report_waiting(void)
+{
+	unsigned int i = 0, master;
+	const char *spec, *why;
+
+	while ((spec = ecdev_waiting(&i, &master))) {
+		why = strncmp(spec, "sim", 3) ? why_waiting(spec) : NULL;
+		if (why)
+			pr_warn("ec_generic: main_devices: \"%s\" %s; master %u waits for it\n",
+				spec, why, master);
+	}
+}
+
 static int __init gen_init(void)
 {
 	int ret = register_netdevice_notifier(&notifier);
 
+	if (ret)
+		return ret;
 	/* it has told of all devices there are */
 	flush_work(&look_work);
-	return ret;
+	report_waiting();
+	return 0;
 }
 
 static void __exit gen_exit(void)

@@ -51,6 +51,32 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 }
 EXPORT_SYMBOL_GPL(ecdev_wanted);
 
+/**
+ * ecdev_waiting() - what masters still wait for
+ * @index: start, 0 at first; set behind the one that is returned
+ * @master: result: number of the master
+ *
+ * Context: Process. May sleep.
+ * Return: a name or MAC address of main_devices=, or NULL.
+ */
+const char *ecdev_waiting(unsigned int *index, unsigned int *master)
+{
+	const char *spec = NULL;
+
+	mutex_lock(&devices_lock);
+	for (; *index < ec_master_count() && !spec; (*index)++) {
+		struct ec_master *m = ec_master_get(*index);
+
+		if (m->link[0].dev)
+			continue;
+		spec = m->spec[0];
+		*master = *index;
+	}
+	mutex_unlock(&devices_lock);
+	return spec;
+}
+EXPORT_SYMBOL_GPL(ecdev_waiting);
+
 static void attach(struct ecdev *dev, struct ec_link *link)
 {
 	int ret;
@@ -58,8 +84,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 	rcu_assign_pointer(dev->link, link);
 	ret = dev->ops->start(dev->priv, dev);
 	if (ret) {
-		ec_warn(link->master, "device %s could not be started (error %d)\n",
-			dev->name, ret);
+		ec_warn(link->master, "cannot start device %s (%pe)\n", dev->name, ERR_PTR(ret));
 		rcu_assign_pointer(dev->link, NULL);
 		synchronize_rcu();
 		return;

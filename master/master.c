@@ -383,38 +383,69 @@ static bool same_device(const char *a, const char *b)
 	return !strcmp(a, b);
 }
 
+/* A name that can be an interface's: the kernel's rules for them. */
+static bool is_name(const char *spec)
+{
+	size_t len = strlen(spec);
+
+	return len && len < IFNAMSIZ && strcmp(spec, ".") && strcmp(spec, "..") &&
+	       !spec[strcspn(spec, "/: \t\n")];
+}
+
+/* An address that a device can have, or the broadcast address. */
+static bool is_address(const char *spec)
+{
+	u8 mac[ETH_ALEN] __aligned(2);
+
+	return strlen(spec) == 3 * ETH_ALEN - 1 && mac_pton(spec, mac) &&
+	       (is_valid_ether_addr(mac) || is_broadcast_ether_addr(mac));
+}
+
+static int check_name(const char *spec, unsigned int index)
+{
+	if (!spec || !*spec) {
+		pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
+		       index);
+		return -EINVAL;
+	}
+	if (is_name(spec) || is_address(spec))
+		return 0;
+	if (strchr(spec, ':'))
+		pr_err("EtherCAT: main_devices: \"%s\" is not the MAC address of a device; write it as 00:11:22:33:44:55, or ff:ff:ff:ff:ff:ff for the first device\n",
+		       spec);
+	else
+		pr_err("EtherCAT: main_devices: \"%s\" cannot be an interface name (1 to %u characters, no slash, no space)\n",
+		       spec, IFNAMSIZ - 1);
+	return -EINVAL;
+}
+
 /*
- * Before the first master is there, as somebody may open it at once. One name
- * given twice is a mistake: the second one would wait for ever.
+ * Before the first master is there, as somebody may open it at once. What can never
+ * work is refused: a master would wait for its device for ever.
  */
 static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
 {
-	const char *all[EC_MAX_LINKS * EC_MAX_MASTERS];
-	unsigned int i, k, n = 0;
+	unsigned int i, k;
+	int ret;
 
 	for (i = 0; i < n_main; i++) {
-		if (!main[i] || !*main[i]) {
-			pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
-			       i);
-			return -EINVAL;
-		}
-		all[n++] = main[i];
-	}
-	if (n_backup > n_main) {
-		pr_err("EtherCAT: backup_devices= has %u entries, main_devices= only %u\n", n_backup,
-		       n_main);
-		return -EINVAL;
-	}
-	for (i = 0; i < n_backup; i++)
-		if (*backup[i])
-			all[n++] = backup[i];
-	for (i = 0; i < n; i++) {
-		for (k = 0; k < i && !same_device(all[i], all[k]); k++)
+		ret = check_name(main[i], i);
+		if (ret)
+			return ret;
+		for (k = 0; k < i && !same_device(main[i], main[k]); k++)
 			;
 		if (k == i)
 			continue;
-		pr_err("EtherCAT: device %s is given twice; each link needs its own\n", all[i]);
+		pr_err("EtherCAT: main_devices: device %s is given twice; each master needs its own\n",
+		       main[i]);
 		return -EINVAL;
+	}
+	for (i = 0; i < n_backup; i++) {
+		if (!backup[i] || !*backup[i])
+			continue;
+		pr_err("EtherCAT: backup_devices: \"%s\": this version has no cable redundancy; load ec_master without backup_devices=\n",
+		       backup[i]);
+		return -EOPNOTSUPP;
 	}
 	return 0;
 }
@@ -423,12 +454,13 @@ static int check_names(char **main, unsigned int n_main, char **backup, unsigned
  * ec_masters_create() - create the masters the module parameters name
  * @main: main device of each: MAC address or device name
  * @n_main: how many
- * @backup: backup devices, may be empty strings
+ * @backup: backup devices: empty strings only, as there is no redundancy
  * @n_backup: how many
  * @debug: log level
  *
  * Context: Process. May sleep.
- * Return: 0, -EINVAL for names that cannot be meant, -ENOMEM, or another -errno.
+ * Return: 0; -EINVAL for invalid names or level; -EOPNOTSUPP for a backup device;
+ * -ENOMEM, or another -errno.
  */
 int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
 		      unsigned int debug)
@@ -438,6 +470,10 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
 
 	if (ret)
 		return ret;
+	if (debug > 2) {
+		pr_err("EtherCAT: debug_level: %u is not 0, 1 or 2\n", debug);
+		return -EINVAL;
+	}
 	for (i = 0; i < n_main; i++) {
 		struct ec_master *m;
 

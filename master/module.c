@@ -7,12 +7,12 @@
 static char *main_devices[EC_MAX_MASTERS];
 static unsigned int n_main;
 module_param_array(main_devices, charp, &n_main, 0444);
-MODULE_PARM_DESC(main_devices, "main device of each master: MAC address, interface name or sim0");
+MODULE_PARM_DESC(main_devices, "main device of each master: MAC address (ff:ff:ff:ff:ff:ff: the first device), interface name or sim0");
 
 static char *backup_devices[EC_MAX_MASTERS];
 static unsigned int n_backup;
 module_param_array(backup_devices, charp, &n_backup, 0444);
-MODULE_PARM_DESC(backup_devices, "backup device of each master, may be empty");
+MODULE_PARM_DESC(backup_devices, "refused: this version has no cable redundancy");
 
 static unsigned int debug_level;
 module_param(debug_level, uint, 0444);
@@ -28,7 +28,7 @@ static int __init ec_init(void)
 	if (ret)
 		goto err_class;
 	if (!n_main)
-		pr_warn("EtherCAT: no master: load with main_devices=<MAC address or interface>\n");
+		pr_warn("EtherCAT: no master: load ec_master with main_devices=MAC address, interface or sim0\n");
 	return 0;
 
 err_class:

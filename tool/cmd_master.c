@@ -62,7 +62,8 @@ static void device(const char *label, const struct ec_ioc_device *d)
 	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", a[0], a[1], a[2], a[3], a[4],
 		 a[5]);
 	out_object(NULL);
-	out_str("mac", mac, "    %s: %s (", label, mac);
+	/* without a device: what main_devices= says */
+	out_str("mac", mac, "    %s: %s (", label, attached || !d->name[0] ? mac : d->name);
 	out_bool("attached", attached, "%s)\n", attached ? "attached" : "waiting...");
 	out_str("interface", d->name, NULL);
 	out_bool("link_up", d->link_up, "      Link: %s\n", d->link_up ? "UP" : "DOWN");

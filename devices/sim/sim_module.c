@@ -9,6 +9,7 @@
 #include <linux/module.h>
 #include <linux/string.h>
 #include <linux/vmalloc.h>
+#include "devices/ecdev.h"
 #include "describe.h"
 #include "sim_link.h"
 #include "sim_responder.h"
@@ -62,8 +63,8 @@ static struct ec_sim *build(const char *name)
 		return describe(name, text, strlen(text));
 	n = kernel_read_file_from_path(name, 0, &buf, 1 << 20, NULL, READING_UNKNOWN);
 	if (n < 0) {
-		pr_err("ec_sim: segment=%s is no built-in segment and cannot be read (error %zd)\n",
-		       name, n);
+		pr_err("ec_sim: segment=%s: no built-in segment (thin, three, bench, line100, line1000), and no file that can be read (%pe)\n",
+		       name, ERR_PTR(n));
 		return ERR_PTR(n);
 	}
 	sim = describe(name, buf, n);
@@ -118,6 +119,18 @@ static void withdraw(void)
 			ec_sim_link_destroy(sim_link[i]);
 }
 
+/* sim7 of main_devices= is never offered when there is one segment. */
+static void __init report_waiting(unsigned int n)
+{
+	unsigned int i = 0, master, k;
+	const char *spec;
+
+	while ((spec = ecdev_waiting(&i, &master)))
+		if (sscanf(spec, "sim%u", &k) == 1 && k >= n)
+			pr_warn("ec_sim: main_devices: \"%s\" is not offered, segment= names %u segment(s); master %u waits for it\n",
+				spec, n, master);
+}
+
 static int __init sim_init(void)
 {
 	unsigned int i, n = max(n_segment, 1u);
@@ -129,6 +142,8 @@ static int __init sim_init(void)
 		ret = offer(i);
 	if (ret)
 		withdraw();
+	else
+		report_waiting(n);
 	return ret;
 }
 
