@@ -41,11 +41,12 @@ static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list,
 			break;	/* the application has gone meanwhile */
 		if (err) {
 			free(c);
-			return dev_fail(d, err, "Master%u: configuration %u: no data", d->master, i);
+			return dev_fail(d, err, "Master%u: cannot read configuration %u", d->master, i);
 		}
 		if (select_config(&t->aliases, &t->positions, &c[*n]))
 			(*n)++;
 	}
+	dev_selected("configuration", !list_all(&t->aliases) || !list_all(&t->positions), *n);
 	qsort(c, *n, sizeof(*c), order);
 	*list = c;
 	return 0;

@@ -79,6 +79,10 @@ static int all(const struct tool *t, struct dev *d, bool reset)
 
 	if (dev_select(d, t, &sel, NULL))
 		return 1;
+	if (reset && !sel.n && list_all(&t->aliases) && list_all(&t->positions)) {
+		slaves_free(&sel);
+		return dev_none_present(d);
+	}
 	out_u("master", d->master, NULL);
 	if (!reset) {
 		out_text("   |Port 0         |Port 1         |Port 2         |Port 3         |\n");

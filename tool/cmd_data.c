@@ -39,6 +39,8 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	(void)argc, (void)argv;
+	if (out_binary_allowed("use --json, or a pipe: ethercat data | hexdump -C"))
+		return 1;
 	out_array("masters");
 	ret = dev_each(t, false, each);
 	out_end();
@@ -51,7 +53,8 @@ const struct cmd cmd_data = {
 	.args = "",
 	.opts = "md",
 	.summary = "Write the process data of domains to stdout",
-	.help = "Binary, one domain behind the other: ethercat data -d0 | hexdump -C\n",
+	.help = "Binary, one domain behind the other, not to a terminal:\n"
+		"ethercat data -d0 | hexdump -C\n",
 	.json = "masters[]: master, domains[]: index, size_bytes, data_hex",
 	.flags = CMD_HISTORIC,
 };

@@ -53,7 +53,8 @@ static int run(struct tool *t, int argc, char **argv)
 	if (found[0]->alias_of)
 		found[0] = cmd_exact(found[0]->alias_of);
 	if (!found[0]->run)
-		return fail("'%s' is not part of version " EC_TOOL_VERSION, found[0]->name);
+		return usage_error("unknown command '%s': not part of version " EC_TOOL_VERSION,
+				   found[0]->name);
 	if (out_is_json())
 		help_json(found[0]);
 	else

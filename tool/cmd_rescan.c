@@ -25,10 +25,15 @@ static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 static int each(const struct tool *t, struct dev *d)
 {
 	struct ec_ioc_master m;
+	char why[160];
 	int err;
 
 	if (dev_master(d, &m))
 		return 1;
+	/* without a link nothing is sent, so nothing would be done */
+	dev_why_empty(&m, why, sizeof(why));
+	if (*why && !m.scan_busy)
+		return fail("Master%u: cannot scan the bus: %s", d->master, why);
 	err = dev_ioctl(d, EC_IOC_RESCAN, NULL);
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot scan the bus", d->master);
@@ -55,7 +60,8 @@ const struct cmd cmd_rescan = {
 	.args = "",
 	.opts = "mw",
 	.summary = "Scan the bus again",
-	.help = "Returns at once; with --wait when the scan has finished (default at most 60 s).\n",
+	.help = "Returns at once; with --wait when the scan has finished (default at most 60 s). Fails\n"
+		"without a device or link.\n",
 	.json = "masters[]: master",
 	.flags = CMD_HISTORIC,
 };

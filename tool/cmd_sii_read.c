@@ -121,6 +121,9 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	(void)argc, (void)argv;
+	if (t->verbosity <= 0 &&
+	    out_binary_allowed("use --verbose, --json, or a file: ethercat sii_read -p0 > FILE"))
+		return 1;
 	if (dev_open_single(&d, t, false))
 		return 1;
 	ret = dev_select_single(&d, t, &s) || get(&d, &s, &img, &size);
@@ -145,7 +148,8 @@ const struct cmd cmd_sii_read = {
 	.args = "",
 	.opts = "mapv",
 	.summary = "Write the EEPROM image of a slave to stdout",
-	.help = "Binary, as read by the last bus scan: ethercat sii_read -p2 > backup.bin\n"
+	.help = "Binary, as read by the last bus scan, not to a terminal:\n"
+		"ethercat sii_read -p2 > backup.bin\n"
 		"With --verbose hex bytes, category by category.\n",
 	.json = "master, slave, size_bytes, data_hex; with --verbose instead of data_hex:\n"
 		"fixed_area_hex, checksum_ok, alias, vendor_id, product_code, revision_number,\n"

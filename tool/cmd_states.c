@@ -115,6 +115,10 @@ static int each(const struct tool *t, struct dev *d)
 
 	if (dev_select(d, t, &sel, NULL))
 		return 1;
+	if (wanted && !sel.n && list_all(&t->aliases) && list_all(&t->positions)) {
+		slaves_free(&sel);
+		return dev_none_present(d);
+	}
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	if (!wanted && d->selected > 1)
@@ -167,7 +171,8 @@ const struct cmd cmd_states = {
 	.help = "STATE := { INIT | PREOP | BOOT | SAFEOP | OP }, in any case.\n"
 		"Without --wait the command returns as soon as the request is accepted. With\n"
 		"--wait it fails when a slave refuses or needs longer (default 10 s), and tells\n"
-		"the AL status code. A running application may pull slaves back to its own state.\n"
+		"the AL status code. The slave keeps this state until it reconnects or an application\n"
+		"reserves, activates, resets or deactivates the master.\n"
 		"Without STATE: position, alias:relative position, state, and what is wrong if anything\n"
 		"is.\n",
 	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"

@@ -64,7 +64,7 @@ int dev_open(struct dev *d, unsigned int master, bool write)
 		fail("%s belongs to another EtherCAT master, whose interface differs from "
 		     "this tool's (version %u)", d->path, EC_UAPI_VERSION);
 	else
-		dev_fail(d, errno, "%s: no version", d->path);
+		dev_fail(d, errno, "%s: cannot read the version of the module", d->path);
 	dev_close(d);
 	return 1;
 }
@@ -151,7 +151,7 @@ int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, s
 	if (list_expand(&t->masters, count, &m))
 		return fail("out of memory");
 	if (!m.n)
-		note("-m selects none of the %u master(s) present", count);
+		ret = usage_error("-m selects none of the %u master(s) present", count);
 	for (size_t i = 0; i < m.n; i++) {
 		struct dev d;
 		int one = dev_open(&d, m.v[i], write);
@@ -174,7 +174,7 @@ int dev_master(struct dev *d, struct ec_ioc_master *m)
 	*m = (struct ec_ioc_master){ 0 };
 	err = dev_ioctl(d, EC_IOC_MASTER, m);
 	if (err)
-		return dev_fail(d, err, "Master%u: no data", d->master);
+		return dev_fail(d, err, "Master%u: cannot read the state of the master", d->master);
 	for (int i = 0; i < EC_UAPI_DEVICES; i++)
 		string_clean(m->devices[i].name, sizeof(m->devices[i].name));
 	m->device_count = min(m->device_count, (u32)EC_UAPI_DEVICES);
@@ -201,7 +201,8 @@ int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
 {
 	int err = get_slave(d, position, s);
 
-	return err ? dev_fail(d, err, "Master%u slave %u: no data", d->master, position) : 0;
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot read the state of the slave", d->master,
+			position) : 0;
 }
 
 void slaves_free(struct slaves *s)
@@ -241,7 +242,8 @@ int dev_slaves(struct dev *d, struct slaves *all)
 			continue;
 		if (err && before.scan_count == after.scan_count && !after.scan_busy) {
 			slaves_free(all);
-			return dev_fail(d, err, "Master%u slave %zu: no data", d->master, all->n);
+			return dev_fail(d, err, "Master%u slave %zu: cannot read the state of the slave",
+					d->master, all->n);
 		}
 		return 0;
 	}
@@ -264,6 +266,7 @@ int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, siz
 		selected->v[selected->n++] = bus.v[pos.v[i]];
 	if (all)
 		*all = bus.n;
+	dev_selected("slave", !list_all(&t->aliases) || !list_all(&t->positions), pos.n);
 	numbers_free(&pos);
 	slaves_free(&bus);
 	return selected->v ? 0 : fail("out of memory");
@@ -283,7 +286,37 @@ void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size)
 		snprintf(buf, size, "a bus scan is running");
 }
 
-static int none_present(struct dev *d)
+/* what -a, -p and -d have selected so far, on all masters */
+static const char *narrowed;
+static size_t selected_count;
+
+/**
+ * dev_selected() - note how much a selection has matched
+ * @what: was looked for: "slave", "configuration", "domain"
+ * @given: the user narrowed it down
+ * @n: matches on one master
+ */
+void dev_selected(const char *what, bool given, size_t n)
+{
+	if (given)
+		narrowed = what;
+	selected_count += n;
+}
+
+/**
+ * dev_nothing_selected() - fail when a selection has matched nothing on any master
+ *
+ * Return: 0, or 1 after printing that.
+ */
+int dev_nothing_selected(void)
+{
+	if (!narrowed || selected_count)
+		return 0;
+	return fail("the selection matches no %s", narrowed);
+}
+
+/* the failure of a command that has no slave to work on */
+int dev_none_present(struct dev *d)
 {
 	struct ec_ioc_master m;
 	char why[160];
@@ -305,7 +338,7 @@ int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *
 	if (sel.n == 1)
 		*s = sel.v[0];
 	else if (!all)
-		ret = none_present(d);
+		ret = dev_none_present(d);
 	else
 		ret = usage_error("selection matches %zu slaves of the %zu present, one is needed; "
 				  "use -p or -a", sel.n, all);

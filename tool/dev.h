@@ -36,6 +36,10 @@ void slaves_free(struct slaves *s);
 
 /* what -a and -p select; @all may be NULL */
 int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, size_t *all);
+/* whether all of that was nothing, on all masters */
+void dev_selected(const char *what, bool given, size_t n);
+int dev_nothing_selected(void);
+int dev_none_present(struct dev *d);
 /* exactly one */
 int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s);
 

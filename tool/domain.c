@@ -15,13 +15,14 @@ int domain_each(struct dev *d, const struct tool *t,
 		return 1;
 	if (list_expand(&t->domains, m.domain_count, &sel))
 		return fail("out of memory");
+	dev_selected("domain", !list_all(&t->domains), sel.n);
 	for (size_t i = 0; i < sel.n && !ret; i++) {
 		struct ec_ioc_domain dom = { .index = sel.v[i] };
 		int err = dev_ioctl(d, EC_IOC_DOMAIN, &dom);
 
 		if (err == ENOENT)
 			break;	/* the application has gone meanwhile */
-		ret = err ? dev_fail(d, err, "Master%u: domain %u: no data", d->master, sel.v[i]) :
+		ret = err ? dev_fail(d, err, "Master%u: cannot read the state of domain %u", d->master, sel.v[i]) :
 			fn(t, d, &dom);
 	}
 	numbers_free(&sel);

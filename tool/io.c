@@ -147,7 +147,7 @@ static void print_json(const struct ec_type *t, const u8 *data, size_t size)
 /* a value on stdout: text as it is, the rest formatted; JSON adds the bytes */
 int io_print(const struct ec_type *t, const u8 *data, size_t size)
 {
-	size_t bytes = value_bytes(t), cap = max((size_t)VALUE_TEXT, 5 * size + 1);
+	size_t bytes = value_bytes(t), cap = max((size_t)VALUE_TEXT, 5 * size + 1), len = size;
 	char *text;
 
 	if (bytes && size != bytes)
@@ -160,7 +160,10 @@ int io_print(const struct ec_type *t, const u8 *data, size_t size)
 		return 0;
 	}
 	if (value_is_text(t)) {
-		out_text_bytes(data, size);
+		/* slaves fill a string up with NULs */
+		while (t->kind == EC_KIND_STRING && len && !data[len - 1])
+			len--;
+		out_text_bytes(data, len);
 		if (t->kind != EC_KIND_OCTETS)
 			out_text("\n");
 		return 0;

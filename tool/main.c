@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "dev.h"
 #include "out.h"
 #include "tool.h"
 
@@ -64,6 +65,8 @@ static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 		return usage_error("unexpected argument '%s'", args[c->max_args]);
 	out_start(t->json);
 	ret = c->run(t, nargs, args);
+	if (!ret)
+		ret = dev_nothing_selected();
 	err = out_finish();
 	if (err && !ret)
 		ret = fail_full(-err, NULL, 0, "cannot write the output");
@@ -117,13 +120,14 @@ int main(int argc, char **argv)
 	if (!c)
 		goto out;
 	shown = c->alias_of ? cmd_exact(c->alias_of) : c;
+	if (!shown->run) {
+		ret = usage_error("unknown command '%s': not part of version " EC_TOOL_VERSION,
+				  c->name);
+		goto out;
+	}
 	error_context(c->name, t.json);
 	if (help) {
 		ret = show_help(&t, shown);
-		goto out;
-	}
-	if (!shown->run) {
-		ret = fail("this command is not part of version " EC_TOOL_VERSION);
 		goto out;
 	}
 	check_options(shown, seen);

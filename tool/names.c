@@ -28,14 +28,21 @@ const struct cmd *cmd_exact(const char *name)
 	return NULL;
 }
 
+/* a command of this version, or another name of one */
+static bool exists(const struct cmd *c)
+{
+	return c->run || c->alias_of;
+}
+
 /**
  * cmd_lookup() - find a command by its name or an abbreviation
  * @text: as typed
  * @found: room for all commands; receives the candidates of the stage that
  *	had any
  *
- * An exact name wins; then come the names users of older tools abbreviate, by
- * prefix and by letters in order; then the names added since.
+ * An exact name wins, also of a command that this version lacks; then come the names
+ * users of older tools abbreviate, by prefix and by letters in order; then the names
+ * added since.
  *
  * Return: number of candidates.
  */
@@ -48,7 +55,7 @@ int cmd_lookup(const char *text, const struct cmd **found)
 		return 1;
 	for (int stage = 0; stage < 4 && !n && *text; stage++)
 		for (const struct cmd *const *c = cmds; *c; c++)
-			if (((*c)->flags & CMD_HISTORIC ? 0 : 1) == stage / 2 &&
+			if (exists(*c) && ((*c)->flags & CMD_HISTORIC ? 0 : 1) == stage / 2 &&
 			    matches((*c)->name, text, !(stage % 2)))
 				found[n++] = *c;
 	return n;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "text.h"
+#include "tool.h"
 
 #define DEPTH 16
 
@@ -210,6 +211,14 @@ void out_text_bytes(const u8 *data, size_t size)
 		else if (data[i])
 			putchar('?');
 	}
+}
+
+/* Return: 0, or 1 after printing why binary data are not written */
+int out_binary_allowed(const char *instead)
+{
+	if (json || !isatty(STDOUT_FILENO))
+		return 0;
+	return fail("binary data are not written to a terminal; %s", instead);
 }
 
 void out_binary(const char *key, const u8 *data, size_t size)

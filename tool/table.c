@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Every command. A name of older tools without a function here still takes part
- * in abbreviations, so that none of them changes its meaning later.
+ * Every command. A name of older tools without a function here is only known so that
+ * the message can say that this version lacks it.
  */
 #include "tool.h"
 

@@ -57,17 +57,27 @@ ambiguous() {
 	ambiguous s
 	ambiguous d
 	ambiguous re
-	ambiguous foe
-	ambiguous foo
 	ambiguous sr
 	run real re
 	[[ $output == *"reg_read, reg_write, rescan"* ]]
 }
 
-@test "a new name does not change what an old abbreviation means" {
+@test "what this version lacks is unknown, and no abbreviation means it" {
+	for c in foe_read foe_write alias eoe sdos sii_write xml; do
+		for w in "$c" "$c --help" "help $c"; do
+			run real $w
+			[ "$status" -eq 1 ]
+			[[ ${lines[0]} == *"unknown command '$c': not part of version "* ]]
+		done
+	done
+	for c in foe foo al x xm sii_w; do
+		run real $c
+		[ "$status" -eq 1 ]
+		[[ ${lines[0]} == *"unknown command '$c'" ]]
+	done
 	run real sdo
 	[ "$status" -eq 1 ]
-	[[ $output == *"sdos"* ]]
+	[[ $output == *"'sdo' is ambiguous: sdo_download, sdo_read, sdo_upload, sdo_write"* ]]
 }
 
 @test "unknown command, no command, help" {

@@ -51,11 +51,44 @@ load common
 		[ "$status" -eq 0 ]
 		[ "$c" = crc ] || [ -z "$output" ]
 	done
-	for c in "slaves -p7" "slaves -a5" "slaves -a0" "pdos -p9-12"; do
+}
+
+@test "a selection that matches nothing is an error" {
+	for c in "slaves -p7" "slaves -a5" "slaves -a0" "pdos -p9-12" "slaves -v -p7" "states -p77" \
+		"states OP -p77" "cstruct -p7" "crc -p7" "crc reset -p7" "slaves --json -p7"; do
 		run ethercat $c
-		[ "$status" -eq 0 ]
-		[ -z "$output" ]
+		echo "$c: $output"
+		[ "$status" -eq 1 ]
+		[[ $output == *"the selection matches no slave"* ]]
 	done
+	export FAKE_BUS=app
+	[[ $(err config -p77) == *"the selection matches no configuration" ]]
+	[[ $(err domains -d77) == *"the selection matches no domain" ]]
+	[[ $(err data -d77) == *"the selection matches no domain" ]]
+	for c in slaves states pdos domains rescan master; do
+		run ethercat $c -m5
+		[ "$status" -eq 1 ]
+		[[ $output == *"-m selects none of the 1 master(s) present"* ]]
+	done
+	# one match on one of two masters is enough
+	FAKE_BUS=two run ethercat slaves -m0,1 -p1
+	[ "$status" -eq 0 ]
+}
+
+@test "without slaves or device nothing is requested, and that is an error" {
+	export FAKE_BUS=empty
+	for c in "states OP" "crc reset"; do
+		run ethercat $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"there are no slaves" ]]
+	done
+	export FAKE_BUS=waiting
+	for c in rescan "rescan --wait" "states OP"; do
+		run ethercat $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"no network interface yet, waiting for eth0" ]]
+	done
+	[ -z "$(log_of rescan)" ]
 }
 
 @test "selection" {

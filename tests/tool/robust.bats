@@ -20,8 +20,9 @@ try:
         out += more
 except OSError:
     pass
-assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
 sys.stdout.buffer.write(out)
+sys.stdout.flush()
+assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
 ' "$HERE/build/fake/ethercat" "$@"
 }
 
@@ -60,11 +61,24 @@ assert text and not bad, bad
 }
 
 @test "strings of a slave are raw in a pipe and harmless on a terminal" {
-	[ "$(out upload -p2 -t string 0x2002 0 | xxd -p)" = 611b5b324ac29b620a0000000a ]
+	[ "$(out upload -p2 -t string 0x2002 0 | xxd -p)" = 611b5b324ac29b620a0a ]
 	on_terminal upload -p2 -t string 0x2002 0 >"$BATS_TEST_TMPDIR/t"
 	[ "$(xxd -p "$BATS_TEST_TMPDIR/t")" = 613f5b324a3f620d0a0d0a ]
 	out upload -j -p2 -t string 0x2002 0 | harmless
 	out upload -j -p2 -t string 0x2002 0 | json 'd["value"] == "a\x1b[2J\x9bb\n"'
+}
+
+@test "binary data are not written to a terminal" {
+	export FAKE_BUS=app
+	for c in "sii_read -p1" data "data -d0"; do
+		run on_terminal $c
+		echo "$output"
+		[ "$status" -ne 0 ]
+		[[ $output == *"binary data are not written to a terminal; use "* ]]
+		[ "$(out $c | wc -c)" -ge 1 ]
+	done
+	[[ $(on_terminal sii_read -v -p1) == "SII Area:"* ]]
+	[[ $(on_terminal data --json) == "{"* ]]
 }
 
 @test "a reader that leaves early" {
