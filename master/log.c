@@ -13,6 +13,7 @@
 struct line {
 	const char *level;
 	int slave;
+	u32 id;
 	u32 more;
 	char text[EC_LOG_TEXT];
 };
@@ -47,17 +48,19 @@ static bool over(const struct ec_log_event *e, u64 now)
 }
 
 /* The entry of this event, else a free one, else one whose window ended with nothing missed. */
-static struct ec_log_event *find(struct ec_log *l, int slave, const char *fmt, u64 now)
+static struct ec_log_event *find(struct ec_log *l, const struct line *line, const char *fmt,
+				 u64 now)
 {
-	unsigned int i = slave == EC_LOG_ANY ? 0 : EC_LOG_OF_MASTER;
-	unsigned int end = slave == EC_LOG_ANY ? EC_LOG_OF_MASTER : ARRAY_SIZE(l->events);
+	bool many = line->slave != EC_LOG_ANY || line->id;
+	unsigned int i = many ? EC_LOG_OF_MASTER : 0;
+	unsigned int end = many ? ARRAY_SIZE(l->events) : EC_LOG_OF_MASTER;
 	struct ec_log_event *unused = NULL;
 
 	lockdep_assert_held(&l->lock);
 	for (; i < end; i++) {
 		struct ec_log_event *e = &l->events[i];
 
-		if (e->fmt == fmt && e->slave == slave)
+		if (e->fmt == fmt && e->slave == line->slave && e->id == line->id)
 			return e;
 		if (!unused && (!e->fmt || (over(e, now) && !e->missed)))
 			unused = e;
@@ -77,7 +80,7 @@ static u32 most_lines(const struct ec_log_event *e, const char *text)
 /* Is this line to be logged? @line->more: those that were counted before */
 static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
 {
-	struct ec_log_event *e = find(l, line->slave, fmt, now);
+	struct ec_log_event *e = find(l, line, fmt, now);
 	bool yes, flood;
 
 	lockdep_assert_held(&l->lock);
@@ -91,6 +94,7 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
 		line->more = flood ? e->missed : 0;
 		e->fmt = fmt;
 		e->slave = line->slave;
+		e->id = line->id;
 		e->level = line->level;
 		e->since = now;
 		/* a flood goes on with one line in each window */
@@ -115,6 +119,7 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
  * ec_log_event() - log an event, or count it if it repeats
  * @m: master
  * @slave: ring position or EC_LOG_ANY
+ * @id: makes events of one call site different ones, 0: it does not
  * @level: KERN_*
  * @fmt: text; a constant, since it identifies the event
  *
@@ -123,9 +128,9 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
  *
  * Context: Any.
  */
-void ec_log_event(struct ec_master *m, int slave, const char *level, const char *fmt, ...)
+void ec_log_event(struct ec_master *m, int slave, u32 id, const char *level, const char *fmt, ...)
 {
-	struct line line = { .level = level, .slave = slave };
+	struct line line = { .level = level, .slave = slave, .id = id };
 	struct ec_log *l = &m->log;
 	unsigned long irq;
 	va_list args;

@@ -17,9 +17,10 @@
 #define EC_LOG_ANY		-1	/* "slave" of an event of the master */
 
 /**
- * struct ec_log_event - one event of one subject: a call site, and a slave or the master
+ * struct ec_log_event - one event of one subject: a call site, and what it is about
  * @fmt: its format, which identifies the call site; NULL: free
  * @slave: ring position or EC_LOG_ANY
+ * @id: what else the event belongs to, see ec_warn_each()
  * @level: KERN_*
  * @since: start of its window, ktime
  * @lines: logged in this window
@@ -29,6 +30,7 @@
 struct ec_log_event {
 	const char *fmt;
 	int slave;
+	u32 id;
 	const char *level;
 	u64 since;
 	u32 lines;
@@ -57,7 +59,7 @@ struct ec_log {
 struct ec_master;
 
 void ec_log_init(struct ec_log *l);
-__printf(4, 5) void ec_log_event(struct ec_master *m, int slave, const char *level,
+__printf(5, 6) void ec_log_event(struct ec_master *m, int slave, u32 id, const char *level,
 				 const char *fmt, ...);
 void ec_log_flush(struct ec_master *m, bool all);
 bool ec_log_debug(void);

@@ -175,9 +175,12 @@ struct ec_master {
 };
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
-#define ec_info(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_INFO, fmt, ##__VA_ARGS__)
-#define ec_warn(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_WARNING, fmt, ##__VA_ARGS__)
-#define ec_err(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, KERN_ERR, fmt, ##__VA_ARGS__)
+#define ec_info(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_INFO, fmt, ##__VA_ARGS__)
+#define ec_warn(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_WARNING, fmt, ##__VA_ARGS__)
+/* each @id (index + 1 of a configuration, say) repeats for itself */
+#define ec_warn_each(m, id, fmt, ...) \
+	ec_log_event(m, EC_LOG_ANY, id, KERN_WARNING, fmt, ##__VA_ARGS__)
+#define ec_err(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_ERR, fmt, ##__VA_ARGS__)
 
 unsigned int ec_master_count(void);
 struct ec_master *ec_master_get(unsigned int index);

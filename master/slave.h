@@ -171,7 +171,7 @@ struct ec_slave {
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
 #define ec_slave_log(level, s, fmt, ...) \
-	ec_log_event((s)->master, (s)->position, level, fmt, ##__VA_ARGS__)
+	ec_log_event((s)->master, (s)->position, 0, level, fmt, ##__VA_ARGS__)
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \

@@ -71,6 +71,10 @@ static void log_varied(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, 8ull);
 	msleep(10500);
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, 10ull);
+	/* one line for each configuration */
+	for (i = 0; i < 1000; i++)
+		ec_warn_each(b->m, 1 + i % 100, "configuration %u\n", i % 100);
+	KUNIT_EXPECT_EQ(test, lines(b) - l0, 110ull);
 }
 
 /* More slaves than there are places: the rest is one number. */
@@ -82,7 +86,7 @@ static void log_many(struct kunit *test)
 
 	for (i = 0; i < 1000; i++)
 		for (k = 0; k < 3; k++)
-			ec_log_event(b->m, i, KERN_WARNING, "many\n");
+			ec_log_event(b->m, i, 0, KERN_WARNING, "many\n");
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, (u64)EC_LOG_OF_SLAVES);
 	/* the master itself is still heard */
 	ec_warn(b->m, "heard\n");
@@ -92,7 +96,7 @@ static void log_many(struct kunit *test)
 	/* when it is over there is room again */
 	msleep(10500);
 	l0 = lines(b);
-	ec_log_event(b->m, 999, KERN_WARNING, "many\n");
+	ec_log_event(b->m, 999, 0, KERN_WARNING, "many\n");
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, 1ull);
 }
 
