@@ -483,11 +483,13 @@ struct ec_app_event {
  * @n_map: how many
  * @bytes: size of the process image
  * @image: scratch for it
+ * @inputs: the inputs of an application that never changes them
  * @src: sources of the input channels
+ * @n_src: how many channels have one
+ * @is_source: an output of it is wired to an input
  * @events: script
  * @next_event: next of it
  * @profile: private memory of the profile
- * @ran_ns: when the profile ran last
  * @eep_due: when it answers for the emulated EEPROM
  * @mbox: mailbox
  * @soe: SoE server
@@ -516,11 +518,13 @@ struct ec_app {
 	u32 n_map[EC_APP_DIRS];
 	u16 bytes[EC_APP_DIRS];
 	u8 *image;
+	u8 *inputs;
 	struct ec_app_source *src;
+	u16 n_src;
+	bool is_source;
 	struct ec_app_event *events;
 	struct ec_app_event *next_event;
 	void *profile;
-	u64 ran_ns;
 	u64 eep_due;
 	struct ec_app_mbox mbox;
 	struct ec_app_soe soe;
@@ -635,6 +639,9 @@ size_t ec_app_od_name(const struct ec_app_model *m,
 u16 ec_app_pdo_build(struct ec_app *app);
 u32 ec_app_pdo_check_write(const struct ec_app *app,
 			   const struct ec_app_entry *e, u64 value);
+void ec_app_set_source(struct ec_app *app, u16 chan, const struct ec_app_source *src);
+void ec_app_outputs_use(struct ec_app *app, const u8 *image);
+void ec_app_may_wait(struct ec_app *app);
 bool ec_app_pdo_is_config(u16 index);
 void ec_app_outputs(struct ec_app *app, u64 now);
 void ec_app_outputs_clear(struct ec_app *app);

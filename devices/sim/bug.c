@@ -90,10 +90,12 @@ void ec_sim_set_bug(struct ec_sim *sim, enum ec_sim_bug bug)
 {
 	u32 i;
 
+	for (i = 0; i < sim->count; i++) {
+		ec_esc_settle(sim->esc[i]);
+		ec_esc_quick_forget(sim->esc[i]);
+	}
 	sim->bug = bug;
 	sim->dirty = true;	/* routes may be wrong, too */
-	for (i = 0; i < sim->count; i++)
-		ec_esc_quick_forget(sim->esc[i]);
 }
 
 /**

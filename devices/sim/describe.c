@@ -441,6 +441,7 @@ static int do_connect(struct ec_desc *d)
 {
 	struct ec_desc_word *a = ec_desc_next(d), *to = ec_desc_next(d);
 	struct ec_desc_word *b = ec_desc_next(d);
+	struct ec_app_source src;
 	struct ec_app *from, *app;
 	u16 from_chan, chan;
 	int ret;
@@ -453,9 +454,10 @@ static int do_connect(struct ec_desc *d)
 		ret = channel(d, b, EC_APP_IN, &app, &chan);
 	if (ret)
 		return ret;
-	app->src[chan] = (struct ec_app_source){
+	src = (struct ec_app_source){
 		.kind = EC_APP_SRC_LINK, .from = from, .from_chan = from_chan,
 	};
+	ec_app_set_source(app, chan, &src);
 	return 0;
 }
 
@@ -485,7 +487,7 @@ static int do_source(struct ec_desc *d, enum ec_app_source_kind kind)
 	if (kind != EC_APP_SRC_CONST && (!src.period_ns || !src.amplitude))
 		return ec_desc_fail(d, "write it as: sine ai.1 amplitude=10000 period=1s",
 				    NULL, "");
-	app->src[chan] = src;
+	ec_app_set_source(app, chan, &src);
 	return 0;
 }
 

@@ -80,6 +80,7 @@ void ec_esc_power_on(struct ec_esc *esc, u64 now)
 	esc->app_wake_ns = EC_ESC_NEVER;
 	esc->reset_step = 0;
 	memset(&esc->pend, 0, sizeof(esc->pend));
+	esc->late.on = false;
 	esc->open_regs = 0;
 	esc->open_all = 0;
 	ec_esc_regs_fixed(esc);
@@ -484,6 +485,7 @@ void ec_esc_dgram(struct ec_esc *esc, struct ec_dgram *d,
 /* do what is due at @now */
 void ec_esc_run(struct ec_esc *esc, u64 now)
 {
+	ec_esc_settle(esc);
 	if (esc->loop_restore <= now) {
 		esc->loop_restore = EC_ESC_NEVER;
 		esc->mem[EC_REG_DL_LOOPS] = esc->loop_saved;

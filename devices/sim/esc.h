@@ -86,6 +86,8 @@ struct ec_esc_config {
  * @sm_read: the master completely read the buffer of an SM
  * @sm_activate: the master wrote the activate byte of an SM (enable or
  *               repeat request, read 0x0806 + 8 * sm to see which)
+ * @sm_taken: outputs that were fetched from an SM in its name are @data; only
+ *            after ec_esc_pdi_may_wait()
  * @watchdog: the process data watchdog expired
  * @poll: called by ec_sim_advance() once @now reaches esc->app_wake_ns; the
  *        wake-up is cleared before the call, set it again as needed
@@ -108,6 +110,7 @@ struct ec_esc_app_ops {
 	void (*sm_written)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_read)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_activate)(struct ec_esc *esc, int sm, u64 now);
+	void (*sm_taken)(struct ec_esc *esc, const u8 *data);
 	void (*watchdog)(struct ec_esc *esc, u64 now);
 	void (*poll)(struct ec_esc *esc, u64 now);
 	void (*sync)(struct ec_esc *esc, int which, u64 now);
@@ -254,8 +257,10 @@ struct ec_esc_fault {
  * @logical: first logical byte
  * @len: bytes, 0: there is no such FMMU
  * @phys: start of the SyncManager
- * @sm: its number
+ * @sm: its number; EC_ESC_NO_SM: outputs in the registers at 0x0F00
  */
+#define EC_ESC_NO_SM	0xff
+
 struct ec_esc_window {
 	u32 logical;
 	u16 len;
@@ -285,6 +290,30 @@ struct ec_esc_quick {
 	u32 other_first;
 	u32 other_last;
 	u64 wd_ns;
+};
+
+/**
+ * struct ec_esc_late - an application that is told of its process data late
+ * @on: frames only note in ec_esc.pend what they did; ec_esc_settle() tells it
+ * @out: the application has outputs
+ * @in_len: bytes of its inputs, 0: none
+ * @image: these inputs; they stay the same
+ * @stale: outputs were fetched in its name, but it does not know them
+ * @ran_ns: when the inputs were computed last
+ * @frame: number of the frame that was noted
+ *
+ * For an application that does nothing but fetch its outputs and hand over
+ * the same inputs again. When the next frame comes and nobody has looked, what
+ * it would have done to the SyncManagers is made up for, and it is not called.
+ */
+struct ec_esc_late {
+	bool on;
+	bool out;
+	bool stale;
+	u16 in_len;
+	const u8 *image;
+	u64 ran_ns;
+	u64 frame;
 };
 
 /**
@@ -318,6 +347,7 @@ struct ec_esc_quick {
  * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
  *               ec_esc_wake_at()
  * @quick: short ways
+ * @late: the application may be told later
  * @sms_active: bit n: SM n is active
  * @fmmus_active: bit n: FMMU n is enabled and maps something
  * @log_first: lowest logical byte address mapped
@@ -363,6 +393,7 @@ struct ec_esc {
 
 	/* private to the model */
 	struct ec_esc_quick quick;
+	struct ec_esc_late late;
 	u16 sms_active;
 	u16 fmmus_active;
 	u32 log_first;
@@ -412,6 +443,11 @@ bool ec_esc_sm_readable(const struct ec_esc *esc, int sm);
 bool ec_esc_sm_writable(const struct ec_esc *esc, int sm);
 void ec_esc_sm_pdi_disable(struct ec_esc *esc, int sm, bool disable);
 void ec_esc_wake_at(struct ec_esc *esc, u64 at_ns);
+const u8 *ec_esc_pdi_take(struct ec_esc *esc, int sm, u16 len, u64 now);
+u8 *ec_esc_pdi_give(struct ec_esc *esc, int sm, u16 len, u64 now);
+bool ec_esc_pdi_may_wait(struct ec_esc *esc, int out_sm, u16 out_len, int in_sm,
+			 u16 in_len, const u8 *image);
+void ec_esc_settle(struct ec_esc *esc);
 
 /* looking inside, for tests and for the application side */
 u64 ec_esc_local_time(const struct ec_esc *esc, u64 now);

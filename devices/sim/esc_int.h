@@ -66,6 +66,7 @@ struct ec_sim {
 	u64 wd_next;			/* no process data watchdog expires earlier */
 	u32 wd_slave;			/* whose it is, if it is that exactly */
 	u32 irqs;			/* slaves with esc->irq */
+	bool passing;			/* a frame is in the segment */
 	int pend_head;
 	int pend_tail;
 

@@ -25,6 +25,7 @@ int ec_esc_pdi_read(struct ec_esc *esc, u16 ado, void *buf, size_t len,
 	const u8 *p;
 	int sm, n;
 
+	ec_esc_settle(esc);
 	ec_esc_wd_pdi_trigger(esc, now);
 	if (ado >= EC_REG_RAM) {
 		p = ec_esc_sm_begin(esc, ado, len, true, false, &sm);
@@ -98,6 +99,7 @@ int ec_esc_pdi_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len,
 	u32 i;
 	int sm, n;
 
+	ec_esc_settle(esc);
 	ec_esc_wd_pdi_trigger(esc, now);
 	if (ado >= EC_REG_RAM) {
 		p = ec_esc_sm_begin(esc, ado, len, true, true, &sm);

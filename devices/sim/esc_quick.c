@@ -7,6 +7,9 @@
  */
 #include "esc_int.h"
 
+#define DIRECT		0x0F00	/* four bytes of digital outputs */
+#define PACE_NS		2000000	/* inputs older than that are computed when read */
+
 /* FMMU @f maps whole bytes to all of one buffered SyncManager: fills @w */
 static bool window(const struct ec_esc *esc, const struct ec_fmmu *f,
 		   struct ec_esc_window *w)
@@ -16,6 +19,17 @@ static bool window(const struct ec_esc *esc, const struct ec_fmmu *f,
 	const struct ec_sm *p;
 	int n;
 
+	if (out && !w->len && f->phys >= DIRECT && f->phys + f->len <= DIRECT + 4 &&
+	    !f->lbit_start && f->lbit_stop == 7 && !f->pbit &&
+	    (u64)f->logical + f->len <= 1ULL << 32 &&
+	    !(esc->mem[EC_REG_WRITE_PROTECT] & 1) &&
+	    !(esc->cfg.features & EC_FEAT_NO_UNUSED)) {
+		*w = (struct ec_esc_window){
+			.logical = f->logical, .len = f->len, .phys = f->phys,
+			.sm = EC_ESC_NO_SM,
+		};
+		return true;
+	}
 	if (w->len || f->lbit_start || f->lbit_stop != 7 || f->pbit || !f->len ||
 	    f->phys < EC_REG_RAM || (u64)f->logical + f->len > 1ULL << 32)
 		return false;
@@ -86,6 +100,18 @@ static void accessed(struct ec_esc *esc, struct ec_esc_sm *sm, u8 n)
 		esc->al_event |= (u32)EC_AL_EVENT_SM(n);
 }
 
+static void note_write(struct ec_esc_sm *sm)
+{
+	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_READ_EVENT) |
+			       EC_SM_ST_WRITE_EVENT);
+}
+
+static void note_read(struct ec_esc_sm *sm)
+{
+	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_WRITE_EVENT) |
+			       EC_SM_ST_READ_EVENT);
+}
+
 static void write_window(struct ec_esc *esc, const struct ec_esc_window *w,
 			 const u8 *src, u64 now)
 {
@@ -94,8 +120,7 @@ static void write_window(struct ec_esc *esc, const struct ec_esc_window *w,
 
 	accessed(esc, sm, w->sm);
 	copy(esc->mem + w->phys + buf * w->len, src, w->len);
-	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_READ_EVENT) |
-			       EC_SM_ST_WRITE_EVENT);
+	note_write(sm);
 	sm->last_buf = buf;
 	sm->ecat_buf = sm->free_buf;
 	sm->free_buf = buf;
@@ -116,10 +141,178 @@ static void read_window(struct ec_esc *esc, const struct ec_esc_window *w, u8 *d
 		sm->free_buf = buf;
 		sm->fresh = false;
 	}
-	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_WRITE_EVENT) |
-			       EC_SM_ST_READ_EVENT);
+	note_read(sm);
 	copy(dst, esc->mem + w->phys + sm->ecat_buf * w->len, w->len);
 	esc->pend.sm_read |= (u16)BIT(w->sm);
+}
+
+/* the PDI has read all of an output SyncManager; where the data lie */
+static const u8 *taken(struct ec_esc *esc, const struct ec_esc_window *w)
+{
+	struct ec_esc_sm *sm = &esc->sm[w->sm];
+	u8 buf = sm->pdi_buf;
+
+	if (sm->fresh) {
+		sm->pdi_buf = sm->free_buf;
+		sm->free_buf = buf;
+		sm->fresh = false;
+	}
+	note_read(sm);
+	esc->al_event &= (u32)~EC_AL_EVENT_SM(w->sm);
+	return esc->mem + w->phys + sm->pdi_buf * w->len;
+}
+
+/* the PDI has written all of an input SyncManager; where the data go */
+static u8 *given(struct ec_esc *esc, const struct ec_esc_window *w)
+{
+	struct ec_esc_sm *sm = &esc->sm[w->sm];
+	u8 buf = sm->pdi_buf;
+
+	sm->last_buf = buf;
+	sm->pdi_buf = sm->free_buf;
+	sm->free_buf = buf;
+	sm->fresh = true;
+	note_write(sm);
+	esc->al_event &= (u32)~EC_AL_EVENT_SM(w->sm);
+	return esc->mem + w->phys + buf * w->len;
+}
+
+/* The PDI has a short way to SyncManager @sm, too */
+static bool pdi_quick(struct ec_esc *esc, const struct ec_esc_window *w, int sm, u16 len,
+		      u64 now)
+{
+	struct ec_esc_sm *s = &esc->sm[sm];
+
+	if (!esc->quick.known || !esc->quick.data || w->sm != sm || w->len != len || !len)
+		return false;
+	s->pdi_lock = false;
+	ec_esc_wd_pdi_trigger(esc, now);
+	if (s->page.control & EC_SM_ECAT_IRQ)
+		ec_esc_event(esc, (u16)EC_ECAT_EVENT_SM(sm), 0);
+	return true;
+}
+
+/**
+ * ec_esc_pdi_take() - the slave's CPU reads all of an output SyncManager
+ * @esc: slave controller
+ * @sm: SyncManager
+ * @len: its bytes
+ * @now: simulation time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the data, valid until the next access; NULL: use ec_esc_pdi_read().
+ */
+const u8 *ec_esc_pdi_take(struct ec_esc *esc, int sm, u16 len, u64 now)
+{
+	const struct ec_esc_window *w = &esc->quick.out;
+
+	if (esc->sm[sm].last_buf == 3 || !pdi_quick(esc, w, sm, len, now))
+		return NULL;
+	return taken(esc, w);
+}
+
+/**
+ * ec_esc_pdi_give() - the slave's CPU writes all of an input SyncManager
+ * @esc: slave controller
+ * @sm: SyncManager
+ * @len: its bytes
+ * @now: simulation time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: where to put the data before anything else is done; NULL: use
+ * ec_esc_pdi_write().
+ */
+u8 *ec_esc_pdi_give(struct ec_esc *esc, int sm, u16 len, u64 now)
+{
+	const struct ec_esc_window *w = &esc->quick.in;
+
+	return pdi_quick(esc, w, sm, len, now) ? given(esc, w) : NULL;
+}
+
+static bool late_ok(const struct ec_esc *esc, const struct ec_esc_window *w, int sm, u16 len)
+{
+	return w->len == len &&
+	       (!len || (w->sm == sm && !(esc->sm[sm].page.control & EC_SM_ECAT_IRQ)));
+}
+
+/**
+ * ec_esc_pdi_may_wait() - the application may be told of process data later
+ * @esc: slave controller
+ * @out_sm: SyncManager of the outputs
+ * @out_len: its bytes, 0: no outputs
+ * @in_sm: SyncManager of the inputs
+ * @in_len: its bytes, 0: no inputs
+ * @image: the inputs, which stay the same
+ *
+ * To be called at the end of @sm_written or @sm_read. It holds until anything
+ * but a frame with all of these process data concerns the slave.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is so.
+ */
+bool ec_esc_pdi_may_wait(struct ec_esc *esc, int out_sm, u16 out_len, int in_sm,
+			 u16 in_len, const u8 *image)
+{
+	const struct ec_esc_quick *q = &esc->quick;
+
+	if (!q->known || !q->data || esc->fault.app_mute || esc->wd_pdi_expired ||
+	    esc->sim->slow || !late_ok(esc, &q->out, out_sm, out_len) ||
+	    !late_ok(esc, &q->in, in_sm, in_len))
+		return false;
+	esc->late.on = true;
+	esc->late.stale = false;
+	esc->late.out = out_len;
+	esc->late.in_len = in_len;
+	esc->late.image = image;
+	return true;
+}
+
+/**
+ * ec_esc_settle() - tell an application what it was not told yet
+ * @esc: slave controller
+ *
+ * Before anything is done that the application or its SyncManagers could show in.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_settle(struct ec_esc *esc)
+{
+	const struct ec_esc_window *w = &esc->quick.out;
+
+	if (!esc->late.on)
+		return;
+	esc->late.on = false;
+	if (esc->late.stale)
+		esc->app_ops->sm_taken(esc, esc->mem + w->phys +
+				       esc->sm[w->sm].pdi_buf * w->len);
+	esc->late.stale = false;
+	if (!(esc->pend.sm_written | esc->pend.sm_read))
+		return;
+	if (esc->sim->passing && esc->late.frame == esc->sim->frames)
+		ec_esc_pend(esc, esc->pend_ns);	/* its turn is after the frame */
+	else
+		ec_esc_deliver(esc);
+	esc->late.on = false;			/* whatever it said: somebody looks */
+}
+
+/* what the application would have done after the last frame; it was not called */
+static void catch_up(struct ec_esc *esc)
+{
+	struct ec_esc_late *l = &esc->late;
+	bool run = esc->pend.sm_written;
+
+	l->stale |= run;
+	if (run)
+		taken(esc, &esc->quick.out);
+	else if (esc->pend.sm_read)
+		run = !l->out || esc->pend_ns - l->ran_ns > PACE_NS;
+	esc->pend.sm_written = 0;
+	esc->pend.sm_read = 0;
+	if (!run)
+		return;
+	l->ran_ns = esc->pend_ns;
+	if (l->in_len)
+		copy(given(esc, &esc->quick.in), l->image, l->in_len);
 }
 
 /* 1: the datagram has all of the window, 0: nothing of it, -1: a part */
@@ -158,14 +351,28 @@ bool ec_esc_quick_data(struct ec_esc *esc, struct ec_dgram *d, u64 now, u64 end,
 		return false;
 	if (!(in | out))
 		return true;
+	if (esc->late.on && esc->late.frame != esc->sim->frames) {
+		catch_up(esc);
+		esc->late.frame = esc->sim->frames;
+	}
 	if (out) {	/* what came in, before inputs take its place */
-		write_window(esc, &q->out, d->data + (q->out.logical - first), now);
+		const u8 *src = d->data + (q->out.logical - first);
+
 		*wkc = (u16)(*wkc + (d->cmd == EC_CMD_LRW ? 2 : 1));
+		if (q->out.sm == EC_ESC_NO_SM) {
+			copy(esc->mem + q->out.phys, src, q->out.len);
+			out = 0;
+		} else {
+			write_window(esc, &q->out, src, now);
+		}
 	}
 	if (in) {
 		read_window(esc, &q->in, d->data + (q->in.logical - first));
 		++*wkc;
 	}
-	ec_esc_pend(esc, end);
+	if (esc->late.on)
+		esc->pend_ns = end;
+	else if (in | out)
+		ec_esc_pend(esc, end);
 	return true;
 }

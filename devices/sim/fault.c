@@ -133,6 +133,7 @@ void ec_sim_clear_faults(struct ec_sim *sim)
 		}
 	}
 	for (i = 0; i < sim->count; i++) {
+		ec_esc_settle(sim->esc[i]);
 		memset(&sim->esc[i]->fault, 0, sizeof(sim->esc[i]->fault));
 		ec_esc_quick_forget(sim->esc[i]);
 	}
@@ -149,8 +150,10 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	struct ec_esc *esc = f->slave >= 0 ? sim->esc[f->slave] : NULL;
 	u8 *count;
 
-	if (esc)
+	if (esc) {
+		ec_esc_settle(esc);
 		ec_esc_quick_forget(esc);
+	}
 	switch (f->type) {
 	case EC_SIM_FAULT_CUT:
 	case EC_SIM_FAULT_HEAL:

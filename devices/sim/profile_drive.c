@@ -97,7 +97,7 @@ static void drive_init(struct ec_app *app)
 	for (int i = 0; i < OBJS; i++)
 		d->e[i] = ec_app_od_entry(app->model, numbers[set][i].index,
 					  numbers[set][i].sub);
-	d->at_ns = app->ran_ns;
+	d->at_ns = app->esc->late.ran_ns;
 }
 
 static void fault(struct ec_app *app, struct drive *d, u16 code, u64 now)

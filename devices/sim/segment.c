@@ -381,7 +381,10 @@ u32 ec_sim_count(const struct ec_sim *sim)
  */
 struct ec_esc *ec_sim_slave(struct ec_sim *sim, u32 index)
 {
-	return index < sim->count ? sim->esc[index] : NULL;
+	if (index >= sim->count)
+		return NULL;
+	ec_esc_settle(sim->esc[index]);		/* somebody looks */
+	return sim->esc[index];
 }
 
 /**

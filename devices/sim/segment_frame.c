@@ -56,6 +56,7 @@ static void visit(const struct pass *ps, u32 i, struct ec_dgram *d)
 
 	if (!st->esc->powered)		/* reset itself by this frame */
 		return;
+	ec_esc_settle(st->esc);
 	ctx.now = ps->now + st->pu_ns;
 	ctx.end = ctx.now + ps->wire_ns;
 	ctx.recv_mask = st->recv_mask;
@@ -336,7 +337,9 @@ s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 	ps.steps = ps.r->steps;
 	ps.wire_ns = ec_frame_wire_ns(EC_ETH_HDR + len) - 12 * 80;
 	lost = !circulating(&ps, frame, len);
+	sim->passing = true;
 	process(&ps, frame, len);
+	sim->passing = false;
 	if (ps.r->opens >= 0) {		/* heard at an auto-closed port */
 		struct ec_esc *esc = sim->esc[ps.r->opens];
 
@@ -408,5 +411,9 @@ s64 ec_sim_frame(struct ec_sim *sim, int port, u8 *frame, size_t len,
  */
 void ec_sim_set_slow(struct ec_sim *sim, bool slow)
 {
+	u32 i;
+
+	for (i = 0; i < sim->count; i++)
+		ec_esc_settle(sim->esc[i]);
 	sim->slow = slow;
 }

@@ -148,6 +148,7 @@ void ec_sim_power(struct ec_esc *esc, bool on, u64 now)
 
 	if (on == esc->powered)
 		return;
+	ec_esc_settle(esc);
 	esc->powered = on;
 	if (on) {
 		ec_esc_power_on(esc, now);

@@ -28,7 +28,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 	app->next_event = app->events;
 	while (app->next_event && app->next_event->at_ns < now)
 		app->next_event = app->next_event->next;
-	app->ran_ns = now;
+	esc->late.ran_ns = now;
 	app->eep_due = EC_ESC_NEVER;
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
@@ -73,11 +73,17 @@ static void sm_written(struct ec_esc *esc, int sm, u64 now)
 	const struct ec_app_model *m = app->model;
 
 	if (sm == m->pd_sm[EC_APP_OUT]) {
+		bool waits = app->al_waits;
+
 		ec_app_outputs(app, now);
-		if (app->al_waits)
+		if (waits)
 			ec_app_al_outputs(app, now);
 		if (ec_app_state(app) == EC_AL_OP)
 			ec_app_inputs(app, now);
+		if (!waits) {
+			ec_app_may_wait(app);
+			return;		/* no other time to wake up */
+		}
 	} else if (!sm && m->dev.std.rx_len && !m->emulation) {
 		if (mute(app, now))
 			return;
@@ -96,12 +102,19 @@ static void sm_read(struct ec_esc *esc, int sm, u64 now)
 	if (sm == m->pd_sm[EC_APP_IN]) {
 		/* with outputs in OP their writing sets the pace */
 		if (!app->bytes[EC_APP_OUT] || ec_app_state(app) != EC_AL_OP ||
-		    now - app->ran_ns > 2000000)
+		    now - esc->late.ran_ns > 2000000)
 			ec_app_inputs(app, now);
+		ec_app_may_wait(app);
 	} else if (sm == 1 && m->dev.std.tx_len && !m->emulation) {
 		ec_app_mbox_read(app, now);
 		ec_app_rewake(app, now);
 	}
+}
+
+/* in OP, else it would not have been made to wait */
+static void sm_taken(struct ec_esc *esc, const u8 *data)
+{
+	ec_app_outputs_use(esc->app, data);
 }
 
 static void sm_activate(struct ec_esc *esc, int sm, u64 now)
@@ -206,6 +219,7 @@ static const struct ec_esc_app_ops app_ops = {
 	.eeprom = eeprom,
 	.sm_written = sm_written,
 	.sm_read = sm_read,
+	.sm_taken = sm_taken,
 	.sm_activate = sm_activate,
 	.watchdog = watchdog,
 	.poll = poll,
@@ -275,7 +289,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	at[3] = at[2] + sizeof(struct ec_app_source) * m->n_chan[EC_APP_IN];
 	at[4] = at[3] + align8(d->profile ? d->profile->size : 0);
 	at[5] = at[4] + m->data_len;
-	at[6] = at[5] + image;
+	at[6] = at[5] + image + m->max_bytes[EC_APP_IN];
 	at[7] = at[6] + 3 * (size_t)mbox;
 	at[8] = at[7] + info;
 	at[9] = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
@@ -291,6 +305,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	app->profile = p + at[3];
 	app->data = p + at[4];
 	app->image = p + at[5];
+	app->inputs = app->image + image;
 	app->mbox.cap = mbox;
 	app->mbox.rx = p + at[6];
 	app->mbox.out = app->mbox.rx + mbox;

@@ -235,6 +235,38 @@ static int sm_start(const struct ec_app *app, enum ec_app_dir dir)
 		app->esc->sm[sm].page.start;
 }
 
+/* as ec_bits_copy(), without a call for the common sizes */
+static void copy_run(u8 *dst, u32 dst_bit, const u8 *src, u32 src_bit, u32 bits)
+{
+	dst += dst_bit / 8;
+	src += src_bit / 8;
+	dst_bit &= 7;
+	src_bit &= 7;
+	if (bits == 1)
+		*dst = (u8)((*dst & ~(1u << dst_bit)) | (*src >> src_bit & 1u) << dst_bit);
+	else if (dst_bit | src_bit | (bits & 7) || bits > 64)
+		ec_bits_copy(dst, dst_bit, src, src_bit, bits);
+	else
+		for (; bits; bits -= 8)
+			*dst++ = *src++;
+}
+
+/**
+ * ec_app_outputs_use() - outputs take effect
+ * @app: slave
+ * @image: their process image
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_outputs_use(struct ec_app *app, const u8 *image)
+{
+	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+
+		copy_run(app->data + c->off, 0, image, c->pos, c->bits);
+	}
+}
+
 /**
  * ec_app_outputs() - the master wrote the output SyncManager
  * @app: slave
@@ -247,19 +279,23 @@ static int sm_start(const struct ec_app *app, enum ec_app_dir dir)
 void ec_app_outputs(struct ec_app *app, u64 now)
 {
 	int start = sm_start(app, EC_APP_OUT);
+	const u8 *src;
 
-	if (start < 0 || ec_esc_pdi_read(app->esc, (u16)start, app->image,
-					 app->bytes[EC_APP_OUT], now) < 0)
+	if (start < 0)
 		return;
+	src = ec_esc_pdi_take(app->esc, app->model->pd_sm[EC_APP_OUT],
+			      app->bytes[EC_APP_OUT], now);
+	if (!src) {
+		if (ec_esc_pdi_read(app->esc, (u16)start, app->image,
+				    app->bytes[EC_APP_OUT], now) < 0)
+			return;
+		src = app->image;
+	}
 	app->outputs_seen = true;
 	if (ec_app_state(app) != EC_AL_OP &&
 	    !ec_app_bug(app, EC_SIM_BUG_OUTPUTS_EARLY))
 		return;
-	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
-		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
-
-		ec_bits_copy(app->data + c->off, 0, app->image, c->pos, c->bits);
-	}
+	ec_app_outputs_use(app, src);
 }
 
 /**
@@ -311,6 +347,7 @@ s64 ec_app_channel(struct ec_app *app, enum ec_app_dir dir, u16 chan)
 
 	if (chan >= m->n_chan[dir])
 		return 0;
+	ec_esc_settle(app->esc);
 	if (dir == EC_APP_OUT &&
 	    (!app->esc->powered || ec_app_state(app) != EC_AL_OP))
 		return 0;
@@ -330,13 +367,24 @@ void ec_app_run(struct ec_app *app, u64 now)
 {
 	const struct ec_app_model *m = app->model;
 
-	for (u32 i = 0; i < m->n_chan[EC_APP_IN]; i++)
+	for (u32 i = 0; app->n_src && i < m->n_chan[EC_APP_IN]; i++)
 		if (app->src[i].kind != EC_APP_SRC_NONE)
 			ec_app_od_set(app, m->chan[EC_APP_IN][i],
 				      (u64)ec_app_source_value(&app->src[i], now));
 	if (m->dev.profile && m->dev.profile->run)
 		m->dev.profile->run(app, now);
-	app->ran_ns = now;
+	app->esc->late.ran_ns = now;
+}
+
+/* process image of the inputs */
+static void build_inputs(const struct ec_app *app, u8 *dst)
+{
+	memset(dst, 0, app->bytes[EC_APP_IN]);
+	for (u32 i = 0; i < app->n_map[EC_APP_IN]; i++) {
+		const struct ec_app_copy *c = &app->map[EC_APP_IN][i];
+
+		copy_run(dst, c->pos, app->data + c->off, 0, c->bits);
+	}
 }
 
 /**
@@ -349,16 +397,53 @@ void ec_app_run(struct ec_app *app, u64 now)
 void ec_app_inputs(struct ec_app *app, u64 now)
 {
 	int start = sm_start(app, EC_APP_IN);
+	u8 *dst;
 
 	ec_app_run(app, now);
 	if (start < 0)
 		return;
-	memset(app->image, 0, app->bytes[EC_APP_IN]);
-	for (u32 i = 0; i < app->n_map[EC_APP_IN]; i++) {
-		const struct ec_app_copy *c = &app->map[EC_APP_IN][i];
+	dst = ec_esc_pdi_give(app->esc, app->model->pd_sm[EC_APP_IN],
+			      app->bytes[EC_APP_IN], now);
+	build_inputs(app, dst ? dst : app->image);
+	if (!dst)
+		ec_esc_pdi_write(app->esc, (u16)start, app->image,
+				 app->bytes[EC_APP_IN], now);
+}
 
-		ec_bits_copy(app->image, c->pos, app->data + c->off, 0, c->bits);
+/**
+ * ec_app_may_wait() - process data were dealt with; need the next be told at once?
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_may_wait(struct ec_app *app)
+{
+	const struct ec_app_model *m = app->model;
+
+	if (m->dev.profile || app->n_src || app->is_source || app->al_to ||
+	    ec_app_state(app) != EC_AL_OP)
+		return;
+	if (ec_esc_pdi_may_wait(app->esc, m->pd_sm[EC_APP_OUT], app->bytes[EC_APP_OUT],
+				m->pd_sm[EC_APP_IN], app->bytes[EC_APP_IN], app->inputs))
+		build_inputs(app, app->inputs);
+}
+
+/**
+ * ec_app_set_source() - where the value of an input comes from
+ * @app: slave
+ * @chan: input channel, from 0
+ * @src: source; copied
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_set_source(struct ec_app *app, u16 chan, const struct ec_app_source *src)
+{
+	ec_esc_settle(app->esc);
+	app->n_src = (u16)(app->n_src + (src->kind != EC_APP_SRC_NONE) -
+			   (app->src[chan].kind != EC_APP_SRC_NONE));
+	app->src[chan] = *src;
+	if (src->kind == EC_APP_SRC_LINK) {
+		ec_esc_settle(src->from->esc);
+		src->from->is_source = true;
 	}
-	ec_esc_pdi_write(app->esc, (u16)start, app->image,
-			 app->bytes[EC_APP_IN], now);
 }
