@@ -258,6 +258,13 @@ struct ec_esc_fault {
  * @len: bytes, 0: there is no such FMMU
  * @phys: start of the SyncManager
  * @sm: its number; EC_ESC_NO_SM: outputs in the registers at 0x0F00
+ * @watchdog: a write starts the process data watchdog
+ * @bit: bit of the SyncManager in masks
+ * @event: and in 0x0210
+ * @irq: events in 0x0220 that an access sets
+ * @clear: and those that an access of the PDI clears
+ * @s: the SyncManager
+ * @mem: its first buffer, or the registers
  */
 #define EC_ESC_NO_SM	0xff
 
@@ -266,6 +273,13 @@ struct ec_esc_window {
 	u16 len;
 	u16 phys;
 	u8 sm;
+	bool watchdog;
+	u16 bit;
+	u16 event;
+	u32 irq;
+	u32 clear;
+	struct ec_esc_sm *s;
+	u8 *mem;
 };
 
 /**
@@ -276,6 +290,7 @@ struct ec_esc_window {
  * @bcast: so may broadcast reads of plain registers
  * @in: window of the inputs
  * @out: window of the outputs
+ * @others: there are other FMMUs
  * @other_first: lowest logical byte of all other FMMUs
  * @other_last: highest one
  * @wd_ns: time of the process data watchdog
@@ -287,6 +302,7 @@ struct ec_esc_quick {
 	bool bcast;
 	struct ec_esc_window in;
 	struct ec_esc_window out;
+	bool others;
 	u32 other_first;
 	u32 other_last;
 	u64 wd_ns;

@@ -165,9 +165,19 @@ void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
 bool ec_esc_eeprom_asks(const struct ec_esc *esc);
 void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control);
 
-/* esc_quick.c */
+/* esc_quick.c; a logical datagram, which does not wrap at 4 GiB */
+struct ec_quick {
+	u8 *data;
+	u32 first;
+	u32 len;
+	u8 cmd;
+	u8 count;		/* of a write, in the working counter */
+	u64 frame;		/* its number */
+	u32 wire_ns;		/* from its first to its last bit */
+};
+
 void ec_esc_quick_update(struct ec_esc *esc);
-bool ec_esc_quick_data(struct ec_esc *esc, struct ec_dgram *d, u64 now, u64 end, u16 *wkc);
+bool ec_esc_quick_data(struct ec_esc *esc, const struct ec_quick *k, u64 now, u16 *wkc);
 
 /* the registers, their protection or what is wrong with the slave changed */
 static inline void ec_esc_quick_forget(struct ec_esc *esc)
@@ -179,7 +189,15 @@ static inline void ec_esc_quick_forget(struct ec_esc *esc)
 bool ec_esc_wd_ok(const struct ec_esc *esc);
 u64 ec_esc_wd_ns(const struct ec_esc *esc);
 void ec_esc_wd_trigger(struct ec_esc *esc, u64 now);
-void ec_esc_wd_start(struct ec_esc *esc, u64 now, u64 ns);
+
+/* @ns: ec_esc_wd_ns() */
+static inline void ec_esc_wd_start(struct ec_esc *esc, u64 now, u64 ns)
+{
+	esc->wd_due = ns ? now + ns : EC_ESC_NEVER;
+	if (esc->wd_due < esc->sim->wd_next)
+		esc->sim->wd_next = esc->wd_due;
+}
+
 void ec_esc_wd_config(struct ec_esc *esc, u64 now);
 void ec_esc_wd_expire(struct ec_esc *esc, u64 now);
 void ec_esc_wd_pdi_trigger(struct ec_esc *esc, u64 now);

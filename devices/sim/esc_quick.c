@@ -11,7 +11,7 @@
 #define PACE_NS		2000000	/* inputs older than that are computed when read */
 
 /* FMMU @f maps whole bytes to all of one buffered SyncManager: fills @w */
-static bool window(const struct ec_esc *esc, const struct ec_fmmu *f,
+static bool window(struct ec_esc *esc, const struct ec_fmmu *f,
 		   struct ec_esc_window *w)
 {
 	const u8 special = EC_SM_ACT_DC_ECAT | EC_SM_ACT_DC_PDI;
@@ -26,7 +26,7 @@ static bool window(const struct ec_esc *esc, const struct ec_fmmu *f,
 	    !(esc->cfg.features & EC_FEAT_NO_UNUSED)) {
 		*w = (struct ec_esc_window){
 			.logical = f->logical, .len = f->len, .phys = f->phys,
-			.sm = EC_ESC_NO_SM,
+			.sm = EC_ESC_NO_SM, .mem = esc->mem + f->phys,
 		};
 		return true;
 	}
@@ -43,6 +43,10 @@ static bool window(const struct ec_esc *esc, const struct ec_fmmu *f,
 		return false;
 	*w = (struct ec_esc_window){
 		.logical = f->logical, .len = f->len, .phys = f->phys, .sm = (u8)n,
+		.watchdog = p->control & EC_SM_WATCHDOG, .bit = (u16)BIT(n),
+		.event = (u16)EC_ECAT_EVENT_SM(n), .clear = (u32)EC_AL_EVENT_SM(n),
+		.irq = p->control & EC_SM_PDI_IRQ ? (u32)EC_AL_EVENT_SM(n) : 0,
+		.s = &esc->sm[n], .mem = esc->mem + f->phys,
 	};
 	return true;
 }
@@ -75,106 +79,108 @@ void ec_esc_quick_update(struct ec_esc *esc)
 		    (f->type == EC_FMMU_READ && window(esc, f, &q->in)) ||
 		    (f->type == EC_FMMU_WRITE && window(esc, f, &q->out)))
 			continue;
+		q->others = true;
 		q->other_first = min(q->other_first, f->logical);
 		q->other_last = max(q->other_last, (u32)min_t(u64, last, ~0u));
 	}
 }
 
 /* process data have mostly a few bytes: no call then */
-static void copy(u8 *dst, const u8 *src, u32 n)
+static inline void copy(u8 *dst, const u8 *src, u32 n)
 {
-	if (n > 16)
+	if (n == 1) {
+		*dst = *src;
+	} else if (n == 8) {
+		put_unaligned_le64(get_unaligned_le64(src), dst);
+	} else if (n > 16) {
 		memcpy(dst, src, n);
-	else
+	} else {
 		while (n--)
 			*dst++ = *src++;
+	}
 }
 
-/* SyncManager @n was accessed as a whole, its buffer @buf goes to the other side */
-static void accessed(struct ec_esc *esc, struct ec_esc_sm *sm, u8 n)
+static inline void swap_free(u8 *buf, struct ec_esc_sm *sm)
 {
-	sm->ecat_lock = false;
-	if (esc->ecat_event & EC_ECAT_EVENT_SM(n))
-		ec_esc_event(esc, 0, (u16)EC_ECAT_EVENT_SM(n));
-	if (sm->page.control & EC_SM_PDI_IRQ)
-		esc->al_event |= (u32)EC_AL_EVENT_SM(n);
+	u8 t = *buf;
+
+	*buf = sm->free_buf;
+	sm->free_buf = t;
 }
 
-static void note_write(struct ec_esc_sm *sm)
+static inline void note(struct ec_esc_sm *sm, u8 set, u8 clear)
 {
-	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_READ_EVENT) |
-			       EC_SM_ST_WRITE_EVENT);
+	sm->page.status = (u8)((sm->page.status & ~clear) | set);
 }
 
-static void note_read(struct ec_esc_sm *sm)
+static inline void accessed(struct ec_esc *esc, const struct ec_esc_window *w)
 {
-	sm->page.status = (u8)((sm->page.status & ~EC_SM_ST_WRITE_EVENT) |
-			       EC_SM_ST_READ_EVENT);
+	w->s->ecat_lock = false;
+	if (esc->ecat_event & w->event)
+		ec_esc_event(esc, 0, w->event);
+	esc->al_event |= w->irq;
 }
 
-static void write_window(struct ec_esc *esc, const struct ec_esc_window *w,
-			 const u8 *src, u64 now)
+static inline void write_window(struct ec_esc *esc, const struct ec_esc_window *w,
+				const u8 *src, u64 now)
 {
-	struct ec_esc_sm *sm = &esc->sm[w->sm];
+	struct ec_esc_sm *sm = w->s;
 	u8 buf = sm->ecat_buf;
 
-	accessed(esc, sm, w->sm);
-	copy(esc->mem + w->phys + buf * w->len, src, w->len);
-	note_write(sm);
+	accessed(esc, w);
+	copy(w->mem + buf * w->len, src, w->len);
+	note(sm, EC_SM_ST_WRITE_EVENT, EC_SM_ST_READ_EVENT);
 	sm->last_buf = buf;
-	sm->ecat_buf = sm->free_buf;
-	sm->free_buf = buf;
+	swap_free(&sm->ecat_buf, sm);
 	sm->fresh = true;
-	esc->pend.sm_written |= (u16)BIT(w->sm);
-	if (sm->page.control & EC_SM_WATCHDOG)
+	esc->pend.sm_written |= w->bit;
+	if (w->watchdog)
 		ec_esc_wd_start(esc, now, esc->quick.wd_ns);
 }
 
-static void read_window(struct ec_esc *esc, const struct ec_esc_window *w, u8 *dst)
+static inline void read_window(struct ec_esc *esc, const struct ec_esc_window *w, u8 *dst)
 {
-	struct ec_esc_sm *sm = &esc->sm[w->sm];
-	u8 buf = sm->ecat_buf;
+	struct ec_esc_sm *sm = w->s;
 
-	accessed(esc, sm, w->sm);
-	if (sm->fresh) {
-		sm->ecat_buf = sm->free_buf;
-		sm->free_buf = buf;
-		sm->fresh = false;
-	}
-	note_read(sm);
-	copy(dst, esc->mem + w->phys + sm->ecat_buf * w->len, w->len);
-	esc->pend.sm_read |= (u16)BIT(w->sm);
+	accessed(esc, w);
+	if (sm->fresh)
+		swap_free(&sm->ecat_buf, sm);
+	sm->fresh = false;
+	note(sm, EC_SM_ST_READ_EVENT, EC_SM_ST_WRITE_EVENT);
+	copy(dst, w->mem + sm->ecat_buf * w->len, w->len);
+	esc->pend.sm_read |= w->bit;
 }
 
-/* the PDI has read all of an output SyncManager; where the data lie */
-static const u8 *taken(struct ec_esc *esc, const struct ec_esc_window *w)
+/* the PDI has read all of an output SyncManager */
+static inline void taken(struct ec_esc *esc, const struct ec_esc_window *w)
 {
-	struct ec_esc_sm *sm = &esc->sm[w->sm];
-	u8 buf = sm->pdi_buf;
+	struct ec_esc_sm *sm = w->s;
 
-	if (sm->fresh) {
-		sm->pdi_buf = sm->free_buf;
-		sm->free_buf = buf;
-		sm->fresh = false;
-	}
-	note_read(sm);
-	esc->al_event &= (u32)~EC_AL_EVENT_SM(w->sm);
-	return esc->mem + w->phys + sm->pdi_buf * w->len;
+	if (sm->fresh)
+		swap_free(&sm->pdi_buf, sm);
+	sm->fresh = false;
+	note(sm, EC_SM_ST_READ_EVENT, EC_SM_ST_WRITE_EVENT);
+	esc->al_event &= ~w->clear;
 }
 
 /* the PDI has written all of an input SyncManager; where the data go */
-static u8 *given(struct ec_esc *esc, const struct ec_esc_window *w)
+static inline u8 *given(struct ec_esc *esc, const struct ec_esc_window *w)
 {
-	struct ec_esc_sm *sm = &esc->sm[w->sm];
+	struct ec_esc_sm *sm = w->s;
 	u8 buf = sm->pdi_buf;
 
 	sm->last_buf = buf;
-	sm->pdi_buf = sm->free_buf;
-	sm->free_buf = buf;
+	swap_free(&sm->pdi_buf, sm);
 	sm->fresh = true;
-	note_write(sm);
-	esc->al_event &= (u32)~EC_AL_EVENT_SM(w->sm);
-	return esc->mem + w->phys + buf * w->len;
+	note(sm, EC_SM_ST_WRITE_EVENT, EC_SM_ST_READ_EVENT);
+	esc->al_event &= ~w->clear;
+	return w->mem + buf * w->len;
+}
+
+/* what was taken last */
+static const u8 *pdi_data(const struct ec_esc_window *w)
+{
+	return w->mem + w->s->pdi_buf * w->len;
 }
 
 /* The PDI has a short way to SyncManager @sm, too */
@@ -208,7 +214,8 @@ const u8 *ec_esc_pdi_take(struct ec_esc *esc, int sm, u16 len, u64 now)
 
 	if (esc->sm[sm].last_buf == 3 || !pdi_quick(esc, w, sm, len, now))
 		return NULL;
-	return taken(esc, w);
+	taken(esc, w);
+	return pdi_data(w);
 }
 
 /**
@@ -283,8 +290,7 @@ void ec_esc_settle(struct ec_esc *esc)
 		return;
 	esc->late.on = false;
 	if (esc->late.stale)
-		esc->app_ops->sm_taken(esc, esc->mem + w->phys +
-				       esc->sm[w->sm].pdi_buf * w->len);
+		esc->app_ops->sm_taken(esc, pdi_data(w));
 	esc->late.stale = false;
 	if (!(esc->pend.sm_written | esc->pend.sm_read))
 		return;
@@ -316,63 +322,60 @@ static void catch_up(struct ec_esc *esc)
 }
 
 /* 1: the datagram has all of the window, 0: nothing of it, -1: a part */
-static int covers(const struct ec_dgram *d, u32 first, const struct ec_esc_window *w)
+static inline int covers(const struct ec_quick *k, const struct ec_esc_window *w)
 {
-	u32 ofs = w->logical - first;
+	u32 ofs = w->logical - k->first;
 
 	if (!w->len)
 		return 0;
-	if (ofs < d->len && d->len - ofs >= w->len)
+	if (ofs < k->len && k->len - ofs >= w->len)
 		return 1;
-	return ofs < d->len || first - w->logical < w->len ? -1 : 0;
+	return ofs < k->len || k->first - w->logical < w->len ? -1 : 0;
 }
 
 /*
- * A logical datagram in one slave, which some FMMU of it concerns. False: it has
- * to go the long way, and nothing was done. A datagram must not wrap at 4 GiB.
+ * A logical datagram in one slave, which some FMMU of it concerns; its first bit
+ * is there at @now. False: it has to go the long way, and nothing was done.
  */
-bool ec_esc_quick_data(struct ec_esc *esc, struct ec_dgram *d, u64 now, u64 end,
-		       u16 *wkc)
+bool ec_esc_quick_data(struct ec_esc *esc, const struct ec_quick *k, u64 now, u16 *wkc)
 {
 	struct ec_esc_quick *q = &esc->quick;
-	u32 first = ec_dgram_logical(d);
+	struct ec_esc_late *l = &esc->late;
 	int in = 0, out = 0;
 
 	if (!q->known)
 		ec_esc_quick_update(esc);
-	if (!q->data || (first <= q->other_last &&
-			 (u64)first + d->len > q->other_first))
+	if (!q->data || (q->others && k->first <= q->other_last &&
+			 (u64)k->first + k->len > q->other_first))
 		return false;
-	if (d->cmd != EC_CMD_LWR)
-		in = covers(d, first, &q->in);
-	if (d->cmd != EC_CMD_LRD)
-		out = covers(d, first, &q->out);
+	if (k->cmd != EC_CMD_LWR)
+		in = covers(k, &q->in);
+	if (k->cmd != EC_CMD_LRD)
+		out = covers(k, &q->out);
 	if (in < 0 || out < 0)
 		return false;
-	if (!(in | out))
-		return true;
-	if (esc->late.on && esc->late.frame != esc->sim->frames) {
+	if (l->on && l->frame != k->frame && (in | out)) {
 		catch_up(esc);
-		esc->late.frame = esc->sim->frames;
+		l->frame = k->frame;
 	}
 	if (out) {	/* what came in, before inputs take its place */
-		const u8 *src = d->data + (q->out.logical - first);
+		const u8 *src = k->data + (q->out.logical - k->first);
 
-		*wkc = (u16)(*wkc + (d->cmd == EC_CMD_LRW ? 2 : 1));
-		if (q->out.sm == EC_ESC_NO_SM) {
-			copy(esc->mem + q->out.phys, src, q->out.len);
-			out = 0;
-		} else {
+		*wkc = (u16)(*wkc + k->count);
+		if (q->out.s) {
 			write_window(esc, &q->out, src, now);
+		} else {
+			copy(q->out.mem, src, q->out.len);
+			out = 0;
 		}
 	}
 	if (in) {
-		read_window(esc, &q->in, d->data + (q->in.logical - first));
+		read_window(esc, &q->in, k->data + (q->in.logical - k->first));
 		++*wkc;
 	}
-	if (esc->late.on)
-		esc->pend_ns = end;
+	if (l->on)
+		esc->pend_ns = now + k->wire_ns;
 	else if (in | out)
-		ec_esc_pend(esc, end);
+		ec_esc_pend(esc, now + k->wire_ns);
 	return true;
 }

@@ -56,13 +56,6 @@ bool ec_esc_wd_ok(const struct ec_esc *esc)
 	return !ec_esc_wd_ns(esc) || esc->wd_due != EC_ESC_NEVER;
 }
 
-/* @ns: ec_esc_wd_ns() */
-void ec_esc_wd_start(struct ec_esc *esc, u64 now, u64 ns)
-{
-	esc->wd_due = ns ? now + ns : EC_ESC_NEVER;
-	esc->sim->wd_next = min(esc->sim->wd_next, esc->wd_due);
-}
-
 void ec_esc_wd_trigger(struct ec_esc *esc, u64 now)
 {
 	ec_esc_wd_start(esc, now, ec_esc_wd_ns(esc));

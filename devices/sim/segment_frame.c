@@ -134,6 +134,11 @@ static void by_logical(const struct pass *ps, struct ec_dgram *d)
 	u32 first = ec_dgram_logical(d), i;
 	u64 last = (u64)first + d->len;
 	bool quick = last <= 1ULL << 32;
+	const struct ec_quick k = {
+		.data = d->data, .first = first, .len = d->len, .cmd = d->cmd,
+		.count = d->cmd == EC_CMD_LRW ? 2 : 1,
+		.frame = ps->sim->frames, .wire_ns = ps->wire_ns,
+	};
 	u16 wkc = 0;
 
 	collect_irq(ps, d);
@@ -144,7 +149,7 @@ static void by_logical(const struct pass *ps, struct ec_dgram *d)
 		if (first > st->log_last || last <= st->log_first)
 			continue;
 		if (!quick || !st->esc->powered ||
-		    !ec_esc_quick_data(st->esc, d, now, now + ps->wire_ns, &wkc))
+		    !ec_esc_quick_data(st->esc, &k, now, &wkc))
 			visit(ps, i, d);
 	}
 	if (wkc)
