@@ -513,17 +513,18 @@ void ec_esc_deliver(struct ec_esc *esc)
 	const struct ec_esc_app_ops *ops = esc->app_ops;
 	u64 now = esc->pend_ns;
 	u32 sms = esc->pend.sm_written | esc->pend.sm_read;
+	u32 active = esc->pend.sm_activate;
 	int n;
 
 	if (ops && esc->eep.loaded && esc->powered) {
-		for (n = 0; esc->pend.sm_activate >> n; n++)
-			if (esc->pend.sm_activate & BIT(n) && ops->sm_activate)
-				ops->sm_activate(esc, n, now);
+		for (; active && ops->sm_activate; active &= active - 1)
+			ops->sm_activate(esc, ffs((int)active) - 1, now);
 		if (esc->pend.al_control && ops->al_control)
 			ops->al_control(esc, now);
 		if (esc->pend.eeprom && ops->eeprom)
 			ops->eeprom(esc, now);
-		for (n = 0; sms >> n; n++) {
+		for (; sms; sms &= sms - 1) {
+			n = ffs((int)sms) - 1;
 			if (esc->pend.sm_written & BIT(n) && ops->sm_written)
 				ops->sm_written(esc, n, now);
 			if (esc->pend.sm_read & BIT(n) && ops->sm_read)

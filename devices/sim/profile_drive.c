@@ -68,9 +68,21 @@ static const struct {
 	},
 };
 
+/* their bytes; with another size an object is taken as missing */
+static const u8 bytes[OBJS] = {
+	[CONTROL] = 2, [STATUS] = 2, [MODE] = 1, [MODE_SHOWN] = 1,
+	[TARGET_POS] = 4, [TARGET_VEL] = 4, [POS] = 4, [VEL] = 4,
+	[FOLLOW] = 4, [FOLLOW_WINDOW] = 4, [TORQUE] = 2,
+};
+
 /**
  * struct drive - private memory of the profile
- * @e: its objects
+ * @p: values of its objects; of those that are missing @zero or @sink
+ * @has_pos: there is a target position
+ * @has_window: there is a following error window
+ * @echo: there are filler entries
+ * @zero: value of what is read and missing
+ * @sink: where a value goes that is missing
  * @state: CiA 402 state
  * @control: last control word
  * @pos: position, counts << FRAC
@@ -79,7 +91,12 @@ static const struct {
  * @at_ns: motion is computed up to here
  */
 struct drive {
-	const struct ec_app_entry *e[OBJS];
+	u8 *p[OBJS];
+	bool has_pos;
+	bool has_window;
+	bool echo;
+	u8 zero[4];
+	u8 sink[4];
 	enum drive_state state;
 	u16 control;
 	s64 pos;
@@ -88,15 +105,31 @@ struct drive {
 	u64 at_ns;
 };
 
+/* is the object written by the drive */
+static bool is_input(int obj)
+{
+	return obj == STATUS || obj == MODE_SHOWN || obj == POS || obj == VEL ||
+	       obj == FOLLOW || obj == TORQUE;
+}
+
 static void drive_init(struct ec_app *app)
 {
 	struct drive *d = app->profile;
 	int set = !ec_app_od_entry(app->model, 0x6040, 0);
 
 	memset(d, 0, sizeof(*d));
-	for (int i = 0; i < OBJS; i++)
-		d->e[i] = ec_app_od_entry(app->model, numbers[set][i].index,
-					  numbers[set][i].sub);
+	for (int i = 0; i < OBJS; i++) {
+		const struct ec_app_entry *e =
+			ec_app_od_entry(app->model, numbers[set][i].index,
+					numbers[set][i].sub);
+
+		d->p[i] = e && e->bits == 8 * bytes[i] ? app->data + e->off :
+			  is_input(i) ? d->sink : d->zero;
+	}
+	d->has_pos = d->p[TARGET_POS] != d->zero;
+	d->has_window = d->p[FOLLOW_WINDOW] != d->zero;
+	d->echo = ec_app_od_object(app->model, 0x2100) &&
+		  ec_app_od_object(app->model, 0x2200);
 	d->at_ns = app->esc->late.ran_ns;
 }
 
@@ -156,15 +189,15 @@ static void step_velocity(struct drive *d, s32 target)
 	d->pos += d->vel / (1 << STEP_SHIFT);
 }
 
-static void move(struct ec_app *app, struct drive *d, u8 mode, u64 now)
+static void move(struct drive *d, u8 mode, u64 now)
 {
 	s32 pos = d->setpoint, vel = 0;
 	u64 steps;
 
 	if (mode == 8)
-		pos = (s32)ec_app_od_get_signed(app, d->e[TARGET_POS]);
+		pos = (s32)get_unaligned_le32(d->p[TARGET_POS]);
 	if (mode == 9)
-		vel = (s32)ec_app_od_get_signed(app, d->e[TARGET_VEL]);
+		vel = (s32)get_unaligned_le32(d->p[TARGET_VEL]);
 	steps = div64_u64(now - d->at_ns, STEP_NS);
 	d->at_ns += steps * STEP_NS;
 	if (steps > STEPS_MAX)
@@ -201,8 +234,8 @@ static void echo(struct ec_app *app)
 static void drive_run(struct ec_app *app, u64 now)
 {
 	struct drive *d = app->profile;
-	u16 control = (u16)ec_app_od_get(app, d->e[CONTROL]);
-	u8 mode = (u8)ec_app_od_get(app, d->e[MODE]);
+	u16 control = get_unaligned_le16(d->p[CONTROL]);
+	u8 mode = *d->p[MODE];
 	enum drive_state from = d->state;
 	s32 pos, follow = 0;
 	u16 status;
@@ -210,21 +243,20 @@ static void drive_run(struct ec_app *app, u64 now)
 
 	/* an EL72xx with a target velocity only starts as one with CSV */
 	if (!mode)
-		mode = d->e[TARGET_POS] ? 8 : 9;
+		mode = d->has_pos ? 8 : 9;
 	d->state = next_state(d, control);
 	if (d->state == ENABLED && from != ENABLED)
 		d->setpoint = (s32)(d->pos >> FRAC);
 	if (mode == 1 && control & 0x10 && !(d->control & 0x10))
-		d->setpoint = (s32)ec_app_od_get_signed(app, d->e[TARGET_POS]);
+		d->setpoint = (s32)get_unaligned_le32(d->p[TARGET_POS]);
 	d->control = control;
-	move(app, d, mode, now);
+	move(d, mode, now);
 
 	pos = (s32)((d->pos + (1 << (FRAC - 1))) >> FRAC);
 	if (mode == 8 && d->state == ENABLED)
-		follow = (s32)((u32)ec_app_od_get(app, d->e[TARGET_POS]) -
+		follow = (s32)(get_unaligned_le32(d->p[TARGET_POS]) -
 			       (u32)pos);
-	limit = d->e[FOLLOW_WINDOW] ?
-		(u32)ec_app_od_get(app, d->e[FOLLOW_WINDOW]) : FOLLOW_NEVER;
+	limit = d->has_window ? get_unaligned_le32(d->p[FOLLOW_WINDOW]) : FOLLOW_NEVER;
 	if (limit != FOLLOW_NEVER && d->state == ENABLED &&
 	    (u32)(follow < 0 ? -(s64)follow : follow) > limit)
 		fault(app, d, 0x8611, now);
@@ -242,12 +274,13 @@ static void drive_run(struct ec_app *app, u64 now)
 	}
 	if (ec_app_state(app) == EC_AL_OP)
 		status |= 0x0200;	/* remote */
-	ec_app_od_set(app, d->e[STATUS], status);
-	ec_app_od_set(app, d->e[MODE_SHOWN], mode);
-	ec_app_od_set(app, d->e[POS], (u32)pos);
-	ec_app_od_set(app, d->e[VEL], (u64)(d->vel >> FRAC));
-	ec_app_od_set(app, d->e[FOLLOW], (u32)follow);
-	echo(app);
+	put_unaligned_le16(status, d->p[STATUS]);
+	*d->p[MODE_SHOWN] = mode;
+	put_unaligned_le32((u32)pos, d->p[POS]);
+	put_unaligned_le32((u32)(d->vel >> FRAC), d->p[VEL]);
+	put_unaligned_le32((u32)follow, d->p[FOLLOW]);
+	if (d->echo)
+		echo(app);
 }
 
 const struct ec_app_profile ec_app_profile_drive = {
