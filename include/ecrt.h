@@ -1050,8 +1050,8 @@ EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
  *
  * Context: The master's single cyclic caller. Sleeps until the next cycle.
  * Return: number of cycles since the last call, 1 when none was missed;
- * %-ETIMEDOUT; %-EINTR a signal; %-ECANCELED the cycle has stopped; %-EINVAL
- * not active, or the application runs the cycle.
+ * %-ETIMEDOUT; %-EINTR a signal; %-ECANCELED the cycle has stopped; %-EBUSY 16
+ * threads wait already; %-EINVAL not active, or the application runs the cycle.
  */
 EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
 		uint32_t timeout_us);
@@ -1091,8 +1091,9 @@ EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
  * @master: an active master whose cycle the kernel runs
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). POLLIN: there are inputs that
- * ecrt_master_receive() has not taken yet; POLLHUP: the cycle has stopped. The file
- * is the library's: it must not be closed or read.
+ * ecrt_master_receive() has not taken yet; POLLHUP: the cycle has stopped; POLLERR: not
+ * active any more, or more than 16 poll() and epoll entries wait on the file. The
+ * file is the library's: it must not be closed or read.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: file descriptor; %-EINVAL not active, or the application runs the

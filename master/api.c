@@ -16,9 +16,7 @@ int ec_api_create(struct ec_master *m)
 
 	if (!api)
 		return -ENOMEM;
-	api->file.master = m;
-	api->file.writable = true;
-	mutex_init(&api->file.lock);
+	ec_file_init(&api->file, m, true);
 	INIT_LIST_HEAD(&api->requests);
 	INIT_WORK(&api->work, ec_api_work);
 	init_waitqueue_head(&api->between_wq);

@@ -13,6 +13,22 @@
 static struct class *ec_class;
 static dev_t first_dev;
 
+/**
+ * ec_file_init() - prepare an open file
+ * @f: file, zeroed
+ * @m: its master
+ * @writable: opened for writing
+ *
+ * Context: Any.
+ */
+void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable)
+{
+	f->master = m;
+	f->writable = writable;
+	mutex_init(&f->lock);
+	ec_waiters_init(&f->waiters);
+}
+
 static int ec_open(struct inode *inode, struct file *filp)
 {
 	struct ec_master *m = container_of(inode->i_cdev, struct ec_master, cdev);
@@ -21,9 +37,7 @@ static int ec_open(struct inode *inode, struct file *filp)
 	if (!f)
 		return -ENOMEM;
 	get_device(&m->dev);
-	f->master = m;
-	f->writable = filp->f_mode & FMODE_WRITE;
-	mutex_init(&f->lock);
+	ec_file_init(f, m, filp->f_mode & FMODE_WRITE);
 	filp->private_data = f;
 	return nonseekable_open(inode, filp);
 }
@@ -36,7 +50,7 @@ static int ec_release(struct inode *inode, struct file *filp)
 
 	ec_session_end(m, f);
 	put_device(&m->dev);
-	kfree(f);
+	kfree_rcu(f, rcu);
 	return 0;
 }
 
@@ -111,19 +125,27 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 	return ret;
 }
 
-/* For the application whose cycle the kernel runs: inputs it has not taken. */
+/**
+ * ec_file_poll() - new inputs of a cycle that the kernel runs
+ * @f: open file
+ * @filp: the same as the kernel knows it
+ * @wait: argument of poll()
+ *
+ * Takes no lock of the master: a caller that is preempted here delays nobody.
+ *
+ * Context: Process. May sleep to add an entry to the wait queue.
+ * Return: as ec_cycle_thread_poll() for the owner of the cycle; EPOLLERR for every
+ * other file, and when too many wait already.
+ */
+__poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait)
+{
+	return ec_waiters_poll(&f->waiters, filp, wait) ?
+	       ec_cycle_thread_poll(f->master, f) : EPOLLERR;
+}
+
 static __poll_t ec_poll(struct file *filp, poll_table *wait)
 {
-	struct ec_file *f = filp->private_data;
-	struct ec_master *m = f->master;
-	__poll_t mask = EPOLLERR;
-
-	poll_wait(filp, &m->kernel_wq, wait);
-	mutex_lock(&m->cyclic_lock);
-	if (m->active && m->active->owner == f && m->active->thread)
-		mask = ec_cycle_thread_poll(m->active);
-	mutex_unlock(&m->cyclic_lock);
-	return mask;
+	return ec_file_poll(filp->private_data, filp, wait);
 }
 
 static const struct file_operations ec_fops = {

@@ -5,7 +5,10 @@
 
 #include <linux/fs.h>
 #include <linux/mutex.h>
+#include <linux/poll.h>
+#include <linux/rcupdate.h>
 #include "ethercat.h"
+#include "waiters.h"
 
 struct ec_master;
 struct ec_session;
@@ -16,13 +19,20 @@ struct ec_session;
  * @writable: opened for writing
  * @reason: text of the last failure, under @lock
  * @lock: protects @reason
+ * @waiters: callers that wait for a cycle
+ * @rcu: frees it; the cycle thread may still look at @waiters
  */
 struct ec_file {
 	struct ec_master *master;
 	bool writable;
 	struct mutex lock;
 	char reason[EC_UAPI_REASON];
+	struct ec_waiters waiters;
+	struct rcu_head rcu;
 };
+
+void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable);
+__poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait);
 
 int ec_cdev_class_init(void);
 void ec_cdev_class_exit(void);

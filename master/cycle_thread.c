@@ -8,7 +8,7 @@
  *
  * Once it runs, the thread allocates nothing, prints nothing and takes no lock
  * but those of ec_cycle_receive() and ec_cycle_send(), and the one of the wait
- * queue when somebody waits.
+ * queue of the file that owns the cycle, when a caller waits there.
  */
 #include <linux/cpu.h>
 #include <linux/hrtimer.h>
@@ -17,6 +17,8 @@
 #include <linux/sched.h>
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
+#include <linux/completion.h>
+#include <linux/rcupdate.h>
 #include <linux/wait.h>
 #include <uapi/linux/sched/types.h>
 #include "config.h"
@@ -28,6 +30,7 @@
 #include "once64.h"
 #include "request.h"
 #include "session.h"
+#include "waiters.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
 #define FIFO_DEFAULT	50
@@ -71,6 +74,7 @@ struct slow {
  * @fed: there were outputs at least once
  * @unfed: cycles without new outputs in a row, up to the limit
  * @adopt: another application shall get the buffers; cleared when it has them
+ * @adopted: that has happened
  */
 struct ec_cycle_thread {
 	struct ec_session *session;
@@ -93,6 +97,7 @@ struct ec_cycle_thread {
 	bool fed;
 	u32 unfed;
 	bool adopt;
+	struct completion adopted;
 };
 
 static struct ec_status_cycle *status(const struct ec_cycle_thread *t)
@@ -175,11 +180,25 @@ static void choose_source(struct ec_cycle_thread *t)
 	s->cycle.direct = (const u8 *)(buffer(t, t->front) + 1);
 }
 
-/* No more cycles; who waits for one is told. */
-static void end_run(struct ec_master *m)
+/* The callers of the file that owns the cycle: no other file adds work to it. */
+static void wake_owner(struct ec_session *s)
 {
+	struct ec_waiters *w;
+
+	rcu_read_lock();
+	w = rcu_dereference(s->waiters);
+	if (w)
+		ec_waiters_wake(w);
+	rcu_read_unlock();
+}
+
+/* No more cycles; waiting callers return. */
+static void end_run(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
 	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
-	wake_up_all(&m->kernel_wq);
+	wake_owner(s);
 }
 
 /* The application has given no outputs for too long. */
@@ -246,6 +265,7 @@ static void adopt(struct ec_cycle_thread *t)
 	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->session->shared->image,
 	       t->bytes);
 	smp_store_release(&t->adopt, false);
+	complete(&t->adopted);
 }
 
 /* Receive and send of the application answer without a system call. */
@@ -282,8 +302,7 @@ static void publish(struct ec_cycle_thread *t)
 	WRITE_ONCE(st->cycle, cycle);
 	ec_status_end(s->shared->status);
 	ec_write64(&m->kernel_cycle, cycle);
-	if (wq_has_sleeper(&m->kernel_wq))
-		wake_up_all(&m->kernel_wq);
+	wake_owner(s);
 }
 
 /* Cycles whose time has passed are left out, so that the phase stays; how many. */
@@ -400,7 +419,7 @@ static int run(void *data)
 	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
 	while (sleep(t))
 		if (!cycle(t)) {
-			end_run(t->session->master);
+			end_run(t->session);
 			break;
 		}
 	for (;;) {
@@ -485,6 +504,7 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
 		return -ENOMEM;
 	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
 	t->session = s;
+	init_completion(&t->adopted);
 	t->bytes = image_bytes;
 	find_turns(t);
 	ret = find_outputs(t) ?: alloc_exchange(t);
@@ -531,12 +551,16 @@ void ec_cycle_thread_start(struct ec_session *s)
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
 	ec_write64(&m->kernel_cycle, 0);
 	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
+	rcu_assign_pointer(m->kernel_session, s);
 	wake_up_process(s->thread->task);
 }
 
 /**
  * ec_cycle_thread_stop() - end the cycle run by the kernel
  * @s: session; nothing happens when the application ran the cycle
+ *
+ * poll() of the application may still look at the session meanwhile: that is
+ * waited for while cycles go on.
  *
  * Context: Process, session_lock held. May sleep.
  */
@@ -546,9 +570,16 @@ void ec_cycle_thread_stop(struct ec_session *s)
 
 	if (!s->thread)
 		return;
+	lockdep_assert_held(&m->session_lock);
+	if (rcu_access_pointer(m->kernel_session)) {
+		RCU_INIT_POINTER(m->kernel_session, NULL);
+		synchronize_rcu();
+	}
 	kthread_stop(s->thread->task);
 	if (m->kernel_run & 1)
-		end_run(m);
+		end_run(s);
+	else
+		wake_owner(s);
 	free_thread(s->thread);
 	s->thread = NULL;
 }
@@ -568,9 +599,9 @@ int ec_cycle_thread_adopt(struct ec_session *s)
 	struct ec_cycle_thread *t = s->thread;
 	u32 limit_ms = 2 * s->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
 
+	reinit_completion(&t->adopted);
 	WRITE_ONCE(t->adopt, true);
-	if (!wait_event_timeout(s->master->kernel_wq, !smp_load_acquire(&t->adopt),
-				msecs_to_jiffies(limit_ms)))
+	if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
 		return -ETIMEDOUT;
 	WRITE_ONCE(status(t)->takeovers, status(t)->takeovers + 1);
 	return 0;
@@ -602,51 +633,93 @@ void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, 
 	}
 }
 
-/**
- * ec_cycle_thread_poll() - is there anything for the application?
- * @s: active session with a thread
- *
- * Context: Process, cyclic_lock held.
- * Return: EPOLLIN: inputs that it has not taken; EPOLLHUP: the cycle has
- * stopped.
- */
-__poll_t ec_cycle_thread_poll(const struct ec_session *s)
+/* The session whose cycle the kernel runs for @owner, or NULL. RCU read side. */
+static const struct ec_session *owned_by(const struct ec_master *m, const void *owner)
 {
-	const struct ec_cycle_thread *t = s->thread;
-	__poll_t mask = 0;
+	const struct ec_session *s = rcu_dereference(m->kernel_session);
 
-	if (READ_ONCE(exchange(t)->inputs) & EC_EXCHANGE_NEW)
-		mask |= EPOLLIN | EPOLLRDNORM;
-	if (READ_ONCE(status(t)->state) == EC_CYCLE_STATE_STOPPED)
-		mask |= EPOLLHUP;
+	return s && READ_ONCE(s->owner) == owner ? s : NULL;
+}
+
+/**
+ * ec_cycle_thread_poll() - are there new inputs for the application?
+ * @m: master
+ * @owner: open file that asks
+ *
+ * Context: Any. Takes no lock.
+ * Return: EPOLLIN: inputs that the application has not taken; EPOLLHUP: the cycle has
+ * stopped; EPOLLERR: the kernel runs no cycle for @owner.
+ */
+__poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner)
+{
+	const struct ec_session *s;
+	__poll_t mask = EPOLLERR;
+
+	rcu_read_lock();
+	s = owned_by(m, owner);
+	if (s) {
+		mask = 0;
+		if (READ_ONCE(exchange(s->thread)->inputs) & EC_EXCHANGE_NEW)
+			mask |= EPOLLIN | EPOLLRDNORM;
+		if (READ_ONCE(status(s->thread)->state) == EC_CYCLE_STATE_STOPPED)
+			mask |= EPOLLHUP;
+	}
+	rcu_read_unlock();
 	return mask;
+}
+
+/**
+ * ec_cycle_thread_run() - number of the run of a session
+ * @m: master
+ * @owner: open file that asks
+ * @run: @kernel_run of the session's cycle
+ *
+ * Context: Any. Takes no lock.
+ * Return: true when the kernel runs the cycle for @owner.
+ */
+bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run)
+{
+	bool ours;
+
+	rcu_read_lock();
+	ours = owned_by(m, owner);
+	*run = READ_ONCE(m->kernel_run);
+	rcu_read_unlock();
+	return ours;
 }
 
 /**
  * ec_cycle_thread_wait() - wait for the next cycle
  * @m: master
- * @run: its @kernel_run while the caller's session was active
+ * @owner: open file that owns the cycle
+ * @w: its wait queue
+ * @run: as ec_cycle_thread_run() has given it
  * @cycle: in: the last cycle the caller has seen; out: a newer one
  * @timeout_us: limit, 0: none
  *
  * Context: Process. Sleeps; nothing of the session is touched, so it may end.
  * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
- * stopped.
+ * stopped or changed its owner; -EBUSY too many callers wait.
  */
-int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_us)
+int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
+			 u64 *cycle, u32 timeout_us)
 {
 	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
 	int ret;
 
-	ret = wait_event_interruptible_hrtimeout(m->kernel_wq,
+	if (!ec_waiters_enter(w))
+		return -EBUSY;
+	ret = wait_event_interruptible_hrtimeout(w->wq,
 						 READ_ONCE(m->kernel_run) != run || !(run & 1) ||
+						 READ_ONCE(m->active_owner) != owner ||
 						 ec_read64(&m->kernel_cycle) > *cycle, limit);
+	ec_waiters_leave(w);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
 	/* a signal handler runs first, and ends it; after a stop it goes on */
 	if (ret)
 		return -ERESTARTNOHAND;
-	if (!(run & 1) || READ_ONCE(m->kernel_run) != run)
+	if (!(run & 1) || READ_ONCE(m->kernel_run) != run || READ_ONCE(m->active_owner) != owner)
 		return -ECANCELED;
 	*cycle = ec_read64(&m->kernel_cycle);
 	return 0;

@@ -8,13 +8,16 @@
 
 struct ec_master;
 struct ec_session;
+struct ec_waiters;
 
 int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes);
 void ec_cycle_thread_start(struct ec_session *s);
 void ec_cycle_thread_stop(struct ec_session *s);
 int ec_cycle_thread_adopt(struct ec_session *s);
 void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size);
-__poll_t ec_cycle_thread_poll(const struct ec_session *s);
-int ec_cycle_thread_wait(struct ec_master *m, u32 run, u64 *cycle, u32 timeout_us);
+__poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner);
+bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run);
+int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
+			 u64 *cycle, u32 timeout_us);
 
 #endif

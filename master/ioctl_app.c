@@ -14,7 +14,7 @@
 
 int ec_ioc_reserve(struct ec_file *f, void *arg)
 {
-	int ret = ec_session_begin(f->master, f);
+	int ret = ec_session_begin(f->master, f, &f->waiters);
 
 	switch (ret) {
 	case -EBUSY:
@@ -509,9 +509,9 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
  * @f: open file
  * @ret: error or 0
  *
- * A mutex is safe here in real time: nobody else but deactivation takes it,
- * for the time of one assignment, so it is free and costs one atomic
- * operation. Should the two meet, deactivation inherits the priority of the
+ * A mutex is safe here in real time: besides the owner of the cycle only
+ * deactivation takes it, for the time of one assignment, so it is free and costs
+ * one atomic operation. Should the two meet, deactivation inherits the priority of the
  * cyclic caller under PREEMPT_RT, where a mutex is an rt_mutex.
  *
  * Context: Process. The lock is held when a session is returned.
@@ -522,6 +522,11 @@ static struct ec_session *enter(struct ec_file *f, int *ret)
 {
 	struct ec_master *m = f->master;
 
+	/* whoever does not own the cycle does not reach its lock */
+	if (READ_ONCE(m->active_owner) != f) {
+		*ret = -EPERM;
+		return NULL;
+	}
 	mutex_lock(&m->cyclic_lock);
 	*ret = !m->active || m->active->owner != f ? -EPERM : m->active->thread ? -EBUSY : 0;
 	if (!*ret)

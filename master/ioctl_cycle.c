@@ -127,14 +127,14 @@ int ec_ioc_wait(struct ec_file *f, void *arg)
 {
 	struct ec_master *m = f->master;
 	struct ec_ioc_wait *i = arg;
-	bool ours;
 	u32 run;
+	int ret;
 
-	mutex_lock(&m->cyclic_lock);
-	ours = m->active && m->active->owner == f && m->active->thread;
-	run = READ_ONCE(m->kernel_run);
-	mutex_unlock(&m->cyclic_lock);
-	if (!ours)
+	if (!ec_cycle_thread_run(m, f, &run))
 		return ec_refuse(f, -EPERM, "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
-	return ec_cycle_thread_wait(m, run, &i->cycle, i->timeout_us);
+	ret = ec_cycle_thread_wait(m, f, &f->waiters, run, &i->cycle, i->timeout_us);
+	if (ret == -EBUSY)
+		return ec_refuse(f, ret, "%u threads wait for the cycle already; let one of them wake the others",
+				 EC_MAX_WAITERS);
+	return ret;
 }

@@ -329,7 +329,6 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	raw_spin_lock_init(&m->xq_lock);
 	init_rwsem(&m->topo);
 	init_waitqueue_head(&m->scan_wq);
-	init_waitqueue_head(&m->kernel_wq);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
 	ec_dc_init(m);

@@ -87,13 +87,15 @@ struct task_struct;
  * @heir: what another one configures to take over @session, which is detached
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
+ * @active_owner: owner of @active, to be compared without a lock; NULL: none
  *
  * @late: figures of the last cycle, under @session_lock
  * @late_reset: the cyclic caller shall forget its figures
  *
  * @kernel_cycle: cycles of the thread that runs the cycle
  * @kernel_run: odd while it sends; another number than before: another run
- * @kernel_wq: who waits for one of the two
+ * @kernel_session: @session while the kernel runs its cycle; changed under
+ *	@session_lock, read under RCU
  *
  * @slaves_responding: slaves that answered the last broadcast
  * @al_states: OR of AL states, as in struct ec_ioc_master
@@ -159,13 +161,14 @@ struct ec_master {
 	struct ec_session *heir;
 	struct mutex cyclic_lock;
 	struct ec_session *active;
+	const void *active_owner;
 
 	struct ec_late_report late;
 	bool late_reset;
 
 	aligned_u64 kernel_cycle;
 	u32 kernel_run;
-	wait_queue_head_t kernel_wq;
+	struct ec_session __rcu *kernel_session;
 
 	u32 slaves_responding;
 	u32 al_states;

@@ -12,6 +12,7 @@
 #include "request.h"
 #include "session.h"
 #include "slave.h"
+#include "waiters.h"
 
 static void shared_release(struct kref *kref)
 {
@@ -124,6 +125,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
  * ec_session_begin() - an application reserves the master
  * @m: master
  * @owner: its open file
+ * @waiters: wait queue of that file; freed after an RCU grace period
  *
  * Waits for a scan in progress, then the list of slaves is frozen until
  * activation and all go to PREOP; that is waited for, too. While a detached
@@ -133,7 +135,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
  * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
  * -EINTR, -ENOMEM.
  */
-int ec_session_begin(struct ec_master *m, const void *owner)
+int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters)
 {
 	struct ec_session *s;
 	int ret;
@@ -150,6 +152,7 @@ int ec_session_begin(struct ec_master *m, const void *owner)
 		return -ENOMEM;
 	s->master = m;
 	s->owner = owner;
+	RCU_INIT_POINTER(s->waiters, waiters);
 	s->ref_config = EC_UAPI_NONE32;
 	s->late_per_s = EC_LATE_PER_S;
 	ret = begin(m, s);
@@ -260,6 +263,7 @@ int ec_session_deactivate(struct ec_session *s)
 		return -EINVAL;
 	mutex_lock(&m->cyclic_lock);
 	m->active = NULL;
+	WRITE_ONCE(m->active_owner, NULL);
 	mutex_unlock(&m->cyclic_lock);
 	ec_cycle_thread_stop(s);
 	ec_cycle_own(m, EC_OWNER_IDLE);
@@ -327,14 +331,23 @@ static void end(struct ec_master *m)
  * ec_session_set_owner() - an active session changes hands
  * @s: session
  * @owner: open file, or NULL
+ * @waiters: wait queue of that file, or NULL
  *
  * Context: Process, session_lock held. May sleep.
  */
-void ec_session_set_owner(struct ec_session *s, const void *owner)
+void ec_session_set_owner(struct ec_session *s, const void *owner, struct ec_waiters *waiters)
 {
+	struct ec_waiters *before = rcu_dereference_protected(s->waiters,
+						lockdep_is_held(&s->master->session_lock));
+
 	mutex_lock(&s->master->cyclic_lock);
-	s->owner = owner;
+	WRITE_ONCE(s->owner, owner);
+	rcu_assign_pointer(s->waiters, waiters);
+	WRITE_ONCE(s->master->active_owner, owner);
 	mutex_unlock(&s->master->cyclic_lock);
+	/* no cycle wakes them any more */
+	if (before)
+		ec_waiters_wake(before);
 }
 
 /**
@@ -362,7 +375,7 @@ void ec_session_end(struct ec_master *m, const void *owner)
 		s = NULL;
 	if (s && owner && s->thread && !s->ending &&
 	    s->kernel.flags & EC_CYCLE_FLAG_DETACH) {
-		ec_session_set_owner(s, NULL);
+		ec_session_set_owner(s, NULL, NULL);
 		ec_info(m, "application is gone, its cycle goes on: session detached\n");
 	} else if (s) {
 		end(m);
@@ -648,6 +661,7 @@ int ec_session_activate(struct ec_session *s)
 		ec_cycle_own(m, EC_OWNER_CYCLE);
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
+	WRITE_ONCE(m->active_owner, s->owner);
 	mutex_unlock(&m->cyclic_lock);
 	if (begins_clocks(s))
 		ec_dc_begin(m, true, ref_choice(s));

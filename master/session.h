@@ -18,6 +18,7 @@ struct ec_domain;
 struct ec_master;
 struct ec_request_spec;
 struct ec_requests;
+struct ec_waiters;
 
 /**
  * struct ec_shared - memory mapped by the application; outlives the session
@@ -67,6 +68,8 @@ struct ec_stall_log {
  * @master: master
  * @owner: open file that reserved the master; NULL: detached, its cycle goes on
  *	without an application
+ * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
+ *	reads it under RCU
  * @configs: slave configurations
  * @n_configs: entries in @configs
  * @domains: domains
@@ -96,6 +99,7 @@ struct ec_stall_log {
 struct ec_session {
 	struct ec_master *master;
 	const void *owner;
+	struct ec_waiters __rcu *waiters;
 	struct ec_config **configs;
 	unsigned int n_configs;
 	struct ec_domain *domains[EC_MAX_DOMAINS];
@@ -122,7 +126,7 @@ struct ec_session {
 	struct ec_copying *copying;
 };
 
-int ec_session_begin(struct ec_master *m, const void *owner);
+int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters);
 void ec_session_end(struct ec_master *m, const void *owner);
 u32 ec_session_place(struct ec_session *s);
 int ec_session_end_detached(struct ec_master *m);
@@ -149,7 +153,7 @@ void ec_session_stalled(struct ec_master *m);
 /* takeover.c */
 int ec_session_take_over(struct ec_master *m, char *why, size_t size);
 
-void ec_session_set_owner(struct ec_session *s, const void *owner);
+void ec_session_set_owner(struct ec_session *s, const void *owner, struct ec_waiters *waiters);
 void ec_session_free(struct ec_session *s);
 void ec_shared_get(struct ec_shared *sh);
 void ec_shared_put(struct ec_shared *sh);

@@ -259,7 +259,8 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 	adopt_late(s, heir->late_per_s);
 	m->heir = NULL;
 	ec_session_fill_status(s);
-	ec_session_set_owner(s, heir->owner);
+	ec_session_set_owner(s, heir->owner, rcu_dereference_protected(heir->waiters,
+			     lockdep_is_held(&m->session_lock)));
 	ec_session_free(heir);
 	ec_info(m, "session taken over by another application\n");
 	return 0;

@@ -28,9 +28,7 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
 	b->m = ec_master_get(0);
-	b->app.master = b->m;
-	b->app.writable = true;
-	mutex_init(&b->app.lock);
+	ec_file_init(&b->app, b->m, true);
 	return b;
 }
 

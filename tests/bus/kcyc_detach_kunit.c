@@ -407,13 +407,13 @@ static void heir_is_harmless(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 	struct bus *b = a->c->b;
-	struct ec_file other = { .master = b->m, .writable = true };
+	struct ec_file other = { 0 };
 	struct ec_ioc_interval interval = { .interval_us = 77 };
 	struct ec_ioc_app_time time = { .app_time = 77 };
 	struct ec_ioc_domain d = { 0 };
 	u64 app_time;
 
-	mutex_init(&other.lock);
+	ec_file_init(&other, b->m, true);
 	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &interval), -EBUSY);
 	die(a);
 	cyc_new(b, 500);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Beginning, requests and misfortunes of a cycle the kernel runs. */
+#include <linux/completion.h>
+#include <linux/kthread.h>
 #include <linux/poll.h>
 #include "kcyc.h"
 #include "devices/sim/app.h"
@@ -55,15 +57,140 @@ static void life_never_begins(struct kunit *test)
 static void life_poll(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
-	struct ec_session *s = a->c->b->m->session;
+	struct ec_file *f = &a->c->b->app;
 	u32 i;
 
 	for (i = 0; i < 100; i++) {
 		KUNIT_ASSERT_EQ(test, kcyc_wait(a, 0), 0);
-		KUNIT_EXPECT_EQ(test, ec_cycle_thread_poll(s), EPOLLIN | EPOLLRDNORM);
+		KUNIT_EXPECT_EQ(test, ec_file_poll(f, NULL, NULL), EPOLLIN | EPOLLRDNORM);
 		KUNIT_EXPECT_NOT_NULL(test, kcyc_take(a));
-		KUNIT_EXPECT_EQ(test, ec_cycle_thread_poll(s), 0u);
+		KUNIT_EXPECT_EQ(test, ec_file_poll(f, NULL, NULL), 0u);
 	}
+}
+
+/* more entries of poll() than one file may have */
+#define ENTRIES	(EC_MAX_WAITERS + 5)
+
+struct entries {
+	poll_table table;
+	struct wait_queue_entry entry[ENTRIES];
+	wait_queue_head_t *wq[ENTRIES];
+	u32 n;
+	u32 woken;
+};
+
+static struct entries entries;
+
+static int woken(struct wait_queue_entry *entry, unsigned int mode, int flags, void *key)
+{
+	entries.woken++;
+	return 0;
+}
+
+/* what epoll does: an entry that stays */
+static void add_entry(struct file *filp, wait_queue_head_t *wq, poll_table *table)
+{
+	struct entries *e = container_of(table, struct entries, table);
+
+	init_waitqueue_func_entry(&e->entry[e->n], woken);
+	add_wait_queue(wq, &e->entry[e->n]);
+	e->wq[e->n++] = wq;
+}
+
+static void remove_entries(void)
+{
+	while (entries.n--)
+		remove_wait_queue(entries.wq[entries.n], &entries.entry[entries.n]);
+	memset(&entries, 0, sizeof(entries));
+}
+
+/* poll_wait() reads the file only to see that there is one */
+#define FILE	((struct file *)&entries)
+
+/* A file that does not own the cycle adds nothing to it. */
+static void life_poll_of_others(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct ec_ioc_wait w = { 0 };
+	struct ec_file other = { 0 };
+	u32 i;
+
+	ec_file_init(&other, a->c->b->m, false);
+	init_poll_funcptr(&entries.table, add_entry);
+	for (i = 0; i < ENTRIES; i++)
+		KUNIT_EXPECT_EQ(test, ec_file_poll(&other, FILE, &entries.table), EPOLLERR);
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, entries.woken, 0u);
+	remove_entries();
+	KUNIT_EXPECT_EQ(test, ec_ioc_wait(&other, &w), -EPERM);
+}
+
+/* Its owner adds a bounded number of entries, and each is woken in each cycle. */
+static void life_poll_is_bounded(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct ec_file *f = &a->c->b->app;
+	u32 i;
+
+	init_poll_funcptr(&entries.table, add_entry);
+	for (i = 0; i < ENTRIES; i++)
+		KUNIT_EXPECT_EQ(test, !!(ec_file_poll(f, FILE, &entries.table) & EPOLLERR),
+				i >= EC_MAX_WAITERS);
+	KUNIT_EXPECT_EQ(test, entries.n, (u32)EC_MAX_WAITERS);
+	kcyc_wait_cycles(a, 10);
+	KUNIT_EXPECT_GE(test, entries.woken, 9u * EC_MAX_WAITERS);
+	remove_entries();
+	KUNIT_EXPECT_FALSE(test, ec_file_poll(f, NULL, NULL) & EPOLLERR);
+}
+
+/* The session ends under entries of poll(): they are woken, then all see an error. */
+static void life_poll_outlives_session(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct bus *b = a->c->b;
+
+	init_poll_funcptr(&entries.table, add_entry);
+	KUNIT_EXPECT_FALSE(test, ec_file_poll(&b->app, FILE, &entries.table) & EPOLLERR);
+	KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+	KUNIT_EXPECT_GE(test, entries.woken, 1u);
+	KUNIT_EXPECT_EQ(test, ec_file_poll(&b->app, NULL, NULL), EPOLLERR);
+	remove_entries();
+}
+
+static struct bus *asked;
+static __poll_t said[2];
+static int received;
+
+static int ask(void *data)
+{
+	struct ec_file other = { 0 };
+
+	ec_file_init(&other, asked->m, false);
+	said[0] = ec_file_poll(&asked->app, NULL, NULL);
+	said[1] = ec_file_poll(&other, NULL, NULL);
+	received = ec_ioc_receive(&other);
+	complete(data);
+	return 0;
+}
+
+/* poll() and a foreign receive take no lock of the cycle: they end while it is held. */
+static void life_poll_without_lock(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	DECLARE_COMPLETION_ONSTACK(over);
+	bool ended;
+
+	asked = a->c->b;
+	mutex_lock(&asked->m->cyclic_lock);
+	kthread_run(ask, &over, "ask");
+	ended = wait_for_completion_timeout(&over, msecs_to_jiffies(1000));
+	mutex_unlock(&asked->m->cyclic_lock);
+	KUNIT_EXPECT_TRUE(test, ended);
+	if (!ended)
+		wait_for_completion(&over);
+	KUNIT_EXPECT_EQ(test, said[0] & EPOLLERR, 0u);
+	KUNIT_EXPECT_EQ(test, said[1], EPOLLERR);
+	KUNIT_EXPECT_EQ(test, received, -EPERM);
 }
 
 /* The device goes away: cycles go on, with nothing in them; nothing is freed early. */
@@ -257,6 +384,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(life_waits_for_outputs),
 	KUNIT_CASE(life_never_begins),
 	KUNIT_CASE(life_poll),
+	KUNIT_CASE(life_poll_of_others),
+	KUNIT_CASE(life_poll_is_bounded),
+	KUNIT_CASE(life_poll_outlives_session),
+	KUNIT_CASE(life_poll_without_lock),
 	KUNIT_CASE(life_without_device),
 	KUNIT_CASE(life_device_gone_in_send),
 	KUNIT_CASE(life_requests),

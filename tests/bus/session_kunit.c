@@ -251,12 +251,12 @@ static struct bus *detached(struct kunit *test)
 static void session_heir_asks(struct kunit *test)
 {
 	struct bus *b = detached(test);
-	struct ec_file other = { .master = b->m };
+	struct ec_file other = { 0 };
 	struct ec_ioc_slave_config sc = { .position = 40, .vendor_id = 1, .product_code = 2 };
 	struct ec_ioc_config_why why = { 0 }, running = { 0 };
 	struct ec_ioc_sc_ip set = { .params = { .which = EC_IP_NAME, .name = "heir" } }, ip = { 0 };
 
-	mutex_init(&other.lock);
+	ec_file_init(&other, b->m, false);
 	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
 	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
 	KUNIT_ASSERT_EQ(test, ec_ioc_sc_ip(&b->app, &set), 0);
