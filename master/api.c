@@ -46,9 +46,9 @@ void ec_api_begin(struct ec_master *m)
 {
 	struct ec_file *f = &m->api->file;
 
-	mutex_lock(&f->lock);
+	raw_spin_lock(&f->lock);
 	f->reason[0] = '\0';
-	mutex_unlock(&f->lock);
+	raw_spin_unlock(&f->lock);
 }
 
 /**
@@ -70,10 +70,10 @@ static void complain(struct ec_master *m, int err, struct va_format *what, const
 {
 	struct ec_file *f = &m->api->file;
 
-	mutex_lock(&f->lock);
+	raw_spin_lock(&f->lock);
 	ec_err(m, "kernel application: cannot %pV%s (error %d)%s%s\n", what, slave, err,
 	       f->reason[0] ? ": " : "", f->reason);
-	mutex_unlock(&f->lock);
+	raw_spin_unlock(&f->lock);
 }
 
 /**

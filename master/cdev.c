@@ -25,7 +25,7 @@ void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable)
 {
 	f->master = m;
 	f->writable = writable;
-	mutex_init(&f->lock);
+	raw_spin_lock_init(&f->lock);
 	ec_waiters_init(&f->waiters);
 }
 
@@ -48,7 +48,9 @@ static int ec_release(struct inode *inode, struct file *filp)
 	struct ec_file *f = filp->private_data;
 	struct ec_master *m = f->master;
 
-	ec_session_end(m, f);
+	/* who may only look has reserved nothing, and takes no lock */
+	if (f->writable)
+		ec_session_end(m, f);
 	put_device(&m->dev);
 	kfree_rcu(f, rcu);
 	return 0;
@@ -116,7 +118,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 
 	if (!(vma->vm_flags & VM_MAYSHARE))
 		return -EINVAL;
-	if (vma->vm_flags & VM_EXEC)
+	if (vma->vm_flags & VM_EXEC || !f->writable)
 		return -EPERM;
 	mutex_lock(&m->session_lock);
 	if (m->session && m->session->owner == f && m->session->active)

@@ -4,7 +4,7 @@
 #define EC_CDEV_H
 
 #include <linux/fs.h>
-#include <linux/mutex.h>
+#include <linux/spinlock.h>
 #include <linux/poll.h>
 #include <linux/rcupdate.h>
 #include "ethercat.h"
@@ -25,7 +25,7 @@ struct ec_session;
 struct ec_file {
 	struct ec_master *master;
 	bool writable;
-	struct mutex lock;
+	raw_spinlock_t lock;
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
 	struct rcu_head rcu;

@@ -616,7 +616,7 @@ int ec_cycle_thread_adopt(struct ec_session *s)
  *
  * The cycle may go on meanwhile: outputs may be of several cycles.
  *
- * Context: Process, session_lock held.
+ * Context: Process, session_lock held or after ec_show_begin().
  */
 void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size)
 {

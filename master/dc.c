@@ -300,11 +300,13 @@ static void set_ref(struct job *j)
 	struct ec_slave *old, *ref = j->ref < j->n ? ec_slave_ref(j->slaves[j->ref]) : NULL;
 
 	down_write(&j->m->topo);
+	ec_change_begin(j->m);
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
 	WRITE_ONCE(dc->front, ref && has_front(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
+	ec_change_end(j->m);
 	up_write(&j->m->topo);
 	if (old)
 		ec_slave_unref(old);

@@ -121,9 +121,9 @@ int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
 	va_list args;
 
 	va_start(args, fmt);
-	mutex_lock(&f->lock);
+	raw_spin_lock(&f->lock);
 	vscnprintf(f->reason, sizeof(f->reason), fmt, args);
-	mutex_unlock(&f->lock);
+	raw_spin_unlock(&f->lock);
 	va_end(args);
 	return err;
 }
@@ -244,9 +244,9 @@ static int return_arg(unsigned int ksize, unsigned int usize, const void *karg, 
 
 static void forget_reason(struct ec_file *f)
 {
-	mutex_lock(&f->lock);
+	raw_spin_lock(&f->lock);
 	f->reason[0] = '\0';
-	mutex_unlock(&f->lock);
+	raw_spin_unlock(&f->lock);
 }
 
 /* Apart from the cyclic commands, which must not pay for the large buffer. */

@@ -36,11 +36,11 @@ static struct ec_session *lock(struct ec_file *f, int *ret)
 	struct ec_master *m = f->master;
 	struct ec_session *s;
 
-	mutex_lock(&m->session_lock);
+	ec_session_lock(m);
 	s = ec_session_of(m, f);
 	if (s)
 		return s;
-	mutex_unlock(&m->session_lock);
+	ec_session_unlock(m);
 	*ret = ec_refuse(f, -EPERM, "reserve the master first (ecrt_request_master)");
 	return NULL;
 }
@@ -58,7 +58,7 @@ struct ec_session *ec_ioc_lock_idle(struct ec_file *f, int *ret)
 	struct ec_session *s = lock(f, ret);
 
 	if (s && s->active) {
-		mutex_unlock(&f->master->session_lock);
+		ec_session_unlock(f->master);
 		*ret = ec_refuse(f, -EBUSY, "the master is active; configure before ecrt_master_activate()");
 		return NULL;
 	}
@@ -67,7 +67,7 @@ struct ec_session *ec_ioc_lock_idle(struct ec_file *f, int *ret)
 
 static int done(struct ec_file *f, int ret)
 {
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -98,7 +98,7 @@ int ec_ioc_release(struct ec_file *f, void *arg)
 
 	if (!lock(f, &ret))
 		return ret;
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	ec_session_end(f->master, f);
 	return 0;
 }
@@ -255,7 +255,9 @@ static void not_mapped(struct ec_file *f, const struct ec_config *c,
 			  entry, c->alias, c->position);
 		return;
 	}
+	down_read(&f->master->topo);
 	ec_config_why(c, why, sizeof(why));
+	up_read(&f->master->topo);
 	ec_refuse(f, -ENOENT, "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
 		  entry, c->alias, c->position, why);
 }

@@ -10,57 +10,47 @@
 #include "session.h"
 #include "slave.h"
 
-/*
- * mmap() takes session_lock with the memory of the process locked, and a page of
- * that may be missing: nothing is copied to the process with session_lock held.
- */
-static void *keep(const void *data, u32 size, int *ret)
-{
-	void *copy = kvmalloc(size, GFP_KERNEL_ACCOUNT);
+#define WALK	64	/* list entries, */
+#define PIECE	4096	/* and bytes to copy, at once */
 
-	if (copy)
-		memcpy(copy, data, size);
-	else
-		*ret = -ENOMEM;
-	return copy;
-}
-
-/* Locks the session; NULL with the reason noted and unlocked when there is none. */
-static struct ec_session *lock(struct ec_file *f, int *ret)
+/* Begins to look at the session; NULL with the reason noted when there is none. */
+static struct ec_session *look(struct ec_file *f, int *ret)
 {
 	struct ec_master *m = f->master;
 	struct ec_session *s;
 
-	mutex_lock(&m->session_lock);
+	*ret = ec_show_begin(m);
+	if (*ret)
+		return NULL;
 	/* an application sees its own */
 	s = ec_session_of(m, f) ?: m->session;
 	if (s)
 		return s;
-	mutex_unlock(&m->session_lock);
+	ec_show_end(m);
 	*ret = ec_refuse(f, -ENOENT, "no application has reserved master %u", m->index);
 	return NULL;
 }
 
 static int done(struct ec_file *f, int ret)
 {
-	mutex_unlock(&f->master->session_lock);
+	ec_show_end(f->master);
 	return ret;
 }
 
 /**
- * ec_ioc_show_config() - lock a session and find a configuration in it, to look
+ * ec_ioc_show_config() - find a configuration, to look at it
  * @f: open file
  * @index: of the configuration
  * @ret: why there is none
  *
  * An application sees its own session, everybody else that which runs.
  *
- * Context: Process. May sleep. session_lock is held when one is returned.
+ * Context: Process. May sleep. As after ec_show_begin() when one is returned.
  * Return: configuration, or NULL with the reason noted.
  */
 struct ec_config *ec_ioc_show_config(struct ec_file *f, u32 index, int *ret)
 {
-	struct ec_session *s = lock(f, ret);
+	struct ec_session *s = look(f, ret);
 
 	if (!s)
 		return NULL;
@@ -72,9 +62,9 @@ struct ec_config *ec_ioc_show_config(struct ec_file *f, u32 index, int *ret)
 }
 
 /* The same with a domain. */
-static struct ec_domain *lock_domain(struct ec_file *f, u32 index, int *ret)
+static struct ec_domain *show_domain(struct ec_file *f, u32 index, int *ret)
 {
-	struct ec_session *s = lock(f, ret);
+	struct ec_session *s = look(f, ret);
 
 	if (!s)
 		return NULL;
@@ -174,32 +164,76 @@ int ec_ioc_config_entry(struct ec_file *f, void *arg)
 	return done(f, ret);
 }
 
-int ec_ioc_config_sdo(struct ec_file *f, void *arg)
+/* Copies in pieces; returns as ec_show_pause() in between. */
+static int copy_pieces(struct ec_file *f, void *to, const void *from, u32 size)
 {
-	struct ec_ioc_config_sdo *i = arg;
-	struct ec_config_sdo *sdo;
-	void *copy = NULL;
-	u32 k = 0, size = 0;
+	u32 pos;
+	int ret;
+
+	for (pos = 0; pos < size; pos += PIECE) {
+		ret = pos ? ec_show_pause(f->master) : 0;
+		if (ret)
+			return ret;
+		memcpy(to + pos, from + pos, min(size - pos, PIECE));
+	}
+	return 0;
+}
+
+/* Return: as ec_show_pause(), or -ENOENT; 0: the section goes on. */
+static int find_sdo(struct ec_file *f, const struct ec_config *c, u32 n,
+		    const struct ec_config_sdo **found)
+{
+	const struct ec_config_sdo *sdo;
+	u32 k = 0;
+	int ret;
+
+	list_for_each_entry(sdo, &c->sdos, list) {
+		if (k == n) {
+			*found = sdo;
+			return 0;
+		}
+		ret = ++k % WALK ? 0 : ec_show_pause(f->master);
+		if (ret)
+			return ret;
+	}
+	return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup SDOs", c->index,
+				 c->n_sdos));
+}
+
+/* @copy has room for @room bytes. */
+static int show_sdo(struct ec_file *f, struct ec_ioc_config_sdo *i, void *copy, u32 room,
+		    u32 *size)
+{
+	const struct ec_config_sdo *sdo = NULL;
 	int ret = 0;
 	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
-	if (i->sdo_pos >= c->n_sdos)
-		return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup SDOs",
-					 i->index, c->n_sdos));
-	list_for_each_entry(sdo, &c->sdos, list) {
-		if (k++ != i->sdo_pos)
-			continue;
-		i->flags = sdo->complete ? EC_SDO_FLAG_COMPLETE : 0;
-		i->sdo_index = sdo->index;
-		i->subindex = sdo->sub;
-		size = min(i->size, sdo->size);
-		copy = keep(sdo->data, size, &ret);
-		i->size = sdo->size;
-		break;
-	}
-	done(f, ret);
+	ret = find_sdo(f, c, i->sdo_pos, &sdo);
+	if (ret)
+		return ret;
+	i->flags = sdo->complete ? EC_SDO_FLAG_COMPLETE : 0;
+	i->sdo_index = sdo->index;
+	i->subindex = sdo->sub;
+	i->size = sdo->size;
+	*size = min_t(u32, room, sdo->size);
+	ret = copy_pieces(f, copy, sdo->data, *size);
+	return ret ?: done(f, 0);
+}
+
+int ec_ioc_config_sdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_sdo *i = arg;
+	u32 room = min_t(u32, i->size, EC_MAX_SDO_SIZE), size = 0;
+	void *copy = kvmalloc(room, GFP_KERNEL_ACCOUNT);
+	int ret;
+
+	if (!copy)
+		return -ENOMEM;
+	do
+		ret = show_sdo(f, i, copy, room, &size);
+	while (ret == -EAGAIN);
 	return ec_ioc_hand_over(i->data, copy, size, ret);
 }
 
@@ -228,7 +262,7 @@ int ec_ioc_domain(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_domain *i = arg;
 	int ret = 0;
-	struct ec_domain *d = lock_domain(f, i->index, &ret);
+	struct ec_domain *d = show_domain(f, i->index, &ret);
 
 	if (!d)
 		return ret;
@@ -252,7 +286,7 @@ int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 	struct ec_ioc_domain_fmmu *i = arg;
 	const struct ec_config_fmmu *fm;
 	int ret = 0;
-	struct ec_domain *d = lock_domain(f, i->index, &ret);
+	struct ec_domain *d = show_domain(f, i->index, &ret);
 
 	if (!d)
 		return ret;
@@ -271,23 +305,41 @@ int ec_ioc_domain_fmmu(struct ec_file *f, void *arg)
 	return done(f, ret);
 }
 
-int ec_ioc_domain_data(struct ec_file *f, void *arg)
+/* @copy has room for @room bytes. */
+static int show_data(struct ec_file *f, struct ec_ioc_domain_data *i, void *copy, u32 room)
 {
-	struct ec_ioc_domain_data *i = arg;
-	void *copy = NULL;
 	int ret = 0;
-	struct ec_domain *d = lock_domain(f, i->index, &ret);
+	struct ec_domain *d = show_domain(f, i->index, &ret);
+	u32 pos;
 
 	if (!d)
 		return ret;
-	if (!d->session->active) {
-		ret = ec_refuse(f, -ENOENT, "the application has not activated the master");
-	} else {
-		i->size = min(i->size, d->size);
-		copy = keep(ec_domain_data(d), i->size, &ret);
-		if (copy)
-			ec_cycle_thread_outputs(d->session, copy, d->offset, i->size);
+	if (!d->session->active)
+		return done(f, ec_refuse(f, -ENOENT, "the application has not activated the master"));
+	i->size = min_t(u32, room, d->size);
+	for (pos = 0; pos < i->size; pos += PIECE) {
+		u32 n = min(i->size - pos, PIECE);
+
+		ret = pos ? ec_show_pause(f->master) : 0;
+		if (ret)
+			return ret;
+		memcpy(copy + pos, ec_domain_data(d) + pos, n);
+		ec_cycle_thread_outputs(d->session, copy + pos, d->offset + pos, n);
 	}
-	done(f, ret);
+	return done(f, 0);
+}
+
+int ec_ioc_domain_data(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain_data *i = arg;
+	u32 room = min_t(u32, i->size, EC_MAX_IMAGE);
+	void *copy = kvmalloc(room, GFP_KERNEL_ACCOUNT);
+	int ret;
+
+	if (!copy)
+		return -ENOMEM;
+	do
+		ret = show_data(f, i, copy, room);
+	while (ret == -EAGAIN);
 	return ec_ioc_hand_over(i->data, copy, i->size, ret);
 }

@@ -57,7 +57,7 @@ int ec_ioc_cycle(struct ec_file *f, void *arg)
 	if (!s)
 		return ret;
 	s->kernel = *i;
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return 0;
 }
 
@@ -78,7 +78,7 @@ int ec_ioc_division(struct ec_file *f, void *arg)
 		s->domains[i->domain]->division = i->division;
 		s->domains[i->domain]->phase = i->phase;
 	}
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -119,7 +119,7 @@ int ec_ioc_copy(struct ec_file *f, void *arg)
 	ret = ec_copy_add(s, &copy);
 	if (ret)
 		ret = copy_failed(f, i, ret);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 

@@ -16,6 +16,8 @@
 #define EC_RELEASE "0.1.0"
 #endif
 
+#define WALK	64	/* slaves to look at without a pause */
+
 /**
  * ec_ioc_get_slave() - the slave a command names
  * @f: open file
@@ -27,11 +29,18 @@
  */
 struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret)
 {
-	struct ec_slave *s = ec_master_slave(f->master, position);
+	struct ec_master *m = f->master;
+	struct ec_slave *s = NULL;
 
+	*ret = ec_show_begin(m);
+	if (*ret)
+		return NULL;
+	if (position < m->n_slaves)
+		s = ec_slave_ref(m->slaves[position]);
+	ec_show_end(m);
 	if (!s)
 		*ret = ec_refuse(f, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
-				 position, f->master->n_slaves);
+				 position, m->n_slaves);
 	return s;
 }
 
@@ -52,9 +61,9 @@ int ec_ioc_reason(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_reason *r = arg;
 
-	mutex_lock(&f->lock);
+	raw_spin_lock(&f->lock);
 	strscpy(r->text, f->reason, sizeof(r->text));
-	mutex_unlock(&f->lock);
+	raw_spin_unlock(&f->lock);
 	r->len = strlen(r->text);
 	return 0;
 }
@@ -135,6 +144,7 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	struct ec_master *m = f->master;
 	struct ec_ioc_master *i = arg;
 	unsigned int l;
+	int ret;
 
 	i->index = m->index;
 	i->slave_count = m->n_slaves;
@@ -145,17 +155,17 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->scan_count = READ_ONCE(m->scan_count);
 	i->debug_level = m->debug;
 	i->app_time = ec_read64(&m->dc.app_time);
-	down_read(&m->topo);
+	i->scan_us = m->scan_us;
+	i->scan_frames = m->scan_frames;
+	ret = ec_show_begin(m);
+	if (ret)
+		return ret;
 	/* one that is gone has left its position to another slave */
 	i->ref_clock = m->dc.ref && !m->dc.ref->gone && READ_ONCE(m->dc.ref_station) ?
 		       m->dc.ref->position : -1;
-	up_read(&m->topo);
-	i->scan_us = m->scan_us;
-	i->scan_frames = m->scan_frames;
-	mutex_lock(&m->session_lock);
 	if (m->session)
 		session_info(m->session, i);
-	mutex_unlock(&m->session_lock);
+	ec_show_end(m);
 	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
 	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++)
@@ -177,11 +187,13 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 	return p == s->upstream ? s->dc_hop : next->dc_hop;
 }
 
-static void slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
 	unsigned int p;
+	int ret = ec_show_begin(m);
 
-	down_read(&m->topo);
+	if (ret)
+		return ret;
 	for (p = 0; p < EC_UAPI_PORTS; p++) {
 		struct ec_ioc_port *port = &i->ports[p];
 
@@ -193,24 +205,40 @@ static void slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec
 		port->next_slave = s->next[p];
 		port->delay_to_next_dc = way(m, s, p);
 	}
-	up_read(&m->topo);
+	ec_show_end(m);
+	return 0;
 }
 
 /* The nearest slave at or before this one that has an alias. */
-static void slave_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static int find_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
-	int k;
+	int k, ret = ec_show_begin(m);
 
+	if (ret)
+		return ret;
 	i->alias_pos = s->position;
-	down_read(&m->topo);
 	for (k = min_t(int, s->position, (int)m->n_slaves - 1); k >= 0; k--) {
 		if (m->slaves[k]->alias) {
 			i->alias_group = m->slaves[k]->alias;
 			i->alias_pos = s->position - k;
 			break;
 		}
+		ret = k % WALK ? 0 : ec_show_pause(m);
+		if (ret)
+			return ret;
 	}
-	up_read(&m->topo);
+	ec_show_end(m);
+	return 0;
+}
+
+static int slave_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int ret;
+
+	do
+		ret = find_alias(m, s, i);
+	while (ret == -EAGAIN);
+	return ret;
 }
 
 static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
@@ -268,11 +296,10 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->dl_status = s->dl_status;
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
-	slave_ports(f->master, s, i);
-	slave_alias(f->master, s, i);
 	strscpy(i->why, s->why, sizeof(i->why));
+	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i);
 	ec_slave_unref(s);
-	return 0;
+	return ret;
 }
 
 int ec_ioc_sm(struct ec_file *f, void *arg)
@@ -292,9 +319,7 @@ int ec_ioc_sm(struct ec_file *f, void *arg)
 		i->control = s->sms[i->sm].control;
 		i->enable = s->sms[i->sm].enable;
 		i->type = s->sms[i->sm].type;
-		down_read(&f->master->topo);
-		i->pdo_count = s->sm_pdos[i->sm].n;
-		up_read(&f->master->topo);
+		i->pdo_count = READ_ONCE(s->sm_pdos[i->sm].n);
 	}
 	ec_slave_unref(s);
 	return ret;
@@ -321,19 +346,24 @@ int ec_ioc_pdo(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_pdo *i = arg;
 	const struct ec_pdo *p;
+	u8 string = 0;
 	int ret = 0;
 	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
 
 	if (!s)
 		return ret;
-	down_read(&f->master->topo);
+	ret = ec_show_begin(f->master);
+	if (ret)
+		goto out;
 	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
 	if (p) {
 		i->index = p->index;
 		i->entry_count = p->n_entries;
-		name(s, p->name, i->name);
+		string = p->name;
 	}
-	up_read(&f->master->topo);
+	ec_show_end(f->master);
+	name(s, string, i->name);
+out:
 	ec_slave_unref(s);
 	return ret;
 }
@@ -342,12 +372,15 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_pdo_entry *i = arg;
 	const struct ec_pdo *p;
+	u8 string = 0;
 	int ret = 0;
 	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
 
 	if (!s)
 		return ret;
-	down_read(&f->master->topo);
+	ret = ec_show_begin(f->master);
+	if (ret)
+		goto out;
 	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
 	if (p && i->entry_pos >= p->n_entries) {
 		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
@@ -356,9 +389,11 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 		i->index = p->entries[i->entry_pos].index;
 		i->subindex = p->entries[i->entry_pos].sub;
 		i->bits = p->entries[i->entry_pos].bits;
-		name(s, p->entries[i->entry_pos].name, i->name);
+		string = p->entries[i->entry_pos].name;
 	}
-	up_read(&f->master->topo);
+	ec_show_end(f->master);
+	name(s, string, i->name);
+out:
 	ec_slave_unref(s);
 	return ret;
 }
@@ -386,15 +421,18 @@ int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_cycle_stats *i = arg;
 	struct ec_master *m = f->master;
-	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL);
+	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL_ACCOUNT);
+	int ret;
 
 	if (!st)
 		return -ENOMEM;
-	mutex_lock(&m->session_lock);
-	ec_late_get(m, i, st);
-	mutex_unlock(&m->session_lock);
+	ret = ec_show_begin(m);
+	if (!ret) {
+		ec_late_get(m, i, st);
+		ec_show_end(m);
+	}
 	i->size = min_t(u32, i->size, sizeof(*st));
-	return ec_ioc_hand_over(i->data, st, i->size, 0);
+	return ec_ioc_hand_over(i->data, st, i->size, ret);
 }
 
 int ec_ioc_cycle_reset(struct ec_file *f, void *arg)

@@ -100,7 +100,7 @@ int ec_ioc_sc_ip(struct ec_file *f, void *arg)
 	from_user(&p, &i->params);
 	if (!ret)
 		ec_config_ip(c, &p);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -113,6 +113,6 @@ int ec_ioc_config_ip(struct ec_file *f, void *arg)
 	if (!c)
 		return ret;
 	to_user(&i->params, &c->ip);
-	mutex_unlock(&f->master->session_lock);
+	ec_show_end(f->master);
 	return 0;
 }

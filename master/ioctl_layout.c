@@ -21,7 +21,7 @@ int ec_ioc_sc_overlap(struct ec_file *f, void *arg)
 	if (!c)
 		return ret;
 	c->overlap = i->overlap;
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return 0;
 }
 
@@ -44,7 +44,7 @@ int ec_ioc_domain_options(struct ec_file *f, void *arg)
 		s->domains[i->domain]->options = i->options;
 	else
 		ret = ec_refuse(f, -ENOENT, "there is no domain %u", i->domain);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -61,6 +61,6 @@ int ec_ioc_late(struct ec_file *f, void *arg)
 	if (!s)
 		return ret;
 	s->late_per_s = i->per_s;
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return 0;
 }

@@ -202,7 +202,7 @@ int ec_ioc_store_sdo(struct ec_file *f, void *arg, const u8 *data)
 	if (ret == -ENOSPC)
 		ec_refuse(f, ret, "a slave configuration has at most %u startup SDOs",
 			  EC_MAX_SC_SDOS);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -357,7 +357,7 @@ int ec_ioc_store_idn(struct ec_file *f, void *arg, const u8 *data)
 	if (!c)
 		return ret;
 	ret = store_idn(f, c, i, data);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 

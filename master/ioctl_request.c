@@ -34,7 +34,7 @@ int ec_ioc_sc_request(struct ec_file *f, void *arg)
 	if (ret == -ENOSPC)
 		ec_refuse(f, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
 			  EC_MAX_REQUEST_BYTES);
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }
 
@@ -60,6 +60,6 @@ int ec_ioc_sc_emerg(struct ec_file *f, void *arg)
 		c->session->request_bytes = bytes;
 		c->emergencies = i->count;
 	}
-	mutex_unlock(&f->master->session_lock);
+	ec_session_unlock(f->master);
 	return ret;
 }

@@ -14,7 +14,7 @@ int ec_ioc_config_why(struct ec_file *f, void *arg)
 	if (!c)
 		return ret;
 	i->len = ec_config_why(c, i->text, sizeof(i->text));
-	mutex_unlock(&f->master->session_lock);
+	ec_show_end(f->master);
 	return 0;
 }
 

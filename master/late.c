@@ -227,7 +227,7 @@ void ec_late_end(struct ec_session *s)
  *
  * While the cycle runs it may be one send ahead in some of the figures.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, after ec_show_begin().
  */
 void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
 		 struct ec_status_cycle *st)

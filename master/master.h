@@ -18,6 +18,7 @@
 #include "limits.h"
 #include "link.h"
 #include "log.h"
+#include "show.h"
 #include "slots.h"
 
 struct ec_api;
@@ -80,6 +81,7 @@ struct task_struct;
  * @service: what others wait for, never many at once: clocks, looks at requests,
  *	calls of an application in the kernel
  *
+ * @show: readers of what @session_lock and @topo protect take neither
  * @session_lock: protects @session, @heir and everything they own but the
  *	cyclic part
  * @session: what an application has configured, NULL: nobody
@@ -155,6 +157,7 @@ struct ec_master {
 	struct workqueue_struct *lanes;
 	struct workqueue_struct *service;
 
+	struct ec_show show;
 	struct mutex session_lock;
 	struct ec_session *session;
 	struct ec_api *api;

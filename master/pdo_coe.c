@@ -99,9 +99,11 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 	struct ec_pdo_list old;
 
 	down_write(&s->master->topo);
+	ec_change_begin(s->master);
 	old = s->sm_pdos[sm];
 	s->sm_pdos[sm] = *l;
 	keep_unassigned(s, &old);
+	ec_change_end(s->master);
 	up_write(&s->master->topo);
 	ec_pdo_list_clear(&old);
 }

@@ -243,10 +243,12 @@ static void publish(struct scan *sc)
 	unsigned int i, n_old;
 
 	down_write(&m->topo);
+	ec_change_begin(m);
 	old = m->slaves;
 	n_old = m->n_slaves;
 	m->slaves = sc->slaves;
 	m->n_slaves = sc->n;
+	ec_change_end(m);
 	up_write(&m->topo);
 	sc->slaves = NULL;
 

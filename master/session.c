@@ -61,7 +61,7 @@ static struct ec_shared *shared_alloc(size_t image_size, size_t request_size)
  * @m: master
  * @owner: its open file
  *
- * Context: Process, session_lock held.
+ * Context: Process, session_lock held or after ec_show_begin().
  * Return: session, or NULL when it has not reserved the master.
  */
 struct ec_session *ec_session_of(const struct ec_master *m, const void *owner)
@@ -107,7 +107,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 {
 	int ret = 0;
 
-	mutex_lock(&m->session_lock);
+	ec_session_lock(m);
 	if (m->heir || (m->session && m->session->owner)) {
 		ret = -EBUSY;
 	} else if (m->session) {
@@ -117,7 +117,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 		WRITE_ONCE(m->freeze, true);
 		to_preop(m);
 	}
-	mutex_unlock(&m->session_lock);
+	ec_session_unlock(m);
 	return ret;
 }
 
@@ -364,7 +364,7 @@ void ec_session_end(struct ec_master *m, const void *owner)
 {
 	struct ec_session *s;
 
-	mutex_lock(&m->session_lock);
+	ec_session_lock(m);
 	s = m->heir;
 	if (s && (!owner || s->owner == owner)) {
 		m->heir = NULL;
@@ -380,7 +380,7 @@ void ec_session_end(struct ec_master *m, const void *owner)
 	} else if (s) {
 		end(m);
 	}
-	mutex_unlock(&m->session_lock);
+	ec_session_unlock(m);
 }
 
 /**
@@ -396,14 +396,14 @@ int ec_session_end_detached(struct ec_master *m)
 {
 	int ret = 0;
 
-	mutex_lock(&m->session_lock);
+	ec_session_lock(m);
 	if (!m->session)
 		ret = -ENOENT;
 	else if (m->session->owner)
 		ret = -EBUSY;
 	else
 		end(m);
-	mutex_unlock(&m->session_lock);
+	ec_session_unlock(m);
 	return ret;
 }
 
@@ -511,10 +511,10 @@ void ec_session_attach(struct ec_master *m)
 {
 	unsigned int i;
 
-	mutex_lock(&m->session_lock);
+	ec_session_lock(m);
 	for (i = 0; m->session && i < m->session->n_configs; i++)
 		ec_session_attach_one(m->session, m->session->configs[i]);
-	mutex_unlock(&m->session_lock);
+	ec_session_unlock(m);
 }
 
 /* Station address of the chosen reference clock, as for ec_dc_begin(). */
@@ -570,8 +570,8 @@ void ec_session_clocks(struct ec_master *m)
 	struct ec_dc *dc = &m->dc;
 	struct ec_session *s;
 
-	/* an activation in progress may hold it for long: next time then */
-	if (!mutex_trylock(&m->session_lock))
+	/* held by an activation: next time then */
+	if (!ec_session_trylock(m))
 		return;
 	s = m->session;
 	if (s && s->active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :

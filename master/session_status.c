@@ -11,7 +11,7 @@
  * ec_session_config_status() - EC_STATUS_SC_* of a configuration
  * @c: configuration
  *
- * Context: Process, session_lock held.
+ * Context: Process, session_lock held or after ec_show_begin().
  * Return: AL state with the bits online and operational; 0 without slave.
  */
 u8 ec_session_config_status(const struct ec_config *c)
@@ -104,8 +104,8 @@ void ec_session_status(struct ec_master *m)
 {
 	struct ec_session *s;
 
-	/* an activation in progress may hold it for long: next time then */
-	if (!mutex_trylock(&m->session_lock))
+	/* held by an activation: next time then */
+	if (!ec_session_trylock(m))
 		return;
 	s = m->session;
 	if (s && s->active) {

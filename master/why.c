@@ -5,7 +5,7 @@
 #include "slave.h"
 #include "why.h"
 
-/* The ring position @c names now; false: nobody has its alias. @topo is held. */
+/* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
 {
 	const struct ec_master *m = c->session->master;
@@ -25,7 +25,7 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 	return place(has, &p) && p == pos;
 }
 
-/* Nobody is attached: who is there instead? @topo is held. */
+/* Nobody is attached: who is there instead? @topo is held, or it is shown. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_master *m = c->session->master;
@@ -76,16 +76,16 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
  * @buf: one line of text, empty when it is in OP
  * @size: of @buf
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process; with session_lock and topo held, or after ec_show_begin().
  * Return: length of the text.
  */
 size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 {
-	struct ec_master *m = c->session->master;
 	size_t len;
 
+	lockdep_assert(lockdep_is_held(&c->session->master->topo) ||
+		       atomic_read(&c->session->master->show.showing));
 	buf[0] = '\0';
-	down_read(&m->topo);
 	if (!c->slave || c->slave->gone)
 		len = absent(c, buf, size);
 	else if (ec_session_config_status(c) & EC_STATUS_SC_OP)
@@ -95,6 +95,5 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 				ec_al_state_name(c->slave->al_status & EC_AL_STATE_MASK));
 	else
 		len = present(c->slave, buf, size);
-	up_read(&m->topo);
 	return len;
 }

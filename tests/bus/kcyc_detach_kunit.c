@@ -430,7 +430,6 @@ static void heir_is_harmless(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, d.size, 3200u);
 	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), -EBUSY);
-	mutex_destroy(&other.lock);
 }
 
 /* The detached session ends; the one that wanted to take over has the master. */

@@ -275,7 +275,6 @@ static void session_heir_asks(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&other, &ip), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &why), -ENOENT);
 	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &ip), -ENOENT);
-	mutex_destroy(&other.lock);
 }
 
 /* An application in the kernel as the heir: it cannot take over, and disturbs nothing. */

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# A user who may only open the device for reading changes no timing of the master or
+# of an application.
+# vm: --smp 2
+
+load helpers
+
+UPDATES=40
+
+setup_file() {
+	cat >"$BATS_FILE_TMPDIR/segment" <<-END
+	segment seed=41
+	slave s io in=64 out=64 transition=1ms
+	END
+	chmod 755 "$BATS_FILE_TMPDIR"
+	start "$BATS_FILE_TMPDIR/segment" 1
+	chmod o+r /dev/EtherCAT0
+}
+teardown_file() { stop; }
+teardown() {
+	[ -z "${reader:-}" ] || kill -9 "$reader" 2>/dev/null || true
+	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	wait_for 60 all_slaves_are PREOP 1
+}
+
+# nobody COMMAND...: in the background, as a user without any rights
+nobody() {
+	setpriv --reuid 65534 --regid 65534 --clear-groups "$@" \
+		>"$BATS_TEST_TMPDIR/reader" 2>&1 3>&- &
+	reader=$!
+}
+reads() { wait_for 60 grep -q . "$BATS_TEST_TMPDIR/reader"; }
+
+# work: mean time of a cycle of the kernel, us, over 2 s
+work() {
+	ethercat cycle --reset >/dev/null
+	sleep 2
+	ethercat cycle --json | jq '.masters[0].work_mean_ns / 1000 | floor'
+}
+
+@test "1500 epoll entries of a reader take no time of the cycle" {
+	local alone with
+
+	"$EC_BUILD/apps/kcycle" cycles=1000000 period=2000 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 60 grep -q 'slaves in OP' "$BATS_TEST_TMPDIR/out"
+	alone=$(work)
+	nobody "$EC_BUILD/apps/readers" epoll 1500
+	reads
+	with=$(work)
+	cat "$BATS_TEST_TMPDIR/reader"
+	echo "a cycle takes $alone us, with 1500 entries $with us"
+	[ "$with" -le $((alone * 3 / 2 + 20)) ]
+}
+
+@test "six threads that show everything: each update reaches the status page" {
+	nobody "$EC_BUILD/apps/readers" show 6
+	reads
+	run "$EC_BUILD/apps/readers" updates $UPDATES
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"updates: $UPDATES of $UPDATES"* ]]
+}
+
+@test "so do six of the lowest priority beside one of the highest" {
+	nobody chrt --idle 0 "$EC_BUILD/apps/readers" show 6
+	reads
+	chrt --fifo 40 sh -c 'while :; do i=0; while [ $i -lt 2000 ]; do i=$((i + 1)); done; sleep 0.01; done' 3>&- &
+	busy=$!
+	run "$EC_BUILD/apps/readers" updates $UPDATES
+	kill -9 $busy
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"updates: $UPDATES of $UPDATES"* ]]
+}
