@@ -923,8 +923,12 @@ typedef enum {
  *	this; less than the period. With EC_CYCLE_FOLLOW_REFERENCE it counts
  *	from the grid of the SYNC signals.
  * @cpu: that runs the thread, with %EC_CYCLE_BIND_CPU. Without that flag any CPU
- *	may, and this must not name one: 0 or -1
- * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50
+ *	may, and this must not name one: 0 or -1. When that CPU goes offline the
+ *	thread runs on any other until it is online again.
+ * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50. The caller of
+ *	ecrt_master_set_cycle() needs CAP_SYS_NICE; else RLIMIT_RTPRIO limits it, and
+ *	with limit 0 the thread runs SCHED_OTHER. The kernel log and 'ethercat
+ *	cycle' report that.
  * @stall: what to do without new outputs
  * @stall_cycles: after that many cycles in a row without; 0: never. The first
  *	outputs may take their time.

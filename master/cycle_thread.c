@@ -33,7 +33,6 @@
 #include "waiters.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
-#define FIFO_DEFAULT	50
 #define INDEX_MASK	3
 #define ADOPT_MS	1000	/* for a takeover, besides two periods */
 #define STEADY		1000	/* cycles in which all take part, before that is relied on */
@@ -406,11 +405,11 @@ static int run(void *data)
 	const struct ec_ioc_cycle *k = &t->session->kernel;
 	struct sched_attr attr = {
 		.size = sizeof(attr), .sched_policy = SCHED_FIFO,
-		.sched_priority = k->priority ?: FIFO_DEFAULT,
+		.sched_priority = t->session->priority,
 	};
 	u64 now;
 
-	if (sched_setattr_nocheck(current, &attr))
+	if (attr.sched_priority && sched_setattr_nocheck(current, &attr))
 		ec_warn(t->session->master, "cycle: no real-time priority %u\n",
 			attr.sched_priority);
 	now = ktime_get_ns();
@@ -533,6 +532,52 @@ err:
 	return ret;
 }
 
+/* The application does not learn from a successful activation what it lacks. */
+static void log_priority(const struct ec_session *s)
+{
+	u32 wanted = s->kernel.priority ?: EC_CYCLE_PRIORITY;
+
+	if (!s->priority)
+		ec_warn(s->master, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
+			wanted, wanted);
+	else if (s->priority < wanted)
+		ec_warn(s->master, "cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
+			s->priority, wanted);
+}
+
+/**
+ * ec_cycle_thread_check_cpu() - keep the cycle thread on its CPU
+ * @s: active session
+ *
+ * When that CPU goes offline the kernel lets the thread run on all others, for
+ * ever. Once it is online again the thread returns to it.
+ *
+ * Context: The monitor thread, session_lock held. May sleep.
+ */
+void ec_cycle_thread_check_cpu(struct ec_session *s)
+{
+	int cpu = s->kernel.cpu;
+	struct task_struct *task;
+
+	lockdep_assert_held(&s->master->session_lock);
+	if (!s->thread || cpu < 0)
+		return;
+	task = s->thread->task;
+	if (cpumask_equal(task->cpus_ptr, cpumask_of(cpu)))
+		return;
+	if (!s->cpu_lost) {
+		s->cpu_lost = true;
+		s->cpu_losses++;
+		ec_warn(s->master, "CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
+			cpu, cpu);
+	}
+	/* on its way down a CPU is still online */
+	if (cpu_active(cpu) && !set_cpus_allowed_ptr(task, cpumask_of(cpu))) {
+		s->cpu_lost = false;
+		ec_info(s->master, "cycle thread runs on CPU %d again\n", cpu);
+	}
+}
+
 /**
  * ec_cycle_thread_start() - the kernel begins to run the cycle
  * @s: active session; nothing happens when the application runs the cycle
@@ -545,6 +590,7 @@ void ec_cycle_thread_start(struct ec_session *s)
 
 	if (!s->thread)
 		return;
+	log_priority(s);
 	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
 	m->interval_told = true;
 	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?

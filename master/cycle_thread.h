@@ -10,8 +10,11 @@ struct ec_master;
 struct ec_session;
 struct ec_waiters;
 
+#define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
+
 int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes);
 void ec_cycle_thread_start(struct ec_session *s);
+void ec_cycle_thread_check_cpu(struct ec_session *s);
 void ec_cycle_thread_stop(struct ec_session *s);
 int ec_cycle_thread_adopt(struct ec_session *s);
 void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands of the application whose cycle the kernel runs. */
+#include <linux/capability.h>
 #include <linux/cpumask.h>
+#include <linux/sched/signal.h>
 #include "copy.h"
 #include "cycle_thread.h"
 #include "domain.h"
@@ -45,6 +47,14 @@ static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 	return 0;
 }
 
+/* As sched_setscheduler() would allow it to the caller itself. */
+static u32 permitted(u32 priority)
+{
+	if (capable(CAP_SYS_NICE))
+		return priority;
+	return min_t(unsigned long, priority, rlimit(RLIMIT_RTPRIO));
+}
+
 int ec_ioc_cycle(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_cycle *i = arg;
@@ -57,6 +67,7 @@ int ec_ioc_cycle(struct ec_file *f, void *arg)
 	if (!s)
 		return ret;
 	s->kernel = *i;
+	s->priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
 	ec_session_unlock(f->master);
 	return 0;
 }

@@ -16,6 +16,7 @@
 #include <linux/math64.h>
 #include <linux/minmax.h>
 #include <linux/string.h>
+#include "cycle_thread.h"
 #include "late.h"
 #include "master.h"
 #include "once64.h"
@@ -190,6 +191,10 @@ static void describe(const struct ec_session *s, struct ec_ioc_cycle_stats *info
 	info->told = kernel || s->master->interval_told;
 	info->interval_ns = kernel ? s->kernel.period_ns :
 				     READ_ONCE(s->cycle.schedule.interval_ns);
+	info->cpu = kernel ? s->kernel.cpu : -1;
+	info->cpu_losses = s->cpu_losses;
+	info->priority = kernel ? s->priority : 0;
+	info->priority_wanted = kernel ? s->kernel.priority ?: EC_CYCLE_PRIORITY : 0;
 }
 
 static void get(struct ec_session *s, struct ec_ioc_cycle_stats *info,
@@ -240,6 +245,10 @@ void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
 	info->kind = m->late.info.kind;
 	info->told = m->late.info.told;
 	info->interval_ns = m->late.info.interval_ns;
+	info->cpu = m->late.info.cpu;
+	info->cpu_losses = m->late.info.cpu_losses;
+	info->priority = m->late.info.priority;
+	info->priority_wanted = m->late.info.priority_wanted;
 	*st = m->late.status;
 }
 

@@ -237,6 +237,9 @@ static void clear(struct ec_session *s)
 	s->ref_config = EC_UAPI_NONE32;
 	s->late_per_s = EC_LATE_PER_S;
 	memset(&s->kernel, 0, sizeof(s->kernel));
+	s->priority = 0;
+	s->cpu_lost = false;
+	s->cpu_losses = 0;
 }
 
 /* The next application begins with what it tells itself. */

@@ -88,6 +88,10 @@ struct ec_stall_log {
  * @stall_log: stalls of the application in the log
  * @lock_told: EC_CYCLE_LOCK_* as the log knows it
  * @kernel: how the kernel shall run the cycle; period 0: it shall not
+ * @priority: SCHED_FIFO priority that the process which set @kernel may use; 0:
+ *	none
+ * @cpu_lost: the CPU of the cycle is offline
+ * @cpu_losses: how often it went offline
  * @thread: runs the cycle while @active; NULL: the application does
  * @late_per_s: how many cycles a second acyclic frames may make late
  * @room_told: the log says that they do not fit
@@ -117,6 +121,9 @@ struct ec_session {
 	struct ec_stall_log stall_log;
 	u32 lock_told;
 	struct ec_ioc_cycle kernel;
+	u32 priority;
+	bool cpu_lost;
+	u32 cpu_losses;
 	struct ec_cycle_thread *thread;
 	u32 late_per_s;
 	bool room_told;

@@ -2,6 +2,7 @@
 /* What an active session is told about the bus, and the log about its application. */
 #include "config.h"
 #include "cycle_lock.h"
+#include "cycle_thread.h"
 #include "master.h"
 #include "once64.h"
 #include "session.h"
@@ -111,6 +112,7 @@ void ec_session_status(struct ec_master *m)
 	if (s && s->active) {
 		log_stalls(s, ktime_get_ns());
 		ec_cycle_lock_log(s);
+		ec_cycle_thread_check_cpu(s);
 		ec_dc_app_log(m);
 		ec_cycle_tell_room(s);
 		ec_session_fill_status(s);

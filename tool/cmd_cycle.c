@@ -156,6 +156,26 @@ static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle
 	out_bool("interval_told", i->told, "%s)\n", i->told ? "told" : "measured");
 }
 
+/* of a cycle run by the kernel */
+static void thread(const struct ec_ioc_cycle_stats *i)
+{
+	out_text("  Thread: ");
+	if (i->priority)
+		out_text("SCHED_FIFO %u", i->priority);
+	else
+		out_text("SCHED_OTHER");
+	if (i->priority < i->priority_wanted)
+		out_text(" (SCHED_FIFO %u not permitted)", i->priority_wanted);
+	if (i->cpu < 0)
+		out_text(", any CPU\n");
+	else
+		out_text(", CPU %d, offline %u time(s)\n", i->cpu, i->cpu_losses);
+	out_u("priority", i->priority, NULL);
+	out_u("priority_wanted", i->priority_wanted, NULL);
+	out_i("cpu", i->cpu, NULL);
+	out_u("cpu_losses", i->cpu_losses, NULL);
+}
+
 static int show(const struct tool *t, struct dev *d)
 {
 	struct ec_status_cycle st = { 0 };
@@ -167,6 +187,8 @@ static int show(const struct tool *t, struct dev *d)
 	out_object(NULL);
 	out_u("master", d->master, "Master%u\n", d->master);
 	who(&info, &st);
+	if (info.kind == EC_CYCLE_BY_KERNEL)
+		thread(&info);
 	if (info.kind != EC_CYCLE_BY_NOBODY) {
 		figures(&st);
 		work(&st);
@@ -204,5 +226,6 @@ const struct cmd cmd_cycle = {
 		"stopped, waiting, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
 		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
 		"work_mean_ns, work_max_ns (how long a cycle of the kernel takes), histogram[] (from_ns,\n"
-		"to_ns, sends; none that is empty). Of nobody master and by only",
+		"to_ns, sends; none that is empty). By kernel only: priority (SCHED_FIFO; 0: SCHED_OTHER),\n"
+		"priority_wanted (configured), cpu (-1: any), cpu_losses (how often it went offline). Of nobody master and by only",
 };

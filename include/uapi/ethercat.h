@@ -467,6 +467,11 @@ struct ec_ioc_cycle_stats {
 	__u32 interval_ns;
 	__u32 size;		/* in: room; out: bytes copied */
 	__u64 data;		/* of struct ec_status_cycle */
+	/* kernel: the thread */
+	__s32 cpu;		/* configured, -1: any */
+	__u32 cpu_losses;	/* how often that CPU went offline */
+	__u32 priority;		/* SCHED_FIFO; 0: SCHED_OTHER */
+	__u32 priority_wanted;	/* as configured */
 };
 
 /* application ---------------------------------------------------------------*/
@@ -701,7 +706,8 @@ struct ec_ioc_cycle {
 	__u32 period_ns;	/* 10000..1000000000 */
 	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC; of the SYNC grid */
 	__s32 cpu;		/* -1: any */
-	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50 */
+	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50. Limited by CAP_SYS_NICE and
+				 * RLIMIT_RTPRIO of the caller; with neither: SCHED_OTHER */
 	__u32 stall;		/* EC_STALL_* */
 	__u32 stall_cycles;	/* 0: no stall */
 	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR,

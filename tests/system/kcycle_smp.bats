@@ -14,10 +14,71 @@ setup_file() {
 	start "$BATS_FILE_TMPDIR/segment" 1
 }
 teardown_file() { stop; }
+teardown() {
+	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	echo 1 >/sys/devices/system/cpu/cpu1/online
+	wait_for 60 all_slaves_are PREOP 1
+}
+
+# run_as [COMMAND...] -- [ARG...]: kcycle in the background, until all slaves are in OP
+run_as() {
+	local as=()
+
+	while [ "$1" != -- ]; do as+=("$1"); shift; done
+	shift
+	dmesg -C
+	${as[@]+"${as[@]}"} "$EC_BUILD/apps/kcycle" cycles=1000000 period=2000 "$@" \
+		>"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 60 grep -q 'in OP' "$BATS_TEST_TMPDIR/out"
+	thread=$(pgrep -x EtherCAT0-cyc)
+}
+scheduling() { ps -o cls=,rtprio= -p "$thread" | xargs; }
+allowed() { sed -n 's/^Cpus_allowed_list:\t//p' "/proc/$thread/status"; }
+on_cpu() { [ "$(allowed)" = "$1" ]; }
+group=(setpriv --reuid 65534 --regid 65534 --clear-groups)
 
 @test "no image is torn while both copy" {
 	run "$EC_BUILD/apps/kcycle" cycles=5000 loop=1 spin=1 cpu=1
 	echo "$output"
 	[ "$status" = 0 ]
 	[[ "$output" == *"cycles: 5000, "*", torn: 0"* ]]
+}
+
+@test "a member of the group without RLIMIT_RTPRIO gets a cycle without real-time priority" {
+	chmod o+rw /dev/EtherCAT0
+	run_as prlimit --rtprio=0 "${group[@]}" -- priority=98
+	[ "$(scheduling)" = "TS -" ]
+	json '.masters[0] | .priority == 0 and .priority_wanted == 98 and .cpu == -1' cycle
+	[[ "$(ethercat cycle)" == *"Thread: SCHED_OTHER (SCHED_FIFO 98 not permitted), any CPU"* ]]
+	dmesg | grep 'SCHED_OTHER: SCHED_FIFO 98 needs CAP_SYS_NICE or RLIMIT_RTPRIO 98'
+}
+
+@test "with RLIMIT_RTPRIO the group gets what that allows" {
+	chmod o+rw /dev/EtherCAT0
+	run_as prlimit --rtprio=60 "${group[@]}" -- priority=98
+	[ "$(scheduling)" = "FF 60" ]
+	dmesg | grep 'SCHED_FIFO 60: 98 exceeds RLIMIT_RTPRIO'
+	kill -9 "$app"
+	wait_for 60 all_slaves_are PREOP 1
+	run_as prlimit --rtprio=60 "${group[@]}" -- priority=55
+	[ "$(scheduling)" = "FF 55" ]
+	! dmesg | grep RLIMIT || false
+}
+
+@test "the thread returns to its CPU after that was offline" {
+	run_as -- cpu=1
+	[ "$(allowed)" = 1 ]
+	for losses in 1 2; do
+		dmesg -C
+		echo 0 >/sys/devices/system/cpu/cpu1/online
+		wait_for 10 json ".masters[0] | .cpu == 1 and .cpu_losses == $losses" cycle
+		sleep 1
+		[ "$(dmesg | grep -c 'CPU 1 of the cycle thread went offline')" = 1 ]
+		[ "$(allowed)" != 1 ]
+		echo 1 >/sys/devices/system/cpu/cpu1/online
+		wait_for 10 on_cpu 1
+	done
+	[[ "$(ethercat cycle)" == *"Thread: SCHED_FIFO 50, CPU 1, offline 2 time(s)"* ]]
+	json '.masters[0].state == "running"' cycle
 }

@@ -436,6 +436,7 @@ static int cycle_stats(struct ec_ioc_cycle_stats *x)
 	x->active = 1;
 	x->told = bus("kcycle");
 	x->interval_ns = bus("app") ? 1000123 : 250000;
+	x->cpu = -1;
 	st.late[63] = 4900;
 	st.late[64] = 5000;
 	st.late[81] = 95;
@@ -447,6 +448,10 @@ static int cycle_stats(struct ec_ioc_cycle_stats *x)
 		st.work_count = 10000;
 		st.work_max = 9876;
 		st.missed = 3;
+		x->cpu = 2;
+		x->cpu_losses = 1;
+		x->priority = 40;
+		x->priority_wanted = 80;
 	}
 	memcpy((void *)(uintptr_t)x->data, &st, sizeof(st));
 	return 0;
