@@ -3,7 +3,6 @@
 #include <linux/module.h>
 #include <linux/poll.h>
 #include <linux/slab.h>
-#include <linux/vmalloc.h>
 #include "cdev.h"
 #include "compat.h"
 #include "cycle_thread.h"
@@ -32,7 +31,7 @@ void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable)
 static int ec_open(struct inode *inode, struct file *filp)
 {
 	struct ec_master *m = container_of(inode->i_cdev, struct ec_master, cdev);
-	struct ec_file *f = kzalloc(sizeof(*f), GFP_KERNEL);
+	struct ec_file *f = kzalloc(sizeof(*f), GFP_KERNEL_ACCOUNT);
 
 	if (!f)
 		return -ENOMEM;
@@ -81,23 +80,23 @@ static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
 		/* the image of a cycle the kernel runs is the kernel's */
 		if (!sh->image || sh->exchange || len > sh->image_size)
 			return -EINVAL;
-		ret = remap_vmalloc_range(vma, sh->image, 0);
+		ret = ec_shared_map(vma, sh->image);
 	} else if (offset == EC_MMAP_EXCHANGE) {
 		if (!sh->exchange || len > sh->exchange_size)
 			return -EINVAL;
-		ret = remap_vmalloc_range(vma, sh->exchange, 0);
+		ret = ec_shared_map(vma, sh->exchange);
 	} else if (offset == EC_MMAP_STATUS) {
 		if (vma->vm_flags & VM_WRITE)
 			return -EPERM;
 		if (len > EC_STATUS_BYTES)
 			return -EINVAL;
-		ret = remap_vmalloc_range(vma, sh->status, 0);
+		ret = ec_shared_map(vma, sh->status);
 		if (!ret)
 			ec_vma_flags(vma, 0, VM_MAYWRITE);
 	} else if (offset == EC_MMAP_REQUESTS) {
 		if (!sh->requests || len > sh->request_size)
 			return -EINVAL;
-		ret = remap_vmalloc_range(vma, sh->requests, 0);
+		ret = ec_shared_map(vma, sh->requests);
 	} else {
 		return -EINVAL;
 	}

@@ -2,6 +2,7 @@
 #include <linux/slab.h>
 #include "config.h"
 #include "domain.h"
+#include "grow.h"
 #include "limits.h"
 #include "master.h"
 #include "session.h"
@@ -81,7 +82,7 @@ static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
  *
  * Context: Process, session_lock held. May sleep.
  * Return: configuration, or ERR_PTR: -ENOENT when it exists with another
- * identity, -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS.
+ * identity, -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS, -EDQUOT as ec_session_charge().
  */
 struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
 				   u32 product)
@@ -89,6 +90,7 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	const struct ec_config *before;
 	struct ec_config *c, **p;
 	unsigned int i;
+	int ret;
 
 	for (i = 0; i < s->n_configs; i++) {
 		c = s->configs[i];
@@ -98,13 +100,17 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	}
 	if (s->n_configs >= EC_MAX_CONFIGS)
 		return ERR_PTR(-ENOSPC);
-	p = krealloc_array(s->configs, s->n_configs + 1, sizeof(*p), GFP_KERNEL);
-	if (!p)
+	ret = ec_session_charge(s, sizeof(*c) + sizeof(*p));
+	if (ret)
+		return ERR_PTR(ret);
+	p = ec_grow(s->configs, s->n_configs, sizeof(*p));
+	if (p)
+		s->configs = p;
+	c = p ? kzalloc(sizeof(*c), GFP_KERNEL_ACCOUNT) : NULL;
+	if (!c) {
+		ec_session_uncharge(s, sizeof(*c) + sizeof(*p));
 		return ERR_PTR(-ENOMEM);
-	s->configs = p;
-	c = kzalloc(sizeof(*c), GFP_KERNEL);
-	if (!c)
-		return ERR_PTR(-ENOMEM);
+	}
 	c->session = s;
 	c->index = s->n_configs;
 	c->alias = alias;
@@ -121,6 +127,9 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 		inherit_defaults(c, before);
 	else if (c->slave)
 		ec_config_defaults(c, c->slave);
+	/* as many as slaves have */
+	for (i = 0; i < EC_MAX_SM; i++)
+		s->bytes += ec_pdo_list_memory(&c->sm[i].pdos);
 	return c;
 }
 
@@ -134,11 +143,11 @@ void ec_config_free(struct ec_config *c)
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&c->sm[i].pdos);
 	list_for_each_entry_safe(sdo, n, &c->sdos, list)
-		kfree(sdo);
+		kvfree(sdo);
 	list_for_each_entry_safe(idn, after, &c->idns, list)
-		kfree(idn);
+		kvfree(idn);
 	list_for_each_entry_safe(flag, next, &c->flags, list)
-		kfree(flag);
+		kvfree(flag);
 	kfree(c);
 }
 
@@ -179,22 +188,31 @@ static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
 int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 {
 	struct ec_pdo *p;
+	int ret;
 
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
 	if (c->sm[sm].pdos.n >= EC_MAX_SC_PDOS)
 		return -ENOSPC;
+	ret = ec_session_charge(c->session, sizeof(*p));
+	if (ret)
+		return ret;
 	p = ec_pdo_add(&c->sm[sm].pdos, pdo, 0);
-	if (!p)
+	if (!p) {
+		ec_session_uncharge(c->session, sizeof(*p));
 		return -ENOMEM;
+	}
 	c->sm[sm].explicit = true;
-	return known_entries(c, pdo, p);
+	ret = known_entries(c, pdo, p);
+	c->session->bytes += p->n_entries * sizeof(*p->entries);
+	return ret;
 }
 
 int ec_config_assign_clear(struct ec_config *c, u8 sm)
 {
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
+	ec_session_uncharge(c->session, ec_pdo_list_memory(&c->sm[sm].pdos));
 	ec_pdo_list_clear(&c->sm[sm].pdos);
 	c->sm[sm].explicit = true;
 	return 0;
@@ -218,20 +236,44 @@ static struct ec_pdo *find(struct ec_config *c, u16 pdo)
 int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e)
 {
 	struct ec_pdo *p = find(c, pdo);
+	int ret = p ? ec_session_charge(c->session, sizeof(*e)) : -ENOENT;
 
-	return p ? ec_pdo_add_entry(p, e) : -ENOENT;
+	if (ret)
+		return ret;
+	ret = ec_pdo_add_entry(p, e);
+	if (ret)
+		ec_session_uncharge(c->session, sizeof(*e));
+	return ret;
 }
 
 int ec_config_map_clear(struct ec_config *c, u16 pdo)
 {
 	struct ec_pdo *p = find(c, pdo);
 
-	if (p)
+	if (p) {
+		ec_session_uncharge(c->session, p->n_entries * sizeof(*p->entries));
 		ec_pdo_clear_entries(p);
-	else
+	} else {
 		ec_warn(c->session->master, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
 			c->alias, c->position, pdo);
+	}
 	return 0;
+}
+
+/* Memory for a part of the configuration, counted; ERR_PTR without. */
+static void *alloc(struct ec_config *c, size_t size)
+{
+	int ret = ec_session_charge(c->session, size);
+	void *p;
+
+	if (ret)
+		return ERR_PTR(ret);
+	/* a value may be large: no need for contiguous pages */
+	p = kvzalloc(size, GFP_KERNEL_ACCOUNT);
+	if (p)
+		return p;
+	ec_session_uncharge(c->session, size);
+	return ERR_PTR(-ENOMEM);
 }
 
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
@@ -241,9 +283,9 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 
 	if (c->n_sdos >= EC_MAX_SC_SDOS)
 		return -ENOSPC;
-	sdo = kmalloc(struct_size(sdo, data, size), GFP_KERNEL);
-	if (!sdo)
-		return -ENOMEM;
+	sdo = alloc(c, struct_size(sdo, data, size));
+	if (IS_ERR(sdo))
+		return PTR_ERR(sdo);
 	sdo->index = index;
 	sdo->sub = sub;
 	sdo->complete = complete;
@@ -264,9 +306,9 @@ int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8
 
 	if (c->n_idns >= EC_MAX_SC_IDNS)
 		return -ENOSPC;
-	i = kmalloc(struct_size(i, data, size), GFP_KERNEL);
-	if (!i)
-		return -ENOMEM;
+	i = alloc(c, struct_size(i, data, size));
+	if (IS_ERR(i))
+		return PTR_ERR(i);
 	i->idn = idn;
 	i->drive = drive;
 	i->state = state;
@@ -290,9 +332,9 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	}
 	if (c->n_flags >= EC_MAX_SC_FLAGS)
 		return -ENOSPC;
-	flag = kzalloc(sizeof(*flag), GFP_KERNEL);
-	if (!flag)
-		return -ENOMEM;
+	flag = alloc(c, sizeof(*flag));
+	if (IS_ERR(flag))
+		return PTR_ERR(flag);
 	strscpy(flag->key, key, sizeof(flag->key));
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, "AssignToPdi"))

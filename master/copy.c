@@ -113,7 +113,7 @@ int ec_copy_add(struct ec_session *s, const struct ec_copy *copy)
 	if (s->n_copies >= EC_MAX_COPIES)
 		return -ENOSPC;
 	if (!s->copies)
-		s->copies = kvcalloc(EC_MAX_COPIES, sizeof(*s->copies), GFP_KERNEL);
+		s->copies = kvcalloc(EC_MAX_COPIES, sizeof(*s->copies), GFP_KERNEL_ACCOUNT);
 	if (!s->copies)
 		return -ENOMEM;
 	s->copies[s->n_copies++] = *copy;
@@ -137,7 +137,7 @@ int ec_copies_begin(struct ec_session *s)
 		return 0;
 	for (i = 0; i < s->n_copies; i++)
 		bytes += DIV_ROUND_UP(s->copies[i].bits, 8);
-	c = kvzalloc(sizeof(*c) + steps + bytes, GFP_KERNEL);
+	c = kvzalloc(sizeof(*c) + steps + bytes, GFP_KERNEL_ACCOUNT);
 	if (!c)
 		return -ENOMEM;
 	c->n = s->n_copies;

@@ -16,7 +16,6 @@
 #include <linux/ktime.h>
 #include <linux/sched.h>
 #include <linux/slab.h>
-#include <linux/vmalloc.h>
 #include <linux/completion.h>
 #include <linux/rcupdate.h>
 #include <linux/wait.h>
@@ -440,7 +439,7 @@ static int find_outputs(struct ec_cycle_thread *t)
 
 	for (i = 0; i < s->n_domains; i++)
 		n += s->domains[i]->n_fmmus;
-	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL);
+	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL_ACCOUNT);
 	if (!t->outputs)
 		return -ENOMEM;
 	for (i = 0; i < s->n_domains; i++)
@@ -468,7 +467,7 @@ static int alloc_exchange(struct ec_cycle_thread *t)
 
 	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
 	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
-	sh->exchange = vmalloc_user(sh->exchange_size);
+	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
 	if (!sh->exchange)
 		return -ENOMEM;
 	deal(t);
@@ -496,7 +495,7 @@ static void free_thread(struct ec_cycle_thread *t)
  */
 int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
 {
-	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL);
+	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
 	int ret, cpu = s->kernel.cpu;
 
 	if (!t)

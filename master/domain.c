@@ -2,6 +2,7 @@
 #include <linux/slab.h>
 #include "config.h"
 #include "domain.h"
+#include "grow.h"
 #include "limits.h"
 #include "session.h"
 
@@ -18,7 +19,7 @@ struct ec_domain *ec_domain_create(struct ec_session *s)
 
 	if (s->n_domains >= EC_MAX_DOMAINS)
 		return ERR_PTR(-ENOSPC);
-	d = kzalloc(sizeof(*d), GFP_KERNEL);
+	d = kzalloc(sizeof(*d), GFP_KERNEL_ACCOUNT);
 	if (!d)
 		return ERR_PTR(-ENOMEM);
 	d->session = s;
@@ -30,7 +31,7 @@ struct ec_domain *ec_domain_create(struct ec_session *s)
 
 void ec_domain_free(struct ec_domain *d)
 {
-	kfree(d->fmmus);
+	kvfree(d->fmmus);
 	kfree(d);
 }
 
@@ -62,7 +63,7 @@ int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu)
 
 	if (d->size + c->fmmus[fmmu].size > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	p = krealloc_array(d->fmmus, d->n_fmmus + 1, sizeof(*p), GFP_KERNEL);
+	p = ec_grow(d->fmmus, d->n_fmmus, sizeof(*p));
 	if (!p)
 		return -ENOMEM;
 	d->fmmus = p;

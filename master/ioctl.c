@@ -4,6 +4,8 @@
 #include <linux/nospec.h>
 #include <linux/uaccess.h>
 #include "ioctl.h"
+#include "limits.h"
+#include "master.h"
 
 #define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
 
@@ -126,6 +128,42 @@ int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
 	raw_spin_unlock(&f->lock);
 	va_end(args);
 	return err;
+}
+
+/**
+ * ec_ioc_limit() - refuse what is beyond the memory of a master's sessions
+ * @f: open file
+ * @ret: result so far
+ *
+ * Context: Process.
+ * Return: -ENOMEM for -EDQUOT, with the reason noted; else @ret.
+ */
+int ec_ioc_limit(struct ec_file *f, int ret)
+{
+	if (ret != -EDQUOT)
+		return ret;
+	return ec_refuse(f, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
+			 EC_MAX_SESSION_BYTES >> 20, f->master->index);
+}
+
+/**
+ * ec_ioc_fetch() - get a value from the process
+ * @from: address in the process
+ * @size: its bytes, checked
+ * @data: out: the value, for kvfree()
+ *
+ * Context: Process, no lock held.
+ * Return: 0, -ENOMEM or -EFAULT.
+ */
+int ec_ioc_fetch(u64 from, u32 size, u8 **data)
+{
+	*data = kvmalloc(size, GFP_KERNEL_ACCOUNT);
+	if (!*data)
+		return -ENOMEM;
+	if (!copy_from_user(*data, u64_to_user_ptr(from), size))
+		return 0;
+	kvfree(*data);
+	return -EFAULT;
 }
 
 /**

@@ -11,6 +11,8 @@
 struct ec_slave;
 
 struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret);
+int ec_ioc_limit(struct ec_file *f, int ret);
+int ec_ioc_fetch(u64 from, u32 size, u8 **data);
 int ec_ioc_hand_over(u64 to, void *data, u32 size, int ret);
 
 /* ioctl_info.c: no bus traffic */

@@ -150,6 +150,8 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg)
 	if (!s)
 		return ret;
 	c = ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);
+	if (IS_ERR(c) && PTR_ERR(c) == -EDQUOT)
+		return done(f, ec_ioc_limit(f, PTR_ERR(c)));
 	if (IS_ERR(c))
 		return done(f, ec_refuse(f, PTR_ERR(c), "slave %u:%u is configured as another device already, or there are too many",
 					 i->alias, i->position));
@@ -210,7 +212,9 @@ int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 	default:
 		ret = -EINVAL;
 	}
-	if (ret)
+	if (ret == -EDQUOT)
+		ret = ec_ioc_limit(f, ret);
+	else if (ret)
 		ec_refuse(f, ret, "PDO 0x%04x at SM%u: operation %u failed; assign the PDO before mapping it",
 			  i->pdo, i->sm, i->op);
 	return done(f, ret);
@@ -330,7 +334,7 @@ int ec_ioc_sc_flag(struct ec_file *f, void *arg)
 	ret = ec_config_flag_set(c, i->key, i->value);
 	if (ret == -ENOSPC)
 		ec_refuse(f, ret, "a slave configuration has at most %u flags", EC_MAX_SC_FLAGS);
-	return done(f, ret);
+	return done(f, ec_ioc_limit(f, ret));
 }
 
 int ec_ioc_sc_timeout(struct ec_file *f, void *arg)
@@ -367,6 +371,8 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 	case -ENOSPC:
 		return ec_refuse(f, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and no cycle may be late; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
 				 ec_cycle_need_ns());
+	case -EDQUOT:
+		return ec_ioc_limit(f, ret);
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
 	case -EOPNOTSUPP:
@@ -426,14 +432,14 @@ static void tell_sizes(const struct ec_session *s, struct ec_ioc_activate *i)
 int ec_ioc_activate(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_activate *i = arg;
-	void *preset = NULL;
 	struct ec_session *s;
+	u8 *preset = NULL;
 	int ret = 0;
 
 	if (i->preset_size && i->preset_size <= EC_MAX_IMAGE) {
-		preset = vmemdup_user(u64_to_user_ptr(i->preset), i->preset_size);
-		if (IS_ERR(preset))
-			return PTR_ERR(preset);
+		ret = ec_ioc_fetch(i->preset, i->preset_size, &preset);
+		if (ret)
+			return ret;
 	}
 	s = lock(f, &ret);
 	if (s) {

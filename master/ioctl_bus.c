@@ -54,7 +54,7 @@ int ec_ioc_reg_read(struct ec_file *f, void *arg)
 
 	if (ret)
 		return ret;
-	buf = kzalloc(i->size, GFP_KERNEL);
+	buf = kzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (!buf)
 		return -ENOMEM;
 	ret = reg_access(f, i, EC_CMD_FPRD, buf);
@@ -69,11 +69,11 @@ int ec_ioc_reg_write(struct ec_file *f, void *arg)
 
 	if (ret)
 		return ret;
-	buf = memdup_user(u64_to_user_ptr(i->data), i->size);
-	if (IS_ERR(buf))
-		return PTR_ERR(buf);
+	ret = ec_ioc_fetch(i->data, i->size, &buf);
+	if (ret)
+		return ret;
 	ret = reg_access(f, i, EC_CMD_FPWR, buf);
-	kfree(buf);
+	kvfree(buf);
 	return ret;
 }
 

@@ -36,11 +36,11 @@ static u32 room(u32 size, u32 most)
 static int with_value(struct ec_file *f, void *arg, u64 from, u32 size,
 		      int (*command)(struct ec_file *f, void *arg, const u8 *data))
 {
-	u8 *data = vmemdup_user(u64_to_user_ptr(from), size);
-	int ret;
+	u8 *data;
+	int ret = ec_ioc_fetch(from, size, &data);
 
-	if (IS_ERR(data))
-		return PTR_ERR(data);
+	if (ret)
+		return ret;
 	ret = command(f, arg, data);
 	kvfree(data);
 	return ret;
@@ -202,6 +202,7 @@ int ec_ioc_store_sdo(struct ec_file *f, void *arg, const u8 *data)
 	if (ret == -ENOSPC)
 		ec_refuse(f, ret, "a slave configuration has at most %u startup SDOs",
 			  EC_MAX_SC_SDOS);
+	ret = ec_ioc_limit(f, ret);
 	ec_session_unlock(f->master);
 	return ret;
 }
@@ -356,7 +357,7 @@ int ec_ioc_store_idn(struct ec_file *f, void *arg, const u8 *data)
 
 	if (!c)
 		return ret;
-	ret = store_idn(f, c, i, data);
+	ret = ec_ioc_limit(f, store_idn(f, c, i, data));
 	ec_session_unlock(f->master);
 	return ret;
 }

@@ -6,6 +6,7 @@
 #include "config.h"
 #include "cycle.h"
 #include "domain.h"
+#include "grow.h"
 #include "logical.h"
 #include "master.h"
 #include "session.h"
@@ -46,12 +47,6 @@ static u16 count_slaves(const struct layout *o, const struct ec_stretch *st, u8 
 	return n;
 }
 
-/* Append to an array; NULL without memory. */
-static void *append(void *array, unsigned int n, size_t size)
-{
-	return krealloc_array(array, n + 1, size, GFP_KERNEL);
-}
-
 static struct ec_cyc_dgram *add_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd,
 				      u16 expected)
 {
@@ -60,7 +55,7 @@ static struct ec_cyc_dgram *add_dgram(struct layout *o, const struct ec_stretch 
 
 	if (c->n_dgrams >= EC_MAX_CYCLE_DGRAMS)
 		return ERR_PTR(-EOVERFLOW);
-	g = append(c->dgrams, c->n_dgrams, sizeof(*g));
+	g = ec_grow(c->dgrams, c->n_dgrams, sizeof(*g));
 	if (!g)
 		return ERR_PTR(-ENOMEM);
 	c->dgrams = g;
@@ -81,7 +76,7 @@ static int add_area(struct ec_cycle *c, u16 *count, u32 offset, u16 pos, u16 len
 		a->len += len;
 		return 0;
 	}
-	a = append(c->areas, c->n_areas, sizeof(*a));
+	a = ec_grow(c->areas, c->n_areas, sizeof(*a));
 	if (!a)
 		return -ENOMEM;
 	c->areas = a;
@@ -125,7 +120,7 @@ static int add_cut(struct ec_cycle *c, u32 offset, u32 len)
 		k[c->n_cuts - 1].parts++;
 		return 0;
 	}
-	k = append(c->cuts, c->n_cuts, sizeof(*k));
+	k = ec_grow(c->cuts, c->n_cuts, sizeof(*k));
 	if (!k)
 		return -ENOMEM;
 	c->cuts = k;
@@ -319,7 +314,7 @@ static int alloc_stage(struct ec_cycle *c, const struct ec_session *s)
 {
 	if (!c->n_cuts)
 		return 0;
-	c->stage = kvzalloc(s->shared->image_size, GFP_KERNEL);
+	c->stage = kvzalloc(s->shared->image_size, GFP_KERNEL_ACCOUNT);
 	return c->stage ? 0 : -ENOMEM;
 }
 
@@ -454,9 +449,9 @@ static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c)
 {
 	forget_flights(m, c);
-	kfree(c->dgrams);
-	kfree(c->areas);
-	kfree(c->cuts);
+	kvfree(c->dgrams);
+	kvfree(c->areas);
+	kvfree(c->cuts);
 	kvfree(c->stage);
 	memset(c, 0, sizeof(*c));
 }

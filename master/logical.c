@@ -11,6 +11,7 @@
 #include <linux/slab.h>
 #include <linux/sort.h>
 #include "config.h"
+#include "grow.h"
 #include "logical.h"
 #include "session.h"
 #include "slave.h"
@@ -156,7 +157,7 @@ static int close_stretch(struct place *p, u32 next, unsigned int first)
 	struct ec_logical *l = p->l;
 	struct ec_stretch *st;
 
-	st = krealloc_array(l->stretches, l->n_stretches + 1, sizeof(*st), GFP_KERNEL);
+	st = ec_grow(l->stretches, l->n_stretches, sizeof(*st));
 	if (!st)
 		return -ENOMEM;
 	l->stretches = st;
@@ -255,7 +256,7 @@ int ec_logical_place(struct ec_domain *d, struct ec_logical *l)
 	int ret = 0;
 
 	*l = (struct ec_logical){ .separate = wants_separate(d) };
-	l->refs = kvcalloc(d->n_fmmus + 1, sizeof(*l->refs), GFP_KERNEL);
+	l->refs = kvcalloc(d->n_fmmus + 1, sizeof(*l->refs), GFP_KERNEL_ACCOUNT);
 	if (!l->refs)
 		return -ENOMEM;
 	arrange(&p);
@@ -276,5 +277,5 @@ int ec_logical_place(struct ec_domain *d, struct ec_logical *l)
 void ec_logical_free(struct ec_logical *l)
 {
 	kvfree(l->refs);
-	kfree(l->stretches);
+	kvfree(l->stretches);
 }

@@ -49,6 +49,7 @@ int ec_pdo_copy_entries(struct ec_pdo *dst, const struct ec_pdo *src);
 void ec_pdo_clear_entries(struct ec_pdo *pdo);
 void ec_pdo_list_clear(struct ec_pdo_list *l);
 struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index);
+size_t ec_pdo_list_memory(const struct ec_pdo_list *l);
 u32 ec_pdo_bits(const struct ec_pdo *pdo);
 u32 ec_pdo_list_bytes(const struct ec_pdo_list *l);
 bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b);

@@ -144,7 +144,7 @@ static void pick_up(struct ec_request *r, u64 now)
 		fail(r, ret);
 		return;
 	}
-	r->buf = kvzalloc(max(r->size, 1u), GFP_KERNEL);
+	r->buf = kvzalloc(max(r->size, 1u), GFP_KERNEL_ACCOUNT);
 	if (!r->buf)
 		fail(r, -ENOMEM);
 	else if (ec_request_writes(r))
@@ -315,7 +315,7 @@ int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *i
 	if (s->n_specs >= EC_MAX_REQUESTS || bytes > EC_MAX_REQUEST_BYTES)
 		return -ENOSPC;
 	if (!s->specs)
-		s->specs = kvcalloc(EC_MAX_REQUESTS, sizeof(*s->specs), GFP_KERNEL);
+		s->specs = kvcalloc(EC_MAX_REQUESTS, sizeof(*s->specs), GFP_KERNEL_ACCOUNT);
 	if (!s->specs)
 		return -ENOMEM;
 	*index = s->n_specs;
@@ -461,7 +461,7 @@ int ec_requests_begin(struct ec_session *s)
 
 	if (!s->n_configs)
 		return 0;
-	rq = kzalloc(sizeof(*rq), GFP_KERNEL);
+	rq = kzalloc(sizeof(*rq), GFP_KERNEL_ACCOUNT);
 	if (!rq)
 		return -ENOMEM;
 	kref_init(&rq->kref);
@@ -471,9 +471,9 @@ int ec_requests_begin(struct ec_session *s)
 	rq->master = s->master;
 	rq->shared = s->shared;
 	ec_shared_get(rq->shared);
-	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL);
+	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
 	rq->n_lanes = count_lanes(s);
-	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL);
+	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL_ACCOUNT);
 	if (!rq->reqs || !rq->lanes) {
 		put(rq);
 		return -ENOMEM;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
-#include <linux/vmalloc.h>
 #include "config.h"
 #include "copy.h"
 #include "cycle_lock.h"
@@ -13,48 +12,6 @@
 #include "session.h"
 #include "slave.h"
 #include "waiters.h"
-
-static void shared_release(struct kref *kref)
-{
-	struct ec_shared *sh = container_of(kref, struct ec_shared, kref);
-
-	vfree(sh->image);
-	vfree(sh->exchange);
-	vfree(sh->status);
-	vfree(sh->requests);
-	kfree(sh);
-}
-
-void ec_shared_get(struct ec_shared *sh)
-{
-	kref_get(&sh->kref);
-}
-
-void ec_shared_put(struct ec_shared *sh)
-{
-	kref_put(&sh->kref, shared_release);
-}
-
-static struct ec_shared *shared_alloc(size_t image_size, size_t request_size)
-{
-	struct ec_shared *sh = kzalloc(sizeof(*sh), GFP_KERNEL);
-
-	if (!sh)
-		return NULL;
-	kref_init(&sh->kref);
-	sh->image_size = PAGE_ALIGN(image_size);
-	sh->image = image_size ? vmalloc_user(sh->image_size) : NULL;
-	sh->status = vmalloc_user(EC_STATUS_BYTES);
-	sh->request_size = PAGE_ALIGN(request_size);
-	sh->requests = request_size ? vmalloc_user(sh->request_size) : NULL;
-	if ((image_size && !sh->image) || (request_size && !sh->requests) || !sh->status) {
-		ec_shared_put(sh);
-		return NULL;
-	}
-	sh->status->magic = EC_STATUS_MAGIC;
-	sh->status->size = sizeof(*sh->status);
-	return sh;
-}
 
 /**
  * ec_session_of() - the session an application works with
@@ -147,7 +104,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	ret = ec_master_wait_scan(m);
 	if (ret == -EINTR)
 		return ret;
-	s = kvzalloc(sizeof(*s), GFP_KERNEL);
+	s = kvzalloc(sizeof(*s), GFP_KERNEL_ACCOUNT);
 	if (!s)
 		return -ENOMEM;
 	s->master = m;
@@ -221,13 +178,14 @@ static void clear(struct ec_session *s)
 		detach(s->configs[i]);
 		ec_config_free(s->configs[i]);
 	}
-	kfree(s->configs);
+	kvfree(s->configs);
 	kvfree(s->specs);
 	s->specs = NULL;
 	s->n_specs = 0;
 	s->request_bytes = 0;
 	s->configs = NULL;
 	s->n_configs = 0;
+	s->bytes = 0;
 	for (i = 0; i < s->n_domains; i++)
 		ec_domain_free(s->domains[i]);
 	s->n_domains = 0;
@@ -616,7 +574,7 @@ u32 ec_session_place(struct ec_session *s)
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
- * is too large; -ENOSPC as ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
+ * is too large; -EDQUOT as ec_session_fits(); -ENOSPC as ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -633,7 +591,10 @@ int ec_session_activate(struct ec_session *s)
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	s->shared = shared_alloc(offset, ec_requests_bytes(s));
+	ret = ec_session_fits(s, offset);
+	if (ret)
+		return ret;
+	s->shared = ec_shared_create(m, offset, ec_requests_bytes(s));
 	if (!s->shared)
 		return -ENOMEM;
 	if (s->preset)

@@ -32,6 +32,8 @@ struct ec_waiters;
  * @exchange: struct ec_exchange and its buffers; NULL: the application runs the
  *	cycle and maps the image
  * @exchange_size: bytes, multiple of the page size
+ * @bytes: of all of them
+ * @mapped: of the master, where @bytes are counted
  */
 struct ec_shared {
 	struct kref kref;
@@ -42,6 +44,8 @@ struct ec_shared {
 	struct ec_status *status;
 	u8 *requests;
 	size_t request_size;
+	size_t bytes;
+	atomic_long_t *mapped;
 };
 
 #define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
@@ -72,6 +76,7 @@ struct ec_stall_log {
  *	reads it under RCU
  * @configs: slave configurations
  * @n_configs: entries in @configs
+ * @bytes: memory of what is configured, as ec_session_charge() counts it
  * @domains: domains
  * @n_domains: entries in @domains
  * @ref_config: configuration whose slave is the reference clock, or
@@ -106,6 +111,7 @@ struct ec_session {
 	struct ec_waiters __rcu *waiters;
 	struct ec_config **configs;
 	unsigned int n_configs;
+	size_t bytes;
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	unsigned int n_domains;
 	u32 ref_config;
@@ -162,7 +168,15 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size);
 
 void ec_session_set_owner(struct ec_session *s, const void *owner, struct ec_waiters *waiters);
 void ec_session_free(struct ec_session *s);
+
+/* memory.c */
+struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_t request_size);
+void *ec_shared_alloc(struct ec_shared *sh, size_t size);
+int ec_shared_map(struct vm_area_struct *vma, void *memory);
 void ec_shared_get(struct ec_shared *sh);
 void ec_shared_put(struct ec_shared *sh);
+int ec_session_charge(struct ec_session *s, size_t bytes);
+void ec_session_uncharge(struct ec_session *s, size_t bytes);
+int ec_session_fits(const struct ec_session *s, size_t image_size);
 
 #endif

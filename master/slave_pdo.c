@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
+#include "grow.h"
 #include "limits.h"
 #include "pdo.h"
 #include "slave.h"
@@ -20,7 +21,7 @@ struct ec_pdo *ec_pdo_add(struct ec_pdo_list *l, u16 index, u8 name)
 
 	if (l->n >= EC_MAX_SC_PDOS)
 		return NULL;
-	p = krealloc_array(l->pdos, l->n + 1, sizeof(*p), GFP_KERNEL);
+	p = ec_grow(l->pdos, l->n, sizeof(*p));
 	if (!p)
 		return NULL;
 	l->pdos = p;
@@ -43,7 +44,7 @@ int ec_pdo_add_entry(struct ec_pdo *pdo, const struct ec_pdo_entry *e)
 
 	if (pdo->n_entries >= 255)
 		return -ENOSPC;
-	p = krealloc_array(pdo->entries, pdo->n_entries + 1, sizeof(*p), GFP_KERNEL);
+	p = ec_grow(pdo->entries, pdo->n_entries, sizeof(*p));
 	if (!p)
 		return -ENOMEM;
 	pdo->entries = p;
@@ -66,7 +67,7 @@ int ec_pdo_copy_entries(struct ec_pdo *dst, const struct ec_pdo *src)
 
 void ec_pdo_clear_entries(struct ec_pdo *pdo)
 {
-	kfree(pdo->entries);
+	kvfree(pdo->entries);
 	pdo->entries = NULL;
 	pdo->n_entries = 0;
 }
@@ -76,10 +77,21 @@ void ec_pdo_list_clear(struct ec_pdo_list *l)
 	unsigned int i;
 
 	for (i = 0; i < l->n; i++)
-		kfree(l->pdos[i].entries);
-	kfree(l->pdos);
+		kvfree(l->pdos[i].entries);
+	kvfree(l->pdos);
 	l->pdos = NULL;
 	l->n = 0;
+}
+
+/* Bytes that the PDOs and their entries need. */
+size_t ec_pdo_list_memory(const struct ec_pdo_list *l)
+{
+	size_t bytes = l->n * sizeof(*l->pdos);
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		bytes += l->pdos[i].n_entries * sizeof(*l->pdos[i].entries);
+	return bytes;
 }
 
 struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index)

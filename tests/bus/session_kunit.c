@@ -366,7 +366,84 @@ static void session_interval(struct kunit *test)
 	cyc_release(c);
 }
 
+static int activate(struct bus *b)
+{
+	struct ec_ioc_activate act = { 0 };
+
+	return ec_ioc_activate(&b->app, &act);
+}
+
+static void expect_limit(struct bus *b)
+{
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, "limit of 64 MiB"), "%s",
+				  b->app.reason);
+}
+
+/* Each call succeeds; what is cleared does not count. */
+static void clear_pdos(struct bus *b)
+{
+	static const u8 ops[] = { EC_SC_PDO_ASSIGN_ADD, EC_SC_PDO_MAP_ADD, EC_SC_PDO_ASSIGN_CLEAR };
+	struct ec_ioc_sc_pdo pdo = { .sm = 2, .pdo = 0x1600, .bits = 8 };
+	size_t bytes = b->m->session->bytes;
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(ops); i++) {
+		pdo.op = ops[i];
+		KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_pdo(&b->app, &pdo), 0);
+		KUNIT_EXPECT_EQ(b->test, b->m->session->bytes > bytes,
+				ops[i] != EC_SC_PDO_ASSIGN_CLEAR);
+	}
+	KUNIT_EXPECT_EQ(b->test, b->m->session->bytes, bytes);
+}
+
+/* All sessions and what is mapped have a limit together. */
+static void session_memory(struct kunit *test)
+{
+	struct bus *b = one_up(test);
+	struct ec_ioc_slave_config sc = { .position = 40, .vendor_id = 1, .product_code = 2 };
+	struct ec_ioc_sc_sdo sdo = { .index = 0x2000, .size = 4096 };
+	u8 *value = kunit_kzalloc(test, sdo.size, GFP_KERNEL);
+	struct ec_master *m = b->m;
+	u32 i;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_EXPECT_GE(test, m->session->bytes, sizeof(struct ec_config));
+	clear_pdos(b);
+	/* as if something else was mapped: there is room for three values */
+	atomic_long_add(EC_MAX_SESSION_BYTES - m->session->bytes - 4 * sdo.size, &m->mapped);
+	for (i = 0; i < 3; i++)
+		KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), -ENOMEM);
+	expect_limit(b);
+	KUNIT_EXPECT_EQ(test, activate(b), -ENOMEM);
+	expect_limit(b);
+	atomic_long_set(&m->mapped, 0);
+	KUNIT_EXPECT_EQ(test, activate(b), 0);
+	ec_session_end(m, &b->app);
+}
+
+/* A mapping that outlives its session counts until it goes. */
+static void session_mapping_outlives(struct kunit *test)
+{
+	struct bus *b = kcyc_start(test, (struct ec_ioc_cycle){ 0 })->c->b;
+	struct ec_shared *sh = b->m->session->shared;
+	size_t bytes = sh->bytes;
+
+	KUNIT_EXPECT_GE(test, bytes, sh->image_size + sh->exchange_size + EC_STATUS_BYTES);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->mapped), bytes);
+	ec_shared_get(sh);
+	ec_session_end(b->m, &b->app);
+	/* work on requests may end a moment later */
+	msleep(50);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->mapped), bytes);
+	ec_shared_put(sh);
+	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->mapped), 0L);
+}
+
 static struct kunit_case session_cases[] = {
+	KUNIT_CASE(session_memory),
+	KUNIT_CASE(session_mapping_outlives),
 	KUNIT_CASE(session_forgets),
 	KUNIT_CASE(session_heir_goes),
 	KUNIT_CASE(session_reserve_preop),
