@@ -26,6 +26,8 @@ data
 kernels
 build
 pysoem
+kickcat
+ethercrab
 system
 demo
 bench
@@ -69,6 +71,8 @@ level_bats() { tests/check-bats.sh; }
 level_fuzz() { make -s -C tests/fuzz check; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_pysoem() { tests/pysoem/run.sh; }
+level_kickcat() { tests/foreign/kickcat.sh; }
+level_ethercrab() { tests/foreign/ethercrab.sh; }
 level_kernels() { tests/check-kernels.sh; }
 level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }

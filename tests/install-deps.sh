@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # Installs what building and testing need, and nothing that is there already.
-# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json)
+# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, rust)
 
 set -eu
 
 usage() {
-	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json" >&2
+	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json rust" >&2
 	exit 2
 }
 
@@ -34,6 +34,9 @@ for group; do
 	uml)	p="linux-source-6.1 xz-utils python3" ;;
 	python)	p="python3-venv" ;;
 	json)	p="jq" ;;
+	# any cargo does that is new enough, Debian's "cargo" is not
+	rust)	p="cargo-web"
+		cargo --version 2>/dev/null | awk -F '[ .]' '{ ok = $2 > 1 || $3 >= 85 } END { exit !ok }' && p= ;;
 	-h|--help) usage ;;
 	*)	echo "${0##*/}: unknown group '$group'" >&2; usage ;;
 	esac
