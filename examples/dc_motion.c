@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * dc_motion: two CiA 402 drives follow a sine of their position, on distributed
- * clocks: both take over their targets at the same SYNC0, a third of a cycle
- * after the frame. One of two clocks has to give way to the other:
+ * dc_motion: two drives (CiA 402, or EL7201 terminals) follow a sine of their
+ * position, on distributed clocks: both take over their targets at the same
+ * SYNC0, a third of a cycle after the frame. One of two clocks has to give way
+ * to the other:
  *
  *   lead    this program keeps its own time, the reference clock follows it;
  *           for machines with a better clock than the drives have
@@ -13,8 +14,10 @@
  * latter, see kcycle.c with "follow".)
  *
  * usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]
- *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 0 and 1
+ *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 4 and 5, as in the
+ *                  simulated segment "bench"
  *   SECONDS        to run; default: until Ctrl-C
+ * exit status: 0, or 1 when a drive never reached OP or the setup failed
  */
 #include <ecrt.h>
 #include <math.h>
@@ -38,6 +41,8 @@
 
 /* one drive; offsets in the domain are filled in by the registration */
 struct axis {
+	ec_slave_config_t *config;
+	unsigned int position;
 	unsigned int control, target, mode;	/* 0x6040, 0x607a, 0x6060 */
 	unsigned int status, actual;		/* 0x6041, 0x6064 */
 	int moving;
@@ -48,7 +53,7 @@ static ec_master_t *master;
 static ec_domain_t *domain;
 static uint8_t *data;
 static struct axis axes[AXES];
-static int follow;
+static int follow, reached_op;
 
 static volatile sig_atomic_t stop;
 
@@ -60,23 +65,50 @@ static void on_signal(int number)
 
 /* configuration --------------------------------------------------------------*/
 
-static int configure(struct axis *a, uint16_t position)
-{
-	ec_pdo_entry_info_t out[] = { { 0x6040, 0, 16 }, { 0x607a, 0, 32 }, { 0x6060, 0, 8 } };
-	ec_pdo_entry_info_t in[] = { { 0x6041, 0, 16 }, { 0x6064, 0, 32 } };
-	ec_pdo_info_t rx[] = { { 0x1600, 3, out } }, tx[] = { { 0x1a00, 2, in } };
-	ec_sync_info_t syncs[] = {
-		{ 2, EC_DIR_OUTPUT, 1, rx, EC_WD_ENABLE },
-		{ 3, EC_DIR_INPUT, 1, tx, EC_WD_DISABLE },
-		{ 0xff, EC_DIR_INVALID, 0, NULL, EC_WD_DEFAULT },
-	};
+/* a drive by the profile: its PDOs can be mapped */
+static ec_pdo_entry_info_t cia_out[] = { { 0x6040, 0, 16 }, { 0x607a, 0, 32 }, { 0x6060, 0, 8 } };
+static ec_pdo_entry_info_t cia_in[] = { { 0x6041, 0, 16 }, { 0x6064, 0, 32 } };
+static ec_pdo_info_t cia_rx[] = { { 0x1600, 3, cia_out } };
+static ec_pdo_info_t cia_tx[] = { { 0x1a00, 2, cia_in } };
+
+/* EL7201: PDOs of fixed content to choose from; the same words at other indexes */
+static ec_pdo_entry_info_t el_control[] = { { 0x7010, 1, 16 } };
+static ec_pdo_entry_info_t el_target[] = { { 0x7010, 5, 32 } };
+static ec_pdo_entry_info_t el_mode[] = { { 0x7010, 3, 8 }, { 0, 0, 8 } };
+static ec_pdo_entry_info_t el_actual[] = { { 0x6000, 0x11, 32 } };
+static ec_pdo_entry_info_t el_status[] = { { 0x6010, 1, 16 } };
+static ec_pdo_info_t el_rx[] = {
+	{ 0x1600, 1, el_control }, { 0x1606, 1, el_target }, { 0x1605, 2, el_mode },
+};
+static ec_pdo_info_t el_tx[] = { { 0x1a00, 1, el_actual }, { 0x1a01, 1, el_status } };
+
+/* SM2 and SM3, and control, target, mode, status, actual */
+struct layout {
+	ec_sync_info_t syncs[3];
 	struct {
 		uint16_t index;
-		unsigned int *offset;
-	} regs[] = {
-		{ 0x6040, &a->control }, { 0x607a, &a->target }, { 0x6060, &a->mode },
-		{ 0x6041, &a->status }, { 0x6064, &a->actual },
-	};
+		uint8_t subindex;
+	} entry[5];
+};
+
+static const struct layout cia402 = {
+	{ { 2, EC_DIR_OUTPUT, 1, cia_rx, EC_WD_ENABLE },
+	  { 3, EC_DIR_INPUT, 1, cia_tx, EC_WD_DISABLE },
+	  { 0xff, EC_DIR_INVALID, 0, NULL, EC_WD_DEFAULT } },
+	{ { 0x6040, 0 }, { 0x607a, 0 }, { 0x6060, 0 }, { 0x6041, 0 }, { 0x6064, 0 } },
+};
+
+static const struct layout el7201 = {
+	{ { 2, EC_DIR_OUTPUT, 3, el_rx, EC_WD_ENABLE },
+	  { 3, EC_DIR_INPUT, 2, el_tx, EC_WD_DISABLE },
+	  { 0xff, EC_DIR_INVALID, 0, NULL, EC_WD_DEFAULT } },
+	{ { 0x7010, 1 }, { 0x7010, 5 }, { 0x7010, 3 }, { 0x6010, 1 }, { 0x6000, 0x11 } },
+};
+
+static int configure(struct axis *a, uint16_t position)
+{
+	unsigned int *offset[] = { &a->control, &a->target, &a->mode, &a->status, &a->actual };
+	const struct layout *l;
 	ec_slave_info_t info;
 	ec_slave_config_t *sc;
 	size_t i;
@@ -84,14 +116,18 @@ static int configure(struct axis *a, uint16_t position)
 
 	if (ecrt_master_get_slave(master, position, &info))
 		return -1;
+	l = info.vendor_id == 2 && info.product_code == 0x1c213052 ? &el7201 : &cia402;
 	sc = ecrt_master_slave_config(master, 0, position, info.vendor_id, info.product_code);
-	if (!sc || ecrt_slave_config_pdos(sc, EC_END, syncs))
+	if (!sc || ecrt_slave_config_pdos(sc, EC_END, l->syncs))
 		return -1;
-	for (i = 0; i < sizeof(regs) / sizeof(regs[0]); i++) {
-		ret = ecrt_slave_config_reg_pdo_entry(sc, regs[i].index, 0, domain, NULL);
+	a->config = sc;
+	a->position = position;
+	for (i = 0; i < sizeof(offset) / sizeof(offset[0]); i++) {
+		ret = ecrt_slave_config_reg_pdo_entry(sc, l->entry[i].index,
+						      l->entry[i].subindex, domain, NULL);
 		if (ret < 0)
 			return -1;
-		*regs[i].offset = (unsigned int)ret;
+		*offset[i] = (unsigned int)ret;
 	}
 	/* SYNC0 each cycle; 0x0300 is what most drives have in their description */
 	return ecrt_slave_config_dc(sc, 0x0300, PERIOD_NS, SHIFT_NS, 0, 0);
@@ -275,6 +311,25 @@ static long cycle(unsigned long n, uint64_t app_time, int off)
 	return correct;
 }
 
+/* Prints for each drive that is not in OP why; returns how many they are. */
+static int not_in_op(void)
+{
+	ec_slave_config_state_t state;
+	char reason[256];
+	int i, n = 0;
+
+	for (i = 0; i < AXES; i++) {
+		if (!ecrt_slave_config_state(axes[i].config, &state) && state.operational)
+			continue;
+		n++;
+		if (ecrt_slave_config_reason(axes[i].config, reason, sizeof(reason)) <= 0)
+			reason[0] = 0;
+		printf("slave %u has not reached OP: %s\n", axes[i].position,
+		       reason[0] ? reason : "no reason known yet");
+	}
+	return n;
+}
+
 /*
  * Printing takes time that a cycle does not have: an application with hard
  * limits hands this to a thread without priority.
@@ -283,7 +338,11 @@ static void report(unsigned long n)
 {
 	uint32_t apart = ecrt_master_sync_monitor_process(master);
 
-	if (n % (NS_PER_S / PERIOD_NS) || apart == 0xffffffff)
+	if (n % (NS_PER_S / PERIOD_NS))
+		return;
+	if (n && !reached_op)
+		reached_op = !not_in_op();
+	if (apart == 0xffffffff)
 		return;
 	if (!axes[0].moving)
 		printf("not moving yet: status words 0x%04x 0x%04x\n",
@@ -307,6 +366,10 @@ static void run(unsigned long cycles)
 		correct = cycle(n, app_time, 0);
 		report(n);
 	}
+	if (!reached_op && not_in_op())
+		printf("ended without OP\n");
+	else
+		reached_op = 1;
 	for (i = 0; i < 10; i++) {	/* drives off before they are left alone */
 		wait_period(&next, &app_time, 0);
 		cycle(n + 1 + (unsigned long)i, app_time, 1);
@@ -321,7 +384,7 @@ static void run(unsigned long cycles)
 
 int main(int argc, char **argv)
 {
-	unsigned long args[3] = { 0, 1, 0 };
+	unsigned long args[3] = { 4, 5, 0 };
 	struct sigaction action;
 	char *end;
 	int i;
@@ -349,5 +412,5 @@ int main(int argc, char **argv)
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
 	ecrt_release_master(master);	/* slaves go back to PREOP */
-	return 0;
+	return !reached_op;
 }

@@ -102,6 +102,18 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "dc_motion: a drive that cannot reach OP is named, exit code 1" {
+	# an input terminal is no drive
+	example dc_motion lead 3 1 4
+	rc=0
+	wait "$app" || rc=$?
+	cat "$out"
+	[ "$rc" = 1 ]
+	grep -E '^slave 1 has not reached OP: .' "$out"
+	grep -qx 'ended without OP' "$out"
+	app=
+}
+
 @test "dc_motion: the reference clock follows, both axes move" {
 	example dc_motion lead 3 4 8
 	wait "$app"
@@ -132,3 +144,25 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 moved() {
 	[ "$(awk '/^axis/ && $NF >= 90000 && $NF <= 110000' "$out" | wc -l)" = 2 ]
 }
+
+# the defaults, at the bench as it is built in
+bench_moves() {
+	stop
+	start bench 22
+	"$EC_BUILD/examples/dc_motion" "$@" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 120 eval '[ "$(grep -c "axes at" "$BATS_TEST_TMPDIR/out")" -ge 8 ]'
+	kill -INT "$app"
+	wait "$app"
+	app=
+	out=$BATS_TEST_TMPDIR/out
+	cat "$out"
+	moved
+	[ -z "$(grep 'ended without OP' "$out")" ]
+	# for teardown()
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 5
+}
+
+@test "dc_motion at the bench with its defaults" { bench_moves; }
+@test "dc_motion at the bench, follow" { bench_moves follow; }
