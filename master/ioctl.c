@@ -53,6 +53,7 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, RSV(ec_ioc_config_entry, reserved)),
 	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0,
 	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
+	IOC(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, RSV(ec_ioc_config_idn, reserved)),
 	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0),
 	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved),
 	    RSV(ec_ioc_domain, reserved2)),

@@ -59,6 +59,7 @@ int ec_ioc_config_sm(struct ec_file *f, void *arg);
 int ec_ioc_config_pdo(struct ec_file *f, void *arg);
 int ec_ioc_config_entry(struct ec_file *f, void *arg);
 int ec_ioc_config_sdo(struct ec_file *f, void *arg);
+int ec_ioc_config_idn(struct ec_file *f, void *arg);
 int ec_ioc_config_flag(struct ec_file *f, void *arg);
 int ec_ioc_domain(struct ec_file *f, void *arg);
 int ec_ioc_domain_fmmu(struct ec_file *f, void *arg);

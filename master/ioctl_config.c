@@ -237,6 +237,35 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 	return ec_ioc_hand_over(i->data, copy, size, ret);
 }
 
+int ec_ioc_config_idn(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_idn *i = arg;
+	struct ec_config_idn *idn;
+	void *copy = NULL;
+	u32 k = 0, size = 0;
+	int ret = 0;
+	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
+
+	if (!c)
+		return ret;
+	if (i->idn_pos >= c->n_idns)
+		return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup IDNs",
+					 i->index, c->n_idns));
+	list_for_each_entry(idn, &c->idns, list) {
+		if (k++ != i->idn_pos)
+			continue;
+		i->idn = idn->idn;
+		i->drive = idn->drive;
+		i->state = idn->state;
+		size = min(i->size, idn->size);
+		copy = keep(idn->data, size, &ret);
+		i->size = idn->size;
+		break;
+	}
+	done(f, ret);
+	return ec_ioc_hand_over(i->data, copy, size, ret);
+}
+
 int ec_ioc_config_flag(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_config_flag *i = arg;

@@ -132,6 +132,58 @@ static int sdos(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	return ret;
 }
 
+static void idn(const struct ec_ioc_config_idn *i, const u8 *data, const char *in)
+{
+	char indent[16], name[12];
+
+	snprintf(name, sizeof(name), "%c-%u-%04u", i->idn & 0x8000 ? 'P' : 'S', i->idn >> 12 & 7u,
+		 i->idn & 0xfffu);
+	snprintf(indent, sizeof(indent), "%s    ", in);
+	out_object(NULL);
+	out_u("drive", i->drive, "%s  Drive %u ", in, i->drive);
+	out_u("idn", i->idn, NULL);
+	out_str("name", name, "%s", name);
+	out_str("state", ec_al_state_name(i->state), " in %s", ec_al_state_name(i->state));
+	out_u("size_bytes", i->size, ", %u byte\n", i->size);
+	out_hex("data_hex", data, min(i->size, (u32)SHOWN), indent);
+	if (i->size > SHOWN)
+		out_text("%s...\n", indent);
+	out_end();
+}
+
+/* An older module does not show them: nothing is claimed then. */
+static int idns(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	unsigned int pos;
+
+	for (pos = 0;; pos++) {
+		u8 data[SHOWN];
+		struct ec_ioc_config_idn i = {
+			.index = c->index, .idn_pos = pos, .size = sizeof(data),
+			.data = (uintptr_t)data,
+		};
+		int err = dev_ioctl(d, EC_IOC_CONFIG_IDN, &i);
+
+		if (err == ENOTTY) {
+			out_null("idns", NULL);
+			return 0;
+		}
+		if (!pos) {
+			out_text("%sIDN configuration:\n", in);
+			out_array("idns");
+		}
+		if (err && err != ENOENT)
+			return failed(d, err, c);
+		if (err)
+			break;
+		idn(&i, data, in);
+	}
+	out_end();
+	if (!pos)
+		out_text("%s  None.\n", in);
+	return 0;
+}
+
 static int flags(struct dev *d, const struct ec_ioc_config *c, const char *in)
 {
 	out_text("%sFeature flags:\n", in);
@@ -252,10 +304,8 @@ int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	number_or_default("watchdog_intervals", c->watchdog_intervals, in, "Watchdog intervals");
 	ret = sync_managers(d, c, in);
 	ret = ret ? ret : sdos(d, c, in);
-	if (!ret) {
-		out_text("%sIDN configuration:\n%s  None.\n", in, in);
-		ret = flags(d, c, in);
-	}
+	ret = ret ? ret : idns(d, c, in);
+	ret = ret ? ret : flags(d, c, in);
 	ret = ret ? ret : ip(d, c, in);
 	if (!ret) {
 		dc(c, in);

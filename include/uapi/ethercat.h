@@ -393,6 +393,18 @@ struct ec_ioc_config_sdo {
 	__u64 data;
 };
 
+struct ec_ioc_config_idn {
+	__u32 flags;
+	__u32 index;		/* in */
+	__u32 idn_pos;		/* in */
+	__u16 idn;
+	__u8 drive;
+	__u8 state;		/* in which it is written: 2 PREOP, 4 SAFEOP */
+	__u32 size;		/* in: room; out: full size */
+	__u32 reserved;
+	__u64 data;
+};
+
 struct ec_ioc_config_flag {
 	__u32 flags;
 	__u32 index;		/* in */
@@ -764,6 +776,7 @@ struct ec_ioc_wait {
 #define EC_IOC_DOMAIN		EC_IOC_RW(0x0d, struct ec_ioc_domain)
 #define EC_IOC_DOMAIN_FMMU	EC_IOC_RW(0x0e, struct ec_ioc_domain_fmmu)
 #define EC_IOC_DOMAIN_DATA	EC_IOC_RW(0x0f, struct ec_ioc_domain_data)
+#define EC_IOC_CONFIG_IDN	EC_IOC_RW(0x12, struct ec_ioc_config_idn)
 #define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)

@@ -378,6 +378,24 @@ static int config_sdo(struct ec_ioc_config_sdo *x)
 	return 0;
 }
 
+/* configuration 1 has two, the first one longer than what is shown of others */
+static int config_idn(struct ec_ioc_config_idn *x)
+{
+	__u8 *data = (__u8 *)(uintptr_t)x->data;
+
+	if (getenv("FAKE_NO_IDN"))
+		return fail(ENOTTY, "");
+	if (x->index != 1 || x->idn_pos > 1)
+		return fail(ENOENT, "configuration has 2 startup IDNs");
+	x->idn = x->idn_pos ? 0x8096 : 15;
+	x->drive = (__u8)x->idn_pos;
+	x->state = x->idn_pos ? 4 : 2;
+	x->size = 2;
+	data[0] = 7;
+	data[1] = (__u8)x->idn_pos;
+	return 0;
+}
+
 static int config_flag(struct ec_ioc_config_flag *x)
 {
 	static const char *const key[] = { "AssignToPdi", "WaitBeforeSAFEOPms" };
@@ -704,6 +722,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return 0;
 	case EC_IOC_CONFIG_SDO:
 		return config_sdo(arg);
+	case EC_IOC_CONFIG_IDN:
+		return config_idn(arg);
 	case EC_IOC_CYCLE_STATS:
 		return cycle_stats(arg);
 	case EC_IOC_CYCLE_RESET:

@@ -289,6 +289,14 @@ END
 	[ "$output" = $'Master0\n  1  1001:0  PREOP\nMaster1\n  1  1001:0  PREOP' ]
 }
 
+@test "startup IDNs are shown; a module that does not tell claims nothing" {
+	export FAKE_BUS=app
+	out config -j | json '["S-0-0015", "P-0-0150"] in [[i["name"] for i in c["idns"]] for c in d["masters"][0]["configs"]]'
+	out config -v | grep -q 'Drive 1 P-0-0150 in SAFEOP, 2 byte'
+	[ -z "$(FAKE_NO_IDN=1 out config -v | grep 'IDN configuration')" ]
+	FAKE_NO_IDN=1 out config -j | json 'd["masters"][0]["configs"][0]["idns"] is None'
+}
+
 @test "a scan is running" {
 	[[ $(FAKE_BUS=scanning err slaves) == *"scan is running"* ]]
 	[ "$(FAKE_BUS=scanning out slaves | wc -l)" -eq 1 ]

@@ -30,6 +30,7 @@ static void wrong_indexes(int fd)
 		struct ec_ioc_config_pdo p = { .pdo_pos = w + 15 };
 		struct ec_ioc_config_entry ce = { .entry_pos = w + 7 };
 		struct ec_ioc_config_sdo s = { .sdo_pos = w };
+		struct ec_ioc_config_idn ci = { .idn_pos = w };
 		struct ec_ioc_sc_watchdog wd = { .config = w };
 		struct ec_ioc_sc_request req = { .config = w };
 		struct ec_ioc_sc_emerg emerg = { .config = w };
@@ -45,6 +46,7 @@ static void wrong_indexes(int fd)
 		expect_errno(call(fd, EC_IOC_CONFIG_PDO, &p), ENOENT, "PDO %u", w + 15);
 		expect_errno(call(fd, EC_IOC_CONFIG_ENTRY, &ce), ENOENT, "mapped entry %u", w);
 		expect_errno(call(fd, EC_IOC_CONFIG_SDO, &s), ENOENT, "startup SDO %u", w);
+		expect_errno(call(fd, EC_IOC_CONFIG_IDN, &ci), ENOENT, "startup IDN %u", w);
 		expect_errno(call(fd, EC_IOC_SC_WATCHDOG, &wd), ENOENT, "watchdog of %u", w);
 		expect_errno(call(fd, EC_IOC_SC_REQUEST, &req), ENOENT, "request of %u", w);
 		expect_errno(call(fd, EC_IOC_SC_EMERG, &emerg), ENOENT, "emergencies of %u", w);
