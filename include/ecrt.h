@@ -533,8 +533,9 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * Return: 0; %-EIO refused or failed, see @abort_code; %-EINVAL no such slave
  * or bad arguments; %-EPROTONOSUPPORT slave without CoE; %-ETIMEDOUT no
  * answer; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
- * %-EBADMSG, %-EMSGSIZE an answer that cannot be, or a mailbox too small;
- * %-ECANCELED the slave has gone or is being configured; %-EINTR; %-ENOMEM.
+ * %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too small or larger
+ * than a datagram; %-ECANCELED the slave was disconnected (while it is being
+ * configured the call waits); %-EINTR; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
@@ -595,9 +596,9 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused, see @error_code; %-EINVAL no such slave or drive,
  * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
- * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EBADMSG an answer
- * that cannot be; %-ECANCELED the slave has gone or is being configured;
- * %-EINTR; %-ENOMEM.
+ * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EBADMSG an invalid
+ * reply; %-ECANCELED the slave was disconnected (while it is being configured the
+ * call waits); %-EINTR; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,

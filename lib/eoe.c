@@ -21,7 +21,7 @@ static int set(ec_slave_config_t *sc, struct ec_ioc_sc_ip *arg, __u32 which,
 
 static int nothing(const ec_slave_config_t *sc, const char *what)
 {
-	return ec_fail(-EINVAL, "set no EoE %s of slave %u:%u", what, sc->alias,
+	return ec_fail(-EINVAL, "set the EoE %s of slave %u:%u: NULL argument", what, sc->alias,
 		       sc->position);
 }
 

@@ -26,7 +26,7 @@ static int check_version(struct ec_master *m, const char *path)
 	if (!ret && version.abi >= VERSION_MIN)
 		return 0;
 	return ec_fail(-EPROTO,
-		       "talk to the kernel module behind %s (version %u)",
+		       "use %s: not the device of this EtherCAT master, or of a version that does not fit (interface version %u)",
 		       path, version.abi);
 }
 

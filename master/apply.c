@@ -34,8 +34,8 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
 		 ret != -EOVERFLOW && ret != -ERANGE)	/* told already */
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "does not answer on the way to %s (error %d)",
-			      ec_al_state_name(state), ret);
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "communication failed before %s (%pe)",
+			      ec_al_state_name(state), ERR_PTR(ret));
 	return ret;
 }
 
@@ -214,6 +214,19 @@ static int to_preop(struct ec_slave *s)
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
 
+static void sdo_failed(struct ec_slave *s, const struct ec_config_sdo *sdo, int ret, u32 abort)
+{
+	char why[96];
+
+	if (ret == -EIO && abort)
+		scnprintf(why, sizeof(why), "abort 0x%08x: %s", abort,
+			  ec_coe_abort_text(abort) ?: "unknown code");
+	else
+		ec_mbox_fail_text(ret, "CoE", why, sizeof(why));
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s",
+		      sdo->index, sdo->sub, sdo->size, why);
+}
+
 static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 {
 	struct ec_config_sdo *sdo;
@@ -226,21 +239,31 @@ static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "startup SDO 0x%04x:%02x, %u byte(s): error %d, abort 0x%08x: %s",
-				      sdo->index, sdo->sub, sdo->size, ret, abort,
-				      ec_coe_abort_text(abort) ?: "none");
+			sdo_failed(s, sdo, ret, abort);
 			return ret;
 		}
 	}
 	return 0;
 }
 
+static void idn_failed(struct ec_slave *s, const struct ec_config_idn *i, int ret, u16 error)
+{
+	char name[12], why[96];
+
+	if (ret == -EIO && error)
+		scnprintf(why, sizeof(why), "SoE error 0x%04x: %s", error,
+			  ec_soe_error_text(error) ?: "unknown code");
+	else
+		ec_mbox_fail_text(ret, "SoE", why, sizeof(why));
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
+		      ec_soe_idn_text(i->idn, name), i->drive, i->size, why);
+}
+
 /* those of one AL state */
 static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 {
 	struct ec_config_idn *i;
-	char name[12];
 	u16 error;
 	int ret;
 
@@ -251,10 +274,7 @@ static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "startup IDN %s of drive %u, %u byte(s): error %d, SoE error 0x%04x: %s",
-				      ec_soe_idn_text(i->idn, name), i->drive, i->size, ret, error,
-				      ec_soe_error_text(error) ?: "none");
+			idn_failed(s, i, ret, error);
 			return ret;
 		}
 	}
@@ -294,7 +314,7 @@ static int write_sms(struct ec_slave *s, const struct ec_config *c)
 		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
 		if (bytes > EC_MAX_SM_BYTES) {
 			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "SM%u shall have %u bytes, an ESC has at most %u; map less",
+				      "SM%u needs %u bytes, limit %u; map fewer entries",
 				      sm, bytes, EC_MAX_SM_BYTES);
 			return -EOVERFLOW;
 		}
@@ -328,7 +348,7 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 	}
 	if (c->lrw && ec_slave_no_lrw(s)) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "does not know LRW and came after activation; start the application again");
+			      "slave without LRW support attached to a layout with LRW; restart the application");
 		return -EOPNOTSUPP;
 	}
 	if (c->in_ring && s->position != c->ring_position) {
@@ -341,7 +361,7 @@ static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
 		if (holds_pdos(s, c->fmmus[i].sm))
 			continue;
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "has no SyncManager %u for process data by its EEPROM; map its PDOs to one it has",
+			      "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
 			      c->fmmus[i].sm);
 		return -EOPNOTSUPP;
 	}
@@ -403,8 +423,8 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
-		ec_slave_warn(s, "starts SYNC although its clock is not %s (error %d)\n",
-			      READ_ONCE(s->dc_set) ? "near the others yet" : "set", ret);
+		ec_slave_warn(s, "starts SYNC although its clock is not %s (%pe)\n",
+			      READ_ONCE(s->dc_set) ? "near the others yet" : "set", ERR_PTR(ret));
 	return ec_dc_sync_start(s, c);
 }
 

@@ -24,8 +24,10 @@ static int tx(struct exchange *x, u8 *buf, size_t cap)
 static int rx(void *ctx, const u8 *buf, size_t len)
 {
 	struct exchange *x = ctx;
+	int ret = x->down ? ec_sdo_down_rx(&x->dn, buf, len) : ec_sdo_up_rx(&x->up, buf, len);
 
-	return x->down ? ec_sdo_down_rx(&x->dn, buf, len) : ec_sdo_up_rx(&x->up, buf, len);
+	/* the reply is too short; the mailbox is large enough */
+	return ret == -EMSGSIZE ? -EBADMSG : ret;
 }
 
 static bool send_abort(const struct exchange *x)

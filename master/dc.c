@@ -694,7 +694,7 @@ static void work(struct work_struct *work)
 		ec_info(m, "clocks set in %llu us, reference clock is slave %u\n",
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
-		ec_warn(m, "clocks could not be set (error %d)\n", ret);
+		ec_warn(m, "clocks could not be set (%pe)\n", ERR_PTR(ret));
 	WRITE_ONCE(dc->boost, ret || READ_ONCE(dc->front) ? 0 : BOOST);
 	WRITE_ONCE(dc->failed, passes(ret));
 	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);

@@ -119,6 +119,7 @@ int ec_eoe_get_ip(struct ec_slave *slave, struct ec_eoe_ip *p, u16 *result)
  */
 int ec_eoe_apply(struct ec_slave *slave, const struct ec_config *c)
 {
+	char why[96];
 	u16 result;
 	int ret;
 
@@ -133,8 +134,9 @@ int ec_eoe_apply(struct ec_slave *slave, const struct ec_config *c)
 			      ec_eoe_result_text(result));
 	else if (ret == -EPROTONOSUPPORT)
 		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED,
-			      "shall get IP parameters but has no EoE; leave ecrt_slave_config_eoe_...() out");
+			      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
 	else
-		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED, "IP parameters: error %d", ret);
+		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED, "IP parameters failed: %s",
+			      ec_mbox_fail_text(ret, "EoE", why, sizeof(why)));
 	return ret;
 }

@@ -15,13 +15,18 @@
 int ec_ioc_reserve(struct ec_file *f, void *arg)
 {
 	int ret = ec_session_begin(f->master, f, &f->waiters);
+	char who[64];
 
 	switch (ret) {
 	case -EBUSY:
-		return ec_refuse(f, ret, READ_ONCE(f->master->api->reserved) ?
-				 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows who uses ec_master" :
-				 "master %u is reserved by another application; stop that first",
-				 f->master->index);
+		if (READ_ONCE(f->master->api->reserved))
+			return ec_refuse(f, ret, "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows who uses ec_master",
+					 f->master->index);
+		if (!ec_session_owner_text(f->master, who, sizeof(who)))
+			return ec_refuse(f, ret, "master %u was reserved by an application that has just ended; try again",
+					 f->master->index);
+		return ec_refuse(f, ret, "master %u is reserved by %s; stop that application first",
+				 f->master->index, who);
 	case -ENODEV:
 		return ec_refuse(f, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
 				 f->master->index, f->master->spec[0]);
@@ -131,6 +136,25 @@ static void wait_pdos(struct ec_file *f, const struct ec_ioc_slave_config *i)
 	ec_slave_unref(slave);
 }
 
+static int config_failed(struct ec_file *f, const struct ec_ioc_slave_config *i,
+			 const struct ec_session *s, int ret)
+{
+	unsigned int k;
+
+	for (k = 0; ret == -ENOENT && k < s->n_configs; k++) {
+		const struct ec_config *c = s->configs[k];
+
+		if (c->alias == i->alias && c->position == i->position)
+			return ec_refuse(f, ret, "slave %u:%u is configured as 0x%08x/0x%08x already, not as 0x%08x/0x%08x",
+					 i->alias, i->position, c->vendor, c->product,
+					 i->vendor_id, i->product_code);
+	}
+	if (ret == -ENOSPC)
+		return ec_refuse(f, ret, "limit of %u slave configurations reached", EC_MAX_CONFIGS);
+	return ec_refuse(f, ret, "slave %u:%u cannot be configured (%pe)", i->alias, i->position,
+			 ERR_PTR(ret));
+}
+
 int ec_ioc_slave_config(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_slave_config *i = arg;
@@ -153,8 +177,7 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg)
 	if (IS_ERR(c) && PTR_ERR(c) == -EDQUOT)
 		return done(f, ec_ioc_limit(f, PTR_ERR(c)));
 	if (IS_ERR(c))
-		return done(f, ec_refuse(f, PTR_ERR(c), "slave %u:%u is configured as another device already, or there are too many",
-					 i->alias, i->position));
+		return done(f, config_failed(f, i, s, PTR_ERR(c)));
 	i->index = c->index;
 	return done(f, 0);
 }
@@ -187,6 +210,21 @@ int ec_ioc_sc_watchdog(struct ec_file *f, void *arg)
 	return done(f, 0);
 }
 
+static void sc_pdo_failed(struct ec_file *f, const struct ec_ioc_sc_pdo *i, int ret)
+{
+	if (i->op > EC_SC_PDO_MAP_CLEAR)
+		ec_refuse(f, ret, "PDO configuration: unknown operation %u", i->op);
+	else if (i->op == EC_SC_PDO_MAP_ADD && ret == -ENOENT)
+		ec_refuse(f, ret, "cannot add entry 0x%04x:%02x to PDO 0x%04x: the PDO is not assigned; assign it first",
+			  i->entry_index, i->subindex, i->pdo);
+	else if (i->op == EC_SC_PDO_MAP_ADD)
+		ec_refuse(f, ret, "cannot add entry 0x%04x:%02x with %u bits to PDO 0x%04x (%pe)",
+			  i->entry_index, i->subindex, i->bits, i->pdo, ERR_PTR(ret));
+	else
+		ec_refuse(f, ret, "cannot change the PDOs of SM%u, PDO 0x%04x (%pe); use SM0 to SM%u",
+			  i->sm, i->pdo, ERR_PTR(ret), EC_MAX_SM - 1);
+}
+
 int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_sc_pdo *i = arg;
@@ -215,8 +253,7 @@ int ec_ioc_sc_pdo(struct ec_file *f, void *arg)
 	if (ret == -EDQUOT)
 		ret = ec_ioc_limit(f, ret);
 	else if (ret)
-		ec_refuse(f, ret, "PDO 0x%04x at SM%u: operation %u failed; assign the PDO before mapping it",
-			  i->pdo, i->sm, i->op);
+		sc_pdo_failed(f, i, ret);
 	return done(f, ret);
 }
 
@@ -291,11 +328,12 @@ int ec_ioc_reg_entry(struct ec_file *f, void *arg)
 	else if (ret == -EBUSY)
 		check_maps(f, c);
 	else if (ret == -EFAULT)
-		ec_refuse(f, ret, "it does not begin with a byte in slave %u:%u; give a place for its bit position",
+		ec_refuse(f, ret, "the entry is not byte-aligned in slave %u:%u; pass bit_position",
 			  c->alias, c->position);
 	else if (ret == -EOVERFLOW)
-		ec_refuse(f, ret, "slave %u:%u: no FMMU left, or more than %u bytes in the SyncManager or %u in the domain",
-			  c->alias, c->position, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
+		ec_refuse(f, ret, "slave %u:%u: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
+			  c->alias, c->position, c->n_fmmus, EC_MAX_FMMU, i->domain,
+			  s->domains[i->domain]->size, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
 	else if (ret == -EINVAL)
 		ec_refuse(f, ret, "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
 			  c->alias, c->position, EC_MAX_SM - 1);
@@ -376,12 +414,12 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 	case -ENOMEM:
 		return ec_refuse(f, ret, "no memory for %u bytes of process data", bytes);
 	case -EOPNOTSUPP:
-		return ec_refuse(f, ret, "only a cycle the kernel runs has divisions: call ecrt_master_set_cycle(), or queue the domain when it is its turn");
+		return ec_refuse(f, ret, "a domain has a division, but the application runs the cycle; call ecrt_master_set_cycle(), or queue the domain in some cycles only");
 	case -ENODEV:
 		return ec_refuse(f, ret, "CPU %d is not online; choose another one for the cycle",
 				 s->kernel.cpu);
 	default:
-		return ec_refuse(f, ret, "activation failed (error %d)", ret);
+		return ec_refuse(f, ret, "activation failed (%pe)", ERR_PTR(ret));
 	}
 }
 
@@ -393,7 +431,7 @@ static int take_over(struct ec_file *f)
 	int ret = ec_session_take_over(f->master, why, sizeof(why));
 
 	if (ret == -EEXIST)
-		return ec_refuse(f, ret, "the detached session of master %u was configured otherwise: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
+		return ec_refuse(f, ret, "the detached session of master %u has another configuration: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
 				 f->master->index, why);
 	if (ret == -ENOSPC)
 		return activate_failed(f, heir, ret);
@@ -413,7 +451,7 @@ static int activate(struct ec_file *f, struct ec_session *s, const void *preset,
 			return ret;
 	}
 	if (size && !s->active && size != ec_session_place(s))
-		return ec_refuse(f, -EINVAL, "%u bytes to begin with, the domains have %u; register all entries first",
+		return ec_refuse(f, -EINVAL, "the initial image has %u bytes, the domains need %u; register all entries first",
 				 size, ec_session_place(s));
 	s->preset = preset;
 	ret = ec_session_activate(s);

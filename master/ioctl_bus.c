@@ -37,11 +37,24 @@ static int reg_access(struct ec_file *f, const struct ec_ioc_reg *i, u8 cmd, u8 
 		ec_slave_unref(s);
 	}
 	ret = ec_xfer(m, &dg, 1);
-	if (ret)
-		return ec_refuse(f, ret, "the frame did not come back; check the cable to slave %u",
-				 i->position);
+	switch (ret) {
+	case 0:
+		break;
+	case -ETIMEDOUT:
+		return ec_refuse(f, ret, "access to 0x%04x of slave %u: the frame did not come back; check the cables",
+				 i->address, i->position);
+	case -EINTR:
+		return ret;
+	case -ENODEV:
+	case -ENETDOWN:
+		return ec_refuse(f, ret, "access to 0x%04x of slave %u: the main device is missing or has no link; check the cable",
+				 i->address, i->position);
+	default:
+		return ec_refuse(f, ret, "access to 0x%04x of slave %u: cannot send (%pe)",
+				 i->address, i->position, ERR_PTR(ret));
+	}
 	if (dg.wkc != 1)
-		return ec_refuse(f, -EIO, "slave %u refused access to 0x%04x (working counter %u)",
+		return ec_refuse(f, -EIO, "slave %u did not execute access to 0x%04x: working counter %u, expected 1",
 				 i->position, i->address, dg.wkc);
 	return 0;
 }
@@ -158,9 +171,9 @@ int ec_ioc_end_detached(struct ec_file *f, void *arg)
 	case 0:
 		return 0;
 	case -ENOENT:
-		return ec_refuse(f, -ENOENT, "master %u runs no session", f->master->index);
+		return ec_refuse(f, -ENOENT, "master %u has no session to end", f->master->index);
 	default:
-		return ec_refuse(f, -EBUSY, "the application of master %u is there; stop that",
+		return ec_refuse(f, -EBUSY, "the session of master %u still has its application; stop that first",
 				 f->master->index);
 	}
 }

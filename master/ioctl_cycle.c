@@ -39,11 +39,11 @@ static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 		return ec_refuse(f, -EOPNOTSUPP, "unknown clock flags 0x%x; use 0x%x or less of it",
 				 i->dc, DC_FLAGS);
 	if (i->dc & EC_CYCLE_DC_FOLLOW && !(i->dc & EC_SEND_FLAG_SYNC_SLAVES))
-		return ec_refuse(f, -EINVAL, "the cycle cannot follow a reference clock it never reads; add the flag that tells the slaves its time");
+		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
 	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
-		return ec_refuse(f, -EINVAL, "the cycle cannot follow the reference clock while that follows the cycle; use one of both");
+		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would follow the other");
 	if (i->flags & EC_CYCLE_FLAG_DETACH && i->stall == EC_STALL_STOP)
-		return ec_refuse(f, -EINVAL, "a session that survives its application cannot stop without it; hold its outputs or zero them");
+		return ec_refuse(f, -EINVAL, "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
 	return 0;
 }
 

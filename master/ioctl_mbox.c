@@ -60,19 +60,12 @@ static int with_value(struct ec_file *f, void *arg, u64 from, u32 size,
 int ec_ioc_mbox_failed(struct ec_file *f, int ret, u16 position, const char *protocol,
 		       const char *what)
 {
-	switch (ret) {
-	case 0:
+	char why[96];
+
+	if (!ret)
 		return 0;
-	case -EPROTONOSUPPORT:
-		return ec_refuse(f, ret, "slave %u has no %s mailbox", position, protocol);
-	case -EAGAIN:
-		return ec_refuse(f, ret, "slave %u is not in PREOP or above, so its mailbox is off; request PREOP first",
-				 position);
-	case -ETIMEDOUT:
-		return ec_refuse(f, ret, "slave %u did not answer in time", position);
-	default:
-		return ec_refuse(f, ret, "%s: transfer with slave %u failed", what, position);
-	}
+	return ec_refuse(f, ret, "%s of slave %u: %s", what, position,
+			 ec_mbox_fail_text(ret, protocol, why, sizeof(why)));
 }
 
 /* SDOs -----------------------------------------------------------------------*/
@@ -82,20 +75,12 @@ static int sdo_failed(struct ec_file *f, const struct ec_ioc_sdo *i, int ret)
 	char what[24];
 
 	scnprintf(what, sizeof(what), "SDO 0x%04x:%02x", i->index, i->subindex);
-	switch (ret) {
-	case -EIO:
+	if (ret == -EIO && i->abort_code)
 		return ec_refuse(f, ret, "%s aborted with code 0x%08x: %s", what, i->abort_code,
-				 ec_coe_abort_text(i->abort_code) ?: "???");
-	case -EBADMSG:
-	case -EMSGSIZE:
-	case -EPROTO:
-		return ec_refuse(f, ret, "%s: slave %u sent a mailbox message that cannot be (length or content)",
-				 what, i->position);
-	case -ENOBUFS:
+				 ec_coe_abort_text(i->abort_code) ?: "unknown code");
+	if (ret == -ENOBUFS)
 		return ec_refuse(f, ret, "%s is larger than %u bytes", what, i->size);
-	default:
-		return ec_ioc_mbox_failed(f, ret, i->position, "CoE", what);
-	}
+	return ec_ioc_mbox_failed(f, ret, i->position, "CoE", what);
 }
 
 /**
@@ -236,8 +221,11 @@ static int idn_failed(struct ec_file *f, const struct ec_ioc_soe *i, int ret)
 	scnprintf(what, sizeof(what), "IDN %s", ec_soe_idn_text(i->idn, idn));
 	switch (ret) {
 	case -EIO:
+		if (!i->error_code)
+			return ec_ioc_mbox_failed(f, ret, i->position, "SoE", what);
 		return ec_refuse(f, ret, "%s of drive %u: error 0x%04x: %s", what, i->drive,
-				 i->error_code, ec_soe_error_text(i->error_code) ?: "???");
+				 i->error_code,
+				 ec_soe_error_text(i->error_code) ?: "unknown code");
 	case -EMSGSIZE:
 		return ec_refuse(f, ret, "%s: the value does not fit into one message of the mailbox of slave %u; fragments are not supported",
 				 what, i->position);

@@ -197,9 +197,8 @@ static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_h
 	if (ret)
 		return ret == -EIO || ret == -ETIMEDOUT ? 0 : ret;
 	r = ec_rbuf(b->raw, size);
-	ret = ec_mbox_hdr_decode(&r, h);
-	if (ret)
-		return ret;
+	if (ec_mbox_hdr_decode(&r, h))
+		return -EBADMSG;
 	memcpy(b->rx, r.p, h->len);
 	return h->len;
 }
@@ -328,7 +327,7 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 
 	for (i = 0; i < 16 && ret; i++) {
 		ret = fetch(slave, b, &h, false);
-		if (ret < 0 && ret != -EBADMSG && ret != -EMSGSIZE)
+		if (ret < 0 && ret != -EBADMSG)
 			return ret;
 		if (ret > 0)
 			unasked(slave, &h, b->rx);

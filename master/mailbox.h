@@ -64,4 +64,7 @@ void ec_mbox_keep_voe(struct ec_slave *slave, bool on);
 int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit);
 
+/* mbox_text.c */
+const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t size);
+
 #endif

@@ -152,7 +152,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	if (ret == -ECANCELED || ret == -EINTR)
 		return;
 	if (ret && ret != -ENOENT)
-		ec_slave_warn(s, "PDOs could not be read over CoE (error %d); those of the EEPROM are used\n",
-			      ret);
+		ec_slave_warn(s, "PDOs could not be read over CoE (%pe); those of the EEPROM are used\n",
+			      ERR_PTR(ret));
 	WRITE_ONCE(s->pdos_known, true);
 }

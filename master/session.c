@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ctype.h>
+#include <linux/pid_namespace.h>
+#include <linux/sched.h>
 #include <linux/slab.h>
 #include "config.h"
 #include "copy.h"
@@ -78,6 +81,52 @@ static int begin(struct ec_master *m, struct ec_session *s)
 	return ret;
 }
 
+/* Who reserves the master; a command may have any name, and it goes to terminals. */
+static void note_process(struct ec_session *s)
+{
+	char *p;
+
+	s->owner_pid = task_tgid_nr(current);
+	get_task_comm(s->owner_comm, current);
+	for (p = s->owner_comm; *p; p++)
+		if (!isascii(*p) || !isprint(*p))
+			*p = '?';
+}
+
+/**
+ * ec_session_owner_text() - the process that has reserved the master
+ * @m: master
+ * @buf: result, such as "process 123 (demo)"
+ * @size: of @buf
+ *
+ * The number is that of the caller's PID namespace.
+ *
+ * Context: Process. May sleep.
+ * Return: length of the text; 0: nobody has it any more.
+ */
+size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size)
+{
+	const struct ec_session *s;
+	size_t len = 0;
+	pid_t nr;
+
+	buf[0] = '\0';
+	ec_session_lock(m);
+	s = m->heir ?: m->session;
+	if (s && s->owner) {
+		rcu_read_lock();
+		nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
+		rcu_read_unlock();
+		/* it has left its file to a child, or is in another namespace */
+		if (nr)
+			len = scnprintf(buf, size, "process %d (%s)", nr, s->owner_comm);
+		else
+			len = scnprintf(buf, size, "another process (%s)", s->owner_comm);
+	}
+	ec_session_unlock(m);
+	return len;
+}
+
 /**
  * ec_session_begin() - an application reserves the master
  * @m: master
@@ -110,6 +159,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	s->master = m;
 	s->owner = owner;
 	RCU_INIT_POINTER(s->waiters, waiters);
+	note_process(s);
 	s->ref_config = EC_UAPI_NONE32;
 	s->late_per_s = EC_LATE_PER_S;
 	ret = begin(m, s);

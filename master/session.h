@@ -3,6 +3,7 @@
 #ifndef EC_SESSION_H
 #define EC_SESSION_H
 
+#include <linux/sched.h>
 #include <linux/kref.h>
 #include <linux/mm.h>
 #include <linux/types.h>
@@ -72,6 +73,8 @@ struct ec_stall_log {
  * @master: master
  * @owner: open file that reserved the master; NULL: detached, its cycle goes on
  *	without an application
+ * @owner_pid: process that reserved the master, in the initial namespace
+ * @owner_comm: its command, printable
  * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
  *	reads it under RCU
  * @configs: slave configurations
@@ -109,6 +112,8 @@ struct ec_session {
 	struct ec_master *master;
 	const void *owner;
 	struct ec_waiters __rcu *waiters;
+	pid_t owner_pid;
+	char owner_comm[TASK_COMM_LEN];
 	struct ec_config **configs;
 	unsigned int n_configs;
 	size_t bytes;
@@ -139,6 +144,7 @@ struct ec_session {
 	struct ec_copying *copying;
 };
 
+size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size);
 int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters);
 void ec_session_end(struct ec_master *m, const void *owner);
 u32 ec_session_place(struct ec_session *s);

@@ -261,6 +261,8 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 	ec_session_fill_status(s);
 	ec_session_set_owner(s, heir->owner, rcu_dereference_protected(heir->waiters,
 			     lockdep_is_held(&m->session_lock)));
+	s->owner_pid = heir->owner_pid;
+	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
 	ec_session_free(heir);
 	ec_info(m, "session taken over by another application\n");
 	return 0;

@@ -67,7 +67,7 @@ static void apply_unknown_sm(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_STATION),
 			bus_slave(b, 0)->station);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 0)->why, "no SyncManager 7"), "%s",
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 0)->why, "SM7 is not a process data SyncManager"), "%s",
 				  bus_slave(b, 0)->why);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
 }

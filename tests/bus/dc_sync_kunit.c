@@ -441,7 +441,7 @@ static void sync_lost_on_the_way(struct kunit *test)
 	cyc_activate(c);
 	until_op(c, 13, 5000);
 	cyc_run(c, 1000);
-	expect_reason(b, 1, "does not answer on the way to OP");
+	expect_reason(b, 1, "communication failed before OP");
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_SAFEOP);
 	/* well again */
 	c->each = each;

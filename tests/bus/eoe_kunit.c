@@ -96,7 +96,7 @@ static void eoe_refused(struct kunit *test)
 static void eoe_without_eoe(struct kunit *test)
 {
 	refused(test, "slave a drive in=8 out=8\nslave b drive\n",
-		"shall get IP parameters but has no EoE; leave ecrt_slave_config_eoe_...() out");
+		"IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
 }
 
 /* What "ethercat ip" does. */
@@ -118,7 +118,7 @@ static void eoe_by_the_tool(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -EIO);
 	i.position = 2;
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &i), -EPROTONOSUPPORT);
-	KUNIT_EXPECT_STREQ(test, b->app.reason, "slave 2 has no EoE mailbox");
+	KUNIT_EXPECT_STREQ(test, b->app.reason, "IP parameters of slave 2: no EoE mailbox");
 	i.position = 3;
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -ENOENT);
 	bus_request(b, 0, EC_AL_INIT);

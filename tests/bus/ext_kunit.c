@@ -123,7 +123,7 @@ static void ext_places(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, at.size, 16u);
 	a.preset_size = EC_MAX_IMAGE + 1;	/* not even looked at */
 	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -EINVAL);
-	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "the domains have 24"));
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "the domains need 24"));
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc_domain_offset(&b->app, &at), 0);

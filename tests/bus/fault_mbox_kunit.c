@@ -48,7 +48,7 @@ static const struct wrong {
 	int want;	/* errno; 0: the answer is taken, and right */
 } wrongs[] = {
 	{ "length", EC_SIM_MAILBOX_LENGTH, -EBADMSG },
-	{ "short", EC_SIM_MAILBOX_SHORT, -EMSGSIZE },
+	{ "short", EC_SIM_MAILBOX_SHORT, -EBADMSG },
 	{ "counter", EC_SIM_MAILBOX_COUNTER, 0 },
 	{ "type", EC_SIM_MAILBOX_TYPE, -ETIMEDOUT },
 	{ "babble", EC_SIM_MAILBOX_BABBLE, -ETIMEDOUT },

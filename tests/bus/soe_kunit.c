@@ -276,9 +276,9 @@ static void soe_startup_refused(struct kunit *test)
 		const char *why;
 	} in[] = {
 		{ S(30), EC_AL_PREOP, EC_AL_PREOP,
-		  "startup IDN S-0-0030 of drive 0, 2 byte(s): error -5, SoE error 0x7004: the value can only be read" },
+		  "startup IDN S-0-0030 of drive 0 (2 byte(s)) failed: SoE error 0x7004: the value can only be read" },
 		{ P(0x96) + 0x1001, EC_AL_SAFEOP, EC_AL_SAFEOP,
-		  "startup IDN P-1-0151 of drive 0, 2 byte(s): error -5, SoE error 0x1001: there is no such IDN" },
+		  "startup IDN P-1-0151 of drive 0 (2 byte(s)) failed: SoE error 0x1001: there is no such IDN" },
 	};
 	struct cyc *c = prepare(test);
 	u32 i, k;

@@ -34,7 +34,10 @@ kernel_memory() {
 	background "$BATS_TEST_TMPDIR/out" 600
 	run timeout 60 "$EC_BUILD/apps/cyclic" 1
 	[ "$status" = 1 ]
-	[[ "$output" == *"reserved by another application"* ]]
+	[[ "$output" == *"master 0 is reserved by process "[0-9]*" (cyclic); stop that application first"* ]]
+	local pid
+	pid=$(sed -n 's/.*reserved by process \([0-9]*\) .*/\1/p' <<<"$output")
+	[ "$(cat "/proc/$pid/comm")" = cyclic ]
 	run ethercat slaves
 	[ "${#lines[@]}" = "$(slaves)" ]
 	run ethercat reg_read -p1 -t uint16 0x0010

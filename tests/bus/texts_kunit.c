@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* One text per cause: what a refusal claims has been found so. */
+#include "bus.h"
+#include "cyc.h"
+#include "master/coe.h"
+#include "master/ioctl.h"
+#include "master/mailbox.h"
+
+static const char text[] =
+	"segment seed=9 response=200us transition=200us\n"
+	"slave coupler EK1100\nslave bad drive serial=5\n";
+
+#define BAD	1
+
+static struct bus *ready(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, 2);
+	u32 i;
+
+	for (i = 0; i < 1000 && !bus_settled(b); i++)
+		msleep(1);
+	KUNIT_ASSERT_TRUE(test, bus_settled(b));
+	return b;
+}
+
+static void expect_text(struct bus *b, const char *want)
+{
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, want), "'%s' has no '%s'",
+				  b->app.reason, want);
+}
+
+static int upload(struct bus *b, u16 position, u16 index)
+{
+	struct ec_ioc_sdo i = {
+		.position = position, .index = index, .subindex = 1, .size = 4, .timeout_ms = 100,
+	};
+	u8 *data;
+	int ret;
+
+	b->app.reason[0] = '\0';
+	ret = ec_ioc_upload(&b->app, &i, &data);
+	kvfree(data);
+	return ret;
+}
+
+static void texts_sdo(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	u16 size = bus_slave(b, BAD)->info.std.rx_size;
+
+	KUNIT_EXPECT_EQ(test, upload(b, 0, 0x1018), -EPROTONOSUPPORT);
+	expect_text(b, "SDO 0x1018:01 of slave 0: no CoE mailbox");
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x5fff), -EIO);
+	expect_text(b, "aborted with code 0x06020000: ");
+	/* the slave has sent nothing: its mailbox is too small by its EEPROM */
+	bus_slave(b, BAD)->info.std.rx_size = 12;
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -EMSGSIZE);
+	expect_text(b, "slave 1: the mailbox is too small for the message, or larger than a datagram");
+	bus_slave(b, BAD)->info.std.rx_size = size;
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_SHORT, 0);
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -EBADMSG);
+	expect_text(b, "slave 1: invalid reply");
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_GOOD, 0);
+	bus_fault(b, EC_SIM_FAULT_MUTE, BAD, 0, 1, 0);
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
+	expect_text(b, "slave 1: no reply in time");
+	bus_fault(b, EC_SIM_FAULT_MUTE, BAD, 0, 0, 0);
+	bus_request(b, BAD, EC_AL_INIT);
+	bus_wait_al(b, BAD, EC_AL_INIT, 500);
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -EAGAIN);
+	expect_text(b, "slave 1: not in PREOP or above");
+}
+
+/* A slave that answers nothing is not one that aborts with code 0. */
+static void texts_dead(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	int ret;
+
+	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 1, 0);
+	ret = upload(b, BAD, 0x1018);
+	KUNIT_EXPECT_LT(test, ret, 0);
+	KUNIT_EXPECT_NULL(test, strstr(b->app.reason, "abort"));
+	expect_text(b, "SDO 0x1018:01 of slave 1: ");
+}
+
+static void texts_register(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_ioc_reg reg = { .position = BAD, .address = 0x0130, .size = 2 };
+
+	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 1, 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -EIO);
+	expect_text(b, "slave 1 did not execute access to 0x0130: working counter 0, expected 1");
+}
+
+/* Startup SDO: an abort without a text is one, an error without abort is none. */
+static void texts_startup(struct kunit *test)
+{
+	static const u8 value[4];
+	struct bus *b = ready(test);
+	struct cyc *c = cyc_new(b, 1000);
+	u32 config = cyc_config(c, BAD);
+	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x5fff, .subindex = 3, .size = 4 };
+
+	cyc_map(c, config, 2, cyc_domain(c));
+	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	cyc_activate(c);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_NOT_NULL_MSG(test,
+		strstr(bus_slave(b, BAD)->why, "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x06020000: "),
+		"%s", bus_slave(b, BAD)->why);
+	cyc_release(c);
+}
+
+/* Every errno of a transfer has a text, and no text is a bare number. */
+static void texts_errno(struct kunit *test)
+{
+	static const int all[] = {
+		-EPROTONOSUPPORT, -EAGAIN, -ETIMEDOUT, -EIO, -EBADMSG, -EPROTO, -EMSGSIZE,
+		-ECANCELED, -EINTR, -ENOMEM, -ENODEV, -ENETDOWN, -EBUSY, -EOPNOTSUPP,
+	};
+	char a[96];
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(all); i++) {
+		ec_mbox_fail_text(all[i], "CoE", a, sizeof(a));
+		KUNIT_EXPECT_GT_MSG(test, strlen(a), 10ul, "error %d: %s", all[i], a);
+		KUNIT_EXPECT_LT_MSG(test, strlen(a), 95ul, "error %d: %s", all[i], a);
+	}
+}
+
+static void texts_reserved(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_file other = { .master = NULL };
+	char want[80];
+
+	ec_file_init(&other, b->m, true);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&other, NULL), -EBUSY);
+	scnprintf(want, sizeof(want), "reserved by process %d (%s); stop that application first",
+		  task_tgid_nr(current), current->comm);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(other.reason, want), "%s", other.reason);
+	ec_ioc_release(&b->app, NULL);
+}
+
+static void texts_config(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_ioc_slave_config sc = { .position = 1, .vendor_id = 2, .product_code = 3 };
+	struct ec_ioc_sc_pdo pdo = {
+		.sm = 2, .op = EC_SC_PDO_MAP_ADD, .pdo = 0x1777, .entry_index = 0x7000,
+		.subindex = 1, .bits = 8,
+	};
+
+	cyc_new(b, 1000);
+	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	sc.product_code = 4;
+	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), -ENOENT);
+	expect_text(b, "slave 0:1 is configured as 0x00000002/0x00000003 already, not as 0x00000002/0x00000004");
+	KUNIT_EXPECT_EQ(test, ec_ioc_sc_pdo(&b->app, &pdo), -ENOENT);
+	expect_text(b, "cannot add entry 0x7000:01 to PDO 0x1777: the PDO is not assigned; assign it first");
+	pdo.op = EC_SC_PDO_ASSIGN_ADD;
+	pdo.sm = 200;
+	KUNIT_EXPECT_EQ(test, ec_ioc_sc_pdo(&b->app, &pdo), -EINVAL);
+	KUNIT_EXPECT_NULL(test, strstr(b->app.reason, "assign the PDO"));
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(texts_sdo),
+	KUNIT_CASE(texts_dead),
+	KUNIT_CASE(texts_register),
+	KUNIT_CASE(texts_startup),
+	KUNIT_CASE(texts_errno),
+	KUNIT_CASE(texts_reserved),
+	KUNIT_CASE(texts_config),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_texts",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
