@@ -237,32 +237,61 @@ int ec_ioc_config_sdo(struct ec_file *f, void *arg)
 	return ec_ioc_hand_over(i->data, copy, size, ret);
 }
 
-int ec_ioc_config_idn(struct ec_file *f, void *arg)
+/* As find_sdo(). */
+static int find_idn(struct ec_file *f, const struct ec_config *c, u32 pos,
+		    const struct ec_config_idn **found)
 {
-	struct ec_ioc_config_idn *i = arg;
-	struct ec_config_idn *idn;
-	void *copy = NULL;
-	u32 k = 0, size = 0;
+	const struct ec_config_idn *idn;
+	u32 k = 0;
+	int ret;
+
+	list_for_each_entry(idn, &c->idns, list) {
+		if (k == pos) {
+			*found = idn;
+			return 0;
+		}
+		ret = ++k % WALK ? 0 : ec_show_pause(f->master);
+		if (ret)
+			return ret;
+	}
+	return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup IDNs", c->index,
+				 c->n_idns));
+}
+
+/* @copy has room for @room bytes. */
+static int show_idn(struct ec_file *f, struct ec_ioc_config_idn *i, void *copy, u32 room,
+		    u32 *size)
+{
+	const struct ec_config_idn *idn = NULL;
 	int ret = 0;
 	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
 
 	if (!c)
 		return ret;
-	if (i->idn_pos >= c->n_idns)
-		return done(f, ec_refuse(f, -ENOENT, "configuration %u has %u startup IDNs",
-					 i->index, c->n_idns));
-	list_for_each_entry(idn, &c->idns, list) {
-		if (k++ != i->idn_pos)
-			continue;
-		i->idn = idn->idn;
-		i->drive = idn->drive;
-		i->state = idn->state;
-		size = min(i->size, idn->size);
-		copy = keep(idn->data, size, &ret);
-		i->size = idn->size;
-		break;
-	}
-	done(f, ret);
+	ret = find_idn(f, c, i->idn_pos, &idn);
+	if (ret)
+		return ret;
+	i->idn = idn->idn;
+	i->drive = idn->drive;
+	i->state = idn->state;
+	i->size = idn->size;
+	*size = min_t(u32, room, idn->size);
+	ret = copy_pieces(f, copy, idn->data, *size);
+	return ret ?: done(f, 0);
+}
+
+int ec_ioc_config_idn(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_config_idn *i = arg;
+	u32 room = min_t(u32, i->size, EC_MAX_SOE_SIZE), size = 0;
+	void *copy = kvmalloc(room, GFP_KERNEL_ACCOUNT);
+	int ret;
+
+	if (!copy)
+		return -ENOMEM;
+	do
+		ret = show_idn(f, i, copy, room, &size);
+	while (ret == -EAGAIN);
 	return ec_ioc_hand_over(i->data, copy, size, ret);
 }
 
