@@ -5,6 +5,7 @@
 # make demo           the main job in a VM
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
+# make check-long     what takes too long for that
 
 KDIR ?= /lib/modules/$(shell uname -r)/build
 PREFIX ?= /usr/local
@@ -121,6 +122,10 @@ check:
 check-kernels:
 	tests/check-kernels.sh
 
+# hours: all of tests/system on all kernels
+check-long:
+	tests/check-long.sh
+
 # figures; gates where a figure has to be reached
 bench:
 	tests/bench/run.sh
@@ -129,4 +134,4 @@ bench:
 check-witness:
 	tests/witness/run.sh
 
-.PHONY: demo bench check check-kernels check-witness
+.PHONY: demo bench check check-kernels check-long check-witness

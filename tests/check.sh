@@ -23,12 +23,14 @@ tool
 bats
 fuzz
 data
+arch
 kernels
 build
 pysoem
 kickcat
 ethercrab
 system
+guests
 demo
 bench
 "
@@ -73,9 +75,11 @@ level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_pysoem() { tests/pysoem/run.sh; }
 level_kickcat() { tests/foreign/kickcat.sh; }
 level_ethercrab() { tests/foreign/ethercrab.sh; }
+level_arch() { tests/arch/run.sh; }
 level_kernels() { tests/check-kernels.sh; }
 level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }
+level_guests() { tests/arch/guests.sh; }
 level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
 level_bench() { tests/bench/cycle.sh --gates; }
@@ -97,7 +101,7 @@ run() {
 	echo "=== $name: $((SECONDS - t0)) s"
 }
 
-tests/install-deps.sh build vm capture uml json python || {
+tests/install-deps.sh build vm capture uml json python cross || {
 	echo "check: packages that the tests need are missing and could not be installed (see above)"
 	echo "0 passed, 1 failed"
 	exit 1

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # Installs what building and testing need, and nothing that is there already.
-# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, rust)
+# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, rust, cross)
 
 set -eu
 
 usage() {
-	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json rust" >&2
+	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json rust cross" >&2
 	exit 2
 }
 
@@ -37,6 +37,10 @@ for group; do
 	# any cargo does that is new enough, Debian's "cargo" is not
 	rust)	p="cargo-web"
 		cargo --version 2>/dev/null | awk -F '[ .]' '{ ok = $2 > 1 || $3 >= 85 } END { exit !ok }' && p= ;;
+	cross)	p="g++-i686-linux-gnu libc6-dev-i386-cross gcc-arm-linux-gnueabihf
+		   libc6-dev-armhf-cross g++-aarch64-linux-gnu libc6-dev-arm64-cross
+		   g++-s390x-linux-gnu libc6-dev-s390x-cross qemu-user-static
+		   qemu-system-arm qemu-system-misc" ;;
 	-h|--help) usage ;;
 	*)	echo "${0##*/}: unknown group '$group'" >&2; usage ;;
 	esac

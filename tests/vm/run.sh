@@ -15,7 +15,9 @@ export EC_CACHE=$cache
 usage() {
 	cat >&2 <<-'END'
 	usage: run.sh [options] [--] COMMAND [ARG...]
-	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.12, 6.12-rt
+	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.12, 6.12-rt; 6.1-i386, 6.1-arm64, 6.1-s390x
+	                     with programs of that architecture (tests/vm/kernels.sh root)
+	                     and from the host the current folder's repository only
 	  --smp N            CPUs (default 2)
 	  --mem MB           memory (default 1024)
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
@@ -66,11 +68,24 @@ done
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
 
-for p in qemu-system-x86_64 cpio modprobe timeout awk sed stdbuf flock; do
+root=/ dirs=() busybox=
+arch=$("$here/kernels.sh" arch "$kernel") || exit 125
+case $arch in
+amd64|i386) qemu=(qemu-system-x86_64) cpu=max console=ttyS0 ;;
+arm64)	qemu=(qemu-system-aarch64 -M virt) cpu=cortex-a57 console=ttyAMA0 ;;
+s390x)	qemu=(qemu-system-s390x) cpu=max console=ttysclp0 ;;
+*)	die "no guest for $arch" ;;
+esac
+for p in "${qemu[0]}" cpio modprobe timeout awk sed stdbuf flock; do
 	command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh vm)"
 done
-busybox=
+if [ "$arch" != amd64 ]; then
+	root=$("$here/kernels.sh" root "$arch") || exit 125
+	busybox=$root/bin/busybox
+	dirs+=("$(cd "$here/../.." && pwd -P)")
+fi
 for p in /usr/bin/busybox /bin/busybox; do
+	[ -z "$busybox" ] || break
 	# One linked against libraries would not start in the initramfs.
 	if [ -x $p ] && ! LC_ALL=C ldd $p >/dev/null 2>&1; then busybox=$p; break; fi
 done
@@ -79,6 +94,7 @@ done
 image=$("$here/kernels.sh" image "$kernel") || exit 125
 modules=$("$here/kernels.sh" modules "$kernel") || exit 125
 release=${modules##*/}
+[ "$arch" = amd64 ] || dirs+=("$modules")
 
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-vm.XXXXXX")
 qemu_pid=
@@ -129,12 +145,12 @@ if [ ! -f "$initrd" ]; then
 fi
 touch -c "$initrd" 2>/dev/null || true	# it is in use
 
-base=(qemu-system-x86_64 -nodefaults -no-user-config -no-reboot -display none -kernel "$image")
+base=("${qemu[@]}" -nodefaults -no-user-config -no-reboot -display none -kernel "$image")
 
 # --- KVM only where it works: some hosts offer it and guests hang -------------
 probe_kvm() {
 	local key state=$cache/kvm-probe
-	[ -r /dev/kvm ] && [ -w /dev/kvm ] || return 1
+	[ -r /dev/kvm ] && [ -w /dev/kvm ] && [ $console = ttyS0 ] || return 1
 	key="$(cat /proc/sys/kernel/random/boot_id) $(qemu-system-x86_64 --version | head -n 1)"
 	if [ "$(sed -n 1p "$state" 2>/dev/null)" != "$key" ]; then
 		# The braces hide what the shell says when QEMU aborts.
@@ -160,12 +176,12 @@ fi
 
 if [ $icount = 1 ]; then
 	smp=1
-	accel=(-accel tcg -cpu max -icount "shift=0,sleep=off")
+	accel=(-accel tcg -cpu $cpu -icount "shift=0,sleep=off")
 	append=" tsc=reliable$append"
 elif [ "${EC_ACCEL:-}" = kvm ] || { [ -z "${EC_ACCEL:-}" ] && probe_kvm; }; then
 	accel=(-accel kvm -cpu host)
 else
-	accel=(-accel tcg -cpu max)
+	accel=(-accel tcg -cpu $cpu)
 	# All virtual CPUs of TCG share one counter, but the kernel does not know it
 	# and may choose the HPET, where each look at the clock leaves the guest.
 	append=" tsc=reliable$append"
@@ -183,8 +199,16 @@ for d in ${rw[@]+"${rw[@]}"}; do
 	opts+=(-virtfs "local,path=${d//,/,,},mount_tag=rw$n,security_model=none,multidevs=remap")
 	n=$((n + 1))
 done
+rw_count=$n
+n=0
+for d in ${dirs[@]+"${dirs[@]}"}; do
+	printf '%s\n' "$d" >"$ctl/ro$n"
+	opts+=(-virtfs "local,path=${d//,/,,},mount_tag=ro$n,security_model=none,readonly=on,multidevs=remap")
+	n=$((n + 1))
+done
 {
-	printf 'release=%q\nmodules=%q\nmark=%s\nrw=%d\n' "$release" "$modules" "$mark" "$n"
+	printf 'release=%q\nmodules=%q\nmark=%s\nrw=%d\nro=%d\n' "$release" "$modules" "$mark" \
+		"$rw_count" "$n"
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
@@ -205,11 +229,11 @@ start=$(date +%s%N)
 mkfifo "$tmp/out"
 # shellcheck disable=SC2086
 timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd" \
-	-serial stdio -device virtio-serial-pci -chardev "file,id=out,path=$tmp/out" \
+	-serial stdio -device virtio-serial -chardev "file,id=out,path=$tmp/out" \
 	-device virtserialport,chardev=out -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
-	-virtfs local,path=/,mount_tag=host,security_model=none,readonly=on,multidevs=remap \
+	-virtfs "local,path=$root,mount_tag=host,security_model=none,readonly=on,multidevs=remap" \
 	${opts[@]+"${opts[@]}"} \
-	-append "console=ttyS0 quiet panic=-1 log_buf_len=4M mitigations=off apparmor=0 audit=0 printk.devkmsg=on net.ifnames=0$append" \
+	-append "console=$console quiet panic=-1 log_buf_len=4M mitigations=off audit=0 printk.devkmsg=on net.ifnames=0$append" \
 	$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
 qemu_pid=$!
 # The console adds a carriage return to each line of the kernel. The file tells

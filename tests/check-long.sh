@@ -1,0 +1,29 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# What takes too long for every check: all of tests/system on all kernels. The last line
+# is "N passed, N failed"; results with their date are in Documentation/testing.rst.
+#
+# usage: check-long.sh [KERNEL...]
+
+set -u
+export LC_ALL=C
+cd "$(dirname "$0")/.." || exit 1
+passed=0 failed=0
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+
+tests/install-deps.sh build vm capture json cross || exit 1
+for k in ${*:-6.1-rt 6.1 6.12-rt 6.12}; do
+	echo "=== $k"
+	began=$SECONDS
+	EC_KERNEL=$k tests/system/run.sh >"$log" 2>&1
+	rc=$?
+	grep -E -A 12 '^[[:space:]#]*not ok' "$log"
+	read -r p f < <(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$log" | tail -n 1)
+	[ $rc = 0 ] || [ "${f:-0}" != 0 ] || { tail -n 20 "$log"; f=1; }
+	echo "=== $k: ${p:-0} passed, ${f:-0} failed, $((SECONDS - began)) s"
+	passed=$((passed + ${p:-0})) failed=$((failed + ${f:-0}))
+done
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
