@@ -7,7 +7,7 @@
 #include <linux/spinlock.h>
 #include <linux/types.h>
 
-#define EC_LOG_WINDOW_NS	(10 * NSEC_PER_SEC)
+#define EC_LOG_WINDOW_NS	(10ULL * NSEC_PER_SEC)
 #define EC_LOG_TEXT		224	/* a line has 200 characters, a reason of 160 fits */
 #define EC_LOG_REPEATED		1	/* lines of equal text in a window */
 #define EC_LOG_VARIED		3	/* lines of one event with different texts */

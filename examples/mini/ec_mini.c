@@ -38,7 +38,7 @@ static struct task_struct *task;
 static int out, in;
 
 /* Beside the cycle: the serial number, again and again. */
-static void read_serial(u64 cycle)
+static void read_serial(unsigned int cycle)
 {
 	static ec_request_state_t last;
 	ec_request_state_t now = ecrt_sdo_request_state(serial);
@@ -73,7 +73,7 @@ static void show_changes(void)
 	last_data = data;
 }
 
-static void cycle(u64 n)
+static void cycle(unsigned int n)
 {
 	u8 *data = ecrt_domain_data(domain);
 
@@ -89,7 +89,7 @@ static void cycle(u64 n)
 static int run(void *unused)
 {
 	ktime_t next = ktime_get();
-	u64 n;
+	unsigned int n;
 
 	sched_set_fifo(current);
 	for (n = 0; !kthread_should_stop(); n++) {
