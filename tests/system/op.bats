@@ -8,8 +8,8 @@ teardown_file() { stop; }
 
 @test "22 slaves are in PREOP with their names and identities" {
 	ethercat slaves
-	ethercat slaves | grep -q '^0 .* PREOP  +  EK1100'
-	[ "$(ethercat slaves -p0 -v | sed -n 's/^ *Vendor Id: *//p')" = 0x00000002 ]
+	ethercat slaves | grep -qE '^ *0 +1:0 +PREOP +\+ +EK1100 Coupler$'
+	ethercat slaves -p0 -v | grep -q 'Vendor.*0x00000002'
 	[ "$(ethercat upload -p4 -t uint32 0x1018 1)" = "0x00000002 2" ]
 }
 
