@@ -38,15 +38,3 @@ reads() { wait_for 60 grep -q . "$BATS_TEST_TMPDIR/reader"; }
 	[ "$status" = 0 ]
 	[[ "$output" == *"updates: $UPDATES of $UPDATES"* ]]
 }
-
-@test "so do six of the lowest priority beside one of the highest" {
-	nobody chrt --idle 0 "$EC_BUILD/apps/readers" show 6
-	reads
-	chrt --fifo 40 sh -c 'while :; do i=0; while [ $i -lt 2000 ]; do i=$((i + 1)); done; sleep 0.01; done' 3>&- &
-	busy=$!
-	run "$EC_BUILD/apps/readers" updates $UPDATES
-	kill -9 $busy
-	echo "$output"
-	[ "$status" = 0 ]
-	[[ "$output" == *"updates: $UPDATES of $UPDATES"* ]]
-}

@@ -25,7 +25,7 @@
 #include <uapi/ethercat.h>
 
 #define DEVICE		"/dev/EtherCAT0"
-#define LIMIT_MS	500	/* for an update; one takes 20 ms and what the slave needs */
+#define LIMIT_MS	1000	/* for an update; one takes 20 ms and what the slave needs */
 #define OP_MS		60000
 
 static int open_to_read(void)
