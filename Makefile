@@ -34,7 +34,12 @@ sync:
 		[ -e $(CURDIR)/$$f ] || rm $$f; \
 	done
 
-modules: sync
+NO_HEADERS = no kernel headers at $(KDIR): install linux-headers-$(shell uname -r) or set KDIR=
+
+headers:
+	@[ -e $(KDIR)/Makefile ] || { echo "$(NO_HEADERS)" >&2; exit 1; }
+
+modules: headers sync
 	+$(KMAKE) modules
 
 lib:
@@ -64,7 +69,7 @@ mini: modules
 
 # what uname -r says on the kernel of these headers
 KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(KDIR)/include/generated/utsrelease.h 2>/dev/null), \
-	$(error no kernel headers at $(KDIR): install linux-headers-$(shell uname -r) or set KDIR=))
+	$(error $(NO_HEADERS)))
 MODINST = $(DESTDIR)/lib/modules/$(KREL)/updates
 UDEVDIR ?= $(PREFIX)/lib/udev/rules.d
 
@@ -91,15 +96,21 @@ install-udev:
 	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
 
-# the group stays: files may belong to it
+# for whatever kernels they were installed; the group stays, files may belong to it
 uninstall:
-	rm -rf $(MODINST)/ethercat
-	-rmdir $(MODINST) 2>/dev/null
-	$(if $(DESTDIR),,depmod $(KREL))
+	@for d in $(DESTDIR)/lib/modules/*/updates/ethercat; do \
+		[ -d $$d ] || continue; \
+		k=$${d%/updates/ethercat}; \
+		echo "rm -rf $$d"; rm -rf $$d; rmdir $$k/updates 2>/dev/null; \
+		$(if $(DESTDIR),:,depmod $${k##*/}); \
+	done
 	$(MAKE) -C lib prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
 	rm -f $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
+	-@cd $(DESTDIR)$(PREFIX) 2>/dev/null && rmdir lib/udev/rules.d lib/udev \
+		share/bash-completion/completions share/bash-completion \
+		lib/cmake/ethercat lib/cmake lib/pkgconfig 2>/dev/null || true
 
 .PHONY: install install-modules install-lib install-tool install-udev uninstall
 
@@ -110,7 +121,7 @@ clean:
 	$(MAKE) -C tool/sim clean
 	$(MAKE) -C examples clean
 
-.PHONY: all sync modules lib tool examples mini clean
+.PHONY: all headers sync modules lib tool examples mini clean
 
 # CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM
 demo:

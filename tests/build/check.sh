@@ -196,20 +196,26 @@ kernel_app_builds() {
 
 t "a kernel application against what was installed" kernel_app_builds
 
+# but for folders that every system has
 nothing_left() {
 	[ -z "$(installed)" ] || { installed; return 1; }
-	[ ! -e "$root/lib/modules/$release/updates" ]
+	[ -z "$(cd "$root" && find . -type d | grep -vE "^\.(/lib(/modules(/$release)?)?|/opt)?$" |
+		grep -vE "^\.$prefix(/bin|/lib|/include|/share(/man(/man8)?)?)?$" | tee /dev/stderr)" ]
 }
 
 t "make uninstall" top uninstall
 t "it leaves no file" nothing_left
 
+# no_headers TARGET: one line that says what to do, before anything else
 no_headers() {
-	! make -s KDIR="$tmp/nowhere" DESTDIR="$root" uninstall 2>"$tmp/err" &&
-		grep -q 'no kernel headers at .*/nowhere: install linux-headers-' "$tmp/err"
+	! make -s KDIR="$tmp/nowhere" DESTDIR="$root" "$1" >"$tmp/err" 2>&1 &&
+		head -n 1 "$tmp/err" | grep -q '^no kernel headers at .*/nowhere: install linux-headers-' &&
+		! grep -q 'No such file' "$tmp/err"
 }
 
-t "without kernel headers it says what to install" no_headers
+t "make without kernel headers says what to install" no_headers all
+t "make install without kernel headers says what to install" no_headers install
+t "make uninstall needs no kernel headers" make -s KDIR="$tmp/nowhere" DESTDIR="$root" PREFIX=$prefix uninstall
 
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
