@@ -67,6 +67,11 @@ struct bench {
 	unsigned int requests_done;
 	unsigned int overruns;
 	unsigned long long busy_ns;	/* all CPUs, while measured */
+	struct work {
+		unsigned long long idle, simulator, all;	/* ns, which are instructions */
+		long long begin;
+	} work;			/* of @cycles cycles in which nothing else is measured */
+	unsigned int tick;	/* cost of ticks() */
 	uint64_t image_bytes;
 };
 
@@ -85,6 +90,11 @@ void extras_queue(struct bench *b, long long at);
 int trace_open(void);
 void trace_switch(bool on);
 void trace_violate(struct bench *b, unsigned int cycle);
+
+/* work.c */
+void work_begin(struct work *w);
+void work_end(struct work *w);
+int work_baseline(unsigned int ms);
 
 /* syscalls.c */
 int syscalls_run(int (*child)(void *), void *arg);

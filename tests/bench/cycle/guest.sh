@@ -12,6 +12,8 @@ set -u
 build=$1 device=$2 segment=$3
 shift 3
 
+"$build/bench/cycle-bench" --baseline 1000
+
 case $device in
 virtual)
 	insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
