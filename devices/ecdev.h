@@ -49,5 +49,6 @@ const char *ecdev_waiting(unsigned int *index, unsigned int *master);
 bool ecdev_wanted(const char *name, const u8 *mac);
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
 void ecdev_foreign(struct ecdev *dev);
+void ecdev_not_captured(struct ecdev *dev);
 
 #endif

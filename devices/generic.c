@@ -15,11 +15,26 @@
 #include <linux/slab.h>
 #include <linux/workqueue.h>
 #include <net/net_namespace.h>
+#include <net/rtnetlink.h>
 #include "ecdev.h"
 #include "master/compat.h"
+#include "master/tap.h"
 #include "master/wire/frame.h"
 
-#define RING	64	/* more than ec_xfer() sends at once; completion is lazy */
+#define RING		64	/* more than are on their way at once; completion is lazy */
+#define SPARES		16
+#define HELD_NS		(20 * NSEC_PER_MSEC)	/* a frame has left the wire long before */
+#define SPARE_HEAD	128	/* a device below this one may come and push more headers */
+
+/**
+ * struct buf - a transmit buffer
+ * @skb: prepared frame; a clone of it is sent
+ * @sent_ns: when that was (ktime)
+ */
+struct buf {
+	struct sk_buff *skb;
+	u64 sent_ns;
+};
 
 /**
  * struct gen - one claimed or offered network device
@@ -27,10 +42,13 @@
  * @nd: network device, with a reference
  * @tracker: of that reference
  * @dev: who gets the frames, set before the first can arrive
- * @skb: prepared frames; sent as they are, or as clones
- * @sharing: the driver leaves a frame as it is, so no clone is needed
- * @next: next of @skb to try
- * @cur: the frame under construction
+ * @tap: copies for capture programs at @nd
+ * @buf: transmit buffers
+ * @next: next of @buf to try
+ * @cur: the one under construction
+ * @spare: prepared frames for buffers that are held too long
+ * @held: these, free as soon as their holders let go
+ * @refill: frees @held, makes @spare
  * @hook: keeps other traffic off the wire
  * @claimed: rx_handler is registered
  */
@@ -39,10 +57,13 @@ struct gen {
 	struct net_device *nd;
 	netdevice_tracker tracker;
 	struct ecdev *dev;
-	struct sk_buff *skb[RING];
-	bool sharing;
+	struct ec_tap tap;
+	struct buf buf[RING];
 	unsigned int next;
-	struct sk_buff *cur;
+	struct buf *cur;
+	struct sk_buff_head spare;
+	struct sk_buff_head held;
+	struct work_struct refill;
 	struct nf_hook_ops hook;
 	bool claimed;
 };
@@ -55,9 +76,15 @@ static DECLARE_WORK(look_work, look);
 
 static rx_handler_result_t receive(struct sk_buff **pskb)
 {
-	struct sk_buff *skb = skb_share_check(*pskb, GFP_ATOMIC);
+	struct sk_buff *skb;
 	struct gen *g;
 
+	/* from our own tap, which capture programs have seen now */
+	if ((*pskb)->pkt_type == PACKET_OUTGOING) {
+		consume_skb(*pskb);
+		return RX_HANDLER_CONSUMED;
+	}
+	skb = skb_share_check(*pskb, GFP_ATOMIC);
 	if (!skb)
 		return RX_HANDLER_CONSUMED;
 	*pskb = skb;
@@ -77,9 +104,14 @@ static unsigned int egress(void *priv, struct sk_buff *skb, const struct nf_hook
 	return NF_DROP;
 }
 
+/*
+ * What the driver gets is a clone, whose companion needs no memory. It may push
+ * headers to the clone without a copy: nobody else looks at what is in front of the
+ * frame, and the frame is written anew each time.
+ */
 static struct sk_buff *prepare(struct net_device *nd)
 {
-	unsigned int head = LL_RESERVED_SPACE(nd);
+	unsigned int head = LL_RESERVED_SPACE(nd) + SPARE_HEAD;
 	struct sk_buff *skb = alloc_skb_fclone(head + EC_ETH_MAX + nd->needed_tailroom, GFP_KERNEL);
 
 	if (!skb)
@@ -88,21 +120,69 @@ static struct sk_buff *prepare(struct net_device *nd)
 	skb->dev = nd;
 	skb->protocol = htons(EC_ETHERTYPE);
 	skb->priority = TC_PRIO_CONTROL;
+	__skb_header_release(skb);
 	return skb;
 }
 
-static void free_ring(struct gen *g)
+static void refill(struct work_struct *work)
+{
+	struct gen *g = container_of(work, struct gen, refill);
+	struct sk_buff *skb;
+
+	skb_queue_purge(&g->held);
+	while (skb_queue_len(&g->spare) < SPARES && (skb = prepare(g->nd)))
+		skb_queue_tail(&g->spare, skb);
+}
+
+static void free_buffers(struct gen *g)
 {
 	unsigned int i;
 
+	cancel_work_sync(&g->refill);
+	skb_queue_purge(&g->held);
+	skb_queue_purge(&g->spare);
 	for (i = 0; i < RING; i++) {
-		kfree_skb(g->skb[i]);
-		g->skb[i] = NULL;
+		kfree_skb(g->buf[i].skb);
+		g->buf[i].skb = NULL;
 	}
+	ec_tap_exit(&g->tap);
+}
+
+static int make_buffers(struct gen *g)
+{
+	unsigned int i;
+	int ret;
+
+	skb_queue_head_init(&g->spare);
+	skb_queue_head_init(&g->held);
+	INIT_WORK(&g->refill, refill);
+	ret = ec_tap_init(&g->tap, g->nd);
+	if (ret)
+		return ret;
+	for (i = 0; i < RING; i++) {
+		g->buf[i].skb = prepare(g->nd);
+		if (!g->buf[i].skb) {
+			free_buffers(g);
+			return -ENOMEM;
+		}
+	}
+	refill(&g->refill);
+	return 0;
+}
+
+/* It learns every source address, and ours are never the same: it drops most frames. */
+static bool is_mesh(const struct net_device *nd)
+{
+	return nd->rtnl_link_ops && !strcmp(nd->rtnl_link_ops->kind, "batadv");
 }
 
 static int check(const struct net_device *nd)
 {
+	if (is_mesh(nd)) {
+		pr_err("ec_generic: %s is a batman-adv mesh, which loses frames; use an Ethernet interface\n",
+		       nd->name);
+		return -EOPNOTSUPP;
+	}
 	if (nd->mtu < ETH_DATA_LEN) {
 		pr_err_ratelimited("ec_generic: %s has an MTU of %u, EtherCAT needs %d; do \"ip link set %s mtu %d\"\n",
 				   nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
@@ -131,14 +211,19 @@ static int claim(struct gen *g)
 		return ret;
 	}
 	ret = netdev_rx_handler_register(g->nd, receive, g);
-	if (ret)
+	if (ret) {
+		pr_err("ec_generic: %s does not let its frames be received (%pe); use the device below it\n",
+		       g->nd->name, ERR_PTR(ret));
 		return ret;
+	}
 	g->hook = (struct nf_hook_ops){
 		.hook = egress, .dev = g->nd, .pf = NFPROTO_NETDEV,
 		.hooknum = NF_NETDEV_EGRESS, .priority = INT_MIN,
 	};
 	ret = nf_register_net_hook(dev_net(g->nd), &g->hook);
 	if (ret) {
+		pr_err("ec_generic: other traffic cannot be kept off %s (%pe)\n", g->nd->name,
+		       ERR_PTR(ret));
 		netdev_rx_handler_unregister(g->nd);
 		return ret;
 	}
@@ -160,21 +245,15 @@ static void unclaim(struct gen *g)
 static int gen_start(void *priv, struct ecdev *dev)
 {
 	struct gen *g = priv;
-	unsigned int i;
 	int ret;
 
 	g->dev = dev;
-	g->sharing = g->nd->priv_flags & IFF_TX_SKB_SHARING;
-	for (i = 0; i < RING; i++) {
-		g->skb[i] = prepare(g->nd);
-		if (!g->skb[i]) {
-			free_ring(g);
-			return -ENOMEM;
-		}
-	}
+	ret = make_buffers(g);
+	if (ret)
+		return ret;
 	ret = claim(g);
 	if (ret)
-		free_ring(g);
+		free_buffers(g);
 	return ret;
 }
 
@@ -183,13 +262,33 @@ static void gen_stop(void *priv)
 	struct gen *g = priv;
 
 	unclaim(g);
-	free_ring(g);
+	free_buffers(g);
 }
 
-/* The device, or somebody who captures, still has it. */
+/* The driver, or a capture program below it, still has the clone. */
 static bool in_use(const struct sk_buff *skb)
 {
-	return skb_shared(skb) || skb_cloned(skb);
+	return skb_shared(skb) || skb_cloned(skb) || skb_fclone_busy(NULL, skb);
+}
+
+/*
+ * A program that captures at a device below this one, or at the other end of a
+ * virtual wire, and does not read, keeps the clones. The holder pays for them; the
+ * cycle goes on with others.
+ */
+static bool replace(struct gen *g, struct buf *b)
+{
+	struct sk_buff *skb;
+
+	if ((s64)(ktime_get_ns() - b->sent_ns) < HELD_NS)
+		return false;
+	skb = skb_dequeue(&g->spare);
+	if (skb) {
+		skb_queue_tail(&g->held, b->skb);
+		b->skb = skb;
+	}
+	queue_work(system_highpri_wq, &g->refill);
+	return skb;
 }
 
 static u8 *gen_tx_get(void *priv)
@@ -198,21 +297,15 @@ static u8 *gen_tx_get(void *priv)
 	unsigned int i;
 
 	for (i = 0; i < RING; i++) {
-		struct sk_buff *skb = g->skb[(g->next + i) % RING];
+		struct buf *b = &g->buf[(g->next + i) % RING];
 
-		if (in_use(skb))
+		if (in_use(b->skb) && !replace(g, b))
 			continue;
 		g->next = (g->next + i + 1) % RING;
-		g->cur = skb;
-		return skb->data;
+		g->cur = b;
+		return b->skb->data;
 	}
 	return NULL;
-}
-
-/* A reference or a clone for the device; the pair of a clone needs no memory. */
-static struct sk_buff *for_device(const struct gen *g, struct sk_buff *skb)
-{
-	return g->sharing ? skb_get(skb) : skb_clone(skb, GFP_ATOMIC);
 }
 
 static netdev_tx_t start_xmit(struct net_device *nd, struct netdev_queue *txq, struct sk_buff *skb)
@@ -247,7 +340,8 @@ static netdev_tx_t transmit(struct net_device *nd, struct sk_buff *skb)
 static int gen_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct gen *g = priv;
-	struct sk_buff *skb = g->cur;
+	struct sk_buff *skb = g->cur->skb;
+	netdev_tx_t ret;
 
 	if (!netif_running(g->nd) || !netif_carrier_ok(g->nd))
 		return -ENETDOWN;
@@ -256,15 +350,20 @@ static int gen_tx_send(void *priv, u8 *buf, size_t len)
 	skb_put(skb, len);
 	skb_reset_mac_header(skb);
 	skb_set_network_header(skb, ETH_HLEN);
-	skb = for_device(g, skb);
+	skb = skb_clone(skb, GFP_ATOMIC);
 	if (!skb)
 		return -ENOMEM;
-	if (dev_nit_active(g->nd))
-		dev_queue_xmit_nit(skb, g->nd);
-	if (transmit(g->nd, skb) == NETDEV_TX_BUSY) {
+	if (!ec_tap_sent(&g->tap, buf, len))
+		ecdev_not_captured(g->dev);
+	g->cur->sent_ns = ktime_get_ns();
+	ret = transmit(g->nd, skb);
+	if (ret == NETDEV_TX_BUSY) {
 		kfree_skb(skb);
 		return -EBUSY;
 	}
+	/* a device below this one had no room in its queue */
+	if (ret == NET_XMIT_DROP)
+		return -EBUSY;
 	return 0;
 }
 

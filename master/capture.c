@@ -2,82 +2,30 @@
 /*
  * eccapN: a network interface that carries copies of every frame of master N,
  * for tcpdump and the like. Virtual and native devices have no interface of
- * their own. The cycle only copies into a ring, and only while somebody
- * captures; a worker does the rest.
+ * their own.
  */
 #include <linux/etherdevice.h>
 #include <linux/module.h>
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include <linux/skbuff.h>
-#include <linux/vmalloc.h>
 #include "capture.h"
 #include "master.h"
-#include "wire/frame.h"
-
-#define RING	1024	/* frames; power of 2 */
+#include "tap.h"
 
 static bool capture;
 module_param(capture, bool, 0444);
 MODULE_PARM_DESC(capture, "1: an interface eccap<N> per master shows its frames to tcpdump");
 
 /**
- * struct captured - one frame in the ring
- * @at: when it was sent or received
- * @out: sent
- * @len: bytes of @data
- * @data: the frame from its destination address
- */
-struct captured {
-	ktime_t at;
-	bool out;
-	u16 len;
-	u8 data[EC_ETH_MAX];
-};
-
-/**
  * struct ec_capture - private part of the interface
  * @nd: the interface
- * @lock: protects @head and the counter of frames that did not fit
- * @head: next to be filled, by whoever sends or receives
- * @tail: next to be shown, by the worker
- * @work: shows what is in the ring
- * @ring: frames
+ * @tap: frames on their way to it
  */
 struct ec_capture {
 	struct net_device *nd;
-	raw_spinlock_t lock;
-	unsigned int head;
-	unsigned int tail;
-	struct delayed_work work;
-	struct captured *ring;
+	struct ec_tap tap;
 };
-
-static bool wanted(const struct ec_capture *c)
-{
-	return netif_running(c->nd) && dev_nit_active(c->nd);
-}
-
-/* the next free place; with the lock held, until publish() */
-static struct captured *reserve(struct ec_capture *c, bool out)
-{
-	struct captured *f = &c->ring[c->head % RING];
-
-	if (c->head - smp_load_acquire(&c->tail) == RING) {
-		c->nd->stats.rx_dropped++;
-		return NULL;
-	}
-	f->at = ktime_get_real();
-	f->out = out;
-	return f;
-}
-
-static void publish(struct ec_capture *c)
-{
-	smp_store_release(&c->head, c->head + 1);
-	/* one tick: several frames for one wake-up */
-	schedule_delayed_work(&c->work, 1);
-}
 
 /**
  * ec_capture_sent() - a frame has been sent
@@ -86,22 +34,11 @@ static void publish(struct ec_capture *c)
  * @len: bytes there
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false when a program wants the frame and there is no room for it.
  */
-void ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
+bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
 {
-	struct captured *f;
-	unsigned long flags;
-
-	if (!c || !wanted(c) || len > EC_ETH_MAX)
-		return;
-	raw_spin_lock_irqsave(&c->lock, flags);
-	f = reserve(c, true);
-	if (f) {
-		memcpy(f->data, frame, len);
-		f->len = len;
-		publish(c);
-	}
-	raw_spin_unlock_irqrestore(&c->lock, flags);
+	return !c || ec_tap_sent(&c->tap, frame, len);
 }
 
 /**
@@ -112,54 +49,11 @@ void ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
  * @len: bytes there
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false when a program wants the frame and there is no room for it.
  */
-void ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len)
+bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len)
 {
-	struct captured *f;
-	unsigned long flags;
-
-	if (!c || !wanted(c) || len > EC_ETH_MAX - EC_ETH_HDR)
-		return;
-	raw_spin_lock_irqsave(&c->lock, flags);
-	f = reserve(c, false);
-	if (f) {
-		eth_broadcast_addr(f->data);
-		ether_addr_copy(f->data + ETH_ALEN, src);
-		put_unaligned_be16(EC_ETHERTYPE, f->data + 2 * ETH_ALEN);
-		memcpy(f->data + EC_ETH_HDR, data, len);
-		f->len = EC_ETH_HDR + len;
-		publish(c);
-	}
-	raw_spin_unlock_irqrestore(&c->lock, flags);
-}
-
-static void show(struct ec_capture *c, const struct captured *f)
-{
-	struct sk_buff *skb = netdev_alloc_skb(c->nd, f->len);
-
-	if (!skb) {
-		c->nd->stats.rx_errors++;
-		return;
-	}
-	skb_put_data(skb, f->data, f->len);
-	skb->protocol = eth_type_trans(skb, c->nd);
-	skb->pkt_type = f->out ? PACKET_OUTGOING : PACKET_HOST;
-	skb->tstamp = f->at;
-	c->nd->stats.rx_packets++;
-	c->nd->stats.rx_bytes += f->len;
-	local_bh_disable();
-	netif_receive_skb(skb);
-	local_bh_enable();
-}
-
-static void worker(struct work_struct *w)
-{
-	struct ec_capture *c = container_of(to_delayed_work(w), struct ec_capture, work);
-
-	while (c->tail != smp_load_acquire(&c->head)) {
-		show(c, &c->ring[c->tail % RING]);
-		smp_store_release(&c->tail, c->tail + 1);
-	}
+	return !c || ec_tap_received(&c->tap, src, data, len);
 }
 
 /* After the capture programs nobody else wants these frames. */
@@ -186,10 +80,20 @@ static netdev_tx_t capture_xmit(struct sk_buff *skb, struct net_device *nd)
 	return NETDEV_TX_OK;
 }
 
+static void capture_stats(struct net_device *nd, struct rtnl_link_stats64 *stats)
+{
+	const struct ec_capture *c = netdev_priv(nd);
+
+	stats->rx_packets = READ_ONCE(c->tap.shown);
+	stats->rx_bytes = READ_ONCE(c->tap.bytes);
+	stats->rx_dropped = READ_ONCE(c->tap.dropped);
+}
+
 static const struct net_device_ops capture_ops = {
 	.ndo_init = capture_init,
 	.ndo_uninit = capture_uninit,
 	.ndo_start_xmit = capture_xmit,
+	.ndo_get_stats64 = capture_stats,
 };
 
 static void setup(struct net_device *nd)
@@ -224,12 +128,9 @@ int ec_capture_create(struct ec_master *m)
 		return -ENOMEM;
 	c = netdev_priv(nd);
 	c->nd = nd;
-	raw_spin_lock_init(&c->lock);
-	INIT_DELAYED_WORK(&c->work, worker);
-	c->ring = vzalloc(array_size(RING, sizeof(*c->ring)));
-	ret = c->ring ? register_netdev(nd) : -ENOMEM;
+	ret = ec_tap_init(&c->tap, nd) ?: register_netdev(nd);
 	if (ret) {
-		vfree(c->ring);
+		ec_tap_exit(&c->tap);
 		free_netdev(nd);
 		return ret;
 	}
@@ -250,9 +151,9 @@ void ec_capture_destroy(struct ec_master *m)
 	if (!c)
 		return;
 	m->capture = NULL;
-	cancel_delayed_work_sync(&c->work);
+	/* first, as its worker may just have begun to show a frame there */
+	ec_tap_exit(&c->tap);
 	unregister_netdev(c->nd);
-	vfree(c->ring);
 	free_netdev(c->nd);
 }
 

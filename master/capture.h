@@ -10,8 +10,8 @@ struct ec_master;
 
 int ec_capture_create(struct ec_master *m);
 void ec_capture_destroy(struct ec_master *m);
-void ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len);
-void ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len);
+bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len);
+bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len);
 bool ec_capture_is(const struct ec_capture *c, const char *name);
 
 #endif

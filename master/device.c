@@ -224,3 +224,21 @@ void ecdev_foreign(struct ecdev *dev)
 	rcu_read_unlock();
 }
 EXPORT_SYMBOL_GPL(ecdev_foreign);
+
+/**
+ * ecdev_not_captured() - count a frame that capture programs did not see
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_not_captured(struct ecdev *dev)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		atomic64_inc(&link->stats.not_captured);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_not_captured);

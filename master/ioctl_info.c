@@ -168,8 +168,10 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	ec_show_end(m);
 	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
-	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++)
+	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++) {
 		device_info(&m->link[l], &i->devices[l]);
+		i->not_captured += atomic64_read(&m->link[l].stats.not_captured);
+	}
 	i->device_count = l;
 	return 0;
 }

@@ -57,7 +57,8 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 	memcpy(buf, slot->frame, len);
 	if (unlikely(READ_ONCE(link->master->debug) >= 2))
 		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
-	ec_capture_sent(link->master->capture, buf, len);
+	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
+		atomic64_inc(&link->stats.not_captured);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {
 		atomic64_inc(&link->stats.tx_errors);

@@ -28,6 +28,7 @@ struct ec_link_stats {
 	atomic64_t late;
 	atomic64_t unmatched;
 	atomic64_t foreign;
+	atomic64_t not_captured;	/* no room for a copy */
 };
 
 /**

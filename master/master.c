@@ -42,7 +42,8 @@ void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
 	if (unlikely(READ_ONCE(m->debug) >= 2))
 		ec_link_trace(link, "received", data, len);
-	ec_capture_received(m->capture, src, data, len);
+	if (unlikely(!ec_capture_received(m->capture, src, data, len)))
+		atomic64_inc(&link->stats.not_captured);
 	switch (ec_slots_match(&m->slots, src, data, len, &xfer)) {
 	case EC_MATCH_DONE:
 		if (xfer)

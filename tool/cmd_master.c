@@ -214,6 +214,9 @@ static int show(const struct tool *t, struct dev *d)
 		device(i ? "Backup" : "Main", &m.devices[i]);
 	out_end();
 	common(&m);
+	out_u("frames_not_captured", m.not_captured, NULL);
+	if (m.not_captured)
+		out_text("    Frames not captured: %u\n", m.not_captured);
 	clocks(&m);
 	cycle(t, &m);
 	out_u("slaves_responding", m.slaves_responding, NULL);
@@ -261,7 +264,8 @@ const struct cmd cmd_master = {
 		"wire time of a cycle at 100 Mbit/s, preamble and gap included: with all domains\n"
 		"and, when they are used, clock datagrams; and of the last send. Acyclic: what is left\n"
 		"of it for mailboxes, registers and states, and what the shortest frame needs; cycles\n"
-		"made late by such frames that did not fit.\n",
+		"made late by such frames that did not fit. Frames not captured: a capture program\n"
+		"was running, and the ring of copies for it was full.\n",
 	.json = "masters[]: master, phase (waiting, idle, operation), active, session (none,\n"
 		"reserved, active, detached), slaves,\n"
 		"devices[] (mac, attached, interface, link_up, tx_frames, tx_bytes, rx_frames,\n"
@@ -272,7 +276,7 @@ const struct cmd cmd_master = {
 		"rate_ppb, lock_losses (when it follows), reference_time_ns,\n"
 		"application_time_ns), cycle (interval_us, datagrams, frames, wire_ns, last_frames,\n"
 		"last_wire_ns, acyclic_slack_ns, acyclic_need_ns, late_cycles, late_cycles_per_s),\n"
-		"slaves_responding, scan_busy, scans,\n"
+		"frames_not_captured, slaves_responding, scan_busy, scans,\n"
 		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,
 };

@@ -130,7 +130,7 @@ struct ec_ioc_master {
 	__u32 late_per_s;	/* cycles a second they may make late */
 	__u32 late_cycles;	/* cycles they have made late */
 	__u32 scan_slaves;	/* slaves the scan has to do with; without scan slave_count */
-	__u32 reserved;
+	__u32 not_captured;	/* frames that capture programs did not see, of all devices */
 };
 
 struct ec_ioc_port {

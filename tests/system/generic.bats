@@ -207,6 +207,46 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	tcpdump -nn -e -r "$BATS_TEST_TMPDIR/pcap" 2>/dev/null >"$BATS_TEST_TMPDIR/text"
 	grep -q ' 00:00:' "$BATS_TEST_TMPDIR/text"
 	grep -q ' 02:00:' "$BATS_TEST_TMPDIR/text"
+	# with the time each was sent or received: no reply before its frame
+	tcpdump -nn -tt -e -r "$BATS_TEST_TMPDIR/pcap" 2>/dev/null >"$BATS_TEST_TMPDIR/text"
+	awk '{ id = substr($2, 7); reply = $2 ~ /^02/ }
+		!reply { sent[id] = $1 }
+		reply && id in sent { n++; if ($1 < sent[id]) early++ }
+		END { exit !(n > 3 && !early) }' "$BATS_TEST_TMPDIR/text"
+}
+
+# idle_sockets DEVICE COUNT: capture programs which never read
+idle_sockets() {
+	python3 -c 'import signal, socket, sys
+s = [socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(3)) for i in range(int(sys.argv[2]))]
+for x in s: x.bind((sys.argv[1], 0))
+print("ready", flush=True)
+signal.pause()' "$1" "$2" >"$BATS_TEST_TMPDIR/idle" 3>&- &
+	idle=$!
+	wait_for 60 grep -q ready "$BATS_TEST_TMPDIR/idle"
+}
+
+# the bench runs undisturbed while COUNT capture programs at DEVICE do not read
+idle_does_no_harm() {
+	master veth0
+	responder bench veth1
+	wait_for 120 all_slaves_are PREOP 22
+	idle_sockets "$1" "$2"
+	before=$(lost_frames)
+	run demo --cycles 1000 --wired
+	echo "$output"
+	kill $idle
+	[ "$status" = 0 ]
+	[ "$(lost_frames)" = "$before" ]
+	[ "$(says 'Tx errors')" = 0 ]
+}
+
+@test "a capture program at the device that does not read disturbs no cycle" {
+	idle_does_no_harm veth0 3
+}
+
+@test "a capture program at the other end that does not read disturbs no cycle" {
+	idle_does_no_harm veth1 3
 }
 
 @test "a renamed device stays with its master" {
