@@ -36,7 +36,7 @@ static bool left(const struct ec_master *m)
 /* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
 static bool awaited(const struct ec_master *m)
 {
-	return READ_ONCE(m->slots.acyclic.count) != EC_SLOTS - EC_SLOTS_CYCLE &&
+	return READ_ONCE(m->link[0].acyclic.used) &&
 	       READ_ONCE(m->owner) == EC_OWNER_CYCLE;
 }
 

@@ -10,6 +10,8 @@
 #include "session.h"
 
 #define TURN_CYCLES	100	/* an acyclic frame has its turn within that many */
+#define FLUSH_WAITS	200	/* for room in the transmit ring: 20 ms at least */
+#define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
 
 /* owner of the links -------------------------------------------------------*/
 
@@ -135,9 +137,14 @@ int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now)
 static void flush(struct ec_master *m)
 {
 	struct ec_queued next;
+	unsigned int waits = 0;
 
+	lockdep_assert_held(&m->io_lock);
 	while (xq_peek(m, &next)) {
-		ec_link_send(&m->link[0], next.slot);
+		if (ec_link_send(&m->link[0], next.slot) == -EBUSY && waits++ < FLUSH_WAITS) {
+			usleep_range(100, 200);
+			continue;
+		}
 		xq_drop(m, &next);
 	}
 }
@@ -165,6 +172,7 @@ bool ec_cycle_own(struct ec_master *m, enum ec_owner owner)
 		while (owner == EC_OWNER_IDLE && atomic_read(&m->cycle_busy))
 			usleep_range(20, 50);
 		own_devices(m, owner == EC_OWNER_CYCLE);
+		ec_link_set_places(&m->link[0], owner == EC_OWNER_CYCLE);
 		if (owner == EC_OWNER_IDLE)
 			flush(m);
 	}
@@ -252,8 +260,12 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 	w->began_ns = ktime_get_ns();
 	w->turn_ns = w->began_ns;
 	w->timeout_us = m->io_timeout_us;
-	if (w->owner != EC_OWNER_CYCLE)
+	/* half of the limit is for the frames, the rest for what is on its way before them */
+	if (w->owner != EC_OWNER_CYCLE) {
+		w->timeout_us = max_t(u32, w->timeout_us, w->timeout_us / 2 + SLOWEST *
+				      atomic_read(&m->link[0].acyclic_ns) / NSEC_PER_USEC);
 		return;
+	}
 	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
 	if (!late_per_s)
 		return;
@@ -267,8 +279,8 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
  * @m: master
  * @w: the wait
  *
- * They have all the time limit of @w when they have left. Who is killed does not wait
- * for that.
+ * They have all the time limit of @w when they have left. A fatal signal and the loss
+ * of the link end the queue wait.
  *
  * Context: Process.
  * Return: whether it is worth waiting for.
@@ -276,7 +288,8 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 bool ec_cycle_wait_turn(struct ec_master *m, const struct ec_cycle_wait *w)
 {
 	return ktime_get_ns() < w->turn_ns && READ_ONCE(m->owner) == w->owner &&
-	       !ec_cycle_stalled(m) && !fatal_signal_pending(current);
+	       !ec_cycle_stalled(m) && !fatal_signal_pending(current) &&
+	       ec_link_is_up(&m->link[0]);
 }
 
 /**
@@ -338,6 +351,8 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
 	rt_mutex_lock(&m->io_lock);
 	if (READ_ONCE(m->owner) == EC_OWNER_IDLE) {
 		ret = ec_cycle_transmit(m, slot, now);
+	} else if (!ec_link_is_up(&m->link[0])) {
+		ret = -ENETDOWN;
 	} else {
 		/* the waiter may give up from now on */
 		ec_slot_arm(&m->slots, slot, 0, now);

@@ -178,7 +178,7 @@ int ec_cycle_do_receive(struct ec_session *s)
 			if (unlikely(f->missed) && f->send != c->send)
 				atomic64_inc(&m->link[0].stats.late);
 			take_frame(s, f);
-			ec_slot_put(&m->slots, f->slot, true);
+			ec_slot_put(&m->slots, f->slot);
 		} else if (f->missed && now - f->slot->sent_ns > limit &&
 			   ec_slot_cancel(f->slot, now)) {
 			atomic64_inc(&m->link[0].stats.lost);
@@ -231,7 +231,7 @@ static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
 	if (ec_slot_cancel(oldest, now))
 		atomic64_inc(&m->link[0].stats.lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
-		ec_slot_put(&m->slots, oldest, true);
+		ec_slot_put(&m->slots, oldest);
 	else
 		return false;	/* being copied at this moment */
 	c->n_flight--;
@@ -302,6 +302,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	struct ec_cycle *c = &s->cycle;
 	struct ec_slot *slot = NULL;
 	unsigned int count;
+	int ret;
 
 	if (make_room(m, c, send->now))
 		slot = ec_slot_get(&m->slots, true, send->now);
@@ -313,14 +314,18 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	count = fill(s, slot, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	if (!ec_cycle_transmit(m, slot, send->now))
+	ret = ec_cycle_transmit(m, slot, send->now);
+	/* unlike an acyclic frame it cannot wait */
+	if (ret == -EBUSY)
+		atomic64_inc(&m->link[0].stats.tx_errors);
+	if (!ret)
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
 			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
 			.dc_sent = c->dc_sent,
 		};
 	else
-		ec_slot_put(&m->slots, slot, true);
+		ec_slot_put(&m->slots, slot);
 	send->dc = 0;
 	return g + count;
 }

@@ -429,7 +429,7 @@ static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 
 		while (!ec_slot_cancel(slot, ktime_get_ns())) {
 			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
-				ec_slot_put(&m->slots, slot, true);
+				ec_slot_put(&m->slots, slot);
 				break;
 			}
 			/* being copied at this moment */

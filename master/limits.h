@@ -33,8 +33,9 @@
 #define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */
 #define EC_LATE_PER_S		100	/* cycles acyclic frames may make late, until told */
 #define EC_SLOTS		256	/* datagram index has 8 bits */
-#define EC_SLOTS_CYCLE		64	/* of them never taken by ec_xfer() */
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
+#define EC_LINK_ACYCLIC		64	/* acyclic frames of a link, of all callers, on their way */
+#define EC_LINK_QUEUED		192	/* the same with those in the queue for the cycle */
 #define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)
 
 #endif

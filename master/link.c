@@ -37,8 +37,9 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
  * @slot: slot in state SENT
  *
  * Context: The owner of the link. RT-safe.
- * Return: 0, -ENODEV without device, -EBUSY without transmit buffer,
- * -ENETDOWN when the link is down.
+ * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
+ * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
+ * is down.
  */
 int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 {
@@ -50,10 +51,8 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 	if (!dev)
 		return -ENODEV;
 	buf = dev->ops->tx_get(dev->priv);
-	if (!buf) {
-		atomic64_inc(&link->stats.tx_errors);
+	if (!buf)
 		return -EBUSY;
-	}
 	memcpy(buf, slot->frame, len);
 	if (unlikely(READ_ONCE(link->master->debug) >= 2))
 		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
@@ -61,12 +60,32 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 		atomic64_inc(&link->stats.not_captured);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {
-		atomic64_inc(&link->stats.tx_errors);
+		if (ret != -EBUSY)
+			atomic64_inc(&link->stats.tx_errors);
 		return ret;
 	}
 	atomic64_inc(&link->stats.tx_frames);
 	atomic64_add(len, &link->stats.tx_bytes);
 	return 0;
+}
+
+/**
+ * ec_link_set_places() - set how many acyclic frames may be on their way
+ * @link: link
+ * @cycle: a cyclic caller sends them from a queue, and as many as fit
+ *
+ * Without a cycle buffers of the device are left for the monitor.
+ *
+ * Context: Process, with the io_lock of the master held.
+ */
+void ec_link_set_places(struct ec_link *link, bool cycle)
+{
+	const struct ecdev *dev = link->dev;
+	unsigned int n = dev && dev->ops->burst ? dev->ops->burst : EC_LINK_ACYCLIC;
+
+	lockdep_assert_held(&link->master->io_lock);
+	ec_gate_set_limit(&link->acyclic, cycle ? EC_LINK_QUEUED :
+			  min_t(unsigned int, n, EC_LINK_ACYCLIC));
 }
 
 /**

@@ -6,6 +6,7 @@
 #include <linux/atomic.h>
 #include <linux/types.h>
 #include "ethercat.h"
+#include "gate.h"
 
 struct ecdev;
 struct ec_master;
@@ -47,6 +48,8 @@ struct ec_link_rates {
  * @side: 0 main, 1 backup, immutable
  * @dev: attached device or NULL; changes under master->io_lock. Used by the
  *	owner of the link; others only in an RCU read section
+ * @acyclic: places for acyclic frames on their way, also those in the queue
+ * @acyclic_ns: wire time of these frames
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
  * @al_states: OR of their AL states
@@ -57,6 +60,8 @@ struct ec_link {
 	struct ec_master *master;
 	u8 side;
 	struct ecdev *dev;
+	struct ec_gate acyclic;
+	atomic_t acyclic_ns;
 	bool up;
 	u32 slaves;
 	u32 al_states;
@@ -67,6 +72,7 @@ struct ec_link {
 void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 int ec_link_send(struct ec_link *link, struct ec_slot *slot);
 void ec_link_poll(struct ec_link *link);
+void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);
 void ec_link_rates_update(struct ec_link *link);
 

@@ -65,6 +65,7 @@ void ec_master_link_attach(struct ec_link *link, struct ecdev *dev)
 
 	rt_mutex_lock(&m->io_lock);
 	WRITE_ONCE(link->dev, dev);
+	ec_link_set_places(link, m->owner == EC_OWNER_CYCLE);
 	rt_mutex_unlock(&m->io_lock);
 	WRITE_ONCE(m->looked, false);
 	ec_info(m, "%s device is %s (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
@@ -324,6 +325,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		m->link[i].master = m;
 		m->link[i].side = i;
+		ec_gate_init(&m->link[i].acyclic, EC_LINK_ACYCLIC);
 	}
 	ec_log_init(&m->log);
 	rt_mutex_init(&m->io_lock);

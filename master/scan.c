@@ -196,6 +196,10 @@ static int read_new(struct scan *sc)
 			fresh[n++] = sc->slaves[i];
 	WRITE_ONCE(sc->m->scan_index, sc->n - n);
 	ec_scan_sii(sc->m, fresh, n, sc->fresh);
+	if (!ec_link_is_up(&sc->m->link[0])) {
+		kvfree(fresh);
+		return -ENETDOWN;
+	}
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = fresh[i];
 
@@ -269,7 +273,8 @@ static void publish(struct scan *sc)
  * Slaves that are known already keep their objects; only new ones are read.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: 0; -EAGAIN when the bus changed meanwhile; -ENOMEM; or as ec_xfer().
+ * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
+ * -ENOMEM; or as ec_xfer().
  */
 int ec_scan(struct ec_master *m, unsigned int count)
 {

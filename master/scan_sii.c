@@ -131,6 +131,12 @@ static bool take(struct reader *r, u16 word)
 	return true;
 }
 
+/* Without link no slave is to blame: the scan ends and fails as a whole. */
+static bool go_on(const struct ec_master *m)
+{
+	return !READ_ONCE(m->stopping) && ec_link_is_up(&m->link[0]);
+}
+
 static void command(u8 *c, u16 word)
 {
 	put_unaligned_le16(EC_EEP_CMD_READ, c);
@@ -257,6 +263,8 @@ static void step(struct job *j, struct reader **who, unsigned int n, u16 word)
 			ready = looked;
 		if (!left)
 			break;
+		if (!go_on(j->m))
+			return;
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
 			for (i = 0; i < left; i++)
@@ -319,10 +327,10 @@ static void read_apart(struct job *j)
 	unsigned int i, n, left;
 	u64 t0;
 
-	while ((n = apart(j, j->who)) && !j->m->stopping) {
+	while (go_on(j->m) && (n = apart(j, j->who))) {
 		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
-		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS;) {
+		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->m);) {
 			unsigned int k = 0;
 
 			usleep_range(300, 400);
@@ -361,7 +369,7 @@ static void run(struct job *j)
 
 	n = waiting(j, &word);
 	take_over(j, j->who, n);
-	for (; n && !j->m->stopping; n = waiting(j, &word))
+	for (; n && go_on(j->m); n = waiting(j, &word))
 		step(j, j->who, n, word);
 	read_apart(j);
 }
@@ -370,7 +378,7 @@ static void run(struct job *j)
  * ec_scan_sii() - read the EEPROMs of @slaves
  * @m: master
  * @slaves: slaves with station addresses; @sii is set where it worked, the
- *	others are marked as failed
+ *	others are marked as failed unless the link went down meanwhile
  * @n: how many
  * @all: these are all slaves of the segment and no process data run, so
  *	broadcasts are allowed

@@ -22,7 +22,6 @@ int ec_slots_init(struct ec_slots *s)
 		return -ENOMEM;
 	for (i = 0; i < EC_SLOTS; i++)
 		s->slot[i].index = i;
-	sema_init(&s->acyclic, EC_SLOTS - EC_SLOTS_CYCLE);
 	return 0;
 }
 
@@ -67,7 +66,7 @@ static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
 /**
  * ec_slot_get() - take a free slot
  * @s: slots
- * @cyclic: for the cycle; others leave EC_SLOTS_CYCLE slots alone
+ * @cyclic: for the cycle, or the monitor; others have a place at the link's gate
  * @now_ns: time, to release slots from quarantine
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -77,8 +76,6 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 {
 	struct ec_slot *slot;
 
-	if (!cyclic && down_trylock(&s->acyclic))
-		return NULL;
 	slot = search(s, now_ns, EC_QUARANTINE_NS);
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
@@ -86,34 +83,30 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 	 */
 	if (!slot && cyclic)
 		slot = search(s, now_ns, 0);
-	if (!slot && !cyclic)
-		up(&s->acyclic);
 	return slot;
 }
 
 /**
- * ec_slot_wait() - take a slot that is not for the cycle; first come, first served
+ * ec_slot_wait() - take a slot that is not for the cycle
  * @s: slots
- * @timeout_ms: how long to wait
+ *
+ * The place at the link's gate is the caller's; a slot of a lost frame may still be
+ * in quarantine.
  *
  * Context: Process. May sleep.
  * Return: the slot in state BUILD, or NULL.
  */
-struct ec_slot *ec_slot_wait(struct ec_slots *s, unsigned int timeout_ms)
+struct ec_slot *ec_slot_wait(struct ec_slots *s)
 {
 	struct ec_slot *slot;
 	unsigned int i;
 
-	if (down_timeout(&s->acyclic, msecs_to_jiffies(timeout_ms)))
-		return NULL;
-	/* the place is ours; a slot of a lost frame may be in quarantine still */
 	for (i = 0; i < 100; i++) {
 		slot = search(s, ktime_get_ns(), EC_QUARANTINE_NS);
 		if (slot)
 			return slot;
 		usleep_range(300, 500);
 	}
-	up(&s->acyclic);
 	return NULL;
 }
 
@@ -121,29 +114,12 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s, unsigned int timeout_ms)
  * ec_slot_put() - give back a slot
  * @s: slots
  * @slot: in state BUILD or DONE, free afterwards
- * @cyclic: as in ec_slot_get()
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic)
+void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
 {
 	atomic_set_release(&slot->state, EC_SLOT_FREE);
-	if (!cyclic)
-		up(&s->acyclic);
-}
-
-/**
- * ec_slot_abandon() - give back a slot whose frame was cancelled
- * @s: slots
- *
- * Not for the cycle. The slot itself must not be touched: it may be in use by
- * another already.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_slot_abandon(struct ec_slots *s)
-{
-	up(&s->acyclic);
 }
 
 /**

@@ -13,7 +13,6 @@
 #define EC_SLOTS_H
 
 #include <linux/atomic.h>
-#include <linux/semaphore.h>
 #include <linux/types.h>
 #include "limits.h"
 #include "wire/frame.h"
@@ -63,13 +62,11 @@ struct ec_queued {
  * @slot: the slots
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
- * @acyclic: slots ec_xfer() may still take
  */
 struct ec_slots {
 	struct ec_slot *slot;
 	atomic_t hint;
 	atomic_t seq;
-	struct semaphore acyclic;
 };
 
 enum ec_match {
@@ -81,9 +78,8 @@ enum ec_match {
 int ec_slots_init(struct ec_slots *s);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
-struct ec_slot *ec_slot_wait(struct ec_slots *s, unsigned int timeout_ms);
-void ec_slot_put(struct ec_slots *s, struct ec_slot *slot, bool cyclic);
-void ec_slot_abandon(struct ec_slots *s);
+struct ec_slot *ec_slot_wait(struct ec_slots *s);
+void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns);
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include <linux/sched/signal.h>
 #include <linux/slab.h>
 #include "cycle.h"
 #include "master.h"
@@ -9,13 +10,16 @@
 #define TRIES	4	/* of a repeatable datagram */
 #define WAITS	8	/* for one frame, as long as it had no fair chance */
 #define LOOK_MS	10	/* between looks whether a frame has left */
-#define SLOT_WAIT_MS	1000	/* many hundred may be at work at once */
+#define PLACE_WAIT_MS	30000	/* many hundred callers may be at work at once */
+#define RING_WAIT_NS	(1 * NSEC_PER_SEC)	/* a device that sends nothing for so long hangs */
 
 /* one frame of a batch: the slot and the datagrams it carries */
 struct batch_frame {
 	struct ec_slot *slot;
 	unsigned int first;
 	unsigned int count;
+	u32 wire_ns;
+	bool cancelled;
 	int err;
 };
 
@@ -27,6 +31,8 @@ struct half {
 	struct ec_xfer x;
 	struct ec_cycle_wait wait;
 	bool urgent;
+	int err;	/* why not all frames were sent */
+	bool stop;	/* no sense in sending the others */
 	unsigned int frames;
 	struct batch_frame f[EC_XFER_WINDOW / 2];
 };
@@ -103,6 +109,74 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 }
 
 /*
+ * A place among the acyclic frames of the link, and a slot; with @wait the place is
+ * waited for. A link that goes down gives all places back soon.
+ */
+static struct ec_slot *get_slot(struct ec_master *m, struct half *h, bool wait)
+{
+	struct ec_gate *gate = &m->link[0].acyclic;
+	struct ec_slot *slot;
+
+	h->err = -EBUSY;
+	h->stop = wait;
+	if (h->urgent) {
+		slot = ec_slot_get(&m->slots, true, ktime_get_ns());
+		h->stop = !slot;
+		return slot;
+	}
+	if (wait)
+		h->err = ec_gate_enter(gate, PLACE_WAIT_MS);
+	else if (ec_gate_try(gate))
+		h->err = 0;
+	if (h->err)
+		return NULL;
+	slot = wait ? ec_slot_wait(&m->slots) : ec_slot_get(&m->slots, false, ktime_get_ns());
+	if (slot) {
+		h->stop = false;
+		return slot;
+	}
+	h->err = -EBUSY;
+	ec_gate_leave(gate);
+	return NULL;
+}
+
+static void put_slot(struct ec_master *m, const struct half *h, const struct batch_frame *f)
+{
+	/* the slot of a cancelled frame may be in use by another already */
+	if (!f->cancelled)
+		ec_slot_put(&m->slots, f->slot);
+	if (!h->urgent)
+		ec_gate_leave(&m->link[0].acyclic);
+	if (f->wire_ns)
+		atomic_sub(f->wire_ns, &m->link[0].acyclic_ns);
+}
+
+/* A full transmit ring is no error: the frame waits until there is room. */
+static void submit(struct ec_master *m, const struct half *h, struct batch_frame *f)
+{
+	u64 until = 0;
+
+	f->cancelled = false;
+	f->wire_ns = 0;
+	while ((f->err = ec_cycle_submit(m, f->slot, h->urgent)) == -EBUSY) {
+		until = until ?: ktime_get_ns() + RING_WAIT_NS;
+		if (fatal_signal_pending(current)) {
+			f->err = -EINTR;
+			return;
+		}
+		if (ktime_get_ns() > until) {
+			atomic64_inc(&m->link[0].stats.tx_errors);
+			return;
+		}
+		usleep_range(100, 200);
+	}
+	if (f->err)
+		return;
+	f->wire_ns = ec_frame_wire_ns(f->slot->eth_len);
+	atomic_add(f->wire_ns, &m->link[0].acyclic_ns);
+}
+
+/*
  * Send half a window of frames from datagram @first on; with @wait a slot is
  * waited for. Returns the first datagram that is left.
  */
@@ -112,6 +186,7 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 	init_completion(&h->x.done);
 	atomic_set(&h->x.pending, 1);
 	h->wait.polls = READ_ONCE(m->polls);
+	h->stop = false;
 	for (h->frames = 0; h->frames < ARRAY_SIZE(h->f); h->frames++) {
 		struct batch_frame *f = &h->f[h->frames];
 
@@ -119,42 +194,45 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 			first++;
 		if (first >= n)
 			break;
-		f->slot = h->urgent ? ec_slot_get(&m->slots, true, ktime_get_ns()) :
-			  wait && !h->frames ? ec_slot_wait(&m->slots, SLOT_WAIT_MS) :
-			  ec_slot_get(&m->slots, false, ktime_get_ns());
+		f->slot = get_slot(m, h, wait && !h->frames);
 		if (!f->slot)
 			break;
 		build(m, f, dg, first, n);
 		first += f->count;
 		f->slot->xfer = &h->x;
 		atomic_inc(&h->x.pending);
-		f->err = ec_cycle_submit(m, f->slot, h->urgent);
-		if (f->err)
-			ec_xfer_done(&h->x);
+		submit(m, h, f);
+		if (!f->err)
+			continue;
+		ec_xfer_done(&h->x);
+		h->err = f->err;
+		h->stop = true;
+		h->frames++;
+		break;
 	}
 	ec_xfer_done(&h->x);
 	return first;
 }
 
-/* Nobody waits for the frames of a half any longer; the time limit is over. */
+/* Nobody waits for the frames of a half any longer: the time limit is over, or the link down. */
 static void give_up(struct ec_master *m, struct half *h)
 {
+	bool up = ec_link_is_up(&m->link[0]);
 	unsigned int i;
 
 	for (i = 0; i < h->frames; i++) {
 		struct batch_frame *f = &h->f[i];
-		bool cancelled;
 
 		if (f->err)
 			continue;
 		/* neither: a frame that need not be the reply is looked at just now */
-		while (!(cancelled = ec_slot_cancel(f->slot, ktime_get_ns())) &&
+		while (!(f->cancelled = ec_slot_cancel(f->slot, ktime_get_ns())) &&
 		       atomic_read(&f->slot->state) != EC_SLOT_DONE)
 			usleep_range(20, 50);
-		if (!cancelled)
+		if (!f->cancelled)
 			continue;
 		atomic64_inc(&m->link[0].stats.lost);
-		f->err = -ETIMEDOUT;
+		f->err = up ? -ETIMEDOUT : -ENETDOWN;
 		ec_xfer_done(&h->x);
 	}
 }
@@ -176,15 +254,27 @@ static bool in_queue(const struct half *h)
 /* The time limit begins when the last frame has left, or cannot leave any more. */
 static bool wait_once(struct ec_master *m, struct half *h)
 {
+	unsigned long until, look = msecs_to_jiffies(LOOK_MS);
+	long left;
+
 	ec_cycle_wait_begin(m, &h->wait);
 	while (in_queue(h) && ec_cycle_wait_turn(m, &h->wait)) {
-		if (wait_for_completion_timeout(&h->x.done, msecs_to_jiffies(LOOK_MS)))
+		if (wait_for_completion_timeout(&h->x.done, look))
 			return true;
 		h->wait.began_ns = ktime_get_ns();
 		h->wait.polls = READ_ONCE(m->polls);
 	}
-	return wait_for_completion_timeout(&h->x.done,
-					   usecs_to_jiffies(h->wait.timeout_us) + 1);
+	until = jiffies + usecs_to_jiffies(h->wait.timeout_us) + 1;
+	/* without a cycle the limit is short, and each look lasts up to a jiffy longer */
+	if (h->wait.owner == EC_OWNER_IDLE)
+		look = MAX_JIFFY_OFFSET;
+	while ((left = until - jiffies) > 0) {
+		if (wait_for_completion_timeout(&h->x.done, min_t(unsigned long, left, look)))
+			return true;
+		if (!ec_link_is_up(&m->link[0]))
+			break;
+	}
+	return try_wait_for_completion(&h->x.done);
 }
 
 /*
@@ -198,7 +288,7 @@ static bool wait_half(struct ec_master *m, struct half *h)
 	for (n = 0; n < WAITS; n++) {
 		if (wait_once(m, h))
 			return true;
-		if (!ec_cycle_wait_more(m, &h->wait))
+		if (!ec_link_is_up(&m->link[0]) || !ec_cycle_wait_more(m, &h->wait))
 			break;
 	}
 	ec_cycle_look(m);
@@ -216,10 +306,7 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 	}
 	for (i = 0; i < h->frames; i++) {
 		collect(&h->f[i], dg);
-		if (h->f[i].err != -ETIMEDOUT)
-			ec_slot_put(&m->slots, h->f[i].slot, h->urgent);
-		else if (!h->urgent)
-			ec_slot_abandon(&m->slots);
+		put_slot(m, h, &h->f[i]);
 	}
 	h->frames = 0;
 }
@@ -228,6 +315,8 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, unsigned int n)
 {
 	unsigned int i, first = 0, cur = 0;
+	bool stop = false;
+	int err = 0;
 
 	half[0].frames = 0;
 	half[1].frames = 0;
@@ -236,16 +325,19 @@ static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, u
 
 		if (h->frames)
 			finish_half(m, h, dg);
-		if (first < n)
+		if (first < n && !stop) {
 			first = send_half(m, h, dg, first, n, !other->frames);
+			err = h->err;
+			stop = h->stop;
+		}
 		if (!h->frames && !other->frames)
 			break;
 		cur = !cur;
 	}
-	/* no slot became free */
+	/* no place became free, or the caller was killed */
 	for (i = first; i < n; i++)
 		if (dg[i].err == -EINPROGRESS)
-			dg[i].err = -EBUSY;
+			dg[i].err = err;
 }
 
 static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool urgent)

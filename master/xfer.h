@@ -21,8 +21,8 @@ struct ec_master;
  * @wkc: result: working counter
  * @back: result: @adp as it came back (position plus slaves passed)
  * @sent_ns: result: when its frame left, as far as the master knows (ktime)
- * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN, -ENODEV,
- *	-ECANCELED (master stops)
+ * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN (link is down), -ENODEV,
+ *	-EINTR (caller killed), -EBUSY (the device sends nothing)
  */
 struct ec_dg {
 	u8 cmd;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/err.h>
 #include "bus.h"
+#include "slow.h"
 #include "master/ioctl.h"
 #include "master/wire/sii.h"
 
@@ -73,6 +74,8 @@ void bus_down(struct bus *b)
 		return;
 	bus_crowd_leaves(b);
 	ec_masters_destroy();
+	if (b->slow)
+		slow_destroy(b->slow);
 	if (b->link)
 		ec_sim_link_destroy(b->link);
 	else if (b->sim)

@@ -25,6 +25,7 @@
  * @m: master 0
  * @sim: segment
  * @link: virtual device in between; NULL: not offered yet
+ * @slow: a slow device instead of @link, see slow.h
  * @app: open file of the application
  * @t0: when the device was offered (ktime, ns)
  * @crowd: works that keep all workers of slaves busy, or NULL
@@ -34,6 +35,7 @@ struct bus {
 	struct ec_master *m;
 	struct ec_sim *sim;
 	struct ec_sim_link *link;
+	struct slow *slow;
 	struct ec_file app;
 	u64 t0;
 	struct bus_crowd *crowd;

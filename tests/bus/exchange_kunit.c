@@ -66,7 +66,7 @@ static bool slots_free(struct bus *b)
 	u32 i, tries, busy;
 
 	for (tries = 0; tries < 100; tries++) {
-		busy = EC_SLOTS - EC_SLOTS_CYCLE - b->m->slots.acyclic.count;
+		busy = b->m->link[0].acyclic.used;
 		for (i = 0; i < EC_SLOTS; i++) {
 			int state = atomic_read(&b->m->slots.slot[i].state);
 

@@ -89,7 +89,7 @@ static void frame_changed(struct kunit *test)
 	KUNIT_EXPECT_GE(test, unmatched(b) + late(b) - before, refused);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	ec_slot_put(&b->m->slots, e.slot, true);
+	ec_slot_put(&b->m->slots, e.slot);
 }
 
 static void frame_truncated(struct kunit *test)
@@ -115,7 +115,7 @@ static void frame_truncated(struct kunit *test)
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 1);
-	ec_slot_put(&b->m->slots, e.slot, true);
+	ec_slot_put(&b->m->slots, e.slot);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 2);
 }
@@ -139,7 +139,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_SENT);
 	give(b, next.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_DONE);
-	ec_slot_put(&b->m->slots, next.slot, true);
+	ec_slot_put(&b->m->slots, next.slot);
 }
 
 /* Bytes by chance, of every length, while the bus works. */

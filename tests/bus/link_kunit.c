@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * What a link does to those who use it: a transmit ring that is full, a cable that is
+ * pulled while slaves are read, a reply that claims what cannot be.
+ */
+#include "cyc.h"
+#include "slow.h"
+#include "master/ioctl.h"
+
+#define MANY	100
+
+static const char many[] =
+	"segment seed=31 response=100us transition=1ms\n"
+	"repeat 100 slave d drive in=8 out=8\n";
+
+/* all have been read, with their PDOs, and none is blamed for anything */
+static void all_are_well(struct bus *b, u32 n)
+{
+	u32 i;
+
+	for (i = 0; i < n; i++) {
+		struct ec_slave *s = bus_slave(b, i);
+
+		KUNIT_EXPECT_EQ_MSG(b->test, s->error, EC_SLAVE_OK, "slave %u: %s", i, s->why);
+		KUNIT_EXPECT_FALSE_MSG(b->test, ec_slave_pdos_pending(s), "slave %u: no PDOs", i);
+		KUNIT_EXPECT_EQ_MSG(b->test, s->sm_pdos[2].n, 1u, "slave %u", i);
+	}
+}
+
+/* 25 Mbit/s and 16 buffers: some hundred frames at once wait for room. */
+static void link_full_transmit_ring_delays_only(struct kunit *test)
+{
+	struct bus *b = bus_new(test, many);
+	struct slow *s = slow_plug(b, 16, 4);
+	u64 us = bus_wait(b, MANY, EC_AL_PREOP, 10000);
+
+	KUNIT_ASSERT_NE(test, us, ~0ull);
+	bus_idle(b);
+	bus_figure("%u slaves at 25 Mbit/s with 16 transmit buffers: PREOP after %llu us, ring full %u times",
+		   MANY, us, slow_full(s));
+	all_are_well(b, MANY);
+	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&b->m->link[0].stats.tx_errors), 0ull);
+	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->link[0].acyclic_ns), 0);
+}
+
+/* A device that hangs ends the wait of everybody, and goes on when it does. */
+static void link_hanging_device_ends_in_error(struct kunit *test)
+{
+	struct bus *b = bus_new(test, many);
+	struct slow *s = slow_plug(b, 16, 4);
+	u16 station;
+	u64 t0;
+	u8 v[4];
+
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	station = bus_slave(b, 0)->station;
+	slow_stop(s, true);
+	/* the ring fills by what the monitor sends */
+	msleep(3000);
+	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
+	t0 = ktime_get_ns();
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, station, 0, v, 4), -EBUSY);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 2 * NSEC_PER_SEC);
+	KUNIT_EXPECT_GT(test, (u64)atomic64_read(&b->m->link[0].stats.tx_errors), 0ull);
+	slow_stop(s, false);
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 0)->station, 0, v, 4), 0);
+}
+
+/* how long until the monitor knows, us; ~0 after a second */
+static u64 until_link_is(struct bus *b, struct cyc *c, bool up)
+{
+	u64 t0 = ktime_get_ns();
+
+	while (READ_ONCE(b->m->link[0].up) != up) {
+		if (ktime_get_ns() - t0 > NSEC_PER_SEC)
+			return ~0ull;
+		if (c)
+			cyc_run(c, 1);
+		else
+			usleep_range(100, 101);
+	}
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+static u32 failed(struct bus *b)
+{
+	u32 i, n = 0;
+
+	for (i = 0; i < b->m->n_slaves; i++)
+		n += b->m->slaves[i]->error != EC_SLAVE_OK;
+	return n;
+}
+
+/* wait for a scan that has begun to read EEPROMs */
+static void scan_begins(struct bus *b, struct cyc *c)
+{
+	u32 i;
+
+	for (i = 0; i < 10000; i++) {
+		if (READ_ONCE(b->m->scan_busy))
+			break;
+		if (c)
+			cyc_run(c, 1);
+		else
+			usleep_range(100, 101);
+	}
+	KUNIT_ASSERT_TRUE(b->test, b->m->scan_busy);
+	if (c)
+		cyc_run(c, 10);
+	else
+		usleep_range(5000, 5001);
+	KUNIT_ASSERT_TRUE(b->test, b->m->scan_busy);
+}
+
+/* The link goes while slaves are scanned: none is blamed, all are found later. */
+static void link_loss_ends_a_scan(struct kunit *test)
+{
+	struct bus *b = bus_up(test, many, MANY);
+	u64 us;
+
+	bus_idle(b);
+	ec_master_rescan(b->m);
+	scan_begins(b, NULL);
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	us = until_link_is(b, NULL, false);
+	bus_figure("link lost while %u slaves are scanned: known after %llu us", MANY, us);
+	KUNIT_EXPECT_LT(test, us, 100000ull);
+	msleep(100);
+	KUNIT_EXPECT_FALSE(test, b->m->scan_busy);
+	KUNIT_EXPECT_EQ(test, failed(b), 0u);
+	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	all_are_well(b, MANY);
+}
+
+/* The same beside a cycle of 20 ms, where frames wait for their turn. */
+static void link_loss_beside_a_cycle(struct kunit *test)
+{
+	struct bus *b = bus_up(test, many, MANY);
+	struct cyc *c;
+	u64 us;
+
+	bus_idle(b);
+	c = cyc_new(b, 20000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 8, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
+	/* new ones at the end, so that there is something to read */
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, MANY - 1, 0, 0, 0);
+	cyc_run(c, 20);
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, MANY - 1, 0, 0, 0);
+	scan_begins(b, c);
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	us = until_link_is(b, c, false);
+	bus_figure("link lost while a slave is scanned beside a cycle of 20 ms: known after %llu us",
+		   us);
+	KUNIT_EXPECT_LT(test, us, 100000ull);
+	/* nobody waits for a frame that cannot leave */
+	cyc_run(c, 3);
+	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(link_full_transmit_ring_delays_only),
+	KUNIT_CASE(link_hanging_device_ends_in_error),
+	KUNIT_CASE(link_loss_ends_a_scan),
+	KUNIT_CASE(link_loss_beside_a_cycle),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_link",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);

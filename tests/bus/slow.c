@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/err.h>
+#include <linux/hrtimer.h>
+#include "slow.h"
+#include "devices/ecdev.h"
+
+#define RING_MAX	64
+
+/* a transmit buffer */
+struct tx {
+	size_t len;
+	u8 data[EC_ETH_MAX];
+};
+
+/**
+ * struct slow - the device
+ * @wire: the segment behind it
+ * @dev: handle of the offer
+ * @lock: protects the ring
+ * @timer: one frame has left the ring
+ * @ring: its transmit buffers
+ * @slowness: times the wire time of 100 Mbit/s
+ * @head: next buffer to fill
+ * @tail: the one that leaves next
+ * @full: how often there was none
+ * @claim: slaves that broadcasts seem to have passed, 0: as many as there are
+ * @stopped: nothing leaves the ring
+ * @tx: buffers
+ * @rx: a changed reply
+ */
+struct slow {
+	struct ec_sim_wire wire;
+	struct ecdev *dev;
+	raw_spinlock_t lock;
+	struct hrtimer timer;
+	u32 ring;
+	u32 slowness;
+	u32 head;
+	u32 tail;
+	u32 full;
+	u32 claim;
+	bool stopped;
+	struct tx tx[RING_MAX];
+	u8 rx[EC_ETH_MAX];
+};
+
+static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
+{
+	struct slow *s = container_of(w, struct slow, wire);
+	u8 *d = s->rx + EC_ETH_HDR + EC_FRAME_HDR;
+
+	memcpy(s->rx, eth, len);
+	if (s->claim && d[0] == EC_CMD_BRD)
+		put_unaligned_le16(s->claim, d + 2);
+	ecdev_receive(s->dev, s->rx + 6, s->rx + EC_ETH_HDR, len - EC_ETH_HDR);
+}
+
+static struct tx *at(struct slow *s, u32 i)
+{
+	return &s->tx[i % s->ring];
+}
+
+/* the oldest frame begins to leave */
+static void start(struct slow *s)
+{
+	hrtimer_start(&s->timer,
+		      ns_to_ktime((u64)s->slowness * ec_frame_wire_ns(at(s, s->tail)->len)),
+		      HRTIMER_MODE_REL_SOFT);
+}
+
+static enum hrtimer_restart has_left(struct hrtimer *timer)
+{
+	struct slow *s = container_of(timer, struct slow, timer);
+	struct tx *t = at(s, s->tail);
+	unsigned long flags;
+
+	ec_sim_wire_send(&s->wire, 0, t->data, t->len);
+	raw_spin_lock_irqsave(&s->lock, flags);
+	if (++s->tail != s->head && !s->stopped)
+		start(s);
+	raw_spin_unlock_irqrestore(&s->lock, flags);
+	return HRTIMER_NORESTART;
+}
+
+static int slow_start(void *priv, struct ecdev *dev)
+{
+	struct slow *s = priv;
+
+	s->dev = dev;
+	ec_sim_wire_run(&s->wire, true);
+	return 0;
+}
+
+static void slow_end(void *priv)
+{
+	struct slow *s = priv;
+
+	hrtimer_cancel(&s->timer);
+	ec_sim_wire_run(&s->wire, false);
+}
+
+static u8 *tx_get(void *priv)
+{
+	struct slow *s = priv;
+
+	if (s->head - READ_ONCE(s->tail) < s->ring)
+		return at(s, s->head)->data;
+	s->full++;
+	return NULL;
+}
+
+static int tx_send(void *priv, u8 *buf, size_t len)
+{
+	struct slow *s = priv;
+	unsigned long flags;
+
+	if (!ec_sim_wire_up(&s->wire))
+		return -ENETDOWN;
+	raw_spin_lock_irqsave(&s->lock, flags);
+	at(s, s->head)->len = len;
+	if (s->head++ == s->tail && !s->stopped)
+		start(s);
+	raw_spin_unlock_irqrestore(&s->lock, flags);
+	return 0;
+}
+
+static void poll(void *priv)
+{
+	struct slow *s = priv;
+
+	ec_sim_wire_poll(&s->wire);
+}
+
+static void cycle(void *priv, bool on)
+{
+	struct slow *s = priv;
+
+	ec_sim_wire_set_polled(&s->wire, on);
+}
+
+static bool link_up(void *priv)
+{
+	struct slow *s = priv;
+
+	return ec_sim_wire_up(&s->wire);
+}
+
+static const struct ecdev_ops ops = {
+	.kind = "slow",
+	.atomic = true,
+	.start = slow_start,
+	.stop = slow_end,
+	.tx_get = tx_get,
+	.tx_send = tx_send,
+	.poll = poll,
+	.cycle = cycle,
+	.link_up = link_up,
+};
+
+/**
+ * slow_plug() - offer the segment to the master at a slow device
+ * @b: bus of bus_new()
+ * @ring: transmit buffers
+ * @slowness: times the wire time of 100 Mbit/s
+ *
+ * Return: the device.
+ */
+struct slow *slow_plug(struct bus *b, u32 ring, u32 slowness)
+{
+	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x01 };
+	struct slow *s = kvzalloc(sizeof(*s), GFP_KERNEL);
+	struct ecdev *dev;
+
+	KUNIT_ASSERT_NOT_NULL(b->test, s);
+	b->slow = s;
+	s->ring = ring;
+	s->slowness = slowness;
+	raw_spin_lock_init(&s->lock);
+	hrtimer_init(&s->timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
+	s->timer.function = has_left;
+	KUNIT_ASSERT_EQ(b->test, ec_sim_wire_init(&s->wire, b->sim, 0, deliver), 0);
+	b->t0 = ktime_get_ns();
+	dev = ecdev_offer("bus0", mac, &ops, s);
+	KUNIT_ASSERT_FALSE(b->test, IS_ERR(dev));
+	s->dev = dev;
+	return s;
+}
+
+/**
+ * slow_destroy() - take it away and free the segment
+ * @s: device
+ */
+void slow_destroy(struct slow *s)
+{
+	if (s->dev)
+		ecdev_withdraw(s->dev);
+	if (s->wire.frames)
+		ec_sim_wire_exit(&s->wire);
+	kvfree(s);
+}
+
+/**
+ * slow_claim() - let broadcasts come back as if they had passed many slaves
+ * @s: device
+ * @slaves: how many, 0: the truth
+ */
+void slow_claim(struct slow *s, u32 slaves)
+{
+	WRITE_ONCE(s->claim, slaves);
+}
+
+/**
+ * slow_stop() - the device hangs: nothing leaves the ring
+ * @s: device
+ * @stop: true: hangs, false: goes on
+ */
+void slow_stop(struct slow *s, bool stop)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&s->lock, flags);
+	s->stopped = stop;
+	if (!stop && s->head != s->tail && !hrtimer_active(&s->timer))
+		start(s);
+	raw_spin_unlock_irqrestore(&s->lock, flags);
+}
+
+/**
+ * slow_full() - how often the transmit ring was full
+ * @s: device
+ *
+ * Return: times.
+ */
+u32 slow_full(const struct slow *s)
+{
+	return s->full;
+}

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A device with a transmit ring that drains slower than the CPU fills it. */
+#ifndef EC_SLOW_H
+#define EC_SLOW_H
+
+#include "bus.h"
+
+struct slow;
+
+struct slow *slow_plug(struct bus *b, u32 ring, u32 slowness);
+void slow_destroy(struct slow *s);
+void slow_claim(struct slow *s, u32 slaves);
+void slow_stop(struct slow *s, bool stop);
+u32 slow_full(const struct slow *s);
+
+#endif
