@@ -6,6 +6,9 @@
 #define EC_MAX_MASTERS		8	/* minors of the character device */
 #define EC_MAX_LINKS		2	/* main and backup */
 #define EC_MAX_SLAVES		65535	/* 16-bit addressing */
+#define EC_SLAVE_BYTES		16384	/* memory of a slave with its EEPROM; an estimate */
+#define EC_SLAVES_RAM		16	/* one part of so many is for slaves */
+#define EC_MIN_SLAVES		256	/* that a scan takes on however little memory there is */
 #define EC_MAX_DOMAINS		64	/* bits of the queue mask, EC_STATUS_DOMAINS */
 #define EC_MAX_DIVISION		1000	/* cycles from one exchange of a domain to the next */
 #define EC_MAX_COPIES		1024	/* of one session, done in each cycle */

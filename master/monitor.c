@@ -23,6 +23,7 @@ struct watch {
 	unsigned int same;	/* looks with that count */
 	bool scanned;		/* @count slaves are scanned */
 	unsigned int silent;	/* looks in which a slave did not answer to its address */
+	unsigned int too_many;	/* slaves of the last reply, more than a scan takes on */
 	u64 scanned_ns;
 	u64 rates_ns;
 };
@@ -137,6 +138,22 @@ static u32 al_bits(u16 ored)
 	return ored & EC_AL_STATE_MASK;
 }
 
+/* A claim that is not believed; as long as it is the same it is logged once. */
+static unsigned int believable(struct watch *w, unsigned int count)
+{
+	unsigned int limit = ec_scan_limit();
+
+	if (count <= limit) {
+		w->too_many = 0;
+		return count;
+	}
+	if (!w->too_many)
+		ec_warn(w->m, "a reply reports %u slaves, limit %u by memory; not scanned: check the cables and the last slave\n",
+			count, limit);
+	w->too_many = count;
+	return 0;
+}
+
 static void count_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -153,7 +170,7 @@ static void count_slaves(struct watch *w)
 			return;		/* nothing was sent, so nothing is known */
 		if (ret)
 			continue;
-		count = dg.back;
+		count = believable(w, dg.back);
 		ored = get_unaligned_le16(al);
 		break;
 	}

@@ -72,13 +72,40 @@ static int index_known(struct scan *sc)
 	return 0;
 }
 
-static u16 next_station(struct scan *sc)
+/**
+ * ec_scan_station() - find a station address that no slave has
+ * @last: address found last
+ * @known: slaves of the last scan by address
+ * @claims: for each address, how many slaves have it now
+ *
+ * Context: Any.
+ * Return: the address, or 0 when all are in use.
+ */
+u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
 {
-	do {
-		if (++sc->m->next_station == 0)
-			sc->m->next_station = 1;
-	} while (sc->known[sc->m->next_station] || sc->claims[sc->m->next_station]);
-	return sc->m->next_station;
+	u32 i;
+
+	for (i = 0; i <= EC_MAX_SLAVES; i++)
+		if (++last && !known[last] && !claims[last])
+			return last;
+	return 0;
+}
+
+/**
+ * ec_scan_limit() - how many slaves a scan takes on
+ *
+ * Whatever a broken or hostile slave does to a frame, it makes the master allocate no
+ * more than a part of the memory of the machine.
+ *
+ * Context: Any.
+ * Return: slaves.
+ */
+unsigned int ec_scan_limit(void)
+{
+	u64 bytes = (u64)totalram_pages() << PAGE_SHIFT;
+
+	return clamp_t(u64, div_u64(bytes, EC_SLAVES_RAM * EC_SLAVE_BYTES), EC_MIN_SLAVES,
+		       EC_MAX_SLAVES);
 }
 
 /* Is the number of slaves still the one the scan began with? */
@@ -145,7 +172,11 @@ static int assign(struct scan *sc)
 			sc->slaves[i] = ec_slave_ref(s);
 			continue;
 		}
-		sc->slaves[i] = ec_slave_alloc(sc->m, next_station(sc));
+		station = ec_scan_station(sc->m->next_station, sc->known, sc->claims);
+		if (!station)
+			return -ENOSPC;
+		sc->m->next_station = station;
+		sc->slaves[i] = ec_slave_alloc(sc->m, station);
 		if (!sc->slaves[i])
 			return -ENOMEM;
 		sc->slaves[i]->position = i;
@@ -268,13 +299,13 @@ static void publish(struct scan *sc)
 /**
  * ec_scan() - find out who is on the bus
  * @m: master
- * @count: slaves that answered the last broadcast; 0 is legal
+ * @count: slaves that answered the last broadcast, up to ec_scan_limit(); 0 is legal
  *
  * Slaves that are known already keep their objects; only new ones are read.
  *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
- * -ENOMEM; or as ec_xfer().
+ * -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
  */
 int ec_scan(struct ec_master *m, unsigned int count)
 {

@@ -167,11 +167,57 @@ static void link_loss_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
 }
 
+/* A reply that claims 65,535 slaves: nothing is allocated for them. */
+static void link_claims_beyond_memory_refused(struct kunit *test)
+{
+	struct bus *b = bus_new(test, many);
+	struct slow *s = slow_plug(b, 16, 1);
+	u64 frames;
+
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	KUNIT_EXPECT_GE(test, ec_scan_limit(), 1000u);
+	KUNIT_ASSERT_LT(test, ec_scan_limit(), 65535u);
+	slow_claim(s, 65535);
+	msleep(500);
+	frames = bus_frames(b);
+	msleep(1000);
+	/* the monitor's looks only, and the claim is no number of slaves */
+	KUNIT_EXPECT_LT(test, bus_frames(b) - frames, 300ull);
+	KUNIT_EXPECT_EQ(test, b->m->n_slaves, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, 0u);
+	slow_claim(s, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	all_are_well(b, MANY);
+}
+
+/* All addresses in use: the search ends. */
+static void link_station_search_ends(struct kunit *test)
+{
+	struct ec_slave **known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*known), GFP_KERNEL);
+	u8 *claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, known);
+	KUNIT_ASSERT_NOT_NULL(test, claims);
+	KUNIT_EXPECT_EQ(test, ec_scan_station(0, known, claims), 1);
+	KUNIT_EXPECT_EQ(test, ec_scan_station(65535, known, claims), 1);
+	memset(claims, 1, EC_MAX_SLAVES + 1);
+	KUNIT_EXPECT_EQ(test, ec_scan_station(7, known, claims), 0);
+	claims[7] = 0;
+	KUNIT_EXPECT_EQ(test, ec_scan_station(7, known, claims), 7);
+	KUNIT_EXPECT_EQ(test, ec_scan_station(8, known, claims), 7);
+	kvfree(known);
+	kvfree(claims);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(link_full_transmit_ring_delays_only),
 	KUNIT_CASE(link_hanging_device_ends_in_error),
 	KUNIT_CASE(link_loss_ends_a_scan),
 	KUNIT_CASE(link_loss_beside_a_cycle),
+	KUNIT_CASE(link_claims_beyond_memory_refused),
+	KUNIT_CASE(link_station_search_ends),
 	{}
 };
 
