@@ -22,8 +22,8 @@
 #include "master/wire/frame.h"
 
 #define RING		64	/* more than are on their way at once; completion is lazy */
-#define SPARES		16
-#define HELD_NS		(20 * NSEC_PER_MSEC)	/* a frame has left the wire long before */
+#define SPARES		64
+#define HELD_NS		(2 * NSEC_PER_MSEC)	/* a wire that is not busy has sent it long before */
 #define SPARE_HEAD	128	/* a device below this one may come and push more headers */
 
 /**
