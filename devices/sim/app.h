@@ -27,6 +27,7 @@
 #define EC_APP_ESC_ET1100	0x11
 #define EC_APP_ESC_ET1200	0x12
 #define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
+#define EC_APP_GENERIC_MBOX	256	/* mailbox of a "drive" without mbox= */
 #define EC_APP_MAP_CAP		32	/* entries of a mapping object one may write */
 
 struct ec_app;
@@ -38,13 +39,15 @@ enum ec_app_dir { EC_APP_OUT, EC_APP_IN, EC_APP_DIRS };
  * @EC_APP_MAP_DEFAULT: as the device table says
  * @EC_APP_MAP_FIXED: nothing
  * @EC_APP_MAP_ASSIGN: which PDOs are assigned
- * @EC_APP_MAP_FULL: also what the PDOs consist of
+ * @EC_APP_MAP_FULL: also what the PDOs consist of, but not of those assigned
+ * @EC_APP_MAP_LENIENT: also of those assigned, as many slaves allow it
  */
 enum ec_app_mapping {
 	EC_APP_MAP_DEFAULT,
 	EC_APP_MAP_FIXED,
 	EC_APP_MAP_ASSIGN,
 	EC_APP_MAP_FULL,
+	EC_APP_MAP_LENIENT,
 };
 
 /**
@@ -256,7 +259,7 @@ struct ec_app_object {
  * struct ec_app_params - what a model may differ in from its device table
  * @vendor: identity, 0: as the table
  * @product: identity, 0: as the table
- * @revision: identity, 0: as the table
+ * @revision: identity, 0: as the table; generic devices: by their layout
  * @out: generic devices: output size (drive: bytes, io: bits)
  * @in: generic devices: input size
  * @mbox: generic devices: mailbox size, 0: the default
@@ -467,7 +470,7 @@ struct ec_app_event {
  * @serial: number in object 0x1018
  * @transition_ns: time a state change takes
  * @response_ns: time from mailbox request to response
- * @outputs_wait_ns: how long it waits for outputs on the way to OP
+ * @op_timeout_ns: how long it waits for outputs and SYNC signals on the way to OP
  * @data: values of the dictionary
  * @sdo_buf: for the SDO server
  * @state: AL state
@@ -502,7 +505,7 @@ struct ec_app {
 	u32 serial;
 	u32 transition_ns;
 	u32 response_ns;
-	u32 outputs_wait_ns;
+	u64 op_timeout_ns;
 	u8 *data;
 	u8 *sdo_buf;
 	u8 state;
@@ -538,6 +541,7 @@ struct ec_app {
  * @serial: serial number
  * @transition_ns: time a state change takes
  * @response_ns: time from mailbox request to response
+ * @op_timeout_ns: time limit from SAFEOP to OP
  * @process_ns: delay through the controller, 0: default
  * @drift_ppb: error of its clock
  * @clock_start: its clock at power-on
@@ -551,6 +555,7 @@ struct ec_app_config {
 	u32 serial;
 	u32 transition_ns;
 	u32 response_ns;
+	u64 op_timeout_ns;
 	u32 process_ns;
 	s32 drift_ppb;
 	u64 clock_start;
@@ -560,6 +565,7 @@ struct ec_app_config {
 };
 
 #define EC_APP_NO_CLOCK	1
+#define EC_APP_OP_TIMEOUT	9000000000ULL	/* as the common slave stack has it */
 
 /* slave_app.c */
 struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,

@@ -438,7 +438,7 @@ static const struct ec_app_dev devices[] = {
 		.fmmus = 8,
 		.fmmu_use = { EC_SII_FMMU_OUTPUTS, EC_SII_FMMU_INPUTS,
 			      EC_SII_FMMU_SM_STATUS },
-		.n_fmmu_use = 3, .mapping = EC_APP_MAP_ASSIGN,
+		.n_fmmu_use = 3, .mapping = EC_APP_MAP_LENIENT,
 		VARS(drive_vars), .device_type = 0x00020192, DC_MODES,
 		.profile = &ec_app_profile_drive,
 	}, {

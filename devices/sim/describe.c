@@ -23,6 +23,8 @@ static int do_segment(struct ec_desc *d)
 		ret = ec_desc_time(d, "response", TIME_MAX, &d->response_ns);
 	if (!ret)
 		ret = ec_desc_time(d, "transition", TIME_MAX, &d->transition_ns);
+	if (!ret)
+		ret = ec_desc_time(d, "op_timeout", TIME_MAX, &d->op_timeout_ns);
 	return ret;
 }
 
@@ -83,9 +85,11 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		p->mapping = EC_APP_MAP_ASSIGN;
 	else if (ec_desc_is(&w, "rewritable"))
 		p->mapping = EC_APP_MAP_FULL;
+	else if (ec_desc_is(&w, "lenient"))
+		p->mapping = EC_APP_MAP_LENIENT;
 	else if (w.s)
-		return ec_desc_fail(d, "mapping '", &w,
-				    "'? It is fixed, assign or rewritable");
+		return ec_desc_fail(d, "invalid mapping '", &w,
+				    "': expected fixed, assign, rewritable or lenient");
 	w = ec_desc_value(d, "cpu");
 	if (ec_desc_is(&w, "yes"))
 		p->cpu = true;
@@ -102,7 +106,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 		       u64 *cable_ns)
 {
 	u64 response = d->response_ns, transition = d->transition_ns;
-	u64 delay = 0, clock = 0;
+	u64 delay = 0, clock = 0, op_timeout = d->op_timeout_ns;
 	s64 alias = 0, serial = 0, drift = 0;
 	struct ec_desc_word w;
 	int ret;
@@ -123,6 +127,8 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 		ret = ec_desc_time(d, "response", TIME_MAX, &response);
 	if (!ret)
 		ret = ec_desc_time(d, "transition", TIME_MAX, &transition);
+	if (!ret)
+		ret = ec_desc_time(d, "op_timeout", TIME_MAX, &op_timeout);
 	if (!ret)
 		ret = ec_desc_time(d, "cable", 1000000, cable_ns);
 	if (ret)
@@ -147,6 +153,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	c->clock_start = clock;
 	c->response_ns = (u32)min(response, (u64)~0u);
 	c->transition_ns = (u32)min(transition, (u64)~0u);
+	c->op_timeout_ns = op_timeout;
 	return 0;
 }
 
@@ -434,6 +441,8 @@ static int channel(struct ec_desc *d, struct ec_desc_word *w,
 			"' is no output channel; they count from 1" :
 			"' is no input channel; they count from 1");
 	*chan = (u16)(n - 1);
+	if (dir == EC_APP_IN && (*app)->src[*chan].kind != EC_APP_SRC_NONE)
+		return ec_desc_fail(d, "input '", w, "' is connected already; it takes one source");
 	return 0;
 }
 
@@ -454,6 +463,10 @@ static int do_connect(struct ec_desc *d)
 		ret = channel(d, b, EC_APP_IN, &app, &chan);
 	if (ret)
 		return ret;
+	if (app->model->chan[EC_APP_IN][chan]->bits == 1 &&
+	    from->model->chan[EC_APP_OUT][from_chan]->bits > 1)
+		return ec_desc_fail(d, "analog output '", a,
+				    "' cannot be connected to a digital input");
 	src = (struct ec_app_source){
 		.kind = EC_APP_SRC_LINK, .from = from, .from_chan = from_chan,
 	};
@@ -554,8 +567,15 @@ static int count(struct ec_desc *d, const char *p, const char *end)
 			     NULL, "");
 }
 
+static struct ec_desc_word name_of(const struct ec_desc_node *n)
+{
+	return (struct ec_desc_word){ .s = n->app->name, .n = strlen(n->app->name) };
+}
+
 static int wire_all(struct ec_desc *d)
 {
+	struct ec_desc_word name;
+
 	for (u32 i = 0; i < d->n_nodes; i++) {
 		const struct ec_desc_node *n = &d->node[i];
 
@@ -563,9 +583,8 @@ static int wire_all(struct ec_desc *d)
 				 n->child_port, n->cable_ns))
 			continue;
 		d->line = n->line;
-		return ec_desc_fail(d, "'", &(struct ec_desc_word){
-				.s = n->app->name, .n = strlen(n->app->name),
-			}, "' cannot be connected: that port is in use or missing");
+		name = name_of(n);
+		return ec_desc_fail(d, "'", &name, "' cannot be connected: that port is in use or missing");
 	}
 	for (u32 i = 0; i < d->n_wires; i++) {
 		const struct ec_desc_wire *w = &d->wire[i];
@@ -582,6 +601,44 @@ static int wire_all(struct ec_desc *d)
 	return 0;
 }
 
+/* slave @i hangs at something that is reached */
+static void reach(struct ec_desc *d, int i, int *todo)
+{
+	if (i < 0 || d->node[i].reached)
+		return;
+	d->node[i].reached = true;
+	d->node[i].todo = *todo;
+	*todo = i;
+}
+
+/* every slave must be connected with a master, by whatever way */
+static int find_islands(struct ec_desc *d)
+{
+	struct ec_desc_word name;
+	int todo = -1, p;
+
+	for (u32 i = 0; i < d->n_nodes; i++)
+		for (p = 0; p < EC_MAX_PORT; p++)
+			if (ec_sim_slave(d->sim, i)->port[p].peer < -1)
+				reach(d, (int)i, &todo);
+	while (todo >= 0) {
+		const struct ec_esc *esc = ec_sim_slave(d->sim, (u32)todo);
+
+		todo = d->node[todo].todo;
+		for (p = 0; p < EC_MAX_PORT; p++)
+			reach(d, esc->port[p].peer, &todo);
+	}
+	for (u32 i = 0; i < d->n_nodes; i++) {
+		if (d->node[i].reached)
+			continue;
+		name = name_of(&d->node[i]);
+		d->line = d->node[i].line;
+		return ec_desc_fail(d, "no way from a master to '", &name,
+				    "': the wires make an island; connect it to master.0");
+	}
+	return 0;
+}
+
 static int build(struct ec_desc *d, const char *p, const char *end)
 {
 	int ret;
@@ -593,7 +650,8 @@ static int build(struct ec_desc *d, const char *p, const char *end)
 		if (ret)
 			return ret;
 	}
-	return wire_all(d);
+	ret = wire_all(d);
+	return ret ? ret : find_islands(d);
 }
 
 /**
@@ -627,6 +685,7 @@ int ec_sim_describe(struct ec_sim **out, const struct ec_sim_ops *ops,
 	d->loader = loader;
 	d->err = err;
 	d->at = EC_SIM_MASTER0;
+	d->op_timeout_ns = EC_APP_OP_TIMEOUT;
 	ret = count(d, text, text + len);
 	if (ret)
 		goto err_free;

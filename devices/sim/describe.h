@@ -4,12 +4,13 @@
  * defined before they are used. Times are written 250ns, 10us, 1.5ms, 2s; a
  * bare number is in ns.
  *
- *	segment [seed=N] [response=TIME] [transition=TIME]
+ *	segment [seed=N] [response=TIME] [transition=TIME] [op_timeout=TIME]
  *	slave NAME DEVICE|file=IMAGE [OPTION...]
  *	repeat N slave NAME DEVICE [OPTION...]	NAME1, NAME2...; the alias counts up
  *		alias=N serial=N id=N vendor=N product=N revision=N
  *		delay=TIME drift=Nppm|Nppb clock=TIME dc=64|32|none cable=TIME
- *		response=TIME transition=TIME mapping=fixed|assign|rewritable
+ *		response=TIME transition=TIME op_timeout=TIME
+ *		mapping=fixed|assign|rewritable|lenient
  *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
  *		soe=N (SoE with N drives)  voe=TYPE (VoE, type of the answers)
  *	branch NAME PORT		the next slave hangs there

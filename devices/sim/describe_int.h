@@ -23,6 +23,8 @@ struct ec_desc_node {
 	int child_port;
 	u32 cable_ns;
 	bool wired;	/* by a wire statement */
+	bool reached;	/* from a master */
+	int todo;	/* next one whose neighbours are looked at, -1: none */
 };
 
 /* a wire between slaves that both hang elsewhere already, or back to a master */
@@ -45,6 +47,7 @@ struct ec_desc_wire {
  * @seed: from the segment statement
  * @response_ns: default of the slaves
  * @transition_ns: default of the slaves
+ * @op_timeout_ns: default of the slaves
  * @node: slaves so far
  * @n_nodes: how many
  * @max_nodes: slaves in the text
@@ -67,6 +70,7 @@ struct ec_desc {
 	u64 seed;
 	u64 response_ns;
 	u64 transition_ns;
+	u64 op_timeout_ns;
 	struct ec_desc_node *node;
 	u32 n_nodes;
 	u32 max_nodes;

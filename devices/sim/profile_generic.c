@@ -144,11 +144,11 @@ int ec_app_dev_generic(struct ec_app_model *m)
 			return -ERANGE;
 		bytes[dir] = (bits[dir] + 7) / 8;
 		d->max_bytes[dir] = (u16)bytes[dir];
-		if (d->mapping == EC_APP_MAP_FULL)
+		if (d->mapping >= EC_APP_MAP_FULL)
 			d->max_bytes[dir] = (u16)max_t(u32, bytes[dir], 64);
 	}
 	if (drive) {
-		mbox = p->mbox ? p->mbox : 256;
+		mbox = p->mbox ? p->mbox : EC_APP_GENERIC_MBOX;
 		if (mbox < 32 || mbox > MAX_BYTES)
 			return -ERANGE;
 	} else if (p->cpu) {

@@ -129,7 +129,7 @@ static u16 check_pd_sm(const struct ec_app *app, enum ec_app_dir dir)
 		return bad;
 	/* elsewhere than the EEPROM says only if the layout is free */
 	if (p->start != app->model->dev.sms[n].start &&
-	    app->model->dev.mapping != EC_APP_MAP_FULL)
+	    app->model->dev.mapping < EC_APP_MAP_FULL)
 		return bad;
 	for (int i = 0; i < app->esc->cfg.sms; i++) {
 		const struct ec_esc_sm *o = &app->esc->sm[i];
@@ -240,7 +240,7 @@ static void finish(struct ec_app *app, u64 now)
 	if (code) {
 		if (!app->al_waits) {
 			app->al_waits = true;
-			app->al_deadline = now + app->outputs_wait_ns;
+			app->al_deadline = now + app->op_timeout_ns;
 			return;
 		}
 		if (now < app->al_deadline)

@@ -367,7 +367,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 		get_unaligned_le32(model->eeprom + 2 * EC_SII_W_SERIAL);
 	app->transition_ns = cfg->transition_ns;
 	app->response_ns = cfg->response_ns;
-	app->outputs_wait_ns = 100000000;
+	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->ip.refuse = cfg->no_ip;
 
 	image = ec_sim_alloc(sim, model->eeprom_len);

@@ -171,7 +171,7 @@ static u32 pdo_bits(const struct ec_app_pdo *p)
 /* entries a mapping object has room for */
 static u32 pdo_cap(const struct ec_app_model *m, const struct ec_app_pdo *p)
 {
-	return m->dev.mapping == EC_APP_MAP_FULL ?
+	return m->dev.mapping >= EC_APP_MAP_FULL ?
 		max_t(u32, p->count, EC_APP_MAP_CAP) : p->count;
 }
 
@@ -182,7 +182,7 @@ static void add_pdo(struct list *l, const struct ec_app_model *m,
 	u16 access = EC_OD_READ;
 	u32 cap = pdo_cap(m, p);
 
-	if (m->dev.mapping == EC_APP_MAP_FULL)
+	if (m->dev.mapping >= EC_APP_MAP_FULL)
 		access |= EC_OD_WRITE_PREOP;
 	add(l, p->index, 0, EC_TYPE_UINT8, 8, access, p->count, NULL, p->name);
 	for (u32 i = 0; i < cap; i++) {
@@ -458,6 +458,25 @@ static int finish(struct ec_app_model *m)
 	return ret;
 }
 
+/*
+ * Masters take slaves of one identity for equal (SOEM copies what it read of the
+ * first one), so each layout is a revision of its own: bits or bytes of outputs
+ * and inputs, and a mark of everything else that shows in the EEPROM.
+ */
+static u32 generic_revision(const struct ec_app_model *m)
+{
+	const struct ec_app_params *p = &m->params;
+	u64 other = p->voe | (u64)p->soe << 16 | (u64)p->cpu << 24 |
+		    (u64)!!p->id << 25;
+
+	if (m->dev.mapping != m->table->mapping)
+		other |= (u64)m->dev.mapping << 26;
+	if (m->dev.std.rx_len && m->dev.std.rx_len != EC_APP_GENERIC_MBOX)
+		other |= (u64)m->dev.std.rx_len << 32;
+	other *= 0x9e3779b97f4a7c15ULL;
+	return (p->out << 16 | p->in) ^ (u32)(other >> 32);
+}
+
 /**
  * ec_app_model_new() - build a model from a device table
  * @sim: segment whose memory it takes
@@ -499,12 +518,14 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 	if (params->voe)
 		m->dev.protocols |= EC_SII_PROTO_VOE;
 	*err = ec_app_dev_is_generic(dev) ? ec_app_dev_generic(m) : 0;
+	if (ec_app_dev_is_generic(dev) && !params->revision)
+		m->dev.revision = generic_revision(m);
 	if (!*err && m->dev.protocols & EC_SII_PROTO_COE) {
 		m->dev.coe &= (u8)~(EC_SII_COE_PDO_ASSIGN |
 				    EC_SII_COE_PDO_CONFIG);
 		if (m->dev.mapping >= EC_APP_MAP_ASSIGN)
 			m->dev.coe |= EC_SII_COE_PDO_ASSIGN;
-		if (m->dev.mapping == EC_APP_MAP_FULL)
+		if (m->dev.mapping >= EC_APP_MAP_FULL)
 			m->dev.coe |= EC_SII_COE_PDO_CONFIG;
 	}
 	if (!*err)

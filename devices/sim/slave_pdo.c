@@ -117,7 +117,8 @@ static u32 check_mapping(const struct ec_app *app, const struct ec_app_entry *e,
 	const struct ec_app_entry *var;
 	u32 bits = 0;
 
-	if (assigned(app, dir, e->index))
+	if (m->dev.mapping != EC_APP_MAP_LENIENT &&
+	    assigned(app, dir, e->index))
 		return EC_ABORT_STATE;
 	if (!e->sub) {
 		if (value > o->max_sub)

@@ -125,7 +125,8 @@ static void al_process_data(struct kunit *test)
 
 static void al_outputs(struct kunit *test)
 {
-	struct bed *b = app_bed(test, ec_sim_builtin("three"));
+	struct bed *b = app_bed(test, "segment op_timeout=100ms\nslave coupler EK1100\n"
+				"slave out EL2008\nslave axis EL7201 motor=AM8121\n");
 	u8 v[6] = { 0 };
 
 	app_mbox_sms(b, AXIS, 256);
@@ -147,6 +148,27 @@ static void al_outputs(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, AXIS, EC_REG_WD_SM_COUNT, 1), 1);
 }
 
+/* the time limit from SAFEOP to OP: the common one, that of a slave, of a segment */
+static void al_op_timeout(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a drive\nslave b drive op_timeout=2s\n"
+				"segment op_timeout=30ms\nslave c drive\n");
+	static const u32 ms[] = { 9000, 2000, 30 };
+
+	for (int i = 0; i < 3; i++) {
+		app_mbox_sms(b, STATION(i), 256);
+		app_al(b, STATION(i), EC_AL_PREOP, 1);
+		bed_sm(b, STATION(i), 2, 0x1200, 8, 0x64);
+		bed_sm(b, STATION(i), 3, 0x1300, 8, 0x20);
+		KUNIT_ASSERT_EQ(test, app_al(b, STATION(i), EC_AL_SAFEOP, 1),
+				(u32)EC_AL_SAFEOP);
+		KUNIT_EXPECT_EQ(test, app_al(b, STATION(i), EC_AL_OP, ms[i] - 5),
+				(u32)EC_AL_SAFEOP);
+		b->now += 10000000;
+		KUNIT_EXPECT_EQ(test, app_al_status(b, STATION(i)), 0x00190014u);
+	}
+}
+
 /* SYNC0 that starts so many ns from now; SAFEOP and outputs, then OP is requested */
 static u32 al_with_sync(struct bed *b, s64 start)
 {
@@ -165,7 +187,7 @@ static u32 al_with_sync(struct bed *b, s64 start)
 
 static void al_sync(struct kunit *test)
 {
-	struct bed *b = app_bed(test, "slave d drive in=8 out=8\n");
+	struct bed *b = app_bed(test, "slave d drive in=8 out=8 op_timeout=100ms\n");
 
 	app_mbox_sms(b, STATION(0), 256);
 	app_al(b, STATION(0), EC_AL_PREOP, 1);
@@ -302,6 +324,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(al_boot),
 	KUNIT_CASE(al_process_data),
 	KUNIT_CASE(al_outputs),
+	KUNIT_CASE(al_op_timeout),
 	KUNIT_CASE(al_sync),
 	KUNIT_CASE(al_refuse),
 	KUNIT_CASE(al_time_and_id),

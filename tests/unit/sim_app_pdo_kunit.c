@@ -116,6 +116,34 @@ static void rewritten(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6040, 0), 0x0F);
 }
 
+/* the catalogue's drives take a mapping while it is assigned */
+static void lenient(struct kunit *test)
+{
+	static const char * const texts[] = { "slave d drive\n", "slave d drive mapping=lenient\n" };
+	u8 out[8] = { 0xE8, 3, 0, 0, 0x0F, 0 };
+
+	for (u32 i = 0; i < ARRAY_SIZE(texts); i++) {
+		struct pd *x = pd_new(test, texts[i]);
+		struct bed *b = x->b;
+		struct app_mbox *m = &x->m;
+
+		KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C12, 0), 1);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 1, 0x60FF0020, 4),
+				EC_ABORT_SUB0_FIRST);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 0, 0, 1), 0u);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 1, 0x60FF0020, 4), 0u);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 2, 0x60400010, 4), 0u);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 0, 2, 1), 0u);
+		KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C12, 0), 1);
+		KUNIT_EXPECT_EQ(test, app_put(b, m, 0x6060, 0, 9, 1), 0u);
+		KUNIT_EXPECT_EQ(test, pd_op(x, out, 6, 0x1300, 8), (u32)EC_AL_OP);
+		KUNIT_EXPECT_EQ(test, app_get(b, m, 0x60FF, 0), 1000);
+		KUNIT_EXPECT_EQ(test, app_get(b, m, 0x6040, 0), 0x0F);
+		if (!i)
+			ec_sim_free(b->sim);	/* bed_exit() frees the other */
+	}
+}
+
 static void outputs_act_in_op_only(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive\n");
@@ -289,6 +317,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(rules),
 	KUNIT_CASE(fixed),
 	KUNIT_CASE(rewritten),
+	KUNIT_CASE(lenient),
 	KUNIT_CASE(outputs_act_in_op_only),
 	KUNIT_CASE(position),
 	KUNIT_CASE(velocity),

@@ -84,6 +84,15 @@ static const struct {
 	{ "slave a EL2008\nconnect a.9 -> a.1", 2, "no output channel" },
 	{ "slave a EL2008\nconnect a.1 -> a.1", 2, "no input channel" },
 	{ "slave a EL1008\nsine a.1 amplitude=3", 2, "write it as" },
+	{ "slave a EL2008\nslave b EL1008\nconnect a.1 -> b.2\nconnect a.2 -> b.2", 4,
+	  "input 'b.2' is connected already" },
+	{ "slave b EL1008\nconst b.2 value=1\nramp b.2 amplitude=2 period=1s", 3,
+	  "input 'b.2' is connected already" },
+	{ "slave a EL4002\nslave b EL1008\nconnect a.1 -> b.1", 3,
+	  "analog output 'a.1' cannot be connected to a digital input" },
+	{ "slave a EK1100\nslave b EK1100\nslave c EK1100\nslave d EL2008\n"
+	  "wire c.1 -> b.0\nwire b.1 -> c.0\nwire a.1 -> d.0", 2,
+	  "no way from a master to 'b'" },
 	{ "slave a EL2008\nfault explode a", 2, "no fault 'explode'" },
 	{ "slave a EL2008\nfault cut a", 2, "needs a number" },
 	{ "slave a EL2008\nfault lose", 2, "which frames" },
@@ -134,6 +143,43 @@ static void options(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, d->response_ns, 10000u);
 	KUNIT_EXPECT_EQ(test, ec_sim_find(b->sim, "z")->response_ns, 1000000u);
 	KUNIT_EXPECT_PTR_EQ(test, d->model, ec_sim_find(b->sim, "d1")->model);
+}
+
+static u32 revision(struct kunit *test, const char *device)
+{
+	struct bed *b;
+	u32 rev;
+	char text[80];
+
+	snprintf(text, sizeof(text), "slave a %s\n", device);
+	b = app_bed(test, text);
+	rev = get_unaligned_le32(ec_sim_slave(b->sim, 0)->eep.data + 2 * EC_SII_W_REVISION);
+	ec_sim_free(b->sim);
+	b->sim = NULL;
+	return rev;
+}
+
+/* masters copy what they know of one slave to others of the same identity */
+static void revisions(struct kunit *test)
+{
+	static const char * const devices[] = {
+		"drive", "drive in=22 out=22", "drive in=22", "drive out=22", "drive in=23 out=22",
+		"drive mbox=128", "drive mapping=fixed", "drive soe=1", "drive voe=7", "drive id=3",
+	}, * const ios[] = {
+		"io", "io in=64 out=64", "io in=8 out=0", "io in=0 out=8", "io cpu=yes",
+	};
+
+	for (u32 i = 0; i < ARRAY_SIZE(devices); i++)
+		for (u32 k = 0; k < i; k++)
+			KUNIT_EXPECT_NE_MSG(test, revision(test, devices[i]),
+					    revision(test, devices[k]), "%s and %s",
+					    devices[i], devices[k]);
+	for (u32 i = 0; i < ARRAY_SIZE(ios); i++)
+		for (u32 k = 0; k < i; k++)
+			KUNIT_EXPECT_NE(test, revision(test, ios[i]), revision(test, ios[k]));
+	KUNIT_EXPECT_EQ(test, revision(test, "drive in=22"), revision(test, "drive out=8 in=22"));
+	KUNIT_EXPECT_EQ(test, revision(test, "drive mbox=256"), revision(test, "drive"));
+	KUNIT_EXPECT_EQ(test, revision(test, "drive in=22 revision=77"), 77u);
 }
 
 /* frames go the way the description says */
@@ -315,6 +361,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(prefixes),
 	KUNIT_CASE(errors),
 	KUNIT_CASE(options),
+	KUNIT_CASE(revisions),
 	KUNIT_CASE(wiring),
 	KUNIT_CASE(faults),
 	KUNIT_CASE(images),
