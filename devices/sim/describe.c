@@ -619,10 +619,10 @@ static int find_islands(struct ec_desc *d)
 
 	for (u32 i = 0; i < d->n_nodes; i++)
 		for (p = 0; p < EC_MAX_PORT; p++)
-			if (ec_sim_slave(d->sim, i)->port[p].peer < -1)
+			if (ec_sim_at(d->sim, i)->port[p].peer < -1)
 				reach(d, (int)i, &todo);
 	while (todo >= 0) {
-		const struct ec_esc *esc = ec_sim_slave(d->sim, (u32)todo);
+		const struct ec_esc *esc = ec_sim_at(d->sim, (u32)todo);
 
 		todo = d->node[todo].todo;
 		for (p = 0; p < EC_MAX_PORT; p++)

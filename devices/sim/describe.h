@@ -27,6 +27,8 @@
  *		wkc NAME add=N  errors NAME.PORT add=N
  *		mailbox NAME good|length|short|counter|type|babble (its messages)
  *		latch NAME 0|1 [edge=rising|falling|pulse] (an input of its clock)
+ *		error NAME code=N (AL status code; out of OP)
+ *		eeprom NAME word=N value=N  input NAME.CHANNEL value=N
  *		emergency NAME code=N [register=N]
  *		voe NAME [vendor=N] [type=N] [size=N] (a VoE message)
  *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]
@@ -63,6 +65,8 @@ int ec_sim_describe(struct ec_sim **out, const struct ec_sim_ops *ops,
 		    const char *text, size_t len,
 		    const struct ec_sim_loader *loader,
 		    struct ec_sim_error *err);
+int ec_sim_command(struct ec_sim *sim, const struct ec_sim_ops *ops, const char *text,
+		   size_t len, struct ec_sim_fault *f, struct ec_sim_error *err);
 struct ec_app *ec_sim_find(struct ec_sim *sim, const char *name);
 const char *ec_sim_builtin(const char *name);
 const char *ec_sim_builtin_at(u32 n);

@@ -5,7 +5,7 @@
 #define NEVER_MAX	(~0ULL >> 2)
 
 /* what a verb works on, and the fault it makes */
-enum object { SLAVE, PORT, FRAME };
+enum object { SLAVE, PORT, CHANNEL, FRAME };
 
 static const struct verb {
 	const char *name;
@@ -32,6 +32,9 @@ static const struct verb {
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
 	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
+	{ "error", SLAVE, EC_SIM_FAULT_AL_ERROR, 0 },
+	{ "eeprom", SLAVE, EC_SIM_FAULT_EEPROM, 0 },
+	{ "input", CHANNEL, EC_SIM_FAULT_INPUT, 0 },
 	{ "lose", FRAME, EC_SIM_FAULT_LOSE, 0 },
 	{ "duplicate", FRAME, EC_SIM_FAULT_DUPLICATE, 0 },
 	{ "delay", FRAME, EC_SIM_FAULT_DELAY, 0 },
@@ -158,6 +161,13 @@ static int emergency(struct ec_desc *d, u64 at)
 	if (ec_desc_number(d, "code", 0, 0xFFFF, &code) ||
 	    ec_desc_number(d, "register", 0, 0xFF, &reg))
 		return -EINVAL;
+	if (d->command) {
+		*d->command = (struct ec_sim_fault){
+			.at_ns = at, .type = EC_SIM_FAULT_EMERGENCY, .slave = slave,
+			.arg = (u32)code, .arg2 = (u32)reg,
+		};
+		return 0;
+	}
 	put_unaligned_le16((u16)code, e.emcy);
 	e.emcy[2] = (u8)reg;
 	return add_event(d, slave, &e);
@@ -171,6 +181,8 @@ static int voe(struct ec_desc *d, u64 at)
 
 	if (slave < 0)
 		return slave;
+	if (d->command)
+		return ec_desc_fail(d, "VoE messages are scripted in a description only", NULL, "");
 	if (!d->node[slave].app->model->params.voe)
 		return ec_desc_fail(d, "this slave has no VoE; give it voe=TYPE", NULL, "");
 	if (ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor) ||
@@ -195,6 +207,15 @@ static int target(struct ec_desc *d, const struct verb *v,
 	}
 	if (ec_desc_place(d, w, &name, &n))
 		return -EINVAL;
+	if (v->object == CHANNEL) {
+		f->slave = ec_desc_slave(d, &name);
+		if (f->slave < 0)
+			return f->slave;
+		if (!n || n > d->node[f->slave].app->model->n_chan[EC_APP_IN])
+			return ec_desc_fail(d, "'", w, "' is no input channel; they count from 1");
+		f->arg = (u32)n - 1;
+		return 0;
+	}
 	if (ec_desc_is(&name, "master")) {
 		f->slave = n ? EC_SIM_MASTER1 : EC_SIM_MASTER0;
 		return n < EC_SIM_PORTS ? 0 :
@@ -205,6 +226,51 @@ static int target(struct ec_desc *d, const struct verb *v,
 	f->slave = ec_desc_slave(d, &name);
 	f->port = (int)n;
 	return f->slave < 0 ? f->slave : 0;
+}
+
+/* a value of an input, or a word of an EEPROM */
+static int value(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	bool input = f->type == EC_SIM_FAULT_INPUT;
+	s64 min = input ? -0x80000000ll : 0, max = input ? 0xFFFFFFFFll : 0xFFFF, v = max + 1;
+
+	if (!input && option(d, f, "word", 0, 0x3FFFF))
+		return -EINVAL;
+	if (ec_desc_number(d, "value", min, max, &v))
+		return -EINVAL;
+	if (v > max)
+		return ec_desc_fail(d, "a number is missing: value=N", NULL, "");
+	if (!input && (u64)f->arg * 2 + 2 > ec_sim_at(d->sim, (u32)f->slave)->eep.len)
+		return ec_desc_fail(d, "the EEPROM ends before this word", NULL, "");
+	f->arg2 = input ? 0 : (u32)v;
+	f->value = (u64)v;
+	return 0;
+}
+
+/* what a verb wants to know beside its target */
+static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault *f)
+{
+	if (!strcmp(v->name, "refuse"))
+		return refuse(d, f);
+	switch (v->type) {
+	case EC_SIM_FAULT_MAILBOX:
+		return mailbox(d, f);
+	case EC_SIM_FAULT_LATCH:
+		return latch(d, f);
+	case EC_SIM_FAULT_EEPROM_NOACK:
+		return option(d, f, "count", 0, 0xFFFFFFFFll);
+	case EC_SIM_FAULT_WKC:
+		return option(d, f, "add", -32768, 32767);
+	case EC_SIM_FAULT_ERRORS:
+		return option(d, f, "add", 0, 255);
+	case EC_SIM_FAULT_AL_ERROR:
+		return option(d, f, "code", 1, 0xFFFF);
+	case EC_SIM_FAULT_EEPROM:
+	case EC_SIM_FAULT_INPUT:
+		return value(d, f);
+	default:
+		return 0;
+	}
 }
 
 /**
@@ -237,20 +303,14 @@ int ec_desc_fault(struct ec_desc *d)
 	f.type = v->type;
 	f.arg = v->arg;
 	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);
-	if (!ret && !strcmp(v->name, "refuse"))
-		ret = refuse(d, &f);
-	if (!ret && v->type == EC_SIM_FAULT_MAILBOX)
-		ret = mailbox(d, &f);
-	if (!ret && v->type == EC_SIM_FAULT_LATCH)
-		ret = latch(d, &f);
-	if (!ret && v->type == EC_SIM_FAULT_EEPROM_NOACK)
-		ret = option(d, &f, "count", 0, 0xFFFFFFFFll);
-	if (!ret && v->type == EC_SIM_FAULT_WKC)
-		ret = option(d, &f, "add", -32768, 32767);
-	if (!ret && v->type == EC_SIM_FAULT_ERRORS)
-		ret = option(d, &f, "add", 0, 255);
+	if (!ret)
+		ret = details(d, v, &f);
 	if (ret)
 		return ret;
+	if (d->command) {
+		*d->command = f;
+		return 0;
+	}
 	if (!ec_sim_add_fault(d->sim, &f))
 		return 0;
 	return ec_desc_fail(d, "the segment takes no more faults, or not this one",

@@ -56,6 +56,7 @@ struct ec_desc_wire {
  * @max_wires: wire statements in the text
  * @model: kinds of slaves so far
  * @n_models: how many
+ * @command: a fault to be read into this, for a segment that runs; NULL
  * @at: slave at which the next one hangs, -1: master
  * @at_port: its port
  */
@@ -79,6 +80,7 @@ struct ec_desc {
 	u32 max_wires;
 	struct ec_app_model **model;
 	u32 n_models;
+	struct ec_sim_fault *command;
 	int at;
 	int at_port;
 };

@@ -15,6 +15,7 @@
 #include "../../master/wire/regs.h"
 
 struct ec_sim;
+struct ec_sim_fault;
 struct ec_esc;
 
 #define EC_ESC_NEVER	(~0ULL)
@@ -88,6 +89,7 @@ struct ec_esc_config {
  *               repeat request, read 0x0806 + 8 * sm to see which)
  * @sm_taken: outputs that were fetched from an SM in its name are @data; only
  *            after ec_esc_pdi_may_wait()
+ * @fault: a scripted fault that only the application can act
  * @watchdog: the process data watchdog expired
  * @poll: called by ec_sim_advance() once @now reaches esc->app_wake_ns; the
  *        wake-up is cleared before the call, set it again as needed
@@ -111,6 +113,7 @@ struct ec_esc_app_ops {
 	void (*sm_read)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_activate)(struct ec_esc *esc, int sm, u64 now);
 	void (*sm_taken)(struct ec_esc *esc, const u8 *data);
+	void (*fault)(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now);
 	void (*watchdog)(struct ec_esc *esc, u64 now);
 	void (*poll)(struct ec_esc *esc, u64 now);
 	void (*sync)(struct ec_esc *esc, int which, u64 now);

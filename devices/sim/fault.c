@@ -21,6 +21,10 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_ERRORS] = "errors",
 	[EC_SIM_FAULT_MAILBOX] = "mailbox",
 	[EC_SIM_FAULT_LATCH] = "latch",
+	[EC_SIM_FAULT_AL_ERROR] = "al_error",
+	[EC_SIM_FAULT_EEPROM] = "eeprom",
+	[EC_SIM_FAULT_INPUT] = "input",
+	[EC_SIM_FAULT_EMERGENCY] = "emergency",
 };
 
 /**
@@ -199,6 +203,16 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_ERRORS:
 		count = esc->mem + EC_REG_ERR_RX(f->port);
 		*count = (u8)min_t(u64, 0xff, (u64)*count + f->arg);
+		break;
+	case EC_SIM_FAULT_EEPROM:
+		if ((u64)f->arg * 2 + 2 <= esc->eep.len)
+			put_unaligned_le16((u16)f->arg2, esc->eep.data + f->arg * 2);
+		break;
+	case EC_SIM_FAULT_AL_ERROR:
+	case EC_SIM_FAULT_INPUT:
+	case EC_SIM_FAULT_EMERGENCY:
+		if (esc->app_ops && esc->app_ops->fault && esc->powered && esc->eep.loaded)
+			esc->app_ops->fault(esc, f, now);
 		break;
 	default:
 		break;

@@ -388,6 +388,19 @@ struct ec_esc *ec_sim_slave(struct ec_sim *sim, u32 index)
 }
 
 /**
+ * ec_sim_at() - slave by number, to read what does not change while it runs
+ * @sim: segment
+ * @index: in the order of ec_sim_add()
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the slave, NULL when there is none.
+ */
+struct ec_esc *ec_sim_at(const struct ec_sim *sim, u32 index)
+{
+	return index < sim->count ? sim->esc[index] : NULL;
+}
+
+/**
  * ec_sim_now() - how far time has advanced
  * @sim: segment
  *

@@ -48,6 +48,10 @@ struct ec_sim_ops {
  *                        enum ec_sim_mailbox_fault
  * @EC_SIM_FAULT_LATCH: no fault: an edge, EC_SIM_EDGE_* in @arg2, at latch input
  *                      @arg of its clock
+ * @EC_SIM_FAULT_AL_ERROR: @slave leaves OP with AL status code @arg, or shows it
+ * @EC_SIM_FAULT_EEPROM: word @arg of its EEPROM becomes @arg2
+ * @EC_SIM_FAULT_INPUT: no fault: input channel @arg (from 0) becomes (s64)@value
+ * @EC_SIM_FAULT_EMERGENCY: CoE emergency, error code @arg, error register @arg2
  */
 enum ec_sim_fault_type {
 	EC_SIM_FAULT_CUT,
@@ -68,6 +72,10 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_ERRORS,
 	EC_SIM_FAULT_MAILBOX,
 	EC_SIM_FAULT_LATCH,
+	EC_SIM_FAULT_AL_ERROR,
+	EC_SIM_FAULT_EEPROM,
+	EC_SIM_FAULT_INPUT,
+	EC_SIM_FAULT_EMERGENCY,
 	EC_SIM_FAULT_TYPES
 };
 
@@ -154,6 +162,7 @@ bool ec_sim_link(const struct ec_sim *sim, int port);
 /* looking */
 u32 ec_sim_count(const struct ec_sim *sim);
 struct ec_esc *ec_sim_slave(struct ec_sim *sim, u32 index);
+struct ec_esc *ec_sim_at(const struct ec_sim *sim, u32 index);
 u64 ec_sim_now(const struct ec_sim *sim);
 u32 ec_sim_random(struct ec_sim *sim);
 

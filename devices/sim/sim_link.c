@@ -127,6 +127,18 @@ err_free:
 }
 
 /**
+ * ec_sim_link_wire() - segment of a virtual device
+ * @l: link
+ *
+ * Context: Any.
+ * Return: the segment, in the kernel's time.
+ */
+struct ec_sim_wire *ec_sim_link_wire(struct ec_sim_link *l)
+{
+	return &l->wire;
+}
+
+/**
  * ec_sim_link_destroy() - take the virtual device away and free the segment
  * @l: link
  *

@@ -12,6 +12,7 @@
 #include <linux/vmalloc.h>
 #include "devices/ecdev.h"
 #include "describe.h"
+#include "sim_control.h"
 #include "sim_link.h"
 #include "sim_responder.h"
 #include "sim_wire.h"
@@ -117,6 +118,7 @@ static int offer(unsigned int i)
 		return PTR_ERR(l);
 	}
 	sim_link[i] = l;
+	ec_sim_control_add(name, ec_sim_link_wire(l));
 	return 0;
 }
 
@@ -132,8 +134,10 @@ static int respond(void)
 	if (IS_ERR(sim))
 		return PTR_ERR(sim);
 	responder = ec_sim_responder_create(netdev, n_netdev, sim);
-	if (!IS_ERR(responder))
+	if (!IS_ERR(responder)) {
+		ec_sim_control_add(netdev[0], ec_sim_responder_wire(responder));
 		return 0;
+	}
 	ec_sim_free(sim);
 	return PTR_ERR(responder);
 }
@@ -142,6 +146,7 @@ static void withdraw(void)
 {
 	unsigned int i;
 
+	ec_sim_control_exit();
 	for (i = 0; i < SEGMENTS; i++)
 		if (sim_link[i])
 			ec_sim_link_destroy(sim_link[i]);
@@ -164,8 +169,13 @@ static int __init sim_init(void)
 	unsigned int i, n = max(n_segment, 1u);
 	int ret = 0;
 
-	if (n_netdev)
-		return respond();
+	ec_sim_control_init();
+	if (n_netdev) {
+		ret = respond();
+		if (ret)
+			ec_sim_control_exit();
+		return ret;
+	}
 	for (i = 0; i < n && !ret; i++)
 		ret = offer(i);
 	if (ret)
@@ -177,10 +187,12 @@ static int __init sim_init(void)
 
 static void __exit sim_exit(void)
 {
-	if (n_netdev)
+	if (n_netdev) {
+		ec_sim_control_exit();
 		ec_sim_responder_destroy(responder);
-	else
+	} else {
 		withdraw();
+	}
 }
 
 module_init(sim_init);

@@ -261,6 +261,18 @@ err_free:
 }
 
 /**
+ * ec_sim_responder_wire() - segment of a responder
+ * @r: responder
+ *
+ * Context: Any.
+ * Return: the segment, in the kernel's time.
+ */
+struct ec_sim_wire *ec_sim_responder_wire(struct ec_sim_responder *r)
+{
+	return &r->wire;
+}
+
+/**
  * ec_sim_responder_destroy() - stop answering and free the segment
  * @r: responder
  *

@@ -211,6 +211,26 @@ int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 }
 
 /**
+ * ec_sim_wire_fault() - something goes wrong in the segment
+ * @w: wire
+ * @f: what
+ *
+ * Context: Any.
+ * Return: 0, or as ec_sim_add_fault().
+ */
+int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f)
+{
+	unsigned long flags;
+	int ret;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	ret = ec_sim_add_fault(w->sim, f);
+	ec_sim_advance(w->sim, now_ns(w));
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	return ret;
+}
+
+/**
  * ec_sim_wire_up() - is there a cable at the first master port now
  * @w: wire
  *

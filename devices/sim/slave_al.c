@@ -39,10 +39,25 @@ void ec_app_al_reset(struct ec_app *app, u64 now)
 	show(app, now);
 }
 
+/* 0x1C32:02 and 0x1C33:02 say the cycle that SYNC0 gives */
+static void cycle_time(struct ec_app *app)
+{
+	u32 cycle = get_unaligned_le32(app->esc->mem + EC_REG_DC_CYCLE0);
+
+	if (!(app->esc->mem[EC_REG_DC_ACTIVATION] & 1) || !cycle)
+		return;
+	for (int dir = 0; dir < EC_APP_DIRS; dir++)
+		ec_app_od_set(app, ec_app_od_entry(app->model,
+				(u16)(0x1C30 + app->model->pd_sm[dir]), 2), cycle);
+}
+
 /* what has to happen whenever @app->state gets a new value */
 static void enter(struct ec_app *app, u8 state, u64 now)
 {
 	u8 from = app->state;
+
+	if (state == EC_AL_SAFEOP && from == EC_AL_PREOP)
+		cycle_time(app);
 
 	app->state = state;
 	if (from == EC_AL_OP && state != EC_AL_OP)

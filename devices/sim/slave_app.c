@@ -137,6 +137,32 @@ static void sm_activate(struct ec_esc *esc, int sm, u64 now)
 	ec_app_rewake(app, now);
 }
 
+static void fault(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
+{
+	struct ec_app *app = esc->app;
+	static const u8 data[5];
+	struct ec_app_source src = { .kind = EC_APP_SRC_CONST, .offset = (s64)f->value };
+
+	switch (f->type) {
+	case EC_SIM_FAULT_INPUT:
+		if (f->arg >= app->model->n_chan[EC_APP_IN])
+			break;
+		ec_app_set_source(app, (u16)f->arg, &src);
+		ec_app_inputs(app, now);
+		break;
+	case EC_SIM_FAULT_AL_ERROR:
+		if (!app->model->emulation)
+			ec_app_al_fail(app, app->state, (u16)f->arg, now);
+		break;
+	case EC_SIM_FAULT_EMERGENCY:
+		ec_app_emergency(app, (u16)f->arg, (u8)f->arg2, data, now);
+		break;
+	default:
+		break;
+	}
+	ec_app_rewake(app, now);
+}
+
 static void watchdog(struct ec_esc *esc, u64 now)
 {
 	struct ec_app *app = esc->app;
@@ -221,6 +247,7 @@ static const struct ec_esc_app_ops app_ops = {
 	.sm_read = sm_read,
 	.sm_taken = sm_taken,
 	.sm_activate = sm_activate,
+	.fault = fault,
 	.watchdog = watchdog,
 	.poll = poll,
 	.power_on = power_on,

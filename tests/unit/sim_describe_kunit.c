@@ -355,6 +355,58 @@ static void no_memory(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ret, 0);
 }
 
+static int command(struct bed *b, const char *text, struct ec_sim_error *err)
+{
+	struct ec_sim_fault f;
+	int ret = ec_sim_command(b->sim, &bed_ops, text, strlen(text), &f, err);
+
+	return ret ? ret : ec_sim_add_fault(b->sim, &f);
+}
+
+/* faults while the segment runs */
+static void commands(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EL1008\nslave m drive\n");
+	struct ec_app *a = ec_sim_find(b->sim, "a");
+	static const struct {
+		const char *text, *want;
+	} bad[] = {
+		{ "", "no fault given" },
+		{ "off b", "no slave 'b'" },
+		{ "off a\noff m", "one fault at a time" },
+		{ "off a now", "'now' is not known" },
+		{ "input a.9 value=1", "no input channel" },
+		{ "input a.1", "value=N" },
+		{ "eeprom a word=0xFFFF value=1", "EEPROM ends before" },
+		{ "error a", "code=N" },
+	};
+	struct ec_sim_error err;
+
+	for (u32 i = 0; i < ARRAY_SIZE(bad); i++) {
+		KUNIT_EXPECT_EQ_MSG(test, command(b, bad[i].text, &err), -EINVAL, "%s",
+				    bad[i].text);
+		KUNIT_EXPECT_TRUE_MSG(test, strstr(err.text, bad[i].want),
+				      "\"%s\" says \"%s\"", bad[i].text, err.text);
+	}
+	KUNIT_EXPECT_EQ(test, command(b, "input a.3 value=1\n", &err), 0);
+	KUNIT_EXPECT_EQ(test, command(b, "eeprom a word=12 value=0xBEEF", &err), 0);
+	KUNIT_EXPECT_EQ(test, command(b, "fault at=900ms off m", &err), 0);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_TYPE, 1), 0x11);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(a, EC_APP_IN, 2), 1);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(a->esc->eep.data + 24), 0xBEEF);
+	app_mbox_sms(b, STATION(1), 256);
+	app_al(b, STATION(1), EC_AL_PREOP, 1);
+	KUNIT_EXPECT_EQ(test, command(b, "error m code=0x42", &err), 0);
+	KUNIT_EXPECT_EQ(test, app_al_status(b, STATION(1)), 0x00420012u);
+	KUNIT_EXPECT_EQ(test, command(b, "emergency m code=0x1234", &err), 0);
+	KUNIT_EXPECT_EQ(test, command(b, "dead a", &err), 0);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_TYPE, 1), ~0ull);
+	KUNIT_EXPECT_TRUE(test, ec_esc_sm_readable(ec_sim_find(b->sim, "m")->esc, 0) ||
+				ec_sim_find(b->sim, "m")->mbox.out_len);
+	b->now = 900000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_TYPE, 1), ~0ull);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(no_memory),
 	KUNIT_CASE(builtins),
@@ -364,6 +416,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(revisions),
 	KUNIT_CASE(wiring),
 	KUNIT_CASE(faults),
+	KUNIT_CASE(commands),
 	KUNIT_CASE(images),
 	KUNIT_CASE(from_file),
 	{}

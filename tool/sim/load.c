@@ -13,7 +13,7 @@ static void *zalloc(size_t bytes)
 	return calloc(1, bytes);
 }
 
-static const struct ec_sim_ops ops = { .alloc = zalloc, .free = free };
+const struct ec_sim_ops load_ops = { .alloc = zalloc, .free = free };
 
 /* At most @cap bytes of a file; -errno. */
 static long slurp(const char *path, void *buf, size_t cap)
@@ -94,7 +94,7 @@ struct ec_sim *load_segment(const char *name, long long seed)
 	/* the last seed counts, and lines keep their numbers */
 	if (seed >= 0)
 		len += (size_t)sprintf(text + len, "\nsegment seed=%lld\n", seed);
-	if (ec_sim_describe(&sim, &ops, text, len, &loader, &err)) {
+	if (ec_sim_describe(&sim, &load_ops, text, len, &loader, &err)) {
 		if (err.line)
 			fprintf(stderr, "%s:%u: %s\n", name, err.line, err.text);
 		else

@@ -7,6 +7,8 @@
 
 #define EC_SIM_SEED_MAX	(1ll << 62)	/* as in a description */
 
+extern const struct ec_sim_ops load_ops;
+
 struct ec_sim *load_segment(const char *name, long long seed);
 int load_list(void);
 

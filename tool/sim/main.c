@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "control.h"
 #include "load.h"
 #include "port.h"
 #include "run.h"
@@ -16,6 +17,8 @@ static const char usage[] =
 "the other end of a ring.\n"
 "\n"
 "  -s, --segment NAME   built-in segment or file with a description (default: bench)\n"
+"      --control PATH   socket at which faults are taken while it runs\n"
+"      --tell PATH FAULT...  send a fault to the ethercat-sim with this socket\n"
 "      --seed N         in place of the seed of the segment\n"
 "      --bug NAME       a deliberate error of the model, to test other programs\n"
 "  -v, --verbose        counters every second\n"
@@ -33,6 +36,8 @@ static const char usage[] =
 struct options {
 	const char *segment;
 	const char *check;
+	const char *control;
+	const char *tell;
 	long long seed;
 	enum ec_sim_bug bug;
 	bool verbose;
@@ -72,6 +77,8 @@ static int parse(int argc, char **argv, struct options *o)
 		{ "segment", required_argument, NULL, 's' },
 		{ "seed", required_argument, NULL, 'S' },
 		{ "bug", required_argument, NULL, 'B' },
+		{ "control", required_argument, NULL, 'C' },
+		{ "tell", required_argument, NULL, 'T' },
 		{ "verbose", no_argument, NULL, 'v' },
 		{ "list", no_argument, NULL, 'l' },
 		{ "list-bugs", no_argument, NULL, 'L' },
@@ -86,6 +93,8 @@ static int parse(int argc, char **argv, struct options *o)
 		switch (c) {
 		case 's': o->segment = optarg; break;
 		case 'c': o->check = optarg; break;
+		case 'C': o->control = optarg; break;
+		case 'T': o->tell = optarg; break;
 		case 'v': o->verbose = true; break;
 		case 'l': o->list = true; break;
 		case 'L': o->list_bugs = true; break;
@@ -123,11 +132,29 @@ static int list_bugs(void)
 	return 0;
 }
 
+/* the words of a fault, as the shell has split them */
+static int tell(const struct options *o, char **words, int n)
+{
+	char text[512] = "";
+	size_t len = 0;
+
+	for (int i = 0; i < n; i++) {
+		len += (size_t)snprintf(text + len, sizeof(text) - len, "%s%s", i ? " " : "",
+					words[i]);
+		if (len >= sizeof(text)) {
+			fprintf(stderr, "ethercat-sim: a fault has at most %zu characters\n",
+				sizeof(text) - 1);
+			return 2;
+		}
+	}
+	return control_tell(o->tell, text);
+}
+
 static int serve(const struct options *o, char **names, int n)
 {
-	struct port ports[EC_SIM_PORTS] = { { .fd = -1 }, { .fd = -1 } };
+	struct port ports[EC_SIM_PORTS] = { { .fd = -1, .claim = -1 }, { .fd = -1, .claim = -1 } };
 	struct ec_sim *sim = load_segment(o->segment, o->seed);
-	int i, ret = 1;
+	int i, ret = 1, control = -1;
 
 	if (!sim)
 		return 1;
@@ -135,11 +162,17 @@ static int serve(const struct options *o, char **names, int n)
 	for (i = 0; i < n; i++)
 		if (port_open(&ports[i], names[i]))
 			goto out;
+	if (o->control) {
+		control = control_open(o->control);
+		if (control < 0)
+			goto out;
+	}
 	printf("segment %s, %u slave(s), at %s%s%s\n", o->segment, ec_sim_count(sim), names[0],
 	       n > 1 ? " and " : "", n > 1 ? names[1] : "");
 	fflush(stdout);
-	ret = run_segment(sim, ports, n, o->verbose);
+	ret = run_segment(sim, ports, n, control, o->verbose);
 out:
+	control_close(control, o->control);
 	for (i = 0; i < n; i++)
 		port_close(&ports[i]);
 	ec_sim_free(sim);
@@ -157,6 +190,8 @@ int main(int argc, char **argv)
 		fputs("Try 'ethercat-sim --help'.\n", stderr);
 		return 2;
 	}
+	if (o.tell)
+		return tell(&o, argv + optind, n);
 	if (o.list || o.list_bugs || o.check) {
 		if (n) {
 			fprintf(stderr, "ethercat-sim: '%s': no interface is used here\n", argv[optind]);

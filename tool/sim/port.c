@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "port.h"
@@ -50,6 +51,28 @@ static int check_kind(struct port *p)
 	return 0;
 }
 
+/*
+ * Two programs at one interface would both answer each frame. Names of this kind
+ * belong to a network namespace, as interfaces do, and end with the program.
+ */
+static int claim(struct port *p)
+{
+	struct sockaddr_un a = { .sun_family = AF_UNIX };
+	int n = snprintf(a.sun_path + 1, sizeof(a.sun_path) - 1, "ethercat-sim/%d", p->index);
+
+	p->claim = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	if (p->claim >= 0 &&
+	    !bind(p->claim, (struct sockaddr *)&a,
+		  (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1 + (size_t)n)))
+		return 0;
+	if (errno == EADDRINUSE)
+		fprintf(stderr, "ethercat-sim: another ethercat-sim is at %s; stop it first\n",
+			p->name);
+	else
+		fprintf(stderr, "ethercat-sim: cannot claim %s: %s\n", p->name, strerror(errno));
+	return -1;
+}
+
 /* Only what comes from the wire, whoever it is addressed to. */
 static int attach(struct port *p)
 {
@@ -80,6 +103,7 @@ static int attach(struct port *p)
 int port_open(struct port *p, const char *name)
 {
 	p->fd = -1;
+	p->claim = -1;
 	if (strlen(name) >= sizeof(p->name)) {
 		fprintf(stderr, "ethercat-sim: there is no interface '%s': a name has at most %zu characters\n",
 			name, sizeof(p->name) - 1);
@@ -92,7 +116,7 @@ int port_open(struct port *p, const char *name)
 			errno == EPERM ? "; run as root or with CAP_NET_RAW" : "");
 		return -1;
 	}
-	return check_kind(p) || attach(p) ? -1 : 0;
+	return check_kind(p) || claim(p) || attach(p) ? -1 : 0;
 }
 
 /**
@@ -103,7 +127,10 @@ void port_close(struct port *p)
 {
 	if (p->fd >= 0)
 		close(p->fd);
+	if (p->claim >= 0)
+		close(p->claim);
 	p->fd = -1;
+	p->claim = -1;
 }
 
 /**

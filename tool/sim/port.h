@@ -12,6 +12,7 @@
  * @name: of the interface, as given
  * @index: of the interface
  * @fd: packet socket, -1: none
+ * @claim: socket whose name says that the interface is taken, -1: none
  * @down: the interface is down
  * @gone: the interface does not exist any more
  */
@@ -19,6 +20,7 @@ struct port {
 	char name[IF_NAMESIZE];
 	int index;
 	int fd;
+	int claim;
 	bool down;
 	bool gone;
 };

@@ -12,6 +12,7 @@
 #include <time.h>
 
 #include "../../master/wire/frame.h"
+#include "control.h"
 #include "run.h"
 
 #define FRAMES	1024		/* on their way at once */
@@ -33,6 +34,7 @@ struct flying {
  * @sim: the segment
  * @ports: interfaces, of master port 0 and 1
  * @n_ports: how many
+ * @control: socket of control_open(), -1: none
  * @flying: by time of arrival
  * @free: unused frames
  * @wire_free_ns: when the last frame has left the master, by port
@@ -46,6 +48,7 @@ struct run {
 	struct ec_sim *sim;
 	struct port *ports;
 	int n_ports;
+	int control;
 	struct flying *flying;
 	struct flying *free;
 	u64 wire_free_ns[EC_SIM_PORTS];
@@ -185,7 +188,7 @@ static void show(const struct run *r)
 /* Sleep until a frame arrives or is due. */
 static void rest(struct run *r, const sigset_t *mask)
 {
-	struct pollfd fds[EC_SIM_PORTS];
+	struct pollfd fds[EC_SIM_PORTS + 1];
 	u64 now = now_ns(r), left = LOOK_NS;
 	struct timespec t;
 	int i;
@@ -194,12 +197,15 @@ static void rest(struct run *r, const sigset_t *mask)
 		left = r->flying->due_ns > now ? min(r->flying->due_ns - now, left) : 0;
 	for (i = 0; i < r->n_ports; i++)
 		fds[i] = (struct pollfd){ .fd = r->ports[i].fd, .events = r->free ? POLLIN : 0 };
+	fds[i] = (struct pollfd){ .fd = r->control, .events = POLLIN };
 	t = (struct timespec){ .tv_nsec = (long)left };
-	if (ppoll(fds, (nfds_t)r->n_ports, &t, mask) <= 0)
+	if (ppoll(fds, (nfds_t)r->n_ports + 1, &t, mask) <= 0)
 		return;
 	for (i = 0; i < r->n_ports; i++)
 		if (fds[i].revents)
 			receive(r, i);
+	if (fds[i].revents)
+		control_receive(r->control, r->sim);
 }
 
 /* Now and then: time for a quiet segment, a look at the interfaces. */
@@ -256,13 +262,14 @@ static void catch_signals(sigset_t *old)
  * @sim: segment
  * @ports: interfaces, of master port 0 and 1
  * @n_ports: how many
+ * @control: socket of control_open(), -1: none
  * @verbose: counters every second
  *
  * Return: exit status: 0 after a signal, 1 when an interface is gone.
  */
-int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, bool verbose)
+int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, int control, bool verbose)
 {
-	struct run r = { .sim = sim, .ports = ports, .n_ports = n_ports };
+	struct run r = { .sim = sim, .ports = ports, .n_ports = n_ports, .control = control };
 	struct flying *frames = calloc(FRAMES, sizeof(*frames));
 	sigset_t mask;
 

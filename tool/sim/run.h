@@ -6,6 +6,6 @@
 #include "port.h"
 #include "sim.h"
 
-int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, bool verbose);
+int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, int control, bool verbose);
 
 #endif
