@@ -203,21 +203,24 @@ static void al_sync(struct kunit *test)
 static void al_sync_cycle(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive in=8 out=8\n");
-	struct app_mbox m = { .station = STATION(0), .size = 256 };
+	struct app_mbox *m = kunit_kzalloc(test, sizeof(*m), GFP_KERNEL);
 
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	m->station = STATION(0);
+	m->size = 256;
 	app_mbox_sms(b, STATION(0), 256);
 	app_al(b, STATION(0), EC_AL_PREOP, 1);
 	bed_sm(b, STATION(0), 2, 0x1200, 8, 0x24);
 	bed_sm(b, STATION(0), 3, 0x1300, 8, 0x20);
-	KUNIT_EXPECT_EQ(test, app_get(b, &m, 0x1C32, 2), 1000000);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C32, 2), 1000000);
 	bed_put(b, STATION(0), EC_REG_DC_CYCLE0, 250000, 4);
 	bed_put(b, STATION(0), EC_REG_DC_START,
 		bed_get(b, STATION(0), EC_REG_DC_SYSTIME, 8) + 50000000, 8);
-	KUNIT_EXPECT_EQ(test, app_get(b, &m, 0x1C32, 2), 1000000);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C32, 2), 1000000);
 	bed_put(b, STATION(0), EC_REG_DC_CUC, 0x0300, 2);
 	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP);
-	KUNIT_EXPECT_EQ(test, app_get(b, &m, 0x1C32, 2), 250000);
-	KUNIT_EXPECT_EQ(test, app_get(b, &m, 0x1C33, 2), 250000);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C32, 2), 250000);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C33, 2), 250000);
 }
 
 static void al_refuse(struct kunit *test)
