@@ -70,7 +70,7 @@ struct bench {
 	struct work {
 		unsigned long long idle, simulator, all;	/* ns, which are instructions */
 		long long begin;
-	} work;			/* of @cycles cycles in which nothing else is measured */
+	} work;			/* of cycles in which nothing else is measured */
 	unsigned int tick;	/* cost of ticks() */
 	uint64_t image_bytes;
 };
