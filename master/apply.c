@@ -39,6 +39,18 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 	return ret;
 }
 
+/*
+ * Frames were lost, or the slave needs more time than usual: worth another try. A refusal is
+ * not, unless the slave missed the outputs.
+ */
+static bool is_transient(const struct ec_slave *s, int ret)
+{
+	if (ret == -EPROTO)
+		return s->al_code == EC_AL_CODE_NO_OUTPUTS ||
+		       s->al_code == EC_AL_CODE_SM_WATCHDOG;
+	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN;
+}
+
 /* What the application allows for a transition, ms; 0: the default. */
 static u32 limit(const struct ec_slave *s, u8 from, u8 to)
 {
@@ -240,7 +252,7 @@ static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 			return ret;
 		if (ret) {
 			sdo_failed(s, sdo, ret, abort);
-			return ret;
+			return abort ? -EREMOTEIO : ret;
 		}
 	}
 	return 0;
@@ -275,7 +287,7 @@ static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 			return ret;
 		if (ret) {
 			idn_failed(s, i, ret, error);
-			return ret;
+			return error ? -EREMOTEIO : ret;
 		}
 	}
 	return 0;
@@ -608,7 +620,10 @@ void ec_apply_work(struct work_struct *work)
 	if (ret == 1 && s->error != EC_SLAVE_SCAN_FAILED) {
 		s->error = EC_SLAVE_OK;
 		s->why[0] = '\0';
+		s->retry_ms = 0;
 	}
+	if (s->error == EC_SLAVE_CONFIG_FAILED && is_transient(s, ret))
+		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	WRITE_ONCE(s->worker, NULL);

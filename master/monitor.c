@@ -115,10 +115,10 @@ out:
 	return all;
 }
 
-/* All slaves in the state they shall have, none with an error? */
-static bool as_wanted(const struct ec_master *m, u16 ored)
+/* All slaves in the state they shall have, none with an error, all of them replied? */
+static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 {
-	unsigned int i;
+	unsigned int i, expected = 0;
 	u8 want = 0;
 
 	for (i = 0; i < m->n_slaves; i++) {
@@ -126,11 +126,12 @@ static bool as_wanted(const struct ec_master *m, u16 ored)
 
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
+		expected++;
 		want = want ?: s->requested;
 		if (s->requested != want || s->al_status != want)
 			return false;
 	}
-	return ored == want;
+	return ored == want && wkc >= expected;
 }
 
 static u32 al_bits(u16 ored)
@@ -160,7 +161,7 @@ static void count_slaves(struct watch *w)
 	unsigned int count = 0, try;
 	u8 al[2] = { 0, 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, al);
-	u16 ored = 0;
+	u16 ored = 0, wkc = 0;
 
 	dg.repeat = false;
 	for (try = 0; try < TRIES && w->link_up; try++) {
@@ -171,6 +172,7 @@ static void count_slaves(struct watch *w)
 		if (ret)
 			continue;
 		count = believable(w, dg.back);
+		wkc = dg.wkc;
 		ored = get_unaligned_le16(al);
 		break;
 	}
@@ -187,16 +189,67 @@ static void count_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
-	if (!w->scanned || as_wanted(m, ored) || check_slaves(m))
+	if (!w->scanned || as_wanted(m, ored, wkc) || check_slaves(m))
 		w->silent = 0;
 	else
 		w->silent++;
 	/* power was off for a moment: address and state are lost */
 	if (w->silent >= SILENT_LOOKS) {
-		ec_info(m, "a slave has lost its station address\n");
+		ec_info(m, "a slave does not reply to its station address\n");
 		w->silent = 0;
 		w->scanned = false;
 		w->same = STABLE_LOOKS;
+	}
+}
+
+#define PROBE_MAX_MS	1000	/* of a slave that does not reply at all */
+
+static bool is_due(const struct ec_slave *s, u64 now)
+{
+	u64 at = READ_ONCE(s->retry_ns);
+
+	return s->error && at && now >= at;
+}
+
+/*
+ * What failed is tried again with growing distance. One that replies to its ring position
+ * is scanned; one that was lost on its way to its state is brought there.
+ */
+static void try_again(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	struct ec_slave *due[16];
+	u8 b[ARRAY_SIZE(due)][2];
+	struct ec_dg dg[ARRAY_SIZE(due)];
+	u64 now = ktime_get_ns();
+	unsigned int i, n = 0;
+
+	if (!w->scanned || READ_ONCE(m->freeze))
+		return;
+	for (i = 0; i < m->n_slaves && n < ARRAY_SIZE(due); i++) {
+		struct ec_slave *s = m->slaves[i];
+
+		if (!is_due(s, now))
+			continue;
+		if (s->error == EC_SLAVE_SCAN_FAILED) {
+			dg[n] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2,
+						    b[n]);
+			due[n++] = s;
+		} else if (!work_busy(&s->work)) {
+			/* the worker plans the next one, if it has to */
+			WRITE_ONCE(s->retry_ns, 0);
+			ec_slave_kick(s);
+		}
+	}
+	if (!n || ec_xfer(m, dg, n))
+		return;
+	for (i = 0; i < n; i++) {
+		if (dg[i].wkc == 1) {
+			w->scanned = false;
+			w->same = STABLE_LOOKS;
+		} else {
+			ec_slave_retry(due[i], PROBE_MAX_MS);
+		}
 	}
 }
 
@@ -217,6 +270,7 @@ static void want_states(struct ec_master *m)
 static void maybe_scan(struct watch *w)
 {
 	struct ec_master *m = w->m;
+	bool changed = false;
 
 	/* also one that is asked for then has to wait */
 	if (READ_ONCE(m->freeze))
@@ -237,14 +291,15 @@ static void maybe_scan(struct watch *w)
 		smp_wmb();
 		WRITE_ONCE(m->rescan, false);
 		if (m->owner == EC_OWNER_IDLE && !READ_ONCE(m->session))
-			ec_scan(m, 0);
+			ec_scan(m, 0, &changed);
 	}
-	if (!ec_scan(m, w->count)) {
+	if (!ec_scan(m, w->count, &changed)) {
 		w->scanned = true;
 		WRITE_ONCE(m->scan_count, m->scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
 		/* before their workers ask for their clocks */
-		WRITE_ONCE(m->dc.changed, true);
+		if (changed)
+			WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(m);
 		if (!READ_ONCE(m->active))
 			ec_dc_measure(m);
@@ -308,6 +363,7 @@ static int monitor(void *data)
 			ec_session_stalled(m);
 		if (w.link_up || m->n_slaves) {
 			count_slaves(&w);
+			try_again(&w);
 			maybe_scan(&w);
 			read_pdos(&w);
 		} else {

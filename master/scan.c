@@ -14,6 +14,7 @@ struct regs {
 	u8 dl[2];
 	u8 al[6];
 	u8 recv[16];
+	bool there;		/* it answered when its address was read */
 };
 
 struct scan {
@@ -25,6 +26,7 @@ struct scan {
 	u8 (*addr)[2];
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
+	bool changed;	/* other slaves than before */
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 };
 
@@ -57,6 +59,17 @@ static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
 						(u8 *)&sc->regs[i] + ofs);
 	return ec_xfer(sc->m, sc->dg, sc->n);
+}
+
+/* Addresses of all; a slave that does not answer may be a known one that fell silent. */
+static int read_stations(struct scan *sc)
+{
+	unsigned int i;
+	int ret = read_all(sc, EC_REG_STATION, offsetof(struct regs, station), 4);
+
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].there = sc->dg[i].wkc == 1;
+	return ret;
 }
 
 static int index_known(struct scan *sc)
@@ -144,14 +157,72 @@ static void count_claims(struct scan *sc)
 	for (i = 0; i < sc->n; i++) {
 		u8 *c = &sc->claims[get_unaligned_le16(sc->regs[i].station)];
 
-		*c = min(*c + 1, 2);
+		if (sc->regs[i].there)
+			*c = min(*c + 1, 2);
 	}
 }
 
 /* One that failed in the scan is read anew; one that refused a state is the same. */
 static bool is_usable(const struct ec_slave *s)
 {
-	return !s->error || (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
+	return !s->error || s->silent ||
+	       (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
+}
+
+/*
+ * The known slave that is at @i without an answer: what is in front of it is what was
+ * there before, and its address is nowhere else.
+ */
+static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
+{
+	struct ec_slave *s = i < sc->m->n_slaves ? sc->m->slaves[i] : NULL;
+
+	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
+		return NULL;
+	return s->silent || (s->sii && s->error != EC_SLAVE_SCAN_FAILED) ? s : NULL;
+}
+
+/* The slave that could not be read when it was at @i, or NULL. */
+static const struct ec_slave *unreadable(const struct ec_master *m, unsigned int i)
+{
+	const struct ec_slave *s = i < m->n_slaves ? m->slaves[i] : NULL;
+
+	return s && s->error == EC_SLAVE_SCAN_FAILED && !s->silent ? s : NULL;
+}
+
+/* The one that could not be read here before: its cause is logged once, its tries go on. */
+static void take_failure(struct scan *sc, struct ec_slave *s)
+{
+	const struct ec_slave *old = unreadable(sc->m, s->position);
+
+	if (!old)
+		return;
+	strscpy(s->why, old->why, sizeof(s->why));
+	s->retry_ms = old->retry_ms;
+}
+
+static void set_silent(struct scan *sc, struct ec_slave *s)
+{
+	if (s->silent)
+		return;
+	sc->changed = true;
+	s->silent = true;
+	WRITE_ONCE(s->al_status, 0);
+	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+		      "no reply from the slave, although frames pass; waiting for a reply");
+}
+
+static void set_answers(struct scan *sc, struct ec_slave *s)
+{
+	if (!s->silent)
+		return;
+	sc->changed = true;
+	s->silent = false;
+	s->error = EC_SLAVE_OK;
+	s->why[0] = '\0';
+	s->retry_ms = 0;
+	WRITE_ONCE(s->retry_ns, 0);
+	ec_slave_info(s, "replies again\n");
 }
 
 /*
@@ -162,16 +233,23 @@ static bool is_usable(const struct ec_slave *s)
 static int assign(struct scan *sc)
 {
 	unsigned int i, n = 0;
+	bool same_before = true;
 
 	count_claims(sc);
 	for (i = 0; i < sc->n; i++) {
 		u16 station = get_unaligned_le16(sc->regs[i].station);
-		struct ec_slave *s = sc->known[station];
+		struct ec_slave *s = sc->known[station], *silent = fell_silent(sc, i, same_before);
 
-		if (s && is_usable(s) && sc->claims[station] == 1) {
-			sc->slaves[i] = ec_slave_ref(s);
+		if (silent) {
+			sc->slaves[i] = ec_slave_ref(silent);
 			continue;
 		}
+		if (s && is_usable(s) && sc->regs[i].there && sc->claims[station] == 1) {
+			sc->slaves[i] = ec_slave_ref(s);
+			same_before &= i < sc->m->n_slaves && sc->m->slaves[i] == s;
+			continue;
+		}
+		same_before &= unreadable(sc->m, i) != NULL;
 		station = ec_scan_station(sc->m->next_station, sc->known, sc->claims);
 		if (!station)
 			return -ENOSPC;
@@ -180,6 +258,7 @@ static int assign(struct scan *sc)
 		if (!sc->slaves[i])
 			return -ENOMEM;
 		sc->slaves[i]->position = i;
+		take_failure(sc, sc->slaves[i]);
 		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
 		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
 						sc->addr[n]);
@@ -197,6 +276,11 @@ static void take_regs(struct scan *sc)
 		struct regs *r = &sc->regs[i];
 
 		s->position = i;
+		if (!r->there && s->sii) {
+			set_silent(sc, s);
+			continue;	/* its registers are those seen last */
+		}
+		set_answers(sc, s);
 		if (s->error == EC_SLAVE_SCAN_FAILED) {
 			/* the next one hangs behind it, as far as can be told */
 			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
@@ -211,6 +295,23 @@ static void take_regs(struct scan *sc)
 		}
 		for (p = 0; p < EC_MAX_PORT; p++)
 			s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
+	}
+}
+
+/* What could not be read is tried again, ever less often. */
+static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		if (sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED)
+			ec_slave_retry(sc->slaves[i], EC_RETRY_MAX_MS);
+	for (i = 0; i < n; i++) {
+		if (fresh[i]->error)
+			continue;
+		/* left by the one that could not be read */
+		fresh[i]->why[0] = '\0';
+		fresh[i]->retry_ms = 0;
 	}
 }
 
@@ -243,6 +344,7 @@ static int read_new(struct scan *sc)
 				      s->info.checksum, s->info.checksum_calc);
 	}
 	ec_scan_preop(sc->m, fresh, n);
+	plan_retries(sc, fresh, n);
 	kvfree(fresh);
 	return 0;
 }
@@ -254,7 +356,7 @@ static int look(struct scan *sc)
 
 	if (sc->fresh)
 		reset_bus(sc->m);
-	ret = read_all(sc, EC_REG_STATION, offsetof(struct regs, station), 4) ?:
+	ret = read_stations(sc) ?:
 	      assign(sc) ?:
 	      read_all(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
 	      read_all(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
@@ -268,6 +370,20 @@ static int look(struct scan *sc)
 	take_regs(sc);
 	ec_topology_build(sc->slaves, sc->n);
 	return read_new(sc);
+}
+
+/* A try that failed again is no change. */
+static bool differs(const struct scan *sc)
+{
+	unsigned int i;
+
+	if (sc->changed || sc->n != sc->m->n_slaves)
+		return true;
+	for (i = 0; i < sc->n; i++)
+		if (sc->slaves[i] != sc->m->slaves[i] &&
+		    !(unreadable(sc->m, i) && sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED))
+			return true;
+	return false;
 }
 
 /* The result becomes visible; slaves that are missing are gone. */
@@ -300,6 +416,7 @@ static void publish(struct scan *sc)
  * ec_scan() - find out who is on the bus
  * @m: master
  * @count: slaves that answered the last broadcast, up to ec_scan_limit(); 0 is legal
+ * @changed: result: there are other slaves than before, or one fell silent or replies again
  *
  * Slaves that are known already keep their objects; only new ones are read.
  *
@@ -307,7 +424,7 @@ static void publish(struct scan *sc)
  * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
  * -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
  */
-int ec_scan(struct ec_master *m, unsigned int count)
+int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
 {
 	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->owner == EC_OWNER_IDLE };
 	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->link[0].stats.tx_frames);
@@ -321,10 +438,12 @@ int ec_scan(struct ec_master *m, unsigned int count)
 	if (sc.slaves && sc.regs && sc.dg && sc.addr && !index_known(&sc))
 		ret = count ? look(&sc) : 0;
 	if (!ret) {
+		sc.changed = differs(&sc);
 		publish(&sc);
+		*changed = sc.changed;
 		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
 		m->scan_frames = atomic64_read(&m->link[0].stats.tx_frames) - frames;
-		if (count)
+		if (sc.changed && count)
 			ec_info(m, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
 				m->scan_us, m->scan_frames);
 	}

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "mailbox.h"
 #include "master.h"
@@ -116,6 +117,19 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 		strscpy(slave->why, text, sizeof(slave->why));
 		ec_slave_warn(slave, "%s\n", text);
 	}
+}
+
+/**
+ * ec_slave_retry() - plan another try to read or configure a slave
+ * @slave: slave that failed
+ * @max_ms: longest distance of tries
+ *
+ * Context: The monitor thread, or the slave's worker with its lock held.
+ */
+void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
+{
+	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
+	WRITE_ONCE(slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
 }
 
 /**

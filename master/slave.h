@@ -18,6 +18,10 @@ struct ec_config;
 struct ec_emerg;
 struct ec_master;
 
+/* distance of the tries to read or configure a slave that failed; doubles each time */
+#define EC_RETRY_MIN_MS		250
+#define EC_RETRY_MAX_MS		60000
+
 /**
  * struct ec_slave - one slave
  *
@@ -68,6 +72,9 @@ struct ec_master;
  * @requested: AL state it shall reach
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
+ * @silent: @error because it does not answer any more; it is in its place until it does
+ * @retry_ns: when to try again what failed (ktime), 0: never
+ * @retry_ms: distance between the last two tries
  * @gone: not on the bus any more
  * @work: brings it to @requested
  * @lock: one worker or caller at a time changes its state
@@ -141,6 +148,9 @@ struct ec_slave {
 	u8 requested;
 	u8 error;
 	char why[EC_UAPI_REASON];
+	bool silent;
+	u64 retry_ns;
+	u32 retry_ms;
 	bool gone;
 	struct work_struct work;
 	struct mutex lock;
@@ -188,6 +198,7 @@ int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
+void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
 
 static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
 {
