@@ -394,7 +394,7 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
 
 /**
  * ecrt_master_slave_config() - create or find the configuration of a slave
- * @master: a reserved master, not active
+ * @master: a reserved master
  * @alias: 0, or station alias (register 0x0012) from which to count
  * @position: with @alias 0 the ring position, else slaves behind the alias
  * @vendor_id: expected in the slave's EEPROM
@@ -410,8 +410,8 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
  *
  * Context: Process. May sleep.
  * Return: the configuration, the same one for the same @alias and @position;
- * NULL: no memory, not reserved, active, or the configuration exists with
- * another identity (%-ENOENT).
+ * also while @master is active; NULL: no memory, not reserved, active and no such
+ * configuration (%-EBUSY), or it exists with another identity (%-ENOENT).
  */
 EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 		uint16_t alias, uint16_t position, uint32_t vendor_id,
@@ -627,7 +627,7 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 
 /**
  * ecrt_master_activate() - end configuration, begin the cycle
- * @master: a reserved master, not active
+ * @master: a reserved master
  *
  * Lays out the frames of the cycle and the process image, which begins as
  * zeros, and returns at once: slaves are configured and taken to OP while
@@ -638,15 +638,15 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * cycle of the kernel runs (%EC_CYCLE_DETACH), it is taken over.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EBUSY active already, or process data were changed after they were
- * registered (see ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
+ * Return: 0, also when the master is active already: that is reported on stderr, in the
+ * kernel in the log; %-EBUSY process data were changed after they were registered (see
+ * ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
  * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may make no
  * cycle late (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
  * runs the cycle; %-ENODEV the CPU chosen for the cycle is offline; %-ETIMEDOUT the
  * cycle to be taken over does not answer; %-EPROTO in userspace: what is mapped is not
- * what the library knows; %-EINVAL @master is NULL. In the kernel a second call is
- * only told in the log, and returns 0.
+ * what the library knows; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 

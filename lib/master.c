@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* A reserved master: session, activation, cycle, state. */
 
+#include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -237,9 +238,10 @@ int ecrt_master_activate(ec_master_t *master)
 
 	if (!master)
 		return -EINVAL;
-	if (master->active)
-		return ec_fail(-EBUSY, "activate master %u again",
-			       master->index);
+	if (master->active) {
+		fprintf(stderr, "Master %u is active already\n", master->index);
+		return 0;
+	}
 	if (master->frozen && master->preset_size) {
 		arg.preset = (uintptr_t)master->image;
 		arg.preset_size = (__u32)master->preset_size;

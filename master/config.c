@@ -73,6 +73,33 @@ static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 }
 
 /**
+ * ec_config_find() - the configuration of a slave
+ * @s: session
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session_lock held.
+ * Return: configuration; NULL when there is none; ERR_PTR(-ENOENT) when it exists with
+ * another identity.
+ */
+struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				 u32 product)
+{
+	unsigned int i;
+
+	lockdep_assert_held(&s->master->session_lock);
+	for (i = 0; i < s->n_configs; i++) {
+		struct ec_config *c = s->configs[i];
+
+		if (c->alias == alias && c->position == position)
+			return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
+	}
+	return NULL;
+}
+
+/**
  * ec_config_create() - a configuration, or the existing one
  * @s: session
  * @alias: alias or 0
@@ -89,15 +116,11 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 {
 	const struct ec_config *before;
 	struct ec_config *c, **p;
-	unsigned int i;
 	int ret;
 
-	for (i = 0; i < s->n_configs; i++) {
-		c = s->configs[i];
-		if (c->alias != alias || c->position != position)
-			continue;
-		return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
-	}
+	c = ec_config_find(s, alias, position, vendor, product);
+	if (c)
+		return c;
 	if (s->n_configs >= EC_MAX_CONFIGS)
 		return ERR_PTR(-ENOSPC);
 	ret = ec_session_charge(s, sizeof(*c) + sizeof(*p));

@@ -153,6 +153,8 @@ struct ec_config {
 
 struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
 				   u32 product);
+struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				 u32 product);
 void ec_config_free(struct ec_config *c);
 void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave);
 int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);

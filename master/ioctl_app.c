@@ -160,20 +160,26 @@ int ec_ioc_slave_config(struct ec_file *f, void *arg)
 	struct ec_ioc_slave_config *i = arg;
 	struct ec_config *c;
 	struct ec_session *s;
-	bool heir;
+	bool wait;
 	int ret = 0;
 
-	s = ec_ioc_lock_idle(f, &ret);
+	s = lock(f, &ret);
 	if (!s)
 		return ret;
-	heir = s == f->master->heir;
+	/* the running session of an heir has its slaves */
+	wait = !s->active && s != f->master->heir;
 	done(f, 0);
-	if (!heir)	/* else the running session has them */
+	if (wait)
 		wait_pdos(f, i);
-	s = ec_ioc_lock_idle(f, &ret);
+	s = lock(f, &ret);
 	if (!s)
 		return ret;
-	c = ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);
+	c = s->active ?
+	    ec_config_find(s, i->alias, i->position, i->vendor_id, i->product_code) :
+	    ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);
+	if (!c)
+		return done(f, ec_refuse(f, -EBUSY, "slave %u:%u has no configuration and the master is active; configure before ecrt_master_activate()",
+					 i->alias, i->position));
 	if (IS_ERR(c) && PTR_ERR(c) == -EDQUOT)
 		return done(f, ec_ioc_limit(f, PTR_ERR(c)));
 	if (IS_ERR(c))

@@ -254,6 +254,10 @@ static void kapi_pdos(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdos(k->sc[0], EC_END, syncs), -EBUSY);
 	KUNIT_EXPECT_NULL(test, ecrt_master_create_domain(k->m));
 	KUNIT_EXPECT_NULL(test, ecrt_master_slave_config(k->m, 0, 1, vendor, product));
+	/* what there is, is found */
+	KUNIT_EXPECT_PTR_EQ(test, ecrt_master_slave_config(k->m, 0, 0, vendor, product), k->sc[0]);
+	KUNIT_EXPECT_NULL(test, ecrt_master_slave_config(k->m, 0, 0, vendor, product + 1));
+	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(k->m, NULL), -EBUSY);
 	ecrt_release_master(k->m);
 }

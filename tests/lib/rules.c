@@ -201,7 +201,7 @@ static void ends(void)
 	fake.status->dc_ref = 1;
 	CHECK(!ecrt_master_sync_reference_clock(m) && !ecrt_master_send(m));
 	CHECK(((struct ec_ioc_send *)fake.arg)->sync_time == 77);
-	EXPECT(1, -EBUSY, ecrt_master_activate(m));
+	EXPECT(1, 0, ecrt_master_activate(m));
 	CHECK(!ecrt_master_deactivate(m));
 	EXPECT(0, -EINVAL, ecrt_master_deactivate(m));
 	/* its time is forgotten */

@@ -303,7 +303,7 @@ static void cycle(void)
 	CHECK(!ecrt_domain_data(d0) && ecrt_domain_size(d0) == 11);
 	CHECK(ecrt_domain_queue(d0) == -EINVAL);
 	CHECK(!ecrt_master_activate(m));
-	CHECK(ecrt_master_activate(m) == -EBUSY);
+	CHECK(!ecrt_master_activate(m));
 	CHECK(ecrt_domain_data(d0) == fake.image);
 	CHECK(ecrt_domain_data(d1) == fake.image + 16);
 	CHECK(ecrt_domain_size(d1) == 16);

@@ -16,9 +16,14 @@ static void master(void)
 	YES(!CALL(ecrt_master_create_domain)(b.m));
 	IS(errno, EBUSY);
 	errno = 0;
+	/* an existing configuration is found again, a new one is refused */
+	YES(CALL(ecrt_master_slave_config)(b.m, 0, OUT, BECKHOFF, EL2008) == b.out);
+	YES(!CALL(ecrt_master_slave_config)(b.m, 0, OUT, BECKHOFF, EL7201));
+	IS(errno, ENOENT);
+	errno = 0;
 	YES(!CALL(ecrt_master_slave_config)(b.m, 0, SERVO, BECKHOFF, EL7201));
 	IS(errno, EBUSY);
-	SAYS(CALL(ecrt_master_activate)(b.m), -EBUSY);
+	SAYS(CALL(ecrt_master_activate)(b.m), 0);
 	SAYS(CALL(ecrt_master_select_reference_clock)(b.m, b.motor), -EBUSY);
 	SILENT(CALL(ecrt_master_set_send_interval)(b.m, 500), -EBUSY);
 	SAYS(CALL(ecrt_master_set_cycle)(b.m, &cycle), -EBUSY);
