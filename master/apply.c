@@ -25,7 +25,12 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 
 static int failed(struct ec_slave *s, u8 state, int ret)
 {
-	if (ret == -EPROTO)
+	if (ret == -EPROTO && state == EC_AL_SAFEOP && s->pdo_refusal[0])
+		/* the first cause, not only what follows from it */
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "%.160s; then SAFEOP refused: AL status code 0x%04x: %s", s->pdo_refusal,
+			      s->al_code, ec_al_code_text(s->al_code));
+	else if (ret == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "refused %s: AL status code 0x%04x: %s",
 			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));
 	else if (ret == -ETIME)
@@ -57,10 +62,24 @@ static u32 limit(const struct ec_slave *s, u8 from, u8 to)
 	return s->config && ec_al_state_valid(from) ? s->config->timeout_ms[from][to] : 0;
 }
 
+/* What a reason shows while the worker waits; NULL ends it. */
+static void waits_for(struct ec_slave *s, const char *what)
+{
+	WRITE_ONCE(s->waits_for, what);
+}
+
 static int set_state(struct ec_slave *s, u8 state)
 {
-	return ec_al_set(s, state, limit(s, s->al_status & EC_AL_STATE_MASK, state));
+	int ret;
+
+	waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
+		     state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" : "the slave to change its state");
+	ret = ec_al_set(s, state, limit(s, s->al_status & EC_AL_STATE_MASK, state));
+	waits_for(s, NULL);
+	return ret;
 }
+
+
 
 static const u8 zero[256];
 
@@ -431,7 +450,9 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
 		return 0;
 	}
+	waits_for(s, "the clocks of the segment to be synchronized");
 	ret = ec_dc_wait(s);
+	waits_for(s, NULL);
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
@@ -458,19 +479,26 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret = 0;
 
+	s->pdo_refusal[0] = '\0';
+	s->warning[0] = '\0';
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (c) {
+		waits_for(s, "mailbox replies to its configuration");
 		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
 		      ec_apply_pdos(s, c) ?: write_watchdog(s, c);
+		waits_for(s, NULL);
 		if (ret)
 			return ret;
 	}
 	ret = write_sms(s, c);
 	if (!ret && c)
 		ret = write_fmmus(s, c);
-	if (!ret && c)
+	if (!ret && c) {
+		waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
 		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
+		waits_for(s, NULL);
+	}
 	if (!ret)
 		ret = start_sync(s, c);
 	if (!ret)
@@ -518,8 +546,11 @@ static int wait_outputs(struct ec_slave *s)
 /* state-machine.md 4.4 */
 static int to_op(struct ec_slave *s)
 {
-	int ret = wait_outputs(s);
+	int ret;
 
+	waits_for(s, "two cycles of its domains");
+	ret = wait_outputs(s);
+	waits_for(s, NULL);
 	if (!ret && s->plan)
 		ret = write_idns(s, s->plan, EC_AL_SAFEOP);
 	if (ret)
@@ -597,6 +628,17 @@ static int step(struct ec_slave *s)
 	}
 }
 
+/* One that was lost or silent is where it was wanted. */
+static void log_return(struct ec_slave *s)
+{
+	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+
+	if (s->seen_ns && s->plan && s->al_status == EC_AL_OP)
+		ec_slave_info(s, "back in OP, %llu ms after it was last seen\n", ms);
+	if (!s->plan || s->al_status == EC_AL_OP)
+		s->seen_ns = 0;
+}
+
 /**
  * ec_apply_work() - bring a slave to the state it shall have
  * @work: of the slave, with a reference to it
@@ -621,6 +663,7 @@ void ec_apply_work(struct work_struct *work)
 		s->error = EC_SLAVE_OK;
 		s->why[0] = '\0';
 		s->retry_ms = 0;
+		log_return(s);
 	}
 	if (s->error == EC_SLAVE_CONFIG_FAILED && is_transient(s, ret))
 		ec_slave_retry(s, EC_RETRY_MAX_MS);

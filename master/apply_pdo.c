@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* PDO assignment and mapping of a slave on its way to SAFEOP. */
+#include <linux/err.h>
 #include "coe.h"
 #include "config.h"
 #include "master.h"
 #include "slave.h"
 #include "wire/coe.h"
+
+#define REFUSED		1
+#define LIST_TEXT	160	/* characters of PDOs in a line of the log */
 
 static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32 *abort)
 {
@@ -34,15 +38,23 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 	return true;
 }
 
-/* Many slaves have fixed lists; the SyncManager's size decides then. */
-static int tell_list(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
+/* Many slaves have fixed lists: what they have instead decides, see check(). */
+static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
 {
-	if (ret == -ECANCELED || ret == -EINTR)
+	char text[sizeof(s->pdo_refusal)];
+
+	if (!ret || ret == -ECANCELED || ret == -EINTR)
 		return ret;
-	if (ret)
-		ec_slave_warn(s, "%s 0x%04x could not be written: error %d, abort 0x%08x: %s\n",
-			      what, index, ret, abort, ec_coe_abort_text(abort) ?: "none");
-	return 0;
+	if (abort)
+		scnprintf(text, sizeof(text), "%s 0x%04x refused: abort 0x%08x (%s)", what, index,
+			  abort, ec_coe_abort_text(abort) ?: "unknown code");
+	else
+		scnprintf(text, sizeof(text), "%s 0x%04x not written: %pe", what, index,
+			  ERR_PTR(ret));
+	ec_slave_warn(s, "%s\n", text);
+	if (!s->pdo_refusal[0])
+		strscpy(s->pdo_refusal, text, sizeof(s->pdo_refusal));
+	return REFUSED;
 }
 
 /* The CiA procedure: count 0, values, count. */
@@ -59,7 +71,7 @@ static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 		ret = sdo_u(s, index, i + 1, value(ctx, i), bytes, &abort);
 	if (!ret)
 		ret = sdo_u(s, index, 0, n, 1, &abort);
-	return tell_list(s, index, what, ret, abort);
+	return note_refusal(s, index, what, ret, abort);
 }
 
 static u32 map_value(const void *ctx, unsigned int i)
@@ -88,6 +100,7 @@ static bool mapped_already(struct ec_slave *s, const struct ec_pdo *p)
 static int write_sm_pdos(struct ec_slave *s, u16 assign, const struct ec_pdo_list *l)
 {
 	unsigned int i, first;
+	bool refused = false;
 	u32 abort;
 	int ret;
 
@@ -104,12 +117,93 @@ static int write_sm_pdos(struct ec_slave *s, u16 assign, const struct ec_pdo_lis
 		if (mapped_already(s, p))
 			continue;
 		ret = write_list(s, p->index, p->n_entries, 4, map_value, p, "PDO mapping");
-		if (ret)
+		if (ret < 0)
 			return ret;
+		refused |= ret == REFUSED;
 	}
 	if (already(s, assign, l->n, 2, assign_value, l))
+		return refused ? REFUSED : 0;
+	ret = write_list(s, assign, l->n, 2, assign_value, l, "PDO assignment");
+	return ret ?: refused ? REFUSED : 0;
+}
+
+static void log_list(const struct ec_slave *s, unsigned int sm, const char *what,
+		     const struct ec_pdo_list *l)
+{
+	char text[LIST_TEXT] = "";
+	unsigned int i, k, n = 0;
+
+	for (i = 0; i < l->n; i++) {
+		const struct ec_pdo *p = &l->pdos[i];
+
+		n += scnprintf(text + n, sizeof(text) - n, " 0x%04x:", p->index);
+		for (k = 0; k < p->n_entries; k++)
+			n += scnprintf(text + n, sizeof(text) - n, " %04x:%02x/%u",
+				       p->entries[k].index, p->entries[k].sub, p->entries[k].bits);
+	}
+	ec_slave_warn(s, "SM%u %s:%s%s\n", sm, what, n ? text : " nothing",
+		      n >= sizeof(text) - 1 ? "..." : "");
+}
+
+/* The first registered entry that the slave does not have in its place, or NULL. */
+static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
+					      const struct ec_pdo_list *have, u32 *bit)
+{
+	unsigned int i, k;
+
+	*bit = 0;
+	for (i = 0; i < want->n; i++)
+		for (k = 0; k < want->pdos[i].n_entries; k++) {
+			const struct ec_pdo_entry *e = &want->pdos[i].entries[k];
+			const struct ec_pdo_entry *h = ec_pdo_list_at(have, *bit);
+
+			if (e->registered && e->index &&
+			    (!h || h->index != e->index || h->sub != e->sub || h->bits != e->bits))
+				return e;
+			*bit += e->bits;
+		}
+	return NULL;
+}
+
+/*
+ * The slave refused: what does it have instead? Process data of other objects than the
+ * registered ones would be exchanged with a full working counter.
+ */
+static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+{
+	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
+	const struct ec_pdo_entry *e, *h;
+	char has[32] = "nothing";
+	int ret = ec_slave_read_sm_pdos(s, sm);
+	u32 bit;
+
+	if (ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	if (ret) {
+		snprintf(s->warning, sizeof(s->warning),
+			 "process data of SM%u may belong to other objects: %.120s; its PDOs cannot be read (%pe)",
+			 sm, s->pdo_refusal, ERR_PTR(ret));
+		ec_slave_warn(s, "%s\n", s->warning);
 		return 0;
-	return write_list(s, assign, l->n, 2, assign_value, l, "PDO assignment");
+	}
+	e = first_wrong(want, have, &bit);
+	if (!e)
+		return 0;
+	h = ec_pdo_list_at(have, bit);
+	if (h)
+		snprintf(has, sizeof(has), "0x%04x:%02x, %u bit", h->index, h->sub, h->bits);
+	log_list(s, sm, "configured", want);
+	log_list(s, sm, "in the slave", have);
+	snprintf(s->warning, sizeof(s->warning),
+		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.120s", sm, bit,
+		 e->index, e->sub, e->bits, has, s->pdo_refusal);
+	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
+		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
+		return 0;
+	}
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s", s->warning);
+	s->warning[0] = '\0';
+	return -EOPNOTSUPP;
 }
 
 /**
@@ -133,11 +227,12 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
  * @c: its configuration
  *
  * Those that were there when the application began may be others by now: they are
- * written too then. A slave that refuses is warned about only, the size of its
- * SyncManagers decides.
+ * written too then. When a slave refuses, the registered entries must be in their place
+ * all the same.
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0, -ECANCELED, -EINTR.
+ * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data, told
+ * already.
  */
 int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 {
@@ -149,8 +244,13 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
 		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);
 
-		if (c->sm[sm].explicit || !ec_pdo_list_same(l, &s->sm_pdos[sm]))
-			ret = write_sm_pdos(s, 0x1c10 + sm, l);
+		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
+			continue;
+		ret = write_sm_pdos(s, 0x1c10 + sm, l);
+		if (!ret)
+			ec_slave_set_sm_pdos(s, sm, l);
+		else if (ret == REFUSED)
+			ret = check(s, c, sm);
 	}
 	return ret;
 }

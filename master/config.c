@@ -360,7 +360,8 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 		return PTR_ERR(flag);
 	strscpy(flag->key, key, sizeof(flag->key));
 	/* the EEPROM is the slave's from PREOP on anyway */
-	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, "AssignToPdi"))
+	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
+	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, "AssignToPdi"))
 		ec_info(c->session->master, "slave %u:%u: flag %s has no effect\n", c->alias,
 			c->position, key);
 	flag->value = value;
@@ -461,7 +462,8 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 	return f;
 }
 
-static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *offset, u32 *bit)
+static int reg(struct ec_config *c, u8 sm, struct ec_pdo_entry *e, u32 bits, struct ec_domain *d,
+	       u32 *offset, u32 *bit)
 {
 	struct ec_config_fmmu *f;
 
@@ -473,6 +475,7 @@ static int reg(struct ec_config *c, u8 sm, u32 bits, struct ec_domain *d, u32 *o
 		return PTR_ERR(f);
 	if (ec_config_changed(c, f))
 		return -EBUSY;
+	e->registered = true;
 	*offset = f->offset + bits / 8;
 	if (bit)
 		*bit = bits % 8;
@@ -507,7 +510,7 @@ int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain
 
 			for (e = 0; e < pdo->n_entries; e++) {
 				if (pdo->entries[e].index == index && pdo->entries[e].sub == sub)
-					return reg(c, sm, bits, d, offset, bit);
+					return reg(c, sm, &pdo->entries[e], bits, d, offset, bit);
 				bits += pdo->entries[e].bits;
 			}
 		}
@@ -543,5 +546,5 @@ int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_p
 		bits += ec_pdo_bits(&l->pdos[p]);
 	for (e = 0; e < entry_pos; e++)
 		bits += l->pdos[pdo_pos].entries[e].bits;
-	return reg(c, sm, bits, d, offset, bit);
+	return reg(c, sm, &l->pdos[pdo_pos].entries[entry_pos], bits, d, offset, bit);
 }

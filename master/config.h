@@ -78,6 +78,12 @@ struct ec_config_idn {
 /* milliseconds between configuration and the request of SAFEOP */
 #define EC_FLAG_WAIT_SAFEOP	"WaitBeforeSAFEOPms"
 
+/* not 0: to OP although the slave has other process data than those registered */
+#define EC_FLAG_ANY_PDOS	"AcceptOtherPdos"
+
+/* the revision number that the slave should have; another one is reported */
+#define EC_FLAG_REVISION	"ExpectedRevision"
+
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
 	struct list_head list;
@@ -117,6 +123,7 @@ struct ec_config_flag {
  * @emergencies: how many to keep
  * @ip: to be written by EoE, @which 0: nothing
  * @emerg_cleared: by an application in the kernel, of the lost ones
+ * @lost: the slave that it had while active, in words, and when it was there last (ktime)
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -148,6 +155,10 @@ struct ec_config {
 	u32 emergencies;
 	u32 emerg_cleared;
 	struct ec_eoe_ip ip;
+	struct {
+		char text[EC_UAPI_REASON / 2];
+		u64 seen_ns;
+	} lost;
 	struct ec_slave *slave;
 };
 

@@ -34,15 +34,16 @@ struct ec_ioctl {
 };
 
 #define RSV(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
-#define IOC(c, f, fl, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
-	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG), .min = _IOC_SIZE(c), \
+#define IOC_MIN(c, f, fl, size, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
+	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG), .min = (size), \
 	.reserved = { __VA_ARGS__ } }
+#define IOC(c, f, fl, ...) IOC_MIN(c, f, fl, _IOC_SIZE(c), ##__VA_ARGS__)
 
 static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_VERSION, ec_ioc_version, 0),
 	IOC(EC_IOC_REASON, ec_ioc_reason, 0),
 	IOC(EC_IOC_MASTER, ec_ioc_master, 0),
-	IOC(EC_IOC_SLAVE, ec_ioc_slave, 0),
+	IOC_MIN(EC_IOC_SLAVE, ec_ioc_slave, 0, offsetofend(struct ec_ioc_slave, dc_odd)),
 	IOC(EC_IOC_SM, ec_ioc_sm, 0, RSV(ec_ioc_sm, reserved)),
 	IOC(EC_IOC_PDO, ec_ioc_pdo, 0, RSV(ec_ioc_pdo, reserved), RSV(ec_ioc_pdo, reserved2)),
 	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, RSV(ec_ioc_pdo_entry, reserved)),

@@ -4,6 +4,7 @@
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
 #include <linux/uaccess.h>
+#include "config.h"
 #include "device.h"
 #include "domain.h"
 #include "ioctl.h"
@@ -11,6 +12,7 @@
 #include "once64.h"
 #include "session.h"
 #include "slave.h"
+#include "why.h"
 
 #ifndef EC_RELEASE
 #define EC_RELEASE "0.1.0"
@@ -256,6 +258,22 @@ static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
 	strscpy(i->name, s->name, sizeof(i->name));
 }
 
+/* The configuration that has the slave, or that expects another one in its place. */
+static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	const struct ec_config *c = NULL;
+	int ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	if (m->session)
+		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos);
+	i->config = c ? c->index + 1 : 0;
+	i->differs = c && ec_config_differs(c, s);
+	ec_show_end(m);
+	return 0;
+}
+
 int ec_ioc_slave(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_slave *i = arg;
@@ -299,7 +317,9 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
 	strscpy(i->why, s->why, sizeof(i->why));
-	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i);
+	strscpy(i->warning, s->warning, sizeof(i->warning));
+	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i) ?:
+	      slave_config(f->master, s, i);
 	ec_slave_unref(s);
 	return ret;
 }

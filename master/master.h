@@ -70,6 +70,7 @@ struct task_struct;
  * @scan_us: duration of the last scan
  * @scan_frames: frames of the last scan
  * @next_station: next unused station address
+ * @complete_ns: when all slaves replied last (ktime)
  * @rescan: a scan is asked for
  * @looked: the bus was scanned, or there is no link, since the device came
  * @freeze: no scan while reserved and not active
@@ -148,6 +149,7 @@ struct ec_master {
 	u32 scan_us;
 	u64 scan_frames;
 	u16 next_station;
+	u64 complete_ns;
 	bool rescan;
 	bool looked;
 	bool freeze;

@@ -115,10 +115,20 @@ out:
 	return all;
 }
 
+/* How many slaves have to reply. */
+static unsigned int replying(const struct ec_master *m)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < m->n_slaves; i++)
+		n += m->slaves[i]->error != EC_SLAVE_SCAN_FAILED;
+	return n;
+}
+
 /* All slaves in the state they shall have, none with an error, all of them replied? */
 static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 {
-	unsigned int i, expected = 0;
+	unsigned int i;
 	u8 want = 0;
 
 	for (i = 0; i < m->n_slaves; i++) {
@@ -126,12 +136,11 @@ static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
-		expected++;
 		want = want ?: s->requested;
 		if (s->requested != want || s->al_status != want)
 			return false;
 	}
-	return ored == want && wkc >= expected;
+	return ored == want && wkc >= replying(m);
 }
 
 static u32 al_bits(u16 ored)
@@ -189,6 +198,8 @@ static void count_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
+	if (w->scanned && count && wkc >= replying(m))
+		m->complete_ns = ktime_get_ns();
 	if (!w->scanned || as_wanted(m, ored, wkc) || check_slaves(m))
 		w->silent = 0;
 	else

@@ -11,12 +11,14 @@
  * @sub: subindex
  * @bits: length
  * @name: string index in the slave's EEPROM
+ * @registered: of a configuration: the application uses it in a domain
  */
 struct ec_pdo_entry {
 	u16 index;
 	u8 sub;
 	u8 bits;
 	u8 name;
+	bool registered;
 };
 
 /**
@@ -52,6 +54,8 @@ struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index);
 size_t ec_pdo_list_memory(const struct ec_pdo_list *l);
 u32 ec_pdo_bits(const struct ec_pdo *pdo);
 u32 ec_pdo_list_bytes(const struct ec_pdo_list *l);
+int ec_pdo_list_copy(struct ec_pdo_list *dst, const struct ec_pdo_list *src);
+const struct ec_pdo_entry *ec_pdo_list_at(const struct ec_pdo_list *l, u32 bit);
 bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b);
 
 #endif

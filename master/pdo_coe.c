@@ -20,19 +20,8 @@ static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
 	return ret == -EIO && abort ? -ENOENT : ret;
 }
 
-/* String index of the same entry in the EEPROM, for its name. */
-static u8 entry_name(const struct ec_pdo *known, u16 index, u8 sub)
-{
-	unsigned int i;
-
-	for (i = 0; known && i < known->n_entries; i++)
-		if (known->entries[i].index == index && known->entries[i].sub == sub)
-			return known->entries[i].name;
-	return 0;
-}
-
 /* Objects 0x1600..., 0x1A00...: mapping (ETG.1000.6 clause 5.6.7.4.7) */
-static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo, const struct ec_pdo *known)
+static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo)
 {
 	u32 n, v;
 	unsigned int i;
@@ -45,7 +34,6 @@ static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo, const struct ec_
 
 		ret = upload(s, pdo->index, i, &v);
 		e = (struct ec_pdo_entry){ .index = v >> 16, .sub = v >> 8, .bits = v };
-		e.name = entry_name(known, e.index, e.sub);
 		if (!ret)
 			ret = ec_pdo_add_entry(pdo, &e);
 	}
@@ -62,16 +50,15 @@ static int read_assignment(struct ec_slave *s, unsigned int sm, struct ec_pdo_li
 	if (!ret && n > 255)
 		return -EBADMSG;
 	for (i = 1; i <= n && !ret; i++) {
-		const struct ec_pdo *known;
 		struct ec_pdo *p;
 
 		ret = upload(s, 0x1c10 + sm, i, &index);
 		if (ret)
 			break;
-		known = ec_slave_find_pdo(s, index);
-		p = ec_pdo_add(l, index, known ? known->name : 0);
-		ret = p ? read_mapping(s, p, known) : -ENOMEM;
+		p = ec_pdo_add(l, index, 0);
+		ret = p ? read_mapping(s, p) : -ENOMEM;
 	}
+	ec_slave_name_pdos(s, l);
 	return ret;
 }
 
@@ -109,6 +96,51 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 }
 
 /**
+ * ec_slave_read_sm_pdos() - read the PDOs of a SyncManager
+ * @s: slave in PREOP or higher with CoE, @lock held
+ * @sm: SyncManager
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -ENOENT when the slave refuses; -EBADMSG; -ENOMEM; or as ec_coe_upload().
+ */
+int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm)
+{
+	struct ec_pdo_list l = { 0 };
+	int ret;
+
+	lockdep_assert_held(&s->lock);
+	ret = read_assignment(s, sm, &l);
+	if (!ret)
+		replace(s, sm, &l);
+	else
+		ec_pdo_list_clear(&l);
+	return ret;
+}
+
+/**
+ * ec_slave_set_sm_pdos() - note the PDOs that were written to a slave
+ * @s: slave, @lock held
+ * @sm: SyncManager
+ * @l: its PDOs now, copied
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l)
+{
+	struct ec_pdo_list copy = { 0 };
+
+	lockdep_assert_held(&s->lock);
+	if (l == &s->sm_pdos[sm])
+		return;
+	if (ec_pdo_list_copy(&copy, l)) {
+		ec_pdo_list_clear(&copy);
+		return;
+	}
+	ec_slave_name_pdos(s, &copy);
+	replace(s, sm, &copy);
+}
+
+/**
  * ec_slave_pdos_pending() - shall the PDOs be read over CoE?
  * @s: slave
  *
@@ -139,13 +171,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	int ret = 0;
 
 	for (sm = 2; sm < s->n_sms && !s->gone; sm++) {
-		struct ec_pdo_list l = { 0 };
-
-		ret = read_assignment(s, sm, &l);
-		if (!ret)
-			replace(s, sm, &l);
-		else
-			ec_pdo_list_clear(&l);
+		ret = ec_slave_read_sm_pdos(s, sm);
 		if (ret && ret != -ENOENT)
 			break;
 	}

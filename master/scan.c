@@ -7,6 +7,8 @@
 #include "slave.h"
 #include "xfer.h"
 
+#define LOST_LINES	16	/* in the log, per scan */
+
 /* registers read from every slave in each scan */
 struct regs {
 	u8 info[EC_INFO_SIZE];
@@ -207,6 +209,7 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 		return;
 	sc->changed = true;
 	s->silent = true;
+	s->seen_ns = sc->m->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 		      "no reply from the slave, although frames pass; waiting for a reply");
@@ -386,12 +389,37 @@ static bool differs(const struct scan *sc)
 	return false;
 }
 
+/* The place a lost slave had: @old are the slaves by their position at that time. */
+static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int n_old)
+{
+	u16 up = s->next[s->upstream];
+
+	if (up >= n_old)
+		strscpy(s->parent, "the main device", sizeof(s->parent));
+	else
+		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
+			 s->parent_port, up, old[up]->order);
+	s->seen_ns = s->master->complete_ns;
+}
+
+/* One line each; when nobody is left the link says why. */
+static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
+{
+	char text[128];
+
+	if (!sc->n || s->error == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
+		return;
+	ec_slave_lost_text(s, text, sizeof(text));
+	ec_warn(sc->m, "%s, last seen %llu ms ago\n", text,
+		div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
+}
+
 /* The result becomes visible; slaves that are missing are gone. */
 static void publish(struct scan *sc)
 {
 	struct ec_master *m = sc->m;
 	struct ec_slave **old;
-	unsigned int i, n_old;
+	unsigned int i, n_old, lost = 0;
 
 	down_write(&m->topo);
 	ec_change_begin(m);
@@ -405,10 +433,19 @@ static void publish(struct scan *sc)
 
 	for (i = 0; i < n_old; i++) {
 		/* at its place in the new list, or not on the bus any more */
-		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i])
+		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i]) {
+			note_parent(old[i], old, n_old);
 			WRITE_ONCE(old[i]->gone, true);
-		ec_slave_unref(old[i]);
+			log_lost(sc, old[i], &lost);
+		}
 	}
+	if (lost > LOST_LINES)
+		ec_warn(m, "%u more slave(s) disconnected\n", lost - LOST_LINES);
+	if (!sc->n && n_old && m->owner != EC_OWNER_IDLE)
+		ec_warn(m, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
+			div_u64(ktime_get_ns() - m->complete_ns, NSEC_PER_MSEC));
+	for (i = 0; i < n_old; i++)
+		ec_slave_unref(old[i]);
 	kvfree(old);
 }
 

@@ -15,6 +15,7 @@
 #include "session.h"
 #include "slave.h"
 #include "waiters.h"
+#include "why.h"
 
 /**
  * ec_session_of() - the session an application works with
@@ -207,6 +208,8 @@ static void detach(struct ec_config *c)
 			WRITE_ONCE(slave->pdos_known, false);
 	slave->config = NULL;
 	slave->plan = NULL;
+	slave->warning[0] = '\0';
+	slave->pdo_refusal[0] = '\0';
 	slave->reconfigure = true;
 	slave->interrupt = false;
 	mutex_unlock(&slave->lock);
@@ -462,6 +465,13 @@ static void tell_taken(const struct ec_session *s, const struct ec_config *c,
 			      has->alias, has->position, c->alias, c->position);
 }
 
+/* Reasons go on naming the slave that was lost, whoever is in its place now. */
+static void note_loss(struct ec_config *c)
+{
+	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
+	c->lost.seen_ns = c->slave->seen_ns;
+}
+
 /**
  * ec_session_attach_one() - connect a configuration with its slave
  * @s: session
@@ -484,6 +494,8 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 			ec_slave_unref(slave);
 		return;
 	}
+	if (s->active && c->slave)
+		note_loss(c);
 	detach(c);
 	if (!slave)
 		return;
@@ -503,6 +515,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	}
 	slave->config = c;
 	slave->reconfigure = true;
+	slave->seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
 	ec_requests_attach(s, c->index);
@@ -688,6 +701,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_session_raise_ref(s);
 	if (s->requests)
 		ec_requests_kick(s->requests);
+	ec_config_log_differences(s);
 	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
 		s->n_domains, offset, s->cycle.n_dgrams);
 	return 0;

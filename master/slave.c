@@ -133,6 +133,25 @@ void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 }
 
 /**
+ * ec_slave_lost_text() - which slave was lost, and where
+ * @slave: slave that is gone
+ * @buf: result
+ * @size: of @buf
+ *
+ * Context: Process.
+ * Return: length of the text.
+ */
+size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
+{
+	char alias[16] = "";
+
+	if (slave->alias)
+		snprintf(alias, sizeof(alias), "alias %u, ", slave->alias);
+	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected from %s", slave->position, alias,
+			 slave->order[0] ? slave->order : slave->name, slave->parent);
+}
+
+/**
  * ec_slave_kick() - let the worker look at the slave again
  * @slave: slave
  *

@@ -46,6 +46,8 @@ struct ec_master;
  * @recv: receive times at the ports
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
+ * @parent: the slave it hung at when it was lost, in words
+ * @parent_port: port of the slave it hangs at
  * @topology_odd: open ports and slaves do not fit together, here or before
  *
  * Of the EEPROM, then of the object dictionary, changed under master->topo:
@@ -72,9 +74,13 @@ struct ec_master;
  * @requested: AL state it shall reach
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
+ * @pdo_refusal: the first PDO mapping or assignment it refused since it was configured
+ * @warning: what is not certain of its process data, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
+ * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
+ * @waits_for: what the worker is waiting for, NULL: nothing that lasts
  * @gone: not on the bus any more
  * @work: brings it to @requested
  * @lock: one worker or caller at a time changes its state
@@ -126,6 +132,8 @@ struct ec_slave {
 	u32 recv[EC_MAX_PORT];
 	u16 next[EC_MAX_PORT];
 	u8 upstream;
+	u8 parent_port;
+	char parent[EC_UAPI_STRING];
 	bool topology_odd;
 
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
@@ -148,9 +156,13 @@ struct ec_slave {
 	u8 requested;
 	u8 error;
 	char why[EC_UAPI_REASON];
+	char pdo_refusal[EC_UAPI_REASON];
+	char warning[EC_UAPI_REASON];
 	bool silent;
 	u64 retry_ns;
 	u32 retry_ms;
+	u64 seen_ns;
+	const char *waits_for;
 	bool gone;
 	struct work_struct work;
 	struct mutex lock;
@@ -199,6 +211,7 @@ void ec_slave_kick(struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
+size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
 
 static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
 {
@@ -223,11 +236,14 @@ static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
 
 /* slave_pdo.c */
 int ec_slave_read_pdos(struct ec_slave *slave);
+void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
 const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
 
 /* pdo_coe.c */
 bool ec_slave_pdos_pending(const struct ec_slave *s);
 void ec_slave_read_coe_pdos(struct ec_slave *s);
+int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
+void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
 
 /* al.c */
 int ec_al_read(struct ec_slave *slave);

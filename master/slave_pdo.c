@@ -124,6 +124,34 @@ u32 ec_pdo_list_bytes(const struct ec_pdo_list *l)
 	return DIV_ROUND_UP(bits, 8);
 }
 
+int ec_pdo_list_copy(struct ec_pdo_list *dst, const struct ec_pdo_list *src)
+{
+	unsigned int i;
+
+	for (i = 0; i < src->n; i++) {
+		struct ec_pdo *p = ec_pdo_add(dst, src->pdos[i].index, src->pdos[i].name);
+
+		if (!p || ec_pdo_copy_entries(p, &src->pdos[i]))
+			return -ENOMEM;
+	}
+	return 0;
+}
+
+/* The entry that begins @bit bits behind the start of the process data, or NULL. */
+const struct ec_pdo_entry *ec_pdo_list_at(const struct ec_pdo_list *l, u32 bit)
+{
+	unsigned int i, k;
+	u32 at = 0;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++) {
+			if (at == bit)
+				return &l->pdos[i].entries[k];
+			at += l->pdos[i].entries[k].bits;
+		}
+	return NULL;
+}
+
 static bool same_entries(const struct ec_pdo *a, const struct ec_pdo *b)
 {
 	unsigned int i;
@@ -191,6 +219,64 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 		}
 	}
 	return 0;
+}
+
+/* String index of entry @e in a PDO of the EEPROM, 0: none */
+static u8 sii_entry_name(const struct ec_sii_pdo *pdo, const struct ec_pdo_entry *e)
+{
+	unsigned int i;
+
+	for (i = 0; i < pdo->entries; i++) {
+		struct ec_sii_pdo_entry se;
+
+		if (ec_sii_pdo_entry(pdo, i, &se))
+			break;
+		if (se.index == e->index && se.sub == e->sub && se.name)
+			return se.name;
+	}
+	return 0;
+}
+
+static void name_pdo(struct ec_pdo *p, const struct ec_sii_pdo *pdo)
+{
+	unsigned int i;
+	u8 name;
+
+	if (pdo->index == p->index)
+		p->name = pdo->name;
+	for (i = 0; i < p->n_entries; i++) {
+		struct ec_pdo_entry *e = &p->entries[i];
+
+		/* the same PDO knows best, any other one will do */
+		if (!e->index || (e->name && pdo->index != p->index))
+			continue;
+		name = sii_entry_name(pdo, e);
+		e->name = name ?: e->name;
+	}
+}
+
+/**
+ * ec_slave_name_pdos() - names of PDOs and entries, wherever the EEPROM has them
+ * @slave: slave with EEPROM image
+ * @l: PDOs of the slave
+ *
+ * An entry may have been mapped to another PDO than the one it is delivered in.
+ *
+ * Context: Process.
+ */
+void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l)
+{
+	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
+	struct ec_sii_pdo_iter it;
+	struct ec_sii_pdo pdo;
+	unsigned int t, i;
+
+	for (t = 0; t < ARRAY_SIZE(types); t++) {
+		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) == 1)
+			for (i = 0; i < l->n; i++)
+				name_pdo(&l->pdos[i], &pdo);
+	}
 }
 
 /**

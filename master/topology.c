@@ -236,6 +236,10 @@ void ec_topology_build(struct ec_slave **slaves, unsigned int n)
 	}
 	for (i = 0; i < n; i++)
 		hang(slaves, i, join_before(slaves, i));
+	for (i = 0; i < n; i++)
+		for (p = 0; p < EC_MAX_PORT; p++)
+			if (p != slaves[i]->upstream && slaves[i]->next[p] < n)
+				slaves[slaves[i]->next[p]]->parent_port = p;
 	odd = misfit(slaves, n);
 	for (i = 0; i < n; i++)
 		WRITE_ONCE(slaves[i]->topology_odd, i >= odd);

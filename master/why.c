@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
 #include "config.h"
 #include "master.h"
 #include "session.h"
 #include "slave.h"
 #include "why.h"
+
+#define LOG_MAX		64	/* lines per activation */
 
 /* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
@@ -25,20 +28,46 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 	return place(has, &p) && p == pos;
 }
 
+/* Without device or link there is no slave at all. */
+static size_t no_link(struct ec_master *m, char *buf, size_t size)
+{
+	unsigned int i;
+	bool dev = false;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (READ_ONCE(m->link[i].up))
+			return 0;
+		dev |= READ_ONCE(m->link[i].dev) != NULL;
+	}
+	if (!dev)
+		return scnprintf(buf, size, "no network device: master %u waits for %s", m->index,
+				 m->spec[0]);
+	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
+			 m->index);
+}
+
 /* Nobody is attached: who is there instead? @topo is held, or it is shown. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_master *m = c->session->master;
 	const struct ec_slave *s;
 	unsigned int pos;
+	size_t len = no_link(c->session->master, buf, size);
 
+	if (len)
+		return len;
+	if (c->session->active && c->lost.text[0])
+		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
+				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	if (!place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 m->n_slaves, c->alias);
 	if (pos >= m->n_slaves)
-		return scnprintf(buf, size, "is not on the bus: there are %u slave(s), it would be number %u",
-				 m->n_slaves, pos);
+		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
+				 pos, m->n_slaves);
 	s = m->slaves[pos];
+	if (s->error == EC_SLAVE_SCAN_FAILED)
+		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos, s->why);
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
@@ -56,6 +85,7 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
 	u8 want = READ_ONCE(s->requested);
+	const char *doing = READ_ONCE(s->waits_for);
 
 	if (s->error != EC_SLAVE_OK)
 		return scnprintf(buf, size, "%s", s->why);
@@ -67,7 +97,99 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 				 ec_al_state_name(want));
 	if (s->master->owner == EC_OWNER_IDLE)
 		return scnprintf(buf, size, "is in %s; the application does not send", state);
+	if (doing)
+		return scnprintf(buf, size, "is in %s on the way to OP, waiting for %s", state,
+				 doing);
 	return scnprintf(buf, size, "is in %s, on its way to OP", state);
+}
+
+/* The revision is no part of the identity, only what an application has asked to be told. */
+static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
+{
+	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
+
+	return expected && expected != s->info.revision;
+}
+
+/**
+ * ec_config_at() - the configuration that a slave has or differs from
+ * @s: session
+ * @slave: slave
+ * @alias: of the nearest slave at or before it that has one, or 0
+ * @distance: to that one
+ *
+ * Context: After ec_show_begin().
+ * Return: the one that is attached; else one without slave that means its place; or NULL.
+ */
+const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
+				     u16 alias, u16 distance)
+{
+	const struct ec_config *has = slave->config;
+	unsigned int i;
+
+	if (has && has->session == s)
+		return has;
+	for (i = 0; i < s->n_configs; i++) {
+		const struct ec_config *c = s->configs[i];
+
+		if (!c->slave && (c->alias ? c->alias == alias && c->position == distance :
+					     c->position == slave->position))
+			return c;
+	}
+	return NULL;
+}
+
+/**
+ * ec_config_differs() - is a slave another one than a configuration expects?
+ * @c: what ec_config_at() found
+ * @slave: for that slave
+ *
+ * Context: Process; with session_lock held, or after ec_show_begin().
+ * Return: true: identity or revision differ.
+ */
+bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
+{
+	return c->slave != slave || other_revision(c, slave);
+}
+
+static void absent_text(const struct ec_config *c, char *buf, size_t size)
+{
+	down_read(&c->session->master->topo);
+	absent(c, buf, size);
+	up_read(&c->session->master->topo);
+}
+
+/**
+ * ec_config_log_differences() - report what is missing or different
+ * @s: session that has just been activated
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_log_differences(const struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	char text[EC_UAPI_REASON];
+	unsigned int i, n = 0;
+
+	lockdep_assert_held(&m->session_lock);
+	for (i = 0; i < s->n_configs; i++) {
+		const struct ec_config *c = s->configs[i];
+
+		if (c->slave && !other_revision(c, c->slave))
+			continue;
+		if (n++ >= LOG_MAX)
+			continue;
+		if (c->slave)
+			scnprintf(text, sizeof(text), "slave %u has revision 0x%08x, expected 0x%08x",
+				  c->slave->position, c->slave->info.revision,
+				  (u32)ec_config_flag(c, EC_FLAG_REVISION));
+		else
+			absent_text(c, text, sizeof(text));
+		ec_warn(m, "configuration %u:%u: %.160s\n", c->alias, c->position, text);
+	}
+	if (n > LOG_MAX)
+		ec_warn(m, "%u more configurations differ from the bus; see 'ethercat config -v'\n",
+			n - LOG_MAX);
 }
 
 /**

@@ -125,7 +125,7 @@ const struct cmd cmd_config = {
 		"slave or '-', its state or '-'. Here -a selects by alias and -p by position; -p\n"
 		"alone selects among the configurations with alias 0.\n",
 	.json = "masters[]: master, configs[]: alias, position, vendor_id, product_code,\n"
-		"slave_position (or null), state, not_in_op (why, or null),\n"
+		"slave_position (or null), state, not_in_op (why, or null), warning (or null),\n"
 		"watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"

@@ -8,6 +8,7 @@
 #include "slave_info.h"
 
 #define WAIT_S	60.0
+#define MISSING_LINES	16
 
 static int digits(unsigned int v)
 {
@@ -21,7 +22,7 @@ static void row(const struct ec_ioc_slave *s, const char *indent, const int *w)
 	al_state_text(s->al_status, state, sizeof(state));
 	slave_name(s, name, sizeof(name));
 	out_text("%s%*u  %*u:%-*u  %-*s  %c  %s\n", indent, w[0], s->position, w[1], s->alias_group,
-		 w[2], slave_alias_pos(s), w[3], state, s->error ? 'E' : '+', name);
+		 w[2], slave_alias_pos(s), w[3], state, slave_flag(s), name);
 }
 
 /* ring order, each slave once; the link to the next one may be cut */
@@ -75,6 +76,27 @@ static void remark(const struct dev *d, const struct ec_ioc_master *m)
 		note("Master%u: %s", d->master, why);
 }
 
+/* on stderr: configured slaves that have no line, or one of another slave */
+static void missing(struct dev *d, unsigned int configs)
+{
+	unsigned int n = 0;
+
+	for (unsigned int i = 0; i < configs; i++) {
+		struct ec_ioc_config c = { .index = i };
+		char why[EC_UAPI_REASON];
+
+		if (dev_ioctl(d, EC_IOC_CONFIG, &c))
+			break;	/* the application has gone meanwhile */
+		if (c.slave_position >= 0 || n++ >= MISSING_LINES)
+			continue;
+		dev_config_why(d, i, why, sizeof(why));
+		note("Master%u: configuration %u:%u: %s", d->master, c.alias, c.position, why);
+	}
+	if (n > MISSING_LINES)
+		note("Master%u: %u more configurations without slave, see 'ethercat config'",
+		     d->master, n - MISSING_LINES);
+}
+
 static int each(const struct tool *t, struct dev *d)
 {
 	struct ec_ioc_master m;
@@ -85,6 +107,7 @@ static int each(const struct tool *t, struct dev *d)
 	if (dev_master(d, &m) || dev_select(d, t, &sel, NULL))
 		return 1;
 	remark(d, &m);
+	missing(d, m.config_count);
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	out_bool("scan_busy", m.scan_busy, NULL);
@@ -97,7 +120,7 @@ static int each(const struct tool *t, struct dev *d)
 		table(sel.v, sel.n, d->selected > 1 ? "  " : "");
 	} else {
 		for (size_t i = 0; i < sel.n; i++)
-			slave_info(d->master, &sel.v[i]);
+			slave_info(d, &sel.v[i]);
 	}
 	out_end();
 	out_end();
@@ -124,11 +147,14 @@ const struct cmd cmd_slaves = {
 	.summary = "Show the slaves on the bus",
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
 		"'+ERROR' behind the state: the slave reports an error. Flag 'E': scanning or\n"
-		"configuring the slave failed. 'xxx LINK FAILURE xxx' stands where a redundant ring\n"
-		"is cut. With --verbose everything the master knows about the slaves; with --wait\n"
-		"the list is read when no bus scan is running (at most 60 s later).\n",
+		"configuring the slave failed; '!': not the slave that the application configured.\n"
+		"Configurations without slave are listed on stderr. 'xxx LINK FAILURE xxx' stands\n"
+		"where a redundant ring is cut. With --verbose everything the master knows about the\n"
+		"slaves; with --wait the list is read when no bus scan is running (at most 60 s\n"
+		"later).\n",
 	.json = "masters[]: master, scan_busy, slaves[] (position, alias, relative_position, device,\n"
-		"state, al_error, flag_error, cause, name, vendor_id, product_code, revision_number,\n"
+		"state, al_error, flag_error, cause, warning, differs,\n"
+		"not_in_op (or null), name, vendor_id, product_code, revision_number,\n"
 		"serial_number, own_alias, station_address, al_status, al_status_code,\n"
 		"al_status_text, requested_state, dl_status, fmmu_bit_operation, dc, dc_delay_ns,\n"
 		"dc_state (not_set, in_step, off, delay_uncertain), dc_offset_ns,\n"

@@ -274,18 +274,29 @@ static void attached(const struct ec_ioc_config *c, const char *in)
 	out_str("state", ec_al_state_name((u8)c->al_status), " (%s)\n", state);
 }
 
-/* An older module does not tell; nor does one for a slave in OP. */
 static void reason(struct dev *d, const struct ec_ioc_config *c, const char *in)
 {
-	struct ec_ioc_config_why w = { .index = c->index };
+	char text[EC_UAPI_REASON];
 
-	if (dev_ioctl(d, EC_IOC_CONFIG_WHY, &w))
-		w.text[0] = '\0';
-	string_clean(w.text, sizeof(w.text));
-	if (w.text[0])
-		out_str("not_in_op", w.text, "%sNot in OP: %s\n", in, w.text);
+	dev_config_why(d, c->index, text, sizeof(text));
+	if (text[0])
+		out_str("not_in_op", text, "%sNot in OP: %s\n", in, text);
 	else
 		out_null("not_in_op", NULL);
+}
+
+/* What is not certain of the process data, also in OP. */
+static void warning(struct dev *d, const struct ec_ioc_config *c, const char *in)
+{
+	struct ec_ioc_slave s = { .position = (__u16)c->slave_position };
+
+	if (c->slave_position < 0 || dev_ioctl(d, EC_IOC_SLAVE, &s))
+		s.warning[0] = '\0';
+	string_clean(s.warning, sizeof(s.warning));
+	if (s.warning[0])
+		out_str("warning", s.warning, "%sWarning: %s\n", in, s.warning);
+	else
+		out_null("warning", NULL);
 }
 
 /* Return: 0, or 1 after printing the error. */
@@ -300,6 +311,7 @@ int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	out_u("product_code", c->product_code, "%sProduct code: 0x%08x\n", in, c->product_code);
 	attached(c, in);
 	reason(d, c, in);
+	warning(d, c, in);
 	number_or_default("watchdog_divider", c->watchdog_divider, in, "Watchdog divider");
 	number_or_default("watchdog_intervals", c->watchdog_intervals, in, "Watchdog intervals");
 	ret = sync_managers(d, c, in);

@@ -194,6 +194,7 @@ static int get_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *
 	string_clean(s->order, sizeof(s->order));
 	string_clean(s->name, sizeof(s->name));
 	string_clean(s->why, sizeof(s->why));
+	string_clean(s->warning, sizeof(s->warning));
 	return 0;
 }
 
@@ -203,6 +204,16 @@ int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
 
 	return err ? dev_fail(d, err, "Master%u slave %u: cannot read the state of the slave", d->master,
 			position) : 0;
+}
+
+void dev_config_why(struct dev *d, unsigned int config, char *buf, size_t size)
+{
+	struct ec_ioc_config_why w = { .index = config };
+
+	if (dev_ioctl(d, EC_IOC_CONFIG_WHY, &w))
+		w.text[0] = '\0';
+	string_clean(w.text, sizeof(w.text));
+	snprintf(buf, size, "%s", w.text);
 }
 
 void slaves_free(struct slaves *s)

@@ -34,6 +34,9 @@ int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s);
 int dev_slaves(struct dev *d, struct slaves *all);
 void slaves_free(struct slaves *s);
 
+/* why a configured slave is not in OP; "": it is, or an older module does not say */
+void dev_config_why(struct dev *d, unsigned int config, char *buf, size_t size);
+
 /* what -a and -p select; @all may be NULL */
 int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, size_t *all);
 /* whether all of that was nothing, on all masters */

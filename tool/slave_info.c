@@ -212,16 +212,38 @@ static void diagnosis(const struct ec_ioc_slave *s)
 	if (s->why[0])
 		out_text("  Cause: %s\n", s->why);
 	out_str("cause", s->why, NULL);
+	if (s->warning[0])
+		out_text("  Warning: %s\n", s->warning);
+	out_str("warning", s->warning, NULL);
 }
 
-void slave_info(unsigned int master, const struct ec_ioc_slave *s)
+char slave_flag(const struct ec_ioc_slave *s)
+{
+	return s->error ? 'E' : s->differs ? '!' : '+';
+}
+
+/* The text of config -v. */
+static void reason(struct dev *d, const struct ec_ioc_slave *s)
+{
+	char text[EC_UAPI_REASON] = "";
+
+	if (s->config)
+		dev_config_why(d, s->config - 1, text, sizeof(text));
+	out_bool("differs", s->differs, NULL);
+	if (text[0])
+		out_str("not_in_op", text, "  Not in OP: %s\n", text);
+	else
+		out_null("not_in_op", NULL);
+}
+
+void slave_info(struct dev *d, const struct ec_ioc_slave *s)
 {
 	char state[16], name[EC_UAPI_STRING];
 
 	al_state_text(s->al_status, state, sizeof(state));
 	slave_name(s, name, sizeof(name));
 	out_object(NULL);
-	out_u("position", s->position, "=== Master %u, Slave %u ===\n", master, s->position);
+	out_u("position", s->position, "=== Master %u, Slave %u ===\n", d->master, s->position);
 	out_u("alias", s->alias_group, NULL);
 	out_u("relative_position", slave_alias_pos(s), NULL);
 	out_str("name", name, NULL);
@@ -231,13 +253,14 @@ void slave_info(unsigned int master, const struct ec_ioc_slave *s)
 		s->device_index ? "Backup" : "Main");
 	out_str("state", ec_al_state_name((u8)s->al_status), "State: %s\n", state);
 	out_bool("al_error", s->al_status & EC_AL_ERROR, NULL);
-	out_bool("flag_error", s->error, "Flag: %c\n", s->error ? 'E' : '+');
+	out_bool("flag_error", s->error, "Flag: %c\n", slave_flag(s));
 	identity(s);
 	data_link(s);
 	ports(s);
 	mailboxes(s);
 	general(s);
 	diagnosis(s);
+	reason(d, s);
 	out_text("\n");
 	out_end();
 }

@@ -4,7 +4,9 @@
 
 #include "dev.h"
 
-void slave_info(unsigned int master, const struct ec_ioc_slave *s);
+/* of the list: 'E' failed, '!' not the configured one, '+' fine */
+char slave_flag(const struct ec_ioc_slave *s);
+void slave_info(struct dev *d, const struct ec_ioc_slave *s);
 bool slave_has_dc(const struct ec_ioc_slave *s);
 const char *port_type_text(unsigned int type);
 

@@ -200,6 +200,9 @@ struct ec_ioc_slave {
 	__s32 dc_diff;		/* to the reference clock when last checked, ns */
 	__u16 dc_set;		/* the clock was set for the active application */
 	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
+	__u32 config;		/* index of the configuration it has or differs from, plus 1; 0: none */
+	__u32 differs;		/* it is not what @config expects */
+	char warning[EC_UAPI_REASON];	/* what is not certain of its process data */
 };
 
 struct ec_ioc_sm {

@@ -299,6 +299,11 @@ static int slave(struct ec_ioc_slave *s)
 		s->device_index = 1;
 	if (bus("reversed"))
 		reversed(s);
+	if (bus("differs") && s->position == 1) {
+		s->config = 2;
+		s->differs = 1;
+		strcpy(s->warning, "process data of SM2 may belong to other objects");
+	}
 	if (bus("evil") && s->position == 2) {
 		snprintf(s->name, sizeof(s->name), "%s", "\033[2J\302\233H\2341m\342\200\256 Gr\303\266\337e\r\n\177");
 		snprintf(s->order, sizeof(s->order), "%s", "*/ \"x\\ /* int");
@@ -745,7 +750,7 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 	case EC_IOC_CONFIG_WHY:
 		if (((struct ec_ioc_config_why *)arg)->index == 1)
 			strcpy(((struct ec_ioc_config_why *)arg)->text,
-			       bus("evil") ? "\033[2J" : "is not on the bus: there are 2 slave(s)");
+			       bus("evil") ? "\033[2J" : "no slave at ring position 2: 2 slave(s) connected");
 		return 0;
 	case EC_IOC_IP_GET:
 	case EC_IOC_IP_SET:

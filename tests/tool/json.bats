@@ -38,7 +38,7 @@ load common
 	out upload -j -p2 -tstring 0x1008 0 | json 'd["value"] == "EL7201"'
 	out pdos -j | json 'd["masters"][0]["slaves"][2]["sync_managers"][3]["pdos"][0]["entries"][0]["size_bits"] == 32'
 	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["slave_position"] is None'
-	FAKE_BUS=app out config -j | json '"not on the bus" in d["masters"][0]["configs"][0]["not_in_op"]'
+	FAKE_BUS=app out config -j | json '"no slave at ring" in d["masters"][0]["configs"][0]["not_in_op"]'
 	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][1]["not_in_op"] is None'
 	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["dc"]["sync"][0]["shift_ns"] == -500'
 	FAKE_BUS=app out domains -j | json 'd["masters"][0]["domains"][1]["expected_working_counter"] == 3'

@@ -373,3 +373,20 @@ END
 	[[ $output == *"function rv = slave2()"* ]]
 	[[ $output == *"pdo_data_type = 1016;"* ]]
 }
+
+@test "a slave that differs from its configuration is marked" {
+	[ "$(FAKE_BUS=differs out slaves | awk '{ print $4 }' | tr -d '\n')" = '+!E' ]
+	FAKE_BUS=differs out slaves -v -p1 | grep -qx "  Not in OP: no slave at ring position 2: 2 slave(s) connected"
+	FAKE_BUS=differs out slaves -v -p1 | grep -qx "  Warning: process data of SM2 may belong to other objects"
+	FAKE_BUS=differs out --json slaves | python3 -c '
+import json, sys
+s = json.load(sys.stdin)["masters"][0]["slaves"]
+assert [x["differs"] for x in s] == [False, True, False], s
+assert s[1]["not_in_op"].startswith("no slave at ring") and s[0]["not_in_op"] is None
+assert s[1]["warning"].startswith("process data") and s[0]["warning"] == ""
+'
+}
+
+@test "configured slaves that are missing are named beside the list" {
+	[ "$(FAKE_BUS=app err slaves)" = "Master0: configuration 0:2: no slave at ring position 2: 2 slave(s) connected" ]
+}

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* A slave that refuses its PDO mapping: what it has instead decides. */
+#include <linux/kmsg_dump.h>
+#include "cyc.h"
+#include "master/ioctl.h"
+
+#define FIXED	"slave d drive in=8 out=8 mapping=fixed\nslave e EL1859\n"
+
+/* Lines of the kernel log since @it was last read that have @text in them. */
+static u32 logged(struct kmsg_dump_iter *it, const char *text)
+{
+	static char buf[512];
+	size_t len;
+	u32 n = 0;
+
+	while (kmsg_dump_get_line(it, true, buf, sizeof(buf) - 1, &len)) {
+		buf[len] = 0;
+		n += !!strstr(buf, text);
+	}
+	return n;
+}
+
+static void expect_why(struct bus *b, u32 config, const char *text)
+{
+	struct ec_ioc_config_why w = { .index = config };
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_config_why(&b->app, &w), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(w.text, text), "%s", w.text);
+}
+
+static u32 entry_of(const struct ec_pdo_entry *e, u32 i, u32 wrong)
+{
+	return (e->index << 16 | e->sub << 8 | e->bits) + (i == wrong ? 0x71 << 8 : 0);
+}
+
+/*
+ * The drive gets the mapping it has, but for the entry at @wrong, whose subindex is
+ * another; entry @used is registered.
+ */
+static struct cyc *configure(struct kunit *test, const char *text, u32 wrong, u32 used)
+{
+	struct bus *b = bus_up(test, text, 2);
+	struct ec_ioc_reg_entry r = {
+		.flags = EC_REG_ENTRY_BY_POS, .sm = 2, .entry_pos = used,
+	};
+	const struct ec_pdo_list *l;
+	struct cyc *c;
+	u32 i, n, entries[16];
+	u16 pdo;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	r.domain = cyc_domain(c);
+	r.config = cyc_config(c, 0);
+	l = &bus_slave(b, 0)->sm_pdos[2];
+	KUNIT_ASSERT_EQ(test, l->n, 1u);
+	pdo = l->pdos[0].index;
+	n = min_t(u32, l->pdos[0].n_entries, ARRAY_SIZE(entries));
+	KUNIT_ASSERT_GE(test, n, 2u);
+	for (i = 0; i < n; i++)
+		entries[i] = entry_of(&l->pdos[0].entries[i], i, wrong);
+	cyc_pdo(c, r.config, EC_SC_PDO_ASSIGN_CLEAR, 2, 0, 0);
+	cyc_pdo(c, r.config, EC_SC_PDO_ASSIGN_ADD, 2, pdo, 0);
+	cyc_pdo(c, r.config, EC_SC_PDO_MAP_CLEAR, 2, pdo, 0);
+	for (i = 0; i < n; i++)
+		cyc_pdo(c, r.config, EC_SC_PDO_MAP_ADD, 2, pdo, entries[i]);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_reg_entry(&b->app, &r), 0, "%s", b->app.reason);
+	cyc_map_all(c, 1, 1, r.domain);
+	return c;
+}
+
+static void mapping_other_entry_does_not_reach_op(struct kunit *test)
+{
+	struct cyc *c = configure(test, FIXED, 0, 0);
+	struct bus *b = c->b;
+	struct kmsg_dump_iter it, first;
+
+	kmsg_dump_rewind(&it);
+	logged(&it, "");
+	cyc_activate(c);
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+	expect_why(b, 0, "registered 0x6040:71, 16 bit; slave has 0x6040:00, 16 bit");
+	expect_why(b, 0, "refused: abort 0x06");
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "SM2 configured: 0x1600: 6040:71/16"), 1u);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "SM2 in the slave: 0x1600: 6040:00/16"), 1u);
+}
+
+static void mapping_flag_accepts_other_entry(struct kunit *test)
+{
+	struct cyc *c = configure(test, FIXED, 0, 0);
+	struct ec_ioc_sc_flag f = { .config = 0, .value = 1, .key = EC_FLAG_ANY_PDOS };
+	struct bus *b = c->b;
+	struct ec_ioc_slave i = { 0 };
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &f), 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	/* what was accepted stays visible */
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x6040:71"), "%s", i.warning);
+}
+
+/* An entry nobody registered may be another one. */
+static void mapping_unregistered_entry_does_not_matter(struct kunit *test)
+{
+	struct cyc *c = configure(test, FIXED, 0, 1);
+
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_EXPECT_STREQ(test, bus_slave(c->b, 0)->warning, "");
+}
+
+/* It refuses, or does not reply, and cannot be read either. */
+static void mapping_unreadable_stays_visible(struct kunit *test)
+{
+	struct cyc *c = configure(test, FIXED, 99, 0);
+	struct bus *b = c->b;
+	struct ec_ioc_slave i = { 0 };
+
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_TYPE, 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 60000), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
+	cyc_run(c, 3000);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "cannot be read"), "%s", i.warning);
+	/* the next configuration begins without it */
+	cyc_release(c);
+	bus_idle(b);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_STREQ(test, i.warning, "");
+}
+
+/* The first cause is kept, not the AL status code that follows from it. */
+static void mapping_first_cause_is_kept(struct kunit *test)
+{
+	struct bus *b = bus_up(test, FIXED, 2);
+	struct cyc *c;
+	u32 config;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	config = cyc_config(c, 0);
+	/* a PDO that does not exist, with an entry nobody registers */
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, 2, 0x1615, 0);
+	cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, 2, 0x1615, 0x7FF00120);
+	cyc_map(c, config, 2, 0);
+	cyc_map_all(c, 1, 1, 0);
+	cyc_activate(c);
+	cyc_run(c, 3000);
+	expect_why(b, config, "PDO mapping 0x1615 refused: abort 0x06020000");
+	expect_why(b, config, "then SAFEOP refused: AL status code 0x001d");
+}
+
+/* What is shown while an application runs is what it wrote, with names. */
+static void mapping_written_is_shown(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave d drive in=22 out=22 mapping=rewritable\n", 1);
+	struct ec_ioc_pdo p = { .sm = 2 };
+	struct ec_ioc_pdo_entry e = { .sm = 2 };
+	u32 config, i;
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	config = cyc_config(c, 0);
+	cyc_remap(c, config);
+	cyc_map(c, config, 2, 0);
+	cyc_map(c, config, 3, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	KUNIT_ASSERT_EQ(test, ec_ioc_pdo(&b->app, &p), 0);
+	KUNIT_EXPECT_EQ(test, p.index, 0x1600);
+	KUNIT_EXPECT_STRNEQ(test, p.name, "");
+	KUNIT_ASSERT_EQ(test, p.entry_count, ARRAY_SIZE(cyc_new_out));
+	for (i = 0; i < p.entry_count; i++) {
+		e.entry_pos = i;
+		KUNIT_ASSERT_EQ(test, ec_ioc_pdo_entry(&b->app, &e), 0);
+		KUNIT_EXPECT_EQ(test, (u32)e.index << 16 | e.subindex << 8 | e.bits, cyc_new_out[i]);
+		KUNIT_EXPECT_STRNEQ(test, e.name, "");
+	}
+	/* the next application finds them, too, although the EEPROM has others */
+	cyc_release(c);
+	bus_idle(b);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 8u);
+}
+
+static struct kunit_case mapping_cases[] = {
+	KUNIT_CASE(mapping_other_entry_does_not_reach_op),
+	KUNIT_CASE(mapping_flag_accepts_other_entry),
+	KUNIT_CASE(mapping_unregistered_entry_does_not_matter),
+	KUNIT_CASE(mapping_unreadable_stays_visible),
+	KUNIT_CASE(mapping_first_cause_is_kept),
+	KUNIT_CASE(mapping_written_is_shown),
+	{}
+};
+
+static struct kunit_suite mapping_suite = {
+	.name = "bus_mapping",
+	.exit = bus_exit,
+	.test_cases = mapping_cases,
+};
+
+kunit_test_suite(mapping_suite);
+
+MODULE_LICENSE("GPL");
