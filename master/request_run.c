@@ -62,9 +62,8 @@ static int readwrite(const struct ec_request *r, struct ec_slave *s)
 static void run_reg(struct ec_request *r, struct ec_slave *s, struct ec_request_result *res)
 {
 	res->got = ec_request_reads(r) ? r->size : 0;
-	if (s->error != EC_SLAVE_OK)
-		res->err = -EIO;
-	else if (r->op == EC_REQUEST_OP_READWRITE)
+	/* also of a slave whose configuration failed: registers tell why */
+	if (r->op == EC_REQUEST_OP_READWRITE)
 		res->err = readwrite(r, s);
 	else if (r->op == EC_REQUEST_OP_WRITE)
 		res->err = ec_xfer_fpwr(s->master, s->station, r->index, r->buf, r->size);

@@ -410,8 +410,8 @@ static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
 	if (!sc->n || s->error == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
 		return;
 	ec_slave_lost_text(s, text, sizeof(text));
-	ec_warn(sc->m, "%s, last seen %llu ms ago\n", text,
-		div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
+	ec_warn_each(sc->m, s->position + 1, "%s, last seen %llu ms ago\n", text,
+		     div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
 }
 
 /* The result becomes visible; slaves that are missing are gone. */

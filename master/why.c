@@ -6,7 +6,7 @@
 #include "slave.h"
 #include "why.h"
 
-#define LOG_MAX		64	/* lines per activation */
+#define LOG_MAX		32	/* lines per activation */
 
 /* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
@@ -185,7 +185,8 @@ void ec_config_log_differences(const struct ec_session *s)
 				  (u32)ec_config_flag(c, EC_FLAG_REVISION));
 		else
 			absent_text(c, text, sizeof(text));
-		ec_warn(m, "configuration %u:%u: %.160s\n", c->alias, c->position, text);
+		ec_warn_each(m, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
+			     text);
 	}
 	if (n > LOG_MAX)
 		ec_warn(m, "%u more configurations differ from the bus; see 'ethercat config -v'\n",

@@ -381,6 +381,37 @@ static void req_registers(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, req_end(c, r, 1000), -EINVAL);
 }
 
+/* A slave that refused OP or a startup SDO can still be asked why. */
+static void req_registers_of_failed_slave(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8\nslave c drive in=8 out=8\n"
+			       "fault refuse a OP code=0x0027\n", 2);
+	struct ec_ioc_sc_sdo sdo = { .config = 1, .index = 0x5FFF, .subindex = 1, .size = 1 };
+	u8 value = 0;
+	struct cyc *c;
+	u32 r[2], i;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, &value), 0);
+	for (i = 0; i < 2; i++)
+		r[i] = req_add(c, i, EC_REQUEST_REG, 8);
+	cyc_activate(c);
+	cyc_run(c, 2000);
+	for (i = 0; i < 2; i++) {
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_CONFIG_FAILED);
+		req_begin(c, r[i], EC_REG_STATION, 0, false, 2);
+		KUNIT_EXPECT_EQ(test, req_end(c, r[i], 1000), 0);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r[i])),
+				bus_slave(b, i)->station);
+		put_unaligned_le16(0x1234, req_data(c, r[i]));
+		req_begin(c, r[i], EC_REG_WD_DIVIDER, 0, EC_REQUEST_OP_READWRITE, 2);
+		KUNIT_EXPECT_EQ(test, req_end(c, r[i], 1000), 0);
+	}
+}
+
 static void req_emergencies(struct kunit *test)
 {
 	static const u8 five[5] = { 1, 2, 3, 4, 5 };
@@ -449,6 +480,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(req_cancelled),
 	KUNIT_CASE(req_complete_access),
 	KUNIT_CASE(req_registers),
+	KUNIT_CASE(req_registers_of_failed_slave),
 	KUNIT_CASE(req_emergencies),
 	KUNIT_CASE(req_emergency_without_room),
 	{}
