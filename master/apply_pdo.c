@@ -181,7 +181,7 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 		return ret;
 	if (ret) {
 		snprintf(s->warning, sizeof(s->warning),
-			 "process data of SM%u may belong to other objects: %.120s; its PDOs cannot be read (%pe)",
+			 "process data of SM%u may belong to other objects: %.80s; its PDOs cannot be read (%pe)",
 			 sm, s->pdo_refusal, ERR_PTR(ret));
 		ec_slave_warn(s, "%s\n", s->warning);
 		return 0;
@@ -195,7 +195,7 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	log_list(s, sm, "configured", want);
 	log_list(s, sm, "in the slave", have);
 	snprintf(s->warning, sizeof(s->warning),
-		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.120s", sm, bit,
+		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s", sm, bit,
 		 e->index, e->sub, e->bits, has, s->pdo_refusal);
 	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
 		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);

@@ -157,7 +157,7 @@ struct ec_slave {
 	u8 error;
 	char why[EC_UAPI_REASON];
 	char pdo_refusal[EC_UAPI_REASON];
-	char warning[EC_UAPI_REASON];
+	char warning[EC_UAPI_WARNING];
 	bool silent;
 	u64 retry_ns;
 	u32 retry_ms;

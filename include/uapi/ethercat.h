@@ -24,6 +24,7 @@
 #define EC_UAPI_VERSION		2	/* 2: struct ec_status has @sequence */
 #define EC_UAPI_STRING		64
 #define EC_UAPI_REASON		256
+#define EC_UAPI_WARNING		192
 #define EC_UAPI_PORTS		4
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
 #define EC_IP_NAME		32
@@ -202,7 +203,7 @@ struct ec_ioc_slave {
 	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
 	__u32 config;		/* index of the configuration it has or differs from, plus 1; 0: none */
 	__u32 differs;		/* it is not what @config expects */
-	char warning[EC_UAPI_REASON];	/* what is not certain of its process data */
+	char warning[EC_UAPI_WARNING];	/* what is not certain of its process data */
 };
 
 struct ec_ioc_sm {
