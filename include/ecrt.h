@@ -1770,7 +1770,9 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * the slave and the request of SAFEOP. "AssignToPdi": the EEPROM belongs to the
  * slave from PREOP on in any case. "AcceptOtherPdos": not 0: a slave that refuses its
  * PDO mapping or assignment and has other objects in the place of the registered
- * entries is taken to OP all the same; without it the slave stays in PREOP. Other names are kept and shown by
+ * entries is taken to OP all the same; without it the slave stays in PREOP.
+ * "ExpectedRevision": another revision number than this is logged at activation, and
+ * "ethercat slaves" marks the slave; it is used all the same. Other names are kept and shown by
  * "ethercat config -v", without effect.
  *
  * Context: Process. May sleep.

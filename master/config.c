@@ -116,6 +116,7 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 {
 	const struct ec_config *before;
 	struct ec_config *c, **p;
+	unsigned int i;
 	int ret;
 
 	c = ec_config_find(s, alias, position, vendor, product);

@@ -218,6 +218,8 @@ static void retry_frames_lost_on_the_way_to_op(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, failed);
 	ec_sim_clear_faults(b->sim);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 100);
+	KUNIT_ASSERT_EQ(test, b->m->n_slaves, (u32)N);
 	for (i = 0; i < N; i++)
 		KUNIT_EXPECT_STREQ(test, bus_slave(b, i)->why, "");
 }
