@@ -213,13 +213,11 @@ static void count_slaves(struct watch *w)
 	}
 }
 
-#define PROBE_MAX_MS	1000	/* of a slave that does not reply at all */
-
 static bool is_due(const struct ec_slave *s, u64 now)
 {
 	u64 at = READ_ONCE(s->retry_ns);
 
-	return s->error && at && now >= at;
+	return (s->error || s->silent) && at && now >= at;
 }
 
 /*
@@ -242,7 +240,7 @@ static void try_again(struct watch *w)
 
 		if (!is_due(s, now))
 			continue;
-		if (s->error == EC_SLAVE_SCAN_FAILED) {
+		if (s->error == EC_SLAVE_SCAN_FAILED || s->silent) {
 			dg[n] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2,
 						    b[n]);
 			due[n++] = s;
@@ -259,7 +257,7 @@ static void try_again(struct watch *w)
 			w->scanned = false;
 			w->same = STABLE_LOOKS;
 		} else {
-			ec_slave_retry(due[i], PROBE_MAX_MS);
+			ec_slave_retry(due[i], EC_PROBE_MAX_MS);
 		}
 	}
 }

@@ -208,11 +208,12 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 	if (s->silent)
 		return;
 	sc->changed = true;
-	s->silent = true;
+	WRITE_ONCE(s->silent, true);
 	s->seen_ns = sc->m->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 		      "no reply from the slave, although frames pass; waiting for a reply");
+	ec_slave_retry(s, EC_PROBE_MAX_MS);
 }
 
 static void set_answers(struct scan *sc, struct ec_slave *s)
@@ -307,7 +308,7 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 	unsigned int i;
 
 	for (i = 0; i < sc->n; i++)
-		if (sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED)
+		if (sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED && !sc->slaves[i]->silent)
 			ec_slave_retry(sc->slaves[i], EC_RETRY_MAX_MS);
 	for (i = 0; i < n; i++) {
 		if (fresh[i]->error)

@@ -109,6 +109,9 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 	char text[EC_UAPI_REASON];
 	va_list args;
 
+	/* a worker that was still at it: what it meets is no cause of its own */
+	if (READ_ONCE(slave->silent) && error == EC_SLAVE_CONFIG_FAILED)
+		return;
 	va_start(args, fmt);
 	vscnprintf(text, sizeof(text), fmt, args);
 	va_end(args);

@@ -21,6 +21,7 @@ struct ec_master;
 /* distance of the tries to read or configure a slave that failed; doubles each time */
 #define EC_RETRY_MIN_MS		250
 #define EC_RETRY_MAX_MS		60000
+#define EC_PROBE_MAX_MS		1000	/* of a slave that does not reply at all */
 
 /**
  * struct ec_slave - one slave
