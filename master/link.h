@@ -4,6 +4,7 @@
 #define EC_LINK_H
 
 #include <linux/atomic.h>
+#include <linux/mutex.h>
 #include <linux/types.h>
 #include "ethercat.h"
 #include "gate.h"
@@ -50,6 +51,7 @@ struct ec_link_rates {
  *	owner of the link; others only in an RCU read section
  * @acyclic: places for acyclic frames on their way, also those in the queue
  * @acyclic_ns: wire time of these frames
+ * @ring_full: held by the caller that waits for room in the transmit ring
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
  * @al_states: OR of their AL states
@@ -62,6 +64,7 @@ struct ec_link {
 	struct ecdev *dev;
 	struct ec_gate acyclic;
 	atomic_t acyclic_ns;
+	struct mutex ring_full;
 	bool up;
 	u32 slaves;
 	u32 al_states;

@@ -151,25 +151,45 @@ static void put_slot(struct ec_master *m, const struct half *h, const struct bat
 		atomic_sub(f->wire_ns, &m->link[0].acyclic_ns);
 }
 
-/* A full transmit ring is no error: the frame waits until there is room. */
-static void submit(struct ec_master *m, const struct half *h, struct batch_frame *f)
+/* Try until there is room in the transmit ring, or @until. */
+static int submit_until(struct ec_master *m, struct ec_slot *slot, bool urgent, u64 until)
 {
-	u64 until = 0;
+	int ret;
 
-	f->cancelled = false;
-	f->wire_ns = 0;
-	while ((f->err = ec_cycle_submit(m, f->slot, h->urgent)) == -EBUSY) {
-		until = until ?: ktime_get_ns() + RING_WAIT_NS;
-		if (fatal_signal_pending(current)) {
-			f->err = -EINTR;
-			return;
-		}
+	while ((ret = ec_cycle_submit(m, slot, urgent)) == -EBUSY) {
+		if (fatal_signal_pending(current))
+			return -EINTR;
 		if (ktime_get_ns() > until) {
 			atomic64_inc(&m->link[0].stats.tx_errors);
-			return;
+			break;
 		}
 		usleep_range(100, 200);
 	}
+	return ret;
+}
+
+/* A full transmit ring is no error: the frame waits; one caller tries for all others. */
+static int submit_later(struct ec_master *m, struct ec_slot *slot, bool urgent)
+{
+	u64 until = ktime_get_ns() + RING_WAIT_NS;
+	int ret;
+
+	if (urgent)
+		return submit_until(m, slot, urgent, until);
+	if (mutex_lock_killable(&m->link[0].ring_full))
+		return -EINTR;
+	ret = submit_until(m, slot, urgent, until);
+	mutex_unlock(&m->link[0].ring_full);
+	return ret;
+}
+
+static void submit(struct ec_master *m, const struct half *h, struct batch_frame *f)
+{
+	f->cancelled = false;
+	f->wire_ns = 0;
+	f->err = ec_cycle_submit(m, f->slot, h->urgent);
+	if (f->err == -EBUSY)
+		f->err = submit_later(m, f->slot, h->urgent);
 	if (f->err)
 		return;
 	f->wire_ns = ec_frame_wire_ns(f->slot->eth_len);

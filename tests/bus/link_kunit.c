@@ -40,6 +40,8 @@ static void link_full_transmit_ring_delays_only(struct kunit *test)
 		   MANY, us, slow_full(s));
 	all_are_well(b, MANY);
 	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
+	/* not everybody who waits tries for himself */
+	KUNIT_EXPECT_LT(test, slow_full(s), 20000u);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&b->m->link[0].stats.tx_errors), 0ull);
 	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
