@@ -23,6 +23,7 @@
 #include "session.h"
 
 #define MEASURE_SENDS	64	/* to know the interval when nobody tells it */
+#define GAPS_MIN	4	/* gaps after which a new median is worth it */
 #define OUTLIER_SHIFT	6	/* one send changes a measured interval by 1/64 of 1/16 */
 
 static struct ec_status_cycle *status(const struct ec_session *s)
@@ -86,13 +87,26 @@ void ec_late_count(struct ec_session *s, s64 ns)
 	ec_status_end(s->shared->status);
 }
 
+/* The median of the last gaps: single delayed sends do not change it. */
+static u32 median(const struct ec_schedule *c)
+{
+	unsigned int n = min_t(unsigned int, c->n_gaps, EC_SCHEDULE_GAPS), i, k;
+	u32 sorted[EC_SCHEDULE_GAPS];
+
+	for (i = 0; i < n; i++) {
+		for (k = i; k && sorted[k - 1] > c->gaps[i]; k--)
+			sorted[k] = sorted[k - 1];
+		sorted[k] = c->gaps[i];
+	}
+	return sorted[n / 2];
+}
+
 /*
  * The interval, when nobody tells it. The schedule needs a mean that single sends hardly
  * change; the frames between two sends need to know soon what it has become.
  */
 static void measure(struct ec_master *m, struct ec_schedule *c, u64 ns)
 {
-	int us = READ_ONCE(m->interval_us);
 	s64 off = ns - c->interval_ns;
 	s64 limit = c->sends < MEASURE_SENDS ? NSEC_PER_SEC : c->interval_ns >> OUTLIER_SHIFT;
 
@@ -101,8 +115,12 @@ static void measure(struct ec_master *m, struct ec_schedule *c, u64 ns)
 	else
 		c->interval_ns += (s32)clamp(off, -limit, limit) / 16;
 	/* a pause is no interval */
-	if (ns < NSEC_PER_SEC)
-		WRITE_ONCE(m->interval_us, max(1, us + ((int)(ns >> 10) - us) / 8));
+	if (ns >= NSEC_PER_SEC)
+		return;
+	c->gaps[c->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
+	if (c->n_gaps >= GAPS_MIN && (c->n_gaps < MEASURE_SENDS || !(c->n_gaps % GAPS_MIN)))
+		WRITE_ONCE(m->interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(c),
+									   NSEC_PER_USEC)));
 }
 
 /* A whole interval late or more: what was due in between is left out. */

@@ -10,6 +10,8 @@ struct ec_ioc_cycle_stats;
 struct ec_master;
 struct ec_session;
 
+#define EC_SCHEDULE_GAPS	15
+
 /**
  * struct ec_schedule - when the application is expected to send; owned by the
  *	cyclic caller
@@ -17,12 +19,16 @@ struct ec_session;
  * @last_ns: when it was
  * @interval_ns: distance of two sends, told or measured
  * @sends: sends so far, up to the end of the first measurement
+ * @gaps: the last times between two sends, ns
+ * @n_gaps: such times so far
  */
 struct ec_schedule {
 	u64 due_ns;
 	u64 last_ns;
 	u32 interval_ns;
 	u32 sends;
+	u32 gaps[EC_SCHEDULE_GAPS];
+	u32 n_gaps;
 };
 
 /**
