@@ -450,6 +450,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
 		return 0;
 	}
+	ec_dc_sync_compare(s, c);
 	waits_for(s, "the clocks of the segment to be synchronized");
 	ret = ec_dc_wait(s);
 	waits_for(s, NULL);

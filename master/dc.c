@@ -685,7 +685,7 @@ static void work(struct work_struct *work)
 	j.running = was;
 	WRITE_ONCE(dc->running, false);
 	ret = set(&j);
-	WRITE_ONCE(dc->begun_ns, ktime_get_ns());
+	ec_write64(&dc->begun_ns, ktime_get_ns());
 	/* those that were set before need the cycle in any case */
 	WRITE_ONCE(dc->running, !ret || (was && ret != -ENXIO));
 	ret = ret ?: compensate(&j, &near) ?: compensate(&j, &nearer) ?: check(&j);
@@ -747,6 +747,8 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	WRITE_ONCE(m->dc.told, false);
 	WRITE_ONCE(m->dc.choice, choice);
 	m->dc.begun = true;
+	if (all)
+		m->dc.far_told = false;
 	set_state(&m->dc, EC_DC_BUSY);
 	queue_work(m->service, &m->dc.work);
 	ec_dc_watch_start(m);

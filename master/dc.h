@@ -94,6 +94,8 @@ struct ec_dc_app {
  * @begun_ns: since when drift is compensated (ktime)
  * @ahead: time of the reference clock less ktime, when they are set, ns
  * @boost: comparisons the cycle shall make beyond one per send
+ * @far_told: the log says that clocks are outside the sync window
+ * @far_next_ns: when it may say more of that (ktime)
  * @work: sets the clocks while a session is active
  * @watch: looks at the sync window of all slaves, once a second
  * @wq: woken when @state changes
@@ -127,9 +129,11 @@ struct ec_dc {
 	bool failed;
 	u32 again_ms;
 	u64 again_ns;
-	u64 begun_ns;
+	aligned_u64 begun_ns;
 	atomic64_t ahead;
 	u32 boost;
+	bool far_told;
+	u64 far_next_ns;
 	struct work_struct work;
 	struct delayed_work watch;
 	wait_queue_head_t wq;
@@ -175,6 +179,7 @@ void ec_dc_watch_begun(struct ec_dc *dc);
 int ec_dc_wait(struct ec_slave *s);
 void ec_dc_sync_again(struct ec_slave *s);
 int ec_dc_sync_stop(struct ec_slave *s);
+void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c);
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c);
 int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c);
 

@@ -213,6 +213,41 @@ static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try
 					  c->dc_shift[0]));
 }
 
+#define MODES	8	/* of the SII that are compared, and named */
+
+/**
+ * ec_dc_sync_compare() - warn about an AssignActivate value that cannot be meant
+ * @s: slave with a clock, @lock held
+ * @c: its configuration with @dc_assign
+ *
+ * Either it enables no SYNC signal, or the SII has operation modes and none with
+ * this value. It is used all the same: an EEPROM may be older than its slave.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c)
+{
+	struct ec_sii_dc dc[MODES];
+	char list[8 * MODES] = "";
+	int i, n, len = 0;
+
+	if (!(c->dc_assign & RUN) || !(c->dc_assign & (SYNC0 | SYNC1))) {
+		ec_slave_warn(s, "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
+			      c->dc_assign);
+		return;
+	}
+	n = s->sii ? ec_sii_decode_dcs(s->sii, s->sii_bytes, dc, MODES) : 0;
+	for (i = 0; i < min(n, MODES); i++) {
+		if (dc[i].assign == c->dc_assign)
+			return;
+		len += scnprintf(list + len, sizeof(list) - len, " 0x%04x", dc[i].assign);
+	}
+	/* the one that was looked for may be among those that were not decoded */
+	if (n > 0 && n < MODES)
+		ec_slave_warn(s, "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
+			      c->dc_assign, list);
+}
+
 /**
  * ec_dc_sync_start() - program and start SYNC0 and SYNC1
  * @s: slave whose clock is set, @lock held

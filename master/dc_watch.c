@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * The sync window of every slave: once a second, while an application's clocks
- * run, each says how far it is from the time it was told (register 0x092C). One
- * that leaves the window, or comes back, is worth a line. One whose clock could not
+ * run, each says how far it is from the time it was told (register 0x092C). The log
+ * has one line for all that are outside the window. One whose clock could not
  * be set is asked, too: when it answers, setting the clocks is worth another try.
  */
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "dc.h"
 #include "master.h"
+#include "once64.h"
 #include "slave.h"
 #include "wire/dc.h"
 #include "xfer.h"
 
 #define PERIOD_MS	1000
+#define GRACE_NS	(10ULL * NSEC_PER_SEC)	/* in which clocks that were set come near */
+#define LOG_NS		(10ULL * NSEC_PER_SEC)	/* between two lines */
 #define BATCH		60	/* slaves asked at once */
 #define AGAIN_MS	2000	/* between tries to set the clocks, then twice that... */
 #define AGAIN_MAX_MS	60000
@@ -38,21 +41,49 @@ struct batch {
  */
 void ec_dc_verdict(struct ec_slave *s, u32 value)
 {
-	bool ref = s->station == READ_ONCE(s->master->dc.ref_station), far;
+	bool ref = s->station == READ_ONCE(s->master->dc.ref_station);
 	s32 diff = ec_dc_diff(value);
 
-	/* not back and forth at the limit */
-	far = abs(diff) > (s->dc_far ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
 	WRITE_ONCE(s->dc_diff, diff);
-	if (far == s->dc_far || ref)
+	/* not back and forth at the limit */
+	if (!ref)
+		s->dc_far = abs(diff) > (s->dc_far ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
+}
+
+/* One line for all clocks, when the first leaves the window or the last is back in it. */
+static void tell_far(struct ec_master *m)
+{
+	unsigned int clocks = 0, far = 0, worst = 0, i;
+	struct ec_dc *dc = &m->dc;
+	u64 now = ktime_get_ns();
+	u32 max = 0;
+
+	down_read(&m->topo);
+	for (i = 0; i < m->n_slaves; i++) {
+		const struct ec_slave *s = m->slaves[i];
+		u32 diff = abs(READ_ONCE(s->dc_diff));
+
+		if (!READ_ONCE(s->dc_set) || s->gone || s->station == dc->ref_station)
+			continue;
+		clocks++;
+		far += s->dc_far;
+		if (s->dc_far && diff > max) {
+			max = diff;
+			worst = i;
+		}
+	}
+	up_read(&m->topo);
+	if (!far == !dc->far_told || now < dc->far_next_ns ||
+	    now < ec_read64(&dc->begun_ns) + GRACE_NS)
 		return;
-	s->dc_far = far;
+	dc->far_told = far;
+	dc->far_next_ns = now + LOG_NS;
+	max = DIV_ROUND_CLOSEST(max, 100);
 	if (far)
-		ec_slave_warn(s, "its clock differs by %d ns from the reference clock, more than %d\n",
-			      diff, EC_DC_LIMIT_NS);
+		ec_warn(m, "%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
+			far, clocks, worst, max / 10, max % 10);
 	else
-		ec_slave_info(s, "its clock differs by %d ns from the reference clock, as it should\n",
-			      diff);
+		ec_info(m, "all %u clocks inside the sync window\n", clocks);
 }
 
 /* The next slaves with a clock that was or shall be set; returns the position to go on from. */
@@ -138,6 +169,7 @@ static void watch(struct work_struct *work)
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
 	if (try && worth)
 		WRITE_ONCE(dc->again, true);
+	tell_far(m);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))

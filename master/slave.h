@@ -63,7 +63,7 @@ struct ec_master;
  * @dc_offset: of its system time, ns, register 0x0920
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
  * @dc_set: its clock was set for this session
- * @dc_far: the log says that it differs too much
+ * @dc_far: it is outside the sync window
  * @dc_out: it did not answer when it should be set
  * @dc_vain: tries to set it since then for which it had answered; only the watch counts
  *

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * What the log says of clocks and their configuration, and the interval that is learned
+ * from sends, some of which are late.
+ */
+#include <linux/kmsg_dump.h>
+#include <linux/prandom.h>
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+/* Lines of the log with these words, since it began. */
+static u32 lines(const char *words)
+{
+	static char line[512];
+	struct kmsg_dump_iter iter;
+	u32 n = 0;
+	size_t len;
+
+	kmsg_dump_rewind(&iter);
+	while (kmsg_dump_get_line(&iter, false, line, sizeof(line) - 1, &len)) {
+		line[len] = '\0';
+		n += strstr(line, words) != NULL;
+	}
+	return n;
+}
+
+static void each(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void describe(char *text, size_t size, u32 slaves)
+{
+	struct rnd_state r;
+	u32 i, n;
+
+	prandom_seed_state(&r, 33);
+	n = scnprintf(text, size, "segment seed=33 response=100us transition=1ms\n");
+	for (i = 0; i < slaves; i++) {
+		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000;
+
+		n += scnprintf(text + n, size - n,
+			       "slave s%u drive in=8 out=8 drift=%dppb clock=%ums\n", i, ppb,
+			       prandom_u32_state(&r));
+	}
+}
+
+/* An application with SYNC0 of its cycle at all slaves, not active yet. */
+static struct cyc *configure(struct kunit *test, u32 slaves, u32 us)
+{
+	char *text = kunit_kzalloc(test, 16384, GFP_KERNEL);
+	struct bus *b;
+	struct cyc *c;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, text);
+	describe(text, 16384, slaves);
+	b = bus_up(test, text, slaves);
+	bus_idle(b);
+	c = cyc_new(b, us);
+	cyc_domain(c);
+	cyc_map_all(c, 0, slaves, 0);
+	for (i = 0; i < slaves; i++) {
+		struct ec_ioc_sc_dc dc = {
+			.config = i, .assign_activate = 0x0300, .cycle0 = us * NSEC_PER_USEC,
+		};
+
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	}
+	c->each = each;
+	return c;
+}
+
+/* Delayed sends do not change the interval that was learned. */
+static void dc_log_interval_ignores_outliers(struct kunit *test)
+{
+	struct cyc *c = configure(test, 1, 1000);
+	struct ec_master *m = c->b->m;
+	u32 i;
+
+	m->interval_told = false;
+	cyc_activate(c);
+	cyc_run(c, 200);
+	KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 1000), 10);
+	for (i = 0; i < 10; i++) {
+		/* one send is 15 ms late */
+		c->next = ktime_add_ms(c->next, 15);
+		cyc_run(c, 1);
+		KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 1000), 10);
+		cyc_run(c, 50);
+	}
+	/* but it follows a cycle that has become another one */
+	c->period_ns = 4 * NSEC_PER_MSEC;
+	cyc_run(c, 20);
+	KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 4000), 40);
+}
+
+/* All clocks but one leave the window, for seconds: that is one line, and one when it ends. */
+static void dc_log_window_has_one_line(struct kunit *test)
+{
+	struct cyc *c = configure(test, 22, 4000);
+	u32 i, k, out = lines("clocks outside the sync window"), in;
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, lines("clocks outside the sync window"), out);
+	in = lines("clocks inside the sync window");
+	for (k = 0; k < 100; k++) {
+		/* the difference that a controller of which the rate changes has for a while */
+		for (i = 1; i < 22; i++)
+			bus_esc(c->b, i)->cfg.drift_ppb += k < 50 ? 2000 : -2000;
+		cyc_run(c, 50);
+	}
+	KUNIT_EXPECT_EQ(test, lines("clocks outside the sync window"), out + 1);
+	KUNIT_EXPECT_EQ(test, lines("21 of 21 clocks outside the sync window"), 1u);
+	for (k = 0; k < 60 && lines("clocks inside the sync window") == in; k++)
+		cyc_run(c, 250);
+	KUNIT_EXPECT_EQ(test, lines("clocks inside the sync window"), in + 1);
+}
+
+/* Values of AssignActivate that enable nothing, or that the SII does not have. */
+static void dc_log_warns_about_assign_activate(struct kunit *test)
+{
+	static const struct {
+		u16 assign;
+		const char *words;
+		u32 lines;
+	} t[] = {
+		{ 0x0300, "AssignActivate 0x0300", 0 },
+		{ 0x0001, "AssignActivate 0x0001 enables no SYNC signal", 1 },
+		{ 0x0200, "AssignActivate 0x0200 enables no SYNC signal", 1 },
+		{ 0x0330, "AssignActivate 0x0330 is no operation mode of the SII, which has 0x0300", 1 },
+	};
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(t); i++) {
+		struct cyc *c = configure(test, 1, 1000);
+		u32 before = lines(t[i].words);
+		struct ec_ioc_sc_dc dc = { .assign_activate = t[i].assign, .cycle0 = 1000000 };
+
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+		cyc_activate(c);
+		cyc_run(c, 1000);
+		KUNIT_EXPECT_EQ_MSG(test, lines(t[i].words) - before, t[i].lines, "%s", t[i].words);
+		bus_down(c->b);
+		test->priv = NULL;
+	}
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(dc_log_interval_ignores_outliers),
+	KUNIT_CASE(dc_log_window_has_one_line),
+	KUNIT_CASE(dc_log_warns_about_assign_activate),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_dc_log", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
+
+MODULE_LICENSE("GPL");
