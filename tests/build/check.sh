@@ -216,6 +216,7 @@ no_headers() {
 t "make without kernel headers says what to install" no_headers all
 t "make install without kernel headers says what to install" no_headers install
 t "make uninstall needs no kernel headers" make -s KDIR="$tmp/nowhere" DESTDIR="$root" PREFIX=$prefix uninstall
+t "every command of the documentation is run by a test" tests/build/commands.py
 
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-only
+"""Every command in README.md and Documentation/ is run by a test.
+
+Takes the literal blocks, and the inline commands that begin with make, ethercat,
+ethercat-sim or tests/. Each must be in commands.txt, as
+
+    TEST : TEXT : COMMAND      TEST contains TEXT, which runs the command
+    -    : WHY  : FIRST LINE   the whole block is no command
+
+and each line there must be used. usage: commands.py [--block FILE FIRST_LINE]
+"""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+INLINE = re.compile(r"^((\w+=\S+ )*(make|ethercat|ethercat-sim)( |$)|tests/\S+\.sh)")
+
+
+def blocks(path):
+    """Lists of the lines of each literal block; shell continuations are joined."""
+    rst = path.suffix == ".rst"
+    block, inside, indent = [], not rst, 0
+    for line in path.read_text().split("\n") + ["end"]:
+        if line.startswith("    ") and inside or (indent and line[:indent].isspace()):
+            indent = indent or len(line) - len(line.lstrip())
+            block.append(line[indent:])
+        elif not line.strip() and (block or inside):
+            continue
+        else:
+            if block:
+                yield "\n".join(block).replace("\\\n", "").split("\n")
+            block, indent = [], 0
+            inside = line.rstrip().endswith("::") if rst else True
+
+
+def inline(path):
+    mark = "``" if path.suffix == ".rst" else "`"
+    text = path.read_text().replace("\n", " ")
+    for span in re.findall(mark + "([^`]+)" + mark, text):
+        if INLINE.match(span) and span not in ("make", "ethercat", "ethercat-sim"):
+            yield span
+
+
+def command(line):
+    return re.sub(r"\s+", " ", re.sub(r"\s{2,}#.*$", "", line)).strip()
+
+
+def table():
+    rows = {}
+    for line in (Path(__file__).parent / "commands.txt").read_text().split("\n"):
+        if line and not line.startswith("#"):
+            test, text, what = line.split(" : ", 2)
+            rows[what] = (test, text)
+    return rows
+
+
+def show(path, first):
+    """The commands of one block, for tests/system/docs.bats."""
+    for block in blocks(ROOT / path):
+        if command(block[0]) == first:
+            print("\n".join(filter(None, map(command, block))))
+            return 0
+    return 1
+
+
+def main():
+    if sys.argv[1:2] == ["--block"]:
+        return show(*sys.argv[2:])
+    rows, used, bad, count = table(), set(), [], 0
+
+    def look(where, what):
+        nonlocal count
+        count += 1
+        if what not in rows:
+            bad.append(f"{where}: no test runs '{what}' (tests/build/commands.txt)")
+            return
+        used.add(what)
+
+    for path in [ROOT / "README.md"] + sorted((ROOT / "Documentation").glob("*.rst")):
+        name = path.relative_to(ROOT)
+        for block in blocks(path):
+            first = block[0].strip()
+            if rows.get(first, ("",))[0] == "-":
+                used.add(first)
+                continue
+            for line in block:
+                if command(line):
+                    look(name, command(line))
+        for span in inline(path):
+            look(name, command(span))
+    for what, (test, text) in rows.items():
+        if what not in used:
+            bad.append(f"commands.txt: '{what}' is in no document")
+        elif test != "-" and text not in (ROOT / test).read_text():
+            bad.append(f"commands.txt: {test} has no '{text}'")
+    print("\n".join(bad))
+    print(f"{count} commands")
+    return 1 if bad or not count else 0
+
+
+sys.exit(main())

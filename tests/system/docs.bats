@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# vm: --icount --nics --timeout 600
+# The commands of README and Documentation, as they are written there. Which test runs
+# which: tests/build/commands.txt.
+
+load helpers
+
+# a source tree after "make", and what "make install" does with the modules
+setup_file() {
+	export TREE=$BATS_FILE_TMPDIR/tree
+	mkdir -p "$TREE"/{build,tool,examples} "$BATS_FILE_TMPDIR/bin"
+	ln -s "$EC_BUILD/modules" "$TREE/build/modules"
+	ln -s "$EC_BUILD/tool" "$TREE/tool/build"
+	ln -s "$EC_BUILD/examples" "$TREE/examples/build"
+	ln -s "$EC_BUILD"/tool/ethercat{,-sim} "$BATS_FILE_TMPDIR/bin"
+	local dir
+	dir=/lib/modules/$(uname -r)/updates
+	mkdir -p "$dir"
+	cp "$EC_BUILD"/modules/{master,devices,devices/sim}/*.ko "$dir"
+	depmod
+	modprobe veth
+}
+
+setup() {
+	cd "$TREE"
+	PATH=$BATS_FILE_TMPDIR/bin:$PATH
+	unset -f ethercat
+}
+
+teardown() {
+	local d
+	[ -z "${pid:-}" ] || kill "$pid" 2>/dev/null || true
+	rmmod ec_sim ec_generic ec_master 2>/dev/null || true
+	for d in veth0 eth1; do ip link del $d 2>/dev/null || true; done
+	rm -f /tmp/segment
+}
+
+# doc FILE LINE [PID]: the commands of the block that begins with LINE, one by one. What does
+# not end by itself goes on in the background.
+doc() {
+	local line n=0
+
+	while IFS= read -r line; do
+		n=$((n + 1))
+		line=${line//PID/${3:-PID}}
+		echo "$ $line"
+		case $line in
+		tcpdump*|ethercat-sim*|cat\ trace_pipe) eval "$line" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- & pid=$! ;;
+		ethercat\ slaves|tool/build/ethercat\ slaves) wait_for 60 eval "$line | grep -q PREOP"; eval "$line" ;;
+		*) eval "$line" || return ;;
+		esac
+	done < <("$BATS_TEST_DIRNAME/../build/commands.py" --block "$1" "$2")
+	[ $n -gt 0 ]
+}
+
+has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 ]"; }
+
+@test "README: by hand" {
+	doc README.md 'insmod build/modules/master/ec_master.ko main_devices=sim0 capture=1'
+	has_slaves 22
+	wait_for 60 eval '[ "$(stat -c %s frames.pcap)" -gt 1000 ]'
+}
+
+@test "simulator.rst: virtual device" {
+	doc Documentation/simulator.rst 'modprobe ec_master main_devices=sim0'
+	has_slaves 22
+}
+
+@test "simulator.rst: the program at an interface" {
+	doc Documentation/simulator.rst 'ip link add veth0 type veth peer name veth1'
+	modprobe ec_master main_devices=veth0
+	modprobe ec_generic
+	has_slaves 22
+	kill -0 "$pid"
+}
+
+@test "examples.rst: mirror without hardware" {
+	doc Documentation/examples.rst 'insmod build/modules/master/ec_master.ko main_devices=sim0' |
+		tee "$BATS_TEST_TMPDIR/mirror"
+	grep -E '^inputs: 0x04' "$BATS_TEST_TMPDIR/mirror"
+}
+
+@test "install.rst: a network card" {
+	ip link add eth1 type veth peer name veth0
+	insmod build/modules/master/ec_master.ko
+	rmmod ec_master
+	doc Documentation/install.rst 'ip link'
+	insmod build/modules/devices/sim/ec_sim.ko segment=bench netdev=veth0
+	has_slaves 22
+	doc Documentation/install.rst 'ethercat master' | grep attached
+	mkdir -p /etc/modprobe.d
+	rmmod ec_sim ec_generic ec_master
+	echo 'options ec_master main_devices=00:11:22:33:44:55' >/etc/modprobe.d/ethercat.conf
+	modprobe ec_master
+	rm /etc/modprobe.d/ethercat.conf
+	ethercat master | grep -q 'Main: 00:11:22:33:44:55 (waiting...)'
+}
+
+# what a card cannot do its driver refuses; that is no fault of the command
+@test "realtime.rst: settings of a card" {
+	modprobe e1000e
+	local line n=0
+	while IFS= read -r line; do
+		n=$((n + 1))
+		run eval "$line"
+		echo "$ $line: $status $output"
+		[[ $output != *"bad command line"* && $output != *"Usage"* ]]
+		[ "$status" = 0 ] || [[ $output == *"not supported"* || $output == *"not permitted"* ||
+			$output == *"nvalid argument"* || $output == *"unmodified"* ]]
+	done < <("$BATS_TEST_DIRNAME/../build/commands.py" --block Documentation/realtime.rst \
+		'ethtool -C eth1 rx-usecs 0 tx-usecs 0')
+	[ $n = 5 ]
+	modprobe -r e1000e
+}
+
+@test "realtime.rst: tracing" {
+	mount -t tracefs tracefs /sys/kernel/tracing 2>/dev/null || true
+	sleep 30 3>&- &
+	doc Documentation/realtime.rst 'cd /sys/kernel/tracing' $!
+	echo 0 >events/enable
+	echo >set_event_pid
+}
+
+@test "inline commands of the tool" {
+	printf '%s\n' "slave c EK1100" "slave out EL2008" "slave axis drive" >/tmp/segment
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment=/tmp/segment
+	has_slaves 3
+	local c
+	for c in 'ethercat master' 'ethercat master -v' 'ethercat domains -v' 'ethercat slaves' \
+		'ethercat slaves -v' 'ethercat crc' 'ethercat cycle' 'ethercat cycle --reset'; do
+		echo "$ $c"
+		eval "$c"
+	done
+	ethercat upload -p2 0x1018 1
+	ethercat download -p2 -t uint8 0x1c12 0 1 || true
+	ethercat help upload
+	ethercat latch -p 2
+	ethercat latch -p 2 single
+	ethercat latch -p 2 continuous
+	ethercat-sim --check /tmp/segment
+	# there is no session
+	run ethercat release
+	[[ $output == *"has no session to end"* ]]
+}
