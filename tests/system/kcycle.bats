@@ -189,7 +189,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 
 @test "another program than the one that was killed is refused, then may" {
 	background flags=1 stall=1 stall_cycles=50 value=4711
-	refused 'application of master 0 is there' release
+	refused 'still has its application' release
 	die
 	run kcycle cycles=100 period=2000
 	echo "$output"
