@@ -179,7 +179,7 @@ static bool is_mesh(const struct net_device *nd)
 static int check(const struct net_device *nd)
 {
 	if (is_mesh(nd)) {
-		pr_err("ec_generic: %s is a batman-adv mesh, which loses frames; use an Ethernet interface\n",
+		pr_err_ratelimited("ec_generic: %s is a batman-adv mesh, which loses frames; use an Ethernet interface\n",
 		       nd->name);
 		return -EOPNOTSUPP;
 	}
@@ -212,7 +212,7 @@ static int claim(struct gen *g)
 	}
 	ret = netdev_rx_handler_register(g->nd, receive, g);
 	if (ret) {
-		pr_err("ec_generic: %s does not let its frames be received (%pe); use the device below it\n",
+		pr_err_ratelimited("ec_generic: %s does not let its frames be received (%pe); use the device below it\n",
 		       g->nd->name, ERR_PTR(ret));
 		return ret;
 	}
@@ -222,7 +222,7 @@ static int claim(struct gen *g)
 	};
 	ret = nf_register_net_hook(dev_net(g->nd), &g->hook);
 	if (ret) {
-		pr_err("ec_generic: other traffic cannot be kept off %s (%pe)\n", g->nd->name,
+		pr_err_ratelimited("ec_generic: other traffic cannot be kept off %s (%pe)\n", g->nd->name,
 		       ERR_PTR(ret));
 		netdev_rx_handler_unregister(g->nd);
 		return ret;

@@ -33,7 +33,7 @@ static ssize_t control_write(struct file *file, const char __user *user, size_t 
 	if (!ret)
 		ret = ec_sim_wire_fault(w, &f);
 	else
-		pr_err("ec_sim: %s: %s\n", file->f_path.dentry->d_iname, err.text);
+		pr_err_ratelimited("ec_sim: %s: %s\n", file->f_path.dentry->d_iname, err.text);
 	kfree(text);
 	return ret ? ret : (ssize_t)count;
 }
