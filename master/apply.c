@@ -79,8 +79,6 @@ static int set_state(struct ec_slave *s, u8 state)
 	return ret;
 }
 
-
-
 static const u8 zero[256];
 
 /*
