@@ -133,7 +133,7 @@ static void fill_dc_state(ec_slave_config_dc_state_t *state,
 	__s64 diff = s->dc_diff;
 
 	memset(state, 0, sizeof(*state));
-	if (!s->dc_supported || s->dc_supported > 2)
+	if (s->dc_delay_only || !s->dc_supported || s->dc_supported > 2)
 		return;
 	state->bits = bits[s->dc_supported];
 	state->reference = s->position == reference;

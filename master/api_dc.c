@@ -117,7 +117,7 @@ static void fill_dc_state(ec_slave_config_dc_state_t *state, const struct ec_ioc
 	static const unsigned int bits[] = { 0, 32, 64 };
 
 	memset(state, 0, sizeof(*state));
-	if (!s->dc_supported || s->dc_supported >= ARRAY_SIZE(bits))
+	if (s->dc_delay_only || !s->dc_supported || s->dc_supported >= ARRAY_SIZE(bits))
 		return;
 	state->bits = bits[s->dc_supported];
 	state->reference = READ_ONCE(m->dc.ref_station) &&

@@ -174,7 +174,7 @@ static int to_init(struct ec_slave *s)
 	write_reg(s, EC_REG_SM(0), zero, EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], 16));
 	write_reg(s, EC_REG_EEP_OWNER, force, 1);
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
-	if (ec_slave_features(s) & EC_FEAT_DC)
+	if (ec_slave_has_clock(s))
 		ec_dc_sync_stop(s);
 	s->mbox_counter = 0;
 	s->op_only = 0;
@@ -444,7 +444,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 
 	if (!c || !c->dc_assign)
 		return 0;
-	if (!(ec_slave_features(s) & EC_FEAT_DC)) {
+	if (!ec_slave_has_clock(s)) {
 		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
 		return 0;
 	}
@@ -570,7 +570,7 @@ static int step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
-	if (!ret && want == EC_AL_PREOP && ec_slave_features(s) & EC_FEAT_DC)
+	if (!ret && want == EC_AL_PREOP && ec_slave_has_clock(s))
 		ec_dc_sync_stop(s);
 	return ret ? failed(s, want, ret) : 0;
 }

@@ -58,9 +58,14 @@ static void job_free(struct job *j)
 	kvfree(j->silent);
 }
 
-static bool has_clock(const struct ec_slave *s)
+static bool has_times(const struct ec_slave *s)
 {
 	return ec_slave_features(s) & EC_FEAT_DC && s->error != EC_SLAVE_SCAN_FAILED;
+}
+
+static bool is_clock(const struct job *j, unsigned int i)
+{
+	return j->nodes[i].dc && !READ_ONCE(j->slaves[i]->dc_delay_only);
 }
 
 static void fill_node(struct job *j, unsigned int i)
@@ -71,7 +76,7 @@ static void fill_node(struct job *j, unsigned int i)
 
 	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
 	n->entry = s->upstream;
-	n->dc = has_clock(s);
+	n->dc = has_times(s);
 	for (p = 0; p < EC_DC_PORTS; p++) {
 		if (s->dl_status & EC_DLS_COMM(p) && !(s->dl_status & EC_DLS_LOOP(p)))
 			n->open |= BIT(p);
@@ -86,7 +91,7 @@ static unsigned int find(const struct job *j, u16 station)
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
-		if (j->nodes[i].dc && (station == EC_DC_ANY || j->slaves[i]->station == station))
+		if (is_clock(j, i) && (station == EC_DC_ANY || j->slaves[i]->station == station))
 			break;
 	return i;
 }
@@ -106,7 +111,7 @@ bool ec_dc_can_be(struct ec_master *m, u16 choice)
 
 	down_read(&m->topo);
 	for (i = 0; i < m->n_slaves && !ret; i++)
-		ret = has_clock(m->slaves[i]) &&
+		ret = has_times(m->slaves[i]) && ec_slave_has_clock(m->slaves[i]) &&
 		      (choice == EC_DC_ANY || m->slaves[i]->station == choice);
 	up_read(&m->topo);
 	return ret;
@@ -173,16 +178,18 @@ static int job_init(struct job *j, struct ec_master *m)
 	return 0;
 }
 
-/* all clocks; those not set yet; of these the ones with 64 and with 32 bits */
-enum who { ANY, NEW, NEW_WIDE, NEW_NARROW };
+/* all with receive times; all clocks; those not set yet; of these 64 and 32 bits */
+enum who { TIMES, ANY, NEW, NEW_WIDE, NEW_NARROW };
 
 static bool chosen(const struct job *j, unsigned int i, enum who who)
 {
 	const struct ec_slave *s = j->slaves[i];
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 
-	if (!j->nodes[i].dc || who == ANY)
+	if (who == TIMES)
 		return j->nodes[i].dc;
+	if (!is_clock(j, i) || who == ANY)
+		return is_clock(j, i);
 	return !s->dc_set && (who == NEW || wide == (who == NEW_WIDE));
 }
 
@@ -219,6 +226,8 @@ static void leave_out(struct job *j)
 		if (!j->silent[i] || ++j->spoiled[i] < OUT_TRIES)
 			continue;
 		j->nodes[i].dc = false;
+		if (s->dc_delay_only)
+			continue;
 		if (!s->dc_out && !s->gone)
 			ec_slave_warn(s, "does not answer as it should while the clocks are set: its clock is left out and tried again later\n");
 		WRITE_ONCE(s->dc_out, true);
@@ -240,7 +249,7 @@ static int latch(struct job *j)
 	if (ret < 0)
 		return ret;
 	j->latch_ns = dg.sent_ns;
-	ret = all(j, ANY, EC_CMD_FPRD, EC_REG_DC_RECV(0), REGS, j->regs[0], REGS);
+	ret = all(j, TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0), REGS, j->regs[0], REGS);
 	for (i = 0; i < j->n; i++)
 		for (p = 0; p < EC_DC_PORTS; p++)
 			j->nodes[i].recv[p] = get_unaligned_le32(j->regs[i] + 4 * p);
@@ -289,7 +298,7 @@ static bool has_front(const struct job *j)
 	unsigned int i;
 
 	for (i = 0; i < j->ref; i++)
-		if (j->nodes[i].dc)
+		if (is_clock(j, i))
 			return true;
 	return false;
 }
@@ -373,7 +382,7 @@ static u64 latch_time(const struct job *j)
 	unsigned int i, set = j->ref;
 
 	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
-		if (j->nodes[i].dc && j->slaves[i]->dc_set)
+		if (is_clock(j, i) && j->slaves[i]->dc_set)
 			set = i;
 	if (j->slaves[set]->dc_set) {
 		t = get_unaligned_le64(j->regs[set] + 0x18) + j->slaves[set]->dc_offset -
@@ -414,7 +423,7 @@ static int write_clocks(struct job *j)
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0) ?:
 	      all(j, NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
 	for (i = 0; i < j->n && !ret; i++)
-		if (j->nodes[i].dc) {
+		if (is_clock(j, i)) {
 			WRITE_ONCE(j->slaves[i]->dc_out, false);
 			WRITE_ONCE(j->slaves[i]->dc_set, true);
 		}
@@ -538,7 +547,7 @@ static int check(struct job *j)
 	if (ret == -EAGAIN)
 		ret = 0;
 	for (i = 0; i < j->n && !ret; i++)
-		if (j->nodes[i].dc && !j->silent[i])
+		if (is_clock(j, i) && !j->silent[i])
 			ec_dc_verdict(j->slaves[i], get_unaligned_le32(v[i]));
 	kvfree(v);
 	return ret;

@@ -305,6 +305,7 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->mbox_protocols = s->info.protocols;
 	i->fmmu_bit = !(feat & EC_FEAT_NO_BIT_FMMU);
 	i->dc_supported = !(feat & EC_FEAT_DC) ? 0 : feat & EC_FEAT_DC64 ? 2 : 1;
+	i->dc_delay_only = READ_ONCE(s->dc_delay_only);
 	i->transmission_delay = s->dc_delay;
 	i->dc_offset = s->dc_offset;
 	i->dc_diff = s->dc_diff;

@@ -16,6 +16,8 @@ struct regs {
 	u8 dl[2];
 	u8 al[6];
 	u8 recv[16];
+	u8 delay[4];
+	bool delay_only;
 	bool there;		/* it answered when its address was read */
 };
 
@@ -291,6 +293,8 @@ static void take_regs(struct scan *sc)
 			continue;
 		}
 		memcpy(s->regs, r->info, sizeof(s->regs));
+		WRITE_ONCE(s->dc_delay_only,
+			   r->delay_only && ec_slave_features(s) & EC_FEAT_DC);
 		s->dl_status = get_unaligned_le16(r->dl);
 		/* of a known slave its worker may have a newer one */
 		if (!s->sii) {
@@ -356,6 +360,7 @@ static int read_new(struct scan *sc)
 static int look(struct scan *sc)
 {
 	static const u8 latch[4];
+	unsigned int i;
 	int ret;
 
 	if (sc->fresh)
@@ -369,6 +374,11 @@ static int look(struct scan *sc)
 		return ret;
 	bwr(sc->m, EC_REG_DC_RECV(0), latch, 4);
 	ret = read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].delay_only = sc->dg[i].wkc == 1;
+	ret = ret ?: read_all(sc, EC_REG_DC_DELAY, offsetof(struct regs, delay), 4);
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].delay_only &= !sc->dg[i].err && !sc->dg[i].wkc;
 	if (ret)
 		return ret;
 	take_regs(sc);

@@ -59,6 +59,7 @@ struct ec_master;
  * Of the distributed clock, changed under master->dc.lock:
  * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
  * @dc_hop: way from the clock before it, ns
+ * @dc_delay_only: it has receive times, but no clock that can be set
  * @dc_odd: receive times make no sense: the two are not certain
  * @dc_offset: of its system time, ns, register 0x0920
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
@@ -144,6 +145,7 @@ struct ec_slave {
 	u32 dc_delay;
 	u32 dc_hop;
 	bool dc_odd;
+	bool dc_delay_only;
 	u64 dc_offset;
 	s32 dc_diff;
 	bool dc_set;
@@ -222,6 +224,12 @@ static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
 static inline u16 ec_slave_features(const struct ec_slave *s)
 {
 	return get_unaligned_le16(s->regs + EC_REG_FEATURES);
+}
+
+/* a clock that can be set, not receive times alone */
+static inline bool ec_slave_has_clock(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_DC && !READ_ONCE(s->dc_delay_only);
 }
 
 static inline bool ec_slave_no_lrw(const struct ec_slave *s)

@@ -164,6 +164,7 @@ extern const struct ec_app_profile ec_app_profile_drive;
  * @ports: enum ec_port_type per port
  * @esc_type: register 0x0000
  * @features: register 0x0008
+ * @dc_delay_only: receive times, but no clock that can be set
  * @fmmus: number of FMMUs
  * @fmmu_use: SII category 40
  * @n_fmmu_use: bytes in it
@@ -198,6 +199,7 @@ struct ec_app_dev {
 	u8 ports[EC_MAX_PORT];
 	u8 esc_type;
 	u16 features;
+	bool dc_delay_only;
 	u8 fmmus;
 	u8 fmmu_use[4];
 	u8 n_fmmu_use;
@@ -547,7 +549,8 @@ struct ec_app {
  * @clock_start: its clock at power-on
  * @eeprom_emulated: its CPU stands in for the EEPROM
  * @no_ip: its EoE does not support IP
- * @clock_bits: of its clock, 64, 32 or EC_APP_NO_CLOCK; 0: as the model
+ * @clock_bits: of its clock, 64, 32, EC_APP_CLOCK_DELAY (receive times only) or
+ *	EC_APP_NO_CLOCK; 0: as the model
  */
 struct ec_app_config {
 	const char *name;
@@ -565,6 +568,7 @@ struct ec_app_config {
 };
 
 #define EC_APP_NO_CLOCK	1
+#define EC_APP_CLOCK_DELAY	2
 #define EC_APP_OP_TIMEOUT	9000000000ULL	/* as the common slave stack has it */
 
 /* slave_app.c */

@@ -321,7 +321,7 @@ static const struct ec_app_dev devices[] = {
 		.fmmus = 3,
 	}, {
 		DIGITAL_DEV("EL1004", "EL1004 4-ch input", "Digital inputs",
-			    0x03EC3052, 90),
+			    0x03EC3052, 90), .dc_delay_only = true,
 		.fmmu_use = { EC_SII_FMMU_INPUTS }, .n_fmmu_use = 1,
 		.sms = { DIGITAL_IN_SM }, .n_sms = 1, PDOS(in4_pdos),
 	}, {

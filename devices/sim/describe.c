@@ -143,9 +143,10 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 		return ec_desc_fail(d, "ip '", &w, "'? It is yes or no");
 	w = ec_desc_value(d, "dc");
 	c->clock_bits = ec_desc_is(&w, "64") ? 64 : ec_desc_is(&w, "32") ? 32 :
+			ec_desc_is(&w, "delay") ? EC_APP_CLOCK_DELAY :
 			ec_desc_is(&w, "none") ? EC_APP_NO_CLOCK : 0;
 	if (w.s && !c->clock_bits)
-		return ec_desc_fail(d, "dc '", &w, "'? Its clock has 64 or 32 bits, or is none");
+		return ec_desc_fail(d, "invalid dc '", &w, "': expected 64, 32, delay or none");
 	c->alias = (u16)alias;
 	c->serial = (u32)serial;
 	c->process_ns = (u32)delay;

@@ -50,6 +50,7 @@ struct ec_esc;
  * @clock_start: local clock at power-on, ns
  * @dc_noise_ns: jitter of the receive times, 0 = exact
  * @refuse_unwritten: an input SM is not readable before the PDI wrote it once
+ * @dc_delay_only: with EC_FEAT_DC: receive times, but no clock that can be set
  *
  * ec_esc_config_init() gives a complete set; change what differs.
  * A 32-bit clock is one without EC_FEAT_DC64.
@@ -76,6 +77,7 @@ struct ec_esc_config {
 	u64 clock_start;
 	u32 dc_noise_ns;
 	bool refuse_unwritten;
+	bool dc_delay_only;
 };
 
 /**

@@ -439,6 +439,8 @@ static void latch_receive(struct ec_esc *esc, const struct ec_frame_ctx *ctx)
 		t = ec_esc_local_time(esc, t) + (u64)noise(esc, t, (u32)p);
 		put_unaligned_le32((u32)t, esc->mem + EC_REG_DC_RECV(p));
 	}
+	if (!ec_esc_has_clock(esc))
+		return;
 	put_unaligned_le64(ec_esc_local_time(esc, ctx->now) +
 			   (u64)noise(esc, ctx->now, 0),
 			   esc->mem + EC_REG_DC_RECV_PU);
@@ -460,7 +462,7 @@ void ec_esc_dc_refresh(struct ec_esc *esc, u64 now)
 	s64 speed;
 	u32 v, s;
 
-	if (!(esc->cfg.features & EC_FEAT_DC))
+	if (!ec_esc_has_clock(esc))
 		return;
 	put_unaligned_le64(ec_esc_system_time(esc, now), m + EC_REG_DC_SYSTIME);
 	sys = long_time(esc, now);
@@ -594,7 +596,7 @@ void ec_esc_dc_pdi_write(struct ec_esc *esc, u16 ado, const u8 *buf, u32 len,
 	u8 old = activation(esc);
 	u32 i;
 
-	if (!(esc->cfg.features & EC_FEAT_DC))
+	if (!ec_esc_has_clock(esc))
 		return;
 	for (i = 0; i < len; i++)
 		if (esc->mem[EC_REG_DC_CUC] & unit_of(ado + i, old & 1))
@@ -627,6 +629,8 @@ void ec_esc_dc_write(struct ec_esc *esc, u16 ado, const u8 *buf, size_t len,
 		return;
 	if (ec_range_hit(ado, n, EC_REG_DC_RECV(0), 4))
 		latch_receive(esc, ctx);
+	if (!ec_esc_has_clock(esc))
+		return;
 	if (ado <= EC_REG_DC_SYSTIME && ado + n >= EC_REG_DC_SYSTIME + 4)
 		ec_esc_dc_time(esc, buf + (EC_REG_DC_SYSTIME - ado),
 			       ado + n >= EC_REG_DC_SYSTIME + 8, ctx->now);

@@ -101,6 +101,12 @@ static inline u16 ec_esc_get16(const struct ec_esc *esc, u16 reg)
 	return get_unaligned_le16(esc->mem + reg);
 }
 
+/* a clock that can be set, not receive times alone */
+static inline bool ec_esc_has_clock(const struct ec_esc *esc)
+{
+	return esc->cfg.features & EC_FEAT_DC && !esc->cfg.dc_delay_only;
+}
+
 /* time of the next thing a slave does by itself, but for its process data watchdog */
 static inline u64 ec_esc_next(const struct ec_esc *esc)
 {

@@ -66,7 +66,7 @@ void ec_esc_quick_update(struct ec_esc *esc)
 	q->bcast = normal && !esc->fault.miss_broadcast &&
 		   !(esc->cfg.features & EC_FEAT_NO_UNUSED);
 	q->time = normal && open && !(esc->mem[EC_REG_WRITE_PROTECT] & 1) &&
-		  esc->cfg.features & EC_FEAT_DC &&
+		  ec_esc_has_clock(esc) &&
 		  !(esc->cfg.features & EC_FEAT_NO_UNUSED);
 	q->data = normal && open && !esc->cfg.refuse_unwritten &&
 		  !(esc->cfg.features & EC_FEAT_NO_LRW);

@@ -35,10 +35,24 @@ static bool is_used(const struct ec_esc *esc, u32 a)
 	return false;
 }
 
+static bool within(u32 a, u32 len, u32 first, u32 end)
+{
+	return a >= first && a + len <= end;
+}
+
+/* behind the last register of the clock: of a delay-only one the receive times */
+static u32 clock_end(const struct ec_esc *esc)
+{
+	if (!(esc->cfg.features & EC_FEAT_DC))
+		return EC_DC_FIRST;
+	return ec_esc_has_clock(esc) ? EC_DC_FIRST + EC_DC_SIZE : EC_REG_DC_RECV(EC_MAX_PORT);
+}
+
 /*
- * False for a place that this slave controller does not answer at. One that
- * supports no access to unused registers (feature bit 1) wants it to begin
- * and to end in one that is there; gaps between are passed over.
+ * False for a place that this slave controller does not answer at: a datagram
+ * counts with one byte of it in a register that exists. One that supports no access
+ * to unused registers (feature bit 1) wants it to begin and to end in one that is
+ * there; gaps between are passed over.
  */
 bool ec_esc_reg_exists(const struct ec_esc *esc, u32 ado, u32 len)
 {
@@ -47,8 +61,9 @@ bool ec_esc_reg_exists(const struct ec_esc *esc, u32 ado, u32 len)
 	if (esc->cfg.features & EC_FEAT_NO_UNUSED && len &&
 	    !(is_used(esc, ado) && is_used(esc, ado + len - 1)))
 		return false;
-	return esc->cfg.features & EC_FEAT_DC || ado < EC_DC_FIRST ||
-	       ado + len > EC_DC_FIRST + EC_DC_SIZE;
+	return !within(ado, len, EC_REG_FMMU(0u + esc->cfg.fmmus), EC_REG_FMMU(EC_MAX_FMMU)) &&
+	       !within(ado, len, EC_REG_SM(0u + esc->cfg.sms), EC_REG_SM(EC_MAX_SM)) &&
+	       !within(ado, len, clock_end(esc), EC_DC_FIRST + EC_DC_SIZE);
 }
 
 static bool in(u32 a, u32 reg, u32 n)

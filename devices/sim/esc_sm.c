@@ -212,7 +212,7 @@ u8 *ec_esc_sm_begin(struct ec_esc *esc, u32 ado, size_t len, bool pdi,
 static void latch_time(struct ec_esc *esc, const struct ec_esc_sm *sm, u8 wish,
 		       u16 reg, u64 now)
 {
-	if (sm->page.activate & wish && esc->cfg.features & EC_FEAT_DC)
+	if (sm->page.activate & wish && ec_esc_has_clock(esc))
 		put_unaligned_le32((u32)ec_esc_local_time(esc, now),
 				   esc->mem + reg);
 }

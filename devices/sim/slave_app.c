@@ -417,7 +417,9 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec.ram_kib = ram_kib(model);
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
 	ec.features = d->features;
-	if (cfg->clock_bits) {
+	ec.dc_delay_only = cfg->clock_bits ? cfg->clock_bits == EC_APP_CLOCK_DELAY :
+					     d->dc_delay_only;
+	if (cfg->clock_bits && !ec.dc_delay_only) {
 		ec.features &= (u16)~(EC_FEAT_DC | EC_FEAT_DC64 | EC_FEAT_DC_ENHANCED);
 		if (cfg->clock_bits != EC_APP_NO_CLOCK)
 			ec.features |= EC_FEAT_DC | EC_FEAT_DC_ENHANCED;

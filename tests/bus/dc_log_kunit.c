@@ -74,6 +74,55 @@ static struct cyc *configure(struct kunit *test, u32 slaves, u32 us)
 	return c;
 }
 
+/*
+ * Slaves with receive times and nothing else of a clock are known from the scan: no
+ * warning, no repeated attempt, and their times count for the delays of all.
+ */
+static void dc_log_delay_only(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=5 response=100us transition=1ms\n"
+			       "slave a drive in=8 out=8 drift=20ppm clock=3s\n"
+			       "repeat 20 slave i EL1004 clock=7s cable=200\n"
+			       "slave z drive in=8 out=8 drift=-30ppm\n", 22);
+	struct ec_ioc_slave *info = kunit_kzalloc(test, sizeof(*info), GFP_KERNEL);
+	const struct ec_sim_step *step;
+	struct cyc *c;
+	u32 i, ms;
+
+	KUNIT_ASSERT_NOT_NULL(test, info);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 22, 0);
+	c->each = each;
+	cyc_activate(c);
+	for (ms = 0; ms < 3000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; ms++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	bus_figure("20 delay-only slaves among 2 drives: clocks synchronized after %u ms", ms);
+	cyc_run(c, 3000);
+	step = b->sim->route[0].step;
+	for (i = 0; i < 22; i++) {
+		const struct ec_slave *s = bus_slave(b, i);
+		bool only = i && i < 21;
+
+		memset(info, 0, sizeof(*info));
+		info->position = i;
+		KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, info), 0);
+		KUNIT_EXPECT_EQ(test, (bool)info->dc_delay_only, only);
+		KUNIT_EXPECT_EQ(test, (bool)info->dc_set, !only);
+		KUNIT_EXPECT_FALSE(test, s->dc_out);
+		KUNIT_EXPECT_FALSE(test, s->dc_odd);
+		KUNIT_EXPECT_LE(test, abs((s32)(s->dc_delay - (step[i].pu_ns - step[0].pu_ns))), 10);
+	}
+	KUNIT_EXPECT_EQ(test, lines("while the clocks are set"), 0u);
+	KUNIT_EXPECT_EQ(test, lines("could not be set"), 0u);
+	KUNIT_EXPECT_FALSE(test, b->m->dc.again);
+	/* none of them can be the reference clock */
+	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(b->m, bus_slave(b, 5)->station));
+	KUNIT_EXPECT_TRUE(test, ec_dc_can_be(b->m, bus_slave(b, 21)->station));
+}
+
 /* Delayed sends do not change the interval that was learned. */
 static void dc_log_interval_ignores_outliers(struct kunit *test)
 {
@@ -152,6 +201,7 @@ static void dc_log_warns_about_assign_activate(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
+	KUNIT_CASE(dc_log_delay_only),
 	KUNIT_CASE(dc_log_interval_ignores_outliers),
 	KUNIT_CASE(dc_log_window_has_one_line),
 	KUNIT_CASE(dc_log_warns_about_assign_activate),

@@ -73,6 +73,7 @@ int main(int argc, char **argv)
 	all(argv[1], "damaged/*.bin", check_damaged);
 	all(argv[1], "captures/*.pcapng", check_capture);
 	all(argv[1], "captures/twincat-run-ek1100-el1004.pcapng", check_replay);
+	all(argv[1], "captures/soem-sdinfo-ek1100-el1004.pcapng", check_replay);
 	printf("%u passed, %u failed\n", passed, failed);
 	return failed ? 1 : 0;
 }

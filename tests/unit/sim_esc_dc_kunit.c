@@ -124,6 +124,33 @@ static void slaves_without_dc_stay_out(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x910, 8) >> 32, 1ull);
 }
 
+/* as a real EL1004, read with SOEM: receive times, nothing else of a clock */
+static void delay_only_slaves_have_receive_times(struct kunit *test)
+{
+	static const u16 absent[] = { 0x910, 0x918, 0x920, 0x928, 0x92c, 0x930, 0x934, 0x981 };
+	struct bed *b = bed_new(test, 2, 1);
+	u8 v[32] = {};
+	size_t i;
+
+	b->cfg.dc_delay_only = true;
+	ec_sim_add(b->sim, &b->cfg);
+	ec_sim_wire(b->sim, 0, 1, 1, 0, 100);
+	bed_station(b, 0xffff, 1002);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BWR, 0, 0x900, v, 4), 2);
+	KUNIT_EXPECT_NE(test, bed_get(b, 1002, 0x900, 4), 0ull);
+	for (i = 0; i < ARRAY_SIZE(absent); i++) {
+		KUNIT_EXPECT_EQ(test, bed_rd(b, 1001, absent[i], v, 1), 1);
+		KUNIT_EXPECT_EQ(test, bed_rd(b, 1002, absent[i], v, 1), 0);
+		KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_BWR, 0, absent[i], v, 1), 1);
+	}
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FRMW, 1001, 0x910, v, 8), 1);
+	/* one byte that exists makes a datagram count; the others stay 0 */
+	memset(v, 0, sizeof(v));
+	KUNIT_EXPECT_EQ(test, bed_rd(b, 1002, 0x900, v, 32), 1);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le64(v + 0x10), 0ull);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le64(v + 0x18), 0ull);
+}
+
 static void a_write_never_sets_the_time(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
@@ -350,6 +377,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(the_worked_example_comes_out),
 	KUNIT_CASE(receive_times_jitter_by_their_noise),
 	KUNIT_CASE(slaves_without_dc_stay_out),
+	KUNIT_CASE(delay_only_slaves_have_receive_times),
 	KUNIT_CASE(a_write_never_sets_the_time),
 	KUNIT_CASE(a_burst_settles_faster_than_the_cycle),
 	KUNIT_CASE(without_comparisons_clocks_drift_apart),

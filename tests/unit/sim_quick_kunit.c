@@ -13,7 +13,7 @@ static const char segment[] =
 	"slave o2 io out=8 in=0\n"
 	"slave i1 io out=0 in=8\n"
 	"slave i2 io out=0 in=8\n"
-	"slave i3 io out=0 in=8\n"
+	"slave i3 io out=0 in=8 dc=delay\n"
 	"slave b io out=16 in=12\n"
 	"slave q EL2008\n"
 	"slave c io out=8 in=8 cpu=yes\n"
