@@ -111,6 +111,8 @@
 #define EC_HAVE_LATE_CYCLES
 /* ecrt_domain_set_options(): how a domain is sent */
 #define EC_HAVE_DOMAIN_OPTIONS
+/* ecrt_domain_age(), ecrt_domain_set_max_age(): how old process data are */
+#define EC_HAVE_DOMAIN_AGE
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -1954,6 +1956,49 @@ typedef enum {
  * option; %-EPERM, %-EBUSY.
  */
 EC_PUBLIC_API int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options);
+#endif
+
+#ifdef EC_HAVE_DOMAIN_AGE
+/**
+ * struct ec_domain_age_t - how old the process data of a domain are
+ * @age: sends of this domain since the send of the newest frame that is back; 0: the
+ *	data are those of the last send. Counts up to 128.
+ * @limit: see ecrt_domain_set_max_age()
+ * @stale: @age is above @limit
+ */
+typedef struct {
+	unsigned int age;
+	unsigned int limit;
+	uint8_t stale;
+} ec_domain_age_t;
+
+/**
+ * ecrt_domain_age() - get the age of the data of the last ecrt_domain_process()
+ * @domain: domain
+ * @age: out
+ *
+ * Extension (%EC_HAVE_DOMAIN_AGE). A frame that comes back some cycles late has a full
+ * working counter and old inputs: ecrt_domain_state() cannot show that. A domain that is
+ * sent in every fourth cycle only ages with its own sends. No system call.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age);
+
+/**
+ * ecrt_domain_set_max_age() - set the age above which process data are stale
+ * @domain: domain
+ * @sends: sends of this domain, 2 at first; 0: no limit
+ *
+ * Extension (%EC_HAVE_DOMAIN_AGE). For the next activation. The kernel log reports a
+ * domain once per activation when stale data come back. Stale data are still taken,
+ * and the working counter counts them.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EPERM, %-EBUSY.
+ */
+EC_PUBLIC_API int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends);
 #endif
 
 /**

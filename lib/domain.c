@@ -84,6 +84,7 @@ int ecrt_domain_process(ec_domain_t *domain)
 	domain->snap.working_counter = ec_status_read(st->working_counter);
 	domain->snap.wc_state = ec_status_read(st->wc_state);
 	domain->snap.redundancy_active = ec_status_read(st->redundancy_active);
+	domain->snap.age = ec_status_read(st->age);
 	return 0;
 }
 
@@ -104,5 +105,15 @@ int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
 	state->working_counter = domain->snap.working_counter;
 	state->wc_state = (ec_wc_state_t)domain->snap.wc_state;
 	state->redundancy_active = domain->snap.redundancy_active;
+	return 0;
+}
+
+int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age)
+{
+	if (!domain || !age)
+		return -EINVAL;
+	age->age = domain->snap.age;
+	age->limit = domain->max_age;
+	age->stale = domain->max_age && domain->snap.age > domain->max_age;
 	return 0;
 }

@@ -83,6 +83,7 @@ struct ec_domain {
 	size_t offset;
 	size_t size;
 	struct ec_status_domain snap;
+	unsigned int max_age;
 	struct ec_input *inputs;
 	unsigned int n_inputs;
 };

@@ -21,6 +21,22 @@ int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)
 				   options, domain->index) : 0;
 }
 
+int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
+{
+	struct ec_ioc_domain_age arg = { .max_age = sends };
+	int ret;
+
+	if (!domain)
+		return -EINVAL;
+	arg.domain = domain->index;
+	ret = ec_ioctl(domain->master, EC_IOC_DOMAIN_AGE, &arg);
+	if (ret)
+		return ec_fail_ioctl(domain->master, ret, "set the maximum age of domain %u",
+				     domain->index);
+	domain->max_age = sends;
+	return 0;
+}
+
 int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc, uint8_t allow_overlapping_pdos)
 {
 	struct ec_ioc_sc_overlap arg = { .overlap = !!allow_overlapping_pdos };

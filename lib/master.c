@@ -55,6 +55,7 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 	}
 	d->master = master;
 	d->index = arg.index;
+	d->max_age = EC_DOMAIN_MAX_AGE;
 	for (end = &master->domains; *end; end = &(*end)->next)
 		;
 	*end = d;

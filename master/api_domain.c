@@ -90,6 +90,7 @@ int ecrt_domain_process(ec_domain_t *domain)
 	domain->snap.working_counter = READ_ONCE(st->working_counter);
 	domain->snap.wc_state = READ_ONCE(st->wc_state);
 	domain->snap.redundancy_active = READ_ONCE(st->redundancy_active);
+	domain->snap.age = READ_ONCE(st->age);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_process);
@@ -115,3 +116,14 @@ int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_state);
+
+int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age)
+{
+	if (!domain || !age)
+		return -EINVAL;
+	age->age = domain->snap.age;
+	age->limit = domain->max_age;
+	age->stale = domain->max_age && domain->snap.age > domain->max_age;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_age);

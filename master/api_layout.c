@@ -32,6 +32,22 @@ int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_set_options);
 
+int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
+{
+	struct ec_ioc_domain_age i = { .max_age = sends };
+	struct ec_master *m;
+	int ret;
+
+	if (!domain)
+		return -EINVAL;
+	m = domain->session->master;
+	i.domain = domain->index;
+	ret = ec_api_do(m, ec_ioc_domain_age, &i);
+	return ret ? ec_api_fail(m, ret, "set the maximum age of domain %u",
+				 domain->index) : 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_set_max_age);
+
 int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
 {
 	struct ec_ioc_late i = { .per_s = per_second };

@@ -120,12 +120,17 @@ struct ec_cyc_flight {
 };
 
 #define EC_CYC_FRAMES	128	/* on their way at most */
+#define EC_CYC_SENDS	128	/* remembered; the age of data is at most that */
 
 /**
  * struct ec_cyc_domain - what is back of a domain
  * @expected: working counter when every slave takes part
  * @send: number of the newest send that anything is back of
  * @wkc: sum of the working counters of that send
+ * @age: sends of the domain since that one
+ * @max_age: data that are older are stale, 0: none are
+ * @stale: age of the oldest stale data that came back, for the log
+ * @stale_told: the log has said so; only the monitor's
  * @image: what the offsets of its datagrams count from
  */
 struct ec_cyc_domain {
@@ -133,6 +138,10 @@ struct ec_cyc_domain {
 	u32 expected;
 	u32 send;
 	u32 wkc;
+	u32 age;
+	u32 max_age;
+	u32 stale;
+	bool stale_told;
 };
 
 /**
@@ -164,6 +173,8 @@ struct ec_cyc_wire {
  * @flight: frames on their way, the oldest first
  * @n_flight: entries in @flight
  * @send: number of the last send
+ * @queued: domains of the last sends, by their number
+ * @judged: number of the last send when domains were judged
  * @sent: domains sent since the last receive, bit n: domain n
  * @back: domains of which something is back
  * @cycles: sends so far
@@ -200,6 +211,8 @@ struct ec_cycle {
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;
 	u32 send;
+	u64 queued[EC_CYC_SENDS];
+	u32 judged;
 	u64 sent;
 	u64 back;
 	u64 cycles;
@@ -267,6 +280,7 @@ void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 /* exchange.c */
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_do_receive(struct ec_session *s);
+void ec_cycle_tell_stale(struct ec_session *s);
 void ec_cycle_nothing_back(struct ec_session *s);
 int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_receive(struct ec_session *s);

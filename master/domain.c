@@ -25,6 +25,7 @@ struct ec_domain *ec_domain_create(struct ec_session *s)
 	d->session = s;
 	d->index = s->n_domains;
 	d->division = 1;
+	d->max_age = EC_DOMAIN_MAX_AGE;
 	s->domains[s->n_domains++] = d;
 	return d;
 }

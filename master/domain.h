@@ -30,6 +30,7 @@ struct ec_domain_fmmu {
  * @dgram_bytes: their bytes, header and working counter included
  * @memory: of a kernel application, for its data; NULL: they lie in the image
  * @snap: for a kernel application: result as of its last ecrt_domain_process()
+ * @max_age: sends after which data that come back are stale, 0: never
  * @division: it takes part in every so many cycles the kernel runs
  * @phase: first time in that cycle, from 0 on
  */
@@ -47,6 +48,7 @@ struct ec_domain {
 	u32 dgram_bytes;
 	u8 *memory;
 	struct ec_status_domain snap;
+	u32 max_age;
 	u32 division;
 	u32 phase;
 };

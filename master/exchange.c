@@ -108,6 +108,29 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	}
 }
 
+/* How often a domain was sent after send number @send. */
+static u32 sends_since(const struct ec_cycle *c, unsigned int domain, u32 send)
+{
+	u32 n = min_t(u32, c->send - send, EC_CYC_SENDS), sends = 0;
+
+	while (n--)
+		sends += c->queued[(c->send - n) % EC_CYC_SENDS] >> domain & 1;
+	return sends;
+}
+
+/* Old data with a full working counter are no fault of a slave: they are judged apart. */
+static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i)
+{
+	if (c->back & BIT_ULL(i)) {
+		d->age = sends_since(c, i, d->send);
+		if (unlikely(d->max_age && d->age > d->max_age && d->age > d->stale))
+			WRITE_ONCE(d->stale, d->age);
+	} else {
+		d->age = min_t(u32, d->age + sends_since(c, i, c->judged), EC_CYC_SENDS);
+	}
+	return d->age;
+}
+
 /* Domains that were sent or came back since the last receive. */
 static void judge(struct ec_session *s)
 {
@@ -121,9 +144,36 @@ static void judge(struct ec_session *s)
 
 		WRITE_ONCE(st->working_counter, wkc);
 		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == c->domains[i].expected ? 2 : 1);
+		WRITE_ONCE(st->age, judge_age(c, &c->domains[i], i));
 	}
+	c->judged = c->send;
 	c->sent = 0;
 	c->back = 0;
+}
+
+/**
+ * ec_cycle_tell_stale() - log domains whose data came back too old, once each
+ * @s: active session
+ *
+ * The cycle itself prints nothing.
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_cycle_tell_stale(struct ec_session *s)
+{
+	unsigned int i;
+
+	lockdep_assert_held(&s->master->session_lock);
+	for (i = 0; i < s->n_domains; i++) {
+		struct ec_cyc_domain *d = &s->cycle.domains[i];
+		u32 age = READ_ONCE(d->stale);
+
+		if (!age || d->stale_told)
+			continue;
+		d->stale_told = true;
+		ec_warn(s->master, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
+			i, age, d->max_age);
+	}
 }
 
 /**
@@ -375,6 +425,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	if (s->copying)
 		ec_copies_run(s);
 	c->send++;
+	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
 	send.dc = ec_dc_wanted(m, c, what->flags);
 	while (g < c->n_dgrams || send.dc) {

@@ -105,6 +105,7 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_WAIT, ec_ioc_wait, F_WRITE),
 	IOC(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, RSV(ec_ioc_sc_overlap, reserved)),
 	IOC(EC_IOC_LATE, ec_ioc_late, F_WRITE),
+	IOC(EC_IOC_DOMAIN_AGE, ec_ioc_domain_age, F_WRITE, RSV(ec_ioc_domain_age, reserved)),
 	IOC(EC_IOC_DOMAIN_OPTIONS, ec_ioc_domain_options, F_WRITE,
 	    RSV(ec_ioc_domain_options, reserved)),
 	IOC(EC_IOC_DIVISION, ec_ioc_division, F_WRITE),

@@ -94,6 +94,7 @@ struct ec_config *ec_ioc_lock_config(struct ec_file *f, u32 index, int *ret);
 
 /* ioctl_layout.c: how process data are sent */
 int ec_ioc_sc_overlap(struct ec_file *f, void *arg);
+int ec_ioc_domain_age(struct ec_file *f, void *arg);
 int ec_ioc_domain_options(struct ec_file *f, void *arg);
 int ec_ioc_late(struct ec_file *f, void *arg);
 

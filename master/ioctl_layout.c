@@ -48,6 +48,23 @@ int ec_ioc_domain_options(struct ec_file *f, void *arg)
 	return ret;
 }
 
+int ec_ioc_domain_age(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_domain_age *i = arg;
+	struct ec_session *s;
+	int ret = 0;
+
+	s = ec_ioc_lock_idle(f, &ret);
+	if (!s)
+		return ret;
+	if (i->domain < s->n_domains)
+		s->domains[i->domain]->max_age = i->max_age;
+	else
+		ret = ec_refuse(f, -ENOENT, "there is no domain %u", i->domain);
+	ec_session_unlock(f->master);
+	return ret;
+}
+
 int ec_ioc_late(struct ec_file *f, void *arg)
 {
 	struct ec_ioc_late *i = arg;

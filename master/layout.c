@@ -343,6 +343,7 @@ int ec_cycle_layout(struct ec_session *s)
 		const struct ec_domain *d = s->domains[i];
 
 		c->domains[i].expected = d->expected;
+		c->domains[i].max_age = d->max_age;
 		/* offsets are those of the image of all domains */
 		c->domains[i].image = d->memory ? d->memory - d->offset : s->shared->image;
 	}

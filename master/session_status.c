@@ -115,6 +115,7 @@ void ec_session_status(struct ec_master *m)
 		ec_cycle_thread_check_cpu(s);
 		ec_dc_app_log(m);
 		ec_cycle_tell_room(s);
+		ec_cycle_tell_stale(s);
 		ec_session_fill_status(s);
 	}
 	mutex_unlock(&m->session_lock);

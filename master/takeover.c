@@ -175,6 +175,9 @@ static bool domain_differs(const struct ec_domain *a, const struct ec_domain *b,
 	if (a->options != b->options)
 		return differs(t, "domain %u has the options 0x%x, not 0x%x", a->index, a->options,
 			       b->options);
+	if (a->max_age != b->max_age)
+		return differs(t, "domain %u has stale data after %u sends, not %u", a->index,
+			       a->max_age, b->max_age);
 	if (a->division != b->division || a->phase != b->phase)
 		return differs(t, "domain %u goes every %u cycles (phase %u), not %u (%u)",
 			       a->index, a->division, a->phase, b->division, b->phase);

@@ -504,6 +504,15 @@ struct ec_ioc_domain_options {
 	__u32 reserved;
 };
 
+#define EC_DOMAIN_MAX_AGE	2	/* at first */
+
+struct ec_ioc_domain_age {
+	__u32 flags;
+	__u32 domain;		/* in */
+	__u32 max_age;		/* in: more sends than that: stale; 0: no limit */
+	__u32 reserved;
+};
+
 struct ec_ioc_late {
 	__u32 flags;
 	__u32 per_s;		/* in: cycles a second acyclic frames may make late; 0: none */
@@ -834,6 +843,7 @@ struct ec_ioc_wait {
 #define EC_IOC_COPY		EC_IOC_W(0x63, struct ec_ioc_copy)
 #define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
 #define EC_IOC_LATE		EC_IOC_W(0x7a, struct ec_ioc_late)
+#define EC_IOC_DOMAIN_AGE	EC_IOC_W(0x7b, struct ec_ioc_domain_age)
 #define EC_IOC_DOMAIN_OPTIONS	EC_IOC_W(0x79, struct ec_ioc_domain_options)
 
 #endif

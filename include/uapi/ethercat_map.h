@@ -91,7 +91,8 @@ struct ec_request_area {
 struct ec_status_domain {
 	__u32 working_counter;
 	__u32 wc_state;		/* 0 zero, 1 incomplete, 2 complete */
-	__u32 redundancy_active;
+	__u16 redundancy_active;
+	__u16 age;		/* sends of the domain since that of the newest frame back */
 	__u32 expected;
 };
 

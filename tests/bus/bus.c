@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/err.h>
+#include <linux/kmsg_dump.h>
 #include "bus.h"
 #include "slow.h"
 #include "master/ioctl.h"
@@ -318,4 +319,20 @@ void bus_request(struct bus *b, u32 position, u8 state)
 	struct ec_ioc_state s = { .position = position, .state = state };
 
 	KUNIT_ASSERT_EQ(b->test, ec_ioc_state(&b->app, &s), 0);
+}
+
+/* Lines of the log with these words, since it began. */
+u32 bus_log_lines(const char *words)
+{
+	static char line[512];
+	struct kmsg_dump_iter iter;
+	u32 n = 0;
+	size_t len;
+
+	kmsg_dump_rewind(&iter);
+	while (kmsg_dump_get_line(&iter, false, line, sizeof(line) - 1, &len)) {
+		line[len] = '\0';
+		n += strstr(line, words) != NULL;
+	}
+	return n;
 }

@@ -59,6 +59,7 @@ struct ec_esc *bus_esc(struct bus *b, u32 index);
 struct ec_app *bus_app(struct bus *b, const char *name);
 u64 bus_frames(const struct bus *b);
 u64 bus_lost(const struct bus *b);
+u32 bus_log_lines(const char *words);
 void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, u32 arg,
 	       u32 arg2);
 void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes);

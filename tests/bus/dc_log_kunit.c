@@ -3,28 +3,11 @@
  * What the log says of clocks and their configuration, and the interval that is learned
  * from sends, some of which are late.
  */
-#include <linux/kmsg_dump.h>
 #include <linux/prandom.h>
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/dc.h"
 #include "master/ioctl.h"
-
-/* Lines of the log with these words, since it began. */
-static u32 lines(const char *words)
-{
-	static char line[512];
-	struct kmsg_dump_iter iter;
-	u32 n = 0;
-	size_t len;
-
-	kmsg_dump_rewind(&iter);
-	while (kmsg_dump_get_line(&iter, false, line, sizeof(line) - 1, &len)) {
-		line[len] = '\0';
-		n += strstr(line, words) != NULL;
-	}
-	return n;
-}
 
 static void each(struct cyc *c)
 {
@@ -115,8 +98,8 @@ static void dc_log_delay_only(struct kunit *test)
 		KUNIT_EXPECT_FALSE(test, s->dc_odd);
 		KUNIT_EXPECT_LE(test, abs((s32)(s->dc_delay - (step[i].pu_ns - step[0].pu_ns))), 10);
 	}
-	KUNIT_EXPECT_EQ(test, lines("while the clocks are set"), 0u);
-	KUNIT_EXPECT_EQ(test, lines("could not be set"), 0u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("while the clocks are set"), 0u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("could not be set"), 0u);
 	KUNIT_EXPECT_FALSE(test, b->m->dc.again);
 	/* none of them can be the reference clock */
 	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(b->m, bus_slave(b, 5)->station));
@@ -151,24 +134,24 @@ static void dc_log_interval_ignores_outliers(struct kunit *test)
 static void dc_log_window_has_one_line(struct kunit *test)
 {
 	struct cyc *c = configure(test, 22, 4000);
-	u32 i, k, out = lines("clocks outside the sync window"), in;
+	u32 i, k, out = bus_log_lines("clocks outside the sync window"), in;
 
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 3000);
-	KUNIT_EXPECT_EQ(test, lines("clocks outside the sync window"), out);
-	in = lines("clocks inside the sync window");
+	KUNIT_EXPECT_EQ(test, bus_log_lines("clocks outside the sync window"), out);
+	in = bus_log_lines("clocks inside the sync window");
 	for (k = 0; k < 100; k++) {
 		/* the difference that a controller of which the rate changes has for a while */
 		for (i = 1; i < 22; i++)
 			bus_esc(c->b, i)->cfg.drift_ppb += k < 50 ? 2000 : -2000;
 		cyc_run(c, 50);
 	}
-	KUNIT_EXPECT_EQ(test, lines("clocks outside the sync window"), out + 1);
-	KUNIT_EXPECT_EQ(test, lines("21 of 21 clocks outside the sync window"), 1u);
-	for (k = 0; k < 60 && lines("clocks inside the sync window") == in; k++)
+	KUNIT_EXPECT_EQ(test, bus_log_lines("clocks outside the sync window"), out + 1);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("21 of 21 clocks outside the sync window"), 1u);
+	for (k = 0; k < 60 && bus_log_lines("clocks inside the sync window") == in; k++)
 		cyc_run(c, 250);
-	KUNIT_EXPECT_EQ(test, lines("clocks inside the sync window"), in + 1);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("clocks inside the sync window"), in + 1);
 }
 
 /* Values of AssignActivate that enable nothing, or that the SII does not have. */
@@ -188,13 +171,13 @@ static void dc_log_warns_about_assign_activate(struct kunit *test)
 
 	for (i = 0; i < ARRAY_SIZE(t); i++) {
 		struct cyc *c = configure(test, 1, 1000);
-		u32 before = lines(t[i].words);
+		u32 before = bus_log_lines(t[i].words);
 		struct ec_ioc_sc_dc dc = { .assign_activate = t[i].assign, .cycle0 = 1000000 };
 
 		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
 		cyc_activate(c);
 		cyc_run(c, 1000);
-		KUNIT_EXPECT_EQ_MSG(test, lines(t[i].words) - before, t[i].lines, "%s", t[i].words);
+		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines(t[i].words) - before, t[i].lines, "%s", t[i].words);
 		bus_down(c->b);
 		test->priv = NULL;
 	}

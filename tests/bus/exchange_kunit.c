@@ -129,6 +129,82 @@ static void exchange_always_late(struct kunit *test)
 	KUNIT_EXPECT_GE(test, *(u32 *)c->ctx + 4, (u32)c->cycles);
 }
 
+/* Domain 1 is sent in every fourth cycle. */
+static void each_fourth(struct cyc *c)
+{
+	c->queued = c->cycles % 4 ? BIT_ULL(0) : BIT_ULL(0) | BIT_ULL(1);
+}
+
+static void max_age(struct cyc *c, u32 domain, u32 sends)
+{
+	struct ec_ioc_domain_age age = { .domain = domain, .max_age = sends };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_domain_age(&c->b->app, &age), 0);
+}
+
+/* Frames 17.5 ms late have full working counters and old inputs: their age tells. */
+static void exchange_old_data(struct kunit *test)
+{
+	struct bus *b = bus_up(test, three_frames, N);
+	u32 told = bus_log_lines("domain 0 receives stale process data"), i, min = ~0u, max = 0;
+	u32 others = bus_log_lines("domain 1 receives stale process data");
+	struct ec_ioc_domain_age none = { .domain = 2 };
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_domain(c);
+	cyc_map_all(c, 0, N / 2, 0);
+	cyc_map_all(c, N / 2, N / 2, 1);
+	KUNIT_EXPECT_EQ(test, ec_ioc_domain_age(&b->app, &none), -ENOENT);
+	max_age(c, 1, 5);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	c->each = each_fourth;
+	for (i = 0; i < 1000; i++) {
+		cyc_run(c, 1);
+		KUNIT_ASSERT_EQ(test, cyc_state(c, 0)->age, 0);
+		KUNIT_ASSERT_EQ(test, cyc_state(c, 1)->age, 0);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("receives stale process data"), told + others);
+
+	frame_fault(b, EC_SIM_FAULT_DELAY, 0, 17500 * NSEC_PER_USEC);
+	cyc_run(c, 100);
+	for (i = 0; i < 2000; i++) {
+		cyc_run(c, 1);
+		KUNIT_ASSERT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+		KUNIT_ASSERT_EQ(test, cyc_state(c, 0)->working_counter,
+				cyc_state(c, 0)->expected);
+		min = min(min, (u32)cyc_state(c, 0)->age);
+		max = max(max, (u32)cyc_state(c, 0)->age);
+		KUNIT_ASSERT_GE(test, cyc_state(c, 1)->age, 4);
+		KUNIT_ASSERT_LE(test, cyc_state(c, 1)->age, 5);
+	}
+	bus_figure("frames 17.5 ms late in a 1 ms cycle: data are %u to %u sends old", min, max);
+	KUNIT_EXPECT_EQ(test, min, 17u);
+	KUNIT_EXPECT_EQ(test, max, 17u);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	/* once, and only where the limit is below the age */
+	KUNIT_EXPECT_EQ(test, bus_log_lines("domain 0 receives stale process data"), told + 1);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("domain 1 receives stale process data"), others);
+}
+
+/* Without any frame back data grow old as well, but no frame has brought them. */
+static void exchange_age_of_lost(struct kunit *test)
+{
+	u32 told = bus_log_lines("receives stale process data");
+	struct cyc *c = in_op(test);
+
+	frame_fault(c->b, EC_SIM_FAULT_LOSE, 0, 0);
+	cyc_run(c, 11);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->age, 10);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->age, EC_CYC_SENDS);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("receives stale process data"), told);
+}
+
 static int send(struct cyc *c)
 {
 	struct ec_ioc_send s = { .queued = c->queued };
@@ -256,6 +332,8 @@ static void exchange_device_gone(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(exchange_late, delay_gen_params),
 	KUNIT_CASE(exchange_always_late),
+	KUNIT_CASE(exchange_old_data),
+	KUNIT_CASE(exchange_age_of_lost),
 	KUNIT_CASE(exchange_send_twice),
 	KUNIT_CASE(exchange_receive_twice),
 	KUNIT_CASE(exchange_all_lost),

@@ -363,7 +363,9 @@ static void cycle(void)
 static void layout(void)
 {
 	const struct ec_ioc_domain_options *o = (const void *)fake.arg;
+	const struct ec_ioc_domain_age *a = (const void *)fake.arg;
 	const struct ec_ioc_sc_overlap *v = (const void *)fake.arg;
+	ec_domain_age_t age;
 	ec_master_t *m = start();
 	ec_domain_t *d;
 	ec_slave_config_t *sc;
@@ -381,6 +383,16 @@ static void layout(void)
 	CHECK(ecrt_master_set_late_cycles(NULL, 1) == -EINVAL);
 	CHECK(!ecrt_master_set_late_cycles(m, 7) && fake.last == EC_IOC_LATE &&
 	      ((const struct ec_ioc_late *)fake.arg)->per_s == 7);
+	CHECK(ecrt_domain_age(NULL, &age) == -EINVAL && ecrt_domain_age(d, NULL) == -EINVAL);
+	CHECK(!ecrt_domain_age(d, &age) && age.limit == 2 && !age.stale);
+	CHECK(ecrt_domain_set_max_age(NULL, 1) == -EINVAL);
+	CHECK(!ecrt_domain_set_max_age(d, 9) && fake.last == EC_IOC_DOMAIN_AGE &&
+	      a->domain == 1 && a->max_age == 9);
+	CHECK(!ecrt_domain_age(d, &age) && age.limit == 9);
+	fake.refuse = EC_IOC_DOMAIN_AGE;
+	fake.err = EBUSY;
+	CHECK(ecrt_domain_set_max_age(d, 3) == -EBUSY);
+	CHECK(!ecrt_domain_age(d, &age) && age.limit == 9);
 	fake.refuse = EC_IOC_DOMAIN_OPTIONS;
 	fake.err = EOPNOTSUPP;
 	CHECK(ecrt_domain_set_options(d, 8) == -EOPNOTSUPP);

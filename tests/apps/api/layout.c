@@ -6,10 +6,12 @@
 static void with(uint32_t options, uint8_t overlap, unsigned int working_counter)
 {
 	ec_domain_state_t ds;
+	ec_domain_age_t age;
 	struct bench b;
 
 	NEED(bench_request(&b) && bench_configure(&b));
 	SILENT(CALL(ecrt_domain_set_options)(b.d, options), 0);
+	SILENT(CALL(ecrt_domain_set_max_age)(b.d, 5), 0);
 	SILENT(CALL(ecrt_slave_config_overlapping_pdos)(b.motor, overlap), 0);
 	IS(CALL(ecrt_domain_size)(b.d), 20);
 	NEED(bench_activate(&b) && bench_op(&b));
@@ -22,6 +24,11 @@ static void with(uint32_t options, uint8_t overlap, unsigned int working_counter
 	IS(CALL(ecrt_domain_state)(b.d, &ds), 0);
 	IS(ds.wc_state, EC_WC_COMPLETE);
 	IS(ds.working_counter, working_counter);
+	IS(CALL(ecrt_domain_age)(b.d, &age), 0);
+	IS(age.age, 0);
+	IS(age.limit, 5);
+	YES(!age.stale);
+	SAYS(CALL(ecrt_domain_set_max_age)(b.d, 2), -EBUSY);
 	SAYS(CALL(ecrt_domain_set_options)(b.d, 0), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_overlapping_pdos)(b.motor, 0), -EBUSY);
 	bench_down(&b);

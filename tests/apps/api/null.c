@@ -124,6 +124,7 @@ static void domain(void)
 {
 	const ec_pdo_entry_reg_t regs = { 0, 0, 0, 0, 0, 0, NULL, NULL };
 	ec_domain_state_t state;
+	ec_domain_age_t age;
 
 	api_lines();
 	IS(ecrt_domain_reg_pdo_entry_list(NULL, &regs), -EINVAL);
@@ -133,6 +134,8 @@ static void domain(void)
 	IS(ecrt_domain_queue(NULL), -EINVAL);
 	IS(ecrt_domain_state(NULL, &state), -EINVAL);
 	IS(ecrt_domain_set_options(NULL, 0), -EINVAL);
+	IS(ecrt_domain_set_max_age(NULL, 2), -EINVAL);
+	IS(ecrt_domain_age(NULL, &age), -EINVAL);
 	IS(ecrt_domain_set_division(NULL, 1, 0), -EINVAL);
 	IS(ecrt_domain_copy(NULL, 0, 0, NULL, 0, 0, 1), -EINVAL);
 	IS(api_lines(), 0);

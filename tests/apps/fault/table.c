@@ -84,6 +84,7 @@ const struct cmd cmds[] = {
 	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
 	CMD(SC_OVERLAP, APP, RSV1(ec_ioc_sc_overlap)),
 	CMD(LATE, APP),
+	CMD(DOMAIN_AGE, APP, RSV1(ec_ioc_domain_age)),
 	CMD(DOMAIN_OPTIONS, APP, RSV1(ec_ioc_domain_options)),
 };
 
