@@ -537,7 +537,10 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * answer; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
  * %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too small or larger
  * than a datagram; %-ECANCELED the slave was disconnected (while it is being
- * configured the call waits); %-EINTR; %-ENOMEM.
+ * configured the call waits); %-EINTR; %-ENOMEM; for a mailbox error reply of
+ * the slave %-EBADE (code 1), %-EPFNOSUPPORT (2), %-ECHRNG (3), %-EBADRQC (4),
+ * %-EBADR (5), %-ENODATA (6), %-EXFULL (7), %-EDOM (8), %-EALREADY (9) or
+ * %-ECOMM (any other code).
  */
 EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,

@@ -3,6 +3,7 @@
 #include <linux/err.h>
 #include "coe.h"
 #include "config.h"
+#include "mailbox.h"
 #include "master.h"
 #include "slave.h"
 #include "wire/coe.h"
@@ -41,7 +42,7 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 /* Many slaves have fixed lists: what they have instead decides, see check(). */
 static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
 {
-	char text[sizeof(s->pdo_refusal)];
+	char text[sizeof(s->pdo_refusal)], why[96];
 
 	if (!ret || ret == -ECANCELED || ret == -EINTR)
 		return ret;
@@ -49,8 +50,8 @@ static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret
 		scnprintf(text, sizeof(text), "%s 0x%04x refused: abort 0x%08x (%s)", what, index,
 			  abort, ec_coe_abort_text(abort) ?: "unknown code");
 	else
-		scnprintf(text, sizeof(text), "%s 0x%04x not written: %pe", what, index,
-			  ERR_PTR(ret));
+		scnprintf(text, sizeof(text), "%s 0x%04x not written: %s", what, index,
+			  ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	ec_slave_warn(s, "%s\n", text);
 	if (!s->pdo_refusal[0])
 		strscpy(s->pdo_refusal, text, sizeof(s->pdo_refusal));
@@ -173,7 +174,7 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 {
 	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
 	const struct ec_pdo_entry *e, *h;
-	char has[32] = "nothing";
+	char has[32] = "nothing", why[96];
 	int ret = ec_slave_read_sm_pdos(s, sm);
 	u32 bit;
 
@@ -181,8 +182,8 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 		return ret;
 	if (ret) {
 		snprintf(s->warning, sizeof(s->warning),
-			 "process data of SM%u may belong to other objects: %.80s; its PDOs cannot be read (%pe)",
-			 sm, s->pdo_refusal, ERR_PTR(ret));
+			 "process data of SM%u may belong to other objects: %.80s; its PDOs cannot be read (%s)",
+			 sm, s->pdo_refusal, ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 		ec_slave_warn(s, "%s\n", s->warning);
 		return 0;
 	}

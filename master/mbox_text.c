@@ -3,6 +3,7 @@
 #include <linux/err.h>
 #include <linux/kernel.h>
 #include "mailbox.h"
+#include "wire/mbox.h"
 
 /**
  * ec_mbox_fail_text() - one line for a failed transfer
@@ -11,14 +12,23 @@
  * @buf: room for the text
  * @size: of @buf
  *
- * Abort and error codes of the protocol are the caller's.
+ * Abort and error codes of the protocol are the caller's; a mailbox error reply has its text.
  *
  * Context: Any.
  * Return: @buf.
  */
 const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t size)
 {
+	u16 detail = ec_mbox_errno_detail(ret);
+
+	if (detail) {
+		scnprintf(buf, size, "mailbox error 0x%04x: %s", detail, ec_mbox_error_text(detail));
+		return buf;
+	}
 	switch (ret) {
+	case -ECOMM:
+		scnprintf(buf, size, "mailbox error reply with an unknown code; the kernel log has it");
+		break;
 	case -EPROTONOSUPPORT:
 		scnprintf(buf, size, "no %s mailbox", protocol);
 		break;

@@ -5,6 +5,7 @@
  */
 #include <linux/slab.h>
 #include "coe.h"
+#include "mailbox.h"
 #include "master.h"
 #include "slave.h"
 
@@ -167,6 +168,7 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
  */
 void ec_slave_read_coe_pdos(struct ec_slave *s)
 {
+	char why[96];
 	unsigned int sm;
 	int ret = 0;
 
@@ -178,7 +180,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	if (ret == -ECANCELED || ret == -EINTR)
 		return;
 	if (ret && ret != -ENOENT)
-		ec_slave_warn(s, "PDOs could not be read over CoE (%pe); those of the EEPROM are used\n",
-			      ERR_PTR(ret));
+		ec_slave_warn(s, "PDOs could not be read over CoE (%s); those of the EEPROM are used\n",
+			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	WRITE_ONCE(s->pdos_known, true);
 }

@@ -69,17 +69,23 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
-		"good", "length", "short", "counter", "type", "babble",
+		"good", "length", "short", "counter", "type", "babble", "error",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
+	s64 code = 1;
 
 	for (u32 i = 0; i < ARRAY_SIZE(kinds); i++) {
-		if (ec_desc_is(w, kinds[i])) {
-			f->arg = i;
+		if (!ec_desc_is(w, kinds[i]))
+			continue;
+		f->arg = i;
+		if (i != EC_SIM_MAILBOX_ERROR)
 			return 0;
-		}
+		if (ec_desc_number(d, "code", 0, 0xFFFF, &code))
+			return -EINVAL;
+		f->arg2 = (u32)code;
+		return 0;
 	}
-	return ec_desc_fail(d, "mailbox messages are good, or wrong in length, short, counter, type, babble",
+	return ec_desc_fail(d, "mailbox messages are good, or wrong: length, short, counter, type, babble, error code=N",
 			    NULL, "");
 }
 

@@ -90,6 +90,7 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_COUNTER: each has the counter of the first
  * @EC_SIM_MAILBOX_TYPE: another protocol
  * @EC_SIM_MAILBOX_BABBLE: another protocol, again and again
+ * @EC_SIM_MAILBOX_ERROR: each is a mailbox error reply with the code in @arg2
  */
 enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_GOOD,
@@ -98,6 +99,7 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_COUNTER,
 	EC_SIM_MAILBOX_TYPE,
 	EC_SIM_MAILBOX_BABBLE,
+	EC_SIM_MAILBOX_ERROR,
 	EC_SIM_MAILBOX_FAULTS
 };
 

@@ -333,6 +333,12 @@ static void spoil(struct ec_app *app)
 	case EC_SIM_MAILBOX_BABBLE:
 		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_FOE);
 		break;
+	case EC_SIM_MAILBOX_ERROR:
+		put_unaligned_le16(EC_MBOX_ERR_BODY, h);
+		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_ERR);
+		put_unaligned_le16(1, h + EC_MBOX_HDR);
+		put_unaligned_le16(app->esc->fault.mailbox_code, h + EC_MBOX_HDR + 2);
+		break;
 	default:
 		break;
 	}

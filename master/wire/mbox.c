@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
 #include "mbox.h"
-#include "text.h"
 
 /**
  * ec_mbox_hdr_decode() - read a mailbox header
@@ -116,16 +115,24 @@ void ec_mbox_error_encode(struct ec_wbuf *w, u16 detail)
 	ec_wbuf_le16(w, detail);
 }
 
-static const struct ec_text errors[] = {
-	{ EC_MBOX_ERR_SYNTAX, "the mailbox header is wrong" },
-	{ EC_MBOX_ERR_PROTOCOL, "the mailbox protocol is not supported" },
-	{ EC_MBOX_ERR_CHANNEL, "the channel in the mailbox header is wrong" },
-	{ EC_MBOX_ERR_SERVICE, "the service of the mailbox protocol is not supported" },
-	{ EC_MBOX_ERR_HEADER, "the header of the mailbox protocol is wrong" },
-	{ EC_MBOX_ERR_TOO_SHORT, "the mailbox message is too short" },
-	{ EC_MBOX_ERR_NO_MEMORY, "the slave has no memory left for the mailbox message" },
-	{ EC_MBOX_ERR_SIZE, "the sizes in the mailbox message contradict each other" },
-	{ EC_MBOX_ERR_IN_WORK, "the slave still works on an earlier request" },
+/*
+ * Each code has an errno of its own, which no other cause in a transfer has, so that the errno
+ * alone leads back to the text (ec_mbox_errno_detail()).
+ */
+static const struct {
+	u16 detail;
+	int err;
+	const char *text;
+} errors[] = {
+	{ EC_MBOX_ERR_SYNTAX, -EBADE, "the mailbox header is wrong" },
+	{ EC_MBOX_ERR_PROTOCOL, -EPFNOSUPPORT, "the mailbox protocol is not supported" },
+	{ EC_MBOX_ERR_CHANNEL, -ECHRNG, "the channel in the mailbox header is wrong" },
+	{ EC_MBOX_ERR_SERVICE, -EBADRQC, "the service of the mailbox protocol is not supported" },
+	{ EC_MBOX_ERR_HEADER, -EBADR, "the header of the mailbox protocol is wrong" },
+	{ EC_MBOX_ERR_TOO_SHORT, -ENODATA, "the mailbox message is too short" },
+	{ EC_MBOX_ERR_NO_MEMORY, -EXFULL, "the slave has no memory left for the mailbox message" },
+	{ EC_MBOX_ERR_SIZE, -EDOM, "the sizes in the mailbox message contradict each other" },
+	{ EC_MBOX_ERR_IN_WORK, -EALREADY, "the slave still works on an earlier request" },
 };
 
 /**
@@ -137,9 +144,12 @@ static const struct ec_text errors[] = {
  */
 const char *ec_mbox_error_text(u16 detail)
 {
-	const char *text = ec_text_find(errors, ARRAY_SIZE(errors), detail);
+	size_t i;
 
-	return text ? text : "unknown mailbox error";
+	for (i = 0; i < ARRAY_SIZE(errors); i++)
+		if (errors[i].detail == detail)
+			return errors[i].text;
+	return "unknown mailbox error";
 }
 
 /**
@@ -147,20 +157,31 @@ const char *ec_mbox_error_text(u16 detail)
  * @detail: its detail word
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: -EPROTONOSUPPORT, -EOPNOTSUPP, -ENOMEM, -EBUSY or -EPROTO.
+ * Return: -errno that stands for this code only; -ECOMM for an unknown code.
  */
 int ec_mbox_error_errno(u16 detail)
 {
-	switch (detail) {
-	case EC_MBOX_ERR_PROTOCOL:
-		return -EPROTONOSUPPORT;
-	case EC_MBOX_ERR_SERVICE:
-		return -EOPNOTSUPP;
-	case EC_MBOX_ERR_NO_MEMORY:
-		return -ENOMEM;
-	case EC_MBOX_ERR_IN_WORK:
-		return -EBUSY;
-	default:
-		return -EPROTO;
-	}
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(errors); i++)
+		if (errors[i].detail == detail)
+			return errors[i].err;
+	return -ECOMM;
+}
+
+/**
+ * ec_mbox_errno_detail() - the error reply behind an errno
+ * @err: from ec_mbox_error_errno(), or anything else
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: detail word, 0 when @err stands for none or for an unknown one.
+ */
+u16 ec_mbox_errno_detail(int err)
+{
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(errors); i++)
+		if (errors[i].err == err)
+			return errors[i].detail;
+	return 0;
 }

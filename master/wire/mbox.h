@@ -66,5 +66,6 @@ int ec_mbox_error_decode(struct ec_rbuf *r, u16 *detail);
 void ec_mbox_error_encode(struct ec_wbuf *w, u16 detail);
 const char *ec_mbox_error_text(u16 detail);
 int ec_mbox_error_errno(u16 detail);
+u16 ec_mbox_errno_detail(int err);
 
 #endif

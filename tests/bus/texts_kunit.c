@@ -5,6 +5,7 @@
 #include "master/coe.h"
 #include "master/ioctl.h"
 #include "master/mailbox.h"
+#include "master/wire/mbox.h"
 
 static const char text[] =
 	"segment seed=9 response=200us transition=200us\n"
@@ -71,6 +72,56 @@ static void texts_sdo(struct kunit *test)
 	expect_text(b, "slave 1: not in PREOP or above");
 }
 
+/* Each mailbox error reply has the text of its code, the same for a command and an SDO at start. */
+static void texts_mailbox_error(struct kunit *test)
+{
+	static const char * const want[] = {
+		"mailbox error reply with an unknown code; the kernel log has it",
+		"mailbox error 0x0001: the mailbox header is wrong",
+		"mailbox error 0x0002: the mailbox protocol is not supported",
+		"mailbox error 0x0003: the channel in the mailbox header is wrong",
+		"mailbox error 0x0004: the service of the mailbox protocol is not supported",
+		"mailbox error 0x0005: the header of the mailbox protocol is wrong",
+		"mailbox error 0x0006: the mailbox message is too short",
+		"mailbox error 0x0007: the slave has no memory left for the mailbox message",
+		"mailbox error 0x0008: the sizes in the mailbox message contradict each other",
+		"mailbox error 0x0009: the slave still works on an earlier request",
+		"mailbox error reply with an unknown code; the kernel log has it",
+	};
+	struct bus *b = ready(test);
+	char line[128];
+	int ret;
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(want); i++) {
+		bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ERROR, i);
+		ret = upload(b, BAD, 0x1018);
+		KUNIT_EXPECT_EQ(test, ret, ec_mbox_error_errno(i));
+		scnprintf(line, sizeof(line), "SDO 0x1018:01 of slave 1: %s", want[i]);
+		KUNIT_EXPECT_STREQ(test, b->app.reason, line);
+	}
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_GOOD, 0);
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), 0);
+}
+
+static void texts_startup_mailbox_error(struct kunit *test)
+{
+	static const u8 value[4];
+	struct bus *b = ready(test);
+	struct cyc *c = cyc_new(b, 1000);
+	u32 config = cyc_config(c, BAD);
+	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x1018, .subindex = 3, .size = 4 };
+
+	cyc_map(c, config, 2, cyc_domain(c));
+	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ERROR, EC_MBOX_ERR_NO_MEMORY);
+	cyc_activate(c);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
+			   "startup SDO 0x1018:03 (4 byte(s)) failed: mailbox error 0x0007: the slave has no memory left for the mailbox message");
+	cyc_release(c);
+}
+
 /* A slave that answers nothing is not one that aborts with code 0. */
 static void texts_dead(struct kunit *test)
 {
@@ -123,6 +174,10 @@ static void texts_errno(struct kunit *test)
 	char a[96];
 	u32 i;
 
+	/* none of them stands for a mailbox error reply as well */
+	for (i = 0; i < ARRAY_SIZE(all); i++)
+		KUNIT_EXPECT_EQ_MSG(test, ec_mbox_errno_detail(all[i]), 0, "error %d", all[i]);
+
 	for (i = 0; i < ARRAY_SIZE(all); i++) {
 		ec_mbox_fail_text(all[i], "CoE", a, sizeof(a));
 		KUNIT_EXPECT_GT_MSG(test, strlen(a), 10ul, "error %d: %s", all[i], a);
@@ -169,6 +224,8 @@ static void texts_config(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(texts_sdo),
+	KUNIT_CASE(texts_mailbox_error),
+	KUNIT_CASE(texts_startup_mailbox_error),
 	KUNIT_CASE(texts_dead),
 	KUNIT_CASE(texts_register),
 	KUNIT_CASE(texts_startup),

@@ -94,11 +94,14 @@ static void every_error_has_a_text_and_an_errno(struct kunit *test)
 	for (i = 1; i <= 9; i++) {
 		KUNIT_EXPECT_STRNEQ(test, ec_mbox_error_text(i), "unknown mailbox error");
 		KUNIT_EXPECT_LT(test, ec_mbox_error_errno(i), 0);
+		/* the errno leads back to the code */
+		KUNIT_EXPECT_EQ(test, ec_mbox_errno_detail(ec_mbox_error_errno(i)), i);
 	}
 	KUNIT_EXPECT_STREQ(test, ec_mbox_error_text(0), "unknown mailbox error");
 	KUNIT_EXPECT_STREQ(test, ec_mbox_error_text(10), "unknown mailbox error");
-	KUNIT_EXPECT_EQ(test, ec_mbox_error_errno(2), -EPROTONOSUPPORT);
-	KUNIT_EXPECT_EQ(test, ec_mbox_error_errno(0xFFFF), -EPROTO);
+	KUNIT_EXPECT_EQ(test, ec_mbox_error_errno(2), -EPFNOSUPPORT);
+	KUNIT_EXPECT_EQ(test, ec_mbox_error_errno(0xFFFF), -ECOMM);
+	KUNIT_EXPECT_EQ(test, ec_mbox_errno_detail(-ECOMM), 0);
 }
 
 static void protocols_have_names(struct kunit *test)
