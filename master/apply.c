@@ -30,6 +30,9 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      "%.160s; then SAFEOP refused: AL status code 0x%04x: %s", s->pdo_refusal,
 			      s->al_code, ec_al_code_text(s->al_code));
+	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
+			      ret == -ETIME ? "not reached in time" : "refused");
 	else if (ret == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "refused %s: AL status code 0x%04x: %s",
 			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));

@@ -318,7 +318,7 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
 	strscpy(i->why, s->why, sizeof(i->why));
-	strscpy(i->warning, s->warning, sizeof(i->warning));
+	strscpy(i->warning, s->warning[0] ? s->warning : s->sii_flaw, sizeof(i->warning));
 	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i) ?:
 	      slave_config(f->master, s, i);
 	ec_slave_unref(s);

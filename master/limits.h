@@ -30,7 +30,8 @@
 #define EC_MAX_SOE_SIZE		(64 * 1024)	/* bytes; the length of a list has 16 bits */
 #define EC_MAX_VOE_SIZE		1474	/* bytes; one message in one datagram */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
-#define EC_MAX_SII_BYTES	(64 * 1024)	/* larger EEPROMs are cut */
+#define EC_MAX_SII_BYTES	(512 * 1024)	/* larger EEPROMs are cut */
+#define EC_MAX_SII_TOTAL	(64 * 1024 * 1024)	/* EEPROMs of all slaves of a master */
 
 #define EC_MAX_INTERVAL_US	1000000	/* longer ones are measured; waits are a multiple */
 #define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */

@@ -165,6 +165,7 @@ struct ec_master {
 	struct ec_session *session;
 	struct ec_api *api;
 	atomic_long_t mapped;
+	atomic_long_t sii_bytes;
 	struct ec_session *heir;
 	struct mutex cyclic_lock;
 	struct ec_session *active;

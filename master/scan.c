@@ -347,7 +347,7 @@ static int read_new(struct scan *sc)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 				      "EEPROM content is unusable (%zu bytes); write a valid image",
 				      s->sii_bytes);
-		else if (s->sii && !s->info.checksum_ok)
+		else if (s->sii && !s->info.checksum_ok && s->flaw.kind != EC_SII_FLAW_BLANK)
 			ec_slave_warn(s, "EEPROM checksum is 0x%02x, should be 0x%02x\n",
 				      s->info.checksum, s->info.checksum_calc);
 	}

@@ -22,6 +22,7 @@
 #define RETRIES		5
 #define TAKE_OVER	3	/* datagrams to take over one EEPROM */
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
+#define FIRST_CAP	2048
 
 /* one slave being read */
 struct reader {
@@ -65,7 +66,9 @@ static void finish(struct reader *r)
 	is_done(r);
 	s->sii = r->buf;
 	s->sii_bytes = r->have;
+	s->sii_counted = r->cap;
 	r->buf = NULL;
+	r->cap = 0;
 }
 
 static void fail(struct reader *r, const char *what)
@@ -75,16 +78,48 @@ static void fail(struct reader *r, const char *what)
 		      "EEPROM: %s at word 0x%04zx; check the slave, then rescan", what, r->have / 2);
 }
 
+/* The images of all slaves have a limit together. */
+static bool count(struct ec_master *m, size_t bytes)
+{
+	if (atomic_long_add_return(bytes, &m->sii_bytes) <= EC_MAX_SII_TOTAL)
+		return true;
+	atomic_long_sub(bytes, &m->sii_bytes);
+	return false;
+}
+
+/* NULL, or why not */
+static const char *enlarge(struct reader *r, size_t cap)
+{
+	struct ec_master *m = r->slave->master;
+	u8 *p;
+
+	if (!count(m, cap - r->cap))
+		return "the EEPROMs of all slaves exceed 64 MiB,";
+	p = kvzalloc(cap, GFP_KERNEL);
+	if (!p) {
+		atomic_long_sub(cap - r->cap, &m->sii_bytes);
+		return "no memory";
+	}
+	if (r->have)
+		memcpy(p, r->buf, r->have);
+	kvfree(r->buf);
+	r->buf = p;
+	r->cap = cap;
+	return NULL;
+}
+
 /* Room for the next access, and whether there is a next one. */
 static void plan(struct reader *r)
 {
+	const char *why;
 	int need;
-	u8 *p;
 
 	if (r->have < r->need)
 		return;
 	need = ec_sii_needed(r->buf, r->have);
 	if (need <= 0 || r->have >= EC_MAX_SII_BYTES) {
+		/* with the header of a category that is too large, which is cut off next */
+		ec_sii_check(r->buf, r->have, &r->slave->flaw);
 		if (!need && ec_sii_used(r->buf, r->have))
 			r->have = ec_sii_used(r->buf, r->have);
 		finish(r);
@@ -92,17 +127,9 @@ static void plan(struct reader *r)
 	}
 	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
 	if (r->need + 8 > r->cap) {
-		size_t cap = max_t(size_t, r->need + 8, r->cap * 2);
-
-		p = kvzalloc(cap, GFP_KERNEL);
-		if (!p) {
-			fail(r, "no memory");
-			return;
-		}
-		memcpy(p, r->buf, r->have);
-		kvfree(r->buf);
-		r->buf = p;
-		r->cap = cap;
+		why = enlarge(r, max_t(size_t, r->need + 8, r->cap * 2));
+		if (why)
+			fail(r, why);
 	}
 }
 
@@ -115,13 +142,15 @@ static bool refused(const struct reader *r)
 }
 
 /* Take a result; true when the slave has answered what was asked. */
-static bool take(struct reader *r, u16 word)
+static bool take(struct reader *r, u32 word)
 {
 	u16 ctl = get_unaligned_le16(r->reg);
+	/* controllers for small EEPROMs have 16 bits */
+	u32 mask = word > 0xffff ? ~0u : 0xffff;
 	size_t got = min_t(size_t, ctl & EC_EEP_READ8 ? 8 : 4, r->len - 6);
 
 	if (ctl & (EC_EEP_BUSY | EC_EEP_CMD_MASK) || ctl & EC_EEP_ERR_ACK ||
-	    get_unaligned_le16(r->reg + 2) != word)
+	    (get_unaligned_le32(r->reg + 2) & mask) != word)
 		return false;
 	memcpy(r->buf + r->have, r->reg + 6, got);
 	r->have += got;
@@ -137,7 +166,7 @@ static bool go_on(const struct ec_master *m)
 	return !READ_ONCE(m->stopping) && ec_link_is_up(&m->link[0]);
 }
 
-static void command(u8 *c, u16 word)
+static void command(u8 *c, u32 word)
 {
 	put_unaligned_le16(EC_EEP_CMD_READ, c);
 	put_unaligned_le32(word, c + 2);
@@ -184,7 +213,7 @@ static void collect(struct job *j, struct reader **who, unsigned int n)
 }
 
 /* Start the same read in all of @who; broadcast where all slaves are meant. */
-static void start(struct job *j, struct reader **who, unsigned int n, u16 word)
+static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
 {
 	unsigned int i;
 
@@ -228,7 +257,7 @@ static void learn(struct job *j, u64 ready_ns, bool first)
 
 /* Ask those of @who who are left; keeps the ones that have no answer yet. */
 static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left,
-			 u16 word)
+			 u32 word)
 {
 	unsigned int i, k = 0;
 
@@ -246,7 +275,7 @@ static unsigned int look(struct job *j, struct reader **who, unsigned int ask, u
 }
 
 /* One access for all slaves at word @word. */
-static void step(struct job *j, struct reader **who, unsigned int n, u16 word)
+static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
 {
 	u64 t0 = ktime_get_ns(), looked, ready = 0;
 	unsigned int i, left = n, ask, before;
@@ -345,7 +374,7 @@ static void read_apart(struct job *j)
 }
 
 /* The smallest word somebody in the lockstep waits for, and who waits for it. */
-static unsigned int waiting(struct job *j, u16 *word)
+static unsigned int waiting(struct job *j, u32 *word)
 {
 	unsigned int i, n = 0;
 	size_t low = SIZE_MAX;
@@ -365,7 +394,7 @@ static unsigned int waiting(struct job *j, u16 *word)
 static void run(struct job *j)
 {
 	unsigned int n;
-	u16 word;
+	u32 word;
 
 	n = waiting(j, &word);
 	take_over(j, j->who, n);
@@ -388,6 +417,7 @@ static void run(struct job *j)
 void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all)
 {
 	struct job j = { .m = m, .n = n, .broadcast = all };
+	const char *why;
 	unsigned int i;
 
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
@@ -402,14 +432,15 @@ void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, 
 		r->slave = slaves[i];
 		r->need = FIRST_BYTES;
 		r->len = sizeof(r->reg);
-		r->cap = 2048;
-		r->buf = kvzalloc(r->cap, GFP_KERNEL);
-		if (!r->buf)
-			fail(r, "no memory");
+		why = enlarge(r, FIRST_CAP);
+		if (why)
+			fail(r, why);
 	}
 	run(&j);
-	for (i = 0; i < n; i++)
+	for (i = 0; i < n; i++) {
+		atomic_long_sub(j.rd[i].cap, &m->sii_bytes);
 		kvfree(j.rd[i].buf);
+	}
 out:
 	kvfree(j.rd);
 	kvfree(j.dg);

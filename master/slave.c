@@ -46,6 +46,7 @@ static void release(struct kref *kref)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
 	ec_mbox_keep_voe(s, false);
+	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
 	kvfree(s->sii);
 	kfree(s);
 }
@@ -67,6 +68,49 @@ static void string(struct ec_slave *s, u8 index, char *buf)
 		buf[0] = '\0';
 }
 
+/* What is wrong with the EEPROM; the slave is used as far as it goes. */
+static void check_sii(struct ec_slave *s)
+{
+	size_t size = sizeof(s->sii_flaw);
+	const struct ec_sii_flaw *f = &s->flaw;
+
+	s->sii_flaw[0] = '\0';
+	switch (f->kind) {
+	case EC_SII_FLAW_NONE:
+		return;
+	case EC_SII_FLAW_BLANK:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM is blank (only 0x%02x): no identity, no mailbox; write an image",
+			  f->type);
+		/* all ones are no mailbox either */
+		s->info.protocols = 0;
+		memset(&s->info.std, 0, sizeof(s->info.std));
+		s->emulation = false;
+		break;
+	case EC_SII_FLAW_LARGE:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: category 0x%04x at word 0x%04zx has %zu bytes, the EEPROM has %zu; data from there on are not used",
+			  f->type, f->offset / 2, f->bytes, f->declared);
+		break;
+	case EC_SII_FLAW_NO_END:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: no end marker up to word 0x%04zx; data from there on are not used",
+			  f->end / 2);
+		break;
+	case EC_SII_FLAW_BEYOND:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: categories end at byte %zu, beyond the declared size of %zu (word 0x003e); all are used",
+			  f->end, f->declared);
+		break;
+	case EC_SII_FLAW_ENTRY:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: an entry of category 0x%04x at word 0x%04zx is longer than the category",
+			  f->type, f->offset / 2);
+		break;
+	}
+	ec_slave_warn(s, "%s\n", s->sii_flaw);
+}
+
 /**
  * ec_slave_parse_sii() - take what the master needs from the EEPROM image
  * @slave: slave with @sii, @sii_bytes set
@@ -82,6 +126,7 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 		return ret;
 	slave->emulation = slave->info.pdi_control & BIT(8);
 	slave->alias = slave->info.alias;
+	check_sii(slave);
 	slave->has_general = !ec_sii_decode_general(slave->sii, slave->sii_bytes, &slave->general);
 	if (slave->has_general) {
 		string(slave, slave->general.group, slave->group);

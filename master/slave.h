@@ -32,6 +32,8 @@ struct ec_master;
  * @station: station address
  * @sii: EEPROM image as read
  * @sii_bytes: bytes at @sii
+ * @flaw: of @sii, found when it was read
+ * @sii_counted: what it counts in the master's @sii_bytes
  * @info: fixed area of the EEPROM
  * @general: general category, with @has_general
  * @sms: SyncManagers of the EEPROM
@@ -78,6 +80,7 @@ struct ec_master;
  * @why: cause of @error
  * @pdo_refusal: the first PDO mapping or assignment it refused since it was configured
  * @warning: what is not certain of its process data, empty: nothing
+ * @sii_flaw: what is wrong with its EEPROM, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
@@ -116,6 +119,8 @@ struct ec_slave {
 	u16 station;
 	u8 *sii;
 	size_t sii_bytes;
+	size_t sii_counted;
+	struct ec_sii_flaw flaw;
 	struct ec_sii_info info;
 	struct ec_sii_general general;
 	bool has_general;
@@ -161,6 +166,7 @@ struct ec_slave {
 	char why[EC_UAPI_REASON];
 	char pdo_refusal[EC_UAPI_REASON];
 	char warning[EC_UAPI_WARNING];
+	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
 	u64 retry_ns;
 	u32 retry_ms;

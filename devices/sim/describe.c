@@ -2,7 +2,7 @@
 /* Builds a segment from its description. */
 #include "describe_int.h"
 
-#define IMAGE_MAX	65536u
+#define IMAGE_MAX	(512 * 1024u)
 #define TIME_MAX	(3600ull * 1000000000ull)
 #define DEVICE_ALIASES	"WAGO750-354"
 

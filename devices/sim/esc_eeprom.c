@@ -89,7 +89,7 @@ void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control)
 static void finish(struct ec_esc *esc)
 {
 	struct ec_esc_eeprom *e = &esc->eep;
-	size_t at = (size_t)(e->addr & 0xffff) * 2, n, i;
+	size_t at = (size_t)(e->addr & 0x3ffff) * 2, n, i;
 
 	if (esc->fault.eeprom_noack) {
 		if (esc->fault.eeprom_noack != ~0u)

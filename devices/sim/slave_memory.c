@@ -68,7 +68,7 @@ void ec_app_memory_poll(struct ec_app *app, u64 now)
 	app->eep_due = EC_ESC_NEVER;
 	ec_esc_pdi_read(app->esc, EC_REG_EEP_CONTROL, v, sizeof(v), now);
 	control = get_unaligned_le16(v);
-	at = 2 * (size_t)get_unaligned_le16(v + 2);
+	at = 2 * (size_t)(get_unaligned_le32(v + 2) & 0x3ffff);
 	switch (control & EC_EEP_CMD_MASK) {
 	case EC_EEP_CMD_READ:
 		read_words(app, at, control & EC_EEP_READ8 ? 8 : 4, now);

@@ -147,7 +147,7 @@ int ec_sii_iter_next(struct ec_sii_iter *it, struct ec_sii_cat *cat)
 
 /*
  * The size word is too often wrong to be believed; it only keeps a garbage
- * category from costing 64 KiB of slow EEPROM reads.
+ * category from costing 512 KiB of slow EEPROM reads.
  */
 static size_t size_limit(const u8 *img)
 {

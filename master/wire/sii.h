@@ -10,7 +10,7 @@
 #include "buf.h"
 
 #define EC_SII_FIXED_SIZE	128	/* bytes before the first category */
-#define EC_SII_MAX_SIZE		65536	/* no image is larger */
+#define EC_SII_MAX_SIZE		(512 * 1024)	/* what is beyond is not read */
 #define EC_SII_MAX_CATS		256
 #define EC_SII_CAT_HDR		4
 
@@ -317,6 +317,44 @@ int ec_sii_iter_next(struct ec_sii_iter *it, struct ec_sii_cat *cat);
 
 int ec_sii_needed(const u8 *img, size_t have);
 size_t ec_sii_used(const u8 *img, size_t have);
+
+/**
+ * enum ec_sii_flaw_kind - what is wrong with an image
+ * @EC_SII_FLAW_NONE: nothing
+ * @EC_SII_FLAW_BLANK: the fixed area is all ones or all zeros
+ * @EC_SII_FLAW_LARGE: a category ends beyond the EEPROM
+ * @EC_SII_FLAW_NO_END: there is no end marker
+ * @EC_SII_FLAW_BEYOND: the categories end beyond the declared size
+ * @EC_SII_FLAW_ENTRY: an entry is longer than its category
+ */
+enum ec_sii_flaw_kind {
+	EC_SII_FLAW_NONE,
+	EC_SII_FLAW_BLANK,
+	EC_SII_FLAW_LARGE,
+	EC_SII_FLAW_NO_END,
+	EC_SII_FLAW_BEYOND,
+	EC_SII_FLAW_ENTRY,
+};
+
+/**
+ * struct ec_sii_flaw - a flaw of an image
+ * @kind: what it is
+ * @type: category, or what a blank image is filled with
+ * @offset: of the header of the category, bytes
+ * @bytes: data of the category, of a large one
+ * @end: where the last category that can be used ends
+ * @declared: size by word 0x3E, bytes, at most EC_SII_MAX_SIZE
+ */
+struct ec_sii_flaw {
+	enum ec_sii_flaw_kind kind;
+	u16 type;
+	size_t offset;
+	size_t bytes;
+	size_t end;
+	size_t declared;
+};
+
+enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw *f);
 
 int ec_sii_string(const u8 *img, size_t len, u8 index, char *buf, size_t cap);
 int ec_sii_decode_general(const u8 *img, size_t len, struct ec_sii_general *g);

@@ -206,6 +206,129 @@ static void scan_blank(struct kunit *test)
 	/* nothing in it: no mailbox, no PDO, identity of all ones */
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->info.vendor, 0xffffffff);
 	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 1024ul);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(bus_slave(b, 5)->sii_flaw,
+					   "EEPROM is blank (only 0xff)"));
+}
+
+static void has_flaw(struct bus *b, u32 position, const char *text)
+{
+	const char *flaw = bus_slave(b, position)->sii_flaw;
+
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(flaw, text), "'%s' has no '%s'", flaw, text);
+}
+
+/* Word 0x3E counts KiBit: 160 KiB, with words that need more than 16 bits, is legal. */
+static void scan_large(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_esc *esc = bus_esc(b, 5);
+	size_t len = 160 * 1024, i;
+	u8 *data = ec_sim_alloc(b->sim, len + 1);
+
+	KUNIT_ASSERT_NOT_NULL(test, data);
+	memset(data, 0xff, len);
+	memcpy(data, esc->eep.data, esc->eep.len);
+	ec_sim_release(b->sim, esc->eep.data);
+	esc->eep.data = data;
+	esc->eep.len = len;
+	esc->cfg.eeprom_busy_ns = 10000;
+	put_unaligned_le16(len / 128 - 1, data + 2 * EC_SII_W_SIZE);
+	/* two categories of the vendor: one has less than 128 KiB */
+	i = ec_sii_used(data, len) - 2;
+	put_unaligned_le16(0x0900, data + i);
+	put_unaligned_le16(0xf000, data + i + 2);
+	memset(data + i + 4, 0x5a, 2 * 0xf000);
+	i += 4 + 2 * 0xf000;
+	put_unaligned_le16(0x0901, data + i);
+	put_unaligned_le16((len - i - 6) / 2, data + i + 2);
+	memset(data + i + 4, 0xa5, len - i - 6);
+	data[0x20000] = 0x77;
+	others_fine(b, N, 30000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->sii_bytes, len);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 5)->sii_flaw, "");
+	KUNIT_EXPECT_GE(test, atomic_long_read(&b->m->sii_bytes), (long)len);
+	KUNIT_EXPECT_LE(test, atomic_long_read(&b->m->sii_bytes), 4 * (long)len);
+}
+
+/* More than all EEPROMs may have together: this slave is refused, the others are read. */
+static void scan_too_much(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_esc_eeprom *e = &bus_esc(b, 5)->eep;
+	long most = EC_MAX_SII_TOTAL - N * 2048;
+
+	put_unaligned_le16(0x001f, e->data + 2 * EC_SII_W_SIZE);
+	put_unaligned_le16(0x0900, e->data + EC_SII_FIXED_SIZE);
+	put_unaligned_le16(3000 / 2, e->data + EC_SII_FIXED_SIZE + 2);
+	atomic_long_add(most, &b->m->sii_bytes);
+	others_fine(b, 5, 1000);
+	failed_with(b, 5, "the EEPROMs of all slaves exceed 64 MiB");
+	atomic_long_sub(most, &b->m->sii_bytes);
+}
+
+static void scan_blank_zeros(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_esc_eeprom *e = &bus_esc(b, 5)->eep;
+
+	memset(e->data, 0, e->len);
+	others_fine(b, 5, 1000);
+	has_flaw(b, 5, "EEPROM is blank (only 0x00)");
+	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 1024ul);
+}
+
+/* The cause is the EEPROM, not that PREOP was not reached in time. */
+static void scan_blank_mute(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_esc_eeprom *e = &bus_esc(b, 2)->eep;
+
+	memset(e->data, 0xff, e->len);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 2, 0, 1, 0);
+	others_fine(b, 2, 1000);
+	msleep(4000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 2)->why,
+			   "EEPROM is blank (only 0xff): no identity, no mailbox; write an image; then PREOP not reached in time");
+}
+
+/* The first category of @type; test ends without one. */
+static u8 *category(struct bus *b, u32 index, u16 type)
+{
+	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+
+	ec_sii_iter_init(&it, e->data, e->len);
+	while (ec_sii_iter_next(&it, &cat) == 1)
+		if (cat.type == type)
+			return e->data + cat.offset;
+	KUNIT_ASSERT_TRUE(b->test, false);
+	return NULL;
+}
+
+static void scan_damaged(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	u8 *strings = category(b, 1, EC_SII_CAT_STRINGS);
+	u8 *pdo = category(b, 2, EC_SII_CAT_TXPDO);
+	struct ec_esc_eeprom *e = &bus_esc(b, 4)->eep;
+
+	/* a string, then a PDO, longer than its category; a category larger than the EEPROM */
+	strings[5] = 0xff;
+	pdo[6] = 0xff;
+	put_unaligned_le16(0xc000, category(b, 3, EC_SII_CAT_RXPDO) + 2);
+	/* categories beyond the declared size: 128 bytes */
+	put_unaligned_le16(0, e->data + 2 * EC_SII_W_SIZE);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
+	has_flaw(b, 1, "an entry of category 0x000a at word 0x0040 is longer than the category");
+	has_flaw(b, 2, "an entry of category 0x0032 at word ");
+	has_flaw(b, 3, "category 0x0033 at word ");
+	has_flaw(b, 3, "has 98304 bytes, the EEPROM has 2048");
+	has_flaw(b, 4, "beyond the declared size of 128 (word 0x003e); all are used");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->sii_flaw, "");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 4)->order, "EL1008");
 }
 
 /* Who stays is not read again. */
@@ -323,6 +446,11 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_mute),
 	KUNIT_CASE(scan_bad_checksum),
 	KUNIT_CASE(scan_blank),
+	KUNIT_CASE(scan_blank_zeros),
+	KUNIT_CASE(scan_blank_mute),
+	KUNIT_CASE(scan_large),
+	KUNIT_CASE(scan_too_much),
+	KUNIT_CASE(scan_damaged),
 	KUNIT_CASE(scan_reads_what_is_new),
 	KUNIT_CASE(scan_on_request),
 	KUNIT_CASE(scan_foreign_address),

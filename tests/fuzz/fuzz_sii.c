@@ -26,8 +26,10 @@ const struct fuzz_seed fuzz_seeds[] = {
 static void read_pieces(const uint8_t *img, size_t len)
 {
 	size_t have = 0, limit = 0;
+	struct ec_sii_flaw flaw;
 	int need;
 
+	MUST(ec_sii_check(img, len, &flaw) == flaw.kind && flaw.end <= len);
 	while ((need = ec_sii_needed(img, have)) > 0) {
 		MUST((size_t)need > have && need <= EC_SII_MAX_SIZE);
 		MUST(++limit < 1000);

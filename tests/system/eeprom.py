@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """eeprom.py KIND FILE: writes an EEPROM image, good or wrong in one way.
 
-KIND: good, checksum, endless, beyond, noend, zero, ones
+KIND: good, large, checksum, endless, beyond, noend, zero, ones
 """
 import struct
 import sys
 
 SIZE = 2048
+LARGE = 132 * 1024    # words at the end have more than 16 bits
 
 
 def category(kind, data):
@@ -60,6 +61,10 @@ def image(kind):
     if kind == "checksum":
         head[14] ^= 0x55
     body = bytes(head) + cats
+    if kind == "large":         # to be read as a whole: used up to the end marker, its last word
+        struct.pack_into("<H", head, 124, LARGE // 128 - 1)
+        body = bytes(head) + cats + category(0x0900, bytes(range(256)) * 256)
+        return body + category(0x0901, b"\xa5" * (LARGE - len(body) - 6)) + b"\xff\xff"
     if kind == "endless":       # empty categories up to the end of the EEPROM
         return (body + category(0x0900, b"") * SIZE)[:SIZE]
     if kind == "beyond":        # the last one says it is longer than the EEPROM

@@ -38,7 +38,8 @@ image() {
 	[ "${#lines[@]}" = 3 ]
 	sleep 1
 	dmesg | grep 'EtherCAT 0-1:' || true
-	[ "$(dmesg | grep -c 'EtherCAT 0-1: .*EEPROM')" = "$2" ]
+	# the cause comes again when PREOP was not reached
+	[ "$(dmesg | grep 'EtherCAT 0-1: .*EEPROM' | grep -vc '; then PREOP ')" = "$2" ]
 }
 
 @test "EEPROM from a file" {
@@ -53,12 +54,14 @@ image() {
 }
 
 @test "EEPROM with categories without end" {
-	image endless 0
+	image endless 1
+	ethercat slaves -v -p1 | grep 'Warning: EEPROM: no end marker up to word 0x'
 	[[ "$(ethercat slaves -p1)" == *PREOP*"Input from a file" ]]
 }
 
 @test "EEPROM whose category is longer than it" {
-	image beyond 0
+	image beyond 1
+	ethercat slaves -v -p1 | grep 'Warning: EEPROM: category 0x.* bytes, the EEPROM has '
 	[[ "$(ethercat slaves -p1)" == *PREOP*"Input from a file" ]]
 }
 
@@ -67,12 +70,21 @@ image() {
 	[[ "$(ethercat slaves -p1)" == *PREOP*"Input from a file" ]]
 }
 
+@test "EEPROM of 132 KiB, and sii_read of it" {
+	image large 0
+	[[ "$(ethercat slaves -p1)" == *PREOP*"Input from a file" ]]
+	ethercat sii_read -p1 >"$BATS_TEST_TMPDIR/sii"
+	cmp "$BATS_TEST_TMPDIR/sii" "$BATS_TEST_TMPDIR/eeprom"
+}
+
 @test "EEPROM of zeros" {
 	image zero 1
+	ethercat slaves -v -p1 | grep 'Warning: EEPROM is blank (only 0x00)'
 }
 
 @test "EEPROM of ones" {
 	image ones 1
+	ethercat slaves -v -p1 | grep 'Warning: EEPROM is blank (only 0xff)'
 }
 
 @test "a slave that refuses a state: the reason is shown, the others reach OP" {

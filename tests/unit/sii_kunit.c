@@ -496,19 +496,69 @@ static void a_garbage_category_is_not_read_for_ever(struct kunit *test)
 			(int)(EC_SII_FIXED_SIZE + 6 + 4 + 2 * 0x7000 + 2));
 }
 
-static void nothing_lies_behind_64_kib(struct kunit *test)
+static void nothing_lies_behind_512_kib(struct kunit *test)
 {
-	static const u16 w[] = { 41, 0x7FBE };	/* its end is the end of the image */
-	size_t len = raw(w, ARRAY_SIZE(w));
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
+	size_t i;
 
+	/* four categories, the end of the last one is the end of the image */
+	memset(img, 0, sizeof(img));
 	put_unaligned_le16(0xFFFF, img + 2 * EC_SII_W_SIZE);
+	for (i = EC_SII_FIXED_SIZE; i < sizeof(img); i += 4 + 2 * 0xFFEE) {
+		put_unaligned_le16(41, img + i);
+		put_unaligned_le16(0xFFEE, img + i + 2);
+	}
+	KUNIT_ASSERT_EQ(test, i, sizeof(img));
 	ec_sii_iter_init(&it, img, sizeof(img));
-	KUNIT_EXPECT_EQ(test, ec_sii_iter_next(&it, &cat), 1);
+	for (i = 0; i < 4; i++)
+		KUNIT_EXPECT_EQ(test, ec_sii_iter_next(&it, &cat), 1);
 	KUNIT_EXPECT_EQ(test, ec_sii_iter_next(&it, &cat), -ENODATA);
-	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, len), 0);
+	/* the first three are read, the fourth has no room for an end marker */
+	i = EC_SII_FIXED_SIZE + 2 * (4 + 2 * 0xFFEE);
+	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, i + 4), (int)i + 4 + 2 * 0xFFEE + 2);
+	i += 4 + 2 * 0xFFEE;
+	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, i + 4), 0);
 	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, sizeof(img)), 0);
+}
+
+static void every_flaw_is_found(struct kunit *test)
+{
+	static const u16 beyond[] = { 40, 1, 0x0201, 0xFFFF };
+	static const u16 large[] = { 40, 1, 0x0201, 0x1234, 0xF000 };
+	static const u16 string[] = { EC_SII_CAT_STRINGS, 1, 0xFF01, 0xFFFF };
+	static const u16 pdo[] = { EC_SII_CAT_TXPDO, 4, 0x1A00, 1, 0, 0, 0xFFFF };
+	static const u16 good[] = { EC_SII_CAT_TXPDO, 4, 0x1A00, 0, 0, 0, 0xFFFF };
+	struct ec_sii_flaw f;
+	size_t len;
+
+	memset(img, 0xFF, sizeof(img));
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, 130, &f), EC_SII_FLAW_BLANK);
+	KUNIT_EXPECT_EQ(test, f.type, 0xFF);
+	memset(img, 0, sizeof(img));
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, 192, &f), EC_SII_FLAW_BLANK);
+	KUNIT_EXPECT_EQ(test, f.type, 0);
+	len = raw(beyond, ARRAY_SIZE(beyond));
+	img[20] = 1;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_BEYOND);
+	KUNIT_EXPECT_EQ(test, f.end, len - 2);
+	KUNIT_EXPECT_EQ(test, f.declared, (size_t)128);
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len - 2, &f), EC_SII_FLAW_NO_END);
+	len = raw(large, ARRAY_SIZE(large));
+	img[20] = 1;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_LARGE);
+	KUNIT_EXPECT_EQ(test, f.type, 0x1234);
+	KUNIT_EXPECT_EQ(test, f.bytes, (size_t)0x1E000);
+	len = raw(string, ARRAY_SIZE(string));
+	img[2 * EC_SII_W_SIZE] = 7;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_ENTRY);
+	KUNIT_EXPECT_EQ(test, f.offset, (size_t)EC_SII_FIXED_SIZE);
+	len = raw(pdo, ARRAY_SIZE(pdo));
+	img[2 * EC_SII_W_SIZE] = 7;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_ENTRY);
+	len = raw(good, ARRAY_SIZE(good));
+	img[2 * EC_SII_W_SIZE] = 7;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_NONE);
 }
 
 static void a_builder_without_room_says_so(struct kunit *test)
@@ -580,7 +630,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(a_scan_by_4_or_8_bytes_reads_no_more_than_it_needs),
 	KUNIT_CASE(every_prefix_asks_for_more_until_the_end_marker),
 	KUNIT_CASE(a_garbage_category_is_not_read_for_ever),
-	KUNIT_CASE(nothing_lies_behind_64_kib),
+	KUNIT_CASE(nothing_lies_behind_512_kib),
+	KUNIT_CASE(every_flaw_is_found),
 	KUNIT_CASE(a_builder_without_room_says_so),
 	KUNIT_CASE(too_many_or_too_long_strings_are_refused),
 	KUNIT_CASE(the_rest_of_a_built_image_is_blank),
