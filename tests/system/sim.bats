@@ -3,6 +3,8 @@
 
 load helpers
 
+setup_file() { modprobe veth; }
+
 setup() {
 	SOCK=$BATS_TEST_TMPDIR/sock
 	SEG=$BATS_TEST_TMPDIR/two.seg
@@ -67,6 +69,7 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	echo 'fault on axis' >"$file"
 	wait_for 30 all_slaves_are PREOP 2
 	echo 'eeprom io word=4 value=77' >"$file"
+	ethercat rescan --wait
 	[ "$(ethercat sii_read -p0 | od -An -tu2 -j8 -N2 | tr -d ' ')" = 77 ]
 	run bash -c "echo 'off nobody' >$file"
 	[ "$status" != 0 ]
