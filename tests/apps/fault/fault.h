@@ -27,6 +27,7 @@ struct span {
  * @owner: needs the reservation
  * @flags: flags it knows
  * @cyclic: called each cycle: no reason text
+ * @min: bytes that programs of an earlier version send, 0: the present size
  * @reserved: bytes that must be zero, size 0 ends them
  * @data: offset of a pointer to data, 0: none
  * @size: offset of the number of bytes there
@@ -38,6 +39,7 @@ struct cmd {
 	bool owner;
 	unsigned int flags;
 	bool cyclic;
+	unsigned int min;
 	struct span reserved[2];
 	unsigned short data;
 	unsigned short size;

@@ -18,7 +18,7 @@ const struct cmd cmds[] = {
 	CMD(VERSION),
 	CMD(REASON),
 	CMD(MASTER),
-	CMD(SLAVE),
+	CMD(SLAVE, .min = offsetof(struct ec_ioc_slave, dc_odd) + 2),
 	CMD(SM, RSV1(ec_ioc_sm)),
 	CMD(PDO, RSV2(ec_ioc_pdo)),
 	CMD(PDO_ENTRY, RSV1(ec_ioc_pdo_entry)),
