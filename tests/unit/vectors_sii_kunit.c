@@ -156,6 +156,27 @@ static void an_image_read_piece_by_piece(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_used(image, sizeof(image)), sizeof(image));
 }
 
+/* word 0x003E, the number of entries of a PDO, the end marker, nothing at all */
+static void flaws_of_an_image(struct kunit *test)
+{
+	static u8 img[sizeof(image)];
+	struct ec_sii_flaw f;
+
+	memcpy(img, image, sizeof(img));
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, sizeof(img), &f), EC_SII_FLAW_NONE);
+	KUNIT_EXPECT_EQ(test, f.declared, (size_t)2048);
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, 0xFE, &f), EC_SII_FLAW_NO_END);
+	img[0xCC] = 3;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, sizeof(img), &f), EC_SII_FLAW_ENTRY);
+	KUNIT_EXPECT_EQ(test, f.offset, (size_t)0xC6);
+	KUNIT_EXPECT_EQ(test, f.type, EC_SII_CAT_RXPDO);
+	img[0x7C] = 0;
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, sizeof(img), &f), EC_SII_FLAW_BEYOND);
+	KUNIT_EXPECT_EQ(test, f.end, (size_t)0xFE);
+	memset(img, 0xFF, sizeof(img));
+	KUNIT_EXPECT_EQ(test, ec_sii_check(img, sizeof(img), &f), EC_SII_FLAW_BLANK);
+}
+
 static void the_same_image_built(struct kunit *test)
 {
 	static const struct ec_sii_info info = {
@@ -198,6 +219,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pdos_with_a_gap),
 	KUNIT_CASE(clock_modes),
 	KUNIT_CASE(an_image_read_piece_by_piece),
+	KUNIT_CASE(flaws_of_an_image),
 	KUNIT_CASE(the_same_image_built),
 	{}
 };
