@@ -82,21 +82,6 @@ static int set_state(struct ec_slave *s, u8 state)
 	return ret;
 }
 
-static const u8 zero[256];
-
-/*
- * Without process data none may be left: the slave would answer, in PREOP too, at
- * logical addresses that the next application gives to another slave.
- */
-static int clear_fmmus(struct ec_slave *s)
-{
-	int ret = write_reg(s, EC_REG_FMMU(0), zero,
-			    EC_FMMU_PAGE * min_t(u8, s->regs[EC_REG_FMMUS], 16));
-
-	s->mapped = ret;
-	return ret;
-}
-
 /*
  * A transfer of somebody else is not cut off by the way through INIT: it comes before,
  * unless it takes long, or after. The worker has the mailbox until PREOP.
@@ -165,7 +150,7 @@ static int op_only_off(struct ec_slave *s)
 /* state-machine.md 4.1 */
 static int to_init(struct ec_slave *s)
 {
-	static const u8 force[1] = { EC_EEP_OWNER_FORCE };
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	int ret;
 
 	hold_mailbox(s);
@@ -173,16 +158,18 @@ static int to_init(struct ec_slave *s)
 	ret = set_state(s, EC_AL_INIT);
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
-	clear_fmmus(s);
-	write_reg(s, EC_REG_SM(0), zero, EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], 16));
+	ec_apply_clear(s);
 	write_reg(s, EC_REG_EEP_OWNER, force, 1);
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
 	if (ec_slave_has_clock(s))
 		ec_dc_sync_stop(s);
 	s->mbox_counter = 0;
+	s->mbox_counts = false;
+	s->mbox_answered = false;
 	s->op_only = 0;
 	s->reconfigure = false;
 	s->ours = false;
+	s->clean = false;
 	return 0;
 }
 
@@ -242,6 +229,7 @@ static int to_preop(struct ec_slave *s)
 
 	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
 	s->ours = !ret;
+	s->clean = !ret;
 	release_mailbox(s);
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
@@ -313,122 +301,6 @@ static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 	return 0;
 }
 
-/* SM page for process data; NULL configuration: the EEPROM's defaults */
-static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigned int sm, u8 *page)
-{
-	struct ec_sm v = {
-		.start = s->sms[sm].start, .len = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm)),
-		.control = s->sms[sm].control,
-	};
-
-	if (c && c->sm[sm].dir)
-		v.control = (v.control & ~EC_SM_DIR_MASK) |
-			    (c->sm[sm].dir == EC_CFG_DIR_OUTPUT ? EC_SM_DIR_WRITE : 0);
-	if (c && c->sm[sm].watchdog == EC_CFG_WD_ENABLE)
-		v.control |= EC_SM_WATCHDOG;
-	if (c && c->sm[sm].watchdog == EC_CFG_WD_DISABLE)
-		v.control &= ~EC_SM_WATCHDOG;
-	if (v.len && !(s->sms[sm].enable & EC_SII_SM_OP_ONLY))
-		v.activate = EC_SM_ACT_ENABLE;
-	ec_sm_encode(&v, page);
-}
-
-static int write_sms(struct ec_slave *s, const struct ec_config *c)
-{
-	unsigned int sm = ec_slave_has_mailbox(s) ? 2 : 0;
-	u8 page[EC_SM_PAGE];
-	u32 bytes;
-	int ret = 0;
-
-	for (; sm < s->n_sms && !ret; sm++) {
-		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
-			continue;
-		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
-		if (bytes > EC_MAX_SM_BYTES) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "SM%u needs %u bytes, limit %u; map fewer entries",
-				      sm, bytes, EC_MAX_SM_BYTES);
-			return -EOVERFLOW;
-		}
-		sm_page(s, c, sm, page);
-		ret = write_reg(s, EC_REG_SM(sm), page, sizeof(page));
-	}
-	return ret;
-}
-
-/*
- * An FMMU that leads anywhere else than to process data would write registers, or the
- * mailbox, with each frame.
- */
-static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
-{
-	return sm < s->n_sms && s->sms[sm].start >= EC_REG_DIGITAL_OUT &&
-	       !(sm < 2 && ec_slave_has_mailbox(s));
-}
-
-static int write_fmmus(struct ec_slave *s, const struct ec_config *c)
-{
-	u8 page[EC_FMMU_PAGE];
-	unsigned int i;
-	int ret = 0;
-
-	if (c->n_fmmus > s->regs[EC_REG_FMMUS]) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "needs %u FMMUs but has %u; put its SyncManagers into fewer domains",
-			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
-		return -ENOSPC;
-	}
-	if (c->lrw && ec_slave_no_lrw(s)) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "slave without LRW support attached to a layout with LRW; restart the application");
-		return -EOPNOTSUPP;
-	}
-	if (c->in_ring && s->position != c->ring_position) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "was at position %u when its inputs and others' outputs got the same logical addresses; start the application again, or let it overlap by itself only",
-			      c->ring_position);
-		return -EOPNOTSUPP;
-	}
-	for (i = 0; i < c->n_fmmus; i++) {
-		if (holds_pdos(s, c->fmmus[i].sm))
-			continue;
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
-			      c->fmmus[i].sm);
-		return -EOPNOTSUPP;
-	}
-	s->mapped = c->n_fmmus;
-	for (i = 0; i < c->n_fmmus && !ret; i++) {
-		const struct ec_config_fmmu *f = &c->fmmus[i];
-		struct ec_fmmu v = {
-			.logical = f->domain->logical + f->logical, .len = f->size,
-			.lbit_stop = 7, .phys = s->sms[f->sm].start,
-			.type = f->dir == EC_CFG_DIR_OUTPUT ? EC_FMMU_WRITE : EC_FMMU_READ,
-			.enable = f->size,
-		};
-
-		ec_fmmu_encode(&v, page);
-		ret = write_reg(s, EC_REG_FMMU(i), page, sizeof(page));
-	}
-	return ret;
-}
-
-static int write_watchdog(struct ec_slave *s, const struct ec_config *c)
-{
-	u8 b[2];
-	int ret = 0;
-
-	if (c->wd_divider) {
-		put_unaligned_le16(c->wd_divider, b);
-		ret = write_reg(s, EC_REG_WD_DIVIDER, b, 2);
-	}
-	if (c->wd_intervals && !ret) {
-		put_unaligned_le16(c->wd_intervals, b);
-		ret = write_reg(s, EC_REG_WD_SM, b, 2);
-	}
-	return ret;
-}
-
 /* Is there a SyncManager whose PDOs the application did not name? */
 static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
 {
@@ -481,6 +353,7 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret = 0;
 
+	s->clean = false;
 	s->pdo_refusal[0] = '\0';
 	s->warning[0] = '\0';
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
@@ -488,14 +361,12 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 	if (c) {
 		waits_for(s, "mailbox replies to its configuration");
 		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
-		      ec_apply_pdos(s, c) ?: write_watchdog(s, c);
+		      ec_apply_pdos(s, c);
 		waits_for(s, NULL);
 		if (ret)
 			return ret;
 	}
-	ret = write_sms(s, c);
-	if (!ret && c)
-		ret = write_fmmus(s, c);
+	ret = ec_apply_regs(s, c);
 	if (!ret && c) {
 		waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
 		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
@@ -568,14 +439,20 @@ static int to_op(struct ec_slave *s)
 	return ret ? failed(s, EC_AL_OP, ret) : 0;
 }
 
-/* In PREOP nobody needs the SYNC signals of a slave any more. */
+/*
+ * In PREOP nobody needs the SYNC signals and the process data of a slave any more. Without
+ * them the next application need not take it through INIT.
+ */
 static int step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
-	if (!ret && want == EC_AL_PREOP && ec_slave_has_clock(s))
-		ec_dc_sync_stop(s);
-	return ret ? failed(s, want, ret) : 0;
+	if (ret)
+		return failed(s, want, ret);
+	if (want == EC_AL_PREOP)
+		s->clean = !(ec_slave_has_clock(s) ? ec_dc_sync_stop(s) : 0) &
+			   !ec_apply_clear_pdos(s);
+	return 0;
 }
 
 /* Before activation the application may change its configuration at any time. */
@@ -587,6 +464,19 @@ static void take_plan(struct ec_slave *s)
 		return;
 	s->plan = c;
 	s->reconfigure = true;
+}
+
+/*
+ * Nothing of a configuration is left in the slave, so that it need not go through INIT. That
+ * would have emptied its mailbox, too.
+ */
+static int start_clean(struct ec_slave *s)
+{
+	int ret = ec_slave_has_mailbox(s) ? ec_mbox_forget(s) : 0;
+
+	if (!ret)
+		s->reconfigure = false;
+	return ret;
 }
 
 /* One step towards the requested state; 1: there, 0: again, -errno. */
@@ -603,10 +493,12 @@ static int step(struct ec_slave *s)
 			return failed(s, s->al_status & EC_AL_STATE_MASK, ret);
 	}
 	cur = s->al_status & EC_AL_STATE_MASK;
+	if (cur == EC_AL_PREOP && s->clean && s->ours && s->reconfigure && want > EC_AL_PREOP)
+		return start_clean(s);
 	if (cur != EC_AL_INIT && (!s->ours || (s->reconfigure && want > EC_AL_PREOP)))
 		return to_init(s);
 	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
-		return clear_fmmus(s);
+		return ec_apply_clear_fmmus(s);
 	if (s->op_only && cur != EC_AL_OP)
 		return op_only_off(s);
 	if (cur == want)

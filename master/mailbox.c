@@ -11,6 +11,8 @@
 #include "wire/mbox.h"
 #include "xfer.h"
 
+#define DRAIN	16	/* messages at most that nobody waits for */
+
 /* a message that was taken out of the mailbox for who reads it later */
 struct kept {
 	struct list_head list;
@@ -110,39 +112,6 @@ static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 	return 0;
 }
 
-/*
- * A full mailbox (working counter 0) is tried again. A lost frame is not: the
- * message may have arrived, and the answer tells.
- */
-static int send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
-		const struct until *until)
-{
-	u16 size = slave->info.std.rx_size;
-	struct ec_mbox_hdr h = { .len = len, .type = type };
-	struct ec_wbuf w;
-	unsigned int us = 50;
-	int ret;
-
-	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
-		return -EMSGSIZE;
-	slave->mbox_counter = ec_mbox_next_counter(slave->mbox_counter);
-	h.counter = slave->mbox_counter;
-	w = ec_wbuf(b->raw, size);
-	ec_mbox_hdr_encode(&w, &h);
-	ec_wbuf_bytes(&w, b->tx, len);
-	ec_wbuf_zero(&w, w.end - w.p);
-
-	for (;;) {
-		ret = once(slave, EC_CMD_FPWR, slave->info.std.rx_offset, b->raw, size);
-		if (ret != -EIO)
-			return ret == -ETIMEDOUT ? 0 : ret;
-		ret = over(slave, until);
-		if (ret)
-			return ret;
-		pause_us(&us);
-	}
-}
-
 static int full(struct ec_slave *slave)
 {
 	u8 status;
@@ -177,6 +146,37 @@ static int repeat_request(struct ec_slave *slave)
 }
 
 /*
+ * A slave that counts its messages lets a message that was there already be told from a new
+ * one, when it has repeated its last one and nothing was lost.
+ */
+static bool is_known(struct ec_slave *slave, u8 counter)
+{
+	bool again = slave->mbox_repeats && slave->mbox_counts && counter == slave->mbox_seen;
+
+	slave->mbox_repeats = false;
+	if (again)
+		return true;
+	slave->mbox_counts = counter && slave->mbox_seen && counter != slave->mbox_seen;
+	slave->mbox_seen = counter;
+	return false;
+}
+
+/*
+ * Beside a cycle each look takes one or two of its periods. Where the mailbox has room on
+ * the wire it is read at once: an empty one gives nothing.
+ */
+static bool read_at_once(const struct ec_slave *slave)
+{
+	struct ec_master *m = slave->master;
+	u32 slack = ec_cycle_slack_ns(m);
+	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
+				  slave->info.std.tx_size);
+
+	return slave->mbox_counts && slack != ~0u &&
+	       atomic_read(&m->link[0].acyclic_ns) + ns <= slack / 2;
+}
+
+/*
  * Take one message out of the slave's mailbox: bytes behind the header, or 0:
  * empty. @blind: without a look whether there is one.
  */
@@ -192,13 +192,17 @@ static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_h
 	if (ret <= 0)
 		return ret;
 	ret = once(slave, EC_CMD_FPRD, slave->info.std.tx_offset, b->raw, size);
-	if (ret == -ETIMEDOUT && !full(slave))
+	if (ret == -ETIMEDOUT && !full(slave)) {
 		repeat_request(slave);
+		slave->mbox_repeats = true;
+	}
 	if (ret)
 		return ret == -EIO || ret == -ETIMEDOUT ? 0 : ret;
 	r = ec_rbuf(b->raw, size);
 	if (ec_mbox_hdr_decode(&r, h))
 		return -EBADMSG;
+	if (is_known(slave, h->counter))
+		return 0;
 	memcpy(b->rx, r.p, h->len);
 	return h->len;
 }
@@ -325,7 +329,7 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 	unsigned int i;
 	int ret = 1;
 
-	for (i = 0; i < 16 && ret; i++) {
+	for (i = 0; i < DRAIN && ret; i++) {
 		ret = fetch(slave, b, &h, false);
 		if (ret < 0 && ret != -EBADMSG)
 			return ret;
@@ -333,6 +337,77 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 			unasked(slave, &h, b->rx);
 	}
 	return 0;
+}
+
+/**
+ * ec_mbox_forget() - empty the mailbox for a new application
+ * @slave: slave with mailbox, in PREOP
+ *
+ * What the slave has sent before, emergencies and VoE messages too, is none of it.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0, -ENOMEM, -ECANCELED, or as ec_xfer().
+ */
+int ec_mbox_forget(struct ec_slave *slave)
+{
+	struct ec_mbox_buf *b = kmalloc(sizeof(*b), GFP_KERNEL);
+	struct ec_mbox_hdr h;
+	unsigned int i;
+	int ret;
+
+	if (!b)
+		return -ENOMEM;
+	ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
+	if (ret)
+		goto out;
+	for (i = 0, ret = 1; i < DRAIN && (ret > 0 || ret == -EBADMSG); i++)
+		ret = fetch(slave, b, &h, false);
+	ret = min(ret, 0);
+	slave->mbox_answered = !ret && i < DRAIN;
+	spin_lock(&slave->kept_lock);
+	flush(slave, 0);
+	spin_unlock(&slave->kept_lock);
+	up(&slave->mbox_lock);
+out:
+	kfree(b);
+	return ret;
+}
+
+static void encode(struct ec_mbox_buf *b, const struct ec_mbox_hdr *h, u16 size)
+{
+	struct ec_wbuf w = ec_wbuf(b->raw, size);
+
+	ec_mbox_hdr_encode(&w, h);
+	ec_wbuf_bytes(&w, b->tx, h->len);
+	ec_wbuf_zero(&w, w.end - w.p);
+}
+
+/*
+ * A full mailbox (working counter 0) is tried again; the slave may wait until its own
+ * message is read. A lost frame is not: the message may have arrived, and the answer tells.
+ */
+static int send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+		const struct until *until)
+{
+	u16 size = slave->info.std.rx_size;
+	struct ec_mbox_hdr h = { .len = len, .type = type };
+	unsigned int us = 50;
+	int ret;
+
+	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
+		return -EMSGSIZE;
+	slave->mbox_counter = ec_mbox_next_counter(slave->mbox_counter);
+	h.counter = slave->mbox_counter;
+	for (;;) {
+		encode(b, &h, size);
+		ret = once(slave, EC_CMD_FPWR, slave->info.std.rx_offset, b->raw, size);
+		if (ret != -EIO)
+			return ret == -ETIMEDOUT ? 0 : ret;
+		ret = over(slave, until) ?: ec_mbox_drain(slave, b);
+		if (ret)
+			return ret;
+		pause_us(&us);
+	}
 }
 
 /*
@@ -347,7 +422,7 @@ static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const st
 	int ret;
 
 	for (;;) {
-		ret = fetch(slave, b, &h, false);
+		ret = fetch(slave, b, &h, read_at_once(slave));
 		if (ret < 0 && ret != -ETIMEDOUT)
 			return ret;
 		if (ret > 0) {
@@ -416,8 +491,10 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 	if (ret)
 		return ret;
 	ret = off(slave);
-	if (!ret && a->first)
+	/* after an answer nothing of an earlier exchange can come any more */
+	if (!ret && a->first && !slave->mbox_answered)
 		ret = ec_mbox_drain(slave, b);
+	slave->mbox_answered = false;
 	until = in_ms(a->timeout_ms, a->cancel);
 	if (!ret)
 		ret = send(slave, a->type, b, len, &until);
@@ -432,6 +509,7 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 	} while (ret == EC_WAIT || (ret == EC_STALE && ktime_get_ns() <= until.ns));
 	if (ret == EC_STALE)
 		ret = -ETIMEDOUT;
+	slave->mbox_answered = ret >= 0;
 out:
 	up(&slave->mbox_lock);
 	return ret;

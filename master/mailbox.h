@@ -58,6 +58,7 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 int ec_mbox_tell(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
 int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b);
+int ec_mbox_forget(struct ec_slave *slave);
 
 /* VoE: messages nobody has asked for */
 void ec_mbox_keep_voe(struct ec_slave *slave, bool on);

@@ -351,7 +351,7 @@ static int read_new(struct scan *sc)
 			ec_slave_warn(s, "EEPROM checksum is 0x%02x, should be 0x%02x\n",
 				      s->info.checksum, s->info.checksum_calc);
 	}
-	ec_scan_preop(sc->m, fresh, n);
+	ec_scan_preop(sc->m, fresh, n, sc->fresh);
 	plan_retries(sc, fresh, n);
 	kvfree(fresh);
 	return 0;

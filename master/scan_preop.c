@@ -26,6 +26,7 @@ struct job {
 	struct ec_master *m;
 	struct climber *c;
 	unsigned int n;
+	bool clean;
 	struct ec_dg *dg;
 };
 
@@ -68,6 +69,7 @@ static void look(struct job *j)
 			c->slave->al_code = get_unaligned_le16(c->al + 4);
 			if (c->slave->al_status == EC_AL_PREOP) {
 				c->slave->ours = true;
+				c->slave->clean = j->clean;
 				continue;
 			}
 			if (c->slave->al_status & EC_AL_ERROR)
@@ -83,13 +85,14 @@ static void look(struct job *j)
  * @m: master
  * @slaves: slaves nobody else knows yet
  * @n: how many
+ * @clean: their SyncManagers, FMMUs and SYNC units have been reset
  *
  * Context: The monitor thread. Waits for bus traffic, at most some 20 ms for
  * slaves that are slow.
  */
-void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n)
+void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean)
 {
-	struct job j = { .m = m };
+	struct job j = { .m = m, .clean = clean };
 	u64 until = ktime_get_ns() + WAIT_NS;
 	unsigned int i, us = 100;
 

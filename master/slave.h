@@ -100,12 +100,17 @@ struct ec_master;
  * @op_only: SyncManagers that are on in OP only and are on, a bit each
  * @sync_free: its SYNC signals run by a clock that was not set
  * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
+ * @clean: in PREOP, and nothing of a configuration is left in its registers
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  * @sdo_lock: one SDO transfer at a time; see ec_mbox_lock()
  * @mbox_lock: one mailbox exchange at a time
  * @awaits: which of the two the worker waits for
  * @turn: who waits until the worker has it
  * @mbox_counter: of the last message sent
+ * @mbox_seen: counter of the last message received; this and the next three under @mbox_lock
+ * @mbox_counts: the slave counts its messages
+ * @mbox_repeats: it was asked to put its last message there again
+ * @mbox_answered: the last exchange has ended with its answer
  * @emerg_lock: protects @emerg and what it points to
  * @emerg: where its emergencies go, NULL: only to the log
  * @kept_lock: protects the next three
@@ -184,6 +189,7 @@ struct ec_slave {
 	bool reconfigure;
 	bool mapped;
 	u16 op_only;
+	bool clean;
 	bool ours;
 	bool sync_free;
 	u64 sync_due_ns;
@@ -192,6 +198,10 @@ struct ec_slave {
 	const struct semaphore *awaits;
 	wait_queue_head_t turn;
 	u8 mbox_counter;
+	u8 mbox_seen;
+	bool mbox_counts;
+	bool mbox_repeats;
+	bool mbox_answered;
 	spinlock_t emerg_lock;
 	struct ec_emerg *emerg;
 	spinlock_t kept_lock;
@@ -269,6 +279,12 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
 void ec_apply_work(struct work_struct *work);
 unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page);
 
+/* apply_regs.c */
+int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);
+int ec_apply_clear_fmmus(struct ec_slave *s);
+int ec_apply_clear_pdos(struct ec_slave *s);
+void ec_apply_clear(struct ec_slave *s);
+
 /* apply_pdo.c */
 int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
 const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
@@ -281,6 +297,6 @@ void ec_topology_build(struct ec_slave **slaves, unsigned int n);
 void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
 
 /* scan_preop.c */
-void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n);
+void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean);
 
 #endif

@@ -156,7 +156,8 @@ static void link_loss_beside_a_cycle(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
 	/* new ones at the end, so that there is something to read */
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, MANY - 1, 0, 0, 0);
-	cyc_run(c, 20);
+	/* the scan that finds it gone is over then */
+	cyc_run(c, 60);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, MANY - 1, 0, 0, 0);
 	scan_begins(b, c);
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
