@@ -10,6 +10,7 @@
 #
 # EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
+# EC_PLACES: folder with a file for each guest that may run at a time (one for each CPU)
 #
 # usage: run.sh [FILE.bats...]
 
@@ -110,21 +111,50 @@ report() {
 	echo "# $f: $seconds s"
 }
 
+# Places for guests are lock files, so that several of this script share them.
+if [ -z "${EC_PLACES:-}" ]; then
+	EC_PLACES=$logs/places
+	mkdir "$EC_PLACES"
+	# a guest of 1 GB, and QEMU
+	awk -v cpus="$(nproc)" '/^MemAvailable:/ { n = int($2 / 1.5e6) }
+		END { print n < 1 ? 1 : n < cpus ? n : cpus }' /proc/meminfo |
+		xargs seq | sed "s,^,$EC_PLACES/," | xargs touch
+fi
+places=("$EC_PLACES"/*)
+
+# one COMMAND...: in the first place that is free
+one() {
+	local p
+
+	while :; do
+		for p in "${places[@]}"; do
+			exec 9>"$p"
+			! flock -n 9 || { "$@"; exec 9>&-; return; }
+		done
+		sleep 0.3
+	done
+}
+
+# all COMMAND...: alone
+all() (
+	local p
+
+	for p in "${places[@]}"; do exec {fd}>"$p"; flock "$fd"; done
+	"$@"
+)
+
 side=() alone=()
 for f in ${*:-tests/system/*.bats}; do
 	if [[ $(vm_options "$f") == *--icount* ]]; then side+=("$f"); else alone+=("$f"); fi
 done
-# a guest of 1 GB, and QEMU
-at_once=$(awk -v cpus="$(nproc)" '/^MemAvailable:/ { n = int($2 / 1.5e6) }
-	END { print n < 1 ? 1 : n < cpus ? n : cpus }' /proc/meminfo)
 for f in ${side[@]+"${side[@]}"}; do
-	while [ "$(jobs -rp | wc -l)" -ge "$at_once" ]; do wait -n; done
-	run "$f" &
+	while [ "$(jobs -rp | wc -l)" -ge ${#places[@]} ]; do wait -n; done
+	one run "$f" &
 done
 wait
 for f in ${side[@]+"${side[@]}"}; do report "$f"; done
 for f in ${alone[@]+"${alone[@]}"}; do
-	run "$f"
+	all run "$f"
 	report "$f"
 done
 echo "$passed passed, $failed failed"
