@@ -563,6 +563,8 @@ void ec_apply_work(struct work_struct *work)
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
+	if (ret == 1 && s->read_pdos && ec_names_pending(s))
+		ec_names_read(s);
 	WRITE_ONCE(s->worker, NULL);
 	mutex_unlock(&s->lock);
 	wake_up_all(&m->scan_wq);

@@ -348,9 +348,10 @@ int ec_ioc_sm(struct ec_file *f, void *arg)
 	return ret;
 }
 
+/* Without a name in the EEPROM that of the object dictionary is in @buf. */
 static void name(const struct ec_slave *s, u8 index, char *buf)
 {
-	if (!index || ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+	if (index && ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
 		buf[0] = '\0';
 }
 
@@ -375,6 +376,7 @@ int ec_ioc_pdo(struct ec_file *f, void *arg)
 
 	if (!s)
 		return ret;
+	i->name[0] = '\0';
 	ret = ec_show_begin(f->master);
 	if (ret)
 		goto out;
@@ -383,6 +385,9 @@ int ec_ioc_pdo(struct ec_file *f, void *arg)
 		i->index = p->index;
 		i->entry_count = p->n_entries;
 		string = p->name;
+		if (!string)
+			strscpy(i->name, ec_names_find(s, p->index, EC_NAME_OBJECT),
+				sizeof(i->name));
 	}
 	ec_show_end(f->master);
 	name(s, string, i->name);
@@ -401,6 +406,7 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 
 	if (!s)
 		return ret;
+	i->name[0] = '\0';
 	ret = ec_show_begin(f->master);
 	if (ret)
 		goto out;
@@ -409,10 +415,14 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
 				p->n_entries, i->entry_pos + 1);
 	} else if (p) {
-		i->index = p->entries[i->entry_pos].index;
-		i->subindex = p->entries[i->entry_pos].sub;
-		i->bits = p->entries[i->entry_pos].bits;
-		string = p->entries[i->entry_pos].name;
+		const struct ec_pdo_entry *e = &p->entries[i->entry_pos];
+
+		i->index = e->index;
+		i->subindex = e->sub;
+		i->bits = e->bits;
+		string = e->name;
+		if (!string)
+			strscpy(i->name, ec_names_find(s, e->index, e->sub), sizeof(i->name));
 	}
 	ec_show_end(f->master);
 	name(s, string, i->name);

@@ -182,5 +182,6 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	if (ret && ret != -ENOENT)
 		ec_slave_warn(s, "PDOs could not be read over CoE (%s); those of the EEPROM are used\n",
 			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	WRITE_ONCE(s->names_done, false);
 	WRITE_ONCE(s->pdos_known, true);
 }

@@ -45,6 +45,7 @@ static void release(struct kref *kref)
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
+	ec_names_free(s);
 	ec_mbox_keep_voe(s, false);
 	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
 	kvfree(s->sii);

@@ -9,6 +9,7 @@
 #include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
+#include "names.h"
 #include "pdo.h"
 #include "wire/al.h"
 #include "wire/regs.h"
@@ -57,6 +58,8 @@ struct ec_master;
  * @sm_pdos: PDOs by SyncManager
  * @free_pdos: PDOs without SyncManager
  * @pdos_known: the object dictionary was read, or there is none
+ * @names: from the object dictionary
+ * @names_done: the slave was asked for those its EEPROM does not have
  *
  * Of the distributed clock, changed under master->dc.lock:
  * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
@@ -151,6 +154,8 @@ struct ec_slave {
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
 	struct ec_pdo_list free_pdos;
 	bool pdos_known;
+	struct ec_names names;
+	bool names_done;
 
 	u32 dc_delay;
 	u32 dc_hop;

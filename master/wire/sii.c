@@ -225,8 +225,17 @@ static int next_of(struct ec_sii_iter *it, u16 type, struct ec_sii_cat *cat)
 	return ret;
 }
 
-/* EEPROM texts are Latin-1 at best; what comes out is printable UTF-8. */
-static int text_copy(char *buf, size_t cap, const u8 *s, size_t len)
+/**
+ * ec_sii_text() - make a text of a slave printable
+ * @buf: result, UTF-8, always terminated; cut if it does not fit
+ * @cap: bytes at @buf, at least 1
+ * @s: Latin-1 at best, not terminated
+ * @len: bytes at @s
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: length of the text.
+ */
+int ec_sii_text(char *buf, size_t cap, const u8 *s, size_t len)
 {
 	size_t out = 0;
 
@@ -290,7 +299,7 @@ int ec_sii_string(const u8 *img, size_t len, u8 index, char *buf, size_t cap)
 			l = ec_rbuf_u8(&r);
 			s = ec_rbuf_take(&r, l);
 		}
-		return r.bad ? -EBADMSG : text_copy(buf, cap, s, l);
+		return r.bad ? -EBADMSG : ec_sii_text(buf, cap, s, l);
 	}
 	return -ENOENT;
 }

@@ -2,6 +2,8 @@
 /* The PDOs a slave uses now, not those it was delivered with. */
 #include "bus.h"
 #include "master/coe.h"
+#include "master/ioctl.h"
+#include "cyc.h"
 
 static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
 {
@@ -101,10 +103,107 @@ static void pdo_mute_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 1)->sm_pdos[2]), 8u);
 }
 
+/* An EEPROM without names of PDOs and entries. */
+static void strip_names(struct bus *b, u32 index)
+{
+	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+
+	ec_sii_iter_init(&it, e->data, e->len);
+	while (ec_sii_iter_next(&it, &cat) == 1) {
+		u8 *p = (u8 *)cat.data, *end = p + cat.bytes;
+
+		if (cat.type != EC_SII_CAT_RXPDO && cat.type != EC_SII_CAT_TXPDO)
+			continue;
+		while (p < end) {
+			u32 n = p[2];
+
+			p[5] = 0;
+			for (p += 8; n && p < end; n--, p += 8)
+				p[3] = 0;
+		}
+	}
+}
+
+/* Name of PDO 0 of SM2, or of its entry @entry. */
+static const char *shown(struct bus *b, int entry)
+{
+	static struct ec_ioc_pdo_entry e;
+	static struct ec_ioc_pdo p;
+
+	p = (struct ec_ioc_pdo){ .sm = 2, .name = "?" };
+	e = (struct ec_ioc_pdo_entry){ .sm = 2, .entry_pos = entry, .name = "?" };
+	if (entry < 0) {
+		KUNIT_EXPECT_EQ(b->test, ec_ioc_pdo(&b->app, &p), 0);
+		return p.name;
+	}
+	KUNIT_EXPECT_EQ(b->test, ec_ioc_pdo_entry(&b->app, &e), 0);
+	return e.name;
+}
+
+static struct bus *nameless(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave d drive in=22 out=22 mapping=rewritable\n");
+
+	strip_names(b, 0);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
+	return b;
+}
+
+/* What the EEPROM has no name for is called as in the object dictionary. */
+static void pdo_names_of_the_dictionary(struct kunit *test)
+{
+	struct bus *b = nameless(test);
+	u32 i, n;
+
+	KUNIT_EXPECT_STREQ(test, shown(b, 0), "");
+	bus_idle(b);
+	n = bus_slave(b, 0)->sm_pdos[2].pdos[0].n_entries;
+	KUNIT_EXPECT_GT(test, n, 1u);
+	for (i = 0; i < n; i++)
+		if (bus_slave(b, 0)->sm_pdos[2].pdos[0].entries[i].index)
+			KUNIT_EXPECT_STRNEQ_MSG(test, shown(b, i), "", "entry %u", i);
+	KUNIT_EXPECT_STREQ(test, shown(b, 0), "Controlword");
+	KUNIT_EXPECT_STRNEQ(test, shown(b, -1), "");
+}
+
+/* Beside a cycle nothing is asked for; what is known already is shown. */
+static void pdo_names_beside_a_cycle(struct kunit *test)
+{
+	struct bus *b = nameless(test);
+	struct ec_slave *s;
+	struct cyc *c;
+	u32 n, config;
+
+	bus_idle(b);
+	s = bus_slave(b, 0);
+	n = s->names.n;
+	KUNIT_ASSERT_GT(test, n, 0u);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	config = cyc_config(c, 0);
+	cyc_remap(c, config);
+	cyc_map(c, config, 2, 0);
+	cyc_map(c, config, 3, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, s->names.n, n);
+	KUNIT_EXPECT_STREQ(test, shown(b, 0), "Controlword");
+	cyc_release(c);
+	bus_idle(b);
+	KUNIT_EXPECT_GE(test, s->names.n, n);
+	KUNIT_EXPECT_STRNEQ(test, shown(b, 2), "");
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(pdo_same_as_eeprom),
 	KUNIT_CASE(pdo_changed_mapping_is_seen),
 	KUNIT_CASE(pdo_mute_slave),
+	KUNIT_CASE(pdo_names_of_the_dictionary),
+	KUNIT_CASE(pdo_names_beside_a_cycle),
 	{ }
 };
 
