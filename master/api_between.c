@@ -30,7 +30,7 @@ EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
 /* The queue for the cycle is not empty; what it has may be sent already. */
 static bool left(const struct ec_master *m)
 {
-	return READ_ONCE(m->xq_head) != READ_ONCE(m->xq_tail);
+	return ec_queue_frames(m);
 }
 
 /* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */

@@ -7,6 +7,8 @@
 #include "device.h"
 #include "master.h"
 #include "once64.h"
+#include "pack.h"
+#include "queue.h"
 #include "session.h"
 
 #define TURN_CYCLES	100	/* an acyclic frame has its turn within that many */
@@ -25,80 +27,6 @@ static void own_devices(struct ec_master *m, bool cycle)
 		if (dev && dev->ops->cycle)
 			dev->ops->cycle(dev->priv, cycle);
 	}
-}
-
-/*
- * The place of an urgent frame: before all others, but between two urgent ones one of
- * the others goes. Where hardly any frame fits the urgent ones would be the only ones.
- */
-static unsigned int xq_first(struct ec_master *m)
-{
-	unsigned int i = --m->xq_tail;
-
-	if (!m->xq_urgent || i + 1 == m->xq_head)
-		return i;
-	m->xq[i % EC_SLOTS] = m->xq[(i + 1) % EC_SLOTS];
-	return i + 1;
-}
-
-/* A frame left for the cyclic caller; its waiter may give up at any time. */
-static int xq_push(struct ec_master *m, struct ec_slot *slot, bool urgent)
-{
-	unsigned long flags;
-	unsigned int i;
-	int ret = -EBUSY;
-
-	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	if (m->xq_head - m->xq_tail < EC_SLOTS) {
-		i = urgent ? xq_first(m) : m->xq_head++;
-		m->xq[i % EC_SLOTS] = (struct ec_queued){
-			.slot = slot, .seq = slot->seq, .urgent = urgent,
-		};
-		ret = 0;
-	}
-	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
-	return ret;
-}
-
-/* The oldest frame somebody still waits for; stays in the queue. */
-static bool xq_peek(struct ec_master *m, struct ec_queued *next)
-{
-	unsigned long flags;
-	bool found = false;
-
-	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	for (; m->xq_head != m->xq_tail; m->xq_tail++) {
-		const struct ec_queued *q = &m->xq[m->xq_tail % EC_SLOTS];
-
-		if (atomic_read_acquire(&q->slot->state) == EC_SLOT_SENT &&
-		    q->slot->seq == q->seq) {
-			*next = *q;
-			found = true;
-			break;
-		}
-	}
-	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
-	return found;
-}
-
-/* A frame was sent, or cannot be; an urgent one may stand before it by now. */
-static void xq_drop(struct ec_master *m, const struct ec_queued *sent)
-{
-	unsigned long flags;
-	unsigned int i;
-
-	WRITE_ONCE(sent->slot->left, sent->seq);
-	raw_spin_lock_irqsave(&m->xq_lock, flags);
-	m->xq_urgent = sent->urgent;
-	for (i = m->xq_tail; i != m->xq_head; i++) {
-		struct ec_queued *q = &m->xq[i % EC_SLOTS];
-
-		if (q->slot == sent->slot && q->seq == sent->seq) {
-			q->seq--;	/* skipped by the next xq_peek() */
-			break;
-		}
-	}
-	raw_spin_unlock_irqrestore(&m->xq_lock, flags);
 }
 
 /* Nobody shall wait for a frame that was not sent. */
@@ -134,18 +62,22 @@ int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now)
  * What was left in the queue goes out now. When a send fails the waiter runs
  * into its time limit: the slot is his, not ours.
  */
-static void flush(struct ec_master *m)
+static void flush(struct ec_master *m, struct ec_queue *q)
 {
+	static const struct ec_pack_room none;
 	struct ec_queued next;
+	struct ec_pack pack;
 	unsigned int waits = 0;
 
 	lockdep_assert_held(&m->io_lock);
-	while (xq_peek(m, &next)) {
-		if (ec_link_send(&m->link[0], next.slot) == -EBUSY && waits++ < FLUSH_WAITS) {
+	while (ec_queue_peek(m, q, &next)) {
+		ec_queue_gather(m, q, &next, &none, &pack);
+		if (pack.n && ec_link_send_pack(&m->link[0], &pack, ktime_get_ns()) == -EBUSY &&
+		    waits++ < FLUSH_WAITS) {
 			usleep_range(100, 200);
 			continue;
 		}
-		xq_drop(m, &next);
+		ec_queue_drop(m, q, &next, 1);
 	}
 }
 
@@ -173,8 +105,10 @@ bool ec_cycle_own(struct ec_master *m, enum ec_owner owner)
 			usleep_range(20, 50);
 		own_devices(m, owner == EC_OWNER_CYCLE);
 		ec_link_set_places(&m->link[0], owner == EC_OWNER_CYCLE);
-		if (owner == EC_OWNER_IDLE)
-			flush(m);
+		if (owner == EC_OWNER_IDLE) {
+			flush(m, &m->xq);
+			flush(m, &m->cq);
+		}
 	}
 	rt_mutex_unlock(&m->io_lock);
 	return change;
@@ -267,11 +201,12 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 		return;
 	}
 	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
-	if (!late_per_s)
-		return;
-	/* the worst: all that wait go in late cycles, an urgent one before each */
-	turns = 2 * (READ_ONCE(m->xq_head) - READ_ONCE(m->xq_tail) + 1);
-	w->turn_ns += (u64)min(turns, 2u * EC_SLOTS) * (NSEC_PER_SEC / late_per_s);
+	/* the worst: each send carries one of those that wait, every second one is urgent */
+	turns = min(2 * (ec_queue_frames(m) + 1), 2u * EC_SLOTS);
+	w->turn_ns += (u64)turns * m->interval_us * NSEC_PER_USEC;
+	/* worse: and only when it may be late */
+	if (late_per_s)
+		w->turn_ns += (u64)turns * (NSEC_PER_SEC / late_per_s);
 }
 
 /**
@@ -356,7 +291,7 @@ int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent)
 	} else {
 		/* the waiter may give up from now on */
 		ec_slot_arm(&m->slots, slot, 0, now);
-		ret = xq_push(m, slot, urgent);
+		ret = ec_queue_push(m, slot, urgent);
 		if (ret)
 			disarm(slot, now);
 		else
@@ -418,6 +353,30 @@ static bool may_be_late(struct ec_master *m)
 	return true;
 }
 
+/*
+ * Send the frame @next, and with it what else fits. Returns its wire time; 0: no more can
+ * be sent, it stays the first.
+ */
+static u32 send_next(struct ec_master *m, struct ec_queue *q, const struct ec_queued *next,
+		     u32 wire_ns)
+{
+	struct ec_pack_room room;
+	struct ec_pack pack;
+	u32 frame_ns;
+
+	ec_share_room(m, q, wire_ns, &room);
+	ec_queue_gather(m, q, next, &room, &pack);
+	if (!pack.n)
+		return 0;	/* given up meanwhile: the next send goes on */
+	frame_ns = ec_frame_wire_ns(EC_ETH_HDR + pack.len);
+	/* behind what this cycle has sent before */
+	if (ec_link_send_pack(&m->link[0], &pack, m->last_send_ns + wire_ns) == -EBUSY)
+		return 0;
+	ec_queue_drop(m, q, pack.e, pack.n);
+	ec_share_sent(m, q, frame_ns);
+	return frame_ns;
+}
+
 /**
  * ec_cycle_send_left() - send what others have left, as far as it fits before
  *	the next cycle; see ecrt_master_set_late_cycles() for what does not
@@ -429,27 +388,30 @@ static bool may_be_late(struct ec_master *m)
 void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 {
 	const struct ecdev *dev = READ_ONCE(m->link[0].dev);
-	u64 budget = m->interval_us * 900ULL;
 	struct ec_queued next;
+	struct ec_queue *q;
 	unsigned int n, burst;
+	u32 frame_ns;
+	int fits;
 
 	/* one that comes at this moment has time until the next cycle */
-	if (READ_ONCE(m->xq_head) == READ_ONCE(m->xq_tail))
+	if (!ec_queue_frames(m))
 		return;
 	/* it may be withdrawn now; who does that waits for us before it goes */
 	if (!dev)
 		return;
 	burst = dev->ops->burst ?: EC_SLOTS;
 	/* the next cycle needs transmit buffers, too */
-	for (n = 0; n < burst && xq_peek(m, &next); n++) {
-		/* behind what this cycle has sent before */
-		ec_write64(&next.slot->sent_ns, m->last_send_ns + wire_ns);
-		wire_ns += ec_frame_wire_ns(next.slot->eth_len);
-		if (wire_ns > budget && (n || !may_be_late(m)))
+	for (n = 0; n < burst && (q = ec_share_next(m, &next)); n++) {
+		fits = ec_share_fits(m, q, wire_ns, ec_frame_wire_ns(next.slot->eth_len));
+		if (fits == -EAGAIN)
+			continue;
+		if (fits && (m->share.frames || m->share.clocks || !may_be_late(m)))
 			break;
-		if (ec_link_send(&m->link[0], next.slot) == -EBUSY)
-			break;	/* it stays the first */
-		xq_drop(m, &next);
+		frame_ns = send_next(m, q, &next, wire_ns);
+		if (!frame_ns)
+			break;
+		wire_ns += frame_ns;
 	}
 }
 

@@ -526,7 +526,7 @@ static int compensate(struct job *j, const struct stage *st)
 		}
 		for (i = 0; i < n; i++)
 			j->dg[i].repeat = false;
-		ret = ec_xfer(j->m, j->dg, n);
+		ret = ec_xfer_clock(j->m, j->dg, n);
 		if (ret == -ETIMEDOUT || ret == -EBUSY)
 			ret = 0;	/* one more or less */
 	}

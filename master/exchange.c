@@ -437,6 +437,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(m->cycle_wire_ns, max(send.wire.ns, wire_ns(m, c)));
+	ec_share_begin(m);
 	ec_cycle_send_left(m, send.wire.ns);
 	WRITE_ONCE(c->cycles, c->cycles + 1);
 	return 0;

@@ -40,6 +40,7 @@
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
 #define EC_LINK_ACYCLIC		64	/* acyclic frames of a link, of all callers, on their way */
 #define EC_LINK_QUEUED		192	/* the same with those in the queue for the cycle */
+#define EC_PACK_MAX		8	/* callers whose datagrams share a frame: each is woken */
 #define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)
 
 #endif

@@ -8,6 +8,7 @@
 #include "device.h"
 #include "link.h"
 #include "master.h"
+#include "pack.h"
 #include "slots.h"
 
 /**
@@ -31,6 +32,26 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 		       data);
 }
 
+/* Send a frame that was written to a buffer of the device. */
+static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
+{
+	int ret;
+
+	if (unlikely(READ_ONCE(link->master->debug) >= 2))
+		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
+	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
+		atomic64_inc(&link->stats.not_captured);
+	ret = dev->ops->tx_send(dev->priv, buf, len);
+	if (ret) {
+		if (ret != -EBUSY)
+			atomic64_inc(&link->stats.tx_errors);
+		return ret;
+	}
+	atomic64_inc(&link->stats.tx_frames);
+	atomic64_add(len, &link->stats.tx_bytes);
+	return 0;
+}
+
 /**
  * ec_link_send() - send the frame of an armed slot
  * @link: link
@@ -46,7 +67,6 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
 	u8 *buf;
-	int ret;
 
 	if (!dev)
 		return -ENODEV;
@@ -54,19 +74,30 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 	if (!buf)
 		return -EBUSY;
 	memcpy(buf, slot->frame, len);
-	if (unlikely(READ_ONCE(link->master->debug) >= 2))
-		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
-	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
-		atomic64_inc(&link->stats.not_captured);
-	ret = dev->ops->tx_send(dev->priv, buf, len);
-	if (ret) {
-		if (ret != -EBUSY)
-			atomic64_inc(&link->stats.tx_errors);
-		return ret;
-	}
-	atomic64_inc(&link->stats.tx_frames);
-	atomic64_add(len, &link->stats.tx_bytes);
-	return 0;
+	return send_buf(link, dev, buf, len);
+}
+
+/**
+ * ec_link_send_pack() - send the frame that callers share
+ * @link: link
+ * @p: the frame; its slots are let go before it leaves
+ * @sent_ns: when it leaves (ktime)
+ *
+ * Context: The owner of the link. RT-safe.
+ * Return: as ec_link_send().
+ */
+int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	u8 *buf = dev ? dev->ops->tx_get(dev->priv) : NULL;
+	size_t len = 0;
+
+	if (buf)
+		len = ec_pack_write(&link->master->slots, p, buf, sent_ns);
+	ec_pack_release(p);
+	if (!buf)
+		return dev ? -EBUSY : -ENODEV;
+	return send_buf(link, dev, buf, len);
 }
 
 /**

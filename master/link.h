@@ -11,6 +11,7 @@
 
 struct ecdev;
 struct ec_master;
+struct ec_pack;
 struct ec_slot;
 
 /**
@@ -74,6 +75,7 @@ struct ec_link {
 
 void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 int ec_link_send(struct ec_link *link, struct ec_slot *slot);
+int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns);
 void ec_link_poll(struct ec_link *link);
 void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);

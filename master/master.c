@@ -36,7 +36,7 @@ struct ec_master *ec_master_get(unsigned int index)
 void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
 {
 	struct ec_master *m = link->master;
-	struct ec_xfer *xfer;
+	struct ec_matched got;
 
 	atomic64_inc(&link->stats.rx_frames);
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
@@ -44,10 +44,10 @@ void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t
 		ec_link_trace(link, "received", data, len);
 	if (unlikely(!ec_capture_received(m->capture, src, data, len)))
 		atomic64_inc(&link->stats.not_captured);
-	switch (ec_slots_match(&m->slots, src, data, len, &xfer)) {
+	switch (ec_slots_match(&m->slots, src, data, len, &got)) {
 	case EC_MATCH_DONE:
-		if (xfer)
-			ec_xfer_done(xfer);
+		while (got.n)
+			ec_xfer_done(got.xfer[--got.n]);
 		break;
 	case EC_MATCH_LATE:
 		atomic64_inc(&link->stats.late);

@@ -18,6 +18,7 @@
 #include "limits.h"
 #include "link.h"
 #include "log.h"
+#include "queue.h"
 #include "show.h"
 #include "slots.h"
 
@@ -54,9 +55,10 @@ struct task_struct;
  * @late_per_s: how many cycles a second acyclic frames may make late
  * @late_next_ns: no more before that time (ktime)
  * @late_cycles: cycles they have made late since activation
- * @xq_lock: protects @xq, @xq_head, @xq_tail, @xq_urgent
+ * @xq_lock: protects @xq, @cq
  * @xq: frames left by ec_xfer() for the cyclic caller
- * @xq_urgent: the last of them that was sent was an urgent one
+ * @cq: the same of ec_xfer_clock()
+ * @share: what the cyclic caller has sent of them
  *
  * @topo: protects @slaves, @n_slaves, @scan_busy (written by the monitor only)
  *	and the PDO lists of the slaves
@@ -133,10 +135,9 @@ struct ec_master {
 	u64 late_next_ns;
 	u32 late_cycles;
 	raw_spinlock_t xq_lock;
-	struct ec_queued xq[EC_SLOTS];
-	unsigned int xq_head;
-	unsigned int xq_tail;
-	bool xq_urgent;
+	struct ec_queue xq;
+	struct ec_queue cq;
+	struct ec_share share;
 
 	struct rw_semaphore topo;
 	struct ec_slave **slaves;

@@ -4,6 +4,7 @@
 #include <linux/ktime.h>
 #include <linux/vmalloc.h>
 #include "once64.h"
+#include "pack.h"
 #include "slots.h"
 
 /**
@@ -57,6 +58,7 @@ static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
 
 		if (take(slot, now_ns, quarantine_ns)) {
 			slot->xfer = NULL;
+			slot->dgrams = 0;
 			return slot;
 		}
 	}
@@ -161,6 +163,7 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
 
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
+	slot->pack.len = 0;
 	eth_broadcast_addr(f);
 	f[6] = 0;
 	f[7] = side;
@@ -172,18 +175,24 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
 	atomic_set_release(&slot->state, EC_SLOT_SENT);
 }
 
-/* does the reply carry the same datagrams as the frame that was sent? */
-static bool same_dgrams(struct ec_slot *slot, u8 *reply, size_t len)
+/**
+ * ec_slot_same() - check that a reply carries the datagrams of a slot
+ * @slot: slot in state FILL
+ * @reply: the reply, at the first of them; afterwards behind the last one
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it does.
+ */
+bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
 {
-	struct ec_frame_iter si, ri;
+	struct ec_frame_iter si;
 	struct ec_dgram sd, rd;
 	int more;
 
-	if (ec_frame_iter_init(&ri, reply, len) ||
-	    ec_frame_iter_init(&si, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR))
+	if (ec_frame_iter_init(&si, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR))
 		return false;
 	while ((more = ec_frame_iter_next(&si, &sd)) == 1) {
-		if (ec_frame_iter_next(&ri, &rd) != 1 || rd.cmd != sd.cmd ||
+		if (ec_frame_iter_next(reply, &rd) != 1 || rd.cmd != sd.cmd ||
 		    rd.idx != sd.idx || rd.len != sd.len || rd.ado != sd.ado)
 			return false;
 		switch (sd.cmd) {
@@ -196,30 +205,42 @@ static bool same_dgrams(struct ec_slot *slot, u8 *reply, size_t len)
 				return false;
 		}
 	}
-	return !more && ec_frame_iter_next(&ri, &rd) == 0;
+	return !more;
+}
+
+/* Does the reply carry the same datagrams as the frame that was sent, and no more? */
+static bool same(struct ec_slot *slot, u8 *reply, size_t len)
+{
+	struct ec_frame_iter ri;
+	struct ec_dgram rd;
+
+	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
+	       ec_frame_iter_next(&ri, &rd) == 0;
 }
 
 /**
- * ec_slots_match() - find the slot a received frame belongs to and fill it
+ * ec_slots_match() - find the slots a received frame belongs to and fill them
  * @s: slots
  * @src: source MAC address of the frame
  * @data: what follows the EtherType
  * @len: bytes there
- * @xfer: who waits for it (NULL: the cycle), for EC_MATCH_DONE; the slot itself
- *	may be in use by another already
+ * @got: who waits for it
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: what became of the frame.
  */
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
-			     size_t len, struct ec_xfer **xfer)
+			     size_t len, struct ec_matched *got)
 {
 	u32 seq = get_unaligned_le32(src + 2);
 	struct ec_slot *slot;
 	size_t body;
 
+	got->n = 0;
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
 		return EC_MATCH_UNMATCHED;
+	if (unlikely(src[1] & EC_PACKED))
+		return ec_pack_match(s, seq, data, len, got);
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
 	/* first: a frame of an earlier use must not hold the slot */
 	if (READ_ONCE(slot->seq) != seq)
@@ -234,12 +255,13 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 	}
 	body = slot->eth_len - EC_ETH_HDR;
 	/* the iterator only reads; it has no const form */
-	if (len < body || !same_dgrams(slot, (u8 *)data, len)) {
+	if (len < body || !same(slot, (u8 *)data, len)) {
 		atomic_set_release(&slot->state, EC_SLOT_SENT);
 		return EC_MATCH_UNMATCHED;
 	}
 	memcpy(ec_slot_body(slot), data, body);
-	*xfer = slot->xfer;
+	if (slot->xfer)
+		got->xfer[got->n++] = slot->xfer;
 	atomic_set_release(&slot->state, EC_SLOT_DONE);
 	return EC_MATCH_DONE;
 }

@@ -31,6 +31,8 @@ struct half {
 	struct ec_xfer x;
 	struct ec_cycle_wait wait;
 	bool urgent;
+	bool clock;
+	bool alone;	/* frames share none with those of other callers */
 	int err;	/* why not all frames were sent */
 	bool stop;	/* no sense in sending the others */
 	unsigned int frames;
@@ -50,8 +52,8 @@ void ec_xfer_done(struct ec_xfer *x)
 }
 
 /* pack datagrams from @first on; datagrams already answered are left out */
-static void build(struct ec_master *m, struct batch_frame *bf, struct ec_dg *dg,
-		  unsigned int first, unsigned int n)
+static void build(struct ec_master *m, const struct half *h, struct batch_frame *bf,
+		  struct ec_dg *dg, unsigned int first, unsigned int n)
 {
 	struct ec_slot *slot = bf->slot;
 	/* a frame that fits before the next cycle, but at least the first datagram */
@@ -75,6 +77,8 @@ static void build(struct ec_master *m, struct batch_frame *bf, struct ec_dg *dg,
 	}
 	bf->first = first;
 	bf->count = i - first;
+	slot->dgrams = h->alone ? 0 : fb.count;
+	slot->last = fb.last - (fb.buf + EC_FRAME_HDR);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 }
 
@@ -217,9 +221,10 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 		f->slot = get_slot(m, h, wait && !h->frames);
 		if (!f->slot)
 			break;
-		build(m, f, dg, first, n);
+		build(m, h, f, dg, first, n);
 		first += f->count;
 		f->slot->xfer = &h->x;
+		f->slot->clock = h->clock;
 		atomic_inc(&h->x.pending);
 		submit(m, h, f);
 		if (!f->err)
@@ -251,7 +256,8 @@ static void give_up(struct ec_master *m, struct half *h)
 			usleep_range(20, 50);
 		if (!f->cancelled)
 			continue;
-		atomic64_inc(&m->link[0].stats.lost);
+		if (ec_slot_leads(f->slot))
+			atomic64_inc(&m->link[0].stats.lost);
 		f->err = up ? -ETIMEDOUT : -ENETDOWN;
 		ec_xfer_done(&h->x);
 	}
@@ -360,7 +366,8 @@ static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, u
 			dg[i].err = err;
 }
 
-static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool urgent)
+static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool urgent,
+		    bool clock)
 {
 	struct half *half;
 	unsigned int i, try, again;
@@ -374,9 +381,14 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
 	half = kmalloc_array(2, sizeof(*half), GFP_KERNEL);
 	if (!half)
 		return -ENOMEM;
-	half[0].urgent = urgent;
-	half[1].urgent = urgent;
+	for (i = 0; i < 2; i++) {
+		half[i].urgent = urgent;
+		half[i].clock = clock;
+	}
 	for (try = 0; try < TRIES; try++) {
+		/* a datagram that a slave never forwards must not take others with it twice */
+		half[0].alone = try;
+		half[1].alone = try;
 		exchange(m, half, dg, n);
 		for (i = 0, again = 0; i < n; i++) {
 			if (dg[i].err == -ETIMEDOUT && dg[i].repeat && try < TRIES - 1) {
@@ -408,7 +420,7 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
  */
 int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 {
-	return transfer(m, dg, n, false);
+	return transfer(m, dg, n, false, false);
 }
 
 /**
@@ -424,7 +436,24 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
  */
 int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 {
-	return transfer(m, dg, n, true);
+	return transfer(m, dg, n, true, false);
+}
+
+/**
+ * ec_xfer_clock() - exchange datagrams that set or compensate clocks
+ * @m: master
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * They may be many: a cyclic send carries fewer of them than of other frames, and
+ * others do not wait behind them.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(m, dg, n, false, true);
 }
 
 /**

@@ -52,6 +52,7 @@ struct ec_xfer {
 
 int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n);
 int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n);
 int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
 int ec_xfer_fprd(struct ec_master *m, u16 station, u16 ado, void *data, u16 len);
 int ec_xfer_fpwr(struct ec_master *m, u16 station, u16 ado, const void *data, u16 len);

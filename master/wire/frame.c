@@ -127,6 +127,33 @@ u8 *ec_frame_add(struct ec_frame_buf *f, u8 cmd, u8 idx, u16 adp, u16 ado, u16 l
 }
 
 /**
+ * ec_frame_append() - append the datagrams of another frame
+ * @f: builder
+ * @dgrams: the datagrams of that frame, the last one without "more" bit
+ * @len: bytes of them
+ * @last: offset of the last one
+ * @count: how many there are
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether they fit; nothing is appended otherwise.
+ */
+bool ec_frame_append(struct ec_frame_buf *f, const u8 *dgrams, size_t len, size_t last,
+		     unsigned int count)
+{
+	u8 *p = f->buf + f->len;
+
+	if (f->cap < f->len || f->cap - f->len < len || last + EC_DGRAM_OVERHEAD > len)
+		return false;
+	memcpy(p, dgrams, len);
+	if (f->last)
+		f->last[7] |= LEN_MORE >> 8;
+	f->last = p + last;
+	f->len += len;
+	f->count += count;
+	return true;
+}
+
+/**
  * ec_frame_end() - write the EtherCAT header
  * @f: builder
  *

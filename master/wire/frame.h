@@ -109,6 +109,8 @@ int ec_frame_iter_next(struct ec_frame_iter *it, struct ec_dgram *d);
 
 void ec_frame_begin(struct ec_frame_buf *f, u8 *buf, size_t cap);
 u8 *ec_frame_add(struct ec_frame_buf *f, u8 cmd, u8 idx, u16 adp, u16 ado, u16 len);
+bool ec_frame_append(struct ec_frame_buf *f, const u8 *dgrams, size_t len, size_t last,
+		     unsigned int count);
 size_t ec_frame_end(struct ec_frame_buf *f);
 
 u32 ec_frame_wire_ns(size_t eth_len);

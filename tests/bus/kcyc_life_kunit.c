@@ -232,7 +232,7 @@ static int gone_tx_send(void *priv, u8 *buf, size_t len)
 	int ret = real_ops->tx_send(priv, buf, len);
 
 	/* somebody's frame is to go after those of the cycle */
-	if (!times && m->owner == EC_OWNER_CYCLE && m->xq_head != m->xq_tail) {
+	if (!times && m->owner == EC_OWNER_CYCLE && ec_queue_frames(m)) {
 		WRITE_ONCE(m->link[0].dev, NULL);
 		times++;
 	}

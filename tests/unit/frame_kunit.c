@@ -141,6 +141,41 @@ static void a_refused_datagram_leaves_no_more_bit(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, buf[2 + 7], 0);
 }
 
+static void datagrams_of_two_frames_make_one(struct kunit *test)
+{
+	struct ec_frame_buf f, other;
+	struct ec_frame_iter it;
+	static u8 two[64];
+	struct ec_dgram d;
+	size_t len;
+
+	ec_frame_begin(&other, two, sizeof(two));
+	memset(ec_frame_add(&other, EC_CMD_FPRD, 8, 0x1001, 0x0130, 2), 0, 2);
+	memset(ec_frame_add(&other, EC_CMD_FPWR, 8, 0x1002, 0x0800, 5), 9, 5);
+	len = ec_frame_end(&other) - EC_FRAME_HDR;
+
+	ec_frame_begin(&f, buf, EC_FRAME_HDR + 2 * len);
+	KUNIT_ASSERT_TRUE(test, ec_frame_append(&f, two + EC_FRAME_HDR, len, 14, 2));
+	KUNIT_ASSERT_TRUE(test, ec_frame_append(&f, two + EC_FRAME_HDR, len, 14, 2));
+	/* full; and a last datagram that is not in it */
+	KUNIT_EXPECT_FALSE(test, ec_frame_append(&f, two + EC_FRAME_HDR, 13, 0, 1));
+	ec_frame_begin(&other, two, sizeof(two));
+	KUNIT_EXPECT_FALSE(test, ec_frame_append(&other, buf + EC_FRAME_HDR, 13, 2, 1));
+	KUNIT_EXPECT_EQ(test, f.count, 4u);
+	KUNIT_EXPECT_EQ(test, ec_frame_end(&f), EC_FRAME_HDR + 2 * len);
+
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_init(&it, buf, EC_FRAME_HDR + 2 * len), 0);
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_next(&it, &d), 1);
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_next(&it, &d), 1);
+	KUNIT_EXPECT_TRUE(test, d.more);
+	KUNIT_EXPECT_EQ(test, d.data[4], 9);
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_next(&it, &d), 1);
+	KUNIT_EXPECT_EQ(test, d.adp, 0x1001);
+	KUNIT_ASSERT_EQ(test, ec_frame_iter_next(&it, &d), 1);
+	KUNIT_EXPECT_FALSE(test, d.more);
+	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &d), 0);
+}
+
 static void wire_time_counts_preamble_padding_and_gap(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_frame_wire_ns(14 + 2 + 12 + 1), 6720u);
@@ -171,6 +206,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(a_more_bit_without_another_datagram_is_refused),
 	KUNIT_CASE(a_frame_takes_1498_bytes_and_no_more),
 	KUNIT_CASE(a_refused_datagram_leaves_no_more_bit),
+	KUNIT_CASE(datagrams_of_two_frames_make_one),
 	KUNIT_CASE(wire_time_counts_preamble_padding_and_gap),
 	KUNIT_CASE(commands_know_what_they_do),
 	{}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Frames of several callers that leave as one. */
+#ifndef EC_PACK_H
+#define EC_PACK_H
+
+#include "slots.h"
+
+#define EC_PACKED	0x80	/* second octet of the source address, beside the side */
+
+/**
+ * struct ec_pack - frames that leave as one; owned by the cyclic caller
+ * @e: their slots, in state FILL until ec_pack_release()
+ * @n: how many
+ * @len: bytes of the frame behind the EtherType
+ * @dgrams: datagrams in it
+ */
+struct ec_pack {
+	struct ec_queued e[EC_PACK_MAX];
+	unsigned int n;
+	unsigned int len;
+	unsigned int dgrams;
+};
+
+/* room of a frame that several callers share */
+struct ec_pack_room {
+	unsigned int len;	/* bytes behind the EtherType */
+	unsigned int dgrams;
+};
+
+void ec_pack_begin(struct ec_pack *p);
+bool ec_pack_add(struct ec_pack *p, const struct ec_queued *e, const struct ec_pack_room *room);
+size_t ec_pack_write(struct ec_slots *s, struct ec_pack *p, u8 *buf, u64 sent_ns);
+void ec_pack_release(struct ec_pack *p);
+enum ec_match ec_pack_match(struct ec_slots *s, u32 seq, const u8 *data, size_t len,
+			    struct ec_matched *got);
+
+#endif
