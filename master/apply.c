@@ -355,7 +355,7 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 
 	s->clean = false;
 	s->pdo_refusal[0] = '\0';
-	s->warning[0] = '\0';
+	ec_slave_clear_warning(s);
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (c) {

@@ -167,26 +167,17 @@ static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
 }
 
 /*
- * The slave refused: what does it have instead? Process data of other objects than the
- * registered ones would be exchanged with a full working counter.
+ * @have is what the slave has, and it will not change it. Process data of other objects
+ * than the registered ones would be exchanged with a full working counter.
  */
-static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+		   const char *cause)
 {
 	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
 	const struct ec_pdo_entry *e, *h;
-	char has[32] = "nothing", why[96];
-	int ret = ec_slave_read_sm_pdos(s, sm);
+	char has[32] = "nothing";
 	u32 bit;
 
-	if (ret == -ECANCELED || ret == -EINTR)
-		return ret;
-	if (ret) {
-		snprintf(s->warning, sizeof(s->warning),
-			 "process data of SM%u may belong to other objects: %.80s; its PDOs cannot be read (%s)",
-			 sm, s->pdo_refusal, ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
-		ec_slave_warn(s, "%s\n", s->warning);
-		return 0;
-	}
 	e = first_wrong(want, have, &bit);
 	if (!e)
 		return 0;
@@ -197,7 +188,7 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	log_list(s, sm, "in the slave", have);
 	snprintf(s->warning, sizeof(s->warning),
 		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s", sm, bit,
-		 e->index, e->sub, e->bits, has, s->pdo_refusal);
+		 e->index, e->sub, e->bits, has, cause);
 	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
 		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
 		return 0;
@@ -205,6 +196,57 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s", s->warning);
 	s->warning[0] = '\0';
 	return -EOPNOTSUPP;
+}
+
+static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
+{
+	snprintf(s->warning, sizeof(s->warning),
+		 "process data of SM%u may belong to other objects: %.160s", sm, why);
+	ec_slave_warn(s, "%s\n", s->warning);
+}
+
+/* The slave refused: what does it have instead? */
+static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+{
+	char text[160], why[96];
+	int ret = ec_slave_read_sm_pdos(s, sm);
+
+	if (ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	if (!ret)
+		return compare(s, c, sm, s->pdo_refusal);
+	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", s->pdo_refusal,
+		 ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	not_certain(s, sm, text);
+	return 0;
+}
+
+static bool has_registered(const struct ec_pdo_list *l)
+{
+	unsigned int i, k;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++)
+			if (l->pdos[i].entries[k].registered && l->pdos[i].entries[k].index)
+				return true;
+	return false;
+}
+
+/* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
+static int check_fixed(struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+	int ret = 0;
+
+	for (sm = 0; sm < s->n_sms && !ret; sm++) {
+		if (!c->sm[sm].explicit || !has_registered(&c->sm[sm].pdos))
+			continue;
+		if (s->sm_pdos[sm].n)
+			ret = compare(s, c, sm, "without CoE its PDOs cannot be changed");
+		else
+			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");
+	}
+	return ret;
 }
 
 /**
@@ -228,8 +270,8 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
  * @c: its configuration
  *
  * Those that were there when the application began may be others by now: they are
- * written too then. When a slave refuses, the registered entries must be in their place
- * all the same.
+ * written too then. When a slave refuses, or has no CoE, the registered entries must be in
+ * their place all the same. In a SoE drive the IDNs decide.
  *
  * Context: The slave's worker. Waits for bus traffic.
  * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data, told
@@ -241,7 +283,7 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 	int ret = 0;
 
 	if (!ec_slave_has_mailbox(s) || !(s->info.protocols & EC_SII_PROTO_COE))
-		return 0;
+		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
 	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
 		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);
 

@@ -158,6 +158,21 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
 }
 
 /**
+ * ec_slave_clear_warning() - forget what was not certain of a configuration
+ * @s: slave, @lock held
+ *
+ * That its PDOs could not be read stays visible until they can.
+ *
+ * Context: Process.
+ */
+void ec_slave_clear_warning(struct ec_slave *s)
+{
+	strscpy(s->warning, s->pdos_unread ?
+		"PDOs could not be read over CoE; those of the EEPROM are used" : "",
+		sizeof(s->warning));
+}
+
+/**
  * ec_slave_read_coe_pdos() - read which PDOs the slave uses, once
  * @s: slave in PREOP or higher with CoE, @lock held
  *
@@ -179,8 +194,10 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	}
 	if (ret == -ECANCELED || ret == -EINTR)
 		return;
-	if (ret && ret != -ENOENT)
-		ec_slave_warn(s, "PDOs could not be read over CoE (%s); those of the EEPROM are used\n",
+	s->pdos_unread = ret && ret != -ENOENT;
+	ec_slave_clear_warning(s);
+	if (s->pdos_unread)
+		ec_slave_warn(s, "%s (%s)\n", s->warning,
 			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	WRITE_ONCE(s->names_done, false);
 	WRITE_ONCE(s->pdos_known, true);

@@ -208,7 +208,7 @@ static void detach(struct ec_config *c)
 			WRITE_ONCE(slave->pdos_known, false);
 	slave->config = NULL;
 	slave->plan = NULL;
-	slave->warning[0] = '\0';
+	ec_slave_clear_warning(slave);
 	slave->pdo_refusal[0] = '\0';
 	slave->reconfigure = true;
 	slave->interrupt = false;

@@ -58,6 +58,7 @@ struct ec_master;
  * @sm_pdos: PDOs by SyncManager
  * @free_pdos: PDOs without SyncManager
  * @pdos_known: the object dictionary was read, or there is none
+ * @pdos_unread: @pdos_known, but they could not be read
  * @names: from the object dictionary
  * @names_done: the slave was asked for those its EEPROM does not have
  *
@@ -154,6 +155,7 @@ struct ec_slave {
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
 	struct ec_pdo_list free_pdos;
 	bool pdos_known;
+	bool pdos_unread;
 	struct ec_names names;
 	bool names_done;
 
@@ -271,6 +273,7 @@ const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
 
 /* pdo_coe.c */
 bool ec_slave_pdos_pending(const struct ec_slave *s);
+void ec_slave_clear_warning(struct ec_slave *s);
 void ec_slave_read_coe_pdos(struct ec_slave *s);
 int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
 void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);

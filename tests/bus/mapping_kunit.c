@@ -136,6 +136,100 @@ static void mapping_unreadable_stays_visible(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, i.warning, "");
 }
 
+/* Terminals without mailbox: the entry is another one at @wrong; 99: at none. */
+static struct cyc *terminal(struct kunit *test, struct bus *b, u32 wrong)
+{
+	u32 i, config, sm = 0;
+	struct ec_slave *s;
+	struct cyc *c;
+
+	bus_idle(b);
+	s = bus_slave(b, 0);
+	KUNIT_ASSERT_FALSE(test, ec_slave_has_mailbox(s));
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	config = cyc_config(c, 0);
+	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, sm, 0, 0);
+	for (i = 0; i < 8; i++) {
+		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, sm, 0x1600 + i, 0);
+		cyc_pdo(c, config, EC_SC_PDO_MAP_CLEAR, sm, 0x1600 + i, 0);
+		cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, sm, 0x1600 + i,
+			(0x7000 + 0x10 * i) << 16 | (i == wrong ? 2 : 1) << 8 | 1);
+	}
+	cyc_map(c, config, sm, 0);
+	return c;
+}
+
+static void mapping_without_mailbox_is_compared(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave o EL2008\n", 1);
+	struct ec_ioc_sc_flag f = { .config = 0, .value = 1, .key = EC_FLAG_ANY_PDOS };
+	struct ec_ioc_slave i = { 0 };
+	struct cyc *c = terminal(test, b, 0);
+
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	expect_why(b, 0, "registered 0x7000:02, 1 bit; slave has 0x7000:01, 1 bit");
+	cyc_release(c);
+	/* an entry that is not registered, as cyc_map() takes the first one */
+	c = terminal(test, b, 3);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->warning, "");
+	cyc_release(c);
+	c = terminal(test, b, 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &f), 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x7000:02"), "%s", i.warning);
+}
+
+/* Nobody can tell what the slave has. */
+static void mapping_without_knowledge_stays_visible(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave o EL2008\n");
+	struct ec_esc_eeprom *e = &bus_esc(b, 0)->eep;
+	struct ec_ioc_slave i = { 0 };
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+	struct cyc *c;
+
+	ec_sii_iter_init(&it, e->data, e->len);
+	while (ec_sii_iter_next(&it, &cat) == 1)
+		if (cat.type == EC_SII_CAT_RXPDO)	/* of the vendor from now on */
+			put_unaligned_le16(0x0900, (u8 *)cat.data - 4);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
+	c = terminal(test, b, 99);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "EEPROM lists no PDOs"), "%s", i.warning);
+}
+
+/* The PDOs as they are, but they could not be read. */
+static void mapping_found_unreadable_stays_visible(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave d drive in=8 out=8\n");
+	struct ec_ioc_slave i = { 0 };
+	struct cyc *c;
+
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_TYPE, 0);
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "PDOs could not be read"), "%s", i.warning);
+}
+
 /* The first cause is kept, not the AL status code that follows from it. */
 static void mapping_first_cause_is_kept(struct kunit *test)
 {
@@ -197,6 +291,9 @@ static struct kunit_case mapping_cases[] = {
 	KUNIT_CASE(mapping_flag_accepts_other_entry),
 	KUNIT_CASE(mapping_unregistered_entry_does_not_matter),
 	KUNIT_CASE(mapping_unreadable_stays_visible),
+	KUNIT_CASE(mapping_without_mailbox_is_compared),
+	KUNIT_CASE(mapping_without_knowledge_stays_visible),
+	KUNIT_CASE(mapping_found_unreadable_stays_visible),
 	KUNIT_CASE(mapping_first_cause_is_kept),
 	KUNIT_CASE(mapping_written_is_shown),
 	{}
