@@ -89,6 +89,18 @@ static void pause_us(unsigned int *us)
 }
 
 /*
+ * A slave that takes long is asked ever less often: at most an eighth of the time it has
+ * taken so far passes until its reply is seen.
+ */
+static void pause_longer(unsigned int *us)
+{
+	unsigned int next = *us < 1000 ? *us * 2 : min(*us + *us / 8, 5000u);
+
+	usleep_range(*us, *us + *us / 8 + 1);
+	*us = next;
+}
+
+/*
  * One access to a mailbox: 0, or -EIO when the slave took no part. What does not
  * fit beside the process data of a short cycle goes in pieces: the first byte
  * opens the mailbox, the last byte hands it over (ETG.1000.4 clause 6.7.2).
@@ -436,7 +448,7 @@ static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const st
 		ret = over(slave, until);
 		if (ret)
 			return ret;
-		pause_us(&us);
+		pause_longer(&us);
 	}
 }
 

@@ -244,6 +244,30 @@ static void sdo_latency(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, HZ, 100);
 }
 
+/* A slave that takes long is asked ever less often, and its reply is seen in time. */
+static void sdo_slow_reply(struct kunit *test)
+{
+	static const struct { u32 ms, frames; } t[] = { { 5, 20 }, { 50, 60 }, { 900, 300 } };
+	struct bus *b = ready(test);
+	size_t got;
+	u32 i, abort;
+	u8 v[4];
+
+	for (i = 0; i < ARRAY_SIZE(t); i++) {
+		u64 frames = bus_frames(b), t0 = ktime_get_ns(), us;
+
+		bus_app(b, "large")->response_ns = t[i].ms * NSEC_PER_MSEC;
+		KUNIT_EXPECT_EQ(test, ec_coe_upload(bus_slave(b, 1), TYPES, 8, false, v, 4, &got,
+						    &abort, NULL), 0);
+		us = div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+		/* those of the monitor are among them */
+		frames = bus_frames(b) - frames;
+		bus_figure("reply after %u ms: seen after %llu us, %llu frames", t[i].ms, us, frames);
+		KUNIT_EXPECT_LE(test, us, t[i].ms * 1125ull + 1000);
+		KUNIT_EXPECT_LE(test, frames, (u64)t[i].frames);
+	}
+}
+
 static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_expedited),
 	KUNIT_CASE(sdo_normal),
@@ -255,6 +279,7 @@ static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_emergency),
 	KUNIT_CASE(sdo_lost_frames),
 	KUNIT_CASE(sdo_latency),
+	KUNIT_CASE(sdo_slow_reply),
 	{}
 };
 
