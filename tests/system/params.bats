@@ -109,3 +109,20 @@ no_insmod() {
 	no_insmod "there is no network device 'veth7'" sim segment=thin netdev=veth7
 	no_insmod 'lo is no Ethernet device' sim segment=thin netdev=lo
 }
+
+@test "the limit of acyclic frames is refused outside its range, and changes while the module is loaded" {
+	local p=/sys/module/ec_master/parameters/max_acyclic n
+
+	for n in 0 193 many; do
+		run master main_devices=sim0 max_acyclic=$n
+		[ "$status" != 0 ]
+	done
+	master main_devices=sim0 max_acyclic=16
+	[ "$(cat $p)" = 16 ]
+	echo 192 >$p
+	for n in 0 193 -1; do
+		run sh -c "echo $n >$p"
+		[ "$status" != 0 ]
+	done
+	[ "$(cat $p)" = 192 ]
+}
