@@ -3,6 +3,7 @@
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
 #include <linux/slab.h>
+#include <linux/swait.h>
 #include "cycle.h"
 #include "master.h"
 #include "xfer.h"
@@ -277,6 +278,19 @@ static bool in_queue(const struct half *h)
 	return false;
 }
 
+/* Wait for the frames of a half, at most a millisecond: a jiffy may be ten of them. */
+static bool wait_ms(struct completion *done)
+{
+	ktime_t limit = ms_to_ktime(1);
+	DECLARE_SWAITQUEUE(wait);
+
+	prepare_to_swait_exclusive(&done->wait, &wait, TASK_UNINTERRUPTIBLE);
+	if (!completion_done(done))
+		schedule_hrtimeout(&limit, HRTIMER_MODE_REL);
+	finish_swait(&done->wait, &wait);
+	return try_wait_for_completion(done);
+}
+
 /* The time limit begins when the last frame has left, or cannot leave any more. */
 static bool wait_once(struct ec_master *m, struct half *h)
 {
@@ -291,11 +305,10 @@ static bool wait_once(struct ec_master *m, struct half *h)
 		h->wait.polls = READ_ONCE(m->polls);
 	}
 	until = jiffies + usecs_to_jiffies(h->wait.timeout_us) + 1;
-	/* without a cycle the limit is short, and each look lasts up to a jiffy longer */
-	if (h->wait.owner == EC_OWNER_IDLE)
-		look = MAX_JIFFY_OFFSET;
 	while ((left = until - jiffies) > 0) {
-		if (wait_for_completion_timeout(&h->x.done, min_t(unsigned long, left, look)))
+		/* without a cycle few wait, and not for long: they see soon that the link is down */
+		if (h->wait.owner == EC_OWNER_IDLE ? wait_ms(&h->x.done) :
+		    wait_for_completion_timeout(&h->x.done, min_t(unsigned long, left, look)))
 			return true;
 		if (!ec_link_is_up(&m->link[0]))
 			break;

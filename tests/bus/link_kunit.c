@@ -3,6 +3,7 @@
  * What a link does to those who use it: a transmit ring that is full, a cable that is
  * pulled while slaves are read, a reply that claims what cannot be.
  */
+#include <linux/kthread.h>
 #include "cyc.h"
 #include "slow.h"
 #include "master/ioctl.h"
@@ -170,6 +171,55 @@ static void link_loss_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
 }
 
+/* somebody whose frame is on its way */
+struct waiting {
+	struct bus *b;
+	u16 station;
+	int ret;
+	u64 end_ns;
+	struct completion done;
+};
+
+static int wait_for_frame(void *arg)
+{
+	struct waiting *w = arg;
+	u8 v[4];
+
+	w->ret = ec_xfer_fprd(w->b->m, w->station, 0, v, 4);
+	w->end_ns = ktime_get_ns();
+	complete(&w->done);
+	return 0;
+}
+
+/* Without a cycle: who waits for a frame knows at once that it will not come. */
+static void link_loss_ends_waiting(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=33\nslave a EK1100\nslave x EL1859\n", 2);
+	static struct waiting w[10];
+	u64 cut_ns, most = 0;
+	u32 i;
+
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	for (i = 0; i < ARRAY_SIZE(w); i++) {
+		w[i] = (struct waiting){ .b = b, .station = bus_slave(b, 1)->station };
+		init_completion(&w[i].done);
+		kthread_run(wait_for_frame, &w[i], "waiting%u", i);
+	}
+	usleep_range(2000, 2001);
+	cut_ns = ktime_get_ns();
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	for (i = 0; i < ARRAY_SIZE(w); i++) {
+		wait_for_completion(&w[i].done);
+		KUNIT_EXPECT_EQ(test, w[i].ret, -ENETDOWN);
+		most = max(most, w[i].end_ns - cut_ns);
+	}
+	bus_figure("link lost while frames are on their way, no cycle: callers know after %llu us",
+		   div_u64(most, NSEC_PER_USEC));
+	KUNIT_EXPECT_LT(test, most, 3 * NSEC_PER_MSEC);
+	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+}
+
 /* A reply that claims 65,535 slaves: nothing is allocated for them. */
 static void link_claims_beyond_memory_refused(struct kunit *test)
 {
@@ -219,6 +269,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(link_hanging_device_ends_in_error),
 	KUNIT_CASE(link_loss_ends_a_scan),
 	KUNIT_CASE(link_loss_beside_a_cycle),
+	KUNIT_CASE(link_loss_ends_waiting),
 	KUNIT_CASE(link_claims_beyond_memory_refused),
 	KUNIT_CASE(link_station_search_ends),
 	{}
