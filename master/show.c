@@ -80,6 +80,21 @@ int ec_show_pause(struct ec_master *m)
 }
 
 /**
+ * ec_change_announce() - readers that come now wait outside
+ * @m: master; its session_lock or topo is held
+ *
+ * The first half of ec_change_begin().
+ *
+ * Context: Any.
+ */
+void ec_change_announce(struct ec_master *m)
+{
+	atomic_inc(&m->show.changing);
+	/* pairs with enter() */
+	smp_mb__after_atomic();
+}
+
+/**
  * ec_change_begin() - what readers look at is about to change
  * @m: master; its session_lock or topo is held
  *
@@ -90,10 +105,7 @@ int ec_show_pause(struct ec_master *m)
  */
 void ec_change_begin(struct ec_master *m)
 {
-	atomic_inc(&m->show.changing);
-	atomic_inc(&m->show.changes);
-	/* pairs with enter() */
-	smp_mb__after_atomic();
+	ec_change_announce(m);
 	while (atomic_read_acquire(&m->show.showing))
 		cpu_relax();
 }
@@ -106,6 +118,11 @@ void ec_change_begin(struct ec_master *m)
  */
 void ec_change_end(struct ec_master *m)
 {
+	/*
+	 * Not when it begins: it may have been waiting for a section that pauses now, and
+	 * must not be taken for a change that was over before that section.
+	 */
+	atomic_inc(&m->show.changes);
 	atomic_dec_return_release(&m->show.changing);
 }
 

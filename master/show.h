@@ -20,7 +20,7 @@ struct ec_master;
  * struct ec_show - readers and changes of a master
  * @showing: readers in a section
  * @changing: changes in progress: they hold session_lock or topo
- * @changes: changes so far; wraps
+ * @changes: changes that are over; wraps
  */
 struct ec_show {
 	atomic_t showing;
@@ -32,6 +32,7 @@ int ec_show_begin(struct ec_master *m);
 void ec_show_end(struct ec_master *m);
 int ec_show_pause(struct ec_master *m);
 
+void ec_change_announce(struct ec_master *m);
 void ec_change_begin(struct ec_master *m);
 void ec_change_end(struct ec_master *m);
 

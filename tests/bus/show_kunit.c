@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Readers that pause. Here is one CPU only, so the part of a changer on another CPU
+ * that waits for a section is played by the case itself.
+ */
+#include <linux/workqueue.h>
+#include "bus.h"
+
+struct change {
+	struct delayed_work work;
+	struct ec_master *m;
+};
+
+static struct bus *ready(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+
+	bus_idle(b);
+	return b;
+}
+
+static void end_change(struct work_struct *work)
+{
+	struct change *c = container_of(to_delayed_work(work), struct change, work);
+
+	ec_change_end(c->m);
+}
+
+/* What was found is gone, whether the change began in the section or in the pause. */
+static void show_pause_reports_change_that_waited(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct change c = { .m = b->m };
+	u64 t0 = ktime_get_ns();
+	int ret;
+
+	INIT_DELAYED_WORK_ONSTACK(&c.work, end_change);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
+	ec_change_announce(b->m);
+	schedule_delayed_work(&c.work, msecs_to_jiffies(20));
+	ret = ec_show_pause(b->m);
+	/* else the next change waits for ever */
+	if (!ret)
+		ec_show_end(b->m);
+	KUNIT_EXPECT_EQ(test, ret, -EAGAIN);
+	KUNIT_EXPECT_GE_MSG(test, ktime_get_ns() - t0, 10 * NSEC_PER_MSEC,
+			    "it waits for the end of the change");
+	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->show.showing), 0, "the section has ended");
+	destroy_delayed_work_on_stack(&c.work);
+}
+
+/* Without a change, and after one that was over before, what was found is still there. */
+static void show_pause_goes_on_without_change(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	ec_session_lock(b->m);
+	ec_session_unlock(b->m);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
+	KUNIT_EXPECT_EQ(test, ec_show_pause(b->m), 0);
+	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->show.showing), 1);
+	ec_show_end(b->m);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(show_pause_reports_change_that_waited),
+	KUNIT_CASE(show_pause_goes_on_without_change),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_show",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
