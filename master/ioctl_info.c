@@ -259,19 +259,36 @@ static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
 }
 
 /* The configuration that has the slave, or that expects another one in its place. */
-static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
 	const struct ec_config *c = NULL;
+	unsigned int from = 0;
 	int ret = ec_show_begin(m);
 
 	if (ret)
 		return ret;
-	if (m->session)
-		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos);
+	while (m->session) {
+		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos, &from);
+		if (c || from >= m->session->n_configs)
+			break;
+		ret = ec_show_pause(m);
+		if (ret)
+			return ret;
+	}
 	i->config = c ? c->index + 1 : 0;
 	i->differs = c && ec_config_differs(c, s);
 	ec_show_end(m);
 	return 0;
+}
+
+static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int ret;
+
+	do
+		ret = find_config(m, s, i);
+	while (ret == -EAGAIN);
+	return ret;
 }
 
 int ec_ioc_slave(struct ec_file *f, void *arg)

@@ -7,6 +7,7 @@
 #include "why.h"
 
 #define LOG_MAX		32	/* lines per activation */
+#define WALK		64	/* configurations to look at without a pause */
 
 /* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
@@ -112,25 +113,29 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 }
 
 /**
- * ec_config_at() - the configuration that a slave has or differs from
+ * ec_config_at() - look for the configuration that a slave has or differs from
  * @s: session
  * @slave: slave
  * @alias: of the nearest slave at or before it that has one, or 0
  * @distance: to that one
+ * @from: configuration to begin with, 0 at first; set behind the last one looked at
+ *
+ * Looks at some configurations only, as a section of a reader is short.
  *
  * Context: After ec_show_begin().
- * Return: the one that is attached; else one without slave that means its place; or NULL.
+ * Return: the one that is attached; else one without slave that means its place; or NULL:
+ * go on until @from is the number of configurations.
  */
 const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
-				     u16 alias, u16 distance)
+				     u16 alias, u16 distance, unsigned int *from)
 {
 	const struct ec_config *has = slave->config;
-	unsigned int i;
+	unsigned int end = min(s->n_configs, *from + WALK);
 
 	if (has && has->session == s)
 		return has;
-	for (i = 0; i < s->n_configs; i++) {
-		const struct ec_config *c = s->configs[i];
+	while (*from < end) {
+		const struct ec_config *c = s->configs[(*from)++];
 
 		if (!c->slave && (c->alias ? c->alias == alias && c->position == distance :
 					     c->position == slave->position))

@@ -11,7 +11,7 @@ struct ec_slave;
 
 size_t ec_config_why(const struct ec_config *c, char *buf, size_t size);
 const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
-				     u16 alias, u16 distance);
+				     u16 alias, u16 distance, unsigned int *from);
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave);
 void ec_config_log_differences(const struct ec_session *s);
 

@@ -5,6 +5,8 @@
  */
 #include <linux/workqueue.h>
 #include "bus.h"
+#include "master/ioctl.h"
+#include "master/why.h"
 
 struct change {
 	struct delayed_work work;
@@ -62,9 +64,42 @@ static void show_pause_goes_on_without_change(struct kunit *test)
 	ec_show_end(b->m);
 }
 
+#define CONFIGS	200
+
+static void configure(struct bus *b, u16 position)
+{
+	struct ec_ioc_slave_config i = {
+		.position = position, .vendor_id = 1, .product_code = 2,
+	};
+
+	KUNIT_ASSERT_EQ(b->test, ec_ioc_slave_config(&b->app, &i), 0);
+}
+
+/* A section is short, however many configurations there are; the last one is found. */
+static void show_many_configs_in_pieces(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_ioc_slave slave = { 0 };
+	unsigned int from = 0, i;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	for (i = 1; i < CONFIGS; i++)
+		configure(b, i);
+	configure(b, 0);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
+	KUNIT_EXPECT_NULL(test, ec_config_at(b->m->session, b->m->slaves[0], 0, 0, &from));
+	KUNIT_EXPECT_LE(test, from, 64u);
+	ec_show_end(b->m);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &slave), 0);
+	KUNIT_EXPECT_EQ(test, slave.config, (u32)CONFIGS);
+	KUNIT_EXPECT_TRUE(test, slave.differs);
+	ec_session_end(b->m, &b->app);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(show_pause_reports_change_that_waited),
 	KUNIT_CASE(show_pause_goes_on_without_change),
+	KUNIT_CASE(show_many_configs_in_pieces),
 	{}
 };
 
