@@ -220,6 +220,7 @@ static int find_alias(struct ec_master *m, const struct ec_slave *s, struct ec_i
 
 	if (ret)
 		return ret;
+	i->alias_group = 0;
 	i->alias_pos = s->position;
 	for (k = min_t(int, s->position, (int)m->n_slaves - 1); k >= 0; k--) {
 		if (m->slaves[k]->alias) {

@@ -96,10 +96,21 @@ static void show_many_configs_in_pieces(struct kunit *test)
 	ec_session_end(b->m, &b->app);
 }
 
+/* What a program leaves in the structure is no alias of a slave. */
+static void show_slave_takes_no_alias_from_caller(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_ioc_slave i = { .alias_group = 7 };
+
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_EXPECT_EQ(test, i.alias_group, 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(show_pause_reports_change_that_waited),
 	KUNIT_CASE(show_pause_goes_on_without_change),
 	KUNIT_CASE(show_many_configs_in_pieces),
+	KUNIT_CASE(show_slave_takes_no_alias_from_caller),
 	{}
 };
 
