@@ -52,13 +52,17 @@ int ec_pdo_add_entry(struct ec_pdo *pdo, const struct ec_pdo_entry *e)
 	return 0;
 }
 
+/* What one application has registered, another one has not. */
 int ec_pdo_copy_entries(struct ec_pdo *dst, const struct ec_pdo *src)
 {
 	unsigned int i;
 	int ret;
 
 	for (i = 0; i < src->n_entries; i++) {
-		ret = ec_pdo_add_entry(dst, &src->entries[i]);
+		struct ec_pdo_entry e = src->entries[i];
+
+		e.registered = false;
+		ret = ec_pdo_add_entry(dst, &e);
 		if (ret)
 			return ret;
 	}

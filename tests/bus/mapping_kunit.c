@@ -280,6 +280,10 @@ static void mapping_written_is_shown(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, (u32)e.index << 16 | e.subindex << 8 | e.bits, cyc_new_out[i]);
 		KUNIT_EXPECT_STRNEQ(test, e.name, "");
 	}
+	/* the slave has them, but it is the configuration that has registered some */
+	for (i = 0; i < p.entry_count; i++)
+		KUNIT_EXPECT_FALSE(test,
+				   bus_slave(b, 0)->sm_pdos[2].pdos[0].entries[i].registered);
 	/* the next application finds them, too, although the EEPROM has others */
 	cyc_release(c);
 	bus_idle(b);
