@@ -48,15 +48,16 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 }
 
 /*
- * Frames were lost, or the slave needs more time than usual: worth another try. A refusal is
- * not, unless the slave missed the outputs.
+ * Frames were lost, the device hung, or the slave needs more time than usual: worth another
+ * try. A refusal is not, unless the slave missed the outputs.
  */
 static bool is_transient(const struct ec_slave *s, int ret)
 {
 	if (ret == -EPROTO)
 		return s->al_code == EC_AL_CODE_NO_OUTPUTS ||
 		       s->al_code == EC_AL_CODE_SM_WATCHDOG;
-	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN;
+	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
+	       ret == -EBUSY;
 }
 
 /* What the application allows for a transition, ms; 0: the default. */

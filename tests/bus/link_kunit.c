@@ -74,6 +74,31 @@ static void link_hanging_device_ends_in_error(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 0)->station, 0, v, 4), 0);
 }
 
+/* Slaves whose frames found no room in the ring of a device that hung are tried again. */
+static void link_hanging_device_is_no_fault_of_slaves(struct kunit *test)
+{
+	struct bus *b = bus_new(test, many);
+	struct slow *s = slow_plug(b, 16, 4);
+	u32 i;
+
+	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	for (i = 0; i < MANY; i++)
+		bus_request(b, i, EC_AL_INIT);
+	bus_idle(b);
+	for (i = 0; i < MANY; i++)
+		bus_request(b, i, EC_AL_PREOP);
+	/* all are on their way */
+	usleep_range(5000, 5001);
+	slow_stop(s, true);
+	msleep(2500);
+	slow_stop(s, false);
+	msleep(5000);
+	for (i = 0; i < MANY; i++)
+		KUNIT_EXPECT_EQ_MSG(test, bus_slave(b, i)->al_status, EC_AL_PREOP, "slave %u: %s", i,
+				    bus_slave(b, i)->why);
+}
+
 /* how long until the monitor knows, us; ~0 after a second */
 static u64 until_link_is(struct bus *b, struct cyc *c, bool up)
 {
@@ -267,6 +292,7 @@ static void link_station_search_ends(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(link_full_transmit_ring_delays_only),
 	KUNIT_CASE(link_hanging_device_ends_in_error),
+	KUNIT_CASE(link_hanging_device_is_no_fault_of_slaves),
 	KUNIT_CASE(link_loss_ends_a_scan),
 	KUNIT_CASE(link_loss_beside_a_cycle),
 	KUNIT_CASE(link_loss_ends_waiting),
