@@ -7,6 +7,7 @@
 #include "eoe.h"
 #include "mailbox.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 #include "slave.h"
 #include "soe.h"
@@ -405,9 +406,9 @@ static int wait_outputs(struct ec_slave *s)
 		return 0;
 	cycles = cycles_twice(s->plan);
 	limit = 5000 + div_u64((u64)cycles * s->master->interval_us, 500);
-	from = READ_ONCE(s->plan->session->cycle.cycles);
+	from = ec_read64(&s->plan->session->cycle.cycles);
 	for (i = 0; i < limit; i++) {
-		if (READ_ONCE(s->plan->session->cycle.cycles) - from >= cycles)
+		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
 			return 0;
 		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
 			return -ECANCELED;

@@ -11,6 +11,7 @@
 #include <linux/skbuff.h>
 #include "capture.h"
 #include "master.h"
+#include "once64.h"
 #include "tap.h"
 
 static bool capture;
@@ -84,9 +85,9 @@ static void capture_stats(struct net_device *nd, struct rtnl_link_stats64 *stats
 {
 	const struct ec_capture *c = netdev_priv(nd);
 
-	stats->rx_packets = READ_ONCE(c->tap.shown);
-	stats->rx_bytes = READ_ONCE(c->tap.bytes);
-	stats->rx_dropped = READ_ONCE(c->tap.dropped);
+	stats->rx_packets = ec_read64(&c->tap.shown);
+	stats->rx_bytes = ec_read64(&c->tap.bytes);
+	stats->rx_dropped = ec_read64(&c->tap.dropped);
 }
 
 static const struct net_device_ops capture_ops = {

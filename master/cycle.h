@@ -215,7 +215,7 @@ struct ec_cycle {
 	u32 judged;
 	u64 sent;
 	u64 back;
-	u64 cycles;
+	aligned_u64 cycles;
 	struct ec_schedule schedule;
 	u32 dc_asked;
 	u32 dc_back;

@@ -439,7 +439,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	WRITE_ONCE(m->cycle_wire_ns, max(send.wire.ns, wire_ns(m, c)));
 	ec_share_begin(m);
 	ec_cycle_send_left(m, send.wire.ns);
-	WRITE_ONCE(c->cycles, c->cycles + 1);
+	ec_write64(&c->cycles, c->cycles + 1);
 	return 0;
 }
 

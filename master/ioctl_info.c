@@ -134,7 +134,7 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 		return;
 	cycle_info(s, i);
 	st = s->shared->status;
-	i->dc_ref_time = READ_ONCE(st->dc_time);
+	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));
 	i->cycle_lock = READ_ONCE(st->kernel.lock);
 	i->lock_losses = READ_ONCE(st->kernel.lock_losses);
 	i->phase_error = READ_ONCE(st->kernel.phase_error);

@@ -9,6 +9,7 @@
 #include "grow.h"
 #include "logical.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 #include "slave.h"
 
@@ -415,7 +416,7 @@ void ec_cycle_tell_room(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 
-	if (!s->room_told && !m->interval_told && READ_ONCE(s->cycle.cycles) > MEASURED)
+	if (!s->room_told && !m->interval_told && ec_read64(&s->cycle.cycles) > MEASURED)
 		has_room(s, READ_ONCE(m->interval_us) * (u64)NSEC_PER_USEC,
 			 READ_ONCE(s->cycle.last.frames), READ_ONCE(m->cycle_wire_ns));
 }

@@ -5,6 +5,7 @@
 #include <linux/mm.h>
 #include "config.h"
 #include "master.h"
+#include "once64.h"
 #include "session.h"
 #include "slave.h"
 #include "xfer.h"
@@ -215,7 +216,7 @@ static void count_slaves(struct watch *w)
 
 static bool is_due(const struct ec_slave *s, u64 now)
 {
-	u64 at = READ_ONCE(s->retry_ns);
+	u64 at = ec_read64(&s->retry_ns);
 
 	return (s->error || s->silent) && at && now >= at;
 }
@@ -246,7 +247,7 @@ static void try_again(struct watch *w)
 			due[n++] = s;
 		} else if (!work_busy(&s->work)) {
 			/* the worker plans the next one, if it has to */
-			WRITE_ONCE(s->retry_ns, 0);
+			ec_write64(&s->retry_ns, 0);
 			ec_slave_kick(s);
 		}
 	}

@@ -4,6 +4,7 @@
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "master.h"
+#include "once64.h"
 #include "slave.h"
 #include "xfer.h"
 
@@ -227,7 +228,7 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 	s->error = EC_SLAVE_OK;
 	s->why[0] = '\0';
 	s->retry_ms = 0;
-	WRITE_ONCE(s->retry_ns, 0);
+	ec_write64(&s->retry_ns, 0);
 	ec_slave_info(s, "replies again\n");
 }
 

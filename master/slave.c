@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "mailbox.h"
 #include "master.h"
+#include "once64.h"
 #include "slave.h"
 
 /**
@@ -178,7 +179,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 {
 	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
-	WRITE_ONCE(slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
+	ec_write64(&slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
 }
 
 /**

@@ -180,7 +180,7 @@ struct ec_slave {
 	char warning[EC_UAPI_WARNING];
 	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
-	u64 retry_ns;
+	aligned_u64 retry_ns;
 	u32 retry_ms;
 	u64 seen_ns;
 	const char *waits_for;

@@ -9,6 +9,7 @@
 #include <linux/netdevice.h>
 #include <linux/skbuff.h>
 #include <linux/vmalloc.h>
+#include "once64.h"
 #include "tap.h"
 #include "wire/frame.h"
 
@@ -40,7 +41,7 @@ static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 
 	lockdep_assert_held(&t->lock);
 	if (t->head - smp_load_acquire(&t->tail) == RING) {
-		WRITE_ONCE(t->dropped, t->dropped + 1);
+		ec_write64(&t->dropped, t->dropped + 1);
 		return NULL;
 	}
 	f->at = ktime_get_real();
@@ -121,7 +122,7 @@ static void show(struct ec_tap *t, const struct ec_tap_frame *f)
 
 	if (!skb) {
 		raw_spin_lock_irqsave(&t->lock, flags);
-		WRITE_ONCE(t->dropped, t->dropped + 1);
+		ec_write64(&t->dropped, t->dropped + 1);
 		raw_spin_unlock_irqrestore(&t->lock, flags);
 		return;
 	}
@@ -130,8 +131,8 @@ static void show(struct ec_tap *t, const struct ec_tap_frame *f)
 	skb->pkt_type = f->out ? PACKET_OUTGOING : PACKET_HOST;
 	/* not dev_queue_xmit_nit(), which takes the time of now */
 	skb->tstamp = f->at;
-	WRITE_ONCE(t->shown, t->shown + 1);
-	WRITE_ONCE(t->bytes, t->bytes + f->len);
+	ec_write64(&t->shown, t->shown + 1);
+	ec_write64(&t->bytes, t->bytes + f->len);
 	local_bh_disable();
 	netif_receive_skb(skb);
 	local_bh_enable();

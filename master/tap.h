@@ -27,9 +27,9 @@ struct ec_tap {
 	raw_spinlock_t lock;
 	unsigned int head;
 	unsigned int tail;
-	u64 shown;
-	u64 bytes;
-	u64 dropped;
+	aligned_u64 shown;
+	aligned_u64 bytes;
+	aligned_u64 dropped;
 	struct work_struct work;
 	struct ec_tap_frame *ring;
 };
