@@ -65,6 +65,7 @@ static const char * const bug_names[EC_SIM_BUGS] = {
 	[EC_SIM_BUG_EEP_PDI_LATE] = "eep_pdi_late",
 	[EC_SIM_BUG_EEP_PDI_HIDDEN] = "eep_pdi_hidden",
 	[EC_SIM_BUG_SYNC_NO_ACK] = "sync_no_ack",
+	[EC_SIM_BUG_UDP_CHECKSUM] = "udp_checksum",
 };
 
 /**

@@ -72,6 +72,7 @@ enum ec_sim_bug {
 	EC_SIM_BUG_EEP_PDI_LATE,	/* emulated EEPROM: data not waited for */
 	EC_SIM_BUG_EEP_PDI_HIDDEN,	/* emulated EEPROM: 0x0502 bit 5 not set */
 	EC_SIM_BUG_SYNC_NO_ACK,		/* SYNC not held until acknowledged */
+	EC_SIM_BUG_UDP_CHECKSUM,	/* checksum kept in a frame that changed */
 	EC_SIM_BUGS
 };
 

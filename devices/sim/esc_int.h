@@ -251,6 +251,8 @@ void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
 
 /* segment_frame.c */
+s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_len,
+		u64 now_ns, struct ec_sim_result *res);
 void ec_esc_pend(struct ec_esc *esc, u64 at_ns);
 
 /* fault.c */

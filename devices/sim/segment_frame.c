@@ -305,20 +305,12 @@ static void process(struct pass *ps, u8 *frame, size_t len)
 	}
 }
 
-/**
- * ec_sim_frame_result() - pass one frame through the segment and back
- * @sim: segment
- * @port: master port at which it is sent, 0 or 1
- * @frame: EtherCAT header and datagrams, modified in place
- * @len: bytes in @frame, padding included
- * @now_ns: when the first bit is sent
- * @res: what became of it
- *
- * Context: Any. RT-safe: bounded by datagrams times slaves.
- * Return: delay in ns until the last bit is back, or -ENOLINK if it was lost.
+/*
+ * One frame through the segment and back: @len bytes from the EtherCAT header on,
+ * in an Ethernet frame of @eth_len bytes without FCS.
  */
-s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
-			u64 now_ns, struct ec_sim_result *res)
+s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_len,
+		u64 now_ns, struct ec_sim_result *res)
 {
 	struct pass ps = { .sim = sim, .now = now_ns, .mport = port };
 	bool lose_out = false, lose_back = false, lost;
@@ -340,7 +332,8 @@ s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 	}
 
 	ps.steps = ps.r->steps;
-	ps.wire_ns = ec_frame_wire_ns(EC_ETH_HDR + len) - 12 * 80;
+	res->processed = ps.steps;
+	ps.wire_ns = ec_frame_wire_ns(eth_len) - 12 * 80;
 	lost = !circulating(&ps, frame, len);
 	sim->passing = true;
 	process(&ps, frame, len);
@@ -364,6 +357,24 @@ s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 	res->out_port = ps.r->out_port;
 	res->delay_ns = (s64)(ps.r->delay_ns + ps.wire_ns + extra_ns);
 	return res->delay_ns;
+}
+
+/**
+ * ec_sim_frame_result() - pass one frame through the segment and back
+ * @sim: segment
+ * @port: master port at which it is sent, 0 or 1
+ * @frame: EtherCAT header and datagrams, modified in place
+ * @len: bytes in @frame, padding included
+ * @now_ns: when the first bit is sent
+ * @res: what became of it
+ *
+ * Context: Any. RT-safe: bounded by datagrams times slaves.
+ * Return: delay in ns until the last bit is back, or -ENOLINK if it was lost.
+ */
+s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
+			u64 now_ns, struct ec_sim_result *res)
+{
+	return ec_sim_pass(sim, port, frame, len, EC_ETH_HDR + len, now_ns, res);
 }
 
 /**

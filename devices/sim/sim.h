@@ -13,6 +13,8 @@
 #define EC_SIM_MASTER0	(-1)	/* "parent" in ec_sim_wire() */
 #define EC_SIM_MASTER1	(-2)
 #define EC_SIM_PORTS	2
+#define EC_SIM_ETH_MAX	(EC_ETH_MAX + 4)	/* with a VLAN tag */
+#define EC_SIM_ETH_HEAD	48		/* shows whether it is EtherCAT */
 
 /**
  * struct ec_sim_ops - where memory comes from
@@ -131,6 +133,7 @@ struct ec_sim_fault {
  * @copies: how many of it arrive, 1 = as usual, 0 = lost
  * @mangled: its content was changed by a fault
  * @induced: a fault was at work on it
+ * @processed: it passed the processing unit of a slave
  */
 struct ec_sim_result {
 	int out_port;
@@ -138,6 +141,7 @@ struct ec_sim_result {
 	u8 copies;
 	bool mangled;
 	bool induced;
+	bool processed;
 };
 
 /* building */
@@ -157,6 +161,9 @@ s64 ec_sim_frame2(struct ec_sim *sim, int port, u8 *frame, size_t len,
 		  u64 now_ns, int *out_port);
 s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 			u64 now_ns, struct ec_sim_result *res);
+s64 ec_sim_eth(struct ec_sim *sim, int port, u8 *eth, size_t len, u64 now_ns,
+	       struct ec_sim_result *res);
+bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len);
 void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);

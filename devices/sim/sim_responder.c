@@ -5,6 +5,7 @@
  */
 #include <linux/etherdevice.h>
 #include <linux/if_arp.h>
+#include <linux/if_vlan.h>
 #include <linux/ktime.h>
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
@@ -51,23 +52,36 @@ struct ec_sim_responder {
 	bool leaving;
 };
 
+/* What the slaves process; anything else is left to the machine. */
+static bool is_ethercat(struct sk_buff *skb)
+{
+	u8 head[EC_SIM_ETH_HEAD];
+	size_t len = min_t(size_t, EC_ETH_HDR + skb->len, sizeof(head));
+
+	if (skb->protocol == htons(EC_ETHERTYPE))
+		return true;
+	return skb->protocol == htons(ETH_P_IP) && !skb_copy_bits(skb, -EC_ETH_HDR, head, len) &&
+	       ec_sim_eth_is_ethercat(head, len);
+}
+
+/* The network stack takes a VLAN tag out of a frame; slaves see the frame with it. */
 static rx_handler_result_t receive(struct sk_buff **pskb)
 {
 	struct end *e = rcu_dereference((*pskb)->dev->rx_handler_data);
 	struct sk_buff *skb;
-	size_t len;
 
-	if ((*pskb)->protocol != htons(EC_ETHERTYPE))
+	if (!is_ethercat(*pskb))
 		return RX_HANDLER_PASS;
 	skb = skb_share_check(*pskb, GFP_ATOMIC);
 	if (!skb)
 		return RX_HANDLER_CONSUMED;
-	*pskb = skb;
-	if (!skb_linearize(skb)) {
-		len = skb->data + skb->len - skb_mac_header(skb);
-		if (len >= EC_ETH_HDR + EC_FRAME_HDR && len <= EC_ETH_MAX)
-			ec_sim_wire_send(e->wire, e->port, skb_mac_header(skb), len);
-	}
+	skb_push(skb, EC_ETH_HDR);
+	if (skb_vlan_tag_present(skb))
+		skb = __vlan_hwaccel_push_inside(skb);
+	if (!skb)
+		return RX_HANDLER_CONSUMED;
+	if (skb->len <= EC_SIM_ETH_MAX && !skb_linearize(skb))
+		ec_sim_wire_send(e->wire, e->port, skb->data, skb->len);
 	consume_skb(skb);
 	return RX_HANDLER_CONSUMED;
 }
@@ -82,8 +96,8 @@ static void transmit(struct net_device *nd, const u8 *eth, size_t len)
 	skb_reserve(skb, LL_RESERVED_SPACE(nd));
 	skb_put_data(skb, eth, len);
 	skb->dev = nd;
-	skb->protocol = htons(EC_ETHERTYPE);
 	skb_reset_mac_header(skb);
+	skb->protocol = eth_hdr(skb)->h_proto;
 	skb_set_network_header(skb, EC_ETH_HDR);
 	dev_queue_xmit(skb);
 }

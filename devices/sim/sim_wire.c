@@ -15,7 +15,7 @@ struct ec_sim_flying {
 	u64 due_ns;
 	int port;
 	size_t len;
-	u8 eth[EC_ETH_MAX];
+	u8 eth[EC_SIM_ETH_MAX];
 };
 
 static void *sim_alloc(size_t bytes)
@@ -172,13 +172,11 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 	w->wire_free_ns[port] = start + ec_frame_wire_ns(len);
 	f->len = len;
 	memcpy(f->eth, eth, len);
-	delay = ec_sim_frame_result(w->sim, port, f->eth + EC_ETH_HDR, len - EC_ETH_HDR, start,
-				    &res);
+	delay = ec_sim_eth(w->sim, port, f->eth, len, start, &res);
 	if (delay < 0 || !res.copies) {
 		list_add(&f->list, &w->free);
 		return;
 	}
-	f->eth[6] |= 2;		/* a slave has processed it */
 	f->port = res.out_port;
 	f->due_ns = start + delay;
 	insert(w, f);
@@ -190,7 +188,7 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
  * @w: wire
  * @port: master port, 0 or 1
  * @eth: Ethernet frame; copied
- * @len: its bytes, EC_ETH_HDR + EC_FRAME_HDR..EC_ETH_MAX
+ * @len: its bytes, at most EC_SIM_ETH_MAX
  *
  * Context: Any.
  * Return: 0, or -ENETDOWN: not running, or no cable at the port.

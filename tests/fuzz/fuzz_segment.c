@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Frames into a segment: whatever they hold, slaves change only what they may.
- * The input is a row of frames, each with its length in two bytes before it.
+ * The input is a row of frames, each with its length in two bytes before it; with bit 15
+ * of it an Ethernet frame, otherwise what follows its EtherType.
  */
 #include "fuzz_sim.h"
 
@@ -24,6 +25,12 @@ const struct fuzz_seed fuzz_seeds[] = {
 	     FR("\x14", "\x12\x10\x08\1\0\0\2\5\6\0\0\0\0\1\x08\0\0\0\0\0")
 	     FR("\x1A", "\x18\x10\x07\1\0\0\2\5\x0C\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0")
 	     FR("\x16", "\x14\x10\x0D\1\0\0\x10\x09\x08\0\0\0\0\0\0\0\0\0\0\0\0\0")),
+	/* tagged UDP; direct */
+	SEED("\x3E\x80" "\xFF\xFF\xFF\xFF\xFF\xFF\0\1\2\3\4\5\x81\0\x60\5\x08\0"
+	     "\x45\0\0\x2C\0\1\0\0\x40\x11\xAA\xBB\xC0\xA8\0\1\xC0\xA8\0\xFF"
+	     "\x88\xA4\x88\xA4\0\x18\x12\x34\x0E\x10\7\1\0\0\x30\1\2\0\0\0\0\0\0\0"
+	     "\x1E\x80" "\xFF\xFF\xFF\xFF\xFF\xFF\0\1\2\3\4\5\x88\xA4"
+	     "\x0E\x10\7\1\0\0\x30\1\2\0\0\0\0\0\0\0"),
 	{ NULL, 0 }
 };
 
@@ -52,6 +59,19 @@ static void sound(const u8 *sent, u8 *back, size_t len)
 	MUST(ec_frame_iter_next(&b, &e) == ret);
 }
 
+/* a whole Ethernet frame; what holds no EtherCAT does not come back and stays as it is */
+static void ethernet(struct ec_sim *sim, const u8 *sent, u8 *eth, size_t len, u64 now)
+{
+	bool ethercat = ec_sim_eth_is_ethercat(eth, len);
+	struct ec_sim_result res;
+	s64 delay = ec_sim_eth(sim, 0, eth, len, now, &res);
+
+	MUST(ethercat ? !(delay < 0) == !!res.copies : delay < 0);
+	MUST(ethercat || !memcmp(sent, eth, len));
+	MUST(len < 14 || (!memcmp(sent, eth, 6) && (sent[6] | 2) == (eth[6] | 2) &&
+			  !memcmp(sent + 7, eth + 7, 7)));
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 {
 	const char *text = ec_sim_builtin("three");
@@ -62,12 +82,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	MUST(sim);
 	while (len > 2) {
 		size_t n = min_t(size_t, get_unaligned_le16(data) & 0x7FF, len - 2);
-		s64 delay;
 
 		n = min(n, sizeof(frame));
 		memcpy(frame, data + 2, n);
-		delay = ec_sim_frame(sim, 0, frame, n, now);
-		if (delay >= 0)
+		if (data[1] & 0x80)
+			ethernet(sim, data + 2, frame, n, now);
+		else if (ec_sim_frame(sim, 0, frame, n, now) >= 0)
 			sound(data + 2, frame, n);
 		now += 500000;
 		data += 2 + n;

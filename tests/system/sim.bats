@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# The simulator while it runs: faults from outside, one program per interface.
+# The simulator while it runs: faults from outside, one program per interface, frames of
+# all kinds, a ring at two interfaces.
 
 load helpers
 
@@ -13,18 +14,25 @@ setup() {
 
 teardown() {
 	[ -z "${SIM:-}" ] || kill "$SIM" 2>/dev/null || true
-	ip link del veth0 2>/dev/null || true
 	stop
+	for d in veth0 veth2; do ip link del $d 2>/dev/null || true; done
 }
 
-# program ARGUMENTS...: ethercat-sim at veth1
+# wire N M: a cable between vethN and vethM
+wire() {
+	ip link add veth$1 type veth peer name veth$2
+	ip link set veth$1 up
+	ip link set veth$2 up
+}
+
+frames() { python3 "$BATS_TEST_DIRNAME/frames.py" "$@"; }
+
+# program ARGUMENTS...: ethercat-sim at veth1, behind what ARGUMENTS name
 program() {
-	ip link add veth0 type veth peer name veth1
-	ip link set veth0 up
-	ip link set veth1 up
+	wire 0 1
 	"$EC_BUILD/tool/ethercat-sim" -s "$SEG" "$@" veth1 >"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
 	SIM=$!
-	wait_for 60 grep -q 'at veth1' "$BATS_TEST_TMPDIR/sim"
+	wait_for 60 grep -q 'slave(s), at ' "$BATS_TEST_TMPDIR/sim"
 }
 
 tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
@@ -76,4 +84,59 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	dmesg | grep -q "ec_sim: sim0: no slave 'nobody'"
 	run setpriv --reuid 65534 --clear-groups bash -c "echo 'off axis' >$file"
 	[ "$status" != 0 ]
+}
+
+# covers_are_kept: each cover of EtherCAT comes back as it was sent, but for the slaves'
+# mark in the source address, and without the UDP checksum
+covers_are_kept() {
+	run frames covers veth0
+	echo "$output"
+	[ "$output" = "direct wkc=2 head=kept mark=1 last=88a4
+tagged wkc=2 head=kept mark=1 last=88a4
+udp wkc=2 head=kept mark=1 last=0000
+tagged-udp wkc=2 head=kept mark=1 last=0000
+other-port lost" ]
+}
+
+@test "ethercat-sim answers direct, tagged and UDP frames as they came" {
+	program
+	covers_are_kept
+	kill "$SIM"
+	wait "$SIM" || true
+	grep -q '4 frames in, 4 out, 0 lost in the segment, 0 dropped' "$BATS_TEST_TMPDIR/sim"
+}
+
+@test "ec_sim answers direct, tagged and UDP frames as they came" {
+	wire 0 1
+	insmod "$EC_BUILD/modules/master/ec_master.ko"
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$SEG" netdev=veth1
+	covers_are_kept
+}
+
+# ring_is NUMBER...: from each end: at which end a frame comes back, its working counter
+ring_is() {
+	[ "$(frames ring veth2 veth0)" = "from=0 at=$1 wkc=$2
+from=1 at=$3 wkc=$4" ] || { frames ring veth2 veth0; return 1; }
+}
+
+@test "a ring at two interfaces is cut and heals" {
+	printf 'repeat 5 slave io EL2008\nwire io5.1 -> master.1\n' >"$SEG"
+	wire 2 3
+	program --control "$SOCK" veth3
+	ring_is 1 5 0 0
+	tell cut io2.1
+	ring_is 0 2 1 3
+	tell heal io2.1
+	ring_is 1 5 0 0
+	# at the ends, and a slave without power
+	tell cut io1.0
+	[[ $(frames ring veth2 veth0) == *lost*"from=1 at=1 wkc=5" ]]
+	tell heal io1.0
+	tell cut io5.1
+	[[ $(frames ring veth2 veth0) == "from=0 at=0 wkc=5"*lost* ]]
+	tell heal io5.1
+	tell off io3
+	ring_is 0 2 1 2
+	tell on io3
+	ring_is 1 5 0 0
 }

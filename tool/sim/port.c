@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Packet socket which gets the EtherCAT frames of one interface. */
+/* Packet socket which gets the EtherCAT frames of one interface, direct, tagged or in UDP. */
 #include <arpa/inet.h>
 #include <errno.h>
+#include <linux/filter.h>
 #include <linux/if_ether.h>
 #include <linux/if_packet.h>
 #include <net/if_arp.h>
@@ -15,6 +16,8 @@
 #include "port.h"
 
 #define ETHERTYPE	0x88a4
+#define VLAN_TAG	4
+#define MACS		12	/* bytes before the tag */
 
 /* SOL_PACKET is not in every C library */
 #ifndef SOL_PACKET
@@ -73,16 +76,39 @@ static int claim(struct port *p)
 	return -1;
 }
 
+/*
+ * Direct frames, and IPv4 with a header of five words and this UDP port. The kernel has
+ * taken the tag out of the frame by then.
+ */
+static struct sock_filter ethercat[] = {
+	BPF_STMT(BPF_LD | BPF_H | BPF_ABS, MACS),
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ETHERTYPE, 7, 0),
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ETH_P_IP, 0, 7),
+	BPF_STMT(BPF_LD | BPF_B | BPF_ABS, ETH_HLEN),
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0x45, 0, 5),
+	BPF_STMT(BPF_LD | BPF_B | BPF_ABS, ETH_HLEN + 9),
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, IPPROTO_UDP, 0, 3),
+	BPF_STMT(BPF_LD | BPF_H | BPF_ABS, ETH_HLEN + 22),
+	BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, ETHERTYPE, 0, 1),
+	BPF_STMT(BPF_RET | BPF_K, 0x40000),
+	BPF_STMT(BPF_RET | BPF_K, 0),
+};
+
 /* Only what comes from the wire, whoever it is addressed to. */
 static int attach(struct port *p)
 {
 	struct sockaddr_ll at = {
-		.sll_family = AF_PACKET, .sll_protocol = htons(ETHERTYPE), .sll_ifindex = p->index,
+		.sll_family = AF_PACKET, .sll_protocol = htons(ETH_P_ALL), .sll_ifindex = p->index,
+	};
+	struct sock_fprog filter = {
+		.len = sizeof(ethercat) / sizeof(ethercat[0]), .filter = ethercat,
 	};
 	struct packet_mreq promisc = { .mr_ifindex = p->index, .mr_type = PACKET_MR_PROMISC };
 	int on = 1, space = 4 << 20;
 
-	if (setsockopt(p->fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof(on)) ||
+	if (setsockopt(p->fd, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) ||
+	    setsockopt(p->fd, SOL_PACKET, PACKET_AUXDATA, &on, sizeof(on)) ||
+	    setsockopt(p->fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof(on)) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_ADD_MEMBERSHIP, &promisc, sizeof(promisc)) ||
 	    bind(p->fd, (struct sockaddr *)&at, sizeof(at))) {
 		fprintf(stderr, "ethercat-sim: %s: %s\n", p->name, strerror(errno));
@@ -160,21 +186,62 @@ void port_check(struct port *p)
 	p->down = down;
 }
 
+/* the tag that the kernel took out of a frame; false: it had none */
+static bool tag_of(struct msghdr *msg, uint8_t tag[VLAN_TAG])
+{
+	struct tpacket_auxdata aux;
+	struct cmsghdr *c;
+
+	for (c = CMSG_FIRSTHDR(msg); c; c = CMSG_NXTHDR(msg, c)) {
+		if (c->cmsg_level != SOL_PACKET || c->cmsg_type != PACKET_AUXDATA)
+			continue;
+		memcpy(&aux, CMSG_DATA(c), sizeof(aux));
+		if (!(aux.tp_status & TP_STATUS_VLAN_VALID))
+			return false;
+		if (!(aux.tp_status & TP_STATUS_VLAN_TPID_VALID))
+			aux.tp_vlan_tpid = ETH_P_8021Q;
+		tag[0] = (uint8_t)(aux.tp_vlan_tpid >> 8);
+		tag[1] = (uint8_t)aux.tp_vlan_tpid;
+		tag[2] = (uint8_t)(aux.tp_vlan_tci >> 8);
+		tag[3] = (uint8_t)aux.tp_vlan_tci;
+		return true;
+	}
+	return false;
+}
+
 /**
  * port_receive() - next frame
  * @p: port
- * @buf: gets it, Ethernet header first
+ * @buf: gets it as it was on the wire, Ethernet header first
  * @cap: bytes at @buf
  *
  * Return: bytes of the frame, more than @cap: too long; 0: none there.
  */
 int port_receive(struct port *p, void *buf, size_t cap)
 {
-	ssize_t n = recv(p->fd, buf, cap, MSG_TRUNC);
+	union {
+		struct cmsghdr align;
+		char buf[CMSG_SPACE(sizeof(struct tpacket_auxdata))];
+	} control;
+	struct iovec data = { .iov_base = buf, .iov_len = cap };
+	struct msghdr msg = {
+		.msg_iov = &data, .msg_iovlen = 1,
+		.msg_control = control.buf, .msg_controllen = sizeof(control.buf),
+	};
+	ssize_t n = recvmsg(p->fd, &msg, MSG_TRUNC);
+	uint8_t tag[VLAN_TAG], *at = (uint8_t *)buf + MACS;
 
 	if (n < 0 && errno != EAGAIN && errno != EINTR)
 		port_check(p);
-	return n < 0 ? 0 : (int)n;
+	if (n < 0)
+		return 0;
+	if (n < ETH_HLEN || !tag_of(&msg, tag))
+		return (int)n;
+	if ((size_t)n + VLAN_TAG <= cap) {
+		memmove(at + VLAN_TAG, at, (size_t)n - MACS);
+		memcpy(at, tag, VLAN_TAG);
+	}
+	return (int)n + VLAN_TAG;
 }
 
 /**

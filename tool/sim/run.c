@@ -26,7 +26,7 @@ struct flying {
 	u64 due_ns;
 	int port;
 	size_t len;
-	u8 data[EC_ETH_MAX];
+	u8 data[EC_SIM_ETH_MAX];
 };
 
 /**
@@ -42,7 +42,7 @@ struct flying {
  * @rx: frames received
  * @tx: frames sent back
  * @lost: frames the segment lost
- * @dropped: frames too short, too long, too many or not sent
+ * @dropped: frames too long, too many or not sent
  */
 struct run {
 	struct ec_sim *sim;
@@ -125,14 +125,12 @@ static void launch(struct run *r, int port, struct flying *f)
 	s64 delay;
 
 	r->wire_free_ns[port] = start + ec_frame_wire_ns(f->len);
-	delay = ec_sim_frame_result(r->sim, port, f->data + EC_ETH_HDR, f->len - EC_ETH_HDR,
-				    start, &res);
+	delay = ec_sim_eth(r->sim, port, f->data, f->len, start, &res);
 	if (delay < 0 || !res.copies || res.out_port >= r->n_ports) {
 		r->lost++;
 		give(r, f);
 		return;
 	}
-	f->data[6] |= 2;	/* a slave has processed it */
 	f->port = res.out_port;
 	f->due_ns = start + (u64)delay;
 	insert(r, f);
@@ -153,7 +151,7 @@ static void receive(struct run *r, int port)
 			return;
 		}
 		r->rx++;
-		if (n > (int)sizeof(f->data) || n < EC_ETH_HDR + EC_FRAME_HDR) {
+		if (n > (int)sizeof(f->data)) {
 			r->dropped++;
 			give(r, f);
 			continue;
