@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
-"""kickcat, a master that shares nothing with this project, on the segment "bench".
-EC_SIM: the program that simulates it, with options. One TAP line for each case."""
+"""kickcat, a master that shares nothing with this project, on the segment "bench", then
+at both ends of a ring. EC_SIM: the program that simulates it, with options. One TAP line for each case."""
 
 import os
 import shlex
 import subprocess
 import sys
+import tempfile
 import time
 
 import kickcat
@@ -13,6 +14,7 @@ from kickcat import PARTIAL, State
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pysoem"))
 import bench  # noqa: E402
+import kickcat_ring  # noqa: E402
 
 passed = failed = 0
 
@@ -108,5 +110,8 @@ sim.terminate()
 said = sim.communicate(timeout=10)[0]
 case("no frame is lost", lambda: same((sim.returncode, " 0 lost in the segment, 0 dropped" in said),
                                       (0, True)))
+with tempfile.TemporaryDirectory() as folder:
+    for what, method in kickcat_ring.cases(kickcat_ring.Ring(os.environ["EC_SIM"], folder)):
+        case(what, method)
 print("%d passed, %d failed" % (passed, failed))
 sys.exit(failed > 0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # For the scripts that put a foreign master and ethercat-sim at the two ends of one wire
-# (veth0, veth1) in a network namespace of their own. To be sourced in the top folder.
+# (veth0, veth1; a second wire is veth2, veth3) in a network namespace of their own. To be
+# sourced in the top folder.
 
 set -u
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
@@ -40,7 +41,10 @@ venv() {
 on_the_wire() {
 	local inside u rt
 
-	inside='ip link add veth0 type veth peer name veth1 && ip link set veth0 up && ip link set veth1 up'
+	inside='for i in 0 2; do
+		ip link add veth$i type veth peer name veth$((i + 1)) &&
+		ip link set veth$i up && ip link set veth$((i + 1)) up || exit
+	done'
 	# such a master gives a slave milliseconds, whatever else the machine is doing
 	rt=$(chrt -f 10 echo "chrt -f 10" 2>/dev/null)
 	set -- env PYTHONDONTWRITEBYTECODE=1 EC_SIM="$EC_SIM" "$@"
