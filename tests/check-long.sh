@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# What takes too long for every check: all of tests/system on all kernels. The last line
-# is "N passed, N failed"; results with their date are in Documentation/testing.rst.
+# What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
+# all of tests/system on all kernels. The last line is "N passed, N failed"; results with their
+# date are in Documentation/testing.rst.
 #
-# usage: check-long.sh [KERNEL...]
+# usage: check-long.sh [uml-debug|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -13,11 +14,19 @@ passed=0 failed=0
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-tests/install-deps.sh build vm capture json cross || exit 1
-for k in ${*:-6.1-rt 6.1 6.12-rt 6.12}; do
+# run NAME
+run() {
+	case $1 in
+	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
+	*) EC_KERNEL=$1 tests/system/run.sh ;;
+	esac
+}
+
+tests/install-deps.sh build vm capture uml json cross || exit 1
+for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12}; do
 	echo "=== $k"
 	began=$SECONDS
-	EC_KERNEL=$k tests/system/run.sh >"$log" 2>&1
+	run "$k" >"$log" 2>&1
 	rc=$?
 	grep -E -A 12 '^[[:space:]#]*not ok' "$log"
 	read -r p f < <(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$log" | tail -n 1)

@@ -354,6 +354,7 @@ static void takeover_refused(struct kunit *test)
 	struct ec_ioc_sc_emerg em = { .config = 1, .count = 4 };
 	struct ec_ioc_sc_flag flag = { .key = "Key", .value = 1 };
 	u64 lost;
+	int ret;
 
 	die(a);
 	lost = bus_lost(b);
@@ -391,8 +392,10 @@ static void takeover_refused(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &flag), 0);
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_config_sdo_add(b->m->heir->configs[1], 0x8000, 1, false,
-						(const u8 *)"\1", 1), 0);
+	ec_session_lock(b->m);
+	ret = ec_config_sdo_add(b->m->heir->configs[1], 0x8000, 1, false, (const u8 *)"\1", 1);
+	ec_session_unlock(b->m);
+	KUNIT_ASSERT_EQ(test, ret, 0);
 	refused(b, "slave 0:1 has 0 startup SDOs, not 1");
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_EXPECT_EQ(test, bus_lost(b), lost);

@@ -178,11 +178,13 @@ static void life_poll_without_lock(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	DECLARE_COMPLETION_ONSTACK(over);
+	struct task_struct *task = kthread_create(ask, &over, "ask");
 	bool ended;
 
+	KUNIT_ASSERT_FALSE(test, IS_ERR(task));
 	asked = a->c->b;
 	mutex_lock(&asked->m->cyclic_lock);
-	kthread_run(ask, &over, "ask");
+	wake_up_process(task);
 	ended = wait_for_completion_timeout(&over, msecs_to_jiffies(1000));
 	mutex_unlock(&asked->m->cyclic_lock);
 	KUNIT_EXPECT_TRUE(test, ended);

@@ -236,9 +236,13 @@ static struct cyc *prepare(struct kunit *test)
 static int startup(struct cyc *c, u16 idn, u8 state, u16 value)
 {
 	u8 v[2];
+	int ret;
 
 	put_unaligned_le16(value, v);
-	return ec_config_idn_add(config(c, 0), 0, idn, state, v, 2);
+	ec_session_lock(c->b->m);
+	ret = ec_config_idn_add(config(c, 0), 0, idn, state, v, 2);
+	ec_session_unlock(c->b->m);
+	return ret;
 }
 
 /* P-0-0170 cannot be written in PREOP, S-0-0015 only there. */
