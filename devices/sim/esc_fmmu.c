@@ -26,13 +26,15 @@ static bool overlap(const struct ec_esc *esc, const struct ec_fmmu *f,
 /* FMMU pages were written */
 void ec_esc_fmmu_config(struct ec_esc *esc)
 {
+	u16 active = esc->fmmus_active;
 	int n;
 
 	esc->fmmus_active = 0;
 	esc->log_first = ~0u;
 	esc->log_last = 0;
 	for (n = 0; n < esc->cfg.fmmus; n++) {
-		struct ec_fmmu *f = &esc->fmmu[n];
+		struct ec_fmmu *f = &esc->fmmu[n], was = *f;
+		bool mapped = active & BIT(n), moved;
 		u64 last;
 
 		ec_fmmu_decode(f, esc->mem + EC_REG_FMMU(n));
@@ -41,15 +43,20 @@ void ec_esc_fmmu_config(struct ec_esc *esc)
 			f->lbit_stop = 7;
 			f->pbit = 0;
 		}
+		moved = f->logical != was.logical || f->len != was.len ||
+			!f->enable || !f->type || !ec_fmmu_bits(f);
+		if (mapped && moved)
+			ec_sim_span_del(esc, &was);
 		if (!f->enable || !f->type || !ec_fmmu_bits(f))
 			continue;
+		if (!mapped || moved)
+			ec_sim_span_add(esc, f);
 		esc->fmmus_active |= (u16)BIT(n);
 		last = (u64)f->logical + f->len - 1;
 		esc->log_first = min(esc->log_first, f->logical);
 		esc->log_last = max(esc->log_last,
 				    (u32)min_t(u64, last, ~0u));
 	}
-	ec_sim_fmmus(esc);
 }
 
 /* may a logical datagram concern the slave; a quick test */
@@ -116,7 +123,8 @@ int ec_esc_fmmu_access(struct ec_esc *esc, struct ec_dgram *d,
 		return 0;
 	if (rd && wr) {		/* what came in, as far as it is mapped */
 		at = max(esc->log_first, logical) - logical;
-		n_in = (u32)min_t(u64, d->len, (u64)esc->log_last - logical + 1) - at;
+		n_in = (esc->log_last == ~0u ? d->len :	/* may be mapped beyond 4 GiB */
+			min_t(u32, d->len, esc->log_last - logical + 1)) - at;
 		memcpy(esc->sim->scratch + at, d->data + at, n_in);
 		in = esc->sim->scratch;
 	}

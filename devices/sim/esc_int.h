@@ -9,14 +9,13 @@
 #define EC_DC_FIRST		0x0900	/* registers of the clock */
 #define EC_DC_SIZE		0x0100
 #define EC_SIM_SCRATCH		2048	/* >= the longest datagram */
+#define EC_SIM_HITS		16	/* logical datagrams of a cycle, power of two */
 
 /* one passage of a frame through a processing unit */
 struct ec_sim_step {
 	struct ec_esc *esc;
 	u32 pu_ns;			/* since the master sent the first bit */
 	u32 recv_ns[EC_MAX_PORT];
-	u32 log_first;			/* as in the slave, kept near */
-	u32 log_last;
 	u8 recv_mask;
 };
 
@@ -40,6 +39,32 @@ struct ec_sim_route {
 	bool repeats;
 	int opens;
 	u8 opens_port;
+};
+
+/* logical bytes that an FMMU maps; the key is the first of them and the slave */
+struct ec_sim_span {
+	u64 key;
+	u32 last;
+};
+
+/**
+ * struct ec_sim_hits - what a logical datagram concerns
+ * @change: of the segment, for which it holds; 0: none
+ * @first: first logical byte
+ * @len: bytes
+ * @steps: length of the way
+ * @mport: master port at which the way begins
+ * @n: steps concerned
+ * @step: these, in order
+ */
+struct ec_sim_hits {
+	u64 change;
+	u32 first;
+	u32 len;
+	u32 steps;
+	int mport;
+	u32 n;
+	u16 *step;
 };
 
 struct ec_sim_pending_fault {
@@ -76,6 +101,18 @@ struct ec_sim {
 	s32 *node_next;
 	s32 *node_prev;			/* -2: not hashed */
 	u16 *node_addr;
+
+	/* FMMUs that map something, sorted */
+	struct ec_sim_span *span;
+	u32 spans;
+	u32 span_room;
+	u32 span_want;			/* FMMUs of all slaves */
+	u32 span_longest;		/* at least the length of any span */
+	u32 *mark;			/* a bit for each step, 0 between look-ups */
+	u64 change;			/* counts changes of spans and ways */
+	struct ec_sim_hits hits[EC_SIM_HITS];
+	u16 *hit_steps;
+	u32 hit;			/* the last one used */
 
 	struct ec_sim_pending_fault *fault;
 	int fault_free;
@@ -246,9 +283,17 @@ void ec_sim_rehash(struct ec_esc *esc);
 void ec_sim_routes(struct ec_sim *sim);
 void ec_sim_ports(struct ec_esc *esc, u64 now);
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now);
-void ec_sim_fmmus(struct ec_esc *esc);
 void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
+
+/* segment_spans.c */
+int ec_sim_spans_room(struct ec_sim *sim, u32 n);
+void ec_sim_span_add(const struct ec_esc *esc, const struct ec_fmmu *f);
+void ec_sim_span_del(const struct ec_esc *esc, const struct ec_fmmu *f);
+const struct ec_sim_hits *ec_sim_spans_hit(struct ec_sim *sim, int mport, u32 steps, u32 first,
+					   u32 len);
+int ec_sim_spans_init(struct ec_sim *sim);
+void ec_sim_spans_exit(struct ec_sim *sim);
 
 /* segment_frame.c */
 s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_len,

@@ -236,7 +236,8 @@ struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
 	}
 	if (!sim->esc || !sim->heap || !sim->bucket || !sim->node_next ||
 	    !sim->node_prev || !sim->node_addr || !sim->route[0].step ||
-	    !sim->route[1].step || ec_sim_faults_init(sim)) {
+	    !sim->route[1].step || ec_sim_spans_init(sim) ||
+	    ec_sim_faults_init(sim)) {
 		ec_sim_free(sim);
 		return NULL;
 	}
@@ -277,6 +278,7 @@ void ec_sim_free(struct ec_sim *sim)
 	for (i = 0; i < EC_SIM_PORTS; i++)
 		ops.free(sim->route[i].step);
 	ops.free(sim->fault);
+	ec_sim_spans_exit(sim);
 	ops.free(sim->node_addr);
 	ops.free(sim->node_prev);
 	ops.free(sim->node_next);
@@ -336,7 +338,7 @@ struct ec_esc *ec_sim_add(struct ec_sim *sim, const struct ec_esc_config *cfg)
 	esc->mem = sim->ops.alloc(esc->mem_len);
 	esc->eep.len = max(cfg->eeprom_len, cfg->eeprom_size);
 	esc->eep.data = sim->ops.alloc(esc->eep.len + 1);
-	if (!esc->mem || !esc->eep.data) {
+	if (!esc->mem || !esc->eep.data || ec_sim_spans_room(sim, cfg->fmmus)) {
 		free_slave(sim, esc);
 		return NULL;
 	}

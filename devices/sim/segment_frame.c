@@ -131,26 +131,26 @@ static void by_station(const struct pass *ps, struct ec_dgram *d)
 
 static void by_logical(const struct pass *ps, struct ec_dgram *d)
 {
+	struct ec_sim *sim = ps->sim;
+	const struct ec_sim_hits *hits;
 	u32 first = ec_dgram_logical(d), i;
 	u64 last = (u64)first + d->len;
 	bool quick = last <= 1ULL << 32;
 	const struct ec_quick k = {
 		.data = d->data, .first = first, .len = d->len, .cmd = d->cmd,
 		.count = d->cmd == EC_CMD_LRW ? 2 : 1,
-		.frame = ps->sim->frames, .wire_ns = ps->wire_ns,
+		.frame = sim->frames, .wire_ns = ps->wire_ns,
 	};
 	u16 wkc = 0;
 
 	collect_irq(ps, d);
-	for (i = 0; i < ps->steps; i++) {
-		const struct ec_sim_step *st = &ps->r->step[i];
-		u64 now = ps->now + st->pu_ns;
+	hits = ec_sim_spans_hit(sim, ps->mport, ps->steps, first, d->len);
+	for (i = 0; i < hits->n; i++) {
+		const struct ec_sim_step *st = &ps->r->step[hits->step[i]];
 
-		if (first > st->log_last || last <= st->log_first)
-			continue;
 		if (!quick || !st->esc->powered ||
-		    !ec_esc_quick_data(st->esc, &k, now, &wkc))
-			visit(ps, i, d);
+		    !ec_esc_quick_data(st->esc, &k, ps->now + st->pu_ns, &wkc))
+			visit(ps, hits->step[i], d);
 	}
 	if (wkc)
 		ec_dgram_set_wkc(d, (u16)(ec_dgram_wkc(d) + wkc));

@@ -189,22 +189,6 @@ void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now)
 		ec_sim_ports(sim->esc[a->peer], now);
 }
 
-/* FMMUs of a slave changed */
-void ec_sim_fmmus(struct ec_esc *esc)
-{
-	int i;
-
-	for (i = 0; i < EC_SIM_PORTS && !esc->sim->dirty; i++) {
-		struct ec_sim_step *st;
-
-		if (esc->route_pos[i] < 0)
-			continue;
-		st = &esc->sim->route[i].step[esc->route_pos[i]];
-		st->log_first = esc->log_first;
-		st->log_last = esc->log_last;
-	}
-}
-
 /* false: the frame ends here */
 static bool add_step(struct ec_sim *sim, struct ec_sim_route *r, int mport,
 		     struct ec_esc *esc, u32 t)
@@ -222,8 +206,6 @@ static bool add_step(struct ec_sim *sim, struct ec_sim_route *r, int mport,
 	st = &r->step[r->steps];
 	st->esc = esc;
 	st->pu_ns = t;
-	st->log_first = esc->log_first;
-	st->log_last = esc->log_last;
 	esc->route_pos[mport] = (s32)r->steps;
 	if (circ)
 		r->circ = (int)r->steps;
@@ -310,4 +292,5 @@ void ec_sim_routes(struct ec_sim *sim)
 		}
 	}
 	sim->dirty = false;
+	sim->change++;
 }
