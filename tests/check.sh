@@ -82,7 +82,7 @@ level_system() { tests/system/run.sh; }
 level_guests() { tests/arch/guests.sh; }
 level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
-level_bench() { tests/bench/cycle.sh --gates; }
+level_bench() { tests/bench/run.sh --gates cycle sim; }
 
 run() {
 	local name=$1 t0=$SECONDS rc

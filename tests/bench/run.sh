@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # All benchmarks: "ok" lines are gates, lines with # are figures.
-# usage: run.sh [NAME...]      default: every NAME.sh of this folder
+# usage: run.sh [--gates] [NAME...]      default: every NAME.sh of this folder
+#   --gates   what has a limit only
 
 set -u
 cd "$(dirname "$0")" || exit 1
+gates=()
+[ "${1:-}" != --gates ] || { gates=(--gates); shift; }
 passed=0 failed=0
 rows=$(mktemp)
 trap 'rm -f "$rows"' EXIT
@@ -15,7 +18,7 @@ for f in ${*:-*.sh}; do
 	[ "$f" != run ] || continue
 	echo "== $f"
 	out=$(mktemp)
-	"./$f.sh" 2>&1 | tee "$out"
+	"./$f.sh" ${gates[@]+"${gates[@]}"} 2>&1 | tee "$out"
 	rc=${PIPESTATUS[0]}
 	sed -n 's/^# row: //p' "$out" >>"$rows"
 	last=$(tail -n 1 "$out")
