@@ -12,21 +12,10 @@
 #include "capture.h"
 #include "master.h"
 #include "once64.h"
-#include "tap.h"
 
-static bool capture;
-module_param(capture, bool, 0444);
+bool ec_capture;
+module_param_named(capture, ec_capture, bool, 0444);
 MODULE_PARM_DESC(capture, "1: an interface eccap<N> per master shows its frames to tcpdump");
-
-/**
- * struct ec_capture - private part of the interface
- * @nd: the interface
- * @tap: frames on their way to it
- */
-struct ec_capture {
-	struct net_device *nd;
-	struct ec_tap tap;
-};
 
 /**
  * ec_capture_sent() - a frame has been sent
@@ -121,7 +110,7 @@ int ec_capture_create(struct ec_master *m)
 	char name[IFNAMSIZ];
 	int ret;
 
-	if (!capture)
+	if (!ec_capture)
 		return 0;
 	snprintf(name, sizeof(name), "eccap%u", m->index);
 	nd = alloc_netdev(sizeof(*c), name, NET_NAME_ENUM, setup);

@@ -4,9 +4,22 @@
 #define EC_CAPTURE_H
 
 #include <linux/types.h>
+#include "tap.h"
 
-struct ec_capture;
 struct ec_master;
+
+/**
+ * struct ec_capture - private part of the interface
+ * @nd: the interface
+ * @tap: frames on their way to it
+ */
+struct ec_capture {
+	struct net_device *nd;
+	struct ec_tap tap;
+};
+
+/* the parameter; written before masters are created only */
+extern bool ec_capture;
 
 int ec_capture_create(struct ec_master *m);
 void ec_capture_destroy(struct ec_master *m);

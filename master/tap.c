@@ -13,7 +13,6 @@
 #include "tap.h"
 #include "wire/frame.h"
 
-#define RING	512	/* frames; power of 2 */
 
 /**
  * struct ec_tap_frame - one frame in the ring
@@ -37,10 +36,10 @@ static bool wanted(const struct ec_tap *t)
 /* the next free entry, until publish() */
 static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 {
-	struct ec_tap_frame *f = &t->ring[t->head % RING];
+	struct ec_tap_frame *f = &t->ring[t->head % EC_TAP_RING];
 
 	lockdep_assert_held(&t->lock);
-	if (t->head - smp_load_acquire(&t->tail) == RING) {
+	if (t->head - smp_load_acquire(&t->tail) == EC_TAP_RING) {
 		ec_write64(&t->dropped, t->dropped + 1);
 		return NULL;
 	}
@@ -143,7 +142,7 @@ static void worker(struct work_struct *w)
 	struct ec_tap *t = container_of(w, struct ec_tap, work);
 
 	while (t->tail != smp_load_acquire(&t->head)) {
-		show(t, &t->ring[t->tail % RING]);
+		show(t, &t->ring[t->tail % EC_TAP_RING]);
 		smp_store_release(&t->tail, t->tail + 1);
 		cond_resched();
 	}
@@ -163,7 +162,7 @@ int ec_tap_init(struct ec_tap *t, struct net_device *nd)
 	*t = (struct ec_tap){ .nd = nd };
 	raw_spin_lock_init(&t->lock);
 	INIT_WORK(&t->work, worker);
-	t->ring = vzalloc(array_size(RING, sizeof(*t->ring)));
+	t->ring = vzalloc(array_size(EC_TAP_RING, sizeof(*t->ring)));
 	return t->ring ? 0 : -ENOMEM;
 }
 EXPORT_SYMBOL_GPL(ec_tap_init);

@@ -7,6 +7,8 @@
 #include <linux/types.h>
 #include <linux/workqueue.h>
 
+#define EC_TAP_RING	512	/* frames; power of 2 */
+
 struct ec_tap_frame;
 struct net_device;
 

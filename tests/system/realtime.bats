@@ -100,6 +100,40 @@ clean() {
 	clean EtherCAT0-cyc 1000
 }
 
+# idle_socket DEVICE: a capture program that never reads; it prints at last what it had
+idle_socket() {
+	python3 -c 'import signal, socket, struct, sys
+s = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(3))
+s.bind((sys.argv[1], 0))
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
+print("ready", flush=True)
+signal.sigwait([signal.SIGTERM])
+print("frames", struct.unpack("II", s.getsockopt(263, 6, 8))[0], flush=True)' "$1" \
+		>"$BATS_TEST_TMPDIR/idle" 3>&- &
+	app=$!
+	wait_for 60 grep -q ready "$BATS_TEST_TMPDIR/idle"
+}
+
+# captured FRAMES: the socket was offered so many, and each frame was copied for it
+captured() {
+	kill "$app"
+	wait "$app" || return
+	app=
+	[ "$(sed -n 's/^frames //p' "$BATS_TEST_TMPDIR/idle")" -ge "$1" ] &&
+		[ "$(ethercat master --json | jq '.masters[0].frames_not_captured')" = 0 ]
+}
+
+@test "on a network card with a capture program: its copies cost no allocation and no wait" {
+	generic
+	idle_socket eth0
+	traced --cycles 1000 --period-us 4000 --extras
+	clean cycle-bench 1000 $SLEEP
+	traced --cycles 1000 --period-us 4000 --extras --kernel wait
+	clean cycle-bench 1000 $WAIT
+	clean EtherCAT0-cyc 1000
+	captured 4000
+}
+
 @test "control: the trace sees what a cycle must not do" {
 	local name
 
