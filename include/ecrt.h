@@ -934,7 +934,8 @@ typedef enum {
  * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50. The caller of
  *	ecrt_master_set_cycle() needs CAP_SYS_NICE; else RLIMIT_RTPRIO limits it, and
  *	with limit 0 the thread runs SCHED_OTHER. The kernel log and 'ethercat
- *	cycle' report that.
+ *	cycle' report that. After a takeover (%EC_CYCLE_DETACH) the right of the
+ *	new caller counts.
  * @stall: what to do without new outputs
  * @stall_cycles: after that many cycles in a row without; 0: never. The first
  *	outputs may take their time.

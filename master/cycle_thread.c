@@ -19,7 +19,6 @@
 #include <linux/completion.h>
 #include <linux/rcupdate.h>
 #include <linux/wait.h>
-#include <uapi/linux/sched/types.h>
 #include "config.h"
 #include "bytes.h"
 #include "cycle_lock.h"
@@ -402,15 +401,10 @@ static int run(void *data)
 {
 	struct ec_cycle_thread *t = data;
 	const struct ec_ioc_cycle *k = &t->session->kernel;
-	struct sched_attr attr = {
-		.size = sizeof(attr), .sched_policy = SCHED_FIFO,
-		.sched_priority = t->session->priority,
-	};
 	u64 now;
 
-	if (attr.sched_priority && sched_setattr_nocheck(current, &attr))
-		ec_warn(t->session->master, "cycle: no real-time priority %u\n",
-			attr.sched_priority);
+	if (t->session->priority)
+		ec_cycle_sched_set(t->session, current);
 	now = ktime_get_ns();
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
 	ec_cycle_lock_init(&t->lock, t->session);
@@ -531,50 +525,17 @@ err:
 	return ret;
 }
 
-/* The application does not learn from a successful activation what it lacks. */
-static void log_priority(const struct ec_session *s)
-{
-	u32 wanted = s->kernel.priority ?: EC_CYCLE_PRIORITY;
-
-	if (!s->priority)
-		ec_warn(s->master, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
-			wanted, wanted);
-	else if (s->priority < wanted)
-		ec_warn(s->master, "cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
-			s->priority, wanted);
-}
-
 /**
- * ec_cycle_thread_check_cpu() - keep the cycle thread on its CPU
- * @s: active session
+ * ec_cycle_thread_task() - the thread that runs the cycle
+ * @s: session
  *
- * When that CPU goes offline the kernel lets the thread run on all others, for
- * ever. Once it is online again the thread returns to it.
- *
- * Context: The monitor thread, session_lock held. May sleep.
+ * Context: session_lock held.
+ * Return: thread; NULL when the application runs the cycle.
  */
-void ec_cycle_thread_check_cpu(struct ec_session *s)
+struct task_struct *ec_cycle_thread_task(const struct ec_session *s)
 {
-	int cpu = s->kernel.cpu;
-	struct task_struct *task;
-
 	lockdep_assert_held(&s->master->session_lock);
-	if (!s->thread || cpu < 0)
-		return;
-	task = s->thread->task;
-	if (cpumask_equal(task->cpus_ptr, cpumask_of(cpu)))
-		return;
-	if (!s->cpu_lost) {
-		s->cpu_lost = true;
-		s->cpu_losses++;
-		ec_warn(s->master, "CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
-			cpu, cpu);
-	}
-	/* on its way down a CPU is still online */
-	if (cpu_active(cpu) && !set_cpus_allowed_ptr(task, cpumask_of(cpu))) {
-		s->cpu_lost = false;
-		ec_info(s->master, "cycle thread runs on CPU %d again\n", cpu);
-	}
+	return s->thread ? s->thread->task : NULL;
 }
 
 /**
@@ -589,7 +550,7 @@ void ec_cycle_thread_start(struct ec_session *s)
 
 	if (!s->thread)
 		return;
-	log_priority(s);
+	ec_cycle_sched_log(s);
 	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
 	m->interval_told = true;
 	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?

@@ -9,12 +9,13 @@
 struct ec_master;
 struct ec_session;
 struct ec_waiters;
+struct task_struct;
 
 #define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
 
 int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes);
 void ec_cycle_thread_start(struct ec_session *s);
-void ec_cycle_thread_check_cpu(struct ec_session *s);
+struct task_struct *ec_cycle_thread_task(const struct ec_session *s);
 void ec_cycle_thread_stop(struct ec_session *s);
 int ec_cycle_thread_adopt(struct ec_session *s);
 void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size);
@@ -22,5 +23,11 @@ __poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner);
 bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run);
 int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
 			 u64 *cycle, u32 timeout_us);
+
+/* cycle_sched.c */
+void ec_cycle_sched_set(const struct ec_session *s, struct task_struct *task);
+void ec_cycle_sched_log(const struct ec_session *s);
+void ec_cycle_thread_inherit(struct ec_session *s, u32 priority);
+void ec_cycle_thread_check_cpu(struct ec_session *s);
 
 #endif

@@ -238,7 +238,8 @@ static void adopt_late(struct ec_session *s, u32 per_s)
  * @why: result: the first difference of the two
  * @size: room there
  *
- * The cycle goes on; the heir's configuration is freed.
+ * The cycle goes on, with the priority that the heir's process may use; the heir's
+ * configuration is freed.
  *
  * Context: Process, session_lock held. Sleeps until the next cycle has begun.
  * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
@@ -260,6 +261,7 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 	if (s->requests)
 		ec_requests_describe(s);
 	adopt_late(s, heir->late_per_s);
+	ec_cycle_thread_inherit(s, heir->priority);
 	m->heir = NULL;
 	ec_session_fill_status(s);
 	ec_session_set_owner(s, heir->owner, rcu_dereference_protected(heir->waiters,

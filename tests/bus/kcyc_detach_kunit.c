@@ -153,6 +153,50 @@ static void takeover(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_status(n)->state, EC_CYCLE_STATE_RUNNING);
 }
 
+/* What the next one may use: it is root here, so its right is set in its session. */
+static struct kcyc *taken_with(struct bus *b, u32 priority)
+{
+	struct kcyc *n = kcyc_configure(b, hold);
+
+	b->m->heir->priority = priority;
+	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
+	return n;
+}
+
+/* The priority of the cycle follows the right of its owner, both ways, and the log has it. */
+static void takeover_priority_follows_the_right(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct task_struct *task;
+
+	ec_session_lock(b->m);
+	task = ec_cycle_thread_task(b->m->session);
+	ec_session_unlock(b->m);
+	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
+	KUNIT_EXPECT_EQ(test, task->rt_priority, 50u);
+	die(a);
+	a = taken_with(b, 0);
+	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_NORMAL);
+	KUNIT_EXPECT_EQ(test, task->rt_priority, 0u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_OTHER: SCHED_FIFO 50 needs"), 1u);
+	die(a);
+	a = taken_with(b, 30);
+	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
+	KUNIT_EXPECT_EQ(test, task->rt_priority, 30u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_FIFO 30: 50 exceeds"), 1u);
+	die(a);
+	a = taken_with(b, 50);
+	KUNIT_EXPECT_EQ(test, task->rt_priority, 50u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_FIFO 50, as the new"), 1u);
+	/* an equal right is no event */
+	die(a);
+	a = taken_with(b, 50);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_FIFO 50, as the new"), 1u);
+	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
+}
+
 /* Killed and taken over again and again. */
 static void takeover_often(struct kunit *test)
 {
@@ -544,6 +588,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(detach_zeroes),
 	KUNIT_CASE(detach_only_when_asked),
 	KUNIT_CASE(takeover),
+	KUNIT_CASE(takeover_priority_follows_the_right),
 	KUNIT_CASE(takeover_often),
 	KUNIT_CASE(takeover_of_a_mess),
 	KUNIT_CASE(takeover_of_emergencies),

@@ -16,6 +16,7 @@ setup_file() {
 teardown_file() { stop; }
 teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	ethercat release 2>/dev/null || true	# most cases leave no session
 	echo 1 >/sys/devices/system/cpu/cpu1/online
 	wait_for 60 all_slaves_are PREOP 1
 }
@@ -64,6 +65,35 @@ group=(setpriv --reuid 65534 --regid 65534 --clear-groups)
 	run_as prlimit --rtprio=60 "${group[@]}" -- priority=55
 	[ "$(scheduling)" = "FF 55" ]
 	! dmesg | grep RLIMIT || false
+}
+
+# the detached session of the application before, as another user
+killed() {
+	kill -9 "$app"
+	wait "$app" || true
+	app=
+	wait_for 60 eval 'ethercat master | grep -q "Session: detached"'
+}
+
+@test "a takeover gives the cycle the priority that its new owner may use" {
+	chmod o+rw /dev/EtherCAT0
+	run_as -- priority=97 flags=1
+	[ "$(scheduling)" = "FF 97" ]
+	before=$thread
+	killed
+	run_as prlimit --rtprio=0 "${group[@]}" -- priority=97 flags=1
+	[ "$thread" = "$before" ]
+	[ "$(scheduling)" = "TS -" ]
+	dmesg | grep 'SCHED_OTHER: SCHED_FIFO 97 needs CAP_SYS_NICE or RLIMIT_RTPRIO 97'
+	json '.masters[0] | .priority == 0 and .priority_wanted == 97' cycle
+	killed
+	run_as -- priority=97 flags=1
+	[ "$thread" = "$before" ]
+	[ "$(scheduling)" = "FF 97" ]
+	dmesg | grep 'cycle thread runs SCHED_FIFO 97, as the new application permits'
+	json '.masters[0] | .priority == 97' cycle
+	killed
+	ethercat release
 }
 
 @test "the thread returns to its CPU after that was offline" {
