@@ -113,8 +113,8 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	ret = request(slave, state, until);
 	if (!ret)
 		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
-	ec_slave_dbg(slave, 1, "AL status 0x%04x, code 0x%04x, result %d\n", slave->al_status,
-		     slave->al_code, ret);
+	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x", slave->al_status,
+			    slave->al_code);
 	if (ret == -EPROTO) {
 		code = slave->al_code;
 		ec_al_ack(slave);

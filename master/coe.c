@@ -119,8 +119,8 @@ int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *
 		*abort = x.up.abort;
 	if (!ret)
 		*size = x.up.size;
-	ec_slave_dbg(slave, 1, "upload 0x%04x:%02x: result %d, abort 0x%08x, %zu byte(s)\n",
-		     index, sub, ret, *abort, *size);
+	ec_slave_dbg_result(slave, ret, "upload 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
+			    sub, *abort, *size);
 	return ret;
 }
 
@@ -152,7 +152,7 @@ int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, co
 	ret = run(slave, &x, limit);
 	if (ret == -EIO)
 		*abort = x.dn.abort;
-	ec_slave_dbg(slave, 1, "download 0x%04x:%02x, %zu byte(s): result %d, abort 0x%08x\n",
-		     index, sub, size, ret, *abort);
+	ec_slave_dbg_result(slave, ret, "download 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
+			    sub, *abort, size);
 	return ret;
 }

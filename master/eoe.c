@@ -73,9 +73,10 @@ int ec_eoe_set_ip(struct ec_slave *slave, const struct ec_eoe_ip *p, u16 *result
 	ret = ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
 	ret = exchange(slave, b, ret, EC_EOE_SET_IP_RESP, result);
 	kfree(b);
-	ec_slave_dbg(slave, 1, "set IP parameters 0x%02x: result %d, 0x%04x\n", p->which, ret,
-		     *result);
-	return min(ret, 0);
+	ret = min(ret, 0);
+	ec_slave_dbg_result(slave, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
+			    *result);
+	return ret;
 }
 
 /**
@@ -105,7 +106,7 @@ int ec_eoe_get_ip(struct ec_slave *slave, struct ec_eoe_ip *p, u16 *result)
 	if (ret >= 0)
 		ret = ec_eoe_ip_decode(b->rx, ret, p) ? -EBADMSG : 0;
 	kfree(b);
-	ec_slave_dbg(slave, 1, "get IP parameters: result %d, 0x%04x\n", ret, *result);
+	ec_slave_dbg_result(slave, ret, "get IP parameters, EoE result 0x%04x", *result);
 	return ret;
 }
 

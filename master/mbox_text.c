@@ -61,6 +61,9 @@ const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t s
 	case -ENETDOWN:
 		scnprintf(buf, size, "the main device is missing or has no link; check the cable");
 		break;
+	case -EBUSY:
+		scnprintf(buf, size, "the main device has no free transmit buffer");
+		break;
 	default:
 		scnprintf(buf, size, "transfer failed (%pe)", ERR_PTR(ret));
 	}

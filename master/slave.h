@@ -228,6 +228,14 @@ struct ec_slave {
 			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->index, \
 			       (s)->position, ##__VA_ARGS__); \
 	} while (0)
+/* level 1, without line end: ": done" or the name of the error follows; @ret is 0 or -errno */
+#define ec_slave_dbg_result(s, ret, fmt, ...) \
+	do { \
+		if (ret) \
+			ec_slave_dbg(s, 1, fmt ": %pe\n", ##__VA_ARGS__, ERR_PTR(ret)); \
+		else \
+			ec_slave_dbg(s, 1, fmt ": done\n", ##__VA_ARGS__); \
+	} while (0)
 
 struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);

@@ -46,9 +46,9 @@ static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
 	if (ret >= 0)
 		ret = ec_mbox_ask(slave, &ask, b, ret);
 	kfree(b);
-	ec_slave_dbg(slave, 1, "%s %s of drive %u: result %d, error 0x%04x\n",
-		     a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive, ret,
-		     a->error);
+	ec_slave_dbg_result(slave, ret, "%s %s of drive %u, error 0x%04x",
+			    a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive,
+			    a->error);
 	return ret;
 }
 

@@ -44,8 +44,8 @@ int ec_voe_write(struct ec_slave *slave, const struct ec_voe_hdr *h, const u8 *d
 	ec_wbuf_bytes(&w, data, size);
 	ret = w.bad ? -EMSGSIZE : ec_mbox_tell(slave, EC_MBOX_VOE, b, w.p - b->tx, &l);
 	kfree(b);
-	ec_slave_dbg(slave, 1, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s): result %d\n",
-		     h->vendor, h->type, size, ret);
+	ec_slave_dbg_result(slave, ret, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s)",
+			    h->vendor, h->type, size);
 	return ret;
 }
 
@@ -99,6 +99,6 @@ int ec_voe_read(struct ec_slave *slave, bool blind, struct ec_voe_hdr *h, u8 *da
 	if (ret >= 0)
 		ret = take(b->rx, ret, h, data, cap, size);
 	kfree(b);
-	ec_slave_dbg(slave, 1, "VoE read: result %d, %zu byte(s)\n", ret, *size);
+	ec_slave_dbg_result(slave, ret, "VoE read, %zu byte(s)", *size);
 	return ret;
 }

@@ -22,7 +22,7 @@ static const char *abort_text(u32 code)
 {
 	const char *text = ec_coe_abort_text(code);
 
-	return text ? text : "???";
+	return text ? text : "unknown code";
 }
 
 static void print(const char *kind, int err, const char *reason, u32 abort, const char *fmt,

@@ -70,7 +70,7 @@ int soe_failed(struct dev *d, int err, const struct ec_ioc_soe *s, const struct 
 	if (s->error_code)
 		return fail("Master%u slave %u: cannot %s %s of drive %u: 0x%04x: %s", d->master,
 			    s->position, verb, a->text, a->drive, s->error_code,
-			    text ? text : "???");
+			    text ? text : "unknown code");
 	return dev_fail(d, err, "Master%u slave %u: cannot %s %s of drive %u", d->master,
 			s->position, verb, a->text, a->drive);
 }

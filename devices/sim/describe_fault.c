@@ -69,7 +69,7 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
-		"good", "length", "short", "counter", "type", "babble", "error",
+		"good", "length", "short", "counter", "type", "babble", "error", "abort",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
 	s64 code = 1;
@@ -78,14 +78,15 @@ static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 		if (!ec_desc_is(w, kinds[i]))
 			continue;
 		f->arg = i;
-		if (i != EC_SIM_MAILBOX_ERROR)
+		if (i != EC_SIM_MAILBOX_ERROR && i != EC_SIM_MAILBOX_ABORT)
 			return 0;
-		if (ec_desc_number(d, "code", 0, 0xFFFF, &code))
+		if (ec_desc_number(d, "code", 0, i == EC_SIM_MAILBOX_ABORT ? 0xFFFFFFFF : 0xFFFF,
+				   &code))
 			return -EINVAL;
 		f->arg2 = (u32)code;
 		return 0;
 	}
-	return ec_desc_fail(d, "mailbox messages are good, or wrong: length, short, counter, type, babble, error code=N",
+	return ec_desc_fail(d, "mailbox messages are good, or wrong: length, short, counter, type, babble, error code=N, abort code=N",
 			    NULL, "");
 }
 

@@ -244,7 +244,7 @@ struct ec_esc_dc {
  * @al_code: AL status code to refuse with
  * @app_mute: the application answers no mailbox and no AL request
  * @mailbox: enum ec_sim_mailbox_fault
- * @mailbox_code: of EC_SIM_MAILBOX_ERROR
+ * @mailbox_code: of EC_SIM_MAILBOX_ERROR and EC_SIM_MAILBOX_ABORT
  */
 struct ec_esc_fault {
 	bool dead;
@@ -256,7 +256,7 @@ struct ec_esc_fault {
 	u16 al_code;
 	bool app_mute;
 	u8 mailbox;
-	u16 mailbox_code;
+	u32 mailbox_code;
 };
 
 /**

@@ -93,6 +93,7 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_TYPE: another protocol
  * @EC_SIM_MAILBOX_BABBLE: another protocol, again and again
  * @EC_SIM_MAILBOX_ERROR: each is a mailbox error reply with the code in @arg2
+ * @EC_SIM_MAILBOX_ABORT: SDO requests that are aborted have the abort code @arg2
  */
 enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_GOOD,
@@ -102,6 +103,7 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_TYPE,
 	EC_SIM_MAILBOX_BABBLE,
 	EC_SIM_MAILBOX_ERROR,
+	EC_SIM_MAILBOX_ABORT,
 	EC_SIM_MAILBOX_FAULTS
 };
 

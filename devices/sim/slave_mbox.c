@@ -337,7 +337,12 @@ static void spoil(struct ec_app *app)
 		put_unaligned_le16(EC_MBOX_ERR_BODY, h);
 		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_ERR);
 		put_unaligned_le16(1, h + EC_MBOX_HDR);
-		put_unaligned_le16(app->esc->fault.mailbox_code, h + EC_MBOX_HDR + 2);
+		put_unaligned_le16((u16)app->esc->fault.mailbox_code, h + EC_MBOX_HDR + 2);
+		break;
+	case EC_SIM_MAILBOX_ABORT:
+		if ((h[5] & 0x0f) == EC_MBOX_COE && h[EC_MBOX_HDR + EC_COE_HDR] == 0x80)
+			put_unaligned_le32(app->esc->fault.mailbox_code,
+					   h + EC_MBOX_HDR + EC_COE_HDR + 4);
 		break;
 	default:
 		break;

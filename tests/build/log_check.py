@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""Every line that a module can log while it runs is rate-limited.
+"""Every line that a module can log while it runs is rate-limited, and no text is an errno.
 
-A call that prints is accepted in an __init function, by a limited macro, through
+An error is "%pe" or a text of its own: "result -110" tells a reader nothing. A call that prints is accepted in an __init function, by a limited macro, through
 ec_log_event(), or in one of the functions below, each with its reason.
 usage: log_check.py FOLDER...
 """
@@ -27,6 +27,8 @@ PRINTS = re.compile(
     r"\b(printk|_printk|vprintk|(?:pr|dev|netdev|netif)_(?:emerg|alert|crit|err|warn|notice|info)"
     r"|WARN(?!_ON_ONCE|_ONCE)(?:_ON|_TAINT)?|dump_stack|print_hex_dump\w*)\s*\(")
 FUNCTION = re.compile(r"^[A-Za-z_][^;=]*?\b(\w+)\([^;]*$")
+# a signed number behind such a word; one with a unit is none
+ERRNO = re.compile(r'"[^"\n]*\b(result|error|errno|failed|ret)\b[^"%]{0,4}%d(?! \w)')
 COMMENT = re.compile(r"/\*.*?\*/", re.S)
 
 
@@ -37,6 +39,9 @@ def strip(text):
 
 def check(path, bad, used):
     name, init = "", False
+    for number, line in enumerate(path.read_text().split("\n"), 1):
+        if ERRNO.search(line):
+            bad.append(f"{path}:{number}: a number of errno; print %pe or a text")
     for number, line in enumerate(strip(path.read_text()).split("\n"), 1):
         macro = re.match(r"#\s*define\s+(\w+)", line)
         if macro:

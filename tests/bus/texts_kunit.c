@@ -135,6 +135,7 @@ static void texts_dead(struct kunit *test)
 	expect_text(b, "SDO 0x1018:01 of slave 1: ");
 }
 
+/* Each way in which a register access fails has its text. */
 static void texts_register(struct kunit *test)
 {
 	struct bus *b = ready(test);
@@ -142,7 +143,50 @@ static void texts_register(struct kunit *test)
 
 	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 1, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -EIO);
-	expect_text(b, "slave 1 did not execute access to 0x0130: working counter 0, expected 1");
+	KUNIT_EXPECT_STREQ(test, b->app.reason,
+			   "slave 1 did not execute access to 0x0130: working counter 0, expected 1");
+	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 0, 0);
+	/* every frame is lost, the link stays */
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ETIMEDOUT);
+	KUNIT_EXPECT_STREQ(test, b->app.reason,
+			   "access to 0x0130 of slave 1: the frame did not come back; check the cables");
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
+	KUNIT_EXPECT_STREQ(test, b->app.reason, "SDO 0x1018:01 of slave 1: no reply in time");
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+}
+
+/* Without a link, and without a device: not the slave is to blame, and no cable behind it. */
+static void texts_link(struct kunit *test)
+{
+	static const char none[] = "the main device is missing or has no link; check the cable";
+	static const char reg_none[] =
+		"access to 0x0130 of slave 1: the main device is missing or has no link; check the cable";
+	struct bus *b = ready(test);
+	struct ec_slave *s = ec_slave_ref(bus_slave(b, BAD));
+	struct ec_mbox_limit limit = { .timeout_ms = 100 };
+	struct ec_ioc_reg reg = {
+		.position = BAD, .address = 0x0130, .size = 2, .flags = EC_REG_FLAG_EMERGENCY,
+	};
+	char why[96];
+	u8 v[4];
+	size_t got;
+	u32 abort;
+
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ENETDOWN);
+	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 1, false, v, sizeof(v), &got, &abort, &limit),
+			-ENETDOWN);
+	KUNIT_EXPECT_STREQ(test, ec_mbox_fail_text(-ENETDOWN, "CoE", why, sizeof(why)), none);
+	ec_sim_link_destroy(b->link);
+	b->link = NULL;
+	b->sim = NULL;
+	b->app.reason[0] = '\0';
+	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ENODEV);
+	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
+	KUNIT_EXPECT_STREQ(test, ec_mbox_fail_text(-ENODEV, "CoE", why, sizeof(why)), none);
+	ec_slave_unref(s);
 }
 
 /* Startup SDO: an abort without a text is one, an error without abort is none. */
@@ -164,14 +208,39 @@ static void texts_startup(struct kunit *test)
 	cyc_release(c);
 }
 
-/* Every errno of a transfer has a text, and no text is a bare number. */
+/* An abort code of the vendor has no text: the code is shown, and that it is unknown. */
+static void texts_startup_unknown_abort(struct kunit *test)
+{
+	static const u8 value[4];
+	struct bus *b = ready(test);
+	struct cyc *c = cyc_new(b, 1000);
+	u32 config = cyc_config(c, BAD);
+	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x5fff, .subindex = 3, .size = 4 };
+
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ABORT, 0x08000099);
+	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x5fff), -EIO);
+	KUNIT_EXPECT_STREQ(test, b->app.reason,
+			   "SDO 0x5fff:01 aborted with code 0x08000099: unknown code");
+	cyc_map(c, config, 2, cyc_domain(c));
+	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	cyc_activate(c);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
+			   "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x08000099: unknown code");
+	cyc_release(c);
+}
+
+/*
+ * Every errno of a transfer has a text of its own: neither the default one, nor a number,
+ * nor the name of the errno.
+ */
 static void texts_errno(struct kunit *test)
 {
 	static const int all[] = {
 		-EPROTONOSUPPORT, -EAGAIN, -ETIMEDOUT, -EIO, -EBADMSG, -EPROTO, -EMSGSIZE,
-		-ECANCELED, -EINTR, -ENOMEM, -ENODEV, -ENETDOWN, -EBUSY, -EOPNOTSUPP,
+		-ECANCELED, -EINTR, -ENOMEM, -ENODEV, -ENETDOWN, -EBUSY,
 	};
-	char a[96];
+	char a[96], name[24];
 	u32 i;
 
 	/* none of them stands for a mailbox error reply as well */
@@ -182,6 +251,11 @@ static void texts_errno(struct kunit *test)
 		ec_mbox_fail_text(all[i], "CoE", a, sizeof(a));
 		KUNIT_EXPECT_GT_MSG(test, strlen(a), 10ul, "error %d: %s", all[i], a);
 		KUNIT_EXPECT_LT_MSG(test, strlen(a), 95ul, "error %d: %s", all[i], a);
+		KUNIT_EXPECT_NULL_MSG(test, strstr(a, "transfer failed"), "error %d: %s", all[i], a);
+		scnprintf(name, sizeof(name), "%pe", ERR_PTR(all[i]));
+		KUNIT_EXPECT_NULL_MSG(test, strstr(a, name), "error %d: %s", all[i], a);
+		scnprintf(name, sizeof(name), "%d", abs(all[i]));
+		KUNIT_EXPECT_NULL_MSG(test, strstr(a, name), "error %d: %s", all[i], a);
 	}
 }
 
@@ -228,7 +302,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(texts_startup_mailbox_error),
 	KUNIT_CASE(texts_dead),
 	KUNIT_CASE(texts_register),
+	KUNIT_CASE(texts_link),
 	KUNIT_CASE(texts_startup),
+	KUNIT_CASE(texts_startup_unknown_abort),
 	KUNIT_CASE(texts_errno),
 	KUNIT_CASE(texts_reserved),
 	KUNIT_CASE(texts_config),

@@ -219,8 +219,8 @@ END
 	[ "${#lines[@]}" -eq 1 ]
 	run ethercat upload -p2 0x5001 0
 	[ "$status" -eq 1 ]
-	[[ $output == *"aborted with code 0x12345678: ???" ]]
-	err upload -j -p2 0x5001 0 | json 'd["error"]["abort_text"] == "???"'
+	[[ $output == *"aborted with code 0x12345678: unknown code" ]]
+	err upload -j -p2 0x5001 0 | json 'd["error"]["abort_text"] == "unknown code"'
 	run ethercat upload -p2 0x4000 0
 	[ "$status" -eq 1 ]
 	[[ $output == *"timed out: slave 2 has not answered for 1000 ms"* ]]

@@ -31,7 +31,7 @@ load common
 	run ethercat soe_read -p2 2 S-0-15
 	[[ $output == *": 0x800a: the drive number is not valid" ]]
 	run ethercat soe_read -p2 S-0-100
-	[[ $output == *": 0x7fff: ???" ]]
+	[[ $output == *": 0x7fff: unknown code" ]]
 	run ethercat soe_write -p2 -tuint8 S-0-30 1
 	[ "$status" -eq 1 ]
 	[[ $output == *"cannot write S-0-0030 of drive 0: 0x7004: the value can only be read" ]]

@@ -310,6 +310,26 @@ static void delay(struct kunit *test)
 	KUNIT_EXPECT_GE(test, x->b->now - from, 3000000ull);
 }
 
+/* the script chooses the code of aborts, and no other answer changes */
+static void abort_code(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive\n"
+		"fault at=10ms mailbox d abort code=0x08000099\n"
+		"fault at=20ms mailbox d good\n", 256);
+	u32 abort = 0;
+	u8 v[4];
+
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x5fff, 1, false, v, 4, &abort), -1);
+	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_NO_OBJECT);
+	x->b->now = max(x->b->now, 11000000ull);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x5fff, 1, false, v, 4, &abort), -1);
+	KUNIT_EXPECT_EQ(test, abort, 0x08000099u);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x1018, 1, false, v, 4, &abort), 4);
+	x->b->now = max(x->b->now, 21000000ull);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, 0x5fff, 1, false, v, 4, &abort), -1);
+	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_NO_OBJECT);
+}
+
 static void emergencies(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n"
@@ -397,6 +417,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(replies_are_counted),
 	KUNIT_CASE(delay),
 	KUNIT_CASE(emergencies),
+	KUNIT_CASE(abort_code),
 	KUNIT_CASE(muted),
 	KUNIT_CASE(spoiled),
 	{}
