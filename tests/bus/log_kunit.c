@@ -180,7 +180,7 @@ static void log_cable_flaps(struct kunit *test)
 	}
 	bus_figure("60 cuts of a cable in 36 s: %llu lines", lines(b) - l0);
 	KUNIT_EXPECT_GE(test, lines(b) - l0, 5ull);
-	KUNIT_EXPECT_LE(test, lines(b) - l0, 60ull);
+	KUNIT_EXPECT_LE(test, lines(b) - l0, 30ull);
 }
 
 static struct kunit_case cases[] = {
