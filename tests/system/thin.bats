@@ -22,6 +22,17 @@ teardown_file() { stop; }
 	[[ "$output" == *"Lost frames: 0"* ]]
 }
 
+# what costs an ioctl or a packet here costs it at the user's
+@test "the kernel runs the security modules of the distribution" {
+	mountpoint -q /sys/kernel/security || mount -t securityfs none /sys/kernel/security
+	run cat /sys/kernel/security/lsm
+	echo "$output"
+	[[ ",$output," == *,apparmor,* ]]
+	[[ ",$output," != *,selinux,* ]]
+	[ "$(cat /sys/module/apparmor/parameters/enabled)" = Y ]
+	[ ! -e /sys/fs/selinux/enforce ]
+}
+
 @test "a register is read from the slave" {
 	run ethercat reg_read -p1 -t uint16 0x0010
 	[ "$status" = 0 ]
