@@ -1778,8 +1778,8 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * PDO mapping or assignment and has other objects in the place of the registered
  * entries is taken to OP all the same; without it the slave stays in PREOP.
  * "ExpectedRevision": another revision number than this is logged at activation, and
- * "ethercat slaves" marks the slave; it is used all the same. Other names are kept and shown by
- * "ethercat config -v", without effect.
+ * "ethercat slaves" marks the slave, with -v it shows both; it is used all the same.
+ * Other names are kept and shown by "ethercat config -v", without effect.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOSPC more than 64 of the

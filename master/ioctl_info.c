@@ -278,6 +278,9 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 	}
 	i->config = c ? c->index + 1 : 0;
 	i->differs = c && ec_config_differs(c, s);
+	/* such a slave is used all the same, so it has no other text */
+	if (i->differs && !i->warning[0])
+		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
 	ec_show_end(m);
 	return 0;
 }

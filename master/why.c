@@ -157,6 +157,26 @@ bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
 	return c->slave != slave || other_revision(c, slave);
 }
 
+/**
+ * ec_config_revision_text() - how the revision of a slave differs from the expected one
+ * @c: what ec_config_at() found
+ * @slave: for that slave
+ * @buf: one line of text, untouched when the revision does not differ
+ * @size: of @buf
+ *
+ * Context: Process; with session_lock held, or after ec_show_begin().
+ * Return: whether it differs.
+ */
+bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
+			     size_t size)
+{
+	if (c->slave != slave || !other_revision(c, slave))
+		return false;
+	scnprintf(buf, size, "slave %u has revision 0x%08x, expected 0x%08x", slave->position,
+		  slave->info.revision, (u32)ec_config_flag(c, EC_FLAG_REVISION));
+	return true;
+}
+
 static void absent_text(const struct ec_config *c, char *buf, size_t size)
 {
 	down_read(&c->session->master->topo);
@@ -184,11 +204,7 @@ void ec_config_log_differences(const struct ec_session *s)
 			continue;
 		if (n++ >= LOG_MAX)
 			continue;
-		if (c->slave)
-			scnprintf(text, sizeof(text), "slave %u has revision 0x%08x, expected 0x%08x",
-				  c->slave->position, c->slave->info.revision,
-				  (u32)ec_config_flag(c, EC_FLAG_REVISION));
-		else
+		if (!c->slave || !ec_config_revision_text(c, c->slave, text, sizeof(text)))
 			absent_text(c, text, sizeof(text));
 		ec_warn_each(m, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
 			     text);

@@ -203,7 +203,7 @@ struct ec_ioc_slave {
 	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
 	__u32 config;		/* index of the configuration it has or differs from, plus 1; 0: none */
 	__u32 differs;		/* it is not what @config expects */
-	char warning[EC_UAPI_WARNING];	/* not certain in its process data, or wrong in its EEPROM */
+	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
 };
 
 struct ec_ioc_sm {

@@ -132,6 +132,7 @@ static void differ_revision(struct kunit *test)
 	struct ec_ioc_sc_flag f = { .key = EC_FLAG_REVISION, .value = 0x4711 };
 	struct ec_ioc_slave s = { .position = 1 };
 	struct cyc *c;
+	char want[80];
 
 	bus_idle(b);
 	c = cyc_new(b, 1000);
@@ -147,6 +148,9 @@ static void differ_revision(struct kunit *test)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
+	scnprintf(want, sizeof(want), "slave 1 has revision 0x%08x, expected 0x00004711",
+		  bus_slave(b, 1)->info.revision);
+	KUNIT_EXPECT_STREQ(test, s.warning, want);
 }
 
 /* A reason says what the slave is waiting for. */

@@ -106,3 +106,30 @@ all_exchanged() {
 	[ -z "$(ethercat config; ethercat domains; ethercat data)" ]
 	wait_for 120 all_slaves_are PREOP 22
 }
+
+# not_in_op COMMAND: the reason it shows
+not_in_op() { "$EC_BUILD/tool/ethercat" "$@" -v | sed -n 's/^ *Not in OP: //p'; }
+
+@test "another product or revision than configured: marked, with one reason everywhere" {
+	local product want='slave 4 is 0x00000002/0x1c213052, configured is 0x00000002/0x12345678'
+
+	product=$(ethercat slaves -p1 --json | jq '.masters[0].slaves[0].product_code')
+	dmesg -C
+	"$BATS_TEST_DIRNAME/wrong_app.py" "$EC_BUILD/lib/libethercat.so.1" 4 0x12345678 1 "$product" \
+		>"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	echo $! >/tmp/demo.pid
+	wait_for 60 grep '^reason: ' "$BATS_TEST_TMPDIR/out"
+	# the two, and no other
+	[ "$(ethercat slaves | awk '$4 == "!" { printf "%s ", $1 }')" = "1 4 " ]
+	[ "$(not_in_op slaves -p4)" = "$want" ]
+	[ "$(not_in_op config -p4)" = "$want" ]
+	grep -xF "reason: $want" "$BATS_TEST_TMPDIR/out"
+	dmesg | grep -F "configuration 0:4: $want"
+	dmesg | grep -F 'configuration 0:1: slave 1 has revision 0x'
+	dmesg | grep -F ', expected 0x00004711'
+	[ "$(dmesg | grep -c 'configuration 0:')" = 2 ]
+	ethercat slaves -v -p1 | grep -E '^ *Warning: slave 1 has revision 0x[0-9a-f]{8}, expected 0x00004711$'
+	stop_app
+	wait_for 120 all_slaves_are PREOP 22
+	! ethercat slaves | grep '!' || return 1
+}
