@@ -189,7 +189,7 @@ static int check(const struct net_device *nd)
 		return -EMSGSIZE;
 	}
 	if (netdev_is_rx_handler_busy((struct net_device *)nd)) {
-		pr_err_ratelimited("ec_generic: %s is used by a bridge, bond or the like; release it first\n",
+		pr_err_ratelimited("ec_generic: %s is used by a bridge, bond, team or macvlan; release it first\n",
 				   nd->name);
 		return -EBUSY;
 	}

@@ -31,9 +31,9 @@ responder() {
 
 main_is() { [[ "$(says Main)" == *"($1)" ]]; }
 
-# runs DEVICE: a master there, slaves at the other end; to OP, no frame is lost
+# runs DEVICE: a master at $main, slaves at DEVICE at the other end; to OP, no frame is lost
 runs() {
-	master main0
+	master "${main:-main0}"
 	responder "$1"
 	wait_for 120 all_slaves_are PREOP 22
 	before=$(lost_frames)
@@ -69,7 +69,7 @@ not_taken() {
 	ip link add main0 type bond mode active-backup
 	ip link set veth0 down
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond or the like"
+	not_taken veth0 "is used by a bridge, bond, team or macvlan"
 	stop
 	runs veth1
 }
@@ -78,8 +78,22 @@ not_taken() {
 	modprobe bridge
 	ip link add main0 type bridge
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond or the like"
+	not_taken veth0 "is used by a bridge, bond, team or macvlan"
 	stop
+	runs veth1
+}
+
+@test "the port of a macvlan is refused" {
+	modprobe macvlan
+	ip link add link veth0 name main0 type macvlan mode bridge
+	not_taken veth0 "is used by a bridge, bond, team or macvlan"
+}
+
+@test "the port below a VLAN device runs the bench" {
+	modprobe 8021q
+	ip link add link veth0 name vlan0 type vlan id 5
+	ip link set vlan0 up
+	main=veth0
 	runs veth1
 }
 
@@ -88,7 +102,7 @@ not_taken() {
 	ip link add main0 type team
 	ip link set veth0 down
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond or the like"
+	not_taken veth0 "is used by a bridge, bond, team or macvlan"
 }
 
 @test "a mesh of batman-adv is refused" {
