@@ -75,8 +75,8 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 }
 
 @test "examples.rst: mirror without hardware" {
-	doc Documentation/examples.rst 'insmod build/modules/master/ec_master.ko main_devices=sim0' |
-		tee "$BATS_TEST_TMPDIR/mirror"
+	doc Documentation/examples.rst 'insmod build/modules/master/ec_master.ko main_devices=sim0' \
+		>"$BATS_TEST_TMPDIR/mirror"
 	grep -E '^inputs: 0x04' "$BATS_TEST_TMPDIR/mirror"
 }
 
@@ -87,7 +87,8 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 	doc Documentation/install.rst 'ip link'
 	insmod build/modules/devices/sim/ec_sim.ko segment=bench netdev=veth0
 	has_slaves 22
-	doc Documentation/install.rst 'ethercat master' | grep attached
+	doc Documentation/install.rst 'ethercat master' >"$BATS_TEST_TMPDIR/master"
+	grep attached "$BATS_TEST_TMPDIR/master"
 	mkdir -p /etc/modprobe.d
 	rmmod ec_sim ec_generic ec_master
 	echo 'options ec_master main_devices=00:11:22:33:44:55' >/etc/modprobe.d/ethercat.conf
@@ -133,7 +134,8 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 		eval "$c"
 	done
 	ethercat upload -p2 0x1018 1
-	ethercat download -p2 -t uint8 0x1c12 0 1 || true
+	ethercat download -p2 -t int8 0x6060 0 8
+	[ "$(ethercat upload -p2 -t int8 0x6060 0)" = "0x08 8" ]
 	ethercat help upload
 	ethercat latch -p 2
 	ethercat latch -p 2 single

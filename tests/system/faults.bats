@@ -37,7 +37,7 @@ image() {
 	run ethercat slaves
 	[ "${#lines[@]}" = 3 ]
 	sleep 1
-	dmesg | grep 'EtherCAT 0-1:' || true
+	dmesg | grep 'EtherCAT 0-1:' || true	# for the reader of a failure
 	# the cause comes again when PREOP was not reached
 	[ "$(dmesg | grep 'EtherCAT 0-1: .*EEPROM' | grep -vc '; then PREOP ')" = "$2" ]
 }

@@ -32,7 +32,7 @@ all_slaves_are() {
 }
 
 # what "ethercat master" says behind NAME
-says() { ethercat master | sed -n "s/^ *$1: *//p" | head -n 1; }
+says() { ethercat master | sed -n "/^ *$1: */{s///p;q}"; }
 
 # Frames lost since the device came. A frame that is sent before the slaves at the
 # other end of the wire are there counts too: compare with what it was before.

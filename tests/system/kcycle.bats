@@ -19,7 +19,7 @@ setup_file() {
 teardown_file() { stop; }
 teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
-	ethercat release 2>/dev/null || true
+	ethercat release 2>/dev/null || true	# most cases leave no session
 	wait_for 60 all_slaves_are PREOP 3
 }
 

@@ -36,7 +36,7 @@ has_free() { [ "$(free_kib)" -ge "$1" ]; }
 
 @test "a memory cgroup bounds it as well: only what is in there is hit" {
 	echo 16M >/sys/fs/cgroup/app/memory.max
-	echo 0 >/sys/fs/cgroup/app/memory.swap.max 2>/dev/null || true
+	echo 0 >/sys/fs/cgroup/app/memory.swap.max 2>/dev/null || true	# not without swap
 	run sh -c 'echo $$ >/sys/fs/cgroup/app/cgroup.procs && exec "$1"' sh "$EC_BUILD/apps/memory"
 	echo "$output"
 	cat /sys/fs/cgroup/app/memory.events
