@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""Every command in README.md and Documentation/ is run by a test.
+"""Every command in README.md and Documentation/ is run by a test, or marked as not.
 
 Takes the literal blocks, and the inline commands that begin with make, ethercat,
 ethercat-sim or tests/. Each must be in commands.txt, as
 
-    TEST : TEXT : COMMAND      TEST contains TEXT, which runs the command
-    -    : WHY  : FIRST LINE   the whole block is no command
+    TEST       : TEXT : COMMAND      the file TEST contains TEXT, which runs the command
+    level NAME : TEXT : COMMAND      tests/check.sh runs that level by default, with TEXT
+    by hand    : WHY  : COMMAND      no test runs it; its script and make target exist
+    -          : WHY  : FIRST LINE   the whole block is no command
 
-and each line there must be used. usage: commands.py [--block FILE FIRST_LINE]
+and each line there must be used. That TEXT runs the command with these words, and that
+TEST is run, is not proved here: tests/system/docs.bats reads its commands from the
+documents, all other rows are for the reader to follow.
+usage: commands.py [--block FILE FIRST_LINE]
 """
 import re
 import sys
@@ -56,6 +61,39 @@ def table():
     return rows
 
 
+def levels():
+    """What tests/check.sh runs by default, and the commands of each."""
+    text = (ROOT / "tests/check.sh").read_text()
+    names = re.search(r'^levels="([^"]*)"', text, re.M)[1].split()
+    bodies = dict(re.findall(r"^level_(\w+)\(\) \{ (.*); \}$", text, re.M))
+    return {n: bodies.get(n, "") for n in names}
+
+
+def exists(what):
+    """The scripts and make targets in a command."""
+    words = [w for w in what.split() if "=" not in w]
+    if words[0] == "make" and "-C" not in words:
+        makefile = (ROOT / "Makefile").read_text()
+        return all(re.search(rf"^([\w -]+ )?{re.escape(w)}( [\w -]+)?:", makefile, re.M)
+                   for w in words[1:] if not w.startswith("-"))
+    return all((ROOT / w).exists() for w in words if w.startswith("tests/"))
+
+
+def wrong(what, test, text, run):
+    """What a row claims and is not so, or None."""
+    if test == "-":
+        return None
+    if not exists(what):
+        return "names a script or target that is not there"
+    if test == "by hand":
+        return None if text else "says not why"
+    if test.startswith("level "):
+        if test[6:] not in run:
+            return f"tests/check.sh runs no {test} by default"
+        return None if text in run[test[6:]] else f"{test} has no '{text}'"
+    return None if text in (ROOT / test).read_text() else f"{test} has no '{text}'"
+
+
 def show(path, first):
     """The commands of one block, for tests/system/docs.bats."""
     for block in blocks(ROOT / path):
@@ -90,13 +128,15 @@ def main():
                     look(name, command(line))
         for span in inline(path):
             look(name, command(span))
+    run = levels()
     for what, (test, text) in rows.items():
         if what not in used:
             bad.append(f"commands.txt: '{what}' is in no document")
-        elif test != "-" and text not in (ROOT / test).read_text():
-            bad.append(f"commands.txt: {test} has no '{text}'")
+        elif wrong(what, test, text, run):
+            bad.append(f"commands.txt: '{what}': {wrong(what, test, text, run)}")
     print("\n".join(bad))
-    print(f"{count} commands")
+    hand = sum(test == "by hand" for test, _ in rows.values())
+    print(f"{count} commands, {hand} of them by hand")
     return 1 if bad or not count else 0
 
 
