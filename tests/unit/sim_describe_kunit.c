@@ -380,7 +380,15 @@ static void commands(struct kunit *test)
 		{ "eeprom a word=0xFFFF value=1", "EEPROM ends before" },
 		{ "error a", "code=N" },
 	};
+	struct app_mbox *m = kunit_kzalloc(test, sizeof(*m), GFP_KERNEL);
+	struct ec_coe_emergency e = { .code = 0 };
+	struct ec_mbox_hdr h = { .type = 0 };
 	struct ec_sim_error err;
+	int len;
+
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	m->station = STATION(1);
+	m->size = 256;
 
 	for (u32 i = 0; i < ARRAY_SIZE(bad); i++) {
 		KUNIT_EXPECT_EQ_MSG(test, command(b, bad[i].text, &err), -EINVAL, "%s",
@@ -399,10 +407,14 @@ static void commands(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, command(b, "error m code=0x42", &err), 0);
 	KUNIT_EXPECT_EQ(test, app_al_status(b, STATION(1)), 0x00420012u);
 	KUNIT_EXPECT_EQ(test, command(b, "emergency m code=0x1234", &err), 0);
+	len = app_recv(b, m, &h, 10);
+	KUNIT_EXPECT_EQ(test, h.type, EC_MBOX_COE);
+	KUNIT_ASSERT_EQ(test, len, EC_COE_HDR + 8);
+	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(m->rx + EC_MBOX_HDR, (size_t)len, &e), 0);
+	KUNIT_EXPECT_EQ(test, e.code, 0x1234);
+	KUNIT_EXPECT_EQ_MSG(test, app_recv(b, m, &h, 10), -1, "one emergency");
 	KUNIT_EXPECT_EQ(test, command(b, "dead a", &err), 0);
 	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_TYPE, 1), ~0ull);
-	KUNIT_EXPECT_TRUE(test, ec_esc_sm_readable(ec_sim_find(b->sim, "m")->esc, 0) ||
-				ec_sim_find(b->sim, "m")->mbox.out_len);
 	b->now = 900000000;
 	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_TYPE, 1), ~0ull);
 }
