@@ -374,7 +374,7 @@ static void run(unsigned long cycles)
 		wait_period(&next, &app_time, 0);
 		cycle(n + 1 + (unsigned long)i, app_time, 1);
 	}
-	printf("%lu cycles, %lu left out\n", n, missed);
+	printf("%lu cycles, %lu skipped\n", n, missed);
 	for (i = 0; i < AXES; i++)
 		printf("axis %d: from %d to %d\n", i, axes[i].low, axes[i].high);
 	if (follow && n)

@@ -197,7 +197,7 @@ static void run(unsigned long cycles)
 		wait_period(&next);
 		cycle(1);
 	}
-	printf("%lu cycles, %lu left out\n", n, missed);
+	printf("%lu cycles, %lu skipped\n", n, missed);
 }
 
 int main(int argc, char **argv)

@@ -43,7 +43,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	kill -INT "$app"
 	wait "$app"
 	[ "$(outputs)" = 0x00 ]
-	grep -E '^[0-9]+ cycles, 0 left out$' "$out"
+	grep -E '^[0-9]+ cycles, 0 skipped$' "$out"
 	app=
 }
 

@@ -195,7 +195,7 @@ void report_text(const struct demo *d)
 	       d->cycles, d->period_us, d->fifo ? "SCHED_FIFO" :
 	       "normal priority (SCHED_FIFO not permitted)",
 	       d->locked ? "locked" : "not locked");
-	printf("Working counter errors: %u, lost frames: %llu, periods left out: %u, failed calls: %u\n",
+	printf("Working counter errors: %u, lost frames: %llu, skipped cycles: %u, failed calls: %u\n",
 	       d->wc_errors, d->lost, d->overruns, d->call_errors);
 	cycle_time(d);
 	lateness(d);
