@@ -105,7 +105,7 @@
 #define EC_HAVE_REASON
 /* ecrt_slave_config_dc_state() */
 #define EC_HAVE_DC_STATE
-/* ecrt_slave_config_overlapping_pdos(), of the field's community patches */
+/* ecrt_slave_config_overlapping_pdos(), of the patches to the IgH EtherCAT Master */
 #define EC_HAVE_OVERLAPPING_PDOS
 /* ecrt_master_set_late_cycles(): acyclic frames beside a full wire */
 #define EC_HAVE_LATE_CYCLES
@@ -122,9 +122,9 @@
 #endif
 #endif
 
-/* ends a list of sync managers */
+/* ends a list of SyncManagers */
 #define EC_END			(~0U)
-/* sync managers of one slave */
+/* SyncManagers of one slave */
 #define EC_MAX_SYNC_MANAGERS	16
 /* bytes of a name, its terminator included */
 #define EC_MAX_STRING_LENGTH	64
@@ -160,7 +160,7 @@ typedef struct ec_voe_handler ec_voe_handler_t;
 struct ec_reg_request;
 typedef struct ec_reg_request ec_reg_request_t;
 
-/* what the whole bus looks like */
+/* state of the whole bus */
 typedef struct {
 	unsigned int slaves_responding;	/* to broadcasts, on all links */
 	unsigned int al_states : 4;	/* OR of ec_al_state_t; 8: all in OP */
@@ -174,7 +174,7 @@ typedef struct {
 	unsigned int link_up : 1;
 } ec_master_link_state_t;
 
-/* what became of one slave configuration */
+/* state of one slave configuration */
 typedef struct {
 	unsigned int online : 1;	/* a matching slave is attached */
 	unsigned int operational : 1;	/* in OP with this configuration */
@@ -233,9 +233,9 @@ typedef struct {
 
 /* working counter against what was expected of it */
 typedef enum {
-	EC_WC_ZERO = 0,			/* nobody answered */
-	EC_WC_INCOMPLETE,		/* some did */
-	EC_WC_COMPLETE			/* all did */
+	EC_WC_ZERO = 0,			/* no slave took part */
+	EC_WC_INCOMPLETE,		/* some slaves did */
+	EC_WC_COMPLETE			/* all slaves did */
 } ec_wc_state_t;
 
 typedef struct {
@@ -252,7 +252,7 @@ typedef enum {
 	EC_DIR_COUNT
 } ec_direction_t;
 
-/* watchdog trigger, bit 6 of a sync manager's control byte */
+/* watchdog trigger, bit 6 of a SyncManager's control byte */
 typedef enum {
 	EC_WD_DEFAULT,			/* as the slave describes it */
 	EC_WD_ENABLE,
@@ -313,7 +313,7 @@ extern "C" {
 #endif
 
 /**
- * ecrt_version_magic() - version of the interface that runs
+ * ecrt_version_magic() - get the version of the interface that runs
  *
  * To compare with %ECRT_VERSION_MAGIC, the version compiled against.
  *
@@ -343,22 +343,22 @@ EC_PUBLIC_API ec_master_t *ecrt_request_master(unsigned int master_index);
  * @master_index: which one, from 0: /dev/EtherCAT<index>
  *
  * Any number of processes may hold an opened master. It serves the calls
- * that ask about the bus, SDO access and ecrt_master_reset(). Userspace only.
+ * that read the state of the bus, SDO access and ecrt_master_reset(). Userspace only.
  *
  * Context: Process. May sleep.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
- * (%-EACCES), a module that speaks another language (%-EPROTO).
+ * (%-EACCES), module interface version not supported (%-EPROTO).
  */
 EC_PUBLIC_API ec_master_t *ecrt_open_master(unsigned int master_index);
 #endif
 
 /**
- * ecrt_release_master() - give a master back
+ * ecrt_release_master() - release a master
  * @master: from ecrt_request_master() or ecrt_open_master(), or NULL
  *
  * Deactivates it if it is active; slaves go back to PREOP. But a cycle of the
- * kernel with %EC_CYCLE_DETACH goes on. All handles and pointers that came from
- * @master are dead afterwards.
+ * kernel with %EC_CYCLE_DETACH continues. All handles and pointers that came from
+ * @master become invalid.
  *
  * Context: Process. May sleep.
  */
@@ -370,9 +370,9 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
  * @master: from ecrt_open_master()
  *
  * Waits until a scan has ended, freezes the list of slaves until activation,
- * takes all slaves to PREOP and waits for that, for 10 s at most; only one that has
- * failed on the way to PREOP already is left alone. While a detached cycle of the kernel runs
- * (%EC_CYCLE_DETACH), it touches no slave. Userspace only.
+ * takes all slaves to PREOP and waits for that, for 10 s at most; only a slave that has
+ * failed on the way to PREOP already is left as it is. While a detached session exists
+ * (%EC_CYCLE_DETACH), the call changes no slave. Userspace only.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EBUSY taken, %-ENODEV the master has no device yet, %-EPERM
@@ -398,17 +398,17 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
  * ecrt_master_slave_config() - create or find the configuration of a slave
  * @master: a reserved master
  * @alias: 0, or station alias (register 0x0012) from which to count
- * @position: with @alias 0 the ring position, else slaves behind the alias
+ * @position: with @alias 0 the ring position, else slaves downstream of the alias
  * @vendor_id: expected in the slave's EEPROM
  * @product_code: expected in the slave's EEPROM
  *
  * The slave need not be there: it is attached, configured and taken to OP
  * whenever it appears. One with another identity is never attached. The
  * PDO assignment and mapping of a slave that is there are taken over as
- * defaults. From activation on a slave that is there keeps its configuration,
- * also when one in front of it is pulled and its position is another. After a
- * loss of the whole link or of power nobody can tell slaves of a kind apart:
- * they are found by position again. An alias is safe there, too.
+ * defaults. From activation on a connected slave keeps its configuration, also
+ * when a slave upstream is disconnected and the position changes. After a loss of
+ * the whole link or of power slaves of equal type cannot be distinguished: they are
+ * found by position again. An alias is safe in that case.
  *
  * Context: Process. May sleep.
  * Return: the configuration, the same one for the same @alias and @position;
@@ -420,7 +420,7 @@ EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 		uint32_t product_code);
 
 /**
- * ecrt_master() - what the master knows about itself
+ * ecrt_master() - get information about a master
  * @master: an opened master
  * @master_info: out
  *
@@ -434,7 +434,7 @@ EC_PUBLIC_API int ecrt_master(ec_master_t *master,
 		ec_master_info_t *master_info);
 
 /**
- * ecrt_master_scan_progress() - how far a scan has come
+ * ecrt_master_scan_progress() - get the progress of a scan
  * @master: an opened master
  * @progress: out: slaves that answer and how many of them have been read; without
  *	a scan all that are known, twice
@@ -447,7 +447,7 @@ EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
 		ec_master_scan_progress_t *progress);
 
 /**
- * ecrt_master_get_slave() - what the master knows about a slave
+ * ecrt_master_get_slave() - get information about a slave
  * @master: an opened master
  * @slave_position: in the ring, counted on over all links
  * @slave_info: out; the name is always terminated
@@ -463,7 +463,7 @@ EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,
 
 #ifndef __KERNEL__
 /**
- * ecrt_master_get_sync_manager() - a sync manager as its slave describes it
+ * ecrt_master_get_sync_manager() - a SyncManager as its slave describes it
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
@@ -473,15 +473,15 @@ EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,
  * 0x1c10 ff.), not what the application has configured. Userspace only.
  *
  * Context: Process. May sleep.
- * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave or sync
- * manager, or an argument is NULL.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave or
+ * SyncManager, or an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_get_sync_manager(ec_master_t *master,
 		uint16_t slave_position, uint8_t sync_index,
 		ec_sync_info_t *sync);
 
 /**
- * ecrt_master_get_pdo() - a PDO assigned to a sync manager by default
+ * ecrt_master_get_pdo() - a PDO assigned to a SyncManager by default
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
@@ -491,8 +491,8 @@ EC_PUBLIC_API int ecrt_master_get_sync_manager(ec_master_t *master,
  * Userspace only.
  *
  * Context: Process. May sleep.
- * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave, sync
- * manager or PDO, or an argument is NULL.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave,
+ * SyncManager or PDO, or an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_get_pdo(ec_master_t *master,
 		uint16_t slave_position, uint8_t sync_index, uint16_t pos,
@@ -503,15 +503,15 @@ EC_PUBLIC_API int ecrt_master_get_pdo(ec_master_t *master,
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
- * @pdo_pos: position of the PDO in the sync manager
+ * @pdo_pos: position of the PDO in the SyncManager
  * @entry_pos: from 0, in the order of the mapping
  * @entry: out; index 0 is a gap
  *
  * Userspace only.
  *
  * Context: Process. May sleep.
- * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave, sync
- * manager, PDO or entry, or an argument is NULL.
+ * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave,
+ * SyncManager, PDO or entry, or an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
 		uint16_t slave_position, uint8_t sync_index, uint16_t pdo_pos,
@@ -521,7 +521,7 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
 /**
  * ecrt_master_sdo_download() - write an object of a slave
  * @master: a master opened for writing; need not be reserved
- * @slave_position: in the ring; aliases are not looked at
+ * @slave_position: in the ring; aliases have no effect
  * @index: of the object
  * @subindex: of the object
  * @data: little-endian
@@ -571,7 +571,7 @@ EC_PUBLIC_API int ecrt_master_sdo_download_complete(ec_master_t *master,
  * @index: of the object
  * @subindex: of the object
  * @target: where to put it
- * @target_size: room, bytes
+ * @target_size: buffer size, bytes
  * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
  *	the kernel
  * @abort_code: as in ecrt_master_sdo_download()
@@ -588,7 +588,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
 /**
  * ecrt_master_write_idn() - write an IDN of a servo drive
  * @master: a master opened for writing; need not be reserved
- * @slave_position: in the ring; aliases are not looked at
+ * @slave_position: in the ring; aliases have no effect
  * @drive_no: drive of the slave, 0 to 7
  * @idn: bit 15: P, else S; bits 12-14 parameter set; bits 0-11 number
  * @data: little-endian; a list begins with its length and largest length, 16
@@ -616,7 +616,7 @@ EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
  * @target: where to put it
- * @target_size: room, bytes
+ * @target_size: buffer size, bytes
  * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
  *	the kernel
  * @error_code: as in ecrt_master_write_idn()
@@ -631,7 +631,7 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t *error_code);
 
 /**
- * ecrt_master_activate() - end configuration, begin the cycle
+ * ecrt_master_activate() - lay out the process image and start cyclic operation
  * @master: a reserved master
  *
  * Lays out the frames of the cycle and the process image, which begins as
@@ -646,21 +646,21 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * Return: 0, also when the master is active already: that is reported on stderr, in the
  * kernel in the log; %-EBUSY process data were changed after they were registered (see
  * ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
- * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may make no
- * cycle late (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
+ * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may delay no
+ * cycle (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
  * runs the cycle; %-ENODEV the CPU chosen for the cycle is offline; %-ETIMEDOUT the
- * cycle to be taken over does not answer; %-EPROTO in userspace: what is mapped is not
- * what the library knows; %-EINVAL @master is NULL.
+ * cycle to be taken over does not answer; %-EPROTO in userspace: layout of the mapped
+ * memory not supported by the library; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 
 /**
- * ecrt_master_deactivate() - leave the cycle
+ * ecrt_master_deactivate() - stop cyclic operation and free the configuration
  * @master: an active master
  *
  * Frees all domains and slave configurations: every handle and pointer
- * obtained since the reservation is dead, except @master, which stays
+ * obtained since the reservation becomes invalid, except @master, which stays
  * reserved and may be configured anew. Slaves go to PREOP.
  *
  * Context: Process. May sleep.
@@ -669,12 +669,12 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 EC_PUBLIC_API int ecrt_master_deactivate(ec_master_t *master);
 
 /**
- * ecrt_master_set_send_interval() - tell how often the cycle will run
+ * ecrt_master_set_send_interval() - configure the cycle time
  * @master: a reserved master, not active
  * @send_interval: microseconds between two calls of ecrt_master_send()
  *
- * Optional; without it, or with more than 1 s, the interval is measured; what is
- * measured counts as 1 s at most. Bounds what is sent besides process data.
+ * Optional; without it, or with more than 1 s, the interval is measured and limited to
+ * 1 s. It limits the acyclic frames that are sent beside the process data.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL 0; %-EBUSY active; %-EPERM not reserved.
@@ -683,34 +683,33 @@ EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
 		size_t send_interval);
 
 /**
- * ecrt_master_send() - send what the cycle has queued
+ * ecrt_master_send() - send the queued domains and acyclic frames
  * @master: an active master
  *
- * Once per cycle, last. Sends the domains queued since the last call, and
- * what the master itself has to send if there is room. Reads the outputs of
- * the process image. One system call in userspace.
+ * Call once per cycle, as the last call. Sends queued domains, then acyclic frames
+ * that fit. Reads the outputs of the process image. One system call in userspace.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; %-EINVAL not active; %-ENODEV the device is gone; %-ECANCELED the
+ * Return: 0; %-EINVAL not active; %-ENODEV the device is detached; %-ECANCELED the
  * kernel ran the cycle and has stopped it (%EC_CYCLE_STOP). In the kernel
- * also %-EAGAIN: after a stall the links are being given back, try again in the
- * next cycle; %-EBUSY: another call is using them; %-EWOULDBLOCK: the device needs
+ * also %-EAGAIN: after a cycle timeout bus access is changing to cyclic again, try in
+ * the next cycle; %-EBUSY: another call is using the links; %-EWOULDBLOCK: the device needs
  * a thread and this is none.
  */
 EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
 
 #ifdef __KERNEL__
 /**
- * ecrt_master_callbacks() - let others use the wire between two cycles
+ * ecrt_master_callbacks() - set the hooks that exchange acyclic frames between two cycles
  * @master: a requested master, not active
  * @send_cb: called when there is something to send; to take the application's
  *	lock, if it can be had, and call ecrt_master_send_ext()
  * @receive_cb: the same with ecrt_master_receive()
  * @cb_data: for both
  *
- * Without, what the master itself and tools have to send goes with the cycle, and
- * each answer takes a cycle. With both, a thread of the master asks for it in
- * between; that pays when the cycle is slow. A hook may also just return. It is
+ * Without hooks acyclic frames go out with the cycle, and each exchange takes a
+ * cycle. With both hooks a thread of the master calls them between two cycles, which
+ * is faster beside a slow cycle. A hook may return without action. It is
  * called by one thread, may sleep, and is not called any more when
  * ecrt_master_deactivate() or ecrt_release_master() returns; the lock it takes
  * must not be held while these are called. Every ecrt_request_master() removes
@@ -723,24 +722,24 @@ EC_PUBLIC_API void ecrt_master_callbacks(ec_master_t *master,
 		void *cb_data);
 
 /**
- * ecrt_master_send_ext() - send what others have left, between two cycles
+ * ecrt_master_send_ext() - send acyclic frames between two cycles
  * @master: an active master
  *
  * For the send hook of ecrt_master_callbacks(). Sends no process data, and
  * nothing at all when the next cycle is near. Kernel only.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; %-EAGAIN another call is using the links, or they are on their way
- * back after a stall; else as ecrt_master_send().
+ * Return: 0; %-EAGAIN another call is using the links, or bus access is changing to
+ * cyclic again after a cycle timeout; else as ecrt_master_send().
  */
 EC_PUBLIC_API int ecrt_master_send_ext(ec_master_t *master);
 #endif
 
 /**
- * ecrt_master_receive() - take what has come back
+ * ecrt_master_receive() - receive frames and update the inputs
  * @master: an active master
  *
- * Once per cycle, first. Polls the network devices and copies inputs to the
+ * Call once per cycle, as the first call. Polls the network devices and copies inputs to the
  * process image; input bytes change nowhere else. Never waits. Inputs of a
  * frame that is lost keep their values. One system call in userspace.
  *
@@ -780,12 +779,12 @@ EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
 		unsigned int dev_idx, ec_master_link_state_t *state);
 
 /**
- * ecrt_master_application_time() - give the application's time
+ * ecrt_master_application_time() - set the application time
  * @master: a reserved master
  * @app_time: ns, by convention since 2000-01-01; may wrap and jump
  *
- * Once per cycle, always at the same place. When the clocks are set, which begins
- * with the first cycle, they go on without the jumps it makes.
+ * Call once per cycle, always at the same place. Once the clocks are synchronized, which
+ * begins with the first cycle, they do not follow jumps of this time.
  *
  * Context: The master's single cyclic caller. RT-safe. In userspace before
  * activation: Process. May sleep.
@@ -795,13 +794,13 @@ EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
 		uint64_t app_time);
 
 /**
- * ecrt_master_select_reference_clock() - choose the reference clock
+ * ecrt_master_select_reference_clock() - select the reference clock
  * @master: a reserved master
- * @sc: slave whose clock is the reference; NULL: the first one that can be
+ * @sc: slave whose clock is the reference; NULL: the first suitable slave
  *
- * Without its clock, or absent, there is no reference clock at all. When it is
- * lost later, another one stands in for it until it is back. A reference clock
- * that is not configured goes to OP with the others, unless it has outputs.
+ * If this slave has no clock or is absent at activation, there is no reference clock.
+ * When it is lost later, another slave substitutes until it returns. A reference clock
+ * that is not configured goes to OP with the other slaves, unless it has outputs.
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @master is NULL.
@@ -810,12 +809,12 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
 		ec_slave_config_t *sc);
 
 /**
- * ecrt_master_sync_reference_clock() - the reference clock follows us
+ * ecrt_master_sync_reference_clock() - queue a write of the application time to the reference clock
  * @master: an active master
  *
- * With the next send the low 32 bits of the last application time, less what it
- * has jumped since the clocks were set, go to the reference clock (register
- * 0x0910). A time that is off, or may have jumped, is held back: none goes then.
+ * The next send writes the low 32 bits of the last application time to the reference
+ * clock (register 0x0910), less the jumps of that time since the clocks were
+ * synchronized. While a time is inconsistent with the earlier ones, none is written.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
@@ -823,9 +822,9 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
 
 /**
- * ecrt_master_sync_reference_clock_to() - the same with another time
+ * ecrt_master_sync_reference_clock_to() - queue a write of @sync_time to the reference clock
  * @master: an active master
- * @sync_time: ns; it is this one that must not jump then
+ * @sync_time: ns; must not jump
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
@@ -834,12 +833,12 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
 		uint64_t sync_time);
 
 /**
- * ecrt_master_sync_slave_clocks() - the slaves follow the reference clock
+ * ecrt_master_sync_slave_clocks() - queue the drift compensation datagram
  * @master: an active master
  *
  * With the next send the time of the reference clock goes to all slaves
- * behind it (FRMW of register 0x0910). Once per cycle; until the master has
- * set the clocks after activation nothing is sent.
+ * downstream (FRMW of register 0x0910). Call once per cycle; until the master has
+ * synchronized the clocks after activation nothing is sent.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
@@ -847,7 +846,7 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
 
 /**
- * ecrt_master_reference_clock_time() - what the reference clock said
+ * ecrt_master_reference_clock_time() - get the system time of the reference clock
  * @master: an active master
  * @time: out: low 32 bits of its system time, ns
  *
@@ -862,7 +861,7 @@ EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
 		uint32_t *time);
 
 /**
- * ecrt_master_sync_monitor_queue() - ask how far the clocks are apart
+ * ecrt_master_sync_monitor_queue() - queue a read of the DC differences
  * @master: an active master
  *
  * With the next send register 0x092C of all slaves is read.
@@ -873,7 +872,7 @@ EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
 
 /**
- * ecrt_master_sync_monitor_process() - how far the clocks are apart
+ * ecrt_master_sync_monitor_process() - get the result of the last read of the DC differences
  * @master: an active master
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -885,10 +884,10 @@ EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
 
 #ifdef EC_HAVE_KERNEL_CYCLE
 
-/* what the cycle does when there are no outputs for @stall_cycles */
+/* reaction to an output stall: no new outputs for @stall_cycles */
 typedef enum {
-	EC_CYCLE_HOLD = 0,	/* sends the last ones */
-	EC_CYCLE_ZERO = 1,	/* sends zeros until there are new ones */
+	EC_CYCLE_HOLD = 0,	/* sends the last outputs */
+	EC_CYCLE_ZERO = 1,	/* sends zeros until there are new outputs */
 	/*
 	 * stops; watchdogs of the slaves end OP. ecrt_master_receive() and
 	 * ecrt_master_send() return -ECANCELED, domains have working counter 0
@@ -899,23 +898,23 @@ typedef enum {
 typedef enum {
 	EC_CYCLE_NONE = 0,	/* the application runs the cycle */
 	EC_CYCLE_RUNNING = 1,
-	EC_CYCLE_STALLED = 2,	/* EC_CYCLE_HOLD or EC_CYCLE_ZERO at work */
+	EC_CYCLE_STALLED = 2,	/* output stall: EC_CYCLE_HOLD or EC_CYCLE_ZERO applies */
 	EC_CYCLE_STOPPED = 3,	/* by EC_CYCLE_STOP, until deactivation */
 	EC_CYCLE_WAITING = 4,	/* EC_CYCLE_WAIT_OUTPUTS: nothing sent yet */
 } ec_cycle_run_t;
 
 /* ec_cycle_config_t.flags */
-#define EC_CYCLE_DETACH		1U	/* goes on when the application dies */
+#define EC_CYCLE_DETACH		1U	/* continues when the application exits */
 #define EC_CYCLE_WAIT_OUTPUTS	2U	/* the first frame waits for outputs */
 #define EC_CYCLE_BIND_CPU	4U	/* the thread runs on @cpu only */
 
 /* ec_cycle_config_t.dc: clock datagrams of every cycle */
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
-#define EC_CYCLE_SYNC_SLAVES	4U	/* from there to all slaves */
-#define EC_CYCLE_SYNC_MONITOR	8U	/* read how far they are apart */
-#define EC_CYCLE_REFERENCE_TIME	32U	/* read the whole time of the reference */
+#define EC_CYCLE_SYNC_SLAVES	4U	/* drift compensation of all slaves */
+#define EC_CYCLE_SYNC_MONITOR	8U	/* read the DC differences */
+#define EC_CYCLE_REFERENCE_TIME	32U	/* read all 64 bits of the reference clock */
 /*
- * The cycle follows the reference clock: period and phase of its timer are
+ * The cycle is synchronized to the reference clock: period and phase of its timer are
  * controlled, by at most 1/100 of the period from one cycle to the next, so that
  * its frame passes that clock @phase_ns after a SYNC0 without shift. With EC_CYCLE_SYNC_SLAVES,
  * without EC_CYCLE_SYNC_REFERENCE.
@@ -936,12 +935,12 @@ typedef enum {
  *	with limit 0 the thread runs SCHED_OTHER. The kernel log and 'ethercat
  *	cycle' report that. After a takeover (%EC_CYCLE_DETACH) the right of the
  *	new caller counts.
- * @stall: what to do without new outputs
- * @stall_cycles: after that many cycles in a row without; 0: never. The first
- *	outputs may take their time.
+ * @stall: reaction to an output stall
+ * @stall_cycles: cycles in a row without new outputs that are an output stall; 0: none
+ *	is. The count begins with the first outputs.
  * @dc: EC_CYCLE_SYNC_* and EC_CYCLE_FOLLOW_REFERENCE
- * @flags: %EC_CYCLE_DETACH: when the application dies, or releases the master
- *	without ecrt_master_deactivate(), the cycle goes on: @stall says with which
+ * @flags: %EC_CYCLE_DETACH: when the application exits, or releases the master
+ *	without ecrt_master_deactivate(), the cycle continues: @stall determines the
  *	outputs (%EC_CYCLE_STOP is refused), slaves stay in OP. An application that
  *	requests the master, configures exactly the same, in the same order, and
  *	activates it, takes over the running cycle with its outputs and inputs as they
@@ -964,40 +963,38 @@ typedef struct {
 #define EC_CYCLE_BINS		32
 
 typedef enum {
-	EC_CYCLE_UNLOCKED = 0,	/* not wanted, or no reference clock yet */
+	EC_CYCLE_UNLOCKED = 0,	/* not configured, or no reference clock yet */
 	EC_CYCLE_SEEKING = 1,
-	EC_CYCLE_LOCKED = 2,	/* period and phase are the reference clock's */
-	EC_CYCLE_HOLDING = 3,	/* no answer from it: goes on at the last rate */
+	EC_CYCLE_LOCKED = 2,	/* phase-locked to the reference clock */
+	EC_CYCLE_HOLDING = 3,	/* holdover: no answer from it, last rate kept */
 } ec_cycle_lock_t;
 
 /**
- * struct ec_cycle_state_t - how the cycle has done since activation, or since
+ * struct ec_cycle_state_t - cycle statistics since activation, or since
  *	'ethercat cycle --reset'
- * @run: what it does now
+ * @run: present state
  * @cycles: cycles of the kernel so far, since activation
- * @overruns: cycles left out, because a period or more had passed
+ * @overruns: skipped cycles: a period or more passed without a send
  * @missed: cycles of the kernel without new outputs, after the first ones
- * @late_min: least distance of a send from its schedule, ns
- * @late_mean: mean of it, ns
- * @late_max: most of it, ns
- * @late_p999: 99.9 % of the sends were no further from theirs, ns; up to 1/8
- *	more than that
- * @work_last: time the last cycle of the kernel took, ns
- * @work_mean: mean of it, ns
- * @work_max: most of it, ns
- * @late: sends by that distance: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last
- *	one and above
+ * @late_min: least send deviation, ns
+ * @late_mean: mean send deviation, ns
+ * @late_max: largest send deviation, ns
+ * @late_p999: 99.9 % of the send deviations were below, ns; up to 1/8 too large
+ * @work_last: execution time of the last cycle of the kernel, ns
+ * @work_mean: mean execution time, ns
+ * @work_max: largest execution time, ns
+ * @late: sends by send deviation: [0] 0 ns, [n] 2^(n-1) to 2^n - 1 ns, the last
+ *	element includes all larger values
  * @lock: to the reference clock, with EC_CYCLE_FOLLOW_REFERENCE
- * @lock_losses: how often it was lost
- * @phase_error: how late a cycle is by the reference clock, ns
- * @rate_ppb: how much faster than CLOCK_MONOTONIC that runs, 1e-9
- * @takeovers: applications that have taken over the cycle; 0: it is that of the
- *	one that activated it
+ * @lock_losses: number of losses of the lock
+ * @phase_error: phase of the cycle by the reference clock, ns; positive: late
+ * @rate_ppb: rate of the reference clock against CLOCK_MONOTONIC, 1e-9; positive: faster
+ * @takeovers: number of applications that have taken over the cycle
  *
  * The schedule of a cycle the kernel runs is its timer. When the application
- * runs the cycle, it is a grid of the interval told by
+ * runs the cycle, it is a grid of the interval configured by
  * ecrt_master_set_send_interval(), else of the measured one, that slowly follows
- * the sends; they may be early or late.
+ * the sends; a send may be early or late.
  */
 typedef struct {
 	ec_cycle_run_t run;
@@ -1028,7 +1025,7 @@ typedef struct {
  * thread of the kernel receives and sends all domains. Then ecrt_master_receive()
  * takes the newest inputs of all domains, and ecrt_master_send() gives the
  * outputs of the queued ones to the next cycle; both work on mapped memory,
- * without a system call. An image is always of one cycle, whole. The thread tells
+ * without a system call. An image is always of one cycle, whole. The thread sets
  * the application time and queues clock datagrams itself:
  * ecrt_master_application_time() and the calls that queue them have no effect.
  *
@@ -1043,7 +1040,7 @@ typedef struct {
  *	ecrt_master_send(master);
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL a value that cannot be; %-EBUSY active; %-EPERM not
+ * Return: 0; %-EINVAL an invalid value; %-EBUSY active; %-EPERM not
  * reserved.
  */
 EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
@@ -1068,12 +1065,12 @@ EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
 		uint32_t timeout_us);
 
 /**
- * ecrt_master_cycle_count() - number of cycles the kernel has run
+ * ecrt_master_cycle_count() - get the number of cycles the kernel has run
  * @master: an active master whose cycle the kernel runs
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When it has grown, the
  * inputs of that cycle are there for ecrt_master_receive(). After %EC_CYCLE_STOP
- * it does not grow any more, which ecrt_master_receive() tells.
+ * it does not grow any more, and ecrt_master_receive() returns %-ECANCELED.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: cycles since activation; 0 when not active.
@@ -1081,24 +1078,24 @@ EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
 EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
 
 /**
- * ecrt_master_cycle_inputs() - which cycle the inputs are of
+ * ecrt_master_cycle_inputs() - get number and time of the cycle that received the inputs
  * @master: an active master whose cycle the kernel runs
  * @cycle: out: its number, as ecrt_master_cycle_count() counts; may be NULL
  * @time_ns: out: its schedule, ns of CLOCK_MONOTONIC; may be NULL
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Of what the last ecrt_master_receive() that found
- * new inputs has taken. The frames that brought them were sent one cycle before.
+ * Extension (%EC_HAVE_KERNEL_CYCLE). For the inputs that the last successful
+ * ecrt_master_receive() took. Their frames were sent one cycle before.
  * No system call.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; %-ENODATA none were taken yet; %-EINVAL not active, or the application
+ * Return: 0; %-ENODATA no inputs were taken yet; %-EINVAL not active, or the application
  * runs the cycle.
  */
 EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
 		uint64_t *cycle, uint64_t *time_ns);
 
 /**
- * ecrt_master_cycle_fd() - file to wait on with poll() or epoll
+ * ecrt_master_cycle_fd() - get a file descriptor for poll() or epoll
  * @master: an active master whose cycle the kernel runs
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). POLLIN: there are inputs that
@@ -1113,7 +1110,7 @@ EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
 
 /**
- * ecrt_master_cycle_state() - how the cycle does, the kernel's or one's own
+ * ecrt_master_cycle_state() - get cycle statistics
  * @master: an active master
  * @state: filled
  *
@@ -1126,25 +1123,25 @@ EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
 		ec_cycle_state_t *state);
 
 /**
- * ecrt_domain_set_division() - a domain that is not exchanged in each cycle
+ * ecrt_domain_set_division() - exchange a domain in every n-th cycle only
  * @domain: domain of a master that is not active
  * @division: cycles from one exchange to the next, 1..1000
  * @phase: cycle of the first one, 0..@division - 1; cycles count from activation,
- *	those left out are counted, too
+ *	skipped cycles included
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE), for a cycle the kernel runs. In the cycles
  * between, state and inputs of the domain are those of the last exchange. When
- * a cycle is left out in which it was its turn, it goes with the next one. The
+ * a cycle is skipped in which the domain was due, the next cycle sends it. The
  * watchdogs of its slaves must be longer than @division cycles.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL a value that cannot be; %-EBUSY active.
+ * Return: 0; %-EINVAL an invalid value; %-EBUSY active.
  */
 EC_PUBLIC_API int ecrt_domain_set_division(ec_domain_t *domain,
 		unsigned int division, unsigned int phase);
 
 /**
- * ecrt_domain_copy() - input of one slave to output of another
+ * ecrt_domain_copy() - copy process data from an input to an output in each cycle
  * @to: domain with the output
  * @to_offset: byte in @to, as ecrt_slave_config_reg_pdo_entry() returned it
  * @to_bit: bit in that byte
@@ -1155,8 +1152,8 @@ EC_PUBLIC_API int ecrt_domain_set_division(ec_domain_t *domain,
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Configured once, before activation; done by
  * the kernel between receive and send of each cycle: what came in with a
- * cycle goes out with its next frame. Also when the application does not work any
- * more. What the application writes to these outputs has no effect. While the
+ * cycle goes out with its next frame. Copies continue after the application has
+ * exited. What the application writes to these outputs has no effect. While the
  * working counter of @from is not complete, the last value stays; before it was
  * complete for the first time, 0. When the application runs the cycle, it finds
  * the value in its process data after ecrt_master_send().
@@ -1172,16 +1169,16 @@ EC_PUBLIC_API int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset,
 		unsigned int bits);
 
 /**
- * ecrt_master_end_detached() - end a cycle that has outlived its application
+ * ecrt_master_end_detached() - end a detached session
  * @master: a master opened for writing; need not be reserved
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Its slaves go to PREOP. For an application that
- * is not of the same configuration, so that ecrt_master_activate() was refused with
+ * has another configuration, so that ecrt_master_activate() was refused with
  * %-EEXIST: it may activate after this call. 'ethercat release' does the same.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT nothing is active; %-EBUSY the application that activated
- * the master is still there; %-EINVAL @master is NULL.
+ * the master still runs; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
 
@@ -1204,7 +1201,7 @@ EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
 
 #ifdef EC_HAVE_DOMAIN_MEMORY
 /**
- * ecrt_master_setup_domain_memory() - process data before activation
+ * ecrt_master_setup_domain_memory() - make the process data available before activation
  * @master: a reserved master, not active, all entries registered
  *
  * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. It
@@ -1221,12 +1218,12 @@ EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
 
 #ifdef EC_HAVE_DEACTIVATE_SLAVES
 /**
- * ecrt_master_deactivate_slaves() - take the slaves to PREOP, cycle on
+ * ecrt_master_deactivate_slaves() - take the slaves to PREOP while the cycle runs
  * @master: an active master
  *
  * Extension (%EC_HAVE_DEACTIVATE_SLAVES). For an end without faults: the configured
  * slaves leave OP while process data and SYNC signals still run, so that no
- * watchdog expires and no synchronisation is lost; in PREOP their SYNC signals are
+ * watchdog expires and no synchronization is lost; in PREOP their SYNC signals are
  * switched off (register 0x0980). Go on with the cycle until
  * ecrt_slave_config_state() or ecrt_master_state() shows PREOP, then call
  * ecrt_master_deactivate(). Nothing brings the slaves up again before that. Without
@@ -1241,7 +1238,7 @@ EC_PUBLIC_API void ecrt_master_deactivate_slaves(ec_master_t *master);
 
 #ifdef EC_HAVE_SDO_UPLOAD_COMPLETE
 /**
- * ecrt_master_sdo_upload_complete() - read a whole object (complete access)
+ * ecrt_master_sdo_upload_complete() - read a whole object (Complete Access)
  * @master: a master opened for writing
  * @slave_position: in the ring
  * @index: of the object
@@ -1262,12 +1259,12 @@ EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
 
 #ifdef EC_HAVE_REF_CLOCK_TIME_64
 /**
- * ecrt_master_64bit_reference_clock_time_queue() - ask for the whole time
+ * ecrt_master_64bit_reference_clock_time_queue() - queue a read of the system time, 64 bits
  * @master: an active master
  *
  * Extension (%EC_HAVE_REF_CLOCK_TIME_64). The next send reads the system time of the
  * reference clock (registers 0x0910 to 0x0917). No system call of its own. Nothing
- * is sent without reference clock, or until the master has set the clocks after
+ * is sent without reference clock, or until the master has synchronized the clocks after
  * activation. When the kernel runs the cycle, %EC_CYCLE_REFERENCE_TIME does the same
  * in every cycle.
  *
@@ -1277,14 +1274,14 @@ EC_PUBLIC_API void ecrt_master_64bit_reference_clock_time_queue(
 		ec_master_t *master);
 
 /**
- * ecrt_master_64bit_reference_clock_time() - what the reference clock said
+ * ecrt_master_64bit_reference_clock_time() - get the system time of the reference clock, 64 bits
  * @master: an active master
  * @time: out: its system time, ns; of a clock of 32 bits the upper half is that
  *        of the application time
  *
- * Extension (%EC_HAVE_REF_CLOCK_TIME_64). As of the last frame that
- * ecrt_master_64bit_reference_clock_time_queue() has asked for, from the
- * ecrt_master_receive() on that took it. Reads mapped memory, prints nothing.
+ * Extension (%EC_HAVE_REF_CLOCK_TIME_64). As of the last read that
+ * ecrt_master_64bit_reference_clock_time_queue() queued and ecrt_master_receive()
+ * received. Reads mapped memory, prints nothing.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
@@ -1296,7 +1293,7 @@ EC_PUBLIC_API int ecrt_master_64bit_reference_clock_time(ec_master_t *master,
 
 #ifdef EC_HAVE_REASON
 /**
- * ecrt_master_reason() - why the last call failed
+ * ecrt_master_reason() - get the reason why the last call failed
  * @master: an opened master
  * @buf: out: one line of text, with terminator
  * @size: of @buf; 256 bytes are always enough
@@ -1313,14 +1310,14 @@ EC_PUBLIC_API int ecrt_master_reason(const ec_master_t *master, char *buf,
 		size_t size);
 
 /**
- * ecrt_slave_config_reason() - why a slave is not in OP
+ * ecrt_slave_config_reason() - get the reason why a slave is not in OP
  * @sc: slave configuration
  * @buf: out: one line of text, with terminator
  * @size: of @buf; 256 bytes are always enough
  *
- * Extension (%EC_HAVE_REASON). What stands in the way: nobody at that place, another
- * device, a refused SDO or state with the slave's code, or what is being waited
- * for. Empty when the slave is in OP. No bus traffic.
+ * Extension (%EC_HAVE_REASON). The cause, for example: no slave at that position,
+ * another device, a refused SDO or state with the slave's code, or the event the
+ * slave waits for. Empty when the slave is in OP. No bus traffic.
  *
  * Context: Process. May sleep.
  * Return: length of the text, also when @buf is too small for it; %-EINVAL @sc
@@ -1333,14 +1330,14 @@ EC_PUBLIC_API int ecrt_slave_config_reason(const ec_slave_config_t *sc,
 #ifdef EC_HAVE_DC_STATE
 /**
  * struct ec_slave_config_dc_state_t - distributed clock of a slave
- * @bits: of its clock: 64 or 32; 0: it has none, all else is 0
+ * @bits: of its clock: 64 or 32; 0: no clock, all other fields are 0
  * @reference: it is the reference clock
- * @set: it was set since activation
- * @in_window: it was within 1 us of the reference when the master last looked, and
- *	the master is certain of @delay_ns (else the log says what is odd)
- * @delay_ns: way of a frame from the reference clock (register 0x0928)
+ * @set: synchronized since activation
+ * @in_window: within 1 us of the reference at the last read, and
+ *	@delay_ns is reliable (otherwise the kernel log names the inconsistency)
+ * @delay_ns: propagation delay from the reference clock (register 0x0928)
  * @offset_ns: of its system time (register 0x0920)
- * @difference_ns: to the reference then, positive: ahead (register 0x092C)
+ * @difference_ns: to the reference at the last read, positive: ahead (register 0x092C)
  */
 typedef struct {
 	unsigned int bits;
@@ -1353,13 +1350,13 @@ typedef struct {
 } ec_slave_config_dc_state_t;
 
 /**
- * ecrt_slave_config_dc_state() - how the clock of a slave does
+ * ecrt_slave_config_dc_state() - get the state of the clock of a slave
  * @sc: slave configuration
  * @state: out
  *
- * Extension (%EC_HAVE_DC_STATE). What the master knows; no bus traffic. Some system
- * calls: for outside of the cycle. ecrt_master_sync_monitor_process() tells in each
- * cycle how far all slaves together are apart.
+ * Extension (%EC_HAVE_DC_STATE). No bus traffic. Some system calls: not for use in
+ * the cycle. ecrt_master_sync_monitor_process() gives the differences of all slaves
+ * together in each cycle.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENODEV no slave is attached; %-EINVAL an argument is NULL.
@@ -1376,7 +1373,7 @@ EC_PUBLIC_API int ecrt_slave_config_dc_state(const ec_slave_config_t *sc,
  */
 
 /**
- * ecrt_slave_config_sync_manager() - direction and watchdog of a sync manager
+ * ecrt_slave_config_sync_manager() - direction and watchdog of a SyncManager
  * @sc: slave configuration
  * @sync_index: 0..15
  * @direction: %EC_DIR_OUTPUT or %EC_DIR_INPUT
@@ -1407,7 +1404,7 @@ EC_PUBLIC_API int ecrt_slave_config_watchdog(ec_slave_config_t *sc,
 		uint16_t watchdog_divider, uint16_t watchdog_intervals);
 
 /**
- * ecrt_slave_config_pdo_assign_add() - append a PDO to a sync manager
+ * ecrt_slave_config_pdo_assign_add() - append a PDO to a SyncManager
  * @sc: slave configuration
  * @sync_index: 0..15
  * @index: of the PDO
@@ -1436,7 +1433,7 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_assign_clear(ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_pdo_mapping_add() - append an entry to a PDO
  * @sc: slave configuration
- * @pdo_index: a PDO that is assigned to some sync manager
+ * @pdo_index: a PDO that is assigned to some SyncManager
  * @entry_index: object, 0 for a gap
  * @entry_subindex: of the object
  * @entry_bit_length: bits
@@ -1461,7 +1458,7 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_clear(ec_slave_config_t *sc,
 		uint16_t pdo_index);
 
 /**
- * ecrt_slave_config_pdos() - sync managers, assignment and mapping in one
+ * ecrt_slave_config_pdos() - SyncManagers, assignment and mapping in one
  * @sc: slave configuration
  * @n_syncs: elements of @syncs; %EC_END: up to its end mark
  * @syncs: ends before @n_syncs with an element whose index is 0xff; may be
@@ -1486,15 +1483,15 @@ EC_PUBLIC_API int ecrt_slave_config_pdos(ec_slave_config_t *sc,
  * @domain: of the same master
  * @bit_position: out: 0..7; NULL: the entry must begin on a byte
  *
- * Takes the whole sync manager that carries the entry into @domain, once,
+ * Takes the whole SyncManager that carries the entry into @domain, once,
  * for which it uses an FMMU (register 0x0600 ff.). The first entry in order
- * of sync manager, PDO and mapping is meant. Offsets are final: directions, PDOs
+ * of SyncManager, PDO and mapping is meant. Offsets are final: directions, PDOs
  * and mapping come before. After a failure the domain is as it was.
  *
  * Context: Process. May sleep.
  * Return: byte offset in the domain, 0 or more; %-ENOENT not mapped;
  * %-EFAULT does not begin on a byte and @bit_position is NULL; %-EOVERFLOW
- * no FMMU left; %-EBUSY active, or the bytes or the direction of the sync manager were
+ * no FMMU left; %-EBUSY active, or the bytes or the direction of the SyncManager were
  * changed after its first entry was registered; %-EINVAL.
  */
 EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
@@ -1505,7 +1502,7 @@ EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
  * ecrt_slave_config_reg_pdo_entry_pos() - the same by position
  * @sc: slave configuration
  * @sync_index: 0..15
- * @pdo_pos: of the PDO in the sync manager, from 0
+ * @pdo_pos: of the PDO in the SyncManager, from 0
  * @entry_pos: of the entry in the PDO, from 0
  * @domain: of the same master
  * @bit_position: as in ecrt_slave_config_reg_pdo_entry()
@@ -1630,12 +1627,12 @@ EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
 		const uint8_t *data, size_t size);
 
 /**
- * ecrt_slave_config_emerg_size() - how many emergencies to keep
+ * ecrt_slave_config_emerg_size() - set the number of emergencies to keep
  * @sc: slave configuration
- * @elements: messages, at most 1024; at first 0: all are counted as lost
+ * @elements: messages, at most 1024; initially 0: all are counted as dropped
  *
- * With more than 0 the master looks about every 10 ms whether the slave has
- * sent one (CoE emergency, ETG.1000.6 clause 5.6.4).
+ * With more than 0 the master polls the slave's mailbox about every 10 ms for CoE
+ * emergencies (ETG.1000.6 clause 5.6.4).
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-ENOMEM; %-EPERM not reserved; %-EBUSY active; %-EINVAL @sc is
@@ -1657,7 +1654,7 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc,
 		uint8_t *target);
 
 /**
- * ecrt_slave_config_emerg_clear() - forget all emergencies and lost ones
+ * ecrt_slave_config_emerg_clear() - discard all emergencies and clear their counter
  * @sc: slave configuration
  *
  * Context: One caller at a time. RT-safe, no system call.
@@ -1666,7 +1663,8 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_emerg_clear(ec_slave_config_t *sc);
 
 /**
- * ecrt_slave_config_emerg_overruns() - emergencies lost for want of room
+ * ecrt_slave_config_emerg_overruns() - get the number of emergencies dropped because
+ *	the buffer was full
  * @sc: slave configuration
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
@@ -1680,7 +1678,7 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_overruns(
  * @sc: slave configuration
  * @index: object
  * @subindex: subindex
- * @size: room for its data, bytes, at most 65536; set to 0
+ * @size: buffer size, bytes, at most 65536; set to 0
  *
  * It lives as long as @sc.
  *
@@ -1696,7 +1694,7 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
  * ecrt_slave_config_create_sdo_request_complete() - the same for a whole object
  * @sc: slave configuration
  * @index: object
- * @size: room for its data, bytes, at most 65536; set to 0
+ * @size: buffer size, bytes, at most 65536; set to 0
  *
  * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE). CoE Complete Access from subindex 0 on.
  *
@@ -1713,7 +1711,7 @@ ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
  * @sc: slave configuration
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
- * @size: room for its data, bytes, at most 65536; set to 0
+ * @size: buffer size, bytes, at most 65536; set to 0
  *
  * It lives as long as @sc.
  *
@@ -1727,10 +1725,10 @@ EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
 /**
  * ecrt_slave_config_create_voe_handler() - exchange vendor specific messages
  * @sc: slave configuration
- * @size: room for data behind the VoE header, bytes, at most 1474; set to 0
+ * @size: buffer size without the VoE header, bytes, at most 1474; set to 0
  *
- * It lives as long as @sc. A slave may have several; those that read share
- * what comes.
+ * It lives as long as @sc. A slave may have several; handlers that read share
+ * the received messages.
  *
  * Context: Process. May sleep. Before activation.
  * Return: handler; NULL on failure, with errno set.
@@ -1741,7 +1739,7 @@ EC_PUBLIC_API ec_voe_handler_t *ecrt_slave_config_create_voe_handler(
 /**
  * ecrt_slave_config_create_reg_request() - read and write registers in OP
  * @sc: slave configuration
- * @size: room for data, bytes, at most 1024; set to 0
+ * @size: buffer size, bytes, at most 1024; set to 0
  *
  * It lives as long as @sc.
  *
@@ -1756,7 +1754,7 @@ EC_PUBLIC_API ec_reg_request_t *ecrt_slave_config_create_reg_request(
  * @sc: slave configuration
  * @state: out; all 0 while no slave is attached
  *
- * Some cycles old; what supervises each cycle is ecrt_domain_state(). No bus
+ * Some cycles old; to supervise each cycle use ecrt_domain_state(). No bus
  * traffic; no system call while active.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -1789,7 +1787,7 @@ EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
 		const char *key, int32_t value);
 
 /**
- * ecrt_slave_config_eoe_mac_address() - MAC address the slave shall have
+ * ecrt_slave_config_eoe_mac_address() - configure the MAC address of the slave
  * @sc: slave configuration
  * @mac_address: 6 bytes
  *
@@ -1797,7 +1795,7 @@ EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
  * request (ETG.1000.6 clause 5.7). It is sent on the way from PREOP to SAFEOP,
  * after the SDOs, each time the slave is configured; values that were not set
  * are marked as not included. A slave that refuses, or has no EoE, stays in
- * PREOP; "ethercat slaves -v" and the kernel log say why.
+ * PREOP; "ethercat slaves -v" and the kernel log give the reason.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL an argument is NULL.
@@ -1806,7 +1804,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_mac_address(ec_slave_config_t *sc,
 		const unsigned char *mac_address);
 
 /**
- * ecrt_slave_config_eoe_ip_address() - IP address the slave shall have
+ * ecrt_slave_config_eoe_ip_address() - configure the IP address of the slave
  * @sc: slave configuration
  * @ip_address: IPv4, network byte order
  *
@@ -1860,7 +1858,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_dns_address(
 /**
  * ecrt_slave_config_eoe_hostname() - host name of the slave
  * @sc: slave configuration
- * @name: at most 31 characters; the rest is left out
+ * @name: at most 31 characters; longer names are cut
  *
  * Sent as described at ecrt_slave_config_eoe_mac_address().
  *
@@ -1886,19 +1884,18 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
 
 #ifdef EC_HAVE_LATE_CYCLES
 /**
- * ecrt_master_set_late_cycles() - acyclic frames beside a full wire
+ * ecrt_master_set_late_cycles() - limit the cycles that acyclic frames delay
  * @master: master
- * @per_second: cycles a second that acyclic frames may make late, 0 to 100000;
- *	100 at first
+ * @per_second: delayed cycles per second, 0 to 100000; initially 100
  *
  * Extension (%EC_HAVE_LATE_CYCLES). For the next activation. Mailboxes, registers and
  * states of the slaves share the wire with the process data; a frame of them goes
  * out when it fits before the next cycle, nine tenths of the interval being in
- * use. One that is too long for any cycle waits for its turn among these late cycles.
- * Mailbox messages are cut so that they fit. With 0 no cycle is late, such frames run
- * into their time limit, and activation fails when not even the shortest frame, 6.72
- * us, fits. An application that takes over a cycle of the kernel says it anew.
- * "ethercat master -v" shows wire time, what is left, and late cycles.
+ * use. A frame that is too long for any cycle waits for one of these delayed cycles.
+ * Mailbox messages are cut so that they fit. With 0 no cycle is delayed, such frames
+ * time out, and activation fails when not even the shortest frame, 6.72
+ * us, fits. An application that takes over a cycle of the kernel configures it anew.
+ * "ethercat master -v" shows wire time, free wire time, and delayed cycles.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
@@ -1908,17 +1905,17 @@ EC_PUBLIC_API int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_
 
 #ifdef EC_HAVE_OVERLAPPING_PDOS
 /**
- * ecrt_slave_config_overlapping_pdos() - inputs in the place of outputs
+ * ecrt_slave_config_overlapping_pdos() - let inputs and outputs share logical addresses
  * @sc: slave configuration
- * @allow_overlapping_pdos: 1: its inputs may have logical addresses of its
- *	outputs; 0, and at first: they have addresses of their own
+ * @allow_overlapping_pdos: 1: inputs of the slave may have logical addresses of its
+ *	outputs; 0 (initial): inputs have addresses of their own
  *
  * Extension (%EC_HAVE_OVERLAPPING_PDOS). For the next activation. The LRW datagram
  * gets shorter: a slave with 8 bytes each way needs 8 bytes instead of 16. The
  * domain's data stay as they are: inputs and outputs have bytes of their own
- * there. What is given up: while any slave takes no part in the datagram, the
+ * there. The price: while any slave takes no part in the datagram, the
  * inputs of all slaves that overlap in it keep their values. See
- * %EC_DOMAIN_OVERLAP for inputs in the place of other slaves' outputs.
+ * %EC_DOMAIN_OVERLAP for inputs at addresses of other slaves' outputs.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
@@ -1929,16 +1926,16 @@ EC_PUBLIC_API int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc,
 
 #ifdef EC_HAVE_DOMAIN_OPTIONS
 /**
- * enum ec_domain_option_t - how a domain is sent; to be ORed
+ * enum ec_domain_option_t - options of a domain; to be ORed
  * @EC_DOMAIN_OVERLAP: inputs may have logical addresses of outputs, of the same
- *	slave and of slaves in front of it; the shortest datagrams there are. While
+ *	slave and of slaves upstream; gives the shortest datagrams. While
  *	any slave takes no part in a datagram, the inputs in it keep their values. A
- *	slave with an alias that is not there at activation shares with itself only;
- *	one that is at another place in the ring later is not started.
+ *	slave with an alias that is absent at activation shares with itself only;
+ *	a slave that has another ring position later is not started.
  * @EC_DOMAIN_SEPARATE: LRD and LWR instead of LRW, as for slaves that lack LRW.
  *	A missing slave never holds the inputs of others.
- * @EC_DOMAIN_OWN_FRAME: its datagrams share no frame with other domains: what
- *	is lost together belongs together. Clock datagrams may be in it.
+ * @EC_DOMAIN_OWN_FRAME: its datagrams share no frame with other domains, so a lost
+ *	frame concerns one domain. The frame may contain clock datagrams.
  */
 typedef enum {
 	EC_DOMAIN_OVERLAP = 1,
@@ -1949,7 +1946,7 @@ typedef enum {
 /**
  * ecrt_domain_set_options() - choose how a domain is sent
  * @domain: domain
- * @options: ec_domain_option_t, ORed; 0, and at first: none
+ * @options: ec_domain_option_t, ORed; 0 (initial): none
  *
  * Extension (%EC_HAVE_DOMAIN_OPTIONS). For the next activation. A domain is a sync
  * unit: it has datagrams and a working counter of its own in any case. Size, data
@@ -1993,7 +1990,7 @@ EC_PUBLIC_API int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *ag
 /**
  * ecrt_domain_set_max_age() - set the age above which process data are stale
  * @domain: domain
- * @sends: sends of this domain, 2 at first; 0: no limit
+ * @sends: sends of this domain, initially 2; 0: no limit
  *
  * Extension (%EC_HAVE_DOMAIN_AGE). For the next activation. The kernel log reports a
  * domain once per activation when stale data come back. Stale data are still taken,
@@ -2062,11 +2059,11 @@ EC_PUBLIC_API void ecrt_domain_external_memory(ec_domain_t *domain,
 EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
 
 /**
- * ecrt_domain_process() - evaluate what came back for a domain
+ * ecrt_domain_process() - evaluate the replies to a domain
  * @domain: of an active master
  *
- * Between ecrt_master_receive() and ecrt_domain_queue(). Refreshes what
- * ecrt_domain_state() says if the domain was sent; else leaves it. No system
+ * Call between ecrt_master_receive() and ecrt_domain_queue(). Updates the result of
+ * ecrt_domain_state() if the domain was sent; else leaves it. No system
  * call.
  *
  * Context: The master's single cyclic caller. RT-safe.
@@ -2078,7 +2075,7 @@ EC_PUBLIC_API int ecrt_domain_process(ec_domain_t *domain);
  * ecrt_domain_queue() - exchange a domain with the next ecrt_master_send()
  * @domain: of an active master
  *
- * A domain that is not queued is left out of that cycle. No system call.
+ * A domain that is not queued is not sent in that cycle. No system call.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; %-EINVAL not active.
@@ -2175,10 +2172,10 @@ EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
 #endif
 
 /**
- * ecrt_sdo_request_timeout() - how long a start may wait
+ * ecrt_sdo_request_timeout() - limit the time a start may wait
  * @req: request
  * @timeout: ms from the send that hands the start over until the transfer
- *	begins; then the state is ERROR. 0, at first: unlimited
+ *	begins; then the state is ERROR. 0 (initial): unlimited
  *
  * A request waits while the slave is absent, on its way through INIT, or busy
  * with another request. The transfer has limits of its own: 1 s per message.
@@ -2209,7 +2206,7 @@ EC_PUBLIC_API uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req);
 EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
 
 /**
- * ecrt_sdo_request_state() - how far a request is
+ * ecrt_sdo_request_state() - get the state of a request
  * @req: request
  *
  * Data and size of a finished read are there when this has returned SUCCESS.
@@ -2238,7 +2235,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
 
 #ifndef __KERNEL__
 /**
- * ecrt_sdo_request_write_with_size() - the same for so many bytes
+ * ecrt_sdo_request_write_with_size() - start a download of @size bytes of the buffer
  * @req: request that is not BUSY, of an active master
  * @size: bytes, from then on ecrt_sdo_request_data_size()
  *
@@ -2276,7 +2273,7 @@ EC_PUBLIC_API int ecrt_soe_request_idn(ec_soe_request_t *req,
 		uint8_t drive_no, uint16_t idn);
 
 /**
- * ecrt_soe_request_timeout() - how long a start may wait
+ * ecrt_soe_request_timeout() - limit the time a start may wait
  * @req: request
  * @timeout: as in ecrt_sdo_request_timeout()
  *
@@ -2306,7 +2303,7 @@ EC_PUBLIC_API uint8_t *ecrt_soe_request_data(const ec_soe_request_t *req);
 EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
 
 /**
- * ecrt_soe_request_state() - how far a request is
+ * ecrt_soe_request_state() - get the state of a request
  * @req: request
  *
  * Data and size of a finished read are there when this has returned SUCCESS.
@@ -2396,7 +2393,7 @@ EC_PUBLIC_API size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe);
  * @size: bytes of the buffer
  *
  * The buffer is copied; the next ecrt_master_send() hands the start over. Then
- * ecrt_voe_handler_execute() tells how it goes; 500 ms at most.
+ * ecrt_voe_handler_execute() returns its state; it takes 500 ms at most.
  *
  * Context: The master's single cyclic caller. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL not active, or
@@ -2408,8 +2405,8 @@ EC_PUBLIC_API int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size);
  * ecrt_voe_handler_read() - start waiting for a message
  * @voe: handler that is not BUSY, of an active master
  *
- * The mailbox is looked at until there is one; after 500 ms the state is ERROR.
- * A message that came while somebody else used the mailbox is not lost.
+ * The master polls the mailbox until there is a message; after 500 ms the state is ERROR.
+ * A message that arrives while another exchange uses the mailbox is not lost.
  *
  * Context: The master's single cyclic caller. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @voe is NULL.
@@ -2420,7 +2417,7 @@ EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
  * ecrt_voe_handler_read_nosync() - start fetching a message that must be there
  * @voe: handler that is not BUSY, of an active master
  *
- * One access to the mailbox without a look whether it is full; without a message
+ * One access to the mailbox without reading its status before; without a message
  * the state is ERROR.
  *
  * Context: The master's single cyclic caller. RT-safe, no system call.
@@ -2429,10 +2426,10 @@ EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
 EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
 
 /**
- * ecrt_voe_handler_execute() - how far the operation is; once a cycle
+ * ecrt_voe_handler_execute() - get the state of the operation; call once per cycle
  * @voe: handler
  *
- * A slave that is not there, or has no VoE, gives ERROR, as does a message
+ * An absent slave, or one without VoE, gives ERROR, as does a message
  * that is larger than the buffer.
  *
  * Context: One caller at a time. RT-safe, no system call.
@@ -2451,7 +2448,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
 EC_PUBLIC_API uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req);
 
 /**
- * ecrt_reg_request_state() - how far a request is
+ * ecrt_reg_request_state() - get the state of a request
  * @req: request
  *
  * The data of a finished read are there when this has returned SUCCESS. A
@@ -2490,7 +2487,7 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
 
 #ifndef __KERNEL__
 /**
- * ecrt_reg_request_readwrite() - write registers, get what was there
+ * ecrt_reg_request_readwrite() - start writing registers and reading their old content
  * @req: request that is not BUSY, of an active master
  * @address: register
  * @size: bytes
