@@ -198,7 +198,7 @@ const struct cmd cmd_cstruct = {
 	.opts = "map",
 	.summary = "Print the PDO layout as C arrays for ecrt.h",
 	.help = "The arrays are what ecrt_slave_config_pdos() takes: ethercat cstruct -p2 > pdos.h\n"
-		"Slaves without sync managers are left out. Slaves of several masters may get the\n"
+		"Slaves without SyncManagers are omitted. Slaves of several masters may get the\n"
 		"same names; select one with -m.\n",
 	.json = "masters[]: master, slaves[]: position, order_number, vendor_id, product_code,\n"
 		"revision_number, syncs[]: index, direction (output, input), watchdog, pdos[]: index,\n"

@@ -107,7 +107,7 @@ static void figures(const struct ec_status_cycle *st)
 	out_u("missed", st->missed, NULL);
 	if (st->missed)
 		out_text("  Without new outputs: %llu\n", st->missed);
-	out_u("late_min_ns", st->late_min, "  From schedule [us]: min %.3f", st->late_min / 1000.0);
+	out_u("late_min_ns", st->late_min, "  Send deviation [us]: min %.3f", st->late_min / 1000.0);
 	out_f("late_mean_ns", mean, ", mean %.3f", mean / 1000);
 	out_u("late_p999_ns", p999, ", 99.9 %% %.3f", (double)p999 / 1000);
 	out_u("late_max_ns", st->late_max, ", max %.3f\n", st->late_max / 1000.0);
@@ -121,7 +121,7 @@ static void work(const struct ec_status_cycle *st)
 	if (!st->work_count)
 		return;
 	mean = (double)st->work_sum / (double)st->work_count;
-	out_f("work_mean_ns", mean, "  Work of a cycle [us]: mean %.3f", mean / 1000);
+	out_f("work_mean_ns", mean, "  Cycle execution time [us]: mean %.3f", mean / 1000);
 	out_u("work_max_ns", st->work_max, ", max %.3f\n", st->work_max / 1000.0);
 }
 
@@ -150,10 +150,10 @@ static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle
 		out_str("by", name, "  Cycle: none yet\n");
 		return;
 	}
-	out_str("by", name, "  Cycle: by the %s, ", name);
+	out_str("by", name, "  Cycle: run by the %s, ", name);
 	out_str("state", state_text(i, st), "%s\n", state_text(i, st));
 	out_u("interval_ns", i->interval_ns, "  Interval: %.3f us (", i->interval_ns / 1000.0);
-	out_bool("interval_told", i->told, "%s)\n", i->told ? "told" : "measured");
+	out_bool("interval_told", i->told, "%s)\n", i->told ? "configured" : "measured");
 }
 
 /* of a cycle run by the kernel */
@@ -183,7 +183,7 @@ static int show(const struct tool *t, struct dev *d)
 	int err = dev_ioctl(d, EC_IOC_CYCLE_STATS, &info);
 
 	if (err)
-		return dev_fail(d, err, "Master%u: no figures of the cycle", d->master);
+		return dev_fail(d, err, "Master%u: cannot read cycle statistics", d->master);
 	out_object(NULL);
 	out_u("master", d->master, "Master%u\n", d->master);
 	who(&info, &st);
@@ -196,7 +196,7 @@ static int show(const struct tool *t, struct dev *d)
 	}
 	out_end();
 	err = t->reset ? dev_ioctl(d, EC_IOC_CYCLE_RESET, NULL) : 0;
-	return err ? dev_fail(d, err, "Master%u: the figures were not reset", d->master) : 0;
+	return err ? dev_fail(d, err, "Master%u: cannot reset cycle statistics", d->master) : 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -215,17 +215,17 @@ const struct cmd cmd_cycle = {
 	.run = run,
 	.args = "",
 	.opts = "mrv",
-	.summary = "Show how far the sends of the cycle are from their schedule",
+	.summary = "Show cycle statistics: send deviation and overruns",
 	.help = "Of the cycle that runs, else of the last one. The schedule of a cycle run by the\n"
 		"kernel is its timer. An application's is a grid of its interval that slowly\n"
-		"follows the sends; they count early or late. Overruns are cycles left out because\n"
-		"an interval or more had passed. 99.9 % of the sends are no further from their\n"
-		"schedule than that figure, exact to 1/8. The bars show powers of two, with\n"
-		"--verbose eighths of them. --reset begins anew and needs write access.\n",
+		"follows the sends; a send may be early or late. Overruns are skipped cycles: an\n"
+		"interval or more passed without a send. 99.9 % of the send deviations are below\n"
+		"that figure, which is up to 1/8 too large. The bars show powers of two, with\n"
+		"--verbose eighths of them. --reset clears the statistics; it needs write access.\n",
 	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
 		"stopped, waiting, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
 		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
-		"work_mean_ns, work_max_ns (how long a cycle of the kernel takes), histogram[] (from_ns,\n"
-		"to_ns, sends; none that is empty). By kernel only: priority (SCHED_FIFO; 0: SCHED_OTHER),\n"
-		"priority_wanted (configured), cpu (-1: any), cpu_losses (how often it went offline). Of nobody master and by only",
+		"work_mean_ns, work_max_ns (execution time of a cycle of the kernel), histogram[] (from_ns,\n"
+		"to_ns, sends; not the empty ones). By kernel only: priority (SCHED_FIFO; 0: SCHED_OTHER),\n"
+		"priority_wanted (configured), cpu (-1: any), cpu_losses (how often it went offline). With by nobody: master and by only",
 };

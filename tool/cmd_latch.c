@@ -57,7 +57,7 @@ static void input(const struct latches *l, unsigned int i)
 	edge(l, i, 1);
 	out_bool("single", (l->control[i] & BOTH) == BOTH, NULL);
 	out_str("owner", slave ? "slave" : "master", "%s\n",
-		slave ? "; the slave has this input" :
+		slave ? "; controlled by the slave" :
 		(l->control[i] & BOTH) == BOTH ? "; first edge counts" : "; last edge counts");
 	out_end();
 }
@@ -111,11 +111,10 @@ const struct cmd cmd_latch = {
 	.run = run,
 	.args = "[MODE]",
 	.opts = "map",
-	.summary = "Show when edges came at the latch inputs of a slave's clock",
+	.summary = "Show the times of edges at the latch inputs of a slave's clock",
 	.help = "MODE := { single: the first edge counts until it is read;\n"
 		"          continuous: the last one }; sets both inputs\n"
-		"Times are those of the distributed clocks, ns. A time that was shown makes room\n"
-		"for the next edge.\n",
+		"Times are those of the distributed clocks, ns. Reading a time re-arms the latch.\n",
 	.json = "master, slave, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"
 		"owner (master, slave: its own CPU takes the times))",
 	.flags = CMD_ONE_MASTER,

@@ -116,10 +116,10 @@ static void common(const struct ec_ioc_master *m)
 	out_end();
 }
 
-/* a cycle of the kernel that follows the reference clock */
+/* a cycle of the kernel that is synchronized to the reference clock */
 static void lock(const struct ec_ioc_master *m)
 {
-	static const char *const text[] = { "", "seeking", "locked", "holding its rate" };
+	static const char *const text[] = { "", "seeking", "locked", "holdover" };
 	static const char *const key[] = { "", "seeking", "locked", "holding" };
 	bool known = m->cycle_lock && m->cycle_lock < ARRAY_SIZE(text);
 
@@ -127,10 +127,10 @@ static void lock(const struct ec_ioc_master *m)
 		out_null("cycle_lock", NULL);
 		return;
 	}
-	out_str("cycle_lock", key[m->cycle_lock], "    Cycle follows it:  %s, ", text[m->cycle_lock]);
+	out_str("cycle_lock", key[m->cycle_lock], "    Cycle lock:        %s, ", text[m->cycle_lock]);
 	out_i("phase_error_ns", m->phase_error, "phase error %d ns, ", m->phase_error);
 	out_i("rate_ppb", m->rate_ppb, "rate %+d ppb, ", m->rate_ppb);
-	out_u("lock_losses", m->lock_losses, "lost %u time(s)\n", m->lock_losses);
+	out_u("lock_losses", m->lock_losses, "lock losses %u\n", m->lock_losses);
 }
 
 static void clocks(const struct ec_ioc_master *m)
@@ -176,10 +176,10 @@ static void cycle(const struct tool *t, const struct ec_ioc_master *m)
 		 m->cycle_datagrams, m->cycle_frames, m->cycle_wire_ns / 1000.0);
 	out_text("    Last send:   %u frame(s), %.2f us of wire time\n", m->sent_frames,
 		 m->sent_wire_ns / 1000.0);
-	out_text("    Acyclic:     %.2f us left, %.2f us needed at least%s\n",
+	out_text("    Free for acyclic frames: %.2f us, minimum %.2f us%s\n",
 		 m->acyclic_slack_ns / 1000.0, m->acyclic_need_ns / 1000.0,
-		 m->acyclic_slack_ns < m->acyclic_need_ns ? " (!)" : "");
-	out_text("    Made late:   %u cycle(s), at most %u a second\n", m->late_cycles,
+		 m->acyclic_slack_ns < m->acyclic_need_ns ? " (not enough)" : "");
+	out_text("    Cycles delayed by acyclic frames: %u (limit %u/s)\n", m->late_cycles,
 		 m->late_per_s);
 }
 
@@ -206,7 +206,7 @@ static int show(const struct tool *t, struct dev *d)
 	out_str("session", m.session < ARRAY_SIZE(session_key) ? session_key[m.session] : "unknown",
 		NULL);
 	if (m.session == EC_SESSION_DETACHED)
-		out_text("  Session: detached, its application is gone\n");
+		out_text("  Session: detached, without application\n");
 	out_u("slaves", m.slave_count, "  Slaves: %u\n", m.slave_count);
 	out_text("  Ethernet devices:\n");
 	out_array("devices");
@@ -262,9 +262,9 @@ const struct cmd cmd_master = {
 	.help = "Rates are averages over 1, 10 and 60 seconds; 1 KByte is 1024 bytes. Times are\n"
 		"nanoseconds since 2000-01-01 UTC. With --verbose also the last bus scan, and the\n"
 		"wire time of a cycle at 100 Mbit/s, preamble and gap included: with all domains\n"
-		"and, when they are used, clock datagrams; and of the last send. Acyclic: what is left\n"
-		"of it for mailboxes, registers and states, and what the shortest frame needs; cycles\n"
-		"made late by such frames that did not fit. Frames not captured: a capture program\n"
+		"and, when they are used, clock datagrams; and of the last send. Acyclic frames: free wire\n"
+		"time for mailboxes, registers and states, and what the shortest frame needs; cycles\n"
+		"delayed by such frames that did not fit. Frames not captured: a capture program\n"
 		"was running, and the ring of copies for it was full.\n",
 	.json = "masters[]: master, phase (waiting, idle, operation), active, session (none,\n"
 		"reserved, active, detached), slaves,\n"
@@ -272,8 +272,8 @@ const struct cmd cmd_master = {
 		"rx_bytes, tx_errors, tx_frames_per_s[], tx_bytes_per_s[], rx_frames_per_s[],\n"
 		"rx_bytes_per_s[], lost_frames, late_frames, unmatched_frames, foreign_frames),\n"
 		"common (the sums, lost_frames_per_s[], frame_loss_percent[]), dc (reference_clock,\n"
-		"cycle_lock (seeking, locked, holding; null: does not follow), phase_error_ns,\n"
-		"rate_ppb, lock_losses (when it follows), reference_time_ns,\n"
+		"cycle_lock (seeking, locked, holding; null: not synchronized to it), phase_error_ns,\n"
+		"rate_ppb, lock_losses (with cycle_lock), reference_time_ns,\n"
 		"application_time_ns), cycle (interval_us, datagrams, frames, wire_ns, last_frames,\n"
 		"last_wire_ns, acyclic_slack_ns, acyclic_need_ns, late_cycles, late_cycles_per_s),\n"
 		"frames_not_captured, slaves_responding, scan_busy, scans,\n"

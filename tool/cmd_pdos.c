@@ -157,7 +157,7 @@ const struct cmd cmd_pdos = {
 	.run = run,
 	.args = "",
 	.opts = "mapsqv",
-	.summary = "Show sync managers, PDOs and PDO entries",
+	.summary = "Show SyncManagers, PDOs and PDO entries",
 	.help = "RxPDOs are written by the master, TxPDOs are read by it. An entry 0x0000:00 is a\n"
 		"gap. Names are those of the EEPROM, else of the object dictionary, which is read\n"
 		"while no application is active. With --quiet without the entries. The skin\n"

@@ -12,7 +12,7 @@ static int run(struct tool *t, int argc, char **argv)
 		return 1;
 	err = dev_ioctl(&d, EC_IOC_END_DETACHED, NULL);
 	if (err)
-		dev_fail(&d, err, "Master%u: cannot end its session", d.master);
+		dev_fail(&d, err, "Master%u: cannot end the session", d.master);
 	else
 		out_u("master", d.master, NULL);
 	dev_close(&d);
@@ -24,10 +24,10 @@ const struct cmd cmd_release = {
 	.run = run,
 	.args = "",
 	.opts = "m",
-	.summary = "End the cycle of an application that is gone",
-	.help = "For a session the kernel goes on with because its application wanted that:\n"
-		"'ethercat master' shows it as detached. Its slaves go to PREOP. The session of an\n"
-		"application that is there is not touched.\n",
+	.summary = "End a detached session",
+	.help = "A detached session continues after its application has exited (EC_CYCLE_DETACH);\n"
+		"'ethercat master' shows it. Its slaves go to PREOP. The session of a running\n"
+		"application is not ended.\n",
 	.json = "master",
 	.flags = CMD_ONE_MASTER,
 };

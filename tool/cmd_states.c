@@ -170,11 +170,10 @@ const struct cmd cmd_states = {
 	.summary = "Request an AL state for slaves, or show the states",
 	.help = "STATE := { INIT | PREOP | BOOT | SAFEOP | OP }, in any case.\n"
 		"Without --wait the command returns as soon as the request is accepted. With\n"
-		"--wait it fails when a slave refuses or needs longer (default 10 s), and tells\n"
+		"--wait it fails when a slave refuses or needs longer (default 10 s), and shows\n"
 		"the AL status code. The slave keeps this state until it reconnects or an application\n"
 		"reserves, activates, resets or deactivates the master.\n"
-		"Without STATE: position, alias:relative position, state, and what is wrong if anything\n"
-		"is.\n",
+		"Without STATE: position, alias:relative position, state, and the cause of an error.\n",
 	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"
 		"al_status_code, al_status_text, flag_error, cause); empty after a request without --wait",
 	.flags = CMD_HISTORIC,

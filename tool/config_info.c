@@ -15,7 +15,7 @@
 
 static int failed(struct dev *d, int err, const struct ec_ioc_config *c)
 {
-	return dev_fail(d, err, "Master%u: configuration %u:%u: no data", d->master, c->alias,
+	return dev_fail(d, err, "Master%u: configuration %u:%u: cannot read its state", d->master, c->alias,
 			c->position);
 }
 

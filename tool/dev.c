@@ -174,7 +174,7 @@ int dev_master(struct dev *d, struct ec_ioc_master *m)
 	*m = (struct ec_ioc_master){ 0 };
 	err = dev_ioctl(d, EC_IOC_MASTER, m);
 	if (err)
-		return dev_fail(d, err, "Master%u: cannot read the state of the master", d->master);
+		return dev_fail(d, err, "Master%u: cannot read master state", d->master);
 	for (int i = 0; i < EC_UAPI_DEVICES; i++)
 		string_clean(m->devices[i].name, sizeof(m->devices[i].name));
 	m->device_count = min(m->device_count, (u32)EC_UAPI_DEVICES);
@@ -202,7 +202,7 @@ int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
 {
 	int err = get_slave(d, position, s);
 
-	return err ? dev_fail(d, err, "Master%u slave %u: cannot read the state of the slave", d->master,
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot read slave state", d->master,
 			position) : 0;
 }
 
@@ -253,7 +253,7 @@ int dev_slaves(struct dev *d, struct slaves *all)
 			continue;
 		if (err && before.scan_count == after.scan_count && !after.scan_busy) {
 			slaves_free(all);
-			return dev_fail(d, err, "Master%u slave %zu: cannot read the state of the slave",
+			return dev_fail(d, err, "Master%u slave %zu: cannot read slave state",
 					d->master, all->n);
 		}
 		return 0;
@@ -335,7 +335,7 @@ int dev_none_present(struct dev *d)
 	if (dev_master(d, &m))
 		return 1;
 	dev_why_empty(&m, why, sizeof(why));
-	return fail("Master%u: there are no slaves%s%s", d->master, *why ? ": " : "", why);
+	return fail("Master%u: no slaves%s%s", d->master, *why ? ": " : "", why);
 }
 
 int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s)

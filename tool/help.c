@@ -38,7 +38,7 @@ void help_all(bool to_stderr)
 		print_opt(f, o);
 	fputs("\nLIST := { N | N-M | N- | -M | - } [,LIST]     decimal\n"
 	      "Other numbers are decimal, 0x... hexadecimal or 0... octal.\n"
-	      "Commands may be abbreviated. 'ethercat help COMMAND' tells more.\n", f);
+	      "Commands may be abbreviated. 'ethercat help COMMAND' describes one.\n", f);
 }
 
 /* one command */
@@ -185,15 +185,15 @@ void help_roff(void)
 	puts(".\\\" SPDX-License-Identifier: GPL-2.0-only\n"
 	     ".\\\" Made by 'make -C tool man' from the tables of the tool.\n"
 	     ".TH ETHERCAT 8 \"\" \"ethercat " EC_TOOL_VERSION "\"\n"
-	     ".SH NAME\nethercat \\- look at and change EtherCAT masters and their slaves\n"
+	     ".SH NAME\nethercat \\- inspect and control EtherCAT masters and their slaves\n"
 	     ".SH SYNOPSIS\n.B ethercat\n.I COMMAND\n[OPTIONS] [ARGUMENTS]\n"
 	     ".SH DESCRIPTION\n"
-	     "Talks to the masters of this host through\n.IR /dev/EtherCAT0 ,\n"
+	     "Accesses the masters of this host through\n.IR /dev/EtherCAT0 ,\n"
 	     ".I /dev/EtherCAT1\nand so on.\n"
-	     "Options may stand before or behind the command and between its arguments.\n"
+	     "Options may stand before or after the command and between its arguments.\n"
 	     "Commands may be abbreviated as long as that is unambiguous.\n"
-	     "Commands that only show what the master knows need read access; those that make\n"
-	     "traffic on the bus or change something need write access.\n"
+	     "Commands that only show the state of the master need read access. Commands that cause\n"
+	     "bus traffic or change something need write access.\n"
 	     ".PP\nNumbers are decimal, 0x... hexadecimal or 0... octal; in lists decimal.\n"
 	     "A list is one or more of N, N\\-M, N\\-, \\-M and \\-, separated by commas.\n"
 	     ".SH OPTIONS");
@@ -202,7 +202,7 @@ void help_roff(void)
 	puts(".SH SELECTION\n"
 	     "Without options a command takes all slaves.\n.B \\-p\n"
 	     "selects ring positions.\n.B \\-a\n"
-	     "selects the slave with an alias and those behind it up to the next slave with an\n"
+	     "selects the slave with an alias and the slaves downstream up to the next slave with an\n"
 	     "alias; with both,\n.B \\-p\nis relative to the slave with the alias.\n"
 	     "Commands for a single slave refuse any other number of slaves.\n"
 	     ".SH COMMANDS");
@@ -217,6 +217,6 @@ void help_roff(void)
 	     "Errors are one object on stderr: {\"error\": {\"command\", \"kind\" (usage or\n"
 	     "runtime), \"message\", \"errno\", \"errno_text\", \"reason\", \"abort_code\",\n"
 	     "\"abort_text\"}}.\n"
-	     ".SH EXIT STATUS\n0: done; 1: anything else.\n"
+	     ".SH EXIT STATUS\n0: success; 1: failure.\n"
 	     ".SH FILES\n.I /dev/EtherCAT*\n.SH SEE ALSO\n.BR dot (1)");
 }

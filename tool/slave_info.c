@@ -54,8 +54,8 @@ static void data_link(const struct ec_ioc_slave *s)
 		unsigned int state = s->dc_odd ? 3 : !s->dc_set ? 0 : off ? 2 : 1;
 		static const char *const word[] = { "not_set", "in_step", "off",
 						    "delay_uncertain" };
-		static const char *const line[] = { "", "in step", "differs too much",
-			"delay uncertain, cables and receive times do not fit together" };
+		static const char *const line[] = { "", "synchronized", "outside window (1000 ns)",
+			"delay unreliable, receive times contradict the topology" };
 
 		out_str("dc_state", word[state], NULL);
 		if (state)
@@ -206,7 +206,7 @@ static void diagnosis(const struct ec_ioc_slave *s)
 	out_str("requested_state", ec_al_state_name(s->al_requested), "  Requested state: %s\n",
 		ec_al_state_name(s->al_requested));
 	out_u("dl_status", s->dl_status, "  DL status: 0x%04x\n", s->dl_status);
-	out_u("sync_managers", s->sm_count, "  Sync managers: %u", s->sm_count);
+	out_u("sync_managers", s->sm_count, "  SyncManagers: %u", s->sm_count);
 	out_u("fmmus", s->fmmu_count, ", FMMUs: %u\n", s->fmmu_count);
 	out_u("sii_words", s->sii_words, "  SII size: %u words\n", s->sii_words);
 	if (s->why[0])

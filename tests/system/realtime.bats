@@ -163,8 +163,8 @@ captured() {
 	json '.masters[0] | .late_min_ns <= .late_mean_ns and .late_p999_ns <= .late_max_ns and
 		([.histogram[].sends] | add) == .sends' cycle
 	ethercat cycle
-	[[ "$(ethercat cycle)" == *"Cycle: by the application, running"* ]]
-	[[ "$(ethercat cycle)" == *"Interval: 1000.000 us (told)"* ]]
+	[[ "$(ethercat cycle)" == *"Cycle: run by the application, running"* ]]
+	[[ "$(ethercat cycle)" == *"Interval: 1000.000 us (configured)"* ]]
 	# forgotten after it was shown, by a command that may write; the next one takes its time
 	wait_for 120 json '.masters[0].sends > 15000' cycle
 	ethercat cycle --reset >/dev/null

@@ -269,7 +269,7 @@ teardown_file() { stop; }
 	[ -z "$(ethercat slaves 2>/dev/null)" ]
 	[[ "$(ethercat slaves 2>&1)" == *"waiting for sim0"* ]]
 	ethercat master | grep -q 'Phase: Waiting for device(s)...'
-	refused 'there are no slaves: no network interface yet, waiting for sim0' upload 0x1018 1
+	refused 'no slaves: no network interface yet, waiting for sim0' upload 0x1018 1
 	for c in slaves pdos cstruct config domains data graph; do
 		ethercat $c -j 2>/dev/null | jq -e . >/dev/null
 	done
@@ -289,7 +289,7 @@ teardown_file() { stop; }
 	json '.masters | map(.phase) == ["idle", "waiting"]' master
 	refused 'needs exactly one of the 2 masters' reg_read -p1 0 1
 	ethercat reg_read -m0 -p1 0 1
-	refused 'there are no slaves' reg_read -m1 0 1
+	refused 'no slaves' reg_read -m1 0 1
 	ethercat pdos | grep -q '=== Master 0, Slave 1 ==='
 	ethercat debug -m 0-1 0
 }

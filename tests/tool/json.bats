@@ -29,11 +29,11 @@ load common
 	out master -j | json 'd["masters"][0]["dc"]["cycle_lock"] is None'
 	FAKE_BUS=app out master -j | json 'd["masters"][0]["dc"]["cycle_lock"] == "locked"'
 	FAKE_BUS=app out master -j | json 'd["masters"][0]["dc"]["phase_error_ns"] == -12 and d["masters"][0]["dc"]["rate_ppb"] == -8700'
-	FAKE_BUS=app out master | grep -q 'Cycle follows it:  locked, phase error -12 ns, rate -8700 ppb, lost 1 time(s)'
+	FAKE_BUS=app out master | grep -q 'Cycle lock:        locked, phase error -12 ns, rate -8700 ppb, lock losses 1'
 	out latch -j -p2 | json 'd["latches"][0]["rising_ns"] == 0x15 and d["latches"][0]["falling_ns"] is None'
 	out latch -j -p2 | json 'd["latches"][1]["owner"] == "slave" and not d["latches"][1]["single"]'
 	[ "$(out latch -p2 | head -n 1)" = "Latch 0: high, rising 21 ns, falling none; last edge counts" ]
-	[ "$(out latch -p2 | tail -n 1)" = "Latch 1: low, rising none, falling none; the slave has this input" ]
+	[ "$(out latch -p2 | tail -n 1)" = "Latch 1: low, rising none, falling none; controlled by the slave" ]
 	out upload -j -p2 0x1018 1 | json 'd["value"] == 2 and d["data_hex"] == "02000000"'
 	out upload -j -p2 -tstring 0x1008 0 | json 'd["value"] == "EL7201"'
 	out pdos -j | json 'd["masters"][0]["slaves"][2]["sync_managers"][3]["pdos"][0]["entries"][0]["size_bits"] == 32'
