@@ -661,7 +661,7 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
  *
  * Frees all domains and slave configurations: every handle and pointer
  * obtained since the reservation becomes invalid, except @master, which stays
- * reserved and may be configured anew. Slaves go to PREOP.
+ * reserved and may be configured again. Slaves go to PREOP.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL not active, nothing was freed.
@@ -1224,7 +1224,7 @@ EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
  * Extension (%EC_HAVE_DEACTIVATE_SLAVES). For an end without faults: the configured
  * slaves leave OP while process data and SYNC signals still run, so that no
  * watchdog expires and no synchronization is lost; in PREOP their SYNC signals are
- * switched off (register 0x0980). Go on with the cycle until
+ * switched off (register 0x0980). Continue the cycle until
  * ecrt_slave_config_state() or ecrt_master_state() shows PREOP, then call
  * ecrt_master_deactivate(). Nothing brings the slaves up again before that. Without
  * effect on a master that is not active.
@@ -1894,7 +1894,7 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
  * use. A frame that is too long for any cycle waits for one of these delayed cycles.
  * Mailbox messages are cut so that they fit. With 0 no cycle is delayed, such frames
  * time out, and activation fails when not even the shortest frame, 6.72
- * us, fits. An application that takes over a cycle of the kernel configures it anew.
+ * us, fits. An application that takes over a cycle of the kernel configures it again.
  * "ethercat master -v" shows wire time, free wire time, and delayed cycles.
  *
  * Context: Process. May sleep.
@@ -2573,7 +2573,7 @@ EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,
 /*
  * Process data is unaligned, of any type, and shared with the kernel: packed
  * against the first, may_alias against the second, volatile so that each
- * macro is one access that is neither repeated nor left out.
+ * macro is one access that is neither repeated nor omitted.
  */
 struct ec_mem16_ {
 	uint16_t v;
