@@ -179,17 +179,17 @@ static bool is_mesh(const struct net_device *nd)
 static int check(const struct net_device *nd)
 {
 	if (is_mesh(nd)) {
-		pr_err_ratelimited("ec_generic: %s is a batman-adv mesh, which loses frames; use an Ethernet interface\n",
+		pr_err_ratelimited("ec_generic: %s: batman-adv mesh, which loses frames; use an Ethernet interface\n",
 		       nd->name);
 		return -EOPNOTSUPP;
 	}
 	if (nd->mtu < ETH_DATA_LEN) {
-		pr_err_ratelimited("ec_generic: %s has an MTU of %u, EtherCAT needs %d; do \"ip link set %s mtu %d\"\n",
+		pr_err_ratelimited("ec_generic: %s: MTU %u, need %d; run \"ip link set %s mtu %d\"\n",
 				   nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
 		return -EMSGSIZE;
 	}
 	if (netdev_is_rx_handler_busy((struct net_device *)nd)) {
-		pr_err_ratelimited("ec_generic: %s is used by a bridge, bond, team or macvlan; release it first\n",
+		pr_err_ratelimited("ec_generic: %s: in use by a bridge, bond, team or macvlan; release it first\n",
 				   nd->name);
 		return -EBUSY;
 	}
@@ -206,13 +206,13 @@ static int claim(struct gen *g)
 		return ret;
 	ret = dev_open(g->nd, NULL);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: %s cannot be brought up (%pe)\n", g->nd->name,
+		pr_err_ratelimited("ec_generic: %s: cannot be brought up (%pe)\n", g->nd->name,
 				   ERR_PTR(ret));
 		return ret;
 	}
 	ret = netdev_rx_handler_register(g->nd, receive, g);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: %s does not let its frames be received (%pe); use the device below it\n",
+		pr_err_ratelimited("ec_generic: %s: frames cannot be received (%pe); use the device below\n",
 		       g->nd->name, ERR_PTR(ret));
 		return ret;
 	}
@@ -222,7 +222,7 @@ static int claim(struct gen *g)
 	};
 	ret = nf_register_net_hook(dev_net(g->nd), &g->hook);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: other traffic cannot be kept off %s (%pe)\n", g->nd->name,
+		pr_err_ratelimited("ec_generic: %s: other traffic cannot be blocked (%pe)\n", g->nd->name,
 		       ERR_PTR(ret));
 		netdev_rx_handler_unregister(g->nd);
 		return ret;
@@ -457,7 +457,7 @@ static int change_mtu(const struct net_device *nd, u32 was)
 {
 	if (nd->mtu >= ETH_DATA_LEN || was < ETH_DATA_LEN)
 		return NOTIFY_DONE;
-	pr_warn_ratelimited("ec_generic: %s keeps its MTU: EtherCAT needs %d\n", nd->name, ETH_DATA_LEN);
+	pr_warn_ratelimited("ec_generic: %s: MTU change refused, need %d\n", nd->name, ETH_DATA_LEN);
 	return notifier_from_errno(-EBUSY);
 }
 

@@ -58,5 +58,5 @@ int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
 	if (!master)
 		return -EINVAL;
 	ret = ec_ioctl(master, EC_IOC_LATE, &arg);
-	return ret ? ec_fail_ioctl(master, ret, "allow %u late cycles a second", per_second) : 0;
+	return ret ? ec_fail_ioctl(master, ret, "allow %u delayed cycles per second", per_second) : 0;
 }

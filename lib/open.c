@@ -26,8 +26,8 @@ static int check_version(struct ec_master *m, const char *path)
 	if (!ret && version.abi >= VERSION_MIN)
 		return 0;
 	return ec_fail(-EPROTO,
-		       "use %s: not the device of this EtherCAT master, or of a version that does not fit (interface version %u)",
-		       path, version.abi);
+		       "use %s: not a device file of this master, or interface version %u below %u",
+		       path, version.abi, (unsigned int)VERSION_MIN);
 }
 
 ec_master_t *ecrt_open_master(unsigned int master_index)

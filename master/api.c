@@ -71,7 +71,7 @@ static void complain(struct ec_master *m, int err, struct va_format *what, const
 	struct ec_file *f = &m->api->file;
 
 	raw_spin_lock(&f->lock);
-	ec_err(m, "kernel application: cannot %pV%s (%pe)%s%s\n", what, slave, ERR_PTR(err),
+	ec_err(m, "kernel API: cannot %pV%s (%pe)%s%s\n", what, slave, ERR_PTR(err),
 	       f->reason[0] ? ": " : "", f->reason);
 	raw_spin_unlock(&f->lock);
 }

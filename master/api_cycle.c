@@ -85,7 +85,7 @@ void ec_api_work(struct work_struct *work)
 	mutex_unlock(&m->cyclic_lock);
 	if (READ_ONCE(api->atomic) && !api->told) {
 		api->told = true;
-		ec_err(m, "kernel application: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
+		ec_err(m, "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
 	}
 	if (xchg(&api->reset, false))
 		ec_ioc_reset(&api->file, NULL);

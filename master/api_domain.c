@@ -55,7 +55,7 @@ void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
 	if (!domain->session->active)
 		domain->memory = memory;
 	else
-		ec_err(m, "kernel application: memory for domain %u comes after activation; it is not used\n",
+		ec_err(m, "kernel API: memory for domain %u comes after activation; it is not used\n",
 		       domain->index);
 	mutex_unlock(&m->session_lock);
 }

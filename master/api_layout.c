@@ -56,6 +56,6 @@ int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
 	if (!master)
 		return -EINVAL;
 	ret = ec_api_do(master, ec_ioc_late, &i);
-	return ret ? ec_api_fail(master, ret, "allow %u late cycles a second", per_second) : 0;
+	return ret ? ec_api_fail(master, ret, "allow %u delayed cycles per second", per_second) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_set_late_cycles);

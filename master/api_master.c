@@ -14,7 +14,7 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	int ret;
 
 	if (master_index >= ec_master_count()) {
-		pr_err_ratelimited("EtherCAT: kernel application: there is no master %u; main_devices= names %u\n",
+		pr_err_ratelimited("EtherCAT: kernel API: no master %u; main_devices= names %u\n",
 				   master_index, ec_master_count());
 		return NULL;
 	}
@@ -52,7 +52,7 @@ void ecrt_release_master(ec_master_t *master)
 	if (!master)
 		return;
 	if (!master->api->reserved) {
-		ec_warn(master, "kernel application: releases a master it has not requested\n");
+		ec_warn(master, "kernel API: ecrt_release_master() without ecrt_request_master()\n");
 		return;
 	}
 	forget(master);
@@ -150,7 +150,7 @@ int ecrt_master_activate(ec_master_t *master)
 	if (!master)
 		return -EINVAL;
 	if (READ_ONCE(master->api->active)) {
-		ec_warn(master, "kernel application: the master is active already\n");
+		ec_warn(master, "kernel API: the master is active already\n");
 		return 0;
 	}
 	ret = ec_api_do(master, ec_ioc_activate, &i);
@@ -177,7 +177,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 	if (!master)
 		return -EINVAL;
 	if (!READ_ONCE(master->api->active)) {
-		ec_warn(master, "kernel application: the master is not active\n");
+		ec_warn(master, "kernel API: the master is not active\n");
 		return -EINVAL;
 	}
 	forget(master);

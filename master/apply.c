@@ -29,16 +29,16 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 	if (ret == -EPROTO && state == EC_AL_SAFEOP && s->pdo_refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "%.160s; then SAFEOP refused: AL status code 0x%04x: %s", s->pdo_refusal,
+			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", s->pdo_refusal,
 			      s->al_code, ec_al_code_text(s->al_code));
 	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
 			      ret == -ETIME ? "not reached in time" : "refused");
 	else if (ret == -EPROTO)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "refused %s: AL status code 0x%04x: %s",
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s refused: AL status code 0x%04x (%s)",
 			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));
 	else if (ret == -ETIME)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "did not reach %s in time, is in %s",
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s not reached in time, AL state %s",
 			      ec_al_state_name(state),
 			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
@@ -213,7 +213,7 @@ static int to_boot(struct ec_slave *s)
 
 	if (!len) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "cannot go to BOOT: its EEPROM names no bootstrap mailbox");
+			      "BOOT not possible: no bootstrap mailbox in the SII");
 		return -EOPNOTSUPP;
 	}
 	ret = write_reg(s, EC_REG_SM(0), page, len) ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?:
@@ -322,7 +322,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 	if (!c || !c->dc_assign)
 		return 0;
 	if (!ec_slave_has_clock(s)) {
-		ec_slave_warn(s, "has no distributed clock; its DC settings are left out\n");
+		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
 		return 0;
 	}
 	ec_dc_sync_compare(s, c);
@@ -332,8 +332,9 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
-		ec_slave_warn(s, "starts SYNC although its clock is not %s (%pe)\n",
-			      READ_ONCE(s->dc_set) ? "near the others yet" : "set", ERR_PTR(ret));
+		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
+			      READ_ONCE(s->dc_set) ? "inside the sync window yet" :
+						     "synchronized", ERR_PTR(ret));
 	return ec_dc_sync_start(s, c);
 }
 

@@ -111,7 +111,7 @@ static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
 
 	if (c->n_fmmus > count_fmmus(s)) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "needs %u FMMUs but has %u; put its SyncManagers into fewer domains",
+			      "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
 			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
 		return -ENOSPC;
 	}
@@ -122,8 +122,8 @@ static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
 	}
 	if (c->in_ring && s->position != c->ring_position) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "was at position %u when its inputs and others' outputs got the same logical addresses; start the application again, or let it overlap by itself only",
-			      c->ring_position);
+			      "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
+			      s->position, c->ring_position);
 		return -EOPNOTSUPP;
 	}
 	for (i = 0; i < c->n_fmmus; i++) {

@@ -144,11 +144,11 @@ void ec_cycle_lock_log(struct ec_session *s)
 		return;
 	s->lock_told = lock;
 	if (lock == EC_CYCLE_LOCK_LOCKED)
-		ec_info(s->master, "cycle locked to the reference clock, phase error %d ns, rate %+d ppb\n",
+		ec_info(s->master, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
 			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));
 	else if (lock == EC_CYCLE_LOCK_HOLD)
-		ec_warn(s->master, "the reference clock does not answer; the cycle goes on at its last rate\n");
+		ec_warn(s->master, "reference clock not answering; kernel cycle in holdover at the last rate\n");
 	else if (lock == EC_CYCLE_LOCK_SEEK && READ_ONCE(st->lock_losses))
-		ec_warn(s->master, "cycle not locked to the reference clock any more; it follows (phase error %d ns)\n",
+		ec_warn(s->master, "kernel cycle lost lock: phase error %d ns; seeking\n",
 			READ_ONCE(st->phase_error));
 }

@@ -131,7 +131,7 @@ int ec_eoe_apply(struct ec_slave *slave, const struct ec_config *c)
 		return ret;
 	if (ret == -EREMOTEIO)
 		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED,
-			      "refused its IP parameters: EoE result 0x%04x: %s", result,
+			      "IP parameters refused: EoE result 0x%04x (%s)", result,
 			      ec_eoe_result_text(result));
 	else if (ret == -EPROTONOSUPPORT)
 		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED,

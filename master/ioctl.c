@@ -241,7 +241,7 @@ static int check(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd)
 		return ec_refuse(f, -EINVAL, "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
 				 cmd, size, op->min);
 	if (op->flags & F_WRITE && !f->writable)
-		return ec_refuse(f, -EPERM, "this needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
+		return ec_refuse(f, -EPERM, "the command needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
 	return 0;
 }
 

@@ -20,7 +20,7 @@ int ec_ioc_reserve(struct ec_file *f, void *arg)
 	switch (ret) {
 	case -EBUSY:
 		if (READ_ONCE(f->master->api->reserved))
-			return ec_refuse(f, ret, "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows who uses ec_master",
+			return ec_refuse(f, ret, "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
 					 f->master->index);
 		if (!ec_session_owner_text(f->master, who, sizeof(who)))
 			return ec_refuse(f, ret, "master %u was reserved by an application that has just ended; try again",
@@ -413,7 +413,7 @@ static int activate_failed(struct ec_file *f, const struct ec_session *s, int re
 				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
 				 EC_MAX_CYCLE_FRAMES);
 	case -ENOSPC:
-		return ec_refuse(f, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and no cycle may be late; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
+		return ec_refuse(f, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and the limit of delayed cycles is 0; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
 				 ec_cycle_need_ns());
 	case -EDQUOT:
 		return ec_ioc_limit(f, ret);
@@ -457,7 +457,7 @@ static int activate(struct ec_file *f, struct ec_session *s, const void *preset,
 			return ret;
 	}
 	if (size && !s->active && size != ec_session_place(s))
-		return ec_refuse(f, -EINVAL, "the initial image has %u bytes, the domains need %u; register all entries first",
+		return ec_refuse(f, -EINVAL, "initial image has %u bytes, domains need %u; register all entries first",
 				 size, ec_session_place(s));
 	s->preset = preset;
 	ret = ec_session_activate(s);
@@ -601,7 +601,7 @@ int ec_ioc_app_time(struct ec_file *f, void *arg)
 		return 0;
 	}
 	if (ret == -EBUSY)
-		return ec_refuse(f, ret, "the kernel runs the cycle and tells the time");
+		return ec_refuse(f, ret, "the kernel runs the cycle and sets the application time");
 	s = lock(f, &ret);
 	if (!s)
 		return ret;

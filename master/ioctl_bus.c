@@ -41,16 +41,16 @@ static int reg_access(struct ec_file *f, const struct ec_ioc_reg *i, u8 cmd, u8 
 	case 0:
 		break;
 	case -ETIMEDOUT:
-		return ec_refuse(f, ret, "access to 0x%04x of slave %u: the frame did not come back; check the cables",
+		return ec_refuse(f, ret, "no reply to register access 0x%04x at slave %u; check the cables",
 				 i->address, i->position);
 	case -EINTR:
 		return ret;
 	case -ENODEV:
 	case -ENETDOWN:
-		return ec_refuse(f, ret, "access to 0x%04x of slave %u: the main device is missing or has no link; check the cable",
+		return ec_refuse(f, ret, "register access 0x%04x at slave %u: the main device is missing or has no link; check the cable",
 				 i->address, i->position);
 	default:
-		return ec_refuse(f, ret, "access to 0x%04x of slave %u: cannot send (%pe)",
+		return ec_refuse(f, ret, "register access 0x%04x at slave %u: cannot send (%pe)",
 				 i->address, i->position, ERR_PTR(ret));
 	}
 	if (dg.wkc != 1)
@@ -171,9 +171,9 @@ int ec_ioc_end_detached(struct ec_file *f, void *arg)
 	case 0:
 		return 0;
 	case -ENOENT:
-		return ec_refuse(f, -ENOENT, "master %u has no session to end", f->master->index);
+		return ec_refuse(f, -ENOENT, "master %u has no session", f->master->index);
 	default:
-		return ec_refuse(f, -EBUSY, "the session of master %u still has its application; stop that first",
+		return ec_refuse(f, -EBUSY, "session of master %u still has its application; stop it first",
 				 f->master->index);
 	}
 }

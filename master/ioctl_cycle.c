@@ -41,7 +41,7 @@ static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
 	if (i->dc & EC_CYCLE_DC_FOLLOW && !(i->dc & EC_SEND_FLAG_SYNC_SLAVES))
 		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
 	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
-		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would follow the other");
+		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would be synchronized to the other");
 	if (i->flags & EC_CYCLE_FLAG_DETACH && i->stall == EC_STALL_STOP)
 		return ec_refuse(f, -EINVAL, "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
 	return 0;

@@ -43,7 +43,7 @@ static int failed(struct ec_file *f, const struct ec_ioc_ip *i, int ret)
 {
 	switch (ret) {
 	case -EREMOTEIO:
-		return ec_refuse(f, -EIO, "slave %u refused: EoE result 0x%04x: %s", i->position,
+		return ec_refuse(f, -EIO, "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
 				 i->result, ec_eoe_result_text(i->result));
 	case -EMSGSIZE:
 		return ec_refuse(f, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",

@@ -72,7 +72,7 @@ int ec_ioc_late(struct ec_file *f, void *arg)
 	int ret = 0;
 
 	if (i->per_s > LATE_MAX)
-		return ec_refuse(f, -EINVAL, "%u late cycles a second; use 0 to %u", i->per_s,
+		return ec_refuse(f, -EINVAL, "%u delayed cycles per second; use 0 to %u", i->per_s,
 				 LATE_MAX);
 	s = ec_ioc_lock_idle(f, &ret);
 	if (!s)

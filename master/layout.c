@@ -366,7 +366,7 @@ u32 ec_cycle_need_ns(void)
 }
 
 /* Does an acyclic frame fit beside a cycle of @interval_ns? If not the log says so. */
-static bool has_room(struct ec_session *s, u64 interval_ns, u32 frames, u32 wire_ns)
+static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
 {
 	u64 budget = div_u64(interval_ns * 9, 10);
 	u32 slack = budget > wire_ns ? min_t(u64, budget - wire_ns, ~0u) : 0;
@@ -375,8 +375,8 @@ static bool has_room(struct ec_session *s, u64 interval_ns, u32 frames, u32 wire
 		return true;
 	s->room_told = true;
 	ec_warn(s->master,
-		"a cycle of %u frame(s) takes %u ns of wire time; %llu ns leave %u ns for others, who need %u ns at least: choose a longer cycle or let inputs overlap outputs\n",
-		frames, wire_ns, interval_ns, slack, ec_cycle_need_ns());
+		"cyclic frames use %u ns of %llu ns; %u ns free for acyclic frames, minimum %u ns: lengthen the cycle or overlap PDOs\n",
+		wire_ns, interval_ns, slack, ec_cycle_need_ns());
 	return false;
 }
 
@@ -403,7 +403,7 @@ int ec_cycle_check_room(struct ec_session *s)
 	m->late_cycles = 0;
 	if (!s->kernel.period_ns && !m->interval_told)
 		return 0;
-	return has_room(s, interval, w->frames, w->ns) || s->late_per_s ? 0 : -ENOSPC;
+	return has_room(s, interval, w->ns) || s->late_per_s ? 0 : -ENOSPC;
 }
 
 /**
@@ -418,7 +418,7 @@ void ec_cycle_tell_room(struct ec_session *s)
 
 	if (!s->room_told && !m->interval_told && ec_read64(&s->cycle.cycles) > MEASURED)
 		has_room(s, READ_ONCE(m->interval_us) * (u64)NSEC_PER_USEC,
-			 READ_ONCE(s->cycle.last.frames), READ_ONCE(m->cycle_wire_ns));
+			 READ_ONCE(m->cycle_wire_ns));
 }
 
 /* Nobody will receive what is still on its way. */

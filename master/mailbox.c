@@ -256,7 +256,8 @@ static void keep(struct ec_slave *slave, const u8 *rx, u16 len)
 	memcpy(k->data, rx, len);
 	spin_lock(&slave->kept_lock);
 	if (slave->keep_voe && slave->n_kept == EC_MBOX_KEPT)
-		ec_slave_warn(slave, "sends VoE messages that nobody reads; the oldest is lost\n");
+		ec_slave_warn(slave, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
+			      EC_MBOX_KEPT);
 	flush(slave, EC_MBOX_KEPT - 1);
 	list_add_tail(&k->list, &slave->kept);
 	slave->n_kept++;
@@ -320,7 +321,7 @@ static int error_reply(struct ec_slave *slave, const struct ec_mbox_hdr *h, cons
 
 	if (ec_mbox_error_decode(&r, &detail))
 		return -EBADMSG;
-	ec_slave_warn(slave, "mailbox error 0x%04x: %s\n", detail, ec_mbox_error_text(detail));
+	ec_slave_warn(slave, "mailbox error reply 0x%04x (%s)\n", detail, ec_mbox_error_text(detail));
 	return ec_mbox_error_errno(detail);
 }
 

@@ -68,7 +68,7 @@ void ec_master_link_attach(struct ec_link *link, struct ecdev *dev)
 	ec_link_set_places(link, m->owner == EC_OWNER_CYCLE);
 	rt_mutex_unlock(&m->io_lock);
 	WRITE_ONCE(m->looked, false);
-	ec_info(m, "%s device is %s (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
+	ec_info(m, "%s device %s attached (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
 		dev->ops->kind, dev->mac);
 	ec_monitor_kick(m);
 }
@@ -94,7 +94,7 @@ void ec_master_link_detach(struct ec_link *link)
 			ec_cycle_nothing_back(m->active);
 		mutex_unlock(&m->cyclic_lock);
 	}
-	ec_info(m, "%s device %s is gone\n", link->side ? "backup" : "main", dev->name);
+	ec_info(m, "%s device %s detached\n", link->side ? "backup" : "main", dev->name);
 }
 
 /**
@@ -439,7 +439,7 @@ static int check_names(char **main, unsigned int n_main, char **backup, unsigned
 			;
 		if (k == i)
 			continue;
-		pr_err("EtherCAT: main_devices: device %s is given twice; each master needs its own\n",
+		pr_err("EtherCAT: main_devices: device %s is listed twice; each master needs its own\n",
 		       main[i]);
 		return -EINVAL;
 	}

@@ -22,12 +22,12 @@ const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t s
 	u16 detail = ec_mbox_errno_detail(ret);
 
 	if (detail) {
-		scnprintf(buf, size, "mailbox error 0x%04x: %s", detail, ec_mbox_error_text(detail));
+		scnprintf(buf, size, "mailbox error reply 0x%04x (%s)", detail, ec_mbox_error_text(detail));
 		return buf;
 	}
 	switch (ret) {
 	case -ECOMM:
-		scnprintf(buf, size, "mailbox error reply with an unknown code; the kernel log has it");
+		scnprintf(buf, size, "mailbox error reply, unknown code; see the kernel log");
 		break;
 	case -EPROTONOSUPPORT:
 		scnprintf(buf, size, "no %s mailbox", protocol);

@@ -28,7 +28,7 @@ static int __init ec_init(void)
 	if (ret)
 		goto err_class;
 	if (!n_main)
-		pr_warn("EtherCAT: no master: load ec_master with main_devices=MAC address, interface or sim0\n");
+		pr_warn("EtherCAT: no master: load ec_master with main_devices=MAC, interface or sim0\n");
 	return 0;
 
 err_class:

@@ -41,7 +41,8 @@ static void check_links(struct watch *w)
 
 		if (u != m->link[i].up) {
 			WRITE_ONCE(m->link[i].up, u);
-			ec_info(m, "link %s is %s\n", i ? "backup" : "main", u ? "up" : "down");
+			ec_log_event(m, EC_LOG_ANY, 0, u ? KERN_INFO : KERN_WARNING, "%s link %s\n",
+				     i ? "backup" : "main", u ? "up" : "down");
 		}
 		up |= u;
 	}
@@ -59,11 +60,11 @@ static void log_change(const struct ec_slave *s, u16 status, u16 code)
 	u8 state = status & EC_AL_STATE_MASK, before = s->al_status & EC_AL_STATE_MASK;
 
 	if (status & EC_AL_ERROR && !(s->al_status & EC_AL_ERROR))
-		ec_slave_warn(s, "is in %s with error 0x%04x: %s\n", ec_al_state_name(state),
-			      code, ec_al_code_text(code));
+		ec_slave_warn(s, "AL state %s with error, AL status code 0x%04x (%s)\n",
+			      ec_al_state_name(state), code, ec_al_code_text(code));
 	else if (state < before && before == s->requested)
-		ec_slave_warn(s, "fell back from %s to %s\n", ec_al_state_name(before),
-			      ec_al_state_name(state));
+		ec_slave_warn(s, "AL state %s left without request, now %s\n",
+			      ec_al_state_name(before), ec_al_state_name(state));
 }
 
 /*
@@ -192,7 +193,7 @@ static void count_slaves(struct watch *w)
 	WRITE_ONCE(m->link[0].al_states, al_bits(ored));
 	if (count != w->count) {
 		if (w->scanned)
-			ec_info(m, "%u slave(s) responding, %u before\n", count, w->count);
+			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
 		w->count = count;
 		w->same = 0;
 		w->scanned = false;
@@ -207,7 +208,8 @@ static void count_slaves(struct watch *w)
 		w->silent++;
 	/* power was off for a moment: address and state are lost */
 	if (w->silent >= SILENT_LOOKS) {
-		ec_info(m, "a slave does not reply to its station address\n");
+		ec_warn(m, "a slave did not answer at its station address in %u polls; rescanning\n",
+			SILENT_LOOKS);
 		w->silent = 0;
 		w->scanned = false;
 		w->same = STABLE_LOOKS;

@@ -149,7 +149,7 @@ static int write_stations(struct scan *sc, unsigned int n)
 		if (!same_count(sc))
 			return -EAGAIN;
 		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED,
-			      "forwards frames but does not take its station address; power-cycle or replace it, then rescan");
+			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
 	}
 	return ret;
 }
@@ -215,7 +215,7 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 	s->seen_ns = sc->m->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
-		      "no reply from the slave, although frames pass; waiting for a reply");
+		      "no reply from the slave, frames pass; waiting for a reply");
 	ec_slave_retry(s, EC_PROBE_MAX_MS);
 }
 
@@ -229,7 +229,7 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 	s->why[0] = '\0';
 	s->retry_ms = 0;
 	ec_write64(&s->retry_ns, 0);
-	ec_slave_info(s, "replies again\n");
+	ec_slave_info(s, "slave replies again\n");
 }
 
 /*
@@ -346,10 +346,10 @@ static int read_new(struct scan *sc)
 
 		if (s->sii && ec_slave_parse_sii(s))
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
-				      "EEPROM content is unusable (%zu bytes); write a valid image",
+				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);
 		else if (s->sii && !s->info.checksum_ok && s->flaw.kind != EC_SII_FLAW_BLANK)
-			ec_slave_warn(s, "EEPROM checksum is 0x%02x, should be 0x%02x\n",
+			ec_slave_warn(s, "SII checksum 0x%02x, expected 0x%02x; content used anyway\n",
 				      s->info.checksum, s->info.checksum_calc);
 	}
 	ec_scan_preop(sc->m, fresh, n, sc->fresh);

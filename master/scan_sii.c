@@ -75,7 +75,8 @@ static void fail(struct reader *r, const char *what)
 {
 	is_done(r);
 	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED,
-		      "EEPROM: %s at word 0x%04zx; check the slave, then rescan", what, r->have / 2);
+		      "SII read failed at word 0x%04zx: %s; check the slave, then rescan",
+		      r->have / 2, what);
 }
 
 /* The images of all slaves have a limit together. */

@@ -294,7 +294,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_shared_put(sh);
 	forget_told(m);
 	if ((u32)atomic_read(&m->stalls) != s->stall_log.told)
-		ec_warn(m, "application stalled %u more time(s)\n",
+		ec_warn(m, "%u more cycle timeout(s) since the last message\n",
 			atomic_read(&m->stalls) - s->stall_log.told);
 	ec_info(m, "session deactivated\n");
 	return 0;
@@ -390,7 +390,7 @@ void ec_session_end(struct ec_master *m, const void *owner)
 	if (s && owner && s->thread && !s->ending &&
 	    s->kernel.flags & EC_CYCLE_FLAG_DETACH) {
 		ec_session_set_owner(s, NULL, NULL);
-		ec_info(m, "application is gone, its cycle goes on: session detached\n");
+		ec_info(m, "application exited or released the master; session detached, kernel cycle continues\n");
 	} else if (s) {
 		end(m);
 	}
@@ -458,10 +458,10 @@ static void tell_taken(const struct ec_session *s, const struct ec_config *c,
 	const struct ec_config *has = slave->config;
 
 	if (s->active)
-		ec_slave_warn(slave, "is where %u:%u is expected, but was at %u:%u on activation and stays that; put back what is missing or restart the application\n",
-			      c->alias, c->position, has->alias, has->position);
+		ec_slave_warn(slave, "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
+			      has->alias, has->position, c->alias, c->position);
 	else
-		ec_slave_warn(slave, "has two configurations; use one of %u:%u and %u:%u\n",
+		ec_slave_warn(slave, "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
 			      has->alias, has->position, c->alias, c->position);
 }
 
@@ -702,7 +702,7 @@ int ec_session_activate(struct ec_session *s)
 	if (s->requests)
 		ec_requests_kick(s->requests);
 	ec_config_log_differences(s);
-	ec_info(m, "session active: %u domain(s), %u byte(s), %u datagram(s) a cycle\n",
+	ec_info(m, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->n_domains, offset, s->cycle.n_dgrams);
 	return 0;
 }

@@ -41,7 +41,7 @@ static void log_stalls(struct ec_session *s, u64 now)
 	u32 more = atomic_read(&m->stalls) - l->told;
 
 	if (l->open && !stalled) {
-		ec_info(m, "application sends again after %llu ms\n",
+		ec_info(m, "cycle resumed after %llu ms\n",
 			div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
@@ -50,10 +50,10 @@ static void log_stalls(struct ec_session *s, u64 now)
 		l->told += more;
 		l->open = stalled;
 		if (more > stalled)
-			ec_warn(m, "application stalled %u more time(s) since the last message\n",
+			ec_warn(m, "%u more cycle timeout(s) since the last message\n",
 				more - stalled);
 		if (stalled)
-			ec_warn(m, "application does not send (last %llu ms ago); process data stopped\n",
+			ec_warn(m, "cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
 				div_u64(now - l->since_ns, NSEC_PER_MSEC));
 	}
 }

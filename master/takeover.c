@@ -269,6 +269,6 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 	s->owner_pid = heir->owner_pid;
 	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
 	ec_session_free(heir);
-	ec_info(m, "session taken over by another application\n");
+	ec_info(m, "detached session taken over by a new application\n");
 	return 0;
 }

@@ -47,7 +47,7 @@ static size_t no_link(struct ec_master *m, char *buf, size_t size)
 			 m->index);
 }
 
-/* Nobody is attached: who is there instead? @topo is held, or it is shown. */
+/* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_master *m = c->session->master;
@@ -73,12 +73,12 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
 	if (s->config && c->session->active && !twice(s->config, pos))
-		return scnprintf(buf, size, "is missing, or one in front of it: slave %u was at %u:%u on activation",
+		return scnprintf(buf, size, "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
 				 pos, s->config->alias, s->config->position);
 	if (s->config)
 		return scnprintf(buf, size, "slave %u has another configuration, %u:%u; use one of the two",
 				 pos, s->config->alias, s->config->position);
-	return scnprintf(buf, size, "slave %u has just appeared", pos);
+	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
 
 static size_t present(const struct ec_slave *s, char *buf, size_t size)
@@ -91,17 +91,17 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 	if (s->error != EC_SLAVE_OK)
 		return scnprintf(buf, size, "%s", s->why);
 	if (status & EC_AL_ERROR)
-		return scnprintf(buf, size, "is in %s with error 0x%04x: %s", state, code,
+		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)", state, code,
 				 ec_al_code_text(code));
 	if (want != EC_AL_OP)
-		return scnprintf(buf, size, "is in %s, %s was requested", state,
+		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
 	if (s->master->owner == EC_OWNER_IDLE)
-		return scnprintf(buf, size, "is in %s; the application does not send", state);
+		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
 	if (doing)
-		return scnprintf(buf, size, "is in %s on the way to OP, waiting for %s", state,
+		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
 				 doing);
-	return scnprintf(buf, size, "is in %s, on its way to OP", state);
+	return scnprintf(buf, size, "AL state %s on the way to OP", state);
 }
 
 /* The revision is no part of the identity, only what an application has asked to be told. */
@@ -235,7 +235,7 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 	else if (ec_session_config_status(c) & EC_STATUS_SC_OP)
 		len = 0;
 	else if (!c->session->active)
-		len = scnprintf(buf, size, "is in %s; the master is not active",
+		len = scnprintf(buf, size, "AL state %s; the master is not active",
 				ec_al_state_name(c->slave->al_status & EC_AL_STATE_MASK));
 	else
 		len = present(c->slave, buf, size);

@@ -137,7 +137,7 @@ static int attach(struct end *e, struct net_device *nd)
 	if (ret) {
 		pr_err_ratelimited("ec_sim: %s cannot be claimed (%pe)%s\n", e->name,
 				   ERR_PTR(ret),
-				   ret == -EBUSY ? ": a master, bridge, bond or the like has it" : "");
+				   ret == -EBUSY ? ": in use by a master, bridge or bond" : "");
 		rcu_assign_pointer(e->nd, NULL);
 		synchronize_net();
 		netdev_put(nd, &e->tracker);
@@ -189,7 +189,7 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 			if (rtnl_dereference(r->end[i].nd) != nd)
 				continue;
 			if (!r->leaving)
-				pr_info_ratelimited("ec_sim: %s is gone, waiting for it\n", r->end[i].name);
+				pr_info_ratelimited("ec_sim: %s detached, waiting for it\n", r->end[i].name);
 			detach(&r->end[i]);
 		}
 		break;

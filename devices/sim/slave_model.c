@@ -124,7 +124,7 @@ static void add_standard(struct list *l, const struct ec_app_model *m)
 	    "Sync error counter limit", NULL);
 	for (u8 i = 0; i < d->n_sms; i++)
 		add(l, 0x1C00, (u8)(i + 1), EC_TYPE_UINT8, 8, EC_OD_READ,
-		    d->sms[i].type, NULL, "Sync manager type");
+		    d->sms[i].type, NULL, "SyncManager type");
 	for (int dir = 0; dir < EC_APP_DIRS; dir++) {
 		u16 index = (u16)(0x1C30 + m->pd_sm[dir]);
 

@@ -240,7 +240,7 @@ struct ec_sii_sm {
  * @index: 0x1600... or 0x1A00...
  * @entries: number of entries
  * @sm: default SyncManager, EC_SII_PDO_NO_SM: not assigned
- * @sync: synchronisation
+ * @sync: synchronization
  * @name: string index
  * @flags: 0 in most images
  * @entry_data: encoded entries in the image, 8 bytes each; builders ignore it

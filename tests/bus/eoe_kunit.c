@@ -90,7 +90,7 @@ static void refused(struct kunit *test, const char *text, const char *why)
 static void eoe_refused(struct kunit *test)
 {
 	refused(test, "slave a drive in=8 out=8\nslave sw EL6614 ip=no\n",
-		"refused its IP parameters: EoE result 0x0201: the slave does not support IP");
+		"IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
 }
 
 static void eoe_without_eoe(struct kunit *test)
@@ -114,7 +114,7 @@ static void eoe_by_the_tool(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &i), -EIO);
 	KUNIT_EXPECT_EQ(test, i.result, 0x0201);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
-			   "slave 1 refused: EoE result 0x0201: the slave does not support IP");
+			   "slave 1: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -EIO);
 	i.position = 2;
 	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &i), -EPROTONOSUPPORT);

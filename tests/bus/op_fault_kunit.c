@@ -252,25 +252,29 @@ static void op_stalls_logged(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->stalls), before + 20);
 	KUNIT_EXPECT_EQ(test, c->b->m->scan_count, scans);
 	first = it;
-	KUNIT_EXPECT_EQ(test, logged(&first, "application"), 2);
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout"), 1);
 	first = it;
-	KUNIT_EXPECT_EQ(test, logged(&first, "application does not send (last"), 1);
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle resumed"), 1);
 	first = it;
-	KUNIT_EXPECT_EQ(test, logged(&first, "application sends again after 2"), 1);
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout: no cyclic frame for "), 1);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle resumed after 2"), 1);
 	it = first;
 
 	/* told when the 10 s are over although it does not stall any more */
 	cyc_run(c, 9000);
 	first = it;
-	KUNIT_EXPECT_EQ(test, logged(&first, "application stalled 19 more time(s)"), 1);
+	KUNIT_EXPECT_EQ(test, logged(&first, "19 more cycle timeout(s) since the last message"), 1);
 	first = it;
-	KUNIT_EXPECT_EQ(test, logged(&first, "application"), 1);
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout"), 1);
+	first = it;
+	KUNIT_EXPECT_EQ(test, logged(&first, "cycle resumed"), 0);
 	/* what the log does not know at the end is told then */
 	it = first;
 	stall_once(c);
-	KUNIT_EXPECT_EQ(test, logged(&it, "application"), 0);
+	KUNIT_EXPECT_EQ(test, logged(&it, "cycle timeout"), 0);
 	cyc_release(c);
-	KUNIT_EXPECT_EQ(test, logged(&it, "application stalled 1 more time(s)"), 1);
+	KUNIT_EXPECT_EQ(test, logged(&it, "1 more cycle timeout(s) since the last message"), 1);
 }
 
 static struct kunit_case op_fault_cases[] = {

@@ -76,17 +76,17 @@ static void texts_sdo(struct kunit *test)
 static void texts_mailbox_error(struct kunit *test)
 {
 	static const char * const want[] = {
-		"mailbox error reply with an unknown code; the kernel log has it",
-		"mailbox error 0x0001: the mailbox header is wrong",
-		"mailbox error 0x0002: the mailbox protocol is not supported",
-		"mailbox error 0x0003: the channel in the mailbox header is wrong",
-		"mailbox error 0x0004: the service of the mailbox protocol is not supported",
-		"mailbox error 0x0005: the header of the mailbox protocol is wrong",
-		"mailbox error 0x0006: the mailbox message is too short",
-		"mailbox error 0x0007: the slave has no memory left for the mailbox message",
-		"mailbox error 0x0008: the sizes in the mailbox message contradict each other",
-		"mailbox error 0x0009: the slave still works on an earlier request",
-		"mailbox error reply with an unknown code; the kernel log has it",
+		"mailbox error reply, unknown code; see the kernel log",
+		"mailbox error reply 0x0001 (the mailbox header is wrong)",
+		"mailbox error reply 0x0002 (the mailbox protocol is not supported)",
+		"mailbox error reply 0x0003 (the channel in the mailbox header is wrong)",
+		"mailbox error reply 0x0004 (the service of the mailbox protocol is not supported)",
+		"mailbox error reply 0x0005 (the header of the mailbox protocol is wrong)",
+		"mailbox error reply 0x0006 (the mailbox message is too short)",
+		"mailbox error reply 0x0007 (the slave has no memory left for the mailbox message)",
+		"mailbox error reply 0x0008 (the sizes in the mailbox message contradict each other)",
+		"mailbox error reply 0x0009 (the slave still works on an earlier request)",
+		"mailbox error reply, unknown code; see the kernel log",
 	};
 	struct bus *b = ready(test);
 	char line[128];
@@ -118,7 +118,7 @@ static void texts_startup_mailbox_error(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
-			   "startup SDO 0x1018:03 (4 byte(s)) failed: mailbox error 0x0007: the slave has no memory left for the mailbox message");
+			   "startup SDO 0x1018:03 (4 byte(s)) failed: mailbox error reply 0x0007 (the slave has no memory left for the mailbox message)");
 	cyc_release(c);
 }
 

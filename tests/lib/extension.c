@@ -133,7 +133,7 @@ static void reasons(void)
 	CHECK(ecrt_master_reason(m, NULL, 1) == -EINVAL);
 
 	CHECK(ecrt_slave_config_reason(sc, text, sizeof(text)) == 10 &&
-	      !strcmp(text, "refused OP"));
+	      !strcmp(text, "OP refused"));
 	CHECK(((struct ec_ioc_config_why *)fake.arg)->index == 5);
 	fake.refuse = EC_IOC_CONFIG_WHY;
 	fake.err = ENOENT;

@@ -253,7 +253,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		break;
 	case EC_IOC_CONFIG_WHY:
 		strcpy(((struct ec_ioc_config_why *)arg)->text,
-		       "refused OP\nand more");
+		       "OP refused\nand more");
 		break;
 	case EC_IOC_SOE_READ:
 		memcpy((void *)(uintptr_t)((struct ec_ioc_soe *)arg)->data, "\x34\x12", 2);

@@ -39,7 +39,7 @@ image() {
 	sleep 1
 	dmesg | grep 'EtherCAT 0-1:' || true	# for the reader of a failure
 	# the cause comes again when PREOP was not reached
-	[ "$(dmesg | grep 'EtherCAT 0-1: .*EEPROM' | grep -vc '; then PREOP ')" = "$2" ]
+	[ "$(dmesg | grep 'EtherCAT 0-1: .*\(EEPROM\|SII\)' | grep -vc '; then PREOP ')" = "$2" ]
 }
 
 @test "EEPROM from a file" {
@@ -100,8 +100,8 @@ image() {
 			{ cat "$BATS_TEST_TMPDIR/out"; ethercat slaves; false; }
 		run ethercat slaves -v -p1
 		echo "$output"
-		[[ "$output" == *"refused $state"*0x001d* ]]
-		[ "$(dmesg | grep -c "EtherCAT 0-1: refused $state")" = 1 ]
+		[[ "$output" == *"$state refused"*0x001d* ]]
+		[ "$(dmesg | grep -c "EtherCAT 0-1: $state refused")" = 1 ]
 		kill -TERM $app
 		wait $app
 		stop

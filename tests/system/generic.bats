@@ -149,7 +149,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	ip link set veth0 mtu 1200
 	master veth0
 	main_is waiting...
-	dmesg | grep -q 'veth0 has an MTU of 1200, EtherCAT needs 1500'
+	dmesg | grep -q 'veth0: MTU 1200, need 1500'
 	ip link set veth0 mtu 1500
 	wait_for 120 main_is attached
 	run ip link set veth0 mtu 1499
@@ -163,7 +163,7 @@ foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'
 	ip link set veth0 master br0
 	master veth0
 	main_is waiting...
-	dmesg | grep -q 'veth0 is used by a bridge'
+	dmesg | grep -q 'veth0: in use by a bridge'
 	ip link set veth0 nomaster
 	wait_for 120 main_is attached
 	run ip link set veth0 master br0

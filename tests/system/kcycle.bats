@@ -184,7 +184,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	ethercat release
 	wait_for 60 all_slaves_are PREOP 3
 	ethercat master | grep -q 'Active: no'
-	refused 'has no session to end' release
+	refused 'has no session' release
 }
 
 @test "another program than the one that was killed is refused, then may" {

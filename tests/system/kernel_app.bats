@@ -74,10 +74,10 @@ copied() {
 	rmmod ec_mini
 	run insmod "$EC_BUILD/mini/ec_mini.ko" position=5
 	[ "$status" != 0 ]
-	dmesg | grep -qF "kernel application: cannot get slave 5"
+	dmesg | grep -qF "kernel API: cannot get slave 5"
 	run insmod "$EC_BUILD/mini/ec_mini.ko" master=3
 	[ "$status" != 0 ]
-	dmesg | grep -qF "there is no master 3; main_devices= names 1"
+	dmesg | grep -qF "no master 3; main_devices= names 1"
 	[ "$(awk '$1 == "ec_master" { print $3 }' /proc/modules)" = 1 ]
 	json '.masters[0].active == false' master
 }

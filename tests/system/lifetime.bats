@@ -102,7 +102,7 @@ kernel_memory() {
 	background "$BATS_TEST_TMPDIR/out" 600
 	dmesg -C
 	kill -STOP $app
-	wait_for 120 log_has 'does not send'
+	wait_for 120 log_has 'cycle timeout: no cyclic frame'
 	# the tool does not wait for the application
 	run timeout 60 "$EC_BUILD/tool/ethercat" reg_read -p1 -t uint16 0x0010
 	[ "$status" = 0 ]

@@ -48,7 +48,7 @@ runs() {
 not_taken() {
 	master "$1"
 	main_is waiting...
-	dmesg | grep -qE "ec_generic: $1 $2"
+	dmesg | grep -qE "ec_generic: $1: $2"
 }
 
 @test "a VLAN device runs the bench" {
@@ -69,7 +69,7 @@ not_taken() {
 	ip link add main0 type bond mode active-backup
 	ip link set veth0 down
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond, team or macvlan"
+	not_taken veth0 "in use by a bridge, bond, team or macvlan"
 	stop
 	runs veth1
 }
@@ -78,7 +78,7 @@ not_taken() {
 	modprobe bridge
 	ip link add main0 type bridge
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond, team or macvlan"
+	not_taken veth0 "in use by a bridge, bond, team or macvlan"
 	stop
 	runs veth1
 }
@@ -86,7 +86,7 @@ not_taken() {
 @test "the port of a macvlan is refused" {
 	modprobe macvlan
 	ip link add link veth0 name main0 type macvlan mode bridge
-	not_taken veth0 "is used by a bridge, bond, team or macvlan"
+	not_taken veth0 "in use by a bridge, bond, team or macvlan"
 }
 
 @test "the port below a VLAN device runs the bench" {
@@ -102,14 +102,14 @@ not_taken() {
 	ip link add main0 type team
 	ip link set veth0 down
 	ip link set veth0 master main0
-	not_taken veth0 "is used by a bridge, bond, team or macvlan"
+	not_taken veth0 "in use by a bridge, bond, team or macvlan"
 }
 
 @test "a mesh of batman-adv is refused" {
 	modprobe batman-adv
 	ip link add main0 type batadv
 	ip link set veth0 master main0
-	not_taken main0 "is a batman-adv mesh"
+	not_taken main0 "batman-adv mesh"
 }
 
 # macsec DEVICE LOWER OTHER: pushes a header into the frame it is given

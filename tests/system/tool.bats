@@ -146,7 +146,7 @@ teardown_file() { stop; }
 	refused 'slave 4: cannot reach OP, it is in SAFEOP: .*AL status code 0x[0-9a-f]{4}: .+' \
 		states OP -p4 --wait
 	[[ "$(ethercat slaves -p4)" == "4  1:4  SAFEOP  E  EL7201"* ]]
-	ethercat slaves -v -p4 | grep -q '^  Cause: refused OP: AL status code 0x'
+	ethercat slaves -v -p4 | grep -q '^  Cause: OP refused: AL status code 0x'
 	ethercat states -p4 | grep -q '^4  1:4  SAFEOP  .*0x00'
 	json '.masters[0].slaves[0] | .flag_error and .cause != ""' states -p4
 	ethercat states PREOP --wait

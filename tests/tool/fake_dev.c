@@ -330,7 +330,7 @@ static int request_state(const struct ec_ioc_state *r)
 		state[r->position].al_status = 0x12;
 		state[r->position].al_code = 0x001e;
 		state[r->position].error = EC_SLAVE_CONFIG_FAILED;
-		strcpy(state[r->position].why, "refused SAFEOP: AL status code 0x001e: inputs");
+		strcpy(state[r->position].why, "SAFEOP refused: AL status code 0x001e (inputs)");
 	}
 	return 0;
 }
@@ -652,7 +652,7 @@ static int ip(struct ec_ioc_ip *x, bool write)
 		return fail(EPROTONOSUPPORT, "slave 1 has no EoE mailbox");
 	if (!x->position) {
 		x->result = 0x0201;
-		return fail(EIO, "slave 0 refused: EoE result 0x0201: the slave does not support IP");
+		return fail(EIO, "slave 0: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
 	}
 	if (!write) {
 		x->params = net;
@@ -776,7 +776,7 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return 0;
 	case EC_IOC_END_DETACHED:
 		if (!bus("detached"))
-			return fail(ENOENT, "master 0 runs no session");
+			return fail(ENOENT, "master 0 has no session");
 		record("release %d\n", fd - FD);
 		return 0;
 	case EC_IOC_DEBUG:

@@ -276,7 +276,7 @@ END
 	[ -z "$output" ]
 	run ethercat states SAFEOP -p2 --wait 2
 	[ "$status" -eq 1 ]
-	[[ $output == *"slave 2: cannot reach SAFEOP, it is in PREOP+ERROR: refused SAFEOP: AL"*"0x001e: inputs" ]]
+	[[ $output == *"slave 2: cannot reach SAFEOP, it is in PREOP+ERROR: SAFEOP refused: AL"*"0x001e (inputs)" ]]
 	run ethercat states OP -p2 --wait=0.05
 	[ "$status" -eq 1 ]
 	[[ $output == *"has not reached OP"* ]]
@@ -330,7 +330,7 @@ END
 	[ "$(FAKE_BUS=detached log_of release)" = "release 0" ]
 	run ethercat release
 	[ "$status" -eq 1 ]
-	[[ $output == *"Master0: cannot end the session: "*"master 0 runs no session"* ]]
+	[[ $output == *"Master0: cannot end the session: "*"master 0 has no session"* ]]
 	FAKE_BUS=two run ethercat release
 	[ "$status" -eq 1 ]
 }

@@ -28,10 +28,10 @@ static const char usage[] =
 "  -h, --help\n"
 "      --version\n"
 "\n"
-"Needs root or CAP_NET_RAW, and the interface up and used by nobody else.\n"
+"Needs root or CAP_NET_RAW, and the interface up and not in use otherwise.\n"
 "Real time is model time, so answers are as exact as the machine's timers.\n"
-"Ends with SIGINT or SIGTERM (status 0) or when an interface is gone (1).\n"
-"devices/sim/describe.h tells how to describe a segment.\n";
+"Ends with SIGINT or SIGTERM (status 0) or when an interface disappears (1).\n"
+"devices/sim/describe.h explains how to describe a segment.\n";
 
 struct options {
 	const char *segment;

@@ -171,7 +171,7 @@ void port_check(struct port *p)
 	bool down;
 
 	if (ioctl(p->fd, SIOCGIFNAME, &r)) {
-		fprintf(stderr, "ethercat-sim: interface %s is gone\n", p->name);
+		fprintf(stderr, "ethercat-sim: interface %s has disappeared\n", p->name);
 		p->gone = true;
 		return;
 	}
