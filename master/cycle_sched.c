@@ -24,7 +24,7 @@ void ec_cycle_sched_set(const struct ec_session *s, struct task_struct *task)
 	int ret = sched_setattr_nocheck(task, &attr);
 
 	if (ret)
-		ec_warn(s->master, "cycle thread: cannot set SCHED_FIFO priority %u (%pe)\n",
+		ec_warn(s->master, "kernel cycle: cannot set SCHED_FIFO priority %u (%pe)\n",
 			s->priority, ERR_PTR(ret));
 }
 
