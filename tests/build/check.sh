@@ -75,6 +75,14 @@ t "W=1 and sparse have nothing to say about our files" no_warning
 t "sparse has looked at them" sparse_ran
 t "every line that a module logs while it runs is rate-limited" tests/build/log_check.py master devices
 t "no 64-bit value is shared by READ_ONCE() and WRITE_ONCE()" tests/build/once64_check.py master
+# else the check above could not fail
+words_noticed() {
+	printf 'int x;\n"the clock is odd"\n' >"$tmp/words.c"
+	tests/build/texts.py "$tmp/words.c" | grep "words.c:2: 'odd'; write: inconsistent"
+}
+
+t "texts for users have the terms of the glossary" tests/build/texts.py
+t "another term is noticed" words_noticed
 t "sparse notices a wrong byte order" sparse_notices
 t "ec_sim and ec_generic load after ec_master" eval \
 	'needs_master devices/sim/ec_sim.ko && needs_master devices/ec_generic.ko'

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-only
+"""Texts that a user reads use the terms of the glossary.
+
+Looks at README.md, Documentation/, ecrt.h, and the strings of master, devices, library, tool
+and examples (log lines, reasons, output, help) for wordings that were replaced.
+usage: texts.py [FILE...]      default: all of them
+"""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+# wording (a regular expression for whole words, any case): write instead
+WORDINGS = {
+    r"told|tells?|telling": "configured, reported; reports, shows, returns",
+    r"odd": "inconsistent; of a delay: unreliable",
+    r"make no sense|do(es)? not fit together": "inconsistent",
+    r"in vain": "failed attempt",
+    r"that cannot be": "invalid",
+    r"the field'?s?( standard| community)?": "IgH EtherCAT Master",
+    r"the original('s)?": "IgH EtherCAT Master",
+    r"speaks?|talks? to": "interface version not supported; accesses",
+    r"who|whom|whoever|whose turn": "the caller, the application: name the noun",
+    r"somebody|someone|nobody|anybody|everybody": "name the noun; no ...",
+    r"he|him": "name the noun",
+    r"follows us|as it should": "say what is synchronized to what",
+    r"in step": "synchronized, inside the sync window",
+    r"dies|died|death": "exits, releases the master",
+    r"(is|are|has|have) gone": "exited; detached, disconnected; freed",
+    r"outlived": "detached session",
+    r"falls? back|fell back": "leaves OP without request",
+    r"takes? back|took back|takes the links": "ends cyclic bus access",
+    r"owner of the links|idle links": "bus access: direct or cyclic",
+    r"cyclic caller of": "cycle owner",
+    r"left out": "skipped, excluded, omitted",
+    r"made late|make (a |no )?cycles? late|late cycles?": "delayed cycle",
+    r"does not send|sends again": "cycle timeout, cycle resumed",
+    r"goes on|go on": "continues",
+    r"stands? in for": "substitutes",
+    r"in front of": "upstream of",
+    r"at first|to begin with": "initial, initially",
+    r"anew": "again",
+    r"looks? (at|into|whether|after)|looked (at|into)": "polls, reads",
+    r"want of room|make room|makes room|room for|for room": "buffer size, free wire time, re-arms",
+    r"heir": "candidate session",
+    r"lanes?": "request queue",
+    r"shall": "must; or an imperative",
+    r"sync managers?": "SyncManager",
+    r"comparisons?": "drift compensation datagram",
+    r"stays that|has just appeared": "attached since activation; not attached yet",
+    r"come near|comes near": "clocks synchronized",
+    r"says? so": "reports it",
+    r"synchronis\w*|licence": "American spelling: synchronize, license",
+    r"too(?=[.;:)])": "no trailing 'too'",
+}
+
+# others are rewriting these; their texts follow
+LATER = ("master/dc", "master/queue", "master/cycle.")
+
+# a fixed interface, or a quotation: file, wording as found
+ALLOWED = {
+    ("tool/cmd_cycle.c", "nobody"): "a JSON value",
+    ("tool/sim/main.c", "tell"): "an option",
+}
+
+STRING = re.compile(r'"((?:\\.|[^"\\\n])*)"')
+COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
+
+
+def words(pattern):
+    return re.compile(r"(?<![\w'-])(?:%s)(?![\w-])" % pattern, re.I)
+
+
+def blank(text):
+    """@text without its words, the lines kept"""
+    return re.sub(r"[^\n]", " ", text)
+
+
+def strings(text):
+    """only what stands in quotation marks, each at its place; adjacent strings are one text"""
+    text = COMMENT.sub(lambda m: blank(m.group()), text)
+    text = re.sub(r"^\s*#.*$", lambda m: blank(m.group()), text, flags=re.M)
+    text = re.sub(r"'(\\.|[^'\\])'", lambda m: " " * len(m.group()), text)
+    out, end = [], 0
+    for m in STRING.finditer(text):
+        between = text[end:m.start()]
+        out.append(blank(between) if not between.strip() else re.sub(r"[^\n]", ".", between))
+        out.append(" " + re.sub(r"\\n", ". ", m.group(1)) + " ")
+        end = m.end()
+    return "".join(out)
+
+
+def corpus():
+    yield ROOT / "README.md"
+    yield from sorted((ROOT / "Documentation").glob("*.rst"))
+    yield ROOT / "include/ecrt.h"
+    for folder in ("master", "devices", "lib", "tool", "examples"):
+        for path in sorted((ROOT / folder).rglob("*.[ch]")):
+            if "build" not in path.parts:
+                yield path
+
+
+def readable(path):
+    text = path.read_text()
+    if path.suffix == ".c" or path.suffix == ".h" and path.name != "ecrt.h":
+        return strings(text)
+    # names of functions, files and faults are no prose
+    text = re.sub(r"``[^`]*``|`[^`\n]*`", lambda m: blank(m.group()), text)
+    if path.suffix == ".rst":
+        text = re.sub(r"(?<=::\n)\n(?:(?: [^\n]*)?\n)+", lambda m: blank(m.group()), text)
+    return text.replace("\n * ", "\n   ")
+
+
+def main():
+    bad, used, count = [], set(), 0
+    patterns = [(words(p), instead) for p, instead in WORDINGS.items()]
+    for path in [Path(a).resolve() for a in sys.argv[1:]] or list(corpus()):
+        name = str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else str(path)
+        if name.startswith(LATER):
+            continue
+        count += 1
+        text = readable(path)
+        for pattern, instead in patterns:
+            for m in pattern.finditer(text):
+                found = " ".join(m.group().split())
+                if (name, found.lower()) in ALLOWED:
+                    used.add((name, found.lower()))
+                    continue
+                line = text.count("\n", 0, m.start()) + 1
+                bad.append(f"{name}:{line}: '{found}'; write: {instead}")
+    if len(sys.argv) == 1:
+        bad += [f"{name}: '{found}' is allowed but not there" for name, found in ALLOWED
+                if (name, found) not in used]
+    print("\n".join(sorted(bad)) or f"{count} files")
+    return 1 if bad or not count else 0
+
+
+sys.exit(main())
