@@ -12,6 +12,8 @@
 #include "session.h"
 
 #define TURN_CYCLES	100	/* an acyclic frame has its turn within that many */
+#define CLOCK_CYCLES	10	/* and one that sets clocks, which has sent less before it */
+#define CLOCK_US	100000	/* or within that time */
 #define FLUSH_WAITS	200	/* for room in the transmit ring: 20 ms at least */
 #define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
 
@@ -179,7 +181,7 @@ bool ec_cycle_stalled(struct ec_master *m)
 /**
  * ec_cycle_wait_begin() - how long ec_xfer() waits for its frames
  * @m: master
- * @w: all but @polls is set
+ * @w: all but @polls and @clock is set
  *
  * In cycle mode frames first wait for their turn, see ec_cycle_wait_turn().
  *
@@ -200,7 +202,11 @@ void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w)
 				      atomic_read(&m->link[0].acyclic_ns) / NSEC_PER_USEC);
 		return;
 	}
-	w->timeout_us += TURN_CYCLES * max(m->interval_us, 1000u);
+	w->turns = TURN_CYCLES;
+	if (w->clock)
+		w->turns = clamp_t(u32, CLOCK_US / max(m->interval_us, 1000u), CLOCK_CYCLES,
+				   TURN_CYCLES);
+	w->timeout_us += w->turns * max(m->interval_us, 1000u);
 	/* the worst: each send carries one of those that wait, every second one is urgent */
 	turns = min(2 * (ec_queue_frames(m) + 1), 2u * EC_SLOTS);
 	w->turn_ns += (u64)turns * m->interval_us * NSEC_PER_USEC;
@@ -245,7 +251,7 @@ bool ec_cycle_wait_more(struct ec_master *m, const struct ec_cycle_wait *w)
 	if (ktime_get_ns() - w->began_ns > 2ULL * NSEC_PER_USEC * w->timeout_us ||
 	    READ_ONCE(m->owner) != w->owner)
 		return true;
-	if (w->owner == EC_OWNER_IDLE || READ_ONCE(m->polls) - w->polls >= TURN_CYCLES)
+	if (w->owner == EC_OWNER_IDLE || READ_ONCE(m->polls) - w->polls >= w->turns)
 		return false;
 	if (ec_cycle_stalled(m))
 		ec_session_stalled(m);
@@ -392,7 +398,6 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 	struct ec_queue *q;
 	unsigned int n, burst;
 	u32 frame_ns;
-	int fits;
 
 	/* one that comes at this moment has time until the next cycle */
 	if (!ec_queue_frames(m))
@@ -403,10 +408,8 @@ void ec_cycle_send_left(struct ec_master *m, u32 wire_ns)
 	burst = dev->ops->burst ?: EC_SLOTS;
 	/* the next cycle needs transmit buffers, too */
 	for (n = 0; n < burst && (q = ec_share_next(m, &next)); n++) {
-		fits = ec_share_fits(m, q, wire_ns, ec_frame_wire_ns(next.slot->eth_len));
-		if (fits == -EAGAIN)
-			continue;
-		if (fits && (m->share.frames || m->share.clocks || !may_be_late(m)))
+		if (!ec_share_fits(m, wire_ns, ec_frame_wire_ns(next.slot->eth_len)) &&
+		    (m->share.frames || !may_be_late(m)))
 			break;
 		frame_ns = send_next(m, q, &next, wire_ns);
 		if (!frame_ns)

@@ -235,14 +235,18 @@ struct ec_cycle {
 
 /**
  * struct ec_cycle_wait - what somebody who waits for acyclic frames remembers
+ * @clock: they are of ec_xfer_clock()
  * @owner: of the links when the wait began
+ * @turns: cycles of the time limit
  * @began_ns: when that was (ktime)
  * @timeout_us: how long it lasts once they have left
  * @turn_ns: until when they may be in the queue (ktime)
  * @polls: receives of the cycle when the frames were handed over
  */
 struct ec_cycle_wait {
+	bool clock;
 	enum ec_owner owner;
+	u32 turns;
 	u64 began_ns;
 	u64 turn_ns;
 	u32 timeout_us;

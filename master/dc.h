@@ -81,6 +81,7 @@ struct ec_dc_app {
  * @begun: the session's clocks were begun to be set, under session_lock
  * @wanted: the application sends clock datagrams
  * @running: the clocks are set: the cycle may correct them
+ * @framed: by frames of @work; the cycle only asks for the time
  * @stop: @work shall end
  * @fresh: @work sets all clocks from the application's time
  * @idle: and waits for the first one of its cycle
@@ -120,6 +121,7 @@ struct ec_dc {
 	bool begun;
 	bool wanted;
 	bool running;
+	bool framed;
 	bool stop;
 	bool fresh;
 	bool idle;

@@ -51,7 +51,8 @@ static u32 most(const struct ec_master *m, const struct ec_cycle *c)
 /* Comparisons of this send beyond one. */
 static u32 boost(struct ec_master *m, const struct ec_cycle *c)
 {
-	u32 left = READ_ONCE(m->dc.boost), n = min(left, most(m, c));
+	u32 left = READ_ONCE(m->dc.framed) ? 0 : READ_ONCE(m->dc.boost);
+	u32 n = min(left, most(m, c));
 
 	if (n)
 		WRITE_ONCE(m->dc.boost, left - n);
@@ -216,16 +217,17 @@ static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns
 static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data,
 		     u16 len)
 {
+	bool told = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
 	u16 wkc = get_unaligned_le16(data + len);
 	u8 sent[8];
 
 	put_unaligned_le64(f->dc_sent, sent);
-	if (!wkc || (!memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
+	if (!wkc ||
+	    (told && !memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
 		c->dc_silent++;
 		return false;
 	}
-	/* those in front have not been told the first time */
-	c->dc_wkc = data[-EC_DGRAM_HDR] == EC_CMD_FRMW ? wkc : 0;
+	c->dc_wkc = told ? wkc : 0;
 	c->dc_silent = 0;
 	return true;
 }
@@ -249,7 +251,8 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 	struct ec_master *m = s->master;
 	u16 ref = READ_ONCE(m->dc.ref_station);
 	/* those in front must not be told a time nobody knows */
-	u8 cmd = m->dc.front && !s->cycle.dc_time ? EC_CMD_FPRD : EC_CMD_FRMW;
+	bool quiet = READ_ONCE(m->dc.framed) || (m->dc.front && !s->cycle.dc_time);
+	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;
 	u8 t[8], *p;
 
@@ -257,8 +260,9 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
 	}
-	/* if it is silent: one that is exactly as predicted is told apart by some ns */
-	s->cycle.dc_sent = predicted(m, &s->cycle, now) + s->cycle.dc_silent % 4;
+	/* an answer that is exactly as predicted is told from silence by some ns */
+	s->cycle.dc_sent = predicted(m, &s->cycle, now) +
+			   (s->cycle.dc_silent ?: !s->cycle.dc_wkc) % 4;
 	put_unaligned_le64(s->cycle.dc_sent, t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));

@@ -4,8 +4,8 @@
  * of their own: they are many, and nobody else should wait behind them.
  *
  * What one send carries is limited, so that its execution time is: frames per
- * millisecond of cycle and half of the free wire time, those that set clocks left
- * aside; and frames in all. Short frames of several callers leave as one.
+ * millisecond of cycle, clock frames among them, frames in all, and half of the free wire
+ * time. Short frames of several callers leave as one.
  */
 #include <linux/atomic.h>
 #include <linux/ktime.h>
@@ -179,14 +179,38 @@ unsigned int ec_queue_frames(const struct ec_master *m)
 }
 
 /**
+ * ec_share_clock_bytes() - how long clock frames may be to leave as often as they may
+ * @m: master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes of datagrams, with their headers, of one frame.
+ */
+u16 ec_share_clock_bytes(const struct ec_master *m)
+{
+	u32 frames = max(1u, READ_ONCE(m->interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+	u32 bytes = ec_cycle_slack_ns(m) / 2 / frames / 80;
+
+	/* what ec_frame_wire_ns() adds, and the headers */
+	bytes -= min(bytes, 8u + 4 + 12 + EC_ETH_HDR + EC_FRAME_HDR);
+	return min_t(u32, bytes, EC_FRAME_BODY_MAX);
+}
+
+/**
  * ec_share_begin() - a cyclic send begins: it may carry acyclic frames again
  * @m: master
+ *
+ * Short cycles carry a clock frame only now and then.
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
 void ec_share_begin(struct ec_master *m)
 {
-	m->share = (struct ec_share){ .clock_last = m->share.clock_last };
+	u32 more = m->interval_us * EC_SHARE_CLOCKS_PER_MS;
+
+	m->share = (struct ec_share){
+		.clock_credit = min(m->share.clock_credit + more, max(more, 1000u)),
+		.clock_last = m->share.clock_last,
+	};
 }
 
 /**
@@ -194,50 +218,44 @@ void ec_share_begin(struct ec_master *m)
  * @m: master
  * @next: the frame
  *
- * Clock frames and others take turns.
+ * Clock frames and others take turns, as long as there is credit for clocks.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: queue of the frame, or NULL: none may be sent.
  */
 struct ec_queue *ec_share_next(struct ec_master *m, struct ec_queued *next)
 {
-	u32 all = READ_ONCE(ec_share_max);
-	u32 most = clamp(m->interval_us * EC_SHARE_PER_MS / 1000, 1u, all);
-	bool others = m->share.frames < most && !m->share.full;
+	u32 most = clamp(m->interval_us * EC_SHARE_PER_MS / 1000, 1u, READ_ONCE(ec_share_max));
+	bool clocks = m->share.clock_credit >= 1000;
 
-	if (m->share.frames + m->share.clocks >= all)
+	if (m->share.frames >= most)
 		return NULL;
-	if (others && m->share.clock_last && ec_queue_peek(m, &m->xq, next))
-		return &m->xq;
-	if (ec_queue_peek(m, &m->cq, next))
+	if (clocks && !m->share.clock_last && ec_queue_peek(m, &m->cq, next))
 		return &m->cq;
-	return others && ec_queue_peek(m, &m->xq, next) ? &m->xq : NULL;
+	if (ec_queue_peek(m, &m->xq, next))
+		return &m->xq;
+	return clocks && ec_queue_peek(m, &m->cq, next) ? &m->cq : NULL;
 }
 
 /**
  * ec_share_fits() - check the wire time of an acyclic frame
  * @m: master
- * @q: its queue
  * @used_ns: wire time that has passed since the cyclic send, or is taken
  * @frame_ns: wire time of the frame
  *
  * A single frame may take all that is left before the next cycle; more of them share
- * half of what the cycle leaves. Clock frames may have all of it.
+ * half of what the cycle leaves.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; -EAGAIN: it may not be sent, but clock frames may; -ENOSPC: nothing fits.
+ * Return: whether it may be sent.
  */
-int ec_share_fits(struct ec_master *m, const struct ec_queue *q, u32 used_ns, u32 frame_ns)
+bool ec_share_fits(struct ec_master *m, u32 used_ns, u32 frame_ns)
 {
 	u64 budget = m->interval_us * 900ULL;
 
 	if (used_ns + (u64)frame_ns > budget)
-		return -ENOSPC;
-	if (q == &m->cq || !m->share.frames ||
-	    2ull * (m->share.wire_ns + frame_ns) <= ec_cycle_slack_ns(m))
-		return 0;
-	m->share.full = true;
-	return -EAGAIN;
+		return false;
+	return !m->share.frames || 2ull * (m->share.wire_ns + frame_ns) <= ec_cycle_slack_ns(m);
 }
 
 /**
@@ -271,11 +289,9 @@ void ec_share_room(const struct ec_master *m, const struct ec_queue *q, u32 used
  */
 void ec_share_sent(struct ec_master *m, const struct ec_queue *q, u32 frame_ns)
 {
-	m->share.clock_last = q == &m->cq;
-	if (m->share.clock_last) {
-		m->share.clocks++;
-		return;
-	}
 	m->share.frames++;
 	m->share.wire_ns += frame_ns;
+	m->share.clock_last = q == &m->cq;
+	if (m->share.clock_last)
+		m->share.clock_credit -= 1000;
 }

@@ -26,21 +26,20 @@ struct ec_queue {
 
 /**
  * struct ec_share - acyclic frames since the last cyclic send; owned by the cyclic caller
- * @frames: sent, without those that set clocks
+ * @frames: sent
  * @wire_ns: wire time of them
- * @clocks: those that set clocks
- * @full: no more of @frames fit
+ * @clock_credit: clock frames that may be sent, 1/1000
  * @clock_last: the last one was a clock frame
  */
 struct ec_share {
 	u32 frames;
 	u32 wire_ns;
-	u32 clocks;
-	bool full;
+	u32 clock_credit;
 	bool clock_last;
 };
 
 #define EC_SHARE_PER_MS		8	/* acyclic frames per millisecond of cycle */
+#define EC_SHARE_CLOCKS_PER_MS	2	/* clock frames among them */
 
 extern unsigned int ec_share_max;	/* acyclic frames of one send: max_acyclic of the module */
 
@@ -52,9 +51,10 @@ void ec_queue_drop(struct ec_master *m, struct ec_queue *q, const struct ec_queu
 		   unsigned int n);
 unsigned int ec_queue_frames(const struct ec_master *m);
 
+u16 ec_share_clock_bytes(const struct ec_master *m);
 void ec_share_begin(struct ec_master *m);
 struct ec_queue *ec_share_next(struct ec_master *m, struct ec_queued *next);
-int ec_share_fits(struct ec_master *m, const struct ec_queue *q, u32 used_ns, u32 frame_ns);
+bool ec_share_fits(struct ec_master *m, u32 used_ns, u32 frame_ns);
 void ec_share_room(const struct ec_master *m, const struct ec_queue *q, u32 used_ns,
 		   struct ec_pack_room *room);
 void ec_share_sent(struct ec_master *m, const struct ec_queue *q, u32 frame_ns);

@@ -66,6 +66,7 @@ struct ec_master;
  * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
  * @dc_hop: way from the clock before it, ns
  * @dc_delay_only: it has receive times, but no clock that can be set
+ * @dc_scan: 1 + number of the scan after which the two were measured
  * @dc_odd: receive times make no sense: the two are not certain
  * @dc_offset: of its system time, ns, register 0x0920
  * @dc_diff: last difference to the reference clock, ns, positive: ahead
@@ -161,6 +162,7 @@ struct ec_slave {
 
 	u32 dc_delay;
 	u32 dc_hop;
+	u32 dc_scan;
 	bool dc_odd;
 	bool dc_delay_only;
 	u64 dc_offset;

@@ -37,7 +37,7 @@ struct half {
 	int err;	/* why not all frames were sent */
 	bool stop;	/* no sense in sending the others */
 	unsigned int frames;
-	struct batch_frame f[EC_XFER_WINDOW / 2];
+	struct batch_frame f[EC_CLOCK_WINDOW / 2];
 };
 
 /**
@@ -57,13 +57,17 @@ static void build(struct ec_master *m, const struct half *h, struct batch_frame 
 		  struct ec_dg *dg, unsigned int first, unsigned int n)
 {
 	struct ec_slot *slot = bf->slot;
+	unsigned int most = slot->clock ? EC_CLOCK_DATAGRAMS : m->max_datagrams, i;
 	/* a frame that fits before the next cycle, but at least the first datagram */
-	u16 room = max(ec_cycle_room(m), dg[first].len);
+	u16 room = EC_DGRAM_OVERHEAD + max(ec_cycle_room(m), dg[first].len);
 	struct ec_frame_buf fb;
-	unsigned int i;
 
-	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_DGRAM_OVERHEAD + room);
-	for (i = first; i < n && fb.count < m->max_datagrams; i++) {
+	/* clock frames are as long as their share, so that as many may leave as shall */
+	if (slot->clock)
+		room = clamp_t(u16, ec_share_clock_bytes(m), EC_DGRAM_OVERHEAD + dg[first].len,
+			       room);
+	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + room);
+	for (i = first; i < n && fb.count < most; i++) {
 		u8 *p;
 
 		if (dg[i].err != -EINPROGRESS)
@@ -208,11 +212,13 @@ static void submit(struct ec_master *m, const struct half *h, struct batch_frame
 static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg *dg,
 			      unsigned int first, unsigned int n, bool wait)
 {
+	unsigned int window = h->clock ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
+
 	init_completion(&h->x.done);
 	atomic_set(&h->x.pending, 1);
 	h->wait.polls = READ_ONCE(m->polls);
 	h->stop = false;
-	for (h->frames = 0; h->frames < ARRAY_SIZE(h->f); h->frames++) {
+	for (h->frames = 0; h->frames < window / 2; h->frames++) {
 		struct batch_frame *f = &h->f[h->frames];
 
 		while (first < n && dg[first].err != -EINPROGRESS)
@@ -222,10 +228,10 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 		f->slot = get_slot(m, h, wait && !h->frames);
 		if (!f->slot)
 			break;
+		f->slot->clock = h->clock;
 		build(m, h, f, dg, first, n);
 		first += f->count;
 		f->slot->xfer = &h->x;
-		f->slot->clock = h->clock;
 		atomic_inc(&h->x.pending);
 		submit(m, h, f);
 		if (!f->err)
@@ -397,6 +403,7 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
 	for (i = 0; i < 2; i++) {
 		half[i].urgent = urgent;
 		half[i].clock = clock;
+		half[i].wait.clock = clock;
 	}
 	for (try = 0; try < TRIES; try++) {
 		/* a datagram that a slave never forwards must not take others with it twice */

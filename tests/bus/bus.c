@@ -226,7 +226,7 @@ u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms)
 	while (READ_ONCE(bus_slave(b, position)->al_status) != al_status) {
 		if (ktime_get_ns() > end)
 			return ~0ull;
-		usleep_range(100, 101);
+		usleep_range(20, 21);
 	}
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 }

@@ -14,7 +14,8 @@
 #define SLAVES		100
 #define LIMIT_NS	100
 #define STEP_S		200
-#define SETTLE_MS	100	/* of bus time, after the first frame that compensates */
+#define WINDOW_MS	300	/* of bus time, from activation until all are in the window */
+#define EXACT_MS	400	/* until they are within LIMIT_NS */
 
 /* how long each of them is watched, s of virtual time */
 static unsigned int seconds = 20;
@@ -81,7 +82,9 @@ static struct {
 	struct bus *b;
 	struct cyc c;
 	u32 seed;
-	u64 settle_us;
+	u64 t0;		/* activation (ktime, ns) */
+	u64 window_us;	/* from then on: all in the window */
+	u64 exact_us;	/* all within LIMIT_NS */
 	u64 max;
 } tree;
 
@@ -109,28 +112,34 @@ static void prepare(struct kunit *test, u32 seed)
 	cyc_domain(c);
 	cyc_map_all(c, 0, SLAVES, 0);
 	c->each = sync_each;
+	tree.t0 = ktime_get_ns();
 	cyc_activate(c);
 	tree.c = *c;
 }
 
-/* How long after the begin of compensation was it too much the last time? */
+/* How long after activation were they too far apart the last time? */
 static void settle(struct kunit *test)
 {
 	struct bus *b = tree.b;
+	u64 ns, us;
 	u32 i;
 
-	for (i = 0; i < 2000 && !READ_ONCE(b->m->dc.running); i++)
+	for (i = 0; i < 2000; i++) {
 		cyc_run(&tree.c, 1);
-	KUNIT_ASSERT_TRUE(test, b->m->dc.running);
-	for (i = 0; i < 500; i++) {
-		cyc_run(&tree.c, 1);
-		if (worst(b) > LIMIT_NS)
-			tree.settle_us = div_u64(ktime_get_ns() - b->m->dc.begun_ns,
-						 NSEC_PER_USEC);
+		ns = worst(b);
+		us = div_u64(ktime_get_ns() - tree.t0, NSEC_PER_USEC);
+		if (ns >= EC_DC_LIMIT_NS)
+			tree.window_us = us;
+		if (ns >= LIMIT_NS)
+			tree.exact_us = us;
 	}
-	bus_row(tree.settle_us, SETTLE_MS * 1000,
-		"clocks of 100 slaves, tree %u: all within 100 ns after, us", tree.seed);
-	KUNIT_EXPECT_LT(test, tree.settle_us, SETTLE_MS * 1000ull);
+	bus_row(tree.window_us, WINDOW_MS * 1000,
+		"us from activation until clocks of 100 slaves are in the sync window, tree %u",
+		tree.seed);
+	bus_row(tree.exact_us, EXACT_MS * 1000,
+		"us from activation until they are within 100 ns, tree %u", tree.seed);
+	KUNIT_EXPECT_LT(test, tree.window_us, WINDOW_MS * 1000ull);
+	KUNIT_EXPECT_LT(test, tree.exact_us, EXACT_MS * 1000ull);
 }
 
 /* A part of the time in which it is watched; KUnit ends a case after 300 s. */
@@ -175,8 +184,8 @@ static void dc_trees(struct kunit *test)
 	KUNIT_EXPECT_LT(test, tree.max, (u64)LIMIT_NS);
 	if (p.to < seconds)
 		return;
-	bus_figure("100 slaves, +-100 ppm, tree %u: within %d ns of the reference after %llu us, then %u s within %llu ns",
-		   p.seed, LIMIT_NS, tree.settle_us, seconds, tree.max);
+	bus_figure("100 slaves, +-100 ppm, tree %u: from activation %llu us until all are in the sync window, %llu us until within %d ns, then %u s within %llu ns",
+		   p.seed, tree.window_us, tree.exact_us, LIMIT_NS, seconds, tree.max);
 	bus_row(tree.max, LIMIT_NS, "clocks of 100 slaves, tree %u: then for %u s within, ns",
 		p.seed, seconds);
 }

@@ -218,7 +218,7 @@ static void share_beside_clocks(struct kunit *test)
 	a[0].clock = true;
 	a[1].n = 1;
 	s = run(c, a, 2, 1000);
-	KUNIT_EXPECT_LE(test, s.most, 64ull);
+	KUNIT_EXPECT_LE(test, s.most, 8ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 

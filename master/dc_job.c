@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Who takes part in setting the clocks, the reference clock, and the propagation delays. */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "dc_job.h"
+
+#define ROUNDS		16	/* latches; the times have 10 ns of noise */
+#define TOGETHER	4	/* of them before clocks that are set are corrected again */
+#define CORRECT_CYCLES	8	/* in so many cycles */
+#define CORRECT_MS	20	/* and within that time */
+#define LOST		16	/* latches whose frames were lost, until it has failed */
+
+/**
+ * ec_dc_job_free() - end a job
+ * @j: job
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_job_free(struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	for (i = 0; j->slaves && i < j->n; i++)
+		if (j->slaves[i])
+			ec_slave_unref(j->slaves[i]);
+	kvfree(j->slaves);
+	kvfree(j->nodes);
+	kvfree(j->recv);
+	kvfree(j->unit);
+	kvfree(j->sum);
+	kvfree(j->dg);
+	kvfree(j->spoiled);
+	kvfree(j->silent);
+}
+
+static bool has_times(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_DC && s->error != EC_SLAVE_SCAN_FAILED;
+}
+
+static bool is_clock(const struct ec_dc_job *j, unsigned int i)
+{
+	return j->nodes[i].dc && !READ_ONCE(j->slaves[i]->dc_delay_only);
+}
+
+static void fill_node(struct ec_dc_job *j, unsigned int i)
+{
+	const struct ec_slave *s = j->slaves[i];
+	struct ec_dc_node *n = &j->nodes[i];
+	unsigned int p;
+
+	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
+	n->entry = s->upstream;
+	n->dc = has_times(s);
+	for (p = 0; p < EC_DC_PORTS; p++) {
+		if (s->dl_status & EC_DLS_COMM(p) && !(s->dl_status & EC_DLS_LOOP(p)))
+			n->open |= BIT(p);
+		if (n->parent != EC_DC_NONE && j->slaves[n->parent]->next[p] == i)
+			n->parent_port = p;
+	}
+}
+
+/**
+ * ec_dc_chosen() - does a slave belong to a group?
+ * @j: job
+ * @i: index of the slave
+ * @who: group
+ *
+ * Context: Process.
+ * Return: whether it does.
+ */
+bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who)
+{
+	const struct ec_slave *s = j->slaves[i];
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+
+	if (who == EC_DC_TIMES)
+		return j->nodes[i].dc;
+	if (!is_clock(j, i) || who == EC_DC_CLOCKS)
+		return is_clock(j, i);
+	return !s->dc_set && (who == EC_DC_NEW || wide == (who == EC_DC_NEW_WIDE));
+}
+
+/**
+ * ec_dc_count() - count the slaves of a group
+ * @j: job
+ * @who: group
+ *
+ * Context: Process.
+ * Return: how many.
+ */
+unsigned int ec_dc_count(const struct ec_dc_job *j, enum ec_dc_who who)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < j->n; i++)
+		n += ec_dc_chosen(j, i, who);
+	return n;
+}
+
+/* The clock with this station address, or the first one; @n: there is none. */
+static unsigned int find(const struct ec_dc_job *j, u16 station)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (is_clock(j, i) &&
+		    (station == EC_DC_ANY || j->slaves[i]->station == station))
+			break;
+	return i;
+}
+
+/**
+ * ec_dc_can_be() - is there a clock to be the reference?
+ * @m: master
+ * @choice: station address of the reference clock, or EC_DC_ANY...
+ *
+ * Context: Process. May sleep.
+ * Return: whether there is.
+ */
+bool ec_dc_can_be(struct ec_master *m, u16 choice)
+{
+	bool ret = false;
+	unsigned int i;
+
+	down_read(&m->topo);
+	for (i = 0; i < m->n_slaves && !ret; i++)
+		ret = has_times(m->slaves[i]) && ec_slave_has_clock(m->slaves[i]) &&
+		      (choice == EC_DC_ANY || m->slaves[i]->station == choice);
+	up_read(&m->topo);
+	return ret;
+}
+
+static bool any_set(const struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (j->slaves[i]->dc_set)
+			return true;
+	return false;
+}
+
+/*
+ * The chosen reference clock; else the one the others follow already, so that
+ * a slave that comes in front of it changes nothing; else the first one, though
+ * it may have only 32 bits: what is in front of the reference gets no time from
+ * it. When the chosen one is lost, another stands in, so that the clocks stay
+ * together; without it they are not set at all.
+ */
+static void choose(struct ec_dc_job *j)
+{
+	u16 choice = READ_ONCE(j->m->dc.choice);
+
+	j->ref = j->n;
+	if (choice != EC_DC_ANY) {
+		j->ref = find(j, choice);
+		if (j->ref == j->n && !any_set(j))
+			return;
+	}
+	if (j->ref == j->n)
+		j->ref = find(j, j->followed);
+}
+
+/**
+ * ec_dc_job_init() - begin a job with the slaves that are there
+ * @j: job
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m)
+{
+	unsigned int i;
+
+	*j = (struct ec_dc_job){ .m = m };
+	down_read(&m->topo);
+	j->n = m->n_slaves;
+	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
+	for (i = 0; j->slaves && i < j->n; i++)
+		j->slaves[i] = ec_slave_ref(m->slaves[i]);
+	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->gone)
+		j->followed = m->dc.ref->station;
+	up_read(&m->topo);
+	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
+	j->recv = kvcalloc(j->n + 1, sizeof(*j->recv), GFP_KERNEL);
+	j->unit = kvcalloc(j->n + 1, sizeof(*j->unit), GFP_KERNEL);
+	j->sum = kvcalloc(j->n + 1, sizeof(*j->sum), GFP_KERNEL);
+	/* up to four of each slave */
+	j->dg = kvcalloc(4 * j->n + EC_DC_BATCH, sizeof(*j->dg), GFP_KERNEL);
+	j->spoiled = kvcalloc(j->n + 1, sizeof(*j->spoiled), GFP_KERNEL);
+	j->silent = kvcalloc(j->n + 1, sizeof(*j->silent), GFP_KERNEL);
+	if (!j->slaves || !j->nodes || !j->recv || !j->unit || !j->sum || !j->dg || !j->spoiled ||
+	    !j->silent) {
+		ec_dc_job_free(j);
+		return -ENOMEM;
+	}
+	for (i = 0; i < j->n; i++)
+		fill_node(j, i);
+	choose(j);
+	return 0;
+}
+
+/**
+ * ec_dc_add() - add the same access to every slave of a group
+ * @j: job
+ * @at: datagrams of the transfer so far
+ * @who: group
+ * @cmd: enum ec_cmd
+ * @ado: register
+ * @len: bytes
+ * @data: of the first slave of the job
+ * @stride: from there to that of the next slave, bytes
+ *
+ * Context: Process.
+ * Return: datagrams of the transfer.
+ */
+unsigned int ec_dc_add(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who, u8 cmd, u16 ado,
+		       u16 len, u8 *data, size_t stride)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (ec_dc_chosen(j, i, who))
+			j->dg[at++] = (struct ec_dg)EC_DG(cmd, j->slaves[i]->station, ado, len,
+							  data + i * stride);
+	return at;
+}
+
+/**
+ * ec_dc_answers() - find the slaves of a group that have not answered
+ * @j: job whose transfer has come back
+ * @at: first datagram of ec_dc_add() for @who
+ * @who: group
+ *
+ * Adds them to @j->silent.
+ *
+ * Context: Process.
+ * Return: 0; -EAGAIN: the bus has changed meanwhile; or the error of a datagram.
+ */
+int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who)
+{
+	unsigned int i;
+	int ret = 0;
+
+	for (i = 0; i < j->n; i++) {
+		const struct ec_dg *dg = &j->dg[at];
+
+		if (!ec_dc_chosen(j, i, who))
+			continue;
+		at++;
+		if (dg->err) {
+			ret = dg->err;
+		} else if (dg->wkc != 1) {
+			j->silent[i] = true;
+			ret = ret ?: -EAGAIN;
+		}
+	}
+	return ret;
+}
+
+/**
+ * ec_dc_leave_out() - leave out slaves that do not answer while others do
+ * @j: job, @silent as found in the last attempt
+ *
+ * After some attempts: one bad slave does not keep the others from being set.
+ * ec_dc_watch_start() goes on asking it.
+ *
+ * Context: Process.
+ */
+void ec_dc_leave_out(struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++) {
+		struct ec_slave *s = j->slaves[i];
+
+		if (!j->silent[i] || ++j->spoiled[i] < EC_DC_OUT_TRIES)
+			continue;
+		j->nodes[i].dc = false;
+		if (s->dc_delay_only)
+			continue;
+		if (!s->dc_out && !s->gone)
+			ec_slave_warn(s, "does not answer as it should while the clocks are set: its clock is left out and tried again later\n");
+		WRITE_ONCE(s->dc_out, true);
+		if (s->station == j->followed)
+			j->followed = 0;
+		if (i == j->ref)
+			choose(j);
+	}
+}
+
+/**
+ * ec_dc_correct_between() - let the cycle compensate clocks that are set, for a while
+ * @j: job
+ * @cycles: how many cycles
+ * @limit_ms: at most
+ *
+ * A clock that is being corrected runs too fast or too slow to measure; but those
+ * that are set drift apart as long as they are not.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms)
+{
+	u32 polls = READ_ONCE(j->m->polls);
+	unsigned int ms;
+
+	WRITE_ONCE(j->m->dc.running, j->running);
+	for (ms = 0; ms < limit_ms && READ_ONCE(j->m->polls) - polls < cycles; ms++)
+		usleep_range(1000, 1100);
+	WRITE_ONCE(j->m->dc.running, false);
+}
+
+static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
+{
+	static u8 any[4];
+
+	j->dg[n] = (struct ec_dg)EC_DG(EC_CMD_BWR, 0, EC_REG_DC_RECV(0), sizeof(any), any);
+	return n + 1;
+}
+
+/* Nothing of a latch is repeated: it would belong to another one. */
+static int once(struct ec_dc_job *j, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		j->dg[i].repeat = false;
+	return ec_xfer_clock(j->m, j->dg, n);
+}
+
+/**
+ * ec_dc_latch() - let all clocks latch their time, and read it
+ * @j: job
+ *
+ * Both in one transfer: the time of the processing unit is there at once, unlike
+ * those of the ports, to which the frame comes back later.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EAGAIN when slaves do not answer; or as ec_xfer().
+ */
+int ec_dc_latch(struct ec_dc_job *j)
+{
+	static u8 none[14];
+	unsigned int i, first, n = add_latch(j, 0);
+	int ret;
+
+	memset(j->silent, 0, j->n * sizeof(*j->silent));
+	/* the reads are in another frame */
+	for (i = 1; i < EC_CLOCK_DATAGRAMS; i++)
+		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, 1, none);
+	first = n;
+	n = ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_RECV_PU, sizeof(j->unit[0]),
+		      j->unit[0], sizeof(j->unit[0]));
+	ret = once(j, n) ?: ec_dc_answers(j, first, EC_DC_CLOCKS);
+	j->latch_ns = j->dg[0].sent_ns;
+	return ret;
+}
+
+static void sum_up(struct ec_dc_job *j)
+{
+	unsigned int i, p;
+
+	for (i = 0; i < j->n; i++)
+		for (p = 0; p < EC_DC_PORTS; p++)
+			j->nodes[i].recv[p] = get_unaligned_le32(j->recv[i] + 4 * p);
+	ec_dc_delays(j->nodes, j->n, j->ref);
+	for (i = 0; i < j->n; i++)
+		j->sum[i] += (s32)j->nodes[i].delay;
+}
+
+/*
+ * The receive times of a latch are read in the transfer of the next one: by then its
+ * frame has been everywhere.
+ */
+static int measure(struct ec_dc_job *j)
+{
+	unsigned int rounds = 0, lost = 0, n;
+	bool latched = false;
+	int ret;
+
+	memset(j->sum, 0, j->n * sizeof(*j->sum));
+	memset(j->silent, 0, j->n * sizeof(*j->silent));
+	while (rounds < ROUNDS) {
+		n = latched ? ec_dc_add(j, 0, EC_DC_TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0),
+					sizeof(j->recv[0]), j->recv[0], sizeof(j->recv[0])) : 0;
+		n = add_latch(j, n);
+		ret = once(j, n);
+		if (ret && ret != -ETIMEDOUT && ret != -EBUSY)
+			return ret;
+		if (ret && ++lost > LOST)
+			return ret;
+		if (latched)
+			ret = ec_dc_answers(j, 0, EC_DC_TIMES);
+		if (ret == -EAGAIN)
+			return ret;
+		if (latched && !ret) {
+			sum_up(j);
+			rounds++;
+			if (j->running && rounds < ROUNDS && rounds % TOGETHER == 0)
+				ec_dc_correct_between(j, CORRECT_CYCLES, CORRECT_MS);
+		}
+		latched = !j->dg[n - 1].err;
+	}
+	return 0;
+}
+
+/* Those of the last scan count on, from the reference clock there is now. */
+static bool known(struct ec_dc_job *j, u32 scan)
+{
+	u32 zero = j->slaves[j->ref]->dc_delay;
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (j->nodes[i].dc && j->slaves[i]->dc_scan != scan)
+			return false;
+	/* also those that are left out: they may take part again */
+	for (i = 0; i < j->n; i++)
+		if (j->slaves[i]->dc_scan == scan)
+			j->slaves[i]->dc_delay -= zero;
+	return true;
+}
+
+/**
+ * ec_dc_get_delays() - get the propagation delays of all slaves
+ * @j: job with a reference clock
+ *
+ * They are measured once after each scan.
+ *
+ * Context: Process, dc.lock held. Waits for bus traffic.
+ * Return: 0; -EAGAIN when slaves do not answer; or as ec_xfer().
+ */
+int ec_dc_get_delays(struct ec_dc_job *j)
+{
+	u32 scan = READ_ONCE(j->m->scan_count) + 1;
+	unsigned int i;
+	int ret;
+
+	lockdep_assert_held(&j->m->dc.lock);
+	if (known(j, scan))
+		return 0;
+	ret = measure(j);
+	for (i = 0; i < j->n && !ret; i++)
+		if (j->nodes[i].dc) {
+			j->slaves[i]->dc_delay = (u32)div_s64(j->sum[i], ROUNDS);
+			j->slaves[i]->dc_hop = j->nodes[i].hop;
+			j->slaves[i]->dc_scan = scan;
+			WRITE_ONCE(j->slaves[i]->dc_odd, j->nodes[i].odd);
+		}
+	return ret;
+}
+
+/**
+ * ec_dc_has_front() - are there clocks upstream of the reference clock?
+ * @j: job
+ *
+ * Context: Process.
+ * Return: whether there are.
+ */
+bool ec_dc_has_front(const struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->ref; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS))
+			return true;
+	return false;
+}

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The start of 100 drives with SYNC signals in cycles of all lengths: how long it takes
+ * from activation to OP, how far the modelled clocks are apart from then on, and how many
+ * acyclic frames, and clock frames among them, one send of the cycle carries.
+ */
+#include <linux/prandom.h>
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/dc.h"
+#include "master/ioctl.h"
+
+#define SLAVES		100
+#define OP_LIMIT_US	1500000
+#define WATCH_US	20000000	/* after OP */
+#define EXACT_NS	100
+#define EXACT_US	1000000		/* after OP; measured: 0.15 s at most */
+#define SENDS		8		/* over which clock frames of short cycles are counted */
+
+/* what the sends carry beside process data, and the clocks */
+struct load {
+	u64 before;	/* frames up to the last send */
+	u32 most;	/* acyclic frames of one send */
+	u64 all;
+	u32 clock[SENDS];	/* clock frames of the last sends */
+	u32 clocks;	/* most of one send */
+	u32 row;	/* most of SENDS sends in a row */
+	u64 all_clocks;
+	u64 op_ns;
+	u64 worst_ns;	/* of a clock to the reference, since @op_ns */
+	u64 exact_us;	/* all of them are exact so long after @op_ns */
+};
+
+/* Largest difference of a slave's system time to that of the reference, ns. */
+static u64 worst(struct bus *b)
+{
+	u64 now = ktime_get_ns(), max = 0, ref;
+	u32 i;
+
+	ec_sim_advance(b->sim, now);
+	ref = ec_esc_system_time(bus_esc(b, 0), now);
+	for (i = 1; i < b->m->n_slaves; i++) {
+		s64 d = ec_esc_system_time(bus_esc(b, i), now) - ref;
+
+		max = max_t(u64, max, abs(d));
+	}
+	return max;
+}
+
+/* Clock frames that have left with the last send, and since: nobody else has run yet. */
+static u32 clock_frames(struct ec_master *m)
+{
+	u32 i, n = 0;
+
+	for (i = 0; i < EC_SLOTS; i++) {
+		const struct ec_slot *s = &m->slots.slot[i];
+
+		n += s->xfer && s->clock && s->left == s->seq && s->sent_ns >= m->last_send_ns;
+	}
+	return n;
+}
+
+static void count(struct load *l, struct cyc *c)
+{
+	u64 frames = bus_frames(c->b), n;
+	u32 i, row = 0;
+
+	/* everything since the send before was sent by it */
+	n = frames - l->before - c->b->m->session->cycle.last.frames;
+	if (l->before && c->cycles) {
+		l->most = max_t(u64, l->most, n);
+		l->all += n;
+		n = clock_frames(c->b->m);
+		l->clock[c->cycles % SENDS] = n;
+		l->clocks = max_t(u32, l->clocks, n);
+		l->all_clocks += n;
+	}
+	for (i = 0; i < SENDS; i++)
+		row += l->clock[i];
+	l->row = max(l->row, row);
+	l->before = frames;
+}
+
+static void each(struct cyc *c)
+{
+	struct load *l = c->ctx;
+	u64 ns;
+
+	count(l, c);
+	if (l->op_ns) {
+		ns = worst(c->b);
+		l->worst_ns = max(l->worst_ns, ns);
+		if (ns >= EXACT_NS)
+			l->exact_us = div_u64(ktime_get_ns() - l->op_ns, NSEC_PER_USEC);
+	}
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void describe(char *text, size_t size, u32 slaves)
+{
+	struct rnd_state r;
+	u32 i, n;
+
+	prandom_seed_state(&r, 33);
+	n = scnprintf(text, size, "segment seed=33 response=100us transition=1ms\n");
+	for (i = 0; i < slaves; i++) {
+		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000;
+
+		n += scnprintf(text + n, size - n,
+			       "slave s%u drive in=8 out=8 drift=%dppb clock=%ums\n", i, ppb,
+			       prandom_u32_state(&r));
+	}
+}
+
+/* An application with SYNC0 of its cycle at all slaves, not active yet. */
+static struct cyc *configure(struct kunit *test, u32 slaves, u32 us, struct load *l)
+{
+	char *text = kunit_kzalloc(test, 16384, GFP_KERNEL);
+	struct bus *b;
+	struct cyc *c;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, text);
+	describe(text, 16384, slaves);
+	b = bus_up(test, text, slaves);
+	bus_idle(b);
+	c = cyc_new(b, us);
+	cyc_domain(c);
+	cyc_map_all(c, 0, slaves, 0);
+	for (i = 0; i < slaves; i++) {
+		struct ec_ioc_sc_dc dc = {
+			.config = i, .assign_activate = 0x0300, .cycle0 = us * NSEC_PER_USEC,
+		};
+
+		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	}
+	c->each = each;
+	c->ctx = l;
+	return c;
+}
+
+static const u32 cycles_us[] = { 1000, 2000, 4000, 10000, 20000 };
+
+static const void *next_cycle(const void *prev, char *desc)
+{
+	const u32 *us = prev ? (const u32 *)prev + 1 : cycles_us;
+
+	if (us == cycles_us + ARRAY_SIZE(cycles_us))
+		return NULL;
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "cycle of %u us", *us);
+	return us;
+}
+
+static void dc_start_hundred_drives_reach_op(struct kunit *test)
+{
+	u32 us = *(const u32 *)test->param_value, i, far = 0;
+	u32 told = bus_log_lines("sync window");
+	struct load l = { 0 };
+	struct cyc *c = configure(test, SLAVES, us, &l);
+	struct bus *b = c->b;
+	u64 op;
+
+	cyc_activate(c);
+	op = cyc_wait_op(c, 30000);
+	KUNIT_ASSERT_NE(test, op, ~0ull);
+	l.op_ns = ktime_get_ns();
+	cyc_run(c, WATCH_US / us);
+	for (i = 0; i < SLAVES; i++) {
+		far += bus_slave(b, i)->dc_far;
+		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
+	}
+	bus_figure("100 drives with SYNC0, cycle of %u us: OP %llu us after activation, clocks within %llu ns from then on for 20 s, within %u ns %llu us later; in a send at most %u acyclic frames, %u of them of clocks (%llu in all)",
+		   us, op, l.worst_ns, EXACT_NS, l.exact_us, l.most, l.clocks, l.all_clocks);
+	bus_row(op, OP_LIMIT_US, "us from activation to OP: 100 drives with SYNC0, cycle of %u us",
+		us);
+	bus_row(l.worst_ns, EC_DC_LIMIT_NS, "ns between clocks in the 20 s after that, cycle of %u us",
+		us);
+	KUNIT_EXPECT_LT(test, op, (u64)OP_LIMIT_US);
+	KUNIT_EXPECT_LT(test, l.worst_ns, (u64)EC_DC_LIMIT_NS);
+	KUNIT_EXPECT_LT(test, l.exact_us, (u64)EXACT_US);
+	KUNIT_EXPECT_EQ(test, far, 0u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("sync window"), told);
+	KUNIT_EXPECT_LE(test, l.most, min(8 * us / 1000, 64u));
+	KUNIT_EXPECT_LE(test, l.clocks, 2 * us / 1000);
+	/* the count counts */
+	KUNIT_EXPECT_GT(test, l.all_clocks, 500ull);
+}
+
+/* In a cycle of 250 us every second send may carry a clock frame. */
+static void dc_start_short_cycle(struct kunit *test)
+{
+	struct load l = { 0 };
+	struct cyc *c = configure(test, 4, 250, &l);
+	u64 op;
+
+	cyc_activate(c);
+	op = cyc_wait_op(c, 5000);
+	KUNIT_ASSERT_NE(test, op, ~0ull);
+	l.op_ns = ktime_get_ns();
+	cyc_run(c, 8000);
+	bus_figure("4 drives with SYNC0, cycle of 250 us: OP %llu us after activation, clocks within %llu ns from then on; in %d sends in a row at most %u clock frames",
+		   op, l.worst_ns, SENDS, l.row);
+	KUNIT_EXPECT_LT(test, op, 700000ull);
+	KUNIT_EXPECT_LT(test, l.worst_ns, (u64)EC_DC_LIMIT_NS);
+	KUNIT_EXPECT_LE(test, l.clocks, 1u);
+	KUNIT_EXPECT_LE(test, l.row, SENDS / 2 + 1u);
+	KUNIT_EXPECT_GT(test, l.all_clocks, 100ull);
+}
+
+/* Nothing follows a clock that is alone: there is nothing to compensate. */
+static void dc_start_single_clock_sends_little(struct kunit *test)
+{
+	struct load l = { 0 };
+	struct cyc *c = configure(test, 1, 4000, &l);
+	u64 op;
+
+	cyc_activate(c);
+	op = cyc_wait_op(c, 5000);
+	cyc_run(c, 1000);
+	bus_figure("one drive with SYNC0, cycle of 4000 us: OP %llu us after activation; in a send at most %u acyclic frames, %llu of clocks in all",
+		   op, l.most, l.all_clocks);
+	KUNIT_EXPECT_LT(test, op, 400000ull);
+	KUNIT_EXPECT_LE(test, l.most, 8u);
+	/* set once, then watched once a second */
+	KUNIT_EXPECT_LT(test, l.all_clocks, 20ull);
+}
+
+/*
+ * A cycle of 1 ms stands still for 15 ms while clocks are set: the next send carries no
+ * more than the others.
+ */
+static void dc_start_late_cycle(struct kunit *test)
+{
+	struct load l = { 0 };
+	struct cyc *c = configure(test, SLAVES, 1000, &l);
+	u32 i;
+
+	cyc_activate(c);
+	for (i = 0; i < 40; i++) {
+		c->next = ktime_add_ns(c->next, 14 * NSEC_PER_MSEC);
+		cyc_run(c, 20);
+	}
+	bus_figure("100 drives, cycle of 1000 us that stands still for 15 ms every 20 cycles: in a send at most %u acyclic frames, %u of them of clocks",
+		   l.most, l.clocks);
+	KUNIT_EXPECT_LE(test, l.most, 8u);
+	KUNIT_EXPECT_LE(test, l.clocks, 2u);
+	KUNIT_EXPECT_GT(test, l.all_clocks, 100ull);
+}
+
+/* Frames are lost: clocks become near all the same, and stay there. */
+static void dc_start_frames_lost(struct kunit *test)
+{
+	struct load l = { 0 };
+	struct cyc *c = configure(test, SLAVES, 20000, &l);
+	u32 i, far = 0;
+	u64 op;
+
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 10000);
+	cyc_activate(c);
+	op = cyc_wait_op(c, 60000);
+	KUNIT_ASSERT_NE(test, op, ~0ull);
+	l.op_ns = ktime_get_ns();
+	cyc_run(c, WATCH_US / 20000);
+	for (i = 0; i < SLAVES; i++)
+		far += bus_slave(c->b, i)->dc_far;
+	bus_figure("100 drives with SYNC0, cycle of 20000 us, 1 %% of all frames lost: OP %llu us after activation, clocks within %llu ns from then on for 20 s",
+		   op, l.worst_ns);
+	KUNIT_EXPECT_LT(test, l.worst_ns, (u64)EC_DC_LIMIT_NS);
+	KUNIT_EXPECT_EQ(test, far, 0u);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE_PARAM(dc_start_hundred_drives_reach_op, next_cycle),
+	KUNIT_CASE(dc_start_short_cycle),
+	KUNIT_CASE(dc_start_single_clock_sends_little),
+	KUNIT_CASE(dc_start_late_cycle),
+	KUNIT_CASE(dc_start_frames_lost),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_dc_start", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
+
+MODULE_LICENSE("GPL");
