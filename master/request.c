@@ -46,6 +46,7 @@ struct ec_lane {
  * @watch: looks again and again while anything waits
  * @reqs: requests
  * @n_reqs: entries in @reqs
+ * @bufs: private copies of all data, allocated by who activates, so that they are its memory
  * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
  * @ended: the session has; transfers end, too
@@ -60,6 +61,7 @@ struct ec_requests {
 	struct work_struct watch;
 	struct ec_request *reqs;
 	unsigned int n_reqs;
+	u8 *bufs;
 	struct ec_lane *lanes;
 	unsigned int n_lanes;
 	bool ended;
@@ -70,11 +72,9 @@ struct ec_requests {
 static void release(struct kref *kref)
 {
 	struct ec_requests *rq = container_of(kref, struct ec_requests, kref);
-	unsigned int i;
 
-	for (i = 0; i < rq->n_reqs; i++)
-		kvfree(rq->reqs[i].buf);
 	ec_shared_put(rq->shared);
+	kvfree(rq->bufs);
 	kvfree(rq->reqs);
 	kvfree(rq->lanes);
 	kfree(rq);
@@ -107,8 +107,6 @@ static void finish(struct ec_request *r, const struct ec_request_result *res)
 {
 	if (!res->err && ec_request_reads(r))
 		memcpy(r->data, r->buf, res->got);
-	kvfree(r->buf);
-	r->buf = NULL;
 	r->phase = EC_REQUEST_IDLE;
 	WRITE_ONCE(r->rec->result, res->err);
 	WRITE_ONCE(r->rec->got, res->got);
@@ -144,10 +142,8 @@ static void pick_up(struct ec_request *r, u64 now)
 		fail(r, ret);
 		return;
 	}
-	r->buf = kvzalloc(max(r->size, 1u), GFP_KERNEL_ACCOUNT);
-	if (!r->buf)
-		fail(r, -ENOMEM);
-	else if (ec_request_writes(r))
+	memset(r->buf, 0, r->size);
+	if (ec_request_writes(r))
 		memcpy(r->buf, r->data, r->size);
 }
 
@@ -416,7 +412,7 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 	u8 *base = rq->shared->requests;
 	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
 	struct ec_lane *own = &rq->lanes[s->n_configs];
-	size_t at = lay_out_rings(s, rq);
+	size_t at = lay_out_rings(s, rq), first = at;
 	unsigned int i;
 
 	for (i = 0; i < s->n_specs; i++, rec++) {
@@ -433,6 +429,7 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 		r->kind = spec->kind;
 		r->cap = spec->size;
 		r->data = base + at;
+		r->buf = rq->bufs + (at - first);
 		list_add_tail(&r->list, &lane->requests);
 		at += ALIGN(spec->size, 8);
 	}
@@ -474,7 +471,8 @@ int ec_requests_begin(struct ec_session *s)
 	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
 	rq->n_lanes = count_lanes(s);
 	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL_ACCOUNT);
-	if (!rq->reqs || !rq->lanes) {
+	rq->bufs = kvzalloc(max_t(size_t, s->request_bytes, 1), GFP_KERNEL_ACCOUNT);
+	if (!rq->reqs || !rq->lanes || !rq->bufs) {
 		put(rq);
 		return -ENOMEM;
 	}

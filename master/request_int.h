@@ -32,7 +32,7 @@ enum ec_request_phase {
  * @complete: SDO: complete access
  * @vendor: VoE: vendor id
  * @size: bytes of @buf
- * @buf: private copy of the data, while not idle
+ * @buf: private copy of the data, as large as these may be
  */
 struct ec_request {
 	struct list_head list;
