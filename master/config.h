@@ -98,6 +98,7 @@ struct ec_config_flag {
  * @index: number in the session
  * @alias: 0: @position is the ring position
  * @position: else slaves behind the one with @alias
+ * @alias_at: ring position of the first slave with @alias when it was last looked for
  * @vendor: expected
  * @product: expected
  * @sm: SyncManagers
@@ -131,6 +132,7 @@ struct ec_config {
 	u32 index;
 	u16 alias;
 	u16 position;
+	u32 alias_at;
 	u32 vendor;
 	u32 product;
 	struct ec_config_sm sm[EC_MAX_SM];

@@ -486,6 +486,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 {
 	struct ec_slave *slave;
 
+	ec_config_find_alias(c);
 	if (s->active && c->slave && !c->slave->gone)
 		return;
 	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
@@ -538,6 +539,8 @@ void ec_session_attach(struct ec_master *m)
 	ec_session_lock(m);
 	for (i = 0; m->session && i < m->session->n_configs; i++)
 		ec_session_attach_one(m->session, m->session->configs[i]);
+	for (i = 0; m->heir && i < m->heir->n_configs; i++)
+		ec_config_find_alias(m->heir->configs[i]);
 	ec_session_unlock(m);
 }
 

@@ -13,12 +13,36 @@
 static bool place(const struct ec_config *c, unsigned int *pos)
 {
 	const struct ec_master *m = c->session->master;
+
+	*pos = c->position;
+	if (!c->alias)
+		return true;
+	*pos += c->alias_at;
+	return c->alias_at < m->n_slaves && m->slaves[c->alias_at]->alias == c->alias;
+}
+
+/**
+ * ec_config_find_alias() - look for the slave that has the alias of a configuration
+ * @c: configuration
+ *
+ * When it is made, and when slaves have come or gone: who only looks at it must not walk
+ * all slaves.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_find_alias(struct ec_config *c)
+{
+	struct ec_master *m = c->session->master;
 	unsigned int i = 0;
 
-	while (c->alias && i < m->n_slaves && m->slaves[i]->alias != c->alias)
+	lockdep_assert_held(&m->session_lock);
+	if (!c->alias)
+		return;
+	down_read(&m->topo);
+	while (i < m->n_slaves && m->slaves[i]->alias != c->alias)
 		i++;
-	*pos = i + c->position;
-	return !c->alias || i < m->n_slaves;
+	c->alias_at = i;
+	up_read(&m->topo);
 }
 
 /* Do both name the slave at @pos, which is not only where another one has been? */

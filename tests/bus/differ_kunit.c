@@ -243,7 +243,31 @@ static void lost_device_is_said(struct kunit *test)
 	EXPECT_WHY(b, 3, "no network device: master 0 waits for bus0");
 }
 
+/* Who shows a configuration does not walk all slaves for its alias: it is known. */
+static void differ_alias_is_looked_for_by_the_scan(struct kunit *test)
+{
+	struct bus *b = bus_up(test, tree, N);
+	struct ec_ioc_slave_config sc = { .alias = 7, .position = 9, .vendor_id = 1 };
+	struct ec_config *c;
+	u32 none;
+
+	bus_idle(b);
+	cyc_new(b, 1000);
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	c = b->m->session->configs[sc.index];
+	KUNIT_EXPECT_EQ(test, c->alias_at, 1u);
+	EXPECT_WHY(b, sc.index, "no slave at ring position 10");
+	sc.alias = 8;
+	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	none = sc.index;
+	EXPECT_WHY(b, none, "has alias 8");
+	/* what was found before the slaves changed is not taken for it */
+	b->m->session->configs[none]->alias_at = 1;
+	EXPECT_WHY(b, none, "has alias 8");
+}
+
 static struct kunit_case differ_cases[] = {
+	KUNIT_CASE(differ_alias_is_looked_for_by_the_scan),
 	KUNIT_CASE(differ_logged_at_activation),
 	KUNIT_CASE(differ_log_is_limited),
 	KUNIT_CASE(differ_revision),
