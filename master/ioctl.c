@@ -42,7 +42,7 @@ struct ec_ioctl {
 static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_VERSION, ec_ioc_version, 0),
 	IOC(EC_IOC_REASON, ec_ioc_reason, 0),
-	IOC(EC_IOC_MASTER, ec_ioc_master, 0),
+	IOC_MIN(EC_IOC_MASTER, ec_ioc_master, 0, offsetofend(struct ec_ioc_master, not_captured)),
 	IOC_MIN(EC_IOC_SLAVE, ec_ioc_slave, 0, offsetofend(struct ec_ioc_slave, dc_odd)),
 	IOC(EC_IOC_SM, ec_ioc_sm, 0, RSV(ec_ioc_sm, reserved)),
 	IOC(EC_IOC_PDO, ec_ioc_pdo, 0, RSV(ec_ioc_pdo, reserved), RSV(ec_ioc_pdo, reserved2)),
@@ -56,8 +56,7 @@ static const struct ec_ioctl table[] = {
 	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
 	IOC(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, RSV(ec_ioc_config_idn, reserved)),
 	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0),
-	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, RSV(ec_ioc_domain, reserved),
-	    RSV(ec_ioc_domain, reserved2)),
+	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0),
 	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, RSV(ec_ioc_domain_fmmu, reserved)),
 	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, RSV(ec_ioc_domain_data, reserved)),
 	IOC(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0),

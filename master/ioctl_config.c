@@ -329,12 +329,14 @@ int ec_ioc_domain(struct ec_file *f, void *arg)
 	i->expected = d->expected;
 	i->fmmu_count = d->n_fmmus;
 	i->options = d->options;
+	i->max_age = d->max_age;
 	if (d->session->active) {
 		const struct ec_status *st = d->session->shared->status;
 
 		i->datagram_count = d->n_dgrams;
 		i->datagram_bytes = d->dgram_bytes;
 		i->working_counter = READ_ONCE(st->domains[d->index].working_counter);
+		i->age = READ_ONCE(st->domains[d->index].age);
 	}
 	return done(f, 0);
 }

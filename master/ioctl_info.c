@@ -159,6 +159,9 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	i->app_time = ec_read64(&m->dc.app_time);
 	i->scan_us = m->scan_us;
 	i->scan_frames = m->scan_frames;
+	i->acyclic_max = ec_share_max;
+	i->sii_bytes = atomic_long_read(&m->sii_bytes);
+	i->sii_limit = EC_MAX_SII_TOTAL;
 	ret = ec_show_begin(m);
 	if (ret)
 		return ret;

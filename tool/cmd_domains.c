@@ -71,6 +71,22 @@ static void layout(const struct tool *t, const char *in, const struct ec_ioc_dom
 			 dom->datagram_bytes * WIRE_NS_PER_BYTE / 1000.0);
 }
 
+/* A stale domain is marked in any case. */
+static void age(const struct tool *t, const char *in, const struct ec_ioc_domain *dom)
+{
+	bool stale = dom->max_age && dom->age > dom->max_age;
+
+	out_u("age_sends", dom->age, NULL);
+	out_u("max_age_sends", dom->max_age, NULL);
+	out_bool("stale", stale, NULL);
+	if (!stale && (t->verbosity <= 0 || !dom->datagram_count))
+		return;
+	out_text("%s  Age of process data: %u send(s)", in, dom->age);
+	if (dom->max_age)
+		out_text(", limit %u", dom->max_age);
+	out_text("%s\n", stale ? ": stale" : "");
+}
+
 static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
 {
 	const char *in = d->selected > 1 ? "  " : "";
@@ -85,6 +101,7 @@ static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain 
 	out_u("working_counter", dom->working_counter, ", WorkingCounter %u",
 	      dom->working_counter);
 	out_u("expected_working_counter", dom->expected, "/%u\n", dom->expected);
+	age(t, in, dom);
 	layout(t, in, dom);
 	if (t->verbosity > 0) {
 		ret = domain_data(d, dom, &data, &size);
@@ -133,9 +150,12 @@ const struct cmd cmd_domains = {
 	.help = "WorkingCounter: of the last cycle / expected; equal when every slave exchanged its\n"
 		"data. With --verbose also the options of the domain (overlap: inputs at logical\n"
 		"addresses of outputs; separate: LRD and LWR; own frame), its datagrams, and what each\n"
-		"slave configuration contributes. The wire time of a whole cycle: ethercat master -v.\n",
+		"slave configuration contributes. The wire time of a whole cycle: ethercat master -v.\n"
+		"Age of process data: sends of the domain since that of the newest data received;\n"
+		"shown with --verbose, and when it is above its limit (stale).\n",
 	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
-		"working_counter, expected_working_counter, options[] (overlap, separate, own_frame),\n"
+		"working_counter, expected_working_counter, age_sends, max_age_sends (0: no limit),\n"
+		"stale, options[] (overlap, separate, own_frame),\n"
 		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, position,\n"
 		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",
 	.flags = CMD_HISTORIC,

@@ -224,6 +224,9 @@ static int show(const struct tool *t, struct dev *d)
 	out_u("scans", m.scan_count, NULL);
 	out_u("scan_duration_us", m.scan_us, NULL);
 	out_u("scan_frames", m.scan_frames, NULL);
+	out_u("max_acyclic_frames", m.acyclic_max, NULL);
+	out_u("sii_bytes", m.sii_bytes, NULL);
+	out_u("max_sii_bytes", m.sii_limit, NULL);
 	out_u("debug_level", m.debug_level, NULL);
 	out_u("configs", m.config_count, NULL);
 	out_u("domains", m.domain_count, NULL);
@@ -236,6 +239,10 @@ static int show(const struct tool *t, struct dev *d)
 		for (unsigned int i = 0; i < m.device_count; i++)
 			out_text("  Late frames, %s device: %llu\n", i ? "backup" : "main",
 				 m.devices[i].late);
+		out_text("  Acyclic frames of a send: at most %u (module parameter max_acyclic)\n",
+			 m.acyclic_max);
+		out_text("  EEPROM images in memory: %llu bytes, limit %u\n", m.sii_bytes,
+			 m.sii_limit);
 		out_text("  Debug level: %u\n", m.debug_level);
 	}
 	out_end();
@@ -277,6 +284,7 @@ const struct cmd cmd_master = {
 		"application_time_ns), cycle (interval_us, datagrams, frames, wire_ns, last_frames,\n"
 		"last_wire_ns, acyclic_slack_ns, acyclic_need_ns, late_cycles, late_cycles_per_s),\n"
 		"frames_not_captured, slaves_responding, scan_busy, scans,\n"
-		"scan_duration_us, scan_frames, debug_level, configs, domains, module_release",
+		"scan_duration_us, scan_frames, max_acyclic_frames (of a send), sii_bytes (EEPROM\n"
+		"images in memory), max_sii_bytes, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,
 };

@@ -132,6 +132,9 @@ struct ec_ioc_master {
 	__u32 late_cycles;	/* cycles they have made late */
 	__u32 scan_slaves;	/* slaves the scan has to do with; without scan slave_count */
 	__u32 not_captured;	/* frames that capture programs did not see, of all devices */
+	__u32 acyclic_max;	/* acyclic frames of one send, at most */
+	__u32 sii_limit;	/* bytes of EEPROM images, at most */
+	__u64 sii_bytes;	/* of all slaves */
 };
 
 struct ec_ioc_port {
@@ -440,11 +443,11 @@ struct ec_ioc_domain {
 	__u32 working_counter;
 	__u32 expected;
 	__u32 fmmu_count;
-	__u32 reserved;
+	__u32 max_age;		/* of its process data, sends; 0: no limit */
 	__u32 options;		/* EC_DOMAIN_OPT_* */
 	__u32 datagram_count;	/* while active */
 	__u32 datagram_bytes;	/* their headers and working counters included */
-	__u32 reserved2;
+	__u32 age;		/* sends since that of the data, while active */
 };
 
 struct ec_ioc_domain_fmmu {

@@ -185,10 +185,10 @@ static const struct ec_ioc_config configs[] = {
 
 static const struct ec_ioc_domain domains[] = {
 	{ .index = 0, .size = 1, .logical = 0, .working_counter = 1, .expected = 1,
-	  .fmmu_count = 1, .datagram_count = 1, .datagram_bytes = 13 },
+	  .fmmu_count = 1, .datagram_count = 1, .datagram_bytes = 13, .age = 1, .max_age = 2 },
 	{ .index = 1, .size = 6, .logical = 1, .working_counter = 3, .expected = 3,
 	  .fmmu_count = 1, .options = EC_DOMAIN_OPT_OVERLAP | EC_DOMAIN_OPT_OWN_FRAME,
-	  .datagram_count = 2, .datagram_bytes = 30 },
+	  .datagram_count = 2, .datagram_bytes = 30, .age = 3, .max_age = 2 },
 };
 
 static const __u8 images[2][6] = { { 0xa5 }, { 1, 2, 3, 4, 5, 0xff } };
@@ -220,6 +220,7 @@ static int master(struct ec_ioc_master *m, int index)
 		.scan_count = scans, .config_count = app ? LEN(configs) : 0,
 		.domain_count = app ? LEN(domains) : 0, .device_count = 1,
 		.app_time = 815000000123456789ULL, .scan_us = 12345, .scan_frames = 678,
+		.acyclic_max = 64, .sii_bytes = 3072, .sii_limit = 67108864,
 	};
 	if (app) {
 		m->cycle_lock = EC_CYCLE_LOCK_LOCKED;
