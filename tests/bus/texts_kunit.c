@@ -150,7 +150,7 @@ static void texts_register(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
 	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ETIMEDOUT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
-			   "access to 0x0130 of slave 1: the frame did not come back; check the cables");
+			   "no reply to register access 0x0130 at slave 1; check the cables");
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, "SDO 0x1018:01 of slave 1: no reply in time");
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
@@ -161,7 +161,7 @@ static void texts_link(struct kunit *test)
 {
 	static const char none[] = "the main device is missing or has no link; check the cable";
 	static const char reg_none[] =
-		"access to 0x0130 of slave 1: the main device is missing or has no link; check the cable";
+		"register access 0x0130 at slave 1: the main device is missing or has no link; check the cable";
 	struct bus *b = ready(test);
 	struct ec_slave *s = ec_slave_ref(bus_slave(b, BAD));
 	struct ec_mbox_limit limit = { .timeout_ms = 100 };

@@ -31,6 +31,30 @@ static void pages(const uint8_t *p, size_t len)
 	MUST(!memcmp(page, p, 8));
 }
 
+/* Sound datagrams appended to those of another frame: what was there stays as it was. */
+static void append(const uint8_t *data, size_t len, size_t last, unsigned int count)
+{
+	static u8 buf[EC_FRAME_HDR + EC_FRAME_BODY_MAX];
+	struct ec_frame_iter it;
+	struct ec_frame_buf f;
+	struct ec_dgram d;
+	size_t body = (get_unaligned_le16(data) & 0x7FF), total;
+	unsigned int n = 0;
+
+	MUST(body <= len - EC_FRAME_HDR);
+	ec_frame_begin(&f, buf, sizeof(buf));
+	memset(ec_frame_add(&f, EC_CMD_BRD, 5, 0, 0x0130, 2), 0, 2);
+	if (!ec_frame_append(&f, data + EC_FRAME_HDR, body, last, count)) {
+		MUST(body > EC_FRAME_BODY_MAX - 14);
+		return;
+	}
+	total = ec_frame_end(&f);
+	MUST(!ec_frame_iter_init(&it, buf, total));
+	while (ec_frame_iter_next(&it, &d) == 1)
+		n++;
+	MUST(n == count + 1 && total == EC_FRAME_HDR + 14 + body);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 {
 	static u8 again[EC_FRAME_HDR + EC_FRAME_BODY_MAX];
@@ -40,6 +64,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	u8 *frame = (u8 *)data;		/* only read here */
 	int ret, n = 0;
 	bool fits = true;
+	size_t last = 0;
 
 	pages(data, len);
 	if (ec_frame_iter_init(&it, frame, len))
@@ -50,6 +75,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 
 		MUST(d.hdr >= frame && d.data + d.len + 2 <= frame + len);
 		MUST(++n <= 200);
+		last = d.hdr - frame - EC_FRAME_HDR;
 		ec_cmd_name(d.cmd);
 		p = ec_frame_add(&f, d.cmd, d.idx, d.adp, d.ado, d.len);
 		if (!p) {
@@ -67,5 +93,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	MUST(ec_frame_iter_next(&it, &d) == ret);
 	if (!ret && fits)
 		MUST(ec_frame_end(&f) == 2u + (get_unaligned_le16(frame) & 0x7FF));
+	if (!ret && n)
+		append(data, len, last, n);
 	return 0;
 }

@@ -27,6 +27,27 @@ static void a_broadcast_read_of_the_al_status(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
+/* BRD 0x0130 and LRD 0x01000010 of frames of their own, put together by hand */
+static void two_frames_put_together(struct kunit *test)
+{
+	static const u8 brd[] = { 7, 5, 0, 0, 0x30, 1, 2, 0, 0, 0, 0x11, 0x22, 0, 0 };
+	static const u8 lrd[] = { 10, 6, 0x10, 0, 0, 1, 1, 0, 0, 0, 0x33, 0, 0 };
+	static const u8 want[] = {
+		0x1B, 0x10,
+		7, 5, 0, 0, 0x30, 1, 2, 0x80, 0, 0, 0x11, 0x22, 0, 0,
+		10, 6, 0x10, 0, 0, 1, 1, 0, 0, 0, 0x33, 0, 0,
+	};
+	u8 out[sizeof(want)];
+	struct ec_frame_buf f;
+
+	ec_frame_begin(&f, out, sizeof(out));
+	KUNIT_ASSERT_TRUE(test, ec_frame_append(&f, brd, sizeof(brd), 0, 1));
+	KUNIT_ASSERT_TRUE(test, ec_frame_append(&f, lrd, sizeof(lrd), 0, 1));
+	KUNIT_EXPECT_FALSE(test, ec_frame_append(&f, lrd, sizeof(lrd), 0, 1));
+	KUNIT_EXPECT_EQ(test, ec_frame_end(&f), sizeof(want));
+	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
+}
+
 static void two_datagrams_in_one_frame(struct kunit *test)
 {
 	/* FPWR 0x03E9:0x0120 = 2 with "more"; LRD 0x01000010, 1 byte */
@@ -368,6 +389,7 @@ static void a_segmented_download(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(a_broadcast_read_of_the_al_status),
 	KUNIT_CASE(two_datagrams_in_one_frame),
+	KUNIT_CASE(two_frames_put_together),
 	KUNIT_CASE(a_returned_datagram_with_all_marks),
 	KUNIT_CASE(an_fmmu_for_two_output_bits),
 	KUNIT_CASE(an_fmmu_for_inputs),

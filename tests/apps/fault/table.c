@@ -17,7 +17,7 @@ void *const bad_pointers[BAD_POINTERS] = {
 const struct cmd cmds[] = {
 	CMD(VERSION),
 	CMD(REASON),
-	CMD(MASTER),
+	CMD(MASTER, .min = offsetof(struct ec_ioc_master, not_captured) + 4),
 	CMD(SLAVE, .min = offsetof(struct ec_ioc_slave, dc_odd) + 2),
 	CMD(SM, RSV1(ec_ioc_sm)),
 	CMD(PDO, RSV2(ec_ioc_pdo)),
@@ -30,7 +30,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_SDO, RSV2(ec_ioc_config_sdo), DATA(ec_ioc_config_sdo),
 	    .flags = EC_SDO_FLAG_COMPLETE),
 	CMD(CONFIG_IDN, RSV1(ec_ioc_config_idn), DATA(ec_ioc_config_idn)),
-	CMD(DOMAIN, RSV2(ec_ioc_domain)),
+	CMD(DOMAIN),
 	CMD(DOMAIN_FMMU, RSV1(ec_ioc_domain_fmmu)),
 	CMD(DOMAIN_DATA, RSV1(ec_ioc_domain_data), DATA(ec_ioc_domain_data)),
 	CMD(CONFIG_FLAG),
