@@ -452,9 +452,11 @@ static int step_down(struct ec_slave *s, u8 want)
 
 	if (ret)
 		return failed(s, want, ret);
-	if (want == EC_AL_PREOP)
-		s->clean = !(ec_slave_has_clock(s) ? ec_dc_sync_stop(s) : 0) &
-			   !ec_apply_clear_pdos(s);
+	if (want == EC_AL_PREOP) {
+		if (ec_slave_has_clock(s))
+			ret = ec_dc_sync_stop(s);
+		s->clean = !ec_apply_clear_pdos(s) && !ret;
+	}
 	return 0;
 }
 
