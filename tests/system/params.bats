@@ -39,7 +39,7 @@ no_insmod() {
 	no_insmod 'cannot be an interface name' master main_devices=abcdefghijklmnop
 	[ ! -e /dev/EtherCAT0 ]
 	no_insmod 'entry 1 is empty' master main_devices=sim0,
-	no_insmod 'device sim0 is given twice' master main_devices=sim0,sim0
+	no_insmod 'device sim0 is listed twice' master main_devices=sim0,sim0
 	no_insmod 'debug_level: 3 is not 0, 1 or 2' master main_devices=sim0 debug_level=3
 }
 

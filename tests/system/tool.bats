@@ -143,7 +143,7 @@ teardown_file() { stop; }
 
 @test "states: a slave refuses" {
 	# no application has configured its process data
-	refused 'slave 4: cannot reach OP, it is in SAFEOP: .*AL status code 0x[0-9a-f]{4}: .+' \
+	refused 'slave 4: cannot reach OP, it is in SAFEOP: .*AL status code 0x[0-9a-f]{4} \(.+\)' \
 		states OP -p4 --wait
 	[[ "$(ethercat slaves -p4)" == "4  1:4  SAFEOP  E  EL7201"* ]]
 	ethercat slaves -v -p4 | grep -q '^  Cause: OP refused: AL status code 0x'
