@@ -24,13 +24,8 @@ teardown_file() { stop; }
 
 # what costs an ioctl or a packet here costs it at the user's
 @test "the kernel runs the security modules of the distribution" {
-	mountpoint -q /sys/kernel/security || mount -t securityfs none /sys/kernel/security
-	run cat /sys/kernel/security/lsm
-	echo "$output"
-	[[ ",$output," == *,apparmor,* ]]
-	[[ ",$output," != *,selinux,* ]]
 	[ "$(cat /sys/module/apparmor/parameters/enabled)" = Y ]
-	[ ! -e /sys/fs/selinux/enforce ]
+	[ ! -e /sys/fs/selinux ]
 }
 
 @test "a register is read from the slave" {
