@@ -201,7 +201,7 @@ static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int s
 static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 {
 	snprintf(s->warning, sizeof(s->warning),
-		 "process data of SM%u may belong to other objects: %.160s", sm, why);
+		 "process data of SM%u may belong to other objects: %.130s", sm, why);
 	ec_slave_warn(s, "%s\n", s->warning);
 }
 

@@ -26,8 +26,8 @@ passed=0 failed=0
 preload='xargs -d "\n" touch -c -a <"$2"; exec bats --tap "$1"'
 
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
-# W=1 as tests/check-kernels.sh, else each would build what the other has built
-warn=W=1
+# as tests/check-kernels.sh, else each would build what the other has built
+warn='W=1 KCFLAGS=-Werror'
 [ "$kernel" != 6.1-rt ] || warn=
 read -ra cross < <(tests/vm/kernels.sh cross "$kernel")
 # shellcheck disable=SC2086
