@@ -31,18 +31,6 @@ static void add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, 
 	b->dg[b->n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, ado, len, data);
 }
 
-/* -EIO: the slave did not take part in all of them. */
-static int write_batch(struct ec_slave *s, struct batch *b)
-{
-	int ret = ec_xfer(s->master, b->dg, b->n);
-	unsigned int i;
-
-	for (i = 0; i < b->n && !ret; i++)
-		if (b->dg[i].wkc != 1)
-			ret = -EIO;
-	return ret;
-}
-
 static unsigned int count_fmmus(const struct ec_slave *s)
 {
 	return min_t(u8, s->regs[EC_REG_FMMUS], MAX_FMMU);
@@ -194,7 +182,7 @@ int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 	if (!ret && c)
 		ret = add_fmmus(b, s, c);
 	if (!ret)
-		ret = write_batch(s, b);
+		ret = ec_xfer_all(s->master, b->dg, b->n);
 	kfree(b);
 	return ret;
 }
@@ -234,17 +222,12 @@ int ec_apply_clear_pdos(struct ec_slave *s)
 {
 	unsigned int sm = first_sm(s), n = min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM);
 	struct ec_dg dg[EC_MAX_SM];
-	unsigned int i, used = 0;
-	int ret;
+	unsigned int used = 0;
 
 	for (; sm < n; sm++)
 		dg[used++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, EC_REG_SM(sm), EC_SM_PAGE,
 						 (void *)zero);
-	ret = used ? ec_xfer(s->master, dg, used) : 0;
-	for (i = 0; i < used && !ret; i++)
-		if (dg[i].wkc != 1)
-			ret = -EIO;
-	return ret ?: ec_apply_clear_fmmus(s);
+	return (used ? ec_xfer_all(s->master, dg, used) : 0) ?: ec_apply_clear_fmmus(s);
 }
 
 /**

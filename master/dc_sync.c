@@ -100,21 +100,9 @@ void ec_dc_sync_again(struct ec_slave *s)
 {
 	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->gone)
 		return;
-	ec_slave_warn(s, "its clock is set now, after SYNC was started: goes through INIT to start it in step with the others\n");
+	ec_slave_warn(s, "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
 	WRITE_ONCE(s->reconfigure, true);
 	ec_slave_kick(s);
-}
-
-/* A batch in all of which the slave must take part. */
-static int together(struct ec_slave *s, struct ec_dg *dg, unsigned int n)
-{
-	int ret = ec_xfer(s->master, dg, n);
-	unsigned int i;
-
-	for (i = 0; i < n && !ret; i++)
-		if (dg[i].wkc != 1)
-			ret = -EIO;
-	return ret;
 }
 
 /*
@@ -134,7 +122,7 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 
 	put_unaligned_le32(c->dc_cycle[0], cycles);
 	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
-	ret = together(s, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
 	if (ret)
 		return ret;
 	*at_ns = dg[2].sent_ns;
@@ -171,7 +159,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
 	/* the second half alone would start it at whatever time is there */
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].repeat = false;
-	ret = together(s, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
 	if (ret || !(c->dc_assign & RUN))
 		return ret;
 	ahead = first - get_unaligned_le64(t);
@@ -269,7 +257,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
 
 	if (period < c->dc_cycle[0] || !period) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "SYNC cycle times are 0 or too long: SYNC0 %u ns, SYNC1 %u ns with AssignActivate 0x%04x",
+			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
 			      c->dc_cycle[0], c->dc_cycle[1], c->dc_assign);
 		return -ERANGE;
 	}
@@ -288,7 +276,8 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
 	}
 	if (ret == -EAGAIN) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "the start time of SYNC0 was over each time it arrived; fewer slaves at once or more late cycles for acyclic frames would help");
+			      "SYNC0 start time had passed on arrival, %d attempts; configure fewer slaves at once or allow more delayed cycles",
+			      STARTS);
 		ret = -EOPNOTSUPP;
 	}
 	return ret;
@@ -338,13 +327,13 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 		if (!missing(c, status[0]))
 			break;
 		if (!known) {
-			ec_slave_warn(s, "its SYNC signals may not run, or it has no register 0x0984 to tell (0x%02x); OP is tried\n",
+			ec_slave_warn(s, "SYNC signals may not run (0x0984 = 0x%02x), or the slave lacks this register; continuing to OP\n",
 				      status[0]);
 			break;
 		}
 		if (try == CHECKS) {
 			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "its SYNC signals do not run although they were started (register 0x0984 is 0x%02x); AssignActivate 0x%04x is not what it needs",
+				      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
 				      status[0], c->dc_assign);
 			return -EOPNOTSUPP;
 		}

@@ -444,6 +444,26 @@ int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 }
 
 /**
+ * ec_xfer_all() - exchange datagrams in each of which one slave must take part
+ * @m: master
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EIO when a working counter is not 1; or as ec_xfer().
+ */
+int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+{
+	int ret = ec_xfer(m, dg, n);
+	unsigned int i;
+
+	for (i = 0; i < n && !ret; i++)
+		if (dg[i].wkc != 1)
+			ret = -EIO;
+	return ret;
+}
+
+/**
  * ec_xfer_urgent() - exchange a few datagrams before all others
  * @m: master
  * @dg: datagrams; results are in them

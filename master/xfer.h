@@ -51,6 +51,7 @@ struct ec_xfer {
 };
 
 int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n);
 int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n);
 int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n);
 int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
