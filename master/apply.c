@@ -443,8 +443,8 @@ static int to_op(struct ec_slave *s)
 }
 
 /*
- * In PREOP nobody needs the SYNC signals and the process data of a slave any more. Without
- * them the next application need not take it through INIT.
+ * In PREOP a slave has no use for SYNC signals and process data. Without them the next
+ * application need not take it through INIT.
  */
 static int step_down(struct ec_slave *s, u8 want)
 {

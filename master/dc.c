@@ -44,7 +44,7 @@ static void tell_odd(const struct ec_dc_job *j)
 			n++;
 		}
 	if (n)
-		ec_slave_warn(j->slaves[first], "its receive times and those of %u more slave(s) do not fit to the topology: their clocks may be off; check the cables, then rescan\n",
+		ec_slave_warn(j->slaves[first], "receive times of this and %u more slave(s) contradict the topology; delays unreliable: check cables, then rescan\n",
 			      n - 1);
 }
 
@@ -139,14 +139,13 @@ static void tell_ref(const struct ec_dc_job *j, bool lost)
 	u16 now = READ_ONCE(m->dc.ref_station), at = now ? j->slaves[j->ref]->position : 0;
 
 	if (!now)
-		ec_warn(m, "the reference clock is gone; the clocks run free until it is back\n");
+		ec_warn(m, "reference clock lost: clocks run free\n");
 	else if (choice != EC_DC_ANY && choice != now)
-		ec_warn(m, "the reference clock is gone; slave %u stands in for it until it is back\n",
-			at);
+		ec_warn(m, "reference clock lost: slave %u substitutes until it returns\n", at);
 	else if (lost)
-		ec_warn(m, "the reference clock is gone; slave %u is the reference clock now\n", at);
+		ec_warn(m, "reference clock lost: slave %u is the new reference clock\n", at);
 	else
-		ec_info(m, "slave %u is the reference clock now\n", at);
+		ec_info(m, "slave %u is the new reference clock\n", at);
 }
 
 static void change_ref(struct ec_dc_job *j, bool found)
@@ -236,10 +235,11 @@ static void work(struct work_struct *work)
 	ret = ret ?: ec_dc_near(&j) ?: ec_dc_check(&j);
 	mutex_unlock(&dc->lock);
 	if (!ret)
-		ec_info(m, "clocks set in %llu us, reference clock is slave %u\n",
+		ec_info(m, "distributed clocks synchronized in %llu us, reference clock: slave %u\n",
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
-		ec_warn(m, "clocks could not be set (%pe)\n", ERR_PTR(ret));
+		ec_warn(m, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
+			passes(ret) ? "; retrying" : "");
 	if (ret) {
 		WRITE_ONCE(dc->boost, 0);
 		WRITE_ONCE(dc->framed, false);

@@ -315,12 +315,12 @@ void ec_dc_app_log(struct ec_master *m)
 	a->log_ns = now + LOG_NS;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
 	if (jumps)
-		ec_warn(m, "the application's time has jumped by %lld ns%s; clocks and SYNC signals go on without that\n",
-			jump, jumps > 1 ? ", and before" : "");
+		ec_warn(m, "application time jumped by %lld ns (%u since the last message); clocks and SYNC signals continue without it\n",
+			jump, jumps);
 	if (ignored)
-		ec_warn(m, "the application's time was %lld ns off and did not go on from there; ignored in %u cycle(s)\n",
-			single, ignored);
+		ec_warn(m, "application time: %u isolated error(s), last %lld ns, ignored\n",
+			ignored, single);
 	if (held)
-		ec_warn(m, "the application's time is %lld ns off and ignored, for %llu ms by now\n",
+		ec_warn(m, "application time off by %lld ns for %llu ms, ignored\n",
 			off, div_u64(held, NSEC_PER_MSEC));
 }

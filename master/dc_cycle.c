@@ -260,7 +260,7 @@ void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
 	}
-	/* an answer that is exactly as predicted is told from silence by some ns */
+	/* some ns more, else an answer exactly as predicted would look like silence */
 	s->cycle.dc_sent = predicted(m, &s->cycle, now) +
 			   (s->cycle.dc_silent ?: !s->cycle.dc_wkc) % 4;
 	put_unaligned_le64(s->cycle.dc_sent, t);

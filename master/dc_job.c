@@ -284,7 +284,8 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 		if (s->dc_delay_only)
 			continue;
 		if (!s->dc_out && !s->gone)
-			ec_slave_warn(s, "does not answer as it should while the clocks are set: its clock is left out and tried again later\n");
+			ec_slave_warn(s, "no valid reply to DC register access in %d attempts; clock excluded until it replies\n",
+				      EC_DC_OUT_TRIES);
 		WRITE_ONCE(s->dc_out, true);
 		if (s->station == j->followed)
 			j->followed = 0;

@@ -291,7 +291,7 @@ int ec_dc_near(struct ec_dc_job *j)
 	int ret;
 
 	lockdep_assert_held(&j->m->dc.lock);
-	/* nobody follows a clock that is alone */
+	/* a single clock has no other to be synchronized to */
 	if (ec_dc_count(j, EC_DC_CLOCKS) < 2)
 		return 0;
 	if (READ_ONCE(j->m->dc.front))

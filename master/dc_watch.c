@@ -123,7 +123,7 @@ static bool worth_try(struct ec_slave *s)
 		return false;
 	if (s->dc_vain++ < VAIN)
 		return true;
-	ec_slave_warn(s, "its clock could not be set in %d more tries although it answers: it is left out until the slave comes anew or the next activation\n",
+	ec_slave_warn(s, "clock not synchronized in %d more attempts although the slave replies; clock excluded until the slave reconnects or the next activation\n",
 		      VAIN);
 	return false;
 }

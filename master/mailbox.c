@@ -11,7 +11,7 @@
 #include "wire/mbox.h"
 #include "xfer.h"
 
-#define DRAIN	16	/* messages at most that nobody waits for */
+#define DRAIN	16	/* messages at most that no transfer expects */
 
 /* a message that was taken out of the mailbox for who reads it later */
 struct kept {
@@ -158,8 +158,8 @@ static int repeat_request(struct ec_slave *slave)
 }
 
 /*
- * A slave that counts its messages lets a message that was there already be told from a new
- * one, when it has repeated its last one and nothing was lost.
+ * When a slave has repeated its last message although nothing was lost, the counter shows
+ * that the message is not a new one; only for slaves that count their messages.
  */
 static bool is_known(struct ec_slave *slave, u8 counter)
 {

@@ -229,7 +229,7 @@ void ec_names_read(struct ec_slave *s)
 }
 
 /**
- * ec_names_free() - of a slave nobody finds any more
+ * ec_names_free() - free the names of a slave that is being freed
  * @s: slave
  *
  * Context: Process.

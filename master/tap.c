@@ -13,7 +13,6 @@
 #include "tap.h"
 #include "wire/frame.h"
 
-
 /**
  * struct ec_tap_frame - one frame in the ring
  * @at: when it was sent or received
