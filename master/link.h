@@ -8,6 +8,7 @@
 #include <linux/types.h>
 #include "ethercat.h"
 #include "gate.h"
+#include "watch.h"
 
 struct ecdev;
 struct ec_master;
@@ -52,6 +53,7 @@ struct ec_link_rates {
  *	owner of the link; others only in an RCU read section
  * @acyclic: places for acyclic frames on their way, also those in the queue
  * @acyclic_ns: wire time of these frames
+ * @watch: callers that wait for frames
  * @ring_full: held by the caller that waits for room in the transmit ring
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
@@ -65,6 +67,7 @@ struct ec_link {
 	struct ecdev *dev;
 	struct ec_gate acyclic;
 	atomic_t acyclic_ns;
+	struct ec_watch watch;
 	struct mutex ring_full;
 	bool up;
 	u32 slaves;

@@ -326,6 +326,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		m->link[i].master = m;
 		m->link[i].side = i;
 		ec_gate_init(&m->link[i].acyclic, EC_LINK_ACYCLIC);
+		ec_watch_init(&m->link[i].watch);
 		mutex_init(&m->link[i].ring_full);
 	}
 	ec_log_init(&m->log);

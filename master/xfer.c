@@ -3,14 +3,12 @@
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
 #include <linux/slab.h>
-#include <linux/swait.h>
 #include "cycle.h"
 #include "master.h"
 #include "xfer.h"
 
 #define TRIES	4	/* of a repeatable datagram */
 #define WAITS	8	/* for one frame, as long as it had no fair chance */
-#define LOOK_MS	10	/* between looks whether a frame has left */
 #define PLACE_WAIT_MS	30000	/* many hundred callers may be at work at once */
 #define RING_WAIT_NS	(1 * NSEC_PER_SEC)	/* a device that sends nothing for so long hangs */
 
@@ -284,42 +282,36 @@ static bool in_queue(const struct half *h)
 	return false;
 }
 
-/* Wait for the frames of a half, at most a millisecond: a jiffy may be ten of them. */
-static bool wait_ms(struct completion *done)
-{
-	ktime_t limit = ms_to_ktime(1);
-	DECLARE_SWAITQUEUE(wait);
-
-	prepare_to_swait_exclusive(&done->wait, &wait, TASK_UNINTERRUPTIBLE);
-	if (!completion_done(done))
-		schedule_hrtimeout(&limit, HRTIMER_MODE_REL);
-	finish_swait(&done->wait, &wait);
-	return try_wait_for_completion(done);
-}
-
 /* The time limit begins when the last frame has left, or cannot leave any more. */
-static bool wait_once(struct ec_master *m, struct half *h)
+static bool wait_watched(struct ec_master *m, struct half *h, const struct ec_watcher *me)
 {
-	unsigned long until, look = msecs_to_jiffies(LOOK_MS);
+	struct ec_link *link = &m->link[0];
+	unsigned long until;
 	long left;
 
-	ec_cycle_wait_begin(m, &h->wait);
 	while (in_queue(h) && ec_cycle_wait_turn(m, &h->wait)) {
-		if (wait_for_completion_timeout(&h->x.done, look))
+		if (ec_watch_wait(&link->watch, me, &h->x.done, ~0u))
 			return true;
 		h->wait.began_ns = ktime_get_ns();
 		h->wait.polls = READ_ONCE(m->polls);
 	}
 	until = jiffies + usecs_to_jiffies(h->wait.timeout_us) + 1;
-	while ((left = until - jiffies) > 0) {
-		/* without a cycle few wait, and not for long: they see soon that the link is down */
-		if (h->wait.owner == EC_OWNER_IDLE ? wait_ms(&h->x.done) :
-		    wait_for_completion_timeout(&h->x.done, min_t(unsigned long, left, look)))
+	while ((left = until - jiffies) > 0 && ec_link_is_up(link))
+		if (ec_watch_wait(&link->watch, me, &h->x.done, jiffies_to_usecs(left)))
 			return true;
-		if (!ec_link_is_up(&m->link[0]))
-			break;
-	}
 	return try_wait_for_completion(&h->x.done);
+}
+
+static bool wait_once(struct ec_master *m, struct half *h)
+{
+	struct ec_watcher me;
+	bool done;
+
+	ec_cycle_wait_begin(m, &h->wait);
+	ec_watch_begin(&m->link[0].watch, &me);
+	done = wait_watched(m, h, &me);
+	ec_watch_end(&m->link[0].watch, &me);
+	return done;
 }
 
 /*

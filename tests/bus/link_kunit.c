@@ -216,33 +216,88 @@ static int wait_for_frame(void *arg)
 	return 0;
 }
 
+/* Callers, and when the last of them knows that the link is down. */
+static u64 all_know(struct kunit *test, struct waiting *w, u32 n, u64 cut_ns)
+{
+	u64 most = 0;
+	u32 i;
+
+	for (i = 0; i < n; i++) {
+		wait_for_completion(&w[i].done);
+		KUNIT_EXPECT_EQ_MSG(test, w[i].ret, -ENETDOWN, "caller %u", i);
+		most = max(most, w[i].end_ns - cut_ns);
+	}
+	return most;
+}
+
+static void call_some(struct bus *b, struct waiting *w, u32 n)
+{
+	u32 i;
+
+	for (i = 0; i < n; i++) {
+		w[i] = (struct waiting){ .b = b, .station = bus_slave(b, 1)->station };
+		init_completion(&w[i].done);
+		kthread_run(wait_for_frame, &w[i], "waiting%u", i);
+	}
+	usleep_range(100, 101);
+}
+
 /* Without a cycle: who waits for a frame knows at once that it will not come. */
 static void link_loss_ends_waiting(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "segment seed=33\nslave a EK1100\nslave x EL1859\n", 2);
 	static struct waiting w[10];
-	u64 cut_ns, most = 0;
-	u32 i;
+	u64 cut_ns, most;
 
 	bus_idle(b);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
-	for (i = 0; i < ARRAY_SIZE(w); i++) {
-		w[i] = (struct waiting){ .b = b, .station = bus_slave(b, 1)->station };
-		init_completion(&w[i].done);
-		kthread_run(wait_for_frame, &w[i], "waiting%u", i);
-	}
+	call_some(b, w, ARRAY_SIZE(w));
 	usleep_range(2000, 2001);
 	cut_ns = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
-	for (i = 0; i < ARRAY_SIZE(w); i++) {
-		wait_for_completion(&w[i].done);
-		KUNIT_EXPECT_EQ(test, w[i].ret, -ENETDOWN);
-		most = max(most, w[i].end_ns - cut_ns);
-	}
+	most = all_know(test, w, ARRAY_SIZE(w), cut_ns);
 	bus_figure("link lost while frames are on their way, no cycle: callers know after %llu us",
 		   div_u64(most, NSEC_PER_USEC));
-	KUNIT_EXPECT_LT(test, most, 3 * NSEC_PER_MSEC);
+	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+}
+
+/* Beside a cycle: frames that were sent are waited for as long as those in the queue. */
+static void loss_ends_waiting_beside(struct kunit *test, u32 period_us)
+{
+	struct bus *b = bus_up(test, "segment seed=34\nslave a EK1100\nslave x EL1859\n", 2);
+	static struct waiting w[20];
+	u64 cut_ns, most;
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, period_us);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	call_some(b, w, 10);
+	/* the first ones leave in two sends, and do not come back */
+	cyc_run(c, 2);
+	call_some(b, w + 10, 10);
+	cut_ns = ktime_get_ns();
+	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	most = all_know(test, w, 20, cut_ns);
+	bus_figure("link lost while frames are on their way, cycle of %u us: callers know after %llu us",
+		   period_us, div_u64(most, NSEC_PER_USEC));
+	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
+	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+}
+
+static void link_loss_ends_waiting_beside_a_cycle(struct kunit *test)
+{
+	loss_ends_waiting_beside(test, 1000);
+}
+
+static void link_loss_ends_waiting_beside_a_slow_cycle(struct kunit *test)
+{
+	loss_ends_waiting_beside(test, 20000);
 }
 
 /* A reply that claims 65,535 slaves: nothing is allocated for them. */
@@ -296,6 +351,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(link_loss_ends_a_scan),
 	KUNIT_CASE(link_loss_beside_a_cycle),
 	KUNIT_CASE(link_loss_ends_waiting),
+	KUNIT_CASE(link_loss_ends_waiting_beside_a_cycle),
+	KUNIT_CASE(link_loss_ends_waiting_beside_a_slow_cycle),
 	KUNIT_CASE(link_claims_beyond_memory_refused),
 	KUNIT_CASE(link_station_search_ends),
 	{}
