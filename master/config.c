@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
+#include <linux/vmalloc.h>
 #include "config.h"
 #include "domain.h"
 #include "grow.h"
@@ -292,8 +293,12 @@ static void *alloc(struct ec_config *c, size_t size)
 
 	if (ret)
 		return ERR_PTR(ret);
-	/* a value may be large: no need for contiguous pages */
-	p = kvzalloc(size, GFP_KERNEL_ACCOUNT);
+	/*
+	 * A value may be large. kmalloc() would take contiguous pages for it, and up to twice as
+	 * many as the session is charged.
+	 */
+	p = size <= PAGE_SIZE ? kzalloc(size, GFP_KERNEL_ACCOUNT) :
+	    __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
 	if (p)
 		return p;
 	ec_session_uncharge(c->session, size);

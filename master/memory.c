@@ -44,7 +44,7 @@ void ec_shared_put(struct ec_shared *sh)
 void *ec_shared_alloc(struct ec_shared *sh, size_t size)
 {
 	/* vmalloc_user() would not charge the caller's cgroup */
-	void *p = __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO);
+	void *p = __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
 
 	if (p) {
 		sh->bytes += size;

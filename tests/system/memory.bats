@@ -34,18 +34,70 @@ has_free() { [ "$(free_kib)" -ge "$1" ]; }
 	wait_for 20 has_free $((before - 8192))
 }
 
-@test "a memory cgroup bounds it as well: only what is in there is hit" {
+# in_group COMMAND...: by a process of the group
+in_group() { sh -c 'echo $$ >/sys/fs/cgroup/app/cgroup.procs && exec "$@"' sh "$@"; }
+charged() { cat /sys/fs/cgroup/app/memory.current; }
+kills() { sed -n 's/^oom_kill //p' /sys/fs/cgroup/app/memory.events; }
+charged_at_most() { [ "$(charged)" -le "$1" ]; }
+no_session() { json '.masters[0].session == "none"' master; }
+
+# part NAME LEAST MOST: KiB charged for it; nearly all of that is given back
+part() {
+	awk -v name="$1" -v least="$2" -v most="$3" '$1 == name {
+		found = $2 >= least * 1024 && $2 <= most * 1024 && $3 <= $2 / 20 } END { exit !found }' \
+		"$BATS_TEST_TMPDIR/out"
+}
+
+@test "what an application causes is charged to its memory cgroup, until it is released" {
+	in_group "$EC_BUILD/apps/memory" charge /sys/fs/cgroup/app/memory.current >"$BATS_TEST_TMPDIR/out"
+	sed 's/^/# bytes charged and left: /' "$BATS_TEST_TMPDIR/out" >&3
+	# 256 values of 64 KiB
+	part SDOs 16384 18432
+	part configurations 1000 4096
+	# 64 values of 64 KiB, mapped and copied
+	part requests 8192 14336
+}
+
+@test "beyond memory.max an application is killed, and nothing outside of its group" {
+	local before outside
+
 	echo 16M >/sys/fs/cgroup/app/memory.max
 	echo 0 >/sys/fs/cgroup/app/memory.swap.max 2>/dev/null || true	# not without swap
-	run sh -c 'echo $$ >/sys/fs/cgroup/app/cgroup.procs && exec "$1"' sh "$EC_BUILD/apps/memory"
+	before=$(charged)
+	# what the kernel would choose if it looked outside of the group
+	python3 -c 'import os, time
+x = b"x" * (128 << 20)
+open("/proc/self/oom_score_adj", "w").write("1000")
+print("ready", flush=True)
+time.sleep(1000)' >"$BATS_TEST_TMPDIR/outside" 3>&- &
+	outside=$!
+	wait_for 60 grep -q ready "$BATS_TEST_TMPDIR/outside"
+	run in_group "$EC_BUILD/apps/memory"
 	echo "$output"
 	cat /sys/fs/cgroup/app/memory.events
-	if [ "$status" = 0 ]; then
-		n=${output##*$'\n'}
-		[ "${n%% values*}" -lt 256 ]
-	else
-		[ "$status" = 137 ]
-		grep -q 'oom_kill [1-9]' /sys/fs/cgroup/app/memory.events
-	fi
-	ethercat master
+	[ "$status" = 137 ]
+	[ "$(kills)" = 1 ]
+	kill -0 $outside
+	kill $outside
+	no_session
+	wait_for 20 charged_at_most $((before + 1048576))
+}
+
+@test "beyond memory.max an application that must not be killed is refused" {
+	local before n
+
+	echo 16M >/sys/fs/cgroup/app/memory.max
+	before=$(charged)
+	run in_group sh -c 'echo -1000 >/proc/self/oom_score_adj && exec "$1"' sh "$EC_BUILD/apps/memory"
+	echo "$output"
+	[ "$status" = 0 ]
+	n=${output##*$'\n'}
+	n=${n%% values*}
+	[ "$n" -ge 200 ] && [ "$n" -lt 256 ]
+	[[ "$output" == *"values, then: Cannot allocate memory" ]]
+	no_session
+	wait_for 20 charged_at_most $((before + 1048576))
+	# and the next one is welcome
+	echo max >/sys/fs/cgroup/app/memory.max
+	in_group "$EC_BUILD/apps/memory" charge /sys/fs/cgroup/app/memory.current
 }
