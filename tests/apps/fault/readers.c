@@ -4,15 +4,20 @@
  * sees of that.
  *
  *   readers epoll ENTRIES    an epoll entry each for so many copies of the descriptor
- *   readers show THREADS     so many threads show all there is, without a pause
+ *   readers show THREADS     so many threads call every command, without a pause
+ *   readers spin THREADS     so many threads call nothing of the master, to compare with
  *   readers updates COUNT    an application that asks for a change of an AL state so
  *                            often, and looks in its status page for each of them
+ *   readers cycles COUNT     an application that runs the cycle and prints what so many
+ *                            of them cost, again and again
+ *   readers waits COUNT      the same, the kernel runs the cycle
  *
- * The first two go on until they are killed.
+ * All but "updates" go on until they are killed. With SIGTERM "show" prints how often each
+ * command was called, how often it succeeded, and what came that must not.
  */
-#include <ecrt.h>
-#include <fcntl.h>
+#include <errno.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,29 +25,24 @@
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
-#include <time.h>
+#include <fcntl.h>
 #include <unistd.h>
-#include <uapi/ethercat.h>
+#include "fault.h"
+#include "readers.h"
 
-#define DEVICE		"/dev/EtherCAT0"
-#define LIMIT_MS	1000	/* for an update; one takes 20 ms and what the slave needs */
-#define OP_MS		60000
+#define CMDS_MAX	128
+#define MAX_ARG		1024
 
-static int open_to_read(void)
-{
-	int fd = open(DEVICE, O_RDONLY | O_CLOEXEC);
-
-	if (fd < 0) {
-		perror(DEVICE);
-		exit(2);
-	}
-	return fd;
-}
+/* of one command, by all threads */
+static struct {
+	unsigned int calls, good, bad;
+	int err;	/* the last one that was not expected */
+} seen[CMDS_MAX];
 
 static int entries(unsigned int n)
 {
 	struct rlimit files = { .rlim_cur = n + 64, .rlim_max = n + 64 };
-	int fd = open_to_read(), ep = epoll_create1(EPOLL_CLOEXEC);
+	int fd = open_master(O_RDONLY), ep = epoll_create1(EPOLL_CLOEXEC);
 
 	setrlimit(RLIMIT_NOFILE, &files);
 	for (unsigned int i = 0; i < n; i++) {
@@ -59,110 +59,162 @@ static int entries(unsigned int n)
 		pause();
 }
 
-static void *show(void *arg)
+/* The argument of the @k-th call: all there is comes up, and what there is not. */
+static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 {
-	int fd = open_to_read();
+	static const uint8_t sms[] = { 0, 2, 1, 3 };
+	uint8_t sm = sms[k % 4];
 
-	(void)arg;
+	switch (nr) {
+	case EC_IOC_SLAVE:
+		((struct ec_ioc_slave *)arg)->position = k % 2;
+		break;
+	case EC_IOC_SM:
+		((struct ec_ioc_sm *)arg)->sm = sm;
+		break;
+	case EC_IOC_PDO:
+		((struct ec_ioc_pdo *)arg)->sm = sm;
+		break;
+	case EC_IOC_PDO_ENTRY:
+		((struct ec_ioc_pdo_entry *)arg)->sm = sm;
+		((struct ec_ioc_pdo_entry *)arg)->entry_pos = (uint16_t)(k % 3);
+		break;
+	case EC_IOC_CONFIG:
+		((struct ec_ioc_config *)arg)->index = k % APP_CONFIGS;
+		break;
+	case EC_IOC_CONFIG_SM:
+		((struct ec_ioc_config_sm *)arg)->sm = sm;
+		break;
+	case EC_IOC_CONFIG_PDO:
+		((struct ec_ioc_config_pdo *)arg)->sm = sm;
+		break;
+	case EC_IOC_CONFIG_ENTRY:
+		((struct ec_ioc_config_entry *)arg)->sm = sm;
+		break;
+	case EC_IOC_CONFIG_SDO:
+		((struct ec_ioc_config_sdo *)arg)->index = 1;
+		((struct ec_ioc_config_sdo *)arg)->sdo_pos = k % APP_SDOS;
+		break;
+	case EC_IOC_CONFIG_IDN:
+		((struct ec_ioc_config_idn *)arg)->index = 1;
+		((struct ec_ioc_config_idn *)arg)->idn_pos = k % 2;
+		break;
+	case EC_IOC_CONFIG_FLAG:
+		((struct ec_ioc_config_flag *)arg)->index = 1;
+		((struct ec_ioc_config_flag *)arg)->flag_pos = k % 2;
+		break;
+	case EC_IOC_CONFIG_IP:
+		((struct ec_ioc_sc_ip *)arg)->config = k % 2;
+		break;
+	case EC_IOC_CONFIG_WHY:
+		((struct ec_ioc_config_why *)arg)->index = k % APP_CONFIGS;
+		break;
+	case EC_IOC_DOMAIN_FMMU:
+		((struct ec_ioc_domain_fmmu *)arg)->fmmu = k % 2;
+		break;
+	}
+}
+
+/* Is this an answer to what has no fault but that something is not there? */
+static int allowed(const struct cmd *c, int err)
+{
+	if (c->write)
+		return err == EPERM;
+	switch (c->nr) {
+	case EC_IOC_VERSION:
+	case EC_IOC_REASON:
+	case EC_IOC_MASTER:
+	case EC_IOC_CYCLE_STATS:
+		return !err;
+	case EC_IOC_SM:
+	case EC_IOC_PDO:
+	case EC_IOC_PDO_ENTRY:
+		return !err || err == ENOENT || err == EINVAL;
+	default:
+		return !err || err == ENOENT;
+	}
+}
+
+static void *show(void *unused)
+{
+	int fd = open_master(O_RDONLY);
+	uint8_t *some = malloc(SOME_BYTES);
+
+	(void)unused;
+	for (unsigned int k = 0;; k++)
+		for (unsigned int i = 0; i < n_cmds; i++) {
+			const struct cmd *c = &cmds[i];
+			uint64_t arg[MAX_ARG / sizeof(uint64_t)] = { 0 };
+			int err;
+
+			if (c->data && !c->write) {
+				uint64_t to = (uintptr_t)some;
+				uint32_t size = SOME_BYTES;
+
+				memcpy((char *)arg + c->data, &to, sizeof(to));
+				memcpy((char *)arg + c->size, &size, sizeof(size));
+			}
+			fill(c->nr, arg, k);
+			err = call(fd, c->nr, arg);
+			__atomic_add_fetch(&seen[i].calls, 1, __ATOMIC_RELAXED);
+			__atomic_add_fetch(&seen[i].good, !err, __ATOMIC_RELAXED);
+			if (allowed(c, err))
+				continue;
+			__atomic_add_fetch(&seen[i].bad, 1, __ATOMIC_RELAXED);
+			seen[i].err = err;
+		}
+	return NULL;
+}
+
+/* r or w, how often called, how often with success, name, what was wrong */
+static int report(void)
+{
+	int ret = 0;
+
+	for (unsigned int i = 0; i < n_cmds; i++) {
+		printf("%c %u %u %s", cmds[i].write ? 'w' : 'r', seen[i].calls, seen[i].good,
+		       cmds[i].name);
+		if (seen[i].bad) {
+			printf(" failed %u times: %s", seen[i].bad, strerror(seen[i].err));
+			ret = 1;
+		}
+		printf("\n");
+	}
+	return ret;
+}
+
+/* To compare with: as much work, and as many system calls, with nothing of the master. */
+static void *spin(void *unused)
+{
+	(void)unused;
 	for (;;) {
-		static uint8_t some[4096];
-		struct ec_ioc_master m = { 0 };
-		struct ec_ioc_slave s = { 0 };
-		struct ec_ioc_config c = { 0 };
-		struct ec_ioc_config_why why = { 0 };
-		struct ec_ioc_domain d = { 0 };
-		struct ec_ioc_cycle_stats stats = { 0 };
-		struct ec_ioc_domain_data data = {
-			.data = (uintptr_t)some, .size = sizeof(some),
-		};
+		char buf[64];
+		int fd = open("/proc/version", O_RDONLY | O_CLOEXEC);
 
-		ioctl(fd, EC_IOC_MASTER, &m);
-		ioctl(fd, EC_IOC_SLAVE, &s);
-		ioctl(fd, EC_IOC_CONFIG, &c);
-		ioctl(fd, EC_IOC_CONFIG_WHY, &why);
-		ioctl(fd, EC_IOC_DOMAIN, &d);
-		ioctl(fd, EC_IOC_CYCLE_STATS, &stats);
-		ioctl(fd, EC_IOC_DOMAIN_DATA, &data);
-		/* refused */
-		ioctl(fd, EC_IOC_RECEIVE);
+		if (read(fd, buf, sizeof(buf)) < 0)
+			abort();
+		close(fd);
 	}
 	return NULL;
 }
 
-static int shows(unsigned int n)
+static int threads(void *(*fn)(void *), unsigned int n)
 {
+	sigset_t term;
 	pthread_t t;
+	int sig;
 
+	if (n_cmds > CMDS_MAX)
+		return 2;
+	sigemptyset(&term);
+	sigaddset(&term, SIGTERM);
+	pthread_sigmask(SIG_BLOCK, &term, NULL);
 	while (n--)
-		if (pthread_create(&t, NULL, show, NULL))
+		if (pthread_create(&t, NULL, fn, NULL))
 			return 2;
 	printf("reading\n");
-	for (;;)
-		pause();
-}
-
-static uint64_t now_ms(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (uint64_t)t.tv_sec * 1000 + (uint64_t)t.tv_nsec / 1000000;
-}
-
-static int reaches(const ec_slave_config_t *sc, unsigned int state, unsigned int limit_ms)
-{
-	static const struct timespec pause_ms = { .tv_nsec = 1000000 };
-	uint64_t end = now_ms() + limit_ms;
-	ec_slave_config_state_t s;
-
-	do {
-		if (!ecrt_slave_config_state(sc, &s) && s.al_state == state)
-			return 1;
-		nanosleep(&pause_ms, NULL);
-	} while (now_ms() < end);
-	return 0;
-}
-
-static ec_slave_config_t *configure(ec_master_t *m)
-{
-	static const ec_cycle_config_t cycle = { .period_ns = 1000000 };
-	ec_domain_t *d = ecrt_master_create_domain(m);
-	ec_slave_config_t *sc;
-	ec_slave_info_t info;
-	unsigned int bit;
-
-	if (!d || ecrt_master_get_slave(m, 0, &info))
-		return NULL;
-	sc = ecrt_master_slave_config(m, 0, 0, info.vendor_id, info.product_code);
-	if (!sc || ecrt_slave_config_reg_pdo_entry_pos(sc, 0, 0, 0, d, &bit) < 0 ||
-	    ecrt_master_set_cycle(m, &cycle) || ecrt_master_activate(m))
-		return NULL;
-	return sc;
-}
-
-static int updates(unsigned int count)
-{
-	int fd = open(DEVICE, O_RDWR | O_CLOEXEC);
-	ec_master_t *m = ecrt_request_master(0);
-	ec_slave_config_t *sc = m ? configure(m) : NULL;
-	unsigned int seen = 0;
-
-	if (fd < 0 || !sc || !reaches(sc, EC_AL_STATE_OP, OP_MS)) {
-		fprintf(stderr, "the slave does not reach OP\n");
-		return 2;
-	}
-	printf("in OP\n");
-	for (unsigned int i = 0; i < count; i++) {
-		struct ec_ioc_state s = { .state = i % 2 ? EC_AL_STATE_OP : EC_AL_STATE_SAFEOP };
-
-		if (ioctl(fd, EC_IOC_STATE, &s)) {
-			perror("state");
-			return 2;
-		}
-		seen += (unsigned int)reaches(sc, s.state, LIMIT_MS);
-	}
-	printf("updates: %u of %u\n", seen, count);
-	return 0;
+	sigwait(&term, &sig);
+	return fn == show ? report() : 0;
 }
 
 int main(int argc, char **argv)
@@ -173,9 +225,15 @@ int main(int argc, char **argv)
 	if (n && !strcmp(argv[1], "epoll"))
 		return entries(n);
 	if (n && !strcmp(argv[1], "show"))
-		return shows(n);
+		return threads(show, n);
+	if (n && !strcmp(argv[1], "spin"))
+		return threads(spin, n);
 	if (n && !strcmp(argv[1], "updates"))
 		return updates(n);
-	fprintf(stderr, "usage: readers epoll|show|updates NUMBER\n");
+	if (n && !strcmp(argv[1], "cycles"))
+		return cycles(n, 0);
+	if (n && !strcmp(argv[1], "waits"))
+		return cycles(n, 1);
+	fprintf(stderr, "usage: readers epoll|show|spin|updates|cycles|waits NUMBER\n");
 	return 2;
 }
