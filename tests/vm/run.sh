@@ -249,6 +249,7 @@ if [ $nics = 1 ]; then
 fi
 
 # --- run ----------------------------------------------------------------------
+# norandmaps: QEMU translates a program once, not once for each process
 start=$(date +%s%N)
 mkfifo "$tmp/out"
 # shellcheck disable=SC2086
@@ -257,7 +258,7 @@ timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd
 	-device virtserialport,chardev=out -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
 	-virtfs "local,path=$root,mount_tag=host,security_model=none,readonly=on,multidevs=remap" \
 	${opts[@]+"${opts[@]}"} \
-	-append "console=$console quiet panic=-1 log_buf_len=4M mitigations=off audit=0 printk.devkmsg=on net.ifnames=0$append" \
+	-append "console=$console quiet panic=-1 log_buf_len=4M mitigations=off norandmaps audit=0 printk.devkmsg=on net.ifnames=0$append" \
 	$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
 qemu_pid=$!
 # The console adds a carriage return to each line of the kernel. The file tells
