@@ -473,15 +473,19 @@ static void take_plan(struct ec_slave *s)
 
 /*
  * Nothing of a configuration is left in the slave, so that it need not go through INIT. That
- * would have emptied its mailbox, too.
+ * would have emptied its mailbox, too: it is the way for one that cannot be emptied.
  */
 static int start_clean(struct ec_slave *s)
 {
 	int ret = ec_slave_has_mailbox(s) ? ec_mbox_forget(s) : 0;
 
-	if (!ret)
+	if (ret == -ECANCELED)
+		return ret;
+	if (ret)
+		s->clean = false;
+	else
 		s->reconfigure = false;
-	return ret;
+	return 0;
 }
 
 /* One step towards the requested state; 1: there, 0: again, -errno. */

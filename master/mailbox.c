@@ -352,6 +352,24 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
 	return 0;
 }
 
+/* Read the mailbox until it is empty; -EBUSY: the slave fills it without end. */
+static int discard_all(struct ec_slave *slave, struct ec_mbox_buf *b)
+{
+	struct ec_mbox_hdr h;
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < DRAIN; i++) {
+		ret = full(slave);
+		if (ret <= 0)
+			return ret;
+		ret = fetch(slave, b, &h, true);
+		if (ret < 0 && ret != -EBADMSG)
+			return ret;
+	}
+	return -EBUSY;
+}
+
 /**
  * ec_mbox_forget() - empty the mailbox for a new application
  * @slave: slave with mailbox, in PREOP
@@ -359,13 +377,12 @@ int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
  * What the slave has sent before, emergencies and VoE messages too, is none of it.
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0, -ENOMEM, -ECANCELED, or as ec_xfer().
+ * Return: 0; -ENOMEM; -ECANCELED; -EBUSY when it cannot be emptied; -EMSGSIZE when it is
+ * larger than a datagram; or as ec_xfer().
  */
 int ec_mbox_forget(struct ec_slave *slave)
 {
 	struct ec_mbox_buf *b = kmalloc(sizeof(*b), GFP_KERNEL);
-	struct ec_mbox_hdr h;
-	unsigned int i;
 	int ret;
 
 	if (!b)
@@ -373,10 +390,8 @@ int ec_mbox_forget(struct ec_slave *slave)
 	ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
 	if (ret)
 		goto out;
-	for (i = 0, ret = 1; i < DRAIN && (ret > 0 || ret == -EBADMSG); i++)
-		ret = fetch(slave, b, &h, false);
-	ret = min(ret, 0);
-	slave->mbox_answered = !ret && i < DRAIN;
+	ret = discard_all(slave, b);
+	slave->mbox_answered = !ret;
 	spin_lock(&slave->kept_lock);
 	flush(slave, 0);
 	spin_unlock(&slave->kept_lock);

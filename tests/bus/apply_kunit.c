@@ -3,6 +3,7 @@
 #include <linux/completion.h>
 #include <linux/kthread.h>
 #include "cyc.h"
+#include "devices/sim/app.h"
 #include "master/coe.h"
 #include "master/ioctl.h"
 
@@ -276,6 +277,41 @@ static void apply_sdo_crowd(struct kunit *test)
 	}
 }
 
+/* messages that never end, from a slave that nothing is left in */
+static const struct endless {
+	const char *name;
+	u32 kind;	/* of the first message, which is repeated then */
+} endless[] = {
+	{ "bad length", EC_SIM_MAILBOX_LENGTH },
+	{ "unknown protocol", EC_SIM_MAILBOX_TYPE },
+};
+
+static void endless_desc(const struct endless *e, char *desc)
+{
+	strscpy(desc, e->name, KUNIT_PARAM_DESC_SIZE);
+}
+
+KUNIT_ARRAY_PARAM(endless, endless, endless_desc);
+
+/* A mailbox that cannot be emptied is emptied by the way through INIT. */
+static void apply_endless_mailbox(struct kunit *test)
+{
+	const struct endless *e = test->param_value;
+	struct cyc *c = reserve(test, drive, 1);
+	struct ec_app *app = bus_app(c->b, "a");
+
+	KUNIT_ASSERT_TRUE(test, bus_slave(c->b, 0)->clean);
+	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, e->kind, 0);
+	bus_fault(c->b, EC_SIM_FAULT_EMERGENCY, 0, 0, 0x1000, 0);
+	msleep(20);
+	KUNIT_ASSERT_TRUE(test, app->mbox.out_in_sm);
+	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_BABBLE, 0);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(c->b, 0)->why);
+	KUNIT_EXPECT_EQ(test, app->mbox.out_len, 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_unknown_sm),
 	KUNIT_CASE(apply_op_only),
@@ -285,6 +321,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_changes_meanwhile),
 	KUNIT_CASE(apply_sdo_beside),
 	KUNIT_CASE(apply_sdo_crowd),
+	KUNIT_CASE_PARAM(apply_endless_mailbox, endless_gen_params),
 	{ }
 };
 
