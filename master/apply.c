@@ -61,6 +61,15 @@ static bool is_transient(const struct ec_slave *s, int ret)
 	       ret == -EBUSY;
 }
 
+/*
+ * A try after a failure that was cut short, or met no cycle, has decided nothing: the
+ * monitor has taken it off its plan.
+ */
+static bool is_undecided(const struct ec_slave *s, int ret)
+{
+	return s->retry_ms && (!ret || ret == -ECANCELED || ret == -EAGAIN);
+}
+
 /* What the application allows for a transition, ms; 0: the default. */
 static u32 limit(const struct ec_slave *s, u8 from, u8 to)
 {
@@ -568,7 +577,7 @@ void ec_apply_work(struct work_struct *work)
 		s->retry_ms = 0;
 		log_return(s);
 	}
-	if (s->error == EC_SLAVE_CONFIG_FAILED && is_transient(s, ret))
+	if (s->error == EC_SLAVE_CONFIG_FAILED && (is_transient(s, ret) || is_undecided(s, ret)))
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);

@@ -206,6 +206,31 @@ static void retry_mute(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_OK);
 }
 
+/* The next try is cut short by a caller who leaves the slave to the monitor again. */
+static void retry_interrupted(struct kunit *test)
+{
+	struct bus *b = bus_new(test, line);
+	struct ec_slave *s;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 1, 0);
+	bus_plug(b);
+	msleep(20000);
+	s = bus_slave(b, AI);
+	KUNIT_ASSERT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
+	for (i = 0; i < 70000 && (!work_busy(&s->work) || !READ_ONCE(s->worker)); i++)
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_LT(test, i, 70000u);
+	WRITE_ONCE(s->interrupt, true);
+	for (i = 0; i < 1000 && work_busy(&s->work); i++)
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_LT(test, i, 1000u);
+	WRITE_ONCE(s->interrupt, false);
+	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+}
+
 static u32 count_failed(struct bus *b)
 {
 	u32 i, n = 0;
@@ -277,6 +302,7 @@ static struct kunit_case retry_cases[] = {
 	KUNIT_CASE(retry_eeprom_without_acknowledge),
 	KUNIT_CASE(retry_dead_from_the_start),
 	KUNIT_CASE(retry_mute),
+	KUNIT_CASE(retry_interrupted),
 	KUNIT_CASE(retry_frames_lost_on_the_way_to_op),
 	KUNIT_CASE(retry_not_after_refusal),
 	{}
