@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/sched.h>
 #include <linux/slab.h>
+#include <linux/sort.h>
 #include "grow.h"
 #include "limits.h"
 #include "pdo.h"
@@ -225,36 +227,82 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 	return 0;
 }
 
-/* String index of entry @e in a PDO of the EEPROM, 0: none */
-static u8 sii_entry_name(const struct ec_sii_pdo *pdo, const struct ec_pdo_entry *e)
+/*
+ * An entry of the EEPROM that has a name, as one number: object, subindex, PDO, string. The
+ * EEPROM and the object dictionary may have some ten thousand entries each.
+ */
+#define NAMED(index, sub, pdo, name) \
+	((u64)(index) << 32 | (u64)(sub) << 24 | (u64)(pdo) << 8 | (name))
+
+struct named {
+	u64 *v;
+	unsigned int n;
+};
+
+static int compare(const void *a, const void *b)
 {
-	unsigned int i;
+	u64 x = *(const u64 *)a, y = *(const u64 *)b;
 
-	for (i = 0; i < pdo->entries; i++) {
-		struct ec_sii_pdo_entry se;
-
-		if (ec_sii_pdo_entry(pdo, i, &se))
-			break;
-		if (se.index == e->index && se.sub == e->sub && se.name)
-			return se.name;
-	}
-	return 0;
+	return x < y ? -1 : x > y;
 }
 
-static void name_pdo(struct ec_pdo *p, const struct ec_sii_pdo *pdo)
+/* The PDOs of the EEPROM: their number, or with @v the named entries of all of them. */
+static unsigned int collect(const struct ec_slave *slave, u64 *v, unsigned int most)
 {
+	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
+	struct ec_sii_pdo_entry e;
+	struct ec_sii_pdo_iter it;
+	struct ec_sii_pdo pdo;
+	unsigned int t, i, n = 0;
+
+	for (t = 0; t < ARRAY_SIZE(types); t++) {
+		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
+			if (!v)
+				n += 1 + pdo.entries;
+			if (v && pdo.name && n < most)
+				v[n++] = NAMED(0, 0, pdo.index, pdo.name);
+			for (i = 0; v && i < pdo.entries && n < most; i++)
+				if (!ec_sii_pdo_entry(&pdo, i, &e) && e.name && e.index)
+					v[n++] = NAMED(e.index, e.sub, pdo.index, e.name);
+			cond_resched();
+		}
+	}
+	return n;
+}
+
+/* String index of the first one from @key on, if it is one of @mask's; 0: none. */
+static u8 find_name(const struct named *names, u64 key, u64 mask)
+{
+	unsigned int low = 0, high = names->n;
+
+	while (low < high) {
+		unsigned int mid = low + (high - low) / 2;
+
+		if (names->v[mid] < key)
+			low = mid + 1;
+		else
+			high = mid;
+	}
+	return low < names->n && !((names->v[low] ^ key) & mask) ? names->v[low] & 0xff : 0;
+}
+
+static void name_pdo(struct ec_pdo *p, const struct named *names)
+{
+	u64 same = NAMED(0xffff, 0xff, 0xffff, 0), any = NAMED(0xffff, 0xff, 0, 0);
 	unsigned int i;
 	u8 name;
 
-	if (pdo->index == p->index)
-		p->name = pdo->name;
+	p->name = find_name(names, NAMED(0, 0, p->index, 0), same) ?: p->name;
 	for (i = 0; i < p->n_entries; i++) {
 		struct ec_pdo_entry *e = &p->entries[i];
 
-		/* the same PDO knows best, any other one will do */
-		if (!e->index || (e->name && pdo->index != p->index))
+		if (!e->index)
 			continue;
-		name = sii_entry_name(pdo, e);
+		/* the same PDO knows best, any other one will do */
+		name = find_name(names, NAMED(e->index, e->sub, p->index, 0), same);
+		if (!name && !e->name)
+			name = find_name(names, NAMED(e->index, e->sub, 0, 0), any);
 		e->name = name ?: e->name;
 	}
 }
@@ -264,23 +312,28 @@ static void name_pdo(struct ec_pdo *p, const struct ec_sii_pdo *pdo)
  * @slave: slave with EEPROM image
  * @l: PDOs of the slave
  *
- * An entry may have been mapped to another PDO than the one it is delivered in.
+ * An entry may have been mapped to another PDO than the one it is delivered in. Without
+ * memory there are no names.
  *
- * Context: Process.
+ * Context: Process. May sleep.
  */
 void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l)
 {
-	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
-	struct ec_sii_pdo_iter it;
-	struct ec_sii_pdo pdo;
-	unsigned int t, i;
+	unsigned int i, most = collect(slave, NULL, 0);
+	struct named names;
 
-	for (t = 0; t < ARRAY_SIZE(types); t++) {
-		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
-		while (ec_sii_pdo_iter_next(&it, &pdo) == 1)
-			for (i = 0; i < l->n; i++)
-				name_pdo(&l->pdos[i], &pdo);
+	if (!most)
+		return;
+	names.v = kvmalloc_array(most, sizeof(*names.v), GFP_KERNEL);
+	if (!names.v)
+		return;
+	names.n = collect(slave, names.v, most);
+	sort(names.v, names.n, sizeof(*names.v), compare, NULL);
+	for (i = 0; i < l->n; i++) {
+		name_pdo(&l->pdos[i], &names);
+		cond_resched();
 	}
+	kvfree(names.v);
 }
 
 /**

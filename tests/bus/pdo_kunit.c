@@ -198,12 +198,91 @@ static void pdo_names_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_STRNEQ(test, shown(b, 2), "");
 }
 
+#define HOSTILE_PDOS	252	/* of 255 entries each, in categories of 63: 504 KiB */
+
+/* A PDO of the EEPROM with 255 entries, 0x7000 + @number and 0x2000 upwards. */
+static void hostile_pdo(u8 *p, u32 number, u8 name)
+{
+	u32 i;
+
+	put_unaligned_le16(0x1600 + number, p);
+	p[2] = 255;
+	p[5] = name;
+	for (i = 0; i < 255; i++) {
+		put_unaligned_le16(i ? 0x2000 + i : 0x7000, p + 8 + 8 * i);
+		p[8 + 8 * i + 2] = number;
+		p[8 + 8 * i + 3] = i ? 0 : number + 1;	/* string */
+		p[8 + 8 * i + 5] = 8;
+	}
+}
+
+static u8 *hostile_eeprom(struct kunit *test)
+{
+	u8 *img = kvzalloc(EC_MAX_SII_BYTES, GFP_KERNEL), *p = img + EC_SII_FIXED_SIZE;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, img);
+	for (i = 0; i < HOSTILE_PDOS; i++, p += 8 + 255 * 8) {
+		if (i % 63 == 0) {
+			put_unaligned_le16(EC_SII_CAT_RXPDO, p);
+			put_unaligned_le16(63 * (8 + 255 * 8) / 2, p + 2);
+			p += 4;
+		}
+		hostile_pdo(p, i, i + 1);
+	}
+	put_unaligned_le16(EC_SII_CAT_END, p);
+	return img;
+}
+
+/* Names cost no product of what EEPROM and object dictionary have. */
+static void pdo_names_of_hostile_slave(struct kunit *test)
+{
+	struct ec_slave *s = kunit_kzalloc(test, sizeof(*s), GFP_KERNEL);
+	struct ec_pdo_list l = { 0 };
+	u64 ticks;
+	u32 i, k;
+
+	KUNIT_ASSERT_NOT_NULL(test, s);
+	s->sii = hostile_eeprom(test);
+	s->sii_bytes = EC_MAX_SII_BYTES;
+	for (i = 0; i < 255; i++) {
+		struct ec_pdo *p = ec_pdo_add(&l, 0x1600 + i, 0);
+
+		KUNIT_ASSERT_NOT_NULL(test, p);
+		for (k = 0; k < 255; k++) {
+			struct ec_pdo_entry e = {
+				.index = k < 2 ? 0x7000 : 0x3000 + k, .bits = 8,
+				.sub = k ? HOSTILE_PDOS - 1 - i : i,
+			};
+
+			KUNIT_ASSERT_EQ(test, ec_pdo_add_entry(p, &e), 0);
+		}
+	}
+	ticks = __builtin_ia32_rdtsc();
+	ec_slave_name_pdos(s, &l);
+	ticks = __builtin_ia32_rdtsc() - ticks;
+	bus_figure("names for 255 PDOs of 255 entries from an EEPROM with as many: %llu ticks of the CPU",
+		   ticks);
+	KUNIT_EXPECT_LT(test, ticks, 2000000000ull);
+	/* of the PDO itself, and of another one */
+	for (i = 0; i < HOSTILE_PDOS; i++) {
+		KUNIT_EXPECT_EQ(test, l.pdos[i].name, i + 1);
+		KUNIT_EXPECT_EQ(test, l.pdos[i].entries[0].name, i + 1);
+		KUNIT_EXPECT_EQ(test, l.pdos[i].entries[1].name, HOSTILE_PDOS - i);
+		KUNIT_EXPECT_EQ(test, l.pdos[i].entries[2].name, 0);
+	}
+	KUNIT_EXPECT_EQ(test, l.pdos[254].name, 0);
+	ec_pdo_list_clear(&l);
+	kvfree(s->sii);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(pdo_same_as_eeprom),
 	KUNIT_CASE(pdo_changed_mapping_is_seen),
 	KUNIT_CASE(pdo_mute_slave),
 	KUNIT_CASE(pdo_names_of_the_dictionary),
 	KUNIT_CASE(pdo_names_beside_a_cycle),
+	KUNIT_CASE(pdo_names_of_hostile_slave),
 	{ }
 };
 
