@@ -220,10 +220,10 @@ void ec_names_read(struct ec_slave *s)
 		ret = read_all(s, &l, a, b);
 		up(&s->sdo_lock);
 		publish(s, &l);
+		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {
 		kvfree(l.v);
 	}
-	s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	kfree(a);
 	kfree(b);
 }

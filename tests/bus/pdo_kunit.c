@@ -198,6 +198,27 @@ static void pdo_names_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_STRNEQ(test, shown(b, 2), "");
 }
 
+/* The mailbox was somebody else's for longer than names are waited for: asked for later. */
+static void pdo_names_after_a_long_transfer(struct kunit *test)
+{
+	struct bus *b = nameless(test);
+	struct ec_slave *s;
+
+	bus_idle(b);
+	s = bus_slave(b, 0);
+	KUNIT_ASSERT_GT(test, s->names.n, 0u);
+	ec_names_free(s);
+	s->names_done = false;
+	down(&s->sdo_lock);
+	ec_slave_kick(s);
+	msleep(2000);
+	up(&s->sdo_lock);
+	KUNIT_ASSERT_EQ(test, s->names.n, 0u);
+	ec_slave_kick(s);
+	bus_idle(b);
+	KUNIT_EXPECT_GT(test, s->names.n, 0u);
+}
+
 #define HOSTILE_PDOS	252	/* of 255 entries each, in categories of 63: 504 KiB */
 
 /* A PDO of the EEPROM with 255 entries, 0x7000 + @number and 0x2000 upwards. */
@@ -282,6 +303,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pdo_mute_slave),
 	KUNIT_CASE(pdo_names_of_the_dictionary),
 	KUNIT_CASE(pdo_names_beside_a_cycle),
+	KUNIT_CASE(pdo_names_after_a_long_transfer),
 	KUNIT_CASE(pdo_names_of_hostile_slave),
 	{ }
 };
