@@ -195,6 +195,15 @@ static const struct ec_slave *unreadable(const struct ec_master *m, unsigned int
 	return s && s->error == EC_SLAVE_SCAN_FAILED && !s->silent ? s : NULL;
 }
 
+/* What was read of the EEPROM by the scan before. */
+static void take_part(struct ec_slave *s, struct ec_slave *old)
+{
+	swap(s->part, old->part);
+	swap(s->part_bytes, old->part_bytes);
+	if (s->part)
+		swap(s->sii_counted, old->sii_counted);
+}
+
 /* The one that could not be read here before: its cause is logged once, its tries go on. */
 static void take_failure(struct scan *sc, struct ec_slave *s)
 {
@@ -266,6 +275,9 @@ static int assign(struct scan *sc)
 			return -ENOMEM;
 		sc->slaves[i]->position = i;
 		take_failure(sc, sc->slaves[i]);
+		/* by its address it is the same */
+		if (s && sc->regs[i].there && sc->claims[s->station] == 1)
+			take_part(sc->slaves[i], s);
 		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
 		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
 						sc->addr[n]);
@@ -312,9 +324,15 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 {
 	unsigned int i;
 
-	for (i = 0; i < sc->n; i++)
-		if (sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED && !sc->slaves[i]->silent)
-			ec_slave_retry(sc->slaves[i], EC_RETRY_MAX_MS);
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+
+		if (s->error != EC_SLAVE_SCAN_FAILED || s->silent)
+			continue;
+		if (s->part)
+			s->retry_ms = 0;	/* go on soon */
+		ec_slave_retry(s, EC_RETRY_MAX_MS);
+	}
 	for (i = 0; i < n; i++) {
 		if (fresh[i]->error)
 			continue;

@@ -3,6 +3,9 @@
  * Reading the EEPROMs of many slaves in lockstep. One command starts the same
  * read everywhere, packed reads collect the results. A slave that is slow,
  * refuses, misses the command or has come to its end leaves the lockstep.
+ *
+ * A large EEPROM takes a minute, one full of garbage too. It is read in parts, each by a
+ * scan of its own: the other slaves and the monitor do not wait for it.
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
@@ -23,6 +26,9 @@
 #define TAKE_OVER	3	/* datagrams to take over one EEPROM */
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 #define FIRST_CAP	2048
+#define PART_BYTES	16384	/* a part has so many at least */
+#define PART_NS		(2 * NSEC_PER_SEC)	/* and may take so long */
+#define PART_MAX_NS	(10 * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
 
 /* one slave being read */
 struct reader {
@@ -31,6 +37,7 @@ struct reader {
 	size_t cap;
 	size_t have;
 	size_t need;
+	size_t began;	/* @have of the parts before */
 	u8 tries;
 	u8 len;		/* bytes of @reg that are of interest */
 	bool alone;	/* left the lockstep */
@@ -49,6 +56,7 @@ struct job {
 	u64 wait_ns;	/* from the command to the first look, 0: not known */
 	u64 good_ns;	/* @wait_ns that was long enough */
 	bool settled;	/* less than that was tried in vain */
+	u64 began_ns;
 };
 
 static void is_done(struct reader *r)
@@ -71,12 +79,47 @@ static void finish(struct reader *r)
 	r->cap = 0;
 }
 
-static void fail(struct reader *r, const char *what)
+/* @remedy: what the user can do; it is tried again in any case */
+static void fail(struct reader *r, const char *what, const char *remedy)
 {
 	is_done(r);
-	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED,
-		      "SII read failed at word 0x%04zx: %s; check the slave, then rescan",
-		      r->have / 2, what);
+	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED, "SII read failed at word 0x%04zx: %s; %s",
+		      r->have / 2, what, remedy);
+}
+
+/* The slave keeps what was read; the next scan goes on from there. */
+static void interrupt(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	is_done(r);
+	s->error = EC_SLAVE_SCAN_FAILED;
+	if (!r->began)
+		ec_slave_info(s, "large EEPROM, 0x%04zx words read up to now, the rest follows\n",
+			      r->have / 2);
+	snprintf(s->why, sizeof(s->why),
+		 "large EEPROM, 0x%04zx words read up to now, the rest follows", r->have / 2);
+	s->part = r->buf;
+	s->part_bytes = r->have;
+	s->sii_counted = r->cap;
+	r->buf = NULL;
+	r->cap = 0;
+}
+
+static bool takes_long(const struct job *j, const struct reader *r)
+{
+	u64 ns = ktime_get_ns() - j->began_ns;
+
+	return ns > PART_MAX_NS || (ns > PART_NS && r->have - r->began >= PART_BYTES);
+}
+
+static void interrupt_long(struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (!j->rd[i].done && j->rd[i].have > j->rd[i].began && takes_long(j, &j->rd[i]))
+			interrupt(&j->rd[i]);
 }
 
 /* The images of all slaves have a limit together. */
@@ -88,31 +131,34 @@ static bool count(struct ec_master *m, size_t bytes)
 	return false;
 }
 
-/* NULL, or why not */
-static const char *enlarge(struct reader *r, size_t cap)
+/* Otherwise the reader has failed. */
+static bool enlarge(struct reader *r, size_t cap)
 {
 	struct ec_master *m = r->slave->master;
 	u8 *p;
 
-	if (!count(m, cap - r->cap))
-		return "the EEPROMs of all slaves exceed 64 MiB,";
+	if (!count(m, cap - r->cap)) {
+		fail(r, "the EEPROMs of all slaves exceed 64 MiB",
+		     "disconnect slaves with large EEPROMs");
+		return false;
+	}
 	p = kvzalloc(cap, GFP_KERNEL);
 	if (!p) {
 		atomic_long_sub(cap - r->cap, &m->sii_bytes);
-		return "no memory";
+		fail(r, "no memory", "free memory of this computer");
+		return false;
 	}
 	if (r->have)
 		memcpy(p, r->buf, r->have);
 	kvfree(r->buf);
 	r->buf = p;
 	r->cap = cap;
-	return NULL;
+	return true;
 }
 
 /* Room for the next access, and whether there is a next one. */
 static void plan(struct reader *r)
 {
-	const char *why;
 	int need;
 
 	if (r->have < r->need)
@@ -127,11 +173,8 @@ static void plan(struct reader *r)
 		return;
 	}
 	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
-	if (r->need + 8 > r->cap) {
-		why = enlarge(r, max_t(size_t, r->need + 8, r->cap * 2));
-		if (why)
-			fail(r, why);
-	}
+	if (r->need + 8 > r->cap)
+		enlarge(r, max_t(size_t, r->need + 8, r->cap * 2));
 }
 
 /* An access that ended without data; asking again does not help. */
@@ -341,7 +384,8 @@ static unsigned int apart(struct job *j, struct reader **who)
 		if (r->done)
 			continue;
 		if (r->tries++ >= RETRIES)
-			fail(r, refused(r) ? "no acknowledge" : "busy too long");
+			fail(r, refused(r) ? "no acknowledge" : "busy too long",
+			     "check the slave, then rescan");
 		else
 			who[n++] = r;
 	}
@@ -357,7 +401,7 @@ static void read_apart(struct job *j)
 	unsigned int i, n, left;
 	u64 t0;
 
-	while (go_on(j->m) && (n = apart(j, j->who))) {
+	for (; go_on(j->m) && (n = apart(j, j->who)); interrupt_long(j)) {
 		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
 		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->m);) {
@@ -399,16 +443,33 @@ static void run(struct job *j)
 
 	n = waiting(j, &word);
 	take_over(j, j->who, n);
-	for (; n && go_on(j->m); n = waiting(j, &word))
+	for (; n && go_on(j->m); n = waiting(j, &word)) {
 		step(j, j->who, n, word);
+		interrupt_long(j);
+	}
 	read_apart(j);
+}
+
+/* Go on where the scan before was interrupted. */
+static void resume(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	r->buf = s->part;
+	r->have = s->part_bytes;
+	r->began = r->have;
+	r->cap = s->sii_counted;
+	s->part = NULL;
+	s->part_bytes = 0;
+	s->sii_counted = 0;
+	plan(r);
 }
 
 /**
  * ec_scan_sii() - read the EEPROMs of @slaves
  * @m: master
- * @slaves: slaves with station addresses; @sii is set where it worked, the
- *	others are marked as failed unless the link went down meanwhile
+ * @slaves: slaves with station addresses; @sii is set where it worked, @part where more
+ *	is to be read, the others are marked as failed unless the link went down meanwhile
  * @n: how many
  * @all: these are all slaves of the segment and no process data run, so
  *	broadcasts are allowed
@@ -417,8 +478,7 @@ static void run(struct job *j)
  */
 void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all)
 {
-	struct job j = { .m = m, .n = n, .broadcast = all };
-	const char *why;
+	struct job j = { .m = m, .n = n, .broadcast = all, .began_ns = ktime_get_ns() };
 	unsigned int i;
 
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
@@ -433,9 +493,10 @@ void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, 
 		r->slave = slaves[i];
 		r->need = FIRST_BYTES;
 		r->len = sizeof(r->reg);
-		why = enlarge(r, FIRST_CAP);
-		if (why)
-			fail(r, why);
+		if (slaves[i]->part)
+			resume(r);
+		else
+			enlarge(r, FIRST_CAP);
 	}
 	run(&j);
 	for (i = 0; i < n; i++) {

@@ -50,6 +50,7 @@ static void release(struct kref *kref)
 	ec_mbox_keep_voe(s, false);
 	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
 	kvfree(s->sii);
+	kvfree(s->part);
 	kfree(s);
 }
 

@@ -34,7 +34,9 @@ struct ec_master;
  * @sii: EEPROM image as read
  * @sii_bytes: bytes at @sii
  * @flaw: of @sii, found when it was read
- * @sii_counted: what it counts in the master's @sii_bytes
+ * @sii_counted: what it, or @part, counts in the master's @sii_bytes
+ * @part: first bytes of a large EEPROM that is still being read, or NULL
+ * @part_bytes: bytes there
  * @info: fixed area of the EEPROM
  * @general: general category, with @has_general
  * @sms: SyncManagers of the EEPROM
@@ -130,6 +132,8 @@ struct ec_slave {
 	u8 *sii;
 	size_t sii_bytes;
 	size_t sii_counted;
+	u8 *part;
+	size_t part_bytes;
 	struct ec_sii_flaw flaw;
 	struct ec_sii_info info;
 	struct ec_sii_general general;
