@@ -253,7 +253,7 @@ static void try_again(struct watch *w)
 			ec_slave_kick(s);
 		}
 	}
-	if (!n || ec_xfer(m, dg, n))
+	if (!n || ec_xfer_urgent(m, dg, n))
 		return;
 	for (i = 0; i < n; i++) {
 		if (dg[i].wkc == 1) {

@@ -18,6 +18,7 @@ struct batch_frame {
 	unsigned int first;
 	unsigned int count;
 	u32 wire_ns;
+	bool placed;	/* has a place at the link's gate */
 	bool cancelled;
 	int err;
 };
@@ -115,44 +116,61 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 	}
 }
 
+/* Tools must not hold up the monitor, which looks after the application and the link. */
+static bool is_monitor(const struct ec_master *m)
+{
+	return current == READ_ONCE(m->monitor);
+}
+
 /*
- * A place among the acyclic frames of the link, and a slot; with @wait the place is
- * waited for. A link that goes down gives all places back soon.
+ * A place among the acyclic frames of the link; with @wait it is waited for. A link that
+ * goes down gives all places back soon. The monitor may have one frame without a place.
  */
-static struct ec_slot *get_slot(struct ec_master *m, struct half *h, bool wait)
+static int take_place(struct ec_master *m, bool wait, bool *placed)
 {
 	struct ec_gate *gate = &m->link[0].acyclic;
+	int ret;
+
+	*placed = ec_gate_try(gate);
+	if (*placed || (wait && is_monitor(m)))
+		return 0;
+	ret = wait ? ec_gate_enter(gate, PLACE_WAIT_MS) : -EBUSY;
+	*placed = !ret;
+	return ret;
+}
+
+/* A place and a slot for it. */
+static struct ec_slot *get_slot(struct ec_master *m, struct half *h, struct batch_frame *f,
+				bool wait)
+{
 	struct ec_slot *slot;
 
-	h->err = -EBUSY;
+	f->placed = false;
+	h->err = h->urgent ? 0 : take_place(m, wait, &f->placed);
 	h->stop = wait;
-	if (h->urgent) {
-		slot = ec_slot_get(&m->slots, true, ktime_get_ns());
-		h->stop = !slot;
-		return slot;
-	}
-	if (wait)
-		h->err = ec_gate_enter(gate, PLACE_WAIT_MS);
-	else if (ec_gate_try(gate))
-		h->err = 0;
 	if (h->err)
 		return NULL;
-	slot = wait ? ec_slot_wait(&m->slots) : ec_slot_get(&m->slots, false, ktime_get_ns());
+	if (wait && !h->urgent)
+		slot = ec_slot_wait(&m->slots);
+	else
+		slot = ec_slot_get(&m->slots, h->urgent, ktime_get_ns());
 	if (slot) {
 		h->stop = false;
 		return slot;
 	}
 	h->err = -EBUSY;
-	ec_gate_leave(gate);
+	h->stop |= h->urgent;
+	if (f->placed)
+		ec_gate_leave(&m->link[0].acyclic);
 	return NULL;
 }
 
-static void put_slot(struct ec_master *m, const struct half *h, const struct batch_frame *f)
+static void put_slot(struct ec_master *m, const struct batch_frame *f)
 {
 	/* the slot of a cancelled frame may be in use by another already */
 	if (!f->cancelled)
 		ec_slot_put(&m->slots, f->slot);
-	if (!h->urgent)
+	if (f->placed)
 		ec_gate_leave(&m->link[0].acyclic);
 	if (f->wire_ns)
 		atomic_sub(f->wire_ns, &m->link[0].acyclic_ns);
@@ -181,7 +199,7 @@ static int submit_later(struct ec_master *m, struct ec_slot *slot, bool urgent)
 	u64 until = ktime_get_ns() + RING_WAIT_NS;
 	int ret;
 
-	if (urgent)
+	if (urgent || is_monitor(m))
 		return submit_until(m, slot, urgent, until);
 	if (mutex_lock_killable(&m->link[0].ring_full))
 		return -EINTR;
@@ -223,7 +241,7 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 			first++;
 		if (first >= n)
 			break;
-		f->slot = get_slot(m, h, wait && !h->frames);
+		f->slot = get_slot(m, h, f, wait && !h->frames);
 		if (!f->slot)
 			break;
 		f->slot->clock = h->clock;
@@ -343,7 +361,7 @@ static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
 	}
 	for (i = 0; i < h->frames; i++) {
 		collect(&h->f[i], dg);
-		put_slot(m, h, &h->f[i]);
+		put_slot(m, &h->f[i]);
 	}
 	h->frames = 0;
 }

@@ -252,10 +252,54 @@ static void turn_killed(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, f.ret, -ETIMEDOUT);
 }
 
+/* Tools have all places of the link, and none of them gets on. */
+static u32 take_places(struct bus *b)
+{
+	u32 n = 0;
+
+	while (ec_gate_try(&b->m->link[0].acyclic))
+		n++;
+	return n;
+}
+
+static void give_places(struct bus *b, u32 n)
+{
+	while (n--)
+		ec_gate_leave(&b->m->link[0].acyclic);
+}
+
+/* A slave that falls silent, and one that shows an error: the monitor does not wait for tools. */
+static void turn_monitor_passes_tools(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	u64 frames;
+	u32 places;
+
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_DEAD, 1, 0, 1, 0);
+	msleep(1000);
+	KUNIT_ASSERT_TRUE(test, bus_slave(b, 1)->silent);
+	places = take_places(b);
+	frames = bus_frames(b);
+	msleep(5000);
+	KUNIT_EXPECT_GT(test, bus_frames(b) - frames, 200ull);
+	bus_fault(b, EC_SIM_FAULT_AL_ERROR, 2, 0, 0x1b, 0);
+	msleep(1000);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->al_status & EC_AL_ERROR);
+	/* it is even scanned again */
+	bus_fault(b, EC_SIM_FAULT_DEAD, 1, 0, 0, 0);
+	msleep(3000);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->silent);
+	give_places(b, places);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
+	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(turn_slow_cycle),
 	KUNIT_CASE(turn_stalled_cycle),
 	KUNIT_CASE(turn_overdue),
+	KUNIT_CASE(turn_monitor_passes_tools),
 	KUNIT_CASE(turn_beside_monitor),
 	KUNIT_CASE(turn_of_many),
 	KUNIT_CASE(turn_lost),
