@@ -66,14 +66,17 @@ int ec_api_do(struct ec_master *m, int (*command)(struct ec_file *f, void *arg),
 	return command(&m->api->file, arg);
 }
 
+/* The log may wait for a slow console: nothing is printed under the lock. */
 static void complain(struct ec_master *m, int err, struct va_format *what, const char *slave)
 {
 	struct ec_file *f = &m->api->file;
+	char reason[sizeof(f->reason)];
 
 	raw_spin_lock(&f->lock);
-	ec_err(m, "kernel API: cannot %pV%s (%pe)%s%s\n", what, slave, ERR_PTR(err),
-	       f->reason[0] ? ": " : "", f->reason);
+	strscpy(reason, f->reason, sizeof(reason));
 	raw_spin_unlock(&f->lock);
+	ec_err(m, "kernel API: cannot %pV%s (%pe)%s%s\n", what, slave, ERR_PTR(err),
+	       reason[0] ? ": " : "", reason);
 }
 
 /**

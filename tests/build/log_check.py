@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every line that a module can log while it runs is rate-limited, and no text is an errno.
 
-An error is "%pe" or a text of its own: "result -110" tells a reader nothing. A call that prints is accepted in an __init function, by a limited macro, through
+Nothing is logged while a raw spinlock is held: a slow console would keep the CPU. An error is "%pe" or a text of its own: "result -110" tells a reader nothing. A call that prints is accepted in an __init function, by a limited macro, through
 ec_log_event(), or in one of the functions below, each with its reason.
 usage: log_check.py FOLDER...
 """
@@ -26,6 +26,8 @@ ALLOWED = {
 PRINTS = re.compile(
     r"\b(printk|_printk|vprintk|(?:pr|dev|netdev|netif)_(?:emerg|alert|crit|err|warn|notice|info)"
     r"|WARN(?!_ON_ONCE|_ONCE)(?:_ON|_TAINT)?|dump_stack|print_hex_dump\w*)\s*\(")
+LOGS = re.compile(r"\bec_(?:slave_|master_)?(?:log\w*|err|warn\w*|info|dbg\w*|fail)\s*\(")
+LOCK = re.compile(r"\braw_spin_(un)?lock\w*\s*\(")
 FUNCTION = re.compile(r"^[A-Za-z_][^;=]*?\b(\w+)\([^;]*$")
 # a signed number behind such a word; one with a unit is none
 ERRNO = re.compile(r'"[^"\n]*\b(result|error|errno|failed|ret)\b[^"%]{0,4}%d(?! \w)')
@@ -38,7 +40,7 @@ def strip(text):
 
 
 def check(path, bad, used):
-    name, init = "", False
+    name, init, held = "", False, False
     for number, line in enumerate(path.read_text().split("\n"), 1):
         if ERRNO.search(line):
             bad.append(f"{path}:{number}: a number of errno; print %pe or a text")
@@ -48,6 +50,11 @@ def check(path, bad, used):
             name, init = macro.group(1), False
         elif line[:1].isalpha() and FUNCTION.match(line):
             name, init = FUNCTION.match(line).group(1), "__init" in line
+        lock = LOCK.search(line)
+        if lock or line == "}":
+            held = bool(lock and not lock.group(1))
+        if held and (PRINTS.search(line) or LOGS.search(line)):
+            bad.append(f"{path}:{number}: {name}() logs under a raw spinlock")
         if not PRINTS.search(line):
             continue
         where = f"{path}:{name}"
