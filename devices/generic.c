@@ -341,7 +341,7 @@ static int gen_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct gen *g = priv;
 	struct sk_buff *skb = g->cur->skb;
-	netdev_tx_t ret;
+	int ret;
 
 	if (!netif_running(g->nd) || !netif_carrier_ok(g->nd))
 		return -ENETDOWN;
@@ -362,9 +362,10 @@ static int gen_tx_send(void *priv, u8 *buf, size_t len)
 		return -EBUSY;
 	}
 	/* a device below this one had no room in its queue */
-	if (ret == NET_XMIT_DROP)
+	if (ret == NET_XMIT_DROP || ret == -ENOBUFS)
 		return -EBUSY;
-	return 0;
+	/* or it failed; it has consumed the frame all the same */
+	return min(ret, 0);
 }
 
 static bool gen_link_up(void *priv)

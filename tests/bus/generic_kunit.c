@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The generic device on a network device that gives every result there is for a frame. */
+#include <linux/etherdevice.h>
+#include <linux/netdevice.h>
+#include <linux/rtnetlink.h>
+#include "bus.h"
+
+/* private part of the network device */
+struct odd {
+	int result;
+	u32 frames;
+};
+
+static netdev_tx_t odd_xmit(struct sk_buff *skb, struct net_device *nd)
+{
+	struct odd *o = netdev_priv(nd);
+
+	o->frames++;
+	if (o->result != NETDEV_TX_BUSY)
+		consume_skb(skb);
+	return o->result;
+}
+
+static const struct net_device_ops odd_ops = { .ndo_start_xmit = odd_xmit };
+
+static void odd_setup(struct net_device *nd)
+{
+	ether_setup(nd);
+	nd->netdev_ops = &odd_ops;
+	eth_hw_addr_random(nd);
+}
+
+/* what a device says of a frame, and what the frame is then */
+static const struct result {
+	const char *name;
+	int result;
+	enum { SENT, WAITS, ERROR } want;
+} results[] = {
+	{ "sent", NETDEV_TX_OK, SENT },
+	{ "sent, congestion near", NET_XMIT_CN, SENT },
+	{ "dropped below", NET_XMIT_DROP, WAITS },
+	{ "ring full", NETDEV_TX_BUSY, WAITS },
+	{ "queue full below", -ENOBUFS, WAITS },
+	{ "device below is down", -ENETDOWN, ERROR },
+	{ "no memory", -ENOMEM, ERROR },
+};
+
+static void result_desc(const struct result *r, char *desc)
+{
+	strscpy(desc, r->name, KUNIT_PARAM_DESC_SIZE);
+}
+
+KUNIT_ARRAY_PARAM(result, results, result_desc);
+
+static u64 sent(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.tx_frames);
+}
+
+static u64 errors(const struct bus *b)
+{
+	return atomic64_read(&b->m->link[0].stats.tx_errors);
+}
+
+static void expect_result(struct bus *b, struct odd *o, const struct result *r)
+{
+	u64 before = sent(b), bad = errors(b);
+	u32 frames = o->frames;
+
+	o->result = r->result;
+	msleep(500);
+	if (r->want == SENT)
+		KUNIT_EXPECT_GE(b->test, sent(b), before + 10);
+	else
+		KUNIT_EXPECT_LE(b->test, sent(b), before + 1);
+	if (r->want == ERROR)
+		KUNIT_EXPECT_GE(b->test, errors(b), bad + 10);
+	else
+		KUNIT_EXPECT_EQ(b->test, errors(b), bad);
+	/* one that waits is tried again all the time */
+	KUNIT_EXPECT_GE(b->test, o->frames, frames + (r->want == WAITS ? 1000 : 10));
+	/* a frame waits for a second, then the device hangs */
+	msleep(1000);
+	KUNIT_EXPECT_EQ(b->test, errors(b) > bad, r->want != SENT);
+}
+
+static void generic_result_of_a_frame(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = alloc_netdev(sizeof(struct odd), "bus0", NET_NAME_USER, odd_setup);
+	struct odd *o;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, nd);
+	o = netdev_priv(nd);
+	o->result = NETDEV_TX_OK;
+	KUNIT_ASSERT_EQ(test, register_netdev(nd), 0);
+	for (i = 0; i < 100 && !READ_ONCE(b->m->link[0].dev); i++)
+		msleep(1);
+	KUNIT_EXPECT_NOT_NULL(test, b->m->link[0].dev);
+	msleep(100);
+	expect_result(b, o, test->param_value);
+	unregister_netdev(nd);
+	KUNIT_EXPECT_NULL(test, b->m->link[0].dev);
+	free_netdev(nd);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE_PARAM(generic_result_of_a_frame, result_gen_params),
+	{ }
+};
+
+static struct kunit_suite suite = { .name = "bus_generic", .exit = bus_exit, .test_cases = cases };
+kunit_test_suite(suite);
