@@ -497,16 +497,29 @@ static bool has_address(const struct net_device *nd, const char *spec)
 	return mac_pton(spec, mac) && ether_addr_equal(mac, nd->dev_addr);
 }
 
+static bool is_any(const char *spec)
+{
+	u8 mac[ETH_ALEN];
+
+	return mac_pton(spec, mac) && is_broadcast_ether_addr(mac);
+}
+
 /* Why no network device is what main_devices= says; NULL: one is, and was refused. */
 static const char * __init why_waiting(const char *spec)
 {
-	struct net_device *nd;
 	const char *why = "is neither the name nor the MAC address of a network interface";
+	struct net_device *nd;
+	bool any = is_any(spec);
 
+	if (any)
+		why = "stands for the first Ethernet interface that no other master has, there is none yet";
 	rtnl_lock();
-	for_each_netdev(&init_net, nd)
+	for_each_netdev(&init_net, nd) {
+		if (any && wanted(nd) && !find(nd))
+			why = NULL;
 		if (!strcmp(spec, nd->name) || has_address(nd, spec))
 			why = nd->type == ARPHRD_ETHER ? NULL : "is no Ethernet interface";
+	}
 	rtnl_unlock();
 	return why;
 }

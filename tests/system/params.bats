@@ -79,6 +79,16 @@ no_insmod() {
 	one_line '"lo" is no Ethernet interface'
 }
 
+@test "the broadcast address waits for any Ethernet interface, and says so" {
+	master main_devices=ff:ff:ff:ff:ff:ff
+	generic
+	one_line '"ff:ff:ff:ff:ff:ff" stands for the first Ethernet interface that no other master has, there is none yet; master 0 waits'
+	dmesg -C
+	ip link add veth0 type veth peer name veth1
+	wait_for 60 eval 'ethercat master | grep -q "(attached)"'
+	one_line 'main device'
+}
+
 @test "the broadcast address means the first device that is offered" {
 	ip link add veth0 type veth peer name veth1
 	ip link set veth0 address 02:00:00:00:12:01
