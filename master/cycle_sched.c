@@ -50,7 +50,7 @@ void ec_cycle_sched_log(const struct ec_session *s)
 
 /**
  * ec_cycle_thread_inherit() - the cycle gets the priority that its new owner may use
- * @s: active session with a thread, taken over
+ * @s: active session, taken over; without a thread nothing happens
  * @priority: SCHED_FIFO priority that the new application may use; 0: SCHED_OTHER
  *
  * Otherwise a cycle would keep a right that its owner does not have, or lack one.
@@ -59,11 +59,13 @@ void ec_cycle_sched_log(const struct ec_session *s)
  */
 void ec_cycle_thread_inherit(struct ec_session *s, u32 priority)
 {
+	struct task_struct *task = ec_cycle_thread_task(s);
+
 	lockdep_assert_held(&s->master->session_lock);
-	if (s->priority == priority)
+	if (!task || s->priority == priority)
 		return;
 	s->priority = priority;
-	ec_cycle_sched_set(s, ec_cycle_thread_task(s));
+	ec_cycle_sched_set(s, task);
 	if (priority == (s->kernel.priority ?: EC_CYCLE_PRIORITY))
 		ec_info(s->master, "cycle thread runs SCHED_FIFO %u, as the new application permits\n",
 			priority);

@@ -129,12 +129,14 @@ static int reset_filters(struct ec_dc_job *j)
  */
 int ec_dc_write(struct ec_dc_job *j)
 {
-	u64 t = latch_time(j);
-	struct values *v = compute(j, t);
+	struct values *v;
 	unsigned int i;
 	int ret;
+	u64 t;
 
 	lockdep_assert_held(&j->m->dc.lock);
+	t = latch_time(j);
+	v = compute(j, t);
 	if (!v)
 		return -ENOMEM;
 	ret = write_values(j, v) ?: reset_filters(j);

@@ -3,6 +3,7 @@
 #include <linux/delay.h>
 #include "kapp.h"
 #include "kcyc.h"
+#include "master/cycle_thread.h"
 
 static const char one[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11\n";
 
@@ -441,6 +442,21 @@ static void session_mapping_outlives(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->mapped), 0L);
 }
 
+/* A session without a cycle thread has none whose priority could change. */
+static void session_without_thread_inherits(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a io in=8 out=8\n", 1);
+	struct cyc *c = cyc_new(b, 1000);
+
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	ec_session_lock(b->m);
+	ec_cycle_thread_inherit(b->m->session, 7);
+	ec_session_unlock(b->m);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+}
+
 static struct kunit_case session_cases[] = {
 	KUNIT_CASE(session_memory),
 	KUNIT_CASE(session_mapping_outlives),
@@ -454,6 +470,7 @@ static struct kunit_case session_cases[] = {
 	KUNIT_CASE(session_kernel_heir),
 	KUNIT_CASE(session_foreign_config),
 	KUNIT_CASE(session_interval),
+	KUNIT_CASE(session_without_thread_inherits),
 	{}
 };
 
