@@ -101,7 +101,7 @@ static int write_values(struct ec_dc_job *j, struct values *v)
 static int reset_filters(struct ec_dc_job *j)
 {
 	static u8 depths[2] = { 0, 12 }, reset[2] = { 0x00, 0x10 };
-	unsigned int clocks = ec_dc_count(j, EC_DC_CLOCKS), n;
+	unsigned int clocks = ec_dc_count(j, EC_DC_CLOCKS), n, end;
 	int ret;
 
 	if (ec_dc_count(j, EC_DC_NEW) == clocks) {
@@ -115,8 +115,9 @@ static int reset_filters(struct ec_dc_job *j)
 			return 0;
 	}
 	n = ec_dc_add(j, 0, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0);
-	ec_dc_add(j, n, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
-	ret = ec_xfer_clock(j->m, j->dg, 2 * n);
+	/* a scan may have taken a slave out of the group meanwhile */
+	end = ec_dc_add(j, n, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
+	ret = ec_xfer_clock(j->m, j->dg, end);
 	return ret ?: ec_dc_answers(j, 0, EC_DC_NEW) ?: ec_dc_answers(j, n, EC_DC_NEW);
 }
 

@@ -135,14 +135,12 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
  */
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
-	u64 sent_ns = slot->sent_ns;
-
+	/* held: whoever sends the frame or takes the reply writes or wants @sent_ns */
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return false;
 	ec_write64(&slot->sent_ns, now_ns);
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_QUARANTINE) == EC_SLOT_SENT)
-		return true;
-	/* who takes the reply wants to know when it was sent */
-	ec_write64(&slot->sent_ns, sent_ns);
-	return false;
+	atomic_set_release(&slot->state, EC_SLOT_QUARANTINE);
+	return true;
 }
 
 /**
