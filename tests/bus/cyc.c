@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/hrtimer.h>
+#include <linux/prandom.h>
 #include "cyc.h"
 #include "master/ioctl.h"
 
@@ -175,6 +176,83 @@ void cyc_run(struct cyc *c, u32 cycles)
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_send(&c->b->app, &send), 0);
 		c->cycles++;
 	}
+}
+
+/**
+ * cyc_in_op() - an application with a cycle of 1 ms whose slaves are in OP
+ * @b: bus, scanned
+ * @first: ring position of the first slave
+ * @n: how many; all process data are in one domain
+ *
+ * Return: application.
+ */
+struct cyc *cyc_in_op(struct bus *b, u32 first, u32 n)
+{
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, first, n, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 5000), ~0ull);
+	return c;
+}
+
+/* SYNC0 of the whole cycle at the slaves of the first @n configurations */
+void cyc_sync0(struct cyc *c, u32 n)
+{
+	u32 i;
+
+	for (i = 0; i < n; i++) {
+		struct ec_ioc_sc_dc dc = {
+			.config = i, .assign_activate = 0x0300, .cycle0 = c->period_ns,
+		};
+
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+	}
+}
+
+/* Drives whose clocks differ in time and rate, always the same ones. */
+static char *describe_drives(struct kunit *test, u32 n)
+{
+	size_t size = 16384, len;
+	char *text = kunit_kzalloc(test, size, GFP_KERNEL);
+	struct rnd_state r;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, text);
+	prandom_seed_state(&r, 33);
+	len = scnprintf(text, size, "segment seed=33 response=100us transition=1ms\n");
+	for (i = 0; i < n; i++) {
+		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000;
+
+		len += scnprintf(text + len, size - len,
+				 "slave s%u drive in=8 out=8 drift=%dppb clock=%ums\n", i, ppb,
+				 prandom_u32_state(&r));
+	}
+	return text;
+}
+
+/**
+ * cyc_drives() - an application with SYNC0 of its cycle at drives, not active yet
+ * @test: case
+ * @n: drives, whose clocks differ
+ * @period_us: of its cycle
+ *
+ * Return: application.
+ */
+struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us)
+{
+	struct bus *b = bus_up(test, describe_drives(test, n), n);
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, period_us);
+	cyc_domain(c);
+	cyc_map_all(c, 0, n, 0);
+	cyc_sync0(c, n);
+	return c;
 }
 
 bool cyc_all_op(struct cyc *c)

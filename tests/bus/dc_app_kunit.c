@@ -78,7 +78,6 @@ static struct cyc *start(struct kunit *test, struct told *t, const char *clocks)
 	struct bus *b;
 	struct cyc *c;
 	char text[256];
-	u32 i;
 
 	snprintf(text, sizeof(text), "segment seed=7\n"
 		 "slave a drive in=8 out=8 drift=87ppm cable=50 clock=5s %s\n"
@@ -88,13 +87,7 @@ static struct cyc *start(struct kunit *test, struct told *t, const char *clocks)
 	c = cyc_new(b, PERIOD_NS / 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	for (i = 0; i < 2; i++) {
-		struct ec_ioc_sc_dc dc = {
-			.config = i, .assign_activate = 0x0300, .cycle0 = PERIOD_NS,
-		};
-
-		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
-	}
+	cyc_sync0(c, 2);
 	c->each = each;
 	c->ctx = t;
 	cyc_activate(c);

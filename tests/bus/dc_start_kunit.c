@@ -4,7 +4,6 @@
  * from activation to OP, how far the modelled clocks are apart from then on, and how many
  * acyclic frames, and clock frames among them, one send of the cycle carries.
  */
-#include <linux/prandom.h>
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/dc.h"
@@ -97,44 +96,11 @@ static void each(struct cyc *c)
 	c->app_time = ktime_get_ns();
 }
 
-static void describe(char *text, size_t size, u32 slaves)
-{
-	struct rnd_state r;
-	u32 i, n;
-
-	prandom_seed_state(&r, 33);
-	n = scnprintf(text, size, "segment seed=33 response=100us transition=1ms\n");
-	for (i = 0; i < slaves; i++) {
-		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000;
-
-		n += scnprintf(text + n, size - n,
-			       "slave s%u drive in=8 out=8 drift=%dppb clock=%ums\n", i, ppb,
-			       prandom_u32_state(&r));
-	}
-}
-
-/* An application with SYNC0 of its cycle at all slaves, not active yet. */
+/* Not active yet; what it sees of clocks and frames goes to @l. */
 static struct cyc *configure(struct kunit *test, u32 slaves, u32 us, struct load *l)
 {
-	char *text = kunit_kzalloc(test, 16384, GFP_KERNEL);
-	struct bus *b;
-	struct cyc *c;
-	u32 i;
+	struct cyc *c = cyc_drives(test, slaves, us);
 
-	KUNIT_ASSERT_NOT_NULL(test, text);
-	describe(text, 16384, slaves);
-	b = bus_up(test, text, slaves);
-	bus_idle(b);
-	c = cyc_new(b, us);
-	cyc_domain(c);
-	cyc_map_all(c, 0, slaves, 0);
-	for (i = 0; i < slaves; i++) {
-		struct ec_ioc_sc_dc dc = {
-			.config = i, .assign_activate = 0x0300, .cycle0 = us * NSEC_PER_USEC,
-		};
-
-		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
-	}
 	c->each = each;
 	c->ctx = l;
 	return c;

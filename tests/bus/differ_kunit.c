@@ -63,15 +63,8 @@ static u32 expect_slave(struct cyc *c, u16 position, u32 vendor, u32 product)
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, tree, N);
-	struct cyc *c;
+	struct cyc *c = cyc_in_op(bus_up(test, tree, N), 0, N);
 
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 0, N, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 100);
 	return c;
 }

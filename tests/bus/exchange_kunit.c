@@ -25,16 +25,9 @@ static void count_up(struct cyc *c)
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, three_frames, N);
-	struct cyc *c;
+	struct cyc *c = cyc_in_op(bus_up(test, three_frames, N), 0, N);
 
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 0, N, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_ASSERT_GE(test, b->m->session->cycle.n_dgrams, 3u);
+	KUNIT_ASSERT_GE(test, c->b->m->session->cycle.n_dgrams, 3u);
 	c->ctx = kunit_kzalloc(test, sizeof(u32), GFP_KERNEL);
 	c->each = count_up;
 	cyc_run(c, 20);

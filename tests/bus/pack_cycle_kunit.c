@@ -82,16 +82,9 @@ static void expect_registers(struct cyc *c)
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, text, N);
-	struct cyc *c;
-
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
 	/* all in OP: no other frames of the monitor than the urgent ones */
-	cyc_map_all(c, 0, N, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
+	struct cyc *c = cyc_in_op(bus_up(test, text, N), 0, N);
+
 	cyc_run(c, 5);
 	return c;
 }

@@ -88,16 +88,7 @@ static void count(struct cyc *c)
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, text, N);
-	struct cyc *c;
-
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 1, 2, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	return c;
+	return cyc_in_op(bus_up(test, text, N), 1, 2);
 }
 
 static struct share run(struct cyc *c, struct asker *a, u32 n, u32 us)

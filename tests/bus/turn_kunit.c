@@ -45,15 +45,7 @@ static int read_much(void *arg)
 /* The last slave but @behind is in OP, the others in PREOP. */
 static struct cyc *in_op_of(struct bus *b, u32 behind)
 {
-	struct cyc *c;
-
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, b->m->n_slaves - 1 - behind, 1, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 3000), ~0ull);
-	return c;
+	return cyc_in_op(b, b->m->n_slaves - 1 - behind, 1);
 }
 
 static struct cyc *in_op(struct kunit *test)
