@@ -140,3 +140,67 @@ from=1 at=$3 wkc=$4" ] || { frames ring veth2 veth0; return 1; }
 	tell on io3
 	ring_is 1 5 0 0
 }
+
+# What faults do that are given while it runs, as a master sees it. give FAULT...: how.
+
+three() { printf 'slave io EL1008\nslave o EL2008\nslave axis drive\n' >"$SEG"; }
+give_socket() { tell "$@"; }
+give_file() { echo "$*" >/sys/kernel/debug/ec_sim/sim0; }
+
+logged() { dmesg | grep "$1" >/dev/null; }
+al_status() { ethercat reg_read -p"$1" -t uint16 0x0130; }
+responding() { [ "$(ethercat master --json | jq '.masters[0].slaves_responding')" = "$1" ]; }
+
+cable_and_controller() {
+	wait_for 60 all_slaves_are PREOP 3
+	$1 cut axis.0
+	wait_for 30 responding 2
+	wait_for 30 all_slaves_are PREOP 2
+	$1 heal axis.0
+	wait_for 30 responding 3
+	wait_for 30 all_slaves_are PREOP 3
+	# it passes frames, so the one behind it still answers
+	al_status 1
+	$1 dead o
+	run al_status 1
+	[ "$status" = 1 ]
+	[[ $output == *'working counter 0'* ]]
+	al_status 2
+	$1 alive o
+	al_status 1
+	wait_for 30 all_slaves_are PREOP 3
+}
+
+application() {
+	dmesg -C
+	$1 error axis code=0x42
+	wait_for 30 logged 'EtherCAT 0-2: .*0x0042'
+	wait_for 30 all_slaves_are PREOP 3
+	$1 emergency axis code=0x8130 register=0x11
+	# an emergency lies in the mailbox until that is read
+	ethercat upload -p2 0x1018 1
+	wait_for 30 logged 'EtherCAT 0-2: CoE emergency: code 0x8130, error register 0x11'
+	[ "$(dmesg | grep -c 'CoE emergency')" = 1 ]
+	LD_LIBRARY_PATH=$EC_BUILD/lib "$EC_BUILD/examples/mirror" 0 1 5 >"$BATS_TEST_TMPDIR/mirror" 2>&1
+	! grep '^inputs: 0x04' "$BATS_TEST_TMPDIR/mirror" || return 1
+	$1 input io.3 value=1
+	LD_LIBRARY_PATH=$EC_BUILD/lib "$EC_BUILD/examples/mirror" 0 1 5 >"$BATS_TEST_TMPDIR/mirror" 2>&1
+	grep '^inputs: 0x04' "$BATS_TEST_TMPDIR/mirror"
+}
+
+@test "a master at the veth sees each fault given at the socket" {
+	three
+	program --control "$SOCK"
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=veth0
+	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	cable_and_controller give_socket
+	application give_socket
+}
+
+@test "a master at sim0 sees each fault written to the file in debugfs" {
+	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
+	three
+	start "$SEG" 3
+	cable_and_controller give_file
+	application give_file
+}
