@@ -175,6 +175,9 @@ application() {
 	dmesg -C
 	$1 error axis code=0x42
 	wait_for 30 logged 'EtherCAT 0-2: .*0x0042'
+	all_slaves_are PREOP 2
+	# without an application the error stays until the user acknowledges it
+	ethercat states -p2 PREOP
 	wait_for 30 all_slaves_are PREOP 3
 	$1 emergency axis code=0x8130 register=0x11
 	# an emergency lies in the mailbox until that is read
