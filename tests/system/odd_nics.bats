@@ -97,6 +97,17 @@ not_taken() {
 	runs veth1
 }
 
+@test "a team runs the bench" {
+	modprobe -a team team_mode_roundrobin
+	ip link add main0 type team
+	# what teamd would do
+	python3 "$BATS_TEST_DIRNAME/team_mode.py" main0 roundrobin
+	ip link set veth0 down
+	ip link set veth0 master main0
+	ip link set main0 up
+	runs veth1
+}
+
 @test "a port of a team is refused" {
 	modprobe team
 	ip link add main0 type team
