@@ -4,6 +4,8 @@
 
 usage: team_mode.py DEVICE MODE
 """
+import errno
+import os
 import socket
 import struct
 import sys
@@ -32,8 +34,9 @@ def ask(sock, family, cmd, attrs):
             answer = data[20:]
             continue
         error = struct.unpack_from("i", data, 16)[0]
-        if error:
-            sys.exit(f"command {cmd}: error {error}")
+        # the team tells its listeners of the change; without any it returns this
+        if error and error != -errno.ESRCH:
+            sys.exit(f"command {cmd}: {os.strerror(-error)}")
         return answer
 
 
