@@ -141,7 +141,8 @@ from=1 at=$3 wkc=$4" ] || { frames ring veth2 veth0; return 1; }
 	ring_is 1 5 0 0
 }
 
-# What faults do that are given while it runs, as a master sees it. give FAULT...: how.
+# Effects of faults given while the segment runs, as a master sees them. First argument
+# of the functions: how a fault is given.
 
 three() { printf 'slave io EL1008\nslave o EL2008\nslave axis drive\n' >"$SEG"; }
 give_socket() { tell "$@"; }
@@ -151,6 +152,19 @@ logged() { dmesg | grep "$1" >/dev/null; }
 al_status() { ethercat reg_read -p"$1" -t uint16 0x0130; }
 responding() { [ "$(ethercat master --json | jq '.masters[0].slaves_responding')" = "$1" ]; }
 
+power_and_eeprom() {
+	wait_for 60 all_slaves_are PREOP 3
+	$1 off axis
+	wait_for 30 responding 2
+	wait_for 30 all_slaves_are PREOP 2
+	$1 on axis
+	wait_for 30 responding 3
+	wait_for 30 all_slaves_are PREOP 3
+	$1 eeprom io word=4 value=77
+	ethercat rescan --wait
+	[[ $(ethercat slaves -p0) == *' 77:0 '* ]]
+}
+
 cable_and_controller() {
 	wait_for 60 all_slaves_are PREOP 3
 	$1 cut axis.0
@@ -159,7 +173,7 @@ cable_and_controller() {
 	$1 heal axis.0
 	wait_for 30 responding 3
 	wait_for 30 all_slaves_are PREOP 3
-	# it passes frames, so the one behind it still answers
+	# the controller passes frames, so the slave behind it still answers
 	al_status 1
 	$1 dead o
 	run al_status 1
@@ -180,7 +194,7 @@ application() {
 	ethercat states -p2 PREOP
 	wait_for 30 all_slaves_are PREOP 3
 	$1 emergency axis code=0x8130 register=0x11
-	# an emergency lies in the mailbox until that is read
+	# an emergency stays in the mailbox until the master reads the mailbox
 	ethercat upload -p2 0x1018 1
 	wait_for 30 logged 'EtherCAT 0-2: CoE emergency: code 0x8130, error register 0x11'
 	[ "$(dmesg | grep -c 'CoE emergency')" = 1 ]
@@ -196,6 +210,7 @@ application() {
 	program --control "$SOCK"
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=veth0
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	power_and_eeprom give_socket
 	cable_and_controller give_socket
 	application give_socket
 }
@@ -204,6 +219,7 @@ application() {
 	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
 	three
 	start "$SEG" 3
+	power_and_eeprom give_file
 	cable_and_controller give_file
 	application give_file
 }
