@@ -15,6 +15,7 @@ setup() {
 
 teardown() {
 	stop
+	[ -z "${CARD:-}" ] || kill "$CARD" 2>/dev/null || true
 	for d in main0 far0 veth0; do ip link del $d 2>/dev/null || true; done
 }
 
@@ -140,4 +141,28 @@ macsec() {
 	macsec main0 veth0 veth1
 	macsec far0 veth1 veth0
 	runs far0
+}
+
+is_up() { ip link show "$1" | grep LOWER_UP >/dev/null; }
+
+# usb_card: main0 is a USB network card, its network that of veth0
+usb_card() {
+	local net='/sys/bus/usb/drivers/smsc95xx/*/net/*'
+
+	modprobe -a vhci-hcd smsc95xx
+	python3 "$BATS_TEST_DIRNAME/smsc95xx.py" veth0 >"$BATS_TEST_TMPDIR/card" 2>&1 3>&- &
+	CARD=$!
+	wait_for 30 compgen -G "$net" || { cat "$BATS_TEST_TMPDIR/card"; return 1; }
+	# shellcheck disable=SC2086
+	ip link set "$(basename $net)" name main0
+	ip link set main0 up
+	wait_for 30 is_up main0
+}
+
+@test "a USB card whose driver pushes headers (smsc95xx) runs the bench" {
+	usb_card
+	runs veth1
+	# it is pulled while the master uses it
+	kill "$CARD"
+	wait_for 30 main_is waiting...
 }
