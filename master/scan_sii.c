@@ -27,8 +27,8 @@
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 #define FIRST_CAP	2048
 #define PART_BYTES	16384	/* a part has so many at least */
-#define PART_NS		(2 * NSEC_PER_SEC)	/* and may take so long */
-#define PART_MAX_NS	(10 * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
+#define PART_NS		(2ULL * NSEC_PER_SEC)	/* and may take so long */
+#define PART_MAX_NS	(10ULL * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
 
 /* one slave being read */
 struct reader {
