@@ -40,7 +40,10 @@ make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/
 make -s -C lib O="$build/lib" all >&2 &&
 make -s -C tool O="$build/tool" >&2 &&
 make -s -C tool/sim O="$build/tool" >&2 &&
-make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 || exit 1
+make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 &&
+mkdir -p "$build/split" && cp -u tests/bench/cycle/split/* "$build/split" &&
+make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= modules >&2 ||
+	exit 1
 
 # A string copy counts once per byte with ERMS and once per word without. The
 # incumbent's figures grow by too little from 1 to 100 drives for the former.
@@ -109,12 +112,22 @@ cost() {
 		"${v[queue_mean]}" "${v[send_mean]}" "${v[total_mean]}" "${v[entry]}"
 }
 
-# work PREFIX MS: all instructions of a cycle of MS milliseconds in $work: application,
-# interrupts, threads, monitor, wake-ups; without the simulator's threads and without what
-# this machine executes in such a time before there is a master. The interrupts of the
-# simulator's card that are no thread are still in it, the same for all.
+# work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
+# interrupts, threads, monitor, wake-ups; without the simulator, its network card and the
+# interrupts of both, and without what this machine executes in such a time before there is a
+# master.
 work() {
-	work=$((${v[$1all_work]} - $2 * ${v[baseline_per_ms]}))
+	local split rest
+
+	rest=$((${v[$1rest_work]} - $2 * ${v[baseline_per_ms]}))
+	work=$((${v[$1application_work]} + ${v[$1card_work]} + ${v[$1master_work]} + rest))
+	printf '# all work of a cycle, %3u slave(s), %s: application %5u, network card %5u, threads of the master %5u, rest %5u = %6u; taken off: simulator %u\n' \
+		"${v[slaves]}" "$3" "${v[$1application_work]}" "${v[$1card_work]}" \
+		"${v[$1master_work]}" "$rest" "$work" "${v[$1simulator_work]}"
+	# what bench_split.ko executes itself is not in it
+	split=$((work - rest + ${v[$1rest_work]} + ${v[$1simulator_work]}))
+	gate "${v[slaves]} slave(s), $3: $split of ${v[$1whole_work]} instructions are attributed, at least 95 %" \
+		"split <= ${v[$1whole_work]} && split >= ${v[$1whole_work]} * 95 / 100"
 }
 
 long_run() {
@@ -129,19 +142,20 @@ long_run() {
 all_work() {
 	local own timer
 
-	work "" 4; own=$work
-	work kernel_ 4; timer=$work
-	work wait_ 4
-	echo "# all work of a cycle, $1 slave(s): application's cycle $own; kernel's cycle $timer when the application sleeps by itself ($(ratio "$timer" "$own")), $work when it waits for the cycle ($(ratio "$work" "$own")); simulator ${v[simulator_work]}, taken off"
-	row "$work" $((own * 3 / 2)) "all instructions of a cycle, the kernel runs it, the application waits: $1 drive(s)"
-	gate "$1 slave(s): all work of a cycle of the kernel is $(ratio "$work" "$own") of that of an application's, at most 1.5" \
-		"$own > ${v[total_mean]} && $timer > ${v[kernel_total_mean]} && $work <= own * 3 / 2"
+	work "" 4 "application's cycle"; own=$work
+	work kernel_ 4 "kernel's cycle, the application sleeps by itself"; timer=$work
+	work wait_ 4 "kernel's cycle, the application waits for it"
+	row "$timer" $((own * 115 / 100)) "all instructions of a cycle, the kernel runs it, the application sleeps: $1 drive(s)"
+	row "$work" $((own * 115 / 100)) "the same, the application waits"
+	gate "$1 slave(s): all work of a cycle of the kernel is $(ratio "$timer" "$own") of that of an application's, $(ratio "$work" "$own") when the application waits for it; at most 1.15" \
+		"$own > ${v[total_mean]} && $timer > ${v[kernel_total_mean]} &&
+		 $timer <= own * 115 / 100 && $work <= own * 115 / 100"
 }
 
 # The receive interrupt of eth1 is the simulator's: a delay keeps it out of the calls.
 # That of eth0 is ours and counts.
 generic_cost() {
-	local n limit
+	local n limit median
 
 	echo "# instructions per cycle, generic device on e1000e, interrupt: $interrupt"
 	for n in 1 ${all:+10} 100; do
@@ -156,10 +170,13 @@ generic_cost() {
 		costs[$n]=${v[total_mean]}
 		reliable "generic device"
 		[ $n = 10 ] && continue
-		limit=$((n == 1 ? 6000 : 12000))
-		row "${v[total_median]}" $limit "instructions of the calls of a cycle, median: $n drive(s)"
-		gate "$n slave(s): ${v[total_median]} instructions of the calls (median), at most $limit" \
-			"${v[total_median]} <= $limit"
+		# The mean has the cycles in it that send a frame of the monitor, too.
+		limit=$((n == 1 ? 6000 : 12300))
+		median=$((n == 1 ? 6000 : 12000))
+		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, mean: $n drive(s)"
+		row "${v[total_median]}" $median "the same, median"
+		gate "$n slave(s): ${v[total_mean]} instructions of the calls on the mean, at most $limit; median ${v[total_median]}, at most $median" \
+			"${v[total_mean]} <= limit && ${v[total_median]} <= median"
 	done
 }
 

@@ -32,6 +32,16 @@ enum mode {
 	MODE_TIMER,	/* the kernel; sleeps until the middle of the period */
 };
 
+/* who works while a cycle runs, with the interrupts that come meanwhile or wake it */
+enum worker {
+	WORKER_APPLICATION,
+	WORKER_CARD,		/* interrupt threads of the master's network card */
+	WORKER_MASTER,		/* its threads: monitor, the kernel's cycle */
+	WORKER_REST,
+	WORKER_SIMULATOR,	/* and its network card */
+	WORKERS,
+};
+
 #define REQUESTS_MAX	16	/* slaves that are asked by requests */
 
 /* options, what is used, and what came out */
@@ -68,9 +78,11 @@ struct bench {
 	unsigned int overruns;
 	unsigned long long busy_ns;	/* all CPUs, while measured */
 	struct work {
-		unsigned long long idle, simulator, all;	/* ns, which are instructions */
+		unsigned long long by[WORKERS];	/* ns, which are instructions */
+		unsigned long long all, idle;
 		long long begin;
 	} work;			/* of cycles in which nothing else is measured */
+	bool worked;		/* @work is known */
 	unsigned int tick;	/* cost of ticks() */
 	uint64_t image_bytes;
 };
@@ -92,7 +104,7 @@ void trace_switch(bool on);
 void trace_violate(struct bench *b, unsigned int cycle);
 
 /* work.c */
-void work_begin(struct work *w);
+bool work_begin(struct work *w);
 void work_end(struct work *w);
 int work_baseline(unsigned int ms);
 

@@ -12,8 +12,6 @@ set -u
 build=$1 device=$2 segment=$3
 shift 3
 
-"$build/bench/cycle-bench" --baseline 1000
-
 case $device in
 virtual)
 	insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
@@ -24,8 +22,12 @@ generic)
 	# card cannot do MSI: the driver falls back to the legacy interrupt.
 	mode=2
 	[ "${EC_INTERRUPT:-msix}" = msix ] || mode=0
+	insmod "$build/split/bench_split.ko" &&
+	"$build/bench/cycle-bench" --baseline 1000 &&
 	modprobe e1000e IntMode=$mode,0 RxIntDelay=0,200 && ip link set eth1 up || exit 1
-	"$build/tool/ethercat-sim" --segment "$segment" eth1 &
+	# of a real-time task the timers expire in the interrupt: no thread of the kernel
+	# works for the simulator
+	chrt -f 1 "$build/tool/ethercat-sim" --segment "$segment" eth1 &
 	insmod "$build/modules/master/ec_master.ko" main_devices=eth0 &&
 	insmod "$build/modules/devices/ec_generic.ko" || exit 1
 	;;

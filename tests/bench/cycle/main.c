@@ -23,6 +23,10 @@ static const char * const part_names[PARTS] = {
 	"receive", "process", "queue", "send", "work", "total", "late_ns",
 };
 
+static const char * const worker_names[WORKERS] = {
+	"application", "card", "master", "rest", "simulator",
+};
+
 static long long now_ns(void)
 {
 	struct timespec t;
@@ -174,7 +178,7 @@ static void lean_cycles(struct bench *b, long long *at)
 {
 	unsigned int overruns = b->overruns, i, k;
 
-	work_begin(&b->work);
+	b->worked = work_begin(&b->work);
 	*at = now_ns();
 	b->seen = 0;
 	for (k = 0; k < WORK; k++) {
@@ -189,7 +193,8 @@ static void lean_cycles(struct bench *b, long long *at)
 			b->call_errors += !!ecrt_domain_queue(b->domains[i]);
 		b->call_errors += !!ecrt_master_send(b->master);
 	}
-	work_end(&b->work);
+	if (b->worked)
+		work_end(&b->work);
 	b->overruns = overruns;
 }
 
@@ -297,8 +302,10 @@ static void report(struct bench *b)
 		return;
 	printf("entry %u\nbusy_ns_per_cycle %llu\n", b->entry,
 	       b->busy_ns / (SETTLE + b->cycles));
-	printf("all_work %llu\nsimulator_work %llu\n",
-	       (b->work.all - b->work.simulator) / WORK, b->work.simulator / WORK);
+	for (p = 0; b->worked && p < WORKERS; p++)
+		printf("%s_work %llu\n", worker_names[p], b->work.by[p] / WORK);
+	if (b->worked)
+		printf("whole_work %llu\n", b->work.all / WORK);
 	for (p = 0; p < PARTS; p++) {
 		uint32_t *s = b->samples[p];
 		unsigned long long sum = 0;

@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * All work of a cycle: what the CPUs execute in N cycles, of every thread and interrupt,
- * without the simulator. Under -icount an instruction takes a nanosecond while time that
- * nobody uses passes at once, so work is the time that has passed less the idle time.
+ * All work of a cycle: what the CPU executes in N cycles, of every thread and interrupt, as
+ * bench_split.ko counts it. The simulator's part is apart: its thread, the threads of its
+ * network card (eth1) and the interrupts that wake them. As a check of that, all of it is
+ * also the time that has passed less the idle time.
  */
 #include "bench.h"
 
-#include <dirent.h>
+#include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#define PARAMETERS	"/sys/module/bench_split/parameters/"
+
+static enum worker worker(const char *name)
+{
+	if (!strcmp(name, "ethercat-sim") || (!strncmp(name, "irq/", 4) && strstr(name, "eth1")))
+		return WORKER_SIMULATOR;
+	if (!strcmp(name, "cycle-bench"))
+		return WORKER_APPLICATION;
+	if (!strncmp(name, "irq/", 4) && strstr(name, "eth0"))
+		return WORKER_CARD;
+	return !strncmp(name, "EtherCAT", 8) ? WORKER_MASTER : WORKER_REST;
+}
 
 /* The kernel's idle time of all CPUs, ns. It stands still while somebody works. */
 static unsigned long long idle_ns(void)
@@ -26,43 +41,6 @@ static unsigned long long idle_ns(void)
 	return sum;
 }
 
-/* First line of /proc/PID/@file */
-static int task_line(const char *pid, const char *file, char *line, int size)
-{
-	char path[300];
-	FILE *f;
-	int ok;
-
-	snprintf(path, sizeof(path), "/proc/%s/%s", pid, file);
-	f = fopen(path, "r");
-	ok = f && fgets(line, size, f);
-	if (f)
-		fclose(f);
-	return ok;
-}
-
-/* What the simulator and the interrupt threads of its network card have run, ns. */
-static unsigned long long simulator_ns(void)
-{
-	unsigned long long sum = 0, ns;
-	char line[256];
-	struct dirent *e;
-	DIR *d = opendir("/proc");
-
-	while (d && (e = readdir(d))) {
-		if (*e->d_name < '0' || *e->d_name > '9' ||
-		    !task_line(e->d_name, "comm", line, sizeof(line)) ||
-		    (strcmp(line, "ethercat-sim\n") && !(!strncmp(line, "irq/", 4) && strstr(line, "eth1"))))
-			continue;
-		if (task_line(e->d_name, "schedstat", line, sizeof(line)) &&
-		    sscanf(line, "%llu", &ns) == 1)
-			sum += ns;
-	}
-	if (d)
-		closedir(d);
-	return sum;
-}
-
 static long long now_ns(void)
 {
 	struct timespec t;
@@ -71,31 +49,53 @@ static long long now_ns(void)
 	return t.tv_sec * 1000000000LL + t.tv_nsec;
 }
 
-/* Reading the figures is work: idle time is read next to the clock at both ends. */
-void work_begin(struct work *w)
+/* false: bench_split.ko is not loaded, nothing is counted */
+bool work_begin(struct work *w)
 {
-	w->simulator = simulator_ns();
+	int fd = open(PARAMETERS "clear", O_WRONLY | O_CLOEXEC);
+	bool ok;
+
 	w->idle = idle_ns();
 	w->begin = now_ns();
+	ok = fd >= 0 && write(fd, "1", 1) == 1;
+	if (fd >= 0)
+		close(fd);
+	return ok;
 }
 
 void work_end(struct work *w)
 {
+	char text[4096], name[64], *p = text;
+	int fd = open(PARAMETERS "tasks", O_RDONLY | O_CLOEXEC), len;
+	ssize_t n = fd >= 0 ? read(fd, text, sizeof(text) - 1) : 0;
+	unsigned long long ns;
+
+	if (fd >= 0)
+		close(fd);
 	w->all = (unsigned long long)(now_ns() - w->begin);
 	w->all -= idle_ns() - w->idle;
-	w->simulator = simulator_ns() - w->simulator;
+	text[n > 0 ? n : 0] = '\0';
+	memset(w->by, 0, sizeof(w->by));
+	for (; sscanf(p, "%63s %llu %n", name, &ns, &len) == 2; p += len)
+		w->by[worker(name)] += ns;
 }
 
 /* What the machine does while nobody wants anything of it, in @ms milliseconds. */
 int work_baseline(unsigned int ms)
 {
 	struct timespec t = { .tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L };
+	unsigned long long sum = 0;
 	struct work w;
 
 	nanosleep(&t, NULL);
-	work_begin(&w);
+	if (!work_begin(&w)) {
+		fprintf(stderr, "cycle-bench: bench_split.ko is not loaded\n");
+		return 1;
+	}
 	nanosleep(&t, NULL);
 	work_end(&w);
-	printf("baseline_per_ms %llu\n", w.all / ms);
+	for (unsigned int i = 0; i < WORKERS; i++)
+		sum += w.by[i];
+	printf("baseline_per_ms %llu\n", sum / ms);
 	return 0;
 }
