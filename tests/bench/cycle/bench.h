@@ -50,6 +50,7 @@ struct bench {
 	unsigned int cycles;
 	unsigned int period_us;
 	unsigned int wait_s;
+	unsigned int ready;	/* complete cycles at first */
 	unsigned int n_domains;
 	bool extras;	/* call what a careful application calls, too */
 	bool syscalls;	/* count them instead of instructions */
@@ -82,6 +83,7 @@ struct bench {
 		unsigned long long all, idle;
 		long long begin;
 	} work;			/* of cycles in which nothing else is measured */
+	unsigned int work_cycles;
 	bool worked;		/* @work is known */
 	unsigned int tick;	/* cost of ticks() */
 	uint64_t image_bytes;

@@ -15,8 +15,6 @@
 
 #define NS_PER_S	1000000000LL
 #define PRIORITY	80
-#define READY		1100	/* complete cycles at first: a cycle of the kernel waits for 1000 */
-#define WORK		300	/* cycles of which all work is counted */
 #define SETTLE		50	/* cycles before the first one that counts */
 
 static const char * const part_names[PARTS] = {
@@ -173,15 +171,24 @@ static unsigned int wc_errors(struct bench *b)
 	return n;
 }
 
+/* The host looks at the time of its own CPUs when it reads this line. */
+static void mark(const char *at)
+{
+	printf("mark_%s 0\n", at);
+	fflush(stdout);
+}
+
 /* Cycles as an application runs them, with nothing measured in between. */
 static void lean_cycles(struct bench *b, long long *at)
 {
 	unsigned int overruns = b->overruns, i, k;
 
-	b->worked = work_begin(&b->work);
+	mark("begin");
 	*at = now_ns();
 	b->seen = 0;
-	for (k = 0; k < WORK; k++) {
+	for (k = 0; k < SETTLE + b->work_cycles; k++) {
+		if (k == SETTLE)
+			b->worked = work_begin(&b->work);
 		if (b->mode == MODE_OWN)
 			sleep_until(b, at);
 		else
@@ -195,6 +202,7 @@ static void lean_cycles(struct bench *b, long long *at)
 	}
 	if (b->worked)
 		work_end(&b->work);
+	mark("end");
 	b->overruns = overruns;
 }
 
@@ -220,7 +228,7 @@ static void measure(struct bench *b, long long *at)
 
 	frame_counters(b, &lost, &late);
 	busy = busy_ns();
-	*at = now_ns();
+	/* the grid stays: frames through 1000 slaves take more than a cycle */
 	b->seen = 0;
 	b->measuring = true;
 	for (i = 0; i < SETTLE + b->cycles; i++) {
@@ -255,7 +263,7 @@ static int run(struct bench *b)
 	unsigned int ready = 0;
 
 	b->syscalls = false;	/* not while starting */
-	while (ready < READY) {
+	while (ready < b->ready) {
 		one_cycle(b, &at, cost);
 		ready = count_operational(b) == b->slaves && !wc_errors(b) ?
 			ready + 1 : 0;
@@ -303,9 +311,9 @@ static void report(struct bench *b)
 	printf("entry %u\nbusy_ns_per_cycle %llu\n", b->entry,
 	       b->busy_ns / (SETTLE + b->cycles));
 	for (p = 0; b->worked && p < WORKERS; p++)
-		printf("%s_work %llu\n", worker_names[p], b->work.by[p] / WORK);
+		printf("%s_work %llu\n", worker_names[p], b->work.by[p] / b->work_cycles);
 	if (b->worked)
-		printf("whole_work %llu\n", b->work.all / WORK);
+		printf("whole_work %llu\n", b->work.all / b->work_cycles);
 	for (p = 0; p < PARTS; p++) {
 		uint32_t *s = b->samples[p];
 		unsigned long long sum = 0;
@@ -359,8 +367,11 @@ static void usage(FILE *out)
 		"usage: cycle-bench [options]\n"
 		"  --master N     index of the master, default 0\n"
 		"  --cycles N     cycles to measure, default 1000\n"
+		"  --work N       cycles of which all work is counted afterwards, default 300\n"
 		"  --period-us N  time between cycles, default 1000\n"
 		"  --wait-s N     seconds to wait for OP, default 60\n"
+		"  --ready N      complete cycles before that, default 1100: a cycle of the kernel\n"
+		"                 waits for 1000\n"
 		"  --domains N    spread the slaves over N domains, default 1\n"
 		"  --extras       clocks, states, emergencies and requests, too\n"
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
@@ -398,8 +409,10 @@ static void parse(struct bench *b, int argc, char **argv)
 	static const struct option options[] = {
 		{ "master", required_argument, NULL, 'm' },
 		{ "cycles", required_argument, NULL, 'c' },
+		{ "work", required_argument, NULL, 'n' },
 		{ "period-us", required_argument, NULL, 'p' },
 		{ "wait-s", required_argument, NULL, 'w' },
+		{ "ready", required_argument, NULL, 'r' },
 		{ "domains", required_argument, NULL, 'd' },
 		{ "extras", no_argument, NULL, 'e' },
 		{ "syscalls", no_argument, NULL, 's' },
@@ -416,7 +429,8 @@ static void parse(struct bench *b, int argc, char **argv)
 	while ((c = getopt_long(argc, argv, "h", options, &at)) != -1) {
 		value = c == 'm' ? &b->index : c == 'c' ? &b->cycles :
 			c == 'p' ? &b->period_us : c == 'w' ? &b->wait_s :
-			c == 'd' ? &b->n_domains : NULL;
+			c == 'd' ? &b->n_domains : c == 'n' ? &b->work_cycles :
+			c == 'r' ? &b->ready : NULL;
 		if (value)
 			*value = number(options[at].name, optarg,
 					c == 'd' ? DOMAINS_MAX : 10000000);
@@ -435,7 +449,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		else
 			usage(c == 'h' ? stdout : stderr), exit(c == 'h' ? 0 : 2);
 	}
-	if (optind < argc || !b->cycles || !b->period_us || !b->n_domains) {
+	if (optind < argc || !b->cycles || !b->work_cycles || !b->period_us || !b->n_domains) {
 		usage(stderr);
 		exit(2);
 	}
@@ -444,7 +458,7 @@ static void parse(struct bench *b, int argc, char **argv)
 int main(int argc, char **argv)
 {
 	static struct bench b = { .cycles = 1000, .period_us = 1000,
-				  .wait_s = 60, .n_domains = 1 };
+				  .wait_s = 60, .n_domains = 1, .work_cycles = 300, .ready = 1100 };
 	unsigned int p;
 
 	parse(&b, argc, argv);
