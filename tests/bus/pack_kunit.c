@@ -335,6 +335,45 @@ static void pack_given_up(struct kunit *test)
 	put(s, 15);
 }
 
+/* One caller or two have given up, and their datagrams come back with other lengths. */
+static void pack_gone_changed(struct kunit *test)
+{
+	static const struct { u32 gone; u16 len[ARRAY_SIZE(dgrams)]; } t[] = {
+		/* as long as before, but the second caller's part is at another place */
+		{ 5, { 3, 128, 5, 1, 1 } },
+		{ 8, { 2, 128, 6, 1, 5 } },
+	};
+	struct shared *s = shared(test);
+	u8 *copy = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL);
+	struct ec_frame_buf fb;
+	u32 i, k;
+
+	for (i = 0; i < ARRAY_SIZE(t); i++) {
+		answer(s);
+		for (k = 0; k < MEMBERS; k++)
+			if (t[i].gone & BIT(k))
+				KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[k], ktime_get_ns()));
+		ec_frame_begin(&fb, copy, EC_ETH_MAX);
+		for (k = 0; k < ARRAY_SIZE(dgrams); k++)
+			ec_frame_add(&fb, dgrams[k].cmd, s->slot[dgrams[k].member]->index,
+				     dgrams[k].adp, dgrams[k].ado, t[i].len[k]);
+		give(s, copy, ec_frame_end(&fb));
+		expect(s, 0, t[i].gone);
+		give(s, s->reply, s->len);
+		expect(s, 15 & ~t[i].gone, t[i].gone);
+		expect_data(s, 15 & ~t[i].gone);
+		for (k = 0; k < MEMBERS; k++) {
+			atomic_set(&s->slot[k]->state, EC_SLOT_BUILD);
+			arm(s, k);
+		}
+		leave(s);
+	}
+	answer(s);
+	give(s, s->reply, s->len);
+	expect(s, 15, 0);
+	put(s, 15);
+}
+
 /* A slot that is in use by another: not with the reply to the one before. */
 static void pack_reused(struct kunit *test)
 {
@@ -434,6 +473,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pack_truncated),
 	KUNIT_CASE(pack_other_order),
 	KUNIT_CASE(pack_given_up),
+	KUNIT_CASE(pack_gone_changed),
 	KUNIT_CASE(pack_reused),
 	KUNIT_CASE(pack_gathered),
 	{}

@@ -20,6 +20,7 @@ struct asker {
 	struct ec_dg *dg;
 	u8 *data;
 	int ret;
+	u64 end_ns;
 	struct completion done;
 };
 
@@ -34,6 +35,7 @@ static int ask(void *arg)
 		a->dg[i].repeat = false;
 	}
 	a->ret = a->clock ? ec_xfer_clock(a->b->m, a->dg, a->n) : ec_xfer(a->b->m, a->dg, a->n);
+	a->end_ns = ktime_get_ns();
 	complete(&a->done);
 	return 0;
 }
@@ -204,12 +206,22 @@ static void share_beside_clocks(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct asker *a = askers(c->b, 2, FRAMES, 15, 1);
+	u32 before = ec_share_max;
 	struct share s;
+	u64 t0;
 
 	a[0].clock = true;
 	a[1].n = 1;
 	s = run(c, a, 2, 1000);
 	KUNIT_EXPECT_LE(test, s.most, 8ull);
+	/* where a send has one place only, they take turns */
+	ec_share_max = 1;
+	t0 = ktime_get_ns();
+	s = run(c, a, 2, 1000);
+	ec_share_max = before;
+	KUNIT_EXPECT_EQ(test, s.most, 1ull);
+	KUNIT_EXPECT_LE(test, a[1].end_ns - t0, 10 * NSEC_PER_MSEC);
+	KUNIT_EXPECT_LT(test, a[1].end_ns, a[0].end_ns);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
