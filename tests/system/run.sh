@@ -22,8 +22,13 @@ export EC_BUILD=$PWD/build/system-$kernel${EC_PROGRAMS:+-$EC_PROGRAMS}
 passed=0 failed=0
 # Time of an --icount guest leaps while it waits for the host: for each file that is
 # opened there, also a cached one. What the tests load and run becomes the guest's own
-# before they begin; to change a time of a file copies it.
-preload='xargs -d "\n" touch -c -a <"$2"; exec bats --tap "$1"'
+# before they begin; to change a time of a file copies it. Programs also run as nobody, who
+# could not pass through the home of root.
+preload='xargs -d "\n" touch -c -a <"$2"
+	for d in "$EC_BUILD" "$PWD"; do
+		while [ "$d" ]; do chmod o+rx "$d"; d=${d%/*}; done
+	done
+	exec bats --tap "$1"'
 
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
 # as tests/check-kernels.sh, else each would build what the other has built
