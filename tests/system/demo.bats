@@ -7,7 +7,11 @@ bats_require_minimum_version 1.5.0
 setup() { cd "$BATS_TEST_DIRNAME/../.." || return; }
 teardown() { rmmod ec_sim ec_master 2>/dev/null || true; }
 
-demo() { make -s demo HOST=1 EC_BUILD="$EC_BUILD" "$@"; }
+# with the variables that the modules were built with, else they are built again here
+demo() {
+	# shellcheck disable=SC2086
+	make -s demo HOST=1 EC_BUILD="$EC_BUILD" ${EC_WARN:-} "$@"
+}
 
 # what of it comes after building, on a segment of four slaves with $1 as well
 on_segment() {

@@ -100,10 +100,14 @@ all_same() {
 	return $rc
 }
 
+# Without PREEMPT_RT the kernel first ends the system call of whoever runs.
+late() { [ ! -e /sys/kernel/realtime ] || echo late_ns 3000; }
+
 # What a contended lock costs is 3000 and more: to sleep, to switch, to be woken.
 @test "a cycle of the application costs the same beside readers of everything" {
 	application cycles $CYCLES
-	all_same receive 1000 send 1000 late_ns 3000
+	# shellcheck disable=SC2046
+	all_same receive 1000 send 1000 $(late)
 }
 
 @test "a cycle of the kernel costs the same beside readers of everything" {

@@ -91,7 +91,7 @@ run() {
 
 	read -ra options < <(vm_options "$f")
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
-		env EC_BUILD="$EC_BUILD" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
+		env EC_BUILD="$EC_BUILD" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }
 
