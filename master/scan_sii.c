@@ -94,11 +94,10 @@ static void interrupt(struct reader *r)
 
 	is_done(r);
 	s->error = EC_SLAVE_SCAN_FAILED;
-	if (!r->began)
-		ec_slave_info(s, "large EEPROM, 0x%04zx words read up to now, the rest follows\n",
-			      r->have / 2);
 	snprintf(s->why, sizeof(s->why),
 		 "large EEPROM, 0x%04zx words read up to now, the rest follows", r->have / 2);
+	if (!r->began)
+		ec_slave_info(s, "%s\n", s->why);
 	s->part = r->buf;
 	s->part_bytes = r->have;
 	s->sii_counted = r->cap;
