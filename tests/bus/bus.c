@@ -113,6 +113,23 @@ bool bus_settled(struct bus *b)
 }
 
 /**
+ * bus_plug_scanned() - plug in, and wait until all slaves are found and nothing is going on
+ * @b: bus
+ * @slaves: how many there are
+ * @limit_ms: waits no longer; that so many were found is asserted
+ */
+void bus_plug_scanned(struct bus *b, u32 slaves, u32 limit_ms)
+{
+	u64 end;
+
+	bus_plug(b);
+	end = b->t0 + (u64)limit_ms * NSEC_PER_MSEC;
+	while (ktime_get_ns() < end && !(b->m->n_slaves == slaves && bus_settled(b)))
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_EQ(b->test, b->m->n_slaves, slaves);
+}
+
+/**
  * bus_idle() - wait until nothing but the monitor has been at work for 100 ms
  * @b: bus
  */

@@ -50,6 +50,7 @@ void bus_exit(struct kunit *test);
 u64 bus_wait(struct bus *b, u32 slaves, u8 state, u32 limit_ms);
 u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms);
 bool bus_settled(struct bus *b);
+void bus_plug_scanned(struct bus *b, u32 slaves, u32 limit_ms);
 void bus_idle(struct bus *b);
 void bus_crowd(struct bus *b);
 void bus_crowd_leaves(struct bus *b);

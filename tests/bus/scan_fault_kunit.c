@@ -21,14 +21,9 @@ static struct bus *prepare(struct kunit *test)
 /* Plug in; all but @bad (or N) reach PREOP within @limit_ms with the right EEPROM. */
 static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
 {
-	u64 end;
 	u32 i;
 
-	bus_plug(b);
-	end = b->t0 + (u64)limit_ms * NSEC_PER_MSEC;
-	while (ktime_get_ns() < end && !(b->m->n_slaves == N && bus_settled(b)))
-		usleep_range(1000, 1001);
-	KUNIT_ASSERT_EQ(b->test, b->m->n_slaves, N);
+	bus_plug_scanned(b, N, limit_ms);
 	for (i = 0; i < N; i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
