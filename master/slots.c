@@ -135,7 +135,7 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
  */
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
-	/* held: whoever sends the frame or takes the reply writes or wants @sent_ns */
+	/* in this state neither the sender nor the receiver of the frame uses @sent_ns */
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
 		return false;
 	ec_write64(&slot->sent_ns, now_ns);

@@ -2,8 +2,8 @@
 /*
  * Drivers do not report at once that a link is down, so callers that wait for frames look
  * at it. Of many only the first one looks often: a timer for each of them would cost more
- * than their frames. Whoever leaves wakes the next one, so that the loss of the link goes
- * through all of them at once. The cycle has no part in this.
+ * than their frames. A caller that leaves wakes the next one, so that the loss of the link
+ * reaches all of them at once. The cycle has no part in this.
  */
 #include <linux/hrtimer.h>
 #include <linux/minmax.h>

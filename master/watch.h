@@ -11,7 +11,7 @@
 /**
  * struct ec_watch - callers that wait for frames of a link
  * @lock: protects @waiting
- * @waiting: them; the first one looks at the link each millisecond
+ * @waiting: &struct ec_watcher; the first one looks at the link each millisecond
  */
 struct ec_watch {
 	raw_spinlock_t lock;

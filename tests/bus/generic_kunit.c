@@ -6,14 +6,14 @@
 #include "bus.h"
 
 /* private part of the network device */
-struct odd {
+struct fake {
 	int result;
 	u32 frames;
 };
 
-static netdev_tx_t odd_xmit(struct sk_buff *skb, struct net_device *nd)
+static netdev_tx_t fake_xmit(struct sk_buff *skb, struct net_device *nd)
 {
-	struct odd *o = netdev_priv(nd);
+	struct fake *o = netdev_priv(nd);
 
 	o->frames++;
 	if (o->result != NETDEV_TX_BUSY)
@@ -21,12 +21,12 @@ static netdev_tx_t odd_xmit(struct sk_buff *skb, struct net_device *nd)
 	return o->result;
 }
 
-static const struct net_device_ops odd_ops = { .ndo_start_xmit = odd_xmit };
+static const struct net_device_ops fake_ops = { .ndo_start_xmit = fake_xmit };
 
-static void odd_setup(struct net_device *nd)
+static void fake_setup(struct net_device *nd)
 {
 	ether_setup(nd);
-	nd->netdev_ops = &odd_ops;
+	nd->netdev_ops = &fake_ops;
 	eth_hw_addr_random(nd);
 }
 
@@ -62,7 +62,7 @@ static u64 errors(const struct bus *b)
 	return atomic64_read(&b->m->link[0].stats.tx_errors);
 }
 
-static void expect_result(struct bus *b, struct odd *o, const struct result *r)
+static void expect_result(struct bus *b, struct fake *o, const struct result *r)
 {
 	u64 before = sent(b), bad = errors(b);
 	u32 frames = o->frames;
@@ -87,8 +87,8 @@ static void expect_result(struct bus *b, struct odd *o, const struct result *r)
 static void generic_result_of_a_frame(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave a EK1100\n");
-	struct net_device *nd = alloc_netdev(sizeof(struct odd), "bus0", NET_NAME_USER, odd_setup);
-	struct odd *o;
+	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER, fake_setup);
+	struct fake *o;
 	u32 i;
 
 	KUNIT_ASSERT_NOT_NULL(test, nd);

@@ -200,7 +200,7 @@ static void link_loss_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
 }
 
-/* somebody whose frame is on its way, and is sent again if @repeat */
+/* a caller whose frame is on its way, and is sent again if @repeat */
 struct waiting {
 	struct bus *b;
 	u16 station;

@@ -198,7 +198,7 @@ static void pdo_names_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_STRNEQ(test, shown(b, 2), "");
 }
 
-/* The mailbox was somebody else's for longer than names are waited for: asked for later. */
+/* Another caller used the mailbox longer than the master waits for names: it asks again later. */
 static void pdo_names_after_a_long_transfer(struct kunit *test)
 {
 	struct bus *b = nameless(test);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * What the CPU executes, split by task, for tests/bench/cycle. Under -icount an instruction
- * takes a nanosecond while time that nobody uses passes at once, so work is the time that
+ * takes a nanosecond while idle time passes at once, so work is the time that
  * has passed less the idle time. It is looked at whenever the scheduler switches. An
  * interrupt counts for the task it comes in; what is executed in the idle task, where most
  * interrupts come, for the task that runs next: the one that was woken.
@@ -46,7 +46,7 @@ static struct task_work *find(struct task_struct *task)
 	return t;
 }
 
-/* with interrupts off; the look itself is nobody's work */
+/* with interrupts off; the work of this call counts for no thread */
 static void charge(struct task_struct *prev, struct task_struct *next)
 {
 	u64 work = ktime_get_mono_fast_ns() - last_ns;
