@@ -103,6 +103,10 @@ all_same() {
 # Without PREEMPT_RT the kernel first ends the system call of whoever runs.
 late() { [ ! -e /sys/kernel/realtime ] || echo late_ns 3000; }
 
+# Without it soft interrupts run in the thread that was interrupted: some 2000 instructions,
+# in 1 of 12 to 1 of 400 cycles, whatever the other programs are.
+tick() { if [ -e /sys/kernel/realtime ]; then echo 1000; else echo 2200; fi; }
+
 # What a contended lock costs is 3000 and more: to sleep, to switch, to be woken.
 @test "a cycle of the application costs the same beside readers of everything" {
 	application cycles $CYCLES
@@ -112,5 +116,5 @@ late() { [ ! -e /sys/kernel/realtime ] || echo late_ns 3000; }
 
 @test "a cycle of the kernel costs the same beside readers of everything" {
 	application waits $CYCLES
-	all_same work 1000
+	all_same work "$(tick)"
 }
