@@ -18,7 +18,7 @@ KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) CONFIG_DEBUG_INFO_BTF_MODULES=
 all: modules lib tool examples mini
 
 # Modules are built in a copy: several kernels side by side, a clean clone.
-MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/wire/*.[ch] \
+MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/*/*.[ch] \
 	 devices/*.[ch] devices/Kbuild devices/sim/*.[ch] devices/sim/Kbuild \
 	 include/*.h include/uapi/*.h)
 

@@ -17,8 +17,8 @@
 #include <net/net_namespace.h>
 #include <net/rtnetlink.h>
 #include "ecdev.h"
-#include "master/compat.h"
-#include "master/tap.h"
+#include "master/wire/compat.h"
+#include "master/link/tap.h"
 #include "master/wire/frame.h"
 
 #define RING		64	/* more than are on their way at once; completion is lazy */

@@ -2,14 +2,14 @@
 #include <linux/etherdevice.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "api.h"
-#include "capture.h"
-#include "cdev.h"
-#include "device.h"
+#include "boundary/api.h"
+#include "link/capture.h"
+#include "boundary/cdev.h"
+#include "link/device.h"
 #include "master.h"
-#include "session.h"
-#include "slave.h"
-#include "xfer.h"
+#include "session/session.h"
+#include "bus/slave.h"
+#include "link/xfer.h"
 
 static struct ec_master *masters[EC_MAX_MASTERS];
 static unsigned int n_masters;

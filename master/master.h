@@ -12,15 +12,15 @@
 #include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
-#include "cycle.h"
-#include "dc.h"
-#include "late.h"
-#include "limits.h"
-#include "link.h"
-#include "log.h"
-#include "queue.h"
-#include "show.h"
-#include "slots.h"
+#include "cycle/cycle.h"
+#include "clock/dc.h"
+#include "cycle/late.h"
+#include "base/limits.h"
+#include "link/link.h"
+#include "base/log.h"
+#include "link/queue.h"
+#include "boundary/show.h"
+#include "link/slots.h"
 
 struct ec_api;
 struct ec_session;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/module.h>
-#include "cdev.h"
-#include "limits.h"
+#include "boundary/cdev.h"
+#include "base/limits.h"
 #include "master.h"
 
 static char *main_devices[EC_MAX_MASTERS];

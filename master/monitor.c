@@ -3,12 +3,12 @@
 #include <linux/kthread.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
-#include "config.h"
+#include "config/config.h"
 #include "master.h"
-#include "once64.h"
-#include "session.h"
-#include "slave.h"
-#include "xfer.h"
+#include "base/once64.h"
+#include "session/session.h"
+#include "bus/slave.h"
+#include "link/xfer.h"
 
 #define PERIOD_MS	20
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */

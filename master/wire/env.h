@@ -17,7 +17,7 @@
 #include <linux/minmax.h>
 #include <linux/string.h>
 #include <linux/types.h>
-#include "../compat.h"	/* get_unaligned_le16() and so on */
+#include "compat.h"	/* get_unaligned_le16() and so on */
 
 #else /* hosted */
 

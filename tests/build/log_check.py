@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 
 ALLOWED = {
-    "master/log.c:print": "its callers limit",
-    "master/log.c:ec_log_flush": "one line in 10 s",
-    "master/link.c:ec_link_trace": "asks __ratelimit()",
-    "master/slave.h:ec_slave_dbg": "asks ec_log_debug()",
+    "master/base/log.c:print": "its callers limit",
+    "master/base/log.c:ec_log_flush": "one line in 10 s",
+    "master/link/link.c:ec_link_trace": "asks __ratelimit()",
+    "master/bus/slave.h:ec_slave_dbg": "asks ec_log_debug()",
     "master/master.c:check_name": "insmod only",
     "master/master.c:check_names": "insmod only",
     "master/master.c:ec_masters_create": "insmod only",

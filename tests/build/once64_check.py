@@ -3,7 +3,7 @@
 """No 64-bit value is shared by READ_ONCE() and WRITE_ONCE().
 
 On a kernel of 32 bits these take two accesses. ec_read64() and ec_write64() take one,
-and the status page has ec_status_begin() and ec_status_copy(); see master/once64.h.
+and the status page has ec_status_begin() and ec_status_copy(); see master/base/once64.h.
 usage: once64_check.py FOLDER...
 """
 import re
@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 
 ALLOWED = {
-    "master/exchange.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
-    "master/dc_cycle.c:ec_dc_judge": "its caller has called ec_status_begin()",
-    "master/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
-    "master/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
-    "master/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",
-    "master/api_dc.c:ecrt_master_reference_clock_time": "the lower half only",
+    "master/cycle/exchange.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
+    "master/clock/dc_cycle.c:ec_dc_judge": "its caller has called ec_status_begin()",
+    "master/cycle/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
+    "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
+    "master/cycle/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",
+    "master/boundary/api_dc.c:ecrt_master_reference_clock_time": "the lower half only",
 }
 MEMBER = re.compile(r"^\s+(?:const\s+)?(\w+)\s+\**(\w+)(?:\[\w+\])?;")
 WIDE = {"u64", "s64", "__u64", "__s64", "aligned_u64", "uint64_t", "int64_t", "ktime_t"}

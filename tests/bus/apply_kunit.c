@@ -4,8 +4,8 @@
 #include <linux/kthread.h>
 #include "cyc.h"
 #include "devices/sim/app.h"
-#include "master/coe.h"
-#include "master/ioctl.h"
+#include "master/mailbox/coe.h"
+#include "master/boundary/ioctl.h"
 
 static const char drive[] =
 	"segment seed=17 response=2ms\nslave a drive in=22 out=22 mapping=rewritable\n";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Which slave a configuration belongs to when positions in the ring change. */
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 /* a slave on a branch stands before three of the same kind */
 static const char tree[] =

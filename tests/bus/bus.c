@@ -3,7 +3,7 @@
 #include <linux/kmsg_dump.h>
 #include "bus.h"
 #include "slow.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 #include "master/wire/sii.h"
 
 static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };

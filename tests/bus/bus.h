@@ -13,11 +13,11 @@
 #include "devices/sim/describe.h"
 #include "devices/sim/sim_link.h"
 #include "devices/sim/sim_wire.h"
-#include "master/cdev.h"
+#include "master/boundary/cdev.h"
 #include "master/master.h"
-#include "master/session.h"
-#include "master/slave.h"
-#include "master/xfer.h"
+#include "master/session/session.h"
+#include "master/bus/slave.h"
+#include "master/link/xfer.h"
 
 /**
  * struct bus - what a case works with

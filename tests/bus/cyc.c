@@ -2,7 +2,7 @@
 #include <linux/hrtimer.h>
 #include <linux/prandom.h>
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 /**
  * cyc_new() - an application reserves the master

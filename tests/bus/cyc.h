@@ -4,8 +4,8 @@
 #define EC_CYC_H
 
 #include "bus.h"
-#include "master/config.h"
-#include "master/domain.h"
+#include "master/config/config.h"
+#include "master/cycle/domain.h"
 
 /**
  * struct cyc - an application

@@ -8,8 +8,8 @@
 #include <linux/prandom.h>
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define SLAVES		100
 #define LIMIT_NS	100

@@ -2,8 +2,8 @@
 /* Clocks, judged by the model's true time, not by what the slaves say of it. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 /* Largest difference of a slave's system time to that of slave 0, ns. */
 static u64 worst(struct bus *b)

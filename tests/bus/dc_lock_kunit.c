@@ -2,9 +2,9 @@
 /* The kernel's cycle follows the reference clock: when do its frames leave? */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/cycle_thread.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/cycle/cycle_thread.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 #include "master/wire/dc_lock.h"
 
 #define PERIOD_NS	1000000

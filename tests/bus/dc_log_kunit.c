@@ -5,8 +5,8 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define DELAY_ONLY_MS	50u	/* as clocks that do not answer they cost 600 ms */
 

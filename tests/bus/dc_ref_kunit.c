@@ -6,9 +6,9 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/cycle_thread.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/cycle/cycle_thread.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define PERIOD_NS	1000000
 

@@ -6,8 +6,8 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define SLAVES		100
 #define OP_LIMIT_US	1500000

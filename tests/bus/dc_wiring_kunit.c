@@ -2,8 +2,8 @@
 /* Who hangs at which port, and propagation delays, also of slaves connected by other ports. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 /* how long a frame is on its way from slave 0 to slave @i */
 static s32 true_delay(struct bus *b, u32 i)

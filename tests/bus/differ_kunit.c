@@ -2,7 +2,7 @@
 /* Configuration and reality: what the log and reasons say is missing, different or lost. */
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 static const char tree[] =
 	"segment seed=10 response=100us transition=1ms\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* IP parameters of slaves with EoE: by the application, by the tool. */
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 static const struct ec_ip_params net = {
 	.which = EC_IP_MAC | EC_IP_ADDRESS | EC_IP_MASK | EC_IP_HOSTNAME,

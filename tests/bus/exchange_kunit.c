@@ -2,8 +2,8 @@
 /* Frames of the cycle that are late, lost, doubled or nobody's; odd callers. */
 #include "cyc.h"
 #include "devices/ecdev.h"
-#include "master/device.h"
-#include "master/ioctl.h"
+#include "master/link/device.h"
+#include "master/boundary/ioctl.h"
 
 /* three frames a cycle; what s1 is told it shows */
 static const char three_frames[] =

@@ -2,9 +2,9 @@
 /* What this master offers beyond the field's interface. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
-#include "master/why.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
+#include "master/config/why.h"
 
 #define TWO	"slave a drive in=8 out=8 drift=40ppm clock=3s\n" \
 		"slave b drive in=8 out=8 drift=-70ppm clock=9s\n"

@@ -2,7 +2,7 @@
 /* Frames that nobody sent, that are cut, changed, doubled, late or lost. */
 #include "bus.h"
 #include "devices/ecdev.h"
-#include "master/slots.h"
+#include "master/link/slots.h"
 
 static const char text[] =
 	"segment seed=11 response=100us transition=200us\n"

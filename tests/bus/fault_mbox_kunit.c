@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Mailboxes that answer wrongly, endlessly or not at all. */
 #include "bus.h"
-#include "master/coe.h"
-#include "master/mailbox.h"
+#include "master/mailbox/coe.h"
+#include "master/mailbox/mailbox.h"
 
 static const char text[] =
 	"segment seed=9 response=200us transition=200us\n"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Layout of process data: large and small, bits, rates, and what is too much. */
 #include "cyc.h"
-#include "master/bytes.h"
-#include "master/ioctl.h"
+#include "master/base/bytes.h"
+#include "master/boundary/ioctl.h"
 
 #define CHANNELS	255	/* of 32 bits the model keeps */
 

@@ -6,8 +6,8 @@
 #include "kapp.h"
 #include "devices/ecdev.h"
 #include "devices/sim/app.h"
-#include "master/config.h"
-#include "master/device.h"
+#include "master/config/config.h"
+#include "master/link/device.h"
 #include "master/wire/coe.h"
 
 static const char two[] = "segment seed=8 response=500us\nslave a drive in=8 out=8 mbox=128 serial=11 soe=2 voe=0x4321\n"

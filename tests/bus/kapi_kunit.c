@@ -3,9 +3,9 @@
 #include <linux/delay.h>
 #include "kapp.h"
 #include "devices/sim/app.h"
-#include "master/api.h"
-#include "master/config.h"
-#include "master/ioctl.h"
+#include "master/boundary/api.h"
+#include "master/config/config.h"
+#include "master/boundary/ioctl.h"
 
 static const char pair[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11 mapping=rewritable\n"
 			   "slave b io in=16 out=16\nconnect b.1 -> b.1\nconnect b.9 -> b.9\n";

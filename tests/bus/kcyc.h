@@ -4,8 +4,8 @@
 #define EC_KCYC_H
 
 #include "cyc.h"
-#include "master/cycle_thread.h"
-#include "master/ioctl.h"
+#include "master/cycle/cycle_thread.h"
+#include "master/boundary/ioctl.h"
 
 #define KCYC_PERIOD_NS	1000000
 #define KCYC_CHANNELS	200	/* of 32 bits, each output wired to an input */

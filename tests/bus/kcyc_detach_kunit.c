@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The cycle goes on without its application, and another one takes it over. */
 #include "kcyc.h"
-#include "master/emerg.h"
-#include "master/limits.h"
-#include "master/request.h"
+#include "master/mailbox/emerg.h"
+#include "master/base/limits.h"
+#include "master/session/request.h"
 
 static const struct ec_ioc_cycle hold = { .flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10 };
 static const struct ec_ioc_cycle zero = {

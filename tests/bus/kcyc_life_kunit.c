@@ -5,7 +5,7 @@
 #include <linux/poll.h>
 #include "kcyc.h"
 #include "devices/sim/app.h"
-#include "master/device.h"
+#include "master/link/device.h"
 
 /* Cycles pass, but no process data are sent before there are outputs. */
 static void life_waits_for_outputs(struct kunit *test)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The histogram of sends against their schedule: known lateness, known figures. */
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 #define PERIOD_US	1000
 #define NOISE_NS	5000	/* time passes when it is read, too */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Logical addresses: apart, shared in each way; one image, whatever the wire has. */
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 /* bytes each way; channels are bytes */
 static const struct slave {

@@ -6,7 +6,7 @@
 #include <linux/kthread.h>
 #include "cyc.h"
 #include "slow.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 #define MANY	100
 

@@ -2,9 +2,9 @@
 /* However often something happens, the kernel log gets few lines of it. */
 #include "bus.h"
 #include "devices/sim/app.h"
-#include "master/device.h"
-#include "master/mailbox.h"
-#include "master/soe.h"
+#include "master/link/device.h"
+#include "master/mailbox/mailbox.h"
+#include "master/mailbox/soe.h"
 
 static const char text[] =
 	"segment seed=9 response=200us transition=200us\n"

@@ -2,7 +2,7 @@
 /* A slave that refuses its PDO mapping: what it has instead decides. */
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 #define FIXED	"slave d drive in=8 out=8 mapping=fixed\nslave e EL1859\n"
 

@@ -7,7 +7,7 @@
 #include <linux/mm.h>
 #include "cyc.h"
 #include "req.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 #define ORDER	PAGE_ALLOC_COSTLY_ORDER
 #define SLAVES	300

@@ -2,7 +2,7 @@
 /* What happens in OP: cables, power, errors of slaves, the end of the session. */
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 /* outputs are wired to inputs in the same and in another slave */
 static const char line[] =

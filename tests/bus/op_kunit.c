@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Configuration to OP and process data. */
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 #define BENCH	22	/* slaves of the built-in bench */
 

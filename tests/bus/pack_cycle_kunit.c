@@ -2,8 +2,8 @@
 /* Callers beside a cycle whose datagrams leave in one frame. */
 #include <linux/kthread.h>
 #include "cyc.h"
-#include "master/device.h"
-#include "master/pack.h"
+#include "master/link/device.h"
+#include "master/link/pack.h"
 
 static const char text[] =
 	"segment seed=25 response=100us transition=1ms\n"

@@ -2,7 +2,7 @@
 /* Frames of several callers that leave as one: each has its own back, or none has. */
 #include "bus.h"
 #include "devices/ecdev.h"
-#include "master/pack.h"
+#include "master/link/pack.h"
 
 static const char text[] =
 	"segment seed=24 response=100us transition=200us\n"

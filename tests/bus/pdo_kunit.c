@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The PDOs a slave uses now, not those it was delivered with. */
 #include "bus.h"
-#include "master/coe.h"
-#include "master/ioctl.h"
+#include "master/mailbox/coe.h"
+#include "master/boundary/ioctl.h"
 #include "cyc.h"
 
 static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 #include "req.h"
 
 /**

@@ -2,7 +2,7 @@
 /* Requests beside the cycle: SDOs, registers; emergencies. */
 #include "req.h"
 #include "devices/sim/app.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 #include "master/wire/coe.h"
 
 #define SCRATCH		0x2000	/* 1000 bytes */

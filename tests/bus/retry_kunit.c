@@ -2,7 +2,7 @@
 /* Slaves that do not reply for a while: they are found again without any request. */
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 static const char line[] =
 	"segment seed=10 response=100us transition=1ms\n"

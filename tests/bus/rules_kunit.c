@@ -2,8 +2,8 @@
 /* What applications written for the field's interface depend on. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define TWO	"slave a drive in=8 out=8 drift=40ppm clock=3s cable=50\n" \
 		"slave b drive in=8 out=8 drift=-70ppm clock=9s cable=30\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The scan: who is on the bus, and what their EEPROMs say. */
 #include "bus.h"
-#include "master/ioctl.h"
+#include "master/boundary/ioctl.h"
 
 /* the built-in bench, in ring order */
 static const struct {

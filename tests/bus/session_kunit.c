@@ -3,7 +3,7 @@
 #include <linux/delay.h>
 #include "kapp.h"
 #include "kcyc.h"
-#include "master/cycle_thread.h"
+#include "master/cycle/cycle_thread.h"
 
 static const char one[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11\n";
 

@@ -5,8 +5,8 @@
  */
 #include <linux/workqueue.h>
 #include "bus.h"
-#include "master/ioctl.h"
-#include "master/why.h"
+#include "master/boundary/ioctl.h"
+#include "master/config/why.h"
 
 struct change {
 	struct delayed_work work;

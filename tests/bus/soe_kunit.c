@@ -3,9 +3,9 @@
 #include <linux/kthread.h>
 #include "req.h"
 #include "devices/sim/app.h"
-#include "master/coe.h"
-#include "master/mailbox.h"
-#include "master/soe.h"
+#include "master/mailbox/coe.h"
+#include "master/mailbox/mailbox.h"
+#include "master/mailbox/soe.h"
 
 #define S(n)	(n)
 #define P(n)	(0x8000 | (n))

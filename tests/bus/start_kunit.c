@@ -8,8 +8,8 @@
 #include "kapp.h"
 #include "cyc.h"
 #include "devices/sim/app.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 #define LIMIT_US	200000
 #define DC_LIMIT_US	50000	/* beyond the time until the clocks are set and SYNC0 starts */

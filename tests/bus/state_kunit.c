@@ -2,8 +2,8 @@
 /* What an application is told about the bus from activation on, and a reset. */
 #include "cyc.h"
 #include "kapp.h"
-#include "master/dc.h"
-#include "master/ioctl.h"
+#include "master/clock/dc.h"
+#include "master/boundary/ioctl.h"
 
 /* the last one is nobody's */
 static const char line[] =

@@ -6,8 +6,8 @@
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include "cyc.h"
-#include "master/capture.h"
-#include "master/ioctl.h"
+#include "master/link/capture.h"
+#include "master/boundary/ioctl.h"
 
 static const char text[] = "segment seed=4\nrepeat 3 slave d drive in=8 out=8\n";
 

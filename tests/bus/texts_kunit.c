@@ -2,9 +2,9 @@
 /* One text per cause: what a refusal claims has been found so. */
 #include "bus.h"
 #include "cyc.h"
-#include "master/coe.h"
-#include "master/ioctl.h"
-#include "master/mailbox.h"
+#include "master/mailbox/coe.h"
+#include "master/boundary/ioctl.h"
+#include "master/mailbox/mailbox.h"
 #include "master/wire/mbox.h"
 
 static const char text[] =

@@ -6,8 +6,8 @@
 #include <linux/kthread.h>
 #include <linux/sched/signal.h>
 #include "cyc.h"
-#include "master/device.h"
-#include "master/ioctl.h"
+#include "master/link/device.h"
+#include "master/boundary/ioctl.h"
 
 static const char text[] =
 	"segment seed=22 response=100us transition=1ms\n"

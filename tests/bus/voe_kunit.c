@@ -2,10 +2,10 @@
 /* VoE: messages sent, answered and sent unasked; beside the cycle, and beside CoE. */
 #include "req.h"
 #include "devices/sim/app.h"
-#include "master/coe.h"
-#include "master/ioctl.h"
-#include "master/mailbox.h"
-#include "master/voe.h"
+#include "master/mailbox/coe.h"
+#include "master/boundary/ioctl.h"
+#include "master/mailbox/mailbox.h"
+#include "master/mailbox/voe.h"
 #include "master/wire/voe.h"
 
 #define TYPE	0x4321	/* of the answers of slave 0 */

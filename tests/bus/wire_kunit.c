@@ -5,8 +5,8 @@
  */
 #include <linux/kthread.h>
 #include "cyc.h"
-#include "master/coe.h"
-#include "master/ioctl.h"
+#include "master/mailbox/coe.h"
+#include "master/boundary/ioctl.h"
 
 #define AXES	100
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The cycle of an application in the kernel. It may run where nothing may sleep,
+ * so the lock of a process' cycle is not for it: the links are entered or the
+ * call says why not. Deactivation waits for who has entered them.
+ */
+#include <linux/sched.h>
+#include "api.h"
+#include "../link/device.h"
+
+/* May @ops be used here? */
+static bool place_is_right(const struct ecdev_ops *ops)
+{
+	if (ops->atomic)
+		return true;
+	if (IS_ENABLED(CONFIG_PREEMPT_RT))
+		return preemptible();
+	return !in_hardirq() && !irqs_disabled();
+}
+
+static void leave_to_work(struct ec_master *m)
+{
+	queue_work(m->service, &m->api->work);
+}
+
+/*
+ * Enter the links of an active session. On failure nothing is entered: -EINVAL not
+ * active, -ENODEV, -EWOULDBLOCK the device needs a thread, -EBUSY, -EAGAIN.
+ */
+static int enter(struct ec_master *m, struct ec_session **s)
+{
+	const struct ecdev *dev;
+	struct ec_api *api;
+	int ret;
+
+	if (!m)
+		return -EINVAL;
+	api = m->api;
+	*s = smp_load_acquire(&api->active);
+	if (!*s)
+		return -EINVAL;
+	/* without a device the links need not be had back */
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	ret = ec_cycle_try_enter(m);
+	if (ret) {
+		if (ret == -EAGAIN)
+			leave_to_work(m);
+		return ret;
+	}
+	dev = READ_ONCE(m->link[0].dev);
+	if (!dev)
+		ret = -ENODEV;
+	else if (READ_ONCE(m->active) != *s)
+		ret = -EINVAL;
+	else if (!place_is_right(dev->ops))
+		ret = -EWOULDBLOCK;
+	if (!ret)
+		return 0;
+	ec_cycle_leave(m);
+	if (ret == -EWOULDBLOCK && !READ_ONCE(api->atomic)) {
+		WRITE_ONCE(api->atomic, true);
+		leave_to_work(m);
+	}
+	return ret;
+}
+
+/**
+ * ec_api_work() - what a cyclic call could not do itself
+ * @work: of the application
+ *
+ * Gives the links back to its cycle after a stall, tells that a call came from the
+ * wrong place, tries failed slaves again.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_api_work(struct work_struct *work)
+{
+	struct ec_api *api = container_of(work, struct ec_api, work);
+	struct ec_master *m = api->file.master;
+
+	mutex_lock(&m->cyclic_lock);
+	if (m->active && m->active->owner == &api->file && READ_ONCE(m->link[0].dev))
+		ec_cycle_own(m, EC_OWNER_CYCLE);
+	mutex_unlock(&m->cyclic_lock);
+	if (READ_ONCE(api->atomic) && !api->told) {
+		api->told = true;
+		ec_err(m, "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
+	}
+	if (xchg(&api->reset, false))
+		ec_ioc_reset(&api->file, NULL);
+}
+
+int ecrt_master_receive(ec_master_t *master)
+{
+	struct ec_session *s;
+	int ret = enter(master, &s);
+
+	if (ret == -ENODEV)
+		/* what an application finds that does not look at this */
+		master->api->received = ~0ULL;
+	if (ret)
+		return ret;
+	if (ec_api_is_between(master->api)) {
+		/* for those who wait; process data belong to the cycle */
+		ec_link_poll(&master->link[0]);
+	} else {
+		master->api->received |= master->api->sent;
+		master->api->sent = 0;
+		ret = ec_cycle_do_receive(s);
+	}
+	ec_cycle_leave(master);
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_receive);
+
+int ecrt_master_send(ec_master_t *master)
+{
+	struct ec_ioc_send *next;
+	struct ec_session *s;
+	int ret = enter(master, &s);
+
+	if (ret)
+		return ret;
+	next = &master->api->next;
+	ret = ec_cycle_told(s, next) ?: ec_cycle_do_send(s, next);
+	master->api->sent |= next->queued;
+	next->queued = 0;
+	next->flags = 0;
+	ec_cycle_leave(master);
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_send);
+
+int ecrt_master_send_ext(ec_master_t *master)
+{
+	struct ec_session *s;
+	int ret = enter(master, &s);
+
+	if (ret)
+		return ret == -EBUSY ? -EAGAIN : ret;
+	ec_cycle_send_between(master);
+	ec_cycle_leave(master);
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_send_ext);
+
+int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
+{
+	struct ec_api *api;
+
+	if (!master)
+		return -EINVAL;
+	api = master->api;
+	if (!READ_ONCE(api->reserved))
+		return -EPERM;
+	api->app_time = app_time;
+	if (READ_ONCE(api->active)) {
+		api->next.app_time = app_time;
+		api->next.flags |= EC_SEND_FLAG_APP_TIME;
+	} else if (!READ_ONCE(master->heir)) {
+		/*
+		 * Before activation there is no cycle it could go with. An heir can only
+		 * be this application: the cycle that runs has its own time then.
+		 */
+		ec_dc_app_time(master, app_time, ktime_get_ns());
+	}
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_application_time);

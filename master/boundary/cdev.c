@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/mm.h>
+#include <linux/module.h>
+#include <linux/poll.h>
+#include <linux/slab.h>
+#include "cdev.h"
+#include "../wire/compat.h"
+#include "../cycle/cycle_thread.h"
+#include "../master.h"
+#include "../session/session.h"
+
+static struct class *ec_class;
+static dev_t first_dev;
+
+/**
+ * ec_file_init() - prepare an open file
+ * @f: file, zeroed
+ * @m: its master
+ * @writable: opened for writing
+ *
+ * Context: Any.
+ */
+void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable)
+{
+	f->master = m;
+	f->writable = writable;
+	raw_spin_lock_init(&f->lock);
+	ec_waiters_init(&f->waiters);
+}
+
+static int ec_open(struct inode *inode, struct file *filp)
+{
+	struct ec_master *m = container_of(inode->i_cdev, struct ec_master, cdev);
+	struct ec_file *f = kzalloc(sizeof(*f), GFP_KERNEL_ACCOUNT);
+
+	if (!f)
+		return -ENOMEM;
+	get_device(&m->dev);
+	ec_file_init(f, m, filp->f_mode & FMODE_WRITE);
+	filp->private_data = f;
+	return nonseekable_open(inode, filp);
+}
+
+/* The only place that surely runs when a process dies. */
+static int ec_release(struct inode *inode, struct file *filp)
+{
+	struct ec_file *f = filp->private_data;
+	struct ec_master *m = f->master;
+
+	/* who may only look has reserved nothing, and takes no lock */
+	if (f->writable)
+		ec_session_end(m, f);
+	put_device(&m->dev);
+	kfree_rcu(f, rcu);
+	return 0;
+}
+
+static void vma_open(struct vm_area_struct *vma)
+{
+	ec_shared_get(vma->vm_private_data);
+}
+
+static void vma_close(struct vm_area_struct *vma)
+{
+	ec_shared_put(vma->vm_private_data);
+}
+
+static const struct vm_operations_struct vm_ops = {
+	.open = vma_open,
+	.close = vma_close,
+};
+
+static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
+{
+	u64 offset = (u64)vma->vm_pgoff << PAGE_SHIFT;
+	size_t len = vma->vm_end - vma->vm_start;
+	int ret;
+
+	if (offset == EC_MMAP_IMAGE) {
+		/* the image of a cycle the kernel runs is the kernel's */
+		if (!sh->image || sh->exchange || len > sh->image_size)
+			return -EINVAL;
+		ret = ec_shared_map(vma, sh->image);
+	} else if (offset == EC_MMAP_EXCHANGE) {
+		if (!sh->exchange || len > sh->exchange_size)
+			return -EINVAL;
+		ret = ec_shared_map(vma, sh->exchange);
+	} else if (offset == EC_MMAP_STATUS) {
+		if (vma->vm_flags & VM_WRITE)
+			return -EPERM;
+		if (len > EC_STATUS_BYTES)
+			return -EINVAL;
+		ret = ec_shared_map(vma, sh->status);
+		if (!ret)
+			ec_vma_flags(vma, 0, VM_MAYWRITE);
+	} else if (offset == EC_MMAP_REQUESTS) {
+		if (!sh->requests || len > sh->request_size)
+			return -EINVAL;
+		ret = ec_shared_map(vma, sh->requests);
+	} else {
+		return -EINVAL;
+	}
+	if (ret)
+		return ret;
+	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, VM_MAYEXEC);
+	ec_shared_get(sh);
+	vma->vm_private_data = sh;
+	vma->vm_ops = &vm_ops;
+	return 0;
+}
+
+static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
+{
+	struct ec_file *f = filp->private_data;
+	struct ec_master *m = f->master;
+	int ret = -EPERM;
+
+	if (!(vma->vm_flags & VM_MAYSHARE))
+		return -EINVAL;
+	if (vma->vm_flags & VM_EXEC || !f->writable)
+		return -EPERM;
+	mutex_lock(&m->session_lock);
+	if (m->session && m->session->owner == f && m->session->active)
+		ret = map_shared(m->session->shared, vma);
+	mutex_unlock(&m->session_lock);
+	return ret;
+}
+
+/**
+ * ec_file_poll() - new inputs of a cycle that the kernel runs
+ * @f: open file
+ * @filp: the same as the kernel knows it
+ * @wait: argument of poll()
+ *
+ * Takes no lock of the master: a caller that is preempted here delays nobody.
+ *
+ * Context: Process. May sleep to add an entry to the wait queue.
+ * Return: as ec_cycle_thread_poll() for the owner of the cycle; EPOLLERR for every
+ * other file, and when too many wait already.
+ */
+__poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait)
+{
+	return ec_waiters_poll(&f->waiters, filp, wait) ?
+	       ec_cycle_thread_poll(f->master, f) : EPOLLERR;
+}
+
+static __poll_t ec_poll(struct file *filp, poll_table *wait)
+{
+	return ec_file_poll(filp->private_data, filp, wait);
+}
+
+static const struct file_operations ec_fops = {
+	.owner = THIS_MODULE,
+	.open = ec_open,
+	.release = ec_release,
+	.mmap = ec_mmap,
+	.poll = ec_poll,
+	.unlocked_ioctl = ec_ioctl,
+	.compat_ioctl = compat_ptr_ioctl,
+};
+
+static void dev_release(struct device *dev)
+{
+	kvfree(container_of(dev, struct ec_master, dev));
+}
+
+/* Everybody may look: a read-only file makes no traffic and changes nothing. */
+static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
+{
+	if (mode)
+		*mode = 0664;
+	return NULL;
+}
+
+/**
+ * ec_cdev_init() - make the character device of a master
+ * @m: master
+ *
+ * From now on ec_cdev_put() frees the master.
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno; on failure nothing is left and the caller frees.
+ */
+int ec_cdev_init(struct ec_master *m)
+{
+	int ret;
+
+	device_initialize(&m->dev);
+	m->dev.class = ec_class;
+	m->dev.devt = first_dev + m->index;
+	m->dev.release = dev_release;
+	ret = dev_set_name(&m->dev, "EtherCAT%u", m->index);
+	if (ret)
+		goto err;
+	cdev_init(&m->cdev, &ec_fops);
+	m->cdev.owner = THIS_MODULE;
+	ret = cdev_device_add(&m->cdev, &m->dev);
+	if (ret)
+		goto err;
+	return 0;
+err:
+	/* the caller frees the master itself */
+	m->dev.release = NULL;
+	kfree_const(m->dev.kobj.name);
+	return ret;
+}
+
+void ec_cdev_exit(struct ec_master *m)
+{
+	cdev_device_del(&m->cdev, &m->dev);
+}
+
+void ec_cdev_put(struct ec_master *m)
+{
+	put_device(&m->dev);
+}
+
+int ec_cdev_class_init(void)
+{
+	int ret = alloc_chrdev_region(&first_dev, 0, EC_MAX_MASTERS, "EtherCAT");
+
+	if (ret)
+		return ret;
+	ec_class = ec_class_create("EtherCAT");
+	if (IS_ERR(ec_class)) {
+		unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
+		return PTR_ERR(ec_class);
+	}
+	ec_class->devnode = devnode;
+	return 0;
+}
+
+void ec_cdev_class_exit(void)
+{
+	class_destroy(ec_class);
+	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
+}

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The character device /dev/EtherCAT<n>. */
+#ifndef EC_CDEV_H
+#define EC_CDEV_H
+
+#include <linux/fs.h>
+#include <linux/spinlock.h>
+#include <linux/poll.h>
+#include <linux/rcupdate.h>
+#include "ethercat.h"
+#include "../cycle/waiters.h"
+
+struct ec_master;
+struct ec_session;
+
+/**
+ * struct ec_file - one open file
+ * @master: with a reference to its device
+ * @writable: opened for writing
+ * @reason: text of the last failure, under @lock
+ * @lock: protects @reason
+ * @waiters: callers that wait for a cycle
+ * @rcu: frees it; the cycle thread may still look at @waiters
+ */
+struct ec_file {
+	struct ec_master *master;
+	bool writable;
+	raw_spinlock_t lock;
+	char reason[EC_UAPI_REASON];
+	struct ec_waiters waiters;
+	struct rcu_head rcu;
+};
+
+void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable);
+__poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait);
+
+int ec_cdev_class_init(void);
+void ec_cdev_class_exit(void);
+int ec_cdev_init(struct ec_master *m);
+void ec_cdev_exit(struct ec_master *m);
+void ec_cdev_put(struct ec_master *m);
+
+long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);
+int ec_refuse(struct ec_file *f, int err, const char *fmt, ...) __printf(3, 4);
+
+#endif

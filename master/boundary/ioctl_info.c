@@ -1,0 +1,501 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands that tell what the master knows; they cause no bus traffic. */
+#include <linux/etherdevice.h>
+#include <linux/rcupdate.h>
+#include <linux/slab.h>
+#include <linux/uaccess.h>
+#include "../config/config.h"
+#include "../link/device.h"
+#include "../cycle/domain.h"
+#include "ioctl.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "../session/session.h"
+#include "../bus/slave.h"
+#include "../config/why.h"
+
+#ifndef EC_RELEASE
+#define EC_RELEASE "0.1.0"
+#endif
+
+#define WALK	64	/* slaves to look at without a pause */
+
+/**
+ * ec_ioc_get_slave() - the slave a command names
+ * @f: open file
+ * @position: ring position
+ * @ret: -ENOENT when there is none
+ *
+ * Context: Process. May sleep.
+ * Return: slave with a reference, or NULL with the reason noted.
+ */
+struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret)
+{
+	struct ec_master *m = f->master;
+	struct ec_slave *s = NULL;
+
+	*ret = ec_show_begin(m);
+	if (*ret)
+		return NULL;
+	if (position < m->n_slaves)
+		s = ec_slave_ref(m->slaves[position]);
+	ec_show_end(m);
+	if (!s)
+		*ret = ec_refuse(f, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
+				 position, m->n_slaves);
+	return s;
+}
+
+int ec_ioc_version(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_version *v = arg;
+
+	v->abi = EC_UAPI_VERSION;
+	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
+		      EC_FEATURE_SOE | EC_FEATURE_VOE;
+	v->master_count = ec_master_count();
+	v->ecrt = 0x0106;
+	strscpy(v->release, EC_RELEASE, sizeof(v->release));
+	return 0;
+}
+
+int ec_ioc_reason(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_reason *r = arg;
+
+	raw_spin_lock(&f->lock);
+	strscpy(r->text, f->reason, sizeof(r->text));
+	raw_spin_unlock(&f->lock);
+	r->len = strlen(r->text);
+	return 0;
+}
+
+static void device_info(struct ec_link *link, struct ec_ioc_device *d)
+{
+	struct ecdev *dev;
+
+	rcu_read_lock();
+	dev = READ_ONCE(link->dev);
+	d->state = dev ? EC_DEVICE_ATTACHED : EC_DEVICE_WAITING;
+	if (dev) {
+		ether_addr_copy(d->address, dev->mac);
+		strscpy(d->name, dev->name, sizeof(d->name));
+	} else {
+		strscpy(d->name, link->master->spec[link->side] ?: "", sizeof(d->name));
+	}
+	rcu_read_unlock();
+	d->link_up = link->up;
+	d->slaves = READ_ONCE(link->slaves);
+	d->al_states = READ_ONCE(link->al_states);
+	d->tx_frames = atomic64_read(&link->stats.tx_frames);
+	d->tx_bytes = atomic64_read(&link->stats.tx_bytes);
+	d->rx_frames = atomic64_read(&link->stats.rx_frames);
+	d->rx_bytes = atomic64_read(&link->stats.rx_bytes);
+	d->tx_errors = atomic64_read(&link->stats.tx_errors);
+	d->lost = atomic64_read(&link->stats.lost);
+	d->late = atomic64_read(&link->stats.late);
+	d->unmatched = atomic64_read(&link->stats.unmatched);
+	d->foreign = atomic64_read(&link->stats.foreign);
+	memcpy(d->tx_frame_rate, link->rates.rate[0], sizeof(d->tx_frame_rate));
+	memcpy(d->rx_frame_rate, link->rates.rate[1], sizeof(d->rx_frame_rate));
+	memcpy(d->tx_byte_rate, link->rates.rate[2], sizeof(d->tx_byte_rate));
+	memcpy(d->rx_byte_rate, link->rates.rate[3], sizeof(d->rx_byte_rate));
+	memcpy(d->loss_rate, link->rates.rate[4], sizeof(d->loss_rate));
+}
+
+static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)
+{
+	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_wire *w = READ_ONCE(s->master->dc.begun) ? &c->clocked : &c->plain;
+
+	i->cycle_interval_us = READ_ONCE(s->master->interval_us);
+	i->cycle_datagrams = c->n_dgrams;
+	i->cycle_frames = w->frames;
+	i->cycle_wire_ns = w->ns;
+	i->sent_frames = READ_ONCE(c->last.frames);
+	i->sent_wire_ns = READ_ONCE(c->last.ns);
+	i->acyclic_slack_ns = ec_cycle_slack_ns(s->master);
+	i->acyclic_need_ns = ec_cycle_need_ns();
+	i->late_per_s = s->master->late_per_s;
+	i->late_cycles = READ_ONCE(s->master->late_cycles);
+}
+
+/* What the session adds. */
+static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
+{
+	const struct ec_status *st;
+
+	i->active = s->active;
+	i->session = !s->owner ? EC_SESSION_DETACHED :
+		     s->active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
+	i->config_count = s->n_configs;
+	i->domain_count = s->n_domains;
+	if (!s->active)
+		return;
+	cycle_info(s, i);
+	st = s->shared->status;
+	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));
+	i->cycle_lock = READ_ONCE(st->kernel.lock);
+	i->lock_losses = READ_ONCE(st->kernel.lock_losses);
+	i->phase_error = READ_ONCE(st->kernel.phase_error);
+	i->rate_ppb = READ_ONCE(st->kernel.rate_ppb);
+}
+
+int ec_ioc_master(struct ec_file *f, void *arg)
+{
+	struct ec_master *m = f->master;
+	struct ec_ioc_master *i = arg;
+	unsigned int l;
+	int ret;
+
+	i->index = m->index;
+	i->slave_count = m->n_slaves;
+	i->slaves_responding = m->slaves_responding;
+	i->al_states = m->al_states;
+	i->scan_busy = ec_master_scan_busy(m);
+	ec_master_scan_progress(m, &i->scan_index, &i->scan_slaves);
+	i->scan_count = READ_ONCE(m->scan_count);
+	i->debug_level = m->debug;
+	i->app_time = ec_read64(&m->dc.app_time);
+	i->scan_us = m->scan_us;
+	i->scan_frames = m->scan_frames;
+	i->acyclic_max = ec_share_max;
+	i->sii_bytes = atomic_long_read(&m->sii_bytes);
+	i->sii_limit = EC_MAX_SII_TOTAL;
+	ret = ec_show_begin(m);
+	if (ret)
+		return ret;
+	/* one that is gone has left its position to another slave */
+	i->ref_clock = m->dc.ref && !m->dc.ref->gone && READ_ONCE(m->dc.ref_station) ?
+		       m->dc.ref->position : -1;
+	if (m->session)
+		session_info(m->session, i);
+	ec_show_end(m);
+	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
+		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
+	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++) {
+		device_info(&m->link[l], &i->devices[l]);
+		i->not_captured += atomic64_read(&m->link[l].stats.not_captured);
+	}
+	i->device_count = l;
+	return 0;
+}
+
+/* Way to the neighbour at a port, where both have a clock. */
+static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int p)
+{
+	const struct ec_slave *next;
+
+	if (s->next[p] >= m->n_slaves)
+		return 0;
+	next = m->slaves[s->next[p]];
+	if (!(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
+		return 0;
+	return p == s->upstream ? s->dc_hop : next->dc_hop;
+}
+
+static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	unsigned int p;
+	int ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	for (p = 0; p < EC_UAPI_PORTS; p++) {
+		struct ec_ioc_port *port = &i->ports[p];
+
+		port->type = ec_slave_port_type(s, p);
+		port->link_up = !!(s->dl_status & EC_DLS_LINK(p));
+		port->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
+		port->signal = !!(s->dl_status & EC_DLS_COMM(p));
+		port->receive_time = s->recv[p];
+		port->next_slave = s->next[p];
+		port->delay_to_next_dc = way(m, s, p);
+	}
+	ec_show_end(m);
+	return 0;
+}
+
+/* The nearest slave at or before this one that has an alias. */
+static int find_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int k, ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	i->alias_group = 0;
+	i->alias_pos = s->position;
+	for (k = min_t(int, s->position, (int)m->n_slaves - 1); k >= 0; k--) {
+		if (m->slaves[k]->alias) {
+			i->alias_group = m->slaves[k]->alias;
+			i->alias_pos = s->position - k;
+			break;
+		}
+		ret = k % WALK ? 0 : ec_show_pause(m);
+		if (ret)
+			return ret;
+	}
+	ec_show_end(m);
+	return 0;
+}
+
+static int slave_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int ret;
+
+	do
+		ret = find_alias(m, s, i);
+	while (ret == -EAGAIN);
+	return ret;
+}
+
+static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	i->has_general = s->has_general;
+	i->coe_details = s->general.coe;
+	i->general_flags = s->general.flags;
+	i->foe_details = s->general.foe;
+	i->current_ma = s->general.current_ma;
+	strscpy(i->group, s->group, sizeof(i->group));
+	strscpy(i->image, s->image, sizeof(i->image));
+	strscpy(i->order, s->order, sizeof(i->order));
+	strscpy(i->name, s->name, sizeof(i->name));
+}
+
+/* The configuration that has the slave, or that expects another one in its place. */
+static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	const struct ec_config *c = NULL;
+	unsigned int from = 0;
+	int ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	while (m->session) {
+		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos, &from);
+		if (c || from >= m->session->n_configs)
+			break;
+		ret = ec_show_pause(m);
+		if (ret)
+			return ret;
+	}
+	i->config = c ? c->index + 1 : 0;
+	i->differs = c && ec_config_differs(c, s);
+	/* such a slave is used all the same, so it has no other text */
+	if (i->differs && !i->warning[0])
+		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
+	ec_show_end(m);
+	return 0;
+}
+
+static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+{
+	int ret;
+
+	do
+		ret = find_config(m, s, i);
+	while (ret == -EAGAIN);
+	return ret;
+}
+
+int ec_ioc_slave(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_slave *i = arg;
+	u16 feat;
+	int ret;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	feat = ec_slave_features(s);
+	i->station = s->station;
+	i->alias = s->alias;
+	i->al_status = s->al_status;
+	i->al_code = s->al_code;
+	i->al_requested = s->requested;
+	i->error = s->error;
+	i->vendor_id = s->info.vendor;
+	i->product_code = s->info.product;
+	i->revision_number = s->info.revision;
+	i->serial_number = s->info.serial;
+	i->boot_rx_offset = s->info.boot.rx_offset;
+	i->boot_rx_size = s->info.boot.rx_size;
+	i->boot_tx_offset = s->info.boot.tx_offset;
+	i->boot_tx_size = s->info.boot.tx_size;
+	i->std_rx_offset = s->info.std.rx_offset;
+	i->std_rx_size = s->info.std.rx_size;
+	i->std_tx_offset = s->info.std.tx_offset;
+	i->std_tx_size = s->info.std.tx_size;
+	i->mbox_protocols = s->info.protocols;
+	i->fmmu_bit = !(feat & EC_FEAT_NO_BIT_FMMU);
+	i->dc_supported = !(feat & EC_FEAT_DC) ? 0 : feat & EC_FEAT_DC64 ? 2 : 1;
+	i->dc_delay_only = READ_ONCE(s->dc_delay_only);
+	i->transmission_delay = s->dc_delay;
+	i->dc_offset = s->dc_offset;
+	i->dc_diff = s->dc_diff;
+	i->dc_set = s->dc_set;
+	i->dc_odd = i->dc_supported && (READ_ONCE(s->dc_odd) || READ_ONCE(s->topology_odd));
+	i->features = feat;
+	i->sm_count = s->n_sms;
+	i->fmmu_count = s->regs[EC_REG_FMMUS];
+	i->dl_status = s->dl_status;
+	i->sii_words = s->sii_bytes / 2;
+	slave_general(s, i);
+	strscpy(i->why, s->why, sizeof(i->why));
+	strscpy(i->warning, s->warning[0] ? s->warning : s->sii_flaw, sizeof(i->warning));
+	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i) ?:
+	      slave_config(f->master, s, i);
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_sm(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sm *i = arg;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	if (i->sm >= s->n_sms) {
+		ret = ec_refuse(f, -EINVAL, "slave %u has %u SyncManagers, not %u", i->position,
+				s->n_sms, i->sm + 1);
+	} else {
+		i->start = s->sms[i->sm].start;
+		i->default_size = s->sms[i->sm].len;
+		i->control = s->sms[i->sm].control;
+		i->enable = s->sms[i->sm].enable;
+		i->type = s->sms[i->sm].type;
+		i->pdo_count = READ_ONCE(s->sm_pdos[i->sm].n);
+	}
+	ec_slave_unref(s);
+	return ret;
+}
+
+/* Without a name in the EEPROM that of the object dictionary is in @buf. */
+static void name(const struct ec_slave *s, u8 index, char *buf)
+{
+	if (index && ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+		buf[0] = '\0';
+}
+
+static const struct ec_pdo *get_pdo(struct ec_file *f, const struct ec_slave *s, u8 sm, u16 pos,
+				    int *ret)
+{
+	if (sm >= s->n_sms || pos >= s->sm_pdos[sm].n) {
+		*ret = ec_refuse(f, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
+				 sm);
+		return NULL;
+	}
+	return &s->sm_pdos[sm].pdos[pos];
+}
+
+int ec_ioc_pdo(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_pdo *i = arg;
+	const struct ec_pdo *p;
+	u8 string = 0;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	i->name[0] = '\0';
+	ret = ec_show_begin(f->master);
+	if (ret)
+		goto out;
+	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	if (p) {
+		i->index = p->index;
+		i->entry_count = p->n_entries;
+		string = p->name;
+		if (!string)
+			strscpy(i->name, ec_names_find(s, p->index, EC_NAME_OBJECT),
+				sizeof(i->name));
+	}
+	ec_show_end(f->master);
+	name(s, string, i->name);
+out:
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_pdo_entry *i = arg;
+	const struct ec_pdo *p;
+	u8 string = 0;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	i->name[0] = '\0';
+	ret = ec_show_begin(f->master);
+	if (ret)
+		goto out;
+	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	if (p && i->entry_pos >= p->n_entries) {
+		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
+				p->n_entries, i->entry_pos + 1);
+	} else if (p) {
+		const struct ec_pdo_entry *e = &p->entries[i->entry_pos];
+
+		i->index = e->index;
+		i->subindex = e->sub;
+		i->bits = e->bits;
+		string = e->name;
+		if (!string)
+			strscpy(i->name, ec_names_find(s, e->index, e->sub), sizeof(i->name));
+	}
+	ec_show_end(f->master);
+	name(s, string, i->name);
+out:
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_sii(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sii *i = arg;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	if (i->offset >= s->sii_bytes) {
+		i->size = 0;
+	} else {
+		i->size = min_t(u32, i->size, s->sii_bytes - i->offset);
+		if (copy_to_user(u64_to_user_ptr(i->data), s->sii + i->offset, i->size))
+			ret = -EFAULT;
+	}
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_cycle_stats *i = arg;
+	struct ec_master *m = f->master;
+	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL_ACCOUNT);
+	int ret;
+
+	if (!st)
+		return -ENOMEM;
+	ret = ec_show_begin(m);
+	if (!ret) {
+		ec_late_get(m, i, st);
+		ec_show_end(m);
+	}
+	i->size = min_t(u32, i->size, sizeof(*st));
+	return ec_ioc_hand_over(i->data, st, i->size, ret);
+}
+
+int ec_ioc_cycle_reset(struct ec_file *f, void *arg)
+{
+	mutex_lock(&f->master->session_lock);
+	ec_late_reset(f->master);
+	mutex_unlock(&f->master->session_lock);
+	return 0;
+}

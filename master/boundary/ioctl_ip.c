@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Commands for IP parameters of slaves with EoE. */
+#include "../config/config.h"
+#include "../mailbox/eoe.h"
+#include "ioctl.h"
+#include "../master.h"
+#include "../session/session.h"
+#include "../bus/slave.h"
+
+static_assert(EC_IP_ALL == EC_EOE_ALL && EC_IP_NAME == EC_EOE_NAME);
+
+static void from_user(struct ec_eoe_ip *p, const struct ec_ip_params *u)
+{
+	p->which = u->which;
+	memcpy(p->mac, u->mac, sizeof(p->mac));
+	memcpy(p->ip, u->ip, sizeof(p->ip));
+	memcpy(p->mask, u->mask, sizeof(p->mask));
+	memcpy(p->gateway, u->gateway, sizeof(p->gateway));
+	memcpy(p->dns, u->dns, sizeof(p->dns));
+	memcpy(p->name, u->name, sizeof(p->name));
+}
+
+static void to_user(struct ec_ip_params *u, const struct ec_eoe_ip *p)
+{
+	u->which = p->which;
+	memcpy(u->mac, p->mac, sizeof(u->mac));
+	memcpy(u->ip, p->ip, sizeof(u->ip));
+	memcpy(u->mask, p->mask, sizeof(u->mask));
+	memcpy(u->gateway, p->gateway, sizeof(u->gateway));
+	memcpy(u->dns, p->dns, sizeof(u->dns));
+	memcpy(u->name, p->name, sizeof(u->name));
+}
+
+static int check_params(struct ec_file *f, const struct ec_ip_params *u)
+{
+	if (!u->which || u->which & ~EC_IP_ALL)
+		return ec_refuse(f, -EINVAL, "IP parameters 0x%x; name at least one, of 0x%x",
+				 u->which, EC_IP_ALL);
+	return 0;
+}
+
+static int failed(struct ec_file *f, const struct ec_ioc_ip *i, int ret)
+{
+	switch (ret) {
+	case -EREMOTEIO:
+		return ec_refuse(f, -EIO, "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
+				 i->result, ec_eoe_result_text(i->result));
+	case -EMSGSIZE:
+		return ec_refuse(f, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
+				 i->position);
+	default:
+		return ec_ioc_mbox_failed(f, ret, i->position, "EoE", "IP parameters");
+	}
+}
+
+int ec_ioc_ip_set(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_ip *i = arg;
+	struct ec_eoe_ip p;
+	int ret = check_params(f, &i->params);
+	struct ec_slave *s;
+
+	if (ret)
+		return ret;
+	s = ec_ioc_get_slave(f, i->position, &ret);
+	if (!s)
+		return ret;
+	from_user(&p, &i->params);
+	ret = failed(f, i, ec_eoe_set_ip(s, &p, &i->result));
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_ip_get(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_ip *i = arg;
+	struct ec_eoe_ip p;
+	int ret = 0;
+	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+
+	if (!s)
+		return ret;
+	ret = failed(f, i, ec_eoe_get_ip(s, &p, &i->result));
+	if (!ret)
+		to_user(&i->params, &p);
+	ec_slave_unref(s);
+	return ret;
+}
+
+int ec_ioc_sc_ip(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_ip *i = arg;
+	struct ec_eoe_ip p;
+	int ret = 0;
+	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	ret = check_params(f, &i->params);
+	from_user(&p, &i->params);
+	if (!ret)
+		ec_config_ip(c, &p);
+	ec_session_unlock(f->master);
+	return ret;
+}
+
+int ec_ioc_config_ip(struct ec_file *f, void *arg)
+{
+	struct ec_ioc_sc_ip *i = arg;
+	int ret = 0;
+	struct ec_config *c = ec_ioc_show_config(f, i->config, &ret);
+
+	if (!c)
+		return ret;
+	to_user(&i->params, &c->ip);
+	ec_show_end(f->master);
+	return 0;
+}

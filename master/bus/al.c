@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include "../master.h"
+#include "slave.h"
+#include "../link/xfer.h"
+
+/**
+ * ec_al_read() - read AL status and code, registers 0x0130-0x0135
+ * @slave: slave
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -EIO when the slave did not answer, or as ec_xfer().
+ */
+int ec_al_read(struct ec_slave *slave)
+{
+	u8 b[6];
+	int ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
+
+	if (!ret) {
+		WRITE_ONCE(slave->al_status, get_unaligned_le16(b));
+		WRITE_ONCE(slave->al_code, get_unaligned_le16(b + 4));
+		WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
+	}
+	return ret;
+}
+
+/* Register 0x0120: a slave that has not read the last request takes none. */
+static int request(struct ec_slave *slave, u16 control, u64 until_ns)
+{
+	u8 b[2];
+	int ret;
+
+	put_unaligned_le16(control, b);
+	for (;;) {
+		ret = ec_xfer_fpwr(slave->master, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
+		if (ret != -EIO || slave->gone)
+			return ret;
+		if (ktime_get_ns() > until_ns)
+			return -ETIME;
+		if (slave->master->stopping || READ_ONCE(slave->interrupt))
+			return -ECANCELED;
+		usleep_range(500, 1000);
+	}
+}
+
+/* Poll until @mask of the status has @value or an error appears. */
+static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 until_ns)
+{
+	unsigned int wait_us = 50;
+	int ret;
+
+	for (;;) {
+		ret = ec_al_read(slave);
+		if (ret && ret != -ETIMEDOUT)
+			return ret;
+		if (!ret) {
+			if ((slave->al_status & mask) == value)
+				return 0;
+			if (errors && slave->al_status & EC_AL_ERROR)
+				return -EPROTO;
+		}
+		if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt))
+			return -ECANCELED;
+		if (ktime_get_ns() > until_ns)
+			return -ETIME;
+		usleep_range(wait_us, wait_us + wait_us / 4);
+		wait_us = min(wait_us * 2, 2000u);
+	}
+}
+
+/**
+ * ec_al_ack() - acknowledge the error indication
+ * @slave: slave whose AL status was just read
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -ETIME when the slave keeps it, or as ec_al_set().
+ */
+int ec_al_ack(struct ec_slave *slave)
+{
+	u64 until = ktime_get_ns() + 1000 * NSEC_PER_MSEC;
+	u16 state = slave->al_status & EC_AL_STATE_MASK;
+	int ret;
+
+	/* with device emulation the acknowledge would come back as an error */
+	ret = request(slave, slave->emulation ? state : state | EC_AL_ERROR, until);
+	return ret ? ret : poll(slave, EC_AL_ERROR, 0, false, until);
+}
+
+/**
+ * ec_al_set() - bring a slave to a neighbouring AL state and wait for it
+ * @slave: slave
+ * @state: wanted state
+ * @timeout_ms: limit, 0: default of the transition
+ *
+ * ETG.1000.6 clause 6.4.1.
+ *
+ * Context: Process. Waits for bus traffic, at most @timeout_ms.
+ * Return: 0; -EPROTO when the slave refused (al_code says why; the error is
+ * acknowledged already); -ETIME; -EIO when it does not answer; -ECANCELED.
+ */
+int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
+{
+	u16 code;
+	u64 until;
+	int ret;
+
+	if (!timeout_ms)
+		timeout_ms = ec_al_timeout_ms(slave->al_status & EC_AL_STATE_MASK, state);
+	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
+	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
+		     ec_al_state_name(slave->al_status & EC_AL_STATE_MASK), timeout_ms);
+	ret = request(slave, state, until);
+	if (!ret)
+		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
+	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x", slave->al_status,
+			    slave->al_code);
+	if (ret == -EPROTO) {
+		code = slave->al_code;
+		ec_al_ack(slave);
+		slave->al_code = code;
+	}
+	return ret;
+}

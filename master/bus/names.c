@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Names of PDOs and entries from the object dictionary (SDO information, ETG.1000.6 clause
+ * 5.6.3). Asked for is only what the EEPROM has no name for, once, while no cycle runs.
+ */
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "../base/grow.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "names.h"
+#include "slave.h"
+#include "../wire/sdoinfo.h"
+
+#define LIMIT_MS	500	/* for all names of a slave; others wait for its worker */
+#define ANSWER_MS	100
+
+/* The name of an object or entry, or NULL: not asked for yet. */
+static const char *find(const struct ec_names *l, u16 index, u16 sub)
+{
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		if (l->v[i].index == index && l->v[i].sub == sub)
+			return l->v[i].text;
+	return NULL;
+}
+
+/**
+ * ec_names_find() - what the object dictionary calls an object or entry
+ * @s: slave
+ * @index: object
+ * @sub: subindex, or EC_NAME_OBJECT
+ *
+ * Context: After ec_show_begin(), or topo held.
+ * Return: name, perhaps empty.
+ */
+const char *ec_names_find(const struct ec_slave *s, u16 index, u16 sub)
+{
+	return find(&s->names, index, sub) ?: "";
+}
+
+struct answer {
+	struct ec_sdoinfo info;
+	u8 data[EC_MBOX_MAX];
+};
+
+static int rx(void *ctx, const u8 *buf, size_t len)
+{
+	struct answer *a = ctx;
+
+	return ec_sdoinfo_rx(&a->info, buf, len);
+}
+
+/* One description; 0, or -errno. */
+static int ask(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b)
+{
+	struct ec_mbox_ask ask = {
+		.type = EC_MBOX_COE, .first = true, .timeout_ms = ANSWER_MS, .rx = rx, .ctx = a,
+	};
+	int len = ec_sdoinfo_tx(&a->info, b->tx, s->info.std.rx_size - EC_MBOX_HDR);
+
+	return len < 0 ? len : ec_mbox_ask(s, &ask, b, len);
+}
+
+/* An entry of a simple object is called as the object. */
+static int read_name(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b, u16 index,
+		     u16 sub, char *text)
+{
+	struct ec_od_object o = { 0 };
+	struct ec_od_entry e = { 0 };
+	int ret;
+
+	text[0] = '\0';
+	if (sub != EC_NAME_OBJECT) {
+		ec_sdoinfo_init_entry(&a->info, index, sub, 0, a->data, sizeof(a->data));
+		ret = ask(s, a, b);
+		if (!ret && !ec_od_entry_decode(a->data, a->info.size, &e))
+			ec_sii_text(text, EC_UAPI_STRING, (const u8 *)e.name, e.name_len);
+		if (ret || text[0] || sub)
+			return ret;
+	}
+	ec_sdoinfo_init_object(&a->info, index, a->data, sizeof(a->data));
+	ret = ask(s, a, b);
+	if (!ret && !ec_od_object_decode(a->data, a->info.size, &o))
+		ec_sii_text(text, EC_UAPI_STRING, (const u8 *)o.name, o.name_len);
+	return ret;
+}
+
+static int add(struct ec_names *l, u16 index, u16 sub, const char *text)
+{
+	struct ec_od_name *v;
+
+	if (l->n >= EC_MAX_NAMES)
+		return -ENOSPC;
+	v = ec_grow(l->v, l->n, sizeof(*v));
+	if (!v)
+		return -ENOMEM;
+	l->v = v;
+	v[l->n] = (struct ec_od_name){ .index = index, .sub = sub };
+	strscpy(v[l->n++].text, text, sizeof(v->text));
+	return 0;
+}
+
+/* a PDO of the slave, @entry 0, or one of its entries */
+struct place {
+	unsigned int sm, pdo, entry;
+};
+
+/* The next one without a name, at @at or behind it; false: none. */
+static bool next_unknown(const struct ec_slave *s, const struct ec_names *l, struct place *at,
+			 u16 *index, u16 *sub)
+{
+	for (; at->sm < EC_MAX_SM; at->sm++, at->pdo = 0) {
+		const struct ec_pdo_list *pdos = &s->sm_pdos[at->sm];
+
+		for (; at->pdo < pdos->n; at->pdo++, at->entry = 0) {
+			const struct ec_pdo *p = &pdos->pdos[at->pdo];
+
+			for (; at->entry <= p->n_entries; at->entry++) {
+				const struct ec_pdo_entry *e = p->entries + at->entry - 1;
+
+				*index = at->entry ? e->index : p->index;
+				*sub = at->entry ? e->sub : EC_NAME_OBJECT;
+				if (*index && !(at->entry ? e->name : p->name) &&
+				    !find(l, *index, *sub))
+					return true;
+			}
+		}
+	}
+	return false;
+}
+
+/**
+ * ec_names_pending() - is there anything to ask the slave for, and may it be asked?
+ * @s: slave whose PDOs are known, @lock held
+ *
+ * Never beside a cycle: nothing there depends on names.
+ *
+ * Context: Process.
+ * Return: whether ec_names_read() has something to do.
+ */
+bool ec_names_pending(const struct ec_slave *s)
+{
+	struct place at = { 0 };
+	u16 index, sub;
+
+	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
+	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->master->owner) == EC_OWNER_IDLE &&
+	       !ec_mbox_check(s, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
+	       next_unknown(s, &s->names, &at, &index, &sub);
+}
+
+/* @l takes the place of the slave's names. */
+static void publish(struct ec_slave *s, struct ec_names *l)
+{
+	struct ec_names old;
+
+	down_write(&s->master->topo);
+	ec_change_begin(s->master);
+	old = s->names;
+	s->names = *l;
+	ec_change_end(s->master);
+	up_write(&s->master->topo);
+	kvfree(old.v);
+}
+
+static int copy(struct ec_names *to, const struct ec_names *from)
+{
+	unsigned int i;
+	int ret = 0;
+
+	for (i = 0; i < from->n && !ret; i++)
+		ret = add(to, from->v[i].index, from->v[i].sub, from->v[i].text);
+	return ret;
+}
+
+/* Ask for one after the other, until all are known or the time is over. */
+static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
+		    struct ec_mbox_buf *b)
+{
+	u64 until = ktime_get_ns() + LIMIT_MS * (u64)NSEC_PER_MSEC;
+	char text[EC_UAPI_STRING];
+	struct place at = { 0 };
+	u16 index, sub;
+	int ret = 0;
+
+	while (!ret && next_unknown(s, l, &at, &index, &sub)) {
+		if (READ_ONCE(s->master->owner) != EC_OWNER_IDLE)
+			return -EAGAIN;
+		if (ktime_get_ns() > until)
+			return 0;
+		ret = read_name(s, a, b, index, sub, text);
+		/* refused: it has no name */
+		if (!ret || ret == -EIO)
+			ret = add(l, index, sub, text);
+	}
+	return ret;
+}
+
+/**
+ * ec_names_read() - ask the slave for the names its EEPROM does not have
+ * @s: slave that ec_names_pending() is true for, @lock held
+ *
+ * A slave that does not answer is not asked again.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ */
+void ec_names_read(struct ec_slave *s)
+{
+	struct ec_mbox_buf *b = kmalloc(sizeof(*b), GFP_KERNEL);
+	struct answer *a = kmalloc(sizeof(*a), GFP_KERNEL);
+	struct ec_names l = { 0 };
+	int ret = -ENOMEM;
+
+	lockdep_assert_held(&s->lock);
+	if (a && b && !copy(&l, &s->names))
+		ret = ec_mbox_lock(s, &s->sdo_lock, LIMIT_MS);
+	if (!ret) {
+		ret = read_all(s, &l, a, b);
+		up(&s->sdo_lock);
+		publish(s, &l);
+		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
+	} else {
+		kvfree(l.v);
+	}
+	kfree(a);
+	kfree(b);
+}
+
+/**
+ * ec_names_free() - free the names of a slave that is being freed
+ * @s: slave
+ *
+ * Context: Process.
+ */
+void ec_names_free(struct ec_slave *s)
+{
+	kvfree(s->names.v);
+	s->names = (struct ec_names){ 0 };
+}

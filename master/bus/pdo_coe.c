@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The PDOs a CoE slave uses at this moment, from its object dictionary. The
+ * EEPROM only has those it is delivered with.
+ */
+#include <linux/slab.h>
+#include "../mailbox/coe.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "slave.h"
+
+/* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */
+static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
+{
+	u8 b[4] = { 0 };
+	size_t got;
+	u32 abort;
+	int ret = ec_coe_upload(s, index, sub, false, b, sizeof(b), &got, &abort, NULL);
+
+	*value = get_unaligned_le32(b);
+	return ret == -EIO && abort ? -ENOENT : ret;
+}
+
+/* Objects 0x1600..., 0x1A00...: mapping (ETG.1000.6 clause 5.6.7.4.7) */
+static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo)
+{
+	u32 n, v;
+	unsigned int i;
+	int ret = upload(s, pdo->index, 0, &n);
+
+	if (!ret && n > 255)
+		return -EBADMSG;
+	for (i = 1; i <= n && !ret; i++) {
+		struct ec_pdo_entry e;
+
+		ret = upload(s, pdo->index, i, &v);
+		e = (struct ec_pdo_entry){ .index = v >> 16, .sub = v >> 8, .bits = v };
+		if (!ret)
+			ret = ec_pdo_add_entry(pdo, &e);
+	}
+	return ret;
+}
+
+/* Objects 0x1C10...: assignment (ETG.1000.6 clause 5.6.7.4.9) */
+static int read_assignment(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
+{
+	u32 n, index;
+	unsigned int i;
+	int ret = upload(s, 0x1c10 + sm, 0, &n);
+
+	if (!ret && n > 255)
+		return -EBADMSG;
+	for (i = 1; i <= n && !ret; i++) {
+		struct ec_pdo *p;
+
+		ret = upload(s, 0x1c10 + sm, i, &index);
+		if (ret)
+			break;
+		p = ec_pdo_add(l, index, 0);
+		ret = p ? read_mapping(s, p) : -ENOMEM;
+	}
+	ec_slave_name_pdos(s, l);
+	return ret;
+}
+
+/* PDOs that are not assigned any more can be assigned again: keep them. */
+static void keep_unassigned(struct ec_slave *s, struct ec_pdo_list *old)
+{
+	unsigned int i;
+
+	for (i = 0; i < old->n; i++) {
+		struct ec_pdo *p;
+
+		if (ec_slave_find_pdo(s, old->pdos[i].index))
+			continue;
+		p = ec_pdo_add(&s->free_pdos, old->pdos[i].index, old->pdos[i].name);
+		if (!p)
+			break;
+		p->entries = old->pdos[i].entries;
+		p->n_entries = old->pdos[i].n_entries;
+		old->pdos[i].entries = NULL;
+	}
+}
+
+static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
+{
+	struct ec_pdo_list old;
+
+	down_write(&s->master->topo);
+	ec_change_begin(s->master);
+	old = s->sm_pdos[sm];
+	s->sm_pdos[sm] = *l;
+	keep_unassigned(s, &old);
+	ec_change_end(s->master);
+	up_write(&s->master->topo);
+	ec_pdo_list_clear(&old);
+}
+
+/**
+ * ec_slave_read_sm_pdos() - read the PDOs of a SyncManager
+ * @s: slave in PREOP or higher with CoE, @lock held
+ * @sm: SyncManager
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -ENOENT when the slave refuses; -EBADMSG; -ENOMEM; or as ec_coe_upload().
+ */
+int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm)
+{
+	struct ec_pdo_list l = { 0 };
+	int ret;
+
+	lockdep_assert_held(&s->lock);
+	ret = read_assignment(s, sm, &l);
+	if (!ret)
+		replace(s, sm, &l);
+	else
+		ec_pdo_list_clear(&l);
+	return ret;
+}
+
+/**
+ * ec_slave_set_sm_pdos() - note the PDOs that were written to a slave
+ * @s: slave, @lock held
+ * @sm: SyncManager
+ * @l: its PDOs now, copied
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l)
+{
+	struct ec_pdo_list copy = { 0 };
+
+	lockdep_assert_held(&s->lock);
+	if (l == &s->sm_pdos[sm])
+		return;
+	if (ec_pdo_list_copy(&copy, l)) {
+		ec_pdo_list_clear(&copy);
+		return;
+	}
+	ec_slave_name_pdos(s, &copy);
+	replace(s, sm, &copy);
+}
+
+/**
+ * ec_slave_pdos_pending() - shall the PDOs be read over CoE?
+ * @s: slave
+ *
+ * Context: Any.
+ * Return: false also when that was done or is not possible now.
+ */
+bool ec_slave_pdos_pending(const struct ec_slave *s)
+{
+	u16 al = READ_ONCE(s->al_status);
+
+	return !READ_ONCE(s->pdos_known) && s->error == EC_SLAVE_OK && s->sii &&
+	       ec_slave_has_mailbox(s) && s->info.protocols & EC_SII_PROTO_COE &&
+	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
+}
+
+/**
+ * ec_slave_clear_warning() - forget what was not certain of a configuration
+ * @s: slave, @lock held
+ *
+ * That its PDOs could not be read stays visible until they can.
+ *
+ * Context: Process.
+ */
+void ec_slave_clear_warning(struct ec_slave *s)
+{
+	strscpy(s->warning, s->pdos_unread ?
+		"PDOs could not be read over CoE; those of the EEPROM are used" : "",
+		sizeof(s->warning));
+}
+
+/**
+ * ec_slave_read_coe_pdos() - read which PDOs the slave uses, once
+ * @s: slave in PREOP or higher with CoE, @lock held
+ *
+ * SyncManagers whose objects the slave does not have keep the PDOs of the
+ * EEPROM.
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_slave_read_coe_pdos(struct ec_slave *s)
+{
+	char why[96];
+	unsigned int sm;
+	int ret = 0;
+
+	for (sm = 2; sm < s->n_sms && !s->gone; sm++) {
+		ret = ec_slave_read_sm_pdos(s, sm);
+		if (ret && ret != -ENOENT)
+			break;
+	}
+	if (ret == -ECANCELED || ret == -EINTR)
+		return;
+	s->pdos_unread = ret && ret != -ENOENT;
+	ec_slave_clear_warning(s);
+	if (s->pdos_unread)
+		ec_slave_warn(s, "%s (%s)\n", s->warning,
+			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	WRITE_ONCE(s->names_done, false);
+	WRITE_ONCE(s->pdos_known, true);
+}

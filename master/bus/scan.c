@@ -1,0 +1,527 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Finding the slaves: addresses, identity, EEPROM, topology; all in lockstep. */
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../master.h"
+#include "../base/once64.h"
+#include "slave.h"
+#include "../link/xfer.h"
+
+#define LOST_LINES	16	/* in the log, per scan */
+
+/* registers read from every slave in each scan */
+struct regs {
+	u8 info[EC_INFO_SIZE];
+	u8 station[4];		/* 0x0010 station, 0x0012 alias */
+	u8 dl[2];
+	u8 al[6];
+	u8 recv[16];
+	u8 delay[4];
+	bool delay_only;
+	bool there;		/* it answered when its address was read */
+};
+
+struct scan {
+	struct ec_master *m;
+	unsigned int n;
+	struct ec_slave **slaves;
+	struct regs *regs;
+	struct ec_dg *dg;
+	u8 (*addr)[2];
+	struct ec_slave **known;	/* slaves of the last scan by station address */
+	u8 *claims;			/* slaves that have the address now, up to 2 */
+	bool changed;	/* other slaves than before */
+	bool fresh;	/* no slave was known before: broadcasts are allowed */
+};
+
+static void bwr(struct ec_master *m, u16 ado, const void *data, u16 len)
+{
+	ec_xfer_one(m, EC_CMD_BWR, 0, ado, (void *)data, len);
+}
+
+/* ETG.1500 start-up sequence; only when nobody is in operation */
+static void reset_bus(struct ec_master *m)
+{
+	static const u8 zero[256];
+	static const u8 init[2] = { EC_AL_INIT, 0 };
+
+	bwr(m, EC_REG_DL_LOOPS, zero, 1);
+	bwr(m, EC_REG_AL_CONTROL, init, 2);
+	bwr(m, EC_REG_ECAT_MASK, zero, 2);
+	bwr(m, EC_REG_FMMU(0), zero, 256);
+	bwr(m, EC_REG_SM(0), zero, 128);
+	bwr(m, EC_REG_DC_ACTIVATION, zero, 1);
+	bwr(m, EC_REG_DL_ALIAS, zero, 1);
+}
+
+/* Read @len bytes at @ado of all slaves by position into regs + @ofs. */
+static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
+						(u8 *)&sc->regs[i] + ofs);
+	return ec_xfer(sc->m, sc->dg, sc->n);
+}
+
+/* Addresses of all; a slave that does not answer may be a known one that fell silent. */
+static int read_stations(struct scan *sc)
+{
+	unsigned int i;
+	int ret = read_all(sc, EC_REG_STATION, offsetof(struct regs, station), 4);
+
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].there = sc->dg[i].wkc == 1;
+	return ret;
+}
+
+static int index_known(struct scan *sc)
+{
+	unsigned int i;
+
+	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
+	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
+	if (!sc->known || !sc->claims)
+		return -ENOMEM;
+	for (i = 0; i < sc->m->n_slaves; i++)
+		sc->known[sc->m->slaves[i]->station] = sc->m->slaves[i];
+	return 0;
+}
+
+/**
+ * ec_scan_station() - find a station address that no slave has
+ * @last: address found last
+ * @known: slaves of the last scan by address
+ * @claims: for each address, how many slaves have it now
+ *
+ * Context: Any.
+ * Return: the address, or 0 when all are in use.
+ */
+u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
+{
+	u32 i;
+
+	for (i = 0; i <= EC_MAX_SLAVES; i++)
+		if (++last && !known[last] && !claims[last])
+			return last;
+	return 0;
+}
+
+/**
+ * ec_scan_limit() - how many slaves a scan takes on
+ *
+ * Whatever a broken or hostile slave does to a frame, it makes the master allocate no
+ * more than a part of the memory of the machine.
+ *
+ * Context: Any.
+ * Return: slaves.
+ */
+unsigned int ec_scan_limit(void)
+{
+	u64 bytes = (u64)totalram_pages() << PAGE_SHIFT;
+
+	return clamp_t(u64, div_u64(bytes, EC_SLAVES_RAM * EC_SLAVE_BYTES), EC_MIN_SLAVES,
+		       EC_MAX_SLAVES);
+}
+
+/* Is the number of slaves still the one the scan began with? */
+static bool same_count(struct scan *sc)
+{
+	u8 type[1] = { 0 };
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+
+	return !ec_xfer(sc->m, &dg, 1) && dg.back == (u16)sc->n;
+}
+
+/* New slaves are told their address; who does not listen is left out. */
+static int write_stations(struct scan *sc, unsigned int n)
+{
+	unsigned int i;
+	int ret = ec_xfer(sc->m, sc->dg, n);
+
+	for (i = 0; i < n && !ret; i++) {
+		unsigned int pos = (u16)-sc->dg[i].adp;
+
+		if (sc->dg[i].wkc == 1)
+			continue;
+		if (!same_count(sc))
+			return -EAGAIN;
+		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED,
+			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
+	}
+	return ret;
+}
+
+/* How many slaves have each address now, up to 2. */
+static void count_claims(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		u8 *c = &sc->claims[get_unaligned_le16(sc->regs[i].station)];
+
+		if (sc->regs[i].there)
+			*c = min(*c + 1, 2);
+	}
+}
+
+/* One that failed in the scan is read anew; one that refused a state is the same. */
+static bool is_usable(const struct ec_slave *s)
+{
+	return !s->error || s->silent ||
+	       (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
+}
+
+/*
+ * The known slave that is at @i without an answer: what is in front of it is what was
+ * there before, and its address is nowhere else.
+ */
+static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
+{
+	struct ec_slave *s = i < sc->m->n_slaves ? sc->m->slaves[i] : NULL;
+
+	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
+		return NULL;
+	return s->silent || (s->sii && s->error != EC_SLAVE_SCAN_FAILED) ? s : NULL;
+}
+
+/* The slave that could not be read when it was at @i, or NULL. */
+static const struct ec_slave *unreadable(const struct ec_master *m, unsigned int i)
+{
+	const struct ec_slave *s = i < m->n_slaves ? m->slaves[i] : NULL;
+
+	return s && s->error == EC_SLAVE_SCAN_FAILED && !s->silent ? s : NULL;
+}
+
+/* What was read of the EEPROM by the scan before. */
+static void take_part(struct ec_slave *s, struct ec_slave *old)
+{
+	swap(s->part, old->part);
+	swap(s->part_bytes, old->part_bytes);
+	if (s->part)
+		swap(s->sii_counted, old->sii_counted);
+}
+
+/* The one that could not be read here before: its cause is logged once, its tries go on. */
+static void take_failure(struct scan *sc, struct ec_slave *s)
+{
+	const struct ec_slave *old = unreadable(sc->m, s->position);
+
+	if (!old)
+		return;
+	strscpy(s->why, old->why, sizeof(s->why));
+	s->retry_ms = old->retry_ms;
+}
+
+static void set_silent(struct scan *sc, struct ec_slave *s)
+{
+	if (s->silent)
+		return;
+	sc->changed = true;
+	WRITE_ONCE(s->silent, true);
+	s->seen_ns = sc->m->complete_ns;
+	WRITE_ONCE(s->al_status, 0);
+	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+		      "no reply from the slave, frames pass; waiting for a reply");
+	ec_slave_retry(s, EC_PROBE_MAX_MS);
+}
+
+static void set_answers(struct scan *sc, struct ec_slave *s)
+{
+	if (!s->silent)
+		return;
+	sc->changed = true;
+	s->silent = false;
+	s->error = EC_SLAVE_OK;
+	s->why[0] = '\0';
+	s->retry_ms = 0;
+	ec_write64(&s->retry_ns, 0);
+	ec_slave_info(s, "slave replies again\n");
+}
+
+/*
+ * A slave that kept the address we gave it is the same; others get one. When
+ * two have the same address, one comes from another master's bus, and nobody
+ * can tell which: both are new.
+ */
+static int assign(struct scan *sc)
+{
+	unsigned int i, n = 0;
+	bool same_before = true;
+
+	count_claims(sc);
+	for (i = 0; i < sc->n; i++) {
+		u16 station = get_unaligned_le16(sc->regs[i].station);
+		struct ec_slave *s = sc->known[station], *silent = fell_silent(sc, i, same_before);
+
+		if (silent) {
+			sc->slaves[i] = ec_slave_ref(silent);
+			continue;
+		}
+		if (s && is_usable(s) && sc->regs[i].there && sc->claims[station] == 1) {
+			sc->slaves[i] = ec_slave_ref(s);
+			same_before &= i < sc->m->n_slaves && sc->m->slaves[i] == s;
+			continue;
+		}
+		same_before &= unreadable(sc->m, i) != NULL;
+		station = ec_scan_station(sc->m->next_station, sc->known, sc->claims);
+		if (!station)
+			return -ENOSPC;
+		sc->m->next_station = station;
+		sc->slaves[i] = ec_slave_alloc(sc->m, station);
+		if (!sc->slaves[i])
+			return -ENOMEM;
+		sc->slaves[i]->position = i;
+		take_failure(sc, sc->slaves[i]);
+		/* by its address it is the same */
+		if (s && sc->regs[i].there && sc->claims[s->station] == 1)
+			take_part(sc->slaves[i], s);
+		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
+		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
+						sc->addr[n]);
+		n++;
+	}
+	return write_stations(sc, n);
+}
+
+static void take_regs(struct scan *sc)
+{
+	unsigned int i, p;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+		struct regs *r = &sc->regs[i];
+
+		s->position = i;
+		if (!r->there && s->sii) {
+			set_silent(sc, s);
+			continue;	/* its registers are those seen last */
+		}
+		set_answers(sc, s);
+		if (s->error == EC_SLAVE_SCAN_FAILED) {
+			/* the next one hangs behind it, as far as can be told */
+			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
+			continue;
+		}
+		memcpy(s->regs, r->info, sizeof(s->regs));
+		WRITE_ONCE(s->dc_delay_only,
+			   r->delay_only && ec_slave_features(s) & EC_FEAT_DC);
+		s->dl_status = get_unaligned_le16(r->dl);
+		/* of a known slave its worker may have a newer one */
+		if (!s->sii) {
+			s->al_status = get_unaligned_le16(r->al);
+			s->al_code = get_unaligned_le16(r->al + 4);
+		}
+		for (p = 0; p < EC_MAX_PORT; p++)
+			s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
+	}
+}
+
+/* What could not be read is tried again, ever less often. */
+static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+
+		if (s->error != EC_SLAVE_SCAN_FAILED || s->silent)
+			continue;
+		if (s->part)
+			s->retry_ms = 0;	/* go on soon */
+		ec_slave_retry(s, EC_RETRY_MAX_MS);
+	}
+	for (i = 0; i < n; i++) {
+		if (fresh[i]->error)
+			continue;
+		/* left by the one that could not be read */
+		fresh[i]->why[0] = '\0';
+		fresh[i]->retry_ms = 0;
+	}
+}
+
+/* EEPROMs of the new ones: all of them at once, then up to PREOP together */
+static int read_new(struct scan *sc)
+{
+	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
+	unsigned int i, n = 0;
+
+	if (!fresh)
+		return -ENOMEM;
+	for (i = 0; i < sc->n; i++)
+		if (!sc->slaves[i]->sii && !sc->slaves[i]->error)
+			fresh[n++] = sc->slaves[i];
+	WRITE_ONCE(sc->m->scan_index, sc->n - n);
+	ec_scan_sii(sc->m, fresh, n, sc->fresh);
+	if (!ec_link_is_up(&sc->m->link[0])) {
+		kvfree(fresh);
+		return -ENETDOWN;
+	}
+	for (i = 0; i < n; i++) {
+		struct ec_slave *s = fresh[i];
+
+		if (s->sii && ec_slave_parse_sii(s))
+			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+				      "SII content invalid (%zu bytes); write a valid image",
+				      s->sii_bytes);
+		else if (s->sii && !s->info.checksum_ok && s->flaw.kind != EC_SII_FLAW_BLANK)
+			ec_slave_warn(s, "SII checksum 0x%02x, expected 0x%02x; content used anyway\n",
+				      s->info.checksum, s->info.checksum_calc);
+	}
+	ec_scan_preop(sc->m, fresh, n, sc->fresh);
+	plan_retries(sc, fresh, n);
+	kvfree(fresh);
+	return 0;
+}
+
+static int look(struct scan *sc)
+{
+	static const u8 latch[4];
+	unsigned int i;
+	int ret;
+
+	if (sc->fresh)
+		reset_bus(sc->m);
+	ret = read_stations(sc) ?:
+	      assign(sc) ?:
+	      read_all(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
+	      read_all(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
+	      read_all(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
+	if (ret)
+		return ret;
+	bwr(sc->m, EC_REG_DC_RECV(0), latch, 4);
+	ret = read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].delay_only = sc->dg[i].wkc == 1;
+	ret = ret ?: read_all(sc, EC_REG_DC_DELAY, offsetof(struct regs, delay), 4);
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].delay_only &= !sc->dg[i].err && !sc->dg[i].wkc;
+	if (ret)
+		return ret;
+	take_regs(sc);
+	ec_topology_build(sc->slaves, sc->n);
+	return read_new(sc);
+}
+
+/* A try that failed again is no change. */
+static bool differs(const struct scan *sc)
+{
+	unsigned int i;
+
+	if (sc->changed || sc->n != sc->m->n_slaves)
+		return true;
+	for (i = 0; i < sc->n; i++)
+		if (sc->slaves[i] != sc->m->slaves[i] &&
+		    !(unreadable(sc->m, i) && sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED))
+			return true;
+	return false;
+}
+
+/* The place a lost slave had: @old are the slaves by their position at that time. */
+static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int n_old)
+{
+	u16 up = s->next[s->upstream];
+
+	if (up >= n_old)
+		strscpy(s->parent, "the main device", sizeof(s->parent));
+	else
+		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
+			 s->parent_port, up, old[up]->order);
+	s->seen_ns = s->master->complete_ns;
+}
+
+/* One line each; when nobody is left the link says why. */
+static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
+{
+	char text[128];
+
+	if (!sc->n || s->error == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
+		return;
+	ec_slave_lost_text(s, text, sizeof(text));
+	ec_warn_each(sc->m, s->position + 1, "%s, last seen %llu ms ago\n", text,
+		     div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
+}
+
+/* The result becomes visible; slaves that are missing are gone. */
+static void publish(struct scan *sc)
+{
+	struct ec_master *m = sc->m;
+	struct ec_slave **old;
+	unsigned int i, n_old, lost = 0;
+
+	down_write(&m->topo);
+	ec_change_begin(m);
+	old = m->slaves;
+	n_old = m->n_slaves;
+	m->slaves = sc->slaves;
+	m->n_slaves = sc->n;
+	ec_change_end(m);
+	up_write(&m->topo);
+	sc->slaves = NULL;
+
+	for (i = 0; i < n_old; i++) {
+		/* at its place in the new list, or not on the bus any more */
+		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i]) {
+			note_parent(old[i], old, n_old);
+			WRITE_ONCE(old[i]->gone, true);
+			log_lost(sc, old[i], &lost);
+		}
+	}
+	if (lost > LOST_LINES)
+		ec_warn(m, "%u more slave(s) disconnected\n", lost - LOST_LINES);
+	if (!sc->n && n_old && m->owner != EC_OWNER_IDLE)
+		ec_warn(m, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
+			div_u64(ktime_get_ns() - m->complete_ns, NSEC_PER_MSEC));
+	for (i = 0; i < n_old; i++)
+		ec_slave_unref(old[i]);
+	kvfree(old);
+}
+
+/**
+ * ec_scan() - find out who is on the bus
+ * @m: master
+ * @count: slaves that answered the last broadcast, up to ec_scan_limit(); 0 is legal
+ * @changed: result: there are other slaves than before, or one fell silent or replies again
+ *
+ * Slaves that are known already keep their objects; only new ones are read.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
+ * -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
+ */
+int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
+{
+	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->owner == EC_OWNER_IDLE };
+	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->link[0].stats.tx_frames);
+	unsigned int i;
+	int ret = -ENOMEM;
+
+	sc.slaves = kvcalloc(count + 1, sizeof(*sc.slaves), GFP_KERNEL);
+	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
+	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
+	sc.addr = kvcalloc(count + 1, sizeof(*sc.addr), GFP_KERNEL);
+	if (sc.slaves && sc.regs && sc.dg && sc.addr && !index_known(&sc))
+		ret = count ? look(&sc) : 0;
+	if (!ret) {
+		sc.changed = differs(&sc);
+		publish(&sc);
+		*changed = sc.changed;
+		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
+		m->scan_frames = atomic64_read(&m->link[0].stats.tx_frames) - frames;
+		if (sc.changed && count)
+			ec_info(m, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
+				m->scan_us, m->scan_frames);
+	}
+	for (i = 0; sc.slaves && i < count; i++)
+		if (sc.slaves[i])
+			ec_slave_unref(sc.slaves[i]);
+	kvfree(sc.slaves);
+	kvfree(sc.regs);
+	kvfree(sc.dg);
+	kvfree(sc.addr);
+	kvfree(sc.known);
+	kvfree(sc.claims);
+	return ret;
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * New slaves from INIT to PREOP, all at once: packed writes, packed reads of
+ * the AL status. Who is not there in time or shows an error is left to its
+ * worker, which has patience and says what is wrong.
+ */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../master.h"
+#include "slave.h"
+#include "../link/xfer.h"
+
+#define WAIT_NS		(20 * NSEC_PER_MSEC)
+#define WRITES		3	/* datagrams per slave */
+
+/* one slave on its way */
+struct climber {
+	struct ec_slave *slave;
+	u8 page[2 * EC_SM_PAGE];
+	u8 al[6];
+};
+
+struct job {
+	struct ec_master *m;
+	struct climber *c;
+	unsigned int n;
+	bool clean;
+	struct ec_dg *dg;
+};
+
+/* Mailbox SyncManagers, EEPROM to the PDI, state: state-machine.md 4.2. */
+static void start(struct job *j)
+{
+	static const u8 preop[2] = { EC_AL_PREOP, 0 }, pdi[1] = { EC_EEP_OWNER_PDI };
+	unsigned int i, n = 0;
+
+	for (i = 0; i < j->n; i++) {
+		struct climber *c = &j->c[i];
+		u16 station = c->slave->station;
+		unsigned int len = ec_apply_mailbox_sms(c->slave, c->page);
+
+		if (len)
+			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_SM(0), len,
+							 c->page);
+		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
+						 (void *)pdi);
+		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_AL_CONTROL, 2,
+						 (void *)preop);
+	}
+	ec_xfer(j->m, j->dg, n);
+}
+
+/* Look at the AL status; those that are there or have an error are done. */
+static void look(struct job *j)
+{
+	unsigned int i, left = 0;
+
+	for (i = 0; i < j->n; i++)
+		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, j->c[i].slave->station,
+					       EC_REG_AL_STATUS, 6, j->c[i].al);
+	ec_xfer(j->m, j->dg, j->n);
+	for (i = 0; i < j->n; i++) {
+		struct climber *c = &j->c[i];
+
+		if (!j->dg[i].err && j->dg[i].wkc == 1) {
+			c->slave->al_status = get_unaligned_le16(c->al);
+			c->slave->al_code = get_unaligned_le16(c->al + 4);
+			if (c->slave->al_status == EC_AL_PREOP) {
+				c->slave->ours = true;
+				c->slave->clean = j->clean;
+				continue;
+			}
+			if (c->slave->al_status & EC_AL_ERROR)
+				continue;
+		}
+		j->c[left++].slave = c->slave;
+	}
+	j->n = left;
+}
+
+/**
+ * ec_scan_preop() - bring new slaves from INIT to PREOP in lockstep
+ * @m: master
+ * @slaves: slaves nobody else knows yet
+ * @n: how many
+ * @clean: their SyncManagers, FMMUs and SYNC units have been reset
+ *
+ * Context: The monitor thread. Waits for bus traffic, at most some 20 ms for
+ * slaves that are slow.
+ */
+void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean)
+{
+	struct job j = { .m = m, .clean = clean };
+	u64 until = ktime_get_ns() + WAIT_NS;
+	unsigned int i, us = 100;
+
+	j.c = kvcalloc(n, sizeof(*j.c), GFP_KERNEL);
+	j.dg = kvcalloc(n, WRITES * sizeof(*j.dg), GFP_KERNEL);
+	if (!j.c || !j.dg)
+		goto out;
+	for (i = 0; i < n; i++)
+		if (slaves[i]->sii && !slaves[i]->error &&
+		    slaves[i]->al_status == EC_AL_INIT)
+			j.c[j.n++].slave = slaves[i];
+	if (j.n)
+		start(&j);
+	while (j.n && !m->stopping && ktime_get_ns() < until) {
+		usleep_range(us, us + us / 4);
+		us = min(us * 2, 2000u);
+		look(&j);
+	}
+out:
+	kvfree(j.c);
+	kvfree(j.dg);
+}

@@ -1,0 +1,510 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Reading the EEPROMs of many slaves in lockstep. One command starts the same
+ * read everywhere, packed reads collect the results. A slave that is slow,
+ * refuses, misses the command or has come to its end leaves the lockstep.
+ *
+ * A large EEPROM takes a minute, one full of garbage too. It is read in parts, each by a
+ * scan of its own: the other slaves and the monitor do not wait for it.
+ */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../master.h"
+#include "slave.h"
+#include "../wire/sii.h"
+#include "../link/xfer.h"
+
+#define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
+#define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
+#define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while nobody is ready, few are asked */
+#define PROBE		8
+#define WAIT_MAX_NS	(2 * NSEC_PER_MSEC)
+#define POLL_US		40
+#define RETRIES		5
+#define TAKE_OVER	3	/* datagrams to take over one EEPROM */
+#define FIRST_BYTES	EC_SII_FIXED_SIZE
+#define FIRST_CAP	2048
+#define PART_BYTES	16384	/* a part has so many at least */
+#define PART_NS		(2ULL * NSEC_PER_SEC)	/* and may take so long */
+#define PART_MAX_NS	(10ULL * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
+
+/* one slave being read */
+struct reader {
+	struct ec_slave *slave;
+	u8 *buf;
+	size_t cap;
+	size_t have;
+	size_t need;
+	size_t began;	/* @have of the parts before */
+	u8 tries;
+	u8 len;		/* bytes of @reg that are of interest */
+	bool alone;	/* left the lockstep */
+	bool done;
+	u8 reg[14];	/* 0x0502-0x050F */
+};
+
+struct job {
+	struct ec_master *m;
+	struct reader *rd;
+	unsigned int n;
+	struct ec_dg *dg;
+	u8 (*cmd)[6];
+	struct reader **who;
+	bool broadcast;
+	u64 wait_ns;	/* from the command to the first look, 0: not known */
+	u64 good_ns;	/* @wait_ns that was long enough */
+	bool settled;	/* less than that was tried in vain */
+	u64 began_ns;
+};
+
+static void is_done(struct reader *r)
+{
+	struct ec_master *m = r->slave->master;
+
+	r->done = true;
+	WRITE_ONCE(m->scan_index, m->scan_index + 1);
+}
+
+static void finish(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	is_done(r);
+	s->sii = r->buf;
+	s->sii_bytes = r->have;
+	s->sii_counted = r->cap;
+	r->buf = NULL;
+	r->cap = 0;
+}
+
+/* @remedy: what the user can do; it is tried again in any case */
+static void fail(struct reader *r, const char *what, const char *remedy)
+{
+	is_done(r);
+	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED, "SII read failed at word 0x%04zx: %s; %s",
+		      r->have / 2, what, remedy);
+}
+
+/* The slave keeps what was read; the next scan goes on from there. */
+static void interrupt(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	is_done(r);
+	s->error = EC_SLAVE_SCAN_FAILED;
+	snprintf(s->why, sizeof(s->why),
+		 "large EEPROM, 0x%04zx words read up to now, the rest follows", r->have / 2);
+	if (!r->began)
+		ec_slave_info(s, "%s\n", s->why);
+	s->part = r->buf;
+	s->part_bytes = r->have;
+	s->sii_counted = r->cap;
+	r->buf = NULL;
+	r->cap = 0;
+}
+
+static bool takes_long(const struct job *j, const struct reader *r)
+{
+	u64 ns = ktime_get_ns() - j->began_ns;
+
+	return ns > PART_MAX_NS || (ns > PART_NS && r->have - r->began >= PART_BYTES);
+}
+
+static void interrupt_long(struct job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (!j->rd[i].done && j->rd[i].have > j->rd[i].began && takes_long(j, &j->rd[i]))
+			interrupt(&j->rd[i]);
+}
+
+/* The images of all slaves have a limit together. */
+static bool count(struct ec_master *m, size_t bytes)
+{
+	if (atomic_long_add_return(bytes, &m->sii_bytes) <= EC_MAX_SII_TOTAL)
+		return true;
+	atomic_long_sub(bytes, &m->sii_bytes);
+	return false;
+}
+
+/* Otherwise the reader has failed. */
+static bool enlarge(struct reader *r, size_t cap)
+{
+	struct ec_master *m = r->slave->master;
+	u8 *p;
+
+	if (!count(m, cap - r->cap)) {
+		fail(r, "the EEPROMs of all slaves exceed 64 MiB",
+		     "disconnect slaves with large EEPROMs");
+		return false;
+	}
+	p = kvzalloc(cap, GFP_KERNEL);
+	if (!p) {
+		atomic_long_sub(cap - r->cap, &m->sii_bytes);
+		fail(r, "no memory", "free memory of this computer");
+		return false;
+	}
+	if (r->have)
+		memcpy(p, r->buf, r->have);
+	kvfree(r->buf);
+	r->buf = p;
+	r->cap = cap;
+	return true;
+}
+
+/* Room for the next access, and whether there is a next one. */
+static void plan(struct reader *r)
+{
+	int need;
+
+	if (r->have < r->need)
+		return;
+	need = ec_sii_needed(r->buf, r->have);
+	if (need <= 0 || r->have >= EC_MAX_SII_BYTES) {
+		/* with the header of a category that is too large, which is cut off next */
+		ec_sii_check(r->buf, r->have, &r->slave->flaw);
+		if (!need && ec_sii_used(r->buf, r->have))
+			r->have = ec_sii_used(r->buf, r->have);
+		finish(r);
+		return;
+	}
+	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
+	if (r->need + 8 > r->cap)
+		enlarge(r, max_t(size_t, r->need + 8, r->cap * 2));
+}
+
+/* An access that ended without data; asking again does not help. */
+static bool refused(const struct reader *r)
+{
+	u16 ctl = get_unaligned_le16(r->reg);
+
+	return !(ctl & EC_EEP_BUSY) && ctl & EC_EEP_ERR_ACK;
+}
+
+/* Take a result; true when the slave has answered what was asked. */
+static bool take(struct reader *r, u32 word)
+{
+	u16 ctl = get_unaligned_le16(r->reg);
+	/* controllers for small EEPROMs have 16 bits */
+	u32 mask = word > 0xffff ? ~0u : 0xffff;
+	size_t got = min_t(size_t, ctl & EC_EEP_READ8 ? 8 : 4, r->len - 6);
+
+	if (ctl & (EC_EEP_BUSY | EC_EEP_CMD_MASK) || ctl & EC_EEP_ERR_ACK ||
+	    (get_unaligned_le32(r->reg + 2) & mask) != word)
+		return false;
+	memcpy(r->buf + r->have, r->reg + 6, got);
+	r->have += got;
+	r->len = 6 + got;
+	r->tries = 0;
+	plan(r);
+	return true;
+}
+
+/* Without link no slave is to blame: the scan ends and fails as a whole. */
+static bool go_on(const struct ec_master *m)
+{
+	return !READ_ONCE(m->stopping) && ec_link_is_up(&m->link[0]);
+}
+
+static void command(u8 *c, u32 word)
+{
+	put_unaligned_le16(EC_EEP_CMD_READ, c);
+	put_unaligned_le32(word, c + 2);
+}
+
+/*
+ * Take the EEPROM interface away from the PDI (0x0500). The address is set to
+ * one nobody asks for, so that a slave which misses the first command does not
+ * pass off what it shows as word 0.
+ */
+static void take_over(struct job *j, struct reader **who, unsigned int n)
+{
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
+	static const u8 nowhere[4] = { 0xff, 0xff, 0xff, 0xff };
+	unsigned int i;
+	struct ec_dg *dg = j->dg;
+
+	for (i = 0; i < n; i++) {
+		u16 station = who[i]->slave->station;
+
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
+					    (void *)force);
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
+					    (void *)zero);
+		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_ADDRESS, 4,
+					    (void *)nowhere);
+	}
+	ec_xfer(j->m, j->dg, dg - j->dg);
+}
+
+/* FPRD 0x0502 of @n readers */
+static void collect(struct job *j, struct reader **who, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, who[i]->slave->station,
+					       EC_REG_EEP_CONTROL, who[i]->len,
+					       who[i]->reg);
+	ec_xfer(j->m, j->dg, n);
+	for (i = 0; i < n; i++)
+		if (j->dg[i].err || j->dg[i].wkc != 1)
+			put_unaligned_le16(EC_EEP_BUSY, who[i]->reg);
+}
+
+/* Start the same read in all of @who; broadcast where all slaves are meant. */
+static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
+{
+	unsigned int i;
+
+	command(j->cmd[0], word);
+	if (j->broadcast) {
+		ec_xfer_one(j->m, EC_CMD_BWR, 0, EC_REG_EEP_CONTROL, j->cmd[0], 6);
+		return;
+	}
+	for (i = 0; i < n; i++)
+		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+					       EC_REG_EEP_CONTROL, 6, j->cmd[0]);
+	ec_xfer(j->m, j->dg, n);
+}
+
+static void sleep_until(u64 ns)
+{
+	u64 now = ktime_get_ns();
+
+	if (ns > now + NSEC_PER_USEC)
+		usleep_range(div_u64(ns - now, NSEC_PER_USEC), div_u64(ns - now, NSEC_PER_USEC) + 5);
+}
+
+/*
+ * When to look first next time: a little sooner, until that was too soon once.
+ * @first: the first look found everybody ready.
+ */
+static void learn(struct job *j, u64 ready_ns, bool first)
+{
+	if (!j->wait_ns) {
+		j->wait_ns = min_t(u64, ready_ns, WAIT_MAX_NS);
+	} else if (first) {
+		j->good_ns = j->wait_ns;
+		if (!j->settled)
+			j->wait_ns -= j->wait_ns / 16;
+	} else {
+		j->wait_ns = j->wait_ns < j->good_ns ? j->good_ns :
+			     min_t(u64, j->wait_ns + j->wait_ns / 8, WAIT_MAX_NS);
+		j->settled = true;
+	}
+}
+
+/* Ask those of @who who are left; keeps the ones that have no answer yet. */
+static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left,
+			 u32 word)
+{
+	unsigned int i, k = 0;
+
+	collect(j, who, ask);
+	for (i = 0; i < ask; i++) {
+		if (take(who[i], word))
+			continue;
+		if (refused(who[i]))
+			who[i]->alone = true;
+		else
+			who[k++] = who[i];
+	}
+	memmove(&who[k], &who[ask], (left - ask) * sizeof(*who));
+	return left - ask + k;
+}
+
+/* One access for all slaves at word @word. */
+static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
+{
+	u64 t0 = ktime_get_ns(), looked, ready = 0;
+	unsigned int i, left = n, ask, before;
+	bool first = true, probe = !j->wait_ns;
+
+	start(j, who, n, word);
+	sleep_until(t0 + j->wait_ns);
+	for (;;) {
+		looked = ktime_get_ns() - t0;
+		ask = probe ? min_t(unsigned int, left, PROBE) : left;
+		before = left;
+		left = look(j, who, ask, left, word);
+		if (left < before && !ready)
+			ready = looked;
+		if (!left)
+			break;
+		if (!go_on(j->m))
+			return;
+		/* the slowest tenth is handled apart instead of holding the others */
+		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
+			for (i = 0; i < left; i++)
+				who[i]->alone = true;
+			return;
+		}
+		probe = left == before && looked < PROBE_NS;
+		if (left < before && ask < before)
+			continue;	/* some are ready: ask all of them */
+		first = false;
+		ready = 0;
+		usleep_range(POLL_US, POLL_US + 5);
+	}
+	learn(j, ready, first);
+}
+
+/* Each of @who reads at its own word; errors are acknowledged first. */
+static void start_apart(struct job *j, struct reader **who, unsigned int n)
+{
+	static const u8 zero[2];
+	unsigned int i, k = 0;
+
+	for (i = 0; i < n; i++)
+		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
+			j->dg[k++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+							 EC_REG_EEP_CONTROL, 2, (void *)zero);
+	ec_xfer(j->m, j->dg, k);
+	for (i = 0; i < n; i++) {
+		command(j->cmd[i], who[i]->have / 2);
+		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
+					       EC_REG_EEP_CONTROL, 6, j->cmd[i]);
+	}
+	ec_xfer(j->m, j->dg, n);
+}
+
+/* Those that left the lockstep and are not done; without tries left they fail. */
+static unsigned int apart(struct job *j, struct reader **who)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < j->n; i++) {
+		struct reader *r = &j->rd[i];
+
+		if (r->done)
+			continue;
+		if (r->tries++ >= RETRIES)
+			fail(r, refused(r) ? "no acknowledge" : "busy too long",
+			     "check the slave, then rescan");
+		else
+			who[n++] = r;
+	}
+	return n;
+}
+
+/*
+ * Slaves that could not keep up: by themselves, side by side, with retries.
+ * One that never answers costs its tries, however many of them there are.
+ */
+static void read_apart(struct job *j)
+{
+	unsigned int i, n, left;
+	u64 t0;
+
+	for (; go_on(j->m) && (n = apart(j, j->who)); interrupt_long(j)) {
+		start_apart(j, j->who, n);
+		t0 = ktime_get_ns();
+		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->m);) {
+			unsigned int k = 0;
+
+			usleep_range(300, 400);
+			collect(j, j->who, left);
+			for (i = 0; i < left; i++)
+				if (!take(j->who[i], j->who[i]->have / 2) &&
+				    !refused(j->who[i]))
+					j->who[k++] = j->who[i];
+			left = k;
+		}
+	}
+}
+
+/* The smallest word somebody in the lockstep waits for, and who waits for it. */
+static unsigned int waiting(struct job *j, u32 *word)
+{
+	unsigned int i, n = 0;
+	size_t low = SIZE_MAX;
+
+	for (i = 0; i < j->n; i++)
+		if (!j->rd[i].done && !j->rd[i].alone && j->rd[i].have < low)
+			low = j->rd[i].have;
+	if (low == SIZE_MAX)
+		return 0;
+	for (i = 0; i < j->n; i++)
+		if (!j->rd[i].done && !j->rd[i].alone && j->rd[i].have == low)
+			j->who[n++] = &j->rd[i];
+	*word = low / 2;
+	return n;
+}
+
+static void run(struct job *j)
+{
+	unsigned int n;
+	u32 word;
+
+	n = waiting(j, &word);
+	take_over(j, j->who, n);
+	for (; n && go_on(j->m); n = waiting(j, &word)) {
+		step(j, j->who, n, word);
+		interrupt_long(j);
+	}
+	read_apart(j);
+}
+
+/* Go on where the scan before was interrupted. */
+static void resume(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	r->buf = s->part;
+	r->have = s->part_bytes;
+	r->began = r->have;
+	r->cap = s->sii_counted;
+	s->part = NULL;
+	s->part_bytes = 0;
+	s->sii_counted = 0;
+	plan(r);
+}
+
+/**
+ * ec_scan_sii() - read the EEPROMs of @slaves
+ * @m: master
+ * @slaves: slaves with station addresses; @sii is set where it worked, @part where more
+ *	is to be read, the others are marked as failed unless the link went down meanwhile
+ * @n: how many
+ * @all: these are all slaves of the segment and no process data run, so
+ *	broadcasts are allowed
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all)
+{
+	struct job j = { .m = m, .n = n, .broadcast = all, .began_ns = ktime_get_ns() };
+	unsigned int i;
+
+	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
+	j.dg = kvcalloc(n, TAKE_OVER * sizeof(*j.dg), GFP_KERNEL);
+	j.cmd = kvcalloc(n, sizeof(*j.cmd), GFP_KERNEL);
+	j.who = kvcalloc(n, sizeof(*j.who), GFP_KERNEL);
+	if (!j.rd || !j.dg || !j.cmd || !j.who)
+		goto out;
+	for (i = 0; i < n; i++) {
+		struct reader *r = &j.rd[i];
+
+		r->slave = slaves[i];
+		r->need = FIRST_BYTES;
+		r->len = sizeof(r->reg);
+		if (slaves[i]->part)
+			resume(r);
+		else
+			enlarge(r, FIRST_CAP);
+	}
+	run(&j);
+	for (i = 0; i < n; i++) {
+		atomic_long_sub(j.rd[i].cap, &m->sii_bytes);
+		kvfree(j.rd[i].buf);
+	}
+out:
+	kvfree(j.rd);
+	kvfree(j.dg);
+	kvfree(j.cmd);
+	kvfree(j.who);
+}

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "slave.h"
+
+/**
+ * ec_slave_alloc() - a slave found by the scan
+ * @m: master
+ * @station: its station address
+ *
+ * Context: Process. May sleep.
+ * Return: slave with one reference, or NULL.
+ */
+struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
+{
+	struct ec_slave *s = kzalloc(sizeof(*s), GFP_KERNEL);
+	unsigned int p;
+
+	if (!s)
+		return NULL;
+	kref_init(&s->kref);
+	s->master = m;
+	s->station = station;
+	s->requested = EC_AL_PREOP;
+	INIT_WORK(&s->work, ec_apply_work);
+	mutex_init(&s->lock);
+	sema_init(&s->sdo_lock, 1);
+	sema_init(&s->mbox_lock, 1);
+	init_waitqueue_head(&s->turn);
+	spin_lock_init(&s->emerg_lock);
+	spin_lock_init(&s->kept_lock);
+	INIT_LIST_HEAD(&s->kept);
+	for (p = 0; p < EC_MAX_PORT; p++)
+		s->next[p] = EC_UAPI_NONE16;
+	return s;
+}
+
+static void release(struct kref *kref)
+{
+	struct ec_slave *s = container_of(kref, struct ec_slave, kref);
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++)
+		ec_pdo_list_clear(&s->sm_pdos[i]);
+	ec_pdo_list_clear(&s->free_pdos);
+	ec_names_free(s);
+	ec_mbox_keep_voe(s, false);
+	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
+	kvfree(s->sii);
+	kvfree(s->part);
+	kfree(s);
+}
+
+struct ec_slave *ec_slave_ref(struct ec_slave *slave)
+{
+	kref_get(&slave->kref);
+	return slave;
+}
+
+void ec_slave_unref(struct ec_slave *slave)
+{
+	kref_put(&slave->kref, release);
+}
+
+static void string(struct ec_slave *s, u8 index, char *buf)
+{
+	if (!index || ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+		buf[0] = '\0';
+}
+
+/* What is wrong with the EEPROM; the slave is used as far as it goes. */
+static void check_sii(struct ec_slave *s)
+{
+	size_t size = sizeof(s->sii_flaw);
+	const struct ec_sii_flaw *f = &s->flaw;
+
+	s->sii_flaw[0] = '\0';
+	switch (f->kind) {
+	case EC_SII_FLAW_NONE:
+		return;
+	case EC_SII_FLAW_BLANK:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM is blank (only 0x%02x): no identity, no mailbox; write an image",
+			  f->type);
+		/* all ones are no mailbox either */
+		s->info.protocols = 0;
+		memset(&s->info.std, 0, sizeof(s->info.std));
+		s->emulation = false;
+		break;
+	case EC_SII_FLAW_LARGE:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: category 0x%04x at word 0x%04zx has %zu bytes, the EEPROM has %zu; data from there on are not used",
+			  f->type, f->offset / 2, f->bytes, f->declared);
+		break;
+	case EC_SII_FLAW_NO_END:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: no end marker up to word 0x%04zx; data from there on are not used",
+			  f->end / 2);
+		break;
+	case EC_SII_FLAW_BEYOND:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: categories end at byte %zu, beyond the declared size of %zu (word 0x003e); all are used",
+			  f->end, f->declared);
+		break;
+	case EC_SII_FLAW_ENTRY:
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM: an entry of category 0x%04x at word 0x%04zx is longer than the category",
+			  f->type, f->offset / 2);
+		break;
+	}
+	ec_slave_warn(s, "%s\n", s->sii_flaw);
+}
+
+/**
+ * ec_slave_parse_sii() - take what the master needs from the EEPROM image
+ * @slave: slave with @sii, @sii_bytes set
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -ENOMEM, or -EBADMSG when the fixed area is missing.
+ */
+int ec_slave_parse_sii(struct ec_slave *slave)
+{
+	int ret = ec_sii_decode_info(slave->sii, slave->sii_bytes, &slave->info);
+
+	if (ret)
+		return ret;
+	slave->emulation = slave->info.pdi_control & BIT(8);
+	slave->alias = slave->info.alias;
+	check_sii(slave);
+	slave->has_general = !ec_sii_decode_general(slave->sii, slave->sii_bytes, &slave->general);
+	if (slave->has_general) {
+		string(slave, slave->general.group, slave->group);
+		string(slave, slave->general.image, slave->image);
+		string(slave, slave->general.order, slave->order);
+		string(slave, slave->general.name, slave->name);
+	}
+	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
+	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
+	return ec_slave_read_pdos(slave);
+}
+
+/**
+ * ec_slave_fail() - note why a slave could not be scanned or configured
+ * @slave: slave
+ * @error: EC_SLAVE_SCAN_FAILED or EC_SLAVE_CONFIG_FAILED
+ * @fmt: text: what was expected, what found, what to do
+ *
+ * The same cause is logged once.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
+{
+	char text[EC_UAPI_REASON];
+	va_list args;
+
+	/* a worker that was still at it: what it meets is no cause of its own */
+	if (READ_ONCE(slave->silent) && error == EC_SLAVE_CONFIG_FAILED)
+		return;
+	va_start(args, fmt);
+	vscnprintf(text, sizeof(text), fmt, args);
+	va_end(args);
+	slave->error = error;
+	if (strcmp(slave->why, text)) {
+		strscpy(slave->why, text, sizeof(slave->why));
+		ec_slave_warn(slave, "%s\n", text);
+	}
+}
+
+/**
+ * ec_slave_retry() - plan another try to read or configure a slave
+ * @slave: slave that failed
+ * @max_ms: longest distance of tries
+ *
+ * Context: The monitor thread, or the slave's worker with its lock held.
+ */
+void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
+{
+	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
+	ec_write64(&slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
+}
+
+/**
+ * ec_slave_lost_text() - which slave was lost, and where
+ * @slave: slave that is gone
+ * @buf: result
+ * @size: of @buf
+ *
+ * Context: Process.
+ * Return: length of the text.
+ */
+size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
+{
+	char alias[16] = "";
+
+	if (slave->alias)
+		snprintf(alias, sizeof(alias), "alias %u, ", slave->alias);
+	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected from %s", slave->position, alias,
+			 slave->order[0] ? slave->order : slave->name, slave->parent);
+}
+
+/**
+ * ec_slave_kick() - let the worker look at the slave again
+ * @slave: slave
+ *
+ * The state it shall have stays what it was requested last, by whomever: who only
+ * wants it brought there must not write back what he has read a moment ago.
+ *
+ * Context: Process.
+ */
+void ec_slave_kick(struct ec_slave *slave)
+{
+	ec_slave_ref(slave);
+	if (!queue_work(slave->master->work, &slave->work))
+		ec_slave_unref(slave);
+}
+
+/**
+ * ec_slave_request() - let a worker bring the slave to a state
+ * @slave: slave
+ * @state: AL state
+ *
+ * Context: Process.
+ */
+void ec_slave_request(struct ec_slave *slave, u8 state)
+{
+	WRITE_ONCE(slave->requested, state);
+	ec_slave_kick(slave);
+}

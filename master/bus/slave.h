@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A slave that is present on the bus. */
+#ifndef EC_SLAVE_H
+#define EC_SLAVE_H
+
+#include <linux/kref.h>
+#include <linux/mutex.h>
+#include <linux/semaphore.h>
+#include <linux/wait.h>
+#include <linux/workqueue.h>
+#include "ethercat.h"
+#include "names.h"
+#include "pdo.h"
+#include "../wire/al.h"
+#include "../wire/regs.h"
+#include "../wire/sii.h"
+
+struct ec_config;
+struct ec_emerg;
+struct ec_master;
+
+/* distance of the tries to read or configure a slave that failed; doubles each time */
+#define EC_RETRY_MIN_MS		250
+#define EC_RETRY_MAX_MS		60000
+#define EC_PROBE_MAX_MS		1000	/* of a slave that does not reply at all */
+
+/**
+ * struct ec_slave - one slave
+ *
+ * Fixed after the scan:
+ * @kref: reference count; the master's table holds one
+ * @master: master
+ * @station: station address
+ * @sii: EEPROM image as read
+ * @sii_bytes: bytes at @sii
+ * @flaw: of @sii, found when it was read
+ * @sii_counted: what it, or @part, counts in the master's @sii_bytes
+ * @part: first bytes of a large EEPROM that is still being read, or NULL
+ * @part_bytes: bytes there
+ * @info: fixed area of the EEPROM
+ * @general: general category, with @has_general
+ * @sms: SyncManagers of the EEPROM
+ * @n_sms: entries in @sms
+ * @emulation: AL status follows AL control
+ * @name: and other strings of the EEPROM
+ *
+ * Of the last scan, changed under master->topo:
+ * @position: ring position
+ * @regs: registers 0x0000-0x0009
+ * @dl_status: register 0x0110
+ * @alias: effective alias
+ * @recv: receive times at the ports
+ * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
+ * @upstream: port towards the master
+ * @parent: the slave it hung at when it was lost, in words
+ * @parent_port: port of the slave it hangs at
+ * @topology_odd: open ports and slaves do not fit together, here or before
+ *
+ * Of the EEPROM, then of the object dictionary, changed under master->topo:
+ * @sm_pdos: PDOs by SyncManager
+ * @free_pdos: PDOs without SyncManager
+ * @pdos_known: the object dictionary was read, or there is none
+ * @pdos_unread: @pdos_known, but they could not be read
+ * @names: from the object dictionary
+ * @names_done: the slave was asked for those its EEPROM does not have
+ *
+ * Of the distributed clock, changed under master->dc.lock:
+ * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
+ * @dc_hop: way from the clock before it, ns
+ * @dc_delay_only: it has receive times, but no clock that can be set
+ * @dc_scan: 1 + number of the scan after which the two were measured
+ * @dc_odd: receive times make no sense: the two are not certain
+ * @dc_offset: of its system time, ns, register 0x0920
+ * @dc_diff: last difference to the reference clock, ns, positive: ahead
+ * @dc_set: its clock was set for this session
+ * @dc_far: it is outside the sync window
+ * @dc_out: it did not answer when it should be set
+ * @dc_vain: tries to set it since then for which it had answered; only the watch counts
+ *
+ * Changing:
+ * @al_status: last AL status seen
+ * @al_code: AL status code that belongs to it
+ * @al_reads: how often a worker has read the two: what was asked for before
+ *	is older
+ * @requested: AL state it shall reach
+ * @error: EC_SLAVE_OK...
+ * @why: cause of @error
+ * @pdo_refusal: the first PDO mapping or assignment it refused since it was configured
+ * @warning: what is not certain of its process data, empty: nothing
+ * @sii_flaw: what is wrong with its EEPROM, empty: nothing
+ * @silent: @error because it does not answer any more; it is in its place until it does
+ * @retry_ns: when to try again what failed (ktime), 0: never
+ * @retry_ms: distance between the last two tries
+ * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
+ * @waits_for: what the worker is waiting for, NULL: nothing that lasts
+ * @gone: not on the bus any more
+ * @work: brings it to @requested
+ * @lock: one worker or caller at a time changes its state
+ * @config: what the session wants from it, under session_lock and @lock
+ * @read_pdos: read the PDOs when it is there
+ * @interrupt: leave what the worker is waiting for
+ * @worker: who works on it now, under @lock
+ * @plan: what the worker goes by: @config, once its session is active; under @lock
+ * @holds: the worker has @sdo_lock and @mbox_lock
+ * @reconfigure: go through INIT and configure again
+ * @mapped: its FMMUs are set
+ * @op_only: SyncManagers that are on in OP only and are on, a bit each
+ * @sync_free: its SYNC signals run by a clock that was not set
+ * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
+ * @clean: in PREOP, and nothing of a configuration is left in its registers
+ * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
+ * @sdo_lock: one SDO transfer at a time; see ec_mbox_lock()
+ * @mbox_lock: one mailbox exchange at a time
+ * @awaits: which of the two the worker waits for
+ * @turn: who waits until the worker has it
+ * @mbox_counter: of the last message sent
+ * @mbox_seen: counter of the last message received; this and the next three under @mbox_lock
+ * @mbox_counts: the slave counts its messages
+ * @mbox_repeats: it was asked to put its last message there again
+ * @mbox_answered: the last exchange has ended with its answer
+ * @emerg_lock: protects @emerg and what it points to
+ * @emerg: where its emergencies go, NULL: only to the log
+ * @kept_lock: protects the next three
+ * @kept: VoE messages, the oldest first
+ * @n_kept: how many
+ * @keep_voe: somebody may read them
+ */
+struct ec_slave {
+	struct kref kref;
+	struct ec_master *master;
+	u16 station;
+	u8 *sii;
+	size_t sii_bytes;
+	size_t sii_counted;
+	u8 *part;
+	size_t part_bytes;
+	struct ec_sii_flaw flaw;
+	struct ec_sii_info info;
+	struct ec_sii_general general;
+	bool has_general;
+	struct ec_sii_sm sms[EC_MAX_SM];
+	unsigned int n_sms;
+	bool emulation;
+	char group[EC_UAPI_STRING];
+	char image[EC_UAPI_STRING];
+	char order[EC_UAPI_STRING];
+	char name[EC_UAPI_STRING];
+
+	u16 position;
+	u8 regs[EC_INFO_SIZE];
+	u16 dl_status;
+	u16 alias;
+	u32 recv[EC_MAX_PORT];
+	u16 next[EC_MAX_PORT];
+	u8 upstream;
+	u8 parent_port;
+	char parent[EC_UAPI_STRING];
+	bool topology_odd;
+
+	struct ec_pdo_list sm_pdos[EC_MAX_SM];
+	struct ec_pdo_list free_pdos;
+	bool pdos_known;
+	bool pdos_unread;
+	struct ec_names names;
+	bool names_done;
+
+	u32 dc_delay;
+	u32 dc_hop;
+	u32 dc_scan;
+	bool dc_odd;
+	bool dc_delay_only;
+	u64 dc_offset;
+	s32 dc_diff;
+	bool dc_set;
+	bool dc_far;
+	bool dc_out;
+	u8 dc_vain;
+
+	u16 al_status;
+	u16 al_code;
+	u32 al_reads;
+	u8 requested;
+	u8 error;
+	char why[EC_UAPI_REASON];
+	char pdo_refusal[EC_UAPI_REASON];
+	char warning[EC_UAPI_WARNING];
+	char sii_flaw[EC_UAPI_WARNING];
+	bool silent;
+	aligned_u64 retry_ns;
+	u32 retry_ms;
+	u64 seen_ns;
+	const char *waits_for;
+	bool gone;
+	struct work_struct work;
+	struct mutex lock;
+	struct ec_config *config;
+	bool read_pdos;
+	bool interrupt;
+	const struct task_struct *worker;
+	const struct ec_config *plan;
+	bool holds;
+	bool reconfigure;
+	bool mapped;
+	u16 op_only;
+	bool clean;
+	bool ours;
+	bool sync_free;
+	u64 sync_due_ns;
+	struct semaphore sdo_lock;
+	struct semaphore mbox_lock;
+	const struct semaphore *awaits;
+	wait_queue_head_t turn;
+	u8 mbox_counter;
+	u8 mbox_seen;
+	bool mbox_counts;
+	bool mbox_repeats;
+	bool mbox_answered;
+	spinlock_t emerg_lock;
+	struct ec_emerg *emerg;
+	spinlock_t kept_lock;
+	struct list_head kept;
+	unsigned int n_kept;
+	bool keep_voe;
+};
+
+/* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
+#define ec_slave_log(level, s, fmt, ...) \
+	ec_log_event((s)->master, (s)->position, 0, level, fmt, ##__VA_ARGS__)
+#define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
+#define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
+#define ec_slave_dbg(s, lvl, fmt, ...) \
+	do { \
+		if (unlikely(READ_ONCE((s)->master->debug) >= (lvl)) && ec_log_debug()) \
+			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->index, \
+			       (s)->position, ##__VA_ARGS__); \
+	} while (0)
+/* level 1, without line end: ": done" or the name of the error follows; @ret is 0 or -errno */
+#define ec_slave_dbg_result(s, ret, fmt, ...) \
+	do { \
+		if (ret) \
+			ec_slave_dbg(s, 1, fmt ": %pe\n", ##__VA_ARGS__, ERR_PTR(ret)); \
+		else \
+			ec_slave_dbg(s, 1, fmt ": done\n", ##__VA_ARGS__); \
+	} while (0)
+
+struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
+struct ec_slave *ec_slave_ref(struct ec_slave *slave);
+void ec_slave_unref(struct ec_slave *slave);
+int ec_slave_parse_sii(struct ec_slave *slave);
+void ec_slave_kick(struct ec_slave *slave);
+void ec_slave_request(struct ec_slave *slave, u8 state);
+void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
+void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
+size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
+
+static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
+{
+	return s->regs[EC_REG_PORTS] >> 2 * port & 3;
+}
+
+static inline u16 ec_slave_features(const struct ec_slave *s)
+{
+	return get_unaligned_le16(s->regs + EC_REG_FEATURES);
+}
+
+/* a clock that can be set, not receive times alone */
+static inline bool ec_slave_has_clock(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_DC && !READ_ONCE(s->dc_delay_only);
+}
+
+static inline bool ec_slave_no_lrw(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_NO_LRW ||
+	       (s->has_general && s->general.flags & EC_SII_FLAG_NO_LRW);
+}
+
+static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
+{
+	return s->info.protocols && s->info.std.rx_size && s->info.std.tx_size;
+}
+
+/* slave_pdo.c */
+int ec_slave_read_pdos(struct ec_slave *slave);
+void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
+const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
+
+/* pdo_coe.c */
+bool ec_slave_pdos_pending(const struct ec_slave *s);
+void ec_slave_clear_warning(struct ec_slave *s);
+void ec_slave_read_coe_pdos(struct ec_slave *s);
+int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
+void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
+
+/* al.c */
+int ec_al_read(struct ec_slave *slave);
+int ec_al_ack(struct ec_slave *slave);
+int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
+
+/* apply.c */
+void ec_apply_work(struct work_struct *work);
+unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page);
+
+/* apply_regs.c */
+int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);
+int ec_apply_clear_fmmus(struct ec_slave *s);
+int ec_apply_clear_pdos(struct ec_slave *s);
+void ec_apply_clear(struct ec_slave *s);
+
+/* apply_pdo.c */
+int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
+const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
+					   unsigned int sm);
+
+/* topology.c */
+void ec_topology_build(struct ec_slave **slaves, unsigned int n);
+
+/* scan_sii.c */
+void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
+
+/* scan_preop.c */
+void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean);
+
+#endif

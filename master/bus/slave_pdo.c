@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/sched.h>
+#include <linux/slab.h>
+#include <linux/sort.h>
+#include "../base/grow.h"
+#include "../base/limits.h"
+#include "pdo.h"
+#include "slave.h"
+#include "../wire/sii.h"
+
+/**
+ * ec_pdo_add() - append a PDO
+ * @l: list
+ * @index: PDO index
+ * @name: string index
+ *
+ * Context: Process. May sleep.
+ * Return: the PDO, valid until the list changes, or NULL.
+ */
+struct ec_pdo *ec_pdo_add(struct ec_pdo_list *l, u16 index, u8 name)
+{
+	struct ec_pdo *p;
+
+	if (l->n >= EC_MAX_SC_PDOS)
+		return NULL;
+	p = ec_grow(l->pdos, l->n, sizeof(*p));
+	if (!p)
+		return NULL;
+	l->pdos = p;
+	p += l->n++;
+	*p = (struct ec_pdo){ .index = index, .name = name };
+	return p;
+}
+
+/**
+ * ec_pdo_add_entry() - append an entry to the mapping of a PDO
+ * @pdo: PDO
+ * @e: entry, copied
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -ENOMEM, or -ENOSPC beyond 255 entries.
+ */
+int ec_pdo_add_entry(struct ec_pdo *pdo, const struct ec_pdo_entry *e)
+{
+	struct ec_pdo_entry *p;
+
+	if (pdo->n_entries >= 255)
+		return -ENOSPC;
+	p = ec_grow(pdo->entries, pdo->n_entries, sizeof(*p));
+	if (!p)
+		return -ENOMEM;
+	pdo->entries = p;
+	p[pdo->n_entries++] = *e;
+	return 0;
+}
+
+/* What one application has registered, another one has not. */
+int ec_pdo_copy_entries(struct ec_pdo *dst, const struct ec_pdo *src)
+{
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < src->n_entries; i++) {
+		struct ec_pdo_entry e = src->entries[i];
+
+		e.registered = false;
+		ret = ec_pdo_add_entry(dst, &e);
+		if (ret)
+			return ret;
+	}
+	return 0;
+}
+
+void ec_pdo_clear_entries(struct ec_pdo *pdo)
+{
+	kvfree(pdo->entries);
+	pdo->entries = NULL;
+	pdo->n_entries = 0;
+}
+
+void ec_pdo_list_clear(struct ec_pdo_list *l)
+{
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		kvfree(l->pdos[i].entries);
+	kvfree(l->pdos);
+	l->pdos = NULL;
+	l->n = 0;
+}
+
+/* Bytes that the PDOs and their entries need. */
+size_t ec_pdo_list_memory(const struct ec_pdo_list *l)
+{
+	size_t bytes = l->n * sizeof(*l->pdos);
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		bytes += l->pdos[i].n_entries * sizeof(*l->pdos[i].entries);
+	return bytes;
+}
+
+struct ec_pdo *ec_pdo_find(const struct ec_pdo_list *l, u16 index)
+{
+	unsigned int i;
+
+	for (i = 0; i < l->n; i++)
+		if (l->pdos[i].index == index)
+			return &l->pdos[i];
+	return NULL;
+}
+
+u32 ec_pdo_bits(const struct ec_pdo *pdo)
+{
+	unsigned int i;
+	u32 bits = 0;
+
+	for (i = 0; i < pdo->n_entries; i++)
+		bits += pdo->entries[i].bits;
+	return bits;
+}
+
+u32 ec_pdo_list_bytes(const struct ec_pdo_list *l)
+{
+	unsigned int i;
+	u32 bits = 0;
+
+	for (i = 0; i < l->n; i++)
+		bits += ec_pdo_bits(&l->pdos[i]);
+	return DIV_ROUND_UP(bits, 8);
+}
+
+int ec_pdo_list_copy(struct ec_pdo_list *dst, const struct ec_pdo_list *src)
+{
+	unsigned int i;
+
+	for (i = 0; i < src->n; i++) {
+		struct ec_pdo *p = ec_pdo_add(dst, src->pdos[i].index, src->pdos[i].name);
+
+		if (!p || ec_pdo_copy_entries(p, &src->pdos[i]))
+			return -ENOMEM;
+	}
+	return 0;
+}
+
+/* The entry that begins @bit bits behind the start of the process data, or NULL. */
+const struct ec_pdo_entry *ec_pdo_list_at(const struct ec_pdo_list *l, u32 bit)
+{
+	unsigned int i, k;
+	u32 at = 0;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++) {
+			if (at == bit)
+				return &l->pdos[i].entries[k];
+			at += l->pdos[i].entries[k].bits;
+		}
+	return NULL;
+}
+
+static bool same_entries(const struct ec_pdo *a, const struct ec_pdo *b)
+{
+	unsigned int i;
+
+	if (a->index != b->index || a->n_entries != b->n_entries)
+		return false;
+	for (i = 0; i < a->n_entries; i++)
+		if (a->entries[i].index != b->entries[i].index ||
+		    a->entries[i].sub != b->entries[i].sub ||
+		    a->entries[i].bits != b->entries[i].bits)
+			return false;
+	return true;
+}
+
+/* Is it the same process data, whatever it is called? */
+bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
+{
+	unsigned int i;
+
+	if (a->n != b->n)
+		return false;
+	for (i = 0; i < a->n; i++)
+		if (!same_entries(&a->pdos[i], &b->pdos[i]))
+			return false;
+	return true;
+}
+
+/**
+ * ec_slave_read_pdos() - take the PDOs of a slave from its EEPROM
+ * @slave: slave with EEPROM image
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_slave_read_pdos(struct ec_slave *slave)
+{
+	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
+	unsigned int t, i;
+
+	for (t = 0; t < ARRAY_SIZE(types); t++) {
+		struct ec_sii_pdo_iter it;
+		struct ec_sii_pdo pdo;
+
+		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
+			struct ec_pdo_list *l = pdo.sm < EC_MAX_SM ?
+				&slave->sm_pdos[pdo.sm] : &slave->free_pdos;
+			struct ec_pdo *p = ec_pdo_add(l, pdo.index, pdo.name);
+
+			if (!p)
+				return -ENOMEM;
+			for (i = 0; i < pdo.entries; i++) {
+				struct ec_sii_pdo_entry e;
+				struct ec_pdo_entry pe;
+
+				if (ec_sii_pdo_entry(&pdo, i, &e))
+					break;
+				pe = (struct ec_pdo_entry){
+					.index = e.index, .sub = e.sub,
+					.bits = e.bits, .name = e.name,
+				};
+				if (ec_pdo_add_entry(p, &pe))
+					return -ENOMEM;
+			}
+		}
+	}
+	return 0;
+}
+
+/*
+ * An entry of the EEPROM that has a name, as one number: object, subindex, PDO, string. The
+ * EEPROM and the object dictionary may have some ten thousand entries each.
+ */
+#define NAMED(index, sub, pdo, name) \
+	((u64)(index) << 32 | (u64)(sub) << 24 | (u64)(pdo) << 8 | (name))
+
+struct named {
+	u64 *v;
+	unsigned int n;
+};
+
+static int compare(const void *a, const void *b)
+{
+	u64 x = *(const u64 *)a, y = *(const u64 *)b;
+
+	return x < y ? -1 : x > y;
+}
+
+/* The PDOs of the EEPROM: their number, or with @v the named entries of all of them. */
+static unsigned int collect(const struct ec_slave *slave, u64 *v, unsigned int most)
+{
+	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
+	struct ec_sii_pdo_entry e;
+	struct ec_sii_pdo_iter it;
+	struct ec_sii_pdo pdo;
+	unsigned int t, i, n = 0;
+
+	for (t = 0; t < ARRAY_SIZE(types); t++) {
+		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
+			if (!v)
+				n += 1 + pdo.entries;
+			if (v && pdo.name && n < most)
+				v[n++] = NAMED(0, 0, pdo.index, pdo.name);
+			for (i = 0; v && i < pdo.entries && n < most; i++)
+				if (!ec_sii_pdo_entry(&pdo, i, &e) && e.name && e.index)
+					v[n++] = NAMED(e.index, e.sub, pdo.index, e.name);
+			cond_resched();
+		}
+	}
+	return n;
+}
+
+/* String index of the first one from @key on, if it is one of @mask's; 0: none. */
+static u8 find_name(const struct named *names, u64 key, u64 mask)
+{
+	unsigned int low = 0, high = names->n;
+
+	while (low < high) {
+		unsigned int mid = low + (high - low) / 2;
+
+		if (names->v[mid] < key)
+			low = mid + 1;
+		else
+			high = mid;
+	}
+	return low < names->n && !((names->v[low] ^ key) & mask) ? names->v[low] & 0xff : 0;
+}
+
+static void name_pdo(struct ec_pdo *p, const struct named *names)
+{
+	u64 same = NAMED(0xffff, 0xff, 0xffff, 0), any = NAMED(0xffff, 0xff, 0, 0);
+	unsigned int i;
+	u8 name;
+
+	p->name = find_name(names, NAMED(0, 0, p->index, 0), same) ?: p->name;
+	for (i = 0; i < p->n_entries; i++) {
+		struct ec_pdo_entry *e = &p->entries[i];
+
+		if (!e->index)
+			continue;
+		/* the same PDO knows best, any other one will do */
+		name = find_name(names, NAMED(e->index, e->sub, p->index, 0), same);
+		if (!name && !e->name)
+			name = find_name(names, NAMED(e->index, e->sub, 0, 0), any);
+		e->name = name ?: e->name;
+	}
+}
+
+/**
+ * ec_slave_name_pdos() - names of PDOs and entries, wherever the EEPROM has them
+ * @slave: slave with EEPROM image
+ * @l: PDOs of the slave
+ *
+ * An entry may have been mapped to another PDO than the one it is delivered in. Without
+ * memory there are no names.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l)
+{
+	unsigned int i, most = collect(slave, NULL, 0);
+	struct named names;
+
+	if (!most)
+		return;
+	names.v = kvmalloc_array(most, sizeof(*names.v), GFP_KERNEL);
+	if (!names.v)
+		return;
+	names.n = collect(slave, names.v, most);
+	sort(names.v, names.n, sizeof(*names.v), compare, NULL);
+	for (i = 0; i < l->n; i++) {
+		name_pdo(&l->pdos[i], &names);
+		cond_resched();
+	}
+	kvfree(names.v);
+}
+
+/**
+ * ec_slave_find_pdo() - a PDO the slave knows, assigned or not
+ * @slave: slave
+ * @index: PDO index
+ *
+ * Context: Process, with a reference to @slave.
+ * Return: the PDO or NULL.
+ */
+const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index)
+{
+	const struct ec_pdo *p;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++) {
+		p = ec_pdo_find(&slave->sm_pdos[i], index);
+		if (p)
+			return p;
+	}
+	return ec_pdo_find(&slave->free_pdos, index);
+}

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Clocks in the cycle: the time to the reference clock, from there to all
+ * slaves, and the differences that are left. They go in front of the process
+ * data of the first frame, so that their distance to the send is always the
+ * same. Nothing here allocates, prints or waits.
+ */
+#include "../cycle/cycle.h"
+#include "../master.h"
+#include "../session/session.h"
+#include "../wire/regs.h"
+
+#define SYNC_REF	EC_SEND_FLAG_SYNC_REF
+#define SYNC_SLAVES	EC_SEND_FLAG_SYNC_SLAVES
+#define MONITOR		EC_SEND_FLAG_MONITOR
+#define REF_TIME	EC_SEND_FLAG_REF_TIME
+#define WIDE		0x8000	/* of this frame: times of 8 bytes */
+#define SHIFT		16	/* above it: how many more SYNC_SLAVES */
+#define ONE_MORE_NS	((8 + EC_DGRAM_OVERHEAD) * 80u)	/* on the wire */
+#define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
+
+/* When the reference follows, it gets half of what is more than one. */
+static unsigned int refs(u32 dc)
+{
+	return dc & SYNC_REF ? (dc >> SHIFT) / 2 + 1 : 0;
+}
+
+static unsigned int syncs(u32 dc)
+{
+	unsigned int more = dc >> SHIFT;
+
+	if (!(dc & SYNC_SLAVES))
+		return 0;
+	return dc & SYNC_REF ? more - more / 2 + 1 : more + 1;
+}
+
+static u16 time_bytes(u32 dc)
+{
+	return dc & WIDE ? 8 : 4;
+}
+
+/* Comparisons a send may have beyond one: half of what the cycle leaves. */
+static u32 most(const struct ec_master *m, const struct ec_cycle *c)
+{
+	u64 used = c->clocked.ns + ec_cycle_need_ns();
+	u64 budget = READ_ONCE(m->interval_us) * 900ULL;
+
+	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
+}
+
+/* Comparisons of this send beyond one. */
+static u32 boost(struct ec_master *m, const struct ec_cycle *c)
+{
+	u32 left = READ_ONCE(m->dc.framed) ? 0 : READ_ONCE(m->dc.boost);
+	u32 n = min(left, most(m, c));
+
+	if (n)
+		WRITE_ONCE(m->dc.boost, left - n);
+	return n;
+}
+
+/**
+ * ec_dc_reserve_ns() - wire time of more comparisons that are to come
+ * @m: master
+ * @c: its cyclic layout
+ *
+ * Known as long as the clocks are being set, so that acyclic frames are not made
+ * longer than what is left then.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: ns.
+ */
+u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
+{
+	if (READ_ONCE(m->dc.state) != EC_DC_BUSY && !READ_ONCE(m->dc.boost))
+		return 0;
+	return most(m, c) * ONE_MORE_NS;
+}
+
+/**
+ * ec_dc_wanted() - clock datagrams of this send
+ * @m: master
+ * @c: its cyclic layout
+ * @flags: EC_SEND_FLAG_*
+ *
+ * The application is told that those it wants and that are held back are not back.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: those of @flags that make datagrams, how wide they are, and in the upper
+ * half how many more times the time goes to the slaves; 0 without reference clock.
+ */
+u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
+{
+	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
+	if (!flags)
+		return 0;
+	c->dc_asked |= flags;
+	if (!READ_ONCE(m->dc.wanted))
+		WRITE_ONCE(m->dc.wanted, true);
+	if (!READ_ONCE(m->dc.running))
+		return 0;
+	if (c->dc_hold)
+		flags &= ~SYNC_REF;
+	if (flags & SYNC_SLAVES)
+		flags |= boost(m, c) << SHIFT;
+	/* slaves in front of the reference have a negative delay, of 32 bits */
+	if (READ_ONCE(m->dc.ref_wide) && !READ_ONCE(m->dc.front))
+		flags |= WIDE;
+	return flags;
+}
+
+/**
+ * ec_dc_clock() - the reference clock has told its time
+ * @m: master
+ * @time: all of it, ns
+ * @at_ns: when it was that time (ktime)
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_dc_clock(struct ec_master *m, u64 time, u64 at_ns)
+{
+	atomic64_set(&m->dc.ahead, time - at_ns);
+}
+
+static u64 clock_at(struct ec_master *m, u64 at_ns)
+{
+	return atomic64_read(&m->dc.ahead) + at_ns;
+}
+
+/**
+ * ec_dc_clock_now() - time of the reference clock at this moment
+ * @m: master whose clocks are set
+ *
+ * By what it was last; it drifts.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns.
+ */
+u64 ec_dc_clock_now(struct ec_master *m)
+{
+	return clock_at(m, ktime_get_ns());
+}
+
+/**
+ * ec_dc_whole() - time of a clock with 32 bits
+ * @m: master whose clocks are set
+ * @low: what the clock says
+ * @at_ns: when (ktime)
+ *
+ * The rest is that of the time the clocks have gone through since they were set. The
+ * application's time may be any number of seconds away by now.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: all 64 bits, ns.
+ */
+u64 ec_dc_whole(struct ec_master *m, u32 low, u64 at_ns)
+{
+	u64 about = clock_at(m, at_ns);
+
+	return about + (s32)(low - (u32)about);
+}
+
+/*
+ * Slaves in front of the reference, and all when it is gone, see what was sent:
+ * the time it will have, as far as its answers tell.
+ */
+static u64 predicted(struct ec_master *m, const struct ec_cycle *c, u64 now)
+{
+	u64 since = now - c->dc_time_ns;
+
+	if (!c->dc_time)
+		return clock_at(m, now);
+	return c->dc_time + since +
+	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
+}
+
+#define RATE_NS	(100 * NSEC_PER_MSEC)
+
+/* The rate of the reference over some time; a jump is none. */
+static void learn_rate(struct ec_cycle *c)
+{
+	u64 since = c->dc_time_ns - c->dc_then_ns;
+	s64 more = (s64)(c->dc_time - c->dc_then - since);
+
+	if (c->dc_then_ns && since < RATE_NS)
+		return;
+	if (c->dc_then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS)
+		c->dc_ppb = (s32)div64_s64(more * (s64)NSEC_PER_SEC, since);
+	c->dc_then = c->dc_time;
+	c->dc_then_ns = c->dc_time_ns;
+}
+
+static u64 clock_time(struct ec_master *m, const u8 *data, u16 len, u64 sent_ns)
+{
+	u64 t = len == 8 ? get_unaligned_le64(data) :
+			   ec_dc_whole(m, get_unaligned_le32(data), sent_ns);
+
+	ec_dc_clock(m, t, sent_ns);
+	return t;
+}
+
+static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns)
+{
+	struct ec_cycle *c = &s->cycle;
+
+	c->dc_time = clock_time(s->master, data, len, sent_ns);
+	c->dc_time_ns = sent_ns;
+	c->dc_back |= SYNC_SLAVES;
+	learn_rate(c);
+}
+
+/*
+ * Slaves that take the time are counted, too, so when the reference clock does not answer,
+ * what was sent comes back with a working counter that looks good. An answer is another
+ * time, or the same with the working counter as ever; once it was silent, only another.
+ */
+static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data,
+		     u16 len)
+{
+	bool told = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
+	u16 wkc = get_unaligned_le16(data + len);
+	u8 sent[8];
+
+	put_unaligned_le64(f->dc_sent, sent);
+	if (!wkc ||
+	    (told && !memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
+		c->dc_silent++;
+		return false;
+	}
+	c->dc_wkc = told ? wkc : 0;
+	c->dc_silent = 0;
+	return true;
+}
+
+/**
+ * ec_dc_fill() - add the clock datagrams to an empty frame
+ * @s: active session
+ * @fb: frame
+ * @index: of its slot
+ * @dc: as from ec_dc_wanted()
+ * @sync_time: for the reference clock, ns
+ * @now: time of the send (ktime)
+ *
+ * Registers 0x0910, 0x092C.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
+		u64 now)
+{
+	struct ec_master *m = s->master;
+	u16 ref = READ_ONCE(m->dc.ref_station);
+	/* those in front must not be told a time nobody knows */
+	bool quiet = READ_ONCE(m->dc.framed) || (m->dc.front && !s->cycle.dc_time);
+	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
+	unsigned int i;
+	u8 t[8], *p;
+
+	for (i = 0; i < refs(dc); i++) {
+		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
+		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
+	}
+	/* some ns more, else an answer exactly as predicted would look like silence */
+	s->cycle.dc_sent = predicted(m, &s->cycle, now) +
+			   (s->cycle.dc_silent ?: !s->cycle.dc_wkc) % 4;
+	put_unaligned_le64(s->cycle.dc_sent, t);
+	for (i = 0; i < syncs(dc); i++) {
+		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		memcpy(p, t, time_bytes(dc));
+	}
+	if (dc & REF_TIME) {
+		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		memset(p, 0, time_bytes(dc));
+	}
+	if (dc & MONITOR) {
+		p = ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4);
+		put_unaligned_le32(0, p);
+	}
+}
+
+static const u8 *skip(const u8 *data, u16 len)
+{
+	return data + len + EC_DGRAM_OVERHEAD;
+}
+
+/**
+ * ec_dc_take() - results of the clock datagrams of a returned frame
+ * @s: active session
+ * @f: the frame
+ * @data: data of the first datagram, matched against what was sent
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: data of the first datagram of process data.
+ */
+const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data)
+{
+	struct ec_cycle *c = &s->cycle;
+	u64 sent_ns = f->slot->sent_ns;
+	u16 len = time_bytes(f->dc);
+	u32 dc = f->dc;
+	unsigned int i;
+
+	for (i = 0; i < refs(dc); i++)
+		data = skip(data, 4);
+	if (dc & SYNC_SLAVES) {
+		if (answered(c, f, data, len))
+			take_time(s, data, len, sent_ns);
+		for (i = 0; i < syncs(dc); i++)
+			data = skip(data, len);
+	}
+	if (dc & REF_TIME) {
+		if (get_unaligned_le16(data + len)) {
+			c->dc_time64 = clock_time(s->master, data, len, sent_ns);
+			c->dc_back |= REF_TIME;
+		}
+		data = skip(data, len);
+	}
+	if (dc & MONITOR) {
+		if (get_unaligned_le16(data + 4)) {
+			c->dc_diff = get_unaligned_le32(data);
+			c->dc_back |= MONITOR;
+		}
+		data = skip(data, 4);
+	}
+	return data;
+}
+
+/**
+ * ec_dc_judge() - tell the application what is back of what it has sent
+ * @s: active session
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_dc_judge(struct ec_session *s)
+{
+	struct ec_cycle *c = &s->cycle;
+	struct ec_status *st = s->shared->status;
+
+	WRITE_ONCE(st->dc_ref, READ_ONCE(s->master->dc.ref_station) != 0);
+	if (c->dc_asked & SYNC_SLAVES) {
+		WRITE_ONCE(st->dc_time, c->dc_time);
+		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));
+	}
+	if (c->dc_asked & REF_TIME) {
+		WRITE_ONCE(st->dc_time64, c->dc_time64);
+		WRITE_ONCE(st->dc_time64_valid, !!(c->dc_back & REF_TIME));
+	}
+	if (c->dc_asked & MONITOR)
+		WRITE_ONCE(st->dc_monitor, c->dc_back & MONITOR ?
+			   c->dc_diff & ~(u32)EC_DC_DIFF_AHEAD : ~0u);
+	c->dc_asked = 0;
+	c->dc_back = 0;
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* One measurement or setting of all clocks of a segment. */
+#ifndef EC_DC_JOB_H
+#define EC_DC_JOB_H
+
+#include "dc.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "../wire/dc.h"
+#include "../link/xfer.h"
+
+#define EC_DC_OUT_TRIES	5	/* attempts that one slave may spoil */
+#define EC_DC_BATCH	7000	/* datagrams of one transfer, beside those of the slaves */
+
+/**
+ * struct ec_dc_job - all slaves of the segment, in ring order
+ * @m: master
+ * @n: slaves
+ * @slaves: with a reference each
+ * @nodes: what the delays are computed from
+ * @recv: receive times of the ports
+ * @unit: receive times of the processing units
+ * @sum: of the measured delays, ns
+ * @dg: datagrams of a transfer
+ * @spoiled: attempts, by slave
+ * @silent: slaves that did not answer in the last transfer
+ * @followed: station address of the clock that the others follow, or 0
+ * @ref: index of the reference clock, @n: none
+ * @latch_ns: when the last latch was sent (ktime)
+ * @running: the cycle has compensated clocks until now
+ * @time: in frames that compensate
+ */
+struct ec_dc_job {
+	struct ec_master *m;
+	unsigned int n;
+	struct ec_slave **slaves;
+	struct ec_dc_node *nodes;
+	u8 (*recv)[4 * EC_DC_PORTS];
+	u8 (*unit)[8];
+	s64 *sum;
+	struct ec_dg *dg;
+	u8 *spoiled;
+	bool *silent;
+	u16 followed;
+	unsigned int ref;
+	u64 latch_ns;
+	bool running;
+	u8 time[8];
+};
+
+/* all with receive times; all clocks; those not set yet; of these 64 and 32 bits */
+enum ec_dc_who { EC_DC_TIMES, EC_DC_CLOCKS, EC_DC_NEW, EC_DC_NEW_WIDE, EC_DC_NEW_NARROW };
+
+/* dc_job.c */
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m);
+void ec_dc_job_free(struct ec_dc_job *j);
+bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who);
+unsigned int ec_dc_count(const struct ec_dc_job *j, enum ec_dc_who who);
+unsigned int ec_dc_add(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who, u8 cmd, u16 ado,
+		       u16 len, u8 *data, size_t stride);
+int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who);
+void ec_dc_leave_out(struct ec_dc_job *j);
+int ec_dc_latch(struct ec_dc_job *j);
+int ec_dc_get_delays(struct ec_dc_job *j);
+void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms);
+bool ec_dc_has_front(const struct ec_dc_job *j);
+
+/* dc_set.c */
+int ec_dc_write(struct ec_dc_job *j);
+int ec_dc_near(struct ec_dc_job *j);
+void ec_dc_settle(struct ec_dc_job *j);
+int ec_dc_check(struct ec_dc_job *j);
+
+#endif

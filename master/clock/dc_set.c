@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Offsets and delays of all clocks, drift compensation, and what the slaves say of it. */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../cycle/cycle.h"
+#include "dc_job.h"
+
+#define SYNCS		72	/* comparisons of a frame: phase and rate come near alike */
+#define QUIET_SYNCS	12	/* of one that comes close behind another one */
+#define LOOK_FRAMES	78	/* between two looks, of 2 frames: two sends of 20 ms carry all */
+#define NEAR_NS		500	/* clocks that differ by less may be used */
+#define NEAR_MOST	1600	/* frames until near, or not */
+#define QUIET_FRAMES	312	/* which take what is left of the rates */
+#define CALM_CYCLES	120	/* whose frames take the noise, too */
+#define CALM_US		10000	/* several of them in a transfer if they are short */
+#define LAST_CYCLES	150	/* and what noise that has made */
+#define LAST_SYNCS	24	/* in short cycles by smaller steps */
+#define LAST_GAP	4	/* in long ones by few frames that are not close to each other */
+#define LAST_FRAMES	17	/* of which so many are enough */
+#define CYCLE_BOOST	12000	/* comparisons when the cycle alone compensates */
+#define CYCLE_WAIT_MS	3000
+
+/*
+ * System time at the reference clock when the last latch was made: what those
+ * clocks say that are set already, so that they go on when others join them.
+ */
+static u64 latch_time(const struct ec_dc_job *j)
+{
+	u64 t = ec_dc_app_at(j->m, j->latch_ns);
+	unsigned int i, set = j->ref;
+
+	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && j->slaves[i]->dc_set)
+			set = i;
+	if (j->slaves[set]->dc_set) {
+		t = get_unaligned_le64(j->unit[set]) + j->slaves[set]->dc_offset -
+		    (s64)(s32)j->slaves[set]->dc_delay;
+		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
+			t = ec_dc_whole(j->m, (u32)t, j->latch_ns);
+	}
+	ec_dc_clock(j->m, t, j->latch_ns);
+	return t;
+}
+
+/* what is written to a slave: offset and delay, as the registers lie */
+struct values {
+	u8 offset[8];
+	u8 delay[4];
+};
+
+static struct values *compute(struct ec_dc_job *j, u64 t)
+{
+	struct values *v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
+	unsigned int i;
+
+	for (i = 0; v && i < j->n; i++) {
+		struct ec_slave *s = j->slaves[i];
+
+		/* counted from the reference, which may be another one now */
+		put_unaligned_le32(s->dc_delay, v[i].delay);
+		if (!ec_dc_chosen(j, i, EC_DC_NEW))
+			continue;
+		s->dc_offset = ec_dc_offset(t, s->dc_delay, get_unaligned_le64(j->unit[i]));
+		put_unaligned_le64(s->dc_offset, v[i].offset);
+	}
+	return v;
+}
+
+/* Offset and delay in one datagram where they are neighbours. */
+static int write_values(struct ec_dc_job *j, struct values *v)
+{
+	/* for those that are set already: the delay alone */
+	unsigned int wide = ec_dc_add(j, 0, EC_DC_NEW_WIDE, EC_CMD_FPWR, EC_REG_DC_OFFSET,
+				      sizeof(*v), v->offset, sizeof(*v));
+	unsigned int narrow = ec_dc_add(j, wide, EC_DC_NEW_NARROW, EC_CMD_FPWR, EC_REG_DC_OFFSET,
+					4, v->offset, sizeof(*v));
+	unsigned int n = narrow, i;
+	int ret;
+
+	for (i = 0; i < j->n; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && !ec_dc_chosen(j, i, EC_DC_NEW_WIDE))
+			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, j->slaves[i]->station,
+							 EC_REG_DC_DELAY, 4, v[i].delay);
+	memset(j->silent, 0, j->n * sizeof(*j->silent));
+	ret = ec_xfer_clock(j->m, j->dg, n);
+	ret = ret ?: ec_dc_answers(j, 0, EC_DC_NEW_WIDE);
+	ret = ret ?: ec_dc_answers(j, wide, EC_DC_NEW_NARROW);
+	for (i = 0, n = narrow; i < j->n && !ret; i++) {
+		if (!ec_dc_chosen(j, i, EC_DC_CLOCKS) || ec_dc_chosen(j, i, EC_DC_NEW_WIDE))
+			continue;
+		j->silent[i] |= j->dg[n++].wkc != 1;
+		if (j->silent[i])
+			ret = -EAGAIN;
+	}
+	return ret;
+}
+
+/* The depths of the filters before 0x0930 resets them; all at once if all clocks are new. */
+static int reset_filters(struct ec_dc_job *j)
+{
+	static u8 depths[2] = { 0, 12 }, reset[2] = { 0x00, 0x10 };
+	unsigned int clocks = ec_dc_count(j, EC_DC_CLOCKS), n, end;
+	int ret;
+
+	if (ec_dc_count(j, EC_DC_NEW) == clocks) {
+		struct ec_dg all[] = {
+			EC_DG(EC_CMD_BWR, 0, EC_REG_DC_FILTER_DIFF, 2, depths),
+			EC_DG(EC_CMD_BWR, 0, EC_REG_DC_SPEED_START, 2, reset),
+		};
+
+		ret = ec_xfer_clock(j->m, all, ARRAY_SIZE(all));
+		if (!ret && all[0].wkc >= clocks && all[1].wkc >= clocks)
+			return 0;
+	}
+	n = ec_dc_add(j, 0, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0);
+	/* a scan may have taken a slave out of the group meanwhile */
+	end = ec_dc_add(j, n, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
+	ret = ec_xfer_clock(j->m, j->dg, end);
+	return ret ?: ec_dc_answers(j, 0, EC_DC_NEW) ?: ec_dc_answers(j, n, EC_DC_NEW);
+}
+
+/**
+ * ec_dc_write() - set the clocks
+ * @j: job with delays and a latch
+ *
+ * Context: Process, dc.lock held. Waits for bus traffic.
+ * Return: 0; -EAGAIN when slaves do not answer; -ENOMEM; or as ec_xfer().
+ */
+int ec_dc_write(struct ec_dc_job *j)
+{
+	struct values *v;
+	unsigned int i;
+	int ret;
+	u64 t;
+
+	lockdep_assert_held(&j->m->dc.lock);
+	t = latch_time(j);
+	v = compute(j, t);
+	if (!v)
+		return -ENOMEM;
+	ret = write_values(j, v) ?: reset_filters(j);
+	for (i = 0; i < j->n && !ret; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS)) {
+			WRITE_ONCE(j->slaves[i]->dc_out, false);
+			WRITE_ONCE(j->slaves[i]->dc_set, true);
+		}
+	if (!ret)
+		ec_dc_app_set(j->m, t - j->latch_ns, true);
+	kvfree(v);
+	return ret;
+}
+
+/* A frame with up to @most comparisons; 0: one that only keeps others apart. */
+static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int most)
+{
+	static u8 none[EC_DGRAM_DATA_MAX];
+	u16 bytes = READ_ONCE(j->m->dc.ref_wide) ? 8 : 4, ref = READ_ONCE(j->m->dc.ref_station);
+	u16 room = ec_share_clock_bytes(j->m), pad;
+	unsigned int syncs = min(max(1u, room / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
+	unsigned int end = n + syncs;
+
+	for (; n < end; n++)
+		j->dg[n] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref, EC_REG_DC_SYSTIME, bytes, j->time);
+	/* all are of one length, so that they are not closer to each other */
+	pad = syncs * (bytes + EC_DGRAM_OVERHEAD) + EC_DGRAM_OVERHEAD;
+	pad = min_t(u16, room - min(room, pad), EC_DGRAM_DATA_MAX);
+	if (pad || !most)
+		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, pad ?: 1, none);
+	return n;
+}
+
+/* clock frames that one send may carry */
+static unsigned int per_send(const struct ec_dc_job *j)
+{
+	return max(1u, READ_ONCE(j->m->interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+}
+
+/*
+ * Drift compensation. Each frame gives a slave one measurement of its rate, with 10 ns
+ * of noise over the time since the last frame, and as many steps of 1/4096 towards it as
+ * the frame has datagrams; but one step of 1/64 of the phase, however many it has. So
+ * at first frames have as many as they may. When the clocks are near, slaves may use
+ * them; what is left of the rates, and then the noise, goes meanwhile: only the first
+ * frame of a send, which measures over all of a cycle, still has many (@first), the
+ * others have few (@more), or none but each @gap frames. The cycle only asks for the time
+ * as long: what it tells shortly before a frame would make the measurement worse.
+ */
+static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigned int first,
+			       unsigned int more, unsigned int gap)
+{
+	unsigned int i, at, n = 0, per = per_send(j);
+
+	/* for the case that the reference does not answer */
+	put_unaligned_le64(ec_dc_clock_now(j->m), j->time);
+	for (i = 0; i < frames; i++) {
+		at = i % per;
+		n = add_frame(j, n, !at ? first : at % gap ? 0 : more);
+	}
+	for (i = 0; i < n; i++)
+		j->dg[i].repeat = false;
+	return n;
+}
+
+/* one more or less does not matter */
+static int tolerate(int ret)
+{
+	return ret == -ETIMEDOUT || ret == -EBUSY ? 0 : ret;
+}
+
+static bool canceled(const struct ec_dc *dc)
+{
+	return !READ_ONCE(dc->ref_station) || READ_ONCE(dc->stop);
+}
+
+/*
+ * Largest difference of the clocks in @v, of those that have answered from datagram @at
+ * on. U32_MAX while one was not asked, as its frame was lost.
+ */
+static u32 worst(const struct ec_dc_job *j, unsigned int at, u8 (*v)[4])
+{
+	u32 max = 0;
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++) {
+		const struct ec_dg *dg = &j->dg[at];
+
+		if (!ec_dc_chosen(j, i, EC_DC_CLOCKS))
+			continue;
+		at++;
+		if (dg->err)
+			max = U32_MAX;
+		else if (i != j->ref && dg->wkc == 1)
+			max = max_t(u32, max, abs(ec_dc_diff(get_unaligned_le32(v[i]))));
+	}
+	return max;
+}
+
+/* One more look at the differences, behind what compensates until then. */
+static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
+{
+	unsigned int n;
+	int ret;
+
+	if (canceled(&j->m->dc))
+		return -ECANCELED;
+	n = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
+	ret = ec_xfer_clock(j->m, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+						   4, v[0], sizeof(v[0])));
+	*max = worst(j, n, v);
+	return tolerate(ret);
+}
+
+/* Beside clocks that are in use it is slower: the frames reach them, too. */
+static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
+{
+	unsigned int more = j->running ? QUIET_SYNCS : SYNCS, done;
+	u32 max = U32_MAX;
+	int ret = 0;
+
+	WRITE_ONCE(j->m->dc.framed, true);
+	for (done = 0; done < NEAR_MOST && max > NEAR_NS && !ret; done += LOOK_FRAMES)
+		ret = look(j, more, v, &max);
+	return ret;
+}
+
+static int by_cycle(struct ec_dc *dc)
+{
+	unsigned int ms;
+
+	WRITE_ONCE(dc->boost, CYCLE_BOOST);
+	for (ms = 0; ms < CYCLE_WAIT_MS && READ_ONCE(dc->boost); ms++) {
+		if (READ_ONCE(dc->stop))
+			return -ECANCELED;
+		usleep_range(1000, 1100);
+	}
+	return 0;
+}
+
+/**
+ * ec_dc_near() - compensate the drift until the clocks may be used
+ * @j: job whose clocks are set
+ *
+ * With slaves in front of the reference only the cycle may tell the time: what
+ * waits in a queue tells them one that has passed.
+ *
+ * Context: Process, dc.lock held. Waits for bus traffic.
+ * Return: 0; -ECANCELED; -ENOMEM; or as ec_xfer().
+ */
+int ec_dc_near(struct ec_dc_job *j)
+{
+	u8 (*v)[4];
+	int ret;
+
+	lockdep_assert_held(&j->m->dc.lock);
+	/* a single clock has no other to be synchronized to */
+	if (ec_dc_count(j, EC_DC_CLOCKS) < 2)
+		return 0;
+	if (READ_ONCE(j->m->dc.front))
+		return by_cycle(&j->m->dc);
+	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
+	if (!v)
+		return -ENOMEM;
+	ret = by_frames(j, v);
+	kvfree(v);
+	return ret;
+}
+
+static int compensate(struct ec_dc_job *j, unsigned int n)
+{
+	if (canceled(&j->m->dc))
+		return -ECANCELED;
+	return tolerate(ec_xfer_clock(j->m, j->dg, n));
+}
+
+/* What little rate the frames behind the first one learn is noise, the more the closer. */
+static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
+{
+	unsigned int per = per_send(j), frames = min_t(unsigned int, cycles * per, LOOK_FRAMES);
+
+	if (!last)
+		return compensate(j, add_frames(j, frames, SYNCS, 1, 1));
+	if (per < 2 * LAST_GAP)
+		return compensate(j, add_frames(j, frames, LAST_SYNCS, 1, 1));
+	if (cycles == 1)
+		frames = min_t(unsigned int, frames, LAST_FRAMES);
+	return compensate(j, add_frames(j, frames, SYNCS, 1, LAST_GAP));
+}
+
+/**
+ * ec_dc_settle() - compensate on, beside slaves that use their clocks
+ * @j: job whose clocks are near
+ *
+ * Not the noise when the application leads the reference clock: that changes its rate.
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_dc_settle(struct ec_dc_job *j)
+{
+	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->m->interval_us)));
+	struct ec_dc *dc = &j->m->dc;
+	int ret = 0;
+
+	if (!READ_ONCE(dc->framed))
+		return;
+	for (i = 0; i < QUIET_FRAMES && !ret; i += LOOK_FRAMES)
+		ret = compensate(j, add_frames(j, LOOK_FRAMES, SYNCS, QUIET_SYNCS, 1));
+	for (i = 0; i < CALM_CYCLES + LAST_CYCLES && !ret && !READ_ONCE(dc->leads); i += cycles)
+		ret = calm(j, cycles, i >= CALM_CYCLES);
+	WRITE_ONCE(dc->framed, false);
+}
+
+/**
+ * ec_dc_check() - ask each slave for its difference to the reference, register 0x092C
+ * @j: job whose clocks were compensated
+ *
+ * Context: Process, dc.lock held. Waits for bus traffic.
+ * Return: 0; -ENOMEM; or as ec_xfer().
+ */
+int ec_dc_check(struct ec_dc_job *j)
+{
+	u8 (*v)[4] = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
+	unsigned int i;
+	int ret;
+
+	if (!v)
+		return -ENOMEM;
+	memset(j->silent, 0, j->n * sizeof(*j->silent));
+	ret = ec_xfer_clock(j->m, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+						   4, v[0], sizeof(v[0])));
+	/* one that is silent now was set before */
+	if (!ret)
+		ec_dc_answers(j, 0, EC_DC_CLOCKS);
+	for (i = 0; i < j->n && !ret; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && !j->silent[i])
+			ec_dc_verdict(j->slaves[i], get_unaligned_le32(v[i]));
+	kvfree(v);
+	return ret;
+}

@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* SYNC0 and SYNC1 of one slave (ETG.1000.4 clause 6.8.5). */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include "../config/config.h"
+#include "dc.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "../wire/dc.h"
+#include "../link/xfer.h"
+
+#define LEAD_NS		(100 * NSEC_PER_MSEC)	/* first SYNC0 is in the future */
+#define LEAD_CYCLES	4			/* and later when the cycle is long */
+#define LEAD_MAX_NS	(16ll * NSEC_PER_SEC)
+#define HALF32_NS	(1ll << 31)		/* 32 bits tell past and future up to 2.1 s */
+#define STARTS		6			/* tries, each with a later start */
+#define CHECKS		3			/* starts that were in time and had no effect */
+#define CHECK_NS	(2 * NSEC_PER_MSEC)	/* after the first SYNC signals */
+#define WAIT_MS		5000			/* for clocks to come near */
+#define WAIT_SET_MS	60000			/* to be set at all */
+#define POLL_MS		100
+
+#define RUN		BIT(8)	/* of AssignActivate: cyclic operation */
+#define SYNC0		BIT(9)
+#define SYNC1		BIT(10)
+
+/*
+ * The clocks are set, or cannot be. Those of slaves that have just come
+ * are still to be set although those of the others are.
+ */
+static bool settled(const struct ec_dc *dc)
+{
+	return !READ_ONCE(dc->changed) && READ_ONCE(dc->state) != EC_DC_BUSY;
+}
+
+/* Nobody needs the way to this state to be gone on with; who has changed that has kicked. */
+static bool canceled(const struct ec_slave *s, u8 state)
+{
+	return READ_ONCE(s->interrupt) || READ_ONCE(s->requested) < state || s->gone ||
+	       s->master->stopping;
+}
+
+/**
+ * ec_dc_wait() - wait until the clocks are set
+ * @s: slave that wants to use its clock, @lock held
+ *
+ * Context: Process. May sleep: from the first cycle on at most 5 s for clocks
+ * that are set to come near each other, and a minute for them to be set.
+ * Return: 0; -ETIME when they were not set in time; -ENXIO when the one of @s
+ * could not be set; -ECANCELED.
+ */
+int ec_dc_wait(struct ec_slave *s)
+{
+	struct ec_dc *dc = &s->master->dc;
+	unsigned int ms, near = 0;
+
+	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
+		/* the cycle has not begun yet */
+		if (READ_ONCE(dc->idle))
+			ms = 0;
+		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
+			return READ_ONCE(dc->state) == EC_DC_READY && READ_ONCE(s->dc_set) ?
+			       0 : -ENXIO;
+		if (canceled(s, EC_AL_SAFEOP))
+			return -ECANCELED;
+		if (READ_ONCE(s->dc_set) && !READ_ONCE(dc->changed))
+			near += POLL_MS;
+	}
+	return -ETIME;
+}
+
+/**
+ * ec_dc_sync_stop() - no SYNC signals, the unit belongs to the master
+ * @s: slave with a clock, @lock held
+ *
+ * Registers 0x0980, 0x0981.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 or as ec_xfer_fpwr().
+ */
+int ec_dc_sync_stop(struct ec_slave *s)
+{
+	static const u8 off[2];
+
+	WRITE_ONCE(s->sync_free, false);
+	s->sync_due_ns = 0;
+	return ec_xfer_fpwr(s->master, s->station, EC_REG_DC_CUC, off, sizeof(off));
+}
+
+/**
+ * ec_dc_sync_again() - SYNC was started before the clock was set, and now it is
+ * @s: slave whose clock was just set
+ *
+ * Its signals have another phase than those of the others, or none are left. In
+ * OP they cannot be moved: the slave is configured once more.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_sync_again(struct ec_slave *s)
+{
+	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->gone)
+		return;
+	ec_slave_warn(s, "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
+	WRITE_ONCE(s->reconfigure, true);
+	ec_slave_kick(s);
+}
+
+/*
+ * Off first: while SYNC runs a new start time is ignored. Returns in @now the time
+ * the slave had at @at_ns.
+ */
+static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 *at_ns)
+{
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+	u8 off[2] = { 0 }, cycles[8], t[8] = { 0 };
+	struct ec_dg dg[] = {
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CUC, sizeof(off), off),
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CYCLE0, sizeof(cycles), cycles),
+		EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_SYSTIME, wide ? 8 : 4, t),
+	};
+	int ret;
+
+	put_unaligned_le32(c->dc_cycle[0], cycles);
+	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
+	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
+	if (ret)
+		return ret;
+	*at_ns = dg[2].sent_ns;
+	*now = wide ? get_unaligned_le64(t) :
+		      ec_dc_whole(s->master, get_unaligned_le32(t), *at_ns);
+	return 0;
+}
+
+/* From the first SYNC0 to the first SYNC1, also when that is slower. */
+static u32 sync1_after(const struct ec_config *c)
+{
+	return c->dc_assign & SYNC1 ? c->dc_cycle[1] : 0;
+}
+
+/*
+ * Start time, activation, and whether that was in time: the slave says what time it
+ * was then, in the same frame. -EAGAIN: it was too late.
+ */
+static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
+{
+	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
+	u8 start[8], assign[2], t[8] = { 0 };
+	struct ec_dg dg[] = {
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_START, wide ? 8 : 4, start),
+		EC_DG(EC_CMD_FPWR, s->station, EC_REG_DC_CUC, sizeof(assign), assign),
+		EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_SYSTIME, wide ? 8 : 4, t),
+	};
+	unsigned int i;
+	s64 ahead;
+	int ret;
+
+	put_unaligned_le64(first, start);
+	put_unaligned_le16(c->dc_assign, assign);
+	/* the second half alone would start it at whatever time is there */
+	for (i = 0; i < ARRAY_SIZE(dg); i++)
+		dg[i].repeat = false;
+	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
+	if (ret || !(c->dc_assign & RUN))
+		return ret;
+	ahead = first - get_unaligned_le64(t);
+	if (!wide)
+		ahead = (s32)ahead;
+	if (ahead <= 0)
+		return -EAGAIN;
+	s->sync_due_ns = dg[2].sent_ns + ahead + sync1_after(c);
+	return 0;
+}
+
+/*
+ * How far the start shall be away at least. At most a period later it is on the grid,
+ * and 32 bits must still tell it from the past then, with some time to spare.
+ */
+static u64 lead(struct ec_slave *s, u32 period, u64 took)
+{
+	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->master->interval_us) * NSEC_PER_USEC;
+	s64 most = HALF32_NS - period - LEAD_NS;
+
+	if (ec_slave_features(s) & EC_FEAT_DC64)
+		most = LEAD_MAX_NS;
+	return min_t(u64, LEAD_NS + cycles + took, max_t(s64, most, LEAD_NS));
+}
+
+/* Once; the longer transfers to the slave take, the later it starts. */
+static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try)
+{
+	struct ec_dc *dc = &s->master->dc;
+	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	u64 now, at_ns, t0 = ktime_get_ns(), took;
+	int ret = prepare(s, c, &now, &at_ns);
+
+	if (ret)
+		return ret;
+	took = ktime_get_ns() - t0;
+	now += ktime_get_ns() - at_ns + lead(s, period, took << (try + 1));
+	return activate(s, c, ec_dc_start(now, dc->has_phase ? dc->phase : 0, period,
+					  c->dc_shift[0]));
+}
+
+#define MODES	8	/* of the SII that are compared, and named */
+
+/**
+ * ec_dc_sync_compare() - warn about an AssignActivate value that cannot be meant
+ * @s: slave with a clock, @lock held
+ * @c: its configuration with @dc_assign
+ *
+ * Either it enables no SYNC signal, or the SII has operation modes and none with
+ * this value. It is used all the same: an EEPROM may be older than its slave.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c)
+{
+	struct ec_sii_dc dc[MODES];
+	char list[8 * MODES] = "";
+	int i, n, len = 0;
+
+	if (!(c->dc_assign & RUN) || !(c->dc_assign & (SYNC0 | SYNC1))) {
+		ec_slave_warn(s, "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
+			      c->dc_assign);
+		return;
+	}
+	n = s->sii ? ec_sii_decode_dcs(s->sii, s->sii_bytes, dc, MODES) : 0;
+	for (i = 0; i < min(n, MODES); i++) {
+		if (dc[i].assign == c->dc_assign)
+			return;
+		len += scnprintf(list + len, sizeof(list) - len, " 0x%04x", dc[i].assign);
+	}
+	/* the one that was looked for may be among those that were not decoded */
+	if (n > 0 && n < MODES)
+		ec_slave_warn(s, "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
+			      c->dc_assign, list);
+}
+
+/**
+ * ec_dc_sync_start() - program and start SYNC0 and SYNC1
+ * @s: slave whose clock is set, @lock held
+ * @c: its configuration with @dc_assign
+ *
+ * Registers 0x0980 off, 0x09A0, 0x0990, then 0x0980. A start that came too late is
+ * repeated.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -ERANGE when the cycle times are 0 or too long, -EOPNOTSUPP when the
+ * start always comes too late (both noted as the slave's error); -ECANCELED;
+ * or as ec_xfer_fpwr().
+ */
+int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
+{
+	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	unsigned int try;
+	int ret = -EAGAIN;
+
+	if (period < c->dc_cycle[0] || !period) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
+			      c->dc_cycle[0], c->dc_cycle[1], c->dc_assign);
+		return -ERANGE;
+	}
+	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
+		bool set = READ_ONCE(s->dc_set);
+
+		if (canceled(s, EC_AL_SAFEOP))
+			return -ECANCELED;
+		s->sync_due_ns = 0;
+		WRITE_ONCE(s->sync_free, !set);
+		/* who sets the clock meanwhile sees that, or is seen below */
+		smp_mb();
+		ret = start(s, c, try);
+		if (!ret && !set && READ_ONCE(s->dc_set))
+			ret = -EAGAIN;
+	}
+	if (ret == -EAGAIN) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "SYNC0 start time had passed on arrival, %d attempts; configure fewer slaves at once or allow more delayed cycles",
+			      STARTS);
+		ret = -EOPNOTSUPP;
+	}
+	return ret;
+}
+
+static int wait_until(struct ec_slave *s, u64 ns)
+{
+	while (ktime_get_ns() < ns) {
+		if (canceled(s, EC_AL_OP))
+			return -ECANCELED;
+		usleep_range(1000, 1500);
+	}
+	return 0;
+}
+
+/* What register 0x0984 says of SYNC signals in use: pending, or an implausible start. */
+static u8 missing(const struct ec_config *c, u8 status)
+{
+	return status & (4 | (c->dc_assign & SYNC0 ? 1 : 0) | (c->dc_assign & SYNC1 ? 2 : 0));
+}
+
+/**
+ * ec_dc_sync_check() - do the SYNC signals run that were started?
+ * @s: slave on its way to OP, @lock held
+ * @c: its configuration
+ *
+ * Waits for the first ones and reads register 0x0984; starts them again when they
+ * have not come. Controllers without that register may answer anything there: they
+ * are believed.
+ *
+ * Context: Process. Waits for bus traffic, and for the start time.
+ * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
+ * -ECANCELED; or as ec_dc_sync_start().
+ */
+int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
+{
+	bool known = ec_slave_features(s) & EC_FEAT_DC_ENHANCED;
+	u8 status[1] = { 0 };
+	unsigned int try;
+	int ret;
+
+	for (try = 0; s->sync_due_ns; try++) {
+		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
+		ret = ret ?: ec_xfer_fprd(s->master, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		if (ret && (ret != -EIO || known))
+			return ret;
+		if (!missing(c, status[0]))
+			break;
+		if (!known) {
+			ec_slave_warn(s, "SYNC signals may not run (0x0984 = 0x%02x), or the slave lacks this register; continuing to OP\n",
+				      status[0]);
+			break;
+		}
+		if (try == CHECKS) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
+				      status[0], c->dc_assign);
+			return -EOPNOTSUPP;
+		}
+		ret = ec_dc_sync_start(s, c);
+		if (ret) {
+			/* SYNC may be off now: it is started where that belongs */
+			WRITE_ONCE(s->reconfigure, true);
+			return ret;
+		}
+	}
+	s->sync_due_ns = 0;
+	return 0;
+}

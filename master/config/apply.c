@@ -1,0 +1,590 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Bringing one slave to its state, configuring it on the way; worker. */
+#include <linux/delay.h>
+#include "../mailbox/coe.h"
+#include "config.h"
+#include "../cycle/domain.h"
+#include "../mailbox/eoe.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "../session/session.h"
+#include "../bus/slave.h"
+#include "../mailbox/soe.h"
+#include "../wire/coe.h"
+#include "../wire/fmmu.h"
+#include "../wire/soe.h"
+#include "../link/xfer.h"
+
+#define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
+#define HOLD_MS		1000	/* a transfer that takes longer is cut off */
+
+static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
+{
+	return ec_xfer_fpwr(s->master, s->station, ado, data, len);
+}
+
+static int failed(struct ec_slave *s, u8 state, int ret)
+{
+	if (ret == -EPROTO && state == EC_AL_SAFEOP && s->pdo_refusal[0])
+		/* the first cause, not only what follows from it */
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", s->pdo_refusal,
+			      s->al_code, ec_al_code_text(s->al_code));
+	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
+			      ret == -ETIME ? "not reached in time" : "refused");
+	else if (ret == -EPROTO)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s refused: AL status code 0x%04x (%s)",
+			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));
+	else if (ret == -ETIME)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s not reached in time, AL state %s",
+			      ec_al_state_name(state),
+			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
+	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
+		 ret != -EOVERFLOW && ret != -ERANGE)	/* told already */
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "communication failed before %s (%pe)",
+			      ec_al_state_name(state), ERR_PTR(ret));
+	return ret;
+}
+
+/*
+ * Frames were lost, the device hung, or the slave needs more time than usual: worth another
+ * try. A refusal is not, unless the slave missed the outputs.
+ */
+static bool is_transient(const struct ec_slave *s, int ret)
+{
+	if (ret == -EPROTO)
+		return s->al_code == EC_AL_CODE_NO_OUTPUTS ||
+		       s->al_code == EC_AL_CODE_SM_WATCHDOG;
+	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
+	       ret == -EBUSY;
+}
+
+/*
+ * A try after a failure that was cut short, or met no cycle, has decided nothing: the
+ * monitor has taken it off its plan.
+ */
+static bool is_undecided(const struct ec_slave *s, int ret)
+{
+	return s->retry_ms && (!ret || ret == -ECANCELED || ret == -EAGAIN);
+}
+
+/* What the application allows for a transition, ms; 0: the default. */
+static u32 limit(const struct ec_slave *s, u8 from, u8 to)
+{
+	return s->config && ec_al_state_valid(from) ? s->config->timeout_ms[from][to] : 0;
+}
+
+/* What a reason shows while the worker waits; NULL ends it. */
+static void waits_for(struct ec_slave *s, const char *what)
+{
+	WRITE_ONCE(s->waits_for, what);
+}
+
+static int set_state(struct ec_slave *s, u8 state)
+{
+	int ret;
+
+	waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
+		     state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" : "the slave to change its state");
+	ret = ec_al_set(s, state, limit(s, s->al_status & EC_AL_STATE_MASK, state));
+	waits_for(s, NULL);
+	return ret;
+}
+
+/*
+ * A transfer of somebody else is not cut off by the way through INIT: it comes before,
+ * unless it takes long, or after. The worker has the mailbox until PREOP.
+ */
+static void hold_mailbox(struct ec_slave *s)
+{
+	if (s->holds || READ_ONCE(s->requested) < EC_AL_PREOP ||
+	    ec_mbox_lock(s, &s->sdo_lock, HOLD_MS))
+		return;
+	if (ec_mbox_lock(s, &s->mbox_lock, HOLD_MS))
+		up(&s->sdo_lock);
+	else
+		s->holds = true;
+}
+
+static void release_mailbox(struct ec_slave *s)
+{
+	if (!s->holds)
+		return;
+	s->holds = false;
+	up(&s->mbox_lock);
+	up(&s->sdo_lock);
+}
+
+static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
+{
+	return write_reg(s, EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE, &active, 1);
+}
+
+/*
+ * SyncManagers that the EEPROM wants on in OP only, state-machine.md 4.4: on with the
+ * request, as some slaves want to see outputs before. How many were off, or -errno.
+ */
+static int op_only_on(struct ec_slave *s)
+{
+	unsigned int sm, n = 0;
+	int ret;
+
+	for (sm = 0; sm < s->n_sms; sm++) {
+		if (!(s->sms[sm].enable & EC_SII_SM_OP_ONLY) || s->op_only & BIT(sm) ||
+		    !ec_pdo_list_bytes(ec_apply_pdos_of(s, s->plan, sm)))
+			continue;
+		ret = activate_sm(s, sm, EC_SM_ACT_ENABLE);
+		if (ret)
+			return ret;
+		s->op_only |= BIT(sm);
+		n++;
+	}
+	return n;
+}
+
+static int op_only_off(struct ec_slave *s)
+{
+	unsigned int sm;
+	int ret;
+
+	for (sm = 0; s->op_only; sm++) {
+		ret = s->op_only & BIT(sm) ? activate_sm(s, sm, 0) : 0;
+		if (ret)
+			return ret;
+		s->op_only &= ~BIT(sm);
+	}
+	return 0;
+}
+
+/* state-machine.md 4.1 */
+static int to_init(struct ec_slave *s)
+{
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
+	int ret;
+
+	hold_mailbox(s);
+	op_only_off(s);
+	ret = set_state(s, EC_AL_INIT);
+	if (ret)
+		return failed(s, EC_AL_INIT, ret);
+	ec_apply_clear(s);
+	write_reg(s, EC_REG_EEP_OWNER, force, 1);
+	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
+	if (ec_slave_has_clock(s))
+		ec_dc_sync_stop(s);
+	s->mbox_counter = 0;
+	s->mbox_counts = false;
+	s->mbox_answered = false;
+	s->op_only = 0;
+	s->reconfigure = false;
+	s->ours = false;
+	s->clean = false;
+	return 0;
+}
+
+/* SM0 and SM1 for a mailbox area; returns bytes of @page, 0 without mailbox */
+static unsigned int mailbox_sms(const struct ec_sii_mbox *mb, u8 *page)
+{
+	struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
+			     .activate = EC_SM_ACT_ENABLE };
+	struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
+			    .activate = EC_SM_ACT_ENABLE };
+
+	if (!mb->rx_size || !mb->tx_size)
+		return 0;
+	ec_sm_encode(&out, page);
+	ec_sm_encode(&in, page + EC_SM_PAGE);
+	return 2 * EC_SM_PAGE;
+}
+
+/**
+ * ec_apply_mailbox_sms() - SyncManager pages of the standard mailbox
+ * @slave: slave with its EEPROM
+ * @page: result, SM0 and SM1
+ *
+ * Context: Any.
+ * Return: bytes of @page, 0 without mailbox.
+ */
+unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page)
+{
+	return ec_slave_has_mailbox(slave) ? mailbox_sms(&slave->info.std, page) : 0;
+}
+
+/* state-machine.md 4.2, with the bootstrap mailbox */
+static int to_boot(struct ec_slave *s)
+{
+	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
+	u8 page[2 * EC_SM_PAGE];
+	unsigned int len = mailbox_sms(&s->info.boot, page);
+	int ret;
+
+	if (!len) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "BOOT not possible: no bootstrap mailbox in the SII");
+		return -EOPNOTSUPP;
+	}
+	ret = write_reg(s, EC_REG_SM(0), page, len) ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?:
+	      set_state(s, EC_AL_BOOT);
+	return ret ? failed(s, EC_AL_BOOT, ret) : 0;
+}
+
+/* state-machine.md 4.2 */
+static int to_preop(struct ec_slave *s)
+{
+	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
+	u8 page[2 * EC_SM_PAGE];
+	unsigned int len = ec_apply_mailbox_sms(s, page);
+	int ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
+
+	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
+	s->ours = !ret;
+	s->clean = !ret;
+	release_mailbox(s);
+	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
+}
+
+static void sdo_failed(struct ec_slave *s, const struct ec_config_sdo *sdo, int ret, u32 abort)
+{
+	char why[96];
+
+	if (ret == -EIO && abort)
+		scnprintf(why, sizeof(why), "abort 0x%08x: %s", abort,
+			  ec_coe_abort_text(abort) ?: "unknown code");
+	else
+		ec_mbox_fail_text(ret, "CoE", why, sizeof(why));
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s",
+		      sdo->index, sdo->sub, sdo->size, why);
+}
+
+static int write_sdos(struct ec_slave *s, const struct ec_config *c)
+{
+	struct ec_config_sdo *sdo;
+	u32 abort;
+	int ret;
+
+	list_for_each_entry(sdo, &c->sdos, list) {
+		ret = ec_coe_download(s, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
+				      &abort, NULL);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+		if (ret) {
+			sdo_failed(s, sdo, ret, abort);
+			return abort ? -EREMOTEIO : ret;
+		}
+	}
+	return 0;
+}
+
+static void idn_failed(struct ec_slave *s, const struct ec_config_idn *i, int ret, u16 error)
+{
+	char name[12], why[96];
+
+	if (ret == -EIO && error)
+		scnprintf(why, sizeof(why), "SoE error 0x%04x: %s", error,
+			  ec_soe_error_text(error) ?: "unknown code");
+	else
+		ec_mbox_fail_text(ret, "SoE", why, sizeof(why));
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
+		      ec_soe_idn_text(i->idn, name), i->drive, i->size, why);
+}
+
+/* those of one AL state */
+static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
+{
+	struct ec_config_idn *i;
+	u16 error;
+	int ret;
+
+	list_for_each_entry(i, &c->idns, list) {
+		if (i->state != state)
+			continue;
+		ret = ec_soe_write(s, i->drive, i->idn, i->data, i->size, &error, NULL);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+		if (ret) {
+			idn_failed(s, i, ret, error);
+			return error ? -EREMOTEIO : ret;
+		}
+	}
+	return 0;
+}
+
+/* Is there a SyncManager whose PDOs the application did not name? */
+static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+
+	for (sm = 2; sm < s->n_sms; sm++)
+		if (!c || !c->sm[sm].explicit)
+			return true;
+	return false;
+}
+
+/* SYNC signals, as soon as the clocks of the whole segment are set */
+static int start_sync(struct ec_slave *s, const struct ec_config *c)
+{
+	int ret;
+
+	if (!c || !c->dc_assign)
+		return 0;
+	if (!ec_slave_has_clock(s)) {
+		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
+		return 0;
+	}
+	ec_dc_sync_compare(s, c);
+	waits_for(s, "the clocks of the segment to be synchronized");
+	ret = ec_dc_wait(s);
+	waits_for(s, NULL);
+	if (ret == -ECANCELED)
+		return ret;
+	if (ret)
+		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
+			      READ_ONCE(s->dc_set) ? "inside the sync window yet" :
+						     "synchronized", ERR_PTR(ret));
+	return ec_dc_sync_start(s, c);
+}
+
+/* Some slaves need time between their configuration and SAFEOP. */
+static int wait_flag(struct ec_slave *s, s32 ms)
+{
+	u64 until = ktime_get_ns() + (u64)clamp(ms, 0, FLAG_MAX_MS) * NSEC_PER_MSEC;
+
+	while (ms > 0 && ktime_get_ns() < until) {
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		usleep_range(1000, 1500);
+	}
+	return 0;
+}
+
+/* state-machine.md 4.3 */
+static int to_safeop(struct ec_slave *s, const struct ec_config *c)
+{
+	int ret = 0;
+
+	s->clean = false;
+	s->pdo_refusal[0] = '\0';
+	ec_slave_clear_warning(s);
+	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
+		ec_slave_read_coe_pdos(s);
+	if (c) {
+		waits_for(s, "mailbox replies to its configuration");
+		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
+		      ec_apply_pdos(s, c);
+		waits_for(s, NULL);
+		if (ret)
+			return ret;
+	}
+	ret = ec_apply_regs(s, c);
+	if (!ret && c) {
+		waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
+		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
+		waits_for(s, NULL);
+	}
+	if (!ret)
+		ret = start_sync(s, c);
+	if (!ret)
+		ret = set_state(s, EC_AL_SAFEOP);
+	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
+}
+
+/* Cycles after which all domains of a slave have been sent twice. */
+static u32 cycles_twice(const struct ec_config *c)
+{
+	u32 division = 1;
+	unsigned int i;
+
+	for (i = 0; i < c->n_fmmus; i++)
+		division = max(division, c->fmmus[i].domain->division);
+	return 2 * division;
+}
+
+/*
+ * Outputs must have arrived before OP is requested (0x0019 else). Two sends:
+ * the first may have left before the FMMUs were written.
+ */
+static int wait_outputs(struct ec_slave *s)
+{
+	u32 cycles, limit;
+	unsigned int i;
+	u64 from;
+
+	if (!s->plan)
+		return 0;
+	cycles = cycles_twice(s->plan);
+	limit = 5000 + div_u64((u64)cycles * s->master->interval_us, 500);
+	from = ec_read64(&s->plan->session->cycle.cycles);
+	for (i = 0; i < limit; i++) {
+		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
+			return 0;
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+			return -ECANCELED;
+		usleep_range(500, 1000);
+	}
+	/* nobody cycles: the monitor asks again later */
+	return -EAGAIN;
+}
+
+/* state-machine.md 4.4 */
+static int to_op(struct ec_slave *s)
+{
+	int ret;
+
+	waits_for(s, "two cycles of its domains");
+	ret = wait_outputs(s);
+	waits_for(s, NULL);
+	if (!ret && s->plan)
+		ret = write_idns(s, s->plan, EC_AL_SAFEOP);
+	if (ret)
+		return ret;
+	ret = s->plan ? ec_dc_sync_check(s, s->plan) : 0;
+	if (!ret)
+		ret = op_only_on(s);
+	if (ret > 0)
+		ret = wait_outputs(s);
+	ret = ret ?: set_state(s, EC_AL_OP);
+	if (ret == -EPROTO)
+		op_only_off(s);
+	return ret ? failed(s, EC_AL_OP, ret) : 0;
+}
+
+/*
+ * In PREOP a slave has no use for SYNC signals and process data. Without them the next
+ * application need not take it through INIT.
+ */
+static int step_down(struct ec_slave *s, u8 want)
+{
+	int ret = op_only_off(s) ?: set_state(s, want);
+
+	if (ret)
+		return failed(s, want, ret);
+	if (want == EC_AL_PREOP) {
+		if (ec_slave_has_clock(s))
+			ret = ec_dc_sync_stop(s);
+		s->clean = !ec_apply_clear_pdos(s) && !ret;
+	}
+	return 0;
+}
+
+/* Before activation the application may change its configuration at any time. */
+static void take_plan(struct ec_slave *s)
+{
+	const struct ec_config *c = s->config;
+
+	if (!c || !smp_load_acquire(&c->session->active) || s->plan == c)
+		return;
+	s->plan = c;
+	s->reconfigure = true;
+}
+
+/*
+ * Nothing of a configuration is left in the slave, so that it need not go through INIT. That
+ * would have emptied its mailbox, too: it is the way for one that cannot be emptied.
+ */
+static int start_clean(struct ec_slave *s)
+{
+	int ret = ec_slave_has_mailbox(s) ? ec_mbox_forget(s) : 0;
+
+	if (ret == -ECANCELED)
+		return ret;
+	if (ret)
+		s->clean = false;
+	else
+		s->reconfigure = false;
+	return 0;
+}
+
+/* One step towards the requested state; 1: there, 0: again, -errno. */
+static int step(struct ec_slave *s)
+{
+	u8 want = READ_ONCE(s->requested), cur;
+	int ret = ec_al_read(s);
+
+	if (ret)
+		return ret;
+	if (s->al_status & EC_AL_ERROR && !s->emulation) {
+		ret = ec_al_ack(s);
+		if (ret)
+			return failed(s, s->al_status & EC_AL_STATE_MASK, ret);
+	}
+	cur = s->al_status & EC_AL_STATE_MASK;
+	if (cur == EC_AL_PREOP && s->clean && s->ours && s->reconfigure && want > EC_AL_PREOP)
+		return start_clean(s);
+	if (cur != EC_AL_INIT && (!s->ours || (s->reconfigure && want > EC_AL_PREOP)))
+		return to_init(s);
+	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
+		return ec_apply_clear_fmmus(s);
+	if (s->op_only && cur != EC_AL_OP)
+		return op_only_off(s);
+	if (cur == want)
+		return want == EC_AL_OP && op_only_on(s) < 0 ? -EIO : 1;
+	if (want == EC_AL_BOOT)
+		return cur == EC_AL_INIT ? to_boot(s) : to_init(s);
+	if (cur > want || cur == EC_AL_BOOT) {
+		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
+			return to_init(s);
+		return step_down(s, want);
+	}
+	switch (cur) {
+	case EC_AL_INIT:
+		return to_preop(s);
+	case EC_AL_PREOP:
+		return to_safeop(s, s->plan);
+	case EC_AL_SAFEOP:
+		return to_op(s);
+	default:
+		return to_init(s);
+	}
+}
+
+/* One that was lost or silent is where it was wanted. */
+static void log_return(struct ec_slave *s)
+{
+	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+
+	if (s->seen_ns && s->plan && s->al_status == EC_AL_OP)
+		ec_slave_info(s, "back in OP, %llu ms after it was last seen\n", ms);
+	if (!s->plan || s->al_status == EC_AL_OP)
+		s->seen_ns = 0;
+}
+
+/**
+ * ec_apply_work() - bring a slave to the state it shall have
+ * @work: of the slave, with a reference to it
+ *
+ * Context: Worker. Waits for bus traffic.
+ */
+void ec_apply_work(struct work_struct *work)
+{
+	struct ec_slave *s = container_of(work, struct ec_slave, work);
+	struct ec_master *m = s->master;
+	unsigned int i;
+	int ret = 0;
+
+	mutex_lock(&s->lock);
+	WRITE_ONCE(s->worker, current);
+	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++) {
+		take_plan(s);
+		ret = step(s);
+	}
+	release_mailbox(s);
+	if (ret == 1 && s->error != EC_SLAVE_SCAN_FAILED) {
+		s->error = EC_SLAVE_OK;
+		s->why[0] = '\0';
+		s->retry_ms = 0;
+		log_return(s);
+	}
+	if (s->error == EC_SLAVE_CONFIG_FAILED && (is_transient(s, ret) || is_undecided(s, ret)))
+		ec_slave_retry(s, EC_RETRY_MAX_MS);
+	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
+		ec_slave_read_coe_pdos(s);
+	if (ret == 1 && s->read_pdos && ec_names_pending(s))
+		ec_names_read(s);
+	WRITE_ONCE(s->worker, NULL);
+	mutex_unlock(&s->lock);
+	wake_up_all(&m->scan_wq);
+	ec_slave_unref(s);
+}

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* PDO assignment and mapping of a slave on its way to SAFEOP. */
+#include <linux/err.h>
+#include "../mailbox/coe.h"
+#include "config.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "../wire/coe.h"
+
+#define REFUSED		1
+#define LIST_TEXT	160	/* characters of PDOs in a line of the log */
+
+static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32 *abort)
+{
+	u8 b[4];
+
+	put_unaligned_le32(value, b);
+	return ec_coe_download(s, index, sub, false, b, bytes, abort, NULL);
+}
+
+/* Does the object hold @n values of @bytes bytes, as @value says? */
+static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
+		    u32 (*value)(const void *ctx, unsigned int i), const void *ctx)
+{
+	unsigned int i;
+	u32 abort;
+	size_t got;
+	u8 b[4] = { 0 };
+
+	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
+		return false;
+	for (i = 0; i < n; i++) {
+		memset(b, 0, sizeof(b));
+		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
+		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
+			return false;
+	}
+	return true;
+}
+
+/* Many slaves have fixed lists: what they have instead decides, see check(). */
+static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
+{
+	char text[sizeof(s->pdo_refusal)], why[96];
+
+	if (!ret || ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	if (abort)
+		scnprintf(text, sizeof(text), "%s 0x%04x refused: abort 0x%08x (%s)", what, index,
+			  abort, ec_coe_abort_text(abort) ?: "unknown code");
+	else
+		scnprintf(text, sizeof(text), "%s 0x%04x not written: %s", what, index,
+			  ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	ec_slave_warn(s, "%s\n", text);
+	if (!s->pdo_refusal[0])
+		strscpy(s->pdo_refusal, text, sizeof(s->pdo_refusal));
+	return REFUSED;
+}
+
+/* The CiA procedure: count 0, values, count. */
+static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
+		      u32 (*value)(const void *ctx, unsigned int i), const void *ctx,
+		      const char *what)
+{
+	unsigned int i;
+	u32 abort;
+	int ret;
+
+	ret = sdo_u(s, index, 0, 0, 1, &abort);
+	for (i = 0; i < n && !ret; i++)
+		ret = sdo_u(s, index, i + 1, value(ctx, i), bytes, &abort);
+	if (!ret)
+		ret = sdo_u(s, index, 0, n, 1, &abort);
+	return note_refusal(s, index, what, ret, abort);
+}
+
+static u32 map_value(const void *ctx, unsigned int i)
+{
+	const struct ec_pdo *pdo = ctx;
+
+	return (u32)pdo->entries[i].index << 16 | pdo->entries[i].sub << 8 | pdo->entries[i].bits;
+}
+
+static u32 assign_value(const void *ctx, unsigned int i)
+{
+	const struct ec_pdo_list *l = ctx;
+
+	return l->pdos[i].index;
+}
+
+static bool mapped_already(struct ec_slave *s, const struct ec_pdo *p)
+{
+	return !p->n_entries || already(s, p->index, p->n_entries, 4, map_value, p);
+}
+
+/*
+ * mailbox.md, PDO write procedure: a PDO must not be assigned while it is mapped. A
+ * slave that does not let the assignment be changed may let the mapping.
+ */
+static int write_sm_pdos(struct ec_slave *s, u16 assign, const struct ec_pdo_list *l)
+{
+	unsigned int i, first;
+	bool refused = false;
+	u32 abort;
+	int ret;
+
+	for (first = 0; first < l->n && mapped_already(s, &l->pdos[first]); first++)
+		;
+	if (first < l->n) {
+		ret = sdo_u(s, assign, 0, 0, 1, &abort);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+	}
+	for (i = first; i < l->n; i++) {
+		const struct ec_pdo *p = &l->pdos[i];
+
+		if (mapped_already(s, p))
+			continue;
+		ret = write_list(s, p->index, p->n_entries, 4, map_value, p, "PDO mapping");
+		if (ret < 0)
+			return ret;
+		refused |= ret == REFUSED;
+	}
+	if (already(s, assign, l->n, 2, assign_value, l))
+		return refused ? REFUSED : 0;
+	ret = write_list(s, assign, l->n, 2, assign_value, l, "PDO assignment");
+	return ret ?: refused ? REFUSED : 0;
+}
+
+static void log_list(const struct ec_slave *s, unsigned int sm, const char *what,
+		     const struct ec_pdo_list *l)
+{
+	char text[LIST_TEXT] = "";
+	unsigned int i, k, n = 0;
+
+	for (i = 0; i < l->n; i++) {
+		const struct ec_pdo *p = &l->pdos[i];
+
+		n += scnprintf(text + n, sizeof(text) - n, " 0x%04x:", p->index);
+		for (k = 0; k < p->n_entries; k++)
+			n += scnprintf(text + n, sizeof(text) - n, " %04x:%02x/%u",
+				       p->entries[k].index, p->entries[k].sub, p->entries[k].bits);
+	}
+	ec_slave_warn(s, "SM%u %s:%s%s\n", sm, what, n ? text : " nothing",
+		      n >= sizeof(text) - 1 ? "..." : "");
+}
+
+/* The first registered entry that the slave does not have in its place, or NULL. */
+static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
+					      const struct ec_pdo_list *have, u32 *bit)
+{
+	unsigned int i, k;
+
+	*bit = 0;
+	for (i = 0; i < want->n; i++)
+		for (k = 0; k < want->pdos[i].n_entries; k++) {
+			const struct ec_pdo_entry *e = &want->pdos[i].entries[k];
+			const struct ec_pdo_entry *h = ec_pdo_list_at(have, *bit);
+
+			if (e->registered && e->index &&
+			    (!h || h->index != e->index || h->sub != e->sub || h->bits != e->bits))
+				return e;
+			*bit += e->bits;
+		}
+	return NULL;
+}
+
+/*
+ * @have is what the slave has, and it will not change it. Process data of other objects
+ * than the registered ones would be exchanged with a full working counter.
+ */
+static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+		   const char *cause)
+{
+	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
+	const struct ec_pdo_entry *e, *h;
+	char has[32] = "nothing";
+	u32 bit;
+
+	e = first_wrong(want, have, &bit);
+	if (!e)
+		return 0;
+	h = ec_pdo_list_at(have, bit);
+	if (h)
+		snprintf(has, sizeof(has), "0x%04x:%02x, %u bit", h->index, h->sub, h->bits);
+	log_list(s, sm, "configured", want);
+	log_list(s, sm, "in the slave", have);
+	snprintf(s->warning, sizeof(s->warning),
+		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s", sm, bit,
+		 e->index, e->sub, e->bits, has, cause);
+	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
+		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
+		return 0;
+	}
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s", s->warning);
+	s->warning[0] = '\0';
+	return -EOPNOTSUPP;
+}
+
+static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
+{
+	snprintf(s->warning, sizeof(s->warning),
+		 "process data of SM%u may belong to other objects: %.130s", sm, why);
+	ec_slave_warn(s, "%s\n", s->warning);
+}
+
+/* The slave refused: what does it have instead? */
+static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+{
+	char text[160], why[96];
+	int ret = ec_slave_read_sm_pdos(s, sm);
+
+	if (ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	if (!ret)
+		return compare(s, c, sm, s->pdo_refusal);
+	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", s->pdo_refusal,
+		 ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	not_certain(s, sm, text);
+	return 0;
+}
+
+static bool has_registered(const struct ec_pdo_list *l)
+{
+	unsigned int i, k;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++)
+			if (l->pdos[i].entries[k].registered && l->pdos[i].entries[k].index)
+				return true;
+	return false;
+}
+
+/* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
+static int check_fixed(struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+	int ret = 0;
+
+	for (sm = 0; sm < s->n_sms && !ret; sm++) {
+		if (!c->sm[sm].explicit || !has_registered(&c->sm[sm].pdos))
+			continue;
+		if (s->sm_pdos[sm].n)
+			ret = compare(s, c, sm, "without CoE its PDOs cannot be changed");
+		else
+			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");
+	}
+	return ret;
+}
+
+/**
+ * ec_apply_pdos_of() - what a SyncManager shall have
+ * @s: slave
+ * @c: its configuration, or NULL
+ * @sm: SyncManager
+ *
+ * Context: The slave's worker.
+ * Return: PDOs as configured, or as the slave has them.
+ */
+const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
+					   unsigned int sm)
+{
+	return c && (c->sm[sm].explicit || c->sm[sm].pdos.n) ? &c->sm[sm].pdos : &s->sm_pdos[sm];
+}
+
+/**
+ * ec_apply_pdos() - give a slave the PDO assignment and mapping it shall have
+ * @s: slave in PREOP whose PDOs have been read
+ * @c: its configuration
+ *
+ * Those that were there when the application began may be others by now: they are
+ * written too then. When a slave refuses, or has no CoE, the registered entries must be in
+ * their place all the same. In a SoE drive the IDNs decide.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data, told
+ * already.
+ */
+int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+	int ret = 0;
+
+	if (!ec_slave_has_mailbox(s) || !(s->info.protocols & EC_SII_PROTO_COE))
+		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
+	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
+		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);
+
+		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
+			continue;
+		ret = write_sm_pdos(s, 0x1c10 + sm, l);
+		if (!ret)
+			ec_slave_set_sm_pdos(s, sm, l);
+		else if (ret == REFUSED)
+			ret = check(s, c, sm);
+	}
+	return ret;
+}

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* SyncManagers, FMMUs and watchdogs of a slave: what it takes to exchange process data. */
+#include "config.h"
+#include "../cycle/domain.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "../wire/fmmu.h"
+#include "../link/xfer.h"
+
+#define MAX_FMMU	16
+
+/**
+ * struct batch - writes that leave in as few frames as they fit in
+ * @dg: datagrams: one for each SyncManager and FMMU, so that they fit beside a full
+ *	cycle, and two for the watchdog
+ * @n: entries in @dg
+ * @sm: pages of SyncManagers
+ * @fmmu: pages of FMMUs
+ * @wd: values of the watchdog
+ */
+struct batch {
+	struct ec_dg dg[EC_MAX_SM + MAX_FMMU + 2];
+	unsigned int n;
+	u8 sm[EC_MAX_SM][EC_SM_PAGE];
+	u8 fmmu[MAX_FMMU][EC_FMMU_PAGE];
+	u8 wd[2][2];
+};
+
+static void add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, u16 len)
+{
+	b->dg[b->n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, ado, len, data);
+}
+
+static unsigned int count_fmmus(const struct ec_slave *s)
+{
+	return min_t(u8, s->regs[EC_REG_FMMUS], MAX_FMMU);
+}
+
+static unsigned int first_sm(const struct ec_slave *s)
+{
+	return ec_slave_has_mailbox(s) ? 2 : 0;
+}
+
+/* SM page for process data; NULL configuration: the EEPROM's defaults */
+static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigned int sm, u8 *page)
+{
+	struct ec_sm v = {
+		.start = s->sms[sm].start, .len = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm)),
+		.control = s->sms[sm].control,
+	};
+
+	if (c && c->sm[sm].dir)
+		v.control = (v.control & ~EC_SM_DIR_MASK) |
+			    (c->sm[sm].dir == EC_CFG_DIR_OUTPUT ? EC_SM_DIR_WRITE : 0);
+	if (c && c->sm[sm].watchdog == EC_CFG_WD_ENABLE)
+		v.control |= EC_SM_WATCHDOG;
+	if (c && c->sm[sm].watchdog == EC_CFG_WD_DISABLE)
+		v.control &= ~EC_SM_WATCHDOG;
+	if (v.len && !(s->sms[sm].enable & EC_SII_SM_OP_ONLY))
+		v.activate = EC_SM_ACT_ENABLE;
+	ec_sm_encode(&v, page);
+}
+
+static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int sm;
+	u32 bytes;
+
+	for (sm = first_sm(s); sm < s->n_sms; sm++) {
+		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
+			continue;
+		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
+		if (bytes > EC_MAX_SM_BYTES) {
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+				      "SM%u needs %u bytes, limit %u; map fewer entries",
+				      sm, bytes, EC_MAX_SM_BYTES);
+			return -EOVERFLOW;
+		}
+		sm_page(s, c, sm, b->sm[sm]);
+		add(b, s, EC_REG_SM(sm), b->sm[sm], EC_SM_PAGE);
+	}
+	return 0;
+}
+
+/*
+ * An FMMU that leads anywhere else than to process data would write registers, or the
+ * mailbox, with each frame.
+ */
+static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
+{
+	return sm < s->n_sms && s->sms[sm].start >= EC_REG_DIGITAL_OUT &&
+	       !(sm < 2 && ec_slave_has_mailbox(s));
+}
+
+/* Can the slave serve the layout of the session? */
+static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int i;
+
+	if (c->n_fmmus > count_fmmus(s)) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
+			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
+		return -ENOSPC;
+	}
+	if (c->lrw && ec_slave_no_lrw(s)) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "slave without LRW support attached to a layout with LRW; restart the application");
+		return -EOPNOTSUPP;
+	}
+	if (c->in_ring && s->position != c->ring_position) {
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
+			      s->position, c->ring_position);
+		return -EOPNOTSUPP;
+	}
+	for (i = 0; i < c->n_fmmus; i++) {
+		if (holds_pdos(s, c->fmmus[i].sm))
+			continue;
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
+			      c->fmmus[i].sm);
+		return -EOPNOTSUPP;
+	}
+	return 0;
+}
+
+/* All of them: what an earlier configuration has left in the others is gone then. */
+static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config *c)
+{
+	unsigned int i;
+	int ret = check_fmmus(s, c);
+
+	if (ret)
+		return ret;
+	for (i = 0; i < c->n_fmmus; i++) {
+		const struct ec_config_fmmu *f = &c->fmmus[i];
+		struct ec_fmmu v = {
+			.logical = f->domain->logical + f->logical, .len = f->size,
+			.lbit_stop = 7, .phys = s->sms[f->sm].start,
+			.type = f->dir == EC_CFG_DIR_OUTPUT ? EC_FMMU_WRITE : EC_FMMU_READ,
+			.enable = f->size,
+		};
+
+		ec_fmmu_encode(&v, b->fmmu[i]);
+	}
+	s->mapped = c->n_fmmus;
+	for (i = 0; i < count_fmmus(s); i++)
+		add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
+	return 0;
+}
+
+static void add_watchdog(struct batch *b, const struct ec_slave *s, const struct ec_config *c)
+{
+	put_unaligned_le16(c->wd_divider, b->wd[0]);
+	put_unaligned_le16(c->wd_intervals, b->wd[1]);
+	if (c->wd_divider)
+		add(b, s, EC_REG_WD_DIVIDER, b->wd[0], 2);
+	if (c->wd_intervals)
+		add(b, s, EC_REG_WD_SM, b->wd[1], 2);
+}
+
+/**
+ * ec_apply_regs() - write watchdogs, SyncManagers and FMMUs of process data
+ * @s: slave in PREOP
+ * @c: its configuration; NULL: SyncManagers as the EEPROM has them
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0; -EOVERFLOW, -ENOSPC, -EOPNOTSUPP when it cannot serve the configuration, noted
+ * as its error; -ENOMEM; -EIO when it did not take part; or as ec_xfer().
+ */
+int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
+{
+	struct batch *b = kzalloc(sizeof(*b), GFP_KERNEL);
+	int ret;
+
+	if (!b)
+		return -ENOMEM;
+	if (c)
+		add_watchdog(b, s, c);
+	ret = add_sms(b, s, c);
+	if (!ret && c)
+		ret = add_fmmus(b, s, c);
+	if (!ret)
+		ret = ec_xfer_all(s->master, b->dg, b->n);
+	kfree(b);
+	return ret;
+}
+
+static const u8 zero[MAX_FMMU * EC_FMMU_PAGE];
+
+/**
+ * ec_apply_clear_fmmus() - the slave takes part in no process data
+ * @s: slave
+ *
+ * Without process data no FMMU may be left: the slave would answer, in PREOP too, at
+ * logical addresses that the next application gives to another slave.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0, -EIO, or as ec_xfer().
+ */
+int ec_apply_clear_fmmus(struct ec_slave *s)
+{
+	unsigned int n = count_fmmus(s);
+	int ret = n ? ec_xfer_fpwr(s->master, s->station, EC_REG_FMMU(0), zero,
+				   n * EC_FMMU_PAGE) : 0;
+
+	s->mapped = ret;
+	return ret;
+}
+
+/**
+ * ec_apply_clear_pdos() - reset FMMUs and SyncManagers of process data
+ * @s: slave in PREOP
+ *
+ * While a SyncManager is on its other registers cannot be written.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0, -EIO, or as ec_xfer().
+ */
+int ec_apply_clear_pdos(struct ec_slave *s)
+{
+	unsigned int sm = first_sm(s), n = min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM);
+	struct ec_dg dg[EC_MAX_SM];
+	unsigned int used = 0;
+
+	for (; sm < n; sm++)
+		dg[used++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, EC_REG_SM(sm), EC_SM_PAGE,
+						 (void *)zero);
+	return (used ? ec_xfer_all(s->master, dg, used) : 0) ?: ec_apply_clear_fmmus(s);
+}
+
+/**
+ * ec_apply_clear() - reset all SyncManagers and FMMUs
+ * @s: slave in INIT
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ */
+void ec_apply_clear(struct ec_slave *s)
+{
+	ec_apply_clear_fmmus(s);
+	ec_xfer_fpwr(s->master, s->station, EC_REG_SM(0), zero,
+		     EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM));
+}

@@ -1,0 +1,556 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include "config.h"
+#include "../cycle/domain.h"
+#include "../base/grow.h"
+#include "../base/limits.h"
+#include "../master.h"
+#include "../session/session.h"
+#include "../bus/slave.h"
+
+/**
+ * ec_config_defaults() - start from the PDOs the slave has
+ * @c: configuration without PDOs
+ * @slave: slave
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
+{
+	unsigned int sm, i;
+
+	down_read(&slave->master->topo);
+	for (sm = 0; sm < slave->n_sms; sm++) {
+		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
+
+		if (c->sm[sm].dir || c->sm[sm].pdos.n)
+			continue;
+		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
+				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
+		for (i = 0; i < l->n; i++) {
+			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
+
+			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
+				goto out;
+		}
+	}
+out:
+	up_read(&slave->master->topo);
+}
+
+/* What the session that an heir wants to take over has for the same slave, or NULL. */
+static const struct ec_config *predecessor(const struct ec_config *c)
+{
+	const struct ec_master *m = c->session->master;
+	unsigned int i;
+
+	for (i = 0; c->session == m->heir && i < m->session->n_configs; i++) {
+		const struct ec_config *p = m->session->configs[i];
+
+		if (p->alias == c->alias && p->position == c->position &&
+		    p->vendor == c->vendor && p->product == c->product)
+			return p;
+	}
+	return NULL;
+}
+
+/* The same start as that one had, whether the slave was there then, or is now. */
+static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
+{
+	unsigned int sm, i;
+
+	for (sm = 0; sm < EC_MAX_SM; sm++) {
+		const struct ec_pdo_list *l = &from->sm[sm].pdos;
+
+		c->sm[sm].dir = from->sm[sm].dir;
+		for (i = 0; !from->sm[sm].explicit && i < l->n; i++) {
+			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
+
+			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
+				return;
+		}
+	}
+}
+
+/**
+ * ec_config_find() - the configuration of a slave
+ * @s: session
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session_lock held.
+ * Return: configuration; NULL when there is none; ERR_PTR(-ENOENT) when it exists with
+ * another identity.
+ */
+struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				 u32 product)
+{
+	unsigned int i;
+
+	lockdep_assert_held(&s->master->session_lock);
+	for (i = 0; i < s->n_configs; i++) {
+		struct ec_config *c = s->configs[i];
+
+		if (c->alias == alias && c->position == position)
+			return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
+	}
+	return NULL;
+}
+
+/**
+ * ec_config_create() - a configuration, or the existing one
+ * @s: session
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: configuration, or ERR_PTR: -ENOENT when it exists with another
+ * identity, -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS, -EDQUOT as ec_session_charge().
+ */
+struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				   u32 product)
+{
+	const struct ec_config *before;
+	struct ec_config *c, **p;
+	unsigned int i;
+	int ret;
+
+	c = ec_config_find(s, alias, position, vendor, product);
+	if (c)
+		return c;
+	if (s->n_configs >= EC_MAX_CONFIGS)
+		return ERR_PTR(-ENOSPC);
+	ret = ec_session_charge(s, sizeof(*c) + sizeof(*p));
+	if (ret)
+		return ERR_PTR(ret);
+	p = ec_grow(s->configs, s->n_configs, sizeof(*p));
+	if (p)
+		s->configs = p;
+	c = p ? kzalloc(sizeof(*c), GFP_KERNEL_ACCOUNT) : NULL;
+	if (!c) {
+		ec_session_uncharge(s, sizeof(*c) + sizeof(*p));
+		return ERR_PTR(-ENOMEM);
+	}
+	c->session = s;
+	c->index = s->n_configs;
+	c->alias = alias;
+	c->position = position;
+	c->vendor = vendor;
+	c->product = product;
+	INIT_LIST_HEAD(&c->sdos);
+	INIT_LIST_HEAD(&c->idns);
+	INIT_LIST_HEAD(&c->flags);
+	s->configs[s->n_configs++] = c;
+	ec_session_attach_one(s, c);
+	before = predecessor(c);
+	if (before)
+		inherit_defaults(c, before);
+	else if (c->slave)
+		ec_config_defaults(c, c->slave);
+	/* as many as slaves have */
+	for (i = 0; i < EC_MAX_SM; i++)
+		s->bytes += ec_pdo_list_memory(&c->sm[i].pdos);
+	return c;
+}
+
+void ec_config_free(struct ec_config *c)
+{
+	struct ec_config_sdo *sdo, *n;
+	struct ec_config_idn *idn, *after;
+	struct ec_config_flag *flag, *next;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++)
+		ec_pdo_list_clear(&c->sm[i].pdos);
+	list_for_each_entry_safe(sdo, n, &c->sdos, list)
+		kvfree(sdo);
+	list_for_each_entry_safe(idn, after, &c->idns, list)
+		kvfree(idn);
+	list_for_each_entry_safe(flag, next, &c->flags, list)
+		kvfree(flag);
+	kfree(c);
+}
+
+int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
+{
+	if (sm >= EC_MAX_SM)
+		return -ENOENT;
+	if ((dir != EC_CFG_DIR_OUTPUT && dir != EC_CFG_DIR_INPUT) || watchdog > EC_CFG_WD_DISABLE)
+		return -EINVAL;
+	c->sm[sm].dir = dir;
+	c->sm[sm].watchdog = watchdog;
+	return 0;
+}
+
+/* The mapping the slave has for this PDO, as a start. */
+static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
+{
+	const struct ec_config *before = predecessor(c);
+	const struct ec_slave *slave = c->slave;
+	const struct ec_pdo *known;
+	unsigned int sm;
+	int ret;
+
+	for (sm = 0; before && sm < EC_MAX_SM; sm++) {
+		known = ec_pdo_find(&before->sm[sm].pdos, index);
+		if (known)
+			return ec_pdo_copy_entries(p, known);
+	}
+	if (!slave)
+		return 0;
+	down_read(&slave->master->topo);
+	known = ec_slave_find_pdo(slave, index);
+	ret = known ? ec_pdo_copy_entries(p, known) : 0;
+	up_read(&slave->master->topo);
+	return ret;
+}
+
+int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
+{
+	struct ec_pdo *p;
+	int ret;
+
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	if (c->sm[sm].pdos.n >= EC_MAX_SC_PDOS)
+		return -ENOSPC;
+	ret = ec_session_charge(c->session, sizeof(*p));
+	if (ret)
+		return ret;
+	p = ec_pdo_add(&c->sm[sm].pdos, pdo, 0);
+	if (!p) {
+		ec_session_uncharge(c->session, sizeof(*p));
+		return -ENOMEM;
+	}
+	c->sm[sm].explicit = true;
+	ret = known_entries(c, pdo, p);
+	c->session->bytes += p->n_entries * sizeof(*p->entries);
+	return ret;
+}
+
+int ec_config_assign_clear(struct ec_config *c, u8 sm)
+{
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	ec_session_uncharge(c->session, ec_pdo_list_memory(&c->sm[sm].pdos));
+	ec_pdo_list_clear(&c->sm[sm].pdos);
+	c->sm[sm].explicit = true;
+	return 0;
+}
+
+static struct ec_pdo *find(struct ec_config *c, u16 pdo)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_SM; i++) {
+		struct ec_pdo *p = ec_pdo_find(&c->sm[i].pdos, pdo);
+
+		if (p) {
+			c->sm[i].explicit = true;
+			return p;
+		}
+	}
+	return NULL;
+}
+
+int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e)
+{
+	struct ec_pdo *p = find(c, pdo);
+	int ret = p ? ec_session_charge(c->session, sizeof(*e)) : -ENOENT;
+
+	if (ret)
+		return ret;
+	ret = ec_pdo_add_entry(p, e);
+	if (ret)
+		ec_session_uncharge(c->session, sizeof(*e));
+	return ret;
+}
+
+int ec_config_map_clear(struct ec_config *c, u16 pdo)
+{
+	struct ec_pdo *p = find(c, pdo);
+
+	if (p) {
+		ec_session_uncharge(c->session, p->n_entries * sizeof(*p->entries));
+		ec_pdo_clear_entries(p);
+	} else {
+		ec_warn(c->session->master, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
+			c->alias, c->position, pdo);
+	}
+	return 0;
+}
+
+/* Memory for a part of the configuration, counted; ERR_PTR without. */
+static void *alloc(struct ec_config *c, size_t size)
+{
+	int ret = ec_session_charge(c->session, size);
+	void *p;
+
+	if (ret)
+		return ERR_PTR(ret);
+	/*
+	 * A value may be large. kmalloc() would take contiguous pages for it, and up to twice as
+	 * many as the session is charged.
+	 */
+	p = size <= PAGE_SIZE ? kzalloc(size, GFP_KERNEL_ACCOUNT) :
+	    __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
+	if (p)
+		return p;
+	ec_session_uncharge(c->session, size);
+	return ERR_PTR(-ENOMEM);
+}
+
+int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
+		      u32 size)
+{
+	struct ec_config_sdo *sdo;
+
+	if (c->n_sdos >= EC_MAX_SC_SDOS)
+		return -ENOSPC;
+	sdo = alloc(c, struct_size(sdo, data, size));
+	if (IS_ERR(sdo))
+		return PTR_ERR(sdo);
+	sdo->index = index;
+	sdo->sub = sub;
+	sdo->complete = complete;
+	sdo->size = size;
+	memcpy(sdo->data, data, size);
+	list_add_tail(&sdo->list, &c->sdos);
+	c->n_sdos++;
+	if (c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
+		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n", index,
+			      sub);
+	return 0;
+}
+
+/* @drive is below EC_SOE_DRIVES, @state is PREOP or SAFEOP */
+int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size)
+{
+	struct ec_config_idn *i;
+
+	if (c->n_idns >= EC_MAX_SC_IDNS)
+		return -ENOSPC;
+	i = alloc(c, struct_size(i, data, size));
+	if (IS_ERR(i))
+		return PTR_ERR(i);
+	i->idn = idn;
+	i->drive = drive;
+	i->state = state;
+	i->size = size;
+	memcpy(i->data, data, size);
+	list_add_tail(&i->list, &c->idns);
+	c->n_idns++;
+	return 0;
+}
+
+/* @key is shorter than EC_UAPI_STRING; a later value replaces an earlier one */
+int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
+{
+	struct ec_config_flag *flag;
+
+	list_for_each_entry(flag, &c->flags, list) {
+		if (strcmp(flag->key, key))
+			continue;
+		flag->value = value;
+		return 0;
+	}
+	if (c->n_flags >= EC_MAX_SC_FLAGS)
+		return -ENOSPC;
+	flag = alloc(c, sizeof(*flag));
+	if (IS_ERR(flag))
+		return PTR_ERR(flag);
+	strscpy(flag->key, key, sizeof(flag->key));
+	/* the EEPROM is the slave's from PREOP on anyway */
+	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
+	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, "AssignToPdi"))
+		ec_info(c->session->master, "slave %u:%u: flag %s has no effect\n", c->alias,
+			c->position, key);
+	flag->value = value;
+	list_add_tail(&flag->list, &c->flags);
+	c->n_flags++;
+	return 0;
+}
+
+/**
+ * ec_config_ip() - IP parameters to be written by EoE
+ * @c: configuration
+ * @p: parameters; those not in @which stay as they are
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
+{
+	struct ec_eoe_ip *ip = &c->ip;
+
+	if (p->which & EC_EOE_MAC)
+		memcpy(ip->mac, p->mac, sizeof(ip->mac));
+	if (p->which & EC_EOE_IP)
+		memcpy(ip->ip, p->ip, sizeof(ip->ip));
+	if (p->which & EC_EOE_MASK)
+		memcpy(ip->mask, p->mask, sizeof(ip->mask));
+	if (p->which & EC_EOE_GATEWAY)
+		memcpy(ip->gateway, p->gateway, sizeof(ip->gateway));
+	if (p->which & EC_EOE_DNS)
+		memcpy(ip->dns, p->dns, sizeof(ip->dns));
+	if (p->which & EC_EOE_HOSTNAME)
+		memcpy(ip->name, p->name, sizeof(ip->name));
+	ip->which |= p->which;
+}
+
+/**
+ * ec_config_flag() - value of a flag
+ * @c: configuration
+ * @key: its name
+ *
+ * Context: Process, session_lock or the slave's lock held.
+ * Return: value; 0 when it was not set.
+ */
+s32 ec_config_flag(const struct ec_config *c, const char *key)
+{
+	const struct ec_config_flag *flag;
+
+	list_for_each_entry(flag, &c->flags, list)
+		if (!strcmp(flag->key, key))
+			return flag->value;
+	return 0;
+}
+
+/**
+ * ec_config_changed() - is what a SyncManager has in a domain still what it has?
+ * @c: configuration
+ * @f: one of its FMMUs
+ *
+ * Offsets have been handed out, so what was registered does not change any more.
+ *
+ * Context: Process, session_lock held.
+ * Return: true: bytes or direction were changed after the first entry was
+ * registered.
+ */
+bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f)
+{
+	const struct ec_config_sm *sm = &c->sm[f->sm];
+
+	return sm->dir != f->dir || ec_pdo_list_bytes(&sm->pdos) != f->size;
+}
+
+/* The mapping of @sm in @d, made when it is not there yet. */
+static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domain *d)
+{
+	struct ec_config_fmmu *f;
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < c->n_fmmus; i++)
+		if (c->fmmus[i].domain == d && c->fmmus[i].sm == sm)
+			return &c->fmmus[i];
+	if (!c->sm[sm].dir)
+		return ERR_PTR(-EINVAL);
+	if (c->n_fmmus >= EC_MAX_FMMU ||
+	    ec_pdo_list_bytes(&c->sm[sm].pdos) > EC_MAX_SM_BYTES)
+		return ERR_PTR(-EOVERFLOW);
+	f = &c->fmmus[c->n_fmmus];
+	f->domain = d;
+	f->sm = sm;
+	f->dir = c->sm[sm].dir;
+	f->size = ec_pdo_list_bytes(&c->sm[sm].pdos);
+	f->offset = d->size;
+	f->logical = d->size;
+	ret = ec_domain_add(d, c, c->n_fmmus);
+	if (ret)
+		return ERR_PTR(ret);
+	d->size += f->size;
+	c->n_fmmus++;
+	return f;
+}
+
+static int reg(struct ec_config *c, u8 sm, struct ec_pdo_entry *e, u32 bits, struct ec_domain *d,
+	       u32 *offset, u32 *bit)
+{
+	struct ec_config_fmmu *f;
+
+	/* first, so that nothing is left behind */
+	if (!bit && bits % 8)
+		return -EFAULT;
+	f = map_sm(c, sm, d);
+	if (IS_ERR(f))
+		return PTR_ERR(f);
+	if (ec_config_changed(c, f))
+		return -EBUSY;
+	e->registered = true;
+	*offset = f->offset + bits / 8;
+	if (bit)
+		*bit = bits % 8;
+	return 0;
+}
+
+/**
+ * ec_config_reg_entry() - put the SyncManager with an entry into a domain
+ * @c: configuration
+ * @index: object
+ * @sub: subindex
+ * @d: domain
+ * @offset: result: byte in the domain
+ * @bit: result: bit in that byte; NULL: it has to begin with a byte
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENOENT when the entry is not mapped; -EINVAL when its SyncManager
+ * has no direction; -EOVERFLOW when all FMMUs are used or SyncManager or domain
+ * are too large; -EBUSY as ec_config_changed(); -EFAULT it begins within a byte and
+ * @bit is NULL; -ENOMEM.
+ */
+int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
+			u32 *offset, u32 *bit)
+{
+	unsigned int sm, p, e;
+
+	for (sm = 0; sm < EC_MAX_SM; sm++) {
+		u32 bits = 0;
+
+		for (p = 0; p < c->sm[sm].pdos.n; p++) {
+			const struct ec_pdo *pdo = &c->sm[sm].pdos.pdos[p];
+
+			for (e = 0; e < pdo->n_entries; e++) {
+				if (pdo->entries[e].index == index && pdo->entries[e].sub == sub)
+					return reg(c, sm, &pdo->entries[e], bits, d, offset, bit);
+				bits += pdo->entries[e].bits;
+			}
+		}
+	}
+	return -ENOENT;
+}
+
+/**
+ * ec_config_reg_entry_pos() - the same, by SyncManager, PDO and entry position
+ * @c: configuration
+ * @sm: SyncManager
+ * @pdo_pos: PDO in it
+ * @entry_pos: entry in that
+ * @d: domain
+ * @offset: result
+ * @bit: result
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: as ec_config_reg_entry(), -EINVAL for a wrong @sm.
+ */
+int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,
+			    struct ec_domain *d, u32 *offset, u32 *bit)
+{
+	const struct ec_pdo_list *l;
+	u32 p, e, bits = 0;
+
+	if (sm >= EC_MAX_SM)
+		return -EINVAL;
+	l = &c->sm[sm].pdos;
+	if (pdo_pos >= l->n || entry_pos >= l->pdos[pdo_pos].n_entries)
+		return -ENOENT;
+	for (p = 0; p < pdo_pos; p++)
+		bits += ec_pdo_bits(&l->pdos[p]);
+	for (e = 0; e < entry_pos; e++)
+		bits += l->pdos[pdo_pos].entries[e].bits;
+	return reg(c, sm, &l->pdos[pdo_pos].entries[entry_pos], bits, d, offset, bit);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What an application wants from one slave; exists without the slave. */
+#ifndef EC_CONFIG_H
+#define EC_CONFIG_H
+
+#include <linux/list.h>
+#include <linux/types.h>
+#include "../include/uapi/ethercat.h"
+#include "../bus/pdo.h"
+#include "../wire/eoe.h"
+#include "../wire/regs.h"
+
+struct ec_domain;
+struct ec_session;
+struct ec_slave;
+
+/* values of the application interface */
+#define EC_CFG_DIR_OUTPUT	1
+#define EC_CFG_DIR_INPUT	2
+#define EC_CFG_WD_DEFAULT	0
+#define EC_CFG_WD_ENABLE	1
+#define EC_CFG_WD_DISABLE	2
+
+/**
+ * struct ec_config_sm - one SyncManager of a configuration
+ * @dir: EC_CFG_DIR_*, 0: not configured
+ * @watchdog: EC_CFG_WD_*
+ * @explicit: the application named PDOs itself: write the assignment
+ * @pdos: assigned PDOs
+ */
+struct ec_config_sm {
+	u8 dir;
+	u8 watchdog;
+	bool explicit;
+	struct ec_pdo_list pdos;
+};
+
+/**
+ * struct ec_config_fmmu - a SyncManager in a domain
+ * @domain: which
+ * @sm: SyncManager
+ * @dir: EC_CFG_DIR_*
+ * @shared: inputs at logical addresses of outputs; set by activation
+ * @offset: byte in the domain's data
+ * @logical: byte in the domain's logical addresses; set by activation
+ * @size: bytes
+ */
+struct ec_config_fmmu {
+	struct ec_domain *domain;
+	u8 sm;
+	u8 dir;
+	bool shared;
+	u32 offset;
+	u32 logical;
+	u32 size;
+};
+
+/* a startup SDO, in the order of the calls */
+struct ec_config_sdo {
+	struct list_head list;
+	u16 index;
+	u8 sub;
+	bool complete;
+	u32 size;
+	u8 data[];
+};
+
+/* a startup IDN, in the order of the calls */
+struct ec_config_idn {
+	struct list_head list;
+	u16 idn;
+	u8 drive;
+	u8 state;	/* EC_AL_PREOP or EC_AL_SAFEOP */
+	u32 size;
+	u8 data[];
+};
+
+/* milliseconds between configuration and the request of SAFEOP */
+#define EC_FLAG_WAIT_SAFEOP	"WaitBeforeSAFEOPms"
+
+/* not 0: to OP although the slave has other process data than those registered */
+#define EC_FLAG_ANY_PDOS	"AcceptOtherPdos"
+
+/* the revision number that the slave should have; another one is reported */
+#define EC_FLAG_REVISION	"ExpectedRevision"
+
+/* a named number that other masters know; in the order of the calls */
+struct ec_config_flag {
+	struct list_head list;
+	s32 value;
+	char key[EC_UAPI_STRING];
+};
+
+/**
+ * struct ec_config - configuration of one slave, under session_lock; what is
+ *	configured is compared in takeover.c
+ * @session: owner
+ * @index: number in the session
+ * @alias: 0: @position is the ring position
+ * @position: else slaves behind the one with @alias
+ * @alias_at: ring position of the first slave with @alias when it was last looked for
+ * @vendor: expected
+ * @product: expected
+ * @sm: SyncManagers
+ * @fmmus: what is mapped where
+ * @n_fmmus: entries in @fmmus
+ * @sdos: startup SDOs
+ * @n_sdos: how many
+ * @idns: startup IDNs
+ * @n_idns: how many
+ * @flags: named numbers
+ * @n_flags: how many
+ * @overlap: its inputs may share logical addresses with its outputs
+ * @lrw: its process data are in an LRW datagram
+ * @in_ring: they share logical addresses with those of other slaves, as long as
+ *	it is where it was: at @ring_position
+ * @ring_position: when it was activated
+ * @wd_divider: register 0x0400, 0: leave
+ * @wd_intervals: register 0x0420, 0: leave
+ * @dc_assign: AssignActivate
+ * @dc_cycle: SYNC0, SYNC1 cycle, ns
+ * @dc_shift: SYNC0, SYNC1 shift, ns
+ * @timeout_ms: of AL transitions, by from and to state, 0: default
+ * @emergencies: how many to keep
+ * @ip: to be written by EoE, @which 0: nothing
+ * @emerg_cleared: by an application in the kernel, of the lost ones
+ * @lost: the slave that it had while active, in words, and when it was there last (ktime)
+ * @slave: attached slave with a reference, or NULL
+ */
+struct ec_config {
+	struct ec_session *session;
+	u32 index;
+	u16 alias;
+	u16 position;
+	u32 alias_at;
+	u32 vendor;
+	u32 product;
+	struct ec_config_sm sm[EC_MAX_SM];
+	struct ec_config_fmmu fmmus[EC_MAX_FMMU];
+	unsigned int n_fmmus;
+	struct list_head sdos;
+	unsigned int n_sdos;
+	struct list_head idns;
+	unsigned int n_idns;
+	struct list_head flags;
+	unsigned int n_flags;
+	bool overlap;
+	bool lrw;
+	bool in_ring;
+	u32 ring_position;
+	u16 wd_divider;
+	u16 wd_intervals;
+	u16 dc_assign;
+	u32 dc_cycle[2];
+	s32 dc_shift[2];
+	u32 timeout_ms[9][9];
+	u32 emergencies;
+	u32 emerg_cleared;
+	struct ec_eoe_ip ip;
+	struct {
+		char text[EC_UAPI_REASON / 2];
+		u64 seen_ns;
+	} lost;
+	struct ec_slave *slave;
+};
+
+struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				   u32 product);
+struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				 u32 product);
+void ec_config_free(struct ec_config *c);
+void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave);
+int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);
+int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo);
+int ec_config_assign_clear(struct ec_config *c, u8 sm);
+int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e);
+int ec_config_map_clear(struct ec_config *c, u16 pdo);
+int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
+		      u32 size);
+int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size);
+s32 ec_config_flag(const struct ec_config *c, const char *key);
+int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
+void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
+bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f);
+int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
+			u32 *offset, u32 *bit);
+int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,
+			    struct ec_domain *d, u32 *offset, u32 *bit);
+
+#endif

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include "config.h"
+#include "../master.h"
+#include "../session/session.h"
+#include "../bus/slave.h"
+#include "why.h"
+
+#define LOG_MAX		32	/* lines per activation */
+#define WALK		64	/* configurations to look at without a pause */
+
+/* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
+static bool place(const struct ec_config *c, unsigned int *pos)
+{
+	const struct ec_master *m = c->session->master;
+
+	*pos = c->position;
+	if (!c->alias)
+		return true;
+	*pos += c->alias_at;
+	return c->alias_at < m->n_slaves && m->slaves[c->alias_at]->alias == c->alias;
+}
+
+/**
+ * ec_config_find_alias() - look for the slave that has the alias of a configuration
+ * @c: configuration
+ *
+ * When it is made, and when slaves have come or gone: who only looks at it must not walk
+ * all slaves.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_find_alias(struct ec_config *c)
+{
+	struct ec_master *m = c->session->master;
+	unsigned int i = 0;
+
+	lockdep_assert_held(&m->session_lock);
+	if (!c->alias)
+		return;
+	down_read(&m->topo);
+	while (i < m->n_slaves && m->slaves[i]->alias != c->alias)
+		i++;
+	c->alias_at = i;
+	up_read(&m->topo);
+}
+
+/* Do both name the slave at @pos, which is not only where another one has been? */
+static bool twice(const struct ec_config *has, unsigned int pos)
+{
+	unsigned int p;
+
+	return place(has, &p) && p == pos;
+}
+
+/* Without device or link there is no slave at all. */
+static size_t no_link(struct ec_master *m, char *buf, size_t size)
+{
+	unsigned int i;
+	bool dev = false;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (READ_ONCE(m->link[i].up))
+			return 0;
+		dev |= READ_ONCE(m->link[i].dev) != NULL;
+	}
+	if (!dev)
+		return scnprintf(buf, size, "no network device: master %u waits for %s", m->index,
+				 m->spec[0]);
+	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
+			 m->index);
+}
+
+/* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */
+static size_t absent(const struct ec_config *c, char *buf, size_t size)
+{
+	const struct ec_master *m = c->session->master;
+	const struct ec_slave *s;
+	unsigned int pos;
+	size_t len = no_link(c->session->master, buf, size);
+
+	if (len)
+		return len;
+	if (c->session->active && c->lost.text[0])
+		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
+				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
+	if (!place(c, &pos))
+		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
+				 m->n_slaves, c->alias);
+	if (pos >= m->n_slaves)
+		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
+				 pos, m->n_slaves);
+	s = m->slaves[pos];
+	if (s->error == EC_SLAVE_SCAN_FAILED)
+		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos, s->why);
+	if (s->info.vendor != c->vendor || s->info.product != c->product)
+		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
+				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
+	if (s->config && c->session->active && !twice(s->config, pos))
+		return scnprintf(buf, size, "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
+				 pos, s->config->alias, s->config->position);
+	if (s->config)
+		return scnprintf(buf, size, "slave %u has another configuration, %u:%u; use one of the two",
+				 pos, s->config->alias, s->config->position);
+	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
+}
+
+static size_t present(const struct ec_slave *s, char *buf, size_t size)
+{
+	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
+	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
+	u8 want = READ_ONCE(s->requested);
+	const char *doing = READ_ONCE(s->waits_for);
+
+	if (s->error != EC_SLAVE_OK)
+		return scnprintf(buf, size, "%s", s->why);
+	if (status & EC_AL_ERROR)
+		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)", state, code,
+				 ec_al_code_text(code));
+	if (want != EC_AL_OP)
+		return scnprintf(buf, size, "AL state %s, requested %s", state,
+				 ec_al_state_name(want));
+	if (s->master->owner == EC_OWNER_IDLE)
+		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
+	if (doing)
+		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
+				 doing);
+	return scnprintf(buf, size, "AL state %s on the way to OP", state);
+}
+
+/* The revision is no part of the identity, only what an application has asked to be told. */
+static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
+{
+	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
+
+	return expected && expected != s->info.revision;
+}
+
+/**
+ * ec_config_at() - look for the configuration that a slave has or differs from
+ * @s: session
+ * @slave: slave
+ * @alias: of the nearest slave at or before it that has one, or 0
+ * @distance: to that one
+ * @from: configuration to begin with, 0 at first; set behind the last one looked at
+ *
+ * Looks at some configurations only, as a section of a reader is short.
+ *
+ * Context: After ec_show_begin().
+ * Return: the one that is attached; else one without slave that means its place; or NULL:
+ * go on until @from is the number of configurations.
+ */
+const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
+				     u16 alias, u16 distance, unsigned int *from)
+{
+	const struct ec_config *has = slave->config;
+	unsigned int end = min(s->n_configs, *from + WALK);
+
+	if (has && has->session == s)
+		return has;
+	while (*from < end) {
+		const struct ec_config *c = s->configs[(*from)++];
+
+		if (!c->slave && (c->alias ? c->alias == alias && c->position == distance :
+					     c->position == slave->position))
+			return c;
+	}
+	return NULL;
+}
+
+/**
+ * ec_config_differs() - is a slave another one than a configuration expects?
+ * @c: what ec_config_at() found
+ * @slave: for that slave
+ *
+ * Context: Process; with session_lock held, or after ec_show_begin().
+ * Return: true: identity or revision differ.
+ */
+bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
+{
+	return c->slave != slave || other_revision(c, slave);
+}
+
+/**
+ * ec_config_revision_text() - how the revision of a slave differs from the expected one
+ * @c: what ec_config_at() found
+ * @slave: for that slave
+ * @buf: one line of text, untouched when the revision does not differ
+ * @size: of @buf
+ *
+ * Context: Process; with session_lock held, or after ec_show_begin().
+ * Return: whether it differs.
+ */
+bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
+			     size_t size)
+{
+	if (c->slave != slave || !other_revision(c, slave))
+		return false;
+	scnprintf(buf, size, "slave %u has revision 0x%08x, expected 0x%08x", slave->position,
+		  slave->info.revision, (u32)ec_config_flag(c, EC_FLAG_REVISION));
+	return true;
+}
+
+static void absent_text(const struct ec_config *c, char *buf, size_t size)
+{
+	down_read(&c->session->master->topo);
+	absent(c, buf, size);
+	up_read(&c->session->master->topo);
+}
+
+/**
+ * ec_config_log_differences() - report what is missing or different
+ * @s: session that has just been activated
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_config_log_differences(const struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	char text[EC_UAPI_REASON];
+	unsigned int i, n = 0;
+
+	lockdep_assert_held(&m->session_lock);
+	for (i = 0; i < s->n_configs; i++) {
+		const struct ec_config *c = s->configs[i];
+
+		if (c->slave && !other_revision(c, c->slave))
+			continue;
+		if (n++ >= LOG_MAX)
+			continue;
+		if (!c->slave || !ec_config_revision_text(c, c->slave, text, sizeof(text)))
+			absent_text(c, text, sizeof(text));
+		ec_warn_each(m, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
+			     text);
+	}
+	if (n > LOG_MAX)
+		ec_warn(m, "%u more configurations differ from the bus; see 'ethercat config -v'\n",
+			n - LOG_MAX);
+}
+
+/**
+ * ec_config_why() - why a configured slave is not in OP
+ * @c: configuration
+ * @buf: one line of text, empty when it is in OP
+ * @size: of @buf
+ *
+ * Context: Process; with session_lock and topo held, or after ec_show_begin().
+ * Return: length of the text.
+ */
+size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
+{
+	size_t len;
+
+	lockdep_assert(lockdep_is_held(&c->session->master->topo) ||
+		       atomic_read(&c->session->master->show.showing));
+	buf[0] = '\0';
+	if (!c->slave || c->slave->gone)
+		len = absent(c, buf, size);
+	else if (ec_session_config_status(c) & EC_STATUS_SC_OP)
+		len = 0;
+	else if (!c->session->active)
+		len = scnprintf(buf, size, "AL state %s; the master is not active",
+				ec_al_state_name(c->slave->al_status & EC_AL_STATE_MASK));
+	else
+		len = present(c->slave, buf, size);
+	return len;
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/minmax.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../config/config.h"
+#include "copy.h"
+#include "domain.h"
+#include "../base/limits.h"
+#include "../session/session.h"
+
+/**
+ * struct step - a copy with everything found out
+ * @domain: whose working counter says whether the inputs are valid
+ * @from: bit in the image
+ * @to: bit in the image
+ * @bits: how many
+ * @last: byte in the memory of last values
+ */
+struct step {
+	u32 domain;
+	u32 from;
+	u32 to;
+	u32 bits;
+	u32 last;
+};
+
+/**
+ * struct ec_copying - the copies of an active session; the cyclic caller's
+ * @n: entries in @steps
+ * @last: last valid values, behind @steps
+ * @steps: copies
+ */
+struct ec_copying {
+	unsigned int n;
+	u8 *last;
+	struct step steps[];
+};
+
+/* @bits from bit @from_bit of @from on to bit @to_bit of @to; least bit first. */
+static void copy_bits(u8 *to, u32 to_bit, const u8 *from, u32 from_bit, u32 bits)
+{
+	to += to_bit / 8;
+	to_bit %= 8;
+	from += from_bit / 8;
+	from_bit %= 8;
+	if (!to_bit && !from_bit) {
+		memcpy(to, from, bits / 8);
+		to += bits / 8;
+		from += bits / 8;
+		bits %= 8;
+	}
+	while (bits) {
+		u32 n = min3(bits, 8 - to_bit, 8 - from_bit);
+		u8 mask = ((1u << n) - 1) << to_bit;
+
+		*to = (*to & ~mask) | ((u8)(*from >> from_bit << to_bit) & mask);
+		bits -= n;
+		to_bit += n;
+		from_bit += n;
+		to += to_bit / 8;
+		from += from_bit / 8;
+		to_bit %= 8;
+		from_bit %= 8;
+	}
+}
+
+/* Do the bits belong to one slave's process data of that direction? */
+static bool inside(const struct ec_session *s, u32 domain, u32 bit, u32 bits, u8 dir)
+{
+	const struct ec_domain *d = s->domains[domain];
+	unsigned int i;
+
+	for (i = 0; i < d->n_fmmus; i++) {
+		const struct ec_config_fmmu *f = &d->fmmus[i].config->fmmus[d->fmmus[i].fmmu];
+
+		if (f->dir == dir && bit >= 8 * f->offset && bit - 8 * f->offset < 8 * f->size &&
+		    bits <= 8 * f->size - (bit - 8 * f->offset))
+			return true;
+	}
+	return false;
+}
+
+static bool overlap(const struct ec_copy *a, const struct ec_copy *b)
+{
+	return a->to_domain == b->to_domain && a->to_bit < b->to_bit + b->bits &&
+	       b->to_bit < a->to_bit + a->bits;
+}
+
+/**
+ * ec_copy_add() - one more copy
+ * @s: session, not active
+ * @copy: what to copy; nothing of it is checked yet
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENOENT no such domain; -EDOM the source is not input of one
+ * slave; -ERANGE the target is not output of one slave; -EEXIST another copy has
+ * that target; -ENOSPC; -ENOMEM.
+ */
+int ec_copy_add(struct ec_session *s, const struct ec_copy *copy)
+{
+	unsigned int i;
+
+	if (copy->from_domain >= s->n_domains || copy->to_domain >= s->n_domains)
+		return -ENOENT;
+	if (!copy->bits || !inside(s, copy->from_domain, copy->from_bit, copy->bits,
+				   EC_CFG_DIR_INPUT))
+		return -EDOM;
+	if (!inside(s, copy->to_domain, copy->to_bit, copy->bits, EC_CFG_DIR_OUTPUT))
+		return -ERANGE;
+	for (i = 0; i < s->n_copies; i++)
+		if (overlap(copy, &s->copies[i]))
+			return -EEXIST;
+	if (s->n_copies >= EC_MAX_COPIES)
+		return -ENOSPC;
+	if (!s->copies)
+		s->copies = kvcalloc(EC_MAX_COPIES, sizeof(*s->copies), GFP_KERNEL_ACCOUNT);
+	if (!s->copies)
+		return -ENOMEM;
+	s->copies[s->n_copies++] = *copy;
+	return 0;
+}
+
+/**
+ * ec_copies_begin() - copies are done from now on
+ * @s: session whose domains have offsets
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_copies_begin(struct ec_session *s)
+{
+	size_t bytes = 0, steps = s->n_copies * sizeof(struct step);
+	struct ec_copying *c;
+	unsigned int i;
+
+	if (!s->n_copies)
+		return 0;
+	for (i = 0; i < s->n_copies; i++)
+		bytes += DIV_ROUND_UP(s->copies[i].bits, 8);
+	c = kvzalloc(sizeof(*c) + steps + bytes, GFP_KERNEL_ACCOUNT);
+	if (!c)
+		return -ENOMEM;
+	c->n = s->n_copies;
+	c->last = (u8 *)c->steps + steps;
+	for (bytes = 0, i = 0; i < c->n; i++) {
+		const struct ec_copy *copy = &s->copies[i];
+
+		c->steps[i] = (struct step){
+			.domain = copy->from_domain, .bits = copy->bits, .last = bytes,
+			.from = 8 * s->domains[copy->from_domain]->offset + copy->from_bit,
+			.to = 8 * s->domains[copy->to_domain]->offset + copy->to_bit,
+		};
+		bytes += DIV_ROUND_UP(copy->bits, 8);
+	}
+	s->copying = c;
+	return 0;
+}
+
+void ec_copies_end(struct ec_session *s)
+{
+	kvfree(s->copying);
+	s->copying = NULL;
+}
+
+/**
+ * ec_copies_run() - copy inputs to outputs in the image
+ * @s: active session with copies
+ *
+ * While the working counter of the source's domain is not complete the last
+ * values stay; they are zero at first. The image may be the application's.
+ *
+ * Context: The master's single cyclic caller, between receive and send. RT-safe.
+ */
+void ec_copies_run(struct ec_session *s)
+{
+	struct ec_copying *c = s->copying;
+	const struct ec_status *st = s->shared->status;
+	u8 *image = s->shared->image;
+	unsigned int i;
+
+	for (i = 0; i < c->n; i++) {
+		const struct step *p = &c->steps[i];
+
+		if (st->domains[p->domain].wc_state == 2)
+			copy_bits(c->last + p->last, 0, image, p->from, p->bits);
+		copy_bits(image, p->to, c->last + p->last, 0, p->bits);
+	}
+}

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The kernel's cycle follows the reference clock: its frame shall pass that
+ * clock at a set time after the grid on which the SYNC signals lie. What the
+ * clock said when the frame passed it, less the grid, is the error the controller
+ * (wire/dc_lock.c) gets; so the usual lateness of thread and device is made up
+ * for, too, and their jitter is averaged.
+ */
+#include <linux/ktime.h>
+#include "cycle_lock.h"
+#include "../master.h"
+#include "../session/session.h"
+
+/**
+ * ec_cycle_lock_init() - begin anew
+ * @l: time of the cycle
+ * @s: session with its @kernel
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_session *s)
+{
+	memset(l, 0, sizeof(*l));
+	l->follow = s->kernel.dc & EC_CYCLE_DC_FOLLOW;
+	l->phase = l->follow ? s->kernel.phase_ns : 0;
+	ec_dc_lock_init(&l->pi, s->kernel.period_ns);
+}
+
+/* Application time of a cycle: whole periods after the last one. */
+static void advance(struct ec_cycle_lock *l, u64 due, u64 epoch_ns)
+{
+	u32 period = l->pi.period;
+
+	if (!l->begun)
+		l->time = due + epoch_ns;
+	else
+		l->time += div_u64(due - l->due + period / 2, period) * period;
+	l->due = due;
+	l->begun = true;
+}
+
+/* Application time of the cycle that sent a frame; false: too long ago. */
+static bool origin(const struct ec_cycle_lock *l, u64 sent_ns, u64 *time)
+{
+	u32 i, n = min_t(u32, l->n_past, EC_CYCLE_LOCK_PAST);
+
+	for (i = 1; i <= n; i++) {
+		u32 k = (l->n_past - i) % EC_CYCLE_LOCK_PAST;
+
+		if (l->past[k].due > sent_ns)
+			continue;
+		*time = l->past[k].time;
+		return true;
+	}
+	return false;
+}
+
+/* All times of the cycle were so many ns off, whole periods. */
+static void shift(struct ec_cycle_lock *l, s64 ns)
+{
+	u32 i;
+
+	l->time += ns;
+	for (i = 0; i < EC_CYCLE_LOCK_PAST; i++)
+		l->past[i].time += ns;
+}
+
+/* What the reference clock says is new; how late that cycle was by it. */
+static bool measured(struct ec_cycle_lock *l, const struct ec_session *s, s32 *error)
+{
+	const struct ec_cycle *c = &s->cycle;
+	u64 time = 0, then;
+	s64 ahead;
+
+	if (!c->dc_time_ns || c->dc_time_ns == l->seen)
+		return false;
+	l->seen = c->dc_time_ns;
+	if (!origin(l, c->dc_time_ns, &time))
+		return false;
+	then = c->dc_time - l->phase;
+	ahead = (s64)(then - time);
+	*error = ec_dc_lock_wrap(ahead, l->pi.period);
+	if (ahead != *error)
+		shift(l, ahead - *error);
+	return true;
+}
+
+static void publish(const struct ec_cycle_lock *l, struct ec_status_cycle *st)
+{
+	if (st->lock >= EC_CYCLE_LOCK_LOCKED && l->pi.state < EC_DC_LOCK_LOCKED)
+		WRITE_ONCE(st->lock_losses, st->lock_losses + 1);
+	WRITE_ONCE(st->lock, l->pi.state);
+	WRITE_ONCE(st->phase_error, l->pi.error);
+	WRITE_ONCE(st->rate_ppb, ec_dc_lock_ppb(&l->pi));
+}
+
+/**
+ * ec_cycle_lock_step() - time of a cycle, and when the next one shall be
+ * @l: time of the cycle
+ * @s: active session; what has come back was taken
+ * @due: schedule of this cycle (ktime)
+ * @epoch_ns: what makes ktime an application time at first
+ *
+ * Tells the application time. @l->time is that of this cycle.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: what to add to the period until the next cycle, ns; at most 1/100 of
+ * it.
+ */
+s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u64 epoch_ns)
+{
+	u32 k = l->n_past % EC_CYCLE_LOCK_PAST;
+	s32 error, correction = 0;
+
+	BUILD_BUG_ON(EC_CYCLE_LOCK_LOCKED != (int)EC_DC_LOCK_LOCKED);
+	BUILD_BUG_ON(EC_CYCLE_LOCK_HOLD != (int)EC_DC_LOCK_HOLD);
+	advance(l, due, epoch_ns);
+	if (l->follow) {
+		correction = measured(l, s, &error) ? ec_dc_lock_step(&l->pi, error) :
+						      ec_dc_lock_miss(&l->pi);
+		publish(l, &s->shared->status->kernel);
+	}
+	l->past[k].due = due;
+	l->past[k].time = l->time;
+	l->n_past++;
+	ec_dc_app_time(s->master, l->time, due - l->phase);
+	return correction;
+}
+
+/**
+ * ec_cycle_lock_log() - tell changes of the lock; the cycle cannot
+ * @s: active session
+ *
+ * Context: The monitor thread, session_lock held.
+ */
+void ec_cycle_lock_log(struct ec_session *s)
+{
+	const struct ec_status_cycle *st = &s->shared->status->kernel;
+	u32 lock = READ_ONCE(st->lock);
+
+	/* while clocks are measured nobody asks the reference */
+	if (lock == s->lock_told ||
+	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(s->master->dc.state) == EC_DC_BUSY))
+		return;
+	s->lock_told = lock;
+	if (lock == EC_CYCLE_LOCK_LOCKED)
+		ec_info(s->master, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
+			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));
+	else if (lock == EC_CYCLE_LOCK_HOLD)
+		ec_warn(s->master, "reference clock not answering; kernel cycle in holdover at the last rate\n");
+	else if (lock == EC_CYCLE_LOCK_SEEK && READ_ONCE(st->lock_losses))
+		ec_warn(s->master, "kernel cycle lost lock: phase error %d ns; seeking\n",
+			READ_ONCE(st->phase_error));
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A cycle run by the kernel that follows the reference clock. */
+#ifndef EC_CYCLE_LOCK_H
+#define EC_CYCLE_LOCK_H
+
+#include <linux/types.h>
+#include "../wire/dc_lock.h"
+
+struct ec_session;
+struct ec_status_cycle;
+
+#define EC_CYCLE_LOCK_PAST	8	/* a frame may be that many cycles on its way */
+
+/**
+ * struct ec_cycle_lock - time of a cycle; the thread's own
+ * @follow: the cycle follows the reference clock, else only its own timer
+ * @phase: begin of a cycle after the grid of the SYNC signals, ns
+ * @time: application time of the last cycle, ns: a point of that grid
+ * @due: its schedule (ktime)
+ * @begun: the two are set
+ * @seen: send of the last frame that has brought a time (ktime)
+ * @past: schedules of the last cycles and their application times
+ * @n_past: cycles so far
+ * @pi: controller
+ */
+struct ec_cycle_lock {
+	bool follow;
+	u32 phase;
+	u64 time;
+	u64 due;
+	bool begun;
+	u64 seen;
+	struct {
+		u64 due;
+		u64 time;
+	} past[EC_CYCLE_LOCK_PAST];
+	u32 n_past;
+	struct ec_dc_lock pi;
+};
+
+void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_session *s);
+s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u64 epoch_ns);
+void ec_cycle_lock_log(struct ec_session *s);
+
+#endif

@@ -1,0 +1,732 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The kernel runs the cycle: a real-time thread on an absolute timer is the
+ * master's cyclic caller. Application and thread exchange whole images through
+ * three buffers each way (struct ec_exchange), so neither ever waits for the
+ * other. The application can write all of that memory: nothing that is read
+ * there is more than data or a number of a buffer, and that is cut to 0..2.
+ *
+ * Once it runs, the thread allocates nothing, prints nothing and takes no lock
+ * but those of ec_cycle_receive() and ec_cycle_send(), and the one of the wait
+ * queue of the file that owns the cycle, when a caller waits there.
+ */
+#include <linux/cpu.h>
+#include <linux/hrtimer.h>
+#include <linux/kthread.h>
+#include <linux/ktime.h>
+#include <linux/sched.h>
+#include <linux/slab.h>
+#include <linux/completion.h>
+#include <linux/rcupdate.h>
+#include <linux/wait.h>
+#include "../config/config.h"
+#include "../base/bytes.h"
+#include "cycle_lock.h"
+#include "cycle_thread.h"
+#include "domain.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "../session/request.h"
+#include "../session/session.h"
+#include "waiters.h"
+
+#define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
+#define INDEX_MASK	3
+#define ADOPT_MS	1000	/* for a takeover, besides two periods */
+#define STEADY		1000	/* cycles in which all take part, before that is relied on */
+
+/* outputs side by side in the image */
+struct area {
+	u32 offset;
+	u32 len;
+};
+
+/* a domain that is not sent in each cycle */
+struct slow {
+	u32 domain;
+	s32 left;	/* cycles until its turn */
+	s32 division;
+};
+
+/**
+ * struct ec_cycle_thread - @session, @outputs and sizes are immutable, the
+ *	rest is the thread's
+ * @session: active session; it ends the thread before it goes away
+ * @task: thread
+ * @outputs: areas that are taken from the application
+ * @n_outputs: entries in @outputs
+ * @always: domains of each cycle, bit n: domain n
+ * @slow: the others
+ * @n_slow: entries in @slow
+ * @bytes: of the image of all domains
+ * @stride: distance of two buffers in the exchange
+ * @next_ns: schedule of the next cycle (ktime)
+ * @epoch_ns: what makes ktime an application time
+ * @lock: application time; lets the cycle follow the reference clock
+ * @front: output buffer it holds
+ * @given: the application has given that buffer, and its outputs are still valid
+ * @ahead: outputs of that buffer are not in the image
+ * @steady: cycles in which all slaves took part in a row, up to STEADY
+ * @back: input buffer it holds
+ * @fed: there were outputs at least once
+ * @unfed: cycles without new outputs in a row, up to the limit
+ * @adopt: another application shall get the buffers; cleared when it has them
+ * @adopted: that has happened
+ */
+struct ec_cycle_thread {
+	struct ec_session *session;
+	struct task_struct *task;
+	struct area *outputs;
+	unsigned int n_outputs;
+	u64 always;
+	struct slow slow[EC_MAX_DOMAINS];
+	unsigned int n_slow;
+	u32 bytes;
+	u32 stride;
+	u64 next_ns;
+	u64 epoch_ns;
+	struct ec_cycle_lock lock;
+	u8 front;
+	bool given;
+	bool ahead;
+	u32 steady;
+	u8 back;
+	bool fed;
+	u32 unfed;
+	bool adopt;
+	struct completion adopted;
+};
+
+static struct ec_status_cycle *status(const struct ec_cycle_thread *t)
+{
+	return &t->session->shared->status->kernel;
+}
+
+static struct ec_exchange *exchange(const struct ec_cycle_thread *t)
+{
+	return t->session->shared->exchange;
+}
+
+static struct ec_exchange_buffer *buffer(const struct ec_cycle_thread *t, unsigned int n)
+{
+	return t->session->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
+}
+
+/* A number from memory of the application. */
+static u8 buffer_index(u32 word)
+{
+	return min_t(u32, word & INDEX_MASK, EC_EXCHANGE_BUFFERS - 1);
+}
+
+/* Takes the newest outputs, or returns false when there are none since the last time. */
+static bool take_outputs(struct ec_cycle_thread *t)
+{
+	struct ec_exchange *x = exchange(t);
+
+	if (!(READ_ONCE(x->outputs) & EC_EXCHANGE_NEW))
+		return false;
+	t->front = buffer_index(xchg(&x->outputs, t->front));
+	t->given = true;
+	t->ahead = true;
+	return true;
+}
+
+/* From now on the image is what is sent: its outputs are the newest ones. */
+static void use_image(struct ec_cycle_thread *t)
+{
+	u8 *image = t->session->shared->image;
+	const u8 *data = (const u8 *)(buffer(t, t->front) + 1);
+	unsigned int i;
+
+	for (i = 0; t->ahead && i < t->n_outputs; i++)
+		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
+			t->outputs[i].len);
+	t->ahead = false;
+	/* who looks at the image then finds these */
+	smp_store_release(&t->session->cycle.direct, NULL);
+}
+
+/* Did all slaves take part when their domain was sent last? */
+static bool all_take_part(const struct ec_session *s)
+{
+	const struct ec_status_domain *st = s->shared->status->domains;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++)
+		if (s->domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
+			return false;
+	return true;
+}
+
+/*
+ * The buffer of the application is sent as it is, which spares a copy of each
+ * slave's outputs, and of its inputs when they are back. The inputs in it are no
+ * last values that a missing slave could leave: then and for a while after it, and
+ * where the kernel itself writes outputs, the image is sent.
+ */
+static void choose_source(struct ec_cycle_thread *t)
+{
+	struct ec_session *s = t->session;
+
+	t->steady = all_take_part(s) ? min(t->steady + 1, STEADY) : 0;
+	if (!t->given || s->copying || t->steady < STEADY) {
+		use_image(t);
+		return;
+	}
+	t->ahead = true;
+	s->cycle.direct = (const u8 *)(buffer(t, t->front) + 1);
+}
+
+/* The callers of the file that owns the cycle: no other file adds work to it. */
+static void wake_owner(struct ec_session *s)
+{
+	struct ec_waiters *w;
+
+	rcu_read_lock();
+	w = rcu_dereference(s->waiters);
+	if (w)
+		ec_waiters_wake(w);
+	rcu_read_unlock();
+}
+
+/* No more cycles; waiting callers return. */
+static void end_run(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
+	wake_owner(s);
+}
+
+/* The application has given no outputs for too long. */
+static void stall(struct ec_cycle_thread *t)
+{
+	u8 *image = t->session->shared->image;
+	struct ec_status_cycle *st = status(t);
+	unsigned int i;
+
+	switch (t->session->kernel.stall) {
+	case EC_STALL_STOP:
+		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
+		return;
+	case EC_STALL_ZERO:
+		t->given = false;
+		t->ahead = false;
+		for (i = 0; i < t->n_outputs; i++)
+			memset(image + t->outputs[i].offset, 0, t->outputs[i].len);
+		break;
+	}
+	WRITE_ONCE(st->state, EC_CYCLE_STATE_STALLED);
+}
+
+/* Outputs of this cycle, new ones or what the policy says. */
+static void feed(struct ec_cycle_thread *t)
+{
+	struct ec_status_cycle *st = status(t);
+	u32 limit = t->session->kernel.stall_cycles;
+
+	if (take_outputs(t)) {
+		t->fed = true;
+		t->unfed = 0;
+		if (st->state != EC_CYCLE_STATE_RUNNING)
+			WRITE_ONCE(st->state, EC_CYCLE_STATE_RUNNING);
+		return;
+	}
+	if (!t->fed)
+		return;
+	ec_status_add(t->session->shared->status, &st->missed, 1);
+	if (!limit || t->unfed == limit)
+		return;
+	if (++t->unfed == limit)
+		stall(t);
+}
+
+/* The buffers of an application: first those after the thread's, nothing waits. */
+static void deal(struct ec_cycle_thread *t)
+{
+	struct ec_exchange *x = exchange(t);
+
+	x->stride = t->stride;
+	x->app_output = (t->front + 1) % EC_EXCHANGE_BUFFERS;
+	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
+	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
+	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
+}
+
+/* The application before may have died anywhere: the next one begins anew. */
+static void adopt(struct ec_cycle_thread *t)
+{
+	use_image(t);
+	t->given = false;
+	deal(t);
+	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->session->shared->image,
+	       t->bytes);
+	smp_store_release(&t->adopt, false);
+	complete(&t->adopted);
+}
+
+/* Receive and send of the application answer without a system call. */
+static void tell_device(const struct ec_session *s)
+{
+	u32 *no_device = &s->shared->status->no_device;
+	bool gone = !READ_ONCE(s->master->link[0].dev);
+
+	if (unlikely(*no_device != gone))
+		WRITE_ONCE(*no_device, gone);
+}
+
+/* Inputs and working counters of this cycle for the application. */
+static void publish(struct ec_cycle_thread *t)
+{
+	struct ec_session *s = t->session;
+	struct ec_master *m = s->master;
+	struct ec_exchange_buffer *b = buffer(t, EC_EXCHANGE_BUFFERS + t->back);
+	struct ec_status_cycle *st = status(t);
+	u64 cycle = st->cycle + 1;
+	unsigned int i;
+
+	if (unlikely(READ_ONCE(t->adopt)))
+		adopt(t);
+	b->cycle = cycle;
+	b->time_ns = t->next_ns;
+	for (i = 0; i < s->n_domains; i++)
+		b->domains[i] = s->shared->status->domains[i];
+	tell_device(s);
+	memcpy(b + 1, s->shared->image, t->bytes);
+	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
+	/* the application that sees the number finds the inputs */
+	ec_status_begin(s->shared->status);
+	WRITE_ONCE(st->cycle, cycle);
+	ec_status_end(s->shared->status);
+	ec_write64(&m->kernel_cycle, cycle);
+	wake_owner(s);
+}
+
+/* Cycles whose time has passed are left out, so that the phase stays; how many. */
+static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
+{
+	u32 period = t->session->kernel.period_ns;
+	s64 late = now - t->next_ns;
+	u64 skipped;
+
+	if (late < period)
+		return 0;
+	skipped = div_u64(late, period);
+	ec_status_add(t->session->shared->status, &status(t)->overruns, skipped);
+	t->next_ns += skipped * period;
+	return skipped;
+}
+
+/* Domains of this cycle; those whose turn was left out go now, then as before. */
+static u64 turn(struct ec_cycle_thread *t, u64 skipped)
+{
+	u64 domains = t->always;
+	unsigned int i;
+
+	for (i = 0; i < t->n_slow; i++) {
+		struct slow *s = &t->slow[i];
+
+		s->left -= min_t(u64, skipped, S32_MAX / 2);
+		if (s->left <= 0) {
+			domains |= BIT_ULL(s->domain);
+			s->left = s->division - -s->left % s->division;
+		}
+		s->left--;
+	}
+	return domains;
+}
+
+static void find_turns(struct ec_cycle_thread *t)
+{
+	const struct ec_session *s = t->session;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++) {
+		if (s->domains[i]->division == 1)
+			t->always |= BIT_ULL(i);
+		else
+			t->slow[t->n_slow++] = (struct slow){
+				.domain = i, .left = s->domains[i]->phase,
+				.division = s->domains[i]->division,
+			};
+	}
+}
+
+/* One cycle; false: the last one. */
+static bool cycle(struct ec_cycle_thread *t)
+{
+	struct ec_session *s = t->session;
+	struct ec_master *m = s->master;
+	struct ec_ioc_send send = { .flags = s->kernel.dc };
+	u64 due = t->next_ns, now = ktime_get_ns();
+	s32 correction;
+
+	send.queued = turn(t, skip_missed(t, now));
+	/* before the first frame the links are not ours */
+	if (status(t)->state != EC_CYCLE_STATE_WAITING)
+		ec_cycle_receive(s);
+	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
+	send.sync_time = t->lock.time;
+	feed(t);
+	choose_source(t);
+	if (s->requests)
+		ec_requests_notice(s->requests);
+	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
+		if (!ec_cycle_send(s, &send))
+			ec_late_count(s, m->last_send_ns - due);
+	}
+	publish(t);
+	ec_late_work(s, ktime_get_ns() - now);
+	t->next_ns += s->kernel.period_ns + correction;
+	return status(t)->state != EC_CYCLE_STATE_STOPPED;
+}
+
+/* Until the next cycle; false: the thread shall end. */
+static bool sleep(const struct ec_cycle_thread *t)
+{
+	ktime_t at = ns_to_ktime(t->next_ns);
+	bool due = false;
+
+	while (!due) {
+		set_current_state(TASK_IDLE);
+		if (kthread_should_stop())
+			break;
+		due = !schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
+	}
+	__set_current_state(TASK_RUNNING);
+	return due;
+}
+
+static int run(void *data)
+{
+	struct ec_cycle_thread *t = data;
+	const struct ec_ioc_cycle *k = &t->session->kernel;
+	u64 now;
+
+	if (t->session->priority)
+		ec_cycle_sched_set(t->session, current);
+	now = ktime_get_ns();
+	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
+	ec_cycle_lock_init(&t->lock, t->session);
+	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
+	while (sleep(t))
+		if (!cycle(t)) {
+			end_run(t->session);
+			break;
+		}
+	for (;;) {
+		set_current_state(TASK_IDLE);
+		if (kthread_should_stop())
+			break;
+		schedule();
+	}
+	__set_current_state(TASK_RUNNING);
+	return 0;
+}
+
+/* Output areas of all domains; those side by side are one. */
+static int find_outputs(struct ec_cycle_thread *t)
+{
+	const struct ec_session *s = t->session;
+	struct area *a = NULL;
+	unsigned int i, k, n = 0;
+
+	for (i = 0; i < s->n_domains; i++)
+		n += s->domains[i]->n_fmmus;
+	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL_ACCOUNT);
+	if (!t->outputs)
+		return -ENOMEM;
+	for (i = 0; i < s->n_domains; i++)
+		for (k = 0; k < s->domains[i]->n_fmmus; k++) {
+			const struct ec_domain *d = s->domains[i];
+			const struct ec_config_fmmu *f =
+				&d->fmmus[k].config->fmmus[d->fmmus[k].fmmu];
+			u32 offset = d->offset + f->offset;
+
+			if (f->dir != EC_CFG_DIR_OUTPUT || !f->size)
+				continue;
+			if (a && a->offset + a->len == offset) {
+				a->len += f->size;
+				continue;
+			}
+			a = &t->outputs[t->n_outputs++];
+			*a = (struct area){ .offset = offset, .len = f->size };
+		}
+	return 0;
+}
+
+static int alloc_exchange(struct ec_cycle_thread *t)
+{
+	struct ec_shared *sh = t->session->shared;
+
+	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
+	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
+	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
+	if (!sh->exchange)
+		return -ENOMEM;
+	deal(t);
+	/* it may begin with something */
+	if (t->bytes)
+		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, sh->image, t->bytes);
+	return 0;
+}
+
+static void free_thread(struct ec_cycle_thread *t)
+{
+	kvfree(t->outputs);
+	kfree(t);
+}
+
+/**
+ * ec_cycle_thread_create() - prepare a cycle run by the kernel
+ * @s: session with a layout and @kernel.period_ns
+ * @image_bytes: of all domains
+ *
+ * The memory of the exchange goes away with @s->shared.
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0; -ENODEV the CPU is not online; -ENOMEM.
+ */
+int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
+{
+	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
+	int ret, cpu = s->kernel.cpu;
+
+	if (!t)
+		return -ENOMEM;
+	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
+	t->session = s;
+	init_completion(&t->adopted);
+	t->bytes = image_bytes;
+	find_turns(t);
+	ret = find_outputs(t) ?: alloc_exchange(t);
+	if (ret)
+		goto err;
+	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->index);
+	if (IS_ERR(t->task)) {
+		ret = PTR_ERR(t->task);
+		goto err;
+	}
+	if (cpu >= 0) {
+		cpus_read_lock();
+		ret = cpu < nr_cpu_ids && cpu_online(cpu) ? 0 : -ENODEV;
+		if (!ret)
+			kthread_bind(t->task, cpu);
+		cpus_read_unlock();
+	}
+	if (ret) {
+		kthread_stop(t->task);
+		goto err;
+	}
+	s->thread = t;
+	return 0;
+err:
+	free_thread(t);
+	return ret;
+}
+
+/**
+ * ec_cycle_thread_task() - the thread that runs the cycle
+ * @s: session
+ *
+ * Context: session_lock held.
+ * Return: thread; NULL when the application runs the cycle.
+ */
+struct task_struct *ec_cycle_thread_task(const struct ec_session *s)
+{
+	lockdep_assert_held(&s->master->session_lock);
+	return s->thread ? s->thread->task : NULL;
+}
+
+/**
+ * ec_cycle_thread_start() - the kernel begins to run the cycle
+ * @s: active session; nothing happens when the application runs the cycle
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_cycle_thread_start(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	if (!s->thread)
+		return;
+	ec_cycle_sched_log(s);
+	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
+	m->interval_told = true;
+	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?
+		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
+	ec_write64(&m->kernel_cycle, 0);
+	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
+	rcu_assign_pointer(m->kernel_session, s);
+	wake_up_process(s->thread->task);
+}
+
+/**
+ * ec_cycle_thread_stop() - end the cycle run by the kernel
+ * @s: session; nothing happens when the application ran the cycle
+ *
+ * poll() of the application may still look at the session meanwhile: that is
+ * waited for while cycles go on.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_cycle_thread_stop(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+
+	if (!s->thread)
+		return;
+	lockdep_assert_held(&m->session_lock);
+	if (rcu_access_pointer(m->kernel_session)) {
+		RCU_INIT_POINTER(m->kernel_session, NULL);
+		synchronize_rcu();
+	}
+	kthread_stop(s->thread->task);
+	if (m->kernel_run & 1)
+		end_run(s);
+	else
+		wake_owner(s);
+	free_thread(s->thread);
+	s->thread = NULL;
+}
+
+/**
+ * ec_cycle_thread_adopt() - another application gets the exchange
+ * @s: active session without an application
+ *
+ * Its output buffer has the image as it is, outputs and inputs; none of the
+ * buffers that the application before has given is used any more.
+ *
+ * Context: Process, session_lock held. Sleeps until the next cycle has begun.
+ * Return: 0; -ETIMEDOUT the cycle does not run.
+ */
+int ec_cycle_thread_adopt(struct ec_session *s)
+{
+	struct ec_cycle_thread *t = s->thread;
+	u32 limit_ms = 2 * s->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
+
+	reinit_completion(&t->adopted);
+	WRITE_ONCE(t->adopt, true);
+	if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
+		return -ETIMEDOUT;
+	WRITE_ONCE(status(t)->takeovers, status(t)->takeovers + 1);
+	return 0;
+}
+
+/**
+ * ec_cycle_thread_outputs() - outputs as they are sent
+ * @s: active session; nothing happens when the application runs its cycle
+ * @image: copy of a part of the image
+ * @offset: where in the image that part begins, bytes
+ * @size: its bytes
+ *
+ * The cycle may go on meanwhile: outputs may be of several cycles.
+ *
+ * Context: Process, session_lock held or after ec_show_begin().
+ */
+void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size)
+{
+	const struct ec_cycle_thread *t = s->thread;
+	const u8 *source = smp_load_acquire(&s->cycle.direct) ?: s->shared->image;
+	unsigned int i;
+
+	for (i = 0; t && i < t->n_outputs; i++) {
+		u32 from = max(offset, t->outputs[i].offset);
+		u32 to = min(offset + size, t->outputs[i].offset + t->outputs[i].len);
+
+		if (from < to)
+			memcpy(image + (from - offset), source + from, to - from);
+	}
+}
+
+/* The session whose cycle the kernel runs for @owner, or NULL. RCU read side. */
+static const struct ec_session *owned_by(const struct ec_master *m, const void *owner)
+{
+	const struct ec_session *s = rcu_dereference(m->kernel_session);
+
+	return s && READ_ONCE(s->owner) == owner ? s : NULL;
+}
+
+/**
+ * ec_cycle_thread_poll() - are there new inputs for the application?
+ * @m: master
+ * @owner: open file that asks
+ *
+ * Context: Any. Takes no lock.
+ * Return: EPOLLIN: inputs that the application has not taken; EPOLLHUP: the cycle has
+ * stopped; EPOLLERR: the kernel runs no cycle for @owner.
+ */
+__poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner)
+{
+	const struct ec_session *s;
+	__poll_t mask = EPOLLERR;
+
+	rcu_read_lock();
+	s = owned_by(m, owner);
+	if (s) {
+		mask = 0;
+		if (READ_ONCE(exchange(s->thread)->inputs) & EC_EXCHANGE_NEW)
+			mask |= EPOLLIN | EPOLLRDNORM;
+		if (READ_ONCE(status(s->thread)->state) == EC_CYCLE_STATE_STOPPED)
+			mask |= EPOLLHUP;
+	}
+	rcu_read_unlock();
+	return mask;
+}
+
+/**
+ * ec_cycle_thread_run() - number of the run of a session
+ * @m: master
+ * @owner: open file that asks
+ * @run: @kernel_run of the session's cycle
+ *
+ * Context: Any. Takes no lock.
+ * Return: true when the kernel runs the cycle for @owner.
+ */
+bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run)
+{
+	bool ours;
+
+	rcu_read_lock();
+	ours = owned_by(m, owner);
+	*run = READ_ONCE(m->kernel_run);
+	rcu_read_unlock();
+	return ours;
+}
+
+/**
+ * ec_cycle_thread_wait() - wait for the next cycle
+ * @m: master
+ * @owner: open file that owns the cycle
+ * @w: its wait queue
+ * @run: as ec_cycle_thread_run() has given it
+ * @cycle: in: the last cycle the caller has seen; out: a newer one
+ * @timeout_us: limit, 0: none
+ *
+ * Context: Process. Sleeps; nothing of the session is touched, so it may end.
+ * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
+ * stopped or changed its owner; -EBUSY too many callers wait.
+ */
+int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
+			 u64 *cycle, u32 timeout_us)
+{
+	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
+	int ret;
+
+	if (!ec_waiters_enter(w))
+		return -EBUSY;
+	ret = wait_event_interruptible_hrtimeout(w->wq,
+						 READ_ONCE(m->kernel_run) != run || !(run & 1) ||
+						 READ_ONCE(m->active_owner) != owner ||
+						 ec_read64(&m->kernel_cycle) > *cycle, limit);
+	ec_waiters_leave(w);
+	if (ret == -ETIME)
+		return -ETIMEDOUT;
+	/* a signal handler runs first, and ends it; after a stop it goes on */
+	if (ret)
+		return -ERESTARTNOHAND;
+	if (!(run & 1) || READ_ONCE(m->kernel_run) != run || READ_ONCE(m->active_owner) != owner)
+		return -ECANCELED;
+	*cycle = ec_read64(&m->kernel_cycle);
+	return 0;
+}

@@ -1,0 +1,464 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Receive and send of the cyclic caller. Nothing here allocates, prints or
+ * takes a lock that is contended while the cycle runs.
+ */
+#include <linux/bitops.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include "../base/bytes.h"
+#include "copy.h"
+#include "cycle.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "../session/request.h"
+#include "../session/session.h"
+
+/* Parts of inputs that are larger than a datagram; the last one completes them. */
+static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
+		      const u8 *data)
+{
+	struct ec_cycle *c = &s->cycle;
+	u8 *image = c->domains[d->domain].image;
+	unsigned int i;
+
+	for (i = d->n_whole; i < d->n_inputs; i++) {
+		const struct ec_cyc_area *in = &c->areas[d->first_input + i];
+		struct ec_cyc_cut *cut = &c->cuts[in->cut];
+
+		if (cut->send != send) {
+			cut->send = send;
+			cut->have = 0;
+		}
+		memcpy(c->stage + in->offset, data + in->pos, in->len);
+		if (++cut->have == cut->parts)
+			memcpy(image + cut->offset, c->stage + cut->offset, cut->len);
+	}
+}
+
+/* It has inputs only, and their last values are in the image. */
+static bool from_image(const struct ec_cyc_dgram *d)
+{
+	return d->cmd == EC_CMD_LRD;
+}
+
+/* Inputs of a datagram in which at least one slave has taken part. */
+static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
+			const struct ec_cyc_flight *f, const u8 *data, bool complete)
+{
+	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_area *in = &c->areas[d->first_input];
+	u8 *image = c->domains[d->domain].image;
+	bool direct = f->direct && !from_image(d);
+	unsigned int i, n;
+
+	/* the outputs come back as well: nobody needs those of the image now */
+	if (complete && d->solid && direct && c->direct) {
+		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
+		return;
+	}
+	/*
+	 * A missing slave's part comes back as sent: the last value, if it was sent
+	 * from the image. Where outputs were sent, or a part may be of another cycle,
+	 * all must have taken part.
+	 */
+	n = complete ? d->n_whole : direct ? 0 : d->n_plain;
+	for (i = 0; i < n; i++, in++)
+		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
+			     in->pos_stride, in->len, in->count);
+	if (unlikely(d->n_inputs != d->n_whole) && complete)
+		take_cuts(s, d, f->send, data);
+}
+
+/*
+ * Inputs and working counter of one datagram. What belongs to an older send
+ * than the newest one that is back must not undo it.
+ */
+static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d,
+		       const struct ec_cyc_flight *f, const u8 *data)
+{
+	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
+	u16 wkc = get_unaligned_le16(data + d->len);
+
+	if ((s32)(f->send - dom->send) < 0)
+		return;
+	if (f->send != dom->send) {
+		dom->send = f->send;
+		dom->wkc = 0;
+	}
+	dom->wkc += wkc;
+	s->cycle.back |= BIT_ULL(d->domain);
+	if (wkc)
+		take_inputs(s, d, f, data, wkc == d->expected);
+}
+
+static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
+{
+	const struct ec_cyc_dgram *d = &s->cycle.dgrams[f->first];
+	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
+	unsigned int i;
+
+	if (f->dc)
+		data = ec_dc_take(s, f, data);
+	for (i = 0; i < f->count; i++, d++) {
+		if (!(f->queued & BIT_ULL(d->domain)))
+			continue;
+		take_dgram(s, d, f, data);
+		data += d->len + EC_DGRAM_OVERHEAD;
+	}
+}
+
+/* How often a domain was sent after send number @send. */
+static u32 sends_since(const struct ec_cycle *c, unsigned int domain, u32 send)
+{
+	u32 n = min_t(u32, c->send - send, EC_CYC_SENDS), sends = 0;
+
+	while (n--)
+		sends += c->queued[(c->send - n) % EC_CYC_SENDS] >> domain & 1;
+	return sends;
+}
+
+/* Old data with a full working counter are no fault of a slave: they are judged apart. */
+static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i)
+{
+	if (c->back & BIT_ULL(i)) {
+		d->age = sends_since(c, i, d->send);
+		if (unlikely(d->max_age && d->age > d->max_age && d->age > d->stale))
+			WRITE_ONCE(d->stale, d->age);
+	} else {
+		d->age = min_t(u32, d->age + sends_since(c, i, c->judged), EC_CYC_SENDS);
+	}
+	return d->age;
+}
+
+/* Domains that were sent or came back since the last receive. */
+static void judge(struct ec_session *s)
+{
+	struct ec_cycle *c = &s->cycle;
+	u64 left = c->sent | c->back;
+
+	for (; left; left &= left - 1) {
+		unsigned int i = __ffs64(left);
+		struct ec_status_domain *st = &s->shared->status->domains[i];
+		u32 wkc = c->back & BIT_ULL(i) ? c->domains[i].wkc : 0;
+
+		WRITE_ONCE(st->working_counter, wkc);
+		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == c->domains[i].expected ? 2 : 1);
+		WRITE_ONCE(st->age, judge_age(c, &c->domains[i], i));
+	}
+	c->judged = c->send;
+	c->sent = 0;
+	c->back = 0;
+}
+
+/**
+ * ec_cycle_tell_stale() - log domains whose data came back too old, once each
+ * @s: active session
+ *
+ * The cycle itself prints nothing.
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_cycle_tell_stale(struct ec_session *s)
+{
+	unsigned int i;
+
+	lockdep_assert_held(&s->master->session_lock);
+	for (i = 0; i < s->n_domains; i++) {
+		struct ec_cyc_domain *d = &s->cycle.domains[i];
+		u32 age = READ_ONCE(d->stale);
+
+		if (!age || d->stale_told)
+			continue;
+		d->stale_told = true;
+		ec_warn(s->master, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
+			i, age, d->max_age);
+	}
+}
+
+/**
+ * ec_cycle_nothing_back() - the device is gone, and with it what was on its way
+ * @s: active session, nobody is in its links
+ *
+ * Applications that look at working counters only must see it as well.
+ *
+ * Context: Process.
+ */
+void ec_cycle_nothing_back(struct ec_session *s)
+{
+	struct ec_status *st = s->shared->status;
+	unsigned int i;
+
+	for (i = 0; i < s->n_domains; i++) {
+		WRITE_ONCE(st->domains[i].working_counter, 0);
+		WRITE_ONCE(st->domains[i].wc_state, 0);
+	}
+	WRITE_ONCE(st->dc_time_valid, 0);
+	WRITE_ONCE(st->dc_time64_valid, 0);
+	WRITE_ONCE(st->dc_monitor, ~0u);
+}
+
+/**
+ * ec_cycle_do_receive() - take what the last sends have brought back
+ * @s: active session; the links of its master are entered
+ *
+ * Inputs go to the image, working counters to the status page. Frames that
+ * are not back within the time limit are lost; one that comes only after the
+ * next send has brought data that are a cycle old, and is counted as late.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_do_receive(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	u64 now, limit = (u64)m->io_timeout_us * NSEC_PER_USEC;
+	unsigned int i, left = 0;
+
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	ec_link_poll(&m->link[0]);
+	WRITE_ONCE(m->polls, m->polls + 1);
+	now = ktime_get_ns();
+	for (i = 0; i < c->n_flight; i++) {
+		struct ec_cyc_flight *f = &c->flight[i];
+
+		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
+			if (unlikely(f->missed) && f->send != c->send)
+				atomic64_inc(&m->link[0].stats.late);
+			take_frame(s, f);
+			ec_slot_put(&m->slots, f->slot);
+		} else if (f->missed && now - f->slot->sent_ns > limit &&
+			   ec_slot_cancel(f->slot, now)) {
+			atomic64_inc(&m->link[0].stats.lost);
+		} else {
+			/* the machine may have stood still: looked for twice at least */
+			f->missed = true;
+			if (left++ != i)
+				c->flight[left - 1] = *f;
+		}
+	}
+	c->n_flight = left;
+	judge(s);
+	ec_status_begin(s->shared->status);
+	ec_dc_judge(s);
+	WRITE_ONCE(s->shared->status->cycle, c->cycles);
+	ec_status_end(s->shared->status);
+	return 0;
+}
+
+/**
+ * ec_cycle_receive() - ec_cycle_do_receive(), links and all
+ * @s: active session
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_receive(struct ec_session *s)
+{
+	int ret;
+
+	if (!READ_ONCE(s->master->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(s->master);
+	ret = ec_cycle_do_receive(s);
+	ec_cycle_leave(s->master);
+	return ret;
+}
+
+/*
+ * Room for one more frame. When none has come back for long, the oldest is
+ * given up: a frame of now is worth more.
+ */
+static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
+{
+	struct ec_slot *oldest;
+
+	if (c->n_flight < EC_CYC_FRAMES)
+		return true;
+	oldest = c->flight[0].slot;
+	if (ec_slot_cancel(oldest, now))
+		atomic64_inc(&m->link[0].stats.lost);
+	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
+		ec_slot_put(&m->slots, oldest);
+	else
+		return false;	/* being copied at this moment */
+	c->n_flight--;
+	memmove(c->flight, c->flight + 1, c->n_flight * sizeof(c->flight[0]));
+	return true;
+}
+
+/* one send */
+struct send {
+	const struct ec_ioc_send *what;
+	u64 now;
+	u32 dc;		/* clock datagrams still to be sent */
+	struct ec_cyc_wire wire;
+};
+
+/* Outputs, and the last value of inputs. */
+static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
+{
+	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
+	const u8 *image = s->cycle.domains[d->domain].image;
+	unsigned int i;
+
+	if (s->cycle.direct && !from_image(d))
+		image = s->cycle.direct;
+	if (d->holes)
+		memset(data, 0, d->len);
+	for (i = 0; i < d->n_copies; i++, a++)
+		ec_bytes_run(data + a->pos, a->pos_stride, image + a->offset,
+			     a->offset_stride, a->len, a->count);
+}
+
+/* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
+static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g,
+			 const struct send *send)
+{
+	const struct ec_cycle *c = &s->cycle;
+	const struct ec_cyc_dgram *d = &c->dgrams[g];
+	unsigned int room, dc, first = g;
+	u64 queued = send->what->queued;
+	struct ec_frame_buf fb;
+	u8 *p;
+
+	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	if (send->dc)
+		ec_dc_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
+	dc = fb.count;
+	room = max(s->master->max_datagrams, dc) - dc;
+	for (; g < c->n_dgrams && room; g++, d++) {
+		if (!(queued & BIT_ULL(d->domain)))
+			continue;
+		if (d->new_frame && fb.count > dc)
+			break;
+		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
+				 d->logical >> 16, d->len);
+		if (!p)
+			break;
+		fill_dgram(s, d, p);
+		room--;
+	}
+	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	return g - first;
+}
+
+/* One frame from datagram @g on; returns the first datagram of the next. */
+static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send *send)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	struct ec_slot *slot = NULL;
+	unsigned int count;
+	int ret;
+
+	if (make_room(m, c, send->now))
+		slot = ec_slot_get(&m->slots, true, send->now);
+	if (!slot) {
+		atomic64_inc(&m->link[0].stats.tx_errors);
+		send->dc = 0;
+		return c->n_dgrams;
+	}
+	count = fill(s, slot, g, send);
+	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
+	send->wire.frames++;
+	ret = ec_cycle_transmit(m, slot, send->now);
+	/* unlike an acyclic frame it cannot wait */
+	if (ret == -EBUSY)
+		atomic64_inc(&m->link[0].stats.tx_errors);
+	if (!ret)
+		c->flight[c->n_flight++] = (struct ec_cyc_flight){
+			.slot = slot, .send = c->send, .first = g, .count = count,
+			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
+			.dc_sent = c->dc_sent,
+		};
+	else
+		ec_slot_put(&m->slots, slot);
+	send->dc = 0;
+	return g + count;
+}
+
+/* What a send of all domains and clock datagrams takes at most. */
+static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
+{
+	return READ_ONCE(m->dc.begun) ? c->clocked.ns + ec_dc_reserve_ns(m, c) : c->plain.ns;
+}
+
+/**
+ * ec_cycle_told() - what the application tells with a send
+ * @s: active session
+ * @what: its flags are known ones
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; -ENOENT a domain is queued that there is not.
+ */
+int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	ec_dc_told(s, what);
+	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
+		ec_requests_kick(s->requests);
+	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;
+}
+
+/**
+ * ec_cycle_do_send() - send the queued domains, then what others have left
+ * @s: active session; the links of its master are entered
+ * @what: domains and clock datagrams; its flags are known ones
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	struct ec_master *m = s->master;
+	struct ec_cycle *c = &s->cycle;
+	struct send send = { .what = what, .now = ktime_get_ns() };
+	unsigned int g = 0;
+
+	if (!READ_ONCE(m->link[0].dev))
+		return -ENODEV;
+	if (!s->thread)
+		ec_late_send(s, send.now);
+	ec_write64(&m->last_send_ns, send.now);
+	if (s->copying)
+		ec_copies_run(s);
+	c->send++;
+	c->queued[c->send % EC_CYC_SENDS] = what->queued;
+	c->sent |= what->queued;
+	send.dc = ec_dc_wanted(m, c, what->flags);
+	while (g < c->n_dgrams || send.dc) {
+		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
+			g = send_frame(s, g, &send);
+		else
+			g++;
+	}
+	WRITE_ONCE(c->last.frames, send.wire.frames);
+	WRITE_ONCE(c->last.ns, send.wire.ns);
+	WRITE_ONCE(m->cycle_wire_ns, max(send.wire.ns, wire_ns(m, c)));
+	ec_share_begin(m);
+	ec_cycle_send_left(m, send.wire.ns);
+	ec_write64(&c->cycles, c->cycles + 1);
+	return 0;
+}
+
+/**
+ * ec_cycle_send() - ec_cycle_do_send(), links and all
+ * @s: active session
+ * @what: as there
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	int ret;
+
+	if (!READ_ONCE(s->master->link[0].dev))
+		return -ENODEV;
+	ec_cycle_enter(s->master);
+	ret = ec_cycle_do_send(s, what);
+	ec_cycle_leave(s->master);
+	return ret;
+}

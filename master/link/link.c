@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/errno.h>
+#include <linux/math64.h>
+#include <linux/ratelimit.h>
+#include <linux/rcupdate.h>
+#include <linux/string.h>
+#include "capture.h"
+#include "device.h"
+#include "link.h"
+#include "../master.h"
+#include "pack.h"
+#include "slots.h"
+
+/**
+ * ec_link_trace() - show a frame in the kernel log, debug level 2
+ * @link: link
+ * @what: "sent" or "received"
+ * @data: what follows the EtherType
+ * @len: bytes there
+ *
+ * At most 50 a second: the log is slower than the wire.
+ *
+ * Context: Any.
+ */
+void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len)
+{
+	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
+
+	if (__ratelimit(&rate))
+		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->master->index,
+		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
+		       data);
+}
+
+/* Send a frame that was written to a buffer of the device. */
+static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
+{
+	int ret;
+
+	if (unlikely(READ_ONCE(link->master->debug) >= 2))
+		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
+	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
+		atomic64_inc(&link->stats.not_captured);
+	ret = dev->ops->tx_send(dev->priv, buf, len);
+	if (ret) {
+		if (ret != -EBUSY)
+			atomic64_inc(&link->stats.tx_errors);
+		return ret;
+	}
+	atomic64_inc(&link->stats.tx_frames);
+	atomic64_add(len, &link->stats.tx_bytes);
+	return 0;
+}
+
+/**
+ * ec_link_send() - send the frame of an armed slot
+ * @link: link
+ * @slot: slot in state SENT
+ *
+ * Context: The owner of the link. RT-safe.
+ * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
+ * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
+ * is down.
+ */
+int ec_link_send(struct ec_link *link, struct ec_slot *slot)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
+	u8 *buf;
+
+	if (!dev)
+		return -ENODEV;
+	buf = dev->ops->tx_get(dev->priv);
+	if (!buf)
+		return -EBUSY;
+	memcpy(buf, slot->frame, len);
+	return send_buf(link, dev, buf, len);
+}
+
+/**
+ * ec_link_send_pack() - send the frame that callers share
+ * @link: link
+ * @p: the frame; its slots are let go before it leaves
+ * @sent_ns: when it leaves (ktime)
+ *
+ * Context: The owner of the link. RT-safe.
+ * Return: as ec_link_send().
+ */
+int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	u8 *buf = dev ? dev->ops->tx_get(dev->priv) : NULL;
+	size_t len = 0;
+
+	if (buf)
+		len = ec_pack_write(&link->master->slots, p, buf, sent_ns);
+	ec_pack_release(p);
+	if (!buf)
+		return dev ? -EBUSY : -ENODEV;
+	return send_buf(link, dev, buf, len);
+}
+
+/**
+ * ec_link_set_places() - set how many acyclic frames may be on their way
+ * @link: link
+ * @cycle: a cyclic caller sends them from a queue, and as many as fit
+ *
+ * Without a cycle buffers of the device are left for the monitor.
+ *
+ * Context: Process, with the io_lock of the master held.
+ */
+void ec_link_set_places(struct ec_link *link, bool cycle)
+{
+	const struct ecdev *dev = link->dev;
+	unsigned int n = dev && dev->ops->burst ? dev->ops->burst : EC_LINK_ACYCLIC;
+
+	lockdep_assert_held(&link->master->io_lock);
+	ec_gate_set_limit(&link->acyclic, cycle ? EC_LINK_QUEUED :
+			  min_t(unsigned int, n, EC_LINK_ACYCLIC));
+}
+
+/**
+ * ec_link_poll() - deliver what the device has received
+ * @link: link
+ *
+ * Context: The owner of the link. RT-safe.
+ */
+void ec_link_poll(struct ec_link *link)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+
+	if (dev && dev->ops->poll)
+		dev->ops->poll(dev->priv);
+}
+
+/**
+ * ec_link_is_up() - physical link state
+ * @link: link
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false also without device.
+ */
+bool ec_link_is_up(const struct ec_link *link)
+{
+	struct ecdev *dev;
+	bool up;
+
+	/* the device is freed only after a grace period */
+	rcu_read_lock();
+	dev = READ_ONCE(link->dev);
+	up = dev && dev->ops->link_up(dev->priv);
+	rcu_read_unlock();
+	return up;
+}
+
+/**
+ * ec_link_rates_update() - update the averages; called once a second
+ * @link: link
+ *
+ * Context: Process. May sleep.
+ */
+void ec_link_rates_update(struct ec_link *link)
+{
+	static const s32 span[EC_UAPI_RATES] = { 1, 10, 60 };
+	struct ec_link_rates *r = &link->rates;
+	u64 now[5] = {
+		atomic64_read(&link->stats.tx_frames),
+		atomic64_read(&link->stats.rx_frames),
+		atomic64_read(&link->stats.tx_bytes),
+		atomic64_read(&link->stats.rx_bytes),
+		atomic64_read(&link->stats.lost),
+	};
+	unsigned int i, j;
+
+	for (i = 0; i < ARRAY_SIZE(now); i++) {
+		u32 d = (u32)(now[i] - r->last[i]);
+
+		for (j = 0; j < EC_UAPI_RATES; j++) {
+			s64 diff = (s64)d - r->rate[i][j];
+
+			/* step of at least 1, else a slow average never arrives */
+			diff = div_s64(diff, span[j]) ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
+			r->rate[i][j] += diff;
+		}
+		r->last[i] = now[i];
+	}
+}

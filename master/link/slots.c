@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/etherdevice.h>
+#include <linux/ktime.h>
+#include <linux/vmalloc.h>
+#include "../base/once64.h"
+#include "pack.h"
+#include "slots.h"
+
+/**
+ * ec_slots_init() - allocate the slots
+ * @s: zeroed structure
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_slots_init(struct ec_slots *s)
+{
+	unsigned int i;
+
+	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
+	if (!s->slot)
+		return -ENOMEM;
+	for (i = 0; i < EC_SLOTS; i++)
+		s->slot[i].index = i;
+	return 0;
+}
+
+/**
+ * ec_slots_exit() - free the slots; no frame may be delivered any more
+ * @s: slots
+ *
+ * Context: Process. May sleep.
+ */
+void ec_slots_exit(struct ec_slots *s)
+{
+	vfree(s->slot);
+	s->slot = NULL;
+}
+
+static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
+{
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
+		return true;
+	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
+	       /* another may have cancelled it after the caller looked at the clock */
+	       (s64)(now_ns - ec_read64(&slot->sent_ns)) > quarantine_ns &&
+	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
+	       EC_SLOT_QUARANTINE;
+}
+
+static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
+{
+	unsigned int i, start = atomic_inc_return(&s->hint);
+
+	for (i = 0; i < EC_SLOTS; i++) {
+		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
+
+		if (take(slot, now_ns, quarantine_ns)) {
+			slot->xfer = NULL;
+			slot->dgrams = 0;
+			return slot;
+		}
+	}
+	return NULL;
+}
+
+/**
+ * ec_slot_get() - take a free slot
+ * @s: slots
+ * @cyclic: for the cycle, or the monitor; others have a place at the link's gate
+ * @now_ns: time, to release slots from quarantine
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the slot in state BUILD, or NULL when none is free.
+ */
+struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
+{
+	struct ec_slot *slot;
+
+	slot = search(s, now_ns, EC_QUARANTINE_NS);
+	/*
+	 * While all frames are lost the cycle uses up slots faster than the
+	 * quarantine frees them; sequence numbers tell the frames apart, too.
+	 */
+	if (!slot && cyclic)
+		slot = search(s, now_ns, 0);
+	return slot;
+}
+
+/**
+ * ec_slot_wait() - take a slot that is not for the cycle
+ * @s: slots
+ *
+ * The place at the link's gate is the caller's; a slot of a lost frame may still be
+ * in quarantine.
+ *
+ * Context: Process. May sleep.
+ * Return: the slot in state BUILD, or NULL.
+ */
+struct ec_slot *ec_slot_wait(struct ec_slots *s)
+{
+	struct ec_slot *slot;
+	unsigned int i;
+
+	for (i = 0; i < 100; i++) {
+		slot = search(s, ktime_get_ns(), EC_QUARANTINE_NS);
+		if (slot)
+			return slot;
+		usleep_range(300, 500);
+	}
+	return NULL;
+}
+
+/**
+ * ec_slot_put() - give back a slot
+ * @s: slots
+ * @slot: in state BUILD or DONE, free afterwards
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
+{
+	atomic_set_release(&slot->state, EC_SLOT_FREE);
+}
+
+/**
+ * ec_slot_cancel() - stop waiting for a frame
+ * @slot: slot that was armed
+ * @now_ns: time; the quarantine begins now, the frame may have left late
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true when the slot is in quarantine now, false when the reply came
+ * first (or is being copied at this moment).
+ */
+bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
+{
+	/* in this state neither the sender nor the receiver of the frame uses @sent_ns */
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return false;
+	ec_write64(&slot->sent_ns, now_ns);
+	atomic_set_release(&slot->state, EC_SLOT_QUARANTINE);
+	return true;
+}
+
+/**
+ * ec_slot_arm() - write the Ethernet header and expect the reply from now on
+ * @s: slots
+ * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @side: link it is sent on
+ * @now_ns: time
+ *
+ * The source address carries side and sequence number; bit 1 of its first
+ * octet stays clear because slaves set it.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
+{
+	u8 *f = slot->frame;
+
+	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
+	ec_write64(&slot->sent_ns, now_ns);
+	slot->pack.len = 0;
+	eth_broadcast_addr(f);
+	f[6] = 0;
+	f[7] = side;
+	put_unaligned_le32(slot->seq, f + 8);
+	f[12] = EC_ETHERTYPE >> 8;
+	f[13] = EC_ETHERTYPE & 0xff;
+	if (slot->eth_len < EC_ETH_MIN)
+		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
+	atomic_set_release(&slot->state, EC_SLOT_SENT);
+}
+
+/**
+ * ec_slot_same() - check that a reply carries the datagrams of a slot
+ * @slot: slot in state FILL
+ * @reply: the reply, at the first of them; afterwards behind the last one
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it does.
+ */
+bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
+{
+	struct ec_frame_iter si;
+	struct ec_dgram sd, rd;
+	int more;
+
+	if (ec_frame_iter_init(&si, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR))
+		return false;
+	while ((more = ec_frame_iter_next(&si, &sd)) == 1) {
+		if (ec_frame_iter_next(reply, &rd) != 1 || rd.cmd != sd.cmd ||
+		    rd.idx != sd.idx || rd.len != sd.len || rd.ado != sd.ado)
+			return false;
+		switch (sd.cmd) {
+		case EC_CMD_APRD: case EC_CMD_APWR: case EC_CMD_APRW:
+		case EC_CMD_BRD: case EC_CMD_BWR: case EC_CMD_BRW:
+		case EC_CMD_ARMW:
+			break;		/* each slave counts the position up */
+		default:
+			if (rd.adp != sd.adp)
+				return false;
+		}
+	}
+	return !more;
+}
+
+/* Does the reply carry the same datagrams as the frame that was sent, and no more? */
+static bool same(struct ec_slot *slot, u8 *reply, size_t len)
+{
+	struct ec_frame_iter ri;
+	struct ec_dgram rd;
+
+	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
+	       ec_frame_iter_next(&ri, &rd) == 0;
+}
+
+/**
+ * ec_slots_match() - find the slots a received frame belongs to and fill them
+ * @s: slots
+ * @src: source MAC address of the frame
+ * @data: what follows the EtherType
+ * @len: bytes there
+ * @got: who waits for it
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: what became of the frame.
+ */
+enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
+			     size_t len, struct ec_matched *got)
+{
+	u32 seq = get_unaligned_le32(src + 2);
+	struct ec_slot *slot;
+	size_t body;
+
+	got->n = 0;
+	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
+		return EC_MATCH_UNMATCHED;
+	if (unlikely(src[1] & EC_PACKED))
+		return ec_pack_match(s, seq, data, len, got);
+	slot = &s->slot[data[EC_FRAME_HDR + 1]];
+	/* first: a frame of an earlier use must not hold the slot */
+	if (READ_ONCE(slot->seq) != seq)
+		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
+								   EC_MATCH_UNMATCHED;
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return EC_MATCH_LATE;
+	/* it may have been given up and be in use again since; now it stays */
+	if (READ_ONCE(slot->seq) != seq) {
+		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		return EC_MATCH_LATE;
+	}
+	body = slot->eth_len - EC_ETH_HDR;
+	/* the iterator only reads; it has no const form */
+	if (len < body || !same(slot, (u8 *)data, len)) {
+		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		return EC_MATCH_UNMATCHED;
+	}
+	memcpy(ec_slot_body(slot), data, body);
+	if (slot->xfer)
+		got->xfer[got->n++] = slot->xfer;
+	atomic_set_release(&slot->state, EC_SLOT_DONE);
+	return EC_MATCH_DONE;
+}

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Acyclic datagrams: a batch goes out, the caller sleeps until it is back. */
+#ifndef EC_XFER_H
+#define EC_XFER_H
+
+#include <linux/completion.h>
+#include <linux/types.h>
+#include "../wire/frame.h"
+
+struct ec_master;
+
+/**
+ * struct ec_dg - one datagram of a batch
+ * @cmd: enum ec_cmd
+ * @repeat: may be sent again when its frame is lost (reads without side
+ *	effect, writes that may be executed twice)
+ * @adp: low half of the address
+ * @ado: high half of the address
+ * @len: data bytes
+ * @data: sent for writing commands, filled for reading ones
+ * @wkc: result: working counter
+ * @back: result: @adp as it came back (position plus slaves passed)
+ * @sent_ns: result: when its frame left, as far as the master knows (ktime)
+ * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN (link is down), -ENODEV,
+ *	-EINTR (caller killed), -EBUSY (the device sends nothing)
+ */
+struct ec_dg {
+	u8 cmd;
+	bool repeat;
+	u16 adp;
+	u16 ado;
+	u16 len;
+	void *data;
+	u16 wkc;
+	u16 back;
+	u64 sent_ns;
+	int err;
+};
+
+#define EC_DG(c, a, o, l, d) \
+	{ .cmd = (c), .repeat = true, .adp = (a), .ado = (o), .len = (l), .data = (d) }
+
+/**
+ * struct ec_xfer - somebody waiting for frames
+ * @pending: frames not back yet, plus one while the caller still sends
+ * @done: completed by whoever takes @pending to zero
+ */
+struct ec_xfer {
+	atomic_t pending;
+	struct completion done;
+};
+
+int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n);
+int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
+int ec_xfer_fprd(struct ec_master *m, u16 station, u16 ado, void *data, u16 len);
+int ec_xfer_fpwr(struct ec_master *m, u16 station, u16 ado, const void *data, u16 len);
+void ec_xfer_done(struct ec_xfer *x);
+
+#endif

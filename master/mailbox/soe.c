@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "mailbox.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "soe.h"
+#include "../wire/soe.h"
+
+/**
+ * ec_soe_idn_text() - an IDN as drive manuals write it
+ * @idn: number
+ * @buf: for the text
+ *
+ * Context: Any.
+ * Return: @buf, such as "P-0-0150".
+ */
+const char *ec_soe_idn_text(u16 idn, char buf[12])
+{
+	scnprintf(buf, 12, "%c-%u-%04u", idn & BIT(15) ? 'P' : 'S', idn >> 12 & 7, idn & 0x0fff);
+	return buf;
+}
+
+static int rx(void *ctx, const u8 *buf, size_t len)
+{
+	return ec_soe_rx(ctx, buf, len);
+}
+
+static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
+		    const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_ask ask = {
+		.type = EC_MBOX_SOE, .first = true, .rx = rx, .ctx = a,
+		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SOE_TIMEOUT_MS,
+		.cancel = limit ? limit->cancel : NULL,
+	};
+	int ret = ec_mbox_check(slave, EC_SII_PROTO_SOE, EC_SOE_HDR);
+	struct ec_mbox_buf *b;
+	char name[12];
+
+	if (ret)
+		return ret;
+	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	if (!b)
+		return -ENOMEM;
+	ret = ec_soe_tx(a, b->tx, slave->info.std.rx_size - EC_MBOX_HDR);
+	if (ret >= 0)
+		ret = ec_mbox_ask(slave, &ask, b, ret);
+	kfree(b);
+	ec_slave_dbg_result(slave, ret, "%s %s of drive %u, error 0x%04x",
+			    a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive,
+			    a->error);
+	return ret;
+}
+
+/**
+ * ec_soe_read() - read the value of an IDN
+ * @slave: slave
+ * @drive: 0 to 7
+ * @idn: number
+ * @data: result
+ * @cap: room at @data
+ * @size: bytes read
+ * @error: SoE error code of the slave, or 0
+ * @limit: when to give up; NULL: as usual
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EIO with @error set; -ENOBUFS when the value is larger than @cap;
+ * -EPROTONOSUPPORT without SoE; -EMSGSIZE when the value does not fit into one
+ * message, or the mailbox into a datagram; -EAGAIN in INIT; -EINVAL for the
+ * drive; -EBADMSG for a wrong answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
+ */
+int ec_soe_read(struct ec_slave *slave, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
+		u16 *error, const struct ec_mbox_limit *limit)
+{
+	struct ec_soe_access a = {
+		.drive = drive, .element = EC_SOE_VALUE, .idn = idn, .data = data, .cap = cap,
+	};
+	int ret = drive < EC_SOE_DRIVES ? transfer(slave, &a, limit) : -EINVAL;
+
+	*error = a.error;
+	*size = ret ? 0 : a.size;
+	return ret;
+}
+
+/**
+ * ec_soe_write() - write the value of an IDN
+ * @slave: slave
+ * @drive: 0 to 7
+ * @idn: number
+ * @data: value
+ * @size: bytes
+ * @error: SoE error code of the slave, or 0
+ * @limit: when to give up; NULL: as usual
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_soe_read().
+ */
+int ec_soe_write(struct ec_slave *slave, u8 drive, u16 idn, const u8 *data, size_t size,
+		 u16 *error, const struct ec_mbox_limit *limit)
+{
+	struct ec_soe_access a = {
+		.write = true, .drive = drive, .element = EC_SOE_VALUE, .idn = idn,
+		.data = (u8 *)data, .size = size,
+	};
+	int ret = drive < EC_SOE_DRIVES ? transfer(slave, &a, limit) : -EINVAL;
+
+	*error = a.error;
+	return ret;
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "mailbox.h"
+#include "../master.h"
+#include "../bus/slave.h"
+#include "voe.h"
+#include "../wire/voe.h"
+
+static struct ec_mbox_limit or_default(const struct ec_mbox_limit *limit)
+{
+	return (struct ec_mbox_limit){
+		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_VOE_TIMEOUT_MS,
+		.cancel = limit ? limit->cancel : NULL,
+	};
+}
+
+/**
+ * ec_voe_write() - send a message; there is no answer
+ * @slave: slave
+ * @h: header
+ * @data: of the vendor
+ * @size: bytes
+ * @limit: when to give up; NULL: as usual
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EPROTONOSUPPORT without VoE; -EMSGSIZE when it does not fit into
+ * the mailbox; -EAGAIN in INIT; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
+ */
+int ec_voe_write(struct ec_slave *slave, const struct ec_voe_hdr *h, const u8 *data, size_t size,
+		 const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_limit l = or_default(limit);
+	int ret = ec_mbox_check(slave, EC_SII_PROTO_VOE, EC_VOE_HDR);
+	struct ec_mbox_buf *b;
+	struct ec_wbuf w;
+
+	if (ret)
+		return ret;
+	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	if (!b)
+		return -ENOMEM;
+	w = ec_wbuf(b->tx, slave->info.std.rx_size - EC_MBOX_HDR);
+	ec_voe_hdr_encode(&w, h);
+	ec_wbuf_bytes(&w, data, size);
+	ret = w.bad ? -EMSGSIZE : ec_mbox_tell(slave, EC_MBOX_VOE, b, w.p - b->tx, &l);
+	kfree(b);
+	ec_slave_dbg_result(slave, ret, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s)",
+			    h->vendor, h->type, size);
+	return ret;
+}
+
+static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t cap,
+		size_t *size)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+
+	if (ec_voe_hdr_decode(&r, h))
+		return -EBADMSG;
+	if (ec_rbuf_left(&r) > cap)
+		return -ENOBUFS;
+	*size = ec_rbuf_left(&r);
+	memcpy(data, r.p, *size);
+	return 0;
+}
+
+/**
+ * ec_voe_read() - receive a message
+ * @slave: slave
+ * @blind: fetch the mailbox once without a look whether it is full
+ * @h: its header
+ * @data: of the vendor
+ * @cap: room at @data
+ * @size: bytes
+ * @limit: when to give up; NULL: as usual
+ *
+ * The message may have come before, while others used the mailbox; see
+ * ec_mbox_keep_voe().
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -ENOBUFS when there is more than @cap, then the message is gone;
+ * -ENOMSG when @blind and there is none; -ETIMEDOUT; -EBADMSG;
+ * -EPROTONOSUPPORT without VoE; -EMSGSIZE; -EAGAIN in INIT; -EINTR; -ECANCELED;
+ * -ENOMEM; the errno of a mailbox error reply.
+ */
+int ec_voe_read(struct ec_slave *slave, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
+		size_t *size, const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_limit l = or_default(limit);
+	int ret = ec_mbox_check(slave, EC_SII_PROTO_VOE, EC_VOE_HDR);
+	struct ec_mbox_buf *b;
+
+	*size = 0;
+	if (ret)
+		return ret;
+	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	if (!b)
+		return -ENOMEM;
+	ret = ec_mbox_wait_voe(slave, b, blind, &l);
+	if (ret >= 0)
+		ret = take(b->rx, ret, h, data, cap, size);
+	kfree(b);
+	ec_slave_dbg_result(slave, ret, "VoE read, %zu byte(s)", *size);
+	return ret;
+}

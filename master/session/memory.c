@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Memory that applications cause. It belongs to their memory cgroup, and all of a
+ * master's have EC_MAX_SESSION_BYTES together: what a session has configured is
+ * counted in the session, mapped memory in the master, as a mapping may outlive the
+ * session that made it.
+ */
+#include <linux/slab.h>
+#include <linux/vmalloc.h>
+#include "../master.h"
+#include "request.h"
+#include "session.h"
+
+static void release(struct kref *kref)
+{
+	struct ec_shared *sh = container_of(kref, struct ec_shared, kref);
+
+	vfree(sh->image);
+	vfree(sh->exchange);
+	vfree(sh->status);
+	vfree(sh->requests);
+	atomic_long_sub(sh->bytes, sh->mapped);
+	kfree(sh);
+}
+
+void ec_shared_get(struct ec_shared *sh)
+{
+	kref_get(&sh->kref);
+}
+
+void ec_shared_put(struct ec_shared *sh)
+{
+	kref_put(&sh->kref, release);
+}
+
+/**
+ * ec_shared_alloc() - memory to be mapped
+ * @sh: it is counted there
+ * @size: bytes, multiple of the page size
+ *
+ * Context: Process. May sleep.
+ * Return: zeroed memory for vfree(), or NULL.
+ */
+void *ec_shared_alloc(struct ec_shared *sh, size_t size)
+{
+	/* vmalloc_user() would not charge the caller's cgroup */
+	void *p = __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
+
+	if (p) {
+		sh->bytes += size;
+		atomic_long_add(size, sh->mapped);
+	}
+	return p;
+}
+
+/**
+ * ec_shared_map() - map such memory into a process
+ * @vma: where, not larger than the memory
+ * @memory: of ec_shared_alloc()
+ *
+ * Context: mmap(). May sleep.
+ * Return: 0 or -errno.
+ */
+int ec_shared_map(struct vm_area_struct *vma, void *memory)
+{
+	unsigned long at;
+	int ret = 0;
+
+	for (at = vma->vm_start; at < vma->vm_end && !ret; at += PAGE_SIZE)
+		ret = vm_insert_page(vma, at, vmalloc_to_page(memory + (at - vma->vm_start)));
+	return ret;
+}
+
+/**
+ * ec_shared_create() - memory of an activation
+ * @m: master
+ * @image_size: bytes of all domains
+ * @request_size: bytes of all requests, 0: none
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: with one reference; NULL without memory.
+ */
+struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_t request_size)
+{
+	struct ec_shared *sh = kzalloc(sizeof(*sh), GFP_KERNEL_ACCOUNT);
+
+	if (!sh)
+		return NULL;
+	kref_init(&sh->kref);
+	sh->mapped = &m->mapped;
+	sh->image_size = PAGE_ALIGN(image_size);
+	sh->image = image_size ? ec_shared_alloc(sh, sh->image_size) : NULL;
+	sh->status = ec_shared_alloc(sh, EC_STATUS_BYTES);
+	sh->request_size = PAGE_ALIGN(request_size);
+	sh->requests = request_size ? ec_shared_alloc(sh, sh->request_size) : NULL;
+	if ((image_size && !sh->image) || (request_size && !sh->requests) || !sh->status) {
+		ec_shared_put(sh);
+		return NULL;
+	}
+	sh->status->magic = EC_STATUS_MAGIC;
+	sh->status->size = sizeof(*sh->status);
+	return sh;
+}
+
+/* Bytes that the sessions of a master and what they have mapped have together. */
+static size_t used(const struct ec_master *m)
+{
+	return (m->session ? m->session->bytes : 0) + (m->heir ? m->heir->bytes : 0) +
+	       atomic_long_read(&m->mapped);
+}
+
+/**
+ * ec_session_charge() - a session is about to configure more
+ * @s: session
+ * @bytes: how much memory that takes
+ *
+ * Context: Process, session_lock held.
+ * Return: 0, or -EDQUOT beyond EC_MAX_SESSION_BYTES; then nothing is counted.
+ */
+int ec_session_charge(struct ec_session *s, size_t bytes)
+{
+	lockdep_assert_held(&s->master->session_lock);
+	if (used(s->master) + bytes > EC_MAX_SESSION_BYTES)
+		return -EDQUOT;
+	s->bytes += bytes;
+	return 0;
+}
+
+/**
+ * ec_session_uncharge() - that memory is free again
+ * @s: session
+ * @bytes: how much
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_session_uncharge(struct ec_session *s, size_t bytes)
+{
+	s->bytes -= bytes;
+}
+
+/**
+ * ec_session_fits() - is there memory for an activation within the limit?
+ * @s: session
+ * @image_size: bytes of all domains
+ *
+ * Context: Process, session_lock held.
+ * Return: 0 or -EDQUOT.
+ */
+int ec_session_fits(const struct ec_session *s, size_t image_size)
+{
+	/* with six images for the exchange; requests have a copy of their data */
+	size_t images = s->kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
+
+	lockdep_assert_held(&s->master->session_lock);
+	return used(s->master) + images * image_size + EC_STATUS_BYTES + ec_requests_bytes(s) +
+	       s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
+}

@@ -1,0 +1,587 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../config/config.h"
+#include "../mailbox/emerg.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "request.h"
+#include "request_int.h"
+#include "session.h"
+#include "../bus/slave.h"
+
+#define WATCH_US	10000	/* between looks while anything waits */
+
+/**
+ * struct ec_lane - requests done one after the other
+ * @work: does them
+ * @rq: all lanes
+ * @config: number of the configuration they belong to
+ * @requests: of this lane
+ * @emerg: ring of emergencies of the configuration
+ * @voe: the configuration has VoE handlers
+ *
+ * First one lane by configuration, with @emerg and @voe. Then one for each VoE
+ * handler, so that one that waits for a message does not hold up the others.
+ */
+struct ec_lane {
+	struct work_struct work;
+	struct ec_requests *rq;
+	u32 config;
+	struct list_head requests;
+	struct ec_emerg emerg;
+	bool voe;
+};
+
+/**
+ * struct ec_requests - all requests of an activation
+ * @kref: the session and each work that is queued or runs
+ * @master: master
+ * @shared: mapped memory, with a reference
+ * @lock: protects the requests; inside session_lock
+ * @starts: the area's, when a cycle of the kernel last looked
+ * @kick: looks once
+ * @watch: looks again and again while anything waits
+ * @reqs: requests
+ * @n_reqs: entries in @reqs
+ * @bufs: private copies of all data, allocated by who activates, so that they are its memory
+ * @lanes: see struct ec_lane
+ * @n_lanes: entries in @lanes
+ * @ended: the session has; transfers end, too
+ */
+struct ec_requests {
+	struct kref kref;
+	struct ec_master *master;
+	struct ec_shared *shared;
+	struct mutex lock;
+	u32 starts;
+	struct work_struct kick;
+	struct work_struct watch;
+	struct ec_request *reqs;
+	unsigned int n_reqs;
+	u8 *bufs;
+	struct ec_lane *lanes;
+	unsigned int n_lanes;
+	bool ended;
+};
+
+/* works ---------------------------------------------------------------------*/
+
+static void release(struct kref *kref)
+{
+	struct ec_requests *rq = container_of(kref, struct ec_requests, kref);
+
+	ec_shared_put(rq->shared);
+	kvfree(rq->bufs);
+	kvfree(rq->reqs);
+	kvfree(rq->lanes);
+	kfree(rq);
+}
+
+static void put(struct ec_requests *rq)
+{
+	kref_put(&rq->kref, release);
+}
+
+/* The work has a reference while it is queued or runs. */
+static void queue(struct ec_requests *rq, struct workqueue_struct *wq, struct work_struct *work)
+{
+	kref_get(&rq->kref);
+	if (!queue_work(wq, work))
+		put(rq);
+}
+
+/* The session these requests belong to, or NULL: it has ended. */
+static struct ec_session *session_of(const struct ec_requests *rq)
+{
+	struct ec_session *s = rq->master->session;
+
+	return s && s->requests == rq && !rq->master->stopping ? s : NULL;
+}
+
+/* begin and end of a request ------------------------------------------------*/
+
+static void finish(struct ec_request *r, const struct ec_request_result *res)
+{
+	if (!res->err && ec_request_reads(r))
+		memcpy(r->data, r->buf, res->got);
+	r->phase = EC_REQUEST_IDLE;
+	WRITE_ONCE(r->rec->result, res->err);
+	WRITE_ONCE(r->rec->got, res->got);
+	WRITE_ONCE(r->rec->abort_code, res->code);
+	WRITE_ONCE(r->rec->got_vendor_id, res->vendor);
+	WRITE_ONCE(r->rec->got_type, res->type);
+	smp_store_release(&r->rec->done, r->seq);
+}
+
+static void fail(struct ec_request *r, int err)
+{
+	finish(r, &(struct ec_request_result){ .err = err });
+}
+
+/* Nothing in a record can be trusted: each field is read once, then checked. */
+static void pick_up(struct ec_request *r, u64 now)
+{
+	u32 start = smp_load_acquire(&r->rec->start);
+	int ret;
+
+	if (r->phase != EC_REQUEST_IDLE || start == r->seq)
+		return;
+	r->seq = start;
+	r->phase = EC_REQUEST_PENDING;
+	r->since_ns = now;
+	r->timeout_ms = READ_ONCE(r->rec->timeout_ms);
+	r->index = READ_ONCE(r->rec->index);
+	r->sub = READ_ONCE(r->rec->subindex);
+	r->op = READ_ONCE(r->rec->op);
+	r->vendor = READ_ONCE(r->rec->vendor_id);
+	ret = ec_request_accept(r, READ_ONCE(r->rec->flags), READ_ONCE(r->rec->size));
+	if (ret) {
+		fail(r, ret);
+		return;
+	}
+	memset(r->buf, 0, r->size);
+	if (ec_request_writes(r))
+		memcpy(r->buf, r->data, r->size);
+}
+
+static bool expired(const struct ec_request *r, u64 now)
+{
+	return r->timeout_ms && now - r->since_ns > (u64)r->timeout_ms * NSEC_PER_MSEC;
+}
+
+/*
+ * New starts, those that have waited too long, and work for the lanes. False
+ * when nothing has to be looked after any more.
+ */
+static bool look(struct ec_requests *rq)
+{
+	u64 now = ktime_get_ns();
+	struct ec_session *s;
+	bool more = false;
+	unsigned int i;
+
+	mutex_lock(&rq->master->session_lock);
+	s = session_of(rq);
+	if (!s)
+		goto out;
+	mutex_lock(&rq->lock);
+	for (i = 0; i < rq->n_lanes; i++) {
+		struct ec_lane *lane = &rq->lanes[i];
+		bool there = s->configs[lane->config]->slave, todo = lane->emerg.count;
+		struct ec_request *r;
+
+		list_for_each_entry(r, &lane->requests, list) {
+			pick_up(r, now);
+			if (r->phase != EC_REQUEST_PENDING)
+				continue;
+			if (r->kind == EC_REQUEST_VOE && !there)
+				fail(r, -ENOTCONN);
+			else if (expired(r, now))
+				fail(r, -ETIMEDOUT);
+			else
+				todo = true;
+		}
+		more |= todo;
+		if (todo && there)
+			queue(rq, rq->master->lanes, &lane->work);
+	}
+	mutex_unlock(&rq->lock);
+out:
+	mutex_unlock(&rq->master->session_lock);
+	return more;
+}
+
+static void kick_work(struct work_struct *work)
+{
+	struct ec_requests *rq = container_of(work, struct ec_requests, kick);
+
+	if (look(rq))
+		queue(rq, rq->master->service, &rq->watch);
+	put(rq);
+}
+
+static void watch_work(struct work_struct *work)
+{
+	struct ec_requests *rq = container_of(work, struct ec_requests, watch);
+
+	do
+		usleep_range(WATCH_US, WATCH_US + WATCH_US / 10);
+	while (look(rq));
+	put(rq);
+}
+
+/* lanes ---------------------------------------------------------------------*/
+
+/*
+ * May the slave be asked now? On its way through INIT, which is our own doing,
+ * it may soon. One that is to stay in INIT gives an error.
+ */
+static bool ready(const struct ec_slave *s, const struct ec_request *r)
+{
+	if (r->kind == EC_REQUEST_REG || s->error != EC_SLAVE_OK)
+		return true;
+	if (s->requested > EC_AL_PREOP && s->reconfigure)
+		return false;
+	return (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP ||
+	       s->requested == EC_AL_INIT;
+}
+
+/* The oldest request that can begin, and its slave with a reference. */
+static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
+{
+	struct ec_requests *rq = lane->rq;
+	struct ec_request *r, *oldest = NULL;
+	u64 now = ktime_get_ns();
+	struct ec_session *s;
+
+	mutex_lock(&rq->master->session_lock);
+	s = session_of(rq);
+	*slave = s ? s->configs[lane->config]->slave : NULL;
+	if (!*slave || (*slave)->gone) {
+		*slave = NULL;
+		goto out;
+	}
+	ec_slave_ref(*slave);
+	mutex_lock(&rq->lock);
+	list_for_each_entry(r, &lane->requests, list) {
+		if (r->phase != EC_REQUEST_PENDING || !ready(*slave, r))
+			continue;
+		if (expired(r, now))
+			fail(r, -ETIMEDOUT);
+		else if (!oldest || r->since_ns < oldest->since_ns)
+			oldest = r;
+	}
+	if (oldest)
+		oldest->phase = EC_REQUEST_RUNNING;
+	mutex_unlock(&rq->lock);
+out:
+	mutex_unlock(&rq->master->session_lock);
+	return oldest;
+}
+
+static void run(struct ec_requests *rq, struct ec_request *r, struct ec_slave *s)
+{
+	struct ec_request_result res;
+
+	ec_request_run(r, s, &rq->ended, &res);
+	mutex_lock(&rq->lock);
+	finish(r, &res);
+	mutex_unlock(&rq->lock);
+}
+
+static void lane_work(struct work_struct *work)
+{
+	struct ec_lane *lane = container_of(work, struct ec_lane, work);
+	struct ec_requests *rq = lane->rq;
+	struct ec_request *r;
+	struct ec_slave *slave;
+
+	do {
+		r = take(lane, &slave);
+		if (r)
+			run(rq, r, slave);
+		else if (slave && lane->emerg.count)
+			ec_emerg_poll(slave);
+		if (slave)
+			ec_slave_unref(slave);
+	} while (r);
+	put(rq);
+}
+
+/* session -------------------------------------------------------------------*/
+
+/**
+ * ec_requests_add() - one more request
+ * @s: session, not active
+ * @config: configuration in it
+ * @kind: EC_REQUEST_*
+ * @size: room for data, bytes
+ * @index: result: its number
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0, -ENOSPC, -ENOMEM.
+ */
+int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index)
+{
+	size_t bytes = s->request_bytes + ALIGN(size, 8);
+
+	if (s->n_specs >= EC_MAX_REQUESTS || bytes > EC_MAX_REQUEST_BYTES)
+		return -ENOSPC;
+	if (!s->specs)
+		s->specs = kvcalloc(EC_MAX_REQUESTS, sizeof(*s->specs), GFP_KERNEL_ACCOUNT);
+	if (!s->specs)
+		return -ENOMEM;
+	*index = s->n_specs;
+	s->specs[s->n_specs++] = (struct ec_request_spec){
+		.config = config, .kind = kind, .size = size,
+	};
+	s->request_bytes = bytes;
+	return 0;
+}
+
+static size_t rings_offset(const struct ec_session *s)
+{
+	return sizeof(struct ec_request_area) + s->n_specs * sizeof(struct ec_request_record);
+}
+
+static size_t data_offset(const struct ec_session *s)
+{
+	return ALIGN(rings_offset(s) + s->n_configs * sizeof(struct ec_emerg_ring), 8);
+}
+
+/**
+ * ec_requests_bytes() - size of the memory to map
+ * @s: session
+ *
+ * Context: Process, session_lock held.
+ * Return: bytes; 0 without configuration.
+ */
+size_t ec_requests_bytes(const struct ec_session *s)
+{
+	return s->n_configs ? data_offset(s) + s->request_bytes : 0;
+}
+
+static void lane_init(struct ec_requests *rq, struct ec_lane *lane, u32 config)
+{
+	lane->rq = rq;
+	lane->config = config;
+	INIT_LIST_HEAD(&lane->requests);
+	INIT_WORK(&lane->work, lane_work);
+}
+
+static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_emerg_ring *ring = (void *)(base + rings_offset(s));
+	size_t at = data_offset(s);
+	unsigned int i;
+
+	for (i = 0; i < s->n_configs; i++, ring++) {
+		lane_init(rq, &rq->lanes[i], i);
+		rq->lanes[i].emerg = (struct ec_emerg){
+			.ring = ring, .data = base + at, .count = s->configs[i]->emergencies,
+		};
+		at += rq->lanes[i].emerg.count * EC_EMERG_BYTES;
+	}
+	return at;
+}
+
+/**
+ * ec_requests_describe() - tell an application where everything lies
+ * @s: session with requests
+ *
+ * Once more for one that takes over: the one before could write there.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_requests_describe(const struct ec_session *s)
+{
+	struct ec_requests *rq = s->requests;
+	u8 *base = rq->shared->requests;
+	struct ec_request_area *area = (void *)base;
+	unsigned int i;
+
+	area->magic = EC_REQUEST_MAGIC;
+	area->request_count = s->n_specs;
+	area->requests = sizeof(*area);
+	area->ring_count = s->n_configs;
+	area->rings = rings_offset(s);
+	for (i = 0; i < s->n_configs; i++) {
+		struct ec_emerg *e = &rq->lanes[i].emerg;
+
+		ec_emerg_describe(s->configs[i]->slave, e, e->data - base);
+	}
+	mutex_lock(&rq->lock);
+	for (i = 0; i < rq->n_reqs; i++) {
+		const struct ec_request *r = &rq->reqs[i];
+
+		r->rec->data = r->data - base;
+		r->rec->op = r->op;
+		WRITE_ONCE(r->rec->start, r->seq);
+		WRITE_ONCE(r->rec->done, r->phase == EC_REQUEST_IDLE ? r->seq :
+								     r->seq - 1);
+	}
+	mutex_unlock(&rq->lock);
+}
+
+static void lay_out(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
+	struct ec_lane *own = &rq->lanes[s->n_configs];
+	size_t at = lay_out_rings(s, rq), first = at;
+	unsigned int i;
+
+	for (i = 0; i < s->n_specs; i++, rec++) {
+		const struct ec_request_spec *spec = &s->specs[i];
+		struct ec_lane *lane = &rq->lanes[spec->config];
+		struct ec_request *r = &rq->reqs[i];
+
+		if (spec->kind == EC_REQUEST_VOE) {
+			lane->voe = true;
+			lane = own++;
+			lane_init(rq, lane, spec->config);
+		}
+		r->rec = rec;
+		r->kind = spec->kind;
+		r->cap = spec->size;
+		r->data = base + at;
+		r->buf = rq->bufs + (at - first);
+		list_add_tail(&r->list, &lane->requests);
+		at += ALIGN(spec->size, 8);
+	}
+}
+
+static unsigned int count_lanes(const struct ec_session *s)
+{
+	unsigned int i, n = s->n_configs;
+
+	for (i = 0; i < s->n_specs; i++)
+		n += s->specs[i].kind == EC_REQUEST_VOE;
+	return n;
+}
+
+/**
+ * ec_requests_begin() - requests can be started from now on
+ * @s: session with @shared
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_requests_begin(struct ec_session *s)
+{
+	struct ec_requests *rq;
+	unsigned int i;
+
+	if (!s->n_configs)
+		return 0;
+	rq = kzalloc(sizeof(*rq), GFP_KERNEL_ACCOUNT);
+	if (!rq)
+		return -ENOMEM;
+	kref_init(&rq->kref);
+	mutex_init(&rq->lock);
+	INIT_WORK(&rq->kick, kick_work);
+	INIT_WORK(&rq->watch, watch_work);
+	rq->master = s->master;
+	rq->shared = s->shared;
+	ec_shared_get(rq->shared);
+	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
+	rq->n_lanes = count_lanes(s);
+	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL_ACCOUNT);
+	rq->bufs = kvzalloc(max_t(size_t, s->request_bytes, 1), GFP_KERNEL_ACCOUNT);
+	if (!rq->reqs || !rq->lanes || !rq->bufs) {
+		put(rq);
+		return -ENOMEM;
+	}
+	rq->n_reqs = s->n_specs;
+	lay_out(s, rq);
+	s->requests = rq;
+	ec_requests_describe(s);
+	for (i = 0; i < s->n_configs; i++)
+		ec_requests_attach(s, i);
+	return 0;
+}
+
+/**
+ * ec_requests_end() - nothing is started any more
+ * @s: session
+ *
+ * What is on its way is cancelled; nobody waits for it.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_requests_end(struct ec_session *s)
+{
+	struct ec_requests *rq = s->requests;
+	unsigned int i;
+
+	if (!rq)
+		return;
+	WRITE_ONCE(rq->ended, true);
+	s->requests = NULL;
+	for (i = 0; i < s->n_configs; i++)
+		ec_requests_attach(s, i);
+	put(rq);
+}
+
+/**
+ * ec_requests_kick() - the application has started a request
+ * @rq: requests of its session
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_requests_kick(struct ec_requests *rq)
+{
+	queue(rq, rq->master->service, &rq->kick);
+}
+
+/**
+ * ec_requests_notice() - has the application started a request?
+ * @rq: requests of its session
+ *
+ * Without a send of its own it counts starts in mapped memory.
+ *
+ * Context: The thread that runs the cycle. RT-safe.
+ */
+void ec_requests_notice(struct ec_requests *rq)
+{
+	const struct ec_request_area *area = (void *)rq->shared->requests;
+	u32 starts = READ_ONCE(area->starts);
+
+	if (starts == rq->starts)
+		return;
+	rq->starts = starts;
+	queue(rq, rq->master->service, &rq->kick);
+}
+
+/**
+ * ec_requests_attach() - where what comes unasked from a slave goes
+ * @s: session
+ * @config: number of a configuration that has got its slave, or whose session
+ *	has begun or ended
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_requests_attach(const struct ec_session *s, u32 config)
+{
+	struct ec_lane *lane = s->requests ? &s->requests->lanes[config] : NULL;
+	struct ec_slave *slave = s->configs[config]->slave;
+
+	if (!slave)
+		return;
+	ec_emerg_set(slave, lane ? &lane->emerg : NULL);
+	ec_mbox_keep_voe(slave, lane && lane->voe);
+}
+
+/**
+ * ec_requests_record() - where a request of an active session is started
+ * @s: session
+ * @index: number from ec_requests_add()
+ * @data: result: its data
+ *
+ * Context: Process, session_lock held or the session kept active.
+ * Return: record.
+ */
+struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data)
+{
+	const struct ec_request *r = &s->requests->reqs[index];
+
+	*data = r->data;
+	return r->rec;
+}
+
+/**
+ * ec_requests_emerg() - emergencies of a configuration of an active session
+ * @s: session
+ * @config: number
+ *
+ * Context: Any, while the session is kept active.
+ * Return: ring.
+ */
+struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config)
+{
+	return &s->requests->lanes[config].emerg;
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What the kinds of requests differ in: which starts are possible, and the transfer. */
+#include <linux/ktime.h>
+#include "../mailbox/coe.h"
+#include "../mailbox/mailbox.h"
+#include "../master.h"
+#include "request_int.h"
+#include "../bus/slave.h"
+#include "../mailbox/soe.h"
+#include "../mailbox/voe.h"
+#include "../wire/voe.h"
+#include "../link/xfer.h"
+
+/* operations of a kind, bit n: EC_REQUEST_OP_ n */
+static const u8 ops[] = {
+	[EC_REQUEST_SDO] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
+	[EC_REQUEST_REG] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE) |
+			   BIT(EC_REQUEST_OP_READWRITE),
+	[EC_REQUEST_SOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
+	[EC_REQUEST_VOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE) |
+			   BIT(EC_REQUEST_OP_READ_NOW),
+};
+
+/**
+ * ec_request_accept() - check a start of the application
+ * @r: request with all fields of the record but these
+ * @flags: of the record
+ * @size: of the record; @r->size is set
+ *
+ * Context: Process.
+ * Return: 0, -EINVAL, -EOPNOTSUPP for unknown flags.
+ */
+int ec_request_accept(struct ec_request *r, u32 flags, u32 size)
+{
+	if (r->op > EC_REQUEST_OP_READ_NOW || !(ops[r->kind] & BIT(r->op)))
+		return -EINVAL;
+	if (flags & ~(r->kind == EC_REQUEST_SDO ? EC_SDO_FLAG_COMPLETE : 0))
+		return -EOPNOTSUPP;
+	r->complete = flags & EC_SDO_FLAG_COMPLETE;
+	if (r->kind == EC_REQUEST_VOE)	/* the whole operation has a limit */
+		r->timeout_ms = EC_VOE_TIMEOUT_MS;
+	if (r->kind != EC_REQUEST_REG && !ec_request_writes(r))
+		size = r->cap;
+	else if (size > r->cap || (!size && r->kind != EC_REQUEST_VOE))
+		return -EINVAL;
+	r->size = size;
+	return 0;
+}
+
+/* The old content may be lost with a frame, so it is not sent twice. */
+static int readwrite(const struct ec_request *r, struct ec_slave *s)
+{
+	struct ec_dg dg = EC_DG(EC_CMD_FPRW, s->station, r->index, r->size, r->buf);
+	int ret;
+
+	dg.repeat = false;
+	ret = ec_xfer(s->master, &dg, 1);
+	/* reading counts one, writing two */
+	return ret ? ret : dg.wkc == 3 ? 0 : -EIO;
+}
+
+static void run_reg(struct ec_request *r, struct ec_slave *s, struct ec_request_result *res)
+{
+	res->got = ec_request_reads(r) ? r->size : 0;
+	/* also of a slave whose configuration failed: registers tell why */
+	if (r->op == EC_REQUEST_OP_READWRITE)
+		res->err = readwrite(r, s);
+	else if (r->op == EC_REQUEST_OP_WRITE)
+		res->err = ec_xfer_fpwr(s->master, s->station, r->index, r->buf, r->size);
+	else
+		res->err = ec_xfer_fprd(s->master, s->station, r->index, r->buf, r->size);
+}
+
+static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,
+		    struct ec_request_result *res)
+{
+	size_t got = 0;
+
+	if (ec_request_writes(r))
+		res->err = ec_coe_download(s, r->index, r->sub, r->complete, r->buf, r->size,
+					   &res->code, l);
+	else
+		res->err = ec_coe_upload(s, r->index, r->sub, r->complete, r->buf, r->size, &got,
+					 &res->code, l);
+	res->got = got;
+}
+
+static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,
+		    struct ec_request_result *res)
+{
+	size_t got = 0;
+	u16 error;
+
+	if (ec_request_writes(r))
+		res->err = ec_soe_write(s, r->sub, r->index, r->buf, r->size, &error, l);
+	else
+		res->err = ec_soe_read(s, r->sub, r->index, r->buf, r->size, &got, &error, l);
+	res->got = got;
+	res->code = error;
+}
+
+static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_limit *l,
+		    struct ec_request_result *res)
+{
+	u64 ms = div_u64(ktime_get_ns() - r->since_ns, NSEC_PER_MSEC);
+	struct ec_voe_hdr h = { .vendor = r->vendor, .type = r->index };
+	size_t got = 0;
+
+	l->timeout_ms = ms < EC_VOE_TIMEOUT_MS ? EC_VOE_TIMEOUT_MS - ms : 1;
+	if (ec_request_writes(r))
+		res->err = ec_voe_write(s, &h, r->buf, r->size, l);
+	else
+		res->err = ec_voe_read(s, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf, r->size,
+				       &got, l);
+	res->got = got;
+	res->vendor = h.vendor;
+	res->type = h.type;
+}
+
+/**
+ * ec_request_run() - do what a request wants
+ * @r: request that ec_request_accept() was content with
+ * @s: its slave
+ * @cancel: set to true by somebody who wants it to end
+ * @res: result
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel,
+		    struct ec_request_result *res)
+{
+	struct ec_mbox_limit limit = { .cancel = cancel };
+
+	*res = (struct ec_request_result){ .err = -EINVAL };
+	switch (r->kind) {
+	case EC_REQUEST_SDO:
+		run_sdo(r, s, &limit, res);
+		break;
+	case EC_REQUEST_REG:
+		run_reg(r, s, res);
+		break;
+	case EC_REQUEST_SOE:
+		run_soe(r, s, &limit, res);
+		break;
+	case EC_REQUEST_VOE:
+		run_voe(r, s, &limit, res);
+		break;
+	}
+}

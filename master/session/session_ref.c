@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The reference clock need not be among the slaves an application has
+ * configured: often it is a coupler. It goes to OP with them, as applications
+ * wait until the AL states of the whole bus are OP.
+ */
+#include "../master.h"
+#include "session.h"
+#include "../bus/slave.h"
+
+#define SM_KIND		0x0f	/* mode and direction, register 0x0804 */
+#define SM_OUTPUTS	0x04	/* buffered, written by the master */
+
+/* A slave with outputs that nobody writes would only run into its watchdog. */
+static bool has_outputs(const struct ec_slave *s)
+{
+	unsigned int i;
+
+	for (i = 0; i < s->n_sms; i++)
+		if ((s->sms[i].control & SM_KIND) == SM_OUTPUTS)
+			return true;
+	return false;
+}
+
+/**
+ * ec_session_raise_ref() - take the reference clock to OP, too
+ * @s: active session
+ *
+ * After activation and when slaves have come or gone. A slave that is configured
+ * or has outputs is left alone.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_raise_ref(struct ec_session *s)
+{
+	struct ec_master *m = s->master;
+	struct ec_slave *ref;
+
+	down_read(&m->topo);
+	ref = m->dc.ref;
+	if (ref)
+		ec_slave_ref(ref);
+	up_read(&m->topo);
+	if (!ref || ref == s->raised || ref->config || ref->gone || has_outputs(ref)) {
+		if (ref)
+			ec_slave_unref(ref);
+		return;
+	}
+	ec_session_lower_ref(s);
+	s->raised = ref;
+	ec_slave_request(ref, EC_AL_OP);
+}
+
+/**
+ * ec_session_lower_ref() - back to PREOP with it
+ * @s: session
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_lower_ref(struct ec_session *s)
+{
+	struct ec_slave *ref = s->raised;
+
+	if (!ref)
+		return;
+	s->raised = NULL;
+	if (!ref->gone && !ref->config && !s->master->stopping)
+		ec_slave_request(ref, EC_AL_PREOP);
+	ec_slave_unref(ref);
+}

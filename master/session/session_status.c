@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What an active session is told about the bus, and the log about its application. */
+#include "../config/config.h"
+#include "../cycle/cycle_lock.h"
+#include "../cycle/cycle_thread.h"
+#include "../master.h"
+#include "../base/once64.h"
+#include "session.h"
+#include "../bus/slave.h"
+
+/**
+ * ec_session_config_status() - EC_STATUS_SC_* of a configuration
+ * @c: configuration
+ *
+ * Context: Process, session_lock held or after ec_show_begin().
+ * Return: AL state with the bits online and operational; 0 without slave.
+ */
+u8 ec_session_config_status(const struct ec_config *c)
+{
+	const struct ec_slave *slave = c->slave;
+	u8 v;
+
+	if (!slave || slave->gone || slave->silent)
+		return 0;
+	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
+	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
+	    !slave->reconfigure)
+		v |= EC_STATUS_SC_OP;
+	return v;
+}
+
+/*
+ * A stall and its end are two lines, and that at most once in 10 s: a busy host
+ * may stall an application many times a second.
+ */
+static void log_stalls(struct ec_session *s, u64 now)
+{
+	struct ec_master *m = s->master;
+	struct ec_stall_log *l = &s->stall_log;
+	bool stalled = READ_ONCE(m->owner) == EC_OWNER_IDLE;
+	u32 more = atomic_read(&m->stalls) - l->told;
+
+	if (l->open && !stalled) {
+		ec_info(m, "cycle resumed after %llu ms\n",
+			div_u64(now - l->since_ns, NSEC_PER_MSEC));
+		l->open = false;
+	} else if (!l->open && more && now >= l->next_ns) {
+		l->since_ns = ec_read64(&m->stalled_ns);
+		l->next_ns = now + EC_STALL_LOG_NS;
+		l->told += more;
+		l->open = stalled;
+		if (more > stalled)
+			ec_warn(m, "%u more cycle timeout(s) since the last message\n",
+				more - stalled);
+		if (stalled)
+			ec_warn(m, "cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
+				div_u64(now - l->since_ns, NSEC_PER_MSEC));
+	}
+}
+
+static void status_links(struct ec_master *m, struct ec_status *st)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->spec[i]); i++) {
+		u32 slaves = READ_ONCE(m->link[i].slaves);
+
+		WRITE_ONCE(st->links[i].slaves_responding, slaves);
+		WRITE_ONCE(st->links[i].al_states, slaves ? m->al_states : 0);
+		WRITE_ONCE(st->links[i].link_up, m->link[i].up);
+	}
+	WRITE_ONCE(st->link_count, i);
+}
+
+/**
+ * ec_session_fill_status() - tell the application how the bus is
+ * @s: active session, or one that is about to be
+ *
+ * An application sees no difference between what it was told before it activated and
+ * this, so the first time is before it can look.
+ *
+ * Context: Process, session_lock held.
+ */
+void ec_session_fill_status(struct ec_session *s)
+{
+	struct ec_status *st = s->shared->status;
+	struct ec_master *m = s->master;
+	unsigned int i;
+
+	WRITE_ONCE(st->slaves_responding, m->slaves_responding);
+	WRITE_ONCE(st->al_states, m->al_states);
+	WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
+	status_links(m, st);
+	for (i = 0; i < s->n_configs; i++)
+		WRITE_ONCE(st->configs[i], ec_session_config_status(s->configs[i]));
+}
+
+/**
+ * ec_session_status() - bring the mapped status up to date; monitor
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_status(struct ec_master *m)
+{
+	struct ec_session *s;
+
+	/* held by an activation: next time then */
+	if (!ec_session_trylock(m))
+		return;
+	s = m->session;
+	if (s && s->active) {
+		log_stalls(s, ktime_get_ns());
+		ec_cycle_lock_log(s);
+		ec_cycle_thread_check_cpu(s);
+		ec_dc_app_log(m);
+		ec_cycle_tell_room(s);
+		ec_cycle_tell_stale(s);
+		ec_session_fill_status(s);
+	}
+	mutex_unlock(&m->session_lock);
+}
+
+/**
+ * ec_session_stalled() - the cyclic caller has not sent for too long
+ * @m: master
+ *
+ * The links go back to idle mode, so that mailboxes and tools work; process
+ * data stop, the slaves' watchdogs take care of the outputs. The log tells it with
+ * the next status.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_stalled(struct ec_master *m)
+{
+	u64 sent = ec_read64(&m->last_send_ns);
+
+	if (!ec_cycle_own(m, EC_OWNER_IDLE))
+		return;
+	ec_write64(&m->stalled_ns, sent);
+	atomic_inc(&m->stalls);
+}

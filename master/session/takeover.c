@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * An application takes over the detached session of another one. What it has
+ * configured must be the same, to the last bit of what reaches a slave or decides
+ * where something lies in the mapped memory. The two are compared, not hashes of
+ * them: so the first difference can be told.
+ */
+#include "../config/config.h"
+#include "../cycle/copy.h"
+#include "../cycle/cycle_thread.h"
+#include "../cycle/domain.h"
+#include "../master.h"
+#include "request.h"
+#include "session.h"
+
+/* where the first difference is described */
+struct text {
+	char *buf;
+	size_t size;
+};
+
+/* Always true: there is a difference. */
+static __printf(2, 3) bool differs(const struct text *t, const char *fmt, ...)
+{
+	va_list args;
+
+	va_start(args, fmt);
+	vscnprintf(t->buf, t->size, fmt, args);
+	va_end(args);
+	return true;
+}
+
+#define SLAVE(c)	(c)->alias, (c)->position
+
+static bool pdo_differs(const struct ec_config *c, u8 sm, const struct ec_pdo *a,
+			const struct ec_pdo *b, const struct text *t)
+{
+	unsigned int i;
+
+	if (a->index != b->index)
+		return differs(t, "slave %u:%u, SM%u has PDO 0x%04x, not 0x%04x", SLAVE(c), sm,
+			       a->index, b->index);
+	for (i = 0; i < max(a->n_entries, b->n_entries); i++)
+		if (i >= a->n_entries || i >= b->n_entries ||
+		    a->entries[i].index != b->entries[i].index ||
+		    a->entries[i].sub != b->entries[i].sub ||
+		    a->entries[i].bits != b->entries[i].bits)
+			return differs(t, "slave %u:%u, PDO 0x%04x, entry %u", SLAVE(c), a->index,
+				       i);
+	return false;
+}
+
+static bool sms_differ(const struct ec_config *a, const struct ec_config *b,
+		       const struct text *t)
+{
+	unsigned int i, p;
+
+	for (i = 0; i < EC_MAX_SM; i++) {
+		const struct ec_config_sm *x = &a->sm[i], *y = &b->sm[i];
+
+		if (x->dir != y->dir || x->watchdog != y->watchdog || x->explicit != y->explicit)
+			return differs(t, "slave %u:%u, SM%u", SLAVE(a), i);
+		if (x->pdos.n != y->pdos.n)
+			return differs(t, "slave %u:%u, SM%u has %u PDOs, not %u", SLAVE(a), i,
+				       x->pdos.n, y->pdos.n);
+		for (p = 0; p < x->pdos.n; p++)
+			if (pdo_differs(a, i, &x->pdos.pdos[p], &y->pdos.pdos[p], t))
+				return true;
+	}
+	return false;
+}
+
+static bool fmmus_differ(const struct ec_config *a, const struct ec_config *b)
+{
+	unsigned int i;
+
+	if (a->n_fmmus != b->n_fmmus)
+		return true;
+	for (i = 0; i < a->n_fmmus; i++) {
+		const struct ec_config_fmmu *x = &a->fmmus[i], *y = &b->fmmus[i];
+
+		if (x->domain->index != y->domain->index || x->sm != y->sm || x->dir != y->dir ||
+		    x->offset != y->offset || x->size != y->size)
+			return true;
+	}
+	return false;
+}
+
+static bool sdos_differ(const struct ec_config *a, const struct ec_config *b,
+			const struct text *t)
+{
+	const struct ec_config_sdo *x, *y = list_first_entry(&b->sdos, typeof(*y), list);
+
+	if (a->n_sdos != b->n_sdos)
+		return differs(t, "slave %u:%u has %u startup SDOs, not %u", SLAVE(a), a->n_sdos,
+			       b->n_sdos);
+	list_for_each_entry(x, &a->sdos, list) {
+		if (x->index != y->index || x->sub != y->sub || x->complete != y->complete ||
+		    x->size != y->size || memcmp(x->data, y->data, x->size))
+			return differs(t, "slave %u:%u, startup SDO 0x%04x:%02x", SLAVE(a),
+				       x->index, x->sub);
+		y = list_next_entry(y, list);
+	}
+	return false;
+}
+
+static bool idns_differ(const struct ec_config *a, const struct ec_config *b,
+			const struct text *t)
+{
+	const struct ec_config_idn *x, *y = list_first_entry(&b->idns, typeof(*y), list);
+
+	if (a->n_idns != b->n_idns)
+		return differs(t, "slave %u:%u has %u startup IDNs, not %u", SLAVE(a), a->n_idns,
+			       b->n_idns);
+	list_for_each_entry(x, &a->idns, list) {
+		if (x->idn != y->idn || x->drive != y->drive || x->state != y->state ||
+		    x->size != y->size || memcmp(x->data, y->data, x->size))
+			return differs(t, "slave %u:%u, startup IDN 0x%04x", SLAVE(a), x->idn);
+		y = list_next_entry(y, list);
+	}
+	return false;
+}
+
+static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
+			 const struct text *t)
+{
+	const struct ec_config_flag *x, *y = list_first_entry(&b->flags, typeof(*y), list);
+
+	if (a->n_flags != b->n_flags)
+		return differs(t, "slave %u:%u has %u flags, not %u", SLAVE(a), a->n_flags,
+			       b->n_flags);
+	list_for_each_entry(x, &a->flags, list) {
+		if (strcmp(x->key, y->key) || x->value != y->value)
+			return differs(t, "slave %u:%u, flag %.32s", SLAVE(a), x->key);
+		y = list_next_entry(y, list);
+	}
+	return false;
+}
+
+static bool config_differs(const struct ec_config *a, const struct ec_config *b,
+			   const struct text *t)
+{
+	if (a->alias != b->alias || a->position != b->position)
+		return differs(t, "slave configuration %u is %u:%u, not %u:%u", a->index,
+			       SLAVE(a), SLAVE(b));
+	if (a->vendor != b->vendor || a->product != b->product)
+		return differs(t, "slave %u:%u is 0x%08x/0x%08x, not 0x%08x/0x%08x", SLAVE(a),
+			       a->vendor, a->product, b->vendor, b->product);
+	if (sms_differ(a, b, t) || sdos_differ(a, b, t) || idns_differ(a, b, t) ||
+	    flags_differ(a, b, t))
+		return true;
+	if (a->overlap != b->overlap || fmmus_differ(a, b))
+		return differs(t, "slave %u:%u, its place in the domains", SLAVE(a));
+	if (a->wd_divider != b->wd_divider || a->wd_intervals != b->wd_intervals)
+		return differs(t, "slave %u:%u, watchdog", SLAVE(a));
+	if (a->dc_assign != b->dc_assign || memcmp(a->dc_cycle, b->dc_cycle, sizeof(a->dc_cycle)) ||
+	    memcmp(a->dc_shift, b->dc_shift, sizeof(a->dc_shift)))
+		return differs(t, "slave %u:%u, distributed clock", SLAVE(a));
+	if (memcmp(a->timeout_ms, b->timeout_ms, sizeof(a->timeout_ms)))
+		return differs(t, "slave %u:%u, time limits of its states", SLAVE(a));
+	/* a struct of bytes; those nobody has set are zero */
+	if (memcmp(&a->ip, &b->ip, sizeof(a->ip)))
+		return differs(t, "slave %u:%u, IP parameters", SLAVE(a));
+	if (a->emergencies != b->emergencies)
+		return differs(t, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a),
+			       a->emergencies, b->emergencies);
+	return false;
+}
+
+static bool domain_differs(const struct ec_domain *a, const struct ec_domain *b,
+			   const struct text *t)
+{
+	if (a->size != b->size)
+		return differs(t, "domain %u has %u bytes, not %u", a->index, a->size, b->size);
+	if (a->options != b->options)
+		return differs(t, "domain %u has the options 0x%x, not 0x%x", a->index, a->options,
+			       b->options);
+	if (a->max_age != b->max_age)
+		return differs(t, "domain %u has stale data after %u sends, not %u", a->index,
+			       a->max_age, b->max_age);
+	if (a->division != b->division || a->phase != b->phase)
+		return differs(t, "domain %u goes every %u cycles (phase %u), not %u (%u)",
+			       a->index, a->division, a->phase, b->division, b->phase);
+	return false;
+}
+
+static bool cycle_differs(const struct ec_ioc_cycle *a, const struct ec_ioc_cycle *b,
+			  const struct text *t)
+{
+	if (!b->period_ns)
+		return differs(t, "the kernel runs its cycle");
+	if (a->period_ns != b->period_ns)
+		return differs(t, "the period is %u ns, not %u", a->period_ns, b->period_ns);
+	return memcmp(a, b, sizeof(*a)) && differs(t, "how the kernel runs the cycle");
+}
+
+static bool session_differs(const struct ec_session *a, const struct ec_session *b,
+			    const struct text *t)
+{
+	unsigned int i;
+
+	if (a->n_configs != b->n_configs)
+		return differs(t, "it has %u slaves, not %u", a->n_configs, b->n_configs);
+	for (i = 0; i < a->n_configs; i++)
+		if (config_differs(a->configs[i], b->configs[i], t))
+			return true;
+	if (a->n_domains != b->n_domains)
+		return differs(t, "it has %u domains, not %u", a->n_domains, b->n_domains);
+	for (i = 0; i < a->n_domains; i++)
+		if (domain_differs(a->domains[i], b->domains[i], t))
+			return true;
+	if (a->ref_config != b->ref_config)
+		return differs(t, "reference clock");
+	if (a->n_specs != b->n_specs || a->request_bytes != b->request_bytes ||
+	    (a->n_specs && memcmp(a->specs, b->specs, a->n_specs * sizeof(*a->specs))))
+		return differs(t, "its %u SDO and register requests", a->n_specs);
+	if (a->n_copies != b->n_copies)
+		return differs(t, "it has %u copies, not %u", a->n_copies, b->n_copies);
+	for (i = 0; i < a->n_copies; i++)
+		if (memcmp(&a->copies[i], &b->copies[i], sizeof(a->copies[i])))
+			return differs(t, "copy %u", i);
+	return cycle_differs(&a->kernel, &b->kernel, t);
+}
+
+/*
+ * How many cycles may be late is not part of what is compared: no slave gets it,
+ * and nothing is laid out by it. The new application's word counts from now on.
+ */
+static void adopt_late(struct ec_session *s, u32 per_s)
+{
+	s->late_per_s = per_s;
+	WRITE_ONCE(s->master->late_per_s, per_s);
+}
+
+/**
+ * ec_session_take_over() - the heir's application gets the detached session
+ * @m: master with a heir
+ * @why: result: the first difference of the two
+ * @size: room there
+ *
+ * The cycle goes on, with the priority that the heir's process may use; the heir's
+ * configuration is freed.
+ *
+ * Context: Process, session_lock held. Sleeps until the next cycle has begun.
+ * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
+ * -ETIMEDOUT the cycle does not run.
+ */
+int ec_session_take_over(struct ec_master *m, char *why, size_t size)
+{
+	const struct text t = { .buf = why, .size = size };
+	struct ec_session *s = m->session, *heir = m->heir;
+	int ret;
+
+	if (session_differs(s, heir, &t))
+		return -EEXIST;
+	if (!heir->late_per_s && ec_cycle_slack_ns(m) < ec_cycle_need_ns())
+		return -ENOSPC;
+	ret = ec_cycle_thread_adopt(s);
+	if (ret)
+		return ret;
+	if (s->requests)
+		ec_requests_describe(s);
+	adopt_late(s, heir->late_per_s);
+	ec_cycle_thread_inherit(s, heir->priority);
+	m->heir = NULL;
+	ec_session_fill_status(s);
+	ec_session_set_owner(s, heir->owner, rcu_dereference_protected(heir->waiters,
+			     lockdep_is_held(&m->session_lock)));
+	s->owner_pid = heir->owner_pid;
+	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
+	ec_session_free(heir);
+	ec_info(m, "detached session taken over by a new application\n");
+	return 0;
+}
