@@ -25,6 +25,7 @@ fuzz
 data
 arch
 kernels
+layers
 build
 pysoem
 kickcat
@@ -79,6 +80,7 @@ level_kickcat() { tests/foreign/kickcat.sh; }
 level_ethercrab() { tests/foreign/ethercrab.sh; }
 level_arch() { tests/arch/run.sh; }
 level_kernels() { tests/check-kernels.sh; }
+level_layers() { tests/check-layers.sh; }
 level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }
 level_guests() { tests/arch/guests.sh; }
