@@ -40,7 +40,7 @@ void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t
 
 	atomic64_inc(&link->stats.rx_frames);
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
-	if (unlikely(READ_ONCE(m->debug) >= 2))
+	if (unlikely(READ_ONCE(m->base->debug) >= 2))
 		ec_link_trace(link, "received", data, len);
 	if (unlikely(!ec_capture_received(m->capture, src, data, len)))
 		atomic64_inc(&link->stats.not_captured);
@@ -264,9 +264,9 @@ void ec_master_rescan(struct ec_master *m)
  */
 static int queues_create(struct ec_master *m)
 {
-	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->index);
-	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->index);
-	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->index);
+	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->base->index);
+	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->base->index);
+	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->base->index);
 	return m->work && m->lanes && m->service ? 0 : -ENOMEM;
 }
 
@@ -285,7 +285,7 @@ static void destroy(struct ec_master *m)
 {
 	unsigned int i;
 
-	WRITE_ONCE(m->stopping, true);
+	WRITE_ONCE(m->base->stopping, true);
 	ec_cdev_exit(m);
 	ec_api_between_stop(m);
 	ec_session_end(m, NULL);
@@ -302,7 +302,7 @@ static void destroy(struct ec_master *m)
 	m->slaves = NULL;
 	m->n_slaves = 0;
 	ec_slots_exit(&m->slots);
-	ec_log_flush(m, true);
+	ec_log_flush(m->base, true);
 	ec_cdev_put(m);
 }
 
@@ -315,10 +315,10 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 
 	if (!m)
 		return ERR_PTR(-ENOMEM);
-	m->index = index;
+	m->base->index = index;
 	m->spec[0] = main;
 	m->spec[1] = backup;
-	m->debug = debug;
+	m->base->debug = debug;
 	m->max_datagrams = 15;
 	m->io_timeout_us = 20000;
 	m->interval_us = EC_INTERVAL_US;
@@ -329,7 +329,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		ec_watch_init(&m->link[i].watch);
 		mutex_init(&m->link[i].ring_full);
 	}
-	ec_log_init(&m->log);
+	ec_log_init(&m->base->log);
 	rt_mutex_init(&m->io_lock);
 	raw_spin_lock_init(&m->xq_lock);
 	init_rwsem(&m->topo);

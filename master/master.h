@@ -17,7 +17,7 @@
 #include "cycle/late.h"
 #include "base/limits.h"
 #include "link/link.h"
-#include "base/log.h"
+#include "base/base.h"
 #include "link/queue.h"
 #include "boundary/show.h"
 #include "link/slots.h"
@@ -29,13 +29,12 @@ struct task_struct;
 
 /**
  * struct ec_master - everything below one /dev/EtherCAT<n>
- * @index: number, immutable
+ * @base: number, log, immutable
  * @spec: what the module parameters name as main and backup device, immutable
  * @dev: device below the class
  * @cdev: character device
  * @max_datagrams: per acyclic frame, immutable
  * @io_timeout_us: when a frame counts as lost, immutable
- * @stopping: master goes away: waiters are cancelled
  *
  * @link: main and backup
  * @capture: interface for capture programs, NULL: none; immutable while there
@@ -106,17 +105,14 @@ struct task_struct;
  * @slaves_responding: slaves that answered the last broadcast
  * @al_states: OR of AL states, as in struct ec_ioc_master
  * @dc: distributed clocks
- * @debug: log level 0..2
- * @log: what was logged lately
  */
 struct ec_master {
-	unsigned int index;
+	struct ec_base base[1];	/* one; used as in the layers, which have a pointer */
 	const char *spec[EC_MAX_LINKS];
 	struct device dev;
 	struct cdev cdev;
 	unsigned int max_datagrams;
 	unsigned int io_timeout_us;
-	bool stopping;
 
 	struct ec_link link[EC_MAX_LINKS];
 	struct ec_capture *capture;
@@ -182,17 +178,7 @@ struct ec_master {
 	u32 slaves_responding;
 	u32 al_states;
 	struct ec_dc dc;
-	u32 debug;
-	struct ec_log log;
 };
-
-/* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
-#define ec_info(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_INFO, fmt, ##__VA_ARGS__)
-#define ec_warn(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_WARNING, fmt, ##__VA_ARGS__)
-/* each @id (index + 1 of a configuration, say) repeats for itself */
-#define ec_warn_each(m, id, fmt, ...) \
-	ec_log_event(m, EC_LOG_ANY, id, KERN_WARNING, fmt, ##__VA_ARGS__)
-#define ec_err(m, fmt, ...)	ec_log_event(m, EC_LOG_ANY, 0, KERN_ERR, fmt, ##__VA_ARGS__)
 
 unsigned int ec_master_count(void);
 struct ec_master *ec_master_get(unsigned int index);

@@ -41,7 +41,7 @@ static void check_links(struct watch *w)
 
 		if (u != m->link[i].up) {
 			WRITE_ONCE(m->link[i].up, u);
-			ec_log_event(m, EC_LOG_ANY, 0, u ? KERN_INFO : KERN_WARNING, "%s link %s\n",
+			ec_log_event(m->base, EC_LOG_ANY, 0, u ? KERN_INFO : KERN_WARNING, "%s link %s\n",
 				     i ? "backup" : "main", u ? "up" : "down");
 		}
 		up |= u;
@@ -386,7 +386,7 @@ static int monitor(void *data)
 		if (w.scanned)
 			ec_session_clocks(m);
 		ec_session_status(m);
-		ec_log_flush(m, false);
+		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		if (!kthread_should_stop() && (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze)))
@@ -405,7 +405,7 @@ static int monitor(void *data)
  */
 int ec_monitor_start(struct ec_master *m)
 {
-	struct task_struct *t = kthread_run(monitor, m, "EtherCAT%u", m->index);
+	struct task_struct *t = kthread_run(monitor, m, "EtherCAT%u", m->base->index);
 
 	if (IS_ERR(t))
 		return PTR_ERR(t);

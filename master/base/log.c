@@ -6,8 +6,7 @@
 #include <linux/ktime.h>
 #include <linux/ratelimit.h>
 #include <linux/string.h>
-#include "log.h"
-#include "../master.h"
+#include "base.h"
 
 /* one line that is to be written when the lock is free */
 struct line {
@@ -29,14 +28,14 @@ void ec_log_init(struct ec_log *l)
 	raw_spin_lock_init(&l->lock);
 }
 
-static void print(const struct ec_master *m, const struct line *line)
+static void print(const struct ec_base *b, const struct line *line)
 {
 	char who[24], more[40] = "";
 
 	if (line->slave == EC_LOG_ANY)
-		scnprintf(who, sizeof(who), "%u", m->index);
+		scnprintf(who, sizeof(who), "%u", b->index);
 	else
-		scnprintf(who, sizeof(who), "%u-%d", m->index, line->slave);
+		scnprintf(who, sizeof(who), "%u-%d", b->index, line->slave);
 	if (line->more)
 		scnprintf(more, sizeof(more), " (%u more in the last 10 s)", line->more);
 	printk("%sEtherCAT %s: %s%s\n", line->level, who, line->text, more);
@@ -117,7 +116,7 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
 
 /**
  * ec_log_event() - log an event, or count it if it repeats
- * @m: master
+ * @b: of the master
  * @slave: ring position or EC_LOG_ANY
  * @id: makes events of one call site different ones, 0: it does not
  * @level: KERN_*
@@ -128,10 +127,10 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
  *
  * Context: Any.
  */
-void ec_log_event(struct ec_master *m, int slave, u32 id, const char *level, const char *fmt, ...)
+void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level, const char *fmt, ...)
 {
 	struct line line = { .level = level, .slave = slave, .id = id };
-	struct ec_log *l = &m->log;
+	struct ec_log *l = &b->log;
 	unsigned long irq;
 	va_list args;
 	bool yes;
@@ -147,7 +146,7 @@ void ec_log_event(struct ec_master *m, int slave, u32 id, const char *level, con
 	l->lines += yes;
 	raw_spin_unlock_irqrestore(&l->lock, irq);
 	if (yes)
-		print(m, &line);
+		print(b, &line);
 }
 
 /* The next line whose window is over; false: there is none. */
@@ -193,14 +192,14 @@ static u32 take_lost(struct ec_log *l, u64 now, bool all)
 
 /**
  * ec_log_flush() - log what was counted only, for events whose window is over
- * @m: master
+ * @b: of the master
  * @all: for all events
  *
  * Context: Process.
  */
-void ec_log_flush(struct ec_master *m, bool all)
+void ec_log_flush(struct ec_base *b, bool all)
 {
-	struct ec_log *l = &m->log;
+	struct ec_log *l = &b->log;
 	u64 now = ktime_get_ns();
 	struct line line;
 	unsigned long irq;
@@ -216,14 +215,14 @@ void ec_log_flush(struct ec_master *m, bool all)
 		more = take(l, &i, &line, now, all);
 		raw_spin_unlock_irqrestore(&l->lock, irq);
 		if (more)
-			print(m, &line);
+			print(b, &line);
 	} while (more);
 	raw_spin_lock_irqsave(&l->lock, irq);
 	lost = take_lost(l, now, all);
 	raw_spin_unlock_irqrestore(&l->lock, irq);
 	if (lost)
 		pr_warn("EtherCAT %u: %u more message(s) of other kinds in the last 10 s not logged\n",
-			m->index, lost);
+			b->index, lost);
 }
 
 /**

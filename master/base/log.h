@@ -56,12 +56,12 @@ struct ec_log {
 	u64 lines;
 };
 
-struct ec_master;
+struct ec_base;
 
 void ec_log_init(struct ec_log *l);
-__printf(5, 6) void ec_log_event(struct ec_master *m, int slave, u32 id, const char *level,
+__printf(5, 6) void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level,
 				 const char *fmt, ...);
-void ec_log_flush(struct ec_master *m, bool all);
+void ec_log_flush(struct ec_base *b, bool all);
 bool ec_log_debug(void);
 
 #endif

@@ -72,7 +72,7 @@ int ec_api_between_start(struct ec_master *m)
 
 	if (!api->send_cb || !api->receive_cb)
 		return 0;
-	t = kthread_create(between, m, "EtherCAT%u-btw", m->index);
+	t = kthread_create(between, m, "EtherCAT%u-btw", m->base->index);
 	if (IS_ERR(t))
 		return PTR_ERR(t);
 	/* before it runs: ec_api_is_between() */

@@ -187,9 +187,9 @@ int ec_cdev_init(struct ec_master *m)
 
 	device_initialize(&m->dev);
 	m->dev.class = ec_class;
-	m->dev.devt = first_dev + m->index;
+	m->dev.devt = first_dev + m->base->index;
 	m->dev.release = dev_release;
-	ret = dev_set_name(&m->dev, "EtherCAT%u", m->index);
+	ret = dev_set_name(&m->dev, "EtherCAT%u", m->base->index);
 	if (ret)
 		goto err;
 	cdev_init(&m->cdev, &ec_fops);

@@ -145,7 +145,7 @@ int ec_ioc_limit(struct ec_file *f, int ret)
 	if (ret != -EDQUOT)
 		return ret;
 	return ec_refuse(f, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
-			 EC_MAX_SESSION_BYTES >> 20, f->master->index);
+			 EC_MAX_SESSION_BYTES >> 20, f->master->base->index);
 }
 
 /**

@@ -21,15 +21,15 @@ int ec_ioc_reserve(struct ec_file *f, void *arg)
 	case -EBUSY:
 		if (READ_ONCE(f->master->api->reserved))
 			return ec_refuse(f, ret, "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
-					 f->master->index);
+					 f->master->base->index);
 		if (!ec_session_owner_text(f->master, who, sizeof(who)))
 			return ec_refuse(f, ret, "master %u was reserved by an application that has just ended; try again",
-					 f->master->index);
+					 f->master->base->index);
 		return ec_refuse(f, ret, "master %u is reserved by %s; stop that application first",
-				 f->master->index, who);
+				 f->master->base->index, who);
 	case -ENODEV:
 		return ec_refuse(f, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
-				 f->master->index, f->master->spec[0]);
+				 f->master->base->index, f->master->spec[0]);
 	default:
 		return ret;
 	}
@@ -438,7 +438,7 @@ static int take_over(struct ec_file *f)
 
 	if (ret == -EEXIST)
 		return ec_refuse(f, ret, "the detached session of master %u has another configuration: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
-				 f->master->index, why);
+				 f->master->base->index, why);
 	if (ret == -ENOSPC)
 		return activate_failed(f, heir, ret);
 	if (ret)

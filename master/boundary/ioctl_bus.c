@@ -124,7 +124,7 @@ int ec_ioc_debug(struct ec_file *f, void *arg)
 
 	if (i->level > 2)
 		return ec_refuse(f, -EINVAL, "debug level must be 0, 1 or 2, not %u", i->level);
-	WRITE_ONCE(f->master->debug, i->level);
+	WRITE_ONCE(f->master->base->debug, i->level);
 	return 0;
 }
 
@@ -171,9 +171,9 @@ int ec_ioc_end_detached(struct ec_file *f, void *arg)
 	case 0:
 		return 0;
 	case -ENOENT:
-		return ec_refuse(f, -ENOENT, "master %u has no session", f->master->index);
+		return ec_refuse(f, -ENOENT, "master %u has no session", f->master->base->index);
 	default:
 		return ec_refuse(f, -EBUSY, "session of master %u still has its application; stop it first",
-				 f->master->index);
+				 f->master->base->index);
 	}
 }

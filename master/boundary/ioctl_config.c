@@ -27,7 +27,7 @@ static struct ec_session *look(struct ec_file *f, int *ret)
 	if (s)
 		return s;
 	ec_show_end(m);
-	*ret = ec_refuse(f, -ENOENT, "no application has reserved master %u", m->index);
+	*ret = ec_refuse(f, -ENOENT, "no application has reserved master %u", m->base->index);
 	return NULL;
 }
 

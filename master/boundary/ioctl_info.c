@@ -148,14 +148,14 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	unsigned int l;
 	int ret;
 
-	i->index = m->index;
+	i->index = m->base->index;
 	i->slave_count = m->n_slaves;
 	i->slaves_responding = m->slaves_responding;
 	i->al_states = m->al_states;
 	i->scan_busy = ec_master_scan_busy(m);
 	ec_master_scan_progress(m, &i->scan_index, &i->scan_slaves);
 	i->scan_count = READ_ONCE(m->scan_count);
-	i->debug_level = m->debug;
+	i->debug_level = m->base->debug;
 	i->app_time = ec_read64(&m->dc.app_time);
 	i->scan_us = m->scan_us;
 	i->scan_frames = m->scan_frames;

@@ -38,7 +38,7 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 			return ret;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;
-		if (slave->master->stopping || READ_ONCE(slave->interrupt))
+		if (slave->master->base->stopping || READ_ONCE(slave->interrupt))
 			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
@@ -60,7 +60,7 @@ static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 un
 			if (errors && slave->al_status & EC_AL_ERROR)
 				return -EPROTO;
 		}
-		if (slave->gone || slave->master->stopping || READ_ONCE(slave->interrupt))
+		if (slave->gone || slave->master->base->stopping || READ_ONCE(slave->interrupt))
 			return -ECANCELED;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;

@@ -106,7 +106,7 @@ void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n
 			j.c[j.n++].slave = slaves[i];
 	if (j.n)
 		start(&j);
-	while (j.n && !m->stopping && ktime_get_ns() < until) {
+	while (j.n && !m->base->stopping && ktime_get_ns() < until) {
 		usleep_range(us, us + us / 4);
 		us = min(us * 2, 2000u);
 		look(&j);

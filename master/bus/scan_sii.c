@@ -206,7 +206,7 @@ static bool take(struct reader *r, u32 word)
 /* Without link no slave is to blame: the scan ends and fails as a whole. */
 static bool go_on(const struct ec_master *m)
 {
-	return !READ_ONCE(m->stopping) && ec_link_is_up(&m->link[0]);
+	return !READ_ONCE(m->base->stopping) && ec_link_is_up(&m->link[0]);
 }
 
 static void command(u8 *c, u32 word)

@@ -225,13 +225,13 @@ struct ec_slave {
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
 #define ec_slave_log(level, s, fmt, ...) \
-	ec_log_event((s)->master, (s)->position, 0, level, fmt, ##__VA_ARGS__)
+	ec_log_event((s)->master->base, (s)->position, 0, level, fmt, ##__VA_ARGS__)
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
 	do { \
-		if (unlikely(READ_ONCE((s)->master->debug) >= (lvl)) && ec_log_debug()) \
-			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->index, \
+		if (unlikely(READ_ONCE((s)->master->base->debug) >= (lvl)) && ec_log_debug()) \
+			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->base->index, \
 			       (s)->position, ##__VA_ARGS__); \
 	} while (0)
 /* level 1, without line end: ": done" or the name of the error follows; @ret is 0 or -errno */

@@ -37,7 +37,7 @@ static bool settled(const struct ec_dc *dc)
 static bool canceled(const struct ec_slave *s, u8 state)
 {
 	return READ_ONCE(s->interrupt) || READ_ONCE(s->requested) < state || s->gone ||
-	       s->master->stopping;
+	       s->master->base->stopping;
 }
 
 /**

@@ -353,7 +353,7 @@ static int wait_flag(struct ec_slave *s, s32 ms)
 	u64 until = ktime_get_ns() + (u64)clamp(ms, 0, FLAG_MAX_MS) * NSEC_PER_MSEC;
 
 	while (ms > 0 && ktime_get_ns() < until) {
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->base->stopping)
 			return -ECANCELED;
 		usleep_range(1000, 1500);
 	}
@@ -420,7 +420,7 @@ static int wait_outputs(struct ec_slave *s)
 	for (i = 0; i < limit; i++) {
 		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
 			return 0;
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->stopping)
+		if (READ_ONCE(s->interrupt) || s->gone || s->master->base->stopping)
 			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
@@ -566,7 +566,7 @@ void ec_apply_work(struct work_struct *work)
 
 	mutex_lock(&s->lock);
 	WRITE_ONCE(s->worker, current);
-	for (i = 0; i < 16 && !ret && !s->gone && !m->stopping && !READ_ONCE(s->interrupt); i++) {
+	for (i = 0; i < 16 && !ret && !s->gone && !m->base->stopping && !READ_ONCE(s->interrupt); i++) {
 		take_plan(s);
 		ret = step(s);
 	}

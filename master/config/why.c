@@ -65,10 +65,10 @@ static size_t no_link(struct ec_master *m, char *buf, size_t size)
 		dev |= READ_ONCE(m->link[i].dev) != NULL;
 	}
 	if (!dev)
-		return scnprintf(buf, size, "no network device: master %u waits for %s", m->index,
+		return scnprintf(buf, size, "no network device: master %u waits for %s", m->base->index,
 				 m->spec[0]);
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
-			 m->index);
+			 m->base->index);
 }
 
 /* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */

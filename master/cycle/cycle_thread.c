@@ -502,7 +502,7 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
 	ret = find_outputs(t) ?: alloc_exchange(t);
 	if (ret)
 		goto err;
-	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->index);
+	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->base->index);
 	if (IS_ERR(t->task)) {
 		ret = PTR_ERR(t->task);
 		goto err;

@@ -112,7 +112,7 @@ int ec_capture_create(struct ec_master *m)
 
 	if (!ec_capture)
 		return 0;
-	snprintf(name, sizeof(name), "eccap%u", m->index);
+	snprintf(name, sizeof(name), "eccap%u", m->base->index);
 	nd = alloc_netdev(sizeof(*c), name, NET_NAME_ENUM, setup);
 	if (!nd)
 		return -ENOMEM;

@@ -117,7 +117,7 @@ static void match_locked(struct ecdev *dev)
 		struct ec_master *m = ec_master_get(i);
 
 		for (side = 0; side < EC_MAX_LINKS; side++)
-			if (!m->link[side].dev && !m->stopping &&
+			if (!m->link[side].dev && !m->base->stopping &&
 			    spec_matches(m->spec[side], dev->name, dev->mac)) {
 				attach(dev, &m->link[side]);
 				return;

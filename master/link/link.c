@@ -27,7 +27,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
 
 	if (__ratelimit(&rate))
-		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->master->index,
+		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->master->base->index,
 		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
 		       data);
 }
@@ -37,7 +37,7 @@ static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len
 {
 	int ret;
 
-	if (unlikely(READ_ONCE(link->master->debug) >= 2))
+	if (unlikely(READ_ONCE(link->master->base->debug) >= 2))
 		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
 	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
 		atomic64_inc(&link->stats.not_captured);

@@ -73,7 +73,7 @@ int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms)
 /* Why an exchange has to end now; 0: go on. */
 static int over(const struct ec_slave *slave, const struct until *u)
 {
-	if (slave->gone || slave->master->stopping || interrupted(slave) ||
+	if (slave->gone || slave->master->base->stopping || interrupted(slave) ||
 	    (u->cancel && READ_ONCE(*u->cancel)))
 		return -ECANCELED;
 	if (signal_pending(current))

@@ -98,7 +98,7 @@ static struct ec_session *session_of(const struct ec_requests *rq)
 {
 	struct ec_session *s = rq->master->session;
 
-	return s && s->requests == rq && !rq->master->stopping ? s : NULL;
+	return s && s->requests == rq && !rq->master->base->stopping ? s : NULL;
 }
 
 /* begin and end of a request ------------------------------------------------*/

@@ -213,7 +213,7 @@ static void detach(struct ec_config *c)
 	slave->reconfigure = true;
 	slave->interrupt = false;
 	mutex_unlock(&slave->lock);
-	if (!slave->gone && !slave->master->stopping)
+	if (!slave->gone && !slave->master->base->stopping)
 		ec_slave_request(slave, EC_AL_PREOP);
 	ec_slave_unref(slave);
 }

@@ -64,7 +64,7 @@ void ec_session_lower_ref(struct ec_session *s)
 	if (!ref)
 		return;
 	s->raised = NULL;
-	if (!ref->gone && !ref->config && !s->master->stopping)
+	if (!ref->gone && !ref->config && !s->master->base->stopping)
 		ec_slave_request(ref, EC_AL_PREOP);
 	ec_slave_unref(ref);
 }

@@ -175,9 +175,9 @@ static void start_to_op(struct kunit *test)
 	for (i = 0; i < 2; i++) {
 		c = configure(b, p);
 		bus_idle(b);
-		b->m->debug = debug;
+		b->m->base->debug = debug;
 		us = to_op(c, &clocks);
-		b->m->debug = 0;
+		b->m->base->debug = 0;
 		if (p->dc) {
 			bus_figure("activation to OP, %s, application %u: %llu us of bus time, of which the clocks take %llu us and SYNC0 begins %u us later",
 				   name, i + 1, us, clocks, SYNC_LEAD_US);
