@@ -3,13 +3,11 @@
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "boundary/api.h"
-#include "link/capture.h"
 #include "boundary/cdev.h"
 #include "link/device.h"
 #include "master.h"
 #include "session/session.h"
 #include "bus/slave.h"
-#include "link/xfer.h"
 
 static struct ec_master *masters[EC_MAX_MASTERS];
 static unsigned int n_masters;
@@ -24,78 +22,30 @@ struct ec_master *ec_master_get(unsigned int index)
 	return masters[index];
 }
 
-/**
- * ec_master_frame() - a frame has arrived on a link
- * @link: link
- * @src: source MAC address
- * @data: what follows the EtherType
- * @len: bytes there
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
+static void device(struct ec_links *l, const struct ec_link *link, bool attached)
 {
-	struct ec_master *m = link->master;
-	struct ec_matched got;
+	struct ec_master *m = container_of(l, struct ec_master, links);
 
-	atomic64_inc(&link->stats.rx_frames);
-	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
-	if (unlikely(READ_ONCE(m->base->debug) >= 2))
-		ec_link_trace(link, "received", data, len);
-	if (unlikely(!ec_capture_received(m->capture, src, data, len)))
-		atomic64_inc(&link->stats.not_captured);
-	switch (ec_slots_match(&m->slots, src, data, len, &got)) {
-	case EC_MATCH_DONE:
-		while (got.n)
-			ec_xfer_done(got.xfer[--got.n]);
-		break;
-	case EC_MATCH_LATE:
-		atomic64_inc(&link->stats.late);
-		break;
-	case EC_MATCH_UNMATCHED:
-		atomic64_inc(&link->stats.unmatched);
-		break;
-	}
-}
-
-/* called with the device started */
-void ec_master_link_attach(struct ec_link *link, struct ecdev *dev)
-{
-	struct ec_master *m = link->master;
-
-	rt_mutex_lock(&m->io_lock);
-	WRITE_ONCE(link->dev, dev);
-	ec_link_set_places(link, m->owner == EC_OWNER_CYCLE);
-	rt_mutex_unlock(&m->io_lock);
-	WRITE_ONCE(m->looked, false);
-	ec_info(m, "%s device %s attached (%s, %pM)\n", link->side ? "backup" : "main", dev->name,
-		dev->ops->kind, dev->mac);
-	ec_monitor_kick(m);
-}
-
-/* called before the device is stopped */
-void ec_master_link_detach(struct ec_link *link)
-{
-	struct ec_master *m = link->master;
-
-	struct ecdev *dev = link->dev;
-
-	/* first nobody finds it any more, then who found it has to leave */
-	rt_mutex_lock(&m->io_lock);
-	WRITE_ONCE(link->dev, NULL);
-	WRITE_ONCE(link->up, false);
-	rt_mutex_unlock(&m->io_lock);
-	ec_cycle_own(m, EC_OWNER_IDLE);
-	if (dev->ops->cycle)
-		dev->ops->cycle(dev->priv, false);
-	if (!link->side) {
+	if (attached) {
+		WRITE_ONCE(m->looked, false);
+		ec_monitor_kick(m);
+	} else if (!link->side) {
 		mutex_lock(&m->cyclic_lock);
 		if (m->active)
 			ec_cycle_nothing_back(m->active);
 		mutex_unlock(&m->cyclic_lock);
 	}
-	ec_info(m, "%s device %s detached\n", link->side ? "backup" : "main", dev->name);
 }
+
+static void queued(struct ec_links *l)
+{
+	ec_api_left(container_of(l, struct ec_master, links));
+}
+
+static const struct ec_links_ops links_ops = {
+	.device = device,
+	.queued = queued,
+};
 
 /**
  * ec_master_slave() - a slave by its ring position
@@ -197,7 +147,7 @@ void ec_master_wait_slave(struct ec_slave *slave)
 	struct ec_master *m = slave->master;
 	unsigned int i;
 
-	for (i = 0; i < 500 && READ_ONCE(m->link[0].up); i++)
+	for (i = 0; i < 500 && READ_ONCE(m->links.link[0].up); i++)
 		if (wait_event_killable_timeout(m->scan_wq, slave_settled(slave),
 						msecs_to_jiffies(10)))
 			return;
@@ -265,7 +215,8 @@ void ec_master_rescan(struct ec_master *m)
 static int queues_create(struct ec_master *m)
 {
 	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->base->index);
-	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->base->index);
+	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
+				   m->base->index);
 	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->base->index);
 	return m->work && m->lanes && m->service ? 0 : -ENOMEM;
 }
@@ -293,15 +244,12 @@ static void destroy(struct ec_master *m)
 	ec_dc_exit(m);
 	queues_destroy(m);
 	ec_api_destroy(m);
-	for (i = 0; i < EC_MAX_LINKS; i++)
-		ec_device_detach(&m->link[i]);
-	ec_capture_destroy(m);
+	ec_links_exit(&m->links);
 	for (i = 0; i < m->n_slaves; i++)
 		ec_slave_unref(m->slaves[i]);
 	kvfree(m->slaves);
 	m->slaves = NULL;
 	m->n_slaves = 0;
-	ec_slots_exit(&m->slots);
 	ec_log_flush(m->base, true);
 	ec_cdev_put(m);
 }
@@ -310,34 +258,19 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 				unsigned int debug)
 {
 	struct ec_master *m = kvzalloc(sizeof(*m), GFP_KERNEL);
-	unsigned int i;
 	int ret;
 
 	if (!m)
 		return ERR_PTR(-ENOMEM);
 	m->base->index = index;
-	m->spec[0] = main;
-	m->spec[1] = backup;
 	m->base->debug = debug;
-	m->max_datagrams = 15;
-	m->io_timeout_us = 20000;
-	m->interval_us = EC_INTERVAL_US;
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		m->link[i].master = m;
-		m->link[i].side = i;
-		ec_gate_init(&m->link[i].acyclic, EC_LINK_ACYCLIC);
-		ec_watch_init(&m->link[i].watch);
-		mutex_init(&m->link[i].ring_full);
-	}
 	ec_log_init(&m->base->log);
-	rt_mutex_init(&m->io_lock);
-	raw_spin_lock_init(&m->xq_lock);
 	init_rwsem(&m->topo);
 	init_waitqueue_head(&m->scan_wq);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
 	ec_dc_init(m);
-	ret = ec_slots_init(&m->slots);
+	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
 	ret = queues_create(m);
@@ -346,12 +279,9 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_api_create(m);
 	if (ret)
 		goto err_work;
-	ret = ec_capture_create(m);
-	if (ret)
-		goto err_api;
 	ret = ec_cdev_init(m);
 	if (ret)
-		goto err_capture;
+		goto err_api;
 	ret = ec_monitor_start(m);
 	if (ret)
 		goto err_cdev;
@@ -359,19 +289,16 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 
 err_cdev:
 	ec_cdev_exit(m);
-	ec_capture_destroy(m);
 	ec_api_destroy(m);
 	queues_destroy(m);
-	ec_slots_exit(&m->slots);
+	ec_links_exit(&m->links);
 	ec_cdev_put(m);
 	return ERR_PTR(ret);
-err_capture:
-	ec_capture_destroy(m);
 err_api:
 	ec_api_destroy(m);
 err_work:
 	queues_destroy(m);
-	ec_slots_exit(&m->slots);
+	ec_links_exit(&m->links);
 err_free:
 	kvfree(m);
 	return ERR_PTR(ret);
@@ -488,6 +415,7 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
 		}
 		masters[i] = m;
 		n_masters = i + 1;
+		ec_device_register(&m->links);
 	}
 	return 0;
 }

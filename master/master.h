@@ -6,7 +6,6 @@
 #include <linux/cdev.h>
 #include <linux/device.h>
 #include <linux/mutex.h>
-#include <linux/rtmutex.h>
 #include <linux/rwsem.h>
 #include <linux/spinlock.h>
 #include <linux/wait.h>
@@ -15,12 +14,9 @@
 #include "cycle/cycle.h"
 #include "clock/dc.h"
 #include "cycle/late.h"
-#include "base/limits.h"
-#include "link/link.h"
 #include "base/base.h"
-#include "link/queue.h"
 #include "boundary/show.h"
-#include "link/slots.h"
+#include "link/links.h"
 
 struct ec_api;
 struct ec_session;
@@ -30,34 +26,10 @@ struct task_struct;
 /**
  * struct ec_master - everything below one /dev/EtherCAT<n>
  * @base: number, log, immutable
- * @spec: what the module parameters name as main and backup device, immutable
  * @dev: device below the class
  * @cdev: character device
- * @max_datagrams: per acyclic frame, immutable
- * @io_timeout_us: when a frame counts as lost, immutable
+ * @links: devices, frames and bus access
  *
- * @link: main and backup
- * @capture: interface for capture programs, NULL: none; immutable while there
- *	are devices
- * @slots: frame slots
- * @io_lock: idle mode: serialises senders
- * @owner: enum ec_owner; see ec_cycle_own()
- * @cycle_busy: the cyclic caller is using the links
- * @last_send_ns: when the cycle sent last
- * @polls: receives of the cycle so far; wraps
- * @stalls: how often the cycle has stalled
- * @stalled_ns: its last send before it stalled, likewise
- * @interval_us: distance of cyclic sends, told by the application or measured
- * @interval_told: told
- * @cycle_wire_ns: wire time of a cycle: of its layout, or of the last send if
- *	that was longer
- * @late_per_s: how many cycles a second acyclic frames may make late
- * @late_next_ns: no more before that time (ktime)
- * @late_cycles: cycles they have made late since activation
- * @xq_lock: protects @xq, @cq
- * @xq: frames left by ec_xfer() for the cyclic caller
- * @cq: the same of ec_xfer_clock()
- * @share: what the cyclic caller has sent of them
  *
  * @topo: protects @slaves, @n_slaves, @scan_busy (written by the monitor only)
  *	and the PDO lists of the slaves
@@ -108,32 +80,9 @@ struct task_struct;
  */
 struct ec_master {
 	struct ec_base base[1];	/* one; used as in the layers, which have a pointer */
-	const char *spec[EC_MAX_LINKS];
 	struct device dev;
 	struct cdev cdev;
-	unsigned int max_datagrams;
-	unsigned int io_timeout_us;
-
-	struct ec_link link[EC_MAX_LINKS];
-	struct ec_capture *capture;
-	struct ec_slots slots;
-	struct rt_mutex io_lock;
-	int owner;
-	atomic_t cycle_busy;
-	aligned_u64 last_send_ns;
-	u32 polls;
-	atomic_t stalls;
-	aligned_u64 stalled_ns;
-	u32 interval_us;
-	bool interval_told;
-	u32 cycle_wire_ns;
-	u32 late_per_s;
-	u64 late_next_ns;
-	u32 late_cycles;
-	raw_spinlock_t xq_lock;
-	struct ec_queue xq;
-	struct ec_queue cq;
-	struct ec_share share;
+	struct ec_links links;
 
 	struct rw_semaphore topo;
 	struct ec_slave **slaves;
@@ -186,9 +135,6 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
 		      unsigned int debug);
 void ec_masters_destroy(void);
 
-void ec_master_link_attach(struct ec_link *link, struct ecdev *dev);
-void ec_master_link_detach(struct ec_link *link);
-void ec_master_frame(struct ec_link *link, const u8 *src, const u8 *data, size_t len);
 int ec_master_wait_scan(struct ec_master *m);
 int ec_master_wait_slaves(struct ec_master *m);
 void ec_master_wait_slave(struct ec_slave *slave);

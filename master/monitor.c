@@ -37,10 +37,10 @@ static void check_links(struct watch *w)
 	bool up = false;
 
 	for (i = 0; i < EC_MAX_LINKS; i++) {
-		bool u = ec_link_is_up(&m->link[i]);
+		bool u = ec_link_is_up(&m->links.link[i]);
 
-		if (u != m->link[i].up) {
-			WRITE_ONCE(m->link[i].up, u);
+		if (u != m->links.link[i].up) {
+			WRITE_ONCE(m->links.link[i].up, u);
 			ec_log_event(m->base, EC_LOG_ANY, 0, u ? KERN_INFO : KERN_WARNING, "%s link %s\n",
 				     i ? "backup" : "main", u ? "up" : "down");
 		}
@@ -50,7 +50,7 @@ static void check_links(struct watch *w)
 	if (now - w->rates_ns >= NSEC_PER_SEC) {
 		w->rates_ns = now;
 		for (i = 0; i < EC_MAX_LINKS; i++)
-			ec_link_rates_update(&m->link[i]);
+			ec_link_rates_update(&m->links.link[i]);
 	}
 }
 
@@ -89,7 +89,7 @@ static bool check_slaves(struct ec_master *m)
 	for (i = 0; i < m->n_slaves; i++)
 		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->slaves[i]->station,
 					    EC_REG_AL_STATUS, 6, al[i]);
-	ec_xfer(m, dg, m->n_slaves);
+	ec_xfer(&m->links, dg, m->n_slaves);
 	for (i = 0; i < m->n_slaves; i++) {
 		struct ec_slave *s = m->slaves[i];
 		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
@@ -176,7 +176,7 @@ static void count_slaves(struct watch *w)
 
 	dg.repeat = false;
 	for (try = 0; try < TRIES && w->link_up; try++) {
-		int ret = ec_xfer_urgent(m, &dg, 1);
+		int ret = ec_xfer_urgent(&m->links, &dg, 1);
 
 		if (ret == -EBUSY || ret == -ENOMEM)
 			return;		/* nothing was sent, so nothing is known */
@@ -189,8 +189,8 @@ static void count_slaves(struct watch *w)
 	}
 	WRITE_ONCE(m->slaves_responding, count);
 	WRITE_ONCE(m->al_states, al_bits(ored));
-	WRITE_ONCE(m->link[0].slaves, count);
-	WRITE_ONCE(m->link[0].al_states, al_bits(ored));
+	WRITE_ONCE(m->links.link[0].slaves, count);
+	WRITE_ONCE(m->links.link[0].al_states, al_bits(ored));
 	if (count != w->count) {
 		if (w->scanned)
 			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
@@ -253,7 +253,7 @@ static void try_again(struct watch *w)
 			ec_slave_kick(s);
 		}
 	}
-	if (!n || ec_xfer_urgent(m, dg, n))
+	if (!n || ec_xfer_urgent(&m->links, dg, n))
 		return;
 	for (i = 0; i < n; i++) {
 		if (dg[i].wkc == 1) {
@@ -302,7 +302,7 @@ static void maybe_scan(struct watch *w)
 		 * under an application, even one that has stalled */
 		smp_wmb();
 		WRITE_ONCE(m->rescan, false);
-		if (m->owner == EC_OWNER_IDLE && !READ_ONCE(m->session))
+		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->session))
 			ec_scan(m, 0, &changed);
 	}
 	if (!ec_scan(m, w->count, &changed)) {
@@ -352,8 +352,8 @@ static void nobody_there(struct ec_master *m)
 {
 	WRITE_ONCE(m->slaves_responding, 0);
 	WRITE_ONCE(m->al_states, 0);
-	WRITE_ONCE(m->link[0].slaves, 0);
-	WRITE_ONCE(m->link[0].al_states, 0);
+	WRITE_ONCE(m->links.link[0].slaves, 0);
+	WRITE_ONCE(m->links.link[0].al_states, 0);
 	if (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze))
 		return;
 	WRITE_ONCE(m->rescan, false);
@@ -371,8 +371,8 @@ static int monitor(void *data)
 		ktime_t to;
 
 		check_links(&w);
-		if (m->owner == EC_OWNER_CYCLE && ec_cycle_stalled(m))
-			ec_session_stalled(m);
+		if (m->links.access.mode == EC_ACCESS_CYCLIC && ec_access_timed_out(&m->links))
+			ec_access_timeout(&m->links);
 		if (w.link_up || m->n_slaves) {
 			count_slaves(&w);
 			try_again(&w);
@@ -410,6 +410,7 @@ int ec_monitor_start(struct ec_master *m)
 	if (IS_ERR(t))
 		return PTR_ERR(t);
 	m->monitor = t;
+	WRITE_ONCE(m->links.monitor, t);
 	return 0;
 }
 
@@ -424,6 +425,7 @@ void ec_monitor_stop(struct ec_master *m)
 	if (m->monitor)
 		kthread_stop(m->monitor);
 	m->monitor = NULL;
+	WRITE_ONCE(m->links.monitor, NULL);
 }
 
 /**

@@ -30,14 +30,14 @@ EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
 /* The queue for the cycle is not empty; what it has may be sent already. */
 static bool left(const struct ec_master *m)
 {
-	return ec_queue_frames(m);
+	return ec_queue_frames(&m->links.queues);
 }
 
 /* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
 static bool awaited(const struct ec_master *m)
 {
-	return READ_ONCE(m->link[0].acyclic.used) &&
-	       READ_ONCE(m->owner) == EC_OWNER_CYCLE;
+	return READ_ONCE(m->links.link[0].acyclic.used) &&
+	       READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC;
 }
 
 static int between(void *data)

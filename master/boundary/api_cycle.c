@@ -40,15 +40,15 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	if (!*s)
 		return -EINVAL;
 	/* without a device the links need not be had back */
-	if (!READ_ONCE(m->link[0].dev))
+	if (!READ_ONCE(m->links.link[0].dev))
 		return -ENODEV;
-	ret = ec_cycle_try_enter(m);
+	ret = ec_access_try_enter(&m->links);
 	if (ret) {
 		if (ret == -EAGAIN)
 			leave_to_work(m);
 		return ret;
 	}
-	dev = READ_ONCE(m->link[0].dev);
+	dev = READ_ONCE(m->links.link[0].dev);
 	if (!dev)
 		ret = -ENODEV;
 	else if (READ_ONCE(m->active) != *s)
@@ -57,7 +57,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 		ret = -EWOULDBLOCK;
 	if (!ret)
 		return 0;
-	ec_cycle_leave(m);
+	ec_access_leave(&m->links);
 	if (ret == -EWOULDBLOCK && !READ_ONCE(api->atomic)) {
 		WRITE_ONCE(api->atomic, true);
 		leave_to_work(m);
@@ -80,8 +80,8 @@ void ec_api_work(struct work_struct *work)
 	struct ec_master *m = api->file.master;
 
 	mutex_lock(&m->cyclic_lock);
-	if (m->active && m->active->owner == &api->file && READ_ONCE(m->link[0].dev))
-		ec_cycle_own(m, EC_OWNER_CYCLE);
+	if (m->active && m->active->owner == &api->file && READ_ONCE(m->links.link[0].dev))
+		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
 	mutex_unlock(&m->cyclic_lock);
 	if (READ_ONCE(api->atomic) && !api->told) {
 		api->told = true;
@@ -103,13 +103,13 @@ int ecrt_master_receive(ec_master_t *master)
 		return ret;
 	if (ec_api_is_between(master->api)) {
 		/* for those who wait; process data belong to the cycle */
-		ec_link_poll(&master->link[0]);
+		ec_link_poll(&master->links.link[0]);
 	} else {
 		master->api->received |= master->api->sent;
 		master->api->sent = 0;
 		ret = ec_cycle_do_receive(s);
 	}
-	ec_cycle_leave(master);
+	ec_access_leave(&master->links);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_receive);
@@ -127,7 +127,7 @@ int ecrt_master_send(ec_master_t *master)
 	master->api->sent |= next->queued;
 	next->queued = 0;
 	next->flags = 0;
-	ec_cycle_leave(master);
+	ec_access_leave(&master->links);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_send);
@@ -139,8 +139,8 @@ int ecrt_master_send_ext(ec_master_t *master)
 
 	if (ret)
 		return ret == -EBUSY ? -EAGAIN : ret;
-	ec_cycle_send_between(master);
-	ec_cycle_leave(master);
+	ec_share_send_between(&master->links);
+	ec_access_leave(&master->links);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_send_ext);

@@ -9,7 +9,7 @@ int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 	if (!master || !master_info)
 		return -EINVAL;
 	master_info->slave_count = READ_ONCE(master->n_slaves);
-	master_info->link_up = READ_ONCE(master->link[0].up);
+	master_info->link_up = READ_ONCE(master->links.link[0].up);
 	master_info->scan_busy = ec_master_scan_busy(master);
 	master_info->app_time = ec_read64(&master->dc.app_time);
 	return 0;
@@ -84,7 +84,7 @@ int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 		return -EINVAL;
 	state->slaves_responding = READ_ONCE(master->slaves_responding);
 	state->al_states = READ_ONCE(master->al_states) & 0xf;
-	state->link_up = READ_ONCE(master->link[0].up) || READ_ONCE(master->link[1].up);
+	state->link_up = READ_ONCE(master->links.link[0].up) || READ_ONCE(master->links.link[1].up);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_state);
@@ -94,9 +94,9 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 {
 	const struct ec_link *link;
 
-	if (!master || !state || dev_idx >= EC_MAX_LINKS || (dev_idx && !master->spec[dev_idx]))
+	if (!master || !state || dev_idx >= EC_MAX_LINKS || (dev_idx && !master->links.spec[dev_idx]))
 		return -EINVAL;
-	link = &master->link[dev_idx];
+	link = &master->links.link[dev_idx];
 	state->slaves_responding = READ_ONCE(link->slaves);
 	state->al_states = READ_ONCE(link->al_states) & 0xf;
 	state->link_up = READ_ONCE(link->up);

@@ -29,7 +29,7 @@ int ec_ioc_reserve(struct ec_file *f, void *arg)
 				 f->master->base->index, who);
 	case -ENODEV:
 		return ec_refuse(f, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
-				 f->master->base->index, f->master->spec[0]);
+				 f->master->base->index, f->master->links.spec[0]);
 	default:
 		return ret;
 	}
@@ -551,8 +551,8 @@ int ec_ioc_interval(struct ec_file *f, void *arg)
 	/* the interval is that of the session which runs */
 	if (s == f->master->heir)
 		return done(f, 0);
-	f->master->interval_us = min_t(u32, i->interval_us, EC_MAX_INTERVAL_US);
-	f->master->interval_told = i->interval_us <= EC_MAX_INTERVAL_US;
+	f->master->links.access.interval_us = min_t(u32, i->interval_us, EC_MAX_INTERVAL_US);
+	f->master->links.access.interval_set = i->interval_us <= EC_MAX_INTERVAL_US;
 	return done(f, 0);
 }
 

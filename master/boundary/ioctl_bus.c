@@ -36,7 +36,7 @@ static int reg_access(struct ec_file *f, const struct ec_ioc_reg *i, u8 cmd, u8 
 		dg.adp = s->station;
 		ec_slave_unref(s);
 	}
-	ret = ec_xfer(m, &dg, 1);
+	ret = ec_xfer(&m->links, &dg, 1);
 	switch (ret) {
 	case 0:
 		break;

@@ -81,7 +81,7 @@ static void device_info(struct ec_link *link, struct ec_ioc_device *d)
 		ether_addr_copy(d->address, dev->mac);
 		strscpy(d->name, dev->name, sizeof(d->name));
 	} else {
-		strscpy(d->name, link->master->spec[link->side] ?: "", sizeof(d->name));
+		strscpy(d->name, link->links->spec[link->side] ?: "", sizeof(d->name));
 	}
 	rcu_read_unlock();
 	d->link_up = link->up;
@@ -108,16 +108,16 @@ static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)
 	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_wire *w = READ_ONCE(s->master->dc.begun) ? &c->clocked : &c->plain;
 
-	i->cycle_interval_us = READ_ONCE(s->master->interval_us);
+	i->cycle_interval_us = READ_ONCE(s->master->links.access.interval_us);
 	i->cycle_datagrams = c->n_dgrams;
 	i->cycle_frames = w->frames;
 	i->cycle_wire_ns = w->ns;
 	i->sent_frames = READ_ONCE(c->last.frames);
 	i->sent_wire_ns = READ_ONCE(c->last.ns);
-	i->acyclic_slack_ns = ec_cycle_slack_ns(s->master);
+	i->acyclic_slack_ns = ec_access_slack_ns(&s->master->links);
 	i->acyclic_need_ns = ec_cycle_need_ns();
-	i->late_per_s = s->master->late_per_s;
-	i->late_cycles = READ_ONCE(s->master->late_cycles);
+	i->late_per_s = s->master->links.share.late_per_s;
+	i->late_cycles = READ_ONCE(s->master->links.share.late_cycles);
 }
 
 /* What the session adds. */
@@ -171,11 +171,11 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	if (m->session)
 		session_info(m->session, i);
 	ec_show_end(m);
-	i->phase = !m->link[0].dev ? EC_PHASE_WAITING :
+	i->phase = !m->links.link[0].dev ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
-	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->spec[l]); l++) {
-		device_info(&m->link[l], &i->devices[l]);
-		i->not_captured += atomic64_read(&m->link[l].stats.not_captured);
+	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->links.spec[l]); l++) {
+		device_info(&m->links.link[l], &i->devices[l]);
+		i->not_captured += atomic64_read(&m->links.link[l].stats.not_captured);
 	}
 	i->device_count = l;
 	return 0;

@@ -15,7 +15,7 @@
 int ec_al_read(struct ec_slave *slave)
 {
 	u8 b[6];
-	int ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
+	int ret = ec_xfer_fprd(&slave->master->links, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
 
 	if (!ret) {
 		WRITE_ONCE(slave->al_status, get_unaligned_le16(b));
@@ -33,7 +33,7 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 
 	put_unaligned_le16(control, b);
 	for (;;) {
-		ret = ec_xfer_fpwr(slave->master, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
+		ret = ec_xfer_fpwr(&slave->master->links, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
 		if (ret != -EIO || slave->gone)
 			return ret;
 		if (ktime_get_ns() > until_ns)

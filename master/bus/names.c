@@ -146,7 +146,7 @@ bool ec_names_pending(const struct ec_slave *s)
 	u16 index, sub;
 
 	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
-	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->master->owner) == EC_OWNER_IDLE &&
+	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->master->links.access.mode) == EC_ACCESS_DIRECT &&
 	       !ec_mbox_check(s, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
 	       next_unknown(s, &s->names, &at, &index, &sub);
 }
@@ -186,7 +186,7 @@ static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
 	int ret = 0;
 
 	while (!ret && next_unknown(s, l, &at, &index, &sub)) {
-		if (READ_ONCE(s->master->owner) != EC_OWNER_IDLE)
+		if (READ_ONCE(s->master->links.access.mode) != EC_ACCESS_DIRECT)
 			return -EAGAIN;
 		if (ktime_get_ns() > until)
 			return 0;

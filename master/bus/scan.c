@@ -37,7 +37,7 @@ struct scan {
 
 static void bwr(struct ec_master *m, u16 ado, const void *data, u16 len)
 {
-	ec_xfer_one(m, EC_CMD_BWR, 0, ado, (void *)data, len);
+	ec_xfer_one(&m->links, EC_CMD_BWR, 0, ado, (void *)data, len);
 }
 
 /* ETG.1500 start-up sequence; only when nobody is in operation */
@@ -63,7 +63,7 @@ static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 	for (i = 0; i < sc->n; i++)
 		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
 						(u8 *)&sc->regs[i] + ofs);
-	return ec_xfer(sc->m, sc->dg, sc->n);
+	return ec_xfer(&sc->m->links, sc->dg, sc->n);
 }
 
 /* Addresses of all; a slave that does not answer may be a known one that fell silent. */
@@ -132,14 +132,14 @@ static bool same_count(struct scan *sc)
 	u8 type[1] = { 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
 
-	return !ec_xfer(sc->m, &dg, 1) && dg.back == (u16)sc->n;
+	return !ec_xfer(&sc->m->links, &dg, 1) && dg.back == (u16)sc->n;
 }
 
 /* New slaves are told their address; who does not listen is left out. */
 static int write_stations(struct scan *sc, unsigned int n)
 {
 	unsigned int i;
-	int ret = ec_xfer(sc->m, sc->dg, n);
+	int ret = ec_xfer(&sc->m->links, sc->dg, n);
 
 	for (i = 0; i < n && !ret; i++) {
 		unsigned int pos = (u16)-sc->dg[i].adp;
@@ -355,7 +355,7 @@ static int read_new(struct scan *sc)
 			fresh[n++] = sc->slaves[i];
 	WRITE_ONCE(sc->m->scan_index, sc->n - n);
 	ec_scan_sii(sc->m, fresh, n, sc->fresh);
-	if (!ec_link_is_up(&sc->m->link[0])) {
+	if (!ec_link_is_up(&sc->m->links.link[0])) {
 		kvfree(fresh);
 		return -ENETDOWN;
 	}
@@ -471,7 +471,7 @@ static void publish(struct scan *sc)
 	}
 	if (lost > LOST_LINES)
 		ec_warn(m, "%u more slave(s) disconnected\n", lost - LOST_LINES);
-	if (!sc->n && n_old && m->owner != EC_OWNER_IDLE)
+	if (!sc->n && n_old && m->links.access.mode != EC_ACCESS_DIRECT)
 		ec_warn(m, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
 			div_u64(ktime_get_ns() - m->complete_ns, NSEC_PER_MSEC));
 	for (i = 0; i < n_old; i++)
@@ -493,8 +493,8 @@ static void publish(struct scan *sc)
  */
 int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
 {
-	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->owner == EC_OWNER_IDLE };
-	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->link[0].stats.tx_frames);
+	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->links.access.mode == EC_ACCESS_DIRECT };
+	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->links.link[0].stats.tx_frames);
 	unsigned int i;
 	int ret = -ENOMEM;
 
@@ -509,7 +509,7 @@ int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
 		publish(&sc);
 		*changed = sc.changed;
 		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
-		m->scan_frames = atomic64_read(&m->link[0].stats.tx_frames) - frames;
+		m->scan_frames = atomic64_read(&m->links.link[0].stats.tx_frames) - frames;
 		if (sc.changed && count)
 			ec_info(m, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
 				m->scan_us, m->scan_frames);

@@ -49,7 +49,7 @@ static void start(struct job *j)
 		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_AL_CONTROL, 2,
 						 (void *)preop);
 	}
-	ec_xfer(j->m, j->dg, n);
+	ec_xfer(&j->m->links, j->dg, n);
 }
 
 /* Look at the AL status; those that are there or have an error are done. */
@@ -60,7 +60,7 @@ static void look(struct job *j)
 	for (i = 0; i < j->n; i++)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, j->c[i].slave->station,
 					       EC_REG_AL_STATUS, 6, j->c[i].al);
-	ec_xfer(j->m, j->dg, j->n);
+	ec_xfer(&j->m->links, j->dg, j->n);
 	for (i = 0; i < j->n; i++) {
 		struct climber *c = &j->c[i];
 

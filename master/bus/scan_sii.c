@@ -206,7 +206,7 @@ static bool take(struct reader *r, u32 word)
 /* Without link no slave is to blame: the scan ends and fails as a whole. */
 static bool go_on(const struct ec_master *m)
 {
-	return !READ_ONCE(m->base->stopping) && ec_link_is_up(&m->link[0]);
+	return !READ_ONCE(m->base->stopping) && ec_link_is_up(&m->links.link[0]);
 }
 
 static void command(u8 *c, u32 word)
@@ -237,7 +237,7 @@ static void take_over(struct job *j, struct reader **who, unsigned int n)
 		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_ADDRESS, 4,
 					    (void *)nowhere);
 	}
-	ec_xfer(j->m, j->dg, dg - j->dg);
+	ec_xfer(&j->m->links, j->dg, dg - j->dg);
 }
 
 /* FPRD 0x0502 of @n readers */
@@ -249,7 +249,7 @@ static void collect(struct job *j, struct reader **who, unsigned int n)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, who[i]->len,
 					       who[i]->reg);
-	ec_xfer(j->m, j->dg, n);
+	ec_xfer(&j->m->links, j->dg, n);
 	for (i = 0; i < n; i++)
 		if (j->dg[i].err || j->dg[i].wkc != 1)
 			put_unaligned_le16(EC_EEP_BUSY, who[i]->reg);
@@ -262,13 +262,13 @@ static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
 
 	command(j->cmd[0], word);
 	if (j->broadcast) {
-		ec_xfer_one(j->m, EC_CMD_BWR, 0, EC_REG_EEP_CONTROL, j->cmd[0], 6);
+		ec_xfer_one(&j->m->links, EC_CMD_BWR, 0, EC_REG_EEP_CONTROL, j->cmd[0], 6);
 		return;
 	}
 	for (i = 0; i < n; i++)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, 6, j->cmd[0]);
-	ec_xfer(j->m, j->dg, n);
+	ec_xfer(&j->m->links, j->dg, n);
 }
 
 static void sleep_until(u64 ns)
@@ -363,13 +363,13 @@ static void start_apart(struct job *j, struct reader **who, unsigned int n)
 		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
 			j->dg[k++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 							 EC_REG_EEP_CONTROL, 2, (void *)zero);
-	ec_xfer(j->m, j->dg, k);
+	ec_xfer(&j->m->links, j->dg, k);
 	for (i = 0; i < n; i++) {
 		command(j->cmd[i], who[i]->have / 2);
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, 6, j->cmd[i]);
 	}
-	ec_xfer(j->m, j->dg, n);
+	ec_xfer(&j->m->links, j->dg, n);
 }
 
 /* Those that left the lockstep and are not done; without tries left they fail. */

@@ -91,14 +91,14 @@ int ec_dc_measure(struct ec_master *m)
  */
 static void await_time(struct ec_master *m, u64 since)
 {
-	u32 polls = READ_ONCE(m->polls);
+	u32 polls = READ_ONCE(m->links.access.polls);
 	unsigned int i;
 
 	for (i = 0; i < 500; i++) {
 		if (!READ_ONCE(m->dc.has_phase) || READ_ONCE(m->dc.stop) ||
 		    READ_ONCE(m->dc.wanted) ||
 		    (s64)(ec_read64(&m->dc.app_ktime) - since) >= 0 ||
-		    READ_ONCE(m->polls) - polls >= 3)
+		    READ_ONCE(m->links.access.polls) - polls >= 3)
 			return;
 		usleep_range(900, 1100);
 	}
@@ -116,17 +116,17 @@ static void set_state(struct ec_dc *dc, int state)
  */
 static void await_cycle(struct ec_master *m)
 {
-	u32 polls = READ_ONCE(m->polls);
+	u32 polls = READ_ONCE(m->links.access.polls);
 	struct ec_dc *dc = &m->dc;
 	unsigned int ms;
 
 	WRITE_ONCE(dc->idle, true);
 	for (ms = 0; ms < APP_WAIT_MS && !READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(m->polls) - polls < APP_CYCLES; ms++)
+	     READ_ONCE(m->links.access.polls) - polls < APP_CYCLES; ms++)
 		usleep_range(1000, 1100);
-	polls = READ_ONCE(m->polls);
+	polls = READ_ONCE(m->links.access.polls);
 	for (; ms < APP_WAIT_MS && READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(m->polls) - polls < APP_MEDIAN - 1; ms++)
+	     READ_ONCE(m->links.access.polls) - polls < APP_MEDIAN - 1; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(dc->idle, false);
 }

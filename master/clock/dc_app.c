@@ -30,7 +30,7 @@
 /* More than that is no lateness of a cycle, and would take SYNC to another one. */
 static s64 limit(const struct ec_master *m)
 {
-	return max_t(s64, READ_ONCE(m->interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
+	return max_t(s64, READ_ONCE(m->links.access.interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }
 
 /* It may have been told long ago; two clocks differ by less than 244 ppm. */

@@ -307,11 +307,11 @@ void ec_dc_leave_out(struct ec_dc_job *j)
  */
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms)
 {
-	u32 polls = READ_ONCE(j->m->polls);
+	u32 polls = READ_ONCE(j->m->links.access.polls);
 	unsigned int ms;
 
 	WRITE_ONCE(j->m->dc.running, j->running);
-	for (ms = 0; ms < limit_ms && READ_ONCE(j->m->polls) - polls < cycles; ms++)
+	for (ms = 0; ms < limit_ms && READ_ONCE(j->m->links.access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(j->m->dc.running, false);
 }
@@ -331,7 +331,7 @@ static int once(struct ec_dc_job *j, unsigned int n)
 
 	for (i = 0; i < n; i++)
 		j->dg[i].repeat = false;
-	return ec_xfer_clock(j->m, j->dg, n);
+	return ec_xfer_clock(&j->m->links, j->dg, n);
 }
 
 /**

@@ -84,7 +84,7 @@ static int write_values(struct ec_dc_job *j, struct values *v)
 			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, j->slaves[i]->station,
 							 EC_REG_DC_DELAY, 4, v[i].delay);
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	ret = ec_xfer_clock(j->m, j->dg, n);
+	ret = ec_xfer_clock(&j->m->links, j->dg, n);
 	ret = ret ?: ec_dc_answers(j, 0, EC_DC_NEW_WIDE);
 	ret = ret ?: ec_dc_answers(j, wide, EC_DC_NEW_NARROW);
 	for (i = 0, n = narrow; i < j->n && !ret; i++) {
@@ -110,14 +110,14 @@ static int reset_filters(struct ec_dc_job *j)
 			EC_DG(EC_CMD_BWR, 0, EC_REG_DC_SPEED_START, 2, reset),
 		};
 
-		ret = ec_xfer_clock(j->m, all, ARRAY_SIZE(all));
+		ret = ec_xfer_clock(&j->m->links, all, ARRAY_SIZE(all));
 		if (!ret && all[0].wkc >= clocks && all[1].wkc >= clocks)
 			return 0;
 	}
 	n = ec_dc_add(j, 0, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0);
 	/* a scan may have taken a slave out of the group meanwhile */
 	end = ec_dc_add(j, n, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
-	ret = ec_xfer_clock(j->m, j->dg, end);
+	ret = ec_xfer_clock(&j->m->links, j->dg, end);
 	return ret ?: ec_dc_answers(j, 0, EC_DC_NEW) ?: ec_dc_answers(j, n, EC_DC_NEW);
 }
 
@@ -157,7 +157,7 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 {
 	static u8 none[EC_DGRAM_DATA_MAX];
 	u16 bytes = READ_ONCE(j->m->dc.ref_wide) ? 8 : 4, ref = READ_ONCE(j->m->dc.ref_station);
-	u16 room = ec_share_clock_bytes(j->m), pad;
+	u16 room = ec_share_clock_bytes(&j->m->links), pad;
 	unsigned int syncs = min(max(1u, room / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
 	unsigned int end = n + syncs;
 
@@ -174,7 +174,7 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 /* clock frames that one send may carry */
 static unsigned int per_send(const struct ec_dc_job *j)
 {
-	return max(1u, READ_ONCE(j->m->interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+	return max(1u, READ_ONCE(j->m->links.access.interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
 }
 
 /*
@@ -246,7 +246,7 @@ static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
 	if (canceled(&j->m->dc))
 		return -ECANCELED;
 	n = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
-	ret = ec_xfer_clock(j->m, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+	ret = ec_xfer_clock(&j->m->links, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
 						   4, v[0], sizeof(v[0])));
 	*max = worst(j, n, v);
 	return tolerate(ret);
@@ -311,7 +311,7 @@ static int compensate(struct ec_dc_job *j, unsigned int n)
 {
 	if (canceled(&j->m->dc))
 		return -ECANCELED;
-	return tolerate(ec_xfer_clock(j->m, j->dg, n));
+	return tolerate(ec_xfer_clock(&j->m->links, j->dg, n));
 }
 
 /* What little rate the frames behind the first one learn is noise, the more the closer. */
@@ -338,7 +338,7 @@ static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
  */
 void ec_dc_settle(struct ec_dc_job *j)
 {
-	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->m->interval_us)));
+	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->m->links.access.interval_us)));
 	struct ec_dc *dc = &j->m->dc;
 	int ret = 0;
 
@@ -367,7 +367,7 @@ int ec_dc_check(struct ec_dc_job *j)
 	if (!v)
 		return -ENOMEM;
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	ret = ec_xfer_clock(j->m, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+	ret = ec_xfer_clock(&j->m->links, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
 						   4, v[0], sizeof(v[0])));
 	/* one that is silent now was set before */
 	if (!ret)

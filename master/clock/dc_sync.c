@@ -84,7 +84,7 @@ int ec_dc_sync_stop(struct ec_slave *s)
 
 	WRITE_ONCE(s->sync_free, false);
 	s->sync_due_ns = 0;
-	return ec_xfer_fpwr(s->master, s->station, EC_REG_DC_CUC, off, sizeof(off));
+	return ec_xfer_fpwr(&s->master->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
 }
 
 /**
@@ -122,7 +122,7 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 
 	put_unaligned_le32(c->dc_cycle[0], cycles);
 	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
-	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(&s->master->links, dg, ARRAY_SIZE(dg));
 	if (ret)
 		return ret;
 	*at_ns = dg[2].sent_ns;
@@ -159,7 +159,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
 	/* the second half alone would start it at whatever time is there */
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].repeat = false;
-	ret = ec_xfer_all(s->master, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(&s->master->links, dg, ARRAY_SIZE(dg));
 	if (ret || !(c->dc_assign & RUN))
 		return ret;
 	ahead = first - get_unaligned_le64(t);
@@ -177,7 +177,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
-	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->master->interval_us) * NSEC_PER_USEC;
+	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->master->links.access.interval_us) * NSEC_PER_USEC;
 	s64 most = HALF32_NS - period - LEAD_NS;
 
 	if (ec_slave_features(s) & EC_FEAT_DC64)
@@ -321,7 +321,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
-		ret = ret ?: ec_xfer_fprd(s->master, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		ret = ret ?: ec_xfer_fprd(&s->master->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
 		if (ret && (ret != -EIO || known))
 			return ret;
 		if (!missing(c, status[0]))

@@ -156,7 +156,7 @@ static void watch(struct work_struct *work)
 		goto out;
 	do {
 		at = collect(m, b, at);
-		ec_xfer(m, b->dg, b->n);
+		ec_xfer(&m->links, b->dg, b->n);
 		for (i = 0; i < b->n; i++) {
 			if (!b->dg[i].err && b->dg[i].wkc == 1) {
 				worth |= try && worth_try(b->slaves[i]);

@@ -21,7 +21,7 @@
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 {
-	return ec_xfer_fpwr(s->master, s->station, ado, data, len);
+	return ec_xfer_fpwr(&s->master->links, s->station, ado, data, len);
 }
 
 static int failed(struct ec_slave *s, u8 state, int ret)
@@ -415,7 +415,7 @@ static int wait_outputs(struct ec_slave *s)
 	if (!s->plan)
 		return 0;
 	cycles = cycles_twice(s->plan);
-	limit = 5000 + div_u64((u64)cycles * s->master->interval_us, 500);
+	limit = 5000 + div_u64((u64)cycles * s->master->links.access.interval_us, 500);
 	from = ec_read64(&s->plan->session->cycle.cycles);
 	for (i = 0; i < limit; i++) {
 		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)

@@ -60,13 +60,13 @@ static size_t no_link(struct ec_master *m, char *buf, size_t size)
 	bool dev = false;
 
 	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (READ_ONCE(m->link[i].up))
+		if (READ_ONCE(m->links.link[i].up))
 			return 0;
-		dev |= READ_ONCE(m->link[i].dev) != NULL;
+		dev |= READ_ONCE(m->links.link[i].dev) != NULL;
 	}
 	if (!dev)
 		return scnprintf(buf, size, "no network device: master %u waits for %s", m->base->index,
-				 m->spec[0]);
+				 m->links.spec[0]);
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
 			 m->base->index);
 }
@@ -120,7 +120,7 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 	if (want != EC_AL_OP)
 		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
-	if (s->master->owner == EC_OWNER_IDLE)
+	if (s->master->links.access.mode == EC_ACCESS_DIRECT)
 		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
 	if (doing)
 		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,

@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/*
- * Who owns the links, and the cyclic exchange of an activated session.
- *
- * IDLE: whoever calls ec_xfer() sends at once, under io_lock. CYCLE: only the
- * cyclic caller sends and polls, the others leave their frames in a queue.
- * When the cyclic caller stalls, the monitor takes the links back.
- */
+/* The cyclic exchange of an activated session. */
 #ifndef EC_CYCLE_H
 #define EC_CYCLE_H
 
@@ -18,11 +12,6 @@ struct ec_ioc_send;
 struct ec_master;
 struct ec_session;
 struct ec_slot;
-
-enum ec_owner {
-	EC_OWNER_IDLE,
-	EC_OWNER_CYCLE,
-};
 
 /**
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use
@@ -232,47 +221,6 @@ struct ec_cycle {
 	bool dc_hold;
 	u64 dc_skip;
 };
-
-/**
- * struct ec_cycle_wait - what somebody who waits for acyclic frames remembers
- * @clock: they are of ec_xfer_clock()
- * @owner: of the links when the wait began
- * @turns: cycles of the time limit
- * @began_ns: when that was (ktime)
- * @timeout_us: how long it lasts once they have left
- * @turn_ns: until when they may be in the queue (ktime)
- * @polls: receives of the cycle when the frames were handed over
- */
-struct ec_cycle_wait {
-	bool clock;
-	enum ec_owner owner;
-	u32 turns;
-	u64 began_ns;
-	u64 turn_ns;
-	u32 timeout_us;
-	u32 polls;
-};
-
-int ec_cycle_submit(struct ec_master *m, struct ec_slot *slot, bool urgent);
-void ec_cycle_wait_begin(const struct ec_master *m, struct ec_cycle_wait *w);
-bool ec_cycle_wait_turn(struct ec_master *m, const struct ec_cycle_wait *w);
-bool ec_cycle_wait_more(struct ec_master *m, const struct ec_cycle_wait *w);
-void ec_cycle_look(struct ec_master *m);
-bool ec_cycle_own(struct ec_master *m, enum ec_owner owner);
-bool ec_cycle_stalled(struct ec_master *m);
-
-/* for the cyclic caller */
-void ec_cycle_enter(struct ec_master *m);
-int ec_cycle_try_enter(struct ec_master *m);
-void ec_cycle_leave(struct ec_master *m);
-int ec_cycle_transmit(struct ec_master *m, struct ec_slot *slot, u64 now);
-void ec_cycle_send_left(struct ec_master *m, u32 wire_ns);
-void ec_cycle_send_between(struct ec_master *m);
-
-/* acyclic frames beside it */
-#define EC_ROOM_MIN	32	/* data bytes of a minimum Ethernet frame */
-u32 ec_cycle_slack_ns(const struct ec_master *m);
-u16 ec_cycle_room(const struct ec_master *m);
 
 /* layout.c */
 int ec_cycle_layout(struct ec_session *s);

@@ -269,7 +269,7 @@ static void adopt(struct ec_cycle_thread *t)
 static void tell_device(const struct ec_session *s)
 {
 	u32 *no_device = &s->shared->status->no_device;
-	bool gone = !READ_ONCE(s->master->link[0].dev);
+	bool gone = !READ_ONCE(s->master->links.link[0].dev);
 
 	if (unlikely(*no_device != gone))
 		WRITE_ONCE(*no_device, gone);
@@ -373,7 +373,7 @@ static bool cycle(struct ec_cycle_thread *t)
 		ec_requests_notice(s->requests);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		if (!ec_cycle_send(s, &send))
-			ec_late_count(s, m->last_send_ns - due);
+			ec_late_count(s, m->links.access.last_send_ns - due);
 	}
 	publish(t);
 	ec_late_work(s, ktime_get_ns() - now);
@@ -551,8 +551,8 @@ void ec_cycle_thread_start(struct ec_session *s)
 	if (!s->thread)
 		return;
 	ec_cycle_sched_log(s);
-	m->interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
-	m->interval_told = true;
+	m->links.access.interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
+	m->links.access.interval_set = true;
 	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
 	ec_write64(&m->kernel_cycle, 0);

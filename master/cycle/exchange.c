@@ -213,25 +213,25 @@ int ec_cycle_do_receive(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 	struct ec_cycle *c = &s->cycle;
-	u64 now, limit = (u64)m->io_timeout_us * NSEC_PER_USEC;
+	u64 now, limit = (u64)m->links.io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
 
-	if (!READ_ONCE(m->link[0].dev))
+	if (!READ_ONCE(m->links.link[0].dev))
 		return -ENODEV;
-	ec_link_poll(&m->link[0]);
-	WRITE_ONCE(m->polls, m->polls + 1);
+	ec_link_poll(&m->links.link[0]);
+	WRITE_ONCE(m->links.access.polls, m->links.access.polls + 1);
 	now = ktime_get_ns();
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];
 
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
-				atomic64_inc(&m->link[0].stats.late);
+				atomic64_inc(&m->links.link[0].stats.late);
 			take_frame(s, f);
-			ec_slot_put(&m->slots, f->slot);
+			ec_slot_put(&m->links.slots, f->slot);
 		} else if (f->missed && now - f->slot->sent_ns > limit &&
 			   ec_slot_cancel(f->slot, now)) {
-			atomic64_inc(&m->link[0].stats.lost);
+			atomic64_inc(&m->links.link[0].stats.lost);
 		} else {
 			/* the machine may have stood still: looked for twice at least */
 			f->missed = true;
@@ -259,11 +259,11 @@ int ec_cycle_receive(struct ec_session *s)
 {
 	int ret;
 
-	if (!READ_ONCE(s->master->link[0].dev))
+	if (!READ_ONCE(s->master->links.link[0].dev))
 		return -ENODEV;
-	ec_cycle_enter(s->master);
+	ec_access_enter(&s->master->links);
 	ret = ec_cycle_do_receive(s);
-	ec_cycle_leave(s->master);
+	ec_access_leave(&s->master->links);
 	return ret;
 }
 
@@ -279,9 +279,9 @@ static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		atomic64_inc(&m->link[0].stats.lost);
+		atomic64_inc(&m->links.link[0].stats.lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
-		ec_slot_put(&m->slots, oldest);
+		ec_slot_put(&m->links.slots, oldest);
 	else
 		return false;	/* being copied at this moment */
 	c->n_flight--;
@@ -328,7 +328,7 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 	if (send->dc)
 		ec_dc_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
 	dc = fb.count;
-	room = max(s->master->max_datagrams, dc) - dc;
+	room = max(s->master->links.max_datagrams, dc) - dc;
 	for (; g < c->n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
@@ -355,19 +355,19 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	int ret;
 
 	if (make_room(m, c, send->now))
-		slot = ec_slot_get(&m->slots, true, send->now);
+		slot = ec_slot_get(&m->links.slots, true, send->now);
 	if (!slot) {
-		atomic64_inc(&m->link[0].stats.tx_errors);
+		atomic64_inc(&m->links.link[0].stats.tx_errors);
 		send->dc = 0;
 		return c->n_dgrams;
 	}
 	count = fill(s, slot, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_cycle_transmit(m, slot, send->now);
+	ret = ec_access_transmit(&m->links, slot, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		atomic64_inc(&m->link[0].stats.tx_errors);
+		atomic64_inc(&m->links.link[0].stats.tx_errors);
 	if (!ret)
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
@@ -375,7 +375,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 			.dc_sent = c->dc_sent,
 		};
 	else
-		ec_slot_put(&m->slots, slot);
+		ec_slot_put(&m->links.slots, slot);
 	send->dc = 0;
 	return g + count;
 }
@@ -417,11 +417,11 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!READ_ONCE(m->link[0].dev))
+	if (!READ_ONCE(m->links.link[0].dev))
 		return -ENODEV;
 	if (!s->thread)
 		ec_late_send(s, send.now);
-	ec_write64(&m->last_send_ns, send.now);
+	ec_write64(&m->links.access.last_send_ns, send.now);
 	if (s->copying)
 		ec_copies_run(s);
 	c->send++;
@@ -436,9 +436,9 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	}
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
-	WRITE_ONCE(m->cycle_wire_ns, max(send.wire.ns, wire_ns(m, c)));
-	ec_share_begin(m);
-	ec_cycle_send_left(m, send.wire.ns);
+	WRITE_ONCE(m->links.access.wire_ns, max(send.wire.ns, wire_ns(m, c)));
+	ec_share_begin(&m->links);
+	ec_share_send_left(&m->links, send.wire.ns);
 	ec_write64(&c->cycles, c->cycles + 1);
 	return 0;
 }
@@ -455,10 +455,10 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	int ret;
 
-	if (!READ_ONCE(s->master->link[0].dev))
+	if (!READ_ONCE(s->master->links.link[0].dev))
 		return -ENODEV;
-	ec_cycle_enter(s->master);
+	ec_access_enter(&s->master->links);
 	ret = ec_cycle_do_send(s, what);
-	ec_cycle_leave(s->master);
+	ec_access_leave(&s->master->links);
 	return ret;
 }

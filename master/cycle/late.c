@@ -119,7 +119,7 @@ static void measure(struct ec_master *m, struct ec_schedule *c, u64 ns)
 		return;
 	c->gaps[c->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
 	if (c->n_gaps >= GAPS_MIN && (c->n_gaps < MEASURE_SENDS || !(c->n_gaps % GAPS_MIN)))
-		WRITE_ONCE(m->interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(c),
+		WRITE_ONCE(m->links.access.interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(c),
 									   NSEC_PER_USEC)));
 }
 
@@ -154,13 +154,13 @@ static s64 go_back(struct ec_schedule *c, s64 off)
 void ec_late_send(struct ec_session *s, u64 now)
 {
 	struct ec_schedule *c = &s->cycle.schedule;
-	bool told = READ_ONCE(s->master->interval_told);
+	bool told = READ_ONCE(s->master->links.access.interval_set);
 	s64 off, step;
 
 	if (told)
-		c->interval_ns = READ_ONCE(s->master->interval_us) * (u32)NSEC_PER_USEC;
+		c->interval_ns = READ_ONCE(s->master->links.access.interval_us) * (u32)NSEC_PER_USEC;
 	else if (c->sends)
-		measure(s->master, c, now - s->master->last_send_ns);
+		measure(s->master, c, now - s->master->links.access.last_send_ns);
 	c->last_ns = now;
 	if (unlikely(c->sends < (told ? 1 : MEASURE_SENDS) || !c->interval_ns)) {
 		c->sends++;
@@ -206,7 +206,7 @@ static void describe(const struct ec_session *s, struct ec_ioc_cycle_stats *info
 
 	info->active = 1;
 	info->kind = kernel ? EC_CYCLE_BY_KERNEL : EC_CYCLE_BY_APP;
-	info->told = kernel || s->master->interval_told;
+	info->told = kernel || s->master->links.access.interval_set;
 	info->interval_ns = kernel ? s->kernel.period_ns :
 				     READ_ONCE(s->cycle.schedule.interval_ns);
 	info->cpu = kernel ? s->kernel.cpu : -1;

@@ -350,8 +350,8 @@ int ec_cycle_layout(struct ec_session *s)
 	}
 	if (!ret)
 		ret = alloc_stage(c, s);
-	c->plain = plan(c, s->master->max_datagrams, false);
-	c->clocked = plan(c, s->master->max_datagrams, true);
+	c->plain = plan(c, s->master->links.max_datagrams, false);
+	c->clocked = plan(c, s->master->links.max_datagrams, true);
 	if (!ret && c->clocked.frames > EC_MAX_CYCLE_FRAMES)
 		ret = -EOVERFLOW;
 	if (ret)
@@ -393,15 +393,15 @@ static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
 int ec_cycle_check_room(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
-	u64 interval = s->kernel.period_ns ?: m->interval_us * (u64)NSEC_PER_USEC;
+	u64 interval = s->kernel.period_ns ?: m->links.access.interval_us * (u64)NSEC_PER_USEC;
 	const struct ec_cyc_wire *w = ec_session_uses_clocks(s) ? &s->cycle.clocked :
 								  &s->cycle.plain;
 
 	s->room_told = false;
-	m->cycle_wire_ns = w->ns;
-	m->late_per_s = s->late_per_s;
-	m->late_cycles = 0;
-	if (!s->kernel.period_ns && !m->interval_told)
+	m->links.access.wire_ns = w->ns;
+	m->links.share.late_per_s = s->late_per_s;
+	m->links.share.late_cycles = 0;
+	if (!s->kernel.period_ns && !m->links.access.interval_set)
 		return 0;
 	return has_room(s, interval, w->ns) || s->late_per_s ? 0 : -ENOSPC;
 }
@@ -416,9 +416,9 @@ void ec_cycle_tell_room(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 
-	if (!s->room_told && !m->interval_told && ec_read64(&s->cycle.cycles) > MEASURED)
-		has_room(s, READ_ONCE(m->interval_us) * (u64)NSEC_PER_USEC,
-			 READ_ONCE(m->cycle_wire_ns));
+	if (!s->room_told && !m->links.access.interval_set && ec_read64(&s->cycle.cycles) > MEASURED)
+		has_room(s, READ_ONCE(m->links.access.interval_us) * (u64)NSEC_PER_USEC,
+			 READ_ONCE(m->links.access.wire_ns));
 }
 
 /* Nobody will receive what is still on its way. */
@@ -431,7 +431,7 @@ static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 
 		while (!ec_slot_cancel(slot, ktime_get_ns())) {
 			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
-				ec_slot_put(&m->slots, slot);
+				ec_slot_put(&m->links.slots, slot);
 				break;
 			}
 			/* being copied at this moment */

@@ -10,7 +10,7 @@
 #include <linux/rtnetlink.h>
 #include <linux/skbuff.h>
 #include "capture.h"
-#include "../master.h"
+#include "links.h"
 #include "../base/once64.h"
 
 bool ec_capture;
@@ -98,12 +98,12 @@ static void setup(struct net_device *nd)
 
 /**
  * ec_capture_create() - make the interface of a master, if that is asked for
- * @m: master
+ * @l: links
  *
  * Context: Process. May sleep, takes RTNL.
  * Return: 0, -ENOMEM, or -EEXIST when there is such an interface.
  */
-int ec_capture_create(struct ec_master *m)
+int ec_capture_create(struct ec_links *l)
 {
 	struct net_device *nd;
 	struct ec_capture *c;
@@ -112,7 +112,7 @@ int ec_capture_create(struct ec_master *m)
 
 	if (!ec_capture)
 		return 0;
-	snprintf(name, sizeof(name), "eccap%u", m->base->index);
+	snprintf(name, sizeof(name), "eccap%u", l->base->index);
 	nd = alloc_netdev(sizeof(*c), name, NET_NAME_ENUM, setup);
 	if (!nd)
 		return -ENOMEM;
@@ -124,23 +124,23 @@ int ec_capture_create(struct ec_master *m)
 		free_netdev(nd);
 		return ret;
 	}
-	m->capture = c;
+	l->capture = c;
 	return 0;
 }
 
 /**
  * ec_capture_destroy() - remove the interface of a master
- * @m: master, without devices
+ * @l: links, without devices
  *
  * Context: Process. May sleep, takes RTNL.
  */
-void ec_capture_destroy(struct ec_master *m)
+void ec_capture_destroy(struct ec_links *l)
 {
-	struct ec_capture *c = m->capture;
+	struct ec_capture *c = l->capture;
 
 	if (!c)
 		return;
-	m->capture = NULL;
+	l->capture = NULL;
 	/* first, as its worker may just have begun to show a frame there */
 	ec_tap_exit(&c->tap);
 	unregister_netdev(c->nd);

@@ -6,7 +6,7 @@
 #include <linux/types.h>
 #include "tap.h"
 
-struct ec_master;
+struct ec_links;
 
 /**
  * struct ec_capture - private part of the interface
@@ -21,8 +21,8 @@ struct ec_capture {
 /* the parameter; written before masters are created only */
 extern bool ec_capture;
 
-int ec_capture_create(struct ec_master *m);
-void ec_capture_destroy(struct ec_master *m);
+int ec_capture_create(struct ec_links *l);
+void ec_capture_destroy(struct ec_links *l);
 bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len);
 bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len);
 bool ec_capture_is(const struct ec_capture *c, const char *name);

@@ -6,7 +6,8 @@
 #include <linux/slab.h>
 #include "capture.h"
 #include "device.h"
-#include "../master.h"
+#include "links.h"
+#include "receive.h"
 
 /*
  * Devices and who uses them; taken before any lock of a master.
@@ -15,6 +16,7 @@
  */
 static DEFINE_MUTEX(devices_lock);
 static LIST_HEAD(devices);
+static LIST_HEAD(masters);	/* &struct ec_links, in the order of their numbers */
 
 /* Does @spec (from the module parameters) mean this device? */
 static bool spec_matches(const char *spec, const char *name, const u8 *mac)
@@ -38,16 +40,21 @@ static bool spec_matches(const char *spec, const char *name, const u8 *mac)
  */
 bool ecdev_wanted(const char *name, const u8 *mac)
 {
-	unsigned int i, side;
+	const struct ec_links *l;
+	bool wanted = false;
+	unsigned int side;
 
-	for (i = 0; i < ec_master_count(); i++)
-		if (ec_capture_is(ec_master_get(i)->capture, name))
-			return false;
-	for (i = 0; i < ec_master_count(); i++)
+	mutex_lock(&devices_lock);
+	list_for_each_entry(l, &masters, list) {
+		if (ec_capture_is(l->capture, name)) {
+			wanted = false;
+			break;
+		}
 		for (side = 0; side < EC_MAX_LINKS; side++)
-			if (spec_matches(ec_master_get(i)->spec[side], name, mac))
-				return true;
-	return false;
+			wanted |= spec_matches(l->spec[side], name, mac);
+	}
+	mutex_unlock(&devices_lock);
+	return wanted;
 }
 EXPORT_SYMBOL_GPL(ecdev_wanted);
 
@@ -61,37 +68,75 @@ EXPORT_SYMBOL_GPL(ecdev_wanted);
  */
 const char *ecdev_waiting(unsigned int *index, unsigned int *master)
 {
+	const struct ec_links *l;
 	const char *spec = NULL;
 
 	mutex_lock(&devices_lock);
-	for (; *index < ec_master_count() && !spec; (*index)++) {
-		struct ec_master *m = ec_master_get(*index);
-
-		if (m->link[0].dev)
+	list_for_each_entry(l, &masters, list) {
+		if (l->base->index < *index || l->link[0].dev)
 			continue;
-		spec = m->spec[0];
-		*master = *index;
+		spec = l->spec[0];
+		*master = l->base->index;
+		*index = l->base->index + 1;
+		break;
 	}
 	mutex_unlock(&devices_lock);
 	return spec;
 }
 EXPORT_SYMBOL_GPL(ecdev_waiting);
 
+static const char *side_name(const struct ec_link *link)
+{
+	return link->side ? "backup" : "main";
+}
+
+static void report(struct ec_link *link, bool attached)
+{
+	struct ec_links *l = link->links;
+
+	if (l->ops && l->ops->device)
+		l->ops->device(l, link, attached);
+}
+
 static void attach(struct ecdev *dev, struct ec_link *link)
 {
+	struct ec_links *l = link->links;
 	int ret;
 
+	lockdep_assert_held(&devices_lock);
 	rcu_assign_pointer(dev->link, link);
 	ret = dev->ops->start(dev->priv, dev);
 	if (ret) {
-		ec_warn(link->master, "cannot start device %s (%pe)\n", dev->name, ERR_PTR(ret));
+		ec_warn(l, "cannot start device %s (%pe)\n", dev->name, ERR_PTR(ret));
 		rcu_assign_pointer(dev->link, NULL);
 		synchronize_rcu();
 		return;
 	}
 	memset(&link->stats, 0, sizeof(link->stats));
 	memset(&link->rates, 0, sizeof(link->rates));
-	ec_master_link_attach(link, dev);
+	rt_mutex_lock(&l->access.lock);
+	WRITE_ONCE(link->dev, dev);
+	ec_link_set_places(link, ec_access_is_cyclic(&l->access));
+	rt_mutex_unlock(&l->access.lock);
+	ec_info(l, "%s device %s attached (%s, %pM)\n", side_name(link), dev->name,
+		dev->ops->kind, dev->mac);
+	report(link, true);
+}
+
+/* First no caller finds the device any more, then callers that have found it leave. */
+static void withdraw(struct ec_link *link, struct ecdev *dev)
+{
+	struct ec_links *l = link->links;
+
+	rt_mutex_lock(&l->access.lock);
+	WRITE_ONCE(link->dev, NULL);
+	WRITE_ONCE(link->up, false);
+	rt_mutex_unlock(&l->access.lock);
+	ec_access_change(l, EC_ACCESS_DIRECT);
+	if (dev->ops->cycle)
+		dev->ops->cycle(dev->priv, false);
+	report(link, false);
+	ec_info(l, "%s device %s detached\n", side_name(link), dev->name);
 }
 
 static void detach(struct ecdev *dev)
@@ -101,7 +146,7 @@ static void detach(struct ecdev *dev)
 
 	if (!link)
 		return;
-	ec_master_link_detach(link);
+	withdraw(link, dev);
 	dev->ops->stop(dev->priv);
 	rcu_assign_pointer(dev->link, NULL);
 	synchronize_rcu();
@@ -110,19 +155,48 @@ static void detach(struct ecdev *dev)
 /* Give @dev to the first master that waits for it. */
 static void match_locked(struct ecdev *dev)
 {
-	unsigned int i, side;
+	struct ec_links *l;
+	unsigned int side;
 
 	lockdep_assert_held(&devices_lock);
-	for (i = 0; i < ec_master_count(); i++) {
-		struct ec_master *m = ec_master_get(i);
-
+	list_for_each_entry(l, &masters, list)
 		for (side = 0; side < EC_MAX_LINKS; side++)
-			if (!m->link[side].dev && !m->base->stopping &&
-			    spec_matches(m->spec[side], dev->name, dev->mac)) {
-				attach(dev, &m->link[side]);
+			if (!l->link[side].dev && !READ_ONCE(l->base->stopping) &&
+			    spec_matches(l->spec[side], dev->name, dev->mac)) {
+				attach(dev, &l->link[side]);
 				return;
 			}
-	}
+}
+
+/**
+ * ec_device_register() - let a master have devices that are offered from now on
+ * @l: its links
+ *
+ * Context: Process. May sleep.
+ */
+void ec_device_register(struct ec_links *l)
+{
+	mutex_lock(&devices_lock);
+	list_add_tail(&l->list, &masters);
+	mutex_unlock(&devices_lock);
+}
+
+/**
+ * ec_device_unregister() - take all devices from a master
+ * @l: its links; it gets no more
+ *
+ * Context: Process. May sleep.
+ */
+void ec_device_unregister(struct ec_links *l)
+{
+	unsigned int i;
+
+	mutex_lock(&devices_lock);
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		if (l->link[i].dev)
+			detach(l->link[i].dev);
+	list_del_init(&l->list);
+	mutex_unlock(&devices_lock);
 }
 
 /**
@@ -202,7 +276,7 @@ void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
 	rcu_read_lock();
 	link = rcu_dereference(dev->link);
 	if (link)
-		ec_master_frame(link, src, data, len);
+		ec_receive(link, src, data, len);
 	rcu_read_unlock();
 }
 EXPORT_SYMBOL_GPL(ecdev_receive);

@@ -9,6 +9,7 @@
 #include "../devices/ecdev.h"
 
 struct ec_link;
+struct ec_links;
 
 /**
  * struct ecdev - a device a driver offers
@@ -28,6 +29,8 @@ struct ecdev {
 	struct ec_link __rcu *link;
 };
 
+void ec_device_register(struct ec_links *l);
+void ec_device_unregister(struct ec_links *l);
 void ec_device_detach(struct ec_link *link);
 
 #endif

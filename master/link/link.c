@@ -6,10 +6,25 @@
 #include <linux/string.h>
 #include "capture.h"
 #include "device.h"
-#include "link.h"
-#include "../master.h"
+#include "links.h"
 #include "pack.h"
-#include "slots.h"
+
+/**
+ * ec_link_init() - prepare a link, without device
+ * @link: zeroed structure
+ * @l: links it belongs to
+ * @side: 0 main, 1 backup
+ *
+ * Context: Any.
+ */
+void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side)
+{
+	link->links = l;
+	link->side = side;
+	ec_gate_init(&link->acyclic, EC_LINK_ACYCLIC);
+	ec_watch_init(&link->watch);
+	mutex_init(&link->ring_full);
+}
 
 /**
  * ec_link_trace() - show a frame in the kernel log, debug level 2
@@ -27,7 +42,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
 
 	if (__ratelimit(&rate))
-		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->master->base->index,
+		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->links->base->index,
 		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
 		       data);
 }
@@ -37,9 +52,9 @@ static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len
 {
 	int ret;
 
-	if (unlikely(READ_ONCE(link->master->base->debug) >= 2))
+	if (unlikely(READ_ONCE(link->links->base->debug) >= 2))
 		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
-	if (unlikely(!ec_capture_sent(link->master->capture, buf, len)))
+	if (unlikely(!ec_capture_sent(link->links->capture, buf, len)))
 		atomic64_inc(&link->stats.not_captured);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {
@@ -93,7 +108,7 @@ int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns)
 	size_t len = 0;
 
 	if (buf)
-		len = ec_pack_write(&link->master->slots, p, buf, sent_ns);
+		len = ec_pack_write(&link->links->slots, p, buf, sent_ns);
 	ec_pack_release(p);
 	if (!buf)
 		return dev ? -EBUSY : -ENODEV;
@@ -107,14 +122,14 @@ int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns)
  *
  * Without a cycle buffers of the device are left for the monitor.
  *
- * Context: Process, with the io_lock of the master held.
+ * Context: Process, with the access lock held.
  */
 void ec_link_set_places(struct ec_link *link, bool cycle)
 {
 	const struct ecdev *dev = link->dev;
 	unsigned int n = dev && dev->ops->burst ? dev->ops->burst : EC_LINK_ACYCLIC;
 
-	lockdep_assert_held(&link->master->io_lock);
+	lockdep_assert_held(&link->links->access.lock);
 	ec_gate_set_limit(&link->acyclic, cycle ? EC_LINK_QUEUED :
 			  min_t(unsigned int, n, EC_LINK_ACYCLIC));
 }

@@ -11,7 +11,7 @@
 #include "watch.h"
 
 struct ecdev;
-struct ec_master;
+struct ec_links;
 struct ec_pack;
 struct ec_slot;
 
@@ -47,9 +47,9 @@ struct ec_link_rates {
 
 /**
  * struct ec_link - port to the wire
- * @master: immutable
+ * @links: it belongs to, immutable
  * @side: 0 main, 1 backup, immutable
- * @dev: attached device or NULL; changes under master->io_lock. Used by the
+ * @dev: attached device or NULL; changes under the access lock. Used by the
  *	owner of the link; others only in an RCU read section
  * @acyclic: places for acyclic frames on their way, also those in the queue
  * @acyclic_ns: wire time of these frames
@@ -62,7 +62,7 @@ struct ec_link_rates {
  * @rates: averages
  */
 struct ec_link {
-	struct ec_master *master;
+	struct ec_links *links;
 	u8 side;
 	struct ecdev *dev;
 	struct ec_gate acyclic;
@@ -76,6 +76,7 @@ struct ec_link {
 	struct ec_link_rates rates;
 };
 
+void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side);
 void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 int ec_link_send(struct ec_link *link, struct ec_slot *slot);
 int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns);

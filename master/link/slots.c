@@ -144,6 +144,19 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 }
 
 /**
+ * ec_slot_disarm() - take back a frame that was armed and not sent
+ * @slot: slot
+ * @now_ns: time
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_disarm(struct ec_slot *slot, u64 now_ns)
+{
+	if (ec_slot_cancel(slot, now_ns))
+		atomic_set_release(&slot->state, EC_SLOT_BUILD);
+}
+
+/**
  * ec_slot_arm() - write the Ethernet header and expect the reply from now on
  * @s: slots
  * @slot: in state BUILD, datagrams complete, @eth_len set

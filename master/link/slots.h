@@ -116,6 +116,7 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
+void ec_slot_disarm(struct ec_slot *slot, u64 now_ns);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns);
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 			     size_t len, struct ec_matched *got);

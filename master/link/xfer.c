@@ -3,8 +3,8 @@
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
 #include <linux/slab.h>
-#include "../cycle/cycle.h"
-#include "../master.h"
+#include "links.h"
+#include "submit.h"
 #include "xfer.h"
 
 #define TRIES	4	/* of a repeatable datagram */
@@ -29,7 +29,7 @@ struct batch_frame {
  */
 struct half {
 	struct ec_xfer x;
-	struct ec_cycle_wait wait;
+	struct ec_submit_wait wait;
 	bool urgent;
 	bool clock;
 	bool alone;	/* frames share none with those of other callers */
@@ -52,18 +52,18 @@ void ec_xfer_done(struct ec_xfer *x)
 }
 
 /* pack datagrams from @first on; datagrams already answered are left out */
-static void build(struct ec_master *m, const struct half *h, struct batch_frame *bf,
+static void build(struct ec_links *l, const struct half *h, struct batch_frame *bf,
 		  struct ec_dg *dg, unsigned int first, unsigned int n)
 {
 	struct ec_slot *slot = bf->slot;
-	unsigned int most = slot->clock ? EC_CLOCK_DATAGRAMS : m->max_datagrams, i;
+	unsigned int most = slot->clock ? EC_CLOCK_DATAGRAMS : l->max_datagrams, i;
 	/* a frame that fits before the next cycle, but at least the first datagram */
-	u16 room = EC_DGRAM_OVERHEAD + max(ec_cycle_room(m), dg[first].len);
+	u16 room = EC_DGRAM_OVERHEAD + max(ec_access_room(l), dg[first].len);
 	struct ec_frame_buf fb;
 
 	/* clock frames are as long as their share, so that as many may leave as shall */
 	if (slot->clock)
-		room = clamp_t(u16, ec_share_clock_bytes(m), EC_DGRAM_OVERHEAD + dg[first].len,
+		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + dg[first].len,
 			       room);
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + room);
 	for (i = first; i < n && fb.count < most; i++) {
@@ -117,22 +117,22 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 }
 
 /* Tools must not hold up the monitor, which looks after the application and the link. */
-static bool is_monitor(const struct ec_master *m)
+static bool is_monitor(const struct ec_links *l)
 {
-	return current == READ_ONCE(m->monitor);
+	return current == READ_ONCE(l->monitor);
 }
 
 /*
  * A place among the acyclic frames of the link; with @wait it is waited for. A link that
  * goes down gives all places back soon. The monitor may have one frame without a place.
  */
-static int take_place(struct ec_master *m, bool wait, bool *placed)
+static int take_place(struct ec_links *l, bool wait, bool *placed)
 {
-	struct ec_gate *gate = &m->link[0].acyclic;
+	struct ec_gate *gate = &l->link[0].acyclic;
 	int ret;
 
 	*placed = ec_gate_try(gate);
-	if (*placed || (wait && is_monitor(m)))
+	if (*placed || (wait && is_monitor(l)))
 		return 0;
 	ret = wait ? ec_gate_enter(gate, PLACE_WAIT_MS) : -EBUSY;
 	*placed = !ret;
@@ -140,20 +140,20 @@ static int take_place(struct ec_master *m, bool wait, bool *placed)
 }
 
 /* A place and a slot for it. */
-static struct ec_slot *get_slot(struct ec_master *m, struct half *h, struct batch_frame *f,
+static struct ec_slot *get_slot(struct ec_links *l, struct half *h, struct batch_frame *f,
 				bool wait)
 {
 	struct ec_slot *slot;
 
 	f->placed = false;
-	h->err = h->urgent ? 0 : take_place(m, wait, &f->placed);
+	h->err = h->urgent ? 0 : take_place(l, wait, &f->placed);
 	h->stop = wait;
 	if (h->err)
 		return NULL;
 	if (wait && !h->urgent)
-		slot = ec_slot_wait(&m->slots);
+		slot = ec_slot_wait(&l->slots);
 	else
-		slot = ec_slot_get(&m->slots, h->urgent, ktime_get_ns());
+		slot = ec_slot_get(&l->slots, h->urgent, ktime_get_ns());
 	if (slot) {
 		h->stop = false;
 		return slot;
@@ -161,31 +161,31 @@ static struct ec_slot *get_slot(struct ec_master *m, struct half *h, struct batc
 	h->err = -EBUSY;
 	h->stop |= h->urgent;
 	if (f->placed)
-		ec_gate_leave(&m->link[0].acyclic);
+		ec_gate_leave(&l->link[0].acyclic);
 	return NULL;
 }
 
-static void put_slot(struct ec_master *m, const struct batch_frame *f)
+static void put_slot(struct ec_links *l, const struct batch_frame *f)
 {
 	/* the slot of a cancelled frame may be in use by another already */
 	if (!f->cancelled)
-		ec_slot_put(&m->slots, f->slot);
+		ec_slot_put(&l->slots, f->slot);
 	if (f->placed)
-		ec_gate_leave(&m->link[0].acyclic);
+		ec_gate_leave(&l->link[0].acyclic);
 	if (f->wire_ns)
-		atomic_sub(f->wire_ns, &m->link[0].acyclic_ns);
+		atomic_sub(f->wire_ns, &l->link[0].acyclic_ns);
 }
 
 /* Try until there is room in the transmit ring, or @until. */
-static int submit_until(struct ec_master *m, struct ec_slot *slot, bool urgent, u64 until)
+static int submit_until(struct ec_links *l, struct ec_slot *slot, bool urgent, u64 until)
 {
 	int ret;
 
-	while ((ret = ec_cycle_submit(m, slot, urgent)) == -EBUSY) {
+	while ((ret = ec_submit(l, slot, urgent)) == -EBUSY) {
 		if (fatal_signal_pending(current))
 			return -EINTR;
 		if (ktime_get_ns() > until) {
-			atomic64_inc(&m->link[0].stats.tx_errors);
+			atomic64_inc(&l->link[0].stats.tx_errors);
 			break;
 		}
 		usleep_range(100, 200);
@@ -194,45 +194,45 @@ static int submit_until(struct ec_master *m, struct ec_slot *slot, bool urgent, 
 }
 
 /* A full transmit ring is no error: the frame waits; one caller tries for all others. */
-static int submit_later(struct ec_master *m, struct ec_slot *slot, bool urgent)
+static int submit_later(struct ec_links *l, struct ec_slot *slot, bool urgent)
 {
 	u64 until = ktime_get_ns() + RING_WAIT_NS;
 	int ret;
 
-	if (urgent || is_monitor(m))
-		return submit_until(m, slot, urgent, until);
-	if (mutex_lock_killable(&m->link[0].ring_full))
+	if (urgent || is_monitor(l))
+		return submit_until(l, slot, urgent, until);
+	if (mutex_lock_killable(&l->link[0].ring_full))
 		return -EINTR;
-	ret = submit_until(m, slot, urgent, until);
-	mutex_unlock(&m->link[0].ring_full);
+	ret = submit_until(l, slot, urgent, until);
+	mutex_unlock(&l->link[0].ring_full);
 	return ret;
 }
 
-static void submit(struct ec_master *m, const struct half *h, struct batch_frame *f)
+static void submit(struct ec_links *l, const struct half *h, struct batch_frame *f)
 {
 	f->cancelled = false;
 	f->wire_ns = 0;
-	f->err = ec_cycle_submit(m, f->slot, h->urgent);
+	f->err = ec_submit(l, f->slot, h->urgent);
 	if (f->err == -EBUSY)
-		f->err = submit_later(m, f->slot, h->urgent);
+		f->err = submit_later(l, f->slot, h->urgent);
 	if (f->err)
 		return;
 	f->wire_ns = ec_frame_wire_ns(f->slot->eth_len);
-	atomic_add(f->wire_ns, &m->link[0].acyclic_ns);
+	atomic_add(f->wire_ns, &l->link[0].acyclic_ns);
 }
 
 /*
  * Send half a window of frames from datagram @first on; with @wait a slot is
  * waited for. Returns the first datagram that is left.
  */
-static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg *dg,
+static unsigned int send_half(struct ec_links *l, struct half *h, struct ec_dg *dg,
 			      unsigned int first, unsigned int n, bool wait)
 {
 	unsigned int window = h->clock ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
 
 	init_completion(&h->x.done);
 	atomic_set(&h->x.pending, 1);
-	h->wait.polls = READ_ONCE(m->polls);
+	h->wait.polls = READ_ONCE(l->access.polls);
 	h->stop = false;
 	for (h->frames = 0; h->frames < window / 2; h->frames++) {
 		struct batch_frame *f = &h->f[h->frames];
@@ -241,15 +241,15 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 			first++;
 		if (first >= n)
 			break;
-		f->slot = get_slot(m, h, f, wait && !h->frames);
+		f->slot = get_slot(l, h, f, wait && !h->frames);
 		if (!f->slot)
 			break;
 		f->slot->clock = h->clock;
-		build(m, h, f, dg, first, n);
+		build(l, h, f, dg, first, n);
 		first += f->count;
 		f->slot->xfer = &h->x;
 		atomic_inc(&h->x.pending);
-		submit(m, h, f);
+		submit(l, h, f);
 		if (!f->err)
 			continue;
 		ec_xfer_done(&h->x);
@@ -263,9 +263,9 @@ static unsigned int send_half(struct ec_master *m, struct half *h, struct ec_dg 
 }
 
 /* Nobody waits for the frames of a half any longer: the time limit is over, or the link down. */
-static void give_up(struct ec_master *m, struct half *h)
+static void give_up(struct ec_links *l, struct half *h)
 {
-	bool up = ec_link_is_up(&m->link[0]);
+	bool up = ec_link_is_up(&l->link[0]);
 	unsigned int i;
 
 	for (i = 0; i < h->frames; i++) {
@@ -280,7 +280,7 @@ static void give_up(struct ec_master *m, struct half *h)
 		if (!f->cancelled)
 			continue;
 		if (ec_slot_leads(f->slot))
-			atomic64_inc(&m->link[0].stats.lost);
+			atomic64_inc(&l->link[0].stats.lost);
 		f->err = up ? -ETIMEDOUT : -ENETDOWN;
 		ec_xfer_done(&h->x);
 	}
@@ -301,17 +301,17 @@ static bool in_queue(const struct half *h)
 }
 
 /* The time limit begins when the last frame has left, or cannot leave any more. */
-static bool wait_watched(struct ec_master *m, struct half *h, const struct ec_watcher *me)
+static bool wait_watched(struct ec_links *l, struct half *h, const struct ec_watcher *me)
 {
-	struct ec_link *link = &m->link[0];
+	struct ec_link *link = &l->link[0];
 	unsigned long until;
 	long left;
 
-	while (in_queue(h) && ec_cycle_wait_turn(m, &h->wait)) {
+	while (in_queue(h) && ec_submit_wait_turn(l, &h->wait)) {
 		if (ec_watch_wait(&link->watch, me, &h->x.done, ~0u))
 			return true;
 		h->wait.began_ns = ktime_get_ns();
-		h->wait.polls = READ_ONCE(m->polls);
+		h->wait.polls = READ_ONCE(l->access.polls);
 	}
 	until = jiffies + usecs_to_jiffies(h->wait.timeout_us) + 1;
 	while ((left = until - jiffies) > 0 && ec_link_is_up(link))
@@ -320,15 +320,15 @@ static bool wait_watched(struct ec_master *m, struct half *h, const struct ec_wa
 	return try_wait_for_completion(&h->x.done);
 }
 
-static bool wait_once(struct ec_master *m, struct half *h)
+static bool wait_once(struct ec_links *l, struct half *h)
 {
 	struct ec_watcher me;
 	bool done;
 
-	ec_cycle_wait_begin(m, &h->wait);
-	ec_watch_begin(&m->link[0].watch, &me);
-	done = wait_watched(m, h, &me);
-	ec_watch_end(&m->link[0].watch, &me);
+	ec_submit_wait_begin(l, &h->wait);
+	ec_watch_begin(&l->link[0].watch, &me);
+	done = wait_watched(l, h, &me);
+	ec_watch_end(&l->link[0].watch, &me);
 	return done;
 }
 
@@ -336,38 +336,38 @@ static bool wait_once(struct ec_master *m, struct half *h)
  * Are all frames of a half back? Only the time in which they could have come
  * back counts.
  */
-static bool wait_half(struct ec_master *m, struct half *h)
+static bool wait_half(struct ec_links *l, struct half *h)
 {
 	unsigned int n;
 
 	for (n = 0; n < WAITS; n++) {
-		if (wait_once(m, h))
+		if (wait_once(l, h))
 			return true;
-		if (!ec_link_is_up(&m->link[0]) || !ec_cycle_wait_more(m, &h->wait))
+		if (!ec_link_is_up(&l->link[0]) || !ec_submit_wait_more(l, &h->wait))
 			break;
 	}
-	ec_cycle_look(m);
+	ec_access_poll(l);
 	return try_wait_for_completion(&h->x.done);
 }
 
 /* Wait for the frames of a half and take their results. */
-static void finish_half(struct ec_master *m, struct half *h, struct ec_dg *dg)
+static void finish_half(struct ec_links *l, struct half *h, struct ec_dg *dg)
 {
 	unsigned int i;
 
-	if (!wait_half(m, h)) {
-		give_up(m, h);
+	if (!wait_half(l, h)) {
+		give_up(l, h);
 		wait_for_completion(&h->x.done);
 	}
 	for (i = 0; i < h->frames; i++) {
 		collect(&h->f[i], dg);
-		put_slot(m, &h->f[i]);
+		put_slot(l, &h->f[i]);
 	}
 	h->frames = 0;
 }
 
 /* All datagrams that are in progress, once. */
-static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, unsigned int n)
+static void exchange(struct ec_links *l, struct half *half, struct ec_dg *dg, unsigned int n)
 {
 	unsigned int i, first = 0, cur = 0;
 	bool stop = false;
@@ -379,9 +379,9 @@ static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, u
 		struct half *h = &half[cur], *other = &half[!cur];
 
 		if (h->frames)
-			finish_half(m, h, dg);
+			finish_half(l, h, dg);
 		if (first < n && !stop) {
-			first = send_half(m, h, dg, first, n, !other->frames);
+			first = send_half(l, h, dg, first, n, !other->frames);
 			err = h->err;
 			stop = h->stop;
 		}
@@ -395,7 +395,7 @@ static void exchange(struct ec_master *m, struct half *half, struct ec_dg *dg, u
 			dg[i].err = err;
 }
 
-static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool urgent,
+static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, bool urgent,
 		    bool clock)
 {
 	struct half *half;
@@ -419,7 +419,7 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
 		/* a datagram that a slave never forwards must not take others with it twice */
 		half[0].alone = try;
 		half[1].alone = try;
-		exchange(m, half, dg, n);
+		exchange(l, half, dg, n);
 		for (i = 0, again = 0; i < n; i++) {
 			if (dg[i].err == -ETIMEDOUT && dg[i].repeat && try < TRIES - 1) {
 				dg[i].err = -EINPROGRESS;
@@ -437,7 +437,7 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
 
 /**
  * ec_xfer() - exchange a batch of datagrams
- * @m: master
+ * @l: links
  * @dg: datagrams; results are in them
  * @n: how many; they are packed into as few frames as fit
  *
@@ -448,23 +448,23 @@ static int transfer(struct ec_master *m, struct ec_dg *dg, unsigned int n, bool 
  * the error of the first that did not; -EMSGSIZE when one fits no frame, then
  * nothing was sent.
  */
-int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
-	return transfer(m, dg, n, false, false);
+	return transfer(l, dg, n, false, false);
 }
 
 /**
  * ec_xfer_all() - exchange datagrams in each of which one slave must take part
- * @m: master
+ * @l: links
  * @dg: datagrams; results are in them
  * @n: how many
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EIO when a working counter is not 1; or as ec_xfer().
  */
-int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
-	int ret = ec_xfer(m, dg, n);
+	int ret = ec_xfer(l, dg, n);
 	unsigned int i;
 
 	for (i = 0; i < n && !ret; i++)
@@ -475,7 +475,7 @@ int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n)
 
 /**
  * ec_xfer_urgent() - exchange a few datagrams before all others
- * @m: master
+ * @l: links
  * @dg: datagrams; results are in them
  * @n: how many
  *
@@ -484,14 +484,14 @@ int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n)
  * Context: Process. Waits for bus traffic.
  * Return: as ec_xfer().
  */
-int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
-	return transfer(m, dg, n, true, false);
+	return transfer(l, dg, n, true, false);
 }
 
 /**
  * ec_xfer_clock() - exchange datagrams that set or compensate clocks
- * @m: master
+ * @l: links
  * @dg: datagrams; results are in them
  * @n: how many
  *
@@ -501,14 +501,14 @@ int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n)
  * Context: Process. Waits for bus traffic.
  * Return: as ec_xfer().
  */
-int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n)
+int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
-	return transfer(m, dg, n, false, true);
+	return transfer(l, dg, n, false, true);
 }
 
 /**
  * ec_xfer_one() - exchange one repeatable datagram
- * @m: master
+ * @l: links
  * @cmd: enum ec_cmd
  * @adp: low half of the address
  * @ado: high half of the address
@@ -518,17 +518,17 @@ int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n)
  * Context: Process. Waits for bus traffic.
  * Return: working counter, or -errno as in struct ec_dg.
  */
-int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 len)
+int ec_xfer_one(struct ec_links *l, u8 cmd, u16 adp, u16 ado, void *data, u16 len)
 {
 	struct ec_dg dg = EC_DG(cmd, adp, ado, len, data);
-	int ret = ec_xfer(m, &dg, 1);
+	int ret = ec_xfer(l, &dg, 1);
 
 	return ret ? ret : dg.wkc;
 }
 
 /**
  * ec_xfer_fprd() - read registers of one slave
- * @m: master
+ * @l: links
  * @station: station address
  * @ado: register
  * @data: result
@@ -537,16 +537,16 @@ int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 l
  * Context: Process. Waits for bus traffic.
  * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
  */
-int ec_xfer_fprd(struct ec_master *m, u16 station, u16 ado, void *data, u16 len)
+int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len)
 {
-	int ret = ec_xfer_one(m, EC_CMD_FPRD, station, ado, data, len);
+	int ret = ec_xfer_one(l, EC_CMD_FPRD, station, ado, data, len);
 
 	return ret < 0 ? ret : ret == 1 ? 0 : -EIO;
 }
 
 /**
  * ec_xfer_fpwr() - write registers of one slave; may be executed twice
- * @m: master
+ * @l: links
  * @station: station address
  * @ado: register
  * @data: value
@@ -555,9 +555,9 @@ int ec_xfer_fprd(struct ec_master *m, u16 station, u16 ado, void *data, u16 len)
  * Context: Process. Waits for bus traffic.
  * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
  */
-int ec_xfer_fpwr(struct ec_master *m, u16 station, u16 ado, const void *data, u16 len)
+int ec_xfer_fpwr(struct ec_links *l, u16 station, u16 ado, const void *data, u16 len)
 {
-	int ret = ec_xfer_one(m, EC_CMD_FPWR, station, ado, (void *)data, len);
+	int ret = ec_xfer_one(l, EC_CMD_FPWR, station, ado, (void *)data, len);
 
 	return ret < 0 ? ret : ret == 1 ? 0 : -EIO;
 }

@@ -7,7 +7,7 @@
 #include <linux/types.h>
 #include "../wire/frame.h"
 
-struct ec_master;
+struct ec_links;
 
 /**
  * struct ec_dg - one datagram of a batch
@@ -50,13 +50,13 @@ struct ec_xfer {
 	struct completion done;
 };
 
-int ec_xfer(struct ec_master *m, struct ec_dg *dg, unsigned int n);
-int ec_xfer_all(struct ec_master *m, struct ec_dg *dg, unsigned int n);
-int ec_xfer_urgent(struct ec_master *m, struct ec_dg *dg, unsigned int n);
-int ec_xfer_clock(struct ec_master *m, struct ec_dg *dg, unsigned int n);
-int ec_xfer_one(struct ec_master *m, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
-int ec_xfer_fprd(struct ec_master *m, u16 station, u16 ado, void *data, u16 len);
-int ec_xfer_fpwr(struct ec_master *m, u16 station, u16 ado, const void *data, u16 len);
+int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_one(struct ec_links *l, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
+int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len);
+int ec_xfer_fpwr(struct ec_links *l, u16 station, u16 ado, const void *data, u16 len);
 void ec_xfer_done(struct ec_xfer *x);
 
 #endif

@@ -108,7 +108,7 @@ static void pause_longer(unsigned int *us)
  */
 static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 {
-	u16 room = ec_cycle_room(slave->master), at, n;
+	u16 room = ec_access_room(&slave->master->links), at, n;
 
 	for (at = 0; at < len; at += n) {
 		struct ec_dg dg;
@@ -117,7 +117,7 @@ static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 		n = min_t(u16, len - at, room);
 		dg = (struct ec_dg)EC_DG(cmd, slave->station, ado + at, n, data + at);
 		dg.repeat = at + n < len;
-		ret = ec_xfer(slave->master, &dg, 1);
+		ret = ec_xfer(&slave->master->links, &dg, 1);
 		if (ret || dg.wkc != 1)
 			return ret ?: -EIO;
 	}
@@ -127,7 +127,7 @@ static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
 static int full(struct ec_slave *slave)
 {
 	u8 status;
-	int ret = ec_xfer_fprd(slave->master, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
+	int ret = ec_xfer_fprd(&slave->master->links, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
 			       &status, 1);
 
 	return ret ? ret : !!(status & EC_SM_ST_FULL);
@@ -142,14 +142,14 @@ static int repeat_request(struct ec_slave *slave)
 	u16 ado = EC_REG_SM(1) + EC_SM_OFS_ACTIVATE;
 	unsigned int i;
 	u8 b[2];
-	int ret = ec_xfer_fprd(slave->master, slave->station, ado, b, 2);
+	int ret = ec_xfer_fprd(&slave->master->links, slave->station, ado, b, 2);
 
 	if (ret)
 		return ret;
 	b[0] ^= EC_SM_ACT_REPEAT;
-	ret = ec_xfer_fpwr(slave->master, slave->station, ado, b, 1);
+	ret = ec_xfer_fpwr(&slave->master->links, slave->station, ado, b, 1);
 	for (i = 0; i < 50 && !ret; i++) {
-		ret = ec_xfer_fprd(slave->master, slave->station, ado, b, 2);
+		ret = ec_xfer_fprd(&slave->master->links, slave->station, ado, b, 2);
 		if (!ret && !(b[0] & EC_SM_ACT_REPEAT) == !(b[1] & EC_SM_PDI_REPEAT_ACK))
 			return 0;
 		usleep_range(200, 400);
@@ -180,12 +180,12 @@ static bool is_known(struct ec_slave *slave, u8 counter)
 static bool read_at_once(const struct ec_slave *slave)
 {
 	struct ec_master *m = slave->master;
-	u32 slack = ec_cycle_slack_ns(m);
+	u32 slack = ec_access_slack_ns(&m->links);
 	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
 				  slave->info.std.tx_size);
 
 	return slave->mbox_counts && slack != ~0u &&
-	       atomic_read(&m->link[0].acyclic_ns) + ns <= slack / 2;
+	       atomic_read(&m->links.link[0].acyclic_ns) + ns <= slack / 2;
 }
 
 /*

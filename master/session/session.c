@@ -147,7 +147,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	struct ec_session *s;
 	int ret;
 
-	if (!READ_ONCE(m->link[0].dev))
+	if (!READ_ONCE(m->links.link[0].dev))
 		return -ENODEV;
 	if (taken(m))
 		return -EBUSY;
@@ -257,8 +257,8 @@ static void clear(struct ec_session *s)
 static void forget_told(struct ec_master *m)
 {
 	ec_dc_end(m);
-	m->interval_us = EC_INTERVAL_US;
-	m->interval_told = false;
+	m->links.access.interval_us = EC_INTERVAL_US;
+	m->links.access.interval_set = false;
 }
 
 /**
@@ -280,7 +280,7 @@ int ec_session_deactivate(struct ec_session *s)
 	WRITE_ONCE(m->active_owner, NULL);
 	mutex_unlock(&m->cyclic_lock);
 	ec_cycle_thread_stop(s);
-	ec_cycle_own(m, EC_OWNER_IDLE);
+	ec_access_change(&m->links, EC_ACCESS_DIRECT);
 	ec_late_end(s);
 	s->active = false;
 	s->ending = false;
@@ -293,9 +293,9 @@ int ec_session_deactivate(struct ec_session *s)
 	s->shared = NULL;
 	ec_shared_put(sh);
 	forget_told(m);
-	if ((u32)atomic_read(&m->stalls) != s->stall_log.told)
+	if ((u32)atomic_read(&m->links.access.timeouts) != s->stall_log.told)
 		ec_warn(m, "%u more cycle timeout(s) since the last message\n",
-			atomic_read(&m->stalls) - s->stall_log.told);
+			atomic_read(&m->links.access.timeouts) - s->stall_log.told);
 	ec_info(m, "session deactivated\n");
 	return 0;
 }
@@ -683,12 +683,12 @@ int ec_session_activate(struct ec_session *s)
 		s->shared->status->domains[i].expected = s->domains[i]->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->active, true);
-	s->stall_log.told = atomic_read(&m->stalls);
+	s->stall_log.told = atomic_read(&m->links.access.timeouts);
 	s->lock_told = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->thread || !(s->kernel.flags & EC_CYCLE_FLAG_WAIT))
-		ec_cycle_own(m, EC_OWNER_CYCLE);
+		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
 	mutex_lock(&m->cyclic_lock);
 	m->active = s;
 	WRITE_ONCE(m->active_owner, s->owner);

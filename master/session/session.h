@@ -55,7 +55,7 @@ struct ec_shared {
 
 /**
  * struct ec_stall_log - what the log says of stalls; under master->session_lock
- * @told: stalls the log knows of, as master->stalls counts them
+ * @told: stalls the log knows of, as master->links.access.timeouts counts them
  * @since_ns: last send before the stall the log shows
  * @next_ns: no new stall is logged before
  * @open: the log says it stalled, not yet that it goes on
@@ -167,7 +167,6 @@ void ec_session_clocks(struct ec_master *m);
 u8 ec_session_config_status(const struct ec_config *c);
 void ec_session_fill_status(struct ec_session *s);
 void ec_session_status(struct ec_master *m);
-void ec_session_stalled(struct ec_master *m);
 
 /* takeover.c */
 int ec_session_take_over(struct ec_master *m, char *why, size_t size);

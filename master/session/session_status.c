@@ -37,15 +37,15 @@ static void log_stalls(struct ec_session *s, u64 now)
 {
 	struct ec_master *m = s->master;
 	struct ec_stall_log *l = &s->stall_log;
-	bool stalled = READ_ONCE(m->owner) == EC_OWNER_IDLE;
-	u32 more = atomic_read(&m->stalls) - l->told;
+	bool stalled = READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT;
+	u32 more = atomic_read(&m->links.access.timeouts) - l->told;
 
 	if (l->open && !stalled) {
 		ec_info(m, "cycle resumed after %llu ms\n",
 			div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
-		l->since_ns = ec_read64(&m->stalled_ns);
+		l->since_ns = ec_read64(&m->links.access.timeout_ns);
 		l->next_ns = now + EC_STALL_LOG_NS;
 		l->told += more;
 		l->open = stalled;
@@ -62,12 +62,12 @@ static void status_links(struct ec_master *m, struct ec_status *st)
 {
 	unsigned int i;
 
-	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->spec[i]); i++) {
-		u32 slaves = READ_ONCE(m->link[i].slaves);
+	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->links.spec[i]); i++) {
+		u32 slaves = READ_ONCE(m->links.link[i].slaves);
 
 		WRITE_ONCE(st->links[i].slaves_responding, slaves);
 		WRITE_ONCE(st->links[i].al_states, slaves ? m->al_states : 0);
-		WRITE_ONCE(st->links[i].link_up, m->link[i].up);
+		WRITE_ONCE(st->links[i].link_up, m->links.link[i].up);
 	}
 	WRITE_ONCE(st->link_count, i);
 }
@@ -89,7 +89,7 @@ void ec_session_fill_status(struct ec_session *s)
 
 	WRITE_ONCE(st->slaves_responding, m->slaves_responding);
 	WRITE_ONCE(st->al_states, m->al_states);
-	WRITE_ONCE(st->link_up, m->link[0].up || m->link[1].up);
+	WRITE_ONCE(st->link_up, m->links.link[0].up || m->links.link[1].up);
 	status_links(m, st);
 	for (i = 0; i < s->n_configs; i++)
 		WRITE_ONCE(st->configs[i], ec_session_config_status(s->configs[i]));
@@ -119,24 +119,4 @@ void ec_session_status(struct ec_master *m)
 		ec_session_fill_status(s);
 	}
 	mutex_unlock(&m->session_lock);
-}
-
-/**
- * ec_session_stalled() - the cyclic caller has not sent for too long
- * @m: master
- *
- * The links go back to idle mode, so that mailboxes and tools work; process
- * data stop, the slaves' watchdogs take care of the outputs. The log tells it with
- * the next status.
- *
- * Context: Process. May sleep.
- */
-void ec_session_stalled(struct ec_master *m)
-{
-	u64 sent = ec_read64(&m->last_send_ns);
-
-	if (!ec_cycle_own(m, EC_OWNER_IDLE))
-		return;
-	ec_write64(&m->stalled_ns, sent);
-	atomic_inc(&m->stalls);
 }

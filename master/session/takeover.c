@@ -229,7 +229,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
 	s->late_per_s = per_s;
-	WRITE_ONCE(s->master->late_per_s, per_s);
+	WRITE_ONCE(s->master->links.share.late_per_s, per_s);
 }
 
 /**
@@ -253,7 +253,7 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 
 	if (session_differs(s, heir, &t))
 		return -EEXIST;
-	if (!heir->late_per_s && ec_cycle_slack_ns(m) < ec_cycle_need_ns())
+	if (!heir->late_per_s && ec_access_slack_ns(&m->links) < ec_cycle_need_ns())
 		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(s);
 	if (ret)

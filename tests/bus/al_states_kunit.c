@@ -180,7 +180,7 @@ static void al_cable_pulled(struct kunit *test)
 	KUNIT_EXPECT_LT(test, wait_count(b, 0), 100000ull);
 	msleep(500);
 	KUNIT_EXPECT_EQ(test, b->m->n_slaves, 0);
-	KUNIT_EXPECT_FALSE(test, b->m->link[0].up);
+	KUNIT_EXPECT_FALSE(test, b->m->links.link[0].up);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_EXPECT_LT(test, wait_count(b, N), 100000ull);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);

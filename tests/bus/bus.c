@@ -272,12 +272,12 @@ struct ec_app *bus_app(struct bus *b, const char *name)
 
 u64 bus_frames(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.tx_frames);
+	return atomic64_read(&b->m->links.link[0].stats.tx_frames);
 }
 
 u64 bus_lost(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.lost);
+	return atomic64_read(&b->m->links.link[0].stats.lost);
 }
 
 /**

@@ -509,18 +509,18 @@ static void dc_latch(struct kunit *test)
 	station = bus_slave(b, 1)->station;
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fpwr(b->m, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fpwr(&b->m->links, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
 	at = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_LATCH, 1, 0, 0, EC_SIM_EDGE_RISING);
 	usleep_range(2000, 2001);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 5);	/* event, pin high */
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_POS, times, 16), 0);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_POS, times, 16), 0);
 	ec_sim_advance(b->sim, ktime_get_ns());
 	/* the edge was when the fault was added, by the reference clock, too */
 	off = get_unaligned_le64(times) - ec_esc_system_time(bus_esc(b, 0), at);
 	KUNIT_EXPECT_LT(test, abs(off), 5000ll);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 4);
 }
 

@@ -90,7 +90,7 @@ static u32 until_locked(struct app *a)
 static u32 phase(struct app *a, u32 slave)
 {
 	struct bus *b = a->c->b;
-	u64 sent = READ_ONCE(b->m->last_send_ns) + b->sim->route[0].step[0].pu_ns, since;
+	u64 sent = READ_ONCE(b->m->links.access.last_send_ns) + b->sim->route[0].step[0].pu_ns, since;
 	const struct ec_esc *esc = bus_esc(b, slave);
 
 	ec_sim_advance(b->sim, ktime_get_ns());

@@ -98,21 +98,21 @@ static void dc_log_interval_ignores_outliers(struct kunit *test)
 	struct ec_master *m = c->b->m;
 	u32 i;
 
-	m->interval_told = false;
+	m->links.access.interval_set = false;
 	cyc_activate(c);
 	cyc_run(c, 200);
-	KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 1000), 10);
+	KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 1000), 10);
 	for (i = 0; i < 10; i++) {
 		/* one send is 15 ms late */
 		c->next = ktime_add_ms(c->next, 15);
 		cyc_run(c, 1);
-		KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 1000), 10);
+		KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 1000), 10);
 		cyc_run(c, 50);
 	}
 	/* but it follows a cycle that has become another one */
 	c->period_ns = 4 * NSEC_PER_MSEC;
 	cyc_run(c, 20);
-	KUNIT_EXPECT_LE(test, abs((int)m->interval_us - 4000), 40);
+	KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 4000), 40);
 }
 
 /* The difference that controllers of which the rate changes have for a while. */

@@ -52,9 +52,9 @@ static u32 clock_frames(struct ec_master *m)
 	u32 i, n = 0;
 
 	for (i = 0; i < EC_SLOTS; i++) {
-		const struct ec_slot *s = &m->slots.slot[i];
+		const struct ec_slot *s = &m->links.slots.slot[i];
 
-		n += s->xfer && s->clock && s->left == s->seq && s->sent_ns >= m->last_send_ns;
+		n += s->xfer && s->clock && s->left == s->seq && s->sent_ns >= m->links.access.last_send_ns;
 	}
 	return n;
 }

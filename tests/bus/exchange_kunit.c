@@ -39,7 +39,7 @@ static struct cyc *in_op(struct kunit *test)
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.late);
+	return atomic64_read(&b->m->links.link[0].stats.late);
 }
 
 /* the @n-th frame from now on, or with 0 all of them */
@@ -59,9 +59,9 @@ static bool slots_free(struct bus *b)
 	u32 i, tries, busy;
 
 	for (tries = 0; tries < 100; tries++) {
-		busy = b->m->link[0].acyclic.used;
+		busy = b->m->links.link[0].acyclic.used;
 		for (i = 0; i < EC_SLOTS; i++) {
-			int state = atomic_read(&b->m->slots.slot[i].state);
+			int state = atomic_read(&b->m->links.slots.slot[i].state);
 
 			busy += state != EC_SLOT_FREE && state != EC_SLOT_QUARANTINE;
 		}
@@ -263,7 +263,7 @@ static void exchange_all_lost(struct kunit *test)
 	cyc_run(c, 2000);
 	/* every send found a slot */
 	KUNIT_EXPECT_GE(test, bus_frames(b) - before, 6000ull);
-	KUNIT_EXPECT_EQ(test, atomic64_read(&b->m->link[0].stats.tx_errors), 0ll);
+	KUNIT_EXPECT_EQ(test, atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ll);
 	KUNIT_EXPECT_GE(test, bus_lost(b), 5800ull);
 	KUNIT_EXPECT_GE(test, c->incomplete, 1998ull);
 	/* the slaves forget their inputs on the way back to OP */
@@ -315,7 +315,7 @@ static void exchange_device_gone(struct kunit *test)
 	struct ec_file *app = &c->b->app;
 
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
-	ec_device_detach(&c->b->m->link[0]);
+	ec_device_detach(&c->b->m->links.link[0]);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(app), -ENODEV);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 0u);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);

@@ -23,14 +23,14 @@ static void expect(struct bus *b, struct expected *e)
 {
 	struct ec_frame_buf fb;
 
-	e->slot = ec_slot_get(&b->m->slots, true, ktime_get_ns());
+	e->slot = ec_slot_get(&b->m->links.slots, true, ktime_get_ns());
 	KUNIT_ASSERT_NOT_NULL(b->test, e->slot);
 	ec_frame_begin(&fb, e->slot->frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	memset(ec_frame_add(&fb, EC_CMD_FPRD, e->slot->index, 0x1001, 0x0130, 2), 0, 2);
 	memset(ec_frame_add(&fb, EC_CMD_LRW, e->slot->index, 0x0000, 0x0001, 8), 0, 8);
 	e->len = ec_frame_end(&fb);
 	e->slot->eth_len = EC_ETH_HDR + e->len;
-	ec_slot_arm(&b->m->slots, e->slot, 0, ktime_get_ns());
+	ec_slot_arm(&b->m->links.slots, e->slot, 0, ktime_get_ns());
 	memcpy(e->src, e->slot->frame + 6, 6);
 	e->src[0] |= 2;
 	memcpy(e->reply, e->slot->frame + EC_ETH_HDR, e->len);
@@ -38,17 +38,17 @@ static void expect(struct bus *b, struct expected *e)
 
 static void give(struct bus *b, const u8 *src, const u8 *data, size_t len)
 {
-	ecdev_receive(b->m->link[0].dev, src, data, len);
+	ecdev_receive(b->m->links.link[0].dev, src, data, len);
 }
 
 static u64 unmatched(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.unmatched);
+	return atomic64_read(&b->m->links.link[0].stats.unmatched);
 }
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.late);
+	return atomic64_read(&b->m->links.link[0].stats.late);
 }
 
 static int state(const struct expected *e)
@@ -89,7 +89,7 @@ static void frame_changed(struct kunit *test)
 	KUNIT_EXPECT_GE(test, unmatched(b) + late(b) - before, refused);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	ec_slot_put(&b->m->slots, e.slot);
+	ec_slot_put(&b->m->links.slots, e.slot);
 }
 
 static void frame_truncated(struct kunit *test)
@@ -115,7 +115,7 @@ static void frame_truncated(struct kunit *test)
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 1);
-	ec_slot_put(&b->m->slots, e.slot);
+	ec_slot_put(&b->m->links.slots, e.slot);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 2);
 }
@@ -131,7 +131,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
 	msleep(50);
 	next = e;
-	ec_slot_arm(&b->m->slots, next.slot, 0, ktime_get_ns());
+	ec_slot_arm(&b->m->links.slots, next.slot, 0, ktime_get_ns());
 	memcpy(next.src, next.slot->frame + 6, 6);
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
@@ -139,7 +139,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_SENT);
 	give(b, next.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_DONE);
-	ec_slot_put(&b->m->slots, next.slot);
+	ec_slot_put(&b->m->links.slots, next.slot);
 }
 
 /* Bytes by chance, of every length, while the bus works. */
@@ -159,7 +159,7 @@ static void frame_foreign(struct kunit *test)
 		give(b, buf, buf + 6, i % 1494);
 		if (i % 100)
 			continue;
-		KUNIT_ASSERT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 1)->station, EC_REG_TYPE,
+		KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, EC_REG_TYPE,
 						   type, 2), 0);
 		KUNIT_ASSERT_MEMEQ(test, type, bus_slave(b, 1)->regs, 2);
 	}
@@ -181,7 +181,7 @@ static void read_type(struct work_struct *work)
 	struct reader *r = container_of(work, struct reader, work);
 	u8 type[2];
 
-	r->ret = ec_xfer_fprd(r->b->m, r->station, EC_REG_TYPE, type, 2);
+	r->ret = ec_xfer_fprd(&r->b->m->links, r->station, EC_REG_TYPE, type, 2);
 	WRITE_ONCE(r->done, true);
 }
 
@@ -190,7 +190,7 @@ static u32 change_slots(struct bus *b, int from, int to)
 	u32 i, n = 0;
 
 	for (i = 0; i < EC_SLOTS; i++)
-		n += atomic_cmpxchg(&b->m->slots.slot[i].state, from, to) == from;
+		n += atomic_cmpxchg(&b->m->links.slots.slot[i].state, from, to) == from;
 	return n;
 }
 
@@ -256,7 +256,7 @@ static void frame_trouble(struct kunit *test)
 		u32 k = i % N;
 
 		memset(v, 0xee, sizeof(v));
-		ret = ec_xfer_fprd(b->m, bus_slave(b, k)->station, EC_REG_TYPE, v, 4);
+		ret = ec_xfer_fprd(&b->m->links, bus_slave(b, k)->station, EC_REG_TYPE, v, 4);
 		errors += ret != 0;
 		if (!ret)
 			KUNIT_ASSERT_MEMEQ(test, v, bus_slave(b, k)->regs, 4);

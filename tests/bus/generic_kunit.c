@@ -54,12 +54,12 @@ KUNIT_ARRAY_PARAM(result, results, result_desc);
 
 static u64 sent(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.tx_frames);
+	return atomic64_read(&b->m->links.link[0].stats.tx_frames);
 }
 
 static u64 errors(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.tx_errors);
+	return atomic64_read(&b->m->links.link[0].stats.tx_errors);
 }
 
 static void expect_result(struct bus *b, struct fake *o, const struct result *r)
@@ -95,13 +95,13 @@ static void generic_result_of_a_frame(struct kunit *test)
 	o = netdev_priv(nd);
 	o->result = NETDEV_TX_OK;
 	KUNIT_ASSERT_EQ(test, register_netdev(nd), 0);
-	for (i = 0; i < 100 && !READ_ONCE(b->m->link[0].dev); i++)
+	for (i = 0; i < 100 && !READ_ONCE(b->m->links.link[0].dev); i++)
 		msleep(1);
-	KUNIT_EXPECT_NOT_NULL(test, b->m->link[0].dev);
+	KUNIT_EXPECT_NOT_NULL(test, b->m->links.link[0].dev);
 	msleep(100);
 	expect_result(b, o, test->param_value);
 	unregister_netdev(nd);
-	KUNIT_EXPECT_NULL(test, b->m->link[0].dev);
+	KUNIT_EXPECT_NULL(test, b->m->links.link[0].dev);
 	free_netdev(nd);
 }
 

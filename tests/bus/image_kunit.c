@@ -349,7 +349,7 @@ static void refused(struct kunit *test, struct cyc *c, const char *why)
 
 	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -EOVERFLOW);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, why), "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EPERM);
 	cyc_release(c);
 	bus_idle(b);

@@ -426,7 +426,7 @@ static void kapi_hardirq(struct kunit *test)
 static void kapi_needs_thread(struct kunit *test)
 {
 	struct kapp *k = start(test, 1000);
-	struct ecdev *dev = k->m->link[0].dev;
+	struct ecdev *dev = k->m->links.link[0].dev;
 	const struct ecdev_ops *ops = dev->ops;
 	struct ecdev_ops thread = *ops;
 	int ret[3];
@@ -459,7 +459,7 @@ static void kapi_stall(struct kunit *test)
 
 	kapp_op(k);
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, atomic_read(&k->m->stalls), 1);
+	KUNIT_EXPECT_EQ(test, atomic_read(&k->m->links.access.timeouts), 1);
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EAGAIN);
 	KUNIT_EXPECT_EQ(test, ecrt_master_send(k->m), -EAGAIN);
 	k->next = ktime_get();
@@ -486,7 +486,7 @@ static void kapi_device_gone(struct kunit *test)
 	u32 i;
 
 	kapp_op(k);
-	ec_device_detach(&k->m->link[0]);
+	ec_device_detach(&k->m->links.link[0]);
 	for (i = 0; i < 3; i++) {
 		kapp_wait(k);
 		KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -ENODEV);

@@ -349,14 +349,14 @@ static void takeover_late_cycles(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct ec_ioc_cycle tight = hold;
 
-	KUNIT_EXPECT_EQ(test, b->m->late_per_s, (u32)EC_LATE_PER_S);
+	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, (u32)EC_LATE_PER_S);
 	die(a);
 	a = kcyc_configure(b, hold);
 	set_late(b, 7);
-	KUNIT_EXPECT_EQ(test, b->m->late_per_s, (u32)EC_LATE_PER_S);
+	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, (u32)EC_LATE_PER_S);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
-	KUNIT_EXPECT_EQ(test, b->m->late_per_s, 7u);
+	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 7u);
 	KUNIT_EXPECT_EQ(test, b->m->session->late_per_s, 7u);
 	die(a);
 	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
@@ -372,7 +372,7 @@ static void takeover_late_cycles(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_DETACHED);
 	set_late(b, 1);
 	KUNIT_EXPECT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->late_per_s, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 1u);
 }
 
 /* Everything else than the same is refused, and what is different is told. */
@@ -464,7 +464,7 @@ static void heir_is_harmless(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &interval), -EBUSY);
 	die(a);
 	cyc_new(b, 500);
-	KUNIT_EXPECT_EQ(test, b->m->interval_us, 1000u);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
 	app_time = b->m->dc.app_time;
 	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &time), 0);
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);

@@ -147,7 +147,7 @@ static void kcyc_stall_stop(struct kunit *test)
 	cycle = kcyc_status(a)->cycle;
 	msleep(200);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->cycle, cycle);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(a->c->b->m->owner), (int)EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(a->c->b->m->links.access.mode), (int)EC_ACCESS_DIRECT);
 }
 
 /* Nobody gets the processor for 3.5 ms: three cycles are left out. */

@@ -20,9 +20,9 @@ static void life_waits_for_outputs(struct kunit *test)
 	sends = b->m->session->cycle.cycles;
 	KUNIT_EXPECT_EQ(test, sends, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
-	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->stalls), 0u);
+	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->links.access.timeouts), 0u);
 	/* meanwhile everybody may use the bus */
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->owner), (int)EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->links.access.mode), (int)EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_FALSE(test, cyc_all_op(a->c));
 	kcyc_write(a, 42);
 	kcyc_give(a);
@@ -205,7 +205,7 @@ static void life_without_device(struct kunit *test)
 
 	kcyc_wait_cycles(a, 10);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 0u);
-	ec_device_detach(&b->m->link[0]);
+	ec_device_detach(&b->m->links.link[0]);
 	cycle = kcyc_status(a)->cycle;
 	a->seen = cycle;
 	kcyc_wait_cycles(a, 500);
@@ -234,8 +234,8 @@ static int gone_tx_send(void *priv, u8 *buf, size_t len)
 	int ret = real_ops->tx_send(priv, buf, len);
 
 	/* somebody's frame is to go after those of the cycle */
-	if (!times && m->owner == EC_OWNER_CYCLE && ec_queue_frames(m)) {
-		WRITE_ONCE(m->link[0].dev, NULL);
+	if (!times && m->links.access.mode == EC_ACCESS_CYCLIC && ec_queue_frames(&m->links.queues)) {
+		WRITE_ONCE(m->links.link[0].dev, NULL);
 		times++;
 	}
 	return ret;
@@ -245,7 +245,7 @@ static void life_device_gone_in_send(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
 	struct bus *b = a->c->b;
-	struct ecdev *dev = b->m->link[0].dev;
+	struct ecdev *dev = b->m->links.link[0].dev;
 	struct ecdev_ops ops = *dev->ops;
 	u32 i;
 
@@ -260,7 +260,7 @@ static void life_device_gone_in_send(struct kunit *test)
 	dev->ops = real_ops;
 	kcyc_wait_cycles(a, 10);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
-	WRITE_ONCE(b->m->link[0].dev, dev);
+	WRITE_ONCE(b->m->links.link[0].dev, dev);
 	kcyc_until_op(a);
 }
 

@@ -37,7 +37,7 @@ static struct cyc *start(struct kunit *test, bool told)
 
 	bus_idle(b);
 	c = cyc_new(b, PERIOD_US);
-	b->m->interval_told = told;
+	b->m->links.access.interval_set = told;
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);

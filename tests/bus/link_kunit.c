@@ -48,9 +48,9 @@ static void link_full_transmit_ring_delays_only(struct kunit *test)
 	/* not everybody who waits tries for himself */
 	KUNIT_EXPECT_LT(test, slow_full(s), 20000u);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
-	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&b->m->link[0].stats.tx_errors), 0ull);
-	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
-	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->link[0].acyclic_ns), 0);
+	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ull);
+	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->links.link[0].acyclic_ns), 0);
 }
 
 /* A device that hangs ends the wait of everybody, and goes on when it does. */
@@ -70,12 +70,12 @@ static void link_hanging_device_ends_in_error(struct kunit *test)
 	msleep(3000);
 	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
 	t0 = ktime_get_ns();
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, station, 0, v, 4), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, 4), -EBUSY);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 2 * NSEC_PER_SEC);
-	KUNIT_EXPECT_GT(test, (u64)atomic64_read(&b->m->link[0].stats.tx_errors), 0ull);
+	KUNIT_EXPECT_GT(test, (u64)atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ull);
 	slow_stop(s, false);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 0)->station, 0, v, 4), 0);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 0)->station, 0, v, 4), 0);
 }
 
 /* Slaves whose frames found no room in the ring of a device that hung are tried again. */
@@ -108,7 +108,7 @@ static u64 until_link_is(struct bus *b, struct cyc *c, bool up)
 {
 	u64 t0 = ktime_get_ns();
 
-	while (READ_ONCE(b->m->link[0].up) != up) {
+	while (READ_ONCE(b->m->links.link[0].up) != up) {
 		if (ktime_get_ns() - t0 > NSEC_PER_SEC)
 			return ~0ull;
 		if (c)
@@ -197,7 +197,7 @@ static void link_loss_beside_a_cycle(struct kunit *test)
 	KUNIT_EXPECT_LT(test, us, 100000ull);
 	/* nobody waits for a frame that cannot leave */
 	cyc_run(c, 3);
-	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
 }
 
 /* a caller whose frame is on its way, and is sent again if @repeat */
@@ -217,7 +217,7 @@ static int wait_for_frame(void *arg)
 	struct ec_dg dg = EC_DG(EC_CMD_FPRD, w->station, 0, 4, v);
 
 	dg.repeat = w->repeat;
-	w->ret = ec_xfer(w->b->m, &dg, 1);
+	w->ret = ec_xfer(&w->b->m->links, &dg, 1);
 	w->end_ns = ktime_get_ns();
 	complete(&w->done);
 	return 0;
@@ -268,7 +268,7 @@ static void link_loss_ends_waiting(struct kunit *test)
 	bus_figure("link lost while frames are on their way, no cycle: callers know after %llu us",
 		   div_u64(most, NSEC_PER_USEC));
 	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
 }
 
 /* Beside a cycle: frames that were sent are waited for as long as those in the queue. */
@@ -296,7 +296,7 @@ static void loss_ends_waiting_beside(struct kunit *test, u32 period_us)
 	bus_figure("link lost while frames are on their way, cycle of %u us: callers know after %llu us",
 		   period_us, div_u64(most, NSEC_PER_USEC));
 	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
 }
 
 static void link_loss_ends_waiting_beside_a_cycle(struct kunit *test)

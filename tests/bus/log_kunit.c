@@ -149,7 +149,7 @@ static bool flapping(void *priv)
 static void log_link_flaps(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct ecdev *dev = b->m->link[0].dev;
+	struct ecdev *dev = b->m->links.link[0].dev;
 	const struct ecdev_ops *ops = dev->ops;
 	struct ecdev_ops bad = *ops;
 	u64 l0 = lines(b), n;

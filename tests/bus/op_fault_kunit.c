@@ -118,7 +118,7 @@ static void op_cable_pulled(struct kunit *test)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 100);
 	cyc_run(c, 400);
-	KUNIT_EXPECT_FALSE(test, c->b->m->link[0].up);
+	KUNIT_EXPECT_FALSE(test, c->b->m->links.link[0].up);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
 	KUNIT_EXPECT_EQ(test, *cyc_pd(c, LAST, 1), before);
 	bus_fault(c->b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
@@ -180,7 +180,7 @@ static void op_session_ends(struct kunit *test)
 	/* what closing the file does */
 	ec_session_end(b->m, &b->app);
 	KUNIT_EXPECT_PTR_EQ(test, b->m->session, NULL);
-	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_TRUE(test, outputs_off(b));
 	KUNIT_EXPECT_FALSE(test, b->m->freeze);
@@ -202,7 +202,7 @@ static void op_application_stalls(struct kunit *test)
 	struct ec_ioc_slave s = { .position = X };
 
 	msleep(300);
-	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
 	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, N);
 	/* the watchdog of the slave has switched its outputs off */
@@ -210,7 +210,7 @@ static void op_application_stalls(struct kunit *test)
 	c->next = ktime_get();
 	cyc_run(c, 20);
 	KUNIT_EXPECT_NE(test, recover(c, 5000), ~0ull);
-	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_CYCLE);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_CYCLIC);
 	works(c);
 }
 
@@ -243,13 +243,13 @@ static void op_stalls_logged(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct kmsg_dump_iter first, it;
-	u32 i, before = atomic_read(&c->b->m->stalls), scans = c->b->m->scan_count;
+	u32 i, before = atomic_read(&c->b->m->links.access.timeouts), scans = c->b->m->scan_count;
 
 	kmsg_dump_rewind(&it);
 	logged(&it, "");
 	for (i = 0; i < 20; i++)
 		stall_once(c);
-	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->stalls), before + 20);
+	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->links.access.timeouts), before + 20);
 	KUNIT_EXPECT_EQ(test, c->b->m->scan_count, scans);
 	first = it;
 	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout"), 1);

@@ -39,7 +39,7 @@ static const struct { u8 member, cmd; u16 adp, ado, len; } dgrams[] = {
 /* What ec_xfer() does with the datagrams of caller @k. */
 static void arm(struct shared *s, u32 k)
 {
-	struct ec_slots *slots = &s->b->m->slots;
+	struct ec_slots *slots = &s->b->m->links.slots;
 	struct ec_frame_buf fb;
 	u32 i;
 
@@ -67,7 +67,7 @@ static void leave(struct shared *s)
 	for (k = 0; k < MEMBERS; k++)
 		KUNIT_ASSERT_TRUE(s->b->test, ec_pack_add(&s->pack, &s->e[k], &roomy));
 	KUNIT_ASSERT_EQ(s->b->test, s->pack.n, MEMBERS);
-	ec_pack_write(&s->b->m->slots, &s->pack, s->frame, ktime_get_ns());
+	ec_pack_write(&s->b->m->links.slots, &s->pack, s->frame, ktime_get_ns());
 	ec_pack_release(&s->pack);
 	s->len = s->pack.len;
 	s->reply = s->frame + EC_ETH_HDR;
@@ -84,7 +84,7 @@ static struct shared *shared(struct kunit *test)
 	s->b = bus_up(test, text, N);
 	bus_idle(s->b);
 	for (k = 0; k < MEMBERS; k++) {
-		s->slot[k] = ec_slot_get(&s->b->m->slots, false, ktime_get_ns());
+		s->slot[k] = ec_slot_get(&s->b->m->links.slots, false, ktime_get_ns());
 		KUNIT_ASSERT_NOT_NULL(test, s->slot[k]);
 		arm(s, k);
 	}
@@ -94,12 +94,12 @@ static struct shared *shared(struct kunit *test)
 
 static void give(struct shared *s, const u8 *data, size_t len)
 {
-	ecdev_receive(s->b->m->link[0].dev, s->frame + 6, data, len);
+	ecdev_receive(s->b->m->links.link[0].dev, s->frame + 6, data, len);
 }
 
 static u64 refused(const struct shared *s)
 {
-	const struct ec_link_stats *st = &s->b->m->link[0].stats;
+	const struct ec_link_stats *st = &s->b->m->links.link[0].stats;
 
 	return atomic64_read(&st->unmatched) + atomic64_read(&st->late);
 }
@@ -164,7 +164,7 @@ static void put(struct shared *s, u32 done)
 
 	for (k = 0; k < MEMBERS; k++)
 		if (done & BIT(k))
-			ec_slot_put(&s->b->m->slots, s->slot[k]);
+			ec_slot_put(&s->b->m->links.slots, s->slot[k]);
 }
 
 static void pack_dealt_out(struct kunit *test)
@@ -397,7 +397,7 @@ static void pack_reused(struct kunit *test)
 	arm(s, 3);
 	leave(s);
 	before = refused(s);
-	ecdev_receive(s->b->m->link[0].dev, old + 6, old + EC_ETH_HDR, s->len);
+	ecdev_receive(s->b->m->links.link[0].dev, old + 6, old + EC_ETH_HDR, s->len);
 	expect(s, 0, 0);
 	KUNIT_EXPECT_EQ(test, refused(s), before + 1);
 	answer(s);
@@ -420,12 +420,12 @@ static void pack_gathered(struct kunit *test)
 	for (k = 0; k < MEMBERS; k++) {
 		KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[k], ktime_get_ns()));
 		arm(s, k);
-		KUNIT_ASSERT_EQ(test, ec_queue_push(m, s->slot[k], k == 3), 0);
+		KUNIT_ASSERT_EQ(test, ec_queue_push(&m->links.queues, s->slot[k], k == 3), 0);
 	}
 	/* the urgent one is the first */
-	KUNIT_ASSERT_TRUE(test, ec_queue_peek(m, &m->xq, &e));
+	KUNIT_ASSERT_TRUE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
 	KUNIT_EXPECT_PTR_EQ(test, e.slot, s->slot[3]);
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_ASSERT_EQ(test, p.n, 4u);
 	KUNIT_EXPECT_EQ(test, p.dgrams, 5u);
 	KUNIT_EXPECT_PTR_EQ(test, p.e[1].slot, s->slot[0]);
@@ -435,36 +435,36 @@ static void pack_gathered(struct kunit *test)
 	ec_pack_release(&p);
 	/* the second of them does not fit, and so nor do those behind it */
 	room.len = EC_FRAME_HDR + 13 + 14 + 139;
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 2u);
 	ec_pack_release(&p);
 	room.len++;
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
 	ec_pack_release(&p);
 	/* datagrams are counted, too */
 	room = roomy;
 	room.dgrams = 4;
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
 	ec_pack_release(&p);
 	/* one gives up, one that leaves, the first one that gives up */
 	room = roomy;
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[0], ktime_get_ns()));
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_ASSERT_EQ(test, p.n, 3u);
 	KUNIT_EXPECT_PTR_EQ(test, p.e[1].slot, s->slot[1]);
 	ec_pack_release(&p);
-	ec_queue_drop(m, &m->xq, p.e, 2);
+	ec_queue_drop(&m->links.queues, &m->links.queues.acyclic, p.e, 2);
 	KUNIT_EXPECT_EQ(test, s->slot[3]->left, s->slot[3]->seq);
 	KUNIT_EXPECT_NE(test, s->slot[2]->left, s->slot[2]->seq);
-	KUNIT_ASSERT_TRUE(test, ec_queue_peek(m, &m->xq, &e));
+	KUNIT_ASSERT_TRUE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
 	KUNIT_EXPECT_PTR_EQ(test, e.slot, s->slot[2]);
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[2], ktime_get_ns()));
-	ec_queue_gather(m, &m->xq, &e, &room, &p);
+	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 0u);
-	KUNIT_EXPECT_FALSE(test, ec_queue_peek(m, &m->xq, &e));
-	KUNIT_EXPECT_EQ(test, ec_queue_frames(m), 0u);
+	KUNIT_EXPECT_FALSE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
+	KUNIT_EXPECT_EQ(test, ec_queue_frames(&m->links.queues), 0u);
 }
 
 static struct kunit_case cases[] = {

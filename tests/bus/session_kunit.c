@@ -21,8 +21,8 @@ static void expect_nothing_told(struct bus *b)
 {
 	KUNIT_EXPECT_FALSE(b->test, b->m->dc.has_phase);
 	KUNIT_EXPECT_EQ(b->test, b->m->dc.app_time, 0ull);
-	KUNIT_EXPECT_EQ(b->test, b->m->interval_us, (u32)EC_INTERVAL_US);
-	KUNIT_EXPECT_FALSE(b->test, b->m->interval_told);
+	KUNIT_EXPECT_EQ(b->test, b->m->links.access.interval_us, (u32)EC_INTERVAL_US);
+	KUNIT_EXPECT_FALSE(b->test, b->m->links.access.interval_set);
 }
 
 /* Time and interval of an application that was never active are its own. */
@@ -64,7 +64,7 @@ static void session_heir_goes(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, b->m->heir);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && b->m->dc.begun);
 	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
-	KUNIT_EXPECT_TRUE(test, b->m->interval_told);
+	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
 }
 
 static void uploads(struct bus *b)
@@ -293,7 +293,7 @@ static void session_kernel_heir(struct kunit *test)
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
 	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
 	KUNIT_EXPECT_EQ(test, b->m->dc.has_phase, phase);
-	KUNIT_EXPECT_EQ(test, b->m->interval_us, 1000u);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
 	kapp_map(k, 0);
 	kapp_map(k, 1);
 	cycle = runs->shared->status->kernel.cycle;
@@ -360,8 +360,8 @@ static void session_interval(struct kunit *test)
 		struct ec_ioc_interval t = { .interval_us = told[i].us };
 
 		KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &t), 0);
-		KUNIT_EXPECT_EQ(test, b->m->interval_us, told[i].is);
-		KUNIT_EXPECT_EQ(test, b->m->interval_told, told[i].told);
+		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, told[i].is);
+		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_set, told[i].told);
 	}
 	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &none), -EINVAL);
 	cyc_release(c);

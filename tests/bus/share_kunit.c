@@ -34,7 +34,7 @@ static int ask(void *arg)
 					       a->data + i * a->len);
 		a->dg[i].repeat = false;
 	}
-	a->ret = a->clock ? ec_xfer_clock(a->b->m, a->dg, a->n) : ec_xfer(a->b->m, a->dg, a->n);
+	a->ret = a->clock ? ec_xfer_clock(&a->b->m->links, a->dg, a->n) : ec_xfer(&a->b->m->links, a->dg, a->n);
 	a->end_ns = ktime_get_ns();
 	complete(&a->done);
 	return 0;
@@ -70,7 +70,7 @@ struct share {
 
 static void count(struct cyc *c)
 {
-	u64 frames = bus_frames(c->b), bytes = atomic64_read(&c->b->m->link[0].stats.tx_bytes);
+	u64 frames = bus_frames(c->b), bytes = atomic64_read(&c->b->m->links.link[0].stats.tx_bytes);
 	const struct ec_cyc_wire *last = &c->b->m->session->cycle.last;
 	struct share *s = c->ctx;
 
@@ -99,7 +99,7 @@ static struct share run(struct cyc *c, struct asker *a, u32 n, u32 us)
 	u32 i, left = n;
 
 	c->period_ns = us * NSEC_PER_USEC;
-	c->b->m->interval_us = us;
+	c->b->m->links.access.interval_us = us;
 	cyc_run(c, 5);
 	c->each = count;
 	c->ctx = &s;
@@ -151,7 +151,7 @@ static void share_limit_of_the_module(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, before, 64u);
 	/* the last one has its turn when 191 have left, however long that takes */
-	c->b->m->late_per_s = 0;
+	c->b->m->links.share.late_per_s = 0;
 	for (k = 0; k < ARRAY_SIZE(t); k++) {
 		struct share s;
 
@@ -175,7 +175,7 @@ static void share_of_the_wire(struct kunit *test)
 
 	for (k = 0; k < ARRAY_SIZE(t); k++) {
 		struct share s = run(c, a, 1, t[k].us);
-		u32 slack_ns = ec_cycle_slack_ns(c->b->m);
+		u32 slack_ns = ec_access_slack_ns(&c->b->m->links);
 
 		KUNIT_EXPECT_EQ_MSG(test, s.most, (u64)t[k].most, "cycle of %u us", t[k].us);
 		if (s.most > 1)
@@ -191,7 +191,7 @@ static void share_of_the_wire_packed(struct kunit *test)
 	struct cyc *c = in_op(test);
 	struct asker *a = askers(c->b, 40, 20, 1, 300);
 	struct share s = run(c, a, 40, 1000);
-	u32 slack_ns = ec_cycle_slack_ns(c->b->m);
+	u32 slack_ns = ec_access_slack_ns(&c->b->m->links);
 
 	KUNIT_EXPECT_GE(test, s.most, 3ull);
 	KUNIT_EXPECT_LE(test, s.most, 4ull);
@@ -251,7 +251,7 @@ static void share_on_the_way_to_op(struct kunit *test)
 	bus_figure("100 drives to OP beside a cycle of 1 ms: at most %llu acyclic frames and %llu us of wire time a send, %llu frames in all",
 		   s.most, div_u64(s.most_ns, 1000), s.sum);
 	KUNIT_EXPECT_LE(test, s.most, 8ull);
-	KUNIT_EXPECT_LE(test, s.most_ns, (u64)ec_cycle_slack_ns(b->m) / 2);
+	KUNIT_EXPECT_LE(test, s.most_ns, (u64)ec_access_slack_ns(&b->m->links) / 2);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 

@@ -46,7 +46,7 @@ static struct cyc *captured(struct kunit *test, struct program *p)
 	int ret;
 
 	ec_capture = true;
-	ret = ec_capture_create(b->m);
+	ret = ec_capture_create(&b->m->links);
 	ec_capture = false;
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	bus_plug(b);
@@ -58,11 +58,11 @@ static struct cyc *captured(struct kunit *test, struct program *p)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	rtnl_lock();
-	ret = dev_open(b->m->capture->nd, NULL);
+	ret = dev_open(b->m->links.capture->nd, NULL);
 	rtnl_unlock();
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	*p = (struct program){ .pt = {
-		.type = htons(ETH_P_ALL), .dev = b->m->capture->nd, .func = get,
+		.type = htons(ETH_P_ALL), .dev = b->m->links.capture->nd, .func = get,
 	} };
 	dev_add_pack(&p->pt);
 	return c;
@@ -92,7 +92,7 @@ static u32 not_captured(struct bus *b)
 
 static u64 tx_errors(struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.tx_errors);
+	return atomic64_read(&b->m->links.link[0].stats.tx_errors);
 }
 
 /* With a worker that runs, the program gets every frame, sent and received. */
@@ -103,7 +103,7 @@ static void tap_worker_runs_all_captured(struct kunit *test)
 	u64 frames = bus_frames(c->b);
 
 	cyc_run(c, 1000);
-	flush_work(&c->b->m->capture->tap.work);
+	flush_work(&c->b->m->links.capture->tap.work);
 	frames = bus_frames(c->b) - frames;
 	dev_remove_pack(&p.pt);
 	KUNIT_EXPECT_EQ(test, p.bad, 0u);
@@ -121,7 +121,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->capture->tap;
+	struct ec_tap *t = &c->b->m->links.capture->tap;
 	struct rtnl_link_stats64 stats;
 	u64 frames, incomplete, errors;
 	u32 dropped, had;
@@ -147,7 +147,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	/* what the interface counts is the same */
-	dev_get_stats(c->b->m->capture->nd, &stats);
+	dev_get_stats(c->b->m->links.capture->nd, &stats);
 	KUNIT_EXPECT_EQ(test, stats.rx_dropped, (u64)dropped);
 	/* the ring is whole: all it has is shown, and then no frame is dropped any more */
 	release_worker(t);
@@ -165,7 +165,7 @@ static void tap_without_program_not_used(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->capture->tap;
+	struct ec_tap *t = &c->b->m->links.capture->tap;
 	u32 head;
 
 	dev_remove_pack(&p.pt);

@@ -37,7 +37,7 @@ static int read_much(void *arg)
 					       r->data[i]);
 		r->dg[i].repeat = false;
 	}
-	r->ret = ec_xfer(r->b->m, r->dg, READS);
+	r->ret = ec_xfer(&r->b->m->links, r->dg, READS);
 	complete(&r->done);
 	return 0;
 }
@@ -81,7 +81,7 @@ static void turn_slow_cycle(struct kunit *test)
 	for (i = 0; i < READERS; i++)
 		KUNIT_EXPECT_EQ(test, r[i].ret, 0);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->owner, EC_OWNER_CYCLE);
+	KUNIT_EXPECT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
 	kvfree(r);
 }
 
@@ -92,8 +92,8 @@ static void turn_stalled_cycle(struct kunit *test)
 	u64 t0 = ktime_get_ns();
 	u8 v[4];
 
-	KUNIT_ASSERT_EQ(test, c->b->m->owner, EC_OWNER_CYCLE);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(c->b->m, bus_slave(c->b, 1)->station, 0, v, 4), 0);
+	KUNIT_ASSERT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&c->b->m->links, bus_slave(c->b, 1)->station, 0, v, 4), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 400 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(c->b, 1)->regs, 4);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
@@ -104,7 +104,7 @@ static void turn_stalled_cycle(struct kunit *test)
 static void turn_overdue(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
-	struct ecdev *dev = b->m->link[0].dev;
+	struct ecdev *dev = b->m->links.link[0].dev;
 	u32 i;
 	u8 v[4];
 
@@ -112,7 +112,7 @@ static void turn_overdue(struct kunit *test)
 	dev->ops->cycle(dev->priv, true);
 	for (i = 0; i < 20; i++) {
 		memset(v, 0, sizeof(v));
-		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(b->m, bus_slave(b, 1)->station, 0, v, 4), 0);
+		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, 0, v, 4), 0);
 		KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, 4);
 	}
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
@@ -125,11 +125,11 @@ static struct cyc *full(struct cyc *c, u32 late_per_s)
 {
 	struct kunit *test = c->b->test;
 
-	c->b->m->late_per_s = late_per_s;
-	c->b->m->interval_us = 5;
+	c->b->m->links.share.late_per_s = late_per_s;
+	c->b->m->links.access.interval_us = 5;
 	cyc_run(c, 10);
-	KUNIT_ASSERT_EQ(test, c->b->m->owner, EC_OWNER_CYCLE);
-	KUNIT_ASSERT_LT(test, ec_cycle_slack_ns(c->b->m), ec_cycle_need_ns());
+	KUNIT_ASSERT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
+	KUNIT_ASSERT_LT(test, ec_access_slack_ns(&c->b->m->links), ec_cycle_need_ns());
 	return c;
 }
 
@@ -153,7 +153,7 @@ static int read_few(void *arg)
 		struct ec_dg dg = EC_DG(EC_CMD_FPRD, f->station, 0, sizeof(v), v);
 
 		dg.repeat = false;
-		f->ret = ec_xfer(f->b->m, &dg, 1);
+		f->ret = ec_xfer(&f->b->m->links, &dg, 1);
 	}
 	complete(&f->done);
 	return 0;
@@ -237,7 +237,7 @@ static void turn_killed(struct kunit *test)
 	u32 ms;
 
 	/* the one late cycle of this second is over */
-	while (!c->b->m->late_cycles)
+	while (!c->b->m->links.share.late_cycles)
 		cyc_run(c, 1);
 	ms = run_few(c, &f, 5, 200, 10000);
 	KUNIT_EXPECT_LT(test, ms, 600u);
@@ -249,7 +249,7 @@ static u32 take_places(struct bus *b)
 {
 	u32 n = 0;
 
-	while (ec_gate_try(&b->m->link[0].acyclic))
+	while (ec_gate_try(&b->m->links.link[0].acyclic))
 		n++;
 	return n;
 }
@@ -257,7 +257,7 @@ static u32 take_places(struct bus *b)
 static void give_places(struct bus *b, u32 n)
 {
 	while (n--)
-		ec_gate_leave(&b->m->link[0].acyclic);
+		ec_gate_leave(&b->m->links.link[0].acyclic);
 }
 
 /* A slave that falls silent, and one that shows an error: the monitor does not wait for tools. */
@@ -284,7 +284,7 @@ static void turn_monitor_passes_tools(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->silent);
 	give_places(b, places);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
-	KUNIT_EXPECT_EQ(test, b->m->link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
 }
 
 static struct kunit_case cases[] = {

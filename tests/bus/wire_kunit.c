@@ -26,7 +26,7 @@ static void late_cycles(struct cyc *c, u32 per_s)
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->link[0].stats.late);
+	return atomic64_read(&b->m->links.link[0].stats.late);
 }
 
 /* Slaves as terminals have them: what passes is back within the cycle. */
@@ -214,17 +214,17 @@ static void wire_sdo_beside_axes(struct kunit *test)
 	cyc_activate(c);
 	runs(c, 1600);
 	KUNIT_EXPECT_FALSE(test, m->session->room_told);
-	KUNIT_EXPECT_EQ(test, ec_cycle_slack_ns(m), 90000 - m->session->cycle.clocked.ns);
-	KUNIT_EXPECT_LT(test, ec_cycle_room(m), 256);
+	KUNIT_EXPECT_EQ(test, ec_access_slack_ns(&m->links), 90000 - m->session->cycle.clocked.ns);
+	KUNIT_EXPECT_LT(test, ec_access_room(&m->links), 256);
 	before = late(c->b);
 	r = uploads(c, 10000);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 100 us, %u ns left: %u in 1 s, %u failed",
-		   ec_cycle_slack_ns(m), r->done, r->failed);
+		   ec_access_slack_ns(&m->links), r->done, r->failed);
 	KUNIT_EXPECT_GE(test, r->done, 800u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, late(c->b), before);
-	KUNIT_EXPECT_EQ(test, m->late_cycles, 0u);
+	KUNIT_EXPECT_EQ(test, m->links.share.late_cycles, 0u);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
@@ -240,22 +240,22 @@ static void wire_full(struct kunit *test)
 	late_cycles(c, 400);
 	cyc_activate(c);
 	runs(c, 1600);
-	KUNIT_EXPECT_EQ(test, m->late_cycles, 0u);
+	KUNIT_EXPECT_EQ(test, m->links.share.late_cycles, 0u);
 	/* the application goes faster */
-	m->interval_us = 75;
+	m->links.access.interval_us = 75;
 	c->period_ns = 75000;
 	cyc_run(c, 10);
-	KUNIT_EXPECT_LT(test, ec_cycle_slack_ns(m), ec_cycle_need_ns());
-	before = m->late_cycles;
+	KUNIT_EXPECT_LT(test, ec_access_slack_ns(&m->links), ec_cycle_need_ns());
+	before = m->links.share.late_cycles;
 	cycles = c->cycles;
 	/* a second, and until the last one is done */
 	r = uploads(c, 13333);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 75 us, 400 late cycles a second allowed: %u in 1 s, %u failed, %u late",
-		   r->done, r->failed, m->late_cycles - before);
+		   r->done, r->failed, m->links.share.late_cycles - before);
 	KUNIT_EXPECT_GE(test, r->done, 15u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
-	KUNIT_EXPECT_GE(test, m->late_cycles - before, 100u);
-	KUNIT_EXPECT_LE(test, m->late_cycles - before,
+	KUNIT_EXPECT_GE(test, m->links.share.late_cycles - before, 100u);
+	KUNIT_EXPECT_LE(test, m->links.share.late_cycles - before,
 			div_u64((c->cycles - cycles) * 75 * 400, USEC_PER_SEC) + 20);
 }
 
@@ -280,10 +280,10 @@ static void wire_refused(struct kunit *test)
 	late_cycles(c, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -ENOSPC);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "6720 ns"), "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->owner, EC_OWNER_IDLE);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	/* in a longer cycle the same session works */
 	c->period_ns = 200000;
-	b->m->interval_us = 200;
+	b->m->links.access.interval_us = 200;
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
 	KUNIT_EXPECT_FALSE(test, b->m->session->room_told);

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What all layers of one master use. */
+#ifndef EC_BASE_H
+#define EC_BASE_H
+
+#include "log.h"
+
+/** struct ec_base - what all layers of one master use; they have it as @base */
+struct ec_base {
+	/** @index: number of the master, immutable */
+	unsigned int index;
+	/** @debug: log level 0..2 */
+	u32 debug;
+	/** @stopping: the master is being removed: callers that wait are cancelled */
+	bool stopping;
+	/** @log: what was logged lately */
+	struct ec_log log;
+};
+
+/*
+ * @x: structure of a layer. @fmt is a constant: it identifies what may repeat, see
+ * ec_log_event().
+ */
+#define ec_info(x, fmt, ...) \
+	ec_log_event((x)->base, EC_LOG_ANY, 0, KERN_INFO, fmt, ##__VA_ARGS__)
+#define ec_warn(x, fmt, ...) \
+	ec_log_event((x)->base, EC_LOG_ANY, 0, KERN_WARNING, fmt, ##__VA_ARGS__)
+/* each @id (index + 1 of a configuration, say) repeats for itself */
+#define ec_warn_each(x, id, fmt, ...) \
+	ec_log_event((x)->base, EC_LOG_ANY, id, KERN_WARNING, fmt, ##__VA_ARGS__)
+#define ec_err(x, fmt, ...) \
+	ec_log_event((x)->base, EC_LOG_ANY, 0, KERN_ERR, fmt, ##__VA_ARGS__)
+
+#endif

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include "../base/once64.h"
+#include "device.h"
+#include "links.h"
+#include "pack.h"
+
+#define FLUSH_WAITS	200	/* for room in the transmit ring: 20 ms at least */
+
+/**
+ * ec_access_init() - direct access
+ * @a: zeroed structure
+ *
+ * Context: Any.
+ */
+void ec_access_init(struct ec_access *a)
+{
+	rt_mutex_init(&a->lock);
+	a->interval_us = EC_INTERVAL_US;
+}
+
+static void own_devices(struct ec_links *l, bool cycle)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		struct ecdev *dev = l->link[i].dev;
+
+		if (dev && dev->ops->cycle)
+			dev->ops->cycle(dev->priv, cycle);
+	}
+}
+
+/**
+ * ec_access_transmit() - send a built frame
+ * @l: links
+ * @slot: the slot is back in BUILD on failure
+ * @now: time
+ *
+ * Context: The owner of the links. RT-safe.
+ * Return: as ec_link_send().
+ */
+int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u64 now)
+{
+	struct ec_link *link = &l->link[0];
+	int ret;
+
+	ec_slot_arm(&l->slots, slot, link->side, now);
+	WRITE_ONCE(slot->left, slot->seq);
+	ret = ec_link_send(link, slot);
+	if (ret)
+		ec_slot_disarm(slot, now);
+	return ret;
+}
+
+/*
+ * Frames in the queue are sent now. When a send fails their caller waits for its timeout:
+ * the slot belongs to the caller.
+ */
+static void flush(struct ec_links *l, struct ec_queue *q)
+{
+	static const struct ec_pack_room none;
+	struct ec_queued next;
+	struct ec_pack pack;
+	unsigned int waits = 0;
+
+	lockdep_assert_held(&l->access.lock);
+	while (ec_queue_peek(&l->queues, q, &next)) {
+		ec_queue_gather(&l->queues, q, &next, &none, &pack);
+		if (pack.n && ec_link_send_pack(&l->link[0], &pack, ktime_get_ns()) == -EBUSY &&
+		    waits++ < FLUSH_WAITS) {
+			usleep_range(100, 200);
+			continue;
+		}
+		ec_queue_drop(&l->queues, q, &next, 1);
+	}
+}
+
+/**
+ * ec_access_change() - change the bus access
+ * @l: links
+ * @mode: new one
+ *
+ * Before direct access waits until the cycle owner has left the links.
+ *
+ * Context: Process. May sleep.
+ * Return: whether it was another one before.
+ */
+bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
+{
+	bool change;
+
+	rt_mutex_lock(&l->access.lock);
+	change = l->access.mode != mode;
+	if (change) {
+		ec_write64(&l->access.last_send_ns, ktime_get_ns());
+		WRITE_ONCE(l->access.mode, mode);
+		smp_mb();	/* mode before busy; pairs with ec_access_enter() */
+		while (mode == EC_ACCESS_DIRECT && atomic_read(&l->access.busy))
+			usleep_range(20, 50);
+		own_devices(l, mode == EC_ACCESS_CYCLIC);
+		ec_link_set_places(&l->link[0], mode == EC_ACCESS_CYCLIC);
+		if (mode == EC_ACCESS_DIRECT) {
+			flush(l, &l->queues.acyclic);
+			flush(l, &l->queues.clock);
+		}
+	}
+	rt_mutex_unlock(&l->access.lock);
+	return change;
+}
+
+/**
+ * ec_access_enter() - the cycle owner takes the links for one call
+ * @l: links
+ *
+ * Takes cyclic access again after a cycle timeout.
+ *
+ * Context: Cycle owner. Sleeps after a cycle timeout only.
+ */
+void ec_access_enter(struct ec_links *l)
+{
+	for (;;) {
+		atomic_set(&l->access.busy, 1);
+		smp_mb();	/* busy before mode; pairs with ec_access_change() */
+		if (READ_ONCE(l->access.mode) == EC_ACCESS_CYCLIC)
+			return;
+		atomic_set(&l->access.busy, 0);
+		ec_access_change(l, EC_ACCESS_CYCLIC);
+	}
+}
+
+/**
+ * ec_access_try_enter() - take the links for one call, or say why not
+ * @l: links
+ *
+ * For a caller that must not sleep. While the links are entered the active session
+ * stays: deactivation waits for the caller in ec_access_change().
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; -EBUSY another caller is in them; -EAGAIN access is direct after a cycle
+ * timeout: a thread that may sleep has to call ec_access_change().
+ */
+int ec_access_try_enter(struct ec_links *l)
+{
+	if (atomic_cmpxchg(&l->access.busy, 0, 1))
+		return -EBUSY;
+	smp_mb();	/* busy before mode; pairs with ec_access_change() */
+	if (READ_ONCE(l->access.mode) == EC_ACCESS_CYCLIC)
+		return 0;
+	ec_access_leave(l);
+	return -EAGAIN;
+}
+
+/**
+ * ec_access_leave() - the cycle owner leaves the links
+ * @l: links that it has entered
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_access_leave(struct ec_links *l)
+{
+	atomic_set_release(&l->access.busy, 0);
+}
+
+/**
+ * ec_access_timed_out() - has the cycle owner stopped sending?
+ * @l: links with cyclic access
+ *
+ * Context: Process.
+ * Return: true after max(10 periods, 20 ms) without a send.
+ */
+bool ec_access_timed_out(struct ec_links *l)
+{
+	s64 limit = max_t(s64, 10LL * l->access.interval_us * NSEC_PER_USEC, 20 * NSEC_PER_MSEC);
+
+	/* it may send between the two readings of the clock */
+	return (s64)(ktime_get_ns() - ec_read64(&l->access.last_send_ns)) > limit;
+}
+
+/**
+ * ec_access_timeout() - the cycle owner has not sent for too long: direct access
+ * @l: links
+ *
+ * Mailboxes and tools work again; process data stop, and the watchdogs of the slaves take
+ * care of the outputs. The next send of the cycle takes the links back.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_access_timeout(struct ec_links *l)
+{
+	u64 sent = ec_read64(&l->access.last_send_ns);
+
+	if (!ec_access_change(l, EC_ACCESS_DIRECT))
+		return;
+	ec_write64(&l->access.timeout_ns, sent);
+	atomic_inc(&l->access.timeouts);
+}
+
+/**
+ * ec_access_poll() - have overdue frames arrived unnoticed?
+ * @l: links
+ *
+ * Context: Process. May sleep.
+ */
+void ec_access_poll(struct ec_links *l)
+{
+	rt_mutex_lock(&l->access.lock);
+	/* a cycle owner polls itself */
+	if (READ_ONCE(l->access.mode) == EC_ACCESS_DIRECT)
+		ec_link_poll(&l->link[0]);
+	rt_mutex_unlock(&l->access.lock);
+	/* without a poll function an interrupt thread delivers */
+	usleep_range(200, 500);
+}
+
+/**
+ * ec_access_slack_ns() - wire time that a cycle leaves for acyclic frames
+ * @l: links
+ *
+ * A tenth of the interval is kept free: the next send may be early.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: ns; ~0 while nobody runs a cycle.
+ */
+u32 ec_access_slack_ns(const struct ec_links *l)
+{
+	u64 budget = READ_ONCE(l->access.interval_us) * 900ULL;
+	u32 used = READ_ONCE(l->access.wire_ns);
+
+	if (READ_ONCE(l->access.mode) != EC_ACCESS_CYCLIC)
+		return ~0u;
+	return budget > used ? min_t(u64, budget - used, ~0u) : 0;
+}
+
+/**
+ * ec_access_room() - data of one acyclic datagram that fits before the next
+ *	cyclic send
+ * @l: links
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, at least what a minimum Ethernet frame holds.
+ */
+u16 ec_access_room(const struct ec_links *l)
+{
+	u32 bytes = ec_access_slack_ns(l) / 80;
+
+	/* what ec_frame_wire_ns() adds, and the headers */
+	bytes -= min(bytes, 8u + 4 + 12 + EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD);
+	return clamp_t(u32, bytes, EC_ROOM_MIN, EC_DGRAM_DATA_MAX);
+}
+

@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Bus access: who may use the links.
+ *
+ * Direct: a caller of ec_xfer() sends at once, under the lock. Cyclic: only the cycle owner
+ * sends and polls, other callers leave their frames in a queue. After a cycle timeout the
+ * access is direct again.
+ */
+#ifndef EC_ACCESS_H
+#define EC_ACCESS_H
+
+#include <linux/atomic.h>
+#include <linux/rtmutex.h>
+#include <linux/types.h>
+
+struct ec_links;
+struct ec_slot;
+
+enum ec_access_mode {
+	EC_ACCESS_DIRECT,
+	EC_ACCESS_CYCLIC,
+};
+
+/** struct ec_access - bus access of a master, and the times of its cycle */
+struct ec_access {
+	/** @lock: taken by senders with direct access, and to change @mode */
+	struct rt_mutex lock;
+	/** @mode: enum ec_access_mode; see ec_access_change() */
+	int mode;
+	/** @busy: the cycle owner is using the links */
+	atomic_t busy;
+	/** @last_send_ns: time of the last cyclic send (ktime) */
+	aligned_u64 last_send_ns;
+	/** @polls: receives of the cycle so far; wraps */
+	u32 polls;
+	/** @interval_us: cycle time, configured or measured */
+	u32 interval_us;
+	/** @interval_set: the application has configured it */
+	bool interval_set;
+	/** @wire_ns: wire time of a cycle: of its layout, or of the last send if that was longer */
+	u32 wire_ns;
+	/** @timeouts: cycle timeouts so far */
+	atomic_t timeouts;
+	/** @timeout_ns: last cyclic send before the last one of them (ktime) */
+	aligned_u64 timeout_ns;
+};
+
+void ec_access_init(struct ec_access *a);
+bool ec_access_change(struct ec_links *l, enum ec_access_mode mode);
+bool ec_access_timed_out(struct ec_links *l);
+void ec_access_timeout(struct ec_links *l);
+void ec_access_poll(struct ec_links *l);
+
+/* for the cycle owner */
+void ec_access_enter(struct ec_links *l);
+int ec_access_try_enter(struct ec_links *l);
+void ec_access_leave(struct ec_links *l);
+int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u64 now);
+
+/* free wire time beside a cycle */
+#define EC_ROOM_MIN	32	/* data bytes of a minimum Ethernet frame */
+u32 ec_access_slack_ns(const struct ec_links *l);
+u16 ec_access_room(const struct ec_links *l);
+
+static inline bool ec_access_is_cyclic(const struct ec_access *a)
+{
+	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
+}
+
+#endif

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * The layer "link": devices, frame slots, bus access, ec_xfer(). It knows no slave and
+ * no session.
+ */
+#ifndef EC_LINKS_H
+#define EC_LINKS_H
+
+#include <linux/list.h>
+#include "ethercat.h"
+#include "../base/base.h"
+#include "../base/limits.h"
+#include "access.h"
+#include "link.h"
+#include "queue.h"
+#include "share.h"
+#include "slots.h"
+
+struct ec_capture;
+struct ec_links;
+struct task_struct;
+
+/** struct ec_links_ops - what the layer reports to higher ones; each may be NULL */
+struct ec_links_ops {
+	/** @device: a device was attached, or detached and its link is left; may sleep */
+	void (*device)(struct ec_links *l, const struct ec_link *link, bool attached);
+	/** @queued: an acyclic frame waits for the cycle; with the access lock held */
+	void (*queued)(struct ec_links *l);
+};
+
+/** struct ec_links - links of a master and all that uses them */
+struct ec_links {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @ops: immutable */
+	const struct ec_links_ops *ops;
+	/** @list: links of all masters, under the device lock */
+	struct list_head list;
+	/** @spec: main and backup device as the module parameters name them, immutable */
+	const char *spec[EC_MAX_LINKS];
+	/** @link: main and backup */
+	struct ec_link link[EC_MAX_LINKS];
+	/** @capture: interface for capture programs, NULL: none; immutable while there are devices */
+	struct ec_capture *capture;
+	/** @slots: frame slots */
+	struct ec_slots slots;
+	/** @access: bus access */
+	struct ec_access access;
+	/** @queues: acyclic frames that wait for the cycle */
+	struct ec_queues queues;
+	/** @share: what a cyclic send carries of them */
+	struct ec_share share;
+	/** @monitor: thread whose frames overtake those of other callers, NULL: none */
+	const struct task_struct *monitor;
+	/** @max_datagrams: of a frame, immutable */
+	unsigned int max_datagrams;
+	/** @io_timeout_us: after that a frame counts as lost, immutable */
+	unsigned int io_timeout_us;
+};
+
+int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
+		  const char *main, const char *backup);
+void ec_links_exit(struct ec_links *l);
+
+#endif

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What one cyclic send carries of the acyclic frames that wait. */
+#ifndef EC_SHARE_H
+#define EC_SHARE_H
+
+#include <linux/types.h>
+
+struct ec_links;
+
+/** struct ec_share - acyclic frames since the last cyclic send; owned by the cycle owner */
+struct ec_share {
+	/** @frames: sent */
+	u32 frames;
+	/** @wire_ns: wire time of them */
+	u32 wire_ns;
+	/** @clock_credit: clock frames that may be sent, 1/1000 */
+	u32 clock_credit;
+	/** @clock_last: the last one was a clock frame */
+	bool clock_last;
+	/** @late_per_s: cycles a second that acyclic frames may delay */
+	u32 late_per_s;
+	/** @late_next_ns: no more before that time (ktime) */
+	u64 late_next_ns;
+	/** @late_cycles: cycles they have delayed since activation */
+	u32 late_cycles;
+};
+
+#define EC_SHARE_PER_MS		8	/* acyclic frames per millisecond of cycle */
+#define EC_SHARE_CLOCKS_PER_MS	2	/* clock frames among them */
+
+extern unsigned int ec_share_max;	/* acyclic frames of one send: max_acyclic of the module */
+
+u16 ec_share_clock_bytes(const struct ec_links *l);
+void ec_share_begin(struct ec_links *l);
+void ec_share_send_left(struct ec_links *l, u32 wire_ns);
+void ec_share_send_between(struct ec_links *l);
+
+#endif
