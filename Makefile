@@ -5,14 +5,14 @@
 # make demo           the main job in a VM
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
-# make check-long     what takes too long for that
+# make check-long     all system tests on all kernels (hours)
 
 KDIR ?= /lib/modules/$(shell uname -r)/build
 PREFIX ?= /usr/local
 BUILD ?= $(CURDIR)/build
 MODDIR ?= $(BUILD)/modules
 
-# pahole is not always there, and nobody needs the modules' BTF
+# pahole is not installed everywhere, and nothing reads the BTF of these modules
 KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) CONFIG_DEBUG_INFO_BTF_MODULES=
 
 all: modules lib tool examples mini
@@ -22,8 +22,8 @@ MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/*/*.[ch] \
 	 devices/*.[ch] devices/Kbuild devices/sim/*.[ch] devices/sim/Kbuild \
 	 include/*.h include/uapi/*.h)
 
-# A changed file gets the time of now, as what was built of the last one may be
-# newer than it; one that is gone here must go there.
+# A changed file gets the current time: the object of its last version may be newer than the
+# file. A file deleted here is deleted there.
 sync:
 	@mkdir -p $(MODDIR)
 	@for f in $(MODSRC); do \
@@ -52,13 +52,14 @@ tool:
 examples: lib
 	$(MAKE) -C examples
 
-# the example that is a kernel module, built as an application's would be
+# the example that is a kernel module, built as a module of an application
 MINIDIR ?= $(BUILD)/mini
 
-# kbuild does not look again whether symbols of other modules have changed
+# kbuild does not notice that symbols of other modules have changed
 mini: modules
 	@mkdir -p $(MINIDIR)
-	@[ ! $(MODDIR)/Module.symvers -nt $(MINIDIR)/Module.symvers ] || rm -f $(MINIDIR)/Module.symvers
+	@[ ! $(MODDIR)/Module.symvers -nt $(MINIDIR)/Module.symvers ] || \
+		rm -f $(MINIDIR)/Module.symvers
 	@for f in Kbuild ec_mini.c; do \
 		cmp -s examples/mini/$$f $(MINIDIR)/$$f || cp examples/mini/$$f $(MINIDIR)/$$f; \
 	done
@@ -67,16 +68,17 @@ mini: modules
 
 # --- install -----------------------------------------------------------------
 
-# what uname -r says on the kernel of these headers
-KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(KDIR)/include/generated/utsrelease.h 2>/dev/null), \
+# what uname -r prints on the kernel of these headers
+UTSRELEASE = $(KDIR)/include/generated/utsrelease.h
+KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(UTSRELEASE) 2>/dev/null), \
 	$(error $(NO_HEADERS)))
 MODINST = $(DESTDIR)/lib/modules/$(KREL)/updates
 UDEVDIR ?= $(PREFIX)/lib/udev/rules.d
 
 install: install-modules install-lib install-tool install-udev
 
-# Debian's headers say that all modules are to be signed, but bring no key. They
-# bring no System.map either, without which kbuild leaves depmod out.
+# Debian's headers request signed modules but have no key. They have no System.map either,
+# without which kbuild skips depmod.
 NOSIGN = $(if $(wildcard $(KDIR)/certs/signing_key.pem),,CONFIG_MODULE_SIG_ALL=)
 
 install-modules: modules
@@ -96,7 +98,7 @@ install-udev:
 	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
 
-# for whatever kernels they were installed; the group stays, files may belong to it
+# all kernels; the group remains, since files may belong to it
 uninstall:
 	@for d in $(DESTDIR)/lib/modules/*/updates/ethercat; do \
 		[ -d $$d ] || continue; \
@@ -137,11 +139,11 @@ check-kernels:
 check-long:
 	tests/check-long.sh
 
-# figures; gates where a figure has to be reached
+# figures, some with a limit
 bench:
 	tests/bench/run.sh
 
-# the tests of the model notice each of its deliberate errors
+# the tests of the model detect each of its deliberate errors
 check-witness:
 	tests/witness/run.sh
 

@@ -23,7 +23,7 @@
 
 #define RING		64	/* more than are on their way at once; completion is lazy */
 #define SPARES		64
-#define HELD_NS		(2 * NSEC_PER_MSEC)	/* a wire that is not busy has sent it long before */
+#define HELD_NS		(2 * NSEC_PER_MSEC)	/* an idle link needs far less to send it */
 #define SPARE_HEAD	128	/* a device below this one may come and push more headers */
 
 /**
@@ -89,11 +89,10 @@ static rx_handler_result_t receive(struct sk_buff **pskb)
 		return RX_HANDLER_CONSUMED;
 	*pskb = skb;
 	g = rcu_dereference(skb->dev->rx_handler_data);
-	if (skb->protocol != htons(EC_ETHERTYPE)) {
+	if (skb->protocol != htons(EC_ETHERTYPE))
 		ecdev_foreign(g->dev);
-	} else if (!skb_linearize(skb)) {
+	else if (!skb_linearize(skb))
 		ecdev_receive(g->dev, eth_hdr(skb)->h_source, skb->data, skb->len);
-	}
 	consume_skb(skb);
 	return RX_HANDLER_CONSUMED;
 }
@@ -222,8 +221,8 @@ static int claim(struct gen *g)
 	};
 	ret = nf_register_net_hook(dev_net(g->nd), &g->hook);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: %s: other traffic cannot be blocked (%pe)\n", g->nd->name,
-		       ERR_PTR(ret));
+		pr_err_ratelimited("ec_generic: %s: cannot block other traffic (%pe)\n",
+				   g->nd->name, ERR_PTR(ret));
 		netdev_rx_handler_unregister(g->nd);
 		return ret;
 	}
@@ -458,7 +457,8 @@ static int change_mtu(const struct net_device *nd, u32 was)
 {
 	if (nd->mtu >= ETH_DATA_LEN || was < ETH_DATA_LEN)
 		return NOTIFY_DONE;
-	pr_warn_ratelimited("ec_generic: %s: MTU change refused, need %d\n", nd->name, ETH_DATA_LEN);
+	pr_warn_ratelimited("ec_generic: %s: MTU change refused: at least %d needed\n", nd->name,
+			    ETH_DATA_LEN);
 	return notifier_from_errno(-EBUSY);
 }
 

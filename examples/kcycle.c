@@ -177,8 +177,8 @@ static int run(unsigned long cycles)
 	while (!(in_op() && locked()) && n >= 0 && time(NULL) < end)
 		n = cycle(&domain_state);
 	if (!in_op() || !locked()) {
-		fprintf(stderr, "not all slaves are in OP, or the clock has no lock; see "
-			"'ethercat slaves' and 'ethercat master'\n");
+		fprintf(stderr, "not all slaves are in OP, or the cycle is not phase-locked\n");
+		fprintf(stderr, "run 'ethercat slaves' and 'ethercat master' to find the cause\n");
 		return -1;
 	}
 	ecrt_master_cycle_state(master, &state);

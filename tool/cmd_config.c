@@ -38,10 +38,11 @@ static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list,
 		c[*n] = (struct ec_ioc_config){ .index = i };
 		err = dev_ioctl(d, EC_IOC_CONFIG, &c[*n]);
 		if (err == ENOENT)
-			break;	/* the application has gone meanwhile */
+			break;	/* the application has exited */
 		if (err) {
 			free(c);
-			return dev_fail(d, err, "Master%u: cannot read configuration %u", d->master, i);
+			return dev_fail(d, err, "Master%u: cannot read configuration %u", d->master,
+					i);
 		}
 		if (select_config(&t->aliases, &t->positions, &c[*n]))
 			(*n)++;
@@ -65,19 +66,18 @@ static void cells(const struct ec_ioc_config *c, char *slave, char *state)
 static void table(const struct ec_ioc_config *c, size_t n, const char *indent)
 {
 	char slave[12], state[16];
-	int w[4] = { 0 };
+	int w[3] = { 0 };
 
 	for (size_t i = 0; i < n; i++) {
 		cells(&c[i], slave, state);
 		w[0] = max(w[0], digits(c[i].alias));
 		w[1] = max(w[1], digits(c[i].position));
 		w[2] = max(w[2], (int)strlen(slave));
-		w[3] = max(w[3], (int)strlen(state));
 	}
 	for (size_t i = 0; i < n; i++) {
 		cells(&c[i], slave, state);
-		out_text("%s%*u:%-*u  0x%08x/0x%08x  %-*s  %-*s  \n", indent, w[0], c[i].alias, w[1],
-			 c[i].position, c[i].vendor_id, c[i].product_code, w[2], slave, w[3], state);
+		out_text("%s%*u:%-*u  0x%08x/0x%08x  %-*s  %s\n", indent, w[0], c[i].alias, w[1],
+			 c[i].position, c[i].vendor_id, c[i].product_code, w[2], slave, state);
 	}
 }
 

@@ -31,7 +31,8 @@ static void cell(const struct ec_ioc_slave *s, const u8 *regs, unsigned int i)
 	if (p->loop_closed)
 		out_text("%15s|", "");
 	else
-		out_text("%3u %3u %3u %s|", err_rx(regs, i), err_phy(regs, i), err_fwd(regs, i), next);
+		out_text("%3u %3u %3u %s|", err_rx(regs, i), err_phy(regs, i), err_fwd(regs, i),
+			 next);
 }
 
 static void details(const u8 *regs)

@@ -80,7 +80,8 @@ static void syncs(unsigned int pos, const struct layout *l)
 		const struct ec_ioc_sm *s = &l->sms[i].sm;
 
 		out_text("    {%u, %s, %u, ", s->sm,
-			 layout_is_output(&l->sms[i]) ? "EC_DIR_OUTPUT" : "EC_DIR_INPUT", s->pdo_count);
+			 layout_is_output(&l->sms[i]) ? "EC_DIR_OUTPUT" : "EC_DIR_INPUT",
+			 s->pdo_count);
 		if (s->pdo_count)
 			out_text("slave_%u_pdos + %u, ", pos, offset);
 		else

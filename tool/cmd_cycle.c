@@ -107,7 +107,8 @@ static void figures(const struct ec_status_cycle *st)
 	out_u("missed", st->missed, NULL);
 	if (st->missed)
 		out_text("  Without new outputs: %llu\n", st->missed);
-	out_u("late_min_ns", st->late_min, "  Send deviation [us]: min %.3f", st->late_min / 1000.0);
+	out_u("late_min_ns", st->late_min, "  Send deviation [us]: min %.3f",
+	      st->late_min / 1000.0);
 	out_f("late_mean_ns", mean, ", mean %.3f", mean / 1000);
 	out_u("late_p999_ns", p999, ", 99.9 %% %.3f", (double)p999 / 1000);
 	out_u("late_max_ns", st->late_max, ", max %.3f\n", st->late_max / 1000.0);

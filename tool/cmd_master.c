@@ -127,7 +127,8 @@ static void lock(const struct ec_ioc_master *m)
 		out_null("cycle_lock", NULL);
 		return;
 	}
-	out_str("cycle_lock", key[m->cycle_lock], "    Cycle lock:        %s, ", text[m->cycle_lock]);
+	out_str("cycle_lock", key[m->cycle_lock], "    Cycle lock:        %s, ",
+		text[m->cycle_lock]);
 	out_i("phase_error_ns", m->phase_error, "phase error %d ns, ", m->phase_error);
 	out_i("rate_ppb", m->rate_ppb, "rate %+d ppb, ", m->rate_ppb);
 	out_u("lock_losses", m->lock_losses, "lock losses %u\n", m->lock_losses);
@@ -232,7 +233,8 @@ static int show(const struct tool *t, struct dev *d)
 	out_u("domains", m.domain_count, NULL);
 	out_str("module_release", d->version.release, NULL);
 	if (t->verbosity > 0) {
-		out_text("  Module: %s, interface version %u\n", d->version.release, d->version.abi);
+		out_text("  Module: %s, interface version %u\n", d->version.release,
+			 d->version.abi);
 		out_text("  Slaves responding: %u\n", m.slaves_responding);
 		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_count,
 			 m.scan_busy ? "running" : "finished", m.scan_us, m.scan_frames);

@@ -29,8 +29,8 @@ static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 	int ret;
 
 	if (address + size > REG_SPACE)
-		return usage_error("registers end at 0xffff: %zu bytes at 0x%04x are too many", size,
-				   address);
+		return usage_error("registers end at 0xffff: %zu bytes at 0x%04x are too many",
+				   size, address);
 	if (dev_open_single(&d, t, true))
 		return 1;
 	ret = position(t, &d, &pos) || reg_write(&d, pos, address, data, size, t->emergency);

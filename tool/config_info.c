@@ -15,8 +15,8 @@
 
 static int failed(struct dev *d, int err, const struct ec_ioc_config *c)
 {
-	return dev_fail(d, err, "Master%u: configuration %u:%u: cannot read its state", d->master, c->alias,
-			c->position);
+	return dev_fail(d, err, "Master%u: cannot read the state of configuration %u:%u", d->master,
+			c->alias, c->position);
 }
 
 static int entries(struct dev *d, const struct ec_ioc_config *c, const char *in,

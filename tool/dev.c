@@ -61,8 +61,8 @@ int dev_open(struct dev *d, unsigned int master, bool write)
 	if (!sys_ioctl(d->fd, EC_IOC_VERSION, &d->version))
 		return 0;
 	if (errno == ENOTTY || errno == EINVAL)
-		fail("%s belongs to another EtherCAT master, whose interface differs from "
-		     "this tool's (version %u)", d->path, EC_UAPI_VERSION);
+		fail("%s: not a device of this EtherCAT master (interface version %u)", d->path,
+		     EC_UAPI_VERSION);
 	else
 		dev_fail(d, errno, "%s: cannot read the version of the module", d->path);
 	dev_close(d);

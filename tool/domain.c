@@ -21,9 +21,12 @@ int domain_each(struct dev *d, const struct tool *t,
 		int err = dev_ioctl(d, EC_IOC_DOMAIN, &dom);
 
 		if (err == ENOENT)
-			break;	/* the application has gone meanwhile */
-		ret = err ? dev_fail(d, err, "Master%u: cannot read the state of domain %u", d->master, sel.v[i]) :
-			fn(t, d, &dom);
+			break;	/* the application has exited */
+		if (err)
+			ret = dev_fail(d, err, "Master%u: cannot read the state of domain %u",
+				       d->master, sel.v[i]);
+		else
+			ret = fn(t, d, &dom);
 	}
 	numbers_free(&sel);
 	return ret;

@@ -53,7 +53,8 @@ static int parse_mac(u8 mac[6], const char *text)
 	memcpy(mac, v, 6);
 	return 0;
 bad:
-	return usage_error("invalid MAC address '%s': expected 6 bytes, as 02:00:00:ec:01:07", text);
+	return usage_error("invalid MAC address '%s': expected 6 bytes, as 02:00:00:ec:01:07",
+			   text);
 }
 
 static int parse_host(u8 addr[4], const char *text)

@@ -131,7 +131,8 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		if (!optarg && optind < argc && seconds(argv[optind], &t->wait_s))
 			optind++;
 		else if (optarg && !seconds(optarg, &t->wait_s))
-			return usage_error("invalid time '%s' for --wait: expected seconds", optarg);
+			return usage_error("invalid time '%s' for --wait: expected seconds",
+					   optarg);
 		return 0;
 	default:
 		return bad_option(argv, c);
@@ -156,8 +157,7 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
 		  char *seen, size_t seen_size)
 {
-	static const char shorts[] = "-:m:a:p:d:t:o:s:efrqvjh"
-		"0::1::2::3::4::5::6::7::8::9::.::";
+	static const char shorts[] = "-:m:a:p:d:t:o:s:efrqvjh0::1::2::3::4::5::6::7::8::9::.::";
 	size_t n = 0;
 	int c, ret;
 
@@ -170,7 +170,8 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 		if (!strcmp(argv[i], "--json") || !strcmp(argv[i], "-j"))
 			error_context("", true);
 	while ((c = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
-		if (c == 1 || ((c == '.' || (c >= '0' && c <= '9')) && negative(argv[optind - 1]))) {
+		if (c == 1 ||
+		    ((c == '.' || (c >= '0' && c <= '9')) && negative(argv[optind - 1]))) {
 			args[(*nargs)++] = c == 1 ? optarg : argv[optind - 1];
 			continue;
 		}

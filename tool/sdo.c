@@ -38,7 +38,8 @@ int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub)
 					   colon + 1);
 	}
 	*a = (struct sdo_addr){ .index = (u16)v, .sub = (u8)s, .complete = !sub && !colon };
-	snprintf(a->text, sizeof(a->text), a->complete ? "0x%04x" : "0x%04x:%02x", a->index, a->sub);
+	snprintf(a->text, sizeof(a->text), a->complete ? "0x%04x" : "0x%04x:%02x", a->index,
+		 a->sub);
 	return 0;
 }
 

@@ -259,6 +259,8 @@ struct ec_esc_fault {
 	u32 mailbox_code;
 };
 
+#define EC_ESC_NO_SM	0xff
+
 /**
  * struct ec_esc_window - process data that one FMMU maps to one whole SyncManager
  * @logical: first logical byte
@@ -273,8 +275,6 @@ struct ec_esc_fault {
  * @s: the SyncManager
  * @mem: its first buffer, or the registers
  */
-#define EC_ESC_NO_SM	0xff
-
 struct ec_esc_window {
 	u32 logical;
 	u16 len;

@@ -54,6 +54,7 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_EEPROM: word @arg of its EEPROM becomes @arg2
  * @EC_SIM_FAULT_INPUT: no fault: input channel @arg (from 0) becomes (s64)@value
  * @EC_SIM_FAULT_EMERGENCY: CoE emergency, error code @arg, error register @arg2
+ * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
 	EC_SIM_FAULT_CUT,
@@ -94,6 +95,7 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_BABBLE: another protocol, again and again
  * @EC_SIM_MAILBOX_ERROR: each is a mailbox error reply with the code in @arg2
  * @EC_SIM_MAILBOX_ABORT: SDO requests that are aborted have the abort code @arg2
+ * @EC_SIM_MAILBOX_FAULTS: number of faults
  */
 enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_GOOD,

@@ -189,7 +189,8 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 			if (rtnl_dereference(r->end[i].nd) != nd)
 				continue;
 			if (!r->leaving)
-				pr_info_ratelimited("ec_sim: %s detached, waiting for it\n", r->end[i].name);
+				pr_info_ratelimited("ec_sim: %s detached, waiting for it\n",
+						    r->end[i].name);
 			detach(&r->end[i]);
 		}
 		break;

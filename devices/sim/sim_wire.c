@@ -63,7 +63,8 @@ static void arm(struct ec_sim_wire *w)
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
 
 	if (f && !w->polled && w->running)
-		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + f->due_ns), HRTIMER_MODE_ABS_SOFT);
+		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + f->due_ns),
+			      HRTIMER_MODE_ABS_SOFT);
 }
 
 static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)

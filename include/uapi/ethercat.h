@@ -204,7 +204,7 @@ struct ec_ioc_slave {
 	__s32 dc_diff;		/* to the reference clock when last checked, ns */
 	__u16 dc_set;		/* the clock was set for the active application */
 	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
-	__u32 config;		/* index of the configuration it has or differs from, plus 1; 0: none */
+	__u32 config;		/* attached or different configuration: index + 1; 0: none */
 	__u32 differs;		/* it is not what @config expects */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
 };
@@ -734,12 +734,15 @@ struct ec_ioc_cycle {
 	__u32 period_ns;	/* 10000..1000000000 */
 	__u32 phase_ns;		/* < period_ns, of CLOCK_MONOTONIC; of the SYNC grid */
 	__s32 cpu;		/* -1: any */
-	__u32 priority;		/* SCHED_FIFO, 1..98; 0: 50. Limited by CAP_SYS_NICE and
-				 * RLIMIT_RTPRIO of the caller; with neither: SCHED_OTHER */
+	/*
+	 * SCHED_FIFO, 1..98; 0: 50. Limited by CAP_SYS_NICE and RLIMIT_RTPRIO of the caller; with
+	 * neither: SCHED_OTHER.
+	 */
+	__u32 priority;
 	__u32 stall;		/* EC_STALL_* */
 	__u32 stall_cycles;	/* 0: no stall */
-	__u32 dc;		/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR,
-				 * _REF_TIME, or below */
+	/* EC_SEND_FLAG_SYNC_REF, _SYNC_SLAVES, _MONITOR, _REF_TIME, or below */
+	__u32 dc;
 };
 
 /* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */

@@ -83,6 +83,42 @@ words_noticed() {
 
 t "texts for users have the terms of the glossary" tests/build/texts.py
 t "another term is noticed" words_noticed
+
+# the archive of the kernel's sources, as level uml; the headers lack the script
+checkpatch() {
+	local tar=${EC_LINUX_TAR:-/usr/src/linux-source-6.1.tar.xz} cache
+
+	cache=${EC_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ethercat}
+	CHECKPATCH=$(find "$cache"/src/linux-*/scripts -name checkpatch.pl -print -quit 2>/dev/null)
+	[ -z "$CHECKPATCH" ] || return 0
+	tar xf "$tar" -C "$tmp" --strip-components=1 --wildcards '*/scripts/checkpatch.pl' \
+		'*/scripts/spelling.txt' '*/scripts/const_structs.checkpatch' &&
+		CHECKPATCH=$tmp/scripts/checkpatch.pl
+}
+checkpatch
+export KDIR CHECKPATCH
+
+# rule_notices RULE TEXT FINDING: else its check could not fail
+rule_notices() {
+	local f="$tmp/$1.c" out
+
+	printf '%b\n' "$2" >"$f"
+	out=$(tests/build/style.py "$1" "$f") && return 1
+	grep -F "$3" <<<"$out"
+}
+
+t "each file names its license" tests/build/style.py spdx
+t "a file without a license is noticed" rule_notices spdx '/* text */' 'no SPDX'
+t "a license without its text is noticed" \
+	rule_notices spdx '// SPDX-License-Identifier: MIT' 'no text of MIT'
+t "no line is longer than 100 columns" tests/build/style.py lines
+t "a line of 101 columns is noticed" rule_notices lines "$(printf '%101s' x)" '101 columns'
+t "kernel-doc reports nothing" tests/build/style.py kernel-doc
+t "kernel-doc notices a parameter without text" rule_notices kernel-doc \
+	'/**\n * f() - sum\n * @a: one\n */\nint f(int a, int b)\n{\n\treturn a + b;\n}' "'b' not described"
+t "checkpatch reports nothing" tests/build/style.py checkpatch
+t "checkpatch notices a space before a bracket" \
+	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE
 t "sparse notices a wrong byte order" sparse_notices
 t "ec_sim and ec_generic load after ec_master" eval \
 	'needs_master devices/sim/ec_sim.ko && needs_master devices/ec_generic.ko'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""Every command in README.md and Documentation/ is run by a test, or marked as not.
+"""Every command of README.md, CONTRIBUTING.md, Documentation/ is run by a test or marked.
 
 Takes the literal blocks, and the inline commands that begin with make, ethercat,
 ethercat-sim or tests/. Each must be in commands.txt, as
@@ -116,7 +116,8 @@ def main():
             return
         used.add(what)
 
-    for path in [ROOT / "README.md"] + sorted((ROOT / "Documentation").glob("*.rst")):
+    documents = [ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
+    for path in documents + sorted((ROOT / "Documentation").glob("*.rst")):
         name = path.relative_to(ROOT)
         for block in blocks(path):
             first = block[0].strip()

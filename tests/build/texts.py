@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Texts that a user reads use the terms of the glossary.
 
-Looks at README.md, Documentation/, ecrt.h, and the strings of master, devices, library, tool
-and examples (log lines, reasons, output, help) for wordings that were replaced.
+Looks at README.md, CONTRIBUTING.md, Documentation/, ecrt.h, and the strings of master, devices,
+library, tool and examples (log lines, reasons, output, help) for wordings that were replaced.
 usage: texts.py [FILE...]      default: all of them
 """
 import re
@@ -91,6 +91,7 @@ def strings(text):
 
 def corpus():
     yield ROOT / "README.md"
+    yield ROOT / "CONTRIBUTING.md"
     yield from sorted((ROOT / "Documentation").glob("*.rst"))
     yield ROOT / "include/ecrt.h"
     for folder in ("master", "devices", "lib", "tool", "examples"):

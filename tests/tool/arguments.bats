@@ -246,7 +246,7 @@ for o in d["options"]:
 	ln -s /dev/null "$BATS_TEST_TMPDIR/EtherCAT0"
 	EC_DEVICE_DIR=$BATS_TEST_TMPDIR run real slaves
 	[ "$status" -eq 1 ]
-	[[ $output == *"another EtherCAT master"* ]]
+	[[ $output == *"not a device of this EtherCAT master"* ]]
 	FAKE_BUS=foreign run ethercat slaves
 	[ "$status" -eq 1 ]
 }

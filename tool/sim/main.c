@@ -91,13 +91,27 @@ static int parse(int argc, char **argv, struct options *o)
 
 	while ((c = getopt_long(argc, argv, "s:vlc:h", longs, NULL)) != -1) {
 		switch (c) {
-		case 's': o->segment = optarg; break;
-		case 'c': o->check = optarg; break;
-		case 'C': o->control = optarg; break;
-		case 'T': o->tell = optarg; break;
-		case 'v': o->verbose = true; break;
-		case 'l': o->list = true; break;
-		case 'L': o->list_bugs = true; break;
+		case 's':
+			o->segment = optarg;
+			break;
+		case 'c':
+			o->check = optarg;
+			break;
+		case 'C':
+			o->control = optarg;
+			break;
+		case 'T':
+			o->tell = optarg;
+			break;
+		case 'v':
+			o->verbose = true;
+			break;
+		case 'l':
+			o->list = true;
+			break;
+		case 'L':
+			o->list_bugs = true;
+			break;
 		case 'S':
 			if (parse_seed(optarg, &o->seed))
 				return -1;
@@ -106,9 +120,14 @@ static int parse(int argc, char **argv, struct options *o)
 			if (parse_bug(optarg, &o->bug))
 				return -1;
 			break;
-		case 'h': fputs(usage, stdout); return 1;
-		case 'V': puts("ethercat-sim " EC_SIM_VERSION); return 1;
-		default: return -1;
+		case 'h':
+			fputs(usage, stdout);
+			return 1;
+		case 'V':
+			puts("ethercat-sim " EC_SIM_VERSION);
+			return 1;
+		default:
+			return -1;
 		}
 	}
 	return 0;
@@ -194,7 +213,8 @@ int main(int argc, char **argv)
 		return tell(&o, argv + optind, n);
 	if (o.list || o.list_bugs || o.check) {
 		if (n) {
-			fprintf(stderr, "ethercat-sim: '%s': no interface is used here\n", argv[optind]);
+			fprintf(stderr, "ethercat-sim: '%s': no interface is used here\n",
+				argv[optind]);
 			return 2;
 		}
 		return o.list ? load_list() : o.list_bugs ? list_bugs() : check(&o);

@@ -176,7 +176,8 @@ void port_check(struct port *p)
 		return;
 	}
 	if (strcmp(p->name, r.ifr_name)) {
-		fprintf(stderr, "ethercat-sim: interface %s is called %s now\n", p->name, r.ifr_name);
+		fprintf(stderr, "ethercat-sim: interface %s was renamed to %s\n", p->name,
+			r.ifr_name);
 		strcpy(p->name, r.ifr_name);
 	}
 	down = ioctl(p->fd, SIOCGIFFLAGS, &r) || !(r.ifr_flags & IFF_UP);

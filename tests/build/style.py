@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-only
+"""House rules of CONTRIBUTING.md that a machine can decide, each with its findings.
+
+spdx       the first lines of each file name a license, whose text is in LICENSES/
+lines      no line is longer than 100 columns, except for a string, since texts are not split
+kernel-doc every kernel-doc comment is complete; the script is the one of KDIR
+checkpatch checkpatch.pl of the kernel reports nothing except IGNORE; CHECKPATCH is its path
+
+LIMITS has the findings that are left in each folder. They only go down.
+usage: style.py RULE [FILE...]      default: all files of git
+"""
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+COLUMNS = 100
+
+# rule, folder: findings that are left
+LIMITS = {
+    ("lines", "master"): 14,
+    ("lines", "lib"): 2,
+    ("lines", "tests"): 186,
+    ("lines", "Documentation"): 659,
+    ("lines", "README.md"): 29,
+    ("kernel-doc", "master"): 16,
+    ("checkpatch", "master"): 35,
+}
+
+# files that cannot have a comment, and what was not written by hand
+NO_SPDX = re.compile(r"^COPYING$|^LICENSES/|\.gitignore$|\.md$|\.lock$|\.seg$|\.map$|\.pc\.in$"
+                     r"|^tests/tool/golden/|^tests/lib/prototypes|^tests/build/commands\.txt$"
+                     r"|^tests/uml/skip\.list$")
+NO_WRAP = re.compile(r"^LICENSES/|\.lock$|^tests/tool/golden/|^tests/build/commands\.txt$"
+                     r"|^tests/lib/prototypes|^tool/ethercat\.8$")
+
+USERSPACE = ("tool", "lib", "include", "examples")
+# type of checkpatch: folders (none: all), reason
+IGNORE = {
+    "NEW_TYPEDEFS": (("include",), "the types of ecrt.h are a fixed interface"),
+    "VOLATILE": (USERSPACE, "signal handlers, and memory shared with the module"),
+    "SINGLE_STATEMENT_DO_WHILE_MACRO": (("include",), "EC_WRITE_*() are no values"),
+    "ARRAY_SIZE": (USERSPACE, "a macro of the kernel"),
+    "PREFER_DEFINED_ATTRIBUTE_MACRO": (USERSPACE + ("master",), "macros of the kernel; "
+                                       "master/wire is compiled in userspace"),
+    "USE_NEGATIVE_ERRNO": (USERSPACE, "userspace returns errno values"),
+    "AVOID_EXTERNS": (("tool",), "the table of commands"),
+    "SUSPECT_COMMA_SEMICOLON": (("tool",), "(void)argc, (void)argv;"),
+    "MINMAX": ((), "a cast of the shorter argument cannot truncate; min_t() can"),
+    "EMBEDDED_FUNCTION_NAME": ((), "a word of a message that is also a static function"),
+    "COMPLEX_MACRO": ((), "initializers"),
+    "REPEATED_WORD": ((), "slave io io"),
+    "SPDX_LICENSE_TAG": (("tool",), "a line of the man page, in a string"),
+    "LINUX_VERSION_CODE": (("master", "devices"), "modules for 6.1 and 6.12 from one source"),
+    "CONSTANT_COMPARISON": (("master", "devices"), "LINUX_VERSION_CODE is no constant"),
+}
+
+STRING = re.compile(r'"(?:\\.|[^"\\])*"')
+
+
+def files(args, suffixes=()):
+    if args:
+        names = args
+    else:
+        names = subprocess.run(["git", "-c", "safe.directory=*", "ls-files"], cwd=ROOT, check=True,
+                               stdout=subprocess.PIPE, text=True).stdout.split("\n")
+    for name in filter(None, names):
+        path = ROOT / name      # an absolute name stands for itself
+        if path.is_file() and not path.is_symlink() and (not suffixes or path.suffix in suffixes):
+            yield name, path
+
+
+def spdx(args):
+    texts = {p.stem for p in (ROOT / "LICENSES").iterdir()}
+    for name, path in files(args):
+        if NO_SPDX.search(name):
+            continue
+        head = "\n".join(path.read_text(errors="replace").split("\n")[:5])
+        found = re.search(r"SPDX-License-Identifier: ([\w. -]+)", head)
+        if not found:
+            yield f"{name}:1: no SPDX-License-Identifier in the first five lines"
+            continue
+        for word in found[1].split():
+            if word not in texts and word not in ("OR", "WITH") and word != "GPL-2.0":
+                yield f"{name}:1: LICENSES/ has no text of {word}"
+
+
+def lines(args):
+    for name, path in files(args):
+        if NO_WRAP.search(name):
+            continue
+        for number, line in enumerate(path.read_text(errors="replace").split("\n"), 1):
+            line = line.expandtabs(8)
+            if len(line) <= COLUMNS:
+                continue
+            if any(m.start() < COLUMNS <= m.end() + 3 for m in STRING.finditer(line)):
+                continue    # 3: what follows the string
+            yield f"{name}:{number}: {len(line)} columns, limit {COLUMNS}"
+
+
+CODE = ("master", "devices", "include", "lib", "tool", "examples")
+
+
+def code(args):
+    return [n for n, _ in files(args, (".c", ".h")) if args or n.split("/")[0] in CODE]
+
+
+def kernel_doc(args):
+    script = Path(os.environ["KDIR"]) / "scripts/kernel-doc"
+    out = subprocess.run([script, "-none"] + code(args), cwd=ROOT, stdout=subprocess.PIPE,
+                         stderr=subprocess.STDOUT, text=True).stdout
+    for line in out.split("\n"):
+        if re.search(r":\d+: (warning|error): ", line):
+            yield line
+
+
+def checkpatch(args):
+    out = subprocess.run(["perl", os.environ["CHECKPATCH"], "--no-tree", "-f", "--terse",
+                          "--show-types", "--no-summary", f"--max-line-length={COLUMNS}"] +
+                         code(args), cwd=ROOT, stdout=subprocess.PIPE, text=True).stdout
+    for line in out.split("\n"):
+        m = re.match(r"(\S+?):\d+: (?:ERROR|WARNING):(\w+):", line)
+        if m:
+            folders, _ = IGNORE.get(m[2], ((None,), ""))
+            if folders and m[1].split("/")[0] not in folders:
+                yield line
+
+
+RULES = {"spdx": spdx, "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1] not in RULES:
+        print(__doc__)
+        return 2
+    rule, failed, by_folder = sys.argv[1], False, {}
+    for found in RULES[rule](sys.argv[2:]):
+        by_folder.setdefault(re.split(r"[/:]", found)[0], []).append(found)
+    for folder, found in sorted(by_folder.items()):
+        limit = LIMITS.get((rule, folder), 0)
+        if len(found) > limit:
+            failed = True
+            print("\n".join(found))
+        print(f"{folder}: {len(found)} findings of {rule}, limit {limit}")
+    for (a_rule, folder), limit in LIMITS.items():
+        if a_rule == rule and not sys.argv[2:] and len(by_folder.get(folder, ())) < limit:
+            print(f"{folder}: lower the limit to {len(by_folder.get(folder, ()))}")
+    return 1 if failed else 0
+
+
+sys.exit(main())
