@@ -8,6 +8,7 @@
 #include "master.h"
 #include "session/session.h"
 #include "bus/slave.h"
+#include "bus/slave_pdo.h"
 
 static struct ec_master *masters[EC_MAX_MASTERS];
 static unsigned int n_masters;
@@ -69,7 +70,7 @@ struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position)
 /* No slave on its way to another state, PDOs read. */
 static bool slave_settled(struct ec_slave *s)
 {
-	return s->gone || (!work_busy(&s->work) && !ec_slave_pdos_pending(s));
+	return s->stop.gone || (!work_busy(&s->work) && !ec_slave_pdos_pending(s));
 }
 
 static bool slaves_settled(struct ec_master *m)

@@ -149,9 +149,4 @@ int ec_monitor_start(struct ec_master *m);
 void ec_monitor_stop(struct ec_master *m);
 void ec_monitor_kick(struct ec_master *m);
 
-/* scan.c */
-int ec_scan(struct ec_master *m, unsigned int count, bool *changed);
-unsigned int ec_scan_limit(void);
-u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
-
 #endif

@@ -9,6 +9,8 @@
 #include "session/session.h"
 #include "bus/slave.h"
 #include "link/xfer.h"
+#include "bus/slave_pdo.h"
+#include "bus/scan.h"
 
 #define PERIOD_MS	20
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */

@@ -3,6 +3,7 @@
 #ifndef EC_BASE_H
 #define EC_BASE_H
 
+#include <linux/err.h>
 #include "log.h"
 
 /** struct ec_base - what all layers of one master use; they have it as @base */
@@ -30,5 +31,21 @@ struct ec_base {
 	ec_log_event((x)->base, EC_LOG_ANY, id, KERN_WARNING, fmt, ##__VA_ARGS__)
 #define ec_err(x, fmt, ...) \
 	ec_log_event((x)->base, EC_LOG_ANY, 0, KERN_ERR, fmt, ##__VA_ARGS__)
+
+/* a line of "ethercat debug @lvl" about the slave at ring position @pos; @base: struct ec_base */
+#define ec_dbg_slave(base, pos, lvl, fmt, ...) \
+	do { \
+		if (unlikely(READ_ONCE((base)->debug) >= (lvl)) && ec_log_debug()) \
+			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (base)->index, (pos), \
+			       ##__VA_ARGS__); \
+	} while (0)
+/* level 1, without line end: ": done" or the name of the error follows; @ret is 0 or -errno */
+#define ec_dbg_slave_result(base, pos, ret, fmt, ...) \
+	do { \
+		if (ret) \
+			ec_dbg_slave(base, pos, 1, fmt ": %pe\n", ##__VA_ARGS__, ERR_PTR(ret)); \
+		else \
+			ec_dbg_slave(base, pos, 1, fmt ": done\n", ##__VA_ARGS__); \
+	} while (0)
 
 #endif

@@ -166,7 +166,7 @@ int ec_ioc_master(struct ec_file *f, void *arg)
 	if (ret)
 		return ret;
 	/* one that is gone has left its position to another slave */
-	i->ref_clock = m->dc.ref && !m->dc.ref->gone && READ_ONCE(m->dc.ref_station) ?
+	i->ref_clock = m->dc.ref && !m->dc.ref->stop.gone && READ_ONCE(m->dc.ref_station) ?
 		       m->dc.ref->position : -1;
 	if (m->session)
 		session_info(m->session, i);

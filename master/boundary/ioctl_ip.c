@@ -66,7 +66,7 @@ int ec_ioc_ip_set(struct ec_file *f, void *arg)
 	if (!s)
 		return ret;
 	from_user(&p, &i->params);
-	ret = failed(f, i, ec_eoe_set_ip(s, &p, &i->result));
+	ret = failed(f, i, ec_eoe_set_ip(&s->mbox, &p, &i->result));
 	ec_slave_unref(s);
 	return ret;
 }
@@ -80,7 +80,7 @@ int ec_ioc_ip_get(struct ec_file *f, void *arg)
 
 	if (!s)
 		return ret;
-	ret = failed(f, i, ec_eoe_get_ip(s, &p, &i->result));
+	ret = failed(f, i, ec_eoe_get_ip(&s->mbox, &p, &i->result));
 	if (!ret)
 		to_user(&i->params, &p);
 	ec_slave_unref(s);

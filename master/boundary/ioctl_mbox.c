@@ -105,7 +105,7 @@ int ec_ioc_upload(struct ec_file *f, struct ec_ioc_sdo *i, u8 **data)
 	i->size = room(i->size, EC_MAX_SDO_SIZE);
 	*data = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (*data)
-		ret = ec_coe_upload(s, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
+		ret = ec_coe_upload(&s->mbox, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
 				    *data, i->size, &got, &i->abort_code, &limit);
 	else
 		ret = -ENOMEM;
@@ -151,7 +151,7 @@ int ec_ioc_download(struct ec_file *f, void *arg, const u8 *data)
 
 	if (!s)
 		return ret;
-	ret = sdo_failed(f, i, ec_coe_download(s, i->index, i->subindex,
+	ret = sdo_failed(f, i, ec_coe_download(&s->mbox, i->index, i->subindex,
 					       i->flags & EC_SDO_FLAG_COMPLETE, data, i->size,
 					       &i->abort_code, &limit));
 	ec_slave_unref(s);
@@ -259,7 +259,7 @@ int ec_ioc_read_idn(struct ec_file *f, struct ec_ioc_soe *i, u8 **data)
 	i->size = room(i->size, EC_MAX_SOE_SIZE);
 	*data = kvzalloc(i->size, GFP_KERNEL_ACCOUNT);
 	if (*data)
-		ret = ec_soe_read(s, i->drive, i->idn, *data, i->size, &got, &error, &limit);
+		ret = ec_soe_read(&s->mbox, i->drive, i->idn, *data, i->size, &got, &error, &limit);
 	else
 		ret = -ENOMEM;
 	i->error_code = error;
@@ -297,7 +297,7 @@ int ec_ioc_write_idn(struct ec_file *f, void *arg, const u8 *data)
 
 	if (!s)
 		return ret;
-	ret = ec_soe_write(s, i->drive, i->idn, data, i->size, &error, &limit);
+	ret = ec_soe_write(&s->mbox, i->drive, i->idn, data, i->size, &error, &limit);
 	i->error_code = error;
 	ret = idn_failed(f, i, ret);
 	ec_slave_unref(s);

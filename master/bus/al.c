@@ -4,6 +4,7 @@
 #include "../master.h"
 #include "slave.h"
 #include "../link/xfer.h"
+#include "al.h"
 
 /**
  * ec_al_read() - read AL status and code, registers 0x0130-0x0135
@@ -34,11 +35,11 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 	put_unaligned_le16(control, b);
 	for (;;) {
 		ret = ec_xfer_fpwr(&slave->master->links, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
-		if (ret != -EIO || slave->gone)
+		if (ret != -EIO || slave->stop.gone)
 			return ret;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;
-		if (slave->master->base->stopping || READ_ONCE(slave->interrupt))
+		if (ec_stop_worker(&slave->stop))
 			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
@@ -60,7 +61,7 @@ static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 un
 			if (errors && slave->al_status & EC_AL_ERROR)
 				return -EPROTO;
 		}
-		if (slave->gone || slave->master->base->stopping || READ_ONCE(slave->interrupt))
+		if (ec_stop_worker(&slave->stop))
 			return -ECANCELED;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;

@@ -60,7 +60,7 @@ static int ask(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b)
 	};
 	int len = ec_sdoinfo_tx(&a->info, b->tx, s->info.std.rx_size - EC_MBOX_HDR);
 
-	return len < 0 ? len : ec_mbox_ask(s, &ask, b, len);
+	return len < 0 ? len : ec_mbox_ask(&s->mbox, &ask, b, len);
 }
 
 /* An entry of a simple object is called as the object. */
@@ -147,7 +147,7 @@ bool ec_names_pending(const struct ec_slave *s)
 
 	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
 	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->master->links.access.mode) == EC_ACCESS_DIRECT &&
-	       !ec_mbox_check(s, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
+	       !ec_mbox_check(&s->mbox, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
 	       next_unknown(s, &s->names, &at, &index, &sub);
 }
 
@@ -215,10 +215,10 @@ void ec_names_read(struct ec_slave *s)
 
 	lockdep_assert_held(&s->lock);
 	if (a && b && !copy(&l, &s->names))
-		ret = ec_mbox_lock(s, &s->sdo_lock, LIMIT_MS);
+		ret = ec_mbox_lock(&s->mbox, &s->mbox.sdo_lock, LIMIT_MS);
 	if (!ret) {
 		ret = read_all(s, &l, a, b);
-		up(&s->sdo_lock);
+		up(&s->mbox.sdo_lock);
 		publish(s, &l);
 		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {

@@ -8,6 +8,7 @@
 #include "../mailbox/mailbox.h"
 #include "../master.h"
 #include "slave.h"
+#include "slave_pdo.h"
 
 /* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */
 static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
@@ -15,7 +16,7 @@ static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
 	u8 b[4] = { 0 };
 	size_t got;
 	u32 abort;
-	int ret = ec_coe_upload(s, index, sub, false, b, sizeof(b), &got, &abort, NULL);
+	int ret = ec_coe_upload(&s->mbox, index, sub, false, b, sizeof(b), &got, &abort, NULL);
 
 	*value = get_unaligned_le32(b);
 	return ret == -EIO && abort ? -ENOENT : ret;
@@ -153,7 +154,7 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
 	u16 al = READ_ONCE(s->al_status);
 
 	return !READ_ONCE(s->pdos_known) && s->error == EC_SLAVE_OK && s->sii &&
-	       ec_slave_has_mailbox(s) && s->info.protocols & EC_SII_PROTO_COE &&
+	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
 	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
 }
 
@@ -187,7 +188,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	unsigned int sm;
 	int ret = 0;
 
-	for (sm = 2; sm < s->n_sms && !s->gone; sm++) {
+	for (sm = 2; sm < s->n_sms && !s->stop.gone; sm++) {
 		ret = ec_slave_read_sm_pdos(s, sm);
 		if (ret && ret != -ENOENT)
 			break;

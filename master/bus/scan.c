@@ -7,6 +7,7 @@
 #include "../base/once64.h"
 #include "slave.h"
 #include "../link/xfer.h"
+#include "scan.h"
 
 #define LOST_LINES	16	/* in the log, per scan */
 
@@ -465,7 +466,7 @@ static void publish(struct scan *sc)
 		/* at its place in the new list, or not on the bus any more */
 		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i]) {
 			note_parent(old[i], old, n_old);
-			WRITE_ONCE(old[i]->gone, true);
+			WRITE_ONCE(old[i]->stop.gone, true);
 			log_lost(sc, old[i], &lost);
 		}
 	}

@@ -11,6 +11,7 @@
 #include "../master.h"
 #include "slave.h"
 #include "../link/xfer.h"
+#include "scan.h"
 
 #define WAIT_NS		(20 * NSEC_PER_MSEC)
 #define WRITES		3	/* datagrams per slave */
@@ -39,7 +40,8 @@ static void start(struct job *j)
 	for (i = 0; i < j->n; i++) {
 		struct climber *c = &j->c[i];
 		u16 station = c->slave->station;
-		unsigned int len = ec_apply_mailbox_sms(c->slave, c->page);
+		unsigned int len = ec_mbox_present(&c->slave->mbox) ?
+				   ec_mbox_sms(&c->slave->info.std, c->page) : 0;
 
 		if (len)
 			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_SM(0), len,

@@ -15,6 +15,7 @@
 #include "slave.h"
 #include "../wire/sii.h"
 #include "../link/xfer.h"
+#include "scan.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */

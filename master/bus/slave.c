@@ -5,6 +5,8 @@
 #include "../master.h"
 #include "../base/once64.h"
 #include "slave.h"
+#include "slave_pdo.h"
+#include "../config/apply.h"
 
 /**
  * ec_slave_alloc() - a slave found by the scan
@@ -27,12 +29,15 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	s->requested = EC_AL_PREOP;
 	INIT_WORK(&s->work, ec_apply_work);
 	mutex_init(&s->lock);
-	sema_init(&s->sdo_lock, 1);
-	sema_init(&s->mbox_lock, 1);
-	init_waitqueue_head(&s->turn);
-	spin_lock_init(&s->emerg_lock);
-	spin_lock_init(&s->kept_lock);
-	INIT_LIST_HEAD(&s->kept);
+	s->stop.base = m->base;
+	s->mbox.base = m->base;
+	s->mbox.links = &m->links;
+	s->mbox.stop = &s->stop;
+	s->mbox.sii = &s->info;
+	s->mbox.al_status = &s->al_status;
+	s->mbox.position = &s->position;
+	s->mbox.station = station;
+	ec_mbox_init(&s->mbox);
 	for (p = 0; p < EC_MAX_PORT; p++)
 		s->next[p] = EC_UAPI_NONE16;
 	return s;
@@ -47,7 +52,7 @@ static void release(struct kref *kref)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
 	ec_names_free(s);
-	ec_mbox_keep_voe(s, false);
+	ec_mbox_keep_voe(&s->mbox, false);
 	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
 	kvfree(s->sii);
 	kvfree(s->part);

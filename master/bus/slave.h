@@ -5,10 +5,9 @@
 
 #include <linux/kref.h>
 #include <linux/mutex.h>
-#include <linux/semaphore.h>
-#include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
+#include "../mailbox/mailbox.h"
 #include "names.h"
 #include "pdo.h"
 #include "../wire/al.h"
@@ -16,7 +15,6 @@
 #include "../wire/sii.h"
 
 struct ec_config;
-struct ec_emerg;
 struct ec_master;
 
 /* distance of the tries to read or configure a slave that failed; doubles each time */
@@ -30,6 +28,8 @@ struct ec_master;
  * Fixed after the scan:
  * @kref: reference count; the master's table holds one
  * @master: master
+ * @stop: ends what callers and its worker wait for
+ * @mbox: its mailbox
  * @station: station address
  * @sii: EEPROM image as read
  * @sii_bytes: bytes at @sii
@@ -93,13 +93,10 @@ struct ec_master;
  * @retry_ms: distance between the last two tries
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
  * @waits_for: what the worker is waiting for, NULL: nothing that lasts
- * @gone: not on the bus any more
  * @work: brings it to @requested
  * @lock: one worker or caller at a time changes its state
  * @config: what the session wants from it, under session_lock and @lock
  * @read_pdos: read the PDOs when it is there
- * @interrupt: leave what the worker is waiting for
- * @worker: who works on it now, under @lock
  * @plan: what the worker goes by: @config, once its session is active; under @lock
  * @holds: the worker has @sdo_lock and @mbox_lock
  * @reconfigure: go through INIT and configure again
@@ -109,25 +106,12 @@ struct ec_master;
  * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
  * @clean: in PREOP, and nothing of a configuration is left in its registers
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
- * @sdo_lock: one SDO transfer at a time; see ec_mbox_lock()
- * @mbox_lock: one mailbox exchange at a time
- * @awaits: which of the two the worker waits for
- * @turn: who waits until the worker has it
- * @mbox_counter: of the last message sent
- * @mbox_seen: counter of the last message received; this and the next three under @mbox_lock
- * @mbox_counts: the slave counts its messages
- * @mbox_repeats: it was asked to put its last message there again
- * @mbox_answered: the last exchange has ended with its answer
- * @emerg_lock: protects @emerg and what it points to
- * @emerg: where its emergencies go, NULL: only to the log
- * @kept_lock: protects the next three
- * @kept: VoE messages, the oldest first
- * @n_kept: how many
- * @keep_voe: somebody may read them
  */
 struct ec_slave {
 	struct kref kref;
 	struct ec_master *master;
+	struct ec_stop stop;
+	struct ec_mbox mbox;
 	u16 station;
 	u8 *sii;
 	size_t sii_bytes;
@@ -190,13 +174,10 @@ struct ec_slave {
 	u32 retry_ms;
 	u64 seen_ns;
 	const char *waits_for;
-	bool gone;
 	struct work_struct work;
 	struct mutex lock;
 	struct ec_config *config;
 	bool read_pdos;
-	bool interrupt;
-	const struct task_struct *worker;
 	const struct ec_config *plan;
 	bool holds;
 	bool reconfigure;
@@ -206,21 +187,6 @@ struct ec_slave {
 	bool ours;
 	bool sync_free;
 	u64 sync_due_ns;
-	struct semaphore sdo_lock;
-	struct semaphore mbox_lock;
-	const struct semaphore *awaits;
-	wait_queue_head_t turn;
-	u8 mbox_counter;
-	u8 mbox_seen;
-	bool mbox_counts;
-	bool mbox_repeats;
-	bool mbox_answered;
-	spinlock_t emerg_lock;
-	struct ec_emerg *emerg;
-	spinlock_t kept_lock;
-	struct list_head kept;
-	unsigned int n_kept;
-	bool keep_voe;
 };
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
@@ -229,19 +195,9 @@ struct ec_slave {
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
-	do { \
-		if (unlikely(READ_ONCE((s)->master->base->debug) >= (lvl)) && ec_log_debug()) \
-			printk(KERN_DEBUG "EtherCAT %u-%u: " fmt, (s)->master->base->index, \
-			       (s)->position, ##__VA_ARGS__); \
-	} while (0)
-/* level 1, without line end: ": done" or the name of the error follows; @ret is 0 or -errno */
+	ec_dbg_slave((s)->master->base, (s)->position, lvl, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg_result(s, ret, fmt, ...) \
-	do { \
-		if (ret) \
-			ec_slave_dbg(s, 1, fmt ": %pe\n", ##__VA_ARGS__, ERR_PTR(ret)); \
-		else \
-			ec_slave_dbg(s, 1, fmt ": done\n", ##__VA_ARGS__); \
-	} while (0)
+	ec_dbg_slave_result((s)->master->base, (s)->position, ret, fmt, ##__VA_ARGS__)
 
 struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);
@@ -274,51 +230,5 @@ static inline bool ec_slave_no_lrw(const struct ec_slave *s)
 	return ec_slave_features(s) & EC_FEAT_NO_LRW ||
 	       (s->has_general && s->general.flags & EC_SII_FLAG_NO_LRW);
 }
-
-static inline bool ec_slave_has_mailbox(const struct ec_slave *s)
-{
-	return s->info.protocols && s->info.std.rx_size && s->info.std.tx_size;
-}
-
-/* slave_pdo.c */
-int ec_slave_read_pdos(struct ec_slave *slave);
-void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
-const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
-
-/* pdo_coe.c */
-bool ec_slave_pdos_pending(const struct ec_slave *s);
-void ec_slave_clear_warning(struct ec_slave *s);
-void ec_slave_read_coe_pdos(struct ec_slave *s);
-int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
-void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
-
-/* al.c */
-int ec_al_read(struct ec_slave *slave);
-int ec_al_ack(struct ec_slave *slave);
-int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
-
-/* apply.c */
-void ec_apply_work(struct work_struct *work);
-unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page);
-
-/* apply_regs.c */
-int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);
-int ec_apply_clear_fmmus(struct ec_slave *s);
-int ec_apply_clear_pdos(struct ec_slave *s);
-void ec_apply_clear(struct ec_slave *s);
-
-/* apply_pdo.c */
-int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
-const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
-					   unsigned int sm);
-
-/* topology.c */
-void ec_topology_build(struct ec_slave **slaves, unsigned int n);
-
-/* scan_sii.c */
-void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
-
-/* scan_preop.c */
-void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean);
 
 #endif

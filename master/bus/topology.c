@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "../master.h"
 #include "slave.h"
+#include "scan.h"
 
 /* of receive times; the way through any port and back takes longer */
 #define NOISE_NS	40

@@ -152,7 +152,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 {
 	struct ec_master *m = j->m;
 	u16 before = READ_ONCE(m->dc.ref_station), now;
-	bool lost = before && m->dc.ref && m->dc.ref->gone;
+	bool lost = before && m->dc.ref && m->dc.ref->stop.gone;
 
 	if (found)
 		set_ref(j);

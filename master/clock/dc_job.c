@@ -182,7 +182,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m)
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
 		j->slaves[i] = ec_slave_ref(m->slaves[i]);
-	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->gone)
+	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->stop.gone)
 		j->followed = m->dc.ref->station;
 	up_read(&m->topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
@@ -283,7 +283,7 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 		j->nodes[i].dc = false;
 		if (s->dc_delay_only)
 			continue;
-		if (!s->dc_out && !s->gone)
+		if (!s->dc_out && !s->stop.gone)
 			ec_slave_warn(s, "no valid reply to DC register access in %d attempts; clock excluded until it replies\n",
 				      EC_DC_OUT_TRIES);
 		WRITE_ONCE(s->dc_out, true);

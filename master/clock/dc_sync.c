@@ -36,8 +36,7 @@ static bool settled(const struct ec_dc *dc)
 /* Nobody needs the way to this state to be gone on with; who has changed that has kicked. */
 static bool canceled(const struct ec_slave *s, u8 state)
 {
-	return READ_ONCE(s->interrupt) || READ_ONCE(s->requested) < state || s->gone ||
-	       s->master->base->stopping;
+	return READ_ONCE(s->requested) < state || ec_stop_worker(&s->stop);
 }
 
 /**
@@ -98,7 +97,7 @@ int ec_dc_sync_stop(struct ec_slave *s)
  */
 void ec_dc_sync_again(struct ec_slave *s)
 {
-	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->gone)
+	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->stop.gone)
 		return;
 	ec_slave_warn(s, "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
 	WRITE_ONCE(s->reconfigure, true);

@@ -63,7 +63,7 @@ static void tell_far(struct ec_master *m)
 		const struct ec_slave *s = m->slaves[i];
 		u32 diff = abs(READ_ONCE(s->dc_diff));
 
-		if (!READ_ONCE(s->dc_set) || s->gone || s->station == dc->ref_station)
+		if (!READ_ONCE(s->dc_set) || s->stop.gone || s->station == dc->ref_station)
 			continue;
 		clocks++;
 		far += s->dc_far;
@@ -94,7 +94,7 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 	for (; from < m->n_slaves && b->n < BATCH; from++) {
 		struct ec_slave *s = m->slaves[from];
 
-		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->gone)
+		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->stop.gone)
 			continue;
 		b->dg[b->n] = (struct ec_dg)EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_DIFF, 4,
 						  b->value[b->n]);

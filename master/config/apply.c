@@ -15,6 +15,9 @@
 #include "../wire/fmmu.h"
 #include "../wire/soe.h"
 #include "../link/xfer.h"
+#include "../bus/al.h"
+#include "../bus/slave_pdo.h"
+#include "apply.h"
 
 #define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
 #define HOLD_MS		1000	/* a transfer that takes longer is cut off */
@@ -100,10 +103,10 @@ static int set_state(struct ec_slave *s, u8 state)
 static void hold_mailbox(struct ec_slave *s)
 {
 	if (s->holds || READ_ONCE(s->requested) < EC_AL_PREOP ||
-	    ec_mbox_lock(s, &s->sdo_lock, HOLD_MS))
+	    ec_mbox_lock(&s->mbox, &s->mbox.sdo_lock, HOLD_MS))
 		return;
-	if (ec_mbox_lock(s, &s->mbox_lock, HOLD_MS))
-		up(&s->sdo_lock);
+	if (ec_mbox_lock(&s->mbox, &s->mbox.lock, HOLD_MS))
+		up(&s->mbox.sdo_lock);
 	else
 		s->holds = true;
 }
@@ -113,8 +116,8 @@ static void release_mailbox(struct ec_slave *s)
 	if (!s->holds)
 		return;
 	s->holds = false;
-	up(&s->mbox_lock);
-	up(&s->sdo_lock);
+	up(&s->mbox.lock);
+	up(&s->mbox.sdo_lock);
 }
 
 static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
@@ -174,9 +177,7 @@ static int to_init(struct ec_slave *s)
 	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
 	if (ec_slave_has_clock(s))
 		ec_dc_sync_stop(s);
-	s->mbox_counter = 0;
-	s->mbox_counts = false;
-	s->mbox_answered = false;
+	ec_mbox_reset(&s->mbox);
 	s->op_only = 0;
 	s->reconfigure = false;
 	s->ours = false;
@@ -184,40 +185,12 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
-/* SM0 and SM1 for a mailbox area; returns bytes of @page, 0 without mailbox */
-static unsigned int mailbox_sms(const struct ec_sii_mbox *mb, u8 *page)
-{
-	struct ec_sm out = { .start = mb->rx_offset, .len = mb->rx_size, .control = 0x26,
-			     .activate = EC_SM_ACT_ENABLE };
-	struct ec_sm in = { .start = mb->tx_offset, .len = mb->tx_size, .control = 0x22,
-			    .activate = EC_SM_ACT_ENABLE };
-
-	if (!mb->rx_size || !mb->tx_size)
-		return 0;
-	ec_sm_encode(&out, page);
-	ec_sm_encode(&in, page + EC_SM_PAGE);
-	return 2 * EC_SM_PAGE;
-}
-
-/**
- * ec_apply_mailbox_sms() - SyncManager pages of the standard mailbox
- * @slave: slave with its EEPROM
- * @page: result, SM0 and SM1
- *
- * Context: Any.
- * Return: bytes of @page, 0 without mailbox.
- */
-unsigned int ec_apply_mailbox_sms(const struct ec_slave *slave, u8 *page)
-{
-	return ec_slave_has_mailbox(slave) ? mailbox_sms(&slave->info.std, page) : 0;
-}
-
 /* state-machine.md 4.2, with the bootstrap mailbox */
 static int to_boot(struct ec_slave *s)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
 	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = mailbox_sms(&s->info.boot, page);
+	unsigned int len = ec_mbox_sms(&s->info.boot, page);
 	int ret;
 
 	if (!len) {
@@ -235,7 +208,7 @@ static int to_preop(struct ec_slave *s)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
 	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = ec_apply_mailbox_sms(s, page);
+	unsigned int len = ec_mbox_sms(&s->info.std, page);
 	int ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
 
 	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
@@ -265,7 +238,7 @@ static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 	int ret;
 
 	list_for_each_entry(sdo, &c->sdos, list) {
-		ret = ec_coe_download(s, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
+		ret = ec_coe_download(&s->mbox, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
 				      &abort, NULL);
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
@@ -301,7 +274,7 @@ static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
 	list_for_each_entry(i, &c->idns, list) {
 		if (i->state != state)
 			continue;
-		ret = ec_soe_write(s, i->drive, i->idn, i->data, i->size, &error, NULL);
+		ret = ec_soe_write(&s->mbox, i->drive, i->idn, i->data, i->size, &error, NULL);
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
@@ -353,7 +326,7 @@ static int wait_flag(struct ec_slave *s, s32 ms)
 	u64 until = ktime_get_ns() + (u64)clamp(ms, 0, FLAG_MAX_MS) * NSEC_PER_MSEC;
 
 	while (ms > 0 && ktime_get_ns() < until) {
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->base->stopping)
+		if (ec_stop_worker(&s->stop))
 			return -ECANCELED;
 		usleep_range(1000, 1500);
 	}
@@ -372,7 +345,7 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_read_coe_pdos(s);
 	if (c) {
 		waits_for(s, "mailbox replies to its configuration");
-		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_eoe_apply(s, c) ?:
+		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_apply_ip(s, c) ?:
 		      ec_apply_pdos(s, c);
 		waits_for(s, NULL);
 		if (ret)
@@ -420,7 +393,7 @@ static int wait_outputs(struct ec_slave *s)
 	for (i = 0; i < limit; i++) {
 		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
 			return 0;
-		if (READ_ONCE(s->interrupt) || s->gone || s->master->base->stopping)
+		if (ec_stop_worker(&s->stop))
 			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
@@ -486,7 +459,7 @@ static void take_plan(struct ec_slave *s)
  */
 static int start_clean(struct ec_slave *s)
 {
-	int ret = ec_slave_has_mailbox(s) ? ec_mbox_forget(s) : 0;
+	int ret = ec_mbox_present(&s->mbox) ? ec_mbox_forget(&s->mbox) : 0;
 
 	if (ret == -ECANCELED)
 		return ret;
@@ -565,8 +538,8 @@ void ec_apply_work(struct work_struct *work)
 	int ret = 0;
 
 	mutex_lock(&s->lock);
-	WRITE_ONCE(s->worker, current);
-	for (i = 0; i < 16 && !ret && !s->gone && !m->base->stopping && !READ_ONCE(s->interrupt); i++) {
+	WRITE_ONCE(s->stop.worker, current);
+	for (i = 0; i < 16 && !ret && !ec_stop_worker(&s->stop); i++) {
 		take_plan(s);
 		ret = step(s);
 	}
@@ -583,7 +556,7 @@ void ec_apply_work(struct work_struct *work)
 		ec_slave_read_coe_pdos(s);
 	if (ret == 1 && s->read_pdos && ec_names_pending(s))
 		ec_names_read(s);
-	WRITE_ONCE(s->worker, NULL);
+	WRITE_ONCE(s->stop.worker, NULL);
 	mutex_unlock(&s->lock);
 	wake_up_all(&m->scan_wq);
 	ec_slave_unref(s);

@@ -7,6 +7,8 @@
 #include "../master.h"
 #include "../bus/slave.h"
 #include "../wire/coe.h"
+#include "../bus/slave_pdo.h"
+#include "apply.h"
 
 #define REFUSED		1
 #define LIST_TEXT	160	/* characters of PDOs in a line of the log */
@@ -16,7 +18,7 @@ static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32
 	u8 b[4];
 
 	put_unaligned_le32(value, b);
-	return ec_coe_download(s, index, sub, false, b, bytes, abort, NULL);
+	return ec_coe_download(&s->mbox, index, sub, false, b, bytes, abort, NULL);
 }
 
 /* Does the object hold @n values of @bytes bytes, as @value says? */
@@ -28,11 +30,11 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 	size_t got;
 	u8 b[4] = { 0 };
 
-	if (ec_coe_upload(s, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
+	if (ec_coe_upload(&s->mbox, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
 		return false;
 	for (i = 0; i < n; i++) {
 		memset(b, 0, sizeof(b));
-		if (ec_coe_upload(s, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
+		if (ec_coe_upload(&s->mbox, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
 		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
 			return false;
 	}
@@ -282,7 +284,7 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 	unsigned int sm;
 	int ret = 0;
 
-	if (!ec_slave_has_mailbox(s) || !(s->info.protocols & EC_SII_PROTO_COE))
+	if (!ec_mbox_present(&s->mbox) || !(s->info.protocols & EC_SII_PROTO_COE))
 		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
 	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
 		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);

@@ -6,6 +6,7 @@
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
 #include "../link/xfer.h"
+#include "apply.h"
 
 #define MAX_FMMU	16
 
@@ -38,7 +39,7 @@ static unsigned int count_fmmus(const struct ec_slave *s)
 
 static unsigned int first_sm(const struct ec_slave *s)
 {
-	return ec_slave_has_mailbox(s) ? 2 : 0;
+	return ec_mbox_present(&s->mbox) ? 2 : 0;
 }
 
 /* SM page for process data; NULL configuration: the EEPROM's defaults */
@@ -89,7 +90,7 @@ static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *
 static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
 {
 	return sm < s->n_sms && s->sms[sm].start >= EC_REG_DIGITAL_OUT &&
-	       !(sm < 2 && ec_slave_has_mailbox(s));
+	       !(sm < 2 && ec_mbox_present(&s->mbox));
 }
 
 /* Can the slave serve the layout of the session? */

@@ -8,6 +8,7 @@
 #include "../master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
+#include "../bus/slave_pdo.h"
 
 /**
  * ec_config_defaults() - start from the PDOs the slave has

@@ -254,7 +254,7 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 	lockdep_assert(lockdep_is_held(&c->session->master->topo) ||
 		       atomic_read(&c->session->master->show.showing));
 	buf[0] = '\0';
-	if (!c->slave || c->slave->gone)
+	if (!c->slave || c->slave->stop.gone)
 		len = absent(c, buf, size);
 	else if (ec_session_config_status(c) & EC_STATUS_SC_OP)
 		len = 0;

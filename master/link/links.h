@@ -58,6 +58,12 @@ struct ec_links {
 	unsigned int io_timeout_us;
 };
 
+/* wire time of the acyclic frames on their way */
+static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
+{
+	return atomic_read(&l->link[0].acyclic_ns);
+}
+
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);

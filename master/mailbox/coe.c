@@ -2,8 +2,6 @@
 #include <linux/slab.h>
 #include "coe.h"
 #include "mailbox.h"
-#include "../master.h"
-#include "../bus/slave.h"
 #include "../wire/mbox.h"
 #include "../wire/sdo.h"
 
@@ -35,23 +33,23 @@ static bool send_abort(const struct exchange *x)
 	return x->down ? x->dn.send_abort : x->up.send_abort;
 }
 
-static void tell_abort(struct ec_slave *slave, struct exchange *x, struct ec_mbox_buf *b,
+static void tell_abort(struct ec_mbox *mb, struct exchange *x, struct ec_mbox_buf *b,
 		       size_t cap, const bool *cancel)
 {
 	struct ec_mbox_limit limit = { .timeout_ms = 100, .cancel = cancel };
 	int len = tx(x, b->tx, cap);
 
 	if (len > 0)
-		ec_mbox_tell(slave, EC_MBOX_COE, b, len, &limit);
+		ec_mbox_tell(mb, EC_MBOX_COE, b, len, &limit);
 }
 
 /*
  * Other protocols may use the mailbox between the messages of a transfer, another
  * SDO transfer may not.
  */
-static int run(struct ec_slave *slave, struct exchange *x, const struct ec_mbox_limit *limit)
+static int run(struct ec_mbox *mb, struct exchange *x, const struct ec_mbox_limit *limit)
 {
-	size_t cap = slave->info.std.rx_size - EC_MBOX_HDR;
+	size_t cap = mb->sii->std.rx_size - EC_MBOX_HDR;
 	struct ec_mbox_ask ask = {
 		.type = EC_MBOX_COE, .first = true, .rx = rx, .ctx = x,
 		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SDO_TIMEOUT_MS,
@@ -63,31 +61,31 @@ static int run(struct ec_slave *slave, struct exchange *x, const struct ec_mbox_
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	ret = ec_mbox_lock(slave, &slave->sdo_lock, 0);
+	ret = ec_mbox_lock(mb, &mb->sdo_lock, 0);
 	if (ret)
 		goto out;
 	do {
 		ret = tx(x, b->tx, cap);
 		if (ret >= 0)
-			ret = ec_mbox_ask(slave, &ask, b, ret);
+			ret = ec_mbox_ask(mb, &ask, b, ret);
 		ask.first = false;
 	} while (ret == EC_MORE);
 	if (send_abort(x))
-		tell_abort(slave, x, b, cap, ask.cancel);
-	up(&slave->sdo_lock);
+		tell_abort(mb, x, b, cap, ask.cancel);
+	up(&mb->sdo_lock);
 out:
 	kfree(b);
 	return ret;
 }
 
-static int check(const struct ec_slave *slave)
+static int check(const struct ec_mbox *mb)
 {
-	return ec_mbox_check(slave, EC_SII_PROTO_COE, EC_SDO_MSG);
+	return ec_mbox_check(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
 }
 
 /**
  * ec_coe_upload() - read an object
- * @slave: slave
+ * @mb: mailbox of the slave
  * @index: object
  * @sub: subindex
  * @complete: complete access
@@ -103,30 +101,30 @@ static int check(const struct ec_slave *slave)
  * or larger than a datagram; -EAGAIN in INIT; -EPROTO, -EBADMSG for a wrong
  * answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
  */
-int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
+int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
 		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct exchange x = { .down = false };
-	int ret = check(slave);
+	int ret = check(mb);
 
 	*abort = 0;
 	*size = 0;
 	if (ret)
 		return ret;
 	ec_sdo_up_init(&x.up, index, sub, complete, data, cap);
-	ret = run(slave, &x, limit);
+	ret = run(mb, &x, limit);
 	if (ret == -EIO)
 		*abort = x.up.abort;
 	if (!ret)
 		*size = x.up.size;
-	ec_slave_dbg_result(slave, ret, "upload 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
+	ec_mbox_dbg_result(mb, ret, "upload 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
 			    sub, *abort, *size);
 	return ret;
 }
 
 /**
  * ec_coe_download() - write an object
- * @slave: slave
+ * @mb: mailbox of the slave
  * @index: object
  * @sub: subindex
  * @complete: complete access
@@ -138,21 +136,21 @@ int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_coe_upload().
  */
-int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, const u8 *data,
+int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const u8 *data,
 		    size_t size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct exchange x = { .down = true };
-	int ret = check(slave);
+	int ret = check(mb);
 
 	*abort = 0;
 	if (ret)
 		return ret;
 	ec_sdo_down_init(&x.dn, index, sub, complete, data, size,
-			 slave->info.std.rx_size - EC_MBOX_HDR);
-	ret = run(slave, &x, limit);
+			 mb->sii->std.rx_size - EC_MBOX_HDR);
+	ret = run(mb, &x, limit);
 	if (ret == -EIO)
 		*abort = x.dn.abort;
-	ec_slave_dbg_result(slave, ret, "download 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
+	ec_mbox_dbg_result(mb, ret, "download 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
 			    sub, *abort, size);
 	return ret;
 }

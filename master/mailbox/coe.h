@@ -6,13 +6,13 @@
 #include <linux/types.h>
 
 struct ec_mbox_limit;
-struct ec_slave;
+struct ec_mbox;
 
 #define EC_SDO_TIMEOUT_MS	1000
 
-int ec_coe_upload(struct ec_slave *slave, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
+int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
 		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit);
-int ec_coe_download(struct ec_slave *slave, u16 index, u8 sub, bool complete, const u8 *data,
+int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const u8 *data,
 		    size_t size, u32 *abort, const struct ec_mbox_limit *limit);
 
 #endif

@@ -6,10 +6,10 @@
 #include <linux/types.h>
 
 struct ec_emerg_ring;
-struct ec_slave;
+struct ec_mbox;
 
 /**
- * struct ec_emerg - the kernel's side of a ring; under ec_slave.emerg_lock
+ * struct ec_emerg - the kernel's side of a ring; under ec_mbox.emerg_lock
  * @ring: mapped by the application; of it only @tail is read, and not trusted
  * @data: entries, mapped
  * @count: how many
@@ -24,9 +24,8 @@ struct ec_emerg {
 	u32 overruns;
 };
 
-void ec_emerg_set(struct ec_slave *slave, struct ec_emerg *e);
-void ec_emerg_describe(struct ec_slave *slave, struct ec_emerg *e, u32 data);
-void ec_emerg_push(struct ec_slave *slave, const u8 *message);
-void ec_emerg_poll(struct ec_slave *slave);
+void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e);
+void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data);
+void ec_emerg_push(struct ec_mbox *mb, const u8 *message);
 
 #endif

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
-#include "../config/config.h"
 #include "eoe.h"
 #include "mailbox.h"
-#include "../master.h"
-#include "../bus/slave.h"
 #include "../wire/mbox.h"
 
 #define TIMEOUT_MS	1000
@@ -29,7 +26,7 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 }
 
 /* @len bytes of @b->tx go out, the answer of type @resp comes to @b->rx: its length. */
-static int exchange(struct ec_slave *slave, struct ec_mbox_buf *b, size_t len, u8 resp,
+static int exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 resp,
 		    u16 *result)
 {
 	struct answer a = { .type = resp, .result = result };
@@ -37,17 +34,17 @@ static int exchange(struct ec_slave *slave, struct ec_mbox_buf *b, size_t len, u
 		.type = EC_MBOX_EOE, .first = true, .timeout_ms = TIMEOUT_MS, .rx = rx, .ctx = &a,
 	};
 
-	return ec_mbox_ask(slave, &ask, b, len) ?: a.len;
+	return ec_mbox_ask(mb, &ask, b, len) ?: a.len;
 }
 
-static int check(const struct ec_slave *slave)
+static int check(const struct ec_mbox *mb)
 {
-	return ec_mbox_check(slave, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
+	return ec_mbox_check(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
 }
 
 /**
  * ec_eoe_set_ip() - give a slave IP parameters
- * @slave: slave
+ * @mb: mailbox of the slave
  * @p: parameters; those not in @which stay as they are
  * @result: EC_EOE_OK... of the slave
  *
@@ -59,10 +56,10 @@ static int check(const struct ec_slave *slave)
  * -EAGAIN in INIT; -EBADMSG for a wrong answer; -ETIMEDOUT; -EINTR;
  * -ECANCELED; -ENOMEM.
  */
-int ec_eoe_set_ip(struct ec_slave *slave, const struct ec_eoe_ip *p, u16 *result)
+int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
 {
 	struct ec_mbox_buf *b;
-	int ret = check(slave);
+	int ret = check(mb);
 
 	*result = 0;
 	if (ret)
@@ -71,17 +68,17 @@ int ec_eoe_set_ip(struct ec_slave *slave, const struct ec_eoe_ip *p, u16 *result
 	if (!b)
 		return -ENOMEM;
 	ret = ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
-	ret = exchange(slave, b, ret, EC_EOE_SET_IP_RESP, result);
+	ret = exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result);
 	kfree(b);
 	ret = min(ret, 0);
-	ec_slave_dbg_result(slave, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
+	ec_mbox_dbg_result(mb, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
 			    *result);
 	return ret;
 }
 
 /**
  * ec_eoe_get_ip() - ask a slave for its IP parameters
- * @slave: slave
+ * @mb: mailbox of the slave
  * @p: parameters, @which says what the slave told
  * @result: EC_EOE_OK... of the slave
  *
@@ -90,10 +87,10 @@ int ec_eoe_set_ip(struct ec_slave *slave, const struct ec_eoe_ip *p, u16 *result
  * Context: Process. Waits for bus traffic.
  * Return: as ec_eoe_set_ip().
  */
-int ec_eoe_get_ip(struct ec_slave *slave, struct ec_eoe_ip *p, u16 *result)
+int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
 {
 	struct ec_mbox_buf *b;
-	int ret = check(slave);
+	int ret = check(mb);
 
 	*result = 0;
 	if (ret)
@@ -102,42 +99,10 @@ int ec_eoe_get_ip(struct ec_slave *slave, struct ec_eoe_ip *p, u16 *result)
 	if (!b)
 		return -ENOMEM;
 	ret = ec_eoe_result_encode(b->tx, sizeof(b->tx), EC_EOE_GET_IP_REQ, 0);
-	ret = exchange(slave, b, ret, EC_EOE_GET_IP_RESP, result);
+	ret = exchange(mb, b, ret, EC_EOE_GET_IP_RESP, result);
 	if (ret >= 0)
 		ret = ec_eoe_ip_decode(b->rx, ret, p) ? -EBADMSG : 0;
 	kfree(b);
-	ec_slave_dbg_result(slave, ret, "get IP parameters, EoE result 0x%04x", *result);
-	return ret;
-}
-
-/**
- * ec_eoe_apply() - write the configured IP parameters
- * @slave: slave in PREOP
- * @c: its configuration
- *
- * Context: Worker. Waits for bus traffic.
- * Return: 0, also when there are none; or as ec_eoe_set_ip(), told already.
- */
-int ec_eoe_apply(struct ec_slave *slave, const struct ec_config *c)
-{
-	char why[96];
-	u16 result;
-	int ret;
-
-	if (!c->ip.which)
-		return 0;
-	ret = ec_eoe_set_ip(slave, &c->ip, &result);
-	if (!ret || ret == -ECANCELED || ret == -EINTR)
-		return ret;
-	if (ret == -EREMOTEIO)
-		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED,
-			      "IP parameters refused: EoE result 0x%04x (%s)", result,
-			      ec_eoe_result_text(result));
-	else if (ret == -EPROTONOSUPPORT)
-		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED,
-			      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
-	else
-		ec_slave_fail(slave, EC_SLAVE_CONFIG_FAILED, "IP parameters failed: %s",
-			      ec_mbox_fail_text(ret, "EoE", why, sizeof(why)));
+	ec_mbox_dbg_result(mb, ret, "get IP parameters, EoE result 0x%04x", *result);
 	return ret;
 }

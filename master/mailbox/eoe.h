@@ -6,11 +6,9 @@
 #include <linux/types.h>
 #include "../wire/eoe.h"
 
-struct ec_config;
-struct ec_slave;
+struct ec_mbox;
 
-int ec_eoe_set_ip(struct ec_slave *slave, const struct ec_eoe_ip *p, u16 *result);
-int ec_eoe_get_ip(struct ec_slave *slave, struct ec_eoe_ip *p, u16 *result);
-int ec_eoe_apply(struct ec_slave *slave, const struct ec_config *c);
+int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result);
+int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result);
 
 #endif

@@ -3,13 +3,15 @@
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
 #include <linux/slab.h>
+#include "../link/links.h"
+#include "../link/xfer.h"
+#include "../wire/al.h"
+#include "../wire/coe.h"
+#include "../wire/fmmu.h"
+#include "../wire/mbox.h"
+#include "../wire/regs.h"
 #include "emerg.h"
 #include "mailbox.h"
-#include "../master.h"
-#include "../bus/slave.h"
-#include "../wire/coe.h"
-#include "../wire/mbox.h"
-#include "../link/xfer.h"
 
 #define DRAIN	16	/* messages at most that no transfer expects */
 
@@ -31,15 +33,60 @@ static struct until in_ms(u32 ms, const bool *cancel)
 	return (struct until){ ktime_get_ns() + (u64)ms * NSEC_PER_MSEC, cancel };
 }
 
-/* Others who use the mailbox do not care what happens to the configuration. */
-static bool interrupted(const struct ec_slave *slave)
+/**
+ * ec_mbox_init() - prepare the mailbox of a slave
+ * @mb: zeroed structure whose immutable members are set
+ *
+ * Context: Any.
+ */
+void ec_mbox_init(struct ec_mbox *mb)
 {
-	return READ_ONCE(slave->interrupt) && READ_ONCE(slave->worker) == current;
+	sema_init(&mb->sdo_lock, 1);
+	sema_init(&mb->lock, 1);
+	init_waitqueue_head(&mb->turn);
+	spin_lock_init(&mb->emerg_lock);
+	spin_lock_init(&mb->kept_lock);
+	INIT_LIST_HEAD(&mb->kept);
+}
+
+/**
+ * ec_mbox_reset() - the slave is in INIT: its mailbox forgets all messages
+ * @mb: mailbox of a slave, @lock held
+ *
+ * Context: The slave's worker.
+ */
+void ec_mbox_reset(struct ec_mbox *mb)
+{
+	mb->counter = 0;
+	mb->counts = false;
+	mb->answered = false;
+}
+
+/**
+ * ec_mbox_sms() - SyncManager pages of a mailbox
+ * @area: standard or bootstrap mailbox
+ * @page: result, SM0 and SM1, 2 * EC_SM_PAGE bytes
+ *
+ * Context: Any.
+ * Return: bytes of @page, 0 without mailbox.
+ */
+unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page)
+{
+	struct ec_sm out = { .start = area->rx_offset, .len = area->rx_size, .control = 0x26,
+			     .activate = EC_SM_ACT_ENABLE };
+	struct ec_sm in = { .start = area->tx_offset, .len = area->tx_size, .control = 0x22,
+			    .activate = EC_SM_ACT_ENABLE };
+
+	if (!area->rx_size || !area->tx_size)
+		return 0;
+	ec_sm_encode(&out, page);
+	ec_sm_encode(&in, page + EC_SM_PAGE);
+	return 2 * EC_SM_PAGE;
 }
 
 /**
  * ec_mbox_lock() - wait for one's turn
- * @slave: slave
+ * @mb: mailbox of the slave
  * @lock: its @sdo_lock or @mbox_lock
  * @ms: the slave's worker waits at most so long; 0: as long as it takes
  *
@@ -49,31 +96,31 @@ static bool interrupted(const struct ec_slave *slave)
  * Context: Process. May sleep.
  * Return: 0; -EINTR; the slave's worker: -ECANCELED when it shall leave, -ETIMEDOUT.
  */
-int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms)
+int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms)
 {
 	u64 until = ktime_get_ns() + (u64)ms * NSEC_PER_MSEC;
 	int ret = 0;
 
-	if (READ_ONCE(slave->worker) != current) {
-		ret = wait_event_interruptible(slave->turn, READ_ONCE(slave->awaits) != lock);
+	if (READ_ONCE(mb->stop->worker) != current) {
+		ret = wait_event_interruptible(mb->turn, READ_ONCE(mb->awaits) != lock);
 		return ret ? -EINTR : down_interruptible(lock);
 	}
-	WRITE_ONCE(slave->awaits, lock);
+	WRITE_ONCE(mb->awaits, lock);
 	while (!ret && down_timeout(lock, msecs_to_jiffies(20))) {
-		if (interrupted(slave))
+		if (ec_stop_interrupted(mb->stop))
 			ret = -ECANCELED;
 		else if (ms && ktime_get_ns() > until)
 			ret = -ETIMEDOUT;
 	}
-	WRITE_ONCE(slave->awaits, NULL);
-	wake_up_all(&slave->turn);
+	WRITE_ONCE(mb->awaits, NULL);
+	wake_up_all(&mb->turn);
 	return ret;
 }
 
 /* Why an exchange has to end now; 0: go on. */
-static int over(const struct ec_slave *slave, const struct until *u)
+static int over(const struct ec_mbox *mb, const struct until *u)
 {
-	if (slave->gone || slave->master->base->stopping || interrupted(slave) ||
+	if (ec_stop_all(mb->stop) || ec_stop_interrupted(mb->stop) ||
 	    (u->cancel && READ_ONCE(*u->cancel)))
 		return -ECANCELED;
 	if (signal_pending(current))
@@ -106,28 +153,28 @@ static void pause_longer(unsigned int *us)
  * opens the mailbox, the last byte hands it over (ETG.1000.4 clause 6.7.2).
  * That one must not happen twice.
  */
-static int once(struct ec_slave *slave, u8 cmd, u16 ado, void *data, u16 len)
+static int once(struct ec_mbox *mb, u8 cmd, u16 ado, void *data, u16 len)
 {
-	u16 room = ec_access_room(&slave->master->links), at, n;
+	u16 room = ec_access_room(mb->links), at, n;
 
 	for (at = 0; at < len; at += n) {
 		struct ec_dg dg;
 		int ret;
 
 		n = min_t(u16, len - at, room);
-		dg = (struct ec_dg)EC_DG(cmd, slave->station, ado + at, n, data + at);
+		dg = (struct ec_dg)EC_DG(cmd, mb->station, ado + at, n, data + at);
 		dg.repeat = at + n < len;
-		ret = ec_xfer(&slave->master->links, &dg, 1);
+		ret = ec_xfer(mb->links, &dg, 1);
 		if (ret || dg.wkc != 1)
 			return ret ?: -EIO;
 	}
 	return 0;
 }
 
-static int full(struct ec_slave *slave)
+static int full(struct ec_mbox *mb)
 {
 	u8 status;
-	int ret = ec_xfer_fprd(&slave->master->links, slave->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
+	int ret = ec_xfer_fprd(mb->links, mb->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
 			       &status, 1);
 
 	return ret ? ret : !!(status & EC_SM_ST_FULL);
@@ -137,19 +184,19 @@ static int full(struct ec_slave *slave)
  * The frame that fetched a message is lost, and with it the message: let the
  * slave put it there again (ETG.1000.4 clause 6.7.3, registers 0x080E, 0x080F).
  */
-static int repeat_request(struct ec_slave *slave)
+static int repeat_request(struct ec_mbox *mb)
 {
 	u16 ado = EC_REG_SM(1) + EC_SM_OFS_ACTIVATE;
 	unsigned int i;
 	u8 b[2];
-	int ret = ec_xfer_fprd(&slave->master->links, slave->station, ado, b, 2);
+	int ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
 
 	if (ret)
 		return ret;
 	b[0] ^= EC_SM_ACT_REPEAT;
-	ret = ec_xfer_fpwr(&slave->master->links, slave->station, ado, b, 1);
+	ret = ec_xfer_fpwr(mb->links, mb->station, ado, b, 1);
 	for (i = 0; i < 50 && !ret; i++) {
-		ret = ec_xfer_fprd(&slave->master->links, slave->station, ado, b, 2);
+		ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
 		if (!ret && !(b[0] & EC_SM_ACT_REPEAT) == !(b[1] & EC_SM_PDI_REPEAT_ACK))
 			return 0;
 		usleep_range(200, 400);
@@ -161,15 +208,15 @@ static int repeat_request(struct ec_slave *slave)
  * When a slave has repeated its last message although nothing was lost, the counter shows
  * that the message is not a new one; only for slaves that count their messages.
  */
-static bool is_known(struct ec_slave *slave, u8 counter)
+static bool is_known(struct ec_mbox *mb, u8 counter)
 {
-	bool again = slave->mbox_repeats && slave->mbox_counts && counter == slave->mbox_seen;
+	bool again = mb->repeats && mb->counts && counter == mb->seen;
 
-	slave->mbox_repeats = false;
+	mb->repeats = false;
 	if (again)
 		return true;
-	slave->mbox_counts = counter && slave->mbox_seen && counter != slave->mbox_seen;
-	slave->mbox_seen = counter;
+	mb->counts = counter && mb->seen && counter != mb->seen;
+	mb->seen = counter;
 	return false;
 }
 
@@ -177,125 +224,124 @@ static bool is_known(struct ec_slave *slave, u8 counter)
  * Beside a cycle each look takes one or two of its periods. Where the mailbox has room on
  * the wire it is read at once: an empty one gives nothing.
  */
-static bool read_at_once(const struct ec_slave *slave)
+static bool read_at_once(const struct ec_mbox *mb)
 {
-	struct ec_master *m = slave->master;
-	u32 slack = ec_access_slack_ns(&m->links);
+	u32 slack = ec_access_slack_ns(mb->links);
 	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
-				  slave->info.std.tx_size);
+				  mb->sii->std.tx_size);
 
-	return slave->mbox_counts && slack != ~0u &&
-	       atomic_read(&m->links.link[0].acyclic_ns) + ns <= slack / 2;
+	return mb->counts && slack != ~0u &&
+	       ec_links_acyclic_ns(mb->links) + ns <= slack / 2;
 }
 
 /*
  * Take one message out of the slave's mailbox: bytes behind the header, or 0:
  * empty. @blind: without a look whether there is one.
  */
-static int fetch(struct ec_slave *slave, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind)
+static int fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind)
 {
-	u16 size = slave->info.std.tx_size;
+	u16 size = mb->sii->std.tx_size;
 	struct ec_rbuf r;
 	int ret;
 
 	if (size > EC_MBOX_MAX)
 		return -EMSGSIZE;
-	ret = blind ? 1 : full(slave);
+	ret = blind ? 1 : full(mb);
 	if (ret <= 0)
 		return ret;
-	ret = once(slave, EC_CMD_FPRD, slave->info.std.tx_offset, b->raw, size);
-	if (ret == -ETIMEDOUT && !full(slave)) {
-		repeat_request(slave);
-		slave->mbox_repeats = true;
+	ret = once(mb, EC_CMD_FPRD, mb->sii->std.tx_offset, b->raw, size);
+	if (ret == -ETIMEDOUT && !full(mb)) {
+		repeat_request(mb);
+		mb->repeats = true;
 	}
 	if (ret)
 		return ret == -EIO || ret == -ETIMEDOUT ? 0 : ret;
 	r = ec_rbuf(b->raw, size);
 	if (ec_mbox_hdr_decode(&r, h))
 		return -EBADMSG;
-	if (is_known(slave, h->counter))
+	if (is_known(mb, h->counter))
 		return 0;
 	memcpy(b->rx, r.p, h->len);
 	return h->len;
 }
 
-static bool emergency(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
 {
 	struct ec_coe_emergency e;
 
 	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
 		return false;
-	ec_slave_warn(slave, "CoE emergency: code 0x%04x, error register 0x%02x\n", e.code,
+	ec_mbox_warn(mb, "CoE emergency: code 0x%04x, error register 0x%02x\n", e.code,
 		      e.reg);
-	ec_emerg_push(slave, rx + EC_COE_HDR);
+	ec_emerg_push(mb, rx + EC_COE_HDR);
 	return true;
 }
 
-static void flush(struct ec_slave *slave, unsigned int left)
+static void flush(struct ec_mbox *mb, unsigned int left)
 {
-	while (slave->n_kept > left) {
-		struct kept *k = list_first_entry(&slave->kept, struct kept, list);
+	while (mb->n_kept > left) {
+		struct kept *k = list_first_entry(&mb->kept, struct kept, list);
 
 		list_del(&k->list);
-		slave->n_kept--;
+		mb->n_kept--;
 		kfree(k);
 	}
 }
 
 /* A VoE message somebody may read later; the oldest go when there are too many. */
-static void keep(struct ec_slave *slave, const u8 *rx, u16 len)
+static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 {
 	struct kept *k;
 
-	if (!READ_ONCE(slave->keep_voe))
+	if (!READ_ONCE(mb->keep_voe))
 		return;
 	k = kmalloc(struct_size(k, data, len), GFP_KERNEL);
 	if (!k)
 		return;
 	k->len = len;
 	memcpy(k->data, rx, len);
-	spin_lock(&slave->kept_lock);
-	if (slave->keep_voe && slave->n_kept == EC_MBOX_KEPT)
-		ec_slave_warn(slave, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
+	spin_lock(&mb->kept_lock);
+	if (mb->keep_voe && mb->n_kept == EC_MBOX_KEPT)
+		ec_mbox_warn(mb, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
 			      EC_MBOX_KEPT);
-	flush(slave, EC_MBOX_KEPT - 1);
-	list_add_tail(&k->list, &slave->kept);
-	slave->n_kept++;
-	if (!slave->keep_voe)
-		flush(slave, 0);
-	spin_unlock(&slave->kept_lock);
+	flush(mb, EC_MBOX_KEPT - 1);
+	list_add_tail(&k->list, &mb->kept);
+	mb->n_kept++;
+	if (!mb->keep_voe)
+		flush(mb, 0);
+	spin_unlock(&mb->kept_lock);
 }
 
 /**
  * ec_mbox_keep_voe() - are there readers of VoE messages?
- * @slave: slave
+ * @mb: mailbox of the slave
  * @on: keep those that come while somebody else uses the mailbox; false: drop
  *	them, those that are kept too
  *
  * Context: Process.
  */
-void ec_mbox_keep_voe(struct ec_slave *slave, bool on)
+void ec_mbox_keep_voe(struct ec_mbox *mb, bool on)
 {
-	spin_lock(&slave->kept_lock);
-	WRITE_ONCE(slave->keep_voe, on);
+	spin_lock(&mb->kept_lock);
+	WRITE_ONCE(mb->keep_voe, on);
 	if (!on)
-		flush(slave, 0);
-	spin_unlock(&slave->kept_lock);
+		flush(mb, 0);
+	spin_unlock(&mb->kept_lock);
 }
 
 /* The oldest kept message to @rx: its length; -ENOMSG: there is none. */
-static int take_kept(struct ec_slave *slave, u8 *rx)
+static int take_kept(struct ec_mbox *mb, u8 *rx)
 {
 	struct kept *k;
 	int len;
 
-	spin_lock(&slave->kept_lock);
-	k = list_first_entry_or_null(&slave->kept, struct kept, list);
+	spin_lock(&mb->kept_lock);
+	k = list_first_entry_or_null(&mb->kept, struct kept, list);
 	if (k) {
 		list_del(&k->list);
-		slave->n_kept--;
+		mb->n_kept--;
 	}
-	spin_unlock(&slave->kept_lock);
+	spin_unlock(&mb->kept_lock);
 	if (!k)
 		return -ENOMSG;
 	len = k->len;
@@ -305,29 +351,29 @@ static int take_kept(struct ec_slave *slave, u8 *rx)
 }
 
 /* What comes unasked goes where it belongs. True: it was such a message. */
-static bool unasked(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+static bool unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
 {
 	if (h->type == EC_MBOX_VOE) {
-		keep(slave, rx, h->len);
+		keep(mb, rx, h->len);
 		return true;
 	}
-	return emergency(slave, h, rx);
+	return emergency(mb, h, rx);
 }
 
-static int error_reply(struct ec_slave *slave, const struct ec_mbox_hdr *h, const u8 *rx)
+static int error_reply(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
 {
 	struct ec_rbuf r = ec_rbuf(rx, h->len);
 	u16 detail;
 
 	if (ec_mbox_error_decode(&r, &detail))
 		return -EBADMSG;
-	ec_slave_warn(slave, "mailbox error reply 0x%04x (%s)\n", detail, ec_mbox_error_text(detail));
+	ec_mbox_warn(mb, "mailbox error reply 0x%04x (%s)\n", detail, ec_mbox_error_text(detail));
 	return ec_mbox_error_errno(detail);
 }
 
 /**
  * ec_mbox_drain() - empty the mailbox of what nobody waits for
- * @slave: slave with mailbox, @mbox_lock held
+ * @mb: mailbox of a slave with mailbox, @mbox_lock held
  * @b: buffers
  *
  * Emergencies and VoE messages are kept, what an earlier exchange has left is
@@ -336,34 +382,34 @@ static int error_reply(struct ec_slave *slave, const struct ec_mbox_hdr *h, cons
  * Context: Process. Waits for bus traffic.
  * Return: 0 or as ec_xfer().
  */
-int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b)
+int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b)
 {
 	struct ec_mbox_hdr h;
 	unsigned int i;
 	int ret = 1;
 
 	for (i = 0; i < DRAIN && ret; i++) {
-		ret = fetch(slave, b, &h, false);
+		ret = fetch(mb, b, &h, false);
 		if (ret < 0 && ret != -EBADMSG)
 			return ret;
 		if (ret > 0)
-			unasked(slave, &h, b->rx);
+			unasked(mb, &h, b->rx);
 	}
 	return 0;
 }
 
 /* Read the mailbox until it is empty; -EBUSY: the slave fills it without end. */
-static int discard_all(struct ec_slave *slave, struct ec_mbox_buf *b)
+static int discard_all(struct ec_mbox *mb, struct ec_mbox_buf *b)
 {
 	struct ec_mbox_hdr h;
 	unsigned int i;
 	int ret;
 
 	for (i = 0; i < DRAIN; i++) {
-		ret = full(slave);
+		ret = full(mb);
 		if (ret <= 0)
 			return ret;
-		ret = fetch(slave, b, &h, true);
+		ret = fetch(mb, b, &h, true);
 		if (ret < 0 && ret != -EBADMSG)
 			return ret;
 	}
@@ -372,7 +418,7 @@ static int discard_all(struct ec_slave *slave, struct ec_mbox_buf *b)
 
 /**
  * ec_mbox_forget() - empty the mailbox for a new application
- * @slave: slave with mailbox, in PREOP
+ * @mb: mailbox of a slave with mailbox, in PREOP
  *
  * What the slave has sent before, emergencies and VoE messages too, is none of it.
  *
@@ -380,22 +426,22 @@ static int discard_all(struct ec_slave *slave, struct ec_mbox_buf *b)
  * Return: 0; -ENOMEM; -ECANCELED; -EBUSY when it cannot be emptied; -EMSGSIZE when it is
  * larger than a datagram; or as ec_xfer().
  */
-int ec_mbox_forget(struct ec_slave *slave)
+int ec_mbox_forget(struct ec_mbox *mb)
 {
 	struct ec_mbox_buf *b = kmalloc(sizeof(*b), GFP_KERNEL);
 	int ret;
 
 	if (!b)
 		return -ENOMEM;
-	ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
+	ret = ec_mbox_lock(mb, &mb->lock, 0);
 	if (ret)
 		goto out;
-	ret = discard_all(slave, b);
-	slave->mbox_answered = !ret;
-	spin_lock(&slave->kept_lock);
-	flush(slave, 0);
-	spin_unlock(&slave->kept_lock);
-	up(&slave->mbox_lock);
+	ret = discard_all(mb, b);
+	mb->answered = !ret;
+	spin_lock(&mb->kept_lock);
+	flush(mb, 0);
+	spin_unlock(&mb->kept_lock);
+	up(&mb->lock);
 out:
 	kfree(b);
 	return ret;
@@ -414,24 +460,24 @@ static void encode(struct ec_mbox_buf *b, const struct ec_mbox_hdr *h, u16 size)
  * A full mailbox (working counter 0) is tried again; the slave may wait until its own
  * message is read. A lost frame is not: the message may have arrived, and the answer tells.
  */
-static int send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		const struct until *until)
 {
-	u16 size = slave->info.std.rx_size;
+	u16 size = mb->sii->std.rx_size;
 	struct ec_mbox_hdr h = { .len = len, .type = type };
 	unsigned int us = 50;
 	int ret;
 
 	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
 		return -EMSGSIZE;
-	slave->mbox_counter = ec_mbox_next_counter(slave->mbox_counter);
-	h.counter = slave->mbox_counter;
+	mb->counter = ec_mbox_next_counter(mb->counter);
+	h.counter = mb->counter;
 	for (;;) {
 		encode(b, &h, size);
-		ret = once(slave, EC_CMD_FPWR, slave->info.std.rx_offset, b->raw, size);
+		ret = once(mb, EC_CMD_FPWR, mb->sii->std.rx_offset, b->raw, size);
 		if (ret != -EIO)
 			return ret == -ETIMEDOUT ? 0 : ret;
-		ret = over(slave, until) ?: ec_mbox_drain(slave, b);
+		ret = over(mb, until) ?: ec_mbox_drain(mb, b);
 		if (ret)
 			return ret;
 		pause_us(&us);
@@ -443,25 +489,25 @@ static int send(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t l
  * -errno, that of a mailbox error reply, too. What comes unasked is kept,
  * answers of other protocols are of nobody: who asks holds the lock.
  */
-static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const struct until *until)
+static int recv(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, const struct until *until)
 {
 	struct ec_mbox_hdr h;
 	unsigned int us = 20;
 	int ret;
 
 	for (;;) {
-		ret = fetch(slave, b, &h, read_at_once(slave));
+		ret = fetch(mb, b, &h, read_at_once(mb));
 		if (ret < 0 && ret != -ETIMEDOUT)
 			return ret;
 		if (ret > 0) {
 			if (h.type == EC_MBOX_ERR)
-				return error_reply(slave, &h, b->rx);
-			if (!unasked(slave, &h, b->rx) && h.type == type)
+				return error_reply(mb, &h, b->rx);
+			if (!unasked(mb, &h, b->rx) && h.type == type)
 				return ret;
 			us = 20;
 		}
 		/* also a slave that talks without end has to answer in time */
-		ret = over(slave, until);
+		ret = over(mb, until);
 		if (ret)
 			return ret;
 		pause_longer(&us);
@@ -470,7 +516,7 @@ static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const st
 
 /**
  * ec_mbox_check() - can this protocol be used with the slave, in PREOP or above?
- * @slave: slave
+ * @mb: mailbox of the slave
  * @protocol: EC_SII_PROTO_*
  * @message: bytes behind the mailbox header it needs at least
  *
@@ -478,26 +524,26 @@ static int recv(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, const st
  * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EMSGSIZE for a
  * mailbox that is too small or larger than a datagram.
  */
-int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message)
+int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 {
-	if (!ec_slave_has_mailbox(slave) || !(slave->info.protocols & protocol))
+	if (!ec_mbox_present(mb) || !(mb->sii->protocols & protocol))
 		return -EPROTONOSUPPORT;
 	/* the EEPROM may say anything; a message is one datagram */
-	if (slave->info.std.rx_size < EC_MBOX_HDR + message ||
-	    slave->info.std.rx_size > EC_MBOX_MAX || slave->info.std.tx_size > EC_MBOX_MAX)
+	if (mb->sii->std.rx_size < EC_MBOX_HDR + message ||
+	    mb->sii->std.rx_size > EC_MBOX_MAX || mb->sii->std.tx_size > EC_MBOX_MAX)
 		return -EMSGSIZE;
 	return 0;
 }
 
 /* In INIT there is no mailbox. The lock is held: a slave that only passes INIT is waited for. */
-static int off(const struct ec_slave *slave)
+static int off(const struct ec_mbox *mb)
 {
-	return (READ_ONCE(slave->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ? -EAGAIN : 0;
+	return (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ? -EAGAIN : 0;
 }
 
 /**
  * ec_mbox_ask() - send one message, wait for the answer
- * @slave: slave that ec_mbox_check() is content with
+ * @mb: mailbox of a slave that ec_mbox_check() is content with
  * @a: what is asked
  * @b: message in @tx, the answer will be in @rx
  * @len: bytes of the message
@@ -510,26 +556,26 @@ static int off(const struct ec_slave *slave)
  * -EBADMSG for a message whose header is wrong; the errno of a mailbox error
  * reply; or as ec_xfer().
  */
-int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
+int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
 		size_t len)
 {
 	struct until until;
-	int ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
+	int ret = ec_mbox_lock(mb, &mb->lock, 0);
 
 	if (ret)
 		return ret;
-	ret = off(slave);
+	ret = off(mb);
 	/* after an answer nothing of an earlier exchange can come any more */
-	if (!ret && a->first && !slave->mbox_answered)
-		ret = ec_mbox_drain(slave, b);
-	slave->mbox_answered = false;
+	if (!ret && a->first && !mb->answered)
+		ret = ec_mbox_drain(mb, b);
+	mb->answered = false;
 	until = in_ms(a->timeout_ms, a->cancel);
 	if (!ret)
-		ret = send(slave, a->type, b, len, &until);
+		ret = send(mb, a->type, b, len, &until);
 	if (ret)
 		goto out;
 	do {
-		ret = recv(slave, a->type, b, &until);
+		ret = recv(mb, a->type, b, &until);
 		if (ret >= 0)
 			ret = a->rx(a->ctx, b->rx, ret);
 		if (ret == EC_WAIT)
@@ -537,15 +583,15 @@ int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_m
 	} while (ret == EC_WAIT || (ret == EC_STALE && ktime_get_ns() <= until.ns));
 	if (ret == EC_STALE)
 		ret = -ETIMEDOUT;
-	slave->mbox_answered = ret >= 0;
+	mb->answered = ret >= 0;
 out:
-	up(&slave->mbox_lock);
+	up(&mb->lock);
 	return ret;
 }
 
 /**
  * ec_mbox_tell() - send one message that has no answer
- * @slave: slave that ec_mbox_check() is content with
+ * @mb: mailbox of a slave that ec_mbox_check() is content with
  * @type: enum ec_mbox_type
  * @b: message in @tx
  * @len: bytes of the message
@@ -555,41 +601,41 @@ out:
  * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as
  * ec_xfer().
  */
-int ec_mbox_tell(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit)
 {
 	struct until until = in_ms(limit->timeout_ms, limit->cancel);
-	int ret = ec_mbox_lock(slave, &slave->mbox_lock, 0);
+	int ret = ec_mbox_lock(mb, &mb->lock, 0);
 
 	if (ret)
 		return ret;
-	ret = over(slave, &until) ?: off(slave) ?: send(slave, type, b, len, &until);
-	up(&slave->mbox_lock);
+	ret = over(mb, &until) ?: off(mb) ?: send(mb, type, b, len, &until);
+	up(&mb->lock);
 	return ret;
 }
 
 /* One look for a VoE message with the lock held: its length, or -ENOMSG, or -errno. */
-static int look_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind)
+static int look_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
 {
 	struct ec_mbox_hdr h;
-	int ret = take_kept(slave, b->rx);
+	int ret = take_kept(mb, b->rx);
 
 	if (ret != -ENOMSG)
 		return ret;
-	ret = fetch(slave, b, &h, blind);
+	ret = fetch(mb, b, &h, blind);
 	if (ret == -ETIMEDOUT || !ret)
 		return -ENOMSG;
 	if (ret < 0 || h.type == EC_MBOX_VOE)
 		return ret;
 	if (h.type == EC_MBOX_ERR)
-		return error_reply(slave, &h, b->rx);
-	unasked(slave, &h, b->rx);
+		return error_reply(mb, &h, b->rx);
+	unasked(mb, &h, b->rx);
 	return -ENOMSG;
 }
 
 /**
  * ec_mbox_wait_voe() - wait for a VoE message
- * @slave: slave that ec_mbox_check() is content with
+ * @mb: mailbox of a slave that ec_mbox_check() is content with
  * @b: the message is in @rx
  * @blind: one access to the mailbox without a look whether it is full, no wait
  * @limit: when to give up; @timeout_ms 0: no wait
@@ -602,7 +648,7 @@ static int look_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind)
  * none; -ETIMEDOUT, -EINTR, -ECANCELED; -EBADMSG; the errno of a mailbox error
  * reply; -EAGAIN in INIT; or as ec_xfer().
  */
-int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
+int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit)
 {
 	struct until until = in_ms(limit->timeout_ms, limit->cancel);
@@ -610,17 +656,38 @@ int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
 	int ret, end;
 
 	for (;;) {
-		ret = take_kept(slave, b->rx);
+		ret = take_kept(mb, b->rx);
 		/* who holds the lock keeps what comes for us */
-		if (ret == -ENOMSG && !down_trylock(&slave->mbox_lock)) {
-			ret = off(slave) ?: look_voe(slave, b, blind);
-			up(&slave->mbox_lock);
+		if (ret == -ENOMSG && !down_trylock(&mb->lock)) {
+			ret = off(mb) ?: look_voe(mb, b, blind);
+			up(&mb->lock);
 		}
 		if (ret != -ENOMSG || blind)
 			return ret;
-		end = over(slave, &until);
+		end = over(mb, &until);
 		if (end)
 			return end;
 		pause_us(&us);
 	}
+}
+
+/**
+ * ec_mbox_poll() - fetch emergencies and VoE messages that no transfer expects
+ * @mb: mailbox of the slave
+ *
+ * Nothing to do while another caller uses the mailbox: its exchange fetches them as well.
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_mbox_poll(struct ec_mbox *mb)
+{
+	struct ec_mbox_buf *b;
+
+	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || off(mb) || down_trylock(&mb->lock))
+		return;
+	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	if (b)
+		ec_mbox_drain(mb, b);
+	kfree(b);
+	up(&mb->lock);
 }

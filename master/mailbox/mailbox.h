@@ -3,13 +3,71 @@
 #ifndef EC_MAILBOX_H
 #define EC_MAILBOX_H
 
+#include <linux/list.h>
+#include <linux/semaphore.h>
+#include <linux/spinlock.h>
 #include <linux/types.h>
+#include <linux/wait.h>
+#include "../base/stop.h"
+#include "../wire/sii.h"
 
-struct ec_slave;
-struct semaphore;
+struct ec_emerg;
+struct ec_links;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
 #define EC_MBOX_KEPT	16	/* messages kept for who reads them later */
+
+/** struct ec_mbox - mailbox of a slave */
+struct ec_mbox {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @links: way to the slave, immutable */
+	struct ec_links *links;
+	/** @stop: what ends exchanges, immutable */
+	const struct ec_stop *stop;
+	/** @sii: mailboxes and protocols that the slave has, immutable */
+	const struct ec_sii_info *sii;
+	/** @al_status: below PREOP there is no mailbox; pointer immutable */
+	const u16 *al_status;
+	/** @position: ring position, for the log; pointer immutable */
+	const u16 *position;
+	/** @station: station address, immutable */
+	u16 station;
+
+	/** @sdo_lock: one SDO transfer at a time; see ec_mbox_lock() */
+	struct semaphore sdo_lock;
+	/** @lock: one exchange at a time; protects the members up to @answered */
+	struct semaphore lock;
+	/** @counter: of the last message sent */
+	u8 counter;
+	/** @seen: counter of the last message received */
+	u8 seen;
+	/** @counts: the slave counts its messages */
+	bool counts;
+	/** @repeats: it was asked to put its last message there again */
+	bool repeats;
+	/** @answered: the last exchange has ended with its answer */
+	bool answered;
+
+	/** @awaits: which of the two locks the slave's worker waits for, NULL: none */
+	const struct semaphore *awaits;
+	/** @turn: callers that wait until the worker has it */
+	wait_queue_head_t turn;
+
+	/** @emerg_lock: protects @emerg and what it points to */
+	spinlock_t emerg_lock;
+	/** @emerg: where emergencies go, NULL: only to the log */
+	struct ec_emerg *emerg;
+
+	/** @kept_lock: protects the members below */
+	spinlock_t kept_lock;
+	/** @kept: VoE messages, the oldest first */
+	struct list_head kept;
+	/** @n_kept: entries in @kept */
+	unsigned int n_kept;
+	/** @keep_voe: the application has VoE handlers */
+	bool keep_voe;
+};
 
 /**
  * struct ec_mbox_buf - buffers of one exchange
@@ -51,18 +109,33 @@ struct ec_mbox_ask {
 	void *ctx;
 };
 
-int ec_mbox_lock(struct ec_slave *slave, struct semaphore *lock, u32 ms);
-int ec_mbox_check(const struct ec_slave *slave, u16 protocol, size_t message);
-int ec_mbox_ask(struct ec_slave *slave, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
+#define ec_mbox_warn(mb, fmt, ...) \
+	ec_log_event((mb)->base, *(mb)->position, 0, KERN_WARNING, fmt, ##__VA_ARGS__)
+#define ec_mbox_dbg_result(mb, ret, fmt, ...) \
+	ec_dbg_slave_result((mb)->base, *(mb)->position, ret, fmt, ##__VA_ARGS__)
+
+/* Does the slave have a mailbox? */
+static inline bool ec_mbox_present(const struct ec_mbox *mb)
+{
+	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
+}
+
+void ec_mbox_init(struct ec_mbox *mb);
+unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page);
+void ec_mbox_reset(struct ec_mbox *mb);
+int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms);
+int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message);
+int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
 		size_t len);
-int ec_mbox_tell(struct ec_slave *slave, u8 type, struct ec_mbox_buf *b, size_t len,
+int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
-int ec_mbox_drain(struct ec_slave *slave, struct ec_mbox_buf *b);
-int ec_mbox_forget(struct ec_slave *slave);
+int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b);
+int ec_mbox_forget(struct ec_mbox *mb);
+void ec_mbox_poll(struct ec_mbox *mb);
 
 /* VoE: messages nobody has asked for */
-void ec_mbox_keep_voe(struct ec_slave *slave, bool on);
-int ec_mbox_wait_voe(struct ec_slave *slave, struct ec_mbox_buf *b, bool blind,
+void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);
+int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit);
 
 /* mbox_text.c */

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "mailbox.h"
-#include "../master.h"
-#include "../bus/slave.h"
 #include "soe.h"
 #include "../wire/soe.h"
 
@@ -25,7 +23,7 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 	return ec_soe_rx(ctx, buf, len);
 }
 
-static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
+static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 		    const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_ask ask = {
@@ -33,7 +31,7 @@ static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
 		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SOE_TIMEOUT_MS,
 		.cancel = limit ? limit->cancel : NULL,
 	};
-	int ret = ec_mbox_check(slave, EC_SII_PROTO_SOE, EC_SOE_HDR);
+	int ret = ec_mbox_check(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
 	struct ec_mbox_buf *b;
 	char name[12];
 
@@ -42,11 +40,11 @@ static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	ret = ec_soe_tx(a, b->tx, slave->info.std.rx_size - EC_MBOX_HDR);
+	ret = ec_soe_tx(a, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
 	if (ret >= 0)
-		ret = ec_mbox_ask(slave, &ask, b, ret);
+		ret = ec_mbox_ask(mb, &ask, b, ret);
 	kfree(b);
-	ec_slave_dbg_result(slave, ret, "%s %s of drive %u, error 0x%04x",
+	ec_mbox_dbg_result(mb, ret, "%s %s of drive %u, error 0x%04x",
 			    a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive,
 			    a->error);
 	return ret;
@@ -54,7 +52,7 @@ static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
 
 /**
  * ec_soe_read() - read the value of an IDN
- * @slave: slave
+ * @mb: mailbox of the slave
  * @drive: 0 to 7
  * @idn: number
  * @data: result
@@ -69,13 +67,13 @@ static int transfer(struct ec_slave *slave, struct ec_soe_access *a,
  * message, or the mailbox into a datagram; -EAGAIN in INIT; -EINVAL for the
  * drive; -EBADMSG for a wrong answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
  */
-int ec_soe_read(struct ec_slave *slave, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
+int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
 		u16 *error, const struct ec_mbox_limit *limit)
 {
 	struct ec_soe_access a = {
 		.drive = drive, .element = EC_SOE_VALUE, .idn = idn, .data = data, .cap = cap,
 	};
-	int ret = drive < EC_SOE_DRIVES ? transfer(slave, &a, limit) : -EINVAL;
+	int ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
 
 	*error = a.error;
 	*size = ret ? 0 : a.size;
@@ -84,7 +82,7 @@ int ec_soe_read(struct ec_slave *slave, u8 drive, u16 idn, u8 *data, size_t cap,
 
 /**
  * ec_soe_write() - write the value of an IDN
- * @slave: slave
+ * @mb: mailbox of the slave
  * @drive: 0 to 7
  * @idn: number
  * @data: value
@@ -95,14 +93,14 @@ int ec_soe_read(struct ec_slave *slave, u8 drive, u16 idn, u8 *data, size_t cap,
  * Context: Process. Waits for bus traffic.
  * Return: as ec_soe_read().
  */
-int ec_soe_write(struct ec_slave *slave, u8 drive, u16 idn, const u8 *data, size_t size,
+int ec_soe_write(struct ec_mbox *mb, u8 drive, u16 idn, const u8 *data, size_t size,
 		 u16 *error, const struct ec_mbox_limit *limit)
 {
 	struct ec_soe_access a = {
 		.write = true, .drive = drive, .element = EC_SOE_VALUE, .idn = idn,
 		.data = (u8 *)data, .size = size,
 	};
-	int ret = drive < EC_SOE_DRIVES ? transfer(slave, &a, limit) : -EINVAL;
+	int ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
 
 	*error = a.error;
 	return ret;

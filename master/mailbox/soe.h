@@ -6,13 +6,13 @@
 #include <linux/types.h>
 
 struct ec_mbox_limit;
-struct ec_slave;
+struct ec_mbox;
 
 #define EC_SOE_TIMEOUT_MS	1000
 
-int ec_soe_read(struct ec_slave *slave, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
+int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
 		u16 *error, const struct ec_mbox_limit *limit);
-int ec_soe_write(struct ec_slave *slave, u8 drive, u16 idn, const u8 *data, size_t size,
+int ec_soe_write(struct ec_mbox *mb, u8 drive, u16 idn, const u8 *data, size_t size,
 		 u16 *error, const struct ec_mbox_limit *limit);
 const char *ec_soe_idn_text(u16 idn, char buf[12]);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "mailbox.h"
-#include "../master.h"
-#include "../bus/slave.h"
 #include "voe.h"
 #include "../wire/voe.h"
 
@@ -16,7 +14,7 @@ static struct ec_mbox_limit or_default(const struct ec_mbox_limit *limit)
 
 /**
  * ec_voe_write() - send a message; there is no answer
- * @slave: slave
+ * @mb: mailbox of the slave
  * @h: header
  * @data: of the vendor
  * @size: bytes
@@ -26,11 +24,11 @@ static struct ec_mbox_limit or_default(const struct ec_mbox_limit *limit)
  * Return: 0; -EPROTONOSUPPORT without VoE; -EMSGSIZE when it does not fit into
  * the mailbox; -EAGAIN in INIT; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM.
  */
-int ec_voe_write(struct ec_slave *slave, const struct ec_voe_hdr *h, const u8 *data, size_t size,
+int ec_voe_write(struct ec_mbox *mb, const struct ec_voe_hdr *h, const u8 *data, size_t size,
 		 const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_limit l = or_default(limit);
-	int ret = ec_mbox_check(slave, EC_SII_PROTO_VOE, EC_VOE_HDR);
+	int ret = ec_mbox_check(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
 	struct ec_mbox_buf *b;
 	struct ec_wbuf w;
 
@@ -39,12 +37,12 @@ int ec_voe_write(struct ec_slave *slave, const struct ec_voe_hdr *h, const u8 *d
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	w = ec_wbuf(b->tx, slave->info.std.rx_size - EC_MBOX_HDR);
+	w = ec_wbuf(b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
 	ec_voe_hdr_encode(&w, h);
 	ec_wbuf_bytes(&w, data, size);
-	ret = w.bad ? -EMSGSIZE : ec_mbox_tell(slave, EC_MBOX_VOE, b, w.p - b->tx, &l);
+	ret = w.bad ? -EMSGSIZE : ec_mbox_tell(mb, EC_MBOX_VOE, b, w.p - b->tx, &l);
 	kfree(b);
-	ec_slave_dbg_result(slave, ret, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s)",
+	ec_mbox_dbg_result(mb, ret, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s)",
 			    h->vendor, h->type, size);
 	return ret;
 }
@@ -65,7 +63,7 @@ static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t
 
 /**
  * ec_voe_read() - receive a message
- * @slave: slave
+ * @mb: mailbox of the slave
  * @blind: fetch the mailbox once without a look whether it is full
  * @h: its header
  * @data: of the vendor
@@ -82,11 +80,11 @@ static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t
  * -EPROTONOSUPPORT without VoE; -EMSGSIZE; -EAGAIN in INIT; -EINTR; -ECANCELED;
  * -ENOMEM; the errno of a mailbox error reply.
  */
-int ec_voe_read(struct ec_slave *slave, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
+int ec_voe_read(struct ec_mbox *mb, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
 		size_t *size, const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_limit l = or_default(limit);
-	int ret = ec_mbox_check(slave, EC_SII_PROTO_VOE, EC_VOE_HDR);
+	int ret = ec_mbox_check(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
 	struct ec_mbox_buf *b;
 
 	*size = 0;
@@ -95,10 +93,10 @@ int ec_voe_read(struct ec_slave *slave, bool blind, struct ec_voe_hdr *h, u8 *da
 	b = kmalloc(sizeof(*b), GFP_KERNEL);
 	if (!b)
 		return -ENOMEM;
-	ret = ec_mbox_wait_voe(slave, b, blind, &l);
+	ret = ec_mbox_wait_voe(mb, b, blind, &l);
 	if (ret >= 0)
 		ret = take(b->rx, ret, h, data, cap, size);
 	kfree(b);
-	ec_slave_dbg_result(slave, ret, "VoE read, %zu byte(s)", *size);
+	ec_mbox_dbg_result(mb, ret, "VoE read, %zu byte(s)", *size);
 	return ret;
 }

@@ -6,14 +6,14 @@
 #include <linux/types.h>
 
 struct ec_mbox_limit;
-struct ec_slave;
+struct ec_mbox;
 struct ec_voe_hdr;
 
 #define EC_VOE_TIMEOUT_MS	500	/* of a whole operation */
 
-int ec_voe_write(struct ec_slave *slave, const struct ec_voe_hdr *h, const u8 *data, size_t size,
+int ec_voe_write(struct ec_mbox *mb, const struct ec_voe_hdr *h, const u8 *data, size_t size,
 		 const struct ec_mbox_limit *limit);
-int ec_voe_read(struct ec_slave *slave, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
+int ec_voe_read(struct ec_mbox *mb, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
 		size_t *size, const struct ec_mbox_limit *limit);
 
 #endif

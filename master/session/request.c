@@ -240,7 +240,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 	mutex_lock(&rq->master->session_lock);
 	s = session_of(rq);
 	*slave = s ? s->configs[lane->config]->slave : NULL;
-	if (!*slave || (*slave)->gone) {
+	if (!*slave || (*slave)->stop.gone) {
 		*slave = NULL;
 		goto out;
 	}
@@ -284,7 +284,7 @@ static void lane_work(struct work_struct *work)
 		if (r)
 			run(rq, r, slave);
 		else if (slave && lane->emerg.count)
-			ec_emerg_poll(slave);
+			ec_mbox_poll(&slave->mbox);
 		if (slave)
 			ec_slave_unref(slave);
 	} while (r);
@@ -391,8 +391,9 @@ void ec_requests_describe(const struct ec_session *s)
 	area->rings = rings_offset(s);
 	for (i = 0; i < s->n_configs; i++) {
 		struct ec_emerg *e = &rq->lanes[i].emerg;
+		struct ec_slave *slave = s->configs[i]->slave;
 
-		ec_emerg_describe(s->configs[i]->slave, e, e->data - base);
+		ec_emerg_describe(slave ? &slave->mbox : NULL, e, e->data - base);
 	}
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_reqs; i++) {
@@ -552,8 +553,8 @@ void ec_requests_attach(const struct ec_session *s, u32 config)
 
 	if (!slave)
 		return;
-	ec_emerg_set(slave, lane ? &lane->emerg : NULL);
-	ec_mbox_keep_voe(slave, lane && lane->voe);
+	ec_emerg_set(&slave->mbox, lane ? &lane->emerg : NULL);
+	ec_mbox_keep_voe(&slave->mbox, lane && lane->voe);
 }
 
 /**

@@ -77,10 +77,10 @@ static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 	size_t got = 0;
 
 	if (ec_request_writes(r))
-		res->err = ec_coe_download(s, r->index, r->sub, r->complete, r->buf, r->size,
+		res->err = ec_coe_download(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size,
 					   &res->code, l);
 	else
-		res->err = ec_coe_upload(s, r->index, r->sub, r->complete, r->buf, r->size, &got,
+		res->err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size, &got,
 					 &res->code, l);
 	res->got = got;
 }
@@ -92,9 +92,9 @@ static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 	u16 error;
 
 	if (ec_request_writes(r))
-		res->err = ec_soe_write(s, r->sub, r->index, r->buf, r->size, &error, l);
+		res->err = ec_soe_write(&s->mbox, r->sub, r->index, r->buf, r->size, &error, l);
 	else
-		res->err = ec_soe_read(s, r->sub, r->index, r->buf, r->size, &got, &error, l);
+		res->err = ec_soe_read(&s->mbox, r->sub, r->index, r->buf, r->size, &got, &error, l);
 	res->got = got;
 	res->code = error;
 }
@@ -108,9 +108,9 @@ static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_lim
 
 	l->timeout_ms = ms < EC_VOE_TIMEOUT_MS ? EC_VOE_TIMEOUT_MS - ms : 1;
 	if (ec_request_writes(r))
-		res->err = ec_voe_write(s, &h, r->buf, r->size, l);
+		res->err = ec_voe_write(&s->mbox, &h, r->buf, r->size, l);
 	else
-		res->err = ec_voe_read(s, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf, r->size,
+		res->err = ec_voe_read(&s->mbox, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf, r->size,
 				       &got, l);
 	res->got = got;
 	res->vendor = h.vendor;

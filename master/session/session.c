@@ -16,6 +16,7 @@
 #include "../bus/slave.h"
 #include "../cycle/waiters.h"
 #include "../config/why.h"
+#include "../bus/slave_pdo.h"
 
 /**
  * ec_session_of() - the session an application works with
@@ -197,9 +198,9 @@ static void detach(struct ec_config *c)
 		return;
 	}
 	c->slave = NULL;
-	ec_emerg_set(slave, NULL);
-	ec_mbox_keep_voe(slave, false);
-	WRITE_ONCE(slave->interrupt, true);
+	ec_emerg_set(&slave->mbox, NULL);
+	ec_mbox_keep_voe(&slave->mbox, false);
+	WRITE_ONCE(slave->stop.interrupt, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
 		/* the slave keeps what was written */
@@ -211,9 +212,9 @@ static void detach(struct ec_config *c)
 	ec_slave_clear_warning(slave);
 	slave->pdo_refusal[0] = '\0';
 	slave->reconfigure = true;
-	slave->interrupt = false;
+	slave->stop.interrupt = false;
 	mutex_unlock(&slave->lock);
-	if (!slave->gone && !slave->master->base->stopping)
+	if (!slave->stop.gone && !slave->master->base->stopping)
 		ec_slave_request(slave, EC_AL_PREOP);
 	ec_slave_unref(slave);
 }
@@ -226,7 +227,7 @@ static void clear(struct ec_session *s)
 	/* all at once: a worker may need a moment to leave */
 	for (i = 0; i < s->n_configs; i++)
 		if (owned(s->configs[i]))
-			WRITE_ONCE(s->configs[i]->slave->interrupt, true);
+			WRITE_ONCE(s->configs[i]->slave->stop.interrupt, true);
 	for (i = 0; i < s->n_configs; i++) {
 		detach(s->configs[i]);
 		ec_config_free(s->configs[i]);
@@ -445,7 +446,7 @@ struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u
 		pos += i;
 	}
 	if (pos < m->n_slaves && m->slaves[pos]->info.vendor == vendor &&
-	    m->slaves[pos]->info.product == product && !m->slaves[pos]->gone)
+	    m->slaves[pos]->info.product == product && !m->slaves[pos]->stop.gone)
 		slave = ec_slave_ref(m->slaves[pos]);
 	up_read(&m->topo);
 	return slave;
@@ -487,7 +488,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	struct ec_slave *slave;
 
 	ec_config_find_alias(c);
-	if (s->active && c->slave && !c->slave->gone)
+	if (s->active && c->slave && !c->slave->stop.gone)
 		return;
 	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
 	if (slave == c->slave) {
@@ -505,9 +506,9 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		return;
 	}
 	/* the monitor must not wait for what its worker waits for */
-	WRITE_ONCE(slave->interrupt, true);
+	WRITE_ONCE(slave->stop.interrupt, true);
 	mutex_lock(&slave->lock);
-	WRITE_ONCE(slave->interrupt, false);
+	WRITE_ONCE(slave->stop.interrupt, false);
 	if (slave->config) {
 		tell_taken(s, c, slave);
 		mutex_unlock(&slave->lock);

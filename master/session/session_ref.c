@@ -41,7 +41,7 @@ void ec_session_raise_ref(struct ec_session *s)
 	if (ref)
 		ec_slave_ref(ref);
 	up_read(&m->topo);
-	if (!ref || ref == s->raised || ref->config || ref->gone || has_outputs(ref)) {
+	if (!ref || ref == s->raised || ref->config || ref->stop.gone || has_outputs(ref)) {
 		if (ref)
 			ec_slave_unref(ref);
 		return;
@@ -64,7 +64,7 @@ void ec_session_lower_ref(struct ec_session *s)
 	if (!ref)
 		return;
 	s->raised = NULL;
-	if (!ref->gone && !ref->config && !s->master->base->stopping)
+	if (!ref->stop.gone && !ref->config && !s->master->base->stopping)
 		ec_slave_request(ref, EC_AL_PREOP);
 	ec_slave_unref(ref);
 }

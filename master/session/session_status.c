@@ -20,7 +20,7 @@ u8 ec_session_config_status(const struct ec_config *c)
 	const struct ec_slave *slave = c->slave;
 	u8 v;
 
-	if (!slave || slave->gone || slave->silent)
+	if (!slave || slave->stop.gone || slave->silent)
 		return 0;
 	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
 	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&

@@ -27,7 +27,7 @@ static void write_obj(struct bus *b, u16 index, u8 sub, u32 value, size_t bytes)
 	u32 abort;
 
 	put_unaligned_le32(value, v);
-	KUNIT_ASSERT_EQ(b->test, ec_coe_download(bus_slave(b, 0), index, sub, false, v, bytes,
+	KUNIT_ASSERT_EQ(b->test, ec_coe_download(&bus_slave(b, 0)->mbox, index, sub, false, v, bytes,
 						 &abort, NULL), 0);
 }
 
@@ -213,7 +213,7 @@ static int read_on(void *arg)
 		size_t got;
 		u32 abort;
 		u8 v[4];
-		int ret = ec_coe_upload(s, 0x1018, 1, false, v, sizeof(v), &got, &abort, NULL);
+		int ret = ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort, NULL);
 
 		if (ret)
 			r->err = ret;

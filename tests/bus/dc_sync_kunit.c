@@ -483,7 +483,7 @@ static void sync_is_called_off(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
 	bus_request(b, 1, EC_AL_PREOP);
 	cyc_run(c, 150);
-	KUNIT_EXPECT_NULL(test, READ_ONCE(s->worker));
+	KUNIT_EXPECT_NULL(test, READ_ONCE(s->stop.worker));
 	mutex_unlock(&b->m->session_lock);
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);

@@ -261,7 +261,7 @@ static void emerg_put(const struct kcyc *a, u16 code)
 {
 	u8 message[EC_EMERG_BYTES] = { code & 0xff, code >> 8 };
 
-	ec_emerg_push(bus_slave(a->c->b, 1), message);
+	ec_emerg_push(&bus_slave(a->c->b, 1)->mbox, message);
 }
 
 /* What an application that runs wild may do to all it can write. */

@@ -145,7 +145,7 @@ static struct cyc *terminal(struct kunit *test, struct bus *b, u32 wrong)
 
 	bus_idle(b);
 	s = bus_slave(b, 0);
-	KUNIT_ASSERT_FALSE(test, ec_slave_has_mailbox(s));
+	KUNIT_ASSERT_FALSE(test, ec_mbox_present(&s->mbox));
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	config = cyc_config(c, 0);

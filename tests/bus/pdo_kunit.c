@@ -4,6 +4,7 @@
 #include "master/mailbox/coe.h"
 #include "master/boundary/ioctl.h"
 #include "cyc.h"
+#include "master/bus/slave_pdo.h"
 
 static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
 {
@@ -11,7 +12,7 @@ static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
 	u32 abort;
 
 	put_unaligned_le32(value, b);
-	return ec_coe_download(s, index, sub, false, b, bytes, &abort, NULL);
+	return ec_coe_download(&s->mbox, index, sub, false, b, bytes, &abort, NULL);
 }
 
 static bool known(struct bus *b)
@@ -209,10 +210,10 @@ static void pdo_names_after_a_long_transfer(struct kunit *test)
 	KUNIT_ASSERT_GT(test, s->names.n, 0u);
 	ec_names_free(s);
 	s->names_done = false;
-	down(&s->sdo_lock);
+	down(&s->mbox.sdo_lock);
 	ec_slave_kick(s);
 	msleep(2000);
-	up(&s->sdo_lock);
+	up(&s->mbox.sdo_lock);
 	KUNIT_ASSERT_EQ(test, s->names.n, 0u);
 	ec_slave_kick(s);
 	bus_idle(b);

@@ -218,14 +218,14 @@ static void retry_interrupted(struct kunit *test)
 	msleep(20000);
 	s = bus_slave(b, AI);
 	KUNIT_ASSERT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
-	for (i = 0; i < 70000 && (!work_busy(&s->work) || !READ_ONCE(s->worker)); i++)
+	for (i = 0; i < 70000 && (!work_busy(&s->work) || !READ_ONCE(s->stop.worker)); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 70000u);
-	WRITE_ONCE(s->interrupt, true);
+	WRITE_ONCE(s->stop.interrupt, true);
 	for (i = 0; i < 1000 && work_busy(&s->work); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 1000u);
-	WRITE_ONCE(s->interrupt, false);
+	WRITE_ONCE(s->stop.interrupt, false);
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);

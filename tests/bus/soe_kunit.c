@@ -21,7 +21,7 @@ static int get(struct ec_slave *s, u8 drive, u16 idn, u64 *value, u16 *error)
 {
 	u8 b[8] = { 0 };
 	size_t got;
-	int ret = ec_soe_read(s, drive, idn, b, sizeof(b), &got, error, NULL);
+	int ret = ec_soe_read(&s->mbox, drive, idn, b, sizeof(b), &got, error, NULL);
 
 	*value = get_unaligned_le64(b);
 	return ret ?: got;
@@ -32,7 +32,7 @@ static int put(struct ec_slave *s, u8 drive, u16 idn, u64 value, size_t size, u1
 	u8 b[8];
 
 	put_unaligned_le64(value, b);
-	return ec_soe_write(s, drive, idn, b, size, error, NULL);
+	return ec_soe_write(&s->mbox, drive, idn, b, size, error, NULL);
 }
 
 static void soe_values(struct kunit *test)
@@ -58,14 +58,14 @@ static void soe_values(struct kunit *test)
 	/* a list as large as a message: 64 - 10 bytes */
 	for (i = 4; i < sizeof(list); i++)
 		list[i] = i;
-	KUNIT_EXPECT_EQ(test, ec_soe_write(s, 0, P(0xa0), list, sizeof(list), &error, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list), &error, NULL), 0);
 	memset(list, 0, sizeof(list));
-	KUNIT_EXPECT_EQ(test, ec_soe_read(s, 0, P(0xa0), list, sizeof(list), &got, &error, NULL),
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, P(0xa0), list, sizeof(list), &got, &error, NULL),
 			0);
 	KUNIT_EXPECT_EQ(test, got, sizeof(list));
 	for (i = 4; i < sizeof(list); i++)
 		KUNIT_ASSERT_EQ(test, list[i], i);
-	KUNIT_EXPECT_EQ(test, ec_soe_write(s, 0, P(0xa0), list, sizeof(list) + 1, &error, NULL),
+	KUNIT_EXPECT_EQ(test, ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list) + 1, &error, NULL),
 			-EMSGSIZE);
 }
 
@@ -90,7 +90,7 @@ static void soe_errors(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, error, EC_SOE_ERR_ABOVE);
 	KUNIT_EXPECT_EQ(test, put(s, 0, S(91), 99, 8, &error), -EIO);
 	KUNIT_EXPECT_EQ(test, error, EC_SOE_ERR_LONG);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(s, 0, S(91), buf, 3, &got, &error, NULL), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 3, &got, &error, NULL), -ENOBUFS);
 	KUNIT_EXPECT_EQ(test, got, 0ul);
 	KUNIT_EXPECT_EQ(test, get(bus_slave(b, WITHOUT), 0, S(91), &v, &error), -EPROTONOSUPPORT);
 	/* and the mailbox works on */
@@ -113,7 +113,7 @@ static void soe_silence(struct kunit *test)
 	bus_idle(b);
 	t0 = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(s, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
 	KUNIT_EXPECT_GE(test, ktime_get_ns() - t0, 200 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 210 * NSEC_PER_MSEC);
 	t0 = ktime_get_ns();
@@ -125,9 +125,9 @@ static void soe_silence(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get(s, 0, S(15), &v, &error), 2);
 	KUNIT_EXPECT_EQ(test, v, 7ull);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_TYPE, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(s, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_SHORT, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(s, 0, S(91), buf, 8, &got, &error, &limit), -EBADMSG);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -EBADMSG);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
 	KUNIT_EXPECT_EQ(test, get(s, 0, S(91), &v, &error), 4);
 }
@@ -190,7 +190,7 @@ static int use(void *arg)
 		if (o->soe)
 			o->wrong += get(o->s, 0, S(91), &value, &error) != 4 || value != 3000;
 		else
-			o->wrong += ec_coe_upload(o->s, 0x1018, 4, false, (u8 *)&v, 4, &got,
+			o->wrong += ec_coe_upload(&o->s->mbox, 0x1018, 4, false, (u8 *)&v, 4, &got,
 						  &abort, NULL) || v != 11;
 		o->done++;
 	}

@@ -176,7 +176,7 @@ static void texts_link(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ENETDOWN);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 1, false, v, sizeof(v), &got, &abort, &limit),
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort, &limit),
 			-ENETDOWN);
 	KUNIT_EXPECT_STREQ(test, ec_mbox_fail_text(-ENETDOWN, "CoE", why, sizeof(why)), none);
 	ec_sim_link_destroy(b->link);

@@ -22,14 +22,14 @@ static int put(struct ec_slave *s, const char *data, u32 size)
 {
 	struct ec_voe_hdr h = { .vendor = VENDOR, .type = 7 };
 
-	return ec_voe_write(s, &h, data, size, NULL);
+	return ec_voe_write(&s->mbox, &h, data, size, NULL);
 }
 
 static int get(struct ec_slave *s, struct ec_voe_hdr *h, u8 *data, u32 cap, u32 ms)
 {
 	struct ec_mbox_limit limit = { .timeout_ms = ms };
 	size_t got;
-	int ret = ec_voe_read(s, false, h, data, cap, &got, &limit);
+	int ret = ec_voe_read(&s->mbox, false, h, data, cap, &got, &limit);
 
 	return ret ?: got;
 }
@@ -156,12 +156,12 @@ static void voe_unasked(struct kunit *test)
 
 	/* nobody wants them */
 	unasked(b, 1, 3);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
-	ec_mbox_keep_voe(s, true);
+	ec_mbox_keep_voe(&s->mbox, true);
 	for (i = 0; i < EC_MBOX_KEPT + 2; i++) {
 		unasked(b, i, i);
-		KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 4, false, v, 4, &got, &abort, NULL),
+		KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL),
 				0);
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(v), 11);
 	}
@@ -173,8 +173,8 @@ static void voe_unasked(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
 	unasked(b, 1, 3);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(s, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
-	ec_mbox_keep_voe(s, false);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
+	ec_mbox_keep_voe(&s->mbox, false);
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
 }
 
@@ -321,7 +321,7 @@ static void voe_ended(struct kunit *test)
 	t0 = ktime_get_ns();
 	ec_session_end(b->m, &b->app);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 50 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->keep_voe);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->mbox.keep_voe);
 	for (i = 0; i < 100; i++)
 		usleep_range(100, 101);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);

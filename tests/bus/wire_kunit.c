@@ -174,7 +174,7 @@ static int read_objects(void *arg)
 	for (n = 0; !READ_ONCE(r->stop); n++) {
 		char text[64] = { 0 };
 		size_t got;
-		int ret = ec_coe_upload(bus_slave(r->c->b, n % AXES), 0x1008, 0, false, text,
+		int ret = ec_coe_upload(&bus_slave(r->c->b, n % AXES)->mbox, 0x1008, 0, false, text,
 					sizeof(text), &got, &abort, 0);
 
 		if (ret || !got || text[0] < ' ')

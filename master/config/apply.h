@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A slave gets what the application wants from it. */
+#ifndef EC_APPLY_H
+#define EC_APPLY_H
+
+#include <linux/types.h>
+
+struct ec_config;
+struct ec_pdo_list;
+struct ec_slave;
+struct work_struct;
+
+void ec_apply_work(struct work_struct *work);
+
+/* apply_regs.c */
+int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);
+int ec_apply_clear_fmmus(struct ec_slave *s);
+int ec_apply_clear_pdos(struct ec_slave *s);
+void ec_apply_clear(struct ec_slave *s);
+
+/* apply_pdo.c */
+int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
+const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
+					   unsigned int sm);
+
+/* apply_ip.c */
+int ec_apply_ip(struct ec_slave *slave, const struct ec_config *c);
+
+#endif
