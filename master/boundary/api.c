@@ -52,18 +52,17 @@ void ec_api_begin(struct ec_master *m)
 }
 
 /**
- * ec_api_do() - give a command
+ * ec_command() - give a command
  * @m: master
- * @command: handler, see ioctl.h
- * @arg: its argument
+ * @cmd: EC_IOC_*
+ * @arg: its argument; addresses in it are the kernel's
  *
- * Context: Process. As @command.
- * Return: as @command.
+ * Context: Process. As the command.
+ * Return: as the command.
  */
-int ec_api_do(struct ec_master *m, int (*command)(struct ec_file *f, void *arg), void *arg)
+int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 {
-	ec_api_begin(m);
-	return command(&m->api->file, arg);
+	return ec_ioc(&m->api->file, cmd, arg);
 }
 
 /* The log may wait for a slow console: nothing is printed under the lock. */

@@ -75,7 +75,7 @@ static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
 /* api.c */
 int ec_api_create(struct ec_master *m);
 void ec_api_destroy(struct ec_master *m);
-int ec_api_do(struct ec_master *m, int (*command)(struct ec_file *f, void *arg), void *arg);
+int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
 void ec_api_begin(struct ec_master *m);
 int ec_api_fail(struct ec_master *m, int err, const char *fmt, ...) __printf(3, 4);
 int ec_api_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...) __printf(3, 4);

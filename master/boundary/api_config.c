@@ -13,7 +13,7 @@ int ecrt_slave_config_watchdog(ec_slave_config_t *sc, uint16_t watchdog_divider,
 	if (!sc)
 		return -EINVAL;
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_watchdog, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_WATCHDOG, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "set the watchdog") : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_watchdog);
@@ -31,7 +31,7 @@ int ecrt_slave_config_dc(ec_slave_config_t *sc, uint16_t assign_activate, uint32
 	if (!sc)
 		return -EINVAL;
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_dc, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_DC, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "set the SYNC signals") : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_dc);
@@ -44,8 +44,8 @@ static int store_sdo(ec_slave_config_t *sc, struct ec_ioc_sc_sdo *i, const u8 *d
 		return -EINVAL;
 	i->config = ec_api_config(sc)->index;
 	i->size = min_t(size_t, size, U32_MAX);
-	ec_api_begin(ec_api_master(sc));
-	ret = ec_ioc_store_sdo(&ec_api_master(sc)->api->file, i, data);
+	i->data = (uintptr_t)data;
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_SDO, i);
 	return ret ? ec_api_fail_sc(sc, ret, "store SDO 0x%04x:%02x", i->index, i->subindex) : 0;
 }
 
@@ -104,7 +104,7 @@ int ecrt_slave_config_flag(ec_slave_config_t *sc, const char *key, int32_t value
 	if (strscpy(i.key, key, sizeof(i.key)) < 0)
 		return ec_api_fail_sc(sc, -EINVAL, "set a flag whose name is too long");
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_flag, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_FLAG, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "set flag '%s'", key) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_flag);
@@ -120,7 +120,7 @@ int ecrt_slave_config_state_timeout(ec_slave_config_t *sc, ec_al_state_t from_st
 	i.config = ec_api_config(sc)->index;
 	i.from = min_t(unsigned int, from_state, U8_MAX);
 	i.to = min_t(unsigned int, to_state, U8_MAX);
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_timeout, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_TIMEOUT, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "set the timeout from state %u to %u", from_state,
 				    to_state) : 0;
 }

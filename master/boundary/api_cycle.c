@@ -88,7 +88,7 @@ void ec_api_work(struct work_struct *work)
 		ec_err(m, "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
 	}
 	if (xchg(&api->reset, false))
-		ec_ioc_reset(&api->file, NULL);
+		ec_ioc(&api->file, EC_IOC_RESET, NULL);
 }
 
 int ecrt_master_receive(ec_master_t *master)

@@ -141,11 +141,11 @@ int ecrt_slave_config_dc_state(const ec_slave_config_t *sc, ec_slave_config_dc_s
 	s = kzalloc(sizeof(*s), GFP_KERNEL);
 	if (config && s) {
 		config->index = ec_api_config(sc)->index;
-		ret = ec_api_do(ec_api_master(sc), ec_ioc_config, config);
+		ret = ec_command(ec_api_master(sc), EC_IOC_CONFIG, config);
 		if (!ret && config->slave_position < 0)
 			ret = -ENODEV;
 		s->position = config->slave_position;
-		ret = ret ?: ec_api_do(ec_api_master(sc), ec_ioc_slave, s);
+		ret = ret ?: ec_command(ec_api_master(sc), EC_IOC_SLAVE, s);
 		if (!ret)
 			fill_dc_state(state, s, ec_api_master(sc));
 	}

@@ -12,7 +12,7 @@ int ecrt_slave_config_emerg_size(ec_slave_config_t *sc, size_t elements)
 	if (!sc)
 		return -EINVAL;
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_emerg, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_EMERG, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "keep %zu emergencies", elements) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_emerg_size);

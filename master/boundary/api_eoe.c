@@ -10,7 +10,7 @@ static int set(ec_slave_config_t *sc, struct ec_ioc_sc_ip *i, u32 which, const c
 		return -EINVAL;
 	i->config = ec_api_config(sc)->index;
 	i->params.which = which;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_ip, i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_IP, i);
 	return ret ? ec_api_fail_sc(sc, ret, "set the %s", what) : 0;
 }
 

@@ -54,7 +54,7 @@ int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
 	if (!s)
 		return -ENOMEM;
 	s->position = slave_position;
-	ret = ec_api_do(master, ec_ioc_slave, s);
+	ret = ec_command(master, EC_IOC_SLAVE, s);
 	if (ret) {
 		ec_api_fail(master, ret, "get slave %u", slave_position);
 	} else {

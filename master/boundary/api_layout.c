@@ -11,7 +11,7 @@ int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc, uint8_t allow_over
 	if (!sc)
 		return -EINVAL;
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_overlap, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_OVERLAP, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "let process data overlap") : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_overlapping_pdos);
@@ -26,7 +26,7 @@ int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)
 		return -EINVAL;
 	m = domain->session->master;
 	i.domain = domain->index;
-	ret = ec_api_do(m, ec_ioc_domain_options, &i);
+	ret = ec_command(m, EC_IOC_DOMAIN_OPTIONS, &i);
 	return ret ? ec_api_fail(m, ret, "set options 0x%x of domain %u", options,
 				 domain->index) : 0;
 }
@@ -42,7 +42,7 @@ int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
 		return -EINVAL;
 	m = domain->session->master;
 	i.domain = domain->index;
-	ret = ec_api_do(m, ec_ioc_domain_age, &i);
+	ret = ec_command(m, EC_IOC_DOMAIN_AGE, &i);
 	return ret ? ec_api_fail(m, ret, "set the maximum age of domain %u",
 				 domain->index) : 0;
 }
@@ -55,7 +55,7 @@ int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
 
 	if (!master)
 		return -EINVAL;
-	ret = ec_api_do(master, ec_ioc_late, &i);
+	ret = ec_command(master, EC_IOC_LATE, &i);
 	return ret ? ec_api_fail(master, ret, "allow %u delayed cycles per second", per_second) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_set_late_cycles);

@@ -21,7 +21,7 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	m = ec_master_get(master_index);
 	/* who found the symbols by symbol_get() has no lasting hold on the module */
 	__module_get(THIS_MODULE);
-	ret = ec_api_do(m, ec_ioc_reserve, NULL);
+	ret = ec_command(m, EC_IOC_RESERVE, NULL);
 	if (ret) {
 		ec_api_fail(m, ret, "reserve the master");
 		module_put(THIS_MODULE);
@@ -81,7 +81,7 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 
 	if (!master)
 		return NULL;
-	ret = ec_api_do(master, ec_ioc_create_domain, &i);
+	ret = ec_command(master, EC_IOC_CREATE_DOMAIN, &i);
 	if (ret) {
 		ec_api_fail(master, ret, "create a domain");
 		return NULL;
@@ -102,7 +102,7 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 
 	if (!master)
 		return NULL;
-	ret = ec_api_do(master, ec_ioc_slave_config, &i);
+	ret = ec_command(master, EC_IOC_SLAVE_CONFIG, &i);
 	if (ret) {
 		ec_api_fail(master, ret, "configure slave %u:%u as 0x%08x/0x%08x", alias, position,
 			    vendor_id, product_code);
@@ -125,7 +125,7 @@ int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *s
 				   "select another master's slave as the reference clock");
 	if (sc)
 		i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(master, ec_ioc_ref_clock, &i);
+	ret = ec_command(master, EC_IOC_REF_CLOCK, &i);
 	return ret ? ec_api_fail(master, ret, "select the reference clock") : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_select_reference_clock);
@@ -137,7 +137,7 @@ int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
 
 	if (!master)
 		return -EINVAL;
-	ret = ec_api_do(master, ec_ioc_interval, &i);
+	ret = ec_command(master, EC_IOC_INTERVAL, &i);
 	return ret ? ec_api_fail(master, ret, "set the send interval") : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_set_send_interval);
@@ -153,7 +153,7 @@ int ecrt_master_activate(ec_master_t *master)
 		ec_warn(master, "kernel API: the master is active already\n");
 		return 0;
 	}
-	ret = ec_api_do(master, ec_ioc_activate, &i);
+	ret = ec_command(master, EC_IOC_ACTIVATE, &i);
 	if (ret)
 		return ec_api_fail(master, ret, "activate the master");
 	ec_api_requests_place(master);
@@ -181,7 +181,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 		return -EINVAL;
 	}
 	forget(master);
-	ret = ec_api_do(master, ec_ioc_deactivate, NULL);
+	ret = ec_command(master, EC_IOC_DEACTIVATE, NULL);
 	ec_api_requests_free(master);
 	return ret;
 }

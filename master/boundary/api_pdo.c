@@ -15,7 +15,7 @@ int ecrt_slave_config_sync_manager(ec_slave_config_t *sc, uint8_t sync_index,
 	i.config = ec_api_config(sc)->index;
 	i.dir = min_t(unsigned int, direction, U8_MAX);
 	i.watchdog = min_t(unsigned int, watchdog_mode, U8_MAX);
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_sc_sync, &i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_SYNC, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "set SM%u", sync_index) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_sync_manager);
@@ -23,7 +23,7 @@ EXPORT_SYMBOL_GPL(ecrt_slave_config_sync_manager);
 static int sc_pdo(ec_slave_config_t *sc, struct ec_ioc_sc_pdo *i)
 {
 	i->config = ec_api_config(sc)->index;
-	return ec_api_do(ec_api_master(sc), ec_ioc_sc_pdo, i);
+	return ec_command(ec_api_master(sc), EC_IOC_SC_PDO, i);
 }
 
 int ecrt_slave_config_pdo_assign_add(ec_slave_config_t *sc, uint8_t sync_index, uint16_t index)
@@ -139,7 +139,7 @@ static int reg_entry(ec_slave_config_t *sc, struct ec_ioc_reg_entry *i, ec_domai
 	i->domain = domain->index;
 	if (!bit_position)
 		i->flags |= EC_REG_ENTRY_ALIGNED;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_reg_entry, i);
+	ret = ec_command(ec_api_master(sc), EC_IOC_REG_ENTRY, i);
 	if (ret)
 		return ec_api_fail_sc(sc, ret, "register an entry");
 	if (bit_position)

@@ -32,7 +32,7 @@ int ecrt_master_reason(const ec_master_t *master, char *buf, size_t size)
 	if (!r)
 		return -ENOMEM;
 	/* asking is no call that succeeds and has no reason */
-	ret = ec_ioc_reason(&master->api->file, r);
+	ret = ec_command(master, EC_IOC_REASON, r);
 	if (!ret)
 		ret = copy_line(buf, size, r->text, sizeof(r->text));
 	kfree(r);
@@ -51,7 +51,7 @@ int ecrt_slave_config_reason(const ec_slave_config_t *sc, char *buf, size_t size
 	if (!why)
 		return -ENOMEM;
 	why->index = ec_api_config(sc)->index;
-	ret = ec_api_do(ec_api_master(sc), ec_ioc_config_why, why);
+	ret = ec_command(ec_api_master(sc), EC_IOC_CONFIG_WHY, why);
 	if (!ret)
 		ret = copy_line(buf, size, why->text, sizeof(why->text));
 	kfree(why);

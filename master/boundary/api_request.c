@@ -29,7 +29,7 @@ struct ec_api_request *ec_api_request_create(ec_slave_config_t *sc, u32 kind, si
 		return NULL;
 	m = ec_api_master(sc);
 	i.config = ec_api_config(sc)->index;
-	ret = ec_api_do(m, ec_ioc_sc_request, &i);
+	ret = ec_command(m, EC_IOC_SC_REQUEST, &i);
 	if (ret)
 		goto fail;
 	/* the session has one more than it needs when there is no memory for it here */

@@ -24,8 +24,8 @@ static int download(struct ec_master *m, struct ec_ioc_sdo *i, const u8 *data, s
 	if (!m || !data || !size)
 		return -EINVAL;
 	i->size = min_t(size_t, size, U32_MAX);
-	ec_api_begin(m);
-	return ended(m, i, ec_ioc_download(&m->api->file, i, data), abort_code, "write");
+	i->data = (uintptr_t)data;
+	return ended(m, i, ec_command(m, EC_IOC_SDO_DOWNLOAD, i), abort_code, "write");
 }
 
 int ecrt_master_sdo_download(ec_master_t *master, uint16_t slave_position, uint16_t index,
@@ -55,7 +55,6 @@ EXPORT_SYMBOL_GPL(ecrt_master_sdo_download_complete);
 static int upload(struct ec_master *m, struct ec_ioc_sdo *i, u8 *target, size_t target_size,
 		  size_t *result_size, u32 *abort_code)
 {
-	u8 *data;
 	int ret;
 
 	if (abort_code)
@@ -65,13 +64,10 @@ static int upload(struct ec_master *m, struct ec_ioc_sdo *i, u8 *target, size_t 
 	if (!m || (!target && target_size) || !result_size)
 		return -EINVAL;
 	i->size = min_t(size_t, target_size, U32_MAX);
-	ec_api_begin(m);
-	ret = ec_ioc_upload(&m->api->file, i, &data);
-	if (!ret) {
-		memcpy(target, data, i->size);
+	i->data = (uintptr_t)target;
+	ret = ec_command(m, EC_IOC_SDO_UPLOAD, i);
+	if (!ret)
 		*result_size = i->size;
-	}
-	kvfree(data);
 	return ended(m, i, ret, abort_code, "read");
 }
 

@@ -31,9 +31,8 @@ int ecrt_master_write_idn(ec_master_t *master, uint16_t slave_position, uint8_t 
 		*error_code = 0;
 	if (!master || !data)
 		return -EINVAL;
-	ec_api_begin(master);
-	return ended(master, &i, ec_ioc_write_idn(&master->api->file, &i, data), error_code,
-		     "write");
+	i.data = (uintptr_t)data;
+	return ended(master, &i, ec_command(master, EC_IOC_SOE_WRITE, &i), error_code, "write");
 }
 EXPORT_SYMBOL_GPL(ecrt_master_write_idn);
 
@@ -45,7 +44,6 @@ int ecrt_master_read_idn(ec_master_t *master, uint16_t slave_position, uint8_t d
 		.position = slave_position, .idn = idn, .drive = drive_no,
 		.size = min_t(size_t, target_size, U32_MAX),
 	};
-	u8 *data;
 	int ret;
 
 	if (error_code)
@@ -54,13 +52,10 @@ int ecrt_master_read_idn(ec_master_t *master, uint16_t slave_position, uint8_t d
 		*result_size = 0;
 	if (!master || (!target && target_size) || !result_size)
 		return -EINVAL;
-	ec_api_begin(master);
-	ret = ec_ioc_read_idn(&master->api->file, &i, &data);
-	if (!ret) {
-		memcpy(target, data, i.size);
+	i.data = (uintptr_t)target;
+	ret = ec_command(master, EC_IOC_SOE_READ, &i);
+	if (!ret)
 		*result_size = i.size;
-	}
-	kvfree(data);
 	return ended(master, &i, ret, error_code, "read");
 }
 EXPORT_SYMBOL_GPL(ecrt_master_read_idn);
@@ -79,8 +74,8 @@ int ecrt_slave_config_idn(ec_slave_config_t *sc, uint8_t drive_no, uint16_t idn,
 	if (!sc || !data)
 		return -EINVAL;
 	i.config = ec_api_config(sc)->index;
-	ec_api_begin(ec_api_master(sc));
-	ret = ec_ioc_store_idn(&ec_api_master(sc)->api->file, &i, data);
+	i.data = (uintptr_t)data;
+	ret = ec_command(ec_api_master(sc), EC_IOC_SC_IDN, &i);
 	return ret ? ec_api_fail_sc(sc, ret, "store IDN 0x%04x of drive %u", idn, drive_no) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_idn);

@@ -41,6 +41,5 @@ void ec_cdev_exit(struct ec_master *m);
 void ec_cdev_put(struct ec_master *m);
 
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);
-int ec_refuse(struct ec_file *f, int err, const char *fmt, ...) __printf(3, 4);
 
 #endif

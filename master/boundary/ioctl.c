@@ -6,6 +6,8 @@
 #include "ioctl.h"
 #include "../base/limits.h"
 #include "../master.h"
+#include "../bus/slave.h"
+#include "../session/session.h"
 
 #define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
 
@@ -17,56 +19,123 @@ struct ec_reserved {
 	u16 size;
 };
 
+/* What a command looks up and locks before its handler runs. */
+enum ec_ioc_class {
+	EC_CLASS_MASTER,	/* nothing */
+	EC_CLASS_SLAVE,		/* a slave by its position */
+	EC_CLASS_SESSION,	/* session of the file; with session_lock */
+	EC_CLASS_IDLE,		/* the same while it is not active */
+	EC_CLASS_CONFIG,	/* the same, and a slave configuration */
+	EC_CLASS_DOMAIN,	/* the same, and a domain */
+	EC_CLASS_SHOW_CONFIG,	/* own or running session, in a show section: a configuration */
+	EC_CLASS_SHOW_DOMAIN,	/* or a domain */
+};
+
+/* a buffer that an argument names: where its address and its bytes are, and how many at most */
+struct ec_ioc_buffer {
+	u16 address;
+	u16 size;
+	u32 most;
+	bool out;
+};
+
 /**
  * struct ec_ioctl - one command
  * @cmd: number; its size is what this module knows
  * @fn: handler
  * @flags: F_*
  * @min: bytes the oldest program sends; less is no such argument
+ * @class: what is looked up and locked
+ * @at: where the argument has the position or index for that
+ * @buffer: @most is 0 when there is none
  * @reserved: fields that must be zero; size 0 ends them
  */
 struct ec_ioctl {
 	unsigned int cmd;
-	int (*fn)(struct ec_file *f, void *arg);
+	int (*fn)(struct ec_call *call);
 	unsigned int flags;
 	unsigned int min;
+	enum ec_ioc_class class;
+	u16 at;
+	struct ec_ioc_buffer buffer;
 	struct ec_reserved reserved[2];
 };
 
-#define RSV(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
-#define IOC_MIN(c, f, fl, size, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
-	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG), .min = (size), \
-	.reserved = { __VA_ARGS__ } }
+#define FIELD(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
+#define RSV(...) .reserved = { __VA_ARGS__ }
+#define RSV1(type) RSV(FIELD(type, reserved))
+#define RSV2(type) RSV(FIELD(type, reserved), FIELD(type, reserved2))
+#define SLAVE(type) .class = EC_CLASS_SLAVE, .at = offsetof(struct type, position) + \
+	BUILD_BUG_ON_ZERO(sizeof_field(struct type, position) != sizeof(u16))
+#define INDEX(c, type, field) .class = (c), .at = offsetof(struct type, field) + \
+	BUILD_BUG_ON_ZERO(sizeof_field(struct type, field) != sizeof(u32))
+#define CONFIG(type) INDEX(EC_CLASS_CONFIG, type, config)
+#define DOMAIN(type) INDEX(EC_CLASS_DOMAIN, type, domain)
+#define SHOW_CONFIG(type) INDEX(EC_CLASS_SHOW_CONFIG, type, index)
+#define SHOW_DOMAIN(type) INDEX(EC_CLASS_SHOW_DOMAIN, type, index)
+#define SESSION .class = EC_CLASS_SESSION
+#define IDLE .class = EC_CLASS_IDLE
+#define BUFFER(type, d, s, m, o) .buffer = { .address = offsetof(struct type, d), \
+	.size = offsetof(struct type, s), .most = (m), .out = (o) }
+#define IN(type, most) BUFFER(type, data, size, most, false)
+#define OUT(type, most) BUFFER(type, data, size, most, true)
+#define IOC_MIN(c, f, fl, m, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \
+	BUILD_BUG_ON_ZERO(_IOC_SIZE(c) > MAX_ARG), .min = (m), ##__VA_ARGS__ }
 #define IOC(c, f, fl, ...) IOC_MIN(c, f, fl, _IOC_SIZE(c), ##__VA_ARGS__)
 
 static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_VERSION, ec_ioc_version, 0),
 	IOC(EC_IOC_REASON, ec_ioc_reason, 0),
 	IOC_MIN(EC_IOC_MASTER, ec_ioc_master, 0, offsetofend(struct ec_ioc_master, not_captured)),
-	IOC_MIN(EC_IOC_SLAVE, ec_ioc_slave, 0, offsetofend(struct ec_ioc_slave, dc_odd)),
-	IOC(EC_IOC_SM, ec_ioc_sm, 0, RSV(ec_ioc_sm, reserved)),
-	IOC(EC_IOC_PDO, ec_ioc_pdo, 0, RSV(ec_ioc_pdo, reserved), RSV(ec_ioc_pdo, reserved2)),
-	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, RSV(ec_ioc_pdo_entry, reserved)),
-	IOC(EC_IOC_SII, ec_ioc_sii, 0, RSV(ec_ioc_sii, reserved)),
-	IOC(EC_IOC_CONFIG, ec_ioc_config, 0),
-	IOC(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, RSV(ec_ioc_config_sm, reserved)),
-	IOC(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, RSV(ec_ioc_config_pdo, reserved)),
-	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, RSV(ec_ioc_config_entry, reserved)),
-	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0,
-	    RSV(ec_ioc_config_sdo, reserved), RSV(ec_ioc_config_sdo, reserved2)),
-	IOC(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, RSV(ec_ioc_config_idn, reserved)),
-	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0),
-	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0),
-	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, RSV(ec_ioc_domain_fmmu, reserved)),
-	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, RSV(ec_ioc_domain_data, reserved)),
-	IOC(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0),
-	IOC(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, RSV(ec_ioc_sdo, reserved)),
-	IOC(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, RSV(ec_ioc_sdo, reserved)),
-	IOC(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, RSV(ec_ioc_reg, reserved)),
-	IOC(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, RSV(ec_ioc_reg, reserved)),
-	IOC(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, RSV(ec_ioc_soe, reserved)),
-	IOC(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, RSV(ec_ioc_soe, reserved)),
-	IOC(EC_IOC_STATE, ec_ioc_state, F_WRITE, RSV(ec_ioc_state, reserved)),
+	IOC_MIN(EC_IOC_SLAVE, ec_ioc_slave, 0, offsetofend(struct ec_ioc_slave, dc_odd),
+		SLAVE(ec_ioc_slave)),
+	IOC(EC_IOC_SM, ec_ioc_sm, 0, SLAVE(ec_ioc_sm), RSV1(ec_ioc_sm)),
+	IOC(EC_IOC_PDO, ec_ioc_pdo, 0, SLAVE(ec_ioc_pdo), RSV2(ec_ioc_pdo)),
+	IOC(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry),
+	    RSV1(ec_ioc_pdo_entry)),
+	IOC(EC_IOC_SII, ec_ioc_sii, 0, SLAVE(ec_ioc_sii), OUT(ec_ioc_sii, EC_MAX_SII_BYTES),
+	    RSV1(ec_ioc_sii)),
+	IOC(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config)),
+	IOC(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, SHOW_CONFIG(ec_ioc_config_sm),
+	    RSV1(ec_ioc_config_sm)),
+	IOC(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
+	    RSV1(ec_ioc_config_pdo)),
+	IOC(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, SHOW_CONFIG(ec_ioc_config_entry),
+	    RSV1(ec_ioc_config_entry)),
+	IOC(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0, SHOW_CONFIG(ec_ioc_config_sdo),
+	    OUT(ec_ioc_config_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_config_sdo)),
+	IOC(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
+	    OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn)),
+	IOC(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag)),
+	IOC(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
+	    RSV1(ec_ioc_config_why)),
+	IOC(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0,
+	    INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
+	    RSV(FIELD(ec_ioc_sc_ip, params.reserved))),
+	IOC(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain)),
+	IOC(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
+	    RSV1(ec_ioc_domain_fmmu)),
+	IOC(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
+	    OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data)),
+	IOC(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
+	    OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle))),
+	IOC(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
+	    OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo)),
+	IOC(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, SLAVE(ec_ioc_sdo),
+	    IN(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo)),
+	IOC(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE),
+	    RSV1(ec_ioc_reg)),
+	IOC(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE),
+	    RSV1(ec_ioc_reg)),
+	IOC(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe),
+	    OUT(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV1(ec_ioc_soe)),
+	IOC(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
+	    IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV1(ec_ioc_soe)),
+	IOC(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state)),
+	IOC(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
+	    RSV(FIELD(ec_ioc_ip, params.reserved))),
+	IOC(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),
+	    RSV(FIELD(ec_ioc_ip, params.reserved))),
 	IOC(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE),
 	IOC(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE),
 	IOC(EC_IOC_RESET, ec_ioc_reset, F_WRITE),
@@ -74,54 +143,61 @@ static const struct ec_ioctl table[] = {
 	IOC(EC_IOC_END_DETACHED, ec_ioc_end_detached, F_WRITE),
 	IOC(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE),
 	IOC(EC_IOC_RELEASE, ec_ioc_release, F_WRITE),
-	IOC(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE),
+	IOC(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE, IDLE),
 	IOC(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE),
-	IOC(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, RSV(ec_ioc_sc_sync, reserved)),
-	IOC(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE),
-	IOC(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE),
-	IOC(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE, RSV(ec_ioc_sc_sdo, reserved)),
-	IOC(EC_IOC_SC_IDN, ec_ioc_sc_idn, F_WRITE),
-	IOC(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE),
-	IOC(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE,
-	    RSV(ec_ioc_sc_dc, reserved), RSV(ec_ioc_sc_dc, reserved2)),
-	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, RSV(ec_ioc_sc_flag, reserved)),
-	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, RSV(ec_ioc_sc_timeout, reserved)),
-	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE),
-	IOC(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE),
-	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE),
-	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE),
-	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV(ec_ioc_app_time, reserved)),
-	IOC(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE),
-	IOC(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, RSV(ec_ioc_sc_request, reserved)),
-	IOC(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, RSV(ec_ioc_sc_emerg, reserved)),
-	IOC(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, RSV(ec_ioc_sc_ip, params.reserved)),
-	IOC(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, RSV(ec_ioc_config_why, reserved)),
-	IOC(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE),
-	IOC(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
-	IOC(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, RSV(ec_ioc_ip, params.reserved)),
-	IOC(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, RSV(ec_ioc_sc_ip, params.reserved)),
-	IOC(EC_IOC_CYCLE, ec_ioc_cycle, F_WRITE),
+	IOC(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, CONFIG(ec_ioc_sc_sync),
+	    RSV1(ec_ioc_sc_sync)),
+	IOC(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE, CONFIG(ec_ioc_sc_watchdog)),
+	IOC(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE, CONFIG(ec_ioc_sc_pdo)),
+	IOC(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE, CONFIG(ec_ioc_sc_sdo),
+	    IN(ec_ioc_sc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sc_sdo)),
+	IOC(EC_IOC_SC_IDN, ec_ioc_sc_idn, F_WRITE, CONFIG(ec_ioc_sc_idn),
+	    IN(ec_ioc_sc_idn, EC_MAX_SOE_SIZE)),
+	IOC(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE, CONFIG(ec_ioc_reg_entry)),
+	IOC(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE, CONFIG(ec_ioc_sc_dc), RSV2(ec_ioc_sc_dc)),
+	IOC(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, CONFIG(ec_ioc_sc_flag),
+	    RSV1(ec_ioc_sc_flag)),
+	IOC(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, CONFIG(ec_ioc_sc_timeout),
+	    RSV1(ec_ioc_sc_timeout)),
+	IOC(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, CONFIG(ec_ioc_sc_request),
+	    RSV1(ec_ioc_sc_request)),
+	IOC(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, CONFIG(ec_ioc_sc_emerg),
+	    RSV1(ec_ioc_sc_emerg)),
+	IOC(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
+	    RSV(FIELD(ec_ioc_sc_ip, params.reserved))),
+	IOC(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, CONFIG(ec_ioc_sc_overlap),
+	    RSV1(ec_ioc_sc_overlap)),
+	IOC(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
+	    BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, false)),
+	IOC(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE, SESSION),
+	IOC(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION),
+	IOC(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE, SESSION),
+	IOC(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE, IDLE),
+	IOC(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV1(ec_ioc_app_time)),
+	IOC(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE, IDLE),
+	IOC(EC_IOC_CYCLE, ec_ioc_cycle, F_WRITE, IDLE),
 	IOC(EC_IOC_WAIT, ec_ioc_wait, F_WRITE),
-	IOC(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, RSV(ec_ioc_sc_overlap, reserved)),
-	IOC(EC_IOC_LATE, ec_ioc_late, F_WRITE),
-	IOC(EC_IOC_DOMAIN_AGE, ec_ioc_domain_age, F_WRITE, RSV(ec_ioc_domain_age, reserved)),
+	IOC(EC_IOC_LATE, ec_ioc_late, F_WRITE, IDLE),
+	IOC(EC_IOC_DOMAIN_AGE, ec_ioc_domain_age, F_WRITE, DOMAIN(ec_ioc_domain_age),
+	    RSV1(ec_ioc_domain_age)),
 	IOC(EC_IOC_DOMAIN_OPTIONS, ec_ioc_domain_options, F_WRITE,
-	    RSV(ec_ioc_domain_options, reserved)),
-	IOC(EC_IOC_DIVISION, ec_ioc_division, F_WRITE),
-	IOC(EC_IOC_COPY, ec_ioc_copy, F_WRITE),
+	    DOMAIN(ec_ioc_domain_options), RSV1(ec_ioc_domain_options)),
+	IOC(EC_IOC_DIVISION, ec_ioc_division, F_WRITE, DOMAIN(ec_ioc_division)),
+	IOC(EC_IOC_COPY, ec_ioc_copy, F_WRITE, IDLE),
 };
 
 /**
  * ec_refuse() - fail a command and keep the reason for EC_IOC_REASON
- * @f: open file
+ * @call: command
  * @err: -errno
  * @fmt: what was wrong and what to do
  *
  * Context: Process. May sleep.
  * Return: @err.
  */
-int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
+int ec_refuse(struct ec_call *call, int err, const char *fmt, ...)
 {
+	struct ec_file *f = call->file;
 	va_list args;
 
 	va_start(args, fmt);
@@ -132,60 +208,258 @@ int ec_refuse(struct ec_file *f, int err, const char *fmt, ...)
 	return err;
 }
 
+/* A failure without text must not show the one before. */
+static void forget_reason(struct ec_file *f)
+{
+	raw_spin_lock(&f->lock);
+	f->reason[0] = '\0';
+	raw_spin_unlock(&f->lock);
+}
+
 /**
  * ec_ioc_limit() - refuse what is beyond the memory of a master's sessions
- * @f: open file
+ * @call: command
  * @ret: result so far
  *
  * Context: Process.
  * Return: -ENOMEM for -EDQUOT, with the reason noted; else @ret.
  */
-int ec_ioc_limit(struct ec_file *f, int ret)
+int ec_ioc_limit(struct ec_call *call, int ret)
 {
 	if (ret != -EDQUOT)
 		return ret;
-	return ec_refuse(f, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
-			 EC_MAX_SESSION_BYTES >> 20, f->master->base->index);
+	return ec_refuse(call, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
+			 EC_MAX_SESSION_BYTES >> 20, call->master->base->index);
 }
 
+/* what a command needs -------------------------------------------------------*/
+
 /**
- * ec_ioc_fetch() - get a value from the process
- * @from: address in the process
- * @size: its bytes, checked
- * @data: out: the value, for kvfree()
+ * ec_ioc_lock_session() - lock the session of a command's file
+ * @call: command; its @session is set
  *
- * Context: Process, no lock held.
- * Return: 0, -ENOMEM or -EFAULT.
+ * Context: Process. May sleep. session_lock is held when 0 is returned.
+ * Return: 0 or -EPERM with the reason noted.
  */
-int ec_ioc_fetch(u64 from, u32 size, u8 **data)
+int ec_ioc_lock_session(struct ec_call *call)
 {
-	*data = kvmalloc(size, GFP_KERNEL_ACCOUNT);
-	if (!*data)
-		return -ENOMEM;
-	if (!copy_from_user(*data, u64_to_user_ptr(from), size))
+	ec_session_lock(call->master);
+	call->session = ec_session_of(call->master, call->file);
+	if (call->session)
 		return 0;
-	kvfree(*data);
-	return -EFAULT;
+	ec_session_unlock(call->master);
+	return ec_refuse(call, -EPERM, "reserve the master first (ecrt_request_master)");
 }
 
-/**
- * ec_ioc_hand_over() - give a result to the process and free it
- * @to: address in the process
- * @data: result, as for kvfree(); NULL when there is none
- * @size: its bytes
- * @ret: -errno when there is nothing to give, else 0
- *
- * Context: Process, session_lock not held: mmap() takes that with the memory of the
- * process locked. May sleep.
- * Return: @ret or -EFAULT.
- */
-int ec_ioc_hand_over(u64 to, void *data, u32 size, int ret)
+static int find_config(struct ec_call *call, u32 index)
 {
-	if (!ret && data && copy_to_user(u64_to_user_ptr(to), data, size))
-		ret = -EFAULT;
-	kvfree(data);
+	if (index >= call->session->n_configs)
+		return ec_refuse(call, -ENOENT, "there are %u slave configurations, no %u",
+				 call->session->n_configs, index);
+	index = array_index_nospec(index, call->session->n_configs);
+	call->config = call->session->configs[index];
+	return 0;
+}
+
+static int find_domain(struct ec_call *call, u32 index)
+{
+	if (index >= call->session->n_domains)
+		return ec_refuse(call, -ENOENT, "there are %u domains, no %u",
+				 call->session->n_domains, index);
+	index = array_index_nospec(index, call->session->n_domains);
+	call->domain = call->session->domains[index];
+	return 0;
+}
+
+static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
+{
+	int ret = ec_ioc_lock_session(call);
+
+	if (ret)
+		return ret;
+	if (op->class != EC_CLASS_SESSION && call->session->active)
+		ret = ec_refuse(call, -EBUSY, "the master is active; configure before ecrt_master_activate()");
+	else if (op->class == EC_CLASS_CONFIG)
+		ret = find_config(call, *(u32 *)(call->arg + op->at));
+	else if (op->class == EC_CLASS_DOMAIN)
+		ret = find_domain(call, *(u32 *)(call->arg + op->at));
+	if (ret)
+		ec_session_unlock(call->master);
 	return ret;
 }
+
+/* An application sees its own session, everybody else the one that runs. */
+static int show_session(struct ec_call *call, const struct ec_ioctl *op)
+{
+	struct ec_master *m = call->master;
+	int ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	call->session = ec_session_of(m, call->file) ?: m->session;
+	if (!call->session)
+		ret = ec_refuse(call, -ENOENT, "no application has reserved master %u", m->base->index);
+	else if (op->class == EC_CLASS_SHOW_CONFIG)
+		ret = find_config(call, *(u32 *)(call->arg + op->at));
+	else
+		ret = find_domain(call, *(u32 *)(call->arg + op->at));
+	call->showing = !ret;
+	if (ret)
+		ec_show_end(m);
+	return ret;
+}
+
+/**
+ * ec_ioc_pause() - leave the show section of a command for a moment
+ * @call: command whose class has one
+ *
+ * Context: Process. May sleep.
+ * Return: as ec_show_pause(); the handler returns what is not 0, and is called again
+ * after -EAGAIN.
+ */
+int ec_ioc_pause(struct ec_call *call)
+{
+	int ret = ec_show_pause(call->master);
+
+	call->showing = !ret;
+	return ret;
+}
+
+/**
+ * ec_ioc_get_slave() - the slave a command names
+ * @call: command; its @slave is set, with a reference for the time of the command
+ * @position: ring position
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOENT with the reason noted.
+ */
+int ec_ioc_get_slave(struct ec_call *call, u16 position)
+{
+	struct ec_master *m = call->master;
+	int ret = ec_show_begin(m);
+
+	if (ret)
+		return ret;
+	if (position < m->n_slaves)
+		call->slave = ec_slave_ref(m->slaves[position]);
+	ec_show_end(m);
+	if (call->slave)
+		return 0;
+	return ec_refuse(call, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
+			 position, m->n_slaves);
+}
+
+static int with_session(struct ec_call *call, const struct ec_ioctl *op)
+{
+	int ret = lock_session(call, op);
+
+	if (ret)
+		return ret;
+	ret = op->fn(call);
+	ec_session_unlock(call->master);
+	return ret;
+}
+
+static int with_show(struct ec_call *call, const struct ec_ioctl *op)
+{
+	int ret;
+
+	do {
+		ret = show_session(call, op);
+		if (ret)
+			return ret;
+		ret = op->fn(call);
+		if (call->showing)
+			ec_show_end(call->master);
+	} while (ret == -EAGAIN);
+	return ret;
+}
+
+static int execute(struct ec_call *call, const struct ec_ioctl *op)
+{
+	switch (op->class) {
+	case EC_CLASS_MASTER:
+		return op->fn(call);
+	case EC_CLASS_SLAVE:
+		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: op->fn(call);
+	case EC_CLASS_SHOW_CONFIG:
+	case EC_CLASS_SHOW_DOMAIN:
+		return with_show(call, op);
+	default:
+		return with_session(call, op);
+	}
+}
+
+/* A result may have more room than it needs; a value that is too large is the handler's to refuse. */
+static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
+{
+	const struct ec_ioc_buffer *b = &op->buffer;
+	u64 address = *(u64 *)(call->arg + b->address);
+	u32 size = *(u32 *)(call->arg + b->size);
+
+	call->size = b->out ? min(size, b->most) : size;
+	if (!call->size || call->size > b->most)
+		return 0;
+	call->data = kvzalloc(call->size, GFP_KERNEL_ACCOUNT);
+	if (!call->data)
+		return -ENOMEM;
+	if (b->out)
+		return 0;
+	if (!user)
+		memcpy(call->data, (void *)(uintptr_t)address, call->size);
+	else if (copy_from_user(call->data, u64_to_user_ptr(address), call->size))
+		return -EFAULT;
+	return 0;
+}
+
+/* No lock is held: mmap() takes session_lock with the memory of the process locked. */
+static int put_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
+{
+	const struct ec_ioc_buffer *b = &op->buffer;
+	u64 address = *(u64 *)(call->arg + b->address);
+	u32 size = min(*(u32 *)(call->arg + b->size), call->size);
+
+	if (!user)
+		memcpy((void *)(uintptr_t)address, call->data, size);
+	else if (copy_to_user(u64_to_user_ptr(address), call->data, size))
+		return -EFAULT;
+	return 0;
+}
+
+/* @arg is in kernel memory; a buffer that it names is the process' when @user. */
+static int run(struct ec_file *f, const struct ec_ioctl *op, void *arg, bool user)
+{
+	struct ec_call call = { .file = f, .master = f->master, .arg = arg };
+	int ret = op->buffer.most ? get_buffer(&call, op, user) : 0;
+
+	if (!ret)
+		ret = execute(&call, op);
+	if (!ret && op->buffer.out)
+		ret = put_buffer(&call, op, user);
+	kvfree(call.data);
+	if (call.slave)
+		ec_slave_unref(call.slave);
+	return ret;
+}
+
+/**
+ * ec_ioc() - give a command from within the kernel
+ * @f: file that stands for the application
+ * @cmd: EC_IOC_*
+ * @arg: its argument; addresses in it are the kernel's
+ *
+ * Context: Process. As the command.
+ * Return: as the command.
+ */
+int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
+{
+	/* reading the reason must not clear it */
+	if (cmd != EC_IOC_REASON)
+		forget_reason(f);
+	return run(f, &table[_IOC_NR(cmd)], arg, false);
+}
+
+/* processes ------------------------------------------------------------------*/
 
 /* Version request of the field's other master: old programs fail cleanly. */
 static long foreign_version(unsigned long arg)
@@ -232,46 +506,46 @@ static u32 known_flags(unsigned int cmd)
 }
 
 /* Is the caller allowed to, and is the size of the argument possible? */
-static int check(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd)
+static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd)
 {
 	unsigned int size = _IOC_SIZE(cmd);
 
 	if (size < op->min || size > (_IOC_DIR(cmd) ? MAX_ARG : 0))
-		return ec_refuse(f, -EINVAL, "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
+		return ec_refuse(call, -EINVAL, "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
 				 cmd, size, op->min);
-	if (op->flags & F_WRITE && !f->writable)
-		return ec_refuse(f, -EPERM, "the command needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
+	if (op->flags & F_WRITE && !call->file->writable)
+		return ec_refuse(call, -EPERM, "the command needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
 	return 0;
 }
 
 /* What this module does not know must not be asked for. */
-static int check_unknown(struct ec_file *f, const struct ec_ioctl *op, const void *karg)
+static int check_unknown(struct ec_call *call, const struct ec_ioctl *op, const void *karg)
 {
 	u32 flags = *(const u32 *)karg & ~known_flags(op->cmd);
 	unsigned int i;
 
 	if (flags)
-		return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: unknown flags 0x%x", op->cmd,
+		return ec_refuse(call, -EOPNOTSUPP, "command 0x%08x: unknown flags 0x%x", op->cmd,
 				 flags);
 	for (i = 0; i < ARRAY_SIZE(op->reserved); i++) {
 		const struct ec_reserved *r = &op->reserved[i];
 
 		if (memchr_inv(karg + r->offset, 0, r->size))
-			return ec_refuse(f, -EOPNOTSUPP, "command 0x%08x: reserved bytes at %u are not zero; a newer module may know them",
+			return ec_refuse(call, -EOPNOTSUPP, "command 0x%08x: reserved bytes at %u are not zero; a newer module may know them",
 					 op->cmd, r->offset);
 	}
 	return 0;
 }
 
-static int fetch_arg(struct ec_file *f, const struct ec_ioctl *op, unsigned int cmd, void *karg,
+static int fetch_arg(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd, void *karg,
 		     void __user *uarg)
 {
 	int ret = copy_struct_from_user(karg, _IOC_SIZE(op->cmd), uarg, _IOC_SIZE(cmd));
 
 	if (ret == -E2BIG)
-		return ec_refuse(f, ret, "command 0x%08x: this module knows %u bytes of the argument, the rest must be zero",
+		return ec_refuse(call, ret, "command 0x%08x: this module knows %u bytes of the argument, the rest must be zero",
 				 cmd, _IOC_SIZE(op->cmd));
-	return ret ?: check_unknown(f, op, karg);
+	return ret ?: check_unknown(call, op, karg);
 }
 
 /* An argument larger than this module knows ends with zeros. */
@@ -282,19 +556,13 @@ static int return_arg(unsigned int ksize, unsigned int usize, const void *karg, 
 	return usize > ksize && clear_user(uarg + ksize, usize - ksize) ? -EFAULT : 0;
 }
 
-static void forget_reason(struct ec_file *f)
-{
-	raw_spin_lock(&f->lock);
-	f->reason[0] = '\0';
-	raw_spin_unlock(&f->lock);
-}
-
 /* Apart from the cyclic commands, which must not pay for the large buffer. */
 static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long arg)
 {
 	unsigned int nr = _IOC_NR(cmd);
 	void __user *uarg = (void __user *)arg;
 	u64 karg[MAX_ARG / sizeof(u64)];
+	struct ec_call call = { .file = f };
 	const struct ec_ioctl *op;
 	int ret;
 
@@ -308,17 +576,17 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
 	/* a failure without text must not show the one before */
 	if (op->fn != ec_ioc_reason)
 		forget_reason(f);
-	ret = check(f, op, cmd);
+	ret = check(&call, op, cmd);
 	if (ret)
 		return ret;
 
 	memset(karg, 0, _IOC_SIZE(op->cmd));
 	if (_IOC_DIR(cmd) & _IOC_WRITE) {
-		ret = fetch_arg(f, op, cmd, karg, uarg);
+		ret = fetch_arg(&call, op, cmd, karg, uarg);
 		if (ret)
 			return ret;
 	}
-	ret = op->fn(f, karg);
+	ret = run(f, op, karg, true);
 	/* on -EIO the abort code is in the structure */
 	if ((!ret || ret == -EIO) && _IOC_DIR(cmd) & _IOC_READ &&
 	    return_arg(_IOC_SIZE(op->cmd), _IOC_SIZE(cmd), karg, uarg))

@@ -16,34 +16,34 @@
 #define DC_FLAGS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
 			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME | EC_CYCLE_DC_FOLLOW)
 
-static int check_cycle(struct ec_file *f, const struct ec_ioc_cycle *i)
+static int check_cycle(struct ec_call *call, const struct ec_ioc_cycle *i)
 {
 	if (!i->period_ns)
 		return 0;
 	if (i->period_ns < PERIOD_MIN_NS || i->period_ns > PERIOD_MAX_NS)
-		return ec_refuse(f, -EINVAL, "a period of %u ns; use %u to %u", i->period_ns,
+		return ec_refuse(call, -EINVAL, "a period of %u ns; use %u to %u", i->period_ns,
 				 PERIOD_MIN_NS, PERIOD_MAX_NS);
 	if (i->phase_ns >= i->period_ns)
-		return ec_refuse(f, -EINVAL, "a phase of %u ns must be less than the period, %u",
+		return ec_refuse(call, -EINVAL, "a phase of %u ns must be less than the period, %u",
 				 i->phase_ns, i->period_ns);
 	if (i->priority > PRIORITY_MAX)
-		return ec_refuse(f, -EINVAL, "a priority of %u; use 1 to %u, or 0 for 50",
+		return ec_refuse(call, -EINVAL, "a priority of %u; use 1 to %u, or 0 for 50",
 				 i->priority, PRIORITY_MAX);
 	if (i->cpu < -1 || i->cpu >= (int)nr_cpu_ids)
-		return ec_refuse(f, -EINVAL, "there is no CPU %d; use 0 to %u, or -1 for any",
+		return ec_refuse(call, -EINVAL, "there is no CPU %d; use 0 to %u, or -1 for any",
 				 i->cpu, nr_cpu_ids - 1);
 	if (i->stall > EC_STALL_STOP)
-		return ec_refuse(f, -EINVAL, "unknown stall policy %u; use 0 to %u", i->stall,
+		return ec_refuse(call, -EINVAL, "unknown stall policy %u; use 0 to %u", i->stall,
 				 EC_STALL_STOP);
 	if (i->dc & ~DC_FLAGS)
-		return ec_refuse(f, -EOPNOTSUPP, "unknown clock flags 0x%x; use 0x%x or less of it",
+		return ec_refuse(call, -EOPNOTSUPP, "unknown clock flags 0x%x; use 0x%x or less of it",
 				 i->dc, DC_FLAGS);
 	if (i->dc & EC_CYCLE_DC_FOLLOW && !(i->dc & EC_SEND_FLAG_SYNC_SLAVES))
-		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
+		return ec_refuse(call, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
 	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
-		return ec_refuse(f, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would be synchronized to the other");
+		return ec_refuse(call, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would be synchronized to the other");
 	if (i->flags & EC_CYCLE_FLAG_DETACH && i->stall == EC_STALL_STOP)
-		return ec_refuse(f, -EINVAL, "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
+		return ec_refuse(call, -EINVAL, "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
 	return 0;
 }
 
@@ -55,97 +55,77 @@ static u32 permitted(u32 priority)
 	return min_t(unsigned long, priority, rlimit(RLIMIT_RTPRIO));
 }
 
-int ec_ioc_cycle(struct ec_file *f, void *arg)
+int ec_ioc_cycle(struct ec_call *call)
 {
-	struct ec_ioc_cycle *i = arg;
-	int ret = check_cycle(f, i);
-	struct ec_session *s;
+	struct ec_ioc_cycle *i = call->arg;
+	int ret = check_cycle(call, i);
 
 	if (ret)
 		return ret;
-	s = ec_ioc_lock_idle(f, &ret);
-	if (!s)
-		return ret;
-	s->kernel = *i;
-	s->priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
-	ec_session_unlock(f->master);
+	call->session->kernel = *i;
+	call->session->priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
 	return 0;
 }
 
-int ec_ioc_division(struct ec_file *f, void *arg)
+int ec_ioc_division(struct ec_call *call)
 {
-	struct ec_ioc_division *i = arg;
-	int ret = 0;
-	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
+	struct ec_ioc_division *i = call->arg;
 
-	if (!s)
-		return ret;
-	if (!i->division || i->division > EC_MAX_DIVISION || i->phase >= i->division) {
-		ret = ec_refuse(f, -EINVAL, "every %u cycles, phase %u: use 1 to %u, and a phase below that",
-				i->division, i->phase, EC_MAX_DIVISION);
-	} else if (i->domain >= s->n_domains) {
-		ret = ec_refuse(f, -ENOENT, "there is no domain %u", i->domain);
-	} else {
-		s->domains[i->domain]->division = i->division;
-		s->domains[i->domain]->phase = i->phase;
-	}
-	ec_session_unlock(f->master);
-	return ret;
+	if (!i->division || i->division > EC_MAX_DIVISION || i->phase >= i->division)
+		return ec_refuse(call, -EINVAL, "every %u cycles, phase %u: use 1 to %u, and a phase below that",
+				 i->division, i->phase, EC_MAX_DIVISION);
+	call->domain->division = i->division;
+	call->domain->phase = i->phase;
+	return 0;
 }
 
-static int copy_failed(struct ec_file *f, const struct ec_ioc_copy *i, int ret)
+static int copy_failed(struct ec_call *call, const struct ec_ioc_copy *i, int ret)
 {
 	switch (ret) {
 	case -ENOENT:
-		return ec_refuse(f, ret, "there is no domain %u or %u", i->from_domain,
+		return ec_refuse(call, ret, "there is no domain %u or %u", i->from_domain,
 				 i->to_domain);
 	case -EDOM:
-		return ec_refuse(f, -EINVAL, "%u bits from bit %u of domain %u on are not inputs of one slave; register them first",
+		return ec_refuse(call, -EINVAL, "%u bits from bit %u of domain %u on are not inputs of one slave; register them first",
 				 i->bits, i->from_bit, i->from_domain);
 	case -ERANGE:
-		return ec_refuse(f, -EINVAL, "%u bits from bit %u of domain %u on are not outputs of one slave; register them first",
+		return ec_refuse(call, -EINVAL, "%u bits from bit %u of domain %u on are not outputs of one slave; register them first",
 				 i->bits, i->to_bit, i->to_domain);
 	case -EEXIST:
-		return ec_refuse(f, ret, "another copy writes to some of these %u bits from bit %u of domain %u on",
+		return ec_refuse(call, ret, "another copy writes to some of these %u bits from bit %u of domain %u on",
 				 i->bits, i->to_bit, i->to_domain);
 	case -ENOSPC:
-		return ec_refuse(f, ret, "at most %u copies", EC_MAX_COPIES);
+		return ec_refuse(call, ret, "at most %u copies", EC_MAX_COPIES);
 	default:
 		return ret;
 	}
 }
 
-int ec_ioc_copy(struct ec_file *f, void *arg)
+int ec_ioc_copy(struct ec_call *call)
 {
-	struct ec_ioc_copy *i = arg;
+	struct ec_ioc_copy *i = call->arg;
 	struct ec_copy copy = {
 		.from_domain = i->from_domain, .from_bit = i->from_bit,
 		.to_domain = i->to_domain, .to_bit = i->to_bit, .bits = i->bits,
 	};
-	int ret = 0;
-	struct ec_session *s = ec_ioc_lock_idle(f, &ret);
+	int ret = ec_copy_add(call->session, &copy);
 
-	if (!s)
-		return ret;
-	ret = ec_copy_add(s, &copy);
-	if (ret)
-		ret = copy_failed(f, i, ret);
-	ec_session_unlock(f->master);
-	return ret;
+	return ret ? copy_failed(call, i, ret) : 0;
 }
 
-int ec_ioc_wait(struct ec_file *f, void *arg)
+int ec_ioc_wait(struct ec_call *call)
 {
-	struct ec_master *m = f->master;
-	struct ec_ioc_wait *i = arg;
+	struct ec_master *m = call->master;
+	struct ec_ioc_wait *i = call->arg;
 	u32 run;
 	int ret;
 
-	if (!ec_cycle_thread_run(m, f, &run))
-		return ec_refuse(f, -EPERM, "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
-	ret = ec_cycle_thread_wait(m, f, &f->waiters, run, &i->cycle, i->timeout_us);
+	if (!ec_cycle_thread_run(m, call->file, &run))
+		return ec_refuse(call, -EPERM, "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
+	ret = ec_cycle_thread_wait(m, call->file, &call->file->waiters, run, &i->cycle,
+				   i->timeout_us);
 	if (ret == -EBUSY)
-		return ec_refuse(f, ret, "%u threads wait for the cycle already; let one of them wake the others",
+		return ec_refuse(call, ret, "%u threads wait for the cycle already; let one of them wake the others",
 				 EC_MAX_WAITERS);
 	return ret;
 }

@@ -3,7 +3,6 @@
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
-#include <linux/uaccess.h>
 #include "../config/config.h"
 #include "../link/device.h"
 #include "../cycle/domain.h"
@@ -20,35 +19,9 @@
 
 #define WALK	64	/* slaves to look at without a pause */
 
-/**
- * ec_ioc_get_slave() - the slave a command names
- * @f: open file
- * @position: ring position
- * @ret: -ENOENT when there is none
- *
- * Context: Process. May sleep.
- * Return: slave with a reference, or NULL with the reason noted.
- */
-struct ec_slave *ec_ioc_get_slave(struct ec_file *f, u16 position, int *ret)
+int ec_ioc_version(struct ec_call *call)
 {
-	struct ec_master *m = f->master;
-	struct ec_slave *s = NULL;
-
-	*ret = ec_show_begin(m);
-	if (*ret)
-		return NULL;
-	if (position < m->n_slaves)
-		s = ec_slave_ref(m->slaves[position]);
-	ec_show_end(m);
-	if (!s)
-		*ret = ec_refuse(f, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
-				 position, m->n_slaves);
-	return s;
-}
-
-int ec_ioc_version(struct ec_file *f, void *arg)
-{
-	struct ec_ioc_version *v = arg;
+	struct ec_ioc_version *v = call->arg;
 
 	v->abi = EC_UAPI_VERSION;
 	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
@@ -59,13 +32,13 @@ int ec_ioc_version(struct ec_file *f, void *arg)
 	return 0;
 }
 
-int ec_ioc_reason(struct ec_file *f, void *arg)
+int ec_ioc_reason(struct ec_call *call)
 {
-	struct ec_ioc_reason *r = arg;
+	struct ec_ioc_reason *r = call->arg;
 
-	raw_spin_lock(&f->lock);
-	strscpy(r->text, f->reason, sizeof(r->text));
-	raw_spin_unlock(&f->lock);
+	raw_spin_lock(&call->file->lock);
+	strscpy(r->text, call->file->reason, sizeof(r->text));
+	raw_spin_unlock(&call->file->lock);
 	r->len = strlen(r->text);
 	return 0;
 }
@@ -141,10 +114,10 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	i->rate_ppb = READ_ONCE(st->kernel.rate_ppb);
 }
 
-int ec_ioc_master(struct ec_file *f, void *arg)
+int ec_ioc_master(struct ec_call *call)
 {
-	struct ec_master *m = f->master;
-	struct ec_ioc_master *i = arg;
+	struct ec_master *m = call->master;
+	struct ec_ioc_master *i = call->arg;
 	unsigned int l;
 	int ret;
 
@@ -298,16 +271,12 @@ static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec
 	return ret;
 }
 
-int ec_ioc_slave(struct ec_file *f, void *arg)
+int ec_ioc_slave(struct ec_call *call)
 {
-	struct ec_ioc_slave *i = arg;
-	u16 feat;
-	int ret;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	struct ec_ioc_slave *i = call->arg;
+	const struct ec_slave *s = call->slave;
+	u16 feat = ec_slave_features(s);
 
-	if (!s)
-		return ret;
-	feat = ec_slave_features(s);
 	i->station = s->station;
 	i->alias = s->alias;
 	i->al_status = s->al_status;
@@ -343,33 +312,25 @@ int ec_ioc_slave(struct ec_file *f, void *arg)
 	slave_general(s, i);
 	strscpy(i->why, s->why, sizeof(i->why));
 	strscpy(i->warning, s->warning[0] ? s->warning : s->sii_flaw, sizeof(i->warning));
-	ret = slave_ports(f->master, s, i) ?: slave_alias(f->master, s, i) ?:
-	      slave_config(f->master, s, i);
-	ec_slave_unref(s);
-	return ret;
+	return slave_ports(call->master, s, i) ?: slave_alias(call->master, s, i) ?:
+	       slave_config(call->master, s, i);
 }
 
-int ec_ioc_sm(struct ec_file *f, void *arg)
+int ec_ioc_sm(struct ec_call *call)
 {
-	struct ec_ioc_sm *i = arg;
-	int ret = 0;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	struct ec_ioc_sm *i = call->arg;
+	struct ec_slave *s = call->slave;
 
-	if (!s)
-		return ret;
-	if (i->sm >= s->n_sms) {
-		ret = ec_refuse(f, -EINVAL, "slave %u has %u SyncManagers, not %u", i->position,
-				s->n_sms, i->sm + 1);
-	} else {
-		i->start = s->sms[i->sm].start;
-		i->default_size = s->sms[i->sm].len;
-		i->control = s->sms[i->sm].control;
-		i->enable = s->sms[i->sm].enable;
-		i->type = s->sms[i->sm].type;
-		i->pdo_count = READ_ONCE(s->sm_pdos[i->sm].n);
-	}
-	ec_slave_unref(s);
-	return ret;
+	if (i->sm >= s->n_sms)
+		return ec_refuse(call, -EINVAL, "slave %u has %u SyncManagers, not %u",
+				 i->position, s->n_sms, i->sm + 1);
+	i->start = s->sms[i->sm].start;
+	i->default_size = s->sms[i->sm].len;
+	i->control = s->sms[i->sm].control;
+	i->enable = s->sms[i->sm].enable;
+	i->type = s->sms[i->sm].type;
+	i->pdo_count = READ_ONCE(s->sm_pdos[i->sm].n);
+	return 0;
 }
 
 /* Without a name in the EEPROM that of the object dictionary is in @buf. */
@@ -379,32 +340,30 @@ static void name(const struct ec_slave *s, u8 index, char *buf)
 		buf[0] = '\0';
 }
 
-static const struct ec_pdo *get_pdo(struct ec_file *f, const struct ec_slave *s, u8 sm, u16 pos,
-				    int *ret)
+static const struct ec_pdo *get_pdo(struct ec_call *call, u8 sm, u16 pos, int *ret)
 {
+	const struct ec_slave *s = call->slave;
+
 	if (sm >= s->n_sms || pos >= s->sm_pdos[sm].n) {
-		*ret = ec_refuse(f, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
+		*ret = ec_refuse(call, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
 				 sm);
 		return NULL;
 	}
 	return &s->sm_pdos[sm].pdos[pos];
 }
 
-int ec_ioc_pdo(struct ec_file *f, void *arg)
+int ec_ioc_pdo(struct ec_call *call)
 {
-	struct ec_ioc_pdo *i = arg;
+	struct ec_ioc_pdo *i = call->arg;
 	const struct ec_pdo *p;
+	struct ec_slave *s = call->slave;
 	u8 string = 0;
-	int ret = 0;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	int ret = ec_show_begin(call->master);
 
-	if (!s)
+	if (ret)
 		return ret;
 	i->name[0] = '\0';
-	ret = ec_show_begin(f->master);
-	if (ret)
-		goto out;
-	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	p = get_pdo(call, i->sm, i->pdo_pos, &ret);
 	if (p) {
 		i->index = p->index;
 		i->entry_count = p->n_entries;
@@ -413,30 +372,25 @@ int ec_ioc_pdo(struct ec_file *f, void *arg)
 			strscpy(i->name, ec_names_find(s, p->index, EC_NAME_OBJECT),
 				sizeof(i->name));
 	}
-	ec_show_end(f->master);
+	ec_show_end(call->master);
 	name(s, string, i->name);
-out:
-	ec_slave_unref(s);
 	return ret;
 }
 
-int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
+int ec_ioc_pdo_entry(struct ec_call *call)
 {
-	struct ec_ioc_pdo_entry *i = arg;
+	struct ec_ioc_pdo_entry *i = call->arg;
 	const struct ec_pdo *p;
+	struct ec_slave *s = call->slave;
 	u8 string = 0;
-	int ret = 0;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	int ret = ec_show_begin(call->master);
 
-	if (!s)
+	if (ret)
 		return ret;
 	i->name[0] = '\0';
-	ret = ec_show_begin(f->master);
-	if (ret)
-		goto out;
-	p = get_pdo(f, s, i->sm, i->pdo_pos, &ret);
+	p = get_pdo(call, i->sm, i->pdo_pos, &ret);
 	if (p && i->entry_pos >= p->n_entries) {
-		ret = ec_refuse(f, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
+		ret = ec_refuse(call, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
 				p->n_entries, i->entry_pos + 1);
 	} else if (p) {
 		const struct ec_pdo_entry *e = &p->entries[i->entry_pos];
@@ -448,54 +402,44 @@ int ec_ioc_pdo_entry(struct ec_file *f, void *arg)
 		if (!string)
 			strscpy(i->name, ec_names_find(s, e->index, e->sub), sizeof(i->name));
 	}
-	ec_show_end(f->master);
+	ec_show_end(call->master);
 	name(s, string, i->name);
-out:
-	ec_slave_unref(s);
 	return ret;
 }
 
-int ec_ioc_sii(struct ec_file *f, void *arg)
+int ec_ioc_sii(struct ec_call *call)
 {
-	struct ec_ioc_sii *i = arg;
-	int ret = 0;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	struct ec_ioc_sii *i = call->arg;
+	struct ec_slave *s = call->slave;
 
-	if (!s)
-		return ret;
-	if (i->offset >= s->sii_bytes) {
-		i->size = 0;
-	} else {
-		i->size = min_t(u32, i->size, s->sii_bytes - i->offset);
-		if (copy_to_user(u64_to_user_ptr(i->data), s->sii + i->offset, i->size))
-			ret = -EFAULT;
-	}
-	ec_slave_unref(s);
-	return ret;
+	i->size = i->offset < s->sii_bytes ? min(call->size, s->sii_bytes - i->offset) : 0;
+	memcpy(call->data, s->sii + i->offset, i->size);
+	return 0;
 }
 
-int ec_ioc_cycle_stats(struct ec_file *f, void *arg)
+int ec_ioc_cycle_stats(struct ec_call *call)
 {
-	struct ec_ioc_cycle_stats *i = arg;
-	struct ec_master *m = f->master;
+	struct ec_ioc_cycle_stats *i = call->arg;
 	struct ec_status_cycle *st = kzalloc(sizeof(*st), GFP_KERNEL_ACCOUNT);
 	int ret;
 
 	if (!st)
 		return -ENOMEM;
-	ret = ec_show_begin(m);
+	ret = ec_show_begin(call->master);
 	if (!ret) {
-		ec_late_get(m, i, st);
-		ec_show_end(m);
+		ec_late_get(call->master, i, st);
+		ec_show_end(call->master);
 	}
-	i->size = min_t(u32, i->size, sizeof(*st));
-	return ec_ioc_hand_over(i->data, st, i->size, ret);
+	i->size = call->size;
+	memcpy(call->data, st, call->size);
+	kfree(st);
+	return ret;
 }
 
-int ec_ioc_cycle_reset(struct ec_file *f, void *arg)
+int ec_ioc_cycle_reset(struct ec_call *call)
 {
-	mutex_lock(&f->master->session_lock);
-	ec_late_reset(f->master);
-	mutex_unlock(&f->master->session_lock);
+	mutex_lock(&call->master->session_lock);
+	ec_late_reset(call->master);
+	mutex_unlock(&call->master->session_lock);
 	return 0;
 }

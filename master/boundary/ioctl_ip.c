@@ -9,7 +9,7 @@
 
 static_assert(EC_IP_ALL == EC_EOE_ALL && EC_IP_NAME == EC_EOE_NAME);
 
-static void from_user(struct ec_eoe_ip *p, const struct ec_ip_params *u)
+static void from_uapi(struct ec_eoe_ip *p, const struct ec_ip_params *u)
 {
 	p->which = u->which;
 	memcpy(p->mac, u->mac, sizeof(p->mac));
@@ -20,7 +20,7 @@ static void from_user(struct ec_eoe_ip *p, const struct ec_ip_params *u)
 	memcpy(p->name, u->name, sizeof(p->name));
 }
 
-static void to_user(struct ec_ip_params *u, const struct ec_eoe_ip *p)
+static void to_uapi(struct ec_ip_params *u, const struct ec_eoe_ip *p)
 {
 	u->which = p->which;
 	memcpy(u->mac, p->mac, sizeof(u->mac));
@@ -31,88 +31,68 @@ static void to_user(struct ec_ip_params *u, const struct ec_eoe_ip *p)
 	memcpy(u->name, p->name, sizeof(u->name));
 }
 
-static int check_params(struct ec_file *f, const struct ec_ip_params *u)
+static int check_params(struct ec_call *call, const struct ec_ip_params *u)
 {
 	if (!u->which || u->which & ~EC_IP_ALL)
-		return ec_refuse(f, -EINVAL, "IP parameters 0x%x; name at least one, of 0x%x",
+		return ec_refuse(call, -EINVAL, "IP parameters 0x%x; name at least one, of 0x%x",
 				 u->which, EC_IP_ALL);
 	return 0;
 }
 
-static int failed(struct ec_file *f, const struct ec_ioc_ip *i, int ret)
+static int failed(struct ec_call *call, const struct ec_ioc_ip *i, int ret)
 {
 	switch (ret) {
 	case -EREMOTEIO:
-		return ec_refuse(f, -EIO, "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
+		return ec_refuse(call, -EIO, "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
 				 i->result, ec_eoe_result_text(i->result));
 	case -EMSGSIZE:
-		return ec_refuse(f, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
+		return ec_refuse(call, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
 				 i->position);
 	default:
-		return ec_ioc_mbox_failed(f, ret, i->position, "EoE", "IP parameters");
+		return ec_ioc_mbox_failed(call, ret, i->position, "EoE", "IP parameters");
 	}
 }
 
-int ec_ioc_ip_set(struct ec_file *f, void *arg)
+int ec_ioc_ip_set(struct ec_call *call)
 {
-	struct ec_ioc_ip *i = arg;
+	struct ec_ioc_ip *i = call->arg;
 	struct ec_eoe_ip p;
-	int ret = check_params(f, &i->params);
-	struct ec_slave *s;
+	int ret = check_params(call, &i->params);
 
 	if (ret)
 		return ret;
-	s = ec_ioc_get_slave(f, i->position, &ret);
-	if (!s)
-		return ret;
-	from_user(&p, &i->params);
-	ret = failed(f, i, ec_eoe_set_ip(&s->mbox, &p, &i->result));
-	ec_slave_unref(s);
-	return ret;
+	from_uapi(&p, &i->params);
+	return failed(call, i, ec_eoe_set_ip(&call->slave->mbox, &p, &i->result));
 }
 
-int ec_ioc_ip_get(struct ec_file *f, void *arg)
+int ec_ioc_ip_get(struct ec_call *call)
 {
-	struct ec_ioc_ip *i = arg;
+	struct ec_ioc_ip *i = call->arg;
 	struct ec_eoe_ip p;
-	int ret = 0;
-	struct ec_slave *s = ec_ioc_get_slave(f, i->position, &ret);
+	int ret = failed(call, i, ec_eoe_get_ip(&call->slave->mbox, &p, &i->result));
 
-	if (!s)
-		return ret;
-	ret = failed(f, i, ec_eoe_get_ip(&s->mbox, &p, &i->result));
 	if (!ret)
-		to_user(&i->params, &p);
-	ec_slave_unref(s);
+		to_uapi(&i->params, &p);
 	return ret;
 }
 
-int ec_ioc_sc_ip(struct ec_file *f, void *arg)
+int ec_ioc_sc_ip(struct ec_call *call)
 {
-	struct ec_ioc_sc_ip *i = arg;
+	struct ec_ioc_sc_ip *i = call->arg;
 	struct ec_eoe_ip p;
-	int ret = 0;
-	struct ec_config *c = ec_ioc_lock_config(f, i->config, &ret);
+	int ret = check_params(call, &i->params);
 
-	if (!c)
+	if (ret)
 		return ret;
-	ret = check_params(f, &i->params);
-	from_user(&p, &i->params);
-	if (!ret)
-		ec_config_ip(c, &p);
-	ec_session_unlock(f->master);
-	return ret;
+	from_uapi(&p, &i->params);
+	ec_config_ip(call->config, &p);
+	return 0;
 }
 
-int ec_ioc_config_ip(struct ec_file *f, void *arg)
+int ec_ioc_config_ip(struct ec_call *call)
 {
-	struct ec_ioc_sc_ip *i = arg;
-	int ret = 0;
-	struct ec_config *c = ec_ioc_show_config(f, i->config, &ret);
+	struct ec_ioc_sc_ip *i = call->arg;
 
-	if (!c)
-		return ret;
-	to_user(&i->params, &c->ip);
-	ec_show_end(f->master);
+	to_uapi(&i->params, &call->config->ip);
 	return 0;
 }

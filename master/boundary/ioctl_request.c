@@ -14,52 +14,40 @@ static const u32 limits[] = {
 	[EC_REQUEST_VOE] = EC_MAX_VOE_SIZE,
 };
 
-int ec_ioc_sc_request(struct ec_file *f, void *arg)
+int ec_ioc_sc_request(struct ec_call *call)
 {
-	struct ec_ioc_sc_request *i = arg;
-	struct ec_config *c;
+	struct ec_ioc_sc_request *i = call->arg;
 	u32 limit;
-	int ret = 0;
+	int ret;
 
 	if (i->kind >= ARRAY_SIZE(limits))
-		return ec_refuse(f, -EINVAL, "%u is no kind of request", i->kind);
+		return ec_refuse(call, -EINVAL, "%u is no kind of request", i->kind);
 	limit = limits[array_index_nospec(i->kind, ARRAY_SIZE(limits))];
 	if (i->size > limit)
-		return ec_refuse(f, -EINVAL, "size must be at most %u bytes, not %u", limit,
+		return ec_refuse(call, -EINVAL, "size must be at most %u bytes, not %u", limit,
 				 i->size);
-	c = ec_ioc_lock_config(f, i->config, &ret);
-	if (!c)
-		return ret;
-	ret = ec_requests_add(c->session, i->config, i->kind, i->size, &i->index);
+	ret = ec_requests_add(call->session, i->config, i->kind, i->size, &i->index);
 	if (ret == -ENOSPC)
-		ec_refuse(f, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
+		ec_refuse(call, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
 			  EC_MAX_REQUEST_BYTES);
-	ec_session_unlock(f->master);
 	return ret;
 }
 
-int ec_ioc_sc_emerg(struct ec_file *f, void *arg)
+int ec_ioc_sc_emerg(struct ec_call *call)
 {
-	struct ec_ioc_sc_emerg *i = arg;
-	struct ec_config *c;
+	struct ec_ioc_sc_emerg *i = call->arg;
+	struct ec_session *s = call->session;
 	size_t bytes;
-	int ret = 0;
 
 	if (i->count > EC_MAX_EMERG)
-		return ec_refuse(f, -ENOMEM, "at most %u emergencies are kept, not %u",
+		return ec_refuse(call, -ENOMEM, "at most %u emergencies are kept, not %u",
 				 EC_MAX_EMERG, i->count);
-	c = ec_ioc_lock_config(f, i->config, &ret);
-	if (!c)
-		return ret;
-	bytes = c->session->request_bytes - c->emergencies * EC_EMERG_BYTES +
+	bytes = s->request_bytes - call->config->emergencies * EC_EMERG_BYTES +
 		i->count * EC_EMERG_BYTES;
-	if (bytes > EC_MAX_REQUEST_BYTES) {
-		ret = ec_refuse(f, -ENOMEM, "requests and emergencies have %u bytes together",
-				EC_MAX_REQUEST_BYTES);
-	} else {
-		c->session->request_bytes = bytes;
-		c->emergencies = i->count;
-	}
-	ec_session_unlock(f->master);
-	return ret;
+	if (bytes > EC_MAX_REQUEST_BYTES)
+		return ec_refuse(call, -ENOMEM, "requests and emergencies have %u bytes together",
+				 EC_MAX_REQUEST_BYTES);
+	s->request_bytes = bytes;
+	call->config->emergencies = i->count;
+	return 0;
 }

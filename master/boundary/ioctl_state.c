@@ -5,29 +5,17 @@
 #include "../session/session.h"
 #include "../config/why.h"
 
-int ec_ioc_config_why(struct ec_file *f, void *arg)
+int ec_ioc_config_why(struct ec_call *call)
 {
-	struct ec_ioc_config_why *i = arg;
-	int ret = 0;
-	struct ec_config *c = ec_ioc_show_config(f, i->index, &ret);
+	struct ec_ioc_config_why *i = call->arg;
 
-	if (!c)
-		return ret;
-	i->len = ec_config_why(c, i->text, sizeof(i->text));
-	ec_show_end(f->master);
+	i->len = ec_config_why(call->config, i->text, sizeof(i->text));
 	return 0;
 }
 
-int ec_ioc_slaves_down(struct ec_file *f, void *arg)
+int ec_ioc_slaves_down(struct ec_call *call)
 {
-	struct ec_master *m = f->master;
-	int ret;
+	int ret = ec_session_slaves_down(call->session);
 
-	mutex_lock(&m->session_lock);
-	if (!m->session || m->session->owner != f)
-		ret = ec_refuse(f, -EPERM, "reserve the master first (ecrt_request_master)");
-	else
-		ret = ec_session_slaves_down(m->session);
-	mutex_unlock(&m->session_lock);
-	return ret == -EINVAL ? ec_refuse(f, ret, "the master is not active") : ret;
+	return ret == -EINVAL ? ec_refuse(call, ret, "the master is not active") : ret;
 }

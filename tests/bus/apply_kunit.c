@@ -56,7 +56,7 @@ static void apply_unknown_sm(struct kunit *test)
 	u32 i;
 
 	sm.config = cyc_config(c, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SYNC, &sm), 0);
 	cyc_pdo(c, sm.config, EC_SC_PDO_ASSIGN_ADD, 7, 0x1700, 0);
 	for (i = 0; i < 16; i++)
 		cyc_pdo(c, sm.config, EC_SC_PDO_MAP_ADD, 7, 0x1700, 0x70000120 + (i << 8));
@@ -92,7 +92,7 @@ static void apply_op_only(struct kunit *test)
 	cyc_run(c, 20);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
-	KUNIT_ASSERT_EQ(test, ec_ioc_state(&b->app, &safeop), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &safeop), 0);
 	cyc_run(c, 300);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
@@ -159,7 +159,7 @@ static void apply_second_round(struct kunit *test)
 		cyc_activate(c);
 		KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 5000), ~0ull, "round %u: %s", i,
 				    bus_slave(b, 0)->why);
-		KUNIT_ASSERT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 		cyc_domain(c);
 	}
 }
@@ -240,7 +240,7 @@ static void apply_sdo_beside(struct kunit *test)
 		if (cyc_wait_op(c, 5000) == ~0ull)
 			break;
 		cyc_run(c, 20);
-		ec_ioc_deactivate(&c->b->app, NULL);
+		ec_ioc(&c->b->app, EC_IOC_DEACTIVATE, NULL);
 		cyc_domain(c);
 	}
 	WRITE_ONCE(r.stop, true);

@@ -51,7 +51,7 @@ static void why(struct cyc *c, u32 config, char *text)
 {
 	struct ec_ioc_config_why w = { .index = config };
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_config_why(&c->b->app, &w), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	strscpy(text, w.text, sizeof(w.text));
 }
 

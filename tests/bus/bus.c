@@ -335,7 +335,7 @@ void bus_request(struct bus *b, u32 position, u8 state)
 {
 	struct ec_ioc_state s = { .position = position, .state = state };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_state(&b->app, &s), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_STATE, &s), 0);
 }
 
 /* Lines of the log with these words, since it began. */

@@ -19,8 +19,8 @@ struct cyc *cyc_new(struct bus *b, u32 period_us)
 	KUNIT_ASSERT_NOT_NULL(b->test, c);
 	c->b = b;
 	c->period_ns = (u64)period_us * NSEC_PER_USEC;
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc_reserve(&b->app, NULL), 0, "%s", b->app.reason);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_interval(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
 	return c;
 }
 
@@ -28,7 +28,7 @@ u32 cyc_domain(struct cyc *c)
 {
 	struct ec_ioc_create_domain d = { 0 };
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_create_domain(&c->b->app, &d), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_CREATE_DOMAIN, &d), 0);
 	c->queued |= BIT_ULL(d.index);
 	return d.index;
 }
@@ -48,7 +48,7 @@ u32 cyc_config(struct cyc *c, u32 position)
 		.product_code = s->info.product,
 	};
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_slave_config(&c->b->app, &sc), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0, "%s",
 			    c->b->app.reason);
 	return sc.index;
 }
@@ -69,7 +69,7 @@ void cyc_pdo(struct cyc *c, u32 config, u8 op, u8 sm, u16 pdo, u32 entry)
 		.subindex = entry >> 8, .bits = entry,
 	};
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_pdo(&c->b->app, &p), 0, "%s", c->b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_PDO, &p), 0, "%s", c->b->app.reason);
 }
 
 /**
@@ -87,7 +87,7 @@ u32 cyc_map(struct cyc *c, u32 config, u8 sm, u32 domain)
 		.flags = EC_REG_ENTRY_BY_POS, .config = config, .domain = domain, .sm = sm,
 	};
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_reg_entry(&c->b->app, &r), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_REG_ENTRY, &r), 0, "%s",
 			    c->b->app.reason);
 	return r.offset;
 }
@@ -141,7 +141,7 @@ void cyc_activate(struct cyc *c)
 {
 	struct ec_ioc_activate a = { 0 };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_activate(&c->b->app, &a), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_ACTIVATE, &a), 0, "%s",
 			    c->b->app.reason);
 	c->next = ktime_get();
 }
@@ -209,7 +209,7 @@ void cyc_sync0(struct cyc *c, u32 n)
 			.config = i, .assign_activate = 0x0300, .cycle0 = c->period_ns,
 		};
 
-		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
 	}
 }
 
@@ -325,5 +325,5 @@ struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)
 
 void cyc_release(struct cyc *c)
 {
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_release(&c->b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_RELEASE, NULL), 0);
 }

@@ -226,7 +226,7 @@ static void dc_sync0_phase(struct kunit *test)
 		for (i = 0; i < 2; i++) {
 			dc.config = i;
 			dc.shift0 = 250000 * i;
-			KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+			KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 		}
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
@@ -288,7 +288,7 @@ static void dc_chosen_reference(struct kunit *test)
 	struct ec_ioc_ref_clock ref = { .config = 2 };
 	u64 max;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&c->b->app, &ref), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	set(c);
 	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 2));
 	max = watch(c, 2, 2, 100);
@@ -331,7 +331,7 @@ static void sync_config(struct cyc *c, u32 config, u32 c0, s32 s0, u32 c1)
 		.cycle0 = c0, .shift0 = s0, .cycle1 = c1,
 	};
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
 }
 
 /* where the SYNC0 of a slave lies against the application's grid */
@@ -359,7 +359,7 @@ static void dc_odd_starts(struct kunit *test)
 	sync_config(c, 2, 1000000, -1000000, 0);
 	sync_config(c, 3, 1000000, 0, 1000000);
 	sync_config(c, 4, 1000000, 100000, 500000);
-	KUNIT_ASSERT_EQ(test, ec_ioc_app_time(&b->app, &early), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &early), 0);
 	cyc_activate(c);
 	msleep(200);		/* slow to begin its cycle */
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
@@ -457,7 +457,7 @@ static void dc_chosen_is_lost(struct kunit *test)
 	u64 max;
 	u32 i;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&b->app, &ref), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	cyc_activate(c);
 	for (i = 0; i < 5000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
 		cyc_run(c, 1);

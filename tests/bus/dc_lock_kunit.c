@@ -43,14 +43,14 @@ static void configure(struct app *a, struct bus *b, u32 slaves)
 			.shift0 = (i % 4) * (a->cfg.period_ns / 4),
 		};
 
-		KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	}
 }
 
 static void activate(struct app *a, struct bus *b, u32 slaves)
 {
 	configure(a, b, slaves);
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc_cycle(&b->app, &a->cfg), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &a->cfg), 0, "%s", b->app.reason);
 	cyc_activate(a->c);
 }
 
@@ -265,13 +265,13 @@ static void lock_refused(struct kunit *test)
 	};
 
 	cyc_new(b, 1000);
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "needs EC_CYCLE_SYNC_SLAVES"));
 	cfg.dc |= EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_SYNC_REF;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "excludes EC_CYCLE_SYNC_REFERENCE"));
 	cfg.dc &= ~EC_SEND_FLAG_SYNC_REF;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 }
 
 static struct kunit_case cases[] = {

@@ -76,7 +76,7 @@ static void dc_log_delay_only(struct kunit *test)
 
 		memset(info, 0, sizeof(*info));
 		info->position = i;
-		KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, info), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, info), 0);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_delay_only, only);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_set, !only);
 		KUNIT_EXPECT_FALSE(test, s->dc_out);
@@ -174,7 +174,7 @@ static void dc_log_warns_about_assign_activate(struct kunit *test)
 		u32 before = bus_log_lines(t[i].words);
 		struct ec_ioc_sc_dc dc = { .assign_activate = t[i].assign, .cycle0 = 1000000 };
 
-		KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
 		cyc_activate(c);
 		cyc_run(c, 1000);
 		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines(t[i].words) - before, t[i].lines, "%s", t[i].words);

@@ -130,7 +130,7 @@ static void sync0(struct run *r)
 
 		if (!(ec_slave_features(s->configs[i]->slave) & EC_FEAT_DC))
 			continue;
-		KUNIT_ASSERT_EQ(r->b->test, ec_ioc_sc_dc(&r->b->app, &dc), 0);
+		KUNIT_ASSERT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_SC_DC, &dc), 0);
 	}
 }
 
@@ -159,7 +159,7 @@ static void map(struct run *r, u32 n)
 			.product_code = s->info.product,
 		};
 
-		KUNIT_ASSERT_EQ(r->b->test, ec_ioc_slave_config(&r->b->app, &sc), 0);
+		KUNIT_ASSERT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 		for (sm = 0; sm < s->n_sms; sm++)
 			if (ec_pdo_list_bytes(&s->sm_pdos[sm]))
 				cyc_map(r->c, sc.index, sm, 0);
@@ -187,9 +187,9 @@ static struct run *start(struct kunit *test, const char *text, u32 n, int choice
 	r->c->ctx = r->v->mode == LEAD ? r : NULL;
 	sync0(r);
 	if (choice >= 0)
-		KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&r->b->app, &ref), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&r->b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	if (r->v->mode == KERNEL)
-		KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&r->b->app, &cfg), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&r->b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(r->c);
 	forget(r, 1, 1);
 	until_op(r);
@@ -216,7 +216,7 @@ static int shown_ref(struct run *r)
 {
 	struct ec_ioc_master i = { 0 };
 
-	KUNIT_EXPECT_EQ(r->b->test, ec_ioc_master(&r->b->app, &i), 0);
+	KUNIT_EXPECT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_MASTER, &i), 0);
 	return i.ref_clock;
 }
 

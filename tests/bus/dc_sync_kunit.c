@@ -24,7 +24,7 @@ static void sync0(struct cyc *c, u32 config, u32 c0, u32 c1)
 		.cycle0 = c0, .cycle1 = c1,
 	};
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_sc_dc(&c->b->app, &dc), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
 }
 
 /* @n slaves, each with SYNC0 of @sync_ns, in a cycle of @us */
@@ -123,7 +123,7 @@ static void sync_long_cycle(struct kunit *test)
 				.watchdog = EC_CFG_WD_DISABLE,
 			};
 
-			KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+			KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SYNC, &sm), 0);
 		}
 		cyc_activate(c);
 		op = cyc_wait_op(c, 120000);
@@ -153,7 +153,7 @@ static void sync_long_cycle_of_32_bits(struct kunit *test)
 			.watchdog = EC_CFG_WD_DISABLE,
 		};
 
-		KUNIT_ASSERT_EQ(test, ec_ioc_sc_sync(&b->app, &sm), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SYNC, &sm), 0);
 	}
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 200000), ~0ull);
@@ -170,7 +170,7 @@ static void sync_few_frames(struct kunit *test)
 	struct ec_ioc_late late = { .per_s = 100 };
 	u64 op;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_late(&c->b->app, &late), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_LATE, &late), 0);
 	cyc_activate(c);
 	op = cyc_wait_op(c, 60000);
 	bus_figure("30 axes in 50 us, 100 late cycles a second: OP %llu us after activation", op);
@@ -189,7 +189,7 @@ static void sync_reference_is_late(struct kunit *test)
 	struct ec_ioc_ref_clock ref = { .config = 3 };
 	struct bus *b = c->b;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&b->app, &ref), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	msleep(200);
 	cyc_activate(c);

@@ -209,7 +209,7 @@ static bool shown_odd(struct bus *b, u32 position)
 
 	KUNIT_ASSERT_NOT_NULL(b->test, s);
 	s->position = position;
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_slave(&b->app, s), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE, s), 0);
 	return s->dc_odd;
 }
 

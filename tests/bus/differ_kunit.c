@@ -44,7 +44,7 @@ static const char *why(struct bus *b, u32 config)
 
 	memset(&w, 0, sizeof(w));
 	w.index = config;
-	KUNIT_EXPECT_EQ(b->test, ec_ioc_config_why(&b->app, &w), 0);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	return w.text;
 }
 
@@ -57,7 +57,7 @@ static u32 expect_slave(struct cyc *c, u16 position, u32 vendor, u32 product)
 		.position = position, .vendor_id = vendor, .product_code = product,
 	};
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_slave_config(&c->b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	return sc.index;
 }
 
@@ -88,15 +88,15 @@ static void differ_logged_at_activation(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:"), 2u);
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:2: slave 2 is 0x00000002/0x0fa23052, configured is 0x00000002/0x12345678"), 1u);
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:9: no slave at ring position 9: 5 slave(s) connected"), 1u);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, other + 1);
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
 	s.position = 1;
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, 2u);
 	KUNIT_EXPECT_EQ(test, s.differs, 0u);
 	s.position = 4;
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, 0u);
 }
 
@@ -132,14 +132,14 @@ static void differ_revision(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
 	f.config = 1;
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &f), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	log_begin();
 	cyc_activate(c);
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:1: slave 1 has revision 0x"), 1u);
 	KUNIT_EXPECT_EQ(test, logged(", expected 0x00004711"), 1u);
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:"), 1u);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
 	scnprintf(want, sizeof(want), "slave 1 has revision 0x%08x, expected 0x00004711",
 		  bus_slave(b, 1)->info.revision);
@@ -246,12 +246,12 @@ static void differ_alias_is_looked_for_by_the_scan(struct kunit *test)
 
 	bus_idle(b);
 	cyc_new(b, 1000);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	c = b->m->session->configs[sc.index];
 	KUNIT_EXPECT_EQ(test, c->alias_at, 1u);
 	EXPECT_WHY(b, sc.index, "no slave at ring position 10");
 	sc.alias = 8;
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	none = sc.index;
 	EXPECT_WHY(b, none, "has alias 8");
 	/* what was found before the slaves changed is not taken for it */

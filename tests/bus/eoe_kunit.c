@@ -15,7 +15,7 @@ static void config_ip(struct cyc *c, u32 config, const struct ec_ip_params *p)
 {
 	struct ec_ioc_sc_ip i = { .config = config, .params = *p };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_ip(&c->b->app, &i), 0, "%s", c->b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_IP, &i), 0, "%s", c->b->app.reason);
 }
 
 static void eoe_configured(struct kunit *test)
@@ -41,11 +41,11 @@ static void eoe_configured(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, sw->ip.now.mask, net.mask, 4);
 	KUNIT_EXPECT_STREQ(test, (char *)sw->ip.now.name, "switch");
 	shown.config = sc;
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &shown), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_IP, &shown), 0);
 	KUNIT_EXPECT_EQ(test, shown.params.which, net.which);
 	KUNIT_EXPECT_MEMEQ(test, shown.params.ip, more.ip, 4);
 	shown.config = 9;
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &shown), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_IP, &shown), -ENOENT);
 }
 
 /* After a power loss it gets them again. */
@@ -105,26 +105,26 @@ static void eoe_by_the_tool(struct kunit *test)
 	struct bus *b = bus_up(test, "slave sw EL6614\nslave no EL6614 ip=no\nslave d drive\n", 3);
 	struct ec_ioc_ip i = { .params = net };
 
-	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_ip_set(&b->app, &i), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_IP_SET, &i), 0, "%s", b->app.reason);
 	memset(&i, 0, sizeof(i));
-	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_ip_get(&b->app, &i), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_MEMEQ(test, &i.params, &net, sizeof(net));
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &(struct ec_ioc_ip){ 0 }), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &(struct ec_ioc_ip){ 0 }), -EINVAL);
 	i.position = 1;
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &i), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &i), -EIO);
 	KUNIT_EXPECT_EQ(test, i.result, 0x0201);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "slave 1: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -EIO);
 	i.position = 2;
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_set(&b->app, &i), -EPROTONOSUPPORT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &i), -EPROTONOSUPPORT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, "IP parameters of slave 2: no EoE mailbox");
 	i.position = 3;
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -ENOENT);
 	bus_request(b, 0, EC_AL_INIT);
 	bus_idle(b);
 	i.position = 0;
-	KUNIT_EXPECT_EQ(test, ec_ioc_ip_get(&b->app, &i), -EAGAIN);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -EAGAIN);
 }
 
 static struct kunit_case cases[] = {

@@ -132,7 +132,7 @@ static void max_age(struct cyc *c, u32 domain, u32 sends)
 {
 	struct ec_ioc_domain_age age = { .domain = domain, .max_age = sends };
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_domain_age(&c->b->app, &age), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_DOMAIN_AGE, &age), 0);
 }
 
 /* Frames 17.5 ms late have full working counters and old inputs: their age tells. */
@@ -150,7 +150,7 @@ static void exchange_old_data(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, N / 2, 0);
 	cyc_map_all(c, N / 2, N / 2, 1);
-	KUNIT_EXPECT_EQ(test, ec_ioc_domain_age(&b->app, &none), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_AGE, &none), -ENOENT);
 	max_age(c, 1, 5);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);

@@ -77,7 +77,7 @@ static void preset(struct kunit *test, bool kernel)
 	put_unaligned_le16(0x1234, image);
 	put_unaligned_le16(0x5678, image + 16);
 	if (kernel)
-		KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &k), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &k), 0);
 	mutex_lock(&b->m->session_lock);
 	KUNIT_EXPECT_EQ(test, ec_session_place(b->m->session), 32u);
 	b->m->session->preset = image;
@@ -118,15 +118,15 @@ static void ext_places(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_map_all(c, 1, 1, 1);
-	KUNIT_ASSERT_EQ(test, ec_ioc_domain_offset(&b->app, &at), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OFFSET, &at), 0);
 	KUNIT_EXPECT_EQ(test, at.offset, 8u);
 	KUNIT_EXPECT_EQ(test, at.size, 16u);
 	a.preset_size = EC_MAX_IMAGE + 1;	/* not even looked at */
-	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -EINVAL);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, ", domains need 24"));
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_domain_offset(&b->app, &at), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OFFSET, &at), 0);
 	KUNIT_EXPECT_EQ(test, at.offset, 8u);
 }
 
@@ -148,9 +148,9 @@ static struct cyc *with_sync(struct bus *b)
 
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	dc.config = 1;
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	c->each = tell_time;
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 5000), ~0ull);
@@ -164,14 +164,14 @@ static void ext_slaves_down(struct kunit *test)
 	u32 round, i;
 
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, ec_ioc_slaves_down(&b->app, NULL), -EPERM);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVES_DOWN, NULL), -EPERM);
 	for (round = 0; round < 2; round++) {
 		struct cyc *c = with_sync(b);
 		u8 expired;
 
 		KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_DC_ACTIVATION], 3);
 		expired = bus_esc(b, 0)->mem[EC_REG_WD_SM_COUNT];
-		KUNIT_ASSERT_EQ(test, ec_ioc_slaves_down(&b->app, NULL), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVES_DOWN, NULL), 0);
 		for (i = 0; i < 1000 && !all_in(b, EC_AL_PREOP); i++)
 			cyc_run(c, 1);
 		KUNIT_EXPECT_LT(test, i, 1000u);
@@ -186,8 +186,8 @@ static void ext_slaves_down(struct kunit *test)
 			KUNIT_EXPECT_EQ(test, mem[EC_REG_DC_ACTIVATION], 0);
 			KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
 		}
-		KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
-		KUNIT_EXPECT_EQ(test, ec_ioc_slaves_down(&b->app, NULL), -EINVAL);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVES_DOWN, NULL), -EINVAL);
 		cyc_release(c);
 		bus_idle(b);
 	}
@@ -199,7 +199,7 @@ static const char *why(struct bus *b, u32 config)
 
 	memset(&w, 0, sizeof(w));
 	w.index = config;
-	KUNIT_EXPECT_EQ(b->test, ec_ioc_config_why(&b->app, &w), 0);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	KUNIT_EXPECT_EQ(b->test, w.len, (u32)strlen(w.text));
 	return w.text;
 }
@@ -231,24 +231,24 @@ static void ext_why(struct kunit *test)
 			.alias = absent[i].alias, .position = absent[i].position,
 			.vendor_id = absent[i].vendor, .product_code = absent[i].product,
 		};
-		KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 		KUNIT_EXPECT_STREQ(test, why(b, sc.index), absent[i].text);
 	}
 	sc = (struct ec_ioc_slave_config){
 		.alias = 7, .vendor_id = bus_slave(b, 0)->info.vendor,
 		.product_code = bus_slave(b, 0)->info.product,
 	};
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_EXPECT_STREQ(test, why(b, sc.index),
 			   "slave 0 has another configuration, 0:0; use one of the two");
 	second = sc.index;
 	reg.config = second;
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &reg), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &reg), -ENOENT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "entry 0x6040:00 is not known, no slave is attached to 7:0 (slave 0 has another configuration, 0:0; use one of the two); name its PDOs with ecrt_slave_config_pdos()");
 	reg.config = 0;
 	reg.entry_index = 0x5555;
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &reg), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &reg), -ENOENT);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "0x5555:00 is not mapped in slave 0:0"));
 	KUNIT_EXPECT_STREQ(test, why(b, 0), "AL state PREOP; the master is not active");
 	cyc_activate(c);
@@ -260,9 +260,9 @@ static void ext_why(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, why(b, second),
 			   "slave 0 has another configuration, 0:0; use one of the two");
 	KUNIT_EXPECT_NOT_NULL(test, strstr(why(b, 1), "OP refused: AL status code 0x0027"));
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &none), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &none), -ENOENT);
 	cyc_release(c);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &none), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &none), -ENOENT);
 }
 
 /* A stalled application is a cause, too. */

@@ -61,7 +61,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 	bus_idle(b);
 	c = cyc_new(b, 4000);
 	cyc_domain(c);
-	KUNIT_ASSERT_EQ(test, ec_ioc_domain_options(&b->app, &o), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 	cyc_map_all(c, 0, 16, 0);
 	cyc_activate(c);
 	s = b->m->session;
@@ -169,7 +169,7 @@ static void image_own_frame(struct kunit *test)
 	c = cyc_new(b, 1000);
 	for (i = 0; i < 4; i++)
 		cyc_map_all(c, i, 1, cyc_domain(c));
-	KUNIT_ASSERT_EQ(test, ec_ioc_domain_options(&b->app, &o), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	cyc_run(c, 5);
@@ -226,7 +226,7 @@ static void image_bits(struct kunit *test)
 				.subindex = 1,
 			};
 
-			KUNIT_ASSERT_EQ_MSG(test, ec_ioc_reg_entry(&b->app, &r), 0, "%s",
+			KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &r), 0, "%s",
 					    b->app.reason);
 			KUNIT_EXPECT_EQ(test, r.bit, k);
 			if (k)
@@ -305,7 +305,7 @@ static void image_too_many_domains(struct kunit *test)
 
 	for (i = 0; i < EC_MAX_DOMAINS; i++)
 		cyc_domain(c);
-	KUNIT_EXPECT_EQ(test, ec_ioc_create_domain(&b->app, &d), -ENOSPC);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CREATE_DOMAIN, &d), -ENOSPC);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "64"), "%s", b->app.reason);
 	/* what is there works, the last one too */
 	cyc_map_all(c, 1, 1, EC_MAX_DOMAINS - 1);
@@ -347,7 +347,7 @@ static void refused(struct kunit *test, struct cyc *c, const char *why)
 	struct bus *b = c->b;
 	struct ec_ioc_activate a = { 0 };
 
-	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -EOVERFLOW);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -EOVERFLOW);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, why), "%s", b->app.reason);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EPERM);

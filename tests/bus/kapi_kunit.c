@@ -21,22 +21,22 @@ static void kapi_request(struct kunit *test)
 	KUNIT_ASSERT_NOT_NULL(test, m);
 	/* a second one, in the kernel or a process, is told */
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -EBUSY);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "reserved by an application in the kernel"));
 	/* and does not take it from the first one by giving it back */
-	KUNIT_EXPECT_EQ(test, ec_ioc_release(&b->app, NULL), -EPERM);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), -EPERM);
 	KUNIT_EXPECT_NOT_NULL(test, ecrt_master_create_domain(m));
 	ecrt_release_master(m);
 	ecrt_release_master(m);
 	ecrt_release_master(NULL);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
 	/* a master that was given back is nobody's */
 	KUNIT_EXPECT_NULL(test, ecrt_master_create_domain(m));
 	KUNIT_EXPECT_EQ(test, ecrt_master_activate(m), -EPERM);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(m, 1), -EPERM);
 	KUNIT_EXPECT_EQ(test, ecrt_master_send(m), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ec_ioc_release(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), 0);
 	m = ecrt_request_master(0);
 	KUNIT_EXPECT_NOT_NULL(test, m);
 	ecrt_release_master(m);

@@ -47,7 +47,7 @@ struct ec_exchange_buffer *kcyc_take(struct kcyc *a)
 int kcyc_wait(struct kcyc *a, u32 timeout_us)
 {
 	struct ec_ioc_wait w = { .cycle = a->seen, .timeout_us = timeout_us };
-	int ret = ec_ioc_wait(&a->c->b->app, &w);
+	int ret = ec_ioc(&a->c->b->app, EC_IOC_WAIT, &w);
 
 	a->seen = w.cycle;
 	return ret;
@@ -76,7 +76,7 @@ struct kcyc *kcyc_configure(struct bus *b, struct ec_ioc_cycle cfg)
 	if (!cfg.period_ns)
 		cfg.period_ns = KCYC_PERIOD_NS;
 	cfg.cpu = -1;
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc_cycle(&b->app, &cfg), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0, "%s", b->app.reason);
 	return a;
 }
 
@@ -85,7 +85,7 @@ int kcyc_activate(struct kcyc *a)
 {
 	struct bus *b = a->c->b;
 	struct ec_ioc_activate act = { 0 };
-	int ret = ec_ioc_activate(&b->app, &act);
+	int ret = ec_ioc(&b->app, EC_IOC_ACTIVATE, &act);
 	const struct ec_exchange *x;
 
 	if (ret)

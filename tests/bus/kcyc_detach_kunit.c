@@ -20,7 +20,7 @@ static u32 session_state(struct bus *b)
 {
 	struct ec_ioc_master i = { 0 };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_master(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_MASTER, &i), 0);
 	return i.session;
 }
 
@@ -88,7 +88,7 @@ static void detach_only_when_asked(struct kunit *test)
 	a = kcyc_configure(b, hold);
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_until_op(a);
-	KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 	die(a);
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
 	/* one that was never active, or whose application runs the cycle, likewise */
@@ -230,8 +230,8 @@ static struct kcyc *configure_area(struct bus *b)
 	struct ec_ioc_sc_emerg em = { .config = 1, .count = MESS_EMERG };
 	struct kcyc *a = kcyc_configure(b, hold);
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_request(&b->app, &rq), 0);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_emerg(&b->app, &em), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_REQUEST, &rq), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_EMERG, &em), 0);
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(a), 0, "%s", b->app.reason);
 	return a;
 }
@@ -339,7 +339,7 @@ static void set_late(struct bus *b, u32 per_s)
 {
 	struct ec_ioc_late late = { .per_s = per_s };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_late(&b->app, &late), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_LATE, &late), 0);
 }
 
 /* How many cycles may be late is the new application's to say. */
@@ -359,7 +359,7 @@ static void takeover_late_cycles(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 7u);
 	KUNIT_EXPECT_EQ(test, b->m->session->late_per_s, 7u);
 	die(a);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	/* without them a cycle that leaves no room is refused, as any is; it takes 273 us */
 	tight.period_ns = 290000;
 	a = kcyc_configure(b, tight);
@@ -380,7 +380,7 @@ static void refused(struct bus *b, const char *what)
 {
 	struct ec_ioc_activate act = { 0 };
 
-	KUNIT_EXPECT_EQ(b->test, ec_ioc_activate(&b->app, &act), -EEXIST);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &act), -EEXIST);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, what), "%s", b->app.reason);
 	KUNIT_EXPECT_NOT_NULL(b->test, strstr(b->app.reason, "ethercat release"));
 	ec_session_end(b->m, &b->app);
@@ -410,7 +410,7 @@ static void takeover_refused(struct kunit *test)
 	kcyc_configure(b, cfg);
 	refused(b, "how the kernel runs");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &none), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &none), 0);
 	refused(b, "the kernel runs its cycle");
 	cyc_new(b, 1000);
 	refused(b, "it has 2 slaves, not 0");
@@ -421,19 +421,19 @@ static void takeover_refused(struct kunit *test)
 	cyc_pdo(a->c, 1, EC_SC_PDO_ASSIGN_CLEAR, 1, 0, 0);
 	refused(b, "slave 0:1, SM1");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_watchdog(&b->app, &wd), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_WATCHDOG, &wd), 0);
 	refused(b, "slave 0:0, watchdog");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_dc(&b->app, &dc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	refused(b, "slave 0:0, distributed clock");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_request(&b->app, &rq), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_REQUEST, &rq), 0);
 	refused(b, "requests");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_emerg(&b->app, &em), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_EMERG, &em), 0);
 	refused(b, "slave 0:1 keeps 0 emergencies, not 4");
 	kcyc_configure(b, hold);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &flag), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
 	ec_session_lock(b->m);
@@ -461,22 +461,22 @@ static void heir_is_harmless(struct kunit *test)
 	u64 app_time;
 
 	ec_file_init(&other, b->m, true);
-	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &interval), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &interval), -EBUSY);
 	die(a);
 	cyc_new(b, 500);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
 	app_time = b->m->dc.app_time;
-	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &time), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &time), 0);
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&other, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_RESERVE, NULL), -EBUSY);
 	cyc_domain(a->c);
 	/* it sees its own domain, the others the one that runs */
-	KUNIT_EXPECT_EQ(test, ec_ioc_domain(&b->app, &d), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN, &d), 0);
 	KUNIT_EXPECT_EQ(test, d.size, 0u);
-	KUNIT_EXPECT_EQ(test, ec_ioc_domain(&other, &d), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_DOMAIN, &d), 0);
 	KUNIT_EXPECT_EQ(test, d.size, 3200u);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&other, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_END_DETACHED, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_END_DETACHED, NULL), -EBUSY);
 }
 
 /* The detached session ends; the one that wanted to take over has the master. */
@@ -486,10 +486,10 @@ static void end_detached(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct ec_ioc_cycle cfg = hold;
 
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), -EBUSY);
 	die(a);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), -ENOENT);
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_NONE);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	bus_idle(b);
@@ -501,7 +501,7 @@ static void end_detached(struct kunit *test)
 	cfg.period_ns = 2000000;
 	a = kcyc_configure(b, cfg);
 	KUNIT_EXPECT_EQ(test, kcyc_activate(a), -EEXIST);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_RESERVED);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_FALSE(test, a->taken_over);
@@ -521,7 +521,7 @@ static u32 absent(struct kcyc *a, u32 position)
 		.product_code = s->info.product,
 	};
 
-	KUNIT_ASSERT_EQ(a->c->b->test, ec_ioc_slave_config(&a->c->b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(a->c->b->test, ec_ioc(&a->c->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	return sc.index;
 }
 
@@ -547,7 +547,7 @@ static void slave_is_away(struct kunit *test)
 	config = absent(a, 1);
 	cyc_map(a->c, config, 0, 0);
 	cyc_map(a->c, config, 1, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &(struct ec_ioc_cycle){
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &(struct ec_ioc_cycle){
 		.flags = hold.flags, .stall_cycles = hold.stall_cycles,
 		.period_ns = KCYC_PERIOD_NS, .cpu = -1 }), 0);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);

@@ -51,7 +51,7 @@ static struct kcyc *app(struct bus *b, u32 n)
 		cyc_domain(a->c);
 	for (i = 0; i < 4; i++)
 		cyc_map_all(a->c, i, 1, i % n);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	return a;
 }
 
@@ -59,7 +59,7 @@ static int divide(struct kcyc *a, u32 domain, u32 division, u32 phase)
 {
 	struct ec_ioc_division d = { .domain = domain, .division = division, .phase = phase };
 
-	return ec_ioc_division(&a->c->b->app, &d);
+	return ec_ioc(&a->c->b->app, EC_IOC_DIVISION, &d);
 }
 
 static void begin(struct kcyc *a)
@@ -190,11 +190,11 @@ static void division_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, divide(a, 0, 1001, 0), -EINVAL);
 	KUNIT_EXPECT_EQ(test, divide(a, 2, 2, 0), -ENOENT);
 	KUNIT_EXPECT_EQ(test, divide(a, 1, 2, 0), 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &none), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &none), 0);
 	KUNIT_EXPECT_EQ(test, kcyc_activate(a), -EOPNOTSUPP);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "ecrt_master_set_cycle"));
 	KUNIT_EXPECT_EQ(test, divide(a, 1, 1, 0), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &(struct ec_ioc_cycle){
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &(struct ec_ioc_cycle){
 		.period_ns = KCYC_PERIOD_NS, .cpu = -1 }), 0);
 	begin(a);
 	KUNIT_EXPECT_EQ(test, divide(a, 1, 2, 0), -EBUSY);
@@ -215,7 +215,7 @@ static int copy(struct kcyc *a, u32 from_slave, u32 from, u32 to_slave, u32 to, 
 		.bits = bits,
 	};
 
-	return ec_ioc_copy(&a->c->b->app, &c);
+	return ec_ioc(&a->c->b->app, EC_IOC_COPY, &c);
 }
 
 /* What s1 is told comes back as its input, and goes to s4 without us. */
@@ -287,7 +287,7 @@ static void copies_detached(struct kunit *test)
 		.stall = EC_STALL_ZERO, .stall_cycles = 200,
 	};
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	/* s4 has no wire of its own: what it gets from s3 shows that copies run */
 	KUNIT_ASSERT_EQ(test, copy(a, 2, 0, 3, 0, 32), 0);
 	begin(a);
@@ -305,7 +305,7 @@ static void copies_detached(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, (u32)plant_out(a, "s4"), 0u);
 	/* the next one must want the same copies */
 	a = app(b, 1);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	KUNIT_EXPECT_EQ(test, kcyc_activate(a), -EEXIST);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "it has 1 copies, not 0"));
 }
@@ -317,7 +317,7 @@ static void copies_of_an_application(struct kunit *test)
 	struct kcyc *a = app(b, 2);
 	struct ec_ioc_cycle none = { .cpu = -1 };
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &none), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &none), 0);
 	KUNIT_ASSERT_EQ(test, copy(a, 0, 0, 3, 0, 32), 0);
 	cyc_activate(a->c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(a->c, 5000), ~0ull);
@@ -345,7 +345,7 @@ static void copies_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, copy(a, 0, -64u, 3, 0, 8), -EINVAL);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "not inputs of one slave"));
 	KUNIT_EXPECT_EQ(test, copy(a, 0, 0, 3, 64, 8), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ec_ioc_copy(&b->app, &c), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_COPY, &c), -ENOENT);
 	KUNIT_EXPECT_EQ(test, copy(a, 0, 0, 3, 8, 16), 0);
 	KUNIT_EXPECT_EQ(test, copy(a, 1, 0, 3, 23, 1), -EEXIST);
 	KUNIT_EXPECT_EQ(test, copy(a, 1, 0, 3, 0, 9), -EEXIST);

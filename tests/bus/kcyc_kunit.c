@@ -194,7 +194,7 @@ static void kcyc_clocks(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(c);
 	msleep(2000);
 	st = b->m->session->shared->status;
@@ -219,29 +219,29 @@ static void kcyc_refused(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ec_ioc_send(&b->app, &send), -EBUSY);
-	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &time), -EBUSY);
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &time), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EBUSY);
 	cyc_release(a->c);
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EPERM);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EPERM);
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 1000), -EPERM);
 	cyc_new(b, 1000);
 	cfg.period_ns = 9999;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	cfg.period_ns = KCYC_PERIOD_NS;
 	cfg.phase_ns = KCYC_PERIOD_NS;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	cfg.phase_ns = 0;
 	cfg.cpu = nr_cpu_ids;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	cfg.cpu = -1;
 	cfg.priority = 99;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	cfg.priority = 0;
 	cfg.stall = 3;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EINVAL);
 	cfg.stall = 0;
 	cfg.dc = EC_SEND_FLAG_APP_TIME;
-	KUNIT_EXPECT_EQ(test, ec_ioc_cycle(&b->app, &cfg), -EOPNOTSUPP);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), -EOPNOTSUPP);
 }
 
 /* Whatever the application writes into the exchange, its session goes on. */
@@ -296,13 +296,13 @@ static void kcyc_end_while_running(struct kunit *test)
 		struct ec_ioc_activate act = { 0 };
 
 		cyc_new(b, 1000);
-		KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&b->app, &cfg), 0);
-		KUNIT_ASSERT_EQ(test, ec_ioc_activate(&b->app, &act), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &act), 0);
 		KUNIT_EXPECT_GT(test, act.exchange_size, 0u);
 		a->seen = 0;
 		if (round % 2)
 			kcyc_wait_cycles(a, round);
-		KUNIT_ASSERT_EQ(test, ec_ioc_release(&b->app, NULL), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), 0);
 	}
 }
 

@@ -49,7 +49,7 @@ static void life_never_begins(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
 	ec_session_end(b->m, &b->app);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 }
 
@@ -122,7 +122,7 @@ static void life_poll_of_others(struct kunit *test)
 	kcyc_wait_cycles(a, 100);
 	KUNIT_EXPECT_EQ(test, entries.woken, 0u);
 	remove_entries();
-	KUNIT_EXPECT_EQ(test, ec_ioc_wait(&other, &w), -EPERM);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_WAIT, &w), -EPERM);
 }
 
 /* Its owner adds a bounded number of entries, and each is woken in each cycle. */
@@ -151,7 +151,7 @@ static void life_poll_outlives_session(struct kunit *test)
 
 	init_poll_funcptr(&entries.table, add_entry);
 	KUNIT_EXPECT_FALSE(test, ec_file_poll(&b->app, FILE, &entries.table) & EPOLLERR);
-	KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 	KUNIT_EXPECT_GE(test, entries.woken, 1u);
 	KUNIT_EXPECT_EQ(test, ec_file_poll(&b->app, NULL, NULL), EPOLLERR);
 	remove_entries();
@@ -218,9 +218,9 @@ static void life_without_device(struct kunit *test)
 	ec_session_end(b->m, &b->app);
 	msleep(100);
 	/* without a device nobody can reserve it, but end it */
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), -ENODEV);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -ENODEV);
 	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle, cycle + 590);
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 }
 
 static const struct ecdev_ops *real_ops;
@@ -283,9 +283,9 @@ static struct kcyc *with_request(struct bus *b)
 	a->c = cyc_new(b, 1000);
 	cyc_domain(a->c);
 	cyc_map_all(a->c, 0, 1, 0);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_cycle(&b->app, &cfg), 0);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_request(&b->app, &r), 0);
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_emerg(&b->app, &e), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_REQUEST, &r), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_EMERG, &e), 0);
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(a), 0, "%s", b->app.reason);
 	return a;
 }

@@ -37,11 +37,11 @@ static struct source *begin_with(struct kunit *test, struct ec_ioc_cycle cfg, u3
 	KUNIT_ASSERT_NOT_NULL(test, s->a);
 	s->a->c = cyc_new(b, 1000);
 	cyc_domain(s->a->c);
-	KUNIT_ASSERT_EQ(test, ec_ioc_domain_options(&b->app, &o), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 	cyc_map_all(s->a->c, 0, SLAVES, 0);
 	cfg.period_ns = KCYC_PERIOD_NS;
 	cfg.cpu = -1;
-	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_cycle(&b->app, &cfg), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(s->a), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_EQ(test, b->m->session->cycle.n_dgrams,
 			options & EC_DOMAIN_OPT_SEPARATE ? 2u : 1u);

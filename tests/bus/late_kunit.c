@@ -43,7 +43,7 @@ static struct cyc *start(struct kunit *test, bool told)
 	cyc_activate(c);
 	cyc_wait_op(c, 3000);
 	cyc_run(c, 100);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle_reset(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE_RESET, NULL), 0);
 	cyc_run(c, 1);
 	KUNIT_ASSERT_EQ(test, status(c)->late_count, 1ull);
 	return c;
@@ -185,7 +185,7 @@ static void late_kept(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 10ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle_reset(&c->b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
 	ec_late_get(m, &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 0ull);
@@ -200,7 +200,7 @@ static void late_reset_pending(struct kunit *test)
 
 	KUNIT_ASSERT_NOT_NULL(test, st);
 	cyc_run(c, 9);
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle_reset(&c->b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
 	ec_late_get(c->b->m, &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, st->late_max, 0u);

@@ -29,7 +29,7 @@ static void options(struct cyc *c, u32 domain, u32 options)
 {
 	struct ec_ioc_domain_options o = { .domain = domain, .options = options };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_domain_options(&c->b->app, &o), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0, "%s",
 			    c->b->app.reason);
 }
 
@@ -37,7 +37,7 @@ static void overlap(struct cyc *c, u32 config)
 {
 	struct ec_ioc_sc_overlap o = { .config = config, .overlap = 1 };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_overlap(&c->b->app, &o), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_OVERLAP, &o), 0, "%s",
 			    c->b->app.reason);
 }
 

@@ -24,7 +24,7 @@ static void expect_why(struct bus *b, u32 config, const char *text)
 {
 	struct ec_ioc_config_why w = { .index = config };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_config_why(&b->app, &w), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(w.text, text), "%s", w.text);
 }
 
@@ -64,7 +64,7 @@ static struct cyc *configure(struct kunit *test, const char *text, u32 wrong, u3
 	cyc_pdo(c, r.config, EC_SC_PDO_MAP_CLEAR, 2, pdo, 0);
 	for (i = 0; i < n; i++)
 		cyc_pdo(c, r.config, EC_SC_PDO_MAP_ADD, 2, pdo, entries[i]);
-	KUNIT_ASSERT_EQ_MSG(test, ec_ioc_reg_entry(&b->app, &r), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &r), 0, "%s", b->app.reason);
 	cyc_map_all(c, 1, 1, r.domain);
 	return c;
 }
@@ -97,11 +97,11 @@ static void mapping_flag_accepts_other_entry(struct kunit *test)
 	struct bus *b = c->b;
 	struct ec_ioc_slave i = { 0 };
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &f), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	/* what was accepted stays visible */
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x6040:71"), "%s", i.warning);
 }
 
@@ -127,12 +127,12 @@ static void mapping_unreadable_stays_visible(struct kunit *test)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 60000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
 	cyc_run(c, 3000);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "cannot be read"), "%s", i.warning);
 	/* the next configuration begins without it */
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_STREQ(test, i.warning, "");
 }
 
@@ -179,10 +179,10 @@ static void mapping_without_mailbox_is_compared(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->warning, "");
 	cyc_release(c);
 	c = terminal(test, b, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &f), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x7000:02"), "%s", i.warning);
 }
 
@@ -205,7 +205,7 @@ static void mapping_without_knowledge_stays_visible(struct kunit *test)
 	c = terminal(test, b, 99);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "EEPROM lists no PDOs"), "%s", i.warning);
 }
 
@@ -226,7 +226,7 @@ static void mapping_found_unreadable_stays_visible(struct kunit *test)
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "PDOs could not be read"), "%s", i.warning);
 }
 
@@ -270,13 +270,13 @@ static void mapping_written_is_shown(struct kunit *test)
 	cyc_map(c, config, 3, 0);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc_pdo(&b->app, &p), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_PDO, &p), 0);
 	KUNIT_EXPECT_EQ(test, p.index, 0x1600);
 	KUNIT_EXPECT_STRNEQ(test, p.name, "");
 	KUNIT_ASSERT_EQ(test, p.entry_count, ARRAY_SIZE(cyc_new_out));
 	for (i = 0; i < p.entry_count; i++) {
 		e.entry_pos = i;
-		KUNIT_ASSERT_EQ(test, ec_ioc_pdo_entry(&b->app, &e), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_PDO_ENTRY, &e), 0);
 		KUNIT_EXPECT_EQ(test, (u32)e.index << 16 | e.subindex << 8 | e.bits, cyc_new_out[i]);
 		KUNIT_EXPECT_STRNEQ(test, e.name, "");
 	}

@@ -93,9 +93,10 @@ static struct cyc *configure(struct bus *b, u32 *request)
 	for (i = 0; i < 4; i++) {
 		struct ec_ioc_sc_sdo sdo = {
 			.config = 0, .index = 0x2000, .subindex = 1, .size = LARGE,
+			.data = (uintptr_t)value,
 		};
 
-		KUNIT_EXPECT_EQ(b->test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+		KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	}
 	kvfree(value);
 	return c;

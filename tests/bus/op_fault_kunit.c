@@ -203,7 +203,7 @@ static void op_application_stalls(struct kunit *test)
 
 	msleep(300);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
-	KUNIT_EXPECT_EQ(test, ec_ioc_slave(&b->app, &s), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, N);
 	/* the watchdog of the slave has switched its outputs off */
 	KUNIT_EXPECT_EQ(test, ec_app_channel(bus_app(b, "ao"), EC_APP_OUT, 0), 0ll);

@@ -194,7 +194,7 @@ static void op_entry_not_there(struct kunit *test)
 
 	cyc_domain(c);
 	cyc_config(c, 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &r), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &r), -ENOENT);
 	KUNIT_EXPECT_NE(test, b->app.reason[0], '\0');
 }
 
@@ -209,7 +209,7 @@ static void op_map_first(struct kunit *test)
 	cyc_config(c, 0);
 	cyc_map(c, 0, 0, 0);
 	cyc_pdo(c, 0, EC_SC_PDO_ASSIGN_CLEAR, 0, 0, 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &act), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &act), -EBUSY);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason,
 		"slave 0:0: SM0 was registered in domain 0 with 8 bytes of outputs; now it has 0 of outputs"),
 				  "%s", b->app.reason);

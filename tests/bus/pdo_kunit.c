@@ -136,10 +136,10 @@ static const char *shown(struct bus *b, int entry)
 	p = (struct ec_ioc_pdo){ .sm = 2, .name = "?" };
 	e = (struct ec_ioc_pdo_entry){ .sm = 2, .entry_pos = entry, .name = "?" };
 	if (entry < 0) {
-		KUNIT_EXPECT_EQ(b->test, ec_ioc_pdo(&b->app, &p), 0);
+		KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_PDO, &p), 0);
 		return p.name;
 	}
-	KUNIT_EXPECT_EQ(b->test, ec_ioc_pdo_entry(&b->app, &e), 0);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_PDO_ENTRY, &e), 0);
 	return e.name;
 }
 

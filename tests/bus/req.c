@@ -15,7 +15,7 @@ u32 req_add(struct cyc *c, u32 config, u32 kind, u32 size)
 {
 	struct ec_ioc_sc_request r = { .config = config, .kind = kind, .size = size };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc_sc_request(&c->b->app, &r), 0, "%s",
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_REQUEST, &r), 0, "%s",
 			    c->b->app.reason);
 	return r.index;
 }

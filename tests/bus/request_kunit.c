@@ -43,7 +43,7 @@ static struct cyc *prepare(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_ASSERT_EQ(test, sc.index, ABSENT);
 	return c;
 }
@@ -215,12 +215,12 @@ static void req_bounds(struct kunit *test)
 	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), r = req_add(c, 0, EC_REQUEST_REG, 4), i;
 	u32 guard = req_add(c, 1, EC_REQUEST_SDO, 8);
 
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &big), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_REQUEST, &big), -EINVAL);
 	big.kind = EC_REQUEST_REG;
 	big.size = EC_MAX_REG_SIZE + 1;
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &big), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &kind), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_request(&c->b->app, &none), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_REQUEST, &big), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_REQUEST, &kind), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_REQUEST, &none), -ENOENT);
 	go(c);
 	memset(req_data(c, guard), 0x55, 8);
 	for (i = 0; i < ARRAY_SIZE(sizes); i++) {
@@ -386,8 +386,10 @@ static void req_registers_of_failed_slave(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave a drive in=8 out=8\nslave c drive in=8 out=8\n"
 			       "fault refuse a OP code=0x0027\n", 2);
-	struct ec_ioc_sc_sdo sdo = { .config = 1, .index = 0x5FFF, .subindex = 1, .size = 1 };
 	u8 value = 0;
+	struct ec_ioc_sc_sdo sdo = {
+		.config = 1, .index = 0x5FFF, .subindex = 1, .size = 1, .data = (uintptr_t)&value,
+	};
 	struct cyc *c;
 	u32 r[2], i;
 
@@ -395,7 +397,7 @@ static void req_registers_of_failed_slave(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, &value), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	for (i = 0; i < 2; i++)
 		r[i] = req_add(c, i, EC_REQUEST_REG, 8);
 	cyc_activate(c);
@@ -421,8 +423,8 @@ static void req_emergencies(struct kunit *test)
 	const u8 *first;
 	u32 i;
 
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_emerg(&c->b->app, &many), -ENOMEM);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_emerg(&c->b->app, &e), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_EMERG, &many), -ENOMEM);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_EMERG, &e), 0);
 	go(c);
 	/* nobody asks for anything, and still it comes, soon */
 	ec_app_emergency(bus_app(c->b, "a"), 0x8110, 0x11, five, ktime_get_ns());

@@ -49,7 +49,7 @@ static void expect_why(struct bus *b, u32 config, const char *text)
 {
 	struct ec_ioc_config_why w = { .index = config };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_config_why(&b->app, &w), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(w.text, text), "%s", w.text);
 }
 

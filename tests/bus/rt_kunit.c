@@ -187,7 +187,7 @@ static void rt_thread(struct kunit *test)
 	unsigned int printed;
 	u64 cycles;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_cycle(&c->b->app, &cfg), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(c);
 	msleep(3000);
 	KUNIT_ASSERT_TRUE(test, cyc_all_op(c));

@@ -30,7 +30,7 @@ static void tell(struct bus *b, u64 app_time)
 {
 	struct ec_ioc_app_time t = { .app_time = app_time };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_app_time(&b->app, &t), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
 }
 
 static struct cyc *with_sync(struct bus *b, s32 shift)
@@ -43,7 +43,7 @@ static struct cyc *with_sync(struct bus *b, s32 shift)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
 	for (dc.config = 0; dc.config < 2; dc.config++)
-		KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	c->each = follow_app;
 	return c;
 }
@@ -152,16 +152,16 @@ static void rules_deactivate(struct kunit *test)
 		if (round == 1)
 			cyc_domain(c);
 		cyc_map_all(c, 0, 2, round == 1);
-		KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), -EINVAL);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
 		KUNIT_EXPECT_EQ(test, b->m->session->n_configs, 2u);
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-		KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), 0);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 		KUNIT_EXPECT_EQ(test, b->m->session->n_configs, 0u);
 		KUNIT_EXPECT_EQ(test, b->m->session->n_domains, 0u);
-		KUNIT_EXPECT_EQ(test, ec_ioc_domain_offset(&b->app, &at), -ENOENT);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OFFSET, &at), -ENOENT);
 		KUNIT_EXPECT_FALSE(test, b->m->dc.has_phase);
-		KUNIT_EXPECT_EQ(test, ec_ioc_deactivate(&b->app, NULL), -EINVAL);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
 		bus_idle(b);
 		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
 		cyc_release(c);
@@ -178,10 +178,10 @@ static void rules_configured_twice(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, cyc_config(c, 0), first);
 	KUNIT_EXPECT_EQ(test, b->m->session->n_configs, 1u);
-	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), -ENOENT);
 	/* nobody is there: no error, the handle is good */
 	sc.position = 17;
-	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_EXPECT_EQ(test, ec_session_config_status(b->m->session->configs[sc.index]), 0);
 }
 
@@ -192,7 +192,7 @@ static int pdo(struct bus *b, u8 op, u8 sm, u16 index, u32 entry)
 		.subindex = entry >> 8, .bits = entry,
 	};
 
-	return ec_ioc_sc_pdo(&b->app, &p);
+	return ec_ioc(&b->app, EC_IOC_SC_PDO, &p);
 }
 
 /* PDOs of a slave that is not there, with gaps; what is not assigned. */
@@ -206,22 +206,22 @@ static void rules_explicit_mapping(struct kunit *test)
 	struct ec_ioc_domain d = { 0 };
 
 	cyc_domain(c);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_MAP_CLEAR, 0, 0x1a00, 0), 0);
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_MAP_ADD, 0, 0x1a00, 0x60000108), -ENOENT);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &e), -ENOENT);
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_sync(&b->app, &sync), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &e), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SYNC, &sync), 0);
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_ASSIGN_ADD, 3, 0x1a00, 0), 0);
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_MAP_ADD, 0, 0x1a00, 0x60000103), 0);
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_MAP_ADD, 0, 0x1a00, 0x0000000e), 0);	/* gap */
 	KUNIT_EXPECT_EQ(test, pdo(b, EC_SC_PDO_MAP_ADD, 0, 0x1a00, 0x60000201), 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_reg_entry(&b->app, &e), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &e), 0);
 	KUNIT_EXPECT_EQ(test, e.offset, 2u);
 	KUNIT_EXPECT_EQ(test, e.bit, 1u);
 	e.offset = 99;
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_entry(&b->app, &e), 0);	/* again */
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_ENTRY, &e), 0);	/* again */
 	KUNIT_EXPECT_EQ(test, e.offset, 2u);
-	KUNIT_EXPECT_EQ(test, ec_ioc_domain(&b->app, &d), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN, &d), 0);
 	KUNIT_EXPECT_EQ(test, d.size, 3u);	/* known before activation */
 }
 
@@ -235,7 +235,7 @@ static void rules_wait_before_safeop(struct kunit *test)
 
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_flag(&b->app, &flag), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
 	cyc_activate(c);
 	us = cyc_wait_op(c, 5000);
 	KUNIT_ASSERT_NE(test, us, ~0ull);

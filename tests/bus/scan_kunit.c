@@ -145,7 +145,7 @@ static void scan_nothing(struct kunit *test)
 	u64 t0;
 
 	msleep(100);
-	KUNIT_EXPECT_EQ(test, ec_ioc_rescan(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), 0);
 	msleep(100);
 	KUNIT_EXPECT_FALSE(test, b->m->rescan);
 	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans + 1);
@@ -165,8 +165,8 @@ static void scan_while_reserved(struct kunit *test)
 	u64 frames;
 
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_rescan(&b->app, NULL), -EBUSY);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), -EBUSY);
 	ec_master_rescan(b->m);
 	msleep(100);
 	frames = bus_frames(b);

@@ -33,9 +33,9 @@ static void session_forgets(struct kunit *test)
 	struct bus *b = one_up(test);
 	ec_master_t *m;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_app_time(&b->app, &t), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase);
 	ec_session_end(b->m, &b->app);
 	expect_nothing_told(b);
@@ -59,7 +59,7 @@ static void session_heir_goes(struct kunit *test)
 
 	KUNIT_ASSERT_TRUE(test, b->m->dc.has_phase);
 	ec_session_end(b->m, &b->app);
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	ec_session_end(b->m, &b->app);
 	KUNIT_EXPECT_NULL(test, b->m->heir);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && b->m->dc.begun);
@@ -69,13 +69,15 @@ static void session_heir_goes(struct kunit *test)
 
 static void uploads(struct bus *b)
 {
-	struct ec_ioc_sdo sdo = { .index = 0x1018, .subindex = 1, .size = 4 };
-	u8 *data;
+	u8 data[4];
+	struct ec_ioc_sdo sdo = {
+		.index = 0x1018, .subindex = 1, .size = 4, .data = (uintptr_t)data,
+	};
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(b->test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
-	KUNIT_EXPECT_EQ_MSG(b->test, ec_ioc_upload(&b->app, &sdo, &data), 0, "%s", b->app.reason);
-	kvfree(data);
+	KUNIT_EXPECT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &sdo), 0, "%s",
+			    b->app.reason);
 	ec_session_end(b->m, &b->app);
 }
 
@@ -129,13 +131,13 @@ static void session_reserve_refused(struct kunit *test)
 	bus_idle(b);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	t0 = ktime_get_ns();
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 10 * NSEC_PER_SEC);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
 	ec_session_end(b->m, &b->app);
 	bus_idle(b);
 	t0 = ktime_get_ns();
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 200 * NSEC_PER_MSEC);
 }
 
@@ -175,7 +177,7 @@ static void session_state_timeouts(struct kunit *test)
 
 		cyc_domain(c);
 		cyc_map_all(c, 0, 1, 0);
-		KUNIT_ASSERT_EQ(test, ec_ioc_sc_timeout(&b->app, &v), 0);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_TIMEOUT, &v), 0);
 		if (v.from == EC_AL_OP) {
 			cyc_activate(c);
 			KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
@@ -204,7 +206,7 @@ static void watch_scan(struct bus *b, u32 n)
 	for (i = 0; i < 20000; i++) {
 		struct ec_ioc_master mi = { 0 };
 
-		KUNIT_ASSERT_EQ(b->test, ec_ioc_master(&b->app, &mi), 0);
+		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_MASTER, &mi), 0);
 		KUNIT_ASSERT_EQ(b->test, ecrt_master_scan_progress(b->m, &p), 0);
 		KUNIT_EXPECT_EQ(b->test, mi.scan_index, p.scan_index);
 		KUNIT_EXPECT_EQ(b->test, mi.scan_slaves, p.slave_count);
@@ -258,24 +260,24 @@ static void session_heir_asks(struct kunit *test)
 	struct ec_ioc_sc_ip set = { .params = { .which = EC_IP_NAME, .name = "heir" } }, ip = { 0 };
 
 	ec_file_init(&other, b->m, false);
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_sc_ip(&b->app, &set), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &why), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_IP, &set), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &why), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(why.text, "40"), "%s", why.text);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&other, &running), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_WHY, &running), 0);
 	KUNIT_EXPECT_STRNEQ(test, running.text, why.text);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_IP, &ip), 0);
 	KUNIT_EXPECT_EQ(test, ip.params.which, (u32)EC_IP_NAME);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&other, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_IP, &ip), 0);
 	KUNIT_EXPECT_EQ(test, ip.params.which, 0u);
 	/* the running one has two, the heir one */
 	why.index = 1;
 	ip.config = 1;
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&other, &why), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&other, &ip), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_why(&b->app, &why), -ENOENT);
-	KUNIT_EXPECT_EQ(test, ec_ioc_config_ip(&b->app, &ip), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_WHY, &why), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_IP, &ip), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &why), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_IP, &ip), -ENOENT);
 }
 
 /* An application in the kernel as the heir: it cannot take over, and disturbs nothing. */
@@ -309,7 +311,7 @@ static void session_kernel_heir(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	/* the way the refusal names; then the bus is its own */
-	KUNIT_EXPECT_EQ(test, ec_ioc_end_detached(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_NULL(test, b->m->heir);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
 	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
@@ -359,11 +361,11 @@ static void session_interval(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(told); i++) {
 		struct ec_ioc_interval t = { .interval_us = told[i].us };
 
-		KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &t), 0);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &t), 0);
 		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, told[i].is);
 		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_set, told[i].told);
 	}
-	KUNIT_EXPECT_EQ(test, ec_ioc_interval(&b->app, &none), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &none), -EINVAL);
 	cyc_release(c);
 }
 
@@ -371,7 +373,7 @@ static int activate(struct bus *b)
 {
 	struct ec_ioc_activate act = { 0 };
 
-	return ec_ioc_activate(&b->app, &act);
+	return ec_ioc(&b->app, EC_IOC_ACTIVATE, &act);
 }
 
 static void expect_limit(struct bus *b)
@@ -390,7 +392,7 @@ static void clear_pdos(struct bus *b)
 
 	for (i = 0; i < ARRAY_SIZE(ops); i++) {
 		pdo.op = ops[i];
-		KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_pdo(&b->app, &pdo), 0);
+		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), 0);
 		KUNIT_EXPECT_EQ(b->test, b->m->session->bytes > bytes,
 				ops[i] != EC_SC_PDO_ASSIGN_CLEAR);
 	}
@@ -407,15 +409,16 @@ static void session_memory(struct kunit *test)
 	struct ec_master *m = b->m;
 	u32 i;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_EXPECT_GE(test, m->session->bytes, sizeof(struct ec_config));
+	sdo.data = (uintptr_t)value;
 	clear_pdos(b);
 	/* as if something else was mapped: there is room for three values */
 	atomic_long_add(EC_MAX_SESSION_BYTES - m->session->bytes - 4 * sdo.size, &m->mapped);
 	for (i = 0; i < 3; i++)
-		KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), -ENOMEM);
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), -ENOMEM);
 	expect_limit(b);
 	KUNIT_EXPECT_EQ(test, activate(b), -ENOMEM);
 	expect_limit(b);

@@ -72,7 +72,7 @@ static void configure(struct bus *b, u16 position)
 		.position = position, .vendor_id = 1, .product_code = 2,
 	};
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_slave_config(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &i), 0);
 }
 
 /* A section is short, however many configurations there are; the last one is found. */
@@ -82,7 +82,7 @@ static void show_many_configs_in_pieces(struct kunit *test)
 	struct ec_ioc_slave slave = { 0 };
 	unsigned int from = 0, i;
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	for (i = 1; i < CONFIGS; i++)
 		configure(b, i);
 	configure(b, 0);
@@ -90,7 +90,7 @@ static void show_many_configs_in_pieces(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_config_at(b->m->session, b->m->slaves[0], 0, 0, &from));
 	KUNIT_EXPECT_LE(test, from, 64u);
 	ec_show_end(b->m);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &slave), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &slave), 0);
 	KUNIT_EXPECT_EQ(test, slave.config, (u32)CONFIGS);
 	KUNIT_EXPECT_TRUE(test, slave.differs);
 	ec_session_end(b->m, &b->app);
@@ -102,7 +102,7 @@ static void show_slave_takes_no_alias_from_caller(struct kunit *test)
 	struct bus *b = ready(test);
 	struct ec_ioc_slave i = { .alias_group = 7 };
 
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
 	KUNIT_EXPECT_EQ(test, i.alias_group, 0);
 }
 

@@ -103,7 +103,7 @@ static struct cyc *configure(struct bus *b, const struct start *p)
 		cyc_map(c, config, 2, 0);
 		cyc_map(c, config, 3, 0);
 		if (p->dc)
-			KUNIT_ASSERT_EQ(b->test, ec_ioc_sc_dc(&b->app, &dc), 0);
+			KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_DC, &dc), 0);
 	}
 	if (p->dc)
 		c->each = tell_time;

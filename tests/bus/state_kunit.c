@@ -104,9 +104,9 @@ static void state_no_reference(struct kunit *test)
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, A, 1, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	ref.config = sc.index;
-	KUNIT_ASSERT_EQ(test, ec_ioc_ref_clock(&b->app, &ref), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	c->each = clocks;
 	cyc_activate(c);
 	KUNIT_EXPECT_EQ(test, page(b)->dc_ref, 0u);
@@ -144,7 +144,7 @@ static void state_reset(struct kunit *test)
 	cyc_run(c, 500);
 	KUNIT_ASSERT_EQ(test, al(b, A), EC_AL_PREOP);
 	KUNIT_ASSERT_EQ(test, al(b, C), EC_AL_INIT);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_OP);
@@ -152,19 +152,19 @@ static void state_reset(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, al(b, C), EC_AL_INIT);
 	/* one in OP is not disturbed */
 	c->incomplete = 0;
-	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	/* the way down is not turned back */
 	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->session), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_PREOP);
 	cyc_release(c);
 	/* without an application nobody wants OP */
 	bus_request(b, A, EC_AL_INIT);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, A, EC_AL_INIT, 1000), ~0ull);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reset(&b->app, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	msleep(500);
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_INIT);
 }

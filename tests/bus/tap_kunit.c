@@ -86,7 +86,7 @@ static u32 not_captured(struct bus *b)
 {
 	struct ec_ioc_master i = { 0 };
 
-	KUNIT_ASSERT_EQ(b->test, ec_ioc_master(&b->app, &i), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_MASTER, &i), 0);
 	return i.not_captured;
 }
 

@@ -32,16 +32,13 @@ static void expect_text(struct bus *b, const char *want)
 
 static int upload(struct bus *b, u16 position, u16 index)
 {
+	u8 data[4];
 	struct ec_ioc_sdo i = {
 		.position = position, .index = index, .subindex = 1, .size = 4, .timeout_ms = 100,
+		.data = (uintptr_t)data,
 	};
-	u8 *data;
-	int ret;
 
-	b->app.reason[0] = '\0';
-	ret = ec_ioc_upload(&b->app, &i, &data);
-	kvfree(data);
-	return ret;
+	return ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &i);
 }
 
 static void texts_sdo(struct kunit *test)
@@ -110,10 +107,13 @@ static void texts_startup_mailbox_error(struct kunit *test)
 	struct bus *b = ready(test);
 	struct cyc *c = cyc_new(b, 1000);
 	u32 config = cyc_config(c, BAD);
-	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x1018, .subindex = 3, .size = 4 };
+	struct ec_ioc_sc_sdo sdo = {
+		.config = config, .index = 0x1018, .subindex = 3, .size = 4,
+		.data = (uintptr_t)value,
+	};
 
 	cyc_map(c, config, 2, cyc_domain(c));
-	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ERROR, EC_MBOX_ERR_NO_MEMORY);
 	cyc_activate(c);
 	cyc_run(c, 500);
@@ -142,13 +142,13 @@ static void texts_register(struct kunit *test)
 	struct ec_ioc_reg reg = { .position = BAD, .address = 0x0130, .size = 2 };
 
 	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 1, 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -EIO);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "slave 1 did not execute access to 0x0130: working counter 0, expected 1");
 	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 0, 0);
 	/* every frame is lost, the link stays */
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -ETIMEDOUT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "no reply to register access 0x0130 at slave 1; check the cables");
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
@@ -174,7 +174,7 @@ static void texts_link(struct kunit *test)
 	u32 abort;
 
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ENETDOWN);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -ENETDOWN);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
 	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort, &limit),
 			-ENETDOWN);
@@ -183,7 +183,7 @@ static void texts_link(struct kunit *test)
 	b->link = NULL;
 	b->sim = NULL;
 	b->app.reason[0] = '\0';
-	KUNIT_EXPECT_EQ(test, ec_ioc_reg_read(&b->app, &reg), -ENODEV);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -ENODEV);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
 	KUNIT_EXPECT_STREQ(test, ec_mbox_fail_text(-ENODEV, "CoE", why, sizeof(why)), none);
 	ec_slave_unref(s);
@@ -196,10 +196,13 @@ static void texts_startup(struct kunit *test)
 	struct bus *b = ready(test);
 	struct cyc *c = cyc_new(b, 1000);
 	u32 config = cyc_config(c, BAD);
-	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x5fff, .subindex = 3, .size = 4 };
+	struct ec_ioc_sc_sdo sdo = {
+		.config = config, .index = 0x5fff, .subindex = 3, .size = 4,
+		.data = (uintptr_t)value,
+	};
 
 	cyc_map(c, config, 2, cyc_domain(c));
-	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
@@ -215,14 +218,17 @@ static void texts_startup_unknown_abort(struct kunit *test)
 	struct bus *b = ready(test);
 	struct cyc *c = cyc_new(b, 1000);
 	u32 config = cyc_config(c, BAD);
-	struct ec_ioc_sc_sdo sdo = { .config = config, .index = 0x5fff, .subindex = 3, .size = 4 };
+	struct ec_ioc_sc_sdo sdo = {
+		.config = config, .index = 0x5fff, .subindex = 3, .size = 4,
+		.data = (uintptr_t)value,
+	};
 
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ABORT, 0x08000099);
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x5fff), -EIO);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "SDO 0x5fff:01 aborted with code 0x08000099: unknown code");
 	cyc_map(c, config, 2, cyc_domain(c));
-	KUNIT_EXPECT_EQ(test, ec_ioc_store_sdo(&b->app, &sdo, value), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
@@ -266,12 +272,12 @@ static void texts_reserved(struct kunit *test)
 	char want[80];
 
 	ec_file_init(&other, b->m, true);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&b->app, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_reserve(&other, NULL), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_RESERVE, NULL), -EBUSY);
 	scnprintf(want, sizeof(want), "reserved by process %d (%s); stop that application first",
 		  task_tgid_nr(current), current->comm);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(other.reason, want), "%s", other.reason);
-	ec_ioc_release(&b->app, NULL);
+	ec_ioc(&b->app, EC_IOC_RELEASE, NULL);
 }
 
 static void texts_config(struct kunit *test)
@@ -284,15 +290,15 @@ static void texts_config(struct kunit *test)
 	};
 
 	cyc_new(b, 1000);
-	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	sc.product_code = 4;
-	KUNIT_EXPECT_EQ(test, ec_ioc_slave_config(&b->app, &sc), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), -ENOENT);
 	expect_text(b, "slave 0:1 is configured as 0x00000002/0x00000003 already, not as 0x00000002/0x00000004");
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_pdo(&b->app, &pdo), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), -ENOENT);
 	expect_text(b, "cannot add entry 0x7000:01 to PDO 0x1777: the PDO is not assigned; assign it first");
 	pdo.op = EC_SC_PDO_ASSIGN_ADD;
 	pdo.sm = 200;
-	KUNIT_EXPECT_EQ(test, ec_ioc_sc_pdo(&b->app, &pdo), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), -EINVAL);
 	KUNIT_EXPECT_NULL(test, strstr(b->app.reason, "assign the PDO"));
 }
 

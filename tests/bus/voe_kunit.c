@@ -186,7 +186,7 @@ static struct cyc *prepare(struct kunit *test)
 
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
-	KUNIT_ASSERT_EQ(test, ec_ioc_slave_config(&b->app, &sc), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	KUNIT_ASSERT_EQ(test, sc.index, ABSENT);
 	return c;
 }

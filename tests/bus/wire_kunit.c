@@ -14,14 +14,14 @@ static void options(struct cyc *c, u32 options)
 {
 	struct ec_ioc_domain_options o = { .options = options };
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_domain_options(&c->b->app, &o), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 }
 
 static void late_cycles(struct cyc *c, u32 per_s)
 {
 	struct ec_ioc_late l = { .per_s = per_s };
 
-	KUNIT_ASSERT_EQ(c->b->test, ec_ioc_late(&c->b->app, &l), 0);
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_LATE, &l), 0);
 }
 
 static u64 late(const struct bus *b)
@@ -278,7 +278,7 @@ static void wire_refused(struct kunit *test)
 	struct ec_ioc_activate a = { 0 };
 
 	late_cycles(c, 0);
-	KUNIT_EXPECT_EQ(test, ec_ioc_activate(&b->app, &a), -ENOSPC);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -ENOSPC);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "6720 ns"), "%s", b->app.reason);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	/* in a longer cycle the same session works */
