@@ -30,8 +30,8 @@ has_free() { [ "$(free_kib)" -ge "$1" ]; }
 	[ "$n" -ge 1000 ]
 	[ "$n" -lt 1024 ]
 	[[ "$output" == *"limit of 64 MiB for the sessions of master 0"* ]]
-	# all is free again, but for what the kernel keeps in its caches
-	wait_for 20 has_free $((before - 8192))
+	# all is free again, but for what the kernel keeps in its caches (more than 8 MiB once)
+	wait_for 20 has_free $((before - 16384))
 }
 
 # in_group COMMAND...: by a process of the group
