@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /*
- * EtherCAT real-time interface: what an application needs to run a bus, in
- * userspace (libethercat) and in the kernel.
+ * Interface of an EtherCAT application, in userspace (libethercat) and in the kernel.
  *
  *   master = ecrt_request_master(0);
  *   domain = ecrt_master_create_domain(master);
@@ -17,22 +16,21 @@
  *	ecrt_master_send(master);
  *   ecrt_release_master(master);
  *
- * Conventions. Integer functions return 0, or what they are said to return,
- * on success and a negative errno on failure. Functions that return a
- * pointer return NULL on failure. A NULL handle is answered with -EINVAL or
- * NULL. The userspace library says on stderr, in one line, why a call of the
- * configuration phase failed; the calls of the cycle never print. EtherCAT
- * data is little-endian; SDO data passes unchanged.
+ * Conventions. Integer functions return 0 or the documented value on success, and a
+ * negative errno on failure. Functions that return a pointer return NULL on failure. A
+ * NULL handle gives -EINVAL or NULL. When a configuration call fails, the userspace
+ * library prints one line with the reason on stderr; the calls of the cycle never print.
+ * EtherCAT data are little-endian; SDO data are not converted.
  *
- * In userspace every function that needs the reservation returns -EPERM on a
- * master that is only opened; configuration calls return -EBUSY while the
- * master is active.
+ * In userspace a function that needs the reservation returns -EPERM on a master that is
+ * only opened. Configuration calls return -EBUSY while the master is active.
  *
  * "Context:" is one of
  *   Any. RT-safe: bounded, no sleep, no allocation.
- *   One caller at a time. RT-safe. Of all calls so marked for the same request,
- *	handler or slave, which nothing protects against each other.
- *   The master's single cyclic caller. RT-safe.
+ *   One caller at a time. RT-safe. The application must not make two calls with this
+ *	context for the same request, handler or slave at the same time.
+ *   The cycle owner. RT-safe: the one thread that calls ecrt_master_receive() and
+ *	ecrt_master_send().
  *   Process. May sleep.
  *   Process. Waits for bus traffic.
  */
@@ -88,7 +86,7 @@
 #ifndef __KERNEL__
 /* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
 #define EC_HAVE_KERNEL_CYCLE
-/* ecrt_slave_config_create_sdo_request_complete() and its kin; in userspace */
+/* requests for whole objects; in userspace */
 #define EC_HAVE_SDO_REQUEST_COMPLETE
 /* ecrt_reg_request_readwrite(); in userspace */
 #define EC_HAVE_REG_READWRITE
@@ -111,7 +109,7 @@
 #define EC_HAVE_LATE_CYCLES
 /* ecrt_domain_set_options(): how a domain is sent */
 #define EC_HAVE_DOMAIN_OPTIONS
-/* ecrt_domain_age(), ecrt_domain_set_max_age(): how old process data are */
+/* ecrt_domain_age(), ecrt_domain_set_max_age(): age of process data */
 #define EC_HAVE_DOMAIN_AGE
 
 #ifndef EC_PUBLIC_API
@@ -167,7 +165,7 @@ typedef struct {
 	unsigned int link_up : 1;	/* at least one link is up */
 } ec_master_state_t;
 
-/* the same for one link */
+/* state of the slaves that one link reaches */
 typedef struct {
 	unsigned int slaves_responding;
 	unsigned int al_states : 4;
@@ -185,10 +183,10 @@ typedef struct {
 	unsigned int slave_count;
 	unsigned int link_up : 1;	/* of the main link */
 	uint8_t scan_busy;
-	uint64_t app_time;		/* ns, last one given */
+	uint64_t app_time;		/* last application time, ns */
 } ec_master_info_t;
 
-/* a scan is going on while scan_index < slave_count */
+/* a scan runs while scan_index < slave_count */
 typedef struct {
 	unsigned int slave_count;
 	unsigned int scan_index;
@@ -225,13 +223,13 @@ typedef struct {
 		uint32_t delay_to_next_dc; /* ns */
 	} ports[EC_MAX_PORTS];
 	uint8_t al_state;		/* low byte of register 0x0130 */
-	uint8_t error_flag;		/* the master gave up configuring it */
+	uint8_t error_flag;		/* the master could not configure it */
 	uint8_t sync_count;
 	uint16_t sdo_count;
 	char name[EC_MAX_STRING_LENGTH];
 } ec_slave_info_t;
 
-/* working counter against what was expected of it */
+/* working counter compared with the expected one */
 typedef enum {
 	EC_WC_ZERO = 0,			/* no slave took part */
 	EC_WC_INCOMPLETE,		/* some slaves did */
@@ -244,7 +242,7 @@ typedef struct {
 	unsigned int redundancy_active;	/* data came over the backup link */
 } ec_domain_state_t;
 
-/* seen from the master */
+/* from the view of the master */
 typedef enum {
 	EC_DIR_INVALID,
 	EC_DIR_OUTPUT,			/* written by the master */
@@ -254,7 +252,7 @@ typedef enum {
 
 /* watchdog trigger, bit 6 of a SyncManager's control byte */
 typedef enum {
-	EC_WD_DEFAULT,			/* as the slave describes it */
+	EC_WD_DEFAULT,			/* as in the SII of the slave */
 	EC_WD_ENABLE,
 	EC_WD_DISABLE
 } ec_watchdog_mode_t;
@@ -313,9 +311,9 @@ extern "C" {
 #endif
 
 /**
- * ecrt_version_magic() - get the version of the interface that runs
+ * ecrt_version_magic() - get the version of the running library or module
  *
- * To compare with %ECRT_VERSION_MAGIC, the version compiled against.
+ * Compare it with %ECRT_VERSION_MAGIC, the version of this header.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: %ECRT_VERSION_MAGIC of the library or, in the kernel, the module.
@@ -324,26 +322,25 @@ EC_PUBLIC_API unsigned int ecrt_version_magic(void);
 
 /**
  * ecrt_request_master() - open a master and reserve it
- * @master_index: which one, from 0
+ * @master_index: index, from 0
  *
- * ecrt_open_master() and ecrt_master_reserve() in one call: it waits until a scan
- * has ended, freezes the list of slaves until activation and takes all slaves to
- * PREOP.
+ * ecrt_open_master() and ecrt_master_reserve() in one call: waits until a running scan
+ * ends, starts no other scan until activation, and requests PREOP of all slaves.
  *
  * Context: Process. Waits for bus traffic.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
- * (%-EACCES), taken (%-EBUSY), without its device (%-ENODEV), interrupted
- * (%-EINTR).
+ * (%-EACCES), reserved by another application (%-EBUSY), without its device (%-ENODEV),
+ * interrupted (%-EINTR).
  */
 EC_PUBLIC_API ec_master_t *ecrt_request_master(unsigned int master_index);
 
 #ifndef __KERNEL__
 /**
  * ecrt_open_master() - open a master without reserving it
- * @master_index: which one, from 0: /dev/EtherCAT<index>
+ * @master_index: index from 0 of /dev/EtherCAT<index>
  *
- * Any number of processes may hold an opened master. It serves the calls
- * that read the state of the bus, SDO access and ecrt_master_reset(). Userspace only.
+ * Any number of processes may open a master. An opened master is sufficient for the calls
+ * that read the state of the bus, for SDO access and ecrt_master_reset(). Userspace only.
  *
  * Context: Process. May sleep.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
@@ -356,9 +353,8 @@ EC_PUBLIC_API ec_master_t *ecrt_open_master(unsigned int master_index);
  * ecrt_release_master() - release a master
  * @master: from ecrt_request_master() or ecrt_open_master(), or NULL
  *
- * Deactivates it if it is active; slaves go back to PREOP. But a cycle of the
- * kernel with %EC_CYCLE_DETACH continues. All handles and pointers that came from
- * @master become invalid.
+ * Deactivates an active master; slaves go to PREOP. A cycle of the kernel with
+ * %EC_CYCLE_DETACH continues. All handles and pointers of @master become invalid.
  *
  * Context: Process. May sleep.
  */
@@ -366,16 +362,16 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
 
 #ifndef __KERNEL__
 /**
- * ecrt_master_reserve() - take an opened master for this application
+ * ecrt_master_reserve() - reserve an opened master for this application
  * @master: from ecrt_open_master()
  *
- * Waits until a scan has ended, freezes the list of slaves until activation,
- * takes all slaves to PREOP and waits for that, for 10 s at most; only a slave that has
- * failed on the way to PREOP already is left as it is. While a detached session exists
- * (%EC_CYCLE_DETACH), the call changes no slave. Userspace only.
+ * Waits until a running scan ends and starts no other scan until activation. Requests PREOP
+ * of all slaves and waits for it, at most 10 s; a slave that has failed to reach PREOP
+ * before is not changed. While a detached session exists (%EC_CYCLE_DETACH), the call
+ * changes no slave. Userspace only.
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; %-EBUSY taken, %-ENODEV the master has no device yet, %-EPERM
+ * Return: 0; %-EBUSY reserved by another application, %-ENODEV the master has no device, %-EPERM
  * not opened for writing, %-EINTR, %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reserve(ec_master_t *master);
@@ -385,9 +381,9 @@ EC_PUBLIC_API int ecrt_master_reserve(ec_master_t *master);
  * ecrt_master_create_domain() - create an empty process data domain
  * @master: a reserved master, not active
  *
- * Domains are exchanged and supervised each on its own. They lie in the
- * process image in the order of creation. Freed with ecrt_master_deactivate()
- * or ecrt_release_master().
+ * Each domain has its own datagrams and working counter. The process image contains the
+ * domains in the order of creation. ecrt_master_deactivate() and ecrt_release_master() free
+ * them.
  *
  * Context: Process. May sleep.
  * Return: the domain, or NULL: no memory, not reserved, active, too many.
@@ -397,23 +393,22 @@ EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
 /**
  * ecrt_master_slave_config() - create or find the configuration of a slave
  * @master: a reserved master
- * @alias: 0, or station alias (register 0x0012) from which to count
- * @position: with @alias 0 the ring position, else slaves downstream of the alias
- * @vendor_id: expected in the slave's EEPROM
- * @product_code: expected in the slave's EEPROM
+ * @alias: 0, or the station alias (register 0x0012) of the slave where counting starts
+ * @position: with @alias 0 the ring position, otherwise the number of slaves downstream
+ * @vendor_id: expected in the SII of the slave
+ * @product_code: expected in the SII of the slave
  *
- * The slave need not be there: it is attached, configured and taken to OP
- * whenever it appears. One with another identity is never attached. The
- * PDO assignment and mapping of a slave that is there are taken over as
- * defaults. From activation on a connected slave keeps its configuration, also
- * when a slave upstream is disconnected and the position changes. After a loss of
- * the whole link or of power slaves of equal type cannot be distinguished: they are
- * found by position again. An alias is safe in that case.
+ * The slave may be absent: when it connects, the master attaches it to the configuration,
+ * configures it and requests OP. A slave with another identity is never attached. The
+ * configuration starts with the PDO assignment and mapping of a connected slave. After
+ * activation a connected slave remains attached, also when a slave upstream is disconnected
+ * and the position changes. After a loss of the whole link or of power, the master identifies
+ * slaves of equal type by their position again; an alias is unambiguous in this case.
  *
  * Context: Process. May sleep.
- * Return: the configuration, the same one for the same @alias and @position;
- * also while @master is active; NULL: no memory, not reserved, active and no such
- * configuration (%-EBUSY), or it exists with another identity (%-ENOENT).
+ * Return: the configuration, the same one for the same @alias and @position, also while
+ * @master is active; NULL: no memory, not reserved, active and no such configuration
+ * (%-EBUSY), or it exists with another identity (%-ENOENT).
  */
 EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 		uint16_t alias, uint16_t position, uint32_t vendor_id,
@@ -427,7 +422,7 @@ EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
  * Causes no bus traffic.
  *
  * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
- * no allocation. For a cycle in userspace there is ecrt_master_state().
+ * no allocation. In the cycle of a process call ecrt_master_state() instead.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master(ec_master_t *master,
@@ -436,8 +431,8 @@ EC_PUBLIC_API int ecrt_master(ec_master_t *master,
 /**
  * ecrt_master_scan_progress() - get the progress of a scan
  * @master: an opened master
- * @progress: out: slaves that answer and how many of them have been read; without
- *	a scan all that are known, twice
+ * @progress: out: number of slaves that respond, and how many of them the scan has read.
+ *	Without a scan both are the number of known slaves.
  *
  * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
  * no allocation.
@@ -449,7 +444,7 @@ EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
 /**
  * ecrt_master_get_slave() - get information about a slave
  * @master: an opened master
- * @slave_position: in the ring, counted on over all links
+ * @slave_position: in the ring, counted over all links
  * @slave_info: out; the name is always terminated
  *
  * Causes no bus traffic.
@@ -463,14 +458,14 @@ EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,
 
 #ifndef __KERNEL__
 /**
- * ecrt_master_get_sync_manager() - a SyncManager as its slave describes it
+ * ecrt_master_get_sync_manager() - get a SyncManager as its slave describes it
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
  * @sync: out; @sync->pdos is NULL, @sync->watchdog_mode never DEFAULT
  *
- * From EEPROM or, where it has been read, the CoE dictionary (0x1c00,
- * 0x1c10 ff.), not what the application has configured. Userspace only.
+ * From the SII or, if the master has read them, from the objects 0x1c00 and 0x1c10 ff.; not
+ * the configuration of the application. Userspace only.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT @sync_index too large; %-EINVAL no such slave or
@@ -481,7 +476,7 @@ EC_PUBLIC_API int ecrt_master_get_sync_manager(ec_master_t *master,
 		ec_sync_info_t *sync);
 
 /**
- * ecrt_master_get_pdo() - a PDO assigned to a SyncManager by default
+ * ecrt_master_get_pdo() - get a PDO that is assigned to a SyncManager by default
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
@@ -499,7 +494,7 @@ EC_PUBLIC_API int ecrt_master_get_pdo(ec_master_t *master,
 		ec_pdo_info_t *pdo);
 
 /**
- * ecrt_master_get_pdo_entry() - an entry mapped to a PDO by default
+ * ecrt_master_get_pdo_entry() - get an entry that is mapped to a PDO by default
  * @master: an opened master
  * @slave_position: in the ring
  * @sync_index: 0..15
@@ -534,7 +529,7 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused or failed, see @abort_code; %-EINVAL no such slave
  * or bad arguments; %-EPROTONOSUPPORT slave without CoE; %-ETIMEDOUT no
- * answer; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
+ * reply; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
  * %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too small or larger
  * than a datagram; %-ECANCELED the slave was disconnected (while it is being
  * configured the call waits); %-EINTR; %-ENOMEM; for a mailbox error reply of
@@ -570,7 +565,7 @@ EC_PUBLIC_API int ecrt_master_sdo_download_complete(ec_master_t *master,
  * @slave_position: in the ring
  * @index: of the object
  * @subindex: of the object
- * @target: where to put it
+ * @target: out: the value
  * @target_size: buffer size, bytes
  * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
  *	the kernel
@@ -601,7 +596,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused, see @error_code; %-EINVAL no such slave or drive,
  * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
- * large; %-ETIMEDOUT no answer; %-EAGAIN slave in INIT; %-EBADMSG an invalid
+ * large; %-ETIMEDOUT no reply; %-EAGAIN slave in INIT; %-EBADMSG an invalid
  * reply; %-ECANCELED the slave was disconnected (while it is being configured the
  * call waits); %-EINTR; %-ENOMEM.
  */
@@ -615,7 +610,7 @@ EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
  * @slave_position: in the ring
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
- * @target: where to put it
+ * @target: out: the value
  * @target_size: buffer size, bytes
  * @result_size: out: bytes that were read; on failure untouched in userspace, 0 in
  *	the kernel
@@ -634,24 +629,24 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  * ecrt_master_activate() - lay out the process image and start cyclic operation
  * @master: a reserved master
  *
- * Lays out the frames of the cycle and the process image, which begins as
- * zeros, and returns at once: slaves are configured and taken to OP while
- * the application cycles. In userspace the image is mapped and all its pages
- * are present, so the cycle takes no page fault; an image of 0 bytes is
- * fine. After a failure only ecrt_release_master() is left to call; but after
- * %-EEXIST also ecrt_master_end_detached() and this call again. When a detached
- * cycle of the kernel runs (%EC_CYCLE_DETACH), it is taken over.
+ * Lays out the frames of the cycle and the process image, which starts with zeros, and
+ * returns at once. The master configures the slaves and requests OP while the application
+ * runs its cycle. In userspace the image is mapped with all its pages, so the cycle causes no
+ * page fault; an image of 0 bytes is valid. After a failure call ecrt_release_master(); after
+ * %-EEXIST the application may also call ecrt_master_end_detached() and then this function
+ * again. If a detached cycle of the kernel runs (%EC_CYCLE_DETACH), the application takes it
+ * over.
  *
  * Context: Process. May sleep.
- * Return: 0, also when the master is active already: that is reported on stderr, in the
- * kernel in the log; %-EBUSY process data were changed after they were registered (see
+ * Return: 0, also when the master is active already (with a message on stderr, in the kernel
+ * in the log); %-EBUSY process data were changed after they were registered (see
  * ecrt_slave_config_reg_pdo_entry()); %-EPERM not reserved; %-ENOMEM;
  * %-EOVERFLOW too much process data; %-ENOSPC acyclic frames do not fit and may delay no
  * cycle (ecrt_master_set_late_cycles()); %-EEXIST a detached cycle of another
  * configuration runs; %-EOPNOTSUPP a domain has a division, and the application
  * runs the cycle; %-ENODEV the CPU chosen for the cycle is offline; %-ETIMEDOUT the
- * cycle to be taken over does not answer; %-EPROTO in userspace: layout of the mapped
- * memory not supported by the library; %-EINVAL @master is NULL.
+ * cycle to take over does not respond; %-EPROTO in userspace: the library does not support
+ * the layout of the mapped memory; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
 
@@ -659,9 +654,9 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
  * ecrt_master_deactivate() - stop cyclic operation and free the configuration
  * @master: an active master
  *
- * Frees all domains and slave configurations: every handle and pointer
- * obtained since the reservation becomes invalid, except @master, which stays
- * reserved and may be configured again. Slaves go to PREOP.
+ * Frees all domains and slave configurations. All handles and pointers obtained since the
+ * reservation become invalid, except @master, which remains reserved and may be configured
+ * again. Slaves go to PREOP.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL not active, nothing was freed.
@@ -689,12 +684,12 @@ EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
  * Call once per cycle, as the last call. Sends queued domains, then acyclic frames
  * that fit. Reads the outputs of the process image. One system call in userspace.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active; %-ENODEV the device is detached; %-ECANCELED the
  * kernel ran the cycle and has stopped it (%EC_CYCLE_STOP). In the kernel
- * also %-EAGAIN: after a cycle timeout bus access is changing to cyclic again, try in
- * the next cycle; %-EBUSY: another call is using the links; %-EWOULDBLOCK: the device needs
- * a thread and this is none.
+ * also %-EAGAIN: after a cycle timeout bus access changes to cyclic, try again in the next
+ * cycle; %-EBUSY: another call uses the links; %-EWOULDBLOCK: the device needs a caller that
+ * may be preempted.
  */
 EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
 
@@ -702,18 +697,17 @@ EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
 /**
  * ecrt_master_callbacks() - set the hooks that exchange acyclic frames between two cycles
  * @master: a requested master, not active
- * @send_cb: called when there is something to send; to take the application's
- *	lock, if it can be had, and call ecrt_master_send_ext()
- * @receive_cb: the same with ecrt_master_receive()
- * @cb_data: for both
+ * @send_cb: called when acyclic frames wait; takes the application's lock, if it is free,
+ *	and calls ecrt_master_send_ext()
+ * @receive_cb: called when replies are expected; likewise calls ecrt_master_receive()
+ * @cb_data: argument of both
  *
  * Without hooks acyclic frames go out with the cycle, and each exchange takes a
  * cycle. With both hooks a thread of the master calls them between two cycles, which
- * is faster beside a slow cycle. A hook may return without action. It is
- * called by one thread, may sleep, and is not called any more when
- * ecrt_master_deactivate() or ecrt_release_master() returns; the lock it takes
- * must not be held while these are called. Every ecrt_request_master() removes
- * them. Kernel only.
+ * is faster beside a slow cycle. A hook may return without action. One thread calls the
+ * hooks; they may sleep. After ecrt_master_deactivate() or ecrt_release_master() has returned,
+ * no hook is called; the caller of these functions must not hold the lock that a hook takes.
+ * ecrt_request_master() removes hooks. Kernel only.
  *
  * Context: Process. May sleep.
  */
@@ -729,8 +723,8 @@ EC_PUBLIC_API void ecrt_master_callbacks(ec_master_t *master,
  * nothing at all when the next cycle is near. Kernel only.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; %-EAGAIN another call is using the links, or bus access is changing to
- * cyclic again after a cycle timeout; else as ecrt_master_send().
+ * Return: 0; %-EAGAIN another call uses the links, or bus access changes to cyclic after a
+ * cycle timeout; otherwise as ecrt_master_send().
  */
 EC_PUBLIC_API int ecrt_master_send_ext(ec_master_t *master);
 #endif
@@ -740,21 +734,21 @@ EC_PUBLIC_API int ecrt_master_send_ext(ec_master_t *master);
  * @master: an active master
  *
  * Call once per cycle, as the first call. Polls the network devices and copies inputs to the
- * process image; input bytes change nowhere else. Never waits. Inputs of a
- * frame that is lost keep their values. One system call in userspace.
+ * process image; no other call changes input bytes. Never waits. Inputs of a lost frame keep
+ * their values. One system call in userspace.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: as ecrt_master_send().
  */
 EC_PUBLIC_API int ecrt_master_receive(ec_master_t *master);
 
 /**
- * ecrt_master_state() - state of the whole bus
+ * ecrt_master_state() - get the state of the whole bus
  * @master: an opened master
  * @state: out
  *
- * As of the last broadcast that came back (registers 0x0130, 0x0000): some
- * cycles old. No bus traffic; no system call while active.
+ * From the last broadcast that the master received (registers 0x0130, 0x0000), some cycles
+ * old. No bus traffic; no system call while active.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation. In
  * userspace before activation: Process. May sleep.
@@ -764,7 +758,7 @@ EC_PUBLIC_API int ecrt_master_state(const ec_master_t *master,
 		ec_master_state_t *state);
 
 /**
- * ecrt_master_link_state() - state of what one link reaches
+ * ecrt_master_link_state() - get the state of the slaves that one link reaches
  * @master: an opened master
  * @dev_idx: 0 main, 1 backup
  * @state: out
@@ -783,10 +777,10 @@ EC_PUBLIC_API int ecrt_master_link_state(const ec_master_t *master,
  * @master: a reserved master
  * @app_time: ns, by convention since 2000-01-01; may wrap and jump
  *
- * Call once per cycle, always at the same place. Once the clocks are synchronized, which
- * begins with the first cycle, they do not follow jumps of this time.
+ * Call once per cycle, always at the same point. Synchronization begins with the first cycle;
+ * synchronized clocks do not follow jumps of this time.
  *
- * Context: The master's single cyclic caller. RT-safe. In userspace before
+ * Context: The cycle owner. RT-safe. In userspace before
  * activation: Process. May sleep.
  * Return: 0; %-EPERM not reserved; %-EINVAL @master is NULL.
  */
@@ -816,7 +810,7 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
  * clock (register 0x0910), less the jumps of that time since the clocks were
  * synchronized. While a time is inconsistent with the earlier ones, none is written.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
@@ -826,7 +820,7 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock(ec_master_t *master);
  * @master: an active master
  * @sync_time: ns; must not jump
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
@@ -836,11 +830,11 @@ EC_PUBLIC_API int ecrt_master_sync_reference_clock_to(ec_master_t *master,
  * ecrt_master_sync_slave_clocks() - queue the drift compensation datagram
  * @master: an active master
  *
- * With the next send the time of the reference clock goes to all slaves
- * downstream (FRMW of register 0x0910). Call once per cycle; until the master has
- * synchronized the clocks after activation nothing is sent.
+ * The next send distributes the time of the reference clock to all slaves downstream (FRMW of
+ * register 0x0910). Call once per cycle. Until the master has synchronized the clocks after
+ * activation, the send has no such datagram.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
@@ -850,8 +844,8 @@ EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
  * @master: an active master
  * @time: out: low 32 bits of its system time, ns
  *
- * As of the frame of the last ecrt_master_sync_slave_clocks(); valid between
- * ecrt_master_receive() and the next of these calls. Prints nothing.
+ * From the frame of the last ecrt_master_sync_slave_clocks(); valid between
+ * ecrt_master_receive() and the next ecrt_master_sync_slave_clocks(). Prints nothing.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
@@ -864,9 +858,9 @@ EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
  * ecrt_master_sync_monitor_queue() - queue a read of the DC differences
  * @master: an active master
  *
- * With the next send register 0x092C of all slaves is read.
+ * The next send reads register 0x092C of all slaves.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
@@ -876,8 +870,8 @@ EC_PUBLIC_API int ecrt_master_sync_monitor_queue(ec_master_t *master);
  * @master: an active master
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: OR of the magnitudes of all slaves' differences in ns: at least the
- * largest of them; 0xffffffff when nothing was received.
+ * Return: bitwise OR of the absolute DC differences of all slaves, ns; not below the largest
+ * difference. 0xffffffff: no reply.
  */
 EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
 		const ec_master_t *master);
@@ -886,11 +880,12 @@ EC_PUBLIC_API uint32_t ecrt_master_sync_monitor_process(
 
 /* reaction to an output stall: no new outputs for @stall_cycles */
 typedef enum {
-	EC_CYCLE_HOLD = 0,	/* sends the last outputs */
-	EC_CYCLE_ZERO = 1,	/* sends zeros until there are new outputs */
+	EC_CYCLE_HOLD = 0,	/* send the last outputs */
+	EC_CYCLE_ZERO = 1,	/* send zeros until there are new outputs */
 	/*
-	 * stops; watchdogs of the slaves end OP. ecrt_master_receive() and
-	 * ecrt_master_send() return -ECANCELED, domains have working counter 0
+	 * stops the cycle; slaves leave OP when their watchdogs expire.
+	 * ecrt_master_receive() and ecrt_master_send() return -ECANCELED, domains have
+	 * working counter 0
 	 */
 	EC_CYCLE_STOP = 2,
 } ec_cycle_stall_t;
@@ -909,15 +904,15 @@ typedef enum {
 #define EC_CYCLE_BIND_CPU	4U	/* the thread runs on @cpu only */
 
 /* ec_cycle_config_t.dc: clock datagrams of every cycle */
-#define EC_CYCLE_SYNC_REFERENCE	2U	/* the cycle's time to the reference */
+#define EC_CYCLE_SYNC_REFERENCE	2U	/* write its time to the reference clock */
 #define EC_CYCLE_SYNC_SLAVES	4U	/* drift compensation of all slaves */
 #define EC_CYCLE_SYNC_MONITOR	8U	/* read the DC differences */
 #define EC_CYCLE_REFERENCE_TIME	32U	/* read all 64 bits of the reference clock */
 /*
- * The cycle is synchronized to the reference clock: period and phase of its timer are
- * controlled, by at most 1/100 of the period from one cycle to the next, so that
- * its frame passes that clock @phase_ns after a SYNC0 without shift. With EC_CYCLE_SYNC_SLAVES,
- * without EC_CYCLE_SYNC_REFERENCE.
+ * The cycle is phase-locked to the reference clock: the kernel adjusts period and phase of the
+ * timer, by at most 1/100 of the period per cycle, so that the frame passes that clock
+ * @phase_ns after a SYNC0 without shift. Needs EC_CYCLE_SYNC_SLAVES, excludes
+ * EC_CYCLE_SYNC_REFERENCE.
  */
 #define EC_CYCLE_FOLLOW_REFERENCE	256U
 
@@ -927,27 +922,27 @@ typedef enum {
  * @phase_ns: cycles begin at multiples of the period of CLOCK_MONOTONIC, plus
  *	this; less than the period. With EC_CYCLE_FOLLOW_REFERENCE it counts
  *	from the grid of the SYNC signals.
- * @cpu: that runs the thread, with %EC_CYCLE_BIND_CPU. Without that flag any CPU
- *	may, and this must not name one: 0 or -1. When that CPU goes offline the
- *	thread runs on any other until it is online again.
+ * @cpu: CPU of the thread, with %EC_CYCLE_BIND_CPU. Without that flag the thread runs on any
+ *	CPU, and @cpu must be 0 or -1. While the CPU is offline, the thread runs on any
+ *	other.
  * @priority: of the thread, SCHED_FIFO, 1..98; 0: 50. The caller of
- *	ecrt_master_set_cycle() needs CAP_SYS_NICE; else RLIMIT_RTPRIO limits it, and
- *	with limit 0 the thread runs SCHED_OTHER. The kernel log and 'ethercat
- *	cycle' report that. After a takeover (%EC_CYCLE_DETACH) the right of the
- *	new caller counts.
+ *	ecrt_master_set_cycle() needs CAP_SYS_NICE; otherwise its RLIMIT_RTPRIO limits the
+ *	priority, and with limit 0 the thread runs SCHED_OTHER. The kernel log and 'ethercat
+ *	cycle' report a limited priority. After a takeover (%EC_CYCLE_DETACH) the limit of
+ *	the new application applies.
  * @stall: reaction to an output stall
- * @stall_cycles: cycles in a row without new outputs that are an output stall; 0: none
- *	is. The count begins with the first outputs.
+ * @stall_cycles: an output stall is this number of cycles in a row without new outputs; 0:
+ *	there is no output stall. The count begins with the first outputs.
  * @dc: EC_CYCLE_SYNC_* and EC_CYCLE_FOLLOW_REFERENCE
  * @flags: %EC_CYCLE_DETACH: when the application exits, or releases the master
  *	without ecrt_master_deactivate(), the cycle continues: @stall determines the
- *	outputs (%EC_CYCLE_STOP is refused), slaves stay in OP. An application that
- *	requests the master, configures exactly the same, in the same order, and
- *	activates it, takes over the running cycle with its outputs and inputs as they
- *	are; no slave is disturbed. See also ecrt_master_end_detached().
- *	%EC_CYCLE_WAIT_OUTPUTS: cycles are counted and can be waited for, but nothing
- *	is sent until the first ecrt_master_send() with a queued domain; without, the
- *	first frame goes with the first cycle, with zeros as outputs.
+ *	outputs (%EC_CYCLE_STOP is refused), slaves stay in OP. An application takes the
+ *	running cycle over when it requests the master, makes the same configuration in the
+ *	same order, and activates the master. Outputs, inputs and slaves do not change. See
+ *	also ecrt_master_end_detached().
+ *	%EC_CYCLE_WAIT_OUTPUTS: the kernel counts cycles and the application can wait for
+ *	them, but no frame is sent until the first ecrt_master_send() with a queued domain.
+ *	Without this flag the first cycle sends a frame, with zeros as outputs.
  */
 typedef struct {
 	uint32_t period_ns;
@@ -966,20 +961,20 @@ typedef enum {
 	EC_CYCLE_UNLOCKED = 0,	/* not configured, or no reference clock yet */
 	EC_CYCLE_SEEKING = 1,
 	EC_CYCLE_LOCKED = 2,	/* phase-locked to the reference clock */
-	EC_CYCLE_HOLDING = 3,	/* holdover: no answer from it, last rate kept */
+	EC_CYCLE_HOLDING = 3,	/* holdover: reference clock silent, last rate kept */
 } ec_cycle_lock_t;
 
 /**
  * struct ec_cycle_state_t - cycle statistics since activation, or since
  *	'ethercat cycle --reset'
- * @run: present state
+ * @run: current state
  * @cycles: cycles of the kernel so far, since activation
  * @overruns: skipped cycles: a period or more passed without a send
  * @missed: cycles of the kernel without new outputs, after the first ones
- * @late_min: least send deviation, ns
+ * @late_min: smallest send deviation, ns
  * @late_mean: mean send deviation, ns
  * @late_max: largest send deviation, ns
- * @late_p999: 99.9 % of the send deviations were below, ns; up to 1/8 too large
+ * @late_p999: limit that 99.9 % of the send deviations did not exceed, ns; up to 1/8 too large
  * @work_last: execution time of the last cycle of the kernel, ns
  * @work_mean: mean execution time, ns
  * @work_max: largest execution time, ns
@@ -987,14 +982,13 @@ typedef enum {
  *	element includes all larger values
  * @lock: to the reference clock, with EC_CYCLE_FOLLOW_REFERENCE
  * @lock_losses: number of losses of the lock
- * @phase_error: phase of the cycle by the reference clock, ns; positive: late
+ * @phase_error: phase error of the cycle by the reference clock, ns; positive: late
  * @rate_ppb: rate of the reference clock against CLOCK_MONOTONIC, 1e-9; positive: faster
  * @takeovers: number of applications that have taken over the cycle
  *
- * The schedule of a cycle the kernel runs is its timer. When the application
- * runs the cycle, it is a grid of the interval configured by
- * ecrt_master_set_send_interval(), else of the measured one, that slowly follows
- * the sends; a send may be early or late.
+ * The schedule of a cycle run by the kernel is its timer. For a cycle run by the application
+ * it is a grid of the configured interval (ecrt_master_set_send_interval()), otherwise of the
+ * measured one. The grid adapts slowly to the sends, and a send may be early or late.
  */
 typedef struct {
 	ec_cycle_run_t run;
@@ -1019,15 +1013,15 @@ typedef struct {
 /**
  * ecrt_master_set_cycle() - let the kernel run the cycle
  * @master: a reserved master, not active
- * @config: how; NULL: the application runs it
+ * @config: parameters of the cycle; NULL: the application runs the cycle
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). From activation to deactivation a real-time
- * thread of the kernel receives and sends all domains. Then ecrt_master_receive()
- * takes the newest inputs of all domains, and ecrt_master_send() gives the
- * outputs of the queued ones to the next cycle; both work on mapped memory,
- * without a system call. An image is always of one cycle, whole. The thread sets
- * the application time and queues clock datagrams itself:
- * ecrt_master_application_time() and the calls that queue them have no effect.
+ * thread of the kernel receives and sends all domains. ecrt_master_receive() then takes the
+ * newest inputs of all domains, and ecrt_master_send() passes the outputs of the queued
+ * domains to the next cycle. Both use mapped memory, without a system call. An image is
+ * complete and from one cycle. The thread sets the application time and queues clock
+ * datagrams: ecrt_master_application_time() and the calls that queue clock datagrams have no
+ * effect.
  *
  *   ecrt_master_set_cycle(master, &config);
  *   ecrt_master_activate(master);
@@ -1035,7 +1029,7 @@ typedef struct {
  *	ecrt_master_wait_cycle(master, 0);
  *	ecrt_master_receive(master);
  *	ecrt_domain_process(domain);
- *	... as always ...
+ *	... read inputs, write outputs ...
  *	ecrt_domain_queue(domain);
  *	ecrt_master_send(master);
  *
@@ -1052,14 +1046,14 @@ EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
  * @timeout_us: limit, 0: none
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Returns at once when a cycle has passed since
- * the last call. One system call. To wait for other files too, poll
- * ecrt_master_cycle_fd(); to spin, call ecrt_master_receive() until
- * ecrt_master_cycle_count() has grown or it fails.
+ * the last call. One system call. To wait for other files as well, poll
+ * ecrt_master_cycle_fd(). To spin, call ecrt_master_receive() until it fails or
+ * ecrt_master_cycle_count() has increased.
  *
- * Context: The master's single cyclic caller. Sleeps until the next cycle.
- * Return: number of cycles since the last call, 1 when none was missed;
- * %-ETIMEDOUT; %-EINTR a signal; %-ECANCELED the cycle has stopped; %-EBUSY 16
- * threads wait already; %-EINVAL not active, or the application runs the cycle.
+ * Context: The cycle owner. Sleeps until the next cycle.
+ * Return: number of cycles since the last call, 1 when none was missed; %-ETIMEDOUT; %-EINTR
+ * a signal; %-ECANCELED the cycle has stopped; %-EBUSY 16 threads already wait; %-EINVAL not
+ * active, or the application runs the cycle.
  */
 EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
 		uint32_t timeout_us);
@@ -1068,9 +1062,9 @@ EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
  * ecrt_master_cycle_count() - get the number of cycles the kernel has run
  * @master: an active master whose cycle the kernel runs
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When it has grown, the
- * inputs of that cycle are there for ecrt_master_receive(). After %EC_CYCLE_STOP
- * it does not grow any more, and ecrt_master_receive() returns %-ECANCELED.
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When the count has increased,
+ * ecrt_master_receive() can take the inputs of that cycle. After %EC_CYCLE_STOP the count
+ * no longer increases, and ecrt_master_receive() returns %-ECANCELED.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: cycles since activation; 0 when not active.
@@ -1083,11 +1077,11 @@ EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
  * @cycle: out: its number, as ecrt_master_cycle_count() counts; may be NULL
  * @time_ns: out: its schedule, ns of CLOCK_MONOTONIC; may be NULL
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). For the inputs that the last successful
- * ecrt_master_receive() took. Their frames were sent one cycle before.
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Of the inputs that the last successful
+ * ecrt_master_receive() has taken. The frames of these inputs were sent one cycle before.
  * No system call.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-ENODATA no inputs were taken yet; %-EINVAL not active, or the application
  * runs the cycle.
  */
@@ -1101,7 +1095,7 @@ EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
  * Extension (%EC_HAVE_KERNEL_CYCLE). POLLIN: there are inputs that
  * ecrt_master_receive() has not taken yet; POLLHUP: the cycle has stopped; POLLERR: not
  * active any more, or more than 16 poll() and epoll entries wait on the file. The
- * file is the library's: it must not be closed or read.
+ * file belongs to the library: do not close or read it.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: file descriptor; %-EINVAL not active, or the application runs the
@@ -1112,7 +1106,7 @@ EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
 /**
  * ecrt_master_cycle_state() - get cycle statistics
  * @master: an active master
- * @state: filled
+ * @state: out
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory.
  *
@@ -1126,13 +1120,13 @@ EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
  * ecrt_domain_set_division() - exchange a domain in every n-th cycle only
  * @domain: domain of a master that is not active
  * @division: cycles from one exchange to the next, 1..1000
- * @phase: cycle of the first one, 0..@division - 1; cycles count from activation,
+ * @phase: cycle of the first exchange, 0..@division - 1; cycles count from activation,
  *	skipped cycles included
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE), for a cycle the kernel runs. In the cycles
- * between, state and inputs of the domain are those of the last exchange. When
- * a cycle is skipped in which the domain was due, the next cycle sends it. The
- * watchdogs of its slaves must be longer than @division cycles.
+ * Extension (%EC_HAVE_KERNEL_CYCLE), for a cycle run by the kernel. Between two exchanges
+ * the state and inputs of the domain do not change. When the cycle of an exchange is skipped,
+ * the next cycle sends the domain. The watchdogs of its slaves must be longer than @division
+ * cycles.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL an invalid value; %-EBUSY active.
@@ -1148,15 +1142,14 @@ EC_PUBLIC_API int ecrt_domain_set_division(ec_domain_t *domain,
  * @from: domain with the input, of the same master; may be @to
  * @from_offset: byte in @from
  * @from_bit: bit in that byte
- * @bits: how many
+ * @bits: number of bits
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Configured once, before activation; done by
- * the kernel between receive and send of each cycle: what came in with a
- * cycle goes out with its next frame. Copies continue after the application has
- * exited. What the application writes to these outputs has no effect. While the
- * working counter of @from is not complete, the last value stays; before it was
- * complete for the first time, 0. When the application runs the cycle, it finds
- * the value in its process data after ecrt_master_send().
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Configured once, before activation. The kernel copies
+ * between receive and send of each cycle: the frame of this cycle sends the inputs that this
+ * cycle has received. Copies continue after the application has exited. Values that the
+ * application writes to these outputs have no effect. While the working counter of @from is
+ * not complete, the last value is sent; 0 before it was complete for the first time. When the
+ * application runs the cycle, its process data contain the value after ecrt_master_send().
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL the bits are not input, or not output, of one slave, or the
@@ -1172,9 +1165,9 @@ EC_PUBLIC_API int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset,
  * ecrt_master_end_detached() - end a detached session
  * @master: a master opened for writing; need not be reserved
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Its slaves go to PREOP. For an application that
- * has another configuration, so that ecrt_master_activate() was refused with
- * %-EEXIST: it may activate after this call. 'ethercat release' does the same.
+ * Extension (%EC_HAVE_KERNEL_CYCLE). Its slaves go to PREOP. When ecrt_master_activate() has
+ * returned %-EEXIST because the configurations differ, the application may activate after
+ * this call. 'ethercat release' does the same.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT nothing is active; %-EBUSY the application that activated
@@ -1188,10 +1181,9 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
  * ecrt_master_reset() - bring the slaves to OP again
  * @master: a master opened for writing; need not be reserved
  *
- * Each slave that is configured by an active application and could not be brought to
- * OP is configured again; so is one that a tool has taken to another state. After
- * ecrt_master_deactivate_slaves() it brings none up. Of other slaves those that could
- * not be configured are tried again. It does not wait for them.
+ * Configures each slave of an active application again that has not reached OP, or for which
+ * a tool has requested another state; none after ecrt_master_deactivate_slaves(). Retries
+ * other slaves that could not be configured. Does not wait for the slaves.
  *
  * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
  * no allocation.
@@ -1204,10 +1196,10 @@ EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
  * ecrt_master_setup_domain_memory() - make the process data available before activation
  * @master: a reserved master, not active, all entries registered
  *
- * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. It
- * stays the same until deactivation or release, or until an activation fails. What
- * is written there before ecrt_master_activate() is what the first cycle sends; the
- * rest is zeros. No further domains or entries are taken until deactivation.
+ * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. The address
+ * does not change until deactivation or release, or until an activation fails. The first
+ * cycle sends the values written before ecrt_master_activate(), otherwise zeros. Further
+ * domains and entries are refused until deactivation.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EBUSY active, or called before; %-EINVAL there is no domain;
@@ -1221,15 +1213,14 @@ EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
  * ecrt_master_deactivate_slaves() - take the slaves to PREOP while the cycle runs
  * @master: an active master
  *
- * Extension (%EC_HAVE_DEACTIVATE_SLAVES). For an end without faults: the configured
- * slaves leave OP while process data and SYNC signals still run, so that no
- * watchdog expires and no synchronization is lost; in PREOP their SYNC signals are
- * switched off (register 0x0980). Continue the cycle until
- * ecrt_slave_config_state() or ecrt_master_state() shows PREOP, then call
- * ecrt_master_deactivate(). Nothing brings the slaves up again before that. Without
- * effect on a master that is not active.
+ * Extension (%EC_HAVE_DEACTIVATE_SLAVES). Avoids errors of the slaves at the end of an
+ * application: the configured slaves leave OP while process data and SYNC signals still run,
+ * so that no watchdog expires and no synchronization is lost. In PREOP the master switches
+ * the SYNC signals off (register 0x0980). Continue the cycle until ecrt_slave_config_state()
+ * or ecrt_master_state() shows PREOP, then call ecrt_master_deactivate(). Until then the
+ * slaves remain in PREOP. No effect on a master that is not active.
  *
- * One system call; it waits for nothing on the bus.
+ * One system call; does not wait for the bus.
  *
  * Context: Process. May sleep.
  */
@@ -1268,7 +1259,7 @@ EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
  * activation. When the kernel runs the cycle, %EC_CYCLE_REFERENCE_TIME does the same
  * in every cycle.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 EC_PUBLIC_API void ecrt_master_64bit_reference_clock_time_queue(
 		ec_master_t *master);
@@ -1298,13 +1289,12 @@ EC_PUBLIC_API int ecrt_master_64bit_reference_clock_time(ec_master_t *master,
  * @buf: out: one line of text, with terminator
  * @size: of @buf; 256 bytes are always enough
  *
- * Extension (%EC_HAVE_REASON). The text that the configuration calls print on
- * stderr behind the error, of any call that failed in the kernel: what was wrong and
- * what to do. Empty when the kernel knows none, and after a call that succeeded.
+ * Extension (%EC_HAVE_REASON). The configuration calls print this text on stderr after the
+ * error. It states the cause and the remedy of any call that failed in the kernel. Empty when
+ * the kernel gave no reason, and after a successful call.
  *
  * Context: Process. May sleep.
- * Return: length of the text, also when @buf is too small for it; %-EINVAL
- * @master is NULL.
+ * Return: length of the text, also when @buf is too small; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reason(const ec_master_t *master, char *buf,
 		size_t size);
@@ -1320,8 +1310,7 @@ EC_PUBLIC_API int ecrt_master_reason(const ec_master_t *master, char *buf,
  * slave waits for. Empty when the slave is in OP. No bus traffic.
  *
  * Context: Process. May sleep.
- * Return: length of the text, also when @buf is too small for it; %-EINVAL @sc
- * is NULL.
+ * Return: length of the text, also when @buf is too small; %-EINVAL @sc is NULL.
  */
 EC_PUBLIC_API int ecrt_slave_config_reason(const ec_slave_config_t *sc,
 		char *buf, size_t size);
@@ -1354,9 +1343,9 @@ typedef struct {
  * @sc: slave configuration
  * @state: out
  *
- * Extension (%EC_HAVE_DC_STATE). No bus traffic. Some system calls: not for use in
- * the cycle. ecrt_master_sync_monitor_process() gives the differences of all slaves
- * together in each cycle.
+ * Extension (%EC_HAVE_DC_STATE). No bus traffic. Makes system calls: do not use it in the
+ * cycle. There ecrt_master_sync_monitor_process() returns the differences of all slaves
+ * together.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENODEV no slave is attached; %-EINVAL an argument is NULL.
@@ -1366,21 +1355,20 @@ EC_PUBLIC_API int ecrt_slave_config_dc_state(const ec_slave_config_t *sc,
 #endif
 
 /*
- * Slave configuration: applied whenever the slave is configured, which is
- * on activation, after power loss and after it was plugged in again. All
- * calls but ecrt_slave_config_state() belong before ecrt_master_activate()
- * and return -EBUSY after it.
+ * Slave configuration: the master applies it on activation, after power loss and after a
+ * reconnection of the slave. After ecrt_master_activate() the configuration calls return
+ * -EBUSY.
  */
 
 /**
- * ecrt_slave_config_sync_manager() - direction and watchdog of a SyncManager
+ * ecrt_slave_config_sync_manager() - configure direction and watchdog of a SyncManager
  * @sc: slave configuration
  * @sync_index: 0..15
  * @direction: %EC_DIR_OUTPUT or %EC_DIR_INPUT
  * @watchdog_mode: of the trigger bit
  *
- * Sets bits 2, 3 and 6 of the control byte (register 0x0804 + 8 * index).
- * For the mailbox of a slave that has one this is accepted without effect.
+ * Sets bits 2, 3 and 6 of the control byte (register 0x0804 + 8 * index). No effect on the
+ * SyncManagers of a mailbox.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT @sync_index too large; %-EINVAL @direction or
@@ -1391,11 +1379,10 @@ EC_PUBLIC_API int ecrt_slave_config_sync_manager(ec_slave_config_t *sc,
 		ec_watchdog_mode_t watchdog_mode);
 
 /**
- * ecrt_slave_config_watchdog() - time of the process data watchdog
+ * ecrt_slave_config_watchdog() - configure the time of the process data watchdog
  * @sc: slave configuration
- * @watchdog_divider: for register 0x0400, units of 40 ns; 0: leave it
- * @watchdog_intervals: for register 0x0420, units of the divided clock;
- *                      0: leave it
+ * @watchdog_divider: value of register 0x0400, units of 40 ns; 0: unchanged
+ * @watchdog_intervals: value of register 0x0420, units of the divided clock; 0: unchanged
  *
  * Context: Process. May sleep.
  * Return: 0; negative errno.
@@ -1409,8 +1396,8 @@ EC_PUBLIC_API int ecrt_slave_config_watchdog(ec_slave_config_t *sc,
  * @sync_index: 0..15
  * @index: of the PDO
  *
- * The mapping of a PDO that an attached slave knows is taken over. Goes to
- * object 0x1c10 + @sync_index if the slave allows it.
+ * If the attached slave has this PDO, its mapping is the initial one. The master writes the
+ * assignment to object 0x1c10 + @sync_index if the slave allows it.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @sync_index too large; %-ENOSPC more than 1024 of the slave;
@@ -1433,7 +1420,7 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_assign_clear(ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_pdo_mapping_add() - append an entry to a PDO
  * @sc: slave configuration
- * @pdo_index: a PDO that is assigned to some SyncManager
+ * @pdo_index: a PDO that is assigned to a SyncManager
  * @entry_index: object, 0 for a gap
  * @entry_subindex: of the object
  * @entry_bit_length: bits
@@ -1449,7 +1436,7 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_add(ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_pdo_mapping_clear() - empty the mapping of a PDO
  * @sc: slave configuration
- * @pdo_index: PDO; one that is not assigned is no error
+ * @pdo_index: PDO; no error if it is not assigned
  *
  * Context: Process. May sleep.
  * Return: 0; negative errno.
@@ -1458,16 +1445,16 @@ EC_PUBLIC_API int ecrt_slave_config_pdo_mapping_clear(ec_slave_config_t *sc,
 		uint16_t pdo_index);
 
 /**
- * ecrt_slave_config_pdos() - SyncManagers, assignment and mapping in one
+ * ecrt_slave_config_pdos() - configure SyncManagers, PDO assignment and mapping in one call
  * @sc: slave configuration
  * @n_syncs: elements of @syncs; %EC_END: up to its end mark
  * @syncs: ends before @n_syncs with an element whose index is 0xff; may be
  *         NULL: nothing is done
  *
- * For each element in order: ecrt_slave_config_sync_manager(), empty the
- * assignment, then assign each listed PDO, and replace its mapping by the
- * listed entries. A PDO without entries keeps its default mapping. Stops at
- * the first failure; what was done before stays. The arrays are copied.
+ * For each element in order: calls ecrt_slave_config_sync_manager(), empties the assignment,
+ * assigns each listed PDO and replaces its mapping by the listed entries. A PDO without
+ * entries keeps its default mapping. Stops at the first failure; earlier changes remain. The
+ * arrays are copied.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT an index of 16..254; else as the calls above.
@@ -1481,16 +1468,16 @@ EC_PUBLIC_API int ecrt_slave_config_pdos(ec_slave_config_t *sc,
  * @entry_index: object
  * @entry_subindex: of the object
  * @domain: of the same master
- * @bit_position: out: 0..7; NULL: the entry must begin on a byte
+ * @bit_position: out: 0..7; NULL: the entry must be byte-aligned
  *
- * Takes the whole SyncManager that carries the entry into @domain, once,
- * for which it uses an FMMU (register 0x0600 ff.). The first entry in order
- * of SyncManager, PDO and mapping is meant. Offsets are final: directions, PDOs
- * and mapping come before. After a failure the domain is as it was.
+ * Adds the whole SyncManager of the entry to @domain, once, with one FMMU (register
+ * 0x0600 ff.). If the object is mapped more than once, selects the first entry in the order
+ * of SyncManager, PDO and mapping. Offsets are final: configure directions, PDOs and mapping
+ * first. A failure does not change the domain.
  *
  * Context: Process. May sleep.
  * Return: byte offset in the domain, 0 or more; %-ENOENT not mapped;
- * %-EFAULT does not begin on a byte and @bit_position is NULL; %-EOVERFLOW
+ * %-EFAULT not byte-aligned and @bit_position is NULL; %-EOVERFLOW
  * no FMMU left; %-EBUSY active, or the bytes or the direction of the SyncManager were
  * changed after its first entry was registered; %-EINVAL.
  */
@@ -1499,7 +1486,7 @@ EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
 		ec_domain_t *domain, unsigned int *bit_position);
 
 /**
- * ecrt_slave_config_reg_pdo_entry_pos() - the same by position
+ * ecrt_slave_config_reg_pdo_entry_pos() - put an entry into a domain, by its position
  * @sc: slave configuration
  * @sync_index: 0..15
  * @pdo_pos: of the PDO in the SyncManager, from 0
@@ -1507,7 +1494,7 @@ EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry(ec_slave_config_t *sc,
  * @domain: of the same master
  * @bit_position: as in ecrt_slave_config_reg_pdo_entry()
  *
- * For mappings that hold an object more than once.
+ * For mappings that contain an object more than once.
  *
  * Context: Process. May sleep.
  * Return: as ecrt_slave_config_reg_pdo_entry(); %-EINVAL @sync_index too
@@ -1519,14 +1506,13 @@ EC_PUBLIC_API int ecrt_slave_config_reg_pdo_entry_pos(ec_slave_config_t *sc,
 		unsigned int *bit_position);
 
 /**
- * ecrt_slave_config_dc() - SYNC signals of a slave
+ * ecrt_slave_config_dc() - configure the SYNC signals of a slave
  * @sc: slave configuration
- * @assign_activate: register 0x0980, from the slave's description; 0: none
+ * @assign_activate: register 0x0980, from the ESI of the slave; 0: no SYNC signals
  * @sync0_cycle: period of SYNC0, ns
- * @sync0_shift: of the first SYNC0 against the grid of the application's
- *	time, ns
+ * @sync0_shift: shift of SYNC0 against the grid of the application time, ns
  * @sync1_cycle: register 0x09A4, ns
- * @sync1_shift: stored, without effect
+ * @sync1_shift: no effect
  *
  * Context: Process. May sleep. Before activation. Prints nothing.
  * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @sc is NULL.
@@ -1553,7 +1539,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo(ec_slave_config_t *sc, uint16_t index,
 		uint8_t subindex, const uint8_t *data, size_t size);
 
 /**
- * ecrt_slave_config_sdo8() - ecrt_slave_config_sdo() of one byte
+ * ecrt_slave_config_sdo8() - write one byte each time the slave is configured
  * @sc: slave configuration
  * @sdo_index: of the object
  * @sdo_subindex: of the object
@@ -1566,7 +1552,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo8(ec_slave_config_t *sc,
 		uint16_t sdo_index, uint8_t sdo_subindex, uint8_t value);
 
 /**
- * ecrt_slave_config_sdo16() - ecrt_slave_config_sdo() of two bytes
+ * ecrt_slave_config_sdo16() - write two bytes each time the slave is configured
  * @sc: slave configuration
  * @sdo_index: of the object
  * @sdo_subindex: of the object
@@ -1579,7 +1565,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo16(ec_slave_config_t *sc,
 		uint16_t sdo_index, uint8_t sdo_subindex, uint16_t value);
 
 /**
- * ecrt_slave_config_sdo32() - ecrt_slave_config_sdo() of four bytes
+ * ecrt_slave_config_sdo32() - write four bytes each time the slave is configured
  * @sc: slave configuration
  * @sdo_index: of the object
  * @sdo_subindex: of the object
@@ -1592,7 +1578,7 @@ EC_PUBLIC_API int ecrt_slave_config_sdo32(ec_slave_config_t *sc,
 		uint16_t sdo_index, uint8_t sdo_subindex, uint32_t value);
 
 /**
- * ecrt_slave_config_complete_sdo() - the same for a whole object
+ * ecrt_slave_config_complete_sdo() - write a whole object each time the slave is configured
  * @sc: slave configuration
  * @index: of the object
  * @data: little-endian, begins with subindex 0 in a 16 bit slot; copied
@@ -1611,13 +1597,12 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
  * @sc: slave configuration
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
- * @state: %EC_AL_STATE_PREOP or %EC_AL_STATE_SAFEOP: when, behind the SDOs or
- *	before OP
+ * @state: state in which the master writes: %EC_AL_STATE_PREOP (after the SDOs) or
+ *	%EC_AL_STATE_SAFEOP
  * @data: little-endian, copied
  * @size: bytes, 1 to 65536
  *
- * Written in the order of the calls. One that is refused keeps the slave where
- * it is.
+ * Written in the order of the calls. A slave that refuses an IDN stays in @state.
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-EINVAL; %-ENOSPC more than 1024; %-ENOMEM.
@@ -1629,9 +1614,9 @@ EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_emerg_size() - set the number of emergencies to keep
  * @sc: slave configuration
- * @elements: messages, at most 1024; initially 0: all are counted as dropped
+ * @elements: messages, at most 1024; initially 0: all are dropped and counted
  *
- * With more than 0 the master polls the slave's mailbox about every 10 ms for CoE
+ * If @elements is not 0, the master polls the mailbox of the slave about every 10 ms for CoE
  * emergencies (ETG.1000.6 clause 5.6.4).
  *
  * Context: Process. May sleep. Before activation.
@@ -1674,13 +1659,13 @@ EC_PUBLIC_API int ecrt_slave_config_emerg_overruns(
 		const ec_slave_config_t *sc);
 
 /**
- * ecrt_slave_config_create_sdo_request() - read and write an object in OP
+ * ecrt_slave_config_create_sdo_request() - create a request that reads and writes an object
  * @sc: slave configuration
  * @index: object
  * @subindex: subindex
  * @size: buffer size, bytes, at most 65536; set to 0
  *
- * It lives as long as @sc.
+ * It is freed with @sc.
  *
  * Context: Process. May sleep. Before activation.
  * Return: request; NULL on failure, with errno set.
@@ -1691,7 +1676,7 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 
 #ifndef __KERNEL__
 /**
- * ecrt_slave_config_create_sdo_request_complete() - the same for a whole object
+ * ecrt_slave_config_create_sdo_request_complete() - create a request for a whole object
  * @sc: slave configuration
  * @index: object
  * @size: buffer size, bytes, at most 65536; set to 0
@@ -1707,13 +1692,13 @@ ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
 #endif
 
 /**
- * ecrt_slave_config_create_soe_request() - read and write an IDN in OP
+ * ecrt_slave_config_create_soe_request() - create a request that reads and writes an IDN
  * @sc: slave configuration
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
  * @size: buffer size, bytes, at most 65536; set to 0
  *
- * It lives as long as @sc.
+ * It is freed with @sc.
  *
  * Context: Process. May sleep. Before activation.
  * Return: request; NULL on failure, with errno set.
@@ -1723,11 +1708,11 @@ EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
 		size_t size);
 
 /**
- * ecrt_slave_config_create_voe_handler() - exchange vendor specific messages
+ * ecrt_slave_config_create_voe_handler() - create a handler of vendor specific messages
  * @sc: slave configuration
  * @size: buffer size without the VoE header, bytes, at most 1474; set to 0
  *
- * It lives as long as @sc. A slave may have several; handlers that read share
+ * It is freed with @sc. A slave may have several; handlers that read share
  * the received messages.
  *
  * Context: Process. May sleep. Before activation.
@@ -1737,11 +1722,11 @@ EC_PUBLIC_API ec_voe_handler_t *ecrt_slave_config_create_voe_handler(
 		ec_slave_config_t *sc, size_t size);
 
 /**
- * ecrt_slave_config_create_reg_request() - read and write registers in OP
+ * ecrt_slave_config_create_reg_request() - create a request that accesses registers
  * @sc: slave configuration
  * @size: buffer size, bytes, at most 1024; set to 0
  *
- * It lives as long as @sc.
+ * It is freed with @sc.
  *
  * Context: Process. May sleep. Before activation.
  * Return: request; NULL on failure, with errno set.
@@ -1750,12 +1735,12 @@ EC_PUBLIC_API ec_reg_request_t *ecrt_slave_config_create_reg_request(
 		ec_slave_config_t *sc, size_t size);
 
 /**
- * ecrt_slave_config_state() - state of a configured slave
+ * ecrt_slave_config_state() - get the state of a configured slave
  * @sc: slave configuration
  * @state: out; all 0 while no slave is attached
  *
- * Some cycles old; to supervise each cycle use ecrt_domain_state(). No bus
- * traffic; no system call while active.
+ * Some cycles old; for each cycle call ecrt_domain_state(). No bus traffic; no system call
+ * while active.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Before activation: Process. May sleep.
@@ -1770,14 +1755,14 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * @key: name, 1..63 characters
  * @value: replaces an earlier one
  *
- * "WaitBeforeSAFEOPms": milliseconds, at most 60000, between the configuration of
- * the slave and the request of SAFEOP. "AssignToPdi": the EEPROM belongs to the
- * slave from PREOP on in any case. "AcceptOtherPdos": not 0: a slave that refuses its
- * PDO mapping or assignment and has other objects in the place of the registered
- * entries is taken to OP all the same; without it the slave stays in PREOP.
- * "ExpectedRevision": another revision number than this is logged at activation, and
- * "ethercat slaves" marks the slave, with -v it shows both; it is used all the same.
- * Other names are kept and shown by "ethercat config -v", without effect.
+ * "WaitBeforeSAFEOPms": time from the configuration of the slave to the request of SAFEOP,
+ * ms, at most 60000. "AssignToPdi": no effect, the slave has access to its EEPROM from PREOP
+ * on in any case. "AcceptOtherPdos": if not 0, the master requests OP although the slave has
+ * refused its PDO mapping or assignment and has other objects in the place of the registered
+ * entries; otherwise the slave stays in PREOP. "ExpectedRevision": if the slave has another
+ * revision number, the log reports it at activation, "ethercat slaves" marks the slave, and
+ * "ethercat slaves -v" shows both numbers; the slave is used nevertheless. Other names have
+ * no effect; "ethercat config -v" shows them.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOSPC more than 64 of the
@@ -1791,11 +1776,11 @@ EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
  * @sc: slave configuration
  * @mac_address: 6 bytes
  *
- * This and the five functions below add up to one EoE "set IP parameter"
- * request (ETG.1000.6 clause 5.7). It is sent on the way from PREOP to SAFEOP,
- * after the SDOs, each time the slave is configured; values that were not set
- * are marked as not included. A slave that refuses, or has no EoE, stays in
- * PREOP; "ethercat slaves -v" and the kernel log give the reason.
+ * This function and the five below configure one EoE "set IP parameter" request (ETG.1000.6
+ * clause 5.7). The master sends it each time it configures the slave, in PREOP after the
+ * SDOs; values that are not configured are marked as not included. A slave that refuses the
+ * request, or has no EoE, stays in PREOP; "ethercat slaves -v" and the kernel log show the
+ * reason.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL an argument is NULL.
@@ -1817,7 +1802,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_ip_address(
 		ec_slave_config_t *sc, struct in_addr ip_address);
 
 /**
- * ecrt_slave_config_eoe_subnet_mask() - subnet mask of the slave
+ * ecrt_slave_config_eoe_subnet_mask() - configure the subnet mask of the slave
  * @sc: slave configuration
  * @subnet_mask: IPv4, network byte order
  *
@@ -1830,7 +1815,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_subnet_mask(
 		ec_slave_config_t *sc, struct in_addr subnet_mask);
 
 /**
- * ecrt_slave_config_eoe_default_gateway() - default gateway of the slave
+ * ecrt_slave_config_eoe_default_gateway() - configure the default gateway of the slave
  * @sc: slave configuration
  * @gateway_address: IPv4, network byte order
  *
@@ -1843,7 +1828,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_default_gateway(
 		ec_slave_config_t *sc, struct in_addr gateway_address);
 
 /**
- * ecrt_slave_config_eoe_dns_address() - DNS server of the slave
+ * ecrt_slave_config_eoe_dns_address() - configure the DNS server of the slave
  * @sc: slave configuration
  * @dns_address: IPv4, network byte order
  *
@@ -1856,7 +1841,7 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_dns_address(
 		ec_slave_config_t *sc, struct in_addr dns_address);
 
 /**
- * ecrt_slave_config_eoe_hostname() - host name of the slave
+ * ecrt_slave_config_eoe_hostname() - configure the host name of the slave
  * @sc: slave configuration
  * @name: at most 31 characters; longer names are cut
  *
@@ -1869,11 +1854,11 @@ EC_PUBLIC_API int ecrt_slave_config_eoe_hostname(
 		ec_slave_config_t *sc, const char *name);
 
 /**
- * ecrt_slave_config_state_timeout() - time allowed for a change of AL state
+ * ecrt_slave_config_state_timeout() - configure the timeout of a change of AL state
  * @sc: slave configuration
  * @from_state: INIT, PREOP, SAFEOP or OP
  * @to_state: INIT, PREOP, SAFEOP or OP
- * @timeout_ms: milliseconds; 0: the default again
+ * @timeout_ms: milliseconds; 0: default
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL a state is none of these.
@@ -1888,13 +1873,13 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
  * @master: master
  * @per_second: delayed cycles per second, 0 to 100000; initially 100
  *
- * Extension (%EC_HAVE_LATE_CYCLES). For the next activation. Mailboxes, registers and
- * states of the slaves share the wire with the process data; a frame of them goes
- * out when it fits before the next cycle, nine tenths of the interval being in
- * use. A frame that is too long for any cycle waits for one of these delayed cycles.
- * Mailbox messages are cut so that they fit. With 0 no cycle is delayed, such frames
- * time out, and activation fails when not even the shortest frame, 6.72
- * us, fits. An application that takes over a cycle of the kernel configures it again.
+ * Extension (%EC_HAVE_LATE_CYCLES). For the next activation. Acyclic frames (mailboxes,
+ * registers, AL states) share the wire with the process data: the master sends one if it fits
+ * into nine tenths of the interval. A frame that is too long for any cycle delays a cycle, at
+ * most @per_second times per second. Mailbox messages are split so that they fit. With 0 no
+ * cycle is delayed: frames that do not fit time out, and activation fails when the shortest
+ * frame (6.72 us) does not fit. An application that takes over a cycle of the kernel sets its
+ * own limit.
  * "ethercat master -v" shows wire time, free wire time, and delayed cycles.
  *
  * Context: Process. May sleep.
@@ -1910,12 +1895,11 @@ EC_PUBLIC_API int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_
  * @allow_overlapping_pdos: 1: inputs of the slave may have logical addresses of its
  *	outputs; 0 (initial): inputs have addresses of their own
  *
- * Extension (%EC_HAVE_OVERLAPPING_PDOS). For the next activation. The LRW datagram
- * gets shorter: a slave with 8 bytes each way needs 8 bytes instead of 16. The
- * domain's data stay as they are: inputs and outputs have bytes of their own
- * there. The price: while any slave takes no part in the datagram, the
- * inputs of all slaves that overlap in it keep their values. See
- * %EC_DOMAIN_OVERLAP for inputs at addresses of other slaves' outputs.
+ * Extension (%EC_HAVE_OVERLAPPING_PDOS). For the next activation. Shortens the LRW datagram:
+ * a slave with 8 bytes each way needs 8 bytes instead of 16. The layout of the domain does
+ * not change: inputs and outputs have separate bytes there. Disadvantage: when one slave does
+ * not process the datagram, the inputs of all overlapping slaves of the datagram keep their
+ * values. See %EC_DOMAIN_OVERLAP for inputs at addresses of other slaves' outputs.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL, %-EPERM, %-EBUSY.
@@ -1927,11 +1911,11 @@ EC_PUBLIC_API int ecrt_slave_config_overlapping_pdos(ec_slave_config_t *sc,
 #ifdef EC_HAVE_DOMAIN_OPTIONS
 /**
  * enum ec_domain_option_t - options of a domain; to be ORed
- * @EC_DOMAIN_OVERLAP: inputs may have logical addresses of outputs, of the same
- *	slave and of slaves upstream; gives the shortest datagrams. While
- *	any slave takes no part in a datagram, the inputs in it keep their values. A
- *	slave with an alias that is absent at activation shares with itself only;
- *	a slave that has another ring position later is not started.
+ * @EC_DOMAIN_OVERLAP: inputs may have logical addresses of outputs, of the same slave and of
+ *	slaves upstream; gives the shortest datagrams. When one slave does not process a
+ *	datagram, all inputs of the datagram keep their values. The inputs of a slave with an
+ *	alias that is absent at activation share addresses with its own outputs only. A slave
+ *	whose ring position has changed since activation is not started.
  * @EC_DOMAIN_SEPARATE: LRD and LWR instead of LRW, as for slaves that lack LRW.
  *	A missing slave never holds the inputs of others.
  * @EC_DOMAIN_OWN_FRAME: its datagrams share no frame with other domains, so a lost
@@ -1944,16 +1928,16 @@ typedef enum {
 } ec_domain_option_t;
 
 /**
- * ecrt_domain_set_options() - choose how a domain is sent
+ * ecrt_domain_set_options() - configure how a domain is sent
  * @domain: domain
  * @options: ec_domain_option_t, ORed; 0 (initial): none
  *
- * Extension (%EC_HAVE_DOMAIN_OPTIONS). For the next activation. A domain is a sync
- * unit: it has datagrams and a working counter of its own in any case. Size, data
- * and offsets do not depend on the options.
+ * Extension (%EC_HAVE_DOMAIN_OPTIONS). For the next activation. A domain always has its own
+ * datagrams and working counter (sync unit). Size, data and offsets do not depend on the
+ * options.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL overlap and separate at once; %-EOPNOTSUPP an unknown
+ * Return: 0; %-EINVAL overlap and separate combined; %-EOPNOTSUPP an unknown
  * option; %-EPERM, %-EBUSY.
  */
 EC_PUBLIC_API int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options);
@@ -1962,8 +1946,8 @@ EC_PUBLIC_API int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)
 #ifdef EC_HAVE_DOMAIN_AGE
 /**
  * struct ec_domain_age_t - how old the process data of a domain are
- * @age: sends of this domain since the send of the newest frame that is back; 0: the
- *	data are those of the last send. Counts up to 128.
+ * @age: sends of this domain since the send of the newest received frame; 0: the data are
+ *	those of the last send. At most 128.
  * @limit: see ecrt_domain_set_max_age()
  * @stale: @age is above @limit
  */
@@ -1978,11 +1962,11 @@ typedef struct {
  * @domain: domain
  * @age: out
  *
- * Extension (%EC_HAVE_DOMAIN_AGE). A frame that comes back some cycles late has a full
- * working counter and old inputs: ecrt_domain_state() cannot show that. A domain that is
- * sent in every fourth cycle only ages with its own sends. No system call.
+ * Extension (%EC_HAVE_DOMAIN_AGE). A frame that returns some cycles late has a complete
+ * working counter and old inputs, which ecrt_domain_state() cannot show. The age counts sends
+ * of the domain, not cycles. No system call.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age);
@@ -1993,8 +1977,8 @@ EC_PUBLIC_API int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *ag
  * @sends: sends of this domain, initially 2; 0: no limit
  *
  * Extension (%EC_HAVE_DOMAIN_AGE). For the next activation. The kernel log reports a
- * domain once per activation when stale data come back. Stale data are still taken,
- * and the working counter counts them.
+ * domain once per activation when it receives stale data. Stale data update the inputs and
+ * the working counter nevertheless.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EPERM, %-EBUSY.
@@ -2007,9 +1991,8 @@ EC_PUBLIC_API int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int send
  * @domain: domain
  * @pdo_entry_regs: ends with an element whose index is 0; not kept
  *
- * For each element ecrt_master_slave_config() and
- * ecrt_slave_config_reg_pdo_entry(). Stops at the first failure; what was
- * registered before stays.
+ * For each element calls ecrt_master_slave_config() and ecrt_slave_config_reg_pdo_entry().
+ * Stops at the first failure; earlier registrations remain.
  *
  * Context: Process. May sleep.
  * Return: 0; %-ENOENT no slave configuration, or entry not mapped; else as
@@ -2019,7 +2002,7 @@ EC_PUBLIC_API int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
 		const ec_pdo_entry_reg_t *pdo_entry_regs);
 
 /**
- * ecrt_domain_size() - bytes of a domain
+ * ecrt_domain_size() - get the size of a domain
  * @domain: domain
  *
  * Final as soon as all entries are registered.
@@ -2032,10 +2015,10 @@ EC_PUBLIC_API size_t ecrt_domain_size(const ec_domain_t *domain);
 
 #ifdef __KERNEL__
 /**
- * ecrt_domain_external_memory() - memory for the process data of a domain
+ * ecrt_domain_external_memory() - set the memory of the process data of a domain
  * @domain: domain whose entries are registered; not active
- * @memory: ecrt_domain_size() bytes that stay until deactivation; their content
- *	is sent as it is. NULL: memory of the master again
+ * @memory: ecrt_domain_size() bytes, valid until deactivation; their content is sent
+ *	unchanged. NULL: memory of the master
  *
  * Kernel only.
  *
@@ -2046,15 +2029,15 @@ EC_PUBLIC_API void ecrt_domain_external_memory(ec_domain_t *domain,
 #endif
 
 /**
- * ecrt_domain_data() - process data of a domain
+ * ecrt_domain_data() - get the process data of a domain
  * @domain: domain
  *
- * Offsets from registration count from here. The pointer does not change
- * while the master is active. Outputs keep what was written last.
+ * The offsets of entries refer to this address. It does not change while the master is
+ * active. Outputs keep the last written value.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: the data; NULL before activation, but for external memory, or with an
- * image of 0 bytes.
+ * Return: the data; NULL before activation (except for external memory), or if the image has
+ * 0 bytes.
  */
 EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
 
@@ -2063,10 +2046,9 @@ EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
  * @domain: of an active master
  *
  * Call between ecrt_master_receive() and ecrt_domain_queue(). Updates the result of
- * ecrt_domain_state() if the domain was sent; else leaves it. No system
- * call.
+ * ecrt_domain_state() if the domain was sent. No system call.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_domain_process(ec_domain_t *domain);
@@ -2077,19 +2059,19 @@ EC_PUBLIC_API int ecrt_domain_process(ec_domain_t *domain);
  *
  * A domain that is not queued is not sent in that cycle. No system call.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active.
  */
 EC_PUBLIC_API int ecrt_domain_queue(ec_domain_t *domain);
 
 /**
- * ecrt_domain_state() - result of the last ecrt_domain_process()
+ * ecrt_domain_state() - get the result of the last ecrt_domain_process()
  * @domain: domain
  * @state: out
  *
  * No system call.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_domain_state(const ec_domain_t *domain,
@@ -2144,7 +2126,7 @@ EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
 /* requests ------------------------------------------------------------------*/
 
 /**
- * ecrt_sdo_request_index() - another object
+ * ecrt_sdo_request_index() - select another object
  * @req: request that is not BUSY
  * @index: object
  * @subindex: subindex
@@ -2157,7 +2139,7 @@ EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
 
 #ifndef __KERNEL__
 /**
- * ecrt_sdo_request_index_complete() - another object, as a whole
+ * ecrt_sdo_request_index_complete() - select another whole object
  * @req: request that is not BUSY
  * @index: object
  *
@@ -2172,13 +2154,13 @@ EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
 #endif
 
 /**
- * ecrt_sdo_request_timeout() - limit the time a start may wait
+ * ecrt_sdo_request_timeout() - limit the time from start to transfer
  * @req: request
- * @timeout: ms from the send that hands the start over until the transfer
- *	begins; then the state is ERROR. 0 (initial): unlimited
+ * @timeout: ms from ecrt_master_send() to the begin of the transfer; after this time the
+ *	state is ERROR. 0 (initial): unlimited
  *
- * A request waits while the slave is absent, on its way through INIT, or busy
- * with another request. The transfer has limits of its own: 1 s per message.
+ * A request waits while the slave is absent, in INIT, or busy with another request. The
+ * transfer has a timeout of 1 s per message.
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @req is NULL.
@@ -2187,21 +2169,21 @@ EC_PUBLIC_API int ecrt_sdo_request_timeout(ec_sdo_request_t *req,
 		uint32_t timeout);
 
 /**
- * ecrt_sdo_request_data() - buffer of a request
+ * ecrt_sdo_request_data() - get the buffer of a request
  * @req: request
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
- * Return: address, always the same; NULL when @req is.
+ * Return: the address, which does not change; NULL when @req is NULL.
  */
 EC_PUBLIC_API uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req);
 
 /**
- * ecrt_sdo_request_data_size() - bytes in the buffer
+ * ecrt_sdo_request_data_size() - get the size of the data in the buffer
  * @req: request
  *
  * Context: One caller at a time. RT-safe, no system call.
- * Return: size it was created with; after a successful read, bytes read. So
- * many will be written.
+ * Return: the size of creation, or, after a successful read, the number of bytes read.
+ * A write sends this number of bytes.
  */
 EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
 
@@ -2209,7 +2191,7 @@ EC_PUBLIC_API size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req);
  * ecrt_sdo_request_state() - get the state of a request
  * @req: request
  *
- * Data and size of a finished read are there when this has returned SUCCESS.
+ * Data and size of a read are valid when this has returned SUCCESS.
  * An object that is larger than the buffer gives ERROR.
  *
  * Context: One caller at a time. RT-safe, no system call.
@@ -2226,9 +2208,9 @@ EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
  * ecrt_sdo_request_write() - start a download of the buffer
  * @req: request that is not BUSY, of an active master
  *
- * The buffer is copied; the next ecrt_master_send() hands the start over.
+ * The buffer is copied; the next ecrt_master_send() starts the transfer.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
@@ -2241,7 +2223,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
  *
  * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE).
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0,
  * not active, or @req is NULL.
  */
@@ -2253,15 +2235,15 @@ EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
  * ecrt_sdo_request_read() - start an upload
  * @req: request that is not BUSY, of an active master
  *
- * The next ecrt_master_send() hands the start over.
+ * The next ecrt_master_send() starts the transfer.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
 
 /**
- * ecrt_soe_request_idn() - another IDN
+ * ecrt_soe_request_idn() - select another IDN
  * @req: request that is not BUSY
  * @drive_no: drive of the slave, 0 to 7
  * @idn: as in ecrt_master_write_idn()
@@ -2273,7 +2255,7 @@ EC_PUBLIC_API int ecrt_soe_request_idn(ec_soe_request_t *req,
 		uint8_t drive_no, uint16_t idn);
 
 /**
- * ecrt_soe_request_timeout() - limit the time a start may wait
+ * ecrt_soe_request_timeout() - limit the time from start to transfer
  * @req: request
  * @timeout: as in ecrt_sdo_request_timeout()
  *
@@ -2284,21 +2266,21 @@ EC_PUBLIC_API int ecrt_soe_request_timeout(ec_soe_request_t *req,
 		uint32_t timeout);
 
 /**
- * ecrt_soe_request_data() - buffer of a request
+ * ecrt_soe_request_data() - get the buffer of a request
  * @req: request
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
- * Return: address, always the same; NULL when @req is.
+ * Return: the address, which does not change; NULL when @req is NULL.
  */
 EC_PUBLIC_API uint8_t *ecrt_soe_request_data(const ec_soe_request_t *req);
 
 /**
- * ecrt_soe_request_data_size() - bytes in the buffer
+ * ecrt_soe_request_data_size() - get the size of the data in the buffer
  * @req: request
  *
  * Context: One caller at a time. RT-safe, no system call.
- * Return: size it was created with; after a successful read, bytes read. So
- * many will be written.
+ * Return: the size of creation, or, after a successful read, the number of bytes read.
+ * A write sends this number of bytes.
  */
 EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
 
@@ -2306,7 +2288,7 @@ EC_PUBLIC_API size_t ecrt_soe_request_data_size(const ec_soe_request_t *req);
  * ecrt_soe_request_state() - get the state of a request
  * @req: request
  *
- * Data and size of a finished read are there when this has returned SUCCESS.
+ * Data and size of a read are valid when this has returned SUCCESS.
  * A value that is larger than the buffer gives ERROR.
  *
  * Context: One caller at a time. RT-safe, no system call.
@@ -2323,9 +2305,9 @@ EC_PUBLIC_API ec_request_state_t ecrt_soe_request_state(ec_soe_request_t *req);
  * ecrt_soe_request_write() - start writing the buffer to the IDN
  * @req: request that is not BUSY, of an active master
  *
- * The buffer is copied; the next ecrt_master_send() hands the start over.
+ * The buffer is copied; the next ecrt_master_send() starts the transfer.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
@@ -2334,16 +2316,16 @@ EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
  * ecrt_soe_request_read() - start reading the IDN
  * @req: request that is not BUSY, of an active master
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
 
 /**
- * ecrt_voe_handler_send_header() - header of the messages to be sent
+ * ecrt_voe_handler_send_header() - set the header of the messages to send
  * @voe: handler
  * @vendor_id: vendor id
- * @vendor_type: type, the vendor's own
+ * @vendor_type: vendor specific type
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @voe is NULL.
@@ -2352,13 +2334,12 @@ EC_PUBLIC_API int ecrt_voe_handler_send_header(ec_voe_handler_t *voe,
 		uint32_t vendor_id, uint16_t vendor_type);
 
 /**
- * ecrt_voe_handler_received_header() - header of the message read last
+ * ecrt_voe_handler_received_header() - get the header of the last received message
  * @voe: handler
  * @vendor_id: out, may be NULL: vendor id
  * @vendor_type: out, may be NULL: type
  *
- * There after ecrt_voe_handler_execute() has returned SUCCESS for a read; 0
- * before.
+ * Valid after ecrt_voe_handler_execute() has returned SUCCESS for a read; 0 before.
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @voe is NULL.
@@ -2368,22 +2349,21 @@ EC_PUBLIC_API int ecrt_voe_handler_received_header(
 		uint16_t *vendor_type);
 
 /**
- * ecrt_voe_handler_data() - buffer of a handler
+ * ecrt_voe_handler_data() - get the buffer of a handler
  * @voe: handler
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
- * Return: address of what is behind the VoE header, always the same; NULL when
- * @voe is.
+ * Return: address of the data after the VoE header, which does not change; NULL when @voe is
+ * NULL.
  */
 EC_PUBLIC_API uint8_t *ecrt_voe_handler_data(const ec_voe_handler_t *voe);
 
 /**
- * ecrt_voe_handler_data_size() - bytes in the buffer
+ * ecrt_voe_handler_data_size() - get the size of the data in the buffer
  * @voe: handler
  *
  * Context: One caller at a time. RT-safe, no system call.
- * Return: size it was created with; then that of the last write or successful
- * read.
+ * Return: the size of creation, later of the last write or successful read.
  */
 EC_PUBLIC_API size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe);
 
@@ -2392,10 +2372,10 @@ EC_PUBLIC_API size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe);
  * @voe: handler that is not BUSY, of an active master
  * @size: bytes of the buffer
  *
- * The buffer is copied; the next ecrt_master_send() hands the start over. Then
+ * The buffer is copied; the next ecrt_master_send() starts the transfer. Then
  * ecrt_voe_handler_execute() returns its state; it takes 500 ms at most.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL not active, or
  * @voe is NULL.
  */
@@ -2405,22 +2385,22 @@ EC_PUBLIC_API int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size);
  * ecrt_voe_handler_read() - start waiting for a message
  * @voe: handler that is not BUSY, of an active master
  *
- * The master polls the mailbox until there is a message; after 500 ms the state is ERROR.
+ * The master polls the mailbox for a message; after 500 ms without one the state is ERROR.
  * A message that arrives while another exchange uses the mailbox is not lost.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @voe is NULL.
  */
 EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
 
 /**
- * ecrt_voe_handler_read_nosync() - start fetching a message that must be there
+ * ecrt_voe_handler_read_nosync() - start reading a message without polling the mailbox
  * @voe: handler that is not BUSY, of an active master
  *
- * One access to the mailbox without reading its status before; without a message
- * the state is ERROR.
+ * Accesses the mailbox once, without reading its status before. If it has no message, the
+ * state is ERROR.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: as ecrt_voe_handler_read().
  */
 EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
@@ -2439,11 +2419,11 @@ EC_PUBLIC_API ec_request_state_t ecrt_voe_handler_execute(
 		ec_voe_handler_t *voe);
 
 /**
- * ecrt_reg_request_data() - buffer of a request
+ * ecrt_reg_request_data() - get the buffer of a request
  * @req: request
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
- * Return: address, always the same; NULL when @req is.
+ * Return: the address, which does not change; NULL when @req is NULL.
  */
 EC_PUBLIC_API uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req);
 
@@ -2451,8 +2431,9 @@ EC_PUBLIC_API uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req);
  * ecrt_reg_request_state() - get the state of a request
  * @req: request
  *
- * The data of a finished read are there when this has returned SUCCESS. A
- * slave that could not be configured gives ERROR; an absent one is waited for.
+ * The data of a read are valid when this has returned SUCCESS. A
+ * slave that could not be configured gives ERROR. While the slave is absent, the request
+ * stays BUSY.
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
@@ -2466,7 +2447,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
  * @address: register
  * @size: bytes
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer, in the kernel it is cut
  * instead; %-EINVAL @size is 0, not active, or @req is NULL.
  */
@@ -2479,7 +2460,7 @@ EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
  * @address: register
  * @size: bytes
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: as ecrt_reg_request_write().
  */
 EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
@@ -2495,7 +2476,7 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
  * Extension (%EC_HAVE_REG_READWRITE). One datagram (FPRW); clears a counter without
  * losing a count. The old content is in the buffer after SUCCESS.
  *
- * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Context: The cycle owner. RT-safe, no system call.
  * Return: as ecrt_reg_request_write().
  */
 EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,

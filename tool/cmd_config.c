@@ -122,10 +122,10 @@ const struct cmd cmd_config = {
 	.opts = "mapv",
 	.summary = "Show the slave configurations of the application",
 	.help = "Columns: alias:position, expected vendor/product, ring position of the attached\n"
-		"slave or '-', its state or '-'. Here -a selects by alias and -p by position; -p\n"
-		"alone selects among the configurations with alias 0.\n",
+		"slave or '-', AL state of this slave or '-'. -a selects configurations by alias and\n"
+		"-p by position; -p alone selects configurations with alias 0.\n",
 	.json = "masters[]: master, configs[]: alias, position, vendor_id, product_code,\n"
-		"slave_position (or null), state, not_in_op (why, or null), warning (or null),\n"
+		"slave_position (or null), state, not_in_op (reason or null), warning (or null),\n"
 		"watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"

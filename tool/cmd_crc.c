@@ -118,10 +118,10 @@ const struct cmd cmd_crc = {
 	.args = "[reset]",
 	.opts = "mapv",
 	.summary = "Show or clear the error counters of the slaves' ports",
-	.help = "For each port: CRC invalid frames, PHY errors of the receiver, FWD errors another\n"
-		"slave has counted before, NXT the slave behind the port (arrows: previous and next\n"
-		"in the ring). Counters stop at 255. Ports without a link are blank. With --verbose\n"
-		"also lost links (ports 0 to 3), processing unit and PDI errors.\n",
+	.help = "For each port: CRC: invalid frames; PHY: errors of the receiver; FWD: errors that\n"
+		"another slave has detected before; NXT: slave connected to the port (arrows:\n"
+		"previous and next slave in the ring). Counters stop at 255. Ports without a link\n"
+		"are blank. --verbose adds lost links (ports 0 to 3), processing unit and PDI errors.\n",
 	.json = "master, slaves[]: position, name, ports[] (loop_closed, crc_errors, phy_errors,\n"
 		"forwarded_errors, lost_links, next_slave), processing_unit_errors, pdi_errors",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

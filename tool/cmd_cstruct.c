@@ -198,9 +198,9 @@ const struct cmd cmd_cstruct = {
 	.args = "",
 	.opts = "map",
 	.summary = "Print the PDO layout as C arrays for ecrt.h",
-	.help = "The arrays are what ecrt_slave_config_pdos() takes: ethercat cstruct -p2 > pdos.h\n"
-		"Slaves without SyncManagers are omitted. Slaves of several masters may get the\n"
-		"same names; select one with -m.\n",
+	.help = "Use the arrays as arguments of ecrt_slave_config_pdos(): ethercat cstruct -p2 > pdos.h\n"
+		"Slaves without SyncManagers are omitted. Names are unique within one master: select\n"
+		"the master with -m.\n",
 	.json = "masters[]: master, slaves[]: position, order_number, vendor_id, product_code,\n"
 		"revision_number, syncs[]: index, direction (output, input), watchdog, pdos[]: index,\n"
 		"name, entries[]: index, subindex, size_bits, name",

@@ -217,16 +217,18 @@ const struct cmd cmd_cycle = {
 	.args = "",
 	.opts = "mrv",
 	.summary = "Show cycle statistics: send deviation and overruns",
-	.help = "Of the cycle that runs, else of the last one. The schedule of a cycle run by the\n"
-		"kernel is its timer. An application's is a grid of its interval that slowly\n"
-		"follows the sends; a send may be early or late. Overruns are skipped cycles: an\n"
-		"interval or more passed without a send. 99.9 % of the send deviations are below\n"
-		"that figure, which is up to 1/8 too large. The bars show powers of two, with\n"
-		"--verbose eighths of them. --reset clears the statistics; it needs write access.\n",
+	.help = "Shows the running cycle, otherwise the last one. Send deviation: time of a send minus\n"
+		"its schedule. The schedule of a cycle run by the kernel is its timer; for an\n"
+		"application it is a grid of its interval that adapts slowly to the sends, so a send\n"
+		"may be early or late. Overruns are skipped cycles: an interval or more passed without\n"
+		"a send. 99.9 %: limit that 99.9 % of the send deviations did not exceed, up to 1/8\n"
+		"too large. Each bar covers a power of two, with --verbose an eighth of it. --reset\n"
+		"clears the statistics; it needs write access.\n",
 	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
-		"stopped, waiting, ended), interval_ns, interval_told, sends, overruns, missed (cycles of the\n"
-		"kernel without new outputs), late_min_ns, late_mean_ns, late_p999_ns, late_max_ns,\n"
-		"work_mean_ns, work_max_ns (execution time of a cycle of the kernel), histogram[] (from_ns,\n"
-		"to_ns, sends; not the empty ones). By kernel only: priority (SCHED_FIFO; 0: SCHED_OTHER),\n"
-		"priority_wanted (configured), cpu (-1: any), cpu_losses (how often it went offline). With by nobody: master and by only",
+		"stopped, waiting, ended), interval_ns, interval_told (configured), sends, overruns,\n"
+		"missed (cycles of the kernel without new outputs), late_min_ns, late_mean_ns,\n"
+		"late_p999_ns, late_max_ns (send deviation), work_mean_ns, work_max_ns (execution time\n"
+		"of a cycle of the kernel), histogram[] (from_ns, to_ns, sends; without empty ranges).\n"
+		"Only by kernel: priority (SCHED_FIFO; 0: SCHED_OTHER), priority_wanted (configured),\n"
+		"cpu (-1: any), cpu_losses (times the CPU went offline). By nobody: only master and by",
 };

@@ -53,7 +53,7 @@ const struct cmd cmd_data = {
 	.args = "",
 	.opts = "md",
 	.summary = "Write the process data of domains to stdout",
-	.help = "Binary, one domain after the other, not to a terminal:\n"
+	.help = "Binary, all domains in a row; refused if stdout is a terminal:\n"
 		"ethercat data -d0 | hexdump -C\n",
 	.json = "masters[]: master, domains[]: index, size_bytes, data_hex",
 	.flags = CMD_HISTORIC,

@@ -41,7 +41,7 @@ const struct cmd cmd_debug = {
 	.args = "LEVEL",
 	.opts = "m",
 	.summary = "Set how much the master writes to the kernel log",
-	.help = "LEVEL := { 0 normal | 1 more | 2 also the contents of all frames }\n",
+	.help = "LEVEL := { 0: normal | 1: more events | 2: also the content of all frames }\n",
 	.json = "masters[]: master, debug_level",
 	.flags = CMD_HISTORIC,
 	.min_args = 1,

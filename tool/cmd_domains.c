@@ -148,11 +148,11 @@ const struct cmd cmd_domains = {
 	.opts = "mdv",
 	.summary = "Show the domains of the application",
 	.help = "WorkingCounter: of the last cycle / expected; equal when every slave exchanged its\n"
-		"data. With --verbose also the options of the domain (overlap: inputs at logical\n"
-		"addresses of outputs; separate: LRD and LWR; own frame), its datagrams, and what each\n"
-		"slave configuration contributes. The wire time of a whole cycle: ethercat master -v.\n"
-		"Age of process data: sends of the domain since that of the newest data received;\n"
-		"shown with --verbose, and when it is above its limit (stale).\n",
+		"data. --verbose adds the options of the domain (overlap: inputs at logical addresses\n"
+		"of outputs; separate: LRD and LWR; own frame), its datagrams, and the share of each\n"
+		"slave configuration. 'ethercat master -v' shows the wire time of a cycle. Age of\n"
+		"process data: sends of the domain since the send of the newest received frame; shown\n"
+		"with --verbose, and when it exceeds its limit (stale).\n",
 	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
 		"working_counter, expected_working_counter, age_sends, max_age_sends (0: no limit),\n"
 		"stale, options[] (overlap, separate, own_frame),\n"

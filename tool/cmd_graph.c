@@ -177,8 +177,8 @@ const struct cmd cmd_graph = {
 	.opts = "m",
 	.summary = "Print the topology of the bus for Graphviz",
 	.help = "Draw it with: ethercat graph | dot -Tsvg > bus.svg\n"
-		"DC adds clocks and delays in ns, CRC the error counters [invalid frames/forwarded\n"
-		"errors] of each port.\n",
+		"DC adds clocks and delays in ns. CRC adds the error counters of each port [invalid\n"
+		"frames/forwarded errors].\n",
 	.json = "master, slaves[] (position, alias, relative_position, order_number, dc_delay_ns),\n"
 		"links[] (from, to, medium, from_port, to_port)",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

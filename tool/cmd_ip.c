@@ -58,8 +58,8 @@ const struct cmd cmd_ip = {
 		"  default_gateway, default   IPv4 address or host name\n"
 		"  dns_address, dns           IPv4 address or host name\n"
 		"  hostname, name             at most 31 bytes\n"
-		"Without arguments the parameters of the slave are read. What is set here lasts as\n"
-		"long as the slave keeps it; applications have ecrt_slave_config_eoe_...().\n",
+		"Without arguments the command reads the parameters of the slave. The slave decides how\n"
+		"long it keeps new parameters. An application uses ecrt_slave_config_eoe_...().\n",
 	.json = "master, slave, mac_address, ip_address, subnet_mask, default_gateway,\n"
 		"dns_address, hostname (null: not set, or not reported)",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

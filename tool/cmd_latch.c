@@ -112,11 +112,12 @@ const struct cmd cmd_latch = {
 	.args = "[MODE]",
 	.opts = "map",
 	.summary = "Show the times of edges at the latch inputs of a slave's clock",
-	.help = "MODE := { single: the first edge counts until it is read;\n"
-		"          continuous: the last one }; sets both inputs\n"
-		"Times are those of the distributed clocks, ns. Reading a time re-arms the latch.\n",
+	.help = "MODE := { single: the latch stores the first edge until its time is read;\n"
+		"          continuous: the latch stores the last edge }; sets both inputs\n"
+		"Times are system times of the distributed clocks, ns. Reading a time re-arms the\n"
+		"latch.\n",
 	.json = "master, slave, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"
-		"owner (master, slave: its own CPU takes the times))",
+		"owner (master, slave: the CPU of the slave reads the times))",
 	.flags = CMD_ONE_MASTER,
 	.max_args = 1,
 };

@@ -269,12 +269,12 @@ const struct cmd cmd_master = {
 	.opts = "mv",
 	.summary = "Show masters, their network interfaces and clocks",
 	.help = "Rates are averages over 1, 10 and 60 seconds; 1 KByte is 1024 bytes. Times are\n"
-		"nanoseconds since 2000-01-01 UTC. With --verbose also the last bus scan, and the\n"
-		"wire time of a cycle at 100 Mbit/s, preamble and gap included: with all domains\n"
-		"and, when they are used, clock datagrams; and of the last send. Acyclic frames: free wire\n"
-		"time for mailboxes, registers and states, and what the shortest frame needs; cycles\n"
-		"delayed by such frames that did not fit. Frames not captured: a capture program\n"
-		"was running, and the ring of copies for it was full.\n",
+		"nanoseconds since 2000-01-01 UTC. --verbose adds the last bus scan and the wire time\n"
+		"at 100 Mbit/s, preamble and gap included, of a cycle with all domains and configured\n"
+		"clock datagrams, and of the last send. Free for acyclic frames: wire time that a cycle\n"
+		"leaves for mailboxes, registers and states, and the minimum that the shortest frame\n"
+		"needs. A longer acyclic frame delays a cycle. Frames not captured: the buffer of a\n"
+		"capture program was full.\n",
 	.json = "masters[]: master, phase (waiting, idle, operation), active, session (none,\n"
 		"reserved, active, detached), slaves,\n"
 		"devices[] (mac, attached, interface, link_up, tx_frames, tx_bytes, rx_frames,\n"

@@ -159,10 +159,10 @@ const struct cmd cmd_pdos = {
 	.args = "",
 	.opts = "mapsqv",
 	.summary = "Show SyncManagers, PDOs and PDO entries",
-	.help = "RxPDOs are written by the master, TxPDOs are read by it. An entry 0x0000:00 is a\n"
-		"gap. Names are those of the EEPROM, else of the object dictionary, which is read\n"
-		"while no application is active. With --quiet without the entries. The skin\n"
-		"etherlab prints a MATLAB function for each slave.\n",
+	.help = "The master writes RxPDOs and reads TxPDOs. An entry 0x0000:00 is a gap. Names are\n"
+		"those of the SII, otherwise of the object dictionary, which the command reads while\n"
+		"no application is active. --quiet omits the entries. The skin etherlab prints a\n"
+		"MATLAB function for each slave.\n",
 	.json = "masters[]: master, slaves[]: position, sync_managers[]: index, address,\n"
 		"default_size_bytes, control, enable, pdos[]: direction (rx, tx), index, name,\n"
 		"entries[]: index, subindex, size_bits, name",

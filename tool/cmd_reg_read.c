@@ -70,7 +70,7 @@ const struct cmd cmd_reg_read = {
 	.summary = "Read registers of a slave's controller",
 	.help = "ADDRESS := { 0 to 0xffff }\n"
 		"SIZE := { bytes; not needed with a --type of fixed size }\n"
-		"Without --type hex bytes are shown.\n",
+		"Without --type the value is shown as hex bytes.\n",
 	.json = "master, slave, address, type, size_bytes, value, data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,

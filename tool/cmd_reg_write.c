@@ -73,8 +73,8 @@ const struct cmd cmd_reg_write = {
 	.summary = "Write registers of a slave's controller",
 	.help = "ADDRESS := { 0 to 0xffff }\n"
 		"DATA := { with --type a value, else the name of a file with the bytes; - for stdin }\n"
-		"With --emergency, -p is the ring position to write to, whether or not the bus could\n"
-		"be scanned.\n",
+		"With --emergency, -p is the ring position of the slave, even if the bus has not been\n"
+		"scanned.\n",
 	.json = "master, slave, address, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,

@@ -26,7 +26,7 @@ const struct cmd cmd_release = {
 	.opts = "m",
 	.summary = "End a detached session",
 	.help = "A detached session continues after its application has exited (EC_CYCLE_DETACH);\n"
-		"'ethercat master' shows it. Its slaves go to PREOP. The session of a running\n"
+		"'ethercat master' shows it. The slaves go to PREOP. The session of a running\n"
 		"application is not ended.\n",
 	.json = "master",
 	.flags = CMD_ONE_MASTER,

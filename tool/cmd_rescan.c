@@ -60,8 +60,8 @@ const struct cmd cmd_rescan = {
 	.args = "",
 	.opts = "mw",
 	.summary = "Scan the bus again",
-	.help = "Returns at once; with --wait when the scan has finished (default at most 60 s). Fails\n"
-		"without a device or link.\n",
+	.help = "Returns at once; with --wait it waits for the end of the scan (default at most 60 s).\n"
+		"Fails without a device or link.\n",
 	.json = "masters[]: master",
 	.flags = CMD_HISTORIC,
 };

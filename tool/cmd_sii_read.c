@@ -64,7 +64,7 @@ static void decoded(const u8 *img, size_t size)
 	out_u("revision_number", i.revision, NULL);
 	out_u("serial_number", i.serial, NULL);
 	if (!i.checksum_ok)
-		note("warning: the checksum is 0x%02x, it should be 0x%02x", i.checksum,
+		note("warning: checksum 0x%02x, expected 0x%02x", i.checksum,
 		     i.checksum_calc);
 }
 
@@ -128,7 +128,7 @@ static int run(struct tool *t, int argc, char **argv)
 		return 1;
 	ret = dev_select_single(&d, t, &s) || get(&d, &s, &img, &size);
 	if (!ret && !size) {
-		ret = fail("Master%u slave %u: its SII has not been read%s%s", d.master, s.position,
+		ret = fail("Master%u slave %u: the SII has not been read%s%s", d.master, s.position,
 			   s.why[0] ? ": " : "", s.why);
 		free(img);
 	} else if (!ret) {
@@ -150,7 +150,7 @@ const struct cmd cmd_sii_read = {
 	.summary = "Write the EEPROM image of a slave to stdout",
 	.help = "Binary, as read by the last bus scan, not to a terminal:\n"
 		"ethercat sii_read -p2 > backup.bin\n"
-		"With --verbose hex bytes, category by category.\n",
+		"--verbose prints hex bytes for each category.\n",
 	.json = "master, slave, size_bytes, data_hex; with --verbose instead of data_hex:\n"
 		"fixed_area_hex, checksum_ok, alias, vendor_id, product_code, revision_number,\n"
 		"serial_number, categories[] (type, name, size_words, data_hex), complete",

@@ -146,12 +146,11 @@ const struct cmd cmd_slaves = {
 	.opts = "mapvw",
 	.summary = "Show the slaves on the bus",
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
-		"'+ERROR' behind the state: the slave reports an error. Flag 'E': scanning or\n"
-		"configuring the slave failed; '!': not the slave that the application configured.\n"
-		"Configurations without slave are listed on stderr. 'xxx LINK FAILURE xxx' stands\n"
-		"where a redundant ring is cut. With --verbose everything the master knows about the\n"
-		"slaves; with --wait the list is read when no bus scan is running (at most 60 s\n"
-		"later).\n",
+		"'+ERROR' after the state: the slave reports an error. Flag 'E': scan or configuration\n"
+		"of the slave failed; '!': another slave than configured by the application. Configured\n"
+		"slaves that are absent are listed on stderr. 'xxx LINK FAILURE xxx' marks the break of\n"
+		"a redundant ring. --verbose shows all data of the slaves. --wait waits until no bus\n"
+		"scan is running (default at most 60 s).\n",
 	.json = "masters[]: master, scan_busy, slaves[] (position, alias, relative_position, device,\n"
 		"state, al_error, flag_error, cause, warning, differs,\n"
 		"not_in_op (or null), name, vendor_id, product_code, revision_number,\n"

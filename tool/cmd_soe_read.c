@@ -54,8 +54,8 @@ const struct cmd cmd_soe_read = {
 	.summary = "Read an IDN of a servo drive (SoE)",
 	.help = "DRIVE := { 0 to 7 }, default 0\n"
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
-		"The value is read. Without --type it is shown as hex bytes, those of a list with the\n"
-		"two lengths at its begin; a text is shown without them.\n",
+		"Without --type the value is shown as hex bytes; a list includes its two lengths, a\n"
+		"text does not.\n",
 	.json = "master, slave, drive, idn, name, type, size_bytes,\n"
 		"value (not for bytes without a value form), data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

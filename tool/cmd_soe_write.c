@@ -11,7 +11,7 @@ static int as_list(u8 **data, size_t *size)
 	u8 *list;
 
 	if (*size > 0xffff - 4)
-		return fail("the text has %zu bytes, a list at most 65531", *size);
+		return fail("invalid text: %zu bytes, limit 65531", *size);
 	list = malloc(*size + 4);
 	if (!list)
 		return fail("out of memory");
@@ -79,8 +79,8 @@ const struct cmd cmd_soe_write = {
 	.help = "DRIVE := { 0 to 7 }, default 0\n"
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
 		"VALUE := { a value of the type given by --type | - for stdin }\n"
-		"The value is written; --type is needed. A text is sent as a list with its length;\n"
-		"other lists are written as raw bytes. Negative numbers need no '--' before them.\n",
+		"--type is required. A text is sent as a list with its length; write other lists as\n"
+		"raw bytes. Negative numbers need no '--' before them.\n",
 	.json = "master, slave, drive, idn, name, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,

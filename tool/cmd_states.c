@@ -169,9 +169,9 @@ const struct cmd cmd_states = {
 	.opts = "mapw",
 	.summary = "Request an AL state for slaves, or show the states",
 	.help = "STATE := { INIT | PREOP | BOOT | SAFEOP | OP }, in any case.\n"
-		"Without --wait the command returns as soon as the request is accepted. With\n"
-		"--wait it fails when a slave refuses or needs longer (default 10 s), and shows\n"
-		"the AL status code. The slave keeps this state until it reconnects or an application\n"
+		"Without --wait the command returns when the master has accepted the request. With\n"
+		"--wait it fails and shows the AL status code when a slave refuses the state or does\n"
+		"not reach it in time (default 10 s). The slave keeps this state until it reconnects or an application\n"
 		"reserves, activates, resets or deactivates the master.\n"
 		"Without STATE: position, alias:relative position, state, and the cause of an error.\n",
 	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"

@@ -133,7 +133,7 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write)
 	if (m.n == 1)
 		ret = dev_open(d, m.v[0], write);
 	else if (m.n)
-		ret = usage_error("needs exactly one of the %u masters; select it with -m", count);
+		ret = usage_error("%u masters found, the command needs one; select it with -m", count);
 	else
 		ret = usage_error("-m selects none of the %u master(s) present", count);
 	numbers_free(&m);
@@ -351,7 +351,7 @@ int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *
 	else if (!all)
 		ret = dev_none_present(d);
 	else
-		ret = usage_error("selection matches %zu slaves of the %zu present, one is needed; "
+		ret = usage_error("the selection matches %zu of %zu slaves, the command needs one; "
 				  "use -p or -a", sel.n, all);
 	slaves_free(&sel);
 	return ret;

@@ -19,7 +19,7 @@ const struct opt opts[] = {
 	{ 'r', "reset", NULL, "clear after reading" },
 	{ 'q', "quiet", NULL, "less output" },
 	{ 'v', "verbose", NULL, "more output" },
-	{ 'w', "wait", "[SECONDS]", "wait for the end, at most that long" },
+	{ 'w', "wait", "[SECONDS]", "wait for the end, at most SECONDS" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },

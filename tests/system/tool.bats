@@ -287,7 +287,7 @@ teardown_file() { stop; }
 	[ -z "$(ethercat slaves -m1 2>/dev/null)" ]
 	[ "$(ethercat master | grep -c '^Master')" = 2 ]
 	json '.masters | map(.phase) == ["idle", "waiting"]' master
-	refused 'needs exactly one of the 2 masters' reg_read -p1 0 1
+	refused '2 masters found, the command needs one' reg_read -p1 0 1
 	ethercat reg_read -m0 -p1 0 1
 	refused 'no slaves' reg_read -m1 0 1
 	ethercat pdos | grep -q '=== Master 0, Slave 1 ==='

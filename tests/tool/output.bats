@@ -111,10 +111,10 @@ load common
 	for c in "upload 0x1018 1" "reg_read 0 1" "sii_read" "download -tint8 0x6060 0 1"; do
 		run ethercat $c
 		[ "$status" -eq 1 ]
-		[[ $output == *"selection matches 3 slaves"* ]]
+		[[ $output == *"selection matches 3 of "* ]]
 		run ethercat $c -p7
 		[ "$status" -eq 1 ]
-		[[ $output == *"selection matches 0 slaves"* ]]
+		[[ $output == *"selection matches 0 of "* ]]
 	done
 }
 
