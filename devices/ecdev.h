@@ -11,7 +11,7 @@
 struct ecdev;
 
 /**
- * struct ecdev_ops - what a device driver does for the master
+ * struct ecdev_ops - functions of a device driver
  * @kind: "generic", "virtual", "e1000e"... for messages
  * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
  *	preemption or interrupts off (native, virtual); otherwise thread only
@@ -19,14 +19,14 @@ struct ecdev;
  *	next cycle, 0: any number
  * @start: mandatory. Takes the device for the master, brings it up; @dev is
  *	for ecdev_receive(). Process context, may sleep. Return: 0 or -errno
- * @stop: mandatory. Gives it back; no frame is delivered after it returned
+ * @stop: mandatory. Releases the device; no frame is delivered after the return
  * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
  *	when the hardware still owns all of them
  * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
  *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent)
- * @poll: optional. Delivers what has arrived through ecdev_receive(). Also
+ * @poll: optional. Delivers received frames through ecdev_receive(). Also
  *	called with @cycle off when a frame is overdue
- * @cycle: optional. On: the caller will poll, interrupts are not wanted
+ * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
  */
 struct ecdev_ops {

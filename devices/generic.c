@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Generic device: any Ethernet network device of an unmodified kernel. Claimed
- * by rx_handler, frames are sent past the qdisc, everybody else is kept off
- * the wire by an egress hook.
+ * Generic device: any Ethernet network device of an unmodified kernel. An rx_handler claims
+ * it, frames bypass the qdisc, and an egress hook blocks frames of all others.
  */
 #include <linux/etherdevice.h>
 #include <linux/if_arp.h>
@@ -24,12 +23,12 @@
 #define RING		64	/* more than are on their way at once; completion is lazy */
 #define SPARES		64
 #define HELD_NS		(2 * NSEC_PER_MSEC)	/* an idle link needs far less to send it */
-#define SPARE_HEAD	128	/* a device below this one may come and push more headers */
+#define SPARE_HEAD	128	/* a lower device may push more headers */
 
 /**
  * struct buf - a transmit buffer
  * @skb: prepared frame; a clone of it is sent
- * @sent_ns: when that was (ktime)
+ * @sent_ns: time of the last send (ktime)
  */
 struct buf {
 	struct sk_buff *skb;
@@ -38,16 +37,16 @@ struct buf {
 
 /**
  * struct gen - one claimed or offered network device
- * @list: all of them, under RTNL
+ * @list: in @devices, under RTNL
  * @nd: network device, with a reference
  * @tracker: of that reference
- * @dev: who gets the frames, set before the first can arrive
+ * @dev: receives the frames; set before the first one can arrive
  * @tap: copies for capture programs at @nd
  * @buf: transmit buffers
  * @next: next of @buf to try
- * @cur: the one under construction
+ * @cur: buffer under construction
  * @spare: prepared frames for buffers that are held too long
- * @held: these, free as soon as their holders let go
+ * @held: replaced frames, freed when their holders release them
  * @refill: frees @held, makes @spare
  * @hook: keeps other traffic off the wire
  * @claimed: rx_handler is registered
@@ -79,7 +78,7 @@ static rx_handler_result_t receive(struct sk_buff **pskb)
 	struct sk_buff *skb;
 	struct gen *g;
 
-	/* from our own tap, which capture programs have seen now */
+	/* a copy from @tap, which capture programs have received now */
 	if ((*pskb)->pkt_type == PACKET_OUTGOING) {
 		consume_skb(*pskb);
 		return RX_HANDLER_CONSUMED;
@@ -97,16 +96,15 @@ static rx_handler_result_t receive(struct sk_buff **pskb)
 	return RX_HANDLER_CONSUMED;
 }
 
-/* What others send: our own frames do not pass here. */
+/* Frames of others; frames of the master do not pass here. */
 static unsigned int egress(void *priv, struct sk_buff *skb, const struct nf_hook_state *state)
 {
 	return NF_DROP;
 }
 
 /*
- * What the driver gets is a clone, whose companion needs no memory. It may push
- * headers to the clone without a copy: nobody else looks at what is in front of the
- * frame, and the frame is written anew each time.
+ * The driver gets a clone, whose companion needs no memory. It may push headers to the clone
+ * without a copy: the headroom has no other user, and each send writes the whole frame.
  */
 static struct sk_buff *prepare(struct net_device *nd)
 {
@@ -169,7 +167,7 @@ static int make_buffers(struct gen *g)
 	return 0;
 }
 
-/* It learns every source address, and ours are never the same: it drops most frames. */
+/* batman-adv learns every source address. EtherCAT frames have always new ones: it drops most. */
 static bool is_mesh(const struct net_device *nd)
 {
 	return nd->rtnl_link_ops && !strcmp(nd->rtnl_link_ops->kind, "batadv");
@@ -178,8 +176,8 @@ static bool is_mesh(const struct net_device *nd)
 static int check(const struct net_device *nd)
 {
 	if (is_mesh(nd)) {
-		pr_err_ratelimited("ec_generic: %s: batman-adv mesh, which loses frames; use an Ethernet interface\n",
-		       nd->name);
+		pr_err_ratelimited("ec_generic: %s: batman-adv mesh loses EtherCAT frames; use an Ethernet interface\n",
+				   nd->name);
 		return -EOPNOTSUPP;
 	}
 	if (nd->mtu < ETH_DATA_LEN) {
@@ -205,14 +203,14 @@ static int claim(struct gen *g)
 		return ret;
 	ret = dev_open(g->nd, NULL);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: %s: cannot be brought up (%pe)\n", g->nd->name,
-				   ERR_PTR(ret));
+		pr_err_ratelimited("ec_generic: %s: cannot bring up the interface (%pe)\n",
+				   g->nd->name, ERR_PTR(ret));
 		return ret;
 	}
 	ret = netdev_rx_handler_register(g->nd, receive, g);
 	if (ret) {
-		pr_err_ratelimited("ec_generic: %s: frames cannot be received (%pe); use the device below\n",
-		       g->nd->name, ERR_PTR(ret));
+		pr_err_ratelimited("ec_generic: %s: cannot receive its frames (%pe); use the underlying interface\n",
+				   g->nd->name, ERR_PTR(ret));
 		return ret;
 	}
 	g->hook = (struct nf_hook_ops){
@@ -504,7 +502,7 @@ static bool is_any(const char *spec)
 	return mac_pton(spec, mac) && is_broadcast_ether_addr(mac);
 }
 
-/* Why no network device is what main_devices= says; NULL: one is, and was refused. */
+/* Why no network device matches main_devices=; NULL: one does, and was refused. */
 static const char * __init why_waiting(const char *spec)
 {
 	const char *why = "is neither the name nor the MAC address of a network interface";
@@ -512,19 +510,19 @@ static const char * __init why_waiting(const char *spec)
 	bool any = is_any(spec);
 
 	if (any)
-		why = "stands for the first Ethernet interface that no other master has, there is none yet";
+		why = "selects the first free Ethernet interface, none is present";
 	rtnl_lock();
 	for_each_netdev(&init_net, nd) {
 		if (any && wanted(nd) && !find(nd))
 			why = NULL;
 		if (!strcmp(spec, nd->name) || has_address(nd, spec))
-			why = nd->type == ARPHRD_ETHER ? NULL : "is no Ethernet interface";
+			why = nd->type == ARPHRD_ETHER ? NULL : "is not an Ethernet interface";
 	}
 	rtnl_unlock();
 	return why;
 }
 
-/* A name that is mistyped waits for ever, one whose driver comes later does not. */
+/* A mistyped name waits forever; a name whose driver is loaded later does not. */
 static void __init report_waiting(void)
 {
 	unsigned int i = 0, master;

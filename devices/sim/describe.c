@@ -94,11 +94,11 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 	if (ec_desc_is(&w, "yes"))
 		p->cpu = true;
 	else if (w.s && !ec_desc_is(&w, "no"))
-		return ec_desc_fail(d, "cpu '", &w, "'? It is yes or no");
+		return ec_desc_fail(d, "invalid cpu '", &w, "': expected yes or no");
 	w = ec_desc_value(d, "motor");
 	if (w.s && !ec_desc_is(&w, "AM8121"))
-		return ec_desc_fail(d, "motor '", &w,
-				    "' is not known; only AM8121 is");
+		return ec_desc_fail(d, "unknown motor '", &w,
+				    "': expected AM8121");
 	return 0;
 }
 
@@ -136,11 +136,11 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	w = ec_desc_value(d, "eeprom");
 	c->eeprom_emulated = ec_desc_is(&w, "emulated");
 	if (w.s && !c->eeprom_emulated && !ec_desc_is(&w, "chip"))
-		return ec_desc_fail(d, "eeprom '", &w, "'? It is chip or emulated");
+		return ec_desc_fail(d, "invalid eeprom '", &w, "': expected chip or emulated");
 	w = ec_desc_value(d, "ip");
 	c->no_ip = ec_desc_is(&w, "no");
 	if (w.s && !c->no_ip && !ec_desc_is(&w, "yes"))
-		return ec_desc_fail(d, "ip '", &w, "'? It is yes or no");
+		return ec_desc_fail(d, "invalid ip '", &w, "': expected yes or no");
 	w = ec_desc_value(d, "dc");
 	c->clock_bits = ec_desc_is(&w, "64") ? 64 : ec_desc_is(&w, "32") ? 32 :
 			ec_desc_is(&w, "delay") ? EC_APP_CLOCK_DELAY :
@@ -179,7 +179,7 @@ static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
 		return ec_desc_fail(d, "'", file,
 			"': files cannot be read here; use a device of the catalogue");
 	if (!file->n || file->n >= sizeof(name))
-		return ec_desc_fail(d, "a file name is empty or too long", NULL,
+		return ec_desc_fail(d, "invalid file name: empty or too long", NULL,
 				    "");
 	memcpy(name, file->s, file->n);
 	name[file->n] = '\0';
@@ -189,7 +189,7 @@ static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
 	len = d->loader->load(d->loader->ctx, name, buf, IMAGE_MAX);
 	if (len < 0) {
 		ec_sim_release(d->sim, buf);
-		ec_desc_fail(d, "cannot read '", file, "'; check its name and place");
+		ec_desc_fail(d, "cannot read '", file, "'; check the path");
 		return len;
 	}
 	*m = len > (int)IMAGE_MAX ? NULL :
@@ -212,8 +212,8 @@ static int model_of(struct ec_desc *d, const struct ec_desc_word *device,
 	if (!dev && ec_desc_is(device, DEVICE_ALIASES))
 		dev = ec_app_catalogue("750-354", 7);
 	if (!dev)
-		return ec_desc_fail(d, "no device '", device,
-			"'; there are EK1100, EL1008, EL2008, EL3062, EL4002, EL7201, drive, io...");
+		return ec_desc_fail(d, "unknown device '", device,
+			"': expected EK1100, EL1008, EL2008, EL3062, EL4002, EL7201, drive, io...");
 	for (u32 i = 0; i < d->n_models; i++) {
 		*m = d->model[i];
 		if ((*m)->table == dev && same(&(*m)->params, p)) {
@@ -294,7 +294,7 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	device = file.s ? NULL : ec_desc_next(d);
 	if (!file.s && !device)
 		return ec_desc_fail(d, "slave '", name,
-				    "' needs a device (EL2008) or file=IMAGE");
+				    "' has neither device nor EEPROM image; add EL2008 or file=IMAGE");
 	ret = params_read(d, &p);
 	if (!ret)
 		ret = config_read(d, &c, &cable);
@@ -306,9 +306,9 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 		       model_of(d, device, &p, &m);
 	if (!ret && c.eeprom_emulated && m->emulation)
 		ret = ec_desc_fail(d, "'", name,
-				   "' has no CPU that could emulate an EEPROM; leave eeprom= out");
+				   "' has no CPU to emulate an EEPROM; remove eeprom=");
 	if (!ret && (p.soe || p.voe) && (m->emulation || !m->dev.std.rx_len))
-		ret = ec_desc_fail(d, "'", name, "' has no mailbox; leave soe= and voe= out");
+		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe= and voe=");
 	for (u32 i = 0; i < count && !ret; i++) {
 		if (i)
 			c.clock_start = (u64)ec_sim_random(d->sim) << 4;
@@ -329,13 +329,13 @@ static int do_repeat(struct ec_desc *d)
 	int ret;
 
 	if (!w)
-		return ec_desc_fail(d, "write it as: repeat 100 slave d drive",
+		return ec_desc_fail(d, "invalid repeat: expected repeat 100 slave d drive",
 				    NULL, "");
 	ret = ec_desc_parse_number(d, w, 1, 65535, &n);
 	if (ret)
 		return ret;
 	if (!ec_desc_is(ec_desc_next(d), "slave"))
-		return ec_desc_fail(d, "only slaves can be repeated: repeat 100 slave d drive",
+		return ec_desc_fail(d, "only slaves can be repeated; expected repeat 100 slave d drive",
 				    NULL, "");
 	return do_slave(d, (u32)n, true);
 }
@@ -399,7 +399,7 @@ static int do_wire(struct ec_desc *d)
 	int ret;
 
 	if (!b || !ec_desc_is(to, "->"))
-		return ec_desc_fail(d, "write it as: wire coupler.1 -> out.0",
+		return ec_desc_fail(d, "invalid wire: expected wire coupler.1 -> out.0",
 				    NULL, "");
 	ret = wire_end(d, a, &w.a, &w.a_port);
 	if (!ret)
@@ -439,11 +439,11 @@ static int channel(struct ec_desc *d, struct ec_desc_word *w,
 	*app = d->node[slave].app;
 	if (!n || n > (*app)->model->n_chan[dir])
 		return ec_desc_fail(d, "'", w, dir == EC_APP_OUT ?
-			"' is no output channel; they count from 1" :
-			"' is no input channel; they count from 1");
+			"' is no output channel; channels count from 1" :
+			"' is no input channel; channels count from 1");
 	*chan = (u16)(n - 1);
 	if (dir == EC_APP_IN && (*app)->src[*chan].kind != EC_APP_SRC_NONE)
-		return ec_desc_fail(d, "input '", w, "' is connected already; it takes one source");
+		return ec_desc_fail(d, "input '", w, "' already has a source; remove one of them");
 	return 0;
 }
 
@@ -457,7 +457,7 @@ static int do_connect(struct ec_desc *d)
 	int ret;
 
 	if (!b || !ec_desc_is(to, "->"))
-		return ec_desc_fail(d, "write it as: connect ao.1 -> ai.1",
+		return ec_desc_fail(d, "invalid connect: expected connect ao.1 -> ai.1",
 				    NULL, "");
 	ret = channel(d, a, EC_APP_OUT, &from, &from_chan);
 	if (!ret)
@@ -499,7 +499,7 @@ static int do_source(struct ec_desc *d, enum ec_app_source_kind kind)
 	if (ret)
 		return ret;
 	if (kind != EC_APP_SRC_CONST && (!src.period_ns || !src.amplitude))
-		return ec_desc_fail(d, "write it as: sine ai.1 amplitude=10000 period=1s",
+		return ec_desc_fail(d, "invalid source: expected sine ai.1 amplitude=10000 period=1s",
 				    NULL, "");
 	ec_app_set_source(app, chan, &src);
 	return 0;
@@ -531,8 +531,8 @@ static int statement(struct ec_desc *d)
 	else if (ec_desc_is(w, "fault"))
 		ret = ec_desc_fault(d);
 	else
-		return ec_desc_fail(d, "no statement '", w ? w : &d->w[0],
-			"'; there are segment, slave, repeat, branch, wire, connect, const, ramp, sine, fault");
+		return ec_desc_fail(d, "unknown statement '", w ? w : &d->w[0],
+			"': expected segment, slave, repeat, branch, wire, connect, const, ramp, sine, fault");
 	return ret ? ret : ec_desc_end(d);
 }
 
@@ -564,7 +564,7 @@ static int count(struct ec_desc *d, const char *p, const char *end)
 	}
 	d->line = 0;
 	return d->max_nodes ? 0 :
-		ec_desc_fail(d, "no slave at all; write for example: slave out EL2008",
+		ec_desc_fail(d, "no slave in the description; add for example: slave out EL2008",
 			     NULL, "");
 }
 
@@ -585,7 +585,7 @@ static int wire_all(struct ec_desc *d)
 			continue;
 		d->line = n->line;
 		name = name_of(n);
-		return ec_desc_fail(d, "'", &name, "' cannot be connected: that port is in use or missing");
+		return ec_desc_fail(d, "'", &name, "' cannot be connected: the port is in use or missing");
 	}
 	for (u32 i = 0; i < d->n_wires; i++) {
 		const struct ec_desc_wire *w = &d->wire[i];
@@ -596,7 +596,7 @@ static int wire_all(struct ec_desc *d)
 				back ? w->b_port : w->a_port,
 				back ? w->a : w->b, back ? w->a_port : w->b_port,
 				w->cable_ns))
-			return ec_desc_fail(d, "this wire cannot be laid: a port is in use or missing",
+			return ec_desc_fail(d, "cannot connect the wire: a port is in use or missing",
 					    NULL, "");
 	}
 	return 0;
@@ -634,8 +634,8 @@ static int find_islands(struct ec_desc *d)
 			continue;
 		name = name_of(&d->node[i]);
 		d->line = d->node[i].line;
-		return ec_desc_fail(d, "no way from a master to '", &name,
-				    "': the wires make an island; connect it to master.0");
+		return ec_desc_fail(d, "no path from a master to '", &name,
+				    "'; connect its segment to master.0");
 	}
 	return 0;
 }

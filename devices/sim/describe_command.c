@@ -10,9 +10,9 @@ static int read_line(struct ec_desc *d, const char *text, size_t len)
 	if (ret)
 		return ret;
 	if (p < end)
-		return ec_desc_fail(d, "one fault at a time, on one line", NULL, "");
+		return ec_desc_fail(d, "expected one fault on one line", NULL, "");
 	if (!d->n)
-		return ec_desc_fail(d, "no fault given; write for example: cut NAME.1", NULL, "");
+		return ec_desc_fail(d, "no fault given; expected for example: cut NAME.1", NULL, "");
 	if (ec_desc_is(&d->w[0], "fault"))
 		ec_desc_next(d);
 	ret = ec_desc_fault(d);

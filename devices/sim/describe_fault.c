@@ -58,7 +58,7 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 		if (ec_desc_is(w, states[i].name))
 			f->arg = states[i].state;
 	if (!f->arg)
-		return ec_desc_fail(d, "write it as: fault refuse NAME SAFEOP code=0x1d",
+		return ec_desc_fail(d, "invalid refuse: expected fault refuse NAME SAFEOP code=0x1d",
 				    NULL, "");
 	if (ec_desc_number(d, "code", 1, 0xFFFF, &code))
 		return -EINVAL;
@@ -86,7 +86,7 @@ static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 		f->arg2 = (u32)code;
 		return 0;
 	}
-	return ec_desc_fail(d, "mailbox messages are good, or wrong: length, short, counter, type, babble, error code=N, abort code=N",
+	return ec_desc_fail(d, "invalid mailbox fault: expected good, length, short, counter, type, babble, error code=N or abort code=N",
 			    NULL, "");
 }
 
@@ -95,7 +95,7 @@ static int latch(struct ec_desc *d, struct ec_sim_fault *f)
 	struct ec_desc_word *w = ec_desc_next(d), edge;
 
 	if (!ec_desc_is(w, "0") && !ec_desc_is(w, "1"))
-		return ec_desc_fail(d, "write it as: fault latch NAME 0|1 [edge=rising|falling|pulse]",
+		return ec_desc_fail(d, "invalid latch: expected fault latch NAME 0|1 [edge=rising|falling|pulse]",
 				    NULL, "");
 	f->arg = ec_desc_is(w, "1");
 	edge = ec_desc_value(d, "edge");
@@ -103,7 +103,7 @@ static int latch(struct ec_desc *d, struct ec_sim_fault *f)
 		  ec_desc_is(&edge, "falling") ? EC_SIM_EDGE_FALLING :
 		  ec_desc_is(&edge, "pulse") ? EC_SIM_EDGE_RISING | EC_SIM_EDGE_FALLING : 0;
 	if (!f->arg2)
-		return ec_desc_fail(d, "edge '", &edge, "'? It is rising, falling or pulse");
+		return ec_desc_fail(d, "invalid edge '", &edge, "': expected rising, falling or pulse");
 	return 0;
 }
 
@@ -125,7 +125,7 @@ static int frame(struct ec_desc *d, struct ec_sim_fault *f)
 	if (ret)
 		return ret;
 	if (!n == (ppb < 0))
-		return ec_desc_fail(d, "write which frames: frame=100 for the 100th, or rate=10ppm",
+		return ec_desc_fail(d, "no frames selected: expected frame=100 for the 100th frame, or rate=10ppm",
 				    NULL, "");
 	f->port = (int)port;
 	f->arg = (u32)n;
@@ -142,7 +142,7 @@ static int option(struct ec_desc *d, struct ec_sim_fault *f, const char *key,
 	if (ec_desc_number(d, key, min, max, &v))
 		return -EINVAL;
 	if (v == max + 1)
-		return ec_desc_fail(d, "a number is missing: ",
+		return ec_desc_fail(d, "missing number: ",
 			&(struct ec_desc_word){ .s = key, .n = strlen(key) },
 			"=N");
 	f->arg = (u32)v;
@@ -189,9 +189,9 @@ static int voe(struct ec_desc *d, u64 at)
 	if (slave < 0)
 		return slave;
 	if (d->command)
-		return ec_desc_fail(d, "VoE messages are scripted in a description only", NULL, "");
+		return ec_desc_fail(d, "VoE messages are accepted in a description only", NULL, "");
 	if (!d->node[slave].app->model->params.voe)
-		return ec_desc_fail(d, "this slave has no VoE; give it voe=TYPE", NULL, "");
+		return ec_desc_fail(d, "the slave has no VoE; add voe=TYPE to it", NULL, "");
 	if (ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor) ||
 	    ec_desc_number(d, "type", 0, 0xFFFF, &type) ||
 	    ec_desc_number(d, "size", 0, 1474, &size))
@@ -219,7 +219,7 @@ static int target(struct ec_desc *d, const struct verb *v,
 		if (f->slave < 0)
 			return f->slave;
 		if (!n || n > d->node[f->slave].app->model->n_chan[EC_APP_IN])
-			return ec_desc_fail(d, "'", w, "' is no input channel; they count from 1");
+			return ec_desc_fail(d, "'", w, "' is no input channel; channels count from 1");
 		f->arg = (u32)n - 1;
 		return 0;
 	}
@@ -246,7 +246,7 @@ static int value(struct ec_desc *d, struct ec_sim_fault *f)
 	if (ec_desc_number(d, "value", min, max, &v))
 		return -EINVAL;
 	if (v > max)
-		return ec_desc_fail(d, "a number is missing: value=N", NULL, "");
+		return ec_desc_fail(d, "missing number: value=N", NULL, "");
 	if (!input && (u64)f->arg * 2 + 2 > ec_sim_at(d->sim, (u32)f->slave)->eep.len)
 		return ec_desc_fail(d, "the EEPROM ends before this word", NULL, "");
 	f->arg2 = input ? 0 : (u32)v;
@@ -305,8 +305,8 @@ int ec_desc_fault(struct ec_desc *d)
 		if (ec_desc_is(w, verbs[i].name))
 			v = &verbs[i];
 	if (!v)
-		return ec_desc_fail(d, "no fault '", w ? w : &d->w[0],
-			"'; there are cut, heal, off, on, lose, refuse, mute... (describe.h)");
+		return ec_desc_fail(d, "unknown fault '", w ? w : &d->w[0],
+			"': expected cut, heal, off, on, lose, refuse, mute... (see describe.h)");
 	f.type = v->type;
 	f.arg = v->arg;
 	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);
@@ -320,6 +320,6 @@ int ec_desc_fault(struct ec_desc *d)
 	}
 	if (!ec_sim_add_fault(d->sim, &f))
 		return 0;
-	return ec_desc_fail(d, "the segment takes no more faults, or not this one",
+	return ec_desc_fail(d, "cannot add the fault: too many faults, or the fault is invalid here",
 			    NULL, "");
 }

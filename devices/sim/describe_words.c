@@ -148,7 +148,7 @@ int ec_desc_end(struct ec_desc *d)
 	for (u32 i = 0; i < d->n; i++)
 		if (!d->w[i].used)
 			return ec_desc_fail(d, "'", &d->w[i],
-				"' is not known here, or given twice; remove it");
+				"' is unknown here or given twice; remove it");
 	return 0;
 }
 
@@ -253,7 +253,7 @@ int ec_desc_parse_number(struct ec_desc *d, const struct ec_desc_word *w,
 		i += 2;
 	}
 	if (!digits(w, &i, base, &u) || i != w->n)
-		return ec_desc_fail(d, "'", w, "' is not a number; write 12 or 0x0c");
+		return ec_desc_fail(d, "'", w, "' is not a number: expected 12 or 0x0c");
 	*v = minus ? -(s64)u : (s64)u;
 	if (*v < min || *v > max)
 		return ec_desc_fail(d, "'", w, "' is out of range");
@@ -296,7 +296,7 @@ int ec_desc_time(struct ec_desc *d, const char *key, u64 max, u64 *v)
 	if (!w.s)
 		return 0;
 	if (!scaled(&w, times, &ns) || ns < 0)
-		return ec_desc_fail(d, "'", &w, "' is not a time; write 600ns, 10us, 1.5ms or 2s");
+		return ec_desc_fail(d, "'", &w, "' is not a time: expected 600ns, 10us, 1.5ms or 2s");
 	if ((u64)ns > max)
 		return ec_desc_fail(d, "'", &w, "' is too long here");
 	*v = (u64)ns;
@@ -320,7 +320,7 @@ int ec_desc_rate(struct ec_desc *d, const char *key, s64 max_ppb, s64 *ppb)
 	if (!w.s)
 		return 0;
 	if (!scaled(&w, rates, ppb))
-		return ec_desc_fail(d, "'", &w, "' is not a rate; write 25ppm or 300ppb");
+		return ec_desc_fail(d, "'", &w, "' is not a rate: expected 25ppm or 300ppb");
 	if (*ppb > max_ppb || *ppb < -max_ppb)
 		return ec_desc_fail(d, "'", &w, "' is too much here");
 	return 0;
@@ -343,12 +343,12 @@ int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 	size_t dot;
 
 	if (!w)
-		return ec_desc_fail(d, "something like out.1 is missing: the name of a slave, a dot, a number",
+		return ec_desc_fail(d, "missing channel or port: expected the name of a slave, a dot and a number, as out.1",
 				    NULL, "");
 	for (dot = w->n; dot && w->s[dot - 1] != '.'; dot--)
 		;
 	if (dot < 2)
-		return ec_desc_fail(d, "'", w, "' needs a number: write it as out.1");
+		return ec_desc_fail(d, "'", w, "' has no number: expected for example out.1");
 	*name = (struct ec_desc_word){ .s = w->s, .n = dot - 1 };
 	n = (struct ec_desc_word){ .s = w->s + dot, .n = w->n - dot };
 	return ec_desc_parse_number(d, &n, 0, 65535, number);
@@ -365,9 +365,9 @@ int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w)
 {
 	if (!w)
-		return ec_desc_fail(d, "the name of a slave is missing", NULL, "");
+		return ec_desc_fail(d, "missing name of a slave", NULL, "");
 	for (u32 i = d->n_nodes; i--; )
 		if (ec_desc_is(w, d->node[i].app->name))
 			return (int)i;
-	return ec_desc_fail(d, "no slave '", w, "' so far; define it above this line");
+	return ec_desc_fail(d, "unknown slave '", w, "'; define it above this line");
 }

@@ -91,7 +91,7 @@ static struct ec_sim *build(const char *name)
 		return ERR_PTR(-ENOMEM);
 	n = load(NULL, name, buf, TEXT_MAX);
 	if (n < 0) {
-		pr_err("ec_sim: segment=%s: no built-in segment (thin, three, bench, line100, line1000), and no file that can be read (%pe)\n",
+		pr_err("ec_sim: segment=%s: neither a built-in segment (thin, three, bench, line100, line1000) nor a readable file (%pe)\n",
 		       name, ERR_PTR(n));
 		sim = ERR_PTR(n);
 	} else {
@@ -127,7 +127,7 @@ static int respond(void)
 	struct ec_sim *sim;
 
 	if (n_segment > 1) {
-		pr_err("ec_sim: netdev= takes one segment, not %u\n", n_segment);
+		pr_err("ec_sim: netdev= needs one segment, segment= has %u\n", n_segment);
 		return -EINVAL;
 	}
 	sim = build(segment[0]);

@@ -122,12 +122,12 @@ static int attach(struct end *e, struct net_device *nd)
 
 	ASSERT_RTNL();
 	if (nd->type != ARPHRD_ETHER) {
-		pr_err_ratelimited("ec_sim: %s is no Ethernet device\n", e->name);
+		pr_err_ratelimited("ec_sim: %s is not an Ethernet device\n", e->name);
 		return -EINVAL;
 	}
 	ret = dev_open(nd, NULL);
 	if (ret) {
-		pr_err_ratelimited("ec_sim: %s cannot be brought up (%pe)\n", e->name,
+		pr_err_ratelimited("ec_sim: cannot bring up %s (%pe)\n", e->name,
 				   ERR_PTR(ret));
 		return ret;
 	}
@@ -135,7 +135,7 @@ static int attach(struct end *e, struct net_device *nd)
 	rcu_assign_pointer(e->nd, nd);
 	ret = netdev_rx_handler_register(nd, receive, e);
 	if (ret) {
-		pr_err_ratelimited("ec_sim: %s cannot be claimed (%pe)%s\n", e->name,
+		pr_err_ratelimited("ec_sim: cannot claim %s (%pe)%s\n", e->name,
 				   ERR_PTR(ret),
 				   ret == -EBUSY ? ": in use by a master, bridge or bond" : "");
 		rcu_assign_pointer(e->nd, NULL);
@@ -218,7 +218,7 @@ static int attach_all(struct ec_sim_responder *r)
 		if (nd) {
 			ret = attach(&r->end[i], nd);
 		} else {
-			pr_err("ec_sim: there is no network device '%s'\n", r->end[i].name);
+			pr_err("ec_sim: no network device '%s'\n", r->end[i].name);
 			ret = -ENODEV;
 		}
 	}

@@ -316,13 +316,13 @@ idle_does_no_harm() {
 	master veth0
 	run responder thin veth7
 	[ "$status" != 0 ]
-	dmesg | grep -q "ec_sim: there is no network device 'veth7'"
+	dmesg | grep -q "ec_sim: no network device 'veth7'"
 	run responder thin lo
 	[ "$status" != 0 ]
-	dmesg | grep -q 'ec_sim: lo is no Ethernet device'
+	dmesg | grep -q 'ec_sim: lo is not an Ethernet device'
 	run responder thin veth0
 	[ "$status" != 0 ]
-	dmesg | grep -q 'ec_sim: veth0 cannot be claimed'
+	dmesg | grep -q 'ec_sim: cannot claim veth0'
 }
 
 @test "modules come and go under load" {

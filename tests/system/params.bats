@@ -67,7 +67,7 @@ no_insmod() {
 	ethercat master | grep -qE 'Main: ([0-9a-f]{2}:){5}[0-9a-f]{2} \(attached\)'
 }
 
-@test "an address that no interface has is reported; lo is no Ethernet interface" {
+@test "an address that no interface has is reported; lo is not an Ethernet interface" {
 	master main_devices=02:00:00:00:77:77
 	generic
 	one_line '"02:00:00:00:77:77" is neither the name nor the MAC address'
@@ -76,13 +76,13 @@ no_insmod() {
 	dmesg -C
 	master main_devices=lo
 	generic
-	one_line '"lo" is no Ethernet interface'
+	one_line '"lo" is not an Ethernet interface'
 }
 
 @test "the broadcast address waits for any Ethernet interface, and says so" {
 	master main_devices=ff:ff:ff:ff:ff:ff
 	generic
-	one_line '"ff:ff:ff:ff:ff:ff" stands for the first Ethernet interface that no other master has, there is none yet; master 0 waits'
+	one_line '"ff:ff:ff:ff:ff:ff" selects the first free Ethernet interface, none is present; master 0 waits'
 	dmesg -C
 	ip link add veth0 type veth peer name veth1
 	wait_for 60 eval 'ethercat master | grep -q "(attached)"'
@@ -108,7 +108,7 @@ no_insmod() {
 
 @test "an unknown segment: insmod fails with one line; sim1 of one segment is reported" {
 	master main_devices=sim1
-	no_insmod 'segment=bnech: no built-in segment \(thin, three, .*ENOENT' sim segment=bnech
+	no_insmod 'segment=bnech: neither a built-in segment \(thin, three, .*ENOENT' sim segment=bnech
 	dmesg -C
 	sim segment=thin
 	one_line '"sim1" is not offered, segment= names 1 segment\(s\); master 0 waits'
@@ -116,8 +116,8 @@ no_insmod() {
 
 @test "ec_sim at an interface that is not there: insmod fails with one line" {
 	master main_devices=veth0
-	no_insmod "there is no network device 'veth7'" sim segment=thin netdev=veth7
-	no_insmod 'lo is no Ethernet device' sim segment=thin netdev=lo
+	no_insmod "no network device 'veth7'" sim segment=thin netdev=veth7
+	no_insmod 'lo is not an Ethernet device' sim segment=thin netdev=lo
 }
 
 @test "the limit of acyclic frames is refused outside its range, and changes while the module is loaded" {

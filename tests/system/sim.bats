@@ -58,7 +58,7 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	program
 	run "$EC_BUILD/tool/ethercat-sim" -s "$SEG" veth1
 	[ "$status" = 1 ]
-	[[ $output == *'another ethercat-sim is at veth1'* ]]
+	[[ $output == *'another ethercat-sim uses veth1'* ]]
 	kill "$SIM"
 	wait "$SIM" || true
 	ip link set veth0 down

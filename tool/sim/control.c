@@ -27,7 +27,7 @@ static int address(struct sockaddr_un *a, const char *path)
 		strcpy(a->sun_path, path);
 		return 0;
 	}
-	fprintf(stderr, "ethercat-sim: %s: the path of a socket has at most %zu characters\n",
+	fprintf(stderr, "ethercat-sim: %s: path of the socket too long, limit %zu characters\n",
 		path, sizeof(a->sun_path) - 1);
 	return -1;
 }
@@ -145,7 +145,7 @@ int control_tell(const char *path, const char *text)
 	} else {
 		n = recv(fd, answer, sizeof(answer), 0);
 		if (n < 0)
-			fprintf(stderr, "ethercat-sim: no answer from %s: %s\n", path,
+			fprintf(stderr, "ethercat-sim: no reply from %s: %s\n", path,
 				strerror(errno));
 		else if (n)
 			fprintf(stderr, "ethercat-sim: %.*s\n", (int)n, answer);

@@ -65,7 +65,7 @@ static char *text_of(const char *name, size_t *len)
 	}
 	n = slurp(name, text, TEXT_MAX);
 	if (n < 0) {
-		fprintf(stderr, "ethercat-sim: '%s' is no built-in segment (see --list) and cannot be read: %s\n",
+		fprintf(stderr, "ethercat-sim: '%s' is neither a built-in segment (see --list) nor a readable file: %s\n",
 			name, n == -EFBIG ? "larger than 1 MiB" : strerror((int)-n));
 		free(text);
 		return NULL;

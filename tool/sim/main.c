@@ -12,26 +12,26 @@
 static const char usage[] =
 "Usage: ethercat-sim [OPTIONS] INTERFACE [INTERFACE2]\n"
 "\n"
-"Answers EtherCAT frames that arrive at an interface (veth, tap, NIC) as a\n"
-"segment of slaves would. INTERFACE2 is where a second port of the master is:\n"
-"the other end of a ring.\n"
+"Simulates a segment of slaves: processes the EtherCAT frames received at INTERFACE\n"
+"(veth, tap, NIC) and sends them back. INTERFACE2 is the other end of a ring, for the\n"
+"second port of a master.\n"
 "\n"
 "  -s, --segment NAME   built-in segment or file with a description (default: bench)\n"
-"      --control PATH   socket at which faults are taken while it runs\n"
+"      --control PATH   socket that accepts faults while the simulator runs\n"
 "      --tell PATH FAULT...  send a fault to the ethercat-sim with this socket\n"
-"      --seed N         in place of the seed of the segment\n"
+"      --seed N         replaces the seed of the segment\n"
 "      --bug NAME       a deliberate error of the model, to test other programs\n"
 "  -v, --verbose        counters every second\n"
 "  -l, --list           the built-in segments\n"
 "      --list-bugs      the deliberate errors\n"
-"  -c, --check NAME     only read a description: 'FILE:LINE: what is wrong'\n"
+"  -c, --check NAME     only check a description; errors as 'FILE:LINE: TEXT'\n"
 "  -h, --help\n"
 "      --version\n"
 "\n"
-"Needs root or CAP_NET_RAW, and the interface up and not in use otherwise.\n"
-"Real time is model time, so answers are as exact as the machine's timers.\n"
-"Ends with SIGINT or SIGTERM (status 0) or when an interface disappears (1).\n"
-"devices/sim/describe.h explains how to describe a segment.\n";
+"Needs root or CAP_NET_RAW. The interface must be up and must have no other user.\n"
+"Model time is real time: replies are as punctual as the timers of this machine.\n"
+"Exits on SIGINT or SIGTERM (status 0) or when an interface disappears (1).\n"
+"devices/sim/describe.h describes the syntax of a segment.\n";
 
 struct options {
 	const char *segment;
@@ -53,8 +53,8 @@ static int parse_seed(const char *text, long long *seed)
 	*seed = strtoll(text, &end, 0);
 	if (!errno && end != text && !*end && *seed >= 0 && *seed <= EC_SIM_SEED_MAX)
 		return 0;
-	fprintf(stderr, "ethercat-sim: --seed takes a number from 0 to %lld, not '%s'\n",
-		EC_SIM_SEED_MAX, text);
+	fprintf(stderr, "ethercat-sim: invalid --seed '%s': expected 0 to %lld\n",
+		text, EC_SIM_SEED_MAX);
 	return -1;
 }
 
@@ -66,7 +66,7 @@ static int parse_bug(const char *text, enum ec_sim_bug *bug)
 			return 0;
 		}
 	}
-	fprintf(stderr, "ethercat-sim: no bug '%s' (see --list-bugs)\n", text);
+	fprintf(stderr, "ethercat-sim: unknown bug '%s' (see --list-bugs)\n", text);
 	return -1;
 }
 
@@ -161,7 +161,7 @@ static int tell(const struct options *o, char **words, int n)
 		len += (size_t)snprintf(text + len, sizeof(text) - len, "%s%s", i ? " " : "",
 					words[i]);
 		if (len >= sizeof(text)) {
-			fprintf(stderr, "ethercat-sim: a fault has at most %zu characters\n",
+			fprintf(stderr, "ethercat-sim: invalid fault: more than %zu characters\n",
 				sizeof(text) - 1);
 			return 2;
 		}
@@ -221,7 +221,7 @@ int main(int argc, char **argv)
 	}
 	if (n < 1 || n > EC_SIM_PORTS) {
 		fprintf(stderr, "ethercat-sim: %s\nTry 'ethercat-sim --help'.\n",
-			n ? "at most two interfaces" : "which interface?");
+			n ? "more than two interfaces" : "missing argument: INTERFACE");
 		return 2;
 	}
 	if (n == 2 && !strcmp(argv[optind], argv[optind + 1])) {

@@ -37,17 +37,17 @@ static int check_kind(struct port *p)
 	struct ifreq r;
 
 	if (request(p, SIOCGIFINDEX, &r)) {
-		fprintf(stderr, "ethercat-sim: there is no interface '%s' ('ip link' lists them)\n",
+		fprintf(stderr, "ethercat-sim: no interface '%s'; 'ip link' lists the interfaces\n",
 			p->name);
 		return -1;
 	}
 	p->index = r.ifr_ifindex;
 	if (request(p, SIOCGIFHWADDR, &r) || r.ifr_hwaddr.sa_family != ARPHRD_ETHER) {
-		fprintf(stderr, "ethercat-sim: %s is no Ethernet interface\n", p->name);
+		fprintf(stderr, "ethercat-sim: %s is not an Ethernet interface\n", p->name);
 		return -1;
 	}
 	if (request(p, SIOCGIFFLAGS, &r) || !(r.ifr_flags & IFF_UP)) {
-		fprintf(stderr, "ethercat-sim: %s is down; do 'ip link set %s up' first\n",
+		fprintf(stderr, "ethercat-sim: %s is down; run 'ip link set %s up' first\n",
 			p->name, p->name);
 		return -1;
 	}
@@ -69,7 +69,7 @@ static int claim(struct port *p)
 		  (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1 + (size_t)n)))
 		return 0;
 	if (errno == EADDRINUSE)
-		fprintf(stderr, "ethercat-sim: another ethercat-sim is at %s; stop it first\n",
+		fprintf(stderr, "ethercat-sim: another ethercat-sim uses %s; stop it first\n",
 			p->name);
 	else
 		fprintf(stderr, "ethercat-sim: cannot claim %s: %s\n", p->name, strerror(errno));
@@ -131,15 +131,15 @@ int port_open(struct port *p, const char *name)
 	p->fd = -1;
 	p->claim = -1;
 	if (strlen(name) >= sizeof(p->name)) {
-		fprintf(stderr, "ethercat-sim: there is no interface '%s': a name has at most %zu characters\n",
+		fprintf(stderr, "ethercat-sim: invalid interface name '%s': limit %zu characters\n",
 			name, sizeof(p->name) - 1);
 		return -1;
 	}
 	strcpy(p->name, name);
 	p->fd = socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 	if (p->fd < 0) {
-		fprintf(stderr, "ethercat-sim: no packet socket: %s%s\n", strerror(errno),
-			errno == EPERM ? "; run as root or with CAP_NET_RAW" : "");
+		fprintf(stderr, "ethercat-sim: cannot create a packet socket: %s%s\n",
+			strerror(errno), errno == EPERM ? "; run as root or with CAP_NET_RAW" : "");
 		return -1;
 	}
 	return check_kind(p) || claim(p) || attach(p) ? -1 : 0;
