@@ -133,7 +133,8 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write)
 	if (m.n == 1)
 		ret = dev_open(d, m.v[0], write);
 	else if (m.n)
-		ret = usage_error("%u masters found, the command needs one; select it with -m", count);
+		ret = usage_error("%u masters found, the command needs one; select it with -m",
+				  count);
 	else
 		ret = usage_error("-m selects none of the %u master(s) present", count);
 	numbers_free(&m);

@@ -21,11 +21,11 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 14,
+    ("lines", "master"): 40,
     ("lines", "lib"): 2,
-    ("lines", "tests"): 186,
-    ("lines", "Documentation"): 659,
-    ("lines", "README.md"): 29,
+    ("lines", "tests"): 225,
+    ("lines", "Documentation"): 31,
+    ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 16,
     ("checkpatch", "master"): 35,
 }

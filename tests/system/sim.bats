@@ -44,7 +44,7 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	tell fault input io.3 value=1
 	run tell off nobody
 	[ "$status" = 1 ]
-	[[ $output == *"no slave 'nobody'"* ]]
+	[[ $output == *"unknown slave 'nobody'"* ]]
 	run tell
 	[ "$status" = 1 ]
 	[[ $output == *'no fault given'* ]]
@@ -81,7 +81,7 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	[ "$(ethercat sii_read -p0 | od -An -tu2 -j8 -N2 | tr -d ' ')" = 77 ]
 	run bash -c "echo 'off nobody' >$file"
 	[ "$status" != 0 ]
-	dmesg | grep -q "ec_sim: sim0: no slave 'nobody'"
+	dmesg | grep -q "ec_sim: sim0: unknown slave 'nobody'"
 	run setpriv --reuid 65534 --clear-groups bash -c "echo 'off axis' >$file"
 	[ "$status" != 0 ]
 }
