@@ -24,7 +24,7 @@ LIMITS = {
     ("lines", "master"): 40,
     ("lines", "lib"): 2,
     ("lines", "tests"): 225,
-    ("lines", "Documentation"): 31,
+    ("lines", "Documentation"): 62,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 16,
     ("checkpatch", "master"): 35,
