@@ -7,8 +7,7 @@
 #include "link/device.h"
 #include "master.h"
 #include "session/session.h"
-#include "bus/slave.h"
-#include "bus/slave_pdo.h"
+#include "config/apply.h"
 
 static struct ec_master *masters[EC_MAX_MASTERS];
 static unsigned int n_masters;
@@ -28,7 +27,7 @@ static void device(struct ec_links *l, const struct ec_link *link, bool attached
 	struct ec_master *m = container_of(l, struct ec_master, links);
 
 	if (attached) {
-		WRITE_ONCE(m->looked, false);
+		WRITE_ONCE(m->bus.looked, false);
 		ec_monitor_kick(m);
 	} else if (!link->side) {
 		mutex_lock(&m->cyclic_lock);
@@ -43,183 +42,28 @@ static void queued(struct ec_links *l)
 	ec_api_left(container_of(l, struct ec_master, links));
 }
 
+static void wake(struct ec_bus *bus)
+{
+	ec_monitor_kick(container_of(bus, struct ec_master, bus));
+}
+
+static const struct ec_bus_ops bus_ops = {
+	.configure = ec_apply,
+	.wake = wake,
+};
+
 static const struct ec_links_ops links_ops = {
 	.device = device,
 	.queued = queued,
 };
 
-/**
- * ec_master_slave() - a slave by its ring position
- * @m: master
- * @position: ring position
- *
- * Context: Process. May sleep.
- * Return: the slave with a reference for the caller, or NULL.
- */
-struct ec_slave *ec_master_slave(struct ec_master *m, unsigned int position)
-{
-	struct ec_slave *s = NULL;
-
-	down_read(&m->topo);
-	if (position < m->n_slaves)
-		s = ec_slave_ref(m->slaves[position]);
-	up_read(&m->topo);
-	return s;
-}
-
-/* No slave on its way to another state, PDOs read. */
-static bool slave_settled(struct ec_slave *s)
-{
-	return s->stop.gone || (!work_busy(&s->work) && !ec_slave_pdos_pending(s));
-}
-
-static bool slaves_settled(struct ec_master *m)
-{
-	unsigned int i;
-	bool ok = true;
-
-	down_read(&m->topo);
-	for (i = 0; i < m->n_slaves && ok; i++)
-		ok = slave_settled(m->slaves[i]);
-	up_read(&m->topo);
-	return ok;
-}
-
-static bool settled(struct ec_master *m)
-{
-	if (READ_ONCE(m->scan_busy) || READ_ONCE(m->rescan) || !READ_ONCE(m->looked))
-		return false;
-	/* a bus that answers is scanned first */
-	return slaves_settled(m) && READ_ONCE(m->n_slaves) == READ_ONCE(m->slaves_responding);
-}
-
-/* The last step of a worker wakes nobody, so that is looked at now and then. */
-static int wait_until(struct ec_master *m, bool (*there)(struct ec_master *m), unsigned int looks,
-		      unsigned int look_ms)
-{
-	unsigned int i;
-	long ret;
-
-	for (i = 0; i < looks; i++) {
-		ret = wait_event_interruptible_timeout(m->scan_wq, there(m),
-						       msecs_to_jiffies(look_ms));
-		if (ret < 0)
-			return -EINTR;
-		if (ret)
-			return 0;
-	}
-	return -ETIMEDOUT;
-}
-
-/**
- * ec_master_wait_scan() - wait until the bus is scanned and has settled
- * @m: master
- *
- * Context: Process. May sleep, at most some seconds.
- * Return: 0, -EINTR, or -ETIMEDOUT.
- */
-int ec_master_wait_scan(struct ec_master *m)
-{
-	return wait_until(m, settled, 300, 100);
-}
-
-/**
- * ec_master_wait_slaves() - wait until no slave is on its way to another state
- * @m: master
- *
- * Context: Process. May sleep, at most 10 s.
- * Return: 0, -EINTR, or -ETIMEDOUT.
- */
-int ec_master_wait_slaves(struct ec_master *m)
-{
-	return wait_until(m, slaves_settled, 1000, 10);
-}
-
-/**
- * ec_master_wait_slave() - wait until a slave is in its state and its PDOs are known
- * @slave: slave
- *
- * Not without link: nobody reads them then.
- *
- * Context: Process. May sleep, at most 5 s.
- */
-void ec_master_wait_slave(struct ec_slave *slave)
-{
-	struct ec_master *m = slave->master;
-	unsigned int i;
-
-	for (i = 0; i < 500 && READ_ONCE(m->links.link[0].up); i++)
-		if (wait_event_killable_timeout(m->scan_wq, slave_settled(slave),
-						msecs_to_jiffies(10)))
-			return;
-}
-
-/**
- * ec_master_scan_busy() - is the bus scanned, or about to be?
- * @m: master
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether it is.
- */
-bool ec_master_scan_busy(const struct ec_master *m)
-{
-	bool busy = READ_ONCE(m->rescan);
-
-	/* in this order: a request disappears only after @scan_busy is set */
-	smp_rmb();
-	return busy || READ_ONCE(m->scan_busy) ||
-	       READ_ONCE(m->n_slaves) != READ_ONCE(m->slaves_responding);
-}
-
-/**
- * ec_master_scan_progress() - how far the scan has come
- * @m: master
- * @index: result: slaves that have been read
- * @count: result: slaves that the scan will find; @index is less until it has
- *	ended, unless there are none
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_master_scan_progress(const struct ec_master *m, u32 *index, u32 *count)
-{
-	*count = READ_ONCE(m->n_slaves);
-	*index = *count;
-	if (!ec_master_scan_busy(m))
-		return;
-	*count = READ_ONCE(m->slaves_responding);
-	*index = 0;
-	if (!READ_ONCE(m->scan_busy))
-		return;
-	smp_rmb();	/* written before */
-	*count = READ_ONCE(m->scan_slaves);
-	/* what was read is yet to be shown to the others */
-	if (*count)
-		*index = min(READ_ONCE(m->scan_index), *count - 1);
-}
-
-/**
- * ec_master_rescan() - ask for a scan
- * @m: master
- *
- * Context: Process.
- */
-void ec_master_rescan(struct ec_master *m)
-{
-	WRITE_ONCE(m->rescan, true);
-	ec_monitor_kick(m);
-}
-
-/*
- * So many workers run at once, and the others queue behind them. So what a worker
- * waits for is not in the queue he is in.
- */
+/* What a request waits for is in another queue, see ec_bus_init(). */
 static int queues_create(struct ec_master *m)
 {
-	m->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE, m->base->index);
 	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
 				   m->base->index);
 	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->base->index);
-	return m->work && m->lanes && m->service ? 0 : -ENOMEM;
+	return m->lanes && m->service ? 0 : -ENOMEM;
 }
 
 /* Service begins requests, and kicks slaves. */
@@ -229,14 +73,11 @@ static void queues_destroy(struct ec_master *m)
 		destroy_workqueue(m->service);
 	if (m->lanes)
 		destroy_workqueue(m->lanes);
-	if (m->work)
-		destroy_workqueue(m->work);
+	ec_bus_stop(&m->bus);
 }
 
 static void destroy(struct ec_master *m)
 {
-	unsigned int i;
-
 	WRITE_ONCE(m->base->stopping, true);
 	ec_cdev_exit(m);
 	ec_api_between_stop(m);
@@ -246,11 +87,7 @@ static void destroy(struct ec_master *m)
 	queues_destroy(m);
 	ec_api_destroy(m);
 	ec_links_exit(&m->links);
-	for (i = 0; i < m->n_slaves; i++)
-		ec_slave_unref(m->slaves[i]);
-	kvfree(m->slaves);
-	m->slaves = NULL;
-	m->n_slaves = 0;
+	ec_bus_exit(&m->bus);
 	ec_log_flush(m->base, true);
 	ec_cdev_put(m);
 }
@@ -266,14 +103,16 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	m->base->index = index;
 	m->base->debug = debug;
 	ec_log_init(&m->base->log);
-	init_rwsem(&m->topo);
-	init_waitqueue_head(&m->scan_wq);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
 	ec_dc_init(m);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
+	m->bus.master = m;
+	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops);
+	if (ret)
+		goto err_work;
 	ret = queues_create(m);
 	if (ret)
 		goto err_work;

@@ -81,19 +81,19 @@ static bool check_slaves(struct ec_master *m)
 	u32 *reads;
 	unsigned int i;
 
-	dg = kvcalloc(m->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
-	al = kvcalloc(m->n_slaves + 1, sizeof(*al), GFP_KERNEL);
-	reads = kvcalloc(m->n_slaves + 1, sizeof(*reads), GFP_KERNEL);
+	dg = kvcalloc(m->bus.n_slaves + 1, sizeof(*dg), GFP_KERNEL);
+	al = kvcalloc(m->bus.n_slaves + 1, sizeof(*al), GFP_KERNEL);
+	reads = kvcalloc(m->bus.n_slaves + 1, sizeof(*reads), GFP_KERNEL);
 	if (!dg || !al || !reads)
 		goto out;
-	for (i = 0; i < m->n_slaves; i++)
-		reads[i] = READ_ONCE(m->slaves[i]->al_reads);
-	for (i = 0; i < m->n_slaves; i++)
-		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->slaves[i]->station,
+	for (i = 0; i < m->bus.n_slaves; i++)
+		reads[i] = READ_ONCE(m->bus.slaves[i]->al_reads);
+	for (i = 0; i < m->bus.n_slaves; i++)
+		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->bus.slaves[i]->station,
 					    EC_REG_AL_STATUS, 6, al[i]);
-	ec_xfer(&m->links, dg, m->n_slaves);
-	for (i = 0; i < m->n_slaves; i++) {
-		struct ec_slave *s = m->slaves[i];
+	ec_xfer(&m->links, dg, m->bus.n_slaves);
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		struct ec_slave *s = m->bus.slaves[i];
 		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
 
 		if (!dg[i].err && !dg[i].wkc && s->error != EC_SLAVE_SCAN_FAILED)
@@ -101,7 +101,7 @@ static bool check_slaves(struct ec_master *m)
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
 		/* its worker knows better */
-		if (work_busy(&s->work) || READ_ONCE(s->al_reads) != reads[i])
+		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != reads[i])
 			continue;
 		log_change(s, status, code);
 		if (status != s->al_status || code != s->al_code) {
@@ -124,8 +124,8 @@ static unsigned int replying(const struct ec_master *m)
 {
 	unsigned int i, n = 0;
 
-	for (i = 0; i < m->n_slaves; i++)
-		n += m->slaves[i]->error != EC_SLAVE_SCAN_FAILED;
+	for (i = 0; i < m->bus.n_slaves; i++)
+		n += m->bus.slaves[i]->error != EC_SLAVE_SCAN_FAILED;
 	return n;
 }
 
@@ -135,8 +135,8 @@ static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 	unsigned int i;
 	u8 want = 0;
 
-	for (i = 0; i < m->n_slaves; i++) {
-		const struct ec_slave *s = m->slaves[i];
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		const struct ec_slave *s = m->bus.slaves[i];
 
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
@@ -189,8 +189,8 @@ static void count_slaves(struct watch *w)
 		ored = get_unaligned_le16(al);
 		break;
 	}
-	WRITE_ONCE(m->slaves_responding, count);
-	WRITE_ONCE(m->al_states, al_bits(ored));
+	WRITE_ONCE(m->bus.responding, count);
+	WRITE_ONCE(m->bus.al_states, al_bits(ored));
 	WRITE_ONCE(m->links.link[0].slaves, count);
 	WRITE_ONCE(m->links.link[0].al_states, al_bits(ored));
 	if (count != w->count) {
@@ -203,7 +203,7 @@ static void count_slaves(struct watch *w)
 		w->same++;
 	}
 	if (w->scanned && count && wkc >= replying(m))
-		m->complete_ns = ktime_get_ns();
+		m->bus.complete_ns = ktime_get_ns();
 	if (!w->scanned || as_wanted(m, ored, wkc) || check_slaves(m))
 		w->silent = 0;
 	else
@@ -238,10 +238,10 @@ static void try_again(struct watch *w)
 	u64 now = ktime_get_ns();
 	unsigned int i, n = 0;
 
-	if (!w->scanned || READ_ONCE(m->freeze))
+	if (!w->scanned || READ_ONCE(m->bus.freeze))
 		return;
-	for (i = 0; i < m->n_slaves && n < ARRAY_SIZE(due); i++) {
-		struct ec_slave *s = m->slaves[i];
+	for (i = 0; i < m->bus.n_slaves && n < ARRAY_SIZE(due); i++) {
+		struct ec_slave *s = m->bus.slaves[i];
 
 		if (!is_due(s, now))
 			continue;
@@ -249,7 +249,7 @@ static void try_again(struct watch *w)
 			dg[n] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2,
 						    b[n]);
 			due[n++] = s;
-		} else if (!work_busy(&s->work)) {
+		} else if (!ec_slave_busy(s)) {
 			/* the worker plans the next one, if it has to */
 			ec_write64(&s->retry_ns, 0);
 			ec_slave_kick(s);
@@ -271,8 +271,8 @@ static void want_states(struct ec_master *m)
 {
 	unsigned int i;
 
-	for (i = 0; i < m->n_slaves; i++) {
-		struct ec_slave *s = m->slaves[i];
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		struct ec_slave *s = m->bus.slaves[i];
 
 		if (s->error == EC_SLAVE_SCAN_FAILED)
 			continue;
@@ -287,29 +287,29 @@ static void maybe_scan(struct watch *w)
 	bool changed = false;
 
 	/* also one that is asked for then has to wait */
-	if (READ_ONCE(m->freeze))
+	if (READ_ONCE(m->bus.freeze))
 		return;
-	if (READ_ONCE(m->rescan)) {
+	if (READ_ONCE(m->bus.rescan)) {
 		w->scanned = false;
 		w->same = STABLE_LOOKS;
 	}
 	if (w->scanned || w->same < STABLE_LOOKS)
 		return;
-	WRITE_ONCE(m->scan_index, 0);
-	WRITE_ONCE(m->scan_slaves, w->count);
+	WRITE_ONCE(m->bus.scan_index, 0);
+	WRITE_ONCE(m->bus.scan_slaves, w->count);
 	smp_wmb();
-	WRITE_ONCE(m->scan_busy, true);
-	if (READ_ONCE(m->rescan)) {
+	WRITE_ONCE(m->bus.scan_busy, true);
+	if (READ_ONCE(m->bus.rescan)) {
 		/* forget what is known, so that everything is read again; not
 		 * under an application, even one that has stalled */
 		smp_wmb();
-		WRITE_ONCE(m->rescan, false);
+		WRITE_ONCE(m->bus.rescan, false);
 		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->session))
-			ec_scan(m, 0, &changed);
+			ec_scan(&m->bus, 0, &changed);
 	}
-	if (!ec_scan(m, w->count, &changed)) {
+	if (!ec_scan(&m->bus, w->count, &changed)) {
 		w->scanned = true;
-		WRITE_ONCE(m->scan_count, m->scan_count + 1);
+		WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
 		/* before their workers ask for their clocks */
 		if (changed)
@@ -321,8 +321,8 @@ static void maybe_scan(struct watch *w)
 	} else {
 		w->same = 0;
 	}
-	WRITE_ONCE(m->scan_busy, false);
-	wake_up_all(&m->scan_wq);
+	WRITE_ONCE(m->bus.scan_busy, false);
+	ec_bus_settled(&m->bus);
 }
 
 /*
@@ -335,14 +335,14 @@ static void read_pdos(struct watch *w)
 	bool busy = false;
 	unsigned int i;
 
-	for (i = 0; i < m->n_slaves && !busy; i++)
-		busy = work_busy(&m->slaves[i]->work);
+	for (i = 0; i < m->bus.n_slaves && !busy; i++)
+		busy = ec_slave_busy(m->bus.slaves[i]);
 	if (!w->scanned || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
 		return;
-	for (i = 0; i < m->n_slaves; i++) {
-		struct ec_slave *s = m->slaves[i];
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		struct ec_slave *s = m->bus.slaves[i];
 
-		if (!ec_slave_pdos_pending(s) || work_busy(&s->work))
+		if (!ec_slave_pdos_pending(s) || ec_slave_busy(s))
 			continue;
 		WRITE_ONCE(s->read_pdos, true);
 		ec_slave_kick(s);
@@ -352,16 +352,16 @@ static void read_pdos(struct watch *w)
 /* No link, and nobody is known: a scan that is asked for has been done with that. */
 static void nobody_there(struct ec_master *m)
 {
-	WRITE_ONCE(m->slaves_responding, 0);
-	WRITE_ONCE(m->al_states, 0);
+	WRITE_ONCE(m->bus.responding, 0);
+	WRITE_ONCE(m->bus.al_states, 0);
 	WRITE_ONCE(m->links.link[0].slaves, 0);
 	WRITE_ONCE(m->links.link[0].al_states, 0);
-	if (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze))
+	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
 		return;
-	WRITE_ONCE(m->rescan, false);
-	WRITE_ONCE(m->scan_count, m->scan_count + 1);
-	WRITE_ONCE(m->looked, true);
-	wake_up_all(&m->scan_wq);
+	WRITE_ONCE(m->bus.rescan, false);
+	WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
+	WRITE_ONCE(m->bus.looked, true);
+	ec_bus_settled(&m->bus);
 }
 
 static int monitor(void *data)
@@ -375,7 +375,7 @@ static int monitor(void *data)
 		check_links(&w);
 		if (m->links.access.mode == EC_ACCESS_CYCLIC && ec_access_timed_out(&m->links))
 			ec_access_timeout(&m->links);
-		if (w.link_up || m->n_slaves) {
+		if (w.link_up || m->bus.n_slaves) {
 			count_slaves(&w);
 			try_again(&w);
 			maybe_scan(&w);
@@ -384,14 +384,15 @@ static int monitor(void *data)
 			nobody_there(m);
 		}
 		if (w.scanned || !w.link_up)
-			WRITE_ONCE(m->looked, true);
+			WRITE_ONCE(m->bus.looked, true);
+		ec_bus_settled(&m->bus);
 		if (w.scanned)
 			ec_session_clocks(m);
 		ec_session_status(m);
 		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
-		if (!kthread_should_stop() && (!READ_ONCE(m->rescan) || READ_ONCE(m->freeze)))
+		if (!kthread_should_stop() && (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 	}

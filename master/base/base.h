@@ -5,6 +5,7 @@
 
 #include <linux/err.h>
 #include "log.h"
+#include "show.h"
 
 /** struct ec_base - what all layers of one master use; they have it as @base */
 struct ec_base {
@@ -16,6 +17,8 @@ struct ec_base {
 	bool stopping;
 	/** @log: what was logged lately */
 	struct ec_log log;
+	/** @show: readers of sessions and slaves, which take no lock, and changes of these */
+	struct ec_show show;
 };
 
 /*

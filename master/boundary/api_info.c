@@ -8,9 +8,9 @@ int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 {
 	if (!master || !master_info)
 		return -EINVAL;
-	master_info->slave_count = READ_ONCE(master->n_slaves);
+	master_info->slave_count = READ_ONCE(master->bus.n_slaves);
 	master_info->link_up = READ_ONCE(master->links.link[0].up);
-	master_info->scan_busy = ec_master_scan_busy(master);
+	master_info->scan_busy = ec_bus_scan_busy(&master->bus);
 	master_info->app_time = ec_read64(&master->dc.app_time);
 	return 0;
 }
@@ -20,7 +20,7 @@ int ecrt_master_scan_progress(ec_master_t *master, ec_master_scan_progress_t *pr
 {
 	if (!master || !progress)
 		return -EINVAL;
-	ec_master_scan_progress(master, &progress->scan_index, &progress->slave_count);
+	ec_bus_scan_progress(&master->bus, &progress->scan_index, &progress->slave_count);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_scan_progress);
@@ -82,8 +82,8 @@ int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 {
 	if (!master || !state)
 		return -EINVAL;
-	state->slaves_responding = READ_ONCE(master->slaves_responding);
-	state->al_states = READ_ONCE(master->al_states) & 0xf;
+	state->slaves_responding = READ_ONCE(master->bus.responding);
+	state->al_states = READ_ONCE(master->bus.al_states) & 0xf;
 	state->link_up = READ_ONCE(master->links.link[0].up) || READ_ONCE(master->links.link[1].up);
 	return 0;
 }

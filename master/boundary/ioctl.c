@@ -292,7 +292,7 @@ static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
 static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 {
 	struct ec_master *m = call->master;
-	int ret = ec_show_begin(m);
+	int ret = ec_show_begin(&m->base->show);
 
 	if (ret)
 		return ret;
@@ -305,7 +305,7 @@ static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 		ret = find_domain(call, *(u32 *)(call->arg + op->at));
 	call->showing = !ret;
 	if (ret)
-		ec_show_end(m);
+		ec_show_end(&m->base->show);
 	return ret;
 }
 
@@ -319,7 +319,7 @@ static int show_session(struct ec_call *call, const struct ec_ioctl *op)
  */
 int ec_ioc_pause(struct ec_call *call)
 {
-	int ret = ec_show_pause(call->master);
+	int ret = ec_show_pause(&call->master->base->show);
 
 	call->showing = !ret;
 	return ret;
@@ -336,17 +336,17 @@ int ec_ioc_pause(struct ec_call *call)
 int ec_ioc_get_slave(struct ec_call *call, u16 position)
 {
 	struct ec_master *m = call->master;
-	int ret = ec_show_begin(m);
+	int ret = ec_show_begin(&m->base->show);
 
 	if (ret)
 		return ret;
-	if (position < m->n_slaves)
-		call->slave = ec_slave_ref(m->slaves[position]);
-	ec_show_end(m);
+	if (position < m->bus.n_slaves)
+		call->slave = ec_slave_ref(m->bus.slaves[position]);
+	ec_show_end(&m->base->show);
 	if (call->slave)
 		return 0;
 	return ec_refuse(call, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
-			 position, m->n_slaves);
+			 position, m->bus.n_slaves);
 }
 
 static int with_session(struct ec_call *call, const struct ec_ioctl *op)
@@ -370,7 +370,7 @@ static int with_show(struct ec_call *call, const struct ec_ioctl *op)
 			return ret;
 		ret = op->fn(call);
 		if (call->showing)
-			ec_show_end(call->master);
+			ec_show_end(&call->master->base->show);
 	} while (ret == -EAGAIN);
 	return ret;
 }

@@ -63,7 +63,7 @@ static void wait_pdos(struct ec_call *call, const struct ec_ioc_slave_config *i)
 	slave = ec_session_find(call->master, i->alias, i->position, i->vendor_id, i->product_code);
 	if (!slave)
 		return;
-	ec_master_wait_slave(slave);
+	ec_bus_wait_slave(slave);
 	ec_slave_unref(slave);
 }
 
@@ -229,9 +229,9 @@ static void not_mapped(struct ec_call *call, const struct ec_config *c,
 			  entry, c->alias, c->position);
 		return;
 	}
-	down_read(&call->master->topo);
+	down_read(&call->master->bus.topo);
 	ec_config_why(c, why, sizeof(why));
-	up_read(&call->master->topo);
+	up_read(&call->master->bus.topo);
 	ec_refuse(call, -ENOENT, "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
 		  entry, c->alias, c->position, why);
 }

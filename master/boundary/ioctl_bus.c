@@ -82,9 +82,9 @@ int ec_ioc_rescan(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
 
-	if (READ_ONCE(m->freeze))
+	if (READ_ONCE(m->bus.freeze))
 		return ec_refuse(call, -EBUSY, "an application has reserved the master; it must activate or release it first");
-	ec_master_rescan(m);
+	ec_bus_rescan(&m->bus);
 	return 0;
 }
 
@@ -127,10 +127,10 @@ int ec_ioc_reset(struct ec_call *call)
 	unsigned int k;
 
 	mutex_lock(&m->session_lock);
-	down_read(&m->topo);
-	for (k = 0; k < m->n_slaves; k++)
-		try_again(m->session, m->slaves[k]);
-	up_read(&m->topo);
+	down_read(&m->bus.topo);
+	for (k = 0; k < m->bus.n_slaves; k++)
+		try_again(m->session, m->bus.slaves[k]);
+	up_read(&m->bus.topo);
 	mutex_unlock(&m->session_lock);
 	return 0;
 }

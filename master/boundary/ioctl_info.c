@@ -122,20 +122,20 @@ int ec_ioc_master(struct ec_call *call)
 	int ret;
 
 	i->index = m->base->index;
-	i->slave_count = m->n_slaves;
-	i->slaves_responding = m->slaves_responding;
-	i->al_states = m->al_states;
-	i->scan_busy = ec_master_scan_busy(m);
-	ec_master_scan_progress(m, &i->scan_index, &i->scan_slaves);
-	i->scan_count = READ_ONCE(m->scan_count);
+	i->slave_count = m->bus.n_slaves;
+	i->slaves_responding = m->bus.responding;
+	i->al_states = m->bus.al_states;
+	i->scan_busy = ec_bus_scan_busy(&m->bus);
+	ec_bus_scan_progress(&m->bus, &i->scan_index, &i->scan_slaves);
+	i->scan_count = READ_ONCE(m->bus.scan_count);
 	i->debug_level = m->base->debug;
 	i->app_time = ec_read64(&m->dc.app_time);
-	i->scan_us = m->scan_us;
-	i->scan_frames = m->scan_frames;
+	i->scan_us = m->bus.scan_us;
+	i->scan_frames = m->bus.scan_frames;
 	i->acyclic_max = ec_share_max;
-	i->sii_bytes = atomic_long_read(&m->sii_bytes);
+	i->sii_bytes = atomic_long_read(&m->bus.sii_bytes);
 	i->sii_limit = EC_MAX_SII_TOTAL;
-	ret = ec_show_begin(m);
+	ret = ec_show_begin(&m->base->show);
 	if (ret)
 		return ret;
 	/* one that is gone has left its position to another slave */
@@ -143,7 +143,7 @@ int ec_ioc_master(struct ec_call *call)
 		       m->dc.ref->position : -1;
 	if (m->session)
 		session_info(m->session, i);
-	ec_show_end(m);
+	ec_show_end(&m->base->show);
 	i->phase = !m->links.link[0].dev ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
 	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->links.spec[l]); l++) {
@@ -159,9 +159,9 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 {
 	const struct ec_slave *next;
 
-	if (s->next[p] >= m->n_slaves)
+	if (s->next[p] >= m->bus.n_slaves)
 		return 0;
-	next = m->slaves[s->next[p]];
+	next = m->bus.slaves[s->next[p]];
 	if (!(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
 		return 0;
 	return p == s->upstream ? s->dc_hop : next->dc_hop;
@@ -170,7 +170,7 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
 	unsigned int p;
-	int ret = ec_show_begin(m);
+	int ret = ec_show_begin(&m->base->show);
 
 	if (ret)
 		return ret;
@@ -185,30 +185,30 @@ static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_
 		port->next_slave = s->next[p];
 		port->delay_to_next_dc = way(m, s, p);
 	}
-	ec_show_end(m);
+	ec_show_end(&m->base->show);
 	return 0;
 }
 
 /* The nearest slave at or before this one that has an alias. */
 static int find_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
 {
-	int k, ret = ec_show_begin(m);
+	int k, ret = ec_show_begin(&m->base->show);
 
 	if (ret)
 		return ret;
 	i->alias_group = 0;
 	i->alias_pos = s->position;
-	for (k = min_t(int, s->position, (int)m->n_slaves - 1); k >= 0; k--) {
-		if (m->slaves[k]->alias) {
-			i->alias_group = m->slaves[k]->alias;
+	for (k = min_t(int, s->position, (int)m->bus.n_slaves - 1); k >= 0; k--) {
+		if (m->bus.slaves[k]->alias) {
+			i->alias_group = m->bus.slaves[k]->alias;
 			i->alias_pos = s->position - k;
 			break;
 		}
-		ret = k % WALK ? 0 : ec_show_pause(m);
+		ret = k % WALK ? 0 : ec_show_pause(&m->base->show);
 		if (ret)
 			return ret;
 	}
-	ec_show_end(m);
+	ec_show_end(&m->base->show);
 	return 0;
 }
 
@@ -240,7 +240,7 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 {
 	const struct ec_config *c = NULL;
 	unsigned int from = 0;
-	int ret = ec_show_begin(m);
+	int ret = ec_show_begin(&m->base->show);
 
 	if (ret)
 		return ret;
@@ -248,7 +248,7 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos, &from);
 		if (c || from >= m->session->n_configs)
 			break;
-		ret = ec_show_pause(m);
+		ret = ec_show_pause(&m->base->show);
 		if (ret)
 			return ret;
 	}
@@ -257,7 +257,7 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 	/* such a slave is used all the same, so it has no other text */
 	if (i->differs && !i->warning[0])
 		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
-	ec_show_end(m);
+	ec_show_end(&m->base->show);
 	return 0;
 }
 
@@ -358,7 +358,7 @@ int ec_ioc_pdo(struct ec_call *call)
 	const struct ec_pdo *p;
 	struct ec_slave *s = call->slave;
 	u8 string = 0;
-	int ret = ec_show_begin(call->master);
+	int ret = ec_show_begin(&call->master->base->show);
 
 	if (ret)
 		return ret;
@@ -372,7 +372,7 @@ int ec_ioc_pdo(struct ec_call *call)
 			strscpy(i->name, ec_names_find(s, p->index, EC_NAME_OBJECT),
 				sizeof(i->name));
 	}
-	ec_show_end(call->master);
+	ec_show_end(&call->master->base->show);
 	name(s, string, i->name);
 	return ret;
 }
@@ -383,7 +383,7 @@ int ec_ioc_pdo_entry(struct ec_call *call)
 	const struct ec_pdo *p;
 	struct ec_slave *s = call->slave;
 	u8 string = 0;
-	int ret = ec_show_begin(call->master);
+	int ret = ec_show_begin(&call->master->base->show);
 
 	if (ret)
 		return ret;
@@ -402,7 +402,7 @@ int ec_ioc_pdo_entry(struct ec_call *call)
 		if (!string)
 			strscpy(i->name, ec_names_find(s, e->index, e->sub), sizeof(i->name));
 	}
-	ec_show_end(call->master);
+	ec_show_end(&call->master->base->show);
 	name(s, string, i->name);
 	return ret;
 }
@@ -425,10 +425,10 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 
 	if (!st)
 		return -ENOMEM;
-	ret = ec_show_begin(call->master);
+	ret = ec_show_begin(&call->master->base->show);
 	if (!ret) {
 		ec_late_get(call->master, i, st);
-		ec_show_end(call->master);
+		ec_show_end(&call->master->base->show);
 	}
 	i->size = call->size;
 	memcpy(call->data, st, call->size);

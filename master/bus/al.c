@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include "../master.h"
+#include "bus.h"
 #include "slave.h"
 #include "../link/xfer.h"
 #include "al.h"
@@ -16,7 +16,7 @@
 int ec_al_read(struct ec_slave *slave)
 {
 	u8 b[6];
-	int ret = ec_xfer_fprd(&slave->master->links, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
+	int ret = ec_xfer_fprd(slave->bus->links, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
 
 	if (!ret) {
 		WRITE_ONCE(slave->al_status, get_unaligned_le16(b));
@@ -34,7 +34,7 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 
 	put_unaligned_le16(control, b);
 	for (;;) {
-		ret = ec_xfer_fpwr(&slave->master->links, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
+		ret = ec_xfer_fpwr(slave->bus->links, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
 		if (ret != -EIO || slave->stop.gone)
 			return ret;
 		if (ktime_get_ns() > until_ns)

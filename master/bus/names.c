@@ -5,9 +5,10 @@
  */
 #include <linux/ktime.h>
 #include <linux/slab.h>
+#include "../link/links.h"
 #include "../base/grow.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
+#include "bus.h"
 #include "names.h"
 #include "slave.h"
 #include "../wire/sdoinfo.h"
@@ -146,7 +147,7 @@ bool ec_names_pending(const struct ec_slave *s)
 	u16 index, sub;
 
 	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
-	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->master->links.access.mode) == EC_ACCESS_DIRECT &&
+	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->bus->links->access.mode) == EC_ACCESS_DIRECT &&
 	       !ec_mbox_check(&s->mbox, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
 	       next_unknown(s, &s->names, &at, &index, &sub);
 }
@@ -156,12 +157,12 @@ static void publish(struct ec_slave *s, struct ec_names *l)
 {
 	struct ec_names old;
 
-	down_write(&s->master->topo);
-	ec_change_begin(s->master);
+	down_write(&s->bus->topo);
+	ec_change_begin(&s->bus->base->show);
 	old = s->names;
 	s->names = *l;
-	ec_change_end(s->master);
-	up_write(&s->master->topo);
+	ec_change_end(&s->bus->base->show);
+	up_write(&s->bus->topo);
 	kvfree(old.v);
 }
 
@@ -186,7 +187,7 @@ static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
 	int ret = 0;
 
 	while (!ret && next_unknown(s, l, &at, &index, &sub)) {
-		if (READ_ONCE(s->master->links.access.mode) != EC_ACCESS_DIRECT)
+		if (READ_ONCE(s->bus->links->access.mode) != EC_ACCESS_DIRECT)
 			return -EAGAIN;
 		if (ktime_get_ns() > until)
 			return 0;

@@ -6,7 +6,7 @@
 #include <linux/slab.h>
 #include "../mailbox/coe.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
+#include "bus.h"
 #include "slave.h"
 #include "slave_pdo.h"
 
@@ -87,13 +87,13 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 {
 	struct ec_pdo_list old;
 
-	down_write(&s->master->topo);
-	ec_change_begin(s->master);
+	down_write(&s->bus->topo);
+	ec_change_begin(&s->bus->base->show);
 	old = s->sm_pdos[sm];
 	s->sm_pdos[sm] = *l;
 	keep_unassigned(s, &old);
-	ec_change_end(s->master);
-	up_write(&s->master->topo);
+	ec_change_end(&s->bus->base->show);
+	up_write(&s->bus->topo);
 	ec_pdo_list_clear(&old);
 }
 

@@ -3,7 +3,9 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "../master.h"
+#include "../base/limits.h"
+#include "../link/links.h"
+#include "bus.h"
 #include "../base/once64.h"
 #include "slave.h"
 #include "../link/xfer.h"
@@ -24,7 +26,7 @@ struct regs {
 };
 
 struct scan {
-	struct ec_master *m;
+	struct ec_bus *bus;
 	unsigned int n;
 	struct ec_slave **slaves;
 	struct regs *regs;
@@ -36,24 +38,24 @@ struct scan {
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 };
 
-static void bwr(struct ec_master *m, u16 ado, const void *data, u16 len)
+static void bwr(struct ec_bus *bus, u16 ado, const void *data, u16 len)
 {
-	ec_xfer_one(&m->links, EC_CMD_BWR, 0, ado, (void *)data, len);
+	ec_xfer_one(bus->links, EC_CMD_BWR, 0, ado, (void *)data, len);
 }
 
 /* ETG.1500 start-up sequence; only when nobody is in operation */
-static void reset_bus(struct ec_master *m)
+static void reset_bus(struct ec_bus *bus)
 {
 	static const u8 zero[256];
 	static const u8 init[2] = { EC_AL_INIT, 0 };
 
-	bwr(m, EC_REG_DL_LOOPS, zero, 1);
-	bwr(m, EC_REG_AL_CONTROL, init, 2);
-	bwr(m, EC_REG_ECAT_MASK, zero, 2);
-	bwr(m, EC_REG_FMMU(0), zero, 256);
-	bwr(m, EC_REG_SM(0), zero, 128);
-	bwr(m, EC_REG_DC_ACTIVATION, zero, 1);
-	bwr(m, EC_REG_DL_ALIAS, zero, 1);
+	bwr(bus, EC_REG_DL_LOOPS, zero, 1);
+	bwr(bus, EC_REG_AL_CONTROL, init, 2);
+	bwr(bus, EC_REG_ECAT_MASK, zero, 2);
+	bwr(bus, EC_REG_FMMU(0), zero, 256);
+	bwr(bus, EC_REG_SM(0), zero, 128);
+	bwr(bus, EC_REG_DC_ACTIVATION, zero, 1);
+	bwr(bus, EC_REG_DL_ALIAS, zero, 1);
 }
 
 /* Read @len bytes at @ado of all slaves by position into regs + @ofs. */
@@ -64,7 +66,7 @@ static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 	for (i = 0; i < sc->n; i++)
 		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
 						(u8 *)&sc->regs[i] + ofs);
-	return ec_xfer(&sc->m->links, sc->dg, sc->n);
+	return ec_xfer(sc->bus->links, sc->dg, sc->n);
 }
 
 /* Addresses of all; a slave that does not answer may be a known one that fell silent. */
@@ -86,8 +88,8 @@ static int index_known(struct scan *sc)
 	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
 	if (!sc->known || !sc->claims)
 		return -ENOMEM;
-	for (i = 0; i < sc->m->n_slaves; i++)
-		sc->known[sc->m->slaves[i]->station] = sc->m->slaves[i];
+	for (i = 0; i < sc->bus->n_slaves; i++)
+		sc->known[sc->bus->slaves[i]->station] = sc->bus->slaves[i];
 	return 0;
 }
 
@@ -133,14 +135,14 @@ static bool same_count(struct scan *sc)
 	u8 type[1] = { 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
 
-	return !ec_xfer(&sc->m->links, &dg, 1) && dg.back == (u16)sc->n;
+	return !ec_xfer(sc->bus->links, &dg, 1) && dg.back == (u16)sc->n;
 }
 
 /* New slaves are told their address; who does not listen is left out. */
 static int write_stations(struct scan *sc, unsigned int n)
 {
 	unsigned int i;
-	int ret = ec_xfer(&sc->m->links, sc->dg, n);
+	int ret = ec_xfer(sc->bus->links, sc->dg, n);
 
 	for (i = 0; i < n && !ret; i++) {
 		unsigned int pos = (u16)-sc->dg[i].adp;
@@ -181,7 +183,7 @@ static bool is_usable(const struct ec_slave *s)
  */
 static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
 {
-	struct ec_slave *s = i < sc->m->n_slaves ? sc->m->slaves[i] : NULL;
+	struct ec_slave *s = i < sc->bus->n_slaves ? sc->bus->slaves[i] : NULL;
 
 	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
 		return NULL;
@@ -189,9 +191,9 @@ static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool 
 }
 
 /* The slave that could not be read when it was at @i, or NULL. */
-static const struct ec_slave *unreadable(const struct ec_master *m, unsigned int i)
+static const struct ec_slave *unreadable(const struct ec_bus *bus, unsigned int i)
 {
-	const struct ec_slave *s = i < m->n_slaves ? m->slaves[i] : NULL;
+	const struct ec_slave *s = i < bus->n_slaves ? bus->slaves[i] : NULL;
 
 	return s && s->error == EC_SLAVE_SCAN_FAILED && !s->silent ? s : NULL;
 }
@@ -208,7 +210,7 @@ static void take_part(struct ec_slave *s, struct ec_slave *old)
 /* The one that could not be read here before: its cause is logged once, its tries go on. */
 static void take_failure(struct scan *sc, struct ec_slave *s)
 {
-	const struct ec_slave *old = unreadable(sc->m, s->position);
+	const struct ec_slave *old = unreadable(sc->bus, s->position);
 
 	if (!old)
 		return;
@@ -222,7 +224,7 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 		return;
 	sc->changed = true;
 	WRITE_ONCE(s->silent, true);
-	s->seen_ns = sc->m->complete_ns;
+	s->seen_ns = sc->bus->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 		      "no reply from the slave, frames pass; waiting for a reply");
@@ -263,15 +265,15 @@ static int assign(struct scan *sc)
 		}
 		if (s && is_usable(s) && sc->regs[i].there && sc->claims[station] == 1) {
 			sc->slaves[i] = ec_slave_ref(s);
-			same_before &= i < sc->m->n_slaves && sc->m->slaves[i] == s;
+			same_before &= i < sc->bus->n_slaves && sc->bus->slaves[i] == s;
 			continue;
 		}
-		same_before &= unreadable(sc->m, i) != NULL;
-		station = ec_scan_station(sc->m->next_station, sc->known, sc->claims);
+		same_before &= unreadable(sc->bus, i) != NULL;
+		station = ec_scan_station(sc->bus->next_station, sc->known, sc->claims);
 		if (!station)
 			return -ENOSPC;
-		sc->m->next_station = station;
-		sc->slaves[i] = ec_slave_alloc(sc->m, station);
+		sc->bus->next_station = station;
+		sc->slaves[i] = ec_slave_alloc(sc->bus, station);
 		if (!sc->slaves[i])
 			return -ENOMEM;
 		sc->slaves[i]->position = i;
@@ -354,9 +356,9 @@ static int read_new(struct scan *sc)
 	for (i = 0; i < sc->n; i++)
 		if (!sc->slaves[i]->sii && !sc->slaves[i]->error)
 			fresh[n++] = sc->slaves[i];
-	WRITE_ONCE(sc->m->scan_index, sc->n - n);
-	ec_scan_sii(sc->m, fresh, n, sc->fresh);
-	if (!ec_link_is_up(&sc->m->links.link[0])) {
+	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
+	ec_scan_sii(sc->bus, fresh, n, sc->fresh);
+	if (!ec_links_is_up(sc->bus->links)) {
 		kvfree(fresh);
 		return -ENETDOWN;
 	}
@@ -371,7 +373,7 @@ static int read_new(struct scan *sc)
 			ec_slave_warn(s, "SII checksum 0x%02x, expected 0x%02x; content used anyway\n",
 				      s->info.checksum, s->info.checksum_calc);
 	}
-	ec_scan_preop(sc->m, fresh, n, sc->fresh);
+	ec_scan_preop(sc->bus, fresh, n, sc->fresh);
 	plan_retries(sc, fresh, n);
 	kvfree(fresh);
 	return 0;
@@ -384,7 +386,7 @@ static int look(struct scan *sc)
 	int ret;
 
 	if (sc->fresh)
-		reset_bus(sc->m);
+		reset_bus(sc->bus);
 	ret = read_stations(sc) ?:
 	      assign(sc) ?:
 	      read_all(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
@@ -392,7 +394,7 @@ static int look(struct scan *sc)
 	      read_all(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
 	if (ret)
 		return ret;
-	bwr(sc->m, EC_REG_DC_RECV(0), latch, 4);
+	bwr(sc->bus, EC_REG_DC_RECV(0), latch, 4);
 	ret = read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
 	for (i = 0; i < sc->n && !ret; i++)
 		sc->regs[i].delay_only = sc->dg[i].wkc == 1;
@@ -411,11 +413,11 @@ static bool differs(const struct scan *sc)
 {
 	unsigned int i;
 
-	if (sc->changed || sc->n != sc->m->n_slaves)
+	if (sc->changed || sc->n != sc->bus->n_slaves)
 		return true;
 	for (i = 0; i < sc->n; i++)
-		if (sc->slaves[i] != sc->m->slaves[i] &&
-		    !(unreadable(sc->m, i) && sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED))
+		if (sc->slaves[i] != sc->bus->slaves[i] &&
+		    !(unreadable(sc->bus, i) && sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED))
 			return true;
 	return false;
 }
@@ -430,7 +432,7 @@ static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int 
 	else
 		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
 			 s->parent_port, up, old[up]->order);
-	s->seen_ns = s->master->complete_ns;
+	s->seen_ns = s->bus->complete_ns;
 }
 
 /* One line each; when nobody is left the link says why. */
@@ -441,40 +443,40 @@ static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
 	if (!sc->n || s->error == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
 		return;
 	ec_slave_lost_text(s, text, sizeof(text));
-	ec_warn_each(sc->m, s->position + 1, "%s, last seen %llu ms ago\n", text,
+	ec_warn_each(sc->bus, s->position + 1, "%s, last seen %llu ms ago\n", text,
 		     div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
 }
 
 /* The result becomes visible; slaves that are missing are gone. */
 static void publish(struct scan *sc)
 {
-	struct ec_master *m = sc->m;
+	struct ec_bus *bus = sc->bus;
 	struct ec_slave **old;
 	unsigned int i, n_old, lost = 0;
 
-	down_write(&m->topo);
-	ec_change_begin(m);
-	old = m->slaves;
-	n_old = m->n_slaves;
-	m->slaves = sc->slaves;
-	m->n_slaves = sc->n;
-	ec_change_end(m);
-	up_write(&m->topo);
+	down_write(&bus->topo);
+	ec_change_begin(&bus->base->show);
+	old = bus->slaves;
+	n_old = bus->n_slaves;
+	bus->slaves = sc->slaves;
+	bus->n_slaves = sc->n;
+	ec_change_end(&bus->base->show);
+	up_write(&bus->topo);
 	sc->slaves = NULL;
 
 	for (i = 0; i < n_old; i++) {
 		/* at its place in the new list, or not on the bus any more */
-		if (old[i]->position >= m->n_slaves || m->slaves[old[i]->position] != old[i]) {
+		if (old[i]->position >= bus->n_slaves || bus->slaves[old[i]->position] != old[i]) {
 			note_parent(old[i], old, n_old);
 			WRITE_ONCE(old[i]->stop.gone, true);
 			log_lost(sc, old[i], &lost);
 		}
 	}
 	if (lost > LOST_LINES)
-		ec_warn(m, "%u more slave(s) disconnected\n", lost - LOST_LINES);
-	if (!sc->n && n_old && m->links.access.mode != EC_ACCESS_DIRECT)
-		ec_warn(m, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
-			div_u64(ktime_get_ns() - m->complete_ns, NSEC_PER_MSEC));
+		ec_warn(bus, "%u more slave(s) disconnected\n", lost - LOST_LINES);
+	if (!sc->n && n_old && bus->links->access.mode != EC_ACCESS_DIRECT)
+		ec_warn(bus, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
+			div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC));
 	for (i = 0; i < n_old; i++)
 		ec_slave_unref(old[i]);
 	kvfree(old);
@@ -482,7 +484,7 @@ static void publish(struct scan *sc)
 
 /**
  * ec_scan() - find out who is on the bus
- * @m: master
+ * @bus: bus
  * @count: slaves that answered the last broadcast, up to ec_scan_limit(); 0 is legal
  * @changed: result: there are other slaves than before, or one fell silent or replies again
  *
@@ -492,10 +494,10 @@ static void publish(struct scan *sc)
  * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
  * -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
  */
-int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
+int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 {
-	struct scan sc = { .m = m, .n = count, .fresh = !m->n_slaves && m->links.access.mode == EC_ACCESS_DIRECT };
-	u64 t0 = ktime_get_ns(), frames = atomic64_read(&m->links.link[0].stats.tx_frames);
+	struct scan sc = { .bus = bus, .n = count, .fresh = !bus->n_slaves && bus->links->access.mode == EC_ACCESS_DIRECT };
+	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	unsigned int i;
 	int ret = -ENOMEM;
 
@@ -509,11 +511,11 @@ int ec_scan(struct ec_master *m, unsigned int count, bool *changed)
 		sc.changed = differs(&sc);
 		publish(&sc);
 		*changed = sc.changed;
-		m->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
-		m->scan_frames = atomic64_read(&m->links.link[0].stats.tx_frames) - frames;
+		bus->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
+		bus->scan_frames = ec_links_sent(bus->links) - frames;
 		if (sc.changed && count)
-			ec_info(m, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
-				m->scan_us, m->scan_frames);
+			ec_info(bus, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
+				bus->scan_us, bus->scan_frames);
 	}
 	for (i = 0; sc.slaves && i < count; i++)
 		if (sc.slaves[i])

@@ -5,18 +5,18 @@
 
 #include <linux/types.h>
 
-struct ec_master;
+struct ec_bus;
 struct ec_slave;
 
-int ec_scan(struct ec_master *m, unsigned int count, bool *changed);
+int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed);
 unsigned int ec_scan_limit(void);
 u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
 
 /* scan_sii.c */
-void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all);
+void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool all);
 
 /* scan_preop.c */
-void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean);
+void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool clean);
 
 /* topology.c */
 void ec_topology_build(struct ec_slave **slaves, unsigned int n);

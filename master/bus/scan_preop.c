@@ -8,7 +8,8 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "../master.h"
+#include "../link/links.h"
+#include "bus.h"
 #include "slave.h"
 #include "../link/xfer.h"
 #include "scan.h"
@@ -24,7 +25,7 @@ struct climber {
 };
 
 struct job {
-	struct ec_master *m;
+	struct ec_bus *bus;
 	struct climber *c;
 	unsigned int n;
 	bool clean;
@@ -51,7 +52,7 @@ static void start(struct job *j)
 		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_AL_CONTROL, 2,
 						 (void *)preop);
 	}
-	ec_xfer(&j->m->links, j->dg, n);
+	ec_xfer(j->bus->links, j->dg, n);
 }
 
 /* Look at the AL status; those that are there or have an error are done. */
@@ -62,7 +63,7 @@ static void look(struct job *j)
 	for (i = 0; i < j->n; i++)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, j->c[i].slave->station,
 					       EC_REG_AL_STATUS, 6, j->c[i].al);
-	ec_xfer(&j->m->links, j->dg, j->n);
+	ec_xfer(j->bus->links, j->dg, j->n);
 	for (i = 0; i < j->n; i++) {
 		struct climber *c = &j->c[i];
 
@@ -84,7 +85,7 @@ static void look(struct job *j)
 
 /**
  * ec_scan_preop() - bring new slaves from INIT to PREOP in lockstep
- * @m: master
+ * @bus: bus
  * @slaves: slaves nobody else knows yet
  * @n: how many
  * @clean: their SyncManagers, FMMUs and SYNC units have been reset
@@ -92,9 +93,9 @@ static void look(struct job *j)
  * Context: The monitor thread. Waits for bus traffic, at most some 20 ms for
  * slaves that are slow.
  */
-void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool clean)
+void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool clean)
 {
-	struct job j = { .m = m, .clean = clean };
+	struct job j = { .bus = bus, .clean = clean };
 	u64 until = ktime_get_ns() + WAIT_NS;
 	unsigned int i, us = 100;
 
@@ -108,7 +109,7 @@ void ec_scan_preop(struct ec_master *m, struct ec_slave **slaves, unsigned int n
 			j.c[j.n++].slave = slaves[i];
 	if (j.n)
 		start(&j);
-	while (j.n && !m->base->stopping && ktime_get_ns() < until) {
+	while (j.n && !bus->base->stopping && ktime_get_ns() < until) {
 		usleep_range(us, us + us / 4);
 		us = min(us * 2, 2000u);
 		look(&j);

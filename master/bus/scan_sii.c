@@ -11,7 +11,9 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "../master.h"
+#include "../base/limits.h"
+#include "../link/links.h"
+#include "bus.h"
 #include "slave.h"
 #include "../wire/sii.h"
 #include "../link/xfer.h"
@@ -47,7 +49,7 @@ struct reader {
 };
 
 struct job {
-	struct ec_master *m;
+	struct ec_bus *bus;
 	struct reader *rd;
 	unsigned int n;
 	struct ec_dg *dg;
@@ -62,10 +64,10 @@ struct job {
 
 static void is_done(struct reader *r)
 {
-	struct ec_master *m = r->slave->master;
+	struct ec_bus *bus = r->slave->bus;
 
 	r->done = true;
-	WRITE_ONCE(m->scan_index, m->scan_index + 1);
+	WRITE_ONCE(bus->scan_index, bus->scan_index + 1);
 }
 
 static void finish(struct reader *r)
@@ -123,28 +125,28 @@ static void interrupt_long(struct job *j)
 }
 
 /* The images of all slaves have a limit together. */
-static bool count(struct ec_master *m, size_t bytes)
+static bool count(struct ec_bus *bus, size_t bytes)
 {
-	if (atomic_long_add_return(bytes, &m->sii_bytes) <= EC_MAX_SII_TOTAL)
+	if (atomic_long_add_return(bytes, &bus->sii_bytes) <= EC_MAX_SII_TOTAL)
 		return true;
-	atomic_long_sub(bytes, &m->sii_bytes);
+	atomic_long_sub(bytes, &bus->sii_bytes);
 	return false;
 }
 
 /* Otherwise the reader has failed. */
 static bool enlarge(struct reader *r, size_t cap)
 {
-	struct ec_master *m = r->slave->master;
+	struct ec_bus *bus = r->slave->bus;
 	u8 *p;
 
-	if (!count(m, cap - r->cap)) {
+	if (!count(bus, cap - r->cap)) {
 		fail(r, "the EEPROMs of all slaves exceed 64 MiB",
 		     "disconnect slaves with large EEPROMs");
 		return false;
 	}
 	p = kvzalloc(cap, GFP_KERNEL);
 	if (!p) {
-		atomic_long_sub(cap - r->cap, &m->sii_bytes);
+		atomic_long_sub(cap - r->cap, &bus->sii_bytes);
 		fail(r, "no memory", "free memory of this computer");
 		return false;
 	}
@@ -205,9 +207,9 @@ static bool take(struct reader *r, u32 word)
 }
 
 /* Without link no slave is to blame: the scan ends and fails as a whole. */
-static bool go_on(const struct ec_master *m)
+static bool go_on(const struct ec_bus *bus)
 {
-	return !READ_ONCE(m->base->stopping) && ec_link_is_up(&m->links.link[0]);
+	return !READ_ONCE(bus->base->stopping) && ec_links_is_up(bus->links);
 }
 
 static void command(u8 *c, u32 word)
@@ -238,7 +240,7 @@ static void take_over(struct job *j, struct reader **who, unsigned int n)
 		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_ADDRESS, 4,
 					    (void *)nowhere);
 	}
-	ec_xfer(&j->m->links, j->dg, dg - j->dg);
+	ec_xfer(j->bus->links, j->dg, dg - j->dg);
 }
 
 /* FPRD 0x0502 of @n readers */
@@ -250,7 +252,7 @@ static void collect(struct job *j, struct reader **who, unsigned int n)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, who[i]->len,
 					       who[i]->reg);
-	ec_xfer(&j->m->links, j->dg, n);
+	ec_xfer(j->bus->links, j->dg, n);
 	for (i = 0; i < n; i++)
 		if (j->dg[i].err || j->dg[i].wkc != 1)
 			put_unaligned_le16(EC_EEP_BUSY, who[i]->reg);
@@ -263,13 +265,13 @@ static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
 
 	command(j->cmd[0], word);
 	if (j->broadcast) {
-		ec_xfer_one(&j->m->links, EC_CMD_BWR, 0, EC_REG_EEP_CONTROL, j->cmd[0], 6);
+		ec_xfer_one(j->bus->links, EC_CMD_BWR, 0, EC_REG_EEP_CONTROL, j->cmd[0], 6);
 		return;
 	}
 	for (i = 0; i < n; i++)
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, 6, j->cmd[0]);
-	ec_xfer(&j->m->links, j->dg, n);
+	ec_xfer(j->bus->links, j->dg, n);
 }
 
 static void sleep_until(u64 ns)
@@ -336,7 +338,7 @@ static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
 			ready = looked;
 		if (!left)
 			break;
-		if (!go_on(j->m))
+		if (!go_on(j->bus))
 			return;
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
@@ -364,13 +366,13 @@ static void start_apart(struct job *j, struct reader **who, unsigned int n)
 		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
 			j->dg[k++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 							 EC_REG_EEP_CONTROL, 2, (void *)zero);
-	ec_xfer(&j->m->links, j->dg, k);
+	ec_xfer(j->bus->links, j->dg, k);
 	for (i = 0; i < n; i++) {
 		command(j->cmd[i], who[i]->have / 2);
 		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
 					       EC_REG_EEP_CONTROL, 6, j->cmd[i]);
 	}
-	ec_xfer(&j->m->links, j->dg, n);
+	ec_xfer(j->bus->links, j->dg, n);
 }
 
 /* Those that left the lockstep and are not done; without tries left they fail. */
@@ -401,10 +403,10 @@ static void read_apart(struct job *j)
 	unsigned int i, n, left;
 	u64 t0;
 
-	for (; go_on(j->m) && (n = apart(j, j->who)); interrupt_long(j)) {
+	for (; go_on(j->bus) && (n = apart(j, j->who)); interrupt_long(j)) {
 		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
-		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->m);) {
+		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->bus);) {
 			unsigned int k = 0;
 
 			usleep_range(300, 400);
@@ -443,7 +445,7 @@ static void run(struct job *j)
 
 	n = waiting(j, &word);
 	take_over(j, j->who, n);
-	for (; n && go_on(j->m); n = waiting(j, &word)) {
+	for (; n && go_on(j->bus); n = waiting(j, &word)) {
 		step(j, j->who, n, word);
 		interrupt_long(j);
 	}
@@ -467,7 +469,7 @@ static void resume(struct reader *r)
 
 /**
  * ec_scan_sii() - read the EEPROMs of @slaves
- * @m: master
+ * @bus: bus
  * @slaves: slaves with station addresses; @sii is set where it worked, @part where more
  *	is to be read, the others are marked as failed unless the link went down meanwhile
  * @n: how many
@@ -476,9 +478,9 @@ static void resume(struct reader *r)
  *
  * Context: Process. Waits for bus traffic.
  */
-void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, bool all)
+void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool all)
 {
-	struct job j = { .m = m, .n = n, .broadcast = all, .began_ns = ktime_get_ns() };
+	struct job j = { .bus = bus, .n = n, .broadcast = all, .began_ns = ktime_get_ns() };
 	unsigned int i;
 
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
@@ -500,7 +502,7 @@ void ec_scan_sii(struct ec_master *m, struct ec_slave **slaves, unsigned int n, 
 	}
 	run(&j);
 	for (i = 0; i < n; i++) {
-		atomic_long_sub(j.rd[i].cap, &m->sii_bytes);
+		atomic_long_sub(j.rd[i].cap, &bus->sii_bytes);
 		kvfree(j.rd[i].buf);
 	}
 out:

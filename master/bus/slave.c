@@ -2,21 +2,30 @@
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../mailbox/mailbox.h"
-#include "../master.h"
+#include "bus.h"
 #include "../base/once64.h"
 #include "slave.h"
 #include "slave_pdo.h"
-#include "../config/apply.h"
+
+static void work(struct work_struct *w)
+{
+	struct ec_slave *s = container_of(w, struct ec_slave, work);
+
+	s->bus->ops->configure(s);
+	atomic_dec_return_release(&s->works);
+	ec_bus_settled(s->bus);
+	ec_slave_unref(s);
+}
 
 /**
  * ec_slave_alloc() - a slave found by the scan
- * @m: master
+ * @bus: bus
  * @station: its station address
  *
  * Context: Process. May sleep.
  * Return: slave with one reference, or NULL.
  */
-struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
+struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 {
 	struct ec_slave *s = kzalloc(sizeof(*s), GFP_KERNEL);
 	unsigned int p;
@@ -24,14 +33,14 @@ struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station)
 	if (!s)
 		return NULL;
 	kref_init(&s->kref);
-	s->master = m;
+	s->bus = bus;
 	s->station = station;
 	s->requested = EC_AL_PREOP;
-	INIT_WORK(&s->work, ec_apply_work);
+	INIT_WORK(&s->work, work);
 	mutex_init(&s->lock);
-	s->stop.base = m->base;
-	s->mbox.base = m->base;
-	s->mbox.links = &m->links;
+	s->stop.base = bus->base;
+	s->mbox.base = bus->base;
+	s->mbox.links = bus->links;
 	s->mbox.stop = &s->stop;
 	s->mbox.sii = &s->info;
 	s->mbox.al_status = &s->al_status;
@@ -53,7 +62,7 @@ static void release(struct kref *kref)
 	ec_pdo_list_clear(&s->free_pdos);
 	ec_names_free(s);
 	ec_mbox_keep_voe(&s->mbox, false);
-	atomic_long_sub(s->sii_counted, &s->master->sii_bytes);
+	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
 	kvfree(s->sii);
 	kvfree(s->part);
 	kfree(s);
@@ -219,8 +228,26 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 void ec_slave_kick(struct ec_slave *slave)
 {
 	ec_slave_ref(slave);
-	if (!queue_work(slave->master->work, &slave->work))
-		ec_slave_unref(slave);
+	atomic_inc(&slave->works);
+	if (queue_work(slave->bus->work, &slave->work))
+		return;
+	/* the run that waits in the queue does it */
+	atomic_dec(&slave->works);
+	ec_slave_unref(slave);
+}
+
+/**
+ * ec_slave_busy() - is the worker bringing the slave to a state, or about to?
+ * @slave: slave
+ *
+ * When it is not, what the worker has written is visible to the caller.
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it is.
+ */
+bool ec_slave_busy(const struct ec_slave *slave)
+{
+	return atomic_read_acquire(&slave->works) > 0;
 }
 
 /**

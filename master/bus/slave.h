@@ -8,6 +8,7 @@
 #include <linux/workqueue.h>
 #include "ethercat.h"
 #include "../mailbox/mailbox.h"
+#include "bus.h"
 #include "names.h"
 #include "pdo.h"
 #include "../wire/al.h"
@@ -15,7 +16,7 @@
 #include "../wire/sii.h"
 
 struct ec_config;
-struct ec_master;
+struct ec_bus;
 
 /* distance of the tries to read or configure a slave that failed; doubles each time */
 #define EC_RETRY_MIN_MS		250
@@ -27,7 +28,7 @@ struct ec_master;
  *
  * Fixed after the scan:
  * @kref: reference count; the master's table holds one
- * @master: master
+ * @bus: bus
  * @stop: ends what callers and its worker wait for
  * @mbox: its mailbox
  * @station: station address
@@ -44,7 +45,7 @@ struct ec_master;
  * @emulation: AL status follows AL control
  * @name: and other strings of the EEPROM
  *
- * Of the last scan, changed under master->topo:
+ * Of the last scan, changed under bus->topo:
  * @position: ring position
  * @regs: registers 0x0000-0x0009
  * @dl_status: register 0x0110
@@ -56,7 +57,7 @@ struct ec_master;
  * @parent_port: port of the slave it hangs at
  * @topology_odd: open ports and slaves do not fit together, here or before
  *
- * Of the EEPROM, then of the object dictionary, changed under master->topo:
+ * Of the EEPROM, then of the object dictionary, changed under bus->topo:
  * @sm_pdos: PDOs by SyncManager
  * @free_pdos: PDOs without SyncManager
  * @pdos_known: the object dictionary was read, or there is none
@@ -94,6 +95,7 @@ struct ec_master;
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
  * @waits_for: what the worker is waiting for, NULL: nothing that lasts
  * @work: brings it to @requested
+ * @works: runs of @work that are queued or in progress
  * @lock: one worker or caller at a time changes its state
  * @config: what the session wants from it, under session_lock and @lock
  * @read_pdos: read the PDOs when it is there
@@ -109,7 +111,7 @@ struct ec_master;
  */
 struct ec_slave {
 	struct kref kref;
-	struct ec_master *master;
+	struct ec_bus *bus;
 	struct ec_stop stop;
 	struct ec_mbox mbox;
 	u16 station;
@@ -175,6 +177,7 @@ struct ec_slave {
 	u64 seen_ns;
 	const char *waits_for;
 	struct work_struct work;
+	atomic_t works;
 	struct mutex lock;
 	struct ec_config *config;
 	bool read_pdos;
@@ -191,19 +194,20 @@ struct ec_slave {
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
 #define ec_slave_log(level, s, fmt, ...) \
-	ec_log_event((s)->master->base, (s)->position, 0, level, fmt, ##__VA_ARGS__)
+	ec_log_event((s)->bus->base, (s)->position, 0, level, fmt, ##__VA_ARGS__)
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
-	ec_dbg_slave((s)->master->base, (s)->position, lvl, fmt, ##__VA_ARGS__)
+	ec_dbg_slave((s)->bus->base, (s)->position, lvl, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg_result(s, ret, fmt, ...) \
-	ec_dbg_slave_result((s)->master->base, (s)->position, ret, fmt, ##__VA_ARGS__)
+	ec_dbg_slave_result((s)->bus->base, (s)->position, ret, fmt, ##__VA_ARGS__)
 
-struct ec_slave *ec_slave_alloc(struct ec_master *m, u16 station);
+struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
+bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);

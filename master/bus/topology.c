@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include "../master.h"
+#include "../link/links.h"
+#include "bus.h"
 #include "slave.h"
 #include "scan.h"
 
@@ -212,7 +213,7 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 		first = odd ? min(first, i) : first;
 	}
 	/* the one that leads to the other device of a ring */
-	return n && free == 1 && roots == 1 && slaves[0]->master->links.link[1].up ? n : first;
+	return n && free == 1 && roots == 1 && slaves[0]->bus->links->link[1].up ? n : first;
 }
 
 /**

@@ -20,15 +20,15 @@ static void set_ref(struct ec_dc_job *j)
 	struct ec_dc *dc = &j->m->dc;
 	struct ec_slave *old, *ref = j->ref < j->n ? ec_slave_ref(j->slaves[j->ref]) : NULL;
 
-	down_write(&j->m->topo);
-	ec_change_begin(j->m);
+	down_write(&j->m->bus.topo);
+	ec_change_begin(&j->m->base->show);
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
 	WRITE_ONCE(dc->front, ref && ec_dc_has_front(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
-	ec_change_end(j->m);
-	up_write(&j->m->topo);
+	ec_change_end(&j->m->base->show);
+	up_write(&j->m->bus.topo);
 	if (old)
 		ec_slave_unref(old);
 }
@@ -277,12 +277,12 @@ void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
 	unsigned int i;
 
 	stop(&m->dc);
-	down_read(&m->topo);
-	for (i = 0; all && i < m->n_slaves; i++) {
-		WRITE_ONCE(m->slaves[i]->dc_set, false);
-		m->slaves[i]->dc_vain = 0;
+	down_read(&m->bus.topo);
+	for (i = 0; all && i < m->bus.n_slaves; i++) {
+		WRITE_ONCE(m->bus.slaves[i]->dc_set, false);
+		m->bus.slaves[i]->dc_vain = 0;
 	}
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	WRITE_ONCE(m->dc.stop, false);
 	if (all)
 		ec_dc_app_set(m, 0, false);
@@ -324,9 +324,9 @@ void ec_dc_end(struct ec_master *m)
 	m->dc.failed = false;
 	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
 	ec_dc_app_set(m, 0, false);
-	down_read(&m->topo);
+	down_read(&m->bus.topo);
 	WRITE_ONCE(m->dc.ref_station, m->dc.ref ? m->dc.ref->station : 0);
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	set_state(&m->dc, EC_DC_OFF);
 }
 

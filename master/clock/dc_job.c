@@ -125,11 +125,11 @@ bool ec_dc_can_be(struct ec_master *m, u16 choice)
 	bool ret = false;
 	unsigned int i;
 
-	down_read(&m->topo);
-	for (i = 0; i < m->n_slaves && !ret; i++)
-		ret = has_times(m->slaves[i]) && ec_slave_has_clock(m->slaves[i]) &&
-		      (choice == EC_DC_ANY || m->slaves[i]->station == choice);
-	up_read(&m->topo);
+	down_read(&m->bus.topo);
+	for (i = 0; i < m->bus.n_slaves && !ret; i++)
+		ret = has_times(m->bus.slaves[i]) && ec_slave_has_clock(m->bus.slaves[i]) &&
+		      (choice == EC_DC_ANY || m->bus.slaves[i]->station == choice);
+	up_read(&m->bus.topo);
 	return ret;
 }
 
@@ -177,14 +177,14 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m)
 	unsigned int i;
 
 	*j = (struct ec_dc_job){ .m = m };
-	down_read(&m->topo);
-	j->n = m->n_slaves;
+	down_read(&m->bus.topo);
+	j->n = m->bus.n_slaves;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
-		j->slaves[i] = ec_slave_ref(m->slaves[i]);
+		j->slaves[i] = ec_slave_ref(m->bus.slaves[i]);
 	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->stop.gone)
 		j->followed = m->dc.ref->station;
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	j->recv = kvcalloc(j->n + 1, sizeof(*j->recv), GFP_KERNEL);
 	j->unit = kvcalloc(j->n + 1, sizeof(*j->unit), GFP_KERNEL);
@@ -437,7 +437,7 @@ static bool known(struct ec_dc_job *j, u32 scan)
  */
 int ec_dc_get_delays(struct ec_dc_job *j)
 {
-	u32 scan = READ_ONCE(j->m->scan_count) + 1;
+	u32 scan = READ_ONCE(j->m->bus.scan_count) + 1;
 	unsigned int i;
 	int ret;
 

@@ -50,7 +50,7 @@ static bool canceled(const struct ec_slave *s, u8 state)
  */
 int ec_dc_wait(struct ec_slave *s)
 {
-	struct ec_dc *dc = &s->master->dc;
+	struct ec_dc *dc = &s->bus->master->dc;
 	unsigned int ms, near = 0;
 
 	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
@@ -83,7 +83,7 @@ int ec_dc_sync_stop(struct ec_slave *s)
 
 	WRITE_ONCE(s->sync_free, false);
 	s->sync_due_ns = 0;
-	return ec_xfer_fpwr(&s->master->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
+	return ec_xfer_fpwr(&s->bus->master->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
 }
 
 /**
@@ -121,12 +121,12 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 
 	put_unaligned_le32(c->dc_cycle[0], cycles);
 	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
-	ret = ec_xfer_all(&s->master->links, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(&s->bus->master->links, dg, ARRAY_SIZE(dg));
 	if (ret)
 		return ret;
 	*at_ns = dg[2].sent_ns;
 	*now = wide ? get_unaligned_le64(t) :
-		      ec_dc_whole(s->master, get_unaligned_le32(t), *at_ns);
+		      ec_dc_whole(s->bus->master, get_unaligned_le32(t), *at_ns);
 	return 0;
 }
 
@@ -158,7 +158,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
 	/* the second half alone would start it at whatever time is there */
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].repeat = false;
-	ret = ec_xfer_all(&s->master->links, dg, ARRAY_SIZE(dg));
+	ret = ec_xfer_all(&s->bus->master->links, dg, ARRAY_SIZE(dg));
 	if (ret || !(c->dc_assign & RUN))
 		return ret;
 	ahead = first - get_unaligned_le64(t);
@@ -176,7 +176,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
-	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->master->links.access.interval_us) * NSEC_PER_USEC;
+	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->bus->master->links.access.interval_us) * NSEC_PER_USEC;
 	s64 most = HALF32_NS - period - LEAD_NS;
 
 	if (ec_slave_features(s) & EC_FEAT_DC64)
@@ -187,7 +187,7 @@ static u64 lead(struct ec_slave *s, u32 period, u64 took)
 /* Once; the longer transfers to the slave take, the later it starts. */
 static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try)
 {
-	struct ec_dc *dc = &s->master->dc;
+	struct ec_dc *dc = &s->bus->master->dc;
 	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
 	u64 now, at_ns, t0 = ktime_get_ns(), took;
 	int ret = prepare(s, c, &now, &at_ns);
@@ -320,7 +320,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
-		ret = ret ?: ec_xfer_fprd(&s->master->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		ret = ret ?: ec_xfer_fprd(&s->bus->master->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
 		if (ret && (ret != -EIO || known))
 			return ret;
 		if (!missing(c, status[0]))

@@ -41,7 +41,7 @@ struct batch {
  */
 void ec_dc_verdict(struct ec_slave *s, u32 value)
 {
-	bool ref = s->station == READ_ONCE(s->master->dc.ref_station);
+	bool ref = s->station == READ_ONCE(s->bus->master->dc.ref_station);
 	s32 diff = ec_dc_diff(value);
 
 	WRITE_ONCE(s->dc_diff, diff);
@@ -58,9 +58,9 @@ static void tell_far(struct ec_master *m)
 	u64 now = ktime_get_ns();
 	u32 max = 0;
 
-	down_read(&m->topo);
-	for (i = 0; i < m->n_slaves; i++) {
-		const struct ec_slave *s = m->slaves[i];
+	down_read(&m->bus.topo);
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		const struct ec_slave *s = m->bus.slaves[i];
 		u32 diff = abs(READ_ONCE(s->dc_diff));
 
 		if (!READ_ONCE(s->dc_set) || s->stop.gone || s->station == dc->ref_station)
@@ -72,7 +72,7 @@ static void tell_far(struct ec_master *m)
 			worst = i;
 		}
 	}
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	if (!far == !dc->far_told || now < dc->far_next_ns ||
 	    now < ec_read64(&dc->begun_ns) + GRACE_NS)
 		return;
@@ -90,9 +90,9 @@ static void tell_far(struct ec_master *m)
 static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int from)
 {
 	b->n = 0;
-	down_read(&m->topo);
-	for (; from < m->n_slaves && b->n < BATCH; from++) {
-		struct ec_slave *s = m->slaves[from];
+	down_read(&m->bus.topo);
+	for (; from < m->bus.n_slaves && b->n < BATCH; from++) {
+		struct ec_slave *s = m->bus.slaves[from];
 
 		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->stop.gone)
 			continue;
@@ -100,7 +100,7 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 						  b->value[b->n]);
 		b->slaves[b->n++] = ec_slave_ref(s);
 	}
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	return from;
 }
 

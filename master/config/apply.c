@@ -24,7 +24,7 @@
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 {
-	return ec_xfer_fpwr(&s->master->links, s->station, ado, data, len);
+	return ec_xfer_fpwr(&s->bus->master->links, s->station, ado, data, len);
 }
 
 static int failed(struct ec_slave *s, u8 state, int ret)
@@ -388,7 +388,7 @@ static int wait_outputs(struct ec_slave *s)
 	if (!s->plan)
 		return 0;
 	cycles = cycles_twice(s->plan);
-	limit = 5000 + div_u64((u64)cycles * s->master->links.access.interval_us, 500);
+	limit = 5000 + div_u64((u64)cycles * s->bus->master->links.access.interval_us, 500);
 	from = ec_read64(&s->plan->session->cycle.cycles);
 	for (i = 0; i < limit; i++) {
 		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
@@ -525,15 +525,13 @@ static void log_return(struct ec_slave *s)
 }
 
 /**
- * ec_apply_work() - bring a slave to the state it shall have
- * @work: of the slave, with a reference to it
+ * ec_apply() - bring a slave to the state it shall have
+ * @s: slave
  *
- * Context: Worker. Waits for bus traffic.
+ * Context: The slave's worker. Waits for bus traffic.
  */
-void ec_apply_work(struct work_struct *work)
+void ec_apply(struct ec_slave *s)
 {
-	struct ec_slave *s = container_of(work, struct ec_slave, work);
-	struct ec_master *m = s->master;
 	unsigned int i;
 	int ret = 0;
 
@@ -558,6 +556,4 @@ void ec_apply_work(struct work_struct *work)
 		ec_names_read(s);
 	WRITE_ONCE(s->stop.worker, NULL);
 	mutex_unlock(&s->lock);
-	wake_up_all(&m->scan_wq);
-	ec_slave_unref(s);
 }

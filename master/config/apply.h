@@ -8,9 +8,8 @@
 struct ec_config;
 struct ec_pdo_list;
 struct ec_slave;
-struct work_struct;
 
-void ec_apply_work(struct work_struct *work);
+void ec_apply(struct ec_slave *s);
 
 /* apply_regs.c */
 int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);

@@ -21,7 +21,7 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
 	unsigned int sm, i;
 
-	down_read(&slave->master->topo);
+	down_read(&slave->bus->master->bus.topo);
 	for (sm = 0; sm < slave->n_sms; sm++) {
 		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
 
@@ -37,7 +37,7 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 		}
 	}
 out:
-	up_read(&slave->master->topo);
+	up_read(&slave->bus->master->bus.topo);
 }
 
 /* What the session that an heir wants to take over has for the same slave, or NULL. */
@@ -204,10 +204,10 @@ static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
 	}
 	if (!slave)
 		return 0;
-	down_read(&slave->master->topo);
+	down_read(&slave->bus->master->bus.topo);
 	known = ec_slave_find_pdo(slave, index);
 	ret = known ? ec_pdo_copy_entries(p, known) : 0;
-	up_read(&slave->master->topo);
+	up_read(&slave->bus->master->bus.topo);
 	return ret;
 }
 

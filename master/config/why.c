@@ -18,7 +18,7 @@ static bool place(const struct ec_config *c, unsigned int *pos)
 	if (!c->alias)
 		return true;
 	*pos += c->alias_at;
-	return c->alias_at < m->n_slaves && m->slaves[c->alias_at]->alias == c->alias;
+	return c->alias_at < m->bus.n_slaves && m->bus.slaves[c->alias_at]->alias == c->alias;
 }
 
 /**
@@ -38,11 +38,11 @@ void ec_config_find_alias(struct ec_config *c)
 	lockdep_assert_held(&m->session_lock);
 	if (!c->alias)
 		return;
-	down_read(&m->topo);
-	while (i < m->n_slaves && m->slaves[i]->alias != c->alias)
+	down_read(&m->bus.topo);
+	while (i < m->bus.n_slaves && m->bus.slaves[i]->alias != c->alias)
 		i++;
 	c->alias_at = i;
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 }
 
 /* Do both name the slave at @pos, which is not only where another one has been? */
@@ -86,11 +86,11 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	if (!place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
-				 m->n_slaves, c->alias);
-	if (pos >= m->n_slaves)
+				 m->bus.n_slaves, c->alias);
+	if (pos >= m->bus.n_slaves)
 		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
-				 pos, m->n_slaves);
-	s = m->slaves[pos];
+				 pos, m->bus.n_slaves);
+	s = m->bus.slaves[pos];
 	if (s->error == EC_SLAVE_SCAN_FAILED)
 		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos, s->why);
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
@@ -120,7 +120,7 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 	if (want != EC_AL_OP)
 		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
-	if (s->master->links.access.mode == EC_ACCESS_DIRECT)
+	if (s->bus->master->links.access.mode == EC_ACCESS_DIRECT)
 		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
 	if (doing)
 		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
@@ -203,9 +203,9 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 
 static void absent_text(const struct ec_config *c, char *buf, size_t size)
 {
-	down_read(&c->session->master->topo);
+	down_read(&c->session->master->bus.topo);
 	absent(c, buf, size);
-	up_read(&c->session->master->topo);
+	up_read(&c->session->master->bus.topo);
 }
 
 /**
@@ -252,7 +252,7 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 	size_t len;
 
 	lockdep_assert(lockdep_is_held(&c->session->master->topo) ||
-		       atomic_read(&c->session->master->show.showing));
+		       atomic_read(&c->session->master->base->show.showing));
 	buf[0] = '\0';
 	if (!c->slave || c->slave->stop.gone)
 		len = absent(c, buf, size);

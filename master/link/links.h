@@ -58,6 +58,18 @@ struct ec_links {
 	unsigned int io_timeout_us;
 };
 
+/* physical state of the way to the slaves, now; false also without device */
+static inline bool ec_links_is_up(const struct ec_links *l)
+{
+	return ec_link_is_up(&l->link[0]);
+}
+
+/* frames sent since the device was attached */
+static inline u64 ec_links_sent(const struct ec_links *l)
+{
+	return atomic64_read(&l->link[0].stats.tx_frames);
+}
+
 /* wire time of the acyclic frames on their way */
 static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 {

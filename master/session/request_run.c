@@ -54,7 +54,7 @@ static int readwrite(const struct ec_request *r, struct ec_slave *s)
 	int ret;
 
 	dg.repeat = false;
-	ret = ec_xfer(&s->master->links, &dg, 1);
+	ret = ec_xfer(&s->bus->master->links, &dg, 1);
 	/* reading counts one, writing two */
 	return ret ? ret : dg.wkc == 3 ? 0 : -EIO;
 }
@@ -66,9 +66,9 @@ static void run_reg(struct ec_request *r, struct ec_slave *s, struct ec_request_
 	if (r->op == EC_REQUEST_OP_READWRITE)
 		res->err = readwrite(r, s);
 	else if (r->op == EC_REQUEST_OP_WRITE)
-		res->err = ec_xfer_fpwr(&s->master->links, s->station, r->index, r->buf, r->size);
+		res->err = ec_xfer_fpwr(&s->bus->master->links, s->station, r->index, r->buf, r->size);
 	else
-		res->err = ec_xfer_fprd(&s->master->links, s->station, r->index, r->buf, r->size);
+		res->err = ec_xfer_fprd(&s->bus->master->links, s->station, r->index, r->buf, r->size);
 }
 
 static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,

@@ -52,9 +52,9 @@ static void to_preop(struct ec_master *m)
 {
 	unsigned int i;
 
-	down_read(&m->topo);
-	for (i = 0; i < m->n_slaves; i++) {
-		struct ec_slave *s = m->slaves[i];
+	down_read(&m->bus.topo);
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		struct ec_slave *s = m->bus.slaves[i];
 
 		if (s->error == EC_SLAVE_SCAN_FAILED ||
 		    (s->requested == EC_AL_PREOP && (s->error || s->al_status == EC_AL_PREOP)))
@@ -62,7 +62,7 @@ static void to_preop(struct ec_master *m)
 		s->error = EC_SLAVE_OK;
 		ec_slave_request(s, EC_AL_PREOP);
 	}
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 }
 
 static int begin(struct ec_master *m, struct ec_session *s)
@@ -76,7 +76,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 		m->heir = s;
 	} else {
 		m->session = s;
-		WRITE_ONCE(m->freeze, true);
+		WRITE_ONCE(m->bus.freeze, true);
 		to_preop(m);
 	}
 	ec_session_unlock(m);
@@ -152,7 +152,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 		return -ENODEV;
 	if (taken(m))
 		return -EBUSY;
-	ret = ec_master_wait_scan(m);
+	ret = ec_bus_wait_scan(&m->bus);
 	if (ret == -EINTR)
 		return ret;
 	s = kvzalloc(sizeof(*s), GFP_KERNEL_ACCOUNT);
@@ -171,7 +171,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	}
 	if (READ_ONCE(m->heir) == s)
 		return 0;
-	ret = ec_master_wait_slaves(m);
+	ret = ec_bus_wait_slaves(&m->bus);
 	if (ret != -EINTR)
 		return 0;	/* one that is slow is no reason to refuse */
 	ec_session_end(m, owner);
@@ -214,7 +214,7 @@ static void detach(struct ec_config *c)
 	slave->reconfigure = true;
 	slave->stop.interrupt = false;
 	mutex_unlock(&slave->lock);
-	if (!slave->stop.gone && !slave->master->base->stopping)
+	if (!slave->stop.gone && !slave->bus->master->base->stopping)
 		ec_slave_request(slave, EC_AL_PREOP);
 	ec_slave_unref(slave);
 }
@@ -321,7 +321,7 @@ static void inherit(struct ec_master *m)
 
 	m->heir = NULL;
 	m->session = s;
-	WRITE_ONCE(m->freeze, s != NULL);
+	WRITE_ONCE(m->bus.freeze, s != NULL);
 	if (s)
 		to_preop(m);
 	for (i = 0; s && i < s->n_configs; i++) {
@@ -439,16 +439,16 @@ struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u
 	struct ec_slave *slave = NULL;
 	unsigned int i, pos = position;
 
-	down_read(&m->topo);
+	down_read(&m->bus.topo);
 	if (alias) {
-		for (i = 0; i < m->n_slaves && m->slaves[i]->alias != alias; i++)
+		for (i = 0; i < m->bus.n_slaves && m->bus.slaves[i]->alias != alias; i++)
 			;
 		pos += i;
 	}
-	if (pos < m->n_slaves && m->slaves[pos]->info.vendor == vendor &&
-	    m->slaves[pos]->info.product == product && !m->slaves[pos]->stop.gone)
-		slave = ec_slave_ref(m->slaves[pos]);
-	up_read(&m->topo);
+	if (pos < m->bus.n_slaves && m->bus.slaves[pos]->info.vendor == vendor &&
+	    m->bus.slaves[pos]->info.product == product && !m->bus.slaves[pos]->stop.gone)
+		slave = ec_slave_ref(m->bus.slaves[pos]);
+	up_read(&m->bus.topo);
 	return slave;
 }
 
@@ -686,7 +686,7 @@ int ec_session_activate(struct ec_session *s)
 	smp_store_release(&s->active, true);
 	s->stall_log.told = atomic_read(&m->links.access.timeouts);
 	s->lock_told = EC_CYCLE_LOCK_OFF;
-	WRITE_ONCE(m->freeze, false);
+	WRITE_ONCE(m->bus.freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->thread || !(s->kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(&m->links, EC_ACCESS_CYCLIC);

@@ -184,4 +184,9 @@ int ec_session_charge(struct ec_session *s, size_t bytes);
 void ec_session_uncharge(struct ec_session *s, size_t bytes);
 int ec_session_fits(const struct ec_session *s, size_t image_size);
 
+/* session_lock.c */
+void ec_session_lock(struct ec_master *m);
+bool ec_session_trylock(struct ec_master *m);
+void ec_session_unlock(struct ec_master *m);
+
 #endif

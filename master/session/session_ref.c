@@ -36,11 +36,11 @@ void ec_session_raise_ref(struct ec_session *s)
 	struct ec_master *m = s->master;
 	struct ec_slave *ref;
 
-	down_read(&m->topo);
+	down_read(&m->bus.topo);
 	ref = m->dc.ref;
 	if (ref)
 		ec_slave_ref(ref);
-	up_read(&m->topo);
+	up_read(&m->bus.topo);
 	if (!ref || ref == s->raised || ref->config || ref->stop.gone || has_outputs(ref)) {
 		if (ref)
 			ec_slave_unref(ref);

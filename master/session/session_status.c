@@ -66,7 +66,7 @@ static void status_links(struct ec_master *m, struct ec_status *st)
 		u32 slaves = READ_ONCE(m->links.link[i].slaves);
 
 		WRITE_ONCE(st->links[i].slaves_responding, slaves);
-		WRITE_ONCE(st->links[i].al_states, slaves ? m->al_states : 0);
+		WRITE_ONCE(st->links[i].al_states, slaves ? m->bus.al_states : 0);
 		WRITE_ONCE(st->links[i].link_up, m->links.link[i].up);
 	}
 	WRITE_ONCE(st->link_count, i);
@@ -87,8 +87,8 @@ void ec_session_fill_status(struct ec_session *s)
 	struct ec_master *m = s->master;
 	unsigned int i;
 
-	WRITE_ONCE(st->slaves_responding, m->slaves_responding);
-	WRITE_ONCE(st->al_states, m->al_states);
+	WRITE_ONCE(st->slaves_responding, m->bus.responding);
+	WRITE_ONCE(st->al_states, m->bus.al_states);
 	WRITE_ONCE(st->link_up, m->links.link[0].up || m->links.link[1].up);
 	status_links(m, st);
 	for (i = 0; i < s->n_configs; i++)

@@ -144,7 +144,7 @@ static u64 wait_count(struct bus *b, u32 n)
 {
 	u64 t0 = ktime_get_ns();
 
-	while (READ_ONCE(b->m->slaves_responding) != n) {
+	while (READ_ONCE(b->m->bus.responding) != n) {
 		if (ktime_get_ns() - t0 > NSEC_PER_SEC)
 			return ~0ull;
 		usleep_range(100, 101);
@@ -162,7 +162,7 @@ static void al_disappears_and_returns(struct kunit *test)
 	gone = wait_count(b, N - 1);
 	KUNIT_EXPECT_LT(test, gone, 100000ull);
 	msleep(333);
-	KUNIT_EXPECT_EQ(test, b->m->n_slaves, N - 1);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, N - 1);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, N - 1, 0, 0, 0);
 	back = wait_count(b, N);
 	KUNIT_EXPECT_LT(test, back, 100000ull);
@@ -179,7 +179,7 @@ static void al_cable_pulled(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_EXPECT_LT(test, wait_count(b, 0), 100000ull);
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, b->m->n_slaves, 0);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 0);
 	KUNIT_EXPECT_FALSE(test, b->m->links.link[0].up);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_EXPECT_LT(test, wait_count(b, N), 100000ull);

@@ -69,7 +69,7 @@ static void attach_one_pulled(struct kunit *test)
 		cyc_run(c, 1);
 		not_op += (READ_ONCE(s1->al_status) & 0xf) != EC_AL_OP;
 	}
-	KUNIT_ASSERT_EQ(test, b->m->n_slaves, (u32)N - 1);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
 	KUNIT_EXPECT_EQ(test, not_op, 0u);
 	for (i = 1; i < N - 1; i++)
@@ -103,7 +103,7 @@ static void attach_failed_one(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, 2, 0, 0, 0);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
 	cyc_run(c, 1000);
-	KUNIT_ASSERT_EQ(test, b->m->n_slaves, (u32)N - 1);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
 	KUNIT_ASSERT_NOT_NULL(test, s1->config);
 	KUNIT_EXPECT_EQ(test, s1->config->position, 2u);

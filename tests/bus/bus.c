@@ -104,10 +104,10 @@ bool bus_settled(struct bus *b)
 {
 	u32 i;
 
-	if (READ_ONCE(b->m->scan_busy) || READ_ONCE(b->m->rescan))
+	if (READ_ONCE(b->m->bus.scan_busy) || READ_ONCE(b->m->bus.rescan))
 		return false;
-	for (i = 0; i < b->m->n_slaves; i++)
-		if (work_busy(&b->m->slaves[i]->work))
+	for (i = 0; i < b->m->bus.n_slaves; i++)
+		if (work_busy(&b->m->bus.slaves[i]->work))
 			return false;
 	return true;
 }
@@ -124,9 +124,9 @@ void bus_plug_scanned(struct bus *b, u32 slaves, u32 limit_ms)
 
 	bus_plug(b);
 	end = b->t0 + (u64)limit_ms * NSEC_PER_MSEC;
-	while (ktime_get_ns() < end && !(b->m->n_slaves == slaves && bus_settled(b)))
+	while (ktime_get_ns() < end && !(b->m->bus.n_slaves == slaves && bus_settled(b)))
 		usleep_range(1000, 1001);
-	KUNIT_ASSERT_EQ(b->test, b->m->n_slaves, slaves);
+	KUNIT_ASSERT_EQ(b->test, b->m->bus.n_slaves, slaves);
 }
 
 /**
@@ -172,7 +172,7 @@ void bus_crowd(struct bus *b)
 	for (i = 0; i < n; i++) {
 		b->crowd->guests[i].crowd = b->crowd;
 		INIT_WORK(&b->crowd->guests[i].work, stay);
-		queue_work(b->m->work, &b->crowd->guests[i].work);
+		queue_work(b->m->bus.work, &b->crowd->guests[i].work);
 	}
 	msleep(20);
 }
@@ -198,10 +198,10 @@ static bool all_in(const struct bus *b, u32 slaves, u8 state)
 {
 	u32 i;
 
-	if (b->m->n_slaves != slaves || READ_ONCE(b->m->scan_busy))
+	if (b->m->bus.n_slaves != slaves || READ_ONCE(b->m->bus.scan_busy))
 		return false;
 	for (i = 0; i < slaves; i++)
-		if (b->m->slaves[i]->al_status != state)
+		if (b->m->bus.slaves[i]->al_status != state)
 			return false;
 	return true;
 }
@@ -250,8 +250,8 @@ u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms)
 
 struct ec_slave *bus_slave(struct bus *b, u32 position)
 {
-	KUNIT_ASSERT_LT(b->test, position, b->m->n_slaves);
-	return b->m->slaves[position];
+	KUNIT_ASSERT_LT(b->test, position, b->m->bus.n_slaves);
+	return b->m->bus.slaves[position];
 }
 
 struct ec_esc *bus_esc(struct bus *b, u32 index)

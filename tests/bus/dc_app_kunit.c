@@ -217,10 +217,10 @@ static void app_jumps_then_slave(struct kunit *test)
 	t.add -= 17 * NSEC_PER_SEC + 12345;
 	cyc_run(c, 1000);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 100 && b->m->n_slaves != 1; i++)
+	for (i = 0; i < 100 && b->m->bus.n_slaves != 1; i++)
 		cyc_run(c, 10);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
-	for (i = 0; i < 100 && b->m->n_slaves != 2; i++)
+	for (i = 0; i < 100 && b->m->bus.n_slaves != 2; i++)
 		cyc_run(c, 10);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
@@ -250,10 +250,10 @@ static void power(struct cyc *c, bool on)
 
 	for (i = 0; i < 2; i++)
 		bus_fault(c->b, on ? EC_SIM_FAULT_POWER_ON : EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
-	for (i = 0; i < 100 && (c->b->m->n_slaves != (on ? 2 : 0) ||
+	for (i = 0; i < 100 && (c->b->m->bus.n_slaves != (on ? 2 : 0) ||
 			       (!on && READ_ONCE(c->b->m->dc.running))); i++)
 		cyc_run(c, 10);
-	KUNIT_ASSERT_EQ(c->b->test, c->b->m->n_slaves, on ? 2u : 0u);
+	KUNIT_ASSERT_EQ(c->b->test, c->b->m->bus.n_slaves, on ? 2u : 0u);
 }
 
 /* All clocks are set anew within a session: to the time of now, not of its start. */

@@ -12,7 +12,7 @@ static u64 worst(struct bus *b)
 	u32 i;
 
 	ec_sim_advance(b->sim, now);
-	for (i = 1; i < b->m->n_slaves; i++) {
+	for (i = 1; i < b->m->bus.n_slaves; i++) {
 		s64 d = ec_esc_system_time(bus_esc(b, i), now) -
 			ec_esc_system_time(bus_esc(b, 0), now);
 
@@ -399,7 +399,7 @@ static void dc_slave_comes_back(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 2, 0, 0, 0);
 	max = watch(c, 0, 2, 20);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 2, 0, 0, 0);
-	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && cyc_all_op(c)); i++)
+	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && cyc_all_op(c)); i++)
 		max = max(max, watch(c, 0, 2, 1));
 	KUNIT_EXPECT_LT(test, i, 100u);
 	bus_figure("a slave comes back: the others differ by %llu ns at most, the slave by %llu ns",
@@ -435,7 +435,7 @@ static void dc_reference_is_lost(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	cyc_run(c, 300);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
-	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && cyc_all_op(c)); i++)
+	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && cyc_all_op(c)); i++)
 		cyc_run(c, 50);
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 1000);
@@ -475,7 +475,7 @@ static void dc_chosen_is_lost(struct kunit *test)
 	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
 	KUNIT_EXPECT_LT(test, max, 200ull);
 	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
-	for (i = 0; i < 100 && !(b->m->n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
+	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
 	     i++)
 		cyc_run(c, 50);
 	KUNIT_EXPECT_LT(test, i, 100u);

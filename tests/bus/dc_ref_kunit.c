@@ -202,9 +202,9 @@ static void until(struct run *r, u32 slaves)
 {
 	u32 i;
 
-	for (i = 0; i < 100 && r->b->m->n_slaves != slaves; i++)
+	for (i = 0; i < 100 && r->b->m->bus.n_slaves != slaves; i++)
 		run(r, 20);
-	KUNIT_ASSERT_EQ(r->b->test, r->b->m->n_slaves, slaves);
+	KUNIT_ASSERT_EQ(r->b->test, r->b->m->bus.n_slaves, slaves);
 	run(r, 20);
 	for (i = 0; i < 200 && READ_ONCE(r->b->m->dc.state) == EC_DC_BUSY; i++)
 		run(r, 20);

@@ -38,7 +38,7 @@ static u64 worst(struct bus *b)
 
 	ec_sim_advance(b->sim, now);
 	ref = ec_esc_system_time(bus_esc(b, 0), now);
-	for (i = 1; i < b->m->n_slaves; i++) {
+	for (i = 1; i < b->m->bus.n_slaves; i++) {
 		s64 d = ec_esc_system_time(bus_esc(b, i), now) - ref;
 
 		max = max_t(u64, max, abs(d));

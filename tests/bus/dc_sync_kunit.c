@@ -93,8 +93,8 @@ static u32 until_op(struct cyc *c, u32 mask, u32 limit_ms)
 
 	for (ms = 0; ms < limit_ms; ms++) {
 		for (i = 0; mask >> i; i++)
-			if (mask & BIT(i) && (b->m->n_slaves <= i || b->m->slaves[i]->reconfigure ||
-					      b->m->slaves[i]->al_status != EC_AL_OP))
+			if (mask & BIT(i) && (b->m->bus.n_slaves <= i || b->m->bus.slaves[i]->reconfigure ||
+					      b->m->bus.slaves[i]->al_status != EC_AL_OP))
 				break;
 		if (!(mask >> i))
 			break;
@@ -303,10 +303,10 @@ static void sync_from_preop(struct kunit *test)
 
 static void expect_reason(struct bus *b, u32 i, const char *what)
 {
-	KUNIT_EXPECT_NE(b->test, b->m->slaves[i]->al_status, EC_AL_OP);
-	KUNIT_EXPECT_EQ(b->test, b->m->slaves[i]->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->m->slaves[i]->why, what), "%s",
-				  b->m->slaves[i]->why);
+	KUNIT_EXPECT_NE(b->test, b->m->bus.slaves[i]->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(b->test, b->m->bus.slaves[i]->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->m->bus.slaves[i]->why, what), "%s",
+				  b->m->bus.slaves[i]->why);
 }
 
 /* Without any cycle time there is nothing to start. */
@@ -393,7 +393,7 @@ static void sync1_is_slower(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, b->m->bus.slaves[i]->error, EC_SLAVE_OK);
 }
 
 /* What a controller without register 0x0984 answers there means nothing: OP is tried. */
@@ -419,7 +419,7 @@ static void sync_without_status(struct kunit *test)
 	until_op(c, 15, 5000);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, b->m->slaves[i]->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, b->m->bus.slaves[i]->error, EC_SLAVE_OK);
 }
 
 static void not_started_again(struct cyc *c)
@@ -532,7 +532,7 @@ static void sync_gives_up(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	cyc_run(c, 500);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 10000 && (b->m->n_slaves < 4 || !bus_slave(b, 3)->dc_set); i++)
+	for (i = 0; i < 10000 && (b->m->bus.n_slaves < 4 || !bus_slave(b, 3)->dc_set); i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 10000u);
 	until_op(c, 15, 5000);

@@ -134,7 +134,7 @@ static bool all_in(struct bus *b, u8 state)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->n_slaves; i++)
+	for (i = 0; i < b->m->bus.n_slaves; i++)
 		if (ec_app_state(ec_app_of(bus_esc(b, i))) != state)
 			return false;
 	return true;

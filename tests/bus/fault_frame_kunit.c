@@ -208,7 +208,7 @@ static void frame_compared(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
 	r = (struct reader){ .b = b, .station = bus_slave(b, 1)->station };
 	INIT_WORK(&r.work, read_type);
-	queue_work(b->m->work, &r.work);
+	queue_work(b->m->bus.work, &r.work);
 	for (ms = 0; ms < 60; ms++) {
 		held += change_slots(b, EC_SLOT_SENT, EC_SLOT_FILL);
 		usleep_range(1000, 1001);
@@ -265,7 +265,7 @@ static void frame_trouble(struct kunit *test)
 	bus_figure("fault_frame %s lost %llu late %llu unmatched %llu errors %u of 2000", t->name,
 		   bus_lost(b), late(b), unmatched(b), errors);
 	KUNIT_EXPECT_EQ(test, bus_lost(b) + late(b) > 0, t->counted);
-	KUNIT_EXPECT_EQ(test, b->m->n_slaves, N);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, N);
 }
 
 static struct kunit_case cases[] = {

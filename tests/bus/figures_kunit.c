@@ -26,7 +26,7 @@ static struct bus *scan(struct kunit *test, u32 n, size_t bytes, bool eight)
 	us = bus_wait(b, n, EC_AL_PREOP, 20000);
 	KUNIT_ASSERT_NE(test, us, ~0ull);
 	bus_figure("scan to PREOP, %u slaves, %zu bytes of EEPROM, %u-byte ESCs: %llu us of bus time; the scan itself %u us, %llu frames",
-		   n, bytes, eight ? 8 : 4, us, b->m->scan_us, b->m->scan_frames);
+		   n, bytes, eight ? 8 : 4, us, b->m->bus.scan_us, b->m->bus.scan_frames);
 	for (i = 0; i < n; i++)
 		KUNIT_ASSERT_EQ(test, bus_slave(b, i)->sii_bytes, bytes);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
@@ -63,9 +63,9 @@ static void figures_scan_frames(struct kunit *test)
 	struct bus *b = scan(test, 100, 2048, true);
 
 	/* reading PDOs comes later and is another matter */
-	KUNIT_EXPECT_EQ(test, b->m->scan_count, 1u);
-	bus_row(b->m->scan_frames, 2200, "frames: scan of 100 slaves with 2 KiB to PREOP");
-	KUNIT_EXPECT_LE(test, b->m->scan_frames, 2200ull);
+	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, 1u);
+	bus_row(b->m->bus.scan_frames, 2200, "frames: scan of 100 slaves with 2 KiB to PREOP");
+	KUNIT_EXPECT_LE(test, b->m->bus.scan_frames, 2200ull);
 }
 
 #define RESPONSE_US	100

@@ -28,7 +28,7 @@ static bool plant_in_op(struct bus *b)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->n_slaves; i++)
+	for (i = 0; i < b->m->bus.n_slaves; i++)
 		if (bus_esc(b, i)->mem[EC_REG_AL_STATUS] != EC_AL_OP)
 			return false;
 	return true;
@@ -537,9 +537,9 @@ static void slave_is_away(struct kunit *test)
 	kcyc_wait_cycles(a, 3);
 	die(a);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 3000 && b->m->n_slaves != 1; i++)
+	for (i = 0; i < 3000 && b->m->bus.n_slaves != 1; i++)
 		msleep(1);
-	KUNIT_ASSERT_EQ(test, b->m->n_slaves, 1u);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
 	a = kunit_kzalloc(test, sizeof(*a), GFP_KERNEL);
 	a->c = cyc_new(b, 1000);
 	cyc_domain(a->c);
@@ -553,7 +553,7 @@ static void slave_is_away(struct kunit *test)
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
-	for (i = 0; i < 5000 && !(b->m->n_slaves == 2 && plant_in_op(b)); i++)
+	for (i = 0; i < 5000 && !(b->m->bus.n_slaves == 2 && plant_in_op(b)); i++)
 		msleep(1);
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	msleep(100);

@@ -45,7 +45,7 @@ static void link_full_transmit_ring_delays_only(struct kunit *test)
 	all_are_well(b, MANY);
 	/* nor was anyone meanwhile: a slave that fails is tried again, and well then */
 	KUNIT_EXPECT_EQ(test, bus_log_lines("EtherCAT 0-"), lines);
-	KUNIT_EXPECT_EQ(test, b->m->scan_count, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, 1u);
 	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
 	/* not everybody who waits tries for himself */
 	KUNIT_EXPECT_LT(test, slow_full(s), 20000u);
@@ -125,8 +125,8 @@ static u32 failed(struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < b->m->n_slaves; i++)
-		n += b->m->slaves[i]->error != EC_SLAVE_OK;
+	for (i = 0; i < b->m->bus.n_slaves; i++)
+		n += b->m->bus.slaves[i]->error != EC_SLAVE_OK;
 	return n;
 }
 
@@ -136,19 +136,19 @@ static void scan_begins(struct bus *b, struct cyc *c)
 	u32 i;
 
 	for (i = 0; i < 10000; i++) {
-		if (READ_ONCE(b->m->scan_busy))
+		if (READ_ONCE(b->m->bus.scan_busy))
 			break;
 		if (c)
 			cyc_run(c, 1);
 		else
 			usleep_range(100, 101);
 	}
-	KUNIT_ASSERT_TRUE(b->test, b->m->scan_busy);
+	KUNIT_ASSERT_TRUE(b->test, b->m->bus.scan_busy);
 	if (c)
 		cyc_run(c, 10);
 	else
 		usleep_range(5000, 5001);
-	KUNIT_ASSERT_TRUE(b->test, b->m->scan_busy);
+	KUNIT_ASSERT_TRUE(b->test, b->m->bus.scan_busy);
 }
 
 /* The link goes while slaves are scanned: none is blamed, all are found later. */
@@ -158,14 +158,14 @@ static void link_loss_ends_a_scan(struct kunit *test)
 	u64 us;
 
 	bus_idle(b);
-	ec_master_rescan(b->m);
+	ec_bus_rescan(&b->m->bus);
 	scan_begins(b, NULL);
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	us = until_link_is(b, NULL, false);
 	bus_figure("link lost while %u slaves are scanned: known after %llu us", MANY, us);
 	KUNIT_EXPECT_LT(test, us, 100000ull);
 	msleep(100);
-	KUNIT_EXPECT_FALSE(test, b->m->scan_busy);
+	KUNIT_EXPECT_FALSE(test, b->m->bus.scan_busy);
 	KUNIT_EXPECT_EQ(test, failed(b), 0u);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
@@ -328,8 +328,8 @@ static void link_claims_beyond_memory_refused(struct kunit *test)
 	msleep(1000);
 	/* the monitor's looks only, and the claim is no number of slaves */
 	KUNIT_EXPECT_LT(test, bus_frames(b) - frames, 300ull);
-	KUNIT_EXPECT_EQ(test, b->m->n_slaves, 0u);
-	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->bus.responding, 0u);
 	slow_claim(s, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
 	bus_idle(b);

@@ -70,7 +70,7 @@ static void op_power_loss(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LAST, 0, 0, 0);
 	cyc_run(c, 300);
 	/* noticed, its inputs hold, the other domain is complete */
-	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, N - 1);
+	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N - 1);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 1)->working_counter, 0);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 1)->wc_state, 0);
 	KUNIT_EXPECT_EQ(test, *cyc_pd(c, LAST, 1), before);
@@ -114,7 +114,7 @@ static void op_cable_pulled(struct kunit *test)
 	u32 i;
 
 	bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
-	for (i = 0; i < 100 && c->b->m->slaves_responding; i++)
+	for (i = 0; i < 100 && c->b->m->bus.responding; i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 100);
 	cyc_run(c, 400);
@@ -183,7 +183,7 @@ static void op_session_ends(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_TRUE(test, outputs_off(b));
-	KUNIT_EXPECT_FALSE(test, b->m->freeze);
+	KUNIT_EXPECT_FALSE(test, b->m->bus.freeze);
 	/* and the next one may begin */
 	bus_idle(b);
 	c = cyc_new(b, 1000);
@@ -204,7 +204,7 @@ static void op_application_stalls(struct kunit *test)
 	msleep(300);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
-	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, N);
+	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N);
 	/* the watchdog of the slave has switched its outputs off */
 	KUNIT_EXPECT_EQ(test, ec_app_channel(bus_app(b, "ao"), EC_APP_OUT, 0), 0ll);
 	c->next = ktime_get();
@@ -233,7 +233,7 @@ static void stall_once(struct cyc *c)
 {
 	msleep(250);
 	/* which says nothing about the slaves */
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->slaves_responding, N);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->bus.responding, N);
 	c->next = ktime_get();
 	cyc_run(c, 60);
 }
@@ -243,14 +243,14 @@ static void op_stalls_logged(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct kmsg_dump_iter first, it;
-	u32 i, before = atomic_read(&c->b->m->links.access.timeouts), scans = c->b->m->scan_count;
+	u32 i, before = atomic_read(&c->b->m->links.access.timeouts), scans = c->b->m->bus.scan_count;
 
 	kmsg_dump_rewind(&it);
 	logged(&it, "");
 	for (i = 0; i < 20; i++)
 		stall_once(c);
 	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->links.access.timeouts), before + 20);
-	KUNIT_EXPECT_EQ(test, c->b->m->scan_count, scans);
+	KUNIT_EXPECT_EQ(test, c->b->m->bus.scan_count, scans);
 	first = it;
 	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout"), 1);
 	first = it;

@@ -257,7 +257,7 @@ static u8 beside(struct kunit *test, const char *text)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
 	cyc_run(c, 500);
 	state = bus_slave(b, 0)->al_status;
-	KUNIT_EXPECT_EQ(test, b->m->al_states, EC_AL_OP | state);
+	KUNIT_EXPECT_EQ(test, b->m->bus.al_states, EC_AL_OP | state);
 	cyc_release(c);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 1000), ~0ull);
 	return state;

@@ -19,8 +19,8 @@ static bool known(struct bus *b)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->n_slaves; i++)
-		if (ec_slave_pdos_pending(b->m->slaves[i]))
+	for (i = 0; i < b->m->bus.n_slaves; i++)
+		if (ec_slave_pdos_pending(b->m->bus.slaves[i]))
 			return false;
 	return bus_settled(b);
 }
@@ -75,7 +75,7 @@ static void pdo_changed_mapping_is_seen(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 0, 1, 1), 0);
 	KUNIT_ASSERT_EQ(test, put(s, 0x1c13, 0, 0, 1), 0);
 
-	ec_master_rescan(b->m);
+	ec_bus_rescan(&b->m->bus);
 	usleep_range(50000, 50001);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
 	wait_known(b);

@@ -222,10 +222,10 @@ static void scan_too_much(struct kunit *test)
 	put_unaligned_le16(0x001f, e->data + 2 * EC_SII_W_SIZE);
 	put_unaligned_le16(0x0900, e->data + EC_SII_FIXED_SIZE);
 	put_unaligned_le16(3000 / 2, e->data + EC_SII_FIXED_SIZE + 2);
-	atomic_long_add(most, &b->m->sii_bytes);
+	atomic_long_add(most, &b->m->bus.sii_bytes);
 	others_fine(b, 5, 1000);
 	failed_with(b, 5, "the EEPROMs of all slaves exceed 64 MiB; disconnect slaves with large EEPROMs");
-	atomic_long_sub(most, &b->m->sii_bytes);
+	atomic_long_sub(most, &b->m->bus.sii_bytes);
 }
 
 static void scan_blank_zeros(struct kunit *test)
@@ -304,7 +304,7 @@ static void scan_reads_what_is_new(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, 3, 1, 0, 0);
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 1000), ~0ull);
-	all = b->m->scan_frames;
+	all = b->m->bus.scan_frames;
 	for (i = 0; i < 4; i++)
 		old[i] = bus_slave(b, i);
 
@@ -318,8 +318,8 @@ static void scan_reads_what_is_new(struct kunit *test)
 	/* nobody is new now: no EEPROM is read */
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
-	KUNIT_EXPECT_LT(test, b->m->scan_frames, 12ull);
-	KUNIT_EXPECT_LT(test, 8 * b->m->scan_frames, all);
+	KUNIT_EXPECT_LT(test, b->m->bus.scan_frames, 12ull);
+	KUNIT_EXPECT_LT(test, 8 * b->m->bus.scan_frames, all);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 4)->next[1], EC_UAPI_NONE16);
 }
 
@@ -332,8 +332,8 @@ static void scan_on_request(struct kunit *test)
 
 	/* the serial number changes */
 	put_unaligned_le32(4711, e->data + 2 * EC_SII_W_SERIAL);
-	ec_master_rescan(b->m);
-	KUNIT_ASSERT_EQ(test, ec_master_wait_scan(b->m), 0);
+	ec_bus_rescan(&b->m->bus);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->info.serial, 4711);
 	KUNIT_EXPECT_GT(test, bus_frames(b) - frames, 50ull);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
@@ -388,8 +388,8 @@ static void scan_comes_before_reserve(struct kunit *test)
 	struct bus *b = bus_new(test, line);
 
 	bus_plug(b);
-	KUNIT_ASSERT_EQ(test, ec_master_wait_scan(b->m), 0);
-	KUNIT_EXPECT_EQ(test, b->m->n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, (u32)N);
 }
 
 static struct kunit_case scan_fault_cases[] = {

@@ -141,16 +141,16 @@ static void scan_stations(struct kunit *test)
 static void scan_nothing(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "bench");
-	u32 scans = b->m->scan_count;
+	u32 scans = b->m->bus.scan_count;
 	u64 t0;
 
 	msleep(100);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), 0);
 	msleep(100);
-	KUNIT_EXPECT_FALSE(test, b->m->rescan);
-	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans + 1);
+	KUNIT_EXPECT_FALSE(test, b->m->bus.rescan);
+	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
 	t0 = ktime_get_ns();
-	KUNIT_EXPECT_EQ(test, ec_master_wait_scan(b->m), 0);
+	KUNIT_EXPECT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 1000000ull);
 	bus_plug(b);
 	KUNIT_EXPECT_NE(test, bus_wait(b, ARRAY_SIZE(bench), EC_AL_PREOP, 10000), ~0ull);
@@ -161,20 +161,20 @@ static void scan_while_reserved(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
 	const u8 *al = bus_esc(b, 2)->mem + EC_REG_AL_STATUS;
-	u32 scans = b->m->scan_count, i;
+	u32 scans = b->m->bus.scan_count, i;
 	u64 frames;
 
 	bus_idle(b);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), -EBUSY);
-	ec_master_rescan(b->m);
+	ec_bus_rescan(&b->m->bus);
 	msleep(100);
 	frames = bus_frames(b);
 	msleep(1000);
 	/* looks every 20 ms, some of them in two frames */
 	KUNIT_EXPECT_GE(test, bus_frames(b) - frames, 40ull);
 	KUNIT_EXPECT_LE(test, bus_frames(b) - frames, 100ull);
-	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans);
+	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
 	ec_app_al_fail(bus_app(b, "ai"), EC_AL_INIT, 0x001b, ktime_get_ns());
 	/* the master's copy may have that value for less than 100 us: look at the slave's */
 	KUNIT_EXPECT_EQ(test, al[0], EC_AL_INIT | EC_AL_ERROR);
@@ -184,7 +184,7 @@ static void scan_while_reserved(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, 2, EC_AL_PREOP, 100), ~0ull);
 	ec_session_end(b->m, &b->app);
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, b->m->scan_count, scans + 1);
+	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
 }
 
 /* Module parameters that cannot be meant: no master at all, and no leak. */

@@ -238,7 +238,7 @@ static void session_scan_progress(struct kunit *test)
 	bus_plug(b);
 	watch_scan(b, 50);
 	bus_idle(b);
-	ec_master_rescan(b->m);
+	ec_bus_rescan(&b->m->bus);
 	watch_scan(b, 50);
 }
 

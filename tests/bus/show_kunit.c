@@ -25,7 +25,7 @@ static void end_change(struct work_struct *work)
 {
 	struct change *c = container_of(to_delayed_work(work), struct change, work);
 
-	ec_change_end(c->m);
+	ec_change_end(&c->m->base->show);
 }
 
 /* What was found is gone, whether the change began in the section or in the pause. */
@@ -37,17 +37,17 @@ static void show_pause_reports_change_that_waited(struct kunit *test)
 	int ret;
 
 	INIT_DELAYED_WORK_ONSTACK(&c.work, end_change);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
-	ec_change_announce(b->m);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
+	ec_change_announce(&b->m->base->show);
 	schedule_delayed_work(&c.work, msecs_to_jiffies(20));
-	ret = ec_show_pause(b->m);
+	ret = ec_show_pause(&b->m->base->show);
 	/* else the next change waits for ever */
 	if (!ret)
-		ec_show_end(b->m);
+		ec_show_end(&b->m->base->show);
 	KUNIT_EXPECT_EQ(test, ret, -EAGAIN);
 	KUNIT_EXPECT_GE_MSG(test, ktime_get_ns() - t0, 10 * NSEC_PER_MSEC,
 			    "it waits for the end of the change");
-	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->show.showing), 0, "the section has ended");
+	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->base->show.showing), 0, "the section has ended");
 	destroy_delayed_work_on_stack(&c.work);
 }
 
@@ -58,10 +58,10 @@ static void show_pause_goes_on_without_change(struct kunit *test)
 
 	ec_session_lock(b->m);
 	ec_session_unlock(b->m);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
-	KUNIT_EXPECT_EQ(test, ec_show_pause(b->m), 0);
-	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->show.showing), 1);
-	ec_show_end(b->m);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
+	KUNIT_EXPECT_EQ(test, ec_show_pause(&b->m->base->show), 0);
+	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->base->show.showing), 1);
+	ec_show_end(&b->m->base->show);
 }
 
 #define CONFIGS	200
@@ -86,10 +86,10 @@ static void show_many_configs_in_pieces(struct kunit *test)
 	for (i = 1; i < CONFIGS; i++)
 		configure(b, i);
 	configure(b, 0);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(b->m), 0);
-	KUNIT_EXPECT_NULL(test, ec_config_at(b->m->session, b->m->slaves[0], 0, 0, &from));
+	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
+	KUNIT_EXPECT_NULL(test, ec_config_at(b->m->session, b->m->bus.slaves[0], 0, 0, &from));
 	KUNIT_EXPECT_LE(test, from, 64u);
-	ec_show_end(b->m);
+	ec_show_end(&b->m->base->show);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &slave), 0);
 	KUNIT_EXPECT_EQ(test, slave.config, (u32)CONFIGS);
 	KUNIT_EXPECT_TRUE(test, slave.differs);

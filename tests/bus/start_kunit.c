@@ -114,7 +114,7 @@ static u32 in_init(struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < b->m->n_slaves; i++)
+	for (i = 0; i < b->m->bus.n_slaves; i++)
 		n += (bus_esc(b, i)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK) == EC_AL_INIT;
 	return n;
 }

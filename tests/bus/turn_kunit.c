@@ -45,7 +45,7 @@ static int read_much(void *arg)
 /* The last slave but @behind is in OP, the others in PREOP. */
 static struct cyc *in_op_of(struct bus *b, u32 behind)
 {
-	return cyc_in_op(b, b->m->n_slaves - 1 - behind, 1);
+	return cyc_in_op(b, b->m->bus.n_slaves - 1 - behind, 1);
 }
 
 static struct cyc *in_op(struct kunit *test)
@@ -97,7 +97,7 @@ static void turn_stalled_cycle(struct kunit *test)
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 400 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(c->b, 1)->regs, 4);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->slaves_responding, N);
+	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
 }
 
 /* Nobody delivers what has arrived, as when an interrupt is held up. */
@@ -116,7 +116,7 @@ static void turn_overdue(struct kunit *test)
 		KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, 4);
 	}
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
-	KUNIT_EXPECT_EQ(test, b->m->slaves_responding, N);
+	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N);
 	dev->ops->cycle(dev->priv, false);
 }
 
@@ -193,7 +193,7 @@ static void turn_beside_monitor(struct kunit *test)
 	KUNIT_EXPECT_LT(test, run_few(c, &f, 10, 0, 20000), 2500u);
 	KUNIT_EXPECT_EQ(test, f.ret, 0);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->slaves_responding, 1u);
+	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, 1u);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 }
 

@@ -14,8 +14,6 @@
 #include <linux/lockdep.h>
 #include <linux/types.h>
 
-struct ec_master;
-
 /**
  * struct ec_show - readers and changes of a master
  * @showing: readers in a section
@@ -28,16 +26,12 @@ struct ec_show {
 	atomic_t changes;
 };
 
-int ec_show_begin(struct ec_master *m);
-void ec_show_end(struct ec_master *m);
-int ec_show_pause(struct ec_master *m);
+int ec_show_begin(struct ec_show *show);
+void ec_show_end(struct ec_show *show);
+int ec_show_pause(struct ec_show *show);
 
-void ec_change_announce(struct ec_master *m);
-void ec_change_begin(struct ec_master *m);
-void ec_change_end(struct ec_master *m);
-
-void ec_session_lock(struct ec_master *m);
-bool ec_session_trylock(struct ec_master *m);
-void ec_session_unlock(struct ec_master *m);
+void ec_change_announce(struct ec_show *show);
+void ec_change_begin(struct ec_show *show);
+void ec_change_end(struct ec_show *show);
 
 #endif

@@ -3,11 +3,9 @@
 #include <linux/preempt.h>
 #include <linux/processor.h>
 #include <linux/sched/signal.h>
-#include "../master.h"
 #include "show.h"
 
 #define WAIT_US	100	/* between two looks whether a change is over */
-#define TRIES	20	/* to get session_lock, that far apart */
 
 static bool enter(struct ec_show *show)
 {
@@ -25,8 +23,8 @@ static bool enter(struct ec_show *show)
 }
 
 /**
- * ec_show_begin() - look at session and slaves, which stay as they are
- * @m: master
+ * ec_show_begin() - read session and slaves, which do not change meanwhile
+ * @show: of the master
  *
  * What is in the section must not sleep and takes some microseconds at most.
  *
@@ -34,9 +32,9 @@ static bool enter(struct ec_show *show)
  * is returned.
  * Return: 0, then ec_show_end() must follow; -ERESTARTSYS a signal.
  */
-int ec_show_begin(struct ec_master *m)
+int ec_show_begin(struct ec_show *show)
 {
-	while (!enter(&m->show)) {
+	while (!enter(show)) {
 		if (signal_pending(current))
 			return -ERESTARTSYS;
 		usleep_range(WAIT_US, 2 * WAIT_US);
@@ -46,20 +44,20 @@ int ec_show_begin(struct ec_master *m)
 
 /**
  * ec_show_end() - end of the section
- * @m: master
+ * @show: of the master
  *
  * Context: After ec_show_begin().
  */
-void ec_show_end(struct ec_master *m)
+void ec_show_end(struct ec_show *show)
 {
-	lockdep_assert(atomic_read(&m->show.showing) > 0);
-	atomic_dec_return_release(&m->show.showing);
+	lockdep_assert(atomic_read(&show->showing) > 0);
+	atomic_dec_return_release(&show->showing);
 	preempt_enable();
 }
 
 /**
  * ec_show_pause() - leave the section for a moment
- * @m: master
+ * @show: of the master
  *
  * For what takes longer than some microseconds.
  *
@@ -67,102 +65,61 @@ void ec_show_end(struct ec_master *m)
  * Return: 0: what was found is still there, the section goes on; else the section
  * has ended: -EAGAIN begin anew, -ERESTARTSYS a signal.
  */
-int ec_show_pause(struct ec_master *m)
+int ec_show_pause(struct ec_show *show)
 {
-	int ret, seen = atomic_read(&m->show.changes);
+	int ret, seen = atomic_read(&show->changes);
 
-	ec_show_end(m);
-	ret = ec_show_begin(m);
-	if (ret || atomic_read(&m->show.changes) == seen)
+	ec_show_end(show);
+	ret = ec_show_begin(show);
+	if (ret || atomic_read(&show->changes) == seen)
 		return ret;
-	ec_show_end(m);
+	ec_show_end(show);
 	return -EAGAIN;
 }
 
 /**
  * ec_change_announce() - readers that come now wait outside
- * @m: master; its session_lock or topo is held
+ * @show: of the master; a lock is held that keeps other changes off
  *
  * The first half of ec_change_begin().
  *
  * Context: Any.
  */
-void ec_change_announce(struct ec_master *m)
+void ec_change_announce(struct ec_show *show)
 {
-	atomic_inc(&m->show.changing);
+	atomic_inc(&show->changing);
 	/* pairs with enter() */
 	smp_mb__after_atomic();
 }
 
 /**
  * ec_change_begin() - what readers look at is about to change
- * @m: master; its session_lock or topo is held
+ * @show: of the master; a lock is held that keeps other changes off
  *
  * Waits for readers that are in a section now: no longer than one section takes, as
  * they cannot be preempted.
  *
  * Context: Process.
  */
-void ec_change_begin(struct ec_master *m)
+void ec_change_begin(struct ec_show *show)
 {
-	ec_change_announce(m);
-	while (atomic_read_acquire(&m->show.showing))
+	ec_change_announce(show);
+	while (atomic_read_acquire(&show->showing))
 		cpu_relax();
 }
 
 /**
  * ec_change_end() - readers may look again
- * @m: master
+ * @show: of the master
  *
  * Context: Process, after ec_change_begin().
  */
-void ec_change_end(struct ec_master *m)
+void ec_change_end(struct ec_show *show)
 {
 	/*
 	 * Not when it begins: it may have been waiting for a section that pauses now, and
 	 * must not be taken for a change that was over before that section.
 	 */
-	atomic_inc(&m->show.changes);
-	atomic_dec_return_release(&m->show.changing);
-}
-
-/**
- * ec_session_lock() - take session_lock to change what readers look at
- * @m: master
- *
- * Who changes nothing of that takes the mutex alone.
- *
- * Context: Process. May sleep.
- */
-void ec_session_lock(struct ec_master *m)
-{
-	mutex_lock(&m->session_lock);
-	ec_change_begin(m);
-}
-
-void ec_session_unlock(struct ec_master *m)
-{
-	ec_change_end(m);
-	mutex_unlock(&m->session_lock);
-}
-
-/**
- * ec_session_trylock() - take session_lock, unless it is held for long
- * @m: master
- *
- * Commands hold it for a moment only; an activation may hold it for seconds.
- *
- * Context: The monitor thread. Sleeps for some milliseconds at most.
- * Return: true when it is held.
- */
-bool ec_session_trylock(struct ec_master *m)
-{
-	unsigned int i;
-
-	for (i = 0; i < TRIES; i++) {
-		if (mutex_trylock(&m->session_lock))
-			return true;
-		usleep_range(WAIT_US, 2 * WAIT_US);
-	}
-	return false;
+	atomic_inc(&show->changes);
+	atomic_dec_return_release(&show->changing);
 }

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../base/limits.h"
+#include "../link/links.h"
+#include "bus.h"
+#include "slave.h"
+#include "slave_pdo.h"
+
+/**
+ * ec_bus_init() - no slaves yet
+ * @bus: zeroed structure
+ * @base: of the master
+ * @links: way to the slaves
+ * @ops: what the layer needs of higher ones; stays
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links,
+		const struct ec_bus_ops *ops)
+{
+	bus->base = base;
+	bus->links = links;
+	bus->ops = ops;
+	init_rwsem(&bus->topo);
+	init_waitqueue_head(&bus->settled);
+	/* So many workers run at once. What one waits for is in another queue. */
+	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
+				    base->index);
+	return bus->work ? 0 : -ENOMEM;
+}
+
+/**
+ * ec_bus_stop() - wait for all workers
+ * @bus: bus; no worker is started any more
+ *
+ * Context: Process. May sleep.
+ */
+void ec_bus_stop(struct ec_bus *bus)
+{
+	if (bus->work)
+		destroy_workqueue(bus->work);
+	bus->work = NULL;
+}
+
+/**
+ * ec_bus_exit() - forget all slaves
+ * @bus: bus after ec_bus_stop()
+ *
+ * Context: Process. May sleep.
+ */
+void ec_bus_exit(struct ec_bus *bus)
+{
+	unsigned int i;
+
+	for (i = 0; i < bus->n_slaves; i++)
+		ec_slave_unref(bus->slaves[i]);
+	kvfree(bus->slaves);
+	bus->slaves = NULL;
+	bus->n_slaves = 0;
+}
+
+/**
+ * ec_bus_settled() - a scan has ended, or a slave may have settled: waiters look
+ * @bus: bus
+ *
+ * Context: Any.
+ */
+void ec_bus_settled(struct ec_bus *bus)
+{
+	if (wq_has_sleeper(&bus->settled))
+		wake_up_all(&bus->settled);
+}
+
+/**
+ * ec_bus_slave() - a slave by its ring position
+ * @bus: bus
+ * @position: ring position
+ *
+ * Context: Process. May sleep.
+ * Return: the slave with a reference for the caller, or NULL.
+ */
+struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position)
+{
+	struct ec_slave *s = NULL;
+
+	down_read(&bus->topo);
+	if (position < bus->n_slaves)
+		s = ec_slave_ref(bus->slaves[position]);
+	up_read(&bus->topo);
+	return s;
+}
+
+/* No slave on its way to another state, PDOs read. */
+static bool slave_settled(struct ec_slave *s)
+{
+	return s->stop.gone || (!ec_slave_busy(s) && !ec_slave_pdos_pending(s));
+}
+
+static bool slaves_settled(struct ec_bus *bus)
+{
+	unsigned int i;
+	bool ok = true;
+
+	down_read(&bus->topo);
+	for (i = 0; i < bus->n_slaves && ok; i++)
+		ok = slave_settled(bus->slaves[i]);
+	up_read(&bus->topo);
+	return ok;
+}
+
+static bool settled(struct ec_bus *bus)
+{
+	if (READ_ONCE(bus->scan_busy) || READ_ONCE(bus->rescan) || !READ_ONCE(bus->looked))
+		return false;
+	/* a bus that answers is scanned first */
+	return slaves_settled(bus) && READ_ONCE(bus->n_slaves) == READ_ONCE(bus->responding);
+}
+
+static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
+{
+	long ret = wait_event_interruptible_timeout(bus->settled, there(bus), msecs_to_jiffies(ms));
+
+	return ret > 0 ? 0 : ret ? -EINTR : -ETIMEDOUT;
+}
+
+/**
+ * ec_bus_wait_scan() - wait until the bus is scanned and has settled
+ * @bus: bus
+ *
+ * Context: Process. May sleep, at most some seconds.
+ * Return: 0, -EINTR, or -ETIMEDOUT.
+ */
+int ec_bus_wait_scan(struct ec_bus *bus)
+{
+	return wait_until(bus, settled, 30000);
+}
+
+/**
+ * ec_bus_wait_slaves() - wait until no slave is on its way to another state
+ * @bus: bus
+ *
+ * Context: Process. May sleep, at most 10 s.
+ * Return: 0, -EINTR, or -ETIMEDOUT.
+ */
+int ec_bus_wait_slaves(struct ec_bus *bus)
+{
+	return wait_until(bus, slaves_settled, 10000);
+}
+
+/**
+ * ec_bus_wait_slave() - wait until a slave is in its state and its PDOs are known
+ * @slave: slave
+ *
+ * Not without link: nobody reads them then.
+ *
+ * Context: Process. May sleep, at most 5 s.
+ */
+void ec_bus_wait_slave(struct ec_slave *slave)
+{
+	struct ec_bus *bus = slave->bus;
+
+	wait_event_killable_timeout(bus->settled,
+				    slave_settled(slave) || !READ_ONCE(bus->links->link[0].up),
+				    msecs_to_jiffies(5000));
+}
+
+/**
+ * ec_bus_scan_busy() - is the bus scanned, or about to be?
+ * @bus: bus
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+bool ec_bus_scan_busy(const struct ec_bus *bus)
+{
+	bool busy = READ_ONCE(bus->rescan);
+
+	/* in this order: a request disappears only after @scan_busy is set */
+	smp_rmb();
+	return busy || READ_ONCE(bus->scan_busy) ||
+	       READ_ONCE(bus->n_slaves) != READ_ONCE(bus->responding);
+}
+
+/**
+ * ec_bus_scan_progress() - how far the scan has come
+ * @bus: bus
+ * @index: result: slaves that have been read
+ * @count: result: slaves that the scan will find; @index is less until it has
+ *	ended, unless there are none
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count)
+{
+	*count = READ_ONCE(bus->n_slaves);
+	*index = *count;
+	if (!ec_bus_scan_busy(bus))
+		return;
+	*count = READ_ONCE(bus->responding);
+	*index = 0;
+	if (!READ_ONCE(bus->scan_busy))
+		return;
+	smp_rmb();	/* written before */
+	*count = READ_ONCE(bus->scan_slaves);
+	/* what was read is yet to be shown to the others */
+	if (*count)
+		*index = min(READ_ONCE(bus->scan_index), *count - 1);
+}
+
+/**
+ * ec_bus_rescan() - ask for a scan
+ * @bus: bus
+ *
+ * Context: Process.
+ */
+void ec_bus_rescan(struct ec_bus *bus)
+{
+	WRITE_ONCE(bus->rescan, true);
+	bus->ops->wake(bus);
+}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * The layer "bus": the slaves that are present, and the scan that finds them. It knows no
+ * application.
+ */
+#ifndef EC_MASTER_BUS_H
+#define EC_MASTER_BUS_H
+
+#include <linux/rwsem.h>
+#include <linux/types.h>
+#include <linux/wait.h>
+#include <linux/workqueue.h>
+#include "../base/base.h"
+
+struct ec_bus;
+struct ec_links;
+struct ec_master;
+struct ec_slave;
+
+/** struct ec_bus_ops - what the layer needs of higher ones */
+struct ec_bus_ops {
+	/** @configure: bring a slave to the state requested; the slave's worker, may sleep */
+	void (*configure)(struct ec_slave *slave);
+	/** @wake: the monitor has something to do now; any context */
+	void (*wake)(struct ec_bus *bus);
+};
+
+/** struct ec_bus - slaves of a master */
+struct ec_bus {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @links: way to the slaves, immutable */
+	struct ec_links *links;
+	/** @ops: immutable */
+	const struct ec_bus_ops *ops;
+	/** @master: for higher layers that have no structure of their own yet */
+	struct ec_master *master;
+
+	/**
+	 * @topo: protects @slaves and @n_slaves, which the monitor alone writes, and the PDO
+	 * lists of the slaves; writers add ec_change_begin()
+	 */
+	struct rw_semaphore topo;
+	/** @slaves: by ring position */
+	struct ec_slave **slaves;
+	/** @n_slaves: entries in @slaves */
+	unsigned int n_slaves;
+
+	/** @rescan: a scan is requested */
+	bool rescan;
+	/** @looked: the bus was scanned, or there is no link, since the device was attached */
+	bool looked;
+	/** @freeze: no scan while reserved and not active */
+	bool freeze;
+	/** @scan_busy: slaves are being scanned */
+	bool scan_busy;
+	/** @scan_slaves: how many slaves this scan has */
+	u32 scan_slaves;
+	/** @scan_index: how many of them have been read */
+	u32 scan_index;
+	/** @scan_count: scans so far */
+	u32 scan_count;
+	/** @scan_us: duration of the last one */
+	u32 scan_us;
+	/** @scan_frames: frames of the last one */
+	u64 scan_frames;
+	/** @next_station: station address given last; the monitor's */
+	u16 next_station;
+	/** @complete_ns: when all slaves replied last (ktime); the monitor's */
+	u64 complete_ns;
+	/** @sii_bytes: memory of all EEPROM images */
+	atomic_long_t sii_bytes;
+
+	/** @responding: slaves that replied to the last broadcast */
+	u32 responding;
+	/** @al_states: OR of AL states, as in struct ec_ioc_master */
+	u32 al_states;
+
+	/** @settled: woken when a scan has ended or a slave has settled */
+	wait_queue_head_t settled;
+	/** @work: workers that bring slaves to their state; they wait for clocks and cycles */
+	struct workqueue_struct *work;
+};
+
+int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links,
+		const struct ec_bus_ops *ops);
+void ec_bus_stop(struct ec_bus *bus);
+void ec_bus_exit(struct ec_bus *bus);
+struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position);
+int ec_bus_wait_scan(struct ec_bus *bus);
+int ec_bus_wait_slaves(struct ec_bus *bus);
+void ec_bus_wait_slave(struct ec_slave *slave);
+bool ec_bus_scan_busy(const struct ec_bus *bus);
+void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count);
+void ec_bus_rescan(struct ec_bus *bus);
+void ec_bus_settled(struct ec_bus *bus);
+
+#endif
