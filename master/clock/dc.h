@@ -73,7 +73,7 @@ struct ec_dc_app {
  * @lock: one measurement at a time
  * @state: enum ec_dc_state
  * @choice: station address of the wanted reference clock, or EC_DC_ANY...
- * @ref: reference clock with a reference, or NULL, under master->topo
+ * @ref: reference clock with a reference, or NULL, under bus->topo
  * @ref_station: its station address for the cycle, 0: none
  * @ref_wide: it has 64 bits
  * @front: slaves with a clock are in front of it: they get the time the cycle

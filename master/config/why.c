@@ -251,7 +251,7 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 {
 	size_t len;
 
-	lockdep_assert(lockdep_is_held(&c->session->master->topo) ||
+	lockdep_assert(lockdep_is_held(&c->session->master->bus.topo) ||
 		       atomic_read(&c->session->master->base->show.showing));
 	buf[0] = '\0';
 	if (!c->slave || c->slave->stop.gone)
