@@ -86,15 +86,15 @@
 #ifndef __KERNEL__
 /* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
 #define EC_HAVE_KERNEL_CYCLE
-/* requests for whole objects; in userspace */
-#define EC_HAVE_SDO_REQUEST_COMPLETE
-/* ecrt_reg_request_readwrite(); in userspace */
-#define EC_HAVE_REG_READWRITE
 /* ecrt_master_setup_domain_memory(); in userspace */
 #define EC_HAVE_DOMAIN_MEMORY
 /* ecrt_master_deactivate_slaves(); in userspace */
 #define EC_HAVE_DEACTIVATE_SLAVES
 #endif
+/* requests for whole objects */
+#define EC_HAVE_SDO_REQUEST_COMPLETE
+/* ecrt_reg_request_readwrite() */
+#define EC_HAVE_REG_READWRITE
 /* ecrt_master_sdo_upload_complete() */
 #define EC_HAVE_SDO_UPLOAD_COMPLETE
 /* ecrt_master_64bit_reference_clock_time() */
@@ -450,13 +450,12 @@ EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
  * Causes no bus traffic.
  *
  * Context: Process. May sleep.
- * Return: 0; no such slave: %-EINVAL in userspace, %-ENOENT in the kernel;
+ * Return: 0; %-EINVAL no such slave;
  * %-EINTR; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,
 		uint16_t slave_position, ec_slave_info_t *slave_info);
 
-#ifndef __KERNEL__
 /**
  * ecrt_master_get_sync_manager() - get a SyncManager as its slave describes it
  * @master: an opened master
@@ -511,7 +510,6 @@ EC_PUBLIC_API int ecrt_master_get_pdo(ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
 		uint16_t slave_position, uint8_t sync_index, uint16_t pdo_pos,
 		uint16_t entry_pos, ec_pdo_entry_info_t *entry);
-#endif
 
 /**
  * ecrt_master_sdo_download() - write an object of a slave
@@ -1674,7 +1672,6 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 		ec_slave_config_t *sc, uint16_t index, uint8_t subindex,
 		size_t size);
 
-#ifndef __KERNEL__
 /**
  * ecrt_slave_config_create_sdo_request_complete() - create a request for a whole object
  * @sc: slave configuration
@@ -1689,7 +1686,6 @@ EC_PUBLIC_API ec_sdo_request_t *ecrt_slave_config_create_sdo_request(
 EC_PUBLIC_API ec_sdo_request_t *
 ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
 		uint16_t index, size_t size);
-#endif
 
 /**
  * ecrt_slave_config_create_soe_request() - create a request that reads and writes an IDN
@@ -2137,7 +2133,6 @@ EC_PUBLIC_API void ecrt_write_lreal(void *data, double value);
 EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
 		uint16_t index, uint8_t subindex);
 
-#ifndef __KERNEL__
 /**
  * ecrt_sdo_request_index_complete() - select another whole object
  * @req: request that is not BUSY
@@ -2151,7 +2146,6 @@ EC_PUBLIC_API int ecrt_sdo_request_index(ec_sdo_request_t *req,
  */
 EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
 		uint16_t index);
-#endif
 
 /**
  * ecrt_sdo_request_timeout() - limit the time from start to transfer
@@ -2215,7 +2209,6 @@ EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
  */
 EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
 
-#ifndef __KERNEL__
 /**
  * ecrt_sdo_request_write_with_size() - start a download of @size bytes of the buffer
  * @req: request that is not BUSY, of an active master
@@ -2229,7 +2222,6 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
  */
 EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
 		size_t size);
-#endif
 
 /**
  * ecrt_sdo_request_read() - start an upload
@@ -2447,9 +2439,15 @@ EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
  * @address: register
  * @size: bytes
  *
+<<<<<<< HEAD
  * Context: The cycle owner. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer, in the kernel it is cut
  * instead; %-EINVAL @size is 0, not active, or @req is NULL.
+=======
+ * Context: The master's single cyclic caller. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer;
+ * %-EINVAL @size is 0, not active, or @req is NULL.
+>>>>>>> 67e4dae (lib/ecrt: configuration, information and requests of ecrt.h written once)
  */
 EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
 		uint16_t address, size_t size);
@@ -2466,7 +2464,6 @@ EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
 EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
 		uint16_t address, size_t size);
 
-#ifndef __KERNEL__
 /**
  * ecrt_reg_request_readwrite() - start writing registers and reading their old content
  * @req: request that is not BUSY, of an active master
@@ -2481,7 +2478,6 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
  */
 EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,
 		uint16_t address, size_t size);
-#endif
 
 #ifdef __cplusplus
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-#include "internal.h"
+#include "ecrt/ecrt_int.h"
 
 #define DIR_INPUT	2	/* struct ec_ioc_domain_fmmu.dir */
 #define INDEX_MASK	3U
@@ -30,16 +30,15 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 {
 	struct ec_ioc_cycle arg = { .cpu = -1 };
 	bool bind;
-	int ret;
 
 	if (!master)
 		return -EINVAL;
 	if (config) {
 		if (!config->period_ns)
-			return ec_fail(-EINVAL, "set a cycle of 0 ns");
+			return ec_fail(NULL, -EINVAL, "set a cycle of 0 ns");
 		bind = config->flags & EC_CYCLE_BIND_CPU;
 		if (bind ? config->cpu < 0 : config->cpu > 0)
-			return ec_fail(-EINVAL, "set a cycle on CPU %d %s EC_CYCLE_BIND_CPU",
+			return ec_fail(NULL, -EINVAL, "set a cycle on CPU %d %s EC_CYCLE_BIND_CPU",
 				       config->cpu, bind ? "with" : "without");
 		arg.period_ns = config->period_ns;
 		arg.phase_ns = config->phase_ns;
@@ -50,33 +49,24 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 		arg.dc = config->dc;
 		arg.flags = config->flags & ~EC_CYCLE_BIND_CPU;
 	}
-	ret = ec_ioctl(master, EC_IOC_CYCLE, &arg);
-	return ret ? ec_fail_ioctl(master, ret, "let the kernel run the cycle") : 0;
+	return ec_do(master, EC_IOC_CYCLE, &arg, "let the kernel run the cycle");
 }
 
 int ecrt_master_end_detached(ec_master_t *master)
 {
-	int ret;
-
-	if (!master)
-		return -EINVAL;
-	ret = ec_ioctl(master, EC_IOC_END_DETACHED, NULL);
-	return ret ? ec_fail_ioctl(master, ret, "end the detached session of master %u",
-				   master->index) : 0;
+	return ec_do(master, EC_IOC_END_DETACHED, NULL, "end the detached session");
 }
 
 int ecrt_domain_set_division(ec_domain_t *domain, unsigned int division,
 			     unsigned int phase)
 {
 	struct ec_ioc_division arg = { .division = division, .phase = phase };
-	int ret;
 
 	if (!domain)
 		return -EINVAL;
 	arg.domain = domain->index;
-	ret = ec_ioctl(domain->master, EC_IOC_DIVISION, &arg);
-	return ret ? ec_fail_ioctl(domain->master, ret, "set the division of domain %u",
-				   domain->index) : 0;
+	return ec_do(domain->master, EC_IOC_DIVISION, &arg, "set the division of domain %u",
+				   domain->index);
 }
 
 /* Bit in a domain; domains are far smaller than 2^28 bytes. */
@@ -93,7 +83,6 @@ int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset, unsigned int to_bi
 		     unsigned int from_bit, unsigned int bits)
 {
 	struct ec_ioc_copy arg = { .bits = bits };
-	int ret;
 
 	if (!to || !from || to->master != from->master)
 		return -EINVAL;
@@ -101,10 +90,9 @@ int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset, unsigned int to_bi
 	arg.from_domain = from->index;
 	if (bit_of(to_offset, to_bit, &arg.to_bit) ||
 	    bit_of(from_offset, from_bit, &arg.from_bit))
-		return ec_fail(-EINVAL, "copy to byte %u from byte %u", to_offset, from_offset);
-	ret = ec_ioctl(to->master, EC_IOC_COPY, &arg);
-	return ret ? ec_fail_ioctl(to->master, ret, "copy %u bits from domain %u to domain %u",
-				   bits, from->index, to->index) : 0;
+		return ec_fail(NULL, -EINVAL, "copy to byte %u from byte %u", to_offset, from_offset);
+	return ec_do(to->master, EC_IOC_COPY, &arg, "copy %u bits from domain %u to domain %u",
+				   bits, from->index, to->index);
 }
 
 /* memory -------------------------------------------------------------------*/
@@ -164,7 +152,7 @@ void ec_cycle_unmap(struct ec_master *m)
 static int get_fmmu(const struct ec_domain *d, __u32 i, struct ec_input *in)
 {
 	struct ec_ioc_domain_fmmu arg = { .index = d->index, .fmmu = i };
-	int ret = ec_ioctl(d->master, EC_IOC_DOMAIN_FMMU, &arg);
+	int ret = ec_command(d->master, EC_IOC_DOMAIN_FMMU, &arg);
 
 	if (ret)
 		return ret;
@@ -197,7 +185,7 @@ int ec_cycle_find_inputs(struct ec_domain *d)
 {
 	struct ec_ioc_domain info = { .index = d->index };
 	struct ec_input side = { .count = 1 }, in;
-	int ret = ec_ioctl(d->master, EC_IOC_DOMAIN, &info);
+	int ret = ec_command(d->master, EC_IOC_DOMAIN, &info);
 	__u32 i;
 
 	if (ret)
@@ -362,7 +350,7 @@ int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
 	if (!runs(master))
 		return ec_inactive(master);
 	arg.cycle = master->cycle;
-	ret = ec_ioctl(master, EC_IOC_WAIT, &arg);
+	ret = ec_command(master, EC_IOC_WAIT, &arg);
 	if (ret)
 		return ret;
 	n = arg.cycle - master->cycle;

@@ -2,23 +2,7 @@
 /* Emergencies: a ring in mapped memory, filled by the kernel, emptied here. */
 #include <string.h>
 
-#include "internal.h"
-
-int ecrt_slave_config_emerg_size(ec_slave_config_t *sc, size_t elements)
-{
-	struct ec_ioc_sc_emerg arg = { .count = (__u32)elements };
-	int ret;
-
-	if (!sc)
-		return -EINVAL;
-	if (elements > UINT32_MAX)
-		return ec_fail(-ENOMEM, "keep %zu emergencies", elements);
-	arg.config = sc->index;
-	ret = ec_ioctl(sc->master, EC_IOC_SC_EMERG, &arg);
-	return ret ? ec_fail_ioctl(sc->master, ret,
-				   "keep %zu emergencies of slave %u:%u",
-				   elements, sc->alias, sc->position) : 0;
-}
+#include "ecrt/ecrt_int.h"
 
 /* NULL before activation */
 static struct ec_emerg_ring *ring(const struct ec_slave_config *sc)

@@ -4,8 +4,11 @@
 #define EC_LIB_INTERNAL_H
 
 #include <errno.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 
 #include "../include/ecrt.h"
 #include "../include/uapi/ethercat.h"
@@ -48,7 +51,7 @@ struct ec_master {
 	__u8 *area_base;	/* the same as bytes */
 	size_t area_size;
 
-	struct ec_request *requests;
+	struct ec_app_request *requests;
 
 	struct ec_exchange *exchange;
 	size_t exchange_size;
@@ -88,33 +91,6 @@ struct ec_domain {
 	unsigned int n_inputs;
 };
 
-/*
- * @room: bytes at @data, @size: of them used; @index16: object, IDN, register,
- * type of a VoE message; @subindex: or drive; @flags: EC_SDO_FLAG_COMPLETE;
- * @vendor_id: of a VoE message; @op: EC_REQUEST_OP_* of the last start, @start: its
- * number; @got_vendor_id, @got_type: of the VoE message read last; @rec, @shared: record and data in mapped memory, NULL before activation
- */
-struct ec_request {
-	struct ec_master *master;
-	struct ec_request *next;
-	unsigned int index;
-	__u8 *data;
-	size_t room;
-	size_t size;
-	__u32 timeout_ms;
-	__u16 index16;
-	__u8 subindex;
-	__u8 op;
-	__u32 flags;
-	__u32 vendor_id;
-	__u32 got_vendor_id;
-	__u16 got_type;
-	__u32 start;
-	ec_request_state_t state;
-	struct ec_request_record *rec;
-	__u8 *shared;
-};
-
 /* @overruns: of its emergencies, when they were cleared */
 struct ec_slave_config {
 	struct ec_master *master;
@@ -152,12 +128,11 @@ static inline __u64 ec_status_read64(const struct ec_status *st, const __u64 *fi
 #endif
 }
 
-int ec_ioctl(const struct ec_master *m, unsigned long cmd, void *arg);
-int ec_fail(int err, const char *fmt, ...)
-	__attribute__((format(printf, 2, 3)));
-int ec_not_there(int err);
-int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
-	__attribute__((format(printf, 3, 4)));
+/* ioctl.c: what the sources in ecrt/ need of a process */
+int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
+void ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
+		 bool with_reason, const char *fmt, va_list ap)
+	__attribute__((format(printf, 5, 0)));
 
 /* why a call that needs an active master fails */
 static inline int ec_inactive(const struct ec_master *m)
@@ -167,12 +142,6 @@ static inline int ec_inactive(const struct ec_master *m)
 
 void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
-/* request.c: what all kinds of requests have in common */
-void *ec_request_create(struct ec_slave_config *sc, __u32 kind, size_t size);
-ec_request_state_t ec_request_state(struct ec_request *r);
-int ec_request_start(struct ec_request *r, __u8 op, size_t size);
-int ec_requests_place(struct ec_master *m);
-void ec_requests_free(struct ec_master *m);
 void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset);
 
 void ec_touch_pages(volatile __u8 *p, size_t size);
@@ -189,5 +158,76 @@ int ec_cycle_receive(struct ec_master *m);
 void ec_cycle_process(struct ec_domain *d);
 void ec_cycle_queue(struct ec_domain *d);
 int ec_cycle_send(struct ec_master *m);
+
+/* what the sources in ecrt/ need besides; see ecrt/ecrt_int.h --------------------*/
+
+#define EXPORT_SYMBOL_GPL(symbol) _Static_assert(1, "for the kernel")
+#define noinline __attribute__((noinline))
+#define __printf(a, b) __attribute__((format(printf, a, b)))
+
+#define ec_load_acquire(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
+#define ec_store_release(p, value) __atomic_store_n(p, value, __ATOMIC_RELEASE)
+
+static inline struct ec_master *ec_sc_master(const struct ec_slave_config *sc)
+{
+	return sc->master;
+}
+
+/* of the handle that an argument names; the call checks for NULL */
+static inline unsigned int ec_sc_index(const struct ec_slave_config *sc)
+{
+	return sc ? sc->index : 0;
+}
+
+static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
+{
+	return d->master;
+}
+
+static inline void *ec_zalloc(size_t size)
+{
+	return calloc(1, size);
+}
+
+static inline void ec_free(void *p)
+{
+	free(p);
+}
+
+/* what a function returns that makes no handle */
+static inline void *ec_no_handle(int err)
+{
+	errno = -err;
+	return NULL;
+}
+
+static inline struct ec_app_request **ec_request_list(struct ec_master *m)
+{
+	return &m->requests;
+}
+
+static inline bool ec_request_memory(const struct ec_master *m)
+{
+	return m->area;
+}
+
+static inline struct ec_request_record *ec_request_record(const struct ec_master *m,
+							  unsigned int index, __u8 **shared)
+{
+	struct ec_request_record *rec;
+
+	if (index >= m->area->request_count)
+		return NULL;
+	rec = (struct ec_request_record *)(m->area_base + m->area->requests) + index;
+	*shared = m->area_base + rec->data;
+	return rec;
+}
+
+/* told by the next send, or seen by the cycle the kernel runs */
+static inline void ec_request_started(struct ec_master *m)
+{
+	m->send_flags |= EC_SEND_FLAG_REQUESTS;
+	__atomic_fetch_add(&m->area->starts, 1, __ATOMIC_RELEASE);
+}
 
 #endif

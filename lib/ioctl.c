@@ -1,55 +1,36 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* The one way to the kernel, and the one line that says why it failed. */
 
-#include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/ioctl.h>
 
 #include "internal.h"
 
-int ec_ioctl(const struct ec_master *m, unsigned long cmd, void *arg)
+int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 {
 	return ioctl(m->fd, cmd, arg) < 0 ? -errno : 0;
 }
 
 /* One write per line, so that lines of several threads stay whole. */
-static void complain(int err, const char *reason, const char *fmt, va_list ap)
+static void print(int err, const char *what, const char *slave, const char *reason)
 {
-	char what[160];
-
-	vsnprintf(what, sizeof(what), fmt, ap);
 	errno = -err;	/* for %m */
-	if (reason && *reason)
-		fprintf(stderr, "Failed to %s: %m: %s\n", what, reason);
-	else
-		fprintf(stderr, "Failed to %s: %m\n", what);
+	fprintf(stderr, "Failed to %s%s: %m%s%s\n", what, slave, *reason ? ": " : "", reason);
 	errno = -err;
 }
 
-/* Says that something failed which the kernel was not asked. Returns @err. */
-int ec_fail(int err, const char *fmt, ...)
-{
-	va_list ap;
-
-	va_start(ap, fmt);
-	complain(err, NULL, fmt, ap);
-	va_end(ap);
-	return err;
-}
-
-/* Says that an ioctl failed, with the reason the kernel gives. */
-int ec_fail_ioctl(const struct ec_master *m, int err, const char *fmt, ...)
+/* A line on stderr; it ends with the reason the kernel gives, when it was asked. */
+void ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
+		 bool with_reason, const char *fmt, va_list ap)
 {
 	struct ec_ioc_reason reason = { 0 };
-	va_list ap;
+	char what[160], slave[32] = "";
 
-	if (ec_ioctl(m, EC_IOC_REASON, &reason))
+	if (with_reason && ec_command(m, EC_IOC_REASON, &reason))
 		reason.text[0] = '\0';
 	reason.text[sizeof(reason.text) - 1] = '\0';
 	reason.text[strcspn(reason.text, "\n")] = '\0';
-	va_start(ap, fmt);
-	complain(err, reason.text, fmt, ap);
-	va_end(ap);
-	return err;
+	vsnprintf(what, sizeof(what), fmt, ap);
+	if (sc)
+		snprintf(slave, sizeof(slave), " of slave %u:%u", sc->alias, sc->position);
+	print(err, what, slave, reason.text);
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* A reserved master: session, activation, cycle, state. */
+/* A reserved master: session, activation, cycle. */
 
-#include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "internal.h"
+#include "ecrt/ecrt_int.h"
 
 /* session ------------------------------------------------------------------*/
 
@@ -14,7 +13,7 @@ void ec_master_free_session(struct ec_master *m)
 	struct ec_slave_config *sc;
 	struct ec_domain *d;
 
-	ec_requests_free(m);
+	ec_app_requests_free(m);
 	while ((d = m->domains)) {
 		m->domains = d->next;
 		free(d->inputs);
@@ -32,24 +31,20 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 	struct ec_domain *d, **end;
 	int ret;
 
-	if (!master) {
-		errno = EINVAL;
-		return NULL;
-	}
+	if (!master)
+		return ec_no_handle(-EINVAL);
 	if (ec_memory_frozen(master, "create a domain"))
 		return NULL;
 	d = calloc(1, sizeof(*d));
 	if (!d) {
-		ec_fail(-ENOMEM, "create a domain");
+		ec_fail(NULL, -ENOMEM, "create a domain");
 		return NULL;
 	}
-	ret = ec_ioctl(master, EC_IOC_CREATE_DOMAIN, &arg);
-	if (ret) {
-		ec_fail_ioctl(master, ret, "create a domain");
+	ret = ec_do(master, EC_IOC_CREATE_DOMAIN, &arg, "create a domain");
+	if (ret)
 		goto err_free;
-	}
 	if (arg.index >= EC_STATUS_DOMAINS) {
-		ec_fail(-ENOSPC, "create domain %u of at most %u",
+		ec_fail(NULL, -ENOSPC, "create domain %u of at most %u",
 			arg.index, EC_STATUS_DOMAINS);
 		goto err_free;
 	}
@@ -91,22 +86,18 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 	struct ec_slave_config *sc;
 	int ret;
 
-	if (!master) {
-		errno = EINVAL;
+	if (!master)
+		return ec_no_handle(-EINVAL);
+	ret = ec_do(master, EC_IOC_SLAVE_CONFIG, &arg, "configure slave %u:%u as 0x%08x/0x%08x",
+		    alias, position, vendor_id, product_code);
+	if (ret)
 		return NULL;
-	}
-	ret = ec_ioctl(master, EC_IOC_SLAVE_CONFIG, &arg);
-	if (ret) {
-		ec_fail_ioctl(master, ret, "configure slave %u:%u as 0x%08x/0x%08x",
-			      alias, position, vendor_id, product_code);
-		return NULL;
-	}
 	sc = config_find(master, arg.index);
 	if (sc)
 		return sc;
 	sc = calloc(1, sizeof(*sc));
 	if (!sc) {
-		ec_fail(-ENOMEM, "configure slave %u:%u", alias,
+		ec_fail(NULL, -ENOMEM, "configure slave %u:%u", alias,
 			position);
 		return NULL;
 	}
@@ -117,18 +108,6 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 	sc->next = master->configs;
 	master->configs = sc;
 	return sc;
-}
-
-int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
-{
-	struct ec_ioc_interval arg = {
-		.interval_us = send_interval > UINT32_MAX ? UINT32_MAX :
-							    (__u32)send_interval,
-	};
-
-	if (!master || !send_interval)
-		return -EINVAL;
-	return ec_ioctl(master, EC_IOC_INTERVAL, &arg);
 }
 
 /* activation ---------------------------------------------------------------*/
@@ -176,7 +155,7 @@ void ec_master_unmap(struct ec_master *m)
 	m->area_base = NULL;
 	m->active = false;
 	m->frozen = false;
-	ec_requests_place(m);
+	ec_app_requests_place(m);
 }
 
 static int map_requests(struct ec_master *m, size_t size)
@@ -189,7 +168,7 @@ static int map_requests(struct ec_master *m, size_t size)
 	if (!m->area)
 		return -errno;
 	m->area_base = (__u8 *)m->area;
-	return m->area->magic == EC_REQUEST_MAGIC ? ec_requests_place(m) :
+	return m->area->magic == EC_REQUEST_MAGIC ? ec_app_requests_place(m) :
 						    -EPROTO;
 }
 
@@ -216,7 +195,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 static int place_domain(struct ec_master *m, struct ec_domain *d)
 {
 	struct ec_ioc_domain_offset arg = { .domain = d->index };
-	int ret = ec_ioctl(m, EC_IOC_DOMAIN_OFFSET, &arg);
+	int ret = ec_command(m, EC_IOC_DOMAIN_OFFSET, &arg);
 
 	if (ret)
 		return ret;
@@ -247,13 +226,12 @@ int ecrt_master_activate(ec_master_t *master)
 		arg.preset = (uintptr_t)master->image;
 		arg.preset_size = (__u32)master->preset_size;
 	}
-	ret = ec_ioctl(master, EC_IOC_ACTIVATE, &arg);
+	ret = ec_do(master, EC_IOC_ACTIVATE, &arg, "activate master %u", master->index);
 	if (ret)
-		return ec_fail_ioctl(master, ret, "activate master %u",
-				     master->index);
+		return ret;
 	ret = map_all(master, &arg);
 	if (ret) {
-		ec_fail(ret, "map process data of master %u (%u bytes)",
+		ec_fail(NULL, ret, "map process data of master %u (%u bytes)",
 			master->index, arg.image_size);
 		goto err_deactivate;
 	}
@@ -261,7 +239,7 @@ int ecrt_master_activate(ec_master_t *master)
 		ret = place_domain(master, d);
 		if (!ret)
 			continue;
-		ec_fail(ret, "place domain %u in the process data",
+		ec_fail(NULL, ret, "place domain %u in the process data",
 			d->index);
 		goto err_deactivate;
 	}
@@ -279,7 +257,7 @@ err_deactivate:
 	ec_master_unmap(master);
 	/* what another application has started goes on */
 	if (!arg.taken_over)
-		ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
+		ec_command(master, EC_IOC_DEACTIVATE, NULL);
 	return ret;
 }
 
@@ -289,7 +267,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 
 	if (!master || !master->active)
 		return ec_inactive(master);
-	ret = ec_ioctl(master, EC_IOC_DEACTIVATE, NULL);
+	ret = ec_command(master, EC_IOC_DEACTIVATE, NULL);
 	if (ret)
 		return ret;
 	ec_master_unmap(master);
@@ -301,7 +279,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 void ecrt_master_deactivate_slaves(ec_master_t *master)
 {
 	if (master && master->active)
-		ec_ioctl(master, EC_IOC_SLAVES_DOWN, NULL);
+		ec_command(master, EC_IOC_SLAVES_DOWN, NULL);
 }
 
 /* cycle --------------------------------------------------------------------*/
@@ -325,7 +303,7 @@ int ecrt_master_send(ec_master_t *master)
 	}
 	master->sent |= master->queued;
 	master->queued = 0;
-	return ec_ioctl(master, EC_IOC_SEND, &arg);
+	return ec_command(master, EC_IOC_SEND, &arg);
 }
 
 int ecrt_master_receive(ec_master_t *master)
@@ -336,7 +314,7 @@ int ecrt_master_receive(ec_master_t *master)
 		return ec_cycle_receive(master);
 	master->received |= master->sent;
 	master->sent = 0;
-	return ec_ioctl(master, EC_IOC_RECEIVE, NULL);
+	return ec_command(master, EC_IOC_RECEIVE, NULL);
 }
 
 int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
@@ -347,7 +325,7 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 		return -EINVAL;
 	master->app_time = app_time;
 	if (!master->active)
-		return ec_ioctl(master, EC_IOC_APP_TIME, &arg);
+		return ec_command(master, EC_IOC_APP_TIME, &arg);
 	/* goes with the next send: no system call of its own */
 	master->app_time_new = true;
 	return 0;
@@ -355,115 +333,5 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 
 int ecrt_master_reset(ec_master_t *master)
 {
-	return master ? ec_ioctl(master, EC_IOC_RESET, NULL) : -EINVAL;
-}
-
-/* state --------------------------------------------------------------------*/
-
-static int get_info(const struct ec_master *m, struct ec_ioc_master *info)
-{
-	int ret = ec_ioctl(m, EC_IOC_MASTER, info);
-
-	if (!ret && info->device_count > EC_UAPI_DEVICES)
-		info->device_count = EC_UAPI_DEVICES;
-	return ret;
-}
-
-int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
-{
-	struct ec_ioc_master info = { 0 };
-	int ret;
-
-	if (!master || !master_info)
-		return -EINVAL;
-	ret = get_info(master, &info);
-	if (ret)
-		return ec_fail_ioctl(master, ret, "get master %u",
-				     master->index);
-	master_info->slave_count = info.slave_count;
-	master_info->link_up = !!info.devices[0].link_up;
-	master_info->scan_busy = info.scan_busy;
-	master_info->app_time = info.app_time;
-	return 0;
-}
-
-int ecrt_master_scan_progress(ec_master_t *master,
-			      ec_master_scan_progress_t *progress)
-{
-	struct ec_ioc_master info = { 0 };
-	int ret;
-
-	if (!master || !progress)
-		return -EINVAL;
-	ret = get_info(master, &info);
-	if (ret)
-		return ec_fail_ioctl(master, ret,
-				     "get scan progress of master %u",
-				     master->index);
-	progress->slave_count = info.scan_slaves;
-	progress->scan_index = info.scan_index;
-	return 0;
-}
-
-int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
-{
-	struct ec_ioc_master info = { 0 };
-	const struct ec_status *st;
-	unsigned int i, up = 0;
-	int ret;
-
-	if (!master || !state)
-		return -EINVAL;
-	if (master->active) {
-		st = master->status;
-		state->slaves_responding = ec_status_read(st->slaves_responding);
-		state->al_states = ec_status_read(st->al_states) & 0xf;
-		state->link_up = !!ec_status_read(st->link_up);
-		return 0;
-	}
-	ret = get_info(master, &info);
-	if (ret)
-		return ret;
-	for (i = 0; i < info.device_count; i++)
-		up |= info.devices[i].link_up;
-	state->slaves_responding = info.slaves_responding;
-	state->al_states = info.al_states & 0xf;
-	state->link_up = !!up;
-	return 0;
-}
-
-/*
- * The kernel has AL states for all links together only: with two links, one
- * that nobody answers on reports none and the others report the sum.
- */
-int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
-			   ec_master_link_state_t *state)
-{
-	struct ec_ioc_master info = { 0 };
-	const struct ec_ioc_device *dev;
-	int ret;
-
-	if (!master || !state)
-		return -EINVAL;
-	/* why there is no such link is the kernel's to say */
-	if (master->active && dev_idx < ec_status_read(master->status->link_count)) {
-		const struct ec_status_link *link = &master->status->links[dev_idx];
-
-		state->slaves_responding = ec_status_read(link->slaves_responding);
-		state->al_states = ec_status_read(link->al_states) & 0xf;
-		state->link_up = !!ec_status_read(link->link_up);
-		return 0;
-	}
-	ret = get_info(master, &info);
-	if (!ret && dev_idx >= info.device_count)
-		return ec_fail(-EINVAL, "get state of link %u of %u",
-			       dev_idx, info.device_count);
-	if (ret)
-		return ec_fail_ioctl(master, ret, "get state of link %u",
-				     dev_idx);
-	dev = &info.devices[dev_idx];
-	state->slaves_responding = dev->slaves;
-	state->al_states = dev->slaves ? info.al_states & 0xf : 0;
-	state->link_up = !!dev->link_up;
-	return 0;
+	return master ? ec_command(master, EC_IOC_RESET, NULL) : -EINVAL;
 }

@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "internal.h"
+#include "ecrt/ecrt_int.h"
 
 static size_t to_pages(size_t size)
 {
@@ -27,7 +27,8 @@ static int measure(struct ec_master *m, size_t *total)
 	for (d = m->domains; d; d = d->next) {
 		struct ec_ioc_domain_offset arg = { .domain = d->index };
 
-		ret = ec_ioctl(m, EC_IOC_DOMAIN_OFFSET, &arg);
+		ret = ec_do(m, EC_IOC_DOMAIN_OFFSET, &arg, "set up domain memory of master %u",
+			    m->index);
 		if (ret)
 			return ret;
 		d->offset = arg.offset;
@@ -48,15 +49,14 @@ int ecrt_master_setup_domain_memory(ec_master_t *master)
 	if (!master)
 		return -EINVAL;
 	if (master->active || master->frozen)
-		return ec_fail(-EBUSY, "set up domain memory of master %u again",
+		return ec_fail(NULL, -EBUSY, "set up domain memory of master %u again",
 			       master->index);
 	if (!master->domains)
-		return ec_fail(-EINVAL, "set up domain memory of master %u: create domains first",
+		return ec_fail(NULL, -EINVAL, "set up domain memory of master %u: create domains first",
 			       master->index);
 	ret = measure(master, &total);
 	if (ret)
-		return ec_fail_ioctl(master, ret, "set up domain memory of master %u",
-				     master->index);
+		return ret;
 	master->frozen = true;
 	master->preset_size = total;
 	if (!total)
@@ -68,7 +68,7 @@ int ecrt_master_setup_domain_memory(ec_master_t *master)
 		ret = -errno;
 		master->image = NULL;
 		master->frozen = false;
-		return ec_fail(ret, "set up %zu bytes of domain memory", total);
+		return ec_fail(NULL, ret, "set up %zu bytes of domain memory", total);
 	}
 	for (d = master->domains; d; d = d->next)
 		d->data = master->image + d->offset;
@@ -78,7 +78,7 @@ int ecrt_master_setup_domain_memory(ec_master_t *master)
 /* 0, or says that nothing can be registered any more. */
 int ec_memory_frozen(const struct ec_master *m, const char *what)
 {
-	return m->frozen ? ec_fail(-EBUSY, "%s after ecrt_master_setup_domain_memory()",
+	return m->frozen ? ec_fail(NULL, -EBUSY, "%s after ecrt_master_setup_domain_memory()",
 				   what) : 0;
 }
 

@@ -5,12 +5,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "internal.h"
-
-unsigned int ecrt_version_magic(void)
-{
-	return ECRT_VERSION_MAGIC;
-}
+#include "ecrt/ecrt_int.h"
 
 /*
  * Structures may grow without harm, so any version from 1 on will do; programs of 32 bits
@@ -21,11 +16,11 @@ unsigned int ecrt_version_magic(void)
 static int check_version(struct ec_master *m, const char *path)
 {
 	struct ec_ioc_version version = { 0 };
-	int ret = ec_ioctl(m, EC_IOC_VERSION, &version);
+	int ret = ec_command(m, EC_IOC_VERSION, &version);
 
 	if (!ret && version.abi >= VERSION_MIN)
 		return 0;
-	return ec_fail(-EPROTO,
+	return ec_fail(NULL, -EPROTO,
 		       "use %s: not a device file of this master, or interface version %u below %u",
 		       path, version.abi, (unsigned int)VERSION_MIN);
 }
@@ -38,14 +33,14 @@ ec_master_t *ecrt_open_master(unsigned int master_index)
 
 	m = calloc(1, sizeof(*m));
 	if (!m) {
-		ec_fail(-ENOMEM, "open master %u", master_index);
+		ec_fail(NULL, -ENOMEM, "open master %u", master_index);
 		return NULL;
 	}
 	m->index = master_index;
 	snprintf(path, sizeof(path), "/dev/EtherCAT%u", master_index);
 	m->fd = open(path, O_RDWR | O_CLOEXEC);
 	if (m->fd < 0) {
-		err = ec_fail(-errno, "open %s", path);
+		err = ec_fail(NULL, -errno, "open %s", path);
 		goto err_free;
 	}
 	err = check_version(m, path);
@@ -67,11 +62,10 @@ int ecrt_master_reserve(ec_master_t *master)
 
 	if (!master)
 		return -EINVAL;
-	ret = ec_ioctl(master, EC_IOC_RESERVE, NULL);
-	if (ret)
-		return ec_fail_ioctl(master, ret, "reserve master %u", master->index);
-	master->reserved = true;
-	return 0;
+	ret = ec_do(master, EC_IOC_RESERVE, NULL, "reserve master %u", master->index);
+	if (!ret)
+		master->reserved = true;
+	return ret;
 }
 
 ec_master_t *ecrt_request_master(unsigned int master_index)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What the functions for applications in the kernel share. */
 #include <linux/slab.h>
-#include "api.h"
+#include "../../lib/ecrt/ecrt_int.h"
 
 /**
  * ec_api_create() - a master can be requested by applications in the kernel
@@ -17,7 +17,6 @@ int ec_api_create(struct ec_master *m)
 	if (!api)
 		return -ENOMEM;
 	ec_file_init(&api->file, m, true);
-	INIT_LIST_HEAD(&api->requests);
 	INIT_WORK(&api->work, ec_api_work);
 	init_waitqueue_head(&api->between_wq);
 	m->api = api;
@@ -36,19 +35,9 @@ void ec_api_destroy(struct ec_master *m)
 		return;
 	ec_api_between_stop(m);
 	cancel_work_sync(&m->api->work);
-	ec_api_requests_free(m);
+	ec_app_requests_free(m);
 	kfree(m->api);
 	m->api = NULL;
-}
-
-/* A failure without text must not show the one before. */
-void ec_api_begin(struct ec_master *m)
-{
-	struct ec_file *f = &m->api->file;
-
-	raw_spin_lock(&f->lock);
-	f->reason[0] = '\0';
-	raw_spin_unlock(&f->lock);
 }
 
 /**
@@ -65,52 +54,35 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 	return ec_ioc(&m->api->file, cmd, arg);
 }
 
-/* The log may wait for a slow console: nothing is printed under the lock. */
-static void complain(struct ec_master *m, int err, struct va_format *what, const char *slave)
-{
-	struct ec_file *f = &m->api->file;
-	char reason[sizeof(f->reason)];
-
-	raw_spin_lock(&f->lock);
-	strscpy(reason, f->reason, sizeof(reason));
-	raw_spin_unlock(&f->lock);
-	ec_err(m, "kernel API: cannot %pV%s (%pe)%s%s\n", what, slave, ERR_PTR(err),
-	       reason[0] ? ": " : "", reason);
-}
-
 /**
- * ec_api_fail() - one line in the log that says what failed and why
+ * ec_complain() - one line in the log that says what failed and why
  * @m: master
+ * @sc: slave configuration that the line names at its end, or NULL
  * @err: -errno
+ * @with_reason: with the reason of the last command
  * @fmt: what was tried, after "cannot"
+ * @ap: for @fmt
  *
  * Context: Process. May sleep.
- * Return: @err.
  */
-int ec_api_fail(struct ec_master *m, int err, const char *fmt, ...)
+void ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
+		 bool with_reason, const char *fmt, va_list ap)
 {
+	struct ec_file *f = &m->api->file;
 	struct va_format vaf = { .fmt = fmt };
+	char reason[sizeof(f->reason)], slave[32] = "";
 	va_list args;
 
-	va_start(args, fmt);
+	/* the log may wait for a slow console: nothing is printed under the lock */
+	raw_spin_lock(&f->lock);
+	strscpy(reason, with_reason ? f->reason : "", sizeof(reason));
+	raw_spin_unlock(&f->lock);
+	if (sc)
+		snprintf(slave, sizeof(slave), " of slave %u:%u", ec_api_config(sc)->alias,
+			 ec_api_config(sc)->position);
+	va_copy(args, ap);
 	vaf.va = &args;
-	complain(m, err, &vaf, "");
+	ec_err(f->master, "kernel API: cannot %pV%s (%pe)%s%s\n", &vaf, slave, ERR_PTR(err),
+	       reason[0] ? ": " : "", reason);
 	va_end(args);
-	return err;
-}
-
-/* The same for a slave configuration; the line ends with its name. */
-int ec_api_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...)
-{
-	struct va_format vaf = { .fmt = fmt };
-	char slave[32];
-	va_list args;
-
-	snprintf(slave, sizeof(slave), " of slave %u:%u", ec_api_config(sc)->alias,
-		 ec_api_config(sc)->position);
-	va_start(args, fmt);
-	vaf.va = &args;
-	complain(ec_api_master(sc), err, &vaf, slave);
-	va_end(args);
-	return err;
 }

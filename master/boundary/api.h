@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * Applications in the kernel: include/ecrt.h as exported functions. They give
- * the same commands as a process does through ioctl(), so that there is one place
- * that checks and one that says why not; only the cycle has a way of its own, which
- * never sleeps.
+ * the same commands as a process does through ioctl(), by the same sources in lib/ecrt/;
+ * only the cycle and states have a way of their own, which never sleeps.
  */
 #ifndef EC_API_H
 #define EC_API_H
 
-#include <linux/list.h>
+#include <linux/mm.h>
 #include <linux/module.h>
+#include <linux/slab.h>
+#include <linux/string.h>
 #include <linux/workqueue.h>
 #include "../include/ecrt.h"
 #include "cdev.h"
@@ -17,8 +18,10 @@
 #include "../cycle/domain.h"
 #include "ioctl.h"
 #include "../master.h"
+#include "../session/request.h"
 #include "../session/session.h"
 
+struct ec_app_request;
 struct task_struct;
 
 /**
@@ -30,7 +33,7 @@ struct task_struct;
  * @app_time: last one told, ns
  * @sent: domains sent since the last receive; the cyclic caller's
  * @received: domains received and not processed; likewise
- * @requests: list of struct ec_api_request
+ * @requests: list of its requests
  * @work: what a cyclic call must leave to somebody who may sleep
  * @atomic: a call came where its device needs a thread
  * @told: the log says so
@@ -49,7 +52,7 @@ struct ec_api {
 	u64 app_time;
 	u64 sent;
 	u64 received;
-	struct list_head requests;
+	struct ec_app_request *requests;
 	struct work_struct work;
 	bool atomic;
 	bool told;
@@ -76,9 +79,8 @@ static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
 int ec_api_create(struct ec_master *m);
 void ec_api_destroy(struct ec_master *m);
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
-void ec_api_begin(struct ec_master *m);
-int ec_api_fail(struct ec_master *m, int err, const char *fmt, ...) __printf(3, 4);
-int ec_api_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...) __printf(3, 4);
+void ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
+		 bool with_reason, const char *fmt, va_list ap);
 
 /* api_cycle.c */
 void ec_api_work(struct work_struct *work);
@@ -89,8 +91,69 @@ void ec_api_between_stop(struct ec_master *m);
 bool ec_api_is_between(const struct ec_api *api);
 void ec_api_left(struct ec_master *m);
 
-/* api_request.c */
-void ec_api_requests_place(struct ec_master *m);
-void ec_api_requests_free(struct ec_master *m);
+/* what the sources in lib/ecrt/ need; see ecrt_int.h there ---------------------*/
+
+#define ec_load_acquire(p) smp_load_acquire(p)
+#define ec_store_release(p, value) smp_store_release(p, value)
+
+static inline struct ec_master *ec_sc_master(const ec_slave_config_t *sc)
+{
+	return ec_api_master(sc);
+}
+
+/* of the handle that an argument names; the call checks for NULL */
+static inline u32 ec_sc_index(const ec_slave_config_t *sc)
+{
+	return sc ? ec_api_config(sc)->index : 0;
+}
+
+static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
+{
+	return d->session->master;
+}
+
+static inline void *ec_zalloc(size_t size)
+{
+	return kvzalloc(size, GFP_KERNEL);
+}
+
+static inline void ec_free(void *p)
+{
+	kvfree(p);
+}
+
+/* what a function returns that makes no handle */
+static inline void *ec_no_handle(int err)
+{
+	return NULL;
+}
+
+/* process data of applications in the kernel have their place from activation on */
+static inline int ec_memory_frozen(const struct ec_master *m, const char *what)
+{
+	return 0;
+}
+
+static inline struct ec_app_request **ec_request_list(struct ec_master *m)
+{
+	return &m->api->requests;
+}
+
+static inline bool ec_request_memory(const struct ec_master *m)
+{
+	return m->session;
+}
+
+static inline struct ec_request_record *ec_request_record(const struct ec_master *m, u32 index,
+							  u8 **shared)
+{
+	return ec_requests_record(m->session, index, shared);
+}
+
+/* told by the next send */
+static inline void ec_request_started(struct ec_master *m)
+{
+	m->api->next.flags |= EC_SEND_FLAG_REQUESTS;
+}
 
 #endif

@@ -3,7 +3,6 @@
  * Distributed clocks for applications in the kernel: the calls note what the next
  * send shall do and read what the last receive has left.
  */
-#include <linux/slab.h>
 #include "api.h"
 #include "../base/once64.h"
 
@@ -110,47 +109,3 @@ int ecrt_master_64bit_reference_clock_time(ec_master_t *master, uint64_t *time)
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_64bit_reference_clock_time);
-
-static void fill_dc_state(ec_slave_config_dc_state_t *state, const struct ec_ioc_slave *s,
-			  const struct ec_master *m)
-{
-	static const unsigned int bits[] = { 0, 32, 64 };
-
-	memset(state, 0, sizeof(*state));
-	if (s->dc_delay_only || !s->dc_supported || s->dc_supported >= ARRAY_SIZE(bits))
-		return;
-	state->bits = bits[s->dc_supported];
-	state->reference = READ_ONCE(m->dc.ref_station) &&
-			   s->station == READ_ONCE(m->dc.ref_station);
-	state->set = !!s->dc_set;
-	state->in_window = s->dc_set && !s->dc_odd && abs((s64)s->dc_diff) <= EC_UAPI_DC_WINDOW_NS;
-	state->delay_ns = s->transmission_delay;
-	state->offset_ns = s->dc_offset;
-	state->difference_ns = s->dc_diff;
-}
-
-int ecrt_slave_config_dc_state(const ec_slave_config_t *sc, ec_slave_config_dc_state_t *state)
-{
-	struct ec_ioc_config *config;
-	struct ec_ioc_slave *s;
-	int ret = -ENOMEM;
-
-	if (!sc || !state)
-		return -EINVAL;
-	config = kzalloc(sizeof(*config), GFP_KERNEL);
-	s = kzalloc(sizeof(*s), GFP_KERNEL);
-	if (config && s) {
-		config->index = ec_api_config(sc)->index;
-		ret = ec_command(ec_api_master(sc), EC_IOC_CONFIG, config);
-		if (!ret && config->slave_position < 0)
-			ret = -ENODEV;
-		s->position = config->slave_position;
-		ret = ret ?: ec_command(ec_api_master(sc), EC_IOC_SLAVE, s);
-		if (!ret)
-			fill_dc_state(state, s, ec_api_master(sc));
-	}
-	kfree(config);
-	kfree(s);
-	return ret;
-}
-EXPORT_SYMBOL_GPL(ecrt_slave_config_dc_state);

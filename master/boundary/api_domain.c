@@ -2,42 +2,6 @@
 /* Domains, for applications in the kernel. */
 #include "api.h"
 
-static int reg_entry(struct ec_domain *d, const ec_pdo_entry_reg_t *reg)
-{
-	struct ec_master *m = d->session->master;
-	ec_slave_config_t *sc;
-	int ret;
-
-	ec_api_begin(m);
-	if (!reg->offset)
-		return ec_api_fail(m, -EINVAL, "register 0x%04x:%02x without a place for its offset",
-				   reg->index, reg->subindex);
-	sc = ecrt_master_slave_config(m, reg->alias, reg->position, reg->vendor_id,
-				      reg->product_code);
-	if (!sc)
-		return -ENOENT;
-	ret = ecrt_slave_config_reg_pdo_entry(sc, reg->index, reg->subindex, d,
-					      reg->bit_position);
-	if (ret < 0)
-		return ret;
-	*reg->offset = ret;
-	return 0;
-}
-
-int ecrt_domain_reg_pdo_entry_list(ec_domain_t *domain,
-				   const ec_pdo_entry_reg_t *pdo_entry_regs)
-{
-	const ec_pdo_entry_reg_t *reg;
-	int ret = 0;
-
-	if (!domain || !pdo_entry_regs)
-		return -EINVAL;
-	for (reg = pdo_entry_regs; reg->index && !ret; reg++)
-		ret = reg_entry(domain, reg);
-	return ret;
-}
-EXPORT_SYMBOL_GPL(ecrt_domain_reg_pdo_entry_list);
-
 size_t ecrt_domain_size(const ec_domain_t *domain)
 {
 	return domain ? READ_ONCE(domain->size) : (size_t)-EINVAL;
@@ -105,25 +69,3 @@ int ecrt_domain_queue(ec_domain_t *domain)
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_queue);
-
-int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
-{
-	if (!domain || !state)
-		return -EINVAL;
-	state->working_counter = domain->snap.working_counter;
-	state->wc_state = (ec_wc_state_t)domain->snap.wc_state;
-	state->redundancy_active = domain->snap.redundancy_active;
-	return 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_domain_state);
-
-int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age)
-{
-	if (!domain || !age)
-		return -EINVAL;
-	age->age = domain->snap.age;
-	age->limit = domain->max_age;
-	age->stale = domain->max_age && domain->snap.age > domain->max_age;
-	return 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_domain_age);

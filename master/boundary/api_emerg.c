@@ -4,19 +4,6 @@
 #include "../mailbox/emerg.h"
 #include "../session/request.h"
 
-int ecrt_slave_config_emerg_size(ec_slave_config_t *sc, size_t elements)
-{
-	struct ec_ioc_sc_emerg i = { .count = min_t(size_t, elements, U32_MAX) };
-	int ret;
-
-	if (!sc)
-		return -EINVAL;
-	i.config = ec_api_config(sc)->index;
-	ret = ec_command(ec_api_master(sc), EC_IOC_SC_EMERG, &i);
-	return ret ? ec_api_fail_sc(sc, ret, "keep %zu emergencies", elements) : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_slave_config_emerg_size);
-
 /* NULL before activation */
 static struct ec_emerg *ring(const ec_slave_config_t *sc)
 {

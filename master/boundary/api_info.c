@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What the master knows, for applications in the kernel. */
-#include <linux/slab.h>
+/* States and what the master knows without a lock, for applications in the kernel. */
 #include "api.h"
 #include "../base/once64.h"
 
@@ -24,59 +23,6 @@ int ecrt_master_scan_progress(ec_master_t *master, ec_master_scan_progress_t *pr
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_scan_progress);
-
-static void fill_ports(ec_slave_info_t *info, const struct ec_ioc_slave *s)
-{
-	unsigned int p;
-
-	for (p = 0; p < EC_MAX_PORTS; p++) {
-		const struct ec_ioc_port *port = &s->ports[p];
-
-		info->ports[p].desc = (ec_slave_port_desc_t)(port->type & 3);
-		info->ports[p].link.link_up = port->link_up;
-		info->ports[p].link.loop_closed = port->loop_closed;
-		info->ports[p].link.signal_detected = port->signal;
-		info->ports[p].receive_time = port->receive_time;
-		info->ports[p].next_slave = port->next_slave;
-		info->ports[p].delay_to_next_dc = port->delay_to_next_dc;
-	}
-}
-
-int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
-			  ec_slave_info_t *slave_info)
-{
-	struct ec_ioc_slave *s;
-	int ret;
-
-	if (!master || !slave_info)
-		return -EINVAL;
-	s = kzalloc(sizeof(*s), GFP_KERNEL);
-	if (!s)
-		return -ENOMEM;
-	s->position = slave_position;
-	ret = ec_command(master, EC_IOC_SLAVE, s);
-	if (ret) {
-		ec_api_fail(master, ret, "get slave %u", slave_position);
-	} else {
-		memset(slave_info, 0, sizeof(*slave_info));
-		slave_info->position = slave_position;
-		slave_info->vendor_id = s->vendor_id;
-		slave_info->product_code = s->product_code;
-		slave_info->revision_number = s->revision_number;
-		slave_info->serial_number = s->serial_number;
-		slave_info->alias = s->alias;
-		slave_info->current_on_ebus = s->current_ma;
-		slave_info->al_state = s->al_status & 0xff;
-		slave_info->error_flag = s->error != EC_SLAVE_OK;
-		slave_info->sync_count = s->sm_count;
-		slave_info->sdo_count = s->sdo_count;
-		strscpy(slave_info->name, s->name, sizeof(slave_info->name));
-		fill_ports(slave_info, s);
-	}
-	kfree(s);
-	return ret;
-}
-EXPORT_SYMBOL_GPL(ecrt_master_get_slave);
 
 int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 {
@@ -103,3 +49,28 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_link_state);
+
+/* While active from the status page, which costs no lock. */
+int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t *state)
+{
+	struct ec_session *s;
+	struct ec_master *m;
+	u8 v;
+
+	if (!sc || !state)
+		return -EINVAL;
+	m = ec_api_master(sc);
+	s = smp_load_acquire(&m->api->active);
+	if (s) {
+		v = READ_ONCE(s->shared->status->configs[ec_api_config(sc)->index]);
+	} else {
+		mutex_lock(&m->session_lock);
+		v = ec_session_config_status(ec_api_config(sc));
+		mutex_unlock(&m->session_lock);
+	}
+	state->online = !!(v & EC_STATUS_SC_ONLINE);
+	state->operational = !!(v & EC_STATUS_SC_OP);
+	state->al_state = v & EC_STATUS_SC_AL;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_state);

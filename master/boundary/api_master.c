@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Requesting a master, activating and giving it back; for the kernel. */
-#include "api.h"
-
-unsigned int ecrt_version_magic(void)
-{
-	return ECRT_VERSION_MAGIC;
-}
-EXPORT_SYMBOL_GPL(ecrt_version_magic);
+#include "../../lib/ecrt/ecrt_int.h"
 
 ec_master_t *ecrt_request_master(unsigned int master_index)
 {
@@ -21,9 +15,8 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	m = ec_master_get(master_index);
 	/* who found the symbols by symbol_get() has no lasting hold on the module */
 	__module_get(THIS_MODULE);
-	ret = ec_command(m, EC_IOC_RESERVE, NULL);
+	ret = ec_do(m, EC_IOC_RESERVE, NULL, "reserve the master");
 	if (ret) {
-		ec_api_fail(m, ret, "reserve the master");
 		module_put(THIS_MODULE);
 		return NULL;
 	}
@@ -57,7 +50,7 @@ void ecrt_release_master(ec_master_t *master)
 	}
 	forget(master);
 	ec_session_end(master, &master->api->file);
-	ec_api_requests_free(master);
+	ec_app_requests_free(master);
 	master->api->reserved = false;
 	module_put(THIS_MODULE);
 }
@@ -77,15 +70,9 @@ static struct ec_session *session_of(struct ec_master *m)
 ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 {
 	struct ec_ioc_create_domain i = { 0 };
-	int ret;
 
-	if (!master)
+	if (ec_do(master, EC_IOC_CREATE_DOMAIN, &i, "create a domain"))
 		return NULL;
-	ret = ec_command(master, EC_IOC_CREATE_DOMAIN, &i);
-	if (ret) {
-		ec_api_fail(master, ret, "create a domain");
-		return NULL;
-	}
 	return session_of(master)->domains[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_create_domain);
@@ -98,49 +85,13 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 		.alias = alias, .position = position, .vendor_id = vendor_id,
 		.product_code = product_code,
 	};
-	int ret;
 
-	if (!master)
+	if (ec_do(master, EC_IOC_SLAVE_CONFIG, &i, "configure slave %u:%u as 0x%08x/0x%08x", alias,
+		  position, vendor_id, product_code))
 		return NULL;
-	ret = ec_command(master, EC_IOC_SLAVE_CONFIG, &i);
-	if (ret) {
-		ec_api_fail(master, ret, "configure slave %u:%u as 0x%08x/0x%08x", alias, position,
-			    vendor_id, product_code);
-		return NULL;
-	}
 	return (ec_slave_config_t *)session_of(master)->configs[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
-
-int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *sc)
-{
-	struct ec_ioc_ref_clock i = { .config = EC_UAPI_NONE32 };
-	int ret;
-
-	if (!master)
-		return -EINVAL;
-	ec_api_begin(master);
-	if (sc && ec_api_master(sc) != master)
-		return ec_api_fail(master, -EINVAL,
-				   "select another master's slave as the reference clock");
-	if (sc)
-		i.config = ec_api_config(sc)->index;
-	ret = ec_command(master, EC_IOC_REF_CLOCK, &i);
-	return ret ? ec_api_fail(master, ret, "select the reference clock") : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_master_select_reference_clock);
-
-int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
-{
-	struct ec_ioc_interval i = { .interval_us = min_t(size_t, send_interval, U32_MAX) };
-	int ret;
-
-	if (!master)
-		return -EINVAL;
-	ret = ec_command(master, EC_IOC_INTERVAL, &i);
-	return ret ? ec_api_fail(master, ret, "set the send interval") : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_master_set_send_interval);
 
 int ecrt_master_activate(ec_master_t *master)
 {
@@ -153,10 +104,10 @@ int ecrt_master_activate(ec_master_t *master)
 		ec_warn(master, "kernel API: the master is active already\n");
 		return 0;
 	}
-	ret = ec_command(master, EC_IOC_ACTIVATE, &i);
+	ret = ec_do(master, EC_IOC_ACTIVATE, &i, "activate the master");
 	if (ret)
-		return ec_api_fail(master, ret, "activate the master");
-	ec_api_requests_place(master);
+		return ret;
+	ec_app_requests_place(master);
 	master->api->atomic = false;
 	master->api->told = false;
 	/* who sees the session finds all that belongs to it */
@@ -164,7 +115,7 @@ int ecrt_master_activate(ec_master_t *master)
 	ret = ec_api_between_start(master);
 	if (ret) {
 		ecrt_master_deactivate(master);
-		return ec_api_fail(master, ret, "start the thread for callbacks");
+		return ec_fail(master, ret, "start the thread for callbacks");
 	}
 	return 0;
 }
@@ -182,7 +133,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 	}
 	forget(master);
 	ret = ec_command(master, EC_IOC_DEACTIVATE, NULL);
-	ec_api_requests_free(master);
+	ec_app_requests_free(master);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_deactivate);

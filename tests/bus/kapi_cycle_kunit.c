@@ -165,6 +165,38 @@ static void kapi_requests(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
+/* An object as a whole, as in userspace; a value shorter than the buffer. */
+static void kapi_requests_complete(struct kunit *test)
+{
+	struct kapp *k = start(test, 1000);
+	ec_sdo_request_t *r;
+
+	r = ecrt_slave_config_create_sdo_request_complete(k->sc[1], 0x1018, 64);
+	KUNIT_ASSERT_NOT_NULL(test, r);
+	kapp_op(k);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_read(r), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_index_complete(r, 0x1018), -EBUSY);
+	KUNIT_EXPECT_EQ(test, finish(k, r), EC_REQUEST_SUCCESS);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_data_size(r), (size_t)18);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(ecrt_sdo_request_data(r)), 4u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(ecrt_sdo_request_data(r) + 14), 12u);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_index(r, 0x2001, 8), 0);
+	put_unaligned_le32(0x89abcdef, ecrt_sdo_request_data(r));
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_write_with_size(r, 0), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_write_with_size(r, 65), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_write_with_size(r, 4), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_data_size(r), (size_t)4);
+	KUNIT_EXPECT_EQ(test, finish(k, r), EC_REQUEST_SUCCESS);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_read(r), 0);
+	KUNIT_EXPECT_EQ(test, finish(k, r), EC_REQUEST_SUCCESS);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(ecrt_sdo_request_data(r)), 0x89abcdefu);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_index_complete(r, 0x1018), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_read(r), 0);
+	KUNIT_EXPECT_EQ(test, finish(k, r), EC_REQUEST_SUCCESS);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_data_size(r), (size_t)18);
+	ecrt_release_master(k->m);
+}
+
 static void kapi_registers(struct kunit *test)
 {
 	struct kapp *k = start(test, 1000);
@@ -174,8 +206,11 @@ static void kapi_registers(struct kunit *test)
 	KUNIT_ASSERT_NOT_NULL(test, r);
 	KUNIT_EXPECT_EQ(test, ecrt_reg_request_state(r), EC_REQUEST_UNUSED);
 	kapp_op(k);
-	/* more than there is room for is cut */
-	KUNIT_EXPECT_EQ(test, ecrt_reg_request_read(r, EC_REG_STATION, 100), 0);
+	/* more than there is room for is refused, as in userspace */
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_read(r, EC_REG_STATION, 5), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_write(r, EC_REG_STATION, 5), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_state(r), EC_REQUEST_UNUSED);
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_read(r, EC_REG_STATION, 4), 0);
 	for (i = 0; i < 1000 && ecrt_reg_request_state(r) == EC_REQUEST_BUSY; i++)
 		kapp_run(k, 1);
 	KUNIT_EXPECT_EQ(test, ecrt_reg_request_state(r), EC_REQUEST_SUCCESS);
@@ -190,6 +225,14 @@ static void kapi_registers(struct kunit *test)
 	for (i = 0; i < 1000 && ecrt_reg_request_state(r) == EC_REQUEST_BUSY; i++)
 		kapp_run(k, 1);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(ecrt_reg_request_data(r)), 0x0777);
+	/* written, and the old content comes back */
+	put_unaligned_le16(0x0333, ecrt_reg_request_data(r));
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_readwrite(r, 0x0420, 5), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_reg_request_readwrite(r, 0x0420, 2), 0);
+	for (i = 0; i < 1000 && ecrt_reg_request_state(r) == EC_REQUEST_BUSY; i++)
+		kapp_run(k, 1);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(ecrt_reg_request_data(r)), 0x0777);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(k->b, 1)->mem + 0x0420), 0x0333);
 	ecrt_release_master(k->m);
 }
 
@@ -652,6 +695,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_sdo),
 	KUNIT_CASE(kapi_sdo_complete),
 	KUNIT_CASE(kapi_requests),
+	KUNIT_CASE(kapi_requests_complete),
 	KUNIT_CASE(kapi_registers),
 	KUNIT_CASE(kapi_idns),
 	KUNIT_CASE(kapi_voe),

@@ -96,7 +96,44 @@ static void kapi_info(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, slave.al_state, EC_AL_STATE_PREOP);
 	KUNIT_EXPECT_EQ(test, slave.ports[1].next_slave, 1);
 	KUNIT_EXPECT_STREQ(test, slave.name, bus_slave(b, 0)->name);
-	KUNIT_EXPECT_EQ(test, ecrt_master_get_slave(m, 2, &slave), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_slave(m, 2, &slave), -EINVAL);
+	ecrt_release_master(m);
+}
+
+/* What a slave describes: SyncManagers, PDOs, entries; errors as in userspace. */
+static void kapi_described(struct kunit *test)
+{
+	struct bus *b = bus_up(test, pair, 2);
+	struct ec_slave *s = bus_slave(b, 0);
+	ec_master_t *m = ecrt_request_master(0);
+	const struct ec_pdo *known;
+	ec_pdo_entry_info_t entry;
+	ec_sync_info_t sync;
+	ec_pdo_info_t pdo;
+
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	known = &s->sm_pdos[2].pdos[0];
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 2, &sync), 0);
+	KUNIT_EXPECT_EQ(test, sync.index, 2);
+	KUNIT_EXPECT_EQ(test, sync.dir, EC_DIR_OUTPUT);
+	KUNIT_EXPECT_EQ(test, sync.n_pdos, s->sm_pdos[2].n);
+	KUNIT_EXPECT_NULL(test, sync.pdos);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 3, &sync), 0);
+	KUNIT_EXPECT_EQ(test, sync.dir, EC_DIR_INPUT);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo(m, 0, 2, 0, &pdo), 0);
+	KUNIT_EXPECT_EQ(test, pdo.index, known->index);
+	KUNIT_EXPECT_EQ(test, pdo.n_entries, known->n_entries);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo_entry(m, 0, 2, 0, 0, &entry), 0);
+	KUNIT_EXPECT_EQ(test, entry.index, known->entries[0].index);
+	KUNIT_EXPECT_EQ(test, entry.bit_length, known->entries[0].bits);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 16, &sync), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo(m, 0, 16, 0, &pdo), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo_entry(m, 0, 16, 0, 0, &entry), -ENOENT);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 9, &sync), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 2, 2, &sync), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo(m, 0, 2, 99, &pdo), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo_entry(m, 0, 2, 0, 99, &entry), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_get_pdo(m, 0, 2, 0, NULL), -EINVAL);
 	ecrt_release_master(m);
 }
 
@@ -410,6 +447,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_request),
 	KUNIT_CASE(kapi_without_device),
 	KUNIT_CASE(kapi_info),
+	KUNIT_CASE(kapi_described),
 	KUNIT_CASE(kapi_cycle),
 	KUNIT_CASE(kapi_external_memory),
 	KUNIT_CASE(kapi_pdos),

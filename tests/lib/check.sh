@@ -151,7 +151,7 @@ library_works() {
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close \
 		-pthread -o "$o/session" session.c request.c soe.c eoe.c extension.c rules.c \
 		kernel_cycle.c fake.c \
-		"$top"/lib/*.c &&
+		"$top"/lib/*.c "$top"/lib/ecrt/*.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
 

@@ -103,7 +103,7 @@ fi
 # times of the files they point to.
 want=$(mktemp)
 trap 'rm -f "$want"' EXIT
-(cd "$repo" && for d in include master devices tests/unit tests/bus tests/uml; do
+(cd "$repo" && for d in include master lib/ecrt devices tests/unit tests/bus tests/uml; do
 	[ ! -d $d ] || find $d -type f \( -name '*.[ch]' -o -name '*.inc' -o \
 		-name '*.def' -o -name Makefile.uml -o -name skip.list \) \
 		! -name '*.mod.c' ! -name '.*' -print

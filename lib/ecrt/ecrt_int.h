@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later */
+/*
+ * The part of ecrt.h that is written once and compiled twice, for libethercat and for
+ * ec_master.ko: configuration, information and requests. A function builds the argument
+ * of a command and gives it with ec_command(): ioctl() in a process, a call in the kernel.
+ *
+ * Either side brings, in the header below: the handles (struct ec_master, ec_domain,
+ * ec_slave_config), the inline functions that read them, and ec_command(), ec_complain(),
+ * ec_zalloc(), ec_free().
+ */
+#ifndef EC_ECRT_INT_H
+#define EC_ECRT_INT_H
+
+#ifdef __KERNEL__
+#include "../../master/boundary/api.h"
+#define EC_IN_KERNEL const	/* of a parameter whose prototype differs */
+#define ec_no_result(size) (*(size) = 0)
+#else
+#include "../internal.h"
+#define EC_IN_KERNEL
+#define ec_no_result(size) ((void)(size))	/* untouched */
+#endif
+
+#define EC_U32_MAX	0xffffffffU
+
+/**
+ * struct ec_app_request - a request of any kind
+ * @master: of the slave configuration
+ * @next: in the list of @master
+ * @index: in the session
+ * @data: buffer, the application's
+ * @room: its bytes
+ * @size: of them used
+ * @timeout_ms: of a start, 0: unlimited
+ * @index16: object, IDN, register, type of a VoE message
+ * @subindex: or drive
+ * @op: EC_REQUEST_OP_* of the last start
+ * @flags: EC_SDO_FLAG_COMPLETE
+ * @vendor_id: of a VoE message
+ * @got_vendor_id: of the VoE message read last
+ * @got_type: likewise
+ * @start: number of the last start
+ * @state: as last seen
+ * @rec: record in shared memory, NULL before activation
+ * @shared: data of the record
+ */
+struct ec_app_request {
+	struct ec_master *master;
+	struct ec_app_request *next;
+	unsigned int index;
+	__u8 *data;
+	size_t room;
+	size_t size;
+	__u32 timeout_ms;
+	__u16 index16;
+	__u8 subindex;
+	__u8 op;
+	__u32 flags;
+	__u32 vendor_id;
+	__u32 got_vendor_id;
+	__u16 got_type;
+	__u32 start;
+	ec_request_state_t state;
+	struct ec_request_record *rec;
+	__u8 *shared;
+};
+
+/* command.c: a command, and one line that says why it failed */
+int ec_fail(const ec_master_t *m, int err, const char *fmt, ...)
+	__printf(3, 4);
+int ec_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...)
+	__printf(3, 4);
+int ec_do(const ec_master_t *m, unsigned int cmd, void *arg, const char *fmt, ...)
+	__printf(4, 5);
+int ec_do_sc(const ec_slave_config_t *sc, unsigned int cmd, void *arg, const char *fmt, ...)
+	__printf(4, 5);
+__u32 ec_u32(size_t size);
+
+/* request.c: what all kinds of requests have in common */
+void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size);
+ec_request_state_t ec_app_request_state(struct ec_app_request *r);
+int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);
+int ec_app_requests_place(ec_master_t *m);
+void ec_app_requests_free(ec_master_t *m);
+
+#endif

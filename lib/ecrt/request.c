@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
+/*
+ * Requests of all kinds. Starting one writes to shared memory and notes that the next
+ * send has to tell; the state is read from there. No command, and nothing is printed, once
+ * they are created. The buffer is the request's own, so that it is there before activation
+ * and stays where it is.
+ */
+#include "ecrt_int.h"
+
+/**
+ * ec_app_request_create() - a request and its buffer, set to 0
+ * @sc: slave configuration
+ * @kind: EC_REQUEST_*
+ * @size: of the buffer
+ *
+ * Return: request, freed with the session, the first member of each kind; NULL with the
+ * reason reported.
+ */
+void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size)
+{
+	struct ec_ioc_sc_request arg = {
+		.kind = kind, .config = ec_sc_index(sc), .size = ec_u32(size),
+	};
+	struct ec_app_request *r, **list;
+	int ret;
+
+	if (!sc)
+		return ec_no_handle(-EINVAL);
+	r = ec_zalloc(sizeof(*r));
+	if (r)
+		r->data = ec_zalloc(size ? size : 1);
+	ret = r && r->data ?
+	      ec_do_sc(sc, EC_IOC_SC_REQUEST, &arg, "create a request of %zu bytes", size) :
+	      ec_fail_sc(sc, -ENOMEM, "create a request of %zu bytes", size);
+	if (ret) {
+		if (r)
+			ec_free(r->data);
+		ec_free(r);
+		return ec_no_handle(ret);
+	}
+	list = ec_request_list(ec_sc_master(sc));
+	r->master = ec_sc_master(sc);
+	r->index = arg.index;
+	r->room = size;
+	r->size = size;
+	r->next = *list;
+	*list = r;
+	return r;
+}
+
+/* The session has ended, and its requests with it. */
+void ec_app_requests_free(ec_master_t *m)
+{
+	struct ec_app_request *r, **list = ec_request_list(m);
+
+	while ((r = *list)) {
+		*list = r->next;
+		ec_free(r->data);
+		ec_free(r);
+	}
+}
+
+/**
+ * ec_app_requests_place() - find the records in the memory of the session
+ * @m: master that has just become active, or is no more
+ *
+ * Return: 0, -EPROTO when a record is missing.
+ */
+int ec_app_requests_place(ec_master_t *m)
+{
+	struct ec_app_request *r;
+
+	for (r = *ec_request_list(m); r; r = r->next) {
+		r->rec = NULL;
+		if (!ec_request_memory(m))
+			continue;
+		r->rec = ec_request_record(m, r->index, &r->shared);
+		if (!r->rec)
+			return -EPROTO;
+		/* the application before may have started it */
+		r->start = r->rec->start;
+		r->op = r->rec->op;
+		if (r->rec->done != r->start)
+			r->state = EC_REQUEST_BUSY;
+	}
+	return 0;
+}
+
+/**
+ * ec_app_request_state() - how far a request is; takes the result of a finished one
+ * @r: request
+ *
+ * Context: RT-safe: bounded, no sleep, no allocation.
+ * Return: state.
+ */
+ec_request_state_t ec_app_request_state(struct ec_app_request *r)
+{
+	struct ec_request_record *rec = r->rec;
+
+	if (r->state != EC_REQUEST_BUSY || !rec || ec_load_acquire(&rec->done) != r->start)
+		return r->state;
+	r->state = rec->result ? EC_REQUEST_ERROR : EC_REQUEST_SUCCESS;
+	if (r->state == EC_REQUEST_SUCCESS && r->op != EC_REQUEST_OP_WRITE) {
+		r->size = rec->got < r->room ? rec->got : r->room;
+		memcpy(r->data, r->shared, r->size);
+		r->got_vendor_id = rec->got_vendor_id;
+		r->got_type = rec->got_type;
+	}
+	return r->state;
+}
+
+/**
+ * ec_app_request_start() - start a request; the next send tells
+ * @r: request
+ * @op: EC_REQUEST_OP_*
+ * @size: bytes to write; registers: to read, too
+ *
+ * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; -ENOBUFS larger than the buffer; -EBUSY; -EINVAL not active.
+ */
+int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
+{
+	struct ec_request_record *rec = r->rec;
+
+	if (size > r->room)
+		return -ENOBUFS;
+	if (!rec)
+		return -EINVAL;
+	if (ec_app_request_state(r) == EC_REQUEST_BUSY)
+		return -EBUSY;
+	if (op == EC_REQUEST_OP_WRITE || op == EC_REQUEST_OP_READWRITE)
+		memcpy(r->shared, r->data, size);
+	rec->index = r->index16;
+	rec->subindex = r->subindex;
+	rec->op = op;
+	rec->flags = r->flags;
+	rec->vendor_id = r->vendor_id;
+	rec->size = (__u32)size;
+	rec->timeout_ms = r->timeout_ms;
+	r->op = op;
+	r->start = r->start + 1 ? r->start + 1 : 1;
+	r->state = EC_REQUEST_BUSY;
+	ec_store_release(&rec->start, r->start);
+	ec_request_started(r->master);
+	return 0;
+}
+
+/* registers ----------------------------------------------------------------*/
+
+struct ec_reg_request {
+	struct ec_app_request r;
+};
+
+ec_reg_request_t *ecrt_slave_config_create_reg_request(ec_slave_config_t *sc, size_t size)
+{
+	return ec_app_request_create(sc, EC_REQUEST_REG, size);
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_create_reg_request);
+
+uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req)
+{
+	return req ? req->r.data : NULL;
+}
+EXPORT_SYMBOL_GPL(ecrt_reg_request_data);
+
+/* The prototype says const; what it points to never is. */
+ec_request_state_t ecrt_reg_request_state(const ec_reg_request_t *req)
+{
+	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR;
+}
+EXPORT_SYMBOL_GPL(ecrt_reg_request_state);
+
+static int start_reg(ec_reg_request_t *req, __u8 op, uint16_t address, size_t size)
+{
+	if (!req || !size)
+		return -EINVAL;
+	/* one that is busy has its address already */
+	req->r.index16 = address;
+	return ec_app_request_start(&req->r, op, size);
+}
+
+int ecrt_reg_request_write(ec_reg_request_t *req, uint16_t address, size_t size)
+{
+	return start_reg(req, EC_REQUEST_OP_WRITE, address, size);
+}
+EXPORT_SYMBOL_GPL(ecrt_reg_request_write);
+
+int ecrt_reg_request_read(ec_reg_request_t *req, uint16_t address, size_t size)
+{
+	return start_reg(req, EC_REQUEST_OP_READ, address, size);
+}
+EXPORT_SYMBOL_GPL(ecrt_reg_request_read);
+
+int ecrt_reg_request_readwrite(ec_reg_request_t *req, uint16_t address, size_t size)
+{
+	return start_reg(req, EC_REQUEST_OP_READWRITE, address, size);
+}
+EXPORT_SYMBOL_GPL(ecrt_reg_request_readwrite);

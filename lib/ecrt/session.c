@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
+/* What is configured of a session and its domains. */
+#include "ecrt_int.h"
+
+/* the numbers of the options are those of the command */
+_Static_assert((int)EC_DOMAIN_OVERLAP == EC_DOMAIN_OPT_OVERLAP, "options");
+_Static_assert((int)EC_DOMAIN_SEPARATE == EC_DOMAIN_OPT_SEPARATE, "options");
+_Static_assert((int)EC_DOMAIN_OWN_FRAME == EC_DOMAIN_OPT_OWN_FRAME, "options");
+
+int ecrt_master_select_reference_clock(ec_master_t *master, ec_slave_config_t *sc)
+{
+	struct ec_ioc_ref_clock arg = { .config = sc ? ec_sc_index(sc) : EC_UAPI_NONE32 };
+
+	if (master && sc && ec_sc_master(sc) != master)
+		return ec_fail(master, -EINVAL,
+			       "select another master's slave as the reference clock");
+	return ec_do(master, EC_IOC_REF_CLOCK, &arg, "select the reference clock");
+}
+EXPORT_SYMBOL_GPL(ecrt_master_select_reference_clock);
+
+/* Silent on failure. */
+int ecrt_master_set_send_interval(ec_master_t *master, size_t send_interval)
+{
+	struct ec_ioc_interval arg = { .interval_us = ec_u32(send_interval) };
+
+	if (!master || !send_interval)
+		return -EINVAL;
+	return ec_command(master, EC_IOC_INTERVAL, &arg);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_set_send_interval);
+
+int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
+{
+	struct ec_ioc_late arg = { .per_s = per_second };
+
+	return ec_do(master, EC_IOC_LATE, &arg, "allow %u delayed cycles per second", per_second);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_set_late_cycles);
+
+/* domains ------------------------------------------------------------------*/
+
+int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)
+{
+	struct ec_ioc_domain_options arg = { .options = options };
+
+	if (!domain)
+		return -EINVAL;
+	arg.domain = domain->index;
+	return ec_do(ec_domain_master(domain), EC_IOC_DOMAIN_OPTIONS, &arg,
+		     "set options 0x%x of domain %u", options, domain->index);
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_set_options);
+
+int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
+{
+	struct ec_ioc_domain_age arg = { .max_age = sends };
+	int ret;
+
+	if (!domain)
+		return -EINVAL;
+	arg.domain = domain->index;
+	ret = ec_do(ec_domain_master(domain), EC_IOC_DOMAIN_AGE, &arg,
+		    "set the maximum age of domain %u", domain->index);
+	if (!ret)
+		domain->max_age = sends;
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_set_max_age);
+
+int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
+{
+	if (!domain || !state)
+		return -EINVAL;
+	state->working_counter = domain->snap.working_counter;
+	state->wc_state = (ec_wc_state_t)domain->snap.wc_state;
+	state->redundancy_active = domain->snap.redundancy_active;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_state);
+
+int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *age)
+{
+	if (!domain || !age)
+		return -EINVAL;
+	age->age = domain->snap.age;
+	age->limit = domain->max_age;
+	age->stale = domain->max_age && domain->snap.age > domain->max_age;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_age);

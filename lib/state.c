@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* States of master, links and slaves: from the mapped status while active. */
+#include "ecrt/ecrt_int.h"
+
+static unsigned int devices(const struct ec_ioc_master *info)
+{
+	return info->device_count < EC_UAPI_DEVICES ? info->device_count : EC_UAPI_DEVICES;
+}
+
+int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
+{
+	struct ec_ioc_master info = { 0 };
+	int ret;
+
+	if (!master || !master_info)
+		return -EINVAL;
+	ret = ec_do(master, EC_IOC_MASTER, &info, "get master %u", master->index);
+	if (ret)
+		return ret;
+	master_info->slave_count = info.slave_count;
+	master_info->link_up = !!info.devices[0].link_up;
+	master_info->scan_busy = info.scan_busy;
+	master_info->app_time = info.app_time;
+	return 0;
+}
+
+int ecrt_master_scan_progress(ec_master_t *master, ec_master_scan_progress_t *progress)
+{
+	struct ec_ioc_master info = { 0 };
+	int ret;
+
+	if (!master || !progress)
+		return -EINVAL;
+	ret = ec_do(master, EC_IOC_MASTER, &info, "get scan progress of master %u", master->index);
+	if (ret)
+		return ret;
+	progress->slave_count = info.scan_slaves;
+	progress->scan_index = info.scan_index;
+	return 0;
+}
+
+int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
+{
+	struct ec_ioc_master info = { 0 };
+	const struct ec_status *st;
+	unsigned int i, up = 0;
+	int ret;
+
+	if (!master || !state)
+		return -EINVAL;
+	if (master->active) {
+		st = master->status;
+		state->slaves_responding = ec_status_read(st->slaves_responding);
+		state->al_states = ec_status_read(st->al_states) & 0xf;
+		state->link_up = !!ec_status_read(st->link_up);
+		return 0;
+	}
+	ret = ec_command(master, EC_IOC_MASTER, &info);
+	if (ret)
+		return ret;
+	for (i = 0; i < devices(&info); i++)
+		up |= info.devices[i].link_up;
+	state->slaves_responding = info.slaves_responding;
+	state->al_states = info.al_states & 0xf;
+	state->link_up = !!up;
+	return 0;
+}
+
+/*
+ * The kernel has AL states for all links together only: with two links, one
+ * that nobody answers on reports none and the others report the sum.
+ */
+int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
+			   ec_master_link_state_t *state)
+{
+	struct ec_ioc_master info = { 0 };
+	const struct ec_ioc_device *dev;
+	int ret;
+
+	if (!master || !state)
+		return -EINVAL;
+	/* why there is no such link is the kernel's to say */
+	if (master->active && dev_idx < ec_status_read(master->status->link_count)) {
+		const struct ec_status_link *link = &master->status->links[dev_idx];
+
+		state->slaves_responding = ec_status_read(link->slaves_responding);
+		state->al_states = ec_status_read(link->al_states) & 0xf;
+		state->link_up = !!ec_status_read(link->link_up);
+		return 0;
+	}
+	ret = ec_do(master, EC_IOC_MASTER, &info, "get state of link %u", dev_idx);
+	if (ret)
+		return ret;
+	if (dev_idx >= devices(&info))
+		return ec_fail(NULL, -EINVAL, "get state of link %u of %u", dev_idx,
+			       devices(&info));
+	dev = &info.devices[dev_idx];
+	state->slaves_responding = dev->slaves;
+	state->al_states = dev->slaves ? info.al_states & 0xf : 0;
+	state->link_up = !!dev->link_up;
+	return 0;
+}
+
+static void state_from_page(ec_slave_config_state_t *state, __u8 byte)
+{
+	state->online = !!(byte & EC_STATUS_SC_ONLINE);
+	state->operational = !!(byte & EC_STATUS_SC_OP);
+	state->al_state = byte & EC_STATUS_SC_AL;
+}
+
+int ecrt_slave_config_state(const ec_slave_config_t *sc,
+			    ec_slave_config_state_t *state)
+{
+	struct ec_ioc_config arg = { 0 };
+	const struct ec_master *m;
+	int ret;
+
+	if (!sc || !state)
+		return -EINVAL;
+	m = sc->master;
+	if (m->active && sc->index < EC_STATUS_CONFIGS &&
+	    offsetof(struct ec_status, configs) + sc->index < m->status_size) {
+		state_from_page(state,
+				ec_status_read(m->status->configs[sc->index]));
+		return 0;
+	}
+	arg.index = sc->index;
+	ret = ec_command(m, EC_IOC_CONFIG, &arg);
+	if (ret)
+		return ret;
+	state_from_page(state, (__u8)arg.state);
+	return 0;
+}
