@@ -2439,15 +2439,9 @@ EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
  * @address: register
  * @size: bytes
  *
-<<<<<<< HEAD
  * Context: The cycle owner. RT-safe, no system call.
- * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer, in the kernel it is cut
- * instead; %-EINVAL @size is 0, not active, or @req is NULL.
-=======
- * Context: The master's single cyclic caller. RT-safe, no system call.
- * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer;
- * %-EINVAL @size is 0, not active, or @req is NULL.
->>>>>>> 67e4dae (lib/ecrt: configuration, information and requests of ecrt.h written once)
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0, not active,
+ * or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
 		uint16_t address, size_t size);

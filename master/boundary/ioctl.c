@@ -3,63 +3,13 @@
 #include <linux/mm.h>
 #include <linux/nospec.h>
 #include <linux/uaccess.h>
-#include "ioctl.h"
+#include "call.h"
 #include "../base/limits.h"
 #include "../master.h"
-#include "../bus/slave.h"
-#include "../session/session.h"
 
 #define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
 
 #define F_WRITE	1	/* needs a descriptor opened for writing */
-
-/* bytes of an argument that must be zero */
-struct ec_reserved {
-	u16 offset;
-	u16 size;
-};
-
-/* What a command looks up and locks before its handler runs. */
-enum ec_ioc_class {
-	EC_CLASS_MASTER,	/* nothing */
-	EC_CLASS_SLAVE,		/* a slave by its position */
-	EC_CLASS_SESSION,	/* session of the file; with session_lock */
-	EC_CLASS_IDLE,		/* the same while it is not active */
-	EC_CLASS_CONFIG,	/* the same, and a slave configuration */
-	EC_CLASS_DOMAIN,	/* the same, and a domain */
-	EC_CLASS_SHOW_CONFIG,	/* own or running session, in a show section: a configuration */
-	EC_CLASS_SHOW_DOMAIN,	/* or a domain */
-};
-
-/* a buffer that an argument names: where its address and its bytes are, and how many at most */
-struct ec_ioc_buffer {
-	u16 address;
-	u16 size;
-	u32 most;
-	bool out;
-};
-
-/**
- * struct ec_ioctl - one command
- * @cmd: number; its size is what this module knows
- * @fn: handler
- * @flags: F_*
- * @min: bytes the oldest program sends; less is no such argument
- * @class: what is looked up and locked
- * @at: where the argument has the position or index for that
- * @buffer: @most is 0 when there is none
- * @reserved: fields that must be zero; size 0 ends them
- */
-struct ec_ioctl {
-	unsigned int cmd;
-	int (*fn)(struct ec_call *call);
-	unsigned int flags;
-	unsigned int min;
-	enum ec_ioc_class class;
-	u16 at;
-	struct ec_ioc_buffer buffer;
-	struct ec_reserved reserved[2];
-};
 
 #define FIELD(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
 #define RSV(...) .reserved = { __VA_ARGS__ }
@@ -187,262 +137,6 @@ static const struct ec_ioctl table[] = {
 };
 
 /**
- * ec_refuse() - fail a command and keep the reason for EC_IOC_REASON
- * @call: command
- * @err: -errno
- * @fmt: what was wrong and what to do
- *
- * Context: Process. May sleep.
- * Return: @err.
- */
-int ec_refuse(struct ec_call *call, int err, const char *fmt, ...)
-{
-	struct ec_file *f = call->file;
-	va_list args;
-
-	va_start(args, fmt);
-	raw_spin_lock(&f->lock);
-	vscnprintf(f->reason, sizeof(f->reason), fmt, args);
-	raw_spin_unlock(&f->lock);
-	va_end(args);
-	return err;
-}
-
-/* A failure without text must not show the one before. */
-static void forget_reason(struct ec_file *f)
-{
-	raw_spin_lock(&f->lock);
-	f->reason[0] = '\0';
-	raw_spin_unlock(&f->lock);
-}
-
-/**
- * ec_ioc_limit() - refuse what is beyond the memory of a master's sessions
- * @call: command
- * @ret: result so far
- *
- * Context: Process.
- * Return: -ENOMEM for -EDQUOT, with the reason noted; else @ret.
- */
-int ec_ioc_limit(struct ec_call *call, int ret)
-{
-	if (ret != -EDQUOT)
-		return ret;
-	return ec_refuse(call, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
-			 EC_MAX_SESSION_BYTES >> 20, call->master->base->index);
-}
-
-/* what a command needs -------------------------------------------------------*/
-
-/**
- * ec_ioc_lock_session() - lock the session of a command's file
- * @call: command; its @session is set
- *
- * Context: Process. May sleep. session_lock is held when 0 is returned.
- * Return: 0 or -EPERM with the reason noted.
- */
-int ec_ioc_lock_session(struct ec_call *call)
-{
-	ec_session_lock(call->master);
-	call->session = ec_session_of(call->master, call->file);
-	if (call->session)
-		return 0;
-	ec_session_unlock(call->master);
-	return ec_refuse(call, -EPERM, "reserve the master first (ecrt_request_master)");
-}
-
-static int find_config(struct ec_call *call, u32 index)
-{
-	if (index >= call->session->n_configs)
-		return ec_refuse(call, -ENOENT, "there are %u slave configurations, no %u",
-				 call->session->n_configs, index);
-	index = array_index_nospec(index, call->session->n_configs);
-	call->config = call->session->configs[index];
-	return 0;
-}
-
-static int find_domain(struct ec_call *call, u32 index)
-{
-	if (index >= call->session->n_domains)
-		return ec_refuse(call, -ENOENT, "there are %u domains, no %u",
-				 call->session->n_domains, index);
-	index = array_index_nospec(index, call->session->n_domains);
-	call->domain = call->session->domains[index];
-	return 0;
-}
-
-static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
-{
-	int ret = ec_ioc_lock_session(call);
-
-	if (ret)
-		return ret;
-	if (op->class != EC_CLASS_SESSION && call->session->active)
-		ret = ec_refuse(call, -EBUSY, "the master is active; configure before ecrt_master_activate()");
-	else if (op->class == EC_CLASS_CONFIG)
-		ret = find_config(call, *(u32 *)(call->arg + op->at));
-	else if (op->class == EC_CLASS_DOMAIN)
-		ret = find_domain(call, *(u32 *)(call->arg + op->at));
-	if (ret)
-		ec_session_unlock(call->master);
-	return ret;
-}
-
-/* An application sees its own session, everybody else the one that runs. */
-static int show_session(struct ec_call *call, const struct ec_ioctl *op)
-{
-	struct ec_master *m = call->master;
-	int ret = ec_show_begin(&m->base->show);
-
-	if (ret)
-		return ret;
-	call->session = ec_session_of(m, call->file) ?: m->session;
-	if (!call->session)
-		ret = ec_refuse(call, -ENOENT, "no application has reserved master %u", m->base->index);
-	else if (op->class == EC_CLASS_SHOW_CONFIG)
-		ret = find_config(call, *(u32 *)(call->arg + op->at));
-	else
-		ret = find_domain(call, *(u32 *)(call->arg + op->at));
-	call->showing = !ret;
-	if (ret)
-		ec_show_end(&m->base->show);
-	return ret;
-}
-
-/**
- * ec_ioc_pause() - leave the show section of a command for a moment
- * @call: command whose class has one
- *
- * Context: Process. May sleep.
- * Return: as ec_show_pause(); the handler returns what is not 0, and is called again
- * after -EAGAIN.
- */
-int ec_ioc_pause(struct ec_call *call)
-{
-	int ret = ec_show_pause(&call->master->base->show);
-
-	call->showing = !ret;
-	return ret;
-}
-
-/**
- * ec_ioc_get_slave() - the slave a command names
- * @call: command; its @slave is set, with a reference for the time of the command
- * @position: ring position
- *
- * Context: Process. May sleep.
- * Return: 0 or -ENOENT with the reason noted.
- */
-int ec_ioc_get_slave(struct ec_call *call, u16 position)
-{
-	struct ec_master *m = call->master;
-	int ret = ec_show_begin(&m->base->show);
-
-	if (ret)
-		return ret;
-	if (position < m->bus.n_slaves)
-		call->slave = ec_slave_ref(m->bus.slaves[position]);
-	ec_show_end(&m->base->show);
-	if (call->slave)
-		return 0;
-	return ec_refuse(call, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
-			 position, m->bus.n_slaves);
-}
-
-static int with_session(struct ec_call *call, const struct ec_ioctl *op)
-{
-	int ret = lock_session(call, op);
-
-	if (ret)
-		return ret;
-	ret = op->fn(call);
-	ec_session_unlock(call->master);
-	return ret;
-}
-
-static int with_show(struct ec_call *call, const struct ec_ioctl *op)
-{
-	int ret;
-
-	do {
-		ret = show_session(call, op);
-		if (ret)
-			return ret;
-		ret = op->fn(call);
-		if (call->showing)
-			ec_show_end(&call->master->base->show);
-	} while (ret == -EAGAIN);
-	return ret;
-}
-
-static int execute(struct ec_call *call, const struct ec_ioctl *op)
-{
-	switch (op->class) {
-	case EC_CLASS_MASTER:
-		return op->fn(call);
-	case EC_CLASS_SLAVE:
-		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: op->fn(call);
-	case EC_CLASS_SHOW_CONFIG:
-	case EC_CLASS_SHOW_DOMAIN:
-		return with_show(call, op);
-	default:
-		return with_session(call, op);
-	}
-}
-
-/* A result may have more room than it needs; a value that is too large is the handler's to refuse. */
-static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
-{
-	const struct ec_ioc_buffer *b = &op->buffer;
-	u64 address = *(u64 *)(call->arg + b->address);
-	u32 size = *(u32 *)(call->arg + b->size);
-
-	call->size = b->out ? min(size, b->most) : size;
-	if (!call->size || call->size > b->most)
-		return 0;
-	call->data = kvzalloc(call->size, GFP_KERNEL_ACCOUNT);
-	if (!call->data)
-		return -ENOMEM;
-	if (b->out)
-		return 0;
-	if (!user)
-		memcpy(call->data, (void *)(uintptr_t)address, call->size);
-	else if (copy_from_user(call->data, u64_to_user_ptr(address), call->size))
-		return -EFAULT;
-	return 0;
-}
-
-/* No lock is held: mmap() takes session_lock with the memory of the process locked. */
-static int put_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
-{
-	const struct ec_ioc_buffer *b = &op->buffer;
-	u64 address = *(u64 *)(call->arg + b->address);
-	u32 size = min(*(u32 *)(call->arg + b->size), call->size);
-
-	if (!user)
-		memcpy((void *)(uintptr_t)address, call->data, size);
-	else if (copy_to_user(u64_to_user_ptr(address), call->data, size))
-		return -EFAULT;
-	return 0;
-}
-
-/* @arg is in kernel memory; a buffer that it names is the process' when @user. */
-static int run(struct ec_file *f, const struct ec_ioctl *op, void *arg, bool user)
-{
-	struct ec_call call = { .file = f, .master = f->master, .arg = arg };
-	int ret = op->buffer.most ? get_buffer(&call, op, user) : 0;
-
-	if (!ret)
-		ret = execute(&call, op);
-	if (!ret && op->buffer.out)
-		ret = put_buffer(&call, op, user);
-	kvfree(call.data);
-	if (call.slave)
-		ec_slave_unref(call.slave);
-	return ret;
-}
-
-/**
  * ec_ioc() - give a command from within the kernel
  * @f: file that stands for the application
  * @cmd: EC_IOC_*
@@ -455,11 +149,9 @@ int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
 {
 	/* reading the reason must not clear it */
 	if (cmd != EC_IOC_REASON)
-		forget_reason(f);
-	return run(f, &table[_IOC_NR(cmd)], arg, false);
+		ec_call_forget_reason(f);
+	return ec_call_run(f, &table[_IOC_NR(cmd)], arg, false);
 }
-
-/* processes ------------------------------------------------------------------*/
 
 /* Version request of the field's other master: old programs fail cleanly. */
 static long foreign_version(unsigned long arg)
@@ -575,7 +267,7 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
 		return -ENOTTY;
 	/* a failure without text must not show the one before */
 	if (op->fn != ec_ioc_reason)
-		forget_reason(f);
+		ec_call_forget_reason(f);
 	ret = check(&call, op, cmd);
 	if (ret)
 		return ret;
@@ -586,7 +278,7 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
 		if (ret)
 			return ret;
 	}
-	ret = run(f, op, karg, true);
+	ret = ec_call_run(f, op, karg, true);
 	/* on -EIO the abort code is in the structure */
 	if ((!ret || ret == -EIO) && _IOC_DIR(cmd) & _IOC_READ &&
 	    return_arg(_IOC_SIZE(op->cmd), _IOC_SIZE(cmd), karg, uarg))

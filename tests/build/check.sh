@@ -37,7 +37,8 @@ top() { make -s KDIR="$KDIR" MODDIR="$modules" DESTDIR="$root" PREFIX=$prefix "$
 # --- kernel ----------------------------------------------------------------------
 mkdir "$tmp/src"
 # the clone may be another user's
-git -c safe.directory='*' ls-files -z Kbuild master devices include lib/ecrt | xargs -0 cp --parents -t "$tmp/src"
+git -c safe.directory='*' ls-files -z Kbuild master devices include lib/ecrt |
+	xargs -0 cp --parents -t "$tmp/src"
 
 # the way kernel people do it, all warnings on
 plain_kbuild() {

@@ -22,12 +22,12 @@ COLUMNS = 100
 # rule, folder: findings that are left
 LIMITS = {
     ("lines", "master"): 40,
-    ("lines", "lib"): 2,
+    ("lines", "lib"): 1,
     ("lines", "tests"): 225,
     ("lines", "Documentation"): 62,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 16,
-    ("checkpatch", "master"): 35,
+    ("checkpatch", "master"): 32,
 }
 
 # files that cannot have a comment, and what was not written by hand
@@ -54,6 +54,7 @@ IGNORE = {
     "COMPLEX_MACRO": ((), "initializers"),
     "REPEATED_WORD": ((), "slave io io"),
     "SPDX_LICENSE_TAG": (("tool",), "a line of the man page, in a string"),
+    "EXPORT_SYMBOL": (("lib",), "what the macro is in userspace"),
     "LINUX_VERSION_CODE": (("master", "devices"), "modules for 6.1 and 6.12 from one source"),
     "CONSTANT_COMPARISON": (("master", "devices"), "LINUX_VERSION_CODE is no constant"),
 }

@@ -69,7 +69,8 @@ void cyc_pdo(struct cyc *c, u32 config, u8 op, u8 sm, u16 pdo, u32 entry)
 		.subindex = entry >> 8, .bits = entry,
 	};
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_PDO, &p), 0, "%s", c->b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_PDO, &p), 0, "%s",
+			    c->b->app.reason);
 }
 
 /**

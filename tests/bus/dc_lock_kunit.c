@@ -50,7 +50,8 @@ static void configure(struct app *a, struct bus *b, u32 slaves)
 static void activate(struct app *a, struct bus *b, u32 slaves)
 {
 	configure(a, b, slaves);
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &a->cfg), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &a->cfg), 0, "%s",
+			    b->app.reason);
 	cyc_activate(a->c);
 }
 

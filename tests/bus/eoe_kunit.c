@@ -15,7 +15,8 @@ static void config_ip(struct cyc *c, u32 config, const struct ec_ip_params *p)
 {
 	struct ec_ioc_sc_ip i = { .config = config, .params = *p };
 
-	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_IP, &i), 0, "%s", c->b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_IP, &i), 0, "%s",
+			    c->b->app.reason);
 }
 
 static void eoe_configured(struct kunit *test)

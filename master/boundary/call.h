@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the table of commands says, and how a command is carried out by it. */
+#ifndef EC_CALL_H
+#define EC_CALL_H
+
+#include "ioctl.h"
+
+/* bytes of an argument that must be zero */
+struct ec_reserved {
+	u16 offset;
+	u16 size;
+};
+
+/* What a command looks up and locks before its handler runs. */
+enum ec_ioc_class {
+	EC_CLASS_MASTER,	/* nothing */
+	EC_CLASS_SLAVE,		/* a slave by its position */
+	EC_CLASS_SESSION,	/* session of the file; with session_lock */
+	EC_CLASS_IDLE,		/* the same while it is not active */
+	EC_CLASS_CONFIG,	/* the same, and a slave configuration */
+	EC_CLASS_DOMAIN,	/* the same, and a domain */
+	EC_CLASS_SHOW_CONFIG,	/* own or running session, in a show section: a configuration */
+	EC_CLASS_SHOW_DOMAIN,	/* or a domain */
+};
+
+/* a buffer that an argument names: where its address and its bytes are, and how many at most */
+struct ec_ioc_buffer {
+	u16 address;
+	u16 size;
+	u32 most;
+	bool out;
+};
+
+/**
+ * struct ec_ioctl - one command
+ * @cmd: number; its size is what this module knows
+ * @fn: handler
+ * @flags: F_*
+ * @min: bytes the oldest program sends; less is no such argument
+ * @class: what is looked up and locked
+ * @at: where the argument has the position or index for that
+ * @buffer: @most is 0 when there is none
+ * @reserved: fields that must be zero; size 0 ends them
+ */
+struct ec_ioctl {
+	unsigned int cmd;
+	int (*fn)(struct ec_call *call);
+	unsigned int flags;
+	unsigned int min;
+	enum ec_ioc_class class;
+	u16 at;
+	struct ec_ioc_buffer buffer;
+	struct ec_reserved reserved[2];
+};
+
+void ec_call_forget_reason(struct ec_file *f);
+int ec_call_run(struct ec_file *f, const struct ec_ioctl *op, void *arg, bool user);
+
+#endif
