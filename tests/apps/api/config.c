@@ -2,6 +2,10 @@
 /* Slave configuration: arguments, and what arrives at the slave. */
 #include "api.h"
 
+#define CODE(have, want) IS(have, want)
+#define MISSING(pointer) YES(!(pointer))
+#include "../../bus/codes.h"
+
 static void slave_config(void)
 {
 	struct bench b;
@@ -196,6 +200,16 @@ static void ip_parameters(void)
 	bench_down(&b);
 }
 
+/* the list that the kernel's functions pass as well, in UML */
+static void codes(void)
+{
+	struct bench b;
+
+	NEED(bench_request(&b));
+	codes_all(b.m, MOTOR, OUT);
+	bench_down(&b);
+}
+
 const struct api_case config_cases[] = {
 	{ "a configuration is found again", slave_config },
 	{ "slaves by alias", alias },
@@ -204,5 +218,6 @@ const struct api_case config_cases[] = {
 	{ "objects are written", objects },
 	{ "IP parameters", ip_parameters },
 	{ "flags, timeouts, emergencies, clocks", settings },
+	{ "return codes as in the kernel", codes },
 	{ NULL, NULL },
 };
