@@ -26,17 +26,22 @@ INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
 
 def layer(path):
     """of a file, by its path below master/"""
+    if path.startswith("../lib/ecrt/"):
+        return "boundary"       # the functions of ecrt.h that are the library's as well
     return path.split("/")[0] if "/" in path else "top"
 
 
 def includes():
     """[(file, file)]: who includes whom, both below master/"""
     found = []
-    for path in sorted(glob.glob(os.path.join(top, "master/**/*.[ch]"), recursive=True)):
+    shared = glob.glob(os.path.join(top, "lib/ecrt/*.[ch]"))
+    for path in sorted(glob.glob(os.path.join(top, "master/**/*.[ch]"), recursive=True) + shared):
         name = os.path.relpath(path, os.path.join(top, "master"))
         with open(path) as f:
             for m in INCLUDE.finditer(f.read()):
                 target = os.path.normpath(os.path.join(os.path.dirname(name), m.group(1)))
+                if target.startswith("..") and not target.startswith("../lib/ecrt/"):
+                    continue
                 if os.path.exists(os.path.join(top, "master", target)):
                     found.append((name, target))
     return found
@@ -46,7 +51,8 @@ def symbols(moddir):
     """[(file, file, symbol)]: whose object needs a symbol of which other object"""
     home, needs = {}, []
     objects = glob.glob(os.path.join(moddir, "master/**/*.o"), recursive=True)
-    for obj in sorted(objects):
+    shared = glob.glob(os.path.join(moddir, "lib/ecrt/*.o"))
+    for obj in sorted(objects + shared):
         name = os.path.relpath(obj, os.path.join(moddir, "master"))[:-2] + ".c"
         if not os.path.exists(os.path.join(top, "master", name)):
             continue    # ec_master.o and what belongs to a module as a whole
