@@ -218,7 +218,7 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 	}
 }
 
-/* A result may have more room than it needs; a value that is too large is the handler's to refuse. */
+/* A buffer for a result may be larger than needed; a handler refuses a value that is too large. */
 static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
 {
 	const struct ec_ioc_buffer *b = &op->buffer;

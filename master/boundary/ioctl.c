@@ -5,7 +5,6 @@
 #include <linux/uaccess.h>
 #include "call.h"
 #include "../base/limits.h"
-#include "../master.h"
 
 #define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
 

@@ -4,7 +4,6 @@
 #include "../cycle/cycle_thread.h"
 #include "../cycle/domain.h"
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
 

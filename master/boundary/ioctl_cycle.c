@@ -7,7 +7,6 @@
 #include "../cycle/cycle_thread.h"
 #include "../cycle/domain.h"
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/session.h"
 
 #define PERIOD_MIN_NS	10000

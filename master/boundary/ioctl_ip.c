@@ -3,7 +3,6 @@
 #include "../config/config.h"
 #include "../mailbox/eoe.h"
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
 

@@ -3,7 +3,6 @@
 #include "../config/config.h"
 #include "../cycle/domain.h"
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/session.h"
 
 #define LATE_MAX	100000	/* a second */

@@ -7,7 +7,6 @@
 #include "../config/config.h"
 #include "ioctl.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
@@ -67,8 +66,9 @@ int ec_ioc_sdo_upload(struct ec_call *call)
 	int ret;
 
 	i->size = call->size;
-	ret = ec_coe_upload(&call->slave->mbox, i->index, i->subindex, i->flags & EC_SDO_FLAG_COMPLETE,
-			    call->data, call->size, &got, &i->abort_code, &limit);
+	ret = ec_coe_upload(&call->slave->mbox, i->index, i->subindex,
+			    i->flags & EC_SDO_FLAG_COMPLETE, call->data, call->size, &got,
+			    &i->abort_code, &limit);
 	ret = sdo_failed(call, i, ret);
 	i->size = got;
 	return ret;
@@ -145,8 +145,8 @@ int ec_ioc_soe_read(struct ec_call *call)
 	if (ret)
 		return ret;
 	i->size = call->size;
-	ret = ec_soe_read(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &got, &error,
-			  &limit);
+	ret = ec_soe_read(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &got,
+			  &error, &limit);
 	i->error_code = error;
 	ret = idn_failed(call, i, ret);
 	i->size = got;
@@ -162,7 +162,8 @@ int ec_ioc_soe_write(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	ret = ec_soe_write(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &error, &limit);
+	ret = ec_soe_write(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &error,
+			   &limit);
 	i->error_code = error;
 	return idn_failed(call, i, ret);
 }

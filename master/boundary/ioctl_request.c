@@ -3,7 +3,6 @@
 #include <linux/nospec.h>
 #include "../config/config.h"
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/request.h"
 #include "../session/session.h"
 

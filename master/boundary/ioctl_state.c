@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands about the states of an application's slaves. */
 #include "ioctl.h"
-#include "../master.h"
 #include "../session/session.h"
 #include "../config/why.h"
 
