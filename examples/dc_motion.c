@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * dc_motion: two drives (CiA 402, or EL7201 terminals) follow a sine of their
- * position, on distributed clocks: both take over their targets at the same
- * SYNC0, a third of a cycle after the frame. One of two clocks has to give way
- * to the other:
+ * dc_motion: two drives (CiA 402, or EL7201 terminals) move by a sine, with distributed clocks:
+ * both accept their target positions at the same SYNC0, a third of a cycle after the frame. The
+ * argument selects the time reference:
  *
- *   lead    this program keeps its own time, the reference clock follows it;
- *           for machines with a better clock than the drives have
- *   follow  the reference clock keeps its time, this program follows it with a
- *           small controller; the best for the drives
+ *   lead    this program: the reference clock is synchronized to it; for machines with a
+ *           better clock than that of the drives
+ *   follow  the reference clock: a small controller synchronizes this program to it; the
+ *           best for the drives
  *
- * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the
- * latter, see kcycle.c with "follow".)
+ * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the same as
+ * "follow", see kcycle.c.)
  *
  * usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]
  *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 4 and 5, as in the
  *                  simulated segment "bench"
  *   SECONDS        to run; default: until Ctrl-C
- * exit status: 0, or 1 when a drive never reached OP or the setup failed
+ * exit status: 0; 1 when a drive did not reach OP or the setup failed
  */
 #include <ecrt.h>
 #include <math.h>
@@ -31,11 +30,11 @@
 #include <time.h>
 
 #define PERIOD_NS	1000000
-#define SHIFT_NS	(PERIOD_NS / 3)	/* the frame has passed by then */
+#define SHIFT_NS	(PERIOD_NS / 3)	/* later than the frame */
 #define NS_PER_S	1000000000L
 #define AXES		2
-#define AMPLITUDE	100000.0	/* counts, from end to end */
-#define TURN_S		2.0		/* for once forth and back */
+#define AMPLITUDE	100000.0	/* counts, peak to peak */
+#define TURN_S		2.0		/* one period of the motion */
 #define TWO_PI		6.283185307179586
 #define MODE_CSP	8		/* cyclic synchronous position */
 
@@ -129,17 +128,17 @@ static int configure(struct axis *a, uint16_t position)
 			return -1;
 		*offset[i] = (unsigned int)ret;
 	}
-	/* SYNC0 each cycle; 0x0300 is what most drives have in their description */
+	/* SYNC0 in each cycle; most drives have 0x0300 in their ESI */
 	return ecrt_slave_config_dc(sc, 0x0300, PERIOD_NS, SHIFT_NS, 0, 0);
 }
 
-/* Time of a clock in ns; for EtherCAT it begins in 2000, but any begin will do. */
+/* Time of a clock in ns; EtherCAT counts from 2000, but any epoch works. */
 static uint64_t ns(const struct timespec *t)
 {
 	return (uint64_t)t->tv_sec * (uint64_t)NS_PER_S + (uint64_t)t->tv_nsec;
 }
 
-/* Each failure is explained on stderr by the library. */
+/* The library prints the reason of each failure on stderr. */
 static int setup(uint16_t first, uint16_t second)
 {
 	master = ecrt_request_master(0);
@@ -155,7 +154,7 @@ static int setup(uint16_t first, uint16_t second)
 	return data ? 0 : -1;
 }
 
-/* No page fault later, and a thread that only other real-time ones hold up. */
+/* Avoids page faults in the cycle, and gives the thread a real-time priority. */
 static void become_realtime(void)
 {
 	struct sched_param param;
@@ -170,18 +169,17 @@ static void become_realtime(void)
 
 /* time -----------------------------------------------------------------------*/
 
-/* what the reference clock has to do with our cycle */
+/* relation of the reference clock to the cycle */
 static struct {
-	uint64_t told;		/* application time of the last cycle */
-	int32_t error;		/* how late that frame was by the reference clock */
+	uint64_t app_time;	/* application time of the last cycle */
+	int32_t error;		/* deviation of that frame by the reference clock */
 	int64_t integral;	/* correction that keeps its rate, ns * 512 */
 	int64_t corrected;	/* sum of all corrections, ns */
 } clock_state;
 
 /*
- * The reference clock's time of the last frame against the time we told then
- * is our error. A part of it, and of the sum of all, goes into the next period:
- * never more than 1/100 of it.
+ * The error is the time of the reference clock at the last frame minus the application time of
+ * that frame. A part of it, and of its sum, corrects the next period, by at most 1/100.
  */
 static long correction(void)
 {
@@ -189,8 +187,8 @@ static long correction(void)
 	int64_t c;
 
 	if (ecrt_master_reference_clock_time(master, &time))
-		return 0;	/* not set yet, or that frame was lost */
-	clock_state.error = (int32_t)(time - (uint32_t)clock_state.told);
+		return 0;	/* not synchronized yet, or that frame was lost */
+	clock_state.error = (int32_t)(time - (uint32_t)clock_state.app_time);
 	if (!follow)
 		return 0;
 	c = -(clock_state.error / 16 + clock_state.integral / 512);
@@ -214,9 +212,9 @@ static void add(struct timespec *t, long add_ns)
 }
 
 /*
- * Sleeps until the next cycle; leaves out those that have passed already.
- * Application time goes on by whole periods: when we lead, that is our clock;
- * when we follow, the periods are those of the reference clock.
+ * Sleeps until the next cycle; skips cycles that have passed. The application time advances by
+ * whole periods: of the clock of this program with "lead", of the reference clock with
+ * "follow".
  */
 static unsigned int wait_period(struct timespec *next, uint64_t *app_time, long correct)
 {
@@ -236,7 +234,7 @@ static unsigned int wait_period(struct timespec *next, uint64_t *app_time, long 
 
 /* motion ---------------------------------------------------------------------*/
 
-/* Control word that leads from the state in the status word to operation. */
+/* Control word of the next transition towards operation. */
 static uint16_t next_control(uint16_t status, unsigned long n)
 {
 	if ((status & 0x4f) == 0x08)		/* fault: reset is an edge */
@@ -280,7 +278,7 @@ static int all_enabled(void)
 
 /* cycle ----------------------------------------------------------------------*/
 
-/* Returns what to add to the period until the next one, ns. */
+/* Returns the correction of the next period, ns. */
 static long cycle(unsigned long n, uint64_t app_time, int off)
 {
 	static uint64_t began;
@@ -306,12 +304,12 @@ static long cycle(unsigned long n, uint64_t app_time, int off)
 	ecrt_master_sync_slave_clocks(master);
 	if (n % 100 == 0)
 		ecrt_master_sync_monitor_queue(master);
-	clock_state.told = app_time;
+	clock_state.app_time = app_time;
 	ecrt_master_send(master);
 	return correct;
 }
 
-/* Prints for each drive that is not in OP why; returns how many they are. */
+/* Prints the reason for each drive that is not in OP; returns the number of these drives. */
 static int not_in_op(void)
 {
 	ec_slave_config_state_t state;
@@ -331,8 +329,8 @@ static int not_in_op(void)
 }
 
 /*
- * Printing takes time that a cycle does not have: an application with hard
- * limits hands this to a thread without priority.
+ * Printing takes too long for a cycle: an application with hard limits prints in a thread
+ * without real-time priority.
  */
 static void report(unsigned long n)
 {
@@ -370,7 +368,7 @@ static void run(unsigned long cycles)
 		printf("ended without OP\n");
 	else
 		reached_op = 1;
-	for (i = 0; i < 10; i++) {	/* drives off before they are left alone */
+	for (i = 0; i < 10; i++) {	/* disable the drives before the last frame */
 		wait_period(&next, &app_time, 0);
 		cycle(n + 1 + (unsigned long)i, app_time, 1);
 	}
@@ -378,7 +376,7 @@ static void run(unsigned long cycles)
 	for (i = 0; i < AXES; i++)
 		printf("axis %d: from %d to %d\n", i, axes[i].low, axes[i].high);
 	if (follow && n)
-		printf("the reference clock runs %+.0f ppm faster than ours\n",
+		printf("the reference clock runs %+.0f ppm faster than CLOCK_MONOTONIC\n",
 		       -1e6 * (double)clock_state.corrected / PERIOD_NS / (double)n);
 }
 
@@ -411,6 +409,6 @@ int main(int argc, char **argv)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
-	ecrt_release_master(master);	/* slaves go back to PREOP */
+	ecrt_release_master(master);	/* slaves go to PREOP */
 	return !reached_op;
 }

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * Example: the kernel runs the cycle, this program only has values. It needs no
- * real-time priority: the frames keep their time whatever it does.
+ * Example: the kernel runs the cycle, this program only reads inputs and writes outputs. It
+ * needs no real-time priority: the frames are punctual in any case.
  *
  * usage: kcycle [CYCLES [follow]]
  *
- * All slaves run with the process data they have, at 1 kHz. The first output
- * byte of each counts up; the program ends after CYCLES cycles (default 5000).
+ * All slaves run with their default process data, at 1 kHz. The program increments the first
+ * output byte of each slave and exits after CYCLES cycles (default 5000).
  *
- *   follow  the clocks of the slaves are kept in step, and the cycle follows the
- *           reference clock, which keeps its own time: its frames pass that clock
- *           always at the same distance from the SYNC signals. (A slave that shall have
- *           such signals is told with ecrt_slave_config_dc(), see dc_motion.c.)
+ *   follow  the clocks of the slaves are synchronized, and the cycle is phase-locked to the
+ *           reference clock: a frame passes this clock always at the same time after the
+ *           SYNC signals. (ecrt_slave_config_dc() configures such signals, see dc_motion.c.)
  *
- * Kill it, and the kernel goes on; start it again, and it goes on counting where
- * it was. 'ethercat release' ends what a killed one has left.
+ * When the program is killed, the kernel continues the cycle; a new start continues counting.
+ * 'ethercat release' ends the session of a killed program.
  * See Documentation/kernel-cycle.rst.
  */
 #include <ecrt.h>
@@ -36,7 +35,7 @@ static int outputs[SLAVES_MAX];		/* first output byte in the domain, or -1 */
 static unsigned int n_slaves;
 static int follow;
 
-/* A slave as it is: every SyncManager with PDOs goes into the domain. */
+/* Default process data of a slave: every SyncManager with PDOs goes into the domain. */
 static int add_slave(uint16_t position)
 {
 	ec_slave_info_t info;
@@ -89,7 +88,7 @@ static int configure(void)
 		return -1;
 	n_slaves = info.slave_count;
 	if (!n_slaves || n_slaves > SLAVES_MAX) {
-		fprintf(stderr, "%u slaves; 1 to %u are possible\n", n_slaves, SLAVES_MAX);
+		fprintf(stderr, "%u slaves found, expected 1 to %u\n", n_slaves, SLAVES_MAX);
 		return -1;
 	}
 	for (unsigned int i = 0; i < n_slaves; i++)
@@ -99,8 +98,8 @@ static int configure(void)
 }
 
 /*
- * One cycle: wait for the kernel's, take its inputs, give outputs for the next.
- * The wait is the only system call. Returns what ecrt_master_wait_cycle() does.
+ * One cycle: wait for the cycle of the kernel, take its inputs, give outputs for the next cycle.
+ * The wait is the only system call. Returns the result of ecrt_master_wait_cycle().
  */
 static int cycle(ec_domain_state_t *state)
 {
@@ -120,7 +119,7 @@ static int cycle(ec_domain_state_t *state)
 	return n;
 }
 
-/* How old the inputs are that were taken last, ns: since their cycle began. */
+/* Age of the current inputs, ns: time since their cycle began. */
 static int64_t age(void)
 {
 	struct timespec now;
@@ -132,7 +131,7 @@ static int64_t age(void)
 	return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec - (int64_t)began;
 }
 
-/* The clocks need a second or so to be set, then the cycle finds its place. */
+/* The clocks need about a second to synchronize, then the cycle locks. */
 static int locked(void)
 {
 	ec_cycle_state_t state;
@@ -182,14 +181,14 @@ static int run(unsigned long cycles)
 		return -1;
 	}
 	ecrt_master_cycle_state(master, &state);
-	printf("%u slaves in OP%s\n", n_slaves, state.takeovers ? ", as they were" : "");
+	printf("%u slaves in OP%s\n", n_slaves, state.takeovers ? "; cycle taken over" : "");
 	for (unsigned long i = 0; i < cycles; i++) {
 		n = cycle(&domain_state);
 		if (n < 0) {
 			fprintf(stderr, "the cycle ended: %s\n", strerror(-n));
 			return -1;
 		}
-		/* cycles this program slept through; the frames went all the same */
+		/* cycles that this program missed; the kernel has sent their frames */
 		skipped += (unsigned long)n - 1;
 		incomplete += domain_state.wc_state != EC_WC_COMPLETE;
 		ns = age();
@@ -212,7 +211,7 @@ int main(int argc, char **argv)
 		return 1;
 	if (!configure() && !ecrt_master_activate(master)) {
 		ret = run(cycles);
-		/* without this the kernel would go on */
+		/* otherwise the kernel continues the cycle */
 		ecrt_master_deactivate(master);
 	}
 	ecrt_release_master(master);

@@ -9,7 +9,7 @@
  *                    "ethercat slaves"; default 1 and 2
  *   SECONDS          to run; default: until Ctrl-C
  *
- * Other slaves: "ethercat cstruct" prints their tables to put in here.
+ * For other slaves: "ethercat cstruct" prints the tables to insert here.
  */
 #include <ecrt.h>
 #include <pthread.h>
@@ -32,7 +32,7 @@ static ec_master_t *master;
 static ec_domain_t *domain;
 static uint8_t *data;
 
-/* where a channel is in the domain: filled in by the registration */
+/* position of a channel in the domain, written by the registration */
 static unsigned int in_byte[CHANNELS], in_bit[CHANNELS];
 static unsigned int out_byte[CHANNELS], out_bit[CHANNELS];
 
@@ -79,14 +79,14 @@ static int configure(uint16_t position, uint32_t product, ec_direction_t dir,
 		regs[i].offset = &byte[i];
 		regs[i].bit_position = &bit[i];
 	}
-	/* the slave may be absent: it is configured when it appears */
+	/* the slave may be absent: the master configures it when it connects */
 	sc = ecrt_master_slave_config(master, 0, position, BECKHOFF, product);
 	if (!sc || ecrt_slave_config_pdos(sc, EC_END, syncs))
 		return -1;
 	return ecrt_domain_reg_pdo_entry_list(domain, regs);
 }
 
-/* Each failure is explained on stderr by the library. */
+/* The library prints the reason of each failure on stderr. */
 static int setup(uint16_t inputs, uint16_t outputs)
 {
 	master = ecrt_request_master(0);
@@ -102,7 +102,7 @@ static int setup(uint16_t inputs, uint16_t outputs)
 	return data ? 0 : -1;
 }
 
-/* No page fault later, and a thread that only other real-time ones hold up. */
+/* Avoids page faults in the cycle, and gives the thread a real-time priority. */
 static void become_realtime(void)
 {
 	struct sched_param param;
@@ -117,7 +117,7 @@ static void become_realtime(void)
 
 /* cycle ----------------------------------------------------------------------*/
 
-/* Sleeps until the next cycle; leaves out those that have passed already. */
+/* Sleeps until the next cycle; skips cycles that have passed. */
 static unsigned int wait_period(struct timespec *next)
 {
 	unsigned int missed = 0;
@@ -156,8 +156,8 @@ static unsigned int cycle(int off)
 }
 
 /*
- * Says what has changed. Printing takes time that a cycle does not have: an
- * application with hard limits hands this to a thread without priority.
+ * Prints changes. Printing takes too long for a cycle: an application with hard limits prints in
+ * a thread without real-time priority.
  */
 static void report(unsigned int inputs)
 {
@@ -165,7 +165,7 @@ static void report(unsigned int inputs)
 	ec_master_state_t ms;
 	ec_domain_state_t ds;
 
-	/* both only read memory: cheap enough for each cycle */
+	/* both only read memory: fast enough for each cycle */
 	ecrt_master_state(master, &ms);
 	ecrt_domain_state(domain, &ds);
 	if (ms.al_states != last_states)
@@ -192,7 +192,7 @@ static void run(unsigned long cycles)
 		missed += wait_period(&next);
 		report(cycle(0));
 	}
-	/* the slaves get the zeros before they are left alone */
+	/* send zeros before the last frame */
 	for (i = 0; i < 10; i++) {
 		wait_period(&next);
 		cycle(1);
@@ -228,6 +228,6 @@ int main(int argc, char **argv)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
-	ecrt_release_master(master);	/* slaves go back to PREOP */
+	ecrt_release_master(master);	/* slaves go to PREOP */
 	return 0;
 }

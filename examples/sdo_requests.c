@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * sdo_requests: SDO and register requests and emergencies of one slave, beside a
- * cycle of 1 ms that does not wait for them. Reads its serial number and its
- * station address, writes object 0x2001:08 and reads it back (on a real slave
- * choose another one), asks for an object that it does not have and for a slave
- * that is not there. Prints what came of it, the next emergencies, and for how
- * many cycles a request was BUSY.
+ * sdo_requests: SDO and register requests and emergencies of one slave, beside a cycle of 1 ms
+ * that does not wait for them. Reads serial number and station address, writes object 0x2001:08
+ * and reads it back (use another object for a real slave), reads an object that the slave does
+ * not have, and accesses an absent slave. Prints the results, the next emergencies, and the
+ * number of cycles with a BUSY request.
  *
  * usage: sdo_requests POSITION
  */
@@ -93,7 +92,7 @@ static void read_register(struct timespec *t, ec_reg_request_t *req)
 	       EC_READ_U16(ecrt_reg_request_data(req)));
 }
 
-/* Waits for one, and takes those that are there. */
+/* Waits for an emergency and reads all. */
 static void emergencies(struct timespec *t, ec_slave_config_t *sc)
 {
 	uint8_t e[EC_COE_EMERGENCY_MSG_SIZE];
@@ -104,10 +103,10 @@ static void emergencies(struct timespec *t, ec_slave_config_t *sc)
 		for (; !ecrt_slave_config_emerg_pop(sc, e); n++)
 			printf("emergency: 0x%04x register 0x%02x\n", EC_READ_U16(e), e[2]);
 	}
-	printf("lost emergencies: %d\n", ecrt_slave_config_emerg_overruns(sc));
+	printf("dropped emergencies: %d\n", ecrt_slave_config_emerg_overruns(sc));
 }
 
-/* Process data as the slave has them, so that it goes to OP. */
+/* Default process data of the slave, so that it reaches OP. */
 static ec_slave_config_t *configure(uint16_t position, ec_slave_info_t *info)
 {
 	ec_slave_config_t *sc;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * A small application in the kernel: 1000 times a second it copies the first
- * bytes of the inputs of one slave to its outputs. Beside the cycle it reads an
- * object, and it says in the log when something changes.
+ * bytes of the inputs of one slave to its outputs. Beside the cycle it reads an object, and it
+ * logs changes.
  *
  *   make -C /lib/modules/$(uname -r)/build M=$PWD ECRT=/usr/local/include \
  *	KBUILD_EXTRA_SYMBOLS=/lib/modules/$(uname -r)/updates/ethercat/Module.symvers
@@ -24,7 +24,7 @@
 
 static unsigned int master_index;
 module_param_named(master, master_index, uint, 0444);
-MODULE_PARM_DESC(master, "which master");
+MODULE_PARM_DESC(master, "index of the master");
 
 static ushort position;
 module_param(position, ushort, 0444);
@@ -37,7 +37,7 @@ static ec_sdo_request_t *serial;
 static struct task_struct *task;
 static int out, in;
 
-/* Beside the cycle: the serial number, again and again. */
+/* Reads the serial number again and again, beside the cycle. */
 static void read_serial(unsigned int cycle)
 {
 	static ec_request_state_t last;
@@ -47,7 +47,7 @@ static void read_serial(unsigned int cycle)
 		pr_info("ec_mini: serial number %u\n",
 			EC_READ_U32(ecrt_sdo_request_data(serial)));
 	if (now != last && now == EC_REQUEST_ERROR)
-		pr_info("ec_mini: the serial number cannot be read\n");
+		pr_info("ec_mini: cannot read the serial number\n");
 	last = now;
 	if (now != EC_REQUEST_BUSY && cycle % READ_CYCLES == 0)
 		ecrt_sdo_request_read(serial);
@@ -101,7 +101,7 @@ static int run(void *unused)
 	return 0;
 }
 
-/* Process data of the slave as it describes them itself. */
+/* Default process data of the slave. */
 static int configure(void)
 {
 	ec_slave_info_t info;
@@ -126,7 +126,7 @@ static int configure(void)
 	return ecrt_master_set_send_interval(master, PERIOD_US);
 }
 
-/* The master says in the log what went wrong. */
+/* The master logs the reason of a failure. */
 static int __init ec_mini_init(void)
 {
 	int ret;
@@ -146,7 +146,7 @@ err:
 	return ret;
 }
 
-/* First the cycle, then what it uses. */
+/* Stop the cycle before its master is released. */
 static void __exit ec_mini_exit(void)
 {
 	kthread_stop(task);

@@ -2,17 +2,16 @@
 /*
  * Interface between /dev/EtherCAT<n> and its users.
  *
- * Rules: fixed-width types only; pointers travel as __u64; no padding that the
- * compiler adds, so that structures are the same for programs of 32 and 64 bits;
- * every structure starts with a flags word whose unknown bits are refused (-EOPNOTSUPP) and
- * may grow at its end: the kernel takes the size from the command number,
- * zero-fills what an older program does not send and refuses (-E2BIG) a
- * non-zero tail it does not know. Reserved fields are zero, else -EOPNOTSUPP.
- * Less than the first version of a structure had is -EINVAL. Numbers are never
- * reused.
+ * Rules: fixed-width types only; pointers are passed as __u64; no padding by the compiler, so
+ * that structures are the same for programs of 32 and 64 bits. Every structure starts with a
+ * flags word, whose unknown bits are refused (-EOPNOTSUPP). It may grow at its end: the kernel
+ * takes the size from the command number, zero-fills fields that an older program does not
+ * have, and refuses (-E2BIG) an unknown tail that is not zero. Reserved fields are zero,
+ * otherwise -EOPNOTSUPP. A structure shorter than its first version is refused (-EINVAL).
+ * Numbers are never reused.
  *
- * When a command fails, EC_IOC_REASON on the same open file returns one line
- * of text that says what was wrong and what to do.
+ * When a command fails, EC_IOC_REASON on the same open file returns one line of text with the
+ * cause and the remedy.
  */
 #ifndef EC_UAPI_ETHERCAT_H
 #define EC_UAPI_ETHERCAT_H
@@ -28,7 +27,7 @@
 #define EC_UAPI_PORTS		4
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
 #define EC_IP_NAME		32
-#define EC_UAPI_DC_WINDOW_NS	1000	/* a clock within it keeps the time */
+#define EC_UAPI_DC_WINDOW_NS	1000	/* sync window of a clock */
 #define EC_UAPI_NONE16		0xffff
 #define EC_UAPI_NONE32		0xffffffff
 
@@ -62,7 +61,7 @@ struct ec_ioc_device {
 	__u8 address[6];
 	__u8 state;
 	__u8 link_up;
-	__u32 slaves;		/* slaves that answered the last broadcast */
+	__u32 slaves;		/* slaves that responded to the last broadcast */
 	char name[EC_UAPI_STRING];
 	__u32 reserved;
 	__u64 tx_frames;
@@ -70,16 +69,16 @@ struct ec_ioc_device {
 	__u64 rx_frames;
 	__u64 rx_bytes;
 	__u64 tx_errors;
-	__u64 lost;		/* not back in time */
-	__u64 late;		/* back, but a cycle or more late, or after the time limit */
-	__u64 unmatched;	/* EtherCAT, but not asked for, or mangled */
+	__u64 lost;		/* no reply */
+	__u64 late;		/* reply a cycle or more late, or after the timeout */
+	__u64 unmatched;	/* EtherCAT, but no reply to a sent frame, or damaged */
 	__u64 foreign;		/* other protocols on the wire */
 	__u32 tx_frame_rate[EC_UAPI_RATES];	/* per second */
 	__u32 rx_frame_rate[EC_UAPI_RATES];
 	__u32 tx_byte_rate[EC_UAPI_RATES];
 	__u32 rx_byte_rate[EC_UAPI_RATES];
 	__u32 loss_rate[EC_UAPI_RATES];
-	__u32 al_states;	/* OR of theirs: 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
+	__u32 al_states;	/* OR of all slaves: 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
 };
 
 /* struct ec_ioc_master.phase */
@@ -88,10 +87,10 @@ struct ec_ioc_device {
 #define EC_PHASE_OPERATION	2
 
 /* struct ec_ioc_master.session */
-#define EC_SESSION_NONE		0	/* nobody has reserved the master */
+#define EC_SESSION_NONE		0	/* the master is not reserved */
 #define EC_SESSION_RESERVED	1
 #define EC_SESSION_ACTIVE	2
-#define EC_SESSION_DETACHED	3	/* active, its application has gone */
+#define EC_SESSION_DETACHED	3	/* active, the application has exited */
 
 struct ec_ioc_master {
 	__u32 flags;
@@ -102,7 +101,7 @@ struct ec_ioc_master {
 	__u8 al_states;		/* OR of 1 INIT, 2 PREOP, 4 SAFEOP, 8 OP */
 	__u32 slave_count;
 	__u32 slaves_responding;
-	__u32 scan_index;	/* slaves read; less than scan_slaves while a scan goes on */
+	__u32 scan_index;	/* slaves read; less than scan_slaves while a scan runs */
 	__u32 config_count;
 	__u32 domain_count;
 	__u32 device_count;
@@ -110,8 +109,8 @@ struct ec_ioc_master {
 	__u64 app_time;
 	__u64 dc_ref_time;
 	__s32 ref_clock;	/* ring position, -1 none */
-	__u32 scan_us;		/* how long the last scan took */
-	__u64 scan_frames;	/* frames it needed */
+	__u32 scan_us;		/* duration of the last scan */
+	__u64 scan_frames;	/* frames of the last scan */
 	struct ec_ioc_device devices[EC_UAPI_DEVICES];
 	__u32 scan_count;	/* bus scans finished so far */
 	__u32 session;		/* EC_SESSION_* */
@@ -120,18 +119,18 @@ struct ec_ioc_master {
 	__s32 phase_error;	/* likewise */
 	__s32 rate_ppb;		/* likewise */
 	/* while active; wire times of 100 Mbit/s, preamble and gap included */
-	__u32 cycle_interval_us;	/* distance of cyclic sends, told or measured */
+	__u32 cycle_interval_us;	/* cycle time, configured or measured */
 	__u32 cycle_datagrams;	/* of a cycle that sends all domains */
 	__u32 cycle_frames;
 	__u32 cycle_wire_ns;
 	__u32 sent_frames;	/* of the last send, clock datagrams included */
 	__u32 sent_wire_ns;
-	__u32 acyclic_slack_ns;	/* what the cycle leaves for acyclic frames */
-	__u32 acyclic_need_ns;	/* what the shortest one needs */
-	__u32 late_per_s;	/* cycles a second they may make late */
-	__u32 late_cycles;	/* cycles they have made late */
-	__u32 scan_slaves;	/* slaves the scan has to do with; without scan slave_count */
-	__u32 not_captured;	/* frames that capture programs did not see, of all devices */
+	__u32 acyclic_slack_ns;	/* free wire time for acyclic frames */
+	__u32 acyclic_need_ns;	/* wire time of the shortest acyclic frame */
+	__u32 late_per_s;	/* limit of delayed cycles per second */
+	__u32 late_cycles;	/* cycles delayed by acyclic frames */
+	__u32 scan_slaves;	/* slaves of the running scan; otherwise slave_count */
+	__u32 not_captured;	/* frames that were not captured, of all devices */
 	__u32 acyclic_max;	/* acyclic frames of one send, at most */
 	__u32 sii_limit;	/* bytes of EEPROM images, at most */
 	__u64 sii_bytes;	/* of all slaves */
@@ -159,8 +158,8 @@ struct ec_ioc_slave {
 	__u16 position;		/* in */
 	__u16 station;
 	__u16 alias;
-	__u16 alias_pos;	/* distance to the slave with the alias */
-	__u16 alias_group;	/* alias of that slave, 0: none before */
+	__u16 alias_pos;	/* number of slaves after the slave with the alias */
+	__u16 alias_group;	/* alias of this slave or of one upstream, 0: none */
 	__u16 al_status;	/* register 0x0130 */
 	__u16 al_code;		/* register 0x0134 */
 	__u8 al_requested;
@@ -201,11 +200,11 @@ struct ec_ioc_slave {
 	char name[EC_UAPI_STRING];
 	char why[EC_UAPI_REASON];	/* cause of @error */
 	__u64 dc_offset;	/* register 0x0920, ns */
-	__s32 dc_diff;		/* to the reference clock when last checked, ns */
-	__u16 dc_set;		/* the clock was set for the active application */
-	__u16 dc_odd;		/* its delay is not certain: cables and receive times do not fit */
+	__s32 dc_diff;		/* difference to the reference clock at the last read, ns */
+	__u16 dc_set;		/* synchronized for the active application */
+	__u16 dc_odd;		/* delay unreliable: receive times contradict the topology */
 	__u32 config;		/* attached or different configuration: index + 1; 0: none */
-	__u32 differs;		/* it is not what @config expects */
+	__u32 differs;		/* identity differs from @config */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
 };
 
@@ -253,7 +252,7 @@ struct ec_ioc_sii {
 	__u16 position;		/* in */
 	__u16 reserved;
 	__u32 offset;		/* in, bytes */
-	__u32 size;		/* in: room at @data; out: bytes copied */
+	__u32 size;		/* in: buffer size; out: bytes copied */
 	__u64 data;
 };
 
@@ -275,14 +274,14 @@ struct ec_ioc_sdo {
 	__u8 subindex;		/* in */
 	__u8 reserved[3];
 	__u32 abort_code;	/* out */
-	__u32 size;		/* download: bytes; upload: room, then result */
+	__u32 size;		/* download: bytes; upload: buffer size, then result */
 	__u32 timeout_ms;	/* in; 0: default */
 	__u64 data;
 };
 
 #define EC_SDO_FLAG_COMPLETE	1
 
-/* the value of an IDN of a servo drive */
+/* value of an IDN of a servo drive */
 struct ec_ioc_soe {
 	__u32 flags;
 	__u16 position;		/* in */
@@ -290,7 +289,7 @@ struct ec_ioc_soe {
 	__u8 drive;		/* in: 0..7 */
 	__u8 reserved[3];
 	__u32 error_code;	/* out: of the slave, after -EIO */
-	__u32 size;		/* write: bytes; read: room, then result */
+	__u32 size;		/* write: bytes; read: buffer size, then result */
 	__u32 timeout_ms;	/* in; 0: default */
 	__u64 data;
 };
@@ -318,20 +317,20 @@ struct ec_ioc_debug {
 
 /* IP parameters of a slave with EoE; addresses in network order */
 struct ec_ip_params {
-	__u32 which;		/* EC_IP_*: those of the rest that count */
+	__u32 which;		/* EC_IP_*: the valid fields */
 	__u8 mac[6];
 	__u8 reserved[2];
 	__u8 ip[4];
 	__u8 mask[4];
 	__u8 gateway[4];
 	__u8 dns[4];
-	char name[EC_IP_NAME];	/* ends with 0 when it is shorter */
+	char name[EC_IP_NAME];	/* terminated by 0 if it is shorter */
 };
 
 struct ec_ioc_ip {
 	__u32 flags;
 	__u16 position;		/* in */
-	__u16 result;		/* out: EoE result code, with -EIO; 0: no answer */
+	__u16 result;		/* out: EoE result code, with -EIO; 0: no reply */
 	struct ec_ip_params params;
 };
 
@@ -395,7 +394,7 @@ struct ec_ioc_config_sdo {
 	__u16 sdo_index;
 	__u8 subindex;
 	__u8 reserved;
-	__u32 size;		/* in: room; out: full size */
+	__u32 size;		/* in: buffer size; out: full size */
 	__u32 reserved2;
 	__u64 data;
 };
@@ -406,8 +405,8 @@ struct ec_ioc_config_idn {
 	__u32 idn_pos;		/* in */
 	__u16 idn;
 	__u8 drive;
-	__u8 state;		/* in which it is written: 2 PREOP, 4 SAFEOP */
-	__u32 size;		/* in: room; out: full size */
+	__u8 state;		/* state in which the master writes it: 2 PREOP, 4 SAFEOP */
+	__u32 size;		/* in: buffer size; out: full size */
 	__u32 reserved;
 	__u64 data;
 };
@@ -420,13 +419,13 @@ struct ec_ioc_config_flag {
 	char key[EC_UAPI_STRING];
 };
 
-/* how a domain is sent, see struct ec_ioc_domain_options */
+/* options of a domain, see struct ec_ioc_domain_options */
 #define EC_DOMAIN_OPT_OVERLAP	1	/* inputs at logical addresses of outputs */
 #define EC_DOMAIN_OPT_SEPARATE	2	/* LRD and LWR instead of LRW */
-#define EC_DOMAIN_OPT_OWN_FRAME	4	/* no frame together with another domain */
+#define EC_DOMAIN_OPT_OWN_FRAME	4	/* shares no frame with another domain */
 #define EC_DOMAIN_OPT_ALL	7
 
-/* why a configured slave is not in OP; empty: it is */
+/* reason why a configured slave is not in OP; empty: it is in OP */
 struct ec_ioc_config_why {
 	__u32 flags;
 	__u32 index;		/* in */
@@ -467,28 +466,28 @@ struct ec_ioc_domain_fmmu {
 struct ec_ioc_domain_data {
 	__u32 flags;
 	__u32 index;		/* in */
-	__u32 size;		/* in: room; out: bytes copied */
+	__u32 size;		/* in: buffer size; out: bytes copied */
 	__u32 reserved;
 	__u64 data;
 };
 
 /* struct ec_ioc_cycle_stats.kind */
-#define EC_CYCLE_BY_NOBODY	0	/* there was no cycle yet */
+#define EC_CYCLE_BY_NOBODY	0	/* no cycle has run */
 #define EC_CYCLE_BY_APP		1
 #define EC_CYCLE_BY_KERNEL	2
 
-/* figures of the cycle that runs, or of the last one */
+/* statistics of the running cycle, otherwise of the last one */
 struct ec_ioc_cycle_stats {
 	__u32 flags;
 	__u32 kind;
-	__u32 active;		/* it runs now */
-	__u32 told;		/* interval was told, not measured */
+	__u32 active;		/* the cycle runs */
+	__u32 told;		/* interval was configured, not measured */
 	__u32 interval_ns;
-	__u32 size;		/* in: room; out: bytes copied */
+	__u32 size;		/* in: buffer size; out: bytes copied */
 	__u64 data;		/* of struct ec_status_cycle */
 	/* kernel: the thread */
 	__s32 cpu;		/* configured, -1: any */
-	__u32 cpu_losses;	/* how often that CPU went offline */
+	__u32 cpu_losses;	/* times this CPU went offline */
 	__u32 priority;		/* SCHED_FIFO; 0: SCHED_OTHER */
 	__u32 priority_wanted;	/* as configured */
 };
@@ -507,18 +506,18 @@ struct ec_ioc_domain_options {
 	__u32 reserved;
 };
 
-#define EC_DOMAIN_MAX_AGE	2	/* at first */
+#define EC_DOMAIN_MAX_AGE	2	/* initial */
 
 struct ec_ioc_domain_age {
 	__u32 flags;
 	__u32 domain;		/* in */
-	__u32 max_age;		/* in: more sends than that: stale; 0: no limit */
+	__u32 max_age;		/* in: stale above this number of sends; 0: no limit */
 	__u32 reserved;
 };
 
 struct ec_ioc_late {
 	__u32 flags;
-	__u32 per_s;		/* in: cycles a second acyclic frames may make late; 0: none */
+	__u32 per_s;		/* in: limit of cycles delayed by acyclic frames; 0: none */
 };
 
 struct ec_ioc_sc_overlap {
@@ -581,7 +580,7 @@ struct ec_ioc_sc_sdo {
 };
 
 #define EC_REG_ENTRY_BY_POS	1
-#define EC_REG_ENTRY_ALIGNED	2	/* -EFAULT if it does not begin with a byte */
+#define EC_REG_ENTRY_ALIGNED	2	/* -EFAULT if the entry is not byte-aligned */
 
 struct ec_ioc_reg_entry {
 	__u32 flags;		/* EC_REG_ENTRY_* */
@@ -625,7 +624,7 @@ struct ec_ioc_sc_timeout {
 	__u32 timeout_ms;
 };
 
-/* an IDN to be written while the slave is configured */
+/* a startup IDN */
 struct ec_ioc_sc_idn {
 	__u32 flags;
 	__u32 config;
@@ -646,7 +645,7 @@ struct ec_ioc_sc_request {
 	__u32 flags;
 	__u32 config;		/* in */
 	__u32 kind;		/* in */
-	__u32 size;		/* in: room for data, bytes */
+	__u32 size;		/* in: buffer size, bytes */
 	__u32 index;		/* out: in the session */
 	__u32 reserved;
 };
@@ -671,12 +670,12 @@ struct ec_ioc_activate {
 	__u32 request_size;	/* out, same; 0: neither requests nor emergencies */
 	__u32 exchange_size;	/* out, same; 0: the application runs the cycle */
 	__u32 preset_size;	/* in, bytes at @preset: all domains', or 0 */
-	__u64 preset;		/* in: what the image begins with; else zeros */
-	__u32 taken_over;	/* out: 1: a detached session, which went on */
+	__u64 preset;		/* in: initial content of the image; otherwise zeros */
+	__u32 taken_over;	/* out: 1: a detached session was taken over */
 	__u32 reserved;
 };
 
-/* before activation: where it would be, with what is registered by then */
+/* before activation: position of the domain with the entries registered so far */
 struct ec_ioc_domain_offset {
 	__u32 flags;
 	__u32 domain;		/* in */
@@ -686,10 +685,10 @@ struct ec_ioc_domain_offset {
 
 #define EC_SEND_FLAG_APP_TIME	1	/* @app_time is set */
 #define EC_SEND_FLAG_SYNC_REF	2	/* write @sync_time to the reference clock */
-#define EC_SEND_FLAG_SYNC_SLAVES 4	/* reference clock's time to the slaves */
+#define EC_SEND_FLAG_SYNC_SLAVES 4	/* drift compensation datagram */
 #define EC_SEND_FLAG_MONITOR	8	/* read the differences of all slaves */
 #define EC_SEND_FLAG_REQUESTS	16	/* a request was started */
-#define EC_SEND_FLAG_REF_TIME	32	/* read the whole time of the reference clock */
+#define EC_SEND_FLAG_REF_TIME	32	/* read all 64 bits of the reference clock */
 #define EC_SEND_FLAG_ALL	63
 
 /* argument of EC_IOC_SEND; @queued: bit n queues domain n */
@@ -712,23 +711,23 @@ struct ec_ioc_app_time {
 	__u64 app_time;
 };
 
-/* which slave is the reference clock */
+/* selects the reference clock */
 struct ec_ioc_ref_clock {
 	__u32 flags;
-	__u32 config;		/* EC_UAPI_NONE32: the first that can be */
+	__u32 config;		/* EC_UAPI_NONE32: the first suitable slave */
 };
 
-/* what to do when the application has given no outputs for stall_cycles */
-#define EC_STALL_HOLD		0	/* send the last ones */
-#define EC_STALL_ZERO		1	/* send zeros until there are new ones */
-#define EC_STALL_STOP		2	/* send nothing any more */
+/* reaction to an output stall: no new outputs for stall_cycles */
+#define EC_STALL_HOLD		0	/* send the last outputs */
+#define EC_STALL_ZERO		1	/* send zeros until there are new outputs */
+#define EC_STALL_STOP		2	/* stop sending */
 
 /* flags of struct ec_ioc_cycle */
-#define EC_CYCLE_FLAG_DETACH	1	/* the session survives its application */
+#define EC_CYCLE_FLAG_DETACH	1	/* detach the session when the application exits */
 #define EC_CYCLE_FLAG_WAIT	2	/* the first frame waits for outputs */
 #define EC_CYCLE_FLAG_ALL	3
 
-/* the kernel runs the cycle of the next activation; period_ns 0: it does not */
+/* the kernel runs the cycle of the next activation; period_ns 0: the application */
 struct ec_ioc_cycle {
 	__u32 flags;		/* EC_CYCLE_FLAG_* */
 	__u32 period_ns;	/* 10000..1000000000 */
@@ -746,17 +745,17 @@ struct ec_ioc_cycle {
 };
 
 /* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */
-#define EC_CYCLE_DC_FOLLOW	256U	/* the cycle follows the reference clock */
+#define EC_CYCLE_DC_FOLLOW	256U	/* phase-locked to the reference clock */
 
-/* the domain takes part in every @division-th cycle the kernel runs */
+/* exchange the domain in every @division-th cycle of the kernel */
 struct ec_ioc_division {
 	__u32 flags;
 	__u32 domain;
 	__u32 division;		/* 1..1000 */
-	__u32 phase;		/* < division: first time in that cycle */
+	__u32 phase;		/* < division: cycle of the first exchange */
 };
 
-/* before each send: input bits of one slave to output bits of another */
+/* process data copy before each send: input bits to output bits */
 struct ec_ioc_copy {
 	__u32 flags;
 	__u32 from_domain;
@@ -769,7 +768,7 @@ struct ec_ioc_copy {
 struct ec_ioc_wait {
 	__u32 flags;
 	__u32 timeout_us;	/* 0: none */
-	__u64 cycle;		/* in: the last one seen; out: a newer one */
+	__u64 cycle;		/* in: last known cycle; out: a newer one */
 };
 
 #define EC_IOC_TYPE		0xec

@@ -97,7 +97,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	example kcycle 500
 	wait "$app"
 	cat "$out"
-	grep -qx '5 slaves in OP, as they were' "$out"
+	grep -qx '5 slaves in OP; cycle taken over' "$out"
 	grep -E '^500 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	app=
 }

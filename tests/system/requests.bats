@@ -27,6 +27,6 @@ says() { grep -qxF "$1" <<<"$output" || { echo "not said: $1"; echo "$output"; r
 	says "register: SUCCESS $(ethercat reg_read -p1 -t uint16 0x0010 | awk '{ print $1 }')"
 	says "absent slave: ERROR"
 	says "emergency: 0x8110 register 0x11"
-	says "lost emergencies: 0"
+	says "dropped emergencies: 0"
 	[ "$(ethercat upload -p1 -t uint32 0x2001 8 | awk '{ print $1 }')" = 0x1234abcd ]
 }
