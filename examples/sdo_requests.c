@@ -138,7 +138,7 @@ static void wait_op(struct timespec *t, ec_slave_config_t *sc)
 
 int main(int argc, char **argv)
 {
-	ec_slave_config_t *sc, *nobody;
+	ec_slave_config_t *sc, *absent;
 	ec_sdo_request_t *sdo, *lost;
 	ec_reg_request_t *reg;
 	ec_slave_info_t info;
@@ -151,11 +151,11 @@ int main(int argc, char **argv)
 	master = ecrt_request_master(0);
 	domain = master ? ecrt_master_create_domain(master) : NULL;
 	sc = domain ? configure((uint16_t)atoi(argv[1]), &info) : NULL;
-	nobody = sc ? ecrt_master_slave_config(master, 0, 1000, 1, 1) : NULL;
-	if (!nobody || ecrt_slave_config_emerg_size(sc, 16))
+	absent = sc ? ecrt_master_slave_config(master, 0, 1000, 1, 1) : NULL;
+	if (!absent || ecrt_slave_config_emerg_size(sc, 16))
 		return 1;
 	sdo = ecrt_slave_config_create_sdo_request(sc, 0x1018, 4, 4);
-	lost = ecrt_slave_config_create_sdo_request(nobody, 0x1018, 4, 4);
+	lost = ecrt_slave_config_create_sdo_request(absent, 0x1018, 4, 4);
 	reg = ecrt_slave_config_create_reg_request(sc, 2);
 	if (!sdo || !lost || !reg || ecrt_master_activate(master))
 		return 1;

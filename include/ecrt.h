@@ -231,7 +231,7 @@ typedef struct {
 
 /* working counter compared with the expected one */
 typedef enum {
-	EC_WC_ZERO = 0,			/* no slave took part */
+	EC_WC_ZERO = 0,			/* no slave responded */
 	EC_WC_INCOMPLETE,		/* some slaves did */
 	EC_WC_COMPLETE			/* all slaves did */
 } ec_wc_state_t;
@@ -846,8 +846,8 @@ EC_PUBLIC_API int ecrt_master_sync_slave_clocks(ec_master_t *master);
  * ecrt_master_receive() and the next ecrt_master_sync_slave_clocks(). Prints nothing.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
- * or none was sent; %-EINVAL not active, or @time is NULL.
+ * Return: 0; %-ENXIO no reference clock; %-EIO no reply to that
+ * frame, or none was sent; %-EINVAL not active, or @time is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reference_clock_time(const ec_master_t *master,
 		uint32_t *time);
@@ -1273,8 +1273,8 @@ EC_PUBLIC_API void ecrt_master_64bit_reference_clock_time_queue(
  * received. Reads mapped memory, prints nothing.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; %-ENXIO no reference clock; %-EIO that frame did not come back,
- * or none was sent; %-EINVAL not active, or @time is NULL.
+ * Return: 0; %-ENXIO no reference clock; %-EIO no reply to that
+ * frame, or none was sent; %-EINVAL not active, or @time is NULL.
  */
 EC_PUBLIC_API int ecrt_master_64bit_reference_clock_time(ec_master_t *master,
 		uint64_t *time);

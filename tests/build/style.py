@@ -24,7 +24,7 @@ LIMITS = {
     ("lines", "master"): 40,
     ("lines", "lib"): 1,
     ("lines", "tests"): 225,
-    ("lines", "Documentation"): 62,
+    ("lines", "Documentation"): 61,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 15,
     ("checkpatch", "master"): 32,

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Texts that a user reads use the terms of the glossary.
 
-Looks at README.md, CONTRIBUTING.md, Documentation/, ecrt.h, and the strings of master, devices,
-library, tool and examples (log lines, reasons, output, help) for wordings that were replaced.
+Looks at README.md, CONTRIBUTING.md, Documentation/, the interfaces in include/ and the comments of
+examples, the manual page, and the strings of master, devices, library, tool and examples (log
+lines, reasons, output, help) for wordings that were replaced.
 usage: texts.py [FILE...]      default: all of them
 """
 import re
@@ -54,11 +55,28 @@ WORDINGS = {
     r"says? so": "reports it",
     r"synchronis\w*|licence": "American spelling: synchronize, license",
     r"too(?=[.;:)])": "no trailing 'too'",
+    r"all the same(?! time)": "nevertheless",
+    r"com(e|es|ing) back|came back|(is|are) back(?! in)": "returns, is received; reply",
+    r"take part|takes (no )?part|took (no )?part": "processes the datagram, responds",
+    r"give up|gives up|gave up|given up": "failed attempt; ends its wait",
+    r"(is|are|was|were) there": "is present, exists, is connected",
+    r"(is|are|was|were) not there": "is absent, missing",
+    r"for ever": "forever",
+    r"hand(s|ed)? (over|it)": "passes, starts",
+    r"on (its|their) way": "in flight; in INIT; not yet in OP",
+    r"lives?( in)?|lived": "is in, exists",
+    r"as (it|they) (is|are|was|were)": "unchanged, current",
+    r"whatever|however (often|rarely)": "any; in any case",
+    r"(a|the) want of": "missing",
+    r"cyclic caller|run(s|ning)? the links": "cycle owner",
 }
 
 # a fixed interface, or a quotation: file, wording as found
 ALLOWED = {
     ("tool/cmd_cycle.c", "nobody"): "a JSON value",
+    ("tool/ethercat.8", "nobody"): "a JSON value",
+    ("include/uapi/ethercat.h", "told"): "a field",
+    ("include/uapi/ethercat_map.h", "odd"): "an odd number",
     ("tool/sim/main.c", "tell"): "an option",
 }
 
@@ -93,7 +111,8 @@ def corpus():
     yield ROOT / "README.md"
     yield ROOT / "CONTRIBUTING.md"
     yield from sorted((ROOT / "Documentation").glob("*.rst"))
-    yield ROOT / "include/ecrt.h"
+    yield from sorted((ROOT / "include").rglob("*.h"))
+    yield ROOT / "tool/ethercat.8"
     for folder in ("master", "devices", "lib", "tool", "examples"):
         for path in sorted((ROOT / folder).rglob("*.[ch]")):
             if "build" not in path.parts:
@@ -102,7 +121,9 @@ def corpus():
 
 def readable(path):
     text = path.read_text()
-    if path.suffix == ".c" or path.suffix == ".h" and path.name != "ecrt.h":
+    if path.is_relative_to(ROOT / "examples") or path.is_relative_to(ROOT / "include"):
+        text = re.sub(r'"[^"\n]*\.h"', lambda m: blank(m.group()), text)
+    elif path.suffix in (".c", ".h"):
         return strings(text)
     # names of functions, files and faults are no prose
     text = re.sub(r"``[^`]*``|`[^`\n]*`", lambda m: blank(m.group()), text)
