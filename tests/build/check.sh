@@ -117,6 +117,9 @@ t "a line of 101 columns is noticed" rule_notices lines "$(printf '%101s' x)" '1
 t "kernel-doc reports nothing" tests/build/style.py kernel-doc
 t "kernel-doc notices a parameter without text" rule_notices kernel-doc \
 	'/**\n * f() - sum\n * @a: one\n */\nint f(int a, int b)\n{\n\treturn a + b;\n}' "'b' not described"
+t "test names have an area, a condition and no article" tests/build/style.py names
+t "a test name with an article is noticed" \
+	rule_notices names '\tKUNIT_CASE(frame_is_the_last),' "'the' in"
 t "checkpatch reports nothing" tests/build/style.py checkpatch
 t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE

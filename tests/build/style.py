@@ -6,6 +6,8 @@ spdx       the first lines of each file name a license, whose text is in LICENSE
 lines      no line is longer than 100 columns, except for a string, since texts are not split
 kernel-doc every kernel-doc comment is complete; the script is the one of KDIR
 checkpatch checkpatch.pl of the kernel reports nothing except IGNORE; CHECKPATCH is its path
+names      a KUnit case is named <area>_<condition>_<expected>: in tests/unit the area is the name
+           of the file; no articles, no words that texts.py replaces; bats tests likewise
 
 LIMITS has the findings that are left in each folder. They only go down.
 usage: style.py RULE [FILE...]      default: all files of git
@@ -130,7 +132,32 @@ def checkpatch(args):
                 yield line
 
 
-RULES = {"spdx": spdx, "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
+# words of texts.py that are clear in a name
+WORDS = re.compile(r"(?<![a-z])(a|an|the|told|tells?|odd|vain|who|nobody|somebody|dies|death|heir"
+                   r"|lanes?|anew|shall|mess|what|whatever)(?![a-z])")
+
+
+def names(args):
+    for name, path in files(args, (".c", ".bats")):
+        if not args and not name.startswith("tests/"):
+            continue
+        text = path.read_text()
+        cases = re.finditer(r"^\tKUNIT_CASE\w*\((\w+)|^@test \"(.*)\" \{", text, re.M)
+        for m in cases:
+            number = text.count("\n", 0, m.start()) + 1
+            case = m[1] or re.sub(r"\b(a|an|the)\b", "", m[2])
+            bad = WORDS.search(case.lower())
+            area = path.stem.removesuffix("_kunit") + "_"
+            if bad:
+                yield f"{name}:{number}: '{bad[1]}' in {m[1] or m[2]}"
+            elif m[1] and "_" not in case:
+                yield f"{name}:{number}: {case} has no condition"
+            elif m[1] and name.startswith("tests/unit/") and not case.startswith(area):
+                yield f"{name}:{number}: {case} does not begin with {area}"
+
+
+RULES = {"names": names, "spdx": spdx, "lines": lines, "kernel-doc": kernel_doc,
+         "checkpatch": checkpatch}
 
 
 def main():

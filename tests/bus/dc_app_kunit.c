@@ -257,7 +257,7 @@ static void power(struct cyc *c, bool on)
 }
 
 /* All clocks are set anew within a session: to the time of now, not of its start. */
-static void app_drifts_then_all_anew(struct kunit *test)
+static void app_drift_then_new_synchronization(struct kunit *test)
 {
 	const struct variant *v = test->param_value;
 	struct told t = v->told;
@@ -370,7 +370,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(app_jumps, variant_gen_params),
 	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
 	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
-	KUNIT_CASE_PARAM(app_drifts_then_all_anew, variant_gen_params),
+	KUNIT_CASE_PARAM(app_drift_then_new_synchronization, variant_gen_params),
 	KUNIT_CASE(app_leads_rarely),
 	KUNIT_CASE(app_led_once),
 	KUNIT_CASE(app_is_late),

@@ -347,7 +347,7 @@ static u32 grid_phase(struct bus *b, u32 slave, u32 period)
  * with a longer grid, and a time before activation that is of another decade
  * and wraps below zero.
  */
-static void dc_odd_starts(struct kunit *test)
+static void dc_start_extreme_shifts_and_epoch(struct kunit *test)
 {
 	struct cyc *c = start(test, "repeat 5 slave s drive in=8 out=8 drift=40ppm\n", 5);
 	struct ec_ioc_app_time early = { .app_time = 0 - 946684799000123456ULL };
@@ -623,7 +623,7 @@ static void far_each(struct cyc *c)
  * A reference of 32 bits that is by more than half of them away from the application's
  * time: its time goes on, and who joins has it, too.
  */
-static void dc_far_from_the_application(struct kunit *test)
+static void dc_clocks_far_from_application_time(struct kunit *test)
 {
 	struct cyc *c = start(test, "segment seed=3\n"
 			      "slave a drive in=8 out=8 dc=32\n"
@@ -676,14 +676,14 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_sync0_phase),
 	KUNIT_CASE(dc_chosen_reference),
 	KUNIT_CASE(dc_mixed),
-	KUNIT_CASE(dc_odd_starts),
+	KUNIT_CASE(dc_start_extreme_shifts_and_epoch),
 	KUNIT_CASE(dc_slave_comes_back),
 	KUNIT_CASE(dc_reference_is_lost),
 	KUNIT_CASE(dc_chosen_is_lost),
 	KUNIT_CASE(dc_window),
 	KUNIT_CASE(dc_time_not_old),
 	KUNIT_CASE(dc_latch),
-	KUNIT_CASE(dc_far_from_the_application),
+	KUNIT_CASE(dc_clocks_far_from_application_time),
 	{ }
 };
 

@@ -126,7 +126,7 @@ static s32 mean(struct app *a, u32 slave, u32 wanted, u32 times)
 }
 
 /* Cycles keep phase and rate of the slaves' SYNC0. */
-static void lock_keeps_the_phase(struct kunit *test)
+static void lock_keeps_phase(struct kunit *test)
 {
 	struct app *a = start(test, two, 2, 300000);
 	u32 ms = until_locked(a);
@@ -147,7 +147,7 @@ static void lock_keeps_the_phase(struct kunit *test)
 }
 
 /* A reference with 32 bits: it wraps each 4.3 s. */
-static void lock_to_a_short_clock(struct kunit *test)
+static void lock_to_short_clock(struct kunit *test)
 {
 	struct app *a = start(test, "slave a drive in=8 out=8 dc=32 drift=-60ppm clock=3s\n"
 			      "slave b drive in=8 out=8 dc=32 drift=40ppm cable=90\n", 2, 0);
@@ -276,8 +276,8 @@ static void lock_refused(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(lock_keeps_the_phase),
-	KUNIT_CASE(lock_to_a_short_clock),
+	KUNIT_CASE(lock_keeps_phase),
+	KUNIT_CASE(lock_to_short_clock),
 	KUNIT_CASE(lock_survives_lost_frames),
 	KUNIT_CASE(lock_same_phase_each_start),
 	KUNIT_CASE(lead_same_phase_each_start),

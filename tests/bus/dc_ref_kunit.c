@@ -372,7 +372,7 @@ static void ref_chosen_power_off(struct kunit *test)
 }
 
 /* The only clock goes: nobody has the time, and the tool says so. */
-static void ref_was_the_only_one(struct kunit *test)
+static void ref_lost_without_substitute(struct kunit *test)
 {
 	struct run *r = start(test, "segment seed=5\n"
 			      "slave k EK1100 alias=10 dc=none\n"
@@ -488,7 +488,7 @@ static void ref_silent(struct kunit *test)
 }
 
 /* One that follows goes: the reference answers as before, with fewer that count. */
-static void ref_heard_by_fewer(struct kunit *test)
+static void ref_answer_valid_with_lower_wkc(struct kunit *test)
 {
 	struct run *r = start(test, TREE("drift=0ppm"), 4, -1);
 
@@ -500,11 +500,11 @@ static void ref_heard_by_fewer(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(ref_silent, variant_gen_params),
-	KUNIT_CASE_PARAM(ref_heard_by_fewer, variant_gen_params),
+	KUNIT_CASE_PARAM(ref_answer_valid_with_lower_wkc, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_power_off, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_remains_alone, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_chosen_power_off, variant_gen_params),
-	KUNIT_CASE_PARAM(ref_was_the_only_one, variant_gen_params),
+	KUNIT_CASE_PARAM(ref_lost_without_substitute, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_lost_frames, variant_gen_params),
 	KUNIT_CASE_PARAM(ref_set_again, variant_gen_params),
 	{ }

@@ -432,7 +432,7 @@ static void not_started_again(struct cyc *c)
 }
 
 /* In SAFEOP SYNC is started again, and that fails half way: no OP is tried without it. */
-static void sync_lost_on_the_way(struct kunit *test)
+static void sync_frames_lost_during_start(struct kunit *test)
 {
 	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
 	struct bus *b = c->b;
@@ -453,7 +453,7 @@ static void sync_lost_on_the_way(struct kunit *test)
 }
 
 /* On its way up and waiting, for its clock or for the first SYNC1: PREOP is asked for. */
-static void sync_is_called_off(struct kunit *test)
+static void sync_wait_aborted_by_preop_request(struct kunit *test)
 {
 	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
 	struct bus *b = c->b;
@@ -510,7 +510,7 @@ static void never_set(struct cyc *c)
 }
 
 /* The others' clocks are not measured for ever because of one that cannot be set. */
-static void sync_gives_up(struct kunit *test)
+static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 {
 	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
 	struct bus *b = c->b;
@@ -541,9 +541,9 @@ static void sync_gives_up(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(sync_gives_up),
-	KUNIT_CASE(sync_is_called_off),
-	KUNIT_CASE(sync_lost_on_the_way),
+	KUNIT_CASE(sync_unset_clock_excluded_after_retries),
+	KUNIT_CASE(sync_wait_aborted_by_preop_request),
+	KUNIT_CASE(sync_frames_lost_during_start),
 	KUNIT_CASE(sync_without_status),
 	KUNIT_CASE(sync1_is_slower),
 	KUNIT_CASE(sync_late_cycle),

@@ -147,7 +147,7 @@ static void differ_revision(struct kunit *test)
 }
 
 /* A reason says what the slave is waiting for. */
-static void differ_wait_has_a_reason(struct kunit *test)
+static void differ_wait_has_reason(struct kunit *test)
 {
 	struct bus *b = bus_up(test, tree, N);
 	u32 i, outputs = 0, state = 0;
@@ -237,7 +237,7 @@ static void lost_device_is_said(struct kunit *test)
 }
 
 /* Who shows a configuration does not walk all slaves for its alias: it is known. */
-static void differ_alias_is_looked_for_by_the_scan(struct kunit *test)
+static void differ_alias_is_found_by_scan(struct kunit *test)
 {
 	struct bus *b = bus_up(test, tree, N);
 	struct ec_ioc_slave_config sc = { .alias = 7, .position = 9, .vendor_id = 1 };
@@ -260,11 +260,11 @@ static void differ_alias_is_looked_for_by_the_scan(struct kunit *test)
 }
 
 static struct kunit_case differ_cases[] = {
-	KUNIT_CASE(differ_alias_is_looked_for_by_the_scan),
+	KUNIT_CASE(differ_alias_is_found_by_scan),
 	KUNIT_CASE(differ_logged_at_activation),
 	KUNIT_CASE(differ_log_is_limited),
 	KUNIT_CASE(differ_revision),
-	KUNIT_CASE(differ_wait_has_a_reason),
+	KUNIT_CASE(differ_wait_has_reason),
 	KUNIT_CASE(lost_slaves_are_named),
 	KUNIT_CASE(lost_slave_keeps_its_name),
 	KUNIT_CASE(lost_link_is_said),

@@ -101,7 +101,7 @@ static void eoe_without_eoe(struct kunit *test)
 }
 
 /* What "ethercat ip" does. */
-static void eoe_by_the_tool(struct kunit *test)
+static void eoe_parameters_set_by_tool(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave sw EL6614\nslave no EL6614 ip=no\nslave d drive\n", 3);
 	struct ec_ioc_ip i = { .params = net };
@@ -133,7 +133,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_again_after_power_loss),
 	KUNIT_CASE(eoe_refused),
 	KUNIT_CASE(eoe_without_eoe),
-	KUNIT_CASE(eoe_by_the_tool),
+	KUNIT_CASE(eoe_parameters_set_by_tool),
 	{ }
 };
 

@@ -84,7 +84,7 @@ static void expect_result(struct bus *b, struct fake *o, const struct result *r)
 	KUNIT_EXPECT_EQ(b->test, errors(b) > bad, r->want != SENT);
 }
 
-static void generic_result_of_a_frame(struct kunit *test)
+static void generic_result_of_frame(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave a EK1100\n");
 	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER, fake_setup);
@@ -106,7 +106,7 @@ static void generic_result_of_a_frame(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE_PARAM(generic_result_of_a_frame, result_gen_params),
+	KUNIT_CASE_PARAM(generic_result_of_frame, result_gen_params),
 	{ }
 };
 

@@ -99,7 +99,7 @@ static void detach_only_when_asked(struct kunit *test)
 }
 
 /* The next one goes on where the other has stopped; no slave notices. */
-static void takeover(struct kunit *test)
+static void takeover_continues_session(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 	struct bus *b = a->c->b;
@@ -165,7 +165,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 }
 
 /* The priority of the cycle follows the right of its owner, both ways, and the log has it. */
-static void takeover_priority_follows_the_right(struct kunit *test)
+static void takeover_priority_follows_rights(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 	struct bus *b = a->c->b;
@@ -278,7 +278,7 @@ static void make_a_mess(struct kcyc *a, u32 i)
 }
 
 /* Whatever the one before has left in the memory, the next one finds its way. */
-static void takeover_of_a_mess(struct kunit *test)
+static void takeover_repairs_corrupted_memory(struct kunit *test)
 {
 	struct bus *b = kcyc_bus(test);
 	struct kcyc *a = configure_area(b);
@@ -450,7 +450,7 @@ static void takeover_refused(struct kunit *test)
 }
 
 /* One heir at a time; it cannot change what runs. */
-static void heir_is_harmless(struct kunit *test)
+static void candidate_changes_no_running_session(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 	struct bus *b = a->c->b;
@@ -587,14 +587,14 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(detach_holds),
 	KUNIT_CASE(detach_zeroes),
 	KUNIT_CASE(detach_only_when_asked),
-	KUNIT_CASE(takeover),
-	KUNIT_CASE(takeover_priority_follows_the_right),
+	KUNIT_CASE(takeover_continues_session),
+	KUNIT_CASE(takeover_priority_follows_rights),
 	KUNIT_CASE(takeover_often),
-	KUNIT_CASE(takeover_of_a_mess),
+	KUNIT_CASE(takeover_repairs_corrupted_memory),
 	KUNIT_CASE(takeover_of_emergencies),
 	KUNIT_CASE(takeover_late_cycles),
 	KUNIT_CASE(takeover_refused),
-	KUNIT_CASE(heir_is_harmless),
+	KUNIT_CASE(candidate_changes_no_running_session),
 	KUNIT_CASE(end_detached),
 	KUNIT_CASE(slave_returns),
 	{ }

@@ -77,7 +77,7 @@ static u8 *out(struct kcyc *a, u32 slave)
  * A counter goes to two slaves, to the second one in every fifth cycle only: it
  * sees every fifth number, and each for five cycles.
  */
-static void division(struct kunit *test)
+static void division_exchanges_every_nth_cycle(struct kunit *test)
 {
 	struct bus *b = plant(test);
 	struct kcyc *a = app(b, 2);
@@ -219,7 +219,7 @@ static int copy(struct kcyc *a, u32 from_slave, u32 from, u32 to_slave, u32 to, 
 }
 
 /* What s1 is told comes back as its input, and goes to s4 without us. */
-static void copies(struct kunit *test)
+static void copies_reach_outputs_in_same_cycle(struct kunit *test)
 {
 	struct bus *b = plant(test);
 	struct kcyc *a = app(b, 2);
@@ -311,7 +311,7 @@ static void copies_detached(struct kunit *test)
 }
 
 /* The cycle of an application does them, too. */
-static void copies_of_an_application(struct kunit *test)
+static void copies_of_application(struct kunit *test)
 {
 	struct bus *b = plant(test);
 	struct kcyc *a = app(b, 2);
@@ -358,14 +358,14 @@ static void copies_refused(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(division),
+	KUNIT_CASE(division_exchanges_every_nth_cycle),
 	KUNIT_CASE(division_judged),
 	KUNIT_CASE(division_phases),
 	KUNIT_CASE(division_refused),
-	KUNIT_CASE(copies),
+	KUNIT_CASE(copies_reach_outputs_in_same_cycle),
 	KUNIT_CASE(copies_hold),
 	KUNIT_CASE(copies_detached),
-	KUNIT_CASE(copies_of_an_application),
+	KUNIT_CASE(copies_of_application),
 	KUNIT_CASE(copies_refused),
 	{ }
 };

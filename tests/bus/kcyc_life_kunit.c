@@ -36,7 +36,7 @@ static void life_waits_for_outputs(struct kunit *test)
 }
 
 /* One that never gives any ends as any other. */
-static void life_never_begins(struct kunit *test)
+static void kcyc_detach_without_outputs(struct kunit *test)
 {
 	struct bus *b = kcyc_bus(test);
 	struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_ALL });
@@ -384,7 +384,7 @@ static void life_requests_taken_over(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(life_waits_for_outputs),
-	KUNIT_CASE(life_never_begins),
+	KUNIT_CASE(kcyc_detach_without_outputs),
 	KUNIT_CASE(life_poll),
 	KUNIT_CASE(life_poll_of_others),
 	KUNIT_CASE(life_poll_is_bounded),

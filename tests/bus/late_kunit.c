@@ -86,7 +86,7 @@ static void expect_ten_late(struct kunit *test, struct cyc *c)
 	KUNIT_EXPECT_EQ(test, st->overruns, 0ull);
 }
 
-static void late_told(struct kunit *test)
+static void late_uses_configured_interval(struct kunit *test)
 {
 	struct cyc *c = start(test, true);
 
@@ -211,7 +211,7 @@ static void late_reset_pending(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(late_told),
+	KUNIT_CASE(late_uses_configured_interval),
 	KUNIT_CASE(late_measured),
 	KUNIT_CASE(late_drift),
 	KUNIT_CASE(late_overrun),

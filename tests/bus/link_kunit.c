@@ -152,7 +152,7 @@ static void scan_begins(struct bus *b, struct cyc *c)
 }
 
 /* The link goes while slaves are scanned: none is blamed, all are found later. */
-static void link_loss_ends_a_scan(struct kunit *test)
+static void link_loss_ends_scan(struct kunit *test)
 {
 	struct bus *b = bus_up(test, many, MANY);
 	u64 us;
@@ -174,7 +174,7 @@ static void link_loss_ends_a_scan(struct kunit *test)
 }
 
 /* The same beside a cycle of 20 ms, where frames wait for their turn. */
-static void link_loss_beside_a_cycle(struct kunit *test)
+static void link_loss_beside_cycle(struct kunit *test)
 {
 	struct bus *b = bus_up(test, many, MANY);
 	struct cyc *c;
@@ -301,12 +301,12 @@ static void loss_ends_waiting_beside(struct kunit *test, u32 period_us)
 	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
 }
 
-static void link_loss_ends_waiting_beside_a_cycle(struct kunit *test)
+static void link_loss_ends_waiting_beside_cycle(struct kunit *test)
 {
 	loss_ends_waiting_beside(test, 1000);
 }
 
-static void link_loss_ends_waiting_beside_a_slow_cycle(struct kunit *test)
+static void link_loss_ends_waiting_beside_slow_cycle(struct kunit *test)
 {
 	loss_ends_waiting_beside(test, 20000);
 }
@@ -359,11 +359,11 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(link_full_transmit_ring_delays_only),
 	KUNIT_CASE(link_hanging_device_ends_in_error),
 	KUNIT_CASE(link_hanging_device_is_no_fault_of_slaves),
-	KUNIT_CASE(link_loss_ends_a_scan),
-	KUNIT_CASE(link_loss_beside_a_cycle),
+	KUNIT_CASE(link_loss_ends_scan),
+	KUNIT_CASE(link_loss_beside_cycle),
 	KUNIT_CASE(link_loss_ends_waiting),
-	KUNIT_CASE(link_loss_ends_waiting_beside_a_cycle),
-	KUNIT_CASE(link_loss_ends_waiting_beside_a_slow_cycle),
+	KUNIT_CASE(link_loss_ends_waiting_beside_cycle),
+	KUNIT_CASE(link_loss_ends_waiting_beside_slow_cycle),
 	KUNIT_CASE(link_claims_beyond_memory_refused),
 	KUNIT_CASE(link_station_search_ends),
 	{}

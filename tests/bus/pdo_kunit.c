@@ -154,7 +154,7 @@ static struct bus *nameless(struct kunit *test)
 }
 
 /* What the EEPROM has no name for is called as in the object dictionary. */
-static void pdo_names_of_the_dictionary(struct kunit *test)
+static void pdo_names_of_dictionary(struct kunit *test)
 {
 	struct bus *b = nameless(test);
 	u32 i, n;
@@ -171,7 +171,7 @@ static void pdo_names_of_the_dictionary(struct kunit *test)
 }
 
 /* Beside a cycle nothing is asked for; what is known already is shown. */
-static void pdo_names_beside_a_cycle(struct kunit *test)
+static void pdo_names_beside_cycle(struct kunit *test)
 {
 	struct bus *b = nameless(test);
 	struct ec_slave *s;
@@ -200,7 +200,7 @@ static void pdo_names_beside_a_cycle(struct kunit *test)
 }
 
 /* Another caller used the mailbox longer than the master waits for names: it asks again later. */
-static void pdo_names_after_a_long_transfer(struct kunit *test)
+static void pdo_names_after_long_transfer(struct kunit *test)
 {
 	struct bus *b = nameless(test);
 	struct ec_slave *s;
@@ -302,9 +302,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pdo_same_as_eeprom),
 	KUNIT_CASE(pdo_changed_mapping_is_seen),
 	KUNIT_CASE(pdo_mute_slave),
-	KUNIT_CASE(pdo_names_of_the_dictionary),
-	KUNIT_CASE(pdo_names_beside_a_cycle),
-	KUNIT_CASE(pdo_names_after_a_long_transfer),
+	KUNIT_CASE(pdo_names_of_dictionary),
+	KUNIT_CASE(pdo_names_beside_cycle),
+	KUNIT_CASE(pdo_names_after_long_transfer),
 	KUNIT_CASE(pdo_names_of_hostile_slave),
 	{ }
 };

@@ -186,7 +186,7 @@ static void retry_eeprom_without_acknowledge(struct kunit *test)
 	unreadable(test, EC_SIM_FAULT_EEPROM_NOACK, ~0u);
 }
 
-static void retry_dead_from_the_start(struct kunit *test)
+static void retry_slave_silent_from_start(struct kunit *test)
 {
 	unreadable(test, EC_SIM_FAULT_DEAD, 1);
 }
@@ -244,7 +244,7 @@ static u32 count_failed(struct bus *b)
  * Many frames are lost on the way to OP. Which ones is chance: where no slave has failed of
  * it, another start follows.
  */
-static void retry_frames_lost_on_the_way_to_op(struct kunit *test)
+static void retry_frames_lost_during_start(struct kunit *test)
 {
 	struct cyc *c = begin(test);
 	struct bus *b = c->b;
@@ -300,10 +300,10 @@ static struct kunit_case retry_cases[] = {
 	KUNIT_CASE(retry_silent_without_application),
 	KUNIT_CASE(retry_eeprom_busy),
 	KUNIT_CASE(retry_eeprom_without_acknowledge),
-	KUNIT_CASE(retry_dead_from_the_start),
+	KUNIT_CASE(retry_slave_silent_from_start),
 	KUNIT_CASE(retry_mute),
 	KUNIT_CASE(retry_interrupted),
-	KUNIT_CASE(retry_frames_lost_on_the_way_to_op),
+	KUNIT_CASE(retry_frames_lost_during_start),
 	KUNIT_CASE(retry_not_after_refusal),
 	{}
 };

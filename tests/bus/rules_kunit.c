@@ -100,7 +100,7 @@ static void rules_time_below_zero(struct kunit *test)
 	jump(test, -946684800ull * NSEC_PER_SEC, 848000000ull * NSEC_PER_SEC, 0);
 }
 
-static void rules_time_jumps_after_a_pause(struct kunit *test)
+static void rules_time_jumps_after_pause(struct kunit *test)
 {
 	jump(test, -946684800ull * NSEC_PER_SEC, 848000000ull * NSEC_PER_SEC, 300);
 }
@@ -127,7 +127,7 @@ static void shifted(struct kunit *test, s32 shift)
 	ahead = 0;
 }
 
-static void rules_shift_of_nearly_a_period(struct kunit *test)
+static void rules_shift_of_almost_one_period(struct kunit *test)
 {
 	shifted(test, CYCLE - 1000);
 }
@@ -245,9 +245,9 @@ static void rules_wait_before_safeop(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(rules_time_below_zero),
-	KUNIT_CASE(rules_time_jumps_after_a_pause),
+	KUNIT_CASE(rules_time_jumps_after_pause),
 	KUNIT_CASE(rules_time_jumps_back),
-	KUNIT_CASE(rules_shift_of_nearly_a_period),
+	KUNIT_CASE(rules_shift_of_almost_one_period),
 	KUNIT_CASE(rules_shift_backwards),
 	KUNIT_CASE(rules_deactivate),
 	KUNIT_CASE(rules_configured_twice),

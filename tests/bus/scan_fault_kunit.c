@@ -294,7 +294,7 @@ static void scan_damaged(struct kunit *test)
 }
 
 /* Who stays is not read again. */
-static void scan_reads_what_is_new(struct kunit *test)
+static void scan_reads_new_slaves_only(struct kunit *test)
 {
 	struct ec_slave *old[4];
 	struct bus *b = prepare(test);
@@ -412,7 +412,7 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_blank_mute),
 	KUNIT_CASE(scan_too_much),
 	KUNIT_CASE(scan_damaged),
-	KUNIT_CASE(scan_reads_what_is_new),
+	KUNIT_CASE(scan_reads_new_slaves_only),
 	KUNIT_CASE(scan_on_request),
 	KUNIT_CASE(scan_foreign_address),
 	KUNIT_CASE(scan_power_blip),

@@ -94,7 +94,7 @@ static void large(struct kunit *test, size_t len)
 }
 
 /* One that takes a minute holds up neither the others nor the monitor. */
-static void scan_largest_holds_nobody(struct kunit *test)
+static void scan_largest_eeprom_delays_no_other_slave(struct kunit *test)
 {
 	struct bus *b = bus_new(test, line);
 	u64 gap;
@@ -144,7 +144,7 @@ static void scan_largest(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(scan_large),
 	KUNIT_CASE(scan_largest),
-	KUNIT_CASE(scan_largest_holds_nobody),
+	KUNIT_CASE(scan_largest_eeprom_delays_no_other_slave),
 	KUNIT_CASE(scan_large_replaced),
 	{ }
 };

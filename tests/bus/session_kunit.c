@@ -50,7 +50,7 @@ static void session_forgets(struct kunit *test)
 }
 
 /* An heir that goes leaves the cycle of the detached session what it has. */
-static void session_heir_goes(struct kunit *test)
+static void session_candidate_is_freed(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
 		.flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10, .dc = EC_SEND_FLAG_SYNC_SLAVES });
@@ -251,7 +251,7 @@ static struct bus *detached(struct kunit *test)
 }
 
 /* An heir asks about its own slaves, others about those that run. */
-static void session_heir_asks(struct kunit *test)
+static void session_candidate_makes_other_calls(struct kunit *test)
 {
 	struct bus *b = detached(test);
 	struct ec_file other = { 0 };
@@ -281,7 +281,7 @@ static void session_heir_asks(struct kunit *test)
 }
 
 /* An application in the kernel as the heir: it cannot take over, and disturbs nothing. */
-static void session_kernel_heir(struct kunit *test)
+static void session_candidate_in_kernel(struct kunit *test)
 {
 	struct bus *b = detached(test);
 	struct ec_session *runs = b->m->session;
@@ -464,13 +464,13 @@ static struct kunit_case session_cases[] = {
 	KUNIT_CASE(session_memory),
 	KUNIT_CASE(session_mapping_outlives),
 	KUNIT_CASE(session_forgets),
-	KUNIT_CASE(session_heir_goes),
+	KUNIT_CASE(session_candidate_is_freed),
 	KUNIT_CASE(session_reserve_preop),
 	KUNIT_CASE(session_reserve_refused),
 	KUNIT_CASE(session_state_timeouts),
 	KUNIT_CASE(session_scan_progress),
-	KUNIT_CASE(session_heir_asks),
-	KUNIT_CASE(session_kernel_heir),
+	KUNIT_CASE(session_candidate_makes_other_calls),
+	KUNIT_CASE(session_candidate_in_kernel),
 	KUNIT_CASE(session_foreign_config),
 	KUNIT_CASE(session_interval),
 	KUNIT_CASE(session_without_thread_inherits),

@@ -122,7 +122,7 @@ static struct share run(struct cyc *c, struct asker *a, u32 n, u32 us)
 }
 
 /* Three callers have 192 frames for the cycle: what a send carries depends on its length. */
-static void share_of_a_send(struct kunit *test)
+static void share_of_send(struct kunit *test)
 {
 	static const struct { u32 us, most; } t[] = {
 		{ 250, 2 }, { 1000, 8 }, { 4000, 32 }, { 16000, 64 },
@@ -140,7 +140,7 @@ static void share_of_a_send(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
-static void share_limit_of_the_module(struct kunit *test)
+static void share_limit_of_module(struct kunit *test)
 {
 	static const struct { u32 max, us, most; } t[] = {
 		{ 1, 4000, 1 }, { 5, 1000, 5 }, { 20, 1000, 8 }, { 100, 16000, 100 },
@@ -164,7 +164,7 @@ static void share_limit_of_the_module(struct kunit *test)
 }
 
 /* Long frames take half of the wire time that is free, one of them whatever it needs. */
-static void share_of_the_wire(struct kunit *test)
+static void share_of_wire(struct kunit *test)
 {
 	static const struct { u32 us, most; } t[] = {
 		{ 160, 1 }, { 500, 1 }, { 1000, 3 }, { 2000, 7 },
@@ -186,7 +186,7 @@ static void share_of_the_wire(struct kunit *test)
 }
 
 /* A frame that several callers share takes no more of the wire, either. */
-static void share_of_the_wire_packed(struct kunit *test)
+static void share_of_wire_packed(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct asker *a = askers(c->b, 40, 20, 1, 300);
@@ -226,7 +226,7 @@ static void share_beside_clocks(struct kunit *test)
 }
 
 /* 100 drives on their way to OP: their mailboxes are at work, the monitor, the rest. */
-static void share_on_the_way_to_op(struct kunit *test)
+static void share_limited_during_start(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "segment seed=12 response=100us transition=1ms\n"
 			       "repeat 100 slave d drive in=22 out=22 mapping=rewritable\n", 100);
@@ -256,12 +256,12 @@ static void share_on_the_way_to_op(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(share_of_a_send),
-	KUNIT_CASE(share_limit_of_the_module),
-	KUNIT_CASE(share_of_the_wire),
-	KUNIT_CASE(share_of_the_wire_packed),
+	KUNIT_CASE(share_of_send),
+	KUNIT_CASE(share_limit_of_module),
+	KUNIT_CASE(share_of_wire),
+	KUNIT_CASE(share_of_wire_packed),
 	KUNIT_CASE(share_beside_clocks),
-	KUNIT_CASE(share_on_the_way_to_op),
+	KUNIT_CASE(share_limited_during_start),
 	{}
 };
 

@@ -230,7 +230,7 @@ static void turn_lost(struct kunit *test)
 }
 
 /* Who is killed does not wait for his turn. */
-static void turn_killed(struct kunit *test)
+static void queue_wait_ends_on_fatal_signal(struct kunit *test)
 {
 	struct cyc *c = full(in_op(test), 1);
 	struct few f;
@@ -295,7 +295,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(turn_beside_monitor),
 	KUNIT_CASE(turn_of_many),
 	KUNIT_CASE(turn_lost),
-	KUNIT_CASE(turn_killed),
+	KUNIT_CASE(queue_wait_ends_on_fatal_signal),
 	{}
 };
 

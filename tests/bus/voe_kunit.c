@@ -274,7 +274,7 @@ static void voe_read_now(struct kunit *test)
 }
 
 /* Errors at once where there is nobody to talk to; unknown operations. */
-static void voe_nobody(struct kunit *test)
+static void voe_message_without_handler(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
 	u32 v = req_add(c, 0, EC_REQUEST_VOE, 4), n = req_add(c, WITHOUT, EC_REQUEST_VOE, 4);
@@ -346,7 +346,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(voe_unasked),
 	KUNIT_CASE(voe_handlers),
 	KUNIT_CASE(voe_read_now),
-	KUNIT_CASE(voe_nobody),
+	KUNIT_CASE(voe_message_without_handler),
 	KUNIT_CASE(voe_ended),
 	{}
 };

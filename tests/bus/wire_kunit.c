@@ -260,7 +260,7 @@ static void wire_full(struct kunit *test)
 }
 
 /* The same at activation: with late cycles allowed it is told. */
-static void wire_told(struct kunit *test)
+static void wire_overload_logged_at_activation(struct kunit *test)
 {
 	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
 
@@ -295,7 +295,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(wire_digital, digital_gen_params),
 	KUNIT_CASE(wire_sdo_beside_axes),
 	KUNIT_CASE(wire_full),
-	KUNIT_CASE(wire_told),
+	KUNIT_CASE(wire_overload_logged_at_activation),
 	KUNIT_CASE(wire_refused),
 	{}
 };

@@ -32,7 +32,7 @@ group() {
 
 @test "open, reserve, release" { group open; }
 @test "information and SDOs of an open master" { group info; }
-@test "slave configuration" {
+@test "slave configurations are accepted and take effect" {
 	group config
 	# what it was told last
 	ethercat ip -p5 | grep -q '^IP address: 192\.168\.0\.5$'
@@ -41,7 +41,7 @@ group() {
 @test "PDOs and registration" { group pdo; }
 @test "the cycle" { group cycle; }
 @test "options of domains" { group layout; }
-@test "extensions" { group extension; }
+@test "extensions of the interface work as documented" { group extension; }
 @test "configuration after activation" { group after; }
 @test "distributed clocks" { group dc; }
 @test "requests and emergencies" {
@@ -61,7 +61,7 @@ group() {
 }
 @test "the kernel's cycle" { group kcycle; }
 @test "NULL handles" { group null; }
-@test "floating point" { group access; }
+@test "floating point access keeps all bits" { group access; }
 
 # behaviour applications rely on, by clients with the habits of real ones
 @test "a machine controller" { group lcec; }

@@ -31,7 +31,7 @@ on_segment() {
 	echo "$output"
 }
 
-@test "make demo HOST=1 passes and captures what tshark reads" {
+@test "make demo HOST=1 passes and its capture is valid for tshark" {
 	run demo CYCLES=2000 PERIOD_US=2000
 	echo "$output"
 	[ "$status" = 0 ]
@@ -46,7 +46,7 @@ on_segment() {
 	run ! grep -q '^ec_' /proc/modules
 }
 
-@test "modules that are loaded already are left alone" {
+@test "loaded modules are not changed" {
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
 	run demo
 	echo "$output"
@@ -55,7 +55,7 @@ on_segment() {
 	grep -q '^ec_master ' /proc/modules
 }
 
-@test "without headers it says what to install" {
+@test "without headers make demo names the package to install" {
 	run demo KDIR=/nowhere
 	[ "$status" != 0 ]
 	[[ "$output" == *"no kernel headers at /nowhere"*"apt-get install linux-headers-"* ]]

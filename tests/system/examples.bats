@@ -47,7 +47,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
-@test "mirror: one of its slaves is not there" {
+@test "mirror: an absent slave is reported" {
 	example mirror 1 9 2
 	wait "$app"
 	cat "$out"

@@ -312,7 +312,7 @@ idle_does_no_harm() {
 	ip netns del other
 }
 
-@test "ec_sim refuses a device that is not there, not Ethernet, or not free" {
+@test "ec_sim refuses a device that is missing, not Ethernet, or in use" {
 	master veth0
 	run responder thin veth7
 	[ "$status" != 0 ]

@@ -31,7 +31,7 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 @test "commands at the wrong time" { check states; }
 @test "too many and too much" { check limits; }
 @test "wrong mappings" { check mmap; }
-@test "data into pages that are not there, beside mmap" { check pages; }
+@test "data are copied to absent pages beside mmap" { check pages; }
 
 @test "a user cannot flood the kernel log" {
 	dmesg -C

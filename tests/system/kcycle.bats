@@ -150,7 +150,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	[ "$ppb" -lt 100000 ]
 }
 
-@test "what cannot be is refused with the reason" {
+@test "set_cycle refuses invalid parameters with a reason" {
 	run kcycle priority=99
 	echo "$output"
 	[ "$status" = 1 ]

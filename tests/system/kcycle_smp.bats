@@ -55,7 +55,7 @@ group=(setpriv --reuid 65534 --regid 65534 --clear-groups)
 	dmesg | grep 'SCHED_OTHER: SCHED_FIFO 98 needs CAP_SYS_NICE or RLIMIT_RTPRIO 98'
 }
 
-@test "with RLIMIT_RTPRIO the group gets what that allows" {
+@test "with RLIMIT_RTPRIO the group gets the allowed priority" {
 	chmod o+rw /dev/EtherCAT0
 	run_as prlimit --rtprio=60 "${group[@]}" -- priority=98
 	[ "$(scheduling)" = "FF 60" ]

@@ -29,14 +29,14 @@ copied() {
 	ethercat data | od -An -tx1 -v | awk '{ exit !($1 == $9 && $2 == $10 && $1 $2 != "0000") }'
 }
 
-@test "it cycles, copies inputs to outputs, reads an object, says what changes" {
+@test "ec_mini cycles, copies inputs to outputs, reads an object, logs changes" {
 	wait_for 60 said "slave is in state 8, operational"
 	wait_for 60 said "working counter 3, complete"
 	wait_for 60 said "serial number 77"
 	wait_for 60 copied
 }
 
-@test "the tool works beside it, a process is told who has the master" {
+@test "the tool works beside ec_mini, a process is refused with the reason" {
 	json '.masters[0].active and .masters[0].phase == "operation"' master
 	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]
 	run timeout 60 "$EC_BUILD/examples/mirror" 0 1

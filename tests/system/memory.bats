@@ -17,7 +17,7 @@ teardown_file() { stop; }
 free_kib() { awk '/^MemAvailable:/ { print $2 }' /proc/meminfo; }
 has_free() { [ "$(free_kib)" -ge "$1" ]; }
 
-@test "a session is refused what is beyond its limit, and says so" {
+@test "a session beyond its memory limit is refused with a reason" {
 	local before
 
 	before=$(free_kib)
@@ -49,7 +49,7 @@ part() {
 		"$BATS_TEST_TMPDIR/out"
 }
 
-@test "what an application causes is charged to its memory cgroup, until it is released" {
+@test "memory of an application is charged to its cgroup until release" {
 	in_group "$EC_BUILD/apps/memory" charge /sys/fs/cgroup/app/memory.current >"$BATS_TEST_TMPDIR/out"
 	sed 's/^/# bytes charged and left: /' "$BATS_TEST_TMPDIR/out" >&3
 	# 256 values of 64 KiB

@@ -53,7 +53,7 @@ no_insmod() {
 	[ -z "$(dmesg | grep EtherCAT)" ]
 }
 
-@test "an interface that is not there is reported and waited for" {
+@test "a missing interface is reported, and the master waits for it" {
 	master main_devices=veth0
 	generic
 	one_line '"veth0" is neither the name nor the MAC address of a network interface; master 0 waits'
@@ -114,7 +114,7 @@ no_insmod() {
 	one_line '"sim1" is not offered, segment= names 1 segment\(s\); master 0 waits'
 }
 
-@test "ec_sim at an interface that is not there: insmod fails with one line" {
+@test "ec_sim at a missing interface: insmod fails with one line" {
 	master main_devices=veth0
 	no_insmod "no network device 'veth7'" sim segment=thin netdev=veth7
 	no_insmod 'lo is not an Ethernet device' sim segment=thin netdev=lo

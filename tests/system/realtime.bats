@@ -137,7 +137,7 @@ captured() {
 	captured 4000
 }
 
-@test "control: the trace sees what a cycle must not do" {
+@test "control: the trace detects forbidden actions of a cycle" {
 	local name
 
 	virtual

@@ -88,7 +88,7 @@ value() { ethercat upload -p2 "${@:2}" 0x2001 "$1"; }
 # code_is CODE: AL status code of the axis
 code_is() { [ "$(ethercat reg_read -p2 -t uint16 0x0134 | cut -d' ' -f1)" = "$1" ]; }
 
-@test "states, and what is refused" {
+@test "state requests are executed or refused as ETG.1000 requires" {
 	ethercat states INIT -p2 --wait
 	ethercat states PREOP -p2 --wait
 	# with what the EEPROM says of its SyncManagers
@@ -104,7 +104,7 @@ code_is() { [ "$(ethercat reg_read -p2 -t uint16 0x0134 | cut -d' ' -f1)" = "$1"
 	wait_for 60 all_slaves_are PREOP 3
 }
 
-@test "OP: process data there and back, an SDO beside them, then without their application" {
+@test "OP exchanges process data beside an SDO and ends with the application" {
 	timeout 120 chrt -f 50 python3 "$SECOND/app.py" "$EC_BUILD/lib/libethercat.so.1" 40 \
 		>"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!

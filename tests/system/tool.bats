@@ -7,14 +7,14 @@ setup_file() { start bench 22; }
 
 teardown_file() { stop; }
 
-@test "version" {
+@test "version names tool and module" {
 	run ethercat version
 	[ "${#lines[@]}" = 1 ]
 	[[ "$output" =~ ^"EtherCAT master "[0-9]+\.[0-9]+ ]]
 	json '.abi == 2 and (.version | test("^[0-9]+[.]"))' version
 }
 
-@test "master" {
+@test "master shows phase, device and clocks" {
 	run ethercat master -v
 	[ "$status" = 0 ]
 	[ "${lines[0]}" = "Master0" ]
@@ -32,7 +32,7 @@ teardown_file() { stop; }
 		.common.rx_frames <= .common.tx_frames and .dc.reference_clock == 0)' master
 }
 
-@test "slaves" {
+@test "slaves lists position, state and name" {
 	run ethercat slaves
 	[ "$status" = 0 ]
 	[ "${#lines[@]}" = 22 ]
@@ -51,7 +51,7 @@ teardown_file() { stop; }
 		.[4].mailboxes.protocols == ["CoE", "FoE"] and .[0].ports[2].next_slave == 15' slaves
 }
 
-@test "slaves --verbose" {
+@test "slaves --verbose shows identity, clock and mailbox" {
 	run ethercat slaves -v -p4
 	[ "$status" = 0 ]
 	[ "${lines[0]}" = "=== Master 0, Slave 4 ===" ]
@@ -70,7 +70,7 @@ teardown_file() { stop; }
 	[ "$(ethercat slaves -v | grep -cE '^   [0-3]  (EBUS|MII |N/A |N/C )  (up  |down)  (open  |closed)')" = 88 ]
 }
 
-@test "pdos" {
+@test "pdos lists SyncManagers, PDOs and entries" {
 	[ "$(ethercat pdos -p10)" = "$(printf '%s\n' \
 		'SM0: PhysAddr 0x1000, DefaultSize    1, ControlRegister 0x00, Enable 1' \
 		'  TxPDO 0x1a00 "Channel 1"' '    PDO entry 0x6000:01,  1 bit, "Input"' \
@@ -90,7 +90,7 @@ teardown_file() { stop; }
 	ethercat pdos -s etherlab -p4 | grep -q "function rv = slave4()"
 }
 
-@test "upload" {
+@test "upload reads objects of all types" {
 	[ "$(ethercat upload -p4 0x1018 1)" = "0x00000002 2" ]
 	[ "$(ethercat -p 4 sdo_upload --type uint32 0x1018:02)" = "0x1c213052 471937106" ]
 	[ "$(ethercat upload -a1 -p4 0x1018 1)" = "0x00000002 2" ]
@@ -100,7 +100,7 @@ teardown_file() { stop; }
 	[ "$(ethercat upload -p17 -t raw 0x1018 | cut -d' ' -f1-6)" = "0x04 0x00 0x51 0xec 0x00 0x00" ]
 }
 
-@test "download" {
+@test "download writes objects of all types" {
 	ethercat download -p17 -t int8 0x6060 0 -1
 	[ "$(ethercat upload -p17 -t int8 0x6060 0)" = "0xff -1" ]
 	echo 8 | ethercat sdo_download -p17 -t int8 0x6060 0 -
@@ -127,7 +127,7 @@ teardown_file() { stop; }
 	jq -e '.error | .abort_code == 100794368 and .command == "upload"' "$BATS_TEST_TMPDIR/err"
 }
 
-@test "states" {
+@test "states requests and shows AL states" {
 	run ethercat states -p3,11
 	[ "$output" = "$(printf '%s\n' ' 3     1:3  PREOP' '11  1001:0  PREOP')" ]
 	run ethercat states INIT -p1,4,17 --wait
@@ -141,7 +141,7 @@ teardown_file() { stop; }
 	ethercat states PREOP -p2 --wait
 }
 
-@test "states: a slave refuses" {
+@test "states fails when a slave refuses" {
 	# no application has configured its process data
 	refused 'slave 4: cannot reach OP, it is in SAFEOP: .*AL status code 0x[0-9a-f]{4} \(.+\)' \
 		states OP -p4 --wait
@@ -153,7 +153,7 @@ teardown_file() { stop; }
 	[ "$(ethercat states -p4)" = "4  1:4  PREOP" ]
 }
 
-@test "sii_read" {
+@test "sii_read writes the EEPROM image" {
 	words=$(ethercat slaves -p4 -j | jq '.masters[0].slaves[0].sii_words')
 	ethercat sii_read -p4 >"$BATS_TEST_TMPDIR/sii"
 	[ "$(wc -c <"$BATS_TEST_TMPDIR/sii")" = $((2 * words)) ]
@@ -168,7 +168,7 @@ teardown_file() { stop; }
 		(.categories | map(.name) | contains(["General", "RXPDO"]))' sii_read -v -p4
 }
 
-@test "reg_read, reg_write" {
+@test "reg_read and reg_write access registers" {
 	[ "$(ethercat reg_read -p1 -t uint16 0x0130)" = "0x0002 2" ]
 	run ethercat reg_read -p1 0 4
 	[[ "$output" =~ ^(0x[0-9a-f]{2} ){3}0x[0-9a-f]{2}$ ]]
@@ -188,7 +188,7 @@ teardown_file() { stop; }
 	refused 'refused|no slave|not there|did not' reg_write -e -p99 -t uint8 0x0420 1
 }
 
-@test "wrong selection" {
+@test "a wrong selection is refused with a reason" {
 	refused 'matches 22 of 22 slaves' upload 0x1018 1
 	refused 'matches 0 of 22 slaves' upload -p22 0x1018 1
 	refused 'matches 0 slaves' reg_read -a77 0 1
@@ -196,7 +196,7 @@ teardown_file() { stop; }
 	refused 'none of the 1 master' reg_read -m3 -p0 0 1
 }
 
-@test "rescan" {
+@test "rescan starts a scan and waits for its end" {
 	before=$(ethercat master -j | jq '.masters[0].scans')
 	run ethercat rescan --wait
 	[ "$status" = 0 ]
@@ -209,14 +209,14 @@ teardown_file() { stop; }
 	wait_for 120 all_slaves_are PREOP 22
 }
 
-@test "debug" {
+@test "debug sets the log level" {
 	ethercat debug 1
 	json '.masters[0].debug_level == 1' master
 	json '.masters == [{"master": 0, "debug_level": 0}]' debug 0
 	refused 'invalid level' debug 3
 }
 
-@test "graph" {
+@test "graph prints the topology" {
 	for a in "" DC crc; do
 		run ethercat graph $a
 		[ "$status" = 0 ]
@@ -229,7 +229,7 @@ teardown_file() { stop; }
 	json '(.links | length == 21) and (.slaves | length == 22)' graph
 }
 
-@test "crc" {
+@test "crc shows and clears error counters" {
 	run ethercat crc
 	[ "$status" = 0 ]
 	[ "${#lines[@]}" = 24 ]
@@ -238,7 +238,7 @@ teardown_file() { stop; }
 	json '.slaves | length == 22 and all(.[].ports[]; .crc_errors == 0)' crc
 }
 
-@test "no application: nothing configured" {
+@test "without an application nothing is configured" {
 	for c in config "config -v" domains "domains -v" data; do
 		run ethercat $c
 		[ "$status" = 0 ]
@@ -305,7 +305,7 @@ teardown_file() { stop; }
 	[ "$(ethercat slaves -p 500)" = "500  0:500  PREOP  +  $(ethercat slaves -p 500 | cut -d+ -f2 | cut -c3-)" ]
 }
 
-@test "no module: the error says what to do" {
+@test "without the module the error names the remedy" {
 	stop
 	refused '/dev/EtherCAT0: No such file or directory: load the module' slaves
 	refused 'modprobe ec_master' upload -p1 0x1018 1

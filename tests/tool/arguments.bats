@@ -16,7 +16,7 @@ ambiguous() {
 	[[ $output == *"'$1' is ambiguous: "* ]]
 }
 
-@test "abbreviations typed for years" {
+@test "common abbreviations select their commands" {
 	resolves sl slaves
 	resolves slave slaves
 	resolves slv slaves
@@ -62,7 +62,7 @@ ambiguous() {
 	[[ $output == *"reg_read, reg_write, rescan"* ]]
 }
 
-@test "what this version lacks is unknown, and no abbreviation means it" {
+@test "commands of later versions are unknown and have no abbreviation" {
 	for c in foe_read foe_write alias eoe sdos sii_write xml; do
 		for w in "$c" "$c --help" "help $c"; do
 			run real $w
@@ -161,7 +161,7 @@ for o in d["options"]:
 	[ "$(real --version)" = "$output" ]
 }
 
-@test "options stand anywhere" {
+@test "options are accepted at any place" {
 	want="0x00000002 2"
 	[ "$(ethercat -p2 upload 0x1018 1)" = "$want" ]
 	[ "$(ethercat upload -p 2 0x1018 1)" = "$want" ]
@@ -228,7 +228,7 @@ for o in d["options"]:
 	done
 }
 
-@test "no device file" {
+@test "a missing device file is reported" {
 	export EC_DEVICE_DIR=$BATS_TEST_TMPDIR
 	for c in slaves master pdos "upload -p0 1 1" "reg_read 0 1" states rescan "debug 1" crc \
 		graph config domains data cstruct sii_read "download -tint8 1 1 1"; do
@@ -242,7 +242,7 @@ for o in d["options"]:
 	[ -e /dev/EtherCAT0 ] || [[ $(real slaves 2>&1) == *"/dev/EtherCAT0: No such file"* ]]
 }
 
-@test "not our device file" {
+@test "another device file is refused" {
 	ln -s /dev/null "$BATS_TEST_TMPDIR/EtherCAT0"
 	EC_DEVICE_DIR=$BATS_TEST_TMPDIR run real slaves
 	[ "$status" -eq 1 ]
@@ -251,7 +251,7 @@ for o in d["options"]:
 	[ "$status" -eq 1 ]
 }
 
-@test "no permission" {
+@test "a missing permission is reported" {
 	FAKE_READONLY=1 run ethercat upload -p2 0x1018 1
 	[ "$status" -eq 1 ]
 	[[ $output == *"/dev/EtherCAT0: Permission denied"* ]]

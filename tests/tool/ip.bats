@@ -3,7 +3,7 @@
 
 load common
 
-@test "ip shows what the slave has" {
+@test "ip shows the parameters of the slave" {
 	golden ip ip -p2
 	out ip -p2 -j | json 'd["ip_address"] == "192.168.0.17" and d["slave"] == 2'
 	out ip -p2 -j | json 'd["default_gateway"] is None and d["hostname"] == "mixer"'
@@ -11,7 +11,7 @@ load common
 	[ -z "$(FAKE_BUS=evil out ip -p2 | LC_ALL=C grep '[^ -~]')" ]
 }
 
-@test "ip sets what is named, in every spelling" {
+@test "ip sets the named parameters, in every spelling" {
 	local all
 	all=$(log_of ip -p2 link 02:00:00:ec:01:07 ADDR 192.168.0.17/24 default 10.0.0.1 \
 		dns_address 10.0.0.53 name mixer)
@@ -30,7 +30,7 @@ ffffff00
 	out ip -p2 -j name mixer | json 'd["hostname"] == "mixer" and d["ip_address"] is None'
 }
 
-@test "ip refuses what cannot be" {
+@test "ip refuses invalid parameters" {
 	for c in "name" "addr 1.2.3.4 name" "colour blue" "link 02:00:00:ec:01" "link 02:00:00:ec:01:0g" \
 		"link 02:00:00:ec:01:07:08" "link 02:00-00:ec:01:07" "link x" "addr 1.2.3" "addr 1.2.3.256" \
 		"addr 1.2.3.4/33" "addr 1.2.3.4/" "addr /8" "addr 1.2.3.4/8x" \

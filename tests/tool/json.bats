@@ -16,7 +16,7 @@ load common
 	done
 }
 
-@test "keys" {
+@test "JSON keys are unchanged" {
 	out slaves -j | json 'd["masters"][0]["slaves"][2]["name"] == "EL7201 servo terminal"'
 	out slaves -j | json 'd["masters"][0]["slaves"][2]["al_status_code"] == 0x1d'
 	out slaves -j | json 'd["masters"][0]["slaves"][1]["ports"][1]["receive_time_diff_ns"] == -10'

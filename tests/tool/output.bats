@@ -3,7 +3,7 @@
 
 load common
 
-@test "golden: idle bus" {
+@test "output for an idle bus equals the golden files" {
 	golden slaves slaves
 	golden slaves_v slaves -v
 	golden master master
@@ -16,7 +16,7 @@ load common
 	golden sii_v sii_read -v -p2
 }
 
-@test "golden: an application runs" {
+@test "output beside an application equals the golden files" {
 	export FAKE_BUS=app
 	golden config config
 	golden config_v config -v
@@ -45,7 +45,7 @@ load common
 	FAKE_BUS=two golden slaves_two slaves
 }
 
-@test "nothing to show" {
+@test "commands without data print nothing" {
 	for c in slaves "slaves -v" pdos cstruct crc config domains data; do
 		FAKE_BUS=empty run ethercat $c
 		[ "$status" -eq 0 ]
@@ -91,7 +91,7 @@ load common
 	[ -z "$(log_of rescan)" ]
 }
 
-@test "selection" {
+@test "options select masters and slaves" {
 	[ "$(out slaves -p1 | cut -c1)" = 1 ]
 	[ "$(out slaves -p2,0,2 | cut -c1 | tr -d '\n')" = 02 ]
 	[ "$(out slaves -p1- | wc -l)" -eq 2 ]
@@ -107,7 +107,7 @@ load common
 	[ "$(FAKE_BUS=app out domains -d1)" = "$(sed -n 2,3p "$HERE/golden/domains.txt")" ]
 }
 
-@test "commands for one slave" {
+@test "commands for one slave refuse any other number" {
 	for c in "upload 0x1018 1" "reg_read 0 1" "sii_read" "download -tint8 0x6060 0 1"; do
 		run ethercat $c
 		[ "$status" -eq 1 ]
@@ -118,7 +118,7 @@ load common
 	done
 }
 
-@test "commands for one master" {
+@test "commands for one master refuse several" {
 	export FAKE_BUS=two
 	run ethercat upload -p2 0x1018 1
 	[ "$status" -eq 1 ]
@@ -130,7 +130,7 @@ load common
 	[ "$(out pdos -p2 | grep -c '=== Master')" -eq 2 ]
 }
 
-@test "what public scripts expect" {
+@test "output has the form that public scripts expect" {
 	# shell
 	[ "$(out slaves | grep -c '^')" -eq 3 ]
 	[ "$(out slaves | awk '{ print $3, $5 }' | head -1)" = "PREOP EK1100" ]
@@ -198,7 +198,7 @@ END
 	cc -Wall -Werror -c -o /dev/null "$BATS_TEST_TMPDIR/c.c"
 }
 
-@test "upload" {
+@test "upload prints values of all types" {
 	[ "$(out upload -p2 -t int16 0x6041 0)" = "0x8060 -32672" ]
 	[ "$(out upload -p2 -t int8 0x6060 0)" = "0xff -1" ]
 	[ "$(out upload -p2 -t float 0x2000 0)" = "1.5" ]
@@ -212,7 +212,7 @@ END
 	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 65536 ]
 }
 
-@test "upload failures" {
+@test "upload failures name cause and slave" {
 	run ethercat upload -p2 0x5000 0
 	[ "$status" -eq 1 ]
 	[[ $output == *"aborted with code 0x06020000: "* ]]
@@ -229,7 +229,7 @@ END
 	[[ $output == *"uint8 has 1 byte(s), but 4 were received"* ]]
 }
 
-@test "download" {
+@test "download sends values of all types" {
 	[ "$(log_of download -p2 -t uint32 0x1010 1 0x65766173)" = "sdo 2 0x1010:01 73617665" ]
 	[ "$(log_of download -p2 -t string 0x2001 0 "ab cd")" = "sdo 2 0x2001:00 6162206364" ]
 	[ "$(log_of download -p2 -t raw 0x2001 0 "0x12 0x34")" = "sdo 2 0x2001:00 1234" ]
@@ -251,7 +251,7 @@ END
 	[ "$status" -eq 1 ]
 }
 
-@test "registers" {
+@test "reg_read and reg_write print registers" {
 	[ "$(out reg_read -p2 0x130 2)" = "0x12 0x00" ]
 	[ "$(out reg_read -p2 -t uint16 0x130)" = "0x0012 18" ]
 	[ "$(out reg_read -p2 0xffff 1)" = "0x77" ]
@@ -268,7 +268,7 @@ END
 	[ "$(log_of crc RESET -p1)" = "reg 1 0x0300 $(printf '0%.0s' {1..40})" ]
 }
 
-@test "states" {
+@test "states prints AL states" {
 	[ "$(log_of states SAFEOP -p0,1)" = $'state 0 4\nstate 1 4' ]
 	[ "$(log_of states preop | wc -l)" -eq 3 ]
 	run ethercat states OP -p0 --wait
@@ -289,7 +289,7 @@ END
 	[ "$output" = $'Master0\n  1  1001:0  PREOP\nMaster1\n  1  1001:0  PREOP' ]
 }
 
-@test "startup IDNs are shown; a module that does not tell claims nothing" {
+@test "startup IDNs are shown; an older module without them is shown as unknown" {
 	export FAKE_BUS=app
 	out config -j | json '["S-0-0015", "P-0-0150"] in [[i["name"] for i in c["idns"]] for c in d["masters"][0]["configs"]]'
 	out config -v | grep -q 'Drive 1 P-0-0150 in SAFEOP, 2 byte'
@@ -297,7 +297,7 @@ END
 	FAKE_NO_IDN=1 out config -j | json 'd["masters"][0]["configs"][0]["idns"] is None'
 }
 
-@test "a scan is running" {
+@test "a running scan is noted on stderr" {
 	[[ $(FAKE_BUS=scanning err slaves) == *"scan is running"* ]]
 	[ "$(FAKE_BUS=scanning out slaves | wc -l)" -eq 1 ]
 	[ "$(FAKE_BUS=scanning out slaves --wait | wc -l)" -eq 3 ]
@@ -306,7 +306,7 @@ END
 	[ "$status" -eq 1 ]
 }
 
-@test "no interface, no slaves" {
+@test "a missing interface or slave is reported" {
 	[ -z "$(FAKE_BUS=waiting out slaves)" ]
 	[[ $(FAKE_BUS=waiting err slaves) == *"waiting for eth0"* ]]
 	FAKE_BUS=waiting run ethercat upload 0x1018 1
@@ -318,7 +318,7 @@ END
 	[[ $output == *"no slaves" ]]
 }
 
-@test "other changes" {
+@test "debug, rescan and release report their result" {
 	[ "$(log_of rescan)" = "rescan 0" ]
 	[ "$(log_of rescan --wait)" = "rescan 0" ]
 	run ethercat rescan --wait=0
@@ -340,7 +340,7 @@ END
 	[ -z "$(out master | grep Session:)" ]
 }
 
-@test "binary output" {
+@test "binary output is refused on a terminal" {
 	[ "$(FAKE_BUS=app out data | xxd -p)" = a501020304 ] || \
 		[ "$(FAKE_BUS=app out data | xxd -p)" = a50102030405ff ]
 	[ "$(FAKE_BUS=app out data -d1 | xxd -p)" = 0102030405ff ]
@@ -360,14 +360,14 @@ END
 	out slaves -j -p2 | json 'd["masters"][0]["slaves"][0]["dc_state"] == "delay_uncertain"'
 }
 
-@test "graph draws" {
+@test "graph prints nodes and links" {
 	command -v dot >/dev/null || skip "no graphviz"
 	for a in "" dc crc; do
 		out graph $a | dot -Tsvg >/dev/null
 	done
 }
 
-@test "etherlab skin" {
+@test "the etherlab skin prints MATLAB functions" {
 	run ethercat pdos -p2 -s etherlab
 	[ "$status" -eq 0 ]
 	[[ $output == *"function rv = slave2()"* ]]

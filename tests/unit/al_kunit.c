@@ -4,7 +4,7 @@
 
 static const u8 states[] = { EC_AL_INIT, EC_AL_PREOP, EC_AL_BOOT, EC_AL_SAFEOP, EC_AL_OP };
 
-static void states_have_names(struct kunit *test)
+static void al_states_have_names(struct kunit *test)
 {
 	KUNIT_EXPECT_STREQ(test, ec_al_state_name(1), "INIT");
 	KUNIT_EXPECT_STREQ(test, ec_al_state_name(2), "PREOP");
@@ -16,7 +16,7 @@ static void states_have_names(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, ec_al_state_name(0x0C), "???");
 }
 
-static void only_five_values_are_states(struct kunit *test)
+static void al_only_five_values_are_states(struct kunit *test)
 {
 	int i, n = 0;
 
@@ -26,7 +26,7 @@ static void only_five_values_are_states(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, ec_al_state_valid(EC_AL_OP | 0x10));
 }
 
-static void transitions_follow_the_table(struct kunit *test)
+static void al_transitions_follow_table(struct kunit *test)
 {
 	/* rows: from, columns: to, in the order INIT PREOP BOOT SAFEOP OP */
 	static const char * const table[] = {
@@ -44,7 +44,7 @@ static void transitions_follow_the_table(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, ec_al_legal(0, EC_AL_INIT));
 }
 
-static void every_state_is_reached_by_legal_steps(struct kunit *test)
+static void al_every_state_is_reached_by_legal_steps(struct kunit *test)
 {
 	int i, j, n;
 
@@ -64,7 +64,7 @@ static void every_state_is_reached_by_legal_steps(struct kunit *test)
 	}
 }
 
-static void op_is_reached_from_boot_by_init(struct kunit *test)
+static void al_op_is_reached_from_boot_by_init(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_al_next(EC_AL_BOOT, EC_AL_OP), EC_AL_INIT);
 	KUNIT_EXPECT_EQ(test, ec_al_next(EC_AL_INIT, EC_AL_OP), EC_AL_PREOP);
@@ -76,7 +76,7 @@ static void op_is_reached_from_boot_by_init(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_al_next(EC_AL_OP, 0), EC_AL_INIT);
 }
 
-static void transitions_have_default_time_limits(struct kunit *test)
+static void al_transitions_have_default_time_limits(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_al_timeout_ms(EC_AL_INIT, EC_AL_PREOP), 3000u);
 	KUNIT_EXPECT_EQ(test, ec_al_timeout_ms(EC_AL_INIT, EC_AL_BOOT), 3000u);
@@ -88,7 +88,7 @@ static void transitions_have_default_time_limits(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_al_timeout_ms(EC_AL_BOOT, EC_AL_INIT), 10000u);
 }
 
-static void every_known_status_code_has_a_text(struct kunit *test)
+static void al_every_known_status_code_has_text(struct kunit *test)
 {
 	static const u16 known[] = {
 		0x0000, 0x0001, 0x0002, 0x0003, 0x0004, 0x0006, 0x0007, 0x000E, 0x0011, 0x0012,
@@ -121,13 +121,13 @@ static void every_known_status_code_has_a_text(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(states_have_names),
-	KUNIT_CASE(only_five_values_are_states),
-	KUNIT_CASE(transitions_follow_the_table),
-	KUNIT_CASE(every_state_is_reached_by_legal_steps),
-	KUNIT_CASE(op_is_reached_from_boot_by_init),
-	KUNIT_CASE(transitions_have_default_time_limits),
-	KUNIT_CASE(every_known_status_code_has_a_text),
+	KUNIT_CASE(al_states_have_names),
+	KUNIT_CASE(al_only_five_values_are_states),
+	KUNIT_CASE(al_transitions_follow_table),
+	KUNIT_CASE(al_every_state_is_reached_by_legal_steps),
+	KUNIT_CASE(al_op_is_reached_from_boot_by_init),
+	KUNIT_CASE(al_transitions_have_default_time_limits),
+	KUNIT_CASE(al_every_known_status_code_has_text),
 	{}
 };
 

@@ -2,7 +2,7 @@
 #include "wire_kunit.h"
 #include "../../master/wire/buf.h"
 
-static void fields_are_read_in_little_endian_order(struct kunit *test)
+static void buf_fields_are_read_in_little_endian_order(struct kunit *test)
 {
 	static const u8 in[] = { 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07, 0x08,
 				 0x09, 0x0A, 0x0B, 0x0C, 0x0D, 0x0E, 0x0F };
@@ -16,7 +16,7 @@ static void fields_are_read_in_little_endian_order(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_rbuf_left(&r), (size_t)0);
 }
 
-static void a_short_read_gives_zero_and_sticks(struct kunit *test)
+static void buf_short_read_gives_zero_and_sticks(struct kunit *test)
 {
 	static const u8 in[] = { 0xAA, 0xBB, 0xCC };
 	struct ec_rbuf r = ec_rbuf(in, sizeof(in));
@@ -27,7 +27,7 @@ static void a_short_read_gives_zero_and_sticks(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, r.bad);
 }
 
-static void taking_more_than_is_left_returns_null(struct kunit *test)
+static void buf_taking_more_than_is_left_returns_null(struct kunit *test)
 {
 	static const u8 in[4];
 	struct ec_rbuf r = ec_rbuf(in, sizeof(in));
@@ -37,7 +37,7 @@ static void taking_more_than_is_left_returns_null(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_rbuf_take(&r, 1));
 }
 
-static void an_enormous_length_is_refused(struct kunit *test)
+static void buf_enormous_length_is_refused(struct kunit *test)
 {
 	static const u8 in[4];
 	struct ec_rbuf r = ec_rbuf(in, sizeof(in));
@@ -48,7 +48,7 @@ static void an_enormous_length_is_refused(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_wbuf_take(&w, (size_t)-1));
 }
 
-static void fields_are_written_in_little_endian_order(struct kunit *test)
+static void buf_fields_are_written_in_little_endian_order(struct kunit *test)
 {
 	static const u8 want[] = { 0x01, 0x03, 0x02, 0x07, 0x06, 0x05, 0x04,
 				   0x0F, 0x0E, 0x0D, 0x0C, 0x0B, 0x0A, 0x09, 0x08, 0xEE, 0x00, 0x00 };
@@ -66,7 +66,7 @@ static void fields_are_written_in_little_endian_order(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
-static void a_write_that_does_not_fit_leaves_the_buffer_alone(struct kunit *test)
+static void buf_write_that_does_not_fit_leaves_buffer_alone(struct kunit *test)
 {
 	u8 out[4] = { 1, 2, 3, 4 };
 	struct ec_wbuf w = ec_wbuf(out, 3);
@@ -79,12 +79,12 @@ static void a_write_that_does_not_fit_leaves_the_buffer_alone(struct kunit *test
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(fields_are_read_in_little_endian_order),
-	KUNIT_CASE(a_short_read_gives_zero_and_sticks),
-	KUNIT_CASE(taking_more_than_is_left_returns_null),
-	KUNIT_CASE(an_enormous_length_is_refused),
-	KUNIT_CASE(fields_are_written_in_little_endian_order),
-	KUNIT_CASE(a_write_that_does_not_fit_leaves_the_buffer_alone),
+	KUNIT_CASE(buf_fields_are_read_in_little_endian_order),
+	KUNIT_CASE(buf_short_read_gives_zero_and_sticks),
+	KUNIT_CASE(buf_taking_more_than_is_left_returns_null),
+	KUNIT_CASE(buf_enormous_length_is_refused),
+	KUNIT_CASE(buf_fields_are_written_in_little_endian_order),
+	KUNIT_CASE(buf_write_that_does_not_fit_leaves_buffer_alone),
 	{}
 };
 

@@ -2,7 +2,7 @@
 #include "wire_kunit.h"
 #include "../../master/wire/coe.h"
 
-static void a_header_survives_both_ways(struct kunit *test)
+static void coe_header_survives_both_ways(struct kunit *test)
 {
 	struct ec_coe_hdr in = { .number = 0x1A5, .service = EC_COE_TXPDO }, out;
 	u8 msg[2];
@@ -17,7 +17,7 @@ static void a_header_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_coe_hdr_decode(&r, &out), -EMSGSIZE);
 }
 
-static void an_emergency_survives_both_ways(struct kunit *test)
+static void coe_emergency_survives_both_ways(struct kunit *test)
 {
 	struct ec_coe_emergency in = { 0x8130, 0x11, { 1, 2, 3, 4, 5 } }, out;
 	u8 msg[EC_COE_EMERGENCY_SIZE];
@@ -34,7 +34,7 @@ static void an_emergency_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(msg, 10, &out), -ENOMSG);
 }
 
-static void emergency_codes_have_groups(struct kunit *test)
+static void coe_emergency_codes_have_groups(struct kunit *test)
 {
 	/* by the upper four bits */
 	static const char * const groups[] = {
@@ -54,7 +54,7 @@ static void emergency_codes_have_groups(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, ec_coe_emergency_text(0xB000), "unknown emergency group");
 }
 
-static void every_known_abort_code_has_a_text(struct kunit *test)
+static void coe_every_known_abort_code_has_text(struct kunit *test)
 {
 	static const u32 known[] = {
 		0x05030000, 0x05040000, 0x05040001, 0x05040002, 0x05040003, 0x05040004,
@@ -80,7 +80,7 @@ static void every_known_abort_code_has_a_text(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_coe_errno_abort(-12345), 0x08000000u);
 }
 
-static void services_have_names(struct kunit *test)
+static void coe_services_have_names(struct kunit *test)
 {
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(1), "emergency");
 	KUNIT_EXPECT_STREQ(test, ec_coe_service_name(8), "SDO information");
@@ -90,11 +90,11 @@ static void services_have_names(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_header_survives_both_ways),
-	KUNIT_CASE(an_emergency_survives_both_ways),
-	KUNIT_CASE(emergency_codes_have_groups),
-	KUNIT_CASE(every_known_abort_code_has_a_text),
-	KUNIT_CASE(services_have_names),
+	KUNIT_CASE(coe_header_survives_both_ways),
+	KUNIT_CASE(coe_emergency_survives_both_ways),
+	KUNIT_CASE(coe_emergency_codes_have_groups),
+	KUNIT_CASE(coe_every_known_abort_code_has_text),
+	KUNIT_CASE(coe_services_have_names),
 	{}
 };
 

@@ -5,7 +5,7 @@
 #define P(n) BIT(n)
 
 /* the worked example: S2 at port 3 of S1, S3 at its port 1, S4 behind S3 */
-static void delays_of_a_tree(struct kunit *test)
+static void dc_delays_of_tree(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(3) | P(1), .dc = true,
@@ -28,7 +28,7 @@ static void delays_of_a_tree(struct kunit *test)
 }
 
 /* receive times that wrap between two ports */
-static void delays_across_the_wrap(struct kunit *test)
+static void dc_delays_across_wrap(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true,
@@ -41,7 +41,7 @@ static void delays_across_the_wrap(struct kunit *test)
 }
 
 /* a slave without clock between two with one is a part of the cable */
-static void delays_through_a_slave_without_clock(struct kunit *test)
+static void dc_delays_through_slave_without_clock(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 2600 } },
@@ -58,7 +58,7 @@ static void delays_through_a_slave_without_clock(struct kunit *test)
 }
 
 /* two behind a coupler without clock: the way is shared in equal parts */
-static void delays_behind_a_branch_without_clock(struct kunit *test)
+static void dc_delays_behind_branch_without_clock(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 1500 } },
@@ -76,7 +76,7 @@ static void delays_behind_a_branch_without_clock(struct kunit *test)
  * Connected the wrong way round: the frame comes in by port 1, and is at the processing
  * unit when it comes back to port 0, after the slave that hangs there.
  */
-static void delays_of_a_reversed_slave(struct kunit *test)
+static void dc_delays_of_reversed_slave(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 3000 } },
@@ -93,7 +93,7 @@ static void delays_of_a_reversed_slave(struct kunit *test)
 }
 
 /* the same at the end of a branch: port 0 is closed, and what it latched once is old */
-static void delays_of_a_reversed_end(struct kunit *test)
+static void dc_delays_of_reversed_end(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1) | P(2), .dc = true,
@@ -110,7 +110,7 @@ static void delays_of_a_reversed_end(struct kunit *test)
 }
 
 /* in by port 1, out by 2, then the processing unit, then out by 3; and a clock at each */
-static void delays_on_both_sides_of_the_unit(struct kunit *test)
+static void dc_delays_on_both_sides_of_unit(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = 1, .parent_port = 2, .open = P(0), .dc = true },
@@ -126,7 +126,7 @@ static void delays_on_both_sides_of_the_unit(struct kunit *test)
 }
 
 /* times of a closed port, or of another latch: said, not taken for a way */
-static void times_no_cable_makes_are_odd(struct kunit *test)
+static void dc_impossible_times_are_inconsistent(struct kunit *test)
 {
 	static const u32 back[] = { 500000000, 0x80000000, 0xfffffc00, 3000000 };
 	u32 i;
@@ -149,7 +149,7 @@ static void times_no_cable_makes_are_odd(struct kunit *test)
 	}
 }
 
-static void slaves_before_the_reference_have_a_negative_delay(struct kunit *test)
+static void dc_slaves_before_reference_have_negative_delay(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 1400 } },
@@ -163,7 +163,7 @@ static void slaves_before_the_reference_have_a_negative_delay(struct kunit *test
 }
 
 /* noise must not turn a short cable into four seconds */
-static void a_negative_way_is_none(struct kunit *test)
+static void dc_negative_distance_counts_as_zero(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
 		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 590 } },
@@ -177,7 +177,7 @@ static void a_negative_way_is_none(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, n[2].delay, 300u);
 }
 
-static void difference_has_sign_and_magnitude(struct kunit *test)
+static void dc_difference_has_sign_and_magnitude(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x80000005), 5);
 	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x00000005), -5);
@@ -185,7 +185,7 @@ static void difference_has_sign_and_magnitude(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_dc_diff(0x7fffffff), -0x7fffffff);
 }
 
-static void start_is_on_the_grid(struct kunit *test)
+static void dc_start_is_on_grid(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_dc_start(1100123456, 0, 1000000, 0), 1101000000ull);
 	KUNIT_EXPECT_EQ(test, ec_dc_start(1101000000, 0, 1000000, 0), 1101000000ull);
@@ -200,7 +200,7 @@ static void start_is_on_the_grid(struct kunit *test)
 }
 
 /* an application time that wraps below zero, or is of another decade */
-static void start_is_on_a_grid_far_away(struct kunit *test)
+static void dc_start_is_on_grid_far_away(struct kunit *test)
 {
 	u64 phase = 0 - 946684799999000123ULL;
 	u64 start = ec_dc_start(815000000000000000ULL, phase, 1000000, 0);
@@ -215,19 +215,19 @@ static void start_is_on_a_grid_far_away(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(delays_of_a_tree),
-	KUNIT_CASE(delays_across_the_wrap),
-	KUNIT_CASE(delays_through_a_slave_without_clock),
-	KUNIT_CASE(delays_behind_a_branch_without_clock),
-	KUNIT_CASE(delays_of_a_reversed_slave),
-	KUNIT_CASE(delays_of_a_reversed_end),
-	KUNIT_CASE(delays_on_both_sides_of_the_unit),
-	KUNIT_CASE(times_no_cable_makes_are_odd),
-	KUNIT_CASE(slaves_before_the_reference_have_a_negative_delay),
-	KUNIT_CASE(a_negative_way_is_none),
-	KUNIT_CASE(difference_has_sign_and_magnitude),
-	KUNIT_CASE(start_is_on_the_grid),
-	KUNIT_CASE(start_is_on_a_grid_far_away),
+	KUNIT_CASE(dc_delays_of_tree),
+	KUNIT_CASE(dc_delays_across_wrap),
+	KUNIT_CASE(dc_delays_through_slave_without_clock),
+	KUNIT_CASE(dc_delays_behind_branch_without_clock),
+	KUNIT_CASE(dc_delays_of_reversed_slave),
+	KUNIT_CASE(dc_delays_of_reversed_end),
+	KUNIT_CASE(dc_delays_on_both_sides_of_unit),
+	KUNIT_CASE(dc_impossible_times_are_inconsistent),
+	KUNIT_CASE(dc_slaves_before_reference_have_negative_delay),
+	KUNIT_CASE(dc_negative_distance_counts_as_zero),
+	KUNIT_CASE(dc_difference_has_sign_and_magnitude),
+	KUNIT_CASE(dc_start_is_on_grid),
+	KUNIT_CASE(dc_start_is_on_grid_far_away),
 	{ }
 };
 

@@ -84,7 +84,7 @@ static s32 worst(struct plant *p, u32 cycles)
 	return max;
 }
 
-static void wraps_to_the_nearest(struct kunit *test)
+static void dc_lock_wraps_to_nearest(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_dc_lock_wrap(0, 1000), 0);
 	KUNIT_EXPECT_EQ(test, ec_dc_lock_wrap(499, 1000), 499);
@@ -96,7 +96,7 @@ static void wraps_to_the_nearest(struct kunit *test)
 }
 
 /* any first phase, any rate: locked, then exact; never faster than allowed */
-static void locks_from_anywhere(struct kunit *test)
+static void dc_lock_locks_from_anywhere(struct kunit *test)
 {
 	static const u32 period[] = { 10000, 62500, 1000000, 4000000, 1000000000 };
 	static const s64 ppb[] = { 0, 100000, -100000, 300000, -300000 };
@@ -123,7 +123,7 @@ static void locks_from_anywhere(struct kunit *test)
 }
 
 /* 20 us of jitter in the send: the cycle itself jitters far less */
-static void averages_noise(struct kunit *test)
+static void dc_lock_averages_noise(struct kunit *test)
 {
 	struct plant p;
 
@@ -138,7 +138,7 @@ static void averages_noise(struct kunit *test)
 }
 
 /* Frames that come late one at a time change nothing at all. */
-static void one_late_frame_is_no_error(struct kunit *test)
+static void dc_lock_one_late_frame_is_no_error(struct kunit *test)
 {
 	struct plant p;
 	u32 i;
@@ -156,7 +156,7 @@ static void one_late_frame_is_no_error(struct kunit *test)
 }
 
 /* One in four frames is lost; then all for long: the rate is kept. */
-static void lost_frames_keep_the_rate(struct kunit *test)
+static void dc_lock_lost_frames_keep_rate(struct kunit *test)
 {
 	struct plant p;
 	u32 i;
@@ -183,7 +183,7 @@ static void lost_frames_keep_the_rate(struct kunit *test)
 }
 
 /* The reference jumps, or another one runs at another rate. */
-static void follows_a_jump(struct kunit *test)
+static void dc_lock_follows_jump(struct kunit *test)
 {
 	struct plant p;
 
@@ -202,7 +202,7 @@ static void follows_a_jump(struct kunit *test)
 }
 
 /* Half a period off with noise: it takes one of both ways, to its end. */
-static void half_a_period_is_no_trap(struct kunit *test)
+static void dc_lock_locks_from_half_period(struct kunit *test)
 {
 	struct plant p;
 
@@ -210,7 +210,7 @@ static void half_a_period_is_no_trap(struct kunit *test)
 	KUNIT_EXPECT_LT(test, until_locked(&p, 1000), 300u);
 }
 
-static void nothing_known_is_no_correction(struct kunit *test)
+static void dc_lock_nothing_known_is_no_correction(struct kunit *test)
 {
 	struct ec_dc_lock l;
 	u32 i;
@@ -223,14 +223,14 @@ static void nothing_known_is_no_correction(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(wraps_to_the_nearest),
-	KUNIT_CASE(locks_from_anywhere),
-	KUNIT_CASE(averages_noise),
-	KUNIT_CASE(one_late_frame_is_no_error),
-	KUNIT_CASE(lost_frames_keep_the_rate),
-	KUNIT_CASE(follows_a_jump),
-	KUNIT_CASE(half_a_period_is_no_trap),
-	KUNIT_CASE(nothing_known_is_no_correction),
+	KUNIT_CASE(dc_lock_wraps_to_nearest),
+	KUNIT_CASE(dc_lock_locks_from_anywhere),
+	KUNIT_CASE(dc_lock_averages_noise),
+	KUNIT_CASE(dc_lock_one_late_frame_is_no_error),
+	KUNIT_CASE(dc_lock_lost_frames_keep_rate),
+	KUNIT_CASE(dc_lock_follows_jump),
+	KUNIT_CASE(dc_lock_locks_from_half_period),
+	KUNIT_CASE(dc_lock_nothing_known_is_no_correction),
 	{ }
 };
 

@@ -12,7 +12,7 @@ static const struct ec_eoe_ip all = {
 	.name = "axis-17",
 };
 
-static void parameters_survive_both_ways(struct kunit *test)
+static void eoe_parameters_survive_both_ways(struct kunit *test)
 {
 	struct ec_eoe_ip out;
 	u8 msg[EC_EOE_IP_SIZE];
@@ -25,7 +25,7 @@ static void parameters_survive_both_ways(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, &out, &all, sizeof(all));
 }
 
-static void what_is_not_meant_is_zero(struct kunit *test)
+static void eoe_unset_fields_are_zero(struct kunit *test)
 {
 	struct ec_eoe_ip in = all, out;
 	u8 msg[EC_EOE_IP_SIZE];
@@ -43,7 +43,7 @@ static void what_is_not_meant_is_zero(struct kunit *test)
 }
 
 /* a message may end behind its last field, but not before */
-static void short_messages(struct kunit *test)
+static void eoe_short_messages(struct kunit *test)
 {
 	struct ec_eoe_ip in = all, out;
 	u8 msg[EC_EOE_IP_SIZE];
@@ -59,7 +59,7 @@ static void short_messages(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_eoe_type_decode(msg, 3), -EMSGSIZE);
 }
 
-static void results(struct kunit *test)
+static void eoe_results(struct kunit *test)
 {
 	u16 result = 9;
 	u8 msg[4];
@@ -77,10 +77,10 @@ static void results(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(parameters_survive_both_ways),
-	KUNIT_CASE(what_is_not_meant_is_zero),
-	KUNIT_CASE(short_messages),
-	KUNIT_CASE(results),
+	KUNIT_CASE(eoe_parameters_survive_both_ways),
+	KUNIT_CASE(eoe_unset_fields_are_zero),
+	KUNIT_CASE(eoe_short_messages),
+	KUNIT_CASE(eoe_results),
 	{ }
 };
 

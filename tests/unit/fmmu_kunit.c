@@ -2,7 +2,7 @@
 #include "wire_kunit.h"
 #include "../../master/wire/fmmu.h"
 
-static void an_fmmu_page_survives_both_ways(struct kunit *test)
+static void fmmu_page_survives_both_ways(struct kunit *test)
 {
 	struct ec_fmmu in = {
 		.logical = 0x00010203, .len = 5, .lbit_start = 3, .lbit_stop = 6,
@@ -22,7 +22,7 @@ static void an_fmmu_page_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, out.enable, in.enable);
 }
 
-static void reserved_bits_of_a_page_are_ignored(struct kunit *test)
+static void fmmu_reserved_bits_of_page_are_ignored(struct kunit *test)
 {
 	struct ec_fmmu f;
 	u8 page[EC_FMMU_PAGE];
@@ -39,7 +39,7 @@ static void reserved_bits_of_a_page_are_ignored(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, f.enable);
 }
 
-static void mapped_bits_are_counted(struct kunit *test)
+static void fmmu_mapped_bits_are_counted(struct kunit *test)
 {
 	struct ec_fmmu f = { .len = 1, .lbit_start = 0, .lbit_stop = 7 };
 
@@ -57,7 +57,7 @@ static void mapped_bits_are_counted(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_fmmu_bits(&f), 8u * 0xFFFF);
 }
 
-static void a_sync_manager_page_survives_both_ways(struct kunit *test)
+static void fmmu_sync_manager_page_survives_both_ways(struct kunit *test)
 {
 	struct ec_sm in = { 0x1000, 128, 0x26, 0x08, 0x01, 0x00 }, out;
 	u8 page[EC_SM_PAGE];
@@ -81,7 +81,7 @@ static void copy_slowly(u8 *dst, u32 d, const u8 *src, u32 s, u32 bits)
 	}
 }
 
-static void bit_copies_touch_their_bits_only(struct kunit *test)
+static void fmmu_bit_copies_touch_their_bits_only(struct kunit *test)
 {
 	u8 src[8], got[8], want[8];
 	u32 d, s, n, i, x = 1;
@@ -104,11 +104,11 @@ static void bit_copies_touch_their_bits_only(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(an_fmmu_page_survives_both_ways),
-	KUNIT_CASE(reserved_bits_of_a_page_are_ignored),
-	KUNIT_CASE(mapped_bits_are_counted),
-	KUNIT_CASE(a_sync_manager_page_survives_both_ways),
-	KUNIT_CASE(bit_copies_touch_their_bits_only),
+	KUNIT_CASE(fmmu_page_survives_both_ways),
+	KUNIT_CASE(fmmu_reserved_bits_of_page_are_ignored),
+	KUNIT_CASE(fmmu_mapped_bits_are_counted),
+	KUNIT_CASE(fmmu_sync_manager_page_survives_both_ways),
+	KUNIT_CASE(fmmu_bit_copies_touch_their_bits_only),
 	{}
 };
 

@@ -4,7 +4,7 @@
 
 static u8 buf[1600];
 
-static void a_built_frame_is_read_back(struct kunit *test)
+static void frame_built_frame_is_read_back(struct kunit *test)
 {
 	struct ec_frame_buf f;
 	struct ec_frame_iter it;
@@ -41,7 +41,7 @@ static void a_built_frame_is_read_back(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &d), 0);
 }
 
-static void padding_behind_the_datagrams_is_ignored(struct kunit *test)
+static void frame_padding_behind_datagrams_is_ignored(struct kunit *test)
 {
 	struct ec_frame_buf f;
 	struct ec_frame_iter it;
@@ -56,7 +56,7 @@ static void padding_behind_the_datagrams_is_ignored(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &d), 0);
 }
 
-static void a_frame_of_another_type_is_refused(struct kunit *test)
+static void frame_of_another_type_is_refused(struct kunit *test)
 {
 	u8 in[16] = { 14, 0x40 };
 	struct ec_frame_iter it;
@@ -64,7 +64,7 @@ static void a_frame_of_another_type_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_init(&it, in, sizeof(in)), -EPROTONOSUPPORT);
 }
 
-static void a_length_beyond_the_frame_is_refused(struct kunit *test)
+static void frame_length_beyond_frame_is_refused(struct kunit *test)
 {
 	u8 in[16] = { 15, 0x10 };
 	struct ec_frame_iter it;
@@ -78,7 +78,7 @@ static void a_length_beyond_the_frame_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_init(&it, in, 0), -EBADMSG);
 }
 
-static void a_datagram_length_beyond_the_frame_is_refused(struct kunit *test)
+static void frame_datagram_length_beyond_frame_is_refused(struct kunit *test)
 {
 	u8 in[16] = { 14, 0x10, EC_CMD_BRD, 0, 0, 0, 0, 0, 3, 0 };
 	struct ec_frame_iter it;
@@ -91,7 +91,7 @@ static void a_datagram_length_beyond_the_frame_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &d), 1);
 }
 
-static void a_more_bit_without_another_datagram_is_refused(struct kunit *test)
+static void frame_more_bit_without_another_datagram_is_refused(struct kunit *test)
 {
 	u8 in[30] = { 12, 0x10, EC_CMD_BRD };
 	struct ec_frame_iter it;
@@ -113,7 +113,7 @@ static void a_more_bit_without_another_datagram_is_refused(struct kunit *test)
 	KUNIT_EXPECT_LE(test, ec_frame_iter_next(&it, &d), 0);
 }
 
-static void a_frame_takes_1498_bytes_and_no_more(struct kunit *test)
+static void frame_takes_1498_bytes_and_no_more(struct kunit *test)
 {
 	struct ec_frame_buf f;
 
@@ -131,7 +131,7 @@ static void a_frame_takes_1498_bytes_and_no_more(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_frame_add(&f, EC_CMD_NOP, 0, 0, 0, 0));
 }
 
-static void a_refused_datagram_leaves_no_more_bit(struct kunit *test)
+static void frame_refused_datagram_leaves_no_more_bit(struct kunit *test)
 {
 	struct ec_frame_buf f;
 
@@ -141,7 +141,7 @@ static void a_refused_datagram_leaves_no_more_bit(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, buf[2 + 7], 0);
 }
 
-static void datagrams_of_two_frames_make_one(struct kunit *test)
+static void frame_datagrams_of_two_frames_make_one(struct kunit *test)
 {
 	struct ec_frame_buf f, other;
 	struct ec_frame_iter it;
@@ -176,7 +176,7 @@ static void datagrams_of_two_frames_make_one(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_iter_next(&it, &d), 0);
 }
 
-static void wire_time_counts_preamble_padding_and_gap(struct kunit *test)
+static void frame_wire_time_counts_preamble_padding_and_gap(struct kunit *test)
 {
 	KUNIT_EXPECT_EQ(test, ec_frame_wire_ns(14 + 2 + 12 + 1), 6720u);
 	KUNIT_EXPECT_EQ(test, ec_frame_wire_ns(60), 6720u);
@@ -184,7 +184,7 @@ static void wire_time_counts_preamble_padding_and_gap(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_frame_wire_ns(1514), 123040u);
 }
 
-static void commands_know_what_they_do(struct kunit *test)
+static void frame_commands_have_known_directions(struct kunit *test)
 {
 	KUNIT_EXPECT_STREQ(test, ec_cmd_name(EC_CMD_NOP), "NOP");
 	KUNIT_EXPECT_STREQ(test, ec_cmd_name(14), "FRMW");
@@ -198,17 +198,17 @@ static void commands_know_what_they_do(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_built_frame_is_read_back),
-	KUNIT_CASE(padding_behind_the_datagrams_is_ignored),
-	KUNIT_CASE(a_frame_of_another_type_is_refused),
-	KUNIT_CASE(a_length_beyond_the_frame_is_refused),
-	KUNIT_CASE(a_datagram_length_beyond_the_frame_is_refused),
-	KUNIT_CASE(a_more_bit_without_another_datagram_is_refused),
-	KUNIT_CASE(a_frame_takes_1498_bytes_and_no_more),
-	KUNIT_CASE(a_refused_datagram_leaves_no_more_bit),
-	KUNIT_CASE(datagrams_of_two_frames_make_one),
-	KUNIT_CASE(wire_time_counts_preamble_padding_and_gap),
-	KUNIT_CASE(commands_know_what_they_do),
+	KUNIT_CASE(frame_built_frame_is_read_back),
+	KUNIT_CASE(frame_padding_behind_datagrams_is_ignored),
+	KUNIT_CASE(frame_of_another_type_is_refused),
+	KUNIT_CASE(frame_length_beyond_frame_is_refused),
+	KUNIT_CASE(frame_datagram_length_beyond_frame_is_refused),
+	KUNIT_CASE(frame_more_bit_without_another_datagram_is_refused),
+	KUNIT_CASE(frame_takes_1498_bytes_and_no_more),
+	KUNIT_CASE(frame_refused_datagram_leaves_no_more_bit),
+	KUNIT_CASE(frame_datagrams_of_two_frames_make_one),
+	KUNIT_CASE(frame_wire_time_counts_preamble_padding_and_gap),
+	KUNIT_CASE(frame_commands_have_known_directions),
 	{}
 };
 

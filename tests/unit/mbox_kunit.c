@@ -2,7 +2,7 @@
 #include "wire_kunit.h"
 #include "../../master/wire/mbox.h"
 
-static void a_header_survives_both_ways(struct kunit *test)
+static void mbox_header_survives_both_ways(struct kunit *test)
 {
 	struct ec_mbox_hdr in = {
 		.len = 3, .address = 0x1001, .channel = 0x2A, .prio = 3,
@@ -31,7 +31,7 @@ static void a_header_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, out.channel, 0x3F);
 }
 
-static void a_length_beyond_the_mailbox_is_refused(struct kunit *test)
+static void mbox_length_beyond_mailbox_is_refused(struct kunit *test)
 {
 	u8 msg[16] = { 11, 0, 0, 0, 0, EC_MBOX_COE };
 	struct ec_mbox_hdr h;
@@ -44,7 +44,7 @@ static void a_length_beyond_the_mailbox_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_rbuf_left(&r), (size_t)10);
 }
 
-static void a_short_header_is_refused(struct kunit *test)
+static void mbox_short_header_is_refused(struct kunit *test)
 {
 	u8 msg[5] = { 0 };
 	struct ec_mbox_hdr h;
@@ -57,7 +57,7 @@ static void a_short_header_is_refused(struct kunit *test)
 	}
 }
 
-static void the_counter_skips_zero(struct kunit *test)
+static void mbox_counter_skips_zero(struct kunit *test)
 {
 	u8 c = 0;
 	int i;
@@ -69,7 +69,7 @@ static void the_counter_skips_zero(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_mbox_next_counter(255), 1);
 }
 
-static void an_error_reply_survives_both_ways(struct kunit *test)
+static void mbox_error_reply_survives_both_ways(struct kunit *test)
 {
 	u8 msg[EC_MBOX_ERR_BODY];
 	struct ec_wbuf w = ec_wbuf(msg, sizeof(msg));
@@ -87,7 +87,7 @@ static void an_error_reply_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_mbox_error_decode(&r, &detail), -EBADMSG);
 }
 
-static void every_error_has_a_text_and_an_errno(struct kunit *test)
+static void mbox_every_error_has_text_and_errno(struct kunit *test)
 {
 	u16 i;
 
@@ -104,7 +104,7 @@ static void every_error_has_a_text_and_an_errno(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_mbox_errno_detail(-ECOMM), 0);
 }
 
-static void protocols_have_names(struct kunit *test)
+static void mbox_protocols_have_names(struct kunit *test)
 {
 	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(0), "ERR");
 	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(3), "CoE");
@@ -113,13 +113,13 @@ static void protocols_have_names(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_header_survives_both_ways),
-	KUNIT_CASE(a_length_beyond_the_mailbox_is_refused),
-	KUNIT_CASE(a_short_header_is_refused),
-	KUNIT_CASE(the_counter_skips_zero),
-	KUNIT_CASE(an_error_reply_survives_both_ways),
-	KUNIT_CASE(every_error_has_a_text_and_an_errno),
-	KUNIT_CASE(protocols_have_names),
+	KUNIT_CASE(mbox_header_survives_both_ways),
+	KUNIT_CASE(mbox_length_beyond_mailbox_is_refused),
+	KUNIT_CASE(mbox_short_header_is_refused),
+	KUNIT_CASE(mbox_counter_skips_zero),
+	KUNIT_CASE(mbox_error_reply_survives_both_ways),
+	KUNIT_CASE(mbox_every_error_has_text_and_errno),
+	KUNIT_CASE(mbox_protocols_have_names),
 	{}
 };
 

@@ -99,7 +99,7 @@ static const size_t sizes[] = {
 };
 static const size_t mboxes[] = { 10, 11, 16, 17, 24, 58, 122, 250, 1480 };
 
-static void objects_of_every_size_are_read(struct kunit *test)
+static void sdo_objects_of_every_size_are_read(struct kunit *test)
 {
 	struct ec_sdo_up u;
 	size_t i, j;
@@ -124,7 +124,7 @@ static void objects_of_every_size_are_read(struct kunit *test)
 	}
 }
 
-static void objects_of_every_size_are_written(struct kunit *test)
+static void sdo_objects_of_every_size_are_written(struct kunit *test)
 {
 	struct ec_sdo_down d;
 	size_t i, j;
@@ -148,7 +148,7 @@ static void objects_of_every_size_are_written(struct kunit *test)
 	}
 }
 
-static void an_abort_of_the_slave_ends_the_transfer(struct kunit *test)
+static void sdo_abort_of_slave_ends_transfer(struct kunit *test)
 {
 	struct ec_sdo_up u;
 	struct ec_sdo_down d;
@@ -166,7 +166,7 @@ static void an_abort_of_the_slave_ends_the_transfer(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, d.send_abort);
 }
 
-static void an_abort_sent_as_a_response_counts_too(struct kunit *test)
+static void sdo_abort_sent_as_response_ends_transfer(struct kunit *test)
 {
 	static const u8 abort[] = { 0x00, 0x30, 0x80, 0x00, 0x20, 0x01, 0x11, 0x00, 0x09, 0x06 };
 	struct ec_sdo_up u;
@@ -177,7 +177,7 @@ static void an_abort_sent_as_a_response_counts_too(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.abort, EC_ABORT_NO_SUB);
 }
 
-static void answers_to_other_questions_are_stale(struct kunit *test)
+static void sdo_answers_to_other_questions_are_stale(struct kunit *test)
 {
 	static const u8 other_index[] = { 0x00, 0x30, 0x4F, 0x01, 0x20, 0x01, 9, 0, 0, 0 };
 	static const u8 other_sub[] = { 0x00, 0x30, 0x4F, 0x00, 0x20, 0x02, 9, 0, 0, 0 };
@@ -211,7 +211,7 @@ static void answers_to_other_questions_are_stale(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, written, 10), 0);
 }
 
-static void a_late_answer_between_segments_is_stale(struct kunit *test)
+static void sdo_late_answer_between_segments_is_stale(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
 	static const u8 late[] = { 0x00, 0x30, 0x43, 0x18, 0x10, 0x01, 9, 0, 0, 0 };
@@ -226,7 +226,7 @@ static void a_late_answer_between_segments_is_stale(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)8);
 }
 
-static void another_command_between_segments_is_answered_with_an_abort(struct kunit *test)
+static void sdo_another_command_between_segments_is_answered_with_abort(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
 	static const u8 again[] = { 0x00, 0x30, 0x43, 0x00, 0x20, 0x01, 9, 0, 0, 0 };
@@ -262,7 +262,7 @@ static void another_command_between_segments_is_answered_with_an_abort(struct ku
 	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, ok, 10), -EINVAL);
 }
 
-static void complete_access_may_be_answered_with_the_other_subindex(struct kunit *test)
+static void sdo_complete_access_may_be_answered_with_other_subindex(struct kunit *test)
 {
 	u8 resp[] = { 0x00, 0x30, 0x51, 0x00, 0x20, 0x00, 2, 0, 0, 0, 'a', 'b' };
 	struct ec_sdo_up u;
@@ -276,7 +276,7 @@ static void complete_access_may_be_answered_with_the_other_subindex(struct kunit
 	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, resp, sizeof(resp)), EC_STALE);
 }
 
-static void a_wrong_toggle_bit_is_answered_with_an_abort(struct kunit *test)
+static void sdo_wrong_toggle_bit_is_answered_with_abort(struct kunit *test)
 {
 	static const u8 want[] = { 0x00, 0x20, 0x80, 0x00, 0x20, 0x01, 0x00, 0x00, 0x03, 0x05 };
 	struct ec_sdo_up u;
@@ -314,7 +314,7 @@ static void a_wrong_toggle_bit_is_answered_with_an_abort(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, tx, want, 10);
 }
 
-static void the_server_aborts_on_a_wrong_toggle_bit(struct kunit *test)
+static void sdo_server_aborts_on_wrong_toggle_bit(struct kunit *test)
 {
 	static const u8 up[] = { 0x00, 0x20, 0x40, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
 	static const u8 seg[] = { 0x00, 0x20, 0x70, 0, 0, 0, 0, 0, 0, 0 };
@@ -332,7 +332,7 @@ static void the_server_aborts_on_a_wrong_toggle_bit(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, od.writes, 0);
 }
 
-static void a_segment_without_a_transfer_is_aborted(struct kunit *test)
+static void sdo_segment_without_transfer_is_aborted(struct kunit *test)
 {
 	static const u8 seg[] = { 0x00, 0x20, 0x60, 0, 0, 0, 0, 0, 0, 0 };
 	static const u8 seg2[] = { 0x00, 0x20, 0x70, 0, 0, 0, 0, 0, 0, 0 };
@@ -364,7 +364,7 @@ static void a_segment_without_a_transfer_is_aborted(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, od.writes, 0);
 }
 
-static void segments_must_make_up_the_announced_size(struct kunit *test)
+static void sdo_segments_must_make_up_announced_size(struct kunit *test)
 {
 	static const u8 down[] = { 0x00, 0x20, 0x21, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
 	static const u8 last7[] = { 0x00, 0x20, 0x01, 1, 2, 3, 4, 5, 6, 7 };
@@ -379,7 +379,7 @@ static void segments_must_make_up_the_announced_size(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, od.writes, 0);
 }
 
-static void an_object_too_large_for_the_server_is_refused(struct kunit *test)
+static void sdo_object_too_large_for_server_is_refused(struct kunit *test)
 {
 	static const u8 down[] = { 0x00, 0x20, 0x21, 0x00, 0x20, 0x01, 0xFF, 0xFF, 0xFF, 0xFF };
 
@@ -391,7 +391,7 @@ static void an_object_too_large_for_the_server_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(rx + 6), EC_ABORT_INTERNAL);
 }
 
-static void an_object_larger_than_the_buffer_is_aborted(struct kunit *test)
+static void sdo_object_larger_than_buffer_is_aborted(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 100, 0, 0, 0, 1, 2 };
 	static const u8 whole[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 5, 0, 0, 0, 1, 2, 3, 4, 5 };
@@ -420,7 +420,7 @@ static void an_object_larger_than_the_buffer_is_aborted(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, u.send_abort);
 }
 
-static void more_segments_than_announced_stop_at_the_buffer(struct kunit *test)
+static void sdo_more_segments_than_announced_stop_at_buffer(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 4, 0, 0, 0 };
 	u8 seg[10] = { 0x00, 0x30, 0x00, 1, 2, 3, 4, 5, 6, 7 };
@@ -438,7 +438,7 @@ static void more_segments_than_announced_stop_at_the_buffer(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)14);
 }
 
-static void fewer_bytes_than_announced_are_accepted(struct kunit *test)
+static void sdo_fewer_bytes_than_announced_are_accepted(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 64, 0, 0, 0, 'a', 'b' };
 	static const u8 seg[] = { 0x00, 0x30, 0x09, 'c', 'd', 'e', 0, 0, 0, 0 };
@@ -453,7 +453,7 @@ static void fewer_bytes_than_announced_are_accepted(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, got, "abcde", 5);
 }
 
-static void padding_behind_a_complete_object_is_dropped(struct kunit *test)
+static void sdo_padding_behind_complete_object_is_dropped(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 2, 0, 0, 0, 'a', 'b', 0, 0 };
 	static const u8 empty[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
@@ -470,7 +470,7 @@ static void padding_behind_a_complete_object_is_dropped(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)0);
 }
 
-static void segments_without_padding_are_understood(struct kunit *test)
+static void sdo_segments_without_padding_are_understood(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 3, 0, 0, 0 };
 	static const u8 bare[] = { 0x00, 0x30, 0x09, 'a', 'b', 'c' };
@@ -487,7 +487,7 @@ static void segments_without_padding_are_understood(struct kunit *test)
 	}
 }
 
-static void the_unused_count_of_a_long_segment_means_nothing(struct kunit *test)
+static void sdo_unused_count_of_long_segment_is_ignored(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
 	static const u8 seg[] = { 0x00, 0x30, 0x0F, 1, 2, 3, 4, 5, 6, 7, 8 };
@@ -500,7 +500,7 @@ static void the_unused_count_of_a_long_segment_means_nothing(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)8);
 }
 
-static void empty_segments_do_not_go_on_for_ever(struct kunit *test)
+static void sdo_empty_segments_do_not_go_on_for_ever(struct kunit *test)
 {
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 8, 0, 0, 0 };
 	static const u8 seg[] = { 0x00, 0x30, 0x0E, 0, 0, 0, 0, 0, 0, 0 };
@@ -513,7 +513,7 @@ static void empty_segments_do_not_go_on_for_ever(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, u.send_abort);
 }
 
-static void expedited_data_without_a_size_fills_the_buffer(struct kunit *test)
+static void sdo_expedited_data_without_size_fills_buffer(struct kunit *test)
 {
 	static const u8 exp[] = { 0x00, 0x30, 0x42, 0x00, 0x20, 0x01, 1, 2, 3, 4 };
 	struct ec_sdo_up u;
@@ -532,7 +532,7 @@ static void expedited_data_without_a_size_fills_the_buffer(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdo_up_rx(&u, exp, sizeof(exp)), -ENOBUFS);
 }
 
-static void short_messages_are_refused_at_every_length(struct kunit *test)
+static void sdo_short_messages_are_refused_at_every_length(struct kunit *test)
 {
 	static const u8 exp[] = { 0x00, 0x30, 0x43, 0x00, 0x20, 0x01, 1, 2, 3, 4 };
 	static const u8 norm[] = { 0x00, 0x30, 0x41, 0x00, 0x20, 0x01, 1, 0, 0, 0 };
@@ -561,7 +561,7 @@ static void short_messages_are_refused_at_every_length(struct kunit *test)
 				(const u8 *)"\0\x20\x40\0\x20\1\0\0\0", len, rx, 24), -EMSGSIZE);
 }
 
-static void buffers_too_small_are_refused(struct kunit *test)
+static void sdo_buffers_too_small_are_refused(struct kunit *test)
 {
 	struct ec_sdo_up u;
 	struct ec_sdo_down d;
@@ -575,7 +575,7 @@ static void buffers_too_small_are_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdo_srv_handle(&srv, tx, 10, rx, 9), -EINVAL);
 }
 
-static void a_message_can_be_sent_again(struct kunit *test)
+static void sdo_message_can_be_sent_again(struct kunit *test)
 {
 	struct ec_sdo_down d;
 	u8 first[24];
@@ -591,7 +591,7 @@ static void a_message_can_be_sent_again(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, tx, first, 24);
 }
 
-static void a_cancelled_transfer_tells_the_slave(struct kunit *test)
+static void sdo_cancelled_transfer_aborts_at_slave(struct kunit *test)
 {
 	struct ec_sdo_up u;
 	struct ec_sdo_down d;
@@ -612,7 +612,7 @@ static void a_cancelled_transfer_tells_the_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(tx + 6), EC_ABORT_GENERAL);
 }
 
-static void a_new_request_ends_the_old_transfer_in_the_server(struct kunit *test)
+static void sdo_new_request_ends_old_transfer_in_server(struct kunit *test)
 {
 	static const u8 seg[] = { 0x00, 0x20, 0x60, 0, 0, 0, 0, 0, 0, 0 };
 	struct ec_sdo_up u;
@@ -630,7 +630,7 @@ static void a_new_request_ends_the_old_transfer_in_the_server(struct kunit *test
 	KUNIT_EXPECT_EQ(test, rx[2], 0x80);
 }
 
-static void the_server_refuses_what_it_does_not_know(struct kunit *test)
+static void sdo_server_refuses_unknown_commands(struct kunit *test)
 {
 	u8 req[10] = { 0x00, 0x20, 0xA0, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
 
@@ -645,7 +645,7 @@ static void the_server_refuses_what_it_does_not_know(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(rx + 6), EC_ABORT_NO_SUB);
 }
 
-static void states_have_names(struct kunit *test)
+static void sdo_states_have_names(struct kunit *test)
 {
 	KUNIT_EXPECT_STREQ(test, ec_sdo_state_name(EC_SDO_INITIATE), "INITIATE");
 	KUNIT_EXPECT_STREQ(test, ec_sdo_state_name(EC_SDO_SEGMENT), "SEGMENT");
@@ -654,34 +654,34 @@ static void states_have_names(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(objects_of_every_size_are_read),
-	KUNIT_CASE(objects_of_every_size_are_written),
-	KUNIT_CASE(an_abort_of_the_slave_ends_the_transfer),
-	KUNIT_CASE(an_abort_sent_as_a_response_counts_too),
-	KUNIT_CASE(answers_to_other_questions_are_stale),
-	KUNIT_CASE(a_late_answer_between_segments_is_stale),
-	KUNIT_CASE(another_command_between_segments_is_answered_with_an_abort),
-	KUNIT_CASE(complete_access_may_be_answered_with_the_other_subindex),
-	KUNIT_CASE(a_wrong_toggle_bit_is_answered_with_an_abort),
-	KUNIT_CASE(the_server_aborts_on_a_wrong_toggle_bit),
-	KUNIT_CASE(a_segment_without_a_transfer_is_aborted),
-	KUNIT_CASE(segments_must_make_up_the_announced_size),
-	KUNIT_CASE(an_object_too_large_for_the_server_is_refused),
-	KUNIT_CASE(an_object_larger_than_the_buffer_is_aborted),
-	KUNIT_CASE(more_segments_than_announced_stop_at_the_buffer),
-	KUNIT_CASE(fewer_bytes_than_announced_are_accepted),
-	KUNIT_CASE(padding_behind_a_complete_object_is_dropped),
-	KUNIT_CASE(segments_without_padding_are_understood),
-	KUNIT_CASE(the_unused_count_of_a_long_segment_means_nothing),
-	KUNIT_CASE(empty_segments_do_not_go_on_for_ever),
-	KUNIT_CASE(expedited_data_without_a_size_fills_the_buffer),
-	KUNIT_CASE(short_messages_are_refused_at_every_length),
-	KUNIT_CASE(buffers_too_small_are_refused),
-	KUNIT_CASE(a_message_can_be_sent_again),
-	KUNIT_CASE(a_cancelled_transfer_tells_the_slave),
-	KUNIT_CASE(a_new_request_ends_the_old_transfer_in_the_server),
-	KUNIT_CASE(the_server_refuses_what_it_does_not_know),
-	KUNIT_CASE(states_have_names),
+	KUNIT_CASE(sdo_objects_of_every_size_are_read),
+	KUNIT_CASE(sdo_objects_of_every_size_are_written),
+	KUNIT_CASE(sdo_abort_of_slave_ends_transfer),
+	KUNIT_CASE(sdo_abort_sent_as_response_ends_transfer),
+	KUNIT_CASE(sdo_answers_to_other_questions_are_stale),
+	KUNIT_CASE(sdo_late_answer_between_segments_is_stale),
+	KUNIT_CASE(sdo_another_command_between_segments_is_answered_with_abort),
+	KUNIT_CASE(sdo_complete_access_may_be_answered_with_other_subindex),
+	KUNIT_CASE(sdo_wrong_toggle_bit_is_answered_with_abort),
+	KUNIT_CASE(sdo_server_aborts_on_wrong_toggle_bit),
+	KUNIT_CASE(sdo_segment_without_transfer_is_aborted),
+	KUNIT_CASE(sdo_segments_must_make_up_announced_size),
+	KUNIT_CASE(sdo_object_too_large_for_server_is_refused),
+	KUNIT_CASE(sdo_object_larger_than_buffer_is_aborted),
+	KUNIT_CASE(sdo_more_segments_than_announced_stop_at_buffer),
+	KUNIT_CASE(sdo_fewer_bytes_than_announced_are_accepted),
+	KUNIT_CASE(sdo_padding_behind_complete_object_is_dropped),
+	KUNIT_CASE(sdo_segments_without_padding_are_understood),
+	KUNIT_CASE(sdo_unused_count_of_long_segment_is_ignored),
+	KUNIT_CASE(sdo_empty_segments_do_not_go_on_for_ever),
+	KUNIT_CASE(sdo_expedited_data_without_size_fills_buffer),
+	KUNIT_CASE(sdo_short_messages_are_refused_at_every_length),
+	KUNIT_CASE(sdo_buffers_too_small_are_refused),
+	KUNIT_CASE(sdo_message_can_be_sent_again),
+	KUNIT_CASE(sdo_cancelled_transfer_aborts_at_slave),
+	KUNIT_CASE(sdo_new_request_ends_old_transfer_in_server),
+	KUNIT_CASE(sdo_server_refuses_unknown_commands),
+	KUNIT_CASE(sdo_states_have_names),
 	{}
 };
 

@@ -18,7 +18,7 @@ static int transfer(struct ec_sdoinfo *s, struct ec_sdoinfo_resp *resp, size_t m
 	return len ? len : ret;
 }
 
-static void lists_come_in_as_many_fragments_as_needed(struct kunit *test)
+static void sdoinfo_lists_come_in_as_many_fragments_as_needed(struct kunit *test)
 {
 	static const size_t mboxes[] = { 10, 11, 24, 58, 122, 250, 1480 };
 	static const size_t counts[] = { 0, 1, 2, 8, 57, 1000 };
@@ -45,7 +45,7 @@ static void lists_come_in_as_many_fragments_as_needed(struct kunit *test)
 	}
 }
 
-static void an_object_description_survives_both_ways(struct kunit *test)
+static void sdoinfo_object_description_survives_both_ways(struct kunit *test)
 {
 	struct ec_od_object in = { 0x1018, 0x0023, 4, EC_OD_RECORD, "Identity", 8 }, out;
 	struct ec_sdoinfo s;
@@ -67,7 +67,7 @@ static void an_object_description_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_od_object_encode(body, 13, &in), -ENOBUFS);
 }
 
-static void an_entry_description_survives_both_ways(struct kunit *test)
+static void sdoinfo_entry_description_survives_both_ways(struct kunit *test)
 {
 	struct ec_od_entry in = { 0x1018, 1, 0x7F, 0x0007, 32, EC_OD_READ, "Vendor ID", 9 }, out;
 	struct ec_sdoinfo s;
@@ -90,7 +90,7 @@ static void an_entry_description_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out.name, "Vendor ID", 9);
 }
 
-static void optional_fields_of_an_entry_are_skipped(struct kunit *test)
+static void sdoinfo_optional_fields_of_entry_are_skipped(struct kunit *test)
 {
 	u8 in[] = {
 		0x00, 0x20, 0x01, 0x70, 0x06, 0x00, 0x10, 0x00, 0x3F, 0x00,
@@ -108,7 +108,7 @@ static void optional_fields_of_an_entry_are_skipped(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, e.name_len, (size_t)0);
 }
 
-static void short_descriptions_are_refused(struct kunit *test)
+static void sdoinfo_short_descriptions_are_refused(struct kunit *test)
 {
 	static const u8 in[10];
 	struct ec_od_object o;
@@ -125,7 +125,7 @@ static void short_descriptions_are_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, e.name_len, (size_t)0);
 }
 
-static void answers_to_other_questions_are_stale(struct kunit *test)
+static void sdoinfo_answers_to_other_questions_are_stale(struct kunit *test)
 {
 	static const u8 other_list[] = { 0, 0x80, 2, 0, 0, 0, 2, 0 };
 	static const u8 object[] = { 0, 0x80, 4, 0, 0, 0, 0x18, 0x10, 0, 0, 0, 7 };
@@ -147,7 +147,7 @@ static void answers_to_other_questions_are_stale(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, other_sub, sizeof(other_sub)), EC_STALE);
 }
 
-static void a_refusal_carries_its_abort_code(struct kunit *test)
+static void sdoinfo_refusal_carries_its_abort_code(struct kunit *test)
 {
 	struct ec_sdoinfo s;
 	u8 msg[16];
@@ -163,7 +163,7 @@ static void a_refusal_carries_its_abort_code(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_error_encode(msg, 9, 0), -EMSGSIZE);
 }
 
-static void short_fragments_are_refused(struct kunit *test)
+static void sdoinfo_short_fragments_are_refused(struct kunit *test)
 {
 	static const u8 msg[] = { 0, 0x80, 6, 0, 0, 0, 0x18, 0x10, 1, 0 };
 	struct ec_sdoinfo s;
@@ -175,7 +175,7 @@ static void short_fragments_are_refused(struct kunit *test)
 	}
 }
 
-static void a_lost_fragment_is_noticed(struct kunit *test)
+static void sdoinfo_lost_fragment_is_noticed(struct kunit *test)
 {
 	u8 msg[] = { 0, 0x80, 0x82, 0, 3, 0, 1, 0, 0, 0x10 };
 	struct ec_sdoinfo s;
@@ -190,7 +190,7 @@ static void a_lost_fragment_is_noticed(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), -EPROTO);
 }
 
-static void fragments_without_end_are_bounded(struct kunit *test)
+static void sdoinfo_fragments_without_end_are_bounded(struct kunit *test)
 {
 	static const u8 msg[] = { 0, 0x80, 0x82, 0, 0, 0, 1, 0 };
 	struct ec_sdoinfo s;
@@ -208,7 +208,7 @@ static void fragments_without_end_are_bounded(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ret, -ENOBUFS);
 }
 
-static void an_answer_larger_than_the_buffer_is_refused(struct kunit *test)
+static void sdoinfo_answer_larger_than_buffer_is_refused(struct kunit *test)
 {
 	static const u8 msg[] = { 0, 0x80, 2, 0, 0, 0, 1, 0, 0, 0x10, 1, 0x10 };
 	struct ec_sdoinfo s;
@@ -219,7 +219,7 @@ static void an_answer_larger_than_the_buffer_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), 0);
 }
 
-static void requests_are_understood_by_the_server(struct kunit *test)
+static void sdoinfo_requests_are_understood_by_server(struct kunit *test)
 {
 	struct ec_sdoinfo s;
 	struct ec_sdoinfo_req req;
@@ -243,7 +243,7 @@ static void requests_are_understood_by_the_server(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_tx(&s, tx, 9), -EMSGSIZE);
 }
 
-static void a_mailbox_too_small_for_a_fragment_is_refused(struct kunit *test)
+static void sdoinfo_mailbox_too_small_for_fragment_is_refused(struct kunit *test)
 {
 	struct ec_sdoinfo_resp resp;
 
@@ -255,19 +255,19 @@ static void a_mailbox_too_small_for_a_fragment_is_refused(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(lists_come_in_as_many_fragments_as_needed),
-	KUNIT_CASE(an_object_description_survives_both_ways),
-	KUNIT_CASE(an_entry_description_survives_both_ways),
-	KUNIT_CASE(optional_fields_of_an_entry_are_skipped),
-	KUNIT_CASE(short_descriptions_are_refused),
-	KUNIT_CASE(answers_to_other_questions_are_stale),
-	KUNIT_CASE(a_refusal_carries_its_abort_code),
-	KUNIT_CASE(short_fragments_are_refused),
-	KUNIT_CASE(a_lost_fragment_is_noticed),
-	KUNIT_CASE(fragments_without_end_are_bounded),
-	KUNIT_CASE(an_answer_larger_than_the_buffer_is_refused),
-	KUNIT_CASE(requests_are_understood_by_the_server),
-	KUNIT_CASE(a_mailbox_too_small_for_a_fragment_is_refused),
+	KUNIT_CASE(sdoinfo_lists_come_in_as_many_fragments_as_needed),
+	KUNIT_CASE(sdoinfo_object_description_survives_both_ways),
+	KUNIT_CASE(sdoinfo_entry_description_survives_both_ways),
+	KUNIT_CASE(sdoinfo_optional_fields_of_entry_are_skipped),
+	KUNIT_CASE(sdoinfo_short_descriptions_are_refused),
+	KUNIT_CASE(sdoinfo_answers_to_other_questions_are_stale),
+	KUNIT_CASE(sdoinfo_refusal_carries_its_abort_code),
+	KUNIT_CASE(sdoinfo_short_fragments_are_refused),
+	KUNIT_CASE(sdoinfo_lost_fragment_is_noticed),
+	KUNIT_CASE(sdoinfo_fragments_without_end_are_bounded),
+	KUNIT_CASE(sdoinfo_answer_larger_than_buffer_is_refused),
+	KUNIT_CASE(sdoinfo_requests_are_understood_by_server),
+	KUNIT_CASE(sdoinfo_mailbox_too_small_for_fragment_is_refused),
 	{}
 };
 

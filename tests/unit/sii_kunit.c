@@ -79,7 +79,7 @@ static size_t raw(const u16 *words, size_t n)
 	return EC_SII_FIXED_SIZE + 2 * n;
 }
 
-static void the_fixed_area_is_read_back(struct kunit *test)
+static void sii_fixed_area_is_read_back(struct kunit *test)
 {
 	struct ec_sii_info i;
 
@@ -102,7 +102,7 @@ static void the_fixed_area_is_read_back(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_decode_info(img, 0, &i), -EMSGSIZE);
 }
 
-static void a_wrong_checksum_is_reported(struct kunit *test)
+static void sii_wrong_checksum_is_reported(struct kunit *test)
 {
 	struct ec_sii_info i;
 
@@ -113,7 +113,7 @@ static void a_wrong_checksum_is_reported(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, i.vendor, 0x1337u);
 }
 
-static void categories_come_in_the_order_written(struct kunit *test)
+static void sii_categories_come_in_order_written(struct kunit *test)
 {
 	static const u16 types[] = { 10, 30, 40, 41, 50, 51, 60, 0x0801 };
 	struct ec_sii_iter it;
@@ -132,7 +132,7 @@ static void categories_come_in_the_order_written(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, it.pos + 2, (size_t)used);
 }
 
-static void strings_are_found_and_made_printable(struct kunit *test)
+static void sii_strings_are_found_and_made_printable(struct kunit *test)
 {
 	char s[32];
 
@@ -149,7 +149,7 @@ static void strings_are_found_and_made_printable(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_string(img, 2048, 1, s, 0), -EINVAL);
 }
 
-static void only_printable_characters_come_out(struct kunit *test)
+static void sii_only_printable_characters_come_out(struct kunit *test)
 {
 	/* the bytes on both sides of every limit */
 	static const u8 in[] = { 0x1F, 0x20, 0x7E, 0x7F, 0x80, 0x9F, 0xA0, 0xBF, 0xC0, 0xFF, 0, 0 };
@@ -163,7 +163,7 @@ static void only_printable_characters_come_out(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, s, "? ~???\xC2\xA0\xC2\xBF\xC3\x80\xC3\xBF");
 }
 
-static void strings_may_be_built_late(struct kunit *test)
+static void sii_strings_may_be_built_late(struct kunit *test)
 {
 	struct ec_sii_general g = { 0 };
 	struct ec_sii_builder b;
@@ -183,7 +183,7 @@ static void strings_may_be_built_late(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, sm, sms, sizeof(sm));
 }
 
-static void a_string_is_cut_between_characters(struct kunit *test)
+static void sii_string_is_cut_between_characters(struct kunit *test)
 {
 	char s[8];
 
@@ -197,7 +197,7 @@ static void a_string_is_cut_between_characters(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, s, "");
 }
 
-static void string_categories_count_as_one(struct kunit *test)
+static void sii_string_categories_count_as_one(struct kunit *test)
 {
 	static const u16 w[] = {
 		10, 3, 0x0102, 0x0141, 0x0042,		/* "A", "B" */
@@ -213,7 +213,7 @@ static void string_categories_count_as_one(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, s, "CD");
 }
 
-static void a_string_longer_than_its_category_is_refused(struct kunit *test)
+static void sii_string_longer_than_its_category_is_refused(struct kunit *test)
 {
 	static const u16 w[] = { 10, 2, 0x0902, 0x4141, 0xFFFF };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -224,7 +224,7 @@ static void a_string_longer_than_its_category_is_refused(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, s, "");
 }
 
-static void the_general_category_is_read_back(struct kunit *test)
+static void sii_general_category_is_read_back(struct kunit *test)
 {
 	struct ec_sii_general g;
 
@@ -242,7 +242,7 @@ static void the_general_category_is_read_back(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, g.id_address, 0x0120);
 }
 
-static void a_short_general_category_is_accepted_from_18_bytes(struct kunit *test)
+static void sii_short_general_category_is_accepted_from_18_bytes(struct kunit *test)
 {
 	u16 w[] = { 30, 9, 0, 0x0500, 0, 0, 0, 0, 0, 0, 0x0033, 0xFFFF };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -258,7 +258,7 @@ static void a_short_general_category_is_accepted_from_18_bytes(struct kunit *tes
 	KUNIT_EXPECT_EQ(test, ec_sii_decode_general(img, len, &g), -EBADMSG);
 }
 
-static void a_missing_general_category_leaves_zeros(struct kunit *test)
+static void sii_missing_general_category_leaves_zeros(struct kunit *test)
 {
 	static const u16 w[] = { 0xFFFF };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -269,7 +269,7 @@ static void a_missing_general_category_leaves_zeros(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, g.name, 0);
 }
 
-static void fmmus_sync_managers_and_dc_modes_are_read_back(struct kunit *test)
+static void sii_fmmus_sync_managers_and_dc_modes_are_read_back(struct kunit *test)
 {
 	struct ec_sii_sm sm[8];
 	struct ec_sii_dc dc[4];
@@ -296,7 +296,7 @@ static void fmmus_sync_managers_and_dc_modes_are_read_back(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_decode_dcs(img, 2048, dc, 1), 1);
 }
 
-static void pdos_are_read_back_by_direction(struct kunit *test)
+static void sii_pdos_are_read_back_by_direction(struct kunit *test)
 {
 	struct ec_sii_pdo_iter it;
 	struct ec_sii_pdo_entry e;
@@ -331,7 +331,7 @@ static void pdos_are_read_back_by_direction(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_pdo_iter_next(&it, &pdo), 0);
 }
 
-static void pdos_of_split_categories_are_appended(struct kunit *test)
+static void sii_pdos_of_split_categories_are_appended(struct kunit *test)
 {
 	static const u16 w[] = {
 		50, 4, 0x1A00, 0, 0, 0,
@@ -351,7 +351,7 @@ static void pdos_of_split_categories_are_appended(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_pdo_iter_next(&it, &pdo), 0);
 }
 
-static void pdo_entries_beyond_the_category_are_refused(struct kunit *test)
+static void sii_pdo_entries_beyond_category_are_refused(struct kunit *test)
 {
 	static const u16 w[] = {
 		50, 12, 0x1A00, 0, 0, 0, 0x1A01, 2, 0, 0, 0x6000, 1, 0, 0, 0xFFFF,
@@ -366,7 +366,7 @@ static void pdo_entries_beyond_the_category_are_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_pdo_iter_next(&it, &pdo), -EBADMSG);
 }
 
-static void a_category_beyond_the_image_ends_the_walk(struct kunit *test)
+static void sii_category_beyond_image_ends_walk(struct kunit *test)
 {
 	static const u16 w[] = { 40, 1, 0x0201, 41, 5, 0, 0, 0, 0 };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -383,7 +383,7 @@ static void a_category_beyond_the_image_ends_the_walk(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_used(img, len), (size_t)(EC_SII_FIXED_SIZE + 6));
 }
 
-static void an_image_without_end_marker_is_reported(struct kunit *test)
+static void sii_image_without_end_marker_is_reported(struct kunit *test)
 {
 	static const u16 w[] = { 40, 1, 0x0201, 41 };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -400,7 +400,7 @@ static void an_image_without_end_marker_is_reported(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_iter_next(&it, &cat), -ENODATA);
 }
 
-static void endless_categories_are_bounded(struct kunit *test)
+static void sii_endless_categories_are_bounded(struct kunit *test)
 {
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
@@ -418,7 +418,7 @@ static void endless_categories_are_bounded(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, 4096), 0);
 }
 
-static void an_image_of_zeros_ends_early(struct kunit *test)
+static void sii_image_of_zeros_ends_early(struct kunit *test)
 {
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
@@ -439,7 +439,7 @@ static void an_image_of_zeros_ends_early(struct kunit *test)
 	KUNIT_EXPECT_LE(test, ec_sii_used(img, have), have);
 }
 
-static void an_image_of_ones_ends_at_once(struct kunit *test)
+static void sii_image_of_ones_ends_at_once(struct kunit *test)
 {
 	struct ec_sii_info i;
 
@@ -453,7 +453,7 @@ static void an_image_of_ones_ends_at_once(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, i.size_kbit, 65536u);
 }
 
-static void a_scan_by_4_or_8_bytes_reads_no_more_than_it_needs(struct kunit *test)
+static void sii_scan_by_4_or_8_bytes_reads_no_more_than_it_needs(struct kunit *test)
 {
 	size_t step, have;
 	int need;
@@ -471,7 +471,7 @@ static void a_scan_by_4_or_8_bytes_reads_no_more_than_it_needs(struct kunit *tes
 	}
 }
 
-static void every_prefix_asks_for_more_until_the_end_marker(struct kunit *test)
+static void sii_prefix_needs_more_bytes_until_end_marker(struct kunit *test)
 {
 	size_t have;
 
@@ -482,7 +482,7 @@ static void every_prefix_asks_for_more_until_the_end_marker(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, have), 0);
 }
 
-static void a_garbage_category_is_not_read_for_ever(struct kunit *test)
+static void sii_garbage_category_ends_walk(struct kunit *test)
 {
 	static const u16 w[] = { 40, 1, 0x0201, 0x1234, 0xF000 };
 	size_t len = raw(w, ARRAY_SIZE(w));
@@ -496,7 +496,7 @@ static void a_garbage_category_is_not_read_for_ever(struct kunit *test)
 			(int)(EC_SII_FIXED_SIZE + 6 + 4 + 2 * 0x7000 + 2));
 }
 
-static void nothing_lies_behind_512_kib(struct kunit *test)
+static void sii_nothing_lies_behind_512_kib(struct kunit *test)
 {
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
@@ -522,7 +522,7 @@ static void nothing_lies_behind_512_kib(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_needed(img, sizeof(img)), 0);
 }
 
-static void every_flaw_is_found(struct kunit *test)
+static void sii_every_flaw_is_found(struct kunit *test)
 {
 	static const u16 beyond[] = { 40, 1, 0x0201, 0xFFFF };
 	static const u16 large[] = { 40, 1, 0x0201, 0x1234, 0xF000 };
@@ -561,7 +561,7 @@ static void every_flaw_is_found(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_check(img, len, &f), EC_SII_FLAW_NONE);
 }
 
-static void a_builder_without_room_says_so(struct kunit *test)
+static void sii_builder_reports_full_buffer(struct kunit *test)
 {
 	struct ec_sii_builder b;
 	struct ec_sii_general g = { .name = 1 };
@@ -577,7 +577,7 @@ static void a_builder_without_room_says_so(struct kunit *test)
 	}
 }
 
-static void too_many_or_too_long_strings_are_refused(struct kunit *test)
+static void sii_too_many_or_too_long_strings_are_refused(struct kunit *test)
 {
 	static char text[300];
 	struct ec_sii_builder b;
@@ -596,7 +596,7 @@ static void too_many_or_too_long_strings_are_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_build_end(&b), -ENOSPC);
 }
 
-static void the_rest_of_a_built_image_is_blank(struct kunit *test)
+static void sii_rest_of_built_image_is_blank(struct kunit *test)
 {
 	int i;
 
@@ -606,35 +606,35 @@ static void the_rest_of_a_built_image_is_blank(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(the_fixed_area_is_read_back),
-	KUNIT_CASE(a_wrong_checksum_is_reported),
-	KUNIT_CASE(categories_come_in_the_order_written),
-	KUNIT_CASE(strings_are_found_and_made_printable),
-	KUNIT_CASE(only_printable_characters_come_out),
-	KUNIT_CASE(strings_may_be_built_late),
-	KUNIT_CASE(a_string_is_cut_between_characters),
-	KUNIT_CASE(string_categories_count_as_one),
-	KUNIT_CASE(a_string_longer_than_its_category_is_refused),
-	KUNIT_CASE(the_general_category_is_read_back),
-	KUNIT_CASE(a_short_general_category_is_accepted_from_18_bytes),
-	KUNIT_CASE(a_missing_general_category_leaves_zeros),
-	KUNIT_CASE(fmmus_sync_managers_and_dc_modes_are_read_back),
-	KUNIT_CASE(pdos_are_read_back_by_direction),
-	KUNIT_CASE(pdos_of_split_categories_are_appended),
-	KUNIT_CASE(pdo_entries_beyond_the_category_are_refused),
-	KUNIT_CASE(a_category_beyond_the_image_ends_the_walk),
-	KUNIT_CASE(an_image_without_end_marker_is_reported),
-	KUNIT_CASE(endless_categories_are_bounded),
-	KUNIT_CASE(an_image_of_zeros_ends_early),
-	KUNIT_CASE(an_image_of_ones_ends_at_once),
-	KUNIT_CASE(a_scan_by_4_or_8_bytes_reads_no_more_than_it_needs),
-	KUNIT_CASE(every_prefix_asks_for_more_until_the_end_marker),
-	KUNIT_CASE(a_garbage_category_is_not_read_for_ever),
-	KUNIT_CASE(nothing_lies_behind_512_kib),
-	KUNIT_CASE(every_flaw_is_found),
-	KUNIT_CASE(a_builder_without_room_says_so),
-	KUNIT_CASE(too_many_or_too_long_strings_are_refused),
-	KUNIT_CASE(the_rest_of_a_built_image_is_blank),
+	KUNIT_CASE(sii_fixed_area_is_read_back),
+	KUNIT_CASE(sii_wrong_checksum_is_reported),
+	KUNIT_CASE(sii_categories_come_in_order_written),
+	KUNIT_CASE(sii_strings_are_found_and_made_printable),
+	KUNIT_CASE(sii_only_printable_characters_come_out),
+	KUNIT_CASE(sii_strings_may_be_built_late),
+	KUNIT_CASE(sii_string_is_cut_between_characters),
+	KUNIT_CASE(sii_string_categories_count_as_one),
+	KUNIT_CASE(sii_string_longer_than_its_category_is_refused),
+	KUNIT_CASE(sii_general_category_is_read_back),
+	KUNIT_CASE(sii_short_general_category_is_accepted_from_18_bytes),
+	KUNIT_CASE(sii_missing_general_category_leaves_zeros),
+	KUNIT_CASE(sii_fmmus_sync_managers_and_dc_modes_are_read_back),
+	KUNIT_CASE(sii_pdos_are_read_back_by_direction),
+	KUNIT_CASE(sii_pdos_of_split_categories_are_appended),
+	KUNIT_CASE(sii_pdo_entries_beyond_category_are_refused),
+	KUNIT_CASE(sii_category_beyond_image_ends_walk),
+	KUNIT_CASE(sii_image_without_end_marker_is_reported),
+	KUNIT_CASE(sii_endless_categories_are_bounded),
+	KUNIT_CASE(sii_image_of_zeros_ends_early),
+	KUNIT_CASE(sii_image_of_ones_ends_at_once),
+	KUNIT_CASE(sii_scan_by_4_or_8_bytes_reads_no_more_than_it_needs),
+	KUNIT_CASE(sii_prefix_needs_more_bytes_until_end_marker),
+	KUNIT_CASE(sii_garbage_category_ends_walk),
+	KUNIT_CASE(sii_nothing_lies_behind_512_kib),
+	KUNIT_CASE(sii_every_flaw_is_found),
+	KUNIT_CASE(sii_builder_reports_full_buffer),
+	KUNIT_CASE(sii_too_many_or_too_long_strings_are_refused),
+	KUNIT_CASE(sii_rest_of_built_image_is_blank),
 	{}
 };
 

@@ -67,7 +67,7 @@ static u64 wide(u16 mask, u32 len)
 	return len < 8 ? v & ((1ull << 8 * len) - 1) : v;
 }
 
-static void every_register_has_its_access(struct kunit *test)
+static void sim_access_every_register_has_its_access(struct kunit *test)
 {
 	size_t i;
 
@@ -126,7 +126,7 @@ static void one_frame(struct kunit *test, struct bed *b, struct piece *p,
 	}
 }
 
-static void protected_registers_open_for_one_frame(struct kunit *test)
+static void sim_access_protected_registers_open_for_one_frame(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct piece open[] = {
@@ -169,7 +169,7 @@ static void protected_registers_open_for_one_frame(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x410, 2), 0x4444ull);
 }
 
-static void a_protected_controller_keeps_its_memory(struct kunit *test)
+static void sim_access_protected_controller_keeps_its_memory(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -210,7 +210,7 @@ static void a_protected_controller_keeps_its_memory(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x31, 1), 1ull);
 }
 
-static void unused_registers_may_be_out_of_bounds(struct kunit *test)
+static void sim_access_unused_registers_may_be_out_of_bounds(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 0);
 	u8 v[16];
@@ -229,7 +229,7 @@ static void unused_registers_may_be_out_of_bounds(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_rd(b, 1001, 0x1000, v, 16), 1);
 }
 
-static void fixed_pages_keep_their_use(struct kunit *test)
+static void sim_access_fixed_pages_keep_their_use(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 0);
 
@@ -248,7 +248,7 @@ static void fixed_pages_keep_their_use(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x63b, 1), 2ull);
 }
 
-static void phy_commands_need_their_enable(struct kunit *test)
+static void sim_access_phy_commands_need_their_enable(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	u8 pdi = 1;
@@ -274,12 +274,12 @@ static void phy_commands_need_their_enable(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(every_register_has_its_access),
-	KUNIT_CASE(protected_registers_open_for_one_frame),
-	KUNIT_CASE(a_protected_controller_keeps_its_memory),
-	KUNIT_CASE(unused_registers_may_be_out_of_bounds),
-	KUNIT_CASE(fixed_pages_keep_their_use),
-	KUNIT_CASE(phy_commands_need_their_enable),
+	KUNIT_CASE(sim_access_every_register_has_its_access),
+	KUNIT_CASE(sim_access_protected_registers_open_for_one_frame),
+	KUNIT_CASE(sim_access_protected_controller_keeps_its_memory),
+	KUNIT_CASE(sim_access_unused_registers_may_be_out_of_bounds),
+	KUNIT_CASE(sim_access_fixed_pages_keep_their_use),
+	KUNIT_CASE(sim_access_phy_commands_need_their_enable),
 	{}
 };
 

@@ -16,7 +16,7 @@ static int ask(struct bed *b, struct app_mbox *m, const u8 *req, size_t len, u8 
 	return ret;
 }
 
-static void ip_parameters(struct kunit *test)
+static void sim_app_eoe_ip_parameters(struct kunit *test)
 {
 	static const u8 set_ip[] = {	/* up to the address only */
 		0x02, 0x01, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,
@@ -59,7 +59,7 @@ static void ip_parameters(struct kunit *test)
 			EC_MBOX_ERR_TOO_SHORT);
 }
 
-static void ip_refused(struct kunit *test)
+static void sim_app_eoe_ip_refused(struct kunit *test)
 {
 	static const u8 set[] = {
 		0x02, 0x01, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00,
@@ -80,8 +80,8 @@ static void ip_refused(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(ip_parameters),
-	KUNIT_CASE(ip_refused),
+	KUNIT_CASE(sim_app_eoe_ip_parameters),
+	KUNIT_CASE(sim_app_eoe_ip_refused),
 	{ }
 };
 

@@ -2,7 +2,7 @@
 /* Simulated slaves: states, mailbox, process data. */
 #include "sim_app_kunit.h"
 
-static void thin(struct kunit *test)
+static void sim_app_thin_segment_reaches_op(struct kunit *test)
 {
 	struct bed *b = app_bed(test, ec_sim_builtin("thin"));
 	struct ec_app *out = ec_sim_find(b->sim, "out");
@@ -26,7 +26,7 @@ static void thin(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_app_channel(out, EC_APP_OUT, 0), 0);
 }
 
-static void digital_loop(struct kunit *test)
+static void sim_app_digital_loop(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave o EL2008\nslave i EL1008\n"
 				"connect o.2 -> i.5\nconst i.1 value=1\n");
@@ -51,7 +51,7 @@ static void axis_sms(struct bed *b, u16 out, u16 in)
 	bed_sm(b, AXIS, 3, 0x1300, in, 0x20);
 }
 
-static void al_illegal(struct kunit *test)
+static void sim_app_al_illegal(struct kunit *test)
 {
 	struct bed *b = app_bed(test, ec_sim_builtin("three"));
 
@@ -71,7 +71,7 @@ static void al_illegal(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_INIT, 1), (u32)EC_AL_INIT);
 }
 
-static void al_mailbox(struct kunit *test)
+static void sim_app_al_mailbox(struct kunit *test)
 {
 	struct bed *b = app_bed(test, ec_sim_builtin("three"));
 
@@ -87,7 +87,7 @@ static void al_mailbox(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_al_status(b, AXIS), 0x00160011u);
 }
 
-static void al_boot(struct kunit *test)
+static void sim_app_al_boot(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EL7201\nslave w 750-354\n");
 
@@ -99,7 +99,7 @@ static void al_boot(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), EC_AL_BOOT, 1), 0x00130011u);
 }
 
-static void al_process_data(struct kunit *test)
+static void sim_app_al_process_data(struct kunit *test)
 {
 	struct bed *b = app_bed(test, ec_sim_builtin("three"));
 
@@ -123,7 +123,7 @@ static void al_process_data(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_al(b, AXIS, EC_AL_SAFEOP, 1), 0x001F0012u);
 }
 
-static void al_outputs(struct kunit *test)
+static void sim_app_al_outputs(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "segment op_timeout=100ms\nslave coupler EK1100\n"
 				"slave out EL2008\nslave axis EL7201 motor=AM8121\n");
@@ -149,7 +149,7 @@ static void al_outputs(struct kunit *test)
 }
 
 /* the time limit from SAFEOP to OP: the common one, that of a slave, of a segment */
-static void al_op_timeout(struct kunit *test)
+static void sim_app_al_op_timeout(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a drive\nslave b drive op_timeout=2s\n"
 				"segment op_timeout=30ms\nslave c drive\n");
@@ -185,7 +185,7 @@ static u32 al_with_sync(struct bed *b, s64 start)
 	return app_al(b, STATION(0), EC_AL_OP, 200);
 }
 
-static void al_sync(struct kunit *test)
+static void sim_app_al_sync(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive in=8 out=8 op_timeout=100ms\n");
 
@@ -200,7 +200,7 @@ static void al_sync(struct kunit *test)
 }
 
 /* the cycle time in the dictionary follows SYNC0 */
-static void al_sync_cycle(struct kunit *test)
+static void sim_app_al_sync_cycle(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive in=8 out=8\n");
 	struct app_mbox *m = kunit_kzalloc(test, sizeof(*m), GFP_KERNEL);
@@ -223,7 +223,7 @@ static void al_sync_cycle(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C33, 2), 250000);
 }
 
-static void al_refuse(struct kunit *test)
+static void sim_app_al_refuse(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive\n"
 				"fault refuse d SAFEOP code=0x1d\n"
@@ -240,7 +240,7 @@ static void al_refuse(struct kunit *test)
 			(u32)EC_AL_SAFEOP);
 }
 
-static void al_time_and_id(struct kunit *test)
+static void sim_app_al_time_and_id(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave d drive transition=5ms id=0x1234\n");
 	u16 d = STATION(0);
@@ -253,7 +253,7 @@ static void al_time_and_id(struct kunit *test)
 	KUNIT_EXPECT_GE(test, b->now - from, 5000000ull);
 }
 
-static void several_datagrams_share_a_frame(struct kunit *test)
+static void sim_app_several_datagrams_share_frame(struct kunit *test)
 {
 	static const struct {
 		u8 cmd;
@@ -296,7 +296,7 @@ static void several_datagrams_share_a_frame(struct kunit *test)
 }
 
 /* the whole image through the CPU, as it would come from a chip */
-static void emulated_eeprom(struct kunit *test)
+static void sim_app_emulated_eeprom(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EL3062\n"
 				"slave b EL3062 eeprom=emulated\n");
@@ -339,20 +339,20 @@ static void emulated_eeprom(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(emulated_eeprom),
-	KUNIT_CASE(thin),
-	KUNIT_CASE(digital_loop),
-	KUNIT_CASE(several_datagrams_share_a_frame),
-	KUNIT_CASE(al_illegal),
-	KUNIT_CASE(al_mailbox),
-	KUNIT_CASE(al_boot),
-	KUNIT_CASE(al_process_data),
-	KUNIT_CASE(al_outputs),
-	KUNIT_CASE(al_op_timeout),
-	KUNIT_CASE(al_sync),
-	KUNIT_CASE(al_sync_cycle),
-	KUNIT_CASE(al_refuse),
-	KUNIT_CASE(al_time_and_id),
+	KUNIT_CASE(sim_app_emulated_eeprom),
+	KUNIT_CASE(sim_app_thin_segment_reaches_op),
+	KUNIT_CASE(sim_app_digital_loop),
+	KUNIT_CASE(sim_app_several_datagrams_share_frame),
+	KUNIT_CASE(sim_app_al_illegal),
+	KUNIT_CASE(sim_app_al_mailbox),
+	KUNIT_CASE(sim_app_al_boot),
+	KUNIT_CASE(sim_app_al_process_data),
+	KUNIT_CASE(sim_app_al_outputs),
+	KUNIT_CASE(sim_app_al_op_timeout),
+	KUNIT_CASE(sim_app_al_sync),
+	KUNIT_CASE(sim_app_al_sync_cycle),
+	KUNIT_CASE(sim_app_al_refuse),
+	KUNIT_CASE(sim_app_al_time_and_id),
 	{}
 };
 

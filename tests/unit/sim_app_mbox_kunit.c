@@ -23,7 +23,7 @@ static struct mb *mb_new(struct kunit *test, const char *text, u16 size)
 	return x;
 }
 
-static void identity(struct kunit *test)
+static void sim_app_mbox_identity(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave a EL7201 serial=77\n", 256);
 	struct bed *b = x->b;
@@ -56,7 +56,7 @@ static u32 up_abort(struct mb *x, u16 index, u8 sub)
 			  sizeof(x->buf), &abort) == -1 ? abort : 0;
 }
 
-static void aborts(struct kunit *test)
+static void sim_app_mbox_aborts(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	struct bed *b = x->b;
@@ -86,7 +86,7 @@ static void aborts(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x2003, 0), 5);
 }
 
-static void segmented(struct kunit *test)
+static void sim_app_mbox_segmented(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive mbox=64 response=50us\n", 64);
 	u8 *data = kunit_kmalloc(test, 1000, GFP_KERNEL);
@@ -102,7 +102,7 @@ static void segmented(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, x->buf, data, 1000);
 }
 
-static void complete_access(struct kunit *test)
+static void sim_app_mbox_complete_access(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	/* sub 0 twice, bit, 8, 16, 32, 64, 8, 16, 32, 64, 32, 64, string */
@@ -146,7 +146,7 @@ static int info(struct mb *x, struct ec_sdoinfo *s)
 	return ret;
 }
 
-static void information(struct kunit *test)
+static void sim_app_mbox_information(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive mbox=64 mapping=rewritable\n", 64);
 	struct ec_app *app = ec_sim_find(x->b->sim, "d");
@@ -209,7 +209,7 @@ static u16 error_of(struct mb *x)
 	return ec_mbox_error_decode(&r, &detail) ? 0xFFFE : detail;
 }
 
-static void errors(struct kunit *test)
+static void sim_app_mbox_errors_are_reported(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	struct ec_mbox_hdr h;
@@ -244,7 +244,7 @@ static size_t upload_request(struct app_mbox *m, u16 index, u8 sub)
 	return (size_t)ec_sdo_up_tx(&u, m->tx + EC_MBOX_HDR, 100);
 }
 
-static void counter_and_repeat(struct kunit *test)
+static void sim_app_mbox_counter_and_repeat(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	struct app_mbox *m = &x->m;
@@ -285,7 +285,7 @@ static void counter_and_repeat(struct kunit *test)
 }
 
 /* from 1 to 7 and again, 0 is never sent */
-static void replies_are_counted(struct kunit *test)
+static void sim_app_mbox_replies_are_counted(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	struct ec_mbox_hdr h;
@@ -298,7 +298,7 @@ static void replies_are_counted(struct kunit *test)
 	}
 }
 
-static void delay(struct kunit *test)
+static void sim_app_mbox_delay_of_replies(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive response=3ms\n", 256);
 	struct ec_mbox_hdr h;
@@ -311,7 +311,7 @@ static void delay(struct kunit *test)
 }
 
 /* the script chooses the code of aborts, and no other answer changes */
-static void abort_code(struct kunit *test)
+static void sim_app_mbox_abort_code(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n"
 		"fault at=10ms mailbox d abort code=0x08000099\n"
@@ -330,7 +330,7 @@ static void abort_code(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_NO_OBJECT);
 }
 
-static void emergencies(struct kunit *test)
+static void sim_app_mbox_emergencies(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n"
 		"fault at=10ms emergency d code=0x8130 register=0x11\n"
@@ -350,7 +350,7 @@ static void emergencies(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, e.code, 0);
 }
 
-static void muted(struct kunit *test)
+static void sim_app_mbox_muted_slave_does_not_reply(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\nfault at=20ms mute d\n"
 			      "fault at=60ms unmute d\n", 256);
@@ -384,7 +384,7 @@ static void spoiled_header(struct kunit *test, struct mb *x, u32 kind, u8 raw[6]
 				 EC_SM_ST_FULL), kind == EC_SIM_MAILBOX_BABBLE);
 }
 
-static void spoiled(struct kunit *test)
+static void sim_app_mbox_faulty_messages_are_sent(struct kunit *test)
 {
 	struct mb *x = mb_new(test, "slave d drive\n", 256);
 	struct ec_sim_fault f = { .type = EC_SIM_FAULT_MAILBOX, .arg = EC_SIM_MAILBOX_FAULTS };
@@ -407,19 +407,19 @@ static void spoiled(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(identity),
-	KUNIT_CASE(aborts),
-	KUNIT_CASE(segmented),
-	KUNIT_CASE(complete_access),
-	KUNIT_CASE(information),
-	KUNIT_CASE(errors),
-	KUNIT_CASE(counter_and_repeat),
-	KUNIT_CASE(replies_are_counted),
-	KUNIT_CASE(delay),
-	KUNIT_CASE(emergencies),
-	KUNIT_CASE(abort_code),
-	KUNIT_CASE(muted),
-	KUNIT_CASE(spoiled),
+	KUNIT_CASE(sim_app_mbox_identity),
+	KUNIT_CASE(sim_app_mbox_aborts),
+	KUNIT_CASE(sim_app_mbox_segmented),
+	KUNIT_CASE(sim_app_mbox_complete_access),
+	KUNIT_CASE(sim_app_mbox_information),
+	KUNIT_CASE(sim_app_mbox_errors_are_reported),
+	KUNIT_CASE(sim_app_mbox_counter_and_repeat),
+	KUNIT_CASE(sim_app_mbox_replies_are_counted),
+	KUNIT_CASE(sim_app_mbox_delay_of_replies),
+	KUNIT_CASE(sim_app_mbox_emergencies),
+	KUNIT_CASE(sim_app_mbox_abort_code),
+	KUNIT_CASE(sim_app_mbox_muted_slave_does_not_reply),
+	KUNIT_CASE(sim_app_mbox_faulty_messages_are_sent),
 	{}
 };
 

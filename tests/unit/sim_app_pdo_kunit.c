@@ -48,7 +48,7 @@ static u32 pd_op(struct pd *x, const u8 *out, u16 n_out, u16 at, u16 n_in)
 	return app_al(x->b, x->st, EC_AL_OP, 5);
 }
 
-static void rules(struct kunit *test)
+static void sim_app_pdo_rules(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive mapping=rewritable\n");
 	struct bed *b = x->b;
@@ -78,7 +78,7 @@ static void rules(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C12, 0), 1);
 }
 
-static void fixed(struct kunit *test)
+static void sim_app_pdo_fixed(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive mapping=fixed\n");
 
@@ -89,7 +89,7 @@ static void fixed(struct kunit *test)
 }
 
 /* a rewritten mapping moves the bytes of the image */
-static void rewritten(struct kunit *test)
+static void sim_app_pdo_rewritten(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive mapping=rewritable\n");
 	static const u8 map[] = { 2, 0, 0x20, 0, 0xFF, 0x60, 0x10, 0, 0x40, 0x60 };
@@ -117,7 +117,7 @@ static void rewritten(struct kunit *test)
 }
 
 /* the catalogue's drives take a mapping while it is assigned */
-static void lenient(struct kunit *test)
+static void sim_app_pdo_lenient(struct kunit *test)
 {
 	static const char * const texts[] = { "slave d drive\n", "slave d drive mapping=lenient\n" };
 	u8 out[8] = { 0xE8, 3, 0, 0, 0x0F, 0 };
@@ -144,7 +144,7 @@ static void lenient(struct kunit *test)
 	}
 }
 
-static void outputs_act_in_op_only(struct kunit *test)
+static void sim_app_pdo_outputs_act_in_op_only(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive\n");
 	u8 out[8] = { 6, 0, 0, 0, 0, 0, 8, 0 };
@@ -168,7 +168,7 @@ static u16 status(struct pd *x)
 }
 
 /* switches on and follows a target, as CSP does */
-static void position(struct kunit *test)
+static void sim_app_pdo_position(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive\n");
 	u8 out[8] = { 0, 0, 0, 0, 0, 0, 8, 0 }, in[8];
@@ -222,7 +222,7 @@ static void position(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(in) & 0x6F, 0x40);
 }
 
-static void velocity(struct kunit *test)
+static void sim_app_pdo_velocity(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave a EL7201\n");
 	u8 out[6] = { 0 }, in[6];
@@ -244,7 +244,7 @@ static void velocity(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, 0x6010, 7) / 100, 99);
 }
 
-static void fillers(struct kunit *test)
+static void sim_app_pdo_fillers(struct kunit *test)
 {
 	struct pd *x = pd_new(test, "slave d drive in=1486 out=1486\n");
 	u8 *out = kunit_kzalloc(test, 1486, GFP_KERNEL);
@@ -260,7 +260,7 @@ static void fillers(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, in + 20, out + 16, 1400);
 }
 
-static void analog(struct kunit *test)
+static void sim_app_pdo_analog(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave ai EL3062\nslave ao EL4002\n"
 		"sine ai.1 amplitude=10000 period=4ms offset=5\n"
@@ -295,7 +295,7 @@ static void analog(struct kunit *test)
 	KUNIT_EXPECT_GE(test, lo, -9995);
 }
 
-static void io_bits(struct kunit *test)
+static void sim_app_pdo_io_bits(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave x io in=12 out=20\n"
 				"connect x.20 -> x.12\n");
@@ -314,16 +314,16 @@ static void io_bits(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(rules),
-	KUNIT_CASE(fixed),
-	KUNIT_CASE(rewritten),
-	KUNIT_CASE(lenient),
-	KUNIT_CASE(outputs_act_in_op_only),
-	KUNIT_CASE(position),
-	KUNIT_CASE(velocity),
-	KUNIT_CASE(fillers),
-	KUNIT_CASE(analog),
-	KUNIT_CASE(io_bits),
+	KUNIT_CASE(sim_app_pdo_rules),
+	KUNIT_CASE(sim_app_pdo_fixed),
+	KUNIT_CASE(sim_app_pdo_rewritten),
+	KUNIT_CASE(sim_app_pdo_lenient),
+	KUNIT_CASE(sim_app_pdo_outputs_act_in_op_only),
+	KUNIT_CASE(sim_app_pdo_position),
+	KUNIT_CASE(sim_app_pdo_velocity),
+	KUNIT_CASE(sim_app_pdo_fillers),
+	KUNIT_CASE(sim_app_pdo_analog),
+	KUNIT_CASE(sim_app_pdo_io_bits),
 	{}
 };
 

@@ -64,7 +64,7 @@ static u32 put(struct drive *x, u8 drive, u16 idn, u64 v, size_t size)
 	return soe(x, true, drive, EC_SOE_VALUE, idn, size);
 }
 
-static void values(struct kunit *test)
+static void sim_app_soe_values_are_read_and_written(struct kunit *test)
 {
 	struct drive *x = drive_new(test, "slave d drive soe=2\n");
 
@@ -95,7 +95,7 @@ static void values(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sim_find(x->b->sim, "d")->soe.writes, 0u);
 }
 
-static void errors(struct kunit *test)
+static void sim_app_soe_errors_are_reported(struct kunit *test)
 {
 	struct drive *x = drive_new(test, "slave d drive soe=2\n");
 	struct bed *b = x->b;
@@ -128,7 +128,7 @@ static void errors(struct kunit *test)
 }
 
 /* name, attribute, unit, limits and value in one answer, ascending */
-static void elements(struct kunit *test)
+static void sim_app_soe_elements(struct kunit *test)
 {
 	static const u8 req[] = { 0x01, 0x7E, 0x5B, 0x00 };
 	static const u8 head[] = { 0x02, 0x7E, 0x5B, 0x00, 28, 0, 28, 0, 'B', 'i', 'p' };
@@ -153,7 +153,7 @@ static u16 error_of(struct drive *x, u8 type, const void *msg, size_t len)
 	return n == 4 && got == EC_MBOX_ERR ? get_unaligned_le16(x->m.rx + EC_MBOX_HDR + 2) : 0;
 }
 
-static void wrong_messages(struct kunit *test)
+static void sim_app_soe_wrong_messages(struct kunit *test)
 {
 	struct drive *x = drive_new(test, "slave d drive soe=1\n");
 	static const u8 fragment[] = { 0x0B, 0x40, 0x01, 0x00, 1, 2 };
@@ -167,7 +167,7 @@ static void wrong_messages(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, x->m.rx + EC_MBOX_HDR, error, 6);
 }
 
-static void vendor_messages(struct kunit *test)
+static void sim_app_soe_vendor_messages(struct kunit *test)
 {
 	static const u8 req[] = { 0xAD, 0xDE, 0xEF, 0xBE, 0x11, 0x22, 'h', 'i' };
 	static const u8 resp[] = { 0xAD, 0xDE, 0xEF, 0xBE, 0x34, 0x12, 'h', 'i' };
@@ -188,11 +188,11 @@ static void vendor_messages(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(values),
-	KUNIT_CASE(errors),
-	KUNIT_CASE(elements),
-	KUNIT_CASE(wrong_messages),
-	KUNIT_CASE(vendor_messages),
+	KUNIT_CASE(sim_app_soe_values_are_read_and_written),
+	KUNIT_CASE(sim_app_soe_errors_are_reported),
+	KUNIT_CASE(sim_app_soe_elements),
+	KUNIT_CASE(sim_app_soe_wrong_messages),
+	KUNIT_CASE(sim_app_soe_vendor_messages),
 	{}
 };
 

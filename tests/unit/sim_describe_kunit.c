@@ -19,7 +19,7 @@ static int describe(struct kunit *test, const char *text, size_t len,
 	return ret;
 }
 
-static void builtins(struct kunit *test)
+static void sim_describe_builtin_segments_are_valid(struct kunit *test)
 {
 	struct ec_sim_error err;
 	const char *name;
@@ -35,7 +35,7 @@ static void builtins(struct kunit *test)
 }
 
 /* every prefix of a long text is either right or refused with a reason */
-static void prefixes(struct kunit *test)
+static void sim_describe_prefixes(struct kunit *test)
 {
 	const char *text = ec_sim_builtin("bench");
 	struct ec_sim_error err;
@@ -106,7 +106,7 @@ static const struct {
 	  "cannot be connected" },
 };
 
-static void errors(struct kunit *test)
+static void sim_describe_errors_are_reported(struct kunit *test)
 {
 	struct ec_sim_error err;
 
@@ -123,7 +123,7 @@ static void errors(struct kunit *test)
 	}
 }
 
-static void options(struct kunit *test)
+static void sim_describe_options(struct kunit *test)
 {
 	struct bed *b = app_bed(test,
 		"segment response=1ms\r\n"
@@ -160,7 +160,7 @@ static u32 revision(struct kunit *test, const char *device)
 }
 
 /* masters copy what they know of one slave to others of the same identity */
-static void revisions(struct kunit *test)
+static void sim_describe_revisions(struct kunit *test)
 {
 	static const char * const devices[] = {
 		"drive", "drive in=22 out=22", "drive in=22", "drive out=22", "drive in=23 out=22",
@@ -183,7 +183,7 @@ static void revisions(struct kunit *test)
 }
 
 /* frames go the way the description says */
-static void wiring(struct kunit *test)
+static void sim_describe_wiring(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave c EK1100\nslave x EL2008\n"
 				"slave y EL1008\nbranch c 2\nslave e EK1100\n"
@@ -203,7 +203,7 @@ static void wiring(struct kunit *test)
 	}
 }
 
-static void faults(struct kunit *test)
+static void sim_describe_faults(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EL2008\nslave b EL2008\n"
 				"fault at=100ms cut a.1\nfault at=200ms heal a.1\n"
@@ -227,7 +227,7 @@ static void faults(struct kunit *test)
 }
 
 /* the image of every device can be read back */
-static void images(struct kunit *test)
+static void sim_describe_images(struct kunit *test)
 {
 	const struct ec_app_dev *d;
 
@@ -281,7 +281,7 @@ static int load(void *ctx, const char *name, u8 *buf, size_t cap)
 }
 
 /* a slave made of the image of another does what that one does */
-static void from_file(struct kunit *test)
+static void sim_describe_from_file(struct kunit *test)
 {
 	struct image *img = kunit_kzalloc(test, sizeof(*img), GFP_KERNEL);
 	static const char text[] = "slave a file=axis.bin alias=5\n";
@@ -334,7 +334,7 @@ static void *scarce_alloc(size_t bytes)
 }
 
 /* with memory for n blocks only, for every n: refused, nothing is lost */
-static void no_memory(struct kunit *test)
+static void sim_describe_no_memory(struct kunit *test)
 {
 	static const struct ec_sim_ops ops = { scarce_alloc, bed_free };
 	const char *text = ec_sim_builtin("bench");
@@ -364,7 +364,7 @@ static int command(struct bed *b, const char *text, struct ec_sim_error *err)
 }
 
 /* faults while the segment runs */
-static void commands(struct kunit *test)
+static void sim_describe_commands(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EL1008\nslave m drive\n");
 	struct ec_app *a = ec_sim_find(b->sim, "a");
@@ -420,17 +420,17 @@ static void commands(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(no_memory),
-	KUNIT_CASE(builtins),
-	KUNIT_CASE(prefixes),
-	KUNIT_CASE(errors),
-	KUNIT_CASE(options),
-	KUNIT_CASE(revisions),
-	KUNIT_CASE(wiring),
-	KUNIT_CASE(faults),
-	KUNIT_CASE(commands),
-	KUNIT_CASE(images),
-	KUNIT_CASE(from_file),
+	KUNIT_CASE(sim_describe_no_memory),
+	KUNIT_CASE(sim_describe_builtin_segments_are_valid),
+	KUNIT_CASE(sim_describe_prefixes),
+	KUNIT_CASE(sim_describe_errors_are_reported),
+	KUNIT_CASE(sim_describe_options),
+	KUNIT_CASE(sim_describe_revisions),
+	KUNIT_CASE(sim_describe_wiring),
+	KUNIT_CASE(sim_describe_faults),
+	KUNIT_CASE(sim_describe_commands),
+	KUNIT_CASE(sim_describe_images),
+	KUNIT_CASE(sim_describe_from_file),
 	{}
 };
 

@@ -38,7 +38,7 @@ static struct bed *example(struct kunit *test)
 	return b;
 }
 
-static void the_worked_example_comes_out(struct kunit *test)
+static void sim_esc_dc_worked_example_gives_published_result(struct kunit *test)
 {
 	struct bed *b = example(test);
 	u8 v[32] = {};
@@ -74,7 +74,7 @@ static void the_worked_example_comes_out(struct kunit *test)
 				0x80000000ull);
 }
 
-static void receive_times_jitter_by_their_noise(struct kunit *test)
+static void sim_esc_dc_receive_times_jitter_by_their_noise(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 0);
 	u32 min_d = ~0u, max_d = 0;
@@ -102,7 +102,7 @@ static void receive_times_jitter_by_their_noise(struct kunit *test)
 	KUNIT_EXPECT_GT(test, max_d, 1205u);
 }
 
-static void slaves_without_dc_stay_out(struct kunit *test)
+static void sim_esc_dc_slaves_without_dc_stay_out(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 1);
 	u8 v[8] = {};
@@ -125,7 +125,7 @@ static void slaves_without_dc_stay_out(struct kunit *test)
 }
 
 /* as a real EL1004, read with SOEM: receive times, nothing else of a clock */
-static void delay_only_slaves_have_receive_times(struct kunit *test)
+static void sim_esc_dc_delay_only_slaves_have_receive_times(struct kunit *test)
 {
 	static const u16 absent[] = { 0x910, 0x918, 0x920, 0x928, 0x92c, 0x930, 0x934, 0x981 };
 	struct bed *b = bed_new(test, 2, 1);
@@ -151,7 +151,7 @@ static void delay_only_slaves_have_receive_times(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le64(v + 0x18), 0ull);
 }
 
-static void a_write_never_sets_the_time(struct kunit *test)
+static void sim_esc_dc_write_never_sets_time(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
 	u64 t0, t1, n0 = b->now;
@@ -203,7 +203,7 @@ static u64 settle(struct bed *b, u32 n, u64 gap)
 	return last;
 }
 
-static void a_burst_settles_faster_than_the_cycle(struct kunit *test)
+static void sim_esc_dc_burst_settles_faster_than_cycle(struct kunit *test)
 {
 	static const s32 ppb[] = { 5000, -20000, 50000 };
 	size_t i;
@@ -229,7 +229,7 @@ static void a_burst_settles_faster_than_the_cycle(struct kunit *test)
 	}
 }
 
-static void without_comparisons_clocks_drift_apart(struct kunit *test)
+static void sim_esc_dc_without_comparisons_clocks_drift_apart(struct kunit *test)
 {
 	struct bed *b = pair(test, 20000, 0);
 
@@ -238,7 +238,7 @@ static void without_comparisons_clocks_drift_apart(struct kunit *test)
 	KUNIT_EXPECT_LT(test, error_ns(b, 1), (s64)20100);
 }
 
-static void the_difference_is_sign_and_magnitude(struct kunit *test)
+static void sim_esc_dc_difference_is_sign_and_magnitude(struct kunit *test)
 {
 	struct bed *b = pair(test, 0, 5000);
 	u8 v[8] = {};
@@ -268,7 +268,7 @@ static void on_sync(struct ec_esc *esc, int which, u64 now)
 
 static const struct ec_esc_app_ops app_ops = { .sync = on_sync };
 
-static void sync_pulses_come_on_the_grid(struct kunit *test)
+static void sim_esc_dc_sync_pulses_are_on_grid(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
 	u64 start;
@@ -307,7 +307,7 @@ static void sync_pulses_come_on_the_grid(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
 }
 
-static void sync1_may_be_slower(struct kunit *test)
+static void sim_esc_dc_sync1_may_be_slower(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
 	u8 v[8];
@@ -334,7 +334,7 @@ static void sync1_may_be_slower(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, syncs[1], 10);
 }
 
-static void a_start_in_the_past_never_comes(struct kunit *test)
+static void sim_esc_dc_start_in_past_gives_no_pulse(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
 
@@ -352,7 +352,7 @@ static void a_start_in_the_past_never_comes(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x984, 1), 5ull);
 }
 
-static void latches_keep_the_time_of_an_edge(struct kunit *test)
+static void sim_esc_dc_latches_keep_time_of_edge(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 1, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -374,18 +374,18 @@ static void latches_keep_the_time_of_an_edge(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(the_worked_example_comes_out),
-	KUNIT_CASE(receive_times_jitter_by_their_noise),
-	KUNIT_CASE(slaves_without_dc_stay_out),
-	KUNIT_CASE(delay_only_slaves_have_receive_times),
-	KUNIT_CASE(a_write_never_sets_the_time),
-	KUNIT_CASE(a_burst_settles_faster_than_the_cycle),
-	KUNIT_CASE(without_comparisons_clocks_drift_apart),
-	KUNIT_CASE(the_difference_is_sign_and_magnitude),
-	KUNIT_CASE(sync_pulses_come_on_the_grid),
-	KUNIT_CASE(sync1_may_be_slower),
-	KUNIT_CASE(a_start_in_the_past_never_comes),
-	KUNIT_CASE(latches_keep_the_time_of_an_edge),
+	KUNIT_CASE(sim_esc_dc_worked_example_gives_published_result),
+	KUNIT_CASE(sim_esc_dc_receive_times_jitter_by_their_noise),
+	KUNIT_CASE(sim_esc_dc_slaves_without_dc_stay_out),
+	KUNIT_CASE(sim_esc_dc_delay_only_slaves_have_receive_times),
+	KUNIT_CASE(sim_esc_dc_write_never_sets_time),
+	KUNIT_CASE(sim_esc_dc_burst_settles_faster_than_cycle),
+	KUNIT_CASE(sim_esc_dc_without_comparisons_clocks_drift_apart),
+	KUNIT_CASE(sim_esc_dc_difference_is_sign_and_magnitude),
+	KUNIT_CASE(sim_esc_dc_sync_pulses_are_on_grid),
+	KUNIT_CASE(sim_esc_dc_sync1_may_be_slower),
+	KUNIT_CASE(sim_esc_dc_start_in_past_gives_no_pulse),
+	KUNIT_CASE(sim_esc_dc_latches_keep_time_of_edge),
 	{}
 };
 

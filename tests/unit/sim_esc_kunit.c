@@ -8,7 +8,7 @@ static struct bed *start(struct kunit *test, u32 n)
 
 /* ---- addressing and working counters */
 
-static void information_registers_are_as_configured(struct kunit *test)
+static void sim_esc_information_registers_are_as_configured(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	u8 v[10];
@@ -22,7 +22,7 @@ static void information_registers_are_as_configured(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(v + 8), 0x018c);
 }
 
-static void a_write_to_a_read_only_register_counts_only(struct kunit *test)
+static void sim_esc_write_to_read_only_register_counts_only(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 
@@ -32,7 +32,7 @@ static void a_write_to_a_read_only_register_counts_only(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, EC_REG_AL_STATUS, 2), 1ull);
 }
 
-static void position_addresses_are_incremented_by_each(struct kunit *test)
+static void sim_esc_position_addresses_are_incremented_by_each(struct kunit *test)
 {
 	struct bed *b = start(test, 3);
 	u8 v[2] = {};
@@ -47,7 +47,7 @@ static void position_addresses_are_incremented_by_each(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, 77, 5, 0x10, v, 2), 0);
 }
 
-static void a_broadcast_read_is_an_or(struct kunit *test)
+static void sim_esc_broadcast_read_is_or(struct kunit *test)
 {
 	struct bed *b = start(test, 3);
 	u8 v[2] = { 0x40, 0 };
@@ -59,7 +59,7 @@ static void a_broadcast_read_is_an_or(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->adp, 3);
 }
 
-static void read_write_commands_count_three(struct kunit *test)
+static void sim_esc_read_write_commands_count_three(struct kunit *test)
 {
 	struct bed *b = start(test, 3);
 	u8 v[2] = { 0x55, 0xaa };
@@ -81,7 +81,7 @@ static void read_write_commands_count_three(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1003, 0xf80, 2), 0x81ull);
 }
 
-static void frmw_reads_one_and_writes_the_others(struct kunit *test)
+static void sim_esc_frmw_reads_one_and_writes_others(struct kunit *test)
 {
 	struct bed *b = start(test, 3);
 	u8 v[2] = { 0x11, 0x11 };
@@ -98,7 +98,7 @@ static void frmw_reads_one_and_writes_the_others(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FRMW, 7, 0xf80, v, 2), 3);
 }
 
-static void the_alias_answers_when_enabled(struct kunit *test)
+static void sim_esc_alias_answers_when_enabled(struct kunit *test)
 {
 	struct bed *b = start(test, 2);
 	u8 v[2];
@@ -114,7 +114,7 @@ static void the_alias_answers_when_enabled(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1002, EC_REG_ALIAS, 2), 0x1234ull);
 }
 
-static void what_is_not_there_does_not_count(struct kunit *test)
+static void sim_esc_missing_registers_do_not_count(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	u8 v[16] = {};
@@ -128,7 +128,7 @@ static void what_is_not_there_does_not_count(struct kunit *test)
 
 /* ---- SyncManagers */
 
-static void a_mailbox_is_full_or_empty(struct kunit *test)
+static void sim_esc_mailbox_is_full_or_empty(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -163,7 +163,7 @@ static void a_mailbox_is_full_or_empty(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x80d, 1), 0x02ull);
 }
 
-static void a_window_wants_first_byte_and_last_byte(struct kunit *test)
+static void sim_esc_mailbox_needs_first_and_last_byte(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -184,7 +184,7 @@ static void a_window_wants_first_byte_and_last_byte(struct kunit *test)
 }
 
 /* a page with a window but not activated guards nothing */
-static void a_switched_off_window_guards_nothing(struct kunit *test)
+static void sim_esc_disabled_sm_guards_nothing(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	u8 v[4] = { 1, 2, 3, 4 }, page[EC_SM_PAGE];
@@ -197,7 +197,7 @@ static void a_switched_off_window_guards_nothing(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, 1001, 0x1104, v, 4), 0);
 }
 
-static void a_buffered_window_has_three_buffers(struct kunit *test)
+static void sim_esc_buffered_sm_has_three_buffers(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -234,7 +234,7 @@ static void a_buffered_window_has_three_buffers(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, w[0], 9);
 }
 
-static void an_active_window_keeps_its_page(struct kunit *test)
+static void sim_esc_active_sm_keeps_its_page(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 
@@ -248,7 +248,7 @@ static void an_active_window_keeps_its_page(struct kunit *test)
 
 /* ---- FMMUs */
 
-static void logical_commands_count_per_slave_and_direction(struct kunit *test)
+static void sim_esc_logical_commands_count_per_slave_and_direction(struct kunit *test)
 {
 	struct bed *b = start(test, 2);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -275,7 +275,7 @@ static void logical_commands_count_per_slave_and_direction(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LWR, 2, 1, v, 2), 0);
 }
 
-static void a_logical_write_leaves_inputs_alone(struct kunit *test)
+static void sim_esc_logical_write_leaves_inputs_alone(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -290,7 +290,7 @@ static void a_logical_write_leaves_inputs_alone(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, esc->mem[0x1100], 0x33);
 }
 
-static void overlapped_lrw_exchanges_in_place(struct kunit *test)
+static void sim_esc_overlapped_lrw_exchanges_in_place(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -308,7 +308,7 @@ static void overlapped_lrw_exchanges_in_place(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, w[1], 0x22);
 }
 
-static void bits_are_mapped_one_by_one(struct kunit *test)
+static void sim_esc_bits_are_mapped_one_by_one(struct kunit *test)
 {
 	struct bed *b = start(test, 2);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 1);
@@ -343,7 +343,7 @@ static void eep_command(struct bed *b, u16 cmd, u32 addr)
 	bed_put(b, 1001, EC_REG_EEP_CONTROL, cmd | (u64)addr << 16, 6);
 }
 
-static void eeprom_reads_take_their_time(struct kunit *test)
+static void sim_esc_eeprom_reads_take_their_time(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	u8 v[10];
@@ -365,7 +365,7 @@ static void eeprom_reads_take_their_time(struct kunit *test)
 			0xffffffffffff7f7eull);
 }
 
-static void eeprom_writes_need_their_enable(struct kunit *test)
+static void sim_esc_eeprom_writes_need_their_enable(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 
@@ -385,7 +385,7 @@ static void eeprom_writes_need_their_enable(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x502, 2), 0x40ull);
 }
 
-static void the_pdi_may_own_the_eeprom(struct kunit *test)
+static void sim_esc_pdi_may_own_eeprom(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -404,7 +404,7 @@ static void the_pdi_may_own_the_eeprom(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, bed_get(b, 1001, 0x502, 2) & EC_EEP_BUSY);
 }
 
-static void a_bad_checksum_stops_the_pdi(struct kunit *test)
+static void sim_esc_bad_checksum_stops_pdi(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 4, 0);
 	struct ec_esc *esc;
@@ -430,7 +430,7 @@ static void a_bad_checksum_stops_the_pdi(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x508, 4), 0x13121110ull);
 }
 
-static void checksums_match_the_published_ones(struct kunit *test)
+static void sim_esc_checksums_match_published_ones(struct kunit *test)
 {
 	static const struct {
 		u8 data[14];
@@ -501,7 +501,7 @@ static struct bed *with_app(struct kunit *test)
 	return b;
 }
 
-static void al_control_waits_for_the_pdi(struct kunit *test)
+static void sim_esc_al_control_waits_for_pdi(struct kunit *test)
 {
 	struct bed *b = with_app(test);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -519,7 +519,7 @@ static void al_control_waits_for_the_pdi(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x130, 2), 1ull);
 }
 
-static void emulation_copies_the_al_state(struct kunit *test)
+static void sim_esc_emulation_copies_al_state(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 4, 0);
 
@@ -532,7 +532,7 @@ static void emulation_copies_the_al_state(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x130, 2), 0x12ull);
 }
 
-static void events_show_in_every_datagram(struct kunit *test)
+static void sim_esc_events_show_in_every_datagram(struct kunit *test)
 {
 	struct bed *b = start(test, 2);
 	u8 v[2] = {};
@@ -557,7 +557,7 @@ static void events_show_in_every_datagram(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->irq, 0);
 }
 
-static void buffers_tell_the_application(struct kunit *test)
+static void sim_esc_buffers_set_al_events(struct kunit *test)
 {
 	struct bed *b = with_app(test);
 	u8 v[16] = {};
@@ -572,7 +572,7 @@ static void buffers_tell_the_application(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, sm_calls, 0x1001);
 }
 
-static void the_watchdog_watches_from_the_first_write(struct kunit *test)
+static void sim_esc_watchdog_watches_from_first_write(struct kunit *test)
 {
 	struct bed *b = with_app(test);
 	u64 first;
@@ -599,7 +599,7 @@ static void the_watchdog_watches_from_the_first_write(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x442, 1), 0ull);
 }
 
-static void applications_are_woken_on_time(struct kunit *test)
+static void sim_esc_applications_are_woken_on_time(struct kunit *test)
 {
 	struct bed *b = with_app(test);
 
@@ -613,7 +613,7 @@ static void applications_are_woken_on_time(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
 }
 
-static void error_counters_are_cleared_by_a_write(struct kunit *test)
+static void sim_esc_error_counters_are_cleared_by_write(struct kunit *test)
 {
 	struct bed *b = start(test, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -629,7 +629,7 @@ static void error_counters_are_cleared_by_a_write(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x310, 4), 0ull);
 }
 
-static void res_resets_the_slave(struct kunit *test)
+static void sim_esc_res_resets_slave(struct kunit *test)
 {
 	struct bed *b = start(test, 2);
 	u8 v[2] = {};
@@ -644,36 +644,36 @@ static void res_resets_the_slave(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(information_registers_are_as_configured),
-	KUNIT_CASE(a_write_to_a_read_only_register_counts_only),
-	KUNIT_CASE(position_addresses_are_incremented_by_each),
-	KUNIT_CASE(a_broadcast_read_is_an_or),
-	KUNIT_CASE(read_write_commands_count_three),
-	KUNIT_CASE(frmw_reads_one_and_writes_the_others),
-	KUNIT_CASE(the_alias_answers_when_enabled),
-	KUNIT_CASE(what_is_not_there_does_not_count),
-	KUNIT_CASE(a_mailbox_is_full_or_empty),
-	KUNIT_CASE(a_window_wants_first_byte_and_last_byte),
-	KUNIT_CASE(a_switched_off_window_guards_nothing),
-	KUNIT_CASE(a_buffered_window_has_three_buffers),
-	KUNIT_CASE(an_active_window_keeps_its_page),
-	KUNIT_CASE(logical_commands_count_per_slave_and_direction),
-	KUNIT_CASE(a_logical_write_leaves_inputs_alone),
-	KUNIT_CASE(overlapped_lrw_exchanges_in_place),
-	KUNIT_CASE(bits_are_mapped_one_by_one),
-	KUNIT_CASE(eeprom_reads_take_their_time),
-	KUNIT_CASE(eeprom_writes_need_their_enable),
-	KUNIT_CASE(the_pdi_may_own_the_eeprom),
-	KUNIT_CASE(a_bad_checksum_stops_the_pdi),
-	KUNIT_CASE(checksums_match_the_published_ones),
-	KUNIT_CASE(al_control_waits_for_the_pdi),
-	KUNIT_CASE(emulation_copies_the_al_state),
-	KUNIT_CASE(events_show_in_every_datagram),
-	KUNIT_CASE(buffers_tell_the_application),
-	KUNIT_CASE(the_watchdog_watches_from_the_first_write),
-	KUNIT_CASE(applications_are_woken_on_time),
-	KUNIT_CASE(error_counters_are_cleared_by_a_write),
-	KUNIT_CASE(res_resets_the_slave),
+	KUNIT_CASE(sim_esc_information_registers_are_as_configured),
+	KUNIT_CASE(sim_esc_write_to_read_only_register_counts_only),
+	KUNIT_CASE(sim_esc_position_addresses_are_incremented_by_each),
+	KUNIT_CASE(sim_esc_broadcast_read_is_or),
+	KUNIT_CASE(sim_esc_read_write_commands_count_three),
+	KUNIT_CASE(sim_esc_frmw_reads_one_and_writes_others),
+	KUNIT_CASE(sim_esc_alias_answers_when_enabled),
+	KUNIT_CASE(sim_esc_missing_registers_do_not_count),
+	KUNIT_CASE(sim_esc_mailbox_is_full_or_empty),
+	KUNIT_CASE(sim_esc_mailbox_needs_first_and_last_byte),
+	KUNIT_CASE(sim_esc_disabled_sm_guards_nothing),
+	KUNIT_CASE(sim_esc_buffered_sm_has_three_buffers),
+	KUNIT_CASE(sim_esc_active_sm_keeps_its_page),
+	KUNIT_CASE(sim_esc_logical_commands_count_per_slave_and_direction),
+	KUNIT_CASE(sim_esc_logical_write_leaves_inputs_alone),
+	KUNIT_CASE(sim_esc_overlapped_lrw_exchanges_in_place),
+	KUNIT_CASE(sim_esc_bits_are_mapped_one_by_one),
+	KUNIT_CASE(sim_esc_eeprom_reads_take_their_time),
+	KUNIT_CASE(sim_esc_eeprom_writes_need_their_enable),
+	KUNIT_CASE(sim_esc_pdi_may_own_eeprom),
+	KUNIT_CASE(sim_esc_bad_checksum_stops_pdi),
+	KUNIT_CASE(sim_esc_checksums_match_published_ones),
+	KUNIT_CASE(sim_esc_al_control_waits_for_pdi),
+	KUNIT_CASE(sim_esc_emulation_copies_al_state),
+	KUNIT_CASE(sim_esc_events_show_in_every_datagram),
+	KUNIT_CASE(sim_esc_buffers_set_al_events),
+	KUNIT_CASE(sim_esc_watchdog_watches_from_first_write),
+	KUNIT_CASE(sim_esc_applications_are_woken_on_time),
+	KUNIT_CASE(sim_esc_error_counters_are_cleared_by_write),
+	KUNIT_CASE(sim_esc_res_resets_slave),
 	{}
 };
 

@@ -45,7 +45,7 @@ static const struct {
 	{ "tagged UDP", TAG "\x08\x00" IP UDP, 34, 44 },
 };
 
-static void ethercat_is_found_in_all_its_covers(struct kunit *test)
+static void sim_eth_ethercat_is_found_in_all_its_covers(struct kunit *test)
 {
 	u8 *eth = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
 	u8 *want = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
@@ -68,7 +68,7 @@ static void ethercat_is_found_in_all_its_covers(struct kunit *test)
 }
 
 /* no slave looks at a length, an address, a checksum or the content of a tag */
-static void other_fields_make_no_difference(struct kunit *test)
+static void sim_eth_other_fields_make_no_difference(struct kunit *test)
 {
 	u8 *eth = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
 	struct bed *b = bed_new(test, 3, 3);
@@ -88,7 +88,7 @@ static void other_fields_make_no_difference(struct kunit *test)
 	}
 }
 
-static void what_is_no_ethercat_is_destroyed(struct kunit *test)
+static void sim_eth_other_protocols_are_destroyed(struct kunit *test)
 {
 	u8 *eth = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
 	struct bed *b = bed_new(test, 3, 3);
@@ -130,7 +130,7 @@ static void what_is_no_ethercat_is_destroyed(struct kunit *test)
 }
 
 /* the longest ones */
-static void a_full_frame_fits(struct kunit *test)
+static void sim_eth_full_frame_fits(struct kunit *test)
 {
 	u8 *eth = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
 	struct bed *b = bed_new(test, 3, 3);
@@ -153,7 +153,7 @@ static void a_full_frame_fits(struct kunit *test)
 }
 
 /* back through a whole ring no processing unit is on the way */
-static void a_frame_that_is_only_forwarded_stays_as_it_is(struct kunit *test)
+static void sim_eth_forwarded_frame_is_unchanged(struct kunit *test)
 {
 	u8 *eth = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
 	u8 *was = kunit_kzalloc(test, FRAME_MAX, GFP_KERNEL);
@@ -175,11 +175,11 @@ static void a_frame_that_is_only_forwarded_stays_as_it_is(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(ethercat_is_found_in_all_its_covers),
-	KUNIT_CASE(other_fields_make_no_difference),
-	KUNIT_CASE(what_is_no_ethercat_is_destroyed),
-	KUNIT_CASE(a_full_frame_fits),
-	KUNIT_CASE(a_frame_that_is_only_forwarded_stays_as_it_is),
+	KUNIT_CASE(sim_eth_ethercat_is_found_in_all_its_covers),
+	KUNIT_CASE(sim_eth_other_fields_make_no_difference),
+	KUNIT_CASE(sim_eth_other_protocols_are_destroyed),
+	KUNIT_CASE(sim_eth_full_frame_fits),
+	KUNIT_CASE(sim_eth_forwarded_frame_is_unchanged),
 	{}
 };
 

@@ -16,7 +16,7 @@ static void mute(struct kunit *test, struct bed *b, u32 on)
 	ec_sim_advance(b->sim, b->now);
 }
 
-static void a_hanging_cpu_lets_its_watchdog_expire(struct kunit *test)
+static void sim_pdi_hanging_cpu_lets_its_watchdog_expire(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -57,7 +57,7 @@ static void a_hanging_cpu_lets_its_watchdog_expire(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x443, 1), 0ull);
 }
 
-static void a_watchdog_time_of_zero_is_off(struct kunit *test)
+static void sim_pdi_watchdog_time_of_zero_is_off(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 
@@ -73,7 +73,7 @@ static void a_watchdog_time_of_zero_is_off(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x440, 4), 0x01000001ull);
 }
 
-static void watchdog_counters_stop_at_the_end(struct kunit *test)
+static void sim_pdi_watchdog_counters_stop_at_end(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -118,7 +118,7 @@ static struct bed *emulated(struct kunit *test)
 	return b;
 }
 
-static void the_pdi_answers_for_an_eeprom(struct kunit *test)
+static void sim_pdi_answers_for_eeprom(struct kunit *test)
 {
 	struct bed *b = emulated(test);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -152,7 +152,7 @@ static void the_pdi_answers_for_an_eeprom(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x508, 8), 0x0807060504030201ull);
 }
 
-static void the_pdi_may_fail_as_an_eeprom(struct kunit *test)
+static void sim_pdi_may_fail_as_eeprom(struct kunit *test)
 {
 	struct bed *b = emulated(test);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -200,7 +200,7 @@ static u64 start_sync(struct bed *b)
 	return t;
 }
 
-static void sync_waits_for_its_acknowledge(struct kunit *test)
+static void sim_pdi_sync_waits_for_its_acknowledge(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 0);
 	struct ec_esc *esc;
@@ -240,7 +240,7 @@ static void sync_waits_for_its_acknowledge(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, syncs[1], 2);
 }
 
-static void sync_pulses_need_no_acknowledge(struct kunit *test)
+static void sim_pdi_sync_pulses_need_no_acknowledge(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	u64 t0 = b->now;
@@ -252,7 +252,7 @@ static void sync_pulses_need_no_acknowledge(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x98e, 2), 0ull);
 }
 
-static void the_sync_unit_may_be_the_pdis(struct kunit *test)
+static void sim_pdi_sync_unit_may_belong_to_pdi(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -275,7 +275,7 @@ static void the_sync_unit_may_be_the_pdis(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x984, 1), 0ull);
 }
 
-static void buffer_changes_leave_their_time(struct kunit *test)
+static void sim_pdi_buffer_changes_leave_their_time(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 1);
 	struct ec_esc *esc = ec_sim_slave(b->sim, 0);
@@ -303,15 +303,15 @@ static void buffer_changes_leave_their_time(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_hanging_cpu_lets_its_watchdog_expire),
-	KUNIT_CASE(a_watchdog_time_of_zero_is_off),
-	KUNIT_CASE(watchdog_counters_stop_at_the_end),
-	KUNIT_CASE(the_pdi_answers_for_an_eeprom),
-	KUNIT_CASE(the_pdi_may_fail_as_an_eeprom),
-	KUNIT_CASE(sync_waits_for_its_acknowledge),
-	KUNIT_CASE(sync_pulses_need_no_acknowledge),
-	KUNIT_CASE(the_sync_unit_may_be_the_pdis),
-	KUNIT_CASE(buffer_changes_leave_their_time),
+	KUNIT_CASE(sim_pdi_hanging_cpu_lets_its_watchdog_expire),
+	KUNIT_CASE(sim_pdi_watchdog_time_of_zero_is_off),
+	KUNIT_CASE(sim_pdi_watchdog_counters_stop_at_end),
+	KUNIT_CASE(sim_pdi_answers_for_eeprom),
+	KUNIT_CASE(sim_pdi_may_fail_as_eeprom),
+	KUNIT_CASE(sim_pdi_sync_waits_for_its_acknowledge),
+	KUNIT_CASE(sim_pdi_sync_pulses_need_no_acknowledge),
+	KUNIT_CASE(sim_pdi_sync_unit_may_belong_to_pdi),
+	KUNIT_CASE(sim_pdi_buffer_changes_leave_their_time),
 	{}
 };
 

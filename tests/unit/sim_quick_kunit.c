@@ -342,7 +342,7 @@ static void repair(struct twin *t)
 		operate(t, i);
 }
 
-static void quiet_cycles(struct kunit *test)
+static void sim_quick_quiet_cycles(struct kunit *test)
 {
 	struct twin *t = twin_new(test);
 
@@ -357,7 +357,7 @@ static void quiet_cycles(struct kunit *test)
 }
 
 /* what is seen at the terminals between the cycles */
-static void channels(struct kunit *test)
+static void sim_quick_channels(struct kunit *test)
 {
 	struct twin *t = twin_new(test);
 
@@ -375,7 +375,7 @@ static void channels(struct kunit *test)
 	}
 }
 
-static void cycles_with_events(struct kunit *test)
+static void sim_quick_cycles_with_events(struct kunit *test)
 {
 	struct twin *t = twin_new(test);
 
@@ -412,9 +412,9 @@ static void twin_exit(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(quiet_cycles),
-	KUNIT_CASE(channels),
-	KUNIT_CASE(cycles_with_events),
+	KUNIT_CASE(sim_quick_quiet_cycles),
+	KUNIT_CASE(sim_quick_channels),
+	KUNIT_CASE(sim_quick_cycles_with_events),
 	{}
 };
 

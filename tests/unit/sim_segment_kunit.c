@@ -22,7 +22,7 @@ static int count(struct bed *b, int port)
 	return bed_tx_port(b, port, EC_CMD_BRD, 0, 0, v, 2);
 }
 
-static void a_frame_takes_its_time(struct kunit *test)
+static void sim_segment_frame_takes_its_time(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 	u8 *v = kunit_kzalloc(test, 1000, GFP_KERNEL);
@@ -35,7 +35,7 @@ static void a_frame_takes_its_time(struct kunit *test)
 			(8 + 14 + 2 + 12 + 1000 + 4) * 80));
 }
 
-static void without_slaves_there_is_no_link(struct kunit *test)
+static void sim_segment_without_slaves_there_is_no_link(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 0);
 
@@ -43,7 +43,7 @@ static void without_slaves_there_is_no_link(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), -1);
 }
 
-static void foreign_frames_pass_unchanged(struct kunit *test)
+static void sim_segment_foreign_frames_pass_unchanged(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 2);
 	u8 v[64] = { 0x10, 0x40, 1, 2, 3 }, w[64];
@@ -58,7 +58,7 @@ static void foreign_frames_pass_unchanged(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x30c, 1), 1ull);
 }
 
-static void dl_status_shows_links_and_loops(struct kunit *test)
+static void sim_segment_dl_status_shows_links_and_loops(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 2);
 
@@ -77,7 +77,7 @@ static void dl_status_shows_links_and_loops(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), -1);
 }
 
-static void a_loop_setting_may_be_temporary(struct kunit *test)
+static void sim_segment_loop_setting_may_be_temporary(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 2);
 
@@ -90,7 +90,7 @@ static void a_loop_setting_may_be_temporary(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
 }
 
-static void two_with_the_same_address_both_answer(struct kunit *test)
+static void sim_segment_slaves_with_same_address_both_answer(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 	u8 v[2];
@@ -103,7 +103,7 @@ static void two_with_the_same_address_both_answer(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_rd(b, 1003, 0x130, v, 2), 1);
 }
 
-static void auto_close_waits_for_a_write(struct kunit *test)
+static void sim_segment_auto_close_waits_for_write(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 2);
 
@@ -117,7 +117,7 @@ static void auto_close_waits_for_a_write(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
 }
 
-static void a_cut_cable_shortens_the_line(struct kunit *test)
+static void sim_segment_cut_cable_shortens_line(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 4, 4);
 
@@ -139,7 +139,7 @@ static void a_cut_cable_shortens_the_line(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
 }
 
-static void power_loss_forgets_registers(struct kunit *test)
+static void sim_segment_power_loss_forgets_registers(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 
@@ -178,7 +178,7 @@ static struct bed *tree(struct kunit *test)
 	return b;
 }
 
-static void a_tree_is_walked_in_port_order(struct kunit *test)
+static void sim_segment_tree_is_walked_in_port_order(struct kunit *test)
 {
 	struct bed *b = tree(test);
 	u32 i;
@@ -200,7 +200,7 @@ static void a_tree_is_walked_in_port_order(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->delay, (s64)(14 * 100 + 13 * 500 + MIN_NS));
 }
 
-static void wiring_is_checked(struct kunit *test)
+static void sim_segment_wiring_is_checked(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 4, 2);
 
@@ -230,7 +230,7 @@ static struct bed *ring(struct kunit *test, u32 n)
 	return b;
 }
 
-static void a_whole_ring_comes_out_at_the_other_port(struct kunit *test)
+static void sim_segment_whole_ring_comes_out_at_other_port(struct kunit *test)
 {
 	struct bed *b = ring(test, 4);
 
@@ -243,7 +243,7 @@ static void a_whole_ring_comes_out_at_the_other_port(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, b->circ);
 }
 
-static void a_cut_ring_answers_from_both_sides(struct kunit *test)
+static void sim_segment_cut_ring_answers_from_both_sides(struct kunit *test)
 {
 	struct bed *b = ring(test, 5);
 	u8 v[2] = {};
@@ -263,7 +263,7 @@ static void a_cut_ring_answers_from_both_sides(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->out, 1);
 }
 
-static void a_circulating_frame_is_destroyed(struct kunit *test)
+static void sim_segment_circulating_frame_is_destroyed(struct kunit *test)
 {
 	struct bed *b = ring(test, 3);
 	struct ec_frame_buf f;
@@ -285,7 +285,7 @@ static void a_circulating_frame_is_destroyed(struct kunit *test)
 			(s64)0);
 }
 
-static void a_frame_opens_an_auto_closed_port(struct kunit *test)
+static void sim_segment_frame_opens_auto_closed_port(struct kunit *test)
 {
 	struct bed *b = ring(test, 3);
 
@@ -301,7 +301,7 @@ static void a_frame_opens_an_auto_closed_port(struct kunit *test)
 
 /* ---- faults */
 
-static void the_nth_frame_is_lost(struct kunit *test)
+static void sim_segment_nth_frame_is_lost(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 2);
 	u8 v[1] = { 9 };
@@ -317,7 +317,7 @@ static void the_nth_frame_is_lost(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
 }
 
-static void frames_are_lost_by_chance(struct kunit *test)
+static void sim_segment_frames_are_lost_by_chance(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 2);
 	int i, lost = 0;
@@ -333,7 +333,7 @@ static void frames_are_lost_by_chance(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, lost, 0);
 }
 
-static void fates_are_reported(struct kunit *test)
+static void sim_segment_fates_are_reported(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 2, 2);
 	struct ec_sim_result res;
@@ -362,7 +362,7 @@ static void fates_are_reported(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, res.induced);
 }
 
-static void slaves_misbehave_on_request(struct kunit *test)
+static void sim_segment_slaves_misbehave_on_request(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 
@@ -389,7 +389,7 @@ static void slaves_misbehave_on_request(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
 }
 
-static void faults_happen_when_due(struct kunit *test)
+static void sim_segment_faults_happen_when_due(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 	struct ec_sim_fault f = { .at_ns = 500000000, .slave = 1, .port = 0 };
@@ -411,7 +411,7 @@ static void faults_happen_when_due(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
 }
 
-static void every_fault_and_bug_has_a_name(struct kunit *test)
+static void sim_segment_every_fault_and_bug_has_name(struct kunit *test)
 {
 	int i;
 
@@ -478,7 +478,7 @@ static size_t random_frame(struct rnd *r, u8 *buf, size_t cap)
 	return ec_frame_end(&f);
 }
 
-static void shortcuts_do_not_change_results(struct kunit *test)
+static void sim_segment_shortcuts_do_not_change_results(struct kunit *test)
 {
 	struct bed *a = tree(test), *b = tree(test);
 	u8 *fa = a->frame, *fb = b->frame;
@@ -521,7 +521,7 @@ static void shortcuts_do_not_change_results(struct kunit *test)
 	ec_sim_free(a->sim);
 }
 
-static void a_long_line_is_no_problem(struct kunit *test)
+static void sim_segment_long_line_is_processed(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3000, 0);
 	u8 v[2] = {};
@@ -542,29 +542,29 @@ static void a_long_line_is_no_problem(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_frame_takes_its_time),
-	KUNIT_CASE(without_slaves_there_is_no_link),
-	KUNIT_CASE(foreign_frames_pass_unchanged),
-	KUNIT_CASE(dl_status_shows_links_and_loops),
-	KUNIT_CASE(a_loop_setting_may_be_temporary),
-	KUNIT_CASE(two_with_the_same_address_both_answer),
-	KUNIT_CASE(auto_close_waits_for_a_write),
-	KUNIT_CASE(a_cut_cable_shortens_the_line),
-	KUNIT_CASE(power_loss_forgets_registers),
-	KUNIT_CASE(a_tree_is_walked_in_port_order),
-	KUNIT_CASE(wiring_is_checked),
-	KUNIT_CASE(a_whole_ring_comes_out_at_the_other_port),
-	KUNIT_CASE(a_cut_ring_answers_from_both_sides),
-	KUNIT_CASE(a_circulating_frame_is_destroyed),
-	KUNIT_CASE(a_frame_opens_an_auto_closed_port),
-	KUNIT_CASE(the_nth_frame_is_lost),
-	KUNIT_CASE(frames_are_lost_by_chance),
-	KUNIT_CASE(fates_are_reported),
-	KUNIT_CASE(slaves_misbehave_on_request),
-	KUNIT_CASE(faults_happen_when_due),
-	KUNIT_CASE(every_fault_and_bug_has_a_name),
-	KUNIT_CASE(shortcuts_do_not_change_results),
-	KUNIT_CASE(a_long_line_is_no_problem),
+	KUNIT_CASE(sim_segment_frame_takes_its_time),
+	KUNIT_CASE(sim_segment_without_slaves_there_is_no_link),
+	KUNIT_CASE(sim_segment_foreign_frames_pass_unchanged),
+	KUNIT_CASE(sim_segment_dl_status_shows_links_and_loops),
+	KUNIT_CASE(sim_segment_loop_setting_may_be_temporary),
+	KUNIT_CASE(sim_segment_slaves_with_same_address_both_answer),
+	KUNIT_CASE(sim_segment_auto_close_waits_for_write),
+	KUNIT_CASE(sim_segment_cut_cable_shortens_line),
+	KUNIT_CASE(sim_segment_power_loss_forgets_registers),
+	KUNIT_CASE(sim_segment_tree_is_walked_in_port_order),
+	KUNIT_CASE(sim_segment_wiring_is_checked),
+	KUNIT_CASE(sim_segment_whole_ring_comes_out_at_other_port),
+	KUNIT_CASE(sim_segment_cut_ring_answers_from_both_sides),
+	KUNIT_CASE(sim_segment_circulating_frame_is_destroyed),
+	KUNIT_CASE(sim_segment_frame_opens_auto_closed_port),
+	KUNIT_CASE(sim_segment_nth_frame_is_lost),
+	KUNIT_CASE(sim_segment_frames_are_lost_by_chance),
+	KUNIT_CASE(sim_segment_fates_are_reported),
+	KUNIT_CASE(sim_segment_slaves_misbehave_on_request),
+	KUNIT_CASE(sim_segment_faults_happen_when_due),
+	KUNIT_CASE(sim_segment_every_fault_and_bug_has_name),
+	KUNIT_CASE(sim_segment_shortcuts_do_not_change_results),
+	KUNIT_CASE(sim_segment_long_line_is_processed),
 	{}
 };
 

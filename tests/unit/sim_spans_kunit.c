@@ -90,7 +90,7 @@ static void random_fault(struct pair *p)
 	}
 }
 
-static void the_table_changes_no_result(struct kunit *test)
+static void sim_spans_table_changes_no_result(struct kunit *test)
 {
 	struct pair p = { .test = test, .a = bed_new(test, SLAVES, SLAVES), .rng = 3 };
 	u8 data[SPAN];
@@ -124,7 +124,7 @@ static void the_table_changes_no_result(struct kunit *test)
 }
 
 /* it holds what is switched on, and nothing after the slaves had no power */
-static void the_table_follows_the_registers(struct kunit *test)
+static void sim_spans_table_follows_registers(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 3);
 	struct ec_fmmu f = {
@@ -157,7 +157,7 @@ static void the_table_follows_the_registers(struct kunit *test)
 }
 
 /* the same datagram, the same number of slaves, but others */
-static void the_table_follows_the_wiring(struct kunit *test)
+static void sim_spans_table_follows_wiring(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 0);
 	struct ec_fmmu f = {
@@ -188,9 +188,9 @@ static void the_table_follows_the_wiring(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(the_table_changes_no_result),
-	KUNIT_CASE(the_table_follows_the_registers),
-	KUNIT_CASE(the_table_follows_the_wiring),
+	KUNIT_CASE(sim_spans_table_changes_no_result),
+	KUNIT_CASE(sim_spans_table_follows_registers),
+	KUNIT_CASE(sim_spans_table_follows_wiring),
 	{}
 };
 

@@ -3,7 +3,7 @@
 #include "../../master/wire/soe.h"
 #include "../../master/wire/voe.h"
 
-static void a_header_survives_both_ways(struct kunit *test)
+static void soe_header_survives_both_ways(struct kunit *test)
 {
 	struct ec_soe_hdr out, in = { .error = true, .drive = 7, .elements = 0x44, .idn = 0x8096 };
 	u8 msg[EC_SOE_HDR];
@@ -28,7 +28,7 @@ static void a_header_survives_both_ways(struct kunit *test)
 	}
 }
 
-static void a_request_must_fit_into_one_message(struct kunit *test)
+static void soe_request_must_fit_into_one_message(struct kunit *test)
 {
 	u8 value[4] = { 1, 2, 3, 4 }, tx[8];
 	struct ec_soe_access w = {
@@ -46,7 +46,7 @@ static void a_request_must_fit_into_one_message(struct kunit *test)
 }
 
 /* what may come while the answer to reading S-0-0091 of drive 1 is awaited */
-static void answers(struct kunit *test)
+static void soe_answers(struct kunit *test)
 {
 	static const struct {
 		u8 msg[8];
@@ -85,7 +85,7 @@ static void answers(struct kunit *test)
 	}
 }
 
-static void a_value_larger_than_its_room(struct kunit *test)
+static void soe_value_larger_than_buffer_is_refused(struct kunit *test)
 {
 	static const u8 msg[] = { 0x02, 0x40, 0x5b, 0, 1, 2, 3, 4 };
 	u8 value[4] = { 9, 9, 9, 9 };
@@ -97,7 +97,7 @@ static void a_value_larger_than_its_room(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, value[0], 9);
 }
 
-static void every_error_code_of_the_table_has_a_text(struct kunit *test)
+static void soe_every_error_code_of_table_has_text(struct kunit *test)
 {
 	static const u16 known[] = {
 		0x1001, 0x1009, 0x2001, 0x2002, 0x2003, 0x2004, 0x2005, 0x3002, 0x3003, 0x3004,
@@ -117,7 +117,7 @@ static void every_error_code_of_the_table_has_a_text(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, n, (unsigned int)ARRAY_SIZE(known));
 }
 
-static void a_voe_header_survives_both_ways(struct kunit *test)
+static void soe_voe_header_survives_both_ways(struct kunit *test)
 {
 	struct ec_voe_hdr out, in = { .vendor = 0x12345678, .type = 0xabcd };
 	u8 msg[EC_VOE_HDR + 2] = { 0 };
@@ -134,12 +134,12 @@ static void a_voe_header_survives_both_ways(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_header_survives_both_ways),
-	KUNIT_CASE(a_request_must_fit_into_one_message),
-	KUNIT_CASE(answers),
-	KUNIT_CASE(a_value_larger_than_its_room),
-	KUNIT_CASE(every_error_code_of_the_table_has_a_text),
-	KUNIT_CASE(a_voe_header_survives_both_ways),
+	KUNIT_CASE(soe_header_survives_both_ways),
+	KUNIT_CASE(soe_request_must_fit_into_one_message),
+	KUNIT_CASE(soe_answers),
+	KUNIT_CASE(soe_value_larger_than_buffer_is_refused),
+	KUNIT_CASE(soe_every_error_code_of_table_has_text),
+	KUNIT_CASE(soe_voe_header_survives_both_ways),
 	{}
 };
 

@@ -2,7 +2,7 @@
 #include "wire_kunit.h"
 #include "../../master/wire/types.h"
 
-static void the_table_is_sorted_and_names_are_unique(struct kunit *test)
+static void types_table_is_sorted_and_names_are_unique(struct kunit *test)
 {
 	unsigned int i, j;
 
@@ -13,7 +13,7 @@ static void the_table_is_sorted_and_names_are_unique(struct kunit *test)
 			KUNIT_EXPECT_STRNEQ(test, ec_types[i].name, ec_types[j].name);
 }
 
-static void every_type_is_found_by_code_and_name(struct kunit *test)
+static void types_every_type_is_found_by_code_and_name(struct kunit *test)
 {
 	unsigned int i;
 
@@ -26,7 +26,7 @@ static void every_type_is_found_by_code_and_name(struct kunit *test)
 	KUNIT_EXPECT_NULL(test, ec_type_by_code(0xFFFA));
 }
 
-static void names_of_the_command_line_have_their_codes(struct kunit *test)
+static void types_names_of_command_line_have_their_codes(struct kunit *test)
 {
 	static const struct {
 		const char *name;
@@ -55,7 +55,7 @@ static void names_of_the_command_line_have_their_codes(struct kunit *test)
 	}
 }
 
-static void unknown_names_are_not_found(struct kunit *test)
+static void types_unknown_names_are_not_found(struct kunit *test)
 {
 	KUNIT_EXPECT_NULL(test, ec_type_by_name(""));
 	KUNIT_EXPECT_NULL(test, ec_type_by_name("uint"  "7"));
@@ -65,10 +65,10 @@ static void unknown_names_are_not_found(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(the_table_is_sorted_and_names_are_unique),
-	KUNIT_CASE(every_type_is_found_by_code_and_name),
-	KUNIT_CASE(names_of_the_command_line_have_their_codes),
-	KUNIT_CASE(unknown_names_are_not_found),
+	KUNIT_CASE(types_table_is_sorted_and_names_are_unique),
+	KUNIT_CASE(types_every_type_is_found_by_code_and_name),
+	KUNIT_CASE(types_names_of_command_line_have_their_codes),
+	KUNIT_CASE(types_unknown_names_are_not_found),
 	{}
 };
 

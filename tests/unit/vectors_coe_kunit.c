@@ -22,7 +22,7 @@ static u32 two_objects(void *ctx, u16 index, u8 sub, bool complete,
 	return EC_ABORT_NO_OBJECT;
 }
 
-static void answers_of_the_sdo_server(struct kunit *test)
+static void vectors_coe_answers_of_sdo_server(struct kunit *test)
 {
 	static const struct ec_sdo_srv_ops ops = { .read = two_objects };
 	static const u8 req[] = { 0x00, 0x20, 0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0 };
@@ -56,7 +56,7 @@ static u32 take(void *ctx, u16 index, u8 sub, bool complete, const u8 *data, siz
 	return 0;
 }
 
-static void downloads_into_the_sdo_server(struct kunit *test)
+static void vectors_coe_downloads_into_sdo_server(struct kunit *test)
 {
 	static const struct ec_sdo_srv_ops ops = { .read = two_objects, .write = take };
 	static const u8 two[] = { 0x00, 0x20, 0x2B, 0x00, 0x20, 0x01, 0x34, 0x12, 0, 0 };
@@ -81,9 +81,9 @@ static void downloads_into_the_sdo_server(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, abort, 10);
 }
 
-static void segments_into_the_sdo_server(struct kunit *test)
+static void vectors_coe_segments_into_sdo_server(struct kunit *test)
 {
-	/* as a_segmented_download, seen from the other side */
+	/* as vectors_segmented_download, seen from the other side */
 	static const struct ec_sdo_srv_ops ops = { .read = two_objects, .write = take };
 	static const u8 first[] = {
 		0x00, 0x20, 0x21, 0x00, 0x20, 0x01, 0x0D, 0x00, 0x00, 0x00, 's', 'e',
@@ -113,7 +113,7 @@ static u32 ten_bytes(void *ctx, u16 index, u8 sub, bool complete, u8 *buf, size_
 	return 0;
 }
 
-static void segments_out_of_the_sdo_server(struct kunit *test)
+static void vectors_coe_segments_out_of_sdo_server(struct kunit *test)
 {
 	/* a mailbox of 16 bytes: nothing with the answer, then 7, then 3 */
 	static const struct ec_sdo_srv_ops ops = { .read = ten_bytes };
@@ -139,7 +139,7 @@ static void segments_out_of_the_sdo_server(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, toggle, 10);
 }
 
-static void aborts_of_the_slave(struct kunit *test)
+static void vectors_coe_aborts_of_slave(struct kunit *test)
 {
 	/* "no such object" to an upload, "read only" to a download */
 	static const u8 up[] = { 0x00, 0x20, 0x80, 0x00, 0x30, 0x02, 0x00, 0x00, 0x02, 0x06 };
@@ -157,7 +157,7 @@ static void aborts_of_the_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, d.abort, 0x06010002u);
 }
 
-static void an_emergency(struct kunit *test)
+static void vectors_coe_emergency(struct kunit *test)
 {
 	static const u8 want[] = { 0x00, 0x10, 0x10, 0x42, 0x09, 1, 2, 3, 4, 5 };
 	struct ec_coe_emergency e = { 0x4210, 0x09, { 1, 2, 3, 4, 5 } };
@@ -171,7 +171,7 @@ static void an_emergency(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, e.data, want + 5, 5);
 }
 
-static void sdo_information(struct kunit *test)
+static void vectors_coe_sdo_information(struct kunit *test)
 {
 	static const u8 list_req[] = { 0x00, 0x80, 0x01, 0x00, 0x00, 0x00, 0x01, 0x00 };
 	static const u8 frag1[] = { 0x00, 0x80, 0x82, 0x00, 0x01, 0x00, 0x01, 0x00, 0x00, 0x10 };
@@ -218,7 +218,7 @@ static void sdo_information(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, o.name_len, (size_t)2);
 }
 
-static void sdo_information_of_the_slave(struct kunit *test)
+static void vectors_coe_sdo_information_of_slave(struct kunit *test)
 {
 	static const u8 list_req[] = { 0x00, 0x80, 0x01, 0x00, 0x00, 0x00, 0x01, 0x00 };
 	static const u8 entry_req[] = { 0x00, 0x80, 0x05, 0, 0, 0, 0x18, 0x10, 0x02, 0x03 };
@@ -270,14 +270,14 @@ static void sdo_information_of_the_slave(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(answers_of_the_sdo_server),
-	KUNIT_CASE(downloads_into_the_sdo_server),
-	KUNIT_CASE(segments_into_the_sdo_server),
-	KUNIT_CASE(segments_out_of_the_sdo_server),
-	KUNIT_CASE(aborts_of_the_slave),
-	KUNIT_CASE(an_emergency),
-	KUNIT_CASE(sdo_information),
-	KUNIT_CASE(sdo_information_of_the_slave),
+	KUNIT_CASE(vectors_coe_answers_of_sdo_server),
+	KUNIT_CASE(vectors_coe_downloads_into_sdo_server),
+	KUNIT_CASE(vectors_coe_segments_into_sdo_server),
+	KUNIT_CASE(vectors_coe_segments_out_of_sdo_server),
+	KUNIT_CASE(vectors_coe_aborts_of_slave),
+	KUNIT_CASE(vectors_coe_emergency),
+	KUNIT_CASE(vectors_coe_sdo_information),
+	KUNIT_CASE(vectors_coe_sdo_information_of_slave),
 	{}
 };
 

@@ -15,7 +15,7 @@ static const u8 set[62] = {
 	'm', 'i', 'x', 'e', 'r',
 };
 
-static void set_ip_request(struct kunit *test)
+static void vectors_eoe_set_ip_request(struct kunit *test)
 {
 	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x01, 0x07 };
 	static const u8 ip[4] = { 192, 168, 0, 1 }, mask[4] = { 255, 255, 255, 0 };
@@ -36,7 +36,7 @@ static void set_ip_request(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, set, 62);
 }
 
-static void set_ip_response(struct kunit *test)
+static void vectors_eoe_set_ip_response(struct kunit *test)
 {
 	static const u8 no_ip[] = { 0x03, 0x01, 0x01, 0x02 };
 	static const u8 port4[] = { 0x43, 0x00, 0x00, 0x00 };
@@ -51,7 +51,7 @@ static void set_ip_response(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, no_ip, 4);
 }
 
-static void get_ip(struct kunit *test)
+static void vectors_eoe_get_ip(struct kunit *test)
 {
 	static const u8 req[] = { 0x06, 0x01, 0x00, 0x00 };
 	static const u8 resp[] = {	/* ends behind the address */
@@ -74,9 +74,9 @@ static void get_ip(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(set_ip_request),
-	KUNIT_CASE(set_ip_response),
-	KUNIT_CASE(get_ip),
+	KUNIT_CASE(vectors_eoe_set_ip_request),
+	KUNIT_CASE(vectors_eoe_set_ip_response),
+	KUNIT_CASE(vectors_eoe_get_ip),
 	{ }
 };
 

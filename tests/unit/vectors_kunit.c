@@ -11,7 +11,7 @@
 
 static u8 out[128];
 
-static void a_broadcast_read_of_the_al_status(struct kunit *test)
+static void vectors_broadcast_read_of_al_status(struct kunit *test)
 {
 	/* length 14, type 1; BRD, index 5, address 0:0x0130, 2 bytes, IRQ 0, data, counter */
 	static const u8 want[] = {
@@ -28,7 +28,7 @@ static void a_broadcast_read_of_the_al_status(struct kunit *test)
 }
 
 /* BRD 0x0130 and LRD 0x01000010 of frames of their own, put together by hand */
-static void two_frames_put_together(struct kunit *test)
+static void vectors_two_frames_put_together(struct kunit *test)
 {
 	static const u8 brd[] = { 7, 5, 0, 0, 0x30, 1, 2, 0, 0, 0, 0x11, 0x22, 0, 0 };
 	static const u8 lrd[] = { 10, 6, 0x10, 0, 0, 1, 1, 0, 0, 0, 0x33, 0, 0 };
@@ -48,7 +48,7 @@ static void two_frames_put_together(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
-static void two_datagrams_in_one_frame(struct kunit *test)
+static void vectors_two_datagrams_in_one_frame(struct kunit *test)
 {
 	/* FPWR 0x03E9:0x0120 = 2 with "more"; LRD 0x01000010, 1 byte */
 	static const u8 want[] = {
@@ -69,7 +69,7 @@ static void two_datagrams_in_one_frame(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
-static void a_returned_datagram_with_all_marks(struct kunit *test)
+static void vectors_returned_datagram_with_all_marks(struct kunit *test)
 {
 	/* APRD at position 1 (0xFFFF, passed two slaves), circulating, IRQ 0x0004, counter 1 */
 	u8 in[] = {
@@ -94,7 +94,7 @@ static void a_returned_datagram_with_all_marks(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_dgram_wkc(&d), 1);
 }
 
-static void an_fmmu_for_two_output_bits(struct kunit *test)
+static void vectors_fmmu_for_two_output_bits(struct kunit *test)
 {
 	/* logical 0x00010000, 1 byte, bits 2 to 3 -> physical 0x0F00 bit 0, write, on */
 	static const u8 want[] = {
@@ -111,7 +111,7 @@ static void an_fmmu_for_two_output_bits(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_fmmu_bits(&f), 2u);
 }
 
-static void an_fmmu_for_inputs(struct kunit *test)
+static void vectors_fmmu_for_inputs(struct kunit *test)
 {
 	static const u8 in[] = {
 		0x78, 0x56, 0x34, 0x12, 0x06, 0x00, 0x00, 0x07,
@@ -127,7 +127,7 @@ static void an_fmmu_for_inputs(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_fmmu_bits(&f), 48u);
 }
 
-static void a_mailbox_sync_manager(struct kunit *test)
+static void vectors_mailbox_sync_manager(struct kunit *test)
 {
 	/* SM0 at 0x1000, 128 bytes, mailbox, written by the master, PDI interrupt, on */
 	static const u8 want[] = { 0x00, 0x10, 0x80, 0x00, 0x26, 0x00, 0x01, 0x00 };
@@ -141,7 +141,7 @@ static void a_mailbox_sync_manager(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
-static void a_process_data_sync_manager(struct kunit *test)
+static void vectors_process_data_sync_manager(struct kunit *test)
 {
 	/* SM2 at 0x1100, 8 bytes, three buffers, written by the master, PDI interrupt, watchdog */
 	static const u8 want[] = { 0x00, 0x11, 0x08, 0x00, 0x64, 0x00, 0x01, 0x00 };
@@ -155,7 +155,7 @@ static void a_process_data_sync_manager(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
 }
 
-static void a_full_mailbox_as_its_page_shows_it(struct kunit *test)
+static void vectors_full_mailbox_as_its_page_shows_it(struct kunit *test)
 {
 	/* SM1 at 0x1080, 128 bytes, mailbox, read by the master; written, full; repeat */
 	static const u8 in[] = { 0x80, 0x10, 0x80, 0x00, 0x22, 0x09, 0x03, 0x02 };
@@ -170,7 +170,7 @@ static void a_full_mailbox_as_its_page_shows_it(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, sm.pdi, EC_SM_PDI_REPEAT_ACK);
 }
 
-static void bits_across_bytes(struct kunit *test)
+static void vectors_bits_across_bytes(struct kunit *test)
 {
 	/* bits 6 to 13 of ...: 0b11 below, 0b010010 above */
 	static const u8 in[] = { 0xC5, 0x12, 0xFF };
@@ -182,7 +182,7 @@ static void bits_across_bytes(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, to[2], 0x00);
 }
 
-static void sii_checksums(struct kunit *test)
+static void vectors_sii_checksums(struct kunit *test)
 {
 	static const struct {
 		u8 in[14];
@@ -202,7 +202,7 @@ static void sii_checksums(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, ec_sii_crc(v[i].in), v[i].crc);
 }
 
-static void an_sii_image_typed_by_hand(struct kunit *test)
+static void vectors_sii_image_typed_by_hand(struct kunit *test)
 {
 	static u8 img[256] = {
 		[0x00] = 0x05, 0x0E, 0x03, 0x06, 0x10, 0x27,
@@ -253,7 +253,7 @@ static void an_sii_image_typed_by_hand(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_used(img, sizeof(img)), (size_t)0xAA);
 }
 
-static void mailbox_headers(struct kunit *test)
+static void vectors_mailbox_headers(struct kunit *test)
 {
 	/* 10 bytes of CoE, counter 1 */
 	static const u8 coe[] = { 0x0A, 0x00, 0x00, 0x00, 0x00, 0x13 };
@@ -278,7 +278,7 @@ static void mailbox_headers(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, err + 6, 4);
 }
 
-static void an_expedited_upload(struct kunit *test)
+static void vectors_expedited_upload(struct kunit *test)
 {
 	static const u8 req[] = { 0x00, 0x20, 0x40, 0x18, 0x10, 0x01, 0, 0, 0, 0 };
 	static const u8 resp[] = { 0x00, 0x30, 0x43, 0x18, 0x10, 0x01, 0x37, 0x13, 0x00, 0x00 };
@@ -304,7 +304,7 @@ static void an_expedited_upload(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, "abcd", 4);
 }
 
-static void expedited_downloads_of_1_to_4_bytes(struct kunit *test)
+static void vectors_expedited_downloads_of_1_to_4_bytes(struct kunit *test)
 {
 	static const u8 cmd[] = { 0x2F, 0x2B, 0x27, 0x23 };
 	static const u8 resp[] = { 0x00, 0x30, 0x60, 0x12, 0x1C, 0x00, 0, 0, 0, 0 };
@@ -322,7 +322,7 @@ static void expedited_downloads_of_1_to_4_bytes(struct kunit *test)
 	}
 }
 
-static void a_complete_access_download(struct kunit *test)
+static void vectors_complete_access_download(struct kunit *test)
 {
 	/* 0x1C13 = { 1, 0x1A00 }: count, pad byte, one index */
 	static const u8 data[] = { 0x01, 0x00, 0x00, 0x1A };
@@ -338,7 +338,7 @@ static void a_complete_access_download(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, resp, 10), 0);
 }
 
-static void a_segmented_upload(struct kunit *test)
+static void vectors_segmented_upload(struct kunit *test)
 {
 	/* "segmented!" out of a slave with a mailbox of 16 bytes: nothing, 7, 3 */
 	static const u8 first[] = { 0x00, 0x30, 0x41, 0x08, 0x10, 0x00, 0x0A, 0x00, 0x00, 0x00 };
@@ -361,7 +361,7 @@ static void a_segmented_upload(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, out, "segmented!", 10);
 }
 
-static void a_segmented_download(struct kunit *test)
+static void vectors_segmented_download(struct kunit *test)
 {
 	/* 13 bytes into a mailbox of 18: 2 with the request, then 9, then 2 padded to 7 */
 	static const u8 first[] = {
@@ -387,24 +387,24 @@ static void a_segmented_download(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(a_broadcast_read_of_the_al_status),
-	KUNIT_CASE(two_datagrams_in_one_frame),
-	KUNIT_CASE(two_frames_put_together),
-	KUNIT_CASE(a_returned_datagram_with_all_marks),
-	KUNIT_CASE(an_fmmu_for_two_output_bits),
-	KUNIT_CASE(an_fmmu_for_inputs),
-	KUNIT_CASE(a_mailbox_sync_manager),
-	KUNIT_CASE(a_process_data_sync_manager),
-	KUNIT_CASE(a_full_mailbox_as_its_page_shows_it),
-	KUNIT_CASE(bits_across_bytes),
-	KUNIT_CASE(sii_checksums),
-	KUNIT_CASE(an_sii_image_typed_by_hand),
-	KUNIT_CASE(mailbox_headers),
-	KUNIT_CASE(an_expedited_upload),
-	KUNIT_CASE(expedited_downloads_of_1_to_4_bytes),
-	KUNIT_CASE(a_complete_access_download),
-	KUNIT_CASE(a_segmented_upload),
-	KUNIT_CASE(a_segmented_download),
+	KUNIT_CASE(vectors_broadcast_read_of_al_status),
+	KUNIT_CASE(vectors_two_datagrams_in_one_frame),
+	KUNIT_CASE(vectors_two_frames_put_together),
+	KUNIT_CASE(vectors_returned_datagram_with_all_marks),
+	KUNIT_CASE(vectors_fmmu_for_two_output_bits),
+	KUNIT_CASE(vectors_fmmu_for_inputs),
+	KUNIT_CASE(vectors_mailbox_sync_manager),
+	KUNIT_CASE(vectors_process_data_sync_manager),
+	KUNIT_CASE(vectors_full_mailbox_as_its_page_shows_it),
+	KUNIT_CASE(vectors_bits_across_bytes),
+	KUNIT_CASE(vectors_sii_checksums),
+	KUNIT_CASE(vectors_sii_image_typed_by_hand),
+	KUNIT_CASE(vectors_mailbox_headers),
+	KUNIT_CASE(vectors_expedited_upload),
+	KUNIT_CASE(vectors_expedited_downloads_of_1_to_4_bytes),
+	KUNIT_CASE(vectors_complete_access_download),
+	KUNIT_CASE(vectors_segmented_upload),
+	KUNIT_CASE(vectors_segmented_download),
 	{}
 };
 

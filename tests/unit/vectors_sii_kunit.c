@@ -41,7 +41,7 @@ static const u8 image[] = {
 	[0xFE] = 0xFF, 0xFF,
 };
 
-static void the_fixed_area(struct kunit *test)
+static void vectors_sii_fixed_area(struct kunit *test)
 {
 	struct ec_sii_info i;
 
@@ -60,7 +60,7 @@ static void the_fixed_area(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, i.version, 1);
 }
 
-static void the_general_category(struct kunit *test)
+static void vectors_sii_general_category(struct kunit *test)
 {
 	struct ec_sii_general g;
 	char s[8];
@@ -84,7 +84,7 @@ static void the_general_category(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, s, "Drive");
 }
 
-static void fmmus_and_sync_managers(struct kunit *test)
+static void vectors_sii_fmmus_and_sync_managers(struct kunit *test)
 {
 	u8 use[8];
 	struct ec_sii_sm sm;
@@ -102,7 +102,7 @@ static void fmmus_and_sync_managers(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, sm.type, EC_SII_SM_OUTPUTS);
 }
 
-static void pdos_with_a_gap(struct kunit *test)
+static void vectors_sii_pdos_with_gap(struct kunit *test)
 {
 	struct ec_sii_pdo_iter it;
 	struct ec_sii_pdo pdo;
@@ -126,7 +126,7 @@ static void pdos_with_a_gap(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_pdo_iter_next(&it, &pdo), 0);
 }
 
-static void clock_modes(struct kunit *test)
+static void vectors_sii_clock_modes(struct kunit *test)
 {
 	struct ec_sii_dc dc;
 
@@ -142,7 +142,7 @@ static void clock_modes(struct kunit *test)
 }
 
 /* fixed area first, then header by header, up to the end marker */
-static void an_image_read_piece_by_piece(struct kunit *test)
+static void vectors_sii_image_read_piece_by_piece(struct kunit *test)
 {
 	int have = 0, need;
 
@@ -157,7 +157,7 @@ static void an_image_read_piece_by_piece(struct kunit *test)
 }
 
 /* word 0x003E, the number of entries of a PDO, the end marker, nothing at all */
-static void flaws_of_an_image(struct kunit *test)
+static void vectors_sii_flaws_of_image(struct kunit *test)
 {
 	static u8 img[sizeof(image)];
 	struct ec_sii_flaw f;
@@ -177,7 +177,7 @@ static void flaws_of_an_image(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_sii_check(img, sizeof(img), &f), EC_SII_FLAW_BLANK);
 }
 
-static void the_same_image_built(struct kunit *test)
+static void vectors_sii_same_image_built(struct kunit *test)
 {
 	static const struct ec_sii_info info = {
 		.pdi_control = 0x0E05, .pdi_config = 0x0603, .sync_impulse = 10000,
@@ -213,14 +213,14 @@ static void the_same_image_built(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(the_fixed_area),
-	KUNIT_CASE(the_general_category),
-	KUNIT_CASE(fmmus_and_sync_managers),
-	KUNIT_CASE(pdos_with_a_gap),
-	KUNIT_CASE(clock_modes),
-	KUNIT_CASE(an_image_read_piece_by_piece),
-	KUNIT_CASE(flaws_of_an_image),
-	KUNIT_CASE(the_same_image_built),
+	KUNIT_CASE(vectors_sii_fixed_area),
+	KUNIT_CASE(vectors_sii_general_category),
+	KUNIT_CASE(vectors_sii_fmmus_and_sync_managers),
+	KUNIT_CASE(vectors_sii_pdos_with_gap),
+	KUNIT_CASE(vectors_sii_clock_modes),
+	KUNIT_CASE(vectors_sii_image_read_piece_by_piece),
+	KUNIT_CASE(vectors_sii_flaws_of_image),
+	KUNIT_CASE(vectors_sii_same_image_built),
 	{}
 };
 

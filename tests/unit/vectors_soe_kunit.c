@@ -4,7 +4,7 @@
 #include "../../master/wire/soe.h"
 #include "../../master/wire/voe.h"
 
-static void read_s_0_0015_of_drive_2(struct kunit *test)
+static void vectors_soe_read_s_0_0015_of_drive_2(struct kunit *test)
 {
 	static const u8 req[] = { 0x41, 0x40, 0x0F, 0x00 };
 	static const u8 resp[] = { 0x42, 0x40, 0x0F, 0x00, 0x07, 0x00 };
@@ -23,7 +23,7 @@ static void read_s_0_0015_of_drive_2(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, a.error, EC_SOE_ERR_DRIVE);
 }
 
-static void write_p_0_0150(struct kunit *test)
+static void vectors_soe_write_p_0_0150(struct kunit *test)
 {
 	static const u8 req[] = { 0x03, 0x40, 0x96, 0x80, 0x34, 0x12 };
 	static const u8 resp[] = { 0x04, 0x40, 0x96, 0x80 };
@@ -40,7 +40,7 @@ static void write_p_0_0150(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, a.error, EC_SOE_ERR_PROTECTED);
 }
 
-static void fragments_and_flags_of_the_header(struct kunit *test)
+static void vectors_soe_fragments_and_flags_of_header(struct kunit *test)
 {
 	/* read response of drive 7, incomplete, 3 fragments left */
 	static const u8 msg[] = { 0xEA, 0x42, 0x03, 0x00 };
@@ -56,7 +56,7 @@ static void fragments_and_flags_of_the_header(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, h.idn, 3);
 }
 
-static void a_vendor_message(struct kunit *test)
+static void vectors_soe_vendor_message(struct kunit *test)
 {
 	static const u8 msg[] = { 0xAD, 0xDE, 0xEF, 0xBE, 0x34, 0x12, 'x' };
 	struct ec_rbuf r = ec_rbuf(msg, sizeof(msg));
@@ -73,10 +73,10 @@ static void a_vendor_message(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(read_s_0_0015_of_drive_2),
-	KUNIT_CASE(write_p_0_0150),
-	KUNIT_CASE(fragments_and_flags_of_the_header),
-	KUNIT_CASE(a_vendor_message),
+	KUNIT_CASE(vectors_soe_read_s_0_0015_of_drive_2),
+	KUNIT_CASE(vectors_soe_write_p_0_0150),
+	KUNIT_CASE(vectors_soe_fragments_and_flags_of_header),
+	KUNIT_CASE(vectors_soe_vendor_message),
 	{}
 };
 

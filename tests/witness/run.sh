@@ -9,7 +9,7 @@
 
 cd "$(dirname "$0")/../.." || exit 1
 # compares the model with itself, so it judges nothing
-not_a_witness='shortcuts_do_not_change_results'
+not_a_witness='sim_segment_shortcuts_do_not_change_results'
 
 make -s -C tests/unit -j2 B="$PWD/build/witness" SAN= witness >/dev/null || exit 1
 prog=$PWD/build/witness/witness
