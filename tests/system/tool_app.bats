@@ -59,7 +59,7 @@ all_exchanged() {
 	run ethercat config
 	[ "$status" = 0 ]
 	[ "${#lines[@]}" = 22 ]
-	[[ "${lines[4]}" =~ ^"0:4   0x00000002/0x1c213052  4   OP  "$ ]]
+	[[ "${lines[4]}" =~ ^"0:4   0x00000002/0x1c213052  4   OP"$ ]]
 	run ethercat config -v -p4
 	[ "${lines[0]}" = "Alias: 0" ]
 	[ "${lines[1]}" = "Position: 4" ]
