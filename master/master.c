@@ -83,7 +83,7 @@ static void destroy(struct ec_master *m)
 	ec_api_between_stop(m);
 	ec_session_end(m, NULL);
 	ec_monitor_stop(m);
-	ec_dc_exit(m);
+	ec_dc_exit(&m->dc);
 	queues_destroy(m);
 	ec_api_destroy(m);
 	ec_links_exit(&m->links);
@@ -105,7 +105,6 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ec_log_init(&m->base->log);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
-	ec_dc_init(m);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
@@ -116,6 +115,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = queues_create(m);
 	if (ret)
 		goto err_work;
+	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->service);
 	ret = ec_api_create(m);
 	if (ret)
 		goto err_work;

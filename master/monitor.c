@@ -316,7 +316,7 @@ static void maybe_scan(struct watch *w)
 			WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(m);
 		if (!READ_ONCE(m->active))
-			ec_dc_measure(m);
+			ec_dc_measure(&m->dc);
 		want_states(m);
 	} else {
 		w->same = 0;

@@ -163,7 +163,7 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 		 * Before activation there is no cycle it could go with. An heir can only
 		 * be this application: the cycle that runs has its own time then.
 		 */
-		ec_dc_app_time(master, app_time, ktime_get_ns());
+		ec_dc_app_time(&master->dc, app_time, ktime_get_ns());
 	}
 	return 0;
 }

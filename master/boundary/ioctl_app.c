@@ -275,11 +275,11 @@ int ec_ioc_sc_dc(struct ec_call *call)
 	struct ec_ioc_sc_dc *i = call->arg;
 	struct ec_config *c = call->config;
 
-	c->dc_assign = i->assign_activate;
-	c->dc_cycle[0] = i->cycle0;
-	c->dc_cycle[1] = i->cycle1;
-	c->dc_shift[0] = i->shift0;
-	c->dc_shift[1] = i->shift1;
+	c->sync.assign = i->assign_activate;
+	c->sync.period[0] = i->cycle0;
+	c->sync.period[1] = i->cycle1;
+	c->sync.shift[0] = i->shift0;
+	c->sync.shift[1] = i->shift1;
 	return 0;
 }
 
@@ -484,7 +484,7 @@ int ec_ioc_app_time(struct ec_call *call)
 
 	s = enter(call->file, &ret);
 	if (s) {
-		ec_dc_told(s, &told);
+		ec_cycle_app_time(s, &told);
 		mutex_unlock(&m->cyclic_lock);
 		return 0;
 	}
@@ -495,7 +495,7 @@ int ec_ioc_app_time(struct ec_call *call)
 		return ret;
 	/* before activation there is no cycle to disturb, but of a detached session */
 	if (call->session != m->heir)
-		ec_dc_app_time(m, i->app_time, ktime_get_ns());
+		ec_dc_app_time(&m->dc, i->app_time, ktime_get_ns());
 	ec_session_unlock(m);
 	return 0;
 }

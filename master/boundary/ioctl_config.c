@@ -23,9 +23,9 @@ int ec_ioc_config(struct ec_call *call)
 	i->al_status = c->slave ? c->slave->al_status : 0;
 	i->watchdog_divider = c->wd_divider;
 	i->watchdog_intervals = c->wd_intervals;
-	i->dc_assign_activate = c->dc_assign;
-	memcpy(i->dc_cycle, c->dc_cycle, sizeof(i->dc_cycle));
-	memcpy(i->dc_shift, c->dc_shift, sizeof(i->dc_shift));
+	i->dc_assign_activate = c->sync.assign;
+	memcpy(i->dc_cycle, c->sync.period, sizeof(i->dc_cycle));
+	memcpy(i->dc_shift, c->sync.shift, sizeof(i->dc_shift));
 	i->sdo_count = c->n_sdos;
 	i->state = ec_session_config_status(c);
 	i->flag_count = c->n_flags;

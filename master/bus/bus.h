@@ -17,6 +17,12 @@ struct ec_links;
 struct ec_master;
 struct ec_slave;
 
+/* higher layers that are reached from a slave */
+enum ec_bus_ext {
+	EC_EXT_CLOCK,
+	EC_N_EXT,
+};
+
 /** struct ec_bus_ops - what the layer needs of higher ones */
 struct ec_bus_ops {
 	/** @configure: bring a slave to the state requested; the slave's worker, may sleep */
@@ -33,6 +39,8 @@ struct ec_bus {
 	struct ec_links *links;
 	/** @ops: immutable */
 	const struct ec_bus_ops *ops;
+	/** @ext: structures of higher layers, for these alone; set when they are initialized */
+	void *ext[EC_N_EXT];
 	/** @master: for higher layers that have no structure of their own yet */
 	struct ec_master *master;
 

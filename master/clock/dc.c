@@ -17,18 +17,18 @@
 
 static void set_ref(struct ec_dc_job *j)
 {
-	struct ec_dc *dc = &j->m->dc;
+	struct ec_dc *dc = j->dc;
 	struct ec_slave *old, *ref = j->ref < j->n ? ec_slave_ref(j->slaves[j->ref]) : NULL;
 
-	down_write(&j->m->bus.topo);
-	ec_change_begin(&j->m->base->show);
+	down_write(&j->dc->bus->topo);
+	ec_change_begin(&j->dc->base->show);
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
 	WRITE_ONCE(dc->front, ref && ec_dc_has_front(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
-	ec_change_end(&j->m->base->show);
-	up_write(&j->m->bus.topo);
+	ec_change_end(&j->dc->base->show);
+	up_write(&j->dc->bus->topo);
 	if (old)
 		ec_slave_unref(old);
 }
@@ -50,21 +50,21 @@ static void tell_odd(const struct ec_dc_job *j)
 
 /**
  * ec_dc_measure() - find the reference clock and the propagation delays
- * @m: master
+ * @dc: clocks
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -ENXIO without clocks; -EAGAIN when the bus has changed; -ENOMEM;
  * or as ec_xfer().
  */
-int ec_dc_measure(struct ec_master *m)
+int ec_dc_measure(struct ec_dc *dc)
 {
 	unsigned int try;
 	struct ec_dc_job j;
-	int ret = ec_dc_job_init(&j, m);
+	int ret = ec_dc_job_init(&j, dc);
 
 	if (ret)
 		return ret;
-	mutex_lock(&m->dc.lock);
+	mutex_lock(&dc->lock);
 	for (try = 0; try < j.n; try++)
 		j.slaves[try]->dc_scan = 0;
 	ret = -EAGAIN;
@@ -80,7 +80,7 @@ int ec_dc_measure(struct ec_master *m)
 	else
 		tell_odd(&j);
 	set_ref(&j);
-	mutex_unlock(&m->dc.lock);
+	mutex_unlock(&dc->lock);
 	ec_dc_job_free(&j);
 	return ret;
 }
@@ -89,16 +89,16 @@ int ec_dc_measure(struct ec_master *m)
  * Applications may tell quite another time in their cycle than before activation.
  * Their first cycle is awaited, so that the clocks begin with what they go on with.
  */
-static void await_time(struct ec_master *m, u64 since)
+static void await_time(struct ec_dc *dc, u64 since)
 {
-	u32 polls = READ_ONCE(m->links.access.polls);
+	u32 polls = READ_ONCE(dc->links->access.polls);
 	unsigned int i;
 
 	for (i = 0; i < 500; i++) {
-		if (!READ_ONCE(m->dc.has_phase) || READ_ONCE(m->dc.stop) ||
-		    READ_ONCE(m->dc.wanted) ||
-		    (s64)(ec_read64(&m->dc.app_ktime) - since) >= 0 ||
-		    READ_ONCE(m->links.access.polls) - polls >= 3)
+		if (!READ_ONCE(dc->has_phase) || READ_ONCE(dc->stop) ||
+		    READ_ONCE(dc->wanted) ||
+		    (s64)(ec_read64(&dc->app_ktime) - since) >= 0 ||
+		    READ_ONCE(dc->links->access.polls) - polls >= 3)
 			return;
 		usleep_range(900, 1100);
 	}
@@ -114,19 +114,18 @@ static void set_state(struct ec_dc *dc, int state)
  * The time an application tells before its cycle runs may be of another decade
  * than those of the cycle: the clocks shall have the latter.
  */
-static void await_cycle(struct ec_master *m)
+static void await_cycle(struct ec_dc *dc)
 {
-	u32 polls = READ_ONCE(m->links.access.polls);
-	struct ec_dc *dc = &m->dc;
+	u32 polls = READ_ONCE(dc->links->access.polls);
 	unsigned int ms;
 
 	WRITE_ONCE(dc->idle, true);
 	for (ms = 0; ms < APP_WAIT_MS && !READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(m->links.access.polls) - polls < APP_CYCLES; ms++)
+	     READ_ONCE(dc->links->access.polls) - polls < APP_CYCLES; ms++)
 		usleep_range(1000, 1100);
-	polls = READ_ONCE(m->links.access.polls);
+	polls = READ_ONCE(dc->links->access.polls);
 	for (; ms < APP_WAIT_MS && READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(m->links.access.polls) - polls < APP_MEDIAN - 1; ms++)
+	     READ_ONCE(dc->links->access.polls) - polls < APP_MEDIAN - 1; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(dc->idle, false);
 }
@@ -134,32 +133,32 @@ static void await_cycle(struct ec_master *m)
 /* Another reference than before, or none, is worth a line. */
 static void tell_ref(const struct ec_dc_job *j, bool lost)
 {
-	struct ec_master *m = j->m;
-	u16 choice = READ_ONCE(m->dc.choice);
-	u16 now = READ_ONCE(m->dc.ref_station), at = now ? j->slaves[j->ref]->position : 0;
+	struct ec_dc *dc = j->dc;
+	u16 choice = READ_ONCE(dc->choice);
+	u16 now = READ_ONCE(dc->ref_station), at = now ? j->slaves[j->ref]->position : 0;
 
 	if (!now)
-		ec_warn(m, "reference clock lost: clocks run free\n");
+		ec_warn(dc, "reference clock lost: clocks run free\n");
 	else if (choice != EC_DC_ANY && choice != now)
-		ec_warn(m, "reference clock lost: slave %u substitutes until it returns\n", at);
+		ec_warn(dc, "reference clock lost: slave %u substitutes until it returns\n", at);
 	else if (lost)
-		ec_warn(m, "reference clock lost: slave %u is the new reference clock\n", at);
+		ec_warn(dc, "reference clock lost: slave %u is the new reference clock\n", at);
 	else
-		ec_info(m, "slave %u is the new reference clock\n", at);
+		ec_info(dc, "slave %u is the new reference clock\n", at);
 }
 
 static void change_ref(struct ec_dc_job *j, bool found)
 {
-	struct ec_master *m = j->m;
-	u16 before = READ_ONCE(m->dc.ref_station), now;
-	bool lost = before && m->dc.ref && m->dc.ref->stop.gone;
+	struct ec_dc *dc = j->dc;
+	u16 before = READ_ONCE(dc->ref_station), now;
+	bool lost = before && dc->ref && dc->ref->stop.gone;
 
 	if (found)
 		set_ref(j);
 	else	/* until it is back or the session ends; the bus has not lost it */
-		WRITE_ONCE(m->dc.ref_station, 0);
-	now = READ_ONCE(m->dc.ref_station);
-	if (!m->dc.fresh && before != now)
+		WRITE_ONCE(dc->ref_station, 0);
+	now = READ_ONCE(dc->ref_station);
+	if (!dc->fresh && before != now)
 		tell_ref(j, lost);
 }
 
@@ -174,7 +173,7 @@ static bool passes(int ret)
  */
 static int set(struct ec_dc_job *j)
 {
-	struct ec_dc *dc = &j->m->dc;
+	struct ec_dc *dc = j->dc;
 	unsigned int try;
 	int ret = -ENXIO;
 
@@ -200,7 +199,6 @@ static int set(struct ec_dc_job *j)
 static void work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
-	struct ec_master *m = container_of(dc, struct ec_master, dc);
 	unsigned int i;
 	struct ec_dc_job j;
 	bool was;
@@ -208,17 +206,17 @@ static void work(struct work_struct *work)
 	int ret;
 
 	if (dc->fresh)
-		await_cycle(m);
+		await_cycle(dc);
 	if (READ_ONCE(dc->stop))
 		return;
 	t0 = ktime_get_ns();
-	ret = ec_dc_job_init(&j, m);
+	ret = ec_dc_job_init(&j, dc);
 	if (ret) {
 		set_state(dc, EC_DC_OFF);
 		return;
 	}
 	if (j.ref < j.n && !j.slaves[j.ref]->dc_set)
-		await_time(m, t0);
+		await_time(dc, t0);
 	if (READ_ONCE(dc->stop)) {
 		ec_dc_job_free(&j);
 		return;
@@ -235,10 +233,10 @@ static void work(struct work_struct *work)
 	ret = ret ?: ec_dc_near(&j) ?: ec_dc_check(&j);
 	mutex_unlock(&dc->lock);
 	if (!ret)
-		ec_info(m, "distributed clocks synchronized in %llu us, reference clock: slave %u\n",
+		ec_info(dc, "distributed clocks synchronized in %llu us, reference clock: slave %u\n",
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
-		ec_warn(m, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
+		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
 			passes(ret) ? "; retrying" : "");
 	if (ret) {
 		WRITE_ONCE(dc->boost, 0);
@@ -265,75 +263,89 @@ static void stop(struct ec_dc *dc)
 
 /**
  * ec_dc_begin() - set the clocks of a session, or of slaves that join it
- * @m: master
+ * @dc: clocks
  * @all: all of them, from the application's time; else only new ones, from the
  *	reference clock
  * @choice: station address of the reference clock, or EC_DC_ANY...
  *
  * Context: Process. May sleep.
  */
-void ec_dc_begin(struct ec_master *m, bool all, u16 choice)
+void ec_dc_begin(struct ec_dc *dc, bool all, u16 choice)
 {
 	unsigned int i;
 
-	stop(&m->dc);
-	down_read(&m->bus.topo);
-	for (i = 0; all && i < m->bus.n_slaves; i++) {
-		WRITE_ONCE(m->bus.slaves[i]->dc_set, false);
-		m->bus.slaves[i]->dc_vain = 0;
+	stop(dc);
+	down_read(&dc->bus->topo);
+	for (i = 0; all && i < dc->bus->n_slaves; i++) {
+		WRITE_ONCE(dc->bus->slaves[i]->dc_set, false);
+		dc->bus->slaves[i]->dc_vain = 0;
 	}
-	up_read(&m->bus.topo);
-	WRITE_ONCE(m->dc.stop, false);
+	up_read(&dc->bus->topo);
+	WRITE_ONCE(dc->stop, false);
 	if (all)
-		ec_dc_app_set(m, 0, false);
+		ec_dc_app_set(dc, 0, false);
 	/* that of the application before is none of this one */
-	if (all && !ec_dc_can_be(m, choice))
-		WRITE_ONCE(m->dc.ref_station, 0);
+	if (all && !ec_dc_can_be(dc, choice))
+		WRITE_ONCE(dc->ref_station, 0);
 	/* who joins before the application has told its time does not set another one */
-	m->dc.fresh = all || (m->dc.fresh && !m->dc.app.set);
-	ec_dc_watch_begun(&m->dc);
-	WRITE_ONCE(m->dc.told, false);
-	WRITE_ONCE(m->dc.choice, choice);
-	m->dc.begun = true;
+	dc->fresh = all || (dc->fresh && !dc->app.set);
+	ec_dc_watch_begun(dc);
+	WRITE_ONCE(dc->told, false);
+	WRITE_ONCE(dc->choice, choice);
+	dc->begun = true;
 	if (all)
-		m->dc.far_told = false;
-	set_state(&m->dc, EC_DC_BUSY);
-	queue_work(m->service, &m->dc.work);
-	ec_dc_watch_start(m);
+		dc->far_told = false;
+	set_state(dc, EC_DC_BUSY);
+	queue_work(dc->service, &dc->work);
+	ec_dc_watch_start(dc);
 }
 
 /**
  * ec_dc_end() - the session ends: its phase means nothing any more
- * @m: master
+ * @dc: clocks
  *
  * Context: Process. May sleep.
  */
-void ec_dc_end(struct ec_master *m)
+void ec_dc_end(struct ec_dc *dc)
 {
 	unsigned long flags;
 
-	stop(&m->dc);
-	WRITE_ONCE(m->dc.running, false);
-	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
-	m->dc.has_phase = false;
-	ec_write64(&m->dc.app_time, 0);
-	m->dc.choice = EC_DC_ANY;
-	m->dc.begun = false;
-	m->dc.wanted = false;
-	m->dc.again = false;
-	m->dc.failed = false;
-	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
-	ec_dc_app_set(m, 0, false);
-	down_read(&m->bus.topo);
-	WRITE_ONCE(m->dc.ref_station, m->dc.ref ? m->dc.ref->station : 0);
-	up_read(&m->bus.topo);
-	set_state(&m->dc, EC_DC_OFF);
+	stop(dc);
+	WRITE_ONCE(dc->running, false);
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	dc->has_phase = false;
+	ec_write64(&dc->app_time, 0);
+	dc->choice = EC_DC_ANY;
+	dc->begun = false;
+	dc->wanted = false;
+	dc->again = false;
+	dc->failed = false;
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	ec_dc_app_set(dc, 0, false);
+	down_read(&dc->bus->topo);
+	WRITE_ONCE(dc->ref_station, dc->ref ? dc->ref->station : 0);
+	up_read(&dc->bus->topo);
+	set_state(dc, EC_DC_OFF);
 }
 
-void ec_dc_init(struct ec_master *m)
+/**
+ * ec_dc_init() - prepare the clocks of a master
+ * @dc: zeroed structure
+ * @base: of the master
+ * @links: way to the slaves
+ * @bus: slaves
+ * @service: queue for short work
+ *
+ * Context: Process.
+ */
+void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, struct ec_bus *bus,
+		struct workqueue_struct *service)
 {
-	struct ec_dc *dc = &m->dc;
-
+	dc->base = base;
+	dc->links = links;
+	dc->bus = bus;
+	dc->service = service;
+	bus->ext[EC_EXT_CLOCK] = dc;
 	mutex_init(&dc->lock);
 	INIT_WORK(&dc->work, work);
 	ec_dc_watch_init(dc);
@@ -341,10 +353,16 @@ void ec_dc_init(struct ec_master *m)
 	raw_spin_lock_init(&dc->time_lock);
 }
 
-void ec_dc_exit(struct ec_master *m)
+/**
+ * ec_dc_exit() - end all work on the clocks
+ * @dc: clocks; no session uses them
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_exit(struct ec_dc *dc)
 {
-	stop(&m->dc);
-	if (m->dc.ref)
-		ec_slave_unref(m->dc.ref);
-	m->dc.ref = NULL;
+	stop(dc);
+	if (dc->ref)
+		ec_slave_unref(dc->ref);
+	dc->ref = NULL;
 }

@@ -8,12 +8,12 @@
 #include <linux/types.h>
 #include <linux/wait.h>
 #include <linux/workqueue.h>
+#include "../bus/slave.h"
 
-struct ec_config;
+struct ec_base;
+struct ec_bus;
 struct ec_ioc_send;
-struct ec_master;
-struct ec_session;
-struct ec_slave;
+struct ec_links;
 
 /* choice of the reference clock that is no station address */
 #define EC_DC_ANY	0	/* the first one that has a clock */
@@ -29,6 +29,16 @@ enum ec_dc_state {
 #define EC_DC_LIMIT_NS	EC_UAPI_DC_WINDOW_NS
 
 #define EC_DC_APP_PAST	15
+
+/** struct ec_dc_sync - SYNC signals that an application wants of a slave */
+struct ec_dc_sync {
+	/** @assign: AssignActivate word of the ESI, 0: none */
+	u16 assign;
+	/** @period: SYNC0 and SYNC1 cycle time, ns */
+	u32 period[2];
+	/** @shift: of the two, ns */
+	s32 shift[2];
+};
 
 /**
  * struct ec_dc_app - the application's time as the clocks have it
@@ -111,6 +121,14 @@ struct ec_dc_app {
  * @time_lock: protects @phase to @app
  */
 struct ec_dc {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @links: way to the slaves, immutable */
+	struct ec_links *links;
+	/** @bus: slaves, immutable */
+	struct ec_bus *bus;
+	/** @service: queue of @work and @watch, immutable */
+	struct workqueue_struct *service;
 	struct mutex lock;
 	int state;
 	u16 choice;
@@ -150,30 +168,32 @@ struct ec_dc {
 	struct ec_dc_app app;
 };
 
-void ec_dc_init(struct ec_master *m);
-void ec_dc_exit(struct ec_master *m);
-int ec_dc_measure(struct ec_master *m);
-bool ec_dc_can_be(struct ec_master *m, u16 choice);
-void ec_dc_begin(struct ec_master *m, bool all, u16 choice);
-void ec_dc_end(struct ec_master *m);
+void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, struct ec_bus *bus,
+		struct workqueue_struct *service);
+void ec_dc_exit(struct ec_dc *dc);
+int ec_dc_measure(struct ec_dc *dc);
+bool ec_dc_can_be(struct ec_dc *dc, u16 choice);
+void ec_dc_begin(struct ec_dc *dc, bool all, u16 choice);
+void ec_dc_end(struct ec_dc *dc);
 
 /* dc_app.c */
-void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns);
-void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what);
-u64 ec_dc_now(struct ec_master *m);
-u64 ec_dc_app_at(struct ec_master *m, u64 at_ns);
-void ec_dc_app_set(struct ec_master *m, u64 base, bool set);
-void ec_dc_app_log(struct ec_master *m);
+void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns);
+bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip);
+u64 ec_dc_now(struct ec_dc *dc);
+u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns);
+void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set);
+void ec_dc_app_log(struct ec_dc *dc);
 
-/* dc_cycle.c */
-void ec_dc_clock(struct ec_master *m, u64 time, u64 at_ns);
-u64 ec_dc_clock_now(struct ec_master *m);
-u64 ec_dc_whole(struct ec_master *m, u32 low, u64 at_ns);
+/* dc_time.c */
+void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns);
+u64 ec_dc_clock_at(struct ec_dc *dc, u64 at_ns);
+u64 ec_dc_clock_now(struct ec_dc *dc);
+u64 ec_dc_whole(struct ec_dc *dc, u32 low, u64 at_ns);
 
 /* dc_watch.c */
 void ec_dc_verdict(struct ec_slave *s, u32 value);
 void ec_dc_watch_init(struct ec_dc *dc);
-void ec_dc_watch_start(struct ec_master *m);
+void ec_dc_watch_start(struct ec_dc *dc);
 void ec_dc_watch_stop(struct ec_dc *dc);
 void ec_dc_watch_begun(struct ec_dc *dc);
 
@@ -181,8 +201,14 @@ void ec_dc_watch_begun(struct ec_dc *dc);
 int ec_dc_wait(struct ec_slave *s);
 void ec_dc_sync_again(struct ec_slave *s);
 int ec_dc_sync_stop(struct ec_slave *s);
-void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c);
-int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c);
-int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c);
+void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c);
+int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c);
+int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c);
+
+/* clocks of the bus that a slave is on */
+static inline struct ec_dc *ec_dc_of(const struct ec_slave *s)
+{
+	return s->bus->ext[EC_EXT_CLOCK];
+}
 
 #endif

@@ -13,11 +13,10 @@
 #include <linux/math64.h>
 #include <linux/minmax.h>
 #include <linux/sort.h>
-#include "../cycle/cycle.h"
+#include "ethercat_map.h"
+#include "../link/links.h"
 #include "dc.h"
-#include "../master.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
 #define STAYS		16	/* cycles that must agree until it is a jump */
@@ -28,9 +27,9 @@
 #define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without leading: it is over */
 
 /* More than that is no lateness of a cycle, and would take SYNC to another one. */
-static s64 limit(const struct ec_master *m)
+static s64 limit(const struct ec_dc *dc)
 {
-	return max_t(s64, READ_ONCE(m->links.access.interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
+	return max_t(s64, READ_ONCE(dc->links->access.interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }
 
 /* It may have been told long ago; two clocks differ by less than 244 ppm. */
@@ -128,15 +127,14 @@ static void set_phase(struct ec_dc *dc, u64 app_time)
 
 /**
  * ec_dc_app_time() - a time that cannot jump: before activation, or the kernel's
- * @m: master
+ * @dc: clocks
  * @app_time: ns
  * @at_ns: when it was, or will be, that time (ktime)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
+void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns)
 {
-	struct ec_dc *dc = &m->dc;
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
@@ -152,23 +150,22 @@ void ec_dc_app_time(struct ec_master *m, u64 app_time, u64 at_ns)
 
 /**
  * ec_dc_told() - the application tells its time with a send
- * @s: active session
- * @what: its flags, @app_time and @sync_time; any value, also one that has jumped
+ * @dc: clocks
+ * @what: flags (at least one of the times), @app_time and @sync_time; any value
+ * @skip: result: jumps of that time, to be taken off
  *
  * An application that leads the clocks means the time it wants to be written: of
  * that its other time only gives the upper half.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: Cycle owner. RT-safe.
+ * Return: true when the time is off: it must not be written to the reference clock.
  */
-void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what)
+bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
 {
 	bool leads = what->flags & EC_SEND_FLAG_SYNC_REF, good = true;
-	struct ec_dc *dc = &s->master->dc;
 	unsigned long flags;
 	u64 time, at_ns;
 
-	if (!(what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF)))
-		return;
 	at_ns = ktime_get_ns();
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	if (what->flags & EC_SEND_FLAG_APP_TIME)
@@ -184,27 +181,26 @@ void ec_dc_told(struct ec_session *s, const struct ec_ioc_send *what)
 	/* the one that is written counts, though it may be told less often */
 	if (leading(dc, leads, at_ns) == leads) {
 		if (dc->app.set)
-			good = follow(&dc->app, time, at_ns, limit(s->master));
+			good = follow(&dc->app, time, at_ns, limit(dc));
 		else
 			note(&dc->app, time, at_ns);
 	}
-	s->cycle.dc_hold = leads && !good;
-	s->cycle.dc_skip = dc->app.skip;
+	*skip = dc->app.skip;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	return leads && !good;
 }
 
 /**
  * ec_dc_now() - the application's time at this moment
- * @m: master
+ * @dc: clocks
  *
  * Without the jumps it has made since the clocks were set.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: ns; without an application the time since 2000-01-01.
  */
-u64 ec_dc_now(struct ec_master *m)
+u64 ec_dc_now(struct ec_dc *dc)
 {
-	struct ec_dc *dc = &m->dc;
 	unsigned long flags;
 	u64 t;
 
@@ -224,7 +220,7 @@ static int later(const void *a, const void *b)
 
 /**
  * ec_dc_app_at() - the application's time, as clocks are set to it
- * @m: master
+ * @dc: clocks
  * @at_ns: when (ktime)
  *
  * The median of its last cycles: each may be late.
@@ -232,37 +228,37 @@ static int later(const void *a, const void *b)
  * Context: Process.
  * Return: ns; without an application the time since 2000-01-01.
  */
-u64 ec_dc_app_at(struct ec_master *m, u64 at_ns)
+u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns)
 {
-	struct ec_dc_app *a = &m->dc.app;
+	struct ec_dc_app *a = &dc->app;
 	u64 past[EC_DC_APP_PAST];
 	unsigned long flags;
 	u32 n;
 
-	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
-	n = m->dc.has_phase ? min_t(u32, a->n_past, EC_DC_APP_PAST) : 0;
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	n = dc->has_phase ? min_t(u32, a->n_past, EC_DC_APP_PAST) : 0;
 	memcpy(past, a->past, sizeof(past));
-	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 	if (!n)
-		return ec_dc_now(m) - (ktime_get_ns() - at_ns);
+		return ec_dc_now(dc) - (ktime_get_ns() - at_ns);
 	sort(past, n, sizeof(*past), later, NULL);
 	return past[n / 2] + at_ns;
 }
 
 /**
  * ec_dc_app_set() - the clocks are set, or no longer
- * @m: master
+ * @dc: clocks
  * @base: the time they were set to, less ktime
  * @set: from now on they shall not jump
  *
  * Context: Process.
  */
-void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
+void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 {
-	struct ec_dc_app *a = &m->dc.app;
+	struct ec_dc_app *a = &dc->app;
 	unsigned long flags;
 
-	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	if (set && !a->set) {
 		a->base = base;
 		a->base_ns = ktime_get_ns();
@@ -274,30 +270,30 @@ void ec_dc_app_set(struct ec_master *m, u64 base, bool set)
 		a->jumps = 0;
 		a->ignored = 0;
 		a->log_ns = 0;
-		m->dc.leads = false;
-		m->dc.led_ns = 0;
+		dc->leads = false;
+		dc->led_ns = 0;
 	}
 	a->set = set;
-	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 }
 
 /**
  * ec_dc_app_log() - tell jumps of the application's time; the cycle cannot
- * @m: master
+ * @dc: clocks
  *
  * At most once in 10 s.
  *
  * Context: The monitor thread, session_lock held.
  */
-void ec_dc_app_log(struct ec_master *m)
+void ec_dc_app_log(struct ec_dc *dc)
 {
-	struct ec_dc_app *a = &m->dc.app;
+	struct ec_dc_app *a = &dc->app;
 	u64 now = ktime_get_ns(), held = 0;
 	u32 jumps, ignored;
 	unsigned long flags;
 	s64 jump, single, off;
 
-	raw_spin_lock_irqsave(&m->dc.time_lock, flags);
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	jumps = a->jumps;
 	ignored = a->odd ? 0 : a->ignored;	/* it is not clear yet which it is */
 	if (a->odd && (s64)(now - a->base_ns) > (s64)HELD_NS)
@@ -306,21 +302,21 @@ void ec_dc_app_log(struct ec_master *m)
 	single = a->ignored_ns;
 	off = a->off;
 	if ((!jumps && !ignored && !held) || now < a->log_ns) {
-		raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+		raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 		return;
 	}
 	a->jumps = 0;
 	if (ignored || held)
 		a->ignored = 0;
 	a->log_ns = now + LOG_NS;
-	raw_spin_unlock_irqrestore(&m->dc.time_lock, flags);
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 	if (jumps)
-		ec_warn(m, "application time jumped by %lld ns (%u since the last message); clocks and SYNC signals continue without it\n",
+		ec_warn(dc, "application time jumped by %lld ns (%u since the last message); clocks and SYNC signals continue without it\n",
 			jump, jumps);
 	if (ignored)
-		ec_warn(m, "application time: %u isolated error(s), last %lld ns, ignored\n",
+		ec_warn(dc, "application time: %u isolated error(s), last %lld ns, ignored\n",
 			ignored, single);
 	if (held)
-		ec_warn(m, "application time off by %lld ns for %llu ms, ignored\n",
+		ec_warn(dc, "application time off by %lld ns for %llu ms, ignored\n",
 			off, div_u64(held, NSEC_PER_MSEC));
 }

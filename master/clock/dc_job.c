@@ -114,22 +114,22 @@ static unsigned int find(const struct ec_dc_job *j, u16 station)
 
 /**
  * ec_dc_can_be() - is there a clock to be the reference?
- * @m: master
+ * @dc: clocks
  * @choice: station address of the reference clock, or EC_DC_ANY...
  *
  * Context: Process. May sleep.
  * Return: whether there is.
  */
-bool ec_dc_can_be(struct ec_master *m, u16 choice)
+bool ec_dc_can_be(struct ec_dc *dc, u16 choice)
 {
 	bool ret = false;
 	unsigned int i;
 
-	down_read(&m->bus.topo);
-	for (i = 0; i < m->bus.n_slaves && !ret; i++)
-		ret = has_times(m->bus.slaves[i]) && ec_slave_has_clock(m->bus.slaves[i]) &&
-		      (choice == EC_DC_ANY || m->bus.slaves[i]->station == choice);
-	up_read(&m->bus.topo);
+	down_read(&dc->bus->topo);
+	for (i = 0; i < dc->bus->n_slaves && !ret; i++)
+		ret = has_times(dc->bus->slaves[i]) && ec_slave_has_clock(dc->bus->slaves[i]) &&
+		      (choice == EC_DC_ANY || dc->bus->slaves[i]->station == choice);
+	up_read(&dc->bus->topo);
 	return ret;
 }
 
@@ -152,7 +152,7 @@ static bool any_set(const struct ec_dc_job *j)
  */
 static void choose(struct ec_dc_job *j)
 {
-	u16 choice = READ_ONCE(j->m->dc.choice);
+	u16 choice = READ_ONCE(j->dc->choice);
 
 	j->ref = j->n;
 	if (choice != EC_DC_ANY) {
@@ -167,24 +167,24 @@ static void choose(struct ec_dc_job *j)
 /**
  * ec_dc_job_init() - begin a job with the slaves that are there
  * @j: job
- * @m: master
+ * @dc: clocks
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m)
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 {
 	unsigned int i;
 
-	*j = (struct ec_dc_job){ .m = m };
-	down_read(&m->bus.topo);
-	j->n = m->bus.n_slaves;
+	*j = (struct ec_dc_job){ .dc = dc };
+	down_read(&dc->bus->topo);
+	j->n = dc->bus->n_slaves;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
-		j->slaves[i] = ec_slave_ref(m->bus.slaves[i]);
-	if (m->dc.ref && m->dc.ref->dc_set && !m->dc.ref->stop.gone)
-		j->followed = m->dc.ref->station;
-	up_read(&m->bus.topo);
+		j->slaves[i] = ec_slave_ref(dc->bus->slaves[i]);
+	if (dc->ref && dc->ref->dc_set && !dc->ref->stop.gone)
+		j->followed = dc->ref->station;
+	up_read(&dc->bus->topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	j->recv = kvcalloc(j->n + 1, sizeof(*j->recv), GFP_KERNEL);
 	j->unit = kvcalloc(j->n + 1, sizeof(*j->unit), GFP_KERNEL);
@@ -307,13 +307,13 @@ void ec_dc_leave_out(struct ec_dc_job *j)
  */
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms)
 {
-	u32 polls = READ_ONCE(j->m->links.access.polls);
+	u32 polls = READ_ONCE(j->dc->links->access.polls);
 	unsigned int ms;
 
-	WRITE_ONCE(j->m->dc.running, j->running);
-	for (ms = 0; ms < limit_ms && READ_ONCE(j->m->links.access.polls) - polls < cycles; ms++)
+	WRITE_ONCE(j->dc->running, j->running);
+	for (ms = 0; ms < limit_ms && READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
-	WRITE_ONCE(j->m->dc.running, false);
+	WRITE_ONCE(j->dc->running, false);
 }
 
 static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
@@ -331,7 +331,7 @@ static int once(struct ec_dc_job *j, unsigned int n)
 
 	for (i = 0; i < n; i++)
 		j->dg[i].repeat = false;
-	return ec_xfer_clock(&j->m->links, j->dg, n);
+	return ec_xfer_clock(j->dc->links, j->dg, n);
 }
 
 /**
@@ -437,11 +437,11 @@ static bool known(struct ec_dc_job *j, u32 scan)
  */
 int ec_dc_get_delays(struct ec_dc_job *j)
 {
-	u32 scan = READ_ONCE(j->m->bus.scan_count) + 1;
+	u32 scan = READ_ONCE(j->dc->bus->scan_count) + 1;
 	unsigned int i;
 	int ret;
 
-	lockdep_assert_held(&j->m->dc.lock);
+	lockdep_assert_held(&j->dc->lock);
 	if (known(j, scan))
 		return 0;
 	ret = measure(j);

@@ -3,8 +3,8 @@
 #ifndef EC_DC_JOB_H
 #define EC_DC_JOB_H
 
+#include "../link/links.h"
 #include "dc.h"
-#include "../master.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
 #include "../link/xfer.h"
@@ -14,7 +14,7 @@
 
 /**
  * struct ec_dc_job - all slaves of the segment, in ring order
- * @m: master
+ * @dc: clocks
  * @n: slaves
  * @slaves: with a reference each
  * @nodes: what the delays are computed from
@@ -31,7 +31,7 @@
  * @time: in frames that compensate
  */
 struct ec_dc_job {
-	struct ec_master *m;
+	struct ec_dc *dc;
 	unsigned int n;
 	struct ec_slave **slaves;
 	struct ec_dc_node *nodes;
@@ -52,7 +52,7 @@ struct ec_dc_job {
 enum ec_dc_who { EC_DC_TIMES, EC_DC_CLOCKS, EC_DC_NEW, EC_DC_NEW_WIDE, EC_DC_NEW_NARROW };
 
 /* dc_job.c */
-int ec_dc_job_init(struct ec_dc_job *j, struct ec_master *m);
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc);
 void ec_dc_job_free(struct ec_dc_job *j);
 bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who);
 unsigned int ec_dc_count(const struct ec_dc_job *j, enum ec_dc_who who);

@@ -4,7 +4,6 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
-#include "../cycle/cycle.h"
 #include "dc_job.h"
 
 #define SYNCS		72	/* comparisons of a frame: phase and rate come near alike */
@@ -28,7 +27,7 @@
  */
 static u64 latch_time(const struct ec_dc_job *j)
 {
-	u64 t = ec_dc_app_at(j->m, j->latch_ns);
+	u64 t = ec_dc_app_at(j->dc, j->latch_ns);
 	unsigned int i, set = j->ref;
 
 	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
@@ -38,9 +37,9 @@ static u64 latch_time(const struct ec_dc_job *j)
 		t = get_unaligned_le64(j->unit[set]) + j->slaves[set]->dc_offset -
 		    (s64)(s32)j->slaves[set]->dc_delay;
 		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
-			t = ec_dc_whole(j->m, (u32)t, j->latch_ns);
+			t = ec_dc_whole(j->dc, (u32)t, j->latch_ns);
 	}
-	ec_dc_clock(j->m, t, j->latch_ns);
+	ec_dc_clock(j->dc, t, j->latch_ns);
 	return t;
 }
 
@@ -84,7 +83,7 @@ static int write_values(struct ec_dc_job *j, struct values *v)
 			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, j->slaves[i]->station,
 							 EC_REG_DC_DELAY, 4, v[i].delay);
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	ret = ec_xfer_clock(&j->m->links, j->dg, n);
+	ret = ec_xfer_clock(j->dc->links, j->dg, n);
 	ret = ret ?: ec_dc_answers(j, 0, EC_DC_NEW_WIDE);
 	ret = ret ?: ec_dc_answers(j, wide, EC_DC_NEW_NARROW);
 	for (i = 0, n = narrow; i < j->n && !ret; i++) {
@@ -110,14 +109,14 @@ static int reset_filters(struct ec_dc_job *j)
 			EC_DG(EC_CMD_BWR, 0, EC_REG_DC_SPEED_START, 2, reset),
 		};
 
-		ret = ec_xfer_clock(&j->m->links, all, ARRAY_SIZE(all));
+		ret = ec_xfer_clock(j->dc->links, all, ARRAY_SIZE(all));
 		if (!ret && all[0].wkc >= clocks && all[1].wkc >= clocks)
 			return 0;
 	}
 	n = ec_dc_add(j, 0, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_FILTER_DIFF, 2, depths, 0);
 	/* a scan may have taken a slave out of the group meanwhile */
 	end = ec_dc_add(j, n, EC_DC_NEW, EC_CMD_FPWR, EC_REG_DC_SPEED_START, 2, reset, 0);
-	ret = ec_xfer_clock(&j->m->links, j->dg, end);
+	ret = ec_xfer_clock(j->dc->links, j->dg, end);
 	return ret ?: ec_dc_answers(j, 0, EC_DC_NEW) ?: ec_dc_answers(j, n, EC_DC_NEW);
 }
 
@@ -135,7 +134,7 @@ int ec_dc_write(struct ec_dc_job *j)
 	int ret;
 	u64 t;
 
-	lockdep_assert_held(&j->m->dc.lock);
+	lockdep_assert_held(&j->dc->lock);
 	t = latch_time(j);
 	v = compute(j, t);
 	if (!v)
@@ -147,7 +146,7 @@ int ec_dc_write(struct ec_dc_job *j)
 			WRITE_ONCE(j->slaves[i]->dc_set, true);
 		}
 	if (!ret)
-		ec_dc_app_set(j->m, t - j->latch_ns, true);
+		ec_dc_app_set(j->dc, t - j->latch_ns, true);
 	kvfree(v);
 	return ret;
 }
@@ -156,8 +155,8 @@ int ec_dc_write(struct ec_dc_job *j)
 static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int most)
 {
 	static u8 none[EC_DGRAM_DATA_MAX];
-	u16 bytes = READ_ONCE(j->m->dc.ref_wide) ? 8 : 4, ref = READ_ONCE(j->m->dc.ref_station);
-	u16 room = ec_share_clock_bytes(&j->m->links), pad;
+	u16 bytes = READ_ONCE(j->dc->ref_wide) ? 8 : 4, ref = READ_ONCE(j->dc->ref_station);
+	u16 room = ec_share_clock_bytes(j->dc->links), pad;
 	unsigned int syncs = min(max(1u, room / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
 	unsigned int end = n + syncs;
 
@@ -174,7 +173,7 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 /* clock frames that one send may carry */
 static unsigned int per_send(const struct ec_dc_job *j)
 {
-	return max(1u, READ_ONCE(j->m->links.access.interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+	return max(1u, READ_ONCE(j->dc->links->access.interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
 }
 
 /*
@@ -193,7 +192,7 @@ static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigne
 	unsigned int i, at, n = 0, per = per_send(j);
 
 	/* for the case that the reference does not answer */
-	put_unaligned_le64(ec_dc_clock_now(j->m), j->time);
+	put_unaligned_le64(ec_dc_clock_now(j->dc), j->time);
 	for (i = 0; i < frames; i++) {
 		at = i % per;
 		n = add_frame(j, n, !at ? first : at % gap ? 0 : more);
@@ -243,10 +242,10 @@ static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
 	unsigned int n;
 	int ret;
 
-	if (canceled(&j->m->dc))
+	if (canceled(j->dc))
 		return -ECANCELED;
 	n = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
-	ret = ec_xfer_clock(&j->m->links, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+	ret = ec_xfer_clock(j->dc->links, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
 						   4, v[0], sizeof(v[0])));
 	*max = worst(j, n, v);
 	return tolerate(ret);
@@ -259,7 +258,7 @@ static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
 	u32 max = U32_MAX;
 	int ret = 0;
 
-	WRITE_ONCE(j->m->dc.framed, true);
+	WRITE_ONCE(j->dc->framed, true);
 	for (done = 0; done < NEAR_MOST && max > NEAR_NS && !ret; done += LOOK_FRAMES)
 		ret = look(j, more, v, &max);
 	return ret;
@@ -293,12 +292,12 @@ int ec_dc_near(struct ec_dc_job *j)
 	u8 (*v)[4];
 	int ret;
 
-	lockdep_assert_held(&j->m->dc.lock);
+	lockdep_assert_held(&j->dc->lock);
 	/* a single clock has no other to be synchronized to */
 	if (ec_dc_count(j, EC_DC_CLOCKS) < 2)
 		return 0;
-	if (READ_ONCE(j->m->dc.front))
-		return by_cycle(&j->m->dc);
+	if (READ_ONCE(j->dc->front))
+		return by_cycle(j->dc);
 	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
 	if (!v)
 		return -ENOMEM;
@@ -309,9 +308,9 @@ int ec_dc_near(struct ec_dc_job *j)
 
 static int compensate(struct ec_dc_job *j, unsigned int n)
 {
-	if (canceled(&j->m->dc))
+	if (canceled(j->dc))
 		return -ECANCELED;
-	return tolerate(ec_xfer_clock(&j->m->links, j->dg, n));
+	return tolerate(ec_xfer_clock(j->dc->links, j->dg, n));
 }
 
 /* What little rate the frames behind the first one learn is noise, the more the closer. */
@@ -338,8 +337,8 @@ static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
  */
 void ec_dc_settle(struct ec_dc_job *j)
 {
-	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->m->links.access.interval_us)));
-	struct ec_dc *dc = &j->m->dc;
+	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->dc->links->access.interval_us)));
+	struct ec_dc *dc = j->dc;
 	int ret = 0;
 
 	if (!READ_ONCE(dc->framed))
@@ -367,7 +366,7 @@ int ec_dc_check(struct ec_dc_job *j)
 	if (!v)
 		return -ENOMEM;
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	ret = ec_xfer_clock(&j->m->links, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
+	ret = ec_xfer_clock(j->dc->links, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
 						   4, v[0], sizeof(v[0])));
 	/* one that is silent now was set before */
 	if (!ret)

@@ -2,9 +2,8 @@
 /* SYNC0 and SYNC1 of one slave (ETG.1000.4 clause 6.8.5). */
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include "../config/config.h"
+#include "../link/links.h"
 #include "dc.h"
-#include "../master.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
 #include "../link/xfer.h"
@@ -50,7 +49,7 @@ static bool canceled(const struct ec_slave *s, u8 state)
  */
 int ec_dc_wait(struct ec_slave *s)
 {
-	struct ec_dc *dc = &s->bus->master->dc;
+	struct ec_dc *dc = ec_dc_of(s);
 	unsigned int ms, near = 0;
 
 	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
@@ -83,7 +82,7 @@ int ec_dc_sync_stop(struct ec_slave *s)
 
 	WRITE_ONCE(s->sync_free, false);
 	s->sync_due_ns = 0;
-	return ec_xfer_fpwr(&s->bus->master->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
+	return ec_xfer_fpwr(s->bus->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
 }
 
 /**
@@ -108,7 +107,7 @@ void ec_dc_sync_again(struct ec_slave *s)
  * Off first: while SYNC runs a new start time is ignored. Returns in @now the time
  * the slave had at @at_ns.
  */
-static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 *at_ns)
+static int prepare(struct ec_slave *s, const struct ec_dc_sync *c, u64 *now, u64 *at_ns)
 {
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 	u8 off[2] = { 0 }, cycles[8], t[8] = { 0 };
@@ -119,28 +118,28 @@ static int prepare(struct ec_slave *s, const struct ec_config *c, u64 *now, u64 
 	};
 	int ret;
 
-	put_unaligned_le32(c->dc_cycle[0], cycles);
-	put_unaligned_le32(c->dc_cycle[1], cycles + 4);
-	ret = ec_xfer_all(&s->bus->master->links, dg, ARRAY_SIZE(dg));
+	put_unaligned_le32(c->period[0], cycles);
+	put_unaligned_le32(c->period[1], cycles + 4);
+	ret = ec_xfer_all(s->bus->links, dg, ARRAY_SIZE(dg));
 	if (ret)
 		return ret;
 	*at_ns = dg[2].sent_ns;
 	*now = wide ? get_unaligned_le64(t) :
-		      ec_dc_whole(s->bus->master, get_unaligned_le32(t), *at_ns);
+		      ec_dc_whole(ec_dc_of(s), get_unaligned_le32(t), *at_ns);
 	return 0;
 }
 
 /* From the first SYNC0 to the first SYNC1, also when that is slower. */
-static u32 sync1_after(const struct ec_config *c)
+static u32 sync1_after(const struct ec_dc_sync *c)
 {
-	return c->dc_assign & SYNC1 ? c->dc_cycle[1] : 0;
+	return c->assign & SYNC1 ? c->period[1] : 0;
 }
 
 /*
  * Start time, activation, and whether that was in time: the slave says what time it
  * was then, in the same frame. -EAGAIN: it was too late.
  */
-static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
+static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 {
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 	u8 start[8], assign[2], t[8] = { 0 };
@@ -154,12 +153,12 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
 	int ret;
 
 	put_unaligned_le64(first, start);
-	put_unaligned_le16(c->dc_assign, assign);
+	put_unaligned_le16(c->assign, assign);
 	/* the second half alone would start it at whatever time is there */
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].repeat = false;
-	ret = ec_xfer_all(&s->bus->master->links, dg, ARRAY_SIZE(dg));
-	if (ret || !(c->dc_assign & RUN))
+	ret = ec_xfer_all(s->bus->links, dg, ARRAY_SIZE(dg));
+	if (ret || !(c->assign & RUN))
 		return ret;
 	ahead = first - get_unaligned_le64(t);
 	if (!wide)
@@ -176,7 +175,7 @@ static int activate(struct ec_slave *s, const struct ec_config *c, u64 first)
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
-	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->bus->master->links.access.interval_us) * NSEC_PER_USEC;
+	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->bus->links->access.interval_us) * NSEC_PER_USEC;
 	s64 most = HALF32_NS - period - LEAD_NS;
 
 	if (ec_slave_features(s) & EC_FEAT_DC64)
@@ -185,10 +184,10 @@ static u64 lead(struct ec_slave *s, u32 period, u64 took)
 }
 
 /* Once; the longer transfers to the slave take, the later it starts. */
-static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try)
+static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int try)
 {
-	struct ec_dc *dc = &s->bus->master->dc;
-	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	struct ec_dc *dc = ec_dc_of(s);
+	u32 period = c->period[0] + c->period[1];
 	u64 now, at_ns, t0 = ktime_get_ns(), took;
 	int ret = prepare(s, c, &now, &at_ns);
 
@@ -197,7 +196,7 @@ static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try
 	took = ktime_get_ns() - t0;
 	now += ktime_get_ns() - at_ns + lead(s, period, took << (try + 1));
 	return activate(s, c, ec_dc_start(now, dc->has_phase ? dc->phase : 0, period,
-					  c->dc_shift[0]));
+					  c->shift[0]));
 }
 
 #define MODES	8	/* of the SII that are compared, and named */
@@ -212,27 +211,27 @@ static int start(struct ec_slave *s, const struct ec_config *c, unsigned int try
  *
  * Context: Process. May sleep.
  */
-void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c)
+void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 {
 	struct ec_sii_dc dc[MODES];
 	char list[8 * MODES] = "";
 	int i, n, len = 0;
 
-	if (!(c->dc_assign & RUN) || !(c->dc_assign & (SYNC0 | SYNC1))) {
+	if (!(c->assign & RUN) || !(c->assign & (SYNC0 | SYNC1))) {
 		ec_slave_warn(s, "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
-			      c->dc_assign);
+			      c->assign);
 		return;
 	}
 	n = s->sii ? ec_sii_decode_dcs(s->sii, s->sii_bytes, dc, MODES) : 0;
 	for (i = 0; i < min(n, MODES); i++) {
-		if (dc[i].assign == c->dc_assign)
+		if (dc[i].assign == c->assign)
 			return;
 		len += scnprintf(list + len, sizeof(list) - len, " 0x%04x", dc[i].assign);
 	}
 	/* the one that was looked for may be among those that were not decoded */
 	if (n > 0 && n < MODES)
 		ec_slave_warn(s, "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
-			      c->dc_assign, list);
+			      c->assign, list);
 }
 
 /**
@@ -248,16 +247,16 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_config *c)
  * start always comes too late (both noted as the slave's error); -ECANCELED;
  * or as ec_xfer_fpwr().
  */
-int ec_dc_sync_start(struct ec_slave *s, const struct ec_config *c)
+int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 {
-	u32 period = c->dc_cycle[0] + c->dc_cycle[1];
+	u32 period = c->period[0] + c->period[1];
 	unsigned int try;
 	int ret = -EAGAIN;
 
-	if (period < c->dc_cycle[0] || !period) {
+	if (period < c->period[0] || !period) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
-			      c->dc_cycle[0], c->dc_cycle[1], c->dc_assign);
+			      c->period[0], c->period[1], c->assign);
 		return -ERANGE;
 	}
 	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
@@ -293,9 +292,9 @@ static int wait_until(struct ec_slave *s, u64 ns)
 }
 
 /* What register 0x0984 says of SYNC signals in use: pending, or an implausible start. */
-static u8 missing(const struct ec_config *c, u8 status)
+static u8 missing(const struct ec_dc_sync *c, u8 status)
 {
-	return status & (4 | (c->dc_assign & SYNC0 ? 1 : 0) | (c->dc_assign & SYNC1 ? 2 : 0));
+	return status & (4 | (c->assign & SYNC0 ? 1 : 0) | (c->assign & SYNC1 ? 2 : 0));
 }
 
 /**
@@ -311,7 +310,7 @@ static u8 missing(const struct ec_config *c, u8 status)
  * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
  * -ECANCELED; or as ec_dc_sync_start().
  */
-int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
+int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 {
 	bool known = ec_slave_features(s) & EC_FEAT_DC_ENHANCED;
 	u8 status[1] = { 0 };
@@ -320,7 +319,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
-		ret = ret ?: ec_xfer_fprd(&s->bus->master->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
 		if (ret && (ret != -EIO || known))
 			return ret;
 		if (!missing(c, status[0]))
@@ -333,7 +332,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_config *c)
 		if (try == CHECKS) {
 			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 				      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
-				      status[0], c->dc_assign);
+				      status[0], c->assign);
 			return -EOPNOTSUPP;
 		}
 		ret = ec_dc_sync_start(s, c);

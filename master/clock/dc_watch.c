@@ -7,8 +7,8 @@
  */
 #include <linux/ktime.h>
 #include <linux/slab.h>
+#include "../link/links.h"
 #include "dc.h"
-#include "../master.h"
 #include "../base/once64.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
@@ -41,7 +41,7 @@ struct batch {
  */
 void ec_dc_verdict(struct ec_slave *s, u32 value)
 {
-	bool ref = s->station == READ_ONCE(s->bus->master->dc.ref_station);
+	bool ref = s->station == READ_ONCE(ec_dc_of(s)->ref_station);
 	s32 diff = ec_dc_diff(value);
 
 	WRITE_ONCE(s->dc_diff, diff);
@@ -51,16 +51,15 @@ void ec_dc_verdict(struct ec_slave *s, u32 value)
 }
 
 /* One line for all clocks, when the first leaves the window or the last is back in it. */
-static void tell_far(struct ec_master *m)
+static void tell_far(struct ec_dc *dc)
 {
 	unsigned int clocks = 0, far = 0, worst = 0, i;
-	struct ec_dc *dc = &m->dc;
 	u64 now = ktime_get_ns();
 	u32 max = 0;
 
-	down_read(&m->bus.topo);
-	for (i = 0; i < m->bus.n_slaves; i++) {
-		const struct ec_slave *s = m->bus.slaves[i];
+	down_read(&dc->bus->topo);
+	for (i = 0; i < dc->bus->n_slaves; i++) {
+		const struct ec_slave *s = dc->bus->slaves[i];
 		u32 diff = abs(READ_ONCE(s->dc_diff));
 
 		if (!READ_ONCE(s->dc_set) || s->stop.gone || s->station == dc->ref_station)
@@ -72,7 +71,7 @@ static void tell_far(struct ec_master *m)
 			worst = i;
 		}
 	}
-	up_read(&m->bus.topo);
+	up_read(&dc->bus->topo);
 	if (!far == !dc->far_told || now < dc->far_next_ns ||
 	    now < ec_read64(&dc->begun_ns) + GRACE_NS)
 		return;
@@ -80,19 +79,19 @@ static void tell_far(struct ec_master *m)
 	dc->far_next_ns = now + LOG_NS;
 	max = DIV_ROUND_CLOSEST(max, 100);
 	if (far)
-		ec_warn(m, "%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
+		ec_warn(dc, "%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
 			far, clocks, worst, max / 10, max % 10);
 	else
-		ec_info(m, "all %u clocks inside the sync window\n", clocks);
+		ec_info(dc, "all %u clocks inside the sync window\n", clocks);
 }
 
 /* The next slaves with a clock that was or shall be set; returns the position to go on from. */
-static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int from)
+static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from)
 {
 	b->n = 0;
-	down_read(&m->bus.topo);
-	for (; from < m->bus.n_slaves && b->n < BATCH; from++) {
-		struct ec_slave *s = m->bus.slaves[from];
+	down_read(&dc->bus->topo);
+	for (; from < dc->bus->n_slaves && b->n < BATCH; from++) {
+		struct ec_slave *s = dc->bus->slaves[from];
 
 		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->stop.gone)
 			continue;
@@ -100,7 +99,7 @@ static unsigned int collect(struct ec_master *m, struct batch *b, unsigned int f
 						  b->value[b->n]);
 		b->slaves[b->n++] = ec_slave_ref(s);
 	}
-	up_read(&m->bus.topo);
+	up_read(&dc->bus->topo);
 	return from;
 }
 
@@ -146,7 +145,6 @@ void ec_dc_watch_begun(struct ec_dc *dc)
 static void watch(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
-	struct ec_master *m = container_of(dc, struct ec_master, dc);
 	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
 	bool try = due(dc), worth = READ_ONCE(dc->failed);
 	unsigned int i, at = 0;
@@ -155,8 +153,8 @@ static void watch(struct work_struct *work)
 	if (!b || READ_ONCE(dc->state) == EC_DC_BUSY)
 		goto out;
 	do {
-		at = collect(m, b, at);
-		ec_xfer(&m->links, b->dg, b->n);
+		at = collect(dc, b, at);
+		ec_xfer(dc->links, b->dg, b->n);
 		for (i = 0; i < b->n; i++) {
 			if (!b->dg[i].err && b->dg[i].wkc == 1) {
 				worth |= try && worth_try(b->slaves[i]);
@@ -169,11 +167,11 @@ static void watch(struct work_struct *work)
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
 	if (try && worth)
 		WRITE_ONCE(dc->again, true);
-	tell_far(m);
+	tell_far(dc);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))
-		queue_delayed_work(m->service, &dc->watch, msecs_to_jiffies(PERIOD_MS));
+		queue_delayed_work(dc->service, &dc->watch, msecs_to_jiffies(PERIOD_MS));
 }
 
 /**
@@ -189,13 +187,13 @@ void ec_dc_watch_init(struct ec_dc *dc)
 
 /**
  * ec_dc_watch_start() - look from now on
- * @m: master
+ * @dc: clocks
  *
  * Context: Process.
  */
-void ec_dc_watch_start(struct ec_master *m)
+void ec_dc_watch_start(struct ec_dc *dc)
 {
-	queue_delayed_work(m->service, &m->dc.watch, msecs_to_jiffies(PERIOD_MS));
+	queue_delayed_work(dc->service, &dc->watch, msecs_to_jiffies(PERIOD_MS));
 }
 
 /**

@@ -301,13 +301,13 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret;
 
-	if (!c || !c->dc_assign)
+	if (!c || !c->sync.assign)
 		return 0;
 	if (!ec_slave_has_clock(s)) {
 		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
 		return 0;
 	}
-	ec_dc_sync_compare(s, c);
+	ec_dc_sync_compare(s, &c->sync);
 	waits_for(s, "the clocks of the segment to be synchronized");
 	ret = ec_dc_wait(s);
 	waits_for(s, NULL);
@@ -317,7 +317,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
 			      READ_ONCE(s->dc_set) ? "inside the sync window yet" :
 						     "synchronized", ERR_PTR(ret));
-	return ec_dc_sync_start(s, c);
+	return ec_dc_sync_start(s, &c->sync);
 }
 
 /* Some slaves need time between their configuration and SAFEOP. */
@@ -413,7 +413,7 @@ static int to_op(struct ec_slave *s)
 		ret = write_idns(s, s->plan, EC_AL_SAFEOP);
 	if (ret)
 		return ret;
-	ret = s->plan ? ec_dc_sync_check(s, s->plan) : 0;
+	ret = s->plan ? ec_dc_sync_check(s, &s->plan->sync) : 0;
 	if (!ret)
 		ret = op_only_on(s);
 	if (ret > 0)

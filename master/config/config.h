@@ -7,6 +7,7 @@
 #include <linux/types.h>
 #include "../include/uapi/ethercat.h"
 #include "../bus/pdo.h"
+#include "../clock/dc.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
 
@@ -117,9 +118,7 @@ struct ec_config_flag {
  * @ring_position: when it was activated
  * @wd_divider: register 0x0400, 0: leave
  * @wd_intervals: register 0x0420, 0: leave
- * @dc_assign: AssignActivate
- * @dc_cycle: SYNC0, SYNC1 cycle, ns
- * @dc_shift: SYNC0, SYNC1 shift, ns
+ * @sync: SYNC signals
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @emergencies: how many to keep
  * @ip: to be written by EoE, @which 0: nothing
@@ -150,9 +149,7 @@ struct ec_config {
 	u32 ring_position;
 	u16 wd_divider;
 	u16 wd_intervals;
-	u16 dc_assign;
-	u32 dc_cycle[2];
-	s32 dc_shift[2];
+	struct ec_dc_sync sync;
 	u32 timeout_ms[9][9];
 	u32 emergencies;
 	u32 emerg_cleared;

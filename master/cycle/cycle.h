@@ -230,6 +230,7 @@ void ec_cycle_tell_room(struct ec_session *s);
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 
 /* exchange.c */
+void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_do_receive(struct ec_session *s);
 void ec_cycle_tell_stale(struct ec_session *s);
@@ -238,12 +239,12 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what);
 int ec_cycle_receive(struct ec_session *s);
 int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
 
-/* dc_cycle.c */
-u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
-u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
-void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
+/* dc_datagrams.c */
+u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
+u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
+void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now);
-const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data);
-void ec_dc_judge(struct ec_session *s);
+const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data);
+void ec_dc_datagrams_judge(struct ec_session *s);
 
 #endif

@@ -123,7 +123,7 @@ s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u
 	l->past[k].due = due;
 	l->past[k].time = l->time;
 	l->n_past++;
-	ec_dc_app_time(s->master, l->time, due - l->phase);
+	ec_dc_app_time(&s->master->dc, l->time, due - l->phase);
 	return correction;
 }
 

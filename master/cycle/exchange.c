@@ -99,7 +99,7 @@ static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
 	unsigned int i;
 
 	if (f->dc)
-		data = ec_dc_take(s, f, data);
+		data = ec_dc_datagrams_take(s, f, data);
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
@@ -242,7 +242,7 @@ int ec_cycle_do_receive(struct ec_session *s)
 	c->n_flight = left;
 	judge(s);
 	ec_status_begin(s->shared->status);
-	ec_dc_judge(s);
+	ec_dc_datagrams_judge(s);
 	WRITE_ONCE(s->shared->status->cycle, c->cycles);
 	ec_status_end(s->shared->status);
 	return 0;
@@ -326,7 +326,7 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
-		ec_dc_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
+		ec_dc_datagrams_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
 	dc = fb.count;
 	room = max(s->master->links.max_datagrams, dc) - dc;
 	for (; g < c->n_dgrams && room; g++, d++) {
@@ -383,7 +383,20 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 /* What a send of all domains and clock datagrams takes at most. */
 static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
 {
-	return READ_ONCE(m->dc.begun) ? c->clocked.ns + ec_dc_reserve_ns(m, c) : c->plain.ns;
+	return READ_ONCE(m->dc.begun) ? c->clocked.ns + ec_dc_datagrams_reserve_ns(m, c) : c->plain.ns;
+}
+
+/**
+ * ec_cycle_app_time() - the application gives its time, or that of the reference clock
+ * @s: active session
+ * @what: its flags, @app_time and @sync_time
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what)
+{
+	if (what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF))
+		s->cycle.dc_hold = ec_dc_told(&s->master->dc, what, &s->cycle.dc_skip);
 }
 
 /**
@@ -396,7 +409,7 @@ static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
  */
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
 {
-	ec_dc_told(s, what);
+	ec_cycle_app_time(s, what);
 	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
 		ec_requests_kick(s->requests);
 	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;
@@ -427,7 +440,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
-	send.dc = ec_dc_wanted(m, c, what->flags);
+	send.dc = ec_dc_datagrams_wanted(m, c, what->flags);
 	while (g < c->n_dgrams || send.dc) {
 		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
 			g = send_frame(s, g, &send);

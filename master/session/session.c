@@ -257,7 +257,7 @@ static void clear(struct ec_session *s)
 /* The next application begins with what it tells itself. */
 static void forget_told(struct ec_master *m)
 {
-	ec_dc_end(m);
+	ec_dc_end(&m->dc);
 	m->links.access.interval_us = EC_INTERVAL_US;
 	m->links.access.interval_set = false;
 }
@@ -568,7 +568,7 @@ bool ec_session_uses_clocks(const struct ec_session *s)
 	if (s->kernel.dc)
 		return true;
 	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->dc_assign)
+		if (s->configs[i]->sync.assign)
 			return true;
 	return false;
 }
@@ -580,7 +580,7 @@ bool ec_session_uses_clocks(const struct ec_session *s)
 static bool begins_clocks(const struct ec_session *s)
 {
 	return ec_session_uses_clocks(s) ||
-	       (s->ref_config < s->n_configs && !ec_dc_can_be(s->master, ref_choice(s)));
+	       (s->ref_config < s->n_configs && !ec_dc_can_be(&s->master->dc, ref_choice(s)));
 }
 
 /**
@@ -604,7 +604,7 @@ void ec_session_clocks(struct ec_master *m)
 	s = m->session;
 	if (s && s->active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
 					   READ_ONCE(dc->wanted)))
-		ec_dc_begin(m, !dc->begun, ref_choice(s));
+		ec_dc_begin(&m->dc, !dc->begun, ref_choice(s));
 	if (dc->changed) {
 		WRITE_ONCE(dc->changed, false);
 		wake_up_all(&dc->wq);
@@ -695,7 +695,7 @@ int ec_session_activate(struct ec_session *s)
 	WRITE_ONCE(m->active_owner, s->owner);
 	mutex_unlock(&m->cyclic_lock);
 	if (begins_clocks(s))
-		ec_dc_begin(m, true, ref_choice(s));
+		ec_dc_begin(&m->dc, true, ref_choice(s));
 	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(s);

@@ -113,7 +113,7 @@ void ec_session_status(struct ec_master *m)
 		log_stalls(s, ktime_get_ns());
 		ec_cycle_lock_log(s);
 		ec_cycle_thread_check_cpu(s);
-		ec_dc_app_log(m);
+		ec_dc_app_log(&m->dc);
 		ec_cycle_tell_room(s);
 		ec_cycle_tell_stale(s);
 		ec_session_fill_status(s);

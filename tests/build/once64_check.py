@@ -12,7 +12,7 @@ from pathlib import Path
 
 ALLOWED = {
     "master/cycle/exchange.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
-    "master/clock/dc_cycle.c:ec_dc_judge": "its caller has called ec_status_begin()",
+    "master/cycle/dc_datagrams.c:ec_dc_datagrams_judge": "its caller has called ec_status_begin()",
     "master/cycle/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
     "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
     "master/cycle/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",

@@ -55,7 +55,7 @@ static void dc_delays_are_true(struct kunit *test)
 	u32 i;
 
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
 	for (i = 0; i < 22; i++) {
 		const struct ec_slave *s = bus_slave(b, i);
 

@@ -87,8 +87,8 @@ static void dc_log_delay_only(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("not synchronized"), 0u);
 	KUNIT_EXPECT_FALSE(test, b->m->dc.again);
 	/* none of them can be the reference clock */
-	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(b->m, bus_slave(b, 5)->station));
-	KUNIT_EXPECT_TRUE(test, ec_dc_can_be(b->m, bus_slave(b, 21)->station));
+	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(&b->m->dc, bus_slave(b, 5)->station));
+	KUNIT_EXPECT_TRUE(test, ec_dc_can_be(&b->m->dc, bus_slave(b, 21)->station));
 }
 
 /* Delayed sends do not change the interval that was learned. */

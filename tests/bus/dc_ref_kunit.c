@@ -393,7 +393,7 @@ static void ref_lost_without_substitute(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, bus_esc(b, 1)->dc.running);
 	/* it has the time the others would have: the application's */
 	KUNIT_EXPECT_LT(test, abs((s64)(ec_esc_system_time(bus_esc(b, 1), ktime_get_ns()) -
-					ec_dc_now(b->m))), 5000000ll);
+					ec_dc_now(&b->m->dc))), 5000000ll);
 }
 
 /* Four of ten frames are lost while the clocks are being set: it is tried again. */

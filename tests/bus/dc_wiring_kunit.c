@@ -193,7 +193,7 @@ static void wiring_by_any_port(struct kunit *test)
 		describe(t, text, sizeof(text));
 		b = bus_up(test, text, TREE);
 		bus_idle(b);
-		KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+		KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
 		max = max(max, expect_wiring(b, text));
 		bus_down(b);
 		test->priv = NULL;
@@ -224,12 +224,12 @@ static void wiring_that_does_not_fit(struct kunit *test)
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
 	bus_esc(b, 1)->cfg.drift_ppb = 2000000000;
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
 	KUNIT_EXPECT_FALSE(test, shown_odd(b, 0));
 	KUNIT_EXPECT_TRUE(test, shown_odd(b, 1));
 	KUNIT_EXPECT_TRUE(test, shown_odd(b, 2));
 	bus_esc(b, 1)->cfg.drift_ppb = 0;
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(b->m), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
 	bus_down(b);

@@ -407,7 +407,7 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_LT(test, ecrt_master_sync_monitor_process(k->m), 1000u);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock_to(k->m, now), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->configs[1]->dc_shift[0], 100);
+	KUNIT_EXPECT_EQ(test, k->m->session->configs[1]->sync.shift[0], 100);
 	KUNIT_EXPECT_EQ(test, k->m->session->ref_config, 0u);
 	ecrt_release_master(k->m);
 }

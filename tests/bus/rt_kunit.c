@@ -138,7 +138,7 @@ static void rt_receive_send(struct kunit *test)
 		send.sync_time = ktime_to_ns(c->next);
 		enter(&v, true);
 		KUNIT_ASSERT_EQ(test, ec_cycle_receive(s), 0);
-		ec_dc_app_time(c->b->m, send.sync_time, send.sync_time);
+		ec_dc_app_time(&c->b->m->dc, send.sync_time, send.sync_time);
 		KUNIT_ASSERT_EQ(test, ec_cycle_send(s, &send), 0);
 		leave(&v, true);
 	}

@@ -5,10 +5,10 @@
  * data of the first frame, so that their distance to the send is always the
  * same. Nothing here allocates, prints or waits.
  */
-#include "../cycle/cycle.h"
 #include "../master.h"
 #include "../session/session.h"
 #include "../wire/regs.h"
+#include "cycle.h"
 
 #define SYNC_REF	EC_SEND_FLAG_SYNC_REF
 #define SYNC_SLAVES	EC_SEND_FLAG_SYNC_SLAVES
@@ -60,7 +60,7 @@ static u32 boost(struct ec_master *m, const struct ec_cycle *c)
 }
 
 /**
- * ec_dc_reserve_ns() - wire time of more comparisons that are to come
+ * ec_dc_datagrams_reserve_ns() - wire time of more comparisons that are to come
  * @m: master
  * @c: its cyclic layout
  *
@@ -70,7 +70,7 @@ static u32 boost(struct ec_master *m, const struct ec_cycle *c)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: ns.
  */
-u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
+u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
 {
 	if (READ_ONCE(m->dc.state) != EC_DC_BUSY && !READ_ONCE(m->dc.boost))
 		return 0;
@@ -78,7 +78,7 @@ u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
 }
 
 /**
- * ec_dc_wanted() - clock datagrams of this send
+ * ec_dc_datagrams_wanted() - clock datagrams of this send
  * @m: master
  * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
@@ -89,7 +89,7 @@ u32 ec_dc_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0 without reference clock.
  */
-u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
+u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
 {
 	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
 	if (!flags)
@@ -109,57 +109,6 @@ u32 ec_dc_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
 	return flags;
 }
 
-/**
- * ec_dc_clock() - the reference clock has told its time
- * @m: master
- * @time: all of it, ns
- * @at_ns: when it was that time (ktime)
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_dc_clock(struct ec_master *m, u64 time, u64 at_ns)
-{
-	atomic64_set(&m->dc.ahead, time - at_ns);
-}
-
-static u64 clock_at(struct ec_master *m, u64 at_ns)
-{
-	return atomic64_read(&m->dc.ahead) + at_ns;
-}
-
-/**
- * ec_dc_clock_now() - time of the reference clock at this moment
- * @m: master whose clocks are set
- *
- * By what it was last; it drifts.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: ns.
- */
-u64 ec_dc_clock_now(struct ec_master *m)
-{
-	return clock_at(m, ktime_get_ns());
-}
-
-/**
- * ec_dc_whole() - time of a clock with 32 bits
- * @m: master whose clocks are set
- * @low: what the clock says
- * @at_ns: when (ktime)
- *
- * The rest is that of the time the clocks have gone through since they were set. The
- * application's time may be any number of seconds away by now.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: all 64 bits, ns.
- */
-u64 ec_dc_whole(struct ec_master *m, u32 low, u64 at_ns)
-{
-	u64 about = clock_at(m, at_ns);
-
-	return about + (s32)(low - (u32)about);
-}
-
 /*
  * Slaves in front of the reference, and all when it is gone, see what was sent:
  * the time it will have, as far as its answers tell.
@@ -169,7 +118,7 @@ static u64 predicted(struct ec_master *m, const struct ec_cycle *c, u64 now)
 	u64 since = now - c->dc_time_ns;
 
 	if (!c->dc_time)
-		return clock_at(m, now);
+		return ec_dc_clock_at(&m->dc, now);
 	return c->dc_time + since +
 	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
 }
@@ -193,9 +142,9 @@ static void learn_rate(struct ec_cycle *c)
 static u64 clock_time(struct ec_master *m, const u8 *data, u16 len, u64 sent_ns)
 {
 	u64 t = len == 8 ? get_unaligned_le64(data) :
-			   ec_dc_whole(m, get_unaligned_le32(data), sent_ns);
+			   ec_dc_whole(&m->dc, get_unaligned_le32(data), sent_ns);
 
-	ec_dc_clock(m, t, sent_ns);
+	ec_dc_clock(&m->dc, t, sent_ns);
 	return t;
 }
 
@@ -233,11 +182,11 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
 }
 
 /**
- * ec_dc_fill() - add the clock datagrams to an empty frame
+ * ec_dc_datagrams_fill() - add the clock datagrams to an empty frame
  * @s: active session
  * @fb: frame
  * @index: of its slot
- * @dc: as from ec_dc_wanted()
+ * @dc: as from ec_dc_datagrams_wanted()
  * @sync_time: for the reference clock, ns
  * @now: time of the send (ktime)
  *
@@ -245,7 +194,7 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
+void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
 		u64 now)
 {
 	struct ec_master *m = s->master;
@@ -284,7 +233,7 @@ static const u8 *skip(const u8 *data, u16 len)
 }
 
 /**
- * ec_dc_take() - results of the clock datagrams of a returned frame
+ * ec_dc_datagrams_take() - results of the clock datagrams of a returned frame
  * @s: active session
  * @f: the frame
  * @data: data of the first datagram, matched against what was sent
@@ -292,7 +241,7 @@ static const u8 *skip(const u8 *data, u16 len)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: data of the first datagram of process data.
  */
-const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data)
+const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data)
 {
 	struct ec_cycle *c = &s->cycle;
 	u64 sent_ns = f->slot->sent_ns;
@@ -326,12 +275,12 @@ const u8 *ec_dc_take(struct ec_session *s, const struct ec_cyc_flight *f, const 
 }
 
 /**
- * ec_dc_judge() - tell the application what is back of what it has sent
+ * ec_dc_datagrams_judge() - tell the application what is back of what it has sent
  * @s: active session
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_judge(struct ec_session *s)
+void ec_dc_datagrams_judge(struct ec_session *s)
 {
 	struct ec_cycle *c = &s->cycle;
 	struct ec_status *st = s->shared->status;
