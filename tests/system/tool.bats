@@ -191,7 +191,7 @@ teardown_file() { stop; }
 @test "a wrong selection is refused with a reason" {
 	refused 'matches 22 of 22 slaves' upload 0x1018 1
 	refused 'matches 0 of 22 slaves' upload -p22 0x1018 1
-	refused 'matches 0 slaves' reg_read -a77 0 1
+	refused 'matches 0 of 22 slaves' reg_read -a77 0 1
 	refused 'invalid list' slaves -p 1x
 	refused 'none of the 1 master' reg_read -m3 -p0 0 1
 }
