@@ -392,7 +392,8 @@ static int monitor(void *data)
 		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
-		if (!kthread_should_stop() && (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
+		if (!kthread_should_stop() &&
+		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 	}

@@ -34,7 +34,8 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 
 	put_unaligned_le16(control, b);
 	for (;;) {
-		ret = ec_xfer_fpwr(slave->bus->links, slave->station, EC_REG_AL_CONTROL, b, sizeof(b));
+		ret = ec_xfer_fpwr(slave->bus->links, slave->station, EC_REG_AL_CONTROL, b,
+				   sizeof(b));
 		if (ret != -EIO || slave->stop.gone)
 			return ret;
 		if (ktime_get_ns() > until_ns)

@@ -147,7 +147,8 @@ bool ec_names_pending(const struct ec_slave *s)
 	u16 index, sub;
 
 	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
-	       s->general.coe & EC_SII_COE_SDO_INFO && READ_ONCE(s->bus->links->access.mode) == EC_ACCESS_DIRECT &&
+	       s->general.coe & EC_SII_COE_SDO_INFO &&
+	       !ec_access_is_cyclic(&s->bus->links->access) &&
 	       !ec_mbox_check(&s->mbox, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
 	       next_unknown(s, &s->names, &at, &index, &sub);
 }

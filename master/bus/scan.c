@@ -496,7 +496,10 @@ static void publish(struct scan *sc)
  */
 int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 {
-	struct scan sc = { .bus = bus, .n = count, .fresh = !bus->n_slaves && bus->links->access.mode == EC_ACCESS_DIRECT };
+	struct scan sc = {
+		.bus = bus, .n = count,
+		.fresh = !bus->n_slaves && !ec_access_is_cyclic(&bus->links->access),
+	};
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	unsigned int i;
 	int ret = -ENOMEM;

@@ -29,7 +29,9 @@
 /* More than that is no lateness of a cycle, and would take SYNC to another one. */
 static s64 limit(const struct ec_dc *dc)
 {
-	return max_t(s64, READ_ONCE(dc->links->access.interval_us) * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
+	u32 interval_us = READ_ONCE(dc->links->access.interval_us);
+
+	return max_t(s64, interval_us * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }
 
 /* It may have been told long ago; two clocks differ by less than 244 ppm. */

@@ -239,15 +239,15 @@ static u32 worst(const struct ec_dc_job *j, unsigned int at, u8 (*v)[4])
 /* One more look at the differences, behind what compensates until then. */
 static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
 {
-	unsigned int n;
+	unsigned int first, n;
 	int ret;
 
 	if (canceled(j->dc))
 		return -ECANCELED;
-	n = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
-	ret = ec_xfer_clock(j->dc->links, j->dg, ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
-						   4, v[0], sizeof(v[0])));
-	*max = worst(j, n, v);
+	first = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
+	n = ec_dc_add(j, first, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0], sizeof(v[0]));
+	ret = ec_xfer_clock(j->dc->links, j->dg, n);
+	*max = worst(j, first, v);
 	return tolerate(ret);
 }
 
@@ -337,8 +337,9 @@ static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
  */
 void ec_dc_settle(struct ec_dc_job *j)
 {
-	unsigned int i, cycles = max(1u, CALM_US / max(1u, READ_ONCE(j->dc->links->access.interval_us)));
 	struct ec_dc *dc = j->dc;
+	u32 interval_us = max(1u, READ_ONCE(dc->links->access.interval_us));
+	unsigned int i, cycles = max(1u, CALM_US / interval_us);
 	int ret = 0;
 
 	if (!READ_ONCE(dc->framed))
@@ -366,8 +367,9 @@ int ec_dc_check(struct ec_dc_job *j)
 	if (!v)
 		return -ENOMEM;
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	ret = ec_xfer_clock(j->dc->links, j->dg, ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF,
-						   4, v[0], sizeof(v[0])));
+	ret = ec_xfer_clock(j->dc->links, j->dg,
+			    ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0],
+				      sizeof(v[0])));
 	/* one that is silent now was set before */
 	if (!ret)
 		ec_dc_answers(j, 0, EC_DC_CLOCKS);

@@ -175,7 +175,8 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
-	u64 cycles = (u64)LEAD_CYCLES * READ_ONCE(s->bus->links->access.interval_us) * NSEC_PER_USEC;
+	u32 interval_us = READ_ONCE(s->bus->links->access.interval_us);
+	u64 cycles = (u64)LEAD_CYCLES * interval_us * NSEC_PER_USEC;
 	s64 most = HALF32_NS - period - LEAD_NS;
 
 	if (ec_slave_features(s) & EC_FEAT_DC64)
@@ -319,7 +320,8 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
-		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status, 1);
+		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status,
+					  1);
 		if (ret && (ret != -EIO || known))
 			return ret;
 		if (!missing(c, status[0]))

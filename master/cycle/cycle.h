@@ -242,8 +242,8 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
 /* dc_datagrams.c */
 u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
 u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
-void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
-		u64 now);
+void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
+			  u64 sync_time, u64 now);
 const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data);
 void ec_dc_datagrams_judge(struct ec_session *s);
 

@@ -194,8 +194,8 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc, u64 sync_time,
-		u64 now)
+void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
+			  u64 sync_time, u64 now)
 {
 	struct ec_master *m = s->master;
 	u16 ref = READ_ONCE(m->dc.ref_station);

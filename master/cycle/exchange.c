@@ -326,7 +326,8 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
-		ec_dc_datagrams_fill(s, &fb, slot->index, send->dc, send->what->sync_time, send->now);
+		ec_dc_datagrams_fill(s, &fb, slot->index, send->dc, send->what->sync_time,
+				     send->now);
 	dc = fb.count;
 	room = max(s->master->links.max_datagrams, dc) - dc;
 	for (; g < c->n_dgrams && room; g++, d++) {
@@ -383,7 +384,9 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 /* What a send of all domains and clock datagrams takes at most. */
 static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
 {
-	return READ_ONCE(m->dc.begun) ? c->clocked.ns + ec_dc_datagrams_reserve_ns(m, c) : c->plain.ns;
+	if (!READ_ONCE(m->dc.begun))
+		return c->plain.ns;
+	return c->clocked.ns + ec_dc_datagrams_reserve_ns(m, c);
 }
 
 /**

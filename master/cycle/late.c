@@ -158,7 +158,8 @@ void ec_late_send(struct ec_session *s, u64 now)
 	s64 off, step;
 
 	if (told)
-		c->interval_ns = READ_ONCE(s->master->links.access.interval_us) * (u32)NSEC_PER_USEC;
+		c->interval_ns = READ_ONCE(s->master->links.access.interval_us) *
+				 (u32)NSEC_PER_USEC;
 	else if (c->sends)
 		measure(s->master, c, now - s->master->links.access.last_send_ns);
 	c->last_ns = now;

@@ -416,7 +416,8 @@ void ec_cycle_tell_room(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 
-	if (!s->room_told && !m->links.access.interval_set && ec_read64(&s->cycle.cycles) > MEASURED)
+	if (!s->room_told && !m->links.access.interval_set &&
+	    ec_read64(&s->cycle.cycles) > MEASURED)
 		has_room(s, READ_ONCE(m->links.access.interval_us) * (u64)NSEC_PER_USEC,
 			 READ_ONCE(m->links.access.wire_ns));
 }

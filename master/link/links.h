@@ -40,7 +40,7 @@ struct ec_links {
 	const char *spec[EC_MAX_LINKS];
 	/** @link: main and backup */
 	struct ec_link link[EC_MAX_LINKS];
-	/** @capture: interface for capture programs, NULL: none; immutable while there are devices */
+	/** @capture: interface for capture programs, NULL: none; immutable while devices are there */
 	struct ec_capture *capture;
 	/** @slots: frame slots */
 	struct ec_slots slots;

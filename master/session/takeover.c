@@ -153,7 +153,8 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 		return differs(t, "slave %u:%u, its place in the domains", SLAVE(a));
 	if (a->wd_divider != b->wd_divider || a->wd_intervals != b->wd_intervals)
 		return differs(t, "slave %u:%u, watchdog", SLAVE(a));
-	if (a->sync.assign != b->sync.assign || memcmp(a->sync.period, b->sync.period, sizeof(a->sync.period)) ||
+	if (a->sync.assign != b->sync.assign ||
+	    memcmp(a->sync.period, b->sync.period, sizeof(a->sync.period)) ||
 	    memcmp(a->sync.shift, b->sync.shift, sizeof(a->sync.shift)))
 		return differs(t, "slave %u:%u, distributed clock", SLAVE(a));
 	if (memcmp(a->timeout_ms, b->timeout_ms, sizeof(a->timeout_ms)))

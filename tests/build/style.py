@@ -23,7 +23,7 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 38,
+    ("lines", "master"): 26,
     ("lines", "lib"): 1,
     ("lines", "tests"): 225,
     ("lines", "Documentation"): 61,
