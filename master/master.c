@@ -9,19 +9,6 @@
 #include "session/session.h"
 #include "config/apply.h"
 
-static struct ec_master *masters[EC_MAX_MASTERS];
-static unsigned int n_masters;
-
-unsigned int ec_master_count(void)
-{
-	return n_masters;
-}
-
-struct ec_master *ec_master_get(unsigned int index)
-{
-	return masters[index];
-}
-
 static void device(struct ec_links *l, const struct ec_link *link, bool attached)
 {
 	struct ec_master *m = container_of(l, struct ec_master, links);
@@ -253,8 +240,7 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
 			ec_masters_destroy();
 			return PTR_ERR(m);
 		}
-		masters[i] = m;
-		n_masters = i + 1;
+		ec_cdev_publish(m);
 		ec_device_register(&m->links);
 	}
 	return 0;
@@ -267,6 +253,8 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
  */
 void ec_masters_destroy(void)
 {
-	while (n_masters)
-		destroy(masters[--n_masters]);
+	struct ec_master *m;
+
+	while ((m = ec_cdev_unpublish()))
+		destroy(m);
 }

@@ -90,8 +90,6 @@ struct ec_master {
 	struct ec_dc dc;
 };
 
-unsigned int ec_master_count(void);
-struct ec_master *ec_master_get(unsigned int index);
 int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
 		      unsigned int debug);
 void ec_masters_destroy(void);

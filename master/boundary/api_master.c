@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Requesting a master, activating and giving it back; for the kernel. */
+#include "cdev.h"
 #include "../../lib/ecrt/ecrt_int.h"
 
 ec_master_t *ecrt_request_master(unsigned int master_index)
@@ -7,12 +8,12 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	struct ec_master *m;
 	int ret;
 
-	if (master_index >= ec_master_count()) {
+	if (master_index >= ec_cdev_count()) {
 		pr_err_ratelimited("EtherCAT: kernel API: no master %u; main_devices= names %u\n",
-				   master_index, ec_master_count());
+				   master_index, ec_cdev_count());
 		return NULL;
 	}
-	m = ec_master_get(master_index);
+	m = ec_cdev_master(master_index);
 	/* who found the symbols by symbol_get() has no lasting hold on the module */
 	__module_get(THIS_MODULE);
 	ret = ec_do(m, EC_IOC_RESERVE, NULL, "reserve the master");

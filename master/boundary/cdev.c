@@ -12,6 +12,55 @@
 static struct class *ec_class;
 static dev_t first_dev;
 
+/* changed while the module is loaded or removed only */
+static struct ec_master *masters[EC_MAX_MASTERS];
+static unsigned int n_masters;
+
+/**
+ * ec_cdev_count() - number of masters
+ *
+ * Context: Any.
+ * Return: masters that applications can request.
+ */
+unsigned int ec_cdev_count(void)
+{
+	return n_masters;
+}
+
+/**
+ * ec_cdev_master() - a master by its number
+ * @index: less than ec_cdev_count()
+ *
+ * Context: Any.
+ * Return: the master.
+ */
+struct ec_master *ec_cdev_master(unsigned int index)
+{
+	return masters[index];
+}
+
+/**
+ * ec_cdev_publish() - let applications request a master
+ * @m: master that is complete; its number is the next one
+ *
+ * Context: Process.
+ */
+void ec_cdev_publish(struct ec_master *m)
+{
+	masters[n_masters++] = m;
+}
+
+/**
+ * ec_cdev_unpublish() - let applications request the last master no more
+ *
+ * Context: Process.
+ * Return: that master, or NULL: there is none left.
+ */
+struct ec_master *ec_cdev_unpublish(void)
+{
+	return n_masters ? masters[--n_masters] : NULL;
+}
+
 /**
  * ec_file_init() - prepare an open file
  * @f: file, zeroed

@@ -36,6 +36,10 @@ __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait);
 
 int ec_cdev_class_init(void);
 void ec_cdev_class_exit(void);
+unsigned int ec_cdev_count(void);
+struct ec_master *ec_cdev_master(unsigned int index);
+void ec_cdev_publish(struct ec_master *m);
+struct ec_master *ec_cdev_unpublish(void);
 int ec_cdev_init(struct ec_master *m);
 void ec_cdev_exit(struct ec_master *m);
 void ec_cdev_put(struct ec_master *m);

@@ -3,6 +3,7 @@
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
+#include "cdev.h"
 #include "../config/config.h"
 #include "../link/device.h"
 #include "../cycle/domain.h"
@@ -26,7 +27,7 @@ int ec_ioc_version(struct ec_call *call)
 	v->abi = EC_UAPI_VERSION;
 	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
 		      EC_FEATURE_SOE | EC_FEATURE_VOE;
-	v->master_count = ec_master_count();
+	v->master_count = ec_cdev_count();
 	v->ecrt = 0x0106;
 	strscpy(v->release, EC_RELEASE, sizeof(v->release));
 	return 0;

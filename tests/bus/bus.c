@@ -5,6 +5,7 @@
 #include "slow.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/sii.h"
+#include "master/boundary/cdev.h"
 
 static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
 
@@ -29,7 +30,7 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	ret = ec_sim_describe(&b->sim, &ec_sim_kernel_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
-	b->m = ec_master_get(0);
+	b->m = ec_cdev_master(0);
 	ec_file_init(&b->app, b->m, true);
 	return b;
 }
