@@ -95,7 +95,6 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
-	m->bus.master = m;
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops);
 	if (ret)
 		goto err_work;

@@ -43,7 +43,7 @@ struct task_struct;
  *	cyclic part
  * @session: what an application has configured, NULL: nobody
  * @api: for applications in the kernel, immutable
- * @mapped: bytes of memory for applications to map, also of sessions that have ended
+ * @memory: bytes of all sessions, and of what they have mapped, which may outlive them
  * @heir: what another one configures to take over @session, which is detached
  * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
  * @active: @session while it is active
@@ -74,7 +74,7 @@ struct ec_master {
 	struct mutex session_lock;
 	struct ec_session *session;
 	struct ec_api *api;
-	atomic_long_t mapped;
+	atomic_long_t memory;
 	struct ec_session *heir;
 	struct mutex cyclic_lock;
 	struct ec_session *active;

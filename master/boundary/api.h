@@ -15,7 +15,7 @@
 #include "../include/ecrt.h"
 #include "cdev.h"
 #include "../config/config.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../master.h"
 #include "../session/request.h"
@@ -72,7 +72,7 @@ static inline struct ec_config *ec_api_config(const ec_slave_config_t *sc)
 
 static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
 {
-	return ec_api_config(sc)->session->master;
+	return ec_config_session(ec_api_config(sc))->master;
 }
 
 /* api.c */
@@ -109,7 +109,7 @@ static inline u32 ec_sc_index(const ec_slave_config_t *sc)
 
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 {
-	return d->session->master;
+	return ec_domain_session(d)->master;
 }
 
 static inline void *ec_zalloc(size_t size)

@@ -14,9 +14,9 @@ void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
 
 	if (!domain)
 		return;
-	m = domain->session->master;
+	m = ec_domain_session(domain)->master;
 	mutex_lock(&m->session_lock);
-	if (!domain->session->active)
+	if (!ec_domain_session(domain)->wanted.active)
 		domain->memory = memory;
 	else
 		ec_err(m, "kernel API: memory for domain %u comes after activation; it is not used\n",
@@ -27,7 +27,7 @@ EXPORT_SYMBOL_GPL(ecrt_domain_external_memory);
 
 static struct ec_api *active(const struct ec_domain *d)
 {
-	struct ec_api *api = d ? d->session->master->api : NULL;
+	struct ec_api *api = d ? ec_domain_session(d)->master->api : NULL;
 
 	return api && smp_load_acquire(&api->active) ? api : NULL;
 }
@@ -50,7 +50,7 @@ int ecrt_domain_process(ec_domain_t *domain)
 	if (!(api->received & BIT_ULL(domain->index)))
 		return 0;
 	api->received &= ~BIT_ULL(domain->index);
-	st = &domain->session->shared->status->domains[domain->index];
+	st = &ec_domain_session(domain)->shared->status->domains[domain->index];
 	domain->snap.working_counter = READ_ONCE(st->working_counter);
 	domain->snap.wc_state = READ_ONCE(st->wc_state);
 	domain->snap.redundancy_active = READ_ONCE(st->redundancy_active);

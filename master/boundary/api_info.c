@@ -2,6 +2,7 @@
 /* States and what the master knows without a lock, for applications in the kernel. */
 #include "api.h"
 #include "../base/once64.h"
+#include "../config/why.h"
 
 int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 {
@@ -40,7 +41,8 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 {
 	const struct ec_link *link;
 
-	if (!master || !state || dev_idx >= EC_MAX_LINKS || (dev_idx && !master->links.spec[dev_idx]))
+	if (!master || !state || dev_idx >= EC_MAX_LINKS ||
+	    (dev_idx && !master->links.spec[dev_idx]))
 		return -EINVAL;
 	link = &master->links.link[dev_idx];
 	state->slaves_responding = READ_ONCE(link->slaves);
@@ -65,7 +67,7 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t
 		v = READ_ONCE(s->shared->status->configs[ec_api_config(sc)->index]);
 	} else {
 		mutex_lock(&m->session_lock);
-		v = ec_session_config_status(ec_api_config(sc));
+		v = ec_config_status(ec_api_config(sc));
 		mutex_unlock(&m->session_lock);
 	}
 	state->online = !!(v & EC_STATUS_SC_ONLINE);

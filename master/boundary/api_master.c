@@ -74,7 +74,7 @@ ec_domain_t *ecrt_master_create_domain(ec_master_t *master)
 
 	if (ec_do(master, EC_IOC_CREATE_DOMAIN, &i, "create a domain"))
 		return NULL;
-	return session_of(master)->domains[i.index];
+	return session_of(master)->wanted.domains[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_create_domain);
 
@@ -90,7 +90,7 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 	if (ec_do(master, EC_IOC_SLAVE_CONFIG, &i, "configure slave %u:%u as 0x%08x/0x%08x", alias,
 		  position, vendor_id, product_code))
 		return NULL;
-	return (ec_slave_config_t *)session_of(master)->configs[i.index];
+	return (ec_slave_config_t *)session_of(master)->wanted.configs[i.index];
 }
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
 

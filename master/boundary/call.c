@@ -81,21 +81,21 @@ int ec_ioc_lock_session(struct ec_call *call)
 
 static int find_config(struct ec_call *call, u32 index)
 {
-	if (index >= call->session->n_configs)
+	if (index >= call->session->wanted.n_configs)
 		return ec_refuse(call, -ENOENT, "there are %u slave configurations, no %u",
-				 call->session->n_configs, index);
-	index = array_index_nospec(index, call->session->n_configs);
-	call->config = call->session->configs[index];
+				 call->session->wanted.n_configs, index);
+	index = array_index_nospec(index, call->session->wanted.n_configs);
+	call->config = call->session->wanted.configs[index];
 	return 0;
 }
 
 static int find_domain(struct ec_call *call, u32 index)
 {
-	if (index >= call->session->n_domains)
+	if (index >= call->session->wanted.n_domains)
 		return ec_refuse(call, -ENOENT, "there are %u domains, no %u",
-				 call->session->n_domains, index);
-	index = array_index_nospec(index, call->session->n_domains);
-	call->domain = call->session->domains[index];
+				 call->session->wanted.n_domains, index);
+	index = array_index_nospec(index, call->session->wanted.n_domains);
+	call->domain = call->session->wanted.domains[index];
 	return 0;
 }
 
@@ -105,7 +105,7 @@ static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
 
 	if (ret)
 		return ret;
-	if (op->class != EC_CLASS_SESSION && call->session->active)
+	if (op->class != EC_CLASS_SESSION && call->session->wanted.active)
 		ret = ec_refuse(call, -EBUSY, "the master is active; configure before ecrt_master_activate()");
 	else if (op->class == EC_CLASS_CONFIG)
 		ret = find_config(call, *(u32 *)(call->arg + op->at));

@@ -169,7 +169,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 	if (vma->vm_flags & VM_EXEC || !f->writable)
 		return -EPERM;
 	mutex_lock(&m->session_lock);
-	if (m->session && m->session->owner == f && m->session->active)
+	if (m->session && m->session->owner == f && m->session->wanted.active)
 		ret = map_shared(m->session->shared, vma);
 	mutex_unlock(&m->session_lock);
 	return ret;

@@ -2,7 +2,7 @@
 /* Commands of the application that has reserved the master. */
 #include "api.h"
 #include "../config/config.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../master.h"
 #include "../session/request.h"
@@ -47,7 +47,7 @@ int ec_ioc_release(struct ec_call *call)
 int ec_ioc_create_domain(struct ec_call *call)
 {
 	struct ec_ioc_create_domain *i = call->arg;
-	struct ec_domain *d = ec_domain_create(call->session);
+	struct ec_domain *d = ec_domain_create(&call->session->wanted);
 
 	if (IS_ERR(d))
 		return ec_refuse(call, PTR_ERR(d), "at most %u domains", EC_MAX_DOMAINS);
@@ -72,8 +72,8 @@ static int config_failed(struct ec_call *call, const struct ec_ioc_slave_config 
 {
 	unsigned int k;
 
-	for (k = 0; ret == -ENOENT && k < s->n_configs; k++) {
-		const struct ec_config *c = s->configs[k];
+	for (k = 0; ret == -ENOENT && k < s->wanted.n_configs; k++) {
+		const struct ec_config *c = s->wanted.configs[k];
 
 		if (c->alias == i->alias && c->position == i->position)
 			return ec_refuse(call, ret, "slave %u:%u is configured as 0x%08x/0x%08x already, not as 0x%08x/0x%08x",
@@ -91,9 +91,9 @@ static int slave_config(struct ec_call *call, struct ec_ioc_slave_config *i)
 	struct ec_session *s = call->session;
 	struct ec_config *c;
 
-	c = s->active ?
-	    ec_config_find(s, i->alias, i->position, i->vendor_id, i->product_code) :
-	    ec_config_create(s, i->alias, i->position, i->vendor_id, i->product_code);
+	c = s->wanted.active ?
+	    ec_config_find(&s->wanted, i->alias, i->position, i->vendor_id, i->product_code) :
+	    ec_session_configure(s, i->alias, i->position, i->vendor_id, i->product_code);
 	if (!c)
 		return ec_refuse(call, -EBUSY, "slave %u:%u has no configuration and the master is active; configure before ecrt_master_activate()",
 				 i->alias, i->position);
@@ -113,7 +113,7 @@ int ec_ioc_slave_config(struct ec_call *call)
 	if (ret)
 		return ret;
 	/* the running session of an heir has its slaves */
-	if (!call->session->active && call->session != m->heir) {
+	if (!call->session->wanted.active && call->session != m->heir) {
 		ec_session_unlock(m);
 		wait_pdos(call, call->arg);
 		ret = ec_ioc_lock_session(call);
@@ -245,14 +245,14 @@ int ec_ioc_reg_entry(struct ec_call *call)
 	int ret;
 
 	i->bit = 0;
-	if (i->domain >= s->n_domains)
+	if (i->domain >= s->wanted.n_domains)
 		return ec_refuse(call, -ENOENT, "there is no domain %u", i->domain);
 	if (i->flags & EC_REG_ENTRY_BY_POS)
 		ret = ec_config_reg_entry_pos(c, i->sm, i->pdo_pos, i->entry_pos,
-					      s->domains[i->domain], &i->offset, bit);
+					      s->wanted.domains[i->domain], &i->offset, bit);
 	else
-		ret = ec_config_reg_entry(c, i->entry_index, i->subindex, s->domains[i->domain],
-					  &i->offset, bit);
+		ret = ec_config_reg_entry(c, i->entry_index, i->subindex,
+					  s->wanted.domains[i->domain], &i->offset, bit);
 	if (ret == -ENOENT)
 		not_mapped(call, c, i);
 	else if (ret == -EBUSY)
@@ -263,7 +263,7 @@ int ec_ioc_reg_entry(struct ec_call *call)
 	else if (ret == -EOVERFLOW)
 		ec_refuse(call, ret, "slave %u:%u: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
 			  c->alias, c->position, c->n_fmmus, EC_MAX_FMMU, i->domain,
-			  s->domains[i->domain]->size, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
+			  s->wanted.domains[i->domain]->size, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
 	else if (ret == -EINVAL)
 		ec_refuse(call, ret, "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
 			  c->alias, c->position, EC_MAX_SM - 1);
@@ -315,14 +315,14 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 	u32 bytes = 0;
 	unsigned int i;
 
-	for (i = 0; i < s->n_domains; i++)
-		bytes += s->domains[i]->size;
+	for (i = 0; i < s->wanted.n_domains; i++)
+		bytes += s->wanted.domains[i]->size;
 	switch (ret) {
 	case -EBUSY:
 		return ec_refuse(call, ret, "the master is active already");
 	case -EOVERFLOW:
 		return ec_refuse(call, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes, %u datagrams and %u frames a cycle; register fewer SyncManagers, or let inputs overlap outputs",
-				 bytes, s->n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
+				 bytes, s->wanted.n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
 				 EC_MAX_CYCLE_FRAMES);
 	case -ENOSPC:
 		return ec_refuse(call, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and the limit of delayed cycles is 0; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
@@ -363,12 +363,12 @@ static int activate(struct ec_call *call, struct ec_session *s, const void *pres
 	unsigned int i;
 	int ret;
 
-	for (i = 0; !s->active && i < s->n_configs; i++) {
-		ret = check_maps(call, s->configs[i]);
+	for (i = 0; !s->wanted.active && i < s->wanted.n_configs; i++) {
+		ret = check_maps(call, s->wanted.configs[i]);
 		if (ret)
 			return ret;
 	}
-	if (size && !s->active && size != ec_session_place(s))
+	if (size && !s->wanted.active && size != ec_session_place(s))
 		return ec_refuse(call, -EINVAL, "initial image has %u bytes, domains need %u; register all entries first",
 				 size, ec_session_place(s));
 	s->preset = preset;
@@ -408,12 +408,12 @@ int ec_ioc_domain_offset(struct ec_call *call)
 	struct ec_ioc_domain_offset *i = call->arg;
 	struct ec_session *s = call->session;
 
-	if (i->domain >= s->n_domains)
+	if (i->domain >= s->wanted.n_domains)
 		return ec_refuse(call, -ENOENT, "there is no domain %u", i->domain);
-	if (!s->active)
+	if (!s->wanted.active)
 		ec_session_place(s);
-	i->offset = s->domains[i->domain]->offset;
-	i->size = s->domains[i->domain]->size;
+	i->offset = s->wanted.domains[i->domain]->offset;
+	i->size = s->wanted.domains[i->domain]->size;
 	return 0;
 }
 
@@ -422,7 +422,7 @@ int ec_ioc_ref_clock(struct ec_call *call)
 	struct ec_ioc_ref_clock *i = call->arg;
 	struct ec_session *s = call->session;
 
-	if (i->config != EC_UAPI_NONE32 && i->config >= s->n_configs)
+	if (i->config != EC_UAPI_NONE32 && i->config >= s->wanted.n_configs)
 		return ec_refuse(call, -ENOENT, "there is no slave configuration %u", i->config);
 	s->ref_config = i->config;
 	return 0;

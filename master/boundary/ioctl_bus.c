@@ -101,7 +101,7 @@ int ec_ioc_debug(struct ec_call *call)
 /* What an active session wants from a slave is OP, whatever a tool has requested since. */
 static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
 {
-	return session && session->active && !session->ending &&
+	return session && session->wanted.active && !session->ending &&
 	       (s->config || s == session->raised);
 }
 

@@ -2,10 +2,11 @@
 /* Commands that show what the application has configured. */
 #include "../config/config.h"
 #include "../cycle/cycle_thread.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
+#include "../config/why.h"
 
 #define WALK	64	/* list entries, */
 #define PIECE	4096	/* and bytes to copy, at once */
@@ -27,7 +28,7 @@ int ec_ioc_config(struct ec_call *call)
 	memcpy(i->dc_cycle, c->sync.period, sizeof(i->dc_cycle));
 	memcpy(i->dc_shift, c->sync.shift, sizeof(i->dc_shift));
 	i->sdo_count = c->n_sdos;
-	i->state = ec_session_config_status(c);
+	i->state = ec_config_status(c);
 	i->flag_count = c->n_flags;
 	return 0;
 }
@@ -199,8 +200,8 @@ int ec_ioc_domain(struct ec_call *call)
 	i->fmmu_count = d->n_fmmus;
 	i->options = d->options;
 	i->max_age = d->max_age;
-	if (d->session->active) {
-		const struct ec_status *st = d->session->shared->status;
+	if (ec_domain_session(d)->wanted.active) {
+		const struct ec_status *st = ec_domain_session(d)->shared->status;
 
 		i->datagram_count = d->n_dgrams;
 		i->datagram_bytes = d->dgram_bytes;
@@ -236,7 +237,7 @@ int ec_ioc_domain_data(struct ec_call *call)
 	u32 pos;
 	int ret;
 
-	if (!d->session->active)
+	if (!ec_domain_session(d)->wanted.active)
 		return ec_refuse(call, -ENOENT, "the application has not activated the master");
 	i->size = min_t(u32, call->size, d->size);
 	for (pos = 0; pos < i->size; pos += PIECE) {
@@ -246,7 +247,7 @@ int ec_ioc_domain_data(struct ec_call *call)
 		if (ret)
 			return ret;
 		memcpy(call->data + pos, ec_domain_data(d) + pos, n);
-		ec_cycle_thread_outputs(d->session, call->data + pos, d->offset + pos, n);
+		ec_cycle_thread_outputs(ec_domain_session(d), call->data + pos, d->offset + pos, n);
 	}
 	return 0;
 }

@@ -5,7 +5,7 @@
 #include <linux/sched/signal.h>
 #include "../cycle/copy.h"
 #include "../cycle/cycle_thread.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../session/session.h"
 

@@ -6,7 +6,7 @@
 #include "cdev.h"
 #include "../config/config.h"
 #include "../link/device.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../master.h"
 #include "../base/once64.h"
@@ -99,12 +99,12 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 {
 	const struct ec_status *st;
 
-	i->active = s->active;
+	i->active = s->wanted.active;
 	i->session = !s->owner ? EC_SESSION_DETACHED :
-		     s->active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
-	i->config_count = s->n_configs;
-	i->domain_count = s->n_domains;
-	if (!s->active)
+		     s->wanted.active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
+	i->config_count = s->wanted.n_configs;
+	i->domain_count = s->wanted.n_domains;
+	if (!s->wanted.active)
 		return;
 	cycle_info(s, i);
 	st = s->shared->status;
@@ -246,8 +246,8 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 	if (ret)
 		return ret;
 	while (m->session) {
-		c = ec_config_at(m->session, s, i->alias_group, i->alias_pos, &from);
-		if (c || from >= m->session->n_configs)
+		c = ec_config_at(&m->session->wanted, s, i->alias_group, i->alias_pos, &from);
+		if (c || from >= m->session->wanted.n_configs)
 			break;
 		ret = ec_show_pause(&m->base->show);
 		if (ret)

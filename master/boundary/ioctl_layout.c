@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands of the application that say how its process data are sent. */
 #include "../config/config.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "ioctl.h"
 #include "../session/session.h"
 

@@ -14,7 +14,6 @@
 
 struct ec_bus;
 struct ec_links;
-struct ec_master;
 struct ec_slave;
 
 /* higher layers that are reached from a slave */
@@ -41,8 +40,6 @@ struct ec_bus {
 	const struct ec_bus_ops *ops;
 	/** @ext: structures of higher layers, for these alone; set when they are initialized */
 	void *ext[EC_N_EXT];
-	/** @master: for higher layers that have no structure of their own yet */
-	struct ec_master *master;
 
 	/**
 	 * @topo: protects @slaves and @n_slaves, which the monitor alone writes, and the PDO

@@ -3,12 +3,11 @@
 #include <linux/delay.h>
 #include "../mailbox/coe.h"
 #include "config.h"
-#include "../cycle/domain.h"
+#include "domain.h"
 #include "../mailbox/eoe.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
+#include "../link/links.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
 #include "../wire/coe.h"
@@ -24,7 +23,7 @@
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 {
-	return ec_xfer_fpwr(&s->bus->master->links, s->station, ado, data, len);
+	return ec_xfer_fpwr(s->bus->links, s->station, ado, data, len);
 }
 
 static int failed(struct ec_slave *s, u8 state, int ret)
@@ -238,8 +237,8 @@ static int write_sdos(struct ec_slave *s, const struct ec_config *c)
 	int ret;
 
 	list_for_each_entry(sdo, &c->sdos, list) {
-		ret = ec_coe_download(&s->mbox, sdo->index, sdo->sub, sdo->complete, sdo->data, sdo->size,
-				      &abort, NULL);
+		ret = ec_coe_download(&s->mbox, sdo->index, sdo->sub, sdo->complete, sdo->data,
+				      sdo->size, &abort, NULL);
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
@@ -388,10 +387,10 @@ static int wait_outputs(struct ec_slave *s)
 	if (!s->plan)
 		return 0;
 	cycles = cycles_twice(s->plan);
-	limit = 5000 + div_u64((u64)cycles * s->bus->master->links.access.interval_us, 500);
-	from = ec_read64(&s->plan->session->cycle.cycles);
+	limit = 5000 + div_u64((u64)cycles * s->bus->links->access.interval_us, 500);
+	from = ec_read64(s->plan->wanted->cycles);
 	for (i = 0; i < limit; i++) {
-		if (ec_read64(&s->plan->session->cycle.cycles) - from >= cycles)
+		if (ec_read64(s->plan->wanted->cycles) - from >= cycles)
 			return 0;
 		if (ec_stop_worker(&s->stop))
 			return -ECANCELED;
@@ -447,7 +446,7 @@ static void take_plan(struct ec_slave *s)
 {
 	const struct ec_config *c = s->config;
 
-	if (!c || !smp_load_acquire(&c->session->active) || s->plan == c)
+	if (!c || !smp_load_acquire(&c->wanted->active) || s->plan == c)
 		return;
 	s->plan = c;
 	s->reconfigure = true;

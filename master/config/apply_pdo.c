@@ -4,7 +4,7 @@
 #include "../mailbox/coe.h"
 #include "config.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
+#include "../link/links.h"
 #include "../bus/slave.h"
 #include "../wire/coe.h"
 #include "../bus/slave_pdo.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SyncManagers, FMMUs and watchdogs of a slave: what it takes to exchange process data. */
 #include "config.h"
-#include "../cycle/domain.h"
-#include "../master.h"
+#include "domain.h"
+#include "../link/links.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
 #include "../link/xfer.h"
@@ -183,7 +183,7 @@ int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 	if (!ret && c)
 		ret = add_fmmus(b, s, c);
 	if (!ret)
-		ret = ec_xfer_all(&s->bus->master->links, b->dg, b->n);
+		ret = ec_xfer_all(s->bus->links, b->dg, b->n);
 	kfree(b);
 	return ret;
 }
@@ -203,7 +203,7 @@ static const u8 zero[MAX_FMMU * EC_FMMU_PAGE];
 int ec_apply_clear_fmmus(struct ec_slave *s)
 {
 	unsigned int n = count_fmmus(s);
-	int ret = n ? ec_xfer_fpwr(&s->bus->master->links, s->station, EC_REG_FMMU(0), zero,
+	int ret = n ? ec_xfer_fpwr(s->bus->links, s->station, EC_REG_FMMU(0), zero,
 				   n * EC_FMMU_PAGE) : 0;
 
 	s->mapped = ret;
@@ -228,7 +228,7 @@ int ec_apply_clear_pdos(struct ec_slave *s)
 	for (; sm < n; sm++)
 		dg[used++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, EC_REG_SM(sm), EC_SM_PAGE,
 						 (void *)zero);
-	return (used ? ec_xfer_all(&s->bus->master->links, dg, used) : 0) ?: ec_apply_clear_fmmus(s);
+	return (used ? ec_xfer_all(s->bus->links, dg, used) : 0) ?: ec_apply_clear_fmmus(s);
 }
 
 /**
@@ -240,6 +240,6 @@ int ec_apply_clear_pdos(struct ec_slave *s)
 void ec_apply_clear(struct ec_slave *s)
 {
 	ec_apply_clear_fmmus(s);
-	ec_xfer_fpwr(&s->bus->master->links, s->station, EC_REG_SM(0), zero,
+	ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(0), zero,
 		     EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM));
 }

@@ -2,11 +2,9 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "config.h"
-#include "../cycle/domain.h"
+#include "domain.h"
 #include "../base/grow.h"
 #include "../base/limits.h"
-#include "../master.h"
-#include "../session/session.h"
 #include "../bus/slave.h"
 #include "../bus/slave_pdo.h"
 
@@ -21,7 +19,7 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
 	unsigned int sm, i;
 
-	down_read(&slave->bus->master->bus.topo);
+	down_read(&slave->bus->topo);
 	for (sm = 0; sm < slave->n_sms; sm++) {
 		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
 
@@ -37,17 +35,17 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 		}
 	}
 out:
-	up_read(&slave->bus->master->bus.topo);
+	up_read(&slave->bus->topo);
 }
 
-/* What the session that an heir wants to take over has for the same slave, or NULL. */
+/* The configuration of the same slave in the session that is to be taken over, or NULL. */
 static const struct ec_config *predecessor(const struct ec_config *c)
 {
-	const struct ec_master *m = c->session->master;
+	const struct ec_wanted *w = c->wanted->before;
 	unsigned int i;
 
-	for (i = 0; c->session == m->heir && i < m->session->n_configs; i++) {
-		const struct ec_config *p = m->session->configs[i];
+	for (i = 0; w && i < w->n_configs; i++) {
+		const struct ec_config *p = w->configs[i];
 
 		if (p->alias == c->alias && p->position == c->position &&
 		    p->vendor == c->vendor && p->product == c->product)
@@ -76,24 +74,24 @@ static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 
 /**
  * ec_config_find() - the configuration of a slave
- * @s: session
+ * @w: what an application wants
  * @alias: alias or 0
  * @position: position
  * @vendor: expected vendor id
  * @product: expected product code
  *
- * Context: Process, session_lock held.
+ * Context: Process, lock of the session held.
  * Return: configuration; NULL when there is none; ERR_PTR(-ENOENT) when it exists with
  * another identity.
  */
-struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				 u32 product)
 {
 	unsigned int i;
 
-	lockdep_assert_held(&s->master->session_lock);
-	for (i = 0; i < s->n_configs; i++) {
-		struct ec_config *c = s->configs[i];
+	lockdep_assert_held(w->lock);
+	for (i = 0; i < w->n_configs; i++) {
+		struct ec_config *c = w->configs[i];
 
 		if (c->alias == alias && c->position == position)
 			return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
@@ -102,43 +100,38 @@ struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 posi
 }
 
 /**
- * ec_config_create() - a configuration, or the existing one
- * @s: session
+ * ec_config_create() - make a configuration
+ * @w: what an application wants
  * @alias: alias or 0
  * @position: position
  * @vendor: expected vendor id
  * @product: expected product code
  *
- * Context: Process, session_lock held. May sleep.
- * Return: configuration, or ERR_PTR: -ENOENT when it exists with another
- * identity, -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS, -EDQUOT as ec_session_charge().
+ * Context: Process, lock of the session held. May sleep.
+ * Return: configuration, or ERR_PTR: -ENOMEM, -ENOSPC beyond EC_MAX_CONFIGS, -EDQUOT as
+ * ec_budget_charge().
  */
-struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				   u32 product)
 {
-	const struct ec_config *before;
 	struct ec_config *c, **p;
-	unsigned int i;
 	int ret;
 
-	c = ec_config_find(s, alias, position, vendor, product);
-	if (c)
-		return c;
-	if (s->n_configs >= EC_MAX_CONFIGS)
+	if (w->n_configs >= EC_MAX_CONFIGS)
 		return ERR_PTR(-ENOSPC);
-	ret = ec_session_charge(s, sizeof(*c) + sizeof(*p));
+	ret = ec_budget_charge(&w->budget, sizeof(*c) + sizeof(*p));
 	if (ret)
 		return ERR_PTR(ret);
-	p = ec_grow(s->configs, s->n_configs, sizeof(*p));
+	p = ec_grow(w->configs, w->n_configs, sizeof(*p));
 	if (p)
-		s->configs = p;
+		w->configs = p;
 	c = p ? kzalloc(sizeof(*c), GFP_KERNEL_ACCOUNT) : NULL;
 	if (!c) {
-		ec_session_uncharge(s, sizeof(*c) + sizeof(*p));
+		ec_budget_release(&w->budget, sizeof(*c) + sizeof(*p));
 		return ERR_PTR(-ENOMEM);
 	}
-	c->session = s;
-	c->index = s->n_configs;
+	c->wanted = w;
+	c->index = w->n_configs;
 	c->alias = alias;
 	c->position = position;
 	c->vendor = vendor;
@@ -146,17 +139,30 @@ struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position
 	INIT_LIST_HEAD(&c->sdos);
 	INIT_LIST_HEAD(&c->idns);
 	INIT_LIST_HEAD(&c->flags);
-	s->configs[s->n_configs++] = c;
-	ec_session_attach_one(s, c);
-	before = predecessor(c);
+	w->configs[w->n_configs++] = c;
+	return c;
+}
+
+/**
+ * ec_config_begin() - give a new configuration the PDOs that it starts with
+ * @c: configuration, attached to its slave if that is there
+ *
+ * They are those of the session that is to be taken over, or those that the slave has.
+ *
+ * Context: Process, lock of the session held. May sleep.
+ */
+void ec_config_begin(struct ec_config *c)
+{
+	const struct ec_config *before = predecessor(c);
+	unsigned int i;
+
 	if (before)
 		inherit_defaults(c, before);
 	else if (c->slave)
 		ec_config_defaults(c, c->slave);
 	/* as many as slaves have */
 	for (i = 0; i < EC_MAX_SM; i++)
-		s->bytes += ec_pdo_list_memory(&c->sm[i].pdos);
-	return c;
+		ec_budget_add(&c->wanted->budget, ec_pdo_list_memory(&c->sm[i].pdos));
 }
 
 void ec_config_free(struct ec_config *c)
@@ -204,10 +210,10 @@ static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
 	}
 	if (!slave)
 		return 0;
-	down_read(&slave->bus->master->bus.topo);
+	down_read(&slave->bus->topo);
 	known = ec_slave_find_pdo(slave, index);
 	ret = known ? ec_pdo_copy_entries(p, known) : 0;
-	up_read(&slave->bus->master->bus.topo);
+	up_read(&slave->bus->topo);
 	return ret;
 }
 
@@ -220,17 +226,17 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 		return -EINVAL;
 	if (c->sm[sm].pdos.n >= EC_MAX_SC_PDOS)
 		return -ENOSPC;
-	ret = ec_session_charge(c->session, sizeof(*p));
+	ret = ec_budget_charge(&c->wanted->budget, sizeof(*p));
 	if (ret)
 		return ret;
 	p = ec_pdo_add(&c->sm[sm].pdos, pdo, 0);
 	if (!p) {
-		ec_session_uncharge(c->session, sizeof(*p));
+		ec_budget_release(&c->wanted->budget, sizeof(*p));
 		return -ENOMEM;
 	}
 	c->sm[sm].explicit = true;
 	ret = known_entries(c, pdo, p);
-	c->session->bytes += p->n_entries * sizeof(*p->entries);
+	ec_budget_add(&c->wanted->budget, p->n_entries * sizeof(*p->entries));
 	return ret;
 }
 
@@ -238,7 +244,7 @@ int ec_config_assign_clear(struct ec_config *c, u8 sm)
 {
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
-	ec_session_uncharge(c->session, ec_pdo_list_memory(&c->sm[sm].pdos));
+	ec_budget_release(&c->wanted->budget, ec_pdo_list_memory(&c->sm[sm].pdos));
 	ec_pdo_list_clear(&c->sm[sm].pdos);
 	c->sm[sm].explicit = true;
 	return 0;
@@ -262,13 +268,13 @@ static struct ec_pdo *find(struct ec_config *c, u16 pdo)
 int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e)
 {
 	struct ec_pdo *p = find(c, pdo);
-	int ret = p ? ec_session_charge(c->session, sizeof(*e)) : -ENOENT;
+	int ret = p ? ec_budget_charge(&c->wanted->budget, sizeof(*e)) : -ENOENT;
 
 	if (ret)
 		return ret;
 	ret = ec_pdo_add_entry(p, e);
 	if (ret)
-		ec_session_uncharge(c->session, sizeof(*e));
+		ec_budget_release(&c->wanted->budget, sizeof(*e));
 	return ret;
 }
 
@@ -277,10 +283,10 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 	struct ec_pdo *p = find(c, pdo);
 
 	if (p) {
-		ec_session_uncharge(c->session, p->n_entries * sizeof(*p->entries));
+		ec_budget_release(&c->wanted->budget, p->n_entries * sizeof(*p->entries));
 		ec_pdo_clear_entries(p);
 	} else {
-		ec_warn(c->session->master, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
+		ec_warn(c->wanted, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
 			c->alias, c->position, pdo);
 	}
 	return 0;
@@ -289,7 +295,7 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 /* Memory for a part of the configuration, counted; ERR_PTR without. */
 static void *alloc(struct ec_config *c, size_t size)
 {
-	int ret = ec_session_charge(c->session, size);
+	int ret = ec_budget_charge(&c->wanted->budget, size);
 	void *p;
 
 	if (ret)
@@ -302,7 +308,7 @@ static void *alloc(struct ec_config *c, size_t size)
 	    __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
 	if (p)
 		return p;
-	ec_session_uncharge(c->session, size);
+	ec_budget_release(&c->wanted->budget, size);
 	return ERR_PTR(-ENOMEM);
 }
 
@@ -369,7 +375,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
 	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, "AssignToPdi"))
-		ec_info(c->session->master, "slave %u:%u: flag %s has no effect\n", c->alias,
+		ec_info(c->wanted, "slave %u:%u: flag %s has no effect\n", c->alias,
 			c->position, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);

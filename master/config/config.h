@@ -4,15 +4,16 @@
 #define EC_CONFIG_H
 
 #include <linux/list.h>
+#include <linux/mutex.h>
 #include <linux/types.h>
 #include "../include/uapi/ethercat.h"
+#include "../base/budget.h"
 #include "../bus/pdo.h"
 #include "../clock/dc.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
 
 struct ec_domain;
-struct ec_session;
 struct ec_slave;
 
 /* values of the application interface */
@@ -93,10 +94,10 @@ struct ec_config_flag {
 };
 
 /**
- * struct ec_config - configuration of one slave, under session_lock; what is
+ * struct ec_config - configuration of one slave, under the lock of the session; what is
  *	configured is compared in takeover.c
- * @session: owner
- * @index: number in the session
+ * @wanted: owner
+ * @index: number there
  * @alias: 0: @position is the ring position
  * @position: else slaves behind the one with @alias
  * @alias_at: ring position of the first slave with @alias when it was last looked for
@@ -127,7 +128,7 @@ struct ec_config_flag {
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
-	struct ec_session *session;
+	struct ec_wanted *wanted;
 	u32 index;
 	u16 alias;
 	u16 position;
@@ -161,10 +162,39 @@ struct ec_config {
 	struct ec_slave *slave;
 };
 
-struct ec_config *ec_config_create(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+/** struct ec_wanted - what an application wants of the bus, under @lock */
+struct ec_wanted {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @links: way to the slaves, immutable */
+	struct ec_links *links;
+	/** @bus: slaves, immutable */
+	struct ec_bus *bus;
+	/** @lock: of the session, immutable */
+	struct mutex *lock;
+	/** @cycles: cyclic sends so far; pointer immutable */
+	const u64 *cycles;
+	/** @budget: memory that the application causes */
+	struct ec_budget budget;
+	/** @configs: slave configurations */
+	struct ec_config **configs;
+	/** @n_configs: entries in @configs */
+	unsigned int n_configs;
+	/** @domains: domains */
+	struct ec_domain *domains[EC_MAX_DOMAINS];
+	/** @n_domains: entries in @domains */
+	unsigned int n_domains;
+	/** @active: activated: the configurations stay as they are, workers go by them */
+	bool active;
+	/** @before: what the running session wants that is to be taken over, NULL: none */
+	const struct ec_wanted *before;
+};
+
+struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				   u32 product);
-struct ec_config *ec_config_find(const struct ec_session *s, u16 alias, u16 position, u32 vendor,
+struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				 u32 product);
+void ec_config_begin(struct ec_config *c);
 void ec_config_free(struct ec_config *c);
 void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave);
 int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);

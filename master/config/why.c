@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
 #include "config.h"
-#include "../master.h"
-#include "../session/session.h"
+#include "../link/links.h"
+#include "ethercat_map.h"
 #include "../bus/slave.h"
 #include "why.h"
 
@@ -12,13 +12,13 @@
 /* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
 {
-	const struct ec_master *m = c->session->master;
+	const struct ec_bus *bus = c->wanted->bus;
 
 	*pos = c->position;
 	if (!c->alias)
 		return true;
 	*pos += c->alias_at;
-	return c->alias_at < m->bus.n_slaves && m->bus.slaves[c->alias_at]->alias == c->alias;
+	return c->alias_at < bus->n_slaves && bus->slaves[c->alias_at]->alias == c->alias;
 }
 
 /**
@@ -32,17 +32,17 @@ static bool place(const struct ec_config *c, unsigned int *pos)
  */
 void ec_config_find_alias(struct ec_config *c)
 {
-	struct ec_master *m = c->session->master;
+	struct ec_bus *bus = c->wanted->bus;
 	unsigned int i = 0;
 
-	lockdep_assert_held(&m->session_lock);
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->alias)
 		return;
-	down_read(&m->bus.topo);
-	while (i < m->bus.n_slaves && m->bus.slaves[i]->alias != c->alias)
+	down_read(&bus->topo);
+	while (i < bus->n_slaves && bus->slaves[i]->alias != c->alias)
 		i++;
 	c->alias_at = i;
-	up_read(&m->bus.topo);
+	up_read(&bus->topo);
 }
 
 /* Do both name the slave at @pos, which is not only where another one has been? */
@@ -54,49 +54,49 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 }
 
 /* Without device or link there is no slave at all. */
-static size_t no_link(struct ec_master *m, char *buf, size_t size)
+static size_t no_link(const struct ec_links *l, char *buf, size_t size)
 {
 	unsigned int i;
 	bool dev = false;
 
 	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (READ_ONCE(m->links.link[i].up))
+		if (READ_ONCE(l->link[i].up))
 			return 0;
-		dev |= READ_ONCE(m->links.link[i].dev) != NULL;
+		dev |= READ_ONCE(l->link[i].dev) != NULL;
 	}
 	if (!dev)
-		return scnprintf(buf, size, "no network device: master %u waits for %s", m->base->index,
-				 m->links.spec[0]);
+		return scnprintf(buf, size, "no network device: master %u waits for %s", l->base->index,
+				 l->spec[0]);
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
-			 m->base->index);
+			 l->base->index);
 }
 
 /* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
-	const struct ec_master *m = c->session->master;
+	const struct ec_bus *bus = c->wanted->bus;
 	const struct ec_slave *s;
 	unsigned int pos;
-	size_t len = no_link(c->session->master, buf, size);
+	size_t len = no_link(c->wanted->links, buf, size);
 
 	if (len)
 		return len;
-	if (c->session->active && c->lost.text[0])
+	if (c->wanted->active && c->lost.text[0])
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	if (!place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
-				 m->bus.n_slaves, c->alias);
-	if (pos >= m->bus.n_slaves)
+				 bus->n_slaves, c->alias);
+	if (pos >= bus->n_slaves)
 		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
-				 pos, m->bus.n_slaves);
-	s = m->bus.slaves[pos];
+				 pos, bus->n_slaves);
+	s = bus->slaves[pos];
 	if (s->error == EC_SLAVE_SCAN_FAILED)
 		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos, s->why);
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
-	if (s->config && c->session->active && !twice(s->config, pos))
+	if (s->config && c->wanted->active && !twice(s->config, pos))
 		return scnprintf(buf, size, "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
 				 pos, s->config->alias, s->config->position);
 	if (s->config)
@@ -120,7 +120,7 @@ static size_t present(const struct ec_slave *s, char *buf, size_t size)
 	if (want != EC_AL_OP)
 		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
-	if (s->bus->master->links.access.mode == EC_ACCESS_DIRECT)
+	if (!ec_access_is_cyclic(&s->bus->links->access))
 		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
 	if (doing)
 		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
@@ -138,7 +138,7 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 
 /**
  * ec_config_at() - look for the configuration that a slave has or differs from
- * @s: session
+ * @w: what an application wants
  * @slave: slave
  * @alias: of the nearest slave at or before it that has one, or 0
  * @distance: to that one
@@ -150,16 +150,16 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
  * Return: the one that is attached; else one without slave that means its place; or NULL:
  * go on until @from is the number of configurations.
  */
-const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
+const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     u16 alias, u16 distance, unsigned int *from)
 {
 	const struct ec_config *has = slave->config;
-	unsigned int end = min(s->n_configs, *from + WALK);
+	unsigned int end = min(w->n_configs, *from + WALK);
 
-	if (has && has->session == s)
+	if (has && has->wanted == w)
 		return has;
 	while (*from < end) {
-		const struct ec_config *c = s->configs[(*from)++];
+		const struct ec_config *c = w->configs[(*from)++];
 
 		if (!c->slave && (c->alias ? c->alias == alias && c->position == distance :
 					     c->position == slave->position))
@@ -203,26 +203,25 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 
 static void absent_text(const struct ec_config *c, char *buf, size_t size)
 {
-	down_read(&c->session->master->bus.topo);
+	down_read(&c->wanted->bus->topo);
 	absent(c, buf, size);
-	up_read(&c->session->master->bus.topo);
+	up_read(&c->wanted->bus->topo);
 }
 
 /**
  * ec_config_log_differences() - report what is missing or different
- * @s: session that has just been activated
+ * @w: of a session that has just been activated
  *
  * Context: Process, session_lock held. May sleep.
  */
-void ec_config_log_differences(const struct ec_session *s)
+void ec_config_log_differences(const struct ec_wanted *w)
 {
-	struct ec_master *m = s->master;
 	char text[EC_UAPI_REASON];
 	unsigned int i, n = 0;
 
-	lockdep_assert_held(&m->session_lock);
-	for (i = 0; i < s->n_configs; i++) {
-		const struct ec_config *c = s->configs[i];
+	lockdep_assert_held(w->lock);
+	for (i = 0; i < w->n_configs; i++) {
+		const struct ec_config *c = w->configs[i];
 
 		if (c->slave && !other_revision(c, c->slave))
 			continue;
@@ -230,12 +229,33 @@ void ec_config_log_differences(const struct ec_session *s)
 			continue;
 		if (!c->slave || !ec_config_revision_text(c, c->slave, text, sizeof(text)))
 			absent_text(c, text, sizeof(text));
-		ec_warn_each(m, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
+		ec_warn_each(w, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
 			     text);
 	}
 	if (n > LOG_MAX)
-		ec_warn(m, "%u more configurations differ from the bus; see 'ethercat config -v'\n",
+		ec_warn(w, "%u more configurations differ from the bus; see 'ethercat config -v'\n",
 			n - LOG_MAX);
+}
+
+/**
+ * ec_config_status() - EC_STATUS_SC_* of a configuration
+ * @c: configuration
+ *
+ * Context: Process, session_lock held or after ec_show_begin().
+ * Return: AL state with the bits online and operational; 0 without slave.
+ */
+u8 ec_config_status(const struct ec_config *c)
+{
+	const struct ec_slave *slave = c->slave;
+	u8 v;
+
+	if (!slave || slave->stop.gone || slave->silent)
+		return 0;
+	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
+	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
+	    !slave->reconfigure)
+		v |= EC_STATUS_SC_OP;
+	return v;
 }
 
 /**
@@ -251,14 +271,14 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 {
 	size_t len;
 
-	lockdep_assert(lockdep_is_held(&c->session->master->bus.topo) ||
-		       atomic_read(&c->session->master->base->show.showing));
+	lockdep_assert(lockdep_is_held(&c->wanted->bus->topo) ||
+		       atomic_read(&c->wanted->base->show.showing));
 	buf[0] = '\0';
 	if (!c->slave || c->slave->stop.gone)
 		len = absent(c, buf, size);
-	else if (ec_session_config_status(c) & EC_STATUS_SC_OP)
+	else if (ec_config_status(c) & EC_STATUS_SC_OP)
 		len = 0;
-	else if (!c->session->active)
+	else if (!c->wanted->active)
 		len = scnprintf(buf, size, "AL state %s; the master is not active",
 				ec_al_state_name(c->slave->al_status & EC_AL_STATE_MASK));
 	else

@@ -6,16 +6,17 @@
 #include <linux/types.h>
 
 struct ec_config;
-struct ec_session;
 struct ec_slave;
+struct ec_wanted;
 
 size_t ec_config_why(const struct ec_config *c, char *buf, size_t size);
-const struct ec_config *ec_config_at(const struct ec_session *s, const struct ec_slave *slave,
+const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     u16 alias, u16 distance, unsigned int *from);
 void ec_config_find_alias(struct ec_config *c);
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave);
 bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
 			     size_t size);
-void ec_config_log_differences(const struct ec_session *s);
+void ec_config_log_differences(const struct ec_wanted *w);
+u8 ec_config_status(const struct ec_config *c);
 
 #endif

@@ -4,7 +4,7 @@
 #include <linux/slab.h>
 #include "../config/config.h"
 #include "copy.h"
-#include "domain.h"
+#include "../config/domain.h"
 #include "../base/limits.h"
 #include "../session/session.h"
 
@@ -67,7 +67,7 @@ static void copy_bits(u8 *to, u32 to_bit, const u8 *from, u32 from_bit, u32 bits
 /* Do the bits belong to one slave's process data of that direction? */
 static bool inside(const struct ec_session *s, u32 domain, u32 bit, u32 bits, u8 dir)
 {
-	const struct ec_domain *d = s->domains[domain];
+	const struct ec_domain *d = s->wanted.domains[domain];
 	unsigned int i;
 
 	for (i = 0; i < d->n_fmmus; i++) {
@@ -100,7 +100,7 @@ int ec_copy_add(struct ec_session *s, const struct ec_copy *copy)
 {
 	unsigned int i;
 
-	if (copy->from_domain >= s->n_domains || copy->to_domain >= s->n_domains)
+	if (copy->from_domain >= s->wanted.n_domains || copy->to_domain >= s->wanted.n_domains)
 		return -ENOENT;
 	if (!copy->bits || !inside(s, copy->from_domain, copy->from_bit, copy->bits,
 				   EC_CFG_DIR_INPUT))
@@ -147,8 +147,8 @@ int ec_copies_begin(struct ec_session *s)
 
 		c->steps[i] = (struct step){
 			.domain = copy->from_domain, .bits = copy->bits, .last = bytes,
-			.from = 8 * s->domains[copy->from_domain]->offset + copy->from_bit,
-			.to = 8 * s->domains[copy->to_domain]->offset + copy->to_bit,
+			.from = 8 * s->wanted.domains[copy->from_domain]->offset + copy->from_bit,
+			.to = 8 * s->wanted.domains[copy->to_domain]->offset + copy->to_bit,
 		};
 		bytes += DIV_ROUND_UP(copy->bits, 8);
 	}

@@ -23,7 +23,7 @@
 #include "../base/bytes.h"
 #include "cycle_lock.h"
 #include "cycle_thread.h"
-#include "domain.h"
+#include "../config/domain.h"
 #include "../master.h"
 #include "../base/once64.h"
 #include "../session/request.h"
@@ -152,8 +152,8 @@ static bool all_take_part(const struct ec_session *s)
 	const struct ec_status_domain *st = s->shared->status->domains;
 	unsigned int i;
 
-	for (i = 0; i < s->n_domains; i++)
-		if (s->domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
+	for (i = 0; i < s->wanted.n_domains; i++)
+		if (s->wanted.domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
 			return false;
 	return true;
 }
@@ -289,7 +289,7 @@ static void publish(struct ec_cycle_thread *t)
 		adopt(t);
 	b->cycle = cycle;
 	b->time_ns = t->next_ns;
-	for (i = 0; i < s->n_domains; i++)
+	for (i = 0; i < s->wanted.n_domains; i++)
 		b->domains[i] = s->shared->status->domains[i];
 	tell_device(s);
 	memcpy(b + 1, s->shared->image, t->bytes);
@@ -341,13 +341,13 @@ static void find_turns(struct ec_cycle_thread *t)
 	const struct ec_session *s = t->session;
 	unsigned int i;
 
-	for (i = 0; i < s->n_domains; i++) {
-		if (s->domains[i]->division == 1)
+	for (i = 0; i < s->wanted.n_domains; i++) {
+		if (s->wanted.domains[i]->division == 1)
 			t->always |= BIT_ULL(i);
 		else
 			t->slow[t->n_slow++] = (struct slow){
-				.domain = i, .left = s->domains[i]->phase,
-				.division = s->domains[i]->division,
+				.domain = i, .left = s->wanted.domains[i]->phase,
+				.division = s->wanted.domains[i]->division,
 			};
 	}
 }
@@ -431,14 +431,14 @@ static int find_outputs(struct ec_cycle_thread *t)
 	struct area *a = NULL;
 	unsigned int i, k, n = 0;
 
-	for (i = 0; i < s->n_domains; i++)
-		n += s->domains[i]->n_fmmus;
+	for (i = 0; i < s->wanted.n_domains; i++)
+		n += s->wanted.domains[i]->n_fmmus;
 	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL_ACCOUNT);
 	if (!t->outputs)
 		return -ENOMEM;
-	for (i = 0; i < s->n_domains; i++)
-		for (k = 0; k < s->domains[i]->n_fmmus; k++) {
-			const struct ec_domain *d = s->domains[i];
+	for (i = 0; i < s->wanted.n_domains; i++)
+		for (k = 0; k < s->wanted.domains[i]->n_fmmus; k++) {
+			const struct ec_domain *d = s->wanted.domains[i];
 			const struct ec_config_fmmu *f =
 				&d->fmmus[k].config->fmmus[d->fmmus[k].fmmu];
 			u32 offset = d->offset + f->offset;

@@ -164,7 +164,7 @@ void ec_cycle_tell_stale(struct ec_session *s)
 	unsigned int i;
 
 	lockdep_assert_held(&s->master->session_lock);
-	for (i = 0; i < s->n_domains; i++) {
+	for (i = 0; i < s->wanted.n_domains; i++) {
 		struct ec_cyc_domain *d = &s->cycle.domains[i];
 		u32 age = READ_ONCE(d->stale);
 
@@ -189,7 +189,7 @@ void ec_cycle_nothing_back(struct ec_session *s)
 	struct ec_status *st = s->shared->status;
 	unsigned int i;
 
-	for (i = 0; i < s->n_domains; i++) {
+	for (i = 0; i < s->wanted.n_domains; i++) {
 		WRITE_ONCE(st->domains[i].working_counter, 0);
 		WRITE_ONCE(st->domains[i].wc_state, 0);
 	}
@@ -415,7 +415,7 @@ int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
 	ec_cycle_app_time(s, what);
 	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
 		ec_requests_kick(s->requests);
-	return s->n_domains < 64 && what->queued >> s->n_domains ? -ENOENT : 0;
+	return s->wanted.n_domains < 64 && what->queued >> s->wanted.n_domains ? -ENOENT : 0;
 }
 
 /**

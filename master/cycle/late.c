@@ -256,7 +256,7 @@ void ec_late_end(struct ec_session *s)
 void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
 		 struct ec_status_cycle *st)
 {
-	if (m->session && m->session->active) {
+	if (m->session && m->session->wanted.active) {
 		get(m->session, info, st);
 		return;
 	}
@@ -279,7 +279,7 @@ void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
  */
 void ec_late_reset(struct ec_master *m)
 {
-	if (m->session && m->session->active)
+	if (m->session && m->session->wanted.active)
 		WRITE_ONCE(m->late_reset, true);
 	else
 		forget(&m->late.status);

@@ -5,7 +5,7 @@
 #include <linux/slab.h>
 #include "../config/config.h"
 #include "cycle.h"
-#include "domain.h"
+#include "../config/domain.h"
 #include "../base/grow.h"
 #include "logical.h"
 #include "../master.h"
@@ -258,7 +258,7 @@ static void begin_frame(struct ec_session *s, const struct ec_domain *d, unsigne
 	u32 options = d->options;
 
 	if (first)
-		options |= s->domains[g[-1].domain]->options;
+		options |= s->wanted.domains[g[-1].domain]->options;
 	g->new_frame = options & EC_DOMAIN_OPT_OWN_FRAME;
 }
 
@@ -334,14 +334,14 @@ int ec_cycle_layout(struct ec_session *s)
 	int ret = 0;
 
 	memset(c, 0, sizeof(*c));
-	for (i = 0; i < s->n_configs; i++) {
-		s->configs[i]->lrw = false;
-		s->configs[i]->in_ring = false;
+	for (i = 0; i < s->wanted.n_configs; i++) {
+		s->wanted.configs[i]->lrw = false;
+		s->wanted.configs[i]->in_ring = false;
 	}
-	for (i = 0; i < s->n_domains && !ret; i++)
-		ret = layout_domain(s, s->domains[i]);
-	for (i = 0; i < s->n_domains; i++) {
-		const struct ec_domain *d = s->domains[i];
+	for (i = 0; i < s->wanted.n_domains && !ret; i++)
+		ret = layout_domain(s, s->wanted.domains[i]);
+	for (i = 0; i < s->wanted.n_domains; i++) {
+		const struct ec_domain *d = s->wanted.domains[i];
 
 		c->domains[i].expected = d->expected;
 		c->domains[i].max_age = d->max_age;

@@ -4,7 +4,7 @@
 #define EC_LOGICAL_H
 
 #include <linux/types.h>
-#include "domain.h"
+#include "../config/domain.h"
 
 /**
  * struct ec_stretch - a piece of a domain's logical addresses that becomes one

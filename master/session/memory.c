@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Memory that applications cause. It belongs to their memory cgroup, and all of a
- * master's have EC_MAX_SESSION_BYTES together: what a session has configured is
- * counted in the session, mapped memory in the master, as a mapping may outlive the
- * session that made it.
+ * master's have EC_MAX_SESSION_BYTES together (struct ec_budget). A mapping may outlive
+ * the session that made it.
  */
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
@@ -87,7 +86,7 @@ struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_
 	if (!sh)
 		return NULL;
 	kref_init(&sh->kref);
-	sh->mapped = &m->mapped;
+	sh->mapped = &m->memory;
 	sh->image_size = PAGE_ALIGN(image_size);
 	sh->image = image_size ? ec_shared_alloc(sh, sh->image_size) : NULL;
 	sh->status = ec_shared_alloc(sh, EC_STATUS_BYTES);
@@ -100,42 +99,6 @@ struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_
 	sh->status->magic = EC_STATUS_MAGIC;
 	sh->status->size = sizeof(*sh->status);
 	return sh;
-}
-
-/* Bytes that the sessions of a master and what they have mapped have together. */
-static size_t used(const struct ec_master *m)
-{
-	return (m->session ? m->session->bytes : 0) + (m->heir ? m->heir->bytes : 0) +
-	       atomic_long_read(&m->mapped);
-}
-
-/**
- * ec_session_charge() - a session is about to configure more
- * @s: session
- * @bytes: how much memory that takes
- *
- * Context: Process, session_lock held.
- * Return: 0, or -EDQUOT beyond EC_MAX_SESSION_BYTES; then nothing is counted.
- */
-int ec_session_charge(struct ec_session *s, size_t bytes)
-{
-	lockdep_assert_held(&s->master->session_lock);
-	if (used(s->master) + bytes > EC_MAX_SESSION_BYTES)
-		return -EDQUOT;
-	s->bytes += bytes;
-	return 0;
-}
-
-/**
- * ec_session_uncharge() - that memory is free again
- * @s: session
- * @bytes: how much
- *
- * Context: Process, session_lock held.
- */
-void ec_session_uncharge(struct ec_session *s, size_t bytes)
-{
-	s->bytes -= bytes;
 }
 
 /**
@@ -152,6 +115,18 @@ int ec_session_fits(const struct ec_session *s, size_t image_size)
 	size_t images = s->kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
 
 	lockdep_assert_held(&s->master->session_lock);
-	return used(s->master) + images * image_size + EC_STATUS_BYTES + ec_requests_bytes(s) +
-	       s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
+	return atomic_long_read(&s->master->memory) + images * image_size + EC_STATUS_BYTES +
+	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
+}
+
+/**
+ * ec_domain_data() - where the process data of a domain lie
+ * @d: domain of an active session
+ *
+ * Context: Any, while the session is active.
+ * Return: its first byte.
+ */
+u8 *ec_domain_data(const struct ec_domain *d)
+{
+	return d->memory ?: ec_domain_session(d)->shared->image + d->offset;
 }

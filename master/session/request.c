@@ -170,7 +170,7 @@ static bool look(struct ec_requests *rq)
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_lanes; i++) {
 		struct ec_lane *lane = &rq->lanes[i];
-		bool there = s->configs[lane->config]->slave, todo = lane->emerg.count;
+		bool there = s->wanted.configs[lane->config]->slave, todo = lane->emerg.count;
 		struct ec_request *r;
 
 		list_for_each_entry(r, &lane->requests, list) {
@@ -239,7 +239,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 
 	mutex_lock(&rq->master->session_lock);
 	s = session_of(rq);
-	*slave = s ? s->configs[lane->config]->slave : NULL;
+	*slave = s ? s->wanted.configs[lane->config]->slave : NULL;
 	if (!*slave || (*slave)->stop.gone) {
 		*slave = NULL;
 		goto out;
@@ -329,7 +329,7 @@ static size_t rings_offset(const struct ec_session *s)
 
 static size_t data_offset(const struct ec_session *s)
 {
-	return ALIGN(rings_offset(s) + s->n_configs * sizeof(struct ec_emerg_ring), 8);
+	return ALIGN(rings_offset(s) + s->wanted.n_configs * sizeof(struct ec_emerg_ring), 8);
 }
 
 /**
@@ -341,7 +341,7 @@ static size_t data_offset(const struct ec_session *s)
  */
 size_t ec_requests_bytes(const struct ec_session *s)
 {
-	return s->n_configs ? data_offset(s) + s->request_bytes : 0;
+	return s->wanted.n_configs ? data_offset(s) + s->request_bytes : 0;
 }
 
 static void lane_init(struct ec_requests *rq, struct ec_lane *lane, u32 config)
@@ -359,10 +359,10 @@ static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
 	size_t at = data_offset(s);
 	unsigned int i;
 
-	for (i = 0; i < s->n_configs; i++, ring++) {
+	for (i = 0; i < s->wanted.n_configs; i++, ring++) {
 		lane_init(rq, &rq->lanes[i], i);
 		rq->lanes[i].emerg = (struct ec_emerg){
-			.ring = ring, .data = base + at, .count = s->configs[i]->emergencies,
+			.ring = ring, .data = base + at, .count = s->wanted.configs[i]->emergencies,
 		};
 		at += rq->lanes[i].emerg.count * EC_EMERG_BYTES;
 	}
@@ -387,11 +387,11 @@ void ec_requests_describe(const struct ec_session *s)
 	area->magic = EC_REQUEST_MAGIC;
 	area->request_count = s->n_specs;
 	area->requests = sizeof(*area);
-	area->ring_count = s->n_configs;
+	area->ring_count = s->wanted.n_configs;
 	area->rings = rings_offset(s);
-	for (i = 0; i < s->n_configs; i++) {
+	for (i = 0; i < s->wanted.n_configs; i++) {
 		struct ec_emerg *e = &rq->lanes[i].emerg;
-		struct ec_slave *slave = s->configs[i]->slave;
+		struct ec_slave *slave = s->wanted.configs[i]->slave;
 
 		ec_emerg_describe(slave ? &slave->mbox : NULL, e, e->data - base);
 	}
@@ -412,7 +412,7 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 {
 	u8 *base = rq->shared->requests;
 	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
-	struct ec_lane *own = &rq->lanes[s->n_configs];
+	struct ec_lane *own = &rq->lanes[s->wanted.n_configs];
 	size_t at = lay_out_rings(s, rq), first = at;
 	unsigned int i;
 
@@ -438,7 +438,7 @@ static void lay_out(struct ec_session *s, struct ec_requests *rq)
 
 static unsigned int count_lanes(const struct ec_session *s)
 {
-	unsigned int i, n = s->n_configs;
+	unsigned int i, n = s->wanted.n_configs;
 
 	for (i = 0; i < s->n_specs; i++)
 		n += s->specs[i].kind == EC_REQUEST_VOE;
@@ -457,7 +457,7 @@ int ec_requests_begin(struct ec_session *s)
 	struct ec_requests *rq;
 	unsigned int i;
 
-	if (!s->n_configs)
+	if (!s->wanted.n_configs)
 		return 0;
 	rq = kzalloc(sizeof(*rq), GFP_KERNEL_ACCOUNT);
 	if (!rq)
@@ -481,7 +481,7 @@ int ec_requests_begin(struct ec_session *s)
 	lay_out(s, rq);
 	s->requests = rq;
 	ec_requests_describe(s);
-	for (i = 0; i < s->n_configs; i++)
+	for (i = 0; i < s->wanted.n_configs; i++)
 		ec_requests_attach(s, i);
 	return 0;
 }
@@ -503,7 +503,7 @@ void ec_requests_end(struct ec_session *s)
 		return;
 	WRITE_ONCE(rq->ended, true);
 	s->requests = NULL;
-	for (i = 0; i < s->n_configs; i++)
+	for (i = 0; i < s->wanted.n_configs; i++)
 		ec_requests_attach(s, i);
 	put(rq);
 }
@@ -549,7 +549,7 @@ void ec_requests_notice(struct ec_requests *rq)
 void ec_requests_attach(const struct ec_session *s, u32 config)
 {
 	struct ec_lane *lane = s->requests ? &s->requests->lanes[config] : NULL;
-	struct ec_slave *slave = s->configs[config]->slave;
+	struct ec_slave *slave = s->wanted.configs[config]->slave;
 
 	if (!slave)
 		return;

@@ -54,7 +54,7 @@ static int readwrite(const struct ec_request *r, struct ec_slave *s)
 	int ret;
 
 	dg.repeat = false;
-	ret = ec_xfer(&s->bus->master->links, &dg, 1);
+	ret = ec_xfer(s->bus->links, &dg, 1);
 	/* reading counts one, writing two */
 	return ret ? ret : dg.wkc == 3 ? 0 : -EIO;
 }
@@ -66,9 +66,9 @@ static void run_reg(struct ec_request *r, struct ec_slave *s, struct ec_request_
 	if (r->op == EC_REQUEST_OP_READWRITE)
 		res->err = readwrite(r, s);
 	else if (r->op == EC_REQUEST_OP_WRITE)
-		res->err = ec_xfer_fpwr(&s->bus->master->links, s->station, r->index, r->buf, r->size);
+		res->err = ec_xfer_fpwr(s->bus->links, s->station, r->index, r->buf, r->size);
 	else
-		res->err = ec_xfer_fprd(&s->bus->master->links, s->station, r->index, r->buf, r->size);
+		res->err = ec_xfer_fprd(s->bus->links, s->station, r->index, r->buf, r->size);
 }
 
 static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,
@@ -80,8 +80,8 @@ static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 		res->err = ec_coe_download(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size,
 					   &res->code, l);
 	else
-		res->err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size, &got,
-					 &res->code, l);
+		res->err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size,
+					 &got, &res->code, l);
 	res->got = got;
 }
 
@@ -94,7 +94,8 @@ static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 	if (ec_request_writes(r))
 		res->err = ec_soe_write(&s->mbox, r->sub, r->index, r->buf, r->size, &error, l);
 	else
-		res->err = ec_soe_read(&s->mbox, r->sub, r->index, r->buf, r->size, &got, &error, l);
+		res->err = ec_soe_read(&s->mbox, r->sub, r->index, r->buf, r->size, &got, &error,
+				       l);
 	res->got = got;
 	res->code = error;
 }
@@ -110,8 +111,8 @@ static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_lim
 	if (ec_request_writes(r))
 		res->err = ec_voe_write(&s->mbox, &h, r->buf, r->size, l);
 	else
-		res->err = ec_voe_read(&s->mbox, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf, r->size,
-				       &got, l);
+		res->err = ec_voe_read(&s->mbox, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf,
+				       r->size, &got, l);
 	res->got = got;
 	res->vendor = h.vendor;
 	res->type = h.type;

@@ -7,7 +7,7 @@
 #include "../cycle/copy.h"
 #include "../cycle/cycle_lock.h"
 #include "../cycle/cycle_thread.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "../mailbox/emerg.h"
 #include "../mailbox/mailbox.h"
 #include "../master.h"
@@ -74,6 +74,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 		ret = -EBUSY;
 	} else if (m->session) {
 		m->heir = s;
+		s->wanted.before = &m->session->wanted;
 	} else {
 		m->session = s;
 		WRITE_ONCE(m->bus.freeze, true);
@@ -159,6 +160,12 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	if (!s)
 		return -ENOMEM;
 	s->master = m;
+	s->wanted.base = m->base;
+	s->wanted.links = &m->links;
+	s->wanted.bus = &m->bus;
+	s->wanted.lock = &m->session_lock;
+	s->wanted.cycles = &s->cycle.cycles;
+	s->wanted.budget.total = &m->memory;
 	s->owner = owner;
 	RCU_INIT_POINTER(s->waiters, waiters);
 	note_process(s);
@@ -178,71 +185,30 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	return ret;
 }
 
-/* An heir only looks at slaves. */
-static bool owned(const struct ec_config *c)
-{
-	return c->slave && c->slave->config == c;
-}
-
-/* Detach slave and configuration; the slave goes back to PREOP. */
-static void detach(struct ec_config *c)
-{
-	struct ec_slave *slave = c->slave;
-	unsigned int sm;
-
-	if (!slave)
-		return;
-	if (!owned(c)) {
-		c->slave = NULL;
-		ec_slave_unref(slave);
-		return;
-	}
-	c->slave = NULL;
-	ec_emerg_set(&slave->mbox, NULL);
-	ec_mbox_keep_voe(&slave->mbox, false);
-	WRITE_ONCE(slave->stop.interrupt, true);
-	mutex_lock(&slave->lock);
-	for (sm = 0; sm < EC_MAX_SM; sm++)
-		/* the slave keeps what was written */
-		if (c->sm[sm].explicit ||
-		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
-			WRITE_ONCE(slave->pdos_known, false);
-	slave->config = NULL;
-	slave->plan = NULL;
-	ec_slave_clear_warning(slave);
-	slave->pdo_refusal[0] = '\0';
-	slave->reconfigure = true;
-	slave->stop.interrupt = false;
-	mutex_unlock(&slave->lock);
-	if (!slave->stop.gone && !slave->bus->master->base->stopping)
-		ec_slave_request(slave, EC_AL_PREOP);
-	ec_slave_unref(slave);
-}
-
 static void clear(struct ec_session *s)
 {
 	unsigned int i;
 
 	ec_session_lower_ref(s);
 	/* all at once: a worker may need a moment to leave */
-	for (i = 0; i < s->n_configs; i++)
-		if (owned(s->configs[i]))
-			WRITE_ONCE(s->configs[i]->slave->stop.interrupt, true);
-	for (i = 0; i < s->n_configs; i++) {
-		detach(s->configs[i]);
-		ec_config_free(s->configs[i]);
+	for (i = 0; i < s->wanted.n_configs; i++)
+		if (ec_session_owns(s->wanted.configs[i]))
+			WRITE_ONCE(s->wanted.configs[i]->slave->stop.interrupt, true);
+	for (i = 0; i < s->wanted.n_configs; i++) {
+		ec_session_detach(s->wanted.configs[i]);
+		ec_config_free(s->wanted.configs[i]);
 	}
-	kvfree(s->configs);
+	kvfree(s->wanted.configs);
 	kvfree(s->specs);
 	s->specs = NULL;
 	s->n_specs = 0;
 	s->request_bytes = 0;
-	s->configs = NULL;
-	s->n_configs = 0;
-	s->bytes = 0;
-	for (i = 0; i < s->n_domains; i++)
-		ec_domain_free(s->domains[i]);
-	s->n_domains = 0;
+	s->wanted.configs = NULL;
+	s->wanted.n_configs = 0;
+	ec_budget_release(&s->wanted.budget, s->wanted.budget.bytes);
+	for (i = 0; i < s->wanted.n_domains; i++)
+		ec_domain_free(s->wanted.domains[i]);
+	s->wanted.n_domains = 0;
 	kvfree(s->copies);
 	s->copies = NULL;
 	s->n_copies = 0;
@@ -274,7 +240,7 @@ int ec_session_deactivate(struct ec_session *s)
 	struct ec_master *m = s->master;
 	struct ec_shared *sh;
 
-	if (!s->active)
+	if (!s->wanted.active)
 		return -EINVAL;
 	mutex_lock(&m->cyclic_lock);
 	m->active = NULL;
@@ -283,7 +249,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_cycle_thread_stop(s);
 	ec_access_change(&m->links, EC_ACCESS_DIRECT);
 	ec_late_end(s);
-	s->active = false;
+	s->wanted.active = false;
 	s->ending = false;
 	s->stall_log.open = false;
 	ec_requests_end(s);
@@ -321,12 +287,14 @@ static void inherit(struct ec_master *m)
 
 	m->heir = NULL;
 	m->session = s;
+	if (s)
+		s->wanted.before = NULL;
 	WRITE_ONCE(m->bus.freeze, s != NULL);
 	if (s)
 		to_preop(m);
-	for (i = 0; s && i < s->n_configs; i++) {
-		detach(s->configs[i]);
-		ec_session_attach_one(s, s->configs[i]);
+	for (i = 0; s && i < s->wanted.n_configs; i++) {
+		ec_session_detach(s->wanted.configs[i]);
+		ec_session_attach_one(s, s->wanted.configs[i]);
 	}
 }
 
@@ -422,136 +390,15 @@ int ec_session_end_detached(struct ec_master *m)
 	return ret;
 }
 
-/**
- * ec_session_find() - the slave that a configuration means
- * @m: master
- * @alias: alias or 0
- * @position: position
- * @vendor: expected vendor id
- * @product: expected product code
- *
- * Context: Process. May sleep.
- * Return: slave with a reference, or NULL.
- */
-struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
-				 u32 product)
-{
-	struct ec_slave *slave = NULL;
-	unsigned int i, pos = position;
-
-	down_read(&m->bus.topo);
-	if (alias) {
-		for (i = 0; i < m->bus.n_slaves && m->bus.slaves[i]->alias != alias; i++)
-			;
-		pos += i;
-	}
-	if (pos < m->bus.n_slaves && m->bus.slaves[pos]->info.vendor == vendor &&
-	    m->bus.slaves[pos]->info.product == product && !m->bus.slaves[pos]->stop.gone)
-		slave = ec_slave_ref(m->bus.slaves[pos]);
-	up_read(&m->bus.topo);
-	return slave;
-}
-
-/* Another configuration has @slave; it is told once, to who waits for this one. */
-static void tell_taken(const struct ec_session *s, const struct ec_config *c,
-		       struct ec_slave *slave)
-{
-	const struct ec_config *has = slave->config;
-
-	if (s->active)
-		ec_slave_warn(slave, "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
-			      has->alias, has->position, c->alias, c->position);
-	else
-		ec_slave_warn(slave, "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
-			      has->alias, has->position, c->alias, c->position);
-}
-
-/* Reasons go on naming the slave that was lost, whoever is in its place now. */
-static void note_loss(struct ec_config *c)
-{
-	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
-	c->lost.seen_ns = c->slave->seen_ns;
-}
-
-/**
- * ec_session_attach_one() - connect a configuration with its slave
- * @s: session
- * @c: configuration
- *
- * An active session keeps a slave as long as it is there: when one in front of it is
- * pulled its position changes, but its outputs must not be those of another.
- *
- * Context: Process, session_lock held. May sleep.
- */
-void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
-{
-	struct ec_slave *slave;
-
-	ec_config_find_alias(c);
-	if (s->active && c->slave && !c->slave->stop.gone)
-		return;
-	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
-	if (slave == c->slave) {
-		if (slave)
-			ec_slave_unref(slave);
-		return;
-	}
-	if (s->active && c->slave)
-		note_loss(c);
-	detach(c);
-	if (!slave)
-		return;
-	if (s == s->master->heir) {	/* only to look at */
-		c->slave = slave;
-		return;
-	}
-	/* the monitor must not wait for what its worker waits for */
-	WRITE_ONCE(slave->stop.interrupt, true);
-	mutex_lock(&slave->lock);
-	WRITE_ONCE(slave->stop.interrupt, false);
-	if (slave->config) {
-		tell_taken(s, c, slave);
-		mutex_unlock(&slave->lock);
-		ec_slave_unref(slave);
-		return;
-	}
-	slave->config = c;
-	slave->reconfigure = true;
-	slave->seen_ns = c->lost.seen_ns;
-	mutex_unlock(&slave->lock);
-	c->slave = slave;
-	ec_requests_attach(s, c->index);
-	if (s->active && !s->ending)
-		ec_slave_request(slave, EC_AL_OP);
-	else
-		ec_slave_kick(slave);
-}
-
-/**
- * ec_session_attach() - after a scan: connect configurations and slaves anew
- * @m: master
- *
- * Context: Process. May sleep.
- */
-void ec_session_attach(struct ec_master *m)
-{
-	unsigned int i;
-
-	ec_session_lock(m);
-	for (i = 0; m->session && i < m->session->n_configs; i++)
-		ec_session_attach_one(m->session, m->session->configs[i]);
-	for (i = 0; m->heir && i < m->heir->n_configs; i++)
-		ec_config_find_alias(m->heir->configs[i]);
-	ec_session_unlock(m);
-}
-
 /* Station address of the chosen reference clock, as for ec_dc_begin(). */
 static u16 ref_choice(const struct ec_session *s)
 {
-	if (s->ref_config >= s->n_configs)
+	const struct ec_config *c;
+
+	if (s->ref_config >= s->wanted.n_configs)
 		return EC_DC_ANY;
-	return s->configs[s->ref_config]->slave ? s->configs[s->ref_config]->slave->station :
-						  EC_DC_NOBODY;
+	c = s->wanted.configs[s->ref_config];
+	return c->slave ? c->slave->station : EC_DC_NOBODY;
 }
 
 /**
@@ -567,8 +414,8 @@ bool ec_session_uses_clocks(const struct ec_session *s)
 
 	if (s->kernel.dc)
 		return true;
-	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->sync.assign)
+	for (i = 0; i < s->wanted.n_configs; i++)
+		if (s->wanted.configs[i]->sync.assign)
 			return true;
 	return false;
 }
@@ -580,7 +427,8 @@ bool ec_session_uses_clocks(const struct ec_session *s)
 static bool begins_clocks(const struct ec_session *s)
 {
 	return ec_session_uses_clocks(s) ||
-	       (s->ref_config < s->n_configs && !ec_dc_can_be(&s->master->dc, ref_choice(s)));
+	       (s->ref_config < s->wanted.n_configs &&
+		!ec_dc_can_be(&s->master->dc, ref_choice(s)));
 }
 
 /**
@@ -602,14 +450,14 @@ void ec_session_clocks(struct ec_master *m)
 	if (!ec_session_trylock(m))
 		return;
 	s = m->session;
-	if (s && s->active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
+	if (s && s->wanted.active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
 					   READ_ONCE(dc->wanted)))
 		ec_dc_begin(&m->dc, !dc->begun, ref_choice(s));
 	if (dc->changed) {
 		WRITE_ONCE(dc->changed, false);
 		wake_up_all(&dc->wq);
 	}
-	if (s && s->active && !s->ending)
+	if (s && s->wanted.active && !s->ending)
 		ec_session_raise_ref(s);
 	mutex_unlock(&m->session_lock);
 }
@@ -626,10 +474,10 @@ u32 ec_session_place(struct ec_session *s)
 	u32 offset = 0;
 	unsigned int i;
 
-	for (i = 0; i < s->n_domains; i++) {
-		s->domains[i]->offset = offset;
-		s->domains[i]->logical = offset;
-		offset += ALIGN(s->domains[i]->size, 8);
+	for (i = 0; i < s->wanted.n_domains; i++) {
+		s->wanted.domains[i]->offset = offset;
+		s->wanted.domains[i]->logical = offset;
+		offset += ALIGN(s->wanted.domains[i]->size, 8);
 	}
 	return offset;
 }
@@ -641,7 +489,8 @@ u32 ec_session_place(struct ec_session *s)
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
- * is too large; -EDQUOT as ec_session_fits(); -ENOSPC as ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
+ * is too large; -EDQUOT as ec_session_fits(); -ENOSPC as ec_cycle_check_room(); -ENODEV
+ * when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -650,10 +499,10 @@ int ec_session_activate(struct ec_session *s)
 	u32 offset;
 	int ret;
 
-	if (s->active)
+	if (s->wanted.active)
 		return -EBUSY;
-	for (i = 0; i < s->n_domains; i++)
-		if (s->domains[i]->division > 1 && !s->kernel.period_ns)
+	for (i = 0; i < s->wanted.n_domains; i++)
+		if (s->wanted.domains[i]->division > 1 && !s->kernel.period_ns)
 			return -EOPNOTSUPP;
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
@@ -678,12 +527,12 @@ int ec_session_activate(struct ec_session *s)
 		s->shared = NULL;
 		return ret;
 	}
-	s->shared->status->config_count = s->n_configs;
+	s->shared->status->config_count = s->wanted.n_configs;
 	s->shared->status->dc_monitor = ~0u;
-	for (i = 0; i < s->n_domains; i++)
-		s->shared->status->domains[i].expected = s->domains[i]->expected;
+	for (i = 0; i < s->wanted.n_domains; i++)
+		s->shared->status->domains[i].expected = s->wanted.domains[i]->expected;
 	/* from now on workers go by the configurations, which stay as they are */
-	smp_store_release(&s->active, true);
+	smp_store_release(&s->wanted.active, true);
 	s->stall_log.told = atomic_read(&m->links.access.timeouts);
 	s->lock_told = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->bus.freeze, false);
@@ -699,15 +548,15 @@ int ec_session_activate(struct ec_session *s)
 	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(s);
-	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->slave)
-			ec_slave_request(s->configs[i]->slave, EC_AL_OP);
+	for (i = 0; i < s->wanted.n_configs; i++)
+		if (s->wanted.configs[i]->slave)
+			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_OP);
 	ec_session_raise_ref(s);
 	if (s->requests)
 		ec_requests_kick(s->requests);
-	ec_config_log_differences(s);
+	ec_config_log_differences(&s->wanted);
 	ec_info(m, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
-		s->n_domains, offset, s->cycle.n_dgrams);
+		s->wanted.n_domains, offset, s->cycle.n_dgrams);
 	return 0;
 }
 
@@ -725,12 +574,12 @@ int ec_session_slaves_down(struct ec_session *s)
 {
 	unsigned int i;
 
-	if (!s->active)
+	if (!s->wanted.active)
 		return -EINVAL;
 	s->ending = true;
 	ec_session_lower_ref(s);
-	for (i = 0; i < s->n_configs; i++)
-		if (s->configs[i]->slave)
-			ec_slave_request(s->configs[i]->slave, EC_AL_PREOP);
+	for (i = 0; i < s->wanted.n_configs; i++)
+		if (s->wanted.configs[i]->slave)
+			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_PREOP);
 	return 0;
 }

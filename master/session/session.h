@@ -7,15 +7,15 @@
 #include <linux/kref.h>
 #include <linux/mm.h>
 #include <linux/types.h>
+#include "../config/config.h"
+#include "../config/domain.h"
 #include "../cycle/cycle.h"
 #include "ethercat.h"
 #include "../base/limits.h"
 
-struct ec_config;
 struct ec_copy;
 struct ec_copying;
 struct ec_cycle_thread;
-struct ec_domain;
 struct ec_master;
 struct ec_request_spec;
 struct ec_requests;
@@ -69,7 +69,7 @@ struct ec_stall_log {
 
 /**
  * struct ec_session - under master->session_lock; @cycle and @shared are the
- *	cyclic caller's while @active
+ *	cyclic caller's while active
  * @master: master
  * @owner: open file that reserved the master; NULL: detached, its cycle goes on
  *	without an application
@@ -77,18 +77,13 @@ struct ec_stall_log {
  * @owner_comm: its command, printable
  * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
  *	reads it under RCU
- * @configs: slave configurations
- * @n_configs: entries in @configs
- * @bytes: memory of what is configured, as ec_session_charge() counts it
- * @domains: domains
- * @n_domains: entries in @domains
+ * @wanted: slave configurations and domains
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
  * @specs: requests to be made by activation
  * @n_specs: entries in @specs
  * @request_bytes: room for their data and for emergencies
  * @requests: what works on them while @active, or NULL
- * @active: activated
  * @ending: slaves shall go to PREOP while the application still cycles
  * @raised: reference clock without configuration that was taken to OP, or NULL
  * @preset: what the image begins with, for the time of an activation; NULL: zeros
@@ -114,17 +109,12 @@ struct ec_session {
 	struct ec_waiters __rcu *waiters;
 	pid_t owner_pid;
 	char owner_comm[TASK_COMM_LEN];
-	struct ec_config **configs;
-	unsigned int n_configs;
-	size_t bytes;
-	struct ec_domain *domains[EC_MAX_DOMAINS];
-	unsigned int n_domains;
+	struct ec_wanted wanted;
 	u32 ref_config;
 	struct ec_request_spec *specs;
 	unsigned int n_specs;
 	size_t request_bytes;
 	struct ec_requests *requests;
-	bool active;
 	bool ending;
 	struct ec_slave *raised;
 	const void *preset;
@@ -144,6 +134,16 @@ struct ec_session {
 	struct ec_copying *copying;
 };
 
+static inline struct ec_session *ec_config_session(const struct ec_config *c)
+{
+	return container_of(c->wanted, struct ec_session, wanted);
+}
+
+static inline struct ec_session *ec_domain_session(const struct ec_domain *d)
+{
+	return container_of(d->wanted, struct ec_session, wanted);
+}
+
 size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size);
 int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters);
 void ec_session_end(struct ec_master *m, const void *owner);
@@ -156,15 +156,20 @@ void ec_session_raise_ref(struct ec_session *s);
 void ec_session_lower_ref(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
-void ec_session_attach(struct ec_master *m);
-struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
-				 u32 product);
-void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 bool ec_session_uses_clocks(const struct ec_session *s);
 void ec_session_clocks(struct ec_master *m);
 
+/* session_attach.c */
+bool ec_session_owns(const struct ec_config *c);
+void ec_session_detach(struct ec_config *c);
+struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+				 u32 product);
+void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
+void ec_session_attach(struct ec_master *m);
+struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				       u32 product);
+
 /* session_status.c */
-u8 ec_session_config_status(const struct ec_config *c);
 void ec_session_fill_status(struct ec_session *s);
 void ec_session_status(struct ec_master *m);
 
@@ -180,8 +185,7 @@ void *ec_shared_alloc(struct ec_shared *sh, size_t size);
 int ec_shared_map(struct vm_area_struct *vma, void *memory);
 void ec_shared_get(struct ec_shared *sh);
 void ec_shared_put(struct ec_shared *sh);
-int ec_session_charge(struct ec_session *s, size_t bytes);
-void ec_session_uncharge(struct ec_session *s, size_t bytes);
+u8 *ec_domain_data(const struct ec_domain *d);
 int ec_session_fits(const struct ec_session *s, size_t image_size);
 
 /* session_lock.c */

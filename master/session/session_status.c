@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What an active session is told about the bus, and the log about its application. */
 #include "../config/config.h"
+#include "../config/why.h"
 #include "../cycle/cycle_lock.h"
 #include "../cycle/cycle_thread.h"
 #include "../master.h"
 #include "../base/once64.h"
 #include "session.h"
 #include "../bus/slave.h"
-
-/**
- * ec_session_config_status() - EC_STATUS_SC_* of a configuration
- * @c: configuration
- *
- * Context: Process, session_lock held or after ec_show_begin().
- * Return: AL state with the bits online and operational; 0 without slave.
- */
-u8 ec_session_config_status(const struct ec_config *c)
-{
-	const struct ec_slave *slave = c->slave;
-	u8 v;
-
-	if (!slave || slave->stop.gone || slave->silent)
-		return 0;
-	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
-	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
-	    !slave->reconfigure)
-		v |= EC_STATUS_SC_OP;
-	return v;
-}
 
 /*
  * A stall and its end are two lines, and that at most once in 10 s: a busy host
@@ -91,8 +71,8 @@ void ec_session_fill_status(struct ec_session *s)
 	WRITE_ONCE(st->al_states, m->bus.al_states);
 	WRITE_ONCE(st->link_up, m->links.link[0].up || m->links.link[1].up);
 	status_links(m, st);
-	for (i = 0; i < s->n_configs; i++)
-		WRITE_ONCE(st->configs[i], ec_session_config_status(s->configs[i]));
+	for (i = 0; i < s->wanted.n_configs; i++)
+		WRITE_ONCE(st->configs[i], ec_config_status(s->wanted.configs[i]));
 }
 
 /**
@@ -109,7 +89,7 @@ void ec_session_status(struct ec_master *m)
 	if (!ec_session_trylock(m))
 		return;
 	s = m->session;
-	if (s && s->active) {
+	if (s && s->wanted.active) {
 		log_stalls(s, ktime_get_ns());
 		ec_cycle_lock_log(s);
 		ec_cycle_thread_check_cpu(s);

@@ -8,7 +8,7 @@
 #include "../config/config.h"
 #include "../cycle/copy.h"
 #include "../cycle/cycle_thread.h"
-#include "../cycle/domain.h"
+#include "../config/domain.h"
 #include "../master.h"
 #include "request.h"
 #include "session.h"
@@ -200,15 +200,17 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 {
 	unsigned int i;
 
-	if (a->n_configs != b->n_configs)
-		return differs(t, "it has %u slaves, not %u", a->n_configs, b->n_configs);
-	for (i = 0; i < a->n_configs; i++)
-		if (config_differs(a->configs[i], b->configs[i], t))
+	if (a->wanted.n_configs != b->wanted.n_configs)
+		return differs(t, "it has %u slaves, not %u", a->wanted.n_configs,
+			       b->wanted.n_configs);
+	for (i = 0; i < a->wanted.n_configs; i++)
+		if (config_differs(a->wanted.configs[i], b->wanted.configs[i], t))
 			return true;
-	if (a->n_domains != b->n_domains)
-		return differs(t, "it has %u domains, not %u", a->n_domains, b->n_domains);
-	for (i = 0; i < a->n_domains; i++)
-		if (domain_differs(a->domains[i], b->domains[i], t))
+	if (a->wanted.n_domains != b->wanted.n_domains)
+		return differs(t, "it has %u domains, not %u", a->wanted.n_domains,
+			       b->wanted.n_domains);
+	for (i = 0; i < a->wanted.n_domains; i++)
+		if (domain_differs(a->wanted.domains[i], b->wanted.domains[i], t))
 			return true;
 	if (a->ref_config != b->ref_config)
 		return differs(t, "reference clock");

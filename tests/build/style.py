@@ -23,9 +23,9 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 26,
+    ("lines", "master"): 17,
     ("lines", "lib"): 1,
-    ("lines", "tests"): 225,
+    ("lines", "tests"): 224,
     ("lines", "Documentation"): 61,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 15,

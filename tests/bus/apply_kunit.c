@@ -108,7 +108,7 @@ static void apply_op_only_late(struct kunit *test)
 	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
 	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
 	cyc_map_all(c, 0, 1, 0);
-	b->m->session->configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
+	b->m->session->wanted.configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
 	cyc_activate(c);
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK, EC_AL_OP);
@@ -126,7 +126,7 @@ static void apply_found_pdos(struct kunit *test)
 	WRITE_ONCE(bus_slave(b, 0)->pdos_known, false);
 	bus_request(b, 0, EC_AL_PREOP);
 	cyc_map_all(c, 0, 1, 0);
-	KUNIT_ASSERT_EQ(test, b->m->session->configs[0]->fmmus[0].size, 2u);
+	KUNIT_ASSERT_EQ(test, b->m->session->wanted.configs[0]->fmmus[0].size, 2u);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 0, 0, 0, 0);

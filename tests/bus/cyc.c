@@ -165,7 +165,7 @@ void cyc_run(struct cyc *c, u32 cycles)
 		set_current_state(TASK_UNINTERRUPTIBLE);
 		schedule_hrtimeout(&c->next, HRTIMER_MODE_ABS);
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_receive(&c->b->app), 0);
-		for (d = 0; d < s->n_domains; d++)
+		for (d = 0; d < s->wanted.n_domains; d++)
 			whole &= s->shared->status->domains[d].wc_state == 2;
 		c->incomplete += !whole;
 		if (c->each)
@@ -261,9 +261,9 @@ bool cyc_all_op(struct cyc *c)
 	struct ec_session *s = c->b->m->session;
 	u32 i;
 
-	for (i = 0; i < s->n_configs; i++)
-		if (!s->configs[i]->slave || s->configs[i]->slave->al_status != EC_AL_OP ||
-		    s->configs[i]->slave->reconfigure)
+	for (i = 0; i < s->wanted.n_configs; i++)
+		if (!s->wanted.configs[i]->slave || s->wanted.configs[i]->slave->al_status != EC_AL_OP ||
+		    s->wanted.configs[i]->slave->reconfigure)
 			return false;
 	return true;
 }
@@ -300,8 +300,8 @@ u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
 	struct ec_session *s = c->b->m->session;
 	u32 i, k;
 
-	for (i = 0; i < s->n_configs; i++) {
-		struct ec_config *sc = s->configs[i];
+	for (i = 0; i < s->wanted.n_configs; i++) {
+		struct ec_config *sc = s->wanted.configs[i];
 
 		for (k = 0; k < sc->n_fmmus; k++)
 			if (sc->position == position && sc->fmmus[k].sm == sm)
@@ -316,7 +316,7 @@ u8 *cyc_data(struct cyc *c, u32 domain)
 {
 	struct ec_session *s = c->b->m->session;
 
-	return s->shared->image + s->domains[domain]->offset;
+	return s->shared->image + s->wanted.domains[domain]->offset;
 }
 
 struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)

@@ -5,7 +5,7 @@
 
 #include "bus.h"
 #include "master/config/config.h"
-#include "master/cycle/domain.h"
+#include "master/config/domain.h"
 
 /**
  * struct cyc - an application

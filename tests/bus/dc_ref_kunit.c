@@ -122,13 +122,13 @@ static void sync0(struct run *r)
 	struct ec_session *s = r->b->m->session;
 	u32 i;
 
-	for (i = 0; i < s->n_configs; i++) {
+	for (i = 0; i < s->wanted.n_configs; i++) {
 		struct ec_ioc_sc_dc dc = {
 			.config = i, .assign_activate = 0x0300, .cycle0 = PERIOD_NS,
 			.shift0 = 100000 * i,
 		};
 
-		if (!(ec_slave_features(s->configs[i]->slave) & EC_FEAT_DC))
+		if (!(ec_slave_features(s->wanted.configs[i]->slave) & EC_FEAT_DC))
 			continue;
 		KUNIT_ASSERT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_SC_DC, &dc), 0);
 	}

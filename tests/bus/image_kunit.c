@@ -65,7 +65,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 	cyc_map_all(c, 0, 16, 0);
 	cyc_activate(c);
 	s = b->m->session;
-	KUNIT_EXPECT_EQ(test, s->domains[0]->size, 16384u);
+	KUNIT_EXPECT_EQ(test, s->wanted.domains[0]->size, 16384u);
 	KUNIT_EXPECT_EQ(test, s->cycle.plain.frames, frames);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	for (round = 1; round < 4; round++) {

@@ -102,7 +102,7 @@ static void kapi_sdo_complete(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, abort, (u32)EC_ABORT_NO_OBJECT);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x2001, whole, 0, &abort), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_complete_sdo(k->sc[1], 0x3fff, whole, 4), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->configs[1]->n_sdos, 1u);
+	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->n_sdos, 1u);
 	ecrt_release_master(k->m);
 }
 
@@ -407,7 +407,7 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_LT(test, ecrt_master_sync_monitor_process(k->m), 1000u);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock_to(k->m, now), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->configs[1]->sync.shift[0], 100);
+	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->sync.shift[0], 100);
 	KUNIT_EXPECT_EQ(test, k->m->session->ref_config, 0u);
 	ecrt_release_master(k->m);
 }

@@ -379,7 +379,7 @@ static void kapi_stored(struct kunit *test)
 	k = kapp_new(b, 1000);
 	kapp_map(k, 0);
 	sc = k->sc[0];
-	c = k->m->session->configs[0];
+	c = k->m->session->wanted.configs[0];
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_watchdog(sc, 2498, 500), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_flag(sc, "AssignToPdi", 1), 0);
 	KUNIT_EXPECT_EQ(test, c->n_flags, 1u);

@@ -437,7 +437,7 @@ static void takeover_refused(struct kunit *test)
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
 	ec_session_lock(b->m);
-	ret = ec_config_sdo_add(b->m->heir->configs[1], 0x8000, 1, false, (const u8 *)"\1", 1);
+	ret = ec_config_sdo_add(b->m->heir->wanted.configs[1], 0x8000, 1, false, (const u8 *)"\1", 1);
 	ec_session_unlock(b->m);
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	refused(b, "slave 0:1 has 0 startup SDOs, not 1");

@@ -207,8 +207,8 @@ static void division_refused(struct kunit *test)
 /* @bits from bit @from of the inputs of a slave to bit @to of another's outputs. */
 static int copy(struct kcyc *a, u32 from_slave, u32 from, u32 to_slave, u32 to, u32 bits)
 {
-	const struct ec_config *f = a->c->b->m->session->configs[from_slave];
-	const struct ec_config *t = a->c->b->m->session->configs[to_slave];
+	const struct ec_config *f = a->c->b->m->session->wanted.configs[from_slave];
+	const struct ec_config *t = a->c->b->m->session->wanted.configs[to_slave];
 	struct ec_ioc_copy c = {
 		.from_domain = f->fmmus[1].domain->index, .from_bit = 8 * f->fmmus[1].offset + from,
 		.to_domain = t->fmmus[0].domain->index, .to_bit = 8 * t->fmmus[0].offset + to,

@@ -197,7 +197,7 @@ static void layout_echo(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cycle->n_dgrams, l->dgrams);
 	KUNIT_EXPECT_EQ(test, data_bytes(cycle), l->bytes);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->expected, l->expected);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->domains[0]->size, 896u);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->wanted.domains[0]->size, 896u);
 	for (i = 0; i < N; i++) {
 		if (slaves[i].out)
 			KUNIT_EXPECT_PTR_EQ(test, output(c, i, 1), cyc_data(c, 0) + offset);
@@ -299,10 +299,11 @@ static void layout_inputs_first(struct kunit *test)
 		if (slaves[i].out)
 			cyc_map(c, config[i], 0, 0);
 	cyc_activate(c);
-	for (i = 0; i < s->n_configs; i++)
-		for (j = 0; j < s->n_configs; j++)
+	for (i = 0; i < s->wanted.n_configs; i++)
+		for (j = 0; j < s->wanted.n_configs; j++)
 			for (k = 0; k < 4; k++) {
-				const struct ec_config *a = s->configs[i], *b = s->configs[j];
+				const struct ec_config *a = s->wanted.configs[i];
+				const struct ec_config *b = s->wanted.configs[j];
 				const struct ec_config_fmmu *in = &a->fmmus[k & 1];
 				const struct ec_config_fmmu *out = &b->fmmus[k >> 1];
 

@@ -243,7 +243,8 @@ static void op_stalls_logged(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct kmsg_dump_iter first, it;
-	u32 i, before = atomic_read(&c->b->m->links.access.timeouts), scans = c->b->m->bus.scan_count;
+	u32 i, before = atomic_read(&c->b->m->links.access.timeouts);
+	u32 scans = c->b->m->bus.scan_count;
 
 	kmsg_dump_rewind(&it);
 	logged(&it, "");

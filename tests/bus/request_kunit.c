@@ -195,9 +195,9 @@ static void req_comes_back(struct kunit *test)
 
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 2000 && c->b->m->session->configs[1]->slave; i++)
+	for (i = 0; i < 2000 && c->b->m->session->wanted.configs[1]->slave; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_NULL(test, c->b->m->session->configs[1]->slave);
+	KUNIT_ASSERT_NULL(test, c->b->m->session->wanted.configs[1]->slave);
 	req_begin(c, b, 0x1018, 4, false, 0);
 	KUNIT_EXPECT_EQ(test, req_end(c, b, 500), 1);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);

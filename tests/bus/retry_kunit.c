@@ -3,6 +3,7 @@
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
 #include "master/boundary/ioctl.h"
+#include "master/config/why.h"
 
 static const char line[] =
 	"segment seed=10 response=100us transition=1ms\n"
@@ -69,7 +70,7 @@ static void silent_for(struct kunit *test, u32 ms)
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, AO), s);
 	KUNIT_EXPECT_STREQ(test, s->order, "EL4002");
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_SCAN_FAILED);
-	KUNIT_EXPECT_EQ(test, ec_session_config_status(b->m->session->configs[AO]), 0);
+	KUNIT_EXPECT_EQ(test, ec_config_status(b->m->session->wanted.configs[AO]), 0);
 	expect_why(b, AO, "no reply");
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_status, EC_AL_OP);
 

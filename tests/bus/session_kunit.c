@@ -149,7 +149,7 @@ static u32 given_up_after(struct cyc *c)
 	u32 i;
 
 	for (i = 0; i < 20000 && s->error == EC_SLAVE_OK; i++) {
-		if (c->b->m->session->active)
+		if (c->b->m->session->wanted.active)
 			cyc_run(c, 1);
 		else
 			usleep_range(1000, 1001);
@@ -333,7 +333,7 @@ static void session_foreign_config(struct kunit *test)
 
 	KUNIT_ASSERT_TRUE(test, other && s && sc && m);
 	s->master = other;
-	sc->session = s;
+	sc->wanted = &s->wanted;
 	kapp_config(&k, 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, (ec_slave_config_t *)sc),
 			-EINVAL);
@@ -387,16 +387,16 @@ static void clear_pdos(struct bus *b)
 {
 	static const u8 ops[] = { EC_SC_PDO_ASSIGN_ADD, EC_SC_PDO_MAP_ADD, EC_SC_PDO_ASSIGN_CLEAR };
 	struct ec_ioc_sc_pdo pdo = { .sm = 2, .pdo = 0x1600, .bits = 8 };
-	size_t bytes = b->m->session->bytes;
+	size_t bytes = b->m->session->wanted.budget.bytes;
 	u32 i;
 
 	for (i = 0; i < ARRAY_SIZE(ops); i++) {
 		pdo.op = ops[i];
 		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), 0);
-		KUNIT_EXPECT_EQ(b->test, b->m->session->bytes > bytes,
+		KUNIT_EXPECT_EQ(b->test, b->m->session->wanted.budget.bytes > bytes,
 				ops[i] != EC_SC_PDO_ASSIGN_CLEAR);
 	}
-	KUNIT_EXPECT_EQ(b->test, b->m->session->bytes, bytes);
+	KUNIT_EXPECT_EQ(b->test, b->m->session->wanted.budget.bytes, bytes);
 }
 
 /* All sessions and what is mapped have a limit together. */
@@ -407,22 +407,24 @@ static void session_memory(struct kunit *test)
 	struct ec_ioc_sc_sdo sdo = { .index = 0x2000, .size = 4096 };
 	u8 *value = kunit_kzalloc(test, sdo.size, GFP_KERNEL);
 	struct ec_master *m = b->m;
+	long mapped;
 	u32 i;
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	KUNIT_EXPECT_GE(test, m->session->bytes, sizeof(struct ec_config));
+	KUNIT_EXPECT_GE(test, m->session->wanted.budget.bytes, sizeof(struct ec_config));
 	sdo.data = (uintptr_t)value;
 	clear_pdos(b);
 	/* as if something else was mapped: there is room for three values */
-	atomic_long_add(EC_MAX_SESSION_BYTES - m->session->bytes - 4 * sdo.size, &m->mapped);
+	mapped = EC_MAX_SESSION_BYTES - atomic_long_read(&m->memory) - 4 * sdo.size;
+	atomic_long_add(mapped, &m->memory);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), -ENOMEM);
 	expect_limit(b);
 	KUNIT_EXPECT_EQ(test, activate(b), -ENOMEM);
 	expect_limit(b);
-	atomic_long_set(&m->mapped, 0);
+	atomic_long_sub(mapped, &m->memory);
 	KUNIT_EXPECT_EQ(test, activate(b), 0);
 	ec_session_end(m, &b->app);
 }
@@ -435,14 +437,15 @@ static void session_mapping_outlives(struct kunit *test)
 	size_t bytes = sh->bytes;
 
 	KUNIT_EXPECT_GE(test, bytes, sh->image_size + sh->exchange_size + EC_STATUS_BYTES);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->mapped), bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->memory),
+			bytes + b->m->session->wanted.budget.bytes);
 	ec_shared_get(sh);
 	ec_session_end(b->m, &b->app);
 	/* work on requests may end a moment later */
 	msleep(50);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->mapped), bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->memory), bytes);
 	ec_shared_put(sh);
-	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->mapped), 0L);
+	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->memory), 0L);
 }
 
 /* A session without a cycle thread has none whose priority could change. */

@@ -70,7 +70,8 @@ struct share {
 
 static void count(struct cyc *c)
 {
-	u64 frames = bus_frames(c->b), bytes = atomic64_read(&c->b->m->links.link[0].stats.tx_bytes);
+	u64 bytes = atomic64_read(&c->b->m->links.link[0].stats.tx_bytes);
+	u64 frames = bus_frames(c->b);
 	const struct ec_cyc_wire *last = &c->b->m->session->cycle.last;
 	struct share *s = c->ctx;
 

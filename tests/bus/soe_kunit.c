@@ -218,7 +218,7 @@ static void soe_and_coe(struct kunit *test)
 
 static struct ec_config *config(struct cyc *c, u32 i)
 {
-	return c->b->m->session->configs[i];
+	return c->b->m->session->wanted.configs[i];
 }
 
 static struct cyc *prepare(struct kunit *test)

@@ -58,7 +58,7 @@ static void runs(struct cyc *c, u32 domain_bytes)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
-	KUNIT_EXPECT_EQ(test, c->b->m->session->domains[0]->size, domain_bytes);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->wanted.domains[0]->size, domain_bytes);
 }
 
 static struct cyc *axes(struct kunit *test, u32 period_us, u32 domain_options)

@@ -7,7 +7,7 @@
 #include "ethercat.h"
 
 struct ec_config;
-struct ec_session;
+struct ec_wanted;
 
 /* reference to an FMMU of a configuration, in order of registration */
 struct ec_domain_fmmu {
@@ -17,7 +17,7 @@ struct ec_domain_fmmu {
 
 /**
  * struct ec_domain - one domain, under session_lock until activation
- * @session: owner
+ * @wanted: owner
  * @index: number in the session
  * @size: bytes registered
  * @offset: of its data in the image, set by activation
@@ -35,7 +35,7 @@ struct ec_domain_fmmu {
  * @phase: first time in that cycle, from 0 on
  */
 struct ec_domain {
-	struct ec_session *session;
+	struct ec_wanted *wanted;
 	u32 index;
 	u32 size;
 	u32 offset;
@@ -53,9 +53,8 @@ struct ec_domain {
 	u32 phase;
 };
 
-struct ec_domain *ec_domain_create(struct ec_session *s);
+struct ec_domain *ec_domain_create(struct ec_wanted *w);
 void ec_domain_free(struct ec_domain *d);
-u8 *ec_domain_data(const struct ec_domain *d);
 int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu);
 
 #endif

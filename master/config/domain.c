@@ -1,51 +1,44 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
-#include "../config/config.h"
-#include "domain.h"
 #include "../base/grow.h"
 #include "../base/limits.h"
-#include "../session/session.h"
+#include "config.h"
+#include "domain.h"
 
 /**
  * ec_domain_create() - an empty domain
- * @s: session
+ * @w: what an application wants
  *
  * Context: Process, session_lock held. May sleep.
  * Return: domain, or ERR_PTR: -ENOSPC beyond EC_MAX_DOMAINS, -ENOMEM.
  */
-struct ec_domain *ec_domain_create(struct ec_session *s)
+struct ec_domain *ec_domain_create(struct ec_wanted *w)
 {
 	struct ec_domain *d;
 
-	if (s->n_domains >= EC_MAX_DOMAINS)
+	if (w->n_domains >= EC_MAX_DOMAINS)
 		return ERR_PTR(-ENOSPC);
 	d = kzalloc(sizeof(*d), GFP_KERNEL_ACCOUNT);
 	if (!d)
 		return ERR_PTR(-ENOMEM);
-	d->session = s;
-	d->index = s->n_domains;
+	d->wanted = w;
+	d->index = w->n_domains;
 	d->division = 1;
 	d->max_age = EC_DOMAIN_MAX_AGE;
-	s->domains[s->n_domains++] = d;
+	w->domains[w->n_domains++] = d;
 	return d;
 }
 
+/**
+ * ec_domain_free() - free a domain
+ * @d: domain that no layout uses
+ *
+ * Context: Process.
+ */
 void ec_domain_free(struct ec_domain *d)
 {
 	kvfree(d->fmmus);
 	kfree(d);
-}
-
-/**
- * ec_domain_data() - where the process data of a domain lie
- * @d: domain of an active session
- *
- * Context: Any, while the session is active.
- * Return: its first byte.
- */
-u8 *ec_domain_data(const struct ec_domain *d)
-{
-	return d->memory ?: d->session->shared->image + d->offset;
 }
 
 /**

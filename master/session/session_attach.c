@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Configurations and the slaves that they mean. */
+#include "../bus/slave_pdo.h"
+#include "../config/why.h"
+#include "../mailbox/emerg.h"
+#include "../master.h"
+#include "request.h"
+#include "session.h"
+
+/**
+ * ec_session_owns() - is the slave of a configuration its own?
+ * @c: configuration
+ *
+ * A session that is to take over another one only looks at its slaves.
+ *
+ * Context: Process, session_lock held.
+ * Return: whether it is.
+ */
+bool ec_session_owns(const struct ec_config *c)
+{
+	return c->slave && c->slave->config == c;
+}
+
+/**
+ * ec_session_detach() - part a configuration from its slave, which goes back to PREOP
+ * @c: configuration
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_detach(struct ec_config *c)
+{
+	struct ec_slave *slave = c->slave;
+	unsigned int sm;
+
+	if (!slave)
+		return;
+	if (!ec_session_owns(c)) {
+		c->slave = NULL;
+		ec_slave_unref(slave);
+		return;
+	}
+	c->slave = NULL;
+	ec_emerg_set(&slave->mbox, NULL);
+	ec_mbox_keep_voe(&slave->mbox, false);
+	WRITE_ONCE(slave->stop.interrupt, true);
+	mutex_lock(&slave->lock);
+	for (sm = 0; sm < EC_MAX_SM; sm++)
+		/* the slave keeps what was written */
+		if (c->sm[sm].explicit ||
+		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
+			WRITE_ONCE(slave->pdos_known, false);
+	slave->config = NULL;
+	slave->plan = NULL;
+	ec_slave_clear_warning(slave);
+	slave->pdo_refusal[0] = '\0';
+	slave->reconfigure = true;
+	slave->stop.interrupt = false;
+	mutex_unlock(&slave->lock);
+	if (!slave->stop.gone && !c->wanted->base->stopping)
+		ec_slave_request(slave, EC_AL_PREOP);
+	ec_slave_unref(slave);
+}
+
+/**
+ * ec_session_find() - the slave that a configuration means
+ * @m: master
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process. May sleep.
+ * Return: slave with a reference, or NULL.
+ */
+struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+				 u32 product)
+{
+	struct ec_slave *slave = NULL;
+	unsigned int i, pos = position;
+
+	down_read(&m->bus.topo);
+	if (alias) {
+		for (i = 0; i < m->bus.n_slaves && m->bus.slaves[i]->alias != alias; i++)
+			;
+		pos += i;
+	}
+	if (pos < m->bus.n_slaves && m->bus.slaves[pos]->info.vendor == vendor &&
+	    m->bus.slaves[pos]->info.product == product && !m->bus.slaves[pos]->stop.gone)
+		slave = ec_slave_ref(m->bus.slaves[pos]);
+	up_read(&m->bus.topo);
+	return slave;
+}
+
+/* Another configuration has @slave; it is told once, to who waits for this one. */
+static void tell_taken(const struct ec_session *s, const struct ec_config *c,
+		       struct ec_slave *slave)
+{
+	const struct ec_config *has = slave->config;
+
+	if (s->wanted.active)
+		ec_slave_warn(slave, "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
+			      has->alias, has->position, c->alias, c->position);
+	else
+		ec_slave_warn(slave, "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
+			      has->alias, has->position, c->alias, c->position);
+}
+
+/* Reasons go on naming the slave that was lost, whoever is in its place now. */
+static void note_loss(struct ec_config *c)
+{
+	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
+	c->lost.seen_ns = c->slave->seen_ns;
+}
+
+/**
+ * ec_session_attach_one() - connect a configuration with its slave
+ * @s: session
+ * @c: configuration
+ *
+ * An active session keeps a slave as long as it is
+ * there: when one upstream is disconnected its position changes, but its outputs must not be
+ * those of another.
+ *
+ * Context: Process, session_lock held. May sleep.
+ */
+void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
+{
+	struct ec_slave *slave;
+
+	ec_config_find_alias(c);
+	if (s->wanted.active && c->slave && !c->slave->stop.gone)
+		return;
+	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
+	if (slave == c->slave) {
+		if (slave)
+			ec_slave_unref(slave);
+		return;
+	}
+	if (s->wanted.active && c->slave)
+		note_loss(c);
+	ec_session_detach(c);
+	if (!slave)
+		return;
+	if (s == s->master->heir) {	/* only to look at */
+		c->slave = slave;
+		return;
+	}
+	/* the monitor must not wait for what its worker waits for */
+	WRITE_ONCE(slave->stop.interrupt, true);
+	mutex_lock(&slave->lock);
+	WRITE_ONCE(slave->stop.interrupt, false);
+	if (slave->config) {
+		tell_taken(s, c, slave);
+		mutex_unlock(&slave->lock);
+		ec_slave_unref(slave);
+		return;
+	}
+	slave->config = c;
+	slave->reconfigure = true;
+	slave->seen_ns = c->lost.seen_ns;
+	mutex_unlock(&slave->lock);
+	c->slave = slave;
+	ec_requests_attach(s, c->index);
+	if (s->wanted.active && !s->ending)
+		ec_slave_request(slave, EC_AL_OP);
+	else
+		ec_slave_kick(slave);
+}
+
+/**
+ * ec_session_configure() - find or make the configuration of a slave
+ * @s: session
+ * @alias: alias or 0
+ * @position: position
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session_lock held. May sleep.
+ * Return: configuration, or ERR_PTR: -ENOENT when it exists with another identity, or as
+ * ec_config_create().
+ */
+struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 position, u32 vendor,
+				       u32 product)
+{
+	struct ec_config *c = ec_config_find(&s->wanted, alias, position, vendor, product);
+
+	if (c)
+		return c;
+	c = ec_config_create(&s->wanted, alias, position, vendor, product);
+	if (IS_ERR(c))
+		return c;
+	ec_session_attach_one(s, c);
+	ec_config_begin(c);
+	return c;
+}
+
+/**
+ * ec_session_attach() - after a scan: connect configurations and slaves anew
+ * @m: master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_session_attach(struct ec_master *m)
+{
+	unsigned int i;
+
+	ec_session_lock(m);
+	for (i = 0; m->session && i < m->session->wanted.n_configs; i++)
+		ec_session_attach_one(m->session, m->session->wanted.configs[i]);
+	for (i = 0; m->heir && i < m->heir->wanted.n_configs; i++)
+		ec_config_find_alias(m->heir->wanted.configs[i]);
+	ec_session_unlock(m);
+}
