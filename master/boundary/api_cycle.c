@@ -123,6 +123,8 @@ int ecrt_master_send(ec_master_t *master)
 	if (ret)
 		return ret;
 	next = &master->api->next;
+	if (next->flags & EC_SEND_FLAG_REQUESTS)
+		ec_requests_kick(s);
 	ret = ec_cycle_told(s, next) ?: ec_cycle_do_send(s, next);
 	master->api->sent |= next->queued;
 	next->queued = 0;

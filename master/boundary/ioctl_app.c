@@ -519,6 +519,8 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 
 	if (!s)
 		return ret;
+	if (arg->flags & EC_SEND_FLAG_REQUESTS)
+		ec_requests_kick(s);
 	ret = ec_cycle_told(s, arg) ?: ec_cycle_send(s, arg);
 	mutex_unlock(&f->master->cyclic_lock);
 	return ret;

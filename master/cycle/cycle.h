@@ -225,7 +225,7 @@ struct ec_cycle {
 /* layout.c */
 int ec_cycle_layout(struct ec_session *s);
 u32 ec_cycle_need_ns(void);
-int ec_cycle_check_room(struct ec_session *s);
+int ec_cycle_check_room(struct ec_session *s, bool clocks);
 void ec_cycle_tell_room(struct ec_session *s);
 void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
 

@@ -26,7 +26,6 @@
 #include "../config/domain.h"
 #include "../master.h"
 #include "../base/once64.h"
-#include "../session/request.h"
 #include "../session/session.h"
 #include "waiters.h"
 
@@ -52,6 +51,7 @@ struct slow {
  * struct ec_cycle_thread - @session, @outputs and sizes are immutable, the
  *	rest is the thread's
  * @session: active session; it ends the thread before it goes away
+ * @ops: reports to the session
  * @task: thread
  * @outputs: areas that are taken from the application
  * @n_outputs: entries in @outputs
@@ -75,6 +75,7 @@ struct slow {
  */
 struct ec_cycle_thread {
 	struct ec_session *session;
+	const struct ec_cycle_ops *ops;
 	struct task_struct *task;
 	struct area *outputs;
 	unsigned int n_outputs;
@@ -369,8 +370,7 @@ static bool cycle(struct ec_cycle_thread *t)
 	send.sync_time = t->lock.time;
 	feed(t);
 	choose_source(t);
-	if (s->requests)
-		ec_requests_notice(s->requests);
+	t->ops->cycle(s);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		if (!ec_cycle_send(s, &send))
 			ec_late_count(s, m->links.access.last_send_ns - due);
@@ -455,20 +455,30 @@ static int find_outputs(struct ec_cycle_thread *t)
 	return 0;
 }
 
-static int alloc_exchange(struct ec_cycle_thread *t)
+static u32 stride(u32 image_bytes)
 {
-	struct ec_shared *sh = t->session->shared;
+	return sizeof(struct ec_exchange_buffer) + ALIGN(image_bytes, 64);
+}
 
-	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
-	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
-	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
-	if (!sh->exchange)
-		return -ENOMEM;
+/**
+ * ec_cycle_thread_exchange() - memory for the exchange with the application
+ * @image_bytes: bytes of all domains
+ *
+ * Context: Any.
+ * Return: bytes, a multiple of the page size.
+ */
+size_t ec_cycle_thread_exchange(u32 image_bytes)
+{
+	return PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * stride(image_bytes));
+}
+
+static void begin_exchange(struct ec_cycle_thread *t)
+{
 	deal(t);
 	/* it may begin with something */
 	if (t->bytes)
-		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, sh->image, t->bytes);
-	return 0;
+		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1,
+		       t->session->shared->image, t->bytes);
 }
 
 static void free_thread(struct ec_cycle_thread *t)
@@ -481,13 +491,14 @@ static void free_thread(struct ec_cycle_thread *t)
  * ec_cycle_thread_create() - prepare a cycle run by the kernel
  * @s: session with a layout and @kernel.period_ns
  * @image_bytes: of all domains
+ * @ops: what it reports; stays
  *
- * The memory of the exchange goes away with @s->shared.
+ * The memory of the exchange is in @s->shared, see ec_cycle_thread_exchange().
  *
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -ENODEV the CPU is not online; -ENOMEM.
  */
-int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
+int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct ec_cycle_ops *ops)
 {
 	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
 	int ret, cpu = s->kernel.cpu;
@@ -496,12 +507,15 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes)
 		return -ENOMEM;
 	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
 	t->session = s;
+	t->ops = ops;
 	init_completion(&t->adopted);
 	t->bytes = image_bytes;
+	t->stride = stride(image_bytes);
 	find_turns(t);
-	ret = find_outputs(t) ?: alloc_exchange(t);
+	ret = find_outputs(t);
 	if (ret)
 		goto err;
+	begin_exchange(t);
 	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->base->index);
 	if (IS_ERR(t->task)) {
 		ret = PTR_ERR(t->task);

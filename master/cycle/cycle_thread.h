@@ -13,7 +13,14 @@ struct task_struct;
 
 #define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
 
-int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes);
+/** struct ec_cycle_ops - what the thread reports to higher layers */
+struct ec_cycle_ops {
+	/** @cycle: a cycle begins; RT-safe */
+	void (*cycle)(struct ec_session *s);
+};
+
+size_t ec_cycle_thread_exchange(u32 image_bytes);
+int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct ec_cycle_ops *ops);
 void ec_cycle_thread_start(struct ec_session *s);
 struct task_struct *ec_cycle_thread_task(const struct ec_session *s);
 void ec_cycle_thread_stop(struct ec_session *s);

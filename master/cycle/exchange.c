@@ -11,7 +11,6 @@
 #include "cycle.h"
 #include "../master.h"
 #include "../base/once64.h"
-#include "../session/request.h"
 #include "../session/session.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
@@ -403,7 +402,7 @@ void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what)
 }
 
 /**
- * ec_cycle_told() - what the application tells with a send
+ * ec_cycle_told() - what the application gives with a send, without requests
  * @s: active session
  * @what: its flags are known ones
  *
@@ -413,8 +412,6 @@ void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what)
 int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	ec_cycle_app_time(s, what);
-	if (what->flags & EC_SEND_FLAG_REQUESTS && s->requests)
-		ec_requests_kick(s->requests);
 	return s->wanted.n_domains < 64 && what->queued >> s->wanted.n_domains ? -ENOENT : 0;
 }
 

@@ -383,6 +383,7 @@ static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
 /**
  * ec_cycle_check_room() - do acyclic frames fit beside the cycle?
  * @s: session with a layout
+ * @clocks: the session uses distributed clocks
  *
  * Without them no slave gets to OP. As long as the interval is not told it is not
  * known yet; ec_cycle_tell_room() looks later.
@@ -390,12 +391,11 @@ static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -ENOSPC: they do not, and may make no cycle late.
  */
-int ec_cycle_check_room(struct ec_session *s)
+int ec_cycle_check_room(struct ec_session *s, bool clocks)
 {
 	struct ec_master *m = s->master;
 	u64 interval = s->kernel.period_ns ?: m->links.access.interval_us * (u64)NSEC_PER_USEC;
-	const struct ec_cyc_wire *w = ec_session_uses_clocks(s) ? &s->cycle.clocked :
-								  &s->cycle.plain;
+	const struct ec_cyc_wire *w = clocks ? &s->cycle.clocked : &s->cycle.plain;
 
 	s->room_told = false;
 	m->links.access.wire_ns = w->ns;

@@ -510,28 +510,36 @@ void ec_requests_end(struct ec_session *s)
 
 /**
  * ec_requests_kick() - the application has started a request
- * @rq: requests of its session
+ * @s: active session
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: Cycle owner. RT-safe.
  */
-void ec_requests_kick(struct ec_requests *rq)
+void ec_requests_kick(struct ec_session *s)
 {
-	queue(rq, rq->master->service, &rq->kick);
+	struct ec_requests *rq = s->requests;
+
+	if (rq)
+		queue(rq, rq->master->service, &rq->kick);
 }
 
 /**
  * ec_requests_notice() - has the application started a request?
- * @rq: requests of its session
+ * @s: active session
  *
  * Without a send of its own it counts starts in mapped memory.
  *
  * Context: The thread that runs the cycle. RT-safe.
  */
-void ec_requests_notice(struct ec_requests *rq)
+void ec_requests_notice(struct ec_session *s)
 {
-	const struct ec_request_area *area = (void *)rq->shared->requests;
-	u32 starts = READ_ONCE(area->starts);
+	struct ec_requests *rq = s->requests;
+	const struct ec_request_area *area;
+	u32 starts;
 
+	if (!rq)
+		return;
+	area = (void *)rq->shared->requests;
+	starts = READ_ONCE(area->starts);
 	if (starts == rq->starts)
 		return;
 	rq->starts = starts;

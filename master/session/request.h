@@ -36,10 +36,10 @@ size_t ec_requests_bytes(const struct ec_session *s);
 int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
 void ec_requests_describe(const struct ec_session *s);
-void ec_requests_kick(struct ec_requests *rq);
+void ec_requests_kick(struct ec_session *s);
 void ec_requests_attach(const struct ec_session *s, u32 config);
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);
 struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
-void ec_requests_notice(struct ec_requests *rq);
+void ec_requests_notice(struct ec_session *s);
 
 #endif

@@ -130,6 +130,10 @@ size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size)
 	return len;
 }
 
+static const struct ec_cycle_ops cycle_ops = {
+	.cycle = ec_requests_notice,
+};
+
 /**
  * ec_session_begin() - an application reserves the master
  * @m: master
@@ -401,14 +405,8 @@ static u16 ref_choice(const struct ec_session *s)
 	return c->slave ? c->slave->station : EC_DC_NOBODY;
 }
 
-/**
- * ec_session_uses_clocks() - does the session need distributed clocks for sure?
- * @s: session
- *
- * Context: Process, session_lock held.
- * Return: true: a slave has SYNC signals, or the kernel's cycle keeps clocks.
- */
-bool ec_session_uses_clocks(const struct ec_session *s)
+/* Does the session need clocks for sure: SYNC signals, or a cycle of the kernel with clocks? */
+static bool uses_clocks(const struct ec_session *s)
 {
 	unsigned int i;
 
@@ -426,7 +424,7 @@ bool ec_session_uses_clocks(const struct ec_session *s)
  */
 static bool begins_clocks(const struct ec_session *s)
 {
-	return ec_session_uses_clocks(s) ||
+	return uses_clocks(s) ||
 	       (s->ref_config < s->wanted.n_configs &&
 		!ec_dc_can_be(&s->master->dc, ref_choice(s)));
 }
@@ -482,6 +480,15 @@ u32 ec_session_place(struct ec_session *s)
 	return offset;
 }
 
+static int create_thread(struct ec_session *s, u32 image_bytes)
+{
+	struct ec_shared *sh = s->shared;
+
+	sh->exchange_size = ec_cycle_thread_exchange(image_bytes);
+	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
+	return sh->exchange ? ec_cycle_thread_create(s, image_bytes, &cycle_ops) : -ENOMEM;
+}
+
 /**
  * ec_session_activate() - lay out process data, hand the links to the cycle
  * @s: session
@@ -516,9 +523,9 @@ int ec_session_activate(struct ec_session *s)
 	if (s->preset)
 		memcpy(s->shared->image, s->preset, offset);
 	ret = ec_requests_begin(s) ?: ec_copies_begin(s) ?: ec_cycle_layout(s) ?:
-	      ec_cycle_check_room(s);
+	      ec_cycle_check_room(s, uses_clocks(s));
 	if (!ret && s->kernel.period_ns)
-		ret = ec_cycle_thread_create(s, offset);
+		ret = create_thread(s, offset);
 	if (ret) {
 		ec_cycle_free(m, &s->cycle);
 		ec_copies_end(s);
@@ -552,8 +559,7 @@ int ec_session_activate(struct ec_session *s)
 		if (s->wanted.configs[i]->slave)
 			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_OP);
 	ec_session_raise_ref(s);
-	if (s->requests)
-		ec_requests_kick(s->requests);
+	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
 	ec_info(m, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->wanted.n_domains, offset, s->cycle.n_dgrams);

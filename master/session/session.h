@@ -156,7 +156,6 @@ void ec_session_raise_ref(struct ec_session *s);
 void ec_session_lower_ref(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
-bool ec_session_uses_clocks(const struct ec_session *s);
 void ec_session_clocks(struct ec_master *m);
 
 /* session_attach.c */
