@@ -20,6 +20,7 @@
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
 #define EC_MAX_SC_IDNS		1024	/* startup IDNs of one configuration */
+#define EC_MAX_SC_REGS		16	/* startup registers of one configuration */
 #define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
 #define EC_MAX_SESSION_BYTES	(64 * 1024 * 1024)	/* of a master's sessions and what is mapped */
 #define EC_MAX_REQUESTS		4096	/* of one session */

@@ -140,9 +140,8 @@ int ec_ioc_sc_watchdog(struct ec_call *call)
 {
 	struct ec_ioc_sc_watchdog *i = call->arg;
 
-	call->config->wd_divider = i->divider;
-	call->config->wd_intervals = i->intervals;
-	return 0;
+	return ec_ioc_limit(call, ec_config_reg(call->config, EC_REG_WD_DIVIDER, i->divider) ?:
+				  ec_config_reg(call->config, EC_REG_WD_SM, i->intervals));
 }
 
 static void sc_pdo_failed(struct ec_call *call, const struct ec_ioc_sc_pdo *i, int ret)

@@ -11,6 +11,14 @@
 #define WALK	64	/* list entries, */
 #define PIECE	4096	/* and bytes to copy, at once */
 
+/* 0: not configured */
+static u16 reg(const struct ec_config *c, u16 index)
+{
+	const struct ec_startup *u = ec_startup_find(c, EC_STARTUP_REG, index);
+
+	return u ? get_unaligned_le16(u->data) : 0;
+}
+
 int ec_ioc_config(struct ec_call *call)
 {
 	struct ec_ioc_config *i = call->arg;
@@ -22,12 +30,12 @@ int ec_ioc_config(struct ec_call *call)
 	i->product_code = c->product;
 	i->slave_position = c->slave ? c->slave->position : -1;
 	i->al_status = c->slave ? c->slave->al_status : 0;
-	i->watchdog_divider = c->wd_divider;
-	i->watchdog_intervals = c->wd_intervals;
+	i->watchdog_divider = reg(c, EC_REG_WD_DIVIDER);
+	i->watchdog_intervals = reg(c, EC_REG_WD_SM);
 	i->dc_assign_activate = c->sync.assign;
 	memcpy(i->dc_cycle, c->sync.period, sizeof(i->dc_cycle));
 	memcpy(i->dc_shift, c->sync.shift, sizeof(i->dc_shift));
-	i->sdo_count = c->n_sdos;
+	i->sdo_count = c->n_startup[EC_STARTUP_SDO];
 	i->state = ec_config_status(c);
 	i->flag_count = c->n_flags;
 	return 0;
@@ -103,73 +111,53 @@ static int copy_pieces(struct ec_call *call, const void *from, u32 size)
 }
 
 /* Return: as ec_ioc_pause(), or -ENOENT; 0: the section goes on. */
-static int find_sdo(struct ec_call *call, u32 n, const struct ec_config_sdo **found)
+static int find_startup(struct ec_call *call, u8 type, u32 n, const struct ec_startup **found)
 {
-	const struct ec_config_sdo *sdo;
-	u32 k = 0;
+	const struct ec_startup *u;
+	u32 k = 0, walked = 0;
 	int ret;
 
-	list_for_each_entry(sdo, &call->config->sdos, list) {
-		if (k == n) {
-			*found = sdo;
+	list_for_each_entry(u, &call->config->startup, list) {
+		if (u->type == type && k++ == n) {
+			*found = u;
 			return 0;
 		}
-		ret = ++k % WALK ? 0 : ec_ioc_pause(call);
+		ret = ++walked % WALK ? 0 : ec_ioc_pause(call);
 		if (ret)
 			return ret;
 	}
-	return ec_refuse(call, -ENOENT, "configuration %u has %u startup SDOs", call->config->index,
-			 call->config->n_sdos);
+	return ec_refuse(call, -ENOENT, "configuration %u has %u startup %ss", call->config->index,
+			 call->config->n_startup[type], type == EC_STARTUP_SDO ? "SDO" : "IDN");
 }
 
 int ec_ioc_config_sdo(struct ec_call *call)
 {
 	struct ec_ioc_config_sdo *i = call->arg;
-	const struct ec_config_sdo *sdo = NULL;
-	int ret = find_sdo(call, i->sdo_pos, &sdo);
+	const struct ec_startup *u = NULL;
+	int ret = find_startup(call, EC_STARTUP_SDO, i->sdo_pos, &u);
 
 	if (ret)
 		return ret;
-	i->flags = sdo->complete ? EC_SDO_FLAG_COMPLETE : 0;
-	i->sdo_index = sdo->index;
-	i->subindex = sdo->sub;
-	i->size = sdo->size;
-	return copy_pieces(call, sdo->data, sdo->size);
-}
-
-/* As find_sdo(). */
-static int find_idn(struct ec_call *call, u32 pos, const struct ec_config_idn **found)
-{
-	const struct ec_config_idn *idn;
-	u32 k = 0;
-	int ret;
-
-	list_for_each_entry(idn, &call->config->idns, list) {
-		if (k == pos) {
-			*found = idn;
-			return 0;
-		}
-		ret = ++k % WALK ? 0 : ec_ioc_pause(call);
-		if (ret)
-			return ret;
-	}
-	return ec_refuse(call, -ENOENT, "configuration %u has %u startup IDNs", call->config->index,
-			 call->config->n_idns);
+	i->flags = u->complete ? EC_SDO_FLAG_COMPLETE : 0;
+	i->sdo_index = u->index;
+	i->subindex = u->sub;
+	i->size = u->size;
+	return copy_pieces(call, u->data, u->size);
 }
 
 int ec_ioc_config_idn(struct ec_call *call)
 {
 	struct ec_ioc_config_idn *i = call->arg;
-	const struct ec_config_idn *idn = NULL;
-	int ret = find_idn(call, i->idn_pos, &idn);
+	const struct ec_startup *u = NULL;
+	int ret = find_startup(call, EC_STARTUP_IDN, i->idn_pos, &u);
 
 	if (ret)
 		return ret;
-	i->idn = idn->idn;
-	i->drive = idn->drive;
-	i->state = idn->state;
-	i->size = idn->size;
-	return copy_pieces(call, idn->data, idn->size);
+	i->idn = u->index;
+	i->drive = u->sub;
+	i->state = EC_TRANSITION_FROM(u->transition);
+	i->size = u->size;
+	return copy_pieces(call, u->data, u->size);
 }
 
 int ec_ioc_config_flag(struct ec_call *call)

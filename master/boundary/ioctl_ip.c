@@ -84,14 +84,15 @@ int ec_ioc_sc_ip(struct ec_call *call)
 	if (ret)
 		return ret;
 	from_uapi(&p, &i->params);
-	ec_config_ip(call->config, &p);
-	return 0;
+	return ec_ioc_limit(call, ec_config_ip(call->config, &p));
 }
 
 int ec_ioc_config_ip(struct ec_call *call)
 {
+	const struct ec_startup *u = ec_startup_find(call->config, EC_STARTUP_IP, 0);
+	static const struct ec_eoe_ip none;
 	struct ec_ioc_sc_ip *i = call->arg;
 
-	to_uapi(&i->params, &call->config->ip);
+	to_uapi(&i->params, u ? (const struct ec_eoe_ip *)u->data : &none);
 	return 0;
 }

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Bringing one slave to its state, configuring it on the way; worker. */
 #include <linux/delay.h>
-#include "../mailbox/coe.h"
 #include "config.h"
 #include "domain.h"
-#include "../mailbox/eoe.h"
 #include "../mailbox/mailbox.h"
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../bus/slave.h"
-#include "../mailbox/soe.h"
-#include "../wire/coe.h"
 #include "../wire/fmmu.h"
-#include "../wire/soe.h"
 #include "../link/xfer.h"
 #include "../bus/al.h"
 #include "../bus/slave_pdo.h"
@@ -217,73 +212,6 @@ static int to_preop(struct ec_slave *s)
 	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
 }
 
-static void sdo_failed(struct ec_slave *s, const struct ec_config_sdo *sdo, int ret, u32 abort)
-{
-	char why[96];
-
-	if (ret == -EIO && abort)
-		scnprintf(why, sizeof(why), "abort 0x%08x: %s", abort,
-			  ec_coe_abort_text(abort) ?: "unknown code");
-	else
-		ec_mbox_fail_text(ret, "CoE", why, sizeof(why));
-	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s",
-		      sdo->index, sdo->sub, sdo->size, why);
-}
-
-static int write_sdos(struct ec_slave *s, const struct ec_config *c)
-{
-	struct ec_config_sdo *sdo;
-	u32 abort;
-	int ret;
-
-	list_for_each_entry(sdo, &c->sdos, list) {
-		ret = ec_coe_download(&s->mbox, sdo->index, sdo->sub, sdo->complete, sdo->data,
-				      sdo->size, &abort, NULL);
-		if (ret == -ECANCELED || ret == -EINTR)
-			return ret;
-		if (ret) {
-			sdo_failed(s, sdo, ret, abort);
-			return abort ? -EREMOTEIO : ret;
-		}
-	}
-	return 0;
-}
-
-static void idn_failed(struct ec_slave *s, const struct ec_config_idn *i, int ret, u16 error)
-{
-	char name[12], why[96];
-
-	if (ret == -EIO && error)
-		scnprintf(why, sizeof(why), "SoE error 0x%04x: %s", error,
-			  ec_soe_error_text(error) ?: "unknown code");
-	else
-		ec_mbox_fail_text(ret, "SoE", why, sizeof(why));
-	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-		      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
-		      ec_soe_idn_text(i->idn, name), i->drive, i->size, why);
-}
-
-/* those of one AL state */
-static int write_idns(struct ec_slave *s, const struct ec_config *c, u8 state)
-{
-	struct ec_config_idn *i;
-	u16 error;
-	int ret;
-
-	list_for_each_entry(i, &c->idns, list) {
-		if (i->state != state)
-			continue;
-		ret = ec_soe_write(&s->mbox, i->drive, i->idn, i->data, i->size, &error, NULL);
-		if (ret == -ECANCELED || ret == -EINTR)
-			return ret;
-		if (ret) {
-			idn_failed(s, i, ret, error);
-			return error ? -EREMOTEIO : ret;
-		}
-	}
-	return 0;
-}
-
 /* Is there a SyncManager whose PDOs the application did not name? */
 static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
 {
@@ -344,8 +272,7 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_read_coe_pdos(s);
 	if (c) {
 		waits_for(s, "mailbox replies to its configuration");
-		ret = write_sdos(s, c) ?: write_idns(s, c, EC_AL_PREOP) ?: ec_apply_ip(s, c) ?:
-		      ec_apply_pdos(s, c);
+		ret = ec_startup_run(s, c, EC_TRANSITION_PS) ?: ec_apply_pdos(s, c);
 		waits_for(s, NULL);
 		if (ret)
 			return ret;
@@ -409,7 +336,7 @@ static int to_op(struct ec_slave *s)
 	ret = wait_outputs(s);
 	waits_for(s, NULL);
 	if (!ret && s->plan)
-		ret = write_idns(s, s->plan, EC_AL_SAFEOP);
+		ret = ec_startup_run(s, s->plan, EC_TRANSITION_SO);
 	if (ret)
 		return ret;
 	ret = s->plan ? ec_dc_sync_check(s, &s->plan->sync) : 0;

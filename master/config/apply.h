@@ -22,7 +22,4 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);
 const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
 					   unsigned int sm);
 
-/* apply_ip.c */
-int ec_apply_ip(struct ec_slave *slave, const struct ec_config *c);
-
 #endif

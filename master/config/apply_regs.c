@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* SyncManagers, FMMUs and watchdogs of a slave: what it takes to exchange process data. */
+/* SyncManagers and FMMUs of a slave: what it takes to exchange process data. */
 #include "config.h"
 #include "domain.h"
 #include "../link/links.h"
@@ -12,19 +12,16 @@
 
 /**
  * struct batch - writes that leave in as few frames as they fit in
- * @dg: datagrams: one for each SyncManager and FMMU, so that they fit beside a full
- *	cycle, and two for the watchdog
+ * @dg: datagrams: one for each SyncManager and FMMU, so that they fit beside a full cycle
  * @n: entries in @dg
  * @sm: pages of SyncManagers
  * @fmmu: pages of FMMUs
- * @wd: values of the watchdog
  */
 struct batch {
-	struct ec_dg dg[EC_MAX_SM + MAX_FMMU + 2];
+	struct ec_dg dg[EC_MAX_SM + MAX_FMMU];
 	unsigned int n;
 	u8 sm[EC_MAX_SM][EC_SM_PAGE];
 	u8 fmmu[MAX_FMMU][EC_FMMU_PAGE];
-	u8 wd[2][2];
 };
 
 static void add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, u16 len)
@@ -151,18 +148,8 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
 	return 0;
 }
 
-static void add_watchdog(struct batch *b, const struct ec_slave *s, const struct ec_config *c)
-{
-	put_unaligned_le16(c->wd_divider, b->wd[0]);
-	put_unaligned_le16(c->wd_intervals, b->wd[1]);
-	if (c->wd_divider)
-		add(b, s, EC_REG_WD_DIVIDER, b->wd[0], 2);
-	if (c->wd_intervals)
-		add(b, s, EC_REG_WD_SM, b->wd[1], 2);
-}
-
 /**
- * ec_apply_regs() - write watchdogs, SyncManagers and FMMUs of process data
+ * ec_apply_regs() - write SyncManagers and FMMUs of process data
  * @s: slave in PREOP
  * @c: its configuration; NULL: SyncManagers as the EEPROM has them
  *
@@ -177,8 +164,6 @@ int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 
 	if (!b)
 		return -ENOMEM;
-	if (c)
-		add_watchdog(b, s, c);
 	ret = add_sms(b, s, c);
 	if (!ret && c)
 		ret = add_fmmus(b, s, c);

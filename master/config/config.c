@@ -136,8 +136,7 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 	c->position = position;
 	c->vendor = vendor;
 	c->product = product;
-	INIT_LIST_HEAD(&c->sdos);
-	INIT_LIST_HEAD(&c->idns);
+	INIT_LIST_HEAD(&c->startup);
 	INIT_LIST_HEAD(&c->flags);
 	w->configs[w->n_configs++] = c;
 	return c;
@@ -167,17 +166,14 @@ void ec_config_begin(struct ec_config *c)
 
 void ec_config_free(struct ec_config *c)
 {
-	struct ec_config_sdo *sdo, *n;
-	struct ec_config_idn *idn, *after;
 	struct ec_config_flag *flag, *next;
+	struct ec_startup *u, *after;
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&c->sm[i].pdos);
-	list_for_each_entry_safe(sdo, n, &c->sdos, list)
-		kvfree(sdo);
-	list_for_each_entry_safe(idn, after, &c->idns, list)
-		kvfree(idn);
+	list_for_each_entry_safe(u, after, &c->startup, list)
+		kvfree(u);
 	list_for_each_entry_safe(flag, next, &c->flags, list)
 		kvfree(flag);
 	kfree(c);
@@ -292,8 +288,15 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 	return 0;
 }
 
-/* Memory for a part of the configuration, counted; ERR_PTR without. */
-static void *alloc(struct ec_config *c, size_t size)
+/**
+ * ec_config_alloc() - allocate memory for a part of a configuration, and charge for it
+ * @c: configuration
+ * @size: bytes
+ *
+ * Context: Process, lock of the session held. May sleep.
+ * Return: zeroed memory for kvfree(); ERR_PTR: -ENOMEM, -EDQUOT as ec_budget_charge().
+ */
+void *ec_config_alloc(struct ec_config *c, size_t size)
 {
 	int ret = ec_budget_charge(&c->wanted->budget, size);
 	void *p;
@@ -315,44 +318,54 @@ static void *alloc(struct ec_config *c, size_t size)
 int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, const u8 *data,
 		      u32 size)
 {
-	struct ec_config_sdo *sdo;
+	const struct ec_startup u = {
+		.type = EC_STARTUP_SDO, .transition = EC_TRANSITION_PS, .index = index,
+		.sub = sub, .complete = complete, .size = size,
+	};
+	int ret = PTR_ERR_OR_ZERO(ec_startup_add(c, &u, data));
 
-	if (c->n_sdos >= EC_MAX_SC_SDOS)
-		return -ENOSPC;
-	sdo = alloc(c, struct_size(sdo, data, size));
-	if (IS_ERR(sdo))
-		return PTR_ERR(sdo);
-	sdo->index = index;
-	sdo->sub = sub;
-	sdo->complete = complete;
-	sdo->size = size;
-	memcpy(sdo->data, data, size);
-	list_add_tail(&sdo->list, &c->sdos);
-	c->n_sdos++;
-	if (c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
+	if (!ret && c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
 		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n", index,
 			      sub);
-	return 0;
+	return ret;
 }
 
 /* @drive is below EC_SOE_DRIVES, @state is PREOP or SAFEOP */
 int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size)
 {
-	struct ec_config_idn *i;
+	const struct ec_startup u = {
+		.type = EC_STARTUP_IDN, .index = idn, .sub = drive, .size = size,
+		.transition = state == EC_AL_PREOP ? EC_TRANSITION_PS : EC_TRANSITION_SO,
+	};
 
-	if (c->n_idns >= EC_MAX_SC_IDNS)
-		return -ENOSPC;
-	i = alloc(c, struct_size(i, data, size));
-	if (IS_ERR(i))
-		return PTR_ERR(i);
-	i->idn = idn;
-	i->drive = drive;
-	i->state = state;
-	i->size = size;
-	memcpy(i->data, data, size);
-	list_add_tail(&i->list, &c->idns);
-	c->n_idns++;
-	return 0;
+	return PTR_ERR_OR_ZERO(ec_startup_add(c, &u, data));
+}
+
+/**
+ * ec_config_reg() - configure a write of a register of 16 bits
+ * @c: configuration
+ * @reg: register
+ * @value: replaces an earlier value; 0: the register is not written
+ *
+ * Context: Process, lock of the session held. May sleep.
+ * Return: 0, or as ec_startup_add().
+ */
+int ec_config_reg(struct ec_config *c, u16 reg, u16 value)
+{
+	const struct ec_startup what = {
+		.type = EC_STARTUP_REG, .transition = EC_TRANSITION_PS, .index = reg, .size = 2,
+	};
+	struct ec_startup *u = ec_startup_find(c, EC_STARTUP_REG, reg);
+	u8 data[2];
+
+	put_unaligned_le16(value, data);
+	if (u && !value)
+		ec_startup_del(c, u);
+	else if (u)
+		memcpy(u->data, data, sizeof(data));
+	else if (value)
+		u = ec_startup_add(c, &what, data);
+	return PTR_ERR_OR_ZERO(u);
 }
 
 /* @key is shorter than EC_UAPI_STRING; a later value replaces an earlier one */
@@ -368,7 +381,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	}
 	if (c->n_flags >= EC_MAX_SC_FLAGS)
 		return -ENOSPC;
-	flag = alloc(c, sizeof(*flag));
+	flag = ec_config_alloc(c, sizeof(*flag));
 	if (IS_ERR(flag))
 		return PTR_ERR(flag);
 	strscpy(flag->key, key, sizeof(flag->key));
@@ -388,12 +401,22 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
  * @c: configuration
  * @p: parameters; those not in @which stay as they are
  *
- * Context: Process, session_lock held.
+ * Context: Process, session_lock held. May sleep.
+ * Return: 0, or as ec_startup_add().
  */
-void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
+int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
 {
-	struct ec_eoe_ip *ip = &c->ip;
+	static const struct ec_eoe_ip none;
+	const struct ec_startup what = {
+		.type = EC_STARTUP_IP, .transition = EC_TRANSITION_PS, .size = sizeof(*p),
+	};
+	struct ec_startup *u = ec_startup_find(c, EC_STARTUP_IP, 0) ?:
+			       ec_startup_add(c, &what, &none);
+	struct ec_eoe_ip *ip;
 
+	if (IS_ERR(u))
+		return PTR_ERR(u);
+	ip = (struct ec_eoe_ip *)u->data;
 	if (p->which & EC_EOE_MAC)
 		memcpy(ip->mac, p->mac, sizeof(ip->mac));
 	if (p->which & EC_EOE_IP)
@@ -407,6 +430,7 @@ void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
 	if (p->which & EC_EOE_HOSTNAME)
 		memcpy(ip->name, p->name, sizeof(ip->name));
 	ip->which |= p->which;
+	return 0;
 }
 
 /**

@@ -12,6 +12,7 @@
 #include "../clock/dc.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
+#include "startup.h"
 
 struct ec_domain;
 struct ec_slave;
@@ -57,26 +58,6 @@ struct ec_config_fmmu {
 	u32 size;
 };
 
-/* a startup SDO, in the order of the calls */
-struct ec_config_sdo {
-	struct list_head list;
-	u16 index;
-	u8 sub;
-	bool complete;
-	u32 size;
-	u8 data[];
-};
-
-/* a startup IDN, in the order of the calls */
-struct ec_config_idn {
-	struct list_head list;
-	u16 idn;
-	u8 drive;
-	u8 state;	/* EC_AL_PREOP or EC_AL_SAFEOP */
-	u32 size;
-	u8 data[];
-};
-
 /* milliseconds between configuration and the request of SAFEOP */
 #define EC_FLAG_WAIT_SAFEOP	"WaitBeforeSAFEOPms"
 
@@ -106,10 +87,8 @@ struct ec_config_flag {
  * @sm: SyncManagers
  * @fmmus: what is mapped where
  * @n_fmmus: entries in @fmmus
- * @sdos: startup SDOs
- * @n_sdos: how many
- * @idns: startup IDNs
- * @n_idns: how many
+ * @startup: startup commands
+ * @n_startup: how many, by type
  * @flags: named numbers
  * @n_flags: how many
  * @overlap: its inputs may share logical addresses with its outputs
@@ -117,12 +96,9 @@ struct ec_config_flag {
  * @in_ring: they share logical addresses with those of other slaves, as long as
  *	it is where it was: at @ring_position
  * @ring_position: when it was activated
- * @wd_divider: register 0x0400, 0: leave
- * @wd_intervals: register 0x0420, 0: leave
  * @sync: SYNC signals
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @emergencies: how many to keep
- * @ip: to be written by EoE, @which 0: nothing
  * @emerg_cleared: by an application in the kernel, of the lost ones
  * @lost: the slave that it had while active, in words, and when it was there last (ktime)
  * @slave: attached slave with a reference, or NULL
@@ -138,23 +114,18 @@ struct ec_config {
 	struct ec_config_sm sm[EC_MAX_SM];
 	struct ec_config_fmmu fmmus[EC_MAX_FMMU];
 	unsigned int n_fmmus;
-	struct list_head sdos;
-	unsigned int n_sdos;
-	struct list_head idns;
-	unsigned int n_idns;
+	struct list_head startup;
+	unsigned int n_startup[EC_STARTUP_TYPES];
 	struct list_head flags;
 	unsigned int n_flags;
 	bool overlap;
 	bool lrw;
 	bool in_ring;
 	u32 ring_position;
-	u16 wd_divider;
-	u16 wd_intervals;
 	struct ec_dc_sync sync;
 	u32 timeout_ms[9][9];
 	u32 emergencies;
 	u32 emerg_cleared;
-	struct ec_eoe_ip ip;
 	struct {
 		char text[EC_UAPI_REASON / 2];
 		u64 seen_ns;
@@ -207,7 +178,9 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 int ec_config_idn_add(struct ec_config *c, u8 drive, u16 idn, u8 state, const u8 *data, u32 size);
 s32 ec_config_flag(const struct ec_config *c, const char *key);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
-void ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
+int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
+int ec_config_reg(struct ec_config *c, u16 reg, u16 value);
+void *ec_config_alloc(struct ec_config *c, size_t size);
 bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit);

@@ -86,36 +86,43 @@ static bool fmmus_differ(const struct ec_config *a, const struct ec_config *b)
 	return false;
 }
 
-static bool sdos_differ(const struct ec_config *a, const struct ec_config *b,
-			const struct text *t)
+static bool command_differs(const struct ec_config *c, const struct ec_startup *u,
+			    const struct text *t)
 {
-	const struct ec_config_sdo *x, *y = list_first_entry(&b->sdos, typeof(*y), list);
-
-	if (a->n_sdos != b->n_sdos)
-		return differs(t, "slave %u:%u has %u startup SDOs, not %u", SLAVE(a), a->n_sdos,
-			       b->n_sdos);
-	list_for_each_entry(x, &a->sdos, list) {
-		if (x->index != y->index || x->sub != y->sub || x->complete != y->complete ||
-		    x->size != y->size || memcmp(x->data, y->data, x->size))
-			return differs(t, "slave %u:%u, startup SDO 0x%04x:%02x", SLAVE(a),
-				       x->index, x->sub);
-		y = list_next_entry(y, list);
+	switch (u->type) {
+	case EC_STARTUP_SDO:
+		return differs(t, "slave %u:%u, startup SDO 0x%04x:%02x", SLAVE(c), u->index,
+			       u->sub);
+	case EC_STARTUP_IDN:
+		return differs(t, "slave %u:%u, startup IDN 0x%04x", SLAVE(c), u->index);
+	case EC_STARTUP_IP:
+		return differs(t, "slave %u:%u, IP parameters", SLAVE(c));
+	default:
+		return differs(t, "slave %u:%u, watchdog", SLAVE(c));
 	}
-	return false;
 }
 
-static bool idns_differ(const struct ec_config *a, const struct ec_config *b,
-			const struct text *t)
+static bool startup_differs(const struct ec_config *a, const struct ec_config *b,
+			    const struct text *t)
 {
-	const struct ec_config_idn *x, *y = list_first_entry(&b->idns, typeof(*y), list);
+	const struct ec_startup *x, *y = list_first_entry(&b->startup, typeof(*y), list);
+	struct ec_startup kind = { };
+	const u32 *n = a->n_startup, *m = b->n_startup;
 
-	if (a->n_idns != b->n_idns)
-		return differs(t, "slave %u:%u has %u startup IDNs, not %u", SLAVE(a), a->n_idns,
-			       b->n_idns);
-	list_for_each_entry(x, &a->idns, list) {
-		if (x->idn != y->idn || x->drive != y->drive || x->state != y->state ||
-		    x->size != y->size || memcmp(x->data, y->data, x->size))
-			return differs(t, "slave %u:%u, startup IDN 0x%04x", SLAVE(a), x->idn);
+	for (; kind.type < EC_STARTUP_TYPES; kind.type++) {
+		if (n[kind.type] == m[kind.type])
+			continue;
+		if (kind.type == EC_STARTUP_SDO || kind.type == EC_STARTUP_IDN)
+			return differs(t, "slave %u:%u has %u startup %ss, not %u", SLAVE(a),
+				       n[kind.type], kind.type == EC_STARTUP_SDO ? "SDO" : "IDN",
+				       m[kind.type]);
+		return command_differs(a, &kind, t);
+	}
+	list_for_each_entry(x, &a->startup, list) {
+		if (x->transition != y->transition || x->index != y->index || x->sub != y->sub ||
+		    x->complete != y->complete || x->size != y->size ||
+		    memcmp(x->data, y->data, x->size))
+			return command_differs(a, x, t);
 		y = list_next_entry(y, list);
 	}
 	return false;
@@ -146,22 +153,16 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 	if (a->vendor != b->vendor || a->product != b->product)
 		return differs(t, "slave %u:%u is 0x%08x/0x%08x, not 0x%08x/0x%08x", SLAVE(a),
 			       a->vendor, a->product, b->vendor, b->product);
-	if (sms_differ(a, b, t) || sdos_differ(a, b, t) || idns_differ(a, b, t) ||
-	    flags_differ(a, b, t))
+	if (sms_differ(a, b, t) || startup_differs(a, b, t) || flags_differ(a, b, t))
 		return true;
 	if (a->overlap != b->overlap || fmmus_differ(a, b))
 		return differs(t, "slave %u:%u, its place in the domains", SLAVE(a));
-	if (a->wd_divider != b->wd_divider || a->wd_intervals != b->wd_intervals)
-		return differs(t, "slave %u:%u, watchdog", SLAVE(a));
 	if (a->sync.assign != b->sync.assign ||
 	    memcmp(a->sync.period, b->sync.period, sizeof(a->sync.period)) ||
 	    memcmp(a->sync.shift, b->sync.shift, sizeof(a->sync.shift)))
 		return differs(t, "slave %u:%u, distributed clock", SLAVE(a));
 	if (memcmp(a->timeout_ms, b->timeout_ms, sizeof(a->timeout_ms)))
 		return differs(t, "slave %u:%u, time limits of its states", SLAVE(a));
-	/* a struct of bytes; those nobody has set are zero */
-	if (memcmp(&a->ip, &b->ip, sizeof(a->ip)))
-		return differs(t, "slave %u:%u, IP parameters", SLAVE(a));
 	if (a->emergencies != b->emergencies)
 		return differs(t, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a),
 			       a->emergencies, b->emergencies);

@@ -102,7 +102,7 @@ static void kapi_sdo_complete(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, abort, (u32)EC_ABORT_NO_OBJECT);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x2001, whole, 0, &abort), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_complete_sdo(k->sc[1], 0x3fff, whole, 4), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->n_sdos, 1u);
+	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->n_startup[EC_STARTUP_SDO], 1u);
 	ecrt_release_master(k->m);
 }
 

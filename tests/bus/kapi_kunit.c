@@ -394,7 +394,7 @@ static void kapi_stored(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_sdo(sc, 0x2000, 0, record, 6), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_complete_sdo(sc, 0x2001, record, 0), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_sdo(sc, 0x2000, 0, NULL, 4), -EINVAL);
-	KUNIT_EXPECT_EQ(test, c->n_sdos, 4u);
+	KUNIT_EXPECT_EQ(test, c->n_startup[EC_STARTUP_SDO], 4u);
 	sc = kapp_config(k, 1);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_mac_address(sc, mac), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_ip_address(sc, ip), 0);

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/err.h>
+#include "config.h"
+#include "startup.h"
+#include "../base/limits.h"
+#include "../bus/slave.h"
+#include "../link/xfer.h"
+#include "../mailbox/coe.h"
+#include "../mailbox/eoe.h"
+#include "../mailbox/mailbox.h"
+#include "../mailbox/soe.h"
+#include "../wire/coe.h"
+#include "../wire/soe.h"
+
+/**
+ * ec_startup_add() - add a command to a configuration
+ * @c: configuration
+ * @what: type, transition, index, sub, complete, and size of @data
+ * @data: its value
+ *
+ * Context: Process, lock of the session held. May sleep.
+ * Return: the command; ERR_PTR: -ENOSPC beyond the limit of its type, -ENOMEM, -EDQUOT as
+ * ec_budget_charge().
+ */
+struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *what,
+				  const void *data)
+{
+	static const u16 limit[EC_STARTUP_TYPES] = {
+		EC_MAX_SC_SDOS, EC_MAX_SC_IDNS, 1, EC_MAX_SC_REGS,
+	};
+	struct ec_startup *u, *before;
+
+	if (c->n_startup[what->type] >= limit[what->type])
+		return ERR_PTR(-ENOSPC);
+	u = ec_config_alloc(c, struct_size(u, data, what->size));
+	if (IS_ERR(u))
+		return u;
+	*u = *what;
+	memcpy(u->data, data, what->size);
+	list_for_each_entry_reverse(before, &c->startup, list)
+		if (before->type <= u->type)
+			break;
+	list_add(&u->list, &before->list);
+	c->n_startup[u->type]++;
+	return u;
+}
+
+/**
+ * ec_startup_find() - the first command of its kind
+ * @c: configuration
+ * @type: enum ec_startup_type
+ * @index: its object, IDN, or register
+ *
+ * Context: Process, lock of the session held or in a show section.
+ * Return: command, or NULL.
+ */
+struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index)
+{
+	struct ec_startup *u;
+
+	list_for_each_entry(u, &c->startup, list)
+		if (u->type == type && u->index == index)
+			return u;
+	return NULL;
+}
+
+/**
+ * ec_startup_del() - remove a command
+ * @c: its configuration
+ * @u: command
+ *
+ * Context: Process, lock of the session held.
+ */
+void ec_startup_del(struct ec_config *c, struct ec_startup *u)
+{
+	list_del(&u->list);
+	c->n_startup[u->type]--;
+	ec_budget_release(&c->wanted->budget, struct_size(u, data, u->size));
+	kvfree(u);
+}
+
+/* What a command does; @code: the slave's own error number, 0: none */
+static int run(struct ec_slave *s, const struct ec_startup *u, u32 *code)
+{
+	u16 error = 0;
+	int ret;
+
+	switch (u->type) {
+	case EC_STARTUP_SDO:
+		return ec_coe_download(&s->mbox, u->index, u->sub, u->complete, u->data, u->size,
+				       code, NULL);
+	case EC_STARTUP_IDN:
+		ret = ec_soe_write(&s->mbox, u->sub, u->index, u->data, u->size, &error, NULL);
+		break;
+	case EC_STARTUP_IP:
+		ret = ec_eoe_set_ip(&s->mbox, (const void *)u->data, &error);
+		break;
+	default:
+		return ec_xfer_fpwr(s->bus->links, s->station, u->index, u->data, u->size);
+	}
+	*code = error;
+	return ret;
+}
+
+static void why(char *text, size_t size, const struct ec_startup *u, int ret, u32 code)
+{
+	bool sdo = u->type == EC_STARTUP_SDO;
+
+	if (ret == -EIO && code)
+		scnprintf(text, size, sdo ? "abort 0x%08x: %s" : "SoE error 0x%04x: %s", code,
+			  (sdo ? ec_coe_abort_text(code) : ec_soe_error_text(code)) ?: "unknown code");
+	else
+		ec_mbox_fail_text(ret, sdo ? "CoE" : u->type == EC_STARTUP_IDN ? "SoE" : "EoE",
+				  text, size);
+}
+
+static void failed(struct ec_slave *s, const struct ec_startup *u, int ret, u32 code)
+{
+	char name[12], text[96];
+
+	why(text, sizeof(text), u, ret, code);
+	if (u->type == EC_STARTUP_SDO)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s", u->index, u->sub,
+			      u->size, text);
+	else if (u->type == EC_STARTUP_IDN)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
+			      ec_soe_idn_text(u->index, name), u->sub, u->size, text);
+	else if (u->type == EC_STARTUP_REG)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "startup register 0x%04x failed: %s",
+			      u->index, text);
+	else if (ret == -EREMOTEIO)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "IP parameters refused: EoE result 0x%04x (%s)", code,
+			      ec_eoe_result_text(code));
+	else if (ret == -EPROTONOSUPPORT)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
+	else
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "IP parameters failed: %s", text);
+}
+
+/**
+ * ec_startup_run() - run the commands of a transition
+ * @s: slave, in the state where it begins
+ * @c: configuration
+ * @transition: EC_TRANSITION()
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0; -ECANCELED, -EINTR; else an error, noted as the slave's: -EREMOTEIO when the
+ * slave refused a command with an error number, or as its protocol has it.
+ */
+int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
+{
+	const struct ec_startup *u;
+	u32 code;
+	int ret;
+
+	list_for_each_entry(u, &c->startup, list) {
+		if (u->transition != transition)
+			continue;
+		code = 0;
+		ret = run(s, u, &code);
+		if (ret == -ECANCELED || ret == -EINTR)
+			return ret;
+		if (ret) {
+			failed(s, u, ret, code);
+			return code ? -EREMOTEIO : ret;
+		}
+	}
+	return 0;
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Startup commands: what a slave gets on its way to a state, beside PDOs and FMMUs. */
+#ifndef EC_STARTUP_H
+#define EC_STARTUP_H
+
+#include <linux/list.h>
+#include <linux/types.h>
+#include "../wire/al.h"
+
+struct ec_config;
+struct ec_slave;
+
+/* protocols, in the order in which a transition runs their commands */
+enum ec_startup_type {
+	EC_STARTUP_SDO,
+	EC_STARTUP_IDN,
+	EC_STARTUP_IP,
+	EC_STARTUP_REG,
+	EC_STARTUP_TYPES
+};
+
+/* a step between two AL states, such as PS: a command is run before @to is requested */
+#define EC_TRANSITION(from, to)		((from) << 4 | (to))
+#define EC_TRANSITION_FROM(t)		((t) >> 4)
+#define EC_TRANSITION_PS		EC_TRANSITION(EC_AL_PREOP, EC_AL_SAFEOP)
+#define EC_TRANSITION_SO		EC_TRANSITION(EC_AL_SAFEOP, EC_AL_OP)
+
+/**
+ * struct ec_startup - one command
+ * @list: by type; of one type in the order of the calls
+ * @type: enum ec_startup_type
+ * @transition: EC_TRANSITION()
+ * @index: object, IDN, or register
+ * @sub: subindex, or drive
+ * @complete: SDO with complete access
+ * @size: bytes of @data
+ * @data: value, little endian; struct ec_eoe_ip
+ */
+struct ec_startup {
+	struct list_head list;
+	u8 type;
+	u8 transition;
+	u16 index;
+	u8 sub;
+	bool complete;
+	u32 size;
+	u8 data[] __aligned(4);
+};
+
+struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *what,
+				  const void *data);
+struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index);
+void ec_startup_del(struct ec_config *c, struct ec_startup *u);
+int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
+
+#endif
