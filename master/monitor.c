@@ -35,24 +35,11 @@ static void check_links(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	u64 now = ktime_get_ns();
-	unsigned int i;
-	bool up = false;
 
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		bool u = ec_link_is_up(&m->links.link[i]);
-
-		if (u != m->links.link[i].up) {
-			WRITE_ONCE(m->links.link[i].up, u);
-			ec_log_event(m->base, EC_LOG_ANY, 0, u ? KERN_INFO : KERN_WARNING, "%s link %s\n",
-				     i ? "backup" : "main", u ? "up" : "down");
-		}
-		up |= u;
-	}
-	w->link_up = up;
+	w->link_up = ec_links_look(&m->links);
 	if (now - w->rates_ns >= NSEC_PER_SEC) {
 		w->rates_ns = now;
-		for (i = 0; i < EC_MAX_LINKS; i++)
-			ec_link_rates_update(&m->links.link[i]);
+		ec_links_update_rates(&m->links);
 	}
 }
 
@@ -191,8 +178,7 @@ static void count_slaves(struct watch *w)
 	}
 	WRITE_ONCE(m->bus.responding, count);
 	WRITE_ONCE(m->bus.al_states, al_bits(ored));
-	WRITE_ONCE(m->links.link[0].slaves, count);
-	WRITE_ONCE(m->links.link[0].al_states, al_bits(ored));
+	ec_links_saw(&m->links, count, al_bits(ored));
 	if (count != w->count) {
 		if (w->scanned)
 			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
@@ -354,8 +340,7 @@ static void nobody_there(struct ec_master *m)
 {
 	WRITE_ONCE(m->bus.responding, 0);
 	WRITE_ONCE(m->bus.al_states, 0);
-	WRITE_ONCE(m->links.link[0].slaves, 0);
-	WRITE_ONCE(m->links.link[0].al_states, 0);
+	ec_links_saw(&m->links, 0, 0);
 	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
 		return;
 	WRITE_ONCE(m->bus.rescan, false);

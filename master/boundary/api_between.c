@@ -36,7 +36,7 @@ static bool left(const struct ec_master *m)
 /* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
 static bool awaited(const struct ec_master *m)
 {
-	return READ_ONCE(m->links.link[0].acyclic.used) &&
+	return ec_links_acyclic_frames(&m->links) &&
 	       READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC;
 }
 

@@ -29,7 +29,7 @@ static void leave_to_work(struct ec_master *m)
  */
 static int enter(struct ec_master *m, struct ec_session **s)
 {
-	const struct ecdev *dev;
+	const struct ecdev_ops *ops;
 	struct ec_api *api;
 	int ret;
 
@@ -40,7 +40,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	if (!*s)
 		return -EINVAL;
 	/* without a device the links need not be had back */
-	if (!READ_ONCE(m->links.link[0].dev))
+	if (!ec_links_attached(&m->links))
 		return -ENODEV;
 	ret = ec_access_try_enter(&m->links);
 	if (ret) {
@@ -48,12 +48,12 @@ static int enter(struct ec_master *m, struct ec_session **s)
 			leave_to_work(m);
 		return ret;
 	}
-	dev = READ_ONCE(m->links.link[0].dev);
-	if (!dev)
+	ops = ec_links_device_ops(&m->links);
+	if (!ops)
 		ret = -ENODEV;
 	else if (READ_ONCE(m->active) != *s)
 		ret = -EINVAL;
-	else if (!place_is_right(dev->ops))
+	else if (!place_is_right(ops))
 		ret = -EWOULDBLOCK;
 	if (!ret)
 		return 0;
@@ -80,7 +80,7 @@ void ec_api_work(struct work_struct *work)
 	struct ec_master *m = api->file.master;
 
 	mutex_lock(&m->cyclic_lock);
-	if (m->active && m->active->owner == &api->file && READ_ONCE(m->links.link[0].dev))
+	if (m->active && m->active->owner == &api->file && ec_links_attached(&m->links))
 		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
 	mutex_unlock(&m->cyclic_lock);
 	if (READ_ONCE(api->atomic) && !api->told) {
@@ -103,7 +103,7 @@ int ecrt_master_receive(ec_master_t *master)
 		return ret;
 	if (ec_api_is_between(master->api)) {
 		/* for those who wait; process data belong to the cycle */
-		ec_link_poll(&master->links.link[0]);
+		ec_links_poll(&master->links);
 	} else {
 		master->api->received |= master->api->sent;
 		master->api->sent = 0;

@@ -44,7 +44,7 @@ int ec_ioc_reason(struct ec_call *call)
 	return 0;
 }
 
-static void device_info(struct ec_link *link, struct ec_ioc_device *d)
+static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 {
 	struct ecdev *dev;
 
@@ -145,11 +145,11 @@ int ec_ioc_master(struct ec_call *call)
 	if (m->session)
 		session_info(m->session, i);
 	ec_show_end(&m->base->show);
-	i->phase = !m->links.link[0].dev ? EC_PHASE_WAITING :
+	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
-	for (l = 0; l < EC_UAPI_DEVICES && (!l || m->links.spec[l]); l++) {
-		device_info(&m->links.link[l], &i->devices[l]);
-		i->not_captured += atomic64_read(&m->links.link[l].stats.not_captured);
+	for (l = 0; l < ec_links_n(&m->links); l++) {
+		device_info(ec_links_at(&m->links, l), &i->devices[l]);
+		i->not_captured += atomic64_read(&ec_links_at(&m->links, l)->stats.not_captured);
 	}
 	i->device_count = l;
 	return 0;

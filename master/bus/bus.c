@@ -162,7 +162,7 @@ void ec_bus_wait_slave(struct ec_slave *slave)
 	struct ec_bus *bus = slave->bus;
 
 	wait_event_killable_timeout(bus->settled,
-				    slave_settled(slave) || !READ_ONCE(bus->links->link[0].up),
+				    slave_settled(slave) || !ec_links_seen_up(bus->links),
 				    msecs_to_jiffies(5000));
 }
 

@@ -213,7 +213,7 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 		first = odd ? min(first, i) : first;
 	}
 	/* the one that leads to the other device of a ring */
-	return n && free == 1 && roots == 1 && slaves[0]->bus->links->link[1].up ? n : first;
+	return n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links) ? n : first;
 }
 
 /**

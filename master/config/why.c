@@ -56,17 +56,11 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 /* Without device or link there is no slave at all. */
 static size_t no_link(const struct ec_links *l, char *buf, size_t size)
 {
-	unsigned int i;
-	bool dev = false;
-
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (READ_ONCE(l->link[i].up))
-			return 0;
-		dev |= READ_ONCE(l->link[i].dev) != NULL;
-	}
-	if (!dev)
+	if (ec_links_any_up(l))
+		return 0;
+	if (!ec_links_any_device(l))
 		return scnprintf(buf, size, "no network device: master %u waits for %s", l->base->index,
-				 l->spec[0]);
+				 ec_links_main_name(l));
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
 			 l->base->index);
 }

@@ -270,7 +270,7 @@ static void adopt(struct ec_cycle_thread *t)
 static void tell_device(const struct ec_session *s)
 {
 	u32 *no_device = &s->shared->status->no_device;
-	bool gone = !READ_ONCE(s->master->links.link[0].dev);
+	bool gone = !ec_links_attached(&s->master->links);
 
 	if (unlikely(*no_device != gone))
 		WRITE_ONCE(*no_device, gone);

@@ -215,9 +215,9 @@ int ec_cycle_do_receive(struct ec_session *s)
 	u64 now, limit = (u64)m->links.io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
 
-	if (!READ_ONCE(m->links.link[0].dev))
+	if (!ec_links_attached(&m->links))
 		return -ENODEV;
-	ec_link_poll(&m->links.link[0]);
+	ec_links_poll(&m->links);
 	WRITE_ONCE(m->links.access.polls, m->links.access.polls + 1);
 	now = ktime_get_ns();
 	for (i = 0; i < c->n_flight; i++) {
@@ -225,12 +225,12 @@ int ec_cycle_do_receive(struct ec_session *s)
 
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
-				atomic64_inc(&m->links.link[0].stats.late);
+				ec_links_count(&m->links, late);
 			take_frame(s, f);
 			ec_slot_put(&m->links.slots, f->slot);
 		} else if (f->missed && now - f->slot->sent_ns > limit &&
 			   ec_slot_cancel(f->slot, now)) {
-			atomic64_inc(&m->links.link[0].stats.lost);
+			ec_links_count(&m->links, lost);
 		} else {
 			/* the machine may have stood still: looked for twice at least */
 			f->missed = true;
@@ -258,7 +258,7 @@ int ec_cycle_receive(struct ec_session *s)
 {
 	int ret;
 
-	if (!READ_ONCE(s->master->links.link[0].dev))
+	if (!ec_links_attached(&s->master->links))
 		return -ENODEV;
 	ec_access_enter(&s->master->links);
 	ret = ec_cycle_do_receive(s);
@@ -278,7 +278,7 @@ static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		atomic64_inc(&m->links.link[0].stats.lost);
+		ec_links_count(&m->links, lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
 		ec_slot_put(&m->links.slots, oldest);
 	else
@@ -357,7 +357,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	if (make_room(m, c, send->now))
 		slot = ec_slot_get(&m->links.slots, true, send->now);
 	if (!slot) {
-		atomic64_inc(&m->links.link[0].stats.tx_errors);
+		ec_links_count(&m->links, tx_errors);
 		send->dc = 0;
 		return c->n_dgrams;
 	}
@@ -367,7 +367,7 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 	ret = ec_access_transmit(&m->links, slot, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		atomic64_inc(&m->links.link[0].stats.tx_errors);
+		ec_links_count(&m->links, tx_errors);
 	if (!ret)
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
@@ -430,7 +430,7 @@ int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!READ_ONCE(m->links.link[0].dev))
+	if (!ec_links_attached(&m->links))
 		return -ENODEV;
 	if (!s->thread)
 		ec_late_send(s, send.now);
@@ -468,7 +468,7 @@ int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
 {
 	int ret;
 
-	if (!READ_ONCE(s->master->links.link[0].dev))
+	if (!ec_links_attached(&s->master->links))
 		return -ENODEV;
 	ec_access_enter(&s->master->links);
 	ret = ec_cycle_do_send(s, what);

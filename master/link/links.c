@@ -52,3 +52,70 @@ void ec_links_exit(struct ec_links *l)
 	ec_capture_destroy(l);
 	ec_slots_exit(&l->slots);
 }
+
+/**
+ * ec_links_device_ops() - how the device that sends frames wants to be used
+ * @l: links
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: operations of its driver, NULL without device.
+ */
+const struct ecdev_ops *ec_links_device_ops(const struct ec_links *l)
+{
+	const struct ecdev *dev = READ_ONCE(l->link[0].dev);	/* may be withdrawn now */
+
+	return dev ? dev->ops : NULL;
+}
+
+/**
+ * ec_links_look() - read the physical state of the links; log changes
+ * @l: links
+ *
+ * Context: The monitor.
+ * Return: whether one is up.
+ */
+bool ec_links_look(struct ec_links *l)
+{
+	unsigned int i;
+	bool any = false;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		bool up = ec_link_is_up(&l->link[i]);
+
+		if (up != l->link[i].up) {
+			WRITE_ONCE(l->link[i].up, up);
+			ec_log_event(l->base, EC_LOG_ANY, 0, up ? KERN_INFO : KERN_WARNING,
+				     "%s link %s\n", i ? "backup" : "main", up ? "up" : "down");
+		}
+		any |= up;
+	}
+	return any;
+}
+
+/**
+ * ec_links_update_rates() - update the averages; called once a second
+ * @l: links
+ *
+ * Context: The monitor.
+ */
+void ec_links_update_rates(struct ec_links *l)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		ec_link_rates_update(&l->link[i]);
+}
+
+/**
+ * ec_links_saw() - note what the last broadcast has brought back
+ * @l: links
+ * @slaves: that answered
+ * @al_states: OR of their AL states
+ *
+ * Context: The monitor.
+ */
+void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states)
+{
+	WRITE_ONCE(l->link[0].slaves, slaves);
+	WRITE_ONCE(l->link[0].al_states, al_states);
+}

@@ -18,6 +18,7 @@
 
 struct ec_capture;
 struct ec_links;
+struct ecdev_ops;
 struct task_struct;
 
 /** struct ec_links_ops - what the layer reports to higher ones; each may be NULL */
@@ -64,13 +65,73 @@ static inline bool ec_links_is_up(const struct ec_links *l)
 	return ec_link_is_up(&l->link[0]);
 }
 
+/* the same, as the monitor saw it last */
+static inline bool ec_links_seen_up(const struct ec_links *l)
+{
+	return READ_ONCE(l->link[0].up);
+}
+
+/* the link at the other end of a ring, as the monitor saw it last */
+static inline bool ec_links_ring_end_up(const struct ec_links *l)
+{
+	return READ_ONCE(l->link[1].up);
+}
+
+/* one link at least, as the monitor saw it last */
+static inline bool ec_links_any_up(const struct ec_links *l)
+{
+	return ec_links_seen_up(l) || ec_links_ring_end_up(l);
+}
+
+/* a device that sends frames is attached */
+static inline bool ec_links_attached(const struct ec_links *l)
+{
+	return READ_ONCE(l->link[0].dev);
+}
+
+static inline bool ec_links_any_device(const struct ec_links *l)
+{
+	return ec_links_attached(l) || READ_ONCE(l->link[1].dev);
+}
+
+/* main device as the module parameters name it */
+static inline const char *ec_links_main_name(const struct ec_links *l)
+{
+	return l->spec[0];
+}
+
+/* links that the module parameters name; numbers of ec_links_at() are below */
+static inline unsigned int ec_links_n(const struct ec_links *l)
+{
+	return l->spec[1] ? 2 : 1;
+}
+
+static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsigned int i)
+{
+	return &l->link[i];
+}
+
+/* deliver what the devices have received; the owner of the links, RT-safe */
+static inline void ec_links_poll(struct ec_links *l)
+{
+	ec_link_poll(&l->link[0]);
+}
+
+/* count a frame of the cycle: lost, late, or tx_errors */
+#define ec_links_count(l, what)	atomic64_inc(&(l)->link[0].stats.what)
+
 /* frames sent since the device was attached */
 static inline u64 ec_links_sent(const struct ec_links *l)
 {
 	return atomic64_read(&l->link[0].stats.tx_frames);
 }
 
-/* wire time of the acyclic frames on their way */
+/* acyclic frames in the queue and on their way, and the wire time of them */
+static inline unsigned int ec_links_acyclic_frames(const struct ec_links *l)
+{
+	return READ_ONCE(l->link[0].acyclic.used);
+}
+
 static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 {
 	return atomic_read(&l->link[0].acyclic_ns);
@@ -79,5 +140,9 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);
+const struct ecdev_ops *ec_links_device_ops(const struct ec_links *l);
+bool ec_links_look(struct ec_links *l);
+void ec_links_update_rates(struct ec_links *l);
+void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states);
 
 #endif

@@ -153,7 +153,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	struct ec_session *s;
 	int ret;
 
-	if (!READ_ONCE(m->links.link[0].dev))
+	if (!ec_links_attached(&m->links))
 		return -ENODEV;
 	if (taken(m))
 		return -EBUSY;

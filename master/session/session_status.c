@@ -42,12 +42,13 @@ static void status_links(struct ec_master *m, struct ec_status *st)
 {
 	unsigned int i;
 
-	for (i = 0; i < EC_UAPI_DEVICES && (!i || m->links.spec[i]); i++) {
-		u32 slaves = READ_ONCE(m->links.link[i].slaves);
+	for (i = 0; i < ec_links_n(&m->links); i++) {
+		const struct ec_link *link = ec_links_at(&m->links, i);
+		u32 slaves = READ_ONCE(link->slaves);
 
 		WRITE_ONCE(st->links[i].slaves_responding, slaves);
 		WRITE_ONCE(st->links[i].al_states, slaves ? m->bus.al_states : 0);
-		WRITE_ONCE(st->links[i].link_up, m->links.link[i].up);
+		WRITE_ONCE(st->links[i].link_up, READ_ONCE(link->up));
 	}
 	WRITE_ONCE(st->link_count, i);
 }
@@ -69,7 +70,7 @@ void ec_session_fill_status(struct ec_session *s)
 
 	WRITE_ONCE(st->slaves_responding, m->bus.responding);
 	WRITE_ONCE(st->al_states, m->bus.al_states);
-	WRITE_ONCE(st->link_up, m->links.link[0].up || m->links.link[1].up);
+	WRITE_ONCE(st->link_up, ec_links_any_up(&m->links));
 	status_links(m, st);
 	for (i = 0; i < s->wanted.n_configs; i++)
 		WRITE_ONCE(st->configs[i], ec_config_status(s->wanted.configs[i]));
