@@ -26,6 +26,7 @@ static void device(struct ec_links *l, const struct ec_link *link, bool attached
 
 static void queued(struct ec_links *l)
 {
+	lockdep_assert_held(&l->access.lock);
 	ec_api_left(container_of(l, struct ec_master, links));
 }
 
@@ -90,6 +91,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	m->base->index = index;
 	m->base->debug = debug;
 	ec_log_init(&m->base->log);
+	ec_show_init(&m->base->show);
 	mutex_init(&m->session_lock);
 	mutex_init(&m->cyclic_lock);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);

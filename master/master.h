@@ -34,7 +34,6 @@ struct task_struct;
  *
  *
  * @monitor: thread
- * @monitor_wq: wakes it
  * @lanes: workers of requests; they wait for slaves
  * @service: what others wait for, never many at once: clocks, looks at requests,
  *	calls of an application in the kernel
@@ -67,7 +66,6 @@ struct ec_master {
 	struct ec_bus bus;
 
 	struct task_struct *monitor;
-	wait_queue_head_t monitor_wq;
 	struct workqueue_struct *lanes;
 	struct workqueue_struct *service;
 

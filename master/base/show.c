@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/delay.h>
 #include <linux/preempt.h>
 #include <linux/processor.h>
 #include <linux/sched/signal.h>
 #include "show.h"
 
-#define WAIT_US	100	/* between two looks whether a change is over */
+/**
+ * ec_show_init() - no readers, no change
+ * @show: zeroed structure
+ *
+ * Context: Any.
+ */
+void ec_show_init(struct ec_show *show)
+{
+	init_waitqueue_head(&show->over);
+}
 
 static bool enter(struct ec_show *show)
 {
@@ -34,12 +42,11 @@ static bool enter(struct ec_show *show)
  */
 int ec_show_begin(struct ec_show *show)
 {
-	while (!enter(show)) {
-		if (signal_pending(current))
-			return -ERESTARTSYS;
-		usleep_range(WAIT_US, 2 * WAIT_US);
-	}
-	return 0;
+	int ret = 0;
+
+	while (!ret && !enter(show))
+		ret = wait_event_interruptible(show->over, !atomic_read(&show->changing));
+	return ret;
 }
 
 /**
@@ -50,7 +57,7 @@ int ec_show_begin(struct ec_show *show)
  */
 void ec_show_end(struct ec_show *show)
 {
-	lockdep_assert(atomic_read(&show->showing) > 0);
+	lockdep_assert(ec_show_begun(show));
 	atomic_dec_return_release(&show->showing);
 	preempt_enable();
 }
@@ -69,6 +76,7 @@ int ec_show_pause(struct ec_show *show)
 {
 	int ret, seen = atomic_read(&show->changes);
 
+	lockdep_assert(ec_show_begun(show));
 	ec_show_end(show);
 	ret = ec_show_begin(show);
 	if (ret || atomic_read(&show->changes) == seen)
@@ -79,7 +87,7 @@ int ec_show_pause(struct ec_show *show)
 
 /**
  * ec_change_announce() - readers that come now wait outside
- * @show: of the master; a lock is held that keeps other changes off
+ * @show: of the master
  *
  * The first half of ec_change_begin().
  *
@@ -94,10 +102,11 @@ void ec_change_announce(struct ec_show *show)
 
 /**
  * ec_change_begin() - what readers look at is about to change
- * @show: of the master; a lock is held that keeps other changes off
+ * @show: of the master
  *
- * Waits for readers that are in a section now: no longer than one section takes, as
- * they cannot be preempted.
+ * The caller has the lock of what it changes: session_lock, or topo for writing. Waits for
+ * readers that are in a section now: no longer than one section takes, as they cannot be
+ * preempted.
  *
  * Context: Process.
  */
@@ -116,10 +125,12 @@ void ec_change_begin(struct ec_show *show)
  */
 void ec_change_end(struct ec_show *show)
 {
+	lockdep_assert(atomic_read(&show->changing) > 0);
 	/*
 	 * Not when it begins: it may have been waiting for a section that pauses now, and
 	 * must not be taken for a change that was over before that section.
 	 */
 	atomic_inc(&show->changes);
-	atomic_dec_return_release(&show->changing);
+	if (!atomic_dec_return_release(&show->changing) && wq_has_sleeper(&show->over))
+		wake_up_all(&show->over);
 }

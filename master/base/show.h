@@ -13,19 +13,29 @@
 #include <linux/atomic.h>
 #include <linux/lockdep.h>
 #include <linux/types.h>
+#include <linux/wait.h>
 
 /**
  * struct ec_show - readers and changes of a master
  * @showing: readers in a section
  * @changing: changes in progress: they hold session_lock or topo
  * @changes: changes that are over; wraps
+ * @over: readers that wait until no change is in progress
  */
 struct ec_show {
 	atomic_t showing;
 	atomic_t changing;
 	atomic_t changes;
+	wait_queue_head_t over;
 };
 
+/* Is a reader in a section? For assertions: it may be another one than the caller. */
+static inline bool ec_show_begun(const struct ec_show *show)
+{
+	return atomic_read(&show->showing) > 0;
+}
+
+void ec_show_init(struct ec_show *show);
 int ec_show_begin(struct ec_show *show);
 void ec_show_end(struct ec_show *show);
 int ec_show_pause(struct ec_show *show);
