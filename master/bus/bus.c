@@ -69,6 +69,8 @@ void ec_bus_exit(struct ec_bus *bus)
  */
 void ec_bus_settled(struct ec_bus *bus)
 {
+	/* what the caller has written is there when the count is */
+	atomic_inc_return_release(&bus->settles);
 	if (wq_has_sleeper(&bus->settled))
 		wake_up_all(&bus->settled);
 }
@@ -118,18 +120,28 @@ static bool settled(struct ec_bus *bus)
 	return slaves_settled(bus) && READ_ONCE(bus->n_slaves) == READ_ONCE(bus->responding);
 }
 
+/* @there takes a lock and may sleep, so the condition of the wait is the count of wake-ups. */
 static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
 {
-	long ret = wait_event_interruptible_timeout(bus->settled, there(bus), msecs_to_jiffies(ms));
+	long left = msecs_to_jiffies(ms);
+	int seen;
 
-	return ret > 0 ? 0 : ret ? -EINTR : -ETIMEDOUT;
+	for (;;) {
+		seen = atomic_read_acquire(&bus->settles);
+		if (there(bus))
+			return 0;
+		if (left <= 0)
+			return left ? -EINTR : -ETIMEDOUT;
+		left = wait_event_interruptible_timeout(bus->settled,
+							atomic_read(&bus->settles) != seen, left);
+	}
 }
 
 /**
  * ec_bus_wait_scan() - wait until the bus is scanned and has settled
  * @bus: bus
  *
- * Context: Process. May sleep, at most some seconds.
+ * Context: Process. May sleep, at most 30 s.
  * Return: 0, -EINTR, or -ETIMEDOUT.
  */
 int ec_bus_wait_scan(struct ec_bus *bus)

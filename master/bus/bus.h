@@ -83,9 +83,17 @@ struct ec_bus {
 
 	/** @settled: woken when a scan has ended or a slave has settled */
 	wait_queue_head_t settled;
+	/** @settles: how often it was woken; wraps */
+	atomic_t settles;
 	/** @work: workers that bring slaves to their state; they wait for clocks and cycles */
 	struct workqueue_struct *work;
 };
+
+/* For what reads the table of slaves or their PDOs: topo is held, or they are shown. */
+static inline void ec_bus_assert_stays(const struct ec_bus *bus)
+{
+	lockdep_assert(lockdep_is_held(&bus->topo) || ec_show_begun(&bus->base->show));
+}
 
 int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links,
 		const struct ec_bus_ops *ops);
