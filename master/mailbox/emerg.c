@@ -15,9 +15,9 @@
  */
 void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e)
 {
-	spin_lock(&mb->emerg_lock);
+	spin_lock(&mb->unasked_lock);
 	mb->emerg = e;
-	spin_unlock(&mb->emerg_lock);
+	spin_unlock(&mb->unasked_lock);
 }
 
 /**
@@ -29,14 +29,14 @@ void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e)
  * Of what the application can write only the number of those it has taken is not
  * known here. It stays, unless there cannot be so many left: then none is.
  *
- * Context: Process, session_lock held.
+ * Context: Process; no ec_emerg_set() of @e meanwhile.
  */
 void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 {
 	struct ec_emerg_ring *ring = e->ring;
 
 	if (mb)
-		spin_lock(&mb->emerg_lock);
+		spin_lock(&mb->unasked_lock);
 	ring->count = e->count;
 	ring->data = data;
 	ring->reserved = 0;
@@ -45,7 +45,7 @@ void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 	if (e->head - READ_ONCE(ring->tail) > min(e->count, e->head))
 		WRITE_ONCE(ring->tail, e->head);
 	if (mb)
-		spin_unlock(&mb->emerg_lock);
+		spin_unlock(&mb->unasked_lock);
 }
 
 /**
@@ -59,7 +59,7 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 {
 	struct ec_emerg *e;
 
-	spin_lock(&mb->emerg_lock);
+	spin_lock(&mb->unasked_lock);
 	e = mb->emerg;
 	if (!e)
 		goto out;
@@ -70,5 +70,5 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 	memcpy(e->data + e->head % e->count * EC_EMERG_BYTES, message, EC_EMERG_BYTES);
 	smp_store_release(&e->ring->head, ++e->head);
 out:
-	spin_unlock(&mb->emerg_lock);
+	spin_unlock(&mb->unasked_lock);
 }

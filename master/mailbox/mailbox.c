@@ -44,19 +44,36 @@ void ec_mbox_init(struct ec_mbox *mb)
 	sema_init(&mb->sdo_lock, 1);
 	sema_init(&mb->lock, 1);
 	init_waitqueue_head(&mb->turn);
-	spin_lock_init(&mb->emerg_lock);
-	spin_lock_init(&mb->kept_lock);
+	spin_lock_init(&mb->unasked_lock);
 	INIT_LIST_HEAD(&mb->kept);
 }
 
 /**
  * ec_mbox_reset() - the slave is in INIT: its mailbox forgets all messages
- * @mb: mailbox of a slave, @lock held
+ * @mb: mailbox of a slave
+ *
+ * A caller of the mailbox may still wait for a reply that cannot come any more.
  *
  * Context: The slave's worker.
  */
 void ec_mbox_reset(struct ec_mbox *mb)
 {
+	WRITE_ONCE(mb->renew, true);
+}
+
+/* A semaphore has no owner: what can be checked is that there is a holder. */
+static void assert_locked(const struct ec_mbox *mb)
+{
+	lockdep_assert(!READ_ONCE(mb->lock.count));
+}
+
+/* For each holder of the lock, before it uses the mailbox. */
+static void renew(struct ec_mbox *mb)
+{
+	assert_locked(mb);
+	if (!READ_ONCE(mb->renew))
+		return;
+	WRITE_ONCE(mb->renew, false);
 	mb->counter = 0;
 	mb->counts = false;
 	mb->answered = false;
@@ -87,7 +104,7 @@ unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page)
 /**
  * ec_mbox_lock() - wait for one's turn
  * @mb: mailbox of the slave
- * @lock: its @sdo_lock or @mbox_lock
+ * @lock: its @sdo_lock or @lock
  * @ms: the slave's worker waits at most so long; 0: as long as it takes
  *
  * Who comes later than the worker lets it in first, so that those who ask all the time
@@ -212,6 +229,7 @@ static bool is_known(struct ec_mbox *mb, u8 counter)
 {
 	bool again = mb->repeats && mb->counts && counter == mb->seen;
 
+	assert_locked(mb);
 	mb->repeats = false;
 	if (again)
 		return true;
@@ -244,6 +262,7 @@ static int fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *
 	struct ec_rbuf r;
 	int ret;
 
+	assert_locked(mb);
 	if (size > EC_MBOX_MAX)
 		return -EMSGSIZE;
 	ret = blind ? 1 : full(mb);
@@ -279,6 +298,7 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 
 static void flush(struct ec_mbox *mb, unsigned int left)
 {
+	lockdep_assert_held(&mb->unasked_lock);
 	while (mb->n_kept > left) {
 		struct kept *k = list_first_entry(&mb->kept, struct kept, list);
 
@@ -300,7 +320,7 @@ static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 		return;
 	k->len = len;
 	memcpy(k->data, rx, len);
-	spin_lock(&mb->kept_lock);
+	spin_lock(&mb->unasked_lock);
 	if (mb->keep_voe && mb->n_kept == EC_MBOX_KEPT)
 		ec_mbox_warn(mb, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
 			      EC_MBOX_KEPT);
@@ -309,7 +329,7 @@ static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 	mb->n_kept++;
 	if (!mb->keep_voe)
 		flush(mb, 0);
-	spin_unlock(&mb->kept_lock);
+	spin_unlock(&mb->unasked_lock);
 }
 
 /**
@@ -322,11 +342,11 @@ static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
  */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on)
 {
-	spin_lock(&mb->kept_lock);
+	spin_lock(&mb->unasked_lock);
 	WRITE_ONCE(mb->keep_voe, on);
 	if (!on)
 		flush(mb, 0);
-	spin_unlock(&mb->kept_lock);
+	spin_unlock(&mb->unasked_lock);
 }
 
 /* The oldest kept message to @rx: its length; -ENOMSG: there is none. */
@@ -335,13 +355,13 @@ static int take_kept(struct ec_mbox *mb, u8 *rx)
 	struct kept *k;
 	int len;
 
-	spin_lock(&mb->kept_lock);
+	spin_lock(&mb->unasked_lock);
 	k = list_first_entry_or_null(&mb->kept, struct kept, list);
 	if (k) {
 		list_del(&k->list);
 		mb->n_kept--;
 	}
-	spin_unlock(&mb->kept_lock);
+	spin_unlock(&mb->unasked_lock);
 	if (!k)
 		return -ENOMSG;
 	len = k->len;
@@ -373,7 +393,7 @@ static int error_reply(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8
 
 /**
  * ec_mbox_drain() - empty the mailbox of what nobody waits for
- * @mb: mailbox of a slave with mailbox, @mbox_lock held
+ * @mb: mailbox of a slave with mailbox, @lock held
  * @b: buffers
  *
  * Emergencies and VoE messages are kept, what an earlier exchange has left is
@@ -388,6 +408,7 @@ int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b)
 	unsigned int i;
 	int ret = 1;
 
+	assert_locked(mb);
 	for (i = 0; i < DRAIN && ret; i++) {
 		ret = fetch(mb, b, &h, false);
 		if (ret < 0 && ret != -EBADMSG)
@@ -436,11 +457,12 @@ int ec_mbox_forget(struct ec_mbox *mb)
 	ret = ec_mbox_lock(mb, &mb->lock, 0);
 	if (ret)
 		goto out;
+	renew(mb);
 	ret = discard_all(mb, b);
 	mb->answered = !ret;
-	spin_lock(&mb->kept_lock);
+	spin_lock(&mb->unasked_lock);
 	flush(mb, 0);
-	spin_unlock(&mb->kept_lock);
+	spin_unlock(&mb->unasked_lock);
 	up(&mb->lock);
 out:
 	kfree(b);
@@ -468,6 +490,7 @@ static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 	unsigned int us = 50;
 	int ret;
 
+	assert_locked(mb);
 	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
 		return -EMSGSIZE;
 	mb->counter = ec_mbox_next_counter(mb->counter);
@@ -538,6 +561,7 @@ int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 /* In INIT there is no mailbox. The lock is held: a slave that only passes INIT is waited for. */
 static int off(const struct ec_mbox *mb)
 {
+	assert_locked(mb);
 	return (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ? -EAGAIN : 0;
 }
 
@@ -564,6 +588,7 @@ int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_
 
 	if (ret)
 		return ret;
+	renew(mb);
 	ret = off(mb);
 	/* after an answer nothing of an earlier exchange can come any more */
 	if (!ret && a->first && !mb->answered)
@@ -609,6 +634,7 @@ int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 
 	if (ret)
 		return ret;
+	renew(mb);
 	ret = over(mb, &until) ?: off(mb) ?: send(mb, type, b, len, &until);
 	up(&mb->lock);
 	return ret;
@@ -620,6 +646,7 @@ static int look_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
 	struct ec_mbox_hdr h;
 	int ret = take_kept(mb, b->rx);
 
+	assert_locked(mb);
 	if (ret != -ENOMSG)
 		return ret;
 	ret = fetch(mb, b, &h, blind);
@@ -659,6 +686,7 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		ret = take_kept(mb, b->rx);
 		/* who holds the lock keeps what comes for us */
 		if (ret == -ENOMSG && !down_trylock(&mb->lock)) {
+			renew(mb);
 			ret = off(mb) ?: look_voe(mb, b, blind);
 			up(&mb->lock);
 		}
@@ -683,9 +711,10 @@ void ec_mbox_poll(struct ec_mbox *mb)
 {
 	struct ec_mbox_buf *b;
 
-	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || off(mb) || down_trylock(&mb->lock))
+	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || down_trylock(&mb->lock))
 		return;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
+	renew(mb);
+	b = off(mb) ? NULL : kmalloc(sizeof(*b), GFP_KERNEL);
 	if (b)
 		ec_mbox_drain(mb, b);
 	kfree(b);

@@ -48,19 +48,18 @@ struct ec_mbox {
 	bool repeats;
 	/** @answered: the last exchange has ended with its answer */
 	bool answered;
+	/** @renew: the slave has been in INIT: the next holder of @lock resets these members */
+	bool renew;
 
 	/** @awaits: which of the two locks the slave's worker waits for, NULL: none */
 	const struct semaphore *awaits;
 	/** @turn: callers that wait until the worker has it */
 	wait_queue_head_t turn;
 
-	/** @emerg_lock: protects @emerg and what it points to */
-	spinlock_t emerg_lock;
+	/** @unasked_lock: protects the members below and what @emerg points to */
+	spinlock_t unasked_lock;
 	/** @emerg: where emergencies go, NULL: only to the log */
 	struct ec_emerg *emerg;
-
-	/** @kept_lock: protects the members below */
-	spinlock_t kept_lock;
 	/** @kept: VoE messages, the oldest first */
 	struct list_head kept;
 	/** @n_kept: entries in @kept */
