@@ -37,13 +37,14 @@ struct batch {
  * Of the reference clock it is the distance to the application's time, which
  * only means something when it follows that.
  *
- * Context: Process, one at a time per slave.
+ * Context: Process, dc.lock held.
  */
 void ec_dc_verdict(struct ec_slave *s, u32 value)
 {
 	bool ref = s->station == READ_ONCE(ec_dc_of(s)->ref_station);
 	s32 diff = ec_dc_diff(value);
 
+	lockdep_assert_held(&ec_dc_of(s)->lock);
 	WRITE_ONCE(s->dc_diff, diff);
 	/* not back and forth at the limit */
 	if (!ref)
@@ -127,6 +128,26 @@ static bool worth_try(struct ec_slave *s)
 	return false;
 }
 
+/* What the slaves of a batch have said; true: one of them is worth a try. */
+static bool take(struct ec_dc *dc, struct batch *b, bool try)
+{
+	bool worth = false;
+	unsigned int i;
+
+	mutex_lock(&dc->lock);
+	for (i = 0; i < b->n; i++) {
+		if (!b->dg[i].err && b->dg[i].wkc == 1) {
+			worth |= try && worth_try(b->slaves[i]);
+			if (READ_ONCE(b->slaves[i]->dc_set))
+				ec_dc_verdict(b->slaves[i], get_unaligned_le32(b->value[i]));
+		}
+	}
+	mutex_unlock(&dc->lock);
+	for (i = 0; i < b->n; i++)
+		ec_slave_unref(b->slaves[i]);
+	return worth;
+}
+
 /**
  * ec_dc_watch_begun() - clocks are begun to be set; when is another try due?
  * @dc: clocks of a master, nobody watches them
@@ -147,7 +168,7 @@ static void watch(struct work_struct *work)
 	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
 	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
 	bool try = due(dc), worth = READ_ONCE(dc->failed);
-	unsigned int i, at = 0;
+	unsigned int at = 0;
 
 	/* while clocks are being set they have a verdict of their own */
 	if (!b || READ_ONCE(dc->state) == EC_DC_BUSY)
@@ -155,15 +176,7 @@ static void watch(struct work_struct *work)
 	do {
 		at = collect(dc, b, at);
 		ec_xfer(dc->links, b->dg, b->n);
-		for (i = 0; i < b->n; i++) {
-			if (!b->dg[i].err && b->dg[i].wkc == 1) {
-				worth |= try && worth_try(b->slaves[i]);
-				if (READ_ONCE(b->slaves[i]->dc_set))
-					ec_dc_verdict(b->slaves[i],
-						      get_unaligned_le32(b->value[i]));
-			}
-			ec_slave_unref(b->slaves[i]);
-		}
+		worth |= take(dc, b, try);
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
 	if (try && worth)
 		WRITE_ONCE(dc->again, true);
