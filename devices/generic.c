@@ -238,12 +238,12 @@ static void unclaim(struct gen *g)
 	netdev_rx_handler_unregister(g->nd);
 }
 
-/* called from offer() or withdraw() only, so RTNL is held */
 static int gen_start(void *priv, struct ecdev *dev)
 {
 	struct gen *g = priv;
 	int ret;
 
+	ASSERT_RTNL();
 	g->dev = dev;
 	ret = make_buffers(g);
 	if (ret)

@@ -354,6 +354,7 @@ static int monitor(void *data)
 	struct watch w = { .m = data };
 	struct ec_master *m = w.m;
 
+	WRITE_ONCE(m->links.monitor, current);
 	while (!kthread_should_stop()) {
 		ktime_t to;
 
@@ -399,7 +400,6 @@ int ec_monitor_start(struct ec_master *m)
 	if (IS_ERR(t))
 		return PTR_ERR(t);
 	m->monitor = t;
-	WRITE_ONCE(m->links.monitor, t);
 	return 0;
 }
 

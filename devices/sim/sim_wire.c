@@ -41,6 +41,7 @@ static void insert(struct ec_sim_wire *w, struct ec_sim_flying *f)
 {
 	struct ec_sim_flying *p;
 
+	lockdep_assert_held(&w->lock);
 	list_for_each_entry_reverse(p, &w->flying, list)
 		if (p->due_ns <= f->due_ns) {
 			list_add(&f->list, &p->list);
@@ -53,6 +54,7 @@ static struct ec_sim_flying *unused(struct ec_sim_wire *w)
 {
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->free, struct ec_sim_flying, list);
 
+	lockdep_assert_held(&w->lock);
 	if (f)
 		list_del(&f->list);
 	return f;
@@ -62,6 +64,7 @@ static void arm(struct ec_sim_wire *w)
 {
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
 
+	lockdep_assert_held(&w->lock);
 	if (f && !w->polled && w->running)
 		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + f->due_ns),
 			      HRTIMER_MODE_ABS_SOFT);
@@ -71,6 +74,7 @@ static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
 {
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
 
+	lockdep_assert_held(&w->lock);
 	if (!f || f->due_ns > now)
 		return NULL;
 	list_del(&f->list);
@@ -167,6 +171,7 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 	u64 start;
 	s64 delay;
 
+	lockdep_assert_held(&w->lock);
 	if (!f)
 		return;
 	start = max(now_ns(w), w->wire_free_ns[port]);

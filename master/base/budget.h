@@ -5,10 +5,14 @@
 
 #include <linux/atomic.h>
 #include <linux/errno.h>
+#include <linux/lockdep.h>
+#include <linux/mutex.h>
 #include "limits.h"
 
 /** struct ec_budget - memory of one session */
 struct ec_budget {
+	/** @lock: of the session, immutable; protects @bytes */
+	const struct mutex *lock;
 	/** @total: bytes of all sessions of the master, and what they have mapped */
 	atomic_long_t *total;
 	/** @bytes: of this one, without what is mapped */
@@ -18,6 +22,7 @@ struct ec_budget {
 /* Count memory that is allocated already. */
 static inline void ec_budget_add(struct ec_budget *b, size_t bytes)
 {
+	lockdep_assert_held(b->lock);
 	atomic_long_add(bytes, b->total);
 	b->bytes += bytes;
 }
@@ -25,6 +30,7 @@ static inline void ec_budget_add(struct ec_budget *b, size_t bytes)
 /* That memory is free again. */
 static inline void ec_budget_release(struct ec_budget *b, size_t bytes)
 {
+	lockdep_assert_held(b->lock);
 	atomic_long_sub(bytes, b->total);
 	b->bytes -= bytes;
 }
@@ -39,6 +45,7 @@ static inline void ec_budget_release(struct ec_budget *b, size_t bytes)
  */
 static inline int ec_budget_charge(struct ec_budget *b, size_t bytes)
 {
+	lockdep_assert_held(b->lock);
 	ec_budget_add(b, bytes);
 	if (atomic_long_read(b->total) <= EC_MAX_SESSION_BYTES)
 		return 0;

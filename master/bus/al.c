@@ -46,7 +46,7 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 	}
 }
 
-/* Poll until @mask of the status has @value or an error appears. */
+/* Poll (no slave reports by itself) until @mask of the status has @value or an error appears. */
 static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 until_ns)
 {
 	unsigned int wait_us = 50;

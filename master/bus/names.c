@@ -38,6 +38,7 @@ static const char *find(const struct ec_names *l, u16 index, u16 sub)
  */
 const char *ec_names_find(const struct ec_slave *s, u16 index, u16 sub)
 {
+	ec_bus_assert_stays(s->bus);
 	return find(&s->names, index, sub) ?: "";
 }
 
@@ -146,6 +147,7 @@ bool ec_names_pending(const struct ec_slave *s)
 	struct place at = { 0 };
 	u16 index, sub;
 
+	lockdep_assert_held(&s->lock);
 	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
 	       s->general.coe & EC_SII_COE_SDO_INFO &&
 	       !ec_access_is_cyclic(&s->bus->links->access) &&

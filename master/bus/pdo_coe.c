@@ -69,6 +69,7 @@ static void keep_unassigned(struct ec_slave *s, struct ec_pdo_list *old)
 {
 	unsigned int i;
 
+	lockdep_assert_held_write(&s->bus->topo);
 	for (i = 0; i < old->n; i++) {
 		struct ec_pdo *p;
 
@@ -168,6 +169,7 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
  */
 void ec_slave_clear_warning(struct ec_slave *s)
 {
+	lockdep_assert_held(&s->lock);
 	strscpy(s->warning, s->pdos_unread ?
 		"PDOs could not be read over CoE; those of the EEPROM are used" : "",
 		sizeof(s->warning));
@@ -188,6 +190,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	unsigned int sm;
 	int ret = 0;
 
+	lockdep_assert_held(&s->lock);
 	for (sm = 2; sm < s->n_sms && !s->stop.gone; sm++) {
 		ret = ec_slave_read_sm_pdos(s, sm);
 		if (ret && ret != -ENOENT)

@@ -55,7 +55,7 @@ static void start(struct job *j)
 	ec_xfer(j->bus->links, j->dg, n);
 }
 
-/* Look at the AL status; those that are there or have an error are done. */
+/* Poll the AL status; those that are there or have an error are done. */
 static void look(struct job *j)
 {
 	unsigned int i, left = 0;

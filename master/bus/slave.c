@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
 #include <linux/slab.h>
+#include "../link/links.h"
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "../base/once64.h"
@@ -193,6 +194,8 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
  */
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 {
+	lockdep_assert(lockdep_is_held(&slave->lock) ||
+		       current == READ_ONCE(slave->bus->links->monitor));
 	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
 	ec_write64(&slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
 }

@@ -100,7 +100,7 @@ struct ec_bus;
  * @config: what the session wants from it, under session_lock and @lock
  * @read_pdos: read the PDOs when it is there
  * @plan: what the worker goes by: @config, once its session is active; under @lock
- * @holds: the worker has @sdo_lock and @mbox_lock
+ * @holds: the worker has both locks of @mbox
  * @reconfigure: go through INIT and configure again
  * @mapped: its FMMUs are set
  * @op_only: SyncManagers that are on in OP only and are on, a bit each

@@ -350,6 +350,7 @@ const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index)
 	const struct ec_pdo *p;
 	unsigned int i;
 
+	ec_bus_assert_stays(slave->bus);
 	for (i = 0; i < EC_MAX_SM; i++) {
 		p = ec_pdo_find(&slave->sm_pdos[i], index);
 		if (p)

@@ -87,7 +87,8 @@ int ec_dc_measure(struct ec_dc *dc)
 
 /*
  * Applications may tell quite another time in their cycle than before activation.
- * Their first cycle is awaited, so that the clocks begin with what they go on with.
+ * Their first cycle is awaited, so that the clocks begin with what they go on with. The
+ * cycle wakes no thread of the master, so these waits poll.
  */
 static void await_time(struct ec_dc *dc, u64 since)
 {

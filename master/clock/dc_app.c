@@ -108,6 +108,7 @@ static bool leading(struct ec_dc *dc, bool now, u64 at_ns)
 {
 	u64 gap = at_ns - dc->led_ns;
 
+	lockdep_assert_held(&dc->time_lock);
 	if (now) {
 		dc->led_gap = dc->led_ns ? gap : 0;
 		dc->led_ns = at_ns;
@@ -118,9 +119,9 @@ static bool leading(struct ec_dc *dc, bool now, u64 at_ns)
 	return dc->leads;
 }
 
-/* under time_lock */
 static void set_phase(struct ec_dc *dc, u64 app_time)
 {
+	lockdep_assert_held(&dc->time_lock);
 	if (dc->has_phase || !app_time)
 		return;
 	dc->phase = app_time;
@@ -285,7 +286,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
  *
  * At most once in 10 s.
  *
- * Context: The monitor thread, session_lock held.
+ * Context: The monitor thread.
  */
 void ec_dc_app_log(struct ec_dc *dc)
 {

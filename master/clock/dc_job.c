@@ -310,6 +310,7 @@ void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_m
 	u32 polls = READ_ONCE(j->dc->links->access.polls);
 	unsigned int ms;
 
+	/* a poll: the cycle wakes no thread of the master */
 	WRITE_ONCE(j->dc->running, j->running);
 	for (ms = 0; ms < limit_ms && READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);

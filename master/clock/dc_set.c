@@ -264,6 +264,7 @@ static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
 	return ret;
 }
 
+/* A poll: the cycle wakes no thread of the master. */
 static int by_cycle(struct ec_dc *dc)
 {
 	unsigned int ms;
@@ -364,6 +365,7 @@ int ec_dc_check(struct ec_dc_job *j)
 	unsigned int i;
 	int ret;
 
+	lockdep_assert_held(&j->dc->lock);
 	if (!v)
 		return -ENOMEM;
 	memset(j->silent, 0, j->n * sizeof(*j->silent));

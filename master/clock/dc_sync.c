@@ -52,6 +52,7 @@ int ec_dc_wait(struct ec_slave *s)
 	struct ec_dc *dc = ec_dc_of(s);
 	unsigned int ms, near = 0;
 
+	lockdep_assert_held(&s->lock);
 	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
 		/* the cycle has not begun yet */
 		if (READ_ONCE(dc->idle))
@@ -80,6 +81,7 @@ int ec_dc_sync_stop(struct ec_slave *s)
 {
 	static const u8 off[2];
 
+	lockdep_assert_held(&s->lock);
 	WRITE_ONCE(s->sync_free, false);
 	s->sync_due_ns = 0;
 	return ec_xfer_fpwr(s->bus->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
@@ -218,6 +220,7 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 	char list[8 * MODES] = "";
 	int i, n, len = 0;
 
+	lockdep_assert_held(&s->lock);
 	if (!(c->assign & RUN) || !(c->assign & (SYNC0 | SYNC1))) {
 		ec_slave_warn(s, "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
 			      c->assign);
@@ -254,6 +257,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 	unsigned int try;
 	int ret = -EAGAIN;
 
+	lockdep_assert_held(&s->lock);
 	if (period < c->period[0] || !period) {
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
@@ -318,6 +322,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 	unsigned int try;
 	int ret;
 
+	lockdep_assert_held(&s->lock);
 	for (try = 0; s->sync_due_ns; try++) {
 		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
 		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status,

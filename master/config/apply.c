@@ -311,11 +311,13 @@ static int wait_outputs(struct ec_slave *s)
 	unsigned int i;
 	u64 from;
 
+	lockdep_assert_held(&s->lock);
 	if (!s->plan)
 		return 0;
 	cycles = cycles_twice(s->plan);
 	limit = 5000 + div_u64((u64)cycles * s->bus->links->access.interval_us, 500);
 	from = ec_read64(s->plan->wanted->cycles);
+	/* a poll: the cycle wakes no thread of the master */
 	for (i = 0; i < limit; i++) {
 		if (ec_read64(s->plan->wanted->cycles) - from >= cycles)
 			return 0;
@@ -373,6 +375,7 @@ static void take_plan(struct ec_slave *s)
 {
 	const struct ec_config *c = s->config;
 
+	lockdep_assert_held(&s->lock);
 	if (!c || !smp_load_acquire(&c->wanted->active) || s->plan == c)
 		return;
 	s->plan = c;
@@ -402,6 +405,7 @@ static int step(struct ec_slave *s)
 	u8 want = READ_ONCE(s->requested), cur;
 	int ret = ec_al_read(s);
 
+	lockdep_assert_held(&s->lock);
 	if (ret)
 		return ret;
 	if (s->al_status & EC_AL_ERROR && !s->emulation) {

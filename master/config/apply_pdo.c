@@ -180,6 +180,7 @@ static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int s
 	char has[32] = "nothing";
 	u32 bit;
 
+	lockdep_assert_held(&s->lock);
 	e = first_wrong(want, have, &bit);
 	if (!e)
 		return 0;
@@ -263,6 +264,7 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
 					   unsigned int sm)
 {
+	lockdep_assert_held(&s->lock);
 	return c && (c->sm[sm].explicit || c->sm[sm].pdos.n) ? &c->sm[sm].pdos : &s->sm_pdos[sm];
 }
 
@@ -284,6 +286,7 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 	unsigned int sm;
 	int ret = 0;
 
+	lockdep_assert_held(&s->lock);
 	if (!ec_mbox_present(&s->mbox) || !(s->info.protocols & EC_SII_PROTO_COE))
 		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
 	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {

@@ -162,6 +162,7 @@ int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 	struct batch *b = kzalloc(sizeof(*b), GFP_KERNEL);
 	int ret;
 
+	lockdep_assert_held(&s->lock);
 	if (!b)
 		return -ENOMEM;
 	ret = add_sms(b, s, c);
@@ -191,6 +192,7 @@ int ec_apply_clear_fmmus(struct ec_slave *s)
 	int ret = n ? ec_xfer_fpwr(s->bus->links, s->station, EC_REG_FMMU(0), zero,
 				   n * EC_FMMU_PAGE) : 0;
 
+	lockdep_assert_held(&s->lock);
 	s->mapped = ret;
 	return ret;
 }
@@ -210,6 +212,7 @@ int ec_apply_clear_pdos(struct ec_slave *s)
 	struct ec_dg dg[EC_MAX_SM];
 	unsigned int used = 0;
 
+	lockdep_assert_held(&s->lock);
 	for (; sm < n; sm++)
 		dg[used++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, EC_REG_SM(sm), EC_SM_PAGE,
 						 (void *)zero);
@@ -224,6 +227,7 @@ int ec_apply_clear_pdos(struct ec_slave *s)
  */
 void ec_apply_clear(struct ec_slave *s)
 {
+	lockdep_assert_held(&s->lock);
 	ec_apply_clear_fmmus(s);
 	ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(0), zero,
 		     EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM));

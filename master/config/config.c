@@ -19,6 +19,7 @@ void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
 	unsigned int sm, i;
 
+	lockdep_assert_held(c->wanted->lock);
 	down_read(&slave->bus->topo);
 	for (sm = 0; sm < slave->n_sms; sm++) {
 		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
@@ -44,6 +45,7 @@ static const struct ec_config *predecessor(const struct ec_config *c)
 	const struct ec_wanted *w = c->wanted->before;
 	unsigned int i;
 
+	lockdep_assert_held(c->wanted->lock);
 	for (i = 0; w && i < w->n_configs; i++) {
 		const struct ec_config *p = w->configs[i];
 
@@ -117,6 +119,7 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 	struct ec_config *c, **p;
 	int ret;
 
+	lockdep_assert_held(w->lock);
 	if (w->n_configs >= EC_MAX_CONFIGS)
 		return ERR_PTR(-ENOSPC);
 	ret = ec_budget_charge(&w->budget, sizeof(*c) + sizeof(*p));
@@ -155,6 +158,7 @@ void ec_config_begin(struct ec_config *c)
 	const struct ec_config *before = predecessor(c);
 	unsigned int i;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (before)
 		inherit_defaults(c, before);
 	else if (c->slave)
@@ -181,6 +185,7 @@ void ec_config_free(struct ec_config *c)
 
 int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
 {
+	lockdep_assert_held(c->wanted->lock);
 	if (sm >= EC_MAX_SM)
 		return -ENOENT;
 	if ((dir != EC_CFG_DIR_OUTPUT && dir != EC_CFG_DIR_INPUT) || watchdog > EC_CFG_WD_DISABLE)
@@ -218,6 +223,7 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 	struct ec_pdo *p;
 	int ret;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
 	if (c->sm[sm].pdos.n >= EC_MAX_SC_PDOS)
@@ -238,6 +244,7 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 
 int ec_config_assign_clear(struct ec_config *c, u8 sm)
 {
+	lockdep_assert_held(c->wanted->lock);
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
 	ec_budget_release(&c->wanted->budget, ec_pdo_list_memory(&c->sm[sm].pdos));
@@ -250,6 +257,7 @@ static struct ec_pdo *find(struct ec_config *c, u16 pdo)
 {
 	unsigned int i;
 
+	lockdep_assert_held(c->wanted->lock);
 	for (i = 0; i < EC_MAX_SM; i++) {
 		struct ec_pdo *p = ec_pdo_find(&c->sm[i].pdos, pdo);
 
@@ -301,6 +309,7 @@ void *ec_config_alloc(struct ec_config *c, size_t size)
 	int ret = ec_budget_charge(&c->wanted->budget, size);
 	void *p;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (ret)
 		return ERR_PTR(ret);
 	/*
@@ -324,6 +333,7 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 	};
 	int ret = PTR_ERR_OR_ZERO(ec_startup_add(c, &u, data));
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!ret && c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
 		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n", index,
 			      sub);
@@ -358,6 +368,7 @@ int ec_config_reg(struct ec_config *c, u16 reg, u16 value)
 	struct ec_startup *u = ec_startup_find(c, EC_STARTUP_REG, reg);
 	u8 data[2];
 
+	lockdep_assert_held(c->wanted->lock);
 	put_unaligned_le16(value, data);
 	if (u && !value)
 		ec_startup_del(c, u);
@@ -373,6 +384,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 {
 	struct ec_config_flag *flag;
 
+	lockdep_assert_held(c->wanted->lock);
 	list_for_each_entry(flag, &c->flags, list) {
 		if (strcmp(flag->key, key))
 			continue;
@@ -414,6 +426,7 @@ int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
 			       ec_startup_add(c, &what, &none);
 	struct ec_eoe_ip *ip;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (IS_ERR(u))
 		return PTR_ERR(u);
 	ip = (struct ec_eoe_ip *)u->data;
@@ -438,7 +451,7 @@ int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
  * @c: configuration
  * @key: its name
  *
- * Context: Process, session_lock or the slave's lock held.
+ * Context: The slave's worker, or as ec_config_status().
  * Return: value; 0 when it was not set.
  */
 s32 ec_config_flag(const struct ec_config *c, const char *key)
@@ -466,6 +479,7 @@ bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f
 {
 	const struct ec_config_sm *sm = &c->sm[f->sm];
 
+	ec_wanted_assert_stays(c->wanted);
 	return sm->dir != f->dir || ec_pdo_list_bytes(&sm->pdos) != f->size;
 }
 
@@ -476,6 +490,7 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 	unsigned int i;
 	int ret;
 
+	lockdep_assert_held(c->wanted->lock);
 	for (i = 0; i < c->n_fmmus; i++)
 		if (c->fmmus[i].domain == d && c->fmmus[i].sm == sm)
 			return &c->fmmus[i];
@@ -539,6 +554,7 @@ int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain
 {
 	unsigned int sm, p, e;
 
+	lockdep_assert_held(c->wanted->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++) {
 		u32 bits = 0;
 
@@ -574,6 +590,7 @@ int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_p
 	const struct ec_pdo_list *l;
 	u32 p, e, bits = 0;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (sm >= EC_MAX_SM)
 		return -EINVAL;
 	l = &c->sm[sm].pdos;

@@ -161,6 +161,12 @@ struct ec_wanted {
 	const struct ec_wanted *before;
 };
 
+/* For what reads configurations: the lock of the session is held, or they are shown. */
+static inline void ec_wanted_assert_stays(const struct ec_wanted *w)
+{
+	lockdep_assert(lockdep_is_held(w->lock) || ec_show_begun(&w->base->show));
+}
+
 struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				   u32 product);
 struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 position, u32 vendor,

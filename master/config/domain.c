@@ -16,6 +16,7 @@ struct ec_domain *ec_domain_create(struct ec_wanted *w)
 {
 	struct ec_domain *d;
 
+	lockdep_assert_held(w->lock);
 	if (w->n_domains >= EC_MAX_DOMAINS)
 		return ERR_PTR(-ENOSPC);
 	d = kzalloc(sizeof(*d), GFP_KERNEL_ACCOUNT);
@@ -55,6 +56,7 @@ int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu)
 {
 	struct ec_domain_fmmu *p;
 
+	lockdep_assert_held(d->wanted->lock);
 	if (d->size + c->fmmus[fmmu].size > EC_MAX_IMAGE)
 		return -EOVERFLOW;
 	p = ec_grow(d->fmmus, d->n_fmmus, sizeof(*p));

@@ -30,6 +30,7 @@ struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *
 	};
 	struct ec_startup *u, *before;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (c->n_startup[what->type] >= limit[what->type])
 		return ERR_PTR(-ENOSPC);
 	u = ec_config_alloc(c, struct_size(u, data, what->size));
@@ -58,6 +59,7 @@ struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index
 {
 	struct ec_startup *u;
 
+	ec_wanted_assert_stays(c->wanted);
 	list_for_each_entry(u, &c->startup, list)
 		if (u->type == type && u->index == index)
 			return u;
@@ -73,6 +75,7 @@ struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index
  */
 void ec_startup_del(struct ec_config *c, struct ec_startup *u)
 {
+	lockdep_assert_held(c->wanted->lock);
 	list_del(&u->list);
 	c->n_startup[u->type]--;
 	ec_budget_release(&c->wanted->budget, struct_size(u, data, u->size));
@@ -157,6 +160,7 @@ int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
 	u32 code;
 	int ret;
 
+	lockdep_assert_held(&s->lock);
 	list_for_each_entry(u, &c->startup, list) {
 		if (u->transition != transition)
 			continue;

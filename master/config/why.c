@@ -14,6 +14,7 @@ static bool place(const struct ec_config *c, unsigned int *pos)
 {
 	const struct ec_bus *bus = c->wanted->bus;
 
+	ec_bus_assert_stays(c->wanted->bus);
 	*pos = c->position;
 	if (!c->alias)
 		return true;
@@ -73,6 +74,7 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 	unsigned int pos;
 	size_t len = no_link(c->wanted->links, buf, size);
 
+	ec_bus_assert_stays(c->wanted->bus);
 	if (len)
 		return len;
 	if (c->wanted->active && c->lost.text[0])
@@ -127,6 +129,7 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 {
 	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
 
+	ec_wanted_assert_stays(c->wanted);
 	return expected && expected != s->info.revision;
 }
 
@@ -150,6 +153,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 	const struct ec_config *has = slave->config;
 	unsigned int end = min(w->n_configs, *from + WALK);
 
+	ec_wanted_assert_stays(w);
 	if (has && has->wanted == w)
 		return has;
 	while (*from < end) {
@@ -172,6 +176,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
  */
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
 {
+	ec_wanted_assert_stays(c->wanted);
 	return c->slave != slave || other_revision(c, slave);
 }
 
@@ -188,6 +193,7 @@ bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
 bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
 			     size_t size)
 {
+	ec_wanted_assert_stays(c->wanted);
 	if (c->slave != slave || !other_revision(c, slave))
 		return false;
 	scnprintf(buf, size, "slave %u has revision 0x%08x, expected 0x%08x", slave->position,
@@ -243,6 +249,7 @@ u8 ec_config_status(const struct ec_config *c)
 	const struct ec_slave *slave = c->slave;
 	u8 v;
 
+	ec_wanted_assert_stays(c->wanted);
 	if (!slave || slave->stop.gone || slave->silent)
 		return 0;
 	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
@@ -265,8 +272,8 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 {
 	size_t len;
 
-	lockdep_assert(lockdep_is_held(&c->wanted->bus->topo) ||
-		       atomic_read(&c->wanted->base->show.showing));
+	ec_wanted_assert_stays(c->wanted);
+	ec_bus_assert_stays(c->wanted->bus);
 	buf[0] = '\0';
 	if (!c->slave || c->slave->stop.gone)
 		len = absent(c, buf, size);

@@ -24,6 +24,7 @@ static void own_devices(struct ec_links *l, bool cycle)
 {
 	unsigned int i;
 
+	lockdep_assert_held(&l->access.lock);
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		struct ecdev *dev = l->link[i].dev;
 
@@ -70,6 +71,7 @@ static void flush(struct ec_links *l, struct ec_queue *q)
 		ec_queue_gather(&l->queues, q, &next, &none, &pack);
 		if (pack.n && ec_link_send_pack(&l->link[0], &pack, ktime_get_ns()) == -EBUSY &&
 		    waits++ < FLUSH_WAITS) {
+			/* no driver reports room in its ring */
 			usleep_range(100, 200);
 			continue;
 		}
@@ -97,6 +99,7 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 		ec_write64(&l->access.last_send_ns, ktime_get_ns());
 		WRITE_ONCE(l->access.mode, mode);
 		smp_mb();	/* mode before busy; pairs with ec_access_enter() */
+		/* the cycle wakes no thread of the master */
 		while (mode == EC_ACCESS_DIRECT && atomic_read(&l->access.busy))
 			usleep_range(20, 50);
 		own_devices(l, mode == EC_ACCESS_CYCLIC);

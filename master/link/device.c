@@ -128,6 +128,7 @@ static void withdraw(struct ec_link *link, struct ecdev *dev)
 {
 	struct ec_links *l = link->links;
 
+	lockdep_assert_held(&devices_lock);
 	rt_mutex_lock(&l->access.lock);
 	WRITE_ONCE(link->dev, NULL);
 	WRITE_ONCE(link->up, false);
@@ -144,6 +145,7 @@ static void detach(struct ecdev *dev)
 	struct ec_link *link = rcu_dereference_protected(dev->link,
 							 lockdep_is_held(&devices_lock));
 
+	lockdep_assert_held(&devices_lock);
 	if (!link)
 		return;
 	withdraw(link, dev);

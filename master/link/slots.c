@@ -107,6 +107,7 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s)
 		slot = search(s, ktime_get_ns(), EC_QUARANTINE_NS);
 		if (slot)
 			return slot;
+		/* a quarantine ends by time */
 		usleep_range(300, 500);
 	}
 	return NULL;

@@ -188,6 +188,7 @@ static int submit_until(struct ec_links *l, struct ec_slot *slot, bool urgent, u
 			atomic64_inc(&l->link[0].stats.tx_errors);
 			break;
 		}
+		/* no driver reports room in its ring */
 		usleep_range(100, 200);
 	}
 	return ret;
@@ -273,7 +274,7 @@ static void give_up(struct ec_links *l, struct half *h)
 
 		if (f->err)
 			continue;
-		/* neither: a frame that need not be the reply is looked at just now */
+		/* neither: a frame that need not be the reply is looked at just now, some us */
 		while (!(f->cancelled = ec_slot_cancel(f->slot, ktime_get_ns())) &&
 		       atomic_read(&f->slot->state) != EC_SLOT_DONE)
 			usleep_range(20, 50);

@@ -169,6 +169,7 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	s->wanted.bus = &m->bus;
 	s->wanted.lock = &m->session_lock;
 	s->wanted.cycles = &s->cycle.cycles;
+	s->wanted.budget.lock = &m->session_lock;
 	s->wanted.budget.total = &m->memory;
 	s->owner = owner;
 	RCU_INIT_POINTER(s->waiters, waiters);

@@ -76,6 +76,24 @@ t "W=1 and sparse have nothing to say about our files" no_warning
 t "sparse has looked at them" sparse_ran
 t "every line that a module logs while it runs is rate-limited" tests/build/log_check.py master devices
 t "no 64-bit value is shared by READ_ONCE() and WRITE_ONCE()" tests/build/once64_check.py master
+
+locks() { tests/build/locks_check.py "$1" Documentation/locking.rst "${@:2}"; }
+
+# lock_notices KIND SOURCE FINDING: else its check could not fail
+lock_notices() {
+	local out
+
+	printf '%b\n' "$2" >"$tmp/$1.c"
+	out=$(locks "$1" "$tmp/$1.c") && return 1
+	grep -F "$3" <<<"$out"
+}
+
+t "Documentation/locking.rst has every lock and no other" locks locks master devices
+t "a lock without description is noticed" lock_notices locks \
+	'struct x {\n\tspinlock_t lock;\n};' 'lock x.lock is not in'
+t "a function asserts the lock that its comment says is held" locks held master devices
+t "a comment without assertion is noticed" lock_notices held \
+	'/* Process, lock held. */\nvoid f(void)\n{\n\tg();\n}' 'f(): the comment says'
 # else the check above could not fail
 words_noticed() {
 	printf 'int x;\n"the clock is odd"\n' >"$tmp/words.c"

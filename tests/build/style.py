@@ -26,7 +26,7 @@ LIMITS = {
     ("lines", "master"): 17,
     ("lines", "lib"): 1,
     ("lines", "tests"): 224,
-    ("lines", "Documentation"): 61,
+    ("lines", "Documentation"): 42,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 15,
     ("checkpatch", "master"): 32,

@@ -3,6 +3,7 @@
 #include <linux/prandom.h>
 #include "cyc.h"
 #include "master/boundary/ioctl.h"
+#include "master/config/why.h"
 
 /**
  * cyc_new() - an application reserves the master
@@ -285,6 +286,23 @@ u64 cyc_wait_op(struct cyc *c, u32 limit_ms)
 		cyc_run(c, 1);
 	}
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
+}
+
+/**
+ * cyc_config_status() - state of a configuration
+ * @b: bus with a session
+ * @config: its number
+ *
+ * Return: as ec_config_status().
+ */
+u8 cyc_config_status(struct bus *b, u32 config)
+{
+	u8 v;
+
+	mutex_lock(&b->m->session_lock);
+	v = ec_config_status(b->m->session->wanted.configs[config]);
+	mutex_unlock(&b->m->session_lock);
+	return v;
 }
 
 /**

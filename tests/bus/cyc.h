@@ -53,6 +53,7 @@ void cyc_sync0(struct cyc *c, u32 n);
 struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us);
 u64 cyc_wait_op(struct cyc *c, u32 limit_ms);
 bool cyc_all_op(struct cyc *c);
+u8 cyc_config_status(struct bus *b, u32 config);
 u8 *cyc_pd(struct cyc *c, u32 position, u8 sm);
 u8 *cyc_data(struct cyc *c, u32 domain);
 struct ec_status_domain *cyc_state(struct cyc *c, u32 domain);

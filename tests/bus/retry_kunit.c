@@ -70,7 +70,7 @@ static void silent_for(struct kunit *test, u32 ms)
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, AO), s);
 	KUNIT_EXPECT_STREQ(test, s->order, "EL4002");
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_SCAN_FAILED);
-	KUNIT_EXPECT_EQ(test, ec_config_status(b->m->session->wanted.configs[AO]), 0);
+	KUNIT_EXPECT_EQ(test, cyc_config_status(b, AO), 0);
 	expect_why(b, AO, "no reply");
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_status, EC_AL_OP);
 

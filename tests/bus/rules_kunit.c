@@ -183,7 +183,7 @@ static void rules_configured_twice(struct kunit *test)
 	/* nobody is there: no error, the handle is good */
 	sc.position = 17;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	KUNIT_EXPECT_EQ(test, ec_config_status(b->m->session->wanted.configs[sc.index]), 0);
+	KUNIT_EXPECT_EQ(test, cyc_config_status(b, sc.index), 0);
 }
 
 static int pdo(struct bus *b, u8 op, u8 sm, u16 index, u32 entry)
