@@ -17,10 +17,7 @@ static void device(struct ec_links *l, const struct ec_link *link, bool attached
 		WRITE_ONCE(m->bus.looked, false);
 		ec_monitor_kick(m);
 	} else if (!link->side) {
-		mutex_lock(&m->cyclic_lock);
-		if (m->active)
-			ec_cycle_nothing_back(m->active);
-		mutex_unlock(&m->cyclic_lock);
+		ec_cycles_nothing_back(&m->cycles);
 	}
 }
 
@@ -93,7 +90,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ec_log_init(&m->base->log);
 	ec_show_init(&m->base->show);
 	mutex_init(&m->session_lock);
-	mutex_init(&m->cyclic_lock);
+	ec_cycles_init(&m->cycles, m->base, &m->links, &m->dc);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;

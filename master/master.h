@@ -31,8 +31,6 @@ struct task_struct;
  * @links: devices, frames and bus access
  * @bus: slaves
  *
- *
- *
  * @monitor: thread
  * @lanes: workers of requests; they wait for slaves
  * @service: what others wait for, never many at once: clocks, looks at requests,
@@ -44,19 +42,8 @@ struct task_struct;
  * @api: for applications in the kernel, immutable
  * @memory: bytes of all sessions, and of what they have mapped, which may outlive them
  * @heir: what another one configures to take over @session, which is detached
- * @cyclic_lock: held by the cyclic caller in receive and send; protects @active
- * @active: @session while it is active
- * @active_owner: owner of @active, to be compared without a lock; NULL: none
- *
- * @late: figures of the last cycle, under @session_lock
- * @late_reset: the cyclic caller shall forget its figures
- *
- * @kernel_cycle: cycles of the thread that runs the cycle
- * @kernel_run: odd while it sends; another number than before: another run
- * @kernel_session: @session while the kernel runs its cycle; changed under
- *	@session_lock, read under RCU
- *
  * @dc: distributed clocks
+ * @cycles: cycles of applications
  */
 struct ec_master {
 	struct ec_base base[1];	/* one; used as in the layers, which have a pointer */
@@ -74,25 +61,13 @@ struct ec_master {
 	struct ec_api *api;
 	atomic_long_t memory;
 	struct ec_session *heir;
-	struct mutex cyclic_lock;
-	struct ec_session *active;
-	const void *active_owner;
-
-	struct ec_late_report late;
-	bool late_reset;
-
-	aligned_u64 kernel_cycle;
-	u32 kernel_run;
-	struct ec_session __rcu *kernel_session;
-
 	struct ec_dc dc;
+	struct ec_cycles cycles;
 };
 
 int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
 		      unsigned int debug);
 void ec_masters_destroy(void);
-
-
 
 /* monitor.c */
 int ec_monitor_start(struct ec_master *m);

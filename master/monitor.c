@@ -301,7 +301,7 @@ static void maybe_scan(struct watch *w)
 		if (changed)
 			WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(m);
-		if (!READ_ONCE(m->active))
+		if (!READ_ONCE(m->cycles.active))
 			ec_dc_measure(&m->dc);
 		want_states(m);
 	} else {

@@ -51,7 +51,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	ops = ec_links_device_ops(&m->links);
 	if (!ops)
 		ret = -ENODEV;
-	else if (READ_ONCE(m->active) != *s)
+	else if (READ_ONCE(m->cycles.active) != &(*s)->cycle)
 		ret = -EINVAL;
 	else if (!place_is_right(ops))
 		ret = -EWOULDBLOCK;
@@ -79,10 +79,10 @@ void ec_api_work(struct work_struct *work)
 	struct ec_api *api = container_of(work, struct ec_api, work);
 	struct ec_master *m = api->file.master;
 
-	mutex_lock(&m->cyclic_lock);
-	if (m->active && m->active->owner == &api->file && ec_links_attached(&m->links))
+	mutex_lock(&m->cycles.lock);
+	if (m->cycles.owner == &api->file && ec_links_attached(&m->links))
 		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
-	mutex_unlock(&m->cyclic_lock);
+	mutex_unlock(&m->cycles.lock);
 	if (READ_ONCE(api->atomic) && !api->told) {
 		api->told = true;
 		ec_err(m, "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
@@ -107,7 +107,7 @@ int ecrt_master_receive(ec_master_t *master)
 	} else {
 		master->api->received |= master->api->sent;
 		master->api->sent = 0;
-		ret = ec_cycle_do_receive(s);
+		ret = ec_cycle_do_receive(&s->cycle);
 	}
 	ec_access_leave(&master->links);
 	return ret;
@@ -125,7 +125,7 @@ int ecrt_master_send(ec_master_t *master)
 	next = &master->api->next;
 	if (next->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(s);
-	ret = ec_cycle_told(s, next) ?: ec_cycle_do_send(s, next);
+	ret = ec_cycle_told(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
 	master->api->sent |= next->queued;
 	next->queued = 0;
 	next->flags = 0;

@@ -15,7 +15,7 @@ static int check(const struct ec_master *m, const struct ec_status **st)
 
 	if (!s)
 		return -EINVAL;
-	*st = s->shared->status;
+	*st = s->cycle.shared->status;
 	return READ_ONCE((*st)->dc_ref) ? 0 : -ENXIO;
 }
 

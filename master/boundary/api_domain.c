@@ -50,7 +50,7 @@ int ecrt_domain_process(ec_domain_t *domain)
 	if (!(api->received & BIT_ULL(domain->index)))
 		return 0;
 	api->received &= ~BIT_ULL(domain->index);
-	st = &ec_domain_session(domain)->shared->status->domains[domain->index];
+	st = &ec_domain_session(domain)->cycle.shared->status->domains[domain->index];
 	domain->snap.working_counter = READ_ONCE(st->working_counter);
 	domain->snap.wc_state = READ_ONCE(st->wc_state);
 	domain->snap.redundancy_active = READ_ONCE(st->redundancy_active);

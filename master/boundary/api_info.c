@@ -63,7 +63,7 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t
 	m = ec_api_master(sc);
 	s = smp_load_acquire(&m->api->active);
 	if (s) {
-		v = READ_ONCE(s->shared->status->configs[ec_api_config(sc)->index]);
+		v = READ_ONCE(s->cycle.shared->status->configs[ec_api_config(sc)->index]);
 	} else {
 		mutex_lock(&m->session_lock);
 		v = ec_config_status(ec_api_config(sc));

@@ -169,8 +169,8 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 	if (vma->vm_flags & VM_EXEC || !f->writable)
 		return -EPERM;
 	mutex_lock(&m->session_lock);
-	if (m->session && m->session->owner == f && m->session->wanted.active)
-		ret = map_shared(m->session->shared, vma);
+	if (m->session && m->session->cycle.owner == f && m->session->wanted.active)
+		ret = map_shared(m->session->cycle.shared, vma);
 	mutex_unlock(&m->session_lock);
 	return ret;
 }
@@ -190,7 +190,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait)
 {
 	return ec_waiters_poll(&f->waiters, filp, wait) ?
-	       ec_cycle_thread_poll(f->master, f) : EPOLLERR;
+	       ec_cycle_thread_poll(&f->master->cycles, f) : EPOLLERR;
 }
 
 static __poll_t ec_poll(struct file *filp, poll_table *wait)

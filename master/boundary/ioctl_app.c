@@ -334,7 +334,7 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 		return ec_refuse(call, ret, "a domain has a division, but the application runs the cycle; call ecrt_master_set_cycle(), or queue the domain in some cycles only");
 	case -ENODEV:
 		return ec_refuse(call, ret, "CPU %d is not online; choose another one for the cycle",
-				 s->kernel.cpu);
+				 s->cycle.kernel.cpu);
 	default:
 		return ec_refuse(call, ret, "activation failed (%pe)", ERR_PTR(ret));
 	}
@@ -378,10 +378,10 @@ static int activate(struct ec_call *call, struct ec_session *s, const void *pres
 
 static void tell_sizes(const struct ec_session *s, struct ec_ioc_activate *i)
 {
-	i->image_size = s->shared->image_size;
+	i->image_size = s->cycle.shared->image_size;
 	i->status_size = EC_STATUS_BYTES;
-	i->request_size = s->shared->request_size;
-	i->exchange_size = s->shared->exchange_size;
+	i->request_size = s->cycle.shared->request_size;
+	i->exchange_size = s->cycle.shared->exchange_size;
 }
 
 int ec_ioc_activate(struct ec_call *call)
@@ -453,23 +453,25 @@ int ec_ioc_interval(struct ec_call *call)
  * cyclic caller under PREEMPT_RT, where a mutex is an rt_mutex.
  *
  * Context: Process. The lock is held when a session is returned.
- * Return: the active session of this file, or NULL with @ret -EPERM, or -EBUSY
+ * Return: the active cycle of this file, or NULL with @ret -EPERM, or -EBUSY
  * when the kernel runs the cycle.
  */
-static struct ec_session *enter(struct ec_file *f, int *ret)
+static struct ec_cycle *enter(struct ec_file *f, int *ret)
 {
-	struct ec_master *m = f->master;
+	struct ec_cycles *cycles = &f->master->cycles;
+	struct ec_cycle *c;
 
-	/* whoever does not own the cycle does not reach its lock */
-	if (READ_ONCE(m->active_owner) != f) {
+	/* a file that does not own the cycle does not reach its lock */
+	if (READ_ONCE(cycles->owner) != f) {
 		*ret = -EPERM;
 		return NULL;
 	}
-	mutex_lock(&m->cyclic_lock);
-	*ret = !m->active || m->active->owner != f ? -EPERM : m->active->thread ? -EBUSY : 0;
+	mutex_lock(&cycles->lock);
+	c = cycles->active;
+	*ret = !c || c->owner != f ? -EPERM : c->thread ? -EBUSY : 0;
 	if (!*ret)
-		return m->active;
-	mutex_unlock(&m->cyclic_lock);
+		return c;
+	mutex_unlock(&cycles->lock);
 	return NULL;
 }
 
@@ -478,13 +480,13 @@ int ec_ioc_app_time(struct ec_call *call)
 	struct ec_ioc_app_time *i = call->arg;
 	struct ec_ioc_send told = { .flags = EC_SEND_FLAG_APP_TIME, .app_time = i->app_time };
 	struct ec_master *m = call->master;
-	struct ec_session *s;
+	struct ec_cycle *c;
 	int ret;
 
-	s = enter(call->file, &ret);
-	if (s) {
-		ec_cycle_app_time(s, &told);
-		mutex_unlock(&m->cyclic_lock);
+	c = enter(call->file, &ret);
+	if (c) {
+		ec_cycle_app_time(c, &told);
+		mutex_unlock(&m->cycles.lock);
 		return 0;
 	}
 	if (ret == -EBUSY)
@@ -502,25 +504,25 @@ int ec_ioc_app_time(struct ec_call *call)
 int ec_ioc_receive(struct ec_file *f)
 {
 	int ret;
-	struct ec_session *s = enter(f, &ret);
+	struct ec_cycle *c = enter(f, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
-	ret = ec_cycle_receive(s);
-	mutex_unlock(&f->master->cyclic_lock);
+	ret = ec_cycle_receive(c);
+	mutex_unlock(&f->master->cycles.lock);
 	return ret;
 }
 
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 {
 	int ret;
-	struct ec_session *s = enter(f, &ret);
+	struct ec_cycle *c = enter(f, &ret);
 
-	if (!s)
+	if (!c)
 		return ret;
 	if (arg->flags & EC_SEND_FLAG_REQUESTS)
-		ec_requests_kick(s);
-	ret = ec_cycle_told(s, arg) ?: ec_cycle_send(s, arg);
-	mutex_unlock(&f->master->cyclic_lock);
+		ec_requests_kick(ec_cycle_session(c));
+	ret = ec_cycle_told(c, arg) ?: ec_cycle_send(c, arg);
+	mutex_unlock(&f->master->cycles.lock);
 	return ret;
 }

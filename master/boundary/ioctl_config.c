@@ -189,7 +189,7 @@ int ec_ioc_domain(struct ec_call *call)
 	i->options = d->options;
 	i->max_age = d->max_age;
 	if (ec_domain_session(d)->wanted.active) {
-		const struct ec_status *st = ec_domain_session(d)->shared->status;
+		const struct ec_status *st = ec_domain_session(d)->cycle.shared->status;
 
 		i->datagram_count = d->n_dgrams;
 		i->datagram_bytes = d->dgram_bytes;
@@ -235,7 +235,8 @@ int ec_ioc_domain_data(struct ec_call *call)
 		if (ret)
 			return ret;
 		memcpy(call->data + pos, ec_domain_data(d) + pos, n);
-		ec_cycle_thread_outputs(ec_domain_session(d), call->data + pos, d->offset + pos, n);
+		ec_cycle_thread_outputs(&ec_domain_session(d)->cycle, call->data + pos,
+					d->offset + pos, n);
 	}
 	return 0;
 }

@@ -7,6 +7,7 @@
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
 #include "ioctl.h"
+#include "../master.h"
 #include "../session/session.h"
 
 #define PERIOD_MIN_NS	10000
@@ -61,8 +62,8 @@ int ec_ioc_cycle(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	call->session->kernel = *i;
-	call->session->priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
+	call->session->cycle.kernel = *i;
+	call->session->cycle.priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
 	return 0;
 }
 
@@ -107,21 +108,21 @@ int ec_ioc_copy(struct ec_call *call)
 		.from_domain = i->from_domain, .from_bit = i->from_bit,
 		.to_domain = i->to_domain, .to_bit = i->to_bit, .bits = i->bits,
 	};
-	int ret = ec_copy_add(call->session, &copy);
+	int ret = ec_copy_add(&call->session->cycle, &copy);
 
 	return ret ? copy_failed(call, i, ret) : 0;
 }
 
 int ec_ioc_wait(struct ec_call *call)
 {
-	struct ec_master *m = call->master;
+	struct ec_cycles *cycles = &call->master->cycles;
 	struct ec_ioc_wait *i = call->arg;
 	u32 run;
 	int ret;
 
-	if (!ec_cycle_thread_run(m, call->file, &run))
+	if (!ec_cycle_thread_run(cycles, call->file, &run))
 		return ec_refuse(call, -EPERM, "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
-	ret = ec_cycle_thread_wait(m, call->file, &call->file->waiters, run, &i->cycle,
+	ret = ec_cycle_thread_wait(cycles, call->file, &call->file->waiters, run, &i->cycle,
 				   i->timeout_us);
 	if (ret == -EBUSY)
 		return ec_refuse(call, ret, "%u threads wait for the cycle already; let one of them wake the others",

@@ -100,14 +100,14 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	const struct ec_status *st;
 
 	i->active = s->wanted.active;
-	i->session = !s->owner ? EC_SESSION_DETACHED :
+	i->session = !s->cycle.owner ? EC_SESSION_DETACHED :
 		     s->wanted.active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
 	i->config_count = s->wanted.n_configs;
 	i->domain_count = s->wanted.n_domains;
 	if (!s->wanted.active)
 		return;
 	cycle_info(s, i);
-	st = s->shared->status;
+	st = s->cycle.shared->status;
 	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));
 	i->cycle_lock = READ_ONCE(st->kernel.lock);
 	i->lock_losses = READ_ONCE(st->kernel.lock_losses);
@@ -428,7 +428,7 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 		return -ENOMEM;
 	ret = ec_show_begin(&call->master->base->show);
 	if (!ret) {
-		ec_late_get(call->master, i, st);
+		ec_late_get(&call->master->cycles, i, st);
 		ec_show_end(&call->master->base->show);
 	}
 	i->size = call->size;
@@ -440,7 +440,7 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 int ec_ioc_cycle_reset(struct ec_call *call)
 {
 	mutex_lock(&call->master->session_lock);
-	ec_late_reset(call->master);
+	ec_late_reset(&call->master->cycles);
 	mutex_unlock(&call->master->session_lock);
 	return 0;
 }

@@ -316,10 +316,10 @@ static int wait_outputs(struct ec_slave *s)
 		return 0;
 	cycles = cycles_twice(s->plan);
 	limit = 5000 + div_u64((u64)cycles * s->bus->links->access.interval_us, 500);
-	from = ec_read64(s->plan->wanted->cycles);
+	from = ec_read64(s->plan->wanted->sends);
 	/* a poll: the cycle wakes no thread of the master */
 	for (i = 0; i < limit; i++) {
-		if (ec_read64(s->plan->wanted->cycles) - from >= cycles)
+		if (ec_read64(s->plan->wanted->sends) - from >= cycles)
 			return 0;
 		if (ec_stop_worker(&s->stop))
 			return -ECANCELED;

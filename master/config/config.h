@@ -143,8 +143,8 @@ struct ec_wanted {
 	struct ec_bus *bus;
 	/** @lock: of the session, immutable */
 	struct mutex *lock;
-	/** @cycles: cyclic sends so far; pointer immutable */
-	const u64 *cycles;
+	/** @sends: cyclic sends so far; pointer immutable */
+	const u64 *sends;
 	/** @budget: memory that the application causes */
 	struct ec_budget budget;
 	/** @configs: slave configurations */

@@ -4,9 +4,9 @@
 #include <linux/slab.h>
 #include "../config/config.h"
 #include "copy.h"
+#include "cycle.h"
 #include "../config/domain.h"
 #include "../base/limits.h"
-#include "../session/session.h"
 
 /**
  * struct step - a copy with everything found out
@@ -65,9 +65,9 @@ static void copy_bits(u8 *to, u32 to_bit, const u8 *from, u32 from_bit, u32 bits
 }
 
 /* Do the bits belong to one slave's process data of that direction? */
-static bool inside(const struct ec_session *s, u32 domain, u32 bit, u32 bits, u8 dir)
+static bool inside(const struct ec_cycle *c, u32 domain, u32 bit, u32 bits, u8 dir)
 {
-	const struct ec_domain *d = s->wanted.domains[domain];
+	const struct ec_domain *d = c->wanted->domains[domain];
 	unsigned int i;
 
 	for (i = 0; i < d->n_fmmus; i++) {
@@ -88,101 +88,101 @@ static bool overlap(const struct ec_copy *a, const struct ec_copy *b)
 
 /**
  * ec_copy_add() - one more copy
- * @s: session, not active
+ * @c: cycle, not active
  * @copy: what to copy; nothing of it is checked yet
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENOENT no such domain; -EDOM the source is not input of one
  * slave; -ERANGE the target is not output of one slave; -EEXIST another copy has
  * that target; -ENOSPC; -ENOMEM.
  */
-int ec_copy_add(struct ec_session *s, const struct ec_copy *copy)
+int ec_copy_add(struct ec_cycle *c, const struct ec_copy *copy)
 {
 	unsigned int i;
 
-	if (copy->from_domain >= s->wanted.n_domains || copy->to_domain >= s->wanted.n_domains)
+	if (copy->from_domain >= c->wanted->n_domains || copy->to_domain >= c->wanted->n_domains)
 		return -ENOENT;
-	if (!copy->bits || !inside(s, copy->from_domain, copy->from_bit, copy->bits,
+	if (!copy->bits || !inside(c, copy->from_domain, copy->from_bit, copy->bits,
 				   EC_CFG_DIR_INPUT))
 		return -EDOM;
-	if (!inside(s, copy->to_domain, copy->to_bit, copy->bits, EC_CFG_DIR_OUTPUT))
+	if (!inside(c, copy->to_domain, copy->to_bit, copy->bits, EC_CFG_DIR_OUTPUT))
 		return -ERANGE;
-	for (i = 0; i < s->n_copies; i++)
-		if (overlap(copy, &s->copies[i]))
+	for (i = 0; i < c->n_copies; i++)
+		if (overlap(copy, &c->copies[i]))
 			return -EEXIST;
-	if (s->n_copies >= EC_MAX_COPIES)
+	if (c->n_copies >= EC_MAX_COPIES)
 		return -ENOSPC;
-	if (!s->copies)
-		s->copies = kvcalloc(EC_MAX_COPIES, sizeof(*s->copies), GFP_KERNEL_ACCOUNT);
-	if (!s->copies)
+	if (!c->copies)
+		c->copies = kvcalloc(EC_MAX_COPIES, sizeof(*c->copies), GFP_KERNEL_ACCOUNT);
+	if (!c->copies)
 		return -ENOMEM;
-	s->copies[s->n_copies++] = *copy;
+	c->copies[c->n_copies++] = *copy;
 	return 0;
 }
 
 /**
  * ec_copies_begin() - copies are done from now on
- * @s: session whose domains have offsets
+ * @c: cycle whose domains have offsets
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_copies_begin(struct ec_session *s)
+int ec_copies_begin(struct ec_cycle *c)
 {
-	size_t bytes = 0, steps = s->n_copies * sizeof(struct step);
-	struct ec_copying *c;
+	size_t bytes = 0, steps = c->n_copies * sizeof(struct step);
+	struct ec_copying *k;
 	unsigned int i;
 
-	if (!s->n_copies)
+	if (!c->n_copies)
 		return 0;
-	for (i = 0; i < s->n_copies; i++)
-		bytes += DIV_ROUND_UP(s->copies[i].bits, 8);
-	c = kvzalloc(sizeof(*c) + steps + bytes, GFP_KERNEL_ACCOUNT);
-	if (!c)
+	for (i = 0; i < c->n_copies; i++)
+		bytes += DIV_ROUND_UP(c->copies[i].bits, 8);
+	k = kvzalloc(sizeof(*k) + steps + bytes, GFP_KERNEL_ACCOUNT);
+	if (!k)
 		return -ENOMEM;
-	c->n = s->n_copies;
-	c->last = (u8 *)c->steps + steps;
-	for (bytes = 0, i = 0; i < c->n; i++) {
-		const struct ec_copy *copy = &s->copies[i];
+	k->n = c->n_copies;
+	k->last = (u8 *)k->steps + steps;
+	for (bytes = 0, i = 0; i < k->n; i++) {
+		const struct ec_copy *copy = &c->copies[i];
 
-		c->steps[i] = (struct step){
+		k->steps[i] = (struct step){
 			.domain = copy->from_domain, .bits = copy->bits, .last = bytes,
-			.from = 8 * s->wanted.domains[copy->from_domain]->offset + copy->from_bit,
-			.to = 8 * s->wanted.domains[copy->to_domain]->offset + copy->to_bit,
+			.from = 8 * c->wanted->domains[copy->from_domain]->offset + copy->from_bit,
+			.to = 8 * c->wanted->domains[copy->to_domain]->offset + copy->to_bit,
 		};
 		bytes += DIV_ROUND_UP(copy->bits, 8);
 	}
-	s->copying = c;
+	c->copying = k;
 	return 0;
 }
 
-void ec_copies_end(struct ec_session *s)
+void ec_copies_end(struct ec_cycle *c)
 {
-	kvfree(s->copying);
-	s->copying = NULL;
+	kvfree(c->copying);
+	c->copying = NULL;
 }
 
 /**
  * ec_copies_run() - copy inputs to outputs in the image
- * @s: active session with copies
+ * @c: active cycle with copies
  *
  * While the working counter of the source's domain is not complete the last
  * values stay; they are zero at first. The image may be the application's.
  *
  * Context: The master's single cyclic caller, between receive and send. RT-safe.
  */
-void ec_copies_run(struct ec_session *s)
+void ec_copies_run(struct ec_cycle *c)
 {
-	struct ec_copying *c = s->copying;
-	const struct ec_status *st = s->shared->status;
-	u8 *image = s->shared->image;
+	struct ec_copying *k = c->copying;
+	const struct ec_status *st = c->shared->status;
+	u8 *image = c->shared->image;
 	unsigned int i;
 
-	for (i = 0; i < c->n; i++) {
-		const struct step *p = &c->steps[i];
+	for (i = 0; i < k->n; i++) {
+		const struct step *p = &k->steps[i];
 
 		if (st->domains[p->domain].wc_state == 2)
-			copy_bits(c->last + p->last, 0, image, p->from, p->bits);
-		copy_bits(image, p->to, c->last + p->last, 0, p->bits);
+			copy_bits(k->last + p->last, 0, image, p->from, p->bits);
+		copy_bits(image, p->to, k->last + p->last, 0, p->bits);
 	}
 }

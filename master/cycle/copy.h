@@ -8,7 +8,7 @@
 
 #include <linux/types.h>
 
-struct ec_session;
+struct ec_cycle;
 
 /**
  * struct ec_copy - one copy, as configured
@@ -26,9 +26,9 @@ struct ec_copy {
 	u32 bits;
 };
 
-int ec_copy_add(struct ec_session *s, const struct ec_copy *copy);
-int ec_copies_begin(struct ec_session *s);
-void ec_copies_end(struct ec_session *s);
-void ec_copies_run(struct ec_session *s);
+int ec_copy_add(struct ec_cycle *c, const struct ec_copy *copy);
+int ec_copies_begin(struct ec_cycle *c);
+void ec_copies_end(struct ec_cycle *c);
+void ec_copies_run(struct ec_cycle *c);
 
 #endif

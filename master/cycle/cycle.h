@@ -3,15 +3,24 @@
 #ifndef EC_CYCLE_H
 #define EC_CYCLE_H
 
+#include <linux/mutex.h>
 #include <linux/types.h>
-#include "late.h"
 #include "../base/limits.h"
+#include "../base/log.h"
+#include "../clock/dc.h"
+#include "../config/config.h"
+#include "../link/links.h"
+#include "ethercat.h"
+#include "late.h"
+#include "shared.h"
 
+struct ec_copy;
+struct ec_copying;
+struct ec_cycle;
+struct ec_cycle_thread;
 struct ec_frame_buf;
-struct ec_ioc_send;
-struct ec_master;
-struct ec_session;
 struct ec_slot;
+struct ec_waiters;
 
 /**
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use
@@ -144,107 +153,194 @@ struct ec_cyc_wire {
 };
 
 /**
- * struct ec_cycle - cyclic layout and its state; owned by the cyclic caller
- * @dgrams: layout
- * @n_dgrams: entries in @dgrams
- * @areas: what is copied, in order of the datagrams
- * @n_areas: entries in @areas
- * @cuts: inputs of several datagrams
- * @n_cuts: entries in @cuts
- * @stage: an image in which their parts come together, or NULL
- * @plain: frames of a cycle that sends all domains
- * @clocked: the same with all clock datagrams
- * @last: frames of the last send
- * @domains: results
- * @direct: image of the application to send from, its inputs are what it likes;
- *	NULL: those of @domains. While it is used, what the outputs of the latter
- *	are is undefined
- * @flight: frames on their way, the oldest first
- * @n_flight: entries in @flight
- * @send: number of the last send
- * @queued: domains of the last sends, by their number
- * @judged: number of the last send when domains were judged
- * @sent: domains sent since the last receive, bit n: domain n
- * @back: domains of which something is back
- * @cycles: sends so far
- * @schedule: when an application that runs the cycle should send
- * @dc_asked: clock datagrams the application wanted since the last receive,
- *	EC_SEND_FLAG_*
- * @dc_back: which of them are back
- * @dc_sent: time in the last send that went to the slaves, ns
- * @dc_wkc: working counter with the last answer of the reference clock
- * @dc_silent: since then it has not answered so often, as far as can be told
- * @dc_time: last time of the reference clock, ns
- * @dc_time_ns: when the frame that brought it was sent (ktime)
- * @dc_time64: whole time of the reference clock when it was last asked for, ns
- * @dc_then: the same some time ago, to learn the rate of that clock
- * @dc_then_ns: likewise
- * @dc_ppb: how much faster than ktime it runs, 1e-9
- * @dc_diff: last value of register 0x092C, of all slaves
- * @dc_hold: the time for the reference clock is off: it is not sent
- * @dc_skip: jumps of that time, ns; they are taken off
+ * struct ec_cycles - all cycles of a master: one at a time runs
+ *
+ * The first four are immutable.
+ */
+struct ec_cycles {
+	struct ec_base *base;
+	struct ec_links *links;
+	struct ec_dc *dc;
+
+	/** @lock: held by the cyclic caller in receive and send; protects @active */
+	struct mutex lock;
+	/** @active: the cycle that runs; changed with the lock of its configuration, too */
+	struct ec_cycle *active;
+	/** @owner: of @active, to be compared without a lock; NULL: none */
+	const void *owner;
+
+	/** @late: figures of the last cycle, under the lock of its configuration */
+	struct ec_late_report late;
+	/** @late_reset: the cyclic caller shall set its figures to zero */
+	bool late_reset;
+
+	/** @number: cycles of the thread that runs the cycle */
+	aligned_u64 number;
+	/** @run: an uneven number while it sends; another number than before: another run */
+	u32 run;
+	/**
+	 * @by_kernel: @active while the kernel runs it; changed under the lock of its
+	 * configuration, read under RCU
+	 */
+	struct ec_cycle __rcu *by_kernel;
+};
+
+/**
+ * struct ec_cycle - cycle of an application: settings, layout, state
+ *
+ * The settings are under the lock of the configuration. From activation on they do
+ * not change, and what follows @dgrams belongs to the cyclic caller.
  */
 struct ec_cycle {
+	/** @cycles: of the master; immutable, as are the next four */
+	struct ec_cycles *cycles;
+	struct ec_base *base;
+	struct ec_links *links;
+	struct ec_dc *dc;
+	/** @wanted: slave configurations and domains that it exchanges */
+	struct ec_wanted *wanted;
+
+	/** @owner: open file of the application; NULL: it is gone, the cycle continues */
+	const void *owner;
+	/**
+	 * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
+	 * reads it under RCU
+	 */
+	struct ec_waiters __rcu *waiters;
+	/** @shared: memory of the activation: image, status page, exchange */
+	struct ec_shared *shared;
+	/** @kernel: how the kernel runs the cycle; period 0: the application runs it */
+	struct ec_ioc_cycle kernel;
+	/**
+	 * @priority: SCHED_FIFO priority that the process which set @kernel may use;
+	 * 0: none
+	 */
+	u32 priority;
+	/** @cpu_lost: the CPU of the cycle is offline */
+	bool cpu_lost;
+	/** @cpu_losses: how often it went offline */
+	u32 cpu_losses;
+	/** @thread: runs the cycle while active; NULL: the application does */
+	struct ec_cycle_thread *thread;
+	/** @late_per_s: how many cycles a second acyclic frames may make late */
+	u32 late_per_s;
+	/** @room_logged: the log says that acyclic frames do not fit */
+	bool room_logged;
+	/** @lock_logged: EC_CYCLE_LOCK_* as the log knows it */
+	u32 lock_logged;
+	/** @copies: from inputs to outputs, before each send */
+	struct ec_copy *copies;
+	unsigned int n_copies;
+	/** @copying: what they need while active, or NULL */
+	struct ec_copying *copying;
+
+	/** @dgrams: layout; ec_cycle_free() sets it and all that follows to zero */
 	struct ec_cyc_dgram *dgrams;
 	unsigned int n_dgrams;
+	/** @areas: what is copied, in order of the datagrams */
 	struct ec_cyc_area *areas;
 	unsigned int n_areas;
+	/** @cuts: inputs of several datagrams */
 	struct ec_cyc_cut *cuts;
 	unsigned int n_cuts;
+	/** @stage: an image in which their parts come together, or NULL */
 	u8 *stage;
+	/** @plain: frames of a cycle that sends all domains */
 	struct ec_cyc_wire plain;
+	/** @clocked: the same with all clock datagrams */
 	struct ec_cyc_wire clocked;
+	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
+	/** @domains: results */
 	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
+	/**
+	 * @direct: image of the application to send from, its inputs may have any value;
+	 * NULL: those of @domains. While it is used, the outputs of the latter are
+	 * undefined
+	 */
 	const u8 *direct;
+	/** @flight: frames on their way, the oldest first */
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	unsigned int n_flight;
+	/** @send: number of the last send */
 	u32 send;
+	/** @queued: domains of the last sends, by their number */
 	u64 queued[EC_CYC_SENDS];
+	/** @judged: number of the last send when domains were judged */
 	u32 judged;
+	/** @sent: domains sent since the last receive, bit n: domain n */
 	u64 sent;
+	/** @back: domains of which something is back */
 	u64 back;
-	aligned_u64 cycles;
+	/** @sends: so far */
+	aligned_u64 sends;
+	/** @schedule: when an application that runs the cycle should send */
 	struct ec_schedule schedule;
+
+	/**
+	 * @dc_asked: clock datagrams the application wanted since the last receive,
+	 * EC_SEND_FLAG_*
+	 */
 	u32 dc_asked;
+	/** @dc_back: which of them are back */
 	u32 dc_back;
+	/** @dc_sent: time in the last send that went to the slaves, ns */
 	u64 dc_sent;
+	/** @dc_wkc: working counter with the last answer of the reference clock */
 	u16 dc_wkc;
+	/** @dc_silent: sends since then that it has not answered, as far as is known */
 	u32 dc_silent;
+	/** @dc_time: last time of the reference clock, ns */
 	u64 dc_time;
+	/** @dc_time_ns: when the frame that brought it was sent (ktime) */
 	u64 dc_time_ns;
+	/** @dc_time64: whole time of the reference clock when it was last asked for, ns */
 	u64 dc_time64;
+	/** @dc_then: the same some time ago, to learn the rate of that clock */
 	u64 dc_then;
+	/** @dc_then_ns: when that was (ktime) */
 	u64 dc_then_ns;
+	/** @dc_ppb: how much faster than ktime the reference clock runs, 1e-9 */
 	s32 dc_ppb;
+	/** @dc_diff: last value of register 0x092C, of all slaves */
 	u32 dc_diff;
+	/** @dc_hold: the time for the reference clock is wrong: it is not sent */
 	bool dc_hold;
+	/** @dc_skip: jumps of that time, ns; they are subtracted */
 	u64 dc_skip;
 };
 
+/* cycle.c */
+void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_links *links,
+		    struct ec_dc *dc);
+void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wanted *wanted);
+void ec_cycle_clear(struct ec_cycle *c);
+void ec_cycle_set_active(struct ec_cycles *cycles, struct ec_cycle *c);
+void ec_cycle_set_owner(struct ec_cycle *c, const void *owner, struct ec_waiters *waiters);
+void ec_cycles_nothing_back(struct ec_cycles *cycles);
+
 /* layout.c */
-int ec_cycle_layout(struct ec_session *s);
+int ec_cycle_layout(struct ec_cycle *c);
 u32 ec_cycle_need_ns(void);
-int ec_cycle_check_room(struct ec_session *s, bool clocks);
-void ec_cycle_tell_room(struct ec_session *s);
-void ec_cycle_free(struct ec_master *m, struct ec_cycle *c);
+int ec_cycle_check_room(struct ec_cycle *c, bool clocks);
+void ec_cycle_tell_room(struct ec_cycle *c);
+void ec_cycle_free(struct ec_cycle *c);
 
 /* exchange.c */
-void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what);
-int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what);
-int ec_cycle_do_receive(struct ec_session *s);
-void ec_cycle_tell_stale(struct ec_session *s);
-void ec_cycle_nothing_back(struct ec_session *s);
-int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what);
-int ec_cycle_receive(struct ec_session *s);
-int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what);
+void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
+int ec_cycle_told(struct ec_cycle *c, const struct ec_ioc_send *what);
+int ec_cycle_do_receive(struct ec_cycle *c);
+void ec_cycle_tell_stale(struct ec_cycle *c);
+int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);
+int ec_cycle_receive(struct ec_cycle *c);
+int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what);
 
 /* dc_datagrams.c */
-u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle *c);
-u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags);
-void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
+u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c);
+u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags);
+void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 sync_time, u64 now);
-const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data);
-void ec_dc_datagrams_judge(struct ec_session *s);
+const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data);
+void ec_dc_datagrams_judge(struct ec_cycle *c);
 
 #endif

@@ -7,23 +7,22 @@
  * for, too, and their jitter is averaged.
  */
 #include <linux/ktime.h>
+#include "cycle.h"
 #include "cycle_lock.h"
-#include "../master.h"
-#include "../session/session.h"
 
 /**
  * ec_cycle_lock_init() - begin anew
  * @l: time of the cycle
- * @s: session with its @kernel
+ * @c: cycle with its @kernel
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_session *s)
+void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_cycle *c)
 {
 	memset(l, 0, sizeof(*l));
-	l->follow = s->kernel.dc & EC_CYCLE_DC_FOLLOW;
-	l->phase = l->follow ? s->kernel.phase_ns : 0;
-	ec_dc_lock_init(&l->pi, s->kernel.period_ns);
+	l->follow = c->kernel.dc & EC_CYCLE_DC_FOLLOW;
+	l->phase = l->follow ? c->kernel.phase_ns : 0;
+	ec_dc_lock_init(&l->pi, c->kernel.period_ns);
 }
 
 /* Application time of a cycle: whole periods after the last one. */
@@ -66,9 +65,8 @@ static void shift(struct ec_cycle_lock *l, s64 ns)
 }
 
 /* What the reference clock says is new; how late that cycle was by it. */
-static bool measured(struct ec_cycle_lock *l, const struct ec_session *s, s32 *error)
+static bool measured(struct ec_cycle_lock *l, const struct ec_cycle *c, s32 *error)
 {
-	const struct ec_cycle *c = &s->cycle;
 	u64 time = 0, then;
 	s64 ahead;
 
@@ -97,7 +95,7 @@ static void publish(const struct ec_cycle_lock *l, struct ec_status_cycle *st)
 /**
  * ec_cycle_lock_step() - time of a cycle, and when the next one shall be
  * @l: time of the cycle
- * @s: active session; what has come back was taken
+ * @c: active cycle; what has come back was taken
  * @due: schedule of this cycle (ktime)
  * @epoch_ns: what makes ktime an application time at first
  *
@@ -107,7 +105,7 @@ static void publish(const struct ec_cycle_lock *l, struct ec_status_cycle *st)
  * Return: what to add to the period until the next cycle, ns; at most 1/100 of
  * it.
  */
-s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u64 epoch_ns)
+s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_cycle *c, u64 due, u64 epoch_ns)
 {
 	u32 k = l->n_past % EC_CYCLE_LOCK_PAST;
 	s32 error, correction = 0;
@@ -116,39 +114,39 @@ s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u
 	BUILD_BUG_ON(EC_CYCLE_LOCK_HOLD != (int)EC_DC_LOCK_HOLD);
 	advance(l, due, epoch_ns);
 	if (l->follow) {
-		correction = measured(l, s, &error) ? ec_dc_lock_step(&l->pi, error) :
+		correction = measured(l, c, &error) ? ec_dc_lock_step(&l->pi, error) :
 						      ec_dc_lock_miss(&l->pi);
-		publish(l, &s->shared->status->kernel);
+		publish(l, &c->shared->status->kernel);
 	}
 	l->past[k].due = due;
 	l->past[k].time = l->time;
 	l->n_past++;
-	ec_dc_app_time(&s->master->dc, l->time, due - l->phase);
+	ec_dc_app_time(c->dc, l->time, due - l->phase);
 	return correction;
 }
 
 /**
  * ec_cycle_lock_log() - tell changes of the lock; the cycle cannot
- * @s: active session
+ * @c: active cycle
  *
- * Context: The monitor thread, session_lock held.
+ * Context: The monitor thread, lock of the configuration held.
  */
-void ec_cycle_lock_log(struct ec_session *s)
+void ec_cycle_lock_log(struct ec_cycle *c)
 {
-	const struct ec_status_cycle *st = &s->shared->status->kernel;
+	const struct ec_status_cycle *st = &c->shared->status->kernel;
 	u32 lock = READ_ONCE(st->lock);
 
 	/* while clocks are measured nobody asks the reference */
-	if (lock == s->lock_told ||
-	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(s->master->dc.state) == EC_DC_BUSY))
+	if (lock == c->lock_logged ||
+	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(c->dc->state) == EC_DC_BUSY))
 		return;
-	s->lock_told = lock;
+	c->lock_logged = lock;
 	if (lock == EC_CYCLE_LOCK_LOCKED)
-		ec_info(s->master, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
+		ec_info(c, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
 			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));
 	else if (lock == EC_CYCLE_LOCK_HOLD)
-		ec_warn(s->master, "reference clock not answering; kernel cycle in holdover at the last rate\n");
+		ec_warn(c, "reference clock not answering; kernel cycle in holdover at the last rate\n");
 	else if (lock == EC_CYCLE_LOCK_SEEK && READ_ONCE(st->lock_losses))
-		ec_warn(s->master, "kernel cycle lost lock: phase error %d ns; seeking\n",
+		ec_warn(c, "kernel cycle lost lock: phase error %d ns; seeking\n",
 			READ_ONCE(st->phase_error));
 }

@@ -6,7 +6,7 @@
 #include <linux/types.h>
 #include "../wire/dc_lock.h"
 
-struct ec_session;
+struct ec_cycle;
 struct ec_status_cycle;
 
 #define EC_CYCLE_LOCK_PAST	8	/* a frame may be that many cycles on its way */
@@ -38,8 +38,8 @@ struct ec_cycle_lock {
 	struct ec_dc_lock pi;
 };
 
-void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_session *s);
-s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_session *s, u64 due, u64 epoch_ns);
-void ec_cycle_lock_log(struct ec_session *s);
+void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_cycle *c);
+s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_cycle *c, u64 due, u64 epoch_ns);
+void ec_cycle_lock_log(struct ec_cycle *c);
 
 #endif

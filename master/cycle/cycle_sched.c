@@ -4,102 +4,101 @@
 #include <linux/err.h>
 #include <linux/sched.h>
 #include <uapi/linux/sched/types.h>
+#include "cycle.h"
 #include "cycle_thread.h"
-#include "../master.h"
-#include "../session/session.h"
 
 /**
  * ec_cycle_sched_set() - give a thread the priority of the cycle
- * @s: session
+ * @c: cycle
  * @task: its cycle thread
  *
  * Context: Process. May sleep.
  */
-void ec_cycle_sched_set(const struct ec_session *s, struct task_struct *task)
+void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task)
 {
 	const struct sched_attr attr = {
-		.size = sizeof(attr), .sched_policy = s->priority ? SCHED_FIFO : SCHED_NORMAL,
-		.sched_priority = s->priority,
+		.size = sizeof(attr), .sched_policy = c->priority ? SCHED_FIFO : SCHED_NORMAL,
+		.sched_priority = c->priority,
 	};
 	int ret = sched_setattr_nocheck(task, &attr);
 
 	if (ret)
-		ec_warn(s->master, "kernel cycle: cannot set SCHED_FIFO priority %u (%pe)\n",
-			s->priority, ERR_PTR(ret));
+		ec_warn(c, "kernel cycle: cannot set SCHED_FIFO priority %u (%pe)\n",
+			c->priority, ERR_PTR(ret));
 }
 
 /**
  * ec_cycle_sched_log() - log which part of the priority is not permitted
- * @s: session with a thread
+ * @c: cycle with a thread
  *
  * The application does not learn from a successful activation what it lacks.
  *
- * Context: Process, session_lock held.
+ * Context: Process, lock of the configuration held.
  */
-void ec_cycle_sched_log(const struct ec_session *s)
+void ec_cycle_sched_log(const struct ec_cycle *c)
 {
-	u32 wanted = s->kernel.priority ?: EC_CYCLE_PRIORITY;
+	u32 wanted = c->kernel.priority ?: EC_CYCLE_PRIORITY;
 
-	if (!s->priority)
-		ec_warn(s->master, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
+	if (!c->priority)
+		ec_warn(c, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
 			wanted, wanted);
-	else if (s->priority < wanted)
-		ec_warn(s->master, "cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
-			s->priority, wanted);
+	else if (c->priority < wanted)
+		ec_warn(c, "cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
+			c->priority, wanted);
 }
 
 /**
  * ec_cycle_thread_inherit() - the cycle gets the priority that its new owner may use
- * @s: active session, taken over; without a thread nothing happens
+ * @c: active cycle, taken over; without a thread nothing happens
  * @priority: SCHED_FIFO priority that the new application may use; 0: SCHED_OTHER
  *
  * Otherwise a cycle would keep a right that its owner does not have, or lack one.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_cycle_thread_inherit(struct ec_session *s, u32 priority)
+void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority)
 {
-	struct task_struct *task = ec_cycle_thread_task(s);
+	struct task_struct *task = ec_cycle_thread_task(c);
 
-	lockdep_assert_held(&s->master->session_lock);
-	if (!task || s->priority == priority)
+	lockdep_assert_held(&*c->wanted->lock);
+	if (!task || c->priority == priority)
 		return;
-	s->priority = priority;
-	ec_cycle_sched_set(s, task);
-	if (priority == (s->kernel.priority ?: EC_CYCLE_PRIORITY))
-		ec_info(s->master, "cycle thread runs SCHED_FIFO %u, as the new application permits\n",
+	c->priority = priority;
+	ec_cycle_sched_set(c, task);
+	if (priority == (c->kernel.priority ?: EC_CYCLE_PRIORITY))
+		ec_info(c, "cycle thread runs SCHED_FIFO %u, as the new application permits\n",
 			priority);
 	else
-		ec_cycle_sched_log(s);
+		ec_cycle_sched_log(c);
 }
 
 /**
  * ec_cycle_thread_check_cpu() - keep the cycle thread on its CPU
- * @s: active session
+ * @c: active cycle
  *
  * When that CPU goes offline the kernel lets the thread run on all others, for
  * ever. Once it is online again the thread returns to it.
  *
- * Context: The monitor thread, session_lock held. May sleep.
+ * Context: The monitor thread, lock of the configuration held. May sleep.
  */
-void ec_cycle_thread_check_cpu(struct ec_session *s)
+void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 {
-	int cpu = s->kernel.cpu;
-	struct task_struct *task = ec_cycle_thread_task(s);
+	int cpu = c->kernel.cpu;
+	struct task_struct *task = ec_cycle_thread_task(c);
 
 	if (!task || cpu < 0)
 		return;
 	if (cpumask_equal(task->cpus_ptr, cpumask_of(cpu)))
 		return;
-	if (!s->cpu_lost) {
-		s->cpu_lost = true;
-		s->cpu_losses++;
-		ec_warn(s->master, "CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
+	if (!c->cpu_lost) {
+		c->cpu_lost = true;
+		c->cpu_losses++;
+		ec_warn(c, "CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
 			cpu, cpu);
 	}
 	/* on its way down a CPU is still online */
 	if (cpu_active(cpu) && !set_cpus_allowed_ptr(task, cpumask_of(cpu))) {
-		s->cpu_lost = false;
-		ec_info(s->master, "cycle thread runs on CPU %d again\n", cpu);
+		c->cpu_lost = false;
+		ec_info(c, "cycle thread runs on CPU %d again\n", cpu);
 	}
 }

@@ -21,12 +21,11 @@
 #include <linux/wait.h>
 #include "../config/config.h"
 #include "../base/bytes.h"
+#include "cycle.h"
 #include "cycle_lock.h"
 #include "cycle_thread.h"
 #include "../config/domain.h"
-#include "../master.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 #include "waiters.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
@@ -48,9 +47,9 @@ struct slow {
 };
 
 /**
- * struct ec_cycle_thread - @session, @outputs and sizes are immutable, the
+ * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable, the
  *	rest is the thread's
- * @session: active session; it ends the thread before it goes away
+ * @cycle: active cycle; its session ends the thread before it goes away
  * @ops: reports to the session
  * @task: thread
  * @outputs: areas that are taken from the application
@@ -74,7 +73,7 @@ struct slow {
  * @adopted: that has happened
  */
 struct ec_cycle_thread {
-	struct ec_session *session;
+	struct ec_cycle *cycle;
 	const struct ec_cycle_ops *ops;
 	struct task_struct *task;
 	struct area *outputs;
@@ -100,17 +99,17 @@ struct ec_cycle_thread {
 
 static struct ec_status_cycle *status(const struct ec_cycle_thread *t)
 {
-	return &t->session->shared->status->kernel;
+	return &t->cycle->shared->status->kernel;
 }
 
 static struct ec_exchange *exchange(const struct ec_cycle_thread *t)
 {
-	return t->session->shared->exchange;
+	return t->cycle->shared->exchange;
 }
 
 static struct ec_exchange_buffer *buffer(const struct ec_cycle_thread *t, unsigned int n)
 {
-	return t->session->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
+	return t->cycle->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
 }
 
 /* A number from memory of the application. */
@@ -135,7 +134,7 @@ static bool take_outputs(struct ec_cycle_thread *t)
 /* From now on the image is what is sent: its outputs are the newest ones. */
 static void use_image(struct ec_cycle_thread *t)
 {
-	u8 *image = t->session->shared->image;
+	u8 *image = t->cycle->shared->image;
 	const u8 *data = (const u8 *)(buffer(t, t->front) + 1);
 	unsigned int i;
 
@@ -144,17 +143,17 @@ static void use_image(struct ec_cycle_thread *t)
 			t->outputs[i].len);
 	t->ahead = false;
 	/* who looks at the image then finds these */
-	smp_store_release(&t->session->cycle.direct, NULL);
+	smp_store_release(&t->cycle->direct, NULL);
 }
 
 /* Did all slaves take part when their domain was sent last? */
-static bool all_take_part(const struct ec_session *s)
+static bool all_take_part(const struct ec_cycle *c)
 {
-	const struct ec_status_domain *st = s->shared->status->domains;
+	const struct ec_status_domain *st = c->shared->status->domains;
 	unsigned int i;
 
-	for (i = 0; i < s->wanted.n_domains; i++)
-		if (s->wanted.domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
+	for (i = 0; i < c->wanted->n_domains; i++)
+		if (c->wanted->domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
 			return false;
 	return true;
 }
@@ -167,46 +166,45 @@ static bool all_take_part(const struct ec_session *s)
  */
 static void choose_source(struct ec_cycle_thread *t)
 {
-	struct ec_session *s = t->session;
+	struct ec_cycle *c = t->cycle;
 
-	t->steady = all_take_part(s) ? min(t->steady + 1, STEADY) : 0;
-	if (!t->given || s->copying || t->steady < STEADY) {
+	t->steady = all_take_part(c) ? min(t->steady + 1, STEADY) : 0;
+	if (!t->given || c->copying || t->steady < STEADY) {
 		use_image(t);
 		return;
 	}
 	t->ahead = true;
-	s->cycle.direct = (const u8 *)(buffer(t, t->front) + 1);
+	c->direct = (const u8 *)(buffer(t, t->front) + 1);
 }
 
 /* The callers of the file that owns the cycle: no other file adds work to it. */
-static void wake_owner(struct ec_session *s)
+static void wake_owner(struct ec_cycle *c)
 {
 	struct ec_waiters *w;
 
 	rcu_read_lock();
-	w = rcu_dereference(s->waiters);
+	w = rcu_dereference(c->waiters);
 	if (w)
 		ec_waiters_wake(w);
 	rcu_read_unlock();
 }
 
 /* No more cycles; waiting callers return. */
-static void end_run(struct ec_session *s)
+static void end_run(struct ec_cycle *c)
 {
-	struct ec_master *m = s->master;
 
-	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
-	wake_owner(s);
+	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
+	wake_owner(c);
 }
 
 /* The application has given no outputs for too long. */
 static void stall(struct ec_cycle_thread *t)
 {
-	u8 *image = t->session->shared->image;
+	u8 *image = t->cycle->shared->image;
 	struct ec_status_cycle *st = status(t);
 	unsigned int i;
 
-	switch (t->session->kernel.stall) {
+	switch (t->cycle->kernel.stall) {
 	case EC_STALL_STOP:
 		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
 		return;
@@ -224,7 +222,7 @@ static void stall(struct ec_cycle_thread *t)
 static void feed(struct ec_cycle_thread *t)
 {
 	struct ec_status_cycle *st = status(t);
-	u32 limit = t->session->kernel.stall_cycles;
+	u32 limit = t->cycle->kernel.stall_cycles;
 
 	if (take_outputs(t)) {
 		t->fed = true;
@@ -235,7 +233,7 @@ static void feed(struct ec_cycle_thread *t)
 	}
 	if (!t->fed)
 		return;
-	ec_status_add(t->session->shared->status, &st->missed, 1);
+	ec_status_add(t->cycle->shared->status, &st->missed, 1);
 	if (!limit || t->unfed == limit)
 		return;
 	if (++t->unfed == limit)
@@ -260,17 +258,17 @@ static void adopt(struct ec_cycle_thread *t)
 	use_image(t);
 	t->given = false;
 	deal(t);
-	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->session->shared->image,
+	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->cycle->shared->image,
 	       t->bytes);
 	smp_store_release(&t->adopt, false);
 	complete(&t->adopted);
 }
 
 /* Receive and send of the application answer without a system call. */
-static void tell_device(const struct ec_session *s)
+static void tell_device(const struct ec_cycle *c)
 {
-	u32 *no_device = &s->shared->status->no_device;
-	bool gone = !ec_links_attached(&s->master->links);
+	u32 *no_device = &c->shared->status->no_device;
+	bool gone = !ec_links_attached(c->links);
 
 	if (unlikely(*no_device != gone))
 		WRITE_ONCE(*no_device, gone);
@@ -279,8 +277,7 @@ static void tell_device(const struct ec_session *s)
 /* Inputs and working counters of this cycle for the application. */
 static void publish(struct ec_cycle_thread *t)
 {
-	struct ec_session *s = t->session;
-	struct ec_master *m = s->master;
+	struct ec_cycle *c = t->cycle;
 	struct ec_exchange_buffer *b = buffer(t, EC_EXCHANGE_BUFFERS + t->back);
 	struct ec_status_cycle *st = status(t);
 	u64 cycle = st->cycle + 1;
@@ -290,30 +287,30 @@ static void publish(struct ec_cycle_thread *t)
 		adopt(t);
 	b->cycle = cycle;
 	b->time_ns = t->next_ns;
-	for (i = 0; i < s->wanted.n_domains; i++)
-		b->domains[i] = s->shared->status->domains[i];
-	tell_device(s);
-	memcpy(b + 1, s->shared->image, t->bytes);
+	for (i = 0; i < c->wanted->n_domains; i++)
+		b->domains[i] = c->shared->status->domains[i];
+	tell_device(c);
+	memcpy(b + 1, c->shared->image, t->bytes);
 	t->back = buffer_index(xchg(&exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
 	/* the application that sees the number finds the inputs */
-	ec_status_begin(s->shared->status);
+	ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->cycle, cycle);
-	ec_status_end(s->shared->status);
-	ec_write64(&m->kernel_cycle, cycle);
-	wake_owner(s);
+	ec_status_end(c->shared->status);
+	ec_write64(&c->cycles->number, cycle);
+	wake_owner(c);
 }
 
 /* Cycles whose time has passed are left out, so that the phase stays; how many. */
 static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 {
-	u32 period = t->session->kernel.period_ns;
+	u32 period = t->cycle->kernel.period_ns;
 	s64 late = now - t->next_ns;
 	u64 skipped;
 
 	if (late < period)
 		return 0;
 	skipped = div_u64(late, period);
-	ec_status_add(t->session->shared->status, &status(t)->overruns, skipped);
+	ec_status_add(t->cycle->shared->status, &status(t)->overruns, skipped);
 	t->next_ns += skipped * period;
 	return skipped;
 }
@@ -325,30 +322,30 @@ static u64 turn(struct ec_cycle_thread *t, u64 skipped)
 	unsigned int i;
 
 	for (i = 0; i < t->n_slow; i++) {
-		struct slow *s = &t->slow[i];
+		struct slow *w = &t->slow[i];
 
-		s->left -= min_t(u64, skipped, S32_MAX / 2);
-		if (s->left <= 0) {
-			domains |= BIT_ULL(s->domain);
-			s->left = s->division - -s->left % s->division;
+		w->left -= min_t(u64, skipped, S32_MAX / 2);
+		if (w->left <= 0) {
+			domains |= BIT_ULL(w->domain);
+			w->left = w->division - -w->left % w->division;
 		}
-		s->left--;
+		w->left--;
 	}
 	return domains;
 }
 
 static void find_turns(struct ec_cycle_thread *t)
 {
-	const struct ec_session *s = t->session;
+	const struct ec_cycle *c = t->cycle;
 	unsigned int i;
 
-	for (i = 0; i < s->wanted.n_domains; i++) {
-		if (s->wanted.domains[i]->division == 1)
+	for (i = 0; i < c->wanted->n_domains; i++) {
+		if (c->wanted->domains[i]->division == 1)
 			t->always |= BIT_ULL(i);
 		else
 			t->slow[t->n_slow++] = (struct slow){
-				.domain = i, .left = s->wanted.domains[i]->phase,
-				.division = s->wanted.domains[i]->division,
+				.domain = i, .left = c->wanted->domains[i]->phase,
+				.division = c->wanted->domains[i]->division,
 			};
 	}
 }
@@ -356,28 +353,27 @@ static void find_turns(struct ec_cycle_thread *t)
 /* One cycle; false: the last one. */
 static bool cycle(struct ec_cycle_thread *t)
 {
-	struct ec_session *s = t->session;
-	struct ec_master *m = s->master;
-	struct ec_ioc_send send = { .flags = s->kernel.dc };
+	struct ec_cycle *c = t->cycle;
+	struct ec_ioc_send send = { .flags = c->kernel.dc };
 	u64 due = t->next_ns, now = ktime_get_ns();
 	s32 correction;
 
 	send.queued = turn(t, skip_missed(t, now));
 	/* before the first frame the links are not ours */
 	if (status(t)->state != EC_CYCLE_STATE_WAITING)
-		ec_cycle_receive(s);
-	correction = ec_cycle_lock_step(&t->lock, s, t->next_ns, t->epoch_ns);
+		ec_cycle_receive(c);
+	correction = ec_cycle_lock_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
 	choose_source(t);
-	t->ops->cycle(s);
+	t->ops->cycle(c);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
-		if (!ec_cycle_send(s, &send))
-			ec_late_count(s, m->links.access.last_send_ns - due);
+		if (!ec_cycle_send(c, &send))
+			ec_late_count(c, c->links->access.last_send_ns - due);
 	}
 	publish(t);
-	ec_late_work(s, ktime_get_ns() - now);
-	t->next_ns += s->kernel.period_ns + correction;
+	ec_late_work(c, ktime_get_ns() - now);
+	t->next_ns += c->kernel.period_ns + correction;
 	return status(t)->state != EC_CYCLE_STATE_STOPPED;
 }
 
@@ -400,18 +396,18 @@ static bool sleep(const struct ec_cycle_thread *t)
 static int run(void *data)
 {
 	struct ec_cycle_thread *t = data;
-	const struct ec_ioc_cycle *k = &t->session->kernel;
+	const struct ec_ioc_cycle *k = &t->cycle->kernel;
 	u64 now;
 
-	if (t->session->priority)
-		ec_cycle_sched_set(t->session, current);
+	if (t->cycle->priority)
+		ec_cycle_sched_set(t->cycle, current);
 	now = ktime_get_ns();
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
-	ec_cycle_lock_init(&t->lock, t->session);
+	ec_cycle_lock_init(&t->lock, t->cycle);
 	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
 	while (sleep(t))
 		if (!cycle(t)) {
-			end_run(t->session);
+			end_run(t->cycle);
 			break;
 		}
 	for (;;) {
@@ -427,18 +423,18 @@ static int run(void *data)
 /* Output areas of all domains; those side by side are one. */
 static int find_outputs(struct ec_cycle_thread *t)
 {
-	const struct ec_session *s = t->session;
+	const struct ec_cycle *c = t->cycle;
 	struct area *a = NULL;
 	unsigned int i, k, n = 0;
 
-	for (i = 0; i < s->wanted.n_domains; i++)
-		n += s->wanted.domains[i]->n_fmmus;
+	for (i = 0; i < c->wanted->n_domains; i++)
+		n += c->wanted->domains[i]->n_fmmus;
 	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL_ACCOUNT);
 	if (!t->outputs)
 		return -ENOMEM;
-	for (i = 0; i < s->wanted.n_domains; i++)
-		for (k = 0; k < s->wanted.domains[i]->n_fmmus; k++) {
-			const struct ec_domain *d = s->wanted.domains[i];
+	for (i = 0; i < c->wanted->n_domains; i++)
+		for (k = 0; k < c->wanted->domains[i]->n_fmmus; k++) {
+			const struct ec_domain *d = c->wanted->domains[i];
 			const struct ec_config_fmmu *f =
 				&d->fmmus[k].config->fmmus[d->fmmus[k].fmmu];
 			u32 offset = d->offset + f->offset;
@@ -478,7 +474,7 @@ static void begin_exchange(struct ec_cycle_thread *t)
 	/* it may begin with something */
 	if (t->bytes)
 		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1,
-		       t->session->shared->image, t->bytes);
+		       t->cycle->shared->image, t->bytes);
 }
 
 static void free_thread(struct ec_cycle_thread *t)
@@ -489,24 +485,24 @@ static void free_thread(struct ec_cycle_thread *t)
 
 /**
  * ec_cycle_thread_create() - prepare a cycle run by the kernel
- * @s: session with a layout and @kernel.period_ns
+ * @c: cycle with a layout and @kernel.period_ns
  * @image_bytes: of all domains
  * @ops: what it reports; stays
  *
- * The memory of the exchange is in @s->shared, see ec_cycle_thread_exchange().
+ * The memory of the exchange is in @c->shared, see ec_cycle_thread_exchange().
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENODEV the CPU is not online; -ENOMEM.
  */
-int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct ec_cycle_ops *ops)
+int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_cycle_ops *ops)
 {
 	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
-	int ret, cpu = s->kernel.cpu;
+	int ret, cpu = c->kernel.cpu;
 
 	if (!t)
 		return -ENOMEM;
 	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
-	t->session = s;
+	t->cycle = c;
 	t->ops = ops;
 	init_completion(&t->adopted);
 	t->bytes = image_bytes;
@@ -516,7 +512,7 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct e
 	if (ret)
 		goto err;
 	begin_exchange(t);
-	t->task = kthread_create(run, t, "EtherCAT%u-cyc", s->master->base->index);
+	t->task = kthread_create(run, t, "EtherCAT%u-cyc", c->base->index);
 	if (IS_ERR(t->task)) {
 		ret = PTR_ERR(t->task);
 		goto err;
@@ -532,7 +528,7 @@ int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct e
 		kthread_stop(t->task);
 		goto err;
 	}
-	s->thread = t;
+	c->thread = t;
 	return 0;
 err:
 	free_thread(t);
@@ -541,83 +537,81 @@ err:
 
 /**
  * ec_cycle_thread_task() - the thread that runs the cycle
- * @s: session
+ * @c: cycle
  *
- * Context: session_lock held.
+ * Context: lock of the configuration held.
  * Return: thread; NULL when the application runs the cycle.
  */
-struct task_struct *ec_cycle_thread_task(const struct ec_session *s)
+struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
 {
-	lockdep_assert_held(&s->master->session_lock);
-	return s->thread ? s->thread->task : NULL;
+	lockdep_assert_held(&*c->wanted->lock);
+	return c->thread ? c->thread->task : NULL;
 }
 
 /**
  * ec_cycle_thread_start() - the kernel begins to run the cycle
- * @s: active session; nothing happens when the application runs the cycle
+ * @c: active cycle; nothing happens when the application runs the cycle
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_cycle_thread_start(struct ec_session *s)
+void ec_cycle_thread_start(struct ec_cycle *c)
 {
-	struct ec_master *m = s->master;
 
-	if (!s->thread)
+	if (!c->thread)
 		return;
-	ec_cycle_sched_log(s);
-	m->links.access.interval_us = max(1u, s->kernel.period_ns / (u32)NSEC_PER_USEC);
-	m->links.access.interval_set = true;
-	WRITE_ONCE(status(s->thread)->state, s->kernel.flags & EC_CYCLE_FLAG_WAIT ?
+	ec_cycle_sched_log(c);
+	c->links->access.interval_us = max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC);
+	c->links->access.interval_set = true;
+	WRITE_ONCE(status(c->thread)->state, c->kernel.flags & EC_CYCLE_FLAG_WAIT ?
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
-	ec_write64(&m->kernel_cycle, 0);
-	WRITE_ONCE(m->kernel_run, m->kernel_run + 1);
-	rcu_assign_pointer(m->kernel_session, s);
-	wake_up_process(s->thread->task);
+	ec_write64(&c->cycles->number, 0);
+	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
+	rcu_assign_pointer(c->cycles->by_kernel, c);
+	wake_up_process(c->thread->task);
 }
 
 /**
  * ec_cycle_thread_stop() - end the cycle run by the kernel
- * @s: session; nothing happens when the application ran the cycle
+ * @c: cycle; nothing happens when the application ran the cycle
  *
  * poll() of the application may still look at the session meanwhile: that is
  * waited for while cycles go on.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_cycle_thread_stop(struct ec_session *s)
+void ec_cycle_thread_stop(struct ec_cycle *c)
 {
-	struct ec_master *m = s->master;
 
-	if (!s->thread)
+	if (!c->thread)
 		return;
-	lockdep_assert_held(&m->session_lock);
-	if (rcu_access_pointer(m->kernel_session)) {
-		RCU_INIT_POINTER(m->kernel_session, NULL);
+	lockdep_assert_held(c->wanted->lock);
+	if (rcu_access_pointer(c->cycles->by_kernel)) {
+		RCU_INIT_POINTER(c->cycles->by_kernel, NULL);
 		synchronize_rcu();
 	}
-	kthread_stop(s->thread->task);
-	if (m->kernel_run & 1)
-		end_run(s);
+	kthread_stop(c->thread->task);
+	if (c->cycles->run & 1)
+		end_run(c);
 	else
-		wake_owner(s);
-	free_thread(s->thread);
-	s->thread = NULL;
+		wake_owner(c);
+	free_thread(c->thread);
+	c->thread = NULL;
 }
 
 /**
  * ec_cycle_thread_adopt() - another application gets the exchange
- * @s: active session without an application
+ * @c: active cycle without an application
  *
  * Its output buffer has the image as it is, outputs and inputs; none of the
  * buffers that the application before has given is used any more.
  *
- * Context: Process, session_lock held. Sleeps until the next cycle has begun.
+ * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
  * Return: 0; -ETIMEDOUT the cycle does not run.
  */
-int ec_cycle_thread_adopt(struct ec_session *s)
+int ec_cycle_thread_adopt(struct ec_cycle *c)
 {
-	struct ec_cycle_thread *t = s->thread;
-	u32 limit_ms = 2 * s->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
+	struct ec_cycle_thread *t = c->thread;
+	u32 limit_ms = 2 * c->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
 
 	reinit_completion(&t->adopted);
 	WRITE_ONCE(t->adopt, true);
@@ -629,19 +623,19 @@ int ec_cycle_thread_adopt(struct ec_session *s)
 
 /**
  * ec_cycle_thread_outputs() - outputs as they are sent
- * @s: active session; nothing happens when the application runs its cycle
+ * @c: active cycle; nothing happens when the application runs its cycle
  * @image: copy of a part of the image
  * @offset: where in the image that part begins, bytes
  * @size: its bytes
  *
  * The cycle may go on meanwhile: outputs may be of several cycles.
  *
- * Context: Process, session_lock held or after ec_show_begin().
+ * Context: Process, lock of the configuration held or after ec_show_begin().
  */
-void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size)
+void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size)
 {
-	const struct ec_cycle_thread *t = s->thread;
-	const u8 *source = smp_load_acquire(&s->cycle.direct) ?: s->shared->image;
+	const struct ec_cycle_thread *t = c->thread;
+	const u8 *source = smp_load_acquire(&c->direct) ?: c->shared->image;
 	unsigned int i;
 
 	for (i = 0; t && i < t->n_outputs; i++) {
@@ -653,35 +647,35 @@ void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, 
 	}
 }
 
-/* The session whose cycle the kernel runs for @owner, or NULL. RCU read side. */
-static const struct ec_session *owned_by(const struct ec_master *m, const void *owner)
+/* The cycle that the kernel runs for @owner, or NULL. RCU read side. */
+static const struct ec_cycle *owned_by(const struct ec_cycles *cycles, const void *owner)
 {
-	const struct ec_session *s = rcu_dereference(m->kernel_session);
+	const struct ec_cycle *c = rcu_dereference(cycles->by_kernel);
 
-	return s && READ_ONCE(s->owner) == owner ? s : NULL;
+	return c && READ_ONCE(c->owner) == owner ? c : NULL;
 }
 
 /**
  * ec_cycle_thread_poll() - are there new inputs for the application?
- * @m: master
+ * @cycles: of the master
  * @owner: open file that asks
  *
  * Context: Any. Takes no lock.
  * Return: EPOLLIN: inputs that the application has not taken; EPOLLHUP: the cycle has
  * stopped; EPOLLERR: the kernel runs no cycle for @owner.
  */
-__poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner)
+__poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 {
-	const struct ec_session *s;
+	const struct ec_cycle *c;
 	__poll_t mask = EPOLLERR;
 
 	rcu_read_lock();
-	s = owned_by(m, owner);
-	if (s) {
+	c = owned_by(cycles, owner);
+	if (c) {
 		mask = 0;
-		if (READ_ONCE(exchange(s->thread)->inputs) & EC_EXCHANGE_NEW)
+		if (READ_ONCE(exchange(c->thread)->inputs) & EC_EXCHANGE_NEW)
 			mask |= EPOLLIN | EPOLLRDNORM;
-		if (READ_ONCE(status(s->thread)->state) == EC_CYCLE_STATE_STOPPED)
+		if (READ_ONCE(status(c->thread)->state) == EC_CYCLE_STATE_STOPPED)
 			mask |= EPOLLHUP;
 	}
 	rcu_read_unlock();
@@ -690,27 +684,27 @@ __poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner)
 
 /**
  * ec_cycle_thread_run() - number of the run of a session
- * @m: master
+ * @cycles: of the master
  * @owner: open file that asks
- * @run: @kernel_run of the session's cycle
+ * @run: @run of the owner's cycle
  *
  * Context: Any. Takes no lock.
  * Return: true when the kernel runs the cycle for @owner.
  */
-bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run)
+bool ec_cycle_thread_run(const struct ec_cycles *cycles, const void *owner, u32 *run)
 {
 	bool ours;
 
 	rcu_read_lock();
-	ours = owned_by(m, owner);
-	*run = READ_ONCE(m->kernel_run);
+	ours = owned_by(cycles, owner);
+	*run = READ_ONCE(cycles->run);
 	rcu_read_unlock();
 	return ours;
 }
 
 /**
  * ec_cycle_thread_wait() - wait for the next cycle
- * @m: master
+ * @cycles: of the master
  * @owner: open file that owns the cycle
  * @w: its wait queue
  * @run: as ec_cycle_thread_run() has given it
@@ -721,8 +715,8 @@ bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run)
  * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
  * stopped or changed its owner; -EBUSY too many callers wait.
  */
-int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
-			 u64 *cycle, u32 timeout_us)
+int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
+			 u32 run, u64 *cycle, u32 timeout_us)
 {
 	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
 	int ret;
@@ -730,17 +724,17 @@ int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waite
 	if (!ec_waiters_enter(w))
 		return -EBUSY;
 	ret = wait_event_interruptible_hrtimeout(w->wq,
-						 READ_ONCE(m->kernel_run) != run || !(run & 1) ||
-						 READ_ONCE(m->active_owner) != owner ||
-						 ec_read64(&m->kernel_cycle) > *cycle, limit);
+						 READ_ONCE(cycles->run) != run || !(run & 1) ||
+						 READ_ONCE(cycles->owner) != owner ||
+						 ec_read64(&cycles->number) > *cycle, limit);
 	ec_waiters_leave(w);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
 	/* a signal handler runs first, and ends it; after a stop it goes on */
 	if (ret)
 		return -ERESTARTNOHAND;
-	if (!(run & 1) || READ_ONCE(m->kernel_run) != run || READ_ONCE(m->active_owner) != owner)
+	if (!(run & 1) || READ_ONCE(cycles->run) != run || READ_ONCE(cycles->owner) != owner)
 		return -ECANCELED;
-	*cycle = ec_read64(&m->kernel_cycle);
+	*cycle = ec_read64(&cycles->number);
 	return 0;
 }

@@ -6,8 +6,8 @@
 #include <linux/poll.h>
 #include <linux/types.h>
 
-struct ec_master;
-struct ec_session;
+struct ec_cycles;
+struct ec_cycle;
 struct ec_waiters;
 struct task_struct;
 
@@ -16,25 +16,25 @@ struct task_struct;
 /** struct ec_cycle_ops - what the thread reports to higher layers */
 struct ec_cycle_ops {
 	/** @cycle: a cycle begins; RT-safe */
-	void (*cycle)(struct ec_session *s);
+	void (*cycle)(struct ec_cycle *c);
 };
 
 size_t ec_cycle_thread_exchange(u32 image_bytes);
-int ec_cycle_thread_create(struct ec_session *s, u32 image_bytes, const struct ec_cycle_ops *ops);
-void ec_cycle_thread_start(struct ec_session *s);
-struct task_struct *ec_cycle_thread_task(const struct ec_session *s);
-void ec_cycle_thread_stop(struct ec_session *s);
-int ec_cycle_thread_adopt(struct ec_session *s);
-void ec_cycle_thread_outputs(const struct ec_session *s, u8 *image, u32 offset, u32 size);
-__poll_t ec_cycle_thread_poll(const struct ec_master *m, const void *owner);
-bool ec_cycle_thread_run(const struct ec_master *m, const void *owner, u32 *run);
-int ec_cycle_thread_wait(struct ec_master *m, const void *owner, struct ec_waiters *w, u32 run,
-			 u64 *cycle, u32 timeout_us);
+int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_cycle_ops *ops);
+void ec_cycle_thread_start(struct ec_cycle *c);
+struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c);
+void ec_cycle_thread_stop(struct ec_cycle *c);
+int ec_cycle_thread_adopt(struct ec_cycle *c);
+void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size);
+__poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner);
+bool ec_cycle_thread_run(const struct ec_cycles *cycles, const void *owner, u32 *run);
+int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
+			 u32 run, u64 *cycle, u32 timeout_us);
 
 /* cycle_sched.c */
-void ec_cycle_sched_set(const struct ec_session *s, struct task_struct *task);
-void ec_cycle_sched_log(const struct ec_session *s);
-void ec_cycle_thread_inherit(struct ec_session *s, u32 priority);
-void ec_cycle_thread_check_cpu(struct ec_session *s);
+void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task);
+void ec_cycle_sched_log(const struct ec_cycle *c);
+void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority);
+void ec_cycle_thread_check_cpu(struct ec_cycle *c);
 
 #endif

@@ -5,8 +5,6 @@
  * data of the first frame, so that their distance to the send is always the
  * same. Nothing here allocates, prints or waits.
  */
-#include "../master.h"
-#include "../session/session.h"
 #include "../wire/regs.h"
 #include "cycle.h"
 
@@ -40,28 +38,27 @@ static u16 time_bytes(u32 dc)
 }
 
 /* Comparisons a send may have beyond one: half of what the cycle leaves. */
-static u32 most(const struct ec_master *m, const struct ec_cycle *c)
+static u32 most(const struct ec_cycle *c)
 {
 	u64 used = c->clocked.ns + ec_cycle_need_ns();
-	u64 budget = READ_ONCE(m->links.access.interval_us) * 900ULL;
+	u64 budget = READ_ONCE(c->links->access.interval_us) * 900ULL;
 
 	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
 }
 
 /* Comparisons of this send beyond one. */
-static u32 boost(struct ec_master *m, const struct ec_cycle *c)
+static u32 boost(const struct ec_cycle *c)
 {
-	u32 left = READ_ONCE(m->dc.framed) ? 0 : READ_ONCE(m->dc.boost);
-	u32 n = min(left, most(m, c));
+	u32 left = READ_ONCE(c->dc->framed) ? 0 : READ_ONCE(c->dc->boost);
+	u32 n = min(left, most(c));
 
 	if (n)
-		WRITE_ONCE(m->dc.boost, left - n);
+		WRITE_ONCE(c->dc->boost, left - n);
 	return n;
 }
 
 /**
  * ec_dc_datagrams_reserve_ns() - wire time of more comparisons that are to come
- * @m: master
  * @c: its cyclic layout
  *
  * Known as long as the clocks are being set, so that acyclic frames are not made
@@ -70,16 +67,15 @@ static u32 boost(struct ec_master *m, const struct ec_cycle *c)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: ns.
  */
-u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle *c)
+u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
 {
-	if (READ_ONCE(m->dc.state) != EC_DC_BUSY && !READ_ONCE(m->dc.boost))
+	if (READ_ONCE(c->dc->state) != EC_DC_BUSY && !READ_ONCE(c->dc->boost))
 		return 0;
-	return most(m, c) * ONE_MORE_NS;
+	return most(c) * ONE_MORE_NS;
 }
 
 /**
  * ec_dc_datagrams_wanted() - clock datagrams of this send
- * @m: master
  * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
  *
@@ -89,22 +85,22 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_master *m, const struct ec_cycle 
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0 without reference clock.
  */
-u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
+u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 {
 	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
 	if (!flags)
 		return 0;
 	c->dc_asked |= flags;
-	if (!READ_ONCE(m->dc.wanted))
-		WRITE_ONCE(m->dc.wanted, true);
-	if (!READ_ONCE(m->dc.running))
+	if (!READ_ONCE(c->dc->wanted))
+		WRITE_ONCE(c->dc->wanted, true);
+	if (!READ_ONCE(c->dc->running))
 		return 0;
 	if (c->dc_hold)
 		flags &= ~SYNC_REF;
 	if (flags & SYNC_SLAVES)
-		flags |= boost(m, c) << SHIFT;
+		flags |= boost(c) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */
-	if (READ_ONCE(m->dc.ref_wide) && !READ_ONCE(m->dc.front))
+	if (READ_ONCE(c->dc->ref_wide) && !READ_ONCE(c->dc->front))
 		flags |= WIDE;
 	return flags;
 }
@@ -113,12 +109,12 @@ u32 ec_dc_datagrams_wanted(struct ec_master *m, struct ec_cycle *c, u32 flags)
  * Slaves in front of the reference, and all when it is gone, see what was sent:
  * the time it will have, as far as its answers tell.
  */
-static u64 predicted(struct ec_master *m, const struct ec_cycle *c, u64 now)
+static u64 predicted(const struct ec_cycle *c, u64 now)
 {
 	u64 since = now - c->dc_time_ns;
 
 	if (!c->dc_time)
-		return ec_dc_clock_at(&m->dc, now);
+		return ec_dc_clock_at(c->dc, now);
 	return c->dc_time + since +
 	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
 }
@@ -139,20 +135,19 @@ static void learn_rate(struct ec_cycle *c)
 	c->dc_then_ns = c->dc_time_ns;
 }
 
-static u64 clock_time(struct ec_master *m, const u8 *data, u16 len, u64 sent_ns)
+static u64 clock_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
 {
 	u64 t = len == 8 ? get_unaligned_le64(data) :
-			   ec_dc_whole(&m->dc, get_unaligned_le32(data), sent_ns);
+			   ec_dc_whole(c->dc, get_unaligned_le32(data), sent_ns);
 
-	ec_dc_clock(&m->dc, t, sent_ns);
+	ec_dc_clock(c->dc, t, sent_ns);
 	return t;
 }
 
-static void take_time(struct ec_session *s, const u8 *data, u16 len, u64 sent_ns)
+static void take_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
 {
-	struct ec_cycle *c = &s->cycle;
 
-	c->dc_time = clock_time(s->master, data, len, sent_ns);
+	c->dc_time = clock_time(c, data, len, sent_ns);
 	c->dc_time_ns = sent_ns;
 	c->dc_back |= SYNC_SLAVES;
 	learn_rate(c);
@@ -183,7 +178,7 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
 
 /**
  * ec_dc_datagrams_fill() - add the clock datagrams to an empty frame
- * @s: active session
+ * @c: active cycle
  * @fb: frame
  * @index: of its slot
  * @dc: as from ec_dc_datagrams_wanted()
@@ -194,25 +189,24 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_datagrams_fill(struct ec_session *s, struct ec_frame_buf *fb, u8 index, u32 dc,
+void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 sync_time, u64 now)
 {
-	struct ec_master *m = s->master;
-	u16 ref = READ_ONCE(m->dc.ref_station);
+	u16 ref = READ_ONCE(c->dc->ref_station);
 	/* those in front must not be told a time nobody knows */
-	bool quiet = READ_ONCE(m->dc.framed) || (m->dc.front && !s->cycle.dc_time);
+	bool quiet = READ_ONCE(c->dc->framed) || (c->dc->front && !c->dc_time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;
 	u8 t[8], *p;
 
 	for (i = 0; i < refs(dc); i++) {
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)(sync_time - s->cycle.dc_skip), p);
+		put_unaligned_le32((u32)(sync_time - c->dc_skip), p);
 	}
 	/* some ns more, else an answer exactly as predicted would look like silence */
-	s->cycle.dc_sent = predicted(m, &s->cycle, now) +
-			   (s->cycle.dc_silent ?: !s->cycle.dc_wkc) % 4;
-	put_unaligned_le64(s->cycle.dc_sent, t);
+	c->dc_sent = predicted(c, now) +
+			   (c->dc_silent ?: !c->dc_wkc) % 4;
+	put_unaligned_le64(c->dc_sent, t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
@@ -234,16 +228,15 @@ static const u8 *skip(const u8 *data, u16 len)
 
 /**
  * ec_dc_datagrams_take() - results of the clock datagrams of a returned frame
- * @s: active session
+ * @c: active cycle
  * @f: the frame
  * @data: data of the first datagram, matched against what was sent
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: data of the first datagram of process data.
  */
-const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight *f, const u8 *data)
+const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data)
 {
-	struct ec_cycle *c = &s->cycle;
 	u64 sent_ns = f->slot->sent_ns;
 	u16 len = time_bytes(f->dc);
 	u32 dc = f->dc;
@@ -253,13 +246,13 @@ const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight 
 		data = skip(data, 4);
 	if (dc & SYNC_SLAVES) {
 		if (answered(c, f, data, len))
-			take_time(s, data, len, sent_ns);
+			take_time(c, data, len, sent_ns);
 		for (i = 0; i < syncs(dc); i++)
 			data = skip(data, len);
 	}
 	if (dc & REF_TIME) {
 		if (get_unaligned_le16(data + len)) {
-			c->dc_time64 = clock_time(s->master, data, len, sent_ns);
+			c->dc_time64 = clock_time(c, data, len, sent_ns);
 			c->dc_back |= REF_TIME;
 		}
 		data = skip(data, len);
@@ -276,16 +269,15 @@ const u8 *ec_dc_datagrams_take(struct ec_session *s, const struct ec_cyc_flight 
 
 /**
  * ec_dc_datagrams_judge() - tell the application what is back of what it has sent
- * @s: active session
+ * @c: active cycle
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_datagrams_judge(struct ec_session *s)
+void ec_dc_datagrams_judge(struct ec_cycle *c)
 {
-	struct ec_cycle *c = &s->cycle;
-	struct ec_status *st = s->shared->status;
+	struct ec_status *st = c->shared->status;
 
-	WRITE_ONCE(st->dc_ref, READ_ONCE(s->master->dc.ref_station) != 0);
+	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->dc_asked & SYNC_SLAVES) {
 		WRITE_ONCE(st->dc_time, c->dc_time);
 		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));

@@ -9,15 +9,12 @@
 #include "../base/bytes.h"
 #include "copy.h"
 #include "cycle.h"
-#include "../master.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
-static void take_cuts(struct ec_session *s, const struct ec_cyc_dgram *d, u32 send,
+static void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d, u32 send,
 		      const u8 *data)
 {
-	struct ec_cycle *c = &s->cycle;
 	u8 *image = c->domains[d->domain].image;
 	unsigned int i;
 
@@ -42,10 +39,9 @@ static bool from_image(const struct ec_cyc_dgram *d)
 }
 
 /* Inputs of a datagram in which at least one slave has taken part. */
-static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
+static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
 {
-	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_area *in = &c->areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
 	bool direct = f->direct && !from_image(d);
@@ -66,17 +62,17 @@ static void take_inputs(struct ec_session *s, const struct ec_cyc_dgram *d,
 		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
 			     in->pos_stride, in->len, in->count);
 	if (unlikely(d->n_inputs != d->n_whole) && complete)
-		take_cuts(s, d, f->send, data);
+		take_cuts(c, d, f->send, data);
 }
 
 /*
  * Inputs and working counter of one datagram. What belongs to an older send
  * than the newest one that is back must not undo it.
  */
-static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d,
+static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 		       const struct ec_cyc_flight *f, const u8 *data)
 {
-	struct ec_cyc_domain *dom = &s->cycle.domains[d->domain];
+	struct ec_cyc_domain *dom = &c->domains[d->domain];
 	u16 wkc = get_unaligned_le16(data + d->len);
 
 	if ((s32)(f->send - dom->send) < 0)
@@ -86,23 +82,23 @@ static void take_dgram(struct ec_session *s, const struct ec_cyc_dgram *d,
 		dom->wkc = 0;
 	}
 	dom->wkc += wkc;
-	s->cycle.back |= BIT_ULL(d->domain);
+	c->back |= BIT_ULL(d->domain);
 	if (wkc)
-		take_inputs(s, d, f, data, wkc == d->expected);
+		take_inputs(c, d, f, data, wkc == d->expected);
 }
 
-static void take_frame(struct ec_session *s, const struct ec_cyc_flight *f)
+static void take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
-	const struct ec_cyc_dgram *d = &s->cycle.dgrams[f->first];
+	const struct ec_cyc_dgram *d = &c->dgrams[f->first];
 	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 
 	if (f->dc)
-		data = ec_dc_datagrams_take(s, f, data);
+		data = ec_dc_datagrams_take(c, f, data);
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
-		take_dgram(s, d, f, data);
+		take_dgram(c, d, f, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 }
@@ -131,14 +127,13 @@ static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned
 }
 
 /* Domains that were sent or came back since the last receive. */
-static void judge(struct ec_session *s)
+static void judge(struct ec_cycle *c)
 {
-	struct ec_cycle *c = &s->cycle;
 	u64 left = c->sent | c->back;
 
 	for (; left; left &= left - 1) {
 		unsigned int i = __ffs64(left);
-		struct ec_status_domain *st = &s->shared->status->domains[i];
+		struct ec_status_domain *st = &c->shared->status->domains[i];
 		u32 wkc = c->back & BIT_ULL(i) ? c->domains[i].wkc : 0;
 
 		WRITE_ONCE(st->working_counter, wkc);
@@ -152,54 +147,32 @@ static void judge(struct ec_session *s)
 
 /**
  * ec_cycle_tell_stale() - log domains whose data came back too old, once each
- * @s: active session
+ * @c: active cycle
  *
  * The cycle itself prints nothing.
  *
- * Context: Process, session_lock held.
+ * Context: Process, lock of the configuration held.
  */
-void ec_cycle_tell_stale(struct ec_session *s)
+void ec_cycle_tell_stale(struct ec_cycle *c)
 {
 	unsigned int i;
 
-	lockdep_assert_held(&s->master->session_lock);
-	for (i = 0; i < s->wanted.n_domains; i++) {
-		struct ec_cyc_domain *d = &s->cycle.domains[i];
+	lockdep_assert_held(&*c->wanted->lock);
+	for (i = 0; i < c->wanted->n_domains; i++) {
+		struct ec_cyc_domain *d = &c->domains[i];
 		u32 age = READ_ONCE(d->stale);
 
 		if (!age || d->stale_told)
 			continue;
 		d->stale_told = true;
-		ec_warn(s->master, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
+		ec_warn(c, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
 			i, age, d->max_age);
 	}
 }
 
 /**
- * ec_cycle_nothing_back() - the device is gone, and with it what was on its way
- * @s: active session, nobody is in its links
- *
- * Applications that look at working counters only must see it as well.
- *
- * Context: Process.
- */
-void ec_cycle_nothing_back(struct ec_session *s)
-{
-	struct ec_status *st = s->shared->status;
-	unsigned int i;
-
-	for (i = 0; i < s->wanted.n_domains; i++) {
-		WRITE_ONCE(st->domains[i].working_counter, 0);
-		WRITE_ONCE(st->domains[i].wc_state, 0);
-	}
-	WRITE_ONCE(st->dc_time_valid, 0);
-	WRITE_ONCE(st->dc_time64_valid, 0);
-	WRITE_ONCE(st->dc_monitor, ~0u);
-}
-
-/**
  * ec_cycle_do_receive() - take what the last sends have brought back
- * @s: active session; the links of its master are entered
+ * @c: active cycle; the links of its master are entered
  *
  * Inputs go to the image, working counters to the status page. Frames that
  * are not back within the time limit are lost; one that comes only after the
@@ -208,29 +181,27 @@ void ec_cycle_nothing_back(struct ec_session *s)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_do_receive(struct ec_session *s)
+int ec_cycle_do_receive(struct ec_cycle *c)
 {
-	struct ec_master *m = s->master;
-	struct ec_cycle *c = &s->cycle;
-	u64 now, limit = (u64)m->links.io_timeout_us * NSEC_PER_USEC;
+	u64 now, limit = (u64)c->links->io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
 
-	if (!ec_links_attached(&m->links))
+	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	ec_links_poll(&m->links);
-	WRITE_ONCE(m->links.access.polls, m->links.access.polls + 1);
+	ec_links_poll(c->links);
+	WRITE_ONCE(c->links->access.polls, c->links->access.polls + 1);
 	now = ktime_get_ns();
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];
 
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
-				ec_links_count(&m->links, late);
-			take_frame(s, f);
-			ec_slot_put(&m->links.slots, f->slot);
+				ec_links_count(c->links, late);
+			take_frame(c, f);
+			ec_slot_put(&c->links->slots, f->slot);
 		} else if (f->missed && now - f->slot->sent_ns > limit &&
 			   ec_slot_cancel(f->slot, now)) {
-			ec_links_count(&m->links, lost);
+			ec_links_count(c->links, lost);
 		} else {
 			/* the machine may have stood still: looked for twice at least */
 			f->missed = true;
@@ -239,30 +210,30 @@ int ec_cycle_do_receive(struct ec_session *s)
 		}
 	}
 	c->n_flight = left;
-	judge(s);
-	ec_status_begin(s->shared->status);
-	ec_dc_datagrams_judge(s);
-	WRITE_ONCE(s->shared->status->cycle, c->cycles);
-	ec_status_end(s->shared->status);
+	judge(c);
+	ec_status_begin(c->shared->status);
+	ec_dc_datagrams_judge(c);
+	WRITE_ONCE(c->shared->status->cycle, c->sends);
+	ec_status_end(c->shared->status);
 	return 0;
 }
 
 /**
  * ec_cycle_receive() - ec_cycle_do_receive(), links and all
- * @s: active session
+ * @c: active cycle
  *
  * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_receive(struct ec_session *s)
+int ec_cycle_receive(struct ec_cycle *c)
 {
 	int ret;
 
-	if (!ec_links_attached(&s->master->links))
+	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	ec_access_enter(&s->master->links);
-	ret = ec_cycle_do_receive(s);
-	ec_access_leave(&s->master->links);
+	ec_access_enter(c->links);
+	ret = ec_cycle_do_receive(c);
+	ec_access_leave(c->links);
 	return ret;
 }
 
@@ -270,7 +241,7 @@ int ec_cycle_receive(struct ec_session *s)
  * Room for one more frame. When none has come back for long, the oldest is
  * given up: a frame of now is worth more.
  */
-static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
+static bool make_room(struct ec_cycle *c, u64 now)
 {
 	struct ec_slot *oldest;
 
@@ -278,9 +249,9 @@ static bool make_room(struct ec_master *m, struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		ec_links_count(&m->links, lost);
+		ec_links_count(c->links, lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
-		ec_slot_put(&m->links.slots, oldest);
+		ec_slot_put(&c->links->slots, oldest);
 	else
 		return false;	/* being copied at this moment */
 	c->n_flight--;
@@ -297,14 +268,14 @@ struct send {
 };
 
 /* Outputs, and the last value of inputs. */
-static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d, u8 *data)
+static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u8 *data)
 {
-	const struct ec_cyc_area *a = &s->cycle.areas[d->first_copy];
-	const u8 *image = s->cycle.domains[d->domain].image;
+	const struct ec_cyc_area *a = &c->areas[d->first_copy];
+	const u8 *image = c->domains[d->domain].image;
 	unsigned int i;
 
-	if (s->cycle.direct && !from_image(d))
-		image = s->cycle.direct;
+	if (c->direct && !from_image(d))
+		image = c->direct;
 	if (d->holes)
 		memset(data, 0, d->len);
 	for (i = 0; i < d->n_copies; i++, a++)
@@ -313,10 +284,9 @@ static void fill_dgram(const struct ec_session *s, const struct ec_cyc_dgram *d,
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
-static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned int g,
+static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
 			 const struct send *send)
 {
-	const struct ec_cycle *c = &s->cycle;
 	const struct ec_cyc_dgram *d = &c->dgrams[g];
 	unsigned int room, dc, first = g;
 	u64 queued = send->what->queued;
@@ -325,10 +295,10 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
-		ec_dc_datagrams_fill(s, &fb, slot->index, send->dc, send->what->sync_time,
+		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->what->sync_time,
 				     send->now);
 	dc = fb.count;
-	room = max(s->master->links.max_datagrams, dc) - dc;
+	room = max(c->links->max_datagrams, dc) - dc;
 	for (; g < c->n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
@@ -338,7 +308,7 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 				 d->logical >> 16, d->len);
 		if (!p)
 			break;
-		fill_dgram(s, d, p);
+		fill_dgram(c, d, p);
 		room--;
 	}
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
@@ -346,28 +316,26 @@ static unsigned int fill(struct ec_session *s, struct ec_slot *slot, unsigned in
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
-static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send *send)
+static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
-	struct ec_master *m = s->master;
-	struct ec_cycle *c = &s->cycle;
 	struct ec_slot *slot = NULL;
 	unsigned int count;
 	int ret;
 
-	if (make_room(m, c, send->now))
-		slot = ec_slot_get(&m->links.slots, true, send->now);
+	if (make_room(c, send->now))
+		slot = ec_slot_get(&c->links->slots, true, send->now);
 	if (!slot) {
-		ec_links_count(&m->links, tx_errors);
+		ec_links_count(c->links, tx_errors);
 		send->dc = 0;
 		return c->n_dgrams;
 	}
-	count = fill(s, slot, g, send);
+	count = fill(c, slot, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_access_transmit(&m->links, slot, send->now);
+	ret = ec_access_transmit(c->links, slot, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		ec_links_count(&m->links, tx_errors);
+		ec_links_count(c->links, tx_errors);
 	if (!ret)
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
@@ -375,103 +343,101 @@ static unsigned int send_frame(struct ec_session *s, unsigned int g, struct send
 			.dc_sent = c->dc_sent,
 		};
 	else
-		ec_slot_put(&m->links.slots, slot);
+		ec_slot_put(&c->links->slots, slot);
 	send->dc = 0;
 	return g + count;
 }
 
 /* What a send of all domains and clock datagrams takes at most. */
-static u32 wire_ns(const struct ec_master *m, const struct ec_cycle *c)
+static u32 wire_ns(const struct ec_cycle *c)
 {
-	if (!READ_ONCE(m->dc.begun))
+	if (!READ_ONCE(c->dc->begun))
 		return c->plain.ns;
-	return c->clocked.ns + ec_dc_datagrams_reserve_ns(m, c);
+	return c->clocked.ns + ec_dc_datagrams_reserve_ns(c);
 }
 
 /**
  * ec_cycle_app_time() - the application gives its time, or that of the reference clock
- * @s: active session
+ * @c: active cycle
  * @what: its flags, @app_time and @sync_time
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_cycle_app_time(struct ec_session *s, const struct ec_ioc_send *what)
+void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	if (what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF))
-		s->cycle.dc_hold = ec_dc_told(&s->master->dc, what, &s->cycle.dc_skip);
+		c->dc_hold = ec_dc_told(c->dc, what, &c->dc_skip);
 }
 
 /**
  * ec_cycle_told() - what the application gives with a send, without requests
- * @s: active session
+ * @c: active cycle
  * @what: its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; -ENOENT a domain is queued that there is not.
  */
-int ec_cycle_told(struct ec_session *s, const struct ec_ioc_send *what)
+int ec_cycle_told(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	ec_cycle_app_time(s, what);
-	return s->wanted.n_domains < 64 && what->queued >> s->wanted.n_domains ? -ENOENT : 0;
+	ec_cycle_app_time(c, what);
+	return c->wanted->n_domains < 64 && what->queued >> c->wanted->n_domains ? -ENOENT : 0;
 }
 
 /**
  * ec_cycle_do_send() - send the queued domains, then what others have left
- * @s: active session; the links of its master are entered
+ * @c: active cycle; the links of its master are entered
  * @what: domains and clock datagrams; its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_do_send(struct ec_session *s, const struct ec_ioc_send *what)
+int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	struct ec_master *m = s->master;
-	struct ec_cycle *c = &s->cycle;
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!ec_links_attached(&m->links))
+	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	if (!s->thread)
-		ec_late_send(s, send.now);
-	ec_write64(&m->links.access.last_send_ns, send.now);
-	if (s->copying)
-		ec_copies_run(s);
+	if (!c->thread)
+		ec_late_send(c, send.now);
+	ec_write64(&c->links->access.last_send_ns, send.now);
+	if (c->copying)
+		ec_copies_run(c);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
-	send.dc = ec_dc_datagrams_wanted(m, c, what->flags);
+	send.dc = ec_dc_datagrams_wanted(c, what->flags);
 	while (g < c->n_dgrams || send.dc) {
 		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
-			g = send_frame(s, g, &send);
+			g = send_frame(c, g, &send);
 		else
 			g++;
 	}
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
-	WRITE_ONCE(m->links.access.wire_ns, max(send.wire.ns, wire_ns(m, c)));
-	ec_share_begin(&m->links);
-	ec_share_send_left(&m->links, send.wire.ns);
-	ec_write64(&c->cycles, c->cycles + 1);
+	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
+	ec_share_begin(c->links);
+	ec_share_send_left(c->links, send.wire.ns);
+	ec_write64(&c->sends, c->sends + 1);
 	return 0;
 }
 
 /**
  * ec_cycle_send() - ec_cycle_do_send(), links and all
- * @s: active session
+ * @c: active cycle
  * @what: as there
  *
  * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
  * Return: 0 or -ENODEV.
  */
-int ec_cycle_send(struct ec_session *s, const struct ec_ioc_send *what)
+int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	int ret;
 
-	if (!ec_links_attached(&s->master->links))
+	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	ec_access_enter(&s->master->links);
-	ret = ec_cycle_do_send(s, what);
-	ec_access_leave(&s->master->links);
+	ec_access_enter(c->links);
+	ret = ec_cycle_do_send(c, what);
+	ec_access_leave(c->links);
 	return ret;
 }

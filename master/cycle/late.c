@@ -16,19 +16,18 @@
 #include <linux/math64.h>
 #include <linux/minmax.h>
 #include <linux/string.h>
+#include "cycle.h"
 #include "cycle_thread.h"
 #include "late.h"
-#include "../master.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 
 #define MEASURE_SENDS	64	/* to know the interval when nobody tells it */
 #define GAPS_MIN	4	/* gaps after which a new median is worth it */
 #define OUTLIER_SHIFT	6	/* one send changes a measured interval by 1/64 of 1/16 */
 
-static struct ec_status_cycle *status(const struct ec_session *s)
+static struct ec_status_cycle *status(const struct ec_cycle *c)
 {
-	return &s->shared->status->kernel;
+	return &c->shared->status->kernel;
 }
 
 /* As described at EC_CYCLE_BUCKETS. */
@@ -58,25 +57,25 @@ static void forget(struct ec_status_cycle *st)
 
 /**
  * ec_late_count() - count one send
- * @s: active session
+ * @c: active cycle
  * @ns: distance from its schedule; negative counts as 0
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_late_count(struct ec_session *s, s64 ns)
+void ec_late_count(struct ec_cycle *c, s64 ns)
 {
-	struct ec_status_cycle *st = status(s);
+	struct ec_status_cycle *st = status(c);
 	u32 late = clamp_t(s64, ns, 0, U32_MAX);
 	unsigned int i = bucket(late);
 
-	if (unlikely(READ_ONCE(s->master->late_reset))) {
-		ec_status_begin(s->shared->status);
+	if (unlikely(READ_ONCE(c->cycles->late_reset))) {
+		ec_status_begin(c->shared->status);
 		forget(st);
-		ec_status_end(s->shared->status);
+		ec_status_end(c->shared->status);
 		/* the figures are zero before anybody may read them again */
-		smp_store_release(&s->master->late_reset, false);
+		smp_store_release(&c->cycles->late_reset, false);
 	}
-	ec_status_begin(s->shared->status);
+	ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->late[i], st->late[i] + 1);
 	WRITE_ONCE(st->late_sum, st->late_sum + late);
 	if (!st->late_count || late < st->late_min)
@@ -84,19 +83,19 @@ void ec_late_count(struct ec_session *s, s64 ns)
 	if (late > st->late_max)
 		WRITE_ONCE(st->late_max, late);
 	WRITE_ONCE(st->late_count, st->late_count + 1);
-	ec_status_end(s->shared->status);
+	ec_status_end(c->shared->status);
 }
 
 /* The median of the last gaps: single delayed sends do not change it. */
-static u32 median(const struct ec_schedule *c)
+static u32 median(const struct ec_schedule *sc)
 {
-	unsigned int n = min_t(unsigned int, c->n_gaps, EC_SCHEDULE_GAPS), i, k;
+	unsigned int n = min_t(unsigned int, sc->n_gaps, EC_SCHEDULE_GAPS), i, k;
 	u32 sorted[EC_SCHEDULE_GAPS];
 
 	for (i = 0; i < n; i++) {
-		for (k = i; k && sorted[k - 1] > c->gaps[i]; k--)
+		for (k = i; k && sorted[k - 1] > sc->gaps[i]; k--)
 			sorted[k] = sorted[k - 1];
-		sorted[k] = c->gaps[i];
+		sorted[k] = sc->gaps[i];
 	}
 	return sorted[n / 2];
 }
@@ -105,45 +104,45 @@ static u32 median(const struct ec_schedule *c)
  * The interval, when nobody tells it. The schedule needs a mean that single sends hardly
  * change; the frames between two sends need to know soon what it has become.
  */
-static void measure(struct ec_master *m, struct ec_schedule *c, u64 ns)
+static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 {
-	s64 off = ns - c->interval_ns;
-	s64 limit = c->sends < MEASURE_SENDS ? NSEC_PER_SEC : c->interval_ns >> OUTLIER_SHIFT;
+	s64 off = ns - sc->interval_ns;
+	s64 limit = sc->sends < MEASURE_SENDS ? NSEC_PER_SEC : sc->interval_ns >> OUTLIER_SHIFT;
 
-	if (c->sends < 2)
-		c->interval_ns = min_t(u64, ns, NSEC_PER_SEC);
+	if (sc->sends < 2)
+		sc->interval_ns = min_t(u64, ns, NSEC_PER_SEC);
 	else
-		c->interval_ns += (s32)clamp(off, -limit, limit) / 16;
+		sc->interval_ns += (s32)clamp(off, -limit, limit) / 16;
 	/* a pause is no interval */
 	if (ns >= NSEC_PER_SEC)
 		return;
-	c->gaps[c->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
-	if (c->n_gaps >= GAPS_MIN && (c->n_gaps < MEASURE_SENDS || !(c->n_gaps % GAPS_MIN)))
-		WRITE_ONCE(m->links.access.interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(c),
+	sc->gaps[sc->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
+	if (sc->n_gaps >= GAPS_MIN && (sc->n_gaps < MEASURE_SENDS || !(sc->n_gaps % GAPS_MIN)))
+		WRITE_ONCE(c->links->access.interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(sc),
 									   NSEC_PER_USEC)));
 }
 
 /* A whole interval late or more: what was due in between is left out. */
-static s64 skip(struct ec_session *s, s64 off)
+static s64 skip(struct ec_cycle *c, s64 off)
 {
-	struct ec_schedule *c = &s->cycle.schedule;
-	u64 n = div_u64(off, c->interval_ns);
+	struct ec_schedule *sc = &c->schedule;
+	u64 n = div_u64(off, sc->interval_ns);
 
-	ec_status_add(s->shared->status, &status(s)->overruns, n);
-	c->due_ns += n * c->interval_ns;
-	return c->last_ns - c->due_ns;
+	ec_status_add(c->shared->status, &status(c)->overruns, n);
+	sc->due_ns += n * sc->interval_ns;
+	return sc->last_ns - sc->due_ns;
 }
 
 /* More than half an interval early: it was due before, perhaps left out. */
-static s64 go_back(struct ec_schedule *c, s64 off)
+static s64 go_back(struct ec_schedule *sc, s64 off)
 {
-	c->due_ns -= div_u64(c->interval_ns / 2 - off, c->interval_ns) * c->interval_ns;
-	return c->last_ns - c->due_ns;
+	sc->due_ns -= div_u64(sc->interval_ns / 2 - off, sc->interval_ns) * sc->interval_ns;
+	return sc->last_ns - sc->due_ns;
 }
 
 /**
  * ec_late_send() - an application that runs the cycle sends
- * @s: active session
+ * @c: active cycle
  * @now: time of the send (ktime, ns); @last_send_ns is still that of the one before
  *
  * The first send only begins the schedule; without a told interval so do the
@@ -151,101 +150,101 @@ static s64 go_back(struct ec_schedule *c, s64 off)
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_late_send(struct ec_session *s, u64 now)
+void ec_late_send(struct ec_cycle *c, u64 now)
 {
-	struct ec_schedule *c = &s->cycle.schedule;
-	bool told = READ_ONCE(s->master->links.access.interval_set);
+	struct ec_schedule *sc = &c->schedule;
+	bool told = READ_ONCE(c->links->access.interval_set);
 	s64 off, step;
 
 	if (told)
-		c->interval_ns = READ_ONCE(s->master->links.access.interval_us) *
+		sc->interval_ns = READ_ONCE(c->links->access.interval_us) *
 				 (u32)NSEC_PER_USEC;
-	else if (c->sends)
-		measure(s->master, c, now - s->master->links.access.last_send_ns);
-	c->last_ns = now;
-	if (unlikely(c->sends < (told ? 1 : MEASURE_SENDS) || !c->interval_ns)) {
-		c->sends++;
-		c->due_ns = now;
+	else if (sc->sends)
+		measure(c, sc, now - c->links->access.last_send_ns);
+	sc->last_ns = now;
+	if (unlikely(sc->sends < (told ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
+		sc->sends++;
+		sc->due_ns = now;
 		return;
 	}
-	c->due_ns += c->interval_ns;
-	off = now - c->due_ns;
-	if (unlikely(off < -(s64)(c->interval_ns / 2)))
-		off = go_back(c, off);
-	ec_late_count(s, abs(off));
-	if (unlikely(off >= c->interval_ns))
-		off = skip(s, off);
-	step = (c->interval_ns >> 10) + NSEC_PER_USEC;
-	c->due_ns += clamp(off, -step, step);
+	sc->due_ns += sc->interval_ns;
+	off = now - sc->due_ns;
+	if (unlikely(off < -(s64)(sc->interval_ns / 2)))
+		off = go_back(sc, off);
+	ec_late_count(c, abs(off));
+	if (unlikely(off >= sc->interval_ns))
+		off = skip(c, off);
+	step = (sc->interval_ns >> 10) + NSEC_PER_USEC;
+	sc->due_ns += clamp(off, -step, step);
 }
 
 /**
  * ec_late_work() - count how long a cycle of the kernel took
- * @s: active session
+ * @c: active cycle
  * @ns: from the wake-up of the thread until it goes to sleep
  *
  * Context: The thread that runs the cycle. RT-safe.
  */
-void ec_late_work(struct ec_session *s, s64 ns)
+void ec_late_work(struct ec_cycle *c, s64 ns)
 {
-	struct ec_status_cycle *st = status(s);
+	struct ec_status_cycle *st = status(c);
 	u32 work = clamp_t(s64, ns, 0, U32_MAX);
 
-	ec_status_begin(s->shared->status);
+	ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->work_ns, work);
 	WRITE_ONCE(st->work_sum, st->work_sum + work);
 	WRITE_ONCE(st->work_count, st->work_count + 1);
 	if (work > st->work_max)
 		WRITE_ONCE(st->work_max, work);
-	ec_status_end(s->shared->status);
+	ec_status_end(c->shared->status);
 }
 
 /* Facts of a session beside its figures. */
-static void describe(const struct ec_session *s, struct ec_ioc_cycle_stats *info)
+static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 {
-	bool kernel = s->kernel.period_ns;
+	bool kernel = c->kernel.period_ns;
 
 	info->active = 1;
 	info->kind = kernel ? EC_CYCLE_BY_KERNEL : EC_CYCLE_BY_APP;
-	info->told = kernel || s->master->links.access.interval_set;
-	info->interval_ns = kernel ? s->kernel.period_ns :
-				     READ_ONCE(s->cycle.schedule.interval_ns);
-	info->cpu = kernel ? s->kernel.cpu : -1;
-	info->cpu_losses = s->cpu_losses;
-	info->priority = kernel ? s->priority : 0;
-	info->priority_wanted = kernel ? s->kernel.priority ?: EC_CYCLE_PRIORITY : 0;
+	info->told = kernel || c->links->access.interval_set;
+	info->interval_ns = kernel ? c->kernel.period_ns :
+				     READ_ONCE(c->schedule.interval_ns);
+	info->cpu = kernel ? c->kernel.cpu : -1;
+	info->cpu_losses = c->cpu_losses;
+	info->priority = kernel ? c->priority : 0;
+	info->priority_wanted = kernel ? c->kernel.priority ?: EC_CYCLE_PRIORITY : 0;
 }
 
-static void get(struct ec_session *s, struct ec_ioc_cycle_stats *info,
+static void get(struct ec_cycle *c, struct ec_ioc_cycle_stats *info,
 		struct ec_status_cycle *st)
 {
 	/* figures that somebody wants to be forgotten are already */
-	bool forgotten = smp_load_acquire(&s->master->late_reset);
+	bool forgotten = smp_load_acquire(&c->cycles->late_reset);
 
-	describe(s, info);
-	ec_status_copy(s->shared->status, st, status(s), sizeof(*st));
+	describe(c, info);
+	ec_status_copy(c->shared->status, st, status(c), sizeof(*st));
 	if (forgotten)
 		forget(st);
 }
 
 /**
  * ec_late_end() - keep the figures of a session that ends
- * @s: session, active until now, its layout still there
+ * @c: cycle, active until now, its layout still there
  *
- * Context: Process, session_lock held; nobody runs the cycle any more.
+ * Context: Process, lock of the configuration held; nobody runs the cycle any more.
  */
-void ec_late_end(struct ec_session *s)
+void ec_late_end(struct ec_cycle *c)
 {
-	struct ec_late_report *r = &s->master->late;
+	struct ec_late_report *r = &c->cycles->late;
 
-	get(s, &r->info, &r->status);
+	get(c, &r->info, &r->status);
 	r->info.active = 0;
-	WRITE_ONCE(s->master->late_reset, false);
+	WRITE_ONCE(c->cycles->late_reset, false);
 }
 
 /**
  * ec_late_get() - figures of the cycle that runs, else of the last one
- * @m: master
+ * @cycles: of the master
  * @info: filled but for @size and @data
  * @st: filled
  *
@@ -253,34 +252,34 @@ void ec_late_end(struct ec_session *s)
  *
  * Context: Process, after ec_show_begin().
  */
-void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
+void ec_late_get(struct ec_cycles *cycles, struct ec_ioc_cycle_stats *info,
 		 struct ec_status_cycle *st)
 {
-	if (m->session && m->session->wanted.active) {
-		get(m->session, info, st);
+	if (cycles->active) {
+		get(cycles->active, info, st);
 		return;
 	}
 	info->active = 0;
-	info->kind = m->late.info.kind;
-	info->told = m->late.info.told;
-	info->interval_ns = m->late.info.interval_ns;
-	info->cpu = m->late.info.cpu;
-	info->cpu_losses = m->late.info.cpu_losses;
-	info->priority = m->late.info.priority;
-	info->priority_wanted = m->late.info.priority_wanted;
-	*st = m->late.status;
+	info->kind = cycles->late.info.kind;
+	info->told = cycles->late.info.told;
+	info->interval_ns = cycles->late.info.interval_ns;
+	info->cpu = cycles->late.info.cpu;
+	info->cpu_losses = cycles->late.info.cpu_losses;
+	info->priority = cycles->late.info.priority;
+	info->priority_wanted = cycles->late.info.priority_wanted;
+	*st = cycles->late.status;
 }
 
 /**
  * ec_late_reset() - forget the figures
- * @m: master
+ * @cycles: of the master
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_late_reset(struct ec_master *m)
+void ec_late_reset(struct ec_cycles *cycles)
 {
-	if (m->session && m->session->wanted.active)
-		WRITE_ONCE(m->late_reset, true);
+	if (cycles->active)
+		WRITE_ONCE(cycles->late_reset, true);
 	else
-		forget(&m->late.status);
+		forget(&cycles->late.status);
 }

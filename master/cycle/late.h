@@ -7,8 +7,8 @@
 #include "ethercat.h"
 
 struct ec_ioc_cycle_stats;
-struct ec_master;
-struct ec_session;
+struct ec_cycles;
+struct ec_cycle;
 
 #define EC_SCHEDULE_GAPS	15
 
@@ -33,7 +33,7 @@ struct ec_schedule {
 
 /**
  * struct ec_late_report - the last cycle that has ended; under
- *	master->session_lock
+ *	the lock of the configuration
  * @info: what EC_IOC_CYCLE_STATS tells of it
  * @status: and its figures
  */
@@ -42,13 +42,13 @@ struct ec_late_report {
 	struct ec_status_cycle status;
 };
 
-void ec_late_count(struct ec_session *s, s64 ns);
-void ec_late_send(struct ec_session *s, u64 now);
-void ec_late_work(struct ec_session *s, s64 ns);
+void ec_late_count(struct ec_cycle *c, s64 ns);
+void ec_late_send(struct ec_cycle *c, u64 now);
+void ec_late_work(struct ec_cycle *c, s64 ns);
 
-void ec_late_end(struct ec_session *s);
-void ec_late_get(struct ec_master *m, struct ec_ioc_cycle_stats *info,
+void ec_late_end(struct ec_cycle *c);
+void ec_late_get(struct ec_cycles *cycles, struct ec_ioc_cycle_stats *info,
 		 struct ec_status_cycle *status);
-void ec_late_reset(struct ec_master *m);
+void ec_late_reset(struct ec_cycles *cycles);
 
 #endif

@@ -8,9 +8,7 @@
 #include "../config/domain.h"
 #include "../base/grow.h"
 #include "logical.h"
-#include "../master.h"
 #include "../base/once64.h"
-#include "../session/session.h"
 #include "../bus/slave.h"
 
 #define DC_BYTES	(4 + 8 + 4)	/* of the three clock datagrams */
@@ -252,19 +250,18 @@ static int add_stretch(struct layout *o, const struct ec_stretch *st)
 }
 
 /* The first datagram of a domain that wants frames of its own, or comes behind one. */
-static void begin_frame(struct ec_session *s, const struct ec_domain *d, unsigned int first)
+static void begin_frame(struct ec_cycle *c, const struct ec_domain *d, unsigned int first)
 {
-	struct ec_cyc_dgram *g = s->cycle.dgrams + first;
+	struct ec_cyc_dgram *g = c->dgrams + first;
 	u32 options = d->options;
 
 	if (first)
-		options |= s->wanted.domains[g[-1].domain]->options;
+		options |= c->wanted->domains[g[-1].domain]->options;
 	g->new_frame = options & EC_DOMAIN_OPT_OWN_FRAME;
 }
 
-static int layout_domain(struct ec_session *s, struct ec_domain *d)
+static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
 {
-	struct ec_cycle *c = &s->cycle;
 	struct layout o = { .c = c, .d = d };
 	unsigned int i, first = c->n_dgrams;
 	int ret = ec_logical_place(d, &o.l);
@@ -278,7 +275,7 @@ static int layout_domain(struct ec_session *s, struct ec_domain *d)
 	for (i = first; i < c->n_dgrams; i++)
 		d->dgram_bytes += EC_DGRAM_OVERHEAD + c->dgrams[i].len;
 	if (!ret && d->n_dgrams)
-		begin_frame(s, d, first);
+		begin_frame(c, d, first);
 	return ret;
 }
 
@@ -311,51 +308,50 @@ static struct ec_cyc_wire plan(const struct ec_cycle *c, unsigned int max_datagr
 	return w;
 }
 
-static int alloc_stage(struct ec_cycle *c, const struct ec_session *s)
+static int alloc_stage(struct ec_cycle *c)
 {
 	if (!c->n_cuts)
 		return 0;
-	c->stage = kvzalloc(s->shared->image_size, GFP_KERNEL_ACCOUNT);
+	c->stage = kvzalloc(c->shared->image_size, GFP_KERNEL_ACCOUNT);
 	return c->stage ? 0 : -ENOMEM;
 }
 
 /**
  * ec_cycle_layout() - lay out the datagrams of a cycle, once
- * @s: session whose domains have offsets
+ * @c: cycle whose domains have offsets
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -EOVERFLOW beyond EC_MAX_CYCLE_DGRAMS or EC_MAX_CYCLE_FRAMES;
  * -ENOMEM.
  */
-int ec_cycle_layout(struct ec_session *s)
+int ec_cycle_layout(struct ec_cycle *c)
 {
-	struct ec_cycle *c = &s->cycle;
 	unsigned int i;
 	int ret = 0;
 
-	memset(c, 0, sizeof(*c));
-	for (i = 0; i < s->wanted.n_configs; i++) {
-		s->wanted.configs[i]->lrw = false;
-		s->wanted.configs[i]->in_ring = false;
+	memset_startat(c, 0, dgrams);
+	for (i = 0; i < c->wanted->n_configs; i++) {
+		c->wanted->configs[i]->lrw = false;
+		c->wanted->configs[i]->in_ring = false;
 	}
-	for (i = 0; i < s->wanted.n_domains && !ret; i++)
-		ret = layout_domain(s, s->wanted.domains[i]);
-	for (i = 0; i < s->wanted.n_domains; i++) {
-		const struct ec_domain *d = s->wanted.domains[i];
+	for (i = 0; i < c->wanted->n_domains && !ret; i++)
+		ret = layout_domain(c, c->wanted->domains[i]);
+	for (i = 0; i < c->wanted->n_domains; i++) {
+		const struct ec_domain *d = c->wanted->domains[i];
 
 		c->domains[i].expected = d->expected;
 		c->domains[i].max_age = d->max_age;
 		/* offsets are those of the image of all domains */
-		c->domains[i].image = d->memory ? d->memory - d->offset : s->shared->image;
+		c->domains[i].image = d->memory ? d->memory - d->offset : c->shared->image;
 	}
 	if (!ret)
-		ret = alloc_stage(c, s);
-	c->plain = plan(c, s->master->links.max_datagrams, false);
-	c->clocked = plan(c, s->master->links.max_datagrams, true);
+		ret = alloc_stage(c);
+	c->plain = plan(c, c->links->max_datagrams, false);
+	c->clocked = plan(c, c->links->max_datagrams, true);
 	if (!ret && c->clocked.frames > EC_MAX_CYCLE_FRAMES)
 		ret = -EOVERFLOW;
 	if (ret)
-		ec_cycle_free(s->master, c);
+		ec_cycle_free(c);
 	return ret;
 }
 
@@ -366,15 +362,15 @@ u32 ec_cycle_need_ns(void)
 }
 
 /* Does an acyclic frame fit beside a cycle of @interval_ns? If not the log says so. */
-static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
+static bool has_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
 {
 	u64 budget = div_u64(interval_ns * 9, 10);
 	u32 slack = budget > wire_ns ? min_t(u64, budget - wire_ns, ~0u) : 0;
 
 	if (slack >= ec_cycle_need_ns())
 		return true;
-	s->room_told = true;
-	ec_warn(s->master,
+	c->room_logged = true;
+	ec_warn(c,
 		"cyclic frames use %u ns of %llu ns; %u ns free for acyclic frames, minimum %u ns: lengthen the cycle or overlap PDOs\n",
 		wire_ns, interval_ns, slack, ec_cycle_need_ns());
 	return false;
@@ -382,48 +378,46 @@ static bool has_room(struct ec_session *s, u64 interval_ns, u32 wire_ns)
 
 /**
  * ec_cycle_check_room() - do acyclic frames fit beside the cycle?
- * @s: session with a layout
+ * @c: cycle with a layout
  * @clocks: the session uses distributed clocks
  *
  * Without them no slave gets to OP. As long as the interval is not told it is not
  * known yet; ec_cycle_tell_room() looks later.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENOSPC: they do not, and may make no cycle late.
  */
-int ec_cycle_check_room(struct ec_session *s, bool clocks)
+int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
 {
-	struct ec_master *m = s->master;
-	u64 interval = s->kernel.period_ns ?: m->links.access.interval_us * (u64)NSEC_PER_USEC;
-	const struct ec_cyc_wire *w = clocks ? &s->cycle.clocked : &s->cycle.plain;
+	u64 interval = c->kernel.period_ns ?: c->links->access.interval_us * (u64)NSEC_PER_USEC;
+	const struct ec_cyc_wire *w = clocks ? &c->clocked : &c->plain;
 
-	s->room_told = false;
-	m->links.access.wire_ns = w->ns;
-	m->links.share.late_per_s = s->late_per_s;
-	m->links.share.late_cycles = 0;
-	if (!s->kernel.period_ns && !m->links.access.interval_set)
+	c->room_logged = false;
+	c->links->access.wire_ns = w->ns;
+	c->links->share.late_per_s = c->late_per_s;
+	c->links->share.late_cycles = 0;
+	if (!c->kernel.period_ns && !c->links->access.interval_set)
 		return 0;
-	return has_room(s, interval, w->ns) || s->late_per_s ? 0 : -ENOSPC;
+	return has_room(c, interval, w->ns) || c->late_per_s ? 0 : -ENOSPC;
 }
 
 /**
  * ec_cycle_tell_room() - the same in the log, once the interval is measured
- * @s: active session
+ * @c: active cycle
  *
  * Context: The monitor thread. May sleep.
  */
-void ec_cycle_tell_room(struct ec_session *s)
+void ec_cycle_tell_room(struct ec_cycle *c)
 {
-	struct ec_master *m = s->master;
 
-	if (!s->room_told && !m->links.access.interval_set &&
-	    ec_read64(&s->cycle.cycles) > MEASURED)
-		has_room(s, READ_ONCE(m->links.access.interval_us) * (u64)NSEC_PER_USEC,
-			 READ_ONCE(m->links.access.wire_ns));
+	if (!c->room_logged && !c->links->access.interval_set &&
+	    ec_read64(&c->sends) > MEASURED)
+		has_room(c, READ_ONCE(c->links->access.interval_us) * (u64)NSEC_PER_USEC,
+			 READ_ONCE(c->links->access.wire_ns));
 }
 
 /* Nobody will receive what is still on its way. */
-static void forget_flights(struct ec_master *m, struct ec_cycle *c)
+static void forget_flights(struct ec_cycle *c)
 {
 	unsigned int i;
 
@@ -432,7 +426,7 @@ static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 
 		while (!ec_slot_cancel(slot, ktime_get_ns())) {
 			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
-				ec_slot_put(&m->links.slots, slot);
+				ec_slot_put(&c->links->slots, slot);
 				break;
 			}
 			/* being copied at this moment */
@@ -444,17 +438,16 @@ static void forget_flights(struct ec_master *m, struct ec_cycle *c)
 
 /**
  * ec_cycle_free() - give back what a layout and its frames occupy
- * @m: master
  * @c: layout nobody uses any more
  *
  * Context: Process. May sleep.
  */
-void ec_cycle_free(struct ec_master *m, struct ec_cycle *c)
+void ec_cycle_free(struct ec_cycle *c)
 {
-	forget_flights(m, c);
+	forget_flights(c);
 	kvfree(c->dgrams);
 	kvfree(c->areas);
 	kvfree(c->cuts);
 	kvfree(c->stage);
-	memset(c, 0, sizeof(*c));
+	memset_startat(c, 0, dgrams);
 }

@@ -13,7 +13,6 @@
 #include "../config/config.h"
 #include "../base/grow.h"
 #include "logical.h"
-#include "../session/session.h"
 #include "../bus/slave.h"
 #include "../wire/frame.h"
 
@@ -246,7 +245,7 @@ static bool wants_separate(const struct ec_domain *d)
  * A stretch is at most EC_DGRAM_DATA_MAX bytes, cut between FMMUs; only an FMMU
  * that is larger itself is cut.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0, -ENOMEM.
  */
 int ec_logical_place(struct ec_domain *d, struct ec_logical *l)

@@ -467,7 +467,7 @@ int ec_requests_begin(struct ec_session *s)
 	INIT_WORK(&rq->kick, kick_work);
 	INIT_WORK(&rq->watch, watch_work);
 	rq->master = s->master;
-	rq->shared = s->shared;
+	rq->shared = s->cycle.shared;
 	ec_shared_get(rq->shared);
 	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
 	rq->n_lanes = count_lanes(s);
@@ -524,15 +524,15 @@ void ec_requests_kick(struct ec_session *s)
 
 /**
  * ec_requests_notice() - has the application started a request?
- * @s: active session
+ * @c: cycle of an active session
  *
  * Without a send of its own it counts starts in mapped memory.
  *
  * Context: The thread that runs the cycle. RT-safe.
  */
-void ec_requests_notice(struct ec_session *s)
+void ec_requests_notice(struct ec_cycle *c)
 {
-	struct ec_requests *rq = s->requests;
+	struct ec_requests *rq = ec_cycle_session(c)->requests;
 	const struct ec_request_area *area;
 	u32 starts;
 

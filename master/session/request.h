@@ -14,6 +14,7 @@
 
 #include <linux/types.h>
 
+struct ec_cycle;
 struct ec_emerg;
 struct ec_request_record;
 struct ec_requests;
@@ -40,6 +41,6 @@ void ec_requests_kick(struct ec_session *s);
 void ec_requests_attach(const struct ec_session *s, u32 config);
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);
 struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
-void ec_requests_notice(struct ec_session *s);
+void ec_requests_notice(struct ec_cycle *c);
 
 #endif

@@ -28,9 +28,9 @@
  */
 struct ec_session *ec_session_of(const struct ec_master *m, const void *owner)
 {
-	if (m->session && m->session->owner == owner)
+	if (m->session && m->session->cycle.owner == owner)
 		return m->session;
-	return m->heir && m->heir->owner == owner ? m->heir : NULL;
+	return m->heir && m->heir->cycle.owner == owner ? m->heir : NULL;
 }
 
 /* One application at a time; one more may prepare to take a detached session over. */
@@ -39,7 +39,7 @@ static bool taken(struct ec_master *m)
 	bool ret;
 
 	mutex_lock(&m->session_lock);
-	ret = m->heir || (m->session && m->session->owner);
+	ret = m->heir || (m->session && m->session->cycle.owner);
 	mutex_unlock(&m->session_lock);
 	return ret;
 }
@@ -70,7 +70,7 @@ static int begin(struct ec_master *m, struct ec_session *s)
 	int ret = 0;
 
 	ec_session_lock(m);
-	if (m->heir || (m->session && m->session->owner)) {
+	if (m->heir || (m->session && m->session->cycle.owner)) {
 		ret = -EBUSY;
 	} else if (m->session) {
 		m->heir = s;
@@ -116,7 +116,7 @@ size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size)
 	buf[0] = '\0';
 	ec_session_lock(m);
 	s = m->heir ?: m->session;
-	if (s && s->owner) {
+	if (s && s->cycle.owner) {
 		rcu_read_lock();
 		nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
 		rcu_read_unlock();
@@ -168,14 +168,14 @@ int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *
 	s->wanted.links = &m->links;
 	s->wanted.bus = &m->bus;
 	s->wanted.lock = &m->session_lock;
-	s->wanted.cycles = &s->cycle.cycles;
+	s->wanted.sends = &s->cycle.sends;
 	s->wanted.budget.lock = &m->session_lock;
 	s->wanted.budget.total = &m->memory;
-	s->owner = owner;
-	RCU_INIT_POINTER(s->waiters, waiters);
+	ec_cycle_init(&s->cycle, &m->cycles, &s->wanted);
+	s->cycle.owner = owner;
+	RCU_INIT_POINTER(s->cycle.waiters, waiters);
 	note_process(s);
 	s->ref_config = EC_UAPI_NONE32;
-	s->late_per_s = EC_LATE_PER_S;
 	ret = begin(m, s);
 	if (ret) {
 		kvfree(s);
@@ -214,15 +214,8 @@ static void clear(struct ec_session *s)
 	for (i = 0; i < s->wanted.n_domains; i++)
 		ec_domain_free(s->wanted.domains[i]);
 	s->wanted.n_domains = 0;
-	kvfree(s->copies);
-	s->copies = NULL;
-	s->n_copies = 0;
 	s->ref_config = EC_UAPI_NONE32;
-	s->late_per_s = EC_LATE_PER_S;
-	memset(&s->kernel, 0, sizeof(s->kernel));
-	s->priority = 0;
-	s->cpu_lost = false;
-	s->cpu_losses = 0;
+	ec_cycle_clear(&s->cycle);
 }
 
 /* The next application begins with what it tells itself. */
@@ -247,22 +240,19 @@ int ec_session_deactivate(struct ec_session *s)
 
 	if (!s->wanted.active)
 		return -EINVAL;
-	mutex_lock(&m->cyclic_lock);
-	m->active = NULL;
-	WRITE_ONCE(m->active_owner, NULL);
-	mutex_unlock(&m->cyclic_lock);
-	ec_cycle_thread_stop(s);
+	ec_cycle_set_active(&m->cycles, NULL);
+	ec_cycle_thread_stop(&s->cycle);
 	ec_access_change(&m->links, EC_ACCESS_DIRECT);
-	ec_late_end(s);
+	ec_late_end(&s->cycle);
 	s->wanted.active = false;
 	s->ending = false;
 	s->stall_log.open = false;
 	ec_requests_end(s);
 	clear(s);
-	ec_cycle_free(m, &s->cycle);
-	ec_copies_end(s);
-	sh = s->shared;
-	s->shared = NULL;
+	ec_cycle_free(&s->cycle);
+	ec_copies_end(&s->cycle);
+	sh = s->cycle.shared;
+	s->cycle.shared = NULL;
 	ec_shared_put(sh);
 	forget_told(m);
 	if ((u32)atomic_read(&m->links.access.timeouts) != s->stall_log.told)
@@ -316,29 +306,6 @@ static void end(struct ec_master *m)
 }
 
 /**
- * ec_session_set_owner() - an active session changes hands
- * @s: session
- * @owner: open file, or NULL
- * @waiters: wait queue of that file, or NULL
- *
- * Context: Process, session_lock held. May sleep.
- */
-void ec_session_set_owner(struct ec_session *s, const void *owner, struct ec_waiters *waiters)
-{
-	struct ec_waiters *before = rcu_dereference_protected(s->waiters,
-						lockdep_is_held(&s->master->session_lock));
-
-	mutex_lock(&s->master->cyclic_lock);
-	WRITE_ONCE(s->owner, owner);
-	rcu_assign_pointer(s->waiters, waiters);
-	WRITE_ONCE(s->master->active_owner, owner);
-	mutex_unlock(&s->master->cyclic_lock);
-	/* no cycle wakes them any more */
-	if (before)
-		ec_waiters_wake(before);
-}
-
-/**
  * ec_session_end() - the application is gone or releases the master
  * @m: master
  * @owner: its open file, NULL: whoever it is; another's session stays
@@ -354,16 +321,16 @@ void ec_session_end(struct ec_master *m, const void *owner)
 
 	ec_session_lock(m);
 	s = m->heir;
-	if (s && (!owner || s->owner == owner)) {
+	if (s && (!owner || s->cycle.owner == owner)) {
 		m->heir = NULL;
 		ec_session_free(s);
 	}
 	s = m->session;
-	if (s && owner && s->owner != owner)
+	if (s && owner && s->cycle.owner != owner)
 		s = NULL;
-	if (s && owner && s->thread && !s->ending &&
-	    s->kernel.flags & EC_CYCLE_FLAG_DETACH) {
-		ec_session_set_owner(s, NULL, NULL);
+	if (s && owner && s->cycle.thread && !s->ending &&
+	    s->cycle.kernel.flags & EC_CYCLE_FLAG_DETACH) {
+		ec_cycle_set_owner(&s->cycle, NULL, NULL);
 		ec_info(m, "application exited or released the master; session detached, kernel cycle continues\n");
 	} else if (s) {
 		end(m);
@@ -387,7 +354,7 @@ int ec_session_end_detached(struct ec_master *m)
 	ec_session_lock(m);
 	if (!m->session)
 		ret = -ENOENT;
-	else if (m->session->owner)
+	else if (m->session->cycle.owner)
 		ret = -EBUSY;
 	else
 		end(m);
@@ -411,7 +378,7 @@ static bool uses_clocks(const struct ec_session *s)
 {
 	unsigned int i;
 
-	if (s->kernel.dc)
+	if (s->cycle.kernel.dc)
 		return true;
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (s->wanted.configs[i]->sync.assign)
@@ -481,13 +448,31 @@ u32 ec_session_place(struct ec_session *s)
 	return offset;
 }
 
+/**
+ * fits() - is there memory for an activation within the limit?
+ * @s: session
+ * @image_size: bytes of all domains
+ *
+ * Context: Process, session_lock held.
+ * Return: 0 or -EDQUOT.
+ */
+static int fits(const struct ec_session *s, size_t image_size)
+{
+	/* with six images for the exchange; requests have a copy of their data */
+	size_t images = s->cycle.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
+
+	lockdep_assert_held(&s->master->session_lock);
+	return atomic_long_read(&s->master->memory) + images * image_size + EC_STATUS_BYTES +
+	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
+}
+
 static int create_thread(struct ec_session *s, u32 image_bytes)
 {
-	struct ec_shared *sh = s->shared;
+	struct ec_shared *sh = s->cycle.shared;
 
 	sh->exchange_size = ec_cycle_thread_exchange(image_bytes);
 	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
-	return sh->exchange ? ec_cycle_thread_create(s, image_bytes, &cycle_ops) : -ENOMEM;
+	return sh->exchange ? ec_cycle_thread_create(&s->cycle, image_bytes, &cycle_ops) : -ENOMEM;
 }
 
 /**
@@ -497,8 +482,8 @@ static int create_thread(struct ec_session *s, u32 image_bytes)
  * Context: Process, session_lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
- * is too large; -EDQUOT as ec_session_fits(); -ENOSPC as ec_cycle_check_room(); -ENODEV
- * when the CPU of the cycle is offline; -ENOMEM.
+ * is too large; -EDQUOT more memory than EC_MAX_SESSION_BYTES; -ENOSPC as
+ * ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -510,52 +495,49 @@ int ec_session_activate(struct ec_session *s)
 	if (s->wanted.active)
 		return -EBUSY;
 	for (i = 0; i < s->wanted.n_domains; i++)
-		if (s->wanted.domains[i]->division > 1 && !s->kernel.period_ns)
+		if (s->wanted.domains[i]->division > 1 && !s->cycle.kernel.period_ns)
 			return -EOPNOTSUPP;
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	ret = ec_session_fits(s, offset);
+	ret = fits(s, offset);
 	if (ret)
 		return ret;
-	s->shared = ec_shared_create(m, offset, ec_requests_bytes(s));
-	if (!s->shared)
+	s->cycle.shared = ec_shared_create(&m->memory, offset, ec_requests_bytes(s));
+	if (!s->cycle.shared)
 		return -ENOMEM;
 	if (s->preset)
-		memcpy(s->shared->image, s->preset, offset);
-	ret = ec_requests_begin(s) ?: ec_copies_begin(s) ?: ec_cycle_layout(s) ?:
-	      ec_cycle_check_room(s, uses_clocks(s));
-	if (!ret && s->kernel.period_ns)
+		memcpy(s->cycle.shared->image, s->preset, offset);
+	ret = ec_requests_begin(s) ?: ec_copies_begin(&s->cycle) ?: ec_cycle_layout(&s->cycle) ?:
+	      ec_cycle_check_room(&s->cycle, uses_clocks(s));
+	if (!ret && s->cycle.kernel.period_ns)
 		ret = create_thread(s, offset);
 	if (ret) {
-		ec_cycle_free(m, &s->cycle);
-		ec_copies_end(s);
+		ec_cycle_free(&s->cycle);
+		ec_copies_end(&s->cycle);
 		ec_requests_end(s);
-		ec_shared_put(s->shared);
-		s->shared = NULL;
+		ec_shared_put(s->cycle.shared);
+		s->cycle.shared = NULL;
 		return ret;
 	}
-	s->shared->status->config_count = s->wanted.n_configs;
-	s->shared->status->dc_monitor = ~0u;
+	s->cycle.shared->status->config_count = s->wanted.n_configs;
+	s->cycle.shared->status->dc_monitor = ~0u;
 	for (i = 0; i < s->wanted.n_domains; i++)
-		s->shared->status->domains[i].expected = s->wanted.domains[i]->expected;
+		s->cycle.shared->status->domains[i].expected = s->wanted.domains[i]->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
 	s->stall_log.told = atomic_read(&m->links.access.timeouts);
-	s->lock_told = EC_CYCLE_LOCK_OFF;
+	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(m->bus.freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
-	if (!s->thread || !(s->kernel.flags & EC_CYCLE_FLAG_WAIT))
+	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
-	mutex_lock(&m->cyclic_lock);
-	m->active = s;
-	WRITE_ONCE(m->active_owner, s->owner);
-	mutex_unlock(&m->cyclic_lock);
+	ec_cycle_set_active(&m->cycles, &s->cycle);
 	if (begins_clocks(s))
 		ec_dc_begin(&m->dc, true, ref_choice(s));
-	s->shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
+	s->cycle.shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
 	ec_session_fill_status(s);
-	ec_cycle_thread_start(s);
+	ec_cycle_thread_start(&s->cycle);
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (s->wanted.configs[i]->slave)
 			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_OP);
@@ -589,4 +571,16 @@ int ec_session_slaves_down(struct ec_session *s)
 		if (s->wanted.configs[i]->slave)
 			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_PREOP);
 	return 0;
+}
+
+/**
+ * ec_domain_data() - where the process data of a domain lie
+ * @d: domain of an active session
+ *
+ * Context: Any, while the session is active.
+ * Return: its first byte.
+ */
+u8 *ec_domain_data(const struct ec_domain *d)
+{
+	return d->memory ?: ec_domain_session(d)->cycle.shared->image + d->offset;
 }

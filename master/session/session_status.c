@@ -64,7 +64,7 @@ static void status_links(struct ec_master *m, struct ec_status *st)
  */
 void ec_session_fill_status(struct ec_session *s)
 {
-	struct ec_status *st = s->shared->status;
+	struct ec_status *st = s->cycle.shared->status;
 	struct ec_master *m = s->master;
 	unsigned int i;
 
@@ -92,11 +92,11 @@ void ec_session_status(struct ec_master *m)
 	s = m->session;
 	if (s && s->wanted.active) {
 		log_stalls(s, ktime_get_ns());
-		ec_cycle_lock_log(s);
-		ec_cycle_thread_check_cpu(s);
+		ec_cycle_lock_log(&s->cycle);
+		ec_cycle_thread_check_cpu(&s->cycle);
 		ec_dc_app_log(&m->dc);
-		ec_cycle_tell_room(s);
-		ec_cycle_tell_stale(s);
+		ec_cycle_tell_room(&s->cycle);
+		ec_cycle_tell_stale(&s->cycle);
 		ec_session_fill_status(s);
 	}
 	mutex_unlock(&m->session_lock);

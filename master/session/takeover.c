@@ -218,12 +218,12 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 	if (a->n_specs != b->n_specs || a->request_bytes != b->request_bytes ||
 	    (a->n_specs && memcmp(a->specs, b->specs, a->n_specs * sizeof(*a->specs))))
 		return differs(t, "its %u SDO and register requests", a->n_specs);
-	if (a->n_copies != b->n_copies)
-		return differs(t, "it has %u copies, not %u", a->n_copies, b->n_copies);
-	for (i = 0; i < a->n_copies; i++)
-		if (memcmp(&a->copies[i], &b->copies[i], sizeof(a->copies[i])))
+	if (a->cycle.n_copies != b->cycle.n_copies)
+		return differs(t, "it has %u copies, not %u", a->cycle.n_copies, b->cycle.n_copies);
+	for (i = 0; i < a->cycle.n_copies; i++)
+		if (memcmp(&a->cycle.copies[i], &b->cycle.copies[i], sizeof(a->cycle.copies[i])))
 			return differs(t, "copy %u", i);
-	return cycle_differs(&a->kernel, &b->kernel, t);
+	return cycle_differs(&a->cycle.kernel, &b->cycle.kernel, t);
 }
 
 /*
@@ -232,7 +232,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
  */
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
-	s->late_per_s = per_s;
+	s->cycle.late_per_s = per_s;
 	WRITE_ONCE(s->master->links.share.late_per_s, per_s);
 }
 
@@ -257,19 +257,20 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 
 	if (session_differs(s, heir, &t))
 		return -EEXIST;
-	if (!heir->late_per_s && ec_access_slack_ns(&m->links) < ec_cycle_need_ns())
+	if (!heir->cycle.late_per_s && ec_access_slack_ns(&m->links) < ec_cycle_need_ns())
 		return -ENOSPC;
-	ret = ec_cycle_thread_adopt(s);
+	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)
 		return ret;
 	if (s->requests)
 		ec_requests_describe(s);
-	adopt_late(s, heir->late_per_s);
-	ec_cycle_thread_inherit(s, heir->priority);
+	adopt_late(s, heir->cycle.late_per_s);
+	ec_cycle_thread_inherit(&s->cycle, heir->cycle.priority);
 	m->heir = NULL;
 	ec_session_fill_status(s);
-	ec_session_set_owner(s, heir->owner, rcu_dereference_protected(heir->waiters,
-			     lockdep_is_held(&m->session_lock)));
+	ec_cycle_set_owner(&s->cycle, heir->cycle.owner,
+			   rcu_dereference_protected(heir->cycle.waiters,
+						     lockdep_is_held(&m->session_lock)));
 	s->owner_pid = heir->owner_pid;
 	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
 	ec_session_free(heir);

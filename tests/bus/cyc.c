@@ -167,7 +167,7 @@ void cyc_run(struct cyc *c, u32 cycles)
 		schedule_hrtimeout(&c->next, HRTIMER_MODE_ABS);
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_receive(&c->b->app), 0);
 		for (d = 0; d < s->wanted.n_domains; d++)
-			whole &= s->shared->status->domains[d].wc_state == 2;
+			whole &= s->cycle.shared->status->domains[d].wc_state == 2;
 		c->incomplete += !whole;
 		if (c->each)
 			c->each(c);
@@ -334,12 +334,12 @@ u8 *cyc_data(struct cyc *c, u32 domain)
 {
 	struct ec_session *s = c->b->m->session;
 
-	return s->shared->image + s->wanted.domains[domain]->offset;
+	return s->cycle.shared->image + s->wanted.domains[domain]->offset;
 }
 
 struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)
 {
-	return &c->b->m->session->shared->status->domains[domain];
+	return &c->b->m->session->cycle.shared->status->domains[domain];
 }
 
 void cyc_release(struct cyc *c)

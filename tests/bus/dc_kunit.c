@@ -96,8 +96,8 @@ static u64 set(struct cyc *c)
 	u32 i;
 
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->shared->status->dc_ref, 1u);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->shared->status->dc_monitor, ~0u);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->cycle.shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->cycle.shared->status->dc_monitor, ~0u);
 	for (i = 0; i < 2000 && READ_ONCE(c->b->m->dc.state) != EC_DC_READY; i++)
 		cyc_run(c, 1);
 	KUNIT_ASSERT_EQ(c->b->test, c->b->m->dc.state, (int)EC_DC_READY);
@@ -121,10 +121,10 @@ static void dc_clocks_agree(struct kunit *test)
 		cyc_run(c, 100);
 		max = max_t(u64, max, worst(c->b));
 	}
-	KUNIT_EXPECT_LT(test, c->b->m->session->shared->status->dc_monitor, 128u);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_LT(test, c->b->m->session->cycle.shared->status->dc_monitor, 128u);
+	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
 	/* the application's time, a cycle ago */
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
 			5000000ll);
 	bus_figure("4 slaves, +-100 ppm: worst true difference in 20 s: %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 100ull);
@@ -295,7 +295,7 @@ static void dc_chosen_reference(struct kunit *test)
 	bus_figure("reference behind two others: worst true difference %llu ns", max);
 	/* a prediction is as good as the cycle is punctual */
 	KUNIT_EXPECT_LT(test, max, 500ull);
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
 			5000000ll);
 }
 
@@ -319,8 +319,8 @@ static void dc_mixed(struct kunit *test)
 	max = watch(c, 1, 1, 200);
 	bus_figure("32 and 64 bits, without clock between: worst true difference %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 500ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->shared->status->dc_time_valid, 1u);
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->shared->status->dc_time)),
+	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
 			5000000ll);
 }
 
@@ -470,7 +470,7 @@ static void dc_chosen_is_lost(struct kunit *test)
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 10);
 	/* another one stands in */
-	KUNIT_EXPECT_EQ(test, b->m->session->shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.shared->status->dc_ref, 1u);
 	max = watch(c, 0, 2, 20);
 	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
 	KUNIT_EXPECT_LT(test, max, 200ull);
@@ -556,7 +556,7 @@ struct read_time {
 
 static void time_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->session->shared->status;
+	const struct ec_status *st = c->b->m->session->cycle.shared->status;
 	struct read_time *r = c->ctx;
 
 	if (!st->dc_time_valid)
@@ -607,7 +607,7 @@ static u32 since_sync0(struct bus *b, u32 slave, u64 now)
 /* what an application reads of a reference that is ever further from its own time */
 static void far_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->session->shared->status;
+	const struct ec_status *st = c->b->m->session->cycle.shared->status;
 	struct read_time *r = c->ctx;
 
 	sync_each(c);

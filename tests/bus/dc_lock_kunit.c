@@ -26,7 +26,7 @@ struct app {
 
 static struct ec_status_cycle *status(const struct app *a)
 {
-	return &a->c->b->m->session->shared->status->kernel;
+	return &a->c->b->m->session->cycle.shared->status->kernel;
 }
 
 /* All slaves with SYNC0, shifts of a quarter of a period from one to the next. */

@@ -17,7 +17,7 @@ static void tell_time(struct cyc *c)
 
 static const struct ec_status *status(const struct cyc *c)
 {
-	return c->b->m->session->shared->status;
+	return c->b->m->session->cycle.shared->status;
 }
 
 /* The whole time is the true one, of when the frame passed. */

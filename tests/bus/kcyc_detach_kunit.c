@@ -158,7 +158,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 {
 	struct kcyc *n = kcyc_configure(b, hold);
 
-	b->m->heir->priority = priority;
+	b->m->heir->cycle.priority = priority;
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
 	return n;
@@ -172,7 +172,7 @@ static void takeover_priority_follows_rights(struct kunit *test)
 	struct task_struct *task;
 
 	ec_session_lock(b->m);
-	task = ec_cycle_thread_task(b->m->session);
+	task = ec_cycle_thread_task(&b->m->session->cycle);
 	ec_session_unlock(b->m);
 	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
 	KUNIT_EXPECT_EQ(test, task->rt_priority, 50u);
@@ -357,7 +357,7 @@ static void takeover_late_cycles(struct kunit *test)
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 7u);
-	KUNIT_EXPECT_EQ(test, b->m->session->late_per_s, 7u);
+	KUNIT_EXPECT_EQ(test, b->m->session->cycle.late_per_s, 7u);
 	die(a);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	/* without them a cycle that leaves no room is refused, as any is; it takes 273 us */

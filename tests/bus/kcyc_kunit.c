@@ -143,7 +143,7 @@ static void kcyc_stall_stop(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STOPPED);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 5ull);
-	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(a->c->b->m, &a->c->b->app) & EPOLLHUP);
+	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(&a->c->b->m->cycles, &a->c->b->app) & EPOLLHUP);
 	cycle = kcyc_status(a)->cycle;
 	msleep(200);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->cycle, cycle);
@@ -197,7 +197,7 @@ static void kcyc_clocks(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(c);
 	msleep(2000);
-	st = b->m->session->shared->status;
+	st = b->m->session->cycle.shared->status;
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	KUNIT_EXPECT_EQ(test, st->dc_ref, 1u);
 	KUNIT_EXPECT_EQ(test, st->dc_time_valid, 1u);

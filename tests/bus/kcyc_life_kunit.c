@@ -17,7 +17,7 @@ static void life_waits_for_outputs(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_wait_cycles(a, 500);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
-	sends = b->m->session->cycle.cycles;
+	sends = b->m->session->cycle.sends;
 	KUNIT_EXPECT_EQ(test, sends, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
 	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->links.access.timeouts), 0u);
@@ -28,7 +28,7 @@ static void life_waits_for_outputs(struct kunit *test)
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
-	KUNIT_EXPECT_GE(test, b->m->session->cycle.cycles, 1ull);
+	KUNIT_EXPECT_GE(test, b->m->session->cycle.sends, 1ull);
 	kcyc_until_op(a);
 	kcyc_wait_cycles(a, 5);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
@@ -183,10 +183,10 @@ static void life_poll_without_lock(struct kunit *test)
 
 	KUNIT_ASSERT_FALSE(test, IS_ERR(task));
 	asked = a->c->b;
-	mutex_lock(&asked->m->cyclic_lock);
+	mutex_lock(&asked->m->cycles.lock);
 	wake_up_process(task);
 	ended = wait_for_completion_timeout(&over, msecs_to_jiffies(1000));
-	mutex_unlock(&asked->m->cyclic_lock);
+	mutex_unlock(&asked->m->cycles.lock);
 	KUNIT_EXPECT_TRUE(test, ended);
 	if (!ended)
 		wait_for_completion(&over);

@@ -137,9 +137,9 @@ static void rt_receive_send(struct kunit *test)
 			bus_request(c->b, 1, EC_AL_SAFEOP);
 		send.sync_time = ktime_to_ns(c->next);
 		enter(&v, true);
-		KUNIT_ASSERT_EQ(test, ec_cycle_receive(s), 0);
+		KUNIT_ASSERT_EQ(test, ec_cycle_receive(&s->cycle), 0);
 		ec_dc_app_time(&c->b->m->dc, send.sync_time, send.sync_time);
-		KUNIT_ASSERT_EQ(test, ec_cycle_send(s, &send), 0);
+		KUNIT_ASSERT_EQ(test, ec_cycle_send(&s->cycle, &send), 0);
 		leave(&v, true);
 	}
 	expect_nothing(test, &v);
@@ -193,7 +193,7 @@ static void rt_thread(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, cyc_all_op(c));
 	thread = find_thread();
 	KUNIT_ASSERT_NOT_NULL(test, thread);
-	st = &c->b->m->session->shared->status->kernel;
+	st = &c->b->m->session->cycle.shared->status->kernel;
 	slept = thread->nvcsw;
 	printed = lines;
 	cycles = st->cycle;

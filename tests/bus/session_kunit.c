@@ -298,7 +298,7 @@ static void session_candidate_in_kernel(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
 	kapp_map(k, 0);
 	kapp_map(k, 1);
-	cycle = runs->shared->status->kernel.cycle;
+	cycle = runs->cycle.shared->status->kernel.cycle;
 	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EEXIST);
 	KUNIT_EXPECT_EQ(test, kapp_exchange(k), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_domain_queue(k->d), -EINVAL);
@@ -306,7 +306,7 @@ static void session_candidate_in_kernel(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_slave_clocks(k->m), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_master_deactivate(k->m), -EINVAL);
 	msleep(500);
-	KUNIT_EXPECT_GE(test, runs->shared->status->kernel.cycle - cycle, 499ull);
+	KUNIT_EXPECT_GE(test, runs->cycle.shared->status->kernel.cycle - cycle, 499ull);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
@@ -433,7 +433,7 @@ static void session_memory(struct kunit *test)
 static void session_mapping_outlives(struct kunit *test)
 {
 	struct bus *b = kcyc_start(test, (struct ec_ioc_cycle){ 0 })->c->b;
-	struct ec_shared *sh = b->m->session->shared;
+	struct ec_shared *sh = b->m->session->cycle.shared;
 	size_t bytes = sh->bytes;
 
 	KUNIT_EXPECT_GE(test, bytes, sh->image_size + sh->exchange_size + EC_STATUS_BYTES);
@@ -458,7 +458,7 @@ static void session_without_thread_inherits(struct kunit *test)
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	ec_session_lock(b->m);
-	ec_cycle_thread_inherit(b->m->session, 7);
+	ec_cycle_thread_inherit(&b->m->session->cycle, 7);
 	ec_session_unlock(b->m);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 }

@@ -32,7 +32,7 @@ static struct cyc *configure(struct kunit *test)
 
 static const struct ec_status *page(const struct bus *b)
 {
-	return b->m->session->shared->status;
+	return b->m->session->cycle.shared->status;
 }
 
 /* As it was told before: no time in between in which nobody is there. */

@@ -213,7 +213,7 @@ static void wire_sdo_beside_axes(struct kunit *test)
 	late_cycles(c, 0);
 	cyc_activate(c);
 	runs(c, 1600);
-	KUNIT_EXPECT_FALSE(test, m->session->room_told);
+	KUNIT_EXPECT_FALSE(test, m->session->cycle.room_logged);
 	KUNIT_EXPECT_EQ(test, ec_access_slack_ns(&m->links), 90000 - m->session->cycle.clocked.ns);
 	KUNIT_EXPECT_LT(test, ec_access_room(&m->links), 256);
 	before = late(c->b);
@@ -265,7 +265,7 @@ static void wire_overload_logged_at_activation(struct kunit *test)
 	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
 
 	cyc_activate(c);
-	KUNIT_EXPECT_TRUE(test, c->b->m->session->room_told);
+	KUNIT_EXPECT_TRUE(test, c->b->m->session->cycle.room_logged);
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
 }
@@ -286,7 +286,7 @@ static void wire_refused(struct kunit *test)
 	b->m->links.access.interval_us = 200;
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-	KUNIT_EXPECT_FALSE(test, b->m->session->room_told);
+	KUNIT_EXPECT_FALSE(test, b->m->session->cycle.room_logged);
 }
 
 static struct kunit_case cases[] = {

@@ -6,9 +6,8 @@
  */
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
-#include "../master.h"
-#include "request.h"
-#include "session.h"
+#include "ethercat.h"
+#include "shared.h"
 
 static void release(struct kref *kref)
 {
@@ -72,21 +71,22 @@ int ec_shared_map(struct vm_area_struct *vma, void *memory)
 
 /**
  * ec_shared_create() - memory of an activation
- * @m: master
+ * @mapped: bytes of all memory of applications of the master
  * @image_size: bytes of all domains
  * @request_size: bytes of all requests, 0: none
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: with one reference; NULL without memory.
  */
-struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_t request_size)
+struct ec_shared *ec_shared_create(atomic_long_t *mapped, size_t image_size,
+				   size_t request_size)
 {
 	struct ec_shared *sh = kzalloc(sizeof(*sh), GFP_KERNEL_ACCOUNT);
 
 	if (!sh)
 		return NULL;
 	kref_init(&sh->kref);
-	sh->mapped = &m->memory;
+	sh->mapped = mapped;
 	sh->image_size = PAGE_ALIGN(image_size);
 	sh->image = image_size ? ec_shared_alloc(sh, sh->image_size) : NULL;
 	sh->status = ec_shared_alloc(sh, EC_STATUS_BYTES);
@@ -99,34 +99,4 @@ struct ec_shared *ec_shared_create(struct ec_master *m, size_t image_size, size_
 	sh->status->magic = EC_STATUS_MAGIC;
 	sh->status->size = sizeof(*sh->status);
 	return sh;
-}
-
-/**
- * ec_session_fits() - is there memory for an activation within the limit?
- * @s: session
- * @image_size: bytes of all domains
- *
- * Context: Process, session_lock held.
- * Return: 0 or -EDQUOT.
- */
-int ec_session_fits(const struct ec_session *s, size_t image_size)
-{
-	/* with six images for the exchange; requests have a copy of their data */
-	size_t images = s->kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
-
-	lockdep_assert_held(&s->master->session_lock);
-	return atomic_long_read(&s->master->memory) + images * image_size + EC_STATUS_BYTES +
-	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
-}
-
-/**
- * ec_domain_data() - where the process data of a domain lie
- * @d: domain of an active session
- *
- * Context: Any, while the session is active.
- * Return: its first byte.
- */
-u8 *ec_domain_data(const struct ec_domain *d)
-{
-	return d->memory ?: ec_domain_session(d)->shared->image + d->offset;
 }

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Memory that an application and the master share. */
+#ifndef EC_SHARED_H
+#define EC_SHARED_H
+
+#include <linux/atomic.h>
+#include <linux/kref.h>
+#include <linux/mm.h>
+#include <linux/types.h>
+#include "ethercat.h"
+
+/**
+ * struct ec_shared - memory mapped by the application; outlives the session
+ *	as long as it is mapped
+ * @kref: session and mappings
+ * @image: process image of all domains
+ * @image_size: bytes, multiple of the page size
+ * @status: status pages
+ * @requests: struct ec_request_area and what it names, or NULL
+ * @request_size: bytes, likewise
+ * @exchange: struct ec_exchange and its buffers; NULL: the application runs the
+ *	cycle and maps the image
+ * @exchange_size: bytes, multiple of the page size
+ * @bytes: of all of them
+ * @mapped: of the master, where @bytes are counted
+ */
+struct ec_shared {
+	struct kref kref;
+	u8 *image;
+	size_t image_size;
+	void *exchange;
+	size_t exchange_size;
+	struct ec_status *status;
+	u8 *requests;
+	size_t request_size;
+	size_t bytes;
+	atomic_long_t *mapped;
+};
+
+#define EC_STATUS_BYTES	PAGE_ALIGN(sizeof(struct ec_status))
+
+struct ec_shared *ec_shared_create(atomic_long_t *mapped, size_t image_size,
+				   size_t request_size);
+void *ec_shared_alloc(struct ec_shared *sh, size_t size);
+int ec_shared_map(struct vm_area_struct *vma, void *memory);
+void ec_shared_get(struct ec_shared *sh);
+void ec_shared_put(struct ec_shared *sh);
+
+#endif
