@@ -125,7 +125,7 @@ int ecrt_master_send(ec_master_t *master)
 	next = &master->api->next;
 	if (next->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(s);
-	ret = ec_cycle_told(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
+	ret = ec_cycle_take_request(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
 	master->api->sent |= next->queued;
 	next->queued = 0;
 	next->flags = 0;

@@ -522,7 +522,7 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg)
 		return ret;
 	if (arg->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(ec_cycle_session(c));
-	ret = ec_cycle_told(c, arg) ?: ec_cycle_send(c, arg);
+	ret = ec_cycle_take_request(c, arg) ?: ec_cycle_send(c, arg);
 	mutex_unlock(&f->master->cycles.lock);
 	return ret;
 }

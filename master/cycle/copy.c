@@ -25,7 +25,7 @@ struct step {
 };
 
 /**
- * struct ec_copying - the copies of an active session; the cyclic caller's
+ * struct ec_copying - the copies of an active cycle; the cyclic caller's
  * @n: entries in @steps
  * @last: last valid values, behind @steps
  * @steps: copies

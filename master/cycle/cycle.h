@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The cyclic exchange of an activated session. */
+/* The cyclic exchange of process data. */
 #ifndef EC_CYCLE_H
 #define EC_CYCLE_H
 
@@ -128,7 +128,7 @@ struct ec_cyc_flight {
  * @age: sends of the domain since that one
  * @max_age: data that are older are stale, 0: none are
  * @stale: age of the oldest stale data that came back, for the log
- * @stale_told: the log has said so; only the monitor's
+ * @stale_logged: the log has said so; only the monitor's
  * @image: what the offsets of its datagrams count from
  */
 struct ec_cyc_domain {
@@ -139,7 +139,7 @@ struct ec_cyc_domain {
 	u32 age;
 	u32 max_age;
 	u32 stale;
-	bool stale_told;
+	bool stale_logged;
 };
 
 /**
@@ -326,9 +326,9 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks);
 void ec_cycle_tell_room(struct ec_cycle *c);
 void ec_cycle_free(struct ec_cycle *c);
 
-/* exchange.c */
+/* process_data.c */
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
-int ec_cycle_told(struct ec_cycle *c, const struct ec_ioc_send *what);
+int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_send *what);
 int ec_cycle_do_receive(struct ec_cycle *c);
 void ec_cycle_tell_stale(struct ec_cycle *c);
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);

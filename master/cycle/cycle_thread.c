@@ -22,7 +22,7 @@
 #include "../config/config.h"
 #include "../base/bytes.h"
 #include "cycle.h"
-#include "cycle_lock.h"
+#include "pll.h"
 #include "cycle_thread.h"
 #include "../config/domain.h"
 #include "../base/once64.h"
@@ -50,7 +50,7 @@ struct slow {
  * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable, the
  *	rest is the thread's
  * @cycle: active cycle; its session ends the thread before it goes away
- * @ops: reports to the session
+ * @ops: reports to higher layers
  * @task: thread
  * @outputs: areas that are taken from the application
  * @n_outputs: entries in @outputs
@@ -85,7 +85,7 @@ struct ec_cycle_thread {
 	u32 stride;
 	u64 next_ns;
 	u64 epoch_ns;
-	struct ec_cycle_lock lock;
+	struct ec_pll lock;
 	u8 front;
 	bool given;
 	bool ahead;
@@ -362,7 +362,7 @@ static bool cycle(struct ec_cycle_thread *t)
 	/* before the first frame the links are not ours */
 	if (status(t)->state != EC_CYCLE_STATE_WAITING)
 		ec_cycle_receive(c);
-	correction = ec_cycle_lock_step(&t->lock, c, t->next_ns, t->epoch_ns);
+	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
 	choose_source(t);
@@ -403,7 +403,7 @@ static int run(void *data)
 		ec_cycle_sched_set(t->cycle, current);
 	now = ktime_get_ns();
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
-	ec_cycle_lock_init(&t->lock, t->cycle);
+	ec_pll_init(&t->lock, t->cycle);
 	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
 	while (sleep(t))
 		if (!cycle(t)) {
@@ -574,7 +574,7 @@ void ec_cycle_thread_start(struct ec_cycle *c)
  * ec_cycle_thread_stop() - end the cycle run by the kernel
  * @c: cycle; nothing happens when the application ran the cycle
  *
- * poll() of the application may still look at the session meanwhile: that is
+ * poll() of the application may still look at the cycle meanwhile: that is
  * waited for while cycles go on.
  *
  * Context: Process, lock of the configuration held. May sleep.
@@ -683,7 +683,7 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 }
 
 /**
- * ec_cycle_thread_run() - number of the run of a session
+ * ec_cycle_thread_run() - number of the run of a cycle
  * @cycles: of the master
  * @owner: open file that asks
  * @run: @run of the owner's cycle
@@ -711,7 +711,7 @@ bool ec_cycle_thread_run(const struct ec_cycles *cycles, const void *owner, u32 
  * @cycle: in: the last cycle the caller has seen; out: a newer one
  * @timeout_us: limit, 0: none
  *
- * Context: Process. Sleeps; nothing of the session is touched, so it may end.
+ * Context: Process. Sleeps; nothing of the cycle is touched, so it may end.
  * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
  * stopped or changed its owner; -EBUSY too many callers wait.
  */

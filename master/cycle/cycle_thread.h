@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The cycle of an active session, run by a thread of the kernel. */
+/* A cycle that a thread of the kernel runs. */
 #ifndef EC_CYCLE_THREAD_H
 #define EC_CYCLE_THREAD_H
 

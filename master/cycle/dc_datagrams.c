@@ -79,7 +79,7 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
  * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
  *
- * The application is told that those it wants and that are held back are not back.
+ * The application learns that those it wants and that are held back are not back.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
@@ -161,17 +161,17 @@ static void take_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
 static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data,
 		     u16 len)
 {
-	bool told = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
+	bool frmw = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
 	u16 wkc = get_unaligned_le16(data + len);
 	u8 sent[8];
 
 	put_unaligned_le64(f->dc_sent, sent);
 	if (!wkc ||
-	    (told && !memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
+	    (frmw && !memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
 		c->dc_silent++;
 		return false;
 	}
-	c->dc_wkc = told ? wkc : 0;
+	c->dc_wkc = frmw ? wkc : 0;
 	c->dc_silent = 0;
 	return true;
 }
@@ -193,7 +193,7 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 			  u64 sync_time, u64 now)
 {
 	u16 ref = READ_ONCE(c->dc->ref_station);
-	/* those in front must not be told a time nobody knows */
+	/* the slaves in front must not get a time that is unknown */
 	bool quiet = READ_ONCE(c->dc->framed) || (c->dc->front && !c->dc_time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;

@@ -2,9 +2,9 @@
 /*
  * Histogram of the distance of each send from its schedule: one count, one sum,
  * one least and one most a cycle, in the status page. Only the cyclic caller
- * writes there; whoever wants the figures reset leaves it a word.
+ * writes there; a caller that resets the figures only sets a flag.
  *
- * The schedule of a cycle the kernel runs is its timer. An application tells
+ * The schedule of a cycle the kernel runs is its timer. An application sets
  * its interval but not when it begins, so its schedule is a grid of that
  * interval which follows the sends, by no more than 1/1024 of the interval and a
  * microsecond each: that is enough for clocks that differ and for an interval
@@ -21,7 +21,7 @@
 #include "late.h"
 #include "../base/once64.h"
 
-#define MEASURE_SENDS	64	/* to know the interval when nobody tells it */
+#define MEASURE_SENDS	64	/* to measure the interval that is not set */
 #define GAPS_MIN	4	/* gaps after which a new median is worth it */
 #define OUTLIER_SHIFT	6	/* one send changes a measured interval by 1/64 of 1/16 */
 
@@ -72,7 +72,7 @@ void ec_late_count(struct ec_cycle *c, s64 ns)
 		ec_status_begin(c->shared->status);
 		forget(st);
 		ec_status_end(c->shared->status);
-		/* the figures are zero before anybody may read them again */
+		/* the figures are zero before a reader may read them again */
 		smp_store_release(&c->cycles->late_reset, false);
 	}
 	ec_status_begin(c->shared->status);
@@ -101,7 +101,7 @@ static u32 median(const struct ec_schedule *sc)
 }
 
 /*
- * The interval, when nobody tells it. The schedule needs a mean that single sends hardly
+ * The interval, when the application has not set it. The schedule needs a mean that single sends hardly
  * change; the frames between two sends need to know soon what it has become.
  */
 static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
@@ -118,8 +118,8 @@ static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 		return;
 	sc->gaps[sc->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
 	if (sc->n_gaps >= GAPS_MIN && (sc->n_gaps < MEASURE_SENDS || !(sc->n_gaps % GAPS_MIN)))
-		WRITE_ONCE(c->links->access.interval_us, max_t(u32, 1, DIV_ROUND_CLOSEST(median(sc),
-									   NSEC_PER_USEC)));
+		WRITE_ONCE(c->links->access.interval_us,
+			   max_t(u32, 1, DIV_ROUND_CLOSEST(median(sc), NSEC_PER_USEC)));
 }
 
 /* A whole interval late or more: what was due in between is left out. */
@@ -145,7 +145,7 @@ static s64 go_back(struct ec_schedule *sc, s64 off)
  * @c: active cycle
  * @now: time of the send (ktime, ns); @last_send_ns is still that of the one before
  *
- * The first send only begins the schedule; without a told interval so do the
+ * The first send only begins the schedule; without a set interval so do the
  * first %MEASURE_SENDS.
  *
  * Context: The master's single cyclic caller. RT-safe.
@@ -153,16 +153,16 @@ static s64 go_back(struct ec_schedule *sc, s64 off)
 void ec_late_send(struct ec_cycle *c, u64 now)
 {
 	struct ec_schedule *sc = &c->schedule;
-	bool told = READ_ONCE(c->links->access.interval_set);
+	bool set = READ_ONCE(c->links->access.interval_set);
 	s64 off, step;
 
-	if (told)
+	if (set)
 		sc->interval_ns = READ_ONCE(c->links->access.interval_us) *
 				 (u32)NSEC_PER_USEC;
 	else if (sc->sends)
 		measure(c, sc, now - c->links->access.last_send_ns);
 	sc->last_ns = now;
-	if (unlikely(sc->sends < (told ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
+	if (unlikely(sc->sends < (set ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
 		sc->sends++;
 		sc->due_ns = now;
 		return;
@@ -199,7 +199,7 @@ void ec_late_work(struct ec_cycle *c, s64 ns)
 	ec_status_end(c->shared->status);
 }
 
-/* Facts of a session beside its figures. */
+/* Facts of a cycle beside its figures. */
 static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 {
 	bool kernel = c->kernel.period_ns;
@@ -218,7 +218,7 @@ static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 static void get(struct ec_cycle *c, struct ec_ioc_cycle_stats *info,
 		struct ec_status_cycle *st)
 {
-	/* figures that somebody wants to be forgotten are already */
+	/* figures about to be reset count as zero already */
 	bool forgotten = smp_load_acquire(&c->cycles->late_reset);
 
 	describe(c, info);
@@ -228,10 +228,10 @@ static void get(struct ec_cycle *c, struct ec_ioc_cycle_stats *info,
 }
 
 /**
- * ec_late_end() - keep the figures of a session that ends
+ * ec_late_end() - keep the figures of a cycle that ends
  * @c: cycle, active until now, its layout still there
  *
- * Context: Process, lock of the configuration held; nobody runs the cycle any more.
+ * Context: Process, lock of the configuration held; the cycle does not run any more.
  */
 void ec_late_end(struct ec_cycle *c)
 {

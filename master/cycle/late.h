@@ -17,7 +17,7 @@ struct ec_cycle;
  *	cyclic caller
  * @due_ns: when the last send was due (ktime)
  * @last_ns: when it was
- * @interval_ns: distance of two sends, told or measured
+ * @interval_ns: distance of two sends, set or measured
  * @sends: sends so far, up to the end of the first measurement
  * @gaps: the last times between two sends, ns
  * @n_gaps: such times so far

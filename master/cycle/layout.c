@@ -88,7 +88,7 @@ static int add_area(struct ec_cycle *c, u16 *count, u32 offset, u16 pos, u16 len
 /* which part of the stretch's process data */
 enum part {
 	SENT,	/* outputs, and inputs that keep their last value on the way */
-	PLAIN,	/* inputs that nobody's outputs share the addresses of */
+	PLAIN,	/* inputs that share their addresses with no outputs */
 	SHARED,	/* inputs that came in the place of outputs */
 	CUT,	/* inputs of which this datagram has only a part */
 };
@@ -379,9 +379,9 @@ static bool has_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
 /**
  * ec_cycle_check_room() - do acyclic frames fit beside the cycle?
  * @c: cycle with a layout
- * @clocks: the session uses distributed clocks
+ * @clocks: the application uses distributed clocks
  *
- * Without them no slave gets to OP. As long as the interval is not told it is not
+ * Without them no slave gets to OP. As long as the interval is not set it is not
  * known yet; ec_cycle_tell_room() looks later.
  *
  * Context: Process, lock of the configuration held. May sleep.
@@ -416,7 +416,7 @@ void ec_cycle_tell_room(struct ec_cycle *c)
 			 READ_ONCE(c->links->access.wire_ns));
 }
 
-/* Nobody will receive what is still on its way. */
+/* What is still on its way will not be received. */
 static void forget_flights(struct ec_cycle *c)
 {
 	unsigned int i;
@@ -438,7 +438,7 @@ static void forget_flights(struct ec_cycle *c)
 
 /**
  * ec_cycle_free() - give back what a layout and its frames occupy
- * @c: layout nobody uses any more
+ * @c: cycle that does not run any more
  *
  * Context: Process. May sleep.
  */

@@ -21,7 +21,7 @@ enum way {
 	APART,	/* one after the other */
 	OWN,	/* inputs share with outputs of the same slave only */
 	RING,	/* inputs share with outputs of slaves before, too */
-	FREE,	/* inputs share with anybody's outputs: LRD and LWR */
+	FREE,	/* inputs share with outputs of any slave: LRD and LWR */
 };
 
 /* @out, @in: behind the last output, input; @at: the stretch in work */
@@ -63,7 +63,7 @@ static enum way way_of(const struct place *p, const struct ec_config *c)
 	return c->overlap ? OWN : APART;
 }
 
-/* What has no known place comes last; it shares with nobody else anyway. */
+/* What has no known place comes last; it shares with no other anyway. */
 static int by_ring(const void *a, const void *b)
 {
 	const struct ec_domain_fmmu *x = a, *y = b;

@@ -14,7 +14,7 @@
 /**
  * struct ec_waiters - wait queue of one open file, which frees it after an RCU
  *	grace period
- * @wq: queue; only the cycle of the session that the file owns wakes it
+ * @wq: queue; only the cycle that the file owns wakes it
  * @adding: poll() calls that are about to add an entry to @wq
  * @sleeping: callers of EC_IOC_WAIT
  */

@@ -5,7 +5,7 @@
 #include <linux/slab.h>
 #include "../config/config.h"
 #include "../cycle/copy.h"
-#include "../cycle/cycle_lock.h"
+#include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
 #include "../mailbox/emerg.h"
@@ -194,7 +194,7 @@ static void clear(struct ec_session *s)
 {
 	unsigned int i;
 
-	ec_session_lower_ref(s);
+	ec_ref_clock_lower(s);
 	/* all at once: a worker may need a moment to leave */
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (ec_session_owns(s->wanted.configs[i]))
@@ -424,7 +424,7 @@ void ec_session_clocks(struct ec_master *m)
 		wake_up_all(&dc->wq);
 	}
 	if (s && s->wanted.active && !s->ending)
-		ec_session_raise_ref(s);
+		ec_ref_clock_raise(s);
 	mutex_unlock(&m->session_lock);
 }
 
@@ -541,7 +541,7 @@ int ec_session_activate(struct ec_session *s)
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (s->wanted.configs[i]->slave)
 			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_OP);
-	ec_session_raise_ref(s);
+	ec_ref_clock_raise(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
 	ec_info(m, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
@@ -566,7 +566,7 @@ int ec_session_slaves_down(struct ec_session *s)
 	if (!s->wanted.active)
 		return -EINVAL;
 	s->ending = true;
-	ec_session_lower_ref(s);
+	ec_ref_clock_lower(s);
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (s->wanted.configs[i]->slave)
 			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_PREOP);

@@ -95,8 +95,8 @@ int ec_session_end_detached(struct ec_master *m);
 struct ec_session *ec_session_of(const struct ec_master *m, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_slaves_down(struct ec_session *s);
-void ec_session_raise_ref(struct ec_session *s);
-void ec_session_lower_ref(struct ec_session *s);
+void ec_ref_clock_raise(struct ec_session *s);
+void ec_ref_clock_lower(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
 void ec_session_clocks(struct ec_master *m);

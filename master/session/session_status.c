@@ -2,7 +2,7 @@
 /* What an active session is told about the bus, and the log about its application. */
 #include "../config/config.h"
 #include "../config/why.h"
-#include "../cycle/cycle_lock.h"
+#include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
 #include "../master.h"
 #include "../base/once64.h"
@@ -92,7 +92,7 @@ void ec_session_status(struct ec_master *m)
 	s = m->session;
 	if (s && s->wanted.active) {
 		log_stalls(s, ktime_get_ns());
-		ec_cycle_lock_log(&s->cycle);
+		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
 		ec_dc_app_log(&m->dc);
 		ec_cycle_tell_room(&s->cycle);

@@ -104,6 +104,11 @@ static u64 set(struct cyc *c)
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 }
 
+static const struct ec_status *cyc_status(const struct cyc *c)
+{
+	return c->b->m->session->cycle.shared->status;
+}
+
 static void dc_clocks_agree(struct kunit *test)
 {
 	struct cyc *c = start(test, "segment seed=53\n"
@@ -124,7 +129,7 @@ static void dc_clocks_agree(struct kunit *test)
 	KUNIT_EXPECT_LT(test, c->b->m->session->cycle.shared->status->dc_monitor, 128u);
 	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
 	/* the application's time, a cycle ago */
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
 	bus_figure("4 slaves, +-100 ppm: worst true difference in 20 s: %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 100ull);
@@ -295,7 +300,7 @@ static void dc_chosen_reference(struct kunit *test)
 	bus_figure("reference behind two others: worst true difference %llu ns", max);
 	/* a prediction is as good as the cycle is punctual */
 	KUNIT_EXPECT_LT(test, max, 500ull);
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
 }
 
@@ -320,7 +325,7 @@ static void dc_mixed(struct kunit *test)
 	bus_figure("32 and 64 bits, without clock between: worst true difference %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 500ull);
 	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
-	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - c->b->m->session->cycle.shared->status->dc_time)),
+	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
 }
 

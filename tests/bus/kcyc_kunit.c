@@ -143,7 +143,8 @@ static void kcyc_stall_stop(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STOPPED);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 5ull);
-	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(&a->c->b->m->cycles, &a->c->b->app) & EPOLLHUP);
+	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(&a->c->b->m->cycles, &a->c->b->app) &
+			  EPOLLHUP);
 	cycle = kcyc_status(a)->cycle;
 	msleep(200);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->cycle, cycle);

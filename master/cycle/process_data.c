@@ -47,7 +47,7 @@ static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	bool direct = f->direct && !from_image(d);
 	unsigned int i, n;
 
-	/* the outputs come back as well: nobody needs those of the image now */
+	/* the outputs come back as well: those of the image are not needed now */
 	if (complete && d->solid && direct && c->direct) {
 		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
 		return;
@@ -162,9 +162,9 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 		struct ec_cyc_domain *d = &c->domains[i];
 		u32 age = READ_ONCE(d->stale);
 
-		if (!age || d->stale_told)
+		if (!age || d->stale_logged)
 			continue;
-		d->stale_told = true;
+		d->stale_logged = true;
 		ec_warn(c, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
 			i, age, d->max_age);
 	}
@@ -222,7 +222,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
  * ec_cycle_receive() - ec_cycle_do_receive(), links and all
  * @c: active cycle
  *
- * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
 int ec_cycle_receive(struct ec_cycle *c)
@@ -370,14 +370,14 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 }
 
 /**
- * ec_cycle_told() - what the application gives with a send, without requests
+ * ec_cycle_take_request() - what the application gives with a send, without requests
  * @c: active cycle
  * @what: its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: 0; -ENOENT a domain is queued that there is not.
  */
-int ec_cycle_told(struct ec_cycle *c, const struct ec_ioc_send *what)
+int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	ec_cycle_app_time(c, what);
 	return c->wanted->n_domains < 64 && what->queued >> c->wanted->n_domains ? -ENOENT : 0;
@@ -427,7 +427,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
  * @c: active cycle
  * @what: as there
  *
- * Context: The master's single cyclic caller. RT-safe; sleeps after a stall only.
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
 int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)

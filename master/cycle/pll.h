@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /* A cycle run by the kernel that follows the reference clock. */
-#ifndef EC_CYCLE_LOCK_H
-#define EC_CYCLE_LOCK_H
+#ifndef EC_PLL_H
+#define EC_PLL_H
 
 #include <linux/types.h>
 #include "../wire/dc_lock.h"
@@ -9,10 +9,10 @@
 struct ec_cycle;
 struct ec_status_cycle;
 
-#define EC_CYCLE_LOCK_PAST	8	/* a frame may be that many cycles on its way */
+#define EC_PLL_PAST	8	/* a frame may be that many cycles on its way */
 
 /**
- * struct ec_cycle_lock - time of a cycle; the thread's own
+ * struct ec_pll - time of a cycle; the thread's own
  * @follow: the cycle follows the reference clock, else only its own timer
  * @phase: begin of a cycle after the grid of the SYNC signals, ns
  * @time: application time of the last cycle, ns: a point of that grid
@@ -23,7 +23,7 @@ struct ec_status_cycle;
  * @n_past: cycles so far
  * @pi: controller
  */
-struct ec_cycle_lock {
+struct ec_pll {
 	bool follow;
 	u32 phase;
 	u64 time;
@@ -33,13 +33,13 @@ struct ec_cycle_lock {
 	struct {
 		u64 due;
 		u64 time;
-	} past[EC_CYCLE_LOCK_PAST];
+	} past[EC_PLL_PAST];
 	u32 n_past;
 	struct ec_dc_lock pi;
 };
 
-void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_cycle *c);
-s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_cycle *c, u64 due, u64 epoch_ns);
-void ec_cycle_lock_log(struct ec_cycle *c);
+void ec_pll_init(struct ec_pll *l, const struct ec_cycle *c);
+s32 ec_pll_step(struct ec_pll *l, struct ec_cycle *c, u64 due, u64 epoch_ns);
+void ec_pll_log(struct ec_cycle *c);
 
 #endif

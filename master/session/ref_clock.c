@@ -23,7 +23,7 @@ static bool has_outputs(const struct ec_slave *s)
 }
 
 /**
- * ec_session_raise_ref() - take the reference clock to OP, too
+ * ec_ref_clock_raise() - take the reference clock to OP, too
  * @s: active session
  *
  * After activation and when slaves have come or gone. A slave that is configured
@@ -31,7 +31,7 @@ static bool has_outputs(const struct ec_slave *s)
  *
  * Context: Process, session_lock held. May sleep.
  */
-void ec_session_raise_ref(struct ec_session *s)
+void ec_ref_clock_raise(struct ec_session *s)
 {
 	struct ec_master *m = s->master;
 	struct ec_slave *ref;
@@ -46,18 +46,18 @@ void ec_session_raise_ref(struct ec_session *s)
 			ec_slave_unref(ref);
 		return;
 	}
-	ec_session_lower_ref(s);
+	ec_ref_clock_lower(s);
 	s->raised = ref;
 	ec_slave_request(ref, EC_AL_OP);
 }
 
 /**
- * ec_session_lower_ref() - back to PREOP with it
+ * ec_ref_clock_lower() - back to PREOP with it
  * @s: session
  *
  * Context: Process, session_lock held. May sleep.
  */
-void ec_session_lower_ref(struct ec_session *s)
+void ec_ref_clock_lower(struct ec_session *s)
 {
 	struct ec_slave *ref = s->raised;
 

@@ -8,16 +8,16 @@
  */
 #include <linux/ktime.h>
 #include "cycle.h"
-#include "cycle_lock.h"
+#include "pll.h"
 
 /**
- * ec_cycle_lock_init() - begin anew
+ * ec_pll_init() - begin anew
  * @l: time of the cycle
  * @c: cycle with its @kernel
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_cycle *c)
+void ec_pll_init(struct ec_pll *l, const struct ec_cycle *c)
 {
 	memset(l, 0, sizeof(*l));
 	l->follow = c->kernel.dc & EC_CYCLE_DC_FOLLOW;
@@ -26,7 +26,7 @@ void ec_cycle_lock_init(struct ec_cycle_lock *l, const struct ec_cycle *c)
 }
 
 /* Application time of a cycle: whole periods after the last one. */
-static void advance(struct ec_cycle_lock *l, u64 due, u64 epoch_ns)
+static void advance(struct ec_pll *l, u64 due, u64 epoch_ns)
 {
 	u32 period = l->pi.period;
 
@@ -39,12 +39,12 @@ static void advance(struct ec_cycle_lock *l, u64 due, u64 epoch_ns)
 }
 
 /* Application time of the cycle that sent a frame; false: too long ago. */
-static bool origin(const struct ec_cycle_lock *l, u64 sent_ns, u64 *time)
+static bool origin(const struct ec_pll *l, u64 sent_ns, u64 *time)
 {
-	u32 i, n = min_t(u32, l->n_past, EC_CYCLE_LOCK_PAST);
+	u32 i, n = min_t(u32, l->n_past, EC_PLL_PAST);
 
 	for (i = 1; i <= n; i++) {
-		u32 k = (l->n_past - i) % EC_CYCLE_LOCK_PAST;
+		u32 k = (l->n_past - i) % EC_PLL_PAST;
 
 		if (l->past[k].due > sent_ns)
 			continue;
@@ -55,17 +55,17 @@ static bool origin(const struct ec_cycle_lock *l, u64 sent_ns, u64 *time)
 }
 
 /* All times of the cycle were so many ns off, whole periods. */
-static void shift(struct ec_cycle_lock *l, s64 ns)
+static void shift(struct ec_pll *l, s64 ns)
 {
 	u32 i;
 
 	l->time += ns;
-	for (i = 0; i < EC_CYCLE_LOCK_PAST; i++)
+	for (i = 0; i < EC_PLL_PAST; i++)
 		l->past[i].time += ns;
 }
 
 /* What the reference clock says is new; how late that cycle was by it. */
-static bool measured(struct ec_cycle_lock *l, const struct ec_cycle *c, s32 *error)
+static bool measured(struct ec_pll *l, const struct ec_cycle *c, s32 *error)
 {
 	u64 time = 0, then;
 	s64 ahead;
@@ -83,7 +83,7 @@ static bool measured(struct ec_cycle_lock *l, const struct ec_cycle *c, s32 *err
 	return true;
 }
 
-static void publish(const struct ec_cycle_lock *l, struct ec_status_cycle *st)
+static void publish(const struct ec_pll *l, struct ec_status_cycle *st)
 {
 	if (st->lock >= EC_CYCLE_LOCK_LOCKED && l->pi.state < EC_DC_LOCK_LOCKED)
 		WRITE_ONCE(st->lock_losses, st->lock_losses + 1);
@@ -93,21 +93,21 @@ static void publish(const struct ec_cycle_lock *l, struct ec_status_cycle *st)
 }
 
 /**
- * ec_cycle_lock_step() - time of a cycle, and when the next one shall be
+ * ec_pll_step() - time of a cycle, and when the next one shall be
  * @l: time of the cycle
  * @c: active cycle; what has come back was taken
  * @due: schedule of this cycle (ktime)
  * @epoch_ns: what makes ktime an application time at first
  *
- * Tells the application time. @l->time is that of this cycle.
+ * Sets the application time of the clocks. @l->time is that of this cycle.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: what to add to the period until the next cycle, ns; at most 1/100 of
  * it.
  */
-s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_cycle *c, u64 due, u64 epoch_ns)
+s32 ec_pll_step(struct ec_pll *l, struct ec_cycle *c, u64 due, u64 epoch_ns)
 {
-	u32 k = l->n_past % EC_CYCLE_LOCK_PAST;
+	u32 k = l->n_past % EC_PLL_PAST;
 	s32 error, correction = 0;
 
 	BUILD_BUG_ON(EC_CYCLE_LOCK_LOCKED != (int)EC_DC_LOCK_LOCKED);
@@ -126,17 +126,17 @@ s32 ec_cycle_lock_step(struct ec_cycle_lock *l, struct ec_cycle *c, u64 due, u64
 }
 
 /**
- * ec_cycle_lock_log() - tell changes of the lock; the cycle cannot
+ * ec_pll_log() - log changes of the lock; the cycle itself must not print
  * @c: active cycle
  *
  * Context: The monitor thread, lock of the configuration held.
  */
-void ec_cycle_lock_log(struct ec_cycle *c)
+void ec_pll_log(struct ec_cycle *c)
 {
 	const struct ec_status_cycle *st = &c->shared->status->kernel;
 	u32 lock = READ_ONCE(st->lock);
 
-	/* while clocks are measured nobody asks the reference */
+	/* while clocks are measured no frame asks the reference */
 	if (lock == c->lock_logged ||
 	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(c->dc->state) == EC_DC_BUSY))
 		return;
