@@ -101,8 +101,9 @@ static u32 median(const struct ec_schedule *sc)
 }
 
 /*
- * The interval, when the application has not set it. The schedule needs a mean that single sends hardly
- * change; the frames between two sends need to know soon what it has become.
+ * The interval, when the application has not set it. The schedule needs a mean that
+ * single sends hardly change; the frames between two sends need to know soon what it
+ * has become.
  */
 static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 {
