@@ -40,16 +40,14 @@ static void own_devices(struct ec_links *l, bool cycle)
  * @now: time
  *
  * Context: The owner of the links. RT-safe.
- * Return: as ec_link_send().
+ * Return: as ec_links_send().
  */
 int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u64 now)
 {
-	struct ec_link *link = &l->link[0];
 	int ret;
 
-	ec_slot_arm(&l->slots, slot, link->side, now);
-	WRITE_ONCE(slot->left, slot->seq);
-	ret = ec_link_send(link, slot);
+	ec_slot_arm(&l->slots, slot, l->carry, now);
+	ret = ec_links_send(l, slot);
 	if (ret)
 		ec_slot_disarm(slot, now);
 	return ret;
@@ -69,13 +67,13 @@ static void flush(struct ec_links *l, struct ec_queue *q)
 	lockdep_assert_held(&l->access.lock);
 	while (ec_queue_peek(&l->queues, q, &next)) {
 		ec_queue_gather(&l->queues, q, &next, &none, &pack);
-		if (pack.n && ec_link_send_pack(&l->link[0], &pack, ktime_get_ns()) == -EBUSY &&
-		    waits++ < FLUSH_WAITS) {
+		if (!pack.n || ec_links_send_pack(l, &pack, ktime_get_ns()) != -EBUSY)
+			continue;
+		if (waits++ < FLUSH_WAITS)
 			/* no driver reports room in its ring */
 			usleep_range(100, 200);
-			continue;
-		}
-		ec_queue_drop(&l->queues, q, &next, 1);
+		else
+			ec_pack_move(&pack, EC_SLOT_QUEUED, EC_SLOT_SENT);
 	}
 }
 

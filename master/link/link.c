@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/bitops.h>
 #include <linux/errno.h>
 #include <linux/math64.h>
 #include <linux/ratelimit.h>
@@ -89,30 +90,70 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
 	if (!buf)
 		return -EBUSY;
 	memcpy(buf, slot->frame, len);
+	buf[7] |= link->side;
 	return send_buf(link, dev, buf, len);
 }
 
 /**
- * ec_link_send_pack() - send the frame that callers share
- * @link: link
+ * ec_links_send() - send the frame of an armed slot on its links
+ * @l: links
+ * @slot: slot in state SENT
+ *
+ * Context: The owner of the links. RT-safe.
+ * Return: as ec_link_send(); the first link that fails ends it.
+ */
+int ec_links_send(struct ec_links *l, struct ec_slot *slot)
+{
+	unsigned long left;
+	int ret = 0;
+
+	for (left = slot->links; left && !ret; left &= left - 1)
+		ret = ec_link_send(&l->link[__ffs(left)], slot);
+	return ret;
+}
+
+/**
+ * ec_links_send_pack() - send the frame that callers share
+ * @l: links
  * @p: the frame; its slots are let go before it leaves
  * @sent_ns: when it leaves (ktime)
  *
- * Context: The owner of the link. RT-safe.
- * Return: as ec_link_send().
+ * Context: The owner of the links. RT-safe.
+ * Return: as ec_links_send(). The frames stay in the queue when it is -EBUSY.
  */
-int ec_link_send_pack(struct ec_link *link, struct ec_pack *p, u64 sent_ns)
+int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 {
-	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
-	u8 *buf = dev ? dev->ops->tx_get(dev->priv) : NULL;
+	struct {
+		struct ecdev *dev;
+		u8 *buf;
+	} tx[EC_MAX_LINKS];
+	unsigned long left, links = p->e[0].slot->links;
 	size_t len = 0;
+	int ret = 0;
 
-	if (buf)
-		len = ec_pack_write(&link->links->slots, p, buf, sent_ns);
-	ec_pack_release(p);
-	if (!buf)
-		return dev ? -EBUSY : -ENODEV;
-	return send_buf(link, dev, buf, len);
+	ec_pack_place(&l->slots, p, sent_ns);
+	for (left = links; left && !ret; left &= left - 1) {
+		unsigned int i = __ffs(left);
+		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
+
+		tx[i].dev = dev;
+		tx[i].buf = dev ? dev->ops->tx_get(dev->priv) : NULL;
+		if (!tx[i].buf) {
+			ret = dev ? -EBUSY : -ENODEV;
+			break;
+		}
+		len = ec_pack_write(p, tx[i].buf);
+		tx[i].buf[7] |= i;
+	}
+	ec_pack_release(p, ret == -EBUSY ? EC_SLOT_QUEUED : EC_SLOT_SENT);
+	if (ret)
+		return ret;
+	for (left = links; left && !ret; left &= left - 1)
+		ret = send_buf(&l->link[__ffs(left)], tx[__ffs(left)].dev, tx[__ffs(left)].buf,
+			       len);
+	if (ret == -EBUSY)
+		ec_pack_move(p, EC_SLOT_SENT, EC_SLOT_QUEUED);
+	return ret;
 }
 
 /**

@@ -24,6 +24,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	l->ops = ops;
 	l->spec[0] = main;
 	l->spec[1] = backup;
+	l->carry = BIT(0);
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
 	for (i = 0; i < EC_MAX_LINKS; i++)
@@ -31,7 +32,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	ec_access_init(&l->access);
 	ec_queues_init(&l->queues);
 	INIT_LIST_HEAD(&l->list);
-	ret = ec_slots_init(&l->slots);
+	ret = ec_slots_init(&l->slots, backup);
 	if (ret)
 		return ret;
 	ret = ec_capture_create(l);

@@ -43,6 +43,8 @@ struct ec_links {
 	struct ec_link link[EC_MAX_LINKS];
 	/** @capture: interface for capture programs, NULL: none; immutable while devices are there */
 	struct ec_capture *capture;
+	/** @carry: mask of the links that carry frames, immutable */
+	u8 carry;
 	/** @slots: frame slots */
 	struct ec_slots slots;
 	/** @access: bus access */

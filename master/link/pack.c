@@ -30,22 +30,6 @@ void ec_pack_begin(struct ec_pack *p)
 	p->dgrams = 0;
 }
 
-static void let_go(struct ec_slot *slot)
-{
-	atomic_set_release(&slot->state, EC_SLOT_SENT);
-}
-
-/* Hold a slot whose frame waits, so that its caller cannot give it up meanwhile. */
-static bool hold(struct ec_slot *slot, u32 seq)
-{
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
-		return false;
-	if (READ_ONCE(slot->seq) == seq)
-		return true;
-	let_go(slot);
-	return false;
-}
-
 /* May it share the frame? */
 static bool fits(const struct ec_pack *p, const struct ec_slot *slot,
 		 const struct ec_pack_room *room)
@@ -53,6 +37,7 @@ static bool fits(const struct ec_pack *p, const struct ec_slot *slot,
 	if (!p->n)
 		return true;
 	return p->n < EC_PACK_MAX && slot->dgrams && p->e[0].slot->dgrams &&
+	       slot->links == p->e[0].slot->links &&
 	       p->dgrams + slot->dgrams <= room->dgrams &&
 	       p->len + slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR <= room->len;
 }
@@ -68,10 +53,10 @@ static bool fits(const struct ec_pack *p, const struct ec_slot *slot,
  */
 bool ec_pack_add(struct ec_pack *p, const struct ec_queued *e, const struct ec_pack_room *room)
 {
-	if (!hold(e->slot, e->seq))
+	if (!ec_slot_hold(e->slot, EC_SLOT_QUEUED, e->seq))
 		return true;
 	if (!fits(p, e->slot, room)) {
-		let_go(e->slot);
+		ec_slot_release(e->slot, EC_SLOT_QUEUED);
 		return false;
 	}
 	p->e[p->n++] = *e;
@@ -80,18 +65,26 @@ bool ec_pack_add(struct ec_pack *p, const struct ec_queued *e, const struct ec_p
 	return true;
 }
 
-/* The slots learn where they are in the frame. */
-static void locate(struct ec_slots *s, struct ec_pack *p, u8 *src)
+/**
+ * ec_pack_place() - note in the slots where they are in the frame
+ * @s: slots
+ * @p: the frame, at least one slot in it
+ * @sent_ns: when it will leave (ktime)
+ *
+ * A frame of one slot leaves as it is.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_pack_place(struct ec_slots *s, struct ec_pack *p, u64 sent_ns)
 {
-	u32 seq = atomic_inc_return(&s->seq);
+	u32 seq = p->n > 1 ? atomic_inc_return(&s->seq) : 0;
 	unsigned int i, at = EC_FRAME_HDR;
 
-	src[1] |= EC_PACKED;
-	put_unaligned_le32(seq, src + 2);
 	for (i = 0; i < p->n; i++) {
 		struct ec_slot *slot = p->e[i].slot;
 
-		slot->pack.len = p->len;
+		ec_write64(&slot->sent_ns, sent_ns);
+		slot->pack.len = p->n > 1 ? p->len : 0;
 		slot->pack.at = at;
 		slot->pack.prev = p->e[i ? i - 1 : 0].slot->index;
 		slot->pack.next = p->e[i + 1 < p->n ? i + 1 : i].slot->index;
@@ -100,74 +93,83 @@ static void locate(struct ec_slots *s, struct ec_pack *p, u8 *src)
 	}
 }
 
-/* The frame of a caller as it is. */
-static void write_one(struct ec_slot *slot, u8 *buf, u64 sent_ns)
-{
-	slot->pack.len = 0;
-	ec_write64(&slot->sent_ns, sent_ns);
-	memcpy(buf, slot->frame, max_t(size_t, slot->eth_len, EC_ETH_MIN));
-}
-
 /**
  * ec_pack_write() - write the frame
- * @s: slots
- * @p: the frame, at least one slot in it
+ * @p: the frame, placed
  * @buf: EC_ETH_MAX bytes
- * @sent_ns: when it will leave (ktime)
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: bytes of the Ethernet frame, at least EC_ETH_MIN.
  */
-size_t ec_pack_write(struct ec_slots *s, struct ec_pack *p, u8 *buf, u64 sent_ns)
+size_t ec_pack_write(const struct ec_pack *p, u8 *buf)
 {
 	size_t len = EC_ETH_HDR + p->len;
 	struct ec_frame_buf fb;
 	unsigned int i;
 
 	if (p->n == 1) {
-		write_one(p->e[0].slot, buf, sent_ns);
-		return max_t(size_t, len, EC_ETH_MIN);
+		len = max_t(size_t, len, EC_ETH_MIN);
+		memcpy(buf, p->e[0].slot->frame, len);
+		return len;
 	}
 	memcpy(buf, p->e[0].slot->frame, EC_ETH_HDR);
+	buf[7] |= EC_PACKED;
+	put_unaligned_le32(p->e[0].slot->pack.seq, buf + 8);
 	ec_frame_begin(&fb, buf + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	for (i = 0; i < p->n; i++) {
 		struct ec_slot *slot = p->e[i].slot;
 
-		ec_write64(&slot->sent_ns, sent_ns);
 		ec_frame_append(&fb, ec_slot_body(slot) + EC_FRAME_HDR,
 				slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR, slot->last,
 				slot->dgrams);
 	}
 	ec_frame_end(&fb);
-	locate(s, p, buf + 6);
 	if (len < EC_ETH_MIN)
 		memset(buf + len, 0, EC_ETH_MIN - len);
 	return max_t(size_t, len, EC_ETH_MIN);
 }
 
 /**
- * ec_pack_release() - let go of the slots: from now on they may come back
+ * ec_pack_release() - let go of the slots
  * @p: the frame
+ * @state: SENT: from now on they may come back; QUEUED: the frame was not written
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_pack_release(struct ec_pack *p)
+void ec_pack_release(struct ec_pack *p, enum ec_slot_state state)
 {
 	unsigned int i;
 
 	for (i = 0; i < p->n; i++)
-		let_go(p->e[i].slot);
+		ec_slot_release(p->e[i].slot, state);
+}
+
+/**
+ * ec_pack_move() - change the state of slots that have been released
+ * @p: the frame
+ * @from: their state; those that have another one by now keep that
+ * @to: new state
+ *
+ * Context: The owner of the links. RT-safe.
+ */
+void ec_pack_move(struct ec_pack *p, enum ec_slot_state from, enum ec_slot_state to)
+{
+	unsigned int i;
+
+	for (i = 0; i < p->n; i++)
+		if (ec_slot_hold(p->e[i].slot, from, p->e[i].seq))
+			ec_slot_release(p->e[i].slot, to);
 }
 
 /* Hold a slot that waits for its part of the frame with sequence number @seq. */
-static bool awaits(struct ec_slot *slot, u32 seq)
+static bool awaits(struct ec_slot *slot, u32 seq, u8 side)
 {
 	if (READ_ONCE(slot->pack.seq) != seq ||
 	    atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
 		return false;
-	if (slot->pack.len && READ_ONCE(slot->pack.seq) == seq)
+	if (slot->pack.len && READ_ONCE(slot->pack.seq) == seq && ec_slot_awaits(slot, side))
 		return true;
-	let_go(slot);
+	ec_slot_release(slot, EC_SLOT_SENT);
 	return false;
 }
 
@@ -176,6 +178,8 @@ struct reply {
 	const u8 *data;
 	struct ec_frame_iter it;
 	unsigned int len;	/* bytes behind the EtherType */
+	u32 seq;
+	u8 side;
 	int prev;		/* index of the datagram before, NOBODY: none */
 	int next;		/* index that has to come now, END: none, NOBODY: any */
 	struct ec_slot *held[EC_PACK_MAX];
@@ -196,7 +200,7 @@ static bool take_part(struct reply *r, struct ec_slot *slot, struct ec_frame_ite
 }
 
 /* Hold all slots that wait for the reply; false: something of it is not as it was sent. */
-static bool look_through(struct ec_slots *s, struct reply *r, u32 seq)
+static bool look_through(struct ec_slots *s, struct reply *r)
 {
 	struct ec_dgram d;
 	int more;
@@ -212,7 +216,7 @@ static bool look_through(struct ec_slots *s, struct reply *r, u32 seq)
 			return false;
 		r->next = NOBODY;
 		slot = &s->slot[d.idx];
-		if (r->n < EC_PACK_MAX && awaits(slot, seq)) {
+		if (r->n < EC_PACK_MAX && awaits(slot, r->seq, r->side)) {
 			r->held[r->n++] = slot;
 			if (!take_part(r, slot, at))
 				return false;
@@ -224,7 +228,7 @@ static bool look_through(struct ec_slots *s, struct reply *r, u32 seq)
 /**
  * ec_pack_match() - find the slots of a received frame that callers share, fill them
  * @s: slots
- * @seq: sequence number of the frame
+ * @src: source MAC address of the frame
  * @data: what follows the EtherType
  * @len: bytes there
  * @got: who waits for it; @n is 0 yet
@@ -232,10 +236,13 @@ static bool look_through(struct ec_slots *s, struct reply *r, u32 seq)
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: what became of the frame.
  */
-enum ec_match ec_pack_match(struct ec_slots *s, u32 seq, const u8 *data, size_t len,
+enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
 			    struct ec_matched *got)
 {
-	struct reply r = { .data = data, .prev = NOBODY, .next = NOBODY };
+	struct reply r = {
+		.data = data, .seq = get_unaligned_le32(src + 2), .side = src[1] & ~EC_PACKED,
+		.prev = NOBODY, .next = NOBODY,
+	};
 	unsigned int i;
 	bool ok;
 
@@ -243,19 +250,14 @@ enum ec_match ec_pack_match(struct ec_slots *s, u32 seq, const u8 *data, size_t 
 	if (ec_frame_iter_init(&r.it, (u8 *)data, len))
 		return EC_MATCH_UNMATCHED;
 	r.len = r.it.end - data;
-	ok = look_through(s, &r, seq);
+	ok = look_through(s, &r);
 	for (i = 0; i < r.n; i++) {
 		struct ec_slot *slot = r.held[i];
 
-		if (!ok) {
-			let_go(slot);
-			continue;
-		}
-		memcpy(ec_slot_body(slot) + EC_FRAME_HDR, data + slot->pack.at,
-		       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
-		if (slot->xfer)
-			got->xfer[got->n++] = slot->xfer;
-		atomic_set_release(&slot->state, EC_SLOT_DONE);
+		if (ok)
+			ec_slot_take(slot, r.side, data + slot->pack.at, got);
+		else
+			ec_slot_release(slot, EC_SLOT_SENT);
 	}
 	if (!ok)
 		return EC_MATCH_UNMATCHED;

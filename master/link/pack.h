@@ -9,7 +9,7 @@
 
 /**
  * struct ec_pack - frames that leave as one; owned by the cyclic caller
- * @e: their slots, in state FILL until ec_pack_release()
+ * @e: their slots, in state FILL until the frame is sent or left
  * @n: how many
  * @len: bytes of the frame behind the EtherType
  * @dgrams: datagrams in it
@@ -29,9 +29,11 @@ struct ec_pack_room {
 
 void ec_pack_begin(struct ec_pack *p);
 bool ec_pack_add(struct ec_pack *p, const struct ec_queued *e, const struct ec_pack_room *room);
-size_t ec_pack_write(struct ec_slots *s, struct ec_pack *p, u8 *buf, u64 sent_ns);
-void ec_pack_release(struct ec_pack *p);
-enum ec_match ec_pack_match(struct ec_slots *s, u32 seq, const u8 *data, size_t len,
+void ec_pack_place(struct ec_slots *s, struct ec_pack *p, u64 sent_ns);
+size_t ec_pack_write(const struct ec_pack *p, u8 *buf);
+void ec_pack_release(struct ec_pack *p, enum ec_slot_state state);
+void ec_pack_move(struct ec_pack *p, enum ec_slot_state from, enum ec_slot_state to);
+enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
 			    struct ec_matched *got);
 
 #endif

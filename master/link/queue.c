@@ -35,7 +35,7 @@ static unsigned int first(struct ec_queue *q)
 /**
  * ec_queue_push() - leave a frame for the cyclic caller
  * @qs: queues
- * @slot: armed slot; its waiter may give up at any time
+ * @slot: slot in state QUEUED; its waiter may give up at any time
  * @urgent: before all others
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -78,7 +78,8 @@ bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *n
 	for (; q->head != q->tail; q->tail++) {
 		const struct ec_queued *e = &q->q[q->tail % EC_SLOTS];
 
-		if (atomic_read_acquire(&e->slot->state) == EC_SLOT_SENT &&
+		/* else it was sent, or given up */
+		if (atomic_read_acquire(&e->slot->state) == EC_SLOT_QUEUED &&
 		    e->slot->seq == e->seq) {
 			*next = *e;
 			found = true;
@@ -95,7 +96,7 @@ bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *n
  * @q: queue of them
  * @first: the first one
  * @room: what the frame may hold beside the first one
- * @p: the frames; they stay in the queue. None when the caller of @first has given up
+ * @p: the frames. None when the caller of @first has given up
  *
  * Their order stays: what does not fit ends it.
  *
@@ -120,36 +121,8 @@ void ec_queue_gather(struct ec_queues *qs, struct ec_queue *q, const struct ec_q
 		if (!p->n)
 			break;
 	}
-	raw_spin_unlock_irqrestore(&qs->lock, flags);
-}
-
-/**
- * ec_queue_drop() - take frames out that were sent or cannot be sent
- * @qs: queues
- * @q: queue of them
- * @sent: the frames, in their order; urgent ones may stand before them by now
- * @n: how many, at least one
- *
- * Context: The owner of the links. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_queue_drop(struct ec_queues *qs, struct ec_queue *q, const struct ec_queued *sent,
-		   unsigned int n)
-{
-	unsigned long flags;
-	unsigned int i, k;
-
-	for (k = 0; k < n; k++)
-		WRITE_ONCE(sent[k].slot->left, sent[k].seq);
-	raw_spin_lock_irqsave(&qs->lock, flags);
-	q->urgent = sent[n - 1].urgent;
-	for (i = q->tail, k = 0; i != q->head && k < n; i++) {
-		struct ec_queued *e = &q->q[i % EC_SLOTS];
-
-		if (e->slot == sent[k].slot && e->seq == sent[k].seq) {
-			e->seq--;	/* skipped by the next ec_queue_peek() */
-			k++;
-		}
-	}
+	if (p->n)
+		q->urgent = p->e[p->n - 1].urgent;
 	raw_spin_unlock_irqrestore(&qs->lock, flags);
 }
 
@@ -158,7 +131,7 @@ void ec_queue_drop(struct ec_queues *qs, struct ec_queue *q, const struct ec_que
  * @qs: queues
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: how many, those included that have been given up.
+ * Return: how many, those included that have been sent since, or given up.
  */
 unsigned int ec_queue_frames(const struct ec_queues *qs)
 {

@@ -14,7 +14,7 @@ struct ec_pack_room;
  * @q: ring of them
  * @head: entries so far
  * @tail: of these gone
- * @urgent: the last one that was sent was an urgent one
+ * @urgent: the last one that was taken out was an urgent one
  */
 struct ec_queue {
 	struct ec_queued q[EC_SLOTS];
@@ -38,8 +38,6 @@ int ec_queue_push(struct ec_queues *qs, struct ec_slot *slot, bool urgent);
 bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *next);
 void ec_queue_gather(struct ec_queues *qs, struct ec_queue *q, const struct ec_queued *first,
 		     const struct ec_pack_room *room, struct ec_pack *p);
-void ec_queue_drop(struct ec_queues *qs, struct ec_queue *q, const struct ec_queued *sent,
-		   unsigned int n);
 unsigned int ec_queue_frames(const struct ec_queues *qs);
 
 #endif

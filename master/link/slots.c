@@ -7,22 +7,30 @@
 #include "pack.h"
 #include "slots.h"
 
+#define COPY_MAX	(EC_ETH_MAX - EC_ETH_HDR)	/* what follows the EtherType */
+
 /**
  * ec_slots_init() - allocate the slots
  * @s: zeroed structure
+ * @backup: with memory for the copies of a second link
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_slots_init(struct ec_slots *s)
+int ec_slots_init(struct ec_slots *s, bool backup)
 {
 	unsigned int i;
 
 	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
-	if (!s->slot)
+	s->backup = backup ? vzalloc(array_size(EC_SLOTS, COPY_MAX)) : NULL;
+	if (!s->slot || (backup && !s->backup)) {
+		ec_slots_exit(s);
 		return -ENOMEM;
-	for (i = 0; i < EC_SLOTS; i++)
+	}
+	for (i = 0; i < EC_SLOTS; i++) {
 		s->slot[i].index = i;
+		s->slot[i].backup = backup ? s->backup + i * COPY_MAX : NULL;
+	}
 	return 0;
 }
 
@@ -35,7 +43,9 @@ int ec_slots_init(struct ec_slots *s)
 void ec_slots_exit(struct ec_slots *s)
 {
 	vfree(s->slot);
+	vfree(s->backup);
 	s->slot = NULL;
+	s->backup = NULL;
 }
 
 static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
@@ -127,7 +137,7 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
 
 /**
  * ec_slot_cancel() - stop waiting for a frame
- * @slot: slot that was armed
+ * @slot: slot that was armed or queued
  * @now_ns: time; the quarantine begins now, the frame may have left late
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -137,10 +147,11 @@ void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
 	/* in this state neither the sender nor the receiver of the frame uses @sent_ns */
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT &&
+	    atomic_cmpxchg(&slot->state, EC_SLOT_QUEUED, EC_SLOT_FILL) != EC_SLOT_QUEUED)
 		return false;
 	ec_write64(&slot->sent_ns, now_ns);
-	atomic_set_release(&slot->state, EC_SLOT_QUARANTINE);
+	ec_slot_release(slot, EC_SLOT_QUARANTINE);
 	return true;
 }
 
@@ -157,34 +168,114 @@ void ec_slot_disarm(struct ec_slot *slot, u64 now_ns)
 		atomic_set_release(&slot->state, EC_SLOT_BUILD);
 }
 
-/**
- * ec_slot_arm() - write the Ethernet header and expect the reply from now on
- * @s: slots
- * @slot: in state BUILD, datagrams complete, @eth_len set
- * @side: link it is sent on
- * @now_ns: time
- *
- * The source address carries side and sequence number; bit 1 of its first
- * octet stays clear because slaves set it.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+/*
+ * The source address carries the side, which a link writes when it sends, and the sequence
+ * number; bit 1 of its first octet stays clear because slaves set it.
  */
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns)
+static void number(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
 {
 	u8 *f = slot->frame;
 
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
+	slot->links = links;
+	slot->back = 0;
 	slot->pack.len = 0;
 	eth_broadcast_addr(f);
 	f[6] = 0;
-	f[7] = side;
+	f[7] = 0;
 	put_unaligned_le32(slot->seq, f + 8);
 	f[12] = EC_ETHERTYPE >> 8;
 	f[13] = EC_ETHERTYPE & 0xff;
 	if (slot->eth_len < EC_ETH_MIN)
 		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
-	atomic_set_release(&slot->state, EC_SLOT_SENT);
+}
+
+/**
+ * ec_slot_arm() - write the Ethernet header and expect the reply from now on
+ * @s: slots
+ * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @links: mask of the links on which it is sent
+ * @now_ns: time
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
+{
+	number(s, slot, links, now_ns);
+	ec_slot_release(slot, EC_SLOT_SENT);
+}
+
+/**
+ * ec_slot_queue() - write the Ethernet header; the frame leaves with the cycle
+ * @s: slots
+ * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @links: mask of the links on which it is sent
+ * @now_ns: time
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
+{
+	number(s, slot, links, now_ns);
+	ec_slot_release(slot, EC_SLOT_QUEUED);
+}
+
+/**
+ * ec_slot_hold() - enter the state FILL, so that no other thread changes the slot
+ * @slot: slot, perhaps of another caller by now
+ * @state: state in which it has to be
+ * @seq: sequence number that it has to have
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: the caller ends it by ec_slot_release(); false: the slot is as it was.
+ */
+bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq)
+{
+	if (atomic_cmpxchg(&slot->state, state, EC_SLOT_FILL) != state)
+		return false;
+	/* it may have been given up and be in use again since; now it stays */
+	if (READ_ONCE(slot->seq) == seq)
+		return true;
+	ec_slot_release(slot, state);
+	return false;
+}
+
+/**
+ * ec_slot_awaits() - is the copy of a link still to come back?
+ * @slot: slot in state FILL
+ * @side: number of the link
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
+{
+	return side < EC_MAX_LINKS && slot->links & ~slot->back & BIT(side);
+}
+
+/**
+ * ec_slot_take() - take the copy of a link, and leave the state FILL
+ * @slot: slot that awaits it
+ * @side: number of the link
+ * @data: datagrams, compared with what was sent
+ * @got: is given who waits, with the last copy
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_matched *got)
+{
+	u8 *to = side ? slot->backup : ec_slot_body(slot);
+
+	memcpy(to + EC_FRAME_HDR, data, slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
+	slot->back |= BIT(side);
+	if (slot->back != slot->links) {
+		ec_slot_release(slot, EC_SLOT_SENT);
+		return;
+	}
+	if (slot->xfer)
+		got->xfer[got->n++] = slot->xfer;
+	ec_slot_release(slot, EC_SLOT_DONE);
 }
 
 /**
@@ -246,34 +337,32 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 {
 	u32 seq = get_unaligned_le32(src + 2);
 	struct ec_slot *slot;
-	size_t body;
+	enum ec_slot_state state;
+	u8 side = src[1];
 
 	got->n = 0;
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
 		return EC_MATCH_UNMATCHED;
-	if (unlikely(src[1] & EC_PACKED))
-		return ec_pack_match(s, seq, data, len, got);
+	if (unlikely(side & EC_PACKED))
+		return ec_pack_match(s, src, data, len, got);
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
 	/* first: a frame of an earlier use must not hold the slot */
-	if (READ_ONCE(slot->seq) != seq)
-		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
-								   EC_MATCH_UNMATCHED;
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
-		return EC_MATCH_LATE;
-	/* it may have been given up and be in use again since; now it stays */
 	if (READ_ONCE(slot->seq) != seq) {
-		atomic_set_release(&slot->state, EC_SLOT_SENT);
+		state = atomic_read(&slot->state);
+		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ? EC_MATCH_LATE :
+									  EC_MATCH_UNMATCHED;
+	}
+	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
+		return EC_MATCH_LATE;
+	if (!ec_slot_awaits(slot, side)) {
+		ec_slot_release(slot, EC_SLOT_SENT);
 		return EC_MATCH_LATE;
 	}
-	body = slot->eth_len - EC_ETH_HDR;
 	/* the iterator only reads; it has no const form */
-	if (len < body || !same(slot, (u8 *)data, len)) {
-		atomic_set_release(&slot->state, EC_SLOT_SENT);
+	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
+		ec_slot_release(slot, EC_SLOT_SENT);
 		return EC_MATCH_UNMATCHED;
 	}
-	memcpy(ec_slot_body(slot), data, body);
-	if (slot->xfer)
-		got->xfer[got->n++] = slot->xfer;
-	atomic_set_release(&slot->state, EC_SLOT_DONE);
+	ec_slot_take(slot, side, data + EC_FRAME_HDR, got);
 	return EC_MATCH_DONE;
 }

@@ -3,12 +3,15 @@
  * Frame slots. The datagram index names the slot of the frame, so at most 256
  * frames are on their way. A slot's life:
  *
- *   FREE -> BUILD -> SENT -> FILL -> DONE -> FREE
- *                      \-> QUARANTINE -> (20 ms) -> BUILD
+ *   FREE -> BUILD -> QUEUED -> FILL -> SENT -> FILL -> DONE -> FREE
+ *             \-------------------------^
  *
- * SENT to FILL (reply) and SENT to QUARANTINE (timeout, cancel) are one atomic
- * change each: the first wins. A frame is in FILL, and then in SENT again, also while
- * it is copied into one that it shares with others, see pack.c.
+ * An acyclic frame is QUEUED until the cycle sends it, see queue.c; others are SENT at once.
+ * FILL is the state of a slot whose content one thread uses: the sender copies it, the receiver
+ * fills it, or a caller gives it up. Entering it is one atomic change: the first wins. What is
+ * given up goes through QUARANTINE, and may be used again after 20 ms.
+ *
+ * A mask says on which links a frame is sent. Its slot is DONE when each copy is back.
  */
 #ifndef EC_SLOTS_H
 #define EC_SLOTS_H
@@ -23,6 +26,7 @@ struct ec_xfer;
 enum ec_slot_state {
 	EC_SLOT_FREE,
 	EC_SLOT_BUILD,
+	EC_SLOT_QUEUED,
 	EC_SLOT_SENT,
 	EC_SLOT_FILL,
 	EC_SLOT_DONE,
@@ -50,7 +54,8 @@ struct ec_packed {
  * @state: enum ec_slot_state
  * @index: datagram index, immutable
  * @seq: sequence number in the source MAC address
- * @left: sequence number of the last frame that waits for no turn any more
+ * @links: mask of the links on which it is sent
+ * @back: those of them whose copy is back
  * @sent_ns: when it was sent (ktime)
  * @xfer: who waits for it, NULL: the cycle
  * @clock: one of ec_xfer_clock()
@@ -58,13 +63,15 @@ struct ec_packed {
  * @last: offset of the last one from the first one
  * @pack: how it shares a frame
  * @eth_len: bytes of the Ethernet frame without padding and FCS
- * @frame: Ethernet frame; becomes the reply in state DONE
+ * @frame: Ethernet frame; datagrams of the copy of link 0 when that is back
+ * @backup: behind the EtherType: the copy of link 1; NULL without such a link
  */
 struct ec_slot {
 	atomic_t state;
 	u8 index;
 	u32 seq;
-	u32 left;
+	u8 links;
+	u8 back;
 	aligned_u64 sent_ns;
 	struct ec_xfer *xfer;
 	bool clock;
@@ -73,9 +80,10 @@ struct ec_slot {
 	struct ec_packed pack;
 	u16 eth_len;
 	u8 frame[EC_ETH_MAX];
+	u8 *backup;
 };
 
-/* a slot in a queue; only meant as long as it has this sequence number */
+/* a slot in a queue; only meant while it is QUEUED with this sequence number */
 struct ec_queued {
 	struct ec_slot *slot;
 	u32 seq;
@@ -85,11 +93,13 @@ struct ec_queued {
 /**
  * struct ec_slots - all slots of one master
  * @slot: the slots
+ * @backup: memory of the copies of link 1
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
  */
 struct ec_slots {
 	struct ec_slot *slot;
+	u8 *backup;
 	atomic_t hint;
 	atomic_t seq;
 };
@@ -110,17 +120,27 @@ struct ec_matched {
 	struct ec_xfer *xfer[EC_PACK_MAX];
 };
 
-int ec_slots_init(struct ec_slots *s);
+int ec_slots_init(struct ec_slots *s, bool backup);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 void ec_slot_disarm(struct ec_slot *slot, u64 now_ns);
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 side, u64 now_ns);
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
+void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
+bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);
+bool ec_slot_awaits(const struct ec_slot *slot, u8 side);
+void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_matched *got);
 enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 			     size_t len, struct ec_matched *got);
 bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
+
+/* end of the state FILL */
+static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state state)
+{
+	atomic_set_release(&slot->state, state);
+}
 
 /* Of the slots that share a frame one counts what becomes of it. */
 static inline bool ec_slot_leads(const struct ec_slot *slot)

@@ -30,7 +30,7 @@ int ec_submit(struct ec_links *l, struct ec_slot *slot, bool urgent)
 		ret = -ENETDOWN;
 	} else {
 		/* the waiter may give up from now on */
-		ec_slot_arm(&l->slots, slot, 0, now);
+		ec_slot_queue(&l->slots, slot, l->carry, now);
 		ret = ec_queue_push(&l->queues, slot, urgent);
 		if (ret)
 			ec_slot_disarm(slot, now);

@@ -290,12 +290,17 @@ static void give_up(struct ec_links *l, struct half *h)
 /* Has a frame of a half not left yet? */
 static bool in_queue(const struct half *h)
 {
+	enum ec_slot_state state;
 	unsigned int i;
 
 	for (i = 0; i < h->frames; i++) {
 		const struct batch_frame *f = &h->f[i];
 
-		if (!f->err && READ_ONCE(f->slot->left) != f->slot->seq)
+		if (f->err)
+			continue;
+		state = atomic_read(&f->slot->state);
+		/* FILL: it may be taken from the queue, and left there, just now */
+		if (state == EC_SLOT_QUEUED || state == EC_SLOT_FILL)
 			return true;
 	}
 	return false;

@@ -54,7 +54,7 @@ static u32 clock_frames(struct ec_master *m)
 	for (i = 0; i < EC_SLOTS; i++) {
 		const struct ec_slot *s = &m->links.slots.slot[i];
 
-		n += s->xfer && s->clock && s->left == s->seq && s->sent_ns >= m->links.access.last_send_ns;
+		n += s->xfer && s->clock && atomic_read(&s->state) != EC_SLOT_QUEUED && s->sent_ns >= m->links.access.last_send_ns;
 	}
 	return n;
 }

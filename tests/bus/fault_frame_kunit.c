@@ -30,7 +30,7 @@ static void expect(struct bus *b, struct expected *e)
 	memset(ec_frame_add(&fb, EC_CMD_LRW, e->slot->index, 0x0000, 0x0001, 8), 0, 8);
 	e->len = ec_frame_end(&fb);
 	e->slot->eth_len = EC_ETH_HDR + e->len;
-	ec_slot_arm(&b->m->links.slots, e->slot, 0, ktime_get_ns());
+	ec_slot_arm(&b->m->links.slots, e->slot, BIT(0), ktime_get_ns());
 	memcpy(e->src, e->slot->frame + 6, 6);
 	e->src[0] |= 2;
 	memcpy(e->reply, e->slot->frame + EC_ETH_HDR, e->len);
@@ -131,7 +131,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
 	msleep(50);
 	next = e;
-	ec_slot_arm(&b->m->links.slots, next.slot, 0, ktime_get_ns());
+	ec_slot_arm(&b->m->links.slots, next.slot, BIT(0), ktime_get_ns());
 	memcpy(next.src, next.slot->frame + 6, 6);
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
@@ -140,6 +140,38 @@ static void frame_of_before(struct kunit *test)
 	give(b, next.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_DONE);
 	ec_slot_put(&b->m->links.slots, next.slot);
+}
+
+/* Sent on two links: done when both copies are back, whichever is the first. */
+static void frame_on_two_links_done_with_both_copies(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct expected e;
+	u64 before = late(b);
+
+	expect(b, &e);
+	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
+	e.slot->backup = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL);
+	KUNIT_ASSERT_NOT_NULL(test, e.slot->backup);
+	ec_slot_arm(&b->m->links.slots, e.slot, BIT(0) | BIT(1), ktime_get_ns());
+	memcpy(e.src, e.slot->frame + 6, 6);
+	e.src[1] = 1;
+	e.reply[EC_FRAME_HDR + EC_DGRAM_HDR] = 0x11;
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_SENT);
+	give(b, e.src, e.reply, e.len);
+	e.src[1] = 2;
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, late(b), before + 2);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_SENT);
+	e.src[1] = 0;
+	e.reply[EC_FRAME_HDR + EC_DGRAM_HDR] = 0x22;
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
+	KUNIT_EXPECT_EQ(test, e.slot->backup[EC_FRAME_HDR + EC_DGRAM_HDR], 0x11);
+	KUNIT_EXPECT_EQ(test, ec_slot_body(e.slot)[EC_FRAME_HDR + EC_DGRAM_HDR], 0x22);
+	e.slot->backup = NULL;
+	ec_slot_put(&b->m->links.slots, e.slot);
 }
 
 /* Bytes by chance, of every length, while the bus works. */
@@ -272,6 +304,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(frame_changed),
 	KUNIT_CASE(frame_truncated),
 	KUNIT_CASE(frame_of_before),
+	KUNIT_CASE(frame_on_two_links_done_with_both_copies),
 	KUNIT_CASE(frame_foreign),
 	KUNIT_CASE(frame_compared),
 	KUNIT_CASE_PARAM(frame_trouble, trouble_gen_params),

@@ -18,6 +18,7 @@ static const struct ec_pack_room roomy = {
 /* a frame that four callers share, on its way, and a good reply to it */
 struct shared {
 	struct bus *b;
+	u8 links;
 	struct ec_slot *slot[MEMBERS];
 	struct ec_xfer x[MEMBERS];
 	struct ec_queued e[MEMBERS];
@@ -54,7 +55,7 @@ static void arm(struct shared *s, u32 k)
 	init_completion(&s->x[k].done);
 	atomic_set(&s->x[k].pending, 1);
 	s->slot[k]->xfer = &s->x[k];
-	ec_slot_arm(slots, s->slot[k], 0, ktime_get_ns());
+	ec_slot_queue(slots, s->slot[k], s->links, ktime_get_ns());
 	s->e[k] = (struct ec_queued){ .slot = s->slot[k], .seq = s->slot[k]->seq };
 }
 
@@ -67,8 +68,9 @@ static void leave(struct shared *s)
 	for (k = 0; k < MEMBERS; k++)
 		KUNIT_ASSERT_TRUE(s->b->test, ec_pack_add(&s->pack, &s->e[k], &roomy));
 	KUNIT_ASSERT_EQ(s->b->test, s->pack.n, MEMBERS);
-	ec_pack_write(&s->b->m->links.slots, &s->pack, s->frame, ktime_get_ns());
-	ec_pack_release(&s->pack);
+	ec_pack_place(&s->b->m->links.slots, &s->pack, ktime_get_ns());
+	ec_pack_write(&s->pack, s->frame);
+	ec_pack_release(&s->pack, EC_SLOT_SENT);
 	s->len = s->pack.len;
 	s->reply = s->frame + EC_ETH_HDR;
 	/* every slave does so */
@@ -82,6 +84,7 @@ static struct shared *shared(struct kunit *test)
 
 	KUNIT_ASSERT_NOT_NULL(test, s);
 	s->b = bus_up(test, text, N);
+	s->links = BIT(0);
 	bus_idle(s->b);
 	for (k = 0; k < MEMBERS; k++) {
 		s->slot[k] = ec_slot_get(&s->b->m->links.slots, false, ktime_get_ns());
@@ -374,6 +377,44 @@ static void pack_gone_changed(struct kunit *test)
 	put(s, 15);
 }
 
+/* A frame that left on two links: each caller waits for both copies, and has both. */
+static void pack_on_two_links_done_with_both_copies(struct kunit *test)
+{
+	struct shared *s = shared(test);
+	u64 before = refused(s);
+	u32 k;
+
+	answer(s);
+	give(s, s->reply, s->len);
+	expect(s, 15, 0);
+	s->links = BIT(0) | BIT(1);
+	for (k = 0; k < MEMBERS; k++) {
+		s->slot[k]->backup = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL);
+		arm(s, k);
+	}
+	leave(s);
+	s->frame[7] |= 1;
+	give(s, s->reply, s->len);
+	expect(s, 0, 0);
+	KUNIT_EXPECT_EQ(test, refused(s), before);
+	/* the same copy again, and one of a link that there is not */
+	give(s, s->reply, s->len);
+	s->frame[7] ^= 3;
+	give(s, s->reply, s->len);
+	expect(s, 0, 0);
+	KUNIT_EXPECT_EQ(test, refused(s), before + 2);
+	s->frame[7] ^= 2;
+	answer(s);
+	give(s, s->reply, s->len);
+	expect(s, 15, 0);
+	expect_data(s, 15);
+	/* the other one is as it came: before the answer */
+	KUNIT_EXPECT_EQ(test, s->slot[1]->backup[EC_FRAME_HDR + EC_DGRAM_HDR], 0x11);
+	for (k = 0; k < MEMBERS; k++)
+		s->slot[k]->backup = NULL;
+	put(s, 15);
+}
+
 /* A slot that is in use by another: not with the reply to the one before. */
 static void pack_reused(struct kunit *test)
 {
@@ -385,6 +426,7 @@ static void pack_reused(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[1], ktime_get_ns()));
 	atomic_set(&s->slot[1]->state, EC_SLOT_BUILD);
 	arm(s, 1);
+	atomic_set(&s->slot[1]->state, EC_SLOT_SENT);
 	answer(s);
 	give(s, s->reply, s->len);
 	expect(s, 13, 0);
@@ -432,32 +474,33 @@ static void pack_gathered(struct kunit *test)
 	KUNIT_EXPECT_PTR_EQ(test, p.e[3].slot, s->slot[2]);
 	/* who wants to give up now has to wait for a moment */
 	KUNIT_EXPECT_FALSE(test, ec_slot_cancel(s->slot[0], ktime_get_ns()));
-	ec_pack_release(&p);
+	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* the second of them does not fit, and so nor do those behind it */
 	room.len = EC_FRAME_HDR + 13 + 14 + 139;
 	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 2u);
-	ec_pack_release(&p);
+	ec_pack_release(&p, EC_SLOT_QUEUED);
 	room.len++;
 	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
-	ec_pack_release(&p);
+	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* datagrams are counted, too */
 	room = roomy;
 	room.dgrams = 4;
 	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
-	ec_pack_release(&p);
+	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* one gives up, one that leaves, the first one that gives up */
 	room = roomy;
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[0], ktime_get_ns()));
 	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
 	KUNIT_ASSERT_EQ(test, p.n, 3u);
 	KUNIT_EXPECT_PTR_EQ(test, p.e[1].slot, s->slot[1]);
-	ec_pack_release(&p);
-	ec_queue_drop(&m->links.queues, &m->links.queues.acyclic, p.e, 2);
-	KUNIT_EXPECT_EQ(test, s->slot[3]->left, s->slot[3]->seq);
-	KUNIT_EXPECT_NE(test, s->slot[2]->left, s->slot[2]->seq);
+	ec_pack_release(&p, EC_SLOT_QUEUED);
+	p.n = 2;
+	ec_pack_move(&p, EC_SLOT_QUEUED, EC_SLOT_SENT);
+	KUNIT_EXPECT_EQ(test, atomic_read(&s->slot[3]->state), EC_SLOT_SENT);
+	KUNIT_EXPECT_EQ(test, atomic_read(&s->slot[2]->state), EC_SLOT_QUEUED);
 	KUNIT_ASSERT_TRUE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
 	KUNIT_EXPECT_PTR_EQ(test, e.slot, s->slot[2]);
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[2], ktime_get_ns()));
@@ -474,6 +517,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pack_other_order),
 	KUNIT_CASE(pack_given_up),
 	KUNIT_CASE(pack_gone_changed),
+	KUNIT_CASE(pack_on_two_links_done_with_both_copies),
 	KUNIT_CASE(pack_reused),
 	KUNIT_CASE(pack_gathered),
 	{}

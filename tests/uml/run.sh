@@ -48,7 +48,7 @@ start=$(date +%s.%N)
 # The subshell swallows bash's remark on how it ended.
 ulimit -c 0
 (
-	timeout -s KILL "$limit" "$dir/vmlinux" mem=512M \
+	timeout -s KILL "$limit" "$dir/vmlinux" mem=512M log_buf_len=4M \
 		time-travel=inf-cpu kunit.filter_glob="$filter" \
 		kunit_shutdown=halt kmemleak.verbose=1 uml_dir="$dir/" \
 		con=null con0=fd:0,fd:1 panic=-1 loglevel=8 \
