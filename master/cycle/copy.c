@@ -100,6 +100,7 @@ int ec_copy_add(struct ec_cycle *c, const struct ec_copy *copy)
 {
 	unsigned int i;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (copy->from_domain >= c->wanted->n_domains || copy->to_domain >= c->wanted->n_domains)
 		return -ENOENT;
 	if (!copy->bits || !inside(c, copy->from_domain, copy->from_bit, copy->bits,
@@ -133,6 +134,7 @@ int ec_copies_begin(struct ec_cycle *c)
 	struct ec_copying *k;
 	unsigned int i;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->n_copies)
 		return 0;
 	for (i = 0; i < c->n_copies; i++)

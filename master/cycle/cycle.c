@@ -45,8 +45,7 @@ void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wante
  * ec_cycle_clear() - forget the settings of an application
  * @c: not active
  *
- * Context: Process, lock of the configuration held, or no other caller knows @c.
- * May sleep.
+ * Context: Process; no other caller uses @c. May sleep.
  */
 void ec_cycle_clear(struct ec_cycle *c)
 {
@@ -69,6 +68,7 @@ void ec_cycle_clear(struct ec_cycle *c)
  */
 void ec_cycle_set_active(struct ec_cycles *cycles, struct ec_cycle *c)
 {
+	ec_cycle_assert_held(c ?: cycles->active);
 	mutex_lock(&cycles->lock);
 	cycles->active = c;
 	WRITE_ONCE(cycles->owner, c ? c->owner : NULL);

@@ -322,6 +322,12 @@ void ec_cycles_nothing_back(struct ec_cycles *cycles);
 /* layout.c */
 int ec_cycle_layout(struct ec_cycle *c);
 u32 ec_cycle_need_ns(void);
+/* @c may be NULL. What a master has of its cycle is under the lock of the one that is active. */
+static inline void ec_cycle_assert_held(const struct ec_cycle *c)
+{
+	lockdep_assert(!c || lockdep_is_held(c->wanted->lock));
+}
+
 int ec_cycle_check_room(struct ec_cycle *c, bool clocks);
 void ec_cycle_tell_room(struct ec_cycle *c);
 void ec_cycle_free(struct ec_cycle *c);

@@ -39,6 +39,7 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 {
 	u32 wanted = c->kernel.priority ?: EC_CYCLE_PRIORITY;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->priority)
 		ec_warn(c, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
 			wanted, wanted);
@@ -60,7 +61,7 @@ void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority)
 {
 	struct task_struct *task = ec_cycle_thread_task(c);
 
-	lockdep_assert_held(&*c->wanted->lock);
+	lockdep_assert_held(c->wanted->lock);
 	if (!task || c->priority == priority)
 		return;
 	c->priority = priority;
@@ -86,6 +87,7 @@ void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 	int cpu = c->kernel.cpu;
 	struct task_struct *task = ec_cycle_thread_task(c);
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!task || cpu < 0)
 		return;
 	if (cpumask_equal(task->cpus_ptr, cpumask_of(cpu)))

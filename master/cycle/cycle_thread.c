@@ -499,6 +499,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
 	int ret, cpu = c->kernel.cpu;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!t)
 		return -ENOMEM;
 	BUILD_BUG_ON(sizeof(struct ec_exchange) > EC_EXCHANGE_FIRST);
@@ -544,7 +545,7 @@ err:
  */
 struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
 {
-	lockdep_assert_held(&*c->wanted->lock);
+	lockdep_assert_held(c->wanted->lock);
 	return c->thread ? c->thread->task : NULL;
 }
 
@@ -556,7 +557,7 @@ struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
  */
 void ec_cycle_thread_start(struct ec_cycle *c)
 {
-
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->thread)
 		return;
 	ec_cycle_sched_log(c);
@@ -581,10 +582,9 @@ void ec_cycle_thread_start(struct ec_cycle *c)
  */
 void ec_cycle_thread_stop(struct ec_cycle *c)
 {
-
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->thread)
 		return;
-	lockdep_assert_held(c->wanted->lock);
 	if (rcu_access_pointer(c->cycles->by_kernel)) {
 		RCU_INIT_POINTER(c->cycles->by_kernel, NULL);
 		synchronize_rcu();
@@ -613,6 +613,7 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
 	struct ec_cycle_thread *t = c->thread;
 	u32 limit_ms = 2 * c->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
 
+	lockdep_assert_held(c->wanted->lock);
 	reinit_completion(&t->adopted);
 	WRITE_ONCE(t->adopt, true);
 	if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
@@ -638,6 +639,7 @@ void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u3
 	const u8 *source = smp_load_acquire(&c->direct) ?: c->shared->image;
 	unsigned int i;
 
+	ec_wanted_assert_stays(c->wanted);
 	for (i = 0; t && i < t->n_outputs; i++) {
 		u32 from = max(offset, t->outputs[i].offset);
 		u32 to = min(offset + size, t->outputs[i].offset + t->outputs[i].len);

@@ -79,7 +79,7 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
  * @c: its cyclic layout
  * @flags: EC_SEND_FLAG_*
  *
- * The application learns that those it wants and that are held back are not back.
+ * Datagrams that the application wants and the master does not send count as not returned.
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper

@@ -238,6 +238,7 @@ void ec_late_end(struct ec_cycle *c)
 {
 	struct ec_late_report *r = &c->cycles->late;
 
+	lockdep_assert_held(c->wanted->lock);
 	get(c, &r->info, &r->status);
 	r->info.active = 0;
 	WRITE_ONCE(c->cycles->late_reset, false);
@@ -279,6 +280,7 @@ void ec_late_get(struct ec_cycles *cycles, struct ec_ioc_cycle_stats *info,
  */
 void ec_late_reset(struct ec_cycles *cycles)
 {
+	ec_cycle_assert_held(cycles->active);
 	if (cycles->active)
 		WRITE_ONCE(cycles->late_reset, true);
 	else

@@ -329,6 +329,7 @@ int ec_cycle_layout(struct ec_cycle *c)
 	unsigned int i;
 	int ret = 0;
 
+	lockdep_assert_held(c->wanted->lock);
 	memset_startat(c, 0, dgrams);
 	for (i = 0; i < c->wanted->n_configs; i++) {
 		c->wanted->configs[i]->lrw = false;
@@ -392,6 +393,7 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
 	u64 interval = c->kernel.period_ns ?: c->links->access.interval_us * (u64)NSEC_PER_USEC;
 	const struct ec_cyc_wire *w = clocks ? &c->clocked : &c->plain;
 
+	lockdep_assert_held(c->wanted->lock);
 	c->room_logged = false;
 	c->links->access.wire_ns = w->ns;
 	c->links->share.late_per_s = c->late_per_s;
@@ -405,11 +407,11 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
  * ec_cycle_tell_room() - the same in the log, once the interval is measured
  * @c: active cycle
  *
- * Context: The monitor thread. May sleep.
+ * Context: The monitor thread, lock of the configuration held. May sleep.
  */
 void ec_cycle_tell_room(struct ec_cycle *c)
 {
-
+	lockdep_assert_held(c->wanted->lock);
 	if (!c->room_logged && !c->links->access.interval_set &&
 	    ec_read64(&c->sends) > MEASURED)
 		has_room(c, READ_ONCE(c->links->access.interval_us) * (u64)NSEC_PER_USEC,

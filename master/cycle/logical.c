@@ -254,6 +254,7 @@ int ec_logical_place(struct ec_domain *d, struct ec_logical *l)
 	unsigned int i, k;
 	int ret = 0;
 
+	lockdep_assert_held(d->wanted->lock);
 	*l = (struct ec_logical){ .separate = wants_separate(d) };
 	l->refs = kvcalloc(d->n_fmmus + 1, sizeof(*l->refs), GFP_KERNEL_ACCOUNT);
 	if (!l->refs)

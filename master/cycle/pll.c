@@ -136,6 +136,7 @@ void ec_pll_log(struct ec_cycle *c)
 	const struct ec_status_cycle *st = &c->shared->status->kernel;
 	u32 lock = READ_ONCE(st->lock);
 
+	lockdep_assert_held(c->wanted->lock);
 	/* while clocks are measured no frame asks the reference */
 	if (lock == c->lock_logged ||
 	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(c->dc->state) == EC_DC_BUSY))

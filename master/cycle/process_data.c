@@ -157,7 +157,7 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 {
 	unsigned int i;
 
-	lockdep_assert_held(&*c->wanted->lock);
+	lockdep_assert_held(c->wanted->lock);
 	for (i = 0; i < c->wanted->n_domains; i++) {
 		struct ec_cyc_domain *d = &c->domains[i];
 		u32 age = READ_ONCE(d->stale);

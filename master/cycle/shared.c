@@ -75,7 +75,7 @@ int ec_shared_map(struct vm_area_struct *vma, void *memory)
  * @image_size: bytes of all domains
  * @request_size: bytes of all requests, 0: none
  *
- * Context: Process, lock of the configuration held. May sleep.
+ * Context: Process. May sleep.
  * Return: with one reference; NULL without memory.
  */
 struct ec_shared *ec_shared_create(atomic_long_t *mapped, size_t image_size,

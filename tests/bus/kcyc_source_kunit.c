@@ -182,7 +182,9 @@ static void source_tool_sees(struct kunit *test)
 	for (i = 0; i < SLAVES; i++) {
 		place = kcyc_place(s->a, i, 0, 1);
 		memcpy(data, cyc_data(s->a->c, 0) + place, 64);
+		mutex_lock(&b->m->session_lock);
 		ec_cycle_thread_outputs(&b->m->session->cycle, data, place, 64);
+		mutex_unlock(&b->m->session_lock);
 		/* the last one given waits for its cycle */
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(data), s->number - 1);
 	}
