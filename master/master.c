@@ -94,6 +94,9 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
+	ret = ec_rider_register(&m->links, &m->rider);
+	if (ret)
+		goto err_work;
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops);
 	if (ret)
 		goto err_work;

@@ -32,6 +32,7 @@ struct task_struct;
  * @bus: slaves
  *
  * @monitor: thread
+ * @rider: its datagram in frames of the cycle
  * @lanes: workers of requests; they wait for slaves
  * @service: what others wait for, never many at once: clocks, looks at requests,
  *	calls of an application in the kernel
@@ -53,6 +54,7 @@ struct ec_master {
 	struct ec_bus bus;
 
 	struct task_struct *monitor;
+	struct ec_rider rider;
 	struct workqueue_struct *lanes;
 	struct workqueue_struct *service;
 

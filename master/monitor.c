@@ -17,6 +17,7 @@
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define TRIES		2	/* of the look at all slaves */
+#define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
 /* what the monitor remembers between two looks */
 struct watch {
@@ -29,6 +30,7 @@ struct watch {
 	unsigned int too_many;	/* slaves of the last reply, more than a scan takes on */
 	u64 scanned_ns;
 	u64 rates_ns;
+	u64 alone_ns;		/* no rider before that time */
 };
 
 static void check_links(struct watch *w)
@@ -155,6 +157,34 @@ static unsigned int believable(struct watch *w, unsigned int count)
 	return 0;
 }
 
+/*
+ * AL status of all slaves and their number. The first try goes with the cycle if that carries
+ * it; only a frame of its own decides that no slave is there.
+ */
+static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
+{
+	struct ec_master *m = w->m;
+	struct ec_rider *r = &m->rider;
+	int ret = -EAGAIN;
+
+	if (first && ec_access_is_cyclic(&m->links.access) && ktime_get_ns() >= w->alone_ns) {
+		r->cmd = dg->cmd;
+		r->adp = dg->adp;
+		r->ado = dg->ado;
+		r->len = dg->len;
+		memset(r->data, 0, dg->len);
+		ret = ec_rider_exchange(&m->links, r);
+		if (ret == -EAGAIN)
+			w->alone_ns = ktime_get_ns() + ALONE_NS;
+	}
+	if (ret == -EAGAIN)
+		return ec_xfer_urgent(&m->links, dg, 1);
+	dg->wkc = r->wkc;
+	dg->back = r->back;
+	memcpy(dg->data, r->data, dg->len);
+	return ret;
+}
+
 static void count_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -165,7 +195,7 @@ static void count_slaves(struct watch *w)
 
 	dg.repeat = false;
 	for (try = 0; try < TRIES && w->link_up; try++) {
-		int ret = ec_xfer_urgent(&m->links, &dg, 1);
+		int ret = broadcast(w, &dg, !try);
 
 		if (ret == -EBUSY || ret == -ENOMEM)
 			return;		/* nothing was sent, so nothing is known */

@@ -104,6 +104,7 @@ struct ec_cyc_cut {
  * @direct: sent from struct ec_cycle.direct
  * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
  * @dc_sent: time that was sent in them
+ * @riding: riders behind them
  */
 struct ec_cyc_flight {
 	struct ec_slot *slot;
@@ -115,6 +116,7 @@ struct ec_cyc_flight {
 	bool direct;
 	u32 dc;
 	u64 dc_sent;
+	struct ec_riding riding;
 };
 
 #define EC_CYC_FRAMES	128	/* on their way at most */

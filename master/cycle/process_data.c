@@ -101,6 +101,9 @@ static void take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 		take_dgram(c, d, f, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
+	if (unlikely(f->riding.mask))
+		ec_riders_take(c->links, &f->riding, data - EC_DGRAM_HDR,
+			       f->slot->frame + f->slot->eth_len);
 }
 
 /* How often a domain was sent after send number @send. */
@@ -264,6 +267,7 @@ struct send {
 	const struct ec_ioc_send *what;
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
+	struct ec_riding riding;	/* of the last frame */
 	struct ec_cyc_wire wire;
 };
 
@@ -285,7 +289,7 @@ static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u
 
 /* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
-			 const struct send *send)
+			 struct send *send)
 {
 	const struct ec_cyc_dgram *d = &c->dgrams[g];
 	unsigned int room, dc, first = g;
@@ -311,6 +315,9 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int 
 		fill_dgram(c, d, p);
 		room--;
 	}
+	send->riding.mask = 0;
+	if (unlikely(atomic_read(&c->links->riders.queued)))
+		ec_riders_add(c->links, &fb, slot->index, send->now, &send->riding);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return g - first;
 }
@@ -340,7 +347,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
 			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
-			.dc_sent = c->dc_sent,
+			.dc_sent = c->dc_sent, .riding = send->riding,
 		};
 	else
 		ec_slot_put(&c->links->slots, slot);

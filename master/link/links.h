@@ -13,6 +13,7 @@
 #include "access.h"
 #include "link.h"
 #include "queue.h"
+#include "rider.h"
 #include "share.h"
 #include "slots.h"
 
@@ -51,6 +52,8 @@ struct ec_links {
 	struct ec_access access;
 	/** @queues: acyclic frames that wait for the cycle */
 	struct ec_queues queues;
+	/** @riders: datagrams in frames of the cycle */
+	struct ec_riders riders;
 	/** @share: what a cyclic send carries of them */
 	struct ec_share share;
 	/** @monitor: thread whose frames overtake those of other callers, NULL: none */

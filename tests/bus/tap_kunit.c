@@ -152,7 +152,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 	/* the ring is whole: all it has is shown, and then no frame is dropped any more */
 	release_worker(t);
 	KUNIT_EXPECT_EQ(test, p.sent + p.received - had, (u32)EC_TAP_RING);
-	cyc_run(c, 500);
+	cyc_run(c, 510);
 	KUNIT_EXPECT_EQ(test, not_captured(c->b), dropped);
 	KUNIT_EXPECT_GE(test, p.sent + p.received - had, EC_TAP_RING + 1000u);
 	KUNIT_EXPECT_EQ(test, p.bad, 0u);

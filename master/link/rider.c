@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/bitops.h>
+#include <linux/jiffies.h>
+#include <linux/ktime.h>
+#include <linux/string.h>
+#include "links.h"
+#include "rider.h"
+
+#define SENDS	3	/* of the cycle; the first one without rider is no reason to give up */
+#define SLACK_US	5000	/* the owner of a fast cycle may pause */
+#define STEP_US		2000	/* between two looks whether the cycle and the link are there */
+
+/**
+ * ec_rider_register() - make a rider known to the links
+ * @l: links, not in use yet
+ * @r: zeroed structure; stays as long as @l
+ *
+ * Context: Process.
+ * Return: 0, or -ENOSPC.
+ */
+int ec_rider_register(struct ec_links *l, struct ec_rider *r)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_RIDERS; i++) {
+		if (l->riders.rider[i])
+			continue;
+		init_completion(&r->done);
+		r->number = i;
+		l->riders.rider[i] = r;
+		return 0;
+	}
+	return -ENOSPC;
+}
+
+static bool move(struct ec_rider *r, enum ec_rider_state from, enum ec_rider_state to)
+{
+	return atomic_cmpxchg(&r->state, from, to) == from;
+}
+
+/* Is there no sense in waiting any more? */
+static bool is_over(struct ec_links *l, u64 until_ns)
+{
+	return ktime_get_ns() > until_ns || !ec_access_is_cyclic(&l->access) ||
+	       !ec_links_is_up(l) || ec_access_timed_out(l);
+}
+
+/**
+ * ec_rider_exchange() - exchange a rider with a frame of the cycle
+ * @l: links
+ * @r: rider with command, address, length and data
+ *
+ * Context: Process; the owner of @r. May sleep.
+ * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
+ * -ETIMEDOUT: its frame has not come back.
+ */
+int ec_rider_exchange(struct ec_links *l, struct ec_rider *r)
+{
+	u64 sends_ns = (SENDS * (u64)READ_ONCE(l->access.interval_us) + SLACK_US) * NSEC_PER_USEC;
+	u64 until = ktime_get_ns() + sends_ns;
+
+	if (!ec_access_is_cyclic(&l->access))
+		return -EAGAIN;
+	reinit_completion(&r->done);
+	atomic_set_release(&r->state, EC_RIDER_QUEUED);
+	atomic_or(BIT(r->number), &l->riders.queued);
+	/* the completion may be that of an earlier round */
+	for (;;) {
+		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));
+		if (atomic_read_acquire(&r->state) == EC_RIDER_BACK)
+			break;
+		if (!is_over(l, until))
+			continue;
+		if (move(r, EC_RIDER_QUEUED, EC_RIDER_IDLE))
+			return -EAGAIN;
+		if (is_over(l, until + sends_ns + l->io_timeout_us * (u64)NSEC_PER_USEC) &&
+		    move(r, EC_RIDER_SENT, EC_RIDER_IDLE))
+			return -ETIMEDOUT;
+	}
+	atomic_set(&r->state, EC_RIDER_IDLE);
+	return 0;
+}
+
+/* Wire time by which @bytes more make a frame longer. */
+static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
+{
+	return ec_frame_wire_ns(EC_ETH_HDR + fb->len + bytes) -
+	       ec_frame_wire_ns(EC_ETH_HDR + fb->len);
+}
+
+/**
+ * ec_riders_add() - add the riders that wait to a frame of the cycle, as far as they fit
+ * @l: links
+ * @fb: frame with the process data
+ * @index: datagram index of the frame
+ * @now: when it leaves (ktime)
+ * @riding: result
+ *
+ * They make no cycle longer than acyclic frames may.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 now,
+		   struct ec_riding *riding)
+{
+	unsigned long left = atomic_read_acquire(&l->riders.queued);
+	u32 slack = ec_access_slack_ns(l);
+
+	riding->seq = l->riders.seq + 1;
+	for (; left && fb->count < l->max_datagrams; left &= left - 1) {
+		struct ec_rider *r = l->riders.rider[__ffs(left)];
+		u32 ns;
+		u8 *p;
+
+		/* before the state: its owner may queue it again at any time */
+		atomic_andnot(BIT(r->number), &l->riders.queued);
+		if (!move(r, EC_RIDER_QUEUED, EC_RIDER_HELD))
+			continue;	/* given up */
+		ns = more_ns(fb, EC_DGRAM_OVERHEAD + r->len);
+		p = ns <= slack ? ec_frame_add(fb, r->cmd, index, r->adp, r->ado, r->len) : NULL;
+		if (!p) {
+			atomic_set_release(&r->state, EC_RIDER_QUEUED);
+			atomic_or(BIT(r->number), &l->riders.queued);
+			continue;
+		}
+		memcpy(p, r->data, r->len);
+		slack -= ns;
+		r->seq = riding->seq;
+		r->sent_ns = now;
+		riding->mask |= BIT(r->number);
+		l->riders.seq = riding->seq;
+		atomic_set_release(&r->state, EC_RIDER_SENT);
+	}
+}
+
+/* The one that this frame carries, not one of a later round. */
+static bool hold(struct ec_rider *r, u32 seq)
+{
+	if (!move(r, EC_RIDER_SENT, EC_RIDER_HELD))
+		return false;
+	if (r->seq == seq)
+		return true;
+	atomic_set_release(&r->state, EC_RIDER_SENT);
+	return false;
+}
+
+/**
+ * ec_riders_take() - take what the riders of a frame have brought back
+ * @l: links
+ * @riding: riders of the frame
+ * @at: datagram behind the process data
+ * @end: end of the frame; what is before was compared with what was sent
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,
+		    const u8 *end)
+{
+	/* the iterator only reads; it has no const form */
+	struct ec_frame_iter it = { .p = (u8 *)at, .end = (u8 *)end, .more = true };
+	unsigned long left = riding->mask;
+	struct ec_dgram d;
+
+	for (; left && ec_frame_iter_next(&it, &d) == 1; left &= left - 1) {
+		struct ec_rider *r = l->riders.rider[__ffs(left)];
+
+		if (!hold(r, riding->seq))
+			continue;	/* given up */
+		memcpy(r->data, d.data, r->len);
+		r->wkc = ec_dgram_wkc(&d);
+		r->back = d.adp;
+		atomic_set_release(&r->state, EC_RIDER_BACK);
+		complete(&r->done);
+	}
+}

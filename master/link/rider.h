@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * Riders: datagrams of the master in frames of the cycle, behind the process data. They need no
+ * frame of their own, and no domain counts them.
+ *
+ *   IDLE -> QUEUED -> HELD -> SENT -> HELD -> BACK -> IDLE
+ *              \----------------\-> IDLE  (the owner gives up)
+ */
+#ifndef EC_RIDER_H
+#define EC_RIDER_H
+
+#include <linux/atomic.h>
+#include <linux/completion.h>
+#include <linux/types.h>
+
+struct ec_frame_buf;
+struct ec_links;
+
+#define EC_RIDERS	8	/* of a master */
+#define EC_RIDER_BYTES	8
+
+enum ec_rider_state {
+	EC_RIDER_IDLE,
+	EC_RIDER_QUEUED,
+	EC_RIDER_HELD,
+	EC_RIDER_SENT,
+	EC_RIDER_BACK,
+};
+
+/**
+ * struct ec_rider - one datagram; it belongs to its owner while it is IDLE
+ * @state: enum ec_rider_state
+ * @number: bit in the masks of struct ec_riders, immutable
+ * @seq: number of the frame that carries it
+ * @cmd: enum ec_cmd
+ * @adp: low half of the address
+ * @ado: high half of the address
+ * @len: data bytes
+ * @data: sent; then as it came back
+ * @wkc: result: working counter
+ * @back: result: @adp as it came back
+ * @sent_ns: result: when its frame left (ktime)
+ * @done: completed when it is back
+ */
+struct ec_rider {
+	atomic_t state;
+	u8 number;
+	u32 seq;
+	u8 cmd;
+	u16 adp;
+	u16 ado;
+	u16 len;
+	u8 data[EC_RIDER_BYTES];
+	u16 wkc;
+	u16 back;
+	u64 sent_ns;
+	struct completion done;
+};
+
+/**
+ * struct ec_riders - riders of a master
+ * @rider: all of them, NULL: none with this number
+ * @queued: mask of those that may wait for a frame
+ * @seq: frames that have carried riders; the cycle owner's
+ */
+struct ec_riders {
+	struct ec_rider *rider[EC_RIDERS];
+	atomic_t queued;
+	u32 seq;
+};
+
+/**
+ * struct ec_riding - riders in one frame; 0: none
+ * @mask: their numbers; in the frame they are in this order
+ * @seq: number of the frame
+ */
+struct ec_riding {
+	u32 mask;
+	u32 seq;
+};
+
+int ec_rider_register(struct ec_links *l, struct ec_rider *r);
+int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
+void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 now,
+		   struct ec_riding *riding);
+void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,
+		    const u8 *end);
+
+#endif
