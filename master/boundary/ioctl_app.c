@@ -27,7 +27,8 @@ int ec_ioc_reserve(struct ec_call *call)
 				 call->master->base->index, who);
 	case -ENODEV:
 		return ec_refuse(call, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
-				 call->master->base->index, ec_links_main_name(&call->master->links));
+				 call->master->base->index,
+				 ec_links_main_name(&call->master->links));
 	default:
 		return ret;
 	}

@@ -213,7 +213,9 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 		first = odd ? min(first, i) : first;
 	}
 	/* the one that leads to the other device of a ring */
-	return n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links) ? n : first;
+	if (n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links))
+		return n;
+	return first;
 }
 
 /**
