@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
-# all of tests/system on all kernels. The last line is "N passed, N failed"; results with their
-# date are in Documentation/testing.rst.
+# all of tests/system on all kernels, among them one that reports data races. The last line is
+# "N passed, N failed"; results with their date are in Documentation/testing.rst.
 #
 # usage: check-long.sh [uml-debug|KERNEL...]
 
@@ -23,7 +23,7 @@ run() {
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12}; do
+for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1

@@ -105,7 +105,8 @@ static inline void ec_status_copy(const struct ec_status *st, void *to, const vo
 	do {
 		while ((sequence = smp_load_acquire(&st->sequence)) & 1)
 			cpu_relax();
-		memcpy(to, from, size);
+		/* what a writer has changed meanwhile is read again */
+		data_race(memcpy(to, from, size));
 		smp_rmb();
 	} while (READ_ONCE(st->sequence) != sequence);
 }

@@ -7,7 +7,7 @@
 #   build.sh [--debug] [--path]      --path: only prints where it would be
 #
 # EC_CACHE      folder of the cache (default ~/.cache/ethercat)
-# EC_LINUX_TAR  kernel source (default: Debian's linux-source-6.1)
+# EC_LINUX_TAR  kernel source, see source.sh
 # EC_UML_SKIP   more files to leave out, e.g. 'master/broken.c tests/bus/%'
 # EC_JOBS       parallel jobs (default: number of CPUs)
 set -euo pipefail
@@ -26,19 +26,17 @@ done
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 repo=$(cd "$here/../.." && pwd -P)
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ethercat}
-tarball=${EC_LINUX_TAR:-/usr/src/linux-source-6.1.tar.xz}
 jobs=${EC_JOBS:-$(nproc)}
 
-for t in make gcc bc bison flex xz flock sha256sum; do
+for t in make gcc bc bison flex flock sha256sum; do
 	command -v $t >/dev/null || die "'$t' is missing; run tests/install-deps.sh"
 done
-[ -r "$tarball" ] || die "$tarball is missing; run tests/install-deps.sh"
 
-srckey=$(stat -Lc '%s-%Y' "$tarball")
-# DEBUG_ATOMIC_SLEEP needs a kernel that counts preempt_disable(). UML could, but 6.1 does
-# not let it: the debug kernel has a tree of its own without that line.
-[ $variant = plain ] || srckey=$srckey-preempt
-src=$cache/src/linux-$srckey
+# the debug kernel has a tree of its own
+tree=()
+[ $variant = plain ] || tree=(--preempt)
+src=$("$here/source.sh" ${tree[@]+"${tree[@]}"} --path) || exit 1
+srckey=${src##*/linux-}
 
 frags=("$here/kunit.config")
 [ $variant = plain ] || frags+=("$here/debug.config")
@@ -58,24 +56,7 @@ if [ -n "$pathonly" ]; then
 	exit
 fi
 
-# An unpacked tree is never changed again, so that clones can share it.
-mkdir -p "$cache/src"
-exec 9>"$cache/src/.lock"
-flock 9
-if [ ! -e "$src/.ec-ready" ]; then
-	echo "unpacking $(basename "$tarball")" >&2
-	tmp=$(mktemp -d "$cache/src/tmp.XXXXXX")
-	tar xf "$tarball" -C "$tmp" --strip-components=1
-	[ $variant = plain ] || sed -i '/select ARCH_NO_PREEMPT$/d' "$tmp/arch/um/Kconfig"
-	mkdir -p "$tmp/drivers/ethercat"
-	echo 'include $(obj)/tests/uml/Makefile.uml' \
-		>"$tmp/drivers/ethercat/Makefile"
-	echo 'obj-y += ethercat/' >>"$tmp/drivers/Makefile"
-	touch "$tmp/.ec-ready"
-	rm -rf "$src"
-	mv "$tmp" "$src"
-fi
-flock -u 9
+"$here/source.sh" ${tree[@]+"${tree[@]}"} >/dev/null || exit 1
 
 mkdir -p "$out/drivers" "$farm"
 
@@ -88,18 +69,7 @@ if [ ! -e "$out/.ec-configured" ]; then
 	echo "configuring $variant kernel in $out" >&2
 	grep -hv '^# SPDX' "${frags[@]}" >"$out/.config"
 	mk olddefconfig >&2
-	# A dependency that is not met drops an option without a word.
-	while read -r line; do
-		case "$line" in
-		CONFIG_*=n) grep -q "^${line%=n}=" "$out/.config" || continue ;;
-		CONFIG_*) grep -qxF "$line" "$out/.config" && continue ;;
-		'# CONFIG_'*' is not set')
-			o=${line#\# }; o=${o% is not set}
-			grep -q "^$o=" "$out/.config" || continue ;;
-		*) continue ;;
-		esac
-		die "option not accepted by this kernel: $line"
-	done < <(cat "${frags[@]}")
+	"$here/accepted.sh" "$out/.config" "${frags[@]}"
 	touch "$out/.ec-configured"
 fi
 

@@ -22,6 +22,7 @@ usage() {
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
 	          6.1-armhf (headers only)    cache: $cache
+	          6.1-kcsan (built here from Debian's source, see kcsan.sh)
 	END
 	exit 2
 }
@@ -29,6 +30,7 @@ usage() {
 die() { echo "kernels.sh: $*" >&2; exit 1; }
 say() { echo "kernels.sh: $*" >&2; }
 
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
 case $cache in /*) ;; *) cache=$PWD/$cache ;; esac
 
@@ -47,6 +49,7 @@ flavour_of() {	# flavour_of FLAVOUR: sets base, arch, name
 	*-armhf) name=armmp ;;
 	*-arm64|*-s390x) name=$arch ;;
 	*-rt)	arch=amd64 name=rt-amd64 ;;
+	*-kcsan) arch=amd64 name= ;;	# not a package
 	*)	arch=amd64 name=amd64 ;;
 	esac
 }
@@ -159,7 +162,7 @@ depends() {	# depends PACKAGE REGEX: the names it depends on that match
 
 check_flavour() {
 	case ${1:-} in
-	6.1|6.1-rt|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
+	6.1|6.1-rt|6.1-kcsan|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
 	'') usage ;;
 	*) die "unknown flavour '$1' (see kernels.sh --help)" ;;
 	esac
@@ -167,7 +170,13 @@ check_flavour() {
 
 # The stamp holds the layout and the place: the headers contain absolute paths,
 # so a cache that was moved is not usable.
-cached() { [ "$(cat "$cache/kernels/$1/.complete" 2>/dev/null || true)" = "$layout $cache" ]; }
+stamp() {
+	case $1 in
+	*-kcsan) echo "$layout $cache $("$here/kcsan.sh" --key)" ;;
+	*)	echo "$layout $cache" ;;
+	esac
+}
+cached() { [ "$(cat "$cache/kernels/$1/.complete" 2>/dev/null || true)" = "$(stamp "$1")" ]; }
 
 # Programs of this machine build modules of any other: the same scripts, unpacked
 # beside the headers. Their package is called the same everywhere.
@@ -299,7 +308,13 @@ fetch() {
 	exec 9>"$cache/kernels/.lock"
 	flock 9		# a second caller waits and then finds it done
 	rm -rf "$cache"/kernels/.tmp.*	# left by a run that was killed
-	cached "$1" || unpack "$1"
+	case $1 in
+	*-kcsan) cached "$1" || {
+			EC_CACHE=$cache "$here/kcsan.sh" "$cache/kernels/$1" 9>&-
+			stamp "$1" >"$cache/kernels/$1/.complete"
+		} ;;
+	*)	cached "$1" || unpack "$1" ;;
+	esac
 	exec 9>&-
 }
 
@@ -320,7 +335,12 @@ esac
 case $cmd in
 fetch)	for fl; do fetch "$fl"; done ;;
 drop)	for fl; do rm -rf "${cache:?}/kernels/$fl"; done ;;
-kdir)	fetch "$1"; echo "$cache/kernels/$1/usr/src/linux-headers-$(cat "$cache/kernels/$1/.release")" ;;
+kdir)	fetch "$1"
+	case $1 in
+	*-kcsan) echo "$cache/kernels/$1/build" ;;
+	*)	release=$(cat "$cache/kernels/$1/.release")
+		echo "$cache/kernels/$1/usr/src/linux-headers-$release" ;;
+	esac ;;
 image)	fetch "$1"; echo "$cache/kernels/$1/boot/vmlinuz-$(cat "$cache/kernels/$1/.release")" ;;
 modules) fetch "$1"; echo "$cache/kernels/$1/lib/modules/$(cat "$cache/kernels/$1/.release")" ;;
 arch)	flavour_of "$1"; echo "$arch" ;;

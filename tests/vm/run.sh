@@ -15,9 +15,10 @@ export EC_CACHE=$cache
 usage() {
 	cat >&2 <<-'END'
 	usage: run.sh [options] [--] COMMAND [ARG...]
-	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.12, 6.12-rt; 6.1-i386, 6.1-arm64, 6.1-s390x
-	                     with programs of that architecture (tests/vm/kernels.sh root)
-	                     and from the host the current folder's repository only
+	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.1-kcsan, 6.12, 6.12-rt;
+	                     6.1-i386, 6.1-arm64, 6.1-s390x with programs of that
+	                     architecture (tests/vm/kernels.sh root) and from the host the
+	                     current folder's repository only
 	  --smp N            CPUs (default 2)
 	  --mem MB           memory (default 1024)
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
@@ -33,7 +34,8 @@ usage() {
 	  -v                 print how long booting took
 	exit status: the command's; 70 the kernel reported a fault, 124 timeout,
 	  125 the guest died or something is missing here
-	environment: EC_ACCEL=kvm or tcg (else found out), EC_CACHE
+	environment: EC_ACCEL=kvm or tcg (else found out), EC_CACHE; EC_KCSAN_SKIP=N: with KCSAN
+	  one of up to N accesses is watched (100)
 	END
 	exit 125
 }
@@ -107,7 +109,8 @@ trap 'exit 130' INT
 trap 'exit 143' HUP TERM
 
 # --- initramfs: once per kernel and init script --------------------------------
-hash=$(cat "$here/guest-init.sh" "$here/run.sh" "$busybox" | sha256sum | cut -c1-12)
+hash=$({ cat "$here/guest-init.sh" "$here/run.sh" "$busybox"; stat -Lc '%s %Y' "$image"; } |
+	sha256sum | cut -c1-12)
 initrd=$cache/initramfs/$release-$hash.img
 
 build_initrd() {
@@ -211,6 +214,9 @@ else
 	append=" tsc=reliable$append"
 fi
 
+# KCSAN watches one of up to so many accesses of our modules
+[[ $kernel != *-kcsan ]] || append=" kcsan.skip_watch=${EC_KCSAN_SKIP:-100}$append"
+
 # --- what the guest is told ---------------------------------------------------
 ctl=$tmp/ctl
 mark="@ec-vm-end-$$-$RANDOM@"
@@ -311,6 +317,10 @@ if [ $allow_oops = 0 ]; then
 	if [ -n "$faults" ]; then
 		echo "run.sh: KERNEL FAULT (the command's status was $rc), see --dmesg FILE for all:" >&2
 		printf '%s\n' "$faults" >&2
+		# of KCSAN each race once, in full
+		awk '/BUG: KCSAN: / { title = $0; sub(/.*BUG: /, "", title); p = !seen[title]++ }
+			p { print "# " $0 }
+			/====/ { p = 0 }' "$log" >&2
 		exit 70
 	fi
 fi
