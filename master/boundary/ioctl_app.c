@@ -438,7 +438,7 @@ int ec_ioc_interval(struct ec_call *call)
 	/* the interval is that of the session which runs */
 	if (call->session == m->heir)
 		return 0;
-	m->links.access.interval_us = min_t(u32, i->interval_us, EC_MAX_INTERVAL_US);
+	WRITE_ONCE(m->links.access.interval_us, min_t(u32, i->interval_us, EC_MAX_INTERVAL_US));
 	m->links.access.interval_set = i->interval_us <= EC_MAX_INTERVAL_US;
 	return 0;
 }

@@ -29,7 +29,7 @@
 /* More than that is no lateness of a cycle, and would take SYNC to another one. */
 static s64 limit(const struct ec_dc *dc)
 {
-	u32 interval_us = READ_ONCE(dc->links->access.interval_us);
+	u32 interval_us = ec_access_interval_us(&dc->links->access);
 
 	return max_t(s64, interval_us * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }

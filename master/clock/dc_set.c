@@ -173,7 +173,9 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 /* clock frames that one send may carry */
 static unsigned int per_send(const struct ec_dc_job *j)
 {
-	return max(1u, READ_ONCE(j->dc->links->access.interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+	u32 interval_us = ec_access_interval_us(&j->dc->links->access);
+
+	return max(1u, interval_us * EC_SHARE_CLOCKS_PER_MS / 1000);
 }
 
 /*
@@ -339,7 +341,7 @@ static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
 void ec_dc_settle(struct ec_dc_job *j)
 {
 	struct ec_dc *dc = j->dc;
-	u32 interval_us = max(1u, READ_ONCE(dc->links->access.interval_us));
+	u32 interval_us = max(1u, ec_access_interval_us(&dc->links->access));
 	unsigned int i, cycles = max(1u, CALM_US / interval_us);
 	int ret = 0;
 

@@ -561,7 +561,7 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	if (!c->thread)
 		return;
 	ec_cycle_sched_log(c);
-	c->links->access.interval_us = max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC);
+	WRITE_ONCE(c->links->access.interval_us, max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC));
 	c->links->access.interval_set = true;
 	WRITE_ONCE(status(c->thread)->state, c->kernel.flags & EC_CYCLE_FLAG_WAIT ?
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);

@@ -41,7 +41,7 @@ static u16 time_bytes(u32 dc)
 static u32 most(const struct ec_cycle *c)
 {
 	u64 used = c->clocked.ns + ec_cycle_need_ns();
-	u64 budget = READ_ONCE(c->links->access.interval_us) * 900ULL;
+	u64 budget = ec_access_interval_us(&c->links->access) * 900ULL;
 
 	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
 }

@@ -158,7 +158,7 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 	s64 off, step;
 
 	if (set)
-		sc->interval_ns = READ_ONCE(c->links->access.interval_us) *
+		sc->interval_ns = ec_access_interval_us(&c->links->access) *
 				 (u32)NSEC_PER_USEC;
 	else if (sc->sends)
 		measure(c, sc, now - c->links->access.last_send_ns);

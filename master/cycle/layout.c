@@ -390,7 +390,8 @@ static bool has_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
  */
 int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
 {
-	u64 interval = c->kernel.period_ns ?: c->links->access.interval_us * (u64)NSEC_PER_USEC;
+	u64 interval = c->kernel.period_ns ?:
+		       ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC;
 	const struct ec_cyc_wire *w = clocks ? &c->clocked : &c->plain;
 
 	lockdep_assert_held(c->wanted->lock);
@@ -414,7 +415,7 @@ void ec_cycle_tell_room(struct ec_cycle *c)
 	lockdep_assert_held(c->wanted->lock);
 	if (!c->room_logged && !c->links->access.interval_set &&
 	    ec_read64(&c->sends) > MEASURED)
-		has_room(c, READ_ONCE(c->links->access.interval_us) * (u64)NSEC_PER_USEC,
+		has_room(c, ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC,
 			 READ_ONCE(c->links->access.wire_ns));
 }
 

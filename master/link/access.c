@@ -173,7 +173,8 @@ void ec_access_leave(struct ec_links *l)
  */
 bool ec_access_timed_out(struct ec_links *l)
 {
-	s64 limit = max_t(s64, 10LL * l->access.interval_us * NSEC_PER_USEC, 20 * NSEC_PER_MSEC);
+	s64 limit = max_t(s64, 10LL * ec_access_interval_us(&l->access) * NSEC_PER_USEC,
+			  20 * NSEC_PER_MSEC);
 
 	/* it may send between the two readings of the clock */
 	return (s64)(ktime_get_ns() - ec_read64(&l->access.last_send_ns)) > limit;
@@ -226,7 +227,7 @@ void ec_access_poll(struct ec_links *l)
  */
 u32 ec_access_slack_ns(const struct ec_links *l)
 {
-	u64 budget = READ_ONCE(l->access.interval_us) * 900ULL;
+	u64 budget = ec_access_interval_us(&l->access) * 900ULL;
 	u32 used = READ_ONCE(l->access.wire_ns);
 
 	if (READ_ONCE(l->access.mode) != EC_ACCESS_CYCLIC)

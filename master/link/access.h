@@ -67,4 +67,10 @@ static inline bool ec_access_is_cyclic(const struct ec_access *a)
 	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
 }
 
+/* The caller of the cycle measures it while others plan by it. */
+static inline u32 ec_access_interval_us(const struct ec_access *a)
+{
+	return READ_ONCE(a->interval_us);
+}
+
 #endif

@@ -36,7 +36,7 @@ MODULE_PARM_DESC(max_acyclic, "Most acyclic frames that one cyclic send carries,
  */
 u16 ec_share_clock_bytes(const struct ec_links *l)
 {
-	u32 frames = max(1u, READ_ONCE(l->access.interval_us) * EC_SHARE_CLOCKS_PER_MS / 1000);
+	u32 frames = max(1u, ec_access_interval_us(&l->access) * EC_SHARE_CLOCKS_PER_MS / 1000);
 	u32 bytes = ec_access_slack_ns(l) / 2 / frames / 80;
 
 	/* what ec_frame_wire_ns() adds, and the headers */
@@ -54,7 +54,7 @@ u16 ec_share_clock_bytes(const struct ec_links *l)
  */
 void ec_share_begin(struct ec_links *l)
 {
-	u32 more = l->access.interval_us * EC_SHARE_CLOCKS_PER_MS;
+	u32 more = ec_access_interval_us(&l->access) * EC_SHARE_CLOCKS_PER_MS;
 
 	l->share.frames = 0;
 	l->share.wire_ns = 0;
@@ -67,7 +67,7 @@ void ec_share_begin(struct ec_links *l)
  */
 static struct ec_queue *next_frame(struct ec_links *l, struct ec_queued *next)
 {
-	u32 most = clamp(l->access.interval_us * EC_SHARE_PER_MS / 1000, 1u,
+	u32 most = clamp(ec_access_interval_us(&l->access) * EC_SHARE_PER_MS / 1000, 1u,
 			 READ_ONCE(ec_share_max));
 	struct ec_queues *qs = &l->queues;
 	bool clocks = l->share.clock_credit >= 1000;
@@ -87,7 +87,7 @@ static struct ec_queue *next_frame(struct ec_links *l, struct ec_queued *next)
  */
 static bool fits(struct ec_links *l, u32 used_ns, u32 frame_ns)
 {
-	u64 budget = l->access.interval_us * 900ULL;
+	u64 budget = ec_access_interval_us(&l->access) * 900ULL;
 
 	if (used_ns + (u64)frame_ns > budget)
 		return false;
@@ -98,7 +98,7 @@ static bool fits(struct ec_links *l, u32 used_ns, u32 frame_ns)
 static void find_room(const struct ec_links *l, const struct ec_queue *q, u32 used_ns,
 		      struct ec_pack_room *room)
 {
-	u32 budget = l->access.interval_us * 900, half = ec_access_slack_ns(l) / 2;
+	u32 budget = ec_access_interval_us(&l->access) * 900, half = ec_access_slack_ns(l) / 2;
 	u32 ns = min(budget - min(budget, used_ns), half - min(half, l->share.wire_ns));
 	/* what ec_frame_wire_ns() adds, and the header */
 	u32 bytes = ns / 80 - min(ns / 80, 8u + 4 + 12 + EC_ETH_HDR);
@@ -203,6 +203,6 @@ void ec_share_send_between(struct ec_links *l)
 {
 	u64 since = ktime_get_ns() - ec_read64(&l->access.last_send_ns);
 
-	if (since + ec_frame_wire_ns(EC_ETH_MAX) < l->access.interval_us * 900ULL)
+	if (since + ec_frame_wire_ns(EC_ETH_MAX) < ec_access_interval_us(&l->access) * 900ULL)
 		ec_share_send_left(l, since);
 }

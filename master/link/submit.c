@@ -52,6 +52,7 @@ int ec_submit(struct ec_links *l, struct ec_slot *slot, bool urgent)
  */
 void ec_submit_wait_begin(const struct ec_links *l, struct ec_submit_wait *w)
 {
+	u32 interval_us = ec_access_interval_us(&l->access);
 	u32 late_per_s = READ_ONCE(l->share.late_per_s);	/* a takeover may change it */
 	u32 turns;
 
@@ -67,12 +68,12 @@ void ec_submit_wait_begin(const struct ec_links *l, struct ec_submit_wait *w)
 	}
 	w->turns = TURN_CYCLES;
 	if (w->clock)
-		w->turns = clamp_t(u32, CLOCK_US / max(l->access.interval_us, 1000u), CLOCK_CYCLES,
+		w->turns = clamp_t(u32, CLOCK_US / max(interval_us, 1000u), CLOCK_CYCLES,
 				   TURN_CYCLES);
-	w->timeout_us += w->turns * max(l->access.interval_us, 1000u);
+	w->timeout_us += w->turns * max(interval_us, 1000u);
 	/* the worst: each send carries one of those that wait, every second one is urgent */
 	turns = min(2 * (ec_queue_frames(&l->queues) + 1), 2u * EC_SLOTS);
-	w->turn_ns += (u64)turns * l->access.interval_us * NSEC_PER_USEC;
+	w->turn_ns += (u64)turns * interval_us * NSEC_PER_USEC;
 	/* worse: and only when it may be late */
 	if (late_per_s)
 		w->turn_ns += (u64)turns * (NSEC_PER_SEC / late_per_s);
