@@ -48,12 +48,12 @@ static void check_links(struct watch *w)
 /* A slave nobody is bringing somewhere has another status than before. */
 static void log_change(const struct ec_slave *s, u16 status, u16 code)
 {
-	u8 state = status & EC_AL_STATE_MASK, before = s->al_status & EC_AL_STATE_MASK;
+	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
 
-	if (status & EC_AL_ERROR && !(s->al_status & EC_AL_ERROR))
+	if (status & EC_AL_ERROR && !(READ_ONCE(s->al_status) & EC_AL_ERROR))
 		ec_slave_warn(s, "AL state %s with error, AL status code 0x%04x (%s)\n",
 			      ec_al_state_name(state), code, ec_al_code_text(code));
-	else if (state < before && before == s->requested)
+	else if (state < before && before == READ_ONCE(s->requested))
 		ec_slave_warn(s, "AL state %s left without request, now %s\n",
 			      ec_al_state_name(before), ec_al_state_name(state));
 }
@@ -85,7 +85,7 @@ static bool check_slaves(struct ec_master *m)
 		struct ec_slave *s = m->bus.slaves[i];
 		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
 
-		if (!dg[i].err && !dg[i].wkc && s->error != EC_SLAVE_SCAN_FAILED)
+		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
@@ -93,12 +93,12 @@ static bool check_slaves(struct ec_master *m)
 		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != reads[i])
 			continue;
 		log_change(s, status, code);
-		if (status != s->al_status || code != s->al_code) {
+		if (status != READ_ONCE(s->al_status) || code != READ_ONCE(s->al_code)) {
 			WRITE_ONCE(s->al_status, status);
 			WRITE_ONCE(s->al_code, code);
 		}
 		/* fallen back by itself: bring it up again */
-		if (!s->error && (status & EC_AL_STATE_MASK) != s->requested)
+		if (!READ_ONCE(s->error) && (status & EC_AL_STATE_MASK) != READ_ONCE(s->requested))
 			ec_slave_kick(s);
 	}
 out:
@@ -127,10 +127,10 @@ static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		const struct ec_slave *s = m->bus.slaves[i];
 
-		if (s->error == EC_SLAVE_SCAN_FAILED)
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
-		want = want ?: s->requested;
-		if (s->requested != want || s->al_status != want)
+		want = want ?: READ_ONCE(s->requested);
+		if (READ_ONCE(s->requested) != want || READ_ONCE(s->al_status) != want)
 			return false;
 	}
 	return ored == want && wkc >= replying(m);
@@ -238,7 +238,7 @@ static bool is_due(const struct ec_slave *s, u64 now)
 {
 	u64 at = ec_read64(&s->retry_ns);
 
-	return (s->error || s->silent) && at && now >= at;
+	return (READ_ONCE(s->error) || READ_ONCE(s->silent)) && at && now >= at;
 }
 
 /*
@@ -261,7 +261,7 @@ static void try_again(struct watch *w)
 
 		if (!is_due(s, now))
 			continue;
-		if (s->error == EC_SLAVE_SCAN_FAILED || s->silent) {
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
 			dg[n] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2,
 						    b[n]);
 			due[n++] = s;
@@ -290,9 +290,10 @@ static void want_states(struct ec_master *m)
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
 
-		if (s->error == EC_SLAVE_SCAN_FAILED)
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
-		if (s->al_status != s->requested || s->reconfigure || !s->ours)
+		if (READ_ONCE(s->al_status) != READ_ONCE(s->requested) ||
+		    READ_ONCE(s->reconfigure) || !s->ours)
 			ec_slave_kick(s);
 	}
 }

@@ -73,7 +73,7 @@ int ec_ioc_state(struct ec_call *call)
 	if (!ec_al_state_valid(i->state))
 		return ec_refuse(call, -EINVAL, "%u is no AL state; use INIT, PREOP, BOOT, SAFEOP or OP",
 				 i->state);
-	s->error = s->error == EC_SLAVE_CONFIG_FAILED ? EC_SLAVE_OK : s->error;
+	ec_slave_forgive(s);
 	ec_slave_request(s, i->state);
 	return 0;
 }
@@ -107,12 +107,11 @@ static bool wanted_in_op(const struct ec_session *session, const struct ec_slave
 
 static void try_again(const struct ec_session *session, struct ec_slave *s)
 {
-	bool op = wanted_in_op(session, s) && s->error != EC_SLAVE_SCAN_FAILED;
+	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 
-	if (s->error == EC_SLAVE_CONFIG_FAILED) {
-		s->error = EC_SLAVE_OK;
-		s->reconfigure = true;
-	} else if (!op || s->requested == EC_AL_OP) {
+	if (ec_slave_forgive(s)) {
+		WRITE_ONCE(s->reconfigure, true);
+	} else if (!op || READ_ONCE(s->requested) == EC_AL_OP) {
 		return;
 	}
 	if (op)

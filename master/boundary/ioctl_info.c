@@ -140,8 +140,8 @@ int ec_ioc_master(struct ec_call *call)
 	if (ret)
 		return ret;
 	/* one that is gone has left its position to another slave */
-	i->ref_clock = m->dc.ref && !m->dc.ref->stop.gone && READ_ONCE(m->dc.ref_station) ?
-		       m->dc.ref->position : -1;
+	i->ref_clock = m->dc.ref && !READ_ONCE(m->dc.ref->stop.gone) &&
+		       READ_ONCE(m->dc.ref_station) ? m->dc.ref->position : -1;
 	if (m->session)
 		session_info(m->session, i);
 	ec_show_end(&m->base->show);
@@ -275,15 +275,15 @@ static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec
 int ec_ioc_slave(struct ec_call *call)
 {
 	struct ec_ioc_slave *i = call->arg;
-	const struct ec_slave *s = call->slave;
+	struct ec_slave *s = call->slave;
 	u16 feat = ec_slave_features(s);
 
 	i->station = s->station;
 	i->alias = s->alias;
-	i->al_status = s->al_status;
-	i->al_code = s->al_code;
-	i->al_requested = s->requested;
-	i->error = s->error;
+	i->al_status = READ_ONCE(s->al_status);
+	i->al_code = READ_ONCE(s->al_code);
+	i->al_requested = READ_ONCE(s->requested);
+	i->error = READ_ONCE(s->error);
 	i->vendor_id = s->info.vendor;
 	i->product_code = s->info.product;
 	i->revision_number = s->info.revision;
@@ -311,8 +311,8 @@ int ec_ioc_slave(struct ec_call *call)
 	i->dl_status = s->dl_status;
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
-	strscpy(i->why, s->why, sizeof(i->why));
-	strscpy(i->warning, s->warning[0] ? s->warning : s->sii_flaw, sizeof(i->warning));
+	ec_slave_why(s, i->why, sizeof(i->why));
+	ec_slave_warning(s, i->warning, sizeof(i->warning));
 	return slave_ports(call->master, s, i) ?: slave_alias(call->master, s, i) ?:
 	       slave_config(call->master, s, i);
 }

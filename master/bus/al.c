@@ -36,7 +36,7 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 	for (;;) {
 		ret = ec_xfer_fpwr(slave->bus->links, slave->station, EC_REG_AL_CONTROL, b,
 				   sizeof(b));
-		if (ret != -EIO || slave->stop.gone)
+		if (ret != -EIO || READ_ONCE(slave->stop.gone))
 			return ret;
 		if (ktime_get_ns() > until_ns)
 			return -ETIME;
@@ -57,9 +57,9 @@ static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 un
 		if (ret && ret != -ETIMEDOUT)
 			return ret;
 		if (!ret) {
-			if ((slave->al_status & mask) == value)
+			if ((READ_ONCE(slave->al_status) & mask) == value)
 				return 0;
-			if (errors && slave->al_status & EC_AL_ERROR)
+			if (errors && READ_ONCE(slave->al_status) & EC_AL_ERROR)
 				return -EPROTO;
 		}
 		if (ec_stop_worker(&slave->stop))
@@ -81,7 +81,7 @@ static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 un
 int ec_al_ack(struct ec_slave *slave)
 {
 	u64 until = ktime_get_ns() + 1000 * NSEC_PER_MSEC;
-	u16 state = slave->al_status & EC_AL_STATE_MASK;
+	u16 state = READ_ONCE(slave->al_status) & EC_AL_STATE_MASK;
 	int ret;
 
 	/* with device emulation the acknowledge would come back as an error */
@@ -108,19 +108,20 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	int ret;
 
 	if (!timeout_ms)
-		timeout_ms = ec_al_timeout_ms(slave->al_status & EC_AL_STATE_MASK, state);
+		timeout_ms = ec_al_timeout_ms(READ_ONCE(slave->al_status) & EC_AL_STATE_MASK,
+					      state);
 	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
 	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
-		     ec_al_state_name(slave->al_status & EC_AL_STATE_MASK), timeout_ms);
+		     ec_al_state_name(READ_ONCE(slave->al_status) & EC_AL_STATE_MASK), timeout_ms);
 	ret = request(slave, state, until);
 	if (!ret)
 		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
-	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x", slave->al_status,
-			    slave->al_code);
+	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x",
+			    READ_ONCE(slave->al_status), READ_ONCE(slave->al_code));
 	if (ret == -EPROTO) {
-		code = slave->al_code;
+		code = READ_ONCE(slave->al_code);
 		ec_al_ack(slave);
-		slave->al_code = code;
+		WRITE_ONCE(slave->al_code, code);
 	}
 	return ret;
 }

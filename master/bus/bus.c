@@ -97,7 +97,7 @@ struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position)
 /* No slave on its way to another state, PDOs read. */
 static bool slave_settled(struct ec_slave *s)
 {
-	return s->stop.gone || (!ec_slave_busy(s) && !ec_slave_pdos_pending(s));
+	return READ_ONCE(s->stop.gone) || (!ec_slave_busy(s) && !ec_slave_pdos_pending(s));
 }
 
 static bool slaves_settled(struct ec_bus *bus)

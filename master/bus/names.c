@@ -148,7 +148,7 @@ bool ec_names_pending(const struct ec_slave *s)
 	u16 index, sub;
 
 	lockdep_assert_held(&s->lock);
-	return s->pdos_known && !s->names_done && !s->error && s->has_general &&
+	return s->pdos_known && !s->names_done && !READ_ONCE(s->error) && s->has_general &&
 	       s->general.coe & EC_SII_COE_SDO_INFO &&
 	       !ec_access_is_cyclic(&s->bus->links->access) &&
 	       !ec_mbox_check(&s->mbox, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&

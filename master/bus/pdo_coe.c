@@ -170,9 +170,8 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
 void ec_slave_clear_warning(struct ec_slave *s)
 {
 	lockdep_assert_held(&s->lock);
-	strscpy(s->warning, s->pdos_unread ?
-		"PDOs could not be read over CoE; those of the EEPROM are used" : "",
-		sizeof(s->warning));
+	ec_slave_set_warning(s, "%s", s->pdos_unread ?
+			     "PDOs could not be read over CoE; those of the EEPROM are used" : "");
 }
 
 /**
@@ -191,7 +190,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	int ret = 0;
 
 	lockdep_assert_held(&s->lock);
-	for (sm = 2; sm < s->n_sms && !s->stop.gone; sm++) {
+	for (sm = 2; sm < s->n_sms && !READ_ONCE(s->stop.gone); sm++) {
 		ret = ec_slave_read_sm_pdos(s, sm);
 		if (ret && ret != -ENOENT)
 			break;

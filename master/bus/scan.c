@@ -173,7 +173,7 @@ static void count_claims(struct scan *sc)
 /* One that failed in the scan is read anew; one that refused a state is the same. */
 static bool is_usable(const struct ec_slave *s)
 {
-	return !s->error || s->silent ||
+	return !READ_ONCE(s->error) || READ_ONCE(s->silent) ||
 	       (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
 }
 
@@ -187,7 +187,8 @@ static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool 
 
 	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
 		return NULL;
-	return s->silent || (s->sii && s->error != EC_SLAVE_SCAN_FAILED) ? s : NULL;
+	return READ_ONCE(s->silent) ||
+	       (s->sii && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) ? s : NULL;
 }
 
 /* The slave that could not be read when it was at @i, or NULL. */
@@ -195,7 +196,7 @@ static const struct ec_slave *unreadable(const struct ec_bus *bus, unsigned int 
 {
 	const struct ec_slave *s = i < bus->n_slaves ? bus->slaves[i] : NULL;
 
-	return s && s->error == EC_SLAVE_SCAN_FAILED && !s->silent ? s : NULL;
+	return s && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent) ? s : NULL;
 }
 
 /* What was read of the EEPROM by the scan before. */
@@ -220,7 +221,7 @@ static void take_failure(struct scan *sc, struct ec_slave *s)
 
 static void set_silent(struct scan *sc, struct ec_slave *s)
 {
-	if (s->silent)
+	if (READ_ONCE(s->silent))
 		return;
 	sc->changed = true;
 	WRITE_ONCE(s->silent, true);
@@ -233,12 +234,11 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 
 static void set_answers(struct scan *sc, struct ec_slave *s)
 {
-	if (!s->silent)
+	if (!READ_ONCE(s->silent))
 		return;
 	sc->changed = true;
-	s->silent = false;
-	s->error = EC_SLAVE_OK;
-	s->why[0] = '\0';
+	WRITE_ONCE(s->silent, false);
+	ec_slave_set_ok(s);
 	s->retry_ms = 0;
 	ec_write64(&s->retry_ns, 0);
 	ec_slave_info(s, "slave replies again\n");
@@ -303,7 +303,7 @@ static void take_regs(struct scan *sc)
 			continue;	/* its registers are those seen last */
 		}
 		set_answers(sc, s);
-		if (s->error == EC_SLAVE_SCAN_FAILED) {
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED) {
 			/* the next one hangs behind it, as far as can be told */
 			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
 			continue;
@@ -330,14 +330,14 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 	for (i = 0; i < sc->n; i++) {
 		struct ec_slave *s = sc->slaves[i];
 
-		if (s->error != EC_SLAVE_SCAN_FAILED || s->silent)
+		if (READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent))
 			continue;
 		if (s->part)
 			s->retry_ms = 0;	/* go on soon */
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	}
 	for (i = 0; i < n; i++) {
-		if (fresh[i]->error)
+		if (READ_ONCE(fresh[i]->error))
 			continue;
 		/* left by the one that could not be read */
 		fresh[i]->why[0] = '\0';
@@ -354,7 +354,7 @@ static int read_new(struct scan *sc)
 	if (!fresh)
 		return -ENOMEM;
 	for (i = 0; i < sc->n; i++)
-		if (!sc->slaves[i]->sii && !sc->slaves[i]->error)
+		if (!sc->slaves[i]->sii && !READ_ONCE(sc->slaves[i]->error))
 			fresh[n++] = sc->slaves[i];
 	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
 	ec_scan_sii(sc->bus, fresh, n, sc->fresh);
@@ -417,7 +417,8 @@ static bool differs(const struct scan *sc)
 		return true;
 	for (i = 0; i < sc->n; i++)
 		if (sc->slaves[i] != sc->bus->slaves[i] &&
-		    !(unreadable(sc->bus, i) && sc->slaves[i]->error == EC_SLAVE_SCAN_FAILED))
+		    !(unreadable(sc->bus, i) &&
+		      READ_ONCE(sc->slaves[i]->error) == EC_SLAVE_SCAN_FAILED))
 			return true;
 	return false;
 }
@@ -440,7 +441,7 @@ static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
 {
 	char text[128];
 
-	if (!sc->n || s->error == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
+	if (!sc->n || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
 		return;
 	ec_slave_lost_text(s, text, sizeof(text));
 	ec_warn_each(sc->bus, s->position + 1, "%s, last seen %llu ms ago\n", text,

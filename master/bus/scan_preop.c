@@ -70,12 +70,12 @@ static void look(struct job *j)
 		if (!j->dg[i].err && j->dg[i].wkc == 1) {
 			c->slave->al_status = get_unaligned_le16(c->al);
 			c->slave->al_code = get_unaligned_le16(c->al + 4);
-			if (c->slave->al_status == EC_AL_PREOP) {
+			if (READ_ONCE(c->slave->al_status) == EC_AL_PREOP) {
 				c->slave->ours = true;
 				c->slave->clean = j->clean;
 				continue;
 			}
-			if (c->slave->al_status & EC_AL_ERROR)
+			if (READ_ONCE(c->slave->al_status) & EC_AL_ERROR)
 				continue;
 		}
 		j->c[left++].slave = c->slave;
@@ -104,12 +104,12 @@ void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 	if (!j.c || !j.dg)
 		goto out;
 	for (i = 0; i < n; i++)
-		if (slaves[i]->sii && !slaves[i]->error &&
-		    slaves[i]->al_status == EC_AL_INIT)
+		if (slaves[i]->sii && !READ_ONCE(slaves[i]->error) &&
+		    READ_ONCE(slaves[i]->al_status) == EC_AL_INIT)
 			j.c[j.n++].slave = slaves[i];
 	if (j.n)
 		start(&j);
-	while (j.n && !bus->base->stopping && ktime_get_ns() < until) {
+	while (j.n && !READ_ONCE(bus->base->stopping) && ktime_get_ns() < until) {
 		usleep_range(us, us + us / 4);
 		us = min(us * 2, 2000u);
 		look(&j);

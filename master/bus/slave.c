@@ -39,6 +39,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->requested = EC_AL_PREOP;
 	INIT_WORK(&s->work, work);
 	mutex_init(&s->lock);
+	raw_spin_lock_init(&s->note_lock);
 	s->stop.base = bus->base;
 	s->mbox.base = bus->base;
 	s->mbox.links = bus->links;
@@ -171,6 +172,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 {
 	char text[EC_UAPI_REASON];
 	va_list args;
+	int other;
 
 	/* a worker that was still at it: what it meets is no cause of its own */
 	if (READ_ONCE(slave->silent) && error == EC_SLAVE_CONFIG_FAILED)
@@ -178,11 +180,102 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 	va_start(args, fmt);
 	vscnprintf(text, sizeof(text), fmt, args);
 	va_end(args);
-	slave->error = error;
-	if (strcmp(slave->why, text)) {
+	raw_spin_lock(&slave->note_lock);
+	WRITE_ONCE(slave->error, error);
+	other = strcmp(slave->why, text);
+	if (other)
 		strscpy(slave->why, text, sizeof(slave->why));
+	raw_spin_unlock(&slave->note_lock);
+	if (other)
 		ec_slave_warn(slave, "%s\n", text);
-	}
+}
+
+/**
+ * ec_slave_set_ok() - the slave has no error any more
+ * @slave: slave
+ *
+ * Context: Any.
+ */
+void ec_slave_set_ok(struct ec_slave *slave)
+{
+	raw_spin_lock(&slave->note_lock);
+	WRITE_ONCE(slave->error, EC_SLAVE_OK);
+	slave->why[0] = '\0';
+	raw_spin_unlock(&slave->note_lock);
+}
+
+/**
+ * ec_slave_forgive() - let the worker try again what failed in the configuration
+ * @slave: slave
+ *
+ * The cause remains, so that it is not logged again.
+ *
+ * Context: Any.
+ * Return: whether the configuration had failed.
+ */
+bool ec_slave_forgive(struct ec_slave *slave)
+{
+	bool failed;
+
+	raw_spin_lock(&slave->note_lock);
+	failed = slave->error == EC_SLAVE_CONFIG_FAILED;
+	if (failed)
+		WRITE_ONCE(slave->error, EC_SLAVE_OK);
+	raw_spin_unlock(&slave->note_lock);
+	return failed;
+}
+
+/**
+ * ec_slave_why() - the cause of a slave's error
+ * @slave: slave
+ * @buf: result
+ * @size: of @buf
+ *
+ * Context: Any.
+ * Return: @buf.
+ */
+const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size)
+{
+	raw_spin_lock(&slave->note_lock);
+	strscpy(buf, slave->why, size);
+	raw_spin_unlock(&slave->note_lock);
+	return buf;
+}
+
+/**
+ * ec_slave_warning() - what is not certain of a slave's process data, or wrong with its EEPROM
+ * @slave: slave
+ * @buf: result, empty: nothing
+ * @size: of @buf
+ *
+ * Context: Any.
+ */
+void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size)
+{
+	raw_spin_lock(&slave->note_lock);
+	strscpy(buf, slave->warning[0] ? slave->warning : slave->sii_flaw, size);
+	raw_spin_unlock(&slave->note_lock);
+}
+
+/**
+ * ec_slave_set_warning() - note what is not certain of a slave's process data
+ * @slave: slave, @lock held
+ * @fmt: text, empty: nothing
+ *
+ * Context: Process.
+ */
+void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...)
+{
+	char text[EC_UAPI_WARNING];
+	va_list args;
+
+	lockdep_assert_held(&slave->lock);
+	va_start(args, fmt);
+	vscnprintf(text, sizeof(text), fmt, args);
+	va_end(args);
+	raw_spin_lock(&slave->note_lock);
+	strscpy(slave->warning, text, sizeof(slave->warning));
+	raw_spin_unlock(&slave->note_lock);
 }
 
 /**

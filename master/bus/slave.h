@@ -5,6 +5,7 @@
 
 #include <linux/kref.h>
 #include <linux/mutex.h>
+#include <linux/spinlock.h>
 #include <linux/workqueue.h>
 #include "ethercat.h"
 #include "../mailbox/mailbox.h"
@@ -84,6 +85,8 @@ struct ec_bus;
  * @al_reads: how often a worker has read the two: what was asked for before
  *	is older
  * @requested: AL state it shall reach
+ * @note_lock: protects @why and @warning, and @error where it changes; who does not hold
+ *	@lock copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
  * @pdo_refusal: the first PDO mapping or assignment it refused since it was configured
@@ -166,6 +169,7 @@ struct ec_slave {
 	u16 al_code;
 	u32 al_reads;
 	u8 requested;
+	raw_spinlock_t note_lock;
 	u8 error;
 	char why[EC_UAPI_REASON];
 	char pdo_refusal[EC_UAPI_REASON];
@@ -210,6 +214,11 @@ void ec_slave_kick(struct ec_slave *slave);
 bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
+void ec_slave_set_ok(struct ec_slave *slave);
+bool ec_slave_forgive(struct ec_slave *slave);
+const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
+void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);
+void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...) __printf(2, 3);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
 size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
 

@@ -152,7 +152,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 {
 	struct ec_dc *dc = j->dc;
 	u16 before = READ_ONCE(dc->ref_station), now;
-	bool lost = before && dc->ref && dc->ref->stop.gone;
+	bool lost = before && dc->ref && READ_ONCE(dc->ref->stop.gone);
 
 	if (found)
 		set_ref(j);

@@ -37,7 +37,7 @@ void ec_dc_job_free(struct ec_dc_job *j)
 
 static bool has_times(const struct ec_slave *s)
 {
-	return ec_slave_features(s) & EC_FEAT_DC && s->error != EC_SLAVE_SCAN_FAILED;
+	return ec_slave_features(s) & EC_FEAT_DC && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
 
 static bool is_clock(const struct ec_dc_job *j, unsigned int i)
@@ -182,7 +182,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
 		j->slaves[i] = ec_slave_ref(dc->bus->slaves[i]);
-	if (dc->ref && dc->ref->dc_set && !dc->ref->stop.gone)
+	if (dc->ref && dc->ref->dc_set && !READ_ONCE(dc->ref->stop.gone))
 		j->followed = dc->ref->station;
 	up_read(&dc->bus->topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
@@ -283,7 +283,7 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 		j->nodes[i].dc = false;
 		if (s->dc_delay_only)
 			continue;
-		if (!s->dc_out && !s->stop.gone)
+		if (!s->dc_out && !READ_ONCE(s->stop.gone))
 			ec_slave_warn(s, "no valid reply to DC register access in %d attempts; clock excluded until it replies\n",
 				      EC_DC_OUT_TRIES);
 		WRITE_ONCE(s->dc_out, true);

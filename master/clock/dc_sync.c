@@ -98,7 +98,8 @@ int ec_dc_sync_stop(struct ec_slave *s)
  */
 void ec_dc_sync_again(struct ec_slave *s)
 {
-	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP || s->stop.gone)
+	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP ||
+	    READ_ONCE(s->stop.gone))
 		return;
 	ec_slave_warn(s, "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
 	WRITE_ONCE(s->reconfigure, true);
@@ -177,7 +178,7 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
-	u32 interval_us = READ_ONCE(s->bus->links->access.interval_us);
+	u32 interval_us = ec_access_interval_us(&s->bus->links->access);
 	u64 cycles = (u64)LEAD_CYCLES * interval_us * NSEC_PER_USEC;
 	s64 most = HALF32_NS - period - LEAD_NS;
 

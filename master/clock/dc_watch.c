@@ -63,7 +63,8 @@ static void tell_far(struct ec_dc *dc)
 		const struct ec_slave *s = dc->bus->slaves[i];
 		u32 diff = abs(READ_ONCE(s->dc_diff));
 
-		if (!READ_ONCE(s->dc_set) || s->stop.gone || s->station == dc->ref_station)
+		if (!READ_ONCE(s->dc_set) || READ_ONCE(s->stop.gone) ||
+		    s->station == dc->ref_station)
 			continue;
 		clocks++;
 		far += s->dc_far;
@@ -94,7 +95,7 @@ static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from
 	for (; from < dc->bus->n_slaves && b->n < BATCH; from++) {
 		struct ec_slave *s = dc->bus->slaves[from];
 
-		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || s->stop.gone)
+		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || READ_ONCE(s->stop.gone))
 			continue;
 		b->dg[b->n] = (struct ec_dg)EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_DIFF, 4,
 						  b->value[b->n]);

@@ -23,21 +23,23 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 
 static int failed(struct ec_slave *s, u8 state, int ret)
 {
+	u16 code = READ_ONCE(s->al_code);
+
 	if (ret == -EPROTO && state == EC_AL_SAFEOP && s->pdo_refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", s->pdo_refusal,
-			      s->al_code, ec_al_code_text(s->al_code));
+			      code, ec_al_code_text(code));
 	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
 			      ret == -ETIME ? "not reached in time" : "refused");
 	else if (ret == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s refused: AL status code 0x%04x (%s)",
-			      ec_al_state_name(state), s->al_code, ec_al_code_text(s->al_code));
+			      ec_al_state_name(state), code, ec_al_code_text(code));
 	else if (ret == -ETIME)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s not reached in time, AL state %s",
 			      ec_al_state_name(state),
-			      ec_al_state_name(s->al_status & EC_AL_STATE_MASK));
+			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
 		 ret != -EOVERFLOW && ret != -ERANGE)	/* told already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "communication failed before %s (%pe)",
@@ -51,9 +53,10 @@ static int failed(struct ec_slave *s, u8 state, int ret)
  */
 static bool is_transient(const struct ec_slave *s, int ret)
 {
+	u16 code = READ_ONCE(s->al_code);
+
 	if (ret == -EPROTO)
-		return s->al_code == EC_AL_CODE_NO_OUTPUTS ||
-		       s->al_code == EC_AL_CODE_SM_WATCHDOG;
+		return code == EC_AL_CODE_NO_OUTPUTS || code == EC_AL_CODE_SM_WATCHDOG;
 	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
 	       ret == -EBUSY;
 }
@@ -85,7 +88,7 @@ static int set_state(struct ec_slave *s, u8 state)
 
 	waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
 		     state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" : "the slave to change its state");
-	ret = ec_al_set(s, state, limit(s, s->al_status & EC_AL_STATE_MASK, state));
+	ret = ec_al_set(s, state, limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
 	waits_for(s, NULL);
 	return ret;
 }
@@ -173,7 +176,7 @@ static int to_init(struct ec_slave *s)
 		ec_dc_sync_stop(s);
 	ec_mbox_reset(&s->mbox);
 	s->op_only = 0;
-	s->reconfigure = false;
+	WRITE_ONCE(s->reconfigure, false);
 	s->ours = false;
 	s->clean = false;
 	return 0;
@@ -315,7 +318,7 @@ static int wait_outputs(struct ec_slave *s)
 	if (!s->plan)
 		return 0;
 	cycles = cycles_twice(s->plan);
-	limit = 5000 + div_u64((u64)cycles * s->bus->links->access.interval_us, 500);
+	limit = 5000 + div_u64((u64)cycles * ec_access_interval_us(&s->bus->links->access), 500);
 	from = ec_read64(s->plan->wanted->sends);
 	/* a poll: the cycle wakes no thread of the master */
 	for (i = 0; i < limit; i++) {
@@ -379,7 +382,7 @@ static void take_plan(struct ec_slave *s)
 	if (!c || !smp_load_acquire(&c->wanted->active) || s->plan == c)
 		return;
 	s->plan = c;
-	s->reconfigure = true;
+	WRITE_ONCE(s->reconfigure, true);
 }
 
 /*
@@ -395,7 +398,7 @@ static int start_clean(struct ec_slave *s)
 	if (ret)
 		s->clean = false;
 	else
-		s->reconfigure = false;
+		WRITE_ONCE(s->reconfigure, false);
 	return 0;
 }
 
@@ -403,20 +406,22 @@ static int start_clean(struct ec_slave *s)
 static int step(struct ec_slave *s)
 {
 	u8 want = READ_ONCE(s->requested), cur;
+	bool anew;
 	int ret = ec_al_read(s);
 
 	lockdep_assert_held(&s->lock);
 	if (ret)
 		return ret;
-	if (s->al_status & EC_AL_ERROR && !s->emulation) {
+	if (READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation) {
 		ret = ec_al_ack(s);
 		if (ret)
-			return failed(s, s->al_status & EC_AL_STATE_MASK, ret);
+			return failed(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, ret);
 	}
-	cur = s->al_status & EC_AL_STATE_MASK;
-	if (cur == EC_AL_PREOP && s->clean && s->ours && s->reconfigure && want > EC_AL_PREOP)
+	cur = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
+	anew = READ_ONCE(s->reconfigure) && want > EC_AL_PREOP;
+	if (cur == EC_AL_PREOP && s->clean && s->ours && anew)
 		return start_clean(s);
-	if (cur != EC_AL_INIT && (!s->ours || (s->reconfigure && want > EC_AL_PREOP)))
+	if (cur != EC_AL_INIT && (!s->ours || anew))
 		return to_init(s);
 	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
 		return ec_apply_clear_fmmus(s);
@@ -448,9 +453,9 @@ static void log_return(struct ec_slave *s)
 {
 	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 
-	if (s->seen_ns && s->plan && s->al_status == EC_AL_OP)
+	if (s->seen_ns && s->plan && READ_ONCE(s->al_status) == EC_AL_OP)
 		ec_slave_info(s, "back in OP, %llu ms after it was last seen\n", ms);
-	if (!s->plan || s->al_status == EC_AL_OP)
+	if (!s->plan || READ_ONCE(s->al_status) == EC_AL_OP)
 		s->seen_ns = 0;
 }
 
@@ -472,13 +477,13 @@ void ec_apply(struct ec_slave *s)
 		ret = step(s);
 	}
 	release_mailbox(s);
-	if (ret == 1 && s->error != EC_SLAVE_SCAN_FAILED) {
-		s->error = EC_SLAVE_OK;
-		s->why[0] = '\0';
+	if (ret == 1 && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) {
+		ec_slave_set_ok(s);
 		s->retry_ms = 0;
 		log_return(s);
 	}
-	if (s->error == EC_SLAVE_CONFIG_FAILED && (is_transient(s, ret) || is_undecided(s, ret)))
+	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
+	    (is_transient(s, ret) || is_undecided(s, ret)))
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);

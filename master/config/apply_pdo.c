@@ -189,22 +189,21 @@ static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int s
 		snprintf(has, sizeof(has), "0x%04x:%02x, %u bit", h->index, h->sub, h->bits);
 	log_list(s, sm, "configured", want);
 	log_list(s, sm, "in the slave", have);
-	snprintf(s->warning, sizeof(s->warning),
-		 "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s", sm, bit,
-		 e->index, e->sub, e->bits, has, cause);
+	ec_slave_set_warning(s, "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s",
+			     sm, bit, e->index, e->sub, e->bits, has, cause);
 	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
 		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
 		return 0;
 	}
 	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s", s->warning);
-	s->warning[0] = '\0';
+	ec_slave_set_warning(s, "%s", "");
 	return -EOPNOTSUPP;
 }
 
 static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 {
-	snprintf(s->warning, sizeof(s->warning),
-		 "process data of SM%u may belong to other objects: %.130s", sm, why);
+	ec_slave_set_warning(s, "process data of SM%u may belong to other objects: %.130s", sm,
+			     why);
 	ec_slave_warn(s, "%s\n", s->warning);
 }
 

@@ -70,7 +70,8 @@ static size_t no_link(const struct ec_links *l, char *buf, size_t size)
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_bus *bus = c->wanted->bus;
-	const struct ec_slave *s;
+	char why[EC_UAPI_REASON];
+	struct ec_slave *s;
 	unsigned int pos;
 	size_t len = no_link(c->wanted->links, buf, size);
 
@@ -87,8 +88,9 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
 				 pos, bus->n_slaves);
 	s = bus->slaves[pos];
-	if (s->error == EC_SLAVE_SCAN_FAILED)
-		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos, s->why);
+	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos,
+				 ec_slave_why(s, why, sizeof(why)));
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
@@ -101,15 +103,15 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
 
-static size_t present(const struct ec_slave *s, char *buf, size_t size)
+static size_t present(struct ec_slave *s, char *buf, size_t size)
 {
 	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
 	u8 want = READ_ONCE(s->requested);
 	const char *doing = READ_ONCE(s->waits_for);
 
-	if (s->error != EC_SLAVE_OK)
-		return scnprintf(buf, size, "%s", s->why);
+	if (READ_ONCE(s->error) != EC_SLAVE_OK)
+		return strlen(ec_slave_why(s, buf, size));
 	if (status & EC_AL_ERROR)
 		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)", state, code,
 				 ec_al_code_text(code));
@@ -247,14 +249,17 @@ void ec_config_log_differences(const struct ec_wanted *w)
 u8 ec_config_status(const struct ec_config *c)
 {
 	const struct ec_slave *slave = c->slave;
+	u16 status;
 	u8 v;
 
 	ec_wanted_assert_stays(c->wanted);
-	if (!slave || slave->stop.gone || slave->silent)
+	if (!slave || READ_ONCE(slave->stop.gone) || READ_ONCE(slave->silent))
 		return 0;
-	v = (slave->al_status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
-	if ((slave->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
-	    !slave->reconfigure)
+	/* the monitor and the worker of the slave change them at any time */
+	status = READ_ONCE(slave->al_status);
+	v = (status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
+	if ((status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
+	    !READ_ONCE(slave->reconfigure))
 		v |= EC_STATUS_SC_OP;
 	return v;
 }
@@ -275,13 +280,14 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
 	ec_wanted_assert_stays(c->wanted);
 	ec_bus_assert_stays(c->wanted->bus);
 	buf[0] = '\0';
-	if (!c->slave || c->slave->stop.gone)
+	if (!c->slave || READ_ONCE(c->slave->stop.gone))
 		len = absent(c, buf, size);
 	else if (ec_config_status(c) & EC_STATUS_SC_OP)
 		len = 0;
 	else if (!c->wanted->active)
 		len = scnprintf(buf, size, "AL state %s; the master is not active",
-				ec_al_state_name(c->slave->al_status & EC_AL_STATE_MASK));
+				ec_al_state_name(READ_ONCE(c->slave->al_status) &
+						 EC_AL_STATE_MASK));
 	else
 		len = present(c->slave, buf, size);
 	return len;

@@ -41,7 +41,8 @@ void ec_ref_clock_raise(struct ec_session *s)
 	if (ref)
 		ec_slave_ref(ref);
 	up_read(&m->bus.topo);
-	if (!ref || ref == s->raised || ref->config || ref->stop.gone || has_outputs(ref)) {
+	if (!ref || ref == s->raised || ref->config || READ_ONCE(ref->stop.gone) ||
+	    has_outputs(ref)) {
 		if (ref)
 			ec_slave_unref(ref);
 		return;
@@ -64,7 +65,7 @@ void ec_ref_clock_lower(struct ec_session *s)
 	if (!ref)
 		return;
 	s->raised = NULL;
-	if (!ref->stop.gone && !ref->config && !s->master->base->stopping)
+	if (!READ_ONCE(ref->stop.gone) && !ref->config && !READ_ONCE(s->master->base->stopping))
 		ec_slave_request(ref, EC_AL_PREOP);
 	ec_slave_unref(ref);
 }

@@ -98,7 +98,7 @@ static struct ec_session *session_of(const struct ec_requests *rq)
 {
 	struct ec_session *s = rq->master->session;
 
-	return s && s->requests == rq && !rq->master->base->stopping ? s : NULL;
+	return s && s->requests == rq && !READ_ONCE(rq->master->base->stopping) ? s : NULL;
 }
 
 /* begin and end of a request ------------------------------------------------*/
@@ -221,12 +221,12 @@ static void watch_work(struct work_struct *work)
  */
 static bool ready(const struct ec_slave *s, const struct ec_request *r)
 {
-	if (r->kind == EC_REQUEST_REG || s->error != EC_SLAVE_OK)
+	if (r->kind == EC_REQUEST_REG || READ_ONCE(s->error) != EC_SLAVE_OK)
 		return true;
-	if (s->requested > EC_AL_PREOP && s->reconfigure)
+	if (READ_ONCE(s->requested) > EC_AL_PREOP && READ_ONCE(s->reconfigure))
 		return false;
 	return (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP ||
-	       s->requested == EC_AL_INIT;
+	       READ_ONCE(s->requested) == EC_AL_INIT;
 }
 
 /* The oldest request that can begin, and its slave with a reference. */

@@ -56,10 +56,11 @@ static void to_preop(struct ec_master *m)
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
 
-		if (s->error == EC_SLAVE_SCAN_FAILED ||
-		    (s->requested == EC_AL_PREOP && (s->error || s->al_status == EC_AL_PREOP)))
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
+		    (READ_ONCE(s->requested) == EC_AL_PREOP &&
+		     (READ_ONCE(s->error) || READ_ONCE(s->al_status) == EC_AL_PREOP)))
 			continue;
-		s->error = EC_SLAVE_OK;
+		ec_slave_forgive(s);
 		ec_slave_request(s, EC_AL_PREOP);
 	}
 	up_read(&m->bus.topo);
@@ -222,7 +223,7 @@ static void clear(struct ec_session *s)
 static void forget_told(struct ec_master *m)
 {
 	ec_dc_end(&m->dc);
-	m->links.access.interval_us = EC_INTERVAL_US;
+	WRITE_ONCE(m->links.access.interval_us, EC_INTERVAL_US);
 	m->links.access.interval_set = false;
 }
 

@@ -53,10 +53,10 @@ void ec_session_detach(struct ec_config *c)
 	slave->plan = NULL;
 	ec_slave_clear_warning(slave);
 	slave->pdo_refusal[0] = '\0';
-	slave->reconfigure = true;
+	WRITE_ONCE(slave->reconfigure, true);
 	slave->stop.interrupt = false;
 	mutex_unlock(&slave->lock);
-	if (!slave->stop.gone && !c->wanted->base->stopping)
+	if (!READ_ONCE(slave->stop.gone) && !READ_ONCE(c->wanted->base->stopping))
 		ec_slave_request(slave, EC_AL_PREOP);
 	ec_slave_unref(slave);
 }
@@ -85,7 +85,8 @@ struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u
 		pos += i;
 	}
 	if (pos < m->bus.n_slaves && m->bus.slaves[pos]->info.vendor == vendor &&
-	    m->bus.slaves[pos]->info.product == product && !m->bus.slaves[pos]->stop.gone)
+	    m->bus.slaves[pos]->info.product == product &&
+	    !READ_ONCE(m->bus.slaves[pos]->stop.gone))
 		slave = ec_slave_ref(m->bus.slaves[pos]);
 	up_read(&m->bus.topo);
 	return slave;
@@ -128,7 +129,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	struct ec_slave *slave;
 
 	ec_config_find_alias(c);
-	if (s->wanted.active && c->slave && !c->slave->stop.gone)
+	if (s->wanted.active && c->slave && !READ_ONCE(c->slave->stop.gone))
 		return;
 	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
 	if (slave == c->slave) {
@@ -156,7 +157,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		return;
 	}
 	slave->config = c;
-	slave->reconfigure = true;
+	WRITE_ONCE(slave->reconfigure, true);
 	slave->seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
