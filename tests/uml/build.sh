@@ -63,7 +63,10 @@ mkdir -p "$out/drivers" "$farm"
 exec 9>"$out/.lock"
 flock -n 9 || { echo "waiting for another build in $out" >&2; flock 9; }
 
-mk() { make -C "$src" ARCH=um O="$out" -j"$jobs" -s EC_UML_SKIP="${EC_UML_SKIP-}" "$@" </dev/null 9>&-; }
+mk() {
+	make -C "$src" ARCH=um O="$out" -j"$jobs" -s EC_UML_SKIP="${EC_UML_SKIP-}" "$@" \
+		</dev/null 9>&-
+}
 
 if [ ! -e "$out/.ec-configured" ]; then
 	echo "configuring $variant kernel in $out" >&2
