@@ -44,6 +44,15 @@ int ec_ioc_reason(struct ec_call *call)
 	return 0;
 }
 
+/* The monitor updates them once a second. */
+static void copy_rates(u32 *to, const u32 *rate)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_UAPI_RATES; i++)
+		to[i] = READ_ONCE(rate[i]);
+}
+
 static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 {
 	struct ecdev *dev;
@@ -70,11 +79,11 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 	d->late = atomic64_read(&link->stats.late);
 	d->unmatched = atomic64_read(&link->stats.unmatched);
 	d->foreign = atomic64_read(&link->stats.foreign);
-	memcpy(d->tx_frame_rate, link->rates.rate[0], sizeof(d->tx_frame_rate));
-	memcpy(d->rx_frame_rate, link->rates.rate[1], sizeof(d->rx_frame_rate));
-	memcpy(d->tx_byte_rate, link->rates.rate[2], sizeof(d->tx_byte_rate));
-	memcpy(d->rx_byte_rate, link->rates.rate[3], sizeof(d->rx_byte_rate));
-	memcpy(d->loss_rate, link->rates.rate[4], sizeof(d->loss_rate));
+	copy_rates(d->tx_frame_rate, link->rates.rate[0]);
+	copy_rates(d->rx_frame_rate, link->rates.rate[1]);
+	copy_rates(d->tx_byte_rate, link->rates.rate[2]);
+	copy_rates(d->rx_byte_rate, link->rates.rate[3]);
+	copy_rates(d->loss_rate, link->rates.rate[4]);
 }
 
 static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)

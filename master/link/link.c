@@ -236,7 +236,7 @@ void ec_link_rates_update(struct ec_link *link)
 
 			/* step of at least 1, else a slow average never arrives */
 			diff = div_s64(diff, span[j]) ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
-			r->rate[i][j] += diff;
+			WRITE_ONCE(r->rate[i][j], r->rate[i][j] + diff);
 		}
 		r->last[i] = now[i];
 	}
