@@ -5,7 +5,8 @@
 #include "boundary/api.h"
 #include "boundary/cdev.h"
 #include "link/device.h"
-#include "master.h"
+#include "boundary/master.h"
+#include "monitor.h"
 #include "session/session.h"
 #include "config/apply.h"
 
@@ -42,22 +43,10 @@ static const struct ec_links_ops links_ops = {
 	.queued = queued,
 };
 
-/* What a request waits for is in another queue, see ec_bus_init(). */
-static int queues_create(struct ec_master *m)
-{
-	m->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
-				   m->base->index);
-	m->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, m->base->index);
-	return m->lanes && m->service ? 0 : -ENOMEM;
-}
-
-/* Service begins requests, and kicks slaves. */
+/* Service kicks slaves. */
 static void queues_destroy(struct ec_master *m)
 {
-	if (m->service)
-		destroy_workqueue(m->service);
-	if (m->lanes)
-		destroy_workqueue(m->lanes);
+	ec_sessions_exit(&m->sessions);
 	ec_bus_stop(&m->bus);
 }
 
@@ -66,7 +55,7 @@ static void destroy(struct ec_master *m)
 	WRITE_ONCE(m->base->stopping, true);
 	ec_cdev_exit(m);
 	ec_api_between_stop(m);
-	ec_session_end(m, NULL);
+	ec_session_end(&m->sessions, NULL);
 	ec_monitor_stop(m);
 	ec_dc_exit(&m->dc);
 	queues_destroy(m);
@@ -89,7 +78,11 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	m->base->debug = debug;
 	ec_log_init(&m->base->log);
 	ec_show_init(&m->base->show);
-	mutex_init(&m->session_lock);
+	m->sessions.base = m->base;
+	m->sessions.links = &m->links;
+	m->sessions.bus = &m->bus;
+	m->sessions.dc = &m->dc;
+	m->sessions.cycles = &m->cycles;
 	ec_cycles_init(&m->cycles, m->base, &m->links, &m->dc);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
@@ -100,10 +93,10 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops);
 	if (ret)
 		goto err_work;
-	ret = queues_create(m);
+	ret = ec_sessions_init(&m->sessions);
 	if (ret)
 		goto err_work;
-	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->service);
+	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
 	ret = ec_api_create(m);
 	if (ret)
 		goto err_work;

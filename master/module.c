@@ -2,12 +2,14 @@
 #include <linux/module.h>
 #include "boundary/cdev.h"
 #include "base/limits.h"
-#include "master.h"
+#include "boundary/master.h"
+#include "monitor.h"
 
 static char *main_devices[EC_MAX_MASTERS];
 static unsigned int n_main;
 module_param_array(main_devices, charp, &n_main, 0444);
-MODULE_PARM_DESC(main_devices, "main device of each master: MAC address (ff:ff:ff:ff:ff:ff: the first device), interface name or sim0");
+MODULE_PARM_DESC(main_devices,
+		 "main device of each master: MAC address (ff:ff:ff:ff:ff:ff: the first device), interface name or sim0");
 
 static char *backup_devices[EC_MAX_MASTERS];
 static unsigned int n_backup;

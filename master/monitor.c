@@ -4,7 +4,8 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include "config/config.h"
-#include "master.h"
+#include "boundary/master.h"
+#include "monitor.h"
 #include "base/once64.h"
 #include "session/session.h"
 #include "bus/slave.h"
@@ -151,7 +152,8 @@ static unsigned int believable(struct watch *w, unsigned int count)
 		return count;
 	}
 	if (!w->too_many)
-		ec_warn(w->m, "a reply reports %u slaves, limit %u by memory; not scanned: check the cables and the last slave\n",
+		ec_warn(w->m,
+			"a reply reports %u slaves, limit %u by memory; not scanned: check the cables and the last slave\n",
 			count, limit);
 	w->too_many = count;
 	return 0;
@@ -226,7 +228,8 @@ static void count_slaves(struct watch *w)
 		w->silent++;
 	/* power was off for a moment: address and state are lost */
 	if (w->silent >= SILENT_LOOKS) {
-		ec_warn(m, "a slave did not answer at its station address in %u polls; rescanning\n",
+		ec_warn(m,
+			"a slave did not answer at its station address in %u polls; rescanning\n",
 			SILENT_LOOKS);
 		w->silent = 0;
 		w->scanned = false;
@@ -321,7 +324,7 @@ static void maybe_scan(struct watch *w)
 		 * under an application, even one that has stalled */
 		smp_wmb();
 		WRITE_ONCE(m->bus.rescan, false);
-		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->session))
+		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->sessions.session))
 			ec_scan(&m->bus, 0, &changed);
 	}
 	if (!ec_scan(&m->bus, w->count, &changed)) {
@@ -331,7 +334,7 @@ static void maybe_scan(struct watch *w)
 		/* before their workers ask for their clocks */
 		if (changed)
 			WRITE_ONCE(m->dc.changed, true);
-		ec_session_attach(m);
+		ec_session_attach(&m->sessions);
 		if (!READ_ONCE(m->cycles.active))
 			ec_dc_measure(&m->dc);
 		want_states(m);
@@ -404,8 +407,8 @@ static int monitor(void *data)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
 		if (w.scanned)
-			ec_session_clocks(m);
-		ec_session_status(m);
+			ec_session_clocks(&m->sessions);
+		ec_session_status(&m->sessions);
 		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);

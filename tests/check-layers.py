@@ -15,7 +15,7 @@ from collections import defaultdict
 ORDER = ["wire", "base", "link", "mailbox", "bus", "clock", "config", "cycle", "session",
          "boundary", "top"]
 # The first goes down to 0 with the structure of the cycle, never up.
-MOST_UP_INCLUDES = 15
+MOST_UP_INCLUDES = 0
 MOST_UP_SYMBOLS = 0
 MOST_OPS = 12
 MOST_IN_CIRCLE = 4

@@ -104,7 +104,7 @@ void ec_change_announce(struct ec_show *show)
  * ec_change_begin() - what readers look at is about to change
  * @show: of the master
  *
- * The caller has the lock of what it changes: session_lock, or topo for writing. Waits for
+ * The caller has the lock of what it changes: session lock, or topo for writing. Waits for
  * readers that are in a section now: no longer than one section takes, as they cannot be
  * preempted.
  *

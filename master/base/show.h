@@ -18,7 +18,7 @@
 /**
  * struct ec_show - readers and changes of a master
  * @showing: readers in a section
- * @changing: changes in progress: they hold session_lock or topo
+ * @changing: changes in progress: they hold session lock or topo
  * @changes: changes that are over; wraps
  * @over: readers that wait until no change is in progress
  */

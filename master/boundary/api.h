@@ -17,7 +17,7 @@
 #include "../config/config.h"
 #include "../config/domain.h"
 #include "ioctl.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/request.h"
 #include "../session/session.h"
 
@@ -72,7 +72,7 @@ static inline struct ec_config *ec_api_config(const ec_slave_config_t *sc)
 
 static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
 {
-	return ec_config_session(ec_api_config(sc))->master;
+	return ec_master_of(ec_config_session(ec_api_config(sc)));
 }
 
 /* api.c */
@@ -109,7 +109,7 @@ static inline u32 ec_sc_index(const ec_slave_config_t *sc)
 
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 {
-	return ec_domain_session(d)->master;
+	return ec_master_of(ec_domain_session(d));
 }
 
 static inline void *ec_zalloc(size_t size)
@@ -141,13 +141,13 @@ static inline struct ec_app_request **ec_request_list(struct ec_master *m)
 
 static inline bool ec_request_memory(const struct ec_master *m)
 {
-	return m->session;
+	return m->sessions.session;
 }
 
 static inline struct ec_request_record *ec_request_record(const struct ec_master *m, u32 index,
 							  u8 **shared)
 {
-	return ec_requests_record(m->session, index, shared);
+	return ec_requests_record(m->sessions.session, index, shared);
 }
 
 /* told by the next send */

@@ -18,7 +18,8 @@ void ecrt_master_callbacks(ec_master_t *master, void (*send_cb)(void *),
 	if (!master)
 		return;
 	if (!master->api->reserved || READ_ONCE(master->api->active)) {
-		ec_err(master, "kernel API: callbacks are set between ecrt_request_master() and ecrt_master_activate()\n");
+		ec_err(master,
+		       "kernel API: callbacks are set between ecrt_request_master() and ecrt_master_activate()\n");
 		return;
 	}
 	master->api->send_cb = send_cb;

@@ -20,7 +20,7 @@ static bool place_is_right(const struct ecdev_ops *ops)
 
 static void leave_to_work(struct ec_master *m)
 {
-	queue_work(m->service, &m->api->work);
+	queue_work(m->sessions.service, &m->api->work);
 }
 
 /*
@@ -85,7 +85,8 @@ void ec_api_work(struct work_struct *work)
 	mutex_unlock(&m->cycles.lock);
 	if (READ_ONCE(api->atomic) && !api->told) {
 		api->told = true;
-		ec_err(m, "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
+		ec_err(m,
+		       "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
 	}
 	if (xchg(&api->reset, false))
 		ec_ioc(&api->file, EC_IOC_RESET, NULL);
@@ -160,7 +161,7 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	if (READ_ONCE(api->active)) {
 		api->next.app_time = app_time;
 		api->next.flags |= EC_SEND_FLAG_APP_TIME;
-	} else if (!READ_ONCE(master->heir)) {
+	} else if (!READ_ONCE(master->sessions.heir)) {
 		/*
 		 * Before activation there is no cycle it could go with. An heir can only
 		 * be this application: the cycle that runs has its own time then.

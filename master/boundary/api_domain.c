@@ -14,20 +14,21 @@ void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
 
 	if (!domain)
 		return;
-	m = ec_domain_session(domain)->master;
-	mutex_lock(&m->session_lock);
+	m = ec_master_of(ec_domain_session(domain));
+	mutex_lock(&m->sessions.lock);
 	if (!ec_domain_session(domain)->wanted.active)
 		domain->memory = memory;
 	else
-		ec_err(m, "kernel API: memory for domain %u comes after activation; it is not used\n",
+		ec_err(m,
+		       "kernel API: memory for domain %u comes after activation; it is not used\n",
 		       domain->index);
-	mutex_unlock(&m->session_lock);
+	mutex_unlock(&m->sessions.lock);
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_external_memory);
 
 static struct ec_api *active(const struct ec_domain *d)
 {
-	struct ec_api *api = d ? ec_domain_session(d)->master->api : NULL;
+	struct ec_api *api = d ? ec_master_of(ec_domain_session(d))->api : NULL;
 
 	return api && smp_load_acquire(&api->active) ? api : NULL;
 }

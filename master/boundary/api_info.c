@@ -65,9 +65,9 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t
 	if (s) {
 		v = READ_ONCE(s->cycle.shared->status->configs[ec_api_config(sc)->index]);
 	} else {
-		mutex_lock(&m->session_lock);
+		mutex_lock(&m->sessions.lock);
 		v = ec_config_status(ec_api_config(sc));
-		mutex_unlock(&m->session_lock);
+		mutex_unlock(&m->sessions.lock);
 	}
 	state->online = !!(v & EC_STATUS_SC_ONLINE);
 	state->operational = !!(v & EC_STATUS_SC_OP);

@@ -46,11 +46,12 @@ void ecrt_release_master(ec_master_t *master)
 	if (!master)
 		return;
 	if (!master->api->reserved) {
-		ec_warn(master, "kernel API: ecrt_release_master() without ecrt_request_master()\n");
+		ec_warn(master,
+			"kernel API: ecrt_release_master() without ecrt_request_master()\n");
 		return;
 	}
 	forget(master);
-	ec_session_end(master, &master->api->file);
+	ec_session_end(&master->sessions, &master->api->file);
 	ec_app_requests_free(master);
 	master->api->reserved = false;
 	module_put(THIS_MODULE);
@@ -62,9 +63,9 @@ static struct ec_session *session_of(struct ec_master *m)
 {
 	struct ec_session *s;
 
-	mutex_lock(&m->session_lock);
-	s = ec_session_of(m, &m->api->file);
-	mutex_unlock(&m->session_lock);
+	mutex_lock(&m->sessions.lock);
+	s = ec_session_of(&m->sessions, &m->api->file);
+	mutex_unlock(&m->sessions.lock);
 	return s;
 }
 
@@ -112,7 +113,7 @@ int ecrt_master_activate(ec_master_t *master)
 	master->api->atomic = false;
 	master->api->told = false;
 	/* who sees the session finds all that belongs to it */
-	smp_store_release(&master->api->active, master->session);
+	smp_store_release(&master->api->active, master->sessions.session);
 	ret = ec_api_between_start(master);
 	if (ret) {
 		ecrt_master_deactivate(master);
@@ -145,7 +146,7 @@ int ecrt_master_reset(ec_master_t *master)
 		return -EINVAL;
 	/* slaves are locked for it, which the caller need not be able to wait for */
 	WRITE_ONCE(master->api->reset, true);
-	queue_work(master->service, &master->api->work);
+	queue_work(master->sessions.service, &master->api->work);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_reset);

@@ -6,7 +6,7 @@
 #include "call.h"
 #include "../base/limits.h"
 #include "../bus/slave.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/session.h"
 
 /**
@@ -56,7 +56,8 @@ int ec_ioc_limit(struct ec_call *call, int ret)
 {
 	if (ret != -EDQUOT)
 		return ret;
-	return ec_refuse(call, -ENOMEM, "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
+	return ec_refuse(call, -ENOMEM,
+			 "limit of %u MiB for the sessions of master %u and their mapped memory reached; configure less, or unmap the memory of earlier activations",
 			 EC_MAX_SESSION_BYTES >> 20, call->master->base->index);
 }
 
@@ -66,16 +67,16 @@ int ec_ioc_limit(struct ec_call *call, int ret)
  * ec_ioc_lock_session() - lock the session of a command's file
  * @call: command; its @session is set
  *
- * Context: Process. May sleep. session_lock is held when 0 is returned.
+ * Context: Process. May sleep. session lock is held when 0 is returned.
  * Return: 0 or -EPERM with the reason noted.
  */
 int ec_ioc_lock_session(struct ec_call *call)
 {
-	ec_session_lock(call->master);
-	call->session = ec_session_of(call->master, call->file);
+	ec_sessions_lock(&call->master->sessions);
+	call->session = ec_session_of(&call->master->sessions, call->file);
 	if (call->session)
 		return 0;
-	ec_session_unlock(call->master);
+	ec_sessions_unlock(&call->master->sessions);
 	return ec_refuse(call, -EPERM, "reserve the master first (ecrt_request_master)");
 }
 
@@ -106,13 +107,14 @@ static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
 	if (ret)
 		return ret;
 	if (op->class != EC_CLASS_SESSION && call->session->wanted.active)
-		ret = ec_refuse(call, -EBUSY, "the master is active; configure before ecrt_master_activate()");
+		ret = ec_refuse(call, -EBUSY,
+				"the master is active; configure before ecrt_master_activate()");
 	else if (op->class == EC_CLASS_CONFIG)
 		ret = find_config(call, *(u32 *)(call->arg + op->at));
 	else if (op->class == EC_CLASS_DOMAIN)
 		ret = find_domain(call, *(u32 *)(call->arg + op->at));
 	if (ret)
-		ec_session_unlock(call->master);
+		ec_sessions_unlock(&call->master->sessions);
 	return ret;
 }
 
@@ -124,9 +126,10 @@ static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 
 	if (ret)
 		return ret;
-	call->session = ec_session_of(m, call->file) ?: m->session;
+	call->session = ec_session_of(&m->sessions, call->file) ?: m->sessions.session;
 	if (!call->session)
-		ret = ec_refuse(call, -ENOENT, "no application has reserved master %u", m->base->index);
+		ret = ec_refuse(call, -ENOENT, "no application has reserved master %u",
+				m->base->index);
 	else if (op->class == EC_CLASS_SHOW_CONFIG)
 		ret = find_config(call, *(u32 *)(call->arg + op->at));
 	else
@@ -184,7 +187,7 @@ static int with_session(struct ec_call *call, const struct ec_ioctl *op)
 	if (ret)
 		return ret;
 	ret = op->fn(call);
-	ec_session_unlock(call->master);
+	ec_sessions_unlock(&call->master->sessions);
 	return ret;
 }
 
@@ -240,7 +243,7 @@ static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user
 	return 0;
 }
 
-/* No lock is held: mmap() takes session_lock with the memory of the process locked. */
+/* No lock is held: mmap() takes session lock with the memory of the process locked. */
 static int put_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
 {
 	const struct ec_ioc_buffer *b = &op->buffer;

@@ -15,7 +15,7 @@ struct ec_reserved {
 enum ec_ioc_class {
 	EC_CLASS_MASTER,	/* nothing */
 	EC_CLASS_SLAVE,		/* a slave by its position */
-	EC_CLASS_SESSION,	/* session of the file; with session_lock */
+	EC_CLASS_SESSION,	/* session of the file; with session lock */
 	EC_CLASS_IDLE,		/* the same while it is not active */
 	EC_CLASS_CONFIG,	/* the same, and a slave configuration */
 	EC_CLASS_DOMAIN,	/* the same, and a domain */

@@ -6,7 +6,7 @@
 #include "cdev.h"
 #include "../wire/compat.h"
 #include "../cycle/cycle_thread.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/session.h"
 
 static struct class *ec_class;
@@ -98,7 +98,7 @@ static int ec_release(struct inode *inode, struct file *filp)
 
 	/* who may only look has reserved nothing, and takes no lock */
 	if (f->writable)
-		ec_session_end(m, f);
+		ec_session_end(&m->sessions, f);
 	put_device(&m->dev);
 	kfree_rcu(f, rcu);
 	return 0;
@@ -168,10 +168,11 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 		return -EINVAL;
 	if (vma->vm_flags & VM_EXEC || !f->writable)
 		return -EPERM;
-	mutex_lock(&m->session_lock);
-	if (m->session && m->session->cycle.owner == f && m->session->wanted.active)
-		ret = map_shared(m->session->cycle.shared, vma);
-	mutex_unlock(&m->session_lock);
+	mutex_lock(&m->sessions.lock);
+	if (m->sessions.session && m->sessions.session->cycle.owner == f &&
+	    m->sessions.session->wanted.active)
+		ret = map_shared(m->sessions.session->cycle.shared, vma);
+	mutex_unlock(&m->sessions.lock);
 	return ret;
 }
 

@@ -202,10 +202,12 @@ static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int c
 	unsigned int size = _IOC_SIZE(cmd);
 
 	if (size < op->min || size > (_IOC_DIR(cmd) ? MAX_ARG : 0))
-		return ec_refuse(call, -EINVAL, "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
+		return ec_refuse(call, -EINVAL,
+				 "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
 				 cmd, size, op->min);
 	if (op->flags & F_WRITE && !call->file->writable)
-		return ec_refuse(call, -EPERM, "the command needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
+		return ec_refuse(call, -EPERM,
+				 "the command needs /dev/EtherCAT opened for writing; get write permission (group ethercat)");
 	return 0;
 }
 
@@ -222,7 +224,8 @@ static int check_unknown(struct ec_call *call, const struct ec_ioctl *op, const 
 		const struct ec_reserved *r = &op->reserved[i];
 
 		if (memchr_inv(karg + r->offset, 0, r->size))
-			return ec_refuse(call, -EOPNOTSUPP, "command 0x%08x: reserved bytes at %u are not zero; a newer module may know them",
+			return ec_refuse(call, -EOPNOTSUPP,
+					 "command 0x%08x: reserved bytes at %u are not zero; a newer module may know them",
 					 op->cmd, r->offset);
 	}
 	return 0;
@@ -234,7 +237,8 @@ static int fetch_arg(struct ec_call *call, const struct ec_ioctl *op, unsigned i
 	int ret = copy_struct_from_user(karg, _IOC_SIZE(op->cmd), uarg, _IOC_SIZE(cmd));
 
 	if (ret == -E2BIG)
-		return ec_refuse(call, ret, "command 0x%08x: this module knows %u bytes of the argument, the rest must be zero",
+		return ec_refuse(call, ret,
+				 "command 0x%08x: this module knows %u bytes of the argument, the rest must be zero",
 				 cmd, _IOC_SIZE(op->cmd));
 	return ret ?: check_unknown(call, op, karg);
 }

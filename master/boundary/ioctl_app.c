@@ -4,7 +4,7 @@
 #include "../config/config.h"
 #include "../config/domain.h"
 #include "ioctl.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/request.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
@@ -12,21 +12,25 @@
 
 int ec_ioc_reserve(struct ec_call *call)
 {
-	int ret = ec_session_begin(call->master, call->file, &call->file->waiters);
+	int ret = ec_session_begin(&call->master->sessions, call->file, &call->file->waiters);
 	char who[64];
 
 	switch (ret) {
 	case -EBUSY:
 		if (READ_ONCE(call->master->api->reserved))
-			return ec_refuse(call, ret, "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
+			return ec_refuse(call, ret,
+					 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
 					 call->master->base->index);
-		if (!ec_session_owner_text(call->master, who, sizeof(who)))
-			return ec_refuse(call, ret, "master %u was reserved by an application that has just ended; try again",
+		if (!ec_session_owner_text(&call->master->sessions, who, sizeof(who)))
+			return ec_refuse(call, ret,
+					 "master %u was reserved by an application that has just ended; try again",
 					 call->master->base->index);
-		return ec_refuse(call, ret, "master %u is reserved by %s; stop that application first",
+		return ec_refuse(call, ret,
+				 "master %u is reserved by %s; stop that application first",
 				 call->master->base->index, who);
 	case -ENODEV:
-		return ec_refuse(call, ret, "master %u is waiting for its device %s; load the driver or correct main_devices=",
+		return ec_refuse(call, ret,
+				 "master %u is waiting for its device %s; load the driver or correct main_devices=",
 				 call->master->base->index,
 				 ec_links_main_name(&call->master->links));
 	default:
@@ -40,8 +44,8 @@ int ec_ioc_release(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	ec_session_unlock(call->master);
-	ec_session_end(call->master, call->file);
+	ec_sessions_unlock(&call->master->sessions);
+	ec_session_end(&call->master->sessions, call->file);
 	return 0;
 }
 
@@ -61,7 +65,8 @@ static void wait_pdos(struct ec_call *call, const struct ec_ioc_slave_config *i)
 {
 	struct ec_slave *slave;
 
-	slave = ec_session_find(call->master, i->alias, i->position, i->vendor_id, i->product_code);
+	slave = ec_session_find(&call->master->sessions, i->alias, i->position, i->vendor_id,
+				i->product_code);
 	if (!slave)
 		return;
 	ec_bus_wait_slave(slave);
@@ -77,12 +82,14 @@ static int config_failed(struct ec_call *call, const struct ec_ioc_slave_config 
 		const struct ec_config *c = s->wanted.configs[k];
 
 		if (c->alias == i->alias && c->position == i->position)
-			return ec_refuse(call, ret, "slave %u:%u is configured as 0x%08x/0x%08x already, not as 0x%08x/0x%08x",
+			return ec_refuse(call, ret,
+					 "slave %u:%u is configured as 0x%08x/0x%08x already, not as 0x%08x/0x%08x",
 					 i->alias, i->position, c->vendor, c->product,
 					 i->vendor_id, i->product_code);
 	}
 	if (ret == -ENOSPC)
-		return ec_refuse(call, ret, "limit of %u slave configurations reached", EC_MAX_CONFIGS);
+		return ec_refuse(call, ret, "limit of %u slave configurations reached",
+				 EC_MAX_CONFIGS);
 	return ec_refuse(call, ret, "slave %u:%u cannot be configured (%pe)", i->alias, i->position,
 			 ERR_PTR(ret));
 }
@@ -96,7 +103,8 @@ static int slave_config(struct ec_call *call, struct ec_ioc_slave_config *i)
 	    ec_config_find(&s->wanted, i->alias, i->position, i->vendor_id, i->product_code) :
 	    ec_session_configure(s, i->alias, i->position, i->vendor_id, i->product_code);
 	if (!c)
-		return ec_refuse(call, -EBUSY, "slave %u:%u has no configuration and the master is active; configure before ecrt_master_activate()",
+		return ec_refuse(call, -EBUSY,
+				 "slave %u:%u has no configuration and the master is active; configure before ecrt_master_activate()",
 				 i->alias, i->position);
 	if (IS_ERR(c) && PTR_ERR(c) == -EDQUOT)
 		return ec_ioc_limit(call, PTR_ERR(c));
@@ -114,15 +122,15 @@ int ec_ioc_slave_config(struct ec_call *call)
 	if (ret)
 		return ret;
 	/* the running session of an heir has its slaves */
-	if (!call->session->wanted.active && call->session != m->heir) {
-		ec_session_unlock(m);
+	if (!call->session->wanted.active && call->session != m->sessions.heir) {
+		ec_sessions_unlock(&m->sessions);
 		wait_pdos(call, call->arg);
 		ret = ec_ioc_lock_session(call);
 		if (ret)
 			return ret;
 	}
 	ret = slave_config(call, call->arg);
-	ec_session_unlock(m);
+	ec_sessions_unlock(&m->sessions);
 	return ret;
 }
 
@@ -132,7 +140,8 @@ int ec_ioc_sc_sync(struct ec_call *call)
 	int ret = ec_config_sync(call->config, i->sm, i->dir, i->watchdog);
 
 	if (ret)
-		ec_refuse(call, ret, "SyncManager %u, direction %u, watchdog %u: use 0..15, 1..2, 0..2",
+		ec_refuse(call, ret,
+			  "SyncManager %u, direction %u, watchdog %u: use 0..15, 1..2, 0..2",
 			  i->sm, i->dir, i->watchdog);
 	return ret;
 }
@@ -150,13 +159,16 @@ static void sc_pdo_failed(struct ec_call *call, const struct ec_ioc_sc_pdo *i, i
 	if (i->op > EC_SC_PDO_MAP_CLEAR)
 		ec_refuse(call, ret, "PDO configuration: unknown operation %u", i->op);
 	else if (i->op == EC_SC_PDO_MAP_ADD && ret == -ENOENT)
-		ec_refuse(call, ret, "cannot add entry 0x%04x:%02x to PDO 0x%04x: the PDO is not assigned; assign it first",
+		ec_refuse(call, ret,
+			  "cannot add entry 0x%04x:%02x to PDO 0x%04x: the PDO is not assigned; assign it first",
 			  i->entry_index, i->subindex, i->pdo);
 	else if (i->op == EC_SC_PDO_MAP_ADD)
-		ec_refuse(call, ret, "cannot add entry 0x%04x:%02x with %u bits to PDO 0x%04x (%pe)",
+		ec_refuse(call, ret,
+			  "cannot add entry 0x%04x:%02x with %u bits to PDO 0x%04x (%pe)",
 			  i->entry_index, i->subindex, i->bits, i->pdo, ERR_PTR(ret));
 	else
-		ec_refuse(call, ret, "cannot change the PDOs of SM%u, PDO 0x%04x (%pe); use SM0 to SM%u",
+		ec_refuse(call, ret,
+			  "cannot change the PDOs of SM%u, PDO 0x%04x (%pe); use SM0 to SM%u",
 			  i->sm, i->pdo, ERR_PTR(ret), EC_MAX_SM - 1);
 }
 
@@ -204,7 +216,8 @@ static int check_maps(struct ec_call *call, const struct ec_config *c)
 		const struct ec_config_fmmu *fm = &c->fmmus[i];
 
 		if (ec_config_changed(c, fm))
-			return ec_refuse(call, -EBUSY, "slave %u:%u: SM%u was registered in domain %u with %u bytes of %s; now it has %u of %s: set directions, PDOs and entries before the first of them is registered",
+			return ec_refuse(call, -EBUSY,
+					 "slave %u:%u: SM%u was registered in domain %u with %u bytes of %s; now it has %u of %s: set directions, PDOs and entries before the first of them is registered",
 					 c->alias, c->position, fm->sm, fm->domain->index,
 					 fm->size, dir_name(fm->dir),
 					 ec_pdo_list_bytes(&c->sm[fm->sm].pdos),
@@ -225,14 +238,16 @@ static void not_mapped(struct ec_call *call, const struct ec_config *c,
 	else
 		scnprintf(entry, sizeof(entry), "entry 0x%04x:%02x", i->entry_index, i->subindex);
 	if (c->slave) {
-		ec_refuse(call, -ENOENT, "%s is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
+		ec_refuse(call, -ENOENT,
+			  "%s is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
 			  entry, c->alias, c->position);
 		return;
 	}
 	down_read(&call->master->bus.topo);
 	ec_config_why(c, why, sizeof(why));
 	up_read(&call->master->bus.topo);
-	ec_refuse(call, -ENOENT, "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
+	ec_refuse(call, -ENOENT,
+		  "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
 		  entry, c->alias, c->position, why);
 }
 
@@ -258,14 +273,17 @@ int ec_ioc_reg_entry(struct ec_call *call)
 	else if (ret == -EBUSY)
 		check_maps(call, c);
 	else if (ret == -EFAULT)
-		ec_refuse(call, ret, "the entry is not byte-aligned in slave %u:%u; pass bit_position",
+		ec_refuse(call, ret,
+			  "the entry is not byte-aligned in slave %u:%u; pass bit_position",
 			  c->alias, c->position);
 	else if (ret == -EOVERFLOW)
-		ec_refuse(call, ret, "slave %u:%u: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
+		ec_refuse(call, ret,
+			  "slave %u:%u: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
 			  c->alias, c->position, c->n_fmmus, EC_MAX_FMMU, i->domain,
 			  s->wanted.domains[i->domain]->size, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
 	else if (ret == -EINVAL)
-		ec_refuse(call, ret, "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
+		ec_refuse(call, ret,
+			  "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
 			  c->alias, c->position, EC_MAX_SM - 1);
 	return ret;
 }
@@ -321,20 +339,24 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 	case -EBUSY:
 		return ec_refuse(call, ret, "the master is active already");
 	case -EOVERFLOW:
-		return ec_refuse(call, ret, "%u bytes of process data in %u domains do not fit: at most %u bytes, %u datagrams and %u frames a cycle; register fewer SyncManagers, or let inputs overlap outputs",
+		return ec_refuse(call, ret,
+				 "%u bytes of process data in %u domains do not fit: at most %u bytes, %u datagrams and %u frames a cycle; register fewer SyncManagers, or let inputs overlap outputs",
 				 bytes, s->wanted.n_domains, EC_MAX_IMAGE, EC_MAX_CYCLE_DGRAMS,
 				 EC_MAX_CYCLE_FRAMES);
 	case -ENOSPC:
-		return ec_refuse(call, ret, "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and the limit of delayed cycles is 0; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
+		return ec_refuse(call, ret,
+				 "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and the limit of delayed cycles is 0; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
 				 ec_cycle_need_ns());
 	case -EDQUOT:
 		return ec_ioc_limit(call, ret);
 	case -ENOMEM:
 		return ec_refuse(call, ret, "no memory for %u bytes of process data", bytes);
 	case -EOPNOTSUPP:
-		return ec_refuse(call, ret, "a domain has a division, but the application runs the cycle; call ecrt_master_set_cycle(), or queue the domain in some cycles only");
+		return ec_refuse(call, ret,
+				 "a domain has a division, but the application runs the cycle; call ecrt_master_set_cycle(), or queue the domain in some cycles only");
 	case -ENODEV:
-		return ec_refuse(call, ret, "CPU %d is not online; choose another one for the cycle",
+		return ec_refuse(call, ret,
+				 "CPU %d is not online; choose another one for the cycle",
 				 s->cycle.kernel.cpu);
 	default:
 		return ec_refuse(call, ret, "activation failed (%pe)", ERR_PTR(ret));
@@ -345,16 +367,18 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 static int take_over(struct ec_call *call)
 {
 	char why[96];
-	const struct ec_session *heir = call->master->heir;
-	int ret = ec_session_take_over(call->master, why, sizeof(why));
+	const struct ec_session *heir = call->master->sessions.heir;
+	int ret = ec_session_take_over(&call->master->sessions, why, sizeof(why));
 
 	if (ret == -EEXIST)
-		return ec_refuse(call, ret, "the detached session of master %u has another configuration: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
+		return ec_refuse(call, ret,
+				 "the detached session of master %u has another configuration: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
 				 call->master->base->index, why);
 	if (ret == -ENOSPC)
 		return activate_failed(call, heir, ret);
 	if (ret)
-		return ec_refuse(call, ret, "the cycle of the detached session does not answer; end it with 'ethercat release'");
+		return ec_refuse(call, ret,
+				 "the cycle of the detached session does not answer; end it with 'ethercat release'");
 	return 0;
 }
 
@@ -369,7 +393,8 @@ static int activate(struct ec_call *call, struct ec_session *s, const void *pres
 			return ret;
 	}
 	if (size && !s->wanted.active && size != ec_session_place(s))
-		return ec_refuse(call, -EINVAL, "initial image has %u bytes, domains need %u; register all entries first",
+		return ec_refuse(call, -EINVAL,
+				 "initial image has %u bytes, domains need %u; register all entries first",
 				 size, ec_session_place(s));
 	s->preset = preset;
 	ret = ec_session_activate(s);
@@ -391,10 +416,10 @@ int ec_ioc_activate(struct ec_call *call)
 	struct ec_session *s = call->session;
 	int ret;
 
-	i->taken_over = s == call->master->heir;
+	i->taken_over = s == call->master->sessions.heir;
 	ret = i->taken_over ? take_over(call) : activate(call, s, call->data, call->size);
 	if (!ret)
-		tell_sizes(call->master->session, i);
+		tell_sizes(call->master->sessions.session, i);
 	return ret;
 }
 
@@ -436,7 +461,7 @@ int ec_ioc_interval(struct ec_call *call)
 	if (!i->interval_us)
 		return ec_refuse(call, -EINVAL, "send interval must be 1 us or more");
 	/* the interval is that of the session which runs */
-	if (call->session == m->heir)
+	if (call->session == m->sessions.heir)
 		return 0;
 	WRITE_ONCE(m->links.access.interval_us, min_t(u32, i->interval_us, EC_MAX_INTERVAL_US));
 	m->links.access.interval_set = i->interval_us <= EC_MAX_INTERVAL_US;
@@ -491,14 +516,15 @@ int ec_ioc_app_time(struct ec_call *call)
 		return 0;
 	}
 	if (ret == -EBUSY)
-		return ec_refuse(call, ret, "the kernel runs the cycle and sets the application time");
+		return ec_refuse(call, ret,
+				 "the kernel runs the cycle and sets the application time");
 	ret = ec_ioc_lock_session(call);
 	if (ret)
 		return ret;
 	/* before activation there is no cycle to disturb, but of a detached session */
-	if (call->session != m->heir)
+	if (call->session != m->sessions.heir)
 		ec_dc_app_time(&m->dc, i->app_time, ktime_get_ns());
-	ec_session_unlock(m);
+	ec_sessions_unlock(&m->sessions);
 	return 0;
 }
 

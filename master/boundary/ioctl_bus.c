@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that cause bus traffic or change the state of slaves. */
 #include "ioctl.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
 #include "../link/xfer.h"
@@ -37,20 +37,23 @@ static int reg_access(struct ec_call *call, const struct ec_ioc_reg *i, u8 cmd)
 	case 0:
 		break;
 	case -ETIMEDOUT:
-		return ec_refuse(call, ret, "no reply to register access 0x%04x at slave %u; check the cables",
+		return ec_refuse(call, ret,
+				 "no reply to register access 0x%04x at slave %u; check the cables",
 				 i->address, i->position);
 	case -EINTR:
 		return ret;
 	case -ENODEV:
 	case -ENETDOWN:
-		return ec_refuse(call, ret, "register access 0x%04x at slave %u: the main device is missing or has no link; check the cable",
+		return ec_refuse(call, ret,
+				 "register access 0x%04x at slave %u: the main device is missing or has no link; check the cable",
 				 i->address, i->position);
 	default:
 		return ec_refuse(call, ret, "register access 0x%04x at slave %u: cannot send (%pe)",
 				 i->address, i->position, ERR_PTR(ret));
 	}
 	if (dg.wkc != 1)
-		return ec_refuse(call, -EIO, "slave %u did not execute access to 0x%04x: working counter %u, expected 1",
+		return ec_refuse(call, -EIO,
+				 "slave %u did not execute access to 0x%04x: working counter %u, expected 1",
 				 i->position, i->address, dg.wkc);
 	return 0;
 }
@@ -71,7 +74,8 @@ int ec_ioc_state(struct ec_call *call)
 	struct ec_slave *s = call->slave;
 
 	if (!ec_al_state_valid(i->state))
-		return ec_refuse(call, -EINVAL, "%u is no AL state; use INIT, PREOP, BOOT, SAFEOP or OP",
+		return ec_refuse(call, -EINVAL,
+				 "%u is no AL state; use INIT, PREOP, BOOT, SAFEOP or OP",
 				 i->state);
 	ec_slave_forgive(s);
 	ec_slave_request(s, i->state);
@@ -83,7 +87,8 @@ int ec_ioc_rescan(struct ec_call *call)
 	struct ec_master *m = call->master;
 
 	if (READ_ONCE(m->bus.freeze))
-		return ec_refuse(call, -EBUSY, "an application has reserved the master; it must activate or release it first");
+		return ec_refuse(call, -EBUSY,
+				 "an application has reserved the master; it must activate or release it first");
 	ec_bus_rescan(&m->bus);
 	return 0;
 }
@@ -125,24 +130,26 @@ int ec_ioc_reset(struct ec_call *call)
 	struct ec_master *m = call->master;
 	unsigned int k;
 
-	mutex_lock(&m->session_lock);
+	mutex_lock(&m->sessions.lock);
 	down_read(&m->bus.topo);
 	for (k = 0; k < m->bus.n_slaves; k++)
-		try_again(m->session, m->bus.slaves[k]);
+		try_again(m->sessions.session, m->bus.slaves[k]);
 	up_read(&m->bus.topo);
-	mutex_unlock(&m->session_lock);
+	mutex_unlock(&m->sessions.lock);
 	return 0;
 }
 
 int ec_ioc_end_detached(struct ec_call *call)
 {
-	switch (ec_session_end_detached(call->master)) {
+	switch (ec_session_end_detached(&call->master->sessions)) {
 	case 0:
 		return 0;
 	case -ENOENT:
-		return ec_refuse(call, -ENOENT, "master %u has no session", call->master->base->index);
+		return ec_refuse(call, -ENOENT, "master %u has no session",
+				 call->master->base->index);
 	default:
-		return ec_refuse(call, -EBUSY, "session of master %u still has its application; stop it first",
+		return ec_refuse(call, -EBUSY,
+				 "session of master %u still has its application; stop it first",
 				 call->master->base->index);
 	}
 }

@@ -7,7 +7,7 @@
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
 #include "ioctl.h"
-#include "../master.h"
+#include "master.h"
 #include "../session/session.h"
 
 #define PERIOD_MIN_NS	10000
@@ -36,14 +36,18 @@ static int check_cycle(struct ec_call *call, const struct ec_ioc_cycle *i)
 		return ec_refuse(call, -EINVAL, "unknown stall policy %u; use 0 to %u", i->stall,
 				 EC_STALL_STOP);
 	if (i->dc & ~DC_FLAGS)
-		return ec_refuse(call, -EOPNOTSUPP, "unknown clock flags 0x%x; use 0x%x or less of it",
+		return ec_refuse(call, -EOPNOTSUPP,
+				 "unknown clock flags 0x%x; use 0x%x or less of it",
 				 i->dc, DC_FLAGS);
 	if (i->dc & EC_CYCLE_DC_FOLLOW && !(i->dc & EC_SEND_FLAG_SYNC_SLAVES))
-		return ec_refuse(call, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
+		return ec_refuse(call, -EINVAL,
+				 "EC_CYCLE_FOLLOW_REFERENCE needs EC_CYCLE_SYNC_SLAVES, which reads the reference clock");
 	if (i->dc & EC_CYCLE_DC_FOLLOW && i->dc & EC_SEND_FLAG_SYNC_REF)
-		return ec_refuse(call, -EINVAL, "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would be synchronized to the other");
+		return ec_refuse(call, -EINVAL,
+				 "EC_CYCLE_FOLLOW_REFERENCE excludes EC_CYCLE_SYNC_REFERENCE: each would be synchronized to the other");
 	if (i->flags & EC_CYCLE_FLAG_DETACH && i->stall == EC_STALL_STOP)
-		return ec_refuse(call, -EINVAL, "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
+		return ec_refuse(call, -EINVAL,
+				 "EC_CYCLE_DETACH excludes EC_CYCLE_STOP; use EC_CYCLE_HOLD or EC_CYCLE_ZERO");
 	return 0;
 }
 
@@ -72,7 +76,8 @@ int ec_ioc_division(struct ec_call *call)
 	struct ec_ioc_division *i = call->arg;
 
 	if (!i->division || i->division > EC_MAX_DIVISION || i->phase >= i->division)
-		return ec_refuse(call, -EINVAL, "every %u cycles, phase %u: use 1 to %u, and a phase below that",
+		return ec_refuse(call, -EINVAL,
+				 "every %u cycles, phase %u: use 1 to %u, and a phase below that",
 				 i->division, i->phase, EC_MAX_DIVISION);
 	call->domain->division = i->division;
 	call->domain->phase = i->phase;
@@ -86,13 +91,16 @@ static int copy_failed(struct ec_call *call, const struct ec_ioc_copy *i, int re
 		return ec_refuse(call, ret, "there is no domain %u or %u", i->from_domain,
 				 i->to_domain);
 	case -EDOM:
-		return ec_refuse(call, -EINVAL, "%u bits from bit %u of domain %u on are not inputs of one slave; register them first",
+		return ec_refuse(call, -EINVAL,
+				 "%u bits from bit %u of domain %u on are not inputs of one slave; register them first",
 				 i->bits, i->from_bit, i->from_domain);
 	case -ERANGE:
-		return ec_refuse(call, -EINVAL, "%u bits from bit %u of domain %u on are not outputs of one slave; register them first",
+		return ec_refuse(call, -EINVAL,
+				 "%u bits from bit %u of domain %u on are not outputs of one slave; register them first",
 				 i->bits, i->to_bit, i->to_domain);
 	case -EEXIST:
-		return ec_refuse(call, ret, "another copy writes to some of these %u bits from bit %u of domain %u on",
+		return ec_refuse(call, ret,
+				 "another copy writes to some of these %u bits from bit %u of domain %u on",
 				 i->bits, i->to_bit, i->to_domain);
 	case -ENOSPC:
 		return ec_refuse(call, ret, "at most %u copies", EC_MAX_COPIES);
@@ -121,11 +129,13 @@ int ec_ioc_wait(struct ec_call *call)
 	int ret;
 
 	if (!ec_cycle_thread_run(cycles, call->file, &run))
-		return ec_refuse(call, -EPERM, "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
+		return ec_refuse(call, -EPERM,
+				 "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
 	ret = ec_cycle_thread_wait(cycles, call->file, &call->file->waiters, run, &i->cycle,
 				   i->timeout_us);
 	if (ret == -EBUSY)
-		return ec_refuse(call, ret, "%u threads wait for the cycle already; let one of them wake the others",
+		return ec_refuse(call, ret,
+				 "%u threads wait for the cycle already; let one of them wake the others",
 				 EC_MAX_WAITERS);
 	return ret;
 }

@@ -8,7 +8,7 @@
 #include "../link/device.h"
 #include "../config/domain.h"
 #include "ioctl.h"
-#include "../master.h"
+#include "master.h"
 #include "../base/once64.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
@@ -86,21 +86,20 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 	copy_rates(d->loss_rate, link->rates.rate[4]);
 }
 
-static void cycle_info(const struct ec_session *s, struct ec_ioc_master *i)
+static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 {
-	const struct ec_cycle *c = &s->cycle;
-	const struct ec_cyc_wire *w = READ_ONCE(s->master->dc.begun) ? &c->clocked : &c->plain;
+	const struct ec_cyc_wire *w = READ_ONCE(c->dc->begun) ? &c->clocked : &c->plain;
 
-	i->cycle_interval_us = READ_ONCE(s->master->links.access.interval_us);
+	i->cycle_interval_us = READ_ONCE(c->links->access.interval_us);
 	i->cycle_datagrams = c->n_dgrams;
 	i->cycle_frames = w->frames;
 	i->cycle_wire_ns = w->ns;
 	i->sent_frames = READ_ONCE(c->last.frames);
 	i->sent_wire_ns = READ_ONCE(c->last.ns);
-	i->acyclic_slack_ns = ec_access_slack_ns(&s->master->links);
+	i->acyclic_slack_ns = ec_access_slack_ns(c->links);
 	i->acyclic_need_ns = ec_cycle_need_ns();
-	i->late_per_s = s->master->links.share.late_per_s;
-	i->late_cycles = READ_ONCE(s->master->links.share.late_cycles);
+	i->late_per_s = c->links->share.late_per_s;
+	i->late_cycles = READ_ONCE(c->links->share.late_cycles);
 }
 
 /* What the session adds. */
@@ -115,7 +114,7 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	i->domain_count = s->wanted.n_domains;
 	if (!s->wanted.active)
 		return;
-	cycle_info(s, i);
+	cycle_info(&s->cycle, i);
 	st = s->cycle.shared->status;
 	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));
 	i->cycle_lock = READ_ONCE(st->kernel.lock);
@@ -151,8 +150,8 @@ int ec_ioc_master(struct ec_call *call)
 	/* one that is gone has left its position to another slave */
 	i->ref_clock = m->dc.ref && !READ_ONCE(m->dc.ref->stop.gone) &&
 		       READ_ONCE(m->dc.ref_station) ? m->dc.ref->position : -1;
-	if (m->session)
-		session_info(m->session, i);
+	if (m->sessions.session)
+		session_info(m->sessions.session, i);
 	ec_show_end(&m->base->show);
 	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
@@ -254,9 +253,10 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 
 	if (ret)
 		return ret;
-	while (m->session) {
-		c = ec_config_at(&m->session->wanted, s, i->alias_group, i->alias_pos, &from);
-		if (c || from >= m->session->wanted.n_configs)
+	while (m->sessions.session) {
+		c = ec_config_at(&m->sessions.session->wanted, s, i->alias_group, i->alias_pos,
+				 &from);
+		if (c || from >= m->sessions.session->wanted.n_configs)
 			break;
 		ret = ec_show_pause(&m->base->show);
 		if (ret)
@@ -448,8 +448,8 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 
 int ec_ioc_cycle_reset(struct ec_call *call)
 {
-	mutex_lock(&call->master->session_lock);
+	mutex_lock(&call->master->sessions.lock);
 	ec_late_reset(&call->master->cycles);
-	mutex_unlock(&call->master->session_lock);
+	mutex_unlock(&call->master->sessions.lock);
 	return 0;
 }

@@ -42,10 +42,12 @@ static int failed(struct ec_call *call, const struct ec_ioc_ip *i, int ret)
 {
 	switch (ret) {
 	case -EREMOTEIO:
-		return ec_refuse(call, -EIO, "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
+		return ec_refuse(call, -EIO,
+				 "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
 				 i->result, ec_eoe_result_text(i->result));
 	case -EMSGSIZE:
-		return ec_refuse(call, ret, "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
+		return ec_refuse(call, ret,
+				 "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
 				 i->position);
 	default:
 		return ec_ioc_mbox_failed(call, ret, i->position, "EoE", "IP parameters");

@@ -27,7 +27,8 @@ int ec_ioc_domain_options(struct ec_call *call)
 		return ec_refuse(call, -EOPNOTSUPP, "unknown domain options 0x%x; known are 0x%x",
 				 i->options, EC_DOMAIN_OPT_ALL);
 	if ((i->options & both) == both)
-		return ec_refuse(call, -EINVAL, "LRD and LWR share logical addresses anyway; choose overlap (LRW) or separate (LRD and LWR)");
+		return ec_refuse(call, -EINVAL,
+				 "LRD and LWR share logical addresses anyway; choose overlap (LRW) or separate (LRD and LWR)");
 	call->domain->options = i->options;
 	return 0;
 }
@@ -45,7 +46,8 @@ int ec_ioc_late(struct ec_call *call)
 	struct ec_ioc_late *i = call->arg;
 
 	if (i->per_s > LATE_MAX)
-		return ec_refuse(call, -EINVAL, "%u delayed cycles per second; use 0 to %u", i->per_s,
+		return ec_refuse(call, -EINVAL, "%u delayed cycles per second; use 0 to %u",
+				 i->per_s,
 				 LATE_MAX);
 	call->session->cycle.late_per_s = i->per_s;
 	return 0;

@@ -125,7 +125,8 @@ static int idn_failed(struct ec_call *call, const struct ec_ioc_soe *i, int ret)
 				 i->error_code,
 				 ec_soe_error_text(i->error_code) ?: "unknown code");
 	case -EMSGSIZE:
-		return ec_refuse(call, ret, "%s: the value does not fit into one message of the mailbox of slave %u; fragments are not supported",
+		return ec_refuse(call, ret,
+				 "%s: the value does not fit into one message of the mailbox of slave %u; fragments are not supported",
 				 what, i->position);
 	case -ENOBUFS:
 		return ec_refuse(call, ret, "%s is larger than %u bytes", what, i->size);
@@ -176,7 +177,8 @@ int ec_ioc_sc_idn(struct ec_call *call)
 	if (ret)
 		return ret;
 	if (i->state != EC_AL_PREOP && i->state != EC_AL_SAFEOP)
-		return ec_refuse(call, -EINVAL, "IDNs are written in PREOP (2) or SAFEOP (4), not in state %u",
+		return ec_refuse(call, -EINVAL,
+				 "IDNs are written in PREOP (2) or SAFEOP (4), not in state %u",
 				 i->state);
 	ret = ec_config_idn_add(call->config, i->drive, i->idn, i->state, call->data, call->size);
 	if (ret == -ENOSPC)

@@ -279,7 +279,8 @@ static void sleep_until(u64 ns)
 	u64 now = ktime_get_ns();
 
 	if (ns > now + NSEC_PER_USEC)
-		usleep_range(div_u64(ns - now, NSEC_PER_USEC), div_u64(ns - now, NSEC_PER_USEC) + 5);
+		usleep_range(div_u64(ns - now, NSEC_PER_USEC),
+			     div_u64(ns - now, NSEC_PER_USEC) + 5);
 }
 
 /*

@@ -308,7 +308,8 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 
 	if (slave->alias)
 		snprintf(alias, sizeof(alias), "alias %u, ", slave->alias);
-	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected from %s", slave->position, alias,
+	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected from %s", slave->position,
+			 alias,
 			 slave->order[0] ? slave->order : slave->name, slave->parent);
 }
 

@@ -100,7 +100,7 @@ struct ec_bus;
  * @work: brings it to @requested
  * @works: runs of @work that are queued or in progress
  * @lock: one worker or caller at a time changes its state
- * @config: what the session wants from it, under session_lock and @lock
+ * @config: what the session wants from it, under lock of the configuration and @lock
  * @read_pdos: read the PDOs when it is there
  * @plan: what the worker goes by: @config, once its session is active; under @lock
  * @holds: the worker has both locks of @mbox

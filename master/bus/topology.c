@@ -248,5 +248,6 @@ void ec_topology_build(struct ec_slave **slaves, unsigned int n)
 	for (i = 0; i < n; i++)
 		WRITE_ONCE(slaves[i]->topology_odd, i >= odd);
 	if (odd < n)
-		ec_slave_warn(slaves[odd], "open ports inconsistent with ring order from this slave on; delays unreliable: check cables, then rescan\n");
+		ec_slave_warn(slaves[odd],
+			      "open ports inconsistent with ring order from this slave on; delays unreliable: check cables, then rescan\n");
 }

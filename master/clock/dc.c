@@ -44,7 +44,8 @@ static void tell_odd(const struct ec_dc_job *j)
 			n++;
 		}
 	if (n)
-		ec_slave_warn(j->slaves[first], "receive times of this and %u more slave(s) contradict the topology; delays unreliable: check cables, then rescan\n",
+		ec_slave_warn(j->slaves[first],
+			      "receive times of this and %u more slave(s) contradict the topology; delays unreliable: check cables, then rescan\n",
 			      n - 1);
 }
 
@@ -234,7 +235,8 @@ static void work(struct work_struct *work)
 	ret = ret ?: ec_dc_near(&j) ?: ec_dc_check(&j);
 	mutex_unlock(&dc->lock);
 	if (!ret)
-		ec_info(dc, "distributed clocks synchronized in %llu us, reference clock: slave %u\n",
+		ec_info(dc,
+			"distributed clocks synchronized in %llu us, reference clock: slave %u\n",
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
 		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),

@@ -88,7 +88,7 @@ struct ec_dc_app {
  * @ref_wide: it has 64 bits
  * @front: slaves with a clock are in front of it: they get the time the cycle
  *	predicts, and nothing that waits in a queue
- * @begun: the session's clocks were begun to be set, under session_lock
+ * @begun: the session's clocks were begun to be set, under lock of the configuration
  * @wanted: the application sends clock datagrams
  * @running: the clocks are set: the cycle may correct them
  * @framed: by frames of @work; the cycle only asks for the time

@@ -314,7 +314,8 @@ void ec_dc_app_log(struct ec_dc *dc)
 	a->log_ns = now + LOG_NS;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 	if (jumps)
-		ec_warn(dc, "application time jumped by %lld ns (%u since the last message); clocks and SYNC signals continue without it\n",
+		ec_warn(dc,
+			"application time jumped by %lld ns (%u since the last message); clocks and SYNC signals continue without it\n",
 			jump, jumps);
 	if (ignored)
 		ec_warn(dc, "application time: %u isolated error(s), last %lld ns, ignored\n",

@@ -101,7 +101,8 @@ void ec_dc_sync_again(struct ec_slave *s)
 	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP ||
 	    READ_ONCE(s->stop.gone))
 		return;
-	ec_slave_warn(s, "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
+	ec_slave_warn(s,
+		      "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
 	WRITE_ONCE(s->reconfigure, true);
 	ec_slave_kick(s);
 }
@@ -223,7 +224,8 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 
 	lockdep_assert_held(&s->lock);
 	if (!(c->assign & RUN) || !(c->assign & (SYNC0 | SYNC1))) {
-		ec_slave_warn(s, "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
+		ec_slave_warn(s,
+			      "AssignActivate 0x%04x enables no SYNC signal: bit 8 and bit 9 or 10 must be set, as in 0x0300\n",
 			      c->assign);
 		return;
 	}
@@ -235,7 +237,8 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 	}
 	/* the one that was looked for may be among those that were not decoded */
 	if (n > 0 && n < MODES)
-		ec_slave_warn(s, "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
+		ec_slave_warn(s,
+			      "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
 			      c->assign, list);
 }
 
@@ -333,7 +336,8 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 		if (!missing(c, status[0]))
 			break;
 		if (!known) {
-			ec_slave_warn(s, "SYNC signals may not run (0x0984 = 0x%02x), or the slave lacks this register; continuing to OP\n",
+			ec_slave_warn(s,
+				      "SYNC signals may not run (0x0984 = 0x%02x), or the slave lacks this register; continuing to OP\n",
 				      status[0]);
 			break;
 		}

@@ -81,7 +81,8 @@ static void tell_far(struct ec_dc *dc)
 	dc->far_next_ns = now + LOG_NS;
 	max = DIV_ROUND_CLOSEST(max, 100);
 	if (far)
-		ec_warn(dc, "%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
+		ec_warn(dc,
+			"%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
 			far, clocks, worst, max / 10, max % 10);
 	else
 		ec_info(dc, "all %u clocks inside the sync window\n", clocks);
@@ -124,7 +125,8 @@ static bool worth_try(struct ec_slave *s)
 		return false;
 	if (s->dc_vain++ < VAIN)
 		return true;
-	ec_slave_warn(s, "clock not synchronized in %d more attempts although the slave replies; clock excluded until the slave reconnects or the next activation\n",
+	ec_slave_warn(s,
+		      "clock not synchronized in %d more attempts although the slave replies; clock excluded until the slave reconnects or the next activation\n",
 		      VAIN);
 	return false;
 }

@@ -34,7 +34,8 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 		return false;
 	for (i = 0; i < n; i++) {
 		memset(b, 0, sizeof(b));
-		if (ec_coe_upload(&s->mbox, index, i + 1, false, b, sizeof(b), &got, &abort, NULL) ||
+		if (ec_coe_upload(&s->mbox, index, i + 1, false, b, sizeof(b), &got, &abort,
+				  NULL) ||
 		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
 			return false;
 	}

@@ -13,7 +13,7 @@
  * @c: configuration without PDOs
  * @slave: slave
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
 void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
@@ -335,7 +335,8 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 
 	lockdep_assert_held(c->wanted->lock);
 	if (!ret && c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
-		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n", index,
+		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n",
+			      index,
 			      sub);
 	return ret;
 }
@@ -413,7 +414,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
  * @c: configuration
  * @p: parameters; those not in @which stay as they are
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0, or as ec_startup_add().
  */
 int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p)
@@ -471,7 +472,7 @@ s32 ec_config_flag(const struct ec_config *c, const char *key)
  *
  * Offsets have been handed out, so what was registered does not change any more.
  *
- * Context: Process, session_lock held.
+ * Context: Process, lock of the configuration held.
  * Return: true: bytes or direction were changed after the first entry was
  * registered.
  */
@@ -543,7 +544,7 @@ static int reg(struct ec_config *c, u8 sm, struct ec_pdo_entry *e, u32 bits, str
  * @offset: result: byte in the domain
  * @bit: result: bit in that byte; NULL: it has to begin with a byte
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENOENT when the entry is not mapped; -EINVAL when its SyncManager
  * has no direction; -EOVERFLOW when all FMMUs are used or SyncManager or domain
  * are too large; -EBUSY as ec_config_changed(); -EFAULT it begins within a byte and
@@ -581,7 +582,7 @@ int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain
  * @offset: result
  * @bit: result
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: as ec_config_reg_entry(), -EINVAL for a wrong @sm.
  */
 int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_pos,

@@ -9,7 +9,7 @@
  * ec_domain_create() - an empty domain
  * @w: what an application wants
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: domain, or ERR_PTR: -ENOSPC beyond EC_MAX_DOMAINS, -ENOMEM.
  */
 struct ec_domain *ec_domain_create(struct ec_wanted *w)
@@ -48,7 +48,7 @@ void ec_domain_free(struct ec_domain *d)
  * @c: configuration
  * @fmmu: index in it, @offset and @size set
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  * Return: 0, -ENOMEM, or -EOVERFLOW when the image would be larger than
  * EC_MAX_IMAGE.
  */

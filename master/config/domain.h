@@ -16,7 +16,7 @@ struct ec_domain_fmmu {
 };
 
 /**
- * struct ec_domain - one domain, under session_lock until activation
+ * struct ec_domain - one domain, under lock of the configuration until activation
  * @wanted: owner
  * @index: number in the session
  * @size: bytes registered

@@ -111,7 +111,8 @@ static void why(char *text, size_t size, const struct ec_startup *u, int ret, u3
 
 	if (ret == -EIO && code)
 		scnprintf(text, size, sdo ? "abort 0x%08x: %s" : "SoE error 0x%04x: %s", code,
-			  (sdo ? ec_coe_abort_text(code) : ec_soe_error_text(code)) ?: "unknown code");
+			  (sdo ?
+			   ec_coe_abort_text(code) : ec_soe_error_text(code)) ?: "unknown code");
 	else
 		ec_mbox_fail_text(ret, sdo ? "CoE" : u->type == EC_STARTUP_IDN ? "SoE" : "EoE",
 				  text, size);

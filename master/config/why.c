@@ -29,7 +29,7 @@ static bool place(const struct ec_config *c, unsigned int *pos)
  * When it is made, and when slaves have come or gone: who only looks at it must not walk
  * all slaves.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
 void ec_config_find_alias(struct ec_config *c)
 {
@@ -60,7 +60,8 @@ static size_t no_link(const struct ec_links *l, char *buf, size_t size)
 	if (ec_links_any_up(l))
 		return 0;
 	if (!ec_links_any_device(l))
-		return scnprintf(buf, size, "no network device: master %u waits for %s", l->base->index,
+		return scnprintf(buf, size, "no network device: master %u waits for %s",
+				 l->base->index,
 				 ec_links_main_name(l));
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
 			 l->base->index);
@@ -92,13 +93,16 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos,
 				 ec_slave_why(s, why, sizeof(why)));
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
-		return scnprintf(buf, size, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
+		return scnprintf(buf, size,
+				 "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
 	if (s->config && c->wanted->active && !twice(s->config, pos))
-		return scnprintf(buf, size, "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
+		return scnprintf(buf, size,
+				 "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
 				 pos, s->config->alias, s->config->position);
 	if (s->config)
-		return scnprintf(buf, size, "slave %u has another configuration, %u:%u; use one of the two",
+		return scnprintf(buf, size,
+				 "slave %u has another configuration, %u:%u; use one of the two",
 				 pos, s->config->alias, s->config->position);
 	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
@@ -113,13 +117,15 @@ static size_t present(struct ec_slave *s, char *buf, size_t size)
 	if (READ_ONCE(s->error) != EC_SLAVE_OK)
 		return strlen(ec_slave_why(s, buf, size));
 	if (status & EC_AL_ERROR)
-		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)", state, code,
+		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)",
+				 state, code,
 				 ec_al_code_text(code));
 	if (want != EC_AL_OP)
 		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
 	if (!ec_access_is_cyclic(&s->bus->links->access))
-		return scnprintf(buf, size, "AL state %s; cycle timeout: the application sends no cyclic frames", state);
+		return scnprintf(buf, size,
+				 "AL state %s; cycle timeout: the application sends no cyclic frames", state);
 	if (doing)
 		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
 				 doing);
@@ -173,7 +179,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
  * @c: what ec_config_at() found
  * @slave: for that slave
  *
- * Context: Process; with session_lock held, or after ec_show_begin().
+ * Context: Process; with lock of the configuration held, or after ec_show_begin().
  * Return: true: identity or revision differ.
  */
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
@@ -189,7 +195,7 @@ bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave)
  * @buf: one line of text, untouched when the revision does not differ
  * @size: of @buf
  *
- * Context: Process; with session_lock held, or after ec_show_begin().
+ * Context: Process; with lock of the configuration held, or after ec_show_begin().
  * Return: whether it differs.
  */
 bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
@@ -214,7 +220,7 @@ static void absent_text(const struct ec_config *c, char *buf, size_t size)
  * ec_config_log_differences() - report what is missing or different
  * @w: of a session that has just been activated
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, lock of the configuration held. May sleep.
  */
 void ec_config_log_differences(const struct ec_wanted *w)
 {
@@ -243,7 +249,7 @@ void ec_config_log_differences(const struct ec_wanted *w)
  * ec_config_status() - EC_STATUS_SC_* of a configuration
  * @c: configuration
  *
- * Context: Process, session_lock held or after ec_show_begin().
+ * Context: Process, lock of the configuration held or after ec_show_begin().
  * Return: AL state with the bits online and operational; 0 without slave.
  */
 u8 ec_config_status(const struct ec_config *c)
@@ -270,7 +276,7 @@ u8 ec_config_status(const struct ec_config *c)
  * @buf: one line of text, empty when it is in OP
  * @size: of @buf
  *
- * Context: Process; with session_lock and topo held, or after ec_show_begin().
+ * Context: Process; with lock of the configuration and topo held, or after ec_show_begin().
  * Return: length of the text.
  */
 size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)

@@ -41,10 +41,12 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 
 	lockdep_assert_held(c->wanted->lock);
 	if (!c->priority)
-		ec_warn(c, "cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
+		ec_warn(c,
+			"cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
 			wanted, wanted);
 	else if (c->priority < wanted)
-		ec_warn(c, "cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
+		ec_warn(c,
+			"cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
 			c->priority, wanted);
 }
 
@@ -95,7 +97,8 @@ void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 	if (!c->cpu_lost) {
 		c->cpu_lost = true;
 		c->cpu_losses++;
-		ec_warn(c, "CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
+		ec_warn(c,
+			"CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
 			cpu, cpu);
 	}
 	/* on its way down a CPU is still online */

@@ -146,7 +146,8 @@ void ec_pll_log(struct ec_cycle *c)
 		ec_info(c, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
 			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));
 	else if (lock == EC_CYCLE_LOCK_HOLD)
-		ec_warn(c, "reference clock not answering; kernel cycle in holdover at the last rate\n");
+		ec_warn(c,
+			"reference clock not answering; kernel cycle in holdover at the last rate\n");
 	else if (lock == EC_CYCLE_LOCK_SEEK && READ_ONCE(st->lock_losses))
 		ec_warn(c, "kernel cycle lost lock: phase error %d ns; seeking\n",
 			READ_ONCE(st->phase_error));

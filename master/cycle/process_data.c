@@ -168,7 +168,8 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 		if (!age || d->stale_logged)
 			continue;
 		d->stale_logged = true;
-		ec_warn(c, "domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
+		ec_warn(c,
+			"domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
 			i, age, d->max_age);
 	}
 }

@@ -43,7 +43,8 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 	static DEFINE_RATELIMIT_STATE(rate, HZ, 50);
 
 	if (__ratelimit(&rate))
-		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n", link->links->base->index,
+		printk(KERN_DEBUG "EtherCAT %u: %s %s, %zu byte(s): %*ph\n",
+		       link->links->base->index,
 		       link->side ? "backup" : "main", what, len, (int)min_t(size_t, len, 48),
 		       data);
 }

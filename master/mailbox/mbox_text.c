@@ -22,7 +22,8 @@ const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t s
 	u16 detail = ec_mbox_errno_detail(ret);
 
 	if (detail) {
-		scnprintf(buf, size, "mailbox error reply 0x%04x (%s)", detail, ec_mbox_error_text(detail));
+		scnprintf(buf, size, "mailbox error reply 0x%04x (%s)", detail,
+			  ec_mbox_error_text(detail));
 		return buf;
 	}
 	switch (ret) {
@@ -33,7 +34,8 @@ const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t s
 		scnprintf(buf, size, "no %s mailbox", protocol);
 		break;
 	case -EAGAIN:
-		scnprintf(buf, size, "not in PREOP or above, so the mailbox is off; request PREOP first");
+		scnprintf(buf, size,
+			  "not in PREOP or above, so the mailbox is off; request PREOP first");
 		break;
 	case -ETIMEDOUT:
 		scnprintf(buf, size, "no reply in time");
@@ -46,7 +48,8 @@ const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t s
 		scnprintf(buf, size, "invalid reply (length or content of the mailbox message)");
 		break;
 	case -EMSGSIZE:
-		scnprintf(buf, size, "the mailbox is too small for the message, or larger than a datagram");
+		scnprintf(buf, size,
+			  "the mailbox is too small for the message, or larger than a datagram");
 		break;
 	case -ECANCELED:
 		scnprintf(buf, size, "disconnected during the transfer");

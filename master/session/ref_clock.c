@@ -4,7 +4,6 @@
  * configured: often it is a coupler. It goes to OP with them, as applications
  * wait until the AL states of the whole bus are OP.
  */
-#include "../master.h"
 #include "session.h"
 #include "../bus/slave.h"
 
@@ -29,18 +28,18 @@ static bool has_outputs(const struct ec_slave *s)
  * After activation and when slaves have come or gone. A slave that is configured
  * or has outputs is left alone.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_ref_clock_raise(struct ec_session *s)
 {
-	struct ec_master *m = s->master;
+	struct ec_sessions *ss = s->sessions;
 	struct ec_slave *ref;
 
-	down_read(&m->bus.topo);
-	ref = m->dc.ref;
+	down_read(&ss->bus->topo);
+	ref = ss->dc->ref;
 	if (ref)
 		ec_slave_ref(ref);
-	up_read(&m->bus.topo);
+	up_read(&ss->bus->topo);
 	if (!ref || ref == s->raised || ref->config || READ_ONCE(ref->stop.gone) ||
 	    has_outputs(ref)) {
 		if (ref)
@@ -56,7 +55,7 @@ void ec_ref_clock_raise(struct ec_session *s)
  * ec_ref_clock_lower() - back to PREOP with it
  * @s: session
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_ref_clock_lower(struct ec_session *s)
 {
@@ -65,7 +64,7 @@ void ec_ref_clock_lower(struct ec_session *s)
 	if (!ref)
 		return;
 	s->raised = NULL;
-	if (!READ_ONCE(ref->stop.gone) && !ref->config && !READ_ONCE(s->master->base->stopping))
+	if (!READ_ONCE(ref->stop.gone) && !ref->config && !READ_ONCE(s->sessions->base->stopping))
 		ec_slave_request(ref, EC_AL_PREOP);
 	ec_slave_unref(ref);
 }

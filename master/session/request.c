@@ -6,7 +6,6 @@
 #include "../config/config.h"
 #include "../mailbox/emerg.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
 #include "request.h"
 #include "request_int.h"
 #include "session.h"
@@ -38,9 +37,9 @@ struct ec_lane {
 /**
  * struct ec_requests - all requests of an activation
  * @kref: the session and each work that is queued or runs
- * @master: master
+ * @sessions: of the master
  * @shared: mapped memory, with a reference
- * @lock: protects the requests; inside session_lock
+ * @lock: protects the requests; inside session lock
  * @starts: the area's, when a cycle of the kernel last looked
  * @kick: looks once
  * @watch: looks again and again while anything waits
@@ -53,7 +52,7 @@ struct ec_lane {
  */
 struct ec_requests {
 	struct kref kref;
-	struct ec_master *master;
+	struct ec_sessions *sessions;
 	struct ec_shared *shared;
 	struct mutex lock;
 	u32 starts;
@@ -96,9 +95,9 @@ static void queue(struct ec_requests *rq, struct workqueue_struct *wq, struct wo
 /* The session these requests belong to, or NULL: it has ended. */
 static struct ec_session *session_of(const struct ec_requests *rq)
 {
-	struct ec_session *s = rq->master->session;
+	struct ec_session *s = rq->sessions->session;
 
-	return s && s->requests == rq && !READ_ONCE(rq->master->base->stopping) ? s : NULL;
+	return s && s->requests == rq && !READ_ONCE(rq->sessions->base->stopping) ? s : NULL;
 }
 
 /* begin and end of a request ------------------------------------------------*/
@@ -163,7 +162,7 @@ static bool look(struct ec_requests *rq)
 	bool more = false;
 	unsigned int i;
 
-	mutex_lock(&rq->master->session_lock);
+	mutex_lock(&rq->sessions->lock);
 	s = session_of(rq);
 	if (!s)
 		goto out;
@@ -186,11 +185,11 @@ static bool look(struct ec_requests *rq)
 		}
 		more |= todo;
 		if (todo && there)
-			queue(rq, rq->master->lanes, &lane->work);
+			queue(rq, rq->sessions->lanes, &lane->work);
 	}
 	mutex_unlock(&rq->lock);
 out:
-	mutex_unlock(&rq->master->session_lock);
+	mutex_unlock(&rq->sessions->lock);
 	return more;
 }
 
@@ -199,7 +198,7 @@ static void kick_work(struct work_struct *work)
 	struct ec_requests *rq = container_of(work, struct ec_requests, kick);
 
 	if (look(rq))
-		queue(rq, rq->master->service, &rq->watch);
+		queue(rq, rq->sessions->service, &rq->watch);
 	put(rq);
 }
 
@@ -237,7 +236,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 	u64 now = ktime_get_ns();
 	struct ec_session *s;
 
-	mutex_lock(&rq->master->session_lock);
+	mutex_lock(&rq->sessions->lock);
 	s = session_of(rq);
 	*slave = s ? s->wanted.configs[lane->config]->slave : NULL;
 	if (!*slave || (*slave)->stop.gone) {
@@ -258,7 +257,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 		oldest->phase = EC_REQUEST_RUNNING;
 	mutex_unlock(&rq->lock);
 out:
-	mutex_unlock(&rq->master->session_lock);
+	mutex_unlock(&rq->sessions->lock);
 	return oldest;
 }
 
@@ -301,7 +300,7 @@ static void lane_work(struct work_struct *work)
  * @size: room for data, bytes
  * @index: result: its number
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: 0, -ENOSPC, -ENOMEM.
  */
 int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index)
@@ -336,7 +335,7 @@ static size_t data_offset(const struct ec_session *s)
  * ec_requests_bytes() - size of the memory to map
  * @s: session
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  * Return: bytes; 0 without configuration.
  */
 size_t ec_requests_bytes(const struct ec_session *s)
@@ -375,7 +374,7 @@ static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
  *
  * Once more for one that takes over: the one before could write there.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_requests_describe(const struct ec_session *s)
 {
@@ -449,7 +448,7 @@ static unsigned int count_lanes(const struct ec_session *s)
  * ec_requests_begin() - requests can be started from now on
  * @s: session with @shared
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: 0 or -ENOMEM.
  */
 int ec_requests_begin(struct ec_session *s)
@@ -466,7 +465,7 @@ int ec_requests_begin(struct ec_session *s)
 	mutex_init(&rq->lock);
 	INIT_WORK(&rq->kick, kick_work);
 	INIT_WORK(&rq->watch, watch_work);
-	rq->master = s->master;
+	rq->sessions = s->sessions;
 	rq->shared = s->cycle.shared;
 	ec_shared_get(rq->shared);
 	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
@@ -492,7 +491,7 @@ int ec_requests_begin(struct ec_session *s)
  *
  * What is on its way is cancelled; nobody waits for it.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_requests_end(struct ec_session *s)
 {
@@ -519,7 +518,7 @@ void ec_requests_kick(struct ec_session *s)
 	struct ec_requests *rq = s->requests;
 
 	if (rq)
-		queue(rq, rq->master->service, &rq->kick);
+		queue(rq, rq->sessions->service, &rq->kick);
 }
 
 /**
@@ -543,7 +542,7 @@ void ec_requests_notice(struct ec_cycle *c)
 	if (starts == rq->starts)
 		return;
 	rq->starts = starts;
-	queue(rq, rq->master->service, &rq->kick);
+	queue(rq, rq->sessions->service, &rq->kick);
 }
 
 /**
@@ -552,7 +551,7 @@ void ec_requests_notice(struct ec_cycle *c)
  * @config: number of a configuration that has got its slave, or whose session
  *	has begun or ended
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  */
 void ec_requests_attach(const struct ec_session *s, u32 config)
 {
@@ -571,7 +570,7 @@ void ec_requests_attach(const struct ec_session *s, u32 config)
  * @index: number from ec_requests_add()
  * @data: result: its data
  *
- * Context: Process, session_lock held or the session kept active.
+ * Context: Process, session lock held or the session kept active.
  * Return: record.
  */
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data)

@@ -3,7 +3,6 @@
 #include <linux/ktime.h>
 #include "../mailbox/coe.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
 #include "request_int.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"

@@ -10,7 +10,6 @@
 #include "../config/domain.h"
 #include "../mailbox/emerg.h"
 #include "../mailbox/mailbox.h"
-#include "../master.h"
 #include "request.h"
 #include "session.h"
 #include "../bus/slave.h"
@@ -20,27 +19,27 @@
 
 /**
  * ec_session_of() - the session an application works with
- * @m: master
+ * @ss: sessions of a master
  * @owner: its open file
  *
- * Context: Process, session_lock held or after ec_show_begin().
+ * Context: Process, session lock held or after ec_show_begin().
  * Return: session, or NULL when it has not reserved the master.
  */
-struct ec_session *ec_session_of(const struct ec_master *m, const void *owner)
+struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner)
 {
-	if (m->session && m->session->cycle.owner == owner)
-		return m->session;
-	return m->heir && m->heir->cycle.owner == owner ? m->heir : NULL;
+	if (ss->session && ss->session->cycle.owner == owner)
+		return ss->session;
+	return ss->heir && ss->heir->cycle.owner == owner ? ss->heir : NULL;
 }
 
 /* One application at a time; one more may prepare to take a detached session over. */
-static bool taken(struct ec_master *m)
+static bool taken(struct ec_sessions *ss)
 {
 	bool ret;
 
-	mutex_lock(&m->session_lock);
-	ret = m->heir || (m->session && m->session->cycle.owner);
-	mutex_unlock(&m->session_lock);
+	mutex_lock(&ss->lock);
+	ret = ss->heir || (ss->session && ss->session->cycle.owner);
+	mutex_unlock(&ss->lock);
 	return ret;
 }
 
@@ -48,13 +47,13 @@ static bool taken(struct ec_master *m)
  * Mailboxes shall work from now on, whatever a tool has left behind. Who has
  * failed on the way to PREOP is left alone: that takes its time and helps nobody.
  */
-static void to_preop(struct ec_master *m)
+static void to_preop(struct ec_sessions *ss)
 {
 	unsigned int i;
 
-	down_read(&m->bus.topo);
-	for (i = 0; i < m->bus.n_slaves; i++) {
-		struct ec_slave *s = m->bus.slaves[i];
+	down_read(&ss->bus->topo);
+	for (i = 0; i < ss->bus->n_slaves; i++) {
+		struct ec_slave *s = ss->bus->slaves[i];
 
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
 		    (READ_ONCE(s->requested) == EC_AL_PREOP &&
@@ -63,25 +62,25 @@ static void to_preop(struct ec_master *m)
 		ec_slave_forgive(s);
 		ec_slave_request(s, EC_AL_PREOP);
 	}
-	up_read(&m->bus.topo);
+	up_read(&ss->bus->topo);
 }
 
-static int begin(struct ec_master *m, struct ec_session *s)
+static int begin(struct ec_sessions *ss, struct ec_session *s)
 {
 	int ret = 0;
 
-	ec_session_lock(m);
-	if (m->heir || (m->session && m->session->cycle.owner)) {
+	ec_sessions_lock(ss);
+	if (ss->heir || (ss->session && ss->session->cycle.owner)) {
 		ret = -EBUSY;
-	} else if (m->session) {
-		m->heir = s;
-		s->wanted.before = &m->session->wanted;
+	} else if (ss->session) {
+		ss->heir = s;
+		s->wanted.before = &ss->session->wanted;
 	} else {
-		m->session = s;
-		WRITE_ONCE(m->bus.freeze, true);
-		to_preop(m);
+		ss->session = s;
+		WRITE_ONCE(ss->bus->freeze, true);
+		to_preop(ss);
 	}
-	ec_session_unlock(m);
+	ec_sessions_unlock(ss);
 	return ret;
 }
 
@@ -99,7 +98,7 @@ static void note_process(struct ec_session *s)
 
 /**
  * ec_session_owner_text() - the process that has reserved the master
- * @m: master
+ * @ss: sessions of a master
  * @buf: result, such as "process 123 (demo)"
  * @size: of @buf
  *
@@ -108,15 +107,15 @@ static void note_process(struct ec_session *s)
  * Context: Process. May sleep.
  * Return: length of the text; 0: nobody has it any more.
  */
-size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size)
+size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size)
 {
 	const struct ec_session *s;
 	size_t len = 0;
 	pid_t nr;
 
 	buf[0] = '\0';
-	ec_session_lock(m);
-	s = m->heir ?: m->session;
+	ec_sessions_lock(ss);
+	s = ss->heir ?: ss->session;
 	if (s && s->cycle.owner) {
 		rcu_read_lock();
 		nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
@@ -127,7 +126,7 @@ size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size)
 		else
 			len = scnprintf(buf, size, "another process (%s)", s->owner_comm);
 	}
-	ec_session_unlock(m);
+	ec_sessions_unlock(ss);
 	return len;
 }
 
@@ -137,7 +136,7 @@ static const struct ec_cycle_ops cycle_ops = {
 
 /**
  * ec_session_begin() - an application reserves the master
- * @m: master
+ * @ss: sessions of a master
  * @owner: its open file
  * @waiters: wait queue of that file; freed after an RCU grace period
  *
@@ -149,45 +148,45 @@ static const struct ec_cycle_ops cycle_ops = {
  * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
  * -EINTR, -ENOMEM.
  */
-int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters)
+int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiters *waiters)
 {
 	struct ec_session *s;
 	int ret;
 
-	if (!ec_links_attached(&m->links))
+	if (!ec_links_attached(ss->links))
 		return -ENODEV;
-	if (taken(m))
+	if (taken(ss))
 		return -EBUSY;
-	ret = ec_bus_wait_scan(&m->bus);
+	ret = ec_bus_wait_scan(ss->bus);
 	if (ret == -EINTR)
 		return ret;
 	s = kvzalloc(sizeof(*s), GFP_KERNEL_ACCOUNT);
 	if (!s)
 		return -ENOMEM;
-	s->master = m;
-	s->wanted.base = m->base;
-	s->wanted.links = &m->links;
-	s->wanted.bus = &m->bus;
-	s->wanted.lock = &m->session_lock;
+	s->sessions = ss;
+	s->wanted.base = ss->base;
+	s->wanted.links = ss->links;
+	s->wanted.bus = ss->bus;
+	s->wanted.lock = &ss->lock;
 	s->wanted.sends = &s->cycle.sends;
-	s->wanted.budget.lock = &m->session_lock;
-	s->wanted.budget.total = &m->memory;
-	ec_cycle_init(&s->cycle, &m->cycles, &s->wanted);
+	s->wanted.budget.lock = &ss->lock;
+	s->wanted.budget.total = &ss->memory;
+	ec_cycle_init(&s->cycle, ss->cycles, &s->wanted);
 	s->cycle.owner = owner;
 	RCU_INIT_POINTER(s->cycle.waiters, waiters);
 	note_process(s);
 	s->ref_config = EC_UAPI_NONE32;
-	ret = begin(m, s);
+	ret = begin(ss, s);
 	if (ret) {
 		kvfree(s);
 		return ret;
 	}
-	if (READ_ONCE(m->heir) == s)
+	if (READ_ONCE(ss->heir) == s)
 		return 0;
-	ret = ec_bus_wait_slaves(&m->bus);
+	ret = ec_bus_wait_slaves(ss->bus);
 	if (ret != -EINTR)
 		return 0;	/* one that is slow is no reason to refuse */
-	ec_session_end(m, owner);
+	ec_session_end(ss, owner);
 	return ret;
 }
 
@@ -220,30 +219,30 @@ static void clear(struct ec_session *s)
 }
 
 /* The next application begins with what it tells itself. */
-static void forget_told(struct ec_master *m)
+static void forget_told(struct ec_sessions *ss)
 {
-	ec_dc_end(&m->dc);
-	WRITE_ONCE(m->links.access.interval_us, EC_INTERVAL_US);
-	m->links.access.interval_set = false;
+	ec_dc_end(ss->dc);
+	WRITE_ONCE(ss->links->access.interval_us, EC_INTERVAL_US);
+	ss->links->access.interval_set = false;
 }
 
 /**
  * ec_session_deactivate() - stop process data, free what was configured
  * @s: session
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: 0, or -EINVAL when it was not active.
  */
 int ec_session_deactivate(struct ec_session *s)
 {
-	struct ec_master *m = s->master;
+	struct ec_sessions *ss = s->sessions;
 	struct ec_shared *sh;
 
 	if (!s->wanted.active)
 		return -EINVAL;
-	ec_cycle_set_active(&m->cycles, NULL);
+	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
-	ec_access_change(&m->links, EC_ACCESS_DIRECT);
+	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_late_end(&s->cycle);
 	s->wanted.active = false;
 	s->ending = false;
@@ -255,11 +254,11 @@ int ec_session_deactivate(struct ec_session *s)
 	sh = s->cycle.shared;
 	s->cycle.shared = NULL;
 	ec_shared_put(sh);
-	forget_told(m);
-	if ((u32)atomic_read(&m->links.access.timeouts) != s->stall_log.told)
-		ec_warn(m, "%u more cycle timeout(s) since the last message\n",
-			atomic_read(&m->links.access.timeouts) - s->stall_log.told);
-	ec_info(m, "session deactivated\n");
+	forget_told(ss);
+	if ((u32)atomic_read(&ss->links->access.timeouts) != s->stall_log.told)
+		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
+			atomic_read(&ss->links->access.timeouts) - s->stall_log.told);
+	ec_info(ss, "session deactivated\n");
 	return 0;
 }
 
@@ -267,7 +266,7 @@ int ec_session_deactivate(struct ec_session *s)
  * ec_session_free() - a session that is not active goes away
  * @s: session nobody finds any more
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_session_free(struct ec_session *s)
 {
@@ -276,39 +275,39 @@ void ec_session_free(struct ec_session *s)
 }
 
 /* The heir of a session that has ended: from now on its slaves are its own. */
-static void inherit(struct ec_master *m)
+static void inherit(struct ec_sessions *ss)
 {
-	struct ec_session *s = m->heir;
+	struct ec_session *s = ss->heir;
 	unsigned int i;
 
-	m->heir = NULL;
-	m->session = s;
+	ss->heir = NULL;
+	ss->session = s;
 	if (s)
 		s->wanted.before = NULL;
-	WRITE_ONCE(m->bus.freeze, s != NULL);
+	WRITE_ONCE(ss->bus->freeze, s != NULL);
 	if (s)
-		to_preop(m);
+		to_preop(ss);
 	for (i = 0; s && i < s->wanted.n_configs; i++) {
 		ec_session_detach(s->wanted.configs[i]);
 		ec_session_attach_one(s, s->wanted.configs[i]);
 	}
 }
 
-static void end(struct ec_master *m)
+static void end(struct ec_sessions *ss)
 {
-	struct ec_session *s = m->session;
+	struct ec_session *s = ss->session;
 
 	/* one that was never active may have told its time and interval, too */
 	if (ec_session_deactivate(s))
-		forget_told(m);
-	m->session = NULL;
+		forget_told(ss);
+	ss->session = NULL;
 	ec_session_free(s);
-	inherit(m);
+	inherit(ss);
 }
 
 /**
  * ec_session_end() - the application is gone or releases the master
- * @m: master
+ * @ss: sessions of a master
  * @owner: its open file, NULL: whoever it is; another's session stays
  *
  * An active session whose cycle the kernel runs is detached instead, when it was
@@ -316,50 +315,51 @@ static void end(struct ec_master *m)
  *
  * Context: Process. May sleep.
  */
-void ec_session_end(struct ec_master *m, const void *owner)
+void ec_session_end(struct ec_sessions *ss, const void *owner)
 {
 	struct ec_session *s;
 
-	ec_session_lock(m);
-	s = m->heir;
+	ec_sessions_lock(ss);
+	s = ss->heir;
 	if (s && (!owner || s->cycle.owner == owner)) {
-		m->heir = NULL;
+		ss->heir = NULL;
 		ec_session_free(s);
 	}
-	s = m->session;
+	s = ss->session;
 	if (s && owner && s->cycle.owner != owner)
 		s = NULL;
 	if (s && owner && s->cycle.thread && !s->ending &&
 	    s->cycle.kernel.flags & EC_CYCLE_FLAG_DETACH) {
 		ec_cycle_set_owner(&s->cycle, NULL, NULL);
-		ec_info(m, "application exited or released the master; session detached, kernel cycle continues\n");
+		ec_info(ss,
+			"application exited or released the master; session detached, kernel cycle continues\n");
 	} else if (s) {
-		end(m);
+		end(ss);
 	}
-	ec_session_unlock(m);
+	ec_sessions_unlock(ss);
 }
 
 /**
  * ec_session_end_detached() - end the cycle of an application that has gone
- * @m: master
+ * @ss: sessions of a master
  *
  * Slaves go to PREOP. One who wanted to take over has the master then.
  *
  * Context: Process. May sleep.
  * Return: 0; -ENOENT nothing is active; -EBUSY its application is there.
  */
-int ec_session_end_detached(struct ec_master *m)
+int ec_session_end_detached(struct ec_sessions *ss)
 {
 	int ret = 0;
 
-	ec_session_lock(m);
-	if (!m->session)
+	ec_sessions_lock(ss);
+	if (!ss->session)
 		ret = -ENOENT;
-	else if (m->session->cycle.owner)
+	else if (ss->session->cycle.owner)
 		ret = -EBUSY;
 	else
-		end(m);
-	ec_session_unlock(m);
+		end(ss);
+	ec_sessions_unlock(ss);
 	return ret;
 }
 
@@ -395,12 +395,12 @@ static bool begins_clocks(const struct ec_session *s)
 {
 	return uses_clocks(s) ||
 	       (s->ref_config < s->wanted.n_configs &&
-		!ec_dc_can_be(&s->master->dc, ref_choice(s)));
+		!ec_dc_can_be(s->sessions->dc, ref_choice(s)));
 }
 
 /**
  * ec_session_clocks() - set clocks that somebody wants and nobody has set
- * @m: master
+ * @ss: sessions of a master
  *
  * The clocks of an application begin with its activation when a slave has SYNC
  * signals, else with the first clock datagram it sends. They begin anew when slaves
@@ -408,32 +408,32 @@ static bool begins_clocks(const struct ec_session *s)
  *
  * Context: The monitor thread. May sleep.
  */
-void ec_session_clocks(struct ec_master *m)
+void ec_session_clocks(struct ec_sessions *ss)
 {
-	struct ec_dc *dc = &m->dc;
+	struct ec_dc *dc = ss->dc;
 	struct ec_session *s;
 
 	/* held by an activation: next time then */
-	if (!ec_session_trylock(m))
+	if (!ec_sessions_trylock(ss))
 		return;
-	s = m->session;
+	s = ss->session;
 	if (s && s->wanted.active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
 					   READ_ONCE(dc->wanted)))
-		ec_dc_begin(&m->dc, !dc->begun, ref_choice(s));
+		ec_dc_begin(ss->dc, !dc->begun, ref_choice(s));
 	if (dc->changed) {
 		WRITE_ONCE(dc->changed, false);
 		wake_up_all(&dc->wq);
 	}
 	if (s && s->wanted.active && !s->ending)
 		ec_ref_clock_raise(s);
-	mutex_unlock(&m->session_lock);
+	mutex_unlock(&ss->lock);
 }
 
 /**
  * ec_session_place() - give the domains their places in the image
  * @s: session, not active
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  * Return: bytes of all domains.
  */
 u32 ec_session_place(struct ec_session *s)
@@ -454,7 +454,7 @@ u32 ec_session_place(struct ec_session *s)
  * @s: session
  * @image_size: bytes of all domains
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  * Return: 0 or -EDQUOT.
  */
 static int fits(const struct ec_session *s, size_t image_size)
@@ -462,8 +462,8 @@ static int fits(const struct ec_session *s, size_t image_size)
 	/* with six images for the exchange; requests have a copy of their data */
 	size_t images = s->cycle.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
 
-	lockdep_assert_held(&s->master->session_lock);
-	return atomic_long_read(&s->master->memory) + images * image_size + EC_STATUS_BYTES +
+	lockdep_assert_held(&s->sessions->lock);
+	return atomic_long_read(&s->sessions->memory) + images * image_size + EC_STATUS_BYTES +
 	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
 }
 
@@ -480,7 +480,7 @@ static int create_thread(struct ec_session *s, u32 image_bytes)
  * ec_session_activate() - lay out process data, hand the links to the cycle
  * @s: session
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
  * is too large; -EDQUOT more memory than EC_MAX_SESSION_BYTES; -ENOSPC as
@@ -488,7 +488,7 @@ static int create_thread(struct ec_session *s, u32 image_bytes)
  */
 int ec_session_activate(struct ec_session *s)
 {
-	struct ec_master *m = s->master;
+	struct ec_sessions *ss = s->sessions;
 	unsigned int i;
 	u32 offset;
 	int ret;
@@ -504,7 +504,7 @@ int ec_session_activate(struct ec_session *s)
 	ret = fits(s, offset);
 	if (ret)
 		return ret;
-	s->cycle.shared = ec_shared_create(&m->memory, offset, ec_requests_bytes(s));
+	s->cycle.shared = ec_shared_create(&ss->memory, offset, ec_requests_bytes(s));
 	if (!s->cycle.shared)
 		return -ENOMEM;
 	if (s->preset)
@@ -527,16 +527,16 @@ int ec_session_activate(struct ec_session *s)
 		s->cycle.shared->status->domains[i].expected = s->wanted.domains[i]->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
-	s->stall_log.told = atomic_read(&m->links.access.timeouts);
+	s->stall_log.told = atomic_read(&ss->links->access.timeouts);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
-	WRITE_ONCE(m->bus.freeze, false);
+	WRITE_ONCE(ss->bus->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
-		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
-	ec_cycle_set_active(&m->cycles, &s->cycle);
+		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
+	ec_cycle_set_active(ss->cycles, &s->cycle);
 	if (begins_clocks(s))
-		ec_dc_begin(&m->dc, true, ref_choice(s));
-	s->cycle.shared->status->dc_ref = READ_ONCE(m->dc.ref_station) != 0;
+		ec_dc_begin(ss->dc, true, ref_choice(s));
+	s->cycle.shared->status->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(&s->cycle);
 	for (i = 0; i < s->wanted.n_configs; i++)
@@ -545,7 +545,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_ref_clock_raise(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
-	ec_info(m, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
+	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->wanted.n_domains, offset, s->cycle.n_dgrams);
 	return 0;
 }
@@ -557,7 +557,7 @@ int ec_session_activate(struct ec_session *s)
  * The state changes while process data and SYNC signals still run, so that no
  * slave sees a fault; the SYNC signals are switched off in PREOP.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: 0, or -EINVAL when it is not active.
  */
 int ec_session_slaves_down(struct ec_session *s)

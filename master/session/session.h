@@ -16,7 +16,7 @@
 struct ec_copy;
 struct ec_copying;
 struct ec_cycle_thread;
-struct ec_master;
+struct ec_sessions;
 struct ec_request_spec;
 struct ec_requests;
 struct ec_waiters;
@@ -24,7 +24,7 @@ struct ec_waiters;
 #define EC_STALL_LOG_NS	(10ULL * NSEC_PER_SEC)
 
 /**
- * struct ec_stall_log - what the log says of stalls; under master->session_lock
+ * struct ec_stall_log - what the log says of stalls; under sessions->lock
  * @told: stalls the log knows of, as master->links.access.timeouts counts them
  * @since_ns: last send before the stall the log shows
  * @next_ns: no new stall is logged before
@@ -37,9 +37,40 @@ struct ec_stall_log {
 	bool open;
 };
 
+/** struct ec_sessions - applications of a master: one that uses it, one that waits */
+struct ec_sessions {
+	/** @base: name and log; immutable, as are the next four */
+	struct ec_base *base;
+	struct ec_links *links;
+	struct ec_bus *bus;
+	struct ec_dc *dc;
+	struct ec_cycles *cycles;
+	/** @lanes: workers of requests; they wait for slaves; immutable */
+	struct workqueue_struct *lanes;
+	/**
+	 * @service: what others wait for, never many at once: clocks, looks at requests,
+	 * calls of an application in the kernel; immutable
+	 */
+	struct workqueue_struct *service;
+	/**
+	 * @lock: protects @session, @heir and everything they own except the part of the
+	 * cyclic caller
+	 */
+	struct mutex lock;
+	/** @session: of the application that has reserved the master, or NULL */
+	struct ec_session *session;
+	/** @heir: of another one that is to take over @session, which is detached */
+	struct ec_session *heir;
+	/**
+	 * @memory: bytes of all sessions, and of what they have mapped, which may outlive
+	 * them
+	 */
+	atomic_long_t memory;
+};
+
 /**
- * struct ec_session - under master->session_lock
- * @master: master
+ * struct ec_session - under sessions->lock
+ * @sessions: of the master
  * @owner_pid: process that reserved the master, in the initial namespace
  * @owner_comm: its command, printable
  * @wanted: slave configurations and domains
@@ -56,7 +87,7 @@ struct ec_stall_log {
  * @cycle: its cycle, and whose it is
  */
 struct ec_session {
-	struct ec_master *master;
+	struct ec_sessions *sessions;
 	pid_t owner_pid;
 	char owner_comm[TASK_COMM_LEN];
 	struct ec_wanted wanted;
@@ -87,44 +118,46 @@ static inline struct ec_session *ec_domain_session(const struct ec_domain *d)
 	return container_of(d->wanted, struct ec_session, wanted);
 }
 
-size_t ec_session_owner_text(struct ec_master *m, char *buf, size_t size);
-int ec_session_begin(struct ec_master *m, const void *owner, struct ec_waiters *waiters);
-void ec_session_end(struct ec_master *m, const void *owner);
+size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size);
+int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiters *waiters);
+void ec_session_end(struct ec_sessions *ss, const void *owner);
 u32 ec_session_place(struct ec_session *s);
-int ec_session_end_detached(struct ec_master *m);
-struct ec_session *ec_session_of(const struct ec_master *m, const void *owner);
+int ec_session_end_detached(struct ec_sessions *ss);
+struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_slaves_down(struct ec_session *s);
 void ec_ref_clock_raise(struct ec_session *s);
 void ec_ref_clock_lower(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
 
-void ec_session_clocks(struct ec_master *m);
+void ec_session_clocks(struct ec_sessions *ss);
 
 /* session_attach.c */
 bool ec_session_owns(const struct ec_config *c);
 void ec_session_detach(struct ec_config *c);
-struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position, u32 vendor,
 				 u32 product);
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
-void ec_session_attach(struct ec_master *m);
+void ec_session_attach(struct ec_sessions *ss);
 struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 position, u32 vendor,
 				       u32 product);
 
 /* session_status.c */
 void ec_session_fill_status(struct ec_session *s);
-void ec_session_status(struct ec_master *m);
+void ec_session_status(struct ec_sessions *ss);
 
 /* takeover.c */
-int ec_session_take_over(struct ec_master *m, char *why, size_t size);
+int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size);
 
 void ec_session_free(struct ec_session *s);
 
 u8 *ec_domain_data(const struct ec_domain *d);
 
-/* session_lock.c */
-void ec_session_lock(struct ec_master *m);
-bool ec_session_trylock(struct ec_master *m);
-void ec_session_unlock(struct ec_master *m);
+/* sessions.c */
+int ec_sessions_init(struct ec_sessions *ss);
+void ec_sessions_exit(struct ec_sessions *ss);
+void ec_sessions_lock(struct ec_sessions *ss);
+bool ec_sessions_trylock(struct ec_sessions *ss);
+void ec_sessions_unlock(struct ec_sessions *ss);
 
 #endif

@@ -3,7 +3,6 @@
 #include "../bus/slave_pdo.h"
 #include "../config/why.h"
 #include "../mailbox/emerg.h"
-#include "../master.h"
 #include "request.h"
 #include "session.h"
 
@@ -13,7 +12,7 @@
  *
  * A session that is to take over another one only looks at its slaves.
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  * Return: whether it is.
  */
 bool ec_session_owns(const struct ec_config *c)
@@ -25,7 +24,7 @@ bool ec_session_owns(const struct ec_config *c)
  * ec_session_detach() - part a configuration from its slave, which goes back to PREOP
  * @c: configuration
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_session_detach(struct ec_config *c)
 {
@@ -63,7 +62,7 @@ void ec_session_detach(struct ec_config *c)
 
 /**
  * ec_session_find() - the slave that a configuration means
- * @m: master
+ * @ss: sessions of a master
  * @alias: alias or 0
  * @position: position
  * @vendor: expected vendor id
@@ -72,23 +71,23 @@ void ec_session_detach(struct ec_config *c)
  * Context: Process. May sleep.
  * Return: slave with a reference, or NULL.
  */
-struct ec_slave *ec_session_find(struct ec_master *m, u16 alias, u16 position, u32 vendor,
+struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position, u32 vendor,
 				 u32 product)
 {
 	struct ec_slave *slave = NULL;
 	unsigned int i, pos = position;
 
-	down_read(&m->bus.topo);
+	down_read(&ss->bus->topo);
 	if (alias) {
-		for (i = 0; i < m->bus.n_slaves && m->bus.slaves[i]->alias != alias; i++)
+		for (i = 0; i < ss->bus->n_slaves && ss->bus->slaves[i]->alias != alias; i++)
 			;
 		pos += i;
 	}
-	if (pos < m->bus.n_slaves && m->bus.slaves[pos]->info.vendor == vendor &&
-	    m->bus.slaves[pos]->info.product == product &&
-	    !READ_ONCE(m->bus.slaves[pos]->stop.gone))
-		slave = ec_slave_ref(m->bus.slaves[pos]);
-	up_read(&m->bus.topo);
+	if (pos < ss->bus->n_slaves && ss->bus->slaves[pos]->info.vendor == vendor &&
+	    ss->bus->slaves[pos]->info.product == product &&
+	    !READ_ONCE(ss->bus->slaves[pos]->stop.gone))
+		slave = ec_slave_ref(ss->bus->slaves[pos]);
+	up_read(&ss->bus->topo);
 	return slave;
 }
 
@@ -99,10 +98,12 @@ static void tell_taken(const struct ec_session *s, const struct ec_config *c,
 	const struct ec_config *has = slave->config;
 
 	if (s->wanted.active)
-		ec_slave_warn(slave, "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
+		ec_slave_warn(slave,
+			      "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
 			      has->alias, has->position, c->alias, c->position);
 	else
-		ec_slave_warn(slave, "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
+		ec_slave_warn(slave,
+			      "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
 			      has->alias, has->position, c->alias, c->position);
 }
 
@@ -122,7 +123,7 @@ static void note_loss(struct ec_config *c)
  * there: when one upstream is disconnected its position changes, but its outputs must not be
  * those of another.
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  */
 void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 {
@@ -131,7 +132,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	ec_config_find_alias(c);
 	if (s->wanted.active && c->slave && !READ_ONCE(c->slave->stop.gone))
 		return;
-	slave = ec_session_find(s->master, c->alias, c->position, c->vendor, c->product);
+	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
 	if (slave == c->slave) {
 		if (slave)
 			ec_slave_unref(slave);
@@ -142,7 +143,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	ec_session_detach(c);
 	if (!slave)
 		return;
-	if (s == s->master->heir) {	/* only to look at */
+	if (s == s->sessions->heir) {	/* only to look at */
 		c->slave = slave;
 		return;
 	}
@@ -176,7 +177,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
  * @vendor: expected vendor id
  * @product: expected product code
  *
- * Context: Process, session_lock held. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: configuration, or ERR_PTR: -ENOENT when it exists with another identity, or as
  * ec_config_create().
  */
@@ -197,18 +198,18 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 
 /**
  * ec_session_attach() - after a scan: connect configurations and slaves anew
- * @m: master
+ * @ss: sessions of a master
  *
  * Context: Process. May sleep.
  */
-void ec_session_attach(struct ec_master *m)
+void ec_session_attach(struct ec_sessions *ss)
 {
 	unsigned int i;
 
-	ec_session_lock(m);
-	for (i = 0; m->session && i < m->session->wanted.n_configs; i++)
-		ec_session_attach_one(m->session, m->session->wanted.configs[i]);
-	for (i = 0; m->heir && i < m->heir->wanted.n_configs; i++)
-		ec_config_find_alias(m->heir->wanted.configs[i]);
-	ec_session_unlock(m);
+	ec_sessions_lock(ss);
+	for (i = 0; ss->session && i < ss->session->wanted.n_configs; i++)
+		ec_session_attach_one(ss->session, ss->session->wanted.configs[i]);
+	for (i = 0; ss->heir && i < ss->heir->wanted.n_configs; i++)
+		ec_config_find_alias(ss->heir->wanted.configs[i]);
+	ec_sessions_unlock(ss);
 }

@@ -4,7 +4,6 @@
 #include "../config/why.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
-#include "../master.h"
 #include "../base/once64.h"
 #include "session.h"
 #include "../bus/slave.h"
@@ -15,39 +14,40 @@
  */
 static void log_stalls(struct ec_session *s, u64 now)
 {
-	struct ec_master *m = s->master;
+	struct ec_sessions *ss = s->sessions;
 	struct ec_stall_log *l = &s->stall_log;
-	bool stalled = READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT;
-	u32 more = atomic_read(&m->links.access.timeouts) - l->told;
+	bool stalled = READ_ONCE(ss->links->access.mode) == EC_ACCESS_DIRECT;
+	u32 more = atomic_read(&ss->links->access.timeouts) - l->told;
 
 	if (l->open && !stalled) {
-		ec_info(m, "cycle resumed after %llu ms\n",
+		ec_info(ss, "cycle resumed after %llu ms\n",
 			div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
-		l->since_ns = ec_read64(&m->links.access.timeout_ns);
+		l->since_ns = ec_read64(&ss->links->access.timeout_ns);
 		l->next_ns = now + EC_STALL_LOG_NS;
 		l->told += more;
 		l->open = stalled;
 		if (more > stalled)
-			ec_warn(m, "%u more cycle timeout(s) since the last message\n",
+			ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
 				more - stalled);
 		if (stalled)
-			ec_warn(m, "cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
+			ec_warn(ss,
+				"cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
 				div_u64(now - l->since_ns, NSEC_PER_MSEC));
 	}
 }
 
-static void status_links(struct ec_master *m, struct ec_status *st)
+static void status_links(struct ec_sessions *ss, struct ec_status *st)
 {
 	unsigned int i;
 
-	for (i = 0; i < ec_links_n(&m->links); i++) {
-		const struct ec_link *link = ec_links_at(&m->links, i);
+	for (i = 0; i < ec_links_n(ss->links); i++) {
+		const struct ec_link *link = ec_links_at(ss->links, i);
 		u32 slaves = READ_ONCE(link->slaves);
 
 		WRITE_ONCE(st->links[i].slaves_responding, slaves);
-		WRITE_ONCE(st->links[i].al_states, slaves ? m->bus.al_states : 0);
+		WRITE_ONCE(st->links[i].al_states, slaves ? ss->bus->al_states : 0);
 		WRITE_ONCE(st->links[i].link_up, READ_ONCE(link->up));
 	}
 	WRITE_ONCE(st->link_count, i);
@@ -60,44 +60,44 @@ static void status_links(struct ec_master *m, struct ec_status *st)
  * An application sees no difference between what it was told before it activated and
  * this, so the first time is before it can look.
  *
- * Context: Process, session_lock held.
+ * Context: Process, session lock held.
  */
 void ec_session_fill_status(struct ec_session *s)
 {
 	struct ec_status *st = s->cycle.shared->status;
-	struct ec_master *m = s->master;
+	struct ec_sessions *ss = s->sessions;
 	unsigned int i;
 
-	WRITE_ONCE(st->slaves_responding, m->bus.responding);
-	WRITE_ONCE(st->al_states, m->bus.al_states);
-	WRITE_ONCE(st->link_up, ec_links_any_up(&m->links));
-	status_links(m, st);
+	WRITE_ONCE(st->slaves_responding, ss->bus->responding);
+	WRITE_ONCE(st->al_states, ss->bus->al_states);
+	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
+	status_links(ss, st);
 	for (i = 0; i < s->wanted.n_configs; i++)
 		WRITE_ONCE(st->configs[i], ec_config_status(s->wanted.configs[i]));
 }
 
 /**
  * ec_session_status() - bring the mapped status up to date; monitor
- * @m: master
+ * @ss: sessions of a master
  *
  * Context: Process. May sleep.
  */
-void ec_session_status(struct ec_master *m)
+void ec_session_status(struct ec_sessions *ss)
 {
 	struct ec_session *s;
 
 	/* held by an activation: next time then */
-	if (!ec_session_trylock(m))
+	if (!ec_sessions_trylock(ss))
 		return;
-	s = m->session;
+	s = ss->session;
 	if (s && s->wanted.active) {
 		log_stalls(s, ktime_get_ns());
 		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
-		ec_dc_app_log(&m->dc);
+		ec_dc_app_log(ss->dc);
 		ec_cycle_tell_room(&s->cycle);
 		ec_cycle_tell_stale(&s->cycle);
 		ec_session_fill_status(s);
 	}
-	mutex_unlock(&m->session_lock);
+	mutex_unlock(&ss->lock);
 }

@@ -9,7 +9,6 @@
 #include "../cycle/copy.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
-#include "../master.h"
 #include "request.h"
 #include "session.h"
 
@@ -107,15 +106,15 @@ static bool startup_differs(const struct ec_config *a, const struct ec_config *b
 {
 	const struct ec_startup *x, *y = list_first_entry(&b->startup, typeof(*y), list);
 	struct ec_startup kind = { };
-	const u32 *n = a->n_startup, *m = b->n_startup;
+	const u32 *n = a->n_startup, *k = b->n_startup;
 
 	for (; kind.type < EC_STARTUP_TYPES; kind.type++) {
-		if (n[kind.type] == m[kind.type])
+		if (n[kind.type] == k[kind.type])
 			continue;
 		if (kind.type == EC_STARTUP_SDO || kind.type == EC_STARTUP_IDN)
 			return differs(t, "slave %u:%u has %u startup %ss, not %u", SLAVE(a),
 				       n[kind.type], kind.type == EC_STARTUP_SDO ? "SDO" : "IDN",
-				       m[kind.type]);
+				       k[kind.type]);
 		return command_differs(a, &kind, t);
 	}
 	list_for_each_entry(x, &a->startup, list) {
@@ -233,7 +232,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
 	s->cycle.late_per_s = per_s;
-	WRITE_ONCE(s->master->links.share.late_per_s, per_s);
+	WRITE_ONCE(s->sessions->links->share.late_per_s, per_s);
 }
 
 /**
@@ -245,19 +244,19 @@ static void adopt_late(struct ec_session *s, u32 per_s)
  * The cycle goes on, with the priority that the heir's process may use; the heir's
  * configuration is freed.
  *
- * Context: Process, session_lock held. Sleeps until the next cycle has begun.
+ * Context: Process, session lock held. Sleeps until the next cycle has begun.
  * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
  * -ETIMEDOUT the cycle does not run.
  */
-int ec_session_take_over(struct ec_master *m, char *why, size_t size)
+int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size)
 {
 	const struct text t = { .buf = why, .size = size };
-	struct ec_session *s = m->session, *heir = m->heir;
+	struct ec_session *s = ss->session, *heir = ss->heir;
 	int ret;
 
 	if (session_differs(s, heir, &t))
 		return -EEXIST;
-	if (!heir->cycle.late_per_s && ec_access_slack_ns(&m->links) < ec_cycle_need_ns())
+	if (!heir->cycle.late_per_s && ec_access_slack_ns(ss->links) < ec_cycle_need_ns())
 		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)
@@ -266,14 +265,14 @@ int ec_session_take_over(struct ec_master *m, char *why, size_t size)
 		ec_requests_describe(s);
 	adopt_late(s, heir->cycle.late_per_s);
 	ec_cycle_thread_inherit(&s->cycle, heir->cycle.priority);
-	m->heir = NULL;
+	ss->heir = NULL;
 	ec_session_fill_status(s);
 	ec_cycle_set_owner(&s->cycle, heir->cycle.owner,
 			   rcu_dereference_protected(heir->cycle.waiters,
-						     lockdep_is_held(&m->session_lock)));
+						     lockdep_is_held(&ss->lock)));
 	s->owner_pid = heir->owner_pid;
 	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
 	ec_session_free(heir);
-	ec_info(m, "detached session taken over by a new application\n");
+	ec_info(ss, "detached session taken over by a new application\n");
 	return 0;
 }

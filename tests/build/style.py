@@ -23,9 +23,9 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 17,
+    ("lines", "master"): 8,
     ("lines", "lib"): 1,
-    ("lines", "tests"): 224,
+    ("lines", "tests"): 143,
     ("lines", "Documentation"): 42,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 15,

@@ -27,7 +27,8 @@ static void write_obj(struct bus *b, u16 index, u8 sub, u32 value, size_t bytes)
 	u32 abort;
 
 	put_unaligned_le32(value, v);
-	KUNIT_ASSERT_EQ(b->test, ec_coe_download(&bus_slave(b, 0)->mbox, index, sub, false, v, bytes,
+	KUNIT_ASSERT_EQ(b->test,
+			ec_coe_download(&bus_slave(b, 0)->mbox, index, sub, false, v, bytes,
 						 &abort, NULL), 0);
 }
 
@@ -68,7 +69,9 @@ static void apply_unknown_sm(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_STATION),
 			bus_slave(b, 0)->station);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 0)->why, "SM7 is not a process data SyncManager"), "%s",
+	KUNIT_EXPECT_NOT_NULL_MSG(test,
+				  strstr(bus_slave(b, 0)->why,
+					 "SM7 is not a process data SyncManager"), "%s",
 				  bus_slave(b, 0)->why);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
 }
@@ -108,7 +111,7 @@ static void apply_op_only_late(struct kunit *test)
 	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
 	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
 	cyc_map_all(c, 0, 1, 0);
-	b->m->session->wanted.configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
+	b->m->sessions.session->wanted.configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
 	cyc_activate(c);
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK, EC_AL_OP);
@@ -126,7 +129,7 @@ static void apply_found_pdos(struct kunit *test)
 	WRITE_ONCE(bus_slave(b, 0)->pdos_known, false);
 	bus_request(b, 0, EC_AL_PREOP);
 	cyc_map_all(c, 0, 1, 0);
-	KUNIT_ASSERT_EQ(test, b->m->session->wanted.configs[0]->fmmus[0].size, 2u);
+	KUNIT_ASSERT_EQ(test, b->m->sessions.session->wanted.configs[0]->fmmus[0].size, 2u);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 0, 0, 0, 0);
@@ -213,7 +216,8 @@ static int read_on(void *arg)
 		size_t got;
 		u32 abort;
 		u8 v[4];
-		int ret = ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort, NULL);
+		int ret = ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort,
+					NULL);
 
 		if (ret)
 			r->err = ret;

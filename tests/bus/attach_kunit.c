@@ -79,7 +79,9 @@ static void attach_one_pulled(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, output(c, "s3"), 40ll);
 	KUNIT_EXPECT_EQ(test, *cyc_pd(c, 4, 1), 40);
 	why(c, 0, text);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(text, "slave 1 (io) disconnected from port 1 of slave 0"), "%s", text);
+	KUNIT_EXPECT_NOT_NULL_MSG(test,
+				  strstr(text,
+					 "slave 1 (io) disconnected from port 1 of slave 0"), "%s", text);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, LEAF, 0, 0, 0);
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));

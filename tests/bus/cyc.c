@@ -155,7 +155,7 @@ void cyc_activate(struct cyc *c)
  */
 void cyc_run(struct cyc *c, u32 cycles)
 {
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	struct ec_ioc_send send = { 0 };
 	u32 i, d;
 
@@ -259,11 +259,12 @@ struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us)
 
 bool cyc_all_op(struct cyc *c)
 {
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	u32 i;
 
 	for (i = 0; i < s->wanted.n_configs; i++)
-		if (!s->wanted.configs[i]->slave || s->wanted.configs[i]->slave->al_status != EC_AL_OP ||
+		if (!s->wanted.configs[i]->slave ||
+		    s->wanted.configs[i]->slave->al_status != EC_AL_OP ||
 		    s->wanted.configs[i]->slave->reconfigure)
 			return false;
 	return true;
@@ -299,9 +300,9 @@ u8 cyc_config_status(struct bus *b, u32 config)
 {
 	u8 v;
 
-	mutex_lock(&b->m->session_lock);
-	v = ec_config_status(b->m->session->wanted.configs[config]);
-	mutex_unlock(&b->m->session_lock);
+	mutex_lock(&b->m->sessions.lock);
+	v = ec_config_status(b->m->sessions.session->wanted.configs[config]);
+	mutex_unlock(&b->m->sessions.lock);
 	return v;
 }
 
@@ -315,7 +316,7 @@ u8 cyc_config_status(struct bus *b, u32 config)
  */
 u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
 {
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	u32 i, k;
 
 	for (i = 0; i < s->wanted.n_configs; i++) {
@@ -332,14 +333,14 @@ u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
 
 u8 *cyc_data(struct cyc *c, u32 domain)
 {
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 
 	return s->cycle.shared->image + s->wanted.domains[domain]->offset;
 }
 
 struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)
 {
-	return &c->b->m->session->cycle.shared->status->domains[domain];
+	return &c->b->m->sessions.session->cycle.shared->status->domains[domain];
 }
 
 void cyc_release(struct cyc *c)

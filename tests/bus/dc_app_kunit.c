@@ -122,9 +122,11 @@ static void expect_steady(struct cyc *c, u32 cycles, u64 drift_ns, s64 apart_ns,
 		t = since_start(c->b, 0, now);
 		most = max_t(s64, most, abs(t - (s64)now - was));
 		apart = max_t(s64, apart, abs((s32)((u32)ec_esc_system_time(bus_esc(c->b, 1), now) -
-						    (u32)ec_esc_system_time(bus_esc(c->b, 0), now))));
+						    (u32)ec_esc_system_time(bus_esc(c->b, 0),
+									    now))));
 	}
-	bus_figure("%s: SYNC0 moves by %lld ns against the frames, slaves %lld ns apart", what, most,
+	bus_figure("%s: SYNC0 moves by %lld ns against the frames, slaves %lld ns apart", what,
+		   most,
 		   apart);
 	KUNIT_EXPECT_LT(c->b->test, most, (s64)drift_ns);
 	KUNIT_EXPECT_LT(c->b->test, apart, apart_ns);
@@ -178,7 +180,7 @@ static void app_jumps(struct kunit *test)
 	expect_steady(c, 2000, drift(&t, 2000), 2000, "begins with 0 again");
 	expect_told(c, 1, false);
 	/* and it is followed */
-	KUNIT_EXPECT_FALSE(test, c->b->m->session->cycle.dc_hold);
+	KUNIT_EXPECT_FALSE(test, c->b->m->sessions.session->cycle.dc_hold);
 }
 
 /* A single 0, and a time that stands still. */
@@ -196,7 +198,7 @@ static void app_is_off(struct kunit *test)
 	/* nobody leads meanwhile */
 	t.still = true;
 	expect_steady(c, 1000, drift(&t, 1000) + 20000, 2000, "stands still");
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.dc_hold, t.leads);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.dc_hold, t.leads);
 	t.still = false;
 	expect_steady(c, 3000, drift(&t, 3000) + 20000, 5000, "goes on");
 	expect_told(c, 0, true);
@@ -289,7 +291,7 @@ static u32 held(struct cyc *c, const struct told *t, u32 tellings)
 		while (c->cycles % t->every)
 			cyc_run(c, 1);
 		cyc_run(c, 1);
-		n += c->b->m->session->cycle.dc_hold;
+		n += c->b->m->sessions.session->cycle.dc_hold;
 	}
 	return n;
 }

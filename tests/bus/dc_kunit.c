@@ -96,8 +96,9 @@ static u64 set(struct cyc *c)
 	u32 i;
 
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->cycle.shared->status->dc_ref, 1u);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->session->cycle.shared->status->dc_monitor, ~0u);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(c->b->test, c->b->m->sessions.session->cycle.shared->status->dc_monitor,
+			~0u);
 	for (i = 0; i < 2000 && READ_ONCE(c->b->m->dc.state) != EC_DC_READY; i++)
 		cyc_run(c, 1);
 	KUNIT_ASSERT_EQ(c->b->test, c->b->m->dc.state, (int)EC_DC_READY);
@@ -106,7 +107,7 @@ static u64 set(struct cyc *c)
 
 static const struct ec_status *cyc_status(const struct cyc *c)
 {
-	return c->b->m->session->cycle.shared->status;
+	return c->b->m->sessions.session->cycle.shared->status;
 }
 
 static void dc_clocks_agree(struct kunit *test)
@@ -126,8 +127,8 @@ static void dc_clocks_agree(struct kunit *test)
 		cyc_run(c, 100);
 		max = max_t(u64, max, worst(c->b));
 	}
-	KUNIT_EXPECT_LT(test, c->b->m->session->cycle.shared->status->dc_monitor, 128u);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_LT(test, c->b->m->sessions.session->cycle.shared->status->dc_monitor, 128u);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.shared->status->dc_time_valid, 1u);
 	/* the application's time, a cycle ago */
 	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
@@ -161,7 +162,8 @@ static void dc_hundred(struct kunit *test)
 		if (i == 30 || i == 60)
 			n += scnprintf(text + n, sizeof(text) - n, "branch c%u 2\n", i - 25);
 		if (i % 10 == 5)
-			n += scnprintf(text + n, sizeof(text) - n, "slave c%u EK1100 drift=50ppm\n", i);
+			n += scnprintf(text + n, sizeof(text) - n, "slave c%u EK1100 drift=50ppm\n",
+				       i);
 		n += scnprintf(text + n, sizeof(text) - n,
 			       "slave d%u drive in=8 out=8 drift=%dppm clock=%ums cable=%u\n",
 			       i, (int)(i * 77 % 201) - 100, i * 313, 20 + i * 7 % 90);
@@ -324,7 +326,7 @@ static void dc_mixed(struct kunit *test)
 	max = watch(c, 1, 1, 200);
 	bus_figure("32 and 64 bits, without clock between: worst true difference %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 500ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.shared->status->dc_time_valid, 1u);
 	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
 }
@@ -475,12 +477,13 @@ static void dc_chosen_is_lost(struct kunit *test)
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 10);
 	/* another one stands in */
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
 	max = watch(c, 0, 2, 20);
 	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
 	KUNIT_EXPECT_LT(test, max, 200ull);
 	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
-	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
+	for (i = 0; i < 100 &&
+	     !(b->m->bus.n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
 	     i++)
 		cyc_run(c, 50);
 	KUNIT_EXPECT_LT(test, i, 100u);
@@ -514,18 +517,22 @@ static void dc_latch(struct kunit *test)
 	station = bus_slave(b, 1)->station;
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fpwr(&b->m->links, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
+	KUNIT_ASSERT_EQ(test,
+			ec_xfer_fpwr(&b->m->links, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
 	at = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_LATCH, 1, 0, 0, EC_SIM_EDGE_RISING);
 	usleep_range(2000, 2001);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test,
+			ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 5);	/* event, pin high */
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_POS, times, 16), 0);
+	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_POS, times, 16),
+			0);
 	ec_sim_advance(b->sim, ktime_get_ns());
 	/* the edge was when the fault was added, by the reference clock, too */
 	off = get_unaligned_le64(times) - ec_esc_system_time(bus_esc(b, 0), at);
 	KUNIT_EXPECT_LT(test, abs(off), 5000ll);
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test,
+			ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 4);
 }
 
@@ -561,7 +568,7 @@ struct read_time {
 
 static void time_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->session->cycle.shared->status;
+	const struct ec_status *st = c->b->m->sessions.session->cycle.shared->status;
 	struct read_time *r = c->ctx;
 
 	if (!st->dc_time_valid)
@@ -612,7 +619,7 @@ static u32 since_sync0(struct bus *b, u32 slave, u64 now)
 /* what an application reads of a reference that is ever further from its own time */
 static void far_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->session->cycle.shared->status;
+	const struct ec_status *st = c->b->m->sessions.session->cycle.shared->status;
 	struct read_time *r = c->ctx;
 
 	sync_each(c);

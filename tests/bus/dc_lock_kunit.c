@@ -26,7 +26,7 @@ struct app {
 
 static struct ec_status_cycle *status(const struct app *a)
 {
-	return &a->c->b->m->session->cycle.shared->status->kernel;
+	return &a->c->b->m->sessions.session->cycle.shared->status->kernel;
 }
 
 /* All slaves with SYNC0, shifts of a quarter of a period from one to the next. */
@@ -209,7 +209,8 @@ static void lock_same_phase_each_start(struct kunit *test)
 	}
 	bus_figure("%u starts, cycle follows: phase to SYNC0 from %d to %d ns off, locked and in OP after %u ms at most",
 		   STARTS, low, high, ms);
-	bus_row(high - low, 1000, "phase of the frame to SYNC0 over %u starts, cycle follows, ns", STARTS);
+	bus_row(high - low, 1000, "phase of the frame to SYNC0 over %u starts, cycle follows, ns",
+		STARTS);
 	KUNIT_EXPECT_LT(test, high - low, 1000);
 }
 
@@ -253,7 +254,8 @@ static void lead_same_phase_each_start(struct kunit *test)
 	}
 	bus_figure("%u starts, reference follows: phase to SYNC0 %d ns off after 1 s, then from %d to %d ns",
 		   STARTS, early, low, high);
-	bus_row(high - low, 1000, "phase of the frame to SYNC0 over %u starts, clock follows, ns", STARTS);
+	bus_row(high - low, 1000, "phase of the frame to SYNC0 over %u starts, clock follows, ns",
+		STARTS);
 	KUNIT_EXPECT_LT(test, high - low, 1000);
 }
 

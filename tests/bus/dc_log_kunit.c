@@ -66,7 +66,8 @@ static void dc_log_delay_only(struct kunit *test)
 	b = c->b;
 	bus_figure("clocks of 2 drives synchronized after %u ms, with 20 delay-only slaves after %u ms",
 		   alone, ms);
-	bus_row(ms - min(ms, alone), DELAY_ONLY_MS, "ms: cost of 20 delay-only slaves at clock start");
+	bus_row(ms - min(ms, alone), DELAY_ONLY_MS,
+		"ms: cost of 20 delay-only slaves at clock start");
 	KUNIT_EXPECT_LE(test, ms, alone + DELAY_ONLY_MS);
 	cyc_run(c, 3000);
 	step = b->sim->route[0].step;
@@ -81,7 +82,8 @@ static void dc_log_delay_only(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_set, !only);
 		KUNIT_EXPECT_FALSE(test, s->dc_out);
 		KUNIT_EXPECT_FALSE(test, s->dc_odd);
-		KUNIT_EXPECT_LE(test, abs((s32)(s->dc_delay - (step[i].pu_ns - step[0].pu_ns))), 10);
+		KUNIT_EXPECT_LE(test, abs((s32)(s->dc_delay - (step[i].pu_ns - step[0].pu_ns))),
+				10);
 	}
 	KUNIT_EXPECT_EQ(test, bus_log_lines("no valid reply to DC register access"), 0u);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("not synchronized"), 0u);
@@ -140,7 +142,8 @@ static void dc_log_window_has_one_line(struct kunit *test)
 	in = bus_log_lines("clocks inside the sync window");
 	disturb(c, 1, 21);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("clocks outside the sync window"), out + 1);
-	KUNIT_EXPECT_EQ(test, bus_log_lines("21 of 21 clocks outside the sync window, worst: slave "),
+	KUNIT_EXPECT_EQ(test,
+			bus_log_lines("21 of 21 clocks outside the sync window, worst: slave "),
 			1u);
 	for (k = 0; k < 60 && bus_log_lines("clocks inside the sync window") == in; k++)
 		cyc_run(c, 250);
@@ -177,7 +180,8 @@ static void dc_log_warns_about_assign_activate(struct kunit *test)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
 		cyc_activate(c);
 		cyc_run(c, 1000);
-		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines(t[i].words) - before, t[i].lines, "%s", t[i].words);
+		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines(t[i].words) - before, t[i].lines, "%s",
+				    t[i].words);
 		bus_down(c->b);
 		test->priv = NULL;
 	}

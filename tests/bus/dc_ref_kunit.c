@@ -119,7 +119,7 @@ static void forget(struct run *r, u32 first, u32 last)
 
 static void sync0(struct run *r)
 {
-	struct ec_session *s = r->b->m->session;
+	struct ec_session *s = r->b->m->sessions.session;
 	u32 i;
 
 	for (i = 0; i < s->wanted.n_configs; i++) {
@@ -258,7 +258,7 @@ static void note_starts(struct run *r, u64 *starts)
 
 static void expect_locked(struct run *r)
 {
-	struct ec_status_cycle *st = &r->b->m->session->cycle.shared->status->kernel;
+	struct ec_status_cycle *st = &r->b->m->sessions.session->cycle.shared->status->kernel;
 
 	if (r->v->mode != KERNEL)
 		return;
@@ -280,7 +280,7 @@ static void ref_power_off(struct kunit *test)
 	until(r, 3);
 	/* at ring position 1 is b now */
 	KUNIT_EXPECT_EQ(test, shown_ref(r), 1);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
 	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 1));
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 2)->mem + EC_REG_STATION),
 			b->m->dc.ref_station);
@@ -384,7 +384,7 @@ static void ref_lost_without_substitute(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
 	until(r, 1);
 	KUNIT_EXPECT_EQ(test, shown_ref(r), -1);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.shared->status->dc_ref, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 0u);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	until(r, 2);
 	until_op(r);
@@ -458,7 +458,7 @@ static u32 heard(struct run *r, u32 cycles)
 
 	while (cycles--) {
 		run(r, 1);
-		n += READ_ONCE(r->b->m->session->cycle.shared->status->dc_time_valid);
+		n += READ_ONCE(r->b->m->sessions.session->cycle.shared->status->dc_time_valid);
 	}
 	return n;
 }
@@ -471,7 +471,7 @@ static void ref_silent(struct kunit *test)
 {
 	struct run *r = start(test, TREE("drift=-20ppm"), 4, 1);
 	struct bus *b = r->b;
-	struct ec_cycle *c = &b->m->session->cycle;
+	struct ec_cycle *c = &b->m->sessions.session->cycle;
 	u64 last;
 
 	run(r, 1000);

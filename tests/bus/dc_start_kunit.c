@@ -65,7 +65,7 @@ static void count(struct load *l, struct cyc *c)
 	u32 i, row = 0;
 
 	/* everything since the send before was sent by it */
-	n = frames - l->before - c->b->m->session->cycle.last.frames;
+	n = frames - l->before - c->b->m->sessions.session->cycle.last.frames;
 	if (l->before && c->cycles) {
 		l->most = max_t(u64, l->most, n);
 		l->all += n;
@@ -141,7 +141,8 @@ static void dc_start_hundred_drives_reach_op(struct kunit *test)
 		   us, op, l.worst_ns, EXACT_NS, l.exact_us, l.most, l.clocks, l.all_clocks);
 	bus_row(op, OP_LIMIT_US, "us from activation to OP: 100 drives with SYNC0, cycle of %u us",
 		us);
-	bus_row(l.worst_ns, EC_DC_LIMIT_NS, "ns between clocks in the 20 s after that, cycle of %u us",
+	bus_row(l.worst_ns, EC_DC_LIMIT_NS,
+		"ns between clocks in the 20 s after that, cycle of %u us",
 		us);
 	KUNIT_EXPECT_LT(test, op, (u64)OP_LIMIT_US);
 	KUNIT_EXPECT_LT(test, l.worst_ns, (u64)EC_DC_LIMIT_NS);

@@ -93,7 +93,8 @@ static u32 until_op(struct cyc *c, u32 mask, u32 limit_ms)
 
 	for (ms = 0; ms < limit_ms; ms++) {
 		for (i = 0; mask >> i; i++)
-			if (mask & BIT(i) && (b->m->bus.n_slaves <= i || b->m->bus.slaves[i]->reconfigure ||
+			if (mask & BIT(i) &&
+			    (b->m->bus.n_slaves <= i || b->m->bus.slaves[i]->reconfigure ||
 					      b->m->bus.slaves[i]->al_status != EC_AL_OP))
 				break;
 		if (!(mask >> i))
@@ -127,7 +128,8 @@ static void sync_long_cycle(struct kunit *test)
 		}
 		cyc_activate(c);
 		op = cyc_wait_op(c, 120000);
-		bus_figure("cycle of %u ms, SYNC0 of 1 ms: OP %llu us after activation", us / 1000, op);
+		bus_figure("cycle of %u ms, SYNC0 of 1 ms: OP %llu us after activation", us / 1000,
+			   op);
 		KUNIT_EXPECT_NE(test, op, ~0ull);
 		cyc_run(c, 10);
 		for (i = 0; i < 4; i++)
@@ -264,7 +266,7 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
 	s = bus_slave(b, 1);
-	mutex_lock(&b->m->session_lock);
+	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
 	WRITE_ONCE(s->dc_set, false);
 	WRITE_ONCE(b->m->dc.changed, true);
@@ -274,7 +276,7 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, READ_ONCE(b->m->dc.changed));
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_DC_ACTIVATION], 0);
-	mutex_unlock(&b->m->session_lock);
+	mutex_unlock(&b->m->sessions.lock);
 	ms = until_op(c, 15, 5000);
 	KUNIT_EXPECT_GT(test, ms, 50u);
 	KUNIT_EXPECT_FALSE(test, READ_ONCE(b->m->dc.changed));
@@ -408,7 +410,8 @@ static void sync_without_status(struct kunit *test)
 		bus_esc(b, i)->cfg.features &= ~EC_FEAT_DC_ENHANCED;
 	bus_esc(b, 3)->cfg.features &= ~EC_FEAT_DC64;
 	for (i = 1; i < 4; i++) {
-		put_unaligned_le16(bus_esc(b, i)->cfg.features, bus_esc(b, i)->mem + EC_REG_FEATURES);
+		put_unaligned_le16(bus_esc(b, i)->cfg.features,
+				   bus_esc(b, i)->mem + EC_REG_FEATURES);
 		bus_esc(b, i)->mem[EC_REG_DC_ACT_STATUS] = value[i];
 	}
 	bus_plug(b);
@@ -473,7 +476,7 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	bus_request(b, 1, EC_AL_OP);
 	until_op(c, 15, 5000);
 
-	mutex_lock(&b->m->session_lock);
+	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
 	WRITE_ONCE(s->dc_set, false);
 	WRITE_ONCE(b->m->dc.changed, true);
@@ -484,7 +487,7 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	bus_request(b, 1, EC_AL_PREOP);
 	cyc_run(c, 150);
 	KUNIT_EXPECT_NULL(test, READ_ONCE(s->stop.worker));
-	mutex_unlock(&b->m->session_lock);
+	mutex_unlock(&b->m->sessions.lock);
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);

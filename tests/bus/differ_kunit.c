@@ -86,8 +86,10 @@ static void differ_logged_at_activation(struct kunit *test)
 	log_begin();
 	cyc_activate(c);
 	KUNIT_EXPECT_EQ(test, logged("configuration 0:"), 2u);
-	KUNIT_EXPECT_EQ(test, logged("configuration 0:2: slave 2 is 0x00000002/0x0fa23052, configured is 0x00000002/0x12345678"), 1u);
-	KUNIT_EXPECT_EQ(test, logged("configuration 0:9: no slave at ring position 9: 5 slave(s) connected"), 1u);
+	KUNIT_EXPECT_EQ(test,
+			logged("configuration 0:2: slave 2 is 0x00000002/0x0fa23052, configured is 0x00000002/0x12345678"), 1u);
+	KUNIT_EXPECT_EQ(test,
+			logged("configuration 0:9: no slave at ring position 9: 5 slave(s) connected"), 1u);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, other + 1);
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
@@ -178,9 +180,12 @@ static void lost_slaves_are_named(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, 2, 1, 0, 0);
 	cyc_run(c, 2500);
 	KUNIT_EXPECT_EQ(test, logged("disconnected"), 2u);
-	KUNIT_EXPECT_EQ(test, logged("slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), last seen "), 1u);
-	KUNIT_EXPECT_EQ(test, logged("slave 4 (EL1859) disconnected from port 1 of slave 3 (EL3062)"), 1u);
-	EXPECT_WHY(b, 3, "slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), last seen 2 s ago");
+	KUNIT_EXPECT_EQ(test,
+			logged("slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), last seen "), 1u);
+	KUNIT_EXPECT_EQ(test,
+			logged("slave 4 (EL1859) disconnected from port 1 of slave 3 (EL3062)"), 1u);
+	EXPECT_WHY(b, 3,
+		   "slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), last seen 2 s ago");
 	bus_fault(b, EC_SIM_FAULT_HEAL, 2, 1, 0, 0);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 20);
@@ -247,7 +252,7 @@ static void differ_alias_is_found_by_scan(struct kunit *test)
 	bus_idle(b);
 	cyc_new(b, 1000);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	c = b->m->session->wanted.configs[sc.index];
+	c = b->m->sessions.session->wanted.configs[sc.index];
 	KUNIT_EXPECT_EQ(test, c->alias_at, 1u);
 	EXPECT_WHY(b, sc.index, "no slave at ring position 10");
 	sc.alias = 8;
@@ -255,7 +260,7 @@ static void differ_alias_is_found_by_scan(struct kunit *test)
 	none = sc.index;
 	EXPECT_WHY(b, none, "has alias 8");
 	/* what was found before the slaves changed is not taken for it */
-	b->m->session->wanted.configs[none]->alias_at = 1;
+	b->m->sessions.session->wanted.configs[none]->alias_at = 1;
 	EXPECT_WHY(b, none, "has alias 8");
 }
 

@@ -27,7 +27,7 @@ static struct cyc *in_op(struct kunit *test)
 {
 	struct cyc *c = cyc_in_op(bus_up(test, three_frames, N), 0, N);
 
-	KUNIT_ASSERT_GE(test, c->b->m->session->cycle.n_dgrams, 3u);
+	KUNIT_ASSERT_GE(test, c->b->m->sessions.session->cycle.n_dgrams, 3u);
 	c->ctx = kunit_kzalloc(test, sizeof(u32), GFP_KERNEL);
 	c->each = count_up;
 	cyc_run(c, 20);
@@ -117,7 +117,8 @@ static void exchange_always_late(struct kunit *test)
 
 	frame_fault(c->b, EC_SIM_FAULT_DELAY, 0, 1200 * NSEC_PER_USEC);
 	cyc_run(c, 100);
-	KUNIT_EXPECT_GE(test, late(c->b) - before, 98ull * c->b->m->session->cycle.n_dgrams);
+	KUNIT_EXPECT_GE(test, late(c->b) - before,
+			98ull * c->b->m->sessions.session->cycle.n_dgrams);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_GE(test, *(u32 *)c->ctx + 4, (u32)c->cycles);
 }
@@ -221,7 +222,7 @@ static void exchange_send_twice(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	msleep(1);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&c->b->app), 0);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.n_flight, 0u);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.n_flight, 0u);
 	KUNIT_EXPECT_EQ(test, late(c->b), 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
@@ -294,9 +295,9 @@ static void exchange_end_in_flight(struct kunit *test)
 
 	frame_fault(b, EC_SIM_FAULT_DELAY, 0, 5 * NSEC_PER_MSEC);
 	cyc_run(c, 10);
-	KUNIT_EXPECT_GE(test, b->m->session->cycle.n_flight, 12u);
+	KUNIT_EXPECT_GE(test, b->m->sessions.session->cycle.n_flight, 12u);
 	cyc_release(c);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->session, NULL);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->sessions.session, NULL);
 	msleep(20);
 	ec_sim_clear_faults(b->sim);
 	/* each of them was late for the master, none was taken */

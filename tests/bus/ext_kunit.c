@@ -17,7 +17,7 @@ static void tell_time(struct cyc *c)
 
 static const struct ec_status *status(const struct cyc *c)
 {
-	return c->b->m->session->cycle.shared->status;
+	return c->b->m->sessions.session->cycle.shared->status;
 }
 
 /* The whole time is the true one, of when the frame passed. */
@@ -78,12 +78,12 @@ static void preset(struct kunit *test, bool kernel)
 	put_unaligned_le16(0x5678, image + 16);
 	if (kernel)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &k), 0);
-	mutex_lock(&b->m->session_lock);
-	KUNIT_EXPECT_EQ(test, ec_session_place(b->m->session), 32u);
-	b->m->session->preset = image;
-	KUNIT_ASSERT_EQ(test, ec_session_activate(b->m->session), 0);
-	b->m->session->preset = NULL;
-	mutex_unlock(&b->m->session_lock);
+	mutex_lock(&b->m->sessions.lock);
+	KUNIT_EXPECT_EQ(test, ec_session_place(b->m->sessions.session), 32u);
+	b->m->sessions.session->preset = image;
+	KUNIT_ASSERT_EQ(test, ec_session_activate(b->m->sessions.session), 0);
+	b->m->sessions.session->preset = NULL;
+	mutex_unlock(&b->m->sessions.lock);
 	c->next = ktime_get();
 	for (i = 0; i < 5000 && !cyc_all_op(c); i++) {
 		if (kernel)
@@ -275,7 +275,9 @@ static void ext_why_stalled(struct kunit *test)
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	msleep(500);
-	KUNIT_EXPECT_NOT_NULL(test, strstr(why(b, 0), "; cycle timeout: the application sends no cyclic frames"));
+	KUNIT_EXPECT_NOT_NULL(test,
+			      strstr(why(b, 0),
+				     "; cycle timeout: the application sends no cyclic frames"));
 }
 
 static struct kunit_case cases[] = {

@@ -191,7 +191,8 @@ static void frame_foreign(struct kunit *test)
 		give(b, buf, buf + 6, i % 1494);
 		if (i % 100)
 			continue;
-		KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, EC_REG_TYPE,
+		KUNIT_ASSERT_EQ(test,
+				ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, EC_REG_TYPE,
 						   type, 2), 0);
 		KUNIT_ASSERT_MEMEQ(test, type, bus_slave(b, 1)->regs, 2);
 	}

@@ -32,7 +32,8 @@ static s64 serial(struct bus *b, u32 position)
 	u32 abort;
 	int ret;
 
-	ret = ec_coe_upload(&bus_slave(b, position)->mbox, 0x1018, 4, false, v, sizeof(v), &got, &abort,
+	ret = ec_coe_upload(&bus_slave(b, position)->mbox, 0x1018, 4, false, v, sizeof(v), &got,
+			    &abort,
 			    &(struct ec_mbox_limit){ .timeout_ms = 100 });
 	KUNIT_EXPECT_LE_MSG(b->test, ktime_get_ns() - t0, 300 * NSEC_PER_MSEC,
 			    "slave %u kept its caller", position);

@@ -87,7 +87,8 @@ static void expect_result(struct bus *b, struct fake *o, const struct result *r)
 static void generic_result_of_frame(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave a EK1100\n");
-	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER, fake_setup);
+	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER,
+					     fake_setup);
 	struct fake *o;
 	u32 i;
 

@@ -22,7 +22,7 @@ static void image_several_datagrams(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 3, 0);
 	cyc_activate(c);
-	cycle = &b->m->session->cycle;
+	cycle = &b->m->sessions.session->cycle;
 	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 5u);
 	for (i = 0; i < cycle->n_dgrams; i++)
 		split |= cycle->dgrams[i].logical % 1000 != 0;
@@ -64,7 +64,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 	cyc_map_all(c, 0, 16, 0);
 	cyc_activate(c);
-	s = b->m->session;
+	s = b->m->sessions.session;
 	KUNIT_EXPECT_EQ(test, s->wanted.domains[0]->size, 16384u);
 	KUNIT_EXPECT_EQ(test, s->cycle.plain.frames, frames);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
@@ -129,7 +129,7 @@ static void image_cut(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
 	cyc_activate(c);
-	cycle = &b->m->session->cycle;
+	cycle = &b->m->sessions.session->cycle;
 	KUNIT_ASSERT_EQ(test, cycle->n_cuts, 1u);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].parts, 3);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].len, 4000u);
@@ -173,9 +173,9 @@ static void image_own_frame(struct kunit *test)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	cyc_run(c, 5);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.plain.frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.last.frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.last.ns, (84 + 84 + 96) * 80u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.plain.frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.last.frames, 3u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.last.ns, (84 + 84 + 96) * 80u);
 	for (i = 0; i < 4; i++)
 		KUNIT_EXPECT_EQ(test, cyc_state(c, i)->wc_state, 2);
 }
@@ -193,8 +193,8 @@ static void image_full_datagram(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	d = b->m->session->cycle.dgrams;
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.n_dgrams, 1u);
+	d = b->m->sessions.session->cycle.dgrams;
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.n_dgrams, 1u);
 	KUNIT_EXPECT_EQ(test, d->len, EC_DGRAM_DATA_MAX);
 	KUNIT_EXPECT_EQ(test, d->cmd, EC_CMD_LWR);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
@@ -372,7 +372,8 @@ static void image_many_frames(struct kunit *test)
 
 	c->period_ns = 10 * NSEC_PER_MSEC;
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->cycle.plain.frames, (u32)EC_MAX_CYCLE_FRAMES);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.plain.frames,
+			(u32)EC_MAX_CYCLE_FRAMES);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 60000), ~0ull);
 	cyc_run(c, 5);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);

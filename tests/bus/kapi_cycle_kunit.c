@@ -42,7 +42,8 @@ static void kapi_sdo(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, back, value, 4);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 1, 0x1018, 4, back, 8, &got, NULL), 0);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(back), 12u);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x3fff, 0, back, 8, &got, &abort), -EIO);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x3fff, 0, back, 8, &got, &abort),
+			-EIO);
 	KUNIT_EXPECT_EQ(test, abort, (u32)EC_ABORT_NO_OBJECT);
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x1018, 1, value, 4, &abort), -EIO);
@@ -54,23 +55,30 @@ static void kapi_sdo(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_reason(NULL, text, sizeof(text)), -EINVAL);
 	/* too small a buffer stays as it is */
 	memset(back, 0x5a, 8);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 2, &got, &abort), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 2, &got, &abort),
+			-ENOBUFS);
 	KUNIT_EXPECT_EQ(test, back[0], 0x5a);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 0, &got, &abort), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, 0, &got, &abort),
+			-ENOBUFS);
 	/* more room than any object needs */
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, U32_MAX, &got, &abort), 0);
+	KUNIT_EXPECT_EQ(test,
+			ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, back, U32_MAX, &got, &abort), 0);
 	KUNIT_EXPECT_EQ(test, got, (size_t)4);
 	abort = 1;
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, NULL, 4, &got, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, NULL, 4, &got, &abort),
+			-EINVAL);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	abort = 1;
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 7, 0x1018, 4, back, 8, &got, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 7, 0x1018, 4, back, 8, &got, &abort),
+			-EINVAL);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
 	abort = 1;
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 7, 0x1018, 4, value, 4, &abort), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x2001, 8, NULL, 4, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 7, 0x1018, 4, value, 4, &abort),
+			-EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download(k->m, 0, 0x2001, 8, NULL, 4, &abort),
+			-EINVAL);
 	KUNIT_EXPECT_EQ(test, abort, 0u);
 	ecrt_release_master(k->m);
 }
@@ -98,11 +106,14 @@ static void kapi_sdo_complete(struct kunit *test)
 	memset(whole, 0, sizeof(whole));
 	whole[0] = 12;
 	whole[2] = 1;
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x3fff, whole, 4, &abort), -EIO);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x3fff, whole, 4, &abort),
+			-EIO);
 	KUNIT_EXPECT_EQ(test, abort, (u32)EC_ABORT_NO_OBJECT);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x2001, whole, 0, &abort), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x2001, whole, 0, &abort),
+			-EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_complete_sdo(k->sc[1], 0x3fff, whole, 4), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->n_startup[EC_STARTUP_SDO], 1u);
+	KUNIT_EXPECT_EQ(test, k->m->sessions.session->wanted.configs[1]->n_startup[EC_STARTUP_SDO],
+			1u);
 	ecrt_release_master(k->m);
 }
 
@@ -214,7 +225,8 @@ static void kapi_registers(struct kunit *test)
 	for (i = 0; i < 1000 && ecrt_reg_request_state(r) == EC_REQUEST_BUSY; i++)
 		kapp_run(k, 1);
 	KUNIT_EXPECT_EQ(test, ecrt_reg_request_state(r), EC_REQUEST_SUCCESS);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(ecrt_reg_request_data(r)), bus_slave(k->b, 1)->station);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(ecrt_reg_request_data(r)),
+			bus_slave(k->b, 1)->station);
 	put_unaligned_le16(0x0777, ecrt_reg_request_data(r));
 	KUNIT_EXPECT_EQ(test, ecrt_reg_request_write(r, 0x0420, 2), 0);
 	for (i = 0; i < 1000 && ecrt_reg_request_state(r) == EC_REQUEST_BUSY; i++)
@@ -255,20 +267,26 @@ static void kapi_idns(struct kunit *test)
 	put_unaligned_le32(3500, value);
 	KUNIT_EXPECT_EQ(test, ecrt_master_write_idn(k->m, 0, 1, 91, value, 4, &error), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_write_idn(k->m, 0, 8, 91, value, 4, &error), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 0x0fff, value, 8, &got, &error), -EIO);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 0x0fff, value, 8, &got, &error),
+			-EIO);
 	KUNIT_EXPECT_NE(test, error, 0);
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
-	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 7, 0, 91, value, 8, &got, &error), -EINVAL);
-	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, U32_MAX, &got, &error), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 7, 0, 91, value, 8, &got, &error),
+			-EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, U32_MAX, &got, &error),
+			0);
 	KUNIT_EXPECT_EQ(test, got, (size_t)4);
-	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, 0, &got, &error), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, value, 0, &got, &error),
+			-ENOBUFS);
 	error = 1;
 	KUNIT_EXPECT_EQ(test, ecrt_master_read_idn(k->m, 0, 0, 91, NULL, 4, &got, &error), -EINVAL);
 	KUNIT_EXPECT_EQ(test, error, 0);
 	KUNIT_EXPECT_EQ(test, got, (size_t)0);
 	put_unaligned_le32(4000, value);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_PREOP, value, 4), 0);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_OP, value, 4), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_PREOP, value, 4),
+			0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_idn(k->sc[0], 0, 91, EC_AL_STATE_OP, value, 4),
+			-EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_soe_request_timeout(r, 1000), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_soe_request_read(r), -EINVAL);
 	kapp_op(k);
@@ -276,13 +294,15 @@ static void kapi_idns(struct kunit *test)
 		u32 n;
 
 		/* what startup wrote, then what the request writes, read back */
-		KUNIT_EXPECT_EQ(test, i == 1 ? ecrt_soe_request_write(r) : ecrt_soe_request_read(r), 0);
+		KUNIT_EXPECT_EQ(test, i == 1 ? ecrt_soe_request_write(r) : ecrt_soe_request_read(r),
+				0);
 		KUNIT_EXPECT_EQ(test, ecrt_soe_request_idn(r, 1, 91), -EBUSY);
 		for (n = 0; n < 3000 && ecrt_soe_request_state(r) == EC_REQUEST_BUSY; n++)
 			kapp_run(k, 1);
 		KUNIT_EXPECT_EQ(test, ecrt_soe_request_state(r), EC_REQUEST_SUCCESS);
 		KUNIT_EXPECT_EQ(test, ecrt_soe_request_data_size(r), (size_t)4);
-		KUNIT_EXPECT_EQ(test, get_unaligned_le32(ecrt_soe_request_data(r)), i ? 2000u : 4000u);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(ecrt_soe_request_data(r)), i ?
+				2000u : 4000u);
 		put_unaligned_le32(2000, ecrt_soe_request_data(r));
 	}
 	KUNIT_EXPECT_EQ(test, ecrt_soe_request_idn(r, 1, 91), 0);
@@ -407,8 +427,8 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_LT(test, ecrt_master_sync_monitor_process(k->m), 1000u);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock_to(k->m, now), 0);
-	KUNIT_EXPECT_EQ(test, k->m->session->wanted.configs[1]->sync.shift[0], 100);
-	KUNIT_EXPECT_EQ(test, k->m->session->ref_config, 0u);
+	KUNIT_EXPECT_EQ(test, k->m->sessions.session->wanted.configs[1]->sync.shift[0], 100);
+	KUNIT_EXPECT_EQ(test, k->m->sessions.session->ref_config, 0u);
 	ecrt_release_master(k->m);
 }
 

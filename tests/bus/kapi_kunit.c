@@ -22,7 +22,8 @@ static void kapi_request(struct kunit *test)
 	/* a second one, in the kernel or a process, is told */
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -EBUSY);
-	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "reserved by an application in the kernel"));
+	KUNIT_EXPECT_NOT_NULL(test,
+			      strstr(b->app.reason, "reserved by an application in the kernel"));
 	/* and does not take it from the first one by giving it back */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), -EPERM);
 	KUNIT_EXPECT_NOT_NULL(test, ecrt_master_create_domain(m));
@@ -48,7 +49,8 @@ static void kapi_without_device(struct kunit *test)
 	ec_master_t *m;
 
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->m->api->file.reason, "waiting for its device bus0"),
+	KUNIT_EXPECT_NOT_NULL_MSG(test,
+				  strstr(b->m->api->file.reason, "waiting for its device bus0"),
 				  "%s", b->m->api->file.reason);
 	/* nothing but the device was missing */
 	bus_plug(b);
@@ -259,8 +261,10 @@ static void kapi_pdos(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_assign_clear(k->sc[0], 3), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_assign_add(k->sc[0], 3, 0x1a00), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_mapping_clear(k->sc[0], 0x1a00), 0);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_mapping_add(k->sc[0], 0x1a00, 0x6041, 0, 16), 0);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_mapping_add(k->sc[0], 0x1a00, 0x6064, 0, 32), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_mapping_add(k->sc[0], 0x1a00, 0x6041, 0, 16),
+			0);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_pdo_mapping_add(k->sc[0], 0x1a00, 0x6064, 0, 32),
+			0);
 	KUNIT_EXPECT_EQ(test, ecrt_domain_reg_pdo_entry_list(k->d, regs), 0);
 	KUNIT_EXPECT_EQ(test, control, 0u);
 	KUNIT_EXPECT_EQ(test, status, 8u);
@@ -317,7 +321,8 @@ static void kapi_map_first(struct kunit *test)
 	/* bit 3, and no place for that */
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), -EFAULT);
 	KUNIT_EXPECT_EQ(test, ecrt_domain_size(k->d), 0ul);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry_pos(sc, 2, 0, 1, k->d, NULL), -EFAULT);
+	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry_pos(sc, 2, 0, 1, k->d, NULL),
+			-EFAULT);
 	KUNIT_EXPECT_EQ(test, ecrt_domain_size(k->d), 0ul);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, &bit), 0);
 	KUNIT_EXPECT_EQ(test, bit, 3u);
@@ -352,10 +357,12 @@ static void kapi_map_again(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_clear(sc, 2), 0);
 	KUNIT_ASSERT_EQ(test, ecrt_slave_config_pdo_assign_add(sc, 2, 0x1600), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), 0);
-	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_INPUT, EC_WD_DEFAULT), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_INPUT, EC_WD_DEFAULT),
+			0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_reg_pdo_entry(sc, 0x6040, 0, k->d, NULL), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EBUSY);
-	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_OUTPUT, EC_WD_DEFAULT), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_slave_config_sync_manager(sc, 2, EC_DIR_OUTPUT, EC_WD_DEFAULT),
+			0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), 0);
 	ecrt_release_master(k->m);
 }
@@ -379,7 +386,7 @@ static void kapi_stored(struct kunit *test)
 	k = kapp_new(b, 1000);
 	kapp_map(k, 0);
 	sc = k->sc[0];
-	c = k->m->session->wanted.configs[0];
+	c = k->m->sessions.session->wanted.configs[0];
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_watchdog(sc, 2498, 500), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_flag(sc, "AssignToPdi", 1), 0);
 	KUNIT_EXPECT_EQ(test, c->n_flags, 1u);
@@ -401,12 +408,16 @@ static void kapi_stored(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_subnet_mask(sc, mask), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_default_gateway(sc, ip), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_dns_address(sc, ip), 0);
-	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_hostname(sc, "a-name-of-more-than-31-characters!"), 0);
+	KUNIT_EXPECT_EQ(test,
+			ecrt_slave_config_eoe_hostname(sc,
+						       "a-name-of-more-than-31-characters!"), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_eoe_mac_address(NULL, mac), -EINVAL);
 	kapp_op(k);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, value, 4, &got, &abort), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 8, value, 4, &got, &abort),
+			0);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(value), 0x12345678u);
-	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 7, value, 4, &got, &abort), 0);
+	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_upload(k->m, 0, 0x2001, 7, value, 4, &got, &abort),
+			0);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(value), 0x1122);
 	KUNIT_EXPECT_EQ(test, sw->ip.now.which, (u32)EC_IP_ALL);
 	KUNIT_EXPECT_MEMEQ(test, sw->ip.now.mac, mac, 6);

@@ -13,7 +13,7 @@ static const struct ec_ioc_cycle zero = {
 /* What the kernel does when the process has gone. */
 static void die(struct kcyc *a)
 {
-	ec_session_end(a->c->b->m, &a->c->b->app);
+	ec_session_end(&a->c->b->m->sessions, &a->c->b->app);
 }
 
 static u32 session_state(struct bus *b)
@@ -121,7 +121,7 @@ static void takeover_continues_session(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, n->taken_over);
-	KUNIT_EXPECT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_ACTIVE);
 	/* outputs and inputs as they are, before anything is given */
 	for (i = 0; i < 2; i++) {
@@ -158,7 +158,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 {
 	struct kcyc *n = kcyc_configure(b, hold);
 
-	b->m->heir->cycle.priority = priority;
+	b->m->sessions.heir->cycle.priority = priority;
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
 	return n;
@@ -171,16 +171,17 @@ static void takeover_priority_follows_rights(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct task_struct *task;
 
-	ec_session_lock(b->m);
-	task = ec_cycle_thread_task(&b->m->session->cycle);
-	ec_session_unlock(b->m);
+	ec_sessions_lock(&b->m->sessions);
+	task = ec_cycle_thread_task(&b->m->sessions.session->cycle);
+	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
 	KUNIT_EXPECT_EQ(test, task->rt_priority, 50u);
 	die(a);
 	a = taken_with(b, 0);
 	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_NORMAL);
 	KUNIT_EXPECT_EQ(test, task->rt_priority, 0u);
-	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_OTHER: SCHED_FIFO 50 needs"), 1u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("cycle thread runs SCHED_OTHER: SCHED_FIFO 50 needs"),
+			1u);
 	die(a);
 	a = taken_with(b, 30);
 	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
@@ -357,7 +358,7 @@ static void takeover_late_cycles(struct kunit *test)
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 7u);
-	KUNIT_EXPECT_EQ(test, b->m->session->cycle.late_per_s, 7u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.late_per_s, 7u);
 	die(a);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	/* without them a cycle that leaves no room is refused, as any is; it takes 273 us */
@@ -383,7 +384,7 @@ static void refused(struct bus *b, const char *what)
 	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &act), -EEXIST);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, what), "%s", b->app.reason);
 	KUNIT_EXPECT_NOT_NULL(b->test, strstr(b->app.reason, "ethercat release"));
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_EQ(b->test, session_state(b), (u32)EC_SESSION_DETACHED);
 }
 
@@ -436,9 +437,10 @@ static void takeover_refused(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
-	ec_session_lock(b->m);
-	ret = ec_config_sdo_add(b->m->heir->wanted.configs[1], 0x8000, 1, false, (const u8 *)"\1", 1);
-	ec_session_unlock(b->m);
+	ec_sessions_lock(&b->m->sessions);
+	ret = ec_config_sdo_add(b->m->sessions.heir->wanted.configs[1], 0x8000, 1, false,
+				(const u8 *)"\1", 1);
+	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	refused(b, "slave 0:1 has 0 startup SDOs, not 1");
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));

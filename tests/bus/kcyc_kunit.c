@@ -58,7 +58,8 @@ static void kcyc_whole_images(struct kunit *test)
 		KUNIT_ASSERT_NOT_NULL(test, in);
 		for (k = 0; k < 4; k++)
 			v[k] = get_unaligned_le32((u8 *)(in + 1) +
-						  kcyc_place(a, k / 2, 1, k % 2 ? KCYC_CHANNELS : 1));
+						  kcyc_place(a, k / 2, 1, k % 2 ?
+							     KCYC_CHANNELS : 1));
 		torn += v[0] != v[1] || v[0] != v[2] || v[0] != v[3];
 		fresh += v[0] == last + 1;
 		last = v[0];
@@ -198,7 +199,7 @@ static void kcyc_clocks(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(c);
 	msleep(2000);
-	st = b->m->session->cycle.shared->status;
+	st = b->m->sessions.session->cycle.shared->status;
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	KUNIT_EXPECT_EQ(test, st->dc_ref, 1u);
 	KUNIT_EXPECT_EQ(test, st->dc_time_valid, 1u);
@@ -289,7 +290,7 @@ static void kcyc_end_while_running(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	flush_delayed_work(&e.work);
 	destroy_delayed_work_on_stack(&e.work);
-	KUNIT_EXPECT_NULL(test, b->m->session);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	/* and again, as often as one likes */
 	for (round = 0; round < 20; round++) {

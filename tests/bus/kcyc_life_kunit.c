@@ -17,7 +17,7 @@ static void life_waits_for_outputs(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_wait_cycles(a, 500);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
-	sends = b->m->session->cycle.sends;
+	sends = b->m->sessions.session->cycle.sends;
 	KUNIT_EXPECT_EQ(test, sends, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
 	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->links.access.timeouts), 0u);
@@ -28,7 +28,7 @@ static void life_waits_for_outputs(struct kunit *test)
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
-	KUNIT_EXPECT_GE(test, b->m->session->cycle.sends, 1ull);
+	KUNIT_EXPECT_GE(test, b->m->sessions.session->cycle.sends, 1ull);
 	kcyc_until_op(a);
 	kcyc_wait_cycles(a, 5);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
@@ -43,12 +43,12 @@ static void kcyc_detach_without_outputs(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_wait_cycles(a, 20);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_ALL });
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 }
@@ -215,7 +215,7 @@ static void life_without_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, x->domains[0].wc_state, 0u);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	msleep(100);
 	/* without a device nobody can reserve it, but end it */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -ENODEV);
@@ -234,7 +234,8 @@ static int gone_tx_send(void *priv, u8 *buf, size_t len)
 	int ret = real_ops->tx_send(priv, buf, len);
 
 	/* somebody's frame is to go after those of the cycle */
-	if (!times && m->links.access.mode == EC_ACCESS_CYCLIC && ec_queue_frames(&m->links.queues)) {
+	if (!times && m->links.access.mode == EC_ACCESS_CYCLIC &&
+	    ec_queue_frames(&m->links.queues)) {
 		WRITE_ONCE(m->links.link[0].dev, NULL);
 		times++;
 	}
@@ -365,7 +366,7 @@ static void life_requests_taken_over(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, over(a));
 	begin(a, 0x1018, 4);
 	kcyc_wait_cycles(a, 2);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	a = with_request(b);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, record(a)->start, 2u);
@@ -374,7 +375,7 @@ static void life_requests_taken_over(struct kunit *test)
 	/* one that was put there, but not told: never happened */
 	record(a)->start = 77;
 	record(a)->done = 5;
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	a = with_request(b);
 	KUNIT_EXPECT_EQ(test, record(a)->start, record(a)->done);
 	begin(a, 0x1018, 1);

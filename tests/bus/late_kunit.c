@@ -8,7 +8,7 @@
 
 static const struct ec_status_cycle *status(const struct cyc *c)
 {
-	return &c->b->m->session->cycle.shared->status->kernel;
+	return &c->b->m->sessions.session->cycle.shared->status->kernel;
 }
 
 /* As uapi/ethercat.h says. */
@@ -145,7 +145,7 @@ static void late_overrun(struct kunit *test)
 static void late_buckets(struct kunit *test)
 {
 	struct cyc *c = start(test, true);
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	const struct ec_status_cycle *st = status(c);
 	u32 i;
 

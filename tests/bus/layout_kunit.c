@@ -191,13 +191,13 @@ static void layout_echo(struct kunit *test)
 {
 	const struct layout *l = test->param_value;
 	struct cyc *c = in_op(test, l);
-	struct ec_cycle *cycle = &c->b->m->session->cycle;
+	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	u32 i, round, offset = 0;
 
 	KUNIT_EXPECT_EQ(test, cycle->n_dgrams, l->dgrams);
 	KUNIT_EXPECT_EQ(test, data_bytes(cycle), l->bytes);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->expected, l->expected);
-	KUNIT_EXPECT_EQ(test, c->b->m->session->wanted.domains[0]->size, 896u);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->wanted.domains[0]->size, 896u);
 	for (i = 0; i < N; i++) {
 		if (slaves[i].out)
 			KUNIT_EXPECT_PTR_EQ(test, output(c, i, 1), cyc_data(c, 0) + offset);
@@ -285,7 +285,7 @@ static void layout_not_running(struct kunit *test)
 static void layout_inputs_first(struct kunit *test)
 {
 	struct cyc *c = cyc_new(segment(test, 0), 1000);
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	u32 i, j, k, config[N];
 
 	cyc_domain(c);

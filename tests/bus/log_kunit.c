@@ -115,7 +115,8 @@ static void log_mailbox_errors(struct kunit *test)
 	/* by its EEPROM it has SoE */
 	s->info.protocols |= EC_SII_PROTO_SOE;
 	for (i = 0; i < 500; i++)
-		KUNIT_EXPECT_LT(test, ec_soe_read(&s->mbox, 0, 1, v, sizeof(v), &got, &error, &limit), 0);
+		KUNIT_EXPECT_LT(test,
+				ec_soe_read(&s->mbox, 0, 1, v, sizeof(v), &got, &error, &limit), 0);
 	KUNIT_EXPECT_GE(test, lines(b) - l0, 1ull);
 	KUNIT_EXPECT_LE(test, lines(b) - l0, 2ull);
 }

@@ -227,7 +227,8 @@ static void mapping_found_unreadable_stays_visible(struct kunit *test)
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "PDOs could not be read"), "%s", i.warning);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "PDOs could not be read"), "%s",
+				  i.warning);
 }
 
 /* The first cause is kept, not the AL status code that follows from it. */
@@ -277,7 +278,8 @@ static void mapping_written_is_shown(struct kunit *test)
 	for (i = 0; i < p.entry_count; i++) {
 		e.entry_pos = i;
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_PDO_ENTRY, &e), 0);
-		KUNIT_EXPECT_EQ(test, (u32)e.index << 16 | e.subindex << 8 | e.bits, cyc_new_out[i]);
+		KUNIT_EXPECT_EQ(test, (u32)e.index << 16 | e.subindex << 8 | e.bits,
+				cyc_new_out[i]);
 		KUNIT_EXPECT_STRNEQ(test, e.name, "");
 	}
 	/* the slave has them, but it is the configuration that has registered some */

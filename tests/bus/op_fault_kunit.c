@@ -178,8 +178,8 @@ static void op_session_ends(struct kunit *test)
 	cyc_run(c, 10);
 	KUNIT_ASSERT_FALSE(test, outputs_off(b));
 	/* what closing the file does */
-	ec_session_end(b->m, &b->app);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->session, NULL);
+	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_EXPECT_PTR_EQ(test, b->m->sessions.session, NULL);
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_TRUE(test, outputs_off(b));

@@ -65,7 +65,8 @@ static void op_mapping_rewritten(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app->bytes[EC_APP_OUT], 8);
 	KUNIT_EXPECT_EQ(test, app->bytes[EC_APP_IN], 12);
 	for (i = 0; i < ARRAY_SIZE(cyc_new_in); i++)
-		KUNIT_EXPECT_EQ(test, ec_app_od_get(app, ec_app_od_entry(app->model, 0x1a00, i + 1)),
+		KUNIT_EXPECT_EQ(test,
+				ec_app_od_get(app, ec_app_od_entry(app->model, 0x1a00, i + 1)),
 				(u64)cyc_new_in[i]);
 	/* a torque arrives where the mapping says */
 	put_unaligned_le16(77, cyc_data(c, 0) + out + 6);
@@ -136,7 +137,7 @@ static void op_without_lrw(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 1, 1, 0);
 	cyc_activate(c);
-	cycle = &b->m->session->cycle;
+	cycle = &b->m->sessions.session->cycle;
 	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 2u);
 	for (i = 0; i < cycle->n_dgrams; i++)
 		KUNIT_EXPECT_NE(test, cycle->dgrams[i].cmd, EC_CMD_LRW);
@@ -161,7 +162,7 @@ static void op_many_frames(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 24, 0);
 	cyc_activate(c);
-	KUNIT_EXPECT_GT(test, b->m->session->cycle.n_dgrams, 6u);
+	KUNIT_EXPECT_GT(test, b->m->sessions.session->cycle.n_dgrams, 6u);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	for (i = 0; i < 24; i++)
 		for (k = 0; k < 50; k++)

@@ -195,9 +195,9 @@ static void req_comes_back(struct kunit *test)
 
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 2000 && c->b->m->session->wanted.configs[1]->slave; i++)
+	for (i = 0; i < 2000 && c->b->m->sessions.session->wanted.configs[1]->slave; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_NULL(test, c->b->m->session->wanted.configs[1]->slave);
+	KUNIT_ASSERT_NULL(test, c->b->m->sessions.session->wanted.configs[1]->slave);
 	req_begin(c, b, 0x1018, 4, false, 0);
 	KUNIT_EXPECT_EQ(test, req_end(c, b, 500), 1);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
@@ -258,7 +258,7 @@ static void req_killed(struct kunit *test)
 	cyc_run(c, 10);
 	KUNIT_ASSERT_FALSE(test, req_over(c, a));
 	t0 = ktime_get_ns();
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 100 * NSEC_PER_MSEC);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
@@ -308,7 +308,7 @@ static void req_cancelled(struct kunit *test)
 	req_begin(c, a, 0x1018, 4, false, 0);
 	cyc_run(c, 10);
 	KUNIT_ASSERT_TRUE(test, taken(&bus_slave(b, 0)->mbox.lock));
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
@@ -324,7 +324,7 @@ static void req_cancelled(struct kunit *test)
 	req_begin(c, a, SCRATCH, 0, true, 1000);
 	cyc_run(c, 250);
 	KUNIT_ASSERT_TRUE(test, taken(&bus_slave(b, 0)->mbox.sdo_lock));
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 }
 

@@ -126,7 +126,7 @@ static struct cyc *start(struct kunit *test)
 static void rt_receive_send(struct kunit *test)
 {
 	struct cyc *c = start(test);
-	struct ec_session *s = c->b->m->session;
+	struct ec_session *s = c->b->m->sessions.session;
 	struct ec_ioc_send send = { .queued = 3, .flags = ALL };
 	struct seen v = { 0 };
 	u32 i;
@@ -193,7 +193,7 @@ static void rt_thread(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, cyc_all_op(c));
 	thread = find_thread();
 	KUNIT_ASSERT_NOT_NULL(test, thread);
-	st = &c->b->m->session->cycle.shared->status->kernel;
+	st = &c->b->m->sessions.session->cycle.shared->status->kernel;
 	slept = thread->nvcsw;
 	printed = lines;
 	cycles = st->cycle;

@@ -154,12 +154,12 @@ static void rules_deactivate(struct kunit *test)
 			cyc_domain(c);
 		cyc_map_all(c, 0, 2, round == 1);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
-		KUNIT_EXPECT_EQ(test, b->m->session->wanted.n_configs, 2u);
+		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 2u);
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
-		KUNIT_EXPECT_EQ(test, b->m->session->wanted.n_configs, 0u);
-		KUNIT_EXPECT_EQ(test, b->m->session->wanted.n_domains, 0u);
+		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 0u);
+		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_domains, 0u);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OFFSET, &at), -ENOENT);
 		KUNIT_EXPECT_FALSE(test, b->m->dc.has_phase);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
@@ -178,7 +178,7 @@ static void rules_configured_twice(struct kunit *test)
 	u32 first = cyc_config(c, 0);
 
 	KUNIT_EXPECT_EQ(test, cyc_config(c, 0), first);
-	KUNIT_EXPECT_EQ(test, b->m->session->wanted.n_configs, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 1u);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), -ENOENT);
 	/* nobody is there: no error, the handle is good */
 	sc.position = 17;

@@ -178,7 +178,8 @@ static void scan_mute(struct kunit *test)
 	/* its own worker gives up after the time of the transition */
 	msleep(4000);
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, "PREOP not reached in time"), "why: %s", s->why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, "PREOP not reached in time"), "why: %s",
+				  s->why);
 }
 
 static void scan_bad_checksum(struct kunit *test)
@@ -224,7 +225,8 @@ static void scan_too_much(struct kunit *test)
 	put_unaligned_le16(3000 / 2, e->data + EC_SII_FIXED_SIZE + 2);
 	atomic_long_add(most, &b->m->bus.sii_bytes);
 	others_fine(b, 5, 1000);
-	failed_with(b, 5, "the EEPROMs of all slaves exceed 64 MiB; disconnect slaves with large EEPROMs");
+	failed_with(b, 5,
+		    "the EEPROMs of all slaves exceed 64 MiB; disconnect slaves with large EEPROMs");
 	atomic_long_sub(most, &b->m->bus.sii_bytes);
 }
 

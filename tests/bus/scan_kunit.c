@@ -183,7 +183,7 @@ static void scan_while_reserved(struct kunit *test)
 		msleep(1);
 	KUNIT_EXPECT_EQ(test, al[0], EC_AL_PREOP);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, 2, EC_AL_PREOP, 100), ~0ull);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	bus_idle(b);
 	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
 }

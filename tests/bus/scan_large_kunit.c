@@ -16,7 +16,8 @@ static void others_fine(struct bus *b, u32 limit_ms)
 
 	bus_plug_scanned(b, N, limit_ms);
 	for (i = 0; i < 5; i++)
-		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al_status, EC_AL_PREOP, "slave %u: %s",
+		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al_status, EC_AL_PREOP,
+				    "slave %u: %s",
 				    i, bus_slave(b, i)->why);
 }
 

@@ -45,10 +45,13 @@ static void there_and_back(struct bus *b, u32 position, const char *name, u16 in
 	KUNIT_ASSERT_NOT_NULL(b->test, in);
 	KUNIT_ASSERT_NOT_NULL(b->test, e);
 	pattern(out, n);
-	KUNIT_EXPECT_EQ_MSG(b->test, ec_coe_download(&s->mbox, index, sub, false, out, n, &abort, NULL), 0,
+	KUNIT_EXPECT_EQ_MSG(b->test,
+			    ec_coe_download(&s->mbox, index, sub, false, out, n, &abort, NULL), 0,
 			    "%zu bytes to %s: abort 0x%08x", n, name, abort);
 	KUNIT_EXPECT_MEMEQ(b->test, app->data + e->off, out, n);
-	KUNIT_EXPECT_EQ(b->test, ec_coe_upload(&s->mbox, index, sub, false, in, 1000, &got, &abort, NULL), 0);
+	KUNIT_EXPECT_EQ(b->test,
+			ec_coe_upload(&s->mbox, index, sub, false, in, 1000, &got, &abort,
+				      NULL), 0);
 	KUNIT_EXPECT_EQ(b->test, got, n);
 	KUNIT_EXPECT_MEMEQ(b->test, in, out, n);
 	KUNIT_EXPECT_EQ(b->test, abort, 0);
@@ -88,7 +91,9 @@ static void sdo_complete_access(struct kunit *test)
 	size_t got;
 	u32 abort;
 
-	KUNIT_ASSERT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 0, true, buf, sizeof(buf), &got, &abort, NULL),
+	KUNIT_ASSERT_EQ(test,
+			ec_coe_upload(&s->mbox, 0x1018, 0, true, buf, sizeof(buf), &got, &abort,
+				      NULL),
 			0);
 	KUNIT_EXPECT_EQ(test, got, 18ul);
 	KUNIT_EXPECT_EQ(test, buf[0], 4);
@@ -103,11 +108,14 @@ static void sdo_errors(struct kunit *test)
 	size_t got;
 	u32 abort;
 
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x3fff, 0, false, buf, 8, &got, &abort, NULL), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x3fff, 0, false, buf, 8, &got, &abort, NULL),
+			-EIO);
 	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_NO_OBJECT);
-	KUNIT_EXPECT_EQ(test, ec_coe_download(&s->mbox, 0x1018, 1, false, buf, 4, &abort, NULL), -EIO);
+	KUNIT_EXPECT_EQ(test, ec_coe_download(&s->mbox, 0x1018, 1, false, buf, 4, &abort, NULL),
+			-EIO);
 	KUNIT_EXPECT_EQ(test, abort, EC_ABORT_READ_ONLY);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, SCRATCH, 0, false, buf, 8, &got, &abort, NULL),
+	KUNIT_EXPECT_EQ(test,
+			ec_coe_upload(&s->mbox, SCRATCH, 0, false, buf, 8, &got, &abort, NULL),
 			-ENOBUFS);
 	KUNIT_EXPECT_EQ(test, ec_coe_upload(&bus_slave(b, 2)->mbox, 0x1000, 0, false, buf, 8, &got,
 					    &abort, NULL), -EPROTONOSUPPORT);
@@ -116,7 +124,8 @@ static void sdo_errors(struct kunit *test)
 
 	bus_request(b, 0, EC_AL_INIT);
 	KUNIT_ASSERT_NE(test, bus_wait_al(b, 0, EC_AL_INIT, 500), ~0ull);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1000, 0, false, buf, 8, &got, &abort, NULL), -EAGAIN);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1000, 0, false, buf, 8, &got, &abort, NULL),
+			-EAGAIN);
 }
 
 /* An EEPROM names a mailbox larger than a datagram: nothing is sent there. */
@@ -131,11 +140,13 @@ static void sdo_huge_mailbox(struct kunit *test)
 
 	KUNIT_ASSERT_NOT_NULL(test, data);
 	s->info.std.rx_size = 0xf000;
-	KUNIT_EXPECT_EQ(test, ec_coe_download(&s->mbox, SCRATCH, 0, false, data, 60000, &abort, NULL),
+	KUNIT_EXPECT_EQ(test,
+			ec_coe_download(&s->mbox, SCRATCH, 0, false, data, 60000, &abort, NULL),
 			-EMSGSIZE);
 	s->info.std.rx_size = 64;
 	s->info.std.tx_size = 0xf000;
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, SCRATCH, 0, false, data, 60000, &got, &abort, NULL),
+	KUNIT_EXPECT_EQ(test,
+			ec_coe_upload(&s->mbox, SCRATCH, 0, false, data, 60000, &got, &abort, NULL),
 			-EMSGSIZE);
 	kvfree(data);
 	s->info.std.tx_size = tx_size;
@@ -152,7 +163,9 @@ static void sdo_mute(struct kunit *test)
 	u32 abort;
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&bus_slave(b, 0)->mbox, 0x1000, 0, false, buf, 8, &got, &abort,
+	KUNIT_EXPECT_EQ(test,
+			ec_coe_upload(&bus_slave(b, 0)->mbox, 0x1000, 0, false, buf, 8, &got,
+				      &abort,
 					    &(struct ec_mbox_limit){ .timeout_ms = 200 }), -ETIMEDOUT);
 	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 	KUNIT_EXPECT_GE(test, ms, 200ull);
@@ -202,12 +215,14 @@ static void sdo_lost_frames(struct kunit *test)
 			int ret;
 
 			KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
-			ret = ec_coe_upload(&s->mbox, 0x1018, 2, false, in, sizeof(in), &got, &abort, NULL);
+			ret = ec_coe_upload(&s->mbox, 0x1018, 2, false, in, sizeof(in), &got,
+					    &abort, NULL);
 			if (back || ret != -ETIMEDOUT)
 				KUNIT_EXPECT_EQ_MSG(test, ret, 0, "frame %u, back %u", n, back);
 			failed += !!ret;
 			usleep_range(50000, 50001);
-			KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 1, false, in, sizeof(in),
+			KUNIT_EXPECT_EQ(test,
+					ec_coe_upload(&s->mbox, 0x1018, 1, false, in, sizeof(in),
 							    &got, &abort, NULL), 0);
 			KUNIT_EXPECT_EQ(test, get_unaligned_le32(in), s->info.vendor);
 		}
@@ -230,7 +245,9 @@ static void sdo_latency(struct kunit *test)
 
 		usleep_range(3000 + 137 * i, 3001 + 137 * i);
 		t0 = ktime_get_ns();
-		KUNIT_ASSERT_EQ(test, ec_coe_upload(&s->mbox, 0x1000, 0, false, buf, 4, &got, &abort, NULL),
+		KUNIT_ASSERT_EQ(test,
+				ec_coe_upload(&s->mbox, 0x1000, 0, false, buf, 4, &got, &abort,
+					      NULL),
 				0);
 		us = div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 		sum += us;
@@ -257,12 +274,14 @@ static void sdo_slow_reply(struct kunit *test)
 		u64 frames = bus_frames(b), t0 = ktime_get_ns(), us;
 
 		bus_app(b, "large")->response_ns = t[i].ms * NSEC_PER_MSEC;
-		KUNIT_EXPECT_EQ(test, ec_coe_upload(&bus_slave(b, 1)->mbox, TYPES, 8, false, v, 4, &got,
+		KUNIT_EXPECT_EQ(test,
+				ec_coe_upload(&bus_slave(b, 1)->mbox, TYPES, 8, false, v, 4, &got,
 						    &abort, NULL), 0);
 		us = div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 		/* those of the monitor are among them */
 		frames = bus_frames(b) - frames;
-		bus_figure("reply after %u ms: seen after %llu us, %llu frames", t[i].ms, us, frames);
+		bus_figure("reply after %u ms: seen after %llu us, %llu frames", t[i].ms, us,
+			   frames);
 		KUNIT_EXPECT_LE(test, us, t[i].ms * 1125ull + 1000);
 		KUNIT_EXPECT_LE(test, frames, (u64)t[i].frames);
 	}

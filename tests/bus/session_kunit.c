@@ -37,7 +37,7 @@ static void session_forgets(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	expect_nothing_told(b);
 
 	m = ecrt_request_master(0);
@@ -58,10 +58,10 @@ static void session_candidate_is_freed(struct kunit *test)
 	u64 phase = b->m->dc.phase;
 
 	KUNIT_ASSERT_TRUE(test, b->m->dc.has_phase);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
-	ec_session_end(b->m, &b->app);
-	KUNIT_EXPECT_NULL(test, b->m->heir);
+	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && b->m->dc.begun);
 	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
 	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
@@ -78,7 +78,7 @@ static void uploads(struct bus *b)
 	KUNIT_EXPECT_EQ(b->test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
 	KUNIT_EXPECT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &sdo), 0, "%s",
 			    b->app.reason);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 }
 
 static void kernel_uploads(struct bus *b)
@@ -134,7 +134,7 @@ static void session_reserve_refused(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 10 * NSEC_PER_SEC);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	bus_idle(b);
 	t0 = ktime_get_ns();
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
@@ -149,7 +149,7 @@ static u32 given_up_after(struct cyc *c)
 	u32 i;
 
 	for (i = 0; i < 20000 && s->error == EC_SLAVE_OK; i++) {
-		if (c->b->m->session->wanted.active)
+		if (c->b->m->sessions.session->wanted.active)
 			cyc_run(c, 1);
 		else
 			usleep_range(1000, 1001);
@@ -231,7 +231,8 @@ static void watch_scan(struct bus *b, u32 n)
 static void session_scan_progress(struct kunit *test)
 {
 	/* EEPROMs of several sizes */
-	struct bus *b = bus_new(test, "segment seed=8\nrepeat 20 slave s drive in=8 out=8 mbox=128\n"
+	struct bus *b = bus_new(test,
+				"segment seed=8\nrepeat 20 slave s drive in=8 out=8 mbox=128\n"
 				"repeat 20 slave t EL2008\n"
 				"repeat 10 slave u io in=64 out=64\n");
 
@@ -246,7 +247,7 @@ static struct bus *detached(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 
-	ec_session_end(a->c->b->m, &a->c->b->app);
+	ec_session_end(&a->c->b->m->sessions, &a->c->b->app);
 	return a->c->b;
 }
 
@@ -284,13 +285,13 @@ static void session_candidate_makes_other_calls(struct kunit *test)
 static void session_candidate_in_kernel(struct kunit *test)
 {
 	struct bus *b = detached(test);
-	struct ec_session *runs = b->m->session;
+	struct ec_session *runs = b->m->sessions.session;
 	struct kapp *k = kapp_new(b, 500);
 	u64 app_time = b->m->dc.app_time, cycle;
 	bool phase = b->m->dc.has_phase;
 
-	KUNIT_ASSERT_PTR_EQ(test, b->m->session, runs);
-	KUNIT_ASSERT_NOT_NULL(test, b->m->heir);
+	KUNIT_ASSERT_PTR_EQ(test, b->m->sessions.session, runs);
+	KUNIT_ASSERT_NOT_NULL(test, b->m->sessions.heir);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 77), 0);
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
 	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
@@ -312,13 +313,13 @@ static void session_candidate_in_kernel(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	/* the way the refusal names; then the bus is its own */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
-	KUNIT_EXPECT_NULL(test, b->m->heir);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
 	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
 	kapp_op(k);
 	kapp_run(k, 10);
 	ecrt_release_master(k->m);
-	KUNIT_EXPECT_NULL(test, b->m->session);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
 }
 
 /* A configuration is of one master. */
@@ -332,14 +333,14 @@ static void session_foreign_config(struct kunit *test)
 	struct kapp k = { .b = b, .m = m };
 
 	KUNIT_ASSERT_TRUE(test, other && s && sc && m);
-	s->master = other;
+	s->sessions = &other->sessions;
 	sc->wanted = &s->wanted;
 	kapp_config(&k, 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, (ec_slave_config_t *)sc),
 			-EINVAL);
-	KUNIT_EXPECT_EQ(test, b->m->session->ref_config, EC_UAPI_NONE32);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->ref_config, EC_UAPI_NONE32);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, k.sc[0]), 0);
-	KUNIT_EXPECT_EQ(test, b->m->session->ref_config, 0u);
+	KUNIT_EXPECT_EQ(test, b->m->sessions.session->ref_config, 0u);
 	ecrt_release_master(m);
 }
 
@@ -387,16 +388,16 @@ static void clear_pdos(struct bus *b)
 {
 	static const u8 ops[] = { EC_SC_PDO_ASSIGN_ADD, EC_SC_PDO_MAP_ADD, EC_SC_PDO_ASSIGN_CLEAR };
 	struct ec_ioc_sc_pdo pdo = { .sm = 2, .pdo = 0x1600, .bits = 8 };
-	size_t bytes = b->m->session->wanted.budget.bytes;
+	size_t bytes = b->m->sessions.session->wanted.budget.bytes;
 	u32 i;
 
 	for (i = 0; i < ARRAY_SIZE(ops); i++) {
 		pdo.op = ops[i];
 		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), 0);
-		KUNIT_EXPECT_EQ(b->test, b->m->session->wanted.budget.bytes > bytes,
+		KUNIT_EXPECT_EQ(b->test, b->m->sessions.session->wanted.budget.bytes > bytes,
 				ops[i] != EC_SC_PDO_ASSIGN_CLEAR);
 	}
-	KUNIT_EXPECT_EQ(b->test, b->m->session->wanted.budget.bytes, bytes);
+	KUNIT_EXPECT_EQ(b->test, b->m->sessions.session->wanted.budget.bytes, bytes);
 }
 
 /* All sessions and what is mapped have a limit together. */
@@ -412,40 +413,40 @@ static void session_memory(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	KUNIT_EXPECT_GE(test, m->session->wanted.budget.bytes, sizeof(struct ec_config));
+	KUNIT_EXPECT_GE(test, m->sessions.session->wanted.budget.bytes, sizeof(struct ec_config));
 	sdo.data = (uintptr_t)value;
 	clear_pdos(b);
 	/* as if something else was mapped: there is room for three values */
-	mapped = EC_MAX_SESSION_BYTES - atomic_long_read(&m->memory) - 4 * sdo.size;
-	atomic_long_add(mapped, &m->memory);
+	mapped = EC_MAX_SESSION_BYTES - atomic_long_read(&m->sessions.memory) - 4 * sdo.size;
+	atomic_long_add(mapped, &m->sessions.memory);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), -ENOMEM);
 	expect_limit(b);
 	KUNIT_EXPECT_EQ(test, activate(b), -ENOMEM);
 	expect_limit(b);
-	atomic_long_sub(mapped, &m->memory);
+	atomic_long_sub(mapped, &m->sessions.memory);
 	KUNIT_EXPECT_EQ(test, activate(b), 0);
-	ec_session_end(m, &b->app);
+	ec_session_end(&m->sessions, &b->app);
 }
 
 /* A mapping that outlives its session counts until it goes. */
 static void session_mapping_outlives(struct kunit *test)
 {
 	struct bus *b = kcyc_start(test, (struct ec_ioc_cycle){ 0 })->c->b;
-	struct ec_shared *sh = b->m->session->cycle.shared;
+	struct ec_shared *sh = b->m->sessions.session->cycle.shared;
 	size_t bytes = sh->bytes;
 
 	KUNIT_EXPECT_GE(test, bytes, sh->image_size + sh->exchange_size + EC_STATUS_BYTES);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->memory),
-			bytes + b->m->session->wanted.budget.bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->sessions.memory),
+			bytes + b->m->sessions.session->wanted.budget.bytes);
 	ec_shared_get(sh);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	/* work on requests may end a moment later */
 	msleep(50);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->memory), bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->sessions.memory), bytes);
 	ec_shared_put(sh);
-	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->memory), 0L);
+	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->sessions.memory), 0L);
 }
 
 /* A session without a cycle thread has none whose priority could change. */
@@ -457,9 +458,9 @@ static void session_without_thread_inherits(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	ec_session_lock(b->m);
-	ec_cycle_thread_inherit(&b->m->session->cycle, 7);
-	ec_session_unlock(b->m);
+	ec_sessions_lock(&b->m->sessions);
+	ec_cycle_thread_inherit(&b->m->sessions.session->cycle, 7);
+	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 }
 

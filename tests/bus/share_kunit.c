@@ -34,7 +34,8 @@ static int ask(void *arg)
 					       a->data + i * a->len);
 		a->dg[i].repeat = false;
 	}
-	a->ret = a->clock ? ec_xfer_clock(&a->b->m->links, a->dg, a->n) : ec_xfer(&a->b->m->links, a->dg, a->n);
+	a->ret = a->clock ? ec_xfer_clock(&a->b->m->links, a->dg, a->n) : ec_xfer(&a->b->m->links,
+										  a->dg, a->n);
 	a->end_ns = ktime_get_ns();
 	complete(&a->done);
 	return 0;
@@ -72,7 +73,7 @@ static void count(struct cyc *c)
 {
 	u64 bytes = atomic64_read(&c->b->m->links.link[0].stats.tx_bytes);
 	u64 frames = bus_frames(c->b);
-	const struct ec_cyc_wire *last = &c->b->m->session->cycle.last;
+	const struct ec_cyc_wire *last = &c->b->m->sessions.session->cycle.last;
 	struct share *s = c->ctx;
 
 	/* everything since the send before was sent by it */

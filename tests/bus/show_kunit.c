@@ -47,7 +47,8 @@ static void show_pause_reports_change_that_waited(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ret, -EAGAIN);
 	KUNIT_EXPECT_GE_MSG(test, ktime_get_ns() - t0, 10 * NSEC_PER_MSEC,
 			    "it waits for the end of the change");
-	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->base->show.showing), 0, "the section has ended");
+	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->base->show.showing), 0,
+			    "the section has ended");
 	destroy_delayed_work_on_stack(&c.work);
 }
 
@@ -56,8 +57,8 @@ static void show_pause_goes_on_without_change(struct kunit *test)
 {
 	struct bus *b = ready(test);
 
-	ec_session_lock(b->m);
-	ec_session_unlock(b->m);
+	ec_sessions_lock(&b->m->sessions);
+	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
 	KUNIT_EXPECT_EQ(test, ec_show_pause(&b->m->base->show), 0);
 	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->base->show.showing), 1);
@@ -87,14 +88,15 @@ static void show_many_configs_in_pieces(struct kunit *test)
 		configure(b, i);
 	configure(b, 0);
 	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
-	KUNIT_EXPECT_NULL(test, ec_config_at(&b->m->session->wanted, b->m->bus.slaves[0], 0, 0,
+	KUNIT_EXPECT_NULL(test,
+			  ec_config_at(&b->m->sessions.session->wanted, b->m->bus.slaves[0], 0, 0,
 					     &from));
 	KUNIT_EXPECT_LE(test, from, 64u);
 	ec_show_end(&b->m->base->show);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &slave), 0);
 	KUNIT_EXPECT_EQ(test, slave.config, (u32)CONFIGS);
 	KUNIT_EXPECT_TRUE(test, slave.differs);
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 }
 
 /* What a program leaves in the structure is no alias of a slave. */

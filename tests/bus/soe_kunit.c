@@ -58,14 +58,17 @@ static void soe_values(struct kunit *test)
 	/* a list as large as a message: 64 - 10 bytes */
 	for (i = 4; i < sizeof(list); i++)
 		list[i] = i;
-	KUNIT_EXPECT_EQ(test, ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list), &error, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list), &error, NULL),
+			0);
 	memset(list, 0, sizeof(list));
-	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, P(0xa0), list, sizeof(list), &got, &error, NULL),
+	KUNIT_EXPECT_EQ(test,
+			ec_soe_read(&s->mbox, 0, P(0xa0), list, sizeof(list), &got, &error, NULL),
 			0);
 	KUNIT_EXPECT_EQ(test, got, sizeof(list));
 	for (i = 4; i < sizeof(list); i++)
 		KUNIT_ASSERT_EQ(test, list[i], i);
-	KUNIT_EXPECT_EQ(test, ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list) + 1, &error, NULL),
+	KUNIT_EXPECT_EQ(test,
+			ec_soe_write(&s->mbox, 0, P(0xa0), list, sizeof(list) + 1, &error, NULL),
 			-EMSGSIZE);
 }
 
@@ -90,7 +93,8 @@ static void soe_errors(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, error, EC_SOE_ERR_ABOVE);
 	KUNIT_EXPECT_EQ(test, put(s, 0, S(91), 99, 8, &error), -EIO);
 	KUNIT_EXPECT_EQ(test, error, EC_SOE_ERR_LONG);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 3, &got, &error, NULL), -ENOBUFS);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 3, &got, &error, NULL),
+			-ENOBUFS);
 	KUNIT_EXPECT_EQ(test, got, 0ul);
 	KUNIT_EXPECT_EQ(test, get(bus_slave(b, WITHOUT), 0, S(91), &v, &error), -EPROTONOSUPPORT);
 	/* and the mailbox works on */
@@ -113,7 +117,8 @@ static void soe_silence(struct kunit *test)
 	bus_idle(b);
 	t0 = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit),
+			-ETIMEDOUT);
 	KUNIT_EXPECT_GE(test, ktime_get_ns() - t0, 200 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 210 * NSEC_PER_MSEC);
 	t0 = ktime_get_ns();
@@ -125,9 +130,11 @@ static void soe_silence(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get(s, 0, S(15), &v, &error), 2);
 	KUNIT_EXPECT_EQ(test, v, 7ull);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_TYPE, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit),
+			-ETIMEDOUT);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_SHORT, 0);
-	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit), -EBADMSG);
+	KUNIT_EXPECT_EQ(test, ec_soe_read(&s->mbox, 0, S(91), buf, 8, &got, &error, &limit),
+			-EBADMSG);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
 	KUNIT_EXPECT_EQ(test, get(s, 0, S(91), &v, &error), 4);
 }
@@ -218,7 +225,7 @@ static void soe_and_coe(struct kunit *test)
 
 static struct ec_config *config(struct cyc *c, u32 i)
 {
-	return c->b->m->session->wanted.configs[i];
+	return c->b->m->sessions.session->wanted.configs[i];
 }
 
 static struct cyc *prepare(struct kunit *test)
@@ -239,9 +246,9 @@ static int startup(struct cyc *c, u16 idn, u8 state, u16 value)
 	int ret;
 
 	put_unaligned_le16(value, v);
-	ec_session_lock(c->b->m);
+	ec_sessions_lock(&c->b->m->sessions);
 	ret = ec_config_idn_add(config(c, 0), 0, idn, state, v, 2);
-	ec_session_unlock(c->b->m);
+	ec_sessions_unlock(&c->b->m->sessions);
 	return ret;
 }
 

@@ -32,7 +32,7 @@ static struct cyc *configure(struct kunit *test)
 
 static const struct ec_status *page(const struct bus *b)
 {
-	return b->m->session->cycle.shared->status;
+	return b->m->sessions.session->cycle.shared->status;
 }
 
 /* As it was told before: no time in between in which nobody is there. */
@@ -156,7 +156,7 @@ static void state_reset(struct kunit *test)
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	/* the way down is not turned back */
-	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->session), 0);
+	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->sessions.session), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_PREOP);

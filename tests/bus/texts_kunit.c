@@ -53,7 +53,8 @@ static void texts_sdo(struct kunit *test)
 	/* the slave has sent nothing: its mailbox is too small by its EEPROM */
 	bus_slave(b, BAD)->info.std.rx_size = 12;
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -EMSGSIZE);
-	expect_text(b, "slave 1: the mailbox is too small for the message, or larger than a datagram");
+	expect_text(b,
+		    "slave 1: the mailbox is too small for the message, or larger than a datagram");
 	bus_slave(b, BAD)->info.std.rx_size = size;
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_SHORT, 0);
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -EBADMSG);
@@ -176,7 +177,9 @@ static void texts_link(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -ENETDOWN);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, reg_none);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort, &limit),
+	KUNIT_EXPECT_EQ(test,
+			ec_coe_upload(&s->mbox, 0x1018, 1, false, v, sizeof(v), &got, &abort,
+				      &limit),
 			-ENETDOWN);
 	KUNIT_EXPECT_STREQ(test, ec_mbox_fail_text(-ENETDOWN, "CoE", why, sizeof(why)), none);
 	ec_sim_link_destroy(b->link);
@@ -206,7 +209,8 @@ static void texts_startup(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
-		strstr(bus_slave(b, BAD)->why, "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x06020000: "),
+		strstr(bus_slave(b, BAD)->why,
+		       "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x06020000: "),
 		"%s", bus_slave(b, BAD)->why);
 	cyc_release(c);
 }
@@ -257,7 +261,8 @@ static void texts_errno(struct kunit *test)
 		ec_mbox_fail_text(all[i], "CoE", a, sizeof(a));
 		KUNIT_EXPECT_GT_MSG(test, strlen(a), 10ul, "error %d: %s", all[i], a);
 		KUNIT_EXPECT_LT_MSG(test, strlen(a), 95ul, "error %d: %s", all[i], a);
-		KUNIT_EXPECT_NULL_MSG(test, strstr(a, "transfer failed"), "error %d: %s", all[i], a);
+		KUNIT_EXPECT_NULL_MSG(test, strstr(a, "transfer failed"), "error %d: %s", all[i],
+				      a);
 		scnprintf(name, sizeof(name), "%pe", ERR_PTR(all[i]));
 		KUNIT_EXPECT_NULL_MSG(test, strstr(a, name), "error %d: %s", all[i], a);
 		scnprintf(name, sizeof(name), "%d", abs(all[i]));
@@ -293,9 +298,11 @@ static void texts_config(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 	sc.product_code = 4;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), -ENOENT);
-	expect_text(b, "slave 0:1 is configured as 0x00000002/0x00000003 already, not as 0x00000002/0x00000004");
+	expect_text(b,
+		    "slave 0:1 is configured as 0x00000002/0x00000003 already, not as 0x00000002/0x00000004");
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), -ENOENT);
-	expect_text(b, "cannot add entry 0x7000:01 to PDO 0x1777: the PDO is not assigned; assign it first");
+	expect_text(b,
+		    "cannot add entry 0x7000:01 to PDO 0x1777: the PDO is not assigned; assign it first");
 	pdo.op = EC_SC_PDO_ASSIGN_ADD;
 	pdo.sm = 200;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), -EINVAL);

@@ -93,7 +93,8 @@ static void turn_stalled_cycle(struct kunit *test)
 	u8 v[4];
 
 	KUNIT_ASSERT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&c->b->m->links, bus_slave(c->b, 1)->station, 0, v, 4), 0);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&c->b->m->links, bus_slave(c->b, 1)->station, 0, v, 4),
+			0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 400 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(c->b, 1)->regs, 4);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
@@ -112,7 +113,8 @@ static void turn_overdue(struct kunit *test)
 	dev->ops->cycle(dev->priv, true);
 	for (i = 0; i < 20; i++) {
 		memset(v, 0, sizeof(v));
-		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, 0, v, 4), 0);
+		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, 0, v, 4),
+				0);
 		KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, 4);
 	}
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);

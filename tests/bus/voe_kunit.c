@@ -156,12 +156,14 @@ static void voe_unasked(struct kunit *test)
 
 	/* nobody wants them */
 	unasked(b, 1, 3);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL),
+			0);
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
 	ec_mbox_keep_voe(&s->mbox, true);
 	for (i = 0; i < EC_MBOX_KEPT + 2; i++) {
 		unasked(b, i, i);
-		KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL),
+		KUNIT_EXPECT_EQ(test,
+				ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL),
 				0);
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(v), 11);
 	}
@@ -173,7 +175,8 @@ static void voe_unasked(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
 	unasked(b, 1, 3);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1018, 4, false, v, 4, &got, &abort, NULL),
+			0);
 	ec_mbox_keep_voe(&s->mbox, false);
 	KUNIT_EXPECT_EQ(test, get(s, &h, data, sizeof(data), 20), -ETIMEDOUT);
 }
@@ -319,7 +322,7 @@ static void voe_ended(struct kunit *test)
 	cyc_run(c, 20);
 	KUNIT_EXPECT_FALSE(test, req_over(c, v));
 	t0 = ktime_get_ns();
-	ec_session_end(b->m, &b->app);
+	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 50 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->mbox.keep_voe);
 	for (i = 0; i < 100; i++)

@@ -58,7 +58,7 @@ static void runs(struct cyc *c, u32 domain_bytes)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
-	KUNIT_EXPECT_EQ(test, c->b->m->session->wanted.domains[0]->size, domain_bytes);
+	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->wanted.domains[0]->size, domain_bytes);
 }
 
 static struct cyc *axes(struct kunit *test, u32 period_us, u32 domain_options)
@@ -82,7 +82,7 @@ static void wire_axes(struct kunit *test)
 	u64 before;
 
 	cyc_activate(c);
-	cycle = &c->b->m->session->cycle;
+	cycle = &c->b->m->sessions.session->cycle;
 	runs(c, 1600);
 	before = late(c->b);
 	cyc_run(c, 1000);
@@ -104,7 +104,7 @@ static void wire_axes_apart(struct kunit *test)
 	const struct ec_cycle *cycle;
 
 	cyc_activate(c);
-	cycle = &c->b->m->session->cycle;
+	cycle = &c->b->m->sessions.session->cycle;
 	runs(c, 1600);
 	KUNIT_EXPECT_EQ(test, cycle->last.frames, 3u);
 	KUNIT_EXPECT_GT(test, cycle->last.ns, 100000u);
@@ -150,7 +150,7 @@ static void wire_digital(struct kunit *test)
 	options(c, d->options);
 	cyc_map_all(c, 0, d->slaves, 0);
 	cyc_activate(c);
-	cycle = &b->m->session->cycle;
+	cycle = &b->m->sessions.session->cycle;
 	runs(c, d->bytes);
 	KUNIT_EXPECT_EQ(test, cycle->last.ns, (8 + 14 + 2 + 12 + d->wire_bytes + 4 + 12) * 80);
 	bus_row(cycle->last.ns, 30000, "ns of wire time: 1000 digital I/O, %s", d->name);
@@ -213,8 +213,9 @@ static void wire_sdo_beside_axes(struct kunit *test)
 	late_cycles(c, 0);
 	cyc_activate(c);
 	runs(c, 1600);
-	KUNIT_EXPECT_FALSE(test, m->session->cycle.room_logged);
-	KUNIT_EXPECT_EQ(test, ec_access_slack_ns(&m->links), 90000 - m->session->cycle.clocked.ns);
+	KUNIT_EXPECT_FALSE(test, m->sessions.session->cycle.room_logged);
+	KUNIT_EXPECT_EQ(test, ec_access_slack_ns(&m->links),
+			90000 - m->sessions.session->cycle.clocked.ns);
 	KUNIT_EXPECT_LT(test, ec_access_room(&m->links), 256);
 	before = late(c->b);
 	r = uploads(c, 10000);
@@ -265,7 +266,7 @@ static void wire_overload_logged_at_activation(struct kunit *test)
 	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
 
 	cyc_activate(c);
-	KUNIT_EXPECT_TRUE(test, c->b->m->session->cycle.room_logged);
+	KUNIT_EXPECT_TRUE(test, c->b->m->sessions.session->cycle.room_logged);
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
 }
@@ -286,7 +287,7 @@ static void wire_refused(struct kunit *test)
 	b->m->links.access.interval_us = 200;
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-	KUNIT_EXPECT_FALSE(test, b->m->session->cycle.room_logged);
+	KUNIT_EXPECT_FALSE(test, b->m->sessions.session->cycle.room_logged);
 }
 
 static struct kunit_case cases[] = {

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* One master: the structures of all layers below one device node. */
+#ifndef EC_MASTER_H
+#define EC_MASTER_H
+
+#include <linux/cdev.h>
+#include <linux/device.h>
+#include "../base/base.h"
+#include "../bus/bus.h"
+#include "../clock/dc.h"
+#include "../cycle/cycle.h"
+#include "../link/links.h"
+#include "../link/rider.h"
+#include "../session/session.h"
+
+struct ec_api;
+struct task_struct;
+
+/** struct ec_master - everything below one /dev/EtherCAT<n> */
+struct ec_master {
+	/** @base: one; an array, so that all layers write "->base->" */
+	struct ec_base base[1];
+	/** @links: devices, frames and bus access */
+	struct ec_links links;
+	/** @bus: slaves */
+	struct ec_bus bus;
+	/** @dc: distributed clocks */
+	struct ec_dc dc;
+	/** @cycles: cycles of applications */
+	struct ec_cycles cycles;
+	/** @sessions: applications */
+	struct ec_sessions sessions;
+	/** @dev: device below the class */
+	struct device dev;
+	/** @cdev: character device */
+	struct cdev cdev;
+	/** @api: for applications in the kernel, immutable */
+	struct ec_api *api;
+	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */
+	struct task_struct *monitor;
+	/** @rider: its datagram in frames of the cycle */
+	struct ec_rider rider;
+};
+
+/* the master that a session has reserved, or is about to take over */
+static inline struct ec_master *ec_master_of(const struct ec_session *s)
+{
+	return container_of(s->sessions, struct ec_master, sessions);
+}
+
+#endif

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include "session.h"
+
+#define WAIT_US	100	/* between two attempts to get session lock */
+#define TRIES	20
+
+/**
+ * ec_sessions_init() - no application uses the master
+ * @ss: sessions of a master, zeroed but for the pointers to lower layers
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM; ec_sessions_exit() must follow both.
+ */
+int ec_sessions_init(struct ec_sessions *ss)
+{
+	mutex_init(&ss->lock);
+	/* what a request waits for is in another queue, see ec_bus_init() */
+	ss->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
+				    ss->base->index);
+	ss->service = alloc_workqueue("ethercat%u-srv", WQ_UNBOUND, 0, ss->base->index);
+	return ss->lanes && ss->service ? 0 : -ENOMEM;
+}
+
+/**
+ * ec_sessions_exit() - end the workers
+ * @ss: sessions of a master; none is there
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sessions_exit(struct ec_sessions *ss)
+{
+	/* service begins requests, and kicks slaves */
+	if (ss->service)
+		destroy_workqueue(ss->service);
+	if (ss->lanes)
+		destroy_workqueue(ss->lanes);
+}
+
+/**
+ * ec_sessions_lock() - take session lock to change what readers look at
+ * @ss: sessions of a master
+ *
+ * Who changes nothing of that takes the mutex alone.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sessions_lock(struct ec_sessions *ss)
+{
+	mutex_lock(&ss->lock);
+	ec_change_begin(&ss->base->show);
+}
+
+/**
+ * ec_sessions_unlock() - release session lock after ec_sessions_lock()
+ * @ss: sessions of a master
+ *
+ * Context: Process.
+ */
+void ec_sessions_unlock(struct ec_sessions *ss)
+{
+	ec_change_end(&ss->base->show);
+	mutex_unlock(&ss->lock);
+}
+
+/**
+ * ec_sessions_trylock() - take session lock, unless it is held for long
+ * @ss: sessions of a master
+ *
+ * Commands hold it for a moment only; an activation may hold it for seconds.
+ *
+ * Context: The monitor thread. Sleeps for some milliseconds at most.
+ * Return: true when it is held.
+ */
+bool ec_sessions_trylock(struct ec_sessions *ss)
+{
+	unsigned int i;
+
+	for (i = 0; i < TRIES; i++) {
+		if (mutex_trylock(&ss->lock))
+			return true;
+		usleep_range(WAIT_US, 2 * WAIT_US);
+	}
+	return false;
+}
