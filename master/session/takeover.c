@@ -237,7 +237,7 @@ static void adopt_late(struct ec_session *s, u32 per_s)
 
 /**
  * ec_session_take_over() - the heir's application gets the detached session
- * @m: master with a heir
+ * @ss: sessions of a master with a detached session and an heir
  * @why: result: the first difference of the two
  * @size: room there
  *
