@@ -23,10 +23,10 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 8,
+    ("lines", "master"): 6,
     ("lines", "lib"): 1,
     ("lines", "tests"): 143,
-    ("lines", "Documentation"): 42,
+    ("lines", "Documentation"): 5,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 15,
     ("checkpatch", "master"): 32,

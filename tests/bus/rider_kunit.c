@@ -42,7 +42,7 @@ static void lose_last(struct cyc *c)
 
 static void count(struct cyc *c)
 {
-	const struct ec_cycle *cycle = &c->b->m->session->cycle;
+	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	struct ride *r = c->ctx;
 	bool waiting = atomic_read(&riders(c)->queued);
 
@@ -81,7 +81,7 @@ static void rider_beside_process_data_not_counted(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
 	struct ride *r = c->ctx;
-	u32 rides = riders(c)->seq, sent = c->b->m->session->cycle.n_dgrams;
+	u32 rides = riders(c)->seq, sent = c->b->m->sessions.session->cycle.n_dgrams;
 	u64 frames = bus_frames(c->b);
 
 	cyc_run(c, CYCLES);
@@ -104,7 +104,7 @@ static void rider_in_kernel_cycle_not_counted(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	struct bus *b = a->c->b;
-	struct ec_cycle *cycle = &b->m->session->cycle;
+	struct ec_cycle *cycle = &b->m->sessions.session->cycle;
 	u64 frames, sends;
 	u32 rides;
 
@@ -181,7 +181,7 @@ static void rider_without_cycle_monitor_continues(struct kunit *test)
 static void rider_without_wire_time_waits(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
-	struct ec_cycle *cycle = &c->b->m->session->cycle;
+	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	struct ride *r = c->ctx;
 
 	cyc_run(c, 100);
@@ -205,7 +205,7 @@ static void rider_full_frame_carries_none(struct kunit *test)
 {
 	struct cyc *c = start(test, full_text, 1);
 	const struct ec_link_stats *st = &c->b->m->links.link[0].stats;
-	const struct ec_cycle *cycle = &c->b->m->session->cycle;
+	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	u64 frames = bus_frames(c->b), bytes = atomic64_read(&st->tx_bytes), more;
 	u32 len = EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD + cycle->dgrams[0].len;
 
