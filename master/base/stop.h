@@ -5,6 +5,7 @@
 
 #include <linux/compiler.h>
 #include <linux/sched.h>
+#include <linux/wait.h>
 #include "base.h"
 
 /** struct ec_stop - why such a caller leaves */
@@ -17,7 +18,30 @@ struct ec_stop {
 	bool interrupt;
 	/** @worker: thread that brings the slave to its state now, NULL: none */
 	const struct task_struct *worker;
+	/** @wake: the worker, when it waits for a time that one of these ends early */
+	wait_queue_head_t wake;
 };
+
+static inline void ec_stop_init(struct ec_stop *s, const struct ec_base *base)
+{
+	s->base = base;
+	init_waitqueue_head(&s->wake);
+}
+
+/* The slave is not on the bus any more. */
+static inline void ec_stop_gone(struct ec_stop *s)
+{
+	WRITE_ONCE(s->gone, true);
+	wake_up_all(&s->wake);
+}
+
+/* Let the slave's worker leave, or let it be. */
+static inline void ec_stop_interrupt(struct ec_stop *s, bool on)
+{
+	WRITE_ONCE(s->interrupt, on);
+	if (on)
+		wake_up_all(&s->wake);
+}
 
 /* Must every caller leave? */
 static inline bool ec_stop_all(const struct ec_stop *s)

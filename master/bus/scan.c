@@ -470,7 +470,7 @@ static void publish(struct scan *sc)
 		/* at its place in the new list, or not on the bus any more */
 		if (old[i]->position >= bus->n_slaves || bus->slaves[old[i]->position] != old[i]) {
 			note_parent(old[i], old, n_old);
-			WRITE_ONCE(old[i]->stop.gone, true);
+			ec_stop_gone(&old[i]->stop);
 			log_lost(sc, old[i], &lost);
 		}
 	}

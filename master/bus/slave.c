@@ -40,7 +40,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	INIT_WORK(&s->work, work);
 	mutex_init(&s->lock);
 	raw_spin_lock_init(&s->note_lock);
-	s->stop.base = bus->base;
+	ec_stop_init(&s->stop, bus->base);
 	s->mbox.base = bus->base;
 	s->mbox.links = bus->links;
 	s->mbox.stop = &s->stop;
@@ -357,5 +357,6 @@ bool ec_slave_busy(const struct ec_slave *slave)
 void ec_slave_request(struct ec_slave *slave, u8 state)
 {
 	WRITE_ONCE(slave->requested, state);
+	wake_up_all(&slave->stop.wake);
 	ec_slave_kick(slave);
 }

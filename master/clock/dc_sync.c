@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SYNC0 and SYNC1 of one slave (ETG.1000.4 clause 6.8.5). */
-#include <linux/delay.h>
 #include <linux/ktime.h>
 #include "../link/links.h"
 #include "dc.h"
@@ -292,12 +291,12 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 
 static int wait_until(struct ec_slave *s, u64 ns)
 {
-	while (ktime_get_ns() < ns) {
-		if (canceled(s, EC_AL_OP))
-			return -ECANCELED;
-		usleep_range(1000, 1500);
-	}
-	return 0;
+	u64 now = ktime_get_ns();
+
+	if (now >= ns)
+		return 0;
+	return wait_event_hrtimeout(s->stop.wake, canceled(s, EC_AL_OP), ns_to_ktime(ns - now)) ?
+	       0 : -ECANCELED;
 }
 
 /* What register 0x0984 says of SYNC signals in use: pending, or an implausible start. */

@@ -253,13 +253,11 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 /* Some slaves need time between their configuration and SAFEOP. */
 static int wait_flag(struct ec_slave *s, s32 ms)
 {
-	u64 until = ktime_get_ns() + (u64)clamp(ms, 0, FLAG_MAX_MS) * NSEC_PER_MSEC;
+	unsigned long left = msecs_to_jiffies(clamp(ms, 0, FLAG_MAX_MS));
 
-	while (ms > 0 && ktime_get_ns() < until) {
-		if (ec_stop_worker(&s->stop))
-			return -ECANCELED;
-		usleep_range(1000, 1500);
-	}
+	/* a tick may begin late */
+	if (ms > 0 && wait_event_idle_timeout(s->stop.wake, ec_stop_worker(&s->stop), left + 1))
+		return -ECANCELED;
 	return 0;
 }
 

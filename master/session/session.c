@@ -198,7 +198,7 @@ static void clear(struct ec_session *s)
 	/* all at once: a worker may need a moment to leave */
 	for (i = 0; i < s->wanted.n_configs; i++)
 		if (ec_session_owns(s->wanted.configs[i]))
-			WRITE_ONCE(s->wanted.configs[i]->slave->stop.interrupt, true);
+			ec_stop_interrupt(&s->wanted.configs[i]->slave->stop, true);
 	for (i = 0; i < s->wanted.n_configs; i++) {
 		ec_session_detach(s->wanted.configs[i]);
 		ec_config_free(s->wanted.configs[i]);

@@ -41,7 +41,7 @@ void ec_session_detach(struct ec_config *c)
 	c->slave = NULL;
 	ec_emerg_set(&slave->mbox, NULL);
 	ec_mbox_keep_voe(&slave->mbox, false);
-	WRITE_ONCE(slave->stop.interrupt, true);
+	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
 		/* the slave keeps what was written */
@@ -53,7 +53,7 @@ void ec_session_detach(struct ec_config *c)
 	ec_slave_clear_warning(slave);
 	slave->pdo_refusal[0] = '\0';
 	WRITE_ONCE(slave->reconfigure, true);
-	slave->stop.interrupt = false;
+	ec_stop_interrupt(&slave->stop, false);
 	mutex_unlock(&slave->lock);
 	if (!READ_ONCE(slave->stop.gone) && !READ_ONCE(c->wanted->base->stopping))
 		ec_slave_request(slave, EC_AL_PREOP);
@@ -148,9 +148,9 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		return;
 	}
 	/* the monitor must not wait for what its worker waits for */
-	WRITE_ONCE(slave->stop.interrupt, true);
+	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
-	WRITE_ONCE(slave->stop.interrupt, false);
+	ec_stop_interrupt(&slave->stop, false);
 	if (slave->config) {
 		tell_taken(s, c, slave);
 		mutex_unlock(&slave->lock);

@@ -79,6 +79,7 @@ bool ec_sessions_trylock(struct ec_sessions *ss)
 	for (i = 0; i < TRIES; i++) {
 		if (mutex_trylock(&ss->lock))
 			return true;
+		/* a mutex has no wait with a time limit */
 		usleep_range(WAIT_US, 2 * WAIT_US);
 	}
 	return false;

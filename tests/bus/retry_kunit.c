@@ -222,11 +222,11 @@ static void retry_interrupted(struct kunit *test)
 	for (i = 0; i < 70000 && (!work_busy(&s->work) || !READ_ONCE(s->stop.worker)); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 70000u);
-	WRITE_ONCE(s->stop.interrupt, true);
+	ec_stop_interrupt(&s->stop, true);
 	for (i = 0; i < 1000 && work_busy(&s->work); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 1000u);
-	WRITE_ONCE(s->stop.interrupt, false);
+	ec_stop_interrupt(&s->stop, false);
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);

@@ -244,6 +244,26 @@ static void rules_wait_before_safeop(struct kunit *test)
 	KUNIT_EXPECT_LT(test, us, 1200000ull);
 }
 
+/* The end of a session does not wait for that time. */
+static void rules_wait_ends_on_release(struct kunit *test)
+{
+	struct bus *b = bus_up(test, TWO, 2);
+	struct cyc *c = cyc_new(b, 1000);
+	struct ec_ioc_sc_flag flag = { .config = 1, .key = "WaitBeforeSAFEOPms", .value = 50000 };
+	u64 t0;
+
+	cyc_domain(c);
+	cyc_map_all(c, 0, 2, 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
+	cyc_activate(c);
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_NOT_NULL(test, bus_slave(b, 1)->waits_for);
+	t0 = ktime_get_ns();
+	cyc_release(c);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 100ull * NSEC_PER_MSEC);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(rules_time_below_zero),
 	KUNIT_CASE(rules_time_jumps_after_pause),
@@ -254,6 +274,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(rules_configured_twice),
 	KUNIT_CASE(rules_explicit_mapping),
 	KUNIT_CASE(rules_wait_before_safeop),
+	KUNIT_CASE(rules_wait_ends_on_release),
 	{ }
 };
 
