@@ -35,6 +35,7 @@ void ec_ref_clock_raise(struct ec_session *s)
 	struct ec_sessions *ss = s->sessions;
 	struct ec_slave *ref;
 
+	lockdep_assert_held(s->wanted.lock);
 	down_read(&ss->bus->topo);
 	ref = ss->dc->ref;
 	if (ref)
@@ -61,6 +62,7 @@ void ec_ref_clock_lower(struct ec_session *s)
 {
 	struct ec_slave *ref = s->raised;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!ref)
 		return;
 	s->raised = NULL;

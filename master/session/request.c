@@ -308,6 +308,7 @@ int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *i
 {
 	size_t bytes = s->request_bytes + ALIGN(size, 8);
 
+	lockdep_assert_held(s->wanted.lock);
 	if (s->n_specs >= EC_MAX_REQUESTS || bytes > EC_MAX_REQUEST_BYTES)
 		return -ENOSPC;
 	if (!s->specs)
@@ -341,6 +342,7 @@ static size_t data_offset(const struct ec_session *s)
  */
 size_t ec_requests_bytes(const struct ec_session *s)
 {
+	lockdep_assert_held(s->wanted.lock);
 	return s->wanted.n_configs ? data_offset(s) + s->request_bytes : 0;
 }
 
@@ -384,6 +386,7 @@ void ec_requests_describe(const struct ec_session *s)
 	struct ec_request_area *area = (void *)base;
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	area->magic = EC_REQUEST_MAGIC;
 	area->request_count = s->n_specs;
 	area->requests = sizeof(*area);
@@ -457,6 +460,7 @@ int ec_requests_begin(struct ec_session *s)
 	struct ec_requests *rq;
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.n_configs)
 		return 0;
 	rq = kzalloc(sizeof(*rq), GFP_KERNEL_ACCOUNT);
@@ -499,6 +503,7 @@ void ec_requests_end(struct ec_session *s)
 	struct ec_requests *rq = s->requests;
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!rq)
 		return;
 	WRITE_ONCE(rq->ended, true);
@@ -559,6 +564,7 @@ void ec_requests_attach(const struct ec_session *s, u32 config)
 	struct ec_lane *lane = s->requests ? &s->requests->lanes[config] : NULL;
 	struct ec_slave *slave = s->wanted.configs[config]->slave;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!slave)
 		return;
 	ec_emerg_set(&slave->mbox, lane ? &lane->emerg : NULL);
@@ -578,6 +584,7 @@ struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 ind
 {
 	const struct ec_request *r = &s->requests->reqs[index];
 
+	lockdep_assert(lockdep_is_held(s->wanted.lock) || READ_ONCE(s->wanted.active));
 	*data = r->data;
 	return r->rec;
 }

@@ -238,6 +238,7 @@ int ec_session_deactivate(struct ec_session *s)
 	struct ec_sessions *ss = s->sessions;
 	struct ec_shared *sh;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active)
 		return -EINVAL;
 	ec_cycle_set_active(ss->cycles, NULL);
@@ -270,6 +271,7 @@ int ec_session_deactivate(struct ec_session *s)
  */
 void ec_session_free(struct ec_session *s)
 {
+	lockdep_assert_held(s->wanted.lock);
 	clear(s);
 	kvfree(s);
 }
@@ -441,6 +443,7 @@ u32 ec_session_place(struct ec_session *s)
 	u32 offset = 0;
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	for (i = 0; i < s->wanted.n_domains; i++) {
 		s->wanted.domains[i]->offset = offset;
 		s->wanted.domains[i]->logical = offset;
@@ -493,6 +496,7 @@ int ec_session_activate(struct ec_session *s)
 	u32 offset;
 	int ret;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (s->wanted.active)
 		return -EBUSY;
 	for (i = 0; i < s->wanted.n_domains; i++)
@@ -564,6 +568,7 @@ int ec_session_slaves_down(struct ec_session *s)
 {
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active)
 		return -EINVAL;
 	s->ending = true;

@@ -17,6 +17,7 @@
  */
 bool ec_session_owns(const struct ec_config *c)
 {
+	lockdep_assert_held(c->wanted->lock);
 	return c->slave && c->slave->config == c;
 }
 
@@ -31,6 +32,7 @@ void ec_session_detach(struct ec_config *c)
 	struct ec_slave *slave = c->slave;
 	unsigned int sm;
 
+	lockdep_assert_held(c->wanted->lock);
 	if (!slave)
 		return;
 	if (!ec_session_owns(c)) {
@@ -129,6 +131,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 {
 	struct ec_slave *slave;
 
+	lockdep_assert_held(s->wanted.lock);
 	ec_config_find_alias(c);
 	if (s->wanted.active && c->slave && !READ_ONCE(c->slave->stop.gone))
 		return;
@@ -186,6 +189,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 {
 	struct ec_config *c = ec_config_find(&s->wanted, alias, position, vendor, product);
 
+	lockdep_assert_held(s->wanted.lock);
 	if (c)
 		return c;
 	c = ec_config_create(&s->wanted, alias, position, vendor, product);

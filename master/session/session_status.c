@@ -68,6 +68,7 @@ void ec_session_fill_status(struct ec_session *s)
 	struct ec_sessions *ss = s->sessions;
 	unsigned int i;
 
+	lockdep_assert_held(s->wanted.lock);
 	WRITE_ONCE(st->slaves_responding, ss->bus->responding);
 	WRITE_ONCE(st->al_states, ss->bus->al_states);
 	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
