@@ -448,8 +448,8 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 
 int ec_ioc_cycle_reset(struct ec_call *call)
 {
-	mutex_lock(&call->master->sessions.lock);
+	ec_sessions_lock(&call->master->sessions);
 	ec_late_reset(&call->master->cycles);
-	mutex_unlock(&call->master->sessions.lock);
+	ec_sessions_unlock(&call->master->sessions);
 	return 0;
 }

@@ -27,6 +27,7 @@
  */
 struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner)
 {
+	lockdep_assert(lockdep_is_held(&ss->lock) || ec_show_begun(&ss->base->show));
 	if (ss->session && ss->session->cycle.owner == owner)
 		return ss->session;
 	return ss->heir && ss->heir->cycle.owner == owner ? ss->heir : NULL;

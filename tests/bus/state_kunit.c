@@ -156,7 +156,9 @@ static void state_reset(struct kunit *test)
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	/* the way down is not turned back */
+	ec_sessions_lock(&b->m->sessions);
 	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->sessions.session), 0);
+	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_PREOP);
