@@ -317,11 +317,15 @@ static void maybe_scan(struct watch *w)
 		return;
 	WRITE_ONCE(m->bus.scan_index, 0);
 	WRITE_ONCE(m->bus.scan_slaves, w->count);
+	/* a reader that sees the scan sees its numbers */
 	smp_wmb();
 	WRITE_ONCE(m->bus.scan_busy, true);
 	if (READ_ONCE(m->bus.rescan)) {
-		/* forget what is known, so that everything is read again; not
-		 * under an application, even one that has stalled */
+		/*
+		 * Forget what is known, so that everything is read again; not while
+		 * an application uses it, even one whose cycle has timed out. A reader
+		 * sees the scan before the request for it is cleared.
+		 */
 		smp_wmb();
 		WRITE_ONCE(m->bus.rescan, false);
 		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->sessions.session))

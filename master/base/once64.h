@@ -57,6 +57,7 @@ static inline void ec_status_begin(struct ec_status *st)
 {
 	preempt_disable();
 	WRITE_ONCE(st->sequence, st->sequence + 1);
+	/* the uneven number before the data, as in ec_status_copy() */
 	smp_wmb();
 }
 
@@ -68,6 +69,7 @@ static inline void ec_status_begin(struct ec_status *st)
  */
 static inline void ec_status_end(struct ec_status *st)
 {
+	/* the data before the even number, as in ec_status_copy() */
 	smp_wmb();
 	WRITE_ONCE(st->sequence, st->sequence + 1);
 	preempt_enable();
@@ -103,10 +105,12 @@ static inline void ec_status_copy(const struct ec_status *st, void *to, const vo
 	u32 sequence;
 
 	do {
+		/* the number before the data, and after them: see ec_status_begin() */
 		while ((sequence = smp_load_acquire(&st->sequence)) & 1)
 			cpu_relax();
 		/* what a writer has changed meanwhile is read again */
 		data_race(memcpy(to, from, size));
+		/* as above */
 		smp_rmb();
 	} while (READ_ONCE(st->sequence) != sequence);
 }

@@ -75,6 +75,13 @@ static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
 	return ec_master_of(ec_config_session(ec_api_config(sc)));
 }
 
+/* The active session, or NULL. */
+static inline struct ec_session *ec_api_session(const struct ec_api *api)
+{
+	/* pairs with ecrt_master_activate(): all of the session is there */
+	return smp_load_acquire(&api->active);
+}
+
 /* api.c */
 int ec_api_create(struct ec_master *m);
 void ec_api_destroy(struct ec_master *m);

@@ -36,7 +36,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	if (!m)
 		return -EINVAL;
 	api = m->api;
-	*s = smp_load_acquire(&api->active);
+	*s = ec_api_session(api);
 	if (!*s)
 		return -EINVAL;
 	/* without a device the links need not be had back */

@@ -11,7 +11,7 @@
 /* 0, or why there is no clock to talk to */
 static int check(const struct ec_master *m, const struct ec_status **st)
 {
-	const struct ec_session *s = m ? smp_load_acquire(&m->api->active) : NULL;
+	const struct ec_session *s = m ? ec_api_session(m->api) : NULL;
 
 	if (!s)
 		return -EINVAL;

@@ -30,7 +30,7 @@ static struct ec_api *active(const struct ec_domain *d)
 {
 	struct ec_api *api = d ? ec_master_of(ec_domain_session(d))->api : NULL;
 
-	return api && smp_load_acquire(&api->active) ? api : NULL;
+	return api && ec_api_session(api) ? api : NULL;
 }
 
 uint8_t *ecrt_domain_data(const ec_domain_t *domain)

@@ -7,7 +7,7 @@
 /* NULL before activation */
 static struct ec_emerg *ring(const ec_slave_config_t *sc)
 {
-	struct ec_session *s = smp_load_acquire(&ec_api_master(sc)->api->active);
+	struct ec_session *s = ec_api_session(ec_api_master(sc)->api);
 
 	return s ? ec_requests_emerg(s, ec_api_config(sc)->index) : NULL;
 }
@@ -21,9 +21,11 @@ int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc, uint8_t *target)
 		return -EINVAL;
 	e = ring(sc);
 	tail = e ? e->ring->tail : 0;
+	/* the head before the message, which ec_emerg_take() writes */
 	if (!e || tail == smp_load_acquire(&e->ring->head))
 		return -ENOENT;
 	memcpy(target, e->data + (size_t)(tail % e->count) * EC_EMERG_BYTES, EC_EMERG_BYTES);
+	/* the place is free once the message is copied */
 	smp_store_release(&e->ring->tail, tail + 1);
 	return 0;
 }
@@ -40,6 +42,7 @@ int ecrt_slave_config_emerg_clear(ec_slave_config_t *sc)
 	if (!e)
 		return 0;
 	ec_api_config(sc)->emerg_cleared = READ_ONCE(e->ring->overruns);
+	/* all places are free: the head is read, then the tail written */
 	smp_store_release(&e->ring->tail, smp_load_acquire(&e->ring->head));
 	return 0;
 }

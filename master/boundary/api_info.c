@@ -61,7 +61,7 @@ int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t
 	if (!sc || !state)
 		return -EINVAL;
 	m = ec_api_master(sc);
-	s = smp_load_acquire(&m->api->active);
+	s = ec_api_session(m->api);
 	if (s) {
 		v = READ_ONCE(s->cycle.shared->status->configs[ec_api_config(sc)->index]);
 	} else {

@@ -114,11 +114,10 @@ static void try_again(const struct ec_session *session, struct ec_slave *s)
 {
 	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 
-	if (ec_slave_forgive(s)) {
+	if (ec_slave_forgive(s))
 		WRITE_ONCE(s->reconfigure, true);
-	} else if (!op || READ_ONCE(s->requested) == EC_AL_OP) {
+	else if (!op || READ_ONCE(s->requested) == EC_AL_OP)
 		return;
-	}
 	if (op)
 		ec_slave_request(s, EC_AL_OP);
 	else

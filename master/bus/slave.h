@@ -40,11 +40,15 @@ struct ec_bus;
  * @part: first bytes of a large EEPROM that is still being read, or NULL
  * @part_bytes: bytes there
  * @info: fixed area of the EEPROM
- * @general: general category, with @has_general
+ * @general: general category
+ * @has_general: it has one
  * @sms: SyncManagers of the EEPROM
  * @n_sms: entries in @sms
  * @emulation: AL status follows AL control
- * @name: and other strings of the EEPROM
+ * @group: group name of the EEPROM
+ * @image: name of the picture
+ * @order: order number
+ * @name: name
  *
  * Of the last scan, changed under bus->topo:
  * @position: ring position

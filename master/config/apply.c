@@ -377,6 +377,7 @@ static void take_plan(struct ec_slave *s)
 	const struct ec_config *c = s->config;
 
 	lockdep_assert_held(&s->lock);
+	/* the configuration as it was at activation */
 	if (!c || !smp_load_acquire(&c->wanted->active) || s->plan == c)
 		return;
 	s->plan = c;

@@ -157,11 +157,14 @@ struct ec_cyc_wire {
 /**
  * struct ec_cycles - all cycles of a master: one at a time runs
  *
- * The first four are immutable.
+ * The first three are immutable.
  */
 struct ec_cycles {
+	/** @base: name and log */
 	struct ec_base *base;
+	/** @links: way to the slaves */
 	struct ec_links *links;
+	/** @dc: distributed clocks */
 	struct ec_dc *dc;
 
 	/** @lock: held by the cyclic caller in receive and send; protects @active */
@@ -196,8 +199,11 @@ struct ec_cycles {
 struct ec_cycle {
 	/** @cycles: of the master; immutable, as are the next four */
 	struct ec_cycles *cycles;
+	/** @base: name and log */
 	struct ec_base *base;
+	/** @links: way to the slaves */
 	struct ec_links *links;
+	/** @dc: distributed clocks */
 	struct ec_dc *dc;
 	/** @wanted: slave configurations and domains that it exchanges */
 	struct ec_wanted *wanted;
@@ -232,18 +238,22 @@ struct ec_cycle {
 	u32 lock_logged;
 	/** @copies: from inputs to outputs, before each send */
 	struct ec_copy *copies;
+	/** @n_copies: entries in @copies */
 	unsigned int n_copies;
 	/** @copying: what they need while active, or NULL */
 	struct ec_copying *copying;
 
 	/** @dgrams: layout; ec_cycle_free() sets it and all that follows to zero */
 	struct ec_cyc_dgram *dgrams;
+	/** @n_dgrams: entries in @dgrams */
 	unsigned int n_dgrams;
 	/** @areas: what is copied, in order of the datagrams */
 	struct ec_cyc_area *areas;
+	/** @n_areas: entries in @areas */
 	unsigned int n_areas;
 	/** @cuts: inputs of several datagrams */
 	struct ec_cyc_cut *cuts;
+	/** @n_cuts: entries in @cuts */
 	unsigned int n_cuts;
 	/** @stage: an image in which their parts come together, or NULL */
 	u8 *stage;
@@ -263,6 +273,7 @@ struct ec_cycle {
 	const u8 *direct;
 	/** @flight: frames on their way, the oldest first */
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
+	/** @n_flight: entries in @flight */
 	unsigned int n_flight;
 	/** @send: number of the last send */
 	u32 send;

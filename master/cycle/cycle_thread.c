@@ -260,6 +260,7 @@ static void adopt(struct ec_cycle_thread *t)
 	deal(t);
 	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->cycle->shared->image,
 	       t->bytes);
+	/* the buffers are dealt before the application sees it */
 	smp_store_release(&t->adopt, false);
 	complete(&t->adopted);
 }
@@ -636,6 +637,7 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
 void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size)
 {
 	const struct ec_cycle_thread *t = c->thread;
+	/* NULL: the image is complete, see use_image() */
 	const u8 *source = smp_load_acquire(&c->direct) ?: c->shared->image;
 	unsigned int i;
 

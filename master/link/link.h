@@ -18,21 +18,30 @@ struct ec_slot;
 /**
  * struct ec_link_stats - counters since the device was attached
  *
- * Transmit counters are written by the owner of the link only, receive
- * counters by whoever delivers frames; readers may see them mid-update of
- * one another.
+ * The owner of the bus access writes the transmit counters, the context that delivers
+ * frames the receive counters; a reader may see one counter newer than another.
  */
 struct ec_link_stats {
+	/** @tx_frames: frames that the device has taken */
 	atomic64_t tx_frames;
+	/** @tx_bytes: bytes of them, from the Ethernet header on, without FCS */
 	atomic64_t tx_bytes;
+	/** @tx_errors: frames that the device has refused */
 	atomic64_t tx_errors;
+	/** @rx_frames: frames that have come back */
 	atomic64_t rx_frames;
+	/** @rx_bytes: bytes of them */
 	atomic64_t rx_bytes;
+	/** @lost: frames that have not come back in time */
 	atomic64_t lost;
+	/** @late: frames of the cycle that came back only after the next send */
 	atomic64_t late;
+	/** @unmatched: EtherCAT frames that no frame on its way belongs to */
 	atomic64_t unmatched;
+	/** @foreign: frames that are no EtherCAT frames of this master */
 	atomic64_t foreign;
-	atomic64_t not_captured;	/* no room for a copy */
+	/** @not_captured: frames without room for a copy in the capture */
+	atomic64_t not_captured;
 };
 
 /**

@@ -38,6 +38,7 @@ static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 	struct ec_tap_frame *f = &t->ring[t->head % EC_TAP_RING];
 
 	lockdep_assert_held(&t->lock);
+	/* a place is written again only after it was shown */
 	if (t->head - smp_load_acquire(&t->tail) == EC_TAP_RING) {
 		ec_write64(&t->dropped, t->dropped + 1);
 		return NULL;
@@ -50,6 +51,7 @@ static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 static void publish(struct ec_tap *t)
 {
 	lockdep_assert_held(&t->lock);
+	/* the frame before the head */
 	smp_store_release(&t->head, t->head + 1);
 	queue_work(system_highpri_wq, &t->work);
 }
@@ -140,8 +142,10 @@ static void worker(struct work_struct *w)
 {
 	struct ec_tap *t = container_of(w, struct ec_tap, work);
 
+	/* the head before the frame */
 	while (t->tail != smp_load_acquire(&t->head)) {
 		show(t, &t->ring[t->tail % EC_TAP_RING]);
+		/* shown: the place is free */
 		smp_store_release(&t->tail, t->tail + 1);
 		cond_resched();
 	}

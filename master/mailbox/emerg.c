@@ -68,6 +68,7 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 		goto out;
 	}
 	memcpy(e->data + e->head % e->count * EC_EMERG_BYTES, message, EC_EMERG_BYTES);
+	/* the message before the head */
 	smp_store_release(&e->ring->head, ++e->head);
 out:
 	spin_unlock(&mb->unasked_lock);

@@ -72,6 +72,7 @@ struct ec_mbox {
  * struct ec_mbox_buf - buffers of one exchange
  * @tx: message behind the mailbox header
  * @rx: answer behind the mailbox header
+ * @raw: a whole mailbox as the slave has it
  */
 struct ec_mbox_buf {
 	u8 tx[EC_MBOX_MAX];

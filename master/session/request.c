@@ -112,6 +112,7 @@ static void finish(struct ec_request *r, const struct ec_request_result *res)
 	WRITE_ONCE(r->rec->abort_code, res->code);
 	WRITE_ONCE(r->rec->got_vendor_id, res->vendor);
 	WRITE_ONCE(r->rec->got_type, res->type);
+	/* the result before the number that says it is there */
 	smp_store_release(&r->rec->done, r->seq);
 }
 
@@ -123,6 +124,7 @@ static void fail(struct ec_request *r, int err)
 /* Nothing in a record can be trusted: each field is read once, then checked. */
 static void pick_up(struct ec_request *r, u64 now)
 {
+	/* the number before the request that it starts */
 	u32 start = smp_load_acquire(&r->rec->start);
 	int ret;
 

@@ -41,9 +41,13 @@ struct ec_stall_log {
 struct ec_sessions {
 	/** @base: name and log; immutable, as are the next four */
 	struct ec_base *base;
+	/** @links: way to the slaves */
 	struct ec_links *links;
+	/** @bus: slaves */
 	struct ec_bus *bus;
+	/** @dc: distributed clocks */
 	struct ec_dc *dc;
+	/** @cycles: cycles, one for each session */
 	struct ec_cycles *cycles;
 	/** @lanes: workers of requests; they wait for slaves; immutable */
 	struct workqueue_struct *lanes;

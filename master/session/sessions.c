@@ -2,7 +2,7 @@
 #include <linux/delay.h>
 #include "session.h"
 
-#define WAIT_US	100	/* between two attempts to get session lock */
+#define WAIT_US	100	/* between two attempts to get the session lock */
 #define TRIES	20
 
 /**
@@ -38,10 +38,10 @@ void ec_sessions_exit(struct ec_sessions *ss)
 }
 
 /**
- * ec_sessions_lock() - take session lock to change what readers look at
+ * ec_sessions_lock() - take the session lock to change what readers look at
  * @ss: sessions of a master
  *
- * Who changes nothing of that takes the mutex alone.
+ * A caller that changes nothing of that takes the mutex alone.
  *
  * Context: Process. May sleep.
  */
@@ -52,7 +52,7 @@ void ec_sessions_lock(struct ec_sessions *ss)
 }
 
 /**
- * ec_sessions_unlock() - release session lock after ec_sessions_lock()
+ * ec_sessions_unlock() - release the session lock after ec_sessions_lock()
  * @ss: sessions of a master
  *
  * Context: Process.
@@ -64,13 +64,13 @@ void ec_sessions_unlock(struct ec_sessions *ss)
 }
 
 /**
- * ec_sessions_trylock() - take session lock, unless it is held for long
+ * ec_sessions_trylock() - take the session lock, unless another thread keeps it
  * @ss: sessions of a master
  *
- * Commands hold it for a moment only; an activation may hold it for seconds.
+ * Commands have it for a moment only; an activation may have it for seconds.
  *
  * Context: The monitor thread. Sleeps for some milliseconds at most.
- * Return: true when it is held.
+ * Return: true: the caller has it.
  */
 bool ec_sessions_trylock(struct ec_sessions *ss)
 {

@@ -28,8 +28,8 @@ LIMITS = {
     ("lines", "tests"): 143,
     ("lines", "Documentation"): 5,
     ("lines", "README.md"): 2,
-    ("kernel-doc", "master"): 15,
-    ("checkpatch", "master"): 32,
+    ("kernel-doc", "master"): 0,
+    ("checkpatch", "master"): 8,
 }
 
 # files that cannot have a comment, and what was not written by hand
