@@ -2,6 +2,7 @@
 /* How many acyclic frames one send of the cycle carries, and how much of the wire they take. */
 #include <linux/kthread.h>
 #include "cyc.h"
+#include "slow.h"
 
 static const char text[] =
 	"segment seed=23 response=100us transition=1ms\n"
@@ -257,6 +258,23 @@ static void share_limited_during_start(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 
+/* A device that has a buffer, but refuses the frame: the next send of the cycle sends it. */
+static void share_refused_frame_stays_queued(struct kunit *test)
+{
+	struct bus *b = bus_new(test, text);
+	struct slow *s = slow_plug(b, 16, 1);
+	struct asker *a;
+	struct cyc *c;
+
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 10000), ~0ull);
+	c = cyc_in_op(b, 1, 2);
+	a = askers(b, 1, FRAMES, 15, 1);
+	slow_refuse(s, EC_CMD_FPRD, 20);
+	run(c, a, 1, 1000);
+	KUNIT_EXPECT_EQ(test, slow_to_refuse(s), 0u);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(share_of_send),
 	KUNIT_CASE(share_limit_of_module),
@@ -264,6 +282,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(share_of_wire_packed),
 	KUNIT_CASE(share_beside_clocks),
 	KUNIT_CASE(share_limited_during_start),
+	KUNIT_CASE(share_refused_frame_stays_queued),
 	{}
 };
 

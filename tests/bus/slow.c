@@ -24,6 +24,9 @@ struct tx {
  * @tail: the one that leaves next
  * @full: how often there was none
  * @claim: slaves that broadcasts seem to have passed, 0: as many as there are
+ * @refuse: frames that the ring refuses only when they are sent, as a stack with queues
+ *	of its own does: so many that begin with command @refused_cmd
+ * @refused_cmd: EC_CMD_*
  * @stopped: nothing leaves the ring
  * @tx: buffers
  * @rx: a changed reply
@@ -39,6 +42,8 @@ struct slow {
 	u32 tail;
 	u32 full;
 	u32 claim;
+	u32 refuse;
+	u8 refused_cmd;
 	bool stopped;
 	struct tx tx[RING_MAX];
 	u8 rx[EC_ETH_MAX];
@@ -116,6 +121,10 @@ static int tx_send(void *priv, u8 *buf, size_t len)
 
 	if (!ec_sim_wire_up(&s->wire))
 		return -ENETDOWN;
+	if (s->refuse && buf[EC_ETH_HDR + EC_FRAME_HDR] == s->refused_cmd) {
+		s->refuse--;
+		return -EBUSY;
+	}
 	raw_spin_lock_irqsave(&s->lock, flags);
 	at(s, s->head)->len = len;
 	if (s->head++ == s->tail && !s->stopped)
@@ -223,6 +232,29 @@ void slow_stop(struct slow *s, bool stop)
 	if (!stop && s->head != s->tail && !hrtimer_active(&s->timer))
 		start(s);
 	raw_spin_unlock_irqrestore(&s->lock, flags);
+}
+
+/**
+ * slow_refuse() - let tx_send() answer that there is no room
+ * @s: device
+ * @cmd: for frames that begin with this command
+ * @frames: how many
+ */
+void slow_refuse(struct slow *s, u8 cmd, u32 frames)
+{
+	s->refused_cmd = cmd;
+	s->refuse = frames;
+}
+
+/**
+ * slow_to_refuse() - how many frames are still to be refused
+ * @s: device
+ *
+ * Return: frames.
+ */
+u32 slow_to_refuse(const struct slow *s)
+{
+	return s->refuse;
 }
 
 /**

@@ -10,6 +10,8 @@ struct slow;
 struct slow *slow_plug(struct bus *b, u32 ring, u32 slowness);
 void slow_destroy(struct slow *s);
 void slow_claim(struct slow *s, u32 slaves);
+void slow_refuse(struct slow *s, u8 cmd, u32 frames);
+u32 slow_to_refuse(const struct slow *s);
 void slow_stop(struct slow *s, bool stop);
 u32 slow_full(const struct slow *s);
 
