@@ -323,6 +323,13 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int 
 	return g - first;
 }
 
+static void not_sent(struct ec_cycle *c, struct ec_slot *slot, const struct ec_riding *riding)
+{
+	ec_slot_put(&c->links->slots, slot);
+	if (riding->mask)
+		ec_riders_return(c->links, riding);
+}
+
 /* One frame from datagram @g on; returns the first datagram of the next. */
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
@@ -351,7 +358,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 			.dc_sent = c->dc_sent, .riding = send->riding,
 		};
 	else
-		ec_slot_put(&c->links->slots, slot);
+		not_sent(c, slot, &send->riding);
 	send->dc = 0;
 	return g + count;
 }

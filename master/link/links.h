@@ -54,7 +54,7 @@ struct ec_links {
 	struct ec_queues queues;
 	/** @riders: datagrams in frames of the cycle */
 	struct ec_riders riders;
-	/** @share: what a cyclic send carries of them */
+	/** @share: what a cyclic send carries of @queues */
 	struct ec_share share;
 	/** @monitor: thread whose frames overtake those of other callers, NULL: none */
 	const struct task_struct *monitor;

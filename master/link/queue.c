@@ -80,7 +80,7 @@ bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *n
 
 		/* else it was sent, or given up */
 		if (atomic_read_acquire(&e->slot->state) == EC_SLOT_QUEUED &&
-		    e->slot->seq == e->seq) {
+		    READ_ONCE(e->slot->seq) == e->seq) {
 			*next = *e;
 			found = true;
 			break;

@@ -8,7 +8,7 @@
 
 #define SENDS	3	/* of the cycle; the first one without rider is no reason to give up */
 #define SLACK_US	5000	/* the owner of a fast cycle may pause */
-#define STEP_US		2000	/* between two looks whether the cycle and the link are there */
+#define STEP_US		2000	/* between two checks of the cycle and the link */
 
 /**
  * ec_rider_register() - make a rider known to the links
@@ -38,7 +38,15 @@ static bool move(struct ec_rider *r, enum ec_rider_state from, enum ec_rider_sta
 	return atomic_cmpxchg(&r->state, from, to) == from;
 }
 
-/* Is there no sense in waiting any more? */
+static void queue(struct ec_links *l, struct ec_rider *r)
+{
+	atomic_set_release(&r->state, EC_RIDER_QUEUED);
+	/* the state before the bit: the cycle looks at the bit, then at the state */
+	smp_mb__before_atomic();
+	atomic_or(BIT(r->number), &l->riders.queued);
+}
+
+/* Has the time for a cycle passed, or can none come any more? */
 static bool is_over(struct ec_links *l, u64 until_ns)
 {
 	return ktime_get_ns() > until_ns || !ec_access_is_cyclic(&l->access) ||
@@ -56,14 +64,13 @@ static bool is_over(struct ec_links *l, u64 until_ns)
  */
 int ec_rider_exchange(struct ec_links *l, struct ec_rider *r)
 {
-	u64 sends_ns = (SENDS * (u64)READ_ONCE(l->access.interval_us) + SLACK_US) * NSEC_PER_USEC;
+	u64 sends_ns = (SENDS * (u64)ec_access_interval_us(&l->access) + SLACK_US) * NSEC_PER_USEC;
 	u64 until = ktime_get_ns() + sends_ns;
 
 	if (!ec_access_is_cyclic(&l->access))
 		return -EAGAIN;
 	reinit_completion(&r->done);
-	atomic_set_release(&r->state, EC_RIDER_QUEUED);
-	atomic_or(BIT(r->number), &l->riders.queued);
+	queue(l, r);
 	/* the completion may be that of an earlier round */
 	for (;;) {
 		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));
@@ -94,9 +101,9 @@ static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
  * @fb: frame with the process data
  * @index: datagram index of the frame
  * @now: when it leaves (ktime)
- * @riding: result
+ * @riding: result: which riders, and their round
  *
- * They make no cycle longer than acyclic frames may.
+ * The wire time of a cycle with them stays within the limit for acyclic frames.
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
@@ -106,6 +113,7 @@ void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 no
 	unsigned long left = atomic_read_acquire(&l->riders.queued);
 	u32 slack = ec_access_slack_ns(l);
 
+	riding->mask = 0;
 	riding->seq = l->riders.seq + 1;
 	for (; left && fb->count < l->max_datagrams; left &= left - 1) {
 		struct ec_rider *r = l->riders.rider[__ffs(left)];
@@ -114,13 +122,13 @@ void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 no
 
 		/* before the state: its owner may queue it again at any time */
 		atomic_andnot(BIT(r->number), &l->riders.queued);
+		smp_mb__after_atomic();
 		if (!move(r, EC_RIDER_QUEUED, EC_RIDER_HELD))
 			continue;	/* given up */
 		ns = more_ns(fb, EC_DGRAM_OVERHEAD + r->len);
 		p = ns <= slack ? ec_frame_add(fb, r->cmd, index, r->adp, r->ado, r->len) : NULL;
 		if (!p) {
-			atomic_set_release(&r->state, EC_RIDER_QUEUED);
-			atomic_or(BIT(r->number), &l->riders.queued);
+			queue(l, r);
 			continue;
 		}
 		memcpy(p, r->data, r->len);
@@ -142,6 +150,25 @@ static bool hold(struct ec_rider *r, u32 seq)
 		return true;
 	atomic_set_release(&r->state, EC_RIDER_SENT);
 	return false;
+}
+
+/**
+ * ec_riders_return() - the frame was not sent: its riders wait for the next one
+ * @l: links
+ * @riding: riders of the frame
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_riders_return(struct ec_links *l, const struct ec_riding *riding)
+{
+	unsigned long left = riding->mask;
+
+	for (; left; left &= left - 1) {
+		struct ec_rider *r = l->riders.rider[__ffs(left)];
+
+		if (hold(r, riding->seq))
+			queue(l, r);
+	}
 }
 
 /**

@@ -83,6 +83,7 @@ int ec_rider_register(struct ec_links *l, struct ec_rider *r);
 int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
 void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 now,
 		   struct ec_riding *riding);
+void ec_riders_return(struct ec_links *l, const struct ec_riding *riding);
 void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,
 		    const u8 *end);
 

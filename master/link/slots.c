@@ -268,6 +268,9 @@ void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_match
 	u8 *to = side ? slot->backup : ec_slot_body(slot);
 
 	memcpy(to + EC_FRAME_HDR, data, slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
+	/* in a shared frame another caller's datagrams follow, here they end */
+	if (slot->pack.len)
+		ec_frame_ends_at(to + EC_FRAME_HDR + slot->last);
 	slot->back |= BIT(side);
 	if (slot->back != slot->links) {
 		ec_slot_release(slot, EC_SLOT_SENT);

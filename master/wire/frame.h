@@ -111,6 +111,17 @@ void ec_frame_begin(struct ec_frame_buf *f, u8 *buf, size_t cap);
 u8 *ec_frame_add(struct ec_frame_buf *f, u8 cmd, u8 idx, u16 adp, u16 ado, u16 len);
 bool ec_frame_append(struct ec_frame_buf *f, const u8 *dgrams, size_t len, size_t last,
 		     unsigned int count);
+
+/**
+ * ec_frame_ends_at() - no datagram follows this one: clear its "more" bit
+ * @dgram: datagram header
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+static inline void ec_frame_ends_at(u8 *dgram)
+{
+	dgram[7] &= 0x7f;
+}
 size_t ec_frame_end(struct ec_frame_buf *f);
 
 u32 ec_frame_wire_ns(size_t eth_len);

@@ -415,6 +415,33 @@ static void pack_on_two_links_done_with_both_copies(struct kunit *test)
 	put(s, 15);
 }
 
+/* The same when the copy of the main link is the first: it is what the other is compared with. */
+static void pack_on_two_links_main_copy_first(struct kunit *test)
+{
+	struct shared *s = shared(test);
+	u32 k;
+
+	answer(s);
+	give(s, s->reply, s->len);
+	expect(s, 15, 0);
+	s->links = BIT(0) | BIT(1);
+	for (k = 0; k < MEMBERS; k++) {
+		s->slot[k]->backup = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL);
+		arm(s, k);
+	}
+	leave(s);
+	answer(s);
+	give(s, s->reply, s->len);
+	expect(s, 0, 0);
+	s->frame[7] |= 1;
+	give(s, s->reply, s->len);
+	expect(s, 15, 0);
+	expect_data(s, 15);
+	for (k = 0; k < MEMBERS; k++)
+		s->slot[k]->backup = NULL;
+	put(s, 15);
+}
+
 /* A slot that is in use by another: not with the reply to the one before. */
 static void pack_reused(struct kunit *test)
 {
@@ -518,6 +545,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(pack_given_up),
 	KUNIT_CASE(pack_gone_changed),
 	KUNIT_CASE(pack_on_two_links_done_with_both_copies),
+	KUNIT_CASE(pack_on_two_links_main_copy_first),
 	KUNIT_CASE(pack_reused),
 	KUNIT_CASE(pack_gathered),
 	{}
