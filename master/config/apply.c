@@ -476,8 +476,7 @@ void ec_apply(struct ec_slave *s)
 		ret = step(s);
 	}
 	release_mailbox(s);
-	if (ret == 1 && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) {
-		ec_slave_set_ok(s);
+	if (ret == 1 && ec_slave_configured(s)) {
 		s->retry_ms = 0;
 		log_return(s);
 	}

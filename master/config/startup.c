@@ -12,6 +12,14 @@
 #include "../wire/coe.h"
 #include "../wire/soe.h"
 
+/* By type; registers by address, so that equal settings make equal lists. */
+static bool comes_before(const struct ec_startup *a, const struct ec_startup *b)
+{
+	if (a->type != b->type)
+		return a->type < b->type;
+	return a->type == EC_STARTUP_REG && a->index < b->index;
+}
+
 /**
  * ec_startup_add() - add a command to a configuration
  * @c: configuration
@@ -39,7 +47,7 @@ struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *
 	*u = *what;
 	memcpy(u->data, data, what->size);
 	list_for_each_entry_reverse(before, &c->startup, list)
-		if (before->type <= u->type)
+		if (!comes_before(u, before))
 			break;
 	list_add(&u->list, &before->list);
 	c->n_startup[u->type]++;
@@ -47,10 +55,10 @@ struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *
 }
 
 /**
- * ec_startup_find() - the first command of its kind
+ * ec_startup_find() - find IP parameters or a register write
  * @c: configuration
- * @type: enum ec_startup_type
- * @index: its object, IDN, or register
+ * @type: EC_STARTUP_IP or EC_STARTUP_REG: there are few, at the end of the list
+ * @index: register
  *
  * Context: Process, lock of the session held or in a show section.
  * Return: command, or NULL.
@@ -60,9 +68,12 @@ struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index
 	struct ec_startup *u;
 
 	ec_wanted_assert_stays(c->wanted);
-	list_for_each_entry(u, &c->startup, list)
+	list_for_each_entry_reverse(u, &c->startup, list) {
+		if (u->type < EC_STARTUP_IP)
+			break;
 		if (u->type == type && u->index == index)
 			return u;
+	}
 	return NULL;
 }
 
@@ -109,7 +120,9 @@ static void why(char *text, size_t size, const struct ec_startup *u, int ret, u3
 {
 	bool sdo = u->type == EC_STARTUP_SDO;
 
-	if (ret == -EIO && code)
+	if (u->type == EC_STARTUP_REG && ret != -EIO && ret != -ETIMEDOUT)
+		scnprintf(text, size, "transfer failed (%pe)", ERR_PTR(ret));
+	else if (ret == -EIO && code)
 		scnprintf(text, size, sdo ? "abort 0x%08x: %s" : "SoE error 0x%04x: %s", code,
 			  (sdo ?
 			   ec_coe_abort_text(code) : ec_soe_error_text(code)) ?: "unknown code");
