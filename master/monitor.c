@@ -449,9 +449,12 @@ int ec_monitor_start(struct ec_master *m)
  */
 void ec_monitor_stop(struct ec_master *m)
 {
-	if (m->monitor)
-		kthread_stop(m->monitor);
-	m->monitor = NULL;
+	struct task_struct *t = m->monitor;
+
+	/* ec_monitor_kick() must not find it once it has ended */
+	WRITE_ONCE(m->monitor, NULL);
+	if (t)
+		kthread_stop(t);
 	WRITE_ONCE(m->links.monitor, NULL);
 }
 
@@ -463,6 +466,8 @@ void ec_monitor_stop(struct ec_master *m)
  */
 void ec_monitor_kick(struct ec_master *m)
 {
-	if (m->monitor)
-		wake_up_process(m->monitor);
+	struct task_struct *t = READ_ONCE(m->monitor);
+
+	if (t)
+		wake_up_process(t);
 }

@@ -172,19 +172,19 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 {
 	char text[EC_UAPI_REASON];
 	va_list args;
-	int other;
+	int other = 0;
 
-	/* a worker that was still at it: what it meets is no cause of its own */
-	if (READ_ONCE(slave->silent) && error == EC_SLAVE_CONFIG_FAILED)
-		return;
 	va_start(args, fmt);
 	vscnprintf(text, sizeof(text), fmt, args);
 	va_end(args);
 	raw_spin_lock(&slave->note_lock);
-	WRITE_ONCE(slave->error, error);
-	other = strcmp(slave->why, text);
-	if (other)
-		strscpy(slave->why, text, sizeof(slave->why));
+	/* a worker that has not ended yet: what it meets is no cause of its own */
+	if (!READ_ONCE(slave->silent) || error != EC_SLAVE_CONFIG_FAILED) {
+		WRITE_ONCE(slave->error, error);
+		other = strcmp(slave->why, text);
+		if (other)
+			strscpy(slave->why, text, sizeof(slave->why));
+	}
 	raw_spin_unlock(&slave->note_lock);
 	if (other)
 		ec_slave_warn(slave, "%s\n", text);
@@ -194,7 +194,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
  * ec_slave_set_ok() - the slave has no error any more
  * @slave: slave
  *
- * Context: Any.
+ * Context: Process.
  */
 void ec_slave_set_ok(struct ec_slave *slave)
 {
@@ -202,6 +202,27 @@ void ec_slave_set_ok(struct ec_slave *slave)
 	WRITE_ONCE(slave->error, EC_SLAVE_OK);
 	slave->why[0] = '\0';
 	raw_spin_unlock(&slave->note_lock);
+}
+
+/**
+ * ec_slave_configured() - the slave has no error any more, if it replies
+ * @slave: slave whose worker has brought it to the requested state
+ *
+ * Context: Process.
+ * Return: false when the scan has found meanwhile that it does not reply.
+ */
+bool ec_slave_configured(struct ec_slave *slave)
+{
+	bool ok;
+
+	raw_spin_lock(&slave->note_lock);
+	ok = slave->error != EC_SLAVE_SCAN_FAILED;
+	if (ok) {
+		WRITE_ONCE(slave->error, EC_SLAVE_OK);
+		slave->why[0] = '\0';
+	}
+	raw_spin_unlock(&slave->note_lock);
+	return ok;
 }
 
 /**

@@ -219,6 +219,7 @@ bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
 void ec_slave_set_ok(struct ec_slave *slave);
+bool ec_slave_configured(struct ec_slave *slave);
 bool ec_slave_forgive(struct ec_slave *slave);
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);

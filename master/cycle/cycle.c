@@ -70,7 +70,7 @@ void ec_cycle_set_active(struct ec_cycles *cycles, struct ec_cycle *c)
 {
 	ec_cycle_assert_held(c ?: cycles->active);
 	mutex_lock(&cycles->lock);
-	cycles->active = c;
+	WRITE_ONCE(cycles->active, c);
 	WRITE_ONCE(cycles->owner, c ? c->owner : NULL);
 	mutex_unlock(&cycles->lock);
 }

@@ -193,8 +193,9 @@ struct ec_cycles {
 /**
  * struct ec_cycle - cycle of an application: settings, layout, state
  *
- * The settings are under the lock of the configuration. From activation on they do
- * not change, and what follows @dgrams belongs to the cyclic caller.
+ * Settings and what is logged are under the lock of the configuration; @kernel, @copies
+ * and @shared stay as they are while it is active. From @dgrams on all belongs to the
+ * cyclic caller then.
  */
 struct ec_cycle {
 	/** @cycles: of the master; immutable, as are the next four */

@@ -192,7 +192,6 @@ static void wake_owner(struct ec_cycle *c)
 /* No more cycles; waiting callers return. */
 static void end_run(struct ec_cycle *c)
 {
-
 	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
 	wake_owner(c);
 }

@@ -74,10 +74,10 @@ static int begin(struct ec_sessions *ss, struct ec_session *s)
 	if (ss->heir || (ss->session && ss->session->cycle.owner)) {
 		ret = -EBUSY;
 	} else if (ss->session) {
-		ss->heir = s;
+		WRITE_ONCE(ss->heir, s);
 		s->wanted.before = &ss->session->wanted;
 	} else {
-		ss->session = s;
+		WRITE_ONCE(ss->session, s);
 		WRITE_ONCE(ss->bus->freeze, true);
 		to_preop(ss);
 	}
@@ -283,8 +283,8 @@ static void inherit(struct ec_sessions *ss)
 	struct ec_session *s = ss->heir;
 	unsigned int i;
 
-	ss->heir = NULL;
-	ss->session = s;
+	WRITE_ONCE(ss->heir, NULL);
+	WRITE_ONCE(ss->session, s);
 	if (s)
 		s->wanted.before = NULL;
 	WRITE_ONCE(ss->bus->freeze, s != NULL);
@@ -303,7 +303,7 @@ static void end(struct ec_sessions *ss)
 	/* one that was never active may have told its time and interval, too */
 	if (ec_session_deactivate(s))
 		forget_told(ss);
-	ss->session = NULL;
+	WRITE_ONCE(ss->session, NULL);
 	ec_session_free(s);
 	inherit(ss);
 }
@@ -325,7 +325,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	ec_sessions_lock(ss);
 	s = ss->heir;
 	if (s && (!owner || s->cycle.owner == owner)) {
-		ss->heir = NULL;
+		WRITE_ONCE(ss->heir, NULL);
 		ec_session_free(s);
 	}
 	s = ss->session;

@@ -25,7 +25,7 @@ struct ec_waiters;
 
 /**
  * struct ec_stall_log - what the log says of stalls; under sessions->lock
- * @told: stalls the log knows of, as master->links.access.timeouts counts them
+ * @told: stalls the log knows of, as sessions->links->access.timeouts counts them
  * @since_ns: last send before the stall the log shows
  * @next_ns: no new stall is logged before
  * @open: the log says it stalled, not yet that it goes on

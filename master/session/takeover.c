@@ -265,7 +265,7 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size)
 		ec_requests_describe(s);
 	adopt_late(s, heir->cycle.late_per_s);
 	ec_cycle_thread_inherit(&s->cycle, heir->cycle.priority);
-	ss->heir = NULL;
+	WRITE_ONCE(ss->heir, NULL);
 	ec_session_fill_status(s);
 	ec_cycle_set_owner(&s->cycle, heir->cycle.owner,
 			   rcu_dereference_protected(heir->cycle.waiters,
