@@ -122,6 +122,7 @@ void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 no
 
 		/* before the state: its owner may queue it again at any time */
 		atomic_andnot(BIT(r->number), &l->riders.queued);
+		/* see queue(): the bit before the state */
 		smp_mb__after_atomic();
 		if (!move(r, EC_RIDER_QUEUED, EC_RIDER_HELD))
 			continue;	/* given up */

@@ -388,6 +388,33 @@ static void refused(struct bus *b, const char *what)
 	KUNIT_EXPECT_EQ(b->test, session_state(b), (u32)EC_SESSION_DETACHED);
 }
 
+/* Equal settings are equal startup commands, in whatever order an application made them. */
+static void takeover_watchdog_order_is_no_difference(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_ioc_sc_watchdog wd[] = {
+		{ .config = 0, .intervals = 7 }, { .config = 0, .divider = 5, .intervals = 7 },
+		{ .config = 1, .divider = 5, .intervals = 7 },
+	};
+	const struct ec_startup *last[2];
+	unsigned int i;
+
+	die(a);
+	kcyc_configure(b, hold);
+	for (i = 0; i < ARRAY_SIZE(wd); i++)
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_WATCHDOG, &wd[i]), 0);
+	for (i = 0; i < 2; i++) {
+		const struct ec_config *c = b->m->sessions.heir->wanted.configs[i];
+
+		KUNIT_ASSERT_EQ(test, c->n_startup[EC_STARTUP_REG], 2u);
+		last[i] = list_last_entry(&c->startup, struct ec_startup, list);
+	}
+	KUNIT_EXPECT_EQ(test, last[0]->index, 0x0420);
+	KUNIT_EXPECT_EQ(test, last[1]->index, 0x0420);
+	ec_session_end(&b->m->sessions, &b->app);
+}
+
 static void takeover_refused(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
@@ -595,6 +622,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(takeover_repairs_corrupted_memory),
 	KUNIT_CASE(takeover_of_emergencies),
 	KUNIT_CASE(takeover_late_cycles),
+	KUNIT_CASE(takeover_watchdog_order_is_no_difference),
 	KUNIT_CASE(takeover_refused),
 	KUNIT_CASE(candidate_changes_no_running_session),
 	KUNIT_CASE(end_detached),
