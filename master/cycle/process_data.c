@@ -318,7 +318,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int 
 	}
 	send->riding.mask = 0;
 	if (unlikely(atomic_read(&c->links->riders.queued)))
-		ec_riders_add(c->links, &fb, slot->index, send->now, &send->riding);
+		ec_riders_add(c->links, &fb, slot->index, &send->riding);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return g - first;
 }

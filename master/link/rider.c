@@ -100,14 +100,13 @@ static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
  * @l: links
  * @fb: frame with the process data
  * @index: datagram index of the frame
- * @now: when it leaves (ktime)
  * @riding: result: which riders, and their round
  *
  * The wire time of a cycle with them stays within the limit for acyclic frames.
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 now,
+void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding)
 {
 	unsigned long left = atomic_read_acquire(&l->riders.queued);
@@ -135,7 +134,6 @@ void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 no
 		memcpy(p, r->data, r->len);
 		slack -= ns;
 		r->seq = riding->seq;
-		r->sent_ns = now;
 		riding->mask |= BIT(r->number);
 		l->riders.seq = riding->seq;
 		atomic_set_release(&r->state, EC_RIDER_SENT);

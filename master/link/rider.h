@@ -39,7 +39,6 @@ enum ec_rider_state {
  * @data: sent; then as it came back
  * @wkc: result: working counter
  * @back: result: @adp as it came back
- * @sent_ns: result: when its frame left (ktime)
  * @done: completed when it is back
  */
 struct ec_rider {
@@ -53,7 +52,6 @@ struct ec_rider {
 	u8 data[EC_RIDER_BYTES];
 	u16 wkc;
 	u16 back;
-	u64 sent_ns;
 	struct completion done;
 };
 
@@ -81,7 +79,7 @@ struct ec_riding {
 
 int ec_rider_register(struct ec_links *l, struct ec_rider *r);
 int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
-void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index, u64 now,
+void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding);
 void ec_riders_return(struct ec_links *l, const struct ec_riding *riding);
 void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,

@@ -208,7 +208,7 @@ static void watch_work(struct work_struct *work)
 {
 	struct ec_requests *rq = container_of(work, struct ec_requests, watch);
 
-	/* a request begins by a write to mapped memory, which wakes nobody */
+	/* a request begins by a write to mapped memory, which wakes no thread */
 	do
 		usleep_range(WATCH_US, WATCH_US + WATCH_US / 10);
 	while (look(rq));

@@ -257,9 +257,9 @@ int ec_session_deactivate(struct ec_session *s)
 	s->cycle.shared = NULL;
 	ec_shared_put(sh);
 	forget_told(ss);
-	if ((u32)atomic_read(&ss->links->access.timeouts) != s->stall_log.told)
+	if ((u32)atomic_read(&ss->links->access.timeouts) != s->stall_log.logged)
 		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
-			atomic_read(&ss->links->access.timeouts) - s->stall_log.told);
+			atomic_read(&ss->links->access.timeouts) - s->stall_log.logged);
 	ec_info(ss, "session deactivated\n");
 	return 0;
 }
@@ -532,7 +532,7 @@ int ec_session_activate(struct ec_session *s)
 		s->cycle.shared->status->domains[i].expected = s->wanted.domains[i]->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
-	s->stall_log.told = atomic_read(&ss->links->access.timeouts);
+	s->stall_log.logged = atomic_read(&ss->links->access.timeouts);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(ss->bus->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */

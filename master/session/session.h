@@ -25,13 +25,13 @@ struct ec_waiters;
 
 /**
  * struct ec_stall_log - what the log says of stalls; under sessions->lock
- * @told: stalls the log knows of, as sessions->links->access.timeouts counts them
+ * @logged: cycle timeouts that the log has counted, as sessions->links->access.timeouts counts them
  * @since_ns: last send before the stall the log shows
  * @next_ns: no new stall is logged before
  * @open: the log says it stalled, not yet that it goes on
  */
 struct ec_stall_log {
-	u32 told;
+	u32 logged;
 	u64 since_ns;
 	u64 next_ns;
 	bool open;

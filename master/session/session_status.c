@@ -17,7 +17,7 @@ static void log_stalls(struct ec_session *s, u64 now)
 	struct ec_sessions *ss = s->sessions;
 	struct ec_stall_log *l = &s->stall_log;
 	bool stalled = READ_ONCE(ss->links->access.mode) == EC_ACCESS_DIRECT;
-	u32 more = atomic_read(&ss->links->access.timeouts) - l->told;
+	u32 more = atomic_read(&ss->links->access.timeouts) - l->logged;
 
 	if (l->open && !stalled) {
 		ec_info(ss, "cycle resumed after %llu ms\n",
@@ -26,7 +26,7 @@ static void log_stalls(struct ec_session *s, u64 now)
 	} else if (!l->open && more && now >= l->next_ns) {
 		l->since_ns = ec_read64(&ss->links->access.timeout_ns);
 		l->next_ns = now + EC_STALL_LOG_NS;
-		l->told += more;
+		l->logged += more;
 		l->open = stalled;
 		if (more > stalled)
 			ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
