@@ -79,8 +79,7 @@ static bool check_slaves(struct ec_master *m)
 	for (i = 0; i < m->bus.n_slaves; i++)
 		reads[i] = READ_ONCE(m->bus.slaves[i]->al_reads);
 	for (i = 0; i < m->bus.n_slaves; i++)
-		dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, m->bus.slaves[i]->station,
-					    EC_REG_AL_STATUS, 6, al[i]);
+		dg[i] = EC_FPRD(m->bus.slaves[i]->station, EC_REG_AL_STATUS, 6, al[i]);
 	ec_xfer(&m->links, dg, m->bus.n_slaves);
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
@@ -265,8 +264,7 @@ static void try_again(struct watch *w)
 		if (!is_due(s, now))
 			continue;
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
-			dg[n] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2,
-						    b[n]);
+			dg[n] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, b[n]);
 			due[n++] = s;
 		} else if (!ec_slave_busy(s)) {
 			/* the worker plans the next one, if it has to */

@@ -64,8 +64,7 @@ static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 	unsigned int i;
 
 	for (i = 0; i < sc->n; i++)
-		sc->dg[i] = (struct ec_dg)EC_DG(EC_CMD_APRD, (u16)-i, ado, len,
-						(u8 *)&sc->regs[i] + ofs);
+		sc->dg[i] = EC_DG(EC_CMD_APRD, (u16)-i, ado, len, (u8 *)&sc->regs[i] + ofs);
 	return ec_xfer(sc->bus->links, sc->dg, sc->n);
 }
 
@@ -282,8 +281,7 @@ static int assign(struct scan *sc)
 		if (s && sc->regs[i].there && sc->claims[s->station] == 1)
 			take_part(sc->slaves[i], s);
 		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
-		sc->dg[n] = (struct ec_dg)EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2,
-						sc->addr[n]);
+		sc->dg[n] = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->addr[n]);
 		n++;
 	}
 	return write_stations(sc, n);

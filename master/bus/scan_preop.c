@@ -45,12 +45,9 @@ static void start(struct job *j)
 				   ec_mbox_sms(&c->slave->info.std, c->page) : 0;
 
 		if (len)
-			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_SM(0), len,
-							 c->page);
-		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
-						 (void *)pdi);
-		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_AL_CONTROL, 2,
-						 (void *)preop);
+			j->dg[n++] = EC_FPWR(station, EC_REG_SM(0), len, c->page);
+		j->dg[n++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, pdi);
+		j->dg[n++] = EC_FPWR(station, EC_REG_AL_CONTROL, 2, preop);
 	}
 	ec_xfer(j->bus->links, j->dg, n);
 }
@@ -61,8 +58,7 @@ static void look(struct job *j)
 	unsigned int i, left = 0;
 
 	for (i = 0; i < j->n; i++)
-		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, j->c[i].slave->station,
-					       EC_REG_AL_STATUS, 6, j->c[i].al);
+		j->dg[i] = EC_FPRD(j->c[i].slave->station, EC_REG_AL_STATUS, 6, j->c[i].al);
 	ec_xfer(j->bus->links, j->dg, j->n);
 	for (i = 0; i < j->n; i++) {
 		struct climber *c = &j->c[i];

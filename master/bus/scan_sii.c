@@ -233,12 +233,9 @@ static void take_over(struct job *j, struct reader **who, unsigned int n)
 	for (i = 0; i < n; i++) {
 		u16 station = who[i]->slave->station;
 
-		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
-					    (void *)force);
-		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_OWNER, 1,
-					    (void *)zero);
-		*dg++ = (struct ec_dg)EC_DG(EC_CMD_FPWR, station, EC_REG_EEP_ADDRESS, 4,
-					    (void *)nowhere);
+		*dg++ = EC_FPWR(station, EC_REG_EEP_OWNER, 1, force);
+		*dg++ = EC_FPWR(station, EC_REG_EEP_OWNER, 1, zero);
+		*dg++ = EC_FPWR(station, EC_REG_EEP_ADDRESS, 4, nowhere);
 	}
 	ec_xfer(j->bus->links, j->dg, dg - j->dg);
 }
@@ -249,9 +246,8 @@ static void collect(struct job *j, struct reader **who, unsigned int n)
 	unsigned int i;
 
 	for (i = 0; i < n; i++)
-		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, who[i]->slave->station,
-					       EC_REG_EEP_CONTROL, who[i]->len,
-					       who[i]->reg);
+		j->dg[i] = EC_FPRD(who[i]->slave->station, EC_REG_EEP_CONTROL, who[i]->len,
+				   who[i]->reg);
 	ec_xfer(j->bus->links, j->dg, n);
 	for (i = 0; i < n; i++)
 		if (j->dg[i].err || j->dg[i].wkc != 1)
@@ -269,8 +265,7 @@ static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
 		return;
 	}
 	for (i = 0; i < n; i++)
-		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
-					       EC_REG_EEP_CONTROL, 6, j->cmd[0]);
+		j->dg[i] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[0]);
 	ec_xfer(j->bus->links, j->dg, n);
 }
 
@@ -365,13 +360,11 @@ static void start_apart(struct job *j, struct reader **who, unsigned int n)
 
 	for (i = 0; i < n; i++)
 		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
-			j->dg[k++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
-							 EC_REG_EEP_CONTROL, 2, (void *)zero);
+			j->dg[k++] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 2, zero);
 	ec_xfer(j->bus->links, j->dg, k);
 	for (i = 0; i < n; i++) {
 		command(j->cmd[i], who[i]->have / 2);
-		j->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPWR, who[i]->slave->station,
-					       EC_REG_EEP_CONTROL, 6, j->cmd[i]);
+		j->dg[i] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[i]);
 	}
 	ec_xfer(j->bus->links, j->dg, n);
 }

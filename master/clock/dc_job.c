@@ -225,8 +225,8 @@ unsigned int ec_dc_add(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who,
 
 	for (i = 0; i < j->n; i++)
 		if (ec_dc_chosen(j, i, who))
-			j->dg[at++] = (struct ec_dg)EC_DG(cmd, j->slaves[i]->station, ado, len,
-							  data + i * stride);
+			j->dg[at++] = EC_DG(cmd, j->slaves[i]->station, ado, len,
+					    data + i * stride);
 	return at;
 }
 
@@ -321,7 +321,7 @@ static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
 {
 	static u8 any[4];
 
-	j->dg[n] = (struct ec_dg)EC_DG(EC_CMD_BWR, 0, EC_REG_DC_RECV(0), sizeof(any), any);
+	j->dg[n] = EC_DG(EC_CMD_BWR, 0, EC_REG_DC_RECV(0), sizeof(any), any);
 	return n + 1;
 }
 
@@ -354,7 +354,7 @@ int ec_dc_latch(struct ec_dc_job *j)
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
 	/* the reads are in another frame */
 	for (i = 1; i < EC_CLOCK_DATAGRAMS; i++)
-		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, 1, none);
+		j->dg[n++] = EC_DG(EC_CMD_NOP, 0, 0, 1, none);
 	first = n;
 	n = ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_RECV_PU, sizeof(j->unit[0]),
 		      j->unit[0], sizeof(j->unit[0]));

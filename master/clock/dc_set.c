@@ -80,8 +80,7 @@ static int write_values(struct ec_dc_job *j, struct values *v)
 
 	for (i = 0; i < j->n; i++)
 		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && !ec_dc_chosen(j, i, EC_DC_NEW_WIDE))
-			j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, j->slaves[i]->station,
-							 EC_REG_DC_DELAY, 4, v[i].delay);
+			j->dg[n++] = EC_FPWR(j->slaves[i]->station, EC_REG_DC_DELAY, 4, v[i].delay);
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
 	ret = ec_xfer_clock(j->dc->links, j->dg, n);
 	ret = ret ?: ec_dc_answers(j, 0, EC_DC_NEW_WIDE);
@@ -161,12 +160,12 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 	unsigned int end = n + syncs;
 
 	for (; n < end; n++)
-		j->dg[n] = (struct ec_dg)EC_DG(EC_CMD_FRMW, ref, EC_REG_DC_SYSTIME, bytes, j->time);
+		j->dg[n] = EC_DG(EC_CMD_FRMW, ref, EC_REG_DC_SYSTIME, bytes, j->time);
 	/* all are of one length, so that they are not closer to each other */
 	pad = syncs * (bytes + EC_DGRAM_OVERHEAD) + EC_DGRAM_OVERHEAD;
 	pad = min_t(u16, room - min(room, pad), EC_DGRAM_DATA_MAX);
 	if (pad || !most)
-		j->dg[n++] = (struct ec_dg)EC_DG(EC_CMD_NOP, 0, 0, pad ?: 1, none);
+		j->dg[n++] = EC_DG(EC_CMD_NOP, 0, 0, pad ?: 1, none);
 	return n;
 }
 

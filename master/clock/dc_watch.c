@@ -98,8 +98,7 @@ static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from
 
 		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || READ_ONCE(s->stop.gone))
 			continue;
-		b->dg[b->n] = (struct ec_dg)EC_DG(EC_CMD_FPRD, s->station, EC_REG_DC_DIFF, 4,
-						  b->value[b->n]);
+		b->dg[b->n] = EC_FPRD(s->station, EC_REG_DC_DIFF, 4, b->value[b->n]);
 		b->slaves[b->n++] = ec_slave_ref(s);
 	}
 	up_read(&dc->bus->topo);

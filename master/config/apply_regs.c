@@ -26,7 +26,7 @@ struct batch {
 
 static void add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, u16 len)
 {
-	b->dg[b->n++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, ado, len, data);
+	b->dg[b->n++] = EC_FPWR(s->station, ado, len, data);
 }
 
 static unsigned int count_fmmus(const struct ec_slave *s)
@@ -214,8 +214,7 @@ int ec_apply_clear_pdos(struct ec_slave *s)
 
 	lockdep_assert_held(&s->lock);
 	for (; sm < n; sm++)
-		dg[used++] = (struct ec_dg)EC_DG(EC_CMD_FPWR, s->station, EC_REG_SM(sm), EC_SM_PAGE,
-						 (void *)zero);
+		dg[used++] = EC_FPWR(s->station, EC_REG_SM(sm), EC_SM_PAGE, zero);
 	return (used ? ec_xfer_all(s->bus->links, dg, used) : 0) ?: ec_apply_clear_fmmus(s);
 }
 

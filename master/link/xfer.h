@@ -38,7 +38,12 @@ struct ec_dg {
 };
 
 #define EC_DG(c, a, o, l, d) \
-	{ .cmd = (c), .repeat = true, .adp = (a), .ado = (o), .len = (l), .data = (d) }
+	((struct ec_dg){ .cmd = (c), .repeat = true, .adp = (a), .ado = (o), .len = (l), \
+			 .data = (d) })
+
+/* by station address; a write leaves its data as they are */
+#define EC_FPRD(a, o, l, d)	EC_DG(EC_CMD_FPRD, a, o, l, d)
+#define EC_FPWR(a, o, l, d)	EC_DG(EC_CMD_FPWR, a, o, l, (void *)(const void *)(d))
 
 /**
  * struct ec_xfer - somebody waiting for frames

@@ -179,7 +179,7 @@ static int once(struct ec_mbox *mb, u8 cmd, u16 ado, void *data, u16 len)
 		int ret;
 
 		n = min_t(u16, len - at, room);
-		dg = (struct ec_dg)EC_DG(cmd, mb->station, ado + at, n, data + at);
+		dg = EC_DG(cmd, mb->station, ado + at, n, data + at);
 		dg.repeat = at + n < len;
 		ret = ec_xfer(mb->links, &dg, 1);
 		if (ret || dg.wkc != 1)

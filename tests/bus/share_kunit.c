@@ -31,8 +31,7 @@ static int ask(void *arg)
 	u32 i;
 
 	for (i = 0; i < a->n; i++) {
-		a->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, bus_slave(a->b, 1)->station, 0, a->len,
-					       a->data + i * a->len);
+		a->dg[i] = EC_FPRD(bus_slave(a->b, 1)->station, 0, a->len, a->data + i * a->len);
 		a->dg[i].repeat = false;
 	}
 	a->ret = a->clock ? ec_xfer_clock(&a->b->m->links, a->dg, a->n) : ec_xfer(&a->b->m->links,

@@ -33,8 +33,7 @@ static int read_much(void *arg)
 	u32 i;
 
 	for (i = 0; i < READS; i++) {
-		r->dg[i] = (struct ec_dg)EC_DG(EC_CMD_FPRD, bus_slave(r->b, 1)->station, 0, BYTES,
-					       r->data[i]);
+		r->dg[i] = EC_FPRD(bus_slave(r->b, 1)->station, 0, BYTES, r->data[i]);
 		r->dg[i].repeat = false;
 	}
 	r->ret = ec_xfer(&r->b->m->links, r->dg, READS);
