@@ -90,7 +90,8 @@ int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset, unsigned int to_bi
 	arg.from_domain = from->index;
 	if (bit_of(to_offset, to_bit, &arg.to_bit) ||
 	    bit_of(from_offset, from_bit, &arg.from_bit))
-		return ec_fail(NULL, -EINVAL, "copy to byte %u from byte %u", to_offset, from_offset);
+		return ec_fail(NULL, -EINVAL, "copy to byte %u from byte %u", to_offset,
+			       from_offset);
 	return ec_do(to->master, EC_IOC_COPY, &arg, "copy %u bits from domain %u to domain %u",
 				   bits, from->index, to->index);
 }
@@ -323,14 +324,14 @@ int ec_cycle_send(struct ec_master *m)
 	int ret = halted(m);
 	struct ec_domain *d;
 
-	if (!m->queued)
+	if (!m->next.queued)
 		return ret;
 	for (d = m->domains; d; d = d->next)
-		if (!(m->queued >> d->index & 1) && d->size && m->out_last != m->out_back)
+		if (!(m->next.queued >> d->index & 1) && d->size && m->out_last != m->out_back)
 			memcpy(place(d, m->out_back), place(d, m->out_last), d->size);
 	m->out_last = m->out_back;
 	m->out_back = swap_buffer(&m->exchange->outputs, m->out_back | EC_EXCHANGE_NEW);
-	m->queued = 0;
+	m->next.queued = 0;
 	return ret;
 }
 

@@ -53,6 +53,6 @@ int ecrt_domain_queue(ec_domain_t *domain)
 		return -EINVAL;
 	if (domain->master->exchange)
 		ec_cycle_queue(domain);
-	domain->master->queued |= 1ULL << domain->index;
+	domain->master->next.queued |= 1ULL << domain->index;
 	return 0;
 }

@@ -4,6 +4,7 @@
 #define EC_LIB_INTERNAL_H
 
 #include <errno.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,10 +15,8 @@
 #include "../include/uapi/ethercat.h"
 
 /*
- * @queued, @sent, @received: bit n is domain n: to be sent, on its way, back
- * but not processed; @app_time: last one, told with the next send when
- * @app_time_new; @send_flags: EC_SEND_FLAG_* of the next send.
- * Only the cyclic caller touches them.
+ * @next: what the next send shall do; @sent, @received: bit n is domain n: sent since the
+ * last receive, received and not processed. Only the cyclic caller touches them.
  *
  * @frozen: ecrt_master_setup_domain_memory() was called; @preset_size: bytes of
  * all domains then.
@@ -32,13 +31,9 @@ struct ec_master {
 	unsigned int index;
 	bool reserved;
 	bool active;
-	__u64 queued;
+	struct ec_ioc_send next;
 	__u64 sent;
 	__u64 received;
-	__u64 app_time;
-	bool app_time_new;
-	__u32 send_flags;
-	__u64 sync_time;
 
 	/* mapped by activation */
 	const struct ec_status *status;
@@ -130,9 +125,9 @@ static inline __u64 ec_status_read64(const struct ec_status *st, const __u64 *fi
 
 /* ioctl.c: what the sources in ecrt/ need of a process */
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
-void ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
-		 bool with_reason, const char *fmt, va_list ap)
-	__attribute__((format(printf, 5, 0)));
+int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
+		bool with_reason, const char *fmt, ...)
+	__attribute__((format(printf, 5, 6)));
 
 /* why a call that needs an active master fails */
 static inline int ec_inactive(const struct ec_master *m)
@@ -163,20 +158,29 @@ int ec_cycle_send(struct ec_master *m);
 
 #define EXPORT_SYMBOL_GPL(symbol) _Static_assert(1, "for the kernel")
 #define noinline __attribute__((noinline))
-#define __printf(a, b) __attribute__((format(printf, a, b)))
 
 #define ec_load_acquire(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define ec_store_release(p, value) __atomic_store_n(p, value, __ATOMIC_RELEASE)
 
 static inline struct ec_master *ec_sc_master(const struct ec_slave_config *sc)
 {
-	return sc->master;
+	return sc ? sc->master : NULL;
 }
 
 /* of the handle that an argument names; the call checks for NULL */
 static inline unsigned int ec_sc_index(const struct ec_slave_config *sc)
 {
 	return sc ? sc->index : 0;
+}
+
+static inline const struct ec_status *ec_active_status(const struct ec_master *m)
+{
+	return m && m->active ? m->status : NULL;
+}
+
+static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
+{
+	return &m->next;
 }
 
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
@@ -223,10 +227,35 @@ static inline struct ec_request_record *ec_request_record(const struct ec_master
 	return rec;
 }
 
+/* emergencies of a configuration in shared memory */
+struct ec_emerg {
+	struct ec_emerg_ring *ring;
+	const __u8 *data;
+	__u32 count;
+};
+
+/* false before activation */
+static inline bool ec_emerg_get(const struct ec_slave_config *sc, struct ec_emerg *e)
+{
+	const struct ec_request_area *area = sc->master->area;
+
+	if (!area || sc->index >= area->ring_count)
+		return false;
+	e->ring = (struct ec_emerg_ring *)(sc->master->area_base + area->rings) + sc->index;
+	e->data = sc->master->area_base + e->ring->data;
+	e->count = e->ring->count;
+	return true;
+}
+
+static inline __u32 *ec_emerg_cleared(const struct ec_slave_config *sc)
+{
+	return &((struct ec_slave_config *)sc)->overruns;
+}
+
 /* told by the next send, or seen by the cycle the kernel runs */
 static inline void ec_request_started(struct ec_master *m)
 {
-	m->send_flags |= EC_SEND_FLAG_REQUESTS;
+	m->next.flags |= EC_SEND_FLAG_REQUESTS;
 	__atomic_fetch_add(&m->area->starts, 1, __ATOMIC_RELEASE);
 }
 

@@ -243,11 +243,10 @@ int ecrt_master_activate(ec_master_t *master)
 			d->index);
 		goto err_deactivate;
 	}
-	master->queued = 0;
+	master->next.queued = 0;
+	master->next.flags = 0;
 	master->sent = 0;
 	master->received = 0;
-	master->app_time_new = false;
-	master->send_flags = 0;
 	master->active = true;
 	return 0;
 
@@ -272,7 +271,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 		return ret;
 	ec_master_unmap(master);
 	ec_master_free_session(master);
-	master->app_time = 0;	/* the next session has its own */
+	master->next.app_time = 0;	/* the next session has its own */
 	return 0;
 }
 
@@ -286,24 +285,17 @@ void ecrt_master_deactivate_slaves(ec_master_t *master)
 
 int ecrt_master_send(ec_master_t *master)
 {
-	struct ec_ioc_send arg = { 0 };
+	int ret;
 
 	if (!master || !master->active)
 		return ec_inactive(master);
 	if (master->exchange)
 		return ec_cycle_send(master);
-	arg.queued = master->queued;
-	arg.flags = master->send_flags;
-	arg.sync_time = master->sync_time;
-	master->send_flags = 0;
-	if (master->app_time_new) {
-		arg.flags |= EC_SEND_FLAG_APP_TIME;
-		arg.app_time = master->app_time;
-		master->app_time_new = false;
-	}
-	master->sent |= master->queued;
-	master->queued = 0;
-	return ec_command(master, EC_IOC_SEND, &arg);
+	ret = ec_command(master, EC_IOC_SEND, &master->next);
+	master->sent |= master->next.queued;
+	master->next.queued = 0;
+	master->next.flags = 0;
+	return ret;
 }
 
 int ecrt_master_receive(ec_master_t *master)
@@ -323,11 +315,11 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 
 	if (!master)
 		return -EINVAL;
-	master->app_time = app_time;
+	master->next.app_time = app_time;
 	if (!master->active)
 		return ec_command(master, EC_IOC_APP_TIME, &arg);
 	/* goes with the next send: no system call of its own */
-	master->app_time_new = true;
+	master->next.flags |= EC_SEND_FLAG_APP_TIME;
 	return 0;
 }
 

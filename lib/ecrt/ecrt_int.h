@@ -65,16 +65,26 @@ struct ec_app_request {
 	__u8 *shared;
 };
 
-/* command.c: a command, and one line that says why it failed */
-int ec_fail(const ec_master_t *m, int err, const char *fmt, ...)
-	__printf(3, 4);
-int ec_fail_sc(const ec_slave_config_t *sc, int err, const char *fmt, ...)
-	__printf(3, 4);
-int ec_do(const ec_master_t *m, unsigned int cmd, void *arg, const char *fmt, ...)
-	__printf(4, 5);
-int ec_do_sc(const ec_slave_config_t *sc, unsigned int cmd, void *arg, const char *fmt, ...)
-	__printf(4, 5);
-__u32 ec_u32(size_t size);
+/*
+ * ec_do() gives a command. When the command fails, one line reports @fmt, which is an
+ * infinitive without "to", and the reason that the command left. ec_fail() reports a call
+ * that fails without a command. The other two name a slave configuration at the end of the
+ * line. Without a handle nothing is reported. Each returns 0 or -errno.
+ */
+#define ec_do(m, cmd, arg, ...) \
+	ec_complain(m, NULL, ec_give(m, cmd, arg), true, __VA_ARGS__)
+#define ec_do_sc(sc, cmd, arg, ...) \
+	ec_complain(ec_sc_master(sc), sc, ec_give(ec_sc_master(sc), cmd, arg), true, __VA_ARGS__)
+#define ec_fail(m, err, ...) ec_complain(m, NULL, err, false, __VA_ARGS__)
+#define ec_fail_sc(sc, err, ...) ec_complain(ec_sc_master(sc), sc, err, false, __VA_ARGS__)
+
+/* Size of a buffer in a command; one that is too large stays too large. */
+static inline __u32 ec_u32(size_t size)
+{
+	return size > EC_U32_MAX ? EC_U32_MAX : (__u32)size;
+}
+
+int ec_give(const ec_master_t *m, unsigned int cmd, void *arg);
 
 /* request.c: what all kinds of requests have in common */
 void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size);

@@ -58,21 +58,24 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
  * ec_complain() - one line in the log that says what failed and why
  * @m: master
  * @sc: slave configuration that the line names at its end, or NULL
- * @err: -errno
- * @with_reason: with the reason of the last command
+ * @err: -errno, or 0: nothing failed
+ * @with_reason: of a command: with its reason, and no line without master
  * @fmt: what was tried, after "cannot"
- * @ap: for @fmt
  *
  * Context: Process. May sleep.
+ * Return: @err.
  */
-void ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
-		 bool with_reason, const char *fmt, va_list ap)
+int ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
+		bool with_reason, const char *fmt, ...)
 {
-	struct ec_file *f = &m->api->file;
 	struct va_format vaf = { .fmt = fmt };
-	char reason[sizeof(f->reason)], slave[32] = "";
+	char reason[EC_UAPI_REASON], slave[32] = "";
+	struct ec_file *f;
 	va_list args;
 
+	if (!err || (with_reason && !m))
+		return err;
+	f = &m->api->file;
 	/* the log may wait for a slow console: nothing is printed under the lock */
 	raw_spin_lock(&f->lock);
 	strscpy(reason, with_reason ? f->reason : "", sizeof(reason));
@@ -80,9 +83,10 @@ void ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err
 	if (sc)
 		snprintf(slave, sizeof(slave), " of slave %u:%u", ec_api_config(sc)->alias,
 			 ec_api_config(sc)->position);
-	va_copy(args, ap);
+	va_start(args, fmt);
 	vaf.va = &args;
 	ec_err(f->master, "kernel API: cannot %pV%s (%pe)%s%s\n", &vaf, slave, ERR_PTR(err),
 	       reason[0] ? ": " : "", reason);
 	va_end(args);
+	return err;
 }

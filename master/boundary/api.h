@@ -13,10 +13,12 @@
 #include <linux/string.h>
 #include <linux/workqueue.h>
 #include "../include/ecrt.h"
+#include "../base/once64.h"
 #include "cdev.h"
 #include "../config/config.h"
 #include "../config/domain.h"
 #include "ioctl.h"
+#include "../mailbox/emerg.h"
 #include "master.h"
 #include "../session/request.h"
 #include "../session/session.h"
@@ -30,7 +32,6 @@ struct task_struct;
  * @reserved: it has reserved the master, and holds this module
  * @active: its session while that is active
  * @next: what the next send shall do; the cyclic caller's
- * @app_time: last one told, ns
  * @sent: domains sent since the last receive; the cyclic caller's
  * @received: domains received and not processed; likewise
  * @requests: list of its requests
@@ -49,7 +50,6 @@ struct ec_api {
 	bool reserved;
 	struct ec_session *active;
 	struct ec_ioc_send next;
-	u64 app_time;
 	u64 sent;
 	u64 received;
 	struct ec_app_request *requests;
@@ -86,8 +86,8 @@ static inline struct ec_session *ec_api_session(const struct ec_api *api)
 int ec_api_create(struct ec_master *m);
 void ec_api_destroy(struct ec_master *m);
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
-void ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
-		 bool with_reason, const char *fmt, va_list ap);
+int ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
+		bool with_reason, const char *fmt, ...) __printf(5, 6);
 
 /* api_cycle.c */
 void ec_api_work(struct work_struct *work);
@@ -105,7 +105,7 @@ void ec_api_left(struct ec_master *m);
 
 static inline struct ec_master *ec_sc_master(const ec_slave_config_t *sc)
 {
-	return ec_api_master(sc);
+	return sc ? ec_api_master(sc) : NULL;
 }
 
 /* of the handle that an argument names; the call checks for NULL */
@@ -117,6 +117,55 @@ static inline u32 ec_sc_index(const ec_slave_config_t *sc)
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 {
 	return ec_master_of(ec_domain_session(d));
+}
+
+static inline int ec_inactive(const struct ec_master *m)
+{
+	return -EINVAL;
+}
+
+static inline const struct ec_status *ec_active_status(const struct ec_master *m)
+{
+	const struct ec_session *s = m ? ec_api_session(m->api) : NULL;
+
+	return s ? s->cycle.shared->status : NULL;
+}
+
+static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
+{
+	return &m->api->next;
+}
+
+#define ec_status_read(field) READ_ONCE(field)
+
+static inline u64 ec_status_read64(const struct ec_status *st, const __u64 *field)
+{
+	u64 value;
+
+	if (BITS_PER_LONG == 64)
+		return READ_ONCE(*field);
+	ec_status_copy(st, &value, field, sizeof(value));
+	return value;
+}
+
+/* false before activation */
+static inline bool ec_emerg_get(const ec_slave_config_t *sc, struct ec_emerg *e)
+{
+	struct ec_session *s = ec_api_session(ec_api_master(sc)->api);
+	const struct ec_emerg *from;
+
+	if (!s)
+		return false;
+	from = ec_requests_emerg(s, ec_api_config(sc)->index);
+	e->ring = from->ring;
+	e->data = from->data;
+	e->count = from->count;
+	return true;
+}
+
+static inline u32 *ec_emerg_cleared(const ec_slave_config_t *sc)
+{
+	return &ec_api_config(sc)->emerg_cleared;
 }
 
 static inline void *ec_zalloc(size_t size)

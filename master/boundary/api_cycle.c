@@ -157,9 +157,8 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	api = master->api;
 	if (!READ_ONCE(api->reserved))
 		return -EPERM;
-	api->app_time = app_time;
+	api->next.app_time = app_time;
 	if (READ_ONCE(api->active)) {
-		api->next.app_time = app_time;
 		api->next.flags |= EC_SEND_FLAG_APP_TIME;
 	} else if (!READ_ONCE(master->sessions.heir)) {
 		/*

@@ -36,7 +36,6 @@ static void forget(struct ec_master *m)
 	ec_api_between_stop(m);
 	WRITE_ONCE(api->active, NULL);
 	memset(&api->next, 0, sizeof(api->next));
-	api->app_time = 0;
 	api->sent = 0;
 	api->received = 0;
 }

@@ -16,7 +16,6 @@ ALLOWED = {
     "master/cycle/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
     "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
     "master/cycle/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",
-    "master/boundary/api_dc.c:ecrt_master_reference_clock_time": "the lower half only",
 }
 MEMBER = re.compile(r"^\s+(?:const\s+)?(\w+)\s+\**(\w+)(?:\[\w+\])?;")
 WIDE = {"u64", "s64", "__u64", "__s64", "aligned_u64", "uint64_t", "int64_t", "ktime_t"}

@@ -24,7 +24,6 @@ COLUMNS = 100
 # rule, folder: findings that are left
 LIMITS = {
     ("lines", "master"): 6,
-    ("lines", "lib"): 1,
     ("lines", "tests"): 143,
     ("lines", "Documentation"): 0,
     ("lines", "README.md"): 2,
