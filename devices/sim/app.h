@@ -12,12 +12,13 @@
 
 #include "../../master/wire/al.h"
 #include "../../master/wire/eoe.h"
-#include "../../master/wire/sdo.h"
-#include "../../master/wire/sdoinfo.h"
-#include "../../master/wire/sii.h"
 #include "../../master/wire/soe.h"
 #include "../../master/wire/types.h"
 #include "../../master/wire/voe.h"
+#include "mbox_encode.h"
+#include "sdo_server.h"
+#include "sdoinfo_server.h"
+#include "sii_build.h"
 #include "sim.h"
 
 #define EC_APP_NAME		24	/* name of a slave, with the zero */

@@ -10,9 +10,9 @@
 #ifndef EC_SIM_ESC_H
 #define EC_SIM_ESC_H
 
-#include "../../master/wire/fmmu.h"
 #include "../../master/wire/frame.h"
 #include "../../master/wire/regs.h"
+#include "esc_page.h"
 
 struct ec_sim;
 struct ec_sim_fault;

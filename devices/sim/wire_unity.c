@@ -9,7 +9,6 @@
 #include "../../master/wire/sdo.c"
 #include "../../master/wire/sdoinfo.c"
 #include "../../master/wire/sii.c"
-#include "../../master/wire/sii_build.c"
 #include "../../master/wire/soe.c"
 #include "../../master/wire/types.c"
 #include "../../master/wire/voe.c"

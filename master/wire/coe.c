@@ -20,15 +20,15 @@ int ec_coe_hdr_decode(struct ec_rbuf *r, struct ec_coe_hdr *h)
 }
 
 /**
- * ec_coe_hdr_encode() - write a CoE header
+ * ec_coe_hdr_encode() - write a CoE header, of PDO number 0
  * @w: cursor
- * @h: what to write
+ * @service: enum ec_coe_service
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_coe_hdr_encode(struct ec_wbuf *w, const struct ec_coe_hdr *h)
+void ec_coe_hdr_encode(struct ec_wbuf *w, u8 service)
 {
-	ec_wbuf_le16(w, (u16)((h->number & 0x01FF) | h->service << 12));
+	ec_wbuf_le16(w, (u16)(service << 12));
 }
 
 static const char * const services[] = {
@@ -68,27 +68,6 @@ int ec_coe_emergency_decode(const u8 *rx, size_t len, struct ec_coe_emergency *e
 		return -EMSGSIZE;
 	memcpy(e->data, data, sizeof(e->data));
 	return 0;
-}
-
-/**
- * ec_coe_emergency_encode() - write an emergency
- * @tx: message behind the mailbox header
- * @cap: bytes at @tx
- * @e: what to write
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: bytes, -EMSGSIZE when it does not fit.
- */
-int ec_coe_emergency_encode(u8 *tx, size_t cap, const struct ec_coe_emergency *e)
-{
-	struct ec_wbuf w = ec_wbuf(tx, cap);
-	struct ec_coe_hdr h = { .service = EC_COE_EMERGENCY };
-
-	ec_coe_hdr_encode(&w, &h);
-	ec_wbuf_le16(&w, e->code);
-	ec_wbuf_u8(&w, e->reg);
-	ec_wbuf_bytes(&w, e->data, sizeof(e->data));
-	return w.bad ? -EMSGSIZE : EC_COE_EMERGENCY_SIZE;
 }
 
 /**

@@ -49,10 +49,6 @@ struct ec_sm {
 };
 
 void ec_fmmu_encode(const struct ec_fmmu *f, u8 page[EC_FMMU_PAGE]);
-void ec_fmmu_decode(struct ec_fmmu *f, const u8 page[EC_FMMU_PAGE]);
-u32 ec_fmmu_bits(const struct ec_fmmu *f);
 void ec_sm_encode(const struct ec_sm *sm, u8 page[EC_SM_PAGE]);
-void ec_sm_decode(struct ec_sm *sm, const u8 page[EC_SM_PAGE]);
-void ec_bits_copy(u8 *dst, u32 dst_bit, const u8 *src, u32 src_bit, u32 bits);
 
 #endif

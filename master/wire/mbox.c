@@ -102,19 +102,6 @@ int ec_mbox_error_decode(struct ec_rbuf *r, u16 *detail)
 	return type == 1 ? 0 : -EBADMSG;
 }
 
-/**
- * ec_mbox_error_encode() - write an error reply
- * @w: cursor behind the mailbox header
- * @detail: enum ec_mbox_error
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_mbox_error_encode(struct ec_wbuf *w, u16 detail)
-{
-	ec_wbuf_le16(w, 1);
-	ec_wbuf_le16(w, detail);
-}
-
 /*
  * Each code has an errno of its own, which no other cause in a transfer has, so that the errno
  * alone leads back to the text (ec_mbox_errno_detail()).

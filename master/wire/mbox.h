@@ -63,7 +63,6 @@ u8 ec_mbox_next_counter(u8 counter);
 const char *ec_mbox_type_name(u8 type);
 
 int ec_mbox_error_decode(struct ec_rbuf *r, u16 *detail);
-void ec_mbox_error_encode(struct ec_wbuf *w, u16 detail);
 const char *ec_mbox_error_text(u16 detail);
 int ec_mbox_error_errno(u16 detail);
 u16 ec_mbox_errno_detail(int err);

@@ -1,25 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
-#include "sdo.h"
-
-/* command byte */
-#define CMD_SHIFT	5
-#define CMD_BIT4	0x10	/* complete access, or toggle */
-#define CMD_EXPEDITED	0x02
-#define CMD_SIZE	0x01
-#define SEG_LAST	0x01
-
-/* bits 7-5 of requests (service 2) and responses (service 3) */
-enum {
-	REQ_DOWN_SEG = 0,
-	REQ_DOWN = 1,
-	REQ_UP = 2,
-	REQ_UP_SEG = 3,
-	REQ_ABORT = 4,
-	RESP_UP_SEG = 0,
-	RESP_DOWN_SEG = 1,
-	RESP_UP = 2,
-	RESP_DOWN = 3,
-};
+#include "sdo_msg.h"
 
 const char *ec_sdo_state_name(enum ec_sdo_state state)
 {
@@ -36,23 +16,29 @@ const char *ec_sdo_state_name(enum ec_sdo_state state)
 	return "???";
 }
 
-static void put_service(struct ec_wbuf *w, u8 service)
-{
-	struct ec_coe_hdr h = { .service = service };
-
-	ec_coe_hdr_encode(w, &h);
-}
-
 /* Any message that is no segment, up to its four bytes of size or data. */
 static void put_head(struct ec_wbuf *w, u8 service, u8 cmd, u16 index, u8 sub)
 {
-	put_service(w, service);
+	ec_coe_hdr_encode(w, service);
 	ec_wbuf_u8(w, cmd);
 	ec_wbuf_le16(w, index);
 	ec_wbuf_u8(w, sub);
 }
 
-static int put_simple(u8 *tx, size_t cap, u8 service, u8 cmd, u16 index, u8 sub, u32 arg)
+/**
+ * ec_sdo_put() - write a message without data
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @service: EC_COE_SDO_REQ or EC_COE_SDO_RESP
+ * @cmd: command byte
+ * @index: object, 0 for segments
+ * @sub: subindex, 0 for segments
+ * @arg: last four bytes
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit.
+ */
+int ec_sdo_put(u8 *tx, size_t cap, u8 service, u8 cmd, u16 index, u8 sub, u32 arg)
 {
 	struct ec_wbuf w = ec_wbuf(tx, cap);
 
@@ -61,29 +47,96 @@ static int put_simple(u8 *tx, size_t cap, u8 service, u8 cmd, u16 index, u8 sub,
 	return w.bad ? -EMSGSIZE : EC_SDO_MSG;
 }
 
-static int put_abort(u8 *tx, size_t cap, u16 index, u8 sub, u32 abort)
+/**
+ * ec_sdo_put_abort() - write an abort; client and server send the same
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @index: object
+ * @sub: subindex
+ * @abort: abort code
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit.
+ */
+int ec_sdo_put_abort(u8 *tx, size_t cap, u16 index, u8 sub, u32 abort)
 {
-	return put_simple(tx, cap, EC_COE_SDO_REQ, REQ_ABORT << CMD_SHIFT, index, sub, abort);
+	return ec_sdo_put(tx, cap, EC_COE_SDO_REQ, REQ_ABORT << CMD_SHIFT, index, sub, abort);
 }
 
-/* A segment; @n bytes of data, padded to the minimum. */
-static int put_segment(u8 *tx, size_t cap, u8 service, u8 cmd, const u8 *data, size_t n, bool last)
+/**
+ * ec_sdo_put_object() - write the first message that carries an object's data
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx, at least EC_SDO_MSG
+ * @service: EC_COE_SDO_REQ or EC_COE_SDO_RESP
+ * @cmd: command byte: REQ_DOWN or RESP_UP, and CMD_BIT4 for complete access
+ * @index: object
+ * @sub: subindex
+ * @data: content of the object
+ * @size: bytes at @data
+ * @chunk: result: bytes of @data in the message
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit.
+ */
+int ec_sdo_put_object(u8 *tx, size_t cap, u8 service, u8 cmd, u16 index, u8 sub,
+		      const u8 *data, size_t size, size_t *chunk)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+
+	/* complete access always in the normal form: not all slaves know the other */
+	if (size && size <= 4 && !(cmd & CMD_BIT4)) {
+		put_head(&w, service, (u8)(cmd | CMD_SIZE | CMD_EXPEDITED | (4 - size) << 2),
+			 index, sub);
+		*chunk = size;
+		ec_wbuf_bytes(&w, data, size);
+		ec_wbuf_zero(&w, 4 - size);
+	} else {
+		put_head(&w, service, cmd | CMD_SIZE, index, sub);
+		ec_wbuf_le32(&w, (u32)size);
+		*chunk = min_t(size_t, size, cap - EC_SDO_MSG);
+		ec_wbuf_bytes(&w, data, *chunk);
+	}
+	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
+}
+
+/**
+ * ec_sdo_put_segment() - write a segment, padded to the minimum
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @service: EC_COE_SDO_REQ or EC_COE_SDO_RESP
+ * @cmd: command byte: REQ_DOWN_SEG or RESP_UP_SEG, and the toggle bit
+ * @data: data of the segment
+ * @n: bytes at @data
+ * @last: no segment follows
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when they do not fit.
+ */
+int ec_sdo_put_segment(u8 *tx, size_t cap, u8 service, u8 cmd, const u8 *data, size_t n,
+		       bool last)
 {
 	struct ec_wbuf w = ec_wbuf(tx, cap);
 	size_t pad = n < EC_SDO_SEG_MIN ? EC_SDO_SEG_MIN - n : 0;
 
-	put_service(&w, service);
+	ec_coe_hdr_encode(&w, service);
 	ec_wbuf_u8(&w, (u8)(cmd | pad << 1 | (last ? SEG_LAST : 0)));
 	ec_wbuf_bytes(&w, data, n);
 	ec_wbuf_zero(&w, pad);
-	return w.bad ? -EMSGSIZE : (int)(EC_SDO_SEG_HDR + n + pad);
+	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
 }
 
-/*
- * Data bytes of a segment. The unused count means something only in a data
- * field of the minimum size; slaves that do not pad send it all the same.
+/**
+ * ec_sdo_segment_len() - data bytes of a received segment
+ * @cmd: command byte
+ * @field: bytes behind it
+ *
+ * The unused count of @cmd means something only in a data field of the minimum size; slaves that
+ * do not pad send it all the same.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, at most @field.
  */
-static size_t segment_len(u8 cmd, size_t field)
+size_t ec_sdo_segment_len(u8 cmd, size_t field)
 {
 	size_t n = EC_SDO_SEG_MIN - (cmd >> 1 & 7);
 
@@ -191,16 +244,16 @@ int ec_sdo_up_tx(struct ec_sdo_up *u, u8 *tx, size_t cap)
 {
 	switch (u->state) {
 	case EC_SDO_INITIATE:
-		return put_simple(tx, cap, EC_COE_SDO_REQ,
+		return ec_sdo_put(tx, cap, EC_COE_SDO_REQ,
 				  REQ_UP << CMD_SHIFT | (u->complete ? CMD_BIT4 : 0),
 				  u->index, u->sub, 0);
 	case EC_SDO_SEGMENT:
 		/* no index, but the full length of a message */
-		return put_simple(tx, cap, EC_COE_SDO_REQ,
+		return ec_sdo_put(tx, cap, EC_COE_SDO_REQ,
 				  REQ_UP_SEG << CMD_SHIFT | (u->toggle ? CMD_BIT4 : 0), 0, 0, 0);
 	case EC_SDO_ABORT:
 		up_set_state(u, EC_SDO_DONE);
-		return put_abort(tx, cap, u->index, u->sub, u->abort);
+		return ec_sdo_put_abort(tx, cap, u->index, u->sub, u->abort);
 	case EC_SDO_DONE:
 		break;
 	}
@@ -272,7 +325,7 @@ static int up_segment(struct ec_sdo_up *u, struct answer *a)
 		return up_fail(u, -EPROTO, EC_ABORT_TOGGLE, true);
 
 	field = ec_rbuf_left(&a->r);
-	n = segment_len(a->cmd, field);
+	n = ec_sdo_segment_len(a->cmd, field);
 	if (!n && !last)	/* would go on for ever */
 		return up_fail(u, field ? -EPROTO : -EMSGSIZE, EC_ABORT_COMMAND, true);
 	u->toggle = !u->toggle;
@@ -367,28 +420,6 @@ void ec_sdo_down_init(struct ec_sdo_down *d, u16 index, u8 sub, bool complete,
 	down_set_state(d, EC_SDO_INITIATE);
 }
 
-static int down_initiate_tx(struct ec_sdo_down *d, u8 *tx, size_t cap)
-{
-	u8 cmd = REQ_DOWN << CMD_SHIFT | CMD_SIZE | (d->complete ? CMD_BIT4 : 0);
-	struct ec_wbuf w = ec_wbuf(tx, cap);
-
-	/* complete access always in the normal form: not all slaves know the other */
-	if (d->size && d->size <= 4 && !d->complete) {
-		cmd |= (u8)(CMD_EXPEDITED | (4 - d->size) << 2);
-		put_head(&w, EC_COE_SDO_REQ, cmd, d->index, d->sub);
-		d->chunk = d->size;
-		ec_wbuf_bytes(&w, d->data, d->chunk);
-		ec_wbuf_zero(&w, 4 - d->chunk);
-		return w.bad ? -EMSGSIZE : EC_SDO_MSG;
-	}
-
-	put_head(&w, EC_COE_SDO_REQ, cmd, d->index, d->sub);
-	ec_wbuf_le32(&w, (u32)d->size);
-	d->chunk = min_t(size_t, d->size, cap - EC_SDO_MSG);
-	ec_wbuf_bytes(&w, d->data, d->chunk);
-	return w.bad ? -EMSGSIZE : (int)(EC_SDO_MSG + d->chunk);
-}
-
 /**
  * ec_sdo_down_tx() - next message of a download
  * @d: exchange
@@ -413,15 +444,17 @@ int ec_sdo_down_tx(struct ec_sdo_down *d, u8 *tx, size_t cap)
 
 	switch (d->state) {
 	case EC_SDO_INITIATE:
-		return down_initiate_tx(d, tx, cap);
+		return ec_sdo_put_object(tx, cap, EC_COE_SDO_REQ,
+					 REQ_DOWN << CMD_SHIFT | (d->complete ? CMD_BIT4 : 0),
+					 d->index, d->sub, d->data, d->size, &d->chunk);
 	case EC_SDO_SEGMENT:
 		d->chunk = min_t(size_t, left, cap - EC_SDO_SEG_HDR);
-		return put_segment(tx, cap, EC_COE_SDO_REQ,
+		return ec_sdo_put_segment(tx, cap, EC_COE_SDO_REQ,
 				   REQ_DOWN_SEG << CMD_SHIFT | (d->toggle ? CMD_BIT4 : 0),
 				   d->data + d->sent, d->chunk, d->chunk == left);
 	case EC_SDO_ABORT:
 		down_set_state(d, EC_SDO_DONE);
-		return put_abort(tx, cap, d->index, d->sub, d->abort);
+		return ec_sdo_put_abort(tx, cap, d->index, d->sub, d->abort);
 	case EC_SDO_DONE:
 		break;
 	}
@@ -498,210 +531,4 @@ void ec_sdo_down_cancel(struct ec_sdo_down *d, u32 abort)
 {
 	if (d->state == EC_SDO_INITIATE || d->state == EC_SDO_SEGMENT)
 		down_fail(d, 0, abort, true);
-}
-
-static void srv_set_state(struct ec_sdo_srv *srv, enum ec_sdo_srv_state state)
-{
-	srv->state = state;
-}
-
-/**
- * ec_sdo_srv_init() - prepare an SDO server
- * @srv: server
- * @ops: object dictionary
- * @ctx: its argument
- * @buf: transfer buffer
- * @cap: bytes at @buf: the largest object
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_sdo_srv_init(struct ec_sdo_srv *srv, const struct ec_sdo_srv_ops *ops, void *ctx,
-		     u8 *buf, size_t cap)
-{
-	*srv = (struct ec_sdo_srv){ .ops = ops, .ctx = ctx, .buf = buf, .cap = cap };
-	srv_set_state(srv, EC_SDO_SRV_IDLE);
-}
-
-static int srv_abort(struct ec_sdo_srv *srv, u8 *resp, size_t cap, u32 abort)
-{
-	srv_set_state(srv, EC_SDO_SRV_IDLE);
-	return put_abort(resp, cap, srv->index, srv->sub, abort);
-}
-
-static u8 srv_ca(const struct ec_sdo_srv *srv)
-{
-	return srv->complete ? CMD_BIT4 : 0;
-}
-
-static int srv_upload(struct ec_sdo_srv *srv, u8 *resp, size_t cap)
-{
-	struct ec_wbuf w = ec_wbuf(resp, cap);
-	u8 cmd = RESP_UP << CMD_SHIFT | CMD_SIZE | srv_ca(srv);
-	u32 abort;
-
-	srv->size = 0;
-	abort = srv->ops->read(srv->ctx, srv->index, srv->sub, srv->complete,
-			       srv->buf, srv->cap, &srv->size);
-	if (!abort && srv->size > srv->cap)
-		abort = EC_ABORT_INTERNAL;
-	if (abort)
-		return srv_abort(srv, resp, cap, abort);
-
-	if (srv->size && srv->size <= 4 && !srv->complete) {
-		cmd |= (u8)(CMD_EXPEDITED | (4 - srv->size) << 2);
-		put_head(&w, EC_COE_SDO_RESP, cmd, srv->index, srv->sub);
-		ec_wbuf_bytes(&w, srv->buf, srv->size);
-		ec_wbuf_zero(&w, 4 - srv->size);
-		return EC_SDO_MSG;
-	}
-	put_head(&w, EC_COE_SDO_RESP, cmd, srv->index, srv->sub);
-	ec_wbuf_le32(&w, (u32)srv->size);
-	srv->pos = min_t(size_t, srv->size, cap - EC_SDO_MSG);
-	ec_wbuf_bytes(&w, srv->buf, srv->pos);
-	if (srv->pos < srv->size)
-		srv_set_state(srv, EC_SDO_SRV_UPLOAD);
-	return (int)(EC_SDO_MSG + srv->pos);
-}
-
-static int srv_upload_seg(struct ec_sdo_srv *srv, u8 cmd, u8 *resp, size_t cap)
-{
-	size_t left = srv->size - srv->pos, n;
-	const u8 *p = srv->buf + srv->pos;
-	u8 toggle = cmd & CMD_BIT4;
-
-	if (srv->state != EC_SDO_SRV_UPLOAD)
-		return srv_abort(srv, resp, cap, EC_ABORT_COMMAND);
-	if (toggle != srv->toggle)
-		return srv_abort(srv, resp, cap, EC_ABORT_TOGGLE);
-	n = min_t(size_t, left, cap - EC_SDO_SEG_HDR);
-	srv->pos += n;
-	srv->toggle ^= CMD_BIT4;
-	if (n == left)
-		srv_set_state(srv, EC_SDO_SRV_IDLE);
-	return put_segment(resp, cap, EC_COE_SDO_RESP, RESP_UP_SEG << CMD_SHIFT | toggle,
-			   p, n, n == left);
-}
-
-static u32 srv_write(struct ec_sdo_srv *srv)
-{
-	srv_set_state(srv, EC_SDO_SRV_IDLE);
-	return srv->ops->write(srv->ctx, srv->index, srv->sub, srv->complete, srv->buf, srv->size);
-}
-
-static int srv_download(struct ec_sdo_srv *srv, u8 cmd, struct ec_rbuf *r, u8 *resp, size_t cap)
-{
-	const u8 *p;
-	size_t n;
-	u32 abort = 0;
-
-	if (cmd & CMD_EXPEDITED) {
-		srv->size = cmd & CMD_SIZE ? 4u - (cmd >> 2 & 3) : 4u;
-		n = srv->size;
-	} else {
-		srv->size = ec_rbuf_le32(r);
-		n = min_t(size_t, srv->size, ec_rbuf_left(r));
-	}
-	if (srv->size > srv->cap)
-		return srv_abort(srv, resp, cap, EC_ABORT_MEMORY);
-	p = ec_rbuf_take(r, n);
-	if (n && p)
-		memcpy(srv->buf, p, n);
-	srv->pos = n;
-	if (n < srv->size)
-		srv_set_state(srv, EC_SDO_SRV_DOWNLOAD);
-	else
-		abort = srv_write(srv);
-	if (abort)
-		return srv_abort(srv, resp, cap, abort);
-	return put_simple(resp, cap, EC_COE_SDO_RESP, RESP_DOWN << CMD_SHIFT | srv_ca(srv),
-			  srv->index, srv->sub, 0);
-}
-
-static int srv_download_seg(struct ec_sdo_srv *srv, u8 cmd, struct ec_rbuf *r,
-			    u8 *resp, size_t cap)
-{
-	size_t n = segment_len(cmd, ec_rbuf_left(r));
-	const u8 *p = ec_rbuf_take(r, n);
-	u8 toggle = cmd & CMD_BIT4;
-	struct ec_wbuf w = ec_wbuf(resp, cap);
-	u32 abort;
-
-	if (srv->state != EC_SDO_SRV_DOWNLOAD)
-		return srv_abort(srv, resp, cap, EC_ABORT_COMMAND);
-	if (toggle != srv->toggle)
-		return srv_abort(srv, resp, cap, EC_ABORT_TOGGLE);
-	if (n > srv->size - srv->pos)
-		return srv_abort(srv, resp, cap, EC_ABORT_TOO_LONG);
-	if (n)
-		memcpy(srv->buf + srv->pos, p, n);
-	srv->pos += n;
-	srv->toggle ^= CMD_BIT4;
-	if (cmd & SEG_LAST) {
-		abort = srv->pos < srv->size ? EC_ABORT_TOO_SHORT : srv_write(srv);
-		if (abort)
-			return srv_abort(srv, resp, cap, abort);
-	}
-	put_service(&w, EC_COE_SDO_RESP);
-	ec_wbuf_u8(&w, RESP_DOWN_SEG << CMD_SHIFT | toggle);
-	ec_wbuf_zero(&w, EC_SDO_SEG_MIN);
-	return EC_SDO_MSG;
-}
-
-/**
- * ec_sdo_srv_handle() - answer an SDO request
- * @srv: server
- * @req: CoE message behind the mailbox header
- * @len: bytes at @req: the length of the mailbox header
- * @resp: answer, without mailbox header
- * @cap: size of the slave's send mailbox less EC_MBOX_HDR, at least EC_SDO_MSG
- *
- * Context: Any. RT-safe: bounded apart from @srv->ops, no sleep, no allocation.
- * Return: bytes of the answer, 0 when none is due (an abort came),
- * -EMSGSIZE for a request that is too short, -ENOMSG for a message that is no
- * SDO request; both call for an error reply of the mailbox. -EINVAL: @cap is
- * too small.
- */
-int ec_sdo_srv_handle(struct ec_sdo_srv *srv, const u8 *req, size_t len, u8 *resp, size_t cap)
-{
-	struct ec_rbuf r = ec_rbuf(req, len);
-	struct ec_coe_hdr h;
-	u8 cmd, cs;
-
-	if (cap < EC_SDO_MSG)
-		return -EINVAL;
-	if (ec_coe_hdr_decode(&r, &h))
-		return -EMSGSIZE;
-	if (h.service != EC_COE_SDO_REQ)
-		return -ENOMSG;
-	cmd = ec_rbuf_u8(&r);
-	if (r.bad)
-		return -EMSGSIZE;
-
-	cs = cmd >> CMD_SHIFT;
-	switch (cs) {
-	case REQ_UP_SEG:
-		return srv_upload_seg(srv, cmd, resp, cap);
-	case REQ_DOWN_SEG:
-		return srv_download_seg(srv, cmd, &r, resp, cap);
-	case REQ_ABORT:
-		srv_set_state(srv, EC_SDO_SRV_IDLE);
-		return 0;
-	}
-
-	/* a new transfer ends the last one */
-	srv_set_state(srv, EC_SDO_SRV_IDLE);
-	srv->index = ec_rbuf_le16(&r);
-	srv->sub = ec_rbuf_u8(&r);
-	srv->complete = cmd & CMD_BIT4;
-	srv->toggle = 0;
-	srv->pos = 0;
-	if (ec_rbuf_left(&r) < 4)
-		return -EMSGSIZE;
-	if (cs != REQ_UP && cs != REQ_DOWN)
-		return srv_abort(srv, resp, cap, EC_ABORT_COMMAND);
-	if (srv->complete && srv->sub > 1)
-		return srv_abort(srv, resp, cap, EC_ABORT_NO_SUB);
-	if (cs == REQ_UP)
-		return srv_upload(srv, resp, cap);
-	return srv_download(srv, cmd, &r, resp, cap);
 }

@@ -2,8 +2,7 @@
 /*
  * SDO information (ETG.1000.6 clause 5.6.3): reading the object dictionary.
  * Client exchanges without I/O, see sdo.h; an answer may come in several
- * fragments, for which ec_sdoinfo_rx() returns EC_WAIT. The server side encodes
- * an answer of any size into as many fragments as it needs.
+ * fragments, for which ec_sdoinfo_rx() returns EC_WAIT.
  */
 #ifndef EC_WIRE_SDOINFO_H
 #define EC_WIRE_SDOINFO_H
@@ -13,6 +12,8 @@
 #define EC_SDOINFO_HDR		6	/* CoE header, opcode, reserved, fragments left */
 #define EC_SDOINFO_MIN		10	/* smallest mailbox content a CoE slave has */
 #define EC_SDOINFO_FRAGMENTS	4096	/* no answer has more */
+#define EC_SDOINFO_OPCODE_MASK	0x7F
+#define EC_SDOINFO_INCOMPLETE	0x80
 
 enum ec_sdoinfo_opcode {
 	EC_SDOINFO_LIST_REQ = 1,
@@ -137,6 +138,7 @@ struct ec_sdoinfo {
 	u32 abort;
 };
 
+void ec_sdoinfo_put_hdr(struct ec_wbuf *w, u8 opcode, u16 left);
 void ec_sdoinfo_init_list(struct ec_sdoinfo *s, u16 list, u8 *data, size_t cap);
 void ec_sdoinfo_init_object(struct ec_sdoinfo *s, u16 index, u8 *data, size_t cap);
 void ec_sdoinfo_init_entry(struct ec_sdoinfo *s, u16 index, u8 sub, u8 info,
@@ -148,43 +150,5 @@ size_t ec_sdoinfo_list_count(const struct ec_sdoinfo *s);
 u16 ec_sdoinfo_list_get(const struct ec_sdoinfo *s, size_t i);
 int ec_od_object_decode(const u8 *data, size_t len, struct ec_od_object *o);
 int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e);
-
-/**
- * struct ec_sdoinfo_req - a request as the server sees it
- * @opcode: EC_SDOINFO_LIST_REQ...
- * @index: object, or list type
- * @sub: subindex
- * @info: optional fields asked for
- */
-struct ec_sdoinfo_req {
-	u8 opcode;
-	u16 index;
-	u8 sub;
-	u8 info;
-};
-
-/**
- * struct ec_sdoinfo_resp - an answer on its way out
- * @opcode: EC_SDOINFO_LIST_RESP...
- * @data: body; of a list the list type first, then the indexes
- * @size: bytes at @data
- * @pos: bytes sent
- * @done: the last fragment is out
- */
-struct ec_sdoinfo_resp {
-	u8 opcode;
-	const u8 *data;
-	size_t size;
-	size_t pos;
-	bool done;
-};
-
-int ec_sdoinfo_req_decode(const u8 *rx, size_t len, struct ec_sdoinfo_req *req);
-int ec_od_list_encode(u8 *buf, size_t cap, u16 list, const u16 *index, size_t n);
-int ec_od_object_encode(u8 *buf, size_t cap, const struct ec_od_object *o);
-int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e);
-void ec_sdoinfo_resp_init(struct ec_sdoinfo_resp *r, u8 opcode, const u8 *data, size_t size);
-int ec_sdoinfo_resp_next(struct ec_sdoinfo_resp *r, u8 *tx, size_t cap);
-int ec_sdoinfo_error_encode(u8 *tx, size_t cap, u32 abort);
 
 #endif

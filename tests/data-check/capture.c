@@ -5,11 +5,13 @@
  * exchanges would have sent; the answers of the slaves are fed to them.
  */
 #include "check.h"
-#include "../../master/wire/fmmu.h"
+#include "../../devices/sim/esc_page.h"
+#include "../../devices/sim/mbox_encode.h"
+#include "../../devices/sim/sdo_server.h"
+#include "../../devices/sim/sdoinfo_server.h"
 #include "../../master/wire/frame.h"
 #include "../../master/wire/regs.h"
 #include "../../master/wire/sdo.h"
-#include "../../master/wire/sdoinfo.h"
 
 static int faults;
 static const char *file;

@@ -4,7 +4,7 @@
  * apart and built again byte by byte.
  */
 #include "check.h"
-#include "../../master/wire/sii.h"
+#include "../../devices/sim/sii_build.h"
 #include <stdlib.h>
 
 static const struct image {

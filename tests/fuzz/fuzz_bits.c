@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Bits from place to place, against the slow way: one after the other. */
 #include "fuzz.h"
-#include "../../master/wire/fmmu.h"
+#include "../../devices/sim/esc_page.h"
 
 const struct fuzz_seed fuzz_seeds[] = {
 	SEED("\0\0\x08\x01\x02\x03\x04"),

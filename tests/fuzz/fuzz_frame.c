@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Frames: every datagram stays inside, and what is sound is built again byte by byte. */
 #include "fuzz.h"
-#include "../../master/wire/fmmu.h"
+#include "../../devices/sim/esc_page.h"
 #include "../../master/wire/frame.h"
 
 const struct fuzz_seed fuzz_seeds[] = {

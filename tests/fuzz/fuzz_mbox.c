@@ -2,7 +2,7 @@
 /* Mailbox header, error reply, CoE header, emergency; and all code tables. */
 #include "fuzz.h"
 #include "../../master/wire/al.h"
-#include "../../master/wire/coe.h"
+#include "../../devices/sim/mbox_encode.h"
 #include "../../master/wire/types.h"
 
 const struct fuzz_seed fuzz_seeds[] = {

@@ -4,6 +4,7 @@
  * size, then messages, each behind a length byte.
  */
 #include "fuzz.h"
+#include "../../devices/sim/sdo_server.h"
 #include "../../master/wire/sdo.h"
 
 const struct fuzz_seed fuzz_seeds[] = {

@@ -4,7 +4,7 @@
  * size, then messages, each behind a length byte.
  */
 #include "fuzz.h"
-#include "../../master/wire/sdoinfo.h"
+#include "../../devices/sim/sdoinfo_server.h"
 
 const struct fuzz_seed fuzz_seeds[] = {
 	SEED("\0\x40" "\x0A" "\0\x80\x82\0\1\0\1\0\0\x10" "\x08" "\0\x80\2\0\0\0\x18\x10"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SII images: all decoders, and the reader that fetches piece by piece. */
 #include "fuzz.h"
-#include "../../master/wire/sii.h"
+#include "../../devices/sim/sii_build.h"
 
 #define FIXED "\x05\x0E\x03\x06\x10\x27\0\0\0\0\0\0\0\0\xD7\0\x37\x13\0\0\x56\x34\x12\0\1\0\0\0\0\0\0\0" \
 	"\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\x10\x80\0\x80\x10\x80\0\4\0\0\0\0\0\0\0" \

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
-#include "../../master/wire/fmmu.h"
+#include "../../devices/sim/esc_page.h"
 
 static void fmmu_page_survives_both_ways(struct kunit *test)
 {

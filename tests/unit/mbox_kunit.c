@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
-#include "../../master/wire/mbox.h"
+#include "../../devices/sim/mbox_encode.h"
 
 static void mbox_header_survives_both_ways(struct kunit *test)
 {

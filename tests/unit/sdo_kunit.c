@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
+#include "../../devices/sim/sdo_server.h"
 #include "../../master/wire/sdo.h"
 
 static u8 tx[1500], rx[1500], obj[4096], got[4096], srv_buf[4096];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
-#include "../../master/wire/sii.h"
+#include "../../devices/sim/sii_build.h"
 
 static u8 img[EC_SII_MAX_SIZE];
 static int used;	/* bytes of img, end marker included */

@@ -5,6 +5,7 @@
 
 #include "sim_esc_kunit.h"
 #include "../../devices/sim/describe.h"
+#include "../../master/wire/sdo.h"
 
 #define STATION(i)	((u16)(1001 + (i)))
 

@@ -4,7 +4,8 @@
  * encoders: whatever codec and test agree on wrongly is caught here.
  */
 #include "wire_kunit.h"
-#include "../../master/wire/fmmu.h"
+#include "../../devices/sim/esc_page.h"
+#include "../../devices/sim/mbox_encode.h"
 #include "../../master/wire/frame.h"
 #include "../../master/wire/sdo.h"
 #include "../../master/wire/sii.h"

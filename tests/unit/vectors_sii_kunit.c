@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* An EEPROM image typed from the tables of the specification, both ways. */
 #include "wire_kunit.h"
-#include "../../master/wire/sii.h"
+#include "../../devices/sim/sii_build.h"
 
 static const u8 image[] = {
 	/* PDI control 0x0E05, config 0x0603, impulse 100 us, alias 0, checksum */

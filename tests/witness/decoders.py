@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-2.0-only
-"""Every function of master/wire that takes bytes is run by golden vectors
-(tests/unit/vectors*_kunit.c) and by a fuzz target (tests/fuzz); measured with
-gcov. With DATA= the real images and captures are measured, too.
+"""Every function of the codecs (master/wire, and the slave's side of the
+simulator) that takes bytes is run by golden vectors (tests/unit/vectors*_kunit.c)
+and by a fuzz target (tests/fuzz); measured with gcov. With DATA= the real images and captures are measured, too.
 
 usage: decoders.py [BUILD-FOLDER]
 """
@@ -24,6 +24,8 @@ CFLAGS = ["-std=gnu11", "-g", "-O1", "-fno-inline", "--coverage",
 BYTES = re.compile(r"const u8 \*|const u8 \w+\[|struct ec_rbuf \*|"
                    r"struct ec_\w*iter \*|u8 \*frame|const struct ec_sii_pdo \*")
 
+SIM_CODECS = ["esc_page", "mbox_encode", "sdo_server", "sdoinfo_server", "sii_build"]
+
 
 def run(*args, **kw):
     return subprocess.run(args, check=True, cwd=build, **kw)
@@ -33,10 +35,16 @@ def find(*parts):
     return sorted(glob.glob(os.path.join(top, *parts)))
 
 
+def codecs():
+    """the files this is about"""
+    return find("master/wire/*.c") + [f for name in SIM_CODECS
+                                      for f in find("devices/sim", name + ".c")]
+
+
 def decoders():
     """{name: file} of the functions, static ones too, that take bytes"""
     found = {}
-    for path in find("master/wire/*.c"):
+    for path in codecs():
         with open(path) as f:
             text = f.read()
         for m in re.finditer(r"^(?:static )?[\w ]+?[ *](\w+)\(([^;{}]*?)\)\n\{", text, re.M):
@@ -57,13 +65,13 @@ def link(name, *objs):
 
 
 def counts(*commands):
-    """runs programs; {function: calls} of master/wire"""
+    """runs programs; {function: calls} of the codecs"""
     for f in glob.glob(os.path.join(build, "*.gcda")):
         os.unlink(f)
     for c in commands:
         run(*c, stdout=subprocess.DEVNULL)
     calls = {}
-    for path in find("master/wire/*.c"):
+    for path in codecs():
         data = os.path.splitext(os.path.basename(path))[0] + ".gcda"
         if not os.path.exists(os.path.join(build, data)):
             continue
@@ -92,7 +100,7 @@ def main():
         objs = dict(zip(paths, pool.map(compile_one, paths)))
     of = lambda files: [objs[f] for f in files]
 
-    columns = {"vectors": counts([link("vectors", *of(vectors + wire))])}
+    columns = {"vectors": counts([link("vectors", *of(vectors + wire + sim))])}
     columns["fuzz"] = counts(*[[link(objs[f][:-2], objs[f], *of(driver + wire + sim)), "10000"]
                                for f in fuzz])
     if os.environ.get("DATA"):

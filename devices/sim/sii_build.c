@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
-/* Building an EEPROM image (ETG.2010). */
-#include "sii.h"
+#include "sii_build.h"
 
 static struct ec_wbuf grow(struct ec_sii_builder *b, size_t n)
 {
