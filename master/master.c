@@ -33,7 +33,17 @@ static void wake(struct ec_bus *bus)
 	ec_monitor_kick(container_of(bus, struct ec_master, bus));
 }
 
+static bool attached(const struct ec_slave *s)
+{
+	return ec_config_of(s);
+}
+
 static const struct ec_bus_ops bus_ops = {
+	.slave_bytes = {
+		[EC_EXT_CLOCK] = sizeof(struct ec_clock),
+		[EC_EXT_CONFIG] = sizeof(struct ec_setup),
+	},
+	.attached = attached,
 	.configure = ec_apply,
 	.wake = wake,
 };

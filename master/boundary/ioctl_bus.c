@@ -107,7 +107,7 @@ int ec_ioc_debug(struct ec_call *call)
 static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
 {
 	return session && session->wanted.active && !session->ending &&
-	       (s->config || s == session->raised);
+	       (ec_config_of(s) || s == session->raised);
 }
 
 static void try_again(const struct ec_session *session, struct ec_slave *s)

@@ -173,7 +173,7 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 	next = m->bus.slaves[s->next[p]];
 	if (!(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
 		return 0;
-	return p == s->upstream ? s->dc_hop : next->dc_hop;
+	return p == s->upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
 }
 
 static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
@@ -285,6 +285,7 @@ int ec_ioc_slave(struct ec_call *call)
 {
 	struct ec_ioc_slave *i = call->arg;
 	struct ec_slave *s = call->slave;
+	const struct ec_clock *c = ec_clock_of(s);
 	u16 feat = ec_slave_features(s);
 
 	i->station = s->station;
@@ -308,12 +309,13 @@ int ec_ioc_slave(struct ec_call *call)
 	i->mbox_protocols = s->info.protocols;
 	i->fmmu_bit = !(feat & EC_FEAT_NO_BIT_FMMU);
 	i->dc_supported = !(feat & EC_FEAT_DC) ? 0 : feat & EC_FEAT_DC64 ? 2 : 1;
-	i->dc_delay_only = READ_ONCE(s->dc_delay_only);
-	i->transmission_delay = s->dc_delay;
-	i->dc_offset = s->dc_offset;
-	i->dc_diff = s->dc_diff;
-	i->dc_set = s->dc_set;
-	i->dc_odd = i->dc_supported && (READ_ONCE(s->dc_odd) || READ_ONCE(s->topology_odd));
+	i->dc_delay_only = READ_ONCE(s->delay_only);
+	i->transmission_delay = c->delay;
+	i->dc_offset = c->offset;
+	i->dc_diff = READ_ONCE(c->diff);
+	i->dc_set = ec_clock_is_set(s);
+	i->dc_odd = i->dc_supported &&
+		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->topology_odd));
 	i->features = feat;
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];

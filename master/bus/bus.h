@@ -16,16 +16,21 @@ struct ec_bus;
 struct ec_links;
 struct ec_slave;
 
-/* higher layers that are reached from a slave */
+/* higher layers with a part of their own in the bus and in each slave */
 enum ec_bus_ext {
 	EC_EXT_CLOCK,
+	EC_EXT_CONFIG,
 	EC_N_EXT,
 };
 
 /** struct ec_bus_ops - what the layer needs of higher ones */
 struct ec_bus_ops {
+	/** @slave_bytes: size of the part of each layer in a slave, struct ec_slave @ext */
+	size_t slave_bytes[EC_N_EXT];
 	/** @configure: bring a slave to the state requested; the slave's worker, may sleep */
 	void (*configure)(struct ec_slave *slave);
+	/** @attached: an application has configured the slave; any context */
+	bool (*attached)(const struct ec_slave *slave);
 	/** @wake: the monitor has something to do now; any context */
 	void (*wake)(struct ec_bus *bus);
 };

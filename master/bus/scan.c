@@ -173,7 +173,7 @@ static void count_claims(struct scan *sc)
 static bool is_usable(const struct ec_slave *s)
 {
 	return !READ_ONCE(s->error) || READ_ONCE(s->silent) ||
-	       (s->error == EC_SLAVE_CONFIG_FAILED && READ_ONCE(s->config));
+	       (s->error == EC_SLAVE_CONFIG_FAILED && s->bus->ops->attached(s));
 }
 
 /*
@@ -307,7 +307,7 @@ static void take_regs(struct scan *sc)
 			continue;
 		}
 		memcpy(s->regs, r->info, sizeof(s->regs));
-		WRITE_ONCE(s->dc_delay_only,
+		WRITE_ONCE(s->delay_only,
 			   r->delay_only && ec_slave_features(s) & EC_FEAT_DC);
 		s->dl_status = get_unaligned_le16(r->dl);
 		/* of a known slave its worker may have a newer one */

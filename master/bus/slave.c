@@ -8,6 +8,8 @@
 #include "slave.h"
 #include "slave_pdo.h"
 
+#define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
+
 static void work(struct work_struct *w)
 {
 	struct ec_slave *s = container_of(w, struct ec_slave, work);
@@ -28,11 +30,21 @@ static void work(struct work_struct *w)
  */
 struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 {
-	struct ec_slave *s = kzalloc(sizeof(*s), GFP_KERNEL);
-	unsigned int p;
+	const size_t *bytes = bus->ops->slave_bytes;
+	size_t size = ALIGN(sizeof(struct ec_slave), EXT_ALIGN);
+	struct ec_slave *s;
+	unsigned int p, x;
 
+	for (x = 0; x < EC_N_EXT; x++)
+		size += ALIGN(bytes[x], EXT_ALIGN);
+	s = kzalloc(size, GFP_KERNEL);
 	if (!s)
 		return NULL;
+	/* in one piece: a slave without these parts cannot be, and all end together */
+	for (x = EC_N_EXT; x-- > 0;) {
+		size -= ALIGN(bytes[x], EXT_ALIGN);
+		s->ext[x] = (u8 *)s + size;
+	}
 	kref_init(&s->kref);
 	s->bus = bus;
 	s->station = station;

@@ -16,7 +16,6 @@
 #include "../wire/regs.h"
 #include "../wire/sii.h"
 
-struct ec_config;
 struct ec_bus;
 
 /* distance of the tries to read or configure a slave that failed; doubles each time */
@@ -30,6 +29,7 @@ struct ec_bus;
  * Fixed after the scan:
  * @kref: reference count; the master's table holds one
  * @bus: bus
+ * @ext: parts of higher layers, zeroed at first; they are as old as the slave itself
  * @stop: ends what callers and its worker wait for
  * @mbox: its mailbox
  * @station: station address
@@ -56,6 +56,7 @@ struct ec_bus;
  * @dl_status: register 0x0110
  * @alias: effective alias
  * @recv: receive times at the ports
+ * @delay_only: it has receive times, but no other register of a clock (0x0928)
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
  * @parent: the slave it hung at when it was lost, in words
@@ -70,19 +71,6 @@ struct ec_bus;
  * @names: from the object dictionary
  * @names_done: the slave was asked for those its EEPROM does not have
  *
- * Of the distributed clock, changed under master->dc.lock:
- * @dc_delay: propagation delay from the reference clock, ns, register 0x0928
- * @dc_hop: way from the clock before it, ns
- * @dc_delay_only: it has receive times, but no clock that can be set
- * @dc_scan: 1 + number of the scan after which the two were measured
- * @dc_odd: receive times make no sense: the two are not certain
- * @dc_offset: of its system time, ns, register 0x0920
- * @dc_diff: last difference to the reference clock, ns, positive: ahead
- * @dc_set: its clock was set for this session
- * @dc_far: it is outside the sync window
- * @dc_out: it did not answer when it should be set
- * @dc_vain: tries to set it since then for which it had answered; only the watch counts
- *
  * Changing:
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
@@ -93,32 +81,24 @@ struct ec_bus;
  *	@lock copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
- * @pdo_refusal: the first PDO mapping or assignment it refused since it was configured
  * @warning: what is not certain of its process data, empty: nothing
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
- * @waits_for: what the worker is waiting for, NULL: nothing that lasts
  * @work: brings it to @requested
  * @works: runs of @work that are queued or in progress
  * @lock: one worker or caller at a time changes its state
- * @config: what the session wants from it, under lock of the configuration and @lock
  * @read_pdos: read the PDOs when it is there
- * @plan: what the worker goes by: @config, once its session is active; under @lock
- * @holds: the worker has both locks of @mbox
  * @reconfigure: go through INIT and configure again
- * @mapped: its FMMUs are set
- * @op_only: SyncManagers that are on in OP only and are on, a bit each
- * @sync_free: its SYNC signals run by a clock that was not set
- * @sync_due_ns: when they must have come (ktime), 0: nobody has to look
  * @clean: in PREOP, and nothing of a configuration is left in its registers
  * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
  */
 struct ec_slave {
 	struct kref kref;
 	struct ec_bus *bus;
+	void *ext[EC_N_EXT];
 	struct ec_stop stop;
 	struct ec_mbox mbox;
 	u16 station;
@@ -144,6 +124,7 @@ struct ec_slave {
 	u16 dl_status;
 	u16 alias;
 	u32 recv[EC_MAX_PORT];
+	bool delay_only;
 	u16 next[EC_MAX_PORT];
 	u8 upstream;
 	u8 parent_port;
@@ -157,18 +138,6 @@ struct ec_slave {
 	struct ec_names names;
 	bool names_done;
 
-	u32 dc_delay;
-	u32 dc_hop;
-	u32 dc_scan;
-	bool dc_odd;
-	bool dc_delay_only;
-	u64 dc_offset;
-	s32 dc_diff;
-	bool dc_set;
-	bool dc_far;
-	bool dc_out;
-	u8 dc_vain;
-
 	u16 al_status;
 	u16 al_code;
 	u32 al_reads;
@@ -176,28 +145,19 @@ struct ec_slave {
 	raw_spinlock_t note_lock;
 	u8 error;
 	char why[EC_UAPI_REASON];
-	char pdo_refusal[EC_UAPI_REASON];
 	char warning[EC_UAPI_WARNING];
 	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
 	aligned_u64 retry_ns;
 	u32 retry_ms;
 	u64 seen_ns;
-	const char *waits_for;
 	struct work_struct work;
 	atomic_t works;
 	struct mutex lock;
-	struct ec_config *config;
 	bool read_pdos;
-	const struct ec_config *plan;
-	bool holds;
 	bool reconfigure;
-	bool mapped;
-	u16 op_only;
 	bool clean;
 	bool ours;
-	bool sync_free;
-	u64 sync_due_ns;
 };
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
@@ -240,7 +200,7 @@ static inline u16 ec_slave_features(const struct ec_slave *s)
 /* a clock that can be set, not receive times alone */
 static inline bool ec_slave_has_clock(const struct ec_slave *s)
 {
-	return ec_slave_features(s) & EC_FEAT_DC && !READ_ONCE(s->dc_delay_only);
+	return ec_slave_features(s) & EC_FEAT_DC && !READ_ONCE(s->delay_only);
 }
 
 static inline bool ec_slave_no_lrw(const struct ec_slave *s)

@@ -67,7 +67,7 @@ int ec_dc_measure(struct ec_dc *dc)
 		return ret;
 	mutex_lock(&dc->lock);
 	for (try = 0; try < j.n; try++)
-		j.slaves[try]->dc_scan = 0;
+		ec_job_clock(&j, try)->measured = 0;
 	ret = -EAGAIN;
 	for (try = 0; j.ref < j.n && ret == -EAGAIN && try <= EC_DC_OUT_TRIES; try++) {
 		ret = ec_dc_get_delays(&j);
@@ -217,7 +217,7 @@ static void work(struct work_struct *work)
 		set_state(dc, EC_DC_OFF);
 		return;
 	}
-	if (j.ref < j.n && !j.slaves[j.ref]->dc_set)
+	if (j.ref < j.n && !ec_clock_is_set(j.slaves[j.ref]))
 		await_time(dc, t0);
 	if (READ_ONCE(dc->stop)) {
 		ec_dc_job_free(&j);
@@ -250,7 +250,7 @@ static void work(struct work_struct *work)
 	/* ec_dc_sync_start() has the other half of this barrier */
 	smp_mb();
 	for (i = 0; !ret && i < j.n; i++)
-		if (READ_ONCE(j.slaves[i]->dc_set))
+		if (ec_clock_is_set(j.slaves[i]))
 			ec_dc_sync_again(j.slaves[i]);
 	if (!ret)
 		ec_dc_settle(&j);
@@ -280,8 +280,10 @@ void ec_dc_begin(struct ec_dc *dc, bool all, u16 choice)
 	stop(dc);
 	down_read(&dc->bus->topo);
 	for (i = 0; all && i < dc->bus->n_slaves; i++) {
-		WRITE_ONCE(dc->bus->slaves[i]->dc_set, false);
-		dc->bus->slaves[i]->dc_vain = 0;
+		struct ec_clock *c = ec_clock_of(dc->bus->slaves[i]);
+
+		WRITE_ONCE(c->set, false);
+		c->failed_attempts = 0;
 	}
 	up_read(&dc->bus->topo);
 	WRITE_ONCE(dc->stop, false);

@@ -30,6 +30,34 @@ enum ec_dc_state {
 
 #define EC_DC_APP_PAST	15
 
+/** struct ec_clock - clock of a slave, changed with ec_dc.lock held where not said otherwise */
+struct ec_clock {
+	/** @delay: propagation delay from the reference clock, ns, register 0x0928 */
+	u32 delay;
+	/** @prev_delay: propagation delay from the clock upstream, ns */
+	u32 prev_delay;
+	/** @measured: 1 + number of the scan after which the two were measured, 0: never */
+	u32 measured;
+	/** @delay_unreliable: the receive times contradict the topology */
+	bool delay_unreliable;
+	/** @outside_window: the last difference was outside the sync window, with hysteresis */
+	bool outside_window;
+	/** @set: the clock was set for this session */
+	bool set;
+	/** @excluded: it gave no valid reply when it was to be set */
+	bool excluded;
+	/** @failed_attempts: to set it since, although it had replied to the watch */
+	u8 failed_attempts;
+	/** @sync_unsynchronized: SYNC signals run by a clock that was not set; ec_slave.lock */
+	bool sync_unsynchronized;
+	/** @diff: last difference to the reference clock, ns, positive: ahead */
+	s32 diff;
+	/** @offset: of the system time, ns, register 0x0920 */
+	u64 offset;
+	/** @sync_due_ns: first SYNC signals, not checked yet (ktime), or 0; ec_slave.lock */
+	u64 sync_due_ns;
+};
+
 /** struct ec_dc_sync - SYNC signals that an application wants of a slave */
 struct ec_dc_sync {
 	/** @assign: AssignActivate word of the ESI, 0: none */
@@ -209,6 +237,17 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c);
 static inline struct ec_dc *ec_dc_of(const struct ec_slave *s)
 {
 	return s->bus->ext[EC_EXT_CLOCK];
+}
+
+static inline struct ec_clock *ec_clock_of(const struct ec_slave *s)
+{
+	return s->ext[EC_EXT_CLOCK];
+}
+
+/* set for this session, though it may have been silent since */
+static inline bool ec_clock_is_set(const struct ec_slave *s)
+{
+	return READ_ONCE(ec_clock_of(s)->set);
 }
 
 #endif

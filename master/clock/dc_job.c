@@ -42,7 +42,7 @@ static bool has_times(const struct ec_slave *s)
 
 static bool is_clock(const struct ec_dc_job *j, unsigned int i)
 {
-	return j->nodes[i].dc && !READ_ONCE(j->slaves[i]->dc_delay_only);
+	return j->nodes[i].dc && !READ_ONCE(j->slaves[i]->delay_only);
 }
 
 static void fill_node(struct ec_dc_job *j, unsigned int i)
@@ -80,7 +80,7 @@ bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who)
 		return j->nodes[i].dc;
 	if (!is_clock(j, i) || who == EC_DC_CLOCKS)
 		return is_clock(j, i);
-	return !s->dc_set && (who == EC_DC_NEW || wide == (who == EC_DC_NEW_WIDE));
+	return !ec_clock_is_set(s) && (who == EC_DC_NEW || wide == (who == EC_DC_NEW_WIDE));
 }
 
 /**
@@ -138,7 +138,7 @@ static bool any_set(const struct ec_dc_job *j)
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
-		if (j->slaves[i]->dc_set)
+		if (ec_clock_is_set(j->slaves[i]))
 			return true;
 	return false;
 }
@@ -182,7 +182,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
 		j->slaves[i] = ec_slave_ref(dc->bus->slaves[i]);
-	if (dc->ref && dc->ref->dc_set && !READ_ONCE(dc->ref->stop.gone))
+	if (dc->ref && ec_clock_is_set(dc->ref) && !READ_ONCE(dc->ref->stop.gone))
 		j->followed = dc->ref->station;
 	up_read(&dc->bus->topo);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
@@ -277,16 +277,17 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 
 	for (i = 0; i < j->n; i++) {
 		struct ec_slave *s = j->slaves[i];
+		struct ec_clock *c = ec_clock_of(s);
 
 		if (!j->silent[i] || ++j->spoiled[i] < EC_DC_OUT_TRIES)
 			continue;
 		j->nodes[i].dc = false;
-		if (s->dc_delay_only)
+		if (s->delay_only)
 			continue;
-		if (!s->dc_out && !READ_ONCE(s->stop.gone))
+		if (!c->excluded && !READ_ONCE(s->stop.gone))
 			ec_slave_warn(s, "no valid reply to DC register access in %d attempts; clock excluded until it replies\n",
 				      EC_DC_OUT_TRIES);
-		WRITE_ONCE(s->dc_out, true);
+		WRITE_ONCE(c->excluded, true);
 		if (s->station == j->followed)
 			j->followed = 0;
 		if (i == j->ref)
@@ -414,16 +415,16 @@ static int measure(struct ec_dc_job *j)
 /* Those of the last scan count on, from the reference clock there is now. */
 static bool known(struct ec_dc_job *j, u32 scan)
 {
-	u32 zero = j->slaves[j->ref]->dc_delay;
+	u32 zero = ec_job_clock(j, j->ref)->delay;
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
-		if (j->nodes[i].dc && j->slaves[i]->dc_scan != scan)
+		if (j->nodes[i].dc && ec_job_clock(j, i)->measured != scan)
 			return false;
 	/* also those that are left out: they may take part again */
 	for (i = 0; i < j->n; i++)
-		if (j->slaves[i]->dc_scan == scan)
-			j->slaves[i]->dc_delay -= zero;
+		if (ec_job_clock(j, i)->measured == scan)
+			ec_job_clock(j, i)->delay -= zero;
 	return true;
 }
 
@@ -446,13 +447,16 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 	if (known(j, scan))
 		return 0;
 	ret = measure(j);
-	for (i = 0; i < j->n && !ret; i++)
-		if (j->nodes[i].dc) {
-			j->slaves[i]->dc_delay = (u32)div_s64(j->sum[i], ROUNDS);
-			j->slaves[i]->dc_hop = j->nodes[i].hop;
-			j->slaves[i]->dc_scan = scan;
-			WRITE_ONCE(j->slaves[i]->dc_odd, j->nodes[i].odd);
-		}
+	for (i = 0; i < j->n && !ret; i++) {
+		struct ec_clock *c = ec_job_clock(j, i);
+
+		if (!j->nodes[i].dc)
+			continue;
+		c->delay = (u32)div_s64(j->sum[i], ROUNDS);
+		c->prev_delay = j->nodes[i].hop;
+		c->measured = scan;
+		WRITE_ONCE(c->delay_unreliable, j->nodes[i].odd);
+	}
 	return ret;
 }
 

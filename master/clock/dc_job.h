@@ -48,6 +48,11 @@ struct ec_dc_job {
 	u8 time[8];
 };
 
+static inline struct ec_clock *ec_job_clock(const struct ec_dc_job *j, unsigned int i)
+{
+	return ec_clock_of(j->slaves[i]);
+}
+
 /* all with receive times; all clocks; those not set yet; of these 64 and 32 bits */
 enum ec_dc_who { EC_DC_TIMES, EC_DC_CLOCKS, EC_DC_NEW, EC_DC_NEW_WIDE, EC_DC_NEW_NARROW };
 

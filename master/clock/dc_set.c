@@ -30,12 +30,12 @@ static u64 latch_time(const struct ec_dc_job *j)
 	u64 t = ec_dc_app_at(j->dc, j->latch_ns);
 	unsigned int i, set = j->ref;
 
-	for (i = 0; !j->slaves[set]->dc_set && i < j->n; i++)
-		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && j->slaves[i]->dc_set)
+	for (i = 0; !ec_clock_is_set(j->slaves[set]) && i < j->n; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && ec_clock_is_set(j->slaves[i]))
 			set = i;
-	if (j->slaves[set]->dc_set) {
-		t = get_unaligned_le64(j->unit[set]) + j->slaves[set]->dc_offset -
-		    (s64)(s32)j->slaves[set]->dc_delay;
+	if (ec_clock_is_set(j->slaves[set])) {
+		t = get_unaligned_le64(j->unit[set]) + ec_job_clock(j, set)->offset -
+		    (s64)(s32)ec_job_clock(j, set)->delay;
 		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
 			t = ec_dc_whole(j->dc, (u32)t, j->latch_ns);
 	}
@@ -55,14 +55,14 @@ static struct values *compute(struct ec_dc_job *j, u64 t)
 	unsigned int i;
 
 	for (i = 0; v && i < j->n; i++) {
-		struct ec_slave *s = j->slaves[i];
+		struct ec_clock *c = ec_job_clock(j, i);
 
 		/* counted from the reference, which may be another one now */
-		put_unaligned_le32(s->dc_delay, v[i].delay);
+		put_unaligned_le32(c->delay, v[i].delay);
 		if (!ec_dc_chosen(j, i, EC_DC_NEW))
 			continue;
-		s->dc_offset = ec_dc_offset(t, s->dc_delay, get_unaligned_le64(j->unit[i]));
-		put_unaligned_le64(s->dc_offset, v[i].offset);
+		c->offset = ec_dc_offset(t, c->delay, get_unaligned_le64(j->unit[i]));
+		put_unaligned_le64(c->offset, v[i].offset);
 	}
 	return v;
 }
@@ -141,8 +141,8 @@ int ec_dc_write(struct ec_dc_job *j)
 	ret = write_values(j, v) ?: reset_filters(j);
 	for (i = 0; i < j->n && !ret; i++)
 		if (ec_dc_chosen(j, i, EC_DC_CLOCKS)) {
-			WRITE_ONCE(j->slaves[i]->dc_out, false);
-			WRITE_ONCE(j->slaves[i]->dc_set, true);
+			WRITE_ONCE(ec_job_clock(j, i)->excluded, false);
+			WRITE_ONCE(ec_job_clock(j, i)->set, true);
 		}
 	if (!ret)
 		ec_dc_app_set(j->dc, t - j->latch_ns, true);

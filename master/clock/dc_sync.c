@@ -57,11 +57,11 @@ int ec_dc_wait(struct ec_slave *s)
 		if (READ_ONCE(dc->idle))
 			ms = 0;
 		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
-			return READ_ONCE(dc->state) == EC_DC_READY && READ_ONCE(s->dc_set) ?
+			return READ_ONCE(dc->state) == EC_DC_READY && ec_clock_is_set(s) ?
 			       0 : -ENXIO;
 		if (canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
-		if (READ_ONCE(s->dc_set) && !READ_ONCE(dc->changed))
+		if (ec_clock_is_set(s) && !READ_ONCE(dc->changed))
 			near += POLL_MS;
 	}
 	return -ETIME;
@@ -81,8 +81,8 @@ int ec_dc_sync_stop(struct ec_slave *s)
 	static const u8 off[2];
 
 	lockdep_assert_held(&s->lock);
-	WRITE_ONCE(s->sync_free, false);
-	s->sync_due_ns = 0;
+	WRITE_ONCE(ec_clock_of(s)->sync_unsynchronized, false);
+	ec_clock_of(s)->sync_due_ns = 0;
 	return ec_xfer_fpwr(s->bus->links, s->station, EC_REG_DC_CUC, off, sizeof(off));
 }
 
@@ -97,8 +97,8 @@ int ec_dc_sync_stop(struct ec_slave *s)
  */
 void ec_dc_sync_again(struct ec_slave *s)
 {
-	if (!READ_ONCE(s->sync_free) || READ_ONCE(s->requested) <= EC_AL_PREOP ||
-	    READ_ONCE(s->stop.gone))
+	if (!READ_ONCE(ec_clock_of(s)->sync_unsynchronized) ||
+	    READ_ONCE(s->requested) <= EC_AL_PREOP || READ_ONCE(s->stop.gone))
 		return;
 	ec_slave_warn(s,
 		      "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
@@ -168,7 +168,7 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 		ahead = (s32)ahead;
 	if (ahead <= 0)
 		return -EAGAIN;
-	s->sync_due_ns = dg[2].sent_ns + ahead + sync1_after(c);
+	ec_clock_of(s)->sync_due_ns = dg[2].sent_ns + ahead + sync1_after(c);
 	return 0;
 }
 
@@ -256,6 +256,7 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
  */
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 {
+	struct ec_clock *clock = ec_clock_of(s);
 	u32 period = c->period[0] + c->period[1];
 	unsigned int try;
 	int ret = -EAGAIN;
@@ -268,16 +269,16 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 		return -ERANGE;
 	}
 	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
-		bool set = READ_ONCE(s->dc_set);
+		bool set = ec_clock_is_set(s);
 
 		if (canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
-		s->sync_due_ns = 0;
-		WRITE_ONCE(s->sync_free, !set);
+		clock->sync_due_ns = 0;
+		WRITE_ONCE(clock->sync_unsynchronized, !set);
 		/* who sets the clock meanwhile sees that, or is seen below */
 		smp_mb();
 		ret = start(s, c, try);
-		if (!ret && !set && READ_ONCE(s->dc_set))
+		if (!ret && !set && ec_clock_is_set(s))
 			ret = -EAGAIN;
 	}
 	if (ret == -EAGAIN) {
@@ -320,14 +321,15 @@ static u8 missing(const struct ec_dc_sync *c, u8 status)
  */
 int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 {
+	struct ec_clock *clock = ec_clock_of(s);
 	bool known = ec_slave_features(s) & EC_FEAT_DC_ENHANCED;
 	u8 status[1] = { 0 };
 	unsigned int try;
 	int ret;
 
 	lockdep_assert_held(&s->lock);
-	for (try = 0; s->sync_due_ns; try++) {
-		ret = wait_until(s, s->sync_due_ns + CHECK_NS);
+	for (try = 0; clock->sync_due_ns; try++) {
+		ret = wait_until(s, clock->sync_due_ns + CHECK_NS);
 		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status,
 					  1);
 		if (ret && (ret != -EIO || known))
@@ -353,6 +355,6 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 			return ret;
 		}
 	}
-	s->sync_due_ns = 0;
+	clock->sync_due_ns = 0;
 	return 0;
 }

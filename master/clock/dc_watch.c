@@ -41,14 +41,16 @@ struct batch {
  */
 void ec_dc_verdict(struct ec_slave *s, u32 value)
 {
+	struct ec_clock *c = ec_clock_of(s);
 	bool ref = s->station == READ_ONCE(ec_dc_of(s)->ref_station);
 	s32 diff = ec_dc_diff(value);
 
 	lockdep_assert_held(&ec_dc_of(s)->lock);
-	WRITE_ONCE(s->dc_diff, diff);
+	WRITE_ONCE(c->diff, diff);
 	/* not back and forth at the limit */
 	if (!ref)
-		s->dc_far = abs(diff) > (s->dc_far ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
+		c->outside_window = abs(diff) >
+				    (c->outside_window ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
 }
 
 /* One line for all clocks, when the first leaves the window or the last is back in it. */
@@ -61,14 +63,15 @@ static void tell_far(struct ec_dc *dc)
 	down_read(&dc->bus->topo);
 	for (i = 0; i < dc->bus->n_slaves; i++) {
 		const struct ec_slave *s = dc->bus->slaves[i];
-		u32 diff = abs(READ_ONCE(s->dc_diff));
+		const struct ec_clock *c = ec_clock_of(s);
+		u32 diff = abs(READ_ONCE(c->diff));
 
-		if (!READ_ONCE(s->dc_set) || READ_ONCE(s->stop.gone) ||
+		if (!ec_clock_is_set(s) || READ_ONCE(s->stop.gone) ||
 		    s->station == dc->ref_station)
 			continue;
 		clocks++;
-		far += s->dc_far;
-		if (s->dc_far && diff > max) {
+		far += c->outside_window;
+		if (c->outside_window && diff > max) {
 			max = diff;
 			worst = i;
 		}
@@ -96,7 +99,8 @@ static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from
 	for (; from < dc->bus->n_slaves && b->n < BATCH; from++) {
 		struct ec_slave *s = dc->bus->slaves[from];
 
-		if (!(READ_ONCE(s->dc_set) || READ_ONCE(s->dc_out)) || READ_ONCE(s->stop.gone))
+		if (!(ec_clock_is_set(s) || READ_ONCE(ec_clock_of(s)->excluded)) ||
+		    READ_ONCE(s->stop.gone))
 			continue;
 		b->dg[b->n] = EC_FPRD(s->station, EC_REG_DC_DIFF, 4, b->value[b->n]);
 		b->slaves[b->n++] = ec_slave_ref(s);
@@ -116,13 +120,15 @@ static bool due(const struct ec_dc *dc)
  */
 static bool worth_try(struct ec_slave *s)
 {
-	if (!READ_ONCE(s->dc_out)) {
-		s->dc_vain = 0;
+	struct ec_clock *c = ec_clock_of(s);
+
+	if (!READ_ONCE(c->excluded)) {
+		c->failed_attempts = 0;
 		return false;
 	}
-	if (s->dc_vain > VAIN)
+	if (c->failed_attempts > VAIN)
 		return false;
-	if (s->dc_vain++ < VAIN)
+	if (c->failed_attempts++ < VAIN)
 		return true;
 	ec_slave_warn(s,
 		      "clock not synchronized in %d more attempts although the slave replies; clock excluded until the slave reconnects or the next activation\n",
@@ -140,7 +146,7 @@ static bool take(struct ec_dc *dc, struct batch *b, bool try)
 	for (i = 0; i < b->n; i++) {
 		if (!b->dg[i].err && b->dg[i].wkc == 1) {
 			worth |= try && worth_try(b->slaves[i]);
-			if (READ_ONCE(b->slaves[i]->dc_set))
+			if (ec_clock_is_set(b->slaves[i]))
 				ec_dc_verdict(b->slaves[i], get_unaligned_le32(b->value[i]));
 		}
 	}

@@ -23,12 +23,13 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 
 static int failed(struct ec_slave *s, u8 state, int ret)
 {
+	const char *refusal = ec_setup_of(s)->pdo_refusal;
 	u16 code = READ_ONCE(s->al_code);
 
-	if (ret == -EPROTO && state == EC_AL_SAFEOP && s->pdo_refusal[0])
+	if (ret == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", s->pdo_refusal,
+			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", refusal,
 			      code, ec_al_code_text(code));
 	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
@@ -73,13 +74,15 @@ static bool is_undecided(const struct ec_slave *s, int ret)
 /* What the application allows for a transition, ms; 0: the default. */
 static u32 limit(const struct ec_slave *s, u8 from, u8 to)
 {
-	return s->config && ec_al_state_valid(from) ? s->config->timeout_ms[from][to] : 0;
+	const struct ec_config *c = ec_config_of(s);
+
+	return c && ec_al_state_valid(from) ? c->timeout_ms[from][to] : 0;
 }
 
 /* What a reason shows while the worker waits; NULL ends it. */
 static void waits_for(struct ec_slave *s, const char *what)
 {
-	WRITE_ONCE(s->waits_for, what);
+	WRITE_ONCE(ec_setup_of(s)->waits_for, what);
 }
 
 static int set_state(struct ec_slave *s, u8 state)
@@ -99,20 +102,20 @@ static int set_state(struct ec_slave *s, u8 state)
  */
 static void hold_mailbox(struct ec_slave *s)
 {
-	if (s->holds || READ_ONCE(s->requested) < EC_AL_PREOP ||
+	if (ec_setup_of(s)->holds_mailbox || READ_ONCE(s->requested) < EC_AL_PREOP ||
 	    ec_mbox_lock(&s->mbox, &s->mbox.sdo_lock, HOLD_MS))
 		return;
 	if (ec_mbox_lock(&s->mbox, &s->mbox.lock, HOLD_MS))
 		up(&s->mbox.sdo_lock);
 	else
-		s->holds = true;
+		ec_setup_of(s)->holds_mailbox = true;
 }
 
 static void release_mailbox(struct ec_slave *s)
 {
-	if (!s->holds)
+	if (!ec_setup_of(s)->holds_mailbox)
 		return;
-	s->holds = false;
+	ec_setup_of(s)->holds_mailbox = false;
 	up(&s->mbox.lock);
 	up(&s->mbox.sdo_lock);
 }
@@ -128,17 +131,18 @@ static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
  */
 static int op_only_on(struct ec_slave *s)
 {
+	struct ec_setup *setup = ec_setup_of(s);
 	unsigned int sm, n = 0;
 	int ret;
 
 	for (sm = 0; sm < s->n_sms; sm++) {
-		if (!(s->sms[sm].enable & EC_SII_SM_OP_ONLY) || s->op_only & BIT(sm) ||
-		    !ec_pdo_list_bytes(ec_apply_pdos_of(s, s->plan, sm)))
+		if (!(s->sms[sm].enable & EC_SII_SM_OP_ONLY) || setup->op_only & BIT(sm) ||
+		    !ec_pdo_list_bytes(ec_apply_pdos_of(s, setup->active_config, sm)))
 			continue;
 		ret = activate_sm(s, sm, EC_SM_ACT_ENABLE);
 		if (ret)
 			return ret;
-		s->op_only |= BIT(sm);
+		setup->op_only |= BIT(sm);
 		n++;
 	}
 	return n;
@@ -146,14 +150,15 @@ static int op_only_on(struct ec_slave *s)
 
 static int op_only_off(struct ec_slave *s)
 {
+	struct ec_setup *setup = ec_setup_of(s);
 	unsigned int sm;
 	int ret;
 
-	for (sm = 0; s->op_only; sm++) {
-		ret = s->op_only & BIT(sm) ? activate_sm(s, sm, 0) : 0;
+	for (sm = 0; setup->op_only; sm++) {
+		ret = setup->op_only & BIT(sm) ? activate_sm(s, sm, 0) : 0;
 		if (ret)
 			return ret;
-		s->op_only &= ~BIT(sm);
+		setup->op_only &= ~BIT(sm);
 	}
 	return 0;
 }
@@ -175,7 +180,7 @@ static int to_init(struct ec_slave *s)
 	if (ec_slave_has_clock(s))
 		ec_dc_sync_stop(s);
 	ec_mbox_reset(&s->mbox);
-	s->op_only = 0;
+	ec_setup_of(s)->op_only = 0;
 	WRITE_ONCE(s->reconfigure, false);
 	s->ours = false;
 	s->clean = false;
@@ -245,7 +250,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		return ret;
 	if (ret)
 		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
-			      READ_ONCE(s->dc_set) ? "inside the sync window yet" :
+			      ec_clock_is_set(s) ? "inside the sync window yet" :
 						     "synchronized", ERR_PTR(ret));
 	return ec_dc_sync_start(s, &c->sync);
 }
@@ -267,7 +272,7 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 	int ret = 0;
 
 	s->clean = false;
-	s->pdo_refusal[0] = '\0';
+	ec_setup_of(s)->pdo_refusal[0] = '\0';
 	ec_slave_clear_warning(s);
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
@@ -308,19 +313,20 @@ static u32 cycles_twice(const struct ec_config *c)
  */
 static int wait_outputs(struct ec_slave *s)
 {
+	const struct ec_config *c = ec_setup_of(s)->active_config;
 	u32 cycles, limit;
 	unsigned int i;
 	u64 from;
 
 	lockdep_assert_held(&s->lock);
-	if (!s->plan)
+	if (!c)
 		return 0;
-	cycles = cycles_twice(s->plan);
+	cycles = cycles_twice(c);
 	limit = 5000 + div_u64((u64)cycles * ec_access_interval_us(&s->bus->links->access), 500);
-	from = ec_read64(s->plan->wanted->sends);
+	from = ec_read64(c->wanted->sends);
 	/* a poll: the cycle wakes no thread of the master */
 	for (i = 0; i < limit; i++) {
-		if (ec_read64(s->plan->wanted->sends) - from >= cycles)
+		if (ec_read64(c->wanted->sends) - from >= cycles)
 			return 0;
 		if (ec_stop_worker(&s->stop))
 			return -ECANCELED;
@@ -333,16 +339,17 @@ static int wait_outputs(struct ec_slave *s)
 /* state-machine.md 4.4 */
 static int to_op(struct ec_slave *s)
 {
+	const struct ec_config *c = ec_setup_of(s)->active_config;
 	int ret;
 
 	waits_for(s, "two cycles of its domains");
 	ret = wait_outputs(s);
 	waits_for(s, NULL);
-	if (!ret && s->plan)
-		ret = ec_startup_run(s, s->plan, EC_TRANSITION_SO);
+	if (!ret && c)
+		ret = ec_startup_run(s, c, EC_TRANSITION_SO);
 	if (ret)
 		return ret;
-	ret = s->plan ? ec_dc_sync_check(s, &s->plan->sync) : 0;
+	ret = c ? ec_dc_sync_check(s, &c->sync) : 0;
 	if (!ret)
 		ret = op_only_on(s);
 	if (ret > 0)
@@ -374,13 +381,14 @@ static int step_down(struct ec_slave *s, u8 want)
 /* Before activation the application may change its configuration at any time. */
 static void take_plan(struct ec_slave *s)
 {
-	const struct ec_config *c = s->config;
+	struct ec_setup *setup = ec_setup_of(s);
+	const struct ec_config *c = setup->config;
 
 	lockdep_assert_held(&s->lock);
 	/* the configuration as it was at activation */
-	if (!c || !smp_load_acquire(&c->wanted->active) || s->plan == c)
+	if (!c || !smp_load_acquire(&c->wanted->active) || setup->active_config == c)
 		return;
-	s->plan = c;
+	setup->active_config = c;
 	WRITE_ONCE(s->reconfigure, true);
 }
 
@@ -404,6 +412,7 @@ static int start_clean(struct ec_slave *s)
 /* One step towards the requested state; 1: there, 0: again, -errno. */
 static int step(struct ec_slave *s)
 {
+	const struct ec_setup *setup = ec_setup_of(s);
 	u8 want = READ_ONCE(s->requested), cur;
 	bool anew;
 	int ret = ec_al_read(s);
@@ -422,9 +431,9 @@ static int step(struct ec_slave *s)
 		return start_clean(s);
 	if (cur != EC_AL_INIT && (!s->ours || anew))
 		return to_init(s);
-	if (s->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
+	if (setup->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
 		return ec_apply_clear_fmmus(s);
-	if (s->op_only && cur != EC_AL_OP)
+	if (setup->op_only && cur != EC_AL_OP)
 		return op_only_off(s);
 	if (cur == want)
 		return want == EC_AL_OP && op_only_on(s) < 0 ? -EIO : 1;
@@ -439,7 +448,7 @@ static int step(struct ec_slave *s)
 	case EC_AL_INIT:
 		return to_preop(s);
 	case EC_AL_PREOP:
-		return to_safeop(s, s->plan);
+		return to_safeop(s, setup->active_config);
 	case EC_AL_SAFEOP:
 		return to_op(s);
 	default:
@@ -450,11 +459,12 @@ static int step(struct ec_slave *s)
 /* One that was lost or silent is where it was wanted. */
 static void log_return(struct ec_slave *s)
 {
+	const struct ec_config *c = ec_setup_of(s)->active_config;
 	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 
-	if (s->seen_ns && s->plan && READ_ONCE(s->al_status) == EC_AL_OP)
+	if (s->seen_ns && c && READ_ONCE(s->al_status) == EC_AL_OP)
 		ec_slave_info(s, "back in OP, %llu ms after it was last seen\n", ms);
-	if (!s->plan || READ_ONCE(s->al_status) == EC_AL_OP)
+	if (!c || READ_ONCE(s->al_status) == EC_AL_OP)
 		s->seen_ns = 0;
 }
 

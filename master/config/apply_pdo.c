@@ -45,7 +45,8 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 /* Many slaves have fixed lists: what they have instead decides, see check(). */
 static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
 {
-	char text[sizeof(s->pdo_refusal)], why[96];
+	struct ec_setup *setup = ec_setup_of(s);
+	char text[sizeof(setup->pdo_refusal)], why[96];
 
 	if (!ret || ret == -ECANCELED || ret == -EINTR)
 		return ret;
@@ -56,8 +57,8 @@ static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret
 		scnprintf(text, sizeof(text), "%s 0x%04x not written: %s", what, index,
 			  ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	ec_slave_warn(s, "%s\n", text);
-	if (!s->pdo_refusal[0])
-		strscpy(s->pdo_refusal, text, sizeof(s->pdo_refusal));
+	if (!setup->pdo_refusal[0])
+		strscpy(setup->pdo_refusal, text, sizeof(setup->pdo_refusal));
 	return REFUSED;
 }
 
@@ -211,14 +212,15 @@ static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 /* The slave refused: what does it have instead? */
 static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 {
+	const char *refusal = ec_setup_of(s)->pdo_refusal;
 	char text[160], why[96];
 	int ret = ec_slave_read_sm_pdos(s, sm);
 
 	if (ret == -ECANCELED || ret == -EINTR)
 		return ret;
 	if (!ret)
-		return compare(s, c, sm, s->pdo_refusal);
-	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", s->pdo_refusal,
+		return compare(s, c, sm, refusal);
+	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", refusal,
 		 ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	not_certain(s, sm, text);
 	return 0;

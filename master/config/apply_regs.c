@@ -142,7 +142,7 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
 
 		ec_fmmu_encode(&v, b->fmmu[i]);
 	}
-	s->mapped = c->n_fmmus;
+	ec_setup_of(s)->mapped = c->n_fmmus;
 	for (i = 0; i < count_fmmus(s); i++)
 		add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
 	return 0;
@@ -193,7 +193,7 @@ int ec_apply_clear_fmmus(struct ec_slave *s)
 				   n * EC_FMMU_PAGE) : 0;
 
 	lockdep_assert_held(&s->lock);
-	s->mapped = ret;
+	ec_setup_of(s)->mapped = ret;
 	return ret;
 }
 

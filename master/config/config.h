@@ -133,6 +133,34 @@ struct ec_config {
 	struct ec_slave *slave;
 };
 
+/** struct ec_setup - how far a slave has its configuration, under ec_slave.lock */
+struct ec_setup {
+	/** @config: what the session wants from it, under lock of the configuration, too */
+	struct ec_config *config;
+	/** @active_config: @config once its session is active: what the worker applies */
+	const struct ec_config *active_config;
+	/** @waits_for: what the worker waits for, NULL: nothing that lasts; any reader */
+	const char *waits_for;
+	/** @op_only: SyncManagers that are on in OP only and are on, a bit each */
+	u16 op_only;
+	/** @mapped: its FMMUs are set */
+	bool mapped;
+	/** @holds_mailbox: the worker has both locks of the mailbox */
+	bool holds_mailbox;
+	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
+	char pdo_refusal[EC_UAPI_REASON];
+};
+
+static inline struct ec_setup *ec_setup_of(const struct ec_slave *s)
+{
+	return s->ext[EC_EXT_CONFIG];
+}
+
+static inline struct ec_config *ec_config_of(const struct ec_slave *s)
+{
+	return READ_ONCE(ec_setup_of(s)->config);
+}
+
 /** struct ec_wanted - what an application wants of the bus, under @lock */
 struct ec_wanted {
 	/** @base: of the master, immutable */

@@ -71,6 +71,7 @@ static size_t no_link(const struct ec_links *l, char *buf, size_t size)
 static size_t absent(const struct ec_config *c, char *buf, size_t size)
 {
 	const struct ec_bus *bus = c->wanted->bus;
+	const struct ec_config *has;
 	char why[EC_UAPI_REASON];
 	struct ec_slave *s;
 	unsigned int pos;
@@ -96,14 +97,15 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 		return scnprintf(buf, size,
 				 "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
-	if (s->config && c->wanted->active && !twice(s->config, pos))
+	has = ec_config_of(s);
+	if (has && c->wanted->active && !twice(has, pos))
 		return scnprintf(buf, size,
 				 "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
-				 pos, s->config->alias, s->config->position);
-	if (s->config)
+				 pos, has->alias, has->position);
+	if (has)
 		return scnprintf(buf, size,
 				 "slave %u has another configuration, %u:%u; use one of the two",
-				 pos, s->config->alias, s->config->position);
+				 pos, has->alias, has->position);
 	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
 
@@ -112,7 +114,7 @@ static size_t present(struct ec_slave *s, char *buf, size_t size)
 	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
 	u8 want = READ_ONCE(s->requested);
-	const char *doing = READ_ONCE(s->waits_for);
+	const char *doing = READ_ONCE(ec_setup_of(s)->waits_for);
 
 	if (READ_ONCE(s->error) != EC_SLAVE_OK)
 		return strlen(ec_slave_why(s, buf, size));
@@ -158,7 +160,7 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     u16 alias, u16 distance, unsigned int *from)
 {
-	const struct ec_config *has = slave->config;
+	const struct ec_config *has = ec_config_of(slave);
 	unsigned int end = min(w->n_configs, *from + WALK);
 
 	ec_wanted_assert_stays(w);

@@ -41,7 +41,7 @@ void ec_ref_clock_raise(struct ec_session *s)
 	if (ref)
 		ec_slave_ref(ref);
 	up_read(&ss->bus->topo);
-	if (!ref || ref == s->raised || ref->config || READ_ONCE(ref->stop.gone) ||
+	if (!ref || ref == s->raised || ec_config_of(ref) || READ_ONCE(ref->stop.gone) ||
 	    has_outputs(ref)) {
 		if (ref)
 			ec_slave_unref(ref);
@@ -66,7 +66,8 @@ void ec_ref_clock_lower(struct ec_session *s)
 	if (!ref)
 		return;
 	s->raised = NULL;
-	if (!READ_ONCE(ref->stop.gone) && !ref->config && !READ_ONCE(s->sessions->base->stopping))
+	if (!READ_ONCE(ref->stop.gone) && !ec_config_of(ref) &&
+	    !READ_ONCE(s->sessions->base->stopping))
 		ec_slave_request(ref, EC_AL_PREOP);
 	ec_slave_unref(ref);
 }

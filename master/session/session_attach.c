@@ -18,7 +18,7 @@
 bool ec_session_owns(const struct ec_config *c)
 {
 	lockdep_assert_held(c->wanted->lock);
-	return c->slave && c->slave->config == c;
+	return c->slave && ec_config_of(c->slave) == c;
 }
 
 /**
@@ -30,6 +30,7 @@ bool ec_session_owns(const struct ec_config *c)
 void ec_session_detach(struct ec_config *c)
 {
 	struct ec_slave *slave = c->slave;
+	struct ec_setup *setup;
 	unsigned int sm;
 
 	lockdep_assert_held(c->wanted->lock);
@@ -41,6 +42,7 @@ void ec_session_detach(struct ec_config *c)
 		return;
 	}
 	c->slave = NULL;
+	setup = ec_setup_of(slave);
 	ec_emerg_set(&slave->mbox, NULL);
 	ec_mbox_keep_voe(&slave->mbox, false);
 	ec_stop_interrupt(&slave->stop, true);
@@ -50,10 +52,10 @@ void ec_session_detach(struct ec_config *c)
 		if (c->sm[sm].explicit ||
 		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
 			WRITE_ONCE(slave->pdos_known, false);
-	slave->config = NULL;
-	slave->plan = NULL;
+	WRITE_ONCE(setup->config, NULL);
+	setup->active_config = NULL;
 	ec_slave_clear_warning(slave);
-	slave->pdo_refusal[0] = '\0';
+	setup->pdo_refusal[0] = '\0';
 	WRITE_ONCE(slave->reconfigure, true);
 	ec_stop_interrupt(&slave->stop, false);
 	mutex_unlock(&slave->lock);
@@ -97,7 +99,7 @@ struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position
 static void tell_taken(const struct ec_session *s, const struct ec_config *c,
 		       struct ec_slave *slave)
 {
-	const struct ec_config *has = slave->config;
+	const struct ec_config *has = ec_config_of(slave);
 
 	if (s->wanted.active)
 		ec_slave_warn(slave,
@@ -154,13 +156,13 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
 	ec_stop_interrupt(&slave->stop, false);
-	if (slave->config) {
+	if (ec_config_of(slave)) {
 		tell_taken(s, c, slave);
 		mutex_unlock(&slave->lock);
 		ec_slave_unref(slave);
 		return;
 	}
-	slave->config = c;
+	WRITE_ONCE(ec_setup_of(slave)->config, c);
 	WRITE_ONCE(slave->reconfigure, true);
 	slave->seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);

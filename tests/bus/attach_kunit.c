@@ -107,8 +107,8 @@ static void attach_failed_one(struct kunit *test)
 	cyc_run(c, 1000);
 	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
-	KUNIT_ASSERT_NOT_NULL(test, s1->config);
-	KUNIT_EXPECT_EQ(test, s1->config->position, 2u);
+	KUNIT_ASSERT_NOT_NULL(test, ec_setup_of(s1)->config);
+	KUNIT_EXPECT_EQ(test, ec_setup_of(s1)->config->position, 2u);
 	KUNIT_EXPECT_NE(test, output(c, "s1"), 10ll);
 }
 

@@ -60,7 +60,8 @@ static void dc_delays_are_true(struct kunit *test)
 		const struct ec_slave *s = bus_slave(b, i);
 
 		if (ec_slave_features(s) & EC_FEAT_DC)
-			KUNIT_EXPECT_LE(test, abs((s32)s->dc_delay - true_delay(b, i)), 5);
+			KUNIT_EXPECT_LE(test, abs((s32)ec_clock_of(s)->delay - true_delay(b, i)),
+					5);
 	}
 }
 
@@ -545,17 +546,17 @@ static void dc_window(struct kunit *test)
 
 	set(c);
 	cyc_run(c, 3000);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->dc_far);
-	KUNIT_EXPECT_LT(test, abs(bus_slave(b, 1)->dc_diff), 100);
+	KUNIT_EXPECT_FALSE(test, ec_clock_of(bus_slave(b, 1))->outside_window);
+	KUNIT_EXPECT_LT(test, abs(ec_clock_of(bus_slave(b, 1))->diff), 100);
 	/* more than its loop can correct */
 	bus_esc(b, 1)->cfg.drift_ppb = 990000;
 	cyc_run(c, 20000);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 1)->dc_far);
-	KUNIT_EXPECT_GT(test, bus_slave(b, 1)->dc_diff, 1000);
+	KUNIT_EXPECT_TRUE(test, ec_clock_of(bus_slave(b, 1))->outside_window);
+	KUNIT_EXPECT_GT(test, ec_clock_of(bus_slave(b, 1))->diff, 1000);
 	bus_esc(b, 1)->cfg.drift_ppb = 0;
 	cyc_run(c, 40000);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->dc_far);
-	KUNIT_EXPECT_LT(test, abs(bus_slave(b, 1)->dc_diff), 500);
+	KUNIT_EXPECT_FALSE(test, ec_clock_of(bus_slave(b, 1))->outside_window);
+	KUNIT_EXPECT_LT(test, abs(ec_clock_of(bus_slave(b, 1))->diff), 500);
 }
 
 /* what the application reads of the reference's time */

@@ -80,9 +80,10 @@ static void dc_log_delay_only(struct kunit *test)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, info), 0);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_delay_only, only);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_set, !only);
-		KUNIT_EXPECT_FALSE(test, s->dc_out);
-		KUNIT_EXPECT_FALSE(test, s->dc_odd);
-		KUNIT_EXPECT_LE(test, abs((s32)(s->dc_delay - (step[i].pu_ns - step[0].pu_ns))),
+		KUNIT_EXPECT_FALSE(test, ec_clock_of(s)->excluded);
+		KUNIT_EXPECT_FALSE(test, ec_clock_of(s)->delay_unreliable);
+		KUNIT_EXPECT_LE(test, abs((s32)(ec_clock_of(s)->delay -
+						(step[i].pu_ns - step[0].pu_ns))),
 				10);
 	}
 	KUNIT_EXPECT_EQ(test, bus_log_lines("no valid reply to DC register access"), 0u);

@@ -441,13 +441,13 @@ static void ref_set_again(struct kunit *test)
 	forget(r, 0, 2);
 	run(r, 800);
 	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 3)->dc_set);
+	KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, 3)));
 	expect_within(r, "setting fails for 0.8 s", r->v->together / 2);
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
-	for (i = 0; i < 5000 && !READ_ONCE(bus_slave(b, 3)->dc_set); i++)
+	for (i = 0; i < 5000 && !ec_clock_is_set(bus_slave(b, 3)); i++)
 		run(r, 1);
 	until(r, 4);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 3)->dc_set);
+	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(b, 3)));
 	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
 }
 

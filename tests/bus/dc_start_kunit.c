@@ -133,7 +133,7 @@ static void dc_start_hundred_drives_reach_op(struct kunit *test)
 	l.op_ns = ktime_get_ns();
 	cyc_run(c, WATCH_US / us);
 	for (i = 0; i < SLAVES; i++) {
-		far += bus_slave(b, i)->dc_far;
+		far += ec_clock_of(bus_slave(b, i))->outside_window;
 		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
 		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
 	}
@@ -231,7 +231,7 @@ static void dc_start_frames_lost(struct kunit *test)
 	l.op_ns = ktime_get_ns();
 	cyc_run(c, WATCH_US / 20000);
 	for (i = 0; i < SLAVES; i++)
-		far += bus_slave(c->b, i)->dc_far;
+		far += ec_clock_of(bus_slave(c->b, i))->outside_window;
 	bus_figure("100 drives with SYNC0, cycle of 20000 us, 1 %% of all frames lost: OP %llu us after activation, clocks within %llu ns from then on for 20 s",
 		   op, l.worst_ns);
 	KUNIT_EXPECT_LT(test, l.worst_ns, (u64)EC_DC_LIMIT_NS);

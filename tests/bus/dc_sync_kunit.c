@@ -197,7 +197,7 @@ static void sync_reference_is_late(struct kunit *test)
 	cyc_activate(c);
 	until_op(c, 7, 10000);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->dc_set);
+	KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, 0)));
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
 	cyc_run(c, 1000);
 	until_op(c, 15, 10000);
@@ -219,13 +219,13 @@ static void sync_bad_slave(struct kunit *test)
 		   until_op(c, 7, 3000));
 	cyc_run(c, 8000);
 	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 3)->dc_set);
+	KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, 3)));
 	expect_in_step(b, 7);
 	for (i = 0; i < 3; i++)
 		starts[i] = bus_esc(b, i)->dc.start;
 	/* well again: its clock, and the slave when somebody asks for it */
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
-	for (i = 0; i < 10000 && !READ_ONCE(bus_slave(b, 3)->dc_set); i++)
+	for (i = 0; i < 10000 && !ec_clock_is_set(bus_slave(b, 3)); i++)
 		cyc_run(c, 1);
 	bus_figure("its clock is set %u ms after it answers", i);
 	KUNIT_EXPECT_LT(test, i, 10000u);
@@ -268,7 +268,7 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	s = bus_slave(b, 1);
 	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
-	WRITE_ONCE(s->dc_set, false);
+	WRITE_ONCE(ec_clock_of(s)->set, false);
 	WRITE_ONCE(b->m->dc.changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
@@ -280,7 +280,7 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	ms = until_op(c, 15, 5000);
 	KUNIT_EXPECT_GT(test, ms, 50u);
 	KUNIT_EXPECT_FALSE(test, READ_ONCE(b->m->dc.changed));
-	KUNIT_EXPECT_TRUE(test, s->dc_set);
+	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(s));
 	cyc_run(c, 500);
 	expect_in_step(b, 15);
 }
@@ -364,7 +364,7 @@ static void sync_late_cycle(struct kunit *test)
 			bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
 		msleep(700);
 		for (i = 0; i < 3; i++)
-			KUNIT_EXPECT_FALSE(test, bus_slave(b, i)->dc_set);
+			KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, i)));
 		until_op(c, 15, 8000);
 		cyc_run(c, 500);
 		expect_in_step(b, 15);
@@ -478,7 +478,7 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 
 	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
-	WRITE_ONCE(s->dc_set, false);
+	WRITE_ONCE(ec_clock_of(s)->set, false);
 	WRITE_ONCE(b->m->dc.changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
@@ -527,7 +527,7 @@ static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, begun, 4u);
 	cyc_run(c, 60000);
 	KUNIT_EXPECT_EQ(test, begun, 4u);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 3)->dc_out);
+	KUNIT_EXPECT_TRUE(test, ec_clock_of(bus_slave(b, 3))->excluded);
 	expect_in_step(b, 7);
 	/* well again when it comes anew */
 	c->each = each;
@@ -535,7 +535,7 @@ static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	cyc_run(c, 500);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 10000 && (b->m->bus.n_slaves < 4 || !bus_slave(b, 3)->dc_set); i++)
+	for (i = 0; i < 10000 && (b->m->bus.n_slaves < 4 || !ec_clock_is_set(bus_slave(b, 3))); i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 10000u);
 	until_op(c, 15, 5000);

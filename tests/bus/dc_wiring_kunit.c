@@ -35,8 +35,8 @@ static u32 expect_wiring(struct bus *b, const char *text)
 		KUNIT_EXPECT_FALSE(b->test, s->topology_odd);
 		if (!(ec_slave_features(s) & EC_FEAT_DC))
 			continue;
-		KUNIT_EXPECT_FALSE(b->test, s->dc_odd);
-		max = max_t(u32, max, abs((s32)s->dc_delay - true_delay(b, i)));
+		KUNIT_EXPECT_FALSE(b->test, ec_clock_of(s)->delay_unreliable);
+		max = max_t(u32, max, abs((s32)ec_clock_of(s)->delay - true_delay(b, i)));
 	}
 	return max;
 }

@@ -258,7 +258,7 @@ static void rules_wait_ends_on_release(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_NOT_NULL(test, bus_slave(b, 1)->waits_for);
+	KUNIT_EXPECT_NOT_NULL(test, ec_setup_of(bus_slave(b, 1))->waits_for);
 	t0 = ktime_get_ns();
 	cyc_release(c);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 100ull * NSEC_PER_MSEC);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The scan: who is on the bus, and what their EEPROMs say. */
+#include <linux/slab.h>
 #include "bus.h"
 #include "master/boundary/ioctl.h"
 #include "master/boundary/cdev.h"
@@ -119,6 +120,27 @@ static void scan_bench_topology(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->next[2], 15);
 }
 
+/* Clock and setup of a slave are in its own memory, aligned, and do not overlap. */
+static void scan_parts_of_layers(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(bench); i++) {
+		struct ec_slave *s = bus_slave(b, i);
+		struct ec_clock *c = ec_clock_of(s);
+		struct ec_setup *setup = ec_setup_of(s);
+
+		KUNIT_EXPECT_GE(test, (uintptr_t)c, (uintptr_t)(s + 1));
+		KUNIT_EXPECT_GE(test, (uintptr_t)setup, (uintptr_t)(c + 1));
+		KUNIT_EXPECT_LE(test, (uintptr_t)(setup + 1), (uintptr_t)s + ksize(s));
+		KUNIT_EXPECT_TRUE(test, IS_ALIGNED((uintptr_t)c, __alignof__(*c)));
+		KUNIT_EXPECT_TRUE(test, IS_ALIGNED((uintptr_t)setup, __alignof__(*setup)));
+		KUNIT_EXPECT_PTR_EQ(test, setup->config, NULL);
+		KUNIT_EXPECT_FALSE(test, ec_clock_is_set(s));
+	}
+}
+
 /* Station addresses come from an allocator and are different. */
 static void scan_stations(struct kunit *test)
 {
@@ -213,6 +235,7 @@ static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_bench_identity),
 	KUNIT_CASE(scan_bench_pdos),
 	KUNIT_CASE(scan_bench_topology),
+	KUNIT_CASE(scan_parts_of_layers),
 	KUNIT_CASE(scan_stations),
 	{}
 };
