@@ -162,70 +162,58 @@ EXPORT_SYMBOL_GPL(ecrt_slave_config_idn);
 
 /* IP parameters of slaves with EoE -------------------------------------------*/
 
-/* A parameter of @size bytes into @to, a member of @arg; the kernel adds them up. */
-static int set_ip(ec_slave_config_t *sc, struct ec_ioc_sc_ip *arg, __u32 which, void *to,
-		  const void *value, size_t size, const char *what)
+/* A parameter of @size bytes, @at in struct ec_ip_params; the kernel adds them up. */
+static int set_ip(ec_slave_config_t *sc, __u32 which, size_t at, const void *value, size_t size,
+		  const char *what)
 {
+	struct ec_ioc_sc_ip arg = { .config = ec_sc_index(sc), .params.which = which };
+
 	if (sc && !value)
 		return ec_fail_sc(sc, -EINVAL, "set the EoE %s to NULL", what);
 	if (sc)
-		memcpy(to, value, size);
-	arg->config = ec_sc_index(sc);
-	arg->params.which = which;
-	return ec_do_sc(sc, EC_IOC_SC_IP, arg, "set EoE %s", what);
+		memcpy((__u8 *)&arg.params + at, value, size);
+	return ec_do_sc(sc, EC_IOC_SC_IP, &arg, "set EoE %s", what);
 }
 
 int ecrt_slave_config_eoe_mac_address(ec_slave_config_t *sc, const unsigned char *mac_address)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_MAC, arg.params.mac, mac_address, sizeof(arg.params.mac),
+	return set_ip(sc, EC_IP_MAC, offsetof(struct ec_ip_params, mac), mac_address, 6,
 		      "MAC address");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_mac_address);
 
 int ecrt_slave_config_eoe_ip_address(ec_slave_config_t *sc, struct in_addr ip_address)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_ADDRESS, arg.params.ip, &ip_address, sizeof(ip_address),
-		      "IP address");
+	return set_ip(sc, EC_IP_ADDRESS, offsetof(struct ec_ip_params, ip), &ip_address,
+		      sizeof(ip_address), "IP address");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_ip_address);
 
 int ecrt_slave_config_eoe_subnet_mask(ec_slave_config_t *sc, struct in_addr subnet_mask)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_MASK, arg.params.mask, &subnet_mask, sizeof(subnet_mask),
-		      "subnet mask");
+	return set_ip(sc, EC_IP_MASK, offsetof(struct ec_ip_params, mask), &subnet_mask,
+		      sizeof(subnet_mask), "subnet mask");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_subnet_mask);
 
 int ecrt_slave_config_eoe_default_gateway(ec_slave_config_t *sc, struct in_addr gateway_address)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_GATEWAY, arg.params.gateway, &gateway_address,
+	return set_ip(sc, EC_IP_GATEWAY, offsetof(struct ec_ip_params, gateway), &gateway_address,
 		      sizeof(gateway_address), "default gateway");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_default_gateway);
 
 int ecrt_slave_config_eoe_dns_address(ec_slave_config_t *sc, struct in_addr dns_address)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_DNS, arg.params.dns, &dns_address, sizeof(dns_address),
-		      "DNS address");
+	return set_ip(sc, EC_IP_DNS, offsetof(struct ec_ip_params, dns), &dns_address,
+		      sizeof(dns_address), "DNS address");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_dns_address);
 
 /* A longer name is cut. */
 int ecrt_slave_config_eoe_hostname(ec_slave_config_t *sc, const char *name)
 {
-	struct ec_ioc_sc_ip arg = { 0 };
-
-	return set_ip(sc, &arg, EC_IP_HOSTNAME, arg.params.name, name,
-		      name ? strnlen(name, sizeof(arg.params.name) - 1) : 0, "host name");
+	return set_ip(sc, EC_IP_HOSTNAME, offsetof(struct ec_ip_params, name), name,
+		      name ? strnlen(name, EC_IP_NAME - 1) : 0, "host name");
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_eoe_hostname);

@@ -65,6 +65,22 @@ struct ec_app_request {
 	__u8 *shared;
 };
 
+struct ec_reg_request {
+	struct ec_app_request r;
+};
+
+struct ec_sdo_request {
+	struct ec_app_request r;
+};
+
+struct ec_soe_request {
+	struct ec_app_request r;
+};
+
+struct ec_voe_handler {
+	struct ec_app_request r;
+};
+
 /*
  * ec_do() gives a command. When the command fails, one line reports @fmt, which is an
  * infinitive without "to", and the reason that the command left. ec_fail() reports a call

@@ -28,18 +28,10 @@ static void *create(ec_slave_config_t *sc, __u32 kind, uint16_t index, uint8_t s
 /* A value of @size bytes; an empty one is not written. */
 static int write_sized(struct ec_app_request *r, size_t size)
 {
-	int ret = size ? ec_app_request_start(r, EC_REQUEST_OP_WRITE, size) : -EINVAL;
-
-	if (!ret)
-		r->size = size;
-	return ret;
+	return size ? ec_app_request_start(r, EC_REQUEST_OP_WRITE, size) : -EINVAL;
 }
 
 /* SDOs ---------------------------------------------------------------------*/
-
-struct ec_sdo_request {
-	struct ec_app_request r;
-};
 
 ec_sdo_request_t *ecrt_slave_config_create_sdo_request(ec_slave_config_t *sc, uint16_t index,
 						       uint8_t subindex, size_t size)
@@ -67,33 +59,6 @@ int ecrt_sdo_request_index_complete(ec_sdo_request_t *req, uint16_t index)
 }
 EXPORT_SYMBOL_GPL(ecrt_sdo_request_index_complete);
 
-int ecrt_sdo_request_timeout(ec_sdo_request_t *req, uint32_t timeout)
-{
-	if (!req)
-		return -EINVAL;
-	req->r.timeout_ms = timeout;
-	return 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_sdo_request_timeout);
-
-uint8_t *ecrt_sdo_request_data(const ec_sdo_request_t *req)
-{
-	return req ? req->r.data : NULL;
-}
-EXPORT_SYMBOL_GPL(ecrt_sdo_request_data);
-
-size_t ecrt_sdo_request_data_size(const ec_sdo_request_t *req)
-{
-	return req ? req->r.size : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_sdo_request_data_size);
-
-ec_request_state_t ecrt_sdo_request_state(EC_IN_KERNEL ec_sdo_request_t *req)
-{
-	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR;
-}
-EXPORT_SYMBOL_GPL(ecrt_sdo_request_state);
-
 int ecrt_sdo_request_write(ec_sdo_request_t *req)
 {
 	return req ? write_sized(&req->r, req->r.size) : -EINVAL;
@@ -106,17 +71,7 @@ int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req, size_t size)
 }
 EXPORT_SYMBOL_GPL(ecrt_sdo_request_write_with_size);
 
-int ecrt_sdo_request_read(ec_sdo_request_t *req)
-{
-	return req ? ec_app_request_start(&req->r, EC_REQUEST_OP_READ, 0) : -EINVAL;
-}
-EXPORT_SYMBOL_GPL(ecrt_sdo_request_read);
-
 /* IDNs ---------------------------------------------------------------------*/
-
-struct ec_soe_request {
-	struct ec_app_request r;
-};
 
 ec_soe_request_t *ecrt_slave_config_create_soe_request(ec_slave_config_t *sc, uint8_t drive_no,
 						       uint16_t idn, size_t size)
@@ -135,50 +90,13 @@ int ecrt_soe_request_idn(ec_soe_request_t *req, uint8_t drive_no, uint16_t idn)
 }
 EXPORT_SYMBOL_GPL(ecrt_soe_request_idn);
 
-int ecrt_soe_request_timeout(ec_soe_request_t *req, uint32_t timeout)
-{
-	if (!req)
-		return -EINVAL;
-	req->r.timeout_ms = timeout;
-	return 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_soe_request_timeout);
-
-uint8_t *ecrt_soe_request_data(const ec_soe_request_t *req)
-{
-	return req ? req->r.data : NULL;
-}
-EXPORT_SYMBOL_GPL(ecrt_soe_request_data);
-
-size_t ecrt_soe_request_data_size(const ec_soe_request_t *req)
-{
-	return req ? req->r.size : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_soe_request_data_size);
-
-ec_request_state_t ecrt_soe_request_state(EC_IN_KERNEL ec_soe_request_t *req)
-{
-	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR;
-}
-EXPORT_SYMBOL_GPL(ecrt_soe_request_state);
-
 int ecrt_soe_request_write(ec_soe_request_t *req)
 {
 	return req ? write_sized(&req->r, req->r.size) : -EINVAL;
 }
 EXPORT_SYMBOL_GPL(ecrt_soe_request_write);
 
-int ecrt_soe_request_read(ec_soe_request_t *req)
-{
-	return req ? ec_app_request_start(&req->r, EC_REQUEST_OP_READ, 0) : -EINVAL;
-}
-EXPORT_SYMBOL_GPL(ecrt_soe_request_read);
-
 /* VoE: messages of the vendor ------------------------------------------------*/
-
-struct ec_voe_handler {
-	struct ec_app_request r;
-};
 
 ec_voe_handler_t *ecrt_slave_config_create_voe_handler(ec_slave_config_t *sc, size_t size)
 {
@@ -209,43 +127,10 @@ int ecrt_voe_handler_received_header(const ec_voe_handler_t *voe, uint32_t *vend
 }
 EXPORT_SYMBOL_GPL(ecrt_voe_handler_received_header);
 
-uint8_t *ecrt_voe_handler_data(const ec_voe_handler_t *voe)
-{
-	return voe ? voe->r.data : NULL;
-}
-EXPORT_SYMBOL_GPL(ecrt_voe_handler_data);
-
-size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe)
-{
-	return voe ? voe->r.size : 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_voe_handler_data_size);
-
 /* A message may be empty. */
 int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size)
 {
-	int ret = voe ? ec_app_request_start(&voe->r, EC_REQUEST_OP_WRITE, size) : -EINVAL;
-
-	if (!ret)
-		voe->r.size = size;
-	return ret;
+	return voe ? ec_app_request_start(&voe->r, EC_REQUEST_OP_WRITE, size) : -EINVAL;
 }
 EXPORT_SYMBOL_GPL(ecrt_voe_handler_write);
 
-int ecrt_voe_handler_read(ec_voe_handler_t *voe)
-{
-	return voe ? ec_app_request_start(&voe->r, EC_REQUEST_OP_READ, 0) : -EINVAL;
-}
-EXPORT_SYMBOL_GPL(ecrt_voe_handler_read);
-
-int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe)
-{
-	return voe ? ec_app_request_start(&voe->r, EC_REQUEST_OP_READ_NOW, 0) : -EINVAL;
-}
-EXPORT_SYMBOL_GPL(ecrt_voe_handler_read_nosync);
-
-ec_request_state_t ecrt_voe_handler_execute(ec_voe_handler_t *voe)
-{
-	return voe ? ec_app_request_state(&voe->r) : EC_REQUEST_ERROR;
-}
-EXPORT_SYMBOL_GPL(ecrt_voe_handler_execute);

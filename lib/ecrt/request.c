@@ -138,6 +138,8 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
 	rec->size = (__u32)size;
 	rec->timeout_ms = r->timeout_ms;
 	r->op = op;
+	if (op == EC_REQUEST_OP_WRITE)
+		r->size = size;
 	r->start = r->start + 1 ? r->start + 1 : 1;
 	r->state = EC_REQUEST_BUSY;
 	ec_store_release(&rec->start, r->start);
@@ -145,30 +147,76 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
 	return 0;
 }
 
-/* registers ----------------------------------------------------------------*/
+/* what several kinds have; a handle may be NULL ------------------------------*/
 
-struct ec_reg_request {
-	struct ec_app_request r;
-};
+#define DEFINE_DATA(type, function) \
+uint8_t *function(const type *req) \
+{ \
+	return req ? req->r.data : NULL; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_DATA(ec_reg_request_t, ecrt_reg_request_data);
+DEFINE_DATA(ec_sdo_request_t, ecrt_sdo_request_data);
+DEFINE_DATA(ec_soe_request_t, ecrt_soe_request_data);
+DEFINE_DATA(ec_voe_handler_t, ecrt_voe_handler_data);
+
+#define DEFINE_SIZE(type, function) \
+size_t function(const type *req) \
+{ \
+	return req ? req->r.size : 0; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_SIZE(ec_sdo_request_t, ecrt_sdo_request_data_size);
+DEFINE_SIZE(ec_soe_request_t, ecrt_soe_request_data_size);
+DEFINE_SIZE(ec_voe_handler_t, ecrt_voe_handler_data_size);
+
+/* Some prototypes say const; what such a handle points to never is. */
+#define DEFINE_STATE(type, function) \
+ec_request_state_t function(type *req) \
+{ \
+	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_STATE(const ec_reg_request_t, ecrt_reg_request_state);
+DEFINE_STATE(EC_IN_KERNEL ec_sdo_request_t, ecrt_sdo_request_state);
+DEFINE_STATE(EC_IN_KERNEL ec_soe_request_t, ecrt_soe_request_state);
+DEFINE_STATE(ec_voe_handler_t, ecrt_voe_handler_execute);
+
+#define DEFINE_READ(type, function, op) \
+int function(type *req) \
+{ \
+	return req ? ec_app_request_start(&req->r, op, 0) : -EINVAL; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_READ(ec_sdo_request_t, ecrt_sdo_request_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_soe_request_t, ecrt_soe_request_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_voe_handler_t, ecrt_voe_handler_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_voe_handler_t, ecrt_voe_handler_read_nosync, EC_REQUEST_OP_READ_NOW);
+
+#define DEFINE_TIMEOUT(type, function) \
+int function(type *req, uint32_t timeout) \
+{ \
+	if (!req) \
+		return -EINVAL; \
+	req->r.timeout_ms = timeout; \
+	return 0; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_TIMEOUT(ec_sdo_request_t, ecrt_sdo_request_timeout);
+DEFINE_TIMEOUT(ec_soe_request_t, ecrt_soe_request_timeout);
+
+/* registers ----------------------------------------------------------------*/
 
 ec_reg_request_t *ecrt_slave_config_create_reg_request(ec_slave_config_t *sc, size_t size)
 {
 	return ec_app_request_create(sc, EC_REQUEST_REG, size);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_create_reg_request);
-
-uint8_t *ecrt_reg_request_data(const ec_reg_request_t *req)
-{
-	return req ? req->r.data : NULL;
-}
-EXPORT_SYMBOL_GPL(ecrt_reg_request_data);
-
-/* The prototype says const; what it points to never is. */
-ec_request_state_t ecrt_reg_request_state(const ec_reg_request_t *req)
-{
-	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR;
-}
-EXPORT_SYMBOL_GPL(ecrt_reg_request_state);
 
 static int start_reg(ec_reg_request_t *req, __u8 op, uint16_t address, size_t size)
 {

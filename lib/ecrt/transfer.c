@@ -6,6 +6,7 @@
 
 /* SDOs ---------------------------------------------------------------------*/
 
+/* @abort_code: the slave's when it aborts, and 0 else; may be NULL */
 static int sdo(ec_master_t *master, unsigned int cmd, struct ec_ioc_sdo *i,
 	       uint32_t *abort_code)
 {
@@ -19,30 +20,29 @@ static int sdo(ec_master_t *master, unsigned int cmd, struct ec_ioc_sdo *i,
 	return ret;
 }
 
-static int download(ec_master_t *master, struct ec_ioc_sdo *i, const uint8_t *data, size_t size,
-		    uint32_t *abort_code)
+static int download(ec_master_t *master, uint16_t position, uint16_t index, uint8_t subindex,
+		    __u32 flags, const uint8_t *data, size_t size, uint32_t *abort_code)
 {
+	struct ec_ioc_sdo i = {
+		.flags = flags, .position = position, .index = index, .subindex = subindex,
+		.size = ec_u32(size), .data = (uintptr_t)data,
+	};
+
 	if (abort_code)
 		*abort_code = 0;
 	if (!master)
 		return -EINVAL;
 	if (!data || !size || size > EC_U32_MAX)
 		return ec_fail(master, -EINVAL, "download %zu bytes to SDO 0x%04x:%02x of slave %u",
-			       size, i->index, i->subindex, i->position);
-	i->size = (__u32)size;
-	i->data = (uintptr_t)data;
-	return sdo(master, EC_IOC_SDO_DOWNLOAD, i, abort_code);
+			       size, index, subindex, position);
+	return sdo(master, EC_IOC_SDO_DOWNLOAD, &i, abort_code);
 }
 
 int ecrt_master_sdo_download(ec_master_t *master, uint16_t slave_position, uint16_t index,
 			     uint8_t subindex, const uint8_t *data, size_t data_size,
 			     uint32_t *abort_code)
 {
-	struct ec_ioc_sdo i = {
-		.position = slave_position, .index = index, .subindex = subindex,
-	};
-
-	return download(master, &i, data, data_size, abort_code);
+	return download(master, slave_position, index, subindex, 0, data, data_size, abort_code);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_download);
 
@@ -50,17 +50,19 @@ int ecrt_master_sdo_download_complete(ec_master_t *master, uint16_t slave_positi
 				      uint16_t index, const uint8_t *data, size_t data_size,
 				      uint32_t *abort_code)
 {
-	struct ec_ioc_sdo i = {
-		.flags = EC_SDO_FLAG_COMPLETE, .position = slave_position, .index = index,
-	};
-
-	return download(master, &i, data, data_size, abort_code);
+	return download(master, slave_position, index, 0, EC_SDO_FLAG_COMPLETE, data, data_size,
+			abort_code);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_download_complete);
 
-static int upload(ec_master_t *master, struct ec_ioc_sdo *i, uint8_t *target, size_t size,
-		  size_t *result_size, uint32_t *abort_code)
+static int upload(ec_master_t *master, uint16_t position, uint16_t index, uint8_t subindex,
+		  __u32 flags, uint8_t *target, size_t size, size_t *result_size,
+		  uint32_t *abort_code)
 {
+	struct ec_ioc_sdo i = {
+		.flags = flags, .position = position, .index = index, .subindex = subindex,
+		.size = ec_u32(size), .data = (uintptr_t)target,
+	};
 	int ret;
 
 	if (abort_code)
@@ -71,12 +73,10 @@ static int upload(ec_master_t *master, struct ec_ioc_sdo *i, uint8_t *target, si
 		return -EINVAL;
 	if (!result_size || (!target && size))
 		return ec_fail(master, -EINVAL, "upload SDO 0x%04x:%02x from slave %u to nowhere",
-			       i->index, i->subindex, i->position);
-	i->size = ec_u32(size);
-	i->data = (uintptr_t)target;
-	ret = sdo(master, EC_IOC_SDO_UPLOAD, i, abort_code);
+			       index, subindex, position);
+	ret = sdo(master, EC_IOC_SDO_UPLOAD, &i, abort_code);
 	if (!ret)
-		*result_size = i->size;
+		*result_size = i.size;
 	return ret;
 }
 
@@ -84,11 +84,8 @@ int ecrt_master_sdo_upload(ec_master_t *master, uint16_t slave_position, uint16_
 			   uint8_t subindex, uint8_t *target, size_t target_size,
 			   size_t *result_size, uint32_t *abort_code)
 {
-	struct ec_ioc_sdo i = {
-		.position = slave_position, .index = index, .subindex = subindex,
-	};
-
-	return upload(master, &i, target, target_size, result_size, abort_code);
+	return upload(master, slave_position, index, subindex, 0, target, target_size, result_size,
+		      abort_code);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_upload);
 
@@ -96,11 +93,8 @@ int ecrt_master_sdo_upload_complete(ec_master_t *master, uint16_t slave_position
 				    uint16_t index, uint8_t *target, size_t target_size,
 				    size_t *result_size, uint32_t *abort_code)
 {
-	struct ec_ioc_sdo i = {
-		.flags = EC_SDO_FLAG_COMPLETE, .position = slave_position, .index = index,
-	};
-
-	return upload(master, &i, target, target_size, result_size, abort_code);
+	return upload(master, slave_position, index, 0, EC_SDO_FLAG_COMPLETE, target, target_size,
+		      result_size, abort_code);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_upload_complete);
 

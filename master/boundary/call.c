@@ -121,23 +121,15 @@ static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
 /* An application sees its own session, everybody else the one that runs. */
 static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 {
-	struct ec_master *m = call->master;
-	int ret = ec_show_begin(&m->base->show);
+	struct ec_sessions *s = &call->master->sessions;
 
-	if (ret)
-		return ret;
-	call->session = ec_session_of(&m->sessions, call->file) ?: m->sessions.session;
+	call->session = ec_session_of(s, call->file) ?: s->session;
 	if (!call->session)
-		ret = ec_refuse(call, -ENOENT, "no application has reserved master %u",
-				m->base->index);
-	else if (op->class == EC_CLASS_SHOW_CONFIG)
-		ret = find_config(call, *(u32 *)(call->arg + op->at));
-	else
-		ret = find_domain(call, *(u32 *)(call->arg + op->at));
-	call->showing = !ret;
-	if (ret)
-		ec_show_end(&m->base->show);
-	return ret;
+		return ec_refuse(call, -ENOENT, "no application has reserved master %u",
+				 call->master->base->index);
+	if (op->class == EC_CLASS_SHOW_CONFIG)
+		return find_config(call, *(u32 *)(call->arg + op->at));
+	return find_domain(call, *(u32 *)(call->arg + op->at));
 }
 
 /**
@@ -196,10 +188,11 @@ static int with_show(struct ec_call *call, const struct ec_ioctl *op)
 	int ret;
 
 	do {
-		ret = show_session(call, op);
+		ret = ec_show_begin(&call->master->base->show);
 		if (ret)
 			return ret;
-		ret = op->fn(call);
+		call->showing = true;
+		ret = (call->slave ? 0 : show_session(call, op)) ?: op->fn(call);
 		if (call->showing)
 			ec_show_end(&call->master->base->show);
 	} while (ret == -EAGAIN);
@@ -213,6 +206,8 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 		return op->fn(call);
 	case EC_CLASS_SLAVE:
 		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: op->fn(call);
+	case EC_CLASS_SHOW_SLAVE:
+		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: with_show(call, op);
 	case EC_CLASS_SHOW_CONFIG:
 	case EC_CLASS_SHOW_DOMAIN:
 		return with_show(call, op);

@@ -15,6 +15,7 @@ struct ec_reserved {
 enum ec_ioc_class {
 	EC_CLASS_MASTER,	/* nothing */
 	EC_CLASS_SLAVE,		/* a slave by its position */
+	EC_CLASS_SHOW_SLAVE,	/* the same, in a show section */
 	EC_CLASS_SESSION,	/* session of the file; with session lock */
 	EC_CLASS_IDLE,		/* the same while it is not active */
 	EC_CLASS_CONFIG,	/* the same, and a slave configuration */
@@ -36,7 +37,8 @@ struct ec_ioc_buffer {
  * @cmd: number; its size is what this module knows
  * @fn: handler
  * @flags: F_*
- * @min: bytes the oldest program sends; less is no such argument
+ * @known: flags of the argument that are known
+ * @min: bytes the oldest program sends, less is no such argument; 0: all of them
  * @class: what is looked up and locked
  * @at: where the argument has the position or index for that
  * @buffer: @most is 0 when there is none
@@ -46,6 +48,7 @@ struct ec_ioctl {
 	unsigned int cmd;
 	int (*fn)(struct ec_call *call);
 	unsigned int flags;
+	u32 known;
 	unsigned int min;
 	enum ec_ioc_class class;
 	u16 at;

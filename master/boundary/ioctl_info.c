@@ -176,13 +176,11 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 	return p == s->upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
 }
 
-static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static void slave_ports(const struct ec_master *m, const struct ec_slave *s,
+			struct ec_ioc_slave *i)
 {
 	unsigned int p;
-	int ret = ec_show_begin(&m->base->show);
 
-	if (ret)
-		return ret;
 	for (p = 0; p < EC_UAPI_PORTS; p++) {
 		struct ec_ioc_port *port = &i->ports[p];
 
@@ -194,41 +192,28 @@ static int slave_ports(struct ec_master *m, const struct ec_slave *s, struct ec_
 		port->next_slave = s->next[p];
 		port->delay_to_next_dc = way(m, s, p);
 	}
-	ec_show_end(&m->base->show);
-	return 0;
 }
 
 /* The nearest slave at or before this one that has an alias. */
-static int find_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static int slave_alias(struct ec_call *call, struct ec_ioc_slave *i)
 {
-	int k, ret = ec_show_begin(&m->base->show);
+	const struct ec_bus *bus = &call->master->bus;
+	const struct ec_slave *s = call->slave;
+	int k, ret;
 
-	if (ret)
-		return ret;
 	i->alias_group = 0;
 	i->alias_pos = s->position;
-	for (k = min_t(int, s->position, (int)m->bus.n_slaves - 1); k >= 0; k--) {
-		if (m->bus.slaves[k]->alias) {
-			i->alias_group = m->bus.slaves[k]->alias;
+	for (k = min_t(int, s->position, (int)bus->n_slaves - 1); k >= 0; k--) {
+		if (bus->slaves[k]->alias) {
+			i->alias_group = bus->slaves[k]->alias;
 			i->alias_pos = s->position - k;
 			break;
 		}
-		ret = k % WALK ? 0 : ec_show_pause(&m->base->show);
+		ret = k % WALK ? 0 : ec_ioc_pause(call);
 		if (ret)
 			return ret;
 	}
-	ec_show_end(&m->base->show);
 	return 0;
-}
-
-static int slave_alias(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
-{
-	int ret;
-
-	do
-		ret = find_alias(m, s, i);
-	while (ret == -EAGAIN);
-	return ret;
 }
 
 static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
@@ -245,20 +230,19 @@ static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
 }
 
 /* The configuration that has the slave, or that expects another one in its place. */
-static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
+static int slave_config(struct ec_call *call, struct ec_ioc_slave *i)
 {
+	const struct ec_session *session = call->master->sessions.session;
+	const struct ec_slave *s = call->slave;
 	const struct ec_config *c = NULL;
 	unsigned int from = 0;
-	int ret = ec_show_begin(&m->base->show);
+	int ret;
 
-	if (ret)
-		return ret;
-	while (m->sessions.session) {
-		c = ec_config_at(&m->sessions.session->wanted, s, i->alias_group, i->alias_pos,
-				 &from);
-		if (c || from >= m->sessions.session->wanted.n_configs)
+	while (session) {
+		c = ec_config_at(&session->wanted, s, i->alias_group, i->alias_pos, &from);
+		if (c || from >= session->wanted.n_configs)
 			break;
-		ret = ec_show_pause(&m->base->show);
+		ret = ec_ioc_pause(call);
 		if (ret)
 			return ret;
 	}
@@ -267,18 +251,7 @@ static int find_config(struct ec_master *m, const struct ec_slave *s, struct ec_
 	/* such a slave is used all the same, so it has no other text */
 	if (i->differs && !i->warning[0])
 		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
-	ec_show_end(&m->base->show);
 	return 0;
-}
-
-static int slave_config(struct ec_master *m, const struct ec_slave *s, struct ec_ioc_slave *i)
-{
-	int ret;
-
-	do
-		ret = find_config(m, s, i);
-	while (ret == -EAGAIN);
-	return ret;
 }
 
 int ec_ioc_slave(struct ec_call *call)
@@ -324,8 +297,8 @@ int ec_ioc_slave(struct ec_call *call)
 	slave_general(s, i);
 	ec_slave_why(s, i->why, sizeof(i->why));
 	ec_slave_warning(s, i->warning, sizeof(i->warning));
-	return slave_ports(call->master, s, i) ?: slave_alias(call->master, s, i) ?:
-	       slave_config(call->master, s, i);
+	slave_ports(call->master, s, i);
+	return slave_alias(call, i) ?: slave_config(call, i);
 }
 
 int ec_ioc_sm(struct ec_call *call)
@@ -345,78 +318,69 @@ int ec_ioc_sm(struct ec_call *call)
 	return 0;
 }
 
-/* Without a name in the EEPROM that of the object dictionary is in @buf. */
-static void name(const struct ec_slave *s, u8 index, char *buf)
-{
-	if (index && ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
-		buf[0] = '\0';
-}
-
-static const struct ec_pdo *get_pdo(struct ec_call *call, u8 sm, u16 pos, int *ret)
+/*
+ * Copies a PDO and, with @entry_pos, the entry there; without, @e names the PDO. @name is from
+ * the EEPROM, or else from the object dictionary.
+ */
+static int get_pdo(struct ec_call *call, u8 sm, u16 pos, const u16 *entry_pos, struct ec_pdo *p,
+		   struct ec_pdo_entry *e, char *name)
 {
 	const struct ec_slave *s = call->slave;
+	int ret = ec_show_begin(&call->master->base->show);
 
+	if (ret)
+		return ret;
 	if (sm >= s->n_sms || pos >= s->sm_pdos[sm].n) {
-		*ret = ec_refuse(call, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
-				 sm);
-		return NULL;
+		ret = ec_refuse(call, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
+				sm);
+		goto out;
 	}
-	return &s->sm_pdos[sm].pdos[pos];
+	*p = s->sm_pdos[sm].pdos[pos];
+	if (entry_pos && *entry_pos >= p->n_entries) {
+		ret = ec_refuse(call, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
+				p->n_entries, *entry_pos + 1);
+		goto out;
+	}
+	*e = entry_pos ? p->entries[*entry_pos] :
+			 (struct ec_pdo_entry){ .index = p->index, .name = p->name };
+	strscpy(name, e->name ? "" : ec_names_find(s, e->index, entry_pos ? e->sub :
+								EC_NAME_OBJECT), EC_UAPI_STRING);
+out:
+	ec_show_end(&call->master->base->show);
+	/* outside of the section, as an EEPROM may have many strings */
+	if (!ret && e->name &&
+	    ec_sii_string(s->sii, s->sii_bytes, e->name, name, EC_UAPI_STRING) < 0)
+		name[0] = '\0';
+	return ret;
 }
 
 int ec_ioc_pdo(struct ec_call *call)
 {
 	struct ec_ioc_pdo *i = call->arg;
-	const struct ec_pdo *p;
-	struct ec_slave *s = call->slave;
-	u8 string = 0;
-	int ret = ec_show_begin(&call->master->base->show);
+	struct ec_pdo_entry e;
+	struct ec_pdo p;
+	int ret = get_pdo(call, i->sm, i->pdo_pos, NULL, &p, &e, i->name);
 
 	if (ret)
 		return ret;
-	i->name[0] = '\0';
-	p = get_pdo(call, i->sm, i->pdo_pos, &ret);
-	if (p) {
-		i->index = p->index;
-		i->entry_count = p->n_entries;
-		string = p->name;
-		if (!string)
-			strscpy(i->name, ec_names_find(s, p->index, EC_NAME_OBJECT),
-				sizeof(i->name));
-	}
-	ec_show_end(&call->master->base->show);
-	name(s, string, i->name);
-	return ret;
+	i->index = p.index;
+	i->entry_count = p.n_entries;
+	return 0;
 }
 
 int ec_ioc_pdo_entry(struct ec_call *call)
 {
 	struct ec_ioc_pdo_entry *i = call->arg;
-	const struct ec_pdo *p;
-	struct ec_slave *s = call->slave;
-	u8 string = 0;
-	int ret = ec_show_begin(&call->master->base->show);
+	struct ec_pdo_entry e;
+	struct ec_pdo p;
+	int ret = get_pdo(call, i->sm, i->pdo_pos, &i->entry_pos, &p, &e, i->name);
 
 	if (ret)
 		return ret;
-	i->name[0] = '\0';
-	p = get_pdo(call, i->sm, i->pdo_pos, &ret);
-	if (p && i->entry_pos >= p->n_entries) {
-		ret = ec_refuse(call, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
-				p->n_entries, i->entry_pos + 1);
-	} else if (p) {
-		const struct ec_pdo_entry *e = &p->entries[i->entry_pos];
-
-		i->index = e->index;
-		i->subindex = e->sub;
-		i->bits = e->bits;
-		string = e->name;
-		if (!string)
-			strscpy(i->name, ec_names_find(s, e->index, e->sub), sizeof(i->name));
-	}
-	ec_show_end(&call->master->base->show);
-	name(s, string, i->name);
-	return ret;
+	i->index = e.index;
+	i->subindex = e.sub;
+	i->bits = e.bits;
+	return 0;
 }
 
 int ec_ioc_sii(struct ec_call *call)

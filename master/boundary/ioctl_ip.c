@@ -7,27 +7,13 @@
 #include "../bus/slave.h"
 
 static_assert(EC_IP_ALL == EC_EOE_ALL && EC_IP_NAME == EC_EOE_NAME);
+static_assert(sizeof(struct ec_ip_params) == sizeof(struct ec_eoe_ip));
+static_assert(offsetof(struct ec_ip_params, ip) == offsetof(struct ec_eoe_ip, ip));
 
-static void from_uapi(struct ec_eoe_ip *p, const struct ec_ip_params *u)
+/* The parameters of a command serve as they are: both structures have the same layout. */
+static struct ec_eoe_ip *eoe_ip(struct ec_ip_params *p)
 {
-	p->which = u->which;
-	memcpy(p->mac, u->mac, sizeof(p->mac));
-	memcpy(p->ip, u->ip, sizeof(p->ip));
-	memcpy(p->mask, u->mask, sizeof(p->mask));
-	memcpy(p->gateway, u->gateway, sizeof(p->gateway));
-	memcpy(p->dns, u->dns, sizeof(p->dns));
-	memcpy(p->name, u->name, sizeof(p->name));
-}
-
-static void to_uapi(struct ec_ip_params *u, const struct ec_eoe_ip *p)
-{
-	u->which = p->which;
-	memcpy(u->mac, p->mac, sizeof(u->mac));
-	memcpy(u->ip, p->ip, sizeof(u->ip));
-	memcpy(u->mask, p->mask, sizeof(u->mask));
-	memcpy(u->gateway, p->gateway, sizeof(u->gateway));
-	memcpy(u->dns, p->dns, sizeof(u->dns));
-	memcpy(u->name, p->name, sizeof(u->name));
+	return (struct ec_eoe_ip *)p;
 }
 
 static int check_params(struct ec_call *call, const struct ec_ip_params *u)
@@ -57,36 +43,24 @@ static int failed(struct ec_call *call, const struct ec_ioc_ip *i, int ret)
 int ec_ioc_ip_set(struct ec_call *call)
 {
 	struct ec_ioc_ip *i = call->arg;
-	struct ec_eoe_ip p;
-	int ret = check_params(call, &i->params);
 
-	if (ret)
-		return ret;
-	from_uapi(&p, &i->params);
-	return failed(call, i, ec_eoe_set_ip(&call->slave->mbox, &p, &i->result));
+	return check_params(call, &i->params) ?:
+	       failed(call, i, ec_eoe_set_ip(&call->slave->mbox, eoe_ip(&i->params), &i->result));
 }
 
 int ec_ioc_ip_get(struct ec_call *call)
 {
 	struct ec_ioc_ip *i = call->arg;
-	struct ec_eoe_ip p;
-	int ret = failed(call, i, ec_eoe_get_ip(&call->slave->mbox, &p, &i->result));
 
-	if (!ret)
-		to_uapi(&i->params, &p);
-	return ret;
+	return failed(call, i, ec_eoe_get_ip(&call->slave->mbox, eoe_ip(&i->params), &i->result));
 }
 
 int ec_ioc_sc_ip(struct ec_call *call)
 {
 	struct ec_ioc_sc_ip *i = call->arg;
-	struct ec_eoe_ip p;
-	int ret = check_params(call, &i->params);
 
-	if (ret)
-		return ret;
-	from_uapi(&p, &i->params);
-	return ec_ioc_limit(call, ec_config_ip(call->config, &p));
+	return check_params(call, &i->params) ?:
+	       ec_ioc_limit(call, ec_config_ip(call->config, eoe_ip(&i->params)));
 }
 
 int ec_ioc_config_ip(struct ec_call *call)
@@ -95,6 +69,6 @@ int ec_ioc_config_ip(struct ec_call *call)
 	static const struct ec_eoe_ip none;
 	struct ec_ioc_sc_ip *i = call->arg;
 
-	to_uapi(&i->params, u ? (const struct ec_eoe_ip *)u->data : &none);
+	*eoe_ip(&i->params) = u ? *(const struct ec_eoe_ip *)u->data : none;
 	return 0;
 }

@@ -8,34 +8,21 @@
 #include "../bus/slave.h"
 #include "../bus/slave_pdo.h"
 
-/**
- * ec_config_defaults() - start from the PDOs the slave has
- * @c: configuration without PDOs
- * @slave: slave
- *
- * Context: Process, lock of the configuration held. May sleep.
- */
-void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave)
+/* Start from the PDOs that the slave has. */
+static void slave_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
-	unsigned int sm, i;
+	unsigned int sm;
 
 	lockdep_assert_held(c->wanted->lock);
 	down_read(&slave->bus->topo);
 	for (sm = 0; sm < slave->n_sms; sm++) {
-		const struct ec_pdo_list *l = &slave->sm_pdos[sm];
-
 		if (c->sm[sm].dir || c->sm[sm].pdos.n)
 			continue;
 		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
 				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
-		for (i = 0; i < l->n; i++) {
-			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
-
-			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
-				goto out;
-		}
+		if (ec_pdo_list_copy(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
+			break;
 	}
-out:
 	up_read(&slave->bus->topo);
 }
 
@@ -43,34 +30,23 @@ out:
 static const struct ec_config *predecessor(const struct ec_config *c)
 {
 	const struct ec_wanted *w = c->wanted->before;
-	unsigned int i;
+	const struct ec_config *p;
 
 	lockdep_assert_held(c->wanted->lock);
-	for (i = 0; w && i < w->n_configs; i++) {
-		const struct ec_config *p = w->configs[i];
-
-		if (p->alias == c->alias && p->position == c->position &&
-		    p->vendor == c->vendor && p->product == c->product)
-			return p;
-	}
-	return NULL;
+	p = w ? ec_config_find(w, c->alias, c->position, c->vendor, c->product) : NULL;
+	return IS_ERR(p) ? NULL : p;
 }
 
 /* The same start as that one had, whether the slave was there then, or is now. */
 static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 {
-	unsigned int sm, i;
+	unsigned int sm;
 
 	for (sm = 0; sm < EC_MAX_SM; sm++) {
-		const struct ec_pdo_list *l = &from->sm[sm].pdos;
-
 		c->sm[sm].dir = from->sm[sm].dir;
-		for (i = 0; !from->sm[sm].explicit && i < l->n; i++) {
-			struct ec_pdo *p = ec_pdo_add(&c->sm[sm].pdos, l->pdos[i].index, 0);
-
-			if (!p || ec_pdo_copy_entries(p, &l->pdos[i]))
-				return;
-		}
+		if (!from->sm[sm].explicit &&
+		    ec_pdo_list_copy(&c->sm[sm].pdos, &from->sm[sm].pdos))
+			return;
 	}
 }
 
@@ -162,7 +138,7 @@ void ec_config_begin(struct ec_config *c)
 	if (before)
 		inherit_defaults(c, before);
 	else if (c->slave)
-		ec_config_defaults(c, c->slave);
+		slave_defaults(c, c->slave);
 	/* as many as slaves have */
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_budget_add(&c->wanted->budget, ec_pdo_list_memory(&c->sm[i].pdos));

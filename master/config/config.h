@@ -201,7 +201,6 @@ struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 posit
 				 u32 product);
 void ec_config_begin(struct ec_config *c);
 void ec_config_free(struct ec_config *c);
-void ec_config_defaults(struct ec_config *c, const struct ec_slave *slave);
 int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);
 int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo);
 int ec_config_assign_clear(struct ec_config *c, u8 sm);

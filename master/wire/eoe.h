@@ -37,9 +37,10 @@ enum ec_eoe_type {
 #define EC_EOE_ALL		0x3f
 
 /**
- * struct ec_eoe_ip - IP parameters; addresses in network order
+ * struct ec_eoe_ip - IP parameters, laid out as struct ec_ip_params; addresses in network order
  * @which: EC_EOE_MAC..., those of the rest that count
  * @mac: MAC address
+ * @reserved: 0
  * @ip: IPv4 address
  * @mask: of the subnet
  * @gateway: default gateway
@@ -49,6 +50,7 @@ enum ec_eoe_type {
 struct ec_eoe_ip {
 	u32 which;
 	u8 mac[6];
+	u8 reserved[2];
 	u8 ip[4];
 	u8 mask[4];
 	u8 gateway[4];

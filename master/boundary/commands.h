@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * All commands but the cyclic ones, one in each row: handler, who may give it, what it looks
+ * up, its buffer, fields that must be zero, flags it knows. Included twice: ioctl.h declares
+ * the handlers, ioctl.c makes the table.
+ */
+CMD(EC_IOC_VERSION, ec_ioc_version, 0)
+CMD(EC_IOC_REASON, ec_ioc_reason, 0)
+CMD(EC_IOC_MASTER, ec_ioc_master, 0, OLDEST(ec_ioc_master, not_captured))
+CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), OLDEST(ec_ioc_slave, dc_odd))
+CMD(EC_IOC_SM, ec_ioc_sm, 0, SLAVE(ec_ioc_sm), RSV1(ec_ioc_sm))
+CMD(EC_IOC_PDO, ec_ioc_pdo, 0, SLAVE(ec_ioc_pdo), RSV2(ec_ioc_pdo))
+CMD(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry), RSV1(ec_ioc_pdo_entry))
+CMD(EC_IOC_SII, ec_ioc_sii, 0, SLAVE(ec_ioc_sii), OUT(ec_ioc_sii, EC_MAX_SII_BYTES),
+	RSV1(ec_ioc_sii))
+CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config))
+CMD(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, SHOW_CONFIG(ec_ioc_config_sm), RSV1(ec_ioc_config_sm))
+CMD(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
+	RSV1(ec_ioc_config_pdo))
+CMD(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, SHOW_CONFIG(ec_ioc_config_entry),
+	RSV1(ec_ioc_config_entry))
+CMD(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0, SHOW_CONFIG(ec_ioc_config_sdo),
+	OUT(ec_ioc_config_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_config_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
+	OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn))
+CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
+CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
+	RSV1(ec_ioc_config_why))
+CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
+	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
+CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain))
+CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
+	RSV1(ec_ioc_domain_fmmu))
+CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
+	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
+CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
+	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
+CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
+	OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, SLAVE(ec_ioc_sdo),
+	IN(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
+	FLAGS(EC_REG_FLAG_EMERGENCY))
+CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
+	FLAGS(EC_REG_FLAG_EMERGENCY))
+CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe, EC_MAX_SOE_SIZE),
+	RSV1(ec_ioc_soe))
+CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
+	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV1(ec_ioc_soe))
+CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
+CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
+	RSV(FIELD(ec_ioc_ip, params.reserved)))
+CMD(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),
+	RSV(FIELD(ec_ioc_ip, params.reserved)))
+CMD(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE)
+CMD(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE)
+CMD(EC_IOC_RESET, ec_ioc_reset, F_WRITE)
+CMD(EC_IOC_CYCLE_RESET, ec_ioc_cycle_reset, F_WRITE)
+CMD(EC_IOC_END_DETACHED, ec_ioc_end_detached, F_WRITE)
+CMD(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE)
+CMD(EC_IOC_RELEASE, ec_ioc_release, F_WRITE)
+CMD(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE, IDLE)
+CMD(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE)
+CMD(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, CONFIG(ec_ioc_sc_sync), RSV1(ec_ioc_sc_sync))
+CMD(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE, CONFIG(ec_ioc_sc_watchdog))
+CMD(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE, CONFIG(ec_ioc_sc_pdo))
+CMD(EC_IOC_SC_SDO, ec_ioc_sc_sdo, F_WRITE, CONFIG(ec_ioc_sc_sdo),
+	IN(ec_ioc_sc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_SC_IDN, ec_ioc_sc_idn, F_WRITE, CONFIG(ec_ioc_sc_idn),
+	IN(ec_ioc_sc_idn, EC_MAX_SOE_SIZE))
+CMD(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE, CONFIG(ec_ioc_reg_entry),
+	FLAGS(EC_REG_ENTRY_BY_POS | EC_REG_ENTRY_ALIGNED))
+CMD(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE, CONFIG(ec_ioc_sc_dc), RSV2(ec_ioc_sc_dc))
+CMD(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, CONFIG(ec_ioc_sc_flag), RSV1(ec_ioc_sc_flag))
+CMD(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, CONFIG(ec_ioc_sc_timeout),
+	RSV1(ec_ioc_sc_timeout))
+CMD(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, CONFIG(ec_ioc_sc_request),
+	RSV1(ec_ioc_sc_request))
+CMD(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, CONFIG(ec_ioc_sc_emerg), RSV1(ec_ioc_sc_emerg))
+CMD(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
+	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
+CMD(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, CONFIG(ec_ioc_sc_overlap),
+	RSV1(ec_ioc_sc_overlap))
+CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
+	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, false))
+CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE, SESSION)
+CMD(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION)
+CMD(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE, SESSION)
+CMD(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE, IDLE)
+CMD(EC_IOC_APP_TIME, ec_ioc_app_time, F_WRITE, RSV1(ec_ioc_app_time))
+CMD(EC_IOC_REF_CLOCK, ec_ioc_ref_clock, F_WRITE, IDLE)
+CMD(EC_IOC_CYCLE, ec_ioc_cycle, F_WRITE, IDLE, FLAGS(EC_CYCLE_FLAG_ALL))
+CMD(EC_IOC_WAIT, ec_ioc_wait, F_WRITE)
+CMD(EC_IOC_LATE, ec_ioc_late, F_WRITE, IDLE)
+CMD(EC_IOC_DOMAIN_AGE, ec_ioc_domain_age, F_WRITE, DOMAIN(ec_ioc_domain_age),
+	RSV1(ec_ioc_domain_age))
+CMD(EC_IOC_DOMAIN_OPTIONS, ec_ioc_domain_options, F_WRITE, DOMAIN(ec_ioc_domain_options),
+	RSV1(ec_ioc_domain_options))
+CMD(EC_IOC_DIVISION, ec_ioc_division, F_WRITE, DOMAIN(ec_ioc_division))
+CMD(EC_IOC_COPY, ec_ioc_copy, F_WRITE, IDLE)
