@@ -20,7 +20,8 @@ CMD(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
 CMD(EC_IOC_CONFIG_ENTRY, ec_ioc_config_entry, 0, SHOW_CONFIG(ec_ioc_config_entry),
 	RSV1(ec_ioc_config_entry))
 CMD(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0, SHOW_CONFIG(ec_ioc_config_sdo),
-	OUT(ec_ioc_config_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_config_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+	OUT(ec_ioc_config_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_config_sdo),
+	FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
 	OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn))
 CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
