@@ -24,8 +24,9 @@ void ec_queues_init(struct ec_queues *qs)
  */
 static unsigned int first(struct ec_queue *q)
 {
-	unsigned int i = --q->tail;
+	unsigned int i = q->tail - 1;
 
+	WRITE_ONCE(q->tail, i);
 	if (!q->urgent || i + 1 == q->head)
 		return i;
 	q->q[i % EC_SLOTS] = q->q[(i + 1) % EC_SLOTS];
@@ -50,7 +51,9 @@ int ec_queue_push(struct ec_queues *qs, struct ec_slot *slot, bool urgent)
 
 	raw_spin_lock_irqsave(&qs->lock, flags);
 	if (q->head - q->tail < EC_SLOTS) {
-		i = urgent ? first(q) : q->head++;
+		i = urgent ? first(q) : q->head;
+		if (!urgent)
+			WRITE_ONCE(q->head, i + 1);
 		q->q[i % EC_SLOTS] = (struct ec_queued){
 			.slot = slot, .seq = slot->seq, .urgent = urgent,
 		};
@@ -75,7 +78,7 @@ bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *n
 	bool found = false;
 
 	raw_spin_lock_irqsave(&qs->lock, flags);
-	for (; q->head != q->tail; q->tail++) {
+	while (q->head != q->tail) {
 		const struct ec_queued *e = &q->q[q->tail % EC_SLOTS];
 
 		/* else it was sent, or given up */
@@ -85,6 +88,7 @@ bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *n
 			found = true;
 			break;
 		}
+		WRITE_ONCE(q->tail, q->tail + 1);
 	}
 	raw_spin_unlock_irqrestore(&qs->lock, flags);
 	return found;
