@@ -84,10 +84,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 
 	if (!m)
 		return ERR_PTR(-ENOMEM);
-	m->base->index = index;
-	m->base->debug = debug;
-	ec_log_init(&m->base->log);
-	ec_show_init(&m->base->show);
+	ec_base_init(m->base, index, debug);
 	m->sessions.base = m->base;
 	m->sessions.links = &m->links;
 	m->sessions.bus = &m->bus;

@@ -21,6 +21,14 @@ struct ec_base {
 	struct ec_show show;
 };
 
+static inline void ec_base_init(struct ec_base *b, unsigned int index, u32 debug)
+{
+	b->index = index;
+	b->debug = debug;
+	ec_log_init(&b->log);
+	ec_show_init(&b->show);
+}
+
 /*
  * @x: structure of a layer. @fmt is a constant: it identifies what may repeat, see
  * ec_log_event().
