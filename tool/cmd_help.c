@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../master/wire/types.h"
+#include "data_types.h"
 #include "out.h"
 #include "tool.h"
 

@@ -3,7 +3,7 @@
 #ifndef EC_TOOL_VALUE_H
 #define EC_TOOL_VALUE_H
 
-#include "../master/wire/types.h"
+#include "data_types.h"
 
 #define VALUE_TEXT	64	/* holds every type but strings and raw */
 

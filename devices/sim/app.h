@@ -13,8 +13,8 @@
 #include "../../master/wire/al.h"
 #include "../../master/wire/eoe.h"
 #include "../../master/wire/soe.h"
-#include "../../master/wire/types.h"
 #include "../../master/wire/voe.h"
+#include "codes.h"
 #include "mbox_encode.h"
 #include "sdo_server.h"
 #include "sdoinfo_server.h"
@@ -594,6 +594,7 @@ void *ec_app_model_alloc(struct ec_app_model *model, size_t bytes);
 
 /* slave_al.c */
 void ec_app_al_reset(struct ec_app *app, u64 now);
+bool ec_app_al_legal(u8 from, u8 to);
 void ec_app_al_control(struct ec_app *app, u64 now);
 void ec_app_al_poll(struct ec_app *app, u64 now);
 void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now);

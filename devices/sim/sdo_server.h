@@ -4,6 +4,7 @@
 #define EC_SIM_SDO_SERVER_H
 
 #include "../../master/wire/coe.h"
+#include "codes.h"
 
 /**
  * struct ec_sdo_srv_ops - object dictionary behind an SDO server

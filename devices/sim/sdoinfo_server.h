@@ -7,6 +7,7 @@
 #define EC_SIM_SDOINFO_SERVER_H
 
 #include "../../master/wire/sdoinfo.h"
+#include "codes.h"
 
 /**
  * struct ec_sdoinfo_req - a request as the server sees it

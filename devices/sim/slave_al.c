@@ -296,6 +296,36 @@ void ec_app_al_poll(struct ec_app *app, u64 now)
 }
 
 /**
+ * ec_app_al_legal() - does a slave in one state have to follow a request for another?
+ * @from: present state
+ * @to: state to request
+ *
+ * Staying is legal.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it has to.
+ */
+bool ec_app_al_legal(u8 from, u8 to)
+{
+	if (!ec_al_state_valid(from) || !ec_al_state_valid(to))
+		return false;
+	if (from == to || to == EC_AL_INIT)
+		return true;
+	switch (from) {
+	case EC_AL_INIT:
+		return to == EC_AL_PREOP || to == EC_AL_BOOT;
+	case EC_AL_PREOP:
+		return to == EC_AL_SAFEOP;
+	case EC_AL_SAFEOP:
+		return to == EC_AL_PREOP || to == EC_AL_OP;
+	case EC_AL_OP:
+		return to == EC_AL_PREOP || to == EC_AL_SAFEOP;
+	default:
+		return false;
+	}
+}
+
+/**
  * ec_app_al_control() - the master wrote AL control
  * @app: slave
  * @now: time, ns
@@ -331,7 +361,7 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 		show(app, now);
 		return;
 	}
-	if (!ec_al_legal(app->state, to) &&
+	if (!ec_app_al_legal(app->state, to) &&
 	    !ec_app_bug(app, EC_SIM_BUG_AL_SKIP)) {
 		ec_app_al_fail(app, app->state, EC_AL_CODE_INVALID_CHANGE, now);
 		return;

@@ -10,5 +10,4 @@
 #include "../../master/wire/sdoinfo.c"
 #include "../../master/wire/sii.c"
 #include "../../master/wire/soe.c"
-#include "../../master/wire/types.c"
 #include "../../master/wire/voe.c"

@@ -75,14 +75,15 @@ static int read_name(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b
 
 	text[0] = '\0';
 	if (sub != EC_NAME_OBJECT) {
-		ec_sdoinfo_init_entry(&a->info, index, sub, 0, a->data, sizeof(a->data));
+		ec_sdoinfo_init(&a->info, EC_SDOINFO_ENTRY_REQ, index, sub, a->data,
+				sizeof(a->data));
 		ret = ask(s, a, b);
 		if (!ret && !ec_od_entry_decode(a->data, a->info.size, &e))
 			ec_sii_text(text, EC_UAPI_STRING, (const u8 *)e.name, e.name_len);
 		if (ret || text[0] || sub)
 			return ret;
 	}
-	ec_sdoinfo_init_object(&a->info, index, a->data, sizeof(a->data));
+	ec_sdoinfo_init(&a->info, EC_SDOINFO_OBJECT_REQ, index, 0, a->data, sizeof(a->data));
 	ret = ask(s, a, b);
 	if (!ret && !ec_od_object_decode(a->data, a->info.size, &o))
 		ec_sii_text(text, EC_UAPI_STRING, (const u8 *)o.name, o.name_len);

@@ -2,6 +2,14 @@
 #include "al.h"
 #include "text.h"
 
+static const char * const states[EC_AL_STATE_MASK + 1] = {
+	[EC_AL_INIT] = "INIT",
+	[EC_AL_PREOP] = "PREOP",
+	[EC_AL_BOOT] = "BOOT",
+	[EC_AL_SAFEOP] = "SAFEOP",
+	[EC_AL_OP] = "OP",
+};
+
 /**
  * ec_al_state_name() - name of a state
  * @state: AL status or AL control value; only the low four bits count
@@ -11,20 +19,7 @@
  */
 const char *ec_al_state_name(u8 state)
 {
-	switch (state & EC_AL_STATE_MASK) {
-	case EC_AL_INIT:
-		return "INIT";
-	case EC_AL_PREOP:
-		return "PREOP";
-	case EC_AL_BOOT:
-		return "BOOT";
-	case EC_AL_SAFEOP:
-		return "SAFEOP";
-	case EC_AL_OP:
-		return "OP";
-	default:
-		return "???";
-	}
+	return states[state & EC_AL_STATE_MASK] ?: "???";
 }
 
 /**
@@ -36,66 +31,7 @@ const char *ec_al_state_name(u8 state)
  */
 bool ec_al_state_valid(u8 state)
 {
-	switch (state) {
-	case EC_AL_INIT:
-	case EC_AL_PREOP:
-	case EC_AL_BOOT:
-	case EC_AL_SAFEOP:
-	case EC_AL_OP:
-		return true;
-	default:
-		return false;
-	}
-}
-
-/**
- * ec_al_legal() - may a slave in one state be asked for another?
- * @from: present state
- * @to: state to request
- *
- * Staying is legal.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true if the slave has to follow.
- */
-bool ec_al_legal(u8 from, u8 to)
-{
-	if (!ec_al_state_valid(from) || !ec_al_state_valid(to))
-		return false;
-	if (from == to || to == EC_AL_INIT)
-		return true;
-	switch (from) {
-	case EC_AL_INIT:
-		return to == EC_AL_PREOP || to == EC_AL_BOOT;
-	case EC_AL_PREOP:
-		return to == EC_AL_SAFEOP;
-	case EC_AL_SAFEOP:
-		return to == EC_AL_PREOP || to == EC_AL_OP;
-	case EC_AL_OP:
-		return to == EC_AL_PREOP || to == EC_AL_SAFEOP;
-	default:
-		return false;
-	}
-}
-
-/**
- * ec_al_next() - next state to request on the way to a target
- * @from: present state; INIT is requested if it is no state
- * @to: target
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: state to write to AL control, @to itself when it is reached or one
- * step away; INIT when @to is no state.
- */
-u8 ec_al_next(u8 from, u8 to)
-{
-	if (!ec_al_state_valid(from) || !ec_al_state_valid(to))
-		return EC_AL_INIT;
-	if (ec_al_legal(from, to))
-		return to;
-	if (from == EC_AL_BOOT || to == EC_AL_BOOT)
-		return EC_AL_INIT;
-	return from == EC_AL_INIT ? EC_AL_PREOP : EC_AL_SAFEOP;
+	return state < ARRAY_SIZE(states) && states[state];
 }
 
 /**

@@ -31,16 +31,6 @@ void ec_coe_hdr_encode(struct ec_wbuf *w, u8 service)
 	ec_wbuf_le16(w, (u16)(service << 12));
 }
 
-static const char * const services[] = {
-	"???", "emergency", "SDO request", "SDO response", "TxPDO", "RxPDO",
-	"TxPDO remote request", "RxPDO remote request", "SDO information",
-};
-
-const char *ec_coe_service_name(u8 service)
-{
-	return services[service < ARRAY_SIZE(services) ? service : 0];
-}
-
 /**
  * ec_coe_emergency_decode() - read an emergency
  * @rx: message behind the mailbox header
@@ -68,47 +58,6 @@ int ec_coe_emergency_decode(const u8 *rx, size_t len, struct ec_coe_emergency *e
 		return -EMSGSIZE;
 	memcpy(e->data, data, sizeof(e->data));
 	return 0;
-}
-
-/**
- * ec_coe_emergency_text() - group of an emergency error code
- * @code: error code
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: text, never NULL.
- */
-const char *ec_coe_emergency_text(u16 code)
-{
-	switch (code >> 8) {
-	case 0x00:
-		return "error gone";
-	case 0x10 ... 0x1F:
-		return "generic error";
-	case 0x20 ... 0x2F:
-		return "current";
-	case 0x30 ... 0x3F:
-		return "voltage";
-	case 0x40 ... 0x4F:
-		return "temperature";
-	case 0x50 ... 0x5F:
-		return "device hardware";
-	case 0x60 ... 0x6F:
-		return "device software";
-	case 0x70 ... 0x7F:
-		return "additional modules";
-	case 0x80 ... 0x8F:
-		return "monitoring or communication";
-	case 0x90 ... 0x9F:
-		return "external error";
-	case 0xA0:
-		return "state transition";
-	case 0xF0:
-		return "additional functions";
-	case 0xFF:
-		return "device specific";
-	default:
-		return "unknown emergency group";
-	}
 }
 
 static const struct ec_text aborts[] = {
@@ -160,91 +109,4 @@ static const struct ec_text aborts[] = {
 const char *ec_coe_abort_text(u32 code)
 {
 	return ec_text_find(aborts, ARRAY_SIZE(aborts), code);
-}
-
-/**
- * ec_coe_abort_errno() - SDO abort code as errno
- * @code: abort code
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: negative errno, -EIO for codes without a closer one.
- */
-int ec_coe_abort_errno(u32 code)
-{
-	switch (code) {
-	case EC_ABORT_TOGGLE:
-		return -EPROTO;
-	case EC_ABORT_TIMEOUT:
-		return -ETIMEDOUT;
-	case EC_ABORT_COMMAND:
-	case EC_ABORT_ACCESS:
-	case EC_ABORT_CA_VARIABLE:
-		return -EOPNOTSUPP;
-	case EC_ABORT_MEMORY:
-		return -ENOMEM;
-	case EC_ABORT_WRITE_ONLY:
-	case EC_ABORT_READ_ONLY:
-	case EC_ABORT_SUB0_FIRST:
-		return -EACCES;
-	case EC_ABORT_TOO_LONG_MBOX:
-		return -EMSGSIZE;
-	case EC_ABORT_MAPPED:
-	case EC_ABORT_LOCAL:
-	case EC_ABORT_STATE:
-		return -EBUSY;
-	case EC_ABORT_NO_OBJECT:
-	case EC_ABORT_NO_SUB:
-	case EC_ABORT_NO_DICT:
-		return -ENOENT;
-	case EC_ABORT_NOT_MAPPABLE:
-	case EC_ABORT_PDO_LENGTH:
-	case EC_ABORT_PARAMETER:
-	case EC_ABORT_LENGTH:
-	case EC_ABORT_TOO_LONG:
-	case EC_ABORT_TOO_SHORT:
-		return -EINVAL;
-	case EC_ABORT_RANGE:
-	case EC_ABORT_TOO_HIGH:
-	case EC_ABORT_TOO_LOW:
-		return -ERANGE;
-	case 0x08000024:
-		return -ENODATA;
-	default:
-		return -EIO;
-	}
-}
-
-/**
- * ec_coe_errno_abort() - errno as SDO abort code
- * @err: negative errno
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: abort code, EC_ABORT_GENERAL for what has no closer one.
- */
-u32 ec_coe_errno_abort(int err)
-{
-	switch (err) {
-	case -EPROTO:
-	case -EBADMSG:
-		return EC_ABORT_COMMAND;
-	case -ETIMEDOUT:
-		return EC_ABORT_TIMEOUT;
-	case -ENOMEM:
-	case -ENOBUFS:
-		return EC_ABORT_MEMORY;
-	case -EOPNOTSUPP:
-	case -EACCES:
-		return EC_ABORT_ACCESS;
-	case -ENOENT:
-		return EC_ABORT_NO_OBJECT;
-	case -EINVAL:
-	case -EMSGSIZE:
-		return EC_ABORT_LENGTH;
-	case -ERANGE:
-		return EC_ABORT_RANGE;
-	case -EBUSY:
-		return EC_ABORT_STATE;
-	default:
-		return EC_ABORT_GENERAL;
-	}
 }

@@ -181,40 +181,18 @@ u32 ec_frame_wire_ns(size_t eth_len)
 	return (u32)(8 + max_t(size_t, eth_len, EC_ETH_MIN) + 4 + 12) * 80;
 }
 
-static const char * const cmd_names[] = {
-	"NOP", "APRD", "APWR", "APRW", "FPRD", "FPWR", "FPRW", "BRD", "BWR",
-	"BRW", "LRD", "LWR", "LRW", "ARMW", "FRMW",
-};
-
-const char *ec_cmd_name(u8 cmd)
-{
-	return cmd < ARRAY_SIZE(cmd_names) ? cmd_names[cmd] : "???";
-}
+/* commands whose data slaves do not change, and those whose data they do not take */
+#define NO_READ		(BIT(EC_CMD_NOP) | BIT(EC_CMD_APWR) | BIT(EC_CMD_FPWR) | \
+			 BIT(EC_CMD_BWR) | BIT(EC_CMD_LWR))
+#define NO_WRITE	(BIT(EC_CMD_NOP) | BIT(EC_CMD_APRD) | BIT(EC_CMD_FPRD) | \
+			 BIT(EC_CMD_BRD) | BIT(EC_CMD_LRD))
 
 bool ec_cmd_reads(u8 cmd)
 {
-	switch (cmd) {
-	case EC_CMD_NOP:
-	case EC_CMD_APWR:
-	case EC_CMD_FPWR:
-	case EC_CMD_BWR:
-	case EC_CMD_LWR:
-		return false;
-	default:
-		return cmd <= EC_CMD_FRMW;
-	}
+	return cmd <= EC_CMD_FRMW && !(NO_READ & BIT(cmd));
 }
 
 bool ec_cmd_writes(u8 cmd)
 {
-	switch (cmd) {
-	case EC_CMD_NOP:
-	case EC_CMD_APRD:
-	case EC_CMD_FPRD:
-	case EC_CMD_BRD:
-	case EC_CMD_LRD:
-		return false;
-	default:
-		return cmd <= EC_CMD_FRMW;
-	}
+	return cmd <= EC_CMD_FRMW && !(NO_WRITE & BIT(cmd));
 }

@@ -125,7 +125,6 @@ static inline void ec_frame_ends_at(u8 *dgram)
 size_t ec_frame_end(struct ec_frame_buf *f);
 
 u32 ec_frame_wire_ns(size_t eth_len);
-const char *ec_cmd_name(u8 cmd);
 bool ec_cmd_reads(u8 cmd);
 bool ec_cmd_writes(u8 cmd);
 

@@ -55,35 +55,6 @@ u8 ec_mbox_next_counter(u8 counter)
 }
 
 /**
- * ec_mbox_type_name() - name of a mailbox protocol
- * @type: enum ec_mbox_type
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: "CoE" and the like, "???" if unknown.
- */
-const char *ec_mbox_type_name(u8 type)
-{
-	switch (type) {
-	case EC_MBOX_ERR:
-		return "ERR";
-	case EC_MBOX_AOE:
-		return "AoE";
-	case EC_MBOX_EOE:
-		return "EoE";
-	case EC_MBOX_COE:
-		return "CoE";
-	case EC_MBOX_FOE:
-		return "FoE";
-	case EC_MBOX_SOE:
-		return "SoE";
-	case EC_MBOX_VOE:
-		return "VoE";
-	default:
-		return "???";
-	}
-}
-
-/**
  * ec_mbox_error_decode() - read an error reply
  * @r: cursor behind the mailbox header
  * @detail: result, enum ec_mbox_error

@@ -60,7 +60,6 @@ struct ec_mbox_hdr {
 int ec_mbox_hdr_decode(struct ec_rbuf *r, struct ec_mbox_hdr *h);
 void ec_mbox_hdr_encode(struct ec_wbuf *w, const struct ec_mbox_hdr *h);
 u8 ec_mbox_next_counter(u8 counter);
-const char *ec_mbox_type_name(u8 type);
 
 int ec_mbox_error_decode(struct ec_rbuf *r, u16 *detail);
 const char *ec_mbox_error_text(u16 detail);

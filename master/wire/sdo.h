@@ -5,12 +5,12 @@
  * start at the CoE header; the mailbox header is not part of them.
  *
  *	do {
- *		len = ec_sdo_up_tx(&up, tx, sizeof(tx));
+ *		len = ec_sdo_tx(&sdo, tx, sizeof(tx));
  *		(send; receive)
- *		ret = ec_sdo_up_rx(&up, rx, len);
+ *		ret = ec_sdo_rx(&sdo, rx, len);
  *	} while (ret == EC_MORE);
- *	if (up.send_abort)
- *		(send ec_sdo_up_tx() once more, expect no answer)
+ *	if (sdo.send_abort)
+ *		(send ec_sdo_tx() once more, expect no answer)
  */
 #ifndef EC_WIRE_SDO_H
 #define EC_WIRE_SDO_H
@@ -29,20 +29,25 @@ enum ec_sdo_state {
 };
 
 /**
- * struct ec_sdo_up - an upload: the master reads
+ * struct ec_sdo - an upload (the master reads) or a download (the master writes)
+ * @down: download
  * @state: where it is
  * @index: object
  * @sub: subindex; 0 or 1 with @complete
  * @complete: complete access
- * @data: where the data go
- * @cap: bytes at @data
- * @size: bytes received so far
- * @total: bytes announced by the slave, 0: not known
+ * @data: upload: where the data go; download: value, only read
+ * @cap: upload: bytes at @data
+ * @size: upload: bytes received so far; download: bytes at @data
+ * @total: upload: bytes announced by the slave, 0: not known
+ * @mbox_size: download: bytes a mailbox message may have behind the mailbox header
+ * @sent: download: bytes the slave has taken
+ * @chunk: download: bytes in the message under way
  * @toggle: toggle bit of the next segment
  * @abort: abort code received, or about to be sent
- * @send_abort: the slave must be told: call ec_sdo_up_tx() once more
+ * @send_abort: the slave needs an abort: call ec_sdo_tx() once more
  */
-struct ec_sdo_up {
+struct ec_sdo {
+	bool down;
 	enum ec_sdo_state state;
 	u16 index;
 	u8 sub;
@@ -51,33 +56,6 @@ struct ec_sdo_up {
 	size_t cap;
 	size_t size;
 	size_t total;
-	u8 toggle;
-	u32 abort;
-	bool send_abort;
-};
-
-/**
- * struct ec_sdo_down - a download: the master writes
- * @state: where it is
- * @index: object
- * @sub: subindex; 0 or 1 with @complete
- * @complete: complete access
- * @data: what to write
- * @size: bytes at @data
- * @mbox_size: bytes a mailbox message may have behind the mailbox header
- * @sent: bytes the slave has taken
- * @chunk: bytes in the message under way
- * @toggle: toggle bit of the next segment
- * @abort: abort code received, or about to be sent
- * @send_abort: the slave must be told: call ec_sdo_down_tx() once more
- */
-struct ec_sdo_down {
-	enum ec_sdo_state state;
-	u16 index;
-	u8 sub;
-	bool complete;
-	const u8 *data;
-	size_t size;
 	size_t mbox_size;
 	size_t sent;
 	size_t chunk;
@@ -86,17 +64,10 @@ struct ec_sdo_down {
 	bool send_abort;
 };
 
-const char *ec_sdo_state_name(enum ec_sdo_state state);
-
-void ec_sdo_up_init(struct ec_sdo_up *u, u16 index, u8 sub, bool complete, u8 *data, size_t cap);
-int ec_sdo_up_tx(struct ec_sdo_up *u, u8 *tx, size_t cap);
-int ec_sdo_up_rx(struct ec_sdo_up *u, const u8 *rx, size_t len);
-void ec_sdo_up_cancel(struct ec_sdo_up *u, u32 abort);
-
-void ec_sdo_down_init(struct ec_sdo_down *d, u16 index, u8 sub, bool complete,
-		      const u8 *data, size_t size, size_t mbox_size);
-int ec_sdo_down_tx(struct ec_sdo_down *d, u8 *tx, size_t cap);
-int ec_sdo_down_rx(struct ec_sdo_down *d, const u8 *rx, size_t len);
-void ec_sdo_down_cancel(struct ec_sdo_down *d, u32 abort);
+void ec_sdo_upload_init(struct ec_sdo *s, u16 index, u8 sub, bool complete, u8 *data, size_t cap);
+void ec_sdo_download_init(struct ec_sdo *s, u16 index, u8 sub, bool complete,
+			  const u8 *data, size_t size, size_t mbox_size);
+int ec_sdo_tx(struct ec_sdo *s, u8 *tx, size_t cap);
+int ec_sdo_rx(struct ec_sdo *s, const u8 *rx, size_t len);
 
 #endif

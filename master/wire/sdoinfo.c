@@ -17,64 +17,23 @@ void ec_sdoinfo_put_hdr(struct ec_wbuf *w, u8 opcode, u16 left)
 	ec_wbuf_le16(w, left);
 }
 
-static void set_state(struct ec_sdoinfo *s, enum ec_sdoinfo_state state)
-{
-	s->state = state;
-}
-
-static void init(struct ec_sdoinfo *s, u8 opcode, u16 index, u8 sub, u8 info,
-		 u8 *data, size_t cap)
+/**
+ * ec_sdoinfo_init() - prepare a request
+ * @s: exchange
+ * @opcode: EC_SDOINFO_LIST_REQ, ..._OBJECT_REQ or ..._ENTRY_REQ
+ * @index: object, or list type
+ * @sub: subindex, 0 unless it is an entry
+ * @data: where the answer goes, for ec_od_object_decode() or ec_od_entry_decode(); of a list
+ *	only the indexes
+ * @cap: bytes at @data
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdoinfo_init(struct ec_sdoinfo *s, u8 opcode, u16 index, u8 sub, u8 *data, size_t cap)
 {
 	*s = (struct ec_sdoinfo){
-		.opcode = opcode, .index = index, .sub = sub, .info = info,
-		.data = data, .cap = cap,
+		.opcode = opcode, .index = index, .sub = sub, .data = data, .cap = cap,
 	};
-	set_state(s, EC_SDOINFO_REQUEST);
-}
-
-/**
- * ec_sdoinfo_init_list() - ask for a list of objects
- * @s: exchange
- * @list: enum ec_sdoinfo_list
- * @data: where the indexes go, see ec_sdoinfo_list_get()
- * @cap: bytes at @data
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_sdoinfo_init_list(struct ec_sdoinfo *s, u16 list, u8 *data, size_t cap)
-{
-	init(s, EC_SDOINFO_LIST_REQ, list, 0, 0, data, cap);
-}
-
-/**
- * ec_sdoinfo_init_object() - ask for the description of an object
- * @s: exchange
- * @index: object
- * @data: where the answer goes, for ec_od_object_decode()
- * @cap: bytes at @data
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_sdoinfo_init_object(struct ec_sdoinfo *s, u16 index, u8 *data, size_t cap)
-{
-	init(s, EC_SDOINFO_OBJECT_REQ, index, 0, 0, data, cap);
-}
-
-/**
- * ec_sdoinfo_init_entry() - ask for the description of an entry
- * @s: exchange
- * @index: object
- * @sub: subindex
- * @info: EC_OD_INFO_*, best none
- * @data: where the answer goes, for ec_od_entry_decode()
- * @cap: bytes at @data
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_sdoinfo_init_entry(struct ec_sdoinfo *s, u16 index, u8 sub, u8 info,
-			   u8 *data, size_t cap)
-{
-	init(s, EC_SDOINFO_ENTRY_REQ, index, sub, info, data, cap);
 }
 
 /**
@@ -104,7 +63,7 @@ int ec_sdoinfo_tx(struct ec_sdoinfo *s, u8 *tx, size_t cap)
 
 static int fail(struct ec_sdoinfo *s, int err)
 {
-	set_state(s, EC_SDOINFO_DONE);
+	s->state = EC_SDOINFO_DONE;
 	return err;
 }
 
@@ -184,33 +143,8 @@ int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len)
 	/* one of the two is enough: slaves forget the other */
 	if (!(opcode & EC_SDOINFO_INCOMPLETE) && !left)
 		return fail(s, 0);
-	set_state(s, EC_SDOINFO_FRAGMENT);
+	s->state = EC_SDOINFO_FRAGMENT;
 	return EC_WAIT;
-}
-
-/**
- * ec_sdoinfo_list_count() - how many indexes (or counts) a list has
- * @s: exchange that is complete
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: number.
- */
-size_t ec_sdoinfo_list_count(const struct ec_sdoinfo *s)
-{
-	return s->size / 2;
-}
-
-/**
- * ec_sdoinfo_list_get() - one index (or count) of a list
- * @s: exchange that is complete
- * @i: 0 to ec_sdoinfo_list_count() - 1
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: index, 0 when @i is too large.
- */
-u16 ec_sdoinfo_list_get(const struct ec_sdoinfo *s, size_t i)
-{
-	return i < s->size / 2 ? get_unaligned_le16(s->data + 2 * i) : 0;
 }
 
 /* What is left is a name; zeros at its end do not belong to it. */

@@ -25,39 +25,6 @@ enum ec_sdoinfo_opcode {
 	EC_SDOINFO_ERROR = 7,
 };
 
-enum ec_sdoinfo_list {
-	EC_SDOINFO_COUNTS = 0,	/* five counts, of the lists 1 to 5 */
-	EC_SDOINFO_ALL = 1,
-	EC_SDOINFO_RXPDO = 2,
-	EC_SDOINFO_TXPDO = 3,
-	EC_SDOINFO_BACKUP = 4,
-	EC_SDOINFO_SETTINGS = 5,
-};
-
-enum ec_od_code {
-	EC_OD_NULL = 0,
-	EC_OD_DOMAIN = 2,
-	EC_OD_DEFTYPE = 5,
-	EC_OD_DEFSTRUCT = 6,
-	EC_OD_VAR = 7,
-	EC_OD_ARRAY = 8,
-	EC_OD_RECORD = 9,
-};
-
-/* object access of an entry */
-#define EC_OD_READ_PREOP	BIT(0)
-#define EC_OD_READ_SAFEOP	BIT(1)
-#define EC_OD_READ_OP		BIT(2)
-#define EC_OD_WRITE_PREOP	BIT(3)
-#define EC_OD_WRITE_SAFEOP	BIT(4)
-#define EC_OD_WRITE_OP		BIT(5)
-#define EC_OD_RXPDO		BIT(6)
-#define EC_OD_TXPDO		BIT(7)
-#define EC_OD_BACKUP		BIT(8)
-#define EC_OD_SETTINGS		BIT(9)
-#define EC_OD_READ		0x0007
-#define EC_OD_WRITE		0x0038
-
 /* value info: optional fields of an entry description */
 #define EC_OD_INFO_UNIT		BIT(3)
 #define EC_OD_INFO_DEFAULT	BIT(4)
@@ -139,15 +106,10 @@ struct ec_sdoinfo {
 };
 
 void ec_sdoinfo_put_hdr(struct ec_wbuf *w, u8 opcode, u16 left);
-void ec_sdoinfo_init_list(struct ec_sdoinfo *s, u16 list, u8 *data, size_t cap);
-void ec_sdoinfo_init_object(struct ec_sdoinfo *s, u16 index, u8 *data, size_t cap);
-void ec_sdoinfo_init_entry(struct ec_sdoinfo *s, u16 index, u8 sub, u8 info,
-			   u8 *data, size_t cap);
+void ec_sdoinfo_init(struct ec_sdoinfo *s, u8 opcode, u16 index, u8 sub, u8 *data, size_t cap);
 int ec_sdoinfo_tx(struct ec_sdoinfo *s, u8 *tx, size_t cap);
 int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len);
 
-size_t ec_sdoinfo_list_count(const struct ec_sdoinfo *s);
-u16 ec_sdoinfo_list_get(const struct ec_sdoinfo *s, size_t i);
 int ec_od_object_decode(const u8 *data, size_t len, struct ec_od_object *o);
 int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e);
 

@@ -351,34 +351,6 @@ int ec_sii_decode_general(const u8 *img, size_t len, struct ec_sii_general *g)
 }
 
 /**
- * ec_sii_decode_fmmus() - read the FMMU usage
- * @img: image
- * @len: bytes at @img
- * @use: EC_SII_FMMU_* of FMMU 0, 1, ...; "not used" is always stored as 0
- * @max: how many fit at @use
- *
- * The category is padded to a word, so that one more than the slave has may
- * be found.
- *
- * Context: Any. RT-safe: time grows with the image, no sleep, no allocation.
- * Return: how many were stored; 0 also for a damaged image.
- */
-int ec_sii_decode_fmmus(const u8 *img, size_t len, u8 *use, unsigned int max)
-{
-	struct ec_sii_iter it;
-	struct ec_sii_cat cat;
-	unsigned int n = 0;
-	size_t i;
-
-	ec_sii_iter_init(&it, img, len);
-	while (next_of(&it, EC_SII_CAT_FMMU, &cat) == 1) {
-		for (i = 0; i < cat.bytes && n < max; i++)
-			use[n++] = cat.data[i] == 0xFF ? EC_SII_FMMU_UNUSED : cat.data[i];
-	}
-	return (int)n;
-}
-
-/**
  * ec_sii_decode_sms() - read the SyncManagers
  * @img: image
  * @len: bytes at @img

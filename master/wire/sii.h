@@ -359,7 +359,6 @@ enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw
 int ec_sii_text(char *buf, size_t cap, const u8 *s, size_t len);
 int ec_sii_string(const u8 *img, size_t len, u8 index, char *buf, size_t cap);
 int ec_sii_decode_general(const u8 *img, size_t len, struct ec_sii_general *g);
-int ec_sii_decode_fmmus(const u8 *img, size_t len, u8 *use, unsigned int max);
 int ec_sii_decode_sms(const u8 *img, size_t len, struct ec_sii_sm *sm, unsigned int max);
 int ec_sii_decode_dcs(const u8 *img, size_t len, struct ec_sii_dc *dc, unsigned int max);
 

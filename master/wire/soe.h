@@ -27,42 +27,6 @@ enum ec_soe_opcode {
 #define EC_SOE_VALUE		0x40
 #define EC_SOE_DEFAULT		0x80
 
-#define EC_SOE_ERR_NO_IDN	0x1001
-#define EC_SOE_ERR_ELEMENT1	0x1009
-#define EC_SOE_ERR_NAME_RO	0x2004
-#define EC_SOE_ERR_ATTRIBUTE_RO	0x3004
-#define EC_SOE_ERR_UNIT_RO	0x4004
-#define EC_SOE_ERR_NO_MIN	0x5001
-#define EC_SOE_ERR_MIN_RO	0x5004
-#define EC_SOE_ERR_NO_MAX	0x6001
-#define EC_SOE_ERR_MAX_RO	0x6004
-#define EC_SOE_ERR_SHORT	0x7002
-#define EC_SOE_ERR_LONG		0x7003
-#define EC_SOE_ERR_READ_ONLY	0x7004
-#define EC_SOE_ERR_PROTECTED	0x7005
-#define EC_SOE_ERR_BELOW	0x7006
-#define EC_SOE_ERR_ABOVE	0x7007
-#define EC_SOE_ERR_NO_STATE	0x7014
-#define EC_SOE_ERR_NO_DEFAULT	0x8001
-#define EC_SOE_ERR_DEFAULT_RO	0x8004
-#define EC_SOE_ERR_DRIVE	0x800A
-#define EC_SOE_ERR_GENERAL	0x800B
-#define EC_SOE_ERR_NO_ELEMENT	0x800C
-
-/* attribute: bits 16-18 length, bits 28-30 write protection by AL state */
-#define EC_SOE_ATTR_LEN2	0x00010000u
-#define EC_SOE_ATTR_LEN4	0x00020000u
-#define EC_SOE_ATTR_LEN8	0x00030000u
-#define EC_SOE_ATTR_LIST1	0x00040000u
-#define EC_SOE_ATTR_LIST2	0x00050000u
-#define EC_SOE_ATTR_LIST4	0x00060000u
-#define EC_SOE_ATTR_LIST8	0x00070000u
-#define EC_SOE_ATTR_LEN_MASK	0x00070000u
-#define EC_SOE_ATTR_RO_PREOP	0x10000000u
-#define EC_SOE_ATTR_RO_SAFEOP	0x20000000u
-#define EC_SOE_ATTR_RO_OP	0x40000000u
-#define EC_SOE_ATTR_RO		0x70000000u
-
 /**
  * struct ec_soe_hdr - SoE header, decoded
  * @opcode: enum ec_soe_opcode

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SDO upload and download in their three sizes, errors, and how long they take. */
 #include "bus.h"
+#include "devices/sim/codes.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
 #include "master/wire/coe.h"

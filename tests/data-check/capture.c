@@ -27,8 +27,8 @@ static void fault(const char *what)
 static struct talk {
 	enum { NOTHING, UPLOAD, DOWNLOAD, INFO } kind;
 	u16 station;
-	struct ec_sdo_up up;
-	struct ec_sdo_down down;
+	struct ec_sdo up;
+	struct ec_sdo down;
 	struct ec_sdoinfo info;
 	u8 buf[65536];
 } talks[4];
@@ -63,13 +63,8 @@ static void info_request(struct talk *t, const u8 *p, size_t len)
 		return;
 	}
 	t->kind = INFO;
-	if (req.opcode == EC_SDOINFO_LIST_REQ)
-		ec_sdoinfo_init_list(&t->info, req.index, t->buf, sizeof(t->buf));
-	else if (req.opcode == EC_SDOINFO_OBJECT_REQ)
-		ec_sdoinfo_init_object(&t->info, req.index, t->buf, sizeof(t->buf));
-	else
-		ec_sdoinfo_init_entry(&t->info, req.index, req.sub, req.info,
-				      t->buf, sizeof(t->buf));
+	ec_sdoinfo_init(&t->info, req.opcode, req.index, req.sub, t->buf, sizeof(t->buf));
+	t->info.info = req.info;
 	same(tx, ec_sdoinfo_tx(&t->info, tx, sizeof(tx)), p, len);
 }
 
@@ -88,12 +83,12 @@ static void sdo_request(struct talk *t, const u8 *p, size_t len)
 	switch (cmd >> 5) {
 	case 2:
 		t->kind = UPLOAD;
-		ec_sdo_up_init(&t->up, index, sub, cmd & 0x10, t->buf, sizeof(t->buf));
-		same(tx, ec_sdo_up_tx(&t->up, tx, sizeof(tx)), p, len);
+		ec_sdo_upload_init(&t->up, index, sub, cmd & 0x10, t->buf, sizeof(t->buf));
+		same(tx, ec_sdo_tx(&t->up, tx, sizeof(tx)), p, len);
 		break;
 	case 3:
 		if (t->kind == UPLOAD)
-			same(tx, ec_sdo_up_tx(&t->up, tx, sizeof(tx)), p, len);
+			same(tx, ec_sdo_tx(&t->up, tx, sizeof(tx)), p, len);
 		break;
 	case 1:
 		t->kind = DOWNLOAD;
@@ -103,9 +98,9 @@ static void sdo_request(struct talk *t, const u8 *p, size_t len)
 			break;
 		}
 		memcpy(t->buf, r.p, size);
-		ec_sdo_down_init(&t->down, index, sub, cmd & 0x10, t->buf, size, len);
+		ec_sdo_download_init(&t->down, index, sub, cmd & 0x10, t->buf, size, len);
 		/* others may use the normal form where we use the short one */
-		size = (size_t)ec_sdo_down_tx(&t->down, tx, sizeof(tx));
+		size = (size_t)ec_sdo_tx(&t->down, tx, sizeof(tx));
 		if (cmd & 2 || t->down.size > 4 || t->down.complete)
 			same(tx, (int)size, p, len);
 		else
@@ -119,9 +114,9 @@ static void answer(struct talk *t, const u8 *p, size_t len)
 	int ret = EC_STALE;
 
 	if (t->kind == UPLOAD)
-		ret = ec_sdo_up_rx(&t->up, p, len);
+		ret = ec_sdo_rx(&t->up, p, len);
 	else if (t->kind == DOWNLOAD)
-		ret = ec_sdo_down_rx(&t->down, p, len);
+		ret = ec_sdo_rx(&t->down, p, len);
 	else if (t->kind == INFO)
 		ret = ec_sdoinfo_rx(&t->info, p, len);
 

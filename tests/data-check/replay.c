@@ -39,8 +39,8 @@ static void station(u16 adp, u16 address)
 static void differ(const struct ec_dgram *real, const struct ec_dgram *ours)
 {
 	different++;
-	printf("  %s adp %04x ado %04x len %u: %u at adp %04x on the bus, %u at %04x in the model\n",
-	       ec_cmd_name(real->cmd), real->adp, real->ado, real->len, ec_dgram_wkc(real),
+	printf("  command %u adp %04x ado %04x len %u: %u at adp %04x on the bus, %u at %04x in the model\n",
+	       real->cmd, real->adp, real->ado, real->len, ec_dgram_wkc(real),
 	       real->adp, ec_dgram_wkc(ours), ours->adp);
 }
 

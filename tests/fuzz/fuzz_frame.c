@@ -76,7 +76,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 		MUST(d.hdr >= frame && d.data + d.len + 2 <= frame + len);
 		MUST(++n <= 200);
 		last = d.hdr - frame - EC_FRAME_HDR;
-		ec_cmd_name(d.cmd);
 		p = ec_frame_add(&f, d.cmd, d.idx, d.adp, d.ado, d.len);
 		if (!p) {
 			fits = false;

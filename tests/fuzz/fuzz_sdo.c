@@ -86,58 +86,57 @@ static void ended(int ret, bool send_abort, int abort_len, int after)
 static void up(const uint8_t *p, size_t len, size_t cap, bool complete)
 {
 	u8 *buf = malloc(cap + 1), tx[16];
-	struct ec_sdo_up u;
+	struct ec_sdo u;
 	int ret = EC_MORE;
 	bool tell;
 
-	ec_sdo_up_init(&u, 0x2000, 1, complete, buf, cap);
+	ec_sdo_upload_init(&u, 0x2000, 1, complete, buf, cap);
 	while (len) {
 		size_t n = min((size_t)p[0], len - 1);
 
 		if (ret == EC_MORE)
-			MUST(ec_sdo_up_tx(&u, tx, sizeof(tx)) == 10);
-		ret = ec_sdo_up_rx(&u, p + 1, n);
+			MUST(ec_sdo_tx(&u, tx, sizeof(tx)) == 10);
+		ret = ec_sdo_rx(&u, p + 1, n);
 		MUST(u.size <= cap);
 		if (ret != EC_MORE && ret != EC_STALE) {
 			tell = u.send_abort;
-			ended(ret, tell, ec_sdo_up_tx(&u, tx, sizeof(tx)),
-			      ec_sdo_up_rx(&u, p + 1, n));
+			ended(ret, tell, ec_sdo_tx(&u, tx, sizeof(tx)),
+			      ec_sdo_rx(&u, p + 1, n));
 			break;
 		}
 		p += 1 + n;
 		len -= 1 + n;
 	}
-	ec_sdo_state_name(u.state);
 	free(buf);
 }
 
 static void down(const uint8_t *p, size_t len, size_t size, size_t mbox, bool complete)
 {
 	u8 *buf = malloc(size + 1), *tx = malloc(mbox + 1);
-	struct ec_sdo_down d;
+	struct ec_sdo d;
 	int ret = EC_MORE, n;
 	bool tell;
 
 	memset(buf, 0xA5, size + 1);
-	ec_sdo_down_init(&d, 0x2000, 1, complete, buf, size, mbox);
+	ec_sdo_download_init(&d, 0x2000, 1, complete, buf, size, mbox);
 	while (len) {
 		size_t l = min((size_t)p[0], len - 1);
 
 		if (ret == EC_MORE) {
-			n = ec_sdo_down_tx(&d, tx, mbox);
+			n = ec_sdo_tx(&d, tx, mbox);
 			MUST(n <= (int)mbox);
 			if (n < 0) {
 				MUST(mbox < EC_SDO_MSG);
 				break;
 			}
 		}
-		ret = ec_sdo_down_rx(&d, p + 1, l);
+		ret = ec_sdo_rx(&d, p + 1, l);
 		MUST(d.sent <= size);
 		if (ret != EC_MORE && ret != EC_STALE) {
 			MUST(ret || d.sent == size);
 			tell = d.send_abort;
-			ended(ret, tell, ec_sdo_down_tx(&d, tx, mbox),
-			      ec_sdo_down_rx(&d, p + 1, l));
+			ended(ret, tell, ec_sdo_tx(&d, tx, mbox),
+			      ec_sdo_rx(&d, p + 1, l));
 			break;
 		}
 		p += 1 + l;

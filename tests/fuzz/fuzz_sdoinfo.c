@@ -24,14 +24,13 @@ static void client(const uint8_t *p, size_t len, int kind, size_t cap)
 	struct ec_od_object o;
 	struct ec_od_entry e;
 	int ret = EC_STALE;
-	size_t i;
 
 	if (kind == 0)
-		ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, buf, cap);
+		ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, buf, cap);
 	else if (kind == 1)
-		ec_sdoinfo_init_object(&s, 0x1018, buf, cap);
+		ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, buf, cap);
 	else
-		ec_sdoinfo_init_entry(&s, 0x1018, 1, 0, buf, cap);
+		ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, buf, cap);
 	MUST(ec_sdoinfo_tx(&s, tx, sizeof(tx)) == (kind == 2 ? 10 : 8));
 	while (len) {
 		size_t n = min((size_t)p[0], len - 1);
@@ -46,8 +45,6 @@ static void client(const uint8_t *p, size_t len, int kind, size_t cap)
 		len -= 1 + n;
 	}
 	if (ret == 0) {
-		for (i = 0; i <= ec_sdoinfo_list_count(&s); i++)
-			ec_sdoinfo_list_get(&s, i);
 		if (!ec_od_object_decode(buf, s.size, &o))
 			MUST(o.name_len <= s.size - 6);
 		if (!ec_od_entry_decode(buf, s.size, &e))
@@ -82,7 +79,7 @@ static void both(const uint8_t *p, size_t len, size_t mbox)
 	body[0] = 0x18;
 	body[1] = 0x10;
 	memcpy(body + 2, p, len);
-	ec_sdoinfo_init_object(&s, 0x1018, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, got, sizeof(got));
 	ec_sdoinfo_resp_init(&resp, EC_SDOINFO_OBJECT_RESP, body, len + 2);
 	while ((n = ec_sdoinfo_resp_next(&resp, tx, mbox)) > 0) {
 		MUST(n <= (int)mbox && ret == EC_WAIT);

@@ -104,14 +104,6 @@ static void mbox_every_error_has_text_and_errno(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_mbox_errno_detail(-ECOMM), 0);
 }
 
-static void mbox_protocols_have_names(struct kunit *test)
-{
-	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(0), "ERR");
-	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(3), "CoE");
-	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(15), "VoE");
-	KUNIT_EXPECT_STREQ(test, ec_mbox_type_name(6), "???");
-}
-
 static struct kunit_case cases[] = {
 	KUNIT_CASE(mbox_header_survives_both_ways),
 	KUNIT_CASE(mbox_length_beyond_mailbox_is_refused),
@@ -119,7 +111,6 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(mbox_counter_skips_zero),
 	KUNIT_CASE(mbox_error_reply_survives_both_ways),
 	KUNIT_CASE(mbox_every_error_has_text_and_errno),
-	KUNIT_CASE(mbox_protocols_have_names),
 	{}
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
+#include "od_list.h"
 #include "../../devices/sim/sdoinfo_server.h"
 
 static u8 tx[1500], body[4096], got[4096];
@@ -45,14 +46,15 @@ static void sdoinfo_lists_come_in_as_many_fragments_as_needed(struct kunit *test
 		for (j = 0; j < ARRAY_SIZE(counts); j++) {
 			len = put_list(list, counts[j]);
 			KUNIT_ASSERT_EQ(test, len, (int)(2 + 2 * counts[j]));
-			ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
+			ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got,
+					sizeof(got));
 			KUNIT_ASSERT_EQ(test, ec_sdoinfo_tx(&s, tx, sizeof(tx)), 8);
 			ec_sdoinfo_resp_init(&resp, EC_SDOINFO_LIST_RESP, body, (size_t)len);
 			KUNIT_ASSERT_EQ(test, transfer(&s, &resp, mboxes[i]), 0);
-			KUNIT_ASSERT_EQ(test, ec_sdoinfo_list_count(&s), counts[j]);
+			KUNIT_ASSERT_EQ(test, od_list_count(&s), counts[j]);
 			for (k = 0; k < counts[j]; k++)
-				KUNIT_ASSERT_EQ(test, ec_sdoinfo_list_get(&s, k), list[k]);
-			KUNIT_ASSERT_EQ(test, ec_sdoinfo_list_get(&s, k), 0);
+				KUNIT_ASSERT_EQ(test, od_list_get(&s, k), list[k]);
+			KUNIT_ASSERT_EQ(test, od_list_get(&s, k), 0);
 		}
 	}
 }
@@ -65,7 +67,7 @@ static void sdoinfo_object_description_survives_both_ways(struct kunit *test)
 	int len = ec_od_object_encode(body, sizeof(body), &in);
 
 	KUNIT_ASSERT_EQ(test, len, 14);
-	ec_sdoinfo_init_object(&s, 0x1018, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, got, sizeof(got));
 	ec_sdoinfo_resp_init(&resp, EC_SDOINFO_OBJECT_RESP, body, (size_t)len);
 	KUNIT_ASSERT_EQ(test, transfer(&s, &resp, 10), 0);
 	KUNIT_ASSERT_EQ(test, s.size, (size_t)14);
@@ -87,7 +89,7 @@ static void sdoinfo_entry_description_survives_both_ways(struct kunit *test)
 	int len = ec_od_entry_encode(body, sizeof(body), &in);
 
 	KUNIT_ASSERT_EQ(test, len, 19);
-	ec_sdoinfo_init_entry(&s, 0x1018, 1, 0, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_tx(&s, tx, sizeof(tx)), 10);
 	ec_sdoinfo_resp_init(&resp, EC_SDOINFO_ENTRY_RESP, body, (size_t)len);
 	KUNIT_ASSERT_EQ(test, transfer(&s, &resp, 12), 0);
@@ -147,15 +149,15 @@ static void sdoinfo_answers_to_other_questions_are_stale(struct kunit *test)
 	static const u8 service[] = { 0, 0x30, 2, 0, 0, 0, 1, 0 };
 	struct ec_sdoinfo s;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, other_list, sizeof(other_list)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, object, sizeof(object)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, sdo, sizeof(sdo)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, request, sizeof(request)), EC_STALE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, service, sizeof(service)), EC_STALE);
-	ec_sdoinfo_init_object(&s, 0x1019, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1019, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, object, sizeof(object)), EC_STALE);
-	ec_sdoinfo_init_entry(&s, 0x1018, 1, 0, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, other_sub, sizeof(other_sub)), EC_STALE);
 }
 
@@ -166,11 +168,11 @@ static void sdoinfo_refusal_carries_its_abort_code(struct kunit *test)
 	int len = ec_sdoinfo_error_encode(msg, sizeof(msg), EC_ABORT_NO_OBJECT);
 
 	KUNIT_ASSERT_EQ(test, len, 10);
-	ec_sdoinfo_init_object(&s, 0x1018, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, 10), -EIO);
 	KUNIT_EXPECT_EQ(test, s.abort, EC_ABORT_NO_OBJECT);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, 10), -EINVAL);
-	ec_sdoinfo_init_object(&s, 0x1018, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, 9), -EMSGSIZE);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_error_encode(msg, 9, 0), -EMSGSIZE);
 }
@@ -182,7 +184,7 @@ static void sdoinfo_short_fragments_are_refused(struct kunit *test)
 	size_t len;
 
 	for (len = 0; len < 9; len++) {
-		ec_sdoinfo_init_entry(&s, 0x1018, 1, 0, got, sizeof(got));
+		ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, got, sizeof(got));
 		KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, len), -EMSGSIZE);
 	}
 }
@@ -192,7 +194,7 @@ static void sdoinfo_lost_fragment_is_noticed(struct kunit *test)
 	u8 msg[] = { 0, 0x80, 0x82, 0, 3, 0, 1, 0, 0, 0x10 };
 	struct ec_sdoinfo s;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), EC_WAIT);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_tx(&s, tx, sizeof(tx)), -EINVAL);
 	msg[4] = 2;
@@ -208,13 +210,13 @@ static void sdoinfo_fragments_without_end_are_bounded(struct kunit *test)
 	struct ec_sdoinfo s;
 	int n = 0, ret;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, 8), EC_WAIT);
 	while ((ret = ec_sdoinfo_rx(&s, msg, 6)) == EC_WAIT)
 		KUNIT_ASSERT_LT(test, n++, 70000);
 	KUNIT_EXPECT_EQ(test, ret, -EPROTO);
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, sizeof(got));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, sizeof(got));
 	while ((ret = ec_sdoinfo_rx(&s, msg, 8)) == EC_WAIT)
 		KUNIT_ASSERT_LE(test, s.size, sizeof(got));
 	KUNIT_EXPECT_EQ(test, ret, -ENOBUFS);
@@ -225,9 +227,9 @@ static void sdoinfo_answer_larger_than_buffer_is_refused(struct kunit *test)
 	static const u8 msg[] = { 0, 0x80, 2, 0, 0, 0, 1, 0, 0, 0x10, 1, 0x10 };
 	struct ec_sdoinfo s;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, 3);
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, 3);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), -ENOBUFS);
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, got, 4);
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, got, 4);
 	KUNIT_EXPECT_EQ(test, ec_sdoinfo_rx(&s, msg, sizeof(msg)), 0);
 }
 
@@ -238,7 +240,8 @@ static void sdoinfo_requests_are_understood_by_server(struct kunit *test)
 	size_t len;
 	int n;
 
-	ec_sdoinfo_init_entry(&s, 0x1C12, 3, 0x08, NULL, 0);
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1C12, 3, NULL, 0);
+	s.info = 0x08;
 	n = ec_sdoinfo_tx(&s, tx, sizeof(tx));
 	KUNIT_ASSERT_EQ(test, n, 10);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_req_decode(tx, 10, &req), 0);

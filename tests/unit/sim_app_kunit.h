@@ -118,12 +118,12 @@ static inline int app_upload(struct bed *b, struct app_mbox *m, u16 index,
 			     u8 sub, bool ca, u8 *buf, size_t cap, u32 *abort)
 {
 	struct ec_mbox_hdr h;
-	struct ec_sdo_up u;
+	struct ec_sdo u;
 	int len, ret;
 
-	ec_sdo_up_init(&u, index, sub, ca, buf, cap);
+	ec_sdo_upload_init(&u, index, sub, ca, buf, cap);
 	do {
-		len = ec_sdo_up_tx(&u, m->tx + EC_MBOX_HDR,
+		len = ec_sdo_tx(&u, m->tx + EC_MBOX_HDR,
 				   m->size - EC_MBOX_HDR);
 		if (len < 0 || app_send(b, m, EC_MBOX_COE, (size_t)len) != 1)
 			return -2;
@@ -131,7 +131,7 @@ static inline int app_upload(struct bed *b, struct app_mbox *m, u16 index,
 			len = app_recv(b, m, &h, 100);
 			if (len < 0)
 				return -3;
-			ret = ec_sdo_up_rx(&u, m->rx + EC_MBOX_HDR, (size_t)len);
+			ret = ec_sdo_rx(&u, m->rx + EC_MBOX_HDR, (size_t)len);
 		} while (ret == EC_STALE);
 	} while (ret == EC_MORE);
 	*abort = u.abort;
@@ -143,13 +143,13 @@ static inline u32 app_download(struct bed *b, struct app_mbox *m, u16 index,
 			       u8 sub, bool ca, const void *data, size_t size)
 {
 	struct ec_mbox_hdr h;
-	struct ec_sdo_down d;
+	struct ec_sdo d;
 	int len, ret;
 
-	ec_sdo_down_init(&d, index, sub, ca, data, size,
+	ec_sdo_download_init(&d, index, sub, ca, data, size,
 			 m->size - EC_MBOX_HDR);
 	do {
-		len = ec_sdo_down_tx(&d, m->tx + EC_MBOX_HDR,
+		len = ec_sdo_tx(&d, m->tx + EC_MBOX_HDR,
 				     m->size - EC_MBOX_HDR);
 		if (len < 0 || app_send(b, m, EC_MBOX_COE, (size_t)len) != 1)
 			return ~0u;
@@ -157,7 +157,7 @@ static inline u32 app_download(struct bed *b, struct app_mbox *m, u16 index,
 			len = app_recv(b, m, &h, 100);
 			if (len < 0)
 				return ~0u;
-			ret = ec_sdo_down_rx(&d, m->rx + EC_MBOX_HDR,
+			ret = ec_sdo_rx(&d, m->rx + EC_MBOX_HDR,
 					     (size_t)len);
 		} while (ret == EC_STALE);
 	} while (ret == EC_MORE);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Simulated slaves: mailbox, object dictionary, SDO information. */
 #include "sim_app_kunit.h"
+#include "od_list.h"
 
 struct mb {
 	struct bed *b;
@@ -155,18 +156,18 @@ static void sim_app_mbox_information(struct kunit *test)
 	struct ec_sdoinfo s;
 	size_t n;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
-	n = ec_sdoinfo_list_count(&s);
+	n = od_list_count(&s);
 	KUNIT_EXPECT_EQ(test, n, app->model->n_objects);
-	KUNIT_EXPECT_EQ(test, ec_sdoinfo_list_get(&s, 0), 0x1000);
+	KUNIT_EXPECT_EQ(test, od_list_get(&s, 0), 0x1000);
 	KUNIT_EXPECT_GT(test, s.fragments, 1);
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_COUNTS, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_COUNTS, 0, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(x->buf), n);
 
-	ec_sdoinfo_init_object(&s, 0x1018, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_object_decode(x->buf, s.size, &o), 0);
 	KUNIT_EXPECT_EQ(test, o.max_sub, 4);
@@ -174,7 +175,7 @@ static void sim_app_mbox_information(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, o.name_len, 8);
 	KUNIT_EXPECT_MEMEQ(test, o.name, "Identity", 8);
 
-	ec_sdoinfo_init_entry(&s, 0x607A, 0, 0, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x607A, 0, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
 	KUNIT_EXPECT_EQ(test, e.type, EC_TYPE_INT32);
@@ -182,16 +183,16 @@ static void sim_app_mbox_information(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, e.access, 0x007F);
 	KUNIT_EXPECT_MEMEQ(test, e.name, "Target position", 15);
 
-	ec_sdoinfo_init_entry(&s, 0x1600, 1, 0, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1600, 1, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
 	KUNIT_EXPECT_MEMEQ(test, e.name, "SubIndex 001", 12);
-	ec_sdoinfo_init_entry(&s, 0x1600, 12, 0, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1600, 12, x->buf, sizeof(x->buf));
 	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(x->buf, s.size, &e), 0);
 	KUNIT_EXPECT_MEMEQ(test, e.name, "SubIndex 012", 12);
 
-	ec_sdoinfo_init_object(&s, 0x3000, x->buf, sizeof(x->buf));
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x3000, 0, x->buf, sizeof(x->buf));
 	KUNIT_EXPECT_LT(test, info(x, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.abort, EC_ABORT_NO_OBJECT);
 }
@@ -237,11 +238,11 @@ static void sim_app_mbox_errors_are_reported(struct kunit *test)
 
 static size_t upload_request(struct app_mbox *m, u16 index, u8 sub)
 {
-	struct ec_sdo_up u;
+	struct ec_sdo u;
 	u8 buf[4];
 
-	ec_sdo_up_init(&u, index, sub, false, buf, sizeof(buf));
-	return (size_t)ec_sdo_up_tx(&u, m->tx + EC_MBOX_HDR, 100);
+	ec_sdo_upload_init(&u, index, sub, false, buf, sizeof(buf));
+	return (size_t)ec_sdo_tx(&u, m->tx + EC_MBOX_HDR, 100);
 }
 
 static void sim_app_mbox_counter_and_repeat(struct kunit *test)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
-#include "../../master/wire/types.h"
+#include "../../tool/data_types.h"
 
 static void types_table_is_sorted_and_names_are_unique(struct kunit *test)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* CoE messages typed from the tables of the specification, mostly the slave's side. */
 #include "wire_kunit.h"
+#include "od_list.h"
 #include "../../devices/sim/mbox_encode.h"
 #include "../../devices/sim/sdo_server.h"
 #include "../../devices/sim/sdoinfo_server.h"
@@ -146,16 +147,16 @@ static void vectors_coe_aborts_of_slave(struct kunit *test)
 	/* "no such object" to an upload, "read only" to a download */
 	static const u8 up[] = { 0x00, 0x20, 0x80, 0x00, 0x30, 0x02, 0x00, 0x00, 0x02, 0x06 };
 	static const u8 down[] = { 0x00, 0x20, 0x80, 0x18, 0x10, 0x01, 0x02, 0x00, 0x01, 0x06 };
-	struct ec_sdo_up u;
-	struct ec_sdo_down d;
+	struct ec_sdo u;
+	struct ec_sdo d;
 
-	ec_sdo_up_init(&u, 0x3000, 2, false, out, 8);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_tx(&u, out + 16, 64), 10);
-	KUNIT_EXPECT_LT(test, ec_sdo_up_rx(&u, up, 10), 0);
+	ec_sdo_upload_init(&u, 0x3000, 2, false, out, 8);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&u, out + 16, 64), 10);
+	KUNIT_EXPECT_LT(test, ec_sdo_rx(&u, up, 10), 0);
 	KUNIT_EXPECT_EQ(test, u.abort, 0x06020000u);
-	ec_sdo_down_init(&d, 0x1018, 1, false, up, 4, 64);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out + 16, 64), 10);
-	KUNIT_EXPECT_LT(test, ec_sdo_down_rx(&d, down, 10), 0);
+	ec_sdo_download_init(&d, 0x1018, 1, false, up, 4, 64);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out + 16, 64), 10);
+	KUNIT_EXPECT_LT(test, ec_sdo_rx(&d, down, 10), 0);
 	KUNIT_EXPECT_EQ(test, d.abort, 0x06010002u);
 }
 
@@ -191,16 +192,16 @@ static void vectors_coe_sdo_information(struct kunit *test)
 	struct ec_od_entry e;
 	struct ec_od_object o;
 
-	ec_sdoinfo_init_list(&s, EC_SDOINFO_ALL, out, 64);
+	ec_sdoinfo_init(&s, EC_SDOINFO_LIST_REQ, EC_SDOINFO_ALL, 0, out, 64);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_tx(&s, out + 64, 64), 8);
 	KUNIT_EXPECT_MEMEQ(test, out + 64, list_req, 8);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_rx(&s, frag1, sizeof(frag1)), EC_WAIT);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_rx(&s, frag0, sizeof(frag0)), 0);
-	KUNIT_ASSERT_EQ(test, ec_sdoinfo_list_count(&s), (size_t)2);
-	KUNIT_EXPECT_EQ(test, ec_sdoinfo_list_get(&s, 0), 0x1000);
-	KUNIT_EXPECT_EQ(test, ec_sdoinfo_list_get(&s, 1), 0x1018);
+	KUNIT_ASSERT_EQ(test, od_list_count(&s), (size_t)2);
+	KUNIT_EXPECT_EQ(test, od_list_get(&s, 0), 0x1000);
+	KUNIT_EXPECT_EQ(test, od_list_get(&s, 1), 0x1018);
 
-	ec_sdoinfo_init_entry(&s, 0x1018, 2, 0, out, 64);
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 2, out, 64);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_tx(&s, out + 64, 64), 10);
 	KUNIT_EXPECT_MEMEQ(test, out + 64, entry_req, 10);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_rx(&s, entry, sizeof(entry)), 0);
@@ -211,7 +212,7 @@ static void vectors_coe_sdo_information(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, e.name_len, (size_t)2);
 	KUNIT_EXPECT_MEMEQ(test, e.name, "PC", 2);
 
-	ec_sdoinfo_init_object(&s, 0x1018, out, 64);
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x1018, 0, out, 64);
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_rx(&s, object, sizeof(object)), 0);
 	KUNIT_ASSERT_EQ(test, ec_od_object_decode(out, s.size, &o), 0);
 	KUNIT_EXPECT_EQ(test, o.type, 0x23);
@@ -265,7 +266,7 @@ static void vectors_coe_sdo_information_of_slave(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_error_encode(out, 64, 0x06020000), 10);
 	KUNIT_EXPECT_MEMEQ(test, out, error, 10);
 
-	ec_sdoinfo_init_object(&s, 0x3000, out, 64);
+	ec_sdoinfo_init(&s, EC_SDOINFO_OBJECT_REQ, 0x3000, 0, out, 64);
 	KUNIT_EXPECT_LT(test, ec_sdoinfo_rx(&s, error, 10), 0);
 	KUNIT_EXPECT_EQ(test, s.abort, 0x06020000u);
 }

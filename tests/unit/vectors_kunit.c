@@ -287,20 +287,20 @@ static void vectors_expedited_upload(struct kunit *test)
 	static const u8 sizeless[] = {
 		0x00, 0x30, 0x40, 0x18, 0x10, 0x00, 0x00, 0x00, 0x00, 0x00, 'a', 'b', 'c', 'd',
 	};
-	struct ec_sdo_up u;
+	struct ec_sdo u;
 
-	ec_sdo_up_init(&u, 0x1018, 1, false, out, 8);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_tx(&u, out + 16, 64), 10);
+	ec_sdo_upload_init(&u, 0x1018, 1, false, out, 8);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&u, out + 16, 64), 10);
 	KUNIT_EXPECT_MEMEQ(test, out + 16, req, 10);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, resp, 10), 0);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, resp, 10), 0);
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)4);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(out), 0x1337u);
-	ec_sdo_up_init(&u, 0x1018, 0, false, out, 8);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, one, 10), 0);
+	ec_sdo_upload_init(&u, 0x1018, 0, false, out, 8);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, one, 10), 0);
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)1);
 	/* neither expedited nor with a size: what is there is all of it */
-	ec_sdo_up_init(&u, 0x1018, 0, false, out, 8);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, sizeless, 14), 0);
+	ec_sdo_upload_init(&u, 0x1018, 0, false, out, 8);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, sizeless, 14), 0);
 	KUNIT_EXPECT_EQ(test, u.size, (size_t)4);
 	KUNIT_EXPECT_MEMEQ(test, out, "abcd", 4);
 }
@@ -310,16 +310,17 @@ static void vectors_expedited_downloads_of_1_to_4_bytes(struct kunit *test)
 	static const u8 cmd[] = { 0x2F, 0x2B, 0x27, 0x23 };
 	static const u8 resp[] = { 0x00, 0x30, 0x60, 0x12, 0x1C, 0x00, 0, 0, 0, 0 };
 	u8 want[] = { 0x00, 0x20, 0, 0x12, 0x1C, 0x00, 0, 0, 0, 0 };
-	struct ec_sdo_down d;
+	struct ec_sdo d;
 	size_t i;
 
 	for (i = 0; i < 4; i++) {
 		want[2] = cmd[i];
 		want[6 + i] = (u8)(0xA1 + i);
-		ec_sdo_down_init(&d, 0x1C12, 0, false, (const u8 *)"\xA1\xA2\xA3\xA4", i + 1, 122);
-		KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out, sizeof(out)), 10);
+		ec_sdo_download_init(&d, 0x1C12, 0, false, (const u8 *)"\xA1\xA2\xA3\xA4",
+				     i + 1, 122);
+		KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out, sizeof(out)), 10);
 		KUNIT_EXPECT_MEMEQ(test, out, want, 10);
-		KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, resp, 10), 0);
+		KUNIT_EXPECT_EQ(test, ec_sdo_rx(&d, resp, 10), 0);
 	}
 }
 
@@ -331,12 +332,12 @@ static void vectors_complete_access_download(struct kunit *test)
 		0x00, 0x20, 0x31, 0x13, 0x1C, 0x00, 0x04, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x1A,
 	};
 	static const u8 resp[] = { 0x00, 0x30, 0x70, 0x13, 0x1C, 0x00, 0, 0, 0, 0 };
-	struct ec_sdo_down d;
+	struct ec_sdo d;
 
-	ec_sdo_down_init(&d, 0x1C13, 0, true, data, sizeof(data), 122);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out, sizeof(out)), (int)sizeof(want));
+	ec_sdo_download_init(&d, 0x1C13, 0, true, data, sizeof(data), 122);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out, sizeof(out)), (int)sizeof(want));
 	KUNIT_EXPECT_MEMEQ(test, out, want, sizeof(want));
-	KUNIT_EXPECT_EQ(test, ec_sdo_down_rx(&d, resp, 10), 0);
+	KUNIT_EXPECT_EQ(test, ec_sdo_rx(&d, resp, 10), 0);
 }
 
 static void vectors_segmented_upload(struct kunit *test)
@@ -347,17 +348,17 @@ static void vectors_segmented_upload(struct kunit *test)
 	static const u8 seg1[] = { 0x00, 0x30, 0x19, 'e', 'd', '!', 0, 0, 0, 0 };
 	static const u8 req0[] = { 0x00, 0x20, 0x60, 0, 0, 0, 0, 0, 0, 0 };
 	static const u8 req1[] = { 0x00, 0x20, 0x70, 0, 0, 0, 0, 0, 0, 0 };
-	struct ec_sdo_up u;
+	struct ec_sdo u;
 
-	ec_sdo_up_init(&u, 0x1008, 0, false, out, 32);
-	ec_sdo_up_tx(&u, out + 32, 64);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, first, 10), EC_MORE);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_tx(&u, out + 32, 64), 10);
+	ec_sdo_upload_init(&u, 0x1008, 0, false, out, 32);
+	ec_sdo_tx(&u, out + 32, 64);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, first, 10), EC_MORE);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&u, out + 32, 64), 10);
 	KUNIT_EXPECT_MEMEQ(test, out + 32, req0, 10);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, seg0, 10), EC_MORE);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_tx(&u, out + 32, 64), 10);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, seg0, 10), EC_MORE);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&u, out + 32, 64), 10);
 	KUNIT_EXPECT_MEMEQ(test, out + 32, req1, 10);
-	KUNIT_ASSERT_EQ(test, ec_sdo_up_rx(&u, seg1, 10), 0);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&u, seg1, 10), 0);
 	KUNIT_ASSERT_EQ(test, u.size, (size_t)10);
 	KUNIT_EXPECT_MEMEQ(test, out, "segmented!", 10);
 }
@@ -373,18 +374,18 @@ static void vectors_segmented_download(struct kunit *test)
 	static const u8 ok[] = { 0x00, 0x30, 0x60, 0x00, 0x20, 0x01, 0, 0, 0, 0 };
 	static const u8 ack0[] = { 0x00, 0x30, 0x20, 0, 0, 0, 0, 0, 0, 0 };
 	static const u8 ack1[] = { 0x00, 0x30, 0x30, 0, 0, 0, 0, 0, 0, 0 };
-	struct ec_sdo_down d;
+	struct ec_sdo d;
 
-	ec_sdo_down_init(&d, 0x2000, 1, false, (const u8 *)"segmented!!..", 13, 12);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out, sizeof(out)), 12);
+	ec_sdo_download_init(&d, 0x2000, 1, false, (const u8 *)"segmented!!..", 13, 12);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out, sizeof(out)), 12);
 	KUNIT_EXPECT_MEMEQ(test, out, first, 12);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_rx(&d, ok, 10), EC_MORE);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out, sizeof(out)), 12);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&d, ok, 10), EC_MORE);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out, sizeof(out)), 12);
 	KUNIT_EXPECT_MEMEQ(test, out, seg0, 12);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_rx(&d, ack0, 10), EC_MORE);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_tx(&d, out, sizeof(out)), 10);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&d, ack0, 10), EC_MORE);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&d, out, sizeof(out)), 10);
 	KUNIT_EXPECT_MEMEQ(test, out, seg1, 10);
-	KUNIT_ASSERT_EQ(test, ec_sdo_down_rx(&d, ack1, 10), 0);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&d, ack1, 10), 0);
 }
 
 static struct kunit_case cases[] = {

@@ -86,14 +86,18 @@ static void vectors_sii_general_category(struct kunit *test)
 
 static void vectors_sii_fmmus_and_sync_managers(struct kunit *test)
 {
-	u8 use[8];
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
 	struct ec_sii_sm sm;
 
-	KUNIT_ASSERT_EQ(test, ec_sii_decode_fmmus(image, sizeof(image), use, 8), 4);
-	KUNIT_EXPECT_EQ(test, use[0], EC_SII_FMMU_OUTPUTS);
-	KUNIT_EXPECT_EQ(test, use[1], EC_SII_FMMU_INPUTS);
-	KUNIT_EXPECT_EQ(test, use[2], EC_SII_FMMU_SM_STATUS);
-	KUNIT_EXPECT_EQ(test, use[3], EC_SII_FMMU_UNUSED);
+	ec_sii_iter_init(&it, image, sizeof(image));
+	while (ec_sii_iter_next(&it, &cat) == 1 && cat.type != EC_SII_CAT_FMMU)
+		;
+	KUNIT_ASSERT_EQ(test, cat.type, EC_SII_CAT_FMMU);
+	KUNIT_ASSERT_EQ(test, cat.bytes, (size_t)4);
+	KUNIT_EXPECT_EQ(test, cat.data[0], EC_SII_FMMU_OUTPUTS);
+	KUNIT_EXPECT_EQ(test, cat.data[1], EC_SII_FMMU_INPUTS);
+	KUNIT_EXPECT_EQ(test, cat.data[2], EC_SII_FMMU_SM_STATUS);
 	KUNIT_ASSERT_EQ(test, ec_sii_decode_sms(image, sizeof(image), &sm, 1), 1);
 	KUNIT_EXPECT_EQ(test, sm.start, 0x1100);
 	KUNIT_EXPECT_EQ(test, sm.len, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* SoE and VoE messages typed from the tables of the specification. */
 #include "wire_kunit.h"
+#include "../../devices/sim/codes.h"
 #include "../../master/wire/soe.h"
 #include "../../master/wire/voe.h"
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every function of the codecs (master/wire, and the slave's side of the
 simulator) that takes bytes is run by golden vectors (tests/unit/vectors*_kunit.c)
-and by a fuzz target (tests/fuzz); measured with gcov. With DATA= the real images and captures are measured, too.
+and by a fuzz target (tests/fuzz); measured with
+gcov. With DATA= the real images and captures are measured, too.
 
 usage: decoders.py [BUILD-FOLDER]
 """

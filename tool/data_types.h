@@ -1,9 +1,9 @@
-/* SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause */
+/* SPDX-License-Identifier: GPL-2.0-only */
 /* CoE data types and the names users give them (ETG.1020, ETG.1000.6 table 64). */
-#ifndef EC_WIRE_TYPES_H
-#define EC_WIRE_TYPES_H
+#ifndef EC_TOOL_DATA_TYPES_H
+#define EC_TOOL_DATA_TYPES_H
 
-#include "env.h"
+#include "../devices/sim/codes.h"
 
 enum ec_type_kind {
 	EC_KIND_BOOL,
@@ -17,26 +17,6 @@ enum ec_type_kind {
 	EC_KIND_BITS,
 	EC_KIND_RAW,		/* bytes, no value form */
 };
-
-#define EC_TYPE_BOOL		0x0001
-#define EC_TYPE_INT8		0x0002
-#define EC_TYPE_INT16		0x0003
-#define EC_TYPE_INT32		0x0004
-#define EC_TYPE_UINT8		0x0005
-#define EC_TYPE_UINT16		0x0006
-#define EC_TYPE_UINT32		0x0007
-#define EC_TYPE_FLOAT		0x0008
-#define EC_TYPE_STRING		0x0009
-#define EC_TYPE_OCTET_STRING	0x000A
-#define EC_TYPE_UNICODE_STRING	0x000B
-#define EC_TYPE_DOUBLE		0x0011
-#define EC_TYPE_INT64		0x0015
-#define EC_TYPE_UINT64		0x001B
-#define EC_TYPE_SM8		0xFFFB
-#define EC_TYPE_SM16		0xFFFC
-#define EC_TYPE_SM32		0xFFFD
-#define EC_TYPE_SM64		0xFFFE
-#define EC_TYPE_RAW		0xFFFF
 
 /**
  * struct ec_type - one data type

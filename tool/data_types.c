@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
-#include "types.h"
+// SPDX-License-Identifier: GPL-2.0-only
+#include "data_types.h"
 
 /* by code */
 const struct ec_type ec_types[] = {
