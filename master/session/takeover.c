@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * An application takes over the detached session of another one. What it has
- * configured must be the same, to the last bit of what reaches a slave or decides
- * where something lies in the mapped memory. The two are compared, not hashes of
- * them: so the first difference can be told.
+ * An application takes over the detached session of another one. What it has configured must be
+ * the same: all that reaches a slave or decides where something lies in the mapped memory. The
+ * two are compared, not hashes of them, so that the first difference can be reported.
  */
 #include "../config/config.h"
-#include "../cycle/copy.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
 #include "request.h"
 #include "session.h"
 
-/* where the first difference is described */
+/* the description of the first difference */
 struct text {
 	char *buf;
 	size_t size;
@@ -29,42 +27,26 @@ static __printf(2, 3) bool differs(const struct text *t, const char *fmt, ...)
 	return true;
 }
 
+/* Compare member @m of @a and @b, two structures; @t describes the difference, if any. */
+#define NUMBER(m, fmt, ...) \
+	(a->m != b->m && differs(t, fmt, ##__VA_ARGS__, a->m, b->m))
+#define CONTENT(m, fmt, ...) \
+	(memcmp(&a->m, &b->m, sizeof(a->m)) && differs(t, fmt, ##__VA_ARGS__))
+
 #define SLAVE(c)	(c)->alias, (c)->position
-
-static bool pdo_differs(const struct ec_config *c, u8 sm, const struct ec_pdo *a,
-			const struct ec_pdo *b, const struct text *t)
-{
-	unsigned int i;
-
-	if (a->index != b->index)
-		return differs(t, "slave %u:%u, SM%u has PDO 0x%04x, not 0x%04x", SLAVE(c), sm,
-			       a->index, b->index);
-	for (i = 0; i < max(a->n_entries, b->n_entries); i++)
-		if (i >= a->n_entries || i >= b->n_entries ||
-		    a->entries[i].index != b->entries[i].index ||
-		    a->entries[i].sub != b->entries[i].sub ||
-		    a->entries[i].bits != b->entries[i].bits)
-			return differs(t, "slave %u:%u, PDO 0x%04x, entry %u", SLAVE(c), a->index,
-				       i);
-	return false;
-}
 
 static bool sms_differ(const struct ec_config *a, const struct ec_config *b,
 		       const struct text *t)
 {
-	unsigned int i, p;
+	unsigned int i;
 
 	for (i = 0; i < EC_MAX_SM; i++) {
 		const struct ec_config_sm *x = &a->sm[i], *y = &b->sm[i];
 
-		if (x->dir != y->dir || x->watchdog != y->watchdog || x->explicit != y->explicit)
-			return differs(t, "slave %u:%u, SM%u", SLAVE(a), i);
-		if (x->pdos.n != y->pdos.n)
-			return differs(t, "slave %u:%u, SM%u has %u PDOs, not %u", SLAVE(a), i,
-				       x->pdos.n, y->pdos.n);
-		for (p = 0; p < x->pdos.n; p++)
-			if (pdo_differs(a, i, &x->pdos.pdos[p], &y->pdos.pdos[p], t))
-				return true;
+		if (x->dir != y->dir || x->watchdog != y->watchdog || x->explicit != y->explicit ||
+		    !ec_pdo_list_same(&x->pdos, &y->pdos))
+			return differs(t, "slave %u:%u, SM%u: its direction, watchdog or PDOs",
+				       SLAVE(a), i);
 	}
 	return false;
 }
@@ -73,7 +55,7 @@ static bool fmmus_differ(const struct ec_config *a, const struct ec_config *b)
 {
 	unsigned int i;
 
-	if (a->n_fmmus != b->n_fmmus)
+	if (a->overlap != b->overlap || a->n_fmmus != b->n_fmmus)
 		return true;
 	for (i = 0; i < a->n_fmmus; i++) {
 		const struct ec_config_fmmu *x = &a->fmmus[i], *y = &b->fmmus[i];
@@ -85,8 +67,8 @@ static bool fmmus_differ(const struct ec_config *a, const struct ec_config *b)
 	return false;
 }
 
-static bool command_differs(const struct ec_config *c, const struct ec_startup *u,
-			    const struct text *t)
+static bool name_command(const struct ec_config *c, const struct ec_startup *u,
+			 const struct text *t)
 {
 	switch (u->type) {
 	case EC_STARTUP_SDO:
@@ -101,30 +83,25 @@ static bool command_differs(const struct ec_config *c, const struct ec_startup *
 	}
 }
 
+static bool same_command(const struct ec_startup *a, const struct ec_startup *b)
+{
+	return a->type == b->type && a->transition == b->transition && a->index == b->index &&
+	       a->sub == b->sub && a->complete == b->complete && a->size == b->size &&
+	       !memcmp(a->data, b->data, a->size);
+}
+
+/* The lists are compared whole: the first command that is not in both is the difference. */
 static bool startup_differs(const struct ec_config *a, const struct ec_config *b,
 			    const struct text *t)
 {
 	const struct ec_startup *x, *y = list_first_entry(&b->startup, typeof(*y), list);
-	struct ec_startup kind = { };
-	const u32 *n = a->n_startup, *k = b->n_startup;
 
-	for (; kind.type < EC_STARTUP_TYPES; kind.type++) {
-		if (n[kind.type] == k[kind.type])
-			continue;
-		if (kind.type == EC_STARTUP_SDO || kind.type == EC_STARTUP_IDN)
-			return differs(t, "slave %u:%u has %u startup %ss, not %u", SLAVE(a),
-				       n[kind.type], kind.type == EC_STARTUP_SDO ? "SDO" : "IDN",
-				       k[kind.type]);
-		return command_differs(a, &kind, t);
-	}
 	list_for_each_entry(x, &a->startup, list) {
-		if (x->transition != y->transition || x->index != y->index || x->sub != y->sub ||
-		    x->complete != y->complete || x->size != y->size ||
-		    memcmp(x->data, y->data, x->size))
-			return command_differs(a, x, t);
+		if (list_entry_is_head(y, &b->startup, list) || !same_command(x, y))
+			return name_command(a, x, t);
 		y = list_next_entry(y, list);
 	}
-	return false;
+	return !list_entry_is_head(y, &b->startup, list) && name_command(a, y, t);
 }
 
 static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
@@ -132,9 +109,8 @@ static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
 {
 	const struct ec_config_flag *x, *y = list_first_entry(&b->flags, typeof(*y), list);
 
-	if (a->n_flags != b->n_flags)
-		return differs(t, "slave %u:%u has %u flags, not %u", SLAVE(a), a->n_flags,
-			       b->n_flags);
+	if (NUMBER(n_flags, "slave %u:%u has %u flags, not %u", SLAVE(a)))
+		return true;
 	list_for_each_entry(x, &a->flags, list) {
 		if (strcmp(x->key, y->key) || x->value != y->value)
 			return differs(t, "slave %u:%u, flag %.32s", SLAVE(a), x->key);
@@ -149,85 +125,78 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 	if (a->alias != b->alias || a->position != b->position)
 		return differs(t, "slave configuration %u is %u:%u, not %u:%u", a->index,
 			       SLAVE(a), SLAVE(b));
-	if (a->vendor != b->vendor || a->product != b->product)
-		return differs(t, "slave %u:%u is 0x%08x/0x%08x, not 0x%08x/0x%08x", SLAVE(a),
-			       a->vendor, a->product, b->vendor, b->product);
-	if (sms_differ(a, b, t) || startup_differs(a, b, t) || flags_differ(a, b, t))
-		return true;
-	if (a->overlap != b->overlap || fmmus_differ(a, b))
-		return differs(t, "slave %u:%u, its place in the domains", SLAVE(a));
-	if (a->sync.assign != b->sync.assign ||
-	    memcmp(a->sync.period, b->sync.period, sizeof(a->sync.period)) ||
-	    memcmp(a->sync.shift, b->sync.shift, sizeof(a->sync.shift)))
-		return differs(t, "slave %u:%u, distributed clock", SLAVE(a));
-	if (memcmp(a->timeout_ms, b->timeout_ms, sizeof(a->timeout_ms)))
-		return differs(t, "slave %u:%u, time limits of its states", SLAVE(a));
-	if (a->emergencies != b->emergencies)
-		return differs(t, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a),
-			       a->emergencies, b->emergencies);
-	return false;
+	return NUMBER(vendor, "slave %u:%u has vendor id 0x%08x, not 0x%08x", SLAVE(a)) ||
+	       NUMBER(product, "slave %u:%u has product code 0x%08x, not 0x%08x", SLAVE(a)) ||
+	       sms_differ(a, b, t) || startup_differs(a, b, t) || flags_differ(a, b, t) ||
+	       (fmmus_differ(a, b) &&
+		differs(t, "slave %u:%u, its place in the domains", SLAVE(a))) ||
+	       CONTENT(sync.assign, "slave %u:%u, distributed clock", SLAVE(a)) ||
+	       CONTENT(sync.period, "slave %u:%u, distributed clock", SLAVE(a)) ||
+	       CONTENT(sync.shift, "slave %u:%u, distributed clock", SLAVE(a)) ||
+	       CONTENT(timeout_ms, "slave %u:%u, time limits of its states", SLAVE(a)) ||
+	       NUMBER(emergencies, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a));
 }
 
 static bool domain_differs(const struct ec_domain *a, const struct ec_domain *b,
 			   const struct text *t)
 {
-	if (a->size != b->size)
-		return differs(t, "domain %u has %u bytes, not %u", a->index, a->size, b->size);
-	if (a->options != b->options)
-		return differs(t, "domain %u has the options 0x%x, not 0x%x", a->index, a->options,
-			       b->options);
-	if (a->max_age != b->max_age)
-		return differs(t, "domain %u has stale data after %u sends, not %u", a->index,
-			       a->max_age, b->max_age);
-	if (a->division != b->division || a->phase != b->phase)
-		return differs(t, "domain %u goes every %u cycles (phase %u), not %u (%u)",
-			       a->index, a->division, a->phase, b->division, b->phase);
-	return false;
+	return NUMBER(size, "domain %u has %u bytes, not %u", a->index) ||
+	       NUMBER(options, "domain %u has the options 0x%x, not 0x%x", a->index) ||
+	       NUMBER(max_age, "domain %u has stale data after %u sends, not %u", a->index) ||
+	       NUMBER(division, "domain %u is sent every %u cycles, not %u", a->index) ||
+	       NUMBER(phase, "domain %u is first sent in cycle %u, not %u", a->index);
 }
 
-static bool cycle_differs(const struct ec_ioc_cycle *a, const struct ec_ioc_cycle *b,
+static bool cycle_differs(const struct ec_cycle *a, const struct ec_cycle *b,
 			  const struct text *t)
 {
-	if (!b->period_ns)
+	unsigned int i;
+
+	if (NUMBER(n_copies, "it has %u copies, not %u"))
+		return true;
+	for (i = 0; i < a->n_copies; i++)
+		if (CONTENT(copies[i], "copy %u", i))
+			return true;
+	if (!b->kernel.period_ns)
 		return differs(t, "the kernel runs its cycle");
-	if (a->period_ns != b->period_ns)
-		return differs(t, "the period is %u ns, not %u", a->period_ns, b->period_ns);
-	return memcmp(a, b, sizeof(*a)) && differs(t, "how the kernel runs the cycle");
+	return NUMBER(kernel.period_ns, "the period is %u ns, not %u") ||
+	       CONTENT(kernel, "how the kernel runs the cycle");
+}
+
+static bool wanted_differs(const struct ec_wanted *a, const struct ec_wanted *b,
+			   const struct text *t)
+{
+	unsigned int i;
+
+	if (NUMBER(n_configs, "it has %u slaves, not %u"))
+		return true;
+	for (i = 0; i < a->n_configs; i++)
+		if (config_differs(a->configs[i], b->configs[i], t))
+			return true;
+	if (NUMBER(n_domains, "it has %u domains, not %u"))
+		return true;
+	for (i = 0; i < a->n_domains; i++)
+		if (domain_differs(a->domains[i], b->domains[i], t))
+			return true;
+	return false;
 }
 
 static bool session_differs(const struct ec_session *a, const struct ec_session *b,
 			    const struct text *t)
 {
-	unsigned int i;
-
-	if (a->wanted.n_configs != b->wanted.n_configs)
-		return differs(t, "it has %u slaves, not %u", a->wanted.n_configs,
-			       b->wanted.n_configs);
-	for (i = 0; i < a->wanted.n_configs; i++)
-		if (config_differs(a->wanted.configs[i], b->wanted.configs[i], t))
-			return true;
-	if (a->wanted.n_domains != b->wanted.n_domains)
-		return differs(t, "it has %u domains, not %u", a->wanted.n_domains,
-			       b->wanted.n_domains);
-	for (i = 0; i < a->wanted.n_domains; i++)
-		if (domain_differs(a->wanted.domains[i], b->wanted.domains[i], t))
-			return true;
+	if (wanted_differs(&a->wanted, &b->wanted, t))
+		return true;
 	if (a->ref_config != b->ref_config)
 		return differs(t, "reference clock");
 	if (a->n_specs != b->n_specs || a->request_bytes != b->request_bytes ||
 	    (a->n_specs && memcmp(a->specs, b->specs, a->n_specs * sizeof(*a->specs))))
 		return differs(t, "its %u SDO and register requests", a->n_specs);
-	if (a->cycle.n_copies != b->cycle.n_copies)
-		return differs(t, "it has %u copies, not %u", a->cycle.n_copies, b->cycle.n_copies);
-	for (i = 0; i < a->cycle.n_copies; i++)
-		if (memcmp(&a->cycle.copies[i], &b->cycle.copies[i], sizeof(a->cycle.copies[i])))
-			return differs(t, "copy %u", i);
-	return cycle_differs(&a->cycle.kernel, &b->cycle.kernel, t);
+	return cycle_differs(&a->cycle, &b->cycle, t);
 }
 
 /*
- * How many cycles may be late is not part of what is compared: no slave gets it,
- * and nothing is laid out by it. The new application's word counts from now on.
+ * How many cycles may be late is not compared: no slave gets it, and nothing is laid out by it.
+ * From now on the value of the new application is used.
  */
 static void adopt_late(struct ec_session *s, u32 per_s)
 {

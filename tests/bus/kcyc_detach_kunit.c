@@ -469,7 +469,7 @@ static void takeover_refused(struct kunit *test)
 				(const u8 *)"\1", 1);
 	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_ASSERT_EQ(test, ret, 0);
-	refused(b, "slave 0:1 has 0 startup SDOs, not 1");
+	refused(b, "slave 0:1, startup SDO 0x8000:01");
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_EXPECT_EQ(test, bus_lost(b), lost);
 	/* and the same one still may */
