@@ -272,7 +272,6 @@ int ec_call_run(struct ec_file *f, const struct ec_ioctl *op, void *arg, bool us
 	if (!ret && op->buffer.out)
 		ret = put_buffer(&call, op, user);
 	kvfree(call.data);
-	if (call.slave)
-		ec_slave_unref(call.slave);
+	ec_slave_unref(call.slave);
 	return ret;
 }

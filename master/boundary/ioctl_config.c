@@ -183,7 +183,7 @@ int ec_ioc_domain(struct ec_call *call)
 	struct ec_domain *d = call->domain;
 
 	i->size = d->size;
-	i->logical = d->logical;
+	i->logical = d->offset;
 	i->expected = d->expected;
 	i->fmmu_count = d->n_fmmus;
 	i->options = d->options;
@@ -207,14 +207,14 @@ int ec_ioc_domain_fmmu(struct ec_call *call)
 
 	if (i->fmmu >= d->n_fmmus)
 		return ec_refuse(call, -ENOENT, "domain %u has %u FMMUs", i->index, d->n_fmmus);
-	fm = &d->fmmus[i->fmmu].config->fmmus[d->fmmus[i->fmmu].fmmu];
+	fm = d->fmmus[i->fmmu].fmmu;
 	i->alias = d->fmmus[i->fmmu].config->alias;
 	i->position = d->fmmus[i->fmmu].config->position;
 	i->sm = fm->sm;
 	i->dir = fm->dir;
 	i->offset = fm->offset;
 	i->size = fm->size;
-	i->logical = d->logical + fm->logical;
+	i->logical = d->offset + fm->logical;
 	return 0;
 }
 

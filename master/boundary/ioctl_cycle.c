@@ -3,7 +3,6 @@
 #include <linux/capability.h>
 #include <linux/cpumask.h>
 #include <linux/sched/signal.h>
-#include "../cycle/copy.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
 #include "ioctl.h"
@@ -112,11 +111,7 @@ static int copy_failed(struct ec_call *call, const struct ec_ioc_copy *i, int re
 int ec_ioc_copy(struct ec_call *call)
 {
 	struct ec_ioc_copy *i = call->arg;
-	struct ec_copy copy = {
-		.from_domain = i->from_domain, .from_bit = i->from_bit,
-		.to_domain = i->to_domain, .to_bit = i->to_bit, .bits = i->bits,
-	};
-	int ret = ec_copy_add(&call->session->cycle, &copy);
+	int ret = ec_copy_add(&call->session->cycle, i);
 
 	return ret ? copy_failed(call, i, ret) : 0;
 }
@@ -125,14 +120,12 @@ int ec_ioc_wait(struct ec_call *call)
 {
 	struct ec_cycles *cycles = &call->master->cycles;
 	struct ec_ioc_wait *i = call->arg;
-	u32 run;
-	int ret;
+	int ret = ec_cycle_thread_wait(cycles, call->file, &call->file->waiters, &i->cycle,
+				       i->timeout_us);
 
-	if (!ec_cycle_thread_run(cycles, call->file, &run))
-		return ec_refuse(call, -EPERM,
+	if (ret == -EPERM)
+		return ec_refuse(call, ret,
 				 "the kernel runs no cycle of this application; call ecrt_master_set_cycle() before activation");
-	ret = ec_cycle_thread_wait(cycles, call->file, &call->file->waiters, run, &i->cycle,
-				   i->timeout_us);
 	if (ret == -EBUSY)
 		return ec_refuse(call, ret,
 				 "%u threads wait for the cycle already; let one of them wake the others",

@@ -94,6 +94,11 @@ struct ec_bus {
 	struct workqueue_struct *work;
 };
 
+/* each slave of @bus: declares @s */
+#define ec_for_each_slave(s, bus) \
+	for (struct ec_slave **s##_at = (bus)->slaves, *s; \
+	     s##_at < (bus)->slaves + (bus)->n_slaves && (s = *s##_at, true); s##_at++)
+
 /* For what reads the table of slaves or their PDOs: topo is held, or they are shown. */
 static inline void ec_bus_assert_stays(const struct ec_bus *bus)
 {

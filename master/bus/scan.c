@@ -521,8 +521,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 				bus->scan_us, bus->scan_frames);
 	}
 	for (i = 0; sc.slaves && i < count; i++)
-		if (sc.slaves[i])
-			ec_slave_unref(sc.slaves[i]);
+		ec_slave_unref(sc.slaves[i]);
 	kvfree(sc.slaves);
 	kvfree(sc.regs);
 	kvfree(sc.dg);

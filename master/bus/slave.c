@@ -88,9 +88,11 @@ struct ec_slave *ec_slave_ref(struct ec_slave *slave)
 	return slave;
 }
 
+/* @slave may be NULL. */
 void ec_slave_unref(struct ec_slave *slave)
 {
-	kref_put(&slave->kref, release);
+	if (slave)
+		kref_put(&slave->kref, release);
 }
 
 static void string(struct ec_slave *s, u8 index, char *buf)

@@ -189,6 +189,14 @@ struct ec_wanted {
 	const struct ec_wanted *before;
 };
 
+/* each configuration, domain of @w: declares @c, @d */
+#define ec_for_each_config(c, w) \
+	for (struct ec_config **c##_at = (w)->configs, *c; \
+	     c##_at < (w)->configs + (w)->n_configs && (c = *c##_at, true); c##_at++)
+#define ec_for_each_domain(d, w) \
+	for (struct ec_domain *const *d##_at = (w)->domains, *d; \
+	     d##_at < (w)->domains + (w)->n_domains && (d = *d##_at, true); d##_at++)
+
 /* For what reads configurations: the lock of the session is held, or they are shown. */
 static inline void ec_wanted_assert_stays(const struct ec_wanted *w)
 {

@@ -63,6 +63,6 @@ int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu)
 	if (!p)
 		return -ENOMEM;
 	d->fmmus = p;
-	p[d->n_fmmus++] = (struct ec_domain_fmmu){ .config = c, .fmmu = fmmu };
+	p[d->n_fmmus++] = (struct ec_domain_fmmu){ .config = c, .fmmu = &c->fmmus[fmmu] };
 	return 0;
 }

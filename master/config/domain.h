@@ -7,12 +7,13 @@
 #include "ethercat.h"
 
 struct ec_config;
+struct ec_config_fmmu;
 struct ec_wanted;
 
 /* reference to an FMMU of a configuration, in order of registration */
 struct ec_domain_fmmu {
 	struct ec_config *config;
-	unsigned int fmmu;
+	struct ec_config_fmmu *fmmu;
 };
 
 /**
@@ -20,8 +21,7 @@ struct ec_domain_fmmu {
  * @wanted: owner
  * @index: number in the session
  * @size: bytes registered
- * @offset: of its data in the image, set by activation
- * @logical: base address, set by activation
+ * @offset: of its data in the image, and its logical base address; set by activation
  * @fmmus: what it consists of
  * @n_fmmus: entries in @fmmus
  * @expected: working counter when all slaves take part
@@ -39,7 +39,6 @@ struct ec_domain {
 	u32 index;
 	u32 size;
 	u32 offset;
-	u32 logical;
 	struct ec_domain_fmmu *fmmus;
 	unsigned int n_fmmus;
 	u32 expected;

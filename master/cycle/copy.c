@@ -3,7 +3,6 @@
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "../config/config.h"
-#include "copy.h"
 #include "cycle.h"
 #include "../config/domain.h"
 #include "../base/limits.h"
@@ -71,7 +70,7 @@ static bool inside(const struct ec_cycle *c, u32 domain, u32 bit, u32 bits, u8 d
 	unsigned int i;
 
 	for (i = 0; i < d->n_fmmus; i++) {
-		const struct ec_config_fmmu *f = &d->fmmus[i].config->fmmus[d->fmmus[i].fmmu];
+		const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
 
 		if (f->dir == dir && bit >= 8 * f->offset && bit - 8 * f->offset < 8 * f->size &&
 		    bits <= 8 * f->size - (bit - 8 * f->offset))
@@ -80,7 +79,7 @@ static bool inside(const struct ec_cycle *c, u32 domain, u32 bit, u32 bits, u8 d
 	return false;
 }
 
-static bool overlap(const struct ec_copy *a, const struct ec_copy *b)
+static bool overlap(const struct ec_ioc_copy *a, const struct ec_ioc_copy *b)
 {
 	return a->to_domain == b->to_domain && a->to_bit < b->to_bit + b->bits &&
 	       b->to_bit < a->to_bit + a->bits;
@@ -96,7 +95,7 @@ static bool overlap(const struct ec_copy *a, const struct ec_copy *b)
  * slave; -ERANGE the target is not output of one slave; -EEXIST another copy has
  * that target; -ENOSPC; -ENOMEM.
  */
-int ec_copy_add(struct ec_cycle *c, const struct ec_copy *copy)
+int ec_copy_add(struct ec_cycle *c, const struct ec_ioc_copy *copy)
 {
 	unsigned int i;
 
@@ -145,7 +144,7 @@ int ec_copies_begin(struct ec_cycle *c)
 	k->n = c->n_copies;
 	k->last = (u8 *)k->steps + steps;
 	for (bytes = 0, i = 0; i < k->n; i++) {
-		const struct ec_copy *copy = &c->copies[i];
+		const struct ec_ioc_copy *copy = &c->copies[i];
 
 		k->steps[i] = (struct step){
 			.domain = copy->from_domain, .bits = copy->bits, .last = bytes,
@@ -156,12 +155,6 @@ int ec_copies_begin(struct ec_cycle *c)
 	}
 	c->copying = k;
 	return 0;
-}
-
-void ec_copies_end(struct ec_cycle *c)
-{
-	kvfree(c->copying);
-	c->copying = NULL;
 }
 
 /**

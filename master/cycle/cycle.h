@@ -11,10 +11,8 @@
 #include "../config/config.h"
 #include "../link/links.h"
 #include "ethercat.h"
-#include "late.h"
 #include "shared.h"
 
-struct ec_copy;
 struct ec_copying;
 struct ec_cycle;
 struct ec_cycle_thread;
@@ -154,6 +152,38 @@ struct ec_cyc_wire {
 	u32 ns;
 };
 
+#define EC_SCHEDULE_GAPS	15
+
+/**
+ * struct ec_schedule - when the application is expected to send; owned by the
+ *	cyclic caller
+ * @due_ns: when the last send was due (ktime)
+ * @last_ns: when it was
+ * @interval_ns: distance of two sends, set or measured
+ * @sends: sends so far, up to the end of the first measurement
+ * @gaps: the last times between two sends, ns
+ * @n_gaps: such times so far
+ */
+struct ec_schedule {
+	u64 due_ns;
+	u64 last_ns;
+	u32 interval_ns;
+	u32 sends;
+	u32 gaps[EC_SCHEDULE_GAPS];
+	u32 n_gaps;
+};
+
+/**
+ * struct ec_late_report - the last cycle that has ended; under
+ *	the lock of the configuration
+ * @info: what EC_IOC_CYCLE_STATS tells of it
+ * @status: and its figures
+ */
+struct ec_late_report {
+	struct ec_ioc_cycle_stats info;
+	struct ec_status_cycle status;
+};
+
 /**
  * struct ec_cycles - all cycles of a master: one at a time runs
  *
@@ -238,11 +268,9 @@ struct ec_cycle {
 	/** @lock_logged: EC_CYCLE_LOCK_* as the log knows it */
 	u32 lock_logged;
 	/** @copies: from inputs to outputs, before each send */
-	struct ec_copy *copies;
+	struct ec_ioc_copy *copies;
 	/** @n_copies: entries in @copies */
 	unsigned int n_copies;
-	/** @copying: what they need while active, or NULL */
-	struct ec_copying *copying;
 
 	/** @dgrams: layout; ec_cycle_free() sets it and all that follows to zero */
 	struct ec_cyc_dgram *dgrams;
@@ -258,6 +286,8 @@ struct ec_cycle {
 	unsigned int n_cuts;
 	/** @stage: an image in which their parts come together, or NULL */
 	u8 *stage;
+	/** @copying: what @copies need while active, or NULL */
+	struct ec_copying *copying;
 	/** @plain: frames of a cycle that sends all domains */
 	struct ec_cyc_wire plain;
 	/** @clocked: the same with all clock datagrams */
@@ -324,6 +354,12 @@ struct ec_cycle {
 	u64 dc_skip;
 };
 
+/* @c may be NULL. What a master has of its cycle is under the lock of the one that is active. */
+static inline void ec_cycle_assert_held(const struct ec_cycle *c)
+{
+	lockdep_assert(!c || lockdep_is_held(c->wanted->lock));
+}
+
 /* cycle.c */
 void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_links *links,
 		    struct ec_dc *dc);
@@ -336,12 +372,6 @@ void ec_cycles_nothing_back(struct ec_cycles *cycles);
 /* layout.c */
 int ec_cycle_layout(struct ec_cycle *c);
 u32 ec_cycle_need_ns(void);
-/* @c may be NULL. What a master has of its cycle is under the lock of the one that is active. */
-static inline void ec_cycle_assert_held(const struct ec_cycle *c)
-{
-	lockdep_assert(!c || lockdep_is_held(c->wanted->lock));
-}
-
 int ec_cycle_check_room(struct ec_cycle *c, bool clocks);
 void ec_cycle_tell_room(struct ec_cycle *c);
 void ec_cycle_free(struct ec_cycle *c);
@@ -362,5 +392,19 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 			  u64 sync_time, u64 now);
 const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data);
 void ec_dc_datagrams_judge(struct ec_cycle *c);
+
+/* late.c */
+void ec_late_count(struct ec_cycle *c, s64 ns);
+void ec_late_send(struct ec_cycle *c, u64 now);
+void ec_late_work(struct ec_cycle *c, s64 ns);
+void ec_late_end(struct ec_cycle *c);
+void ec_late_get(struct ec_cycles *cycles, struct ec_ioc_cycle_stats *info,
+		 struct ec_status_cycle *status);
+void ec_late_reset(struct ec_cycles *cycles);
+
+/* copy.c */
+int ec_copy_add(struct ec_cycle *c, const struct ec_ioc_copy *copy);
+int ec_copies_begin(struct ec_cycle *c);
+void ec_copies_run(struct ec_cycle *c);
 
 #endif

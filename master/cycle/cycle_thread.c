@@ -150,10 +150,9 @@ static void use_image(struct ec_cycle_thread *t)
 static bool all_take_part(const struct ec_cycle *c)
 {
 	const struct ec_status_domain *st = c->shared->status->domains;
-	unsigned int i;
 
-	for (i = 0; i < c->wanted->n_domains; i++)
-		if (c->wanted->domains[i]->expected && READ_ONCE(st[i].wc_state) != 2)
+	ec_for_each_domain(d, c->wanted)
+		if (d->expected && READ_ONCE(st[d->index].wc_state) != 2)
 			return false;
 	return true;
 }
@@ -239,7 +238,7 @@ static void feed(struct ec_cycle_thread *t)
 		stall(t);
 }
 
-/* The buffers of an application: first those after the thread's, nothing waits. */
+/* An application gets the buffers after the thread's; its outputs begin with the image. */
 static void deal(struct ec_cycle_thread *t)
 {
 	struct ec_exchange *x = exchange(t);
@@ -249,6 +248,8 @@ static void deal(struct ec_cycle_thread *t)
 	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
 	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
 	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
+	if (t->bytes)
+		memcpy(buffer(t, x->app_output) + 1, t->cycle->shared->image, t->bytes);
 }
 
 /* The application before may have died anywhere: the next one begins anew. */
@@ -257,8 +258,6 @@ static void adopt(struct ec_cycle_thread *t)
 	use_image(t);
 	t->given = false;
 	deal(t);
-	memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1, t->cycle->shared->image,
-	       t->bytes);
 	/* the buffers are dealt before the application sees it */
 	smp_store_release(&t->adopt, false);
 	complete(&t->adopted);
@@ -336,16 +335,13 @@ static u64 turn(struct ec_cycle_thread *t, u64 skipped)
 
 static void find_turns(struct ec_cycle_thread *t)
 {
-	const struct ec_cycle *c = t->cycle;
-	unsigned int i;
 
-	for (i = 0; i < c->wanted->n_domains; i++) {
-		if (c->wanted->domains[i]->division == 1)
-			t->always |= BIT_ULL(i);
+	ec_for_each_domain(d, t->cycle->wanted) {
+		if (d->division == 1)
+			t->always |= BIT_ULL(d->index);
 		else
 			t->slow[t->n_slow++] = (struct slow){
-				.domain = i, .left = c->wanted->domains[i]->phase,
-				.division = c->wanted->domains[i]->division,
+				.domain = d->index, .left = d->phase, .division = d->division,
 			};
 	}
 }
@@ -408,35 +404,27 @@ static int run(void *data)
 	while (sleep(t))
 		if (!cycle(t)) {
 			end_run(t->cycle);
-			break;
+			/* no more cycles, until the thread is stopped */
+			t->next_ns = KTIME_MAX;
 		}
-	for (;;) {
-		set_current_state(TASK_IDLE);
-		if (kthread_should_stop())
-			break;
-		schedule();
-	}
-	__set_current_state(TASK_RUNNING);
 	return 0;
 }
 
 /* Output areas of all domains; those side by side are one. */
 static int find_outputs(struct ec_cycle_thread *t)
 {
-	const struct ec_cycle *c = t->cycle;
+	const struct ec_wanted *w = t->cycle->wanted;
 	struct area *a = NULL;
-	unsigned int i, k, n = 0;
+	unsigned int i, n = 0;
 
-	for (i = 0; i < c->wanted->n_domains; i++)
-		n += c->wanted->domains[i]->n_fmmus;
+	ec_for_each_domain(d, w)
+		n += d->n_fmmus;
 	t->outputs = kvcalloc(n + 1, sizeof(*t->outputs), GFP_KERNEL_ACCOUNT);
 	if (!t->outputs)
 		return -ENOMEM;
-	for (i = 0; i < c->wanted->n_domains; i++)
-		for (k = 0; k < c->wanted->domains[i]->n_fmmus; k++) {
-			const struct ec_domain *d = c->wanted->domains[i];
-			const struct ec_config_fmmu *f =
-				&d->fmmus[k].config->fmmus[d->fmmus[k].fmmu];
+	ec_for_each_domain(d, w)
+		for (i = 0; i < d->n_fmmus; i++) {
+			const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
 			u32 offset = d->offset + f->offset;
 
 			if (f->dir != EC_CFG_DIR_OUTPUT || !f->size)
@@ -466,15 +454,6 @@ static u32 stride(u32 image_bytes)
 size_t ec_cycle_thread_exchange(u32 image_bytes)
 {
 	return PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * stride(image_bytes));
-}
-
-static void begin_exchange(struct ec_cycle_thread *t)
-{
-	deal(t);
-	/* it may begin with something */
-	if (t->bytes)
-		memcpy(buffer(t, (t->front + 1) % EC_EXCHANGE_BUFFERS) + 1,
-		       t->cycle->shared->image, t->bytes);
 }
 
 static void free_thread(struct ec_cycle_thread *t)
@@ -512,7 +491,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 	ret = find_outputs(t);
 	if (ret)
 		goto err;
-	begin_exchange(t);
+	deal(t);
 	t->task = kthread_create(run, t, "EtherCAT%u-cyc", c->base->index);
 	if (IS_ERR(t->task)) {
 		ret = PTR_ERR(t->task);
@@ -686,44 +665,31 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 }
 
 /**
- * ec_cycle_thread_run() - number of the run of a cycle
- * @cycles: of the master
- * @owner: open file that asks
- * @run: @run of the owner's cycle
- *
- * Context: Any. Takes no lock.
- * Return: true when the kernel runs the cycle for @owner.
- */
-bool ec_cycle_thread_run(const struct ec_cycles *cycles, const void *owner, u32 *run)
-{
-	bool ours;
-
-	rcu_read_lock();
-	ours = owned_by(cycles, owner);
-	*run = READ_ONCE(cycles->run);
-	rcu_read_unlock();
-	return ours;
-}
-
-/**
  * ec_cycle_thread_wait() - wait for the next cycle
  * @cycles: of the master
- * @owner: open file that owns the cycle
+ * @owner: open file that asks
  * @w: its wait queue
- * @run: as ec_cycle_thread_run() has given it
  * @cycle: in: the last cycle the caller has seen; out: a newer one
  * @timeout_us: limit, 0: none
  *
  * Context: Process. Sleeps; nothing of the cycle is touched, so it may end.
- * Return: 0; -ETIMEDOUT; -ERESTARTNOHAND a signal; -ECANCELED the cycle has
- * stopped or changed its owner; -EBUSY too many callers wait.
+ * Return: 0; -EPERM the kernel runs no cycle for @owner; -ETIMEDOUT; -ERESTARTNOHAND a
+ * signal; -ECANCELED the cycle has stopped or changed its owner; -EBUSY too many callers wait.
  */
 int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
-			 u32 run, u64 *cycle, u32 timeout_us)
+			 u64 *cycle, u32 timeout_us)
 {
 	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
+	bool ours;
+	u32 run;
 	int ret;
 
+	rcu_read_lock();
+	ours = owned_by(cycles, owner);
+	run = READ_ONCE(cycles->run);
+	rcu_read_unlock();
+	if (!ours)
+		return -EPERM;
 	if (!ec_waiters_enter(w))
 		return -EBUSY;
 	ret = wait_event_interruptible_hrtimeout(w->wq,

@@ -27,9 +27,8 @@ void ec_cycle_thread_stop(struct ec_cycle *c);
 int ec_cycle_thread_adopt(struct ec_cycle *c);
 void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size);
 __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner);
-bool ec_cycle_thread_run(const struct ec_cycles *cycles, const void *owner, u32 *run);
 int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
-			 u32 run, u64 *cycle, u32 timeout_us);
+			 u64 *cycle, u32 timeout_us);
 
 /* cycle_sched.c */
 void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task);

@@ -18,7 +18,6 @@
 #include <linux/string.h>
 #include "cycle.h"
 #include "cycle_thread.h"
-#include "late.h"
 #include "../base/once64.h"
 
 #define MEASURE_SENDS	64	/* to measure the interval that is not set */
@@ -257,18 +256,15 @@ void ec_late_end(struct ec_cycle *c)
 void ec_late_get(struct ec_cycles *cycles, struct ec_ioc_cycle_stats *info,
 		 struct ec_status_cycle *st)
 {
+	u64 data;
+
 	if (cycles->active) {
 		get(cycles->active, info, st);
 		return;
 	}
-	info->active = 0;
-	info->kind = cycles->late.info.kind;
-	info->told = cycles->late.info.told;
-	info->interval_ns = cycles->late.info.interval_ns;
-	info->cpu = cycles->late.info.cpu;
-	info->cpu_losses = cycles->late.info.cpu_losses;
-	info->priority = cycles->late.info.priority;
-	info->priority_wanted = cycles->late.info.priority_wanted;
+	data = info->data;
+	*info = cycles->late.info;
+	info->data = data;
 	*st = cycles->late.status;
 }
 

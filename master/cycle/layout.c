@@ -22,11 +22,6 @@ struct layout {
 	struct ec_logical l;
 };
 
-static const struct ec_config_fmmu *fmmu(const struct layout *o, unsigned int i)
-{
-	return &o->l.refs[i].config->fmmus[o->l.refs[i].fmmu];
-}
-
 /* Slaves with data of @dir in the stretch; each counts once. */
 static u16 count_slaves(const struct layout *o, const struct ec_stretch *st, u8 dir)
 {
@@ -35,11 +30,10 @@ static u16 count_slaves(const struct layout *o, const struct ec_stretch *st, u8 
 	u16 n = 0;
 
 	for (i = st->first; i < st->last; i++) {
-		if (fmmu(o, i)->dir != dir || !fmmu(o, i)->size)
+		if (r[i].fmmu->dir != dir || !r[i].fmmu->size)
 			continue;
 		for (j = st->first; j < i; j++)
-			if (r[j].config == r[i].config && fmmu(o, j)->dir == dir &&
-			    fmmu(o, j)->size)
+			if (r[j].config == r[i].config && r[j].fmmu->dir == dir && r[j].fmmu->size)
 				break;
 		n += j == i;
 	}
@@ -60,7 +54,7 @@ static struct ec_cyc_dgram *add_dgram(struct layout *o, const struct ec_stretch 
 	c->dgrams = g;
 	g += c->n_dgrams++;
 	*g = (struct ec_cyc_dgram){
-		.domain = o->d->index, .cmd = cmd, .logical = o->d->logical + st->start,
+		.domain = o->d->index, .cmd = cmd, .logical = o->d->offset + st->start,
 		.expected = expected, .first_copy = c->n_areas,
 	};
 	return g;
@@ -96,18 +90,13 @@ enum part {
 static bool belongs(const struct ec_cyc_dgram *g, const struct ec_config_fmmu *f, bool whole,
 		    enum part part)
 {
-	bool out = f->dir == EC_CFG_DIR_OUTPUT;
-
-	switch (part) {
-	case SENT:
-		return out ? g->cmd != EC_CMD_LRD : g->cmd != EC_CMD_LWR && !f->shared;
-	case PLAIN:
-		return !out && whole && !f->shared;
-	case SHARED:
-		return !out && whole && f->shared;
-	default:
-		return !out && !whole;
-	}
+	if (f->dir == EC_CFG_DIR_OUTPUT)
+		return part == SENT && g->cmd != EC_CMD_LRD;
+	if (g->cmd == EC_CMD_LWR)
+		return false;
+	if (part == SENT)
+		return !f->shared;
+	return part == (!whole ? CUT : f->shared ? SHARED : PLAIN);
 }
 
 /* An input area of several datagrams: it is taken when all of them are back. */
@@ -169,7 +158,7 @@ static int add_areas(struct layout *o, const struct ec_stretch *st, enum part pa
 	int ret = 0;
 
 	for (i = st->first; i < st->last && !ret; i++) {
-		const struct ec_config_fmmu *f = fmmu(o, i);
+		const struct ec_config_fmmu *f = o->l.refs[i].fmmu;
 		u32 from = max(f->logical, st->start), to = min(f->logical + f->size, st->end);
 		u32 offset = o->d->offset + f->offset;
 
@@ -210,19 +199,15 @@ static bool is_solid(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
 {
 	struct ec_cyc_dgram *g = add_dgram(o, st, cmd, expected);
-	u16 plain = 0, shared = 0, cut = 0;
 	int ret;
 
 	if (IS_ERR(g))
 		return PTR_ERR(g);
-	ret = add_areas(o, st, SENT, &g->n_copies);
-	g->first_input = o->c->n_areas;
-	if (cmd != EC_CMD_LWR && !ret)
-		ret = add_areas(o, st, PLAIN, &plain) ?: add_areas(o, st, SHARED, &shared) ?:
-		      add_areas(o, st, CUT, &cut);
-	g->n_plain = plain;
-	g->n_whole = plain + shared;
-	g->n_inputs = plain + shared + cut;
+	ret = add_areas(o, st, SENT, &g->n_copies) ?: add_areas(o, st, PLAIN, &g->n_plain) ?:
+	      add_areas(o, st, SHARED, &g->n_whole) ?: add_areas(o, st, CUT, &g->n_inputs);
+	g->first_input = g->first_copy + g->n_copies;
+	g->n_whole += g->n_plain;
+	g->n_inputs += g->n_whole;
 	g->holes = area_bytes(o->c, g) != g->len;
 	g->solid = is_solid(o->c, g);
 	return ret;
@@ -308,17 +293,9 @@ static struct ec_cyc_wire plan(const struct ec_cycle *c, unsigned int max_datagr
 	return w;
 }
 
-static int alloc_stage(struct ec_cycle *c)
-{
-	if (!c->n_cuts)
-		return 0;
-	c->stage = kvzalloc(c->shared->image_size, GFP_KERNEL_ACCOUNT);
-	return c->stage ? 0 : -ENOMEM;
-}
-
 /**
  * ec_cycle_layout() - lay out the datagrams of a cycle, once
- * @c: cycle whose domains have offsets
+ * @c: cycle whose domains have offsets; ec_cycle_free() frees the layout, also after an error
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -EOVERFLOW beyond EC_MAX_CYCLE_DGRAMS or EC_MAX_CYCLE_FRAMES;
@@ -326,34 +303,31 @@ static int alloc_stage(struct ec_cycle *c)
  */
 int ec_cycle_layout(struct ec_cycle *c)
 {
-	unsigned int i;
-	int ret = 0;
+	int ret;
 
 	lockdep_assert_held(c->wanted->lock);
-	memset_startat(c, 0, dgrams);
-	for (i = 0; i < c->wanted->n_configs; i++) {
-		c->wanted->configs[i]->lrw = false;
-		c->wanted->configs[i]->in_ring = false;
+	ec_for_each_config(s, c->wanted) {
+		s->lrw = false;
+		s->in_ring = false;
 	}
-	for (i = 0; i < c->wanted->n_domains && !ret; i++)
-		ret = layout_domain(c, c->wanted->domains[i]);
-	for (i = 0; i < c->wanted->n_domains; i++) {
-		const struct ec_domain *d = c->wanted->domains[i];
-
-		c->domains[i].expected = d->expected;
-		c->domains[i].max_age = d->max_age;
-		/* offsets are those of the image of all domains */
-		c->domains[i].image = d->memory ? d->memory - d->offset : c->shared->image;
+	ec_for_each_domain(d, c->wanted) {
+		ret = layout_domain(c, d);
+		if (ret)
+			return ret;
+		c->domains[d->index] = (struct ec_cyc_domain){
+			.expected = d->expected, .max_age = d->max_age,
+			/* offsets are those of the image of all domains */
+			.image = d->memory ? d->memory - d->offset : c->shared->image,
+		};
 	}
-	if (!ret)
-		ret = alloc_stage(c);
+	if (c->n_cuts) {
+		c->stage = kvzalloc(c->shared->image_size, GFP_KERNEL_ACCOUNT);
+		if (!c->stage)
+			return -ENOMEM;
+	}
 	c->plain = plan(c, c->links->max_datagrams, false);
 	c->clocked = plan(c, c->links->max_datagrams, true);
-	if (!ret && c->clocked.frames > EC_MAX_CYCLE_FRAMES)
-		ret = -EOVERFLOW;
-	if (ret)
-		ec_cycle_free(c);
-	return ret;
+	return c->clocked.frames > EC_MAX_CYCLE_FRAMES ? -EOVERFLOW : 0;
 }
 
 /* Wire time of a minimum Ethernet frame: less does no acyclic frame need. */
@@ -452,5 +426,6 @@ void ec_cycle_free(struct ec_cycle *c)
 	kvfree(c->areas);
 	kvfree(c->cuts);
 	kvfree(c->stage);
+	kvfree(c->copying);
 	memset_startat(c, 0, dgrams);
 }

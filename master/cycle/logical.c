@@ -33,11 +33,6 @@ struct place {
 	struct ec_stretch at;
 };
 
-static struct ec_config_fmmu *fmmu(const struct ec_domain_fmmu *ref)
-{
-	return &ref->config->fmmus[ref->fmmu];
-}
-
 static bool is_out(const struct ec_config_fmmu *f)
 {
 	return f->dir == EC_CFG_DIR_OUTPUT;
@@ -75,8 +70,8 @@ static int by_ring(const void *a, const void *b)
 	if (x->config != y->config)
 		return x->config->index < y->config->index ? -1 : 1;
 	/* outputs first: inputs can share with them */
-	if (fmmu(x)->dir != fmmu(y)->dir)
-		return is_out(fmmu(x)) ? -1 : 1;
+	if (x->fmmu->dir != y->fmmu->dir)
+		return is_out(x->fmmu) ? -1 : 1;
 	return x->fmmu < y->fmmu ? -1 : x->fmmu > y->fmmu;
 }
 
@@ -90,18 +85,17 @@ static void take_config(struct place *p, struct ec_config *c)
 		for (i = 0; i < c->n_fmmus; i++)
 			if (c->fmmus[i].domain == p->d && c->fmmus[i].dir == dirs[k])
 				p->l->refs[p->l->n++] = (struct ec_domain_fmmu){
-					.config = c, .fmmu = i };
+					.config = c, .fmmu = &c->fmmus[i] };
 }
 
 /* Is it the first FMMU of its configuration in the domain? */
 static bool is_first(const struct place *p, const struct ec_domain_fmmu *ref)
 {
-	unsigned int i;
+	const struct ec_config_fmmu *f = ref->config->fmmus;
 
-	for (i = 0; i < ref->fmmu; i++)
-		if (ref->config->fmmus[i].domain == p->d)
-			return false;
-	return true;
+	while (f->domain != p->d)
+		f++;
+	return f == ref->fmmu;
 }
 
 /* As registered, but the FMMUs of a slave that share stand together. */
@@ -135,7 +129,7 @@ static void put_unit(struct place *p, unsigned int i, unsigned int k, enum way w
 	if (way == OWN || way == APART)
 		p->out = p->in = max(p->out, p->in);
 	for (; i < k; i++) {
-		struct ec_config_fmmu *f = fmmu(&p->l->refs[i]);
+		struct ec_config_fmmu *f = p->l->refs[i].fmmu;
 		u32 outputs = p->out;
 
 		put(p, f);

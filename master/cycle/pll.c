@@ -28,14 +28,13 @@ void ec_pll_init(struct ec_pll *l, const struct ec_cycle *c)
 /* Application time of a cycle: whole periods after the last one. */
 static void advance(struct ec_pll *l, u64 due, u64 epoch_ns)
 {
+	u64 last = l->past[(l->n_past - 1) % EC_PLL_PAST].due;
 	u32 period = l->pi.period;
 
-	if (!l->begun)
+	if (!l->n_past)
 		l->time = due + epoch_ns;
 	else
-		l->time += div_u64(due - l->due + period / 2, period) * period;
-	l->due = due;
-	l->begun = true;
+		l->time += div_u64(due - last + period / 2, period) * period;
 }
 
 /* Application time of the cycle that sent a frame; false: too long ago. */

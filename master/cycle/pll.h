@@ -16,8 +16,6 @@ struct ec_status_cycle;
  * @follow: the cycle follows the reference clock, else only its own timer
  * @phase: begin of a cycle after the grid of the SYNC signals, ns
  * @time: application time of the last cycle, ns: a point of that grid
- * @due: its schedule (ktime)
- * @begun: the two are set
  * @seen: send of the last frame that has brought a time (ktime)
  * @past: schedules of the last cycles and their application times
  * @n_past: cycles so far
@@ -27,8 +25,6 @@ struct ec_pll {
 	bool follow;
 	u32 phase;
 	u64 time;
-	u64 due;
-	bool begun;
 	u64 seen;
 	struct {
 		u64 due;

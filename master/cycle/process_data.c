@@ -7,7 +7,6 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include "../base/bytes.h"
-#include "copy.h"
 #include "cycle.h"
 #include "../base/once64.h"
 
@@ -323,13 +322,6 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int 
 	return g - first;
 }
 
-static void not_sent(struct ec_cycle *c, struct ec_slot *slot, const struct ec_riding *riding)
-{
-	ec_slot_put(&c->links->slots, slot);
-	if (riding->mask)
-		ec_riders_return(c->links, riding);
-}
-
 /* One frame from datagram @g on; returns the first datagram of the next. */
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
@@ -351,14 +343,17 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(c->links, tx_errors);
-	if (!ret)
+	if (!ret) {
 		c->flight[c->n_flight++] = (struct ec_cyc_flight){
 			.slot = slot, .send = c->send, .first = g, .count = count,
 			.queued = send->what->queued, .direct = c->direct, .dc = send->dc,
 			.dc_sent = c->dc_sent, .riding = send->riding,
 		};
-	else
-		not_sent(c, slot, &send->riding);
+	} else {
+		ec_slot_put(&c->links->slots, slot);
+		if (send->riding.mask)
+			ec_riders_return(c->links, &send->riding);
+	}
 	send->dc = 0;
 	return g + count;
 }

@@ -43,8 +43,7 @@ void ec_ref_clock_raise(struct ec_session *s)
 	up_read(&ss->bus->topo);
 	if (!ref || ref == s->raised || ec_config_of(ref) || READ_ONCE(ref->stop.gone) ||
 	    has_outputs(ref)) {
-		if (ref)
-			ec_slave_unref(ref);
+		ec_slave_unref(ref);
 		return;
 	}
 	ec_ref_clock_lower(s);

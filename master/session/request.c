@@ -102,8 +102,10 @@ static struct ec_session *session_of(const struct ec_requests *rq)
 
 /* begin and end of a request ------------------------------------------------*/
 
-static void finish(struct ec_request *r, const struct ec_request_result *res)
+static void finish(struct ec_request *r)
 {
+	const struct ec_request_result *res = &r->res;
+
 	if (!res->err && ec_request_reads(r))
 		memcpy(r->data, r->buf, res->got);
 	r->phase = EC_REQUEST_IDLE;
@@ -118,7 +120,8 @@ static void finish(struct ec_request *r, const struct ec_request_result *res)
 
 static void fail(struct ec_request *r, int err)
 {
-	finish(r, &(struct ec_request_result){ .err = err });
+	r->res = (struct ec_request_result){ .err = err };
+	finish(r);
 }
 
 /* Nothing in a record can be trusted: each field is read once, then checked. */
@@ -264,16 +267,6 @@ out:
 	return oldest;
 }
 
-static void run(struct ec_requests *rq, struct ec_request *r, struct ec_slave *s)
-{
-	struct ec_request_result res;
-
-	ec_request_run(r, s, &rq->ended, &res);
-	mutex_lock(&rq->lock);
-	finish(r, &res);
-	mutex_unlock(&rq->lock);
-}
-
 static void lane_work(struct work_struct *work)
 {
 	struct ec_lane *lane = container_of(work, struct ec_lane, work);
@@ -283,12 +276,15 @@ static void lane_work(struct work_struct *work)
 
 	do {
 		r = take(lane, &slave);
-		if (r)
-			run(rq, r, slave);
-		else if (slave && lane->emerg.count)
+		if (r) {
+			ec_request_run(r, slave, &rq->ended);
+			mutex_lock(&rq->lock);
+			finish(r);
+			mutex_unlock(&rq->lock);
+		} else if (slave && lane->emerg.count) {
 			ec_mbox_poll(&slave->mbox);
-		if (slave)
-			ec_slave_unref(slave);
+		}
+		ec_slave_unref(slave);
 	} while (r);
 	put(rq);
 }
@@ -460,7 +456,6 @@ static unsigned int count_lanes(const struct ec_session *s)
 int ec_requests_begin(struct ec_session *s)
 {
 	struct ec_requests *rq;
-	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.n_configs)
@@ -487,8 +482,8 @@ int ec_requests_begin(struct ec_session *s)
 	lay_out(s, rq);
 	s->requests = rq;
 	ec_requests_describe(s);
-	for (i = 0; i < s->wanted.n_configs; i++)
-		ec_requests_attach(s, i);
+	ec_for_each_config(c, &s->wanted)
+		ec_requests_attach(s, c);
 	return 0;
 }
 
@@ -503,15 +498,14 @@ int ec_requests_begin(struct ec_session *s)
 void ec_requests_end(struct ec_session *s)
 {
 	struct ec_requests *rq = s->requests;
-	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (!rq)
 		return;
 	WRITE_ONCE(rq->ended, true);
 	s->requests = NULL;
-	for (i = 0; i < s->wanted.n_configs; i++)
-		ec_requests_attach(s, i);
+	ec_for_each_config(c, &s->wanted)
+		ec_requests_attach(s, c);
 	put(rq);
 }
 
@@ -556,21 +550,19 @@ void ec_requests_notice(struct ec_cycle *c)
 /**
  * ec_requests_attach() - where what comes unasked from a slave goes
  * @s: session
- * @config: number of a configuration that has got its slave, or whose session
- *	has begun or ended
+ * @c: configuration that has got its slave, or whose session has begun or ended
  *
  * Context: Process, session lock held.
  */
-void ec_requests_attach(const struct ec_session *s, u32 config)
+void ec_requests_attach(const struct ec_session *s, const struct ec_config *c)
 {
-	struct ec_lane *lane = s->requests ? &s->requests->lanes[config] : NULL;
-	struct ec_slave *slave = s->wanted.configs[config]->slave;
+	struct ec_lane *lane = s->requests ? &s->requests->lanes[c->index] : NULL;
 
 	lockdep_assert_held(s->wanted.lock);
-	if (!slave)
+	if (!c->slave)
 		return;
-	ec_emerg_set(&slave->mbox, lane ? &lane->emerg : NULL);
-	ec_mbox_keep_voe(&slave->mbox, lane && lane->voe);
+	ec_emerg_set(&c->slave->mbox, lane ? &lane->emerg : NULL);
+	ec_mbox_keep_voe(&c->slave->mbox, lane && lane->voe);
 }
 
 /**

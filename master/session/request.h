@@ -14,6 +14,7 @@
 
 #include <linux/types.h>
 
+struct ec_config;
 struct ec_cycle;
 struct ec_emerg;
 struct ec_request_record;
@@ -38,7 +39,7 @@ int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
 void ec_requests_describe(const struct ec_session *s);
 void ec_requests_kick(struct ec_session *s);
-void ec_requests_attach(const struct ec_session *s, u32 config);
+void ec_requests_attach(const struct ec_session *s, const struct ec_config *c);
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);
 struct ec_emerg *ec_requests_emerg(const struct ec_session *s, u32 config);
 void ec_requests_notice(struct ec_cycle *c);

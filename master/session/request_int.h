@@ -16,6 +16,22 @@ enum ec_request_phase {
 };
 
 /**
+ * struct ec_request_result - how a request has ended
+ * @err: 0 or -errno
+ * @got: bytes read
+ * @code: of the slave: SDO abort code, SoE error code
+ * @vendor: VoE: of the message read
+ * @type: likewise
+ */
+struct ec_request_result {
+	int err;
+	size_t got;
+	u32 code;
+	u32 vendor;
+	u16 type;
+};
+
+/**
  * struct ec_request - the kernel's side of one request
  * @list: in its lane
  * @rec: mapped by the application; read once, when a start is seen
@@ -33,6 +49,7 @@ enum ec_request_phase {
  * @vendor: VoE: vendor id
  * @size: bytes of @buf
  * @buf: private copy of the data, as large as these may be
+ * @res: result; of the worker while it is RUNNING
  */
 struct ec_request {
 	struct list_head list;
@@ -51,22 +68,7 @@ struct ec_request {
 	u32 vendor;
 	u32 size;
 	u8 *buf;
-};
-
-/**
- * struct ec_request_result - how a request has ended
- * @err: 0 or -errno
- * @got: bytes read
- * @code: of the slave: SDO abort code, SoE error code
- * @vendor: VoE: of the message read
- * @type: likewise
- */
-struct ec_request_result {
-	int err;
-	u32 got;
-	u32 code;
-	u32 vendor;
-	u16 type;
+	struct ec_request_result res;
 };
 
 static inline bool ec_request_reads(const struct ec_request *r)
@@ -80,7 +82,6 @@ static inline bool ec_request_writes(const struct ec_request *r)
 }
 
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
-void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel,
-		    struct ec_request_result *res);
+void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel);
 
 #endif

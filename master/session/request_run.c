@@ -58,92 +58,80 @@ static int readwrite(const struct ec_request *r, struct ec_slave *s)
 	return ret ? ret : dg.wkc == 3 ? 0 : -EIO;
 }
 
-static void run_reg(struct ec_request *r, struct ec_slave *s, struct ec_request_result *res)
+static void run_reg(struct ec_request *r, struct ec_slave *s)
 {
-	res->got = ec_request_reads(r) ? r->size : 0;
+	r->res.got = ec_request_reads(r) ? r->size : 0;
 	/* also of a slave whose configuration failed: registers tell why */
 	if (r->op == EC_REQUEST_OP_READWRITE)
-		res->err = readwrite(r, s);
+		r->res.err = readwrite(r, s);
 	else if (r->op == EC_REQUEST_OP_WRITE)
-		res->err = ec_xfer_fpwr(s->bus->links, s->station, r->index, r->buf, r->size);
+		r->res.err = ec_xfer_fpwr(s->bus->links, s->station, r->index, r->buf, r->size);
 	else
-		res->err = ec_xfer_fprd(s->bus->links, s->station, r->index, r->buf, r->size);
+		r->res.err = ec_xfer_fprd(s->bus->links, s->station, r->index, r->buf, r->size);
 }
 
-static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,
-		    struct ec_request_result *res)
+static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
 {
-	size_t got = 0;
-
 	if (ec_request_writes(r))
-		res->err = ec_coe_download(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size,
-					   &res->code, l);
+		r->res.err = ec_coe_download(&s->mbox, r->index, r->sub, r->complete, r->buf,
+					     r->size, &r->res.code, l);
 	else
-		res->err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf, r->size,
-					 &got, &res->code, l);
-	res->got = got;
+		r->res.err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf,
+					   r->size, &r->res.got, &r->res.code, l);
 }
 
-static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l,
-		    struct ec_request_result *res)
+static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
 {
-	size_t got = 0;
 	u16 error;
 
 	if (ec_request_writes(r))
-		res->err = ec_soe_write(&s->mbox, r->sub, r->index, r->buf, r->size, &error, l);
+		r->res.err = ec_soe_write(&s->mbox, r->sub, r->index, r->buf, r->size, &error, l);
 	else
-		res->err = ec_soe_read(&s->mbox, r->sub, r->index, r->buf, r->size, &got, &error,
-				       l);
-	res->got = got;
-	res->code = error;
+		r->res.err = ec_soe_read(&s->mbox, r->sub, r->index, r->buf, r->size, &r->res.got,
+					 &error, l);
+	r->res.code = error;
 }
 
-static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_limit *l,
-		    struct ec_request_result *res)
+static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_limit *l)
 {
 	u64 ms = div_u64(ktime_get_ns() - r->since_ns, NSEC_PER_MSEC);
 	struct ec_voe_hdr h = { .vendor = r->vendor, .type = r->index };
-	size_t got = 0;
 
 	l->timeout_ms = ms < EC_VOE_TIMEOUT_MS ? EC_VOE_TIMEOUT_MS - ms : 1;
 	if (ec_request_writes(r))
-		res->err = ec_voe_write(&s->mbox, &h, r->buf, r->size, l);
+		r->res.err = ec_voe_write(&s->mbox, &h, r->buf, r->size, l);
 	else
-		res->err = ec_voe_read(&s->mbox, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf,
-				       r->size, &got, l);
-	res->got = got;
-	res->vendor = h.vendor;
-	res->type = h.type;
+		r->res.err = ec_voe_read(&s->mbox, r->op == EC_REQUEST_OP_READ_NOW, &h, r->buf,
+					 r->size, &r->res.got, l);
+	r->res.vendor = h.vendor;
+	r->res.type = h.type;
 }
 
 /**
- * ec_request_run() - do what a request wants
- * @r: request that ec_request_accept() was content with
+ * ec_request_run() - execute a request
+ * @r: request that ec_request_accept() has accepted; @res is set
  * @s: its slave
- * @cancel: set to true by somebody who wants it to end
- * @res: result
+ * @cancel: true ends it
  *
  * Context: Process. Waits for bus traffic.
  */
-void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel,
-		    struct ec_request_result *res)
+void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel)
 {
 	struct ec_mbox_limit limit = { .cancel = cancel };
 
-	*res = (struct ec_request_result){ .err = -EINVAL };
+	r->res = (struct ec_request_result){ .err = -EINVAL };
 	switch (r->kind) {
 	case EC_REQUEST_SDO:
-		run_sdo(r, s, &limit, res);
+		run_sdo(r, s, &limit);
 		break;
 	case EC_REQUEST_REG:
-		run_reg(r, s, res);
+		run_reg(r, s);
 		break;
 	case EC_REQUEST_SOE:
-		run_soe(r, s, &limit, res);
+		run_soe(r, s, &limit);
 		break;
 	case EC_REQUEST_VOE:
-		run_voe(r, s, &limit, res);
+		run_voe(r, s, &limit);
 		break;
 	}
 }

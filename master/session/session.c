@@ -4,7 +4,6 @@
 #include <linux/sched.h>
 #include <linux/slab.h>
 #include "../config/config.h"
-#include "../cycle/copy.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
@@ -34,14 +33,10 @@ struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner
 }
 
 /* One application at a time; one more may prepare to take a detached session over. */
-static bool taken(struct ec_sessions *ss)
+static bool is_taken(const struct ec_sessions *ss)
 {
-	bool ret;
-
-	mutex_lock(&ss->lock);
-	ret = ss->heir || (ss->session && ss->session->cycle.owner);
-	mutex_unlock(&ss->lock);
-	return ret;
+	lockdep_assert_held(&ss->lock);
+	return ss->heir || (ss->session && ss->session->cycle.owner);
 }
 
 /*
@@ -50,12 +45,8 @@ static bool taken(struct ec_sessions *ss)
  */
 static void to_preop(struct ec_sessions *ss)
 {
-	unsigned int i;
-
 	down_read(&ss->bus->topo);
-	for (i = 0; i < ss->bus->n_slaves; i++) {
-		struct ec_slave *s = ss->bus->slaves[i];
-
+	ec_for_each_slave(s, ss->bus) {
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
 		    (READ_ONCE(s->requested) == EC_AL_PREOP &&
 		     (READ_ONCE(s->error) || READ_ONCE(s->al_status) == EC_AL_PREOP)))
@@ -71,7 +62,7 @@ static int begin(struct ec_sessions *ss, struct ec_session *s)
 	int ret = 0;
 
 	ec_sessions_lock(ss);
-	if (ss->heir || (ss->session && ss->session->cycle.owner)) {
+	if (is_taken(ss)) {
 		ret = -EBUSY;
 	} else if (ss->session) {
 		WRITE_ONCE(ss->heir, s);
@@ -152,11 +143,15 @@ static const struct ec_cycle_ops cycle_ops = {
 int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiters *waiters)
 {
 	struct ec_session *s;
+	bool taken;
 	int ret;
 
 	if (!ec_links_attached(ss->links))
 		return -ENODEV;
-	if (taken(ss))
+	mutex_lock(&ss->lock);
+	taken = is_taken(ss);
+	mutex_unlock(&ss->lock);
+	if (taken)
 		return -EBUSY;
 	ret = ec_bus_wait_scan(ss->bus);
 	if (ret == -EINTR)
@@ -165,13 +160,10 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 	if (!s)
 		return -ENOMEM;
 	s->sessions = ss;
-	s->wanted.base = ss->base;
-	s->wanted.links = ss->links;
-	s->wanted.bus = ss->bus;
-	s->wanted.lock = &ss->lock;
-	s->wanted.sends = &s->cycle.sends;
-	s->wanted.budget.lock = &ss->lock;
-	s->wanted.budget.total = &ss->memory;
+	s->wanted = (struct ec_wanted){
+		.base = ss->base, .links = ss->links, .bus = ss->bus, .lock = &ss->lock,
+		.sends = &s->cycle.sends, .budget = { .lock = &ss->lock, .total = &ss->memory },
+	};
 	ec_cycle_init(&s->cycle, ss->cycles, &s->wanted);
 	s->cycle.owner = owner;
 	RCU_INIT_POINTER(s->cycle.waiters, waiters);
@@ -193,28 +185,22 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 
 static void clear(struct ec_session *s)
 {
-	unsigned int i;
-
 	ec_ref_clock_lower(s);
 	/* all at once: a worker may need a moment to leave */
-	for (i = 0; i < s->wanted.n_configs; i++)
-		if (ec_session_owns(s->wanted.configs[i]))
-			ec_stop_interrupt(&s->wanted.configs[i]->slave->stop, true);
-	for (i = 0; i < s->wanted.n_configs; i++) {
-		ec_session_detach(s->wanted.configs[i]);
-		ec_config_free(s->wanted.configs[i]);
+	ec_for_each_config(c, &s->wanted)
+		if (ec_session_owns(c))
+			ec_stop_interrupt(&c->slave->stop, true);
+	ec_for_each_config(c, &s->wanted) {
+		ec_session_detach(c);
+		ec_config_free(c);
 	}
+	ec_for_each_domain(d, &s->wanted)
+		ec_domain_free(d);
 	kvfree(s->wanted.configs);
 	kvfree(s->specs);
-	s->specs = NULL;
-	s->n_specs = 0;
-	s->request_bytes = 0;
-	s->wanted.configs = NULL;
-	s->wanted.n_configs = 0;
 	ec_budget_release(&s->wanted.budget, s->wanted.budget.bytes);
-	for (i = 0; i < s->wanted.n_domains; i++)
-		ec_domain_free(s->wanted.domains[i]);
-	s->wanted.n_domains = 0;
+	memset_startat(&s->wanted, 0, configs);
+	memset_startat(s, 0, specs);
 	s->ref_config = EC_UAPI_NONE32;
 	ec_cycle_clear(&s->cycle);
 }
@@ -237,7 +223,6 @@ static void forget_told(struct ec_sessions *ss)
 int ec_session_deactivate(struct ec_session *s)
 {
 	struct ec_sessions *ss = s->sessions;
-	struct ec_shared *sh;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active)
@@ -247,15 +232,12 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_late_end(&s->cycle);
 	s->wanted.active = false;
-	s->ending = false;
 	s->stall_log.open = false;
 	ec_requests_end(s);
 	clear(s);
 	ec_cycle_free(&s->cycle);
-	ec_copies_end(&s->cycle);
-	sh = s->cycle.shared;
+	ec_shared_put(s->cycle.shared);
 	s->cycle.shared = NULL;
-	ec_shared_put(sh);
 	forget_told(ss);
 	if ((u32)atomic_read(&ss->links->access.timeouts) != s->stall_log.logged)
 		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
@@ -281,18 +263,17 @@ void ec_session_free(struct ec_session *s)
 static void inherit(struct ec_sessions *ss)
 {
 	struct ec_session *s = ss->heir;
-	unsigned int i;
 
 	WRITE_ONCE(ss->heir, NULL);
 	WRITE_ONCE(ss->session, s);
-	if (s)
-		s->wanted.before = NULL;
 	WRITE_ONCE(ss->bus->freeze, s != NULL);
-	if (s)
-		to_preop(ss);
-	for (i = 0; s && i < s->wanted.n_configs; i++) {
-		ec_session_detach(s->wanted.configs[i]);
-		ec_session_attach_one(s, s->wanted.configs[i]);
+	if (!s)
+		return;
+	s->wanted.before = NULL;
+	to_preop(ss);
+	ec_for_each_config(c, &s->wanted) {
+		ec_session_detach(c);
+		ec_session_attach_one(s, c);
 	}
 }
 
@@ -380,12 +361,10 @@ static u16 ref_choice(const struct ec_session *s)
 /* Does the session need clocks for sure: SYNC signals, or a cycle of the kernel with clocks? */
 static bool uses_clocks(const struct ec_session *s)
 {
-	unsigned int i;
-
 	if (s->cycle.kernel.dc)
 		return true;
-	for (i = 0; i < s->wanted.n_configs; i++)
-		if (s->wanted.configs[i]->sync.assign)
+	ec_for_each_config(c, &s->wanted)
+		if (c->sync.assign)
 			return true;
 	return false;
 }
@@ -442,13 +421,11 @@ void ec_session_clocks(struct ec_sessions *ss)
 u32 ec_session_place(struct ec_session *s)
 {
 	u32 offset = 0;
-	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
-	for (i = 0; i < s->wanted.n_domains; i++) {
-		s->wanted.domains[i]->offset = offset;
-		s->wanted.domains[i]->logical = offset;
-		offset += ALIGN(s->wanted.domains[i]->size, 8);
+	ec_for_each_domain(d, &s->wanted) {
+		d->offset = offset;
+		offset += ALIGN(d->size, 8);
 	}
 	return offset;
 }
@@ -493,15 +470,15 @@ static int create_thread(struct ec_session *s, u32 image_bytes)
 int ec_session_activate(struct ec_session *s)
 {
 	struct ec_sessions *ss = s->sessions;
-	unsigned int i;
+	struct ec_status *st;
 	u32 offset;
 	int ret;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (s->wanted.active)
 		return -EBUSY;
-	for (i = 0; i < s->wanted.n_domains; i++)
-		if (s->wanted.domains[i]->division > 1 && !s->cycle.kernel.period_ns)
+	ec_for_each_domain(d, &s->wanted)
+		if (d->division > 1 && !s->cycle.kernel.period_ns)
 			return -EOPNOTSUPP;
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
@@ -520,16 +497,16 @@ int ec_session_activate(struct ec_session *s)
 		ret = create_thread(s, offset);
 	if (ret) {
 		ec_cycle_free(&s->cycle);
-		ec_copies_end(&s->cycle);
 		ec_requests_end(s);
 		ec_shared_put(s->cycle.shared);
 		s->cycle.shared = NULL;
 		return ret;
 	}
-	s->cycle.shared->status->config_count = s->wanted.n_configs;
-	s->cycle.shared->status->dc_monitor = ~0u;
-	for (i = 0; i < s->wanted.n_domains; i++)
-		s->cycle.shared->status->domains[i].expected = s->wanted.domains[i]->expected;
+	st = s->cycle.shared->status;
+	st->config_count = s->wanted.n_configs;
+	st->dc_monitor = ~0u;
+	ec_for_each_domain(d, &s->wanted)
+		st->domains[d->index].expected = d->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
 	s->stall_log.logged = atomic_read(&ss->links->access.timeouts);
@@ -541,12 +518,12 @@ int ec_session_activate(struct ec_session *s)
 	ec_cycle_set_active(ss->cycles, &s->cycle);
 	if (begins_clocks(s))
 		ec_dc_begin(ss->dc, true, ref_choice(s));
-	s->cycle.shared->status->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
+	st->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(&s->cycle);
-	for (i = 0; i < s->wanted.n_configs; i++)
-		if (s->wanted.configs[i]->slave)
-			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_OP);
+	ec_for_each_config(c, &s->wanted)
+		if (c->slave)
+			ec_slave_request(c->slave, EC_AL_OP);
 	ec_ref_clock_raise(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
@@ -567,16 +544,14 @@ int ec_session_activate(struct ec_session *s)
  */
 int ec_session_slaves_down(struct ec_session *s)
 {
-	unsigned int i;
-
 	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active)
 		return -EINVAL;
 	s->ending = true;
 	ec_ref_clock_lower(s);
-	for (i = 0; i < s->wanted.n_configs; i++)
-		if (s->wanted.configs[i]->slave)
-			ec_slave_request(s->wanted.configs[i]->slave, EC_AL_PREOP);
+	ec_for_each_config(c, &s->wanted)
+		if (c->slave)
+			ec_slave_request(c->slave, EC_AL_PREOP);
 	return 0;
 }
 

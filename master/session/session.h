@@ -13,9 +13,6 @@
 #include "ethercat.h"
 #include "../base/limits.h"
 
-struct ec_copy;
-struct ec_copying;
-struct ec_cycle_thread;
 struct ec_sessions;
 struct ec_request_spec;
 struct ec_requests;
@@ -78,23 +75,25 @@ struct ec_sessions {
  * @owner_pid: process that reserved the master, in the initial namespace
  * @owner_comm: its command, printable
  * @wanted: slave configurations and domains
+ * @stall_log: cycle timeouts of the application in the log
+ * @cycle: its cycle, and whose it is
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
- * @specs: requests to be made by activation
+ * @specs: requests to be made by activation; a deactivation sets it and all that follows to zero
  * @n_specs: entries in @specs
  * @request_bytes: room for their data and for emergencies
  * @requests: what works on them while active, or NULL
  * @ending: slaves shall go to PREOP while the application still cycles
  * @raised: reference clock without configuration that was taken to OP, or NULL
  * @preset: what the image begins with, for the time of an activation; NULL: zeros
- * @stall_log: cycle timeouts of the application in the log
- * @cycle: its cycle, and whose it is
  */
 struct ec_session {
 	struct ec_sessions *sessions;
 	pid_t owner_pid;
 	char owner_comm[TASK_COMM_LEN];
 	struct ec_wanted wanted;
+	struct ec_stall_log stall_log;
+	struct ec_cycle cycle;
 	u32 ref_config;
 	struct ec_request_spec *specs;
 	unsigned int n_specs;
@@ -103,8 +102,6 @@ struct ec_session {
 	bool ending;
 	struct ec_slave *raised;
 	const void *preset;
-	struct ec_stall_log stall_log;
-	struct ec_cycle cycle;
 };
 
 static inline struct ec_session *ec_cycle_session(struct ec_cycle *c)

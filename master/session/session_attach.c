@@ -139,8 +139,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		return;
 	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
 	if (slave == c->slave) {
-		if (slave)
-			ec_slave_unref(slave);
+		ec_slave_unref(slave);
 		return;
 	}
 	if (s->wanted.active && c->slave)
@@ -167,7 +166,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	slave->seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
-	ec_requests_attach(s, c->index);
+	ec_requests_attach(s, c);
 	if (s->wanted.active && !s->ending)
 		ec_slave_request(slave, EC_AL_OP);
 	else
@@ -210,12 +209,12 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
  */
 void ec_session_attach(struct ec_sessions *ss)
 {
-	unsigned int i;
-
 	ec_sessions_lock(ss);
-	for (i = 0; ss->session && i < ss->session->wanted.n_configs; i++)
-		ec_session_attach_one(ss->session, ss->session->wanted.configs[i]);
-	for (i = 0; ss->heir && i < ss->heir->wanted.n_configs; i++)
-		ec_config_find_alias(ss->heir->wanted.configs[i]);
+	if (ss->session)
+		ec_for_each_config(c, &ss->session->wanted)
+			ec_session_attach_one(ss->session, c);
+	if (ss->heir)
+		ec_for_each_config(c, &ss->heir->wanted)
+			ec_config_find_alias(c);
 	ec_sessions_unlock(ss);
 }

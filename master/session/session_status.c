@@ -66,15 +66,14 @@ void ec_session_fill_status(struct ec_session *s)
 {
 	struct ec_status *st = s->cycle.shared->status;
 	struct ec_sessions *ss = s->sessions;
-	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
 	WRITE_ONCE(st->slaves_responding, ss->bus->responding);
 	WRITE_ONCE(st->al_states, ss->bus->al_states);
 	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
 	status_links(ss, st);
-	for (i = 0; i < s->wanted.n_configs; i++)
-		WRITE_ONCE(st->configs[i], ec_config_status(s->wanted.configs[i]));
+	ec_for_each_config(c, &s->wanted)
+		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
 }
 
 /**
