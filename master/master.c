@@ -94,37 +94,23 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
-	ret = ec_rider_register(&m->links, &m->rider);
+	ret = ec_rider_register(&m->links, &m->rider) ?:
+	      ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
+	      ec_sessions_init(&m->sessions);
 	if (ret)
-		goto err_work;
-	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops);
-	if (ret)
-		goto err_work;
-	ret = ec_sessions_init(&m->sessions);
-	if (ret)
-		goto err_work;
+		goto err;
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
-	ret = ec_api_create(m);
+	ret = ec_api_create(m) ?: ec_cdev_init(m);
 	if (ret)
-		goto err_work;
-	ret = ec_cdev_init(m);
-	if (ret)
-		goto err_api;
+		goto err;
 	ret = ec_monitor_start(m);
-	if (ret)
-		goto err_cdev;
-	return m;
-
-err_cdev:
-	ec_cdev_exit(m);
-	ec_api_destroy(m);
-	queues_destroy(m);
-	ec_links_exit(&m->links);
-	ec_cdev_put(m);
+	if (!ret)
+		return m;
+	destroy(m);
 	return ERR_PTR(ret);
-err_api:
+
+err:
 	ec_api_destroy(m);
-err_work:
 	queues_destroy(m);
 	ec_links_exit(&m->links);
 err_free:

@@ -10,7 +10,6 @@
 #include "session/session.h"
 #include "bus/slave.h"
 #include "link/xfer.h"
-#include "bus/slave_pdo.h"
 #include "bus/scan.h"
 
 #define PERIOD_MS	20
@@ -67,30 +66,31 @@ static bool check_slaves(struct ec_master *m)
 {
 	bool all = true;
 	struct ec_dg *dg;
-	u8 (*al)[6];
-	u32 *reads;
+	struct {
+		u8 al[6];
+		u32 reads;	/* by its worker, before this one */
+	} *r;
 	unsigned int i;
 
 	dg = kvcalloc(m->bus.n_slaves + 1, sizeof(*dg), GFP_KERNEL);
-	al = kvcalloc(m->bus.n_slaves + 1, sizeof(*al), GFP_KERNEL);
-	reads = kvcalloc(m->bus.n_slaves + 1, sizeof(*reads), GFP_KERNEL);
-	if (!dg || !al || !reads)
+	r = kvcalloc(m->bus.n_slaves + 1, sizeof(*r), GFP_KERNEL);
+	if (!dg || !r)
 		goto out;
-	for (i = 0; i < m->bus.n_slaves; i++)
-		reads[i] = READ_ONCE(m->bus.slaves[i]->al_reads);
-	for (i = 0; i < m->bus.n_slaves; i++)
-		dg[i] = EC_FPRD(m->bus.slaves[i]->station, EC_REG_AL_STATUS, 6, al[i]);
+	for (i = 0; i < m->bus.n_slaves; i++) {
+		r[i].reads = READ_ONCE(m->bus.slaves[i]->al_reads);
+		dg[i] = EC_FPRD(m->bus.slaves[i]->station, EC_REG_AL_STATUS, 6, r[i].al);
+	}
 	ec_xfer(&m->links, dg, m->bus.n_slaves);
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
-		u16 status = get_unaligned_le16(al[i]), code = get_unaligned_le16(al[i] + 4);
+		u16 status = get_unaligned_le16(r[i].al), code = get_unaligned_le16(r[i].al + 4);
 
 		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
 		/* its worker knows better */
-		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != reads[i])
+		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != r[i].reads)
 			continue;
 		log_change(s, status, code);
 		if (status != READ_ONCE(s->al_status) || code != READ_ONCE(s->al_code)) {
@@ -103,30 +103,26 @@ static bool check_slaves(struct ec_master *m)
 	}
 out:
 	kvfree(dg);
-	kvfree(al);
-	kvfree(reads);
+	kvfree(r);
 	return all;
 }
 
 /* How many slaves have to reply. */
 static unsigned int replying(const struct ec_master *m)
 {
-	unsigned int i, n = 0;
+	unsigned int n = 0;
 
-	for (i = 0; i < m->bus.n_slaves; i++)
-		n += m->bus.slaves[i]->error != EC_SLAVE_SCAN_FAILED;
+	ec_for_each_slave(s, &m->bus)
+		n += s->error != EC_SLAVE_SCAN_FAILED;
 	return n;
 }
 
 /* All slaves in the state they shall have, none with an error, all of them replied? */
 static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 {
-	unsigned int i;
 	u8 want = 0;
 
-	for (i = 0; i < m->bus.n_slaves; i++) {
-		const struct ec_slave *s = m->bus.slaves[i];
-
+	ec_for_each_slave(s, &m->bus) {
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		want = want ?: READ_ONCE(s->requested);
@@ -134,11 +130,6 @@ static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
 			return false;
 	}
 	return ored == want && wkc >= replying(m);
-}
-
-static u32 al_bits(u16 ored)
-{
-	return ored & EC_AL_STATE_MASK;
 }
 
 /* A claim that is not believed; as long as it is the same it is logged once. */
@@ -186,6 +177,20 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 	return ret;
 }
 
+static void set_present(struct ec_master *m, unsigned int count, u32 al_states)
+{
+	WRITE_ONCE(m->bus.responding, count);
+	WRITE_ONCE(m->bus.al_states, al_states);
+	ec_links_saw(&m->links, count, al_states);
+}
+
+/* The next pass of the monitor starts a scan. */
+static void scan_next(struct watch *w)
+{
+	w->scanned = false;
+	w->same = STABLE_LOOKS;
+}
+
 static void count_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -207,9 +212,7 @@ static void count_slaves(struct watch *w)
 		ored = get_unaligned_le16(al);
 		break;
 	}
-	WRITE_ONCE(m->bus.responding, count);
-	WRITE_ONCE(m->bus.al_states, al_bits(ored));
-	ec_links_saw(&m->links, count, al_bits(ored));
+	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
 		if (w->scanned)
 			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
@@ -231,8 +234,7 @@ static void count_slaves(struct watch *w)
 			"a slave did not answer at its station address in %u polls; rescanning\n",
 			SILENT_LOOKS);
 		w->silent = 0;
-		w->scanned = false;
-		w->same = STABLE_LOOKS;
+		scan_next(w);
 	}
 }
 
@@ -258,13 +260,13 @@ static void try_again(struct watch *w)
 
 	if (!w->scanned || READ_ONCE(m->bus.freeze))
 		return;
-	for (i = 0; i < m->bus.n_slaves && n < ARRAY_SIZE(due); i++) {
-		struct ec_slave *s = m->bus.slaves[i];
-
+	ec_for_each_slave(s, &m->bus) {
+		if (n == ARRAY_SIZE(due))
+			break;
 		if (!is_due(s, now))
 			continue;
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
-			dg[n] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, b[n]);
+			dg[n] = EC_DG(EC_CMD_APRD, (u16)-s->position, EC_REG_STATION, 2, b[n]);
 			due[n++] = s;
 		} else if (!ec_slave_busy(s)) {
 			/* the worker plans the next one, if it has to */
@@ -275,22 +277,16 @@ static void try_again(struct watch *w)
 	if (!n || ec_xfer_urgent(&m->links, dg, n))
 		return;
 	for (i = 0; i < n; i++) {
-		if (dg[i].wkc == 1) {
-			w->scanned = false;
-			w->same = STABLE_LOOKS;
-		} else {
+		if (dg[i].wkc == 1)
+			scan_next(w);
+		else
 			ec_slave_retry(due[i], EC_PROBE_MAX_MS);
-		}
 	}
 }
 
 static void want_states(struct ec_master *m)
 {
-	unsigned int i;
-
-	for (i = 0; i < m->bus.n_slaves; i++) {
-		struct ec_slave *s = m->bus.slaves[i];
-
+	ec_for_each_slave(s, &m->bus) {
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		if (READ_ONCE(s->al_status) != READ_ONCE(s->requested) ||
@@ -307,10 +303,8 @@ static void maybe_scan(struct watch *w)
 	/* also one that is asked for then has to wait */
 	if (READ_ONCE(m->bus.freeze))
 		return;
-	if (READ_ONCE(m->bus.rescan)) {
-		w->scanned = false;
-		w->same = STABLE_LOOKS;
-	}
+	if (READ_ONCE(m->bus.rescan))
+		scan_next(w);
 	if (w->scanned || w->same < STABLE_LOOKS)
 		return;
 	WRITE_ONCE(m->bus.scan_index, 0);
@@ -355,15 +349,12 @@ static void read_pdos(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	bool busy = false;
-	unsigned int i;
 
-	for (i = 0; i < m->bus.n_slaves && !busy; i++)
-		busy = ec_slave_busy(m->bus.slaves[i]);
+	ec_for_each_slave(s, &m->bus)
+		busy |= ec_slave_busy(s);
 	if (!w->scanned || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
 		return;
-	for (i = 0; i < m->bus.n_slaves; i++) {
-		struct ec_slave *s = m->bus.slaves[i];
-
+	ec_for_each_slave(s, &m->bus) {
 		if (!ec_slave_pdos_pending(s) || ec_slave_busy(s))
 			continue;
 		WRITE_ONCE(s->read_pdos, true);
@@ -374,9 +365,7 @@ static void read_pdos(struct watch *w)
 /* No link, and nobody is known: a scan that is asked for has been done with that. */
 static void nobody_there(struct ec_master *m)
 {
-	WRITE_ONCE(m->bus.responding, 0);
-	WRITE_ONCE(m->bus.al_states, 0);
-	ec_links_saw(&m->links, 0, 0);
+	set_present(m, 0, 0);
 	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
 		return;
 	WRITE_ONCE(m->bus.rescan, false);

@@ -4,7 +4,6 @@
 #include "bus.h"
 #include "slave.h"
 #include "../link/xfer.h"
-#include "al.h"
 
 /**
  * ec_al_read() - read AL status and code, registers 0x0130-0x0135

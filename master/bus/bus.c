@@ -5,7 +5,6 @@
 #include "../link/links.h"
 #include "bus.h"
 #include "slave.h"
-#include "slave_pdo.h"
 
 /**
  * ec_bus_init() - no slaves yet
@@ -52,10 +51,8 @@ void ec_bus_stop(struct ec_bus *bus)
  */
 void ec_bus_exit(struct ec_bus *bus)
 {
-	unsigned int i;
-
-	for (i = 0; i < bus->n_slaves; i++)
-		ec_slave_unref(bus->slaves[i]);
+	ec_for_each_slave(s, bus)
+		ec_slave_unref(s);
 	kvfree(bus->slaves);
 	bus->slaves = NULL;
 	bus->n_slaves = 0;
@@ -102,12 +99,11 @@ static bool slave_settled(struct ec_slave *s)
 
 static bool slaves_settled(struct ec_bus *bus)
 {
-	unsigned int i;
 	bool ok = true;
 
 	down_read(&bus->topo);
-	for (i = 0; i < bus->n_slaves && ok; i++)
-		ok = slave_settled(bus->slaves[i]);
+	ec_for_each_slave(s, bus)
+		ok = ok && slave_settled(s);
 	up_read(&bus->topo);
 	return ok;
 }

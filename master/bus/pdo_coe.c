@@ -8,7 +8,6 @@
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "slave.h"
-#include "slave_pdo.h"
 
 /* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */
 static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)

@@ -31,7 +31,6 @@ struct scan {
 	struct ec_slave **slaves;
 	struct regs *regs;
 	struct ec_dg *dg;
-	u8 (*addr)[2];
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
 	bool changed;	/* other slaves than before */
@@ -81,14 +80,12 @@ static int read_stations(struct scan *sc)
 
 static int index_known(struct scan *sc)
 {
-	unsigned int i;
-
 	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
 	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
 	if (!sc->known || !sc->claims)
 		return -ENOMEM;
-	for (i = 0; i < sc->bus->n_slaves; i++)
-		sc->known[sc->bus->slaves[i]->station] = sc->bus->slaves[i];
+	ec_for_each_slave(s, sc->bus)
+		sc->known[s->station] = s;
 	return 0;
 }
 
@@ -237,7 +234,7 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 		return;
 	sc->changed = true;
 	WRITE_ONCE(s->silent, false);
-	ec_slave_set_ok(s);
+	ec_slave_set_ok(s, true);
 	s->retry_ms = 0;
 	ec_write64(&s->retry_ns, 0);
 	ec_slave_info(s, "slave replies again\n");
@@ -280,9 +277,8 @@ static int assign(struct scan *sc)
 		/* by its address it is the same */
 		if (s && sc->regs[i].there && sc->claims[s->station] == 1)
 			take_part(sc->slaves[i], s);
-		put_unaligned_le16(sc->slaves[i]->station, sc->addr[n]);
-		sc->dg[n] = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->addr[n]);
-		n++;
+		put_unaligned_le16(sc->slaves[i]->station, sc->regs[i].station);
+		sc->dg[n++] = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->regs[i].station);
 	}
 	return write_stations(sc, n);
 }
@@ -507,8 +503,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 	sc.slaves = kvcalloc(count + 1, sizeof(*sc.slaves), GFP_KERNEL);
 	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
 	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
-	sc.addr = kvcalloc(count + 1, sizeof(*sc.addr), GFP_KERNEL);
-	if (sc.slaves && sc.regs && sc.dg && sc.addr && !index_known(&sc))
+	if (sc.slaves && sc.regs && sc.dg && !index_known(&sc))
 		ret = count ? look(&sc) : 0;
 	if (!ret) {
 		sc.changed = differs(&sc);
@@ -525,7 +520,6 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 	kvfree(sc.slaves);
 	kvfree(sc.regs);
 	kvfree(sc.dg);
-	kvfree(sc.addr);
 	kvfree(sc.known);
 	kvfree(sc.claims);
 	return ret;

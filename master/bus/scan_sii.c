@@ -33,14 +33,11 @@
 #define PART_NS		(2ULL * NSEC_PER_SEC)	/* and may take so long */
 #define PART_MAX_NS	(10ULL * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
 
-/* one slave being read */
+/* one slave being read, into its @part */
 struct reader {
 	struct ec_slave *slave;
-	u8 *buf;
-	size_t cap;
-	size_t have;
 	size_t need;
-	size_t began;	/* @have of the parts before */
+	size_t began;	/* bytes of the parts before */
 	u8 tries;
 	u8 len;		/* bytes of @reg that are of interest */
 	bool alone;	/* left the lockstep */
@@ -75,19 +72,23 @@ static void finish(struct reader *r)
 	struct ec_slave *s = r->slave;
 
 	is_done(r);
-	s->sii = r->buf;
-	s->sii_bytes = r->have;
-	s->sii_counted = r->cap;
-	r->buf = NULL;
-	r->cap = 0;
+	swap(s->sii, s->part);
+	swap(s->sii_bytes, s->part_bytes);
 }
 
 /* @remedy: what the user can do; it is tried again in any case */
 static void fail(struct reader *r, const char *what, const char *remedy)
 {
+	struct ec_slave *s = r->slave;
+
 	is_done(r);
-	ec_slave_fail(r->slave, EC_SLAVE_SCAN_FAILED, "SII read failed at word 0x%04zx: %s; %s",
-		      r->have / 2, what, remedy);
+	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, "SII read failed at word 0x%04zx: %s; %s",
+		      s->part_bytes / 2, what, remedy);
+	kvfree(s->part);
+	s->part = NULL;
+	s->part_bytes = 0;
+	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
+	s->sii_counted = 0;
 }
 
 /* The slave keeps what was read; the next scan goes on from there. */
@@ -98,30 +99,30 @@ static void interrupt(struct reader *r)
 	is_done(r);
 	s->error = EC_SLAVE_SCAN_FAILED;
 	snprintf(s->why, sizeof(s->why),
-		 "large EEPROM, 0x%04zx words read up to now, the rest follows", r->have / 2);
+		 "large EEPROM, 0x%04zx words read up to now, the rest follows",
+		 s->part_bytes / 2);
 	if (!r->began)
 		ec_slave_info(s, "%s\n", s->why);
-	s->part = r->buf;
-	s->part_bytes = r->have;
-	s->sii_counted = r->cap;
-	r->buf = NULL;
-	r->cap = 0;
 }
 
 static bool takes_long(const struct job *j, const struct reader *r)
 {
 	u64 ns = ktime_get_ns() - j->began_ns;
 
-	return ns > PART_MAX_NS || (ns > PART_NS && r->have - r->began >= PART_BYTES);
+	return ns > PART_MAX_NS ||
+	       (ns > PART_NS && r->slave->part_bytes - r->began >= PART_BYTES);
 }
 
 static void interrupt_long(struct job *j)
 {
 	unsigned int i;
 
-	for (i = 0; i < j->n; i++)
-		if (!j->rd[i].done && j->rd[i].have > j->rd[i].began && takes_long(j, &j->rd[i]))
-			interrupt(&j->rd[i]);
+	for (i = 0; i < j->n; i++) {
+		struct reader *r = &j->rd[i];
+
+		if (!r->done && r->slave->part_bytes > r->began && takes_long(j, r))
+			interrupt(r);
+	}
 }
 
 /* The images of all slaves have a limit together. */
@@ -133,50 +134,57 @@ static bool count(struct ec_bus *bus, size_t bytes)
 	return false;
 }
 
-/* Otherwise the reader has failed. */
-static bool enlarge(struct reader *r, size_t cap)
+/* Without memory the reader has failed. */
+static void enlarge(struct reader *r, size_t bytes)
 {
-	struct ec_bus *bus = r->slave->bus;
+	struct ec_slave *s = r->slave;
+	size_t more = bytes - s->sii_counted;
 	u8 *p;
 
-	if (!count(bus, cap - r->cap)) {
+	if (!count(s->bus, more)) {
 		fail(r, "the EEPROMs of all slaves exceed 64 MiB",
 		     "disconnect slaves with large EEPROMs");
-		return false;
+		return;
 	}
-	p = kvzalloc(cap, GFP_KERNEL);
+	p = kvzalloc(bytes, GFP_KERNEL);
 	if (!p) {
-		atomic_long_sub(cap - r->cap, &bus->sii_bytes);
+		atomic_long_sub(more, &s->bus->sii_bytes);
 		fail(r, "no memory", "free memory of this computer");
-		return false;
+		return;
 	}
-	if (r->have)
-		memcpy(p, r->buf, r->have);
-	kvfree(r->buf);
-	r->buf = p;
-	r->cap = cap;
-	return true;
+	if (s->part)
+		memcpy(p, s->part, s->part_bytes);
+	kvfree(s->part);
+	s->part = p;
+	s->sii_counted = bytes;
 }
 
 /* Room for the next access, and whether there is a next one. */
 static void plan(struct reader *r)
 {
+	struct ec_slave *s = r->slave;
 	int need;
 
-	if (r->have < r->need)
+	if (s->part_bytes < r->need)
 		return;
-	need = ec_sii_needed(r->buf, r->have);
-	if (need <= 0 || r->have >= EC_MAX_SII_BYTES) {
+	need = ec_sii_needed(s->part, s->part_bytes);
+	if (need <= 0 || s->part_bytes >= EC_MAX_SII_BYTES) {
 		/* with the header of a category that is too large, which is cut off next */
-		ec_sii_check(r->buf, r->have, &r->slave->flaw);
-		if (!need && ec_sii_used(r->buf, r->have))
-			r->have = ec_sii_used(r->buf, r->have);
+		ec_sii_check(s->part, s->part_bytes, &s->flaw);
+		if (!need)
+			s->part_bytes = ec_sii_used(s->part, s->part_bytes) ?: s->part_bytes;
 		finish(r);
 		return;
 	}
 	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
-	if (r->need + 8 > r->cap)
-		enlarge(r, max_t(size_t, r->need + 8, r->cap * 2));
+	if (r->need + 8 > s->sii_counted)
+		enlarge(r, max_t(size_t, r->need + 8, s->sii_counted * 2));
+}
+
+/* The word that the reader needs next. */
+static u32 next_word(const struct reader *r)
+{
+	return r->slave->part_bytes / 2;
 }
 
 /* An access that ended without data; asking again does not help. */
@@ -188,8 +196,10 @@ static bool refused(const struct reader *r)
 }
 
 /* Take a result; true when the slave has answered what was asked. */
-static bool take(struct reader *r, u32 word)
+static bool take(struct reader *r)
 {
+	struct ec_slave *s = r->slave;
+	u32 word = next_word(r);
 	u16 ctl = get_unaligned_le16(r->reg);
 	/* controllers for small EEPROMs have 16 bits */
 	u32 mask = word > 0xffff ? ~0u : 0xffff;
@@ -198,8 +208,8 @@ static bool take(struct reader *r, u32 word)
 	if (ctl & (EC_EEP_BUSY | EC_EEP_CMD_MASK) || ctl & EC_EEP_ERR_ACK ||
 	    (get_unaligned_le32(r->reg + 2) & mask) != word)
 		return false;
-	memcpy(r->buf + r->have, r->reg + 6, got);
-	r->have += got;
+	memcpy(s->part + s->part_bytes, r->reg + 6, got);
+	s->part_bytes += got;
 	r->len = 6 + got;
 	r->tries = 0;
 	plan(r);
@@ -298,14 +308,13 @@ static void learn(struct job *j, u64 ready_ns, bool first)
 }
 
 /* Ask those of @who who are left; keeps the ones that have no answer yet. */
-static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left,
-			 u32 word)
+static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left)
 {
 	unsigned int i, k = 0;
 
 	collect(j, who, ask);
 	for (i = 0; i < ask; i++) {
-		if (take(who[i], word))
+		if (take(who[i]))
 			continue;
 		if (refused(who[i]))
 			who[i]->alone = true;
@@ -329,7 +338,7 @@ static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
 		looked = ktime_get_ns() - t0;
 		ask = probe ? min_t(unsigned int, left, PROBE) : left;
 		before = left;
-		left = look(j, who, ask, left, word);
+		left = look(j, who, ask, left);
 		if (left < before && !ready)
 			ready = looked;
 		if (!left)
@@ -363,7 +372,7 @@ static void start_apart(struct job *j, struct reader **who, unsigned int n)
 			j->dg[k++] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 2, zero);
 	ec_xfer(j->bus->links, j->dg, k);
 	for (i = 0; i < n; i++) {
-		command(j->cmd[i], who[i]->have / 2);
+		command(j->cmd[i], next_word(who[i]));
 		j->dg[i] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[i]);
 	}
 	ec_xfer(j->bus->links, j->dg, n);
@@ -394,41 +403,36 @@ static unsigned int apart(struct job *j, struct reader **who)
  */
 static void read_apart(struct job *j)
 {
-	unsigned int i, n, left;
+	unsigned int n, left;
 	u64 t0;
 
 	for (; go_on(j->bus) && (n = apart(j, j->who)); interrupt_long(j)) {
 		start_apart(j, j->who, n);
 		t0 = ktime_get_ns();
 		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->bus);) {
-			unsigned int k = 0;
-
 			usleep_range(300, 400);
-			collect(j, j->who, left);
-			for (i = 0; i < left; i++)
-				if (!take(j->who[i], j->who[i]->have / 2) &&
-				    !refused(j->who[i]))
-					j->who[k++] = j->who[i];
-			left = k;
+			left = look(j, j->who, left, left);
 		}
 	}
 }
 
-/* The smallest word somebody in the lockstep waits for, and who waits for it. */
+static bool in_lockstep(const struct reader *r)
+{
+	return !r->done && !r->alone;
+}
+
+/* The readers in the lockstep that need the smallest word, and that word. */
 static unsigned int waiting(struct job *j, u32 *word)
 {
 	unsigned int i, n = 0;
-	size_t low = SIZE_MAX;
 
+	*word = U32_MAX;
 	for (i = 0; i < j->n; i++)
-		if (!j->rd[i].done && !j->rd[i].alone && j->rd[i].have < low)
-			low = j->rd[i].have;
-	if (low == SIZE_MAX)
-		return 0;
+		if (in_lockstep(&j->rd[i]))
+			*word = min(*word, next_word(&j->rd[i]));
 	for (i = 0; i < j->n; i++)
-		if (!j->rd[i].done && !j->rd[i].alone && j->rd[i].have == low)
+		if (in_lockstep(&j->rd[i]) && next_word(&j->rd[i]) == *word)
 			j->who[n++] = &j->rd[i];
-	*word = low / 2;
 	return n;
 }
 
@@ -444,21 +448,6 @@ static void run(struct job *j)
 		interrupt_long(j);
 	}
 	read_apart(j);
-}
-
-/* Go on where the scan before was interrupted. */
-static void resume(struct reader *r)
-{
-	struct ec_slave *s = r->slave;
-
-	r->buf = s->part;
-	r->have = s->part_bytes;
-	r->began = r->have;
-	r->cap = s->sii_counted;
-	s->part = NULL;
-	s->part_bytes = 0;
-	s->sii_counted = 0;
-	plan(r);
 }
 
 /**
@@ -489,16 +478,14 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, b
 		r->slave = slaves[i];
 		r->need = FIRST_BYTES;
 		r->len = sizeof(r->reg);
+		r->began = slaves[i]->part_bytes;
+		/* go on where the scan before was interrupted */
 		if (slaves[i]->part)
-			resume(r);
+			plan(r);
 		else
 			enlarge(r, FIRST_CAP);
 	}
 	run(&j);
-	for (i = 0; i < n; i++) {
-		atomic_long_sub(j.rd[i].cap, &bus->sii_bytes);
-		kvfree(j.rd[i].buf);
-	}
 out:
 	kvfree(j.rd);
 	kvfree(j.dg);

@@ -6,7 +6,6 @@
 #include "bus.h"
 #include "../base/once64.h"
 #include "slave.h"
-#include "slave_pdo.h"
 
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
 
@@ -205,32 +204,19 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 }
 
 /**
- * ec_slave_set_ok() - the slave has no error any more
+ * ec_slave_set_ok() - the slave has no error any more, if it replies
  * @slave: slave
+ * @replies: the scan has seen that; false: its worker has brought it to the requested state
  *
  * Context: Process.
+ * Return: false when the scan has found meanwhile that the slave does not reply.
  */
-void ec_slave_set_ok(struct ec_slave *slave)
-{
-	raw_spin_lock(&slave->note_lock);
-	WRITE_ONCE(slave->error, EC_SLAVE_OK);
-	slave->why[0] = '\0';
-	raw_spin_unlock(&slave->note_lock);
-}
-
-/**
- * ec_slave_configured() - the slave has no error any more, if it replies
- * @slave: slave whose worker has brought it to the requested state
- *
- * Context: Process.
- * Return: false when the scan has found meanwhile that it does not reply.
- */
-bool ec_slave_configured(struct ec_slave *slave)
+bool ec_slave_set_ok(struct ec_slave *slave, bool replies)
 {
 	bool ok;
 
 	raw_spin_lock(&slave->note_lock);
-	ok = slave->error != EC_SLAVE_SCAN_FAILED;
+	ok = replies || slave->error != EC_SLAVE_SCAN_FAILED;
 	if (ok) {
 		WRITE_ONCE(slave->error, EC_SLAVE_OK);
 		slave->why[0] = '\0';

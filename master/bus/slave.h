@@ -178,14 +178,30 @@ void ec_slave_kick(struct ec_slave *slave);
 bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
-void ec_slave_set_ok(struct ec_slave *slave);
-bool ec_slave_configured(struct ec_slave *slave);
+bool ec_slave_set_ok(struct ec_slave *slave, bool replies);
 bool ec_slave_forgive(struct ec_slave *slave);
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...) __printf(2, 3);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
 size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
+
+/* slave_pdo.c */
+int ec_slave_read_pdos(struct ec_slave *slave);
+void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
+const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
+
+/* pdo_coe.c */
+bool ec_slave_pdos_pending(const struct ec_slave *s);
+void ec_slave_clear_warning(struct ec_slave *s);
+void ec_slave_read_coe_pdos(struct ec_slave *s);
+int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
+void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
+
+/* al.c */
+int ec_al_read(struct ec_slave *slave);
+int ec_al_ack(struct ec_slave *slave);
+int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
 
 static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
 {

@@ -7,7 +7,6 @@
 #include "pdo.h"
 #include "slave.h"
 #include "../wire/sii.h"
-#include "slave_pdo.h"
 
 /**
  * ec_pdo_add() - append a PDO

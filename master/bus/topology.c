@@ -15,16 +15,8 @@ static bool port_open(const struct ec_slave *s, unsigned int port)
 	return s->dl_status & EC_DLS_COMM(port) && !(s->dl_status & EC_DLS_LOOP(port));
 }
 
-/* place of @port in the processing order */
-static unsigned int place(unsigned int port)
-{
-	unsigned int i;
-
-	for (i = 0; i < EC_MAX_PORT; i++)
-		if (order[i] == port)
-			return i;
-	return 0;
-}
+/* place of each port in that order */
+static const u8 place[EC_MAX_PORT] = { 0, 2, 3, 1 };
 
 static bool has_times(const struct ec_slave *s)
 {
@@ -56,13 +48,13 @@ static u8 upstream(const struct ec_slave *s)
 /* the port a frame passes as number @step after its entry */
 static u8 port_at(const struct ec_slave *s, unsigned int step)
 {
-	return order[(place(s->upstream) + step) % EC_MAX_PORT];
+	return order[(place[s->upstream] + step) % EC_MAX_PORT];
 }
 
 /* Number of port 0 likewise: behind it is the processing unit; 0: the entry is port 0. */
 static unsigned int unit_step(const struct ec_slave *s)
 {
-	return (EC_MAX_PORT - place(s->upstream)) % EC_MAX_PORT;
+	return (EC_MAX_PORT - place[s->upstream]) % EC_MAX_PORT;
 }
 
 /* Next open port without a slave behind it, of those behind the processing unit, or -1. */

@@ -9,8 +9,6 @@
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
 #include "../link/xfer.h"
-#include "../bus/al.h"
-#include "../bus/slave_pdo.h"
 #include "apply.h"
 
 #define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
@@ -486,7 +484,7 @@ void ec_apply(struct ec_slave *s)
 		ret = step(s);
 	}
 	release_mailbox(s);
-	if (ret == 1 && ec_slave_configured(s)) {
+	if (ret == 1 && ec_slave_set_ok(s, false)) {
 		s->retry_ms = 0;
 		log_return(s);
 	}

@@ -7,7 +7,6 @@
 #include "../link/links.h"
 #include "../bus/slave.h"
 #include "../wire/coe.h"
-#include "../bus/slave_pdo.h"
 #include "apply.h"
 
 #define REFUSED		1

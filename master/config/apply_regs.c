@@ -134,7 +134,7 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
 	for (i = 0; i < c->n_fmmus; i++) {
 		const struct ec_config_fmmu *f = &c->fmmus[i];
 		struct ec_fmmu v = {
-			.logical = f->domain->logical + f->logical, .len = f->size,
+			.logical = f->domain->offset + f->logical, .len = f->size,
 			.lbit_stop = 7, .phys = s->sms[f->sm].start,
 			.type = f->dir == EC_CFG_DIR_OUTPUT ? EC_FMMU_WRITE : EC_FMMU_READ,
 			.enable = f->size,

@@ -6,7 +6,6 @@
 #include "../base/grow.h"
 #include "../base/limits.h"
 #include "../bus/slave.h"
-#include "../bus/slave_pdo.h"
 
 /* Start from the PDOs that the slave has. */
 static void slave_defaults(struct ec_config *c, const struct ec_slave *slave)

@@ -14,7 +14,6 @@
 #include "../bus/slave.h"
 #include "../cycle/waiters.h"
 #include "../config/why.h"
-#include "../bus/slave_pdo.h"
 
 /**
  * ec_session_of() - the session an application works with

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Configurations and the slaves that they mean. */
-#include "../bus/slave_pdo.h"
 #include "../config/why.h"
 #include "../mailbox/emerg.h"
 #include "request.h"

@@ -7,7 +7,6 @@
 #include "cyc.h"
 #include "slow.h"
 #include "master/boundary/ioctl.h"
-#include "master/bus/slave_pdo.h"
 #include "master/bus/scan.h"
 
 #define MANY	100
