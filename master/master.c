@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/etherdevice.h>
-#include <linux/mm.h>
 #include <linux/slab.h>
 #include "boundary/api.h"
 #include "boundary/cdev.h"
 #include "link/device.h"
 #include "boundary/master.h"
 #include "monitor.h"
-#include "session/session.h"
 #include "config/apply.h"
 
 static void device(struct ec_links *l, const struct ec_link *link, bool attached)
@@ -165,8 +163,8 @@ static int check_name(const char *spec, unsigned int index)
 }
 
 /*
- * Before the first master is there, as somebody may open it at once. What can never
- * work is refused: a master would wait for its device for ever.
+ * Checked before the first master is created, as an application may open that at once. A name
+ * that can never work is refused: a master would wait for its device for ever.
  */
 static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
 {

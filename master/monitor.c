@@ -3,11 +3,9 @@
 #include <linux/kthread.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
-#include "config/config.h"
 #include "boundary/master.h"
 #include "monitor.h"
 #include "base/once64.h"
-#include "session/session.h"
 #include "bus/slave.h"
 #include "link/xfer.h"
 #include "bus/scan.h"
@@ -45,7 +43,7 @@ static void check_links(struct watch *w)
 	}
 }
 
-/* A slave nobody is bringing somewhere has another status than before. */
+/* The status of a slave has changed without its worker. */
 static void log_change(const struct ec_slave *s, u16 status, u16 code)
 {
 	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
@@ -362,8 +360,8 @@ static void read_pdos(struct watch *w)
 	}
 }
 
-/* No link, and nobody is known: a scan that is asked for has been done with that. */
-static void nobody_there(struct ec_master *m)
+/* No link and no known slaves: this completes a requested scan. */
+static void no_slaves(struct ec_master *m)
 {
 	set_present(m, 0, 0);
 	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
@@ -392,14 +390,12 @@ static int monitor(void *data)
 			maybe_scan(&w);
 			read_pdos(&w);
 		} else {
-			nobody_there(m);
+			no_slaves(m);
 		}
 		if (w.scanned || !w.link_up)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
-		if (w.scanned)
-			ec_session_clocks(&m->sessions);
-		ec_session_status(&m->sessions);
+		ec_session_status(&m->sessions, w.scanned);
 		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);

@@ -76,17 +76,12 @@ static void wait_pdos(struct ec_call *call, const struct ec_ioc_slave_config *i)
 static int config_failed(struct ec_call *call, const struct ec_ioc_slave_config *i,
 			 const struct ec_session *s, int ret)
 {
-	unsigned int k;
-
-	for (k = 0; ret == -ENOENT && k < s->wanted.n_configs; k++) {
-		const struct ec_config *c = s->wanted.configs[k];
-
-		if (c->alias == i->alias && c->position == i->position)
+	ec_for_each_config(c, &s->wanted)
+		if (ret == -ENOENT && c->alias == i->alias && c->position == i->position)
 			return ec_refuse(call, ret,
 					 "slave %u:%u is configured as 0x%08x/0x%08x already, not as 0x%08x/0x%08x",
 					 i->alias, i->position, c->vendor, c->product,
 					 i->vendor_id, i->product_code);
-	}
 	if (ret == -ENOSPC)
 		return ec_refuse(call, ret, "limit of %u slave configurations reached",
 				 EC_MAX_CONFIGS);
@@ -331,10 +326,9 @@ int ec_ioc_sc_timeout(struct ec_call *call)
 static int activate_failed(struct ec_call *call, const struct ec_session *s, int ret)
 {
 	u32 bytes = 0;
-	unsigned int i;
 
-	for (i = 0; i < s->wanted.n_domains; i++)
-		bytes += s->wanted.domains[i]->size;
+	ec_for_each_domain(d, &s->wanted)
+		bytes += d->size;
 	switch (ret) {
 	case -EBUSY:
 		return ec_refuse(call, ret, "the master is active already");

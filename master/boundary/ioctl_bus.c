@@ -127,12 +127,11 @@ static void try_again(const struct ec_session *session, struct ec_slave *s)
 int ec_ioc_reset(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
-	unsigned int k;
 
 	mutex_lock(&m->sessions.lock);
 	down_read(&m->bus.topo);
-	for (k = 0; k < m->bus.n_slaves; k++)
-		try_again(m->sessions.session, m->bus.slaves[k]);
+	ec_for_each_slave(s, &m->bus)
+		try_again(m->sessions.session, s);
 	up_read(&m->bus.topo);
 	mutex_unlock(&m->sessions.lock);
 	return 0;

@@ -288,7 +288,7 @@ int ec_ioc_slave(struct ec_call *call)
 	i->dc_diff = READ_ONCE(c->diff);
 	i->dc_set = ec_clock_is_set(s);
 	i->dc_odd = i->dc_supported &&
-		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->topology_odd));
+		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->topology_inconsistent));
 	i->features = feat;
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];

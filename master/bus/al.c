@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include "bus.h"
 #include "slave.h"
 #include "../link/xfer.h"
 

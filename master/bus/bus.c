@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/mm.h>
 #include <linux/slab.h>
-#include "../base/limits.h"
 #include "../link/links.h"
-#include "bus.h"
 #include "slave.h"
 
 /**
@@ -161,7 +158,7 @@ int ec_bus_wait_slaves(struct ec_bus *bus)
  * ec_bus_wait_slave() - wait until a slave is in its state and its PDOs are known
  * @slave: slave
  *
- * Not without link: nobody reads them then.
+ * Without link it does not wait: no PDOs are read then.
  *
  * Context: Process. May sleep, at most 5 s.
  */

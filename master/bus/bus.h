@@ -7,7 +7,6 @@
 #define EC_MASTER_BUS_H
 
 #include <linux/rwsem.h>
-#include <linux/types.h>
 #include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "../base/base.h"

@@ -7,9 +7,6 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../base/grow.h"
-#include "../mailbox/mailbox.h"
-#include "bus.h"
-#include "names.h"
 #include "slave.h"
 #include "../wire/sdoinfo.h"
 

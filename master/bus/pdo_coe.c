@@ -5,8 +5,6 @@
  */
 #include <linux/slab.h>
 #include "../mailbox/coe.h"
-#include "../mailbox/mailbox.h"
-#include "bus.h"
 #include "slave.h"
 
 /* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */

@@ -5,7 +5,6 @@
 #include <linux/slab.h>
 #include "../base/limits.h"
 #include "../link/links.h"
-#include "bus.h"
 #include "../base/once64.h"
 #include "slave.h"
 #include "../link/xfer.h"
@@ -42,7 +41,7 @@ static void bwr(struct ec_bus *bus, u16 ado, const void *data, u16 len)
 	ec_xfer_one(bus->links, EC_CMD_BWR, 0, ado, (void *)data, len);
 }
 
-/* ETG.1500 start-up sequence; only when nobody is in operation */
+/* ETG.1500 start-up sequence; only when no slave is in operation */
 static void reset_bus(struct ec_bus *bus)
 {
 	static const u8 zero[256];
@@ -134,7 +133,7 @@ static bool same_count(struct scan *sc)
 	return !ec_xfer(sc->bus->links, &dg, 1) && dg.back == (u16)sc->n;
 }
 
-/* New slaves are told their address; who does not listen is left out. */
+/* New slaves get their address; one that does not accept it is marked as failed. */
 static int write_stations(struct scan *sc, unsigned int n)
 {
 	unsigned int i;
@@ -241,9 +240,8 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 }
 
 /*
- * A slave that kept the address we gave it is the same; others get one. When
- * two have the same address, one comes from another master's bus, and nobody
- * can tell which: both are new.
+ * A slave that has kept the address of this master is a known one; others get an address. Of two
+ * slaves with one address, one was at another master, and it is unknown which: both are new.
  */
 static int assign(struct scan *sc)
 {
@@ -298,7 +296,7 @@ static void take_regs(struct scan *sc)
 		}
 		set_answers(sc, s);
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED) {
-			/* the next one hangs behind it, as far as can be told */
+			/* a guess: the next slave is behind it */
 			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
 			continue;
 		}
@@ -431,7 +429,7 @@ static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int 
 	s->seen_ns = s->bus->complete_ns;
 }
 
-/* One line each; when nobody is left the link says why. */
+/* One line each; without any slave the message about the link is enough. */
 static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
 {
 	char text[128];
@@ -479,7 +477,7 @@ static void publish(struct scan *sc)
 }
 
 /**
- * ec_scan() - find out who is on the bus
+ * ec_scan() - find the slaves on the bus
  * @bus: bus
  * @count: slaves that answered the last broadcast, up to ec_scan_limit(); 0 is legal
  * @changed: result: there are other slaves than before, or one fell silent or replies again

@@ -6,10 +6,8 @@
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include <linux/mm.h>
 #include <linux/slab.h>
 #include "../link/links.h"
-#include "bus.h"
 #include "slave.h"
 #include "../link/xfer.h"
 #include "scan.h"
@@ -82,7 +80,7 @@ static void look(struct job *j)
 /**
  * ec_scan_preop() - bring new slaves from INIT to PREOP in lockstep
  * @bus: bus
- * @slaves: slaves nobody else knows yet
+ * @slaves: slaves that are not in the list of the bus yet
  * @n: how many
  * @clean: their SyncManagers, FMMUs and SYNC units have been reset
  *

@@ -9,19 +9,16 @@
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include <linux/mm.h>
 #include <linux/slab.h>
 #include "../base/limits.h"
 #include "../link/links.h"
-#include "bus.h"
 #include "slave.h"
-#include "../wire/sii.h"
 #include "../link/xfer.h"
 #include "scan.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
-#define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while nobody is ready, few are asked */
+#define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while no slave is ready, few are asked */
 #define PROBE		8
 #define WAIT_MAX_NS	(2 * NSEC_PER_MSEC)
 #define POLL_US		40
@@ -51,11 +48,11 @@ struct job {
 	unsigned int n;
 	struct ec_dg *dg;
 	u8 (*cmd)[6];
-	struct reader **who;
+	struct reader **rds;
 	bool broadcast;
 	u64 wait_ns;	/* from the command to the first look, 0: not known */
 	u64 good_ns;	/* @wait_ns that was long enough */
-	bool settled;	/* less than that was tried in vain */
+	bool settled;	/* a shorter wait was too short */
 	u64 began_ns;
 };
 
@@ -229,11 +226,10 @@ static void command(u8 *c, u32 word)
 }
 
 /*
- * Take the EEPROM interface away from the PDI (0x0500). The address is set to
- * one nobody asks for, so that a slave which misses the first command does not
- * pass off what it shows as word 0.
+ * Take the EEPROM interface away from the PDI (0x0500). The address is set to one that is never
+ * read, so that the data of a slave that misses the first command are not taken for word 0.
  */
-static void take_over(struct job *j, struct reader **who, unsigned int n)
+static void take_over(struct job *j, struct reader **rds, unsigned int n)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	static const u8 nowhere[4] = { 0xff, 0xff, 0xff, 0xff };
@@ -241,7 +237,7 @@ static void take_over(struct job *j, struct reader **who, unsigned int n)
 	struct ec_dg *dg = j->dg;
 
 	for (i = 0; i < n; i++) {
-		u16 station = who[i]->slave->station;
+		u16 station = rds[i]->slave->station;
 
 		*dg++ = EC_FPWR(station, EC_REG_EEP_OWNER, 1, force);
 		*dg++ = EC_FPWR(station, EC_REG_EEP_OWNER, 1, zero);
@@ -251,21 +247,21 @@ static void take_over(struct job *j, struct reader **who, unsigned int n)
 }
 
 /* FPRD 0x0502 of @n readers */
-static void collect(struct job *j, struct reader **who, unsigned int n)
+static void collect(struct job *j, struct reader **rds, unsigned int n)
 {
 	unsigned int i;
 
 	for (i = 0; i < n; i++)
-		j->dg[i] = EC_FPRD(who[i]->slave->station, EC_REG_EEP_CONTROL, who[i]->len,
-				   who[i]->reg);
+		j->dg[i] = EC_FPRD(rds[i]->slave->station, EC_REG_EEP_CONTROL, rds[i]->len,
+				   rds[i]->reg);
 	ec_xfer(j->bus->links, j->dg, n);
 	for (i = 0; i < n; i++)
 		if (j->dg[i].err || j->dg[i].wkc != 1)
-			put_unaligned_le16(EC_EEP_BUSY, who[i]->reg);
+			put_unaligned_le16(EC_EEP_BUSY, rds[i]->reg);
 }
 
-/* Start the same read in all of @who; broadcast where all slaves are meant. */
-static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
+/* Start the same read in all of @rds; broadcast where all slaves are meant. */
+static void start(struct job *j, struct reader **rds, unsigned int n, u32 word)
 {
 	unsigned int i;
 
@@ -275,7 +271,7 @@ static void start(struct job *j, struct reader **who, unsigned int n, u32 word)
 		return;
 	}
 	for (i = 0; i < n; i++)
-		j->dg[i] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[0]);
+		j->dg[i] = EC_FPWR(rds[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[0]);
 	ec_xfer(j->bus->links, j->dg, n);
 }
 
@@ -307,38 +303,38 @@ static void learn(struct job *j, u64 ready_ns, bool first)
 	}
 }
 
-/* Ask those of @who who are left; keeps the ones that have no answer yet. */
-static unsigned int look(struct job *j, struct reader **who, unsigned int ask, unsigned int left)
+/* Ask the first @ask of @left readers; the ones without a result yet remain. */
+static unsigned int look(struct job *j, struct reader **rds, unsigned int ask, unsigned int left)
 {
 	unsigned int i, k = 0;
 
-	collect(j, who, ask);
+	collect(j, rds, ask);
 	for (i = 0; i < ask; i++) {
-		if (take(who[i]))
+		if (take(rds[i]))
 			continue;
-		if (refused(who[i]))
-			who[i]->alone = true;
+		if (refused(rds[i]))
+			rds[i]->alone = true;
 		else
-			who[k++] = who[i];
+			rds[k++] = rds[i];
 	}
-	memmove(&who[k], &who[ask], (left - ask) * sizeof(*who));
+	memmove(&rds[k], &rds[ask], (left - ask) * sizeof(*rds));
 	return left - ask + k;
 }
 
 /* One access for all slaves at word @word. */
-static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
+static void step(struct job *j, struct reader **rds, unsigned int n, u32 word)
 {
 	u64 t0 = ktime_get_ns(), looked, ready = 0;
 	unsigned int i, left = n, ask, before;
 	bool first = true, probe = !j->wait_ns;
 
-	start(j, who, n, word);
+	start(j, rds, n, word);
 	sleep_until(t0 + j->wait_ns);
 	for (;;) {
 		looked = ktime_get_ns() - t0;
 		ask = probe ? min_t(unsigned int, left, PROBE) : left;
 		before = left;
-		left = look(j, who, ask, left);
+		left = look(j, rds, ask, left);
 		if (left < before && !ready)
 			ready = looked;
 		if (!left)
@@ -348,7 +344,7 @@ static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
 			for (i = 0; i < left; i++)
-				who[i]->alone = true;
+				rds[i]->alone = true;
 			return;
 		}
 		probe = left == before && looked < PROBE_NS;
@@ -361,25 +357,25 @@ static void step(struct job *j, struct reader **who, unsigned int n, u32 word)
 	learn(j, ready, first);
 }
 
-/* Each of @who reads at its own word; errors are acknowledged first. */
-static void start_apart(struct job *j, struct reader **who, unsigned int n)
+/* Each of @rds reads at its own word; errors are acknowledged first. */
+static void start_apart(struct job *j, struct reader **rds, unsigned int n)
 {
 	static const u8 zero[2];
 	unsigned int i, k = 0;
 
 	for (i = 0; i < n; i++)
-		if (get_unaligned_le16(who[i]->reg) & EC_EEP_ERR_MASK)
-			j->dg[k++] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 2, zero);
+		if (get_unaligned_le16(rds[i]->reg) & EC_EEP_ERR_MASK)
+			j->dg[k++] = EC_FPWR(rds[i]->slave->station, EC_REG_EEP_CONTROL, 2, zero);
 	ec_xfer(j->bus->links, j->dg, k);
 	for (i = 0; i < n; i++) {
-		command(j->cmd[i], next_word(who[i]));
-		j->dg[i] = EC_FPWR(who[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[i]);
+		command(j->cmd[i], next_word(rds[i]));
+		j->dg[i] = EC_FPWR(rds[i]->slave->station, EC_REG_EEP_CONTROL, 6, j->cmd[i]);
 	}
 	ec_xfer(j->bus->links, j->dg, n);
 }
 
 /* Those that left the lockstep and are not done; without tries left they fail. */
-static unsigned int apart(struct job *j, struct reader **who)
+static unsigned int apart(struct job *j, struct reader **rds)
 {
 	unsigned int i, n = 0;
 
@@ -392,7 +388,7 @@ static unsigned int apart(struct job *j, struct reader **who)
 			fail(r, refused(r) ? "no acknowledge" : "busy too long",
 			     "check the slave, then rescan");
 		else
-			who[n++] = r;
+			rds[n++] = r;
 	}
 	return n;
 }
@@ -406,12 +402,12 @@ static void read_apart(struct job *j)
 	unsigned int n, left;
 	u64 t0;
 
-	for (; go_on(j->bus) && (n = apart(j, j->who)); interrupt_long(j)) {
-		start_apart(j, j->who, n);
+	for (; go_on(j->bus) && (n = apart(j, j->rds)); interrupt_long(j)) {
+		start_apart(j, j->rds, n);
 		t0 = ktime_get_ns();
 		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->bus);) {
 			usleep_range(300, 400);
-			left = look(j, j->who, left, left);
+			left = look(j, j->rds, left, left);
 		}
 	}
 }
@@ -432,7 +428,7 @@ static unsigned int waiting(struct job *j, u32 *word)
 			*word = min(*word, next_word(&j->rd[i]));
 	for (i = 0; i < j->n; i++)
 		if (in_lockstep(&j->rd[i]) && next_word(&j->rd[i]) == *word)
-			j->who[n++] = &j->rd[i];
+			j->rds[n++] = &j->rd[i];
 	return n;
 }
 
@@ -442,9 +438,9 @@ static void run(struct job *j)
 	u32 word;
 
 	n = waiting(j, &word);
-	take_over(j, j->who, n);
+	take_over(j, j->rds, n);
 	for (; n && go_on(j->bus); n = waiting(j, &word)) {
-		step(j, j->who, n, word);
+		step(j, j->rds, n, word);
 		interrupt_long(j);
 	}
 	read_apart(j);
@@ -469,8 +465,8 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, b
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);
 	j.dg = kvcalloc(n, TAKE_OVER * sizeof(*j.dg), GFP_KERNEL);
 	j.cmd = kvcalloc(n, sizeof(*j.cmd), GFP_KERNEL);
-	j.who = kvcalloc(n, sizeof(*j.who), GFP_KERNEL);
-	if (!j.rd || !j.dg || !j.cmd || !j.who)
+	j.rds = kvcalloc(n, sizeof(*j.rds), GFP_KERNEL);
+	if (!j.rd || !j.dg || !j.cmd || !j.rds)
 		goto out;
 	for (i = 0; i < n; i++) {
 		struct reader *r = &j.rd[i];
@@ -490,5 +486,5 @@ out:
 	kvfree(j.rd);
 	kvfree(j.dg);
 	kvfree(j.cmd);
-	kvfree(j.who);
+	kvfree(j.rds);
 }

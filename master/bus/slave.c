@@ -2,8 +2,6 @@
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../link/links.h"
-#include "../mailbox/mailbox.h"
-#include "bus.h"
 #include "../base/once64.h"
 #include "slave.h"
 
@@ -316,7 +314,7 @@ void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 
 /**
  * ec_slave_lost_text() - which slave was lost, and where
- * @slave: slave that is gone
+ * @slave: slave that was disconnected
  * @buf: result
  * @size: of @buf
  *
@@ -338,8 +336,8 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
  * ec_slave_kick() - let the worker look at the slave again
  * @slave: slave
  *
- * The state it shall have stays what it was requested last, by whomever: who only
- * wants it brought there must not write back what he has read a moment ago.
+ * The requested state stays as it is: a caller that only wants the slave brought there must not
+ * write back a state that it has read before.
  *
  * Context: Process.
  */

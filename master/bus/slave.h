@@ -7,7 +7,6 @@
 #include <linux/mutex.h>
 #include <linux/spinlock.h>
 #include <linux/workqueue.h>
-#include "ethercat.h"
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "names.h"
@@ -15,8 +14,6 @@
 #include "../wire/al.h"
 #include "../wire/regs.h"
 #include "../wire/sii.h"
-
-struct ec_bus;
 
 /* distance of the tries to read or configure a slave that failed; doubles each time */
 #define EC_RETRY_MIN_MS		250
@@ -61,7 +58,7 @@ struct ec_bus;
  * @upstream: port towards the master
  * @parent: the slave it hung at when it was lost, in words
  * @parent_port: port of the slave it hangs at
- * @topology_odd: open ports and slaves do not fit together, here or before
+ * @topology_inconsistent: open ports contradict the ring order, here or upstream
  *
  * Of the EEPROM, then of the object dictionary, changed under bus->topo:
  * @sm_pdos: PDOs by SyncManager
@@ -77,8 +74,8 @@ struct ec_bus;
  * @al_reads: how often a worker has read the two: what was asked for before
  *	is older
  * @requested: AL state it shall reach
- * @note_lock: protects @why and @warning, and @error where it changes; who does not hold
- *	@lock copies the texts by ec_slave_why() and ec_slave_warning()
+ * @note_lock: protects @why and @warning, and @error where it changes; without
+ *	@lock a caller copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
  * @warning: what is not certain of its process data, empty: nothing
@@ -129,7 +126,7 @@ struct ec_slave {
 	u8 upstream;
 	u8 parent_port;
 	char parent[EC_UAPI_STRING];
-	bool topology_odd;
+	bool topology_inconsistent;
 
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
 	struct ec_pdo_list free_pdos;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/sched.h>
 #include <linux/slab.h>
 #include <linux/sort.h>
 #include "../base/grow.h"
 #include "../base/limits.h"
-#include "pdo.h"
 #include "slave.h"
-#include "../wire/sii.h"
+
+/* categories of the EEPROM that have PDOs */
+static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
 
 /**
  * ec_pdo_add() - append a PDO
@@ -194,7 +194,6 @@ bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
  */
 int ec_slave_read_pdos(struct ec_slave *slave)
 {
-	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
 	unsigned int t, i;
 
 	for (t = 0; t < ARRAY_SIZE(types); t++) {
@@ -211,15 +210,12 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 				return -ENOMEM;
 			for (i = 0; i < pdo.entries; i++) {
 				struct ec_sii_pdo_entry e;
-				struct ec_pdo_entry pe;
 
 				if (ec_sii_pdo_entry(&pdo, i, &e))
 					break;
-				pe = (struct ec_pdo_entry){
-					.index = e.index, .sub = e.sub,
-					.bits = e.bits, .name = e.name,
-				};
-				if (ec_pdo_add_entry(p, &pe))
+				if (ec_pdo_add_entry(p, &(struct ec_pdo_entry){
+						.index = e.index, .sub = e.sub,
+						.bits = e.bits, .name = e.name }))
 					return -ENOMEM;
 			}
 		}
@@ -249,7 +245,6 @@ static int compare(const void *a, const void *b)
 /* The PDOs of the EEPROM: their number, or with @v the named entries of all of them. */
 static unsigned int collect(const struct ec_slave *slave, u64 *v, unsigned int most)
 {
-	static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
 	struct ec_sii_pdo_entry e;
 	struct ec_sii_pdo_iter it;
 	struct ec_sii_pdo pdo;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "../link/links.h"
-#include "bus.h"
 #include "slave.h"
 #include "scan.h"
 
@@ -185,14 +184,14 @@ static void hang(struct ec_slave **slaves, int i, int parent)
 	}
 }
 
-/* Open ports that lead nowhere, and slaves nobody leads to: the first of them, or @n. */
+/* The first slave with an open port that leads nowhere, or without a slave upstream; or @n. */
 static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 {
 	unsigned int i, p, first = n, roots = 0, free = 0;
 
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
-		bool odd = parent_of(s) < 0 && roots++;
+		bool bad = parent_of(s) < 0 && roots++;
 
 		/* what it says of its ports was guessed */
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
@@ -200,9 +199,9 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 		for (p = 0; p < EC_MAX_PORT; p++)
 			if (p != s->upstream && port_open(s, p) && s->next[p] == EC_UAPI_NONE16) {
 				free++;
-				odd = true;
+				bad = true;
 			}
-		first = odd ? min(first, i) : first;
+		first = bad ? min(first, i) : first;
 	}
 	/* the one that leads to the other device of a ring */
 	if (n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links))
@@ -211,7 +210,7 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 }
 
 /**
- * ec_topology_build() - find who hangs at which port
+ * ec_topology_build() - find the slave at each port
  * @slaves: by ring position, with DL status and receive times
  * @n: entries in @slaves
  *
@@ -223,7 +222,7 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
  */
 void ec_topology_build(struct ec_slave **slaves, unsigned int n)
 {
-	unsigned int i, p, odd;
+	unsigned int i, p, first;
 
 	for (i = 0; i < n; i++) {
 		slaves[i]->upstream = upstream(slaves[i]);
@@ -236,10 +235,10 @@ void ec_topology_build(struct ec_slave **slaves, unsigned int n)
 		for (p = 0; p < EC_MAX_PORT; p++)
 			if (p != slaves[i]->upstream && slaves[i]->next[p] < n)
 				slaves[slaves[i]->next[p]]->parent_port = p;
-	odd = misfit(slaves, n);
+	first = misfit(slaves, n);
 	for (i = 0; i < n; i++)
-		WRITE_ONCE(slaves[i]->topology_odd, i >= odd);
-	if (odd < n)
-		ec_slave_warn(slaves[odd],
+		WRITE_ONCE(slaves[i]->topology_inconsistent, i >= first);
+	if (first < n)
+		ec_slave_warn(slaves[first],
 			      "open ports inconsistent with ring order from this slave on; delays unreliable: check cables, then rescan\n");
 }

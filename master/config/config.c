@@ -64,12 +64,8 @@ static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				 u32 product)
 {
-	unsigned int i;
-
 	lockdep_assert_held(w->lock);
-	for (i = 0; i < w->n_configs; i++) {
-		struct ec_config *c = w->configs[i];
-
+	ec_for_each_config(c, w) {
 		if (c->alias == alias && c->position == position)
 			return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
 	}

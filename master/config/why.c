@@ -227,20 +227,18 @@ static void absent_text(const struct ec_config *c, char *buf, size_t size)
 void ec_config_log_differences(const struct ec_wanted *w)
 {
 	char text[EC_UAPI_REASON];
-	unsigned int i, n = 0;
+	unsigned int n = 0;
 
 	lockdep_assert_held(w->lock);
-	for (i = 0; i < w->n_configs; i++) {
-		const struct ec_config *c = w->configs[i];
-
+	ec_for_each_config(c, w) {
 		if (c->slave && !other_revision(c, c->slave))
 			continue;
 		if (n++ >= LOG_MAX)
 			continue;
 		if (!c->slave || !ec_config_revision_text(c, c->slave, text, sizeof(text)))
 			absent_text(c, text, sizeof(text));
-		ec_warn_each(w, i + 1, "configuration %u:%u: %.160s\n", c->alias, c->position,
-			     text);
+		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
+			     c->position, text);
 	}
 	if (n > LOG_MAX)
 		ec_warn(w, "%u more configurations differ from the bus; see 'ethercat config -v'\n",

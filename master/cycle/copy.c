@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/minmax.h>
-#include <linux/mm.h>
 #include <linux/slab.h>
-#include "../config/config.h"
 #include "cycle.h"
 #include "../config/domain.h"
 #include "../base/limits.h"

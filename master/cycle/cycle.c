@@ -114,7 +114,7 @@ static void nothing_back(struct ec_cycle *c)
 }
 
 /**
- * ec_cycles_nothing_back() - the device is gone, and with it what was on its way
+ * ec_cycles_nothing_back() - the device was detached: no frame on its way will return
  * @cycles: of the master
  *
  * Context: Process. May sleep.

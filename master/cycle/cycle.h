@@ -3,10 +3,7 @@
 #ifndef EC_CYCLE_H
 #define EC_CYCLE_H
 
-#include <linux/mutex.h>
-#include <linux/types.h>
 #include "../base/limits.h"
-#include "../base/log.h"
 #include "../clock/dc.h"
 #include "../config/config.h"
 #include "../link/links.h"
@@ -16,8 +13,6 @@
 struct ec_copying;
 struct ec_cycle;
 struct ec_cycle_thread;
-struct ec_frame_buf;
-struct ec_slot;
 struct ec_waiters;
 
 /**
@@ -98,7 +93,7 @@ struct ec_cyc_cut {
  * @first: first datagram of the layout it may carry
  * @count: how many; those of @queued it does
  * @queued: domains of that send, bit n: domain n
- * @missed: a receive has looked for it in vain
+ * @missed: a receive has not found its reply
  * @direct: sent from struct ec_cycle.direct
  * @dc: clock datagrams in front of them, EC_SEND_FLAG_*
  * @dc_sent: time that was sent in them
@@ -121,9 +116,9 @@ struct ec_cyc_flight {
 #define EC_CYC_SENDS	128	/* remembered; the age of data is at most that */
 
 /**
- * struct ec_cyc_domain - what is back of a domain
+ * struct ec_cyc_domain - received data of a domain
  * @expected: working counter when every slave takes part
- * @send: number of the newest send that anything is back of
+ * @send: number of the newest send of which data were received
  * @wkc: sum of the working counters of that send
  * @age: sends of the domain since that one
  * @max_age: data that are older are stale, 0: none are
@@ -176,7 +171,7 @@ struct ec_schedule {
 /**
  * struct ec_late_report - the last cycle that has ended; under
  *	the lock of the configuration
- * @info: what EC_IOC_CYCLE_STATS tells of it
+ * @info: its result of EC_IOC_CYCLE_STATS
  * @status: and its figures
  */
 struct ec_late_report {
@@ -239,7 +234,7 @@ struct ec_cycle {
 	/** @wanted: slave configurations and domains that it exchanges */
 	struct ec_wanted *wanted;
 
-	/** @owner: open file of the application; NULL: it is gone, the cycle continues */
+	/** @owner: open file of the application; NULL: it has exited, the cycle continues */
 	const void *owner;
 	/**
 	 * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
@@ -314,7 +309,7 @@ struct ec_cycle {
 	u32 judged;
 	/** @sent: domains sent since the last receive, bit n: domain n */
 	u64 sent;
-	/** @back: domains of which something is back */
+	/** @back: domains of which data were received */
 	u64 back;
 	/** @sends: so far */
 	aligned_u64 sends;
@@ -326,7 +321,7 @@ struct ec_cycle {
 	 * EC_SEND_FLAG_*
 	 */
 	u32 dc_asked;
-	/** @dc_back: which of them are back */
+	/** @dc_back: which of them were received */
 	u32 dc_back;
 	/** @dc_sent: time in the last send that went to the slaves, ns */
 	u64 dc_sent;

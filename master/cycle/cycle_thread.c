@@ -16,10 +16,8 @@
 #include <linux/ktime.h>
 #include <linux/sched.h>
 #include <linux/slab.h>
-#include <linux/completion.h>
 #include <linux/rcupdate.h>
 #include <linux/wait.h>
-#include "../config/config.h"
 #include "../base/bytes.h"
 #include "cycle.h"
 #include "pll.h"
@@ -142,7 +140,7 @@ static void use_image(struct ec_cycle_thread *t)
 		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
 			t->outputs[i].len);
 	t->ahead = false;
-	/* who looks at the image then finds these */
+	/* a reader that sees NULL finds these in the image */
 	smp_store_release(&t->cycle->direct, NULL);
 }
 
@@ -196,7 +194,7 @@ static void end_run(struct ec_cycle *c)
 }
 
 /* The application has given no outputs for too long. */
-static void stall(struct ec_cycle_thread *t)
+static void stop_outputs(struct ec_cycle_thread *t)
 {
 	u8 *image = t->cycle->shared->image;
 	struct ec_status_cycle *st = status(t);
@@ -235,7 +233,7 @@ static void feed(struct ec_cycle_thread *t)
 	if (!limit || t->unfed == limit)
 		return;
 	if (++t->unfed == limit)
-		stall(t);
+		stop_outputs(t);
 }
 
 /* An application gets the buffers after the thread's; its outputs begin with the image. */
@@ -252,7 +250,7 @@ static void deal(struct ec_cycle_thread *t)
 		memcpy(buffer(t, x->app_output) + 1, t->cycle->shared->image, t->bytes);
 }
 
-/* The application before may have died anywhere: the next one begins anew. */
+/* The previous application may have exited at any point: the next one begins anew. */
 static void adopt(struct ec_cycle_thread *t)
 {
 	use_image(t);
@@ -439,21 +437,14 @@ static int find_outputs(struct ec_cycle_thread *t)
 	return 0;
 }
 
-static u32 stride(u32 image_bytes)
+static int alloc_exchange(struct ec_cycle_thread *t)
 {
-	return sizeof(struct ec_exchange_buffer) + ALIGN(image_bytes, 64);
-}
+	struct ec_shared *sh = t->cycle->shared;
 
-/**
- * ec_cycle_thread_exchange() - memory for the exchange with the application
- * @image_bytes: bytes of all domains
- *
- * Context: Any.
- * Return: bytes, a multiple of the page size.
- */
-size_t ec_cycle_thread_exchange(u32 image_bytes)
-{
-	return PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * stride(image_bytes));
+	t->stride = sizeof(struct ec_exchange_buffer) + ALIGN(t->bytes, 64);
+	sh->exchange_size = PAGE_ALIGN(EC_EXCHANGE_FIRST + 2 * EC_EXCHANGE_BUFFERS * t->stride);
+	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
+	return sh->exchange ? 0 : -ENOMEM;
 }
 
 static void free_thread(struct ec_cycle_thread *t)
@@ -468,7 +459,7 @@ static void free_thread(struct ec_cycle_thread *t)
  * @image_bytes: of all domains
  * @ops: what it reports; stays
  *
- * The memory of the exchange is in @c->shared, see ec_cycle_thread_exchange().
+ * The memory of the exchange with the application is in @c->shared.
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENODEV the CPU is not online; -ENOMEM.
@@ -486,9 +477,8 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 	t->ops = ops;
 	init_completion(&t->adopted);
 	t->bytes = image_bytes;
-	t->stride = stride(image_bytes);
 	find_turns(t);
-	ret = find_outputs(t);
+	ret = alloc_exchange(t) ?: find_outputs(t);
 	if (ret)
 		goto err;
 	deal(t);

@@ -19,7 +19,6 @@ struct ec_cycle_ops {
 	void (*cycle)(struct ec_cycle *c);
 };
 
-size_t ec_cycle_thread_exchange(u32 image_bytes);
 int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_cycle_ops *ops);
 void ec_cycle_thread_start(struct ec_cycle *c);
 struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c);

@@ -106,8 +106,8 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 }
 
 /*
- * Slaves in front of the reference, and all when it is gone, see what was sent:
- * the time it will have, as far as its answers tell.
+ * Slaves upstream of the reference clock, and all when it does not reply, take the time that was
+ * sent: a prediction from its last replies.
  */
 static u64 predicted(const struct ec_cycle *c, u64 now)
 {
@@ -268,7 +268,7 @@ const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f
 }
 
 /**
- * ec_dc_datagrams_judge() - tell the application what is back of what it has sent
+ * ec_dc_datagrams_judge() - give the application the results of its clock datagrams
  * @c: active cycle
  *
  * Context: The master's single cyclic caller. RT-safe.

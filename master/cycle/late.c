@@ -11,11 +11,9 @@
  * that was rounded, while a late send stays late against it.
  */
 #include <linux/bitops.h>
-#include <linux/compiler.h>
 #include <linux/ktime.h>
 #include <linux/math64.h>
 #include <linux/minmax.h>
-#include <linux/string.h>
 #include "cycle.h"
 #include "cycle_thread.h"
 #include "../base/once64.h"

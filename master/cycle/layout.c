@@ -3,9 +3,7 @@
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/slab.h>
-#include "../config/config.h"
 #include "cycle.h"
-#include "../config/domain.h"
 #include "../base/grow.h"
 #include "logical.h"
 #include "../base/once64.h"

@@ -7,7 +7,6 @@
 #include "../wire/dc_lock.h"
 
 struct ec_cycle;
-struct ec_status_cycle;
 
 #define EC_PLL_PAST	8	/* a frame may be that many cycles on its way */
 

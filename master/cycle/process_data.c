@@ -5,7 +5,6 @@
  */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
-#include <linux/mm.h>
 #include "../base/bytes.h"
 #include "cycle.h"
 #include "../base/once64.h"
@@ -65,8 +64,8 @@ static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 }
 
 /*
- * Inputs and working counter of one datagram. What belongs to an older send
- * than the newest one that is back must not undo it.
+ * Inputs and working counter of one datagram. A reply to an older send must not overwrite the
+ * data of a newer one.
  */
 static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 		       const struct ec_cyc_flight *f, const u8 *data)

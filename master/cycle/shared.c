@@ -6,7 +6,6 @@
  */
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
-#include "ethercat.h"
 #include "shared.h"
 
 static void release(struct kref *kref)

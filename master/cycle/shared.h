@@ -6,7 +6,6 @@
 #include <linux/atomic.h>
 #include <linux/kref.h>
 #include <linux/mm.h>
-#include <linux/types.h>
 #include "ethercat.h"
 
 /**

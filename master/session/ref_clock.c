@@ -10,7 +10,7 @@
 #define SM_KIND		0x0f	/* mode and direction, register 0x0804 */
 #define SM_OUTPUTS	0x04	/* buffered, written by the master */
 
-/* A slave with outputs that nobody writes would only run into its watchdog. */
+/* Without new outputs its watchdog would expire. */
 static bool has_outputs(const struct ec_slave *s)
 {
 	unsigned int i;

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
-#include <linux/mm.h>
 #include <linux/slab.h>
-#include "../config/config.h"
 #include "../mailbox/emerg.h"
-#include "../mailbox/mailbox.h"
 #include "request.h"
 #include "request_int.h"
 #include "session.h"
@@ -44,8 +41,7 @@ struct ec_lane {
  * @kick: looks once
  * @watch: looks again and again while anything waits
  * @reqs: requests
- * @n_reqs: entries in @reqs
- * @bufs: private copies of all data, allocated by who activates, so that they are its memory
+ * @bufs: private copies of all data, allocated by the application that activates, as its memory
  * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
  * @ended: the session has; transfers end, too
@@ -59,7 +55,6 @@ struct ec_requests {
 	struct work_struct kick;
 	struct work_struct watch;
 	struct ec_request *reqs;
-	unsigned int n_reqs;
 	u8 *bufs;
 	struct ec_lane *lanes;
 	unsigned int n_lanes;
@@ -370,10 +365,10 @@ static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
 }
 
 /**
- * ec_requests_describe() - tell an application where everything lies
+ * ec_requests_describe() - write the layout of the mapped memory for the application
  * @s: session with requests
  *
- * Once more for one that takes over: the one before could write there.
+ * An application that takes over gets it anew: the previous one could write there.
  *
  * Context: Process, session lock held. May sleep.
  */
@@ -397,7 +392,7 @@ void ec_requests_describe(const struct ec_session *s)
 		ec_emerg_describe(slave ? &slave->mbox : NULL, e, e->data - base);
 	}
 	mutex_lock(&rq->lock);
-	for (i = 0; i < rq->n_reqs; i++) {
+	for (i = 0; i < s->n_specs; i++) {
 		const struct ec_request *r = &rq->reqs[i];
 
 		r->rec->data = r->data - base;
@@ -478,7 +473,6 @@ int ec_requests_begin(struct ec_session *s)
 		put(rq);
 		return -ENOMEM;
 	}
-	rq->n_reqs = s->n_specs;
 	lay_out(s, rq);
 	s->requests = rq;
 	ec_requests_describe(s);
@@ -491,7 +485,7 @@ int ec_requests_begin(struct ec_session *s)
  * ec_requests_end() - nothing is started any more
  * @s: session
  *
- * What is on its way is cancelled; nobody waits for it.
+ * Transfers in progress are cancelled; this does not wait for them.
  *
  * Context: Process, session lock held. May sleep.
  */

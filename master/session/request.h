@@ -18,7 +18,6 @@ struct ec_config;
 struct ec_cycle;
 struct ec_emerg;
 struct ec_request_record;
-struct ec_requests;
 struct ec_session;
 
 /**

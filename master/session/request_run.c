@@ -2,7 +2,6 @@
 /* What the kinds of requests differ in: which starts are possible, and the transfer. */
 #include <linux/ktime.h>
 #include "../mailbox/coe.h"
-#include "../mailbox/mailbox.h"
 #include "request_int.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
@@ -61,7 +60,7 @@ static int readwrite(const struct ec_request *r, struct ec_slave *s)
 static void run_reg(struct ec_request *r, struct ec_slave *s)
 {
 	r->res.got = ec_request_reads(r) ? r->size : 0;
-	/* also of a slave whose configuration failed: registers tell why */
+	/* also of a slave whose configuration failed: its registers have the cause */
 	if (r->op == EC_REQUEST_OP_READWRITE)
 		r->res.err = readwrite(r, s);
 	else if (r->op == EC_REQUEST_OP_WRITE)

@@ -3,12 +3,9 @@
 #include <linux/pid_namespace.h>
 #include <linux/sched.h>
 #include <linux/slab.h>
-#include "../config/config.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
-#include "../config/domain.h"
 #include "../mailbox/emerg.h"
-#include "../mailbox/mailbox.h"
 #include "request.h"
 #include "session.h"
 #include "../bus/slave.h"
@@ -39,8 +36,8 @@ static bool is_taken(const struct ec_sessions *ss)
 }
 
 /*
- * Mailboxes shall work from now on, whatever a tool has left behind. Who has
- * failed on the way to PREOP is left alone: that takes its time and helps nobody.
+ * Mailboxes shall work from now on, whatever state a tool has requested. A slave that has failed
+ * on its way to PREOP is skipped: another attempt would only delay the caller.
  */
 static void to_preop(struct ec_sessions *ss)
 {
@@ -96,7 +93,7 @@ static void note_process(struct ec_session *s)
  * The number is that of the caller's PID namespace.
  *
  * Context: Process. May sleep.
- * Return: length of the text; 0: nobody has it any more.
+ * Return: length of the text; 0: no process has reserved it.
  */
 size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size)
 {
@@ -132,11 +129,11 @@ static const struct ec_cycle_ops cycle_ops = {
  * @waiters: wait queue of that file; freed after an RCU grace period
  *
  * Waits for a scan in progress, then the list of slaves is frozen until
- * activation and all go to PREOP; that is waited for, too. While a detached
- * session runs, the new one is its heir: it touches no slave until activation.
+ * activation and all go to PREOP; this waits for them. While a detached session runs, the new
+ * one is its heir: it touches no slave until activation.
  *
  * Context: Process. May sleep.
- * Return: 0, -EBUSY when somebody else has it, -ENODEV without device,
+ * Return: 0, -EBUSY when another application has it, -ENODEV without device,
  * -EINTR, -ENOMEM.
  */
 int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiters *waiters)
@@ -204,8 +201,8 @@ static void clear(struct ec_session *s)
 	ec_cycle_clear(&s->cycle);
 }
 
-/* The next application begins with what it tells itself. */
-static void forget_told(struct ec_sessions *ss)
+/* Application time and interval are those of one application. */
+static void forget_times(struct ec_sessions *ss)
 {
 	ec_dc_end(ss->dc);
 	WRITE_ONCE(ss->links->access.interval_us, EC_INTERVAL_US);
@@ -231,23 +228,23 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_late_end(&s->cycle);
 	s->wanted.active = false;
-	s->stall_log.open = false;
+	s->timeout_log.open = false;
 	ec_requests_end(s);
 	clear(s);
 	ec_cycle_free(&s->cycle);
 	ec_shared_put(s->cycle.shared);
 	s->cycle.shared = NULL;
-	forget_told(ss);
-	if ((u32)atomic_read(&ss->links->access.timeouts) != s->stall_log.logged)
+	forget_times(ss);
+	if ((u32)atomic_read(&ss->links->access.timeouts) != s->timeout_log.logged)
 		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
-			atomic_read(&ss->links->access.timeouts) - s->stall_log.logged);
+			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged);
 	ec_info(ss, "session deactivated\n");
 	return 0;
 }
 
 /**
  * ec_session_free() - a session that is not active goes away
- * @s: session nobody finds any more
+ * @s: session that has left struct ec_sessions
  *
  * Context: Process, session lock held. May sleep.
  */
@@ -258,7 +255,7 @@ void ec_session_free(struct ec_session *s)
 	kvfree(s);
 }
 
-/* The heir of a session that has ended: from now on its slaves are its own. */
+/* The session has ended: its slaves are the heir's now. */
 static void inherit(struct ec_sessions *ss)
 {
 	struct ec_session *s = ss->heir;
@@ -280,18 +277,18 @@ static void end(struct ec_sessions *ss)
 {
 	struct ec_session *s = ss->session;
 
-	/* one that was never active may have told its time and interval, too */
+	/* a session that was never active may have set time and interval, too */
 	if (ec_session_deactivate(s))
-		forget_told(ss);
+		forget_times(ss);
 	WRITE_ONCE(ss->session, NULL);
 	ec_session_free(s);
 	inherit(ss);
 }
 
 /**
- * ec_session_end() - the application is gone or releases the master
+ * ec_session_end() - the application has exited or releases the master
  * @ss: sessions of a master
- * @owner: its open file, NULL: whoever it is; another's session stays
+ * @owner: its open file, other sessions stay; NULL: end all sessions
  *
  * An active session whose cycle the kernel runs is detached instead, when it was
  * configured so; with @owner NULL it ends, too.
@@ -323,10 +320,10 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 }
 
 /**
- * ec_session_end_detached() - end the cycle of an application that has gone
+ * ec_session_end_detached() - end the cycle of an application that has exited
  * @ss: sessions of a master
  *
- * Slaves go to PREOP. One who wanted to take over has the master then.
+ * Slaves go to PREOP. An application that waits for a takeover gets the master.
  *
  * Context: Process. May sleep.
  * Return: 0; -ENOENT nothing is active; -EBUSY its application is there.
@@ -369,8 +366,8 @@ static bool uses_clocks(const struct ec_session *s)
 }
 
 /*
- * One that was chosen and is not there is told at once: its clock calls fail, so
- * nothing else would ever begin to look for it.
+ * A chosen reference clock that is absent is reported at once: the clock calls of the application
+ * fail, so no later event would start the search for it.
  */
 static bool begins_clocks(const struct ec_session *s)
 {
@@ -380,24 +377,21 @@ static bool begins_clocks(const struct ec_session *s)
 }
 
 /**
- * ec_session_clocks() - set clocks that somebody wants and nobody has set
+ * ec_session_clocks() - set clocks that the application needs and that are not set
  * @ss: sessions of a master
  *
  * The clocks of an application begin with its activation when a slave has SYNC
  * signals, else with the first clock datagram it sends. They begin anew when slaves
  * have come or gone, and when one that did not answer does.
  *
- * Context: The monitor thread. May sleep.
+ * Context: The monitor thread, session lock held. May sleep.
  */
 void ec_session_clocks(struct ec_sessions *ss)
 {
+	struct ec_session *s = ss->session;
 	struct ec_dc *dc = ss->dc;
-	struct ec_session *s;
 
-	/* held by an activation: next time then */
-	if (!ec_sessions_trylock(ss))
-		return;
-	s = ss->session;
+	lockdep_assert_held(&ss->lock);
 	if (s && s->wanted.active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
 					   READ_ONCE(dc->wanted)))
 		ec_dc_begin(ss->dc, !dc->begun, ref_choice(s));
@@ -407,7 +401,6 @@ void ec_session_clocks(struct ec_sessions *ss)
 	}
 	if (s && s->wanted.active && !s->ending)
 		ec_ref_clock_raise(s);
-	mutex_unlock(&ss->lock);
 }
 
 /**
@@ -447,15 +440,6 @@ static int fits(const struct ec_session *s, size_t image_size)
 	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
 }
 
-static int create_thread(struct ec_session *s, u32 image_bytes)
-{
-	struct ec_shared *sh = s->cycle.shared;
-
-	sh->exchange_size = ec_cycle_thread_exchange(image_bytes);
-	sh->exchange = ec_shared_alloc(sh, sh->exchange_size);
-	return sh->exchange ? ec_cycle_thread_create(&s->cycle, image_bytes, &cycle_ops) : -ENOMEM;
-}
-
 /**
  * ec_session_activate() - lay out process data, hand the links to the cycle
  * @s: session
@@ -493,7 +477,7 @@ int ec_session_activate(struct ec_session *s)
 	ret = ec_requests_begin(s) ?: ec_copies_begin(&s->cycle) ?: ec_cycle_layout(&s->cycle) ?:
 	      ec_cycle_check_room(&s->cycle, uses_clocks(s));
 	if (!ret && s->cycle.kernel.period_ns)
-		ret = create_thread(s, offset);
+		ret = ec_cycle_thread_create(&s->cycle, offset, &cycle_ops);
 	if (ret) {
 		ec_cycle_free(&s->cycle);
 		ec_requests_end(s);
@@ -508,7 +492,7 @@ int ec_session_activate(struct ec_session *s)
 		st->domains[d->index].expected = d->expected;
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
-	s->stall_log.logged = atomic_read(&ss->links->access.timeouts);
+	s->timeout_log.logged = atomic_read(&ss->links->access.timeouts);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(ss->bus->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */

@@ -3,31 +3,26 @@
 #ifndef EC_SESSION_H
 #define EC_SESSION_H
 
-#include <linux/sched.h>
 #include <linux/kref.h>
 #include <linux/mm.h>
-#include <linux/types.h>
 #include "../config/config.h"
 #include "../config/domain.h"
 #include "../cycle/cycle.h"
-#include "ethercat.h"
-#include "../base/limits.h"
 
 struct ec_sessions;
 struct ec_request_spec;
 struct ec_requests;
-struct ec_waiters;
 
-#define EC_STALL_LOG_NS	(10ULL * NSEC_PER_SEC)
+#define EC_TIMEOUT_LOG_NS	(10ULL * NSEC_PER_SEC)
 
 /**
- * struct ec_stall_log - what the log says of stalls; under sessions->lock
+ * struct ec_timeout_log - cycle timeouts in the log; under sessions->lock
  * @logged: cycle timeouts that the log has counted, as sessions->links->access.timeouts counts them
- * @since_ns: last send before the stall the log shows
- * @next_ns: no new stall is logged before
- * @open: the log says it stalled, not yet that it goes on
+ * @since_ns: last send before the logged timeout
+ * @next_ns: no other timeout is logged before
+ * @open: the timeout is logged, its end is not
  */
-struct ec_stall_log {
+struct ec_timeout_log {
 	u32 logged;
 	u64 since_ns;
 	u64 next_ns;
@@ -75,7 +70,7 @@ struct ec_sessions {
  * @owner_pid: process that reserved the master, in the initial namespace
  * @owner_comm: its command, printable
  * @wanted: slave configurations and domains
- * @stall_log: cycle timeouts of the application in the log
+ * @timeout_log: cycle timeouts of the application in the log
  * @cycle: its cycle, and whose it is
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
@@ -92,7 +87,7 @@ struct ec_session {
 	pid_t owner_pid;
 	char owner_comm[TASK_COMM_LEN];
 	struct ec_wanted wanted;
-	struct ec_stall_log stall_log;
+	struct ec_timeout_log timeout_log;
 	struct ec_cycle cycle;
 	u32 ref_config;
 	struct ec_request_spec *specs;
@@ -145,7 +140,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 
 /* session_status.c */
 void ec_session_fill_status(struct ec_session *s);
-void ec_session_status(struct ec_sessions *ss);
+void ec_session_status(struct ec_sessions *ss, bool scanned);
 
 /* takeover.c */
 int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size);

@@ -94,9 +94,9 @@ struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position
 	return slave;
 }
 
-/* Another configuration has @slave; it is told once, to who waits for this one. */
-static void tell_taken(const struct ec_session *s, const struct ec_config *c,
-		       struct ec_slave *slave)
+/* Another configuration has @slave. */
+static void log_taken(const struct ec_session *s, const struct ec_config *c,
+		      struct ec_slave *slave)
 {
 	const struct ec_config *has = ec_config_of(slave);
 
@@ -110,7 +110,7 @@ static void tell_taken(const struct ec_session *s, const struct ec_config *c,
 			      has->alias, has->position, c->alias, c->position);
 }
 
-/* Reasons go on naming the slave that was lost, whoever is in its place now. */
+/* Reasons name the lost slave even when another one is at its position. */
 static void note_loss(struct ec_config *c)
 {
 	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
@@ -155,7 +155,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	mutex_lock(&slave->lock);
 	ec_stop_interrupt(&slave->stop, false);
 	if (ec_config_of(slave)) {
-		tell_taken(s, c, slave);
+		log_taken(s, c, slave);
 		mutex_unlock(&slave->lock);
 		ec_slave_unref(slave);
 		return;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What an active session is told about the bus, and the log about its application. */
-#include "../config/config.h"
+/* The state of the bus for an active session, and log messages about its application. */
 #include "../config/why.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
@@ -9,29 +8,29 @@
 #include "../bus/slave.h"
 
 /*
- * A stall and its end are two lines, and that at most once in 10 s: a busy host
- * may stall an application many times a second.
+ * A timeout and its end are two lines, at most once in 10 s: on a busy host a cycle may time out
+ * many times a second.
  */
-static void log_stalls(struct ec_session *s, u64 now)
+static void log_timeouts(struct ec_session *s, u64 now)
 {
 	struct ec_sessions *ss = s->sessions;
-	struct ec_stall_log *l = &s->stall_log;
-	bool stalled = READ_ONCE(ss->links->access.mode) == EC_ACCESS_DIRECT;
+	struct ec_timeout_log *l = &s->timeout_log;
+	bool timed_out = READ_ONCE(ss->links->access.mode) == EC_ACCESS_DIRECT;
 	u32 more = atomic_read(&ss->links->access.timeouts) - l->logged;
 
-	if (l->open && !stalled) {
+	if (l->open && !timed_out) {
 		ec_info(ss, "cycle resumed after %llu ms\n",
 			div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
 		l->since_ns = ec_read64(&ss->links->access.timeout_ns);
-		l->next_ns = now + EC_STALL_LOG_NS;
+		l->next_ns = now + EC_TIMEOUT_LOG_NS;
 		l->logged += more;
-		l->open = stalled;
-		if (more > stalled)
+		l->open = timed_out;
+		if (more > timed_out)
 			ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
-				more - stalled);
-		if (stalled)
+				more - timed_out);
+		if (timed_out)
 			ec_warn(ss,
 				"cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
 				div_u64(now - l->since_ns, NSEC_PER_MSEC));
@@ -54,11 +53,11 @@ static void status_links(struct ec_sessions *ss, struct ec_status *st)
 }
 
 /**
- * ec_session_fill_status() - tell the application how the bus is
+ * ec_session_fill_status() - write the state of the bus to the status page
  * @s: active session, or one that is about to be
  *
- * An application sees no difference between what it was told before it activated and
- * this, so the first time is before it can look.
+ * It is written before the application can read the page, so that the page never contradicts
+ * what the application has read before its activation.
  *
  * Context: Process, session lock held.
  */
@@ -79,19 +78,22 @@ void ec_session_fill_status(struct ec_session *s)
 /**
  * ec_session_status() - bring the mapped status up to date; monitor
  * @ss: sessions of a master
+ * @scanned: the slaves are those of the last scan: clocks may be set, too
  *
  * Context: Process. May sleep.
  */
-void ec_session_status(struct ec_sessions *ss)
+void ec_session_status(struct ec_sessions *ss, bool scanned)
 {
 	struct ec_session *s;
 
 	/* held by an activation: next time then */
 	if (!ec_sessions_trylock(ss))
 		return;
+	if (scanned)
+		ec_session_clocks(ss);
 	s = ss->session;
 	if (s && s->wanted.active) {
-		log_stalls(s, ktime_get_ns());
+		log_timeouts(s, ktime_get_ns());
 		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
 		ec_dc_app_log(ss->dc);

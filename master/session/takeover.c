@@ -4,9 +4,7 @@
  * the same: all that reaches a slave or decides where something lies in the mapped memory. The
  * two are compared, not hashes of them, so that the first difference can be reported.
  */
-#include "../config/config.h"
 #include "../cycle/cycle_thread.h"
-#include "../config/domain.h"
 #include "request.h"
 #include "session.h"
 

@@ -23,8 +23,8 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "master"): 6,
     ("lines", "tests"): 142,
+    ("lines", "master"): 5,
     ("lines", "Documentation"): 0,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 0,

@@ -32,7 +32,7 @@ static u32 expect_wiring(struct bus *b, const char *text)
 			if (peer == -2)
 				KUNIT_EXPECT_EQ(b->test, s->upstream, p);
 		}
-		KUNIT_EXPECT_FALSE(b->test, s->topology_odd);
+		KUNIT_EXPECT_FALSE(b->test, s->topology_inconsistent);
 		if (!(ec_slave_features(s) & EC_FEAT_DC))
 			continue;
 		KUNIT_EXPECT_FALSE(b->test, ec_clock_of(s)->delay_unreliable);
@@ -239,8 +239,8 @@ static void wiring_that_does_not_fit(struct kunit *test)
 		   "slave c drive in=8 out=8\n"
 		   "wire a.1 -> b.1\nwire b.0 -> c.0\n", 3);
 	bus_idle(b);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->topology_odd);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_odd);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->topology_inconsistent);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
 }
 
 static struct kunit_case cases[] = {
