@@ -119,7 +119,8 @@ s32 ec_pll_step(struct ec_pll *l, struct ec_cycle *c, u64 due, u64 epoch_ns)
 	}
 	l->past[k].due = due;
 	l->past[k].time = l->time;
-	l->n_past++;
+	/* 0 is the first cycle only */
+	l->n_past = l->n_past + 1 ?: EC_PLL_PAST;
 	ec_dc_app_time(c->dc, l->time, due - l->phase);
 	return correction;
 }

@@ -3,6 +3,7 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/cycle/cycle_thread.h"
+#include "master/cycle/pll.h"
 #include "master/clock/dc.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/dc_lock.h"
@@ -277,6 +278,25 @@ static void lock_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 }
 
+/* The counter of cycles has 32 bits; at 10 kHz it wraps after five days. */
+static void lock_cycle_count_wraps_time_continues(struct kunit *test)
+{
+	struct app *a = start(test, two, 2, 0);
+	struct ec_cycle *c = &a->c->b->m->sessions.session->cycle;
+	u64 due = ktime_get_ns(), first;
+	struct ec_pll l;
+
+	ec_pll_init(&l, c);
+	l.follow = false;
+	ec_pll_step(&l, c, due, 12345);
+	first = l.time;
+	l.past[(U32_MAX - 1) % EC_PLL_PAST] = l.past[0];
+	l.n_past = U32_MAX;
+	ec_pll_step(&l, c, due + PERIOD_NS, 0);
+	ec_pll_step(&l, c, due + 2ULL * PERIOD_NS, 0);
+	KUNIT_EXPECT_EQ(test, l.time, first + 2ULL * PERIOD_NS);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(lock_keeps_phase),
 	KUNIT_CASE(lock_to_short_clock),
@@ -284,6 +304,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(lock_same_phase_each_start),
 	KUNIT_CASE(lead_same_phase_each_start),
 	KUNIT_CASE(lock_refused),
+	KUNIT_CASE(lock_cycle_count_wraps_time_continues),
 	{ }
 };
 
