@@ -35,8 +35,8 @@
 #define EC_MAX_SII_TOTAL	(64 * 1024 * 1024)	/* EEPROMs of all slaves of a master */
 
 #define EC_MAX_INTERVAL_US	1000000	/* longer ones are measured; waits are a multiple */
-#define EC_INTERVAL_US		1000	/* distance of cyclic sends until the application tells */
-#define EC_LATE_PER_S		100	/* cycles acyclic frames may make late, until told */
+#define EC_INTERVAL_US		1000	/* cycle time until the application configures it */
+#define EC_LATE_PER_S		100	/* cycles that acyclic frames may delay, by default */
 #define EC_SLOTS		256	/* datagram index has 8 bits */
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
 #define EC_LINK_ACYCLIC		64	/* acyclic frames of a link, of all callers, on their way */

@@ -54,12 +54,13 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 /* One description; 0, or -errno. */
 static int ask(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b)
 {
-	struct ec_mbox_ask ask = {
-		.type = EC_MBOX_COE, .first = true, .timeout_ms = ANSWER_MS, .rx = rx, .ctx = a,
+	struct ec_mbox_request req = {
+		.type = EC_MBOX_COE, .first = true, .limit.timeout_ms = ANSWER_MS, .rx = rx,
+		.ctx = a,
 	};
 	int len = ec_sdoinfo_tx(&a->info, b->tx, s->info.std.rx_size - EC_MBOX_HDR);
 
-	return len < 0 ? len : ec_mbox_ask(&s->mbox, &ask, b, len);
+	return len < 0 ? len : ec_mbox_request(&s->mbox, &req, b, len);
 }
 
 /* An entry of a simple object is called as the object. */

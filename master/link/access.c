@@ -223,7 +223,7 @@ void ec_access_poll(struct ec_links *l)
  * A tenth of the interval is kept free: the next send may be early.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: ns; ~0 while nobody runs a cycle.
+ * Return: ns; ~0 while there is no cycle.
  */
 u32 ec_access_slack_ns(const struct ec_links *l)
 {

@@ -46,7 +46,7 @@ bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, si
 	return !c || ec_tap_received(&c->tap, src, data, len);
 }
 
-/* After the capture programs nobody else wants these frames. */
+/* Only capture programs take these frames. */
 static rx_handler_result_t swallow(struct sk_buff **pskb)
 {
 	consume_skb(*pskb);

@@ -18,7 +18,7 @@ struct ec_links;
  * @mac: immutable
  * @ops: immutable
  * @priv: for @ops, immutable
- * @link: who uses it, NULL: nobody; RCU for receivers
+ * @link: its user, NULL: none; RCU for receivers
  */
 struct ecdev {
 	struct list_head list;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * A counting semaphore whose count may change, with a wait that a fatal signal ends
- * and a look without queueing that passes nobody who waits.
+ * and an attempt without queueing that overtakes no waiting caller.
  */
 #include <linux/errno.h>
 #include <linux/jiffies.h>
@@ -71,7 +71,7 @@ static bool enter_now(struct ec_gate *g)
 }
 
 /**
- * ec_gate_try() - take a place if one is free and nobody waits for it
+ * ec_gate_try() - take a place if one is free and no caller waits for it
  * @g: gate
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.

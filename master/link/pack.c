@@ -14,7 +14,7 @@
 #include "../base/once64.h"
 #include "pack.h"
 
-#define NOBODY	-1	/* a datagram of a slot that waits no longer */
+#define NONE	-1	/* a datagram of a slot that waits no longer */
 #define END	256	/* behind the last datagram */
 
 /**
@@ -180,8 +180,8 @@ struct reply {
 	unsigned int len;	/* bytes behind the EtherType */
 	u32 seq;
 	u8 side;
-	int prev;		/* index of the datagram before, NOBODY: none */
-	int next;		/* index that has to come now, END: none, NOBODY: any */
+	int prev;		/* index of the datagram before, NONE: none */
+	int next;		/* index that has to come now, END: none, NONE: any */
 	struct ec_slot *held[EC_PACK_MAX];
 	unsigned int n;
 };
@@ -211,10 +211,10 @@ static bool look_through(struct ec_slots *s, struct reply *r)
 
 		more = ec_frame_iter_next(&r->it, &d);
 		if (more != 1)
-			return !more && (r->next == NOBODY || r->next == END);
-		if (r->next != NOBODY && r->next != d.idx)
+			return !more && (r->next == NONE || r->next == END);
+		if (r->next != NONE && r->next != d.idx)
 			return false;
-		r->next = NOBODY;
+		r->next = NONE;
 		slot = &s->slot[d.idx];
 		if (r->n < EC_PACK_MAX && awaits(slot, r->seq, r->side)) {
 			r->held[r->n++] = slot;
@@ -241,7 +241,7 @@ enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, s
 {
 	struct reply r = {
 		.data = data, .seq = get_unaligned_le32(src + 2), .side = src[1] & ~EC_PACKED,
-		.prev = NOBODY, .next = NOBODY,
+		.prev = NONE, .next = NONE,
 	};
 	unsigned int i;
 	bool ok;

@@ -263,7 +263,7 @@ static unsigned int send_half(struct ec_links *l, struct half *h, struct ec_dg *
 	return first;
 }
 
-/* Nobody waits for the frames of a half any longer: the time limit is over, or the link down. */
+/* Cancel the frames of a half: the time limit is over, or the link is down. */
 static void give_up(struct ec_links *l, struct half *h)
 {
 	bool up = ec_link_is_up(&l->link[0]);

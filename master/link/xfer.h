@@ -46,9 +46,9 @@ struct ec_dg {
 #define EC_FPWR(a, o, l, d)	EC_DG(EC_CMD_FPWR, a, o, l, (void *)(const void *)(d))
 
 /**
- * struct ec_xfer - somebody waiting for frames
+ * struct ec_xfer - a caller that waits for frames
  * @pending: frames not back yet, plus one while the caller still sends
- * @done: completed by whoever takes @pending to zero
+ * @done: completed when @pending is zero
  */
 struct ec_xfer {
 	atomic_t pending;

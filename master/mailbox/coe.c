@@ -20,7 +20,7 @@ static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf 
 	int len = ec_sdo_tx(s, b->tx, cap);
 
 	if (len > 0)
-		ec_mbox_tell(mb, EC_MBOX_COE, b, len, &limit);
+		ec_mbox_send(mb, EC_MBOX_COE, b, len, &limit);
 }
 
 /*
@@ -30,37 +30,30 @@ static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf 
 static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit *limit)
 {
 	size_t cap = mb->sii->std.rx_size - EC_MBOX_HDR;
-	struct ec_mbox_ask ask = {
+	struct ec_mbox_request req = {
 		.type = EC_MBOX_COE, .first = true, .rx = rx, .ctx = s,
-		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SDO_TIMEOUT_MS,
-		.cancel = limit ? limit->cancel : NULL,
+		.limit = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS),
 	};
-	struct ec_mbox_buf *b;
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
 	int ret;
 
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	ret = ec_mbox_lock(mb, &mb->sdo_lock, 0);
 	if (ret)
 		goto out;
 	do {
 		ret = ec_sdo_tx(s, b->tx, cap);
 		if (ret >= 0)
-			ret = ec_mbox_ask(mb, &ask, b, ret);
-		ask.first = false;
+			ret = ec_mbox_request(mb, &req, b, ret);
+		req.first = false;
 	} while (ret == EC_MORE);
 	if (s->send_abort)
-		send_abort(mb, s, b, cap, ask.cancel);
+		send_abort(mb, s, b, cap, req.limit.cancel);
 	up(&mb->sdo_lock);
 out:
 	kfree(b);
 	return ret;
-}
-
-static int check(const struct ec_mbox *mb)
-{
-	return ec_mbox_check(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
 }
 
 /**
@@ -85,12 +78,10 @@ int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data
 		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct ec_sdo s;
-	int ret = check(mb);
+	int ret;
 
 	*abort = 0;
 	*size = 0;
-	if (ret)
-		return ret;
 	ec_sdo_upload_init(&s, index, sub, complete, data, cap);
 	ret = run(mb, &s, limit);
 	if (ret == -EIO)
@@ -120,11 +111,9 @@ int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const 
 		    size_t size, u32 *abort, const struct ec_mbox_limit *limit)
 {
 	struct ec_sdo s;
-	int ret = check(mb);
+	int ret;
 
 	*abort = 0;
-	if (ret)
-		return ret;
 	ec_sdo_download_init(&s, index, sub, complete, data, size,
 			     mb->sii->std.rx_size - EC_MBOX_HDR);
 	ret = run(mb, &s, limit);

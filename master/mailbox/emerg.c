@@ -9,7 +9,7 @@
 /**
  * ec_emerg_set() - where the emergencies of a slave go from now on
  * @mb: mailbox of the slave
- * @e: ring; NULL: only to the log. Nobody uses the one before afterwards.
+ * @e: ring; NULL: only to the log. The previous ring is not used afterwards.
  *
  * Context: Process.
  */

@@ -30,16 +30,12 @@ static int exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 re
 		    u16 *result)
 {
 	struct answer a = { .type = resp, .result = result };
-	struct ec_mbox_ask ask = {
-		.type = EC_MBOX_EOE, .first = true, .timeout_ms = TIMEOUT_MS, .rx = rx, .ctx = &a,
+	struct ec_mbox_request req = {
+		.type = EC_MBOX_EOE, .first = true, .limit.timeout_ms = TIMEOUT_MS, .rx = rx,
+		.ctx = &a,
 	};
 
-	return ec_mbox_ask(mb, &ask, b, len) ?: a.len;
-}
-
-static int check(const struct ec_mbox *mb)
-{
-	return ec_mbox_check(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
+	return ec_mbox_request(mb, &req, b, len) ?: a.len;
 }
 
 /**
@@ -58,15 +54,12 @@ static int check(const struct ec_mbox *mb)
  */
 int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
 {
-	struct ec_mbox_buf *b;
-	int ret = check(mb);
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
+	int ret;
 
 	*result = 0;
-	if (ret)
-		return ret;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	ret = ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
 	ret = exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result);
 	kfree(b);
@@ -77,9 +70,9 @@ int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
 }
 
 /**
- * ec_eoe_get_ip() - ask a slave for its IP parameters
+ * ec_eoe_get_ip() - get the IP parameters of a slave
  * @mb: mailbox of the slave
- * @p: parameters, @which says what the slave told
+ * @p: parameters, @which: those that the slave has
  * @result: EC_EOE_OK... of the slave
  *
  * EoE "get IP parameter" (ETG.1000.6 clause 5.7).
@@ -89,15 +82,12 @@ int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
  */
 int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
 {
-	struct ec_mbox_buf *b;
-	int ret = check(mb);
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
+	int ret;
 
 	*result = 0;
-	if (ret)
-		return ret;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	ret = ec_eoe_result_encode(b->tx, sizeof(b->tx), EC_EOE_GET_IP_REQ, 0);
 	ret = exchange(mb, b, ret, EC_EOE_GET_IP_RESP, result);
 	if (ret >= 0)

@@ -15,22 +15,22 @@
 
 #define DRAIN	16	/* messages at most that no transfer expects */
 
-/* a message that was taken out of the mailbox for who reads it later */
+/* a message that waits for its reader */
 struct kept {
 	struct list_head list;
 	u16 len;
 	u8 data[];
 };
 
-/* when somebody who waits has to give up */
+/* when a waiting caller has to give up */
 struct until {
 	u64 ns;
 	const bool *cancel;
 };
 
-static struct until in_ms(u32 ms, const bool *cancel)
+static struct until until_limit(const struct ec_mbox_limit *l)
 {
-	return (struct until){ ktime_get_ns() + (u64)ms * NSEC_PER_MSEC, cancel };
+	return (struct until){ ktime_get_ns() + (u64)l->timeout_ms * NSEC_PER_MSEC, l->cancel };
 }
 
 /**
@@ -107,8 +107,8 @@ unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page)
  * @lock: its @sdo_lock or @lock
  * @ms: the slave's worker waits at most so long; 0: as long as it takes
  *
- * Who comes later than the worker lets it in first, so that those who ask all the time
- * do not keep it off.
+ * Callers that come later than the worker let it in first, so that steady callers do not
+ * keep it off.
  *
  * Context: Process. May sleep.
  * Return: 0; -EINTR; the slave's worker: -ECANCELED when it shall leave, -ETIMEDOUT.
@@ -153,8 +153,8 @@ static void pause_us(unsigned int *us)
 }
 
 /*
- * A slave that takes long is asked ever less often: at most an eighth of the time it has
- * taken so far passes until its reply is seen.
+ * A slow slave is polled ever less often: at most an eighth of the time it has taken so far
+ * passes until the master sees its reply.
  */
 static void pause_longer(unsigned int *us)
 {
@@ -308,7 +308,7 @@ static void flush(struct ec_mbox *mb, unsigned int left)
 	}
 }
 
-/* A VoE message somebody may read later; the oldest go when there are too many. */
+/* Keep a VoE message for its reader; of too many the oldest are dropped. */
 static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 {
 	struct kept *k;
@@ -335,8 +335,8 @@ static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 /**
  * ec_mbox_keep_voe() - are there readers of VoE messages?
  * @mb: mailbox of the slave
- * @on: keep those that come while somebody else uses the mailbox; false: drop
- *	them, those that are kept too
+ * @on: keep those that arrive while another caller uses the mailbox; false: drop
+ *	them, and those that are kept
  *
  * Context: Process.
  */
@@ -370,7 +370,7 @@ static int take_kept(struct ec_mbox *mb, u8 *rx)
 	return len;
 }
 
-/* What comes unasked goes where it belongs. True: it was such a message. */
+/* Keep a message without a request. True: it was one. */
 static bool unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
 {
 	if (h->type == EC_MBOX_VOE) {
@@ -392,12 +392,11 @@ static int error_reply(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8
 }
 
 /**
- * ec_mbox_drain() - empty the mailbox of what nobody waits for
+ * ec_mbox_drain() - empty the mailbox of messages that no caller waits for
  * @mb: mailbox of a slave with mailbox, @lock held
  * @b: buffers
  *
- * Emergencies and VoE messages are kept, what an earlier exchange has left is
- * thrown away.
+ * Emergencies and VoE messages are kept, replies to earlier requests are discarded.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0 or as ec_xfer().
@@ -480,7 +479,7 @@ static void encode(struct ec_mbox_buf *b, const struct ec_mbox_hdr *h, u16 size)
 
 /*
  * A full mailbox (working counter 0) is tried again; the slave may wait until its own
- * message is read. A lost frame is not: the message may have arrived, and the answer tells.
+ * message is read. A lost frame is not: the message may have arrived, and the answer shows that.
  */
 static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		const struct until *until)
@@ -509,8 +508,8 @@ static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 
 /*
  * Wait for a message of one protocol: bytes behind the mailbox header; or
- * -errno, that of a mailbox error reply, too. What comes unasked is kept,
- * answers of other protocols are of nobody: who asks holds the lock.
+ * -errno, also that of a mailbox error reply. Messages without a request are kept;
+ * answers of other protocols are late and discarded, since a requester holds the lock.
  */
 static int recv(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, const struct until *until)
 {
@@ -529,7 +528,7 @@ static int recv(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, const struct
 				return ret;
 			us = 20;
 		}
-		/* also a slave that talks without end has to answer in time */
+		/* also a slave that sends messages without end has to answer in time */
 		ret = over(mb, until);
 		if (ret)
 			return ret;
@@ -558,6 +557,23 @@ int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 	return 0;
 }
 
+/**
+ * ec_mbox_alloc() - check that a protocol can be used, and allocate buffers for it
+ * @mb: mailbox of the slave
+ * @protocol: EC_SII_PROTO_*
+ * @message: bytes behind the mailbox header it needs at least
+ *
+ * Context: Process. May sleep.
+ * Return: buffers, for kfree(); ERR_PTR(): as ec_mbox_check(), or -ENOMEM.
+ */
+struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t message)
+{
+	int ret = ec_mbox_check(mb, protocol, message);
+	struct ec_mbox_buf *b = ret ? ERR_PTR(ret) : kmalloc(sizeof(*b), GFP_KERNEL);
+
+	return b ?: ERR_PTR(-ENOMEM);
+}
+
 /* In INIT there is no mailbox. The lock is held: a slave that only passes INIT is waited for. */
 static int off(const struct ec_mbox *mb)
 {
@@ -566,22 +582,22 @@ static int off(const struct ec_mbox *mb)
 }
 
 /**
- * ec_mbox_ask() - send one message, wait for the answer
- * @mb: mailbox of a slave that ec_mbox_check() is content with
- * @a: what is asked
+ * ec_mbox_request() - send one message, wait for the answer
+ * @mb: mailbox that ec_mbox_check() has accepted
+ * @r: request
  * @b: message in @tx, the answer will be in @rx
  * @len: bytes of the message
  *
- * Nobody else asks this slave meanwhile. Emergencies and VoE messages that
- * come first go where they belong.
+ * The mailbox is locked meanwhile. Emergencies and VoE messages that arrive before the
+ * answer are kept.
  *
  * Context: Process. Waits for bus traffic.
- * Return: what @a->rx said last; -EAGAIN in INIT; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
+ * Return: the last value of @r->rx; -EAGAIN in INIT; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
  * -EBADMSG for a message whose header is wrong; the errno of a mailbox error
  * reply; or as ec_xfer().
  */
-int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
-		size_t len)
+int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
+		    size_t len)
 {
 	struct until until;
 	int ret = ec_mbox_lock(mb, &mb->lock, 0);
@@ -591,20 +607,20 @@ int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_
 	renew(mb);
 	ret = off(mb);
 	/* after an answer nothing of an earlier exchange can come any more */
-	if (!ret && a->first && !mb->answered)
+	if (!ret && r->first && !mb->answered)
 		ret = ec_mbox_drain(mb, b);
 	mb->answered = false;
-	until = in_ms(a->timeout_ms, a->cancel);
+	until = until_limit(&r->limit);
 	if (!ret)
-		ret = send(mb, a->type, b, len, &until);
+		ret = send(mb, r->type, b, len, &until);
 	if (ret)
 		goto out;
 	do {
-		ret = recv(mb, a->type, b, &until);
+		ret = recv(mb, r->type, b, &until);
 		if (ret >= 0)
-			ret = a->rx(a->ctx, b->rx, ret);
+			ret = r->rx(r->ctx, b->rx, ret);
 		if (ret == EC_WAIT)
-			until = in_ms(a->timeout_ms, a->cancel);
+			until = until_limit(&r->limit);
 	} while (ret == EC_WAIT || (ret == EC_STALE && ktime_get_ns() <= until.ns));
 	if (ret == EC_STALE)
 		ret = -ETIMEDOUT;
@@ -615,8 +631,8 @@ out:
 }
 
 /**
- * ec_mbox_tell() - send one message that has no answer
- * @mb: mailbox of a slave that ec_mbox_check() is content with
+ * ec_mbox_send() - send one message that has no answer
+ * @mb: mailbox that ec_mbox_check() has accepted
  * @type: enum ec_mbox_type
  * @b: message in @tx
  * @len: bytes of the message
@@ -626,10 +642,10 @@ out:
  * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as
  * ec_xfer().
  */
-int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
+int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit)
 {
-	struct until until = in_ms(limit->timeout_ms, limit->cancel);
+	struct until until = until_limit(limit);
 	int ret = ec_mbox_lock(mb, &mb->lock, 0);
 
 	if (ret)
@@ -640,8 +656,8 @@ int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 	return ret;
 }
 
-/* One look for a VoE message with the lock held: its length, or -ENOMSG, or -errno. */
-static int look_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
+/* Poll for a VoE message with the lock held: its length, or -ENOMSG, or -errno. */
+static int poll_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
 {
 	struct ec_mbox_hdr h;
 	int ret = take_kept(mb, b->rx);
@@ -662,13 +678,13 @@ static int look_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
 
 /**
  * ec_mbox_wait_voe() - wait for a VoE message
- * @mb: mailbox of a slave that ec_mbox_check() is content with
+ * @mb: mailbox that ec_mbox_check() has accepted
  * @b: the message is in @rx
  * @blind: one access to the mailbox without a look whether it is full, no wait
  * @limit: when to give up; @timeout_ms 0: no wait
  *
- * It may have come earlier, while somebody else used the mailbox. Others can
- * use it meanwhile.
+ * The message may have arrived earlier, during the exchange of another caller. Others can
+ * use the mailbox meanwhile.
  *
  * Context: Process. Waits for bus traffic.
  * Return: bytes behind the mailbox header; -ENOMSG, when @blind and there is
@@ -678,16 +694,16 @@ static int look_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit)
 {
-	struct until until = in_ms(limit->timeout_ms, limit->cancel);
+	struct until until = until_limit(limit);
 	unsigned int us = 20;
 	int ret, end;
 
 	for (;;) {
 		ret = take_kept(mb, b->rx);
-		/* who holds the lock keeps what comes for us */
+		/* another holder of the lock keeps our messages */
 		if (ret == -ENOMSG && !down_trylock(&mb->lock)) {
 			renew(mb);
-			ret = off(mb) ?: look_voe(mb, b, blind);
+			ret = off(mb) ?: poll_voe(mb, b, blind);
 			up(&mb->lock);
 		}
 		if (ret != -ENOMSG || blind)

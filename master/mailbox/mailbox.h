@@ -15,7 +15,7 @@ struct ec_emerg;
 struct ec_links;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
-#define EC_MBOX_KEPT	16	/* messages kept for who reads them later */
+#define EC_MBOX_KEPT	16	/* messages kept for their reader */
 
 /** struct ec_mbox - mailbox of a slave */
 struct ec_mbox {
@@ -44,16 +44,16 @@ struct ec_mbox {
 	u8 seen;
 	/** @counts: the slave counts its messages */
 	bool counts;
-	/** @repeats: it was asked to put its last message there again */
+	/** @repeats: the master has requested its last message again */
 	bool repeats;
 	/** @answered: the last exchange has ended with its answer */
 	bool answered;
 	/** @renew: the slave has been in INIT: the next holder of @lock resets these members */
 	bool renew;
 
-	/** @awaits: which of the two locks the slave's worker waits for, NULL: none */
+	/** @awaits: lock that the slave's worker waits for, NULL: none */
 	const struct semaphore *awaits;
-	/** @turn: callers that wait until the worker has it */
+	/** @turn: callers that wait until the worker has that lock */
 	wait_queue_head_t turn;
 
 	/** @unasked_lock: protects the members below and what @emerg points to */
@@ -83,7 +83,7 @@ struct ec_mbox_buf {
 /**
  * struct ec_mbox_limit - when a transfer has to give up
  * @timeout_ms: per message, 0: the protocol's default
- * @cancel: NULL, or set to true by somebody who wants it to end
+ * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
 struct ec_mbox_limit {
 	u32 timeout_ms;
@@ -91,20 +91,18 @@ struct ec_mbox_limit {
 };
 
 /**
- * struct ec_mbox_ask - a question to the slave
+ * struct ec_mbox_request - a message to the slave that has an answer
  * @type: enum ec_mbox_type
- * @first: of a transfer: what an earlier one has left is thrown away
- * @timeout_ms: for the answer
- * @cancel: as in struct ec_mbox_limit
- * @rx: looks at each message of @type: 0 and EC_MORE end the wait, EC_STALE
+ * @first: of a transfer: replies to earlier ones are discarded
+ * @limit: for the answer; @timeout_ms is not 0
+ * @rx: takes each message of @type: 0 and EC_MORE end the wait, EC_STALE
  *	goes on, EC_WAIT goes on with a new time limit, or -errno
  * @ctx: for @rx
  */
-struct ec_mbox_ask {
+struct ec_mbox_request {
 	u8 type;
 	bool first;
-	u32 timeout_ms;
-	const bool *cancel;
+	struct ec_mbox_limit limit;
 	int (*rx)(void *ctx, const u8 *rx, size_t len);
 	void *ctx;
 };
@@ -120,20 +118,30 @@ static inline bool ec_mbox_present(const struct ec_mbox *mb)
 	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
 }
 
+/* the limit that a caller has set, if any, with the protocol's timeout as default */
+static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set, u32 timeout_ms)
+{
+	struct ec_mbox_limit limit = set ? *set : (struct ec_mbox_limit){ 0 };
+
+	limit.timeout_ms = limit.timeout_ms ?: timeout_ms;
+	return limit;
+}
+
 void ec_mbox_init(struct ec_mbox *mb);
 unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page);
 void ec_mbox_reset(struct ec_mbox *mb);
 int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms);
 int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message);
-int ec_mbox_ask(struct ec_mbox *mb, const struct ec_mbox_ask *a, struct ec_mbox_buf *b,
-		size_t len);
-int ec_mbox_tell(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
+struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t message);
+int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
+		    size_t len);
+int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
 int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b);
 int ec_mbox_forget(struct ec_mbox *mb);
 void ec_mbox_poll(struct ec_mbox *mb);
 
-/* VoE: messages nobody has asked for */
+/* VoE: messages without a request */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit);

@@ -5,6 +5,25 @@
 #include "mailbox.h"
 #include "../wire/mbox.h"
 
+static const struct {
+	int err;
+	const char *text;
+} fail_texts[] = {
+	{ -ECOMM, "mailbox error reply, unknown code; see the kernel log" },
+	{ -EAGAIN, "not in PREOP or above, so the mailbox is off; request PREOP first" },
+	{ -ETIMEDOUT, "no reply in time" },
+	{ -EIO, "no answer at the station address (working counter 0)" },
+	{ -EBADMSG, "invalid reply (length or content of the mailbox message)" },
+	{ -EPROTO, "invalid reply (length or content of the mailbox message)" },
+	{ -EMSGSIZE, "the mailbox is too small for the message, or larger than a datagram" },
+	{ -ECANCELED, "disconnected during the transfer" },
+	{ -EINTR, "the transfer was interrupted by a signal" },
+	{ -ENOMEM, "no memory for the transfer" },
+	{ -ENODEV, "the main device is missing or has no link; check the cable" },
+	{ -ENETDOWN, "the main device is missing or has no link; check the cable" },
+	{ -EBUSY, "the main device has no free transmit buffer" },
+};
+
 /**
  * ec_mbox_fail_text() - one line for a failed transfer
  * @ret: -errno of the transfer
@@ -20,55 +39,19 @@
 const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t size)
 {
 	u16 detail = ec_mbox_errno_detail(ret);
+	unsigned int i;
 
 	if (detail) {
 		scnprintf(buf, size, "mailbox error reply 0x%04x (%s)", detail,
 			  ec_mbox_error_text(detail));
 		return buf;
 	}
-	switch (ret) {
-	case -ECOMM:
-		scnprintf(buf, size, "mailbox error reply, unknown code; see the kernel log");
-		break;
-	case -EPROTONOSUPPORT:
+	if (ret == -EPROTONOSUPPORT)
 		scnprintf(buf, size, "no %s mailbox", protocol);
-		break;
-	case -EAGAIN:
-		scnprintf(buf, size,
-			  "not in PREOP or above, so the mailbox is off; request PREOP first");
-		break;
-	case -ETIMEDOUT:
-		scnprintf(buf, size, "no reply in time");
-		break;
-	case -EIO:
-		scnprintf(buf, size, "no answer at the station address (working counter 0)");
-		break;
-	case -EBADMSG:
-	case -EPROTO:
-		scnprintf(buf, size, "invalid reply (length or content of the mailbox message)");
-		break;
-	case -EMSGSIZE:
-		scnprintf(buf, size,
-			  "the mailbox is too small for the message, or larger than a datagram");
-		break;
-	case -ECANCELED:
-		scnprintf(buf, size, "disconnected during the transfer");
-		break;
-	case -EINTR:
-		scnprintf(buf, size, "the transfer was interrupted by a signal");
-		break;
-	case -ENOMEM:
-		scnprintf(buf, size, "no memory for the transfer");
-		break;
-	case -ENODEV:
-	case -ENETDOWN:
-		scnprintf(buf, size, "the main device is missing or has no link; check the cable");
-		break;
-	case -EBUSY:
-		scnprintf(buf, size, "the main device has no free transmit buffer");
-		break;
-	default:
+	else
 		scnprintf(buf, size, "transfer failed (%pe)", ERR_PTR(ret));
-	}
+	for (i = 0; i < ARRAY_SIZE(fail_texts); i++)
+		if (fail_texts[i].err == ret)
+			scnprintf(buf, size, "%s", fail_texts[i].text);
 	return buf;
 }

@@ -26,23 +26,19 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 		    const struct ec_mbox_limit *limit)
 {
-	struct ec_mbox_ask ask = {
+	struct ec_mbox_request req = {
 		.type = EC_MBOX_SOE, .first = true, .rx = rx, .ctx = a,
-		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_SOE_TIMEOUT_MS,
-		.cancel = limit ? limit->cancel : NULL,
+		.limit = ec_mbox_limit(limit, EC_SOE_TIMEOUT_MS),
 	};
-	int ret = ec_mbox_check(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
-	struct ec_mbox_buf *b;
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
 	char name[12];
+	int ret;
 
-	if (ret)
-		return ret;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	ret = ec_soe_tx(a, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
 	if (ret >= 0)
-		ret = ec_mbox_ask(mb, &ask, b, ret);
+		ret = ec_mbox_request(mb, &req, b, ret);
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "%s %s of drive %u, error 0x%04x",
 			    a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive,

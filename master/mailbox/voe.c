@@ -4,14 +4,6 @@
 #include "voe.h"
 #include "../wire/voe.h"
 
-static struct ec_mbox_limit or_default(const struct ec_mbox_limit *limit)
-{
-	return (struct ec_mbox_limit){
-		.timeout_ms = limit && limit->timeout_ms ? limit->timeout_ms : EC_VOE_TIMEOUT_MS,
-		.cancel = limit ? limit->cancel : NULL,
-	};
-}
-
 /**
  * ec_voe_write() - send a message; there is no answer
  * @mb: mailbox of the slave
@@ -27,20 +19,17 @@ static struct ec_mbox_limit or_default(const struct ec_mbox_limit *limit)
 int ec_voe_write(struct ec_mbox *mb, const struct ec_voe_hdr *h, const u8 *data, size_t size,
 		 const struct ec_mbox_limit *limit)
 {
-	struct ec_mbox_limit l = or_default(limit);
-	int ret = ec_mbox_check(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
-	struct ec_mbox_buf *b;
+	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_VOE_TIMEOUT_MS);
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
 	struct ec_wbuf w;
+	int ret;
 
-	if (ret)
-		return ret;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	w = ec_wbuf(b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
 	ec_voe_hdr_encode(&w, h);
 	ec_wbuf_bytes(&w, data, size);
-	ret = w.bad ? -EMSGSIZE : ec_mbox_tell(mb, EC_MBOX_VOE, b, w.p - b->tx, &l);
+	ret = w.bad ? -EMSGSIZE : ec_mbox_send(mb, EC_MBOX_VOE, b, w.p - b->tx, &l);
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "VoE write, vendor 0x%08x, type 0x%04x, %zu byte(s)",
 			    h->vendor, h->type, size);
@@ -75,7 +64,7 @@ static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t
  * ec_mbox_keep_voe().
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; -ENOBUFS when there is more than @cap, then the message is gone;
+ * Return: 0; -ENOBUFS when there is more than @cap, then the message is lost;
  * -ENOMSG when @blind and there is none; -ETIMEDOUT; -EBADMSG;
  * -EPROTONOSUPPORT without VoE; -EMSGSIZE; -EAGAIN in INIT; -EINTR; -ECANCELED;
  * -ENOMEM; the errno of a mailbox error reply.
@@ -83,16 +72,13 @@ static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t
 int ec_voe_read(struct ec_mbox *mb, bool blind, struct ec_voe_hdr *h, u8 *data, size_t cap,
 		size_t *size, const struct ec_mbox_limit *limit)
 {
-	struct ec_mbox_limit l = or_default(limit);
-	int ret = ec_mbox_check(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
-	struct ec_mbox_buf *b;
+	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_VOE_TIMEOUT_MS);
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_VOE, EC_VOE_HDR);
+	int ret;
 
 	*size = 0;
-	if (ret)
-		return ret;
-	b = kmalloc(sizeof(*b), GFP_KERNEL);
-	if (!b)
-		return -ENOMEM;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
 	ret = ec_mbox_wait_voe(mb, b, blind, &l);
 	if (ret >= 0)
 		ret = take(b->rx, ret, h, data, cap, size);

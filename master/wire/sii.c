@@ -166,7 +166,7 @@ static size_t size_limit(const u8 *img)
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: total bytes that must be had, more than @have, or 0 when nothing
  * worth reading follows: the end marker is there, or the rest is blank or
- * garbage. ec_sii_used() then tells how much to keep.
+ * garbage. ec_sii_used() then returns how much to keep.
  */
 int ec_sii_needed(const u8 *img, size_t have)
 {

@@ -68,7 +68,7 @@ enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw
 {
 	struct ec_sii_cat cat = { .type = 0 };
 	struct ec_sii_iter it;
-	bool odd = false;
+	bool misfit = false;
 	int ret;
 
 	memset(f, 0, sizeof(*f));
@@ -82,9 +82,9 @@ enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw
 	}
 	ec_sii_iter_init(&it, img, len);
 	while ((ret = ec_sii_iter_next(&it, &cat)) == 1) {
-		if (odd || entries_fit(&cat))
+		if (misfit || entries_fit(&cat))
 			continue;
-		odd = true;
+		misfit = true;
 		f->type = cat.type;
 		f->offset = cat.offset;
 	}
@@ -99,5 +99,5 @@ enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw
 		return f->kind = EC_SII_FLAW_NO_END;
 	if (f->end > f->declared)
 		return f->kind = EC_SII_FLAW_BEYOND;
-	return f->kind = odd ? EC_SII_FLAW_ENTRY : EC_SII_FLAW_NONE;
+	return f->kind = misfit ? EC_SII_FLAW_ENTRY : EC_SII_FLAW_NONE;
 }
