@@ -115,7 +115,7 @@ int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
 	size_t least = sizeof(struct ec_exchange_buffer);
 
 	m->exchange_size = arg->exchange_size;
-	m->exchange = ec_master_map(m, arg->exchange_size, PROT_READ | PROT_WRITE,
+	m->exchange = ec_master_map(m, NULL, arg->exchange_size, PROT_READ | PROT_WRITE,
 				    EC_MMAP_EXCHANGE);
 	if (!m->exchange)
 		return -errno;

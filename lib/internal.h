@@ -15,7 +15,7 @@
 #include "../include/uapi/ethercat.h"
 
 /*
- * @next: what the next send shall do; @sent, @received: bit n is domain n: sent since the
+ * @next: argument of the next send; @sent, @received: bit n is domain n: sent since the
  * last receive, received and not processed. Only the cyclic caller touches them.
  *
  * @frozen: ecrt_master_setup_domain_memory() was called; @preset_size: bytes of
@@ -137,9 +137,7 @@ static inline int ec_inactive(const struct ec_master *m)
 
 void ec_master_free_session(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
-void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset);
-
-void ec_touch_pages(volatile __u8 *p, size_t size);
+void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 offset);
 
 /* memory.c: process data before activation */
 int ec_memory_frozen(const struct ec_master *m, const char *what);
@@ -178,6 +176,14 @@ static inline const struct ec_status *ec_active_status(const struct ec_master *m
 	return m && m->active ? m->status : NULL;
 }
 
+/* configurations whose state is in the mapped status page */
+static inline size_t ec_status_configs(const struct ec_master *m)
+{
+	size_t bytes = m->status_size - offsetof(struct ec_status, configs);
+
+	return bytes < EC_STATUS_CONFIGS ? bytes : EC_STATUS_CONFIGS;
+}
+
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
 	return &m->next;
@@ -188,15 +194,8 @@ static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 	return d->master;
 }
 
-static inline void *ec_zalloc(size_t size)
-{
-	return calloc(1, size);
-}
-
-static inline void ec_free(void *p)
-{
-	free(p);
-}
+#define ec_zalloc(size) calloc(1, size)
+#define ec_free(p) free(p)
 
 /* what a function returns that makes no handle */
 static inline void *ec_no_handle(int err)
@@ -210,17 +209,13 @@ static inline struct ec_app_request **ec_request_list(struct ec_master *m)
 	return &m->requests;
 }
 
-static inline bool ec_request_memory(const struct ec_master *m)
-{
-	return m->area;
-}
-
+/* NULL before activation */
 static inline struct ec_request_record *ec_request_record(const struct ec_master *m,
 							  unsigned int index, __u8 **shared)
 {
 	struct ec_request_record *rec;
 
-	if (index >= m->area->request_count)
+	if (!m->area || index >= m->area->request_count)
 		return NULL;
 	rec = (struct ec_request_record *)(m->area_base + m->area->requests) + index;
 	*shared = m->area_base + rec->data;
@@ -252,7 +247,7 @@ static inline __u32 *ec_emerg_cleared(const struct ec_slave_config *sc)
 	return &((struct ec_slave_config *)sc)->overruns;
 }
 
-/* told by the next send, or seen by the cycle the kernel runs */
+/* the next send notifies the master; a cycle that the kernel runs sees the counter */
 static inline void ec_request_started(struct ec_master *m)
 {
 	m->next.flags |= EC_SEND_FLAG_REQUESTS;

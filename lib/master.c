@@ -112,23 +112,17 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 
 /* activation ---------------------------------------------------------------*/
 
-void ec_touch_pages(volatile __u8 *p, size_t size)
+/*
+ * Maps @size bytes, at an address or anywhere, and touches each page, so that the cycle
+ * need not.
+ */
+void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 offset)
 {
 	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
-
-	for (i = 0; i < size; i += page)
-		p[i] = p[i];
-}
-
-/* Maps @size bytes and touches each page, so that the cycle need not. */
-void *ec_master_map(struct ec_master *m, size_t size, int prot, __u64 offset)
-{
-	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
+	int flags = MAP_SHARED | MAP_POPULATE | (at ? MAP_FIXED : 0);
 	volatile __u8 *p;
-	void *at;
 
-	at = mmap(NULL, size, prot, MAP_SHARED | MAP_POPULATE, m->fd,
-		  (off_t)offset);
+	at = mmap(at, size, prot, flags, m->fd, (off_t)offset);
 	if (at == MAP_FAILED)
 		return NULL;
 	for (p = at, i = 0; i < size; i += page) {
@@ -163,8 +157,7 @@ static int map_requests(struct ec_master *m, size_t size)
 	if (!size)
 		return 0;
 	m->area_size = size;
-	m->area = ec_master_map(m, size, PROT_READ | PROT_WRITE,
-				EC_MMAP_REQUESTS);
+	m->area = ec_master_map(m, NULL, size, PROT_READ | PROT_WRITE, EC_MMAP_REQUESTS);
 	if (!m->area)
 		return -errno;
 	m->area_base = (__u8 *)m->area;
@@ -179,7 +172,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 	if (arg->status_size < sizeof(struct ec_status))
 		return -EPROTO;
 	m->status_size = arg->status_size;
-	m->status = ec_master_map(m, arg->status_size, PROT_READ, EC_MMAP_STATUS);
+	m->status = ec_master_map(m, NULL, arg->status_size, PROT_READ, EC_MMAP_STATUS);
 	if (!m->status)
 		return -errno;
 	if (m->status->magic != EC_STATUS_MAGIC)
@@ -254,7 +247,7 @@ err_deactivate:
 	for (d = master->domains; d; d = d->next)
 		d->data = NULL;
 	ec_master_unmap(master);
-	/* what another application has started goes on */
+	/* a detached session of another application continues */
 	if (!arg.taken_over)
 		ec_command(master, EC_IOC_DEACTIVATE, NULL);
 	return ret;
@@ -318,7 +311,7 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	master->next.app_time = app_time;
 	if (!master->active)
 		return ec_command(master, EC_IOC_APP_TIME, &arg);
-	/* goes with the next send: no system call of its own */
+	/* the next send passes it: no system call of its own */
 	master->next.flags |= EC_SEND_FLAG_APP_TIME;
 	return 0;
 }

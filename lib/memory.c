@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * Process data before activation: memory of our own, at an address that stays.
+ * Process data before activation: memory of the library, at an address that stays.
  * Activation gives its content to the kernel as what the image begins with;
  * then the image itself takes its place, or, when the kernel runs the cycle,
  * the memory is kept.
@@ -87,19 +87,12 @@ int ec_memory_map_image(struct ec_master *m, size_t size)
 {
 	void *at;
 
-	if (!m->image) {
-		m->image_size = size;
-		m->image = ec_master_map(m, size, PROT_READ | PROT_WRITE,
-					 EC_MMAP_IMAGE);
-		return m->image ? 0 : -errno;
-	}
-	if (size != m->image_size)
+	if (m->image && size != m->image_size)
 		return -EPROTO;
-	at = mmap(m->image, size, PROT_READ | PROT_WRITE,
-		  MAP_SHARED | MAP_POPULATE | MAP_FIXED, m->fd,
-		  (off_t)EC_MMAP_IMAGE);
-	if (at == MAP_FAILED)
+	at = ec_master_map(m, m->image, size, PROT_READ | PROT_WRITE, EC_MMAP_IMAGE);
+	if (!at)
 		return -errno;
-	ec_touch_pages(m->image, size);
+	m->image = at;
+	m->image_size = size;
 	return 0;
 }

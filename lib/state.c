@@ -68,7 +68,7 @@ int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 
 /*
  * The kernel has AL states for all links together only: with two links, one
- * that nobody answers on reports none and the others report the sum.
+ * without replies reports none, and the other one reports the sum.
  */
 int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 			   ec_master_link_state_t *state)
@@ -98,36 +98,5 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 	state->slaves_responding = dev->slaves;
 	state->al_states = dev->slaves ? info.al_states & 0xf : 0;
 	state->link_up = !!dev->link_up;
-	return 0;
-}
-
-static void state_from_page(ec_slave_config_state_t *state, __u8 byte)
-{
-	state->online = !!(byte & EC_STATUS_SC_ONLINE);
-	state->operational = !!(byte & EC_STATUS_SC_OP);
-	state->al_state = byte & EC_STATUS_SC_AL;
-}
-
-int ecrt_slave_config_state(const ec_slave_config_t *sc,
-			    ec_slave_config_state_t *state)
-{
-	struct ec_ioc_config arg = { 0 };
-	const struct ec_master *m;
-	int ret;
-
-	if (!sc || !state)
-		return -EINVAL;
-	m = sc->master;
-	if (m->active && sc->index < EC_STATUS_CONFIGS &&
-	    offsetof(struct ec_status, configs) + sc->index < m->status_size) {
-		state_from_page(state,
-				ec_status_read(m->status->configs[sc->index]));
-		return 0;
-	}
-	arg.index = sc->index;
-	ret = ec_command(m, EC_IOC_CONFIG, &arg);
-	if (ret)
-		return ret;
-	state_from_page(state, (__u8)arg.state);
 	return 0;
 }

@@ -81,11 +81,9 @@ int ecrt_slave_config_state_timeout(ec_slave_config_t *sc, ec_al_state_t from_st
 		.timeout_ms = timeout_ms,
 	};
 
-	if (sc && (!is_al_state(from_state) || !is_al_state(to_state)))
-		return ec_fail_sc(sc, -EINVAL, "set timeout from state %d to %d", (int)from_state,
-				  (int)to_state);
-	return ec_do_sc(sc, EC_IOC_SC_TIMEOUT, &arg, "set timeout from state %d to %d",
-			(int)from_state, (int)to_state);
+	return ec_do_valid(sc, is_al_state(from_state) && is_al_state(to_state),
+			   EC_IOC_SC_TIMEOUT, &arg, "set timeout from state %d to %d",
+			   (int)from_state, (int)to_state);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_state_timeout);
 
@@ -99,9 +97,8 @@ static int add_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, uint
 		.size = ec_u32(size), .data = (uintptr_t)data,
 	};
 
-	if (sc && (!data || !size))
-		return ec_fail_sc(sc, -EINVAL, "store SDO 0x%04x:%02x", index, subindex);
-	return ec_do_sc(sc, EC_IOC_SC_SDO, &arg, "store SDO 0x%04x:%02x", index, subindex);
+	return ec_do_valid(sc, data && size, EC_IOC_SC_SDO, &arg, "store SDO 0x%04x:%02x", index,
+			   subindex);
 }
 
 int ecrt_slave_config_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex,
@@ -152,11 +149,11 @@ int ecrt_slave_config_idn(ec_slave_config_t *sc, uint8_t drive_no, uint16_t idn,
 		.config = ec_sc_index(sc), .idn = idn, .drive = drive_no, .state = (__u8)state,
 		.size = ec_u32(size), .data = (uintptr_t)data,
 	};
+	bool valid = data && size && drive_no < DRIVES &&
+		     (state == EC_AL_STATE_PREOP || state == EC_AL_STATE_SAFEOP);
 
-	if (sc && (!data || !size || drive_no >= DRIVES ||
-		   (state != EC_AL_STATE_PREOP && state != EC_AL_STATE_SAFEOP)))
-		return ec_fail_sc(sc, -EINVAL, "store IDN 0x%04x of drive %u", idn, drive_no);
-	return ec_do_sc(sc, EC_IOC_SC_IDN, &arg, "store IDN 0x%04x of drive %u", idn, drive_no);
+	return ec_do_valid(sc, valid, EC_IOC_SC_IDN, &arg, "store IDN 0x%04x of drive %u", idn,
+			   drive_no);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_idn);
 

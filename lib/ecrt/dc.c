@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
 /*
- * Distributed clocks. The cyclic calls only note what the next send shall do, and read
- * what the last receive has left in the status page.
+ * Distributed clocks. The cyclic calls only note clock datagrams for the next send, and
+ * read the results of the last receive from the status page.
  */
 #include "ecrt_int.h"
 

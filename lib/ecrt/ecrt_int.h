@@ -84,13 +84,17 @@ struct ec_voe_handler {
 /*
  * ec_do() gives a command. When the command fails, one line reports @fmt, which is an
  * infinitive without "to", and the reason that the command left. ec_fail() reports a call
- * that fails without a command. The other two name a slave configuration at the end of the
- * line. Without a handle nothing is reported. Each returns 0 or -errno.
+ * that fails without a command. Those with a slave configuration name it at the end of the
+ * line; ec_do_valid() gives no command when an argument is invalid. Without a handle nothing is
+ * reported. Each returns 0 or -errno.
  */
 #define ec_do(m, cmd, arg, ...) \
 	ec_complain(m, NULL, ec_give(m, cmd, arg), true, __VA_ARGS__)
 #define ec_do_sc(sc, cmd, arg, ...) \
 	ec_complain(ec_sc_master(sc), sc, ec_give(ec_sc_master(sc), cmd, arg), true, __VA_ARGS__)
+#define ec_do_valid(sc, valid, cmd, arg, ...) \
+	(!(sc) || (valid) ? ec_do_sc(sc, cmd, arg, __VA_ARGS__) : \
+			    ec_fail_sc(sc, -EINVAL, __VA_ARGS__))
 #define ec_fail(m, err, ...) ec_complain(m, NULL, err, false, __VA_ARGS__)
 #define ec_fail_sc(sc, err, ...) ec_complain(ec_sc_master(sc), sc, err, false, __VA_ARGS__)
 

@@ -64,8 +64,10 @@ int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
 }
 EXPORT_SYMBOL_GPL(ecrt_master_get_slave);
 
-static int check_sm(const ec_master_t *master, uint8_t sync_index)
+static int check(const ec_master_t *master, const void *result, uint8_t sync_index)
 {
+	if (!master || !result)
+		return -EINVAL;
 	if (sync_index < EC_MAX_SYNC_MANAGERS)
 		return 0;
 	return ec_fail(master, -ENOENT, "get SM%u of at most %u", sync_index,
@@ -76,14 +78,10 @@ int ecrt_master_get_sync_manager(ec_master_t *master, uint16_t slave_position,
 				 uint8_t sync_index, ec_sync_info_t *sync)
 {
 	struct ec_ioc_sm sm = { .position = slave_position, .sm = sync_index };
-	int ret;
+	int ret = check(master, sync, sync_index) ?:
+		  ec_do(master, EC_IOC_SM, &sm, "get SM%u of slave %u", sync_index,
+			slave_position);
 
-	if (!master || !sync)
-		return -EINVAL;
-	ret = check_sm(master, sync_index);
-	if (ret)
-		return ret;
-	ret = ec_do(master, EC_IOC_SM, &sm, "get SM%u of slave %u", sync_index, slave_position);
 	if (ret)
 		return ret;
 	sync->index = sync_index;
@@ -99,15 +97,10 @@ int ecrt_master_get_pdo(ec_master_t *master, uint16_t slave_position, uint8_t sy
 			uint16_t pos, ec_pdo_info_t *pdo)
 {
 	struct ec_ioc_pdo p = { .position = slave_position, .sm = sync_index, .pdo_pos = pos };
-	int ret;
+	int ret = check(master, pdo, sync_index) ?:
+		  ec_do(master, EC_IOC_PDO, &p, "get PDO %u of SM%u of slave %u", pos,
+			sync_index, slave_position);
 
-	if (!master || !pdo)
-		return -EINVAL;
-	ret = check_sm(master, sync_index);
-	if (ret)
-		return ret;
-	ret = ec_do(master, EC_IOC_PDO, &p, "get PDO %u of SM%u of slave %u", pos, sync_index,
-		    slave_position);
 	if (ret)
 		return ret;
 	pdo->index = p.index;
@@ -124,15 +117,11 @@ int ecrt_master_get_pdo_entry(ec_master_t *master, uint16_t slave_position, uint
 		.position = slave_position, .sm = sync_index, .pdo_pos = pdo_pos,
 		.entry_pos = entry_pos,
 	};
-	int ret;
+	int ret = check(master, entry, sync_index) ?:
+		  ec_do(master, EC_IOC_PDO_ENTRY, &e,
+			"get entry %u of PDO %u of SM%u of slave %u", entry_pos, pdo_pos,
+			sync_index, slave_position);
 
-	if (!master || !entry)
-		return -EINVAL;
-	ret = check_sm(master, sync_index);
-	if (ret)
-		return ret;
-	ret = ec_do(master, EC_IOC_PDO_ENTRY, &e, "get entry %u of PDO %u of SM%u of slave %u",
-		    entry_pos, pdo_pos, sync_index, slave_position);
 	if (ret)
 		return ret;
 	entry->index = e.index;
@@ -141,6 +130,32 @@ int ecrt_master_get_pdo_entry(ec_master_t *master, uint16_t slave_position, uint
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_get_pdo_entry);
+
+/* states -------------------------------------------------------------------*/
+
+/* While active from the status page: no command, no lock. */
+int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t *state)
+{
+	struct ec_ioc_config arg = { .index = ec_sc_index(sc) };
+	const struct ec_status *st;
+	int ret;
+
+	if (!sc || !state)
+		return -EINVAL;
+	st = ec_active_status(ec_sc_master(sc));
+	if (st && arg.index < ec_status_configs(ec_sc_master(sc))) {
+		arg.state = ec_status_read(st->configs[arg.index]);
+	} else {
+		ret = ec_command(ec_sc_master(sc), EC_IOC_CONFIG, &arg);
+		if (ret)
+			return ret;
+	}
+	state->online = !!(arg.state & EC_STATUS_SC_ONLINE);
+	state->operational = !!(arg.state & EC_STATUS_SC_OP);
+	state->al_state = arg.state & EC_STATUS_SC_AL;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_state);
 
 /* clocks -------------------------------------------------------------------*/
 

@@ -33,9 +33,8 @@ int ecrt_slave_config_pdo_assign_add(ec_slave_config_t *sc, uint8_t sync_index, 
 		.pdo = index,
 	};
 
-	if (sc && sync_index >= EC_MAX_SYNC_MANAGERS)
-		return ec_fail_sc(sc, -EINVAL, "assign PDO 0x%04x to SM%u", index, sync_index);
-	return ec_do_sc(sc, EC_IOC_SC_PDO, &arg, "assign PDO 0x%04x to SM%u", index, sync_index);
+	return ec_do_valid(sc, sync_index < EC_MAX_SYNC_MANAGERS, EC_IOC_SC_PDO, &arg,
+			   "assign PDO 0x%04x to SM%u", index, sync_index);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_pdo_assign_add);
 
@@ -45,9 +44,8 @@ int ecrt_slave_config_pdo_assign_clear(ec_slave_config_t *sc, uint8_t sync_index
 		.op = EC_SC_PDO_ASSIGN_CLEAR, .config = ec_sc_index(sc), .sm = sync_index,
 	};
 
-	if (sc && sync_index >= EC_MAX_SYNC_MANAGERS)
-		return ec_fail_sc(sc, -EINVAL, "clear SM%u", sync_index);
-	return ec_do_sc(sc, EC_IOC_SC_PDO, &arg, "clear SM%u", sync_index);
+	return ec_do_valid(sc, sync_index < EC_MAX_SYNC_MANAGERS, EC_IOC_SC_PDO, &arg,
+			   "clear SM%u", sync_index);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_pdo_assign_clear);
 

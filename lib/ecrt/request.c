@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
 /*
- * Requests of all kinds. Starting one writes to shared memory and notes that the next
- * send has to tell; the state is read from there. No command, and nothing is printed, once
- * they are created. The buffer is the request's own, so that it is there before activation
- * and stays where it is.
+ * Requests of all kinds. The start of a request writes to shared memory, and the next send
+ * notifies the master; the state is read from shared memory. Once requests are created they
+ * need no command, and nothing is printed. A request has a buffer of its own, so that the
+ * buffer exists before activation and its address never changes.
  */
 #include "ecrt_int.h"
 
@@ -69,21 +69,21 @@ void ec_app_requests_free(ec_master_t *m)
 int ec_app_requests_place(ec_master_t *m)
 {
 	struct ec_app_request *r;
+	int ret = 0;
 
 	for (r = *ec_request_list(m); r; r = r->next) {
-		r->rec = NULL;
-		if (!ec_request_memory(m))
-			continue;
 		r->rec = ec_request_record(m, r->index, &r->shared);
-		if (!r->rec)
-			return -EPROTO;
+		if (!r->rec) {
+			ret = -EPROTO;
+			continue;
+		}
 		/* the application before may have started it */
 		r->start = r->rec->start;
 		r->op = r->rec->op;
 		if (r->rec->done != r->start)
 			r->state = EC_REQUEST_BUSY;
 	}
-	return 0;
+	return ret;
 }
 
 /**
@@ -110,7 +110,7 @@ ec_request_state_t ec_app_request_state(struct ec_app_request *r)
 }
 
 /**
- * ec_app_request_start() - start a request; the next send tells
+ * ec_app_request_start() - start a request; the next send notifies the master
  * @r: request
  * @op: EC_REQUEST_OP_*
  * @size: bytes to write; registers: to read, too
@@ -150,55 +150,55 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
 /* what several kinds have; a handle may be NULL ------------------------------*/
 
 #define DEFINE_DATA(type, function) \
-uint8_t *function(const type *req) \
+uint8_t *function(type req) \
 { \
 	return req ? req->r.data : NULL; \
 } \
 EXPORT_SYMBOL_GPL(function)
 
-DEFINE_DATA(ec_reg_request_t, ecrt_reg_request_data);
-DEFINE_DATA(ec_sdo_request_t, ecrt_sdo_request_data);
-DEFINE_DATA(ec_soe_request_t, ecrt_soe_request_data);
-DEFINE_DATA(ec_voe_handler_t, ecrt_voe_handler_data);
+DEFINE_DATA(const ec_reg_request_t *, ecrt_reg_request_data);
+DEFINE_DATA(const ec_sdo_request_t *, ecrt_sdo_request_data);
+DEFINE_DATA(const ec_soe_request_t *, ecrt_soe_request_data);
+DEFINE_DATA(const ec_voe_handler_t *, ecrt_voe_handler_data);
 
 #define DEFINE_SIZE(type, function) \
-size_t function(const type *req) \
+size_t function(type req) \
 { \
 	return req ? req->r.size : 0; \
 } \
 EXPORT_SYMBOL_GPL(function)
 
-DEFINE_SIZE(ec_sdo_request_t, ecrt_sdo_request_data_size);
-DEFINE_SIZE(ec_soe_request_t, ecrt_soe_request_data_size);
-DEFINE_SIZE(ec_voe_handler_t, ecrt_voe_handler_data_size);
+DEFINE_SIZE(const ec_sdo_request_t *, ecrt_sdo_request_data_size);
+DEFINE_SIZE(const ec_soe_request_t *, ecrt_soe_request_data_size);
+DEFINE_SIZE(const ec_voe_handler_t *, ecrt_voe_handler_data_size);
 
 /* Some prototypes say const; what such a handle points to never is. */
 #define DEFINE_STATE(type, function) \
-ec_request_state_t function(type *req) \
+ec_request_state_t function(type req) \
 { \
 	return req ? ec_app_request_state((struct ec_app_request *)&req->r) : EC_REQUEST_ERROR; \
 } \
 EXPORT_SYMBOL_GPL(function)
 
-DEFINE_STATE(const ec_reg_request_t, ecrt_reg_request_state);
-DEFINE_STATE(EC_IN_KERNEL ec_sdo_request_t, ecrt_sdo_request_state);
-DEFINE_STATE(EC_IN_KERNEL ec_soe_request_t, ecrt_soe_request_state);
-DEFINE_STATE(ec_voe_handler_t, ecrt_voe_handler_execute);
+DEFINE_STATE(const ec_reg_request_t *, ecrt_reg_request_state);
+DEFINE_STATE(EC_IN_KERNEL ec_sdo_request_t *, ecrt_sdo_request_state);
+DEFINE_STATE(EC_IN_KERNEL ec_soe_request_t *, ecrt_soe_request_state);
+DEFINE_STATE(ec_voe_handler_t *, ecrt_voe_handler_execute);
 
 #define DEFINE_READ(type, function, op) \
-int function(type *req) \
+int function(type req) \
 { \
 	return req ? ec_app_request_start(&req->r, op, 0) : -EINVAL; \
 } \
 EXPORT_SYMBOL_GPL(function)
 
-DEFINE_READ(ec_sdo_request_t, ecrt_sdo_request_read, EC_REQUEST_OP_READ);
-DEFINE_READ(ec_soe_request_t, ecrt_soe_request_read, EC_REQUEST_OP_READ);
-DEFINE_READ(ec_voe_handler_t, ecrt_voe_handler_read, EC_REQUEST_OP_READ);
-DEFINE_READ(ec_voe_handler_t, ecrt_voe_handler_read_nosync, EC_REQUEST_OP_READ_NOW);
+DEFINE_READ(ec_sdo_request_t *, ecrt_sdo_request_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_soe_request_t *, ecrt_soe_request_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_voe_handler_t *, ecrt_voe_handler_read, EC_REQUEST_OP_READ);
+DEFINE_READ(ec_voe_handler_t *, ecrt_voe_handler_read_nosync, EC_REQUEST_OP_READ_NOW);
 
 #define DEFINE_TIMEOUT(type, function) \
-int function(type *req, uint32_t timeout) \
+int function(type req, uint32_t timeout) \
 { \
 	if (!req) \
 		return -EINVAL; \
@@ -207,8 +207,8 @@ int function(type *req, uint32_t timeout) \
 } \
 EXPORT_SYMBOL_GPL(function)
 
-DEFINE_TIMEOUT(ec_sdo_request_t, ecrt_sdo_request_timeout);
-DEFINE_TIMEOUT(ec_soe_request_t, ecrt_soe_request_timeout);
+DEFINE_TIMEOUT(ec_sdo_request_t *, ecrt_sdo_request_timeout);
+DEFINE_TIMEOUT(ec_soe_request_t *, ecrt_soe_request_timeout);
 
 /* registers ----------------------------------------------------------------*/
 

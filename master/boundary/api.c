@@ -24,7 +24,7 @@ int ec_api_create(struct ec_master *m)
 }
 
 /**
- * ec_api_destroy() - nobody in the kernel uses the master any more
+ * ec_api_destroy() - no application in the kernel uses the master any more
  * @m: master whose session has ended
  *
  * Context: Process. May sleep.

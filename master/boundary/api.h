@@ -70,11 +70,6 @@ static inline struct ec_config *ec_api_config(const ec_slave_config_t *sc)
 	return (struct ec_config *)sc;
 }
 
-static inline struct ec_master *ec_api_master(const ec_slave_config_t *sc)
-{
-	return ec_master_of(ec_config_session(ec_api_config(sc)));
-}
-
 /* The active session, or NULL. */
 static inline struct ec_session *ec_api_session(const struct ec_api *api)
 {
@@ -105,7 +100,7 @@ void ec_api_left(struct ec_master *m);
 
 static inline struct ec_master *ec_sc_master(const ec_slave_config_t *sc)
 {
-	return sc ? ec_api_master(sc) : NULL;
+	return sc ? ec_master_of(ec_config_session(ec_api_config(sc))) : NULL;
 }
 
 /* of the handle that an argument names; the call checks for NULL */
@@ -131,6 +126,11 @@ static inline const struct ec_status *ec_active_status(const struct ec_master *m
 	return s ? s->cycle.shared->status : NULL;
 }
 
+static inline size_t ec_status_configs(const struct ec_master *m)
+{
+	return EC_STATUS_CONFIGS;
+}
+
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
 	return &m->api->next;
@@ -151,7 +151,7 @@ static inline u64 ec_status_read64(const struct ec_status *st, const __u64 *fiel
 /* false before activation */
 static inline bool ec_emerg_get(const ec_slave_config_t *sc, struct ec_emerg *e)
 {
-	struct ec_session *s = ec_api_session(ec_api_master(sc)->api);
+	struct ec_session *s = ec_api_session(ec_sc_master(sc)->api);
 	const struct ec_emerg *from;
 
 	if (!s)
@@ -168,15 +168,8 @@ static inline u32 *ec_emerg_cleared(const ec_slave_config_t *sc)
 	return &ec_api_config(sc)->emerg_cleared;
 }
 
-static inline void *ec_zalloc(size_t size)
-{
-	return kvzalloc(size, GFP_KERNEL);
-}
-
-static inline void ec_free(void *p)
-{
-	kvfree(p);
-}
+#define ec_zalloc(size) kvzalloc(size, GFP_KERNEL)
+#define ec_free(p) kvfree(p)
 
 /* what a function returns that makes no handle */
 static inline void *ec_no_handle(int err)
@@ -193,11 +186,6 @@ static inline int ec_memory_frozen(const struct ec_master *m, const char *what)
 static inline struct ec_app_request **ec_request_list(struct ec_master *m)
 {
 	return &m->api->requests;
-}
-
-static inline bool ec_request_memory(const struct ec_master *m)
-{
-	return m->sessions.session;
 }
 
 static inline struct ec_request_record *ec_request_record(const struct ec_master *m, u32 index,

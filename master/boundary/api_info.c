@@ -2,7 +2,6 @@
 /* States and what the master knows without a lock, for applications in the kernel. */
 #include "api.h"
 #include "../base/once64.h"
-#include "../config/why.h"
 
 int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 {
@@ -50,28 +49,3 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_link_state);
-
-/* While active from the status page, which costs no lock. */
-int ecrt_slave_config_state(const ec_slave_config_t *sc, ec_slave_config_state_t *state)
-{
-	struct ec_session *s;
-	struct ec_master *m;
-	u8 v;
-
-	if (!sc || !state)
-		return -EINVAL;
-	m = ec_api_master(sc);
-	s = ec_api_session(m->api);
-	if (s) {
-		v = READ_ONCE(s->cycle.shared->status->configs[ec_api_config(sc)->index]);
-	} else {
-		mutex_lock(&m->sessions.lock);
-		v = ec_config_status(ec_api_config(sc));
-		mutex_unlock(&m->sessions.lock);
-	}
-	state->online = !!(v & EC_STATUS_SC_ONLINE);
-	state->operational = !!(v & EC_STATUS_SC_OP);
-	state->al_state = v & EC_STATUS_SC_AL;
-	return 0;
-}
-EXPORT_SYMBOL_GPL(ecrt_slave_config_state);

@@ -53,6 +53,7 @@ IGNORE = {
     "MINMAX": ((), "a cast of the shorter argument cannot truncate; min_t() can"),
     "EMBEDDED_FUNCTION_NAME": ((), "a word of a message that is also a static function"),
     "COMPLEX_MACRO": ((), "initializers"),
+    "MACRO_WITH_FLOW_CONTROL": (("lib",), "macros that define a function"),
     "REPEATED_WORD": ((), "slave io io"),
     "SPDX_LICENSE_TAG": (("tool",), "a line of the man page, in a string"),
     "EXPORT_SYMBOL": (("lib",), "what the macro is in userspace"),
