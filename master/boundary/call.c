@@ -100,7 +100,7 @@ static int find_domain(struct ec_call *call, u32 index)
 	return 0;
 }
 
-static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
+static int with_session(struct ec_call *call, const struct ec_ioctl *op)
 {
 	int ret = ec_ioc_lock_session(call);
 
@@ -113,12 +113,12 @@ static int lock_session(struct ec_call *call, const struct ec_ioctl *op)
 		ret = find_config(call, *(u32 *)(call->arg + op->at));
 	else if (op->class == EC_CLASS_DOMAIN)
 		ret = find_domain(call, *(u32 *)(call->arg + op->at));
-	if (ret)
-		ec_sessions_unlock(&call->master->sessions);
+	ret = ret ?: op->fn(call);
+	ec_sessions_unlock(&call->master->sessions);
 	return ret;
 }
 
-/* An application sees its own session, everybody else the one that runs. */
+/* An application sees its own session, every other caller the one that runs. */
 static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 {
 	struct ec_sessions *s = &call->master->sessions;
@@ -170,17 +170,6 @@ int ec_ioc_get_slave(struct ec_call *call, u16 position)
 		return 0;
 	return ec_refuse(call, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
 			 position, m->bus.n_slaves);
-}
-
-static int with_session(struct ec_call *call, const struct ec_ioctl *op)
-{
-	int ret = lock_session(call, op);
-
-	if (ret)
-		return ret;
-	ret = op->fn(call);
-	ec_sessions_unlock(&call->master->sessions);
-	return ret;
 }
 
 static int with_show(struct ec_call *call, const struct ec_ioctl *op)

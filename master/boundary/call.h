@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What the table of commands says, and how a command is carried out by it. */
+/* The table of commands, and how a command is executed by it. */
 #ifndef EC_CALL_H
 #define EC_CALL_H
 
@@ -11,7 +11,7 @@ struct ec_reserved {
 	u16 size;
 };
 
-/* What a command looks up and locks before its handler runs. */
+/* What ec_call_run() finds and locks before the handler of a command runs. */
 enum ec_ioc_class {
 	EC_CLASS_MASTER,	/* nothing */
 	EC_CLASS_SLAVE,		/* a slave by its position */
@@ -39,7 +39,7 @@ struct ec_ioc_buffer {
  * @flags: F_*
  * @known: flags of the argument that are known
  * @min: bytes the oldest program sends, less is no such argument; 0: all of them
- * @class: what is looked up and locked
+ * @class: what ec_call_run() finds and locks
  * @at: where the argument has the position or index for that
  * @buffer: @most is 0 when there is none
  * @reserved: fields that must be zero; size 0 ends them

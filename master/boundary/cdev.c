@@ -90,13 +90,13 @@ static int ec_open(struct inode *inode, struct file *filp)
 	return nonseekable_open(inode, filp);
 }
 
-/* The only place that surely runs when a process dies. */
+/* The kernel calls this for a killed process as well. */
 static int ec_release(struct inode *inode, struct file *filp)
 {
 	struct ec_file *f = filp->private_data;
 	struct ec_master *m = f->master;
 
-	/* who may only look has reserved nothing, and takes no lock */
+	/* a read-only file has reserved nothing: no lock is needed */
 	if (f->writable)
 		ec_session_end(&m->sessions, f);
 	put_device(&m->dev);
@@ -121,37 +121,34 @@ static const struct vm_operations_struct vm_ops = {
 
 static int map_shared(struct ec_shared *sh, struct vm_area_struct *vma)
 {
+	const struct {
+		u64 offset;
+		void *memory;
+		size_t size;
+	} parts[] = {
+		/* the image of a cycle the kernel runs is the kernel's */
+		{ EC_MMAP_IMAGE, sh->exchange ? NULL : sh->image, sh->image_size },
+		{ EC_MMAP_EXCHANGE, sh->exchange, sh->exchange_size },
+		{ EC_MMAP_STATUS, sh->status, EC_STATUS_BYTES },
+		{ EC_MMAP_REQUESTS, sh->requests, sh->request_size },
+	};
 	u64 offset = (u64)vma->vm_pgoff << PAGE_SHIFT;
-	size_t len = vma->vm_end - vma->vm_start;
+	bool status = offset == EC_MMAP_STATUS;
+	unsigned int i = 0;
 	int ret;
 
-	if (offset == EC_MMAP_IMAGE) {
-		/* the image of a cycle the kernel runs is the kernel's */
-		if (!sh->image || sh->exchange || len > sh->image_size)
-			return -EINVAL;
-		ret = ec_shared_map(vma, sh->image);
-	} else if (offset == EC_MMAP_EXCHANGE) {
-		if (!sh->exchange || len > sh->exchange_size)
-			return -EINVAL;
-		ret = ec_shared_map(vma, sh->exchange);
-	} else if (offset == EC_MMAP_STATUS) {
-		if (vma->vm_flags & VM_WRITE)
-			return -EPERM;
-		if (len > EC_STATUS_BYTES)
-			return -EINVAL;
-		ret = ec_shared_map(vma, sh->status);
-		if (!ret)
-			ec_vma_flags(vma, 0, VM_MAYWRITE);
-	} else if (offset == EC_MMAP_REQUESTS) {
-		if (!sh->requests || len > sh->request_size)
-			return -EINVAL;
-		ret = ec_shared_map(vma, sh->requests);
-	} else {
+	while (i < ARRAY_SIZE(parts) && parts[i].offset != offset)
+		i++;
+	if (i == ARRAY_SIZE(parts) || !parts[i].memory)
 		return -EINVAL;
-	}
+	if (status && vma->vm_flags & VM_WRITE)
+		return -EPERM;
+	if (vma->vm_end - vma->vm_start > parts[i].size)
+		return -EINVAL;
+	ret = ec_shared_map(vma, parts[i].memory);
 	if (ret)
 		return ret;
-	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, VM_MAYEXEC);
+	ec_vma_flags(vma, VM_DONTEXPAND | VM_DONTDUMP, VM_MAYEXEC | (status ? VM_MAYWRITE : 0));
 	ec_shared_get(sh);
 	vma->vm_private_data = sh;
 	vma->vm_ops = &vm_ops;
@@ -182,7 +179,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
  * @filp: the same as the kernel knows it
  * @wait: argument of poll()
  *
- * Takes no lock of the master: a caller that is preempted here delays nobody.
+ * Takes no lock of the master: a caller that is preempted here delays no other caller.
  *
  * Context: Process. May sleep to add an entry to the wait queue.
  * Return: as ec_cycle_thread_poll() for the owner of the cycle; EPOLLERR for every
@@ -214,7 +211,7 @@ static void dev_release(struct device *dev)
 	kvfree(container_of(dev, struct ec_master, dev));
 }
 
-/* Everybody may look: a read-only file makes no traffic and changes nothing. */
+/* Every user may read: a read-only file causes no bus traffic and changes nothing. */
 static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
 {
 	if (mode)

@@ -20,7 +20,7 @@ struct ec_session;
  * @reason: text of the last failure, under @lock
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
- * @rcu: frees it; the cycle thread may still look at @waiters
+ * @rcu: frees it after the cycle thread has finished with @waiters
  */
 struct ec_file {
 	struct ec_master *master;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * All commands but the cyclic ones, one in each row: handler, who may give it, what it looks
- * up, its buffer, fields that must be zero, flags it knows. Included twice: ioctl.h declares
- * the handlers, ioctl.c makes the table.
+ * All commands but the cyclic ones, one in each row: handler, permission, the object that the
+ * command names, buffer, fields that must be zero, known flags. Included twice: ioctl.h
+ * declares the handlers, ioctl.c makes the table.
  */
 CMD(EC_IOC_VERSION, ec_ioc_version, 0)
 CMD(EC_IOC_REASON, ec_ioc_reason, 0)

@@ -6,7 +6,7 @@
 #include "call.h"
 #include "../base/limits.h"
 
-#define MAX_ARG	896	/* on the stack, where a kernel of 32 bits wants at most 1024 in all */
+#define MAX_ARG	896	/* on the stack: a 32-bit kernel warns above 1024 in all */
 
 #define F_WRITE	1	/* needs a descriptor opened for writing */
 
@@ -41,7 +41,7 @@ static const struct ec_ioctl table[] = {
 
 /**
  * ec_ioc() - give a command from within the kernel
- * @f: file that stands for the application
+ * @f: file of the application
  * @cmd: EC_IOC_*
  * @arg: its argument; addresses in it are the kernel's
  *
@@ -56,7 +56,7 @@ int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
 	return ec_call_run(f, &table[_IOC_NR(cmd)], arg, false);
 }
 
-/* Version request of the field's other master: old programs fail cleanly. */
+/* Version request of the IgH EtherCAT Master: programs built for it fail cleanly. */
 static long foreign_version(unsigned long arg)
 {
 	u32 v[2] = { 0xec000001, 0 };
@@ -79,7 +79,7 @@ static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 	return ec_ioc_send(f, &send);
 }
 
-/* Is the caller allowed to, and is the size of the argument possible? */
+/* May the caller give the command, and is the size of the argument valid? */
 static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd)
 {
 	unsigned int size = _IOC_SIZE(cmd), min = op->min ?: _IOC_SIZE(op->cmd);
@@ -94,7 +94,7 @@ static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int c
 	return 0;
 }
 
-/* What this module does not know must not be asked for. */
+/* A command must not use flags or fields that this module does not know. */
 static int check_unknown(struct ec_call *call, const struct ec_ioctl *op, const void *karg)
 {
 	/* each argument begins with its flags */

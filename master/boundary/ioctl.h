@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Commands of an application or a tool. The table in ioctl.c says who may give one, what it
- * looks up and locks and which buffer it has; a handler does the rest. A process gives
- * commands by ioctl(), an application in the kernel by ec_command().
+ * Commands of an application or a tool. ec_call_run() finds and locks what a row of
+ * commands.h names and copies its buffer; the handler does the rest. A process gives commands
+ * by ioctl(), an application in the kernel by ec_command().
  */
 #ifndef EC_IOCTL_H
 #define EC_IOCTL_H

@@ -116,7 +116,7 @@ int ec_ioc_slave_config(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	/* the running session of an heir has its slaves */
+	/* a candidate session: the running session has the slaves */
 	if (!call->session->wanted.active && call->session != m->sessions.heir) {
 		ec_sessions_unlock(&m->sessions);
 		wait_pdos(call, call->arg);
@@ -357,7 +357,7 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 	}
 }
 
-/* The application of a detached session has come back, or another one. */
+/* An application takes over a detached session. */
 static int take_over(struct ec_call *call)
 {
 	char why[96];

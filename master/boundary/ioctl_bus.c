@@ -6,22 +6,18 @@
 #include "../bus/slave.h"
 #include "../link/xfer.h"
 
-static int reg_check(struct ec_call *call, const struct ec_ioc_reg *i)
-{
-	if (!i->size || i->size > EC_MAX_REG_SIZE || i->address + i->size > 0x10000)
-		return ec_refuse(call, -EINVAL,
-				 "size must be 1 to %u bytes and end below 0x10000, not %u at 0x%04x",
-				 EC_MAX_REG_SIZE, i->size, i->address);
-	return 0;
-}
-
-static int reg_access(struct ec_call *call, const struct ec_ioc_reg *i, u8 cmd)
+static int reg_access(struct ec_call *call, u8 cmd)
 {
 	struct ec_master *m = call->master;
+	const struct ec_ioc_reg *i = call->arg;
 	struct ec_dg dg = { .ado = i->address, .len = i->size, .data = call->data };
 	bool write = cmd == EC_CMD_FPWR;
 	int ret;
 
+	if (!i->size || i->size > EC_MAX_REG_SIZE || i->address + i->size > 0x10000)
+		return ec_refuse(call, -EINVAL,
+				 "size must be 1 to %u bytes and end below 0x10000, not %u at 0x%04x",
+				 EC_MAX_REG_SIZE, i->size, i->address);
 	if (i->flags & EC_REG_FLAG_EMERGENCY) {
 		dg.cmd = write ? EC_CMD_APWR : EC_CMD_APRD;
 		dg.adp = -i->position;
@@ -60,12 +56,12 @@ static int reg_access(struct ec_call *call, const struct ec_ioc_reg *i, u8 cmd)
 
 int ec_ioc_reg_read(struct ec_call *call)
 {
-	return reg_check(call, call->arg) ?: reg_access(call, call->arg, EC_CMD_FPRD);
+	return reg_access(call, EC_CMD_FPRD);
 }
 
 int ec_ioc_reg_write(struct ec_call *call)
 {
-	return reg_check(call, call->arg) ?: reg_access(call, call->arg, EC_CMD_FPWR);
+	return reg_access(call, EC_CMD_FPWR);
 }
 
 int ec_ioc_state(struct ec_call *call)
@@ -103,7 +99,7 @@ int ec_ioc_debug(struct ec_call *call)
 	return 0;
 }
 
-/* What an active session wants from a slave is OP, whatever a tool has requested since. */
+/* An active session requests OP for its slaves, even after a tool has requested another state. */
 static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
 {
 	return session && session->wanted.active && !session->ending &&
@@ -135,6 +131,13 @@ int ec_ioc_reset(struct ec_call *call)
 	up_read(&m->bus.topo);
 	mutex_unlock(&m->sessions.lock);
 	return 0;
+}
+
+int ec_ioc_slaves_down(struct ec_call *call)
+{
+	int ret = ec_session_slaves_down(call->session);
+
+	return ret == -EINVAL ? ec_refuse(call, ret, "the master is not active") : ret;
 }
 
 int ec_ioc_end_detached(struct ec_call *call)

@@ -54,44 +54,44 @@ int ec_ioc_config_sm(struct ec_call *call)
 	return 0;
 }
 
-static const struct ec_pdo *pdo(struct ec_call *call, const struct ec_config *c, u8 sm, u32 pos,
-				int *ret)
+static int find_pdo(struct ec_call *call, u8 sm, u32 pos, const struct ec_pdo **p)
 {
-	if (sm < EC_MAX_SM && pos < c->sm[sm].pdos.n)
-		return &c->sm[sm].pdos.pdos[pos];
-	*ret = ec_refuse(call, -ENOENT, "no PDO %u at SM%u", pos, sm);
-	return NULL;
+	const struct ec_config *c = call->config;
+
+	if (sm >= EC_MAX_SM || pos >= c->sm[sm].pdos.n)
+		return ec_refuse(call, -ENOENT, "no PDO %u at SM%u", pos, sm);
+	*p = &c->sm[sm].pdos.pdos[pos];
+	return 0;
 }
 
 int ec_ioc_config_pdo(struct ec_call *call)
 {
 	struct ec_ioc_config_pdo *i = call->arg;
 	const struct ec_pdo *p;
-	int ret = 0;
+	int ret = find_pdo(call, i->sm, i->pdo_pos, &p);
 
-	p = pdo(call, call->config, i->sm, i->pdo_pos, &ret);
-	if (p) {
-		i->pdo_index = p->index;
-		i->entry_count = p->n_entries;
-	}
-	return ret;
+	if (ret)
+		return ret;
+	i->pdo_index = p->index;
+	i->entry_count = p->n_entries;
+	return 0;
 }
 
 int ec_ioc_config_entry(struct ec_call *call)
 {
 	struct ec_ioc_config_entry *i = call->arg;
 	const struct ec_pdo *p;
-	int ret = 0;
+	int ret = find_pdo(call, i->sm, i->pdo_pos, &p);
 
-	p = pdo(call, call->config, i->sm, i->pdo_pos, &ret);
-	if (p && i->entry_pos >= p->n_entries)
-		ret = ec_refuse(call, -ENOENT, "PDO 0x%04x has %u entries", p->index, p->n_entries);
-	else if (p) {
-		i->entry_index = p->entries[i->entry_pos].index;
-		i->subindex = p->entries[i->entry_pos].sub;
-		i->bits = p->entries[i->entry_pos].bits;
-	}
-	return ret;
+	if (ret)
+		return ret;
+	if (i->entry_pos >= p->n_entries)
+		return ec_refuse(call, -ENOENT, "PDO 0x%04x has %u entries", p->index,
+				 p->n_entries);
+	i->entry_index = p->entries[i->entry_pos].index;
+	i->subindex = p->entries[i->entry_pos].sub;
+	i->bits = p->entries[i->entry_pos].bits;
+	return 0;
 }
 
 /* Copies in pieces, as much as there is a buffer for; returns as ec_ioc_pause() in between. */
@@ -238,5 +238,13 @@ int ec_ioc_domain_data(struct ec_call *call)
 		ec_cycle_thread_outputs(&ec_domain_session(d)->cycle, call->data + pos,
 					d->offset + pos, n);
 	}
+	return 0;
+}
+
+int ec_ioc_config_why(struct ec_call *call)
+{
+	struct ec_ioc_config_why *i = call->arg;
+
+	i->len = ec_config_why(call->config, i->text, sizeof(i->text));
 	return 0;
 }

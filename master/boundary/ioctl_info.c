@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Commands that tell what the master knows; they cause no bus traffic. */
+/* Commands that show the state of the master; they cause no bus traffic. */
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
@@ -18,7 +18,7 @@
 #define EC_RELEASE "0.1.0"
 #endif
 
-#define WALK	64	/* slaves to look at without a pause */
+#define WALK	64	/* slaves to check without a pause */
 
 int ec_ioc_version(struct ec_call *call)
 {
@@ -147,7 +147,7 @@ int ec_ioc_master(struct ec_call *call)
 	ret = ec_show_begin(&m->base->show);
 	if (ret)
 		return ret;
-	/* one that is gone has left its position to another slave */
+	/* another slave may have the position of a disconnected one */
 	i->ref_clock = m->dc.ref && !READ_ONCE(m->dc.ref->stop.gone) &&
 		       READ_ONCE(m->dc.ref_station) ? m->dc.ref->position : -1;
 	if (m->sessions.session)

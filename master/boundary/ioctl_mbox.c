@@ -79,11 +79,9 @@ int ec_ioc_sdo_download(struct ec_call *call)
 {
 	struct ec_ioc_sdo *i = call->arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
-	int ret = check_size(call, 0, EC_MAX_SDO_SIZE);
 
-	if (ret)
-		return ret;
-	return sdo_failed(call, i, ec_coe_download(&call->slave->mbox, i->index, i->subindex,
+	return check_size(call, 0, EC_MAX_SDO_SIZE) ?:
+	       sdo_failed(call, i, ec_coe_download(&call->slave->mbox, i->index, i->subindex,
 						   i->flags & EC_SDO_FLAG_COMPLETE, call->data,
 						   call->size, &i->abort_code, &limit));
 }
