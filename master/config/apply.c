@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Bringing one slave to its state, configuring it on the way; worker. */
+/* The worker of a slave: configure it and bring it to its requested state. */
 #include <linux/delay.h>
 #include "config.h"
 #include "domain.h"
@@ -11,7 +11,7 @@
 #include "../link/xfer.h"
 #include "apply.h"
 
-#define FLAG_MAX_MS	60000	/* no longer, whatever the application says */
+#define FLAG_MAX_MS	60000	/* upper limit of the flag */
 #define HOLD_MS		1000	/* a transfer that takes longer is cut off */
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
@@ -40,7 +40,7 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 			      ec_al_state_name(state),
 			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
-		 ret != -EOVERFLOW && ret != -ERANGE)	/* told already */
+		 ret != -EOVERFLOW && ret != -ERANGE)	/* reported already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "communication failed before %s (%pe)",
 			      ec_al_state_name(state), ERR_PTR(ret));
 	return ret;
@@ -61,8 +61,8 @@ static bool is_transient(const struct ec_slave *s, int ret)
 }
 
 /*
- * A try after a failure that was cut short, or met no cycle, has decided nothing: the
- * monitor has taken it off its plan.
+ * An attempt after a failure that was aborted, or found no cycle, has no result. The monitor
+ * has removed the slave from its plan, so the worker must plan the next attempt.
  */
 static bool is_undecided(const struct ec_slave *s, int ret)
 {
@@ -95,8 +95,8 @@ static int set_state(struct ec_slave *s, u8 state)
 }
 
 /*
- * A transfer of somebody else is not cut off by the way through INIT: it comes before,
- * unless it takes long, or after. The worker has the mailbox until PREOP.
+ * The way through INIT must not abort a transfer of another thread: the worker waits for it,
+ * for a limited time, and holds the mailbox until PREOP.
  */
 static void hold_mailbox(struct ec_slave *s)
 {
@@ -124,8 +124,8 @@ static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
 }
 
 /*
- * SyncManagers that the EEPROM wants on in OP only, state-machine.md 4.4: on with the
- * request, as some slaves want to see outputs before. How many were off, or -errno.
+ * SyncManagers that the SII enables in OP only, state-machine.md 4.4: enabled before OP is
+ * requested, as some slaves need outputs first. Return: how many were off, or -errno.
  */
 static int op_only_on(struct ec_slave *s)
 {
@@ -185,37 +185,26 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
-/* state-machine.md 4.2, with the bootstrap mailbox */
-static int to_boot(struct ec_slave *s)
+/* From INIT to PREOP or BOOT with the mailbox of that state: state-machine.md 4.2. */
+static int leave_init(struct ec_slave *s, u8 state)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
+	bool boot = state == EC_AL_BOOT;
 	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = ec_mbox_sms(&s->info.boot, page);
+	unsigned int len = ec_mbox_sms(boot ? &s->info.boot : &s->info.std, page);
 	int ret;
 
-	if (!len) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "BOOT not possible: no bootstrap mailbox in the SII");
-		return -EOPNOTSUPP;
+	if (boot && !len)
+		return ec_apply_fail(s, -EOPNOTSUPP,
+				     "BOOT not possible: no bootstrap mailbox in the SII");
+	ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
+	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
+	if (!boot) {
+		s->ours = !ret;
+		s->clean = !ret;
+		release_mailbox(s);
 	}
-	ret = write_reg(s, EC_REG_SM(0), page, len) ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?:
-	      set_state(s, EC_AL_BOOT);
-	return ret ? failed(s, EC_AL_BOOT, ret) : 0;
-}
-
-/* state-machine.md 4.2 */
-static int to_preop(struct ec_slave *s)
-{
-	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
-	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = ec_mbox_sms(&s->info.std, page);
-	int ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
-
-	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, EC_AL_PREOP);
-	s->ours = !ret;
-	s->clean = !ret;
-	release_mailbox(s);
-	return ret ? failed(s, EC_AL_PREOP, ret) : 0;
+	return ret ? failed(s, state, ret) : 0;
 }
 
 /* Is there a SyncManager whose PDOs the application did not name? */
@@ -330,7 +319,7 @@ static int wait_outputs(struct ec_slave *s)
 			return -ECANCELED;
 		usleep_range(500, 1000);
 	}
-	/* nobody cycles: the monitor asks again later */
+	/* no cycle runs: the monitor starts the worker again later */
 	return -EAGAIN;
 }
 
@@ -436,7 +425,7 @@ static int step(struct ec_slave *s)
 	if (cur == want)
 		return want == EC_AL_OP && op_only_on(s) < 0 ? -EIO : 1;
 	if (want == EC_AL_BOOT)
-		return cur == EC_AL_INIT ? to_boot(s) : to_init(s);
+		return cur == EC_AL_INIT ? leave_init(s, EC_AL_BOOT) : to_init(s);
 	if (cur > want || cur == EC_AL_BOOT) {
 		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
 			return to_init(s);
@@ -444,7 +433,7 @@ static int step(struct ec_slave *s)
 	}
 	switch (cur) {
 	case EC_AL_INIT:
-		return to_preop(s);
+		return leave_init(s, EC_AL_PREOP);
 	case EC_AL_PREOP:
 		return to_safeop(s, setup->active_config);
 	case EC_AL_SAFEOP:
@@ -467,7 +456,7 @@ static void log_return(struct ec_slave *s)
 }
 
 /**
- * ec_apply() - bring a slave to the state it shall have
+ * ec_apply() - bring a slave to its requested state
  * @s: slave
  *
  * Context: The slave's worker. Waits for bus traffic.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* A slave gets what the application wants from it. */
+/* Configure a slave as the application requires. */
 #ifndef EC_APPLY_H
 #define EC_APPLY_H
 
@@ -8,6 +8,10 @@
 struct ec_config;
 struct ec_pdo_list;
 struct ec_slave;
+
+/* Note why a slave cannot be configured: @ret, returned, and a text. */
+#define ec_apply_fail(s, ret, ...) \
+	({ ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, __VA_ARGS__); (ret); })
 
 void ec_apply(struct ec_slave *s);
 

@@ -225,25 +225,16 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	return 0;
 }
 
-static bool has_registered(const struct ec_pdo_list *l)
-{
-	unsigned int i, k;
-
-	for (i = 0; i < l->n; i++)
-		for (k = 0; k < l->pdos[i].n_entries; k++)
-			if (l->pdos[i].entries[k].registered && l->pdos[i].entries[k].index)
-				return true;
-	return false;
-}
-
 /* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
 static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 {
+	static const struct ec_pdo_list nothing;
 	unsigned int sm;
 	int ret = 0;
+	u32 bit;
 
 	for (sm = 0; sm < s->n_sms && !ret; sm++) {
-		if (!c->sm[sm].explicit || !has_registered(&c->sm[sm].pdos))
+		if (!c->sm[sm].explicit || !first_wrong(&c->sm[sm].pdos, &nothing, &bit))
 			continue;
 		if (s->sm_pdos[sm].n)
 			ret = compare(s, c, sm, "without CoE its PDOs cannot be changed");
@@ -254,7 +245,7 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 }
 
 /**
- * ec_apply_pdos_of() - what a SyncManager shall have
+ * ec_apply_pdos_of() - PDOs that a SyncManager must have
  * @s: slave
  * @c: its configuration, or NULL
  * @sm: SyncManager
@@ -270,17 +261,17 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
 }
 
 /**
- * ec_apply_pdos() - give a slave the PDO assignment and mapping it shall have
+ * ec_apply_pdos() - write the configured PDO assignment and mapping
  * @s: slave in PREOP whose PDOs have been read
  * @c: its configuration
  *
- * Those that were there when the application began may be others by now: they are
- * written too then. When a slave refuses, or has no CoE, the registered entries must be in
- * their place all the same. In a SoE drive the IDNs decide.
+ * The slave may have other PDOs by now than when the application started: they are written
+ * in that case as well. When a slave refuses, or has no CoE, the registered entries must
+ * still be in their place. In a SoE drive the IDNs decide.
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data, told
- * already.
+ * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data,
+ * reported already.
  */
 int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 {

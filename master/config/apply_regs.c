@@ -68,12 +68,10 @@ static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *
 		if (s->sms[sm].enable & EC_SII_SM_VIRTUAL)
 			continue;
 		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
-		if (bytes > EC_MAX_SM_BYTES) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-				      "SM%u needs %u bytes, limit %u; map fewer entries",
-				      sm, bytes, EC_MAX_SM_BYTES);
-			return -EOVERFLOW;
-		}
+		if (bytes > EC_MAX_SM_BYTES)
+			return ec_apply_fail(s, -EOVERFLOW,
+					     "SM%u needs %u bytes, limit %u; map fewer entries",
+					     sm, bytes, EC_MAX_SM_BYTES);
 		sm_page(s, c, sm, b->sm[sm]);
 		add(b, s, EC_REG_SM(sm), b->sm[sm], EC_SM_PAGE);
 	}
@@ -95,35 +93,26 @@ static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int i;
 
-	if (c->n_fmmus > count_fmmus(s)) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
-			      c->n_fmmus, s->regs[EC_REG_FMMUS]);
-		return -ENOSPC;
-	}
-	if (c->lrw && ec_slave_no_lrw(s)) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "slave without LRW support attached to a layout with LRW; restart the application");
-		return -EOPNOTSUPP;
-	}
-	if (c->in_ring && s->position != c->ring_position) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
-			      s->position, c->ring_position);
-		return -EOPNOTSUPP;
-	}
-	for (i = 0; i < c->n_fmmus; i++) {
-		if (holds_pdos(s, c->fmmus[i].sm))
-			continue;
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
-			      c->fmmus[i].sm);
-		return -EOPNOTSUPP;
-	}
+	if (c->n_fmmus > count_fmmus(s))
+		return ec_apply_fail(s, -ENOSPC,
+				     "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
+				     c->n_fmmus, s->regs[EC_REG_FMMUS]);
+	if (c->lrw && ec_slave_no_lrw(s))
+		return ec_apply_fail(s, -EOPNOTSUPP,
+				     "slave without LRW support attached to a layout with LRW; restart the application");
+	if (c->in_ring && s->position != c->ring_position)
+		return ec_apply_fail(s, -EOPNOTSUPP,
+				     "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
+				     s->position, c->ring_position);
+	for (i = 0; i < c->n_fmmus; i++)
+		if (!holds_pdos(s, c->fmmus[i].sm))
+			return ec_apply_fail(s, -EOPNOTSUPP,
+					     "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
+					     c->fmmus[i].sm);
 	return 0;
 }
 
-/* All of them: what an earlier configuration has left in the others is gone then. */
+/* All FMMUs: this clears what an earlier configuration has left in the unused ones. */
 static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int i;

@@ -36,7 +36,7 @@ static const struct ec_config *predecessor(const struct ec_config *c)
 	return IS_ERR(p) ? NULL : p;
 }
 
-/* The same start as that one had, whether the slave was there then, or is now. */
+/* Start as that configuration did, whether the slave was connected then, or is now. */
 static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 {
 	unsigned int sm;
@@ -51,7 +51,7 @@ static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
 
 /**
  * ec_config_find() - the configuration of a slave
- * @w: what an application wants
+ * @w: what an application configures
  * @alias: alias or 0
  * @position: position
  * @vendor: expected vendor id
@@ -74,7 +74,7 @@ struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 posit
 
 /**
  * ec_config_create() - make a configuration
- * @w: what an application wants
+ * @w: what an application configures
  * @alias: alias or 0
  * @position: position
  * @vendor: expected vendor id
@@ -441,7 +441,7 @@ s32 ec_config_flag(const struct ec_config *c, const char *key)
  * @c: configuration
  * @f: one of its FMMUs
  *
- * Offsets have been handed out, so what was registered does not change any more.
+ * The application has the offsets, so the layout of registered entries must not change.
  *
  * Context: Process, lock of the configuration held.
  * Return: true: bytes or direction were changed after the first entry was
@@ -486,26 +486,6 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
 	return f;
 }
 
-static int reg(struct ec_config *c, u8 sm, struct ec_pdo_entry *e, u32 bits, struct ec_domain *d,
-	       u32 *offset, u32 *bit)
-{
-	struct ec_config_fmmu *f;
-
-	/* first, so that nothing is left behind */
-	if (!bit && bits % 8)
-		return -EFAULT;
-	f = map_sm(c, sm, d);
-	if (IS_ERR(f))
-		return PTR_ERR(f);
-	if (ec_config_changed(c, f))
-		return -EBUSY;
-	e->registered = true;
-	*offset = f->offset + bits / 8;
-	if (bit)
-		*bit = bits % 8;
-	return 0;
-}
-
 /**
  * ec_config_reg_entry() - put the SyncManager with an entry into a domain
  * @c: configuration
@@ -527,19 +507,14 @@ int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain
 	unsigned int sm, p, e;
 
 	lockdep_assert_held(c->wanted->lock);
-	for (sm = 0; sm < EC_MAX_SM; sm++) {
-		u32 bits = 0;
-
+	for (sm = 0; sm < EC_MAX_SM; sm++)
 		for (p = 0; p < c->sm[sm].pdos.n; p++) {
 			const struct ec_pdo *pdo = &c->sm[sm].pdos.pdos[p];
 
-			for (e = 0; e < pdo->n_entries; e++) {
+			for (e = 0; e < pdo->n_entries; e++)
 				if (pdo->entries[e].index == index && pdo->entries[e].sub == sub)
-					return reg(c, sm, &pdo->entries[e], bits, d, offset, bit);
-				bits += pdo->entries[e].bits;
-			}
+					return ec_config_reg_entry_pos(c, sm, p, e, d, offset, bit);
 		}
-	}
 	return -ENOENT;
 }
 
@@ -560,7 +535,8 @@ int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_p
 			    struct ec_domain *d, u32 *offset, u32 *bit)
 {
 	const struct ec_pdo_list *l;
-	u32 p, e, bits = 0;
+	struct ec_config_fmmu *f;
+	u32 i, bits = 0;
 
 	lockdep_assert_held(c->wanted->lock);
 	if (sm >= EC_MAX_SM)
@@ -568,9 +544,21 @@ int ec_config_reg_entry_pos(struct ec_config *c, u8 sm, u32 pdo_pos, u32 entry_p
 	l = &c->sm[sm].pdos;
 	if (pdo_pos >= l->n || entry_pos >= l->pdos[pdo_pos].n_entries)
 		return -ENOENT;
-	for (p = 0; p < pdo_pos; p++)
-		bits += ec_pdo_bits(&l->pdos[p]);
-	for (e = 0; e < entry_pos; e++)
-		bits += l->pdos[pdo_pos].entries[e].bits;
-	return reg(c, sm, &l->pdos[pdo_pos].entries[entry_pos], bits, d, offset, bit);
+	for (i = 0; i < pdo_pos; i++)
+		bits += ec_pdo_bits(&l->pdos[i]);
+	for (i = 0; i < entry_pos; i++)
+		bits += l->pdos[pdo_pos].entries[i].bits;
+	/* first, so that nothing is left behind */
+	if (!bit && bits % 8)
+		return -EFAULT;
+	f = map_sm(c, sm, d);
+	if (IS_ERR(f))
+		return PTR_ERR(f);
+	if (ec_config_changed(c, f))
+		return -EBUSY;
+	l->pdos[pdo_pos].entries[entry_pos].registered = true;
+	*offset = f->offset + bits / 8;
+	if (bit)
+		*bit = bits % 8;
+	return 0;
 }

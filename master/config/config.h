@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What an application wants from one slave; exists without the slave. */
+/* What an application configures for one slave; exists without the slave. */
 #ifndef EC_CONFIG_H
 #define EC_CONFIG_H
 
@@ -81,7 +81,7 @@ struct ec_config_flag {
  * @index: number there
  * @alias: 0: @position is the ring position
  * @position: else slaves behind the one with @alias
- * @alias_at: ring position of the first slave with @alias when it was last looked for
+ * @alias_at: ring position of the first slave with @alias at the last search
  * @vendor: expected
  * @product: expected
  * @sm: SyncManagers
@@ -135,7 +135,7 @@ struct ec_config {
 
 /** struct ec_setup - how far a slave has its configuration, under ec_slave.lock */
 struct ec_setup {
-	/** @config: what the session wants from it, under lock of the configuration, too */
+	/** @config: configuration in the session; lock of the configuration held as well */
 	struct ec_config *config;
 	/** @active_config: @config once its session is active: what the worker applies */
 	const struct ec_config *active_config;
@@ -161,7 +161,7 @@ static inline struct ec_config *ec_config_of(const struct ec_slave *s)
 	return READ_ONCE(ec_setup_of(s)->config);
 }
 
-/** struct ec_wanted - what an application wants of the bus, under @lock */
+/** struct ec_wanted - what an application configures, under @lock */
 struct ec_wanted {
 	/** @base: of the master, immutable */
 	struct ec_base *base;
@@ -185,7 +185,7 @@ struct ec_wanted {
 	unsigned int n_domains;
 	/** @active: activated: the configurations stay as they are, workers go by them */
 	bool active;
-	/** @before: what the running session wants that is to be taken over, NULL: none */
+	/** @before: the same of the running session that is to be taken over, NULL: none */
 	const struct ec_wanted *before;
 };
 

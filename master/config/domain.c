@@ -7,7 +7,7 @@
 
 /**
  * ec_domain_create() - an empty domain
- * @w: what an application wants
+ * @w: what an application configures
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: domain, or ERR_PTR: -ENOSPC beyond EC_MAX_DOMAINS, -ENOMEM.

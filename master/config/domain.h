@@ -30,7 +30,7 @@ struct ec_domain_fmmu {
  * @dgram_bytes: their bytes, header and working counter included
  * @memory: of a kernel application, for its data; NULL: they lie in the image
  * @snap: for a kernel application: result as of its last ecrt_domain_process()
- * @max_age: sends after which data that come back are stale, 0: never
+ * @max_age: sends after which received data are stale, 0: never
  * @division: it takes part in every so many cycles the kernel runs
  * @phase: first time in that cycle, from 0 on
  */

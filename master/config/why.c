@@ -7,9 +7,9 @@
 #include "why.h"
 
 #define LOG_MAX		32	/* lines per activation */
-#define WALK		64	/* configurations to look at without a pause */
+#define WALK		64	/* configurations to check without a pause */
 
-/* The ring position @c names now; false: nobody has its alias. @topo is held, or it is shown. */
+/* The ring position that @c names; false: no slave has its alias. @topo is held, or it is shown. */
 static bool place(const struct ec_config *c, unsigned int *pos)
 {
 	const struct ec_bus *bus = c->wanted->bus;
@@ -26,8 +26,8 @@ static bool place(const struct ec_config *c, unsigned int *pos)
  * ec_config_find_alias() - look for the slave that has the alias of a configuration
  * @c: configuration
  *
- * When it is made, and when slaves have come or gone: who only looks at it must not walk
- * all slaves.
+ * Called for a new configuration, and when slaves were connected or disconnected: readers
+ * of a configuration must not search all slaves.
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
@@ -134,7 +134,7 @@ static size_t present(struct ec_slave *s, char *buf, size_t size)
 	return scnprintf(buf, size, "AL state %s on the way to OP", state);
 }
 
-/* The revision is no part of the identity, only what an application has asked to be told. */
+/* The revision is no part of the identity. It is checked when the application sets the flag. */
 static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 {
 	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
@@ -145,11 +145,11 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 
 /**
  * ec_config_at() - look for the configuration that a slave has or differs from
- * @w: what an application wants
+ * @w: what an application configures
  * @slave: slave
  * @alias: of the nearest slave at or before it that has one, or 0
  * @distance: to that one
- * @from: configuration to begin with, 0 at first; set behind the last one looked at
+ * @from: configuration to begin with, initially 0; set behind the last one checked
  *
  * Looks at some configurations only, as a section of a reader is short.
  *
@@ -211,13 +211,6 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 	return true;
 }
 
-static void absent_text(const struct ec_config *c, char *buf, size_t size)
-{
-	down_read(&c->wanted->bus->topo);
-	absent(c, buf, size);
-	up_read(&c->wanted->bus->topo);
-}
-
 /**
  * ec_config_log_differences() - report what is missing or different
  * @w: of a session that has just been activated
@@ -235,8 +228,12 @@ void ec_config_log_differences(const struct ec_wanted *w)
 			continue;
 		if (n++ >= LOG_MAX)
 			continue;
-		if (!c->slave || !ec_config_revision_text(c, c->slave, text, sizeof(text)))
-			absent_text(c, text, sizeof(text));
+		down_read(&w->bus->topo);
+		if (c->slave)
+			ec_config_revision_text(c, c->slave, text, sizeof(text));
+		else
+			absent(c, text, sizeof(text));
+		up_read(&w->bus->topo);
 		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
 			     c->position, text);
 	}
