@@ -88,7 +88,7 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 
 static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 {
-	const struct ec_cyc_wire *w = READ_ONCE(c->dc->begun) ? &c->clocked : &c->plain;
+	const struct ec_cyc_wire *w = ec_dc_begun(c->dc) ? &c->clocked : &c->plain;
 
 	i->cycle_interval_us = READ_ONCE(c->links->access.interval_us);
 	i->cycle_datagrams = c->n_dgrams;

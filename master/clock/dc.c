@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Distributed clocks: when they are set, by which reference clock, and again if it
- * has failed. dc_job.c measures, dc_set.c sets and compensates.
+ * Distributed clocks: when they are set, by which reference clock, and again after a failure.
+ * dc_job.c measures, dc_set.c sets and compensates.
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include "dc_job.h"
 #include "../base/once64.h"
 
-#define BOOST		16000	/* comparisons left to the cycle */
-#define APP_WAIT_MS	2000	/* for the first time an application's cycle tells */
-#define APP_CYCLES	20	/* or for so many that tell none */
-#define APP_MEDIAN	5	/* cycles that tell it: one of them may be late */
+#define EXTRA_DGRAMS	16000	/* of drift compensation by the cycle */
+#define APP_WAIT_MS	2000	/* for the first application time of the cycle */
+#define APP_CYCLES	20	/* or for so many cycles without one */
+#define APP_MEDIAN	5	/* cycles with one: a single cycle may be late */
 #define TRIES		20	/* to set the clocks while frames are lost */
 #define TRY_MS		50	/* between them */
 
@@ -25,7 +25,7 @@ static void set_ref(struct ec_dc_job *j)
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
-	WRITE_ONCE(dc->front, ref && ec_dc_has_front(j));
+	WRITE_ONCE(dc->clocks_upstream, ref && ec_dc_has_upstream(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
 	ec_change_end(&j->dc->base->show);
 	up_write(&j->dc->bus->topo);
@@ -33,8 +33,7 @@ static void set_ref(struct ec_dc_job *j)
 		ec_slave_unref(old);
 }
 
-/* Receive times no cables make are worth a line. */
-static void tell_odd(const struct ec_dc_job *j)
+static void log_unreliable(const struct ec_dc_job *j)
 {
 	unsigned int i, n = 0, first = 0;
 
@@ -47,6 +46,32 @@ static void tell_odd(const struct ec_dc_job *j)
 		ec_slave_warn(j->slaves[first],
 			      "receive times of this and %u more slave(s) contradict the topology; delays unreliable: check cables, then rescan\n",
 			      n - 1);
+}
+
+/**
+ * ec_clock_event() - change the state of a clock
+ * @c: clock of a slave
+ * @event: what happens to it
+ *
+ * Context: Process. Activation, or dc.lock held.
+ * Return: its state before.
+ */
+enum ec_clock_state ec_clock_event(struct ec_clock *c, enum ec_clock_event event)
+{
+	static const u8 next[][3] = {
+		[EC_CLOCK_UNSET] = { EC_CLOCK_SET, EC_CLOCK_EXCLUDED, EC_CLOCK_UNSET },
+		[EC_CLOCK_SET] = { EC_CLOCK_SET, EC_CLOCK_LOST, EC_CLOCK_UNSET },
+		[EC_CLOCK_EXCLUDED] = { EC_CLOCK_SET, EC_CLOCK_EXCLUDED, EC_CLOCK_EXCLUDED },
+		[EC_CLOCK_LOST] = { EC_CLOCK_SET, EC_CLOCK_LOST, EC_CLOCK_EXCLUDED },
+	};
+	u32 old = READ_ONCE(c->state);
+
+	/* the monitor may measure during an activation */
+	while (!try_cmpxchg(&c->state, &old, next[old][event]))
+		;
+	if (event != EC_CLOCK_ON_SILENT)
+		c->failed_attempts = 0;
+	return old;
 }
 
 /**
@@ -79,7 +104,7 @@ int ec_dc_measure(struct ec_dc *dc)
 	if (ret)
 		j.ref = j.n;
 	else
-		tell_odd(&j);
+		log_unreliable(&j);
 	set_ref(&j);
 	mutex_unlock(&dc->lock);
 	ec_dc_job_free(&j);
@@ -87,9 +112,9 @@ int ec_dc_measure(struct ec_dc *dc)
 }
 
 /*
- * Applications may tell quite another time in their cycle than before activation.
- * Their first cycle is awaited, so that the clocks begin with what they go on with. The
- * cycle wakes no thread of the master, so these waits poll.
+ * The application time of the cycle may differ a lot from the time before activation. Wait for
+ * its first cycle, so that the clocks begin with the time they continue with. The cycle wakes
+ * no thread of the master, so these waits poll.
  */
 static void await_time(struct ec_dc *dc, u64 since)
 {
@@ -106,34 +131,56 @@ static void await_time(struct ec_dc *dc, u64 since)
 	}
 }
 
-static void set_state(struct ec_dc *dc, int state)
+/**
+ * ec_dc_set_state() - change the state of the clocks
+ * @dc: clocks
+ * @state: as the table at enum ec_dc_state allows
+ *
+ * Context: Process. The worker, the watch, or while neither of them runs.
+ */
+void ec_dc_set_state(struct ec_dc *dc, enum ec_dc_state state)
 {
+	/* the states before */
+	static const u8 from[] = {
+		[EC_DC_OFF] = U8_MAX,
+		[EC_DC_BUSY] = U8_MAX,
+		[EC_DC_AWAIT_CYCLE] = BIT(EC_DC_BUSY),
+		[EC_DC_READY] = BIT(EC_DC_BUSY),
+		[EC_DC_FAILED] = BIT(EC_DC_BUSY),
+		[EC_DC_RETRY_WAIT] = BIT(EC_DC_BUSY),
+		[EC_DC_RETRY_DUE] = BIT(EC_DC_READY) | BIT(EC_DC_FAILED) | BIT(EC_DC_RETRY_WAIT),
+	};
+
+	WARN_ON_ONCE(!(from[state] & BIT(dc->state)));
 	WRITE_ONCE(dc->state, state);
 	wake_up_all(&dc->wq);
 }
 
+/* Poll until the application time has come or not (@seen), for @cycles at most. */
+static void await_cycles(struct ec_dc *dc, bool seen, u32 cycles, unsigned int *ms)
+{
+	u32 polls = READ_ONCE(dc->links->access.polls);
+
+	for (; *ms < APP_WAIT_MS && READ_ONCE(dc->app_time_seen) == seen && !READ_ONCE(dc->stop) &&
+	     READ_ONCE(dc->links->access.polls) - polls < cycles; ++*ms)
+		usleep_range(1000, 1100);
+}
+
 /*
- * The time an application tells before its cycle runs may be of another decade
- * than those of the cycle: the clocks shall have the latter.
+ * The application time before its cycle runs may be decades away from the time in the cycle,
+ * which the clocks are set to.
  */
 static void await_cycle(struct ec_dc *dc)
 {
-	u32 polls = READ_ONCE(dc->links->access.polls);
-	unsigned int ms;
+	unsigned int ms = 0;
 
-	WRITE_ONCE(dc->idle, true);
-	for (ms = 0; ms < APP_WAIT_MS && !READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(dc->links->access.polls) - polls < APP_CYCLES; ms++)
-		usleep_range(1000, 1100);
-	polls = READ_ONCE(dc->links->access.polls);
-	for (; ms < APP_WAIT_MS && READ_ONCE(dc->told) && !READ_ONCE(dc->stop) &&
-	     READ_ONCE(dc->links->access.polls) - polls < APP_MEDIAN - 1; ms++)
-		usleep_range(1000, 1100);
-	WRITE_ONCE(dc->idle, false);
+	ec_dc_set_state(dc, EC_DC_AWAIT_CYCLE);
+	await_cycles(dc, false, APP_CYCLES, &ms);
+	await_cycles(dc, true, APP_MEDIAN - 1, &ms);
+	ec_dc_set_state(dc, EC_DC_BUSY);
 }
 
-/* Another reference than before, or none, is worth a line. */
-static void tell_ref(const struct ec_dc_job *j, bool lost)
+static void log_ref(const struct ec_dc_job *j, bool lost)
 {
 	struct ec_dc *dc = j->dc;
 	u16 choice = READ_ONCE(dc->choice);
@@ -157,23 +204,23 @@ static void change_ref(struct ec_dc_job *j, bool found)
 
 	if (found)
 		set_ref(j);
-	else	/* until it is back or the session ends; the bus has not lost it */
+	else	/* until it replies or the session ends; it is still on the bus */
 		WRITE_ONCE(dc->ref_station, 0);
 	now = READ_ONCE(dc->ref_station);
-	if (!dc->fresh && before != now)
-		tell_ref(j, lost);
+	if (!j->first && before != now)
+		log_ref(j, lost);
 }
 
-static bool passes(int ret)
+static bool is_transient(int ret)
 {
 	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY;
 }
 
 /*
- * Frames may be lost, and slaves may be busy with leaving or coming. Until a new
- * reference clock is set, the cycle goes on with the one before.
+ * Frames may be lost, and slaves may connect or disconnect. Until a new reference clock is set,
+ * the cycle continues with the one before.
  */
-static int set(struct ec_dc_job *j)
+static int set_clocks(struct ec_dc_job *j)
 {
 	struct ec_dc *dc = j->dc;
 	unsigned int try;
@@ -185,7 +232,7 @@ static int set(struct ec_dc_job *j)
 		ret = ec_dc_get_delays(j) ?: ec_dc_latch(j) ?: ec_dc_write(j);
 		if (!ret)
 			change_ref(j, true);
-		if (!passes(ret) || READ_ONCE(dc->stop))
+		if (!is_transient(ret) || READ_ONCE(dc->stop))
 			break;
 		if (ret == -EAGAIN)
 			ec_dc_leave_out(j);
@@ -193,61 +240,73 @@ static int set(struct ec_dc_job *j)
 	}
 	if (j->ref < j->n || !try)
 		return ret;
-	/* the only one there may be does not answer */
+	/* the only possible one does not reply */
 	change_ref(j, false);
 	return -ENXIO;
+}
+
+/* Set and compensate all clocks of the job; the cycle uses them meanwhile as far as it can. */
+static int synchronize(struct ec_dc_job *j)
+{
+	struct ec_dc *dc = j->dc;
+	int ret;
+
+	mutex_lock(&dc->lock);
+	j->compensated = READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
+	WRITE_ONCE(dc->mode, EC_DC_IDLE);
+	ret = set_clocks(j);
+	ec_write64(&dc->since_ns, ktime_get_ns());
+	/* clocks that were set before need the cycle in any case */
+	if (!ret || (j->compensated && ret != -ENXIO))
+		WRITE_ONCE(dc->mode, EC_DC_COMPENSATE);
+	WRITE_ONCE(dc->extra_dgrams, ret ? 0 : EXTRA_DGRAMS);
+	ret = ret ?: ec_dc_near(j) ?: ec_dc_check(j);
+	mutex_unlock(&dc->lock);
+	if (ret) {
+		WRITE_ONCE(dc->extra_dgrams, 0);
+		if (READ_ONCE(dc->mode) == EC_DC_READ)
+			WRITE_ONCE(dc->mode, EC_DC_COMPENSATE);
+	}
+	return ret;
 }
 
 static void work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
-	unsigned int i;
+	bool first = !READ_ONCE(dc->app.set);
 	struct ec_dc_job j;
-	bool was;
+	unsigned int i;
 	u64 t0;
 	int ret;
 
-	if (dc->fresh)
+	if (first)
 		await_cycle(dc);
 	if (READ_ONCE(dc->stop))
 		return;
 	t0 = ktime_get_ns();
 	ret = ec_dc_job_init(&j, dc);
 	if (ret) {
-		set_state(dc, EC_DC_OFF);
+		ec_dc_set_state(dc, EC_DC_FAILED);
 		return;
 	}
+	j.first = first;
 	if (j.ref < j.n && !ec_clock_is_set(j.slaves[j.ref]))
 		await_time(dc, t0);
 	if (READ_ONCE(dc->stop)) {
 		ec_dc_job_free(&j);
 		return;
 	}
-	mutex_lock(&dc->lock);
-	was = READ_ONCE(dc->running);
-	j.running = was;
-	WRITE_ONCE(dc->running, false);
-	ret = set(&j);
-	ec_write64(&dc->begun_ns, ktime_get_ns());
-	/* those that were set before need the cycle in any case */
-	WRITE_ONCE(dc->running, !ret || (was && ret != -ENXIO));
-	WRITE_ONCE(dc->boost, ret ? 0 : BOOST);
-	ret = ret ?: ec_dc_near(&j) ?: ec_dc_check(&j);
-	mutex_unlock(&dc->lock);
+	ret = synchronize(&j);
 	if (!ret)
 		ec_info(dc,
 			"distributed clocks synchronized in %llu us, reference clock: slave %u\n",
 			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
 	else if (ret != -ENXIO && ret != -ECANCELED)
 		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
-			passes(ret) ? "; retrying" : "");
-	if (ret) {
-		WRITE_ONCE(dc->boost, 0);
-		WRITE_ONCE(dc->framed, false);
-	}
-	WRITE_ONCE(dc->failed, passes(ret));
-	set_state(dc, ret ? EC_DC_OFF : EC_DC_READY);
-	/* ec_dc_sync_start() has the other half of this barrier */
+			is_transient(ret) ? "; retrying" : "");
+	ec_dc_set_state(dc, !ret ? EC_DC_READY : is_transient(ret) ? EC_DC_RETRY_WAIT :
+						 EC_DC_FAILED);
+	/* pairs with the barrier in ec_dc_sync_start() */
 	smp_mb();
 	for (i = 0; !ret && i < j.n; i++)
 		if (ec_clock_is_set(j.slaves[i]))
@@ -265,48 +324,43 @@ static void stop(struct ec_dc *dc)
 }
 
 /**
- * ec_dc_begin() - set the clocks of a session, or of slaves that join it
+ * ec_dc_begin() - set the clocks of a session, or of slaves that have connected since
  * @dc: clocks
- * @all: all of them, from the application's time; else only new ones, from the
- *	reference clock
  * @choice: station address of the reference clock, or EC_DC_ANY...
+ *
+ * The first time in a session all clocks get the application time; later ones get the time of
+ * the reference clock.
  *
  * Context: Process. May sleep.
  */
-void ec_dc_begin(struct ec_dc *dc, bool all, u16 choice)
+void ec_dc_begin(struct ec_dc *dc, u16 choice)
 {
+	bool all = !ec_dc_begun(dc);
 	unsigned int i;
 
 	stop(dc);
 	down_read(&dc->bus->topo);
-	for (i = 0; all && i < dc->bus->n_slaves; i++) {
-		struct ec_clock *c = ec_clock_of(dc->bus->slaves[i]);
-
-		WRITE_ONCE(c->set, false);
-		c->failed_attempts = 0;
-	}
+	for (i = 0; all && i < dc->bus->n_slaves; i++)
+		ec_clock_event(ec_clock_of(dc->bus->slaves[i]), EC_CLOCK_ON_ACTIVATION);
 	up_read(&dc->bus->topo);
 	WRITE_ONCE(dc->stop, false);
-	if (all)
+	if (all) {
 		ec_dc_app_set(dc, 0, false);
-	/* that of the application before is none of this one */
-	if (all && !ec_dc_can_be(dc, choice))
-		WRITE_ONCE(dc->ref_station, 0);
-	/* who joins before the application has told its time does not set another one */
-	dc->fresh = all || (dc->fresh && !dc->app.set);
+		dc->window_logged = false;
+		/* the reference clock of the session before has no meaning in this one */
+		if (!ec_dc_can_be(dc, choice))
+			WRITE_ONCE(dc->ref_station, 0);
+	}
 	ec_dc_watch_begun(dc);
-	WRITE_ONCE(dc->told, false);
+	WRITE_ONCE(dc->app_time_seen, false);
 	WRITE_ONCE(dc->choice, choice);
-	dc->begun = true;
-	if (all)
-		dc->far_told = false;
-	set_state(dc, EC_DC_BUSY);
+	ec_dc_set_state(dc, EC_DC_BUSY);
 	queue_work(dc->service, &dc->work);
 	ec_dc_watch_start(dc);
 }
 
 /**
- * ec_dc_end() - the session ends: its phase means nothing any more
+ * ec_dc_end() - end the clocks of a session
  * @dc: clocks
  *
  * Context: Process. May sleep.
@@ -316,21 +370,18 @@ void ec_dc_end(struct ec_dc *dc)
 	unsigned long flags;
 
 	stop(dc);
-	WRITE_ONCE(dc->running, false);
+	WRITE_ONCE(dc->mode, EC_DC_IDLE);
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	dc->has_phase = false;
 	ec_write64(&dc->app_time, 0);
-	dc->choice = EC_DC_ANY;
-	dc->begun = false;
-	dc->wanted = false;
-	dc->again = false;
-	dc->failed = false;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	WRITE_ONCE(dc->choice, EC_DC_ANY);
+	WRITE_ONCE(dc->wanted, false);
 	ec_dc_app_set(dc, 0, false);
 	down_read(&dc->bus->topo);
 	WRITE_ONCE(dc->ref_station, dc->ref ? dc->ref->station : 0);
 	up_read(&dc->bus->topo);
-	set_state(dc, EC_DC_OFF);
+	ec_dc_set_state(dc, EC_DC_OFF);
 }
 
 /**

@@ -19,10 +19,87 @@ struct ec_links;
 #define EC_DC_ANY	0	/* the first one that has a clock */
 #define EC_DC_NOBODY	0xffff	/* the chosen slave is not there */
 
+/**
+ * enum ec_dc_state - clocks of a master in a session; ec_dc_set_state() alone changes it
+ * @EC_DC_OFF: no session uses them
+ * @EC_DC_BUSY: the worker measures and sets them
+ * @EC_DC_AWAIT_CYCLE: the worker waits for the first cycles of the application
+ * @EC_DC_READY: they are set and near each other: SYNC may start
+ * @EC_DC_FAILED: they are not set, and only a change of the bus can help
+ * @EC_DC_RETRY_WAIT: they are not set, as frames or replies were lost
+ * @EC_DC_RETRY_DUE: the monitor is to begin another attempt
+ *
+ * ============  ========  ======  =============  ==========  ===============  ============
+ * state         begin     end     first job      all set     error            attempt due
+ * ============  ========  ======  =============  ==========  ===============  ============
+ * OFF           BUSY      OFF
+ * BUSY          BUSY      OFF     AWAIT_CYCLE    READY       FAILED,
+ *                                                            RETRY_WAIT
+ * AWAIT_CYCLE   BUSY      OFF     BUSY (cycles
+ *                                 have come)
+ * READY         BUSY      OFF                                                 RETRY_DUE
+ * FAILED        BUSY      OFF                                                 RETRY_DUE
+ * RETRY_WAIT    BUSY      OFF                                                 RETRY_DUE
+ * RETRY_DUE     BUSY      OFF
+ * ============  ========  ======  =============  ==========  ===============  ============
+ *
+ * Begin and end first wait for the worker and the watch. Until then the worker changes BUSY
+ * and AWAIT_CYCLE, the watch changes the others: when an excluded slave replies, or after
+ * RETRY_WAIT.
+ */
 enum ec_dc_state {
-	EC_DC_OFF,	/* no clocks, or not measured since the last scan */
-	EC_DC_BUSY,	/* clocks are being set */
-	EC_DC_READY,	/* set and compensated; SYNC may start */
+	EC_DC_OFF,
+	EC_DC_BUSY,
+	EC_DC_AWAIT_CYCLE,
+	EC_DC_READY,
+	EC_DC_FAILED,
+	EC_DC_RETRY_WAIT,
+	EC_DC_RETRY_DUE,
+};
+
+/** enum ec_dc_mode - what the cycle does with the clocks; the worker changes it */
+enum ec_dc_mode {
+	/** @EC_DC_IDLE: nothing: they are not set, or are measured */
+	EC_DC_IDLE,
+	/** @EC_DC_READ: read the time of the reference clock; frames of the worker compensate */
+	EC_DC_READ,
+	/** @EC_DC_COMPENSATE: send that time to all clocks */
+	EC_DC_COMPENSATE,
+};
+
+/**
+ * enum ec_clock_state - clock of a slave in a session; ec_clock_event() alone changes it
+ * @EC_CLOCK_UNSET: not set yet
+ * @EC_CLOCK_SET: set
+ * @EC_CLOCK_EXCLUDED: not set, and without a valid reply when it was to be set
+ * @EC_CLOCK_LOST: set, and without a valid reply since
+ *
+ * ========  =====  ========  ==========
+ * state     SET    SILENT    ACTIVATION
+ * ========  =====  ========  ==========
+ * UNSET     SET    EXCLUDED  UNSET
+ * SET       SET    LOST      UNSET
+ * EXCLUDED  SET    EXCLUDED  EXCLUDED
+ * LOST      SET    LOST      EXCLUDED
+ * ========  =====  ========  ==========
+ *
+ * The watch polls clocks that are EXCLUDED or LOST; when one replies, another attempt is due.
+ */
+enum ec_clock_state {
+	EC_CLOCK_UNSET,
+	EC_CLOCK_SET,
+	EC_CLOCK_EXCLUDED,
+	EC_CLOCK_LOST,
+};
+
+/** enum ec_clock_event - what happens to a clock */
+enum ec_clock_event {
+	/** @EC_CLOCK_ON_SET: offset and delay were written */
+	EC_CLOCK_ON_SET,
+	/** @EC_CLOCK_ON_SILENT: no valid reply in EC_DC_OUT_TRIES attempts */
+	EC_CLOCK_ON_SILENT,
+	/** @EC_CLOCK_ON_ACTIVATION: the clocks of a session are begun */
+	EC_CLOCK_ON_ACTIVATION,
 };
 
 /* a larger difference to the reference clock is reported */
@@ -38,18 +115,16 @@ struct ec_clock {
 	u32 prev_delay;
 	/** @measured: 1 + number of the scan after which the two were measured, 0: never */
 	u32 measured;
-	/** @delay_unreliable: the receive times contradict the topology */
+	/** @state: enum ec_clock_state; atomic */
+	u32 state;
+	/** @delay_unreliable: the receive times contradict the topology; of a measurement */
 	bool delay_unreliable;
 	/** @outside_window: the last difference was outside the sync window, with hysteresis */
 	bool outside_window;
-	/** @set: the clock was set for this session */
-	bool set;
-	/** @excluded: it gave no valid reply when it was to be set */
-	bool excluded;
-	/** @failed_attempts: to set it since, although it had replied to the watch */
-	u8 failed_attempts;
-	/** @sync_unsynchronized: SYNC signals run by a clock that was not set; ec_slave.lock */
+	/** @sync_unsynchronized: SYNC was started before the clock was set; ec_slave.lock */
 	bool sync_unsynchronized;
+	/** @failed_attempts: to set it since it is excluded, although it replied to the watch */
+	u8 failed_attempts;
 	/** @diff: last difference to the reference clock, ns, positive: ahead */
 	s32 diff;
 	/** @offset: of the system time, ns, register 0x0920 */
@@ -68,85 +143,47 @@ struct ec_dc_sync {
 	s32 shift[2];
 };
 
-/**
- * struct ec_dc_app - the application's time as the clocks have it
- * @base: that time less ktime, ns
- * @base_ns: when it was told so (ktime)
- * @off: by how much the last time told was, ns
- * @skip: what it has jumped since, ns
- * @set: the clocks are set: it may not jump
- * @past: @base of the last cycles before that
- * @n_past: such cycles so far, 0: @base counts
- * @odd: last times told in a row that were off
- * @first: by how much the first of them was, ns
- * @first_ns: when (ktime)
- * @sum: how much more the others were, ns
- * @jumps: since the log has told
- * @jump_ns: the last one
- * @ignored: times that were far off, since the log has told
- * @ignored_ns: by how much the last one was
- * @log_ns: when the log may tell again (ktime)
- */
+/** struct ec_dc_app - the application time as the clocks have it */
 struct ec_dc_app {
+	/** @base: that time less ktime, ns */
 	u64 base;
+	/** @base_ns: when it was that (ktime) */
 	u64 base_ns;
+	/** @off: deviation of the last time, ns */
 	s64 off;
+	/** @skip: all jumps since the clocks are set, ns */
 	u64 skip;
+	/** @set: the clocks are set: it may not jump */
 	bool set;
+	/** @past: @base of the last cycles before that */
 	u64 past[EC_DC_APP_PAST];
+	/** @n_past: such cycles so far, 0: @base counts */
 	u32 n_past;
-	u32 odd;
+	/** @deviating: last times in a row that deviated by more than the limit */
+	u32 deviating;
+	/** @first: deviation of the first of them, ns */
 	s64 first;
+	/** @first_ns: when (ktime) */
 	u64 first_ns;
+	/** @sum: how much more the others deviated, ns */
 	s64 sum;
+	/** @jumps: since the last log message */
 	u32 jumps;
+	/** @jump_ns: the last one */
 	s64 jump_ns;
+	/** @ignored: isolated errors since the last log message */
 	u32 ignored;
+	/** @ignored_ns: the last one */
 	s64 ignored_ns;
+	/** @log_ns: no log message before (ktime) */
 	u64 log_ns;
 };
 
 /**
  * struct ec_dc - distributed clocks of a master
- * @lock: one measurement at a time
- * @state: enum ec_dc_state
- * @choice: station address of the wanted reference clock, or EC_DC_ANY...
- * @ref: reference clock with a reference, or NULL, under bus->topo
- * @ref_station: its station address for the cycle, 0: none
- * @ref_wide: it has 64 bits
- * @front: slaves with a clock are in front of it: they get the time the cycle
- *	predicts, and nothing that waits in a queue
- * @begun: the session's clocks were begun to be set, under lock of the configuration
- * @wanted: the application sends clock datagrams
- * @running: the clocks are set: the cycle may correct them
- * @framed: by frames of @work; the cycle only asks for the time
- * @stop: @work shall end
- * @fresh: @work sets all clocks from the application's time
- * @idle: and waits for the first one of its cycle
- * @told: which has come
- * @changed: slaves have come or gone since the clocks were begun to be set; only the
- *	monitor writes it
- * @again: so it is without that: setting them is worth another try
- * @failed: the last try has failed, but another may not
- * @again_ms: between two tries
- * @again_ns: not before (ktime)
- * @begun_ns: since when drift is compensated (ktime)
- * @ahead: time of the reference clock less ktime, when they are set, ns
- * @boost: comparisons the cycle shall make beyond one per send
- * @far_told: the log says that clocks are outside the sync window
- * @far_next_ns: when it may say more of that (ktime)
- * @work: sets the clocks while a session is active
- * @watch: looks at the sync window of all slaves, once a second
- * @wq: woken when @state changes
- * @phase: first application time of the session, ns; SYNC starts on its grid
- * @has_phase: @phase is set
- * @app_time: last application time, ns
- * @app_ktime: when it was that time (ktime), ns
- * @leads: the application tells the reference clock its time
- * @led_ns: when it did so last (ktime), 0: never
- * @led_gap: how long after the time before, ns
- * @app: its time as the clocks have it
- * @time_lock: protects @phase to @app
+ *
+ * What one thread sets and another one takes is a flag of its own, not part of @state: @wanted,
+ * @changed, @stop and @app_time_seen are valid in several states.
  */
 struct ec_dc {
 	/** @base: of the master, immutable */
@@ -157,56 +194,92 @@ struct ec_dc {
 	struct ec_bus *bus;
 	/** @service: queue of @work and @watch, immutable */
 	struct workqueue_struct *service;
+	/** @lock: one measurement or setting at a time */
 	struct mutex lock;
+	/** @state: enum ec_dc_state */
 	int state;
-	u16 choice;
-	struct ec_slave *ref;
-	u16 ref_station;
-	bool ref_wide;
-	bool front;
-	bool begun;
-	bool wanted;
-	bool running;
-	bool framed;
-	bool stop;
-	bool fresh;
-	bool idle;
-	bool told;
-	bool changed;
-	bool again;
-	bool failed;
-	u32 again_ms;
-	u64 again_ns;
-	aligned_u64 begun_ns;
-	atomic64_t ahead;
-	u32 boost;
-	bool far_told;
-	u64 far_next_ns;
-	struct work_struct work;
-	struct delayed_work watch;
+	/** @wq: woken when @state changes, or @changed is cleared */
 	wait_queue_head_t wq;
+	/** @work: sets the clocks while a session is active */
+	struct work_struct work;
+	/** @watch: polls the difference of all clocks, once a second */
+	struct delayed_work watch;
+	/** @stop: request: @work and @watch end soon */
+	bool stop;
+	/** @wanted: the cycle has sent its first clock datagram; set by the cycle owner */
+	bool wanted;
+	/**
+	 * @changed: slaves have connected or disconnected since the last begin; only the
+	 * monitor writes it
+	 */
+	bool changed;
+	/** @app_time_seen: an application time has come since the last begin */
+	bool app_time_seen;
+	/** @retry_ms: time from the last begin to the next attempt */
+	u32 retry_ms;
+	/** @retry_ns: no other attempt before (ktime) */
+	u64 retry_ns;
+
+	/** @choice: station address of the configured reference clock, or EC_DC_ANY... */
+	u16 choice;
+	/** @ref: reference clock with a reference, or NULL, under bus->topo */
+	struct ec_slave *ref;
+	/** @ref_station: its station address for the cycle, 0: none */
+	u16 ref_station;
+	/** @ref_wide: it has 64 bits */
+	bool ref_wide;
+	/**
+	 * @clocks_upstream: there are clocks upstream of it: they take the time that the cycle
+	 * predicts, and none that waits in a queue
+	 */
+	bool clocks_upstream;
+	/** @ref_minus_ktime: time of the reference clock less ktime, when it is set, ns */
+	atomic64_t ref_minus_ktime;
+
+	/** @mode: enum ec_dc_mode */
+	int mode;
+	/** @extra_dgrams: drift compensation datagrams that the cycle adds to one per send */
+	u32 extra_dgrams;
+	/** @since_ns: since when drift is compensated (ktime) */
+	aligned_u64 since_ns;
+	/** @window_logged: the log says that clocks are outside the sync window */
+	bool window_logged;
+	/** @window_log_ns: no other message of that before (ktime) */
+	u64 window_log_ns;
+
+	/** @time_lock: protects all that follows */
 	raw_spinlock_t time_lock;
+	/** @phase: first application time of the session, ns; SYNC starts on its grid */
 	u64 phase;
+	/** @has_phase: @phase is set */
 	bool has_phase;
+	/** @app_time: last application time, ns */
 	aligned_u64 app_time;
+	/** @app_ktime: when it was that time (ktime), ns */
 	aligned_u64 app_ktime;
-	bool leads;
+	/** @app_leads: the application is the time reference of the reference clock */
+	bool app_leads;
+	/** @led_ns: when it last wrote its time to it (ktime), 0: never */
 	u64 led_ns;
+	/** @led_gap: time between the last two writes, ns */
 	u64 led_gap;
+	/** @app: its time as the clocks have it */
 	struct ec_dc_app app;
 };
 
 void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, struct ec_bus *bus,
 		struct workqueue_struct *service);
 void ec_dc_exit(struct ec_dc *dc);
+enum ec_clock_state ec_clock_event(struct ec_clock *c, enum ec_clock_event event);
 int ec_dc_measure(struct ec_dc *dc);
 bool ec_dc_can_be(struct ec_dc *dc, u16 choice);
-void ec_dc_begin(struct ec_dc *dc, bool all, u16 choice);
+void ec_dc_set_state(struct ec_dc *dc, enum ec_dc_state state);
+void ec_dc_begin(struct ec_dc *dc, u16 choice);
 void ec_dc_end(struct ec_dc *dc);
 
 /* dc_app.c */
 void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns);
-bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip);
+bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip);
 u64 ec_dc_now(struct ec_dc *dc);
 u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns);
 void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set);
@@ -216,10 +289,10 @@ void ec_dc_app_log(struct ec_dc *dc);
 void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns);
 u64 ec_dc_clock_at(struct ec_dc *dc, u64 at_ns);
 u64 ec_dc_clock_now(struct ec_dc *dc);
-u64 ec_dc_whole(struct ec_dc *dc, u32 low, u64 at_ns);
+u64 ec_dc_extend32(struct ec_dc *dc, u32 low, u64 at_ns);
 
 /* dc_watch.c */
-void ec_dc_verdict(struct ec_slave *s, u32 value);
+void ec_dc_update_diff(struct ec_slave *s, u32 value);
 void ec_dc_watch_init(struct ec_dc *dc);
 void ec_dc_watch_start(struct ec_dc *dc);
 void ec_dc_watch_stop(struct ec_dc *dc);
@@ -244,10 +317,37 @@ static inline struct ec_clock *ec_clock_of(const struct ec_slave *s)
 	return s->ext[EC_EXT_CLOCK];
 }
 
-/* set for this session, though it may have been silent since */
 static inline bool ec_clock_is_set(const struct ec_slave *s)
 {
-	return READ_ONCE(ec_clock_of(s)->set);
+	u32 state = READ_ONCE(ec_clock_of(s)->state);
+
+	return state == EC_CLOCK_SET || state == EC_CLOCK_LOST;
+}
+
+static inline bool ec_clock_is_excluded(const struct ec_slave *s)
+{
+	return READ_ONCE(ec_clock_of(s)->state) >= EC_CLOCK_EXCLUDED;
+}
+
+/* does a session use the clocks? */
+static inline bool ec_dc_begun(const struct ec_dc *dc)
+{
+	return READ_ONCE(dc->state) != EC_DC_OFF;
+}
+
+static inline bool ec_dc_busy(const struct ec_dc *dc)
+{
+	int state = READ_ONCE(dc->state);
+
+	return state == EC_DC_BUSY || state == EC_DC_AWAIT_CYCLE;
+}
+
+/* Is the monitor to call ec_dc_begin() for the active session? */
+static inline bool ec_dc_due(const struct ec_dc *dc)
+{
+	if (!ec_dc_begun(dc))
+		return READ_ONCE(dc->wanted);
+	return READ_ONCE(dc->changed) || READ_ONCE(dc->state) == EC_DC_RETRY_DUE;
 }
 
 #endif

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The application's time: what the clocks are set to, and what the reference clock
- * follows if it shall.
+ * The application time: the clocks are set to it, and the reference clock is synchronized to it
+ * if the application wants so.
  *
- * Once the clocks are set, SYNC signals run by them, so they never jump. What is
- * told has to go on as the machine's clock does. A time that is off for some
- * cycles is ignored; one that stays off has jumped (it was set, or the application
- * was held up and counts cycles), and is followed without the jump. So frames keep
- * their place between the SYNC signals. The log tells both.
+ * Once the clocks are set, SYNC signals run by them, so they never jump. The application time
+ * has to advance with CLOCK_MONOTONIC. An error in some cycles is ignored. An error that stays
+ * is a jump (the time was set, or the application counts cycles and was stopped): the clocks
+ * follow the time without the jump, so frames keep their place between the SYNC signals. Both
+ * are logged.
  */
 #include <linux/ktime.h>
 #include <linux/math64.h>
@@ -21,12 +21,12 @@
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
 #define STAYS		16	/* cycles that must agree until it is a jump */
 #define LIMIT_MIN_NS	(100 * NSEC_PER_USEC)
-#define TELL_NS		(100 * (s64)NSEC_PER_MSEC)	/* no cycle is that late */
+#define ERROR_NS	(100 * (s64)NSEC_PER_MSEC)	/* no cycle is that late */
 #define LOG_NS		(10 * (u64)NSEC_PER_SEC)
-#define HELD_NS		((u64)NSEC_PER_SEC)	/* a hold that lasts so long is told */
-#define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without leading: it is over */
+#define HELD_NS		((u64)NSEC_PER_SEC)	/* a longer error is logged */
+#define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without its time: it leads no longer */
 
-/* More than that is no lateness of a cycle, and would take SYNC to another one. */
+/* A larger deviation is no late cycle, and would move SYNC to another cycle. */
 static s64 limit(const struct ec_dc *dc)
 {
 	u32 interval_us = ec_access_interval_us(&dc->links->access);
@@ -34,29 +34,29 @@ static s64 limit(const struct ec_dc *dc)
 	return max_t(s64, interval_us * (NSEC_PER_USEC / 2), LIMIT_MIN_NS);
 }
 
-/* It may have been told long ago; two clocks differ by less than 244 ppm. */
+/* Since the last time, perhaps long ago; two clocks differ by less than 244 ppm. */
 static s64 drift(u64 since_ns, u64 at_ns)
 {
 	return max_t(s64, at_ns - since_ns, 0) >> 12;
 }
 
-/* off by @dev: true when it has been so for long enough, then @dev is the mean */
+/* A deviation of @dev: true when it has stayed for STAYS cycles; @dev is the mean then. */
 static bool stays(struct ec_dc_app *a, s64 *dev, u64 at_ns, s64 lim)
 {
-	if (!a->odd || abs(*dev - a->first) > lim + drift(a->first_ns, at_ns)) {
-		a->odd = 0;
+	if (!a->deviating || abs(*dev - a->first) > lim + drift(a->first_ns, at_ns)) {
+		a->deviating = 0;
 		a->first = *dev;
 		a->first_ns = at_ns;
 		a->sum = 0;
 	}
 	a->sum += *dev - a->first;
-	if (++a->odd < STAYS)
+	if (++a->deviating < STAYS)
 		return false;
 	*dev = a->first + div_s64(a->sum, STAYS);
 	return true;
 }
 
-/* The mean of about 8 cycles; of what is told less often, the last. */
+/* The mean of about 8 cycles; the last one if the time comes less often. */
 static void approach(struct ec_dc_app *a, s64 dev, u64 at_ns, s64 lim)
 {
 	s64 since = at_ns - a->base_ns, span = 16 * lim;
@@ -66,7 +66,7 @@ static void approach(struct ec_dc_app *a, s64 dev, u64 at_ns, s64 lim)
 	a->base_ns = at_ns;
 }
 
-/* A time of the set clocks; false: it is not to be used. */
+/* An application time after the clocks are set; false: it must not be used. */
 static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 {
 	s64 dev = time - a->skip - at_ns - a->base;
@@ -74,25 +74,25 @@ static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 	a->off = dev;
 	if (abs(dev) <= lim + drift(a->base_ns, at_ns)) {
 		approach(a, dev, at_ns, lim);
-		a->odd = 0;
+		a->deviating = 0;
 		return true;
 	}
-	if (abs(dev) > TELL_NS) {
+	if (abs(dev) > ERROR_NS) {
 		a->ignored++;
 		a->ignored_ns = dev;
 	}
 	if (!stays(a, &dev, at_ns, lim))
 		return false;
 	a->base_ns = a->first_ns;
-	a->ignored -= min(a->ignored, a->odd);
-	a->odd = 0;
+	a->ignored -= min(a->ignored, a->deviating);
+	a->deviating = 0;
 	a->skip += dev;
 	a->jumps++;
 	a->jump_ns = dev;
 	return true;
 }
 
-/* Before they are set any time will do; the last ones are remembered. */
+/* Before they are set any time is valid; keep the last ones. */
 static void note(struct ec_dc_app *a, u64 time, u64 at_ns)
 {
 	a->base = time - at_ns;
@@ -101,8 +101,8 @@ static void note(struct ec_dc_app *a, u64 time, u64 at_ns)
 }
 
 /*
- * Whether the application leads the clocks; @now: with this send. It may do so in few
- * cycles, or no longer: then its other time counts again.
+ * Is the application the time reference? @now: with this send. It may write its time in few
+ * cycles, or no longer: then its other time is valid again.
  */
 static bool leading(struct ec_dc *dc, bool now, u64 at_ns)
 {
@@ -112,11 +112,11 @@ static bool leading(struct ec_dc *dc, bool now, u64 at_ns)
 	if (now) {
 		dc->led_gap = dc->led_ns ? gap : 0;
 		dc->led_ns = at_ns;
-		dc->leads = true;
+		dc->app_leads = true;
 	} else if (gap > clamp(4 * dc->led_gap, LEAD_NS, 30 * LEAD_NS)) {
-		dc->leads = false;
+		dc->app_leads = false;
 	}
-	return dc->leads;
+	return dc->app_leads;
 }
 
 static void set_phase(struct ec_dc *dc, u64 app_time)
@@ -129,7 +129,7 @@ static void set_phase(struct ec_dc *dc, u64 app_time)
 }
 
 /**
- * ec_dc_app_time() - a time that cannot jump: before activation, or the kernel's
+ * ec_dc_app_time() - set a time that cannot jump: before activation, or of a kernel cycle
  * @dc: clocks
  * @app_time: ns
  * @at_ns: when it was, or will be, that time (ktime)
@@ -142,7 +142,7 @@ void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns)
 
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	set_phase(dc, app_time);
-	dc->told = true;
+	dc->app_time_seen = true;
 	ec_write64(&dc->app_time, app_time);
 	ec_write64(&dc->app_ktime, at_ns);
 	dc->app.n_past = 0;
@@ -152,18 +152,18 @@ void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns)
 }
 
 /**
- * ec_dc_told() - the application tells its time with a send
+ * ec_dc_update_app_time() - take the application time of a send
  * @dc: clocks
  * @what: flags (at least one of the times), @app_time and @sync_time; any value
- * @skip: result: jumps of that time, to be taken off
+ * @skip: result: jumps of that time, to be subtracted
  *
- * An application that leads the clocks means the time it wants to be written: of
- * that its other time only gives the upper half.
+ * If the application is the time reference, the time to be written is valid; its other time
+ * only has the upper half.
  *
  * Context: Cycle owner. RT-safe.
- * Return: true when the time is off: it must not be written to the reference clock.
+ * Return: true when the time deviates: it must not be written to the reference clock.
  */
-bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
+bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
 {
 	bool leads = what->flags & EC_SEND_FLAG_SYNC_REF, good = true;
 	unsigned long flags;
@@ -176,12 +176,12 @@ bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
 	else
 		time = dc->has_phase ? dc->app_time + (at_ns - dc->app_ktime) : what->sync_time;
 	set_phase(dc, time);
-	dc->told = true;
+	dc->app_time_seen = true;
 	ec_write64(&dc->app_time, time);
 	ec_write64(&dc->app_ktime, at_ns);
 	if (leads)
 		time += (s32)((u32)what->sync_time - (u32)time);
-	/* the one that is written counts, though it may be told less often */
+	/* the written time is valid, even if it comes less often */
 	if (leading(dc, leads, at_ns) == leads) {
 		if (dc->app.set)
 			good = follow(&dc->app, time, at_ns, limit(dc));
@@ -197,7 +197,7 @@ bool ec_dc_told(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
  * ec_dc_now() - the application's time at this moment
  * @dc: clocks
  *
- * Without the jumps it has made since the clocks were set.
+ * Without its jumps since the clocks were set.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: ns; without an application the time since 2000-01-01.
@@ -222,11 +222,11 @@ static int later(const void *a, const void *b)
 }
 
 /**
- * ec_dc_app_at() - the application's time, as clocks are set to it
+ * ec_dc_app_at() - the application time that clocks are set to
  * @dc: clocks
  * @at_ns: when (ktime)
  *
- * The median of its last cycles: each may be late.
+ * The median of its last cycles, since each may be late.
  *
  * Context: Process.
  * Return: ns; without an application the time since 2000-01-01.
@@ -249,10 +249,10 @@ u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns)
 }
 
 /**
- * ec_dc_app_set() - the clocks are set, or no longer
+ * ec_dc_app_set() - note that the clocks are set, or no longer
  * @dc: clocks
  * @base: the time they were set to, less ktime
- * @set: from now on they shall not jump
+ * @set: they must not jump from now on
  *
  * Context: Process.
  */
@@ -265,15 +265,15 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 	if (set && !a->set) {
 		a->base = base;
 		a->base_ns = ktime_get_ns();
-		a->n_past = 0;	/* from now on follow() keeps @base true */
+		a->n_past = 0;	/* from now on follow() updates @base */
 	} else if (!set) {
 		a->n_past = 0;
 		a->skip = 0;
-		a->odd = 0;
+		a->deviating = 0;
 		a->jumps = 0;
 		a->ignored = 0;
 		a->log_ns = 0;
-		dc->leads = false;
+		dc->app_leads = false;
 		dc->led_ns = 0;
 	}
 	a->set = set;
@@ -281,7 +281,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 }
 
 /**
- * ec_dc_app_log() - tell jumps of the application's time; the cycle cannot
+ * ec_dc_app_log() - log jumps of the application time, which the cycle cannot
  * @dc: clocks
  *
  * At most once in 10 s.
@@ -298,8 +298,8 @@ void ec_dc_app_log(struct ec_dc *dc)
 
 	raw_spin_lock_irqsave(&dc->time_lock, flags);
 	jumps = a->jumps;
-	ignored = a->odd ? 0 : a->ignored;	/* it is not clear yet which it is */
-	if (a->odd && (s64)(now - a->base_ns) > (s64)HELD_NS)
+	ignored = a->deviating ? 0 : a->ignored;	/* it may become a jump */
+	if (a->deviating && (s64)(now - a->base_ns) > (s64)HELD_NS)
 		held = now - a->base_ns;
 	jump = a->jump_ns;
 	single = a->ignored_ns;

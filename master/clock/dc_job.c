@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Who takes part in setting the clocks, the reference clock, and the propagation delays. */
+/* The slaves whose clocks are set, the reference clock, and the propagation delays. */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
@@ -7,10 +7,10 @@
 #include "dc_job.h"
 
 #define ROUNDS		16	/* latches; the times have 10 ns of noise */
-#define TOGETHER	4	/* of them before clocks that are set are corrected again */
-#define CORRECT_CYCLES	8	/* in so many cycles */
-#define CORRECT_MS	20	/* and within that time */
-#define LOST		16	/* latches whose frames were lost, until it has failed */
+#define TOGETHER	4	/* latches in a row while clocks that are set drift apart */
+#define CORRECT_CYCLES	8	/* then the cycle compensates them, so many cycles */
+#define CORRECT_MS	20	/* or so long */
+#define LOST		16	/* lost latches, then the measurement fails */
 
 /**
  * ec_dc_job_free() - end a job
@@ -144,11 +144,10 @@ static bool any_set(const struct ec_dc_job *j)
 }
 
 /*
- * The chosen reference clock; else the one the others follow already, so that
- * a slave that comes in front of it changes nothing; else the first one, though
- * it may have only 32 bits: what is in front of the reference gets no time from
- * it. When the chosen one is lost, another stands in, so that the clocks stay
- * together; without it they are not set at all.
+ * The configured reference clock; else the one that others are synchronized to, so that a
+ * slave that connects upstream of it changes nothing; else the first one, even with 32 bits,
+ * since clocks upstream of the reference get no time from it. When the configured one is
+ * lost, another clock substitutes it. When it was absent from the start, no clock is set.
  */
 static void choose(struct ec_dc_job *j)
 {
@@ -165,7 +164,7 @@ static void choose(struct ec_dc_job *j)
 }
 
 /**
- * ec_dc_job_init() - begin a job with the slaves that are there
+ * ec_dc_job_init() - begin a job with the present slaves
  * @j: job
  * @dc: clocks
  *
@@ -231,15 +230,15 @@ unsigned int ec_dc_add(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who,
 }
 
 /**
- * ec_dc_answers() - find the slaves of a group that have not answered
- * @j: job whose transfer has come back
+ * ec_dc_answers() - find the slaves of a group without a valid reply
+ * @j: job whose transfer has ended
  * @at: first datagram of ec_dc_add() for @who
  * @who: group
  *
  * Adds them to @j->silent.
  *
  * Context: Process.
- * Return: 0; -EAGAIN: the bus has changed meanwhile; or the error of a datagram.
+ * Return: 0; -EAGAIN: a reply is missing; or the error of a datagram.
  */
 int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who)
 {
@@ -263,11 +262,11 @@ int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who)
 }
 
 /**
- * ec_dc_leave_out() - leave out slaves that do not answer while others do
+ * ec_dc_leave_out() - exclude slaves without a valid reply while others have one
  * @j: job, @silent as found in the last attempt
  *
- * After some attempts: one bad slave does not keep the others from being set.
- * ec_dc_watch_start() goes on asking it.
+ * After some attempts, so that one slave does not keep the others from being set. The watch
+ * polls an excluded slave.
  *
  * Context: Process.
  */
@@ -277,17 +276,16 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 
 	for (i = 0; i < j->n; i++) {
 		struct ec_slave *s = j->slaves[i];
-		struct ec_clock *c = ec_clock_of(s);
 
 		if (!j->silent[i] || ++j->spoiled[i] < EC_DC_OUT_TRIES)
 			continue;
 		j->nodes[i].dc = false;
 		if (s->delay_only)
 			continue;
-		if (!c->excluded && !READ_ONCE(s->stop.gone))
+		if (ec_clock_event(ec_clock_of(s), EC_CLOCK_ON_SILENT) < EC_CLOCK_EXCLUDED &&
+		    !READ_ONCE(s->stop.gone))
 			ec_slave_warn(s, "no valid reply to DC register access in %d attempts; clock excluded until it replies\n",
 				      EC_DC_OUT_TRIES);
-		WRITE_ONCE(c->excluded, true);
 		if (s->station == j->followed)
 			j->followed = 0;
 		if (i == j->ref)
@@ -296,13 +294,13 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 }
 
 /**
- * ec_dc_correct_between() - let the cycle compensate clocks that are set, for a while
+ * ec_dc_correct_between() - let the cycle compensate clocks that are set, for some cycles
  * @j: job
- * @cycles: how many cycles
- * @limit_ms: at most
+ * @cycles: how many
+ * @limit_ms: maximum time
  *
- * A clock that is being corrected runs too fast or too slow to measure; but those
- * that are set drift apart as long as they are not.
+ * A clock that is being corrected runs too fast or too slow to be measured; without
+ * correction, clocks that are set drift apart.
  *
  * Context: Process. May sleep.
  */
@@ -312,10 +310,10 @@ void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_m
 	unsigned int ms;
 
 	/* a poll: the cycle wakes no thread of the master */
-	WRITE_ONCE(j->dc->running, j->running);
+	WRITE_ONCE(j->dc->mode, j->compensated ? EC_DC_COMPENSATE : EC_DC_IDLE);
 	for (ms = 0; ms < limit_ms && READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
-	WRITE_ONCE(j->dc->running, false);
+	WRITE_ONCE(j->dc->mode, EC_DC_IDLE);
 }
 
 static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
@@ -326,7 +324,7 @@ static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
 	return n + 1;
 }
 
-/* Nothing of a latch is repeated: it would belong to another one. */
+/* A repeated datagram would belong to another latch. */
 static int once(struct ec_dc_job *j, unsigned int n)
 {
 	unsigned int i;
@@ -340,8 +338,8 @@ static int once(struct ec_dc_job *j, unsigned int n)
  * ec_dc_latch() - let all clocks latch their time, and read it
  * @j: job
  *
- * Both in one transfer: the time of the processing unit is there at once, unlike
- * those of the ports, to which the frame comes back later.
+ * Both in one transfer: the processing unit has its time at once, a port only when the frame
+ * has returned to it.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EAGAIN when slaves do not answer; or as ec_xfer().
@@ -377,8 +375,8 @@ static void sum_up(struct ec_dc_job *j)
 }
 
 /*
- * The receive times of a latch are read in the transfer of the next one: by then its
- * frame has been everywhere.
+ * The receive times of a latch are read in the transfer of the next one: by then the frame has
+ * passed all ports.
  */
 static int measure(struct ec_dc_job *j)
 {
@@ -404,7 +402,7 @@ static int measure(struct ec_dc_job *j)
 		if (latched && !ret) {
 			sum_up(j);
 			rounds++;
-			if (j->running && rounds < ROUNDS && rounds % TOGETHER == 0)
+			if (j->compensated && rounds < ROUNDS && rounds % TOGETHER == 0)
 				ec_dc_correct_between(j, CORRECT_CYCLES, CORRECT_MS);
 		}
 		latched = !j->dg[n - 1].err;
@@ -412,7 +410,7 @@ static int measure(struct ec_dc_job *j)
 	return 0;
 }
 
-/* Those of the last scan count on, from the reference clock there is now. */
+/* Delays measured since the last scan stay valid, counted from the present reference clock. */
 static bool known(struct ec_dc_job *j, u32 scan)
 {
 	u32 zero = ec_job_clock(j, j->ref)->delay;
@@ -421,7 +419,7 @@ static bool known(struct ec_dc_job *j, u32 scan)
 	for (i = 0; i < j->n; i++)
 		if (j->nodes[i].dc && ec_job_clock(j, i)->measured != scan)
 			return false;
-	/* also those that are left out: they may take part again */
+	/* also of excluded slaves: they may take part again */
 	for (i = 0; i < j->n; i++)
 		if (ec_job_clock(j, i)->measured == scan)
 			ec_job_clock(j, i)->delay -= zero;
@@ -461,13 +459,13 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 }
 
 /**
- * ec_dc_has_front() - are there clocks upstream of the reference clock?
+ * ec_dc_has_upstream() - are there clocks upstream of the reference clock?
  * @j: job
  *
  * Context: Process.
  * Return: whether there are.
  */
-bool ec_dc_has_front(const struct ec_dc_job *j)
+bool ec_dc_has_upstream(const struct ec_dc_job *j)
 {
 	unsigned int i;
 

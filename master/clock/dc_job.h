@@ -9,7 +9,7 @@
 #include "../wire/dc.h"
 #include "../link/xfer.h"
 
-#define EC_DC_OUT_TRIES	5	/* attempts that one slave may spoil */
+#define EC_DC_OUT_TRIES	5	/* attempts that may fail because of one slave */
 #define EC_DC_BATCH	7000	/* datagrams of one transfer, beside those of the slaves */
 
 /**
@@ -17,17 +17,18 @@
  * @dc: clocks
  * @n: slaves
  * @slaves: with a reference each
- * @nodes: what the delays are computed from
+ * @nodes: input and result of the computation of the delays
  * @recv: receive times of the ports
  * @unit: receive times of the processing units
  * @sum: of the measured delays, ns
  * @dg: datagrams of a transfer
- * @spoiled: attempts, by slave
- * @silent: slaves that did not answer in the last transfer
- * @followed: station address of the clock that the others follow, or 0
+ * @spoiled: attempts that failed because of each slave
+ * @silent: slaves without a valid reply in the last transfer
+ * @followed: station address of the clock that the others are synchronized to, or 0
  * @ref: index of the reference clock, @n: none
  * @latch_ns: when the last latch was sent (ktime)
- * @running: the cycle has compensated clocks until now
+ * @compensated: the cycle has compensated clocks until now
+ * @first: all clocks are set for the first time in the session
  * @time: in frames that compensate
  */
 struct ec_dc_job {
@@ -44,7 +45,8 @@ struct ec_dc_job {
 	u16 followed;
 	unsigned int ref;
 	u64 latch_ns;
-	bool running;
+	bool compensated;
+	bool first;
 	u8 time[8];
 };
 
@@ -68,7 +70,7 @@ void ec_dc_leave_out(struct ec_dc_job *j);
 int ec_dc_latch(struct ec_dc_job *j);
 int ec_dc_get_delays(struct ec_dc_job *j);
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms);
-bool ec_dc_has_front(const struct ec_dc_job *j);
+bool ec_dc_has_upstream(const struct ec_dc_job *j);
 
 /* dc_set.c */
 int ec_dc_write(struct ec_dc_job *j);

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Offsets and delays of all clocks, drift compensation, and what the slaves say of it. */
+/* Offsets and delays of all clocks, drift compensation, and its result. */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "dc_job.h"
 
-#define SYNCS		72	/* comparisons of a frame: phase and rate come near alike */
-#define QUIET_SYNCS	12	/* of one that comes close behind another one */
-#define LOOK_FRAMES	78	/* between two looks, of 2 frames: two sends of 20 ms carry all */
+#define SYNCS		72	/* datagrams of a frame: phase and rate settle alike */
+#define QUIET_SYNCS	12	/* of a frame shortly behind another one */
+#define LOOK_FRAMES	78	/* between two checks of 2 frames: two sends of 20 ms carry all */
 #define NEAR_NS		500	/* clocks that differ by less may be used */
-#define NEAR_MOST	1600	/* frames until near, or not */
-#define QUIET_FRAMES	312	/* which take what is left of the rates */
-#define CALM_CYCLES	120	/* whose frames take the noise, too */
+#define NEAR_MOST	1600	/* frames at most until then */
+#define QUIET_FRAMES	312	/* which remove the rest of the rates */
+#define CALM_CYCLES	120	/* whose frames remove the noise */
 #define CALM_US		10000	/* several of them in a transfer if they are short */
-#define LAST_CYCLES	150	/* and what noise that has made */
+#define LAST_CYCLES	150	/* and the noise of those frames */
 #define LAST_SYNCS	24	/* in short cycles by smaller steps */
-#define LAST_GAP	4	/* in long ones by few frames that are not close to each other */
+#define LAST_GAP	4	/* in long cycles by few frames far from each other */
 #define LAST_FRAMES	17	/* of which so many are enough */
-#define CYCLE_BOOST	12000	/* comparisons when the cycle alone compensates */
+#define CYCLE_DGRAMS	12000	/* extra datagrams when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000
 
 /*
- * System time at the reference clock when the last latch was made: what those
- * clocks say that are set already, so that they go on when others join them.
+ * System time at the reference clock at the last latch, by a clock that is set already, so that
+ * set clocks continue when others connect.
  */
 static u64 latch_time(const struct ec_dc_job *j)
 {
@@ -37,13 +37,13 @@ static u64 latch_time(const struct ec_dc_job *j)
 		t = get_unaligned_le64(j->unit[set]) + ec_job_clock(j, set)->offset -
 		    (s64)(s32)ec_job_clock(j, set)->delay;
 		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
-			t = ec_dc_whole(j->dc, (u32)t, j->latch_ns);
+			t = ec_dc_extend32(j->dc, (u32)t, j->latch_ns);
 	}
 	ec_dc_clock(j->dc, t, j->latch_ns);
 	return t;
 }
 
-/* what is written to a slave: offset and delay, as the registers lie */
+/* written to a slave: offset and delay, in the order of the registers */
 struct values {
 	u8 offset[8];
 	u8 delay[4];
@@ -57,7 +57,7 @@ static struct values *compute(struct ec_dc_job *j, u64 t)
 	for (i = 0; v && i < j->n; i++) {
 		struct ec_clock *c = ec_job_clock(j, i);
 
-		/* counted from the reference, which may be another one now */
+		/* counted from the reference clock, which may have changed */
 		put_unaligned_le32(c->delay, v[i].delay);
 		if (!ec_dc_chosen(j, i, EC_DC_NEW))
 			continue;
@@ -70,7 +70,7 @@ static struct values *compute(struct ec_dc_job *j, u64 t)
 /* Offset and delay in one datagram where they are neighbours. */
 static int write_values(struct ec_dc_job *j, struct values *v)
 {
-	/* for those that are set already: the delay alone */
+	/* clocks that are set get the delay alone */
 	unsigned int wide = ec_dc_add(j, 0, EC_DC_NEW_WIDE, EC_CMD_FPWR, EC_REG_DC_OFFSET,
 				      sizeof(*v), v->offset, sizeof(*v));
 	unsigned int narrow = ec_dc_add(j, wide, EC_DC_NEW_NARROW, EC_CMD_FPWR, EC_REG_DC_OFFSET,
@@ -141,8 +141,7 @@ int ec_dc_write(struct ec_dc_job *j)
 	ret = write_values(j, v) ?: reset_filters(j);
 	for (i = 0; i < j->n && !ret; i++)
 		if (ec_dc_chosen(j, i, EC_DC_CLOCKS)) {
-			WRITE_ONCE(ec_job_clock(j, i)->excluded, false);
-			WRITE_ONCE(ec_job_clock(j, i)->set, true);
+			ec_clock_event(ec_job_clock(j, i), EC_CLOCK_ON_SET);
 		}
 	if (!ret)
 		ec_dc_app_set(j->dc, t - j->latch_ns, true);
@@ -150,20 +149,20 @@ int ec_dc_write(struct ec_dc_job *j)
 	return ret;
 }
 
-/* A frame with up to @most comparisons; 0: one that only keeps others apart. */
+/* A frame with up to @most datagrams; 0: a frame that only keeps others apart. */
 static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int most)
 {
 	static u8 none[EC_DGRAM_DATA_MAX];
 	u16 bytes = READ_ONCE(j->dc->ref_wide) ? 8 : 4, ref = READ_ONCE(j->dc->ref_station);
-	u16 room = ec_share_clock_bytes(j->dc->links), pad;
-	unsigned int syncs = min(max(1u, room / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
+	u16 bytes_left = ec_share_clock_bytes(j->dc->links), pad;
+	unsigned int syncs = min(max(1u, bytes_left / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
 	unsigned int end = n + syncs;
 
 	for (; n < end; n++)
 		j->dg[n] = EC_DG(EC_CMD_FRMW, ref, EC_REG_DC_SYSTIME, bytes, j->time);
-	/* all are of one length, so that they are not closer to each other */
+	/* of equal length, so that their distance is equal */
 	pad = syncs * (bytes + EC_DGRAM_OVERHEAD) + EC_DGRAM_OVERHEAD;
-	pad = min_t(u16, room - min(room, pad), EC_DGRAM_DATA_MAX);
+	pad = min_t(u16, bytes_left - min(bytes_left, pad), EC_DGRAM_DATA_MAX);
 	if (pad || !most)
 		j->dg[n++] = EC_DG(EC_CMD_NOP, 0, 0, pad ?: 1, none);
 	return n;
@@ -182,17 +181,17 @@ static unsigned int per_send(const struct ec_dc_job *j)
  * of noise over the time since the last frame, and as many steps of 1/4096 towards it as
  * the frame has datagrams; but one step of 1/64 of the phase, however many it has. So
  * at first frames have as many as they may. When the clocks are near, slaves may use
- * them; what is left of the rates, and then the noise, goes meanwhile: only the first
- * frame of a send, which measures over all of a cycle, still has many (@first), the
- * others have few (@more), or none but each @gap frames. The cycle only asks for the time
- * as long: what it tells shortly before a frame would make the measurement worse.
+ * them. Meanwhile the rest of the rates and then the noise are removed: only the first
+ * frame of a send, which measures over a whole cycle, still has many (@first); the
+ * others have few (@more), or none except each @gap frames. The cycle only reads the time
+ * meanwhile: its datagrams shortly before a frame would disturb the measurement.
  */
 static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigned int first,
 			       unsigned int more, unsigned int gap)
 {
 	unsigned int i, at, n = 0, per = per_send(j);
 
-	/* for the case that the reference does not answer */
+	/* if the reference clock does not reply */
 	put_unaligned_le64(ec_dc_clock_now(j->dc), j->time);
 	for (i = 0; i < frames; i++) {
 		at = i % per;
@@ -203,7 +202,7 @@ static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigne
 	return n;
 }
 
-/* one more or less does not matter */
+/* A single lost frame does not matter. */
 static int tolerate(int ret)
 {
 	return ret == -ETIMEDOUT || ret == -EBUSY ? 0 : ret;
@@ -215,8 +214,8 @@ static bool canceled(const struct ec_dc *dc)
 }
 
 /*
- * Largest difference of the clocks in @v, of those that have answered from datagram @at
- * on. U32_MAX while one was not asked, as its frame was lost.
+ * Largest difference in @v, of the clocks that have replied to the datagrams from @at on.
+ * U32_MAX when a frame was lost.
  */
 static u32 worst(const struct ec_dc_job *j, unsigned int at, u8 (*v)[4])
 {
@@ -237,8 +236,8 @@ static u32 worst(const struct ec_dc_job *j, unsigned int at, u8 (*v)[4])
 	return max;
 }
 
-/* One more look at the differences, behind what compensates until then. */
-static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
+/* Compensate by some frames, then read the differences. */
+static int check_once(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
 {
 	unsigned int first, n;
 	int ret;
@@ -252,16 +251,16 @@ static int look(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *max)
 	return tolerate(ret);
 }
 
-/* Beside clocks that are in use it is slower: the frames reach them, too. */
+/* Slower beside clocks in use, which these frames reach as well. */
 static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
 {
-	unsigned int more = j->running ? QUIET_SYNCS : SYNCS, done;
+	unsigned int more = j->compensated ? QUIET_SYNCS : SYNCS, done;
 	u32 max = U32_MAX;
 	int ret = 0;
 
-	WRITE_ONCE(j->dc->framed, true);
+	WRITE_ONCE(j->dc->mode, EC_DC_READ);
 	for (done = 0; done < NEAR_MOST && max > NEAR_NS && !ret; done += LOOK_FRAMES)
-		ret = look(j, more, v, &max);
+		ret = check_once(j, more, v, &max);
 	return ret;
 }
 
@@ -270,8 +269,8 @@ static int by_cycle(struct ec_dc *dc)
 {
 	unsigned int ms;
 
-	WRITE_ONCE(dc->boost, CYCLE_BOOST);
-	for (ms = 0; ms < CYCLE_WAIT_MS && READ_ONCE(dc->boost); ms++) {
+	WRITE_ONCE(dc->extra_dgrams, CYCLE_DGRAMS);
+	for (ms = 0; ms < CYCLE_WAIT_MS && READ_ONCE(dc->extra_dgrams); ms++) {
 		if (READ_ONCE(dc->stop))
 			return -ECANCELED;
 		usleep_range(1000, 1100);
@@ -283,8 +282,8 @@ static int by_cycle(struct ec_dc *dc)
  * ec_dc_near() - compensate the drift until the clocks may be used
  * @j: job whose clocks are set
  *
- * With slaves in front of the reference only the cycle may tell the time: what
- * waits in a queue tells them one that has passed.
+ * With clocks upstream of the reference only the cycle compensates: a frame that waits in a
+ * queue has an old time for them.
  *
  * Context: Process, dc.lock held. Waits for bus traffic.
  * Return: 0; -ECANCELED; -ENOMEM; or as ec_xfer().
@@ -298,7 +297,7 @@ int ec_dc_near(struct ec_dc_job *j)
 	/* a single clock has no other to be synchronized to */
 	if (ec_dc_count(j, EC_DC_CLOCKS) < 2)
 		return 0;
-	if (READ_ONCE(j->dc->front))
+	if (READ_ONCE(j->dc->clocks_upstream))
 		return by_cycle(j->dc);
 	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
 	if (!v)
@@ -315,7 +314,7 @@ static int compensate(struct ec_dc_job *j, unsigned int n)
 	return tolerate(ec_xfer_clock(j->dc->links, j->dg, n));
 }
 
-/* What little rate the frames behind the first one learn is noise, the more the closer. */
+/* The rate measured from the frames behind the first one is noise, more so for close frames. */
 static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
 {
 	unsigned int per = per_send(j), frames = min_t(unsigned int, cycles * per, LOOK_FRAMES);
@@ -330,10 +329,10 @@ static int calm(struct ec_dc_job *j, unsigned int cycles, bool last)
 }
 
 /**
- * ec_dc_settle() - compensate on, beside slaves that use their clocks
+ * ec_dc_settle() - continue to compensate, beside slaves that use their clocks
  * @j: job whose clocks are near
  *
- * Not the noise when the application leads the reference clock: that changes its rate.
+ * Omits the noise when the application is the time reference: it changes the rate.
  *
  * Context: Process. Waits for bus traffic.
  */
@@ -344,17 +343,17 @@ void ec_dc_settle(struct ec_dc_job *j)
 	unsigned int i, cycles = max(1u, CALM_US / interval_us);
 	int ret = 0;
 
-	if (!READ_ONCE(dc->framed))
+	if (READ_ONCE(dc->mode) != EC_DC_READ)
 		return;
 	for (i = 0; i < QUIET_FRAMES && !ret; i += LOOK_FRAMES)
 		ret = compensate(j, add_frames(j, LOOK_FRAMES, SYNCS, QUIET_SYNCS, 1));
-	for (i = 0; i < CALM_CYCLES + LAST_CYCLES && !ret && !READ_ONCE(dc->leads); i += cycles)
+	for (i = 0; i < CALM_CYCLES + LAST_CYCLES && !ret && !READ_ONCE(dc->app_leads); i += cycles)
 		ret = calm(j, cycles, i >= CALM_CYCLES);
-	WRITE_ONCE(dc->framed, false);
+	WRITE_ONCE(dc->mode, EC_DC_COMPENSATE);
 }
 
 /**
- * ec_dc_check() - ask each slave for its difference to the reference, register 0x092C
+ * ec_dc_check() - read the difference of each slave to the reference, register 0x092C
  * @j: job whose clocks were compensated
  *
  * Context: Process, dc.lock held. Waits for bus traffic.
@@ -373,12 +372,12 @@ int ec_dc_check(struct ec_dc_job *j)
 	ret = ec_xfer_clock(j->dc->links, j->dg,
 			    ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0],
 				      sizeof(v[0])));
-	/* one that is silent now was set before */
+	/* a clock without reply now was set before */
 	if (!ret)
 		ec_dc_answers(j, 0, EC_DC_CLOCKS);
 	for (i = 0; i < j->n && !ret; i++)
 		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && !j->silent[i])
-			ec_dc_verdict(j->slaves[i], get_unaligned_le32(v[i]));
+			ec_dc_update_diff(j->slaves[i], get_unaligned_le32(v[i]));
 	kvfree(v);
 	return ret;
 }

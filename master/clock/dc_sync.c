@@ -7,31 +7,28 @@
 #include "../wire/dc.h"
 #include "../link/xfer.h"
 
-#define LEAD_NS		(100 * NSEC_PER_MSEC)	/* first SYNC0 is in the future */
-#define LEAD_CYCLES	4			/* and later when the cycle is long */
+#define LEAD_NS		(100 * NSEC_PER_MSEC)	/* until the first SYNC0 */
+#define LEAD_CYCLES	4			/* and so many cycles */
 #define LEAD_MAX_NS	(16ll * NSEC_PER_SEC)
-#define HALF32_NS	(1ll << 31)		/* 32 bits tell past and future up to 2.1 s */
-#define STARTS		6			/* tries, each with a later start */
-#define CHECKS		3			/* starts that were in time and had no effect */
+#define HALF32_NS	(1ll << 31)		/* past and future in 32 bits: up to 2.1 s */
+#define STARTS		6			/* attempts, each with a later start */
+#define CHECKS		3			/* starts in time without effect */
 #define CHECK_NS	(2 * NSEC_PER_MSEC)	/* after the first SYNC signals */
-#define WAIT_MS		5000			/* for clocks to come near */
-#define WAIT_SET_MS	60000			/* to be set at all */
+#define WAIT_MS		5000			/* until clocks are near each other */
+#define WAIT_SET_MS	60000			/* until they are set */
 #define POLL_MS		100
 
 #define RUN		BIT(8)	/* of AssignActivate: cyclic operation */
 #define SYNC0		BIT(9)
 #define SYNC1		BIT(10)
 
-/*
- * The clocks are set, or cannot be. Those of slaves that have just come
- * are still to be set although those of the others are.
- */
+/* The clocks are set, or cannot be, those of newly connected slaves included. */
 static bool settled(const struct ec_dc *dc)
 {
-	return !READ_ONCE(dc->changed) && READ_ONCE(dc->state) != EC_DC_BUSY;
+	return !READ_ONCE(dc->changed) && !ec_dc_busy(dc);
 }
 
-/* Nobody needs the way to this state to be gone on with; who has changed that has kicked. */
+/* The step to @state is obsolete. The code that changed the request has queued the worker. */
 static bool canceled(const struct ec_slave *s, u8 state)
 {
 	return READ_ONCE(s->requested) < state || ec_stop_worker(&s->stop);
@@ -49,12 +46,11 @@ static bool canceled(const struct ec_slave *s, u8 state)
 int ec_dc_wait(struct ec_slave *s)
 {
 	struct ec_dc *dc = ec_dc_of(s);
-	unsigned int ms, near = 0;
+	unsigned int ms, set_ms = 0;
 
 	lockdep_assert_held(&s->lock);
-	for (ms = 0; ms < WAIT_SET_MS && near < WAIT_MS; ms += POLL_MS) {
-		/* the cycle has not begun yet */
-		if (READ_ONCE(dc->idle))
+	for (ms = 0; ms < WAIT_SET_MS && set_ms < WAIT_MS; ms += POLL_MS) {
+		if (READ_ONCE(dc->state) == EC_DC_AWAIT_CYCLE)
 			ms = 0;
 		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
 			return READ_ONCE(dc->state) == EC_DC_READY && ec_clock_is_set(s) ?
@@ -62,13 +58,13 @@ int ec_dc_wait(struct ec_slave *s)
 		if (canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
 		if (ec_clock_is_set(s) && !READ_ONCE(dc->changed))
-			near += POLL_MS;
+			set_ms += POLL_MS;
 	}
 	return -ETIME;
 }
 
 /**
- * ec_dc_sync_stop() - no SYNC signals, the unit belongs to the master
+ * ec_dc_sync_stop() - switch SYNC signals off, assign the unit to the master
  * @s: slave with a clock, @lock held
  *
  * Registers 0x0980, 0x0981.
@@ -87,11 +83,11 @@ int ec_dc_sync_stop(struct ec_slave *s)
 }
 
 /**
- * ec_dc_sync_again() - SYNC was started before the clock was set, and now it is
+ * ec_dc_sync_again() - start SYNC again if it was started before the clock was set
  * @s: slave whose clock was just set
  *
- * Its signals have another phase than those of the others, or none are left. In
- * OP they cannot be moved: the slave is configured once more.
+ * Its signals have another phase than those of other slaves, or have ended. In OP they cannot be
+ * moved, so the slave is configured again.
  *
  * Context: Process. May sleep.
  */
@@ -107,8 +103,8 @@ void ec_dc_sync_again(struct ec_slave *s)
 }
 
 /*
- * Off first: while SYNC runs a new start time is ignored. Returns in @now the time
- * the slave had at @at_ns.
+ * Off first: while SYNC runs a slave ignores a new start time. @now: result, time of the slave
+ * at @at_ns.
  */
 static int prepare(struct ec_slave *s, const struct ec_dc_sync *c, u64 *now, u64 *at_ns)
 {
@@ -128,19 +124,19 @@ static int prepare(struct ec_slave *s, const struct ec_dc_sync *c, u64 *now, u64
 		return ret;
 	*at_ns = dg[2].sent_ns;
 	*now = wide ? get_unaligned_le64(t) :
-		      ec_dc_whole(ec_dc_of(s), get_unaligned_le32(t), *at_ns);
+		      ec_dc_extend32(ec_dc_of(s), get_unaligned_le32(t), *at_ns);
 	return 0;
 }
 
-/* From the first SYNC0 to the first SYNC1, also when that is slower. */
+/* From the first SYNC0 to the first SYNC1, even if SYNC1 is slower. */
 static u32 sync1_after(const struct ec_dc_sync *c)
 {
 	return c->assign & SYNC1 ? c->period[1] : 0;
 }
 
 /*
- * Start time, activation, and whether that was in time: the slave says what time it
- * was then, in the same frame. -EAGAIN: it was too late.
+ * Write start time and activation, and read the time of the slave in the same frame. -EAGAIN:
+ * the start time had passed.
  */
 static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 {
@@ -157,7 +153,7 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 
 	put_unaligned_le64(first, start);
 	put_unaligned_le16(c->assign, assign);
-	/* the second half alone would start it at whatever time is there */
+	/* a repeated second half alone would start SYNC at another time */
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].repeat = false;
 	ret = ec_xfer_all(s->bus->links, dg, ARRAY_SIZE(dg));
@@ -173,8 +169,8 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 }
 
 /*
- * How far the start shall be away at least. At most a period later it is on the grid,
- * and 32 bits must still tell it from the past then, with some time to spare.
+ * Minimum time until the start. The start is up to one period later, on the grid; with 32 bits
+ * it must still be in the future then, with a margin.
  */
 static u64 lead(struct ec_slave *s, u32 period, u64 took)
 {
@@ -187,7 +183,7 @@ static u64 lead(struct ec_slave *s, u32 period, u64 took)
 	return min_t(u64, LEAD_NS + cycles + took, max_t(s64, most, LEAD_NS));
 }
 
-/* Once; the longer transfers to the slave take, the later it starts. */
+/* One attempt; the longer transfers to the slave take, the later is the start time. */
 static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int try)
 {
 	struct ec_dc *dc = ec_dc_of(s);
@@ -203,15 +199,15 @@ static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int tr
 					  c->shift[0]));
 }
 
-#define MODES	8	/* of the SII that are compared, and named */
+#define MODES	8	/* of the SII that are compared and logged */
 
 /**
- * ec_dc_sync_compare() - warn about an AssignActivate value that cannot be meant
+ * ec_dc_sync_compare() - warn about an implausible AssignActivate value
  * @s: slave with a clock, @lock held
  * @c: its configuration with @dc_assign
  *
  * Either it enables no SYNC signal, or the SII has operation modes and none with
- * this value. It is used all the same: an EEPROM may be older than its slave.
+ * this value. The master uses it nevertheless: an EEPROM may be older than its slave.
  *
  * Context: Process. May sleep.
  */
@@ -234,7 +230,7 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 			return;
 		len += scnprintf(list + len, sizeof(list) - len, " 0x%04x", dc[i].assign);
 	}
-	/* the one that was looked for may be among those that were not decoded */
+	/* else it may be a mode that was not decoded */
 	if (n > 0 && n < MODES)
 		ec_slave_warn(s,
 			      "AssignActivate 0x%04x is no operation mode of the SII, which has%s; check it against the ESI\n",
@@ -246,12 +242,11 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
  * @s: slave whose clock is set, @lock held
  * @c: its configuration with @dc_assign
  *
- * Registers 0x0980 off, 0x09A0, 0x0990, then 0x0980. A start that came too late is
- * repeated.
+ * Registers 0x0980 off, 0x09A0, 0x0990, then 0x0980. Repeats a start whose time had passed.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -ERANGE when the cycle times are 0 or too long, -EOPNOTSUPP when the
- * start always comes too late (both noted as the slave's error); -ECANCELED;
+ * start time had always passed (both noted as the slave's error); -ECANCELED;
  * or as ec_xfer_fpwr().
  */
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
@@ -275,7 +270,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 			return -ECANCELED;
 		clock->sync_due_ns = 0;
 		WRITE_ONCE(clock->sync_unsynchronized, !set);
-		/* who sets the clock meanwhile sees that, or is seen below */
+		/* the clock worker sees that, or it is seen below that the clock is set */
 		smp_mb();
 		ret = start(s, c, try);
 		if (!ret && !set && ec_clock_is_set(s))
@@ -300,20 +295,19 @@ static int wait_until(struct ec_slave *s, u64 ns)
 	       0 : -ECANCELED;
 }
 
-/* What register 0x0984 says of SYNC signals in use: pending, or an implausible start. */
+/* SYNC signals in use that are pending by register 0x0984, or an implausible start. */
 static u8 missing(const struct ec_dc_sync *c, u8 status)
 {
 	return status & (4 | (c->assign & SYNC0 ? 1 : 0) | (c->assign & SYNC1 ? 2 : 0));
 }
 
 /**
- * ec_dc_sync_check() - do the SYNC signals run that were started?
+ * ec_dc_sync_check() - check that the started SYNC signals run
  * @s: slave on its way to OP, @lock held
  * @c: its configuration
  *
- * Waits for the first ones and reads register 0x0984; starts them again when they
- * have not come. Controllers without that register may answer anything there: they
- * are believed.
+ * Waits for the first signals and reads register 0x0984; starts them again when they are
+ * missing. A controller without that register may return any value: only a warning.
  *
  * Context: Process. Waits for bus traffic, and for the start time.
  * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
@@ -350,7 +344,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 		}
 		ret = ec_dc_sync_start(s, c);
 		if (ret) {
-			/* SYNC may be off now: it is started where that belongs */
+			/* SYNC may be off now; the configuration starts it again */
 			WRITE_ONCE(s->reconfigure, true);
 			return ret;
 		}

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* The time of the reference clock, as its answers show it. */
+/* The time of the reference clock, by its replies. */
 #include <linux/ktime.h>
 #include "dc.h"
 
 /**
- * ec_dc_clock() - the reference clock has told its time
+ * ec_dc_clock() - take the time of a reply of the reference clock
  * @dc: clocks
- * @time: all of it, ns
+ * @time: all 64 bits, ns
  * @at_ns: when it was that time (ktime)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns)
 {
-	atomic64_set(&dc->ahead, time - at_ns);
+	atomic64_set(&dc->ref_minus_ktime, time - at_ns);
 }
 
 /**
@@ -26,14 +26,14 @@ void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns)
  */
 u64 ec_dc_clock_at(struct ec_dc *dc, u64 at_ns)
 {
-	return atomic64_read(&dc->ahead) + at_ns;
+	return atomic64_read(&dc->ref_minus_ktime) + at_ns;
 }
 
 /**
  * ec_dc_clock_now() - time of the reference clock at this moment
  * @dc: clocks that are set
  *
- * By what it was last; it drifts.
+ * From its last reply; the clock drifts since then.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: ns.
@@ -44,18 +44,18 @@ u64 ec_dc_clock_now(struct ec_dc *dc)
 }
 
 /**
- * ec_dc_whole() - time of a clock with 32 bits
+ * ec_dc_extend32() - add the upper half to the time of a clock with 32 bits
  * @dc: clocks that are set
- * @low: what the clock says
+ * @low: time of the clock
  * @at_ns: when (ktime)
  *
- * The rest is that of the time the clocks have gone through since they were set. The
- * application's time may be any number of seconds away by now.
+ * The upper half continues the time of the clocks since they were set. The application time may
+ * differ by any number of seconds by now.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: all 64 bits, ns.
  */
-u64 ec_dc_whole(struct ec_dc *dc, u32 low, u64 at_ns)
+u64 ec_dc_extend32(struct ec_dc *dc, u32 low, u64 at_ns)
 {
 	u64 about = ec_dc_clock_at(dc, at_ns);
 

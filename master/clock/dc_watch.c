@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The sync window of every slave: once a second, while an application's clocks
- * run, each says how far it is from the time it was told (register 0x092C). The log
- * has one line for all that are outside the window. One whose clock could not
- * be set is asked, too: when it answers, setting the clocks is worth another try.
+ * The sync window: once a second, while a session uses the clocks, the watch reads the difference
+ * of each to the reference clock (register 0x092C). The log has one line for all clocks outside
+ * the window. The watch polls excluded clocks as well: when one replies, it is worth another
+ * attempt to set the clocks.
  */
 #include <linux/ktime.h>
 #include <linux/slab.h>
@@ -15,12 +15,12 @@
 #include "../link/xfer.h"
 
 #define PERIOD_MS	1000
-#define GRACE_NS	(10ULL * NSEC_PER_SEC)	/* in which clocks that were set come near */
+#define GRACE_NS	(10ULL * NSEC_PER_SEC)	/* for clocks that were set to settle */
 #define LOG_NS		(10ULL * NSEC_PER_SEC)	/* between two lines */
-#define BATCH		60	/* slaves asked at once */
-#define AGAIN_MS	2000	/* between tries to set the clocks, then twice that... */
-#define AGAIN_MAX_MS	60000
-#define VAIN		3	/* tries for one slave that answers only when nothing is at stake */
+#define BATCH		60	/* slaves polled at once */
+#define RETRY_MS	2000	/* between attempts to set the clocks, doubled each time */
+#define RETRY_MAX_MS	60000
+#define ATTEMPTS	3	/* for a slave that replies while its clock cannot be set */
 
 struct batch {
 	unsigned int n;
@@ -30,16 +30,16 @@ struct batch {
 };
 
 /**
- * ec_dc_verdict() - a slave has said how far its clock is off
+ * ec_dc_update_diff() - take the difference of a clock that was read
  * @s: slave
  * @value: register 0x092C
  *
- * Of the reference clock it is the distance to the application's time, which
- * only means something when it follows that.
+ * The reference clock shows its difference to the application time, which has a meaning only
+ * if the application is the time reference.
  *
  * Context: Process, dc.lock held.
  */
-void ec_dc_verdict(struct ec_slave *s, u32 value)
+void ec_dc_update_diff(struct ec_slave *s, u32 value)
 {
 	struct ec_clock *c = ec_clock_of(s);
 	bool ref = s->station == READ_ONCE(ec_dc_of(s)->ref_station);
@@ -47,14 +47,14 @@ void ec_dc_verdict(struct ec_slave *s, u32 value)
 
 	lockdep_assert_held(&ec_dc_of(s)->lock);
 	WRITE_ONCE(c->diff, diff);
-	/* not back and forth at the limit */
+	/* with hysteresis */
 	if (!ref)
 		c->outside_window = abs(diff) >
 				    (c->outside_window ? EC_DC_LIMIT_NS / 2 : EC_DC_LIMIT_NS);
 }
 
-/* One line for all clocks, when the first leaves the window or the last is back in it. */
-static void tell_far(struct ec_dc *dc)
+/* One line for all clocks, when the first leaves the window or the last returns into it. */
+static void log_window(struct ec_dc *dc)
 {
 	unsigned int clocks = 0, far = 0, worst = 0, i;
 	u64 now = ktime_get_ns();
@@ -77,11 +77,11 @@ static void tell_far(struct ec_dc *dc)
 		}
 	}
 	up_read(&dc->bus->topo);
-	if (!far == !dc->far_told || now < dc->far_next_ns ||
-	    now < ec_read64(&dc->begun_ns) + GRACE_NS)
+	if (!far == !dc->window_logged || now < dc->window_log_ns ||
+	    now < ec_read64(&dc->since_ns) + GRACE_NS)
 		return;
-	dc->far_told = far;
-	dc->far_next_ns = now + LOG_NS;
+	dc->window_logged = far;
+	dc->window_log_ns = now + LOG_NS;
 	max = DIV_ROUND_CLOSEST(max, 100);
 	if (far)
 		ec_warn(dc,
@@ -91,7 +91,7 @@ static void tell_far(struct ec_dc *dc)
 		ec_info(dc, "all %u clocks inside the sync window\n", clocks);
 }
 
-/* The next slaves with a clock that was or shall be set; returns the position to go on from. */
+/* The next slaves whose clock is set or excluded; returns the position to continue from. */
 static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from)
 {
 	b->n = 0;
@@ -99,8 +99,7 @@ static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from
 	for (; from < dc->bus->n_slaves && b->n < BATCH; from++) {
 		struct ec_slave *s = dc->bus->slaves[from];
 
-		if (!(ec_clock_is_set(s) || READ_ONCE(ec_clock_of(s)->excluded)) ||
-		    READ_ONCE(s->stop.gone))
+		if (READ_ONCE(ec_clock_of(s)->state) == EC_CLOCK_UNSET || READ_ONCE(s->stop.gone))
 			continue;
 		b->dg[b->n] = EC_FPRD(s->station, EC_REG_DC_DIFF, 4, b->value[b->n]);
 		b->slaves[b->n++] = ec_slave_ref(s);
@@ -109,35 +108,26 @@ static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from
 	return from;
 }
 
-static bool due(const struct ec_dc *dc)
-{
-	return !READ_ONCE(dc->again) && ktime_get_ns() >= dc->again_ns;
-}
-
 /*
- * A slave has answered: is that worth a try, which is due? Each one disturbs the clocks
- * that are set a little, as they are measured again: not for ever because of one slave.
+ * A slave has replied: is another attempt worth it? Each attempt slightly disturbs the clocks
+ * that are set, as they are measured again, so their number for one slave is limited.
  */
-static bool worth_try(struct ec_slave *s)
+static bool worth_attempt(struct ec_slave *s)
 {
 	struct ec_clock *c = ec_clock_of(s);
 
-	if (!READ_ONCE(c->excluded)) {
-		c->failed_attempts = 0;
+	if (!ec_clock_is_excluded(s) || c->failed_attempts > ATTEMPTS)
 		return false;
-	}
-	if (c->failed_attempts > VAIN)
-		return false;
-	if (c->failed_attempts++ < VAIN)
+	if (c->failed_attempts++ < ATTEMPTS)
 		return true;
 	ec_slave_warn(s,
 		      "clock not synchronized in %d more attempts although the slave replies; clock excluded until the slave reconnects or the next activation\n",
-		      VAIN);
+		      ATTEMPTS);
 	return false;
 }
 
-/* What the slaves of a batch have said; true: one of them is worth a try. */
-static bool take(struct ec_dc *dc, struct batch *b, bool try)
+/* Take the replies of a batch; true: one of the slaves is worth another attempt, if @due. */
+static bool take(struct ec_dc *dc, struct batch *b, bool due)
 {
 	bool worth = false;
 	unsigned int i;
@@ -145,9 +135,9 @@ static bool take(struct ec_dc *dc, struct batch *b, bool try)
 	mutex_lock(&dc->lock);
 	for (i = 0; i < b->n; i++) {
 		if (!b->dg[i].err && b->dg[i].wkc == 1) {
-			worth |= try && worth_try(b->slaves[i]);
+			worth |= due && worth_attempt(b->slaves[i]);
 			if (ec_clock_is_set(b->slaves[i]))
-				ec_dc_verdict(b->slaves[i], get_unaligned_le32(b->value[i]));
+				ec_dc_update_diff(b->slaves[i], get_unaligned_le32(b->value[i]));
 		}
 	}
 	mutex_unlock(&dc->lock);
@@ -157,38 +147,38 @@ static bool take(struct ec_dc *dc, struct batch *b, bool try)
 }
 
 /**
- * ec_dc_watch_begun() - clocks are begun to be set; when is another try due?
- * @dc: clocks of a master, nobody watches them
+ * ec_dc_watch_begun() - plan the next attempt when one begins
+ * @dc: clocks of a master, the watch is stopped
  *
  * Context: Process.
  */
 void ec_dc_watch_begun(struct ec_dc *dc)
 {
-	dc->again_ms = !dc->again || dc->changed ?
-		       AGAIN_MS : min_t(u32, 2 * dc->again_ms, AGAIN_MAX_MS);
-	dc->again_ns = ktime_get_ns() + (u64)dc->again_ms * NSEC_PER_MSEC;
-	dc->again = false;
-	dc->failed = false;
+	dc->retry_ms = dc->state != EC_DC_RETRY_DUE || dc->changed ?
+		       RETRY_MS : min_t(u32, 2 * dc->retry_ms, RETRY_MAX_MS);
+	dc->retry_ns = ktime_get_ns() + (u64)dc->retry_ms * NSEC_PER_MSEC;
 }
 
 static void watch(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(to_delayed_work(work), struct ec_dc, watch);
 	struct batch *b = kmalloc(sizeof(*b), GFP_KERNEL);
-	bool try = due(dc), worth = READ_ONCE(dc->failed);
+	int state = READ_ONCE(dc->state);
+	bool due = state != EC_DC_RETRY_DUE && ktime_get_ns() >= dc->retry_ns;
+	bool worth = state == EC_DC_RETRY_WAIT;
 	unsigned int at = 0;
 
-	/* while clocks are being set they have a verdict of their own */
-	if (!b || READ_ONCE(dc->state) == EC_DC_BUSY)
+	/* the worker checks the clocks itself */
+	if (!b || ec_dc_busy(dc))
 		goto out;
 	do {
 		at = collect(dc, b, at);
 		ec_xfer(dc->links, b->dg, b->n);
-		worth |= take(dc, b, try);
+		worth |= take(dc, b, due);
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
-	if (try && worth)
-		WRITE_ONCE(dc->again, true);
-	tell_far(dc);
+	if (due && worth)
+		ec_dc_set_state(dc, EC_DC_RETRY_DUE);
+	log_window(dc);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))
@@ -196,7 +186,7 @@ out:
 }
 
 /**
- * ec_dc_watch_init() - prepare
+ * ec_dc_watch_init() - prepare the watch
  * @dc: clocks of a master
  *
  * Context: Process.
@@ -207,7 +197,7 @@ void ec_dc_watch_init(struct ec_dc *dc)
 }
 
 /**
- * ec_dc_watch_start() - look from now on
+ * ec_dc_watch_start() - poll once a second from now on
  * @dc: clocks
  *
  * Context: Process.
@@ -218,7 +208,7 @@ void ec_dc_watch_start(struct ec_dc *dc)
 }
 
 /**
- * ec_dc_watch_stop() - and no longer
+ * ec_dc_watch_stop() - wait for the watch to end
  * @dc: clocks of a master, @stop set
  *
  * Context: Process. May sleep.

@@ -49,11 +49,11 @@ static u32 most(const struct ec_cycle *c)
 /* Comparisons of this send beyond one. */
 static u32 boost(const struct ec_cycle *c)
 {
-	u32 left = READ_ONCE(c->dc->framed) ? 0 : READ_ONCE(c->dc->boost);
+	u32 left = READ_ONCE(c->dc->mode) == EC_DC_READ ? 0 : READ_ONCE(c->dc->extra_dgrams);
 	u32 n = min(left, most(c));
 
 	if (n)
-		WRITE_ONCE(c->dc->boost, left - n);
+		WRITE_ONCE(c->dc->extra_dgrams, left - n);
 	return n;
 }
 
@@ -69,7 +69,7 @@ static u32 boost(const struct ec_cycle *c)
  */
 u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
 {
-	if (READ_ONCE(c->dc->state) != EC_DC_BUSY && !READ_ONCE(c->dc->boost))
+	if (!ec_dc_busy(c->dc) && !READ_ONCE(c->dc->extra_dgrams))
 		return 0;
 	return most(c) * ONE_MORE_NS;
 }
@@ -93,14 +93,14 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 	c->dc_asked |= flags;
 	if (!READ_ONCE(c->dc->wanted))
 		WRITE_ONCE(c->dc->wanted, true);
-	if (!READ_ONCE(c->dc->running))
+	if (READ_ONCE(c->dc->mode) == EC_DC_IDLE)
 		return 0;
 	if (c->dc_hold)
 		flags &= ~SYNC_REF;
 	if (flags & SYNC_SLAVES)
 		flags |= boost(c) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */
-	if (READ_ONCE(c->dc->ref_wide) && !READ_ONCE(c->dc->front))
+	if (READ_ONCE(c->dc->ref_wide) && !READ_ONCE(c->dc->clocks_upstream))
 		flags |= WIDE;
 	return flags;
 }
@@ -138,7 +138,7 @@ static void learn_rate(struct ec_cycle *c)
 static u64 clock_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
 {
 	u64 t = len == 8 ? get_unaligned_le64(data) :
-			   ec_dc_whole(c->dc, get_unaligned_le32(data), sent_ns);
+			   ec_dc_extend32(c->dc, get_unaligned_le32(data), sent_ns);
 
 	ec_dc_clock(c->dc, t, sent_ns);
 	return t;
@@ -194,7 +194,8 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 {
 	u16 ref = READ_ONCE(c->dc->ref_station);
 	/* the slaves in front must not get a time that is unknown */
-	bool quiet = READ_ONCE(c->dc->framed) || (c->dc->front && !c->dc_time);
+	bool quiet = READ_ONCE(c->dc->mode) == EC_DC_READ ||
+		     (c->dc->clocks_upstream && !c->dc_time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;
 	u8 t[8], *p;

@@ -139,7 +139,7 @@ void ec_pll_log(struct ec_cycle *c)
 	lockdep_assert_held(c->wanted->lock);
 	/* while clocks are measured no frame asks the reference */
 	if (lock == c->lock_logged ||
-	    (lock == EC_CYCLE_LOCK_HOLD && READ_ONCE(c->dc->state) == EC_DC_BUSY))
+	    (lock == EC_CYCLE_LOCK_HOLD && ec_dc_busy(c->dc)))
 		return;
 	c->lock_logged = lock;
 	if (lock == EC_CYCLE_LOCK_LOCKED)

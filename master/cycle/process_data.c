@@ -360,7 +360,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 /* What a send of all domains and clock datagrams takes at most. */
 static u32 wire_ns(const struct ec_cycle *c)
 {
-	if (!READ_ONCE(c->dc->begun))
+	if (!ec_dc_begun(c->dc))
 		return c->plain.ns;
 	return c->clocked.ns + ec_dc_datagrams_reserve_ns(c);
 }
@@ -375,7 +375,7 @@ static u32 wire_ns(const struct ec_cycle *c)
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	if (what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF))
-		c->dc_hold = ec_dc_told(c->dc, what, &c->dc_skip);
+		c->dc_hold = ec_dc_update_app_time(c->dc, what, &c->dc_skip);
 }
 
 /**

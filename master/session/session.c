@@ -392,9 +392,8 @@ void ec_session_clocks(struct ec_sessions *ss)
 	struct ec_dc *dc = ss->dc;
 
 	lockdep_assert_held(&ss->lock);
-	if (s && s->wanted.active && (dc->begun ? dc->changed || READ_ONCE(dc->again) :
-					   READ_ONCE(dc->wanted)))
-		ec_dc_begin(ss->dc, !dc->begun, ref_choice(s));
+	if (s && s->wanted.active && ec_dc_due(dc))
+		ec_dc_begin(dc, ref_choice(s));
 	if (dc->changed) {
 		WRITE_ONCE(dc->changed, false);
 		wake_up_all(&dc->wq);
@@ -500,7 +499,7 @@ int ec_session_activate(struct ec_session *s)
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
 	ec_cycle_set_active(ss->cycles, &s->cycle);
 	if (begins_clocks(s))
-		ec_dc_begin(ss->dc, true, ref_choice(s));
+		ec_dc_begin(ss->dc, ref_choice(s));
 	st->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(&s->cycle);

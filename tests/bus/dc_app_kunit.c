@@ -239,7 +239,7 @@ static s64 begin(struct cyc *c, const struct told *t)
 	u64 now;
 	u32 i;
 
-	for (i = 0; i < 1000 && !READ_ONCE(c->b->m->dc.running); i++)
+	for (i = 0; i < 1000 && READ_ONCE(c->b->m->dc.mode) == EC_DC_IDLE; i++)
 		cyc_run(c, 1);
 	now = ktime_get_ns();
 	ec_sim_advance(c->b->sim, now);
@@ -253,7 +253,7 @@ static void power(struct cyc *c, bool on)
 	for (i = 0; i < 2; i++)
 		bus_fault(c->b, on ? EC_SIM_FAULT_POWER_ON : EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
 	for (i = 0; i < 100 && (c->b->m->bus.n_slaves != (on ? 2 : 0) ||
-			       (!on && READ_ONCE(c->b->m->dc.running))); i++)
+			       (!on && READ_ONCE(c->b->m->dc.mode) != EC_DC_IDLE)); i++)
 		cyc_run(c, 10);
 	KUNIT_ASSERT_EQ(c->b->test, c->b->m->bus.n_slaves, on ? 2u : 0u);
 }

@@ -206,9 +206,9 @@ static void until(struct run *r, u32 slaves)
 		run(r, 20);
 	KUNIT_ASSERT_EQ(r->b->test, r->b->m->bus.n_slaves, slaves);
 	run(r, 20);
-	for (i = 0; i < 200 && READ_ONCE(r->b->m->dc.state) == EC_DC_BUSY; i++)
+	for (i = 0; i < 200 && ec_dc_busy(&r->b->m->dc); i++)
 		run(r, 20);
-	KUNIT_ASSERT_NE(r->b->test, READ_ONCE(r->b->m->dc.state), (int)EC_DC_BUSY);
+	KUNIT_ASSERT_FALSE(r->b->test, ec_dc_busy(&r->b->m->dc));
 }
 
 /* what "ethercat master" shows */
@@ -407,10 +407,10 @@ static void ref_lost_frames(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	until(r, 3);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_BUSY; i++)
+	for (i = 0; i < 2000 && !ec_dc_busy(&b->m->dc); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 400000);
-	for (i = 0; i < 500 && READ_ONCE(b->m->dc.state) == EC_DC_BUSY; i++)
+	for (i = 0; i < 500 && ec_dc_busy(&b->m->dc); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
 	until(r, 4);
@@ -435,7 +435,7 @@ static void ref_set_again(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	until(r, 3);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_BUSY; i++)
+	for (i = 0; i < 2000 && !ec_dc_busy(&b->m->dc); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
 	forget(r, 0, 2);

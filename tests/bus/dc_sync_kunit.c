@@ -268,7 +268,7 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	s = bus_slave(b, 1);
 	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
-	WRITE_ONCE(ec_clock_of(s)->set, false);
+	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
 	WRITE_ONCE(b->m->dc.changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
@@ -478,7 +478,7 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 
 	mutex_lock(&b->m->sessions.lock);
 	/* as the scan leaves it */
-	WRITE_ONCE(ec_clock_of(s)->set, false);
+	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
 	WRITE_ONCE(b->m->dc.changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
@@ -503,7 +503,7 @@ static u32 begun;
 static void never_set(struct cyc *c)
 {
 	static bool was;
-	bool busy = READ_ONCE(c->b->m->dc.state) == EC_DC_BUSY;
+	bool busy = ec_dc_busy(&c->b->m->dc);
 
 	each(c);
 	if (busy != was)
@@ -527,7 +527,7 @@ static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, begun, 4u);
 	cyc_run(c, 60000);
 	KUNIT_EXPECT_EQ(test, begun, 4u);
-	KUNIT_EXPECT_TRUE(test, ec_clock_of(bus_slave(b, 3))->excluded);
+	KUNIT_EXPECT_EQ(test, ec_clock_of(bus_slave(b, 3))->state, (u32)EC_CLOCK_EXCLUDED);
 	expect_in_step(b, 7);
 	/* well again when it comes anew */
 	c->each = each;

@@ -62,7 +62,7 @@ static void session_candidate_is_freed(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
-	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && b->m->dc.begun);
+	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && ec_dc_begun(&b->m->dc));
 	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
 	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
 }

@@ -137,7 +137,7 @@ static u64 to_op(struct cyc *c, u64 *clocks)
 		KUNIT_ASSERT_LT(b->test, us_since(t0), 5ull * USEC_PER_SEC);
 		cyc_run(c, 1);
 		inits += in_init(b);
-		if (READ_ONCE(b->m->dc.state) == EC_DC_BUSY)
+		if (ec_dc_busy(&b->m->dc))
 			*clocks = us_since(t0);
 	}
 	KUNIT_EXPECT_EQ(b->test, inits, 0u);
