@@ -497,6 +497,53 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	expect_in_step(b, 15);
 }
 
+static void until_state(struct cyc *c, const struct ec_clock *clock, enum ec_clock_state state)
+{
+	u32 i;
+
+	for (i = 0; i < 10000 && READ_ONCE(clock->state) != state; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(c->b->test, clock->state, (u32)state);
+}
+
+/*
+ * A clock that is set stops replying: it stays set, keeps its offset, and is polled until it
+ * replies. The next activation does not take it for set.
+ */
+static void sync_set_clock_lost_then_set(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	struct ec_clock *clock;
+	u64 offset;
+
+	cyc_activate(c);
+	until_op(c, 15, 5000);
+	cyc_run(c, 1000);
+	clock = ec_clock_of(bus_slave(b, 3));
+	KUNIT_EXPECT_EQ(test, clock->state, (u32)EC_CLOCK_SET);
+	offset = clock->offset;
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
+	WRITE_ONCE(b->m->dc.changed, true);
+	until_state(c, clock, EC_CLOCK_LOST);
+	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(b, 3)));
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, clock->state, (u32)EC_CLOCK_LOST);
+	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
+	until_state(c, clock, EC_CLOCK_SET);
+	KUNIT_EXPECT_EQ(test, clock->offset, offset);
+	/* the rest of the table */
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_ACTIVATION), EC_CLOCK_SET);
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_SILENT), EC_CLOCK_UNSET);
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_ACTIVATION),
+			EC_CLOCK_EXCLUDED);
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_SET), EC_CLOCK_EXCLUDED);
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_SILENT), EC_CLOCK_SET);
+	KUNIT_EXPECT_EQ(test, (int)ec_clock_event(clock, EC_CLOCK_ON_ACTIVATION), EC_CLOCK_LOST);
+	KUNIT_EXPECT_EQ(test, clock->state, (u32)EC_CLOCK_EXCLUDED);
+}
+
 static u32 begun;
 
 /* the last slave answers, but not while the clocks are set */
@@ -557,6 +604,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sync_bad_slave),
 	KUNIT_CASE(sync_bad_reference),
 	KUNIT_CASE(sync_waits_for_its_clock),
+	KUNIT_CASE(sync_set_clock_lost_then_set),
 	KUNIT_CASE(sync_from_preop),
 	KUNIT_CASE(sync_without_time),
 	KUNIT_CASE(sync_has_no_effect),
