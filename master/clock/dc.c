@@ -53,7 +53,7 @@ static void log_unreliable(const struct ec_dc_job *j)
  * @c: clock of a slave
  * @event: what happens to it
  *
- * Context: Process. Activation, or dc.lock held.
+ * Context: Process. The worker, the monitor, or an activation.
  * Return: its state before.
  */
 enum ec_clock_state ec_clock_event(struct ec_clock *c, enum ec_clock_event event)
