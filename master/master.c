@@ -37,10 +37,6 @@ static bool attached(const struct ec_slave *s)
 }
 
 static const struct ec_bus_ops bus_ops = {
-	.slave_bytes = {
-		[EC_EXT_CLOCK] = sizeof(struct ec_clock),
-		[EC_EXT_CONFIG] = sizeof(struct ec_setup),
-	},
 	.attached = attached,
 	.configure = ec_apply,
 	.wake = wake,
@@ -97,6 +93,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	      ec_sessions_init(&m->sessions);
 	if (ret)
 		goto err;
+	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
 	ret = ec_api_create(m) ?: ec_cdev_init(m);
 	if (ret)

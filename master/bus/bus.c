@@ -223,5 +223,6 @@ void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count)
 void ec_bus_rescan(struct ec_bus *bus)
 {
 	WRITE_ONCE(bus->rescan, true);
-	bus->ops->wake(bus);
+	if (bus->ops && bus->ops->wake)
+		bus->ops->wake(bus);
 }

@@ -22,10 +22,8 @@ enum ec_bus_ext {
 	EC_N_EXT,
 };
 
-/** struct ec_bus_ops - what the layer needs of higher ones */
+/** struct ec_bus_ops - what the layer needs of higher ones; each may be NULL */
 struct ec_bus_ops {
-	/** @slave_bytes: size of the part of each layer in a slave, struct ec_slave @ext */
-	size_t slave_bytes[EC_N_EXT];
 	/** @configure: bring a slave to the state requested; the slave's worker, may sleep */
 	void (*configure)(struct ec_slave *slave);
 	/** @attached: an application has configured the slave; any context */
@@ -44,6 +42,11 @@ struct ec_bus {
 	const struct ec_bus_ops *ops;
 	/** @ext: structures of higher layers, for these alone; set when they are initialized */
 	void *ext[EC_N_EXT];
+	/**
+	 * @slave_bytes: size of the part of each layer in a slave, struct ec_slave @ext; set
+	 * when these are initialized, 0: the layer is not there
+	 */
+	size_t slave_bytes[EC_N_EXT];
 
 	/**
 	 * @topo: protects @slaves and @n_slaves, which the monitor alone writes, and the PDO

@@ -169,7 +169,8 @@ static void count_claims(struct scan *sc)
 static bool is_usable(const struct ec_slave *s)
 {
 	return !READ_ONCE(s->error) || READ_ONCE(s->silent) ||
-	       (s->error == EC_SLAVE_CONFIG_FAILED && s->bus->ops->attached(s));
+	       (s->error == EC_SLAVE_CONFIG_FAILED && s->bus->ops && s->bus->ops->attached &&
+		s->bus->ops->attached(s));
 }
 
 /*

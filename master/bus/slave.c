@@ -11,7 +11,8 @@ static void work(struct work_struct *w)
 {
 	struct ec_slave *s = container_of(w, struct ec_slave, work);
 
-	s->bus->ops->configure(s);
+	if (s->bus->ops && s->bus->ops->configure)
+		s->bus->ops->configure(s);
 	atomic_dec_return_release(&s->works);
 	ec_bus_settled(s->bus);
 	ec_slave_unref(s);
@@ -27,7 +28,7 @@ static void work(struct work_struct *w)
  */
 struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 {
-	const size_t *bytes = bus->ops->slave_bytes;
+	const size_t *bytes = bus->slave_bytes;
 	size_t size = ALIGN(sizeof(struct ec_slave), EXT_ALIGN);
 	struct ec_slave *s;
 	unsigned int p, x;

@@ -402,6 +402,7 @@ void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, 
 	dc->bus = bus;
 	dc->service = service;
 	bus->ext[EC_EXT_CLOCK] = dc;
+	bus->slave_bytes[EC_EXT_CLOCK] = sizeof(struct ec_clock);
 	mutex_init(&dc->lock);
 	INIT_WORK(&dc->work, work);
 	ec_dc_watch_init(dc);

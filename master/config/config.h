@@ -151,6 +151,12 @@ struct ec_setup {
 	char pdo_refusal[EC_UAPI_REASON];
 };
 
+/* The slaves that a scan finds from now on have one. */
+static inline void ec_setup_init(struct ec_bus *bus)
+{
+	bus->slave_bytes[EC_EXT_CONFIG] = sizeof(struct ec_setup);
+}
+
 static inline struct ec_setup *ec_setup_of(const struct ec_slave *s)
 {
 	return s->ext[EC_EXT_CONFIG];

@@ -360,7 +360,8 @@ static bool cycle(struct ec_cycle_thread *t)
 	send.sync_time = t->lock.time;
 	feed(t);
 	choose_source(t);
-	t->ops->cycle(c);
+	if (t->ops && t->ops->cycle)
+		t->ops->cycle(c);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		if (!ec_cycle_send(c, &send))
 			ec_late_count(c, c->links->access.last_send_ns - due);

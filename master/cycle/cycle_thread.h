@@ -13,7 +13,7 @@ struct task_struct;
 
 #define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
 
-/** struct ec_cycle_ops - what the thread reports to higher layers */
+/** struct ec_cycle_ops - what the thread reports to higher layers; each may be NULL */
 struct ec_cycle_ops {
 	/** @cycle: a cycle begins; RT-safe */
 	void (*cycle)(struct ec_cycle *c);

@@ -11,7 +11,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 # from the bottom
-layers="wire base link"
+layers="wire base link mailbox bus clock config cycle session boundary"
 kernel=6.1-rt
 modules=$PWD/build/system-$kernel/modules
 out=$PWD/build/layers
@@ -21,23 +21,26 @@ tests/vm/kernels.sh fetch $kernel >&2 || exit 1
 kdir=$(tests/vm/kernels.sh kdir $kernel)
 make -s -j2 modules KDIR="$kdir" MODDIR="$modules" W=1 >&2 || exit 1
 
-# into FOLDER OBJECT...
+# into FOLDER SOURCE...: the objects of these files
 into() {
 	local d=$out/built/$1 o
 
 	shift
 	mkdir -p "$d"
-	for o; do
-		cp -u "$o" "$d/$(basename "$o")_shipped"
+	for o in "${@/%.c/.o}"; do
+		o=$modules/$o
+		[ -e "$o" ] || continue		# for programs only
+		cp "$o" "$d/$(basename "$o")_shipped"
 		# has the versions of exported symbols
-		cp -u "${o%/*}/.${o##*/}.cmd" "$d/"
+		cp "${o%/*}/.${o##*/}.cmd" "$d/"
 	done
 }
 
 rm -rf "$out/built"
-for l in $layers; do into "$l" "$modules/master/$l"/*.o; done
+for l in $layers; do into "$l" "master/$l"/*.c; done
+into boundary lib/ecrt/*.c
 shopt -s extglob
-into sim "$modules"/devices/sim/!(ec_sim|ec_sim.mod|sim_module|wire_unity).o
+into sim devices/sim/!(sim_module|wire_unity).c
 for f in tests/layers/Kbuild tests/layers/*.[ch]; do
 	cmp -s "$f" "$out/${f##*/}" || cp "$f" "$out/"
 done
@@ -68,7 +71,7 @@ users() {
 	done
 }
 
-good=()
+good=() why=
 for l in ${*:-$layers}; do
 	undefined=$(sed -n "s/^.*modpost: \"\(.*\)\" \[.*\/ec_alone_$l.ko\] undefined!/\1/p" \
 		"$out/log")
@@ -80,9 +83,10 @@ for l in ${*:-$layers}; do
 	for s in $undefined; do
 		echo "# $l: $s, used by $(users "$l" "$s" | xargs), is of no lower layer"
 	done
-	[ -n "$undefined" ] || tail -n 20 "$out/log"
+	[ -n "$undefined" ] || why=$(tail -n 20 "$out/log")
 	result 'not ok' "$l: is linked without higher layers"
 done
+[ -z "$why" ] || echo "$why"
 
 # The test writes its results into the log.
 load='for l; do
