@@ -83,14 +83,14 @@
 
 /* extensions of this master ------------------------------------------------*/
 
-#ifndef __KERNEL__
-/* ecrt_master_set_cycle(): the kernel runs the cycle; in userspace */
+/* ecrt_master_set_cycle(): the kernel runs the cycle */
 #define EC_HAVE_KERNEL_CYCLE
+#ifndef __KERNEL__
 /* ecrt_master_setup_domain_memory(); in userspace */
 #define EC_HAVE_DOMAIN_MEMORY
-/* ecrt_master_deactivate_slaves(); in userspace */
-#define EC_HAVE_DEACTIVATE_SLAVES
 #endif
+/* ecrt_master_deactivate_slaves() */
+#define EC_HAVE_DEACTIVATE_SLAVES
 /* requests for whole objects */
 #define EC_HAVE_SDO_REQUEST_COMPLETE
 /* ecrt_reg_request_readwrite() */
@@ -340,7 +340,8 @@ EC_PUBLIC_API ec_master_t *ecrt_request_master(unsigned int master_index);
  * @master_index: index from 0 of /dev/EtherCAT<index>
  *
  * Any number of processes may open a master. An opened master is sufficient for the calls
- * that read the state of the bus, for SDO access and ecrt_master_reset(). Userspace only.
+ * that read the state of the bus, for SDO access and ecrt_master_reset(). Userspace only:
+ * a module requests the master it works with.
  *
  * Context: Process. May sleep.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
@@ -368,7 +369,7 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
  * Waits until a running scan ends and starts no other scan until activation. Requests PREOP
  * of all slaves and waits for it, at most 10 s; a slave that has failed to reach PREOP
  * before is not changed. While a detached session exists (%EC_CYCLE_DETACH), the call
- * changes no slave. Userspace only.
+ * changes no slave. Userspace only, as is ecrt_open_master().
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EBUSY reserved by another application, %-ENODEV the master has no device, %-EPERM
@@ -1016,7 +1017,7 @@ typedef struct {
  * Extension (%EC_HAVE_KERNEL_CYCLE). From activation to deactivation a real-time
  * thread of the kernel receives and sends all domains. ecrt_master_receive() then takes the
  * newest inputs of all domains, and ecrt_master_send() passes the outputs of the queued
- * domains to the next cycle. Both use mapped memory, without a system call. An image is
+ * domains to the next cycle. Both copy memory, without a system call. An image is
  * complete and from one cycle. The thread sets the application time and queues clock
  * datagrams: ecrt_master_application_time() and the calls that queue clock datagrams have no
  * effect.
@@ -1032,8 +1033,8 @@ typedef struct {
  *	ecrt_master_send(master);
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL an invalid value; %-EBUSY active; %-EPERM not
- * reserved.
+ * Return: 0; %-EINVAL an invalid value; %-EOPNOTSUPP an unknown flag; %-EBUSY active; %-EPERM
+ * not reserved.
  */
 EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
 		const ec_cycle_config_t *config);
@@ -1044,14 +1045,15 @@ EC_PUBLIC_API int ecrt_master_set_cycle(ec_master_t *master,
  * @timeout_us: limit, 0: none
  *
  * Extension (%EC_HAVE_KERNEL_CYCLE). Returns at once when a cycle has passed since
- * the last call. One system call. To wait for other files as well, poll
+ * the last call. One system call in userspace. To wait for other files as well, poll
  * ecrt_master_cycle_fd(). To spin, call ecrt_master_receive() until it fails or
  * ecrt_master_cycle_count() has increased.
  *
- * Context: The cycle owner. Sleeps until the next cycle.
+ * Context: The cycle owner, in a process or thread. Sleeps until the next cycle.
  * Return: number of cycles since the last call, 1 when none was missed; %-ETIMEDOUT; %-EINTR
- * a signal; %-ECANCELED the cycle has stopped; %-EBUSY 16 threads already wait; %-EINVAL not
- * active, or the application runs the cycle.
+ * a signal, or in the kernel kthread_stop() of the calling thread; %-ECANCELED the cycle has
+ * stopped; %-EBUSY 16 threads already wait; %-EINVAL not active, or the application runs the
+ * cycle.
  */
 EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
 		uint32_t timeout_us);
@@ -1060,11 +1062,12 @@ EC_PUBLIC_API int ecrt_master_wait_cycle(ec_master_t *master,
  * ecrt_master_cycle_count() - get the number of cycles the kernel has run
  * @master: an active master whose cycle the kernel runs
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory. When the count has increased,
+ * Extension (%EC_HAVE_KERNEL_CYCLE). No system call. When the count has increased,
  * ecrt_master_receive() can take the inputs of that cycle. After %EC_CYCLE_STOP the count
  * no longer increases, and ecrt_master_receive() returns %-ECANCELED.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, but no interrupt of a 32-bit kernel. RT-safe: bounded, no sleep, no
+ * allocation.
  * Return: cycles since activation; 0 when not active.
  */
 EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
@@ -1086,6 +1089,7 @@ EC_PUBLIC_API uint64_t ecrt_master_cycle_count(const ec_master_t *master);
 EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
 		uint64_t *cycle, uint64_t *time_ns);
 
+#ifndef __KERNEL__
 /**
  * ecrt_master_cycle_fd() - get a file descriptor for poll() or epoll
  * @master: an active master whose cycle the kernel runs
@@ -1093,22 +1097,25 @@ EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
  * Extension (%EC_HAVE_KERNEL_CYCLE). POLLIN: there are inputs that
  * ecrt_master_receive() has not taken yet; POLLHUP: the cycle has stopped; POLLERR: not
  * active any more, or more than 16 poll() and epoll entries wait on the file. The
- * file belongs to the library: do not close or read it.
+ * file belongs to the library: do not close or read it. In userspace only: a module has no
+ * file.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: file descriptor; %-EINVAL not active, or the application runs the
  * cycle.
  */
 EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
+#endif
 
 /**
  * ecrt_master_cycle_state() - get cycle statistics
  * @master: an active master
  * @state: out
  *
- * Extension (%EC_HAVE_KERNEL_CYCLE). Reads mapped memory.
+ * Extension (%EC_HAVE_KERNEL_CYCLE). No system call.
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, but no interrupt of a 32-bit kernel. RT-safe: bounded, no sleep, no
+ * allocation.
  * Return: 0; %-EINVAL not active, or an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_cycle_state(const ec_master_t *master,
@@ -1197,7 +1204,8 @@ EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);
  * Extension (%EC_HAVE_DOMAIN_MEMORY). From now on ecrt_domain_data() is valid. The address
  * does not change until deactivation or release, or until an activation fails. The first
  * cycle sends the values written before ecrt_master_activate(), otherwise zeros. Further
- * domains and entries are refused until deactivation.
+ * domains and entries are refused until deactivation. Userspace only: a module has
+ * ecrt_domain_external_memory().
  *
  * Context: Process. May sleep.
  * Return: 0; %-EBUSY active, or called before; %-EINVAL there is no domain;
@@ -1218,7 +1226,7 @@ EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
  * or ecrt_master_state() shows PREOP, then call ecrt_master_deactivate(). Until then the
  * slaves remain in PREOP. No effect on a master that is not active.
  *
- * One system call; does not wait for the bus.
+ * One system call in userspace; does not wait for the bus.
  *
  * Context: Process. May sleep.
  */

@@ -32,11 +32,11 @@ int ecrt_domain_process(ec_domain_t *domain)
 		return -EINVAL;
 	m = domain->master;
 	bit = 1ULL << domain->index;
-	if (!(m->received & bit))
+	if (!(m->cycle.received & bit))
 		return 0;
-	m->received &= ~bit;
-	if (m->exchange) {
-		ec_cycle_process(domain);
+	m->cycle.received &= ~bit;
+	if (m->cycle.exchange) {
+		ec_exchange_process(domain);
 		return 0;
 	}
 	st = &m->status->domains[domain->index];
@@ -51,8 +51,8 @@ int ecrt_domain_queue(ec_domain_t *domain)
 {
 	if (!domain || !domain->master->active)
 		return -EINVAL;
-	if (domain->master->exchange)
-		ec_cycle_queue(domain);
-	domain->master->next.queued |= 1ULL << domain->index;
+	if (domain->master->cycle.exchange)
+		ec_exchange_queue(domain);
+	domain->master->cycle.next.queued |= 1ULL << domain->index;
 	return 0;
 }

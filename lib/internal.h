@@ -13,27 +13,20 @@
 
 #include "../include/ecrt.h"
 #include "../include/uapi/ethercat.h"
+#include "ecrt/cycle.h"
 
 /*
- * @next: argument of the next send; @sent, @received: bit n is domain n: sent since the
- * last receive, received and not processed. Only the cyclic caller touches them.
+ * @image: with a cycle that the kernel runs, memory of our own.
  *
  * @frozen: ecrt_master_setup_domain_memory() was called; @preset_size: bytes of
  * all domains then.
- *
- * @exchange: with a cycle the kernel runs, else NULL; then @image is memory of
- * our own. @out_back, @in_front: buffers we hold; @in_taken: that has inputs; @out_last: the
- * one we gave last;
- * @stride: distance of two; @cycle: last one waited for.
  */
 struct ec_master {
 	int fd;
 	unsigned int index;
 	bool reserved;
 	bool active;
-	struct ec_ioc_send next;
-	__u64 sent;
-	__u64 received;
+	struct ec_app_cycle cycle;
 
 	/* mapped by activation */
 	const struct ec_status *status;
@@ -48,25 +41,10 @@ struct ec_master {
 
 	struct ec_app_request *requests;
 
-	struct ec_exchange *exchange;
 	size_t exchange_size;
-	unsigned int stride;
-	unsigned int out_back;
-	unsigned int out_last;
-	unsigned int in_front;
-	bool in_taken;
-	__u64 cycle;
 
 	struct ec_domain *domains;
 	struct ec_slave_config *configs;
-};
-
-/* inputs of a domain: @count times @size bytes, each @stride behind the one before */
-struct ec_input {
-	unsigned int offset;
-	unsigned int size;
-	unsigned int stride;
-	unsigned int count;
 };
 
 /*
@@ -143,20 +121,16 @@ void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 
 int ec_memory_frozen(const struct ec_master *m, const char *what);
 int ec_memory_map_image(struct ec_master *m, size_t size);
 
-/* cycle.c: the kernel runs the cycle */
-int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg);
-void ec_cycle_unmap(struct ec_master *m);
-int ec_cycle_find_inputs(struct ec_domain *d);
-int ec_cycle_receive(struct ec_master *m);
-void ec_cycle_process(struct ec_domain *d);
-void ec_cycle_queue(struct ec_domain *d);
-int ec_cycle_send(struct ec_master *m);
+int ec_memory_map_exchange(struct ec_master *m, const struct ec_ioc_activate *arg);
+void ec_memory_unmap_exchange(struct ec_master *m);
 
 /* what the sources in ecrt/ need besides; see ecrt/ecrt_int.h --------------------*/
 
 #define EXPORT_SYMBOL_GPL(symbol) _Static_assert(1, "for the kernel")
 #define noinline __attribute__((noinline))
 
+#define ec_exchange_word(p, value) __atomic_exchange_n(p, value, __ATOMIC_ACQ_REL)
+#define ec_div64(a, b) ((a) / (b))
 #define ec_load_acquire(p) __atomic_load_n(p, __ATOMIC_ACQUIRE)
 #define ec_store_release(p, value) __atomic_store_n(p, value, __ATOMIC_RELEASE)
 
@@ -171,6 +145,12 @@ static inline unsigned int ec_sc_index(const struct ec_slave_config *sc)
 	return sc ? sc->index : 0;
 }
 
+static inline struct ec_app_cycle *ec_app_cycle(const struct ec_master *m)
+{
+	return (struct ec_app_cycle *)&m->cycle;
+}
+
+/* of an active master, or NULL */
 static inline const struct ec_status *ec_active_status(const struct ec_master *m)
 {
 	return m && m->active ? m->status : NULL;
@@ -186,8 +166,10 @@ static inline size_t ec_status_configs(const struct ec_master *m)
 
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
-	return &m->next;
+	return &m->cycle.next;
 }
+
+#define ec_for_each_app_domain(m, d) for ((d) = (m)->domains; (d); (d) = (d)->next)
 
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 {
@@ -250,7 +232,7 @@ static inline __u32 *ec_emerg_cleared(const struct ec_slave_config *sc)
 /* the next send notifies the master; a cycle that the kernel runs sees the counter */
 static inline void ec_request_started(struct ec_master *m)
 {
-	m->next.flags |= EC_SEND_FLAG_REQUESTS;
+	m->cycle.next.flags |= EC_SEND_FLAG_REQUESTS;
 	__atomic_fetch_add(&m->area->starts, 1, __ATOMIC_RELEASE);
 }
 

@@ -136,7 +136,7 @@ void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 
 
 void ec_master_unmap(struct ec_master *m)
 {
-	ec_cycle_unmap(m);
+	ec_memory_unmap_exchange(m);
 	if (m->image)
 		munmap(m->image, m->image_size);
 	if (m->status)
@@ -181,7 +181,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 	if (ret)
 		return ret;
 	if (arg->exchange_size)
-		return ec_cycle_map(m, arg);
+		return ec_memory_map_exchange(m, arg);
 	return arg->image_size ? ec_memory_map_image(m, arg->image_size) : 0;
 }
 
@@ -200,7 +200,7 @@ static int place_domain(struct ec_master *m, struct ec_domain *d)
 	d->offset = arg.offset;
 	d->size = arg.size;
 	d->data = m->image ? m->image + arg.offset : NULL;
-	return m->exchange ? ec_cycle_find_inputs(d) : 0;
+	return m->cycle.exchange ? ec_exchange_add(d) : 0;
 }
 
 int ecrt_master_activate(ec_master_t *master)
@@ -236,10 +236,10 @@ int ecrt_master_activate(ec_master_t *master)
 			d->index);
 		goto err_deactivate;
 	}
-	master->next.queued = 0;
-	master->next.flags = 0;
-	master->sent = 0;
-	master->received = 0;
+	master->cycle.next.queued = 0;
+	master->cycle.next.flags = 0;
+	master->cycle.sent = 0;
+	master->cycle.received = 0;
 	master->active = true;
 	return 0;
 
@@ -264,30 +264,26 @@ int ecrt_master_deactivate(ec_master_t *master)
 		return ret;
 	ec_master_unmap(master);
 	ec_master_free_session(master);
-	master->next.app_time = 0;	/* the next session has its own */
+	master->cycle.next.app_time = 0;	/* the next session has its own */
 	return 0;
-}
-
-void ecrt_master_deactivate_slaves(ec_master_t *master)
-{
-	if (master && master->active)
-		ec_command(master, EC_IOC_SLAVES_DOWN, NULL);
 }
 
 /* cycle --------------------------------------------------------------------*/
 
 int ecrt_master_send(ec_master_t *master)
 {
+	struct ec_app_cycle *a;
 	int ret;
 
 	if (!master || !master->active)
 		return ec_inactive(master);
-	if (master->exchange)
-		return ec_cycle_send(master);
-	ret = ec_command(master, EC_IOC_SEND, &master->next);
-	master->sent |= master->next.queued;
-	master->next.queued = 0;
-	master->next.flags = 0;
+	a = &master->cycle;
+	if (a->exchange)
+		return ec_exchange_send(master, master->status);
+	ret = ec_command(master, EC_IOC_SEND, &a->next);
+	a->sent |= a->next.queued;
+	a->next.queued = 0;
+	a->next.flags = 0;
 	return ret;
 }
 
@@ -295,10 +291,10 @@ int ecrt_master_receive(ec_master_t *master)
 {
 	if (!master || !master->active)
 		return ec_inactive(master);
-	if (master->exchange)
-		return ec_cycle_receive(master);
-	master->received |= master->sent;
-	master->sent = 0;
+	if (master->cycle.exchange)
+		return ec_exchange_receive(master, master->status);
+	master->cycle.received |= master->cycle.sent;
+	master->cycle.sent = 0;
 	return ec_command(master, EC_IOC_RECEIVE, NULL);
 }
 
@@ -308,12 +304,18 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 
 	if (!master)
 		return -EINVAL;
-	master->next.app_time = app_time;
+	master->cycle.next.app_time = app_time;
 	if (!master->active)
 		return ec_command(master, EC_IOC_APP_TIME, &arg);
 	/* the next send passes it: no system call of its own */
-	master->next.flags |= EC_SEND_FLAG_APP_TIME;
+	master->cycle.next.flags |= EC_SEND_FLAG_APP_TIME;
 	return 0;
+}
+
+int ecrt_master_cycle_fd(const ec_master_t *master)
+{
+	return master && master->active && master->cycle.exchange ? master->fd :
+								    ec_inactive(master);
 }
 
 int ecrt_master_reset(ec_master_t *master)

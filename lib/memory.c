@@ -96,3 +96,36 @@ int ec_memory_map_image(struct ec_master *m, size_t size)
 	m->image_size = size;
 	return 0;
 }
+
+/* The memory that is exchanged with a cycle of the kernel, and the place of the domains' data. */
+int ec_memory_map_exchange(struct ec_master *m, const struct ec_ioc_activate *arg)
+{
+	struct ec_exchange *x = ec_master_map(m, NULL, arg->exchange_size, PROT_READ | PROT_WRITE,
+					      EC_MMAP_EXCHANGE);
+	int ret;
+
+	m->exchange_size = arg->exchange_size;
+	if (!x)
+		return -errno;
+	ret = ec_exchange_begin(&m->cycle, x, m->exchange_size, m->status);
+	if (ret)
+		return ret;
+	if (m->image)	/* the application has it already */
+		return arg->image_size == m->image_size ? 0 : -EPROTO;
+	m->image_size = arg->image_size;
+	if (!m->image_size)
+		return 0;
+	m->image = mmap(NULL, m->image_size, PROT_READ | PROT_WRITE,
+			MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
+	if (m->image != MAP_FAILED)
+		return 0;
+	m->image = NULL;
+	return -errno;
+}
+
+void ec_memory_unmap_exchange(struct ec_master *m)
+{
+	if (m->cycle.exchange)
+		munmap(m->cycle.exchange, m->exchange_size);
+	m->cycle.exchange = NULL;
+}

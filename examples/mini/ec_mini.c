@@ -8,6 +8,9 @@
  *	KBUILD_EXTRA_SYMBOLS=/lib/modules/$(uname -r)/updates/ethercat/Module.symvers
  *   insmod ec_mini.ko position=0
  *
+ * With kernel_cycle=1 a thread of the master exchanges the process data, and the thread of
+ * this module waits for its cycles.
+ *
  * In the source tree "make mini" builds it.
  */
 #include <linux/delay.h>
@@ -29,6 +32,10 @@ MODULE_PARM_DESC(master, "index of the master");
 static ushort position;
 module_param(position, ushort, 0444);
 MODULE_PARM_DESC(position, "ring position of the slave: SM2 outputs, SM3 inputs, CoE");
+
+static bool kernel_cycle;
+module_param(kernel_cycle, bool, 0444);
+MODULE_PARM_DESC(kernel_cycle, "the master runs the cycle");
 
 static ec_master_t *master;
 static ec_domain_t *domain;
@@ -86,6 +93,20 @@ static void cycle(unsigned int n)
 	ecrt_master_send(master);
 }
 
+/* Until the next cycle begins. */
+static void wait_cycle(ktime_t *next)
+{
+	*next = ktime_add_us(*next, PERIOD_US);
+	if (kernel_cycle) {
+		/* the cycle has stopped, or this thread is to end */
+		if (ecrt_master_wait_cycle(master, 0) < 0)
+			usleep_range(PERIOD_US, 2 * PERIOD_US);
+		return;
+	}
+	set_current_state(TASK_IDLE);
+	schedule_hrtimeout(next, HRTIMER_MODE_ABS);
+}
+
 static int run(void *unused)
 {
 	ktime_t next = ktime_get();
@@ -93,9 +114,7 @@ static int run(void *unused)
 
 	sched_set_fifo(current);
 	for (n = 0; !kthread_should_stop(); n++) {
-		next = ktime_add_us(next, PERIOD_US);
-		set_current_state(TASK_IDLE);
-		schedule_hrtimeout(&next, HRTIMER_MODE_ABS);
+		wait_cycle(&next);
 		cycle(n);
 	}
 	return 0;
@@ -104,6 +123,7 @@ static int run(void *unused)
 /* Default process data of the slave. */
 static int configure(void)
 {
+	const ec_cycle_config_t period = { .period_ns = PERIOD_US * NSEC_PER_USEC };
 	ec_slave_info_t info;
 	int ret = ecrt_master_get_slave(master, position, &info);
 
@@ -123,6 +143,8 @@ static int configure(void)
 	if (!serial)
 		return -ENOMEM;
 	ecrt_sdo_request_timeout(serial, 500);
+	if (kernel_cycle)
+		return ecrt_master_set_cycle(master, &period);
 	return ecrt_master_set_send_interval(master, PERIOD_US);
 }
 

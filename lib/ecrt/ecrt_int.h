@@ -113,4 +113,13 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);
 int ec_app_requests_place(ec_master_t *m);
 void ec_app_requests_free(ec_master_t *m);
 
+/* cycle.c: a cycle that the kernel runs */
+int ec_exchange_begin(struct ec_app_cycle *a, struct ec_exchange *x, size_t size,
+		      const struct ec_status *st);
+int ec_exchange_add(struct ec_domain *d);
+int ec_exchange_receive(ec_master_t *m, const struct ec_status *st);
+void ec_exchange_process(struct ec_domain *d);
+void ec_exchange_queue(struct ec_domain *d);
+int ec_exchange_send(ec_master_t *m, const struct ec_status *st);
+
 #endif

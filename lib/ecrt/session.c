@@ -37,6 +37,13 @@ int ecrt_master_set_late_cycles(ec_master_t *master, uint32_t per_second)
 }
 EXPORT_SYMBOL_GPL(ecrt_master_set_late_cycles);
 
+void ecrt_master_deactivate_slaves(ec_master_t *master)
+{
+	if (ec_active_status(master))
+		ec_command(master, EC_IOC_SLAVES_DOWN, NULL);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_deactivate_slaves);
+
 /* domains ------------------------------------------------------------------*/
 
 int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)

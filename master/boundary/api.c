@@ -3,6 +3,29 @@
 #include <linux/slab.h>
 #include "../../lib/ecrt/ecrt_int.h"
 
+/*
+ * What a cyclic call could not do itself: gives the links back to its cycle after a stall,
+ * tells that a call came from the wrong place, tries failed slaves again.
+ */
+static void work(struct work_struct *work)
+{
+	struct ec_api *api = container_of(work, struct ec_api, work);
+	struct ec_master *m = api->file.master;
+
+	mutex_lock(&m->cycles.lock);
+	if (m->cycles.owner == &api->file && !m->cycles.active->thread &&
+	    ec_links_attached(&m->links))
+		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
+	mutex_unlock(&m->cycles.lock);
+	if (READ_ONCE(api->atomic) && !api->told) {
+		api->told = true;
+		ec_err(m,
+		       "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
+	}
+	if (xchg(&api->reset, false))
+		ec_ioc(&api->file, EC_IOC_RESET, NULL);
+}
+
 /**
  * ec_api_create() - a master can be requested by applications in the kernel
  * @m: master
@@ -17,7 +40,7 @@ int ec_api_create(struct ec_master *m)
 	if (!api)
 		return -ENOMEM;
 	ec_file_init(&api->file, m, true);
-	INIT_WORK(&api->work, ec_api_work);
+	INIT_WORK(&api->work, work);
 	init_waitqueue_head(&api->between_wq);
 	m->api = api;
 	return 0;
@@ -47,11 +70,13 @@ void ec_api_destroy(struct ec_master *m)
  * @arg: its argument; addresses in it are the kernel's
  *
  * Context: Process. As the command.
- * Return: as the command.
+ * Return: as the command; -EINTR a signal or kthread_stop().
  */
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 {
-	return ec_ioc(&m->api->file, cmd, arg);
+	int ret = ec_ioc(&m->api->file, cmd, arg);
+
+	return ret == -ERESTARTNOHAND ? -EINTR : ret;
 }
 
 /**

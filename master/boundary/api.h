@@ -2,7 +2,8 @@
 /*
  * Applications in the kernel: include/ecrt.h as exported functions. They give
  * the same commands as a process does through ioctl(), by the same sources in lib/ecrt/;
- * only the cycle and states have a way of their own, which never sleeps.
+ * only states and a cycle that the application runs have a way of their own, which never
+ * sleeps.
  */
 #ifndef EC_API_H
 #define EC_API_H
@@ -13,6 +14,7 @@
 #include <linux/string.h>
 #include <linux/workqueue.h>
 #include "../include/ecrt.h"
+#include "../lib/ecrt/cycle.h"
 #include "../base/once64.h"
 #include "cdev.h"
 #include "../config/config.h"
@@ -31,9 +33,10 @@ struct task_struct;
  * @file: stands for the open file of a process
  * @reserved: it has reserved the master, and holds this module
  * @active: its session while that is active
- * @next: what the next send shall do; the cyclic caller's
- * @sent: domains sent since the last receive; the cyclic caller's
- * @received: domains received and not processed; likewise
+ * @wanted: its domains and slave configurations
+ * @cycle: its cycle
+ * @image: data of its domains while the kernel runs the cycle
+ * @busy: 1: a call exchanges process data with the cycle that the kernel runs
  * @requests: list of its requests
  * @work: what a cyclic call must leave to somebody who may sleep
  * @atomic: a call came where its device needs a thread
@@ -49,9 +52,10 @@ struct ec_api {
 	struct ec_file file;
 	bool reserved;
 	struct ec_session *active;
-	struct ec_ioc_send next;
-	u64 sent;
-	u64 received;
+	struct ec_wanted *wanted;
+	struct ec_app_cycle cycle;
+	u8 *image;
+	atomic_t busy;
 	struct ec_app_request *requests;
 	struct work_struct work;
 	bool atomic;
@@ -84,9 +88,6 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
 int ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
 		bool with_reason, const char *fmt, ...) __printf(5, 6);
 
-/* api_cycle.c */
-void ec_api_work(struct work_struct *work);
-
 /* api_between.c */
 int ec_api_between_start(struct ec_master *m);
 void ec_api_between_stop(struct ec_master *m);
@@ -95,6 +96,8 @@ void ec_api_left(struct ec_master *m);
 
 /* what the sources in lib/ecrt/ need; see ecrt_int.h there ---------------------*/
 
+#define ec_exchange_word(p, value) xchg(p, value)
+#define ec_div64(a, b) div64_u64(a, b)
 #define ec_load_acquire(p) smp_load_acquire(p)
 #define ec_store_release(p, value) smp_store_release(p, value)
 
@@ -108,6 +111,15 @@ static inline u32 ec_sc_index(const ec_slave_config_t *sc)
 {
 	return sc ? ec_api_config(sc)->index : 0;
 }
+
+static inline struct ec_app_cycle *ec_app_cycle(const struct ec_master *m)
+{
+	return &m->api->cycle;
+}
+
+#define ec_for_each_app_domain(m, d) \
+	for (u32 i_ = 0; i_ < (m)->api->wanted->n_domains && \
+			 ((d) = (m)->api->wanted->domains[i_]); i_++)
 
 static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 {
@@ -133,7 +145,7 @@ static inline size_t ec_status_configs(const struct ec_master *m)
 
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
-	return &m->api->next;
+	return &m->api->cycle.next;
 }
 
 #define ec_status_read(field) READ_ONCE(field)
@@ -194,10 +206,15 @@ static inline struct ec_request_record *ec_request_record(const struct ec_master
 	return ec_requests_record(m->sessions.session, index, shared);
 }
 
-/* told by the next send */
+/* told by the next send, or seen by the cycle the kernel runs */
 static inline void ec_request_started(struct ec_master *m)
 {
-	m->api->next.flags |= EC_SEND_FLAG_REQUESTS;
+	struct ec_request_area *area = (void *)m->sessions.session->cycle.shared->requests;
+
+	m->api->cycle.next.flags |= EC_SEND_FLAG_REQUESTS;
+	/* the request before the number that tells of it; see ec_requests_notice() */
+	smp_mb__before_atomic();
+	atomic_inc((atomic_t *)&area->starts);
 }
 
 #endif

@@ -61,7 +61,8 @@ static int between(void *data)
 
 /**
  * ec_api_between_start() - begin to call the hooks of the application
- * @m: master that has just become active; nothing happens without both hooks
+ * @m: master that has just become active; nothing happens without both hooks, or when
+ *	the kernel runs the cycle
  *
  * Context: Process. May sleep.
  * Return: 0 or -errno.
@@ -71,7 +72,7 @@ int ec_api_between_start(struct ec_master *m)
 	struct ec_api *api = m->api;
 	struct task_struct *t;
 
-	if (!api->send_cb || !api->receive_cb)
+	if (!api->send_cb || !api->receive_cb || api->cycle.exchange)
 		return 0;
 	t = kthread_create(between, m, "EtherCAT%u-btw", m->base->index);
 	if (IS_ERR(t))

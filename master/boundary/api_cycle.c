@@ -5,7 +5,7 @@
  * call says why not. Deactivation waits for who has entered them.
  */
 #include <linux/sched.h>
-#include "api.h"
+#include "../../lib/ecrt/ecrt_int.h"
 #include "../link/device.h"
 
 /* May @ops be used here? */
@@ -39,6 +39,9 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	*s = ec_api_session(api);
 	if (!*s)
 		return -EINVAL;
+	/* the links are its */
+	if (api->cycle.exchange)
+		return -EBUSY;
 	/* without a device the links need not be had back */
 	if (!ec_links_attached(&m->links))
 		return -ENODEV;
@@ -65,49 +68,45 @@ static int enter(struct ec_master *m, struct ec_session **s)
 	return ret;
 }
 
-/**
- * ec_api_work() - what a cyclic call could not do itself
- * @work: of the application
- *
- * Gives the links back to its cycle after a stall, tells that a call came from the
- * wrong place, tries failed slaves again.
- *
- * Context: Process. May sleep.
- */
-void ec_api_work(struct work_struct *work)
+/* Receive or send when the kernel runs the cycle. */
+static int exchange(struct ec_master *m, int (*fn)(struct ec_master *m, const struct ec_status *st))
 {
-	struct ec_api *api = container_of(work, struct ec_api, work);
-	struct ec_master *m = api->file.master;
+	const struct ec_status *st;
+	int ret;
 
-	mutex_lock(&m->cycles.lock);
-	if (m->cycles.owner == &api->file && ec_links_attached(&m->links))
-		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
-	mutex_unlock(&m->cycles.lock);
-	if (READ_ONCE(api->atomic) && !api->told) {
-		api->told = true;
-		ec_err(m,
-		       "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
-	}
-	if (xchg(&api->reset, false))
-		ec_ioc(&api->file, EC_IOC_RESET, NULL);
+	if (atomic_cmpxchg(&m->api->busy, 0, 1))
+		return -EBUSY;
+	/* read again: deactivation waits for a call that finds it here */
+	st = ec_active_status(m);
+	ret = st ? fn(m, st) : -EINVAL;
+	atomic_set_release(&m->api->busy, 0);
+	return ret;
+}
+
+static bool by_kernel(const struct ec_master *m)
+{
+	return ec_active_status(m) && m->api->cycle.exchange;
 }
 
 int ecrt_master_receive(ec_master_t *master)
 {
 	struct ec_session *s;
-	int ret = enter(master, &s);
+	int ret;
 
+	if (by_kernel(master))
+		return exchange(master, ec_exchange_receive);
+	ret = enter(master, &s);
 	if (ret == -ENODEV)
 		/* what an application finds that does not look at this */
-		master->api->received = ~0ULL;
+		master->api->cycle.received = ~0ULL;
 	if (ret)
 		return ret;
 	if (ec_api_is_between(master->api)) {
 		/* for those who wait; process data belong to the cycle */
 		ec_links_poll(&master->links);
 	} else {
-		master->api->received |= master->api->sent;
-		master->api->sent = 0;
+		master->api->cycle.received |= master->api->cycle.sent;
+		master->api->cycle.sent = 0;
 		ret = ec_cycle_do_receive(&s->cycle);
 	}
 	ec_access_leave(&master->links);
@@ -119,15 +118,18 @@ int ecrt_master_send(ec_master_t *master)
 {
 	struct ec_ioc_send *next;
 	struct ec_session *s;
-	int ret = enter(master, &s);
+	int ret;
 
+	if (by_kernel(master))
+		return exchange(master, ec_exchange_send);
+	ret = enter(master, &s);
 	if (ret)
 		return ret;
-	next = &master->api->next;
+	next = &master->api->cycle.next;
 	if (next->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(s);
 	ret = ec_cycle_take_request(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
-	master->api->sent |= next->queued;
+	master->api->cycle.sent |= next->queued;
 	next->queued = 0;
 	next->flags = 0;
 	ec_access_leave(&master->links);
@@ -157,9 +159,9 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	api = master->api;
 	if (!READ_ONCE(api->reserved))
 		return -EPERM;
-	api->next.app_time = app_time;
+	api->cycle.next.app_time = app_time;
 	if (READ_ONCE(api->active)) {
-		api->next.flags |= EC_SEND_FLAG_APP_TIME;
+		api->cycle.next.flags |= EC_SEND_FLAG_APP_TIME;
 	} else if (!READ_ONCE(master->sessions.heir)) {
 		/*
 		 * Before activation there is no cycle it could go with. An heir can only

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Domains, for applications in the kernel. */
-#include "api.h"
+#include "../../lib/ecrt/ecrt_int.h"
 
 size_t ecrt_domain_size(const ec_domain_t *domain)
 {
@@ -17,7 +17,7 @@ void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
 	m = ec_master_of(ec_domain_session(domain));
 	mutex_lock(&m->sessions.lock);
 	if (!ec_domain_session(domain)->wanted.active)
-		domain->memory = memory;
+		domain->memory = domain->data = memory;
 	else
 		ec_err(m,
 		       "kernel API: memory for domain %u comes after activation; it is not used\n",
@@ -35,9 +35,7 @@ static struct ec_api *active(const struct ec_domain *d)
 
 uint8_t *ecrt_domain_data(const ec_domain_t *domain)
 {
-	if (!domain || !domain->size)
-		return NULL;
-	return domain->memory || active(domain) ? ec_domain_data(domain) : NULL;
+	return domain && domain->size ? domain->data : NULL;
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_data);
 
@@ -48,9 +46,13 @@ int ecrt_domain_process(ec_domain_t *domain)
 
 	if (!api)
 		return -EINVAL;
-	if (!(api->received & BIT_ULL(domain->index)))
+	if (!(api->cycle.received & BIT_ULL(domain->index)))
 		return 0;
-	api->received &= ~BIT_ULL(domain->index);
+	api->cycle.received &= ~BIT_ULL(domain->index);
+	if (api->cycle.exchange) {
+		ec_exchange_process(domain);
+		return 0;
+	}
 	st = &ec_domain_session(domain)->cycle.shared->status->domains[domain->index];
 	domain->snap.working_counter = READ_ONCE(st->working_counter);
 	domain->snap.wc_state = READ_ONCE(st->wc_state);
@@ -66,7 +68,9 @@ int ecrt_domain_queue(ec_domain_t *domain)
 
 	if (!api)
 		return -EINVAL;
-	api->next.queued |= BIT_ULL(domain->index);
+	if (api->cycle.exchange)
+		ec_exchange_queue(domain);
+	api->cycle.next.queued |= BIT_ULL(domain->index);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_queue);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Requesting a master, activating and giving it back; for the kernel. */
+#include <linux/delay.h>
 #include "cdev.h"
 #include "../../lib/ecrt/ecrt_int.h"
 
@@ -35,9 +36,13 @@ static void forget(struct ec_master *m)
 
 	ec_api_between_stop(m);
 	WRITE_ONCE(api->active, NULL);
-	memset(&api->next, 0, sizeof(api->next));
-	api->sent = 0;
-	api->received = 0;
+	/* a call that has found the session leaves it */
+	while (atomic_cmpxchg(&api->busy, 0, 1))
+		usleep_range(50, 100);
+	memset(&api->cycle, 0, sizeof(api->cycle));
+	kvfree(api->image);
+	api->image = NULL;
+	atomic_set_release(&api->busy, 0);
 }
 
 void ecrt_release_master(ec_master_t *master)
@@ -94,6 +99,56 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 }
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
 
+/*
+ * Data of the domains while the kernel runs the cycle: the application's, as an image is
+ * exchanged for another one in each cycle. What is in external memory is sent first.
+ */
+static int make_image(struct ec_master *m, struct ec_ioc_activate *i)
+{
+	struct ec_api *api = m->api;
+	struct ec_session *s;
+	struct ec_domain *d;
+	u32 size = 0;
+
+	ec_sessions_lock(&m->sessions);
+	s = ec_session_of(&m->sessions, &api->file);
+	api->wanted = s ? &s->wanted : NULL;
+	if (s && s->cycle.kernel.period_ns)
+		size = ec_session_place(s);
+	ec_sessions_unlock(&m->sessions);
+	/* one that is too large is refused with the reason */
+	if (!size || size > EC_MAX_IMAGE)
+		return 0;
+	api->image = ec_zalloc(size);
+	if (!api->image)
+		return ec_fail(m, -ENOMEM, "allocate %u bytes of process data", size);
+	ec_for_each_app_domain(m, d)
+		if (d->memory)
+			memcpy(api->image + d->offset, d->memory, d->size);
+	i->preset = (uintptr_t)api->image;
+	i->preset_size = size;
+	return 0;
+}
+
+/* Where the application finds its process data. */
+static int place_domains(struct ec_master *m, const struct ec_session *s)
+{
+	struct ec_app_cycle *a = &m->api->cycle;
+	const struct ec_shared *sh = s->cycle.shared;
+	struct ec_domain *d;
+	int ret = 0;
+
+	if (sh->exchange)
+		ret = ec_exchange_begin(a, sh->exchange, sh->exchange_size, sh->status);
+	ec_for_each_app_domain(m, d) {
+		if (!d->memory)
+			d->data = a->exchange ? m->api->image + d->offset : ec_domain_data(d);
+		if (!ret && a->exchange)
+			ret = ec_exchange_add(d);
+	}
+	return ret;
+}
+
 int ecrt_master_activate(ec_master_t *master)
 {
 	struct ec_ioc_activate i = { 0 };
@@ -105,18 +160,27 @@ int ecrt_master_activate(ec_master_t *master)
 		ec_warn(master, "kernel API: the master is active already\n");
 		return 0;
 	}
-	ret = ec_do(master, EC_IOC_ACTIVATE, &i, "activate the master");
-	if (ret)
+	ret = make_image(master, &i) ?:
+	      ec_do(master, EC_IOC_ACTIVATE, &i, "activate the master");
+	if (ret) {
+		kvfree(master->api->image);
+		master->api->image = NULL;
 		return ret;
+	}
 	ec_app_requests_place(master);
 	master->api->atomic = false;
 	master->api->told = false;
+	ret = place_domains(master, master->sessions.session);
 	/* who sees the session finds all that belongs to it */
 	smp_store_release(&master->api->active, master->sessions.session);
-	ret = ec_api_between_start(master);
+	ret = ret ?: ec_api_between_start(master);
 	if (ret) {
-		ecrt_master_deactivate(master);
-		return ec_fail(master, ret, "start the thread for callbacks");
+		/* what another application has started goes on */
+		if (i.taken_over)
+			forget(master);
+		else
+			ecrt_master_deactivate(master);
+		return ec_fail(master, ret, "exchange process data, or start the thread for callbacks");
 	}
 	return 0;
 }

@@ -39,23 +39,6 @@ static const struct ec_ioctl table[] = {
 #include "commands.h"
 };
 
-/**
- * ec_ioc() - give a command from within the kernel
- * @f: file of the application
- * @cmd: EC_IOC_*
- * @arg: its argument; addresses in it are the kernel's
- *
- * Context: Process. As the command.
- * Return: as the command.
- */
-int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
-{
-	/* reading the reason must not clear it */
-	if (cmd != EC_IOC_REASON)
-		ec_call_forget_reason(f);
-	return ec_call_run(f, &table[_IOC_NR(cmd)], arg, false);
-}
-
 /* Version request of the IgH EtherCAT Master: programs built for it fail cleanly. */
 static long foreign_version(unsigned long arg)
 {
@@ -113,6 +96,29 @@ static int check_unknown(struct ec_call *call, const struct ec_ioctl *op, const 
 					 op->cmd, r->offset);
 	}
 	return 0;
+}
+
+/**
+ * ec_ioc() - give a command from within the kernel
+ * @f: file that stands for the application
+ * @cmd: EC_IOC_*
+ * @arg: its argument; addresses in it are the kernel's
+ *
+ * Context: Process. As the command.
+ * Return: as the command.
+ */
+int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
+{
+	const struct ec_ioctl *op = &table[_IOC_NR(cmd)];
+	struct ec_call call = { .file = f };
+	int ret = 0;
+
+	/* reading the reason must not clear it */
+	if (cmd != EC_IOC_REASON)
+		ec_call_forget_reason(f);
+	if (_IOC_DIR(cmd) & _IOC_WRITE)
+		ret = check_unknown(&call, op, arg);
+	return ret ?: ec_call_run(f, op, arg, false);
 }
 
 static int fetch_arg(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd, void *karg,

@@ -362,7 +362,9 @@ static int take_over(struct ec_call *call)
 {
 	char why[96];
 	const struct ec_session *heir = call->master->sessions.heir;
-	int ret = ec_session_take_over(&call->master->sessions, why, sizeof(why));
+	/* the handles of an application in the kernel are what it has configured */
+	int ret = ec_session_take_over(&call->master->sessions, why, sizeof(why),
+				       call->file == &call->master->api->file);
 
 	if (ret == -EEXIST)
 		return ec_refuse(call, ret,

@@ -39,6 +39,7 @@ struct ec_domain *ec_domain_create(struct ec_wanted *w)
 void ec_domain_free(struct ec_domain *d)
 {
 	kvfree(d->fmmus);
+	kvfree(d->inputs);
 	kfree(d);
 }
 

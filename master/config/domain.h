@@ -8,6 +8,7 @@
 
 struct ec_config;
 struct ec_config_fmmu;
+struct ec_input;
 struct ec_wanted;
 
 /* reference to an FMMU of a configuration, in order of registration */
@@ -29,7 +30,10 @@ struct ec_domain_fmmu {
  * @n_dgrams: datagrams, set by activation
  * @dgram_bytes: their bytes, header and working counter included
  * @memory: of a kernel application, for its data; NULL: they lie in the image
- * @snap: for a kernel application: result as of its last ecrt_domain_process()
+ * @data: for a kernel application, as are the next three: its data, NULL: not yet
+ * @inputs: what of @data is input, when the kernel runs the cycle
+ * @n_inputs: entries in @inputs
+ * @snap: result as of its last ecrt_domain_process()
  * @max_age: sends after which received data are stale, 0: never
  * @division: it takes part in every so many cycles the kernel runs
  * @phase: first time in that cycle, from 0 on
@@ -46,6 +50,9 @@ struct ec_domain {
 	u32 n_dgrams;
 	u32 dgram_bytes;
 	u8 *memory;
+	u8 *data;
+	struct ec_input *inputs;
+	unsigned int n_inputs;
 	struct ec_status_domain snap;
 	u32 max_age;
 	u32 division;

@@ -7,7 +7,8 @@
 
 /**
  * struct step - a copy with everything found out
- * @domain: whose working counter says whether the inputs are valid
+ * @domain: of the inputs, its working counter says whether they are valid
+ * @to_domain: of the outputs
  * @from: bit in the image
  * @to: bit in the image
  * @bits: how many
@@ -15,6 +16,7 @@
  */
 struct step {
 	u32 domain;
+	u32 to_domain;
 	u32 from;
 	u32 to;
 	u32 bits;
@@ -145,7 +147,8 @@ int ec_copies_begin(struct ec_cycle *c)
 		const struct ec_ioc_copy *copy = &c->copies[i];
 
 		k->steps[i] = (struct step){
-			.domain = copy->from_domain, .bits = copy->bits, .last = bytes,
+			.domain = copy->from_domain, .to_domain = copy->to_domain,
+			.bits = copy->bits, .last = bytes,
 			.from = 8 * c->wanted->domains[copy->from_domain]->offset + copy->from_bit,
 			.to = 8 * c->wanted->domains[copy->to_domain]->offset + copy->to_bit,
 		};
@@ -168,14 +171,14 @@ void ec_copies_run(struct ec_cycle *c)
 {
 	struct ec_copying *k = c->copying;
 	const struct ec_status *st = c->shared->status;
-	u8 *image = c->shared->image;
 	unsigned int i;
 
 	for (i = 0; i < k->n; i++) {
 		const struct step *p = &k->steps[i];
 
 		if (st->domains[p->domain].wc_state == 2)
-			copy_bits(k->last + p->last, 0, image, p->from, p->bits);
-		copy_bits(image, p->to, k->last + p->last, 0, p->bits);
+			copy_bits(k->last + p->last, 0, c->domains[p->domain].image, p->from,
+				  p->bits);
+		copy_bits(c->domains[p->to_domain].image, p->to, k->last + p->last, 0, p->bits);
 	}
 }

@@ -655,6 +655,12 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 	return mask;
 }
 
+/* A thread of an application in the kernel shall end. */
+static bool is_stopped(void)
+{
+	return current->flags & PF_KTHREAD && kthread_should_stop();
+}
+
 /**
  * ec_cycle_thread_wait() - wait for the next cycle
  * @cycles: of the master
@@ -665,7 +671,8 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
  *
  * Context: Process. Sleeps; nothing of the cycle is touched, so it may end.
  * Return: 0; -EPERM the kernel runs no cycle for @owner; -ETIMEDOUT; -ERESTARTNOHAND a
- * signal; -ECANCELED the cycle has stopped or changed its owner; -EBUSY too many callers wait.
+ * signal or kthread_stop(); -ECANCELED the cycle has stopped or changed its owner; -EBUSY too
+ * many callers wait.
  */
 int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
 			 u64 *cycle, u32 timeout_us)
@@ -686,7 +693,8 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 	ret = wait_event_interruptible_hrtimeout(w->wq,
 						 READ_ONCE(cycles->run) != run || !(run & 1) ||
 						 READ_ONCE(cycles->owner) != owner ||
-						 ec_read64(&cycles->number) > *cycle, limit);
+						 ec_read64(&cycles->number) > *cycle ||
+						 is_stopped(), limit);
 	ec_waiters_leave(w);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
@@ -695,6 +703,8 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 		return -ERESTARTNOHAND;
 	if (!(run & 1) || READ_ONCE(cycles->run) != run || READ_ONCE(cycles->owner) != owner)
 		return -ECANCELED;
+	if (ec_read64(&cycles->number) <= *cycle)
+		return -ERESTARTNOHAND;
 	*cycle = ec_read64(&cycles->number);
 	return 0;
 }

@@ -314,8 +314,9 @@ int ec_cycle_layout(struct ec_cycle *c)
 			return ret;
 		c->domains[d->index] = (struct ec_cyc_domain){
 			.expected = d->expected, .max_age = d->max_age,
-			/* offsets are those of the image of all domains */
-			.image = d->memory ? d->memory - d->offset : c->shared->image,
+			/* offsets are those of the image of all domains; a thread exchanges those */
+			.image = d->memory && !c->kernel.period_ns ? d->memory - d->offset :
+								     c->shared->image,
 		};
 	}
 	if (c->n_cuts) {

@@ -199,6 +199,9 @@ static void clear(struct ec_session *s)
 	memset_startat(s, 0, specs);
 	s->ref_config = EC_UAPI_NONE32;
 	ec_cycle_clear(&s->cycle);
+	if (s->handles)
+		ec_session_free(s->handles);
+	s->handles = NULL;
 }
 
 /* Application time and interval are those of one application. */
@@ -546,5 +549,5 @@ int ec_session_slaves_down(struct ec_session *s)
  */
 u8 *ec_domain_data(const struct ec_domain *d)
 {
-	return d->memory ?: ec_domain_session(d)->cycle.shared->image + d->offset;
+	return ec_domain_session(d)->cycle.domains[d->index].image + d->offset;
 }

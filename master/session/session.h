@@ -81,6 +81,8 @@ struct ec_sessions {
  * @ending: slaves shall go to PREOP while the application still cycles
  * @raised: reference clock without configuration that was taken to OP, or NULL
  * @preset: what the image begins with, for the time of an activation; NULL: zeros
+ * @handles: session in which an application in the kernel has configured what it has taken
+ *	over, or NULL: its handles are there
  */
 struct ec_session {
 	struct ec_sessions *sessions;
@@ -97,6 +99,7 @@ struct ec_session {
 	bool ending;
 	struct ec_slave *raised;
 	const void *preset;
+	struct ec_session *handles;
 };
 
 static inline struct ec_session *ec_cycle_session(struct ec_cycle *c)
@@ -143,7 +146,7 @@ void ec_session_fill_status(struct ec_session *s);
 void ec_session_status(struct ec_sessions *ss, bool scanned);
 
 /* takeover.c */
-int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size);
+int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool keep);
 
 void ec_session_free(struct ec_session *s);
 

@@ -207,15 +207,16 @@ static void adopt_late(struct ec_session *s, u32 per_s)
  * @ss: sessions of a master with a detached session and an heir
  * @why: result: the first difference of the two
  * @size: room there
+ * @keep: the heir's configuration stays until the session ends
  *
- * The cycle goes on, with the priority that the heir's process may use; the heir's
- * configuration is freed.
+ * The cycle goes on, with the priority that the heir's process may use; without @keep the
+ * heir's configuration is freed.
  *
  * Context: Process, session lock held. Sleeps until the next cycle has begun.
  * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
  * -ETIMEDOUT the cycle does not run.
  */
-int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size)
+int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool keep)
 {
 	const struct text t = { .buf = why, .size = size };
 	struct ec_session *s = ss->session, *heir = ss->heir;
@@ -239,7 +240,12 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size)
 						     lockdep_is_held(&ss->lock)));
 	s->owner_pid = heir->owner_pid;
 	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
-	ec_session_free(heir);
+	/* the application before has no handles any more */
+	if (s->handles)
+		ec_session_free(s->handles);
+	s->handles = keep ? heir : NULL;
+	if (!keep)
+		ec_session_free(heir);
 	ec_info(ss, "detached session taken over by a new application\n");
 	return 0;
 }

@@ -2,7 +2,8 @@
 /*
  * What the functions of ecrt.h return that are written once for userspace and kernel: one list,
  * which tests/apps/api runs through /dev/EtherCAT0 and bus_kapi_codes with the exported
- * functions. CODE(have, want) and MISSING(pointer) come from there.
+ * functions. CODE(have, want) and MISSING(pointer) come from there. So do the codes of a
+ * running cycle, which need a configured application (codes_cycle_runs()).
  */
 #ifndef EC_CODES_H
 #define EC_CODES_H
@@ -123,6 +124,62 @@ static void codes_requests(ec_slave_config_t *sc)
 	CODE(ecrt_soe_request_write(soe), -EINVAL);
 }
 
+static void codes_cycle(ec_master_t *m, ec_domain_t *d)
+{
+	const ec_cycle_config_t good = { .period_ns = 1000000 };
+	const struct {
+		ec_cycle_config_t config;
+		int code;
+	} t[] = {
+		{ { .period_ns = 0 }, -EINVAL },
+		{ { .period_ns = 9999 }, -EINVAL },
+		{ { .period_ns = 10000 }, 0 },
+		{ { .period_ns = 1000000000 }, 0 },
+		{ { .period_ns = 1000000001 }, -EINVAL },
+		{ { .period_ns = 1000000, .phase_ns = 999999 }, 0 },
+		{ { .period_ns = 1000000, .phase_ns = 1000000 }, -EINVAL },
+		{ { .period_ns = 1000000, .priority = 98 }, 0 },
+		{ { .period_ns = 1000000, .priority = 99 }, -EINVAL },
+		{ { .period_ns = 1000000, .cpu = -1 }, 0 },
+		{ { .period_ns = 1000000, .cpu = 1 }, -EINVAL },
+		{ { .period_ns = 1000000, .cpu = -1, .flags = EC_CYCLE_BIND_CPU }, -EINVAL },
+		{ { .period_ns = 1000000, .cpu = 100000, .flags = EC_CYCLE_BIND_CPU }, -EINVAL },
+		{ { .period_ns = 1000000, .stall = (ec_cycle_stall_t)3 }, -EINVAL },
+		{ { .period_ns = 1000000, .dc = 1 }, -EOPNOTSUPP },
+		{ { .period_ns = 1000000, .dc = EC_CYCLE_FOLLOW_REFERENCE }, -EINVAL },
+		{ { .period_ns = 1000000, .flags = 1U << 30 }, -EOPNOTSUPP },
+		{ { .period_ns = 1000000, .flags = EC_CYCLE_DETACH }, 0 },
+		{ { .period_ns = 1000000, .flags = EC_CYCLE_DETACH, .stall = EC_CYCLE_STOP },
+		  -EINVAL },
+	};
+	ec_cycle_state_t state;
+	size_t i;
+
+	for (i = 0; i < sizeof(t) / sizeof(t[0]); i++)
+		CODE(ecrt_master_set_cycle(m, &t[i].config), t[i].code);
+	CODE(ecrt_master_set_cycle(m, NULL), 0);
+	CODE(ecrt_master_set_cycle(NULL, &good), -EINVAL);
+	CODE(ecrt_domain_set_division(d, 0, 0), -EINVAL);
+	CODE(ecrt_domain_set_division(d, 1001, 0), -EINVAL);
+	CODE(ecrt_domain_set_division(d, 4, 4), -EINVAL);
+	CODE(ecrt_domain_set_division(d, 4, 3), 0);
+	CODE(ecrt_domain_set_division(NULL, 1, 0), -EINVAL);
+	/* a division needs a cycle that the kernel runs */
+	CODE(ecrt_master_activate(m), -EOPNOTSUPP);
+	CODE(ecrt_domain_set_division(d, 1, 0), 0);
+	CODE(ecrt_domain_copy(d, 0, 0, NULL, 0, 0, 1), -EINVAL);
+	CODE(ecrt_domain_copy(d, 0, 0, d, 0, 0, 0), -EINVAL);
+	CODE(ecrt_domain_copy(d, 1U << 30, 0, d, 0, 0, 1), -EINVAL);
+	CODE(ecrt_domain_copy(d, 0, 0, d, 100, 0, 8), -EINVAL);
+	CODE(ecrt_master_end_detached(m), -EBUSY);
+	CODE(ecrt_master_end_detached(NULL), -EINVAL);
+	CODE(ecrt_master_wait_cycle(m, 0), -EINVAL);
+	CODE(ecrt_master_wait_cycle(NULL, 0), -EINVAL);
+	CODE(ecrt_master_cycle_count(m), 0);
+	CODE(ecrt_master_cycle_inputs(m, NULL, NULL), -EINVAL);
+	CODE(ecrt_master_cycle_state(m, &state), -EINVAL);
+}
+
 /* @m: reserved, not active; @coe, @plain: slaves with and without a mailbox */
 static void codes_all(ec_master_t *m, uint16_t coe, uint16_t plain)
 {
@@ -143,6 +200,41 @@ static void codes_all(ec_master_t *m, uint16_t coe, uint16_t plain)
 	CODE(ecrt_master_select_reference_clock(m, sc), 0);
 	CODE(ecrt_master_select_reference_clock(m, NULL), 0);
 	CODE(ecrt_master_deactivate(m), -EINVAL);
+	codes_cycle(m, d);
+}
+
+/* @m: active, the kernel runs its cycle of 1 s; @d: domain with process data */
+static void codes_cycle_runs(ec_master_t *m, ec_domain_t *d)
+{
+	const ec_cycle_config_t good = { .period_ns = 1000000 };
+	uint64_t cycle = 0, time = 1;
+	ec_cycle_state_t state;
+
+	CODE(ecrt_master_set_cycle(m, &good), -EBUSY);
+	CODE(ecrt_domain_set_division(d, 1, 0), -EBUSY);
+	CODE(ecrt_domain_copy(d, 0, 0, d, 0, 0, 1), -EBUSY);
+	CODE(ecrt_master_end_detached(m), -EBUSY);
+	CODE(ecrt_master_cycle_inputs(m, &cycle, &time), -ENODATA);
+	CODE(ecrt_master_wait_cycle(m, 0), 1);
+	CODE(ecrt_master_wait_cycle(m, 10), -ETIMEDOUT);
+	CODE(ecrt_master_receive(m), 0);
+	CODE(ecrt_master_cycle_inputs(m, &cycle, &time), 0);
+	CODE(ecrt_master_cycle_inputs(m, NULL, NULL), 0);
+	CODE(cycle, ecrt_master_cycle_count(m));
+	CODE(time % 1000000000, 0);
+	CODE(ecrt_domain_process(d), 0);
+	CODE(ecrt_domain_queue(d), 0);
+	CODE(ecrt_master_send(m), 0);
+	CODE(ecrt_master_application_time(m, 1), 0);
+	CODE(ecrt_master_cycle_state(m, NULL), -EINVAL);
+	CODE(ecrt_master_cycle_state(m, &state), 0);
+	CODE(state.run, EC_CYCLE_RUNNING);
+	CODE(state.cycles, cycle);
+	CODE(ecrt_master_deactivate(m), 0);
+	CODE(ecrt_master_wait_cycle(m, 0), -EINVAL);
+	CODE(ecrt_master_receive(m), -EINVAL);
+	CODE(ecrt_master_send(m), -EINVAL);
+	CODE(ecrt_master_cycle_count(m), 0);
 }
 
 #endif

@@ -22,8 +22,24 @@ static void kapi_codes_equal_userspace(struct kunit *t)
 	ecrt_release_master(m);
 }
 
+static void kapi_codes_kernel_cycle(struct kunit *t)
+{
+	struct bus *b = bus_up(t, "slave a io in=16 out=16\n", 1);
+	struct kapp *k;
+
+	test = t;
+	bus_idle(b);
+	k = kapp_new(b, 1000000);
+	kapp_kernel_cycle(k, (ec_cycle_config_t){ });
+	kapp_map(k, 0);
+	kapp_activate(k);
+	codes_cycle_runs(k->m, k->d);
+	ecrt_release_master(k->m);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_codes_equal_userspace),
+	KUNIT_CASE(kapi_codes_kernel_cycle),
 	{}
 };
 

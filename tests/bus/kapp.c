@@ -24,6 +24,14 @@ struct kapp *kapp_new(struct bus *b, u32 period_us)
 	return k;
 }
 
+/* The kernel runs the cycle, with the period of the application unless @cycle has one. */
+void kapp_kernel_cycle(struct kapp *k, ec_cycle_config_t cycle)
+{
+	cycle.period_ns = cycle.period_ns ?: k->period_ns;
+	KUNIT_ASSERT_EQ(k->b->test, ecrt_master_set_cycle(k->m, &cycle), 0);
+	k->kernel = true;
+}
+
 /* Configure the slave at a ring position as what it is. */
 ec_slave_config_t *kapp_config(struct kapp *k, u32 position)
 {
@@ -64,6 +72,10 @@ void kapp_activate(struct kapp *k)
 /* until the next cycle begins */
 void kapp_wait(struct kapp *k)
 {
+	if (k->kernel) {
+		KUNIT_ASSERT_GT(k->b->test, ecrt_master_wait_cycle(k->m, 0), 0);
+		return;
+	}
 	k->next = ktime_add_ns(k->next, k->period_ns);
 	set_current_state(TASK_UNINTERRUPTIBLE);
 	schedule_hrtimeout(&k->next, HRTIMER_MODE_ABS);

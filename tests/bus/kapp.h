@@ -15,6 +15,7 @@
  * @out: of each configuration: offset of its outputs in @d, ~0: none
  * @in: the same for inputs
  * @period_ns: of its cycle
+ * @kernel: the kernel runs the cycle
  * @next: when the next cycle begins (ktime)
  * @each: called between receive and send, may be NULL
  * @incomplete: cycles in which not all slaves took part
@@ -27,12 +28,14 @@ struct kapp {
 	u32 out[8];
 	u32 in[8];
 	u64 period_ns;
+	bool kernel;
 	ktime_t next;
 	void (*each)(struct kapp *k);
 	u64 incomplete;
 };
 
 struct kapp *kapp_new(struct bus *b, u32 period_us);
+void kapp_kernel_cycle(struct kapp *k, ec_cycle_config_t cycle);
 ec_slave_config_t *kapp_config(struct kapp *k, u32 position);
 void kapp_map(struct kapp *k, u32 position);
 void kapp_activate(struct kapp *k);

@@ -36,6 +36,31 @@ copied() {
 	wait_for 60 copied
 }
 
+@test "with a cycle of the kernel it does the same, and rmmod ends its wait" {
+	rmmod ec_mini
+	wait_for 60 all_slaves_are PREOP 2
+	dmesg -C
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=1 kernel_cycle=1
+	wait_for 60 all_slaves_are OP 2
+	wait_for 60 said "working counter 3, complete"
+	wait_for 60 said "serial number 77"
+	wait_for 60 copied
+	[[ "$(ethercat cycle)" == *"Cycle: run by the kernel"* ]]
+	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]
+	run rmmod ec_master
+	[ "$status" != 0 ]
+	timeout 10 rmmod ec_mini
+	wait_for 60 all_slaves_are PREOP 2
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=1 kernel_cycle=1
+	wait_for 60 all_slaves_are OP 2
+	# without its device the cycle of the kernel goes on
+	rmmod ec_sim
+	wait_for 60 json '.masters[0].phase == "waiting"' master
+	rmmod ec_mini
+	rmmod ec_master
+	start "$BATS_FILE_TMPDIR/segment" 2
+}
+
 @test "the tool works beside ec_mini, a process is refused with the reason" {
 	json '.masters[0].active and .masters[0].phase == "operation"' master
 	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]

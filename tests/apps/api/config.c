@@ -210,6 +210,18 @@ static void codes(void)
 	bench_down(&b);
 }
 
+static void codes_kernel_cycle(void)
+{
+	const ec_cycle_config_t slow = { .period_ns = 1000000000 };
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_set_cycle)(b.m, &slow), 0);
+	NEED(bench_activate(&b));
+	codes_cycle_runs(b.m, b.d);
+	bench_down(&b);
+}
+
 const struct api_case config_cases[] = {
 	{ "a configuration is found again", slave_config },
 	{ "slaves by alias", alias },
@@ -219,5 +231,6 @@ const struct api_case config_cases[] = {
 	{ "IP parameters", ip_parameters },
 	{ "flags, timeouts, emergencies, clocks", settings },
 	{ "return codes as in the kernel", codes },
+	{ "the same codes of a cycle that the kernel runs", codes_kernel_cycle },
 	{ NULL, NULL },
 };

@@ -1,13 +1,10 @@
-// SPDX-License-Identifier: LGPL-2.1-or-later
+// SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
 /*
- * The kernel runs the cycle. The domains' data are memory of our own, so that
- * they stand still; whole domains are copied from and to the buffers that are
- * exchanged with the kernel (struct ec_exchange).
+ * The kernel runs the cycle. The data of the domains are memory of the application, so that
+ * their address stays; whole domains are copied from and to the buffers that are
+ * exchanged with the thread of the cycle (struct ec_exchange).
  */
-#include <string.h>
-#include <sys/mman.h>
-
-#include "ecrt/ecrt_int.h"
+#include "ecrt_int.h"
 
 #define DIR_INPUT	2	/* struct ec_ioc_domain_fmmu.dir */
 #define INDEX_MASK	3U
@@ -35,10 +32,10 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 		return -EINVAL;
 	if (config) {
 		if (!config->period_ns)
-			return ec_fail(NULL, -EINVAL, "set a cycle of 0 ns");
+			return ec_fail(master, -EINVAL, "set a cycle of 0 ns");
 		bind = config->flags & EC_CYCLE_BIND_CPU;
 		if (bind ? config->cpu < 0 : config->cpu > 0)
-			return ec_fail(NULL, -EINVAL, "set a cycle on CPU %d %s EC_CYCLE_BIND_CPU",
+			return ec_fail(master, -EINVAL, "set a cycle on CPU %d %s EC_CYCLE_BIND_CPU",
 				       config->cpu, bind ? "with" : "without");
 		arg.period_ns = config->period_ns;
 		arg.phase_ns = config->phase_ns;
@@ -51,11 +48,13 @@ int ecrt_master_set_cycle(ec_master_t *master, const ec_cycle_config_t *config)
 	}
 	return ec_do(master, EC_IOC_CYCLE, &arg, "let the kernel run the cycle");
 }
+EXPORT_SYMBOL_GPL(ecrt_master_set_cycle);
 
 int ecrt_master_end_detached(ec_master_t *master)
 {
 	return ec_do(master, EC_IOC_END_DETACHED, NULL, "end the detached session");
 }
+EXPORT_SYMBOL_GPL(ecrt_master_end_detached);
 
 int ecrt_domain_set_division(ec_domain_t *domain, unsigned int division,
 			     unsigned int phase)
@@ -65,14 +64,15 @@ int ecrt_domain_set_division(ec_domain_t *domain, unsigned int division,
 	if (!domain)
 		return -EINVAL;
 	arg.domain = domain->index;
-	return ec_do(domain->master, EC_IOC_DIVISION, &arg, "set the division of domain %u",
-				   domain->index);
+	return ec_do(ec_domain_master(domain), EC_IOC_DIVISION, &arg,
+		     "set the division of domain %u", domain->index);
 }
+EXPORT_SYMBOL_GPL(ecrt_domain_set_division);
 
 /* Bit in a domain; domains are far smaller than 2^28 bytes. */
 static int bit_of(unsigned int offset, unsigned int bit, __u32 *result)
 {
-	if (offset >= UINT32_MAX / 16 || bit >= UINT32_MAX / 16)
+	if (offset >= EC_U32_MAX / 16 || bit >= EC_U32_MAX / 16)
 		return -EINVAL;
 	*result = 8 * offset + bit;
 	return 0;
@@ -84,76 +84,61 @@ int ecrt_domain_copy(ec_domain_t *to, unsigned int to_offset, unsigned int to_bi
 {
 	struct ec_ioc_copy arg = { .bits = bits };
 
-	if (!to || !from || to->master != from->master)
+	if (!to || !from || ec_domain_master(to) != ec_domain_master(from))
 		return -EINVAL;
 	arg.to_domain = to->index;
 	arg.from_domain = from->index;
 	if (bit_of(to_offset, to_bit, &arg.to_bit) ||
 	    bit_of(from_offset, from_bit, &arg.from_bit))
-		return ec_fail(NULL, -EINVAL, "copy to byte %u from byte %u", to_offset,
-			       from_offset);
-	return ec_do(to->master, EC_IOC_COPY, &arg, "copy %u bits from domain %u to domain %u",
-				   bits, from->index, to->index);
+		return ec_fail(ec_domain_master(to), -EINVAL, "copy to byte %u from byte %u",
+			       to_offset, from_offset);
+	return ec_do(ec_domain_master(to), EC_IOC_COPY, &arg,
+		     "copy %u bits from domain %u to domain %u", bits, from->index, to->index);
 }
+EXPORT_SYMBOL_GPL(ecrt_domain_copy);
 
-/* memory -------------------------------------------------------------------*/
+/* exchange -----------------------------------------------------------------*/
 
-static struct ec_exchange_buffer *buffer(const struct ec_master *m, unsigned int n)
+static struct ec_exchange_buffer *buffer(const struct ec_app_cycle *a, unsigned int n)
 {
-	return (void *)((__u8 *)m->exchange + EC_EXCHANGE_FIRST +
-			(size_t)n * m->stride);
+	return (void *)((__u8 *)a->exchange + EC_EXCHANGE_FIRST + (size_t)n * a->stride);
 }
 
 /* Where a domain lies in a buffer. */
-static __u8 *place(const struct ec_domain *d, unsigned int n)
+static __u8 *place(const struct ec_app_cycle *a, const struct ec_domain *d, unsigned int n)
 {
-	return (__u8 *)(buffer(d->master, n) + 1) + d->offset;
+	return (__u8 *)(buffer(a, n) + 1) + d->offset;
 }
 
-int ec_cycle_map(struct ec_master *m, const struct ec_ioc_activate *arg)
+/**
+ * ec_exchange_begin() - the cycle that the kernel runs has begun
+ * @a: cycle of the application
+ * @x: memory of the exchange
+ * @size: its bytes
+ * @st: status page
+ *
+ * Return: 0; -EPROTO the kernel has another layout of @x.
+ */
+int ec_exchange_begin(struct ec_app_cycle *a, struct ec_exchange *x, size_t size,
+		      const struct ec_status *st)
 {
-	size_t least = sizeof(struct ec_exchange_buffer);
-
-	m->exchange_size = arg->exchange_size;
-	m->exchange = ec_master_map(m, NULL, arg->exchange_size, PROT_READ | PROT_WRITE,
-				    EC_MMAP_EXCHANGE);
-	if (!m->exchange)
-		return -errno;
-	m->stride = m->exchange->stride;
-	if (m->stride < least || EC_EXCHANGE_FIRST + 2ULL * EC_EXCHANGE_BUFFERS *
-	    m->stride > m->exchange_size)
+	a->exchange = x;
+	a->stride = x->stride;
+	if (a->stride < sizeof(struct ec_exchange_buffer) ||
+	    EC_EXCHANGE_FIRST + 2ULL * EC_EXCHANGE_BUFFERS * a->stride > size)
 		return -EPROTO;
-	m->out_back = m->exchange->app_output;
-	m->out_last = m->out_back;
-	m->in_front = m->exchange->app_input;
-	m->in_taken = false;
-	if (m->out_back >= EC_EXCHANGE_BUFFERS || m->in_front >= EC_EXCHANGE_BUFFERS)
-		return -EPROTO;
-	m->cycle = ec_status_read64(m->status, &m->status->kernel.cycle);
-	if (m->image)	/* the application has it already */
-		return arg->image_size == m->image_size ? 0 : -EPROTO;
-	m->image_size = arg->image_size;
-	if (!m->image_size)
-		return 0;
-	m->image = mmap(NULL, m->image_size, PROT_READ | PROT_WRITE,
-			MAP_PRIVATE | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
-	if (m->image != MAP_FAILED)
-		return 0;
-	m->image = NULL;
-	return -errno;
-}
-
-void ec_cycle_unmap(struct ec_master *m)
-{
-	if (m->exchange)
-		munmap(m->exchange, m->exchange_size);
-	m->exchange = NULL;
+	a->out_back = x->app_output;
+	a->out_last = a->out_back;
+	a->in_front = x->app_input;
+	a->in_taken = false;
+	a->seen = ec_status_read64(st, &st->kernel.cycle);
+	return a->out_back < EC_EXCHANGE_BUFFERS && a->in_front < EC_EXCHANGE_BUFFERS ? 0 : -EPROTO;
 }
 
 static int get_fmmu(const struct ec_domain *d, __u32 i, struct ec_input *in)
 {
 	struct ec_ioc_domain_fmmu arg = { .index = d->index, .fmmu = i };
-	int ret = ec_command(d->master, EC_IOC_DOMAIN_FMMU, &arg);
+	int ret = ec_command(ec_domain_master(d), EC_IOC_DOMAIN_FMMU, &arg);
 
 	if (ret)
 		return ret;
@@ -181,23 +166,31 @@ static void add_input(struct ec_domain *d, const struct ec_input *in)
 	d->inputs[d->n_inputs++] = *in;
 }
 
-/* What of a domain is input: the rest of its data is the application's. */
-int ec_cycle_find_inputs(struct ec_domain *d)
+/**
+ * ec_exchange_add() - a domain takes part in the exchange
+ * @d: domain; its data get the values of the running cycle
+ *
+ * Finds its inputs: the rest of its data is the application's.
+ *
+ * Return: 0; -EPROTO it does not fit a buffer; -ENOMEM.
+ */
+int ec_exchange_add(struct ec_domain *d)
 {
+	const struct ec_app_cycle *a = ec_app_cycle(ec_domain_master(d));
 	struct ec_ioc_domain info = { .index = d->index };
 	struct ec_input side = { .count = 1 }, in;
-	int ret = ec_command(d->master, EC_IOC_DOMAIN, &info);
+	int ret = ec_command(ec_domain_master(d), EC_IOC_DOMAIN, &info);
 	__u32 i;
 
 	if (ret)
 		return ret;
-	if (d->offset + d->size > d->master->stride - sizeof(struct ec_exchange_buffer))
+	if (d->offset + d->size > a->stride - sizeof(struct ec_exchange_buffer))
 		return -EPROTO;
 	/* of a cycle that runs already: outputs and inputs as they are */
 	if (d->size)
-		memcpy(d->data, place(d, d->master->out_back), d->size);
+		memcpy(d->data, place(a, d, a->out_back), d->size);
 	d->n_inputs = 0;
-	d->inputs = calloc(info.fmmu_count + 1UL, sizeof(*d->inputs));
+	d->inputs = ec_zalloc((info.fmmu_count + 1UL) * sizeof(*d->inputs));
 	if (!d->inputs)
 		return -ENOMEM;
 	for (i = 0; i < info.fmmu_count; i++) {
@@ -220,46 +213,54 @@ int ec_cycle_find_inputs(struct ec_domain *d)
 /* Exchanges a buffer we are done with for the one named by a word. */
 static unsigned int swap_buffer(__u32 *word, __u32 mine)
 {
-	__u32 n = __atomic_exchange_n(word, mine, __ATOMIC_ACQ_REL) & INDEX_MASK;
+	__u32 n = ec_exchange_word(word, mine) & INDEX_MASK;
 
 	return n < EC_EXCHANGE_BUFFERS ? n : 0;
 }
 
-/* Why nothing comes back any more, or for now; 0: it does. */
-static int halted(const struct ec_master *m)
+/* Why no more inputs arrive, or none for now; 0: they do. */
+static int halted(const struct ec_status *st)
 {
-	if (ec_status_read(m->status->kernel.state) == EC_CYCLE_STATE_STOPPED)
+	if (ec_status_read(st->kernel.state) == EC_CYCLE_STATE_STOPPED)
 		return -ECANCELED;
-	return ec_status_read(m->status->no_device) ? -ENODEV : 0;
+	return ec_status_read(st->no_device) ? -ENODEV : 0;
 }
 
-/* No more cycles: also who looks at working counters only shall see it. */
-static void nothing_back(struct ec_master *m)
+/* Callers that check working counters only see the end of the cycle, too. */
+static void nothing_back(ec_master_t *m)
 {
 	struct ec_domain *d;
 
-	for (d = m->domains; d; d = d->next) {
+	ec_for_each_app_domain(m, d) {
 		d->snap.working_counter = 0;
 		d->snap.wc_state = 0;
 	}
-	m->received = 0;
+	ec_app_cycle(m)->received = 0;
 }
 
-/* The newest inputs; without new ones there is nothing to process. */
-int ec_cycle_receive(struct ec_master *m)
+/**
+ * ec_exchange_receive() - take the newest inputs
+ * @m: active master whose cycle the kernel runs
+ * @st: its status page
+ *
+ * Without new ones there is nothing to process.
+ *
+ * Return: as ecrt_master_receive().
+ */
+int ec_exchange_receive(ec_master_t *m, const struct ec_status *st)
 {
-	__u32 *word = &m->exchange->inputs;
-	int ret = halted(m);
+	struct ec_app_cycle *a = ec_app_cycle(m);
+	int ret = halted(st);
 
 	if (ret == -ECANCELED) {
 		nothing_back(m);
 		return ret;
 	}
-	if (!(__atomic_load_n(word, __ATOMIC_RELAXED) & EC_EXCHANGE_NEW))
+	if (!(ec_status_read(a->exchange->inputs) & EC_EXCHANGE_NEW))
 		return ret;
-	m->in_front = swap_buffer(word, m->in_front);
-	m->in_taken = true;
-	m->received = ~0ULL;
+	a->in_front = swap_buffer(&a->exchange->inputs, a->in_front);
+	a->in_taken = true;
+	a->received = ~0ULL;
 	return ret;
 }
 
@@ -299,91 +300,110 @@ static void copy_inputs(__u8 *to, const __u8 *from, const struct ec_input *in)
 			memcpy(to, from, in->size);
 }
 
-void ec_cycle_process(struct ec_domain *d)
+/* What ecrt_domain_process() does when the kernel runs the cycle. */
+void ec_exchange_process(struct ec_domain *d)
 {
-	unsigned int n = EC_EXCHANGE_BUFFERS + d->master->in_front, i;
-	const __u8 *from = place(d, n);
+	const struct ec_app_cycle *a = ec_app_cycle(ec_domain_master(d));
+	unsigned int n = EC_EXCHANGE_BUFFERS + a->in_front, i;
+	const __u8 *from = place(a, d, n);
 
 	for (i = 0; i < d->n_inputs; i++)
 		copy_inputs(d->data, from, &d->inputs[i]);
-	d->snap = buffer(d->master, n)->domains[d->index];
+	d->snap = buffer(a, n)->domains[d->index];
 }
 
-void ec_cycle_queue(struct ec_domain *d)
+/* What ecrt_domain_queue() does then. */
+void ec_exchange_queue(struct ec_domain *d)
 {
+	const struct ec_app_cycle *a = ec_app_cycle(ec_domain_master(d));
+
 	if (d->size)
-		memcpy(place(d, d->master->out_back), d->data, d->size);
+		memcpy(place(a, d, a->out_back), d->data, d->size);
 }
 
-/*
- * Domains that are not queued keep the outputs of before. They are still in the
+/**
+ * ec_exchange_send() - give the outputs of the queued domains
+ * @m: active master whose cycle the kernel runs
+ * @st: its status page
+ *
+ * Domains that are not queued keep the outputs of before. These are still in the
  * buffer that was given last: it comes back only for the one given now.
+ *
+ * Return: as ecrt_master_send().
  */
-int ec_cycle_send(struct ec_master *m)
+int ec_exchange_send(ec_master_t *m, const struct ec_status *st)
 {
-	int ret = halted(m);
+	struct ec_app_cycle *a = ec_app_cycle(m);
+	int ret = halted(st);
 	struct ec_domain *d;
 
-	if (!m->next.queued)
+	if (!a->next.queued)
 		return ret;
-	for (d = m->domains; d; d = d->next)
-		if (!(m->next.queued >> d->index & 1) && d->size && m->out_last != m->out_back)
-			memcpy(place(d, m->out_back), place(d, m->out_last), d->size);
-	m->out_last = m->out_back;
-	m->out_back = swap_buffer(&m->exchange->outputs, m->out_back | EC_EXCHANGE_NEW);
-	m->next.queued = 0;
+	ec_for_each_app_domain(m, d)
+		if (!(a->next.queued >> d->index & 1) && d->size && a->out_last != a->out_back)
+			memcpy(place(a, d, a->out_back), place(a, d, a->out_last), d->size);
+	a->out_last = a->out_back;
+	a->out_back = swap_buffer(&a->exchange->outputs, a->out_back | EC_EXCHANGE_NEW);
+	a->next.queued = 0;
 	return ret;
 }
 
-/* waiting ------------------------------------------------------------------*/
+/* waiting and state --------------------------------------------------------*/
 
-static bool runs(const struct ec_master *m)
+/* Status page of an active master whose cycle the kernel runs, or NULL. */
+static const struct ec_status *run_by_kernel(const ec_master_t *m)
 {
-	return m && m->active && m->exchange;
+	const struct ec_status *st = ec_active_status(m);
+
+	return st && ec_app_cycle(m)->exchange ? st : NULL;
 }
 
 int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
 {
 	struct ec_ioc_wait arg = { .timeout_us = timeout_us };
+	struct ec_app_cycle *a;
 	__u64 n;
 	int ret;
 
-	if (!runs(master))
+	if (!run_by_kernel(master))
 		return ec_inactive(master);
-	arg.cycle = master->cycle;
+	a = ec_app_cycle(master);
+	arg.cycle = a->seen;
 	ret = ec_command(master, EC_IOC_WAIT, &arg);
 	if (ret)
 		return ret;
-	n = arg.cycle - master->cycle;
-	master->cycle = arg.cycle;
-	return n > INT32_MAX ? INT32_MAX : (int)n;
+	n = arg.cycle - a->seen;
+	a->seen = arg.cycle;
+	return n > INT_MAX ? INT_MAX : (int)n;
 }
+EXPORT_SYMBOL_GPL(ecrt_master_wait_cycle);
 
 uint64_t ecrt_master_cycle_count(const ec_master_t *master)
 {
-	return runs(master) ? ec_status_read64(master->status, &master->status->kernel.cycle) : 0;
+	const struct ec_status *st = run_by_kernel(master);
+
+	return st ? ec_status_read64(st, &st->kernel.cycle) : 0;
 }
+EXPORT_SYMBOL_GPL(ecrt_master_cycle_count);
 
 int ecrt_master_cycle_inputs(const ec_master_t *master, uint64_t *cycle, uint64_t *time_ns)
 {
 	const struct ec_exchange_buffer *b;
+	const struct ec_app_cycle *a;
 
-	if (!runs(master))
+	if (!run_by_kernel(master))
 		return ec_inactive(master);
-	if (!master->in_taken)
+	a = ec_app_cycle(master);
+	if (!a->in_taken)
 		return -ENODATA;
-	b = buffer(master, EC_EXCHANGE_BUFFERS + master->in_front);
+	b = buffer(a, EC_EXCHANGE_BUFFERS + a->in_front);
 	if (cycle)
 		*cycle = b->cycle;
 	if (time_ns)
 		*time_ns = b->time_ns;
 	return 0;
 }
-
-int ecrt_master_cycle_fd(const ec_master_t *master)
-{
-	return runs(master) ? master->fd : ec_inactive(master);
-}
+EXPORT_SYMBOL_GPL(ecrt_master_cycle_inputs);
 
 /* Where a bucket begins, ns; as described at EC_CYCLE_BUCKETS. */
 static __u64 bucket_from(unsigned int n)
@@ -391,59 +411,65 @@ static __u64 bucket_from(unsigned int n)
 	return n < 8 ? n : (8ULL + n % 8) << (n / 8 - 1);
 }
 
-/* Number of bits of a time: the bin it belongs to. */
-static unsigned int bin(__u64 ns)
+/* The bin of a bucket: number of bits of its times. */
+static unsigned int bin(unsigned int n)
 {
-	unsigned int n = ns ? 64 - (unsigned int)__builtin_clzll(ns) : 0;
-
+	if (n >= 8)
+		n = n / 8 + 3;
+	else if (n >= 2)
+		n = n < 4 ? 2 : 3;
 	return n < EC_CYCLE_BINS ? n : EC_CYCLE_BINS - 1;
+}
+
+static __u32 mean(__u64 sum, __u64 count)
+{
+	return count ? (__u32)ec_div64(sum, count) : 0;
 }
 
 static void read_late(const struct ec_status *status, ec_cycle_state_t *state)
 {
 	const __u64 *late = status->kernel.late;
-	uint64_t count = 0, above = 0, n;
+	__u64 count = 0, above = 0, most, n;
 	unsigned int i;
 
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++) {
 		n = ec_status_read64(status, &late[i]);
-		state->late[bin(bucket_from(i))] += n;
+		state->late[bin(i)] += n;
 		count += n;
 	}
 	/* down from the last one, until more than 0.1 % are above */
-	for (i = EC_CYCLE_BUCKETS; i && above <= count / 1000; i--)
+	most = ec_div64(count, 1000);
+	for (i = EC_CYCLE_BUCKETS; i && above <= most; i--)
 		above += ec_status_read64(status, &late[i - 1]);
-	state->late_p999 = count ? (uint32_t)(bucket_from(i + 1) - 1) : 0;
+	state->late_p999 = count ? (__u32)(bucket_from(i + 1) - 1) : 0;
 	if (state->late_p999 > state->late_max)
 		state->late_p999 = state->late_max;
 }
 
 int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 {
+	const struct ec_status *page = ec_active_status(master);
 	const struct ec_status_cycle *st;
-	uint64_t count, n;
 
-	if (!master || !master->active)
+	if (!page)
 		return ec_inactive(master);
 	if (!state)
 		return -EINVAL;
 	memset(state, 0, sizeof(*state));
-	st = &master->status->kernel;
-	count = ec_status_read64(master->status, &st->late_count);
+	st = &page->kernel;
 	state->run = (ec_cycle_run_t)ec_status_read(st->state);
-	state->cycles = ec_status_read64(master->status, &st->cycle);
-	state->overruns = ec_status_read64(master->status, &st->overruns);
-	state->missed = ec_status_read64(master->status, &st->missed);
+	state->cycles = ec_status_read64(page, &st->cycle);
+	state->overruns = ec_status_read64(page, &st->overruns);
+	state->missed = ec_status_read64(page, &st->missed);
 	state->late_min = ec_status_read(st->late_min);
 	state->late_max = ec_status_read(st->late_max);
-	n = ec_status_read64(master->status, &st->late_sum);
-	state->late_mean = count ? (uint32_t)(n / count) : 0;
-	count = ec_status_read64(master->status, &st->work_count);
+	state->late_mean = mean(ec_status_read64(page, &st->late_sum),
+				ec_status_read64(page, &st->late_count));
 	state->work_last = ec_status_read(st->work_ns);
 	state->work_max = ec_status_read(st->work_max);
-	n = ec_status_read64(master->status, &st->work_sum);
-	state->work_mean = count ? (uint32_t)(n / count) : 0;
-	read_late(master->status, state);
+	state->work_mean = mean(ec_status_read64(page, &st->work_sum),
+				ec_status_read64(page, &st->work_count));
+	read_late(page, state);
 	state->lock = (ec_cycle_lock_t)ec_status_read(st->lock);
 	state->lock_losses = ec_status_read(st->lock_losses);
 	state->phase_error = ec_status_read(st->phase_error);
@@ -451,3 +477,4 @@ int ecrt_master_cycle_state(const ec_master_t *master, ec_cycle_state_t *state)
 	state->takeovers = ec_status_read(st->takeovers);
 	return 0;
 }
+EXPORT_SYMBOL_GPL(ecrt_master_cycle_state);
