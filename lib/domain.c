@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* Domains: data and exchange. */
+/* Domains: size and data. */
 
 #include "ecrt/ecrt_int.h"
 
@@ -20,39 +20,4 @@ size_t ecrt_domain_size(const ec_domain_t *domain)
 uint8_t *ecrt_domain_data(const ec_domain_t *domain)
 {
 	return domain ? domain->data : NULL;
-}
-
-int ecrt_domain_process(ec_domain_t *domain)
-{
-	const struct ec_status_domain *st;
-	struct ec_master *m;
-	__u64 bit;
-
-	if (!domain || !domain->master->active)
-		return -EINVAL;
-	m = domain->master;
-	bit = 1ULL << domain->index;
-	if (!(m->cycle.received & bit))
-		return 0;
-	m->cycle.received &= ~bit;
-	if (m->cycle.exchange) {
-		ec_exchange_process(domain);
-		return 0;
-	}
-	st = &m->status->domains[domain->index];
-	domain->snap.working_counter = ec_status_read(st->working_counter);
-	domain->snap.wc_state = ec_status_read(st->wc_state);
-	domain->snap.redundancy_active = ec_status_read(st->redundancy_active);
-	domain->snap.age = ec_status_read(st->age);
-	return 0;
-}
-
-int ecrt_domain_queue(ec_domain_t *domain)
-{
-	if (!domain || !domain->master->active)
-		return -EINVAL;
-	if (domain->master->cycle.exchange)
-		ec_exchange_queue(domain);
-	domain->master->cycle.next.queued |= 1ULL << domain->index;
-	return 0;
 }

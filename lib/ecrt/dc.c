@@ -23,8 +23,8 @@ int ecrt_master_sync_reference_clock_to(ec_master_t *master, uint64_t sync_time)
 
 	if (ret)
 		return ret;
-	ec_next_send(master)->sync_time = sync_time;
-	ec_next_send(master)->flags |= EC_SEND_FLAG_SYNC_REF;
+	ec_app_cycle(master)->next.sync_time = sync_time;
+	ec_app_cycle(master)->next.flags |= EC_SEND_FLAG_SYNC_REF;
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_reference_clock_to);
@@ -32,7 +32,7 @@ EXPORT_SYMBOL_GPL(ecrt_master_sync_reference_clock_to);
 int ecrt_master_sync_reference_clock(ec_master_t *master)
 {
 	return ecrt_master_sync_reference_clock_to(master, master ?
-						   ec_next_send(master)->app_time : 0);
+						   ec_app_cycle(master)->next.app_time : 0);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_reference_clock);
 
@@ -42,7 +42,7 @@ int ecrt_master_sync_slave_clocks(ec_master_t *master)
 	int ret = check(master, &st);
 
 	if (!ret)
-		ec_next_send(master)->flags |= EC_SEND_FLAG_SYNC_SLAVES;
+		ec_app_cycle(master)->next.flags |= EC_SEND_FLAG_SYNC_SLAVES;
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_slave_clocks);
@@ -67,7 +67,7 @@ int ecrt_master_sync_monitor_queue(ec_master_t *master)
 {
 	if (!ec_active_status(master))
 		return ec_inactive(master);
-	ec_next_send(master)->flags |= EC_SEND_FLAG_MONITOR;
+	ec_app_cycle(master)->next.flags |= EC_SEND_FLAG_MONITOR;
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_monitor_queue);
@@ -85,7 +85,7 @@ void ecrt_master_64bit_reference_clock_time_queue(ec_master_t *master)
 	const struct ec_status *st;
 
 	if (!check(master, &st))
-		ec_next_send(master)->flags |= EC_SEND_FLAG_REF_TIME;
+		ec_app_cycle(master)->next.flags |= EC_SEND_FLAG_REF_TIME;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_64bit_reference_clock_time_queue);
 

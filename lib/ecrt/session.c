@@ -74,6 +74,47 @@ int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_set_max_age);
 
+int ecrt_domain_process(ec_domain_t *domain)
+{
+	const ec_master_t *m = domain ? ec_domain_master(domain) : NULL;
+	const struct ec_status *page = ec_active_status(m);
+	const struct ec_status_domain *st;
+	struct ec_app_cycle *a;
+
+	if (!page)
+		return -EINVAL;
+	a = ec_app_cycle(m);
+	if (!(a->received >> domain->index & 1))
+		return 0;
+	a->received &= ~(1ULL << domain->index);
+	if (a->exchange) {
+		ec_exchange_process(domain);
+		return 0;
+	}
+	st = &page->domains[domain->index];
+	domain->snap.working_counter = ec_status_read(st->working_counter);
+	domain->snap.wc_state = ec_status_read(st->wc_state);
+	domain->snap.redundancy_active = ec_status_read(st->redundancy_active);
+	domain->snap.age = ec_status_read(st->age);
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_process);
+
+int ecrt_domain_queue(ec_domain_t *domain)
+{
+	const ec_master_t *m = domain ? ec_domain_master(domain) : NULL;
+	struct ec_app_cycle *a;
+
+	if (!ec_active_status(m))
+		return -EINVAL;
+	a = ec_app_cycle(m);
+	if (a->exchange)
+		ec_exchange_queue(domain);
+	a->next.queued |= 1ULL << domain->index;
+	return 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_domain_queue);
+
 int ecrt_domain_state(const ec_domain_t *domain, ec_domain_state_t *state)
 {
 	if (!domain || !state)
