@@ -15,7 +15,7 @@
  */
 #define EC_MORE		1	/* send the next message */
 #define EC_STALE	2	/* not the answer: keep waiting, the time limit runs on */
-#define EC_WAIT		3	/* a part of the answer: wait for the next, restart the time limit */
+#define EC_WAIT		3	/* a part of the answer: wait for the next, restart the limit */
 
 enum ec_mbox_type {
 	EC_MBOX_ERR = 0,
