@@ -542,7 +542,7 @@ static int __init gen_init(void)
 
 	if (ret)
 		return ret;
-	/* it has told of all devices there are */
+	/* it has reported all devices there are */
 	flush_work(&look_work);
 	report_waiting();
 	return 0;

@@ -154,7 +154,7 @@ static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle
 	out_str("by", name, "  Cycle: run by the %s, ", name);
 	out_str("state", state_text(i, st), "%s\n", state_text(i, st));
 	out_u("interval_ns", i->interval_ns, "  Interval: %.3f us (", i->interval_ns / 1000.0);
-	out_bool("interval_told", i->told, "%s)\n", i->told ? "configured" : "measured");
+	out_bool("interval_configured", i->interval_set, "%s)\n", i->interval_set ? "configured" : "measured");
 }
 
 /* of a cycle run by the kernel */
@@ -225,7 +225,7 @@ const struct cmd cmd_cycle = {
 		"too large. Each bar covers a power of two, with --verbose an eighth of it. --reset\n"
 		"clears the statistics; it needs write access.\n",
 	.json = "masters[]: master, by (nobody, application, kernel), state (running, stalled,\n"
-		"stopped, waiting, ended), interval_ns, interval_told (configured), sends, overruns,\n"
+		"stopped, waiting, ended), interval_ns, interval_configured, sends, overruns,\n"
 		"missed (cycles of the kernel without new outputs), late_min_ns, late_mean_ns,\n"
 		"late_p999_ns, late_max_ns (send deviation), work_mean_ns, work_max_ns (execution time\n"
 		"of a cycle of the kernel), histogram[] (from_ns, to_ns, sends; without empty ranges).\n"

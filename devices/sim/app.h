@@ -372,7 +372,7 @@ struct ec_app_copy {
 };
 
 /**
- * struct ec_app_voe - a VoE message nobody has asked for
+ * struct ec_app_voe - an unrequested VoE message
  * @hdr: its header
  * @size: bytes of the vendor
  */

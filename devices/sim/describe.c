@@ -666,7 +666,7 @@ static int build(struct ec_desc *d, const char *p, const char *end)
  *
  * Context: Process. May sleep.
  * Return: 0, -EINVAL: the text is wrong, -ENOMEM, or what the loader said;
- * @err tells more in all these cases.
+ * @err has the details in all these cases.
  */
 int ec_sim_describe(struct ec_sim **out, const struct ec_sim_ops *ops,
 		    const char *text, size_t len,

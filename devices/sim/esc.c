@@ -507,7 +507,7 @@ void ec_esc_run(struct ec_esc *esc, u64 now)
 	}
 }
 
-/* tell the application what the frame did */
+/* report to the application what the frame did */
 void ec_esc_deliver(struct ec_esc *esc)
 {
 	const struct ec_esc_app_ops *ops = esc->app_ops;

@@ -102,7 +102,7 @@ struct ec_esc_config {
  * @free: the segment goes away, release esc->app
  *
  * All may be NULL. They run inside ec_sim_frame() or ec_sim_advance(), may
- * use the PDI functions and must not allocate. What a frame caused is told
+ * use the PDI functions and must not allocate. What a frame caused is reported
  * when the last bit of the frame has passed, so an application can never
  * answer within the frame that asked. Without a good EEPROM (checksum of
  * words 0-6) the PDI does not start and nothing but @power_on and @free is
@@ -316,8 +316,8 @@ struct ec_esc_quick {
 };
 
 /**
- * struct ec_esc_late - an application that is told of its process data late
- * @on: frames only note in ec_esc.pend what they did; ec_esc_settle() tells it
+ * struct ec_esc_late - an application to which process data are reported late
+ * @on: frames only note in ec_esc.pend what they did; ec_esc_settle() reports it
  * @out: the application has outputs
  * @in_len: bytes of its inputs, 0: none
  * @image: these inputs; they stay the same
@@ -326,7 +326,7 @@ struct ec_esc_quick {
  * @frame: number of the frame that was noted
  *
  * For an application that does nothing but fetch its outputs and hand over
- * the same inputs again. When the next frame comes and nobody has looked, what
+ * the same inputs again. When the next frame comes and no caller has looked, what
  * it would have done to the SyncManagers is made up for, and it is not called.
  */
 struct ec_esc_late {
@@ -370,15 +370,15 @@ struct ec_esc_late {
  * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
  *               ec_esc_wake_at()
  * @quick: short ways
- * @late: the application may be told later
+ * @late: reports to the application may be late
  * @sms_active: bit n: SM n is active
  * @fmmus_active: bit n: FMMU n is enabled and maps something
  * @log_first: lowest logical byte address mapped
  * @log_last: highest logical byte address mapped
  * @irq: an unmasked ECAT event is pending
- * @pend: what to tell the application when the frame has passed
+ * @pend: what to report to the application when the frame has passed
  * @pend_ns: and at what time
- * @pend_next: next slave with something to tell, -1 end, -2 not in the list
+ * @pend_next: next slave with something to report, -1 end, -2 not in the list
  * @key: lower bound of the time of the next event
  * @heap_pos: where the slave stands in the event heap
  * @route_pos: step number on the way from master port 0 and 1, -1 none

@@ -337,7 +337,7 @@ static u64 sim_time(const struct ec_esc *esc, u64 sys, u64 now)
 }
 
 /*
- * Plans the next pulse, if anybody listens. SYNC1 is told together with
+ * Plans the next pulse, if the application listens. SYNC1 is reported together with
  * SYNC0 when its shift is 0, else at its own time; the two alternate as
  * numbers 2n and 2n + 1 of sync_next.
  */

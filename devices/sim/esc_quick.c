@@ -243,7 +243,7 @@ static bool late_ok(const struct ec_esc *esc, const struct ec_esc_window *w, int
 }
 
 /**
- * ec_esc_pdi_may_wait() - the application may be told of process data later
+ * ec_esc_pdi_may_wait() - process data may be reported to the application later
  * @esc: slave controller
  * @out_sm: SyncManager of the outputs
  * @out_len: its bytes, 0: no outputs
@@ -275,7 +275,7 @@ bool ec_esc_pdi_may_wait(struct ec_esc *esc, int out_sm, u16 out_len, int in_sm,
 }
 
 /**
- * ec_esc_settle() - tell an application what it was not told yet
+ * ec_esc_settle() - report to an application what is still pending
  * @esc: slave controller
  *
  * Before anything is done that the application or its SyncManagers could show in.
@@ -298,7 +298,7 @@ void ec_esc_settle(struct ec_esc *esc)
 		ec_esc_pend(esc, esc->pend_ns);	/* its turn is after the frame */
 	else
 		ec_esc_deliver(esc);
-	esc->late.on = false;			/* whatever it said: somebody looks */
+	esc->late.on = false;			/* whatever it said: a caller looks */
 }
 
 /* what the application would have done after the last frame; it was not called */

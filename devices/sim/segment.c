@@ -385,7 +385,7 @@ struct ec_esc *ec_sim_slave(struct ec_sim *sim, u32 index)
 {
 	if (index >= sim->count)
 		return NULL;
-	ec_esc_settle(sim->esc[index]);		/* somebody looks */
+	ec_esc_settle(sim->esc[index]);		/* a caller looks */
 	return sim->esc[index];
 }
 

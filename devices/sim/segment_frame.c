@@ -11,7 +11,7 @@
 
 #define LEN_CIRCULATING	0x40	/* in the high byte of the length word */
 
-/* tell the application at the end of the frame */
+/* the application is notified at the end of the frame */
 void ec_esc_pend(struct ec_esc *esc, u64 at_ns)
 {
 	struct ec_sim *sim = esc->sim;

@@ -231,7 +231,7 @@ static void walk(struct ec_sim *sim, int mport)
 		bool processed = false;
 
 		t += cable->cable_ns;
-		if (!esc->port[p].open) {	/* nobody listens */
+		if (!esc->port[p].open) {	/* no slave listens */
 			if (esc->port[p].auto_closed && esc->port[p].link) {
 				r->opens = esc->index;
 				r->opens_port = p;

@@ -39,7 +39,7 @@ struct end {
  * @wire: the segment
  * @end: network devices
  * @n: how many
- * @nb: tells when they come and go
+ * @nb: reports when they come and go
  * @work: takes one that has come
  * @leaving: the end is near; under RTNL
  */

@@ -132,7 +132,7 @@ void ec_sim_wire_run(struct ec_sim_wire *w, bool on)
 /**
  * ec_sim_wire_set_polled() - who delivers
  * @w: wire
- * @on: true: whoever calls ec_sim_wire_poll(), false: a timer
+ * @on: true: the caller of ec_sim_wire_poll(), false: a timer
  *
  * Context: Any.
  */
@@ -286,7 +286,7 @@ int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 
 /**
  * ec_sim_wire_exit() - the wire is not used any more
- * @w: wire nobody sends to
+ * @w: wire without senders
  *
  * Context: Process. May sleep.
  */

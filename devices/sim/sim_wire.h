@@ -22,7 +22,7 @@ struct ec_sim_flying;
  * @free: unused frames
  * @frames: all of them
  * @wire_free_ns: when the last frame sent has left the master, by port
- * @polled: somebody polls, no timer wanted
+ * @polled: a caller polls, no timer is needed
  * @running: frames are taken
  */
 struct ec_sim_wire {

@@ -279,7 +279,7 @@ static int take_pdos(struct ec_app_model *m)
 	return 0;
 }
 
-/* old images say 0 for the type of an SM: its control byte tells */
+/* old images have 0 as the type of an SM: its control byte decides */
 static u8 sm_type(const struct ec_sii_sm *sm)
 {
 	bool out = (sm->control & EC_SM_DIR_MASK) == EC_SM_DIR_WRITE;

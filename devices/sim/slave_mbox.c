@@ -367,7 +367,7 @@ static void next_emergency(struct ec_app *app, u64 now)
 		out_set(app, EC_MBOX_COE, (size_t)len, now);
 }
 
-/* the oldest VoE message nobody has asked for */
+/* the oldest unrequested VoE message */
 static void next_voe(struct ec_app *app, u64 now)
 {
 	struct ec_app_mbox *m = &app->mbox;
@@ -516,7 +516,7 @@ void ec_app_mbox_poll(struct ec_app *app, u64 now)
 {
 	if (!works(app))
 		return;
-	/* while the application was mute nobody noted a request */
+	/* while the application was mute no request was noted */
 	if (ec_esc_sm_readable(app->esc, 0))
 		app->mbox.rx_waits = true;
 	step(app, now);
@@ -568,7 +568,7 @@ void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
 }
 
 /**
- * ec_app_voe_send() - send a VoE message nobody has asked for
+ * ec_app_voe_send() - send an unrequested VoE message
  * @app: slave
  * @voe: what
  * @now: time, ns

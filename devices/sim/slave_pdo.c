@@ -412,7 +412,7 @@ void ec_app_inputs(struct ec_app *app, u64 now)
 }
 
 /**
- * ec_app_may_wait() - process data were dealt with; need the next be told at once?
+ * ec_app_may_wait() - process data were handled; must the next be reported at once?
  * @app: slave
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.

@@ -31,7 +31,7 @@ int ec_app_voe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 }
 
 /**
- * ec_app_voe_unasked() - a message nobody has asked for
+ * ec_app_voe_unasked() - an unrequested message
  * @m: what to send: bytes 0, 1, 2...
  * @tx: room for it
  * @cap: bytes at @tx

@@ -481,7 +481,7 @@ struct ec_ioc_cycle_stats {
 	__u32 flags;
 	__u32 kind;
 	__u32 active;		/* the cycle runs */
-	__u32 told;		/* interval was configured, not measured */
+	__u32 interval_set;	/* interval was configured, not measured */
 	__u32 interval_ns;
 	__u32 size;		/* in: buffer size; out: bytes copied */
 	__u64 data;		/* of struct ec_status_cycle */

@@ -5,7 +5,7 @@
 
 /*
  * What a cyclic call could not do itself: gives the links back to its cycle after a stall,
- * tells that a call came from the wrong place, tries failed slaves again.
+ * logs a call from a wrong context, tries failed slaves again.
  */
 static void work(struct work_struct *work)
 {
@@ -17,8 +17,8 @@ static void work(struct work_struct *work)
 	    ec_links_attached(&m->links))
 		ec_access_change(&m->links, EC_ACCESS_CYCLIC);
 	mutex_unlock(&m->cycles.lock);
-	if (READ_ONCE(api->atomic) && !api->told) {
-		api->told = true;
+	if (READ_ONCE(api->atomic) && !api->warned) {
+		api->warned = true;
 		ec_err(m,
 		       "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
 	}

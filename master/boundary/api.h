@@ -38,9 +38,9 @@ struct task_struct;
  * @image: data of its domains while the kernel runs the cycle
  * @busy: 1: a call exchanges process data with the cycle that the kernel runs
  * @requests: list of its requests
- * @work: what a cyclic call must leave to somebody who may sleep
+ * @work: what a cyclic call leaves to a thread that may sleep
  * @atomic: a call came where its device needs a thread
- * @told: the log says so
+ * @warned: the log has the warning
  * @reset: slaves that failed shall be tried again
  * @send_cb: sends between two cycles, or NULL; see ecrt_master_callbacks()
  * @receive_cb: receives there, or NULL
@@ -59,7 +59,7 @@ struct ec_api {
 	struct ec_app_request *requests;
 	struct work_struct work;
 	bool atomic;
-	bool told;
+	bool warned;
 	bool reset;
 	void (*send_cb)(void *cb_data);
 	void (*receive_cb)(void *cb_data);
@@ -206,13 +206,13 @@ static inline struct ec_request_record *ec_request_record(const struct ec_master
 	return ec_requests_record(m->sessions.session, index, shared);
 }
 
-/* told by the next send, or seen by the cycle the kernel runs */
+/* the next send notifies the master; a cycle that the kernel runs sees the counter */
 static inline void ec_request_started(struct ec_master *m)
 {
 	struct ec_request_area *area = (void *)m->sessions.session->cycle.shared->requests;
 
 	m->api->cycle.next.flags |= EC_SEND_FLAG_REQUESTS;
-	/* the request before the number that tells of it; see ec_requests_notice() */
+	/* the request before the number that announces it; see ec_requests_notice() */
 	smp_mb__before_atomic();
 	atomic_inc((atomic_t *)&area->starts);
 }

@@ -169,7 +169,7 @@ int ecrt_master_activate(ec_master_t *master)
 	}
 	ec_app_requests_place(master);
 	master->api->atomic = false;
-	master->api->told = false;
+	master->api->warned = false;
 	ret = place_domains(master, master->sessions.session);
 	/* who sees the session finds all that belongs to it */
 	smp_store_release(&master->api->active, master->sessions.session);

@@ -500,14 +500,14 @@ static struct ec_cycle *enter(struct ec_file *f, int *ret)
 int ec_ioc_app_time(struct ec_call *call)
 {
 	struct ec_ioc_app_time *i = call->arg;
-	struct ec_ioc_send told = { .flags = EC_SEND_FLAG_APP_TIME, .app_time = i->app_time };
+	struct ec_ioc_send send = { .flags = EC_SEND_FLAG_APP_TIME, .app_time = i->app_time };
 	struct ec_master *m = call->master;
 	struct ec_cycle *c;
 	int ret;
 
 	c = enter(call->file, &ret);
 	if (c) {
-		ec_cycle_app_time(c, &told);
+		ec_cycle_app_time(c, &send);
 		mutex_unlock(&m->cycles.lock);
 		return 0;
 	}

@@ -204,7 +204,7 @@ static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 
 	info->active = 1;
 	info->kind = kernel ? EC_CYCLE_BY_KERNEL : EC_CYCLE_BY_APP;
-	info->told = kernel || c->links->access.interval_set;
+	info->interval_set = kernel || c->links->access.interval_set;
 	info->interval_ns = kernel ? c->kernel.period_ns :
 				     READ_ONCE(c->schedule.interval_ns);
 	info->cpu = kernel ? c->kernel.cpu : -1;

@@ -91,7 +91,7 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 	slot = search(s, now_ns, EC_QUARANTINE_NS);
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
-	 * quarantine frees them; sequence numbers tell the frames apart, too.
+	 * quarantine frees them; sequence numbers distinguish the frames, too.
 	 */
 	if (!slot && cyclic)
 		slot = search(s, now_ns, 0);

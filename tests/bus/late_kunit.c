@@ -101,7 +101,7 @@ static void late_measured(struct kunit *test)
 
 	expect_ten_late(test, c);
 	ec_late_get(&c->b->m->cycles, &info, st);
-	KUNIT_EXPECT_EQ(test, info.told, 0u);
+	KUNIT_EXPECT_EQ(test, info.interval_set, 0u);
 	KUNIT_EXPECT_GT(test, info.interval_ns, 999000u);
 	KUNIT_EXPECT_LT(test, info.interval_ns, 1001000u);
 }
@@ -176,7 +176,7 @@ static void late_kept(struct kunit *test)
 	ec_late_get(&m->cycles, &info, st);
 	KUNIT_EXPECT_EQ(test, info.active, 1u);
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
-	KUNIT_EXPECT_EQ(test, info.told, 1u);
+	KUNIT_EXPECT_EQ(test, info.interval_set, 1u);
 	KUNIT_EXPECT_EQ(test, info.interval_ns, PERIOD_US * 1000u);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	cyc_release(c);

@@ -458,7 +458,7 @@ static int cycle_stats(struct ec_ioc_cycle_stats *x)
 	}
 	x->kind = bus("app") ? EC_CYCLE_BY_APP : EC_CYCLE_BY_KERNEL;
 	x->active = 1;
-	x->told = bus("kcycle");
+	x->interval_set = bus("kcycle");
 	x->interval_ns = bus("app") ? 1000123 : 250000;
 	x->cpu = -1;
 	st.late[63] = 4900;
