@@ -86,14 +86,14 @@ int ec_show_pause(struct ec_show *show)
 }
 
 /**
- * ec_change_announce() - readers that come now wait outside
+ * ec_show_change_announce() - readers that come now wait outside
  * @show: of the master
  *
- * The first half of ec_change_begin().
+ * The first half of ec_show_change_begin().
  *
  * Context: Any.
  */
-void ec_change_announce(struct ec_show *show)
+void ec_show_change_announce(struct ec_show *show)
 {
 	atomic_inc(&show->changing);
 	/* pairs with enter() */
@@ -101,7 +101,7 @@ void ec_change_announce(struct ec_show *show)
 }
 
 /**
- * ec_change_begin() - what readers look at is about to change
+ * ec_show_change_begin() - what readers look at is about to change
  * @show: of the master
  *
  * The caller has the lock of what it changes: session lock, or topo for writing. Waits for
@@ -110,20 +110,20 @@ void ec_change_announce(struct ec_show *show)
  *
  * Context: Process.
  */
-void ec_change_begin(struct ec_show *show)
+void ec_show_change_begin(struct ec_show *show)
 {
-	ec_change_announce(show);
+	ec_show_change_announce(show);
 	while (atomic_read_acquire(&show->showing))
 		cpu_relax();
 }
 
 /**
- * ec_change_end() - readers may look again
+ * ec_show_change_end() - readers may look again
  * @show: of the master
  *
- * Context: Process, after ec_change_begin().
+ * Context: Process, after ec_show_change_begin().
  */
-void ec_change_end(struct ec_show *show)
+void ec_show_change_end(struct ec_show *show)
 {
 	lockdep_assert(atomic_read(&show->changing) > 0);
 	/*

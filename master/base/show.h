@@ -40,8 +40,8 @@ int ec_show_begin(struct ec_show *show);
 void ec_show_end(struct ec_show *show);
 int ec_show_pause(struct ec_show *show);
 
-void ec_change_announce(struct ec_show *show);
-void ec_change_begin(struct ec_show *show);
-void ec_change_end(struct ec_show *show);
+void ec_show_change_announce(struct ec_show *show);
+void ec_show_change_begin(struct ec_show *show);
+void ec_show_change_end(struct ec_show *show);
 
 #endif

@@ -162,9 +162,9 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	api->cycle.next.app_time = app_time;
 	if (READ_ONCE(api->active)) {
 		api->cycle.next.flags |= EC_SEND_FLAG_APP_TIME;
-	} else if (!READ_ONCE(master->sessions.heir)) {
+	} else if (!READ_ONCE(master->sessions.candidate)) {
 		/*
-		 * Before activation there is no cycle it could go with. An heir can only
+		 * Before activation there is no cycle it could go with. A candidate can only
 		 * be this application: the cycle that runs has its own time then.
 		 */
 		ec_dc_app_time(&master->dc, app_time, ktime_get_ns());

@@ -62,7 +62,7 @@ void ecrt_release_master(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_release_master);
 
-/* It may be the heir of a detached one. */
+/* It may be the candidate of a detached one. */
 static struct ec_session *session_of(struct ec_master *m)
 {
 	struct ec_session *s;
@@ -142,7 +142,8 @@ static int place_domains(struct ec_master *m, const struct ec_session *s)
 		ret = ec_exchange_begin(a, sh->exchange, sh->exchange_size, sh->status);
 	ec_for_each_app_domain(m, d) {
 		if (!d->memory)
-			d->data = a->exchange ? m->api->image + d->offset : ec_domain_data(d);
+			d->data = a->exchange ? m->api->image + d->offset :
+						ec_session_domain_data(d);
 		if (!ret && a->exchange)
 			ret = ec_exchange_add(d);
 	}
@@ -180,7 +181,8 @@ int ecrt_master_activate(ec_master_t *master)
 			forget(master);
 		else
 			ecrt_master_deactivate(master);
-		return ec_fail(master, ret, "exchange process data, or start the thread for callbacks");
+		return ec_fail(master, ret,
+			       "exchange process data, or start the thread for callbacks");
 	}
 	return 0;
 }

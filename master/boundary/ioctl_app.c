@@ -117,7 +117,7 @@ int ec_ioc_slave_config(struct ec_call *call)
 	if (ret)
 		return ret;
 	/* a candidate session: the running session has the slaves */
-	if (!call->session->wanted.active && call->session != m->sessions.heir) {
+	if (!call->session->wanted.active && call->session != m->sessions.candidate) {
 		ec_sessions_unlock(&m->sessions);
 		wait_pdos(call, call->arg);
 		ret = ec_ioc_lock_session(call);
@@ -361,7 +361,7 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 static int take_over(struct ec_call *call)
 {
 	char why[96];
-	const struct ec_session *heir = call->master->sessions.heir;
+	const struct ec_session *candidate = call->master->sessions.candidate;
 	/* the handles of an application in the kernel are what it has configured */
 	int ret = ec_session_take_over(&call->master->sessions, why, sizeof(why),
 				       call->file == &call->master->api->file);
@@ -371,7 +371,7 @@ static int take_over(struct ec_call *call)
 				 "the detached session of master %u has another configuration: %s; configure the same, or end it with 'ethercat release' or ecrt_master_end_detached()",
 				 call->master->base->index, why);
 	if (ret == -ENOSPC)
-		return activate_failed(call, heir, ret);
+		return activate_failed(call, candidate, ret);
 	if (ret)
 		return ec_refuse(call, ret,
 				 "the cycle of the detached session does not answer; end it with 'ethercat release'");
@@ -412,7 +412,7 @@ int ec_ioc_activate(struct ec_call *call)
 	struct ec_session *s = call->session;
 	int ret;
 
-	i->taken_over = s == call->master->sessions.heir;
+	i->taken_over = s == call->master->sessions.candidate;
 	ret = i->taken_over ? take_over(call) : activate(call, s, call->data, call->size);
 	if (!ret)
 		tell_sizes(call->master->sessions.session, i);
@@ -457,7 +457,7 @@ int ec_ioc_interval(struct ec_call *call)
 	if (!i->interval_us)
 		return ec_refuse(call, -EINVAL, "send interval must be 1 us or more");
 	/* the interval is that of the session which runs */
-	if (call->session == m->sessions.heir)
+	if (call->session == m->sessions.candidate)
 		return 0;
 	WRITE_ONCE(m->links.access.interval_us, min_t(u32, i->interval_us, EC_MAX_INTERVAL_US));
 	m->links.access.interval_set = i->interval_us <= EC_MAX_INTERVAL_US;
@@ -518,7 +518,7 @@ int ec_ioc_app_time(struct ec_call *call)
 	if (ret)
 		return ret;
 	/* before activation there is no cycle to disturb, but of a detached session */
-	if (call->session != m->sessions.heir)
+	if (call->session != m->sessions.candidate)
 		ec_dc_app_time(&m->dc, i->app_time, ktime_get_ns());
 	ec_sessions_unlock(&m->sessions);
 	return 0;

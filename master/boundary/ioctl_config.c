@@ -234,7 +234,7 @@ int ec_ioc_domain_data(struct ec_call *call)
 		ret = pos ? ec_ioc_pause(call) : 0;
 		if (ret)
 			return ret;
-		memcpy(call->data + pos, ec_domain_data(d) + pos, n);
+		memcpy(call->data + pos, ec_session_domain_data(d) + pos, n);
 		ec_cycle_thread_outputs(&ec_domain_session(d)->cycle, call->data + pos,
 					d->offset + pos, n);
 	}

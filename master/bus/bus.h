@@ -50,7 +50,7 @@ struct ec_bus {
 
 	/**
 	 * @topo: protects @slaves and @n_slaves, which the monitor alone writes, and the PDO
-	 * lists of the slaves; writers add ec_change_begin()
+	 * lists of the slaves; writers add ec_show_change_begin()
 	 */
 	struct rw_semaphore topo;
 	/** @slaves: by ring position */

@@ -160,10 +160,10 @@ static void publish(struct ec_slave *s, struct ec_names *l)
 	struct ec_names old;
 
 	down_write(&s->bus->topo);
-	ec_change_begin(&s->bus->base->show);
+	ec_show_change_begin(&s->bus->base->show);
 	old = s->names;
 	s->names = *l;
-	ec_change_end(&s->bus->base->show);
+	ec_show_change_end(&s->bus->base->show);
 	up_write(&s->bus->topo);
 	kvfree(old.v);
 }

@@ -86,11 +86,11 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 	struct ec_pdo_list old;
 
 	down_write(&s->bus->topo);
-	ec_change_begin(&s->bus->base->show);
+	ec_show_change_begin(&s->bus->base->show);
 	old = s->sm_pdos[sm];
 	s->sm_pdos[sm] = *l;
 	keep_unassigned(s, &old);
-	ec_change_end(&s->bus->base->show);
+	ec_show_change_end(&s->bus->base->show);
 	up_write(&s->bus->topo);
 	ec_pdo_list_clear(&old);
 }

@@ -450,12 +450,12 @@ static void publish(struct scan *sc)
 	unsigned int i, n_old, lost = 0;
 
 	down_write(&bus->topo);
-	ec_change_begin(&bus->base->show);
+	ec_show_change_begin(&bus->base->show);
 	old = bus->slaves;
 	n_old = bus->n_slaves;
 	bus->slaves = sc->slaves;
 	bus->n_slaves = sc->n;
-	ec_change_end(&bus->base->show);
+	ec_show_change_end(&bus->base->show);
 	up_write(&bus->topo);
 	sc->slaves = NULL;
 

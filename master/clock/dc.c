@@ -21,13 +21,13 @@ static void set_ref(struct ec_dc_job *j)
 	struct ec_slave *old, *ref = j->ref < j->n ? ec_slave_ref(j->slaves[j->ref]) : NULL;
 
 	down_write(&j->dc->bus->topo);
-	ec_change_begin(&j->dc->base->show);
+	ec_show_change_begin(&j->dc->base->show);
 	old = dc->ref;
 	dc->ref = ref;
 	WRITE_ONCE(dc->ref_wide, ref && ec_slave_features(ref) & EC_FEAT_DC64);
 	WRITE_ONCE(dc->clocks_upstream, ref && ec_dc_has_upstream(j));
 	WRITE_ONCE(dc->ref_station, ref ? ref->station : 0);
-	ec_change_end(&j->dc->base->show);
+	ec_show_change_end(&j->dc->base->show);
 	up_write(&j->dc->bus->topo);
 	if (old)
 		ec_slave_unref(old);

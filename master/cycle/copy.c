@@ -121,13 +121,13 @@ int ec_copy_add(struct ec_cycle *c, const struct ec_ioc_copy *copy)
 }
 
 /**
- * ec_copies_begin() - copies are done from now on
+ * ec_copy_begin() - copies are done from now on
  * @c: cycle whose domains have offsets
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_copies_begin(struct ec_cycle *c)
+int ec_copy_begin(struct ec_cycle *c)
 {
 	size_t bytes = 0, steps = c->n_copies * sizeof(struct step);
 	struct ec_copying *k;
@@ -159,7 +159,7 @@ int ec_copies_begin(struct ec_cycle *c)
 }
 
 /**
- * ec_copies_run() - copy inputs to outputs in the image
+ * ec_copy_run() - copy inputs to outputs in the image
  * @c: active cycle with copies
  *
  * While the working counter of the source's domain is not complete the last
@@ -167,7 +167,7 @@ int ec_copies_begin(struct ec_cycle *c)
  *
  * Context: The master's single cyclic caller, between receive and send. RT-safe.
  */
-void ec_copies_run(struct ec_cycle *c)
+void ec_copy_run(struct ec_cycle *c)
 {
 	struct ec_copying *k = c->copying;
 	const struct ec_status *st = c->shared->status;

@@ -399,7 +399,7 @@ void ec_late_reset(struct ec_cycles *cycles);
 
 /* copy.c */
 int ec_copy_add(struct ec_cycle *c, const struct ec_ioc_copy *copy);
-int ec_copies_begin(struct ec_cycle *c);
-void ec_copies_run(struct ec_cycle *c);
+int ec_copy_begin(struct ec_cycle *c);
+void ec_copy_run(struct ec_cycle *c);
 
 #endif

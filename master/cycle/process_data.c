@@ -411,7 +411,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		ec_late_send(c, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
 	if (c->copying)
-		ec_copies_run(c);
+		ec_copy_run(c);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;

@@ -25,14 +25,14 @@ struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner
 	lockdep_assert(lockdep_is_held(&ss->lock) || ec_show_begun(&ss->base->show));
 	if (ss->session && ss->session->cycle.owner == owner)
 		return ss->session;
-	return ss->heir && ss->heir->cycle.owner == owner ? ss->heir : NULL;
+	return ss->candidate && ss->candidate->cycle.owner == owner ? ss->candidate : NULL;
 }
 
 /* One application at a time; one more may prepare to take a detached session over. */
 static bool is_taken(const struct ec_sessions *ss)
 {
 	lockdep_assert_held(&ss->lock);
-	return ss->heir || (ss->session && ss->session->cycle.owner);
+	return ss->candidate || (ss->session && ss->session->cycle.owner);
 }
 
 /*
@@ -61,7 +61,7 @@ static int begin(struct ec_sessions *ss, struct ec_session *s)
 	if (is_taken(ss)) {
 		ret = -EBUSY;
 	} else if (ss->session) {
-		WRITE_ONCE(ss->heir, s);
+		WRITE_ONCE(ss->candidate, s);
 		s->wanted.before = &ss->session->wanted;
 	} else {
 		WRITE_ONCE(ss->session, s);
@@ -103,7 +103,7 @@ size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size)
 
 	buf[0] = '\0';
 	ec_sessions_lock(ss);
-	s = ss->heir ?: ss->session;
+	s = ss->candidate ?: ss->session;
 	if (s && s->cycle.owner) {
 		rcu_read_lock();
 		nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
@@ -130,7 +130,7 @@ static const struct ec_cycle_ops cycle_ops = {
  *
  * Waits for a scan in progress, then the list of slaves is frozen until
  * activation and all go to PREOP; this waits for them. While a detached session runs, the new
- * one is its heir: it touches no slave until activation.
+ * one is the candidate: it touches no slave until activation.
  *
  * Context: Process. May sleep.
  * Return: 0, -EBUSY when another application has it, -ENODEV without device,
@@ -170,7 +170,7 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		kvfree(s);
 		return ret;
 	}
-	if (READ_ONCE(ss->heir) == s)
+	if (READ_ONCE(ss->candidate) == s)
 		return 0;
 	ret = ec_bus_wait_slaves(ss->bus);
 	if (ret != -EINTR)
@@ -258,12 +258,12 @@ void ec_session_free(struct ec_session *s)
 	kvfree(s);
 }
 
-/* The session has ended: its slaves are the heir's now. */
+/* The session has ended: its slaves are the candidate's now. */
 static void inherit(struct ec_sessions *ss)
 {
-	struct ec_session *s = ss->heir;
+	struct ec_session *s = ss->candidate;
 
-	WRITE_ONCE(ss->heir, NULL);
+	WRITE_ONCE(ss->candidate, NULL);
 	WRITE_ONCE(ss->session, s);
 	WRITE_ONCE(ss->bus->freeze, s != NULL);
 	if (!s)
@@ -303,9 +303,9 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	struct ec_session *s;
 
 	ec_sessions_lock(ss);
-	s = ss->heir;
+	s = ss->candidate;
 	if (s && (!owner || s->cycle.owner == owner)) {
-		WRITE_ONCE(ss->heir, NULL);
+		WRITE_ONCE(ss->candidate, NULL);
 		ec_session_free(s);
 	}
 	s = ss->session;
@@ -476,7 +476,7 @@ int ec_session_activate(struct ec_session *s)
 		return -ENOMEM;
 	if (s->preset)
 		memcpy(s->cycle.shared->image, s->preset, offset);
-	ret = ec_requests_begin(s) ?: ec_copies_begin(&s->cycle) ?: ec_cycle_layout(&s->cycle) ?:
+	ret = ec_requests_begin(s) ?: ec_copy_begin(&s->cycle) ?: ec_cycle_layout(&s->cycle) ?:
 	      ec_cycle_check_room(&s->cycle, uses_clocks(s));
 	if (!ret && s->cycle.kernel.period_ns)
 		ret = ec_cycle_thread_create(&s->cycle, offset, &cycle_ops);
@@ -541,13 +541,13 @@ int ec_session_slaves_down(struct ec_session *s)
 }
 
 /**
- * ec_domain_data() - where the process data of a domain lie
+ * ec_session_domain_data() - where the process data of a domain lie
  * @d: domain of an active session
  *
  * Context: Any, while the session is active.
  * Return: its first byte.
  */
-u8 *ec_domain_data(const struct ec_domain *d)
+u8 *ec_session_domain_data(const struct ec_domain *d)
 {
 	return ec_domain_session(d)->cycle.domains[d->index].image + d->offset;
 }

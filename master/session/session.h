@@ -49,14 +49,14 @@ struct ec_sessions {
 	 */
 	struct workqueue_struct *service;
 	/**
-	 * @lock: protects @session, @heir and everything they own except the part of the
+	 * @lock: protects @session, @candidate and everything they own except the part of the
 	 * cyclic caller
 	 */
 	struct mutex lock;
 	/** @session: of the application that has reserved the master, or NULL */
 	struct ec_session *session;
-	/** @heir: of another one that is to take over @session, which is detached */
-	struct ec_session *heir;
+	/** @candidate: of another one that is to take over @session, which is detached */
+	struct ec_session *candidate;
 	/**
 	 * @memory: bytes of all sessions, and of what they have mapped, which may outlive
 	 * them
@@ -150,7 +150,7 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 
 void ec_session_free(struct ec_session *s);
 
-u8 *ec_domain_data(const struct ec_domain *d);
+u8 *ec_session_domain_data(const struct ec_domain *d);
 
 /* sessions.c */
 int ec_sessions_init(struct ec_sessions *ss);

@@ -146,7 +146,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	ec_session_detach(c);
 	if (!slave)
 		return;
-	if (s == s->sessions->heir) {	/* only to look at */
+	if (s == s->sessions->candidate) {	/* only to look at */
 		c->slave = slave;
 		return;
 	}
@@ -212,8 +212,8 @@ void ec_session_attach(struct ec_sessions *ss)
 	if (ss->session)
 		ec_for_each_config(c, &ss->session->wanted)
 			ec_session_attach_one(ss->session, c);
-	if (ss->heir)
-		ec_for_each_config(c, &ss->heir->wanted)
+	if (ss->candidate)
+		ec_for_each_config(c, &ss->candidate->wanted)
 			ec_config_find_alias(c);
 	ec_sessions_unlock(ss);
 }

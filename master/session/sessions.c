@@ -48,7 +48,7 @@ void ec_sessions_exit(struct ec_sessions *ss)
 void ec_sessions_lock(struct ec_sessions *ss)
 {
 	mutex_lock(&ss->lock);
-	ec_change_begin(&ss->base->show);
+	ec_show_change_begin(&ss->base->show);
 }
 
 /**
@@ -59,7 +59,7 @@ void ec_sessions_lock(struct ec_sessions *ss)
  */
 void ec_sessions_unlock(struct ec_sessions *ss)
 {
-	ec_change_end(&ss->base->show);
+	ec_show_change_end(&ss->base->show);
 	mutex_unlock(&ss->lock);
 }
 

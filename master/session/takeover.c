@@ -203,14 +203,14 @@ static void adopt_late(struct ec_session *s, u32 per_s)
 }
 
 /**
- * ec_session_take_over() - the heir's application gets the detached session
- * @ss: sessions of a master with a detached session and an heir
+ * ec_session_take_over() - the candidate's application gets the detached session
+ * @ss: sessions of a master with a detached session and a candidate
  * @why: result: the first difference of the two
  * @size: room there
- * @keep: the heir's configuration stays until the session ends
+ * @keep: the candidate's configuration stays until the session ends
  *
- * The cycle goes on, with the priority that the heir's process may use; without @keep the
- * heir's configuration is freed.
+ * The cycle goes on, with the priority that the candidate's process may use; without @keep the
+ * candidate's configuration is freed.
  *
  * Context: Process, session lock held. Sleeps until the next cycle has begun.
  * Return: 0; -EEXIST another configuration; -ENOSPC as for an activation;
@@ -219,33 +219,33 @@ static void adopt_late(struct ec_session *s, u32 per_s)
 int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool keep)
 {
 	const struct text t = { .buf = why, .size = size };
-	struct ec_session *s = ss->session, *heir = ss->heir;
+	struct ec_session *s = ss->session, *candidate = ss->candidate;
 	int ret;
 
-	if (session_differs(s, heir, &t))
+	if (session_differs(s, candidate, &t))
 		return -EEXIST;
-	if (!heir->cycle.late_per_s && ec_access_slack_ns(ss->links) < ec_cycle_need_ns())
+	if (!candidate->cycle.late_per_s && ec_access_slack_ns(ss->links) < ec_cycle_need_ns())
 		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)
 		return ret;
 	if (s->requests)
 		ec_requests_describe(s);
-	adopt_late(s, heir->cycle.late_per_s);
-	ec_cycle_thread_inherit(&s->cycle, heir->cycle.priority);
-	WRITE_ONCE(ss->heir, NULL);
+	adopt_late(s, candidate->cycle.late_per_s);
+	ec_cycle_thread_inherit(&s->cycle, candidate->cycle.priority);
+	WRITE_ONCE(ss->candidate, NULL);
 	ec_session_fill_status(s);
-	ec_cycle_set_owner(&s->cycle, heir->cycle.owner,
-			   rcu_dereference_protected(heir->cycle.waiters,
+	ec_cycle_set_owner(&s->cycle, candidate->cycle.owner,
+			   rcu_dereference_protected(candidate->cycle.waiters,
 						     lockdep_is_held(&ss->lock)));
-	s->owner_pid = heir->owner_pid;
-	memcpy(s->owner_comm, heir->owner_comm, sizeof(s->owner_comm));
+	s->owner_pid = candidate->owner_pid;
+	memcpy(s->owner_comm, candidate->owner_comm, sizeof(s->owner_comm));
 	/* the application before has no handles any more */
 	if (s->handles)
 		ec_session_free(s->handles);
-	s->handles = keep ? heir : NULL;
+	s->handles = keep ? candidate : NULL;
 	if (!keep)
-		ec_session_free(heir);
+		ec_session_free(candidate);
 	ec_info(ss, "detached session taken over by a new application\n");
 	return 0;
 }

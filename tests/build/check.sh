@@ -138,6 +138,9 @@ t "kernel-doc notices a parameter without text" rule_notices kernel-doc \
 t "test names have an area, a condition and no article" tests/build/style.py names
 t "a test name with an article is noticed" \
 	rule_notices names '\tKUNIT_CASE(frame_is_the_last),' "'the' in"
+t "functions of master/ are named after their file or structure" tests/build/style.py globals
+t "a function with the name of another file is noticed" \
+	rule_notices globals 'int ec_other_begin(void)\n{\n\treturn 0;\n}' 'not named after it'
 t "checkpatch reports nothing" tests/build/style.py checkpatch
 t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE

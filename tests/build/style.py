@@ -8,6 +8,8 @@ kernel-doc every kernel-doc comment is complete; the script is the one of KDIR
 checkpatch checkpatch.pl of the kernel reports nothing except IGNORE; CHECKPATCH is its path
 names      a KUnit case is named <area>_<condition>_<expected>: in tests/unit the area is the name
            of the file; no articles, no words that texts.py replaces; bats tests likewise
+globals    a function of master/ that other files call is named after its file, the first word of
+           the file's name, or a structure of its layer; ec_ioc_ is followed by the command
 
 LIMITS has the findings that are left in each folder. They only go down.
 usage: style.py RULE [FILE...]      default: all files of git
@@ -156,8 +158,24 @@ def names(args):
                 yield f"{name}:{number}: {case} does not begin with {area}"
 
 
-RULES = {"names": names, "spdx": spdx, "lines": lines, "kernel-doc": kernel_doc,
-         "checkpatch": checkpatch}
+FUNCTION = re.compile(r"^(?!static|return|else)[a-z][\w \t*]*?\b(\w+)\([^;{]*\)\n\{", re.M)
+FIXED = re.compile(r"ecrt_|ecdev_|ec_ioc($|_)|ec_(command|complain|refuse)$")    # interfaces
+
+
+def globals_(args):
+    for name, path in files(args, (".c",)):
+        if not args and not name.startswith("master/"):
+            continue
+        layer = "".join(h.read_text() for h in path.parent.glob("*.[ch]"))
+        owners = set(re.findall(r"^(?:struct|enum|union) ec_(\w+) \{", layer, re.M))
+        owners |= {path.stem, path.stem.split("_")[0]}
+        for m in FUNCTION.finditer(re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S)):
+            if not FIXED.match(m[1]) and not any(m[1].startswith(f"ec_{o}") for o in owners):
+                yield f"{name}:1: {m[1]}() is not named after it"
+
+
+RULES = {"globals": globals_, "names": names, "spdx": spdx, "lines": lines,
+         "kernel-doc": kernel_doc, "checkpatch": checkpatch}
 
 
 def main():

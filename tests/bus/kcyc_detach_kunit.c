@@ -121,7 +121,7 @@ static void takeover_continues_session(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, n->taken_over);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_ACTIVE);
 	/* outputs and inputs as they are, before anything is given */
 	for (i = 0; i < 2; i++) {
@@ -158,7 +158,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 {
 	struct kcyc *n = kcyc_configure(b, hold);
 
-	b->m->sessions.heir->cycle.priority = priority;
+	b->m->sessions.candidate->cycle.priority = priority;
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
 	return n;
@@ -405,7 +405,7 @@ static void takeover_watchdog_order_is_no_difference(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(wd); i++)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_WATCHDOG, &wd[i]), 0);
 	for (i = 0; i < 2; i++) {
-		const struct ec_config *c = b->m->sessions.heir->wanted.configs[i];
+		const struct ec_config *c = b->m->sessions.candidate->wanted.configs[i];
 
 		KUNIT_ASSERT_EQ(test, c->n_startup[EC_STARTUP_REG], 2u);
 		last[i] = list_last_entry(&c->startup, struct ec_startup, list);
@@ -465,7 +465,7 @@ static void takeover_refused(struct kunit *test)
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
 	ec_sessions_lock(&b->m->sessions);
-	ret = ec_config_sdo_add(b->m->sessions.heir->wanted.configs[1], 0x8000, 1, false,
+	ret = ec_config_sdo_add(b->m->sessions.candidate->wanted.configs[1], 0x8000, 1, false,
 				(const u8 *)"\1", 1);
 	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_ASSERT_EQ(test, ret, 0);
@@ -478,7 +478,7 @@ static void takeover_refused(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 }
 
-/* One heir at a time; it cannot change what runs. */
+/* One candidate at a time; it cannot change what runs. */
 static void candidate_changes_no_running_session(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);

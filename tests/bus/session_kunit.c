@@ -49,7 +49,7 @@ static void session_forgets(struct kunit *test)
 	expect_nothing_told(b);
 }
 
-/* An heir that goes leaves the cycle of the detached session what it has. */
+/* A candidate that goes leaves the cycle of the detached session what it has. */
 static void session_candidate_is_freed(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
@@ -61,7 +61,7 @@ static void session_candidate_is_freed(struct kunit *test)
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	ec_session_end(&b->m->sessions, &b->app);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && ec_dc_begun(&b->m->dc));
 	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
 	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
@@ -251,7 +251,7 @@ static struct bus *detached(struct kunit *test)
 	return a->c->b;
 }
 
-/* An heir asks about its own slaves, others about those that run. */
+/* A candidate asks about its own slaves, others about those that run. */
 static void session_candidate_makes_other_calls(struct kunit *test)
 {
 	struct bus *b = detached(test);
@@ -272,7 +272,7 @@ static void session_candidate_makes_other_calls(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ip.params.which, (u32)EC_IP_NAME);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_IP, &ip), 0);
 	KUNIT_EXPECT_EQ(test, ip.params.which, 0u);
-	/* the running one has two, the heir one */
+	/* the running one has two, the candidate one */
 	why.index = 1;
 	ip.config = 1;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_CONFIG_WHY, &why), 0);
@@ -281,7 +281,7 @@ static void session_candidate_makes_other_calls(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_CONFIG_IP, &ip), -ENOENT);
 }
 
-/* An application in the kernel as the heir: it cannot take over, and disturbs nothing. */
+/* A candidate in the kernel cannot take over, and disturbs nothing. */
 static void session_candidate_in_kernel(struct kunit *test)
 {
 	struct bus *b = detached(test);
@@ -291,7 +291,7 @@ static void session_candidate_in_kernel(struct kunit *test)
 	bool phase = b->m->dc.has_phase;
 
 	KUNIT_ASSERT_PTR_EQ(test, b->m->sessions.session, runs);
-	KUNIT_ASSERT_NOT_NULL(test, b->m->sessions.heir);
+	KUNIT_ASSERT_NOT_NULL(test, b->m->sessions.candidate);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 77), 0);
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
 	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
@@ -313,7 +313,7 @@ static void session_candidate_in_kernel(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	/* the way the refusal names; then the bus is its own */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.heir);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
 	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
 	kapp_op(k);

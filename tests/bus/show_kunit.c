@@ -25,7 +25,7 @@ static void end_change(struct work_struct *work)
 {
 	struct change *c = container_of(to_delayed_work(work), struct change, work);
 
-	ec_change_end(&c->m->base->show);
+	ec_show_change_end(&c->m->base->show);
 }
 
 /* What was found is gone, whether the change began in the section or in the pause. */
@@ -38,7 +38,7 @@ static void show_pause_reports_change_that_waited(struct kunit *test)
 
 	INIT_DELAYED_WORK_ONSTACK(&c.work, end_change);
 	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
-	ec_change_announce(&b->m->base->show);
+	ec_show_change_announce(&b->m->base->show);
 	schedule_delayed_work(&c.work, msecs_to_jiffies(20));
 	ret = ec_show_pause(&b->m->base->show);
 	/* else the next change waits for ever */

@@ -57,7 +57,7 @@ static int ends_change(void *arg)
 	struct thread *t = arg;
 
 	usleep_range(3000, 4000);
-	ec_change_end(&t->b->show);
+	ec_show_change_end(&t->b->show);
 	complete(&t->done);
 	return 0;
 }
@@ -76,11 +76,11 @@ static void reader_waits_for_change(void)
 
 	if (!b)
 		return;
-	ec_change_begin(&b->show);
+	ec_show_change_begin(&b->show);
 	if (begin_thread(&t, b, reader)) {
 		usleep_range(3000, 4000);
 		CHECK(!completion_done(&t.done));
-		ec_change_end(&b->show);
+		ec_show_change_end(&b->show);
 		wait_for_completion(&t.done);
 		CHECK_EQ(t.ret, 0);
 	}
@@ -99,7 +99,7 @@ static void pause_reports_change(void)
 	ec_show_end(&b->show);
 	if (begin_thread(&t, b, ends_change)) {
 		CHECK_EQ(ec_show_begin(&b->show), 0);
-		ec_change_announce(&b->show);
+		ec_show_change_announce(&b->show);
 		CHECK_EQ(ec_show_pause(&b->show), -EAGAIN);
 		wait_for_completion(&t.done);
 	}

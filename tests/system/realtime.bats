@@ -158,7 +158,8 @@ captured() {
 	"$EC_BUILD/bench/cycle-bench" --cycles 1000000 >/dev/null 2>&1 3>&- &
 	app=$!
 	wait_for 60 json '.masters[0].sends > 500' cycle
-	json '.masters[0] | .by == "application" and .state == "running" and .interval_configured and
+	json '.masters[0] | .by == "application" and .state == "running" and
+		.interval_configured and
 		.interval_ns == 1000000' cycle
 	json '.masters[0] | .late_min_ns <= .late_mean_ns and .late_p999_ns <= .late_max_ns and
 		([.histogram[].sends] | add) == .sends' cycle
