@@ -98,6 +98,7 @@ void ec_api_left(struct ec_master *m);
 
 #define ec_exchange_word(p, value) xchg(p, value)
 #define ec_div64(a, b) div64_u64(a, b)
+/* the pair is named where they are used */
 #define ec_load_acquire(p) smp_load_acquire(p)
 #define ec_store_release(p, value) smp_store_release(p, value)
 

@@ -209,13 +209,16 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 			if (!p)
 				return -ENOMEM;
 			for (i = 0; i < pdo.entries; i++) {
+				struct ec_pdo_entry entry = { 0 };
 				struct ec_sii_pdo_entry e;
 
 				if (ec_sii_pdo_entry(&pdo, i, &e))
 					break;
-				if (ec_pdo_add_entry(p, &(struct ec_pdo_entry){
-						.index = e.index, .sub = e.sub,
-						.bits = e.bits, .name = e.name }))
+				entry.index = e.index;
+				entry.sub = e.sub;
+				entry.bits = e.bits;
+				entry.name = e.name;
+				if (ec_pdo_add_entry(p, &entry))
 					return -ENOMEM;
 			}
 		}

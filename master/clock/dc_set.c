@@ -140,9 +140,8 @@ int ec_dc_write(struct ec_dc_job *j)
 		return -ENOMEM;
 	ret = write_values(j, v) ?: reset_filters(j);
 	for (i = 0; i < j->n && !ret; i++)
-		if (ec_dc_chosen(j, i, EC_DC_CLOCKS)) {
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS))
 			ec_clock_event(ec_job_clock(j, i), EC_CLOCK_ON_SET);
-		}
 	if (!ret)
 		ec_dc_app_set(j->dc, t - j->latch_ns, true);
 	kvfree(v);

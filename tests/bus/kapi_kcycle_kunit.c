@@ -314,7 +314,7 @@ static void kcycle_wait_ends_with_its_thread(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
-static void kcycle_wait_ends_with_the_cycle(struct kunit *test)
+static void kcycle_wait_ends_with_cycle(struct kunit *test)
 {
 	struct kapp *k = start_slow(test);
 	struct waiter w[2];
@@ -394,7 +394,7 @@ static void hook(void *data)
 }
 
 /* The kernel's thread sends acyclic frames itself: hooks and links are not for the application. */
-static void kcycle_links_are_the_kernels(struct kunit *test)
+static void kcycle_links_belong_to_kernel(struct kunit *test)
 {
 	struct kapp *k = start(test, (ec_cycle_config_t){ });
 	u32 calls = 0, serial;
@@ -508,10 +508,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kcycle_requests),
 	KUNIT_CASE(kcycle_slaves_down),
 	KUNIT_CASE(kcycle_wait_ends_with_its_thread),
-	KUNIT_CASE(kcycle_wait_ends_with_the_cycle),
+	KUNIT_CASE(kcycle_wait_ends_with_cycle),
 	KUNIT_CASE(kcycle_many_wait),
 	KUNIT_CASE(kcycle_two_callers),
-	KUNIT_CASE(kcycle_links_are_the_kernels),
+	KUNIT_CASE(kcycle_links_belong_to_kernel),
 	KUNIT_CASE(kcycle_waits_for_outputs),
 	KUNIT_CASE(kcycle_taken_over),
 	KUNIT_CASE(kcycle_ends_detached),
