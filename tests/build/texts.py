@@ -75,7 +75,6 @@ WORDINGS = {
 ALLOWED = {
     ("tool/cmd_cycle.c", "nobody"): "a JSON value",
     ("tool/ethercat.8", "nobody"): "a JSON value",
-    ("include/uapi/ethercat.h", "told"): "a field",
     ("include/uapi/ethercat_map.h", "odd"): "an odd number",
     ("tool/sim/main.c", "tell"): "an option",
 }
