@@ -47,19 +47,31 @@ int ecrt_master_sync_slave_clocks(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_slave_clocks);
 
-int ecrt_master_reference_clock_time(const ec_master_t *master, uint32_t *time)
+/* 0; -EINVAL @result is NULL; -EIO no frame has brought the time yet; as check() */
+static int reference_time(const ec_master_t *master, bool whole, const void *result,
+			  uint64_t *time)
 {
 	const struct ec_status *st;
 	int ret = check(master, &st);
 
 	if (ret)
 		return ret;
-	if (!time)
+	if (!result)
 		return -EINVAL;
-	if (!ec_status_read(st->dc_time_valid))
+	if (!(whole ? ec_status_read(st->dc_time64_valid) : ec_status_read(st->dc_time_valid)))
 		return -EIO;
-	*time = (uint32_t)ec_status_read64(st, &st->dc_time);
+	*time = ec_status_read64(st, whole ? &st->dc_time64 : &st->dc_time);
 	return 0;
+}
+
+int ecrt_master_reference_clock_time(const ec_master_t *master, uint32_t *time)
+{
+	uint64_t t;
+	int ret = reference_time(master, false, time, &t);
+
+	if (!ret)
+		*time = (uint32_t)t;
+	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_reference_clock_time);
 
@@ -91,16 +103,6 @@ EXPORT_SYMBOL_GPL(ecrt_master_64bit_reference_clock_time_queue);
 
 int ecrt_master_64bit_reference_clock_time(ec_master_t *master, uint64_t *time)
 {
-	const struct ec_status *st;
-	int ret = check(master, &st);
-
-	if (ret)
-		return ret;
-	if (!time)
-		return -EINVAL;
-	if (!ec_status_read(st->dc_time64_valid))
-		return -EIO;
-	*time = ec_status_read64(st, &st->dc_time64);
-	return 0;
+	return reference_time(master, true, time, time);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_64bit_reference_clock_time);

@@ -38,7 +38,7 @@ static void log_unreliable(const struct ec_dc_job *j)
 	unsigned int i, n = 0, first = 0;
 
 	for (i = j->n; i-- > 0;)
-		if (j->nodes[i].odd) {
+		if (j->nodes[i].unreliable) {
 			first = i;
 			n++;
 		}

@@ -453,7 +453,7 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 		c->delay = (u32)div_s64(j->sum[i], ROUNDS);
 		c->prev_delay = j->nodes[i].hop;
 		c->measured = scan;
-		WRITE_ONCE(c->delay_unreliable, j->nodes[i].odd);
+		WRITE_ONCE(c->delay_unreliable, j->nodes[i].unreliable);
 	}
 	return ret;
 }

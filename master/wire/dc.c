@@ -78,7 +78,7 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
 		u8 port = b->parent_port;
 
 		b->next = EC_DC_NONE;
-		b->odd = false;
+		b->unreliable = false;
 		b->delay = 0;
 		if (!b->dc)
 			continue;
@@ -107,7 +107,7 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
  * The slaves of a chain are reached one after the other. What the frame did
  * not stay at them it was on the way, in equal parts: there and back for one.
  */
-static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round, bool odd)
+static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round, bool unreliable)
 {
 	s32 way = round;
 	s32 parts = 1;
@@ -118,11 +118,11 @@ static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 roun
 		parts++;
 	}
 	way /= parts;
-	odd |= way < -NOISE_NS || way > WAY_MAX_NS;
+	unreliable |= way < -NOISE_NS || way > WAY_MAX_NS;
 	/* noise of the receive times can make a short way negative */
 	way = way > 0 ? way : 0;
 	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
-		nodes[b].odd = odd;
+		nodes[b].unreliable = unreliable;
 		nodes[b].hop = way;
 		nodes[b].delay = start + way;
 		start = nodes[b].delay + stay(&nodes[b]);
@@ -139,7 +139,7 @@ static s32 place_behind(struct ec_dc_node *nodes, const struct ec_dc_node *a, s3
 		s32 first = a->first[port[k]];
 
 		place_chain(nodes, first, a->delay + a->recv[port[k - 1]] - a->recv[a->entry],
-			    a->recv[port[k]] - a->recv[port[k - 1]], a->odd);
+			    a->recv[port[k]] - a->recv[port[k - 1]], a->unreliable);
 		if (first == EC_DC_NONE)
 			continue;
 		nodes[last].next = first;

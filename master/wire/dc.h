@@ -22,7 +22,7 @@
  *	for register 0x0928; modulo 2^32, so that slaves in front of the
  *	reference have a negative one
  * @hop: result: way from the clock before it, ns
- * @odd: result: no cables make such receive times; the two are not certain
+ * @unreliable: result: the receive times contradict the topology, and so do the two
  * @first: for ec_dc_delays(): first slave with a clock behind each port
  * @last: the last one
  * @next: the next behind the same port
@@ -36,7 +36,7 @@ struct ec_dc_node {
 	u32 recv[EC_DC_PORTS];
 	u32 delay;
 	u32 hop;
-	bool odd;
+	bool unreliable;
 	s32 first[EC_DC_PORTS];
 	s32 last[EC_DC_PORTS];
 	s32 next;

@@ -88,19 +88,19 @@ static bool decided(void *dc)
 	return state == EC_DC_READY || state == EC_DC_FAILED;
 }
 
-static void clocks_get_the_time_that_was_told(void)
+static void clocks_get_application_time(void)
 {
 	const u64 at = 1000ull * NSEC_PER_SEC;
 	struct bench *b = bench_new(text);
-	u64 told, time[SLAVES], now;
+	u64 set_ns, time[SLAVES], now;
 	struct ec_dg dg[SLAVES];
 	unsigned int i;
 
 	if (!b)
 		return;
 	CHECK_EQ(ec_dc_measure(&b->dc), 0);
-	told = ktime_get_ns();
-	ec_dc_app_time(&b->dc, at, told);
+	set_ns = ktime_get_ns();
+	ec_dc_app_time(&b->dc, at, set_ns);
 	ec_dc_begin(&b->dc, EC_DC_ANY);
 	CHECK(alone_wait(decided, &b->dc, 10000));
 	CHECK_EQ(b->dc.state, EC_DC_READY);
@@ -111,7 +111,7 @@ static void clocks_get_the_time_that_was_told(void)
 	}
 	/* one frame: all at once, but for its way */
 	CHECK_EQ(ec_xfer_all(&b->s.seg.links, dg, SLAVES), 0);
-	now = at + dg[0].sent_ns - told;
+	now = at + dg[0].sent_ns - set_ns;
 	for (i = 0; i < SLAVES; i++) {
 		CHECK_OP(abs((s64)(le64_to_cpu((__force __le64)time[i]) - now)), <,
 			 NSEC_PER_MSEC);
@@ -126,6 +126,6 @@ static void clocks_get_the_time_that_was_told(void)
 const struct alone_test alone_tests[] = {
 	TEST(delays_follow_the_cables),
 	TEST(segment_without_clocks_has_no_reference),
-	TEST(clocks_get_the_time_that_was_told),
+	TEST(clocks_get_application_time),
 	{ }
 };

@@ -190,7 +190,7 @@ static void kernel_runs_cycles_for_no_one(void)
 	bench_free(b);
 }
 
-/* no one reports that the device is not there any more; who owns the cycle is told */
+/* the device has left: the next send reports it to the owner of the cycle */
 static void cycle_ends_without_device(void)
 {
 	struct bench *b = bench_new();

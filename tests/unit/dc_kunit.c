@@ -89,7 +89,7 @@ static void dc_delays_of_reversed_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, n[1].delay, 1500u);
 	KUNIT_EXPECT_EQ(test, n[2].delay, 1800u);
 	KUNIT_EXPECT_EQ(test, n[2].hop, 1200u);
-	KUNIT_EXPECT_FALSE(test, n[0].odd || n[1].odd || n[2].odd);
+	KUNIT_EXPECT_FALSE(test, n[0].unreliable || n[1].unreliable || n[2].unreliable);
 }
 
 /* the same at the end of a branch: port 0 is closed, and what it latched once is old */
@@ -106,7 +106,7 @@ static void dc_delays_of_reversed_end(struct kunit *test)
 	ec_dc_delays(n, ARRAY_SIZE(n), 0);
 	KUNIT_EXPECT_EQ(test, n[1].delay, 500u);
 	KUNIT_EXPECT_EQ(test, n[2].delay, 2000u);
-	KUNIT_EXPECT_FALSE(test, n[1].odd || n[2].odd);
+	KUNIT_EXPECT_FALSE(test, n[1].unreliable || n[2].unreliable);
 }
 
 /* in by port 1, out by 2, then the processing unit, then out by 3; and a clock at each */
@@ -142,10 +142,10 @@ static void dc_impossible_times_are_inconsistent(struct kunit *test)
 		};
 
 		ec_dc_delays(n, ARRAY_SIZE(n), 0);
-		KUNIT_EXPECT_FALSE(test, n[0].odd);
-		KUNIT_EXPECT_FALSE(test, n[1].odd);
-		KUNIT_EXPECT_TRUE_MSG(test, n[2].odd, "%x", back[i]);
-		KUNIT_EXPECT_TRUE(test, n[3].odd);
+		KUNIT_EXPECT_FALSE(test, n[0].unreliable);
+		KUNIT_EXPECT_FALSE(test, n[1].unreliable);
+		KUNIT_EXPECT_TRUE_MSG(test, n[2].unreliable, "%x", back[i]);
+		KUNIT_EXPECT_TRUE(test, n[3].unreliable);
 	}
 }
 
