@@ -27,6 +27,7 @@ void ec_gate_init(struct ec_gate *g, unsigned int limit)
 	g->limit = limit;
 	g->used = 0;
 	INIT_LIST_HEAD(&g->waiting);
+	INIT_LIST_HEAD(&g->watching);
 }
 
 /* Give free places to those who wait, in their order. */

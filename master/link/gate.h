@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* How many acyclic frames of a link may be on their way: a limit with a queue. */
+/* Callers that use a link: a limited number of places with a queue, and who watches the link. */
 #ifndef EC_GATE_H
 #define EC_GATE_H
 
@@ -8,17 +8,19 @@
 #include <linux/types.h>
 
 /**
- * struct ec_gate - places for frames; first come, first served
+ * struct ec_gate - callers of a link; first come, first served
  * @lock: protects the other fields
  * @limit: places
  * @used: places that are taken
  * @waiting: callers that wait for one, the oldest first
+ * @watching: &struct ec_watcher; the first one looks at the link each millisecond
  */
 struct ec_gate {
 	raw_spinlock_t lock;
 	unsigned int limit;
 	unsigned int used;
 	struct list_head waiting;
+	struct list_head watching;
 };
 
 void ec_gate_init(struct ec_gate *g, unsigned int limit);

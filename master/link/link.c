@@ -23,8 +23,7 @@ void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side)
 	link->links = l;
 	link->side = side;
 	ec_gate_init(&link->acyclic, EC_LINK_ACYCLIC);
-	ec_watch_init(&link->watch);
-	mutex_init(&link->ring_full);
+	ec_gate_init(&link->ring_full, 1);
 }
 
 /**

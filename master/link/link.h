@@ -4,11 +4,9 @@
 #define EC_LINK_H
 
 #include <linux/atomic.h>
-#include <linux/mutex.h>
 #include <linux/types.h>
 #include "ethercat.h"
 #include "gate.h"
-#include "watch.h"
 
 struct ecdev;
 struct ec_links;
@@ -60,10 +58,9 @@ struct ec_link_rates {
  * @side: 0 main, 1 backup, immutable
  * @dev: attached device or NULL; changes under the access lock. Used by the
  *	owner of the link; others only in an RCU read section
- * @acyclic: places for acyclic frames on their way, also those in the queue
+ * @acyclic: places for acyclic frames on their way, also those in the queue; who waits for them
  * @acyclic_ns: wire time of these frames
- * @watch: callers that wait for frames
- * @ring_full: held by the caller that waits for room in the transmit ring
+ * @ring_full: place of the caller that tries until there is room in the transmit ring
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
  * @al_states: OR of their AL states
@@ -76,8 +73,7 @@ struct ec_link {
 	struct ecdev *dev;
 	struct ec_gate acyclic;
 	atomic_t acyclic_ns;
-	struct ec_watch watch;
-	struct mutex ring_full;
+	struct ec_gate ring_full;
 	bool up;
 	u32 slaves;
 	u32 al_states;

@@ -14,69 +14,57 @@
 #define OTHERS_US	10000	/* and of the others, whether their frames have left */
 
 /**
- * ec_watch_init() - prepare the list of callers
- * @w: list
- *
- * Context: Any.
- */
-void ec_watch_init(struct ec_watch *w)
-{
-	raw_spin_lock_init(&w->lock);
-	INIT_LIST_HEAD(&w->waiting);
-}
-
-/**
  * ec_watch_begin() - a caller is about to wait for frames
- * @w: list
+ * @g: callers of the link
  * @me: the caller; ec_watch_end() must follow
  *
  * Context: Process.
  */
-void ec_watch_begin(struct ec_watch *w, struct ec_watcher *me)
+void ec_watch_begin(struct ec_gate *g, struct ec_watcher *me)
 {
 	unsigned long flags;
 
 	me->task = current;
-	raw_spin_lock_irqsave(&w->lock, flags);
-	list_add_tail(&me->list, &w->waiting);
-	raw_spin_unlock_irqrestore(&w->lock, flags);
+	raw_spin_lock_irqsave(&g->lock, flags);
+	list_add_tail(&me->list, &g->watching);
+	raw_spin_unlock_irqrestore(&g->lock, flags);
 }
 
-static bool is_first(struct ec_watch *w, const struct ec_watcher *me)
+static bool is_first(struct ec_gate *g, const struct ec_watcher *me)
 {
 	unsigned long flags;
 	bool first;
 
-	raw_spin_lock_irqsave(&w->lock, flags);
-	first = list_first_entry(&w->waiting, struct ec_watcher, list) == me;
-	raw_spin_unlock_irqrestore(&w->lock, flags);
+	raw_spin_lock_irqsave(&g->lock, flags);
+	first = list_first_entry(&g->watching, struct ec_watcher, list) == me;
+	raw_spin_unlock_irqrestore(&g->lock, flags);
 	return first;
 }
 
 /**
  * ec_watch_end() - a caller waits no longer; another one becomes the first
- * @w: list
+ * @g: callers of the link
  * @me: the caller
  *
  * Context: Process.
  */
-void ec_watch_end(struct ec_watch *w, struct ec_watcher *me)
+void ec_watch_end(struct ec_gate *g, struct ec_watcher *me)
 {
 	unsigned long flags;
 	bool first;
 
-	raw_spin_lock_irqsave(&w->lock, flags);
-	first = list_first_entry(&w->waiting, struct ec_watcher, list) == me;
+	raw_spin_lock_irqsave(&g->lock, flags);
+	first = list_first_entry(&g->watching, struct ec_watcher, list) == me;
 	list_del(&me->list);
 	/* that one leaves only after it has had the lock */
-	if (first && !list_empty(&w->waiting))
-		wake_up_process(list_first_entry(&w->waiting, struct ec_watcher, list)->task);
-	raw_spin_unlock_irqrestore(&w->lock, flags);
+	if (first && !list_empty(&g->watching))
+		wake_up_process(list_first_entry(&g->watching, struct ec_watcher, list)->task);
+	raw_spin_unlock_irqrestore(&g->lock, flags);
 }
 
 /**
  * ec_watch_wait() - wait until it is time to look at the link
- * @w: list
+ * @g: callers of the link
  * @me: the caller
  * @done: what it waits for
  * @us: at most, microseconds
@@ -84,7 +72,7 @@ void ec_watch_end(struct ec_watch *w, struct ec_watcher *me)
  * Context: Process, after ec_watch_begin(). Sleeps.
  * Return: true: @done is complete, and taken.
  */
-bool ec_watch_wait(struct ec_watch *w, const struct ec_watcher *me, struct completion *done,
+bool ec_watch_wait(struct ec_gate *g, const struct ec_watcher *me, struct completion *done,
 		   unsigned int us)
 {
 	DECLARE_SWAITQUEUE(wait);
@@ -92,7 +80,7 @@ bool ec_watch_wait(struct ec_watch *w, const struct ec_watcher *me, struct compl
 
 	prepare_to_swait_exclusive(&done->wait, &wait, TASK_UNINTERRUPTIBLE);
 	/* who becomes the first one from now on is woken */
-	us = min_t(unsigned int, us, is_first(w, me) ? FIRST_US : OTHERS_US);
+	us = min_t(unsigned int, us, is_first(g, me) ? FIRST_US : OTHERS_US);
 	limit = ns_to_ktime((u64)us * NSEC_PER_USEC);
 	if (!completion_done(done))
 		schedule_hrtimeout(&limit, HRTIMER_MODE_REL);

@@ -6,20 +6,10 @@
 #include <linux/completion.h>
 #include <linux/list.h>
 #include <linux/sched.h>
-#include <linux/spinlock.h>
+#include "gate.h"
 
 /**
- * struct ec_watch - callers that wait for frames of a link
- * @lock: protects @waiting
- * @waiting: &struct ec_watcher; the first one looks at the link each millisecond
- */
-struct ec_watch {
-	raw_spinlock_t lock;
-	struct list_head waiting;
-};
-
-/**
- * struct ec_watcher - one of them
+ * struct ec_watcher - a caller that waits for its frames
  * @list: its place
  * @task: to wake when it becomes the first one
  */
@@ -28,10 +18,9 @@ struct ec_watcher {
 	struct task_struct *task;
 };
 
-void ec_watch_init(struct ec_watch *w);
-void ec_watch_begin(struct ec_watch *w, struct ec_watcher *me);
-void ec_watch_end(struct ec_watch *w, struct ec_watcher *me);
-bool ec_watch_wait(struct ec_watch *w, const struct ec_watcher *me, struct completion *done,
+void ec_watch_begin(struct ec_gate *g, struct ec_watcher *me);
+void ec_watch_end(struct ec_gate *g, struct ec_watcher *me);
+bool ec_watch_wait(struct ec_gate *g, const struct ec_watcher *me, struct completion *done,
 		   unsigned int us);
 
 #endif

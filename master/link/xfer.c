@@ -5,12 +5,13 @@
 #include <linux/slab.h>
 #include "links.h"
 #include "submit.h"
+#include "watch.h"
 #include "xfer.h"
 
 #define TRIES	4	/* of a repeatable datagram */
 #define WAITS	8	/* for one frame, as long as it had no fair chance */
 #define PLACE_WAIT_MS	30000	/* many hundred callers may be at work at once */
-#define RING_WAIT_NS	(1 * NSEC_PER_SEC)	/* a device that sends nothing for so long hangs */
+#define RING_WAIT_MS	1000	/* a device that sends nothing for so long hangs */
 
 /* one frame of a batch: the slot and the datagrams it carries */
 struct batch_frame {
@@ -197,15 +198,19 @@ static int submit_until(struct ec_links *l, struct ec_slot *slot, bool urgent, u
 /* A full transmit ring is no error: the frame waits; one caller tries for all others. */
 static int submit_later(struct ec_links *l, struct ec_slot *slot, bool urgent)
 {
-	u64 until = ktime_get_ns() + RING_WAIT_NS;
+	u64 until = ktime_get_ns() + (u64)RING_WAIT_MS * NSEC_PER_MSEC;
+	struct ec_gate *gate = &l->link[0].ring_full;
 	int ret;
 
 	if (urgent || is_monitor(l))
 		return submit_until(l, slot, urgent, until);
-	if (mutex_lock_killable(&l->link[0].ring_full))
-		return -EINTR;
+	ret = ec_gate_enter(gate, RING_WAIT_MS);
+	if (ret == -EBUSY)
+		atomic64_inc(&l->link[0].stats.tx_errors);
+	if (ret)
+		return ret;
 	ret = submit_until(l, slot, urgent, until);
-	mutex_unlock(&l->link[0].ring_full);
+	ec_gate_leave(gate);
 	return ret;
 }
 
@@ -314,14 +319,14 @@ static bool wait_watched(struct ec_links *l, struct half *h, const struct ec_wat
 	long left;
 
 	while (in_queue(h) && ec_submit_wait_turn(l, &h->wait)) {
-		if (ec_watch_wait(&link->watch, me, &h->x.done, ~0u))
+		if (ec_watch_wait(&link->acyclic, me, &h->x.done, ~0u))
 			return true;
 		h->wait.began_ns = ktime_get_ns();
 		h->wait.polls = READ_ONCE(l->access.polls);
 	}
 	until = jiffies + usecs_to_jiffies(h->wait.timeout_us) + 1;
 	while ((left = until - jiffies) > 0 && ec_link_is_up(link))
-		if (ec_watch_wait(&link->watch, me, &h->x.done, jiffies_to_usecs(left)))
+		if (ec_watch_wait(&link->acyclic, me, &h->x.done, jiffies_to_usecs(left)))
 			return true;
 	return try_wait_for_completion(&h->x.done);
 }
@@ -332,9 +337,9 @@ static bool wait_once(struct ec_links *l, struct half *h)
 	bool done;
 
 	ec_submit_wait_begin(l, &h->wait);
-	ec_watch_begin(&l->link[0].watch, &me);
+	ec_watch_begin(&l->link[0].acyclic, &me);
 	done = wait_watched(l, h, &me);
-	ec_watch_end(&l->link[0].watch, &me);
+	ec_watch_end(&l->link[0].acyclic, &me);
 	return done;
 }
 
