@@ -67,7 +67,7 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 		strscpy(d->name, link->links->spec[link->side] ?: "", sizeof(d->name));
 	}
 	rcu_read_unlock();
-	d->link_up = link->up;
+	d->link_up = READ_ONCE(link->up);
 	d->slaves = READ_ONCE(link->slaves);
 	d->al_states = READ_ONCE(link->al_states);
 	d->tx_frames = atomic64_read(&link->stats.tx_frames);
@@ -98,7 +98,7 @@ static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 	i->sent_wire_ns = READ_ONCE(c->last.ns);
 	i->acyclic_slack_ns = ec_access_slack_ns(c->links);
 	i->acyclic_need_ns = ec_cycle_need_ns();
-	i->late_per_s = c->links->share.late_per_s;
+	i->late_per_s = READ_ONCE(c->links->share.late_per_s);
 	i->late_cycles = READ_ONCE(c->links->share.late_cycles);
 }
 
@@ -131,16 +131,16 @@ int ec_ioc_master(struct ec_call *call)
 	int ret;
 
 	i->index = m->base->index;
-	i->slave_count = m->bus.n_slaves;
-	i->slaves_responding = m->bus.responding;
-	i->al_states = m->bus.al_states;
+	i->slave_count = READ_ONCE(m->bus.n_slaves);
+	i->slaves_responding = READ_ONCE(m->bus.responding);
+	i->al_states = READ_ONCE(m->bus.al_states);
 	i->scan_busy = ec_bus_scan_busy(&m->bus);
 	ec_bus_scan_progress(&m->bus, &i->scan_index, &i->scan_slaves);
 	i->scan_count = READ_ONCE(m->bus.scan_count);
-	i->debug_level = m->base->debug;
+	i->debug_level = READ_ONCE(m->base->debug);
 	i->app_time = ec_read64(&m->dc.app_time);
-	i->scan_us = m->bus.scan_us;
-	i->scan_frames = m->bus.scan_frames;
+	i->scan_us = READ_ONCE(m->bus.scan_us);
+	i->scan_frames = ec_read64(&m->bus.scan_frames);
 	i->acyclic_max = ec_share_max;
 	i->sii_bytes = atomic_long_read(&m->bus.sii_bytes);
 	i->sii_limit = EC_MAX_SII_TOTAL;

@@ -52,7 +52,7 @@ void ec_bus_exit(struct ec_bus *bus)
 		ec_slave_unref(s);
 	kvfree(bus->slaves);
 	bus->slaves = NULL;
-	bus->n_slaves = 0;
+	WRITE_ONCE(bus->n_slaves, 0);
 }
 
 /**

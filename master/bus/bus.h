@@ -75,7 +75,7 @@ struct ec_bus {
 	/** @scan_us: duration of the last one */
 	u32 scan_us;
 	/** @scan_frames: frames of the last one */
-	u64 scan_frames;
+	aligned_u64 scan_frames;
 	/** @next_station: station address given last; the monitor's */
 	u16 next_station;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */

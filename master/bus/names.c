@@ -41,6 +41,7 @@ const char *ec_names_find(const struct ec_slave *s, u16 index, u16 sub)
 
 struct answer {
 	struct ec_sdoinfo info;
+	u64 until;	/* ktime, ns */
 	u8 data[EC_MBOX_MAX];
 };
 
@@ -48,6 +49,9 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 {
 	struct answer *a = ctx;
 
+	/* fragments may go on for ever */
+	if (ktime_get_ns() > a->until)
+		return -ETIMEDOUT;
 	return ec_sdoinfo_rx(&a->info, buf, len);
 }
 
@@ -182,16 +186,16 @@ static int copy(struct ec_names *to, const struct ec_names *from)
 static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
 		    struct ec_mbox_buf *b)
 {
-	u64 until = ktime_get_ns() + LIMIT_MS * (u64)NSEC_PER_MSEC;
 	char text[EC_UAPI_STRING];
 	struct place at = { 0 };
 	u16 index, sub;
 	int ret = 0;
 
+	a->until = ktime_get_ns() + LIMIT_MS * (u64)NSEC_PER_MSEC;
 	while (!ret && next_unknown(s, l, &at, &index, &sub)) {
 		if (READ_ONCE(s->bus->links->access.mode) != EC_ACCESS_DIRECT)
 			return -EAGAIN;
-		if (ktime_get_ns() > until)
+		if (ktime_get_ns() > a->until)
 			return 0;
 		ret = read_name(s, a, b, index, sub, text);
 		/* refused: it has no name */

@@ -454,7 +454,7 @@ static void publish(struct scan *sc)
 	old = bus->slaves;
 	n_old = bus->n_slaves;
 	bus->slaves = sc->slaves;
-	bus->n_slaves = sc->n;
+	WRITE_ONCE(bus->n_slaves, sc->n);
 	ec_show_change_end(&bus->base->show);
 	up_write(&bus->topo);
 	sc->slaves = NULL;
@@ -508,8 +508,8 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 		sc.changed = differs(&sc);
 		publish(&sc);
 		*changed = sc.changed;
-		bus->scan_us = (u32)div_u64(ktime_get_ns() - t0, 1000);
-		bus->scan_frames = ec_links_sent(bus->links) - frames;
+		WRITE_ONCE(bus->scan_us, (u32)div_u64(ktime_get_ns() - t0, 1000));
+		ec_write64(&bus->scan_frames, ec_links_sent(bus->links) - frames);
 		if (sc.changed && count)
 			ec_info(bus, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
 				bus->scan_us, bus->scan_frames);

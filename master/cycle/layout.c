@@ -370,7 +370,7 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
 	lockdep_assert_held(c->wanted->lock);
 	c->room_logged = false;
 	c->links->access.wire_ns = w->ns;
-	c->links->share.late_per_s = c->late_per_s;
+	WRITE_ONCE(c->links->share.late_per_s, c->late_per_s);
 	c->links->share.late_cycles = 0;
 	if (!c->kernel.period_ns && !c->links->access.interval_set)
 		return 0;

@@ -48,9 +48,8 @@ int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u64 now)
 
 	ec_slot_arm(&l->slots, slot, l->carry, now);
 	ret = ec_links_send(l, slot);
-	if (ret)
-		ec_slot_disarm(slot, now);
-	return ret;
+	/* a reply that came nevertheless makes it a frame as if it was sent */
+	return ret && ec_slot_disarm(slot) ? ret : 0;
 }
 
 /*

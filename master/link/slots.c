@@ -158,14 +158,15 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 /**
  * ec_slot_disarm() - take back a frame that was armed and not sent
  * @slot: slot
- * @now_ns: time
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: it is in BUILD again; false: another station has sent its reply meanwhile,
+ * which is taken, or being taken just now.
  */
-void ec_slot_disarm(struct ec_slot *slot, u64 now_ns)
+bool ec_slot_disarm(struct ec_slot *slot)
 {
-	if (ec_slot_cancel(slot, now_ns))
-		atomic_set_release(&slot->state, EC_SLOT_BUILD);
+	return atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_BUILD) == EC_SLOT_SENT ||
+	       atomic_cmpxchg(&slot->state, EC_SLOT_QUEUED, EC_SLOT_BUILD) == EC_SLOT_QUEUED;
 }
 
 /*

@@ -126,7 +126,7 @@ struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
-void ec_slot_disarm(struct ec_slot *slot, u64 now_ns);
+bool ec_slot_disarm(struct ec_slot *slot);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
 bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);

@@ -32,9 +32,9 @@ int ec_submit(struct ec_links *l, struct ec_slot *slot, bool urgent)
 		/* the waiter may give up from now on */
 		ec_slot_queue(&l->slots, slot, l->carry, now);
 		ret = ec_queue_push(&l->queues, slot, urgent);
-		if (ret)
-			ec_slot_disarm(slot, now);
-		else if (l->ops && l->ops->queued)
+		if (ret && !ec_slot_disarm(slot))
+			ret = 0;
+		if (!ret && l->ops && l->ops->queued)
 			l->ops->queued(l);
 	}
 	rt_mutex_unlock(&l->access.lock);

@@ -611,6 +611,8 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 		ret = ec_mbox_drain(mb, b);
 	mb->answered = false;
 	until = until_limit(&r->limit);
+	/* also where a slave always has a message ready */
+	ret = ret ?: over(mb, &until);
 	if (!ret)
 		ret = send(mb, r->type, b, len, &until);
 	if (ret)
@@ -621,9 +623,9 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 			ret = r->rx(r->ctx, b->rx, ret);
 		if (ret == EC_WAIT)
 			until = until_limit(&r->limit);
-	} while (ret == EC_WAIT || (ret == EC_STALE && ktime_get_ns() <= until.ns));
-	if (ret == EC_STALE)
-		ret = -ETIMEDOUT;
+		if (ret == EC_WAIT || ret == EC_STALE)
+			ret = over(mb, &until) ?: ret;
+	} while (ret == EC_WAIT || ret == EC_STALE);
 	mb->answered = ret >= 0;
 out:
 	up(&mb->lock);

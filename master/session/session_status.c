@@ -46,7 +46,7 @@ static void status_links(struct ec_sessions *ss, struct ec_status *st)
 		u32 slaves = READ_ONCE(link->slaves);
 
 		WRITE_ONCE(st->links[i].slaves_responding, slaves);
-		WRITE_ONCE(st->links[i].al_states, slaves ? ss->bus->al_states : 0);
+		WRITE_ONCE(st->links[i].al_states, slaves ? READ_ONCE(ss->bus->al_states) : 0);
 		WRITE_ONCE(st->links[i].link_up, READ_ONCE(link->up));
 	}
 	WRITE_ONCE(st->link_count, i);
@@ -67,8 +67,8 @@ void ec_session_fill_status(struct ec_session *s)
 	struct ec_sessions *ss = s->sessions;
 
 	lockdep_assert_held(s->wanted.lock);
-	WRITE_ONCE(st->slaves_responding, ss->bus->responding);
-	WRITE_ONCE(st->al_states, ss->bus->al_states);
+	WRITE_ONCE(st->slaves_responding, READ_ONCE(ss->bus->responding));
+	WRITE_ONCE(st->al_states, READ_ONCE(ss->bus->al_states));
 	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
 	status_links(ss, st);
 	ec_for_each_config(c, &s->wanted)
