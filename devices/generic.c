@@ -127,7 +127,7 @@ static void refill(struct work_struct *work)
 	struct sk_buff *skb;
 
 	skb_queue_purge(&g->held);
-	while (skb_queue_len(&g->spare) < SPARES && (skb = prepare(g->nd)))
+	while (skb_queue_len_lockless(&g->spare) < SPARES && (skb = prepare(g->nd)))
 		skb_queue_tail(&g->spare, skb);
 }
 
