@@ -364,7 +364,7 @@ static bool cycle(struct ec_cycle_thread *t)
 		t->ops->cycle(c);
 	if (status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		if (!ec_cycle_send(c, &send))
-			ec_late_count(c, c->links->access.last_send_ns - due);
+			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
 	}
 	publish(t);
 	ec_late_work(c, ktime_get_ns() - now);

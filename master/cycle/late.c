@@ -158,7 +158,7 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 		sc->interval_ns = ec_access_interval_us(&c->links->access) *
 				 (u32)NSEC_PER_USEC;
 	else if (sc->sends)
-		measure(c, sc, now - c->links->access.last_send_ns);
+		measure(c, sc, now - ec_read64(&c->links->access.last_send_ns));
 	sc->last_ns = now;
 	if (unlikely(sc->sends < (set ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
 		sc->sends++;

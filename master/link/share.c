@@ -149,7 +149,7 @@ static u32 send_next(struct ec_links *l, struct ec_queue *q, const struct ec_que
 		return 0;	/* given up meanwhile: the next send goes on */
 	frame_ns = ec_frame_wire_ns(EC_ETH_HDR + pack.len);
 	/* behind what this cycle has sent before */
-	if (ec_links_send_pack(l, &pack, l->access.last_send_ns + wire_ns) == -EBUSY)
+	if (ec_links_send_pack(l, &pack, ec_read64(&l->access.last_send_ns) + wire_ns) == -EBUSY)
 		return 0;
 	count(l, q, frame_ns);
 	return frame_ns;
