@@ -111,7 +111,7 @@ static unsigned int replying(const struct ec_master *m)
 	unsigned int n = 0;
 
 	ec_for_each_slave(s, &m->bus)
-		n += s->error != EC_SLAVE_SCAN_FAILED;
+		n += READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 	return n;
 }
 
@@ -318,7 +318,8 @@ static void maybe_scan(struct watch *w)
 		 */
 		smp_wmb();
 		WRITE_ONCE(m->bus.rescan, false);
-		if (m->links.access.mode == EC_ACCESS_DIRECT && !READ_ONCE(m->sessions.session))
+		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT &&
+		    !READ_ONCE(m->sessions.session))
 			ec_scan(&m->bus, 0, &changed);
 	}
 	if (!ec_scan(&m->bus, w->count, &changed)) {
@@ -382,7 +383,8 @@ static int monitor(void *data)
 		ktime_t to;
 
 		check_links(&w);
-		if (m->links.access.mode == EC_ACCESS_CYCLIC && ec_access_timed_out(&m->links))
+		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC &&
+		    ec_access_timed_out(&m->links))
 			ec_access_timeout(&m->links);
 		if (w.link_up || m->bus.n_slaves) {
 			count_slaves(&w);

@@ -151,7 +151,7 @@ bool ec_slave_pdos_pending(const struct ec_slave *s)
 {
 	u16 al = READ_ONCE(s->al_status);
 
-	return !READ_ONCE(s->pdos_known) && s->error == EC_SLAVE_OK && s->sii &&
+	return !READ_ONCE(s->pdos_known) && READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
 	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
 	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
 }

@@ -469,7 +469,7 @@ static void publish(struct scan *sc)
 	}
 	if (lost > LOST_LINES)
 		ec_warn(bus, "%u more slave(s) disconnected\n", lost - LOST_LINES);
-	if (!sc->n && n_old && bus->links->access.mode != EC_ACCESS_DIRECT)
+	if (!sc->n && n_old && READ_ONCE(bus->links->access.mode) != EC_ACCESS_DIRECT)
 		ec_warn(bus, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
 			div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC));
 	for (i = 0; i < n_old; i++)

@@ -480,9 +480,9 @@ void ec_apply(struct ec_slave *s)
 	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
 	    (is_transient(s, ret) || is_undecided(s, ret)))
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
-	if (ret == 1 && s->read_pdos && ec_slave_pdos_pending(s))
+	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
-	if (ret == 1 && s->read_pdos && ec_names_pending(s))
+	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_names_pending(s))
 		ec_names_read(s);
 	WRITE_ONCE(s->stop.worker, NULL);
 	mutex_unlock(&s->lock);
