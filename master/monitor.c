@@ -451,8 +451,12 @@ void ec_monitor_stop(struct ec_master *m)
  */
 void ec_monitor_kick(struct ec_master *m)
 {
-	struct task_struct *t = READ_ONCE(m->monitor);
+	struct task_struct *t;
 
+	/* it is not freed before the section ends */
+	rcu_read_lock();
+	t = READ_ONCE(m->monitor);
 	if (t)
 		wake_up_process(t);
+	rcu_read_unlock();
 }

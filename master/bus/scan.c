@@ -102,7 +102,8 @@ u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
 	u32 i;
 
 	for (i = 0; i <= EC_MAX_SLAVES; i++)
-		if (++last && !known[last] && !claims[last])
+		/* the clocks use 0xffff for "no slave" */
+		if (++last && last != 0xffff && !known[last] && !claims[last])
 			return last;
 	return 0;
 }

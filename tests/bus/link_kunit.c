@@ -350,6 +350,8 @@ static void link_station_search_ends(struct kunit *test)
 	KUNIT_ASSERT_NOT_NULL(test, claims);
 	KUNIT_EXPECT_EQ(test, ec_scan_station(0, known, claims), 1);
 	KUNIT_EXPECT_EQ(test, ec_scan_station(65535, known, claims), 1);
+	/* 65535 is no slave's: the clocks use it for "none" */
+	KUNIT_EXPECT_EQ(test, ec_scan_station(65534, known, claims), 1);
 	memset(claims, 1, EC_MAX_SLAVES + 1);
 	KUNIT_EXPECT_EQ(test, ec_scan_station(7, known, claims), 0);
 	claims[7] = 0;
