@@ -90,7 +90,7 @@
  * @read_pdos: read the PDOs when it is there
  * @reconfigure: go through INIT and configure again
  * @clean: in PREOP, and nothing of a configuration is left in its registers
- * @ours: has gone from INIT to PREOP by our hand, not by an earlier master's
+ * @ours: has gone from INIT to PREOP or BOOT by our hand, not by an earlier master's
  */
 struct ec_slave {
 	struct kref kref;

@@ -199,8 +199,8 @@ static int leave_init(struct ec_slave *s, u8 state)
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
 	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
+	s->ours = !ret;
 	if (!boot) {
-		s->ours = !ret;
 		s->clean = !ret;
 		release_mailbox(s);
 	}
@@ -341,6 +341,8 @@ static int to_op(struct ec_slave *s)
 		ret = op_only_on(s);
 	if (ret > 0)
 		ret = wait_outputs(s);
+	if (ret == -EAGAIN)
+		return ret;
 	ret = ret ?: set_state(s, EC_AL_OP);
 	if (ret == -EPROTO)
 		op_only_off(s);

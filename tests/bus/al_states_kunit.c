@@ -44,6 +44,39 @@ static void al_boot(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AXIS, EC_AL_PREOP, 500), ~0ull);
 }
 
+/* It stays in BOOT, and its worker has nothing to do there, whatever state it comes from. */
+static void al_boot_stays(struct kunit *test)
+{
+	static const u8 from[] = { EC_AL_INIT, EC_AL_PREOP, EC_AL_SAFEOP };
+	struct bus *b = bus_up(test, line, N);
+	struct ec_slave *s = bus_slave(b, AXIS);
+	u32 i, k, reads, left = 0;
+
+	for (i = 0; i < ARRAY_SIZE(from); i++) {
+		bus_request(b, AXIS, from[i]);
+		KUNIT_ASSERT_NE(test, bus_wait_al(b, AXIS, from[i], 500), ~0ull);
+		bus_idle(b);
+		bus_request(b, AXIS, EC_AL_BOOT);
+		KUNIT_ASSERT_NE(test, bus_wait_al(b, AXIS, EC_AL_BOOT, 500), ~0ull);
+		usleep_range(10000, 10001);
+		reads = s->al_reads;
+		for (k = 0; k < 500; k++) {
+			usleep_range(1000, 1001);
+			left += ec_app_state(bus_app(b, "axis")) != EC_AL_BOOT;
+		}
+		KUNIT_EXPECT_EQ_MSG(test, left, 0u, "from %s", ec_al_state_name(from[i]));
+		KUNIT_EXPECT_EQ(test, s->al_reads, reads);
+		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		/* a scan leaves it there, too */
+		bus_fault(b, EC_SIM_FAULT_POWER_OFF, OUT, 0, 0, 0);
+		msleep(500);
+		KUNIT_EXPECT_EQ(test, s->al_reads, reads);
+		bus_fault(b, EC_SIM_FAULT_POWER_ON, OUT, 0, 0, 0);
+		msleep(500);
+		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "axis")), EC_AL_BOOT);
+	}
+}
+
 /* A slave without bootstrap mailbox says so. */
 static void al_no_boot(struct kunit *test)
 {
@@ -189,6 +222,7 @@ static void al_cable_pulled(struct kunit *test)
 static struct kunit_case al_cases[] = {
 	KUNIT_CASE(al_up_and_down),
 	KUNIT_CASE(al_boot),
+	KUNIT_CASE(al_boot_stays),
 	KUNIT_CASE(al_no_boot),
 	KUNIT_CASE_PARAM(al_refused, al_gen_params),
 	KUNIT_CASE(al_falls_back),

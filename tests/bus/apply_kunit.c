@@ -101,6 +101,26 @@ static void apply_op_only(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
 }
 
+/* The application pauses while the slave waits for outputs after that: OP when it goes on. */
+static void apply_op_only_pause(struct kunit *test)
+{
+	struct cyc *c = reserve(test, "segment seed=17\nslave a io in=8 out=8\n", 1);
+	struct bus *b = c->b;
+
+	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
+	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	while (!READ_ONCE(ec_setup_of(bus_slave(b, 0))->op_only) && c->cycles < 2000)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_LT(test, c->cycles, 2000ull);
+	msleep(10000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
+	c->next = ktime_get();
+	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
+}
+
 /* It comes to OP later than the application allows: its outputs are on then, too. */
 static void apply_op_only_late(struct kunit *test)
 {
@@ -319,6 +339,7 @@ static void apply_endless_mailbox(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_unknown_sm),
 	KUNIT_CASE(apply_op_only),
+	KUNIT_CASE(apply_op_only_pause),
 	KUNIT_CASE(apply_op_only_late),
 	KUNIT_CASE(apply_found_pdos),
 	KUNIT_CASE(apply_second_round),
