@@ -68,11 +68,15 @@ int ec_ioc_state(struct ec_call *call)
 {
 	struct ec_ioc_state *i = call->arg;
 	struct ec_slave *s = call->slave;
+	char why[EC_UAPI_REASON];
 
 	if (!ec_al_state_valid(i->state))
 		return ec_refuse(call, -EINVAL,
 				 "%u is no AL state; use INIT, PREOP, BOOT, SAFEOP or OP",
 				 i->state);
+	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", i->position,
+				 ec_slave_why(s, why, sizeof(why)));
 	ec_slave_forgive(s);
 	ec_slave_request(s, i->state);
 	return 0;

@@ -169,9 +169,11 @@ static void count_claims(struct scan *sc)
 /* One that failed in the scan is read anew; one that refused a state is the same. */
 static bool is_usable(const struct ec_slave *s)
 {
-	return !READ_ONCE(s->error) || READ_ONCE(s->silent) ||
-	       (s->error == EC_SLAVE_CONFIG_FAILED && s->bus->ops && s->bus->ops->attached &&
-		s->bus->ops->attached(s));
+	u8 error = READ_ONCE(s->error);
+
+	return s->sii && (!error || READ_ONCE(s->silent) ||
+			  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
+			   s->bus->ops->attached && s->bus->ops->attached(s)));
 }
 
 /*
@@ -359,6 +361,11 @@ static int read_new(struct scan *sc)
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = fresh[i];
 
+		/* no memory, the link was down for a moment, or the master is removed */
+		if (!s->sii && !READ_ONCE(s->error)) {
+			kvfree(fresh);
+			return -EAGAIN;
+		}
 		if (s->sii && ec_slave_parse_sii(s))
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 				      "SII content invalid (%zu bytes); write a valid image",

@@ -191,7 +191,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 	va_end(args);
 	raw_spin_lock(&slave->note_lock);
 	/* a worker that has not ended yet: what it meets is no cause of its own */
-	if (!READ_ONCE(slave->silent) || error != EC_SLAVE_CONFIG_FAILED) {
+	if (slave->error != EC_SLAVE_SCAN_FAILED || error != EC_SLAVE_CONFIG_FAILED) {
 		WRITE_ONCE(slave->error, error);
 		other = strcmp(slave->why, text);
 		if (other)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The scan of a bus where something is wrong: it never holds up the others. */
 #include "bus.h"
+#include "master/boundary/ioctl.h"
 
 #define N	6
 
@@ -98,6 +99,70 @@ static void scan_refused_all(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 1, 0, ~0u, 0);
 	others_fine(b, 1, 400);
 	failed_with(b, 1, "SII read failed at word 0x0000: no acknowledge");
+}
+
+/* A requested state neither replaces its error nor keeps it from being read again. */
+static void scan_refused_state_request(struct kunit *test)
+{
+	static const u8 state[] = { EC_AL_PREOP, EC_AL_INIT };
+	struct bus *b = prepare(test);
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, ~0u, 0);
+	others_fine(b, 2, 400);
+	for (i = 0; i < ARRAY_SIZE(state); i++) {
+		struct ec_ioc_state st = { .position = 2, .state = state[i] };
+
+		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &st), -EIO);
+		KUNIT_EXPECT_NOT_NULL_MSG(test,
+					  strstr(b->app.reason,
+						 "slave 2 could not be read: SII read failed"),
+					  "%s", b->app.reason);
+		msleep(50);
+		failed_with(b, 2, "no acknowledge");
+	}
+	/* nor does a worker that has begun before */
+	ec_slave_request(bus_slave(b, 2), EC_AL_PREOP);
+	msleep(50);
+	failed_with(b, 2, "no acknowledge");
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, 0, 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 5000), ~0ull);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 2)->order, "EL3062");
+}
+
+/* Reading is ended without a cause in the slaves: none appears that was not read. */
+static void scan_not_read_not_published(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	u32 i, unread = 0;
+
+	bus_plug(b);
+	WRITE_ONCE(b->m->base->stopping, true);
+	for (i = 0; i < 100; i++) {
+		msleep(1);
+		unread += b->m->bus.n_slaves && !bus_slave(b, 0)->sii;
+	}
+	WRITE_ONCE(b->m->base->stopping, false);
+	KUNIT_EXPECT_EQ(test, unread, 0u);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
+}
+
+/* One that was not read is no known slave: its object is never filled while others see it. */
+static void scan_not_read_gets_new_object(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+	struct ec_slave *old;
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, ~0u, 0);
+	others_fine(b, 2, 400);
+	old = ec_slave_ref(bus_slave(b, 2));
+	WRITE_ONCE(old->error, EC_SLAVE_OK);
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, 0, 0);
+	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
+	KUNIT_EXPECT_PTR_NE(test, bus_slave(b, 2), old);
+	KUNIT_EXPECT_NULL(test, old->sii);
+	ec_slave_unref(old);
 }
 
 static void scan_busy_forever(struct kunit *test)
@@ -401,6 +466,9 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_slow_eeprom),
 	KUNIT_CASE(scan_refused_some),
 	KUNIT_CASE(scan_refused_all),
+	KUNIT_CASE(scan_refused_state_request),
+	KUNIT_CASE(scan_not_read_not_published),
+	KUNIT_CASE(scan_not_read_gets_new_object),
 	KUNIT_CASE(scan_busy_forever),
 	KUNIT_CASE(scan_emulated_eeprom),
 	KUNIT_CASE(scan_emulated_eeprom_mute),
