@@ -22,6 +22,7 @@ struct regs {
 	u8 delay[4];
 	bool delay_only;
 	bool there;		/* it answered when its address was read */
+	bool partial;		/* and not to each read after that */
 };
 
 struct scan {
@@ -151,6 +152,20 @@ static int write_stations(struct scan *sc, unsigned int n)
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
 	}
 	return ret;
+}
+
+/* What every slave has: one that does not answer now has lost the contact for a moment. */
+static int read_each(struct scan *sc, u16 ado, size_t ofs, u16 len)
+{
+	unsigned int i;
+	int ret = read_all(sc, ado, ofs, len);
+	bool missing = false;
+
+	for (i = 0; i < sc->n && !ret; i++) {
+		sc->regs[i].partial |= sc->regs[i].there && sc->dg[i].wkc != 1;
+		missing |= sc->regs[i].partial;
+	}
+	return missing && !same_count(sc) ? -EAGAIN : ret;
 }
 
 /* How many slaves have each address now, up to 2. */
@@ -285,21 +300,46 @@ static int assign(struct scan *sc)
 	return write_stations(sc, n);
 }
 
-static void take_regs(struct scan *sc)
+static bool is_known(const struct scan *sc, const struct ec_slave *s)
+{
+	return sc->known[s->station] == s;
+}
+
+static void take_replies(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+
+		if (!is_known(sc, s)) {
+			if (sc->regs[i].partial)
+				ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+					      "no reply to a register read, frames pass; check the cables");
+		} else if (sc->regs[i].there) {
+			set_answers(sc, s);
+		} else {
+			set_silent(sc, s);
+		}
+	}
+}
+
+/* Registers of the new slaves, or of the @known ones: others see those. */
+static void take_regs(struct scan *sc, bool known)
 {
 	unsigned int i, p;
 
+	lockdep_assert(!known || lockdep_is_held(&sc->bus->topo));
 	for (i = 0; i < sc->n; i++) {
 		struct ec_slave *s = sc->slaves[i];
 		struct regs *r = &sc->regs[i];
 
+		if (is_known(sc, s) != known)
+			continue;
 		s->position = i;
-		if (!r->there && s->sii) {
-			set_silent(sc, s);
+		if (known && (!r->there || r->partial))
 			continue;	/* its registers are those seen last */
-		}
-		set_answers(sc, s);
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED) {
+		if (!known && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED) {
 			/* a guess: the next slave is behind it */
 			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
 			continue;
@@ -309,7 +349,7 @@ static void take_regs(struct scan *sc)
 			   r->delay_only && ec_slave_features(s) & EC_FEAT_DC);
 		s->dl_status = get_unaligned_le16(r->dl);
 		/* of a known slave its worker may have a newer one */
-		if (!s->sii) {
+		if (!known) {
 			s->al_status = get_unaligned_le16(r->al);
 			s->al_code = get_unaligned_le16(r->al + 4);
 		}
@@ -391,9 +431,9 @@ static int look(struct scan *sc)
 		reset_bus(sc->bus);
 	ret = read_stations(sc) ?:
 	      assign(sc) ?:
-	      read_all(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
-	      read_all(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
-	      read_all(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
+	      read_each(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
+	      read_each(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
+	      read_each(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
 	if (ret)
 		return ret;
 	bwr(sc->bus, EC_REG_DC_RECV(0), latch, 4);
@@ -405,8 +445,8 @@ static int look(struct scan *sc)
 		sc->regs[i].delay_only &= !sc->dg[i].err && !sc->dg[i].wkc;
 	if (ret)
 		return ret;
-	take_regs(sc);
-	ec_topology_build(sc->slaves, sc->n);
+	take_replies(sc);
+	take_regs(sc, false);
 	return read_new(sc);
 }
 
@@ -459,6 +499,8 @@ static void publish(struct scan *sc)
 
 	down_write(&bus->topo);
 	ec_show_change_begin(&bus->base->show);
+	take_regs(sc, true);
+	ec_topology_build(sc->slaves, sc->n);
 	old = bus->slaves;
 	n_old = bus->n_slaves;
 	bus->slaves = sc->slaves;

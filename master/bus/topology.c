@@ -194,7 +194,7 @@ static unsigned int misfit(struct ec_slave **slaves, unsigned int n)
 		bool bad = parent_of(s) < 0 && roots++;
 
 		/* what it says of its ports was guessed */
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		if (READ_ONCE(s->silent) || !s->regs[EC_REG_TYPE])
 			return n;
 		for (p = 0; p < EC_MAX_PORT; p++)
 			if (p != s->upstream && port_open(s, p) && s->next[p] == EC_UAPI_NONE16) {

@@ -51,6 +51,7 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 	struct ec_dc_node *n = &j->nodes[i];
 	unsigned int p;
 
+	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
 	n->entry = s->upstream;
 	n->dc = has_times(s);
@@ -179,12 +180,14 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 	down_read(&dc->bus->topo);
 	j->n = dc->bus->n_slaves;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
+	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
 		j->slaves[i] = ec_slave_ref(dc->bus->slaves[i]);
+	for (i = 0; j->slaves && j->nodes && i < j->n; i++)
+		fill_node(j, i);
 	if (dc->ref && ec_clock_is_set(dc->ref) && !READ_ONCE(dc->ref->stop.gone))
 		j->followed = dc->ref->station;
 	up_read(&dc->bus->topo);
-	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	j->recv = kvcalloc(j->n + 1, sizeof(*j->recv), GFP_KERNEL);
 	j->unit = kvcalloc(j->n + 1, sizeof(*j->unit), GFP_KERNEL);
 	j->sum = kvcalloc(j->n + 1, sizeof(*j->sum), GFP_KERNEL);
@@ -197,8 +200,6 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 		ec_dc_job_free(j);
 		return -ENOMEM;
 	}
-	for (i = 0; i < j->n; i++)
-		fill_node(j, i);
 	choose(j);
 	return 0;
 }

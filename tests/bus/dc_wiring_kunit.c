@@ -241,12 +241,78 @@ static void wiring_that_does_not_fit(struct kunit *test)
 	bus_idle(b);
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->topology_inconsistent);
 	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
+	/* an EEPROM that cannot be read changes nothing of that */
+	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 0, 0, ~0u, 0);
+	ec_bus_rescan(&b->m->bus);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
+}
+
+/*
+ * While the EEPROM of a new slave between the others is read, their clocks are set: by the
+ * topology and the positions of the table that is valid.
+ */
+static void wiring_slave_inserted(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave k EK1100\nslave x drive in=8 out=8\n"
+				"slave l drive in=8 out=8\nslave m drive in=8 out=8\n"
+				"slave n drive in=8 out=8\n"
+				"wire k.1 -> x.0 cable=100ns\nwire k.2 -> l.0 cable=100ns\n"
+				"wire l.1 -> m.0 cable=100ns\nwire m.1 -> n.0 cable=100ns\n");
+	struct cyc *c;
+	s32 before[4];
+	u64 frames;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 1, 3, 0);
+	cyc_sync0(c, 3);
+	for (i = 0; i < 4; i++)
+		before[i] = ec_clock_of(bus_slave(b, i))->delay;
+	/* as after a scan beside the application before: the delays are measured again */
+	b->m->bus.scan_count++;
+	bus_esc(b, 1)->cfg.eeprom_busy_ns = 15 * NSEC_PER_MSEC;
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+	msleep(500);
+	/* the next look of the monitor starts the scan; the clocks wait for the application time */
+	for (frames = bus_frames(b); bus_frames(b) == frames;)
+		usleep_range(100, 101);
+	usleep_range(19000, 19001);
+	cyc_activate(c);
+	cyc_run(c, 15);
+	c->each = each;
+	for (i = 0; i < 2000 &&
+	     (READ_ONCE(b->m->dc.state) != EC_DC_READY || !READ_ONCE(b->m->bus.scan_busy)); i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_TRUE(test, b->m->bus.scan_busy);
+	KUNIT_ASSERT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 4u);
+	for (i = 1; i < 4; i++) {
+		s32 delay = ec_clock_of(bus_slave(b, i))->delay;
+
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->position, i);
+		/* the way through x counts half as long as it is not known; it is slave 1 then */
+		KUNIT_EXPECT_GE(test, delay, before[i]);
+		KUNIT_EXPECT_LE(test, delay, true_delay(b, i + 1) + 10);
+		bus_figure("slave %u: delay %d ns, %d ns before, %d ns with the new slave", i,
+			   delay, before[i], true_delay(b, i + 1));
+	}
+	cyc_run(c, 5000);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 5u);
+	KUNIT_EXPECT_LE(test, expect_wiring(b, "x between k and l"), 10u);
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(wiring_reversed),
 	KUNIT_CASE(wiring_by_any_port),
 	KUNIT_CASE(wiring_that_does_not_fit),
+	KUNIT_CASE(wiring_slave_inserted),
 	{ }
 };
 

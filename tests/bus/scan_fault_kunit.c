@@ -165,6 +165,92 @@ static void scan_not_read_gets_new_object(struct kunit *test)
 	ec_slave_unref(old);
 }
 
+/* a contact that is open for a while, from some time after the stations were read */
+static struct bounce {
+	struct bus *b;
+	int position;
+	u64 after_ns;
+	u64 ns;
+	u32 times;
+} bounces;
+
+/* The scan asks right after that read: is the failed slave 0 attached? */
+static bool bounce(const struct ec_slave *s)
+{
+	struct ec_sim_fault dead = {
+		.at_ns = ktime_get_ns() + bounces.after_ns, .type = EC_SIM_FAULT_DEAD,
+		.slave = bounces.position, .arg = 1,
+	};
+
+	if (bounces.times++)
+		return true;
+	ec_sim_add_fault(bounces.b->sim, &dead);
+	dead.at_ns += bounces.ns;
+	dead.arg = 0;
+	ec_sim_add_fault(bounces.b->sim, &dead);
+	return true;
+}
+
+static void bounce_at(struct bus *b, int position)
+{
+	static struct ec_bus_ops ops;
+
+	ops = *b->m->bus.ops;
+	ops.attached = bounce;
+	b->m->bus.ops = &ops;
+	bounces.b = b;
+	bounces.position = position;
+	bounces.times = 0;
+	WRITE_ONCE(bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+}
+
+/* A known slave keeps its registers. */
+static void scan_bounce_known(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	struct ec_slave *s = bus_slave(b, 2);
+	u8 regs[EC_INFO_SIZE];
+	u16 dl = s->dl_status;
+
+	bus_idle(b);
+	bounces = (struct bounce){ .ns = 20 * NSEC_PER_USEC };
+	bounce_at(b, 2);
+	memcpy(regs, s->regs, sizeof(regs));
+	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
+	msleep(500);
+	KUNIT_EXPECT_EQ(test, bounces.times, 1u);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 5u);
+	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 2), s);
+	KUNIT_EXPECT_MEMEQ(test, s->regs, regs, sizeof(regs));
+	KUNIT_EXPECT_EQ(test, s->dl_status, dl);
+	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+}
+
+/* A new one, which has accepted its address, is read again. */
+static void scan_bounce_new(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	u32 lines = bus_log_lines("EtherCAT 0-5: no reply to a register read");
+	u8 regs[EC_INFO_SIZE], v[4];
+	u64 t0;
+
+	bus_idle(b);
+	memcpy(regs, bus_slave(b, 5)->regs, sizeof(regs));
+	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
+	bus_idle(b);
+	t0 = ktime_get_ns();
+	ec_xfer_fprd(&b->m->links, bus_slave(b, 0)->station, 0, v, 4);
+	t0 = ktime_get_ns() - t0;
+	bounces = (struct bounce){ .after_ns = t0 * 3 / 2, .ns = 3 * t0 };
+	bounce_at(b, 5);
+	bus_fault(b, EC_SIM_FAULT_HEAL, 4, 1, 0, 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 2000), ~0ull);
+	KUNIT_EXPECT_MEMEQ(test, bus_slave(b, 5)->regs, regs, sizeof(regs));
+	KUNIT_EXPECT_EQ(test, bus_log_lines("EtherCAT 0-5: no reply to a register read"),
+			lines + 1);
+}
+
 static void scan_busy_forever(struct kunit *test)
 {
 	struct bus *b = prepare(test);
@@ -469,6 +555,8 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_refused_state_request),
 	KUNIT_CASE(scan_not_read_not_published),
 	KUNIT_CASE(scan_not_read_gets_new_object),
+	KUNIT_CASE(scan_bounce_known),
+	KUNIT_CASE(scan_bounce_new),
 	KUNIT_CASE(scan_busy_forever),
 	KUNIT_CASE(scan_emulated_eeprom),
 	KUNIT_CASE(scan_emulated_eeprom_mute),
