@@ -195,13 +195,12 @@ static void clear(struct ec_session *s)
 	kvfree(s->wanted.configs);
 	kvfree(s->specs);
 	ec_budget_release(&s->wanted.budget, s->wanted.budget.bytes);
+	if (s->handles)
+		ec_session_free(s->handles);
 	memset_startat(&s->wanted, 0, configs);
 	memset_startat(s, 0, specs);
 	s->ref_config = EC_UAPI_NONE32;
 	ec_cycle_clear(&s->cycle);
-	if (s->handles)
-		ec_session_free(s->handles);
-	s->handles = NULL;
 }
 
 /* Application time and interval are those of one application. */
