@@ -76,7 +76,7 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 {
 	int ret = ec_ioc(&m->api->file, cmd, arg);
 
-	return ret == -ERESTARTNOHAND ? -EINTR : ret;
+	return ret == -ERESTARTNOHAND || ret == -ERESTARTSYS ? -EINTR : ret;
 }
 
 /**

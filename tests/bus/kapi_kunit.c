@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Life and configuration of applications in the kernel. */
 #include <linux/delay.h>
+#include <linux/kthread.h>
+#include <linux/sched/signal.h>
 #include "kapp.h"
 #include "devices/sim/app.h"
 #include "master/boundary/api.h"
@@ -100,6 +102,38 @@ static void kapi_info(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, slave.name, bus_slave(b, 0)->name);
 	KUNIT_EXPECT_EQ(test, ecrt_master_get_slave(m, 2, &slave), -EINVAL);
 	ecrt_release_master(m);
+}
+
+static int ask_signalled(void *m)
+{
+	ec_slave_info_t slave;
+
+	allow_signal(SIGUSR1);
+	send_sig(SIGUSR1, current, 1);
+	return ecrt_master_get_slave(m, 0, &slave);
+}
+
+/* A signal ends a call that waits for a change, with a code that applications know. */
+static void kapi_signal_ends_call(struct kunit *test)
+{
+	struct bus *b = bus_up(test, pair, 2);
+	ec_master_t *m = ecrt_request_master(0);
+	struct task_struct *t;
+
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	ec_sessions_lock(&m->sessions);
+	t = kthread_create(ask_signalled, m, "kapi-signal");
+	if (!IS_ERR(t)) {
+		get_task_struct(t);
+		wake_up_process(t);
+		msleep(20);
+		KUNIT_EXPECT_EQ(test, kthread_stop(t), -EINTR);
+		put_task_struct(t);
+	}
+	ec_sessions_unlock(&m->sessions);
+	KUNIT_EXPECT_FALSE(test, IS_ERR(t));
+	ecrt_release_master(m);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
 }
 
 /* What a slave describes: SyncManagers, PDOs, entries; errors as in userspace. */
@@ -458,6 +492,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_request),
 	KUNIT_CASE(kapi_without_device),
 	KUNIT_CASE(kapi_info),
+	KUNIT_CASE(kapi_signal_ends_call),
 	KUNIT_CASE(kapi_described),
 	KUNIT_CASE(kapi_cycle),
 	KUNIT_CASE(kapi_external_memory),
