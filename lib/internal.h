@@ -101,6 +101,17 @@ static inline __u64 ec_status_read64(const struct ec_status *st, const __u64 *fi
 #endif
 }
 
+/* Values of 64 bits that threads share; a program of 32 bits takes two loads or stores. */
+static inline __u64 ec_read64(const __u64 *v)
+{
+	return *(const volatile __u64 *)v;
+}
+
+static inline void ec_write64(__u64 *v, __u64 to)
+{
+	*(volatile __u64 *)v = to;
+}
+
 /* ioctl.c: what the sources in ecrt/ need of a process */
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
 int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
@@ -154,6 +165,11 @@ static inline struct ec_app_cycle *ec_app_cycle(const struct ec_master *m)
 static inline const struct ec_status *ec_active_status(const struct ec_master *m)
 {
 	return m && m->active ? m->status : NULL;
+}
+
+static inline bool ec_run_by_kernel(const struct ec_master *m)
+{
+	return m && m->active && m->cycle.exchange;
 }
 
 /* configurations whose state is in the mapped status page */

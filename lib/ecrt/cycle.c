@@ -350,39 +350,34 @@ int ec_exchange_send(ec_master_t *m, const struct ec_status *st)
 
 /* waiting and state --------------------------------------------------------*/
 
-/* Status page of an active master whose cycle the kernel runs, or NULL. */
-static const struct ec_status *run_by_kernel(const ec_master_t *m)
-{
-	const struct ec_status *st = ec_active_status(m);
-
-	return st && ec_app_cycle(m)->exchange ? st : NULL;
-}
-
 int ecrt_master_wait_cycle(ec_master_t *master, uint32_t timeout_us)
 {
 	struct ec_ioc_wait arg = { .timeout_us = timeout_us };
 	struct ec_app_cycle *a;
-	__u64 n;
+	__u64 seen, n;
 	int ret;
 
-	if (!run_by_kernel(master))
+	if (!ec_run_by_kernel(master))
 		return ec_inactive(master);
 	a = ec_app_cycle(master);
-	arg.cycle = a->seen;
+	seen = ec_read64(&a->seen);
+	arg.cycle = seen;
 	ret = ec_command(master, EC_IOC_WAIT, &arg);
 	if (ret)
 		return ret;
-	n = arg.cycle - a->seen;
-	a->seen = arg.cycle;
+	n = arg.cycle - seen;
+	/* another thread may have got a later one meanwhile */
+	if (arg.cycle > ec_read64(&a->seen))
+		ec_write64(&a->seen, arg.cycle);
 	return n > INT_MAX ? INT_MAX : (int)n;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_wait_cycle);
 
 uint64_t ecrt_master_cycle_count(const ec_master_t *master)
 {
-	const struct ec_status *st = run_by_kernel(master);
+	const struct ec_status *st = ec_active_status(master);
 
-	return st ? ec_status_read64(st, &st->kernel.cycle) : 0;
+	return st && ec_run_by_kernel(master) ? ec_status_read64(st, &st->kernel.cycle) : 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_cycle_count);
 
@@ -391,7 +386,7 @@ int ecrt_master_cycle_inputs(const ec_master_t *master, uint64_t *cycle, uint64_
 	const struct ec_exchange_buffer *b;
 	const struct ec_app_cycle *a;
 
-	if (!run_by_kernel(master))
+	if (!ec_run_by_kernel(master))
 		return ec_inactive(master);
 	a = ec_app_cycle(master);
 	if (!a->in_taken)

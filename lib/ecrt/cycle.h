@@ -21,7 +21,7 @@
  * @out_last: the one that it gave last
  * @in_front: input buffer that the application holds
  * @in_taken: @in_front has inputs
- * @seen: last cycle waited for
+ * @seen: last cycle that a thread has waited for; several may wait
  */
 struct ec_app_cycle {
 	struct ec_ioc_send next;
@@ -33,7 +33,7 @@ struct ec_app_cycle {
 	unsigned int out_last;
 	unsigned int in_front;
 	bool in_taken;
-	__u64 seen;
+	__aligned_u64 seen;
 };
 
 /* inputs of a domain: @count times @size bytes, each @stride behind the one before */

@@ -139,6 +139,15 @@ static inline const struct ec_status *ec_active_status(const struct ec_master *m
 	return s ? s->cycle.shared->status : NULL;
 }
 
+/*
+ * Does the kernel run the cycle of an active session? Deactivation does not wait for a caller
+ * that asks this, so nothing of the session is read.
+ */
+static inline bool ec_run_by_kernel(const struct ec_master *m)
+{
+	return m && ec_api_session(m->api) && READ_ONCE(m->api->cycle.exchange);
+}
+
 static inline size_t ec_status_configs(const struct ec_master *m)
 {
 	return EC_STATUS_CONFIGS;

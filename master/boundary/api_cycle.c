@@ -83,17 +83,12 @@ static int exchange(struct ec_master *m, int (*fn)(struct ec_master *m, const st
 	return ret;
 }
 
-static bool by_kernel(const struct ec_master *m)
-{
-	return ec_active_status(m) && m->api->cycle.exchange;
-}
-
 int ecrt_master_receive(ec_master_t *master)
 {
 	struct ec_session *s;
 	int ret;
 
-	if (by_kernel(master))
+	if (ec_run_by_kernel(master))
 		return exchange(master, ec_exchange_receive);
 	ret = enter(master, &s);
 	if (ret == -ENODEV)
@@ -120,7 +115,7 @@ int ecrt_master_send(ec_master_t *master)
 	struct ec_session *s;
 	int ret;
 
-	if (by_kernel(master))
+	if (ec_run_by_kernel(master))
 		return exchange(master, ec_exchange_send);
 	ret = enter(master, &s);
 	if (ret)

@@ -333,6 +333,23 @@ static void kcycle_wait_ends_with_cycle(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
+/* What another caller has got changes neither the result of this one nor goes back. */
+static void kcycle_wait_beside_another(struct kunit *test)
+{
+	struct kapp *k = start_slow(test);
+	__u64 *seen = &k->m->api->cycle.seen, before;
+	struct waiter w;
+
+	begin(&w, k, 0);
+	msleep(10);
+	before = *seen;
+	ec_write64(seen, before + 5);
+	wait_for_completion(&w.done);
+	KUNIT_EXPECT_EQ(test, kthread_stop(w.task), 1);
+	KUNIT_EXPECT_EQ(test, (u64)*seen, (u64)before + 5);
+	ecrt_release_master(k->m);
+}
+
 /* Both callers get the same cycle; more than 16 are refused. */
 static void kcycle_many_wait(struct kunit *test)
 {
@@ -385,6 +402,26 @@ static void kcycle_two_callers(struct kunit *test)
 	wait_for_completion(&w.done);
 	KUNIT_EXPECT_EQ(test, kthread_stop(w.task), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EINVAL);
+	ecrt_release_master(k->m);
+}
+
+/* Calls that deactivation does not wait for yet do not look at the session. */
+static void kcycle_calls_beside_deactivation(struct kunit *test)
+{
+	struct kapp *k = start_slow(test);
+	struct ec_sessions *ss = &k->m->sessions;
+	struct ec_shared *shared;
+
+	ec_sessions_lock(ss);
+	shared = ss->session->cycle.shared;
+	ss->session->cycle.shared = NULL;	/* the thread sleeps for a second */
+	atomic_set(&k->m->api->busy, 1);
+	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ecrt_master_send(k->m), -EBUSY);
+	KUNIT_EXPECT_EQ(test, ecrt_master_wait_cycle(k->m, 1000), -ETIMEDOUT);
+	atomic_set(&k->m->api->busy, 0);
+	ss->session->cycle.shared = shared;
+	ec_sessions_unlock(ss);
 	ecrt_release_master(k->m);
 }
 
@@ -446,6 +483,7 @@ static void kcycle_taken_over(struct kunit *test)
 	struct kapp *k = start(test, (ec_cycle_config_t){ .flags = EC_CYCLE_DETACH });
 	ec_slave_config_state_t state;
 	ec_cycle_state_t cycle;
+	u8 *data;
 	u32 i;
 
 	kapp_op(k);
@@ -457,6 +495,10 @@ static void kcycle_taken_over(struct kunit *test)
 		k = again(k);
 		KUNIT_EXPECT_NULL(test, ecrt_domain_data(k->d));
 		kapp_activate(k);
+		/* memory comes too late */
+		data = ecrt_domain_data(k->d);
+		ecrt_domain_external_memory(k->d, NULL);
+		KUNIT_ASSERT_PTR_EQ(test, ecrt_domain_data(k->d), data);
 		/* outputs and inputs are those of the cycle that runs */
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(output(k, 0)), 4 + i);
 		KUNIT_EXPECT_EQ(test, input(k, 0), 4 + i);
@@ -475,6 +517,11 @@ static void kcycle_taken_over(struct kunit *test)
 	bus_wait(k->b, 3, EC_AL_PREOP, 3000);
 	ecrt_release_master(k->m);
 	KUNIT_EXPECT_NULL(test, k->b->m->sessions.session);
+	/* work on requests may end a moment later */
+	msleep(50);
+	KUNIT_EXPECT_EQ(test, atomic_long_read(&k->b->m->sessions.memory), 0L);
+	/* only the table of slaves has one */
+	KUNIT_EXPECT_EQ(test, kref_read(&bus_slave(k->b, 2)->kref), 1u);
 }
 
 /* Another configuration is refused until the detached session ends. */
@@ -509,8 +556,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kcycle_slaves_down),
 	KUNIT_CASE(kcycle_wait_ends_with_its_thread),
 	KUNIT_CASE(kcycle_wait_ends_with_cycle),
+	KUNIT_CASE(kcycle_wait_beside_another),
 	KUNIT_CASE(kcycle_many_wait),
 	KUNIT_CASE(kcycle_two_callers),
+	KUNIT_CASE(kcycle_calls_beside_deactivation),
 	KUNIT_CASE(kcycle_links_belong_to_kernel),
 	KUNIT_CASE(kcycle_waits_for_outputs),
 	KUNIT_CASE(kcycle_taken_over),
