@@ -155,15 +155,11 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	if (!READ_ONCE(api->reserved))
 		return -EPERM;
 	api->cycle.next.app_time = app_time;
-	if (READ_ONCE(api->active)) {
+	if (READ_ONCE(api->active))
 		api->cycle.next.flags |= EC_SEND_FLAG_APP_TIME;
-	} else if (!READ_ONCE(master->sessions.candidate)) {
-		/*
-		 * Before activation there is no cycle it could go with. A candidate can only
-		 * be this application: the cycle that runs has its own time then.
-		 */
-		ec_dc_app_time(&master->dc, app_time, ktime_get_ns());
-	}
+	else
+		/* there is no cycle it could go with */
+		ec_session_app_time(&master->sessions, app_time);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_application_time);

@@ -452,15 +452,10 @@ int ec_ioc_ref_clock(struct ec_call *call)
 int ec_ioc_interval(struct ec_call *call)
 {
 	struct ec_ioc_interval *i = call->arg;
-	struct ec_master *m = call->master;
 
 	if (!i->interval_us)
 		return ec_refuse(call, -EINVAL, "send interval must be 1 us or more");
-	/* the interval is that of the session which runs */
-	if (call->session == m->sessions.candidate)
-		return 0;
-	WRITE_ONCE(m->links.access.interval_us, min_t(u32, i->interval_us, EC_MAX_INTERVAL_US));
-	m->links.access.interval_set = i->interval_us <= EC_MAX_INTERVAL_US;
+	ec_session_interval(&call->master->sessions, i->interval_us);
 	return 0;
 }
 
@@ -517,9 +512,7 @@ int ec_ioc_app_time(struct ec_call *call)
 	ret = ec_ioc_lock_session(call);
 	if (ret)
 		return ret;
-	/* before activation there is no cycle to disturb, but of a detached session */
-	if (call->session != m->sessions.candidate)
-		ec_dc_app_time(&m->dc, i->app_time, ktime_get_ns());
+	ec_session_app_time(&m->sessions, i->app_time);
 	ec_sessions_unlock(&m->sessions);
 	return 0;
 }

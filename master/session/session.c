@@ -3,6 +3,7 @@
 #include <linux/pid_namespace.h>
 #include <linux/sched.h>
 #include <linux/slab.h>
+#include "../base/once64.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
 #include "../mailbox/emerg.h"
@@ -61,6 +62,7 @@ static int begin(struct ec_sessions *ss, struct ec_session *s)
 	if (is_taken(ss)) {
 		ret = -EBUSY;
 	} else if (ss->session) {
+		ss->next = (struct ec_next){ };
 		WRITE_ONCE(ss->candidate, s);
 		s->wanted.before = &ss->session->wanted;
 	} else {
@@ -257,6 +259,64 @@ void ec_session_free(struct ec_session *s)
 	kvfree(s);
 }
 
+/**
+ * ec_session_interval() - the application sets the interval of its cycle
+ * @ss: sessions of a master
+ * @interval_us: us; more than EC_MAX_INTERVAL_US: not set
+ *
+ * That of a candidate is valid once the detached session has ended.
+ *
+ * Context: Process, session lock held.
+ */
+void ec_session_interval(struct ec_sessions *ss, u32 interval_us)
+{
+	struct ec_access *a = &ss->links->access;
+
+	lockdep_assert_held(&ss->lock);
+	if (ss->candidate) {
+		ss->next.interval_us = interval_us;
+		return;
+	}
+	WRITE_ONCE(a->interval_us, min_t(u32, interval_us, EC_MAX_INTERVAL_US));
+	a->interval_set = interval_us <= EC_MAX_INTERVAL_US;
+}
+
+/**
+ * ec_session_app_time() - the application sets its time before activation
+ * @ss: sessions of a master
+ * @app_time: ns
+ *
+ * That of a candidate is valid once the detached session has ended, whose cycle has its own.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_session_app_time(struct ec_sessions *ss, u64 app_time)
+{
+	u64 now = ktime_get_ns();
+
+	if (!READ_ONCE(ss->candidate)) {
+		ec_dc_app_time(ss->dc, app_time, now);
+		return;
+	}
+	if (!ec_read64(&ss->next.phase))
+		ec_write64(&ss->next.phase, app_time);
+	ec_write64(&ss->next.time, app_time);
+	ec_write64(&ss->next.at_ns, now);
+}
+
+/* What the candidate has set; its first time decides the phase. */
+static void use_next(struct ec_sessions *ss)
+{
+	u64 at_ns = ec_read64(&ss->next.at_ns);
+
+	if (ss->next.interval_us)
+		ec_session_interval(ss, ss->next.interval_us);
+	if (!at_ns)
+		return;
+	ec_dc_app_time(ss->dc, ec_read64(&ss->next.phase), at_ns);
+	ec_dc_app_time(ss->dc, ec_read64(&ss->next.time), at_ns);
+}
+
 /* The session has ended: its slaves are the candidate's now. */
 static void inherit(struct ec_sessions *ss)
 {
@@ -268,6 +328,7 @@ static void inherit(struct ec_sessions *ss)
 	if (!s)
 		return;
 	s->wanted.before = NULL;
+	use_next(ss);
 	to_preop(ss);
 	ec_for_each_config(c, &s->wanted) {
 		ec_session_detach(c);

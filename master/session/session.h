@@ -29,6 +29,20 @@ struct ec_timeout_log {
 	bool open;
 };
 
+/**
+ * struct ec_next - what a candidate has set, for the time when the master is its own
+ * @interval_us: of its cycle, 0: not set
+ * @phase: its first application time other than 0
+ * @time: its last one
+ * @at_ns: when it was that time (ktime), 0: no time
+ */
+struct ec_next {
+	u32 interval_us;
+	aligned_u64 phase;
+	aligned_u64 time;
+	aligned_u64 at_ns;
+};
+
 /** struct ec_sessions - applications of a master: one that uses it, one that waits */
 struct ec_sessions {
 	/** @base: name and log; immutable, as are the next four */
@@ -57,6 +71,8 @@ struct ec_sessions {
 	struct ec_session *session;
 	/** @candidate: of another one that is to take over @session, which is detached */
 	struct ec_session *candidate;
+	/** @next: of @candidate; its times have no lock */
+	struct ec_next next;
 	/**
 	 * @memory: bytes of all sessions, and of what they have mapped, which may outlive
 	 * them
@@ -122,6 +138,8 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 void ec_session_end(struct ec_sessions *ss, const void *owner);
 u32 ec_session_place(struct ec_session *s);
 int ec_session_end_detached(struct ec_sessions *ss);
+void ec_session_interval(struct ec_sessions *ss, u32 interval_us);
+void ec_session_app_time(struct ec_sessions *ss, u64 app_time);
 struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner);
 int ec_session_activate(struct ec_session *s);
 int ec_session_slaves_down(struct ec_session *s);

@@ -55,16 +55,25 @@ static void session_candidate_is_freed(struct kunit *test)
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
 		.flags = EC_CYCLE_FLAG_DETACH, .stall_cycles = 10, .dc = EC_SEND_FLAG_SYNC_SLAVES });
 	struct bus *b = a->c->b;
+	struct ec_ioc_app_time t = { .app_time = 12345 };
+	struct ec_ioc_interval i = { .interval_us = 50 };
 	u64 phase = b->m->dc.phase;
 
 	KUNIT_ASSERT_TRUE(test, b->m->dc.has_phase);
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
 	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && ec_dc_begun(&b->m->dc));
 	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
-	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
+	/* nor does the next one get what it has set */
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_EQ(test, ec_session_end_detached(&b->m->sessions), 0);
+	expect_nothing_told(b);
+	ec_session_end(&b->m->sessions, &b->app);
 }
 
 static void uploads(struct bus *b)
@@ -292,6 +301,7 @@ static void session_candidate_in_kernel(struct kunit *test)
 
 	KUNIT_ASSERT_PTR_EQ(test, b->m->sessions.session, runs);
 	KUNIT_ASSERT_NOT_NULL(test, b->m->sessions.candidate);
+	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 76), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 77), 0);
 	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
 	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
@@ -314,8 +324,13 @@ static void session_candidate_in_kernel(struct kunit *test)
 	/* the way the refusal names; then the bus is its own */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
+	/* what it has set meanwhile; its first time is the phase */
+	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
+	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 500u);
+	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 77ull);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
 	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
+	KUNIT_EXPECT_EQ(test, b->m->dc.phase, 76ull);
 	kapp_op(k);
 	kapp_run(k, 10);
 	ecrt_release_master(k->m);
