@@ -123,13 +123,13 @@ int ec_exchange_begin(struct ec_app_cycle *a, struct ec_exchange *x, size_t size
 		      const struct ec_status *st)
 {
 	a->exchange = x;
-	a->stride = x->stride;
+	a->stride = ec_status_read(x->stride);
 	if (a->stride < sizeof(struct ec_exchange_buffer) ||
 	    EC_EXCHANGE_FIRST + 2ULL * EC_EXCHANGE_BUFFERS * a->stride > size)
 		return -EPROTO;
-	a->out_back = x->app_output;
+	a->out_back = ec_status_read(x->app_output);
 	a->out_last = a->out_back;
-	a->in_front = x->app_input;
+	a->in_front = ec_status_read(x->app_input);
 	a->in_taken = false;
 	a->seen = ec_status_read64(st, &st->kernel.cycle);
 	return a->out_back < EC_EXCHANGE_BUFFERS && a->in_front < EC_EXCHANGE_BUFFERS ? 0 : -EPROTO;

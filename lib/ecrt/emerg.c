@@ -11,7 +11,7 @@ int ecrt_slave_config_emerg_pop(ec_slave_config_t *sc, uint8_t *target)
 		return -EINVAL;
 	if (!ec_emerg_get(sc, &e) || !e.count)
 		return -ENOENT;
-	tail = e.ring->tail;
+	tail = ec_status_read(e.ring->tail);
 	/* the head is read before the message */
 	if (tail == ec_load_acquire(&e.ring->head))
 		return -ENOENT;

@@ -78,9 +78,9 @@ int ec_app_requests_place(ec_master_t *m)
 			continue;
 		}
 		/* the application before may have started it */
-		r->start = r->rec->start;
-		r->op = r->rec->op;
-		if (r->rec->done != r->start)
+		r->start = ec_status_read(r->rec->start);
+		r->op = ec_status_read(r->rec->op);
+		if (ec_status_read(r->rec->done) != r->start)
 			r->state = EC_REQUEST_BUSY;
 	}
 	return ret;
@@ -96,15 +96,17 @@ int ec_app_requests_place(ec_master_t *m)
 ec_request_state_t ec_app_request_state(struct ec_app_request *r)
 {
 	struct ec_request_record *rec = r->rec;
+	__u32 got;
 
 	if (r->state != EC_REQUEST_BUSY || !rec || ec_load_acquire(&rec->done) != r->start)
 		return r->state;
-	r->state = rec->result ? EC_REQUEST_ERROR : EC_REQUEST_SUCCESS;
+	r->state = ec_status_read(rec->result) ? EC_REQUEST_ERROR : EC_REQUEST_SUCCESS;
 	if (r->state == EC_REQUEST_SUCCESS && r->op != EC_REQUEST_OP_WRITE) {
-		r->size = rec->got < r->room ? rec->got : r->room;
+		got = ec_status_read(rec->got);
+		r->size = got < r->room ? got : r->room;
 		memcpy(r->data, r->shared, r->size);
-		r->got_vendor_id = rec->got_vendor_id;
-		r->got_type = rec->got_type;
+		r->got_vendor_id = ec_status_read(rec->got_vendor_id);
+		r->got_type = ec_status_read(rec->got_type);
 	}
 	return r->state;
 }

@@ -239,15 +239,16 @@ static void feed(struct ec_cycle_thread *t)
 /* An application gets the buffers after the thread's; its outputs begin with the image. */
 static void deal(struct ec_cycle_thread *t)
 {
+	unsigned int n = (t->front + 1) % EC_EXCHANGE_BUFFERS;
 	struct ec_exchange *x = exchange(t);
 
 	x->stride = t->stride;
-	x->app_output = (t->front + 1) % EC_EXCHANGE_BUFFERS;
+	x->app_output = n;
 	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
 	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
 	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
 	if (t->bytes)
-		memcpy(buffer(t, x->app_output) + 1, t->cycle->shared->image, t->bytes);
+		memcpy(buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
 }
 
 /* The previous application may have exited at any point: the next one begins anew. */

@@ -76,6 +76,16 @@ t "W=1 and sparse have nothing to say about our files" no_warning
 t "sparse has looked at them" sparse_ran
 t "every line that a module logs while it runs is rate-limited" tests/build/log_check.py master devices
 t "no 64-bit value is shared by READ_ONCE() and WRITE_ONCE()" tests/build/once64_check.py master
+t "a word of mapped memory is read once" tests/build/mapped_check.py lib/ecrt/*.c \
+	master/session/request*.c master/mailbox/emerg.c master/cycle/cycle_thread.c
+
+# else the check above could not fail
+mapped_noticed() {
+	printf 'n = rec->got < room ? rec->got : room;\n' >"$tmp/mapped.c"
+	tests/build/mapped_check.py "$tmp/mapped.c" | grep "mapped.c:1: rec->got is read"
+}
+
+t "a word that is read twice is noticed" mapped_noticed
 
 locks() { tests/build/locks_check.py "$1" Documentation/locking.rst "${@:2}"; }
 
