@@ -656,12 +656,6 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 	return mask;
 }
 
-/* A thread of an application in the kernel shall end. */
-static bool is_stopped(void)
-{
-	return current->flags & PF_KTHREAD && kthread_should_stop();
-}
-
 /**
  * ec_cycle_thread_wait() - wait for the next cycle
  * @cycles: of the master
@@ -694,12 +688,11 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 	ret = wait_event_interruptible_hrtimeout(w->wq,
 						 READ_ONCE(cycles->run) != run || !(run & 1) ||
 						 READ_ONCE(cycles->owner) != owner ||
-						 ec_read64(&cycles->number) > *cycle ||
-						 is_stopped(), limit);
+						 ec_read64(&cycles->number) > *cycle, limit);
 	ec_waiters_leave(w);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
-	/* a signal handler runs first, and ends it; after a stop it goes on */
+	/* a signal handler runs first, and ends it; kthread_stop() ends the wait as a signal does */
 	if (ret)
 		return -ERESTARTNOHAND;
 	if (!(run & 1) || READ_ONCE(cycles->run) != run || READ_ONCE(cycles->owner) != owner)
