@@ -692,7 +692,7 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 	ec_waiters_leave(w);
 	if (ret == -ETIME)
 		return -ETIMEDOUT;
-	/* a signal handler runs first, and ends it; kthread_stop() ends the wait as a signal does */
+	/* a signal handler runs first, and ends it; kthread_stop() ends the wait in the same way */
 	if (ret)
 		return -ERESTARTNOHAND;
 	if (!(run & 1) || READ_ONCE(cycles->run) != run || READ_ONCE(cycles->owner) != owner)
