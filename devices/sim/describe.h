@@ -25,7 +25,8 @@
  *		refuse NAME STATE code=N  allow NAME
  *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
  *		wkc NAME add=N  errors NAME.PORT add=N
- *		mailbox NAME good|length|short|counter|type|babble|error code=N (its messages)
+ *		mailbox NAME good|length|short|counter|type|babble|stale|fragments (its messages)
+ *		mailbox NAME error|abort code=N (likewise)
  *		latch NAME 0|1 [edge=rising|falling|pulse] (an input of its clock)
  *		error NAME code=N (AL status code; out of OP)
  *		eeprom NAME word=N value=N  input NAME.CHANNEL value=N

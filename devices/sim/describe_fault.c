@@ -69,7 +69,8 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
-		"good", "length", "short", "counter", "type", "babble", "error", "abort",
+		"good", "length", "short", "counter", "type", "babble", "stale", "fragments",
+		"error", "abort",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
 	s64 code = 1;
@@ -86,7 +87,7 @@ static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 		f->arg2 = (u32)code;
 		return 0;
 	}
-	return ec_desc_fail(d, "invalid mailbox fault: expected good, length, short, counter, type, babble, error code=N or abort code=N",
+	return ec_desc_fail(d, "invalid mailbox fault: expected good, length, short, counter, type, babble, stale, fragments, error code=N or abort code=N",
 			    NULL, "");
 }
 

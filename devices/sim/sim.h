@@ -93,6 +93,8 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_COUNTER: each has the counter of the first
  * @EC_SIM_MAILBOX_TYPE: another protocol
  * @EC_SIM_MAILBOX_BABBLE: another protocol, again and again
+ * @EC_SIM_MAILBOX_STALE: SDO information that answers no request, again and again
+ * @EC_SIM_MAILBOX_FRAGMENTS: an SDO information reply never ends: empty fragments follow
  * @EC_SIM_MAILBOX_ERROR: each is a mailbox error reply with the code in @arg2
  * @EC_SIM_MAILBOX_ABORT: SDO requests that are aborted have the abort code @arg2
  * @EC_SIM_MAILBOX_FAULTS: number of faults
@@ -104,6 +106,8 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_COUNTER,
 	EC_SIM_MAILBOX_TYPE,
 	EC_SIM_MAILBOX_BABBLE,
+	EC_SIM_MAILBOX_STALE,
+	EC_SIM_MAILBOX_FRAGMENTS,
 	EC_SIM_MAILBOX_ERROR,
 	EC_SIM_MAILBOX_ABORT,
 	EC_SIM_MAILBOX_FAULTS

@@ -6,6 +6,8 @@
  */
 #include "app.h"
 
+#define FRAGMENT_NS	90000000	/* from one empty fragment to the next */
+
 static u32 od_read(void *ctx, u16 index, u8 sub, bool complete, u8 *buf,
 		   size_t cap, size_t *len)
 {
@@ -314,6 +316,21 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		coe(app, r.p, h.len, now, due);
 }
 
+/* Let a message to the master be SDO information without data. */
+static void info_empty(u8 *h, u8 opcode)
+{
+	struct ec_wbuf w = ec_wbuf(h + EC_MBOX_HDR, EC_SDOINFO_HDR);
+
+	put_unaligned_le16(EC_SDOINFO_HDR, h);
+	h[5] = (u8)((h[5] & 0x70) | EC_MBOX_COE);
+	ec_sdoinfo_put_hdr(&w, opcode, 0);
+}
+
+static bool is_info(const u8 *h)
+{
+	return (h[5] & 0x0f) == EC_MBOX_COE && h[EC_MBOX_HDR + 1] >> 4 == EC_COE_SDO_INFO;
+}
+
 /* What the script wants to be wrong with a message to the master. */
 static void spoil(struct ec_app *app)
 {
@@ -332,6 +349,13 @@ static void spoil(struct ec_app *app)
 	case EC_SIM_MAILBOX_TYPE:
 	case EC_SIM_MAILBOX_BABBLE:
 		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_FOE);
+		break;
+	case EC_SIM_MAILBOX_STALE:
+		info_empty(h, 0);
+		break;
+	case EC_SIM_MAILBOX_FRAGMENTS:
+		if (is_info(h))
+			h[EC_MBOX_HDR + EC_COE_HDR] |= EC_SDOINFO_INCOMPLETE;
 		break;
 	case EC_SIM_MAILBOX_ERROR:
 		put_unaligned_le16(EC_MBOX_ERR_BODY, h);
@@ -418,6 +442,8 @@ static void step(struct ec_app *app, u64 now)
 					    len, now) < 0)
 				return;
 			dispatch(app, len, now);
+		} else if (esc->fault.mailbox == EC_SIM_MAILBOX_STALE) {
+			out_set(app, EC_MBOX_COE, EC_SDOINFO_HDR, now);
 		} else {
 			return;
 		}
@@ -461,9 +487,14 @@ void ec_app_mbox_read(struct ec_app *app, u64 now)
 		memcpy(m->last, m->out, m->out_len);
 		m->last_len = m->out_len;
 		m->out_in_sm = false;
-		if (app->esc->fault.mailbox != EC_SIM_MAILBOX_BABBLE)
-			m->out_len = 0;
 		m->out_due = now;
+		if (app->esc->fault.mailbox == EC_SIM_MAILBOX_FRAGMENTS && is_info(m->out)) {
+			info_empty(m->out, m->out[EC_MBOX_HDR + EC_COE_HDR]);
+			m->out_len = EC_MBOX_HDR + EC_SDOINFO_HDR;
+			m->out_due += FRAGMENT_NS;
+		} else if (app->esc->fault.mailbox != EC_SIM_MAILBOX_BABBLE) {
+			m->out_len = 0;
+		}
 	}
 	step(app, now);
 }

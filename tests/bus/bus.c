@@ -327,6 +327,33 @@ void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes)
 }
 
 /**
+ * bus_strip_names() - let an EEPROM have no names of PDOs and entries
+ * @b: bus, not plugged in yet
+ * @index: of the slave in the segment
+ */
+void bus_strip_names(struct bus *b, u32 index)
+{
+	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+
+	ec_sii_iter_init(&it, e->data, e->len);
+	while (ec_sii_iter_next(&it, &cat) == 1) {
+		u8 *p = (u8 *)cat.data, *end = p + cat.bytes;
+
+		if (cat.type != EC_SII_CAT_RXPDO && cat.type != EC_SII_CAT_TXPDO)
+			continue;
+		while (p < end) {
+			u32 n = p[2];
+
+			p[5] = 0;
+			for (p += 8; n && p < end; n--, p += 8)
+				p[3] = 0;
+		}
+	}
+}
+
+/**
  * bus_request() - what "ethercat states" does
  * @b: bus
  * @position: ring position

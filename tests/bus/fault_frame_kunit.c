@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Frames that nobody sent, that are cut, changed, doubled, late or lost. */
-#include "bus.h"
+#include "cyc.h"
 #include "devices/ecdev.h"
+#include "master/link/device.h"
 #include "master/link/slots.h"
 
 static const char text[] =
@@ -301,6 +302,119 @@ static void frame_trouble(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, N);
 }
 
+/* A device that refuses frames to which another station has sent a good reply already. */
+static struct forger {
+	const struct ecdev_ops *real;
+	struct ecdev_ops ops;
+	struct ecdev *dev;
+	u8 cmd;		/* of the first datagram of these frames */
+	u16 wkc;	/* of the reply */
+	u32 times;	/* more frames */
+	u32 seen;	/* frames of this kind */
+} forger;
+
+static int forge(void *priv, u8 *buf, size_t len)
+{
+	static u8 reply[EC_ETH_MAX];
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+
+	memcpy(reply, buf, len);
+	if (ec_frame_iter_init(&it, reply + EC_ETH_HDR, len - EC_ETH_HDR) ||
+	    ec_frame_iter_next(&it, &d) != 1 || d.cmd != forger.cmd)
+		return forger.real->tx_send(priv, buf, len);
+	forger.seen++;
+	if (!forger.times)
+		return forger.real->tx_send(priv, buf, len);
+	forger.times--;
+	reply[6] |= 2;
+	memset(d.data, 0x5a, d.len);
+	ec_dgram_set_wkc(&d, forger.wkc);
+	ecdev_receive(forger.dev, reply + 6, reply + EC_ETH_HDR, len - EC_ETH_HDR);
+	return -EBUSY;
+}
+
+static void begin_forging(struct bus *b, u8 cmd, u16 wkc)
+{
+	struct ecdev *dev = b->m->links.link[0].dev;
+
+	forger = (struct forger){
+		.real = dev->ops, .ops = *dev->ops, .dev = dev, .cmd = cmd, .wkc = wkc,
+	};
+	forger.ops.tx_send = forge;
+	dev->ops = &forger.ops;
+}
+
+/* All slots are free, or in quarantine: none is lost. */
+static void end_forging(struct bus *b)
+{
+	u32 ms, i, used = EC_SLOTS;
+
+	forger.dev->ops = forger.real;
+	for (ms = 0; ms < 100 && used; ms++) {
+		usleep_range(1000, 1001);
+		for (i = 0, used = 0; i < EC_SLOTS; i++) {
+			int state = atomic_read(&b->m->links.slots.slot[i].state);
+
+			used += state != EC_SLOT_FREE && state != EC_SLOT_QUARANTINE;
+		}
+	}
+	KUNIT_EXPECT_EQ(b->test, used, 0u);
+	KUNIT_EXPECT_EQ(b->test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(b->test, atomic_read(&b->m->links.link[0].acyclic_ns), 0);
+}
+
+/* Refused once, and always: the frame counts as sent. */
+static void frame_refused_after_reply_is_not_sent_again(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	u16 station = bus_slave(b, 1)->station;
+	u8 v[4], good[4];
+	u32 i;
+
+	bus_idle(b);
+	memset(good, 0x5a, sizeof(good));
+	begin_forging(b, EC_CMD_FPRD, 1);
+	for (i = 0; i < 300; i++) {
+		forger.times = i % 2 ? U32_MAX : 1;
+		forger.seen = 0;
+		memset(v, 0, sizeof(v));
+		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, sizeof(v)), 0);
+		KUNIT_EXPECT_MEMEQ(test, v, good, sizeof(v));
+		KUNIT_EXPECT_EQ(test, forger.seen, 1u);
+		if (forger.seen != 1)
+			break;
+	}
+	end_forging(b);
+	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, sizeof(v)), 0);
+	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, sizeof(v));
+}
+
+static void every_second(struct cyc *c)
+{
+	forger.times = c->cycles % 2;
+}
+
+static void frame_refused_after_reply_is_taken_by_cycle(struct kunit *test)
+{
+	struct cyc *c = cyc_in_op(bus_up(test, text, N), 0, N);
+	struct ec_cyc_dgram *d = c->b->m->sessions.session->cycle.dgrams;
+	u64 errors = atomic64_read(&c->b->m->links.link[0].stats.tx_errors);
+
+	cyc_run(c, 10);
+	c->incomplete = 0;
+	c->each = every_second;
+	begin_forging(c->b, d->cmd, d->expected);
+	cyc_run(c, 600);
+	KUNIT_EXPECT_EQ(test, forger.seen, 600u);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0u);
+	KUNIT_EXPECT_EQ(test, atomic64_read(&c->b->m->links.link[0].stats.tx_errors), errors);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	c->each = NULL;
+	cyc_release(c);
+	end_forging(c->b);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(frame_changed),
 	KUNIT_CASE(frame_truncated),
@@ -309,6 +423,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(frame_foreign),
 	KUNIT_CASE(frame_compared),
 	KUNIT_CASE_PARAM(frame_trouble, trouble_gen_params),
+	KUNIT_CASE(frame_refused_after_reply_is_not_sent_again),
+	KUNIT_CASE(frame_refused_after_reply_is_taken_by_cycle),
 	{}
 };
 

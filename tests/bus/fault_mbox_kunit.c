@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Mailboxes that answer wrongly, endlessly or not at all. */
-#include "bus.h"
+#include <linux/kthread.h>
+#include <linux/sched/signal.h>
+#include "cyc.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
 
@@ -53,6 +55,8 @@ static const struct wrong {
 	{ "counter", EC_SIM_MAILBOX_COUNTER, 0 },
 	{ "type", EC_SIM_MAILBOX_TYPE, -ETIMEDOUT },
 	{ "babble", EC_SIM_MAILBOX_BABBLE, -ETIMEDOUT },
+	{ "stale", EC_SIM_MAILBOX_STALE, -ETIMEDOUT },
+	{ "fragments", EC_SIM_MAILBOX_FRAGMENTS, 0 },
 };
 
 static void wrong_desc(const struct wrong *w, char *desc)
@@ -106,10 +110,162 @@ static void mbox_gone(struct kunit *test)
 	KUNIT_EXPECT_LT(test, serial(b, BAD), 0);
 }
 
+/* somebody who reads an object of the bad slave, until a signal or @cancel */
+struct reader {
+	struct bus *b;
+	u16 index;
+	bool cancel;
+	struct ec_mbox_limit limit;
+	u8 v[1000];
+	int ret;
+	u64 ended_ns;
+	struct completion done;
+};
+
+static int read_object(void *arg)
+{
+	struct reader *r = arg;
+	size_t got;
+	u32 abort;
+
+	allow_signal(SIGKILL);
+	r->ret = ec_coe_upload(&bus_slave(r->b, BAD)->mbox, r->index, 0, false, r->v,
+			       sizeof(r->v), &got, &abort, &r->limit);
+	r->ended_ns = ktime_get_ns();
+	complete(&r->done);
+	return 0;
+}
+
+static struct task_struct *begin_read(struct bus *b, struct reader *r, u16 index)
+{
+	struct task_struct *t;
+
+	*r = (struct reader){
+		.b = b, .index = index, .limit = { .timeout_ms = 5000, .cancel = &r->cancel },
+	};
+	init_completion(&r->done);
+	t = kthread_run(read_object, r, "reader");
+	KUNIT_ASSERT_FALSE(b->test, IS_ERR(t));
+	return t;
+}
+
+/* It always has a message ready, and none is the reply: a caller that is killed leaves. */
+static void mbox_stale_messages_leave_fatal_signal(struct kunit *test)
+{
+	static struct reader r;
+	struct bus *b = ready(test);
+	struct task_struct *t;
+	u64 t0;
+
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_STALE, 0);
+	KUNIT_EXPECT_EQ(test, serial(b, BAD), -ETIMEDOUT);
+	t = begin_read(b, &r, 0x1000);
+	msleep(100);
+	KUNIT_ASSERT_FALSE(test, completion_done(&r.done));
+	t0 = ktime_get_ns();
+	send_sig(SIGKILL, t, 1);
+	wait_for_completion(&r.done);
+	bus_figure("SDO upload from a slave with endless stale messages: ends %llu us after SIGKILL",
+		   div_u64(r.ended_ns - t0, NSEC_PER_USEC));
+	KUNIT_EXPECT_EQ(test, r.ret, -EINTR);
+	KUNIT_EXPECT_LT(test, r.ended_ns - t0, 50ull * NSEC_PER_MSEC);
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_GOOD, 0);
+	serial(b, BAD);
+	KUNIT_EXPECT_EQ(test, serial(b, BAD), 5);
+}
+
+/* Each segment is there at once: the transfer ends when its caller does not want it any more. */
+static void mbox_segments_at_once_leave_cancel(struct kunit *test)
+{
+	static struct reader r;
+	struct bus *b = bus_up(test, "segment seed=9\nslave coupler EK1100\n"
+			       "slave bad drive mbox=32 response=0us\n", 2);
+	u64 t0;
+
+	bus_idle(b);
+	begin_read(b, &r, 0x2000);
+	usleep_range(500, 501);
+	KUNIT_ASSERT_FALSE(test, completion_done(&r.done));
+	t0 = ktime_get_ns();
+	WRITE_ONCE(r.cancel, true);
+	wait_for_completion(&r.done);
+	bus_figure("SDO upload in 44 segments that are ready at once: ends %llu us after cancel",
+		   div_u64(r.ended_ns - t0, NSEC_PER_USEC));
+	KUNIT_EXPECT_EQ(test, r.ret, -ECANCELED);
+	KUNIT_EXPECT_LT(test, r.ended_ns - t0, 1ull * NSEC_PER_MSEC);
+}
+
+/* The EEPROM of the bad slave has no names. */
+static struct bus *nameless(struct kunit *test)
+{
+	struct bus *b = bus_new(test, text);
+
+	bus_strip_names(b, BAD);
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	KUNIT_ASSERT_GT(test, bus_slave(b, BAD)->names.n, 0u);
+	return b;
+}
+
+/* Its worker asks for them, and the messages of its mailbox are wrong. */
+static void read_names(struct bus *b, u32 kind)
+{
+	struct ec_slave *s = bus_slave(b, BAD);
+
+	ec_names_free(s);
+	s->names_done = false;
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, kind, 0);
+	ec_slave_kick(s);
+	msleep(5);
+	KUNIT_ASSERT_TRUE(b->test, READ_ONCE(s->mbox.sdo_lock.count) == 0);
+}
+
+/* As the monitor attaches it, which waits for nothing: not for names that never come either. */
+static void mbox_stale_messages_leave_session(struct kunit *test)
+{
+	struct bus *b = nameless(test);
+	struct ec_slave *s = bus_slave(b, BAD);
+	struct ec_config *c;
+	u64 t0;
+
+	cyc_new(b, 1000);
+	read_names(b, EC_SIM_MAILBOX_STALE);
+	t0 = ktime_get_ns();
+	ec_sessions_lock(&b->m->sessions);
+	c = ec_session_configure(b->m->sessions.session, 0, BAD, s->info.vendor,
+				 s->info.product);
+	ec_sessions_unlock(&b->m->sessions);
+	t0 = ktime_get_ns() - t0;
+	KUNIT_EXPECT_FALSE(test, IS_ERR(c));
+	bus_figure("configuration of a slave whose worker reads stale messages: %llu us",
+		   div_u64(t0, NSEC_PER_USEC));
+	KUNIT_EXPECT_LT(test, t0, 50ull * NSEC_PER_MSEC);
+}
+
+/* A name whose fragments never end: the limit of all names ends it. */
+static void mbox_endless_fragments(struct kunit *test)
+{
+	struct bus *b = nameless(test);
+	u32 ms;
+
+	read_names(b, EC_SIM_MAILBOX_FRAGMENTS);
+	for (ms = 0; ms < 5000 && !bus_settled(b); ms++)
+		usleep_range(1000, 1001);
+	bus_figure("slave with names in endless fragments: settled after %u ms", ms);
+	KUNIT_EXPECT_LT(test, ms, 1000u);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, BAD)->names_done);
+	KUNIT_EXPECT_EQ(test, serial(b, GOOD), 6);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(mbox_wrong, wrong_gen_params),
 	KUNIT_CASE(mbox_mute),
 	KUNIT_CASE(mbox_gone),
+	KUNIT_CASE(mbox_stale_messages_leave_fatal_signal),
+	KUNIT_CASE(mbox_stale_messages_leave_session),
+	KUNIT_CASE(mbox_segments_at_once_leave_cancel),
+	KUNIT_CASE(mbox_endless_fragments),
 	{}
 };
 

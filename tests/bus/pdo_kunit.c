@@ -108,29 +108,6 @@ static void pdo_mute_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 1)->sm_pdos[2]), 8u);
 }
 
-/* An EEPROM without names of PDOs and entries. */
-static void strip_names(struct bus *b, u32 index)
-{
-	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
-	struct ec_sii_iter it;
-	struct ec_sii_cat cat;
-
-	ec_sii_iter_init(&it, e->data, e->len);
-	while (ec_sii_iter_next(&it, &cat) == 1) {
-		u8 *p = (u8 *)cat.data, *end = p + cat.bytes;
-
-		if (cat.type != EC_SII_CAT_RXPDO && cat.type != EC_SII_CAT_TXPDO)
-			continue;
-		while (p < end) {
-			u32 n = p[2];
-
-			p[5] = 0;
-			for (p += 8; n && p < end; n--, p += 8)
-				p[3] = 0;
-		}
-	}
-}
-
 /* Name of PDO 0 of SM2, or of its entry @entry. */
 static const char *shown(struct bus *b, int entry)
 {
@@ -151,7 +128,7 @@ static struct bus *nameless(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave d drive in=22 out=22 mapping=rewritable\n");
 
-	strip_names(b, 0);
+	bus_strip_names(b, 0);
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
 	return b;

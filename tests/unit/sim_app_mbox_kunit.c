@@ -379,10 +379,11 @@ static void spoiled_header(struct kunit *test, struct mb *x, u32 kind, u8 raw[6]
 	x->b->now += 5000000;
 	KUNIT_ASSERT_EQ(test, bed_rd(x->b, x->m.station, 0x1000 + 256, x->buf, 256), 1);
 	memcpy(raw, x->buf, 6);
-	/* the buffer is empty now, but for one that babbles */
+	/* the buffer is empty now, but for one that sends without end */
 	x->b->now += 5000000;
 	KUNIT_EXPECT_EQ(test, !!(bed_get(x->b, x->m.station, EC_REG_SM(1) + EC_SM_OFS_STATUS, 1) &
-				 EC_SM_ST_FULL), kind == EC_SIM_MAILBOX_BABBLE);
+				 EC_SM_ST_FULL),
+			kind == EC_SIM_MAILBOX_BABBLE || kind == EC_SIM_MAILBOX_STALE);
 }
 
 static void sim_app_mbox_faulty_messages_are_sent(struct kunit *test)
@@ -405,6 +406,15 @@ static void sim_app_mbox_faulty_messages_are_sent(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, h[5], 5 << 4 | EC_MBOX_FOE);
 	spoiled_header(test, x, EC_SIM_MAILBOX_BABBLE, h);
 	KUNIT_EXPECT_EQ(test, h[5], 6 << 4 | EC_MBOX_FOE);
+	/* the last of it */
+	f.arg = EC_SIM_MAILBOX_GOOD;
+	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(x->b->sim, &f), 0);
+	KUNIT_ASSERT_EQ(test, bed_rd(x->b, x->m.station, 0x1000 + 256, x->buf, 256), 1);
+	spoiled_header(test, x, EC_SIM_MAILBOX_STALE, h);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), EC_SDOINFO_HDR);
+	KUNIT_EXPECT_EQ(test, h[5] & 0x0f, EC_MBOX_COE);
+	KUNIT_EXPECT_EQ(test, x->buf[7] >> 4, EC_COE_SDO_INFO);
+	KUNIT_EXPECT_EQ(test, x->buf[8], 0);
 }
 
 static struct kunit_case cases[] = {
