@@ -213,7 +213,8 @@ static void change_ref(struct ec_dc_job *j, bool found)
 
 static bool is_transient(int ret)
 {
-	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY;
+	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY || ret == -ENETDOWN ||
+	       ret == -ENODEV || ret == -ENOMEM;
 }
 
 /*
@@ -286,7 +287,7 @@ static void work(struct work_struct *work)
 	t0 = ktime_get_ns();
 	ret = ec_dc_job_init(&j, dc);
 	if (ret) {
-		ec_dc_set_state(dc, EC_DC_FAILED);
+		ec_dc_set_state(dc, EC_DC_RETRY_WAIT);
 		return;
 	}
 	j.first = first;

@@ -26,7 +26,8 @@ struct ec_links;
  * @EC_DC_AWAIT_CYCLE: the worker waits for the first cycles of the application
  * @EC_DC_READY: they are set and near each other: SYNC may start
  * @EC_DC_FAILED: they are not set, and only a change of the bus can help
- * @EC_DC_RETRY_WAIT: they are not set, as frames or replies were lost
+ * @EC_DC_RETRY_WAIT: they are not set, as frames or replies were lost, the link was down, or
+ *	memory was short
  * @EC_DC_RETRY_DUE: the monitor is to begin another attempt
  *
  * ============  ========  ======  =============  ==========  ===============  ============

@@ -238,12 +238,59 @@ static void dc_start_frames_lost(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, far, 0u);
 }
 
+/* The link is down for 10 ms while clocks are set. */
+struct flap {
+	u32 after;	/* cycles of the worker */
+	u32 busy;
+	u32 down;
+};
+
+static void each_flap(struct cyc *c)
+{
+	struct flap *f = c->ctx;
+
+	f->busy += READ_ONCE(c->b->m->dc.state) == EC_DC_BUSY;
+	if (f->busy == f->after && !f->down++)
+		bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	else if (f->down && f->down++ == 10)
+		bus_fault(c->b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+static void dc_start_link_flap(struct kunit *test)
+{
+	struct flap f;
+	struct cyc *c;
+	u32 after, ms, i, most = 0;
+
+	for (after = 1; after < 120; after += 20) {
+		c = configure(test, 4, 1000, NULL);
+		f = (struct flap){ .after = after };
+		c->each = each_flap;
+		c->ctx = &f;
+		cyc_activate(c);
+		for (ms = 0; ms < 5000 && (f.down < 10 ||
+					   READ_ONCE(c->b->m->dc.state) != EC_DC_READY); ms++)
+			cyc_run(c, 1);
+		KUNIT_EXPECT_LT_MSG(test, ms, 5000u, "link down after %u ms, state %d", after,
+				    c->b->m->dc.state);
+		for (i = 0; i < 4; i++)
+			KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(c->b, i)));
+		most = max(most, ms);
+		bus_down(c->b);
+		test->priv = NULL;
+	}
+	bus_figure("link down for 10 ms while clocks are set: READY within %u ms", most);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(dc_start_hundred_drives_reach_op, next_cycle),
 	KUNIT_CASE(dc_start_short_cycle),
 	KUNIT_CASE(dc_start_single_clock_sends_little),
 	KUNIT_CASE(dc_start_late_cycle),
 	KUNIT_CASE(dc_start_frames_lost),
+	KUNIT_CASE(dc_start_link_flap),
 	{ }
 };
 
