@@ -194,6 +194,24 @@ bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64
 }
 
 /**
+ * ec_dc_phase() - a point of the grid on which SYNC starts
+ * @dc: clocks
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: first application time of the session, ns; 0 without one.
+ */
+u64 ec_dc_phase(struct ec_dc *dc)
+{
+	unsigned long flags;
+	u64 phase;
+
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	phase = dc->has_phase ? dc->phase : 0;
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	return phase;
+}
+
+/**
  * ec_dc_now() - the application's time at this moment
  * @dc: clocks
  *

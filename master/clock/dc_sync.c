@@ -22,10 +22,11 @@
 #define SYNC0		BIT(9)
 #define SYNC1		BIT(10)
 
-/* The clocks are set, or cannot be, those of newly connected slaves included. */
+/* The clocks are set, or cannot be, those of newly connected slaves included; no attempt is due. */
 static bool settled(const struct ec_dc *dc)
 {
-	return !READ_ONCE(dc->changed) && !ec_dc_busy(dc);
+	return !READ_ONCE(dc->changed) && !ec_dc_busy(dc) &&
+	       READ_ONCE(dc->state) != EC_DC_RETRY_DUE;
 }
 
 /* The step to @state is obsolete. The code that changed the request has queued the worker. */
@@ -136,7 +137,7 @@ static u32 sync1_after(const struct ec_dc_sync *c)
 
 /*
  * Write start time and activation, and read the time of the slave in the same frame. -EAGAIN:
- * the start time had passed.
+ * the start time had passed, or is too far ahead.
  */
 static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 {
@@ -162,7 +163,8 @@ static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 	ahead = first - get_unaligned_le64(t);
 	if (!wide)
 		ahead = (s32)ahead;
-	if (ahead <= 0)
+	/* further than lead() and a period: the clock was set back meanwhile */
+	if (ahead <= 0 || ahead > LEAD_MAX_NS + 2ll * U32_MAX)
 		return -EAGAIN;
 	ec_clock_of(s)->sync_due_ns = dg[2].sent_ns + ahead + sync1_after(c);
 	return 0;
@@ -186,7 +188,6 @@ static u64 lead(struct ec_slave *s, u32 period, u64 took)
 /* One attempt; the longer transfers to the slave take, the later is the start time. */
 static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int try)
 {
-	struct ec_dc *dc = ec_dc_of(s);
 	u32 period = c->period[0] + c->period[1];
 	u64 now, at_ns, t0 = ktime_get_ns(), took;
 	int ret = prepare(s, c, &now, &at_ns);
@@ -195,8 +196,7 @@ static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int tr
 		return ret;
 	took = ktime_get_ns() - t0;
 	now += ktime_get_ns() - at_ns + lead(s, period, took << (try + 1));
-	return activate(s, c, ec_dc_start(now, dc->has_phase ? dc->phase : 0, period,
-					  c->shift[0]));
+	return activate(s, c, ec_dc_start(now, ec_dc_phase(ec_dc_of(s)), period, c->shift[0]));
 }
 
 #define MODES	8	/* of the SII that are compared and logged */

@@ -4,6 +4,7 @@
 
 On a kernel of 32 bits these take two accesses. ec_read64() and ec_write64() take one,
 and the status page has ec_status_begin() and ec_status_copy(); see master/base/once64.h.
+What a lock protects is read in the file that takes the lock.
 usage: once64_check.py FOLDER...
 """
 import re
@@ -17,6 +18,8 @@ ALLOWED = {
     "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
     "master/cycle/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",
 }
+# a lock protects it, which only this file takes
+ONE_FILE = {"dc->phase": "dc_app.c"}
 MEMBER = re.compile(r"^\s+(?:const\s+)?(\w+)\s+\**(\w+)(?:\[\w+\])?;")
 WIDE = {"u64", "s64", "__u64", "__s64", "aligned_u64", "uint64_t", "int64_t", "ktime_t"}
 ONCE = re.compile(r"\b(?:READ|WRITE)_ONCE\(((?:[^(),]|\([^()]*\))*?(?:->|\.|\*)(\w+)(?:\[[^]]*\])?)[,)]")
@@ -59,6 +62,10 @@ def main():
     wide = members([p for p in files if p.suffix == ".h"] + [Path("include/uapi/ethercat_map.h")])
     for path in files:
         check(path, wide, bad, used)
+        bad += [f"{path}: {member} is for {name} only, which takes its lock"
+                for member, name in ONE_FILE.items()
+                if path.name != name and
+                re.search(re.escape(member) + r"\b", strip(path.read_text()))]
     bad += [f"{w} is allowed but needs it not; remove it" for w in ALLOWED if w not in used]
     print("\n".join(bad))
     return 1 if bad else 0

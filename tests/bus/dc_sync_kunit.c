@@ -7,6 +7,7 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/clock/dc.h"
+#include "master/link/device.h"
 #include "master/boundary/ioctl.h"
 
 #define PERIOD_NS	1000000
@@ -590,6 +591,72 @@ static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 	expect_in_step(b, 15);
 }
 
+/* the clock of slave 1 is set back by a year before it gets its start time, once */
+static struct {
+	const struct ecdev_ops *real;
+	struct ecdev_ops ops;
+	struct bus *b;
+	u32 starts;
+} year;
+
+static int set_back(void *priv, u8 *buf, size_t len)
+{
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+
+	if (!ec_frame_iter_init(&it, buf + EC_ETH_HDR, len - EC_ETH_HDR))
+		while (ec_frame_iter_next(&it, &d) == 1)
+			if (d.cmd == EC_CMD_FPWR && d.ado == EC_REG_DC_START &&
+			    d.adp == year.b->m->bus.slaves[1]->station && !year.starts++)
+				bus_esc(year.b, 1)->dc.base_local -= 365 * 86400 * NSEC_PER_SEC;
+	return year.real->tx_send(priv, buf, len);
+}
+
+/* Its start time is a year ahead then: it is given another one. */
+static void sync_clock_set_back_during_start(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct ecdev *dev = c->b->m->links.link[0].dev;
+
+	year.b = c->b;
+	year.starts = 0;
+	year.real = dev->ops;
+	year.ops = *dev->ops;
+	year.ops.tx_send = set_back;
+	dev->ops = &year.ops;
+	cyc_activate(c);
+	bus_figure("clock set back by a year while SYNC is started: all in OP after %u ms",
+		   until_op(c, 15, 5000));
+	KUNIT_EXPECT_EQ(test, year.starts, 2u);
+	KUNIT_EXPECT_TRUE(test, bus_esc(c->b, 1)->dc.running);
+	dev->ops = year.real;
+}
+
+/* Another attempt for another slave is due: a slave on its way to OP waits for its end. */
+static void sync_waits_for_attempt_that_is_due(struct kunit *test)
+{
+	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
+	struct bus *b = c->b;
+	u32 lines;
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 1000);
+	lines = bus_log_lines("SYNC signals started, but");
+	mutex_lock(&b->m->sessions.lock);
+	ec_dc_set_state(&b->m->dc, EC_DC_RETRY_DUE);
+	WRITE_ONCE(bus_slave(b, 1)->reconfigure, true);
+	bus_request(b, 1, EC_AL_OP);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_RETRY_DUE);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	mutex_unlock(&b->m->sessions.lock);
+	until_op(c, 15, 5000);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("SYNC signals started, but"), lines);
+	cyc_run(c, 500);
+	expect_in_step(b, 15);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sync_unset_clock_excluded_after_retries),
 	KUNIT_CASE(sync_wait_aborted_by_preop_request),
@@ -608,6 +675,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sync_from_preop),
 	KUNIT_CASE(sync_without_time),
 	KUNIT_CASE(sync_has_no_effect),
+	KUNIT_CASE(sync_clock_set_back_during_start),
+	KUNIT_CASE(sync_waits_for_attempt_that_is_due),
 	{ }
 };
 
