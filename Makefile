@@ -20,7 +20,7 @@ all: modules lib tool examples mini
 # Modules are built in a copy: several kernels side by side, a clean clone.
 MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/*/*.[ch] \
 	 devices/*.[ch] devices/Kbuild devices/sim/*.[ch] devices/sim/Kbuild \
-	 include/*.h include/uapi/*.h lib/ecrt/*.[ch])
+	 devices/intel/*.[ch] devices/intel/Kbuild include/*.h include/uapi/*.h lib/ecrt/*.[ch])
 
 # A changed file gets the current time: the object of its last version may be newer than the
 # file. A file deleted here is deleted there.

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/errno.h>
+#include <linux/etherdevice.h>
+#include <linux/iopoll.h>
+#include <asm/unaligned.h>
+#include "nic.h"
+#include "regs.h"
+
+#define MASTER_US	80000	/* until pending requests are done (82574, 5.2.3.1: 80 ms) */
+#define RESET_US	20000
+#define MDIC_US		2000
+
+static void mask_interrupts(const struct intel_nic *nic)
+{
+	ec_nic_write(nic, R_IMC, ~0u);
+	if (nic->class->advanced)
+		ec_nic_write(nic, R_EIMC, ~0u);
+	ec_nic_read(nic, R_ICR);
+}
+
+/**
+ * ec_nic_quiet() - no frame in either direction, no interrupt, no DMA
+ * @nic: controller
+ *
+ * Context: Process. May sleep.
+ */
+void ec_nic_quiet(struct intel_nic *nic)
+{
+	u32 status;
+
+	mask_interrupts(nic);
+	ec_nic_write(nic, R_RCTL, 0);
+	ec_nic_write(nic, R_TCTL, TCTL_PSP);
+	ec_nic_read(nic, R_STATUS);
+	usleep_range(10000, 11000);
+	if (!nic->class->pcie)
+		return;
+	ec_nic_write(nic, R_CTRL, ec_nic_read(nic, R_CTRL) | CTRL_GIO_DISABLE);
+	readl_poll_timeout(nic->regs + R_STATUS, status, !(status & STATUS_GIO_ENABLED), 100,
+			   MASTER_US);
+}
+
+static void get_mac(struct intel_nic *nic)
+{
+	put_unaligned_le32(ec_nic_read(nic, R_RAL0), nic->mac);
+	put_unaligned_le16(ec_nic_read(nic, R_RAH0), nic->mac + 4);
+}
+
+/* without a memory of its own the controller loses it in a reset */
+static void set_mac(const struct intel_nic *nic)
+{
+	ec_nic_write(nic, R_RAL0, get_unaligned_le32(nic->mac));
+	ec_nic_write(nic, R_RAH0, get_unaligned_le16(nic->mac + 4) | RAH_VALID);
+}
+
+/**
+ * ec_nic_reset() - reset the controller; it is quiet afterwards
+ * @nic: controller with @regs and @class
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -ENODEV when it does not answer, -EIO when it does not end its reset,
+ * -EADDRNOTAVAIL without a valid MAC address.
+ */
+int ec_nic_reset(struct intel_nic *nic)
+{
+	unsigned int i;
+	u32 ctrl;
+
+	if (ec_nic_read(nic, R_STATUS) == ~0u)
+		return -ENODEV;
+	if (is_zero_ether_addr(nic->mac))
+		get_mac(nic);
+	ec_nic_quiet(nic);
+	ec_nic_write(nic, R_CTRL, ec_nic_read(nic, R_CTRL) | CTRL_RST);
+	/* it does not answer correctly at once */
+	usleep_range(10000, 11000);
+	if (readl_poll_timeout(nic->regs + R_CTRL, ctrl, !(ctrl & CTRL_RST), 1000, RESET_US))
+		return -EIO;
+	mask_interrupts(nic);
+	if (!is_valid_ether_addr(nic->mac))
+		get_mac(nic);
+	if (!is_valid_ether_addr(nic->mac))
+		return -EADDRNOTAVAIL;
+	set_mac(nic);
+	for (i = 0; i < 128; i++)
+		ec_nic_write(nic, R_MTA + 4 * i, 0);
+	/* one queue, no filter, descriptors as the class says */
+	ec_nic_write(nic, R_MRQC, 0);
+	if (nic->class->pcie)
+		ec_nic_write(nic, R_RFCTL, 0);
+	return 0;
+}
+
+static int mdic(const struct intel_nic *nic, u32 command)
+{
+	u32 v;
+
+	ec_nic_write(nic, R_MDIC, command | MDIC_PHY_1);
+	if (readl_poll_timeout(nic->regs + R_MDIC, v, v & MDIC_READY, 50, MDIC_US))
+		return -ETIMEDOUT;
+	return v & MDIC_ERROR ? -EIO : v & 0xffff;
+}
+
+static bool own_phy(const struct intel_nic *nic, bool own)
+{
+	u32 v = ec_nic_read(nic, R_EXTCNF_CTRL);
+
+	if (!nic->class->phy_owner)
+		return true;
+	v = own ? v | EXTCNF_MDIO_OWNER : v & ~EXTCNF_MDIO_OWNER;
+	ec_nic_write(nic, R_EXTCNF_CTRL, v);
+	/* the bit stays clear while the hardware owns it */
+	return !own || ec_nic_read(nic, R_EXTCNF_CTRL) & EXTCNF_MDIO_OWNER;
+}
+
+/* The stock driver switches it off with its interface. */
+static void power_phy(const struct intel_nic *nic)
+{
+	int bmcr;
+
+	if (!own_phy(nic, true))
+		return;
+	bmcr = mdic(nic, MDIC_READ | PHY_BMCR << MDIC_REG);
+	if (bmcr >= 0 && bmcr & BMCR_POWER_DOWN) {
+		bmcr &= ~BMCR_POWER_DOWN;
+		mdic(nic, MDIC_WRITE | PHY_BMCR << MDIC_REG | bmcr | BMCR_AUTONEG);
+	}
+	own_phy(nic, false);
+}
+
+/**
+ * ec_nic_connect() - bring the link up and let frames pass, once the rings are set
+ * @nic: controller after ec_nic_reset()
+ *
+ * Context: Process. May sleep.
+ */
+void ec_nic_connect(struct intel_nic *nic)
+{
+	u32 ctrl = ec_nic_read(nic, R_CTRL);
+
+	power_phy(nic);
+	ctrl &= ~(CTRL_FORCE_SPEED | CTRL_FORCE_DUPLEX | CTRL_GIO_DISABLE);
+	ctrl |= CTRL_SLU | CTRL_FD;
+	if (!nic->class->advanced)
+		ctrl |= CTRL_ASDE;
+	ec_nic_write(nic, R_CTRL, ctrl);
+	ec_nic_write(nic, R_TIPG, TIPG_COPPER);
+	ec_nic_write(nic, R_TCTL, TCTL_EN | TCTL_PSP | TCTL_COLLISIONS);
+	/* EtherCAT slaves change the source address only, but other frames are counted too */
+	ec_nic_write(nic, R_RCTL, RCTL_EN | RCTL_UPE | RCTL_MPE | RCTL_BAM | RCTL_SECRC);
+}
+
+/**
+ * ec_nic_look() - read link state and error counters
+ * @nic: controller
+ *
+ * A read of a register takes up to 2 us on PCIe: not for the cycle.
+ *
+ * Context: Process, one caller at a time.
+ */
+void ec_nic_look(struct intel_nic *nic)
+{
+	static const unsigned int speeds[] = { 10, 100, 1000, 1000 };
+	u32 status = ec_nic_read(nic, R_STATUS);
+
+	if (status == ~0u) {
+		WRITE_ONCE(nic->gone, true);
+		WRITE_ONCE(nic->up, false);
+		return;
+	}
+	WRITE_ONCE(nic->speed, speeds[(status & STATUS_SPEED) >> 6]);
+	WRITE_ONCE(nic->up, !!(status & STATUS_LU));
+	/* reading clears them */
+	nic->counts.crc += ec_nic_read(nic, R_CRCERRS);
+	nic->counts.missed += ec_nic_read(nic, R_MPC);
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Reset, PHY, link and counters of an Intel network controller. */
+#ifndef EC_INTEL_NIC_H
+#define EC_INTEL_NIC_H
+
+#include <linux/if_ether.h>
+#include <linux/io.h>
+#include "chip.h"
+
+/**
+ * struct intel_counts - errors the controller has counted
+ */
+struct intel_counts {
+	/** @crc: frames received with a wrong FCS */
+	u64 crc;
+	/** @missed: frames without a free receive buffer */
+	u64 missed;
+};
+
+/**
+ * struct intel_nic - the controller without its rings
+ */
+struct intel_nic {
+	/** @regs: BAR 0 */
+	void __iomem *regs;
+	/** @class: its registers */
+	const struct intel_class *class;
+	/** @mac: its address */
+	u8 mac[ETH_ALEN];
+	/** @up: link state when it was last read */
+	bool up;
+	/** @gone: it answers no longer: unplugged */
+	bool gone;
+	/** @speed: Mbit/s when the link was last seen up */
+	unsigned int speed;
+	/** @counts: errors since the driver was bound */
+	struct intel_counts counts;
+};
+
+static inline u32 ec_nic_read(const struct intel_nic *nic, u32 reg)
+{
+	return readl(nic->regs + reg);
+}
+
+static inline void ec_nic_write(const struct intel_nic *nic, u32 reg, u32 value)
+{
+	writel(value, nic->regs + reg);
+}
+
+int ec_nic_reset(struct intel_nic *nic);
+void ec_nic_quiet(struct intel_nic *nic);
+void ec_nic_connect(struct intel_nic *nic);
+void ec_nic_look(struct intel_nic *nic);
+
+#endif

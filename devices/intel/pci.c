@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Native device: an Intel network controller that the master has for itself, without interrupts.
+ * The driver binds to devices whose driver_override names it, and to no other: a network card
+ * in use by the system is never taken. While no cycle polls the ring a timer does, and only
+ * while frames are on their way.
+ */
+#include <linux/hrtimer.h>
+#include <linux/module.h>
+#include <linux/pci.h>
+#include <linux/pm_runtime.h>
+#include <linux/workqueue.h>
+#include <asm/unaligned.h>
+#include "devices/ecdev.h"
+#include "master/wire/compat.h"
+#include "master/wire/frame.h"
+#include "nic.h"
+#include "ring.h"
+
+#define NAME		"ec_intel"
+#define LOOK_MS		50	/* between two looks at the link */
+#define IDLE_NS		(50 * NSEC_PER_USEC)	/* between two polls without a cycle */
+#define OUT_NS		(20 * NSEC_PER_MSEC)	/* a frame that is on its way longer is lost */
+
+/**
+ * struct intel - one network controller
+ */
+struct intel {
+	/** @pdev: PCI function */
+	struct pci_dev *pdev;
+	/** @chip: what it is */
+	const struct intel_chip *chip;
+	/** @nic: its registers */
+	struct intel_nic nic;
+	/** @tx: transmit ring; one sender at a time */
+	struct intel_ring tx;
+	/** @rx: receive ring; whoever has @polling */
+	struct intel_ring rx;
+	/** @dev: receives the frames; set before the first one can arrive */
+	struct ecdev *dev;
+	/** @look: reads the link state and counters */
+	struct delayed_work look;
+	/** @idle: polls while no cycle does */
+	struct hrtimer idle;
+	/** @sent_ns: when the last frame was sent without a cycle (ktime) */
+	atomic64_t sent_ns;
+	/** @polling: bit 0: a poll runs */
+	unsigned long polling;
+	/** @cycle: the cycle polls */
+	bool cycle;
+	/** @started: a master uses it */
+	bool started;
+	/** @ready: the rings run */
+	bool ready;
+};
+
+static void poll(struct intel *n)
+{
+	const u8 *frame;
+	size_t len;
+	unsigned int i;
+
+	/* the cycle begins while the timer's poll has not ended yet, or the reverse */
+	if (test_and_set_bit_lock(0, &n->polling))
+		return;
+	for (i = 0; i < INTEL_RX && (frame = ec_ring_rx_get(&n->nic, &n->rx, &len)); i++) {
+		if (len >= EC_ETH_HDR && get_unaligned_be16(frame + 12) == EC_ETHERTYPE)
+			ecdev_receive(n->dev, frame + ETH_ALEN, frame + EC_ETH_HDR,
+				      len - EC_ETH_HDR);
+		else if (len)
+			ecdev_foreign(n->dev);
+		ec_ring_rx_put(&n->nic, &n->rx);
+	}
+	clear_bit_unlock(0, &n->polling);
+}
+
+static enum hrtimer_restart poll_idle(struct hrtimer *timer)
+{
+	struct intel *n = container_of(timer, struct intel, idle);
+
+	if (!READ_ONCE(n->ready) || READ_ONCE(n->cycle))
+		return HRTIMER_NORESTART;
+	poll(n);
+	if (ktime_get_ns() - atomic64_read(&n->sent_ns) > OUT_NS)
+		return HRTIMER_NORESTART;
+	hrtimer_forward_now(timer, ns_to_ktime(IDLE_NS));
+	return HRTIMER_RESTART;
+}
+
+static u8 *intel_tx_get(void *priv)
+{
+	struct intel *n = priv;
+
+	return READ_ONCE(n->ready) ? ec_ring_tx_get(&n->nic, &n->tx) : NULL;
+}
+
+static int intel_tx_send(void *priv, u8 *buf, size_t len)
+{
+	struct intel *n = priv;
+
+	if (!READ_ONCE(n->nic.up))
+		return -ENETDOWN;
+	ec_ring_tx_put(&n->nic, &n->tx, len);
+	ec_ring_tx_flush(&n->nic, &n->tx);
+	if (READ_ONCE(n->cycle))
+		return 0;
+	atomic64_set(&n->sent_ns, ktime_get_ns());
+	if (!hrtimer_is_queued(&n->idle))
+		hrtimer_start(&n->idle, ns_to_ktime(IDLE_NS), HRTIMER_MODE_REL_SOFT);
+	return 0;
+}
+
+static void intel_poll(void *priv)
+{
+	struct intel *n = priv;
+
+	if (READ_ONCE(n->ready))
+		poll(n);
+}
+
+static void intel_cycle(void *priv, bool on)
+{
+	struct intel *n = priv;
+
+	WRITE_ONCE(n->cycle, on);
+	if (on)
+		hrtimer_cancel(&n->idle);
+}
+
+static bool intel_link_up(void *priv)
+{
+	struct intel *n = priv;
+
+	return READ_ONCE(n->nic.up);
+}
+
+static void look(struct work_struct *work)
+{
+	struct intel *n = container_of(to_delayed_work(work), struct intel, look);
+	bool was = n->nic.gone;
+
+	ec_nic_look(&n->nic);
+	if (n->nic.gone && !was)
+		pci_warn(n->pdev, "does not answer: unplugged?\n");
+	if (!n->nic.gone)
+		queue_delayed_work(system_wq, &n->look, msecs_to_jiffies(LOOK_MS));
+}
+
+static int run(struct intel *n)
+{
+	int ret = ec_nic_reset(&n->nic);
+
+	if (!ret) {
+		/* without it no descriptor is fetched */
+		pci_set_master(n->pdev);
+		ret = ec_ring_start(&n->nic, &n->tx, &n->rx);
+	}
+	if (ret) {
+		pci_clear_master(n->pdev);
+		return ret;
+	}
+	ec_nic_connect(&n->nic);
+	n->nic.gone = false;
+	WRITE_ONCE(n->ready, true);
+	queue_delayed_work(system_wq, &n->look, 0);
+	return 0;
+}
+
+/* No frame, no DMA, no caller in the rings: senders are stopped by the master. */
+static void quiesce(struct intel *n)
+{
+	if (!n->ready)
+		return;
+	cancel_delayed_work_sync(&n->look);
+	WRITE_ONCE(n->nic.up, false);
+	WRITE_ONCE(n->ready, false);
+	hrtimer_cancel(&n->idle);
+	ec_nic_quiet(&n->nic);
+	pci_clear_master(n->pdev);
+}
+
+static int intel_start(void *priv, struct ecdev *dev)
+{
+	struct intel *n = priv;
+	int ret;
+
+	n->dev = dev;
+	ret = run(n);
+	n->started = !ret;
+	return ret;
+}
+
+static void intel_stop(void *priv)
+{
+	struct intel *n = priv;
+
+	quiesce(n);
+	n->started = false;
+}
+
+static const struct ecdev_ops intel_ops = {
+	.kind = "native",
+	.atomic = true,
+	.burst = INTEL_TX - INTEL_TX / 4,
+	.start = intel_start,
+	.stop = intel_stop,
+	.tx_get = intel_tx_get,
+	.tx_send = intel_tx_send,
+	.poll = intel_poll,
+	.cycle = intel_cycle,
+	.link_up = intel_link_up,
+};
+
+static int check(struct pci_dev *pdev, const struct intel_chip *chip)
+{
+	if (pdev->vendor != PCI_VENDOR_ID_INTEL || !chip)
+		pci_err(pdev, "%04x:%04x is not in the list of chips; use the generic device\n",
+			pdev->vendor, pdev->device);
+	else if (!chip->class)
+		pci_err(pdev, "%s is not supported: %s; use the generic device\n", chip->name,
+			chip->why_not);
+	else
+		return 0;
+	return -ENODEV;
+}
+
+static int map(struct intel *n)
+{
+	struct pci_dev *pdev = n->pdev;
+	int ret = pcim_enable_device(pdev);
+
+	if (ret)
+		return ret;
+	/* the largest offset that any chip of the list uses */
+	if (pci_resource_len(pdev, 0) < 0x10000) {
+		pci_err(pdev, "BAR 0 has %llu byte(s), 65536 needed\n",
+			(unsigned long long)pci_resource_len(pdev, 0));
+		return -ENXIO;
+	}
+	ret = pcim_iomap_regions(pdev, BIT(0), NAME);
+	if (ret)
+		return ret;
+	n->nic.regs = pcim_iomap_table(pdev)[0];
+	n->nic.class = n->chip->class;
+	ret = dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(64));
+	if (ret)
+		ret = dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(32));
+	/* leaving a power saving state takes longer than a frame */
+	pci_disable_link_state(pdev, PCIE_LINK_STATE_L0S | PCIE_LINK_STATE_L1);
+	pci_intx(pdev, 0);
+	return ret ?: ec_ring_alloc(&pdev->dev, &n->tx, &n->rx);
+}
+
+static int probe(struct pci_dev *pdev, const struct pci_device_id *id)
+{
+	const struct intel_chip *chip = ec_chip_find(pdev->device);
+	struct ecdev *dev;
+	struct intel *n;
+	int ret = check(pdev, chip);
+
+	if (ret)
+		return ret;
+	n = devm_kzalloc(&pdev->dev, sizeof(*n), GFP_KERNEL);
+	if (!n)
+		return -ENOMEM;
+	n->pdev = pdev;
+	n->chip = chip;
+	INIT_DELAYED_WORK(&n->look, look);
+	hrtimer_init(&n->idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
+	n->idle.function = poll_idle;
+	ret = map(n);
+	if (ret)
+		return ret;
+	/* the address is known after it, and the controller is quiet until a master wants it */
+	ret = ec_nic_reset(&n->nic);
+	if (ret) {
+		pci_err(pdev, "cannot reset the controller (%pe)\n", ERR_PTR(ret));
+		return ret;
+	}
+	pci_set_drvdata(pdev, n);
+	pci_info(pdev, "%s (%s)%s, %pM\n", chip->name, chip->class->name,
+		 chip->tested ? "" : ", never tested", n->nic.mac);
+	dev = ecdev_offer(pci_name(pdev), n->nic.mac, &intel_ops, n);
+	if (IS_ERR(dev))
+		return PTR_ERR(dev);
+	n->dev = dev;
+	return 0;
+}
+
+static void remove(struct pci_dev *pdev)
+{
+	struct intel *n = pci_get_drvdata(pdev);
+
+	ecdev_withdraw(n->dev);
+}
+
+/* another kernel may start in this memory */
+static void shutdown(struct pci_dev *pdev)
+{
+	quiesce(pci_get_drvdata(pdev));
+}
+
+static void reset_prepare(struct pci_dev *pdev)
+{
+	quiesce(pci_get_drvdata(pdev));
+}
+
+static void reset_done(struct pci_dev *pdev)
+{
+	struct intel *n = pci_get_drvdata(pdev);
+	int ret = n->started ? run(n) : 0;
+
+	if (ret)
+		pci_err(pdev, "does not start after a reset (%pe)\n", ERR_PTR(ret));
+}
+
+static const struct pci_error_handlers errors = {
+	.reset_prepare = reset_prepare,
+	.reset_done = reset_done,
+};
+
+/* none: only driver_override chooses a device, see pci_match_device() */
+static const struct pci_device_id ids[] = { {} };
+
+static struct pci_driver intel_driver = {
+	.name = NAME,
+	.id_table = ids,
+	.probe = probe,
+	.remove = remove,
+	.shutdown = shutdown,
+	.err_handler = &errors,
+};
+module_pci_driver(intel_driver);
+
+MODULE_DESCRIPTION("EtherCAT master: native device for Intel network controllers");
+MODULE_AUTHOR("The EtherCAT master team");
+MODULE_LICENSE("GPL");
