@@ -114,15 +114,18 @@ static bool own_phy(const struct intel_nic *nic, bool own)
 	return !own || ec_nic_read(nic, R_EXTCNF_CTRL) & EXTCNF_MDIO_OWNER;
 }
 
-/* The stock driver switches it off with its interface. */
-static void power_phy(const struct intel_nic *nic)
+/*
+ * The stock driver switches the PHY off with its interface, and some chips do not negotiate by
+ * themselves after a reset. A link that is up stays: a new negotiation takes seconds.
+ */
+static void wake_phy(const struct intel_nic *nic)
 {
 	int bmcr;
 
 	if (!own_phy(nic, true))
 		return;
 	bmcr = mdic(nic, MDIC_READ | PHY_BMCR << MDIC_REG);
-	if (bmcr >= 0 && bmcr & BMCR_POWER_DOWN) {
+	if (bmcr >= 0 && (bmcr & BMCR_POWER_DOWN || !(ec_nic_read(nic, R_STATUS) & STATUS_LU))) {
 		bmcr &= ~BMCR_POWER_DOWN;
 		mdic(nic, MDIC_WRITE | PHY_BMCR << MDIC_REG | bmcr | BMCR_AUTONEG);
 	}
@@ -139,12 +142,13 @@ void ec_nic_connect(struct intel_nic *nic)
 {
 	u32 ctrl = ec_nic_read(nic, R_CTRL);
 
-	power_phy(nic);
 	ctrl &= ~(CTRL_FORCE_SPEED | CTRL_FORCE_DUPLEX | CTRL_GIO_DISABLE);
 	ctrl |= CTRL_SLU | CTRL_FD;
 	if (!nic->class->advanced)
 		ctrl |= CTRL_ASDE;
 	ec_nic_write(nic, R_CTRL, ctrl);
+	usleep_range(10000, 11000);
+	wake_phy(nic);
 	ec_nic_write(nic, R_TIPG, TIPG_COPPER);
 	ec_nic_write(nic, R_TCTL, TCTL_EN | TCTL_PSP | TCTL_COLLISIONS);
 	/* EtherCAT slaves change the source address only, but other frames are counted too */
