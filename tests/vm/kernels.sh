@@ -18,6 +18,8 @@ usage() {
 	       kernels.sh cross FLAVOUR       print ARCH= and CROSS_COMPILE= for make
 	       kernels.sh root ARCH           print a folder with programs of another
 	                                      architecture: i386, arm64, s390x
+	       kernels.sh qemu backports      print a folder with the programs of a newer QEMU,
+	                                      which has the network card igb
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
@@ -302,6 +304,29 @@ fetch_root() {
 	exec 9>&-
 }
 
+# Firmware is found relative to the program.
+fetch_qemu() {
+	local final=$cache/qemu-backports f
+	[ ! -e "$final/.complete" ] || return 0
+	mkdir -p "$cache"
+	exec 9>"$cache/qemu.lock"
+	flock 9
+	if [ ! -e "$final/.complete" ]; then
+		tmp=$(mktemp -d "$cache/qemu.XXXXXX")
+		mkdir "$tmp/debs" "$tmp/root"
+		say "downloading QEMU of bookworm-backports"
+		download backports amd64 qemu-system-x86 qemu-system-common qemu-system-data seabios ||
+			die "download failed; check the network, then run this again"
+		for f in "$tmp"/debs/*.deb; do dpkg-deb -x "$f" "$tmp/root"; done
+		touch "$tmp/root/.complete"
+		rm -rf "$final"
+		mv -T "$tmp/root" "$final"
+		rm -rf "$tmp"
+		tmp=
+	fi
+	exec 9>&-
+}
+
 fetch() {
 	cached "$1" && return 0
 	mkdir -p "$cache/kernels"
@@ -325,6 +350,12 @@ if [ "$cmd" = root ]; then
 	[ $# -eq 1 ] || usage
 	fetch_root "$1"
 	echo "$cache/roots/$1"
+	exit 0
+fi
+if [ "$cmd" = qemu ]; then
+	[ "$*" = backports ] || usage
+	fetch_qemu
+	echo "$cache/qemu-backports/usr/bin"
 	exit 0
 fi
 for fl; do check_flavour "$fl"; done

@@ -23,6 +23,7 @@ usage() {
 	  --mem MB           memory (default 1024)
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
 	  --nics             two e1000e joined by a wire (eth0 and eth1; modprobe e1000e)
+	  --nic MODEL        the same with e1000 or igb (a newer QEMU, kernels.sh qemu)
 	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
 	                     all other writes are lost at the end
 	  --timeout SEC      for boot and command together (default 300)
@@ -42,7 +43,7 @@ usage() {
 
 die() { echo "run.sh: $*" >&2; exit 125; }
 
-kernel=6.1-rt smp=2 mem=1024 icount=0 nics=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
+kernel=6.1-rt smp=2 mem=1024 icount=0 nic= timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
 while [ $# -gt 0 ]; do
@@ -51,7 +52,8 @@ while [ $# -gt 0 ]; do
 	--smp) need "$@"; smp=$2; shift 2 ;;
 	--mem) need "$@"; mem=$2; shift 2 ;;
 	--icount) icount=1; shift ;;
-	--nics) nics=1; shift ;;
+	--nics) nic=e1000e; shift ;;
+	--nic) need "$@"; nic=$2; shift 2 ;;
 	--rw) need "$@"; rw+=("$2"); shift 2 ;;
 	--timeout) need "$@"; timeout=$2; shift 2 ;;
 	--append) need "$@"; append="$append $2"; shift 2 ;;
@@ -69,6 +71,12 @@ done
 [ $# -gt 0 ] || [ $probe = 1 ] || usage
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
+
+case $nic in
+''|e1000|e1000e) ;;
+igb)	PATH=$("$here/kernels.sh" qemu backports):$PATH || exit 125 ;;
+*)	die "--nic: e1000, e1000e or igb, not $nic" ;;
+esac
 
 root=/ dirs=() busybox=
 arch=$("$here/kernels.sh" arch "$kernel") || exit 125
@@ -247,10 +255,11 @@ quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 	echo
 } >"$ctl/cmd"
 
-if [ $nics = 1 ]; then
+# The virtual functions of an igb take the places behind it.
+if [ "$nic" ]; then
 	for n in 0 1; do
 		opts+=(-netdev "hubport,id=h$n,hubid=0"
-			-device "e1000e,netdev=h$n,mac=52:54:00:ec:00:0$n")
+			-device "$nic,id=nic$n,addr=$(printf %x $((8 + 4 * n))),netdev=h$n,mac=52:54:00:ec:00:0$n")
 	done
 fi
 
