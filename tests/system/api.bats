@@ -21,7 +21,7 @@ teardown_file() { stop; }
 # the segment from its begin: its emergencies come now
 reload() {
 	rmmod ec_sim
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+	load_segment "$BATS_FILE_TMPDIR/segment"
 }
 
 # group NAME: all cases of it pass; each is a line of its own

@@ -15,8 +15,8 @@ segment() { printf '%s\n' "$@" >"$BATS_TEST_TMPDIR/segment"; }
 # plug: load the modules with that segment
 plug() {
 	dmesg -C
-	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_TEST_TMPDIR/segment"
+	load_master
+	load_segment "$BATS_TEST_TMPDIR/segment"
 }
 
 # state_is POSITION STATE

@@ -3,15 +3,44 @@
 
 ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
 
+# PCI address of a network interface
+pci() { basename "$(readlink -f "/sys/class/net/$1/device")"; }
+
+# driver PCI-ADDRESS NAME: gives a PCI function to a driver; the interface goes or comes
+driver() {
+	local d=/sys/bus/pci/devices/$1
+
+	[ ! -e "$d/driver" ] || echo "$1" >"$d/driver/unbind"
+	echo "$2" >"$d/driver_override"
+	echo "$1" >/sys/bus/pci/drivers_probe
+}
+
+# load_master: with the virtual device; EC_NIC=MODEL: with a network card and its native driver
+load_master() {
+	local device=sim0
+
+	[ -z "${EC_NIC:-}" ] || device=52:54:00:ec:00:00
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=$device
+	[ -n "${EC_NIC:-}" ] || return 0
+	[ -e /sys/class/net/eth1 ] || modprobe "$EC_NIC"
+	insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
+	[ ! -e /sys/class/net/eth0 ] || driver "$(pci eth0)" ec_intel
+}
+
+# load_segment SEGMENT: slaves at the device of load_master
+load_segment() {
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1" ${EC_NIC:+netdev=eth1}
+}
+
 # start SEGMENT [SLAVES]: load the modules and wait for the scan
 start() {
-	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1"
+	load_master
+	load_segment "$1"
 	wait_for 120 all_slaves_are PREOP "$2"
 }
 
 stop() {
-	rmmod ec_sim ec_generic 2>/dev/null || true
+	rmmod ec_sim ec_generic ec_intel 2>/dev/null || true
 	rmmod ec_master 2>/dev/null || true
 }
 

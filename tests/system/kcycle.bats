@@ -234,7 +234,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	rmmod ec_sim
 	ethercat master | grep -q 'Waiting for device'
 	sleep 0.2
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment"
+	load_segment "$BATS_FILE_TMPDIR/segment"
 	wait_for 120 all_slaves_are OP 3
 	run kcycle cycles=100 flags=1
 	echo "$output"

@@ -11,6 +11,8 @@
 # EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set. With 6.1-kcsan each guest has
 # two CPUs that run at a time and real time, and a data race in a module fails the file; cases
 # of tests/kcsan/exact-time.list are shown but do not count.
+# EC_NIC=e1000|e1000e|igb: the segment of helpers.bash is at a network card of that model with
+# its native driver, not at the virtual device
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
 # EC_PLACES: folder with a file for each guest that may run at a time (one for each CPU)
 #
@@ -95,7 +97,7 @@ needed
 vm_options() {
 	local o
 
-	o=$(sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount)
+	o=$(sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount)${EC_NIC:+ --nic $EC_NIC}
 	case $kernel in
 	*-kcsan) echo "${o//--icount/} --smp 2 --timeout 1800" ;;
 	*)	echo "$o" ;;
@@ -108,7 +110,7 @@ run() {
 
 	read -ra options < <(vm_options "$f")
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
-		env EC_BUILD="$EC_BUILD" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
+		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }
 

@@ -49,7 +49,7 @@ teardown_file() { stop; }
 @test "the device goes away and comes back" {
 	rmmod ec_sim
 	ethercat master | grep -q 'Waiting for device'
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment=thin
+	load_segment thin
 	wait_for 120 all_slaves_are PREOP 2
 }
 

@@ -24,6 +24,8 @@ usage() {
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
 	  --nics             two e1000e joined by a wire (eth0 and eth1; modprobe e1000e)
 	  --nic MODEL        the same with e1000 or igb (a newer QEMU, kernels.sh qemu)
+	  --monitor          QEMU's monitor in the guest: /dev/virtio-ports/monitor takes its
+	                     commands, for example set_link nic0 off
 	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
 	                     all other writes are lost at the end
 	  --timeout SEC      for boot and command together (default 300)
@@ -43,7 +45,7 @@ usage() {
 
 die() { echo "run.sh: $*" >&2; exit 125; }
 
-kernel=6.1-rt smp=2 mem=1024 icount=0 nic= timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
+kernel=6.1-rt smp=2 mem=1024 icount=0 nic= monitor=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
 while [ $# -gt 0 ]; do
@@ -53,6 +55,7 @@ while [ $# -gt 0 ]; do
 	--mem) need "$@"; mem=$2; shift 2 ;;
 	--icount) icount=1; shift ;;
 	--nics) nic=e1000e; shift ;;
+	--monitor) monitor=1; shift ;;
 	--nic) need "$@"; nic=$2; shift 2 ;;
 	--rw) need "$@"; rw+=("$2"); shift 2 ;;
 	--timeout) need "$@"; timeout=$2; shift 2 ;;
@@ -261,6 +264,12 @@ if [ "$nic" ]; then
 		opts+=(-netdev "hubport,id=h$n,hubid=0"
 			-device "$nic,id=nic$n,addr=$(printf %x $((8 + 4 * n))),netdev=h$n,mac=52:54:00:ec:00:0$n")
 	done
+fi
+
+if [ $monitor = 1 ]; then
+	opts+=(-chardev "socket,id=monitor,path=$tmp/monitor,server=on,wait=off" -mon chardev=monitor
+		-chardev "socket,id=port,path=$tmp/monitor,reconnect=1"
+		-device virtserialport,chardev=port,name=monitor)
 fi
 
 # --- run ----------------------------------------------------------------------

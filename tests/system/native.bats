@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# vm: --icount --nics --monitor --timeout 900
+# The native device at a network card; slaves at another one, joined by a wire.
+
+load helpers
+
+setup_file() {
+	export EC_NIC=e1000e
+	start bench 22
+	pci0=0000:00:08.0 pci1=0000:00:0c.0
+	export pci0 pci1
+}
+
+teardown_file() { stop; }
+
+demo() { LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"; }
+
+# in the background, all slaves in OP
+demo_runs() {
+	demo --cycles 1000000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	app=$!
+	wait_for 120 all_slaves_are OP 22
+}
+
+demo_ends() {
+	kill -TERM $app
+	wait $app || true
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+monitor() { echo "$*" >/dev/virtio-ports/monitor; }
+
+link_is() { [ "$(says Link)" = "$1" ]; }
+waits() { [[ "$(says Main)" == *"(waiting...)" ]]; }
+is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$2" ]; }
+
+@test "all slaves go to OP, no frame is lost" {
+	is_bound "$pci0" ec_intel
+	before=$(lost_frames)
+	run demo --cycles 1000 --wired
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "$(lost_frames)" = "$before" ]
+	[ "$(says 'Tx errors')" = 0 ]
+}
+
+@test "the kernel runs the cycle, no frame is lost" {
+	before=$(lost_frames)
+	run demo --cycles 1000 --wired --kernel
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "$(lost_frames)" = "$before" ]
+}
+
+# an interrupt of the card would be counted
+@test "the card causes no interrupt" {
+	[ -z "$(ls "/sys/bus/pci/devices/$pci0/msi_irqs" 2>/dev/null)" ]
+	! grep -qE "eth0|$pci0|ec_intel" /proc/interrupts
+}
+
+@test "the cable is unplugged and plugged in again" {
+	monitor set_link nic0 off
+	wait_for 60 link_is DOWN
+	monitor set_link nic0 on
+	wait_for 60 link_is UP
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+@test "the cable is unplugged and plugged in again while the application runs" {
+	demo_runs
+	monitor set_link nic0 off
+	wait_for 60 link_is DOWN
+	monitor set_link nic0 on
+	wait_for 60 link_is UP
+	wait_for 120 all_slaves_are OP 22
+	demo_ends
+}
+
+@test "the stock driver takes the card, and gives it back" {
+	driver "$pci0" e1000e
+	wait_for 60 test -e /sys/class/net/eth0
+	waits
+	driver "$pci0" ec_intel
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+@test "the card is taken away while the application runs" {
+	demo_runs
+	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/unbind
+	waits
+	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/bind
+	wait_for 120 all_slaves_are PREOP 22
+	demo_ends
+}
+
+@test "100 times bound and unbound" {
+	for ((i = 0; i < 100; i++)); do
+		echo "$pci0" >/sys/bus/pci/drivers/ec_intel/unbind
+		echo "$pci0" >/sys/bus/pci/drivers/ec_intel/bind
+	done
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+@test "a reset of the function is survived" {
+	demo_runs
+	echo 1 >"/sys/bus/pci/devices/$pci0/reset"
+	wait_for 120 all_slaves_are OP 22
+	demo_ends
+}
+
+@test "a chip that is not in the list is refused with the reason" {
+	dmesg -C
+	echo ec_intel >"/sys/bus/pci/devices/0000:00:00.0/driver_override"
+	! echo 0000:00:00.0 >/sys/bus/pci/drivers/ec_intel/bind
+	dmesg | grep -q 'ec_intel 0000:00:00.0: 8086:1237 is not in the list of chips'
+}
+
+@test "the card disappears" {
+	monitor device_del nic0
+	wait_for 60 test ! -e "/sys/bus/pci/devices/$pci0"
+	waits
+}
