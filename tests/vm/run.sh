@@ -24,7 +24,7 @@ usage() {
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
 	  --nics             two e1000e joined by a wire (eth0 and eth1; modprobe e1000e)
 	  --nic MODEL        the same with e1000 or igb (a newer QEMU, kernels.sh qemu)
-	  --monitor          QEMU's monitor in the guest: /dev/virtio-ports/monitor takes its
+	  --monitor          QEMU's monitor in the guest: the virtio port "monitor" takes its
 	                     commands, for example set_link nic0 off
 	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
 	                     all other writes are lost at the end
