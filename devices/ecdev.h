@@ -23,7 +23,10 @@ struct ecdev;
  * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
  *	when the hardware still owns all of them
  * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
- *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent)
+ *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent). With @tx_flush
+ *	it may leave only then
+ * @tx_flush: optional. No more frames follow at once: all that were sent leave now.
+ *	Context as @tx_send
  * @poll: optional. Delivers received frames through ecdev_receive(). Also
  *	called with @cycle off when a frame is overdue
  * @cycle: optional. On: the caller polls, the device needs no interrupts
@@ -37,6 +40,7 @@ struct ecdev_ops {
 	void (*stop)(void *priv);
 	u8 *(*tx_get)(void *priv);
 	int (*tx_send)(void *priv, u8 *buf, size_t len);
+	void (*tx_flush)(void *priv);
 	void (*poll)(void *priv);
 	void (*cycle)(void *priv, bool on);
 	bool (*link_up)(void *priv);

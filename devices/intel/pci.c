@@ -101,13 +101,18 @@ static int intel_tx_send(void *priv, u8 *buf, size_t len)
 	if (!READ_ONCE(n->nic.up))
 		return -ENETDOWN;
 	ec_ring_tx_put(&n->nic, &n->tx, len);
-	ec_ring_tx_flush(&n->nic, &n->tx);
-	if (READ_ONCE(n->cycle))
-		return 0;
+	return 0;
+}
+
+static void intel_tx_flush(void *priv)
+{
+	struct intel *n = priv;
+
+	if (!READ_ONCE(n->ready) || !ec_ring_tx_flush(&n->nic, &n->tx) || READ_ONCE(n->cycle))
+		return;
 	atomic64_set(&n->sent_ns, ktime_get_ns());
 	if (!hrtimer_is_queued(&n->idle))
 		hrtimer_start(&n->idle, ns_to_ktime(IDLE_NS), HRTIMER_MODE_REL_SOFT);
-	return 0;
 }
 
 static void intel_poll(void *priv)
@@ -206,6 +211,7 @@ static const struct ecdev_ops intel_ops = {
 	.stop = intel_stop,
 	.tx_get = intel_tx_get,
 	.tx_send = intel_tx_send,
+	.tx_flush = intel_tx_flush,
 	.poll = intel_poll,
 	.cycle = intel_cycle,
 	.link_up = intel_link_up,

@@ -201,14 +201,16 @@ void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx, size_t l
  * @tx: transmit ring
  *
  * Context: One sender at a time. RT-safe.
+ * Return: false: there was nothing to send.
  */
-void ec_ring_tx_flush(const struct intel_nic *nic, struct intel_ring *tx)
+bool ec_ring_tx_flush(const struct intel_nic *nic, struct intel_ring *tx)
 {
 	if (tx->tail == tx->next)
-		return;
+		return false;
 	tx->tail = tx->next;
 	/* writel() orders the descriptors before it */
 	ec_nic_write(nic, nic->class->tx + Q_TAIL, tx->tail);
+	return true;
 }
 
 /**

@@ -32,7 +32,7 @@ int ec_ring_alloc(struct device *dev, struct intel_ring *tx, struct intel_ring *
 int ec_ring_start(struct intel_nic *nic, struct intel_ring *tx, struct intel_ring *rx);
 u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel_ring *tx);
 void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx, size_t len);
-void ec_ring_tx_flush(const struct intel_nic *nic, struct intel_ring *tx);
+bool ec_ring_tx_flush(const struct intel_nic *nic, struct intel_ring *tx);
 const u8 *ec_ring_rx_get(const struct intel_nic *nic, const struct intel_ring *rx, size_t *len);
 void ec_ring_rx_put(const struct intel_nic *nic, struct intel_ring *rx);
 

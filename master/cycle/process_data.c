@@ -427,6 +427,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
 	ec_share_begin(c->links);
 	ec_share_send_left(c->links, send.wire.ns);
+	ec_links_flush(c->links);
 	ec_write64(&c->sends, c->sends + 1);
 	return 0;
 }

@@ -39,6 +39,8 @@ static void own_devices(struct ec_links *l, bool cycle)
  * @slot: the slot is back in BUILD on failure
  * @now: time
  *
+ * ec_links_flush() must follow.
+ *
  * Context: The owner of the links. RT-safe.
  * Return: as ec_links_send().
  */
@@ -62,11 +64,16 @@ static void flush(struct ec_links *l, struct ec_queue *q)
 	struct ec_queued next;
 	struct ec_pack pack;
 	unsigned int waits = 0;
+	int ret;
 
 	lockdep_assert_held(&l->access.lock);
 	while (ec_queue_peek(&l->queues, q, &next)) {
 		ec_queue_gather(&l->queues, q, &next, &none, &pack);
-		if (!pack.n || ec_links_send_pack(l, &pack, ktime_get_ns()) != -EBUSY)
+		if (!pack.n)
+			continue;
+		ret = ec_links_send_pack(l, &pack, ktime_get_ns());
+		ec_links_flush(l);
+		if (ret != -EBUSY)
 			continue;
 		if (waits++ < FLUSH_WAITS)
 			/* no driver reports room in its ring */

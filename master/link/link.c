@@ -99,6 +99,8 @@ int ec_link_send(struct ec_link *link, struct ec_slot *slot)
  * @l: links
  * @slot: slot in state SENT
  *
+ * ec_links_flush() must follow.
+ *
  * Context: The owner of the links. RT-safe.
  * Return: as ec_link_send(); the first link that fails ends it.
  */
@@ -117,6 +119,8 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot)
  * @l: links
  * @p: the frame; its slots are let go before it leaves
  * @sent_ns: when it leaves (ktime)
+ *
+ * ec_links_flush() must follow.
  *
  * Context: The owner of the links. RT-safe.
  * Return: as ec_links_send(). The frames stay in the queue when it is -EBUSY.
@@ -154,6 +158,27 @@ int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 	if (ret == -EBUSY)
 		ec_pack_move(p, EC_SLOT_SENT, EC_SLOT_QUEUED);
 	return ret;
+}
+
+/**
+ * ec_links_flush() - a batch of frames has ended: let the devices send them
+ * @l: links
+ *
+ * One doorbell for all frames of a cycle. Must follow each batch, also when its last frame
+ * failed.
+ *
+ * Context: The owner of the links. RT-safe.
+ */
+void ec_links_flush(struct ec_links *l)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
+
+		if (dev && dev->ops->tx_flush)
+			dev->ops->tx_flush(dev->priv);
+	}
 }
 
 /**

@@ -86,6 +86,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 int ec_link_send(struct ec_link *link, struct ec_slot *slot);
 int ec_links_send(struct ec_links *l, struct ec_slot *slot);
 int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns);
+void ec_links_flush(struct ec_links *l);
 void ec_link_poll(struct ec_link *link);
 void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);

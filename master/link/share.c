@@ -158,7 +158,7 @@ static u32 send_next(struct ec_links *l, struct ec_queue *q, const struct ec_que
 /**
  * ec_share_send_left() - send what others have left, as far as it fits before
  *	the next cycle; see ecrt_master_set_late_cycles() for what does not
- * @l: links
+ * @l: links; ec_links_flush() must follow
  * @wire_ns: wire time this cycle has used
  *
  * Context: The master's single cyclic caller. RT-safe.
@@ -203,6 +203,8 @@ void ec_share_send_between(struct ec_links *l)
 {
 	u64 since = ktime_get_ns() - ec_read64(&l->access.last_send_ns);
 
-	if (since + ec_frame_wire_ns(EC_ETH_MAX) < ec_access_interval_us(&l->access) * 900ULL)
+	if (since + ec_frame_wire_ns(EC_ETH_MAX) < ec_access_interval_us(&l->access) * 900ULL) {
 		ec_share_send_left(l, since);
+		ec_links_flush(l);
+	}
 }

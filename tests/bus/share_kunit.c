@@ -268,7 +268,7 @@ static void share_refused_frame_stays_queued(struct kunit *test)
 	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 10000), ~0ull);
 	c = cyc_in_op(b, 1, 2);
 	a = askers(b, 1, FRAMES, 15, 1);
-	slow_refuse(s, EC_CMD_FPRD, 20);
+	slow_refuse(s, EC_CMD_FPRD, 0, 20);
 	run(c, a, 1, 1000);
 	KUNIT_EXPECT_EQ(test, slow_to_refuse(s), 0u);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);

@@ -22,8 +22,11 @@ struct tx {
  * @slowness: times the wire time of 100 Mbit/s
  * @head: next buffer to fill
  * @tail: the one that leaves next
+ * @rung: the first one that leaves only after another doorbell
+ * @doorbells: that let frames leave
  * @full: how often there was none
  * @claim: slaves that broadcasts seem to have passed, 0: as many as there are
+ * @pass: frames that begin with @refused_cmd and pass before the first is refused
  * @refuse: frames that the ring refuses only when they are sent, as a stack with queues
  *	of its own does: so many that begin with command @refused_cmd
  * @refused_cmd: EC_CMD_*
@@ -40,8 +43,11 @@ struct slow {
 	u32 slowness;
 	u32 head;
 	u32 tail;
+	u32 rung;
+	u32 doorbells;
 	u32 full;
 	u32 claim;
+	u32 pass;
 	u32 refuse;
 	u8 refused_cmd;
 	bool stopped;
@@ -81,7 +87,7 @@ static enum hrtimer_restart has_left(struct hrtimer *timer)
 
 	ec_sim_wire_send(&s->wire, 0, t->data, t->len);
 	raw_spin_lock_irqsave(&s->lock, flags);
-	if (++s->tail != s->head && !s->stopped)
+	if (++s->tail != s->rung && !s->stopped)
 		start(s);
 	raw_spin_unlock_irqrestore(&s->lock, flags);
 	return HRTIMER_NORESTART;
@@ -122,15 +128,32 @@ static int tx_send(void *priv, u8 *buf, size_t len)
 	if (!ec_sim_wire_up(&s->wire))
 		return -ENETDOWN;
 	if (s->refuse && buf[EC_ETH_HDR + EC_FRAME_HDR] == s->refused_cmd) {
-		s->refuse--;
-		return -EBUSY;
+		if (!s->pass) {
+			s->refuse--;
+			return -EBUSY;
+		}
+		s->pass--;
 	}
 	raw_spin_lock_irqsave(&s->lock, flags);
 	at(s, s->head)->len = len;
-	if (s->head++ == s->tail && !s->stopped)
-		start(s);
+	s->head++;
 	raw_spin_unlock_irqrestore(&s->lock, flags);
 	return 0;
+}
+
+static void tx_flush(void *priv)
+{
+	struct slow *s = priv;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&s->lock, flags);
+	if (s->rung != s->head) {
+		if (s->rung == s->tail && !s->stopped)
+			start(s);
+		s->rung = s->head;
+		s->doorbells++;
+	}
+	raw_spin_unlock_irqrestore(&s->lock, flags);
 }
 
 static void poll(void *priv)
@@ -161,6 +184,7 @@ static const struct ecdev_ops ops = {
 	.stop = slow_end,
 	.tx_get = tx_get,
 	.tx_send = tx_send,
+	.tx_flush = tx_flush,
 	.poll = poll,
 	.cycle = cycle,
 	.link_up = link_up,
@@ -229,7 +253,7 @@ void slow_stop(struct slow *s, bool stop)
 
 	raw_spin_lock_irqsave(&s->lock, flags);
 	s->stopped = stop;
-	if (!stop && s->head != s->tail && !hrtimer_active(&s->timer))
+	if (!stop && s->rung != s->tail && !hrtimer_active(&s->timer))
 		start(s);
 	raw_spin_unlock_irqrestore(&s->lock, flags);
 }
@@ -238,10 +262,12 @@ void slow_stop(struct slow *s, bool stop)
  * slow_refuse() - let tx_send() answer that there is no room
  * @s: device
  * @cmd: for frames that begin with this command
+ * @pass: so many of them pass first
  * @frames: how many
  */
-void slow_refuse(struct slow *s, u8 cmd, u32 frames)
+void slow_refuse(struct slow *s, u8 cmd, u32 pass, u32 frames)
 {
+	s->pass = pass;
 	s->refused_cmd = cmd;
 	s->refuse = frames;
 }
@@ -266,4 +292,26 @@ u32 slow_to_refuse(const struct slow *s)
 u32 slow_full(const struct slow *s)
 {
 	return s->full;
+}
+
+/**
+ * slow_doorbells() - how often frames were let go
+ * @s: device
+ *
+ * Return: times.
+ */
+u32 slow_doorbells(const struct slow *s)
+{
+	return s->doorbells;
+}
+
+/**
+ * slow_sent() - frames in the ring since the beginning
+ * @s: device
+ *
+ * Return: frames.
+ */
+u32 slow_sent(const struct slow *s)
+{
+	return s->head;
 }
