@@ -20,3 +20,8 @@ void sys_close(int fd)
 {
 	close(fd);
 }
+
+const char *sys_fs(void)
+{
+	return "/sys";
+}

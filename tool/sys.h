@@ -5,5 +5,6 @@
 int sys_open(const char *path, int flags);
 int sys_ioctl(int fd, unsigned long request, void *arg);
 void sys_close(int fd);
+const char *sys_fs(void);	/* where sysfs is */
 
 #endif

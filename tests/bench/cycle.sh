@@ -222,6 +222,27 @@ generic_cost() {
 	done
 }
 
+# The same card without interrupts. What an application waits for is its own sleep or the
+# kernel's cycle.
+native_cost() {
+	local n
+
+	echo "# instructions per cycle, native device on e1000e"
+	for n in 1 100; do
+		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
+			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
+			+ wait --cycles 300 --period-us 4000 --kernel wait \
+			+ spin --cycles 300 --period-us 4000 --kernel spin || return
+		cost native
+		kernel_cost
+		work "" 4 "application's cycle"
+		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
+		work wait_ 4 "kernel's cycle, the application waits for it"
+		printf '# kernel cycle, application spinning: thread %6u\n' "${v[spin_work_mean]}"
+		reliable "native device"
+	done
+}
+
 # Differences of runs in which one thing changes. A datagram holds 1486 bytes at
 # most, so 4400 bytes are three, each a frame of its own.
 unit_costs() {
@@ -293,6 +314,7 @@ real_time() {
 
 long_run
 generic_cost
+native_cost
 [ -z "$all" ] || unit_costs
 [ -z "$all" ] || virtual_cost
 system_calls

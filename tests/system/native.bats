@@ -21,7 +21,8 @@ demo() { LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"; }
 
 # in the background, all slaves in OP
 demo_runs() {
-	demo --cycles 1000000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000000 \
+		>"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
 	app=$!
 	wait_for 120 all_slaves_are OP 22
 }
@@ -79,6 +80,38 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 	demo_ends
 }
 
+# devices KEY PCI: of the list
+listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$1"; }
+
+# load_master did what 'modprobe ec_intel' and 'ethercat device bind' do; now the commands
+@test "ethercat device unbind and bind change the driver" {
+	[ "$(listed driver "$pci0")" = ec_intel ]
+	[ "$(listed used_by "$pci0")" = "Master0 main" ]
+	[ "$(listed link_up "$pci0")" = true ]
+	[ "$(listed driver "$pci1")" = e1000e ]
+	[ "$(listed native "$pci1")" = true ]
+	refused "$pci0 is used by Master0 main" device unbind "$pci0"
+	ethercat device unbind --force "$pci0"
+	wait_for 60 is_bound "$pci0" e1000e
+	wait_for 60 test -e /sys/class/net/eth0
+	waits
+	refused 'eth1 is used by the system \(up\)' device bind eth1
+	ethercat device bind eth0
+	is_bound "$pci0" ec_intel
+	[ ! -e /sys/class/net/eth0 ]
+	ethercat devices
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+@test "no user but root changes the driver" {
+	run setpriv --reuid 65534 --regid 65534 --clear-groups "$EC_BUILD/tool/ethercat" \
+		device unbind --force "$pci0"
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output == *"Permission denied"* ]]
+	is_bound "$pci0" ec_intel
+}
+
 @test "the stock driver takes the card, and gives it back" {
 	driver "$pci0" e1000e
 	wait_for 60 test -e /sys/class/net/eth0
@@ -92,7 +125,7 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/unbind
 	waits
 	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/bind
-	wait_for 120 all_slaves_are PREOP 22
+	wait_for 120 all_slaves_are OP 22
 	demo_ends
 }
 

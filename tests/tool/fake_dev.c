@@ -788,3 +788,11 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return -1;
 	}
 }
+
+/* FAKE_SYS: a folder in the place of /sys */
+const char *sys_fs(void)
+{
+	const char *dir = getenv("FAKE_SYS");
+
+	return dir ? dir : "/nonexistent";
+}

@@ -6,7 +6,8 @@
 #   NAME    stands before each name of what that run prints: NAME_cycles
 # EC_INTERRUPT=legacy: of eth0, instead of MSI-X
 #   DEVICE  virtual: the model as sim0; generic: eth0, the model answers on
-#           eth1, which is joined with it (run.sh --nics)
+#           eth1, which is joined with it (run.sh --nics); native: the same, and
+#           eth0 has the native driver
 
 set -u
 build=$1 device=$2 segment=$3
@@ -20,7 +21,7 @@ virtual)
 	insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
 	insmod "$build/modules/devices/sim/ec_sim.ko" segment="$segment" || exit 1
 	;;
-generic)
+generic|native)
 	# The simulator's interrupts come late, after the calls that are measured. QEMU's
 	# card cannot do MSI: the driver falls back to the legacy interrupt.
 	mode=2
@@ -30,8 +31,15 @@ generic)
 	# of a real-time task the timers expire in the interrupt: no thread of the kernel
 	# works for the simulator
 	chrt -f 1 "$build/tool/ethercat-sim" --segment "$segment" eth1 &
-	insmod "$build/modules/master/ec_master.ko" main_devices=eth0 &&
-	insmod "$build/modules/devices/ec_generic.ko" || exit 1
+	main=eth0
+	[ "$device" = generic ] || main=$(cat /sys/class/net/eth0/address)
+	insmod "$build/modules/master/ec_master.ko" main_devices=$main || exit 1
+	if [ "$device" = generic ]; then
+		insmod "$build/modules/devices/ec_generic.ko" || exit 1
+	else
+		insmod "$build/modules/devices/intel/ec_intel.ko" &&
+			"$build/tool/ethercat" device bind eth0 || exit 1
+	fi
 	;;
 *)
 	echo "guest.sh: there is no device $device"

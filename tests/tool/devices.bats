@@ -1,0 +1,145 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+# Network cards in a tree of files that looks like sysfs.
+
+load common
+
+# card PCI VENDOR DEVICE DRIVER [INTERFACE MAC]
+card() {
+	local d=$FAKE_SYS/devices/pci0000:00/$1
+
+	mkdir -p "$d" "$FAKE_SYS/bus/pci/drivers/$4"
+	ln -s "$FAKE_SYS/bus/pci" "$d/subsystem"
+	ln -s "$d" "$FAKE_SYS/bus/pci/devices/$1"
+	echo 0x020000 >"$d/class"
+	echo "$2" >"$d/vendor"
+	echo "$3" >"$d/device"
+	: >"$d/driver_override"
+	: >"$FAKE_SYS/bus/pci/drivers/$4/unbind"
+	ln -s "$FAKE_SYS/bus/pci/drivers/$4" "$d/driver"
+	ln -s "$d" "$FAKE_SYS/bus/pci/drivers/$4/$1"
+	[ -z "${5:-}" ] || interface "$5" "$6" "$d"
+}
+
+# interface NAME MAC DEVICE
+interface() {
+	local n=$3/net/$1
+
+	mkdir -p "$n"
+	ln -s "$3" "$n/device"
+	ln -s "$n" "$FAKE_SYS/class/net/$1"
+	echo "$2" >"$n/address"
+	echo 1 >"$n/type"
+	echo 0x1002 >"$n/flags"
+}
+
+setup() {
+	export FAKE_SYS=$BATS_TEST_TMPDIR/sys
+	mkdir -p "$FAKE_SYS/class/net/lo" "$FAKE_SYS/bus/pci/devices" "$FAKE_SYS/bus/pci/drivers"
+	echo 772 >"$FAKE_SYS/class/net/lo/type"
+	: >"$FAKE_SYS/bus/pci/drivers_probe"
+	card 0000:01:00.0 0x8086 0x10d3 e1000e enp1s0 02:00:00:00:00:01
+	card 0000:02:00.0 0x8086 0x15b8 e1000e eth1 02:00:00:00:00:02
+	card 0000:03:00.0 0x10ec 0x8168 r8169 eth2 02:00:00:00:00:03
+	card 0000:04:00.0 0x8086 0x1533 igb
+	# Master0 of fake_dev.c has it
+	card 0000:06:00.0 0x8086 0x10d3 e1000e eth0 02:00:00:12:34:56
+	mkdir -p "$FAKE_SYS/devices/usb/1-1"
+	interface usb0 02:00:00:00:00:04 "$FAKE_SYS/devices/usb/1-1"
+}
+
+probed() { cat "$FAKE_SYS/bus/pci/drivers_probe"; }
+override() { cat "$FAKE_SYS/bus/pci/devices/$1/driver_override"; }
+
+native_driver() {
+	mkdir "$FAKE_SYS/bus/pci/drivers/ec_intel"
+}
+
+@test "devices lists cards with driver, link and user" {
+	echo 1 >"$FAKE_SYS/class/net/eth2/carrier"
+	echo 100 >"$FAKE_SYS/class/net/eth2/speed"
+	echo 0x1003 >"$FAKE_SYS/class/net/eth2/flags"
+	golden devices devices
+	run ethercat devices
+	[ "$status" -eq 0 ]
+}
+
+@test "devices: JSON" {
+	out devices -j | json 'len(d["devices"]) == 6'
+	out devices -j | json 'd["devices"][0] == {"interface": "enp1s0", "pci": "0000:01:00.0", "mac": "02:00:00:00:00:01", "driver": "e1000e", "link_up": None, "speed_mbit_s": 0, "used_by": "", "native": True, "chip": "82574L", "tested": True, "why_not": ""}'
+}
+
+@test "devices without a network card prints nothing" {
+	rm -r "$FAKE_SYS"
+	run ethercat devices
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+}
+
+@test "bind gives the card to the native driver" {
+	native_driver
+	# what the kernel does
+	ln -s x "$FAKE_SYS/bus/pci/drivers/ec_intel/0000:01:00.0"
+	for name in enp1s0 02:00:00:00:00:01 0000:01:00.0 01:00.0; do
+		: >"$FAKE_SYS/bus/pci/drivers_probe"
+		ln -sfn "$FAKE_SYS" "$FAKE_SYS/bus/pci/drivers/ec_intel/0000:01:00.0"
+		run ethercat device bind $name
+		echo "$name: $output"
+		[ "$status" -eq 0 ]
+		[ "$(override 0000:01:00.0)" = ec_intel ]
+		[ "$(cat "$FAKE_SYS/bus/pci/drivers/e1000e/unbind")" = 0000:01:00.0 ]
+		[ "$(probed)" = 0000:01:00.0 ]
+	done
+}
+
+@test "bind: a card that the driver refuses goes back" {
+	native_driver
+	run ethercat device bind enp1s0
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat device: ec_intel refused 0000:01:00.0; see 'dmesg'" ]
+	# an empty line was written over it: any driver
+	[ -z "$(head -n 1 "$FAKE_SYS/bus/pci/devices/0000:01:00.0/driver_override")" ]
+}
+
+refused() {
+	run ethercat device "${@:2}"
+	echo "$output"
+	[ "$status" -eq 1 ]
+	[[ $output == *"$1"* ]]
+	[ -z "$(probed)" ]
+	[ -z "$(override 0000:01:00.0)" ]
+}
+
+@test "bind refuses what has no native driver, with the reason" {
+	refused "modprobe ec_intel" bind enp1s0
+	native_driver
+	refused "eth1 has no native driver: its PHY is shared with the management engine" bind eth1
+	refused "eth2 has no native driver: no native driver for 10ec:8168" bind eth2
+	refused "usb0 has no native driver: not a PCI device" bind usb0
+	refused "there is no network card eth9" bind eth9
+	refused "use bind or unbind" bond enp1s0
+	refused "missing argument" bind
+}
+
+@test "a card in use is refused, --force takes it" {
+	native_driver
+	echo 0x1003 >"$FAKE_SYS/class/net/enp1s0/flags"
+	refused "enp1s0 is used by the system (up)" bind enp1s0
+	ln -s "$FAKE_SYS/class/net/br0" "$FAKE_SYS/class/net/enp1s0/master"
+	refused "enp1s0 is used by br0 (its port)" bind enp1s0
+	refused "eth0 is used by Master0 main; unload ec_generic first" bind eth0
+	ln -s "$FAKE_SYS" "$FAKE_SYS/bus/pci/drivers/ec_intel/0000:01:00.0"
+	run ethercat device bind --force enp1s0
+	[ "$status" -eq 0 ]
+}
+
+@test "unbind gives the card back" {
+	refused "enp1s0 has no native driver" unbind enp1s0
+	card 0000:05:00.0 0x8086 0x10d3 ec_intel
+	run ethercat device unbind 05:00.0
+	echo "$output"
+	[ "$status" -eq 0 ]
+	[ "$(probed)" = 0000:05:00.0 ]
+	[ "$(cat "$FAKE_SYS/bus/pci/drivers/ec_intel/unbind")" = 0000:05:00.0 ]
+	out devices -j | json '[x for x in d["devices"] if x["pci"] == "0000:05:00.0"][0]["native"] and [x for x in d["devices"] if x["pci"] == "0000:05:00.0"][0]["driver"] == "ec_intel"'
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* A network card gets its native driver, or the one of the system back. */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "nic.h"
+#include "out.h"
+#include "sys.h"
+#include "tool.h"
+
+static bool is_native(const struct nic *n)
+{
+	return !strcmp(n->driver, NIC_NATIVE);
+}
+
+static int put(const char *what, const char *pci, const char *attribute, const char *text)
+{
+	char path[256];
+	int err;
+
+	snprintf(path, sizeof(path), "%s/bus/pci/devices/%s/%s", sys_fs(), pci, attribute);
+	err = nic_write(path, text);
+	return err ? fail_full(-err, NULL, 0, "cannot %s %s", what, pci) : 0;
+}
+
+/*
+ * driver_override names the only driver that may have the card; "\n": any. Then the card is
+ * taken from its driver and offered again.
+ */
+static int rebind(const char *what, const struct nic *n, const char *override)
+{
+	char path[256];
+	int err;
+
+	if (put(what, n->pci, "driver_override", override) ||
+	    (*n->driver && put(what, n->pci, "driver/unbind", n->pci)))
+		return 1;
+	snprintf(path, sizeof(path), "%s/bus/pci/drivers_probe", sys_fs());
+	err = nic_write(path, n->pci);
+	return err && err != -EINVAL ? fail_full(-err, NULL, 0, "cannot %s %s", what, n->pci) : 0;
+}
+
+static bool has_driver(const struct nic *n, const char *driver)
+{
+	char path[256];
+
+	snprintf(path, sizeof(path), "%s/bus/pci/drivers/%s/%s", sys_fs(), driver, n->pci);
+	return !access(path, F_OK);
+}
+
+static int check(const struct tool *t, const struct nic *n)
+{
+	char path[256];
+
+	if (!*n->pci || *n->why_not)
+		return fail("%s has no native driver: %s; the generic device can use it",
+			    *n->name ? n->name : n->pci, n->why_not);
+	if (*n->by && !t->force)
+		return fail("%s is used by %s; %s, or use --force",
+			    *n->name ? n->name : n->pci, n->by,
+			    n->master ? "unload ec_generic first" :
+			    "take it down with 'ip link set down'");
+	snprintf(path, sizeof(path), "%s/bus/pci/drivers/" NIC_NATIVE, sys_fs());
+	if (access(path, F_OK))
+		return fail("the driver " NIC_NATIVE " is not loaded; load it with 'modprobe "
+			    NIC_NATIVE "'");
+	return 0;
+}
+
+static int bind(const struct tool *t, const struct nic *n)
+{
+	struct nic back;
+
+	if (is_native(n)) {
+		note("%s has its native driver already", n->pci);
+		return 0;
+	}
+	if (check(t, n) || rebind("bind", n, NIC_NATIVE))
+		return 1;
+	if (has_driver(n, NIC_NATIVE))
+		return 0;
+	/* the card must not stay without driver */
+	back = *n;
+	back.driver[0] = '\0';
+	rebind("return", &back, "\n");
+	return fail(NIC_NATIVE " refused %s; see 'dmesg'", n->pci);
+}
+
+static int unbind(const struct tool *t, const struct nic *n)
+{
+	char path[256];
+
+	if (!is_native(n))
+		return fail("%s has no native driver", *n->name ? n->name : n->pci);
+	if (*n->by && !t->force)
+		return fail("%s is used by %s; unload ec_master or use --force", n->pci, n->by);
+	if (rebind("unbind", n, "\n"))
+		return 1;
+	snprintf(path, sizeof(path), "%s/bus/pci/devices/%s/driver", sys_fs(), n->pci);
+	if (access(path, F_OK))
+		note("no driver has taken %s; load the one of the system", n->pci);
+	return 0;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	bool on = !strcmp(argv[0], "bind");
+	struct nics all;
+	struct nic *n;
+	int ret;
+
+	(void)argc;
+	if (!on && strcmp(argv[0], "unbind"))
+		return usage_error("'%s': use bind or unbind", argv[0]);
+	ret = nics_read(&all);
+	if (!ret) {
+		n = nic_find(&all, argv[1]);
+		ret = !n ? 1 : on ? bind(t, n) : unbind(t, n);
+	}
+	nics_free(&all);
+	return ret;
+}
+
+const struct cmd cmd_device = {
+	.name = "device",
+	.run = run,
+	.args = "bind|unbind DEVICE",
+	.opts = "f",
+	.summary = "Give a network card its native driver, or take it away",
+	.help = "DEVICE is an interface, a MAC address or a PCI address as 'ethercat devices' lists them.\n"
+		"After bind the interface is not there any more: a master gets the card by its MAC or\n"
+		"PCI address (main_devices=). After unbind the driver of the system has it again.\n"
+		"A card in use is refused; --force takes it nevertheless. Needs root; lasts until the\n"
+		"computer restarts.\n",
+	.json = "none",
+	.min_args = 2,
+	.max_args = 2,
+};
