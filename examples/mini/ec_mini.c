@@ -9,7 +9,8 @@
  *   insmod ec_mini.ko position=0
  *
  * With kernel_cycle=1 a thread of the master exchanges the process data, and the thread of
- * this module waits for its cycles.
+ * this module waits for its cycles. With in_interrupt=1 the cycle runs in the interrupt of a
+ * timer, which needs a native or virtual device.
  *
  * In the source tree "make mini" builds it.
  */
@@ -37,11 +38,16 @@ static bool kernel_cycle;
 module_param(kernel_cycle, bool, 0444);
 MODULE_PARM_DESC(kernel_cycle, "the master runs the cycle");
 
+static bool in_interrupt;
+module_param(in_interrupt, bool, 0444);
+MODULE_PARM_DESC(in_interrupt, "the cycle runs in the interrupt of a timer");
+
 static ec_master_t *master;
 static ec_domain_t *domain;
 static ec_slave_config_t *slave;
 static ec_sdo_request_t *serial;
 static struct task_struct *task;
+static struct hrtimer timer;
 static int out, in;
 
 /* Reads the serial number again and again, beside the cycle. */
@@ -60,7 +66,7 @@ static void read_serial(unsigned int cycle)
 		ecrt_sdo_request_read(serial);
 }
 
-/* None of this sleeps or waits; only a change is printed. */
+/* None of this sleeps or waits, so that it may be an interrupt; only a change is printed. */
 static void show_changes(void)
 {
 	static ec_slave_config_state_t last;
@@ -80,17 +86,30 @@ static void show_changes(void)
 	last_data = data;
 }
 
-static void cycle(unsigned int n)
+static int cycle(unsigned int n)
 {
 	u8 *data = ecrt_domain_data(domain);
+	int ret = ecrt_master_receive(master);
 
-	ecrt_master_receive(master);
 	ecrt_domain_process(domain);
 	show_changes();
 	read_serial(n);
 	memcpy(data + out, data + in, BYTES);
 	ecrt_domain_queue(domain);
 	ecrt_master_send(master);
+	return ret;
+}
+
+static enum hrtimer_restart tick(struct hrtimer *t)
+{
+	static unsigned int n;
+
+	if (cycle(n++) == -EWOULDBLOCK) {
+		pr_err("ec_mini: this device cannot be used in an interrupt; the cycle ends\n");
+		return HRTIMER_NORESTART;
+	}
+	hrtimer_forward_now(t, ns_to_ktime(PERIOD_US * NSEC_PER_USEC));
+	return HRTIMER_RESTART;
 }
 
 /* Until the next cycle begins. */
@@ -159,6 +178,12 @@ static int __init ec_mini_init(void)
 	ret = configure() ?: ecrt_master_activate(master);
 	if (ret)
 		goto err;
+	if (in_interrupt) {
+		hrtimer_init(&timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
+		timer.function = tick;
+		hrtimer_start(&timer, ns_to_ktime(PERIOD_US * NSEC_PER_USEC), HRTIMER_MODE_REL_HARD);
+		return 0;
+	}
 	task = kthread_run(run, NULL, "ec_mini");
 	if (!IS_ERR(task))
 		return 0;
@@ -171,7 +196,10 @@ err:
 /* Stop the cycle before its master is released. */
 static void __exit ec_mini_exit(void)
 {
-	kthread_stop(task);
+	if (in_interrupt)
+		hrtimer_cancel(&timer);
+	else
+		kthread_stop(task);
 	ecrt_release_master(master);
 }
 

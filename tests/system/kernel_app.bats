@@ -61,6 +61,24 @@ copied() {
 	start "$BATS_FILE_TMPDIR/segment" 2
 }
 
+@test "in the interrupt of a timer it does the same" {
+	rmmod ec_mini
+	wait_for 60 all_slaves_are PREOP 2
+	dmesg -C
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=1 in_interrupt=1
+	wait_for 60 all_slaves_are OP 2
+	wait_for 60 said "working counter 3, complete"
+	wait_for 60 said "serial number 77"
+	wait_for 60 copied
+	# cable, mailbox and device at that moment
+	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]
+	rmmod ec_sim
+	wait_for 60 json '.masters[0].phase == "waiting"' master
+	rmmod ec_mini
+	rmmod ec_master
+	start "$BATS_FILE_TMPDIR/segment" 2
+}
+
 @test "the tool works beside ec_mini, a process is refused with the reason" {
 	json '.masters[0].active and .masters[0].phase == "operation"' master
 	[ "$(ethercat upload -p1 -t uint32 0x1018 4 | awk '{ print $1 }')" = 0x0000004d ]

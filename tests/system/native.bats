@@ -13,6 +13,7 @@ setup_file() {
 
 teardown_file() { stop; }
 teardown() {
+	rmmod ec_mini 2>/dev/null || true
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
 	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/bind 2>/dev/null || true
 }
@@ -42,6 +43,8 @@ monitor() {
 	echo "$*" >"/dev/$(basename "${port%/name}")"
 }
 
+# slave_is POSITION STATE
+slave_is() { [ "$(ethercat slaves -p "$1" | awk '{ print $3 }')" = "$2" ]; }
 link_is() { [ "$(says Link)" = "$1" ]; }
 waits() { [[ "$(says Main)" == *"(waiting...)" ]]; }
 is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$2" ]; }
@@ -110,6 +113,23 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 	[ "$status" = 1 ]
 	[[ $output == *"Permission denied"* ]]
 	is_bound "$pci0" ec_intel
+}
+
+# sleeping locks of PREEMPT_RT would show there
+@test "an application in the kernel runs its cycle in the interrupt of a timer" {
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=16 in_interrupt=1
+	wait_for 60 slave_is 16 OP
+	sleep 2
+	dmesg | grep -q "ec_mini: working counter 3, complete"
+	before=$(lost_frames)
+	sleep 3
+	[ "$(lost_frames)" = "$before" ]
+	monitor set_link nic0 off
+	wait_for 60 link_is DOWN
+	monitor set_link nic0 on
+	wait_for 120 slave_is 16 OP
+	rmmod ec_mini
+	wait_for 120 all_slaves_are PREOP 22
 }
 
 @test "the stock driver takes the card, and gives it back" {
