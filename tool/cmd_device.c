@@ -130,8 +130,8 @@ const struct cmd cmd_device = {
 	.opts = "f",
 	.summary = "Give a network card its native driver, or take it away",
 	.help = "DEVICE is an interface, a MAC address or a PCI address as 'ethercat devices' lists them.\n"
-		"After bind the interface is not there any more: a master gets the card by its MAC or\n"
-		"PCI address (main_devices=). After unbind the driver of the system has it again.\n"
+		"After bind the interface is absent: a master gets the card by its MAC or PCI address\n"
+		"(main_devices=). After unbind the driver of the system has it again.\n"
 		"A card in use is refused; --force takes it nevertheless. Needs root; lasts until the\n"
 		"computer restarts.\n",
 	.json = "none",

@@ -77,7 +77,7 @@ const struct cmd cmd_devices = {
 	.run = run,
 	.args = "",
 	.opts = "",
-	.summary = "List the network cards and who uses them",
+	.summary = "List the network cards and their users",
 	.help = "NATIVE says whether ec_intel can drive the card ('ethercat device bind'), or why not;\n"
 		"the generic device takes any of them. Cards that no test has run with ec_intel are\n"
 		"marked as never tested. The link is unknown while the interface is down. Needs no\n"

@@ -42,7 +42,8 @@ struct advanced {
 #define A_DONE		BIT(0)
 #define A_END		BIT(1)
 #define A_ERRORS	GENMASK(31, 24)
-#define A_COMMAND	(3 << 20 | BIT(29) | BIT(24) | BIT(25) | BIT(27))	/* data, as L_COMMAND */
+/* data descriptor, otherwise as L_COMMAND */
+#define A_COMMAND	(3 << 20 | BIT(29) | BIT(24) | BIT(25) | BIT(27))
 #define A_PAYLOAD	14
 
 union intel_desc {

@@ -23,6 +23,7 @@
 #include <ecrt.h>
 
 #define PERIOD_US	1000
+#define PERIOD_NS	(PERIOD_US * NSEC_PER_USEC)
 #define BYTES		2	/* copied in each cycle */
 #define READ_CYCLES	1000	/* between two reads of the object */
 
@@ -108,7 +109,7 @@ static enum hrtimer_restart tick(struct hrtimer *t)
 		pr_err("ec_mini: this device cannot be used in an interrupt; the cycle ends\n");
 		return HRTIMER_NORESTART;
 	}
-	hrtimer_forward_now(t, ns_to_ktime(PERIOD_US * NSEC_PER_USEC));
+	hrtimer_forward_now(t, ns_to_ktime(PERIOD_NS));
 	return HRTIMER_RESTART;
 }
 
@@ -142,7 +143,7 @@ static int run(void *unused)
 /* Default process data of the slave. */
 static int configure(void)
 {
-	const ec_cycle_config_t period = { .period_ns = PERIOD_US * NSEC_PER_USEC };
+	const ec_cycle_config_t period = { .period_ns = PERIOD_NS };
 	ec_slave_info_t info;
 	int ret = ecrt_master_get_slave(master, position, &info);
 
@@ -170,6 +171,7 @@ static int configure(void)
 /* The master logs the reason of a failure. */
 static int __init ec_mini_init(void)
 {
+	const ktime_t period = ns_to_ktime(PERIOD_NS);
 	int ret;
 
 	master = ecrt_request_master(master_index);
@@ -181,7 +183,7 @@ static int __init ec_mini_init(void)
 	if (in_interrupt) {
 		hrtimer_init(&timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
 		timer.function = tick;
-		hrtimer_start(&timer, ns_to_ktime(PERIOD_US * NSEC_PER_USEC), HRTIMER_MODE_REL_HARD);
+		hrtimer_start(&timer, period, HRTIMER_MODE_REL_HARD);
 		return 0;
 	}
 	task = kthread_run(run, NULL, "ec_mini");

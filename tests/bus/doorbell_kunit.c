@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* A device that sends nothing before its doorbell: one for all frames of a cycle, and never none. */
+/* A device that sends nothing before its doorbell: one for all frames of a cycle. */
 #include "cyc.h"
 #include "slow.h"
 
@@ -23,7 +23,7 @@ static struct cyc *in_op(struct kunit *test, struct slow **s)
 	return c;
 }
 
-static void doorbell_once_a_cycle(struct kunit *test)
+static void doorbell_once_per_cycle(struct kunit *test)
 {
 	struct slow *s;
 	struct cyc *c = in_op(test, &s);
@@ -63,7 +63,7 @@ static void doorbell_when_last_frame_fails(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(doorbell_once_a_cycle),
+	KUNIT_CASE(doorbell_once_per_cycle),
 	KUNIT_CASE(doorbell_when_last_frame_fails),
 	{}
 };

@@ -15,7 +15,7 @@ teardown_file() { stop; }
 teardown() {
 	rmmod ec_mini 2>/dev/null || true
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
-	echo "$pci0" >/sys/bus/pci/drivers/ec_intel/bind 2>/dev/null || true
+	[ ! -e "/sys/bus/pci/devices/$pci0" ] || is_bound "$pci0" ec_intel || driver "$pci0" ec_intel
 }
 
 demo() { LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"; }
@@ -62,7 +62,8 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 # an interrupt of the card would be counted
 @test "the card causes no interrupt" {
 	[ -z "$(ls "/sys/bus/pci/devices/$pci0/msi_irqs" 2>/dev/null)" ]
-	! grep -qE "eth0|$pci0|ec_intel" /proc/interrupts
+	run grep -E "eth0|$pci0|ec_intel" /proc/interrupts
+	[ "$status" = 1 ]
 }
 
 @test "the cable is unplugged and plugged in again" {
@@ -167,7 +168,8 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 @test "a chip that is not in the list is refused with the reason" {
 	dmesg -C
 	echo ec_intel >"/sys/bus/pci/devices/0000:00:00.0/driver_override"
-	! echo 0000:00:00.0 >/sys/bus/pci/drivers/ec_intel/bind
+	run sh -c 'echo 0000:00:00.0 >/sys/bus/pci/drivers/ec_intel/bind'
+	[ "$status" != 0 ]
 	dmesg | grep -q 'ec_intel 0000:00:00.0: 8086:1237 is not in the list of chips'
 }
 

@@ -66,7 +66,10 @@ native_driver() {
 
 @test "devices: JSON" {
 	out devices -j | json 'len(d["devices"]) == 6'
-	out devices -j | json 'd["devices"][0] == {"interface": "enp1s0", "pci": "0000:01:00.0", "mac": "02:00:00:00:00:01", "driver": "e1000e", "link_up": None, "speed_mbit_s": 0, "used_by": "", "native": True, "chip": "82574L", "tested": True, "why_not": ""}'
+	out devices -j | json 'd["devices"][0] == {
+		"interface": "enp1s0", "pci": "0000:01:00.0", "mac": "02:00:00:00:00:01",
+		"driver": "e1000e", "link_up": None, "speed_mbit_s": 0, "used_by": "",
+		"native": True, "chip": "82574L", "tested": True, "why_not": ""}'
 }
 
 @test "devices without a network card prints nothing" {
@@ -110,7 +113,7 @@ refused() {
 	[ -z "$(override 0000:01:00.0)" ]
 }
 
-@test "bind refuses what has no native driver, with the reason" {
+@test "bind refuses cards without native driver, with the reason" {
 	refused "modprobe ec_intel" bind enp1s0
 	native_driver
 	refused "eth1 has no native driver: its PHY is shared with the management engine" bind eth1
@@ -141,5 +144,6 @@ refused() {
 	[ "$status" -eq 0 ]
 	[ "$(probed)" = 0000:05:00.0 ]
 	[ "$(cat "$FAKE_SYS/bus/pci/drivers/ec_intel/unbind")" = 0000:05:00.0 ]
-	out devices -j | json '[x for x in d["devices"] if x["pci"] == "0000:05:00.0"][0]["native"] and [x for x in d["devices"] if x["pci"] == "0000:05:00.0"][0]["driver"] == "ec_intel"'
+	out devices -j | json '[(x["native"], x["driver"]) for x in d["devices"]
+		if x["pci"] == "0000:05:00.0"] == [(True, "ec_intel")]'
 }

@@ -258,11 +258,12 @@ quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 	echo
 } >"$ctl/cmd"
 
+mac=,mac=52:54:00:ec:00:0
 # The virtual functions of an igb take the places behind it.
 if [ "$nic" ]; then
 	for n in 0 1; do
 		opts+=(-netdev "hubport,id=h$n,hubid=0"
-			-device "$nic,id=nic$n,addr=$(printf %x $((8 + 4 * n))),netdev=h$n,mac=52:54:00:ec:00:0$n")
+			-device "$nic,id=nic$n,addr=$(printf %x $((8 + 4 * n))),netdev=h$n$mac$n")
 	done
 fi
 
