@@ -22,6 +22,9 @@
 #define IDLE_NS		(50 * NSEC_PER_USEC)	/* between two polls without a cycle */
 #define OUT_NS		(20 * NSEC_PER_MSEC)	/* a frame that is on its way longer is lost */
 
+#define BUSY_POLL	0	/* a poll runs */
+#define BUSY_TIMER	1	/* the timer is started, or its function runs */
+
 /**
  * struct intel - one network controller
  */
@@ -34,7 +37,7 @@ struct intel {
 	struct intel_nic nic;
 	/** @tx: transmit ring; one sender at a time */
 	struct intel_ring tx;
-	/** @rx: receive ring; whoever has @polling */
+	/** @rx: receive ring; only in a poll */
 	struct intel_ring rx;
 	/** @dev: receives the frames; set before the first one can arrive */
 	struct ecdev *dev;
@@ -44,8 +47,8 @@ struct intel {
 	struct hrtimer idle;
 	/** @sent_ns: when the last frame was sent without a cycle (ktime) */
 	atomic64_t sent_ns;
-	/** @polling: bit 0: a poll runs */
-	unsigned long polling;
+	/** @busy: bits BUSY_* */
+	unsigned long busy;
 	/** @cycle: the cycle polls */
 	bool cycle;
 	/** @started: a master uses it */
@@ -61,7 +64,7 @@ static void poll(struct intel *n)
 	unsigned int i;
 
 	/* the cycle begins while the timer's poll has not ended yet, or the reverse */
-	if (test_and_set_bit_lock(0, &n->polling))
+	if (test_and_set_bit_lock(BUSY_POLL, &n->busy))
 		return;
 	for (i = 0; i < INTEL_RX && (frame = ec_ring_rx_get(&n->nic, &n->rx, &len)); i++) {
 		if (len >= EC_ETH_HDR && get_unaligned_be16(frame + 12) == EC_ETHERTYPE)
@@ -71,18 +74,29 @@ static void poll(struct intel *n)
 			ecdev_foreign(n->dev);
 		ec_ring_rx_put(&n->nic, &n->rx);
 	}
-	clear_bit_unlock(0, &n->polling);
+	clear_bit_unlock(BUSY_POLL, &n->busy);
+}
+
+/* Are there frames in flight that no cycle polls for? */
+static bool waits(struct intel *n)
+{
+	return READ_ONCE(n->ready) && !READ_ONCE(n->cycle) &&
+	       ktime_get_ns() - atomic64_read(&n->sent_ns) <= OUT_NS;
 }
 
 static enum hrtimer_restart poll_idle(struct hrtimer *timer)
 {
 	struct intel *n = container_of(timer, struct intel, idle);
 
-	if (!READ_ONCE(n->ready) || READ_ONCE(n->cycle))
-		return HRTIMER_NORESTART;
-	poll(n);
-	if (ktime_get_ns() - atomic64_read(&n->sent_ns) > OUT_NS)
-		return HRTIMER_NORESTART;
+	if (READ_ONCE(n->ready) && !READ_ONCE(n->cycle))
+		poll(n);
+	if (!waits(n)) {
+		clear_bit(BUSY_TIMER, &n->busy);
+		smp_mb__after_atomic();	/* the bit before the time; pairs with intel_tx_flush() */
+		/* a sender that comes now starts the timer again, unless this function continues */
+		if (!waits(n) || test_and_set_bit(BUSY_TIMER, &n->busy))
+			return HRTIMER_NORESTART;
+	}
 	hrtimer_forward_now(timer, ns_to_ktime(IDLE_NS));
 	return HRTIMER_RESTART;
 }
@@ -111,7 +125,8 @@ static void intel_tx_flush(void *priv)
 	if (!READ_ONCE(n->ready) || !ec_ring_tx_flush(&n->nic, &n->tx) || READ_ONCE(n->cycle))
 		return;
 	atomic64_set(&n->sent_ns, ktime_get_ns());
-	if (!hrtimer_is_queued(&n->idle))
+	/* the time before the bit; pairs with poll_idle() */
+	if (!test_and_set_bit(BUSY_TIMER, &n->busy))
 		hrtimer_start(&n->idle, ns_to_ktime(IDLE_NS), HRTIMER_MODE_REL_SOFT);
 }
 
@@ -123,13 +138,20 @@ static void intel_poll(void *priv)
 		poll(n);
 }
 
+/* no sender may come meanwhile */
+static void stop_timer(struct intel *n)
+{
+	hrtimer_cancel(&n->idle);
+	clear_bit(BUSY_TIMER, &n->busy);
+}
+
 static void intel_cycle(void *priv, bool on)
 {
 	struct intel *n = priv;
 
 	WRITE_ONCE(n->cycle, on);
 	if (on)
-		hrtimer_cancel(&n->idle);
+		stop_timer(n);
 }
 
 static bool intel_link_up(void *priv)
@@ -179,7 +201,7 @@ static void quiesce(struct intel *n)
 	cancel_delayed_work_sync(&n->look);
 	WRITE_ONCE(n->nic.up, false);
 	WRITE_ONCE(n->ready, false);
-	hrtimer_cancel(&n->idle);
+	stop_timer(n);
 	ec_nic_quiet(&n->nic);
 	pci_clear_master(n->pdev);
 }

@@ -165,7 +165,7 @@ static void mbox_stale_messages_leave_fatal_signal(struct kunit *test)
 	t0 = ktime_get_ns();
 	send_sig(SIGKILL, t, 1);
 	wait_for_completion(&r.done);
-	bus_figure("SDO upload from a slave with endless stale messages: ends %llu us after SIGKILL",
+	bus_figure("SDO upload beside endless stale messages: ends %llu us after SIGKILL",
 		   div_u64(r.ended_ns - t0, NSEC_PER_USEC));
 	KUNIT_EXPECT_EQ(test, r.ret, -EINTR);
 	KUNIT_EXPECT_LT(test, r.ended_ns - t0, 50ull * NSEC_PER_MSEC);

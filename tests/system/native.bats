@@ -15,7 +15,8 @@ teardown_file() { stop; }
 teardown() {
 	rmmod ec_mini 2>/dev/null || true
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
-	[ ! -e "/sys/bus/pci/devices/$pci0" ] || is_bound "$pci0" ec_intel || driver "$pci0" ec_intel
+	[ ! -e "/sys/bus/pci/devices/$pci0" ] || is_bound "$pci0" ec_intel ||
+		driver "$pci0" ec_intel
 }
 
 demo() { LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$@"; }

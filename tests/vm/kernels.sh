@@ -315,7 +315,8 @@ fetch_qemu() {
 		tmp=$(mktemp -d "$cache/qemu.XXXXXX")
 		mkdir "$tmp/debs" "$tmp/root"
 		say "downloading QEMU of bookworm-backports"
-		download backports amd64 qemu-system-x86 qemu-system-common qemu-system-data seabios ||
+		download backports amd64 qemu-system-x86 qemu-system-common qemu-system-data \
+			seabios ||
 			die "download failed; check the network, then run this again"
 		for f in "$tmp"/debs/*.deb; do dpkg-deb -x "$f" "$tmp/root"; done
 		touch "$tmp/root/.complete"

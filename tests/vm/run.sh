@@ -45,7 +45,8 @@ usage() {
 
 die() { echo "run.sh: $*" >&2; exit 125; }
 
-kernel=6.1-rt smp=2 mem=1024 icount=0 nic= monitor=0 timeout=300 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
+kernel=6.1-rt smp=2 mem=1024 icount=0 nic= monitor=0 timeout=300
+append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
 while [ $# -gt 0 ]; do
