@@ -113,6 +113,16 @@ err_free:
 	return ERR_PTR(ret);
 }
 
+/* The address of a PCI function, name of a native device: 0000:01:00.0. */
+static bool is_pci(const char *spec)
+{
+	unsigned int domain, bus, slot, function;
+	int len = 0;
+
+	return sscanf(spec, "%4x:%2x:%2x.%1x%n", &domain, &bus, &slot, &function, &len) == 4 &&
+	       len == 12 && !spec[len];
+}
+
 /* The broadcast address means any device, so it may be given again. */
 static bool same_device(const char *a, const char *b)
 {
@@ -120,7 +130,7 @@ static bool same_device(const char *a, const char *b)
 
 	if (mac_pton(a, x) && mac_pton(b, y))
 		return ether_addr_equal(x, y) && !is_broadcast_ether_addr(x);
-	return !strcmp(a, b);
+	return is_pci(a) ? !strcasecmp(a, b) : !strcmp(a, b);
 }
 
 /* A name that can be an interface's: the kernel's rules for them. */
@@ -148,10 +158,10 @@ static int check_name(const char *spec, unsigned int index)
 		       index);
 		return -EINVAL;
 	}
-	if (is_name(spec) || is_address(spec))
+	if (is_name(spec) || is_address(spec) || is_pci(spec))
 		return 0;
 	if (strchr(spec, ':'))
-		pr_err("EtherCAT: main_devices: \"%s\" is not the MAC address of a device; write it as 00:11:22:33:44:55, or ff:ff:ff:ff:ff:ff for the first device\n",
+		pr_err("EtherCAT: main_devices: \"%s\" is neither the MAC address of a device, as 00:11:22:33:44:55 (ff:ff:ff:ff:ff:ff: the first device), nor a PCI address, as 0000:01:00.0\n",
 		       spec);
 	else
 		pr_err("EtherCAT: main_devices: \"%s\" cannot be an interface name (1 to %u characters, no slash, no space)\n",

@@ -92,10 +92,10 @@ static int unbind(const struct tool *t, const struct nic *n)
 {
 	char path[256];
 
-	if (!is_native(n))
+	if (!is_native(n) && !n->kept)
 		return fail("%s has no native driver", *n->name ? n->name : n->pci);
 	if (*n->by && !t->force)
-		return fail("%s is used by %s; unload ec_master or use --force", n->pci, n->by);
+		return fail("%s is used by %s; use --force to take it", n->pci, n->by);
 	if (rebind("unbind", n, "\n"))
 		return 1;
 	snprintf(path, sizeof(path), "%s/bus/pci/devices/%s/driver", sys_fs(), n->pci);

@@ -102,12 +102,14 @@ static struct nic *add(struct nics *all)
 static void fill_pci(struct nic *n)
 {
 	unsigned int vendor, device, i;
-	char dir[512];
+	char dir[512], override[32];
 
 	set(dir, sizeof(dir), "%s/bus/pci/devices/%s", sys_fs(), n->pci);
 	vendor = (unsigned int)number(dir, "vendor");
 	device = (unsigned int)number(dir, "device");
 	target(dir, "driver", n->driver, sizeof(n->driver));
+	n->kept = !*n->driver && attribute(dir, "driver_override", override, sizeof(override)) &&
+		  !strcmp(override, NIC_NATIVE);
 	set(n->why_not, sizeof(n->why_not), "no native driver for %04x:%04x", vendor, device);
 	for (i = 0; vendor == INTEL && i < sizeof(chips) / sizeof(*chips); i++) {
 		if (chips[i].device != device)

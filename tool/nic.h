@@ -20,6 +20,7 @@
  * @why_not: why there is no native driver, "" when there is
  * @by: who uses it, "" for no one
  * @master: of a master; else of the system, if @by is not ""
+ * @kept: only the native driver may have it, which is not loaded
  * @tested: tests run the chip with the native driver
  * @link_known: @link_up is known
  * @link_up: the cable is plugged in
@@ -34,6 +35,7 @@ struct nic {
 	char why_not[80];
 	char by[48];
 	bool master;
+	bool kept;
 	bool tested;
 	bool link_known;
 	bool link_up;

@@ -3,7 +3,7 @@
 #include <linux/errno.h>
 #include <linux/etherdevice.h>
 #include <linux/iopoll.h>
-#include <asm/unaligned.h>
+#include "master/wire/compat.h"
 #include "nic.h"
 #include "regs.h"
 

@@ -8,9 +8,7 @@
 #include <linux/hrtimer.h>
 #include <linux/module.h>
 #include <linux/pci.h>
-#include <linux/pm_runtime.h>
 #include <linux/workqueue.h>
-#include <asm/unaligned.h>
 #include "devices/ecdev.h"
 #include "master/wire/compat.h"
 #include "master/wire/frame.h"
@@ -63,9 +61,10 @@ static void poll(struct intel *n)
 	size_t len;
 	unsigned int i;
 
+	rcu_read_lock();
 	/* the cycle begins while the timer's poll has not ended yet, or the reverse */
-	if (test_and_set_bit_lock(BUSY_POLL, &n->busy))
-		return;
+	if (!READ_ONCE(n->ready) || test_and_set_bit_lock(BUSY_POLL, &n->busy))
+		goto out;
 	for (i = 0; i < INTEL_RX && (frame = ec_ring_rx_get(&n->nic, &n->rx, &len)); i++) {
 		if (len >= EC_ETH_HDR && get_unaligned_be16(frame + 12) == EC_ETHERTYPE)
 			ecdev_receive(n->dev, frame + ETH_ALEN, frame + EC_ETH_HDR,
@@ -75,6 +74,8 @@ static void poll(struct intel *n)
 		ec_ring_rx_put(&n->nic, &n->rx);
 	}
 	clear_bit_unlock(BUSY_POLL, &n->busy);
+out:
+	rcu_read_unlock();
 }
 
 /* Are there frames in flight that no cycle polls for? */
@@ -88,7 +89,7 @@ static enum hrtimer_restart poll_idle(struct hrtimer *timer)
 {
 	struct intel *n = container_of(timer, struct intel, idle);
 
-	if (READ_ONCE(n->ready) && !READ_ONCE(n->cycle))
+	if (!READ_ONCE(n->cycle))
 		poll(n);
 	if (!waits(n)) {
 		clear_bit(BUSY_TIMER, &n->busy);
@@ -112,17 +113,27 @@ static int intel_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct intel *n = priv;
 
-	if (!READ_ONCE(n->nic.up))
-		return -ENETDOWN;
-	ec_ring_tx_put(&n->nic, &n->tx, len);
-	return 0;
+	int ret = -ENETDOWN;
+
+	rcu_read_lock();
+	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up)) {
+		ec_ring_tx_put(&n->nic, &n->tx, len);
+		ret = 0;
+	}
+	rcu_read_unlock();
+	return ret;
 }
 
 static void intel_tx_flush(void *priv)
 {
 	struct intel *n = priv;
 
-	if (!READ_ONCE(n->ready) || !ec_ring_tx_flush(&n->nic, &n->tx) || READ_ONCE(n->cycle))
+	bool sent;
+
+	rcu_read_lock();
+	sent = READ_ONCE(n->ready) && ec_ring_tx_flush(&n->nic, &n->tx);
+	rcu_read_unlock();
+	if (!sent || READ_ONCE(n->cycle))
 		return;
 	atomic64_set(&n->sent_ns, ktime_get_ns());
 	/* the time before the bit; pairs with poll_idle() */
@@ -134,8 +145,7 @@ static void intel_poll(void *priv)
 {
 	struct intel *n = priv;
 
-	if (READ_ONCE(n->ready))
-		poll(n);
+	poll(n);
 }
 
 /* no sender may come meanwhile */
@@ -201,6 +211,8 @@ static void quiesce(struct intel *n)
 	cancel_delayed_work_sync(&n->look);
 	WRITE_ONCE(n->nic.up, false);
 	WRITE_ONCE(n->ready, false);
+	/* a caller in the rings leaves */
+	synchronize_rcu();
 	stop_timer(n);
 	ec_nic_quiet(&n->nic);
 	pci_clear_master(n->pdev);
@@ -270,7 +282,8 @@ static int map(struct intel *n)
 		return ret;
 	n->nic.regs = pcim_iomap_table(pdev)[0];
 	n->nic.class = n->chip->class;
-	ret = dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(64));
+	/* some chips on a 32-bit bus fail with addresses of 64 bits */
+	ret = n->chip->class->pcie ? dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(64)) : -EIO;
 	if (ret)
 		ret = dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(32));
 	/* leaving a power saving state takes longer than a frame */
@@ -342,6 +355,21 @@ static void reset_done(struct pci_dev *pdev)
 		pci_err(pdev, "does not start after a reset (%pe)\n", ERR_PTR(ret));
 }
 
+static int suspend(struct device *dev)
+{
+	quiesce(dev_get_drvdata(dev));
+	return 0;
+}
+
+static int resume(struct device *dev)
+{
+	struct intel *n = dev_get_drvdata(dev);
+
+	return n->started ? run(n) : 0;
+}
+
+static DEFINE_SIMPLE_DEV_PM_OPS(pm_ops, suspend, resume);
+
 static const struct pci_error_handlers errors = {
 	.reset_prepare = reset_prepare,
 	.reset_done = reset_done,
@@ -357,6 +385,7 @@ static struct pci_driver intel_driver = {
 	.remove = remove,
 	.shutdown = shutdown,
 	.err_handler = &errors,
+	.driver.pm = pm_sleep_ptr(&pm_ops),
 };
 module_pci_driver(intel_driver);
 

@@ -6,7 +6,7 @@
 #include <linux/pci.h>
 #include "nic.h"
 
-#define INTEL_TX	64	/* buffers; more than a cycle sends at once */
+#define INTEL_TX	256	/* buffers; more than a cycle and others send at once */
 #define INTEL_RX	256
 #define INTEL_BUF	2048
 

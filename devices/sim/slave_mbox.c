@@ -351,7 +351,10 @@ static void spoil(struct ec_app *app)
 		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_FOE);
 		break;
 	case EC_SIM_MAILBOX_STALE:
-		info_empty(h, 0);
+		/* a list of objects without one */
+		info_empty(h, EC_SDOINFO_LIST_RESP);
+		put_unaligned_le16(EC_SDOINFO_HDR + 2, h);
+		put_unaligned_le16(1, h + EC_MBOX_HDR + EC_SDOINFO_HDR);
 		break;
 	case EC_SIM_MAILBOX_FRAGMENTS:
 		if (is_info(h))
@@ -443,7 +446,7 @@ static void step(struct ec_app *app, u64 now)
 				return;
 			dispatch(app, len, now);
 		} else if (esc->fault.mailbox == EC_SIM_MAILBOX_STALE) {
-			out_set(app, EC_MBOX_COE, EC_SDOINFO_HDR, now);
+			out_set(app, EC_MBOX_COE, EC_SDOINFO_HDR + 2, now);
 		} else {
 			return;
 		}

@@ -27,7 +27,8 @@ static bool spec_matches(const char *spec, const char *name, const u8 *mac)
 		return false;
 	if (mac_pton(spec, want))
 		return is_broadcast_ether_addr(want) || ether_addr_equal(want, mac);
-	return !strcmp(spec, name);
+	/* PCI addresses in any case; interfaces have their own name */
+	return strchr(spec, ':') ? !strcasecmp(spec, name) : !strcmp(spec, name);
 }
 
 /**

@@ -108,6 +108,19 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 	wait_for 120 all_slaves_are PREOP 22
 }
 
+@test "a PCI address chooses the card, a card without ec_intel goes back to its driver" {
+	rmmod ec_sim ec_intel
+	rmmod ec_master
+	ethercat device unbind "$pci0"
+	is_bound "$pci0" e1000e
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices="$pci0"
+	insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
+	ethercat device bind "${pci0#0000:}"
+	[[ "$(ethercat master)" == *"Main: 52:54:00:ec:00:00 (attached)"* ]]
+	load_segment bench
+	wait_for 120 all_slaves_are PREOP 22
+}
+
 @test "no user but root changes the driver" {
 	run setpriv --reuid 65534 --regid 65534 --clear-groups "$EC_BUILD/tool/ethercat" \
 		device unbind --force "$pci0"

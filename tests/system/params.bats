@@ -29,7 +29,7 @@ no_insmod() {
 }
 
 @test "insmod fails for addresses and names that no device can have" {
-	local no='"%s" is not the MAC address of a device' mac
+	local no='"%s" is neither the MAC address of a device' mac
 
 	for mac in 00:11:22:33:44 00:11:22:33:44:5 00:11:22:33:44:555 00:11:22:33:44:gg \
 		00:00:00:00:00:00 01:00:5e:00:00:01 0011:22:33:44:55 eth0:1; do
@@ -40,6 +40,10 @@ no_insmod() {
 	[ ! -e /dev/EtherCAT0 ]
 	no_insmod 'entry 1 is empty' master main_devices=sim0,
 	no_insmod 'device sim0 is listed twice' master main_devices=sim0,sim0
+	no_insmod 'device 0000:0A:00.0 is listed twice' \
+		master main_devices=0000:0a:00.0,0000:0A:00.0
+	no_insmod 'nor a PCI address, as 0000:01:00.0' master main_devices=0000:0a:00.0x
+	no_insmod 'nor a PCI address, as 0000:01:00.0' master main_devices=0a:00.0
 	no_insmod 'debug_level: 3 is not 0, 1 or 2' master main_devices=sim0 debug_level=3
 }
 

@@ -144,6 +144,14 @@ refused() {
 	[ "$status" -eq 0 ]
 	[ "$(probed)" = 0000:05:00.0 ]
 	[ "$(cat "$FAKE_SYS/bus/pci/drivers/ec_intel/unbind")" = 0000:05:00.0 ]
+	# without ec_intel it has no driver, and no other may have it
+	rm "$FAKE_SYS/bus/pci/devices/0000:05:00.0/driver"
+	: >"$FAKE_SYS/bus/pci/drivers_probe"
+	echo ec_intel >"$FAKE_SYS/bus/pci/devices/0000:05:00.0/driver_override"
+	run ethercat device unbind 05:00.0
+	[ "$status" -eq 0 ]
+	[ "$(probed)" = 0000:05:00.0 ]
+	ln -s "$FAKE_SYS/bus/pci/drivers/ec_intel" "$FAKE_SYS/bus/pci/devices/0000:05:00.0/driver"
 	out devices -j | json '[(x["native"], x["driver"]) for x in d["devices"]
 		if x["pci"] == "0000:05:00.0"] == [(True, "ec_intel")]'
 }

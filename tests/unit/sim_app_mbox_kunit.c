@@ -411,10 +411,10 @@ static void sim_app_mbox_faulty_messages_are_sent(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(x->b->sim, &f), 0);
 	KUNIT_ASSERT_EQ(test, bed_rd(x->b, x->m.station, 0x1000 + 256, x->buf, 256), 1);
 	spoiled_header(test, x, EC_SIM_MAILBOX_STALE, h);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), EC_SDOINFO_HDR);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(h), EC_SDOINFO_HDR + 2);
 	KUNIT_EXPECT_EQ(test, h[5] & 0x0f, EC_MBOX_COE);
 	KUNIT_EXPECT_EQ(test, x->buf[7] >> 4, EC_COE_SDO_INFO);
-	KUNIT_EXPECT_EQ(test, x->buf[8], 0);
+	KUNIT_EXPECT_EQ(test, x->buf[8], EC_SDOINFO_LIST_RESP);
 }
 
 static struct kunit_case cases[] = {
