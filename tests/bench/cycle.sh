@@ -231,14 +231,12 @@ native_cost() {
 	for n in 1 100; do
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
 			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
-			+ wait --cycles 300 --period-us 4000 --kernel wait \
-			+ spin --cycles 300 --period-us 4000 --kernel spin || return
+			+ wait --cycles 300 --period-us 4000 --kernel wait || return
 		cost native
 		kernel_cost
 		work "" 4 "application's cycle"
 		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
 		work wait_ 4 "kernel's cycle, the application waits for it"
-		printf '# kernel cycle, application spinning: thread %6u\n' "${v[spin_work_mean]}"
 		reliable "native device"
 	done
 }
