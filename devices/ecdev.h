@@ -31,6 +31,8 @@ struct ecdev;
  *	called with @cycle off when a frame is overdue
  * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
+ * @look: optional. Reads the state that @link_up returns. The master calls it about every
+ *	20 ms. Process context, may sleep
  */
 struct ecdev_ops {
 	const char *kind;
@@ -44,6 +46,7 @@ struct ecdev_ops {
 	void (*poll)(void *priv);
 	void (*cycle)(void *priv, bool on);
 	bool (*link_up)(void *priv);
+	void (*look)(void *priv);
 };
 
 struct ecdev *ecdev_offer(const char *name, const u8 *mac,

@@ -29,6 +29,8 @@ struct watch {
 	u64 scanned_ns;
 	u64 rates_ns;
 	u64 alone_ns;		/* no rider before that time */
+	bool riding;		/* the rider is on its way; its reply is for the next look */
+	u64 ride_ns;		/* since then */
 };
 
 static void check_links(struct watch *w)
@@ -147,6 +149,15 @@ static unsigned int believable(struct watch *w, unsigned int count)
 	return 0;
 }
 
+static void set_rider(struct ec_rider *r, const struct ec_dg *dg)
+{
+	r->cmd = dg->cmd;
+	r->adp = dg->adp;
+	r->ado = dg->ado;
+	r->len = dg->len;
+	memset(r->data, 0, dg->len);
+}
+
 /*
  * AL status of all slaves and their number. The first try goes with the cycle if that carries
  * it; only a frame of its own decides that no slave is there.
@@ -158,11 +169,7 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 	int ret = -EAGAIN;
 
 	if (first && ec_access_is_cyclic(&m->links.access) && ktime_get_ns() >= w->alone_ns) {
-		r->cmd = dg->cmd;
-		r->adp = dg->adp;
-		r->ado = dg->ado;
-		r->len = dg->len;
-		memset(r->data, 0, dg->len);
+		set_rider(r, dg);
 		ret = ec_rider_exchange(&m->links, r);
 		if (ret == -EAGAIN)
 			w->alone_ns = ktime_get_ns() + ALONE_NS;
@@ -189,7 +196,7 @@ static void scan_next(struct watch *w)
 	w->same = STABLE_LOOKS;
 }
 
-static void count_slaves(struct watch *w)
+static void ask_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	unsigned int count = 0, try;
@@ -234,6 +241,46 @@ static void count_slaves(struct watch *w)
 		w->silent = 0;
 		scan_next(w);
 	}
+}
+
+/* The rider of the last look has come back, and nothing has changed. */
+static bool unchanged(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	const struct ec_rider *r = &m->rider;
+
+	if (!w->riding)
+		return false;
+	w->riding = false;
+	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count ||
+	    !as_wanted(m, get_unaligned_le16(r->data), r->wkc))
+		return false;
+	m->bus.complete_ns = w->ride_ns;
+	return true;
+}
+
+/* While all is well no look waits for its reply: the next one takes it. */
+static void ride(struct watch *w)
+{
+	struct ec_master *m = w->m;
+	struct ec_access *a = &m->links.access;
+
+	if (!w->scanned || !w->link_up || w->silent || !ec_access_is_cyclic(a) ||
+	    2 * ec_access_interval_us(a) > PERIOD_MS * USEC_PER_MSEC)
+		return;
+	w->ride_ns = ktime_get_ns();
+	if (w->ride_ns < w->alone_ns)
+		return;
+	set_rider(&m->rider, &EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, NULL));
+	ec_rider_begin(&m->links, &m->rider);
+	w->riding = true;
+}
+
+static void count_slaves(struct watch *w)
+{
+	if (!unchanged(w))
+		ask_slaves(w);
+	ride(w);
 }
 
 static bool is_due(const struct ec_slave *s, u64 now)
@@ -406,6 +453,8 @@ static int monitor(void *data)
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 	}
+	if (w.riding)
+		ec_rider_end(&m->rider);
 	return 0;
 }
 

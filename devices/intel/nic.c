@@ -10,6 +10,7 @@
 #define MASTER_US	80000	/* until pending requests are done (82574, 5.2.3.1: 80 ms) */
 #define RESET_US	20000
 #define MDIC_US		2000
+#define PHY_TRIES	10	/* to get the MDIO interface from the hardware */
 
 static void mask_interrupts(const struct intel_nic *nic)
 {
@@ -102,16 +103,28 @@ static int mdic(const struct intel_nic *nic, u32 command)
 	return v & MDIC_ERROR ? -EIO : v & 0xffff;
 }
 
-static bool own_phy(const struct intel_nic *nic, bool own)
+static bool own_phy(const struct intel_nic *nic)
 {
-	u32 v = ec_nic_read(nic, R_EXTCNF_CTRL);
+	unsigned int i;
 
 	if (!nic->class->phy_owner)
 		return true;
-	v = own ? v | EXTCNF_MDIO_OWNER : v & ~EXTCNF_MDIO_OWNER;
-	ec_nic_write(nic, R_EXTCNF_CTRL, v);
-	/* the bit stays clear while the hardware owns it */
-	return !own || ec_nic_read(nic, R_EXTCNF_CTRL) & EXTCNF_MDIO_OWNER;
+	for (i = 0; i < PHY_TRIES; i++) {
+		ec_nic_write(nic, R_EXTCNF_CTRL,
+			     ec_nic_read(nic, R_EXTCNF_CTRL) | EXTCNF_MDIO_OWNER);
+		/* the bit stays clear while the hardware owns it */
+		if (ec_nic_read(nic, R_EXTCNF_CTRL) & EXTCNF_MDIO_OWNER)
+			return true;
+		usleep_range(1000, 2000);
+	}
+	return false;
+}
+
+static void leave_phy(const struct intel_nic *nic)
+{
+	if (nic->class->phy_owner)
+		ec_nic_write(nic, R_EXTCNF_CTRL,
+			     ec_nic_read(nic, R_EXTCNF_CTRL) & ~EXTCNF_MDIO_OWNER);
 }
 
 /*
@@ -122,14 +135,14 @@ static void wake_phy(const struct intel_nic *nic)
 {
 	int bmcr;
 
-	if (!own_phy(nic, true))
+	if (!own_phy(nic))
 		return;
 	bmcr = mdic(nic, MDIC_READ | PHY_BMCR << MDIC_REG);
 	if (bmcr >= 0 && (bmcr & BMCR_POWER_DOWN || !(ec_nic_read(nic, R_STATUS) & STATUS_LU))) {
 		bmcr &= ~BMCR_POWER_DOWN;
 		mdic(nic, MDIC_WRITE | PHY_BMCR << MDIC_REG | bmcr | BMCR_AUTONEG);
 	}
-	own_phy(nic, false);
+	leave_phy(nic);
 }
 
 /**
@@ -156,7 +169,7 @@ void ec_nic_connect(struct intel_nic *nic)
 }
 
 /**
- * ec_nic_look() - read link state and error counters
+ * ec_nic_look() - read the link state
  * @nic: controller
  *
  * A read of a register takes up to 2 us on PCIe: not for the cycle.
@@ -165,7 +178,6 @@ void ec_nic_connect(struct intel_nic *nic)
  */
 void ec_nic_look(struct intel_nic *nic)
 {
-	static const unsigned int speeds[] = { 10, 100, 1000, 1000 };
 	u32 status = ec_nic_read(nic, R_STATUS);
 
 	if (status == ~0u) {
@@ -173,9 +185,5 @@ void ec_nic_look(struct intel_nic *nic)
 		WRITE_ONCE(nic->up, false);
 		return;
 	}
-	WRITE_ONCE(nic->speed, speeds[(status & STATUS_SPEED) >> 6]);
 	WRITE_ONCE(nic->up, !!(status & STATUS_LU));
-	/* reading clears them */
-	nic->counts.crc += ec_nic_read(nic, R_CRCERRS);
-	nic->counts.missed += ec_nic_read(nic, R_MPC);
 }

@@ -8,16 +8,6 @@
 #include "chip.h"
 
 /**
- * struct intel_counts - errors the controller has counted
- */
-struct intel_counts {
-	/** @crc: frames received with a wrong FCS */
-	u64 crc;
-	/** @missed: frames without a free receive buffer */
-	u64 missed;
-};
-
-/**
  * struct intel_nic - the controller without its rings
  */
 struct intel_nic {
@@ -31,10 +21,6 @@ struct intel_nic {
 	bool up;
 	/** @gone: it answers no longer: unplugged */
 	bool gone;
-	/** @speed: Mbit/s when the link was last seen up */
-	unsigned int speed;
-	/** @counts: errors since the driver was bound */
-	struct intel_counts counts;
 };
 
 static inline u32 ec_nic_read(const struct intel_nic *nic, u32 reg)

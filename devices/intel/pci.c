@@ -7,8 +7,8 @@
  */
 #include <linux/hrtimer.h>
 #include <linux/module.h>
+#include <linux/mutex.h>
 #include <linux/pci.h>
-#include <linux/workqueue.h>
 #include "devices/ecdev.h"
 #include "master/wire/compat.h"
 #include "master/wire/frame.h"
@@ -16,7 +16,6 @@
 #include "ring.h"
 
 #define NAME		"ec_intel"
-#define LOOK_MS		50	/* between two looks at the link */
 #define IDLE_NS		(50 * NSEC_PER_USEC)	/* between two polls without a cycle */
 #define OUT_NS		(20 * NSEC_PER_MSEC)	/* a frame that is on its way longer is lost */
 
@@ -39,8 +38,8 @@ struct intel {
 	struct intel_ring rx;
 	/** @dev: receives the frames; set before the first one can arrive */
 	struct ecdev *dev;
-	/** @look: reads the link state and counters */
-	struct delayed_work look;
+	/** @lock: while the rings start, run or end they are those of one caller */
+	struct mutex lock;
 	/** @idle: polls while no cycle does */
 	struct hrtimer idle;
 	/** @sent_ns: when the last frame was sent without a cycle (ktime) */
@@ -171,22 +170,12 @@ static bool intel_link_up(void *priv)
 	return READ_ONCE(n->nic.up);
 }
 
-static void look(struct work_struct *work)
-{
-	struct intel *n = container_of(to_delayed_work(work), struct intel, look);
-	bool was = n->nic.gone;
-
-	ec_nic_look(&n->nic);
-	if (n->nic.gone && !was)
-		pci_warn(n->pdev, "does not answer: unplugged?\n");
-	if (!n->nic.gone)
-		queue_delayed_work(system_wq, &n->look, msecs_to_jiffies(LOOK_MS));
-}
-
 static int run(struct intel *n)
 {
-	int ret = ec_nic_reset(&n->nic);
+	int ret;
 
+	lockdep_assert_held(&n->lock);
+	ret = ec_nic_reset(&n->nic);
 	if (!ret) {
 		/* without it no descriptor is fetched */
 		pci_set_master(n->pdev);
@@ -199,16 +188,15 @@ static int run(struct intel *n)
 	ec_nic_connect(&n->nic);
 	n->nic.gone = false;
 	WRITE_ONCE(n->ready, true);
-	queue_delayed_work(system_wq, &n->look, 0);
 	return 0;
 }
 
 /* No frame, no DMA, no caller in the rings: senders are stopped by the master. */
-static void quiesce(struct intel *n)
+static void quiesce_locked(struct intel *n)
 {
+	lockdep_assert_held(&n->lock);
 	if (!n->ready)
 		return;
-	cancel_delayed_work_sync(&n->look);
 	WRITE_ONCE(n->nic.up, false);
 	WRITE_ONCE(n->ready, false);
 	/* a caller in the rings leaves */
@@ -218,14 +206,53 @@ static void quiesce(struct intel *n)
 	pci_clear_master(n->pdev);
 }
 
+static void quiesce(struct intel *n)
+{
+	mutex_lock(&n->lock);
+	quiesce_locked(n);
+	mutex_unlock(&n->lock);
+}
+
+/* Frames in the ring of a lost link would leave when it returns: old outputs. */
+static void start_anew(struct intel *n)
+{
+	int ret;
+
+	quiesce_locked(n);
+	ret = run(n);
+	if (ret)
+		pci_err(n->pdev, "does not start after a loss of the link (%pe)\n", ERR_PTR(ret));
+}
+
+static void intel_look(void *priv)
+{
+	struct intel *n = priv;
+	bool was_up, was_gone;
+
+	/* the rings start or end now: look next time */
+	if (!mutex_trylock(&n->lock))
+		return;
+	was_up = n->nic.up;
+	was_gone = n->nic.gone;
+	if (n->ready)
+		ec_nic_look(&n->nic);
+	if (n->nic.gone && !was_gone)
+		pci_warn(n->pdev, "does not answer: unplugged?\n");
+	else if (was_up && !n->nic.up)
+		start_anew(n);
+	mutex_unlock(&n->lock);
+}
+
 static int intel_start(void *priv, struct ecdev *dev)
 {
 	struct intel *n = priv;
 	int ret;
 
 	n->dev = dev;
+	mutex_lock(&n->lock);
 	ret = run(n);
 	n->started = !ret;
+	mutex_unlock(&n->lock);
 	return ret;
 }
 
@@ -233,8 +260,22 @@ static void intel_stop(void *priv)
 {
 	struct intel *n = priv;
 
-	quiesce(n);
+	mutex_lock(&n->lock);
+	quiesce_locked(n);
 	n->started = false;
+	mutex_unlock(&n->lock);
+}
+
+/* after a reset of the function, or a suspend */
+static int run_again(struct intel *n)
+{
+	int ret = 0;
+
+	mutex_lock(&n->lock);
+	if (n->started)
+		ret = run(n);
+	mutex_unlock(&n->lock);
+	return ret;
 }
 
 static const struct ecdev_ops intel_ops = {
@@ -249,6 +290,7 @@ static const struct ecdev_ops intel_ops = {
 	.poll = intel_poll,
 	.cycle = intel_cycle,
 	.link_up = intel_link_up,
+	.look = intel_look,
 };
 
 static int check(struct pci_dev *pdev, const struct intel_chip *chip)
@@ -306,7 +348,7 @@ static int probe(struct pci_dev *pdev, const struct pci_device_id *id)
 		return -ENOMEM;
 	n->pdev = pdev;
 	n->chip = chip;
-	INIT_DELAYED_WORK(&n->look, look);
+	mutex_init(&n->lock);
 	hrtimer_init(&n->idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
 	n->idle.function = poll_idle;
 	ret = map(n);
@@ -349,7 +391,7 @@ static void reset_prepare(struct pci_dev *pdev)
 static void reset_done(struct pci_dev *pdev)
 {
 	struct intel *n = pci_get_drvdata(pdev);
-	int ret = n->started ? run(n) : 0;
+	int ret = run_again(n);
 
 	if (ret)
 		pci_err(pdev, "does not start after a reset (%pe)\n", ERR_PTR(ret));
@@ -363,9 +405,7 @@ static int suspend(struct device *dev)
 
 static int resume(struct device *dev)
 {
-	struct intel *n = dev_get_drvdata(dev);
-
-	return n->started ? run(n) : 0;
+	return run_again(dev_get_drvdata(dev));
 }
 
 static DEFINE_SIMPLE_DEV_PM_OPS(pm_ops, suspend, resume);

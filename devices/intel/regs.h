@@ -15,7 +15,6 @@
 #define  CTRL_RST		BIT(26)
 #define R_STATUS	0x0008
 #define  STATUS_LU		BIT(1)
-#define  STATUS_SPEED		GENMASK(7, 6)
 #define  STATUS_GIO_ENABLED	BIT(19)
 #define R_MDIC		0x0020
 #define  MDIC_REG		16
@@ -47,8 +46,6 @@
 #define R_RAH0		0x5404
 #define  RAH_VALID		BIT(31)
 #define R_MRQC		0x5818
-#define R_CRCERRS	0x4000
-#define R_MPC		0x4010
 
 /* of a queue, behind the offsets of struct intel_class */
 #define Q_BAL		0x00

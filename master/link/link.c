@@ -235,6 +235,25 @@ bool ec_link_is_up(const struct ec_link *link)
 }
 
 /**
+ * ec_link_look() - let the device read its link state
+ * @link: link
+ *
+ * Context: Process. May sleep.
+ * Return: as ec_link_is_up().
+ */
+bool ec_link_look(struct ec_link *link)
+{
+	struct rt_mutex *lock = &link->links->access.lock;
+
+	/* with it the device stays */
+	rt_mutex_lock(lock);
+	if (link->dev && link->dev->ops->look)
+		link->dev->ops->look(link->dev->priv);
+	rt_mutex_unlock(lock);
+	return ec_link_is_up(link);
+}
+
+/**
  * ec_link_rates_update() - update the averages; called once a second
  * @link: link
  *

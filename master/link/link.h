@@ -90,6 +90,7 @@ void ec_links_flush(struct ec_links *l);
 void ec_link_poll(struct ec_link *link);
 void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);
+bool ec_link_look(struct ec_link *link);
 void ec_link_rates_update(struct ec_link *link);
 
 #endif

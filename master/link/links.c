@@ -81,7 +81,7 @@ bool ec_links_look(struct ec_links *l)
 	bool any = false;
 
 	for (i = 0; i < EC_MAX_LINKS; i++) {
-		bool up = ec_link_is_up(&l->link[i]);
+		bool up = ec_link_look(&l->link[i]);
 
 		if (up != l->link[i].up) {
 			WRITE_ONCE(l->link[i].up, up);

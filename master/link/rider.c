@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/bitops.h>
+#include <linux/delay.h>
 #include <linux/jiffies.h>
 #include <linux/ktime.h>
 #include <linux/string.h>
@@ -54,6 +55,51 @@ static bool is_over(struct ec_links *l, u64 until_ns)
 }
 
 /**
+ * ec_rider_begin() - let the next frame of the cycle carry a rider
+ * @l: links
+ * @r: rider with command, address, length and data
+ *
+ * ec_rider_end() must follow.
+ *
+ * Context: Process; the owner of @r.
+ */
+void ec_rider_begin(struct ec_links *l, struct ec_rider *r)
+{
+	reinit_completion(&r->done);
+	queue(l, r);
+}
+
+/**
+ * ec_rider_end() - take a rider back, whatever has become of it
+ * @r: rider after ec_rider_begin()
+ *
+ * Context: Process; the owner of @r. Does not wait for a frame.
+ * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
+ * -ETIMEDOUT: its frame has not come back so far.
+ */
+int ec_rider_end(struct ec_rider *r)
+{
+	for (;;) {
+		switch (atomic_read_acquire(&r->state)) {
+		case EC_RIDER_BACK:
+			atomic_set(&r->state, EC_RIDER_IDLE);
+			return 0;
+		case EC_RIDER_QUEUED:
+			if (move(r, EC_RIDER_QUEUED, EC_RIDER_IDLE))
+				return -EAGAIN;
+			break;
+		case EC_RIDER_SENT:
+			if (move(r, EC_RIDER_SENT, EC_RIDER_IDLE))
+				return -ETIMEDOUT;
+			break;
+		default:
+			/* the cycle has it for a moment */
+			usleep_range(20, 50);
+		}
+	}
+}
+
+/**
  * ec_rider_exchange() - exchange a rider with a frame of the cycle
  * @l: links
  * @r: rider with command, address, length and data
@@ -69,8 +115,7 @@ int ec_rider_exchange(struct ec_links *l, struct ec_rider *r)
 
 	if (!ec_access_is_cyclic(&l->access))
 		return -EAGAIN;
-	reinit_completion(&r->done);
-	queue(l, r);
+	ec_rider_begin(l, r);
 	/* the completion may be that of an earlier round */
 	for (;;) {
 		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));

@@ -78,6 +78,8 @@ struct ec_riding {
 };
 
 int ec_rider_register(struct ec_links *l, struct ec_rider *r);
+void ec_rider_begin(struct ec_links *l, struct ec_rider *r);
+int ec_rider_end(struct ec_rider *r);
 int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
 void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding);

@@ -89,11 +89,11 @@ static void rider_beside_process_data_not_counted(struct kunit *test)
 	rides = riders(c)->seq - rides;
 	bus_figure("%llu frames in %u cycles of %u frames, %u riders", frames, CYCLES, sent, rides);
 	KUNIT_EXPECT_EQ(test, frames, (u64)CYCLES * sent);
-	/* one in 20 ms, and the time until the cycle brings it back */
+	/* one in 20 ms */
 	KUNIT_EXPECT_GE(test, rides, CYCLES / 25);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
-	KUNIT_EXPECT_LT(test, seen_us(c), 30000ull);
+	KUNIT_EXPECT_LT(test, seen_us(c), 50000ull);
 	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
 	KUNIT_EXPECT_EQ(test, c->b->m->bus.al_states, EC_AL_OP);
 	cyc_release(c);
@@ -118,7 +118,7 @@ static void rider_in_kernel_cycle_not_counted(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_frames(b) - frames, sends * cycle->last.frames);
 	KUNIT_EXPECT_GE(test, b->m->links.riders.seq - rides, CYCLES / 25);
 	KUNIT_EXPECT_EQ(test, cyc_state(a->c, 0)->working_counter, cyc_state(a->c, 0)->expected);
-	KUNIT_EXPECT_LT(test, seen_us(a->c), 30000ull);
+	KUNIT_EXPECT_LT(test, seen_us(a->c), 50000ull);
 }
 
 /* Without the frame only this round is lost: the monitor asks again, and finds all slaves. */
@@ -140,7 +140,7 @@ static void rider_in_lost_frame_loses_one_round(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("slaves responding"), lines);
 	KUNIT_EXPECT_EQ(test, c->b->m->bus.scan_count, scans);
 	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
-	KUNIT_EXPECT_LT(test, seen_us(c), 30000ull);
+	KUNIT_EXPECT_LT(test, seen_us(c), 50000ull);
 	cyc_release(c);
 }
 
