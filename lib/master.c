@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* A reserved master: session, activation, cycle. */
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -270,6 +271,31 @@ int ecrt_master_deactivate(ec_master_t *master)
 
 /* cycle --------------------------------------------------------------------*/
 
+/*
+ * A command of the cycle on the short way. -ENOSYS: by ioctl(), which returns the reason, too, when
+ * an old module or a filter of system calls refuses the advice.
+ */
+static int advise(struct ec_master *m, int advice, const struct ec_ioc_send *send)
+{
+	int err;
+
+	if (m->no_advice || (send->flags & EC_SEND_FLAG_SYNC_REF &&
+			     send->sync_time != send->app_time))
+		return -ENOSYS;
+	err = posix_fadvise(m->fd, (off_t)send->app_time, (off_t)send->queued, advice);
+	if (err == EINVAL || err == ENOSYS)
+		m->no_advice = true;
+	return err == EINVAL || err == EPERM || err == EACCES ? -ENOSYS : -err;
+}
+
+static int send_next(struct ec_master *m)
+{
+	struct ec_ioc_send *next = &m->cycle.next;
+	int ret = advise(m, EC_ADVICE_SEND | (int)next->flags, next);
+
+	return ret == -ENOSYS ? ec_command(m, EC_IOC_SEND, next) : ret;
+}
+
 int ecrt_master_send(ec_master_t *master)
 {
 	struct ec_app_cycle *a;
@@ -280,7 +306,7 @@ int ecrt_master_send(ec_master_t *master)
 	a = &master->cycle;
 	if (a->exchange)
 		return ec_exchange_send(master, master->status);
-	ret = ec_command(master, EC_IOC_SEND, &a->next);
+	ret = send_next(master);
 	a->sent |= a->next.queued;
 	a->next.queued = 0;
 	a->next.flags = 0;
@@ -289,13 +315,17 @@ int ecrt_master_send(ec_master_t *master)
 
 int ecrt_master_receive(ec_master_t *master)
 {
+	static const struct ec_ioc_send none;
+	int ret;
+
 	if (!master || !master->active)
 		return ec_inactive(master);
 	if (master->cycle.exchange)
 		return ec_exchange_receive(master, master->status);
 	master->cycle.received |= master->cycle.sent;
 	master->cycle.sent = 0;
-	return ec_command(master, EC_IOC_RECEIVE, NULL);
+	ret = advise(master, EC_ADVICE_RECEIVE, &none);
+	return ret == -ENOSYS ? ec_command(master, EC_IOC_RECEIVE, NULL) : ret;
 }
 
 int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)

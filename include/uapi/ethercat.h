@@ -700,6 +700,14 @@ struct ec_ioc_send {
 	__u64 sync_time;	/* ns */
 };
 
+/*
+ * The same as EC_IOC_RECEIVE and EC_IOC_SEND by posix_fadvise(fd, app_time, queued, advice), which
+ * enters the kernel on a shorter way. EC_ADVICE_SEND is or-ed with EC_SEND_FLAG_*; @sync_time is
+ * app_time. A module without them returns EINVAL.
+ */
+#define EC_ADVICE_RECEIVE	0x0ec00
+#define EC_ADVICE_SEND		0x0ed00
+
 struct ec_ioc_interval {
 	__u32 flags;
 	__u32 interval_us;

@@ -282,6 +282,22 @@ void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_match
 	ec_slot_release(slot, EC_SLOT_DONE);
 }
 
+/* commands whose address each slave counts up */
+#define COUNTED (BIT(EC_CMD_APRD) | BIT(EC_CMD_APWR) | BIT(EC_CMD_APRW) | BIT(EC_CMD_BRD) | \
+		 BIT(EC_CMD_BWR) | BIT(EC_CMD_BRW) | BIT(EC_CMD_ARMW))
+#define LEN_MASK	0x07ff
+#define MORE		0x8000
+
+/* Command, index, address and length; the rest of the header is the slaves'. */
+static bool same_header(const u8 *sent, const u8 *got)
+{
+	bool counted = sent[0] < 32 && BIT(sent[0]) & COUNTED;
+	u32 first = get_unaligned_le32(sent) ^ get_unaligned_le32(got);
+	u32 second = get_unaligned_le32(sent + 4) ^ get_unaligned_le32(got + 4);
+
+	return !(counted ? first & 0xffff : first) && !(second & (LEN_MASK << 16 | 0xffff));
+}
+
 /**
  * ec_slot_same() - check that a reply carries the datagrams of a slot
  * @slot: slot in state FILL
@@ -292,37 +308,35 @@ void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_match
  */
 bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
 {
-	struct ec_frame_iter si;
-	struct ec_dgram sd, rd;
-	int more;
+	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
+	size_t left = slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR;
+	u16 len;
 
-	if (ec_frame_iter_init(&si, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR))
-		return false;
-	while ((more = ec_frame_iter_next(&si, &sd)) == 1) {
-		if (ec_frame_iter_next(reply, &rd) != 1 || rd.cmd != sd.cmd ||
-		    rd.idx != sd.idx || rd.len != sd.len || rd.ado != sd.ado)
+	do {
+		size_t replied = reply->end - reply->p, size;
+
+		if (left < EC_DGRAM_OVERHEAD || replied < EC_DGRAM_OVERHEAD || !reply->more ||
+		    !same_header(sent, reply->p))
 			return false;
-		switch (sd.cmd) {
-		case EC_CMD_APRD: case EC_CMD_APWR: case EC_CMD_APRW:
-		case EC_CMD_BRD: case EC_CMD_BWR: case EC_CMD_BRW:
-		case EC_CMD_ARMW:
-			break;		/* each slave counts the position up */
-		default:
-			if (rd.adp != sd.adp)
-				return false;
-		}
-	}
-	return !more;
+		len = get_unaligned_le16(sent + 6);
+		size = EC_DGRAM_OVERHEAD + (len & LEN_MASK);
+		if (left < size || replied < size)
+			return false;
+		reply->more = get_unaligned_le16(reply->p + 6) & MORE;
+		reply->p += size;
+		sent += size;
+		left -= size;
+	} while (len & MORE);
+	return true;
 }
 
 /* Does the reply carry the same datagrams as the frame that was sent, and no more? */
 static bool same(struct ec_slot *slot, u8 *reply, size_t len)
 {
 	struct ec_frame_iter ri;
-	struct ec_dgram rd;
 
 	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
-	       ec_frame_iter_next(&ri, &rd) == 0;
+	       !ri.more && ri.p == ri.end;
 }
 
 /**

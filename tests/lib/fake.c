@@ -30,6 +30,7 @@ static void preset(const struct ec_ioc_activate *a)
 }
 
 int __wrap_ioctl(int fd, unsigned long cmd, ...);
+int __wrap_posix_fadvise(int fd, off_t offset, off_t len, int advice);
 void *__wrap_mmap(void *at, size_t size, int prot, int flags, int fd,
 		  off_t offset);
 int __real_open(const char *path, int flags, ...);
@@ -284,4 +285,21 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		break;
 	}
 	return 0;
+}
+
+int __wrap_posix_fadvise(int fd, off_t offset, off_t len, int advice)
+{
+	struct ec_ioc_send send = {
+		.flags = advice & EC_SEND_FLAG_ALL, .queued = (__u64)len,
+		.app_time = (__u64)offset, .sync_time = (__u64)offset,
+	};
+
+	fake.advised++;
+	if (fake.no_advice)
+		return fake.no_advice;
+	if (advice == EC_ADVICE_RECEIVE)
+		return __wrap_ioctl(fd, EC_IOC_RECEIVE) ? errno : 0;
+	if ((advice & ~EC_SEND_FLAG_ALL) != EC_ADVICE_SEND)
+		abort();
+	return __wrap_ioctl(fd, EC_IOC_SEND, &send) ? errno : 0;
 }

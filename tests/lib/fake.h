@@ -9,7 +9,7 @@
 #define FAKE_FD	1000
 
 /*
- * @calls: ioctls so far, @last: the last one but EC_IOC_REASON
+ * @calls: system calls so far, @last: the last one but EC_IOC_REASON
  * @refuse, @err: this command fails with that errno
  * @arg: copy of the argument of @last
  */
@@ -42,6 +42,8 @@ struct fake {
 	unsigned int dc_bits;
 	int dc_diff;
 	unsigned int dc_odd;
+	unsigned int advised;	/* of @calls, by posix_fadvise() */
+	int no_advice;		/* errno that it returns */
 	unsigned char running;	/* activation takes over; the image is of this */
 };
 

@@ -359,6 +359,55 @@ static void cycle(void)
 	ecrt_release_master(m);
 }
 
+static int exchange(ec_master_t *m)
+{
+	int ret = ecrt_master_receive(m);
+
+	return ret ? ret : ecrt_master_send(m);
+}
+
+/* The short way into the kernel; ioctl() where it is not open, or cannot carry what is sent. */
+static void advice(void)
+{
+	struct ec_ioc_send send;
+	ec_master_t *m = start();
+	ec_domain_t *d = ecrt_master_create_domain(m);
+	unsigned int before;
+
+	fake.advised = 0;
+	CHECK(!ecrt_master_activate(m) && !ecrt_domain_queue(d));
+	fake.status->dc_ref = 1;
+	CHECK(!ecrt_master_application_time(m, 0x8000000000000005ULL));
+	CHECK(!ecrt_master_sync_reference_clock(m));
+	CHECK(!exchange(m) && fake.advised == 2);
+	memcpy(&send, fake.arg, sizeof(send));
+	CHECK(send.flags == (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF) && send.queued == 1);
+	CHECK(send.app_time == 0x8000000000000005ULL && send.sync_time == send.app_time);
+
+	/* two times do not fit */
+	CHECK(!ecrt_master_sync_reference_clock_to(m, 7) && !exchange(m) && fake.advised == 3);
+	memcpy(&send, fake.arg, sizeof(send));
+	CHECK(send.sync_time == 7 && send.app_time == 0x8000000000000005ULL);
+
+	/* the command says why */
+	fake.refuse = EC_IOC_RECEIVE;
+	fake.err = EPERM;
+	before = fake.calls;
+	CHECK(ecrt_master_receive(m) == -EPERM && fake.calls == before + 2);
+	fake.refuse = 0;
+
+	/* a filter: each call tries */
+	fake.no_advice = EPERM;
+	before = fake.advised;
+	CHECK(!exchange(m) && !exchange(m) && fake.advised == before + 4);
+	/* a module without it: one */
+	fake.no_advice = EINVAL;
+	CHECK(!exchange(m) && !exchange(m) && fake.advised == before + 5);
+	fake.no_advice = 0;
+	CHECK(!exchange(m) && fake.advised == before + 5);
+	ecrt_release_master(m);
+}
+
 /* How process data are sent: what is asked for reaches the kernel. */
 static void layout(void)
 {
@@ -442,6 +491,7 @@ int main(void)
 	rules();
 	foreign_domain();
 	cycle();
+	advice();
 	layout();
 	empty_image();
 	failed_activation();

@@ -31,8 +31,16 @@ void session(int fd)
 	expect_errno(call(fd, EC_IOC_REG_ENTRY, &e), 0, "output 1");
 }
 
+/* the commands of the cycle on their short way */
+static int advise(int fd, off_t queued, int advice)
+{
+	return posix_fadvise(fd, 0, queued, advice);
+}
+
 static void no_owner(int fd)
 {
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EPERM, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EPERM, "advice to send");
 	for (unsigned int i = 0; i < n_cmds; i++) {
 		struct ec_ioc_interval interval = { .interval_us = 1000 };
 		struct ec_ioc_sc_flag flag = { .key = "x" };
@@ -88,6 +96,12 @@ static void while_active(int fd)
 	expect_errno(call(fd, EC_IOC_SEND, &send), 0, "send");
 	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), 0, "receive");
 	expect_errno(call(fd, EC_IOC_APP_TIME, zeroed()), 0, "time");
+	expect_errno(advise(fd, 2, EC_ADVICE_SEND), ENOENT, "advice to send domain 1 of 1");
+	expect_errno(advise(fd, 1, EC_ADVICE_SEND | EC_SEND_FLAG_APP_TIME), 0, "advice to send");
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), 0, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND | (EC_SEND_FLAG_ALL + 1)), EINVAL,
+		     "advice with an unknown flag");
+	expect_errno(advise(fd, 0, POSIX_FADV_NORMAL), 0, "advice as for any file");
 }
 
 void check_states(void)
