@@ -203,7 +203,7 @@ static const struct file_operations ec_fops = {
 	.mmap = ec_mmap,
 	.poll = ec_poll,
 	.unlocked_ioctl = ec_ioctl,
-	.fadvise = ec_fadvise,
+	.fadvise = ec_ioctl_advise,
 	.compat_ioctl = compat_ptr_ioctl,
 };
 

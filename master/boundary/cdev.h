@@ -45,6 +45,6 @@ void ec_cdev_exit(struct ec_master *m);
 void ec_cdev_put(struct ec_master *m);
 
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);
-int ec_fadvise(struct file *filp, loff_t offset, loff_t len, int advice);
+int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice);
 
 #endif

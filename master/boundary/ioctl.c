@@ -203,7 +203,7 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 }
 
 /**
- * ec_fadvise() - .fadvise of the character device: the commands of the cycle
+ * ec_ioctl_advise() - .fadvise of the character device: the commands of the cycle
  * @filp: open file
  * @offset: application time in ns, for EC_ADVICE_SEND
  * @len: domains to send, bit n queues domain n
@@ -214,7 +214,7 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
  * Context: Process. RT-safe.
  * Return: as EC_IOC_RECEIVE and EC_IOC_SEND; for other advice as for any file.
  */
-int ec_fadvise(struct file *filp, loff_t offset, loff_t len, int advice)
+int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice)
 {
 	struct ec_file *f = filp->private_data;
 	struct ec_ioc_send send = {

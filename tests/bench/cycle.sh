@@ -222,10 +222,19 @@ generic_cost() {
 	done
 }
 
+# floors OWN WAIT: what the machine needs for a cycle in which nothing is done
+floors() {
+	local sleep wake
+
+	sleep=$((v[floor_sleep_own] + v[floor_sleep_rest] - 4 * v[baseline_per_ms]))
+	wake=$((v[floor_wake_own] + v[floor_wake_rest] - 4 * v[baseline_per_ms]))
+	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake; above it: application's cycle $(($1 - sleep)), kernel's cycle with a waiting application $(($2 - wake))"
+}
+
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
-	local n
+	local n own limit
 
 	echo "# instructions per cycle, native device on e1000e"
 	for n in 1 100; do
@@ -234,9 +243,18 @@ native_cost() {
 			+ wait --cycles 300 --period-us 4000 --kernel wait || return
 		cost native
 		kernel_cost
-		work "" 4 "application's cycle"
+		work "" 4 "application's cycle"; own=$work
 		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
 		work wait_ 4 "kernel's cycle, the application waits for it"
+		floors "$own" "$work"
+		limit=$((n == 1 ? NATIVE_1 : NATIVE_100))
+		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
+		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
+			"${v[total_mean]} <= limit"
+		limit=$((n == 1 ? ALL_1 : ALL_100))
+		row "$own" $limit "all instructions of a cycle of an application, native device: $n drive(s)"
+		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
+			"$own <= limit"
 		reliable "native device"
 	done
 }

@@ -55,6 +55,7 @@ struct bench {
 	bool extras;	/* call what a careful application calls, too */
 	bool syscalls;	/* count them instead of instructions */
 	bool trace;	/* switch ftrace on while measuring */
+	bool floor;	/* measure nothing but cycles in which nothing is done */
 	bool violate;	/* do what a cycle must not do, now and then */
 	enum mode mode;
 
@@ -109,6 +110,9 @@ void trace_violate(struct bench *b, unsigned int cycle);
 bool work_begin(struct work *w);
 void work_end(struct work *w);
 int work_baseline(unsigned int ms);
+
+/* floor.c */
+int floor_measure(unsigned int cycles, unsigned int period_us);
 
 /* syscalls.c */
 int syscalls_run(int (*child)(void *), void *arg);

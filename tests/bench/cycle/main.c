@@ -379,6 +379,7 @@ static void usage(FILE *out)
 		"  --syscalls     count system calls instead of time\n"
 		"  --trace        switch ftrace on while measuring\n"
 		"  --baseline MS  only measure what the machine does by itself in a millisecond\n"
+		"  --floor        only measure cycles in which nothing is done\n"
 		"  --violate      sleep, fault and print in the cycle, now and then\n"
 		"Exit code 0: no frame lost, no working-counter error; 1: not; 2: usage.\n");
 }
@@ -420,6 +421,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "trace", no_argument, NULL, 't' },
 		{ "violate", no_argument, NULL, 'v' },
 		{ "baseline", required_argument, NULL, 'b' },
+		{ "floor", no_argument, NULL, 'f' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -442,6 +444,8 @@ static void parse(struct bench *b, int argc, char **argv)
 			b->trace = true;
 		else if (c == 'v')
 			b->violate = true;
+		else if (c == 'f')
+			b->floor = true;
 		else if (c == 'b')
 			exit(work_baseline(number("baseline", optarg, 60000) ?: 1));
 		else if (c == 'k' && kernel_mode(optarg) > 0)
@@ -462,6 +466,8 @@ int main(int argc, char **argv)
 	unsigned int p;
 
 	parse(&b, argc, argv);
+	if (b.floor)
+		return floor_measure(b.cycles, b.period_us);
 	if (b.trace && trace_open())
 		return 1;
 	for (p = 0; p < PARTS; p++) {
