@@ -34,7 +34,6 @@ msix|legacy) ;;
 esac
 passed=0 failed=0 lenient=
 declare -A v
-costs=()
 
 tests/vm/kernels.sh fetch "$kernel" >&2 &&
 make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
@@ -200,7 +199,7 @@ generic_cost() {
 	local n limit median
 
 	echo "# instructions per cycle, generic device on e1000e, interrupt: $interrupt"
-	for n in 1 ${all:+10} 100; do
+	for n in 1 100; do
 		run "drive$n, generic" "${icount[@]}" --nics -- generic "drive$n.seg" --cycles 500 \
 			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
 			+ wait --cycles 300 --period-us 4000 --kernel wait || return
@@ -209,9 +208,7 @@ generic_cost() {
 		cost generic
 		kernel_cost
 		all_work $n
-		costs[$n]=${v[total_mean]}
 		reliable "generic device"
-		[ $n = 10 ] && continue
 		# The mean has the cycles in it that send a frame of the monitor, too.
 		limit=$((n == 1 ? 5300 : 11900))
 		median=$((n == 1 ? 5200 : 11700))
@@ -259,19 +256,33 @@ native_cost() {
 	done
 }
 
-# Differences of runs in which one thing changes. A datagram holds 1486 bytes at
-# most, so 4400 bytes are three, each a frame of its own.
+# calls DEVICE DRIVES [OPTION...]: of the application's cycle, mean, in $calls
+calls() {
+	run "$2 drives, $1" "${icount[@]}" --nics -- "$1" "drive$2.seg" --cycles 300 \
+		--period-us 4000 "${@:3}" || return
+	calls=${v[total_mean]}
+}
+
+# Differences of runs in which one thing changes. A datagram holds 1486 bytes at most, so 4400
+# bytes are three, each a frame of its own, and 22000 are 15.
 unit_costs() {
-	run "drive10 in 10 domains" "${icount[@]}" --nics -- generic drive10.seg --cycles 300 \
-		--period-us 4000 --domains 10 || return
-	awk -v c1="${costs[1]}" -v c10="${costs[10]}" -v c100="${costs[100]}" \
-	    -v apart="${v[total_mean]}" 'BEGIN {
+	local device=$1 calls c1 c10 c100 c500 apart fit byte datagram frame cycle
+
+	calls "$device" 1 && c1=$calls && calls "$device" 10 && c10=$calls &&
+		calls "$device" 100 && c100=$calls && calls "$device" 500 && c500=$calls &&
+		calls "$device" 10 --domains 10 && apart=$calls || return
+	fit=$(awk -v c1="$c1" -v c10="$c10" -v c100="$c100" -v apart="$apart" 'BEGIN {
 		byte = (c10 - c1) / (440 - 44)
 		datagram = (apart - c10) / 9
 		frame = (c100 - c10 - byte * 3960 - datagram * 2) / 2
-		printf "# a byte costs %.2f instructions (process data of 22 bytes a direction and slave), a datagram and its domain %.0f, a frame %.0f, a cycle %.0f more\n",
-			byte, datagram, frame, c1 - frame - datagram - byte * 44
-	}'
+		cycle = c1 - frame - datagram - byte * 44
+		printf "%.2f %.0f %.0f %.0f %.0f\n", byte, datagram, frame, cycle,
+			cycle + 15 * (frame + datagram) + 22000 * byte
+	}')
+	read -r byte datagram frame cycle fit <<<"$fit"
+	echo "# $device device: a byte costs $byte instructions (process data of 22 bytes a direction and slave), a datagram and its domain $datagram, a frame $frame, a cycle $cycle more"
+	gate "$device device: 500 drives in 15 frames cost $c500 instructions of the calls, $(ratio "$c500" "$fit") of what these make; at most 1.05" \
+		"c500 > c100 && c500 * 100 <= fit * 105"
 }
 
 virtual_cost() {
@@ -331,7 +342,7 @@ real_time() {
 long_run
 generic_cost
 native_cost
-[ -z "$all" ] || unit_costs
+[ -z "$all" ] || { unit_costs generic; unit_costs native; }
 [ -z "$all" ] || virtual_cost
 system_calls
 together io1000.seg "1000 slaves of one byte, 1000 frames/s" 240000
