@@ -4,13 +4,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
 
+#include "attr.h"
 #include "dev.h"
 #include "nic.h"
 #include "sys.h"
@@ -30,44 +30,6 @@ static const struct {
 #undef EC_CHIP
 };
 
-/* what does not fit is cut */
-static void set(char *buf, size_t size, const char *fmt, ...) __attribute__((format(printf, 3, 4)));
-
-static void set(char *buf, size_t size, const char *fmt, ...)
-{
-	va_list ap;
-
-	va_start(ap, fmt);
-	vsnprintf(buf, size, fmt, ap);
-	va_end(ap);
-}
-
-/* the first line of an attribute; false: there is none */
-static bool attribute(const char *dir, const char *name, char *buf, size_t size)
-{
-	char path[512];
-	ssize_t n;
-	int fd;
-
-	*buf = '\0';
-	set(path, sizeof(path), "%s/%s", dir, name);
-	fd = open(path, O_RDONLY | O_CLOEXEC);
-	if (fd < 0)
-		return false;
-	n = read(fd, buf, size - 1);
-	close(fd);
-	buf[n > 0 ? n : 0] = '\0';
-	buf[strcspn(buf, "\n")] = '\0';
-	return n > 0;
-}
-
-static unsigned long number(const char *dir, const char *name)
-{
-	char text[32];
-
-	return attribute(dir, name, text, sizeof(text)) ? strtoul(text, NULL, 0) : 0;
-}
-
 /* the last part of what a symbolic link points to; false: there is none */
 static bool target(const char *dir, const char *name, char *buf, size_t size)
 {
@@ -76,13 +38,13 @@ static bool target(const char *dir, const char *name, char *buf, size_t size)
 	ssize_t n;
 
 	*buf = '\0';
-	set(path, sizeof(path), "%s/%s", dir, name);
+	attr_path(path, sizeof(path), "%s/%s", dir, name);
 	n = readlink(path, to, sizeof(to) - 1);
 	if (n <= 0)
 		return false;
 	to[n] = '\0';
 	last = strrchr(to, '/');
-	set(buf, size, "%s", last ? last + 1 : to);
+	attr_path(buf, size, "%s", last ? last + 1 : to);
 	return true;
 }
 
@@ -104,19 +66,19 @@ static void fill_pci(struct nic *n)
 	unsigned int vendor, device, i;
 	char dir[512], override[32];
 
-	set(dir, sizeof(dir), "%s/bus/pci/devices/%s", sys_fs(), n->pci);
-	vendor = (unsigned int)number(dir, "vendor");
-	device = (unsigned int)number(dir, "device");
+	attr_path(dir, sizeof(dir), "%s/bus/pci/devices/%s", sys_fs(), n->pci);
+	vendor = (unsigned int)attr_number(dir, "vendor");
+	device = (unsigned int)attr_number(dir, "device");
 	target(dir, "driver", n->driver, sizeof(n->driver));
-	n->kept = !*n->driver && attribute(dir, "driver_override", override, sizeof(override)) &&
+	n->kept = !*n->driver && attr_read(dir, "driver_override", override, sizeof(override)) &&
 		  !strcmp(override, NIC_NATIVE);
-	set(n->why_not, sizeof(n->why_not), "no native driver for %04x:%04x", vendor, device);
+	attr_path(n->why_not, sizeof(n->why_not), "no native driver for %04x:%04x", vendor, device);
 	for (i = 0; vendor == INTEL && i < sizeof(chips) / sizeof(*chips); i++) {
 		if (chips[i].device != device)
 			continue;
-		set(n->chip, sizeof(n->chip), "%s", chips[i].name);
+		attr_path(n->chip, sizeof(n->chip), "%s", chips[i].name);
 		n->tested = chips[i].tested;
-		set(n->why_not, sizeof(n->why_not), "%s", chips[i].me ?
+		attr_path(n->why_not, sizeof(n->why_not), "%s", chips[i].me ?
 			 "its PHY is shared with the management engine" : "");
 	}
 }
@@ -131,8 +93,8 @@ static bool find_pci(const char *device, char *pci, size_t size)
 		return false;
 	while ((last = strrchr(path, '/')) && last != path) {
 		if (target(path, "subsystem", bus, sizeof(bus)) && !strcmp(bus, "pci")) {
-			set(pci, size, "%s", last + 1);
-			return number(path, "class") >> 16 == 0x02;
+			attr_path(pci, size, "%s", last + 1);
+			return attr_number(path, "class") >> 16 == 0x02;
 		}
 		*last = '\0';
 	}
@@ -145,31 +107,31 @@ static int add_interface(struct nics *all, const char *name)
 	char dir[512], device[600], pci[32], text[32];
 	struct nic *n;
 
-	set(dir, sizeof(dir), "%s/class/net/%s", sys_fs(), name);
-	set(device, sizeof(device), "%s/device", dir);
-	if (number(dir, "type") != 1 || access(device, F_OK))
+	attr_path(dir, sizeof(dir), "%s/class/net/%s", sys_fs(), name);
+	attr_path(device, sizeof(device), "%s/device", dir);
+	if (attr_number(dir, "type") != 1 || access(device, F_OK))
 		return 0;
 	n = add(all);
 	if (!n)
 		return fail("out of memory");
-	set(n->name, sizeof(n->name), "%s", name);
-	attribute(dir, "address", n->mac, sizeof(n->mac));
+	attr_path(n->name, sizeof(n->name), "%s", name);
+	attr_read(dir, "address", n->mac, sizeof(n->mac));
 	if (find_pci(device, pci, sizeof(pci))) {
-		set(n->pci, sizeof(n->pci), "%s", pci);
+		attr_path(n->pci, sizeof(n->pci), "%s", pci);
 		fill_pci(n);
 	} else {
-		set(n->why_not, sizeof(n->why_not), "not a PCI device");
+		attr_path(n->why_not, sizeof(n->why_not), "not a PCI device");
 	}
 	target(device, "driver", n->driver, sizeof(n->driver));
 	/* readable only while the interface is up */
-	n->link_known = attribute(dir, "carrier", text, sizeof(text));
+	n->link_known = attr_read(dir, "carrier", text, sizeof(text));
 	n->link_up = n->link_known && *text == '1';
-	if (n->link_up && attribute(dir, "speed", text, sizeof(text)) && isdigit(*text))
+	if (n->link_up && attr_read(dir, "speed", text, sizeof(text)) && isdigit(*text))
 		n->speed = (unsigned int)atoi(text);
 	if (target(dir, "master", text, sizeof(text)))
-		set(n->by, sizeof(n->by), "%s (its port)", text);
-	else if (number(dir, "flags") & 1)
-		set(n->by, sizeof(n->by), "the system (up)");
+		attr_path(n->by, sizeof(n->by), "%s (its port)", text);
+	else if (attr_number(dir, "flags") & 1)
+		attr_path(n->by, sizeof(n->by), "the system (up)");
 	return 0;
 }
 
@@ -180,7 +142,7 @@ static int add_interfaces(struct nics *all)
 	int ret = 0;
 	DIR *d;
 
-	set(path, sizeof(path), "%s/class/net", sys_fs());
+	attr_path(path, sizeof(path), "%s/class/net", sys_fs());
 	d = opendir(path);
 	while (d && !ret && (e = readdir(d)))
 		if (*e->d_name != '.')
@@ -200,16 +162,16 @@ static int add_controllers(struct nics *all)
 	int ret = 0;
 	DIR *d;
 
-	set(path, sizeof(path), "%s/bus/pci/devices", sys_fs());
+	attr_path(path, sizeof(path), "%s/bus/pci/devices", sys_fs());
 	d = opendir(path);
 	while (d && !ret && (e = readdir(d))) {
-		set(dir, sizeof(dir), "%s/%s", path, e->d_name);
+		attr_path(dir, sizeof(dir), "%s/%s", path, e->d_name);
 		/* PCI class 02 00: Ethernet controller */
-		if (*e->d_name == '.' || number(dir, "class") >> 8 != 0x0200)
+		if (*e->d_name == '.' || attr_number(dir, "class") >> 8 != 0x0200)
 			continue;
 		for (i = 0; i < known && strcmp(all->v[i].pci, e->d_name); i++)
 			;
-		set(dir, sizeof(dir), "%s/%s/net", path, e->d_name);
+		attr_path(dir, sizeof(dir), "%s/%s/net", path, e->d_name);
 		if (i < known || !access(dir, F_OK))
 			continue;
 		n = add(all);
@@ -217,7 +179,7 @@ static int add_controllers(struct nics *all)
 			ret = fail("out of memory");
 			break;
 		}
-		set(n->pci, sizeof(n->pci), "%s", e->d_name);
+		attr_path(n->pci, sizeof(n->pci), "%s", e->d_name);
 		fill_pci(n);
 	}
 	if (d)
@@ -234,9 +196,9 @@ static void claim(struct nics *all, unsigned int master, unsigned int side,
 		if (d->state != EC_DEVICE_ATTACHED ||
 		    strcmp(d->name, *n->name ? n->name : n->pci))
 			continue;
-		set(n->by, sizeof(n->by), "Master%u %s", master, side ? "backup" : "main");
+		attr_path(n->by, sizeof(n->by), "Master%u %s", master, side ? "backup" : "main");
 		if (!*n->mac)
-			set(n->mac, sizeof(n->mac), "%02x:%02x:%02x:%02x:%02x:%02x",
+			attr_path(n->mac, sizeof(n->mac), "%02x:%02x:%02x:%02x:%02x:%02x",
 			    d->address[0], d->address[1], d->address[2], d->address[3],
 			    d->address[4], d->address[5]);
 		n->master = true;
@@ -254,7 +216,7 @@ static void ask_masters(struct nics *all)
 		char path[32];
 		int fd;
 
-		set(path, sizeof(path), "/dev/EtherCAT%u", i);
+		attr_path(path, sizeof(path), "/dev/EtherCAT%u", i);
 		fd = sys_open(path, O_RDONLY);
 		if (fd < 0)
 			break;

@@ -2,8 +2,13 @@
 /* The way to the kernel; tests/tool links a replacement. */
 #include "sys.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <linux/sockios.h>
+#include <net/if.h>
+#include <stdio.h>
 #include <sys/ioctl.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 int sys_open(const char *path, int flags)
@@ -24,4 +29,22 @@ void sys_close(int fd)
 const char *sys_fs(void)
 {
 	return "/sys";
+}
+
+const char *sys_proc(void)
+{
+	return "/proc";
+}
+
+int sys_ethtool(const char *interface, void *question)
+{
+	struct ifreq r = { .ifr_data = question };
+	int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0), ret;
+
+	if (fd < 0)
+		return -errno;
+	snprintf(r.ifr_name, sizeof(r.ifr_name), "%s", interface);
+	ret = ioctl(fd, SIOCETHTOOL, &r) ? -errno : 0;
+	close(fd);
+	return ret;
 }

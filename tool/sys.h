@@ -6,5 +6,8 @@ int sys_open(const char *path, int flags);
 int sys_ioctl(int fd, unsigned long request, void *arg);
 void sys_close(int fd);
 const char *sys_fs(void);	/* where sysfs is */
+const char *sys_proc(void);	/* where procfs is */
+/* a question about a network interface, struct ethtool_*; 0 or -errno */
+int sys_ethtool(const char *interface, void *question);
 
 #endif

@@ -133,6 +133,11 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 		echo "$ $c"
 		eval "$c"
 	done
+	# the guest's settings are not those of a real machine
+	run ethercat rtcheck
+	echo "$output"
+	[[ ${lines[0]} == "ok "*"$(uname -r), PREEMPT_RT" ]]
+	[[ $output == *"error(s), "*"not known" ]]
 	ethercat upload -p2 0x1018 1
 	ethercat download -p2 -t int8 0x6060 0 8
 	[ "$(ethercat upload -p2 -t int8 0x6060 0)" = "0x08 8" ]

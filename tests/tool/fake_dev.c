@@ -12,6 +12,7 @@
  */
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/ethtool.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -795,4 +796,35 @@ const char *sys_fs(void)
 	const char *dir = getenv("FAKE_SYS");
 
 	return dir ? dir : "/nonexistent";
+}
+
+/* FAKE_PROC: the same for /proc */
+const char *sys_proc(void)
+{
+	const char *dir = getenv("FAKE_PROC");
+
+	return dir ? dir : "/nonexistent";
+}
+
+/* FAKE_ETHTOOL: microseconds, EEE, pause; "-" for a driver without settings */
+int sys_ethtool(const char *interface, void *question)
+{
+	const char *text = getenv("FAKE_ETHTOOL");
+	unsigned int us = 0, eee = 0, pause = 0;
+	__u32 cmd;
+
+	memcpy(&cmd, question, sizeof(cmd));
+	if (!text || strcmp(interface, "eth0"))
+		return -ENODEV;
+	if (sscanf(text, "%u %u %u", &us, &eee, &pause) != 3)
+		return -EOPNOTSUPP;
+	if (cmd == ETHTOOL_GCOALESCE)
+		((struct ethtool_coalesce *)question)->rx_coalesce_usecs = us;
+	else if (cmd == ETHTOOL_GEEE)
+		((struct ethtool_eee *)question)->eee_enabled = eee;
+	else if (cmd == ETHTOOL_GPAUSEPARAM)
+		((struct ethtool_pauseparam *)question)->rx_pause = pause;
+	else
+		return -EINVAL;
+	return 0;
 }

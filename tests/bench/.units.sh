@@ -1,0 +1,357 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# The cost and the reliability of a cycle, in the VM. Under -icount one guest
+# instruction is one tick of the time stamp counter, so costs are exact and the
+# same on every machine. Gated: 10 000 cycles without a lost frame or a wrong
+# working counter, instructions and system calls per cycle, and master and
+# simulator together at 1 kHz. The lateness of a run in real time depends on the
+# host and is printed only; the CPU time of the host that it needs is gated.
+#
+# usage: cycle.sh [--gates] [--cycles N]
+#   --gates   what has a limit only, and each limit once: for make check
+#   N         cycles of the long run, default 10000
+
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+kernel=${EC_KERNEL:-6.1-rt}
+build=$PWD/build/system-$kernel
+cycles=10000 all=1
+while [ $# -gt 0 ]; do
+	case $1 in
+	--gates) all= ;;
+	--cycles) cycles=${2:-} && shift ;;
+	*) echo "cycle.sh: unknown option '$1'" >&2 && exit 2 ;;
+	esac
+	shift
+done
+[[ $cycles =~ ^[1-9][0-9]*$ ]] || { echo "cycle.sh: --cycles needs a number" >&2; exit 2; }
+# of the network device that is measured: msix or legacy
+interrupt=${EC_INTERRUPT:-msix}
+case $interrupt in
+msix|legacy) ;;
+*) echo "cycle.sh: EC_INTERRUPT=$interrupt: only msix and legacy" >&2 && exit 2 ;;
+esac
+passed=0 failed=0 lenient=
+declare -A v
+
+tests/vm/kernels.sh fetch "$kernel" >&2 &&
+make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
+make -s -C lib O="$build/lib" all >&2 &&
+make -s -C tool O="$build/tool" >&2 &&
+make -s -C tool/sim O="$build/tool" >&2 &&
+make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 &&
+mkdir -p "$build/split" && cp -u tests/bench/cycle/split/* "$build/split" &&
+make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= modules >&2 ||
+	exit 1
+
+# A string copy counts once per byte with ERMS and once per word without. The
+# incumbent's figures grow by too little from 1 to 100 drives for the former.
+icount=(--icount --qemu "-cpu max,-erms,-fsrm")
+
+# below PID: its children, theirs, and so on
+below() {
+	local p
+
+	for p in $(cat "/proc/$1/task/$1/children"); do
+		echo "$p"
+		below "$p"
+	done
+}
+
+# CPU time of each thread of the VM, ns
+vm_threads() {
+	local p t
+
+	for p in $(below $$); do
+		[[ $(cat "/proc/$p/comm") == qemu-system* ]] || continue
+		for t in "/proc/$p/task/"*; do echo "${t##*/} $(cut -d' ' -f1 "$t/schedstat")"; done
+	done 2>/dev/null | sort
+}
+
+# Between the lines mark_begin and mark_end of cycle-bench: host_cpu_ns of the VM, and
+# host_thread_ns of the thread of it that used most. Time that the host gives to others is
+# not in it.
+host_time() {
+	local line before=
+
+	while IFS= read -r line; do
+		case $line in
+		*mark_begin\ 0) before=$(vm_threads) ;;
+		*mark_end\ 0)
+			join <(echo "$before") <(vm_threads) | awk -v name="${line%mark_end 0}" '
+				{ d = $3 - $2; sum += d; if (d > most) most = d }
+				END { printf "%shost_cpu_ns %.0f\n%shost_thread_ns %.0f\n", name, sum, name, most }' ;;
+		*) printf '%s\n' "$line" ;;
+		esac
+	done
+}
+
+# run NAME [run.sh options] -- DEVICE SEGMENT [cycle-bench options]
+#     [+ PREFIX options]...; fills v. $lenient: working counters are not judged.
+run() {
+	local name=$1 out line opts=()
+
+	shift
+	while [ "$1" != -- ]; do opts+=("$1"); shift; done
+	shift
+	case $2 in *.seg) set -- "$1" "$PWD/tests/segments/$2" "${@:3}" ;; esac
+	v=()
+	if ! out=$(set -o pipefail
+		   tests/vm/run.sh --kernel "$kernel" --timeout 300 ${opts[@]+"${opts[@]}"} -- env \
+			EC_INTERRUPT="$interrupt" tests/bench/cycle/guest.sh "$build" "$@" 2>&1 | host_time); then
+		if [ -z "$lenient" ] || [[ $out != *wc_errors* ]]; then
+			echo "$out" | tail -n 30
+			echo "not ok $name: the run failed"
+			failed=$((failed + 1))
+		fi
+		[[ $out == *wc_errors* ]] || return 1
+	fi
+	while read -r line; do
+		[[ $line =~ ^([a-z0-9_]+)\ ([0-9.]+)$ ]] && v[${BASH_REMATCH[1]}]=${BASH_REMATCH[2]}
+	done <<<"$out"
+	[ -n "${v[wc_errors]:-}" ]
+}
+
+# gate TEXT CONDITION: an arithmetic one
+gate() {
+	if (($2)); then
+		echo "ok $1"
+		passed=$((passed + 1))
+	else
+		echo "not ok $1"
+		failed=$((failed + 1))
+	fi
+}
+
+# row VALUE LIMIT TEXT: of the table run.sh prints
+row() { echo "# row: $*"; }
+
+reliable() {
+	gate "$1: ${v[cycles]} cycles, ${v[slaves]} slaves: ${v[lost]} frames lost, ${v[wc_errors]} working-counter errors" \
+		"${v[lost]} == 0 && ${v[wc_errors]} == 0 && ${v[call_errors]} == 0 &&
+		 ${v[operational]} == ${v[slaves]}"
+}
+
+ratio() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.2f", a / b }'; }
+
+# the kernel's cycle: the calls, and what its thread does between two sleeps
+kernel_cost() {
+	printf '# %-8s %4u slave(s) %5u bytes: receive %6u process %4u queue %4u send %7u, thread %6u = %7u\n' \
+		kernel "${v[kernel_slaves]}" "${v[kernel_image_bytes]}" "${v[kernel_receive_mean]}" \
+		"${v[kernel_process_mean]}" "${v[kernel_queue_mean]}" "${v[kernel_send_mean]}" \
+		"${v[kernel_work_mean]}" "${v[kernel_total_mean]}"
+	gate "cycle of the kernel: ${v[kernel_cycles]} cycles, ${v[kernel_slaves]} slaves: ${v[kernel_lost]} frames lost, ${v[kernel_wc_errors]} working-counter errors" \
+		"${v[kernel_lost]} == 0 && ${v[kernel_wc_errors]} == 0 && ${v[kernel_call_errors]} == 0 &&
+		 ${v[kernel_operational]} == ${v[kernel_slaves]}"
+}
+
+# cost DEVICE SLAVES: a row of the table
+cost() {
+	printf '# %-8s %4u slave(s) %5u bytes: receive %6u process %4u queue %4u send %7u = %7u (a refused ioctl: %u)\n' \
+		"$1" "${v[slaves]}" "${v[image_bytes]}" "${v[receive_mean]}" "${v[process_mean]}" \
+		"${v[queue_mean]}" "${v[send_mean]}" "${v[total_mean]}" "${v[entry]}"
+}
+
+# work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
+# interrupts, threads, monitor, wake-ups; without the simulator, its network card and the
+# interrupts of both, and without what this machine executes in such a time before there is a
+# master.
+work() {
+	local split rest
+
+	rest=$((${v[$1rest_work]} - $2 * ${v[baseline_per_ms]}))
+	work=$((${v[$1application_work]} + ${v[$1card_work]} + ${v[$1master_work]} + rest))
+	printf '# all work of a cycle, %3u slave(s), %s: application %5u, network card %5u, threads of the master %5u, rest %5u = %6u; taken off: simulator %u\n' \
+		"${v[slaves]}" "$3" "${v[$1application_work]}" "${v[$1card_work]}" \
+		"${v[$1master_work]}" "$rest" "$work" "${v[$1simulator_work]}"
+	# what bench_split.ko executes itself is not in it
+	split=$((work - rest + ${v[$1rest_work]} + ${v[$1simulator_work]}))
+	gate "${v[slaves]} slave(s), $3: $split of ${v[$1whole_work]} instructions are attributed, at least 95 %" \
+		"split <= ${v[$1whole_work]} && split >= ${v[$1whole_work]} * 95 / 100"
+}
+
+long_run() {
+	run "long run" "${icount[@]}" -- virtual bench --cycles "$cycles" || return
+	reliable "1 kHz, icount, virtual device"
+	row $((v[lost] + v[wc_errors])) 0 "lost frames or wrong working counters: $cycles cycles, icount"
+	echo "# lateness of the wake-up: median ${v[late_ns_median]} ns, 99.9 % ${v[late_ns_p999]} ns, max ${v[late_ns_max]} ns"
+}
+
+# all_work SLAVES: who runs the cycle, compared by all that a CPU executes for it, same
+# machine, same slaves, same period
+all_work() {
+	local own timer
+
+	work "" 4 "application's cycle"; own=$work
+	work kernel_ 4 "kernel's cycle, the application sleeps by itself"; timer=$work
+	work wait_ 4 "kernel's cycle, the application waits for it"
+	row "$timer" $((own * 115 / 100)) "all instructions of a cycle, the kernel runs it, the application sleeps: $1 drive(s)"
+	row "$work" $((own * 115 / 100)) "the same, the application waits"
+	gate "$1 slave(s): all work of a cycle of the kernel is $(ratio "$timer" "$own") of that of an application's, $(ratio "$work" "$own") when the application waits for it; at most 1.15" \
+		"$own > ${v[total_mean]} && $timer > ${v[kernel_total_mean]} &&
+		 $timer <= own * 115 / 100 && $work <= own * 115 / 100"
+}
+
+# The receive interrupt of eth1 is the simulator's: a delay keeps it out of the calls.
+# That of eth0 is ours and counts.
+generic_cost() {
+	local n limit median
+
+	echo "# instructions per cycle, generic device on e1000e, interrupt: $interrupt"
+	for n in 1 100; do
+		run "drive$n, generic" "${icount[@]}" --nics -- generic "drive$n.seg" --cycles 500 \
+			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
+			+ wait --cycles 300 --period-us 4000 --kernel wait || return
+		gate "drive$n: the figures are those of the interrupt $interrupt" \
+			"${v[msix]} == $([ "$interrupt" = msix ] && echo 1 || echo 0)"
+		cost generic
+		kernel_cost
+		all_work $n
+		reliable "generic device"
+		# The mean has the cycles in it that send a frame of the monitor, too.
+		limit=$((n == 1 ? 5300 : 11900))
+		median=$((n == 1 ? 5200 : 11700))
+		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, mean: $n drive(s)"
+		row "${v[total_median]}" $median "the same, median"
+		gate "$n slave(s): ${v[total_mean]} instructions of the calls on the mean, at most $limit; median ${v[total_median]}, at most $median" \
+			"${v[total_mean]} <= limit && ${v[total_median]} <= median"
+	done
+}
+
+# floors OWN WAIT: what the machine needs for a cycle in which nothing is done
+floors() {
+	local sleep wake
+
+	sleep=$((v[floor_sleep_own] + v[floor_sleep_rest] - 4 * v[baseline_per_ms]))
+	wake=$((v[floor_wake_own] + v[floor_wake_rest] - 4 * v[baseline_per_ms]))
+	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake; above it: application's cycle $(($1 - sleep)), kernel's cycle with a waiting application $(($2 - wake))"
+}
+
+# The same card without interrupts. What an application waits for is its own sleep or the
+# kernel's cycle.
+native_cost() {
+	local n own limit
+
+	echo "# instructions per cycle, native device on e1000e"
+	for n in 1 100; do
+		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
+			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
+			+ wait --cycles 300 --period-us 4000 --kernel wait || return
+		cost native
+		kernel_cost
+		work "" 4 "application's cycle"; own=$work
+		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
+		work wait_ 4 "kernel's cycle, the application waits for it"
+		floors "$own" "$work"
+		limit=$((n == 1 ? 3100 : 9100))
+		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
+		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
+			"${v[total_mean]} <= limit"
+		limit=$((n == 1 ? 15000 : 23500))
+		row "$own" $limit "all instructions of a cycle of an application, native device: $n drive(s)"
+		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
+			"$own <= limit"
+		reliable "native device"
+	done
+}
+
+# calls DEVICE DRIVES [OPTION...]: of the application's cycle, mean, in $calls
+calls() {
+	run "$2 drives, $1" "${icount[@]}" --nics -- "$1" "drive$2.seg" --cycles 300 \
+		--period-us 4000 "${@:3}" || return
+	calls=${v[total_mean]}
+}
+
+# Differences of runs in which one thing changes. A datagram holds 1486 bytes at most, so 4400
+# bytes are three, each a frame of its own, and 22000 are 15.
+unit_costs() {
+	local device=$1 calls c1 c10 c100 c500 apart fit byte datagram frame cycle
+
+	calls "$device" 1 && c1=$calls && calls "$device" 10 && c10=$calls &&
+		calls "$device" 100 && c100=$calls && calls "$device" 500 && c500=$calls &&
+		calls "$device" 10 --domains 10 && apart=$calls || return
+	fit=$(awk -v c1="$c1" -v c10="$c10" -v c100="$c100" -v apart="$apart" 'BEGIN {
+		byte = (c10 - c1) / (440 - 44)
+		datagram = (apart - c10) / 9
+		frame = (c100 - c10 - byte * 3960 - datagram * 2) / 2
+		cycle = c1 - frame - datagram - byte * 44
+		printf "%.2f %.0f %.0f %.0f %.0f\n", byte, datagram, frame, cycle,
+			cycle + 15 * (frame + datagram) + 22000 * byte
+	}')
+	read -r byte datagram frame cycle fit <<<"$fit"
+	echo "# $device device: a byte costs $byte instructions (process data of 22 bytes a direction and slave), a datagram and its domain $datagram, a frame $frame, a cycle $cycle more"
+	gate "$device device: 500 drives in 15 frames cost $c500 instructions of the calls, $(ratio "$c500" "$fit") of what these make; at most 1.05" \
+		"c500 > c100 && c500 * 100 <= fit * 105"
+}
+
+virtual_cost() {
+	echo "# the same, virtual device: the calls contain the work of the simulator"
+	run "drive1, virtual" "${icount[@]}" -- virtual drive1.seg --cycles 500 || return
+	cost virtual
+}
+
+system_calls() {
+	local n options
+
+	for n in ${all:+1} 8; do
+		options="--cycles 100 --domains $n --extras --syscalls"
+		run "system calls" "${icount[@]}" -- virtual drive10.seg $options \
+			+ wait $options --kernel wait + spin $options --kernel spin || return
+		gate "$n domain(s), clocks, state queries, emergencies, requests: ${v[syscalls_max]} system calls per cycle, at most 2" \
+			"${v[syscalls_max]} <= 2 && ${v[requests_done]} > 0"
+		row "${v[syscalls_max]}" 2 "system calls a cycle: $n domain(s)"
+		gate "the same, the kernel runs the cycle: ${v[wait_syscalls_max]} when the application waits, at most 1" \
+			"${v[wait_syscalls_max]} <= 1 && ${v[wait_requests_done]} > 0"
+		row "${v[wait_syscalls_max]}" 1 "the same, the kernel runs the cycle, the application waits"
+		gate "and ${v[spin_syscalls_max]} when it spins" \
+			"${v[spin_syscalls_max]} == 0 && ${v[spin_cycles]} == 100"
+		row "${v[spin_syscalls_max]}" 0 "the same, it spins"
+	done
+}
+
+# Master and simulator in one VM, as a virtual device, at 1 kHz. SEGMENT TEXT LIMIT: the
+# limit is that of all instructions of a cycle.
+together() {
+	run "$1, 1 kHz" "${icount[@]}" -- virtual "$1" --cycles 500 || return
+	reliable "1 kHz, icount, virtual device, $2"
+	work=$((${v[application_work]} + ${v[card_work]} + ${v[master_work]} + ${v[rest_work]} + ${v[simulator_work]}))
+	row $work "$3" "all instructions of master and simulator a cycle: $2"
+	gate "$2: $work instructions of master and simulator a cycle, at most $3; ${v[overruns]} overruns" \
+		"work > 0 && work <= $3 && ${v[overruns]} == 0"
+}
+
+# The same in real time. Its lateness depends on what else the host does; the CPU time that
+# the VM needs for a cycle hardly does: each of its CPUs has a millisecond.
+together_real_time() {
+	local cycles=5050 lenient=1
+
+	run "$1, real time" --smp 2 -- virtual "$1" --cycles 3000 --ready 100 --work 5000 || return
+	echo "# real time ($accel), $2: ${v[cycles]} cycles of 1 ms: ${v[lost]} frames lost; not gated: ${v[overruns]} cycles skipped, ${v[wc_errors]} working-counter errors while the host did something else"
+	row $((${v[host_thread_ns]} / cycles)) 1000000 "ns of the busiest host thread of the VM for a cycle of 1 ms: $2"
+	gate "$2: a cycle of 1 ms takes $((${v[host_thread_ns]} / cycles / 1000)) us of the VM's busiest thread on the host, $((${v[host_cpu_ns]} / cycles / 1000)) us of all; less than 1000 of the busiest" \
+		"${v[host_thread_ns]} < cycles * 1000000 && ${v[lost]} == 0"
+}
+
+real_time() {
+	run "real time" --smp 2 -- virtual bench --cycles 5000 || return
+	echo "# real time, not gated: ${v[cycles]} cycles: ${v[lost]} frames lost, ${v[wc_errors]} working-counter errors, ${v[overruns]} overruns"
+	echo "# lateness: median ${v[late_ns_median]} ns, 99.9 % ${v[late_ns_p999]} ns, max ${v[late_ns_max]} ns"
+}
+
+
+
+
+[ -z "$all" ] || { unit_costs generic; unit_costs native; }
+
+
+
+
+if [ -n "$all" ]; then
+
+	accel=$(tests/vm/run.sh --probe)
+
+
+fi
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Interrupts, and the network cards of the masters. */
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <linux/ethtool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "attr.h"
+#include "nic.h"
+#include "rt.h"
+#include "sys.h"
+
+#define SHOWN	4	/* interrupts that a finding names */
+
+/* what an interrupt is for: the kernel makes a folder for each of its actions */
+static bool action(const char *dir, char *name, size_t size)
+{
+	struct dirent *e;
+	DIR *d = opendir(dir);
+
+	*name = '\0';
+	while (d && !*name && (e = readdir(d)))
+		if (*e->d_name != '.' && e->d_type == DT_DIR)
+			attr_path(name, size, "%s", e->d_name);
+	if (d)
+		closedir(d);
+	return *name;
+}
+
+/* Is it that of a master's network card? It belongs to the CPU of the cycle. */
+static bool is_card(const struct nics *all, const char *name)
+{
+	for (size_t i = 0; i < all->n; i++) {
+		size_t len = strlen(all->v[i].name);
+
+		if (all->v[i].master && len && !strncmp(name, all->v[i].name, len) &&
+		    (!name[len] || name[len] == '-'))
+			return true;
+	}
+	return false;
+}
+
+/* Does it come to a reserved CPU? */
+static bool disturbs(const struct rt *r, const char *dir)
+{
+	char list[128];
+	bool cpus[RT_CPUS];
+
+	if (!attr_read(dir, "effective_affinity_list", list, sizeof(list)))
+		attr_read(dir, "smp_affinity_list", list, sizeof(list));
+	rt_cpus(list, cpus);
+	for (unsigned int i = 0; i < RT_CPUS; i++)
+		if (cpus[i] && r->isolated[i])
+			return true;
+	return false;
+}
+
+static void check_affinity(struct rt *r, const struct nics *all)
+{
+	char path[512], dir[800], name[64], found[192] = "";
+	unsigned int n = 0, seen = 0;
+	struct dirent *e;
+	DIR *d;
+
+	attr_path(path, sizeof(path), "%s/irq", sys_proc());
+	d = opendir(path);
+	while (d && (e = readdir(d))) {
+		attr_path(dir, sizeof(dir), "%s/%s", path, e->d_name);
+		if (!isdigit((unsigned char)*e->d_name) || !action(dir, name, sizeof(name)))
+			continue;
+		seen++;
+		if (is_card(all, name) || !disturbs(r, dir))
+			continue;
+		if (n++ < SHOWN)
+			attr_path(found + strlen(found), sizeof(found) - strlen(found), "%s%s (%s)",
+				  n > 1 ? ", " : "", e->d_name, name);
+	}
+	if (d)
+		closedir(d);
+	if (!seen)
+		rt_find(r, "interrupts", RT_UNKNOWN, NULL, "%s cannot be read", path);
+	else if (n)
+		rt_find(r, "interrupts", RT_ERROR,
+			"kernel parameter irqaffinity=, or echo LIST > /proc/irq/N/smp_affinity_list",
+			"%u come to a reserved CPU: %s", n, found);
+	else
+		rt_find(r, "interrupts", RT_OK, NULL, "none but the master's comes to CPU %s",
+			r->list);
+}
+
+static bool runs(const char *program)
+{
+	char dir[512], name[32];
+	bool found = false;
+	struct dirent *e;
+	DIR *d = opendir(sys_proc());
+
+	while (d && !found && (e = readdir(d))) {
+		if (!isdigit((unsigned char)*e->d_name))
+			continue;
+		attr_path(dir, sizeof(dir), "%s/%s", sys_proc(), e->d_name);
+		found = attr_read(dir, "comm", name, sizeof(name)) && !strcmp(name, program);
+	}
+	if (d)
+		closedir(d);
+	return found;
+}
+
+void rt_check_interrupts(struct rt *r)
+{
+	struct nics all;
+
+	if (runs("irqbalance"))
+		rt_find(r, "irqbalance", RT_WARNING, "systemctl disable --now irqbalance",
+			"it runs and may move interrupts to the CPU of the cycle");
+	else
+		rt_find(r, "irqbalance", RT_OK, NULL, "does not run");
+	if (!r->n_isolated) {
+		rt_find(r, "interrupts", RT_UNKNOWN, NULL,
+			"not checked: no CPU is reserved, any may have them");
+		return;
+	}
+	r->failed |= !!nics_read(&all);
+	check_affinity(r, &all);
+	nics_free(&all);
+}
+
+/* @question: struct ethtool_*, answered; false after a finding */
+static bool ask(struct rt *r, const struct nic *n, const char *check, void *question)
+{
+	int ret = sys_ethtool(n->name, question);
+
+	if (ret == -EOPNOTSUPP)
+		rt_find(r, check, RT_OK, NULL, "%s: the driver %s has no such setting", n->name,
+			n->driver);
+	else if (ret)
+		rt_find(r, check, RT_UNKNOWN, NULL, "%s: %s", n->name, strerror(-ret));
+	return !ret;
+}
+
+static void check_coalescing(struct rt *r, const struct nic *n)
+{
+	struct ethtool_coalesce c = { .cmd = ETHTOOL_GCOALESCE };
+	char fix[96];
+
+	attr_path(fix, sizeof(fix), "ethtool -C %s rx-usecs 0 tx-usecs 0", n->name);
+	if (!ask(r, n, "coalescing", &c))
+		return;
+	/* 1 is off for some drivers */
+	if (c.rx_coalesce_usecs > 1 || c.use_adaptive_rx_coalesce)
+		rt_find(r, "coalescing", RT_ERROR, fix, "%s: received frames wait %u us%s", n->name,
+			c.rx_coalesce_usecs, c.use_adaptive_rx_coalesce ? ", adaptive" : "");
+	else
+		rt_find(r, "coalescing", RT_OK, NULL, "%s: received frames do not wait", n->name);
+}
+
+static void check_eee(struct rt *r, const struct nic *n)
+{
+	struct ethtool_eee e = { .cmd = ETHTOOL_GEEE };
+	char fix[96];
+
+	attr_path(fix, sizeof(fix), "ethtool --set-eee %s eee off", n->name);
+	if (!ask(r, n, "energy", &e))
+		return;
+	if (e.eee_enabled)
+		rt_find(r, "energy", RT_WARNING, fix, "%s: the link falls asleep between frames",
+			n->name);
+	else
+		rt_find(r, "energy", RT_OK, NULL, "%s: the link does not fall asleep", n->name);
+}
+
+static void check_pause(struct rt *r, const struct nic *n)
+{
+	struct ethtool_pauseparam p = { .cmd = ETHTOOL_GPAUSEPARAM };
+	char fix[96];
+
+	attr_path(fix, sizeof(fix), "ethtool -A %s rx off tx off autoneg off", n->name);
+	if (!ask(r, n, "pause frames", &p))
+		return;
+	if (p.rx_pause || p.tx_pause)
+		rt_find(r, "pause frames", RT_WARNING, fix, "%s: they may hold frames back",
+			n->name);
+	else
+		rt_find(r, "pause frames", RT_OK, NULL, "%s: off", n->name);
+}
+
+static void check_power(struct rt *r, const struct nic *n)
+{
+	char dir[512], text[16], fix[128];
+
+	attr_path(dir, sizeof(dir), "%s/bus/pci/devices/%s/power", sys_fs(), n->pci);
+	attr_path(fix, sizeof(fix), "echo on > /sys/bus/pci/devices/%s/power/control", n->pci);
+	if (!*n->pci || !attr_read(dir, "control", text, sizeof(text)))
+		return;
+	if (!strcmp(text, "on"))
+		rt_find(r, "power", RT_OK, NULL, "%s: the card stays on", n->name);
+	else
+		rt_find(r, "power", RT_WARNING, fix, "%s: the card may be switched off (%s)",
+			n->name, text);
+}
+
+static void check_card(struct rt *r, const struct nic *n)
+{
+	char fix[96];
+
+	if (!strcmp(n->driver, NIC_NATIVE)) {
+		rt_find(r, "card", RT_OK, NULL, "%s: %s with the native driver, no interrupt", n->by,
+			n->pci);
+		return;
+	}
+	attr_path(fix, sizeof(fix), "ethercat device bind %s", n->name);
+	if (*n->why_not)
+		rt_find(r, "card", RT_OK, NULL, "%s: %s with the driver %s (native: %s)", n->by,
+			n->name, n->driver, n->why_not);
+	else
+		rt_find(r, "card", RT_WARNING, fix,
+			"%s: %s with the driver %s and its interrupts; a native driver can have it",
+			n->by, n->name, n->driver);
+	check_coalescing(r, n);
+	check_eee(r, n);
+	check_pause(r, n);
+	check_power(r, n);
+}
+
+int rt_check_cards(struct rt *r)
+{
+	unsigned int n = 0;
+	struct nics all;
+	int ret = nics_read(&all);
+
+	for (size_t i = 0; !ret && i < all.n; i++) {
+		if (!all.v[i].master)
+			continue;
+		n++;
+		check_card(r, &all.v[i]);
+	}
+	if (!ret && !n)
+		rt_find(r, "card", RT_UNKNOWN, NULL,
+			"no master has a network card; load ec_master with main_devices= and check again");
+	nics_free(&all);
+	return ret;
+}
