@@ -29,3 +29,15 @@ teardown_file() { stop; }
 	modprobe e1000e
 	wait_for 120 all_slaves_are PREOP 22
 }
+
+@test "rtcheck reads the settings of the card from its driver" {
+	ethtool -C eth0 rx-usecs 3
+	run ethercat rtcheck
+	echo "$output"
+	[[ $output == *"card "*"Master0 main: eth0 with the driver e1000e and its interrupts"* ]]
+	[[ $output == *"eth0: received frames wait 3 us"* ]]
+	[ "$status" = 1 ]
+	ethtool -C eth0 rx-usecs 0
+	run ethercat rtcheck
+	[[ $output == *"eth0: received frames do not wait"* ]]
+}
