@@ -2,12 +2,17 @@
 #include <linux/delay.h>
 #include <linux/etherdevice.h>
 #include <linux/ktime.h>
+#include <linux/module.h>
 #include <linux/vmalloc.h>
 #include "../base/once64.h"
 #include "pack.h"
 #include "slots.h"
 
 #define COPY_MAX	(EC_ETH_MAX - EC_ETH_HDR)	/* what follows the EtherType */
+
+static bool frame_numbers = true;
+module_param(frame_numbers, bool, 0444);
+MODULE_PARM_DESC(frame_numbers, "Number the frames in their source MAC address (Y)");
 
 /**
  * ec_slots_init() - allocate the slots
@@ -21,6 +26,7 @@ int ec_slots_init(struct ec_slots *s, bool backup)
 {
 	unsigned int i;
 
+	s->numbered = frame_numbers;
 	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
 	s->backup = backup ? vzalloc(array_size(EC_SLOTS, COPY_MAX)) : NULL;
 	if (!s->slot || (backup && !s->backup)) {
@@ -170,8 +176,9 @@ bool ec_slot_disarm(struct ec_slot *slot)
 }
 
 /*
- * The source address carries the side, which a link writes when it sends, and the sequence
- * number; bit 1 of its first octet stays clear because slaves set it.
+ * The source address is locally administered: slaves set that bit, too. It carries the side,
+ * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
+ * alone: one that callers share is recognized by its number.
  */
 static void number(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
 {
@@ -183,9 +190,11 @@ static void number(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_n
 	slot->back = 0;
 	slot->pack.len = 0;
 	eth_broadcast_addr(f);
-	f[6] = 0;
+	f[6] = 0x02;
 	f[7] = 0;
-	put_unaligned_le32(slot->seq, f + 8);
+	put_unaligned_le32(s->numbered ? slot->seq : 0, f + 8);
+	if (!s->numbered)
+		slot->dgrams = 0;
 	f[12] = EC_ETHERTYPE >> 8;
 	f[13] = EC_ETHERTYPE & 0xff;
 	if (slot->eth_len < EC_ETH_MIN)
@@ -365,6 +374,8 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 		return ec_pack_match(s, src, data, len, got);
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
 	/* first: a frame of an earlier use must not hold the slot */
+	if (!s->numbered)
+		seq = READ_ONCE(slot->seq);
 	if (READ_ONCE(slot->seq) != seq) {
 		state = atomic_read(&slot->state);
 		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ? EC_MATCH_LATE :

@@ -96,12 +96,14 @@ struct ec_queued {
  * @backup: memory of the copies of link 1
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
+ * @numbered: the source address of a frame has its number
  */
 struct ec_slots {
 	struct ec_slot *slot;
 	u8 *backup;
 	atomic_t hint;
 	atomic_t seq;
+	bool numbered;
 };
 
 enum ec_match {

@@ -415,6 +415,56 @@ static void frame_refused_after_reply_is_taken_by_cycle(struct kunit *test)
 	end_forging(c->b);
 }
 
+/* Slaves set the bit that says so; the number distinguishes uses of a slot. */
+static void frame_source_locally_administered(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	static struct expected e;
+
+	expect(b, &e);
+	KUNIT_EXPECT_EQ(test, e.slot->frame[6], 0x02);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(e.src + 2), e.slot->seq);
+	e.src[2]++;
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_SENT);
+	e.src[2]--;
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
+	ec_slot_put(&b->m->links.slots, e.slot);
+}
+
+/* The source address of every frame is the same then; start and cycle work as before. */
+static void frame_without_number_matched_by_index(struct kunit *test)
+{
+	static const u8 source[] = { 0x02, 0, 0, 0, 0, 0 };
+	struct bus *b = bus_up(test, text, N);
+	struct ec_slots *s = &b->m->links.slots;
+	static struct expected e;
+	u32 before, used = 0, i;
+	struct cyc *c;
+
+	s->numbered = false;
+	expect(b, &e);
+	KUNIT_EXPECT_MEMEQ(test, e.src, source, sizeof(source));
+	give(b, e.src, e.reply, e.len);
+	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
+	ec_slot_put(s, e.slot);
+	before = atomic_read(&s->seq);
+	c = cyc_in_op(b, 0, N);
+	c->incomplete = 0;
+	cyc_run(c, 500);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	for (i = 0; i < EC_SLOTS; i++) {
+		if ((s32)(s->slot[i].seq - before) <= 0)
+			continue;
+		used++;
+		KUNIT_EXPECT_MEMEQ(test, s->slot[i].frame + 6, source, sizeof(source));
+	}
+	KUNIT_EXPECT_GT(test, used, 100u);
+	cyc_release(c);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(frame_changed),
 	KUNIT_CASE(frame_truncated),
@@ -425,6 +475,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(frame_trouble, trouble_gen_params),
 	KUNIT_CASE(frame_refused_after_reply_is_not_sent_again),
 	KUNIT_CASE(frame_refused_after_reply_is_taken_by_cycle),
+	KUNIT_CASE(frame_source_locally_administered),
+	KUNIT_CASE(frame_without_number_matched_by_index),
 	{}
 };
 

@@ -97,6 +97,31 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 	ethercat master | grep -q 'Main: 00:11:22:33:44:55 (waiting...)'
 }
 
+# sources DEVICE: different source addresses of the next 20 EtherCAT frames that come to it
+sources() {
+	timeout 60 tcpdump -c 20 -i "$1" -Q in -w - ether proto 0x88a4 2>/dev/null |
+		tcpdump -nn -e -r - 2>/dev/null | awk '$3 == ">" { print $2 }' | sort -u
+}
+
+@test "devices.rst: constant source address" {
+	ip link add eth1 type veth peer name veth0
+	ip link set veth0 up
+	ip link set eth1 up
+	doc Documentation/devices.rst 'modprobe ec_master main_devices=eth1 frame_numbers=N'
+	insmod build/modules/devices/ec_generic.ko
+	run sources veth0
+	echo "$output"
+	[ "$output" = 02:00:00:00:00:00 ]
+	insmod build/modules/devices/sim/ec_sim.ko segment=bench netdev=veth0
+	has_slaves 22
+	rmmod ec_sim ec_generic ec_master
+	modprobe ec_master main_devices=eth1
+	modprobe ec_generic
+	run sources veth0
+	[ "${#lines[@]}" -gt 10 ]
+	[[ $output == "02:00:"* ]]
+}
+
 # what a card cannot do its driver refuses; that is no fault of the command
 @test "realtime.rst: settings of a card" {
 	modprobe e1000e
