@@ -7,10 +7,12 @@
 # usage: bench.sh FOLDER    the captured frames go there
 #
 # EC_BUILD: where things were built; CYCLES, PERIOD_US: length of the run;
-# DEMO_START: when demo.sh began; SEGMENT, SLAVES: another segment
+# DEMO_START: when demo.sh began; SEGMENT, SLAVES: another segment;
+# EC_NIC: see tests/system/run.sh
 
 set -u
 out=$1
+here=$(cd "$(dirname "$0")" && pwd)
 segment=${SEGMENT:-bench} slaves=${SLAVES:-22}
 start=${DEMO_START:-$(date +%s)}
 modules=$EC_BUILD/modules
@@ -21,6 +23,7 @@ step() { printf '[%3d s] %s\n' $(($(date +%s) - start)) "$*"; }
 cleanup() {
 	[ -z "$tcpdump" ] || kill "$tcpdump" 2>/dev/null
 	rmmod ec_sim 2>/dev/null
+	rmmod ec_intel 2>/dev/null
 	rmmod ec_master 2>/dev/null
 }
 trap cleanup EXIT
@@ -55,12 +58,22 @@ ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
 ready() { [ "$(ethercat slaves 2>/dev/null | awk '$3 == "PREOP"' | wc -l)" = "$slaves" ]; }
 capturing() { [ -s "$out/tcpdump.log" ]; }
 
-load "$modules/master/ec_master.ko" main_devices=sim0 capture=1
+device=sim0
+if [ -n "${EC_NIC:-}" ]; then
+	# shellcheck source=tests/system/helpers.bash
+	. "$here/../system/helpers.bash"
+	device=52:54:00:ec:00:00
+fi
+load "$modules/master/ec_master.ko" main_devices=$device capture=1
 ip link set eccap0 up || die "the interface eccap0" "is there a message of ec_master in the kernel's log?"
 tcpdump -i eccap0 -n -B 16384 -Z root -w "$out/demo.pcap" ether proto 0x88a4 2>"$out/tcpdump.log" &
 tcpdump=$!
 wait_for 20 capturing || die "tcpdump does not start" "see $out/tcpdump.log"
-load "$modules/devices/sim/ec_sim.ko" segment="$segment"
+if [ -z "${EC_NIC:-}" ]; then
+	load "$modules/devices/sim/ec_sim.ko" segment="$segment"
+else
+	load_segment "$segment" || die "the network card $EC_NIC" "see above"
+fi
 step "load: $(uname -r): ec_master, ec_sim with the segment $segment; capturing at eccap0"
 
 wait_for 30 ready || {
@@ -80,5 +93,5 @@ wait $tcpdump
 tcpdump=
 [ $rc = 0 ] || die "the application ended with $rc" "the lines FAILED above say which check"
 step "run: done; frames that the capture missed: $dropped in the master, $(awk '/dropped by kernel/ { print $1 }' "$out/tcpdump.log") in tcpdump"
-rmmod ec_sim && rmmod ec_master || die "the modules cannot be unloaded" "lsmod shows who uses them"
+rmmod ec_sim && { [ -z "${EC_NIC:-}" ] || rmmod ec_intel; } && rmmod ec_master || die "the modules cannot be unloaded" "lsmod shows who uses them"
 step "unload: done"

@@ -5,7 +5,7 @@
 bats_require_minimum_version 1.5.0
 
 setup() { cd "$BATS_TEST_DIRNAME/../.." || return; }
-teardown() { rmmod ec_sim ec_master 2>/dev/null || true; }
+teardown() { rmmod ec_sim ec_intel ec_master 2>/dev/null || true; }
 
 # with the variables that the modules were built with, else they are built again here
 demo() {

@@ -15,21 +15,35 @@ driver() {
 	echo "$1" >/sys/bus/pci/drivers_probe
 }
 
-# load_master: with the virtual device; EC_NIC=MODEL: with a network card and its native driver
+# load_master [PARAMETER...]: with the virtual device; EC_NIC=MODEL: with a network card and its native driver
 load_master() {
 	local device=sim0
 
 	[ -z "${EC_NIC:-}" ] || device=52:54:00:ec:00:00
-	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=$device
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=$device "$@"
+}
+
+# load_segment SEGMENT: slaves at the device of load_master. They are at the other end of the
+# cable before the master sends, so that no frame is lost.
+load_segment() {
+	[ -z "${EC_NIC:-}" ] || [ -e /sys/class/net/eth1 ] || modprobe "$EC_NIC"
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1" ${EC_NIC:+netdev=eth1}
 	[ -n "${EC_NIC:-}" ] || return 0
-	[ -e /sys/class/net/eth1 ] || modprobe "$EC_NIC"
-	insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
+	wait_for 60 has_carrier eth1
+	grep -q '^ec_intel ' /proc/modules || insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
 	[ ! -e /sys/class/net/eth0 ] || driver "$(pci eth0)" ec_intel
 }
 
-# load_segment SEGMENT: slaves at the device of load_master
-load_segment() {
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$1" ${EC_NIC:+netdev=eth1}
+has_carrier() { [ "$(cat "/sys/class/net/$1/carrier")" = 1 ]; }
+
+# driver of the master's device
+device_module=ec_sim
+[ -z "${EC_NIC:-}" ] || device_module=ec_intel
+
+# unplug: the device vanishes and the slaves lose power; load_segment brings both back
+unplug() {
+	rmmod ec_sim
+	[ -z "${EC_NIC:-}" ] || rmmod ec_intel
 }
 
 # start SEGMENT [SLAVES]: load the modules and wait for the scan

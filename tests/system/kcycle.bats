@@ -231,7 +231,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 @test "the device is taken away and comes back under a detached session" {
 	background flags=1 value=4711
 	die
-	rmmod ec_sim
+	unplug
 	ethercat master | grep -q 'Waiting for device'
 	sleep 0.2
 	load_segment "$BATS_FILE_TMPDIR/segment"
@@ -244,7 +244,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 @test "the modules go although a detached session sends" {
 	background flags=1
 	die
-	rmmod ec_sim
+	unplug
 	rmmod ec_master
 	run pgrep -x 'EtherCAT0-cyc'
 	[ "$status" != 0 ]
@@ -254,5 +254,5 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	# the master first, in spite of frames on their way
 	run rmmod ec_master
 	[ "$status" != 0 ]
-	[[ "$output" == *"in use by: ec_sim"* ]]
+	[[ "$output" == *"in use by: "*"$device_module"* ]]
 }

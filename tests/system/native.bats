@@ -5,7 +5,7 @@
 load helpers
 
 setup_file() {
-	export EC_NIC=e1000e
+	export EC_NIC=${EC_NIC:-e1000e}
 	start bench 22
 	pci0=0000:00:08.0 pci1=0000:00:0c.0
 	export pci0 pci1
@@ -88,16 +88,16 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 # devices KEY PCI: of the list
 listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$1"; }
 
-# load_master did what 'modprobe ec_intel' and 'ethercat device bind' do; now the commands
+# load_master and load_segment did what 'modprobe ec_intel' and 'ethercat device bind' do; now the commands
 @test "ethercat device unbind and bind change the driver" {
 	[ "$(listed driver "$pci0")" = ec_intel ]
 	[ "$(listed used_by "$pci0")" = "Master0 main" ]
 	[ "$(listed link_up "$pci0")" = true ]
-	[ "$(listed driver "$pci1")" = e1000e ]
+	[ "$(listed driver "$pci1")" = "$EC_NIC" ]
 	[ "$(listed native "$pci1")" = true ]
 	refused "$pci0 is used by Master0 main" device unbind "$pci0"
 	ethercat device unbind --force "$pci0"
-	wait_for 60 is_bound "$pci0" e1000e
+	wait_for 60 is_bound "$pci0" "$EC_NIC"
 	wait_for 60 test -e /sys/class/net/eth0
 	waits
 	refused 'eth1 is used by the system \(up\)' device bind eth1
@@ -112,7 +112,7 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 	rmmod ec_sim ec_intel
 	rmmod ec_master
 	ethercat device unbind "$pci0"
-	is_bound "$pci0" e1000e
+	is_bound "$pci0" "$EC_NIC"
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices="$pci0"
 	insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
 	ethercat device bind "${pci0#0000:}"
@@ -148,7 +148,7 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 }
 
 @test "the stock driver takes the card, and gives it back" {
-	driver "$pci0" e1000e
+	driver "$pci0" "$EC_NIC"
 	wait_for 60 test -e /sys/class/net/eth0
 	waits
 	driver "$pci0" ec_intel

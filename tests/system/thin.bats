@@ -47,7 +47,7 @@ teardown_file() { stop; }
 }
 
 @test "the device goes away and comes back" {
-	rmmod ec_sim
+	unplug
 	ethercat master | grep -q 'Waiting for device'
 	load_segment thin
 	wait_for 120 all_slaves_are PREOP 2
