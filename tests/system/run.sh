@@ -13,6 +13,8 @@
 # of tests/kcsan/exact-time.list are shown but do not count.
 # EC_NIC=e1000|e1000e|igb: the segment of helpers.bash is at a network card of that model with
 # its native driver, not at the virtual device
+# EC_IOMMU=1: this card is behind an IOMMU
+# EC_BINDS: how often native.bats binds the card, 100 if it is not set
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
 # EC_PLACES: folder with a file for each guest that may run at a time (one for each CPU)
 #
@@ -97,7 +99,7 @@ needed
 vm_options() {
 	local o
 
-	o=$(sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount)${EC_NIC:+ --nic $EC_NIC}
+	o=$(sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount)${EC_NIC:+ --nic $EC_NIC}${EC_IOMMU:+ --iommu}
 	case $kernel in
 	*-kcsan) echo "${o//--icount/} --smp 2 --timeout 1800" ;;
 	*)	echo "$o" ;;
@@ -110,7 +112,7 @@ run() {
 
 	read -ra options < <(vm_options "$f")
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
-		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
+		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_BINDS="${EC_BINDS:-}" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }
 

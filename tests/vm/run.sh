@@ -24,6 +24,9 @@ usage() {
 	  --icount           exact virtual time, one CPU (-icount shift=0,sleep=off)
 	  --nics             two e1000e joined by a wire (eth0 and eth1; modprobe e1000e)
 	  --nic MODEL        the same with e1000 or igb (a newer QEMU, kernels.sh qemu)
+	  --more-nics MODEL  two more, joined by another wire (52:54:00:ec:00:02 and 03)
+	  --iommu            all NICs behind an IOMMU, which stops DMA to memory of others;
+	                     e1000e and igb at ports of PCIe
 	  --monitor          QEMU's monitor in the guest: the virtio port "monitor" takes its
 	                     commands, for example set_link nic0 off
 	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
@@ -45,7 +48,7 @@ usage() {
 
 die() { echo "run.sh: $*" >&2; exit 125; }
 
-kernel=6.1-rt smp=2 mem=1024 icount=0 nic= monitor=0 timeout=300
+kernel=6.1-rt smp=2 mem=1024 icount=0 nic= more= iommu=0 monitor=0 timeout=300
 append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
@@ -58,6 +61,8 @@ while [ $# -gt 0 ]; do
 	--nics) nic=e1000e; shift ;;
 	--monitor) monitor=1; shift ;;
 	--nic) need "$@"; nic=$2; shift 2 ;;
+	--more-nics) need "$@"; more=$2; shift 2 ;;
+	--iommu) iommu=1; shift ;;
 	--rw) need "$@"; rw+=("$2"); shift 2 ;;
 	--timeout) need "$@"; timeout=$2; shift 2 ;;
 	--append) need "$@"; append="$append $2"; shift 2 ;;
@@ -76,11 +81,13 @@ done
 [[ $timeout =~ ^[0-9]+$ && $smp =~ ^[0-9]+$ && $mem =~ ^[0-9]+$ ]] ||
 	die "--timeout, --smp and --mem take a number"
 
-case $nic in
-''|e1000|e1000e) ;;
-igb)	PATH=$("$here/kernels.sh" qemu backports):$PATH || exit 125 ;;
-*)	die "--nic: e1000, e1000e or igb, not $nic" ;;
-esac
+for m in $nic $more; do
+	case $m in
+	e1000|e1000e) ;;
+	igb)	PATH=$("$here/kernels.sh" qemu backports):$PATH || exit 125 ;;
+	*)	die "--nic: e1000, e1000e or igb, not $m" ;;
+	esac
+done
 
 root=/ dirs=() busybox=
 arch=$("$here/kernels.sh" arch "$kernel") || exit 125
@@ -259,14 +266,28 @@ quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 	echo
 } >"$ctl/cmd"
 
-mac=,mac=52:54:00:ec:00:0
+# nics NUMBER MODEL SLOT: number NUMBER at SLOT and its neighbour, joined by a wire.
 # The virtual functions of an igb take the places behind it.
-if [ "$nic" ]; then
-	for n in 0 1; do
-		opts+=(-netdev "hubport,id=h$n,hubid=0"
-			-device "$nic,id=nic$n,addr=$(printf %x $((8 + 4 * n))),netdev=h$n$mac$n")
+nics() {
+	local i n place
+
+	for i in 0 1; do
+		n=$(($1 + i))
+		place=addr=$(printf %x $(($3 + 4 * i)))
+		if [ $iommu = 1 ] && [ "$2" != e1000 ]; then
+			opts+=(-device "pcie-root-port,id=p$n,chassis=$((n + 1)),$place")
+			place=bus=p$n
+		fi
+		opts+=(-netdev "hubport,id=h$n,hubid=$1"
+			-device "$2,id=nic$n,$place,netdev=h$n,mac=52:54:00:ec:00:0$n")
 	done
+}
+if [ $iommu = 1 ]; then
+	base+=(-machine q35 -device "intel-iommu,intremap=off,caching-mode=on")
+	append=" intel_iommu=on iommu.strict=1$append"
 fi
+[ -z "$nic" ] || nics 0 "$nic" 8
+[ -z "$more" ] || nics 2 "$more" 16
 
 if [ $monitor = 1 ]; then
 	opts+=(-chardev "socket,id=monitor,path=$tmp/monitor,server=on,wait=off" -mon chardev=monitor
