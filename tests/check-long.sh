@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
-# all of tests/system on all kernels, among them one that reports data races. The last line is
-# "N passed, N failed"; results with their date are in Documentation/testing.rst.
+# all of tests/system on all kernels, among them one that reports data races; with a native
+# network card of three models, also behind an IOMMU, the files that the card matters to. The
+# last line is "N passed, N failed"; results with their date are in Documentation/testing.rst.
 #
-# usage: check-long.sh [uml-debug|KERNEL...]
+# usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -14,16 +15,27 @@ passed=0 failed=0
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
+# native FILE...: with 1000 times bound and unbound
+native() {
+	local f files=()
+
+	for f; do files+=("tests/system/$f.bats"); done
+	EC_BINDS=1000 tests/system/run.sh "${files[@]}"
+}
+
 # run NAME
 run() {
 	case $1 in
+	nic-*) EC_NIC=${1#nic-} native thin demo faults kcycle api native ;;
+	iommu-*) EC_IOMMU=1 EC_NIC=${1#iommu-} native thin kcycle native iommu ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan}; do
+for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
+	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1

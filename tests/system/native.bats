@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics --monitor --timeout 900
+# vm: --icount --nics --monitor --timeout 3600
 # The native device at a network card; slaves at another one, joined by a wire.
 
 load helpers
