@@ -207,8 +207,8 @@ static void check_card(struct rt *r, const struct nic *n)
 	char fix[96];
 
 	if (!strcmp(n->driver, NIC_NATIVE)) {
-		rt_find(r, "card", RT_OK, NULL, "%s: %s with the native driver, no interrupt", n->by,
-			n->pci);
+		rt_find(r, "card", RT_OK, NULL, "%s: %s with the native driver, no interrupt",
+			n->by, n->pci);
 		return;
 	}
 	attr_path(fix, sizeof(fix), "ethercat device bind %s", n->name);

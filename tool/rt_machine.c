@@ -13,7 +13,7 @@
 
 #define CAP_IPC_LOCK	14
 #define CAP_SYS_NICE	23
-#define IDLE_US		20	/* a CPU that needs longer to wake up delays a cycle of 1 ms visibly */
+#define IDLE_US		20	/* to leave an idle state; more is visible in a cycle of 1 ms */
 #define PRIORITY	50	/* of a cycle that the kernel runs, without a setting */
 
 void rt_find(struct rt *r, const char *check, enum rt_level level, const char *fix,

@@ -200,7 +200,7 @@ all=19
 	[[ $output != *coalescing* ]]
 }
 
-@test "rtcheck says what it cannot read" {
+@test "rtcheck reports unreadable settings as unknown" {
 	rm -r "$FAKE_PROC" "$FAKE_SYS/devices/system" "$FAKE_SYS/class"
 	run ethercat rtcheck
 	echo "$output"
