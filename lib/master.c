@@ -272,8 +272,8 @@ int ecrt_master_deactivate(ec_master_t *master)
 /* cycle --------------------------------------------------------------------*/
 
 /*
- * A command of the cycle on the short way. -ENOSYS: by ioctl(), which returns the reason, too, when
- * an old module or a filter of system calls refuses the advice.
+ * A command of the cycle on the short way: 0, its error, or 1: give it by ioctl(). That has a place
+ * for both times, and says why when an old module or a filter of system calls refuses the advice.
  */
 static int advise(struct ec_master *m, int advice, const struct ec_ioc_send *send)
 {
@@ -281,11 +281,10 @@ static int advise(struct ec_master *m, int advice, const struct ec_ioc_send *sen
 
 	if (m->no_advice || (send->flags & EC_SEND_FLAG_SYNC_REF &&
 			     send->sync_time != send->app_time))
-		return -ENOSYS;
+		return 1;
 	err = posix_fadvise(m->fd, (off_t)send->app_time, (off_t)send->queued, advice);
-	if (err == EINVAL || err == ENOSYS)
-		m->no_advice = true;
-	return err == EINVAL || err == EPERM || err == EACCES ? -ENOSYS : -err;
+	m->no_advice = err == EINVAL;
+	return err && err != ENODEV && err != ENOENT ? 1 : -err;
 }
 
 static int send_next(struct ec_master *m)
@@ -293,7 +292,7 @@ static int send_next(struct ec_master *m)
 	struct ec_ioc_send *next = &m->cycle.next;
 	int ret = advise(m, EC_ADVICE_SEND | (int)next->flags, next);
 
-	return ret == -ENOSYS ? ec_command(m, EC_IOC_SEND, next) : ret;
+	return ret > 0 ? ec_command(m, EC_IOC_SEND, next) : ret;
 }
 
 int ecrt_master_send(ec_master_t *master)
@@ -325,7 +324,7 @@ int ecrt_master_receive(ec_master_t *master)
 	master->cycle.received |= master->cycle.sent;
 	master->cycle.sent = 0;
 	ret = advise(master, EC_ADVICE_RECEIVE, &none);
-	return ret == -ENOSYS ? ec_command(master, EC_IOC_RECEIVE, NULL) : ret;
+	return ret > 0 ? ec_command(master, EC_IOC_RECEIVE, NULL) : ret;
 }
 
 int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
