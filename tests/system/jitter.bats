@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# tests/bench/jitter.sh with the simulated segment: report, verdict, and nothing is left.
+
+load helpers
+
+setup() { report=$BATS_TEST_TMPDIR/report; }
+teardown() { stop; }
+
+jitter() {
+	run tests/bench/jitter.sh --out "$report" "$@"
+	echo "$output"
+}
+
+# no module, and no process of the load
+nothing_is_left() {
+	[ ! -e /sys/module/ec_master ]
+	[ ! -e /sys/module/ec_sim ]
+	[ -z "$(pgrep -f jitter-load)" ]
+}
+
+@test "jitter.sh passes and writes its report" {
+	jitter --time 1 --cpu 0 --limit 20000
+	[ "$status" -eq 0 ]
+	[ "$(head -n 1 "$report")" = "Verdict: passed" ]
+	for part in "worst case: " "remark: 1 s are too short" "remark: simulated segment" \
+		"remark: without load" "Kernel: Linux $(uname -r)" "device sim (sim), CPU 0" \
+		"Send deviation" "from \[us\]" "throttling" "^lost 0"; do
+		grep "$part" "$report"
+	done
+	nothing_is_left
+}
+
+@test "jitter.sh fails with a verdict when the limit is impossible" {
+	jitter --time 1 --limit 0
+	[ "$status" -eq 1 ]
+	[ "$(head -n 1 "$report")" = "Verdict: failed" ]
+	grep "failed: the worst case exceeds the limit" "$report"
+	nothing_is_left
+}
+
+@test "jitter.sh ends its load" {
+	jitter --time 1 --limit 20000 --load command "touch $BATS_TEST_TMPDIR/began; sleep 1000"
+	[ "$status" -eq 0 ]
+	[ -e "$BATS_TEST_TMPDIR/began" ]
+	grep "load command 'touch" "$report"
+	nothing_is_left
+}
+
+@test "jitter.sh refuses wrong arguments and loads nothing" {
+	while IFS='|' read -r message arguments; do
+		# shellcheck disable=SC2086
+		jitter $arguments
+		[ "$status" -eq 2 ]
+		[[ $output == *"$message"* ]]
+		[ ! -e "$report" ]
+	done <<-END
+		a number from 1|--time 0
+		a number from 50|--period x
+		a number from 0|--limit -1
+		none, cpu, memory|--load heavy
+		needs a command|--load command
+		no interface nix0|--device nix0
+		no PCI device|--device 0000:ff:1f.7
+		no interface has|--device 02:ff:ff:ff:ff:ff
+		no such CPU|--cpu 4000
+		needs an argument|--time
+		unknown option|--quick
+		are possible|--time 999999 --period 50
+	END
+	nothing_is_left
+}
+
+@test "jitter.sh refuses to run beside a loaded master" {
+	load_master
+	jitter --time 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"ec_master is loaded"* ]]
+	[ -e /sys/module/ec_master ]
+}
