@@ -7,7 +7,7 @@ setup() { report=$BATS_TEST_TMPDIR/report; }
 teardown() { stop; }
 
 jitter() {
-	run tests/bench/jitter.sh --out "$report" "$@"
+	run tests/bench/jitter.sh --out "$report" "$@" 3>&-
 	echo "$output"
 }
 
@@ -15,7 +15,7 @@ jitter() {
 nothing_is_left() {
 	[ ! -e /sys/module/ec_master ]
 	[ ! -e /sys/module/ec_sim ]
-	[ -z "$(pgrep -f jitter-load)" ]
+	[ -z "$(pgrep -f "jitter-load|sleep 98765")" ]
 }
 
 @test "jitter.sh passes and writes its report" {
@@ -39,11 +39,22 @@ nothing_is_left() {
 }
 
 @test "jitter.sh ends its load" {
-	jitter --time 1 --limit 20000 --load command "touch $BATS_TEST_TMPDIR/began; sleep 1000"
+	jitter --time 1 --limit 20000 --load command "touch $BATS_TEST_TMPDIR/began; sleep 98765; :"
 	[ "$status" -eq 0 ]
 	[ -e "$BATS_TEST_TMPDIR/began" ]
 	grep "load command 'touch" "$report"
 	nothing_is_left
+}
+
+@test "jitter.sh runs each load" {
+	local l
+
+	for l in cpu memory io net; do
+		jitter --time 1 --limit 1000000 --load $l
+		grep "load $l" "$report"
+		grep "^worst case" "$report" || grep "  worst case" "$report"
+		nothing_is_left
+	done
 }
 
 @test "jitter.sh refuses wrong arguments and loads nothing" {
