@@ -85,7 +85,8 @@ cycles=$((time * 1000000 / period))
 	refuse "--time $time with --period $period: $cycles cycles, 1 to 10000000 are possible"
 out=${out:-jitter-$(date +%Y%m%d-%H%M%S).txt}
 [ "$(id -u)" = 0 ] || stop "run it as root: it loads kernel modules"
-[ ! -e /sys/module/ec_master ] || stop "ec_master is loaded; stop its application and unload it first"
+[ ! -e /sys/module/ec_master ] ||
+	stop "ec_master is loaded; stop its application and unload it first"
 : >"$out" || stop "cannot write $out"
 
 if [ -z "${EC_BUILD:-}" ]; then
