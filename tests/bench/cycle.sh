@@ -225,7 +225,8 @@ floors() {
 
 	sleep=$((v[floor_sleep_own] + v[floor_sleep_rest] - 4 * v[baseline_per_ms]))
 	wake=$((v[floor_wake_own] + v[floor_wake_rest] - 4 * v[baseline_per_ms]))
-	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake; above it: application's cycle $(($1 - sleep)), kernel's cycle with a waiting application $(($2 - wake))"
+	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake"
+	echo "# above it: application's cycle $(($1 - sleep)), kernel's with a waiting application $(($2 - wake))"
 }
 
 # The same card without interrupts. What an application waits for is its own sleep or the
@@ -280,7 +281,8 @@ unit_costs() {
 			cycle + 15 * (frame + datagram) + 22000 * byte
 	}')
 	read -r byte datagram frame cycle fit <<<"$fit"
-	echo "# $device device: a byte costs $byte instructions (process data of 22 bytes a direction and slave), a datagram and its domain $datagram, a frame $frame, a cycle $cycle more"
+	echo "# $device device: a byte (process data, 22 a direction and slave) costs $byte instructions,"
+	echo "# a datagram and its domain $datagram, a frame $frame, a cycle $cycle more"
 	gate "$device device: 500 drives in 15 frames cost $c500 instructions of the calls, $(ratio "$c500" "$fit") of what these make; at most 1.05" \
 		"c500 > c100 && c500 * 100 <= fit * 105"
 }
