@@ -153,7 +153,7 @@ begin_load() {
 	for ((i = 0; i < $(nproc); i++)); do
 		case $load in
 		cpu)	background 'while :; do :; done' ;;
-		memory)	background 'while :; do dd if=/dev/zero of=/dev/null bs=64M count=100; done' ;;
+		memory)	background 'exec dd if=/dev/zero of=/dev/null bs=64M' ;;
 		io)	background "while :; do dd if=/dev/zero of=\$0$i bs=1M count=16 conv=fsync; done" ;;
 		esac
 	done
