@@ -221,7 +221,9 @@ static void start_anew(struct intel *n)
 	quiesce_locked(n);
 	ret = run(n);
 	if (ret)
-		pci_err(n->pdev, "does not start after a loss of the link (%pe)\n", ERR_PTR(ret));
+		pci_err(n->pdev,
+			"does not start after a loss of the link (%pe); unbind and bind it\n",
+			ERR_PTR(ret));
 }
 
 static void intel_look(void *priv)

@@ -373,9 +373,9 @@ enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
 	if (unlikely(side & EC_PACKED))
 		return ec_pack_match(s, src, data, len, got);
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
-	/* first: a frame of an earlier use must not hold the slot */
 	if (!s->numbered)
 		seq = READ_ONCE(slot->seq);
+	/* first: a frame of an earlier use must not hold the slot */
 	if (READ_ONCE(slot->seq) != seq) {
 		state = atomic_read(&slot->state);
 		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ? EC_MATCH_LATE :
