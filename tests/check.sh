@@ -13,6 +13,7 @@ export LC_ALL=C
 [ -z "${DATA:-}" ] || DATA=$(realpath -e -- "$DATA") || exit 1
 cd "$(dirname "$0")/.." || exit 1
 levels="
+build
 unit
 witness
 decoders
@@ -26,7 +27,6 @@ data
 arch
 kernels
 layers
-build
 pysoem
 kickcat
 ethercrab
@@ -36,7 +36,7 @@ demo
 bench
 "
 # These use one CPU, build in folders of their own and measure no time: side by side.
-side=" decoders uml lib tool bats fuzz data arch "
+side=" build unit witness decoders uml lib tool bats fuzz data arch "
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
