@@ -45,19 +45,26 @@ static __always_inline void ec_bytes_copy(u8 *to, const u8 *from, unsigned int l
 	}
 }
 
-/* @count values; the first and the last part of @part bytes of each may overlap. */
-static __always_inline void ec_bytes_parts(u8 *to, unsigned int to_stride, const u8 *from,
-					   unsigned int from_stride, unsigned int len,
-					   unsigned int count, unsigned int part)
+/* One word; a whole one, as the compiler keeps parts of a local array in memory. */
+static __always_inline void ec_bytes_word(u8 *to, const u8 *from, unsigned int at)
 {
-	const unsigned int at_last = len - part;
-	u64 first[2], last[2];
+	put_unaligned(get_unaligned((const u64 *)(from + at)), (u64 *)(to + at));
+}
+
+/* @count values of 2 to 4 @words; the last word of each may overlap those before. */
+static __always_inline void ec_bytes_words(u8 *to, unsigned int to_stride, const u8 *from,
+					   unsigned int from_stride, unsigned int len,
+					   unsigned int count, unsigned int words)
+{
+	const unsigned int at_last = len - 8;
 
 	for (; count; count--, to += to_stride, from += from_stride) {
-		__builtin_memcpy(first, from, part);
-		__builtin_memcpy(last, from + at_last, part);
-		__builtin_memcpy(to, first, part);
-		__builtin_memcpy(to + at_last, last, part);
+		ec_bytes_word(to, from, 0);
+		if (words > 2)
+			ec_bytes_word(to, from, 8);
+		if (words > 3)
+			ec_bytes_word(to, from, 16);
+		ec_bytes_word(to, from, at_last);
 	}
 }
 
@@ -76,10 +83,12 @@ static __always_inline void ec_bytes_run(u8 *to, unsigned int to_stride, const u
 					 unsigned int from_stride, unsigned int len,
 					 unsigned int count)
 {
-	if (len >= 16 && len <= 32)
-		ec_bytes_parts(to, to_stride, from, from_stride, len, count, 16);
+	if (len > 16 && len <= 24)
+		ec_bytes_words(to, to_stride, from, from_stride, len, count, 3);
 	else if (len >= 8 && len <= 16)
-		ec_bytes_parts(to, to_stride, from, from_stride, len, count, 8);
+		ec_bytes_words(to, to_stride, from, from_stride, len, count, 2);
+	else if (len > 24 && len <= 32)
+		ec_bytes_words(to, to_stride, from, from_stride, len, count, 4);
 	else
 		for (; count; count--, to += to_stride, from += from_stride)
 			ec_bytes_copy(to, from, len);

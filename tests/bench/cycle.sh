@@ -179,18 +179,19 @@ long_run() {
 }
 
 # all_work SLAVES: who runs the cycle, compared by all that a CPU executes for it, same
-# machine, same slaves, same period
+# machine, same slaves, same period. The kernel's cycle has one more thread to wake up, which
+# alone costs what the two floors of native_cost differ by.
 all_work() {
 	local own timer
 
 	work "" 4 "application's cycle"; own=$work
 	work kernel_ 4 "kernel's cycle, the application sleeps by itself"; timer=$work
 	work wait_ 4 "kernel's cycle, the application waits for it"
-	row "$timer" $((own * 115 / 100)) "all instructions of a cycle, the kernel runs it, the application sleeps: $1 drive(s)"
-	row "$work" $((own * 115 / 100)) "the same, the application waits"
-	gate "$1 slave(s): all work of a cycle of the kernel is $(ratio "$timer" "$own") of that of an application's, $(ratio "$work" "$own") when the application waits for it; at most 1.15" \
+	row "$timer" $((own * 120 / 100)) "all instructions of a cycle, the kernel runs it, the application sleeps: $1 drive(s)"
+	row "$work" $((own * 120 / 100)) "the same, the application waits"
+	gate "$1 slave(s): all work of a cycle of the kernel is $(ratio "$timer" "$own") of that of an application's, $(ratio "$work" "$own") when the application waits for it; at most 1.20" \
 		"$own > ${v[total_mean]} && $timer > ${v[kernel_total_mean]} &&
-		 $timer <= own * 115 / 100 && $work <= own * 115 / 100"
+		 $timer <= own * 120 / 100 && $work <= own * 120 / 100"
 }
 
 # The receive interrupt of eth1 is the simulator's: a delay keeps it out of the calls.
