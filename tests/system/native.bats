@@ -214,6 +214,22 @@ used_kib() {
 	demo_ends
 }
 
+@test "a suspend of the card is survived, idle and in OP" {
+	suspend="$EC_BUILD/mini/suspend/ec_suspend.ko"
+	insmod "$suspend" function="$pci0"
+	dmesg | grep -q "ec_intel $pci0: suspended (0), in D3"
+	wait_for 60 link_is DOWN
+	rmmod ec_suspend
+	wait_for 120 all_slaves_are PREOP 22
+	demo_runs
+	insmod "$suspend" function="$pci0"
+	wait_for 60 link_is DOWN
+	rmmod ec_suspend
+	wait_for 120 all_slaves_are OP 22
+	demo_ends
+	[ "$(dmesg | grep -c "ec_intel $pci0: resumed (0), in D0")" = 2 ]
+}
+
 # with an IOMMU, see iommu.bats; without one, this proves that dma.py would be noticed there
 @test "planted DMA changes memory of a program unless an IOMMU stops it" {
 	expected=changed
