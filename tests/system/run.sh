@@ -51,10 +51,10 @@ read -ra cross < <(tests/vm/kernels.sh cross "$kernel")
 # shellcheck disable=SC2086
 make -s -j2 mini ${cross[@]+"${cross[@]}"} $warn KDIR="$(tests/vm/kernels.sh kdir "$kernel")" \
 	MODDIR="$modules" MINIDIR="${modules%/*}/mini" >&2 || exit 1
-mkdir -p "${modules%/*}/mini/suspend"
-cp -u tests/system/suspend/* "${modules%/*}/mini/suspend"
-make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" ${cross[@]+"${cross[@]}"} CONFIG_DEBUG_INFO_BTF_MODULES= \
-	M="${modules%/*}/mini/suspend" modules >&2 || exit 1
+suspend=${modules%/*}/mini/suspend
+mkdir -p "$suspend" && cp -u tests/system/suspend/* "$suspend" &&
+make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" ${cross[@]+"${cross[@]}"} M="$suspend" \
+	CONFIG_DEBUG_INFO_BTF_MODULES= modules >&2 || exit 1
 
 # compiler NAME: for all programs
 compiler() { export CC=$1gcc CXX=$1g++ AR=$1ar; }

@@ -37,7 +37,8 @@ static int __init suspend_init(void)
 		return -ENODEV;
 	device_lock(dev);
 	pm = dev->bus->pm;
-	ret = run((const step[]){ pm->prepare, pm->suspend, pm->suspend_late, pm->suspend_noirq }, 4);
+	ret = run((const step[]){ pm->prepare, pm->suspend, pm->suspend_late,
+				  pm->suspend_noirq }, 4);
 	/* prepare() may answer that the function sleeps already, 1 */
 	if (!ret && to_pci_dev(dev)->current_state == PCI_D0)
 		ret = -EBUSY;
