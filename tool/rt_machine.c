@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "attr.h"
 #include "rt.h"
@@ -107,6 +108,52 @@ static void check_sysctl(struct rt *r, const char *check, const char *name, long
 		rt_find(r, check, RT_WARNING, fix, "kernel.%s is %s: %s", name, text, what);
 }
 
+/* lock checking has this file, and a kernel that is built with it has others of its kind */
+static void check_debug(struct rt *r)
+{
+	char path[512];
+
+	attr_path(path, sizeof(path), "%s/lockdep_stats", sys_proc());
+	if (access(path, F_OK))
+		rt_find(r, "debugging", RT_OK, NULL, "the kernel does not check its locks");
+	else
+		rt_find(r, "debugging", RT_ERROR, "boot a kernel without CONFIG_LOCKDEP",
+			"the kernel checks its locks: each takes many times longer");
+}
+
+/* pages that the kernel collects, or writes to a disk, while a program waits for them */
+static void check_pages(struct rt *r)
+{
+	static const char never[] = "echo never > /sys/kernel/mm/transparent_hugepage/enabled";
+	char dir[512], text[96];
+	FILE *f;
+	int c, lines = 0;
+
+	sys_path(dir, sizeof(dir), "kernel/mm/transparent_hugepage");
+	/* a kernel with PREEMPT_RT has none */
+	if (attr_read(dir, "enabled", text, sizeof(text)) && strstr(text, "[always]"))
+		rt_find(r, "huge pages", RT_WARNING, never,
+			"the kernel moves pages of any program to make huge ones");
+	else
+		rt_find(r, "huge pages", RT_OK, NULL, "none of programs that do not ask for them");
+	attr_path(dir, sizeof(dir), "%s/swaps", sys_proc());
+	f = fopen(dir, "r");
+	if (!f) {
+		/* a kernel without swap */
+		rt_find(r, "swap", RT_OK, NULL, "none");
+		return;
+	}
+	while ((c = getc(f)) != EOF)
+		lines += c == '\n';
+	fclose(f);
+	/* the first line is a title */
+	if (lines > 1)
+		rt_find(r, "swap", RT_WARNING, "swapoff -a, and mlockall() in the application",
+			"pages that the application has not locked may be on a disk");
+	else
+		rt_find(r, "swap", RT_OK, NULL, "none");
+}
+
 void rt_check_kernel(struct rt *r)
 {
 	check_preempt(r);
@@ -116,6 +163,8 @@ void rt_check_kernel(struct rt *r)
 	check_sysctl(r, "timers", "timer_migration", 0, "timers may expire on another CPU");
 	check_sysctl(r, "watchdog", "nmi_watchdog", 0,
 		     "a periodic interrupt that nothing can hold up");
+	check_debug(r);
+	check_pages(r);
 }
 
 static void check_isolation(struct rt *r, unsigned int online)

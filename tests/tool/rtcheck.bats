@@ -23,6 +23,8 @@ setup() {
 	put "$p/sys/kernel/sched_rt_runtime_us" -1
 	put "$p/sys/kernel/timer_migration" 0
 	put "$p/sys/kernel/nmi_watchdog" 0
+	put "$FAKE_SYS/kernel/mm/transparent_hugepage/enabled" "always [madvise] never"
+	put "$p/swaps" "Filename Type Size Used Priority"
 	put "$s/cpu/online" 0-3
 	put "$s/cpu/isolated" 3
 	put "$s/cpu/nohz_full" 2-3
@@ -67,7 +69,7 @@ wrong() {
 	grep -q "^$1 * $2 .*$3" <<<"$output"
 	[ -z "${4:-}" ] || grep -qF "set: $4" <<<"$output"
 }
-all=19
+all=22
 
 @test "rtcheck finds nothing on a computer with the right settings" {
 	run ethercat rtcheck
@@ -100,6 +102,22 @@ all=19
 @test "rtcheck finds the watchdog" {
 	put "$FAKE_PROC/sys/kernel/nmi_watchdog" 1
 	wrong warning watchdog "is 1" "sysctl -w kernel.nmi_watchdog=0"
+}
+
+@test "rtcheck finds a kernel that checks its locks" {
+	put "$FAKE_PROC/lockdep_stats" ""
+	wrong error debugging "checks its locks" "boot a kernel without CONFIG_LOCKDEP"
+}
+
+@test "rtcheck finds huge pages for all programs" {
+	put "$FAKE_SYS/kernel/mm/transparent_hugepage/enabled" "[always] madvise never"
+	wrong warning "huge pages" "moves pages" \
+		"echo never > /sys/kernel/mm/transparent_hugepage/enabled"
+}
+
+@test "rtcheck finds swap" {
+	echo "/dev/sda2 partition 999420 0 -2" >>"$FAKE_PROC/swaps"
+	wrong warning swap "may be on a disk" "swapoff -a"
 }
 
 @test "rtcheck finds a reserved CPU with a tick" {
@@ -213,7 +231,7 @@ all=19
 
 @test "rtcheck: JSON" {
 	put "$(cpu smt/active)" 1
-	out rtcheck -j | json 'len(d["checks"]) == 19 and d["warnings"] == 1 and d["errors"] == 0'
+	out rtcheck -j | json 'len(d["checks"]) == 22 and d["warnings"] == 1 and d["errors"] == 0'
 	out rtcheck -j | json 'd["checks"][0] == {"level": "ok", "check": "kernel",
 		"found": "6.1.0-rt, PREEMPT_RT", "fix": ""}'
 	out rtcheck -j | json '[c["fix"] for c in d["checks"] if c["level"] != "ok"] == ["kernel parameter nosmt"]'
