@@ -211,8 +211,8 @@ generic_cost() {
 		all_work $n
 		reliable "generic device"
 		# The mean has the cycles in it that send a frame of the monitor, too.
-		limit=$((n == 1 ? 5300 : 11900))
-		median=$((n == 1 ? 5200 : 11700))
+		limit=$((n == 1 ? 5300 : 11300))
+		median=$((n == 1 ? 5200 : 11100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, mean: $n drive(s)"
 		row "${v[total_median]}" $median "the same, median"
 		gate "$n slave(s): ${v[total_mean]} instructions of the calls on the mean, at most $limit; median ${v[total_median]}, at most $median" \
@@ -246,11 +246,11 @@ native_cost() {
 		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
 		work wait_ 4 "kernel's cycle, the application waits for it"
 		floors "$own" "$work"
-		limit=$((n == 1 ? 3100 : 9100))
+		limit=$((n == 1 ? 3100 : 8500))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
 			"${v[total_mean]} <= limit"
-		limit=$((n == 1 ? 15000 : 23500))
+		limit=$((n == 1 ? 15000 : 22900))
 		row "$own" $limit "all instructions of a cycle of an application, native device: $n drive(s)"
 		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
 			"$own <= limit"
