@@ -29,7 +29,7 @@ for group; do
 	build)	p="gcc g++ make libc6-dev pkg-config bc bison flex libelf-dev pahole
 		   sparse kmod cpio xz-utils zstd git" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils zstd bats tcpdump
-		   iproute2 ethtool tshark procps psmisc python3 xxd" ;;
+		   iproute2 ethtool tshark procps psmisc python3 xxd udev" ;;
 	capture) p="tcpdump iproute2 tshark" ;;
 	uml)	p="linux-source-6.1 xz-utils python3" ;;
 	python)	p="python3-venv" ;;

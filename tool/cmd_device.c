@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "boot.h"
 #include "nic.h"
 #include "out.h"
 #include "sys.h"
@@ -104,21 +105,85 @@ static int unbind(const struct tool *t, const struct nic *n)
 	return 0;
 }
 
+static int bind_at_boot(const struct tool *t, const struct nic *n)
+{
+	/* all or nothing: no card that has the driver until the next start only */
+	if (*n->pci && !*n->why_not && boot_check(n->pci))
+		return 1;
+	return bind(t, n) || boot_write(n);
+}
+
+/* the driver and the rule, or what there is of them */
+static int unbind_at_boot(const struct tool *t, const struct nic *n)
+{
+	bool set = n->boot == BOOT_SET || n->boot == BOOT_OTHER;
+
+	if ((set || n->boot == BOOT_FOREIGN) && boot_check(n->pci))
+		return 1;
+	if (!set && !is_native(n) && !n->kept)
+		return fail("%s has no native driver and is not bound at boot",
+			    *n->name ? n->name : n->pci);
+	if ((is_native(n) || n->kept) && unbind(t, n))
+		return 1;
+	return set && boot_remove(n->pci);
+}
+
+static int unbind_only(const struct tool *t, const struct nic *n)
+{
+	int ret = unbind(t, n);
+
+	if (n->boot == BOOT_SET && (!ret || !is_native(n)))
+		note("%s is bound again when the computer starts; to change that: 'ethercat device unbind %s --boot'",
+		     n->pci, n->pci);
+	return ret;
+}
+
+/* the address of a card that is absent and has a rule */
+static bool absent(const char *name, struct nic *n)
+{
+	unsigned int domain, bus, slot, function;
+	int end = 0;
+
+	if (sscanf(name, "%x:%x:%x.%x%n", &domain, &bus, &slot, &function, &end) != 4) {
+		domain = 0;
+		if (sscanf(name, "%x:%x.%x%n", &bus, &slot, &function, &end) != 3)
+			return false;
+	}
+	if (name[end])
+		return false;
+	memset(n, 0, sizeof(*n));
+	snprintf(n->pci, sizeof(n->pci), "%04x:%02x:%02x.%x", domain, bus, slot, function);
+	n->boot = boot_state(n);
+	return n->boot != BOOT_NONE;
+}
+
+static int run_one(const struct tool *t, bool on, struct nics *all, const char *name)
+{
+	struct nic *n = nic_lookup(all, name), left;
+
+	if (!n && !on && t->boot && absent(name, &left))
+		return boot_check(left.pci) || boot_remove(left.pci);
+	if (!n)
+		n = nic_find(all, name);
+	if (!n)
+		return 1;
+	if (t->boot)
+		return on ? bind_at_boot(t, n) : unbind_at_boot(t, n);
+	return on ? bind(t, n) : unbind_only(t, n);
+}
+
 static int run(struct tool *t, int argc, char **argv)
 {
 	bool on = !strcmp(argv[0], "bind");
 	struct nics all;
-	struct nic *n;
 	int ret;
 
 	(void)argc;
 	if (!on && strcmp(argv[0], "unbind"))
 		return usage_error("'%s': use bind or unbind", argv[0]);
 	ret = nics_read(&all);
-	if (!ret) {
-		n = nic_find(&all, argv[1]);
-		ret = !n ? 1 : on ? bind(t, n) : unbind(t, n);
-	}
+	if (!ret)
+		ret = run_one(t, on, &all, argv[1]);
 	nics_free(&all);
 	return ret;
 }
@@ -127,13 +192,15 @@ const struct cmd cmd_device = {
 	.name = "device",
 	.run = run,
 	.args = "bind|unbind DEVICE",
-	.opts = "f",
+	.opts = "fb",
 	.summary = "Give a network card its native driver, or take it away",
 	.help = "DEVICE is an interface, a MAC address or a PCI address as 'ethercat devices' lists them.\n"
 		"After bind the interface is absent: a master gets the card by its MAC or PCI address\n"
 		"(main_devices=). After unbind the driver of the system has it again.\n"
-		"A card in use is refused; --force takes it nevertheless. Needs root; lasts until the\n"
-		"computer restarts.\n",
+		"A card in use is refused; --force takes it nevertheless. Needs root.\n"
+		"The change lasts until the computer restarts. With --boot, bind writes a udev rule into\n"
+		"/etc/udev/rules.d that binds the card at each start, also if it is in use then; unbind\n"
+		"removes the rule. For a card that is absent DEVICE is its PCI address.\n",
 	.json = "none",
 	.min_args = 2,
 	.max_args = 2,

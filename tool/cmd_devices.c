@@ -2,18 +2,22 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "boot.h"
 #include "nic.h"
 #include "out.h"
 #include "tool.h"
 
 static const char *native(const struct nic *n, char *buf, size_t size)
 {
+	const char *boot = n->boot == BOOT_SET ? ", at boot" : "";
+
 	if (!strcmp(n->driver, NIC_NATIVE))
-		return "in use";
-	if (*n->why_not)
-		snprintf(buf, size, "no: %s", n->why_not);
+		snprintf(buf, size, "in use%s", boot);
+	else if (*n->why_not)
+		snprintf(buf, size, "no: %s%s", n->why_not, boot);
 	else
-		snprintf(buf, size, "yes: %s%s", n->chip, n->tested ? "" : ", never tested");
+		snprintf(buf, size, "yes: %s%s%s", n->chip, n->tested ? "" : ", never tested",
+			 boot);
 	return buf;
 }
 
@@ -52,6 +56,7 @@ static void show(const struct nic *n)
 	out_str("chip", n->chip, NULL);
 	out_bool("tested", n->tested, NULL);
 	out_str("why_not", n->why_not, NULL);
+	out_bool("boot", n->boot == BOOT_SET, NULL);
 	out_end();
 }
 
@@ -68,6 +73,8 @@ static int run(struct tool *t, int argc, char **argv)
 	for (size_t i = 0; !ret && i < all.n; i++)
 		show(&all.v[i]);
 	out_end();
+	if (!ret)
+		boot_note_absent(&all);
 	nics_free(&all);
 	return ret;
 }
@@ -80,8 +87,8 @@ const struct cmd cmd_devices = {
 	.summary = "List the network cards and their users",
 	.help = "NATIVE says whether ec_intel can drive the card ('ethercat device bind'), or why not;\n"
 		"the generic device takes any of them. Cards that no test has run with ec_intel are\n"
-		"marked as never tested. The link is unknown while the interface is down. Needs no\n"
-		"master.\n",
+		"marked as never tested. 'at boot': 'ethercat device bind --boot' was given. The\n"
+		"link is unknown while the interface is down. Needs no master.\n",
 	.json = "devices[]: interface, pci, mac, driver, link_up (null: unknown), speed_mbit_s,\n"
-		"used_by, native, chip, tested, why_not",
+		"used_by, native, chip, tested, why_not, boot",
 };

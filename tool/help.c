@@ -11,8 +11,9 @@ static void print_opt(FILE *f, const struct opt *o)
 {
 	char text[64];
 
-	if (o->letter == 'w')
-		snprintf(text, sizeof(text), "    --%s %s", o->name, o->arg);
+	if (!opt_is_short(o))
+		snprintf(text, sizeof(text), "    --%s%s%s", o->name, o->arg ? " " : "",
+			 o->arg ? o->arg : "");
 	else
 		snprintf(text, sizeof(text), "-%c, --%s%s%s", o->letter, o->name,
 			 o->arg ? " " : "", o->arg ? o->arg : "");
@@ -78,7 +79,7 @@ static void json_opts(const struct cmd *c)
 			continue;
 		out_object(NULL);
 		out_str("long", o->name, NULL);
-		if (o->letter != 'w')
+		if (opt_is_short(o))
 			out_str("short", letter, NULL);
 		if (o->arg)
 			out_str("argument", o->arg, NULL);
@@ -137,11 +138,11 @@ static void roff(const char *s)
 static void roff_opt(const struct opt *o)
 {
 	puts(".TP");
-	if (o->letter == 'w')
+	if (!opt_is_short(o))
 		printf(".B \\-\\-%s", o->name);
 	else
 		printf(".BR \\-%c \", \" \\-\\-", o->letter);
-	if (o->letter != 'w')
+	if (opt_is_short(o))
 		roff(o->name);
 	if (o->arg)
 		printf(" \" %s\"", o->arg);

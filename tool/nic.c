@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "attr.h"
+#include "boot.h"
 #include "dev.h"
 #include "nic.h"
 #include "sys.h"
@@ -63,18 +64,20 @@ static struct nic *add(struct nics *all)
 /* chip and native driver of a PCI function */
 static void fill_pci(struct nic *n)
 {
-	unsigned int vendor, device, i;
+	unsigned int i;
 	char dir[512], override[32];
 
 	attr_path(dir, sizeof(dir), "%s/bus/pci/devices/%s", sys_fs(), n->pci);
-	vendor = (unsigned int)attr_number(dir, "vendor");
-	device = (unsigned int)attr_number(dir, "device");
+	n->vendor = (unsigned int)attr_number(dir, "vendor");
+	n->device = (unsigned int)attr_number(dir, "device");
+	n->boot = boot_state(n);
 	target(dir, "driver", n->driver, sizeof(n->driver));
 	n->kept = !*n->driver && attr_read(dir, "driver_override", override, sizeof(override)) &&
 		  !strcmp(override, NIC_NATIVE);
-	attr_path(n->why_not, sizeof(n->why_not), "no native driver for %04x:%04x", vendor, device);
-	for (i = 0; vendor == INTEL && i < sizeof(chips) / sizeof(*chips); i++) {
-		if (chips[i].device != device)
+	attr_path(n->why_not, sizeof(n->why_not), "no native driver for %04x:%04x", n->vendor,
+		  n->device);
+	for (i = 0; n->vendor == INTEL && i < sizeof(chips) / sizeof(*chips); i++) {
+		if (chips[i].device != n->device)
 			continue;
 		attr_path(n->chip, sizeof(n->chip), "%s", chips[i].name);
 		n->tested = chips[i].tested;
@@ -269,7 +272,7 @@ static bool is_pci(const char *name, const char *pci)
 			(!strncmp(pci, "0000:", 5) && !strcasecmp(name, pci + 5)));
 }
 
-struct nic *nic_find(struct nics *all, const char *name)
+struct nic *nic_lookup(struct nics *all, const char *name)
 {
 	for (size_t i = 0; i < all->n; i++) {
 		struct nic *n = &all->v[i];
@@ -278,9 +281,17 @@ struct nic *nic_find(struct nics *all, const char *name)
 		    (*n->mac && !strcasecmp(name, n->mac)))
 			return n;
 	}
-	fail("there is no network card %s; give an interface, MAC or PCI address of 'ethercat devices'",
-	     name);
 	return NULL;
+}
+
+struct nic *nic_find(struct nics *all, const char *name)
+{
+	struct nic *n = nic_lookup(all, name);
+
+	if (!n)
+		fail("there is no network card %s; give an interface, MAC or PCI address of 'ethercat devices'",
+		     name);
+	return n;
 }
 
 int nic_write(const char *path, const char *text)

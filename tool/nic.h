@@ -25,6 +25,9 @@
  * @link_known: @link_up is known
  * @link_up: the cable is plugged in
  * @speed: Mbit/s, 0 when unknown
+ * @vendor: of the PCI function
+ * @device: of the PCI function
+ * @boot: enum boot
  */
 struct nic {
 	char name[32];
@@ -40,6 +43,9 @@ struct nic {
 	bool link_known;
 	bool link_up;
 	unsigned int speed;
+	unsigned int vendor;
+	unsigned int device;
+	unsigned int boot;
 };
 
 struct nics {
@@ -51,6 +57,8 @@ int nics_read(struct nics *all);
 void nics_free(struct nics *all);
 /* by PCI address, interface or MAC address; NULL after a message */
 struct nic *nic_find(struct nics *all, const char *name);
+/* the same without a message */
+struct nic *nic_lookup(struct nics *all, const char *name);
 
 /* 0 or -errno */
 int nic_write(const char *path, const char *text);

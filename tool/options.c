@@ -19,6 +19,7 @@ const struct opt opts[] = {
 	{ 'r', "reset", NULL, "clear after reading" },
 	{ 'q', "quiet", NULL, "less output" },
 	{ 'v', "verbose", NULL, "more output" },
+	{ 'b', "boot", NULL, "for each start of the computer" },
 	{ 'w', "wait", "[SECONDS]", "wait for the end, at most SECONDS" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
@@ -38,11 +39,18 @@ static const struct option longs[] = {
 	{ "reset", no_argument, NULL, 'r' },
 	{ "quiet", no_argument, NULL, 'q' },
 	{ "verbose", no_argument, NULL, 'v' },
+	{ "boot", no_argument, NULL, 'b' },
 	{ "wait", optional_argument, NULL, 'w' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
 };
+
+/* else the letter is only for the tables */
+bool opt_is_short(const struct opt *o)
+{
+	return !strchr("bw", o->letter);
+}
 
 static int parse_list(struct list *l, char letter, const char *text)
 {
@@ -76,7 +84,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrf", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfb", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -122,6 +130,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'v':
 		t->verbosity = 1;
+		return 0;
+	case 'b':
+		t->boot = true;
 		return 0;
 	case 'j':
 		t->json = true;

@@ -36,6 +36,11 @@ const char *sys_proc(void)
 	return "/proc";
 }
 
+const char *sys_etc(void)
+{
+	return "/etc";
+}
+
 int sys_ethtool(const char *interface, void *question)
 {
 	struct ifreq r = { .ifr_data = question };

@@ -7,6 +7,7 @@ int sys_ioctl(int fd, unsigned long request, void *arg);
 void sys_close(int fd);
 const char *sys_fs(void);	/* where sysfs is */
 const char *sys_proc(void);	/* where procfs is */
+const char *sys_etc(void);	/* where the configuration of the system is */
 /* a question about a network interface, struct ethtool_*; 0 or -errno */
 int sys_ethtool(const char *interface, void *question);
 

@@ -32,6 +32,7 @@
  * @reset: -r
  * @json: -j
  * @verbosity: -1 after -q, 1 after -v
+ * @boot: --boot
  * @wait: --wait was given
  * @wait_s: its argument in seconds, negative: none
  */
@@ -48,6 +49,7 @@ struct tool {
 	bool reset;
 	bool json;
 	int verbosity;
+	bool boot;
 	bool wait;
 	double wait_s;
 };
@@ -57,7 +59,7 @@ struct tool {
  * @name: as typed
  * @run: does it; returns the exit code
  * @args: synopsis of the arguments
- * @opts: letters of the options it looks at; 'w' is --wait, -h and -j go unsaid
+ * @opts: letters of the options it looks at; 'w' is --wait, 'b' --boot, -h and -j go unsaid
  * @summary: one line
  * @help: paragraphs, may be NULL
  * @json: keys of the JSON output
@@ -91,6 +93,8 @@ struct opt {
 };
 
 extern const struct opt opts[];			/* ends with letter 0 */
+
+bool opt_is_short(const struct opt *o);
 
 int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
 		  char *seen, size_t seen_size);

@@ -16,6 +16,7 @@ teardown_file() { stop; }
 teardown() {
 	rmmod ec_mini 2>/dev/null || true
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	[ -z "${udevd:-}" ] || kill "$udevd" 2>/dev/null || true
 	[ ! -e "/sys/bus/pci/devices/$pci0" ] || is_bound "$pci0" ec_intel ||
 		driver "$pci0" ec_intel
 }
@@ -121,6 +122,88 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 	[[ "$(ethercat master)" == *"Main: 52:54:00:ec:00:00 (attached)"* ]]
 	load_segment bench
 	wait_for 120 all_slaves_are PREOP 22
+}
+
+# udev as after the start of a computer, with our modules installed
+start_udev() {
+	local dir
+
+	dir=/lib/modules/$(uname -r)/updates
+	mkdir -p "$dir" /etc/modprobe.d
+	cp "$EC_BUILD"/modules/master/ec_master.ko "$EC_BUILD"/modules/devices/intel/ec_intel.ko "$dir"
+	depmod
+	echo "options ec_master main_devices=$pci0" >/etc/modprobe.d/ethercat.conf
+	# the names of the interfaces stay
+	ln -s /dev/null /etc/udev/rules.d/80-net-setup-link.rules
+	export SYSTEMD_IGNORE_CHROOT=1	# the guest's root is one
+	/lib/systemd/systemd-udevd >"$BATS_TEST_TMPDIR/udevd" 2>&1 3>&- &
+	udevd=$!
+	wait_for 60 udevadm control --ping
+}
+
+# what the start of a computer does with the cards
+start_event() {
+	# udev notices a changed rule up to 3 s later
+	udevadm control --reload
+	udevadm trigger --action=add "/sys/bus/pci/devices/$pci0" "/sys/bus/pci/devices/$pci1"
+	udevadm settle --timeout=120
+}
+
+has_no_driver() { [ ! -e "/sys/bus/pci/devices/$1/driver" ]; }
+override() { cat "/sys/bus/pci/devices/$1/driver_override"; }
+
+@test "udev gives card bound with --boot to ec_intel at each start, and no other" {
+	local rule=/etc/udev/rules.d/59-ethercat-$pci0.rules
+
+	ethercat device bind --boot "$pci0"
+	[ "$(listed boot "$pci0") $(listed boot "$pci1")" = "true false" ]
+	run ethercat device unbind --force "$pci0"
+	echo "$output"
+	[[ $output == *"$pci0 is bound again when the computer starts"* ]]
+	is_bound "$pci0" "$EC_NIC"
+	start_udev
+	# the driver of the system was faster, as one of the initramfs is; ec_intel is loaded
+	start_event
+	is_bound "$pci0" ec_intel
+	is_bound "$pci1" "$EC_NIC"
+	[ "$(override "$pci1")" = "(null)" ]
+	wait_for 120 all_slaves_are PREOP 22
+	# again, and ec_intel is not loaded
+	ethercat device unbind --force "$pci0"
+	rmmod ec_sim ec_intel
+	rmmod ec_master
+	start_event
+	is_bound "$pci0" ec_intel
+	# no driver is loaded: udev loads both, the one of the system for the other card
+	rmmod ec_intel
+	rmmod ec_master "$EC_NIC"
+	echo >"/sys/bus/pci/devices/$pci0/driver_override"
+	has_no_driver "$pci0"
+	has_no_driver "$pci1"
+	start_event
+	is_bound "$pci0" ec_intel
+	is_bound "$pci1" "$EC_NIC"
+	# without the other card it was the first
+	ip link set eth0 name eth1
+	load_segment bench
+	wait_for 120 all_slaves_are PREOP 22
+	# another card at this address
+	ethercat device unbind --force "$pci0"
+	sed -i 's/ATTR{device}=="0x..../ATTR{device}=="0xffff/' "$rule"
+	start_event
+	is_bound "$pci0" "$EC_NIC"
+	run ethercat devices
+	[[ $output == *"the card that is bound at boot is absent at $pci0"* ]]
+	# and the way back
+	ethercat device bind --boot "$pci0"
+	ethercat device unbind --boot --force "$pci0"
+	[ ! -e "$rule" ]
+	start_event
+	is_bound "$pci0" "$EC_NIC"
+	kill $udevd
+	cat "$BATS_TEST_TMPDIR/udevd"
+	run grep -E "$pci0|59-ethercat" "$BATS_TEST_TMPDIR/udevd"
+	[ "$status" = 1 ]
 }
 
 @test "no user but root changes the driver" {

@@ -84,7 +84,7 @@ needed() {
 
 	for p in bash sh env cat ls rm mkdir cp date seq sleep timeout wc head tail od sort diff cut tr \
 		grep sed awk xargs dmesg insmod rmmod modprobe lsmod kmod ps pgrep killall setpriv ip \
-		tcpdump jq python3 xxd tee chrt prlimit; do
+		tcpdump jq python3 xxd tee chrt prlimit depmod udevadm; do
 		p=$(PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin command -v "$p") &&
 			readlink -f "$p"
 	done >"$logs/files"

@@ -34,7 +34,10 @@ interface() {
 }
 
 setup() {
-	export FAKE_SYS=$BATS_TEST_TMPDIR/sys
+	export FAKE_SYS=$BATS_TEST_TMPDIR/sys FAKE_ETC=$BATS_TEST_TMPDIR/etc
+	rules=$FAKE_ETC/udev/rules.d
+	rule=$rules/59-ethercat-0000:01:00.0.rules
+	mkdir -p "$rules"
 	mkdir -p "$FAKE_SYS/class/net/lo" "$FAKE_SYS/bus/pci/devices" "$FAKE_SYS/bus/pci/drivers"
 	echo 772 >"$FAKE_SYS/class/net/lo/type"
 	: >"$FAKE_SYS/bus/pci/drivers_probe"
@@ -69,7 +72,7 @@ native_driver() {
 	out devices -j | json 'd["devices"][0] == {
 		"interface": "enp1s0", "pci": "0000:01:00.0", "mac": "02:00:00:00:00:01",
 		"driver": "e1000e", "link_up": None, "speed_mbit_s": 0, "used_by": "",
-		"native": True, "chip": "82574L", "tested": True, "why_not": ""}'
+		"native": True, "chip": "82574L", "tested": True, "why_not": "", "boot": False}'
 }
 
 @test "devices without a network card prints nothing" {
@@ -111,6 +114,8 @@ refused() {
 	[[ $output == *"$1"* ]]
 	[ -z "$(probed)" ]
 	[ -z "$(override 0000:01:00.0)" ]
+	[ ! -e "$rule" ]
+	[ -z "$(find "$FAKE_ETC" -name '*.ethercat-*')" ]
 }
 
 @test "bind refuses cards without native driver, with the reason" {
@@ -154,4 +159,217 @@ refused() {
 	ln -s "$FAKE_SYS/bus/pci/drivers/ec_intel" "$FAKE_SYS/bus/pci/devices/0000:05:00.0/driver"
 	out devices -j | json '[(x["native"], x["driver"]) for x in d["devices"]
 		if x["pci"] == "0000:05:00.0"] == [(True, "ec_intel")]'
+}
+
+# the driver takes the card
+accepts() {
+	native_driver
+	ln -s "$FAKE_SYS" "$FAKE_SYS/bus/pci/drivers/ec_intel/0000:01:00.0"
+}
+
+# what the kernel has done after bind: the card has the native driver
+is_bound() {
+	ln -sfn "$FAKE_SYS/bus/pci/drivers/ec_intel" "$FAKE_SYS/bus/pci/devices/0000:01:00.0/driver"
+	: >"$FAKE_SYS/bus/pci/drivers/ec_intel/unbind"
+	rm -rf "$FAKE_SYS/class/net/enp1s0" "$FAKE_SYS/devices/pci0000:00/0000:01:00.0/net"
+	: >"$FAKE_SYS/bus/pci/drivers_probe"
+}
+
+is_silent() {
+	run ethercat device "$@"
+	echo "$output"
+	[ "$status" -eq 0 ]
+	[ -z "$output" ]
+}
+
+@test "bind --boot writes udev rule of this card" {
+	accepts
+	umask 077
+	is_silent bind --boot enp1s0
+	[ "$(override 0000:01:00.0)" = ec_intel ]
+	diff -u "$HERE/golden/boot.rules.txt" "$rule"
+	[ "$(stat -c %a "$rule")" = 644 ]
+	[ "$(ls -A "$rules")" = 59-ethercat-0000:01:00.0.rules ]
+}
+
+@test "bind --boot keeps card that is bound already, and replaces its rule" {
+	accepts
+	is_bound
+	echo "# Written by 'ethercat device bind --boot' of another version" >"$rule"
+	run ethercat device bind --boot 01:00.0
+	echo "$output"
+	[ "$status" -eq 0 ]
+	[ "$output" = "0000:01:00.0 has its native driver already" ]
+	[ -z "$(probed)" ]
+	diff -u "$HERE/golden/boot.rules.txt" "$rule"
+	[ "$(ls -A "$rules")" = 59-ethercat-0000:01:00.0.rules ]
+}
+
+@test "bind --boot creates missing folder of rules, but not that of udev" {
+	accepts
+	rmdir "$rules"
+	is_silent bind --boot enp1s0
+	diff -u "$HERE/golden/boot.rules.txt" "$rule"
+	: >"$FAKE_SYS/bus/pci/drivers_probe"
+	: >"$FAKE_SYS/bus/pci/devices/0000:01:00.0/driver_override"
+	rm -r "$FAKE_ETC/udev"
+	refused "$FAKE_ETC/udev is missing: binding a card at boot needs udev" bind --boot enp1s0
+}
+
+@test "bind --boot neither binds nor writes where it must not" {
+	refused "modprobe ec_intel" bind --boot enp1s0
+	native_driver
+	refused "eth1 has no native driver" bind --boot eth1
+	refused "usb0 has no native driver: not a PCI device" bind --boot usb0
+	refused "there is no network card 0000:09:00.0" bind --boot 0000:09:00.0
+	[ -z "$(ls -A "$rules")" ]
+	run ethercat device bind --boot enp1s0
+	[ "$output" = "ethercat device: ec_intel refused 0000:01:00.0; see 'dmesg'" ]
+	[ -z "$(ls -A "$rules")" ]
+}
+
+@test "rule that another program wrote stays" {
+	accepts
+	for how in file link; do
+		case $how in
+		file)	echo 'KERNEL=="eth0"' >"$rule" ;;
+		link)	ln -sfn /dev/null "$rule" ;;
+		esac
+		for what in bind unbind; do
+			run ethercat device $what --boot enp1s0
+			echo "$output"
+			[ "$status" -eq 1 ]
+			[ "$output" = "ethercat device: $rule was not written by this tool; move it away first" ]
+		done
+		[ -z "$(probed)" ]
+		[ -z "$(override 0000:01:00.0)" ]
+		[ $how = link ] || [ "$(cat "$rule")" = 'KERNEL=="eth0"' ]
+		[ $how = file ] || [ "$(readlink "$rule")" = /dev/null ]
+	done
+	out devices -j | json '[x["boot"] for x in d["devices"]] == [False] * 6'
+}
+
+# in_read_only_etc COMMAND...
+in_read_only_etc() {
+	unshare -rm sh -c 'mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" || exit 9
+		shift; "$@"' sh "$FAKE_ETC" "$HERE/build/fake/ethercat" "$@"
+}
+
+@test "read-only /etc refuses both directions, nothing is changed" {
+	accepts
+	export ASAN_OPTIONS=detect_leaks=0
+	run in_read_only_etc device bind --boot enp1s0
+	echo "$output"
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat device: cannot write to $rules: Read-only file system" ]
+	[ -z "$(probed)" ]
+	[ -z "$(override 0000:01:00.0)" ]
+	[ -z "$(ls -A "$rules")" ]
+	is_silent bind --boot enp1s0
+	is_bound
+	run in_read_only_etc device unbind --boot 01:00.0
+	echo "$output"
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat device: cannot write to $rules: Read-only file system" ]
+	[ -z "$(probed)" ]
+	[ -e "$rule" ]
+}
+
+@test "unbind --boot gives card back and removes its rule" {
+	accepts
+	is_silent bind --boot enp1s0
+	is_bound
+	is_silent unbind --boot 01:00.0
+	[ "$(probed)" = 0000:01:00.0 ]
+	[ "$(cat "$FAKE_SYS/bus/pci/drivers/ec_intel/unbind")" = 0000:01:00.0 ]
+	[ -z "$(ls -A "$rules")" ]
+}
+
+@test "unbind --boot removes rule of card with its stock driver, of another card, of absent card" {
+	accepts
+	is_silent bind --boot enp1s0
+	: >"$FAKE_SYS/bus/pci/drivers_probe"
+	is_silent unbind --boot enp1s0
+	[ -z "$(ls -A "$rules")" ]
+	[ -z "$(probed)" ]
+	run ethercat device unbind --boot enp1s0
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat device: enp1s0 has no native driver and is not bound at boot" ]
+	sed 's/0x10d3/0x1533/' "$HERE/golden/boot.rules.txt" >"$rule"
+	is_silent unbind --boot 01:00.0
+	[ -z "$(ls -A "$rules")" ]
+	for name in 0000:09:0a.0 0000:09:0A.0 09:0a.0; do
+		sed 's/0000:01:00.0/0000:09:0a.0/' "$HERE/golden/boot.rules.txt" \
+			>"$rules/59-ethercat-0000:09:0a.0.rules"
+		is_silent unbind --boot $name
+		[ -z "$(ls -A "$rules")" ]
+	done
+	: >"$FAKE_SYS/bus/pci/devices/0000:01:00.0/driver_override"
+	refused "there is no network card 0000:09:0a.0" unbind --boot 0000:09:0a.0
+	refused "there is no network card eth9" unbind --boot eth9
+	refused "there is no network card 9:a.0/../x" unbind --boot 9:a.0/../x
+}
+
+@test "unbind --boot leaves card in use and its rule" {
+	accepts
+	is_silent bind --boot enp1s0
+	# Master0 of fake_dev.c has this one
+	mv "$rule" "$rules/59-ethercat-0000:06:00.0.rules"
+	sed -i 's/0000:01:00.0/0000:06:00.0/' "$rules/59-ethercat-0000:06:00.0.rules"
+	ln -sfn "$FAKE_SYS/bus/pci/drivers/ec_intel" "$FAKE_SYS/bus/pci/devices/0000:06:00.0/driver"
+	run ethercat device unbind --boot 0000:06:00.0
+	echo "$output"
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat device: 0000:06:00.0 is used by Master0 main; use --force to take it" ]
+	[ -e "$rules/59-ethercat-0000:06:00.0.rules" ]
+}
+
+@test "unbind without --boot names command that changes next start" {
+	accepts
+	is_silent bind --boot enp1s0
+	is_bound
+	run ethercat device unbind 01:00.0
+	echo "$output"
+	[ "$status" -eq 0 ]
+	[ "$output" = "0000:01:00.0 is bound again when the computer starts; to change that: 'ethercat device unbind 0000:01:00.0 --boot'" ]
+	[ -e "$rule" ]
+}
+
+@test "devices shows which cards are bound at boot, and rules without card" {
+	accepts
+	is_silent bind --boot enp1s0
+	sed 's/0000:01:00.0/0000:09:00.0/' "$rule" >"$rules/59-ethercat-0000:09:00.0.rules"
+	# another card at this address
+	sed 's/0000:01:00.0/0000:04:00.0/' "$rule" >"$rules/59-ethercat-0000:04:00.0.rules"
+	out devices -j | json '[x["pci"] for x in d["devices"] if x["boot"]] == ["0000:01:00.0"]'
+	run out devices
+	[[ ${lines[1]} == *"  yes: 82574L, at boot" ]]
+	[[ ${lines[4]} == *"  yes: I210, never tested" ]]
+	is_bound
+	run out devices
+	[[ ${lines[1]} == *"  in use, at boot" ]]
+	run err devices
+	echo "$output"
+	[ "${#lines[@]}" -eq 2 ]
+	[ "${lines[0]}" = "the card that is bound at boot is absent at 0000:04:00.0; to forget it: 'ethercat device unbind 0000:04:00.0 --boot'" ]
+	[[ ${lines[1]} == *" absent at 0000:09:00.0; "* ]]
+}
+
+@test "completion of device" {
+	mkdir -p "$BATS_TEST_TMPDIR/bin"
+	ln -s "$HERE/build/fake/ethercat" "$BATS_TEST_TMPDIR/bin/ethercat"
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH
+	. "$HERE/../../tool/completion/ethercat.bash"
+	complete_line() {
+		COMP_WORDS=("$@")
+		COMP_CWORD=$(($# - 1))
+		unset -f ethercat
+		_ethercat
+		echo "${COMPREPLY[*]}"
+	}
+	[ "$(complete_line ethercat device "")" = "bind unbind" ]
+	[ "$(complete_line ethercat device bind en)" = enp1s0 ]
+	[ "$(complete_line ethercat device unbind 0000:04)" = 0000:04:00.0 ]
+	[[ " $(complete_line ethercat device bind eth1 --b) " == *" --boot "* ]]
+	[ "$(complete_line ethercat device bind eth1 "")" = "" ]
 }

@@ -806,6 +806,14 @@ const char *sys_proc(void)
 	return dir ? dir : "/nonexistent";
 }
 
+/* FAKE_ETC: the same for /etc */
+const char *sys_etc(void)
+{
+	const char *dir = getenv("FAKE_ETC");
+
+	return dir ? dir : "/nonexistent";
+}
+
 /* FAKE_ETHTOOL: microseconds, EEE, pause; "-" for a driver without settings */
 int sys_ethtool(const char *interface, void *question)
 {

@@ -30,6 +30,10 @@ _ethercat_values()
 		ethercat help 2>/dev/null |
 			awk '/^Options/ { exit } /^  [a-z]/ { print $1 }'
 		;;
+	device)
+		ethercat devices 2>/dev/null |
+			awk 'NR > 1 { for (i = 1; i < 3; i++) if ($i != "-") print $i }'
+		;;
 	option)
 		ethercat help ${2:+"$2"} 2>/dev/null |
 			grep -oE '(^|[ ,])--?[a-z][a-z-]*' | tr -d ' ,'
@@ -76,6 +80,12 @@ _ethercat()
 			graph)	w="DC CRC" ;;
 			crc)	w="reset" ;;
 			debug)	w="0 1 2" ;;
+			device)
+				case $prev in
+				bind|unbind)	w=$(_ethercat_values device) ;;
+				device)		w="bind unbind" ;;
+				*)		w= ;;
+				esac ;;
 			help)	w="$(_ethercat_values command) types" ;;
 			reg_write)
 				COMPREPLY=($(compgen -f -- "$cur"))
