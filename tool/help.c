@@ -219,5 +219,6 @@ void help_roff(void)
 	     "runtime), \"message\", \"errno\", \"errno_text\", \"reason\", \"abort_code\",\n"
 	     "\"abort_text\"}}.\n"
 	     ".SH EXIT STATUS\n0: success; 1: failure.\n"
-	     ".SH FILES\n.I /dev/EtherCAT*\n.SH SEE ALSO\n.BR dot (1)");
+	     ".SH FILES\n.I /dev/EtherCAT*\n.br\n"
+	     ".I /etc/udev/rules.d/59\\-ethercat\\-*.rules\n.SH SEE ALSO\n.BR dot (1)");
 }
