@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
-# all of tests/system on all kernels, among them one that reports data races; with a native
-# network card of three models, also behind an IOMMU, the files that the card matters to. The
-# last line is "N passed, N failed"; results with their date are in Documentation/testing.rst.
+# all of tests/system on all kernels, among them one that reports data races and one that reports
+# wrong use of memory, locks and DMA; with a native network card of three models, also behind an
+# IOMMU, the files that the card matters to. The last line is "N passed, N failed"; results with
+# their date are in Documentation/testing.rst.
 #
 # usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|KERNEL...]
 
@@ -34,7 +35,7 @@ run() {
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
+for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan 6.1-kasan \
 	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb}; do
 	echo "=== $k"
 	began=$SECONDS

@@ -10,7 +10,8 @@
 #
 # EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set. With 6.1-kcsan each guest has
 # two CPUs that run at a time and real time, and a data race in a module fails the file; cases
-# of tests/kcsan/exact-time.list are shown but do not count.
+# of tests/kcsan/exact-time.list are shown but do not count. With 6.1-kasan a wrong access to
+# memory and wrong use of locks, timers or DMA fails the file.
 # EC_NIC=e1000|e1000e|igb: the segment of helpers.bash is at a network card of that model with
 # its native driver, not at the virtual device
 # EC_IOMMU=1: this card is behind an IOMMU
@@ -26,6 +27,8 @@ kernel=${EC_KERNEL:-6.1-rt}
 modules=$PWD/build/system-$kernel/modules
 export EC_BUILD=$PWD/build/system-$kernel${EC_PROGRAMS:+-$EC_PROGRAMS}
 passed=0 failed=0
+mem=1024
+[[ $kernel != *-kasan ]] || mem=2048	# freed memory is kept back
 # Time of an --icount guest leaps while it waits for the host: for each file that is
 # opened there, also a cached one. What the tests load and run becomes the guest's own
 # before they begin; to change a time of a file copies it. Programs also run as nobody, who
@@ -38,6 +41,9 @@ preload='xargs -d "\n" touch -c -a <"$2"
 	rc=$?
 	kcsan=/sys/kernel/debug/kcsan
 	[ ! -e $kcsan ] || sed -n "s/^setup_watchpoints: /# KCSAN: accesses watched: /p" $kcsan
+	# after a report, or when a table of it is full, lockdep finds nothing any more
+	! grep -s "debug_locks: *0$" /proc/lockdep_stats ||
+		{ echo "not ok - lockdep is off"; rc=1; }
 	exit $rc'
 
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
@@ -106,6 +112,7 @@ vm_options() {
 	o=$(sed -n 's/^# vm: *//p' "$1" | grep . || echo --icount)${EC_NIC:+ --nic $EC_NIC}${EC_IOMMU:+ --iommu}
 	case $kernel in
 	*-kcsan) echo "${o//--icount/} --smp 2 --timeout 1800" ;;
+	*-kasan) echo "$o --mem $mem --timeout 3600" ;;
 	*)	echo "$o" ;;
 	esac
 }
@@ -158,8 +165,8 @@ report() {
 if [ -z "${EC_PLACES:-}" ]; then
 	EC_PLACES=$logs/places
 	mkdir "$EC_PLACES"
-	# a guest of 1 GB, and QEMU
-	awk -v cpus="$(nproc)" '/^MemAvailable:/ { n = int($2 / 1.5e6) }
+	# a guest, and QEMU
+	awk -v cpus="$(nproc)" -v kb=$((mem * 1000 + 500000)) '/^MemAvailable:/ { n = int($2 / kb) }
 		END { print n < 1 ? 1 : n < cpus ? n : cpus }' /proc/meminfo |
 		xargs seq | sed "s,^,$EC_PLACES/," | xargs touch
 fi
@@ -186,36 +193,58 @@ all() (
 	"$@"
 )
 
-# detector: a race planted in a module of its own fails a guest, the same accesses marked do not
+# planted FOLDER MODULE ARGUMENT PATTERN TEXT: the module of tests/FOLDER, loaded with ARGUMENT,
+# fails a guest with a report that matches PATTERN; with an empty one the guest has no report
+planted() {
+	local rc=0 out=$logs/planted
+
+	all tests/vm/run.sh --kernel "$kernel" --smp 2 --mem "$mem" -- \
+		sh -c 'insmod "$1" "$2" && sleep 5 && rmmod "$1"' \
+		sh "$EC_BUILD/$1/$2.ko" "$3" >"$out" 2>&1 </dev/null || rc=$?
+	if [ -z "$4" ] && [ $rc = 0 ]; then
+		echo "ok $5"
+	elif [ "$4" ] && [ $rc = 70 ] && grep -qE "$4" "$out"; then
+		echo "ok $5"
+	else
+		echo "not ok $5: $3 ended with $rc"
+		tail -n 40 "$out"
+	fi
+}
+
+# detector FOLDER MODULE: errors planted in a module fail a guest, each in a guest of its own
+# since lockdep reports once; expects ARGUMENT|PATTERN|TEXT
 detector() {
-	local rc kdir out=$logs/race
+	local kdir what pattern text
 
 	kdir=$(tests/vm/kernels.sh kdir "$kernel")
-	mkdir -p "$EC_BUILD/race"
-	cp -u tests/kcsan/Kbuild tests/kcsan/ec_race.c "$EC_BUILD/race/"
-	make -s -C "$kdir" M="$EC_BUILD/race" modules >"$out" 2>&1 || { cat "$out"; return 1; }
-	echo '# detector of data races'
-	for marked in 0 1; do
-		rc=0
-		all tests/vm/run.sh --kernel "$kernel" --smp 2 -- \
-			sh -c 'insmod "$1" marked="$2" && sleep 5 && rmmod ec_race' \
-			sh "$EC_BUILD/race/ec_race.ko" $marked >"$out" 2>&1 || rc=$?
-		case $marked:$rc:$(grep -c 'KCSAN: data-race in ec_race_.* \[ec_race\]' "$out") in
-		0:70:0)	echo 'not ok the report of a race names no function of the module'
-			cat "$out" ;;
-		0:70:*)	echo 'ok a planted race is reported' ;;
-		1:0:0)	echo 'ok the same accesses without a race are not' ;;
-		*)	echo "not ok marked=$marked ended with $rc"; tail -n 40 "$out" ;;
-		esac
-	done
+	mkdir -p "$EC_BUILD/$1"
+	cp -u "tests/$1"/{Kbuild,"$2.c"} "$EC_BUILD/$1/"
+	make -s -C "$kdir" M="$EC_BUILD/$1" modules >"$logs/planted" 2>&1 ||
+		{ echo "not ok $2 does not build"; cat "$logs/planted"; return 1; }
+	echo "# detectors of $kernel"
+	while IFS=: read -r what pattern text; do planted "$1" "$2" "$what" "$pattern" "$text"; done
 }
 
 case $kernel in
-*-kcsan) detector >"$logs/detector" 2>&1
+*-kcsan) detector kcsan ec_race <<-'END' ;;
+	marked=0:KCSAN. data-race in ec_race_.* .ec_race.:a planted race is reported
+	marked=1::the same accesses without a race are not
+	END
+*-kasan) detector kasan ec_wrong <<-'END' ;;
+	what=freed:KASAN. .*use-after-free in ec_wrong_freed:a read of freed memory is reported
+	what=bounds:KASAN. .*out-of-bounds in ec_wrong_bounds:a read behind the end is reported
+	what=nesting:BUG. Invalid wait context:a spinlock inside a raw one is reported
+	what=order:possible circular locking:locks in two orders are reported
+	what=sleep:BUG. sleeping function:sleep with a spinlock is reported
+	what=timer:ODEBUG. free active:a timer freed while it runs is reported
+	what=dma:DMA-API. .*different size:wrong use of DMA is reported
+	what=none::a module without an error is not reported
+	END
+esac >"$logs/detector" 2>&1
+if [ -s "$logs/detector" ]; then
 	cat "$logs/detector"
 	passed=$(grep -c '^ok' "$logs/detector") failed=$(grep -c '^not ok' "$logs/detector")
-	[ $((passed + failed)) = 2 ] || failed=$((failed + 1)) ;;
-esac
+fi
 
 side=() alone=()
 for f in ${*:-tests/system/*.bats}; do

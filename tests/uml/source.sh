@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# Unpacks the kernel source for all kernels that the tests build (UML, KCSAN), once, with a
+# Unpacks the kernel source for all kernels that the tests build (UML, KCSAN, KASAN), once, with a
 # driver folder for the sources of this clone. Prints its path.
 #
 #   source.sh [--preempt] [--path]

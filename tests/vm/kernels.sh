@@ -24,7 +24,7 @@ usage() {
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
 	          6.1-armhf (headers only)    cache: $cache
-	          6.1-kcsan (built here from Debian's source, see kcsan.sh)
+	          6.1-kcsan 6.1-kasan (built here from Debian's source, see detector.sh)
 	END
 	exit 2
 }
@@ -51,7 +51,7 @@ flavour_of() {	# flavour_of FLAVOUR: sets base, arch, name
 	*-armhf) name=armmp ;;
 	*-arm64|*-s390x) name=$arch ;;
 	*-rt)	arch=amd64 name=rt-amd64 ;;
-	*-kcsan) arch=amd64 name= ;;	# not a package
+	*-kcsan|*-kasan) arch=amd64 name= ;;	# not a package
 	*)	arch=amd64 name=amd64 ;;
 	esac
 }
@@ -164,7 +164,7 @@ depends() {	# depends PACKAGE REGEX: the names it depends on that match
 
 check_flavour() {
 	case ${1:-} in
-	6.1|6.1-rt|6.1-kcsan|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
+	6.1|6.1-rt|6.1-kcsan|6.1-kasan|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
 	'') usage ;;
 	*) die "unknown flavour '$1' (see kernels.sh --help)" ;;
 	esac
@@ -174,7 +174,7 @@ check_flavour() {
 # so a cache that was moved is not usable.
 stamp() {
 	case $1 in
-	*-kcsan) echo "$layout $cache $("$here/kcsan.sh" --key)" ;;
+	*-kcsan|*-kasan) echo "$layout $cache $("$here/detector.sh" "$1" --key)" ;;
 	*)	echo "$layout $cache" ;;
 	esac
 }
@@ -335,8 +335,8 @@ fetch() {
 	flock 9		# a second caller waits and then finds it done
 	rm -rf "$cache"/kernels/.tmp.*	# left by a run that was killed
 	case $1 in
-	*-kcsan) cached "$1" || {
-			EC_CACHE=$cache "$here/kcsan.sh" "$cache/kernels/$1" 9>&-
+	*-kcsan|*-kasan) cached "$1" || {
+			EC_CACHE=$cache "$here/detector.sh" "$1" "$cache/kernels/$1" 9>&-
 			stamp "$1" >"$cache/kernels/$1/.complete"
 		} ;;
 	*)	cached "$1" || unpack "$1" ;;
@@ -369,7 +369,7 @@ fetch)	for fl; do fetch "$fl"; done ;;
 drop)	for fl; do rm -rf "${cache:?}/kernels/$fl"; done ;;
 kdir)	fetch "$1"
 	case $1 in
-	*-kcsan) echo "$cache/kernels/$1/build" ;;
+	*-kcsan|*-kasan) echo "$cache/kernels/$1/build" ;;
 	*)	release=$(cat "$cache/kernels/$1/.release")
 		echo "$cache/kernels/$1/usr/src/linux-headers-$release" ;;
 	esac ;;

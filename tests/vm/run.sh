@@ -15,7 +15,7 @@ export EC_CACHE=$cache
 usage() {
 	cat >&2 <<-'END'
 	usage: run.sh [options] [--] COMMAND [ARG...]
-	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.1-kcsan, 6.12, 6.12-rt;
+	  --kernel FLAVOUR   6.1, 6.1-rt (default), 6.1-kcsan, 6.1-kasan, 6.12, 6.12-rt;
 	                     6.1-i386, 6.1-arm64, 6.1-s390x with programs of that
 	                     architecture (tests/vm/kernels.sh root) and from the host the
 	                     current folder's repository only
@@ -354,14 +354,17 @@ if [ $allow_oops = 0 ]; then
 	# Only what came after the command's start; the firmware and the CPU model
 	# are not under test.
 	faults=$(awk 'on; /ec-vm: the command starts/ { on = 1 }' "$log" |
-		grep -E 'BUG:|WARNING:|Oops|general protection|INFO: task|scheduling while atomic|possible recursive locking|refcount_t:|KASAN|UBSAN:|kernel BUG at|invalid opcode:|detected stall|self-detected stall|unregister_netdevice: waiting' || true)
+		grep -E 'BUG:|WARNING:|Oops|general protection|INFO: task|scheduling while atomic|possible recursive locking|refcount_t:|KASAN|UBSAN:|kernel BUG at|invalid opcode:|detected stall|self-detected stall|unregister_netdevice: waiting|ODEBUG:|DMA-API:' || true)
 	if [ -n "$faults" ]; then
 		echo "run.sh: KERNEL FAULT (the command's status was $rc), see --dmesg FILE for all:" >&2
 		printf '%s\n' "$faults" >&2
-		# of KCSAN each race once, in full
-		awk '/BUG: KCSAN: / { title = $0; sub(/.*BUG: /, "", title); p = !seen[title]++ }
+		# each report of KCSAN, KASAN and lockdep once, in full
+		awk '/BUG: K[CA]SAN: |WARNING: (possible|inconsistent)|BUG: Invalid wait/ {
+				title = $0; sub(/^\[[^]]*\] /, "", title)
+				p = !seen[title]++; end = /K[CA]SAN/ ? "====" : "</TASK>"
+			}
 			p { print "# " $0 }
-			/====/ { p = 0 }' "$log" >&2
+			$0 ~ end { p = 0 }' "$log" >&2
 		exit 70
 	fi
 fi
