@@ -57,8 +57,8 @@ enum boot boot_state(const struct nic *n)
 	if (!*n->pci)
 		return BOOT_NONE;
 	rule_path(path, sizeof(path), n->pci);
-	/* a link is not ours */
-	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+	/* a link is not ours, and a pipe must not hold us up */
+	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ENOENT || errno == ENOTDIR ? BOOT_NONE : BOOT_FOREIGN;
 	size = read(fd, text, sizeof(text) - 1);

@@ -270,17 +270,7 @@ for o in d["options"]:
 }
 
 @test "completion gives live values" {
-	mkdir -p "$BATS_TEST_TMPDIR/bin"
-	ln -s "$HERE/build/fake/ethercat" "$BATS_TEST_TMPDIR/bin/ethercat"
-	PATH=$BATS_TEST_TMPDIR/bin:$PATH
-	. "$HERE/../../tool/completion/ethercat.bash"
-	complete_line() {
-		COMP_WORDS=("$@")
-		COMP_CWORD=$(($# - 1))
-		unset -f ethercat
-		_ethercat
-		echo "${COMPREPLY[*]}"
-	}
+	completion_of_fake
 	[ "$(complete_line ethercat sl)" = "slaves" ]
 	[ "$(complete_line ethercat upload -p "")" = "0 1 2" ]
 	[ "$(complete_line ethercat slaves --alias "")" = "1001" ]

@@ -45,3 +45,19 @@ d = json.load(sys.stdin)
 assert eval(sys.argv[1]), d
 ' "$1"
 }
+
+# what the completion offers: complete_line WORD..., the last one incomplete
+completion_of_fake() {
+	mkdir -p "$BATS_TEST_TMPDIR/bin"
+	ln -s "$HERE/build/fake/ethercat" "$BATS_TEST_TMPDIR/bin/ethercat"
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH
+	. "$HERE/../../tool/completion/ethercat.bash"
+}
+
+complete_line() {
+	COMP_WORDS=("$@")
+	COMP_CWORD=$(($# - 1))
+	unset -f ethercat
+	_ethercat
+	echo "${COMPREPLY[*]}"
+}

@@ -230,21 +230,24 @@ is_silent() {
 
 @test "rule that another program wrote stays" {
 	accepts
-	for how in file link; do
+	for how in file link pipe; do
+		rm -f "$rule"
 		case $how in
 		file)	echo 'KERNEL=="eth0"' >"$rule" ;;
-		link)	ln -sfn /dev/null "$rule" ;;
+		link)	ln -s /dev/null "$rule" ;;
+		pipe)	mkfifo "$rule" ;;
 		esac
 		for what in bind unbind; do
-			run ethercat device $what --boot enp1s0
+			run timeout 60 "$HERE/build/fake/ethercat" device $what --boot enp1s0
 			echo "$output"
 			[ "$status" -eq 1 ]
 			[ "$output" = "ethercat device: $rule was not written by this tool; move it away first" ]
 		done
 		[ -z "$(probed)" ]
 		[ -z "$(override 0000:01:00.0)" ]
-		[ $how = link ] || [ "$(cat "$rule")" = 'KERNEL=="eth0"' ]
-		[ $how = file ] || [ "$(readlink "$rule")" = /dev/null ]
+		[ $how != file ] || [ "$(cat "$rule")" = 'KERNEL=="eth0"' ]
+		[ $how != link ] || [ "$(readlink "$rule")" = /dev/null ]
+		[ $how != pipe ] || [ -p "$rule" ]
 	done
 	out devices -j | json '[x["boot"] for x in d["devices"]] == [False] * 6'
 }
@@ -356,17 +359,7 @@ in_read_only_etc() {
 }
 
 @test "completion of device" {
-	mkdir -p "$BATS_TEST_TMPDIR/bin"
-	ln -s "$HERE/build/fake/ethercat" "$BATS_TEST_TMPDIR/bin/ethercat"
-	PATH=$BATS_TEST_TMPDIR/bin:$PATH
-	. "$HERE/../../tool/completion/ethercat.bash"
-	complete_line() {
-		COMP_WORDS=("$@")
-		COMP_CWORD=$(($# - 1))
-		unset -f ethercat
-		_ethercat
-		echo "${COMPREPLY[*]}"
-	}
+	completion_of_fake
 	[ "$(complete_line ethercat device "")" = "bind unbind" ]
 	[ "$(complete_line ethercat device bind en)" = enp1s0 ]
 	[ "$(complete_line ethercat device unbind 0000:04)" = 0000:04:00.0 ]

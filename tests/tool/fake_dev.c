@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Takes the place of tool/sys.c: a master with an EK1100, an EL2008 with alias
+ * Takes the place of tool/sys.c, with fake_sys.c: a master with an EK1100, an EL2008 with alias
  * 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is going on:
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
@@ -12,7 +12,6 @@
  */
 #include <errno.h>
 #include <fcntl.h>
-#include <linux/ethtool.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -788,51 +787,4 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		errno = ENOTTY;
 		return -1;
 	}
-}
-
-/* FAKE_SYS: a folder in the place of /sys */
-const char *sys_fs(void)
-{
-	const char *dir = getenv("FAKE_SYS");
-
-	return dir ? dir : "/nonexistent";
-}
-
-/* FAKE_PROC: the same for /proc */
-const char *sys_proc(void)
-{
-	const char *dir = getenv("FAKE_PROC");
-
-	return dir ? dir : "/nonexistent";
-}
-
-/* FAKE_ETC: the same for /etc */
-const char *sys_etc(void)
-{
-	const char *dir = getenv("FAKE_ETC");
-
-	return dir ? dir : "/nonexistent";
-}
-
-/* FAKE_ETHTOOL: microseconds, EEE, pause; "-" for a driver without settings */
-int sys_ethtool(const char *interface, void *question)
-{
-	const char *text = getenv("FAKE_ETHTOOL");
-	unsigned int us = 0, eee = 0, pause = 0;
-	__u32 cmd;
-
-	memcpy(&cmd, question, sizeof(cmd));
-	if (!text || strcmp(interface, "eth0"))
-		return -ENODEV;
-	if (sscanf(text, "%u %u %u", &us, &eee, &pause) != 3)
-		return -EOPNOTSUPP;
-	if (cmd == ETHTOOL_GCOALESCE)
-		((struct ethtool_coalesce *)question)->rx_coalesce_usecs = us;
-	else if (cmd == ETHTOOL_GEEE)
-		((struct ethtool_eee *)question)->eee_enabled = eee;
-	else if (cmd == ETHTOOL_GPAUSEPARAM)
-		((struct ethtool_pauseparam *)question)->rx_pause = pause;
-	else
-		return -EINVAL;
-	return 0;
 }
