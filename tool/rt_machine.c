@@ -108,7 +108,7 @@ static void check_sysctl(struct rt *r, const char *check, const char *name, long
 		rt_find(r, check, RT_WARNING, fix, "kernel.%s is %s: %s", name, text, what);
 }
 
-/* lock checking has this file, and a kernel that is built with it has others of its kind */
+/* other debug options leave no trace that every user may see */
 static void check_debug(struct rt *r)
 {
 	char path[512];
@@ -121,32 +121,33 @@ static void check_debug(struct rt *r)
 			"the kernel checks its locks: each takes many times longer");
 }
 
-/* pages that the kernel collects, or writes to a disk, while a program waits for them */
-static void check_pages(struct rt *r)
+/* a kernel with PREEMPT_RT has none */
+static void check_huge_pages(struct rt *r)
 {
 	static const char never[] = "echo never > /sys/kernel/mm/transparent_hugepage/enabled";
 	char dir[512], text[96];
-	FILE *f;
-	int c, lines = 0;
 
 	sys_path(dir, sizeof(dir), "kernel/mm/transparent_hugepage");
-	/* a kernel with PREEMPT_RT has none */
 	if (attr_read(dir, "enabled", text, sizeof(text)) && strstr(text, "[always]"))
 		rt_find(r, "huge pages", RT_WARNING, never,
 			"the kernel moves pages of any program to make huge ones");
 	else
 		rt_find(r, "huge pages", RT_OK, NULL, "none of programs that do not ask for them");
-	attr_path(dir, sizeof(dir), "%s/swaps", sys_proc());
-	f = fopen(dir, "r");
-	if (!f) {
-		/* a kernel without swap */
-		rt_find(r, "swap", RT_OK, NULL, "none");
-		return;
-	}
-	while ((c = getc(f)) != EOF)
-		lines += c == '\n';
-	fclose(f);
-	/* the first line is a title */
+}
+
+/* a kernel without swap has no such file; the first line is a title */
+static void check_swap(struct rt *r)
+{
+	char path[512], line[512];
+	unsigned int lines = 0;
+	FILE *f;
+
+	attr_path(path, sizeof(path), "%s/swaps", sys_proc());
+	f = fopen(path, "r");
+	while (f && fgets(line, sizeof(line), f))
+		lines++;
+	if (f)
+		fclose(f);
 	if (lines > 1)
 		rt_find(r, "swap", RT_WARNING, "swapoff -a, and mlockall() in the application",
 			"pages that the application has not locked may be on a disk");
@@ -164,7 +165,8 @@ void rt_check_kernel(struct rt *r)
 	check_sysctl(r, "watchdog", "nmi_watchdog", 0,
 		     "a periodic interrupt that nothing can hold up");
 	check_debug(r);
-	check_pages(r);
+	check_huge_pages(r);
+	check_swap(r);
 }
 
 static void check_isolation(struct rt *r, unsigned int online)

@@ -212,7 +212,7 @@ planted() {
 }
 
 # detector FOLDER MODULE: errors planted in a module fail a guest, each in a guest of its own
-# since lockdep reports once; expects ARGUMENT|PATTERN|TEXT
+# since lockdep reports once; expects lines ARGUMENT:PATTERN:TEXT
 detector() {
 	local kdir what pattern text
 

@@ -39,7 +39,7 @@ static int __init suspend_init(void)
 	pm = dev->bus->pm;
 	ret = run((const step[]){ pm->prepare, pm->suspend, pm->suspend_late,
 				  pm->suspend_noirq }, 4);
-	/* prepare() may answer that the function sleeps already, 1 */
+	/* 1 of prepare(): leave it as it is, which would test nothing */
 	if (!ret && to_pci_dev(dev)->current_state == PCI_D0)
 		ret = -EBUSY;
 	device_unlock(dev);
