@@ -35,8 +35,13 @@ static int __init suspend_init(void)
 	dev = bus_find_device_by_name(&pci_bus_type, NULL, function);
 	if (!dev)
 		return -ENODEV;
-	device_lock(dev);
 	pm = dev->bus->pm;
+	if (!pm) {
+		pr_err("ec_suspend: this kernel has no CONFIG_PM_SLEEP\n");
+		put_device(dev);
+		return -EOPNOTSUPP;
+	}
+	device_lock(dev);
 	ret = run((const step[]){ pm->prepare, pm->suspend, pm->suspend_late,
 				  pm->suspend_noirq }, 4);
 	/* 1 of prepare(): leave it as it is, which would test nothing */
