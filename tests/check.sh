@@ -60,9 +60,11 @@ count() {
 	[ "$2" != 0 ] || [ "${p:-0}" != 0 ] || failed=$((failed + 1))
 }
 
-# failures OUTPUT: the failed cases of a level, each with what it said
+# failures OUTPUT: the failed cases of a level, each with what it said: 12 lines, or 40 of comment
 failures() {
-	grep -E -A 12 '^[[:space:]]*(not ok|FAILED:|demo: FAILED)' "$1" | head -n 120
+	awk '/^[ \t]*(not ok|FAILED:|demo: FAILED)/ { n = 0; max = 40; print; next }
+		max == 40 && !/^#/ { max = 12 }
+		n++ < max' "$1" | head -n 200
 }
 
 level_unit() { make -s -C tests/unit; }

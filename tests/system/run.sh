@@ -153,8 +153,9 @@ report() {
 	# an oops, a data race, a hang, a crash of the guest
 	if [ "$rc" -ge 70 ] || { [ "$rc" != 0 ] && [ "$n" = 0 ]; } ||
 	   ! grep -qE '^(ok|# not counted:) ' "$out"; then
-		tail -n 40 "$out"
+		# behind it, where tests/check.sh looks for the cause
 		echo "not ok $f ended with $rc"
+		tail -n 40 "$out" | sed 's/^\(# \)\?/# /'
 		n=$((n + 1))
 	fi
 	passed=$((passed + p)) failed=$((failed + n))

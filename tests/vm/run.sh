@@ -299,30 +299,44 @@ fi
 # norandmaps: QEMU translates a program once, not once for each process
 start=$(date +%s%N)
 mkfifo "$tmp/out"
-# shellcheck disable=SC2086
-timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd" \
-	-serial stdio -device virtio-serial -chardev "file,id=out,path=$tmp/out" \
-	-device virtserialport,chardev=out -virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
-	-virtfs "local,path=$root,mount_tag=host,security_model=none,readonly=on,multidevs=remap" \
-	${opts[@]+"${opts[@]}"} \
-	-append "console=$console quiet panic=-1 log_buf_len=4M mitigations=off norandmaps audit=0 printk.devkmsg=on net.ifnames=0$append" \
-	$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
-qemu_pid=$!
-# The console adds a carriage return to each line of the kernel. The file tells
-# the guest that all it wrote has arrived; sed holds back what it writes to any
-# other file than stderr. (sed -u would read byte by byte.)
-{
-	# When nobody reads our output any more, the command ends as in any pipe.
-	stdbuf -oL sed -e '/sysrq: Resetting/d' -e 's/\r*$//' \
-		-e "/$mark/{w /dev/stderr" -e "s/$mark//" -e '/^$/d' -e '}' <"$tmp/out" 2>"$ctl/drained" ||
-		{ kill "$qemu_pid" 2>/dev/null; exit 1; }
-} &
-sed_pid=$!
-qemu_rc=0
-wait $qemu_pid || qemu_rc=$?
-qemu_pid=
-sed_rc=0
-wait $sed_pid || sed_rc=$?
+
+# one start of the guest; sets qemu_rc and sed_rc
+boot() {
+	# shellcheck disable=SC2086
+	timeout -k 5 "$timeout" "${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd" \
+		-serial stdio -device virtio-serial -chardev "file,id=out,path=$tmp/out" \
+		-device virtserialport,chardev=out \
+		-virtfs "local,path=$ctl,mount_tag=ctl,security_model=none" \
+		-virtfs "local,path=$root,mount_tag=host,security_model=none,readonly=on,multidevs=remap" \
+		${opts[@]+"${opts[@]}"} \
+		-append "console=$console quiet panic=-1 log_buf_len=4M mitigations=off norandmaps audit=0 printk.devkmsg=on net.ifnames=0$append" \
+		$qemu_more </dev/null >"$tmp/out" 2>"$tmp/qemu.err" &
+	qemu_pid=$!
+	# The console adds a carriage return to each line of the kernel. The file tells
+	# the guest that all it wrote has arrived; sed holds back what it writes to any
+	# other file than stderr. (sed -u would read byte by byte.)
+	{
+		# When nobody reads our output any more, the command ends as in any pipe.
+		stdbuf -oL sed -e '/sysrq: Resetting/d' -e 's/\r*$//' \
+			-e "/$mark/{w /dev/stderr" -e "s/$mark//" -e '/^$/d' -e '}' <"$tmp/out" 2>"$ctl/drained" ||
+			{ kill "$qemu_pid" 2>/dev/null; exit 1; }
+	} &
+	local sed_pid=$!
+	qemu_rc=0
+	wait $qemu_pid || qemu_rc=$?
+	qemu_pid=
+	sed_rc=0
+	wait $sed_pid || sed_rc=$?
+}
+
+boot
+# Before the command nothing of ours runs in the guest: a death there is QEMU's or the
+# kernel's, and rare. It is shown, and once pardoned.
+if [ ! -s "$ctl/started" ] && [ $qemu_rc != 124 ] && [ $qemu_rc != 137 ] && [ $sed_rc = 0 ]; then
+	sed 's/^/# /' "$tmp/qemu.err" >&2
+	echo "# run.sh: the guest ended before its command began (QEMU: $qemu_rc); second start" >&2
+	boot
+fi
 end=$(date +%s%N)
 
 [ $verbose = 0 ] || [ ! -s "$ctl/started" ] ||

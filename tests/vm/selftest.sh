@@ -57,6 +57,14 @@ check "status 3, modules, --rw, read-only host, arguments" 3 "^args:a b|it's|\\\
 check "--icount" 0 '^cpus 1' --icount --timeout 120 -- sh -c 'sleep 60; echo cpus $(nproc)'
 check "timeout is 124" 124 'TIMEOUT' --timeout 15 -- sleep 1000
 check "panic is 125" 125 'without a result' --timeout 60 -- sh -c 'echo c >/proc/sysrq-trigger'
+check "no init: the guest is started twice, then 125" 125 'second start' --timeout 60 \
+	--append 'rdinit=/none init=/none' -- true
+qemu=$(command -v qemu-system-x86_64)
+printf '#!/bin/sh\n[ -e %s ] || { : >%s; echo "died early" >&2; exit 1; }\nexec %s "$@"\n' \
+	"$tmp/again" "$tmp/again" "$qemu" >"$tmp/qemu-system-x86_64"
+chmod +x "$tmp/qemu-system-x86_64"
+PATH=$tmp:$PATH EC_ACCEL=tcg check "the second start of a guest counts, the first one is shown" 7 \
+	'^# died early$' -- sh -c 'exit 7'
 check "kernel warning is 70, even after dmesg -c" 70 'KERNEL FAULT' -- \
 	sh -c 'echo "<4>WARNING: CPU: made up" >/dev/kmsg; dmesg -c >/dev/null'
 check "--allow-oops" 5 '^$|^out' --allow-oops -- sh -c 'echo "<4>BUG: made up" >/dev/kmsg; echo out; exit 5'
