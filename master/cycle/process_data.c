@@ -287,7 +287,7 @@ static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
-static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
+static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
 			 struct send *send)
 {
 	const struct ec_cyc_dgram *d = &c->dgrams[g];
@@ -296,7 +296,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, unsigned int 
 	struct ec_frame_buf fb;
 	u8 *p;
 
-	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
 		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->what->sync_time,
 				     send->now);
@@ -326,6 +326,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 {
 	struct ec_slot *slot = NULL;
 	unsigned int count;
+	u8 *frame;
 	int ret;
 
 	if (make_room(c, send->now))
@@ -335,10 +336,12 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		send->dc = 0;
 		return c->n_dgrams;
 	}
-	count = fill(c, slot, g, send);
+	/* one copy less than through the slot */
+	frame = ec_links_tx_get(c->links) ?: slot->frame;
+	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_access_transmit(c->links, slot, send->now);
+	ret = ec_access_transmit(c->links, slot, frame, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(c->links, tx_errors);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/bitops.h>
 #include <linux/errno.h>
+#include <linux/log2.h>
 #include <linux/math64.h>
 #include <linux/ratelimit.h>
 #include <linux/rcupdate.h>
@@ -68,49 +69,72 @@ static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len
 	return 0;
 }
 
-/**
- * ec_link_send() - send the frame of an armed slot
- * @link: link
- * @slot: slot in state SENT
- *
- * Context: The owner of the link. RT-safe.
- * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
- * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
- * is down.
- */
-int ec_link_send(struct ec_link *link, struct ec_slot *slot)
+/* the device and its next transmit buffer; NULL without one */
+static u8 *tx_get(struct ec_link *link, struct ecdev **dev)
 {
-	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	*dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
+}
+
+/* Send the frame of an armed slot. */
+static int send(struct ec_link *link, struct ec_slot *slot, u8 *frame)
+{
 	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
+	struct ecdev *dev;
 	u8 *buf;
 
-	if (!dev)
-		return -ENODEV;
-	buf = dev->ops->tx_get(dev->priv);
-	if (!buf)
-		return -EBUSY;
-	memcpy(buf, slot->frame, len);
+	if (frame == slot->frame) {
+		buf = tx_get(link, &dev);
+		if (!buf)
+			return dev ? -EBUSY : -ENODEV;
+		memcpy(buf, frame, len);
+	} else {
+		buf = frame;
+		dev = READ_ONCE(link->dev);	/* withdrawn at the most, not another one */
+		if (!dev)
+			return -ENODEV;
+	}
 	buf[7] |= link->side;
 	return send_buf(link, dev, buf, len);
+}
+
+/**
+ * ec_links_tx_get() - a transmit buffer in which a frame may be built
+ * @l: links
+ *
+ * The next frame that is sent has to be this one.
+ *
+ * Context: The owner of the links. RT-safe.
+ * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
+ * absent: the frame is built in its slot, and ec_links_send() finds out.
+ */
+u8 *ec_links_tx_get(struct ec_links *l)
+{
+	struct ecdev *dev;
+
+	return is_power_of_2(l->carry) ? tx_get(&l->link[__ffs(l->carry)], &dev) : NULL;
 }
 
 /**
  * ec_links_send() - send the frame of an armed slot on its links
  * @l: links
  * @slot: slot in state SENT
+ * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
  *
  * ec_links_flush() must follow.
  *
  * Context: The owner of the links. RT-safe.
- * Return: as ec_link_send(); the first link that fails ends it.
+ * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
+ * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
+ * is down. The first link that fails ends it.
  */
-int ec_links_send(struct ec_links *l, struct ec_slot *slot)
+int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 *frame)
 {
 	unsigned long left;
 	int ret = 0;
 
 	for (left = slot->links; left && !ret; left &= left - 1)
-		ret = ec_link_send(&l->link[__ffs(left)], slot);
+		ret = send(&l->link[__ffs(left)], slot, frame);
 	return ret;
 }
 
@@ -138,12 +162,10 @@ int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 	ec_pack_place(&l->slots, p, sent_ns);
 	for (left = links; left && !ret; left &= left - 1) {
 		unsigned int i = __ffs(left);
-		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
 
-		tx[i].dev = dev;
-		tx[i].buf = dev ? dev->ops->tx_get(dev->priv) : NULL;
+		tx[i].buf = tx_get(&l->link[i], &tx[i].dev);
 		if (!tx[i].buf) {
-			ret = dev ? -EBUSY : -ENODEV;
+			ret = tx[i].dev ? -EBUSY : -ENODEV;
 			break;
 		}
 		len = ec_pack_write(p, tx[i].buf);

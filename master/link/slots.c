@@ -180,10 +180,8 @@ bool ec_slot_disarm(struct ec_slot *slot)
  * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
  * alone: one that callers share is recognized by its number.
  */
-static void number(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
+static void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u64 now_ns)
 {
-	u8 *f = slot->frame;
-
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
 	slot->links = links;
@@ -205,14 +203,15 @@ static void number(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_n
  * ec_slot_arm() - write the Ethernet header and expect the reply from now on
  * @s: slots
  * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @frame: where its frame was built; elsewhere than in the slot: see ec_slot_note()
  * @links: mask of the links on which it is sent
  * @now_ns: time
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns)
 {
-	number(s, slot, links, now_ns);
+	number(s, slot, frame, links, now_ns);
 	ec_slot_release(slot, EC_SLOT_SENT);
 }
 
@@ -227,7 +226,7 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
  */
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
 {
-	number(s, slot, links, now_ns);
+	number(s, slot, slot->frame, links, now_ns);
 	ec_slot_release(slot, EC_SLOT_QUEUED);
 }
 
@@ -305,6 +304,28 @@ static bool same_header(const u8 *sent, const u8 *got)
 	u32 second = get_unaligned_le32(sent + 4) ^ get_unaligned_le32(got + 4);
 
 	return !(counted ? first & 0xffff : first) && !(second & (LEN_MASK << 16 | 0xffff));
+}
+
+/**
+ * ec_slot_note() - keep what a reply is compared with
+ * @slot: in state BUILD, @eth_len set
+ * @frame: its frame, built by the caller
+ *
+ * These are the headers of the datagrams. Their data need no second copy.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_slot_note(struct ec_slot *slot, const u8 *frame)
+{
+	unsigned int at = EC_ETH_HDR + EC_FRAME_HDR;
+	u16 len;
+
+	do {
+		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
+		len = get_unaligned_le16(frame + at + 6);
+		at += EC_DGRAM_OVERHEAD + (len & LEN_MASK);
+		/* the device may have written there, too */
+	} while (len & MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
 }
 
 /**

@@ -63,7 +63,8 @@ struct ec_packed {
  * @last: offset of the last one from the first one
  * @pack: how it shares a frame
  * @eth_len: bytes of the Ethernet frame without padding and FCS
- * @frame: Ethernet frame; datagrams of the copy of link 0 when that is back
+ * @frame: Ethernet frame, or only headers of its datagrams, see ec_slot_note(); datagrams of
+ *	the copy of link 0 when that is back
  * @backup: behind the EtherType: the copy of link 1; NULL without such a link
  */
 struct ec_slot {
@@ -129,7 +130,8 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_disarm(struct ec_slot *slot);
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
+void ec_slot_note(struct ec_slot *slot, const u8 *frame);
+void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns);
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
 bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);
 bool ec_slot_awaits(const struct ec_slot *slot, u8 side);

@@ -246,11 +246,11 @@ native_cost() {
 		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
 		work wait_ 4 "kernel's cycle, the application waits for it"
 		floors "$own" "$work"
-		limit=$((n == 1 ? 3100 : 8500))
+		limit=$((n == 1 ? 3100 : 8100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
 			"${v[total_mean]} <= limit"
-		limit=$((n == 1 ? 15000 : 22900))
+		limit=$((n == 1 ? 15000 : 22300))
 		row "$own" $limit "all instructions of a cycle of an application, native device: $n drive(s)"
 		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
 			"$own <= limit"
