@@ -5,13 +5,29 @@
 #include <linux/kernel.h>
 #include <linux/stddef.h>
 #include "chip.h"
+#include "regs.h"
 
 static const struct intel_class c8254x = {
 	.name = "8254x", .rx = 0x2800, .tx = 0x3800,
 };
 
+/*
+ * What the chip needs to work for long (its data sheet and errata): without the last two its
+ * transmitter may hang after a completion of PCIe that is late, as with power saving of the link.
+ */
+static const struct intel_bits bits_82574[] = {
+	{ R_CTRL, BIT(29), 0 },
+	{ R_CTRL_EXT, BIT(23), BIT(22) },
+	{ R_TXDCTL, 0, BIT(22) },
+	{ R_TARC0, GENMASK(30, 27), BIT(26) },
+	{ R_GCR, 0, BIT(22) | BIT(27) },
+	{ R_GCR2, 0, BIT(0) },
+	{}
+};
+
 static const struct intel_class c82574 = {
 	.name = "82574", .rx = 0x2800, .tx = 0x3800, .pcie = true, .phy_owner = true,
+	.bits = bits_82574,
 };
 
 static const struct intel_class c82576 = {

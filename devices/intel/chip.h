@@ -6,6 +6,18 @@
 #include <linux/types.h>
 
 /**
+ * struct intel_bits - bits of a register that are not as a reset leaves them
+ */
+struct intel_bits {
+	/** @reg: offset of the register */
+	u32 reg;
+	/** @clear: bits that have to be 0 */
+	u32 clear;
+	/** @set: bits that have to be 1; neither: behind the last one */
+	u32 set;
+};
+
+/**
  * struct intel_class - chips with the same registers and descriptors
  */
 struct intel_class {
@@ -21,6 +33,8 @@ struct intel_class {
 	bool queue_enable;
 	/** @pcie: PCIe; master requests can be disabled before a reset */
 	bool pcie;
+	/** @bits: changed after each reset, NULL: none */
+	const struct intel_bits *bits;
 	/** @phy_owner: software takes the MDIO interface before it uses it (EXTCNF_CTRL) */
 	bool phy_owner;
 };

@@ -65,6 +65,7 @@ static void set_mac(const struct intel_nic *nic)
  */
 int ec_nic_reset(struct intel_nic *nic)
 {
+	const struct intel_bits *b;
 	unsigned int i;
 	u32 ctrl;
 
@@ -79,6 +80,8 @@ int ec_nic_reset(struct intel_nic *nic)
 	if (readl_poll_timeout(nic->regs + R_CTRL, ctrl, !(ctrl & CTRL_RST), 1000, RESET_US))
 		return -EIO;
 	mask_interrupts(nic);
+	for (b = nic->class->bits; b && (b->clear | b->set); b++)
+		ec_nic_write(nic, b->reg, (ec_nic_read(nic, b->reg) & ~b->clear) | b->set);
 	if (!is_valid_ether_addr(nic->mac))
 		get_mac(nic);
 	if (!is_valid_ether_addr(nic->mac))
@@ -156,11 +159,11 @@ void ec_nic_connect(struct intel_nic *nic)
 	u32 ctrl = ec_nic_read(nic, R_CTRL);
 
 	ctrl &= ~(CTRL_FORCE_SPEED | CTRL_FORCE_DUPLEX | CTRL_GIO_DISABLE);
+	/* the speed is the one the PHY reports, as with the drivers of the system */
 	ctrl |= CTRL_SLU | CTRL_FD;
-	if (!nic->class->advanced)
-		ctrl |= CTRL_ASDE;
 	ec_nic_write(nic, R_CTRL, ctrl);
-	usleep_range(10000, 11000);
+	/* after its reset the chip sets its PHY up */
+	usleep_range(25000, 26000);
 	wake_phy(nic);
 	ec_nic_write(nic, R_TIPG, TIPG_COPPER);
 	ec_nic_write(nic, R_TCTL, TCTL_EN | TCTL_PSP | TCTL_COLLISIONS);

@@ -8,7 +8,6 @@
 #define R_CTRL		0x0000
 #define  CTRL_FD		BIT(0)
 #define  CTRL_GIO_DISABLE	BIT(2)	/* PCIe: no new master requests */
-#define  CTRL_ASDE		BIT(5)
 #define  CTRL_SLU		BIT(6)
 #define  CTRL_FORCE_SPEED	BIT(11)
 #define  CTRL_FORCE_DUPLEX	BIT(12)
@@ -16,6 +15,7 @@
 #define R_STATUS	0x0008
 #define  STATUS_LU		BIT(1)
 #define  STATUS_GIO_ENABLED	BIT(19)
+#define R_CTRL_EXT	0x0018
 #define R_MDIC		0x0020
 #define  MDIC_REG		16
 #define  MDIC_PHY_1		(1 << 21)
@@ -40,12 +40,16 @@
 #define R_EXTCNF_CTRL	0x0f00
 #define  EXTCNF_MDIO_OWNER	BIT(5)
 #define R_EIMC		0x1528
+#define R_TXDCTL	0x3828
+#define R_TARC0		0x3840
 #define R_RFCTL		0x5008
 #define R_MTA		0x5200
 #define R_RAL0		0x5400
 #define R_RAH0		0x5404
 #define  RAH_VALID		BIT(31)
 #define R_MRQC		0x5818
+#define R_GCR		0x5b00
+#define R_GCR2		0x5b64
 
 /* of a queue, behind the offsets of struct intel_class */
 #define Q_BAL		0x00

@@ -366,12 +366,24 @@ static void reset_refuses_card_that_does_not_work(struct kunit *test)
 	set_reg(c, R_RAH0, get_unaligned_le16(mac + 4));
 	set_reg(c, R_RCTL, ~0u);
 	set_reg(c, R_TCTL, ~0u);
+	set_reg(c, R_CTRL, BIT(29));
+	set_reg(c, 0x0018, BIT(23));
+	set_reg(c, 0x3840, BIT(30));
 	KUNIT_EXPECT_EQ(test, reset_that_ends(c, 25), 0);
 	KUNIT_EXPECT_TRUE(test, ether_addr_equal(c->nic.mac, mac));
 	KUNIT_EXPECT_EQ(test, reg(c, R_IMC), ~0u);
 	KUNIT_EXPECT_EQ(test, reg(c, R_RAH0), get_unaligned_le16(mac + 4) | BIT(31));
 	KUNIT_EXPECT_EQ(test, reg(c, R_RCTL), 0u);
 	KUNIT_EXPECT_EQ(test, reg(c, R_TCTL) & TCTL_EN, 0u);
+	if (!c->nic.class->bits)
+		return;
+	/* errata of the 82574, and reserved bits that have to be 1 */
+	KUNIT_EXPECT_EQ(test, reg(c, R_CTRL) & BIT(29), 0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x5b64), 1u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x5b00), 0x08400000u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0018), 0x00400000u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x3828), 0x00400000u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x3840), 0x04000000u);
 }
 
 /* one chip of each class */
