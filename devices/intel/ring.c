@@ -96,17 +96,21 @@ static bool tx_done(const struct intel_nic *nic, const union intel_desc *d)
 
 static int enable(const struct intel_nic *nic, u32 queue)
 {
-	u32 v = ec_nic_read(nic, queue + Q_DCTL);
+	u32 v;
 
 	if (!nic->class->queue_enable)
 		return 0;
-	ec_nic_write(nic, queue + Q_DCTL, v | DCTL_ENABLE);
+	ec_nic_write(nic, queue + Q_DCTL, ec_nic_read(nic, queue + Q_DCTL) | DCTL_ENABLE);
 	return readl_poll_timeout(nic->regs + queue + Q_DCTL, v, v & DCTL_ENABLE, 100, QUEUE_US);
 }
 
 static int set_queue(const struct intel_nic *nic, u32 queue, struct intel_ring *r, unsigned int n)
 {
 	r->next = 0;
+	/* a reset enables transmit queue 0 of some chips, which has no ring yet */
+	if (nic->class->queue_enable)
+		ec_nic_write(nic, queue + Q_DCTL,
+			     ec_nic_read(nic, queue + Q_DCTL) & ~DCTL_ENABLE);
 	ec_nic_write(nic, queue + Q_BAL, lower_32_bits(r->desc_dma));
 	ec_nic_write(nic, queue + Q_BAH, upper_32_bits(r->desc_dma));
 	ec_nic_write(nic, queue + Q_LEN, n * sizeof(*r->desc));
