@@ -98,7 +98,8 @@ install-udev:
 	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
 
-# all kernels; the group remains, since files may belong to it
+# all kernels; the group remains, since files may belong to it. Rules of 'ethercat device bind
+# --boot' would leave their cards without driver.
 uninstall:
 	@for d in $(DESTDIR)/lib/modules/*/updates/ethercat; do \
 		[ -d $$d ] || continue; \
@@ -110,6 +111,10 @@ uninstall:
 	$(MAKE) -C tool prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
 	rm -f $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
+	@for f in $(DESTDIR)/etc/udev/rules.d/59-ethercat-*.rules; do \
+		grep -qs "'ethercat device bind --boot'" $$f || continue; \
+		echo "rm -f $$f"; rm -f $$f; \
+	done
 	-@cd $(DESTDIR)$(PREFIX) 2>/dev/null && rmdir lib/udev/rules.d lib/udev \
 		share/bash-completion/completions share/bash-completion \
 		lib/cmake/ethercat lib/cmake lib/pkgconfig 2>/dev/null || true

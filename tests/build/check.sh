@@ -284,7 +284,15 @@ nothing_left() {
 		grep -vE "^\.$prefix(/bin|/lib|/include|/share(/man(/man8)?)?)?$" | tee /dev/stderr)" ]
 }
 
+# as 'ethercat device bind --boot' writes it, and another one, which is not ours
+rules=$root/etc/udev/rules.d
+mkdir -p "$rules"
+echo "# Written by 'ethercat device bind --boot'; it is removed by unbind" \
+	>"$rules/59-ethercat-0000:01:00.0.rules"
+echo "# by hand" >"$rules/59-ethercat-by-hand.rules"
 t "make uninstall" top uninstall
+own_rules_removed() { [ "$(ls "$rules")" = 59-ethercat-by-hand.rules ] && rm -r "$root/etc"; }
+t "it removes rules of 'ethercat device bind --boot', and no other" own_rules_removed
 t "it leaves no file" nothing_left
 
 # no_headers TARGET: one line that says what to do, before anything else
