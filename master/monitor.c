@@ -243,18 +243,23 @@ static void ask_slaves(struct watch *w)
 	}
 }
 
-/* The rider of the last look has come back, and nothing has changed. */
-static bool unchanged(struct watch *w)
+/* The rider of the last look has come back: all slaves reply, each in the state it shall have. */
+static bool all_well(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	const struct ec_rider *r = &m->rider;
+	u16 ored;
 
 	if (!w->riding)
 		return false;
 	w->riding = false;
-	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count ||
-	    !as_wanted(m, get_unaligned_le16(r->data), r->wkc))
+	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count)
 		return false;
+	ored = get_unaligned_le16(r->data);
+	if (!as_wanted(m, ored, r->wkc))
+		return false;
+	/* the last slave may have come to its state since the last look */
+	set_present(m, w->count, ored & EC_AL_STATE_MASK);
 	m->bus.complete_ns = w->ride_ns;
 	return true;
 }
@@ -278,7 +283,7 @@ static void ride(struct watch *w)
 
 static void count_slaves(struct watch *w)
 {
-	if (!unchanged(w))
+	if (!all_well(w))
 		ask_slaves(w);
 	ride(w);
 }

@@ -275,6 +275,28 @@ static void op_reference_outputs(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, beside(test, "slave a EL2008\nslave b EL2008\n"), EC_AL_PREOP);
 }
 
+/* AL states of the bus are those of now, at whatever moment of a poll the last slave comes to OP. */
+static void op_al_states(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave b EL2008\nslave c EL1008 transition=7ms\n", 3);
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < 40; i++) {
+		struct cyc *c = cyc_new(b, 1000);
+
+		cyc_domain(c);
+		cyc_map_all(c, 0, 3, 0);
+		cyc_activate(c);
+		KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
+		cyc_run(c, 300);
+		KUNIT_EXPECT_EQ_MSG(test, b->m->bus.al_states, (u32)EC_AL_OP, "attempt %u", i);
+		cyc_release(c);
+		KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 1000), ~0ull);
+		usleep_range(500 * i, 500 * i + 1);
+	}
+}
+
 static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_bench),
 	KUNIT_CASE(op_mapping_rewritten),
@@ -286,6 +308,7 @@ static struct kunit_case op_cases[] = {
 	KUNIT_CASE(op_next_application),
 	KUNIT_CASE(op_reference),
 	KUNIT_CASE(op_reference_outputs),
+	KUNIT_CASE(op_al_states),
 	{}
 };
 
