@@ -127,6 +127,8 @@ static void chosen(void)
 	NEED(bench_op(&b));
 	IS(CALL(ecrt_master_sync_slave_clocks)(b.m), 0);
 	bench_cycle(&b, 1);
+	/* the frame is back in the next cycle */
+	bench_sleep();
 	CALL(ecrt_master_receive)(b.m);
 	IS(CALL(ecrt_master_reference_clock_time)(b.m, &now), 0);
 	bench_down(&b);
