@@ -278,7 +278,8 @@ static void op_reference_outputs(struct kunit *test)
 /* AL states of the bus are those of now, at whatever moment of a poll the last slave comes to OP. */
 static void op_al_states(struct kunit *test)
 {
-	struct bus *b = bus_up(test, "slave a EK1100\nslave b EL2008\nslave c EL1008 transition=7ms\n", 3);
+	static const char *text = "slave a EK1100\nslave b EL2008\nslave c EL1008 transition=7ms\n";
+	struct bus *b = bus_up(test, text, 3);
 	u32 i;
 
 	bus_idle(b);
