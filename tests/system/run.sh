@@ -16,7 +16,7 @@
 # its native driver, not at the virtual device
 # EC_IOMMU=1: this card is behind an IOMMU
 # EC_BINDS: how often native.bats binds the card, 100 if it is not set
-# EC_CYCLES: of long/cycles.bats, a million if it is not set
+# EC_CYCLES: of the files in long, a million if it is not set; EC_SEED: of the times of flaps.bats
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
 # EC_PLACES: folder with a file for each guest that may run at a time (one for each CPU)
 #
@@ -125,7 +125,8 @@ run() {
 	read -ra options < <(vm_options "$f")
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_BINDS="${EC_BINDS:-}" \
-		EC_CYCLES="${EC_CYCLES:-}" EC_WARN="$warn" sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
+		EC_CYCLES="${EC_CYCLES:-}" EC_SEED="${EC_SEED:-}" EC_WARN="$warn" \
+		sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }
 
