@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/etherdevice.h>
+#include <linux/if.h>
 #include <linux/slab.h>
 #include "boundary/api.h"
 #include "boundary/cdev.h"
 #include "link/device.h"
+#include "link/spec.h"
 #include "boundary/master.h"
 #include "monitor.h"
 #include "config/apply.h"
@@ -113,44 +114,6 @@ err_free:
 	return ERR_PTR(ret);
 }
 
-/* The address of a PCI function, name of a native device: 0000:01:00.0. */
-static bool is_pci(const char *spec)
-{
-	unsigned int domain, bus, slot, function;
-	int len = 0;
-
-	return sscanf(spec, "%4x:%2x:%2x.%1x%n", &domain, &bus, &slot, &function, &len) == 4 &&
-	       len == 12 && !spec[len];
-}
-
-/* The broadcast address means any device, so it may be given again. */
-static bool same_device(const char *a, const char *b)
-{
-	u8 x[ETH_ALEN] __aligned(2), y[ETH_ALEN] __aligned(2);
-
-	if (mac_pton(a, x) && mac_pton(b, y))
-		return ether_addr_equal(x, y) && !is_broadcast_ether_addr(x);
-	return is_pci(a) ? !strcasecmp(a, b) : !strcmp(a, b);
-}
-
-/* A name that can be an interface's: the kernel's rules for them. */
-static bool is_name(const char *spec)
-{
-	size_t len = strlen(spec);
-
-	return len && len < IFNAMSIZ && strcmp(spec, ".") && strcmp(spec, "..") &&
-	       !spec[strcspn(spec, "/: \t\n")];
-}
-
-/* An address that a device can have, or the broadcast address. */
-static bool is_address(const char *spec)
-{
-	u8 mac[ETH_ALEN] __aligned(2);
-
-	return strlen(spec) == 3 * ETH_ALEN - 1 && mac_pton(spec, mac) &&
-	       (is_valid_ether_addr(mac) || is_broadcast_ether_addr(mac));
-}
-
 static int check_name(const char *spec, unsigned int index)
 {
 	if (!spec || !*spec) {
@@ -158,7 +121,7 @@ static int check_name(const char *spec, unsigned int index)
 		       index);
 		return -EINVAL;
 	}
-	if (is_name(spec) || is_address(spec) || is_pci(spec))
+	if (ec_spec_is_valid(spec))
 		return 0;
 	if (strchr(spec, ':'))
 		pr_err("EtherCAT: main_devices: \"%s\" is neither the MAC address of a device, as 00:11:22:33:44:55 (ff:ff:ff:ff:ff:ff: the first device), nor a PCI address, as 0000:01:00.0\n",
@@ -182,7 +145,7 @@ static int check_names(char **main, unsigned int n_main, char **backup, unsigned
 		ret = check_name(main[i], i);
 		if (ret)
 			return ret;
-		for (k = 0; k < i && !same_device(main[i], main[k]); k++)
+		for (k = 0; k < i && !ec_spec_same(main[i], main[k]); k++)
 			;
 		if (k == i)
 			continue;

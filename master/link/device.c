@@ -8,6 +8,7 @@
 #include "device.h"
 #include "links.h"
 #include "receive.h"
+#include "spec.h"
 
 /*
  * Devices and who uses them; taken before any lock of a master.
@@ -17,19 +18,6 @@
 static DEFINE_MUTEX(devices_lock);
 static LIST_HEAD(devices);
 static LIST_HEAD(masters);	/* &struct ec_links, in the order of their numbers */
-
-/* Does @spec (from the module parameters) mean this device? */
-static bool spec_matches(const char *spec, const char *name, const u8 *mac)
-{
-	u8 want[ETH_ALEN];
-
-	if (!spec || !*spec)
-		return false;
-	if (mac_pton(spec, want))
-		return is_broadcast_ether_addr(want) || ether_addr_equal(want, mac);
-	/* PCI addresses in any case; interfaces have their own name */
-	return strchr(spec, ':') ? !strcasecmp(spec, name) : !strcmp(spec, name);
-}
 
 /**
  * ecdev_wanted() - is there a master configured for this device?
@@ -52,7 +40,7 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 			break;
 		}
 		for (side = 0; side < EC_MAX_LINKS; side++)
-			wanted |= spec_matches(l->spec[side], name, mac);
+			wanted |= ec_spec_matches(l->spec[side], name, mac);
 	}
 	mutex_unlock(&devices_lock);
 	return wanted;
@@ -165,7 +153,7 @@ static void match_locked(struct ecdev *dev)
 	list_for_each_entry(l, &masters, list)
 		for (side = 0; side < EC_MAX_LINKS; side++)
 			if (!l->link[side].dev && !READ_ONCE(l->base->stopping) &&
-			    spec_matches(l->spec[side], dev->name, dev->mac)) {
+			    ec_spec_matches(l->spec[side], dev->name, dev->mac)) {
 				attach(dev, &l->link[side]);
 				return;
 			}
