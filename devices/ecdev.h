@@ -9,6 +9,7 @@
 #include <linux/types.h>
 
 struct ecdev;
+struct notifier_block;
 
 /**
  * struct ecdev_ops - functions of a device driver
@@ -52,8 +53,10 @@ struct ecdev_ops {
 struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 			  const struct ecdev_ops *ops, void *priv);
 void ecdev_withdraw(struct ecdev *dev);
-const char *ecdev_waiting(unsigned int *index, unsigned int *master);
+bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size);
 bool ecdev_wanted(const char *name, const u8 *mac);
+int ecdev_register_notifier(struct notifier_block *nb);
+void ecdev_unregister_notifier(struct notifier_block *nb);
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
 void ecdev_foreign(struct ecdev *dev);
 void ecdev_not_captured(struct ecdev *dev);

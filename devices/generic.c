@@ -441,9 +441,14 @@ static void offer(struct net_device *nd)
  */
 static void look(struct work_struct *work)
 {
+	struct gen *g, *next;
 	struct net_device *nd;
 
 	rtnl_lock();
+	/* the master has given it back */
+	list_for_each_entry_safe(g, next, &devices, list)
+		if (!g->claimed)
+			withdraw(g);
 	if (!leaving)
 		for_each_netdev(&init_net, nd)
 			offer(nd);
@@ -488,6 +493,15 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 
 static struct notifier_block notifier = { .notifier_call = event };
 
+/* The caller waits for what comes of it. */
+static int wishes(struct notifier_block *nb, unsigned long what, void *ptr)
+{
+	look(NULL);
+	return NOTIFY_DONE;
+}
+
+static struct notifier_block wishes_notifier = { .notifier_call = wishes };
+
 static bool has_address(const struct net_device *nd, const char *spec)
 {
 	u8 mac[ETH_ALEN];
@@ -526,9 +540,10 @@ static const char * __init why_waiting(const char *spec)
 static void __init report_waiting(void)
 {
 	unsigned int i = 0, master;
-	const char *spec, *why;
+	char spec[IFNAMSIZ + MAX_ADDR_LEN];
+	const char *why;
 
-	while ((spec = ecdev_waiting(&i, &master))) {
+	while (ecdev_waiting(&i, &master, spec, sizeof(spec))) {
 		why = strncmp(spec, "sim", 3) ? why_waiting(spec) : NULL;
 		if (why)
 			pr_warn("ec_generic: main_devices: \"%s\" %s; master %u waits for it\n",
@@ -538,10 +553,15 @@ static void __init report_waiting(void)
 
 static int __init gen_init(void)
 {
-	int ret = register_netdevice_notifier(&notifier);
+	int ret = ecdev_register_notifier(&wishes_notifier);
 
 	if (ret)
 		return ret;
+	ret = register_netdevice_notifier(&notifier);
+	if (ret) {
+		ecdev_unregister_notifier(&wishes_notifier);
+		return ret;
+	}
 	/* it has reported all devices there are */
 	flush_work(&look_work);
 	report_waiting();
@@ -550,6 +570,7 @@ static int __init gen_init(void)
 
 static void __exit gen_exit(void)
 {
+	ecdev_unregister_notifier(&wishes_notifier);
 	rtnl_lock();
 	leaving = true;
 	rtnl_unlock();

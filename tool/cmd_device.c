@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* A network card gets its native driver, or the one of the system back. */
+/* A network card gets its native driver, or the one of the system back; a master gets a card. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "boot.h"
+#include "device_use.h"
 #include "nic.h"
 #include "out.h"
 #include "sys.h"
@@ -179,8 +180,10 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	(void)argc;
+	if (!strcmp(argv[0], "use"))
+		return device_use(t, argv[1]);
 	if (!on && strcmp(argv[0], "unbind"))
-		return usage_error("'%s': use bind or unbind", argv[0]);
+		return usage_error("'%s': use bind, unbind or use", argv[0]);
 	ret = nics_read(&all);
 	if (!ret)
 		ret = run_one(t, on, &all, argv[1]);
@@ -191,16 +194,21 @@ static int run(struct tool *t, int argc, char **argv)
 const struct cmd cmd_device = {
 	.name = "device",
 	.run = run,
-	.args = "bind|unbind DEVICE",
-	.opts = "fb",
-	.summary = "Give a network card its native driver, or take it away",
+	.args = "bind|unbind|use DEVICE",
+	.opts = "mfb",
+	.summary = "Give a network card its native driver or to a master, or take it away",
 	.help = "DEVICE is an interface, a MAC address or a PCI address as 'ethercat devices' lists them.\n"
 		"After bind the interface is absent: a master gets the card by its MAC or PCI address\n"
 		"(main_devices=). After unbind the driver of the system has it again.\n"
 		"A card in use is refused; --force takes it nevertheless. Needs root.\n"
 		"The change lasts until the computer restarts. With --boot, bind writes a udev rule into\n"
 		"/etc/udev/rules.d that binds the card at each start, also if it is in use then; unbind\n"
-		"removes the rule. For a card that is absent DEVICE is its PCI address.\n",
+		"removes the rule. For a card that is absent DEVICE is its PCI address.\n"
+		"use gives the card to a master (-m), which gives its present one back and scans the\n"
+		"bus; with the native driver, or by ec_generic. DEVICE may also be sim0 of the simulator.\n"
+		"Refused while an application has the master; an interface with an IP address needs --force.\n"
+		"If the card cannot be used, the master\n"
+		"keeps the one it has. Lasts until ec_master is unloaded.\n",
 	.json = "none",
 	.min_args = 2,
 	.max_args = 2,

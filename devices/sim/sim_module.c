@@ -156,9 +156,9 @@ static void withdraw(void)
 static void __init report_waiting(unsigned int n)
 {
 	unsigned int i = 0, master, k;
-	const char *spec;
+	char spec[32];
 
-	while ((spec = ecdev_waiting(&i, &master)))
+	while (ecdev_waiting(&i, &master, spec, sizeof(spec)))
 		if (sscanf(spec, "sim%u", &k) == 1 && k >= n)
 			pr_warn("ec_sim: main_devices: \"%s\" is not offered, segment= names %u segment(s); master %u waits for it\n",
 				spec, n, master);

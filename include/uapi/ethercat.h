@@ -306,6 +306,13 @@ struct ec_ioc_debug {
 	__u32 level;		/* 0, 1, 2 */
 };
 
+/* needs CAP_NET_ADMIN, and that no application has the master */
+struct ec_ioc_device_use {
+	__u32 flags;		/* none yet */
+	__u32 reserved;
+	char name[EC_UAPI_STRING];	/* MAC address, PCI address or name of the device */
+};
+
 /* struct ec_ip_params.which */
 #define EC_IP_MAC		0x01
 #define EC_IP_ADDRESS		0x02
@@ -823,6 +830,7 @@ struct ec_ioc_wait {
 #define EC_IOC_SOE_READ		EC_IOC_RW(0x29, struct ec_ioc_soe)
 #define EC_IOC_SOE_WRITE	EC_IOC_RW(0x2a, struct ec_ioc_soe)
 #define EC_IOC_END_DETACHED	EC_IOC_N(0x2b)
+#define EC_IOC_DEVICE_USE	EC_IOC_W(0x2c, struct ec_ioc_device_use)
 
 /* reserved by this open file: the application */
 #define EC_IOC_RESERVE		EC_IOC_N(0x40)

@@ -46,6 +46,7 @@ int ec_ioc_limit(struct ec_call *call, int ret);
 int ec_ioc_get_slave(struct ec_call *call, u16 position);
 int ec_ioc_lock_session(struct ec_call *call);
 int ec_ioc_pause(struct ec_call *call);
+int ec_ioc_refuse_reserved(struct ec_call *call);
 
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *arg);

@@ -10,29 +10,52 @@
 #include "../bus/slave.h"
 #include "../config/why.h"
 
+/**
+ * ec_ioc_refuse_reserved() - refuse a command since an application has the master
+ * @call: command
+ *
+ * Context: Process. May sleep.
+ * Return: -EBUSY with the reason noted.
+ */
+int ec_ioc_refuse_reserved(struct ec_call *call)
+{
+	const struct ec_sessions *ss = &call->master->sessions;
+	unsigned int index = call->master->base->index;
+	char who[64];
+
+	if (READ_ONCE(ss->paused))
+		return ec_refuse(call, -EBUSY,
+				 "master %u is about to use another device; try again", index);
+	if (READ_ONCE(call->master->api->reserved))
+		return ec_refuse(call, -EBUSY,
+				 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
+				 index);
+	if (ec_session_owner_text(&call->master->sessions, who, sizeof(who)))
+		return ec_refuse(call, -EBUSY,
+				 "master %u is reserved by %s; stop that application first", index,
+				 who);
+	if (READ_ONCE(ss->session))
+		return ec_refuse(call, -EBUSY,
+				 "master %u has a detached session; end it with 'ethercat release'",
+				 index);
+	return ec_refuse(call, -EBUSY,
+			 "master %u was reserved by an application that has just ended; try again",
+			 index);
+}
+
 int ec_ioc_reserve(struct ec_call *call)
 {
 	int ret = ec_session_begin(&call->master->sessions, call->file, &call->file->waiters);
-	char who[64];
+	char name[EC_UAPI_STRING];
 
 	switch (ret) {
 	case -EBUSY:
-		if (READ_ONCE(call->master->api->reserved))
-			return ec_refuse(call, ret,
-					 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",
-					 call->master->base->index);
-		if (!ec_session_owner_text(&call->master->sessions, who, sizeof(who)))
-			return ec_refuse(call, ret,
-					 "master %u was reserved by an application that has just ended; try again",
-					 call->master->base->index);
-		return ec_refuse(call, ret,
-				 "master %u is reserved by %s; stop that application first",
-				 call->master->base->index, who);
+		return ec_ioc_refuse_reserved(call);
 	case -ENODEV:
 		return ec_refuse(call, ret,
 				 "master %u is waiting for its device %s; load the driver or correct main_devices=",
 				 call->master->base->index,
-				 ec_links_main_name(&call->master->links));
+				 ec_links_name(&call->master->links, 0, name, sizeof(name)));
 	default:
 		return ret;
 	}

@@ -57,14 +57,13 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 {
 	struct ecdev *dev;
 
+	ec_links_name(link->links, link->side, d->name, sizeof(d->name));
 	rcu_read_lock();
 	dev = READ_ONCE(link->dev);
 	d->state = dev ? EC_DEVICE_ATTACHED : EC_DEVICE_WAITING;
 	if (dev) {
 		ether_addr_copy(d->address, dev->mac);
 		strscpy(d->name, dev->name, sizeof(d->name));
-	} else {
-		strscpy(d->name, link->links->spec[link->side] ?: "", sizeof(d->name));
 	}
 	rcu_read_unlock();
 	d->link_up = READ_ONCE(link->up);

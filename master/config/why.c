@@ -55,14 +55,15 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 }
 
 /* Without device or link there is no slave at all. */
-static size_t no_link(const struct ec_links *l, char *buf, size_t size)
+static size_t no_link(struct ec_links *l, char *buf, size_t size)
 {
+	char name[EC_UAPI_STRING];
+
 	if (ec_links_any_up(l))
 		return 0;
 	if (!ec_links_any_device(l))
 		return scnprintf(buf, size, "no network device: master %u waits for %s",
-				 l->base->index,
-				 ec_links_main_name(l));
+				 l->base->index, ec_links_name(l, 0, name, sizeof(name)));
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
 			 l->base->index);
 }

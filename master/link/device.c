@@ -2,7 +2,9 @@
 #include <linux/etherdevice.h>
 #include <linux/module.h>
 #include <linux/mutex.h>
+#include <linux/notifier.h>
 #include <linux/rcupdate.h>
+#include <linux/rtnetlink.h>
 #include <linux/slab.h>
 #include "capture.h"
 #include "device.h"
@@ -18,6 +20,16 @@
 static DEFINE_MUTEX(devices_lock);
 static LIST_HEAD(devices);
 static LIST_HEAD(masters);	/* &struct ec_links, in the order of their numbers */
+static BLOCKING_NOTIFIER_HEAD(changes);
+
+/* The device that a master waits for or has. */
+static const char *name_of(const struct ec_links *l, unsigned int side)
+{
+	lockdep_assert_held(&devices_lock);
+	if (side)
+		return l->backup;
+	return l->closed ? NULL : l->main;
+}
 
 /**
  * ecdev_wanted() - is there a master configured for this device?
@@ -25,7 +37,7 @@ static LIST_HEAD(masters);	/* &struct ec_links, in the order of their numbers */
  * @mac: its address
  *
  * Context: Process. May sleep.
- * Return: true when main_devices= or backup_devices= name it.
+ * Return: true when one is.
  */
 bool ecdev_wanted(const char *name, const u8 *mac)
 {
@@ -40,7 +52,7 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 			break;
 		}
 		for (side = 0; side < EC_MAX_LINKS; side++)
-			wanted |= ec_spec_matches(l->spec[side], name, mac);
+			wanted |= ec_spec_matches(name_of(l, side), name, mac);
 	}
 	mutex_unlock(&devices_lock);
 	return wanted;
@@ -51,26 +63,29 @@ EXPORT_SYMBOL_GPL(ecdev_wanted);
  * ecdev_waiting() - what masters still wait for
  * @index: start, 0 at first; set behind the one that is returned
  * @master: result: number of the master
+ * @name: result: name or MAC address of its main device
+ * @size: of @name
  *
  * Context: Process. May sleep.
- * Return: a name or MAC address of main_devices=, or NULL.
+ * Return: whether there is one.
  */
-const char *ecdev_waiting(unsigned int *index, unsigned int *master)
+bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size)
 {
 	const struct ec_links *l;
-	const char *spec = NULL;
+	bool found = false;
 
 	mutex_lock(&devices_lock);
 	list_for_each_entry(l, &masters, list) {
-		if (l->base->index < *index || l->link[0].dev)
+		if (l->base->index < *index || l->link[0].dev || l->closed)
 			continue;
-		spec = l->spec[0];
+		strscpy(name, l->main, size);
 		*master = l->base->index;
 		*index = l->base->index + 1;
+		found = true;
 		break;
 	}
 	mutex_unlock(&devices_lock);
-	return spec;
+	return found;
 }
 EXPORT_SYMBOL_GPL(ecdev_waiting);
 
@@ -153,7 +168,7 @@ static void match_locked(struct ecdev *dev)
 	list_for_each_entry(l, &masters, list)
 		for (side = 0; side < EC_MAX_LINKS; side++)
 			if (!l->link[side].dev && !READ_ONCE(l->base->stopping) &&
-			    ec_spec_matches(l->spec[side], dev->name, dev->mac)) {
+			    ec_spec_matches(name_of(l, side), dev->name, dev->mac)) {
 				attach(dev, &l->link[side]);
 				return;
 			}
@@ -190,19 +205,129 @@ void ec_device_unregister(struct ec_links *l)
 	mutex_unlock(&devices_lock);
 }
 
+static void set_main(struct ec_links *l, const char *name)
+{
+	lockdep_assert_held(&devices_lock);
+	spin_lock(&l->main_lock);
+	strscpy(l->main, name, sizeof(l->main));
+	spin_unlock(&l->main_lock);
+}
+
+/* Another master that has this device or waits for it. */
+static const struct ec_links *rival_of(const struct ec_links *l, const char *name)
+{
+	const struct ec_links *o;
+	unsigned int side;
+
+	lockdep_assert_held(&devices_lock);
+	list_for_each_entry(o, &masters, list) {
+		if (o == l)
+			continue;
+		if (ec_spec_same(name, o->main))
+			return o;
+		for (side = 0; side < EC_MAX_LINKS; side++) {
+			const struct ecdev *dev = o->link[side].dev;
+
+			if (dev && !ec_spec_is_any(name) &&
+			    ec_spec_matches(name, dev->name, dev->mac))
+				return o;
+		}
+	}
+	return NULL;
+}
+
 /**
- * ec_device_detach() - a master gives its device back
- * @link: link, may be without device
+ * ec_device_release() - a master gives its main device back, in order to get another one
+ * @l: its links; they get no main device until ec_device_use()
+ * @name: of the device that it is to get
+ * @rival: result with -EBUSY: number of the other master
+ *
+ * A master that has the device @name keeps it.
+ *
+ * Context: Process. May sleep, takes RTNL.
+ * Return: 0; -EEXIST when it keeps its device, which is @name now; -EBUSY when another master has
+ * the device @name or waits for it.
+ */
+int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
+{
+	const struct ec_links *other;
+	struct ecdev *dev;
+	int ret = 0;
+
+	rtnl_lock();
+	mutex_lock(&devices_lock);
+	dev = l->link[0].dev;
+	other = rival_of(l, name);
+	if (other) {
+		*rival = other->base->index;
+		ret = -EBUSY;
+	} else if (dev && ec_spec_matches(name, dev->name, dev->mac)) {
+		set_main(l, name);
+		ret = -EEXIST;
+	} else {
+		l->closed = true;
+		if (dev) {
+			detach(dev);
+			match_locked(dev);
+		}
+	}
+	mutex_unlock(&devices_lock);
+	rtnl_unlock();
+	if (!ret)
+		blocking_notifier_call_chain(&changes, 0, NULL);
+	return ret;
+}
+
+/**
+ * ec_device_use() - a master gets a main device after ec_device_release()
+ * @l: its links
+ * @name: MAC address, PCI address or name of the device
+ *
+ * Context: Process. May sleep, takes RTNL.
+ * Return: 0, or -ENODEV: it waits for the device.
+ */
+int ec_device_use(struct ec_links *l, const char *name)
+{
+	struct ecdev *dev;
+
+	rtnl_lock();
+	mutex_lock(&devices_lock);
+	set_main(l, name);
+	l->closed = false;
+	list_for_each_entry(dev, &devices, list)
+		if (!rcu_access_pointer(dev->link))
+			match_locked(dev);
+	mutex_unlock(&devices_lock);
+	rtnl_unlock();
+	/* drivers offer what is wanted only */
+	blocking_notifier_call_chain(&changes, 0, NULL);
+	return ec_links_attached(l) ? 0 : -ENODEV;
+}
+
+/**
+ * ecdev_register_notifier() - hear that masters want other devices
+ * @nb: called without locks, may sleep; ecdev_wanted() says what they want
  *
  * Context: Process. May sleep.
+ * Return: 0 or -EEXIST.
  */
-void ec_device_detach(struct ec_link *link)
+int ecdev_register_notifier(struct notifier_block *nb)
 {
-	mutex_lock(&devices_lock);
-	if (link->dev)
-		detach(link->dev);
-	mutex_unlock(&devices_lock);
+	return blocking_notifier_chain_register(&changes, nb);
 }
+EXPORT_SYMBOL_GPL(ecdev_register_notifier);
+
+/**
+ * ecdev_unregister_notifier() - end that; the function does not run after the return
+ * @nb: as registered
+ *
+ * Context: Process. May sleep. Without locks that the function takes.
+ */
+void ecdev_unregister_notifier(struct notifier_block *nb)
+{
+	blocking_notifier_chain_unregister(&changes, nb);
+}
+EXPORT_SYMBOL_GPL(ecdev_unregister_notifier);
 
 /**
  * ecdev_offer() - offer a device to the masters

@@ -31,6 +31,7 @@ struct ecdev {
 
 void ec_device_register(struct ec_links *l);
 void ec_device_unregister(struct ec_links *l);
-void ec_device_detach(struct ec_link *link);
+int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival);
+int ec_device_use(struct ec_links *l, const char *name);
 
 #endif

@@ -8,7 +8,7 @@
  * @l: zeroed structure
  * @base: of the master
  * @ops: what it wants to know; stays
- * @main: main device: MAC address or device name; stays
+ * @main: main device: MAC address or device name
  * @backup: backup device, NULL: none
  *
  * Context: Process. May sleep, takes RTNL.
@@ -22,8 +22,9 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 
 	l->base = base;
 	l->ops = ops;
-	l->spec[0] = main;
-	l->spec[1] = backup;
+	strscpy(l->main, main, sizeof(l->main));
+	spin_lock_init(&l->main_lock);
+	l->backup = backup;
 	l->carry = BIT(0);
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
@@ -52,6 +53,28 @@ void ec_links_exit(struct ec_links *l)
 	ec_device_unregister(l);
 	ec_capture_destroy(l);
 	ec_slots_exit(&l->slots);
+}
+
+/**
+ * ec_links_name() - which device a master is to have
+ * @l: links
+ * @i: 0: main device, 1: backup device
+ * @buf: result: name, MAC address or PCI address as the user gave it; "": none
+ * @size: of @buf
+ *
+ * Context: Process.
+ * Return: @buf.
+ */
+const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size)
+{
+	if (i) {
+		strscpy(buf, l->backup ?: "", size);
+		return buf;
+	}
+	spin_lock(&l->main_lock);
+	strscpy(buf, l->main, size);
+	spin_unlock(&l->main_lock);
+	return buf;
 }
 
 /**

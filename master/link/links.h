@@ -7,6 +7,7 @@
 #define EC_LINKS_H
 
 #include <linux/list.h>
+#include <linux/spinlock.h>
 #include "ethercat.h"
 #include "../base/base.h"
 #include "../base/limits.h"
@@ -38,8 +39,14 @@ struct ec_links {
 	const struct ec_links_ops *ops;
 	/** @list: links of all masters, under the device lock */
 	struct list_head list;
-	/** @spec: main and backup device as the module parameters name them, immutable */
-	const char *spec[EC_MAX_LINKS];
+	/** @main: name of the main device; changed with the device lock and @main_lock held */
+	char main[EC_UAPI_STRING];
+	/** @main_lock: for readers of @main that do not take the device lock */
+	spinlock_t main_lock;
+	/** @backup: backup device as the module parameters name it, NULL: none; immutable */
+	const char *backup;
+	/** @closed: gets no main device, under the device lock */
+	bool closed;
 	/** @link: main and backup */
 	struct ec_link link[EC_MAX_LINKS];
 	/** @capture: interface for capture programs, NULL: none; immutable while devices are there */
@@ -99,16 +106,10 @@ static inline bool ec_links_any_device(const struct ec_links *l)
 	return ec_links_attached(l) || READ_ONCE(l->link[1].dev);
 }
 
-/* main device as the module parameters name it */
-static inline const char *ec_links_main_name(const struct ec_links *l)
-{
-	return l->spec[0];
-}
-
 /* links that the module parameters name; numbers of ec_links_at() are below */
 static inline unsigned int ec_links_n(const struct ec_links *l)
 {
-	return l->spec[1] ? 2 : 1;
+	return l->backup ? 2 : 1;
 }
 
 static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsigned int i)
@@ -145,6 +146,7 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);
+const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size);
 const struct ecdev_ops *ec_links_device_ops(const struct ec_links *l);
 bool ec_links_look(struct ec_links *l);
 void ec_links_update_rates(struct ec_links *l);

@@ -33,7 +33,7 @@ struct ec_session *ec_session_of(const struct ec_sessions *ss, const void *owner
 static bool is_taken(const struct ec_sessions *ss)
 {
 	lockdep_assert_held(&ss->lock);
-	return ss->candidate || (ss->session && ss->session->cycle.owner);
+	return ss->paused || ss->candidate || (ss->session && ss->session->cycle.owner);
 }
 
 /*

@@ -64,6 +64,40 @@ void ec_sessions_unlock(struct ec_sessions *ss)
 }
 
 /**
+ * ec_sessions_pause() - let no application reserve the master
+ * @ss: sessions of a master
+ *
+ * Context: Process. May sleep.
+ * Return: 0, then ec_sessions_resume() must follow; -EBUSY when there is a session, also one
+ * without application, or another caller has paused them.
+ */
+int ec_sessions_pause(struct ec_sessions *ss)
+{
+	int ret = 0;
+
+	mutex_lock(&ss->lock);
+	if (ss->paused || ss->session || ss->candidate)
+		ret = -EBUSY;
+	else
+		WRITE_ONCE(ss->paused, true);
+	mutex_unlock(&ss->lock);
+	return ret;
+}
+
+/**
+ * ec_sessions_resume() - applications may reserve the master after ec_sessions_pause()
+ * @ss: sessions of a master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sessions_resume(struct ec_sessions *ss)
+{
+	mutex_lock(&ss->lock);
+	WRITE_ONCE(ss->paused, false);
+	mutex_unlock(&ss->lock);
+}
+
+/**
  * ec_sessions_trylock() - take the session lock, unless another thread keeps it
  * @ss: sessions of a master
  *

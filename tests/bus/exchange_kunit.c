@@ -316,7 +316,7 @@ static void exchange_device_gone(struct kunit *test)
 	struct ec_file *app = &c->b->app;
 
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
-	ec_device_detach(&c->b->m->links.link[0]);
+	ec_device_release(&c->b->m->links, "none", NULL);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(app), -ENODEV);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 0u);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);

@@ -549,7 +549,7 @@ static void kapi_device_gone(struct kunit *test)
 	u32 i;
 
 	kapp_op(k);
-	ec_device_detach(&k->m->links.link[0]);
+	ec_device_release(&k->m->links, "none", NULL);
 	for (i = 0; i < 3; i++) {
 		kapp_wait(k);
 		KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -ENODEV);

@@ -163,7 +163,7 @@ static void kcycle_device_goes(struct kunit *test)
 	u64 count;
 
 	kapp_op(k);
-	ec_device_detach(&k->m->links.link[0]);
+	ec_device_release(&k->m->links, "none", NULL);
 	kapp_wait(k);
 	kapp_wait(k);
 	count = ecrt_master_cycle_count(k->m);

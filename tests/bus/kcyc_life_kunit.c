@@ -205,7 +205,7 @@ static void life_without_device(struct kunit *test)
 
 	kcyc_wait_cycles(a, 10);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 0u);
-	ec_device_detach(&b->m->links.link[0]);
+	ec_device_release(&b->m->links, "none", NULL);
 	cycle = kcyc_status(a)->cycle;
 	a->seen = cycle;
 	kcyc_wait_cycles(a, 500);

@@ -92,7 +92,7 @@ static void master_has_one_application_at_a_time(void)
 	ec_session_end(&b->ss, &owner[0]);
 	CHECK(!b->ss.session);
 	CHECK_EQ(b->s.bus.freeze, false);
-	ec_device_detach(&b->s.seg.links.link[0]);
+	ec_device_release(&b->s.seg.links, "none", NULL);
 	CHECK_EQ(ec_session_begin(&b->ss, &owner[0], NULL), -ENODEV);
 	bench_free(b);
 }

@@ -41,3 +41,33 @@ teardown_file() { stop; }
 	run ethercat rtcheck
 	[[ $output == *"eth0: received frames do not wait"* ]]
 }
+
+@test "another card while the master is there: generic, native, generic" {
+	local native
+
+	native=$(pci eth0)
+	modprobe veth
+	ip link add veth0 type veth peer name veth1
+	ip link set veth1 up
+	# above the program that it answers: there is one CPU
+	chrt -f 95 "$EC_BUILD/tool/ethercat-sim" -s thin veth1 >"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
+	sim=$!
+	wait_for 60 grep -q 'slave(s), at ' "$BATS_TEST_TMPDIR/sim"
+	ethercat device use veth0
+	wait_for 60 all_slaves_are PREOP 2
+	refused "has not its native driver; use its interface eth0" device use "$native"
+	insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
+	ethercat device bind --force eth0
+	ethercat device use "$native"
+	wait_for 60 all_slaves_are PREOP 22
+	ethercat devices | grep "^- .* $native .*Master0 main .*in use"
+	ethercat device use veth0
+	wait_for 60 all_slaves_are PREOP 2
+	ethercat device unbind "$native"
+	ethercat device use eth0
+	wait_for 60 all_slaves_are PREOP 22
+	run env LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000 --wired
+	[ "$status" = 0 ]
+	kill $sim
+	ip link del veth0
+}

@@ -125,7 +125,7 @@ refused() {
 	refused "eth2 has no native driver: no native driver for 10ec:8168" bind eth2
 	refused "usb0 has no native driver: not a PCI device" bind usb0
 	refused "there is no network card eth9" bind eth9
-	refused "use bind or unbind" bond enp1s0
+	refused "use bind, unbind or use" bond enp1s0
 	refused "missing argument" bind
 }
 
@@ -139,6 +139,20 @@ refused() {
 	ln -s "$FAKE_SYS" "$FAKE_SYS/bus/pci/drivers/ec_intel/0000:01:00.0"
 	run ethercat device bind --force enp1s0
 	[ "$status" -eq 0 ]
+}
+
+@test "use: the name by which the master knows the card" {
+	card 0000:05:00.0 0x8086 0x10d3 ec_intel
+	for name in enp1s0 02:00:00:00:00:01 sim1 ff:ff:ff:ff:ff:ff; do
+		[ "$(log_of device use $name)" = "use 0 $name" ]
+	done
+	[ "$(log_of device use 05:00.0)" = "use 0 0000:05:00.0" ]
+	[ "$(log_of device use 0000:05:00.0)" = "use 0 0000:05:00.0" ]
+	refused "0000:01:00.0 has not its native driver; use its interface enp1s0" use 01:00.0
+	rm "$FAKE_SYS/bus/pci/devices/0000:04:00.0/driver"
+	refused "0000:04:00.0 has no driver; 'ethercat device bind 0000:04:00.0' first" use 04:00.0
+	refused "there is no network card eth9" use eth9
+	refused "/etc/modprobe.d" use --boot enp1s0
 }
 
 @test "unbind gives the card back" {
@@ -360,7 +374,7 @@ in_read_only_etc() {
 
 @test "completion of device" {
 	completion_of_fake
-	[ "$(complete_line ethercat device "")" = "bind unbind" ]
+	[ "$(complete_line ethercat device "")" = "bind unbind use" ]
 	[ "$(complete_line ethercat device bind en)" = enp1s0 ]
 	[ "$(complete_line ethercat device unbind 0000:04)" = 0000:04:00.0 ]
 	[[ " $(complete_line ethercat device bind eth1 --b) " == *" --boot "* ]]

@@ -780,6 +780,9 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 			return fail(ENOENT, "master 0 has no session");
 		record("release %d\n", fd - FD);
 		return 0;
+	case EC_IOC_DEVICE_USE:
+		record("use %d %s\n", fd - FD, ((struct ec_ioc_device_use *)arg)->name);
+		return 0;
 	case EC_IOC_DEBUG:
 		record("debug %d %u\n", fd - FD, ((struct ec_ioc_debug *)arg)->level);
 		return 0;

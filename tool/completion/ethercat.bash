@@ -82,8 +82,8 @@ _ethercat()
 			debug)	w="0 1 2" ;;
 			device)
 				case $prev in
-				bind|unbind)	w=$(_ethercat_values device) ;;
-				device)		w="bind unbind" ;;
+				bind|unbind|use) w=$(_ethercat_values device) ;;
+				device)		w="bind unbind use" ;;
 				*)		w= ;;
 				esac ;;
 			help)	w="$(_ethercat_values command) types" ;;

@@ -3,7 +3,10 @@
  * One slave whose outputs are wired to its inputs. Each cycle sends its number and expects an
  * earlier one back: the same number of cycles earlier each time (--exact), or a little.
  *
- * usage: echo [--exact] CYCLES PERIOD_US
+ * usage: echo [--exact|--trips] CYCLES PERIOD_US
+ *
+ * --trips: waits for its own value after each send and prints how long that took. It is no
+ * real-time task then, or a device with interrupts could not deliver the frame.
  *
  * Says "operational" when the exchange has begun; from then on cycles count. Every 100 ms a line
  * with the counters. Exit code 0: no wrong value, and with --exact no incomplete cycle.
@@ -21,6 +24,7 @@
 #include <ecrt.h>
 
 #define SETTLE	5	/* complete cycles in a row until values of before are out of the slave */
+#define TRIP_NS	5000000	/* lost after that */
 #define OLDEST	20	/* cycles; frames of a device that is interrupted come back late */
 
 static volatile sig_atomic_t stopped;
@@ -121,6 +125,63 @@ static void run(ec_master_t *m, ec_domain_t *d, unsigned long limit, int64_t per
 	show();
 }
 
+static int ascending(const void *a, const void *b)
+{
+	uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+	return (x > y) - (x < y);
+}
+
+/* ns until the program has the inputs of the frame that it sends with value @n; 0: lost */
+static uint32_t trip(ec_master_t *m, ec_domain_t *d, uint32_t n)
+{
+	const uint8_t *data = ecrt_domain_data(d);
+	int64_t begin = now_ns(), took;
+
+	ecrt_master_send(m);
+	do {
+		ecrt_master_receive(m);
+		ecrt_domain_process(d);
+		took = now_ns() - begin;
+		/* the slave had the value of the frame before when this one passed */
+		if (EC_READ_U32(data + in) == n - 1)
+			return (uint32_t)took;
+	} while (took < TRIP_NS);
+	return 0;
+}
+
+static bool run_trips(ec_master_t *m, ec_domain_t *d, unsigned long limit, int64_t period)
+{
+	uint32_t *took = calloc(limit, sizeof(*took));
+	int64_t next = now_ns();
+	ec_slave_config_state_t slave = { 0 };
+	unsigned long lost = 0, count = 0;
+	unsigned int row = 0;
+
+	for (uint32_t n = 1; took && !stopped && count < limit; n++) {
+		uint32_t t;
+
+		next += period;
+		sleep_until(next);
+		EC_WRITE_U32(ecrt_domain_data(d) + out, n);
+		ecrt_domain_queue(d);
+		t = trip(m, d, n);
+		ecrt_slave_config_state(sc, &slave);
+		row = slave.operational && (t || row >= SETTLE) ? row + 1 : 0;
+		if (row < SETTLE)
+			continue;
+		took[count++] = t;
+		lost += !t;
+	}
+	if (!took || count < limit)
+		return false;
+	qsort(took, count, sizeof(*took), ascending);
+	printf("trips %lu\nlost %lu\nmin_ns %u\nmedian_ns %u\np99_ns %u\nmax_ns %u\n", count, lost,
+	       took[0], took[count / 2], took[count * 99 / 100], took[count - 1]);
+	free(took);
+	return !lost;
+}
+
 /* The PDOs of the slave's EEPROM. */
 static int configure(ec_master_t *m, ec_domain_t *d)
 {
@@ -149,16 +210,17 @@ static int configure(ec_master_t *m, ec_domain_t *d)
 int main(int argc, char **argv)
 {
 	const struct sched_param priority = { .sched_priority = 80 };
+	bool trips = argc > 1 && !strcmp(argv[1], "--trips"), ok;
 	unsigned long cycles, period_us;
 	ec_master_t *m;
 	ec_domain_t *d;
 
 	exact = argc > 1 && !strcmp(argv[1], "--exact");
-	if (argc != 3 + exact)
+	if (argc != 3 + (exact || trips))
 		return 2;
-	cycles = strtoul(argv[1 + exact], NULL, 10);
-	period_us = strtoul(argv[2 + exact], NULL, 10);
-	if (!cycles || !period_us || period_us > 100000)
+	cycles = strtoul(argv[argc - 2], NULL, 10);
+	period_us = strtoul(argv[argc - 1], NULL, 10);
+	if (!cycles || cycles > 100000000 || !period_us || period_us > 100000)
 		return 2;
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	signal(SIGTERM, stop);
@@ -170,8 +232,14 @@ int main(int argc, char **argv)
 		return 1;
 	}
 	mlockall(MCL_CURRENT | MCL_FUTURE);
-	sched_setscheduler(0, SCHED_FIFO, &priority);
-	run(m, d, cycles, (int64_t)period_us * 1000);
+	if (trips) {
+		ok = run_trips(m, d, cycles, (int64_t)period_us * 1000);
+	} else {
+		sched_setscheduler(0, SCHED_FIFO, &priority);
+		run(m, d, cycles, (int64_t)period_us * 1000);
+		ok = !seen.wrong && seen.complete &&
+		     (!exact || (!seen.incomplete && !seen.late));
+	}
 	ecrt_release_master(m);
-	return seen.wrong || !seen.complete || (exact && (seen.incomplete || seen.late));
+	return !ok;
 }

@@ -53,6 +53,7 @@ const struct cmd cmds[] = {
 	CMD(RESET, BUS),
 	CMD(CYCLE_RESET, BUS),
 	CMD(END_DETACHED, BUS),
+	CMD(DEVICE_USE, BUS, RSV1(ec_ioc_device_use)),
 	CMD(RESERVE, BUS),
 	CMD(RELEASE, APP),
 	CMD(CREATE_DOMAIN, APP),
