@@ -89,7 +89,7 @@ slaves_are() {
 	rmmod ec_generic
 }
 
-@test "what cannot be is refused, and nothing changes" {
+@test "devices that are absent, invalid or of others are refused, and nothing changes" {
 	refused 'sim2 is the device of master 1' device use -m0 sim2
 	refused 'there is no network card eth9' device use -m0 eth9
 	refused 'no driver offers sim9' device use -m0 sim9
@@ -144,10 +144,14 @@ slaves_are() {
 	done >/dev/null 2>&1 3>&- &
 	readers+=" $!"
 	while :; do
-		timeout -s KILL 0.0$((RANDOM % 9 + 1)) "$EC_BUILD/tool/ethercat" device use -m0 sim1 || true
+		timeout -s KILL 0.0$((RANDOM % 9 + 1)) \
+			"$EC_BUILD/tool/ethercat" device use -m0 sim1 || true
 	done >/dev/null 2>&1 3>&- &
 	readers+=" $!"
-	while :; do ethercat rescan || true; timeout 1 "$EC_BUILD/apps/cyclic" || true; done >/dev/null 2>&1 3>&- &
+	while :; do
+		ethercat rescan || true
+		timeout 1 "$EC_BUILD/apps/cyclic" || true
+	done >/dev/null 2>&1 3>&- &
 	readers+=" $!"
 	done=0
 	for i in {1..50}; do
