@@ -16,7 +16,7 @@
 
 set -u
 cd "$(dirname "$0")/.." || exit 1
-[ $# -gt 0 ] || set -- tests/*/*.bats tests/*/*.bash
+[ $# -gt 0 ] || set -- tests/*/*.bats tests/*/*.bash tests/system/long/*.ba*
 passed=0 failed=0
 
 # the files, each command that goes on in the next line joined to one line

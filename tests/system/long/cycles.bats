@@ -16,7 +16,9 @@ teardown_file() { stop; }
 	tell 'lose rate=1000000ppm'
 	sleep 0.001
 	tell 'lose rate=0ppm'
-	! wait $app
+	rc=0
+	wait $app || rc=$?
+	[ $rc != 0 ]
 	cat "$BATS_TEST_TMPDIR/out"
 	[ "$(value incomplete)" -ge 1 ]
 	[ "$(lost_frames)" -gt "$before" ]

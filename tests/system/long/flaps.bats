@@ -46,7 +46,7 @@ look() {
 # where frames were lost: not by the master if the card of the segment has dropped them
 frames_of_segment() {
 	grep -H . /sys/class/net/eth1/statistics/rx_{packets,dropped,missed_errors,fifo_errors}
-	cat /sys/kernel/debug/ec_sim/eth1 | head -n 20
+	head -n 20 /sys/kernel/debug/ec_sim/eth1
 	ethercat master
 }
 
