@@ -4,9 +4,9 @@
 # What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
 # all of tests/system on all kernels, among them one that reports data races and one that reports
 # wrong use of memory, locks and DMA; with a native network card of three models, also behind an
-# IOMMU, the files that the card matters to; a million cycles of it,
-# also while its cable is pulled. The last line is "N passed, N failed"; results with their date
-# are in Documentation/testing.rst.
+# IOMMU, the files that the card matters to; a million cycles of it, also while its cable is
+# pulled. The last line is "N passed, N failed"; results with their date are in
+# Documentation/testing.rst.
 #
 # usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|KERNEL...]
 

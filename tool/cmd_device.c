@@ -207,8 +207,8 @@ const struct cmd cmd_device = {
 		"use gives the card to a master (-m), which gives its present one back and scans the\n"
 		"bus; with the native driver, or by ec_generic. DEVICE may also be sim0 of the simulator.\n"
 		"Refused while an application has the master; an interface with an IP address needs --force.\n"
-		"If the card cannot be used, the master\n"
-		"keeps the one it has. Lasts until ec_master is unloaded.\n",
+		"If the card cannot be used, the master keeps its present one. Lasts until ec_master is\n"
+		"unloaded.\n",
 	.json = "none",
 	.min_args = 2,
 	.max_args = 2,

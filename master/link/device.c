@@ -208,9 +208,9 @@ void ec_device_unregister(struct ec_links *l)
 static void set_main(struct ec_links *l, const char *name)
 {
 	lockdep_assert_held(&devices_lock);
-	spin_lock(&l->main_lock);
+	raw_spin_lock(&l->main_lock);
 	strscpy(l->main, name, sizeof(l->main));
-	spin_unlock(&l->main_lock);
+	raw_spin_unlock(&l->main_lock);
 }
 
 /* Another master that has this device or waits for it. */

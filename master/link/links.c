@@ -23,7 +23,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	l->base = base;
 	l->ops = ops;
 	strscpy(l->main, main, sizeof(l->main));
-	spin_lock_init(&l->main_lock);
+	raw_spin_lock_init(&l->main_lock);
 	l->backup = backup;
 	l->carry = BIT(0);
 	l->max_datagrams = 15;
@@ -62,7 +62,7 @@ void ec_links_exit(struct ec_links *l)
  * @buf: result: name, MAC address or PCI address as the user gave it; "": none
  * @size: of @buf
  *
- * Context: Process.
+ * Context: Any but interrupts. RT-safe: bounded, no sleep, no allocation.
  * Return: @buf.
  */
 const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size)
@@ -71,9 +71,9 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 		strscpy(buf, l->backup ?: "", size);
 		return buf;
 	}
-	spin_lock(&l->main_lock);
+	raw_spin_lock(&l->main_lock);
 	strscpy(buf, l->main, size);
-	spin_unlock(&l->main_lock);
+	raw_spin_unlock(&l->main_lock);
 	return buf;
 }
 
