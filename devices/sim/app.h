@@ -12,6 +12,7 @@
 
 #include "../../master/wire/al.h"
 #include "../../master/wire/eoe.h"
+#include "../../master/wire/foe.h"
 #include "../../master/wire/soe.h"
 #include "../../master/wire/voe.h"
 #include "codes.h"
@@ -25,6 +26,8 @@
 #define EC_APP_SDO_BUF		2048	/* largest object, complete access too */
 #define EC_APP_EMCY		8	/* emergencies waiting */
 #define EC_APP_VOE		4	/* VoE messages waiting */
+#define EC_APP_FOE_KIB		64	/* largest file of a slave without foe= */
+#define EC_APP_FOE_NAME		32	/* name of the file */
 #define EC_APP_ESC_ET1100	0x11
 #define EC_APP_ESC_ET1200	0x12
 #define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
@@ -271,6 +274,7 @@ struct ec_app_object {
  * @id: value of the identification request, 0: not supported
  * @soe: SoE with so many drives, 0: no SoE
  * @voe: VoE with this type in the answers, 0: no VoE
+ * @foe: KiB of a file, 0: EC_APP_FOE_KIB where the table or the image has FoE
  */
 struct ec_app_params {
 	u32 vendor;
@@ -284,6 +288,7 @@ struct ec_app_params {
 	u16 id;
 	u8 soe;
 	u16 voe;
+	u16 foe;
 };
 
 /**
@@ -394,6 +399,40 @@ struct ec_app_soe {
 };
 
 /**
+ * struct ec_app_foe - FoE server of a slave: it keeps one file
+ * @flash: the file
+ * @cap: bytes at @flash
+ * @size: bytes of the file
+ * @valid: there is one; a write makes it invalid until its end
+ * @name: of the file
+ * @name_len: bytes of it
+ * @opcode: of the transfer: EC_FOE_RRQ, EC_FOE_WRQ, 0: none
+ * @packet: number of the last DATA
+ * @at: read: where its data are; write: bytes so far
+ * @n: read: its bytes
+ * @busy: BUSY answers after each page of flash
+ * @left: of these, for the present page
+ * @password: of the last request
+ * @writes: files written since power-on
+ */
+struct ec_app_foe {
+	u8 *flash;
+	u32 cap;
+	u32 size;
+	bool valid;
+	char name[EC_APP_FOE_NAME];
+	u8 name_len;
+	u8 opcode;
+	u32 packet;
+	u32 at;
+	u16 n;
+	u8 busy;
+	u8 left;
+	u32 password;
+	u32 writes;
+};
+
+/**
  * struct ec_app_mbox - mailbox of a slave
  * @srv: SDO server
  * @cap: bytes of each of the buffers
@@ -499,6 +538,7 @@ struct ec_app_event {
  * @eep_due: when it answers for the emulated EEPROM
  * @mbox: mailbox
  * @soe: SoE server
+ * @foe: FoE server
  * @ip: IP parameters
  */
 struct ec_app {
@@ -534,6 +574,7 @@ struct ec_app {
 	u64 eep_due;
 	struct ec_app_mbox mbox;
 	struct ec_app_soe soe;
+	struct ec_app_foe foe;
 	struct ec_app_ip ip;
 };
 
@@ -550,6 +591,7 @@ struct ec_app {
  * @clock_start: its clock at power-on
  * @eeprom_emulated: its CPU stands in for the EEPROM
  * @no_ip: its EoE does not support IP
+ * @foe_busy: BUSY answers of its FoE after each page of flash
  * @clock_bits: of its clock, 64, 32, EC_APP_CLOCK_DELAY (receive times only) or
  *	EC_APP_NO_CLOCK; 0: as the model
  */
@@ -565,6 +607,7 @@ struct ec_app_config {
 	u64 clock_start;
 	bool eeprom_emulated;
 	bool no_ip;
+	u8 foe_busy;
 	u8 clock_bits;
 };
 
@@ -626,6 +669,11 @@ void ec_app_soe_reset(struct ec_app *app);
 int ec_app_soe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 int ec_app_voe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 int ec_app_voe_unasked(const struct ec_app_voe *m, u8 *tx, size_t cap);
+
+/* slave_foe.c */
+u32 ec_app_foe_bytes(const struct ec_app_model *m);
+void ec_app_foe_reset(struct ec_app *app);
+int ec_app_foe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 
 /* slave_eoe.c */
 int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);

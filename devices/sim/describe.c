@@ -46,7 +46,7 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 {
 	s64 vendor = 0, product = 0, revision = 0, out = -1, in = -1, mbox = 0;
 	struct ec_desc_word w;
-	s64 id = 0, soe = 0, voe = 0;
+	s64 id = 0, soe = 0, voe = 0, foe = 0;
 	int ret;
 
 	ret = ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor);
@@ -66,6 +66,8 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		ret = ec_desc_number(d, "soe", 0, EC_SOE_DRIVES, &soe);
 	if (!ret)
 		ret = ec_desc_number(d, "voe", 0, 0xFFFF, &voe);
+	if (!ret)
+		ret = ec_desc_number(d, "foe", 0, 16384, &foe);
 	if (ret)
 		return ret;
 	p->vendor = (u32)vendor;
@@ -77,6 +79,7 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 	p->id = (u16)id;
 	p->soe = (u8)soe;
 	p->voe = (u16)voe;
+	p->foe = (u16)foe;
 
 	w = ec_desc_value(d, "mapping");
 	if (ec_desc_is(&w, "fixed"))
@@ -107,7 +110,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 {
 	u64 response = d->response_ns, transition = d->transition_ns;
 	u64 delay = 0, clock = 0, op_timeout = d->op_timeout_ns;
-	s64 alias = 0, serial = 0, drift = 0;
+	s64 alias = 0, serial = 0, drift = 0, foe_busy = 0;
 	struct ec_desc_word w;
 	int ret;
 
@@ -131,6 +134,8 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 		ret = ec_desc_time(d, "op_timeout", TIME_MAX, &op_timeout);
 	if (!ret)
 		ret = ec_desc_time(d, "cable", 1000000, cable_ns);
+	if (!ret)
+		ret = ec_desc_number(d, "foe_busy", 0, 255, &foe_busy);
 	if (ret)
 		return ret;
 	w = ec_desc_value(d, "eeprom");
@@ -155,6 +160,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	c->response_ns = (u32)min(response, (u64)~0u);
 	c->transition_ns = (u32)min(transition, (u64)~0u);
 	c->op_timeout_ns = op_timeout;
+	c->foe_busy = (u8)foe_busy;
 	return 0;
 }
 
@@ -164,7 +170,7 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->revision == b->revision && a->out == b->out &&
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
-	       a->soe == b->soe && a->voe == b->voe;
+	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe;
 }
 
 static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
@@ -307,8 +313,8 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	if (!ret && c.eeprom_emulated && m->emulation)
 		ret = ec_desc_fail(d, "'", name,
 				   "' has no CPU to emulate an EEPROM; remove eeprom=");
-	if (!ret && (p.soe || p.voe) && (m->emulation || !m->dev.std.rx_len))
-		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe= and voe=");
+	if (!ret && (p.soe || p.voe || p.foe) && (m->emulation || !m->dev.std.rx_len))
+		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe=, voe= and foe=");
 	for (u32 i = 0; i < count && !ret; i++) {
 		if (i)
 			c.clock_start = (u64)ec_sim_random(d->sim) << 4;

@@ -304,7 +304,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 		       max(d->boot.rx_len, d->boot.tx_len));
 	u16 info = (u16)max_t(u32, 2 + 2 * m->n_objects, 300);
 	u16 image = max(m->max_bytes[EC_APP_OUT], m->max_bytes[EC_APP_IN]);
-	size_t size, at[10];
+	size_t size, at[11];
 	struct ec_app *app;
 	u8 *p;
 
@@ -320,7 +320,8 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	at[7] = at[6] + 3 * (size_t)mbox;
 	at[8] = at[7] + info;
 	at[9] = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
-	size = at[9] + m->params.soe * ec_app_soe_bytes();
+	at[10] = at[9] + m->params.soe * ec_app_soe_bytes();
+	size = at[10] + ec_app_foe_bytes(m);
 
 	app = ec_sim_alloc(m->sim, size);
 	if (!app)
@@ -342,6 +343,8 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	app->sdo_buf = p + at[8];
 	app->soe.values = p + at[9];
 	app->soe.drives = m->params.soe;
+	app->foe.flash = p + at[10];
+	app->foe.cap = ec_app_foe_bytes(m);
 	app->model = m;
 	m->refs++;
 	return app;
@@ -396,6 +399,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->response_ns = cfg->response_ns;
 	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->ip.refuse = cfg->no_ip;
+	app->foe.busy = cfg->foe_busy;
 
 	image = ec_sim_alloc(sim, model->eeprom_len);
 	if (!image) {

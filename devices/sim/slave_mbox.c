@@ -43,6 +43,7 @@ void ec_app_mbox_reset(struct ec_app *app)
 	m->tx_counter = 0;
 	m->n_emcy = 0;
 	m->n_voe = 0;
+	ec_app_foe_reset(app);
 	memset(&m->info, 0, sizeof(m->info));
 	m->info.done = true;
 	if (m->cap)
@@ -53,7 +54,8 @@ void ec_app_mbox_reset(struct ec_app *app)
 /* bytes a message to the master may have, header included */
 static u16 tx_size(const struct ec_app *app)
 {
-	return min(app->mbox.cap, app->esc->sm[1].page.len);
+	/* the master may write anything into the page of a SyncManager */
+	return max_t(u16, min(app->mbox.cap, app->esc->sm[1].page.len), EC_MBOX_HDR);
 }
 
 /* A message of @len bytes lies behind the header place of the out buffer. */
@@ -278,6 +280,8 @@ static bool speaks(const struct ec_app *app, u8 type)
 		return p & EC_SII_PROTO_COE;
 	case EC_MBOX_EOE:
 		return p & EC_SII_PROTO_EOE;
+	case EC_MBOX_FOE:
+		return p & EC_SII_PROTO_FOE;
 	case EC_MBOX_SOE:
 		return p & EC_SII_PROTO_SOE && app->soe.drives;
 	case EC_MBOX_VOE:
@@ -308,6 +312,8 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		out_error(app, EC_MBOX_ERR_PROTOCOL, due);
 	else if (h.type == EC_MBOX_EOE)
 		serve(app, EC_MBOX_EOE, ec_app_eoe, r.p, h.len, due);
+	else if (h.type == EC_MBOX_FOE)
+		serve(app, EC_MBOX_FOE, ec_app_foe, r.p, h.len, due);
 	else if (h.type == EC_MBOX_SOE)
 		serve(app, EC_MBOX_SOE, ec_app_soe, r.p, h.len, due);
 	else if (h.type == EC_MBOX_VOE)

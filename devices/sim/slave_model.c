@@ -467,7 +467,7 @@ static u32 generic_revision(const struct ec_app_model *m)
 {
 	const struct ec_app_params *p = &m->params;
 	u64 other = p->voe | (u64)p->soe << 16 | (u64)p->cpu << 24 |
-		    (u64)!!p->id << 25;
+		    (u64)!!p->id << 25 | (u64)!!p->foe << 30;
 
 	if (m->dev.mapping != m->table->mapping)
 		other |= (u64)m->dev.mapping << 26;
@@ -517,6 +517,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 		m->dev.protocols |= EC_SII_PROTO_SOE;
 	if (params->voe)
 		m->dev.protocols |= EC_SII_PROTO_VOE;
+	if (params->foe)
+		m->dev.protocols |= EC_SII_PROTO_FOE;
 	*err = ec_app_dev_is_generic(dev) ? ec_app_dev_generic(m) : 0;
 	if (ec_app_dev_is_generic(dev) && !params->revision)
 		m->dev.revision = generic_revision(m);
@@ -541,8 +543,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
  * @sim: segment whose memory it takes
  * @eeprom: image
  * @len: bytes in it
- * @params: of these only @mapping and @id count, and @soe and @voe where the
- *          image has the protocol
+ * @params: of these only @mapping and @id count, and @soe, @voe and @foe where
+ *          the image has the protocol
  * @err: -ENOMEM without memory, -EINVAL: not an image
  *
  * The dictionary is made from the PDOs of the image.
