@@ -19,6 +19,7 @@
 #include <linux/ioctl.h>
 #include <linux/types.h>
 #include "ethercat_map.h"
+#include "ethercat_mbox.h"
 
 #define EC_UAPI_VERSION		2	/* 2: struct ec_status has @sequence */
 #define EC_UAPI_STRING		64
@@ -26,7 +27,6 @@
 #define EC_UAPI_WARNING		192
 #define EC_UAPI_PORTS		4
 #define EC_UAPI_RATES		3	/* averages over 1, 10, 60 s */
-#define EC_IP_NAME		32
 #define EC_UAPI_DC_WINDOW_NS	1000	/* sync window of a clock */
 #define EC_UAPI_NONE16		0xffff
 #define EC_UAPI_NONE32		0xffffffff
@@ -37,6 +37,7 @@
 #define EC_FEATURE_KERNEL_CYCLE	(1ULL << 2)
 #define EC_FEATURE_SOE		(1ULL << 3)
 #define EC_FEATURE_VOE		(1ULL << 4)
+#define EC_FEATURE_FOE		(1ULL << 5)
 
 struct ec_ioc_version {
 	__u32 flags;
@@ -267,33 +268,6 @@ struct ec_ioc_reg {
 
 #define EC_REG_FLAG_EMERGENCY	1	/* write by ring position, unscanned bus */
 
-struct ec_ioc_sdo {
-	__u32 flags;		/* EC_SDO_FLAG_* */
-	__u16 position;		/* in */
-	__u16 index;		/* in */
-	__u8 subindex;		/* in */
-	__u8 reserved[3];
-	__u32 abort_code;	/* out */
-	__u32 size;		/* download: bytes; upload: buffer size, then result */
-	__u32 timeout_ms;	/* in; 0: default */
-	__u64 data;
-};
-
-#define EC_SDO_FLAG_COMPLETE	1
-
-/* value of an IDN of a servo drive */
-struct ec_ioc_soe {
-	__u32 flags;
-	__u16 position;		/* in */
-	__u16 idn;		/* in */
-	__u8 drive;		/* in: 0..7 */
-	__u8 reserved[3];
-	__u32 error_code;	/* out: of the slave, after -EIO */
-	__u32 size;		/* write: bytes; read: buffer size, then result */
-	__u32 timeout_ms;	/* in; 0: default */
-	__u64 data;
-};
-
 struct ec_ioc_state {
 	__u32 flags;
 	__u16 position;		/* in */
@@ -311,34 +285,6 @@ struct ec_ioc_device_use {
 	__u32 flags;		/* none yet */
 	__u32 reserved;
 	char name[EC_UAPI_STRING];	/* MAC address, PCI address or name of the device */
-};
-
-/* struct ec_ip_params.which */
-#define EC_IP_MAC		0x01
-#define EC_IP_ADDRESS		0x02
-#define EC_IP_MASK		0x04
-#define EC_IP_GATEWAY		0x08
-#define EC_IP_DNS		0x10
-#define EC_IP_HOSTNAME		0x20
-#define EC_IP_ALL		0x3f
-
-/* IP parameters of a slave with EoE; addresses in network order */
-struct ec_ip_params {
-	__u32 which;		/* EC_IP_*: the valid fields */
-	__u8 mac[6];
-	__u8 reserved[2];
-	__u8 ip[4];
-	__u8 mask[4];
-	__u8 gateway[4];
-	__u8 dns[4];
-	char name[EC_IP_NAME];	/* terminated by 0 if it is shorter */
-};
-
-struct ec_ioc_ip {
-	__u32 flags;
-	__u16 position;		/* in */
-	__u16 result;		/* out: EoE result code, with -EIO; 0: no reply */
-	struct ec_ip_params params;
 };
 
 /* configured by the application -------------------------------------------*/
@@ -392,30 +338,6 @@ struct ec_ioc_config_entry {
 	__u16 entry_index;
 	__u8 subindex;
 	__u8 bits;
-};
-
-struct ec_ioc_config_sdo {
-	__u32 flags;		/* out: EC_SDO_FLAG_COMPLETE */
-	__u32 index;		/* in */
-	__u32 sdo_pos;		/* in */
-	__u16 sdo_index;
-	__u8 subindex;
-	__u8 reserved;
-	__u32 size;		/* in: buffer size; out: full size */
-	__u32 reserved2;
-	__u64 data;
-};
-
-struct ec_ioc_config_idn {
-	__u32 flags;
-	__u32 index;		/* in */
-	__u32 idn_pos;		/* in */
-	__u16 idn;
-	__u8 drive;
-	__u8 state;		/* state in which the master writes it: 2 PREOP, 4 SAFEOP */
-	__u32 size;		/* in: buffer size; out: full size */
-	__u32 reserved;
-	__u64 data;
 };
 
 struct ec_ioc_config_flag {
@@ -576,16 +498,6 @@ struct ec_ioc_sc_pdo {
 	__u8 bits;
 };
 
-struct ec_ioc_sc_sdo {
-	__u32 flags;		/* EC_SDO_FLAG_COMPLETE */
-	__u32 config;
-	__u16 index;
-	__u8 subindex;
-	__u8 reserved;
-	__u32 size;
-	__u64 data;
-};
-
 #define EC_REG_ENTRY_BY_POS	1
 #define EC_REG_ENTRY_ALIGNED	2	/* -EFAULT if the entry is not byte-aligned */
 
@@ -631,17 +543,6 @@ struct ec_ioc_sc_timeout {
 	__u32 timeout_ms;
 };
 
-/* a startup IDN */
-struct ec_ioc_sc_idn {
-	__u32 flags;
-	__u32 config;
-	__u16 idn;
-	__u8 drive;		/* 0..7 */
-	__u8 state;		/* in: 2 PREOP, 4 SAFEOP */
-	__u32 size;
-	__u64 data;
-};
-
 /* kind of struct ec_ioc_sc_request */
 #define EC_REQUEST_SDO		0
 #define EC_REQUEST_REG		1
@@ -662,12 +563,6 @@ struct ec_ioc_sc_emerg {
 	__u32 config;
 	__u32 count;		/* emergencies to keep */
 	__u32 reserved;
-};
-
-struct ec_ioc_sc_ip {
-	__u32 flags;
-	__u32 config;		/* in */
-	struct ec_ip_params params;
 };
 
 struct ec_ioc_activate {
@@ -831,6 +726,8 @@ struct ec_ioc_wait {
 #define EC_IOC_SOE_WRITE	EC_IOC_RW(0x2a, struct ec_ioc_soe)
 #define EC_IOC_END_DETACHED	EC_IOC_N(0x2b)
 #define EC_IOC_DEVICE_USE	EC_IOC_W(0x2c, struct ec_ioc_device_use)
+#define EC_IOC_FOE_READ		EC_IOC_RW(0x2d, struct ec_ioc_foe)
+#define EC_IOC_FOE_WRITE	EC_IOC_RW(0x2e, struct ec_ioc_foe)
 
 /* reserved by this open file: the application */
 #define EC_IOC_RESERVE		EC_IOC_N(0x40)

@@ -206,7 +206,7 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 }
 
 /* A buffer for a result may be larger than needed; a handler refuses a value that is too large. */
-static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
+static int get_buffer(struct ec_call *call, const struct ec_ioctl *op)
 {
 	const struct ec_ioc_buffer *b = &op->buffer;
 	u64 address = *(u64 *)(call->arg + b->address);
@@ -220,7 +220,7 @@ static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user
 		return -ENOMEM;
 	if (b->out)
 		return 0;
-	if (!user)
+	if (!call->user)
 		memcpy(call->data, (void *)(uintptr_t)address, call->size);
 	else if (copy_from_user(call->data, u64_to_user_ptr(address), call->size))
 		return -EFAULT;
@@ -228,13 +228,13 @@ static int get_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user
 }
 
 /* No lock is held: mmap() takes session lock with the memory of the process locked. */
-static int put_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user)
+static int put_buffer(struct ec_call *call, const struct ec_ioctl *op)
 {
 	const struct ec_ioc_buffer *b = &op->buffer;
 	u64 address = *(u64 *)(call->arg + b->address);
 	u32 size = min(*(u32 *)(call->arg + b->size), call->size);
 
-	if (!user)
+	if (!call->user)
 		memcpy((void *)(uintptr_t)address, call->data, size);
 	else if (copy_to_user(u64_to_user_ptr(address), call->data, size))
 		return -EFAULT;
@@ -253,13 +253,13 @@ static int put_buffer(struct ec_call *call, const struct ec_ioctl *op, bool user
  */
 int ec_call_run(struct ec_file *f, const struct ec_ioctl *op, void *arg, bool user)
 {
-	struct ec_call call = { .file = f, .master = f->master, .arg = arg };
-	int ret = op->buffer.most ? get_buffer(&call, op, user) : 0;
+	struct ec_call call = { .file = f, .master = f->master, .arg = arg, .user = user };
+	int ret = op->buffer.most ? get_buffer(&call, op) : 0;
 
 	if (!ret)
 		ret = execute(&call, op);
 	if (!ret && op->buffer.out)
-		ret = put_buffer(&call, op, user);
+		ret = put_buffer(&call, op);
 	kvfree(call.data);
 	ec_slave_unref(call.slave);
 	return ret;

@@ -48,6 +48,8 @@ CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe
 	RSV1(ec_ioc_soe))
 CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
 	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV1(ec_ioc_soe))
+CMD(EC_IOC_FOE_READ, ec_ioc_foe_read, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
+CMD(EC_IOC_FOE_WRITE, ec_ioc_foe_write, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
 CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
 	RSV(FIELD(ec_ioc_ip, params.reserved)))

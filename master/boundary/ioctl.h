@@ -26,6 +26,7 @@ struct ec_slave;
  * @domain: domain of @session
  * @slave: with a reference for the time of the command
  * @showing: in a show section
+ * @user: addresses in @arg are of the process
  */
 struct ec_call {
 	struct ec_file *file;
@@ -38,6 +39,7 @@ struct ec_call {
 	struct ec_domain *domain;
 	struct ec_slave *slave;
 	bool showing;
+	bool user;
 };
 
 int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg);

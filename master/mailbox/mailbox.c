@@ -14,6 +14,7 @@
 #include "mailbox.h"
 
 #define DRAIN	16	/* messages at most that no transfer expects */
+#define LAST_TRIES	50	/* one a millisecond */
 
 /* a message that waits for its reader */
 struct kept {
@@ -246,7 +247,7 @@ static bool read_at_once(const struct ec_mbox *mb)
 {
 	u32 slack = ec_access_slack_ns(mb->links);
 	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
-				  mb->sii->std.tx_size);
+				  ec_mbox_area(mb)->tx_size);
 
 	return mb->counts && slack != ~0u &&
 	       ec_links_acyclic_ns(mb->links) + ns <= slack / 2;
@@ -258,7 +259,8 @@ static bool read_at_once(const struct ec_mbox *mb)
  */
 static int fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind)
 {
-	u16 size = mb->sii->std.tx_size;
+	const struct ec_sii_mbox *area = ec_mbox_area(mb);
+	u16 size = area->tx_size;
 	struct ec_rbuf r;
 	int ret;
 
@@ -268,7 +270,7 @@ static int fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *
 	ret = blind ? 1 : full(mb);
 	if (ret <= 0)
 		return ret;
-	ret = once(mb, EC_CMD_FPRD, mb->sii->std.tx_offset, b->raw, size);
+	ret = once(mb, EC_CMD_FPRD, area->tx_offset, b->raw, size);
 	if (ret == -ETIMEDOUT && !full(mb)) {
 		repeat_request(mb);
 		mb->repeats = true;
@@ -484,7 +486,8 @@ static void encode(struct ec_mbox_buf *b, const struct ec_mbox_hdr *h, u16 size)
 static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		const struct until *until)
 {
-	u16 size = mb->sii->std.rx_size;
+	const struct ec_sii_mbox *area = ec_mbox_area(mb);
+	u16 size = area->rx_size;
 	struct ec_mbox_hdr h = { .len = len, .type = type };
 	unsigned int us = 50;
 	int ret;
@@ -496,7 +499,7 @@ static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 	h.counter = mb->counter;
 	for (;;) {
 		encode(b, &h, size);
-		ret = once(mb, EC_CMD_FPWR, mb->sii->std.rx_offset, b->raw, size);
+		ret = once(mb, EC_CMD_FPWR, area->rx_offset, b->raw, size);
 		if (ret != -EIO)
 			return ret == -ETIMEDOUT ? 0 : ret;
 		ret = over(mb, until) ?: ec_mbox_drain(mb, b);
@@ -543,16 +546,21 @@ static int recv(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, const struct
  * @message: bytes behind the mailbox header it needs at least
  *
  * Context: Process.
- * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EMSGSIZE for a
- * mailbox that is too small or larger than a datagram.
+ * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EAGAIN in BOOT, unless it is
+ * FoE; -EMSGSIZE for a mailbox that is too small or larger than a datagram.
  */
 int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 {
+	const struct ec_sii_mbox *area = ec_mbox_area(mb);
+
 	if (!ec_mbox_present(mb) || !(mb->sii->protocols & protocol))
 		return -EPROTONOSUPPORT;
+	/* BOOT is for files only */
+	if (area != &mb->sii->std && protocol != EC_SII_PROTO_FOE)
+		return -EAGAIN;
 	/* the EEPROM may say anything; a message is one datagram */
-	if (mb->sii->std.rx_size < EC_MBOX_HDR + message ||
-	    mb->sii->std.rx_size > EC_MBOX_MAX || mb->sii->std.tx_size > EC_MBOX_MAX)
+	if (area->rx_size < EC_MBOX_HDR + message || area->rx_size > EC_MBOX_MAX ||
+	    area->tx_size > EC_MBOX_MAX)
 		return -EMSGSIZE;
 	return 0;
 }
@@ -656,6 +664,40 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 	ret = over(mb, &until) ?: off(mb) ?: send(mb, type, b, len, &until);
 	up(&mb->lock);
 	return ret;
+}
+
+/**
+ * ec_mbox_send_last() - end a transfer at the slave, as well as it can be done
+ * @mb: mailbox that ec_mbox_check() has accepted
+ * @type: enum ec_mbox_type
+ * @b: message in @tx
+ * @len: bytes of the message
+ *
+ * Also for a caller that has been killed, so nothing is waited for but the mailbox.
+ *
+ * Context: Process. Waits for bus traffic.
+ */
+void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len)
+{
+	unsigned int i;
+
+	for (i = 0; i < LAST_TRIES && !ec_stop_all(mb->stop); i++) {
+		if (!down_trylock(&mb->lock)) {
+			struct until now = { .ns = 0 };
+			int ret;
+
+			renew(mb);
+			/* over after the first attempt */
+			ret = off(mb) ?: send(mb, type, b, len, &now);
+			/* it may be full until its own message is read */
+			if (ret == -ETIMEDOUT || ret == -EINTR)
+				ec_mbox_drain(mb, b);
+			up(&mb->lock);
+			if (ret != -ETIMEDOUT && ret != -EINTR)
+				return;
+		}
+		usleep_range(1000, 1500);
+	}
 }
 
 /* Poll for a VoE message with the lock held: its length, or -ENOMSG, or -errno. */

@@ -9,6 +9,8 @@
 #include <linux/types.h>
 #include <linux/wait.h>
 #include "../base/stop.h"
+#include "../wire/al.h"
+#include "../wire/mbox.h"
 #include "../wire/sii.h"
 
 struct ec_emerg;
@@ -16,6 +18,10 @@ struct ec_links;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
+
+enum ec_mbox_flag {
+	EC_MBOX_FILE,	/* a file is transferred */
+};
 
 /** struct ec_mbox - mailbox of a slave */
 struct ec_mbox {
@@ -50,6 +56,9 @@ struct ec_mbox {
 	bool answered;
 	/** @renew: the slave has been in INIT: the next holder of @lock resets these members */
 	bool renew;
+
+	/** @flags: bits EC_MBOX_... */
+	unsigned long flags;
 
 	/** @awaits: lock that the slave's worker waits for, NULL: none */
 	const struct semaphore *awaits;
@@ -118,6 +127,20 @@ static inline bool ec_mbox_present(const struct ec_mbox *mb)
 	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
 }
 
+/* The mailbox in use: BOOT has one of its own. */
+static inline const struct ec_sii_mbox *ec_mbox_area(const struct ec_mbox *mb)
+{
+	bool boot = (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) == EC_AL_BOOT;
+
+	return boot ? &mb->sii->boot : &mb->sii->std;
+}
+
+/* Bytes that a mailbox holds behind its header. */
+static inline size_t ec_mbox_room(u16 size)
+{
+	return clamp_t(size_t, size, EC_MBOX_HDR, EC_MBOX_MAX) - EC_MBOX_HDR;
+}
+
 /* the limit that a caller has set, if any, with the protocol's timeout as default */
 static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set, u32 timeout_ms)
 {
@@ -137,6 +160,7 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 		    size_t len);
 int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
+void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len);
 int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b);
 int ec_mbox_forget(struct ec_mbox *mb);
 void ec_mbox_poll(struct ec_mbox *mb);

@@ -97,6 +97,8 @@ static bool too_long(const struct cmd *c, unsigned char *arg)
 		((struct ec_ioc_sdo *)arg)->timeout_ms = 5;
 	if (c->nr == EC_IOC_SOE_READ || c->nr == EC_IOC_SOE_WRITE)
 		((struct ec_ioc_soe *)arg)->timeout_ms = 5;
+	if (c->nr == EC_IOC_FOE_READ || c->nr == EC_IOC_FOE_WRITE)
+		((struct ec_ioc_foe *)arg)->timeout_ms = 5;
 	if (c->nr == EC_IOC_WAIT)
 		((struct ec_ioc_wait *)arg)->timeout_us = 1000;
 	/* a shorter cycle would take the only CPU */
