@@ -9,7 +9,7 @@
 
 #include "out.h"
 
-#define MAX_INPUT	(16u << 20)
+#define MAX_INPUT	(256u << 20)
 
 int io_number(const char *what, const char *text, u64 max, u64 *v)
 {
@@ -62,7 +62,7 @@ static int read_stream(FILE *f, u8 **data, size_t *size)
 }
 
 /* a whole file, "-" is stdin; a NUL follows the data, which are to be freed */
-int io_read(const char *path, u8 **data, size_t *size)
+int io_read_any(const char *path, u8 **data, size_t *size)
 {
 	bool in = !strcmp(path, "-");
 	FILE *f = in ? stdin : fopen(path, "rb");
@@ -73,12 +73,18 @@ int io_read(const char *path, u8 **data, size_t *size)
 	err = read_stream(f, data, size);
 	if (!in)
 		fclose(f);
-	if (err)
-		return fail_full(err, NULL, 0, "cannot read %s", in ? "stdin" : path);
-	if (*size)
-		return 0;
+	return err ? fail_full(err, NULL, 0, "cannot read %s", in ? "stdin" : path) : 0;
+}
+
+/* the same; it must not be empty */
+int io_read(const char *path, u8 **data, size_t *size)
+{
+	int ret = io_read_any(path, data, size);
+
+	if (ret || *size)
+		return ret;
 	free(*data);
-	return fail("%s is empty", in ? "stdin" : path);
+	return fail("%s is empty", strcmp(path, "-") ? path : "stdin");
 }
 
 /* bytes of a value as typed, "-" takes it from stdin; to be freed */

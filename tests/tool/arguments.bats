@@ -63,14 +63,14 @@ ambiguous() {
 }
 
 @test "commands of later versions are unknown and have no abbreviation" {
-	for c in foe_read foe_write alias eoe sdos sii_write xml; do
+	for c in alias eoe sdos sii_write xml; do
 		for w in "$c" "$c --help" "help $c"; do
 			run real $w
 			[ "$status" -eq 1 ]
 			[[ ${lines[0]} == *"unknown command '$c': not part of version "* ]]
 		done
 	done
-	for c in foe foo al x xm sii_w; do
+	for c in al x xm sii_w; do
 		run real $c
 		[ "$status" -eq 1 ]
 		[[ ${lines[0]} == *"unknown command '$c'" ]]

@@ -18,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "../../include/uapi/ethercat.h"
 #include "../../tool/sys.h"
@@ -589,6 +590,46 @@ static int soe_write(struct ec_ioc_soe *x)
 	return 0;
 }
 
+static int foe_error(struct ec_ioc_foe *x, __u32 code)
+{
+	x->error_code = code;
+	return fail(EIO, "file: error");
+}
+
+/* file "slow" takes 1.5 s, with progress after 0.5 s */
+static int foe_read(struct ec_ioc_foe *x)
+{
+	static const char content[] = "\1\2binary\n";
+	volatile __u64 *done = (volatile __u64 *)(uintptr_t)x->done;
+
+	if (!strcmp(x->name, "none"))
+		return foe_error(x, 0x8001);
+	if (!strcmp(x->name, "strange"))
+		return foe_error(x, 0x9999);
+	if (!strcmp(x->name, "mute"))
+		return fail(ETIMEDOUT, "slave 2 did not answer in time");
+	if (!strcmp(x->name, "slow")) {
+		usleep(500000);
+		*done = 5;
+		usleep(1000000);
+	}
+	x->size = x->password == 7 ? 0 : sizeof(content) - 1;
+	memcpy((void *)(uintptr_t)x->data, content, x->size);
+	*done = x->size;
+	return 0;
+}
+
+static int foe_write(struct ec_ioc_foe *x)
+{
+	char what[128];
+
+	if (!strcmp(x->name, "full"))
+		return foe_error(x, 0x8003);
+	snprintf(what, sizeof(what), "foe %u %.64s 0x%08x ", x->position, x->name, x->password);
+	hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
+	return 0;
+}
+
 static int reg_read(struct ec_ioc_reg *x)
 {
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
@@ -764,6 +805,10 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return soe_read(arg);
 	case EC_IOC_SOE_WRITE:
 		return soe_write(arg);
+	case EC_IOC_FOE_READ:
+		return foe_read(arg);
+	case EC_IOC_FOE_WRITE:
+		return foe_write(arg);
 	case EC_IOC_REG_READ:
 		return reg_read(arg);
 	case EC_IOC_REG_WRITE:

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "files.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../master/wire/foe.h"
+#include "io.h"
+#include "out.h"
+#include "text.h"
+
+#define FIRST_MS	1000	/* what is done sooner needs no progress */
+#define NEXT_MS		200
+#define BAR		30	/* characters */
+
+/* what the thread shows that watches a transfer */
+struct watch {
+	const struct foe *f;
+	u64 done;	/* written by the kernel */
+	bool shown;
+	bool end;
+	pthread_mutex_t lock;
+	pthread_cond_t ended;
+};
+
+/* True: the transfer has ended. */
+static bool wait_ms(struct watch *w, long ms)
+{
+	double t = now_s() + (double)ms / 1000;
+	struct timespec until;
+
+	until.tv_sec = (time_t)t;
+	until.tv_nsec = (long)((t - (double)until.tv_sec) * 1e9);
+	while (!w->end && !pthread_cond_timedwait(&w->ended, &w->lock, &until))
+		;
+	return w->end;
+}
+
+static void show(struct watch *w)
+{
+	u64 done = __atomic_load_n(&w->done, __ATOMIC_RELAXED);
+	unsigned int n = w->f->size ? (unsigned int)(BAR * done / w->f->size) : 0;
+
+	w->shown = true;
+	/* how long the file is only a writer knows */
+	if (w->f->write)
+		fprintf(stderr, "\r[%.*s%*s] %3u %%, %llu of %u bytes", (int)min(n, BAR + 0u),
+			"##############################", (int)(BAR - min(n, BAR + 0u)), "",
+			w->f->size ? (unsigned int)(100 * done / w->f->size) : 0,
+			(unsigned long long)done, w->f->size);
+	else
+		fprintf(stderr, "\r%llu bytes", (unsigned long long)done);
+	fflush(stderr);
+}
+
+static void *watch_run(void *arg)
+{
+	struct watch *w = arg;
+	long ms = FIRST_MS;
+
+	pthread_mutex_lock(&w->lock);
+	for (; !wait_ms(w, ms); ms = NEXT_MS)
+		show(w);
+	pthread_mutex_unlock(&w->lock);
+	return NULL;
+}
+
+static bool watch_begin(struct watch *w, const struct tool *t, pthread_t *thread)
+{
+	pthread_condattr_t attr;
+	bool ok;
+
+	if (t->json || t->verbosity < 0 || !isatty(STDERR_FILENO))
+		return false;
+	pthread_mutex_init(&w->lock, NULL);
+	pthread_condattr_init(&attr);
+	pthread_condattr_setclock(&attr, CLOCK_MONOTONIC);
+	pthread_cond_init(&w->ended, &attr);
+	pthread_condattr_destroy(&attr);
+	ok = !pthread_create(thread, NULL, watch_run, w);
+	return ok;
+}
+
+static void watch_end(struct watch *w, pthread_t thread)
+{
+	pthread_mutex_lock(&w->lock);
+	w->end = true;
+	pthread_cond_signal(&w->ended);
+	pthread_mutex_unlock(&w->lock);
+	pthread_join(thread, NULL);
+	if (!w->shown)
+		return;
+	show(w);
+	fputc('\n', stderr);
+}
+
+/* The optional second argument. */
+int foe_password(int argc, char **argv, struct foe *f)
+{
+	u64 v = 0;
+
+	if (argc > 1 && io_number("password", argv[1], 0xffffffff, &v))
+		return 1;
+	f->password = (u32)v;
+	return 0;
+}
+
+static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write)
+{
+	const char *text = ec_foe_error_text(i->error_code);
+	char name[EC_FOE_NAME + 1] = "";
+
+	memcpy(name, i->name, EC_FOE_NAME);
+	string_clean(name, sizeof(name));
+	if (i->error_code && !text)
+		text = "unknown code";
+	if (text && i->error_code)
+		return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s': 0x%08x: %s",
+				d->master, i->position, write ? "write" : "read", name,
+				i->error_code, text);
+	return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s'", d->master, i->position,
+			write ? "write" : "read", name);
+}
+
+/* A read sets @f->size to what has come. */
+int foe_transfer(struct dev *d, const struct tool *t, struct foe *f)
+{
+	struct watch w = { .f = f };
+	struct ec_ioc_foe i = {
+		.password = f->password, .size = f->size, .data = (uintptr_t)f->data,
+		.done = (uintptr_t)&w.done,
+	};
+	struct ec_ioc_slave s;
+	pthread_t thread;
+	double begin;
+	bool watched;
+	int err;
+
+	if (!*f->name || strlen(f->name) > EC_FOE_NAME)
+		return usage_error("invalid file name '%s': expected 1 to %u characters", f->name,
+				   EC_FOE_NAME);
+	if (dev_select_single(d, t, &s))
+		return 1;
+	memcpy(i.name, f->name, strlen(f->name));
+	i.position = s.position;
+	begin = now_s();
+	watched = watch_begin(&w, t, &thread);
+	err = dev_ioctl(d, f->write ? EC_IOC_FOE_WRITE : EC_IOC_FOE_READ, &i);
+	if (watched)
+		watch_end(&w, thread);
+	if (err)
+		return failed(d, err, &i, f->write);
+	f->size = min(i.size, f->size);
+	if (t->verbosity > 0)
+		fprintf(stderr, "%u bytes in %.2f s\n", f->size, now_s() - begin);
+	out_u("master", d->master, NULL);
+	out_u("slave", s.position, NULL);
+	out_str("name", f->name, NULL);
+	out_u("size_bytes", f->size, NULL);
+	return 0;
+}

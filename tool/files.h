@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Files of slaves; functions print errors. */
+#ifndef EC_TOOL_FILES_H
+#define EC_TOOL_FILES_H
+
+#include "dev.h"
+
+/**
+ * struct foe - one transfer
+ * @write: to the slave
+ * @name: of the file on the slave
+ * @password: 0: none
+ * @data: its content, or room for it
+ * @size: bytes of it
+ */
+struct foe {
+	bool write;
+	const char *name;
+	u32 password;
+	u8 *data;
+	u32 size;
+};
+
+#define FOE_MAX		(256u << 20)	/* bytes of a file */
+
+int foe_password(int argc, char **argv, struct foe *f);
+int foe_transfer(struct dev *d, const struct tool *t, struct foe *f);
+
+#endif
