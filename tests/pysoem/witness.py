@@ -194,6 +194,22 @@ class Coe(Bus):
         self.assertEqual(od[0x1018].entries[2].bit_length, 32)
 
 
+class Foe(Bus):
+    def test_files(self):
+        s = self.s[bench.AXIS1]
+        for size in (1, 243, 244, 245, 488, 5000):  # a packet holds 244
+            data = bytes((i * 5 + size) & 0xff for i in range(size))
+            s.foe_write("fw.bin", 0, data, timeout=1000 * MS)
+            self.assertEqual(s.foe_read("fw.bin", 0, 8192, timeout=1000 * MS), data)
+
+    def test_absent_file(self):
+        s = self.s[bench.AXIS1]
+        s.foe_write("fw.bin", 0, b"content", timeout=1000 * MS)
+        # pysoem does not say why
+        self.assertEqual(s.foe_read("none", 0, 100, timeout=1000 * MS), b"")
+        self.assertEqual(s.foe_read("fw.bin", 0, 100, timeout=1000 * MS), b"content")
+
+
 class States(Bus):
     def test_forbidden_transition(self):
         s = self.s[bench.DRIVE1]

@@ -62,6 +62,18 @@ static uint32_t value(struct worker *w)
 	}
 }
 
+/* With random names no slave would be asked, and a random address might be one of ours. */
+static void fill_file(struct worker *w, struct ec_ioc_foe *f)
+{
+	f->data = (uint64_t)(unsigned long)(rnd(w) % 4 ? data : bad_pointers[rnd(w) % BAD_POINTERS]);
+	f->done = (uint64_t)(unsigned long)bad_pointers[rnd(w) % BAD_POINTERS];
+	f->size = rnd(w) % 64;
+	if (rnd(w) % 4)
+		memset(f->name, 0, sizeof(f->name));
+	if (rnd(w) % 8)
+		f->name[0] = 'a' + rnd(w) % 4;
+}
+
 static void fill(struct worker *w, const struct cmd *c, unsigned char *arg, size_t size)
 {
 	unsigned int fields = 1 + rnd(w) % 8;
@@ -81,6 +93,8 @@ static void fill(struct worker *w, const struct cmd *c, unsigned char *arg, size
 			memset(arg + c->reserved[r].offset, 0, c->reserved[r].size);
 	n = rnd(w) % 16 ? c->flags & rnd(w) : rnd(w);
 	memcpy(arg, &n, size < 4 ? size : 4);
+	if (c->nr == EC_IOC_FOE_READ || c->nr == EC_IOC_FOE_WRITE)
+		fill_file(w, (struct ec_ioc_foe *)arg);
 	if (!c->data)
 		return;
 	if (!(rnd(w) % 16))

@@ -119,6 +119,46 @@ static void check_sdo(int fd)
 	expect(s.size == 4 && data[0] == 2, "vendor id: %u bytes, %u", s.size, data[0]);
 }
 
+static void check_foe(int fd)
+{
+	struct ec_ioc_foe f = { .position = 2, .name = "file", .size = 3,
+				.data = (__u64)(unsigned long)"abc" };
+
+	expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), 0, "a file");
+	f.done = (__u64)(unsigned long)bad_pointers[1];
+	expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), 0, "a file, progress to nowhere");
+	f.data = (__u64)(unsigned long)data;
+	for (f.size = 0; f.size < 3; f.size++)
+		expect_errno(call(fd, EC_IOC_FOE_READ, &f), ENOBUFS, "a file into %u bytes",
+			     f.size);
+	f.size = ~0U;
+	expect_errno(call(fd, EC_IOC_FOE_READ, &f), 0, "a file");
+	expect(f.size == 3 && !memcmp(data, "abc", 3), "a file of %u bytes", f.size);
+	for (unsigned int i = 0; i < BAD_POINTERS; i++) {
+		f.size = 3;
+		f.data = (__u64)(unsigned long)bad_pointers[i];
+		expect_errno(call(fd, EC_IOC_FOE_READ, &f), EFAULT, "a file to %p",
+			     bad_pointers[i]);
+		expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), EFAULT, "a file from %p",
+			     bad_pointers[i]);
+		/* no file is left, and the slave takes the next one */
+		f.data = (__u64)(unsigned long)"abc";
+		expect_errno(call(fd, EC_IOC_FOE_READ, &f), EIO, "a file that was not written");
+		expect(f.error_code == 0x8001, "error code 0x%x", f.error_code);
+		f.size = 3;
+		expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), 0, "a file");
+	}
+	f.position = 0;
+	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EPROTONOSUPPORT, "file of a coupler");
+	f.position = 2;
+	memset(f.name, 'x', sizeof(f.name));
+	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EIO, "a name without end");
+	f.name[9] = '\n';
+	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EINVAL, "a name of two lines");
+	f.name[0] = 0;
+	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EINVAL, "no name");
+}
+
 static void check_soe(int fd)
 {
 	static const __u32 wrong[] = { 0, 64 * 1024 + 1, 1U << 20, 1U << 31, ~0U };
@@ -176,6 +216,7 @@ void check_values(void)
 	check_reg(fd);
 	check_sdo(fd);
 	check_soe(fd);
+	check_foe(fd);
 	check_sii(fd);
 	for (unsigned int i = 0; i < 256; i++) {
 		struct ec_ioc_state s = { .position = 1, .state = i };

@@ -47,8 +47,9 @@ const struct cmd cmds[] = {
 	CMD(REG_WRITE, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(SOE_READ, BUS, RSV1(ec_ioc_soe), DATA(ec_ioc_soe)),
 	CMD(SOE_WRITE, BUS, RSV1(ec_ioc_soe), DATA(ec_ioc_soe)),
-	CMD(FOE_READ, BUS, RSV1(ec_ioc_foe), DATA(ec_ioc_foe)),
-	CMD(FOE_WRITE, BUS, RSV1(ec_ioc_foe), DATA(ec_ioc_foe)),
+	/* their data are not copied before the slave has been asked: check_foe() */
+	CMD(FOE_READ, BUS, RSV1(ec_ioc_foe)),
+	CMD(FOE_WRITE, BUS, RSV1(ec_ioc_foe)),
 	CMD(STATE, BUS, RSV1(ec_ioc_state)),
 	CMD(RESCAN, BUS),
 	CMD(DEBUG, BUS),
