@@ -720,6 +720,7 @@ struct ec_ioc_wait {
 #define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)
 #define EC_IOC_RESET		EC_IOC_N(0x27)
 #define EC_IOC_CYCLE_RESET	EC_IOC_N(0x28)
+#define EC_IOC_SDO_INFO		EC_IOC_RW(0x2f, struct ec_ioc_sdo_info)
 #define EC_IOC_IP_SET		EC_IOC_RW(0x30, struct ec_ioc_ip)
 #define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
 #define EC_IOC_SOE_READ		EC_IOC_RW(0x29, struct ec_ioc_soe)

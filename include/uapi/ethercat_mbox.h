@@ -22,6 +22,28 @@ struct ec_ioc_sdo {
 
 #define EC_SDO_FLAG_COMPLETE	1
 
+/* struct ec_ioc_sdo_info.what */
+#define EC_SDO_INFO_LIST	1
+#define EC_SDO_INFO_OBJECT	3
+#define EC_SDO_INFO_ENTRY	5
+
+/*
+ * Object dictionary of a slave, as it describes itself (SDO information). In data the answer of
+ * ETG.1000.6 clause 5.6.3: indexes (of list 0: five counts), or the description with its index.
+ */
+struct ec_ioc_sdo_info {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 index;		/* in; of a list its type, 0..5 */
+	__u8 subindex;		/* in; 0 unless it is an entry */
+	__u8 what;		/* in: EC_SDO_INFO_* */
+	__u16 reserved;
+	__u32 abort_code;	/* out: of the slave, after -EIO */
+	__u32 size;		/* in: buffer size; out: bytes */
+	__u32 timeout_ms;	/* in; 0: default */
+	__u64 data;
+};
+
 /* value of an IDN of a servo drive */
 struct ec_ioc_soe {
 	__u32 flags;

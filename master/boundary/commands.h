@@ -40,6 +40,8 @@ CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
 	OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, SLAVE(ec_ioc_sdo),
 	IN(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_SDO_INFO, ec_ioc_sdo_info, F_WRITE, SLAVE(ec_ioc_sdo_info),
+	OUT(ec_ioc_sdo_info, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo_info))
 CMD(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
 	FLAGS(EC_REG_FLAG_EMERGENCY))
 CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),

@@ -11,6 +11,7 @@
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
 #include "../wire/coe.h"
+#include "../wire/sdoinfo.h"
 #include "../wire/soe.h"
 
 static int check_size(struct ec_call *call, u32 least, u32 most)
@@ -84,6 +85,42 @@ int ec_ioc_sdo_download(struct ec_call *call)
 	       sdo_failed(call, i, ec_coe_download(&call->slave->mbox, i->index, i->subindex,
 						   i->flags & EC_SDO_FLAG_COMPLETE, call->data,
 						   call->size, &i->abort_code, &limit));
+}
+
+static int info_failed(struct ec_call *call, const struct ec_ioc_sdo_info *i, int ret)
+{
+	char what[48];
+
+	if (i->what == EC_SDO_INFO_LIST)
+		scnprintf(what, sizeof(what), "list %u of objects", i->index);
+	else
+		scnprintf(what, sizeof(what), "description of 0x%04x:%02x", i->index, i->subindex);
+	if (ret == -EIO && i->abort_code)
+		return ec_refuse(call, ret, "%s: slave %u: error 0x%08x: %s", what, i->position,
+				 i->abort_code, ec_coe_abort_text(i->abort_code) ?: "unknown code");
+	if (ret == -ENOBUFS)
+		return ec_refuse(call, ret, "%s is larger than %u bytes", what, call->size);
+	return ec_ioc_mbox_failed(call, ret, i->position, "CoE", what);
+}
+
+int ec_ioc_sdo_info(struct ec_call *call)
+{
+	struct ec_ioc_sdo_info *i = call->arg;
+	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
+	struct ec_sdoinfo info;
+	int ret;
+
+	if (i->what != EC_SDO_INFO_LIST && i->what != EC_SDO_INFO_OBJECT &&
+	    i->what != EC_SDO_INFO_ENTRY)
+		return ec_refuse(call, -EINVAL, "unknown kind of SDO information %u", i->what);
+	if (i->subindex && i->what != EC_SDO_INFO_ENTRY)
+		return ec_refuse(call, -EINVAL, "only entries have a subindex");
+	ec_sdoinfo_init(&info, i->what, i->index, i->subindex, call->data, call->size);
+	ret = ec_coe_info(&call->slave->mbox, &info, &limit);
+	i->abort_code = info.abort;
+	ret = info_failed(call, i, ret);
+	i->size = ret ? 0 : info.size;
+	return ret;
 }
 
 int ec_ioc_sc_sdo(struct ec_call *call)

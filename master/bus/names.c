@@ -7,6 +7,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../base/grow.h"
+#include "../mailbox/coe.h"
 #include "slave.h"
 #include "../wire/sdoinfo.h"
 
@@ -45,26 +46,12 @@ struct answer {
 	u8 data[EC_MBOX_MAX];
 };
 
-static int rx(void *ctx, const u8 *buf, size_t len)
-{
-	struct answer *a = ctx;
-
-	/* fragments may go on for ever */
-	if (ktime_get_ns() > a->until)
-		return -ETIMEDOUT;
-	return ec_sdoinfo_rx(&a->info, buf, len);
-}
-
 /* One description; 0, or -errno. */
 static int ask(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b)
 {
-	struct ec_mbox_request req = {
-		.type = EC_MBOX_COE, .first = true, .limit.timeout_ms = ANSWER_MS, .rx = rx,
-		.ctx = a,
-	};
-	int len = ec_sdoinfo_tx(&a->info, b->tx, s->info.std.rx_size - EC_MBOX_HDR);
+	static const struct ec_mbox_limit limit = { .timeout_ms = ANSWER_MS };
 
-	return len < 0 ? len : ec_mbox_request(&s->mbox, &req, b, len);
+	return ec_coe_ask(&s->mbox, &a->info, a->until, &limit, b);
 }
 
 /* An entry of a simple object is called as the object. */

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "coe.h"
 #include "mailbox.h"
 #include "../wire/mbox.h"
 #include "../wire/sdo.h"
+#include "../wire/sdoinfo.h"
+
+#define INFO_MS	30000	/* for all fragments of one answer */
+
+/* The reply is too short; the mailbox is large enough. */
+static int rx_result(int ret)
+{
+	return ret == -EMSGSIZE ? -EBADMSG : ret;
+}
 
 static int rx(void *ctx, const u8 *buf, size_t len)
 {
-	int ret = ec_sdo_rx(ctx, buf, len);
-
-	/* the reply is too short; the mailbox is large enough */
-	return ret == -EMSGSIZE ? -EBADMSG : ret;
+	return rx_result(ec_sdo_rx(ctx, buf, len));
 }
 
 static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf *b, size_t cap,
@@ -121,5 +128,78 @@ int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const 
 		*abort = s.abort;
 	ec_mbox_dbg_result(mb, ret, "download 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,
 			    sub, *abort, size);
+	return ret;
+}
+
+/* a request for SDO information */
+struct ask {
+	struct ec_sdoinfo *info;
+	u64 until_ns;
+};
+
+static int info_rx(void *ctx, const u8 *buf, size_t len)
+{
+	struct ask *a = ctx;
+
+	/* fragments may come without end */
+	if (ktime_get_ns() > a->until_ns)
+		return -ETIMEDOUT;
+	return rx_result(ec_sdoinfo_rx(a->info, buf, len));
+}
+
+/**
+ * ec_coe_ask() - one request for SDO information
+ * @mb: mailbox of the slave, @sdo_lock held
+ * @info: request, and its answer
+ * @until_ns: when the last fragment must be here (ktime)
+ * @limit: for each fragment
+ * @b: buffers
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_coe_info().
+ */
+int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
+	       const struct ec_mbox_limit *limit, struct ec_mbox_buf *b)
+{
+	struct ask a = { .info = info, .until_ns = until_ns };
+	struct ec_mbox_request req = {
+		.type = EC_MBOX_COE, .first = true, .limit = *limit, .rx = info_rx, .ctx = &a,
+	};
+	int len;
+
+	/* a semaphore has no owner: what can be checked is that there is a holder */
+	lockdep_assert(!READ_ONCE(mb->sdo_lock.count));
+	len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
+	return len < 0 ? len : ec_mbox_request(mb, &req, b, len);
+}
+
+/**
+ * ec_coe_info() - ask the slave about its object dictionary
+ * @mb: mailbox of the slave
+ * @info: request, of ec_sdoinfo_init(), and its answer
+ * @limit: when to give up; NULL: as usual
+ *
+ * SDO information (ETG.1000.6 clause 5.6.3). SDO transfers wait meanwhile.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EIO with @info->abort set; -ENOBUFS for an answer larger than its place;
+ * otherwise as ec_coe_upload().
+ */
+int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS);
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDOINFO_MIN);
+	int ret;
+
+	if (IS_ERR(b))
+		return PTR_ERR(b);
+	ret = ec_mbox_lock(mb, &mb->sdo_lock, 0);
+	if (!ret) {
+		ret = ec_coe_ask(mb, info, ktime_get_ns() + INFO_MS * (u64)NSEC_PER_MSEC, &l, b);
+		up(&mb->sdo_lock);
+	}
+	kfree(b);
+	ec_mbox_dbg_result(mb, ret, "SDO information %u of 0x%04x:%02x, error 0x%08x, %zu byte(s)",
+			    info->opcode, info->index, info->sub, info->abort, info->size);
 	return ret;
 }

@@ -5,6 +5,7 @@
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
 #include "master/wire/coe.h"
+#include "master/wire/sdoinfo.h"
 
 #define RESPONSE_US	500
 #define SCRATCH		0x2000	/* 1000 bytes */
@@ -127,6 +128,39 @@ static void sdo_errors(struct kunit *test)
 	KUNIT_ASSERT_NE(test, bus_wait_al(b, 0, EC_AL_INIT, 500), ~0ull);
 	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, 0x1000, 0, false, buf, 8, &got, &abort, NULL),
 			-EAGAIN);
+}
+
+/* What the slave says about its objects; a mailbox of 64 bytes needs fragments. */
+static void sdo_information(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_mbox *small = &bus_slave(b, 0)->mbox;
+	const struct ec_app *app = bus_app(b, "small");
+	struct ec_sdoinfo i;
+	struct ec_od_entry e;
+	u8 buf[1024];
+
+	ec_sdoinfo_init(&i, EC_SDOINFO_LIST_REQ, 1, 0, buf, sizeof(buf));
+	KUNIT_ASSERT_EQ(test, ec_coe_info(small, &i, NULL), 0);
+	KUNIT_EXPECT_EQ(test, i.size, 2 * (size_t)app->model->n_objects);
+	KUNIT_EXPECT_GT(test, i.size, (size_t)64 - EC_MBOX_HDR - EC_SDOINFO_HDR - 2);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(buf), 0x1000);
+
+	ec_sdoinfo_init(&i, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, buf, sizeof(buf));
+	KUNIT_ASSERT_EQ(test, ec_coe_info(small, &i, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(buf, i.size, &e), 0);
+	KUNIT_EXPECT_EQ(test, e.bits, 32);
+	KUNIT_EXPECT_EQ(test, e.access, EC_OD_READ);
+
+	ec_sdoinfo_init(&i, EC_SDOINFO_OBJECT_REQ, 0x3fff, 0, buf, sizeof(buf));
+	KUNIT_EXPECT_EQ(test, ec_coe_info(small, &i, NULL), -EIO);
+	KUNIT_EXPECT_EQ(test, i.abort, EC_ABORT_NO_OBJECT);
+	ec_sdoinfo_init(&i, EC_SDOINFO_LIST_REQ, 1, 0, buf, 7);
+	KUNIT_EXPECT_EQ(test, ec_coe_info(small, &i, NULL), -ENOBUFS);
+	ec_sdoinfo_init(&i, EC_SDOINFO_LIST_REQ, 1, 0, buf, sizeof(buf));
+	KUNIT_EXPECT_EQ(test, ec_coe_info(&bus_slave(b, 2)->mbox, &i, NULL), -EPROTONOSUPPORT);
+	/* and the mailbox works on */
+	there_and_back(b, 0, "small", TYPES, 8, 4);
 }
 
 /* An EEPROM names a mailbox larger than a datagram: nothing is sent there. */
@@ -294,6 +328,7 @@ static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_segmented),
 	KUNIT_CASE(sdo_complete_access),
 	KUNIT_CASE(sdo_errors),
+	KUNIT_CASE(sdo_information),
 	KUNIT_CASE(sdo_huge_mailbox),
 	KUNIT_CASE(sdo_mute),
 	KUNIT_CASE(sdo_emergency),

@@ -536,6 +536,55 @@ static int upload(struct ec_ioc_sdo *x)
 	return abort_sdo(x, x->index == 0x5001 ? 0x12345678 : 0x06020000);
 }
 
+/* answers of SDO information: description, or 0 for what is refused */
+static const struct {
+	__u16 index;
+	__u8 sub, object;
+	__u8 size;
+	const char *data;
+} infos[] = {
+	/* index, type, highest subindex, object code, name */
+	{ 0x1018, 0, 1, 14, "\x18\x10\x23\0\3\x09Identity" },
+	{ 0x1018, 0, 0, 13, "\x18\x10\0\0\5\0\x08\0\7\0Num" },
+	/* index, subindex, value info, type, bits, access, name */
+	{ 0x1018, 1, 0, 16, "\x18\x10\1\0\7\0\x20\0\7\0Vendor" },
+	{ 0x1018, 2, 0, 10, "\x18\x10\2\0\7\0\x20\0\0\0" },
+	{ 0x6060, 0, 1, 16, "\x60\x60\2\0\0\7a\033[2J\302\233b\n" },
+	{ 0x6060, 0, 0, 14, "\x60\x60\0\0\2\0\x08\0\xff\0Mode" },
+	{ 0x2002, 0, 1, 12, "\2\x20\x09\0\0\7Serial" },
+	{ 0x2002, 0, 0, 16, "\2\x20\0\0\x09\0\x60\0\x3f\0Serial" },
+	{ 0x1008, 0, 1, 10, "\x08\x10\x0a\0\0\7Name" },
+	{ 0x1008, 0, 0, 14, "\x08\x10\0\0\x0a\0\x40\0\x3f\0Name" },
+	/* an entry of a type that has no name, and a description cut off */
+	{ 0x5001, 0, 1, 12, "\1\x50\xff\x7f\0\7Vendor" },
+	{ 0x5001, 0, 0, 13, "\1\x50\0\0\xff\x7f\3\0\x3f\0Odd" },
+	{ 0x5002, 0, 1, 3, "\2\x50\xff" },
+};
+
+static int sdo_info(struct ec_ioc_sdo_info *x)
+{
+	static const char list[] = "\x18\x10\x60\x60\2\x20\x08\x10\1\x50\2\x50\3\x50";
+	__u8 *to = (__u8 *)(uintptr_t)x->data;
+
+	if (bus("gone") && x->index == 0x6060)
+		return fail(ENODEV, "no slave at ring position 2");
+	if (x->what == EC_SDO_INFO_LIST) {
+		x->size = sizeof(list) - 1;
+		memcpy(to, list, x->size);
+		return 0;
+	}
+	for (size_t i = 0; i < LEN(infos); i++) {
+		if (infos[i].index != x->index || infos[i].sub != x->subindex ||
+		    infos[i].object != (x->what == EC_SDO_INFO_OBJECT))
+			continue;
+		memcpy(to, infos[i].data, infos[i].size);
+		x->size = infos[i].size;
+		return 0;
+	}
+	x->abort_code = 0x06090011;
+	return fail(EIO, "SDO information aborted");
+}
+
 static int download(struct ec_ioc_sdo *x)
 {
 	char what[64];
@@ -801,6 +850,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return upload(arg);
 	case EC_IOC_SDO_DOWNLOAD:
 		return download(arg);
+	case EC_IOC_SDO_INFO:
+		return sdo_info(arg);
 	case EC_IOC_SOE_READ:
 		return soe_read(arg);
 	case EC_IOC_SOE_WRITE:

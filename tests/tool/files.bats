@@ -8,8 +8,11 @@ load common
 	[ "$(out foe_read -p2 fw 7 | wc -c)" -eq 0 ]
 	ethercat foe_read -p2 -o "$BATS_TEST_TMPDIR/fw" fw
 	[ "$(od -An -tx1 "$BATS_TEST_TMPDIR/fw" | tr -d ' \n')" = 010262696e6172790a ]
-	out foe_read -j -p2 fw | json 'd["data_hex"] == "010262696e6172790a" and d["size_bytes"] == 9 and d["name"] == "fw" and d["slave"] == 2'
-	out foe_read -j -p2 -o "$BATS_TEST_TMPDIR/fw" fw | json '"data_hex" not in d and d["output_file"].endswith("/fw")'
+	out foe_read -j -p2 fw |
+		json 'd["data_hex"] == "010262696e6172790a" and d["size_bytes"] == 9'
+	out foe_read -j -p2 fw | json 'd["name"] == "fw" and d["slave"] == 2'
+	out foe_read -j -p2 -o "$BATS_TEST_TMPDIR/fw" fw |
+		json '"data_hex" not in d and d["output_file"].endswith("/fw")'
 	[[ "$(err foe_read -v -p2 fw)" =~ ^"9 bytes in "[0-9.]+" s"$ ]]
 }
 
@@ -29,10 +32,12 @@ load common
 	printf 'ab' >"$BATS_TEST_TMPDIR/fw.efw"
 	: >"$BATS_TEST_TMPDIR/empty"
 	[ "$(log_of foe_write -p2 "$BATS_TEST_TMPDIR/fw.efw")" = "foe 2 fw.efw 0x00000000 6162" ]
-	[ "$(log_of foe_write -p2 -o other "$BATS_TEST_TMPDIR/fw.efw" 0xffffffff)" = "foe 2 other 0xffffffff 6162" ]
+	[ "$(log_of foe_write -p2 -o other "$BATS_TEST_TMPDIR/fw.efw" 0xffffffff)" = \
+		"foe 2 other 0xffffffff 6162" ]
 	[ "$(log_of foe_write -p2 -o x - 10 <<<c)" = "foe 2 x 0x0000000a 630a" ]
 	[ "$(log_of foe_write -p2 "$BATS_TEST_TMPDIR/empty")" = "foe 2 empty 0x00000000 " ]
-	out foe_write -j -p2 "$BATS_TEST_TMPDIR/fw.efw" | json 'd["name"] == "fw.efw" and d["size_bytes"] == 2'
+	out foe_write -j -p2 "$BATS_TEST_TMPDIR/fw.efw" |
+		json 'd["name"] == "fw.efw" and d["size_bytes"] == 2'
 }
 
 @test "FoE errors: code and text of the slave, and of the master" {
@@ -61,10 +66,12 @@ load common
 }
 
 @test "a long transfer shows its progress on a terminal only" {
-	run script -qec "$HERE/build/fake/ethercat foe_read -p2 -o $BATS_TEST_TMPDIR/f slow" /dev/null
+	local tool="$HERE/build/fake/ethercat"
+
+	run script -qec "$tool foe_read -p2 -o $BATS_TEST_TMPDIR/f slow" /dev/null
 	[ "$status" -eq 0 ]
 	[[ $output == *$'\r5 bytes'*$'\r9 bytes'* ]]
-	run script -qec "$HERE/build/fake/ethercat foe_read -q -p2 -o $BATS_TEST_TMPDIR/f slow" /dev/null
+	run script -qec "$tool foe_read -q -p2 -o $BATS_TEST_TMPDIR/f slow" /dev/null
 	[ -z "$output" ]
 	[ -z "$(err foe_read -p2 slow)" ]
 }

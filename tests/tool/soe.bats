@@ -12,8 +12,11 @@ load common
 	# a text comes without its lengths, bytes with them
 	[ "$(out soe_read -p2 -t string S-0-30)" = "SIM 1.0" ]
 	[ "$(out soe_read -p2 S-0-30 | cut -d' ' -f1-5)" = "0x07 0x00 0x10 0x00 0x53" ]
-	out soe_read -j -p2 -tuint16 1 P-0-150 | json 'd["value"] == 0x1234 and d["drive"] == 1 and d["idn"] == 0x8096 and d["name"] == "P-0-0150"'
-	out soe_read -j -p2 S-0-15 | json 'd["data_hex"] == "0700" and d["size_bytes"] == 2 and d["slave"] == 2'
+	out soe_read -j -p2 -tuint16 1 P-0-150 |
+		json 'd["value"] == 0x1234 and d["drive"] == 1 and d["idn"] == 0x8096'
+	out soe_read -j -p2 -tuint16 1 P-0-150 | json 'd["name"] == "P-0-0150"'
+	out soe_read -j -p2 S-0-15 |
+		json 'd["data_hex"] == "0700" and d["size_bytes"] == 2 and d["slave"] == 2'
 }
 
 @test "soe_write: values and texts" {
@@ -21,7 +24,8 @@ load common
 	[ "$(log_of soe_write -p2 -t int32 7 0x2f -2)" = "soe 2 7 0x002f feffffff" ]
 	[ "$(log_of soe_write -p2 -t string P-0-160 abc)" = "soe 2 0 0x80a0 03000300616263" ]
 	[ "$(log_of soe_write -p2 -t raw P-7-4095 "01 02")" = "soe 2 0 0xffff 0102" ]
-	out soe_write -j -p2 -tuint16 P-0-150 1 | json 'd["idn"] == 0x8096 and d["size_bytes"] == 2 and d["drive"] == 0'
+	out soe_write -j -p2 -tuint16 P-0-150 1 |
+		json 'd["idn"] == 0x8096 and d["size_bytes"] == 2 and d["drive"] == 0'
 }
 
 @test "SoE errors: code and text" {

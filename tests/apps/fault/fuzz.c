@@ -109,6 +109,8 @@ static bool too_long(const struct cmd *c, unsigned char *arg)
 {
 	if (c->nr == EC_IOC_SDO_UPLOAD || c->nr == EC_IOC_SDO_DOWNLOAD)
 		((struct ec_ioc_sdo *)arg)->timeout_ms = 5;
+	if (c->nr == EC_IOC_SDO_INFO)
+		((struct ec_ioc_sdo_info *)arg)->timeout_ms = 5;
 	if (c->nr == EC_IOC_SOE_READ || c->nr == EC_IOC_SOE_WRITE)
 		((struct ec_ioc_soe *)arg)->timeout_ms = 5;
 	if (c->nr == EC_IOC_FOE_READ || c->nr == EC_IOC_FOE_WRITE)

@@ -43,6 +43,7 @@ const struct cmd cmds[] = {
 	CMD(SC_IP, APP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),
 	CMD(SDO_UPLOAD, BUS, RSV1(ec_ioc_sdo), DATA(ec_ioc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
 	CMD(SDO_DOWNLOAD, BUS, RSV1(ec_ioc_sdo), DATA(ec_ioc_sdo), .flags = EC_SDO_FLAG_COMPLETE),
+	CMD(SDO_INFO, BUS, RSV1(ec_ioc_sdo_info), DATA(ec_ioc_sdo_info)),
 	CMD(REG_READ, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(REG_WRITE, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(SOE_READ, BUS, RSV1(ec_ioc_soe), DATA(ec_ioc_soe)),

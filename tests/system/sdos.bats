@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# The object dictionary of slaves, as they describe it.
+
+load helpers
+
+setup_file() { start bench 22; }
+
+teardown_file() { stop; }
+
+@test "sdos lists objects and entries in the usual form" {
+	run ethercat sdos -p4
+	[ "$status" = 0 ]
+	[[ "$output" == *'SDO 0x1018, "Identity'*'"'* ]]
+	grep -qx '  0x1018:01, r-r-r-, uint32, 32 bit, "Vendor ID"' <<<"$output"
+	# nothing but these two kinds of lines
+	[ "$(grep -v '^SDO 0x[0-9a-f]\{4\}, "' <<<"$output" |
+		grep -cvE '^  0x[0-9a-f]{4}:[0-9a-f]{2}, [rw-]{6}, [^,]+, [0-9]+ bit, ".*"$')" = 0 ]
+	[ "$(ethercat sdos -q -p4)" = "$(grep '^SDO' <<<"$output")" ]
+}
+
+@test "sdos --verbose and --json have the values" {
+	local D=$BATS_TEST_TMPDIR
+
+	ethercat sdos -v -p16 >"$D/before"
+	grep -q '^  0x1018:01, .* "Vendor ID", 0x0000ec51 60497$' "$D/before"
+	ethercat download -p16 -t int16 0x2001 3 0x4321
+	ethercat sdos -v -p16 >"$D/after"
+	grep -q '^  0x1008:00, .*, "[ -~]*"$' "$D/after"
+	# each entry that can be read in PREOP is given
+	[ "$(grep '^  0x....:.., r' "$D/after" | grep -c 'abort 0x')" = 0 ]
+	# one value has changed, by one line
+	diff "$D/before" "$D/after" | grep '^>' >"$D/new"
+	[ "$(wc -l <"$D/new")" = 1 ]
+	grep -q '^>   0x2001:03, .*, 0x4321 17185$' "$D/new"
+	json '.masters[0].slaves[0] | .position == 16 and (.objects | length > 10) and
+		(.objects[] | select(.index == 8193).entries[] | select(.subindex == 3) |
+		.value.value == 17185 and .type == "int16" and .size_bits == 16)' sdos -v -p16
+	json '[.masters[].slaves[].objects[].entries[] | has("value")] | any | not' sdos -p16
+}
+
+@test "several slaves have a header, those without dictionary are left out" {
+	run ethercat sdos -q -p0,4-5
+	[ "$status" = 0 ]
+	[ "$(grep -c '^===' <<<"$output")" = 2 ]
+	[ "${lines[0]}" = "=== Master 0, Slave 4 ===" ]
+	refused 'no selected slave has an object dictionary' sdos -p0
+	refused 'the selection matches no slave' sdos -p99
+	refused "unexpected argument '0x1018'" sdos -p4 0x1018
+}
