@@ -275,6 +275,7 @@ struct ec_app_object {
  * @soe: SoE with so many drives, 0: no SoE
  * @voe: VoE with this type in the answers, 0: no VoE
  * @foe: KiB of a file, 0: EC_APP_FOE_KIB where the table or the image has FoE
+ * @no_repeat: neither repeats its messages nor sees that one of the master is repeated
  */
 struct ec_app_params {
 	u32 vendor;
@@ -289,6 +290,7 @@ struct ec_app_params {
 	u8 soe;
 	u16 voe;
 	u16 foe;
+	bool no_repeat;
 };
 
 /**
@@ -446,6 +448,7 @@ struct ec_app_foe {
  * @rx_waits: SM0 is full and not fetched, @out is occupied
  * @rx_counter: counter of the last message accepted, 0: none yet
  * @tx_counter: counter of the last message sent
+ * @writes: SDO downloads executed
  * @emcy: emergencies to send, 8 bytes each
  * @n_emcy: how many
  * @voe: VoE messages to send
@@ -467,6 +470,7 @@ struct ec_app_mbox {
 	bool rx_waits;
 	u8 rx_counter;
 	u8 tx_counter;
+	u32 writes;
 	u8 emcy[EC_APP_EMCY][8];
 	u8 n_emcy;
 	struct ec_app_voe voe[EC_APP_VOE];

@@ -98,6 +98,10 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		p->cpu = true;
 	else if (w.s && !ec_desc_is(&w, "no"))
 		return ec_desc_fail(d, "invalid cpu '", &w, "': expected yes or no");
+	w = ec_desc_value(d, "repeat");
+	p->no_repeat = ec_desc_is(&w, "no");
+	if (w.s && !p->no_repeat && !ec_desc_is(&w, "yes"))
+		return ec_desc_fail(d, "invalid repeat '", &w, "': expected yes or no");
 	w = ec_desc_value(d, "motor");
 	if (w.s && !ec_desc_is(&w, "AM8121"))
 		return ec_desc_fail(d, "unknown motor '", &w,
@@ -170,7 +174,8 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->revision == b->revision && a->out == b->out &&
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
-	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe;
+	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe &&
+	       a->no_repeat == b->no_repeat;
 }
 
 static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,

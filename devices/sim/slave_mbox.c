@@ -17,6 +17,9 @@ static u32 od_read(void *ctx, u16 index, u8 sub, bool complete, u8 *buf,
 static u32 od_write(void *ctx, u16 index, u8 sub, bool complete,
 		    const u8 *data, size_t len)
 {
+	struct ec_app *app = ctx;
+
+	app->mbox.writes++;
 	return ec_app_od_write(ctx, index, sub, complete, data, len);
 }
 
@@ -302,7 +305,7 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		out_error(app, EC_MBOX_ERR_SIZE, due);
 		return;
 	}
-	if (h.counter && h.counter == m->rx_counter &&
+	if (h.counter && h.counter == m->rx_counter && !app->model->params.no_repeat &&
 	    !ec_app_bug(app, EC_SIM_BUG_MBOX_TWICE))
 		return;		/* sent twice, taken once */
 	m->rx_counter = h.counter;

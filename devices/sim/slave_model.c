@@ -513,6 +513,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 		m->dev.mapping = params->mapping;
 	if (params->id)
 		m->dev.flags |= EC_SII_FLAG_ID_AL;
+	if (params->no_repeat)
+		m->dev.flags &= ~EC_SII_FLAG_MBOX_DLL;
 	if (params->soe)
 		m->dev.protocols |= EC_SII_PROTO_SOE;
 	if (params->voe)

@@ -165,6 +165,7 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 		string(slave, slave->general.order, slave->order);
 		string(slave, slave->general.name, slave->name);
 	}
+	slave->mbox.can_repeat = slave->has_general && slave->general.flags & EC_SII_FLAG_MBOX_DLL;
 	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
 	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
 	return ec_slave_read_pdos(slave);

@@ -57,7 +57,7 @@ static bool is_transient(const struct ec_slave *s, int ret)
 	if (ret == -EPROTO)
 		return code == EC_AL_CODE_NO_OUTPUTS || code == EC_AL_CODE_SM_WATCHDOG;
 	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
-	       ret == -EBUSY;
+	       ret == -EBUSY || ret == -ENOTRECOVERABLE;
 }
 
 /*

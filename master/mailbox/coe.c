@@ -20,14 +20,12 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 	return rx_result(ec_sdo_rx(ctx, buf, len));
 }
 
-static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf *b, size_t cap,
-		       const bool *cancel)
+static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf *b, size_t cap)
 {
-	struct ec_mbox_limit limit = { .timeout_ms = 100, .cancel = cancel };
 	int len = ec_sdo_tx(s, b->tx, cap);
 
 	if (len > 0)
-		ec_mbox_send(mb, EC_MBOX_COE, b, len, &limit);
+		ec_mbox_send_last(mb, EC_MBOX_COE, b, len);
 }
 
 /*
@@ -55,8 +53,10 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 			ret = ec_mbox_request(mb, &req, b, ret);
 		req.first = false;
 	} while (ret == EC_MORE);
+	if (ret)
+		ec_sdo_cancel(s);
 	if (s->send_abort)
-		send_abort(mb, s, b, cap, req.limit.cancel);
+		send_abort(mb, s, b, cap);
 	up(&mb->sdo_lock);
 out:
 	kfree(b);
@@ -75,6 +75,8 @@ out:
  * @abort: abort code of the slave, or 0
  * @limit: when to give up; NULL: as usual
  *
+ * Repeated when a lost frame leaves it without an answer.
+ *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EIO with @abort set; -ENOBUFS when the object is larger than
  * @cap; -EPROTONOSUPPORT without CoE; -EMSGSIZE for a mailbox that is too small
@@ -84,13 +86,17 @@ out:
 int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
 		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit)
 {
+	unsigned int tries = 0;
 	struct ec_sdo s;
 	int ret;
 
 	*abort = 0;
 	*size = 0;
-	ec_sdo_upload_init(&s, index, sub, complete, data, cap);
-	ret = run(mb, &s, limit);
+	do {
+		ec_sdo_upload_init(&s, index, sub, complete, data, cap);
+		ret = run(mb, &s, limit);
+	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES);
+	ret = ec_mbox_read_result(ret);
 	if (ret == -EIO)
 		*abort = s.abort;
 	if (!ret)
@@ -111,8 +117,10 @@ int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data
  * @abort: abort code of the slave, or 0
  * @limit: when to give up; NULL: as usual
  *
+ * Never repeated: the slave may have written the value.
+ *
  * Context: Process. Waits for bus traffic.
- * Return: as ec_coe_upload().
+ * Return: as ec_coe_upload(); -ENOTRECOVERABLE when a lost frame leaves the outcome unknown.
  */
 int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const u8 *data,
 		    size_t size, u32 *abort, const struct ec_mbox_limit *limit)
@@ -165,12 +173,18 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
 	struct ec_mbox_request req = {
 		.type = EC_MBOX_COE, .first = true, .limit = *limit, .rx = info_rx, .ctx = &a,
 	};
-	int len;
+	unsigned int tries = 0;
+	const struct ec_sdoinfo again = *info;
+	int len, ret;
 
 	/* a semaphore has no owner: what can be checked is that there is a holder */
 	lockdep_assert(!READ_ONCE(mb->sdo_lock.count));
-	len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
-	return len < 0 ? len : ec_mbox_request(mb, &req, b, len);
+	do {
+		*info = again;
+		len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
+		ret = len < 0 ? len : ec_mbox_request(mb, &req, b, len);
+	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES && ktime_get_ns() < until_ns);
+	return ec_mbox_read_result(ret);
 }
 
 /**

@@ -92,6 +92,7 @@ int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
 	ret = exchange(mb, b, ret, EC_EOE_GET_IP_RESP, result);
 	if (ret >= 0)
 		ret = ec_eoe_ip_decode(b->rx, ret, p) ? -EBADMSG : 0;
+	ret = ec_mbox_read_result(ret);
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "get IP parameters, EoE result 0x%04x", *result);
 	return ret;

@@ -104,7 +104,8 @@ static void end_at_slave(struct transfer *t, struct ec_mbox_buf *b)
  * Return: 0; -EREMOTEIO when the slave refuses, with @f->error; -EALREADY while another file of
  * this slave is transferred; -ENOBUFS for a file larger than there is room; -EPROTONOSUPPORT
  * without FoE; -EMSGSIZE for a mailbox that is too small; -EAGAIN in INIT; -EBADMSG for a wrong
- * answer; -ETIMEDOUT; -EINTR; -ECANCELED; -ENOMEM; what @file->copy returned.
+ * answer; -ETIMEDOUT; -ENOTRECOVERABLE when a lost frame ends a write; -EINTR; -ECANCELED;
+ * -ENOMEM; what @file->copy returned.
  */
 int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_file *file,
 		    const struct ec_mbox_limit *limit)
@@ -128,6 +129,8 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	do {
 		ret = wait_busy(&t) ?: step(&t, file, &req, b);
 	} while (ret == EC_MORE);
+	if (!f->write)
+		ret = ec_mbox_read_result(ret);
 	if (ret && ret != -EREMOTEIO && !req.first)
 		end_at_slave(&t, b);
 	clear_bit_unlock(EC_MBOX_FILE, &mb->flags);

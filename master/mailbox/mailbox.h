@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Mailbox transport of a slave: send, poll, fetch, counter, demultiplex. */
+/* Mailbox transport of a slave: requests and their answers, messages without a request. */
 #ifndef EC_MAILBOX_H
 #define EC_MAILBOX_H
 
@@ -17,6 +17,7 @@ struct ec_emerg;
 struct ec_links;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
+#define EC_MBOX_READ_TRIES	4	/* of what changes nothing, after lost frames */
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
 
 enum ec_mbox_flag {
@@ -50,8 +51,14 @@ struct ec_mbox {
 	u8 seen;
 	/** @counts: the slave counts its messages */
 	bool counts;
-	/** @repeats: the master has requested its last message again */
+	/** @can_repeat: what is lost can be repeated, both ways; set before there are users */
+	bool can_repeat;
+	/** @gap: a message of the slave may have been lost */
+	bool gap;
+	/** @repeats: the slave has been made to repeat its last message */
 	bool repeats;
+	/** @ack_fails: repeat requests without acknowledgement in a row */
+	u8 ack_fails;
 	/** @answered: the last exchange has ended with its answer */
 	bool answered;
 	/** @renew: the slave has been in INIT: the next holder of @lock resets these members */
@@ -169,6 +176,12 @@ void ec_mbox_poll(struct ec_mbox *mb);
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit);
+
+/* Nothing was to be changed, so a lost frame has left nothing unknown. */
+static inline int ec_mbox_read_result(int ret)
+{
+	return ret == -ENOTRECOVERABLE ? -ETIMEDOUT : ret;
+}
 
 /* mbox_text.c */
 const char *ec_mbox_fail_text(int ret, const char *protocol, char *buf, size_t size);

@@ -12,6 +12,7 @@ static const struct {
 	{ -ECOMM, "mailbox error reply, unknown code; see the kernel log" },
 	{ -EAGAIN, "not in PREOP or above, so the mailbox is off; request PREOP first" },
 	{ -ETIMEDOUT, "no reply in time" },
+	{ -ENOTRECOVERABLE, "outcome unknown: a frame was lost, and the slave does not repeat messages; read the value before it is written again" },
 	{ -EIO, "no answer at the station address (working counter 0)" },
 	{ -EBADMSG, "invalid reply (length or content of the mailbox message)" },
 	{ -EPROTO, "invalid reply (length or content of the mailbox message)" },

@@ -66,11 +66,18 @@ static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
 		u16 *error, const struct ec_mbox_limit *limit)
 {
-	struct ec_soe_access a = {
-		.drive = drive, .element = EC_SOE_VALUE, .idn = idn, .data = data, .cap = cap,
-	};
-	int ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
+	struct ec_soe_access a;
+	unsigned int tries = 0;
+	int ret;
 
+	do {
+		a = (struct ec_soe_access){
+			.drive = drive, .element = EC_SOE_VALUE, .idn = idn, .data = data,
+			.cap = cap,
+		};
+		ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
+	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES);
+	ret = ec_mbox_read_result(ret);
 	*error = a.error;
 	*size = ret ? 0 : a.size;
 	return ret;
@@ -87,7 +94,7 @@ int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, siz
  * @limit: when to give up; NULL: as usual
  *
  * Context: Process. Waits for bus traffic.
- * Return: as ec_soe_read().
+ * Return: as ec_soe_read(); -ENOTRECOVERABLE when a lost frame leaves the outcome unknown.
  */
 int ec_soe_write(struct ec_mbox *mb, u8 drive, u16 idn, const u8 *data, size_t size,
 		 u16 *error, const struct ec_mbox_limit *limit)

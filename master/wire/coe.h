@@ -21,6 +21,7 @@ enum ec_coe_service {
 
 /* SDO abort codes that the master sends; texts exist for all */
 #define EC_ABORT_TOGGLE		0x05030000u
+#define EC_ABORT_TIMEOUT	0x05040000u
 #define EC_ABORT_COMMAND	0x05040001u
 #define EC_ABORT_MEMORY		0x05040005u
 

@@ -408,3 +408,18 @@ int ec_sdo_rx(struct ec_sdo *s, const u8 *rx, size_t len)
 	sdo_set_state(s, s->sent < s->size ? EC_SDO_SEGMENT : EC_SDO_DONE);
 	return s->state == EC_SDO_SEGMENT ? EC_MORE : 0;
 }
+
+/**
+ * ec_sdo_cancel() - the transfer is given up
+ * @s: transfer
+ *
+ * A slave in the middle of segments gets an abort: @s->send_abort, and ec_sdo_tx() has one more
+ * message.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sdo_cancel(struct ec_sdo *s)
+{
+	if (s->state == EC_SDO_SEGMENT)
+		sdo_fail(s, 0, EC_ABORT_TIMEOUT, true);
+}

@@ -69,5 +69,6 @@ void ec_sdo_download_init(struct ec_sdo *s, u16 index, u8 sub, bool complete,
 			  const u8 *data, size_t size, size_t mbox_size);
 int ec_sdo_tx(struct ec_sdo *s, u8 *tx, size_t cap);
 int ec_sdo_rx(struct ec_sdo *s, const u8 *rx, size_t len);
+void ec_sdo_cancel(struct ec_sdo *s);
 
 #endif

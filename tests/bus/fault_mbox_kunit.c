@@ -193,6 +193,9 @@ static void mbox_segments_at_once_leave_cancel(struct kunit *test)
 		   div_u64(r.ended_ns - t0, NSEC_PER_USEC));
 	KUNIT_EXPECT_EQ(test, r.ret, -ECANCELED);
 	KUNIT_EXPECT_LT(test, r.ended_ns - t0, 1ull * NSEC_PER_MSEC);
+	/* and the slave does not wait for the others */
+	usleep_range(500, 501);
+	KUNIT_EXPECT_EQ(test, bus_app(b, "bad")->mbox.srv.state, EC_SDO_SRV_IDLE);
 }
 
 /* The EEPROM of the bad slave has no names. */

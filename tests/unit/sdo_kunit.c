@@ -625,6 +625,30 @@ static void sdo_server_refuses_unknown_commands(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(rx + 6), EC_ABORT_NO_SUB);
 }
 
+/* Given up: a slave in the middle of segments gets an abort, another one nothing. */
+static void sdo_cancel(struct kunit *test)
+{
+	static const u8 first[] = { 0, 0x30, 0x41, 0x00, 0x20, 0, 8, 0, 0, 0 };
+	u8 data[8], tx[16];
+	struct ec_sdo s;
+
+	ec_sdo_upload_init(&s, 0x2000, 0, false, data, sizeof(data));
+	ec_sdo_cancel(&s);
+	KUNIT_EXPECT_FALSE(test, s.send_abort);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&s, tx, sizeof(tx)), EC_SDO_MSG);
+	ec_sdo_cancel(&s);
+	KUNIT_EXPECT_FALSE(test, s.send_abort);
+	KUNIT_ASSERT_EQ(test, ec_sdo_rx(&s, first, sizeof(first)), EC_MORE);
+	ec_sdo_cancel(&s);
+	KUNIT_ASSERT_TRUE(test, s.send_abort);
+	KUNIT_ASSERT_EQ(test, ec_sdo_tx(&s, tx, sizeof(tx)), EC_SDO_MSG);
+	KUNIT_EXPECT_EQ(test, tx[2], 0x80);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(tx + 3), 0x2000);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(tx + 6), EC_ABORT_TIMEOUT);
+	ec_sdo_cancel(&s);
+	KUNIT_EXPECT_FALSE(test, s.send_abort);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sdo_objects_of_every_size_are_read),
 	KUNIT_CASE(sdo_objects_of_every_size_are_written),
@@ -652,6 +676,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sdo_message_can_be_sent_again),
 	KUNIT_CASE(sdo_new_request_ends_old_transfer_in_server),
 	KUNIT_CASE(sdo_server_refuses_unknown_commands),
+	KUNIT_CASE(sdo_cancel),
 	{}
 };
 

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Mailbox services on a bus that loses frames: none is lost, none is done twice. */
+#include "bus.h"
+#include "master/mailbox/coe.h"
+#include "master/mailbox/mailbox.h"
+#include "master/mailbox/soe.h"
+
+#define SCRATCH	0x2000	/* LONG bytes */
+#define LONG	1000
+#define TYPES	0x2001	/* a record */
+#define ONE_PERCENT	10000	/* ppm */
+#define TRANSFERS	100000
+#define UNSURE_TRANSFERS	50000	/* they take longer, and a case has 300 s */
+#define EACH		150	/* 20 transfers have more frames */
+
+/* "mbox=64": what is longer than 48 bytes comes in segments */
+static const char text[] =
+	"segment seed=21 response=100us transition=200us\n"
+	"slave sure drive mbox=64 soe=1\nslave unsure drive mbox=64 soe=1 repeat=no\n";
+
+enum { SURE, UNSURE };
+
+static const struct ec_mbox_limit limit = { .timeout_ms = 100 };
+
+static struct bus *ready(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, 2);
+
+	bus_idle(b);
+	return b;
+}
+
+static void lose(struct bus *b, u32 frame, bool back, u32 ppm)
+{
+	struct ec_sim_fault f = {
+		.at_ns = ktime_get_ns(), .type = EC_SIM_FAULT_LOSE, .port = -1, .arg = frame,
+		.arg2 = ppm, .value = back,
+	};
+
+	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+/* what became of many transfers */
+struct sum {
+	u32 done, unknown, late, wrong, twice;
+};
+
+/* One download; what the slave has done must fit what the master says. */
+static void write(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, const u8 *data,
+		  size_t n)
+{
+	struct ec_app *app = bus_app(b, slave == SURE ? "sure" : "unsure");
+	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
+	u32 abort, writes = app->mbox.writes;
+	int ret = ec_coe_download(&bus_slave(b, slave)->mbox, index, sub, false, data, n, &abort,
+				  &limit);
+
+	/* a late one may still come */
+	if (ret)
+		msleep(20);
+	writes = app->mbox.writes - writes;
+	sum->twice += writes > 1;
+	if (!ret && (writes != 1 || memcmp(app->data + e->off, data, n)))
+		sum->wrong++;
+	else if (!ret)
+		sum->done++;
+	else if (ret == -ENOTRECOVERABLE)
+		sum->unknown++;
+	else
+		sum->late++;
+}
+
+/* One upload: the value there is, or an error. */
+static void read(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, size_t n)
+{
+	struct ec_app *app = bus_app(b, slave == SURE ? "sure" : "unsure");
+	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
+	static u8 in[LONG];
+	size_t got;
+	u32 abort;
+	int ret = ec_coe_upload(&bus_slave(b, slave)->mbox, index, sub, false, in, sizeof(in),
+				&got, &abort, &limit);
+
+	if (!ret && (got != n || memcmp(app->data + e->off, in, n)))
+		sum->wrong++;
+	else if (!ret)
+		sum->done++;
+	else
+		sum->late++;
+}
+
+/* Half up, half down; one in ten has segments. */
+static void transfers(struct bus *b, u32 slave, u32 n, struct sum *down, struct sum *up)
+{
+	static u8 data[LONG];
+	u32 i;
+
+	for (i = 0; i < n / 2; i++) {
+		bool has_segments = i % 10 == 9;
+		size_t size = has_segments ? LONG : 4;
+		u16 index = has_segments ? SCRATCH : TYPES;
+		u8 sub = has_segments ? 0 : 8;
+
+		memset(data, i * 7, size);
+		put_unaligned_le32(i * 2654435761u, data);
+		write(b, slave, down, index, sub, data, size);
+		read(b, slave, up, index, sub, size);
+	}
+}
+
+static void print(const char *what, const struct sum *s)
+{
+	bus_figure("%s at 1 %% frame loss: %u done, %u outcome unknown, %u other errors, %u wrong, %u executed twice",
+		   what, s->done, s->unknown, s->late, s->wrong, s->twice);
+}
+
+static void lossy(struct bus *b, bool on)
+{
+	lose(b, 0, false, on ? ONE_PERCENT / 2 : 0);
+	lose(b, 0, true, on ? ONE_PERCENT / 2 : 0);
+}
+
+/* A slave that repeats: each service is done, once. */
+static void lossy_repeat(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct sum up = { 0 }, down = { 0 };
+	u64 lost = bus_lost(b);
+
+	lossy(b, true);
+	transfers(b, SURE, TRANSFERS, &down, &up);
+	print("downloads, slave repeats", &down);
+	print("uploads, slave repeats", &up);
+	KUNIT_EXPECT_EQ(test, down.done + up.done, (u32)TRANSFERS);
+	KUNIT_EXPECT_EQ(test, down.twice, 0u);
+	KUNIT_EXPECT_GT(test, bus_lost(b) - lost, TRANSFERS / 50ull);
+}
+
+/* One that does not: an error that says so, nothing is written a second time by itself. */
+static void lossy_no_repeat(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct sum up = { 0 }, down = { 0 };
+
+	lossy(b, true);
+	transfers(b, UNSURE, UNSURE_TRANSFERS, &down, &up);
+	print("downloads, slave does not repeat", &down);
+	print("uploads, slave does not repeat", &up);
+	KUNIT_EXPECT_EQ(test, up.wrong + down.wrong + down.twice, 0u);
+	KUNIT_EXPECT_EQ(test, down.late, 0u);
+	KUNIT_EXPECT_LE(test, up.late, UNSURE_TRANSFERS / 2000u);
+	KUNIT_EXPECT_GT(test, down.unknown, UNSURE_TRANSFERS / 400u);
+	KUNIT_EXPECT_GT(test, down.done, UNSURE_TRANSFERS * 9 / 20u);
+}
+
+/* Every frame of the exchanges is lost once, on the way out and back. */
+static void lossy_each_frame(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct sum up = { 0 }, down = { 0 };
+	u32 n, back, frames = 0;
+
+	for (back = 0; back < 2; back++) {
+		for (n = 1; n <= EACH; n++) {
+			u64 lost = bus_lost(b);
+
+			lose(b, n, back, 0);
+			transfers(b, SURE, 20, &down, &up);
+			frames += bus_lost(b) - lost;
+		}
+	}
+	bus_figure("each of %u frames of 20 transfers lost once: %u downloads and %u uploads done",
+		   frames, down.done, up.done);
+	KUNIT_EXPECT_EQ(test, frames, 2u * EACH);
+	KUNIT_EXPECT_EQ(test, down.done, 2u * EACH * 10);
+	KUNIT_EXPECT_EQ(test, up.done, 2u * EACH * 10);
+	KUNIT_EXPECT_EQ(test, down.twice, 0u);
+}
+
+/* Its EEPROM promises what it does not do: found out, then treated as the other kind. */
+static void lossy_false_promise(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct sum up = { 0 }, down = { 0 };
+
+	ec_sim_set_bug(b->sim, EC_SIM_BUG_MBOX_REPEAT);
+	lossy(b, true);
+	transfers(b, SURE, 2000, &down, &up);
+	lossy(b, false);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, SURE)->mbox.can_repeat);
+	KUNIT_EXPECT_EQ(test, up.wrong + down.wrong + down.twice + down.late, 0u);
+	KUNIT_EXPECT_GT(test, down.unknown, 0u);
+	KUNIT_EXPECT_GT(test, down.done, 900u);
+}
+
+/* SoE has no counter of its own: the same rules. */
+static void lossy_soe(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	u32 i, unknown[2] = { 0 }, slave;
+	u8 v[2], in[2];
+	size_t got;
+	u16 error;
+	int ret;
+
+	lossy(b, true);
+	for (slave = SURE; slave <= UNSURE; slave++) {
+		for (i = 0; i < 2000; i++) {
+			put_unaligned_le16(i, v);
+			ret = ec_soe_write(&bus_slave(b, slave)->mbox, 0, 0x8096, v, 2, &error,
+					   &limit);
+			unknown[slave] += ret == -ENOTRECOVERABLE;
+			KUNIT_ASSERT_TRUE(test, !ret || ret == -ENOTRECOVERABLE);
+			KUNIT_ASSERT_EQ(test,
+					ec_soe_read(&bus_slave(b, slave)->mbox, 0, 0x8096, in, 2,
+						    &got, &error, &limit), 0);
+			KUNIT_EXPECT_TRUE(test, ret || !memcmp(v, in, 2));
+		}
+	}
+	KUNIT_EXPECT_EQ(test, unknown[SURE], 0u);
+	KUNIT_EXPECT_GT(test, unknown[UNSURE], 1u);
+}
+
+static struct kunit_case lossy_cases[] = {
+	KUNIT_CASE(lossy_repeat),
+	KUNIT_CASE(lossy_no_repeat),
+	KUNIT_CASE(lossy_each_frame),
+	KUNIT_CASE(lossy_false_promise),
+	KUNIT_CASE(lossy_soe),
+	{}
+};
+
+static struct kunit_suite lossy_suite = {
+	.name = "bus_lossy",
+	.exit = bus_exit,
+	.test_cases = lossy_cases,
+};
+
+kunit_test_suites(&lossy_suite);
