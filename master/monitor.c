@@ -6,6 +6,7 @@
 #include "boundary/master.h"
 #include "monitor.h"
 #include "base/once64.h"
+#include "bus/mailboxes.h"
 #include "bus/slave.h"
 #include "link/xfer.h"
 #include "bus/scan.h"
@@ -31,6 +32,7 @@ struct watch {
 	u64 alone_ns;		/* no rider before that time */
 	bool riding;		/* the rider is on its way; its reply is for the next look */
 	u64 ride_ns;		/* since then */
+	u16 irq;		/* events of all slaves */
 };
 
 static void check_links(struct watch *w)
@@ -178,6 +180,7 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 		return ec_xfer_urgent(&m->links, dg, 1);
 	dg->wkc = r->wkc;
 	dg->back = r->back;
+	dg->irq = r->irq;
 	memcpy(dg->data, r->data, dg->len);
 	return ret;
 }
@@ -215,6 +218,7 @@ static void ask_slaves(struct watch *w)
 		count = believable(w, dg.back);
 		wkc = dg.wkc;
 		ored = get_unaligned_le16(al);
+		w->irq = dg.irq;
 		break;
 	}
 	set_present(m, count, ored & EC_AL_STATE_MASK);
@@ -261,6 +265,7 @@ static bool all_well(struct watch *w)
 	/* the last slave may have come to its state since the last look */
 	set_present(m, w->count, ored & EC_AL_STATE_MASK);
 	m->bus.complete_ns = w->ride_ns;
+	w->irq = r->irq;
 	return true;
 }
 
@@ -283,9 +288,12 @@ static void ride(struct watch *w)
 
 static void count_slaves(struct watch *w)
 {
+	w->irq = 0;
 	if (!all_well(w))
 		ask_slaves(w);
 	ride(w);
+	if (w->scanned && w->link_up)
+		ec_mailboxes_look(&w->m->bus, w->irq);
 }
 
 static bool is_due(const struct ec_slave *s, u64 now)

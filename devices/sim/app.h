@@ -275,6 +275,7 @@ struct ec_app_object {
  * @soe: SoE with so many drives, 0: no SoE
  * @voe: VoE with this type in the answers, 0: no VoE
  * @foe: KiB of a file, 0: EC_APP_FOE_KIB where the table or the image has FoE
+ * @strict: the SyncManagers of the mailbox must have the usual control bytes, no other
  * @no_repeat: neither repeats its messages nor sees that one of the master is repeated
  */
 struct ec_app_params {
@@ -291,6 +292,7 @@ struct ec_app_params {
 	u16 voe;
 	u16 foe;
 	bool no_repeat;
+	bool strict;
 };
 
 /**

@@ -98,6 +98,10 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		p->cpu = true;
 	else if (w.s && !ec_desc_is(&w, "no"))
 		return ec_desc_fail(d, "invalid cpu '", &w, "': expected yes or no");
+	w = ec_desc_value(d, "strict");
+	p->strict = ec_desc_is(&w, "yes");
+	if (w.s && !p->strict && !ec_desc_is(&w, "no"))
+		return ec_desc_fail(d, "invalid strict '", &w, "': expected yes or no");
 	w = ec_desc_value(d, "repeat");
 	p->no_repeat = ec_desc_is(&w, "no");
 	if (w.s && !p->no_repeat && !ec_desc_is(&w, "yes"))
@@ -175,7 +179,7 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
 	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe &&
-	       a->no_repeat == b->no_repeat;
+	       a->no_repeat == b->no_repeat && a->strict == b->strict;
 }
 
 static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,

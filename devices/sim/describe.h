@@ -14,7 +14,7 @@
  *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
  *		soe=N (SoE with N drives)  voe=TYPE (VoE, type of the answers)
  *		foe=KIB (FoE, largest file)  foe_busy=N (BUSY answers after 4 KiB of a write)
- *		repeat=yes|no (mailbox messages)
+ *		repeat=yes|no (mailbox messages)  strict=yes|no (mailbox SyncManagers)
  *	branch NAME PORT		the next slave hangs there
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
  *	connect NAME.CHANNEL -> NAME.CHANNEL	an output to an input

@@ -110,6 +110,8 @@ static bool mbox_sm_ok(const struct ec_app *app, int n, u16 start, u16 len)
 	const struct ec_esc_sm *sm = &app->esc->sm[n];
 	u8 control = EC_SM_MODE_MAILBOX | (n ? 0 : EC_SM_DIR_WRITE);
 
+	if (app->model->params.strict && sm->page.control != (n ? 0x22 : 0x26))
+		return false;
 	return sm->active && sm->page.start == start && sm->page.len == len &&
 	       (sm->page.control & (EC_SM_MODE_MASK | EC_SM_DIR_MASK)) == control;
 }

@@ -80,6 +80,10 @@ struct ec_bus {
 	u16 next_station;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */
 	u64 complete_ns;
+	/** @mailboxes_ns: last look at all mailboxes (ktime); the monitor's */
+	u64 mailboxes_ns;
+	/** @some_mailboxes_ns: last look at any */
+	u64 some_mailboxes_ns;
 	/** @sii_bytes: memory of all EEPROM images */
 	atomic_long_t sii_bytes;
 

@@ -8,12 +8,13 @@
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../link/links.h"
+#include "mailboxes.h"
 #include "slave.h"
 #include "../link/xfer.h"
 #include "scan.h"
 
 #define WAIT_NS		(20 * NSEC_PER_MSEC)
-#define WRITES		3	/* datagrams per slave */
+#define WRITES		4	/* datagrams per slave */
 
 /* one slave on its way */
 struct climber {
@@ -40,10 +41,12 @@ static void start(struct job *j)
 		struct climber *c = &j->c[i];
 		u16 station = c->slave->station;
 		unsigned int len = ec_mbox_present(&c->slave->mbox) ?
-				   ec_mbox_sms(&c->slave->info.std, c->page) : 0;
+				   ec_mbox_sms(&c->slave->mbox, false, c->page) : 0;
 
-		if (len)
+		if (len) {
 			j->dg[n++] = EC_FPWR(station, EC_REG_SM(0), len, c->page);
+			j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2, ec_mailboxes_event);
+		}
 		j->dg[n++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, pdi);
 		j->dg[n++] = EC_FPWR(station, EC_REG_AL_CONTROL, 2, preop);
 	}
@@ -69,6 +72,9 @@ static void look(struct job *j)
 				c->slave->clean = j->clean;
 				continue;
 			}
+			/* its worker tries again */
+			if (ec_mbox_refused(&c->slave->mbox, c->slave->al_code))
+				c->slave->mbox.strict = true;
 			if (READ_ONCE(c->slave->al_status) & EC_AL_ERROR)
 				continue;
 		}

@@ -6,6 +6,7 @@
 #include "../mailbox/mailbox.h"
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../bus/mailboxes.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
 #include "../link/xfer.h"
@@ -185,20 +186,37 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
-/* From INIT to PREOP or BOOT with the mailbox of that state: state-machine.md 4.2. */
-static int leave_init(struct ec_slave *s, u8 state)
+/* The mailbox of PREOP or BOOT, and that state: state-machine.md 4.2. */
+static int enter(struct ec_slave *s, u8 state)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
-	bool boot = state == EC_AL_BOOT;
 	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = ec_mbox_sms(boot ? &s->info.boot : &s->info.std, page);
+	unsigned int len = ec_mbox_sms(&s->mbox, state == EC_AL_BOOT, page);
+	int ret = 0;
+
+	/* a SyncManager that is active keeps its control byte */
+	if (len && s->mbox.strict)
+		ret = activate_sm(s, 0, 0) ?: activate_sm(s, 1, 0);
+	if (len && !ret)
+		ret = write_reg(s, EC_REG_SM(0), page, len) ?:
+		      write_reg(s, EC_REG_ECAT_MASK, ec_mailboxes_event, 2);
+	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
+}
+
+/* From INIT to PREOP or BOOT with the mailbox of that state. */
+static int leave_init(struct ec_slave *s, u8 state)
+{
+	bool boot = state == EC_AL_BOOT;
 	int ret;
 
-	if (boot && !len)
+	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
 		return ec_apply_fail(s, -EOPNOTSUPP,
 				     "BOOT not possible: no bootstrap mailbox in the SII");
-	ret = len ? write_reg(s, EC_REG_SM(0), page, len) : 0;
-	ret = ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
+	ret = enter(s, state);
+	if (ret == -EPROTO && ec_mbox_refused(&s->mbox, READ_ONCE(s->al_code))) {
+		s->mbox.strict = true;
+		ret = set_state(s, EC_AL_INIT) ?: enter(s, state);
+	}
 	s->ours = !ret;
 	if (!boot) {
 		s->clean = !ret;

@@ -240,6 +240,7 @@ void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8
 		memcpy(r->data, d.data, r->len);
 		r->wkc = ec_dgram_wkc(&d);
 		r->back = d.adp;
+		r->irq = d.irq;
 		atomic_set_release(&r->state, EC_RIDER_BACK);
 		complete(&r->done);
 	}

@@ -39,6 +39,7 @@ enum ec_rider_state {
  * @data: sent; then as it came back
  * @wkc: result: working counter
  * @back: result: @adp as it came back
+ * @irq: result: OR of the enabled events of the slaves passed
  * @done: completed when it is back
  */
 struct ec_rider {
@@ -52,6 +53,7 @@ struct ec_rider {
 	u8 data[EC_RIDER_BYTES];
 	u16 wkc;
 	u16 back;
+	u16 irq;
 	struct completion done;
 };
 

@@ -110,6 +110,7 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 		}
 		dg[i].wkc = ec_dgram_wkc(&d);
 		dg[i].back = d.adp;
+		dg[i].irq = d.irq;
 		dg[i].sent_ns = bf->slot->sent_ns;
 		if (ec_cmd_reads(d.cmd))
 			memcpy(dg[i].data, d.data, d.len);

@@ -20,6 +20,7 @@ struct ec_links;
  * @data: sent for writing commands, filled for reading ones
  * @wkc: result: working counter
  * @back: result: @adp as it came back (position plus slaves passed)
+ * @irq: result: OR of the enabled events of the slaves passed
  * @sent_ns: result: when its frame left, as far as the master knows (ktime)
  * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN (link is down), -ENODEV,
  *	-EINTR (caller killed), -EBUSY (the device sends nothing)
@@ -33,6 +34,7 @@ struct ec_dg {
 	void *data;
 	u16 wkc;
 	u16 back;
+	u16 irq;
 	u64 sent_ns;
 	int err;
 };

@@ -197,7 +197,7 @@ static void close_gap(struct ec_mbox *mb)
 		mb->ack_fails = 0;
 	} else if (ret == -ETIME && ++mb->ack_fails == ACK_FAILS) {
 		mb->can_repeat = false;
-		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM says so; what a lost frame loses is lost\n");
+		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
 	}
 }
 

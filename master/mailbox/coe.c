@@ -183,7 +183,8 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
 		*info = again;
 		len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
 		ret = len < 0 ? len : ec_mbox_request(mb, &req, b, len);
-	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES && ktime_get_ns() < until_ns);
+	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES &&
+		 ktime_get_ns() < until_ns);
 	return ec_mbox_read_result(ret);
 }
 

@@ -36,19 +36,25 @@ void ec_mbox_reset(struct ec_mbox *mb)
 
 /**
  * ec_mbox_sms() - SyncManager pages of a mailbox
- * @area: standard or bootstrap mailbox
+ * @mb: mailbox of the slave
+ * @boot: of BOOT
  * @page: result, SM0 and SM1, 2 * EC_SM_PAGE bytes
+ *
+ * A full SM1 is an ECAT event (register 0x0200), unless the slave wants its usual control byte.
  *
  * Context: Any.
  * Return: bytes of @page, 0 without mailbox.
  */
-unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page)
+unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page)
 {
+	const struct ec_sii_mbox *area = boot ? &mb->sii->boot : &mb->sii->std;
 	struct ec_sm out = { .start = area->rx_offset, .len = area->rx_size, .control = 0x26,
 			     .activate = EC_SM_ACT_ENABLE };
 	struct ec_sm in = { .start = area->tx_offset, .len = area->tx_size, .control = 0x22,
 			    .activate = EC_SM_ACT_ENABLE };
 
+	if (!mb->strict)
+		in.control |= EC_SM_ECAT_IRQ;
 	if (!area->rx_size || !area->tx_size)
 		return 0;
 	ec_sm_encode(&out, page);

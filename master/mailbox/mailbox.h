@@ -41,6 +41,9 @@ struct ec_mbox {
 	/** @station: station address, immutable */
 	u16 station;
 
+	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
+	bool strict;
+
 	/** @sdo_lock: one SDO transfer at a time; see ec_mbox_lock() */
 	struct semaphore sdo_lock;
 	/** @lock: one exchange at a time; protects the members up to @answered */
@@ -134,6 +137,18 @@ static inline bool ec_mbox_present(const struct ec_mbox *mb)
 	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
 }
 
+/* Does a caller exchange messages with the slave now? */
+static inline bool ec_mbox_in_use(const struct ec_mbox *mb)
+{
+	return !READ_ONCE(mb->lock.count);
+}
+
+/* Does the slave, in INIT with @al_code, refuse what it was given more than usual? */
+static inline bool ec_mbox_refused(const struct ec_mbox *mb, u16 al_code)
+{
+	return !mb->strict && (al_code == EC_AL_CODE_MBOX_BOOT || al_code == EC_AL_CODE_MBOX_PREOP);
+}
+
 /* The mailbox in use: BOOT has one of its own. */
 static inline const struct ec_sii_mbox *ec_mbox_area(const struct ec_mbox *mb)
 {
@@ -158,7 +173,7 @@ static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set
 }
 
 void ec_mbox_init(struct ec_mbox *mb);
-unsigned int ec_mbox_sms(const struct ec_sii_mbox *area, u8 *page);
+unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page);
 void ec_mbox_reset(struct ec_mbox *mb);
 int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms);
 int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message);
@@ -170,7 +185,7 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len);
 int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b);
 int ec_mbox_forget(struct ec_mbox *mb);
-void ec_mbox_poll(struct ec_mbox *mb);
+bool ec_mbox_poll(struct ec_mbox *mb);
 
 /* VoE: messages without a request */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);

@@ -60,7 +60,7 @@ bool ec_mbox_unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *
 /* A semaphore has no owner: what can be checked is that there is a holder. */
 static inline void ec_mbox_assert_locked(const struct ec_mbox *mb)
 {
-	lockdep_assert(!READ_ONCE(mb->lock.count));
+	lockdep_assert(ec_mbox_in_use(mb));
 }
 
 #endif

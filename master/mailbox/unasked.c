@@ -120,6 +120,23 @@ bool ec_mbox_unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *
 	return emergency(mb, h, rx);
 }
 
+/* 0: it is empty now; 1: not even after so many messages; or -errno. */
+static int drain(struct ec_mbox *mb, struct ec_mbox_buf *b)
+{
+	struct ec_mbox_hdr h;
+	unsigned int i;
+
+	for (i = 0; i < DRAIN; i++) {
+		int ret = ec_mbox_fetch(mb, b, &h, false);
+
+		if (!ret || (ret < 0 && ret != -EBADMSG))
+			return ret;
+		if (ret > 0)
+			ec_mbox_unasked(mb, &h, b->rx);
+	}
+	return 1;
+}
+
 /**
  * ec_mbox_drain() - empty the mailbox of messages that no caller waits for
  * @mb: mailbox of a slave with mailbox, @lock held
@@ -132,19 +149,8 @@ bool ec_mbox_unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *
  */
 int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b)
 {
-	struct ec_mbox_hdr h;
-	unsigned int i;
-	int ret = 1;
-
 	ec_mbox_assert_locked(mb);
-	for (i = 0; i < DRAIN && ret; i++) {
-		ret = ec_mbox_fetch(mb, b, &h, false);
-		if (ret < 0 && ret != -EBADMSG)
-			return ret;
-		if (ret > 0)
-			ec_mbox_unasked(mb, &h, b->rx);
-	}
-	return 0;
+	return min(drain(mb, b), 0);
 }
 
 /* Read the mailbox until it is empty; -EBUSY: the slave fills it without end. */
@@ -263,17 +269,20 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
  * Nothing to do while another caller uses the mailbox: its exchange fetches them as well.
  *
  * Context: Process. Waits for bus traffic.
+ * Return: true: the slave has sent very many, and there are more.
  */
-void ec_mbox_poll(struct ec_mbox *mb)
+bool ec_mbox_poll(struct ec_mbox *mb)
 {
 	struct ec_mbox_buf *b;
+	int ret = 0;
 
 	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || down_trylock(&mb->lock))
-		return;
+		return false;
 	ec_mbox_begin(mb);
 	b = ec_mbox_off(mb) ? NULL : kmalloc(sizeof(*b), GFP_KERNEL);
 	if (b)
-		ec_mbox_drain(mb, b);
+		ret = drain(mb, b);
 	kfree(b);
 	up(&mb->lock);
+	return ret > 0;
 }

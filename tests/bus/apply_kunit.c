@@ -326,8 +326,8 @@ static void apply_endless_mailbox(struct kunit *test)
 
 	KUNIT_ASSERT_TRUE(test, bus_slave(c->b, 0)->clean);
 	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, e->kind, 0);
-	bus_fault(c->b, EC_SIM_FAULT_EMERGENCY, 0, 0, 0x1000, 0);
-	msleep(20);
+	msleep(30);
+	ec_app_emergency(app, 0x1000, 0, (u8[5]){ 0 }, ktime_get_ns());
 	KUNIT_ASSERT_TRUE(test, app->mbox.out_in_sm);
 	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_BABBLE, 0);
 	cyc_map_all(c, 0, 1, 0);

@@ -45,7 +45,7 @@ static bool climb(struct bench *b)
 	if (!CHECK_EQ(ec_sii_decode_info(e->data, e->len, &b->sii), 0))
 		return false;
 	put_unaligned_le16(STATION, station);
-	len = ec_mbox_sms(&b->sii.std, page);
+	len = ec_mbox_sms(&b->mbox, false, page);
 	return CHECK_EQ(ec_xfer_one(&b->seg.links, EC_CMD_APWR, 0, EC_REG_STATION, station, 2),
 			1) &&
 	       CHECK_EQ(ec_xfer_fpwr(&b->seg.links, STATION, EC_REG_SM(0), page, len), 0) &&

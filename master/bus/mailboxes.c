@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Messages that slaves send without a request, emergencies above all, are fetched soon and in
+ * every state, without an application, and at no cost while there are none: a full mailbox
+ * shows as an event in the IRQ field of each datagram (register 0x0200).
+ */
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "../base/once64.h"
+#include "../link/links.h"
+#include "../link/xfer.h"
+#include "../wire/regs.h"
+#include "mailboxes.h"
+#include "slave.h"
+
+#define ALL_NS		NSEC_PER_SEC		/* between looks at all mailboxes */
+#define SOME_NS		(60 * NSEC_PER_MSEC)	/* at those of slaves that show no event */
+#define UNSHOWN		3			/* messages without event, then it is one of them */
+
+const u8 ec_mailboxes_event[2] = { EC_ECAT_EVENT_SM(1), 0 };
+
+/* Is its mailbox worth a look? A caller that uses it fetches all there is. */
+static bool is_candidate(struct ec_slave *s, bool all)
+{
+	return (all || s->unshown == UNSHOWN || s->mbox.strict) && ec_mbox_present(&s->mbox) &&
+	       !READ_ONCE(s->error) && !ec_slave_busy(s) && !work_pending(&s->fetch) &&
+	       ktime_get_ns() >= ec_read64(&s->fetch_ns) &&
+	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
+	       !ec_mbox_in_use(&s->mbox);
+}
+
+static bool any_in_use(const struct ec_bus *bus)
+{
+	ec_for_each_slave(s, bus)
+		if (ec_mbox_in_use(&s->mbox))
+			return true;
+	return false;
+}
+
+/* Look at the mailboxes of the candidates; @shown: the event of one was seen. */
+static void look(struct ec_bus *bus, bool all, bool shown)
+{
+	struct ec_slave **of;
+	unsigned int i, n = 0, most = 0;
+	struct ec_dg *dg;
+	u8 *status;
+
+	ec_for_each_slave(s, bus)
+		most += is_candidate(s, all);
+	if (!most)
+		return;
+	dg = kvcalloc(most, sizeof(*dg), GFP_KERNEL);
+	of = kvcalloc(most, sizeof(*of), GFP_KERNEL);
+	status = kvzalloc(most, GFP_KERNEL);
+	if (!dg || !of || !status)
+		goto out;
+	ec_for_each_slave(s, bus) {
+		if (n == most || !is_candidate(s, all))
+			continue;
+		dg[n] = EC_FPRD(s->station, EC_REG_SM(1) + EC_SM_OFS_STATUS, 1, &status[n]);
+		of[n++] = s;
+	}
+	if (n)
+		ec_xfer(bus->links, dg, n);
+	for (i = 0; i < n; i++) {
+		if (dg[i].err || dg[i].wkc != 1 || !(status[i] & EC_SM_ST_FULL))
+			continue;
+		/* a message may have come after @irq */
+		if (!shown && of[i]->unshown < UNSHOWN)
+			of[i]->unshown++;
+		ec_slave_fetch(of[i]);
+	}
+out:
+	kvfree(dg);
+	kvfree(of);
+	kvfree(status);
+}
+
+/**
+ * ec_mailboxes_look() - fetch messages that slaves have sent without a request
+ * @bus: bus, scanned
+ * @irq: IRQ field of a datagram that has passed all slaves just now
+ *
+ * Context: The monitor thread. Waits for bus traffic when there is a message, and once a
+ * second.
+ */
+void ec_mailboxes_look(struct ec_bus *bus, u16 irq)
+{
+	bool shown = irq & EC_ECAT_EVENT_SM(1);
+	u64 now = ktime_get_ns();
+	bool all = now - bus->mailboxes_ns >= ALL_NS;
+
+	/* the event may be that of an answer */
+	if (!all && (!shown || any_in_use(bus)) && now - bus->some_mailboxes_ns < SOME_NS)
+		return;
+	bus->some_mailboxes_ns = now;
+	if (all)
+		bus->mailboxes_ns = now;
+	look(bus, shown || all, shown);
+}
