@@ -22,8 +22,8 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 
 	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
 		return false;
-	ec_mbox_warn(mb, "CoE emergency: code 0x%04x, error register 0x%02x\n", e.code,
-		      e.reg);
+	ec_mbox_warn(mb, "CoE emergency: code 0x%04x, error register 0x%02x (%s)\n", e.code,
+		     e.reg, ec_coe_emergency_text(e.code));
 	ec_emerg_push(mb, rx + EC_COE_HDR);
 	return true;
 }

@@ -169,7 +169,7 @@ static bool look(struct ec_requests *rq)
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_lanes; i++) {
 		struct ec_lane *lane = &rq->lanes[i];
-		bool there = s->wanted.configs[lane->config]->slave, todo = lane->emerg.count;
+		bool there = s->wanted.configs[lane->config]->slave, todo = false;
 		struct ec_request *r;
 
 		list_for_each_entry(r, &lane->requests, list) {
@@ -276,8 +276,6 @@ static void lane_work(struct work_struct *work)
 			mutex_lock(&rq->lock);
 			finish(r);
 			mutex_unlock(&rq->lock);
-		} else if (slave && lane->emerg.count) {
-			ec_mbox_poll(&slave->mbox);
 		}
 		ec_slave_unref(slave);
 	} while (r);
