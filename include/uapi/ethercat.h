@@ -709,6 +709,7 @@ struct ec_ioc_wait {
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
+#define EC_IOC_EMERGENCIES	EC_IOC_RW(0x1a, struct ec_ioc_emergencies)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)

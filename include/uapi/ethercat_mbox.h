@@ -44,6 +44,26 @@ struct ec_ioc_sdo_info {
 	__u64 data;
 };
 
+/* so many the master keeps of each slave */
+#define EC_EMERGENCIES		16
+
+struct ec_emergency {
+	__u64 time_ns;		/* when the master has fetched it, since 1970 */
+	__u16 code;
+	__u8 error_register;
+	__u8 data[5];
+};
+
+/* the last emergencies of a slave, the oldest first */
+struct ec_ioc_emergencies {
+	__u32 flags;
+	__u16 position;		/* in */
+	__u16 count;		/* out: entries */
+	__u32 total;		/* out: of this slave since it was found */
+	__u32 reserved;
+	struct ec_emergency entry[EC_EMERGENCIES];
+};
+
 /* value of an IDN of a servo drive */
 struct ec_ioc_soe {
 	__u32 flags;

@@ -4,6 +4,7 @@
  * slave is configured.
  */
 #include "../mailbox/coe.h"
+#include "../mailbox/emerg.h"
 #include "../config/config.h"
 #include "ioctl.h"
 #include "../mailbox/mailbox.h"
@@ -121,6 +122,14 @@ int ec_ioc_sdo_info(struct ec_call *call)
 	ret = info_failed(call, i, ret);
 	i->size = ret ? 0 : info.size;
 	return ret;
+}
+
+int ec_ioc_emergencies(struct ec_call *call)
+{
+	struct ec_ioc_emergencies *i = call->arg;
+
+	i->count = ec_emerg_last(&call->slave->mbox, i->entry, &i->total);
+	return 0;
 }
 
 int ec_ioc_sc_sdo(struct ec_call *call)

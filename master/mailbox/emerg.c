@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
 #include <linux/minmax.h>
 #include <linux/slab.h>
 #include <linux/string.h>
 #include "ethercat_map.h"
+#include "../wire/compat.h"
 #include "emerg.h"
 #include "mailbox.h"
 
@@ -48,8 +50,42 @@ void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 		spin_unlock(&mb->unasked_lock);
 }
 
+static void keep_last(struct ec_mbox *mb, const u8 *message)
+{
+	struct ec_emergency *e = &mb->last[mb->n_last % EC_EMERGENCIES];
+
+	lockdep_assert_held(&mb->unasked_lock);
+	mb->n_last++;
+	e->time_ns = ktime_get_real_ns();
+	e->code = get_unaligned_le16(message);
+	e->error_register = message[2];
+	memcpy(e->data, message + 3, sizeof(e->data));
+}
+
 /**
- * ec_emerg_push() - keep an emergency for the application
+ * ec_emerg_last() - the last emergencies of a slave
+ * @mb: mailbox of the slave
+ * @entry: result, EC_EMERGENCIES of them, the oldest first
+ * @total: result: emergencies since the slave was found
+ *
+ * Context: Process.
+ * Return: how many are in @entry.
+ */
+unsigned int ec_emerg_last(struct ec_mbox *mb, struct ec_emergency *entry, u32 *total)
+{
+	u32 i, n;
+
+	spin_lock(&mb->unasked_lock);
+	*total = mb->n_last;
+	n = min_t(u32, *total, EC_EMERGENCIES);
+	for (i = 0; i < n; i++)
+		entry[i] = mb->last[(*total - n + i) % EC_EMERGENCIES];
+	spin_unlock(&mb->unasked_lock);
+	return n;
+}
+
+/**
+ * ec_emerg_push() - keep an emergency, also for the application
  * @mb: mailbox of a slave that sent it
  * @message: EC_EMERG_BYTES: code, error register, data (ETG.1000.6 5.6.4)
  *
@@ -60,6 +96,7 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 	struct ec_emerg *e;
 
 	spin_lock(&mb->unasked_lock);
+	keep_last(mb, message);
 	e = mb->emerg;
 	if (!e)
 		goto out;

@@ -6,6 +6,7 @@
 #include <linux/types.h>
 
 struct ec_emerg_ring;
+struct ec_emergency;
 struct ec_mbox;
 
 /**
@@ -26,6 +27,7 @@ struct ec_emerg {
 
 void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e);
 void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data);
+unsigned int ec_emerg_last(struct ec_mbox *mb, struct ec_emergency *entry, u32 *total);
 void ec_emerg_push(struct ec_mbox *mb, const u8 *message);
 
 #endif

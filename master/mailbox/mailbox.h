@@ -8,6 +8,7 @@
 #include <linux/spinlock.h>
 #include <linux/types.h>
 #include <linux/wait.h>
+#include "ethercat.h"
 #include "../base/stop.h"
 #include "../wire/al.h"
 #include "../wire/mbox.h"
@@ -79,6 +80,10 @@ struct ec_mbox {
 	spinlock_t unasked_lock;
 	/** @emerg: where emergencies go, NULL: only to the log */
 	struct ec_emerg *emerg;
+	/** @last: the last emergencies, entry n of them at n % EC_EMERGENCIES */
+	struct ec_emergency last[EC_EMERGENCIES];
+	/** @n_last: emergencies so far */
+	u32 n_last;
 	/** @kept: VoE messages, the oldest first */
 	struct list_head kept;
 	/** @n_kept: entries in @kept */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Messages without a request are fetched soon, in every state, without an application. */
 #include "cyc.h"
+#include "master/mailbox/emerg.h"
 
 #define DRIVE	1
 #define SOON_MS	100
@@ -58,6 +59,32 @@ static void emergency_in_each_state(struct kunit *test)
 		ms = longest(b, 20);
 		bus_figure("emergency in AL state %u: fetched after at most %u ms", states[i], ms);
 		KUNIT_EXPECT_LE(test, ms, (u32)SOON_MS);
+	}
+}
+
+/* The last ones stay, the oldest first. */
+static void emergency_list(struct kunit *test)
+{
+	struct ec_emergency e[EC_EMERGENCIES];
+	struct bus *b = ready(test);
+	u64 before = ktime_get_real_ns();
+	u32 i, total;
+
+	KUNIT_EXPECT_EQ(test, ec_emerg_last(&bus_slave(b, DRIVE)->mbox, e, &total), 0u);
+	for (i = 0; i < EC_EMERGENCIES + 2; i++) {
+		ec_app_emergency(bus_app(b, "drive"), 0x3200 + i, 0x04, (u8[5]){ i, 2, 3, 4, 5 },
+				 ktime_get_ns());
+		msleep(50);
+	}
+	KUNIT_ASSERT_EQ(test, ec_emerg_last(&bus_slave(b, DRIVE)->mbox, e, &total),
+			(u32)EC_EMERGENCIES);
+	KUNIT_EXPECT_EQ(test, total, EC_EMERGENCIES + 2u);
+	for (i = 0; i < EC_EMERGENCIES; i++) {
+		KUNIT_EXPECT_EQ(test, e[i].code, 0x3202 + i);
+		KUNIT_EXPECT_EQ(test, e[i].error_register, 0x04);
+		KUNIT_EXPECT_EQ(test, e[i].data[0], i + 2);
+		KUNIT_EXPECT_EQ(test, e[i].data[4], 5);
+		KUNIT_EXPECT_GE(test, e[i].time_ns, before + i * 50 * NSEC_PER_MSEC);
 	}
 }
 
@@ -183,6 +210,7 @@ static void emergency_flood(struct kunit *test)
 
 static struct kunit_case emergency_cases[] = {
 	KUNIT_CASE(emergency_in_each_state),
+	KUNIT_CASE(emergency_list),
 	KUNIT_CASE(emergency_in_op),
 	KUNIT_CASE(emergency_strict),
 	KUNIT_CASE(emergency_unshown),

@@ -585,6 +585,23 @@ static int sdo_info(struct ec_ioc_sdo_info *x)
 	return fail(EIO, "SDO information aborted");
 }
 
+static int emergencies(struct ec_ioc_emergencies *x)
+{
+	const struct ec_emergency e = {
+		.time_ns = 1764000000012345678, .code = 0x8130, .error_register = 0x11,
+		.data = { 1, 2, 3, 4, 0xff },
+	};
+
+	if (x->position != 2)
+		return 0;
+	x->total = bus("two") ? 70000 : 2;
+	x->count = bus("two") ? EC_EMERGENCIES : 2;
+	for (__u32 i = 0; i < x->count; i++)
+		x->entry[i] = e;
+	x->entry[1].code = 0;
+	return 0;
+}
+
 static int download(struct ec_ioc_sdo *x)
 {
 	char what[64];
@@ -850,6 +867,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return upload(arg);
 	case EC_IOC_SDO_DOWNLOAD:
 		return download(arg);
+	case EC_IOC_EMERGENCIES:
+		return emergencies(arg);
 	case EC_IOC_SDO_INFO:
 		return sdo_info(arg);
 	case EC_IOC_SOE_READ:

@@ -150,6 +150,11 @@ static void check_data_pointer(int fd, const struct cmd *c)
 			((struct ec_ioc_soe *)arg)->position = 2;
 			((struct ec_ioc_soe *)arg)->idn = 91;
 		}
+		if (c->nr == EC_IOC_SDO_INFO) {
+			((struct ec_ioc_sdo_info *)arg)->position = 2;
+			((struct ec_ioc_sdo_info *)arg)->what = EC_SDO_INFO_LIST;
+			size = 64;
+		}
 		p = (__u64)(unsigned long)bad_pointers[b];
 		memcpy(arg + c->data, &p, sizeof(p));
 		memcpy(arg + c->size, &size, sizeof(size));

@@ -37,6 +37,7 @@ const struct cmd cmds[] = {
 	CMD(CYCLE_STATS, DATA(ec_ioc_cycle_stats)),
 	CMD(CONFIG_IP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),
 	CMD(CONFIG_WHY, RSV1(ec_ioc_config_why)),
+	CMD(EMERGENCIES, RSV1(ec_ioc_emergencies)),
 	CMD(SLAVES_DOWN, APP),
 	CMD(IP_GET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved) }),
 	CMD(IP_SET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved) }),

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <time.h>
+
+#include "../master/wire/coe.h"
+#include "../master/wire/sii.h"
+#include "dev.h"
+#include "out.h"
+
+static void entry(u16 position, const struct ec_emergency *e)
+{
+	const time_t s = (time_t)(e->time_ns / 1000000000);
+	const char *about = ec_coe_emergency_text(e->code);
+	char when[32] = "?";
+	struct tm tm;
+
+	if (gmtime_r(&s, &tm))
+		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
+	out_object(NULL);
+	out_text("%4u  %s.%03u UTC", position, when, (unsigned int)(e->time_ns / 1000000 % 1000));
+	out_u("time_ns", e->time_ns, NULL);
+	out_u("code", e->code, "  0x%04x", e->code);
+	out_u("error_register", e->error_register, "  0x%02x", e->error_register);
+	out_text("  %02x %02x %02x %02x %02x", e->data[0], e->data[1], e->data[2], e->data[3],
+		 e->data[4]);
+	if (out_is_json())
+		out_hex("data_hex", e->data, sizeof(e->data), "");
+	out_str("text", about, "  %s\n", about);
+	out_end();
+}
+
+static int slave(struct dev *d, const struct ec_ioc_slave *s, bool *any)
+{
+	struct ec_ioc_emergencies i = { .position = s->position };
+	int err = dev_ioctl(d, EC_IOC_EMERGENCIES, &i);
+	unsigned int n = min(i.count, (u16)EC_EMERGENCIES);
+
+	if (err)
+		return dev_fail(d, err, "Master%u slave %u: cannot read the emergencies",
+				d->master, s->position);
+	out_object(NULL);
+	out_u("position", s->position, NULL);
+	out_u("total", i.total, NULL);
+	if (i.total > n)
+		out_text("%4u  the last %u of %u\n", s->position, n, i.total);
+	out_array("emergencies");
+	for (unsigned int k = 0; k < n; k++)
+		entry(s->position, &i.entry[k]);
+	out_end();
+	out_end();
+	*any |= n;
+	return 0;
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	bool any = false;
+	struct slaves sel;
+	int ret = 0;
+
+	if (dev_select(d, t, &sel, NULL))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_array("slaves");
+	if (d->selected > 1)
+		out_text("Master%u\n", d->master);
+	for (size_t i = 0; i < sel.n; i++)
+		if (sel.v[i].mbox_protocols & EC_SII_PROTO_COE)
+			ret |= slave(d, &sel.v[i], &any);
+	if (!any && !ret)
+		out_text("None.\n");
+	out_end();
+	out_end();
+	slaves_free(&sel);
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	int ret;
+
+	(void)argc, (void)argv;
+	out_array("masters");
+	ret = dev_each(t, false, each);
+	out_end();
+	return ret;
+}
+
+const struct cmd cmd_emergencies = {
+	.name = "emergencies",
+	.run = run,
+	.args = "",
+	.opts = "map",
+	.summary = "Show the last CoE emergencies of slaves",
+	.help = "The master fetches them in PREOP and above, and keeps the last 16 of each slave. Columns:\n"
+		"position, time at which the master has fetched it, error code, error register,\n"
+		"manufacturer's data, group of the code. Code 0x0000: the error is over.\n",
+	.json = "masters[]: master, slaves[]: position, total, emergencies[]: time_ns (since 1970),\n"
+		"code, error_register, data_hex, text",
+};
