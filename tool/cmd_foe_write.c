@@ -5,13 +5,6 @@
 #include "files.h"
 #include "io.h"
 
-static const char *base_name(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-
-	return slash ? slash + 1 : path;
-}
-
 static int foe_write(const struct tool *t, struct foe *f)
 {
 	struct dev d;
@@ -55,10 +48,7 @@ const struct cmd cmd_foe_write = {
 		"64 characters. A slave in BOOT is written through its bootstrap mailbox. What takes\n"
 		"longer than a second shows its progress on a terminal. A transfer that is interrupted\n"
 		"is also ended at the slave; what it has of the file then is the slave's matter.\n"
-		"Firmware, where the slave needs BOOT for it:\n"
-		"  ethercat states --wait -p2 BOOT\n"
-		"  ethercat foe_write -p2 fw.efw\n"
-		"  ethercat states --wait -p2 INIT\n",
+		"Firmware is written by 'ethercat firmware'.\n",
 	.json = "master, slave, name, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,

@@ -4,11 +4,9 @@
 #include <strings.h>
 
 #include "../master/wire/al.h"
+#include "al_request.h"
 #include "dev.h"
 #include "out.h"
-
-#define WAIT_S		10.0
-#define POLL_MS		10
 
 static u8 wanted;	/* 0: show */
 
@@ -36,26 +34,12 @@ static void measure(const struct slaves *s, int *w)
 	}
 }
 
-/* why a slave is not where it should be: ": text" parts, "" when all is well */
-static void reason(const struct ec_ioc_slave *s, char *buf, size_t size)
-{
-	char code[8];
-	int n = 0;
-
-	*buf = 0;
-	snprintf(code, sizeof(code), "0x%04x", s->al_code);
-	if (s->al_code && (!s->error || !strstr(s->why, code)))
-		n = snprintf(buf, size, "AL status code %s: %s", code, ec_al_code_text(s->al_code));
-	if (s->error && s->why[0] && (size_t)n < size)
-		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
-}
-
 static void show_slave(const struct ec_ioc_slave *s, const char *indent, const int *w)
 {
 	char state[16], why[400];
 
 	al_state_text(s->al_status, state, sizeof(state));
-	reason(s, why, sizeof(why));
+	al_reason(s, why, sizeof(why));
 	out_object(NULL);
 	out_u("position", s->position, "%s%*u  ", indent, w[0], s->position);
 	out_u("alias", s->alias_group, "%*u:", w[1], s->alias_group);
@@ -70,45 +54,9 @@ static void show_slave(const struct ec_ioc_slave *s, const char *indent, const i
 	out_end();
 }
 
-static int failed(const struct dev *d, const struct ec_ioc_slave *s, const char *what)
-{
-	char state[16], why[400];
-
-	al_state_text(s->al_status, state, sizeof(state));
-	reason(s, why, sizeof(why));
-	return fail("Master%u slave %u: %s %s, it is in %s%s%s", d->master, s->position, what,
-		    ec_al_state_name(wanted), state, *why ? ": " : "", why);
-}
-
-/*
- * The master clears its error flag when it takes the request. The slave's own
- * error bit counts once it is new or its code differs from before.
- */
-static int wait_slave(struct dev *d, const struct ec_ioc_slave *before, double end)
-{
-	struct ec_ioc_slave s;
-	double start = now_s();
-
-	for (;;) {
-		if (dev_slave(d, before->position, &s))
-			return 1;
-		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
-			return 0;
-		if (s.error == EC_SLAVE_CONFIG_FAILED)
-			return failed(d, &s, "cannot reach");
-		if (s.al_status & EC_AL_ERROR &&
-		    (!(before->al_status & EC_AL_ERROR) || s.al_code != before->al_code ||
-		     now_s() - start > 1))
-			return failed(d, &s, "refused");
-		if (now_s() >= end)
-			return failed(d, &s, "has not reached");
-		sleep_ms(POLL_MS);
-	}
-}
-
 static int each(const struct tool *t, struct dev *d)
 {
-	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : WAIT_S);
+	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
 	struct slaves sel;
 	int w[4] = { 0 };
 	int ret = 0;
@@ -124,16 +72,10 @@ static int each(const struct tool *t, struct dev *d)
 	if (!wanted && d->selected > 1)
 		out_text("Master%u\n", d->master);
 	out_array("slaves");
-	for (size_t i = 0; i < sel.n && wanted; i++) {
-		struct ec_ioc_state req = { .position = sel.v[i].position, .state = wanted };
-		int err = dev_ioctl(d, EC_IOC_STATE, &req);
-
-		if (err)
-			ret = dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master,
-				       req.position, ec_al_state_name(wanted));
-	}
+	for (size_t i = 0; i < sel.n && wanted; i++)
+		ret |= al_request(d, sel.v[i].position, wanted);
 	for (size_t i = 0; i < sel.n && wanted && t->wait; i++)
-		ret |= wait_slave(d, &sel.v[i], end);
+		ret |= al_wait(d, &sel.v[i], wanted, end);
 	measure(&sel, w);
 	for (size_t i = 0; i < sel.n; i++)
 		if (!wanted || (t->wait && out_is_json() &&

@@ -161,3 +161,10 @@ int foe_transfer(struct dev *d, const struct tool *t, struct foe *f)
 	out_u("size_bytes", f->size, NULL);
 	return 0;
 }
+
+const char *base_name(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+
+	return slash ? slash + 1 : path;
+}

@@ -23,6 +23,7 @@ struct foe {
 
 #define FOE_MAX		(256u << 20)	/* bytes of a file */
 
+const char *base_name(const char *path);
 int foe_password(int argc, char **argv, struct foe *f);
 int foe_transfer(struct dev *d, const struct tool *t, struct foe *f);
 

@@ -15,6 +15,8 @@ setup_file() {
 	: >"$BATS_FILE_TMPDIR/empty"
 }
 
+in_boot() { ethercat states -p"$1" | grep -q BOOT; }
+
 teardown_file() { stop; }
 
 @test "a file comes back as it was written" {
@@ -46,6 +48,30 @@ teardown_file() { stop; }
 	refused 'not in PREOP or above' upload -p1 -t uint32 0x1018 1
 	ethercat states --wait -p1 PREOP
 	ethercat foe_read -p1 fw.efw | cmp - "$f"
+}
+
+@test "firmware in one command, also after a kill in the middle of it" {
+	local f=$BATS_FILE_TMPDIR/fw.efw
+
+	printf x >"$BATS_TEST_TMPDIR/v1"
+	json '.slave == 1 and .name == "v1" and .size_bytes == 1 and .state == "PREOP"' \
+		firmware -p1 "$BATS_TEST_TMPDIR/v1"
+	[ "$(ethercat foe_read -p1 v1)" = x ]
+	"$EC_BUILD/tool/ethercat" firmware -p1 "$f" &
+	wait_for 20 in_boot 1
+	kill -9 $!
+	in_boot 1
+	# the next attempt recovers
+	ethercat firmware -p1 "$f"
+	[ "$(ethercat states -p1 | grep -c PREOP)" = 1 ]
+	ethercat foe_read -p1 fw.efw | cmp - "$f"
+	refused 'slave 0: no FoE' firmware -p0 "$f"
+	# process data are not ended by it, unless by force; then the state returns
+	ethercat states --wait -p2 SAFEOP
+	refused 'slave 2 is in SAFEOP: BOOT ends its process data' firmware -p2 "$f"
+	[ "$(ethercat states -p2 | grep -c SAFEOP)" = 1 ]
+	json '.state == "SAFEOP"' firmware --force -p2 "$f"
+	ethercat states --wait -p2 PREOP
 }
 
 @test "wrong arguments and refusals name the cause" {

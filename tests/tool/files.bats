@@ -40,6 +40,28 @@ load common
 		json 'd["name"] == "fw.efw" and d["size_bytes"] == 2'
 }
 
+@test "firmware: states before and after, errors" {
+	printf ab >"$BATS_TEST_TMPDIR/fw.efw"
+	: >"$BATS_TEST_TMPDIR/log"
+	# the slave does not return to SAFEOP, its state before
+	run env FAKE_LOG="$BATS_TEST_TMPDIR/log" \
+		"$HERE/build/fake/ethercat" firmware -p2 "$BATS_TEST_TMPDIR/fw.efw"
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"Master0 slave 2: cannot reach SAFEOP, it is in PREOP+ERROR"* ]]
+	[[ ${lines[1]} == *"Master0 slave 2: the firmware is written; to return to SAFEOP"* ]]
+	[ "$(paste -sd, "$BATS_TEST_TMPDIR/log")" = \
+		"state 2 1,state 2 3,foe 2 fw.efw 0x00000000 6162,state 2 1,state 2 4" ]
+	run ethercat firmware -p2 -o full "$BATS_TEST_TMPDIR/fw.efw"
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"Master0 slave 2: cannot write file 'full': 0x00008003: disk full"* ]]
+	[[ ${lines[1]} == *"Master0 slave 2 stays in BOOT; repeat the command"* ]]
+	run ethercat firmware -p0 "$BATS_TEST_TMPDIR/fw.efw"
+	[ "$status" -eq 1 ]
+	[[ $output == *"Master0 slave 0: no FoE, so no firmware can be written"* ]]
+	run ethercat firmware -p2
+	[ "$status" -eq 1 ]
+}
+
 @test "FoE errors: code and text of the slave, and of the master" {
 	run ethercat foe_read -p2 none
 	[ "$status" -eq 1 ]

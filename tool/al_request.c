@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <stdio.h>
+#include <string.h>
+
+#include "../master/wire/al.h"
+#include "al_request.h"
+
+#define POLL_MS		10
+
+/* why a slave is not where it should be: ": text" parts, "" when all is well */
+void al_reason(const struct ec_ioc_slave *s, char *buf, size_t size)
+{
+	char code[8];
+	int n = 0;
+
+	*buf = 0;
+	snprintf(code, sizeof(code), "0x%04x", s->al_code);
+	if (s->al_code && (!s->error || !strstr(s->why, code)))
+		n = snprintf(buf, size, "AL status code %s: %s", code, ec_al_code_text(s->al_code));
+	if (s->error && s->why[0] && (size_t)n < size)
+		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
+}
+
+int al_request(struct dev *d, u16 position, u8 state)
+{
+	struct ec_ioc_state req = { .position = position, .state = state };
+	int err = dev_ioctl(d, EC_IOC_STATE, &req);
+
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master, position,
+			      ec_al_state_name(state)) : 0;
+}
+
+static int failed(const struct dev *d, const struct ec_ioc_slave *s, u8 wanted, const char *what)
+{
+	char state[16], why[400];
+
+	al_state_text(s->al_status, state, sizeof(state));
+	al_reason(s, why, sizeof(why));
+	return fail("Master%u slave %u: %s %s, it is in %s%s%s", d->master, s->position, what,
+		    ec_al_state_name(wanted), state, *why ? ": " : "", why);
+}
+
+/*
+ * The master clears its error flag when it takes the request. The slave's own
+ * error bit counts once it is new or its code differs from before.
+ */
+int al_wait(struct dev *d, const struct ec_ioc_slave *before, u8 wanted, double end)
+{
+	struct ec_ioc_slave s;
+	double start = now_s();
+
+	for (;;) {
+		if (dev_slave(d, before->position, &s))
+			return 1;
+		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
+			return 0;
+		if (s.error == EC_SLAVE_CONFIG_FAILED)
+			return failed(d, &s, wanted, "cannot reach");
+		if (s.al_status & EC_AL_ERROR &&
+		    (!(before->al_status & EC_AL_ERROR) || s.al_code != before->al_code ||
+		     now_s() - start > 1))
+			return failed(d, &s, wanted, "refused");
+		if (now_s() >= end)
+			return failed(d, &s, wanted, "has not reached");
+		sleep_ms(POLL_MS);
+	}
+}

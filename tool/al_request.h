@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Requests of AL states; functions print errors. */
+#ifndef EC_TOOL_AL_REQUEST_H
+#define EC_TOOL_AL_REQUEST_H
+
+#include "dev.h"
+
+#define AL_WAIT_S	10.0	/* without --wait=SECONDS */
+
+void al_reason(const struct ec_ioc_slave *s, char *buf, size_t size);
+int al_request(struct dev *d, u16 position, u8 state);
+/* @before: the slave before the request; @end: see now_s() */
+int al_wait(struct dev *d, const struct ec_ioc_slave *before, u8 wanted, double end);
+
+#endif
