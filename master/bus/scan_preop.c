@@ -72,11 +72,11 @@ static void look(struct job *j)
 				c->slave->clean = j->clean;
 				continue;
 			}
-			/* its worker tries again */
-			if (ec_mbox_refused(&c->slave->mbox, c->slave->al_code))
+			/* its worker tries again, without the event */
+			if (READ_ONCE(c->slave->al_status) & EC_AL_ERROR) {
 				c->slave->mbox.strict = true;
-			if (READ_ONCE(c->slave->al_status) & EC_AL_ERROR)
 				continue;
+			}
 		}
 		j->c[left++].slave = c->slave;
 	}

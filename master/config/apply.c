@@ -213,7 +213,8 @@ static int leave_init(struct ec_slave *s, u8 state)
 		return ec_apply_fail(s, -EOPNOTSUPP,
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	ret = enter(s, state);
-	if (ret == -EPROTO && ec_mbox_refused(&s->mbox, READ_ONCE(s->al_code))) {
+	/* whatever code it has for that: without the event, then */
+	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
 		s->mbox.strict = true;
 		ret = set_state(s, EC_AL_INIT) ?: enter(s, state);
 	}

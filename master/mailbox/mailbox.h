@@ -148,12 +148,6 @@ static inline bool ec_mbox_in_use(const struct ec_mbox *mb)
 	return !READ_ONCE(mb->lock.count);
 }
 
-/* Does the slave, in INIT with @al_code, refuse what it was given more than usual? */
-static inline bool ec_mbox_refused(const struct ec_mbox *mb, u16 al_code)
-{
-	return !mb->strict && (al_code == EC_AL_CODE_MBOX_BOOT || al_code == EC_AL_CODE_MBOX_PREOP);
-}
-
 /* The mailbox in use: BOOT has one of its own. */
 static inline const struct ec_sii_mbox *ec_mbox_area(const struct ec_mbox *mb)
 {

@@ -14,8 +14,6 @@ enum ec_al_state {
 };
 
 /* AL status codes that the master evaluates; texts exist for all */
-#define EC_AL_CODE_MBOX_BOOT		0x0015
-#define EC_AL_CODE_MBOX_PREOP		0x0016
 #define EC_AL_CODE_NO_OUTPUTS		0x0019
 #define EC_AL_CODE_SM_WATCHDOG		0x001B
 
