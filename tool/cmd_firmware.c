@@ -26,12 +26,24 @@ static int check(const struct tool *t, const struct dev *d, const struct ec_ioc_
 	return 0;
 }
 
-static int to_state(const struct tool *t, struct dev *d, u16 position, u8 state)
+/* The slave there now; a restart may have moved positions. */
+static int same_slave(struct dev *d, const struct ec_ioc_slave *of, struct ec_ioc_slave *s)
+{
+	if (dev_slave(d, of->position, s))
+		return 1;
+	if (s->vendor_id == of->vendor_id && s->product_code == of->product_code &&
+	    s->serial_number == of->serial_number && s->station == of->station)
+		return 0;
+	return fail("Master%u slave %u: there is another slave at this position now",
+		    d->master, of->position);
+}
+
+static int to_state(const struct tool *t, struct dev *d, const struct ec_ioc_slave *of, u8 state)
 {
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
 	struct ec_ioc_slave s;
 
-	return dev_slave(d, position, &s) || al_request(d, position, state) ||
+	return same_slave(d, of, &s) || al_request(d, of->position, state) ||
 	       al_wait(d, &s, state, end);
 }
 
@@ -40,13 +52,12 @@ static int to_boot(const struct tool *t, struct dev *d, const struct ec_ioc_slav
 	if ((s->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_BOOT)
 		return 0;
 	/* the way through INIT ends what the slave does, and its errors */
-	return to_state(t, d, s->position, EC_AL_INIT) ||
-	       to_state(t, d, s->position, EC_AL_BOOT);
+	return to_state(t, d, s, EC_AL_INIT) || to_state(t, d, s, EC_AL_BOOT);
 }
 
 static int update(const struct tool *t, struct dev *d, struct foe *f)
 {
-	struct ec_ioc_slave s;
+	struct ec_ioc_slave s, now;
 	u8 back;
 
 	if (dev_select_single(d, t, &s) || check(t, d, &s))
@@ -54,13 +65,19 @@ static int update(const struct tool *t, struct dev *d, struct foe *f)
 	/* an earlier attempt may have left it in BOOT or INIT: its state before is unknown */
 	back = s.al_requested == EC_AL_BOOT || s.al_requested == EC_AL_INIT ? EC_AL_PREOP :
 	       s.al_requested;
-	if (to_boot(t, d, &s))
+	if (to_boot(t, d, &s)) {
+		if (!to_state(t, d, &s, EC_AL_INIT) && !to_state(t, d, &s, back))
+			note("Master%u slave %u is in %s again; nothing was written", d->master,
+			     s.position, ec_al_state_name(back));
+		return 1;
+	}
+	if (same_slave(d, &s, &now))
 		return 1;
 	if (foe_transfer(d, t, f)) {
 		note("Master%u slave %u stays in BOOT; repeat the command", d->master, s.position);
 		return 1;
 	}
-	if (to_state(t, d, s.position, EC_AL_INIT) || to_state(t, d, s.position, back)) {
+	if (to_state(t, d, &s, EC_AL_INIT) || to_state(t, d, &s, back)) {
 		note("Master%u slave %u: the firmware is written; to return to %s the slave may need its power switched off and on",
 		     d->master, s.position, ec_al_state_name(back));
 		return 1;
@@ -79,7 +96,7 @@ static int run(struct tool *t, int argc, char **argv)
 	if (foe_password(argc, argv, &f))
 		return 1;
 	f.name = t->output_file ? t->output_file : base_name(argv[0]);
-	if (io_read_any(argv[0], &f.data, &size))
+	if (foe_check_name(f.name) || io_read(argv[0], &f.data, &size))
 		return 1;
 	f.size = (u32)size;
 	ret = dev_open_single(&d, t, true);

@@ -24,7 +24,9 @@ struct dict {
 	u8 *buf;
 };
 
-/* 0, or errno; @quiet: what the slave refuses is left out */
+#define REFUSED	(-1)
+
+/* 0, or errno; REFUSED with @quiet: no error is printed */
 static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool quiet)
 {
 	struct ec_ioc_sdo_info i = {
@@ -34,8 +36,10 @@ static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool qu
 	int err = dev_ioctl(x->d, EC_IOC_SDO_INFO, &i);
 
 	*size = min(i.size, ROOM);
-	if (!err || (quiet && i.abort_code))
-		return err;
+	if (!err)
+		return 0;
+	if (quiet && i.abort_code)
+		return REFUSED;
 	if (i.abort_code)
 		fail_full(err, NULL, i.abort_code,
 			  "Master%u slave %u: cannot read the object dictionary", x->d->master,
@@ -162,7 +166,7 @@ static int entries(struct dict *x, u16 index, u8 max_sub)
 			memcpy(name, e.name, e.name_len);
 			e.name = name;
 			entry(x, &e);
-		} else if (err == EIO) {
+		} else if (err == REFUSED) {
 			err = 0;
 		}
 	}
@@ -178,7 +182,7 @@ static int object(struct dict *x, u16 index)
 	int err = ask(x, EC_SDO_INFO_OBJECT, index, 0, &size, true);
 
 	if (err)
-		return err == EIO ? 0 : err;
+		return err == REFUSED ? 0 : err;
 	if (ec_od_object_decode(x->buf, size, &o))
 		return 0;
 	name_of(name, sizeof(name), o.name, o.name_len);

@@ -124,6 +124,19 @@ static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write
 			write ? "write" : "read", name);
 }
 
+int foe_check_name(const char *name)
+{
+	size_t n = strlen(name), i;
+
+	if (!n || n > EC_FOE_NAME)
+		return usage_error("invalid file name '%s': expected 1 to %u characters", name,
+				   EC_FOE_NAME);
+	for (i = 0; i < n; i++)
+		if (name[i] < ' ' || name[i] > '~')
+			return usage_error("invalid file name: expected printable characters; name the file on the slave with -o");
+	return 0;
+}
+
 /* A read sets @f->size to what has come. */
 int foe_transfer(struct dev *d, const struct tool *t, struct foe *f)
 {
@@ -138,9 +151,8 @@ int foe_transfer(struct dev *d, const struct tool *t, struct foe *f)
 	bool watched;
 	int err;
 
-	if (!*f->name || strlen(f->name) > EC_FOE_NAME)
-		return usage_error("invalid file name '%s': expected 1 to %u characters", f->name,
-				   EC_FOE_NAME);
+	if (foe_check_name(f->name))
+		return 1;
 	if (dev_select_single(d, t, &s))
 		return 1;
 	memcpy(i.name, f->name, strlen(f->name));

@@ -450,6 +450,7 @@ struct ec_app_foe {
  * @rx_waits: SM0 is full and not fetched, @out is occupied
  * @rx_counter: counter of the last message accepted, 0: none yet
  * @tx_counter: counter of the last message sent
+ * @toggle: the last repeat request that was seen
  * @writes: SDO downloads executed
  * @emcy: emergencies to send, 8 bytes each
  * @n_emcy: how many
@@ -473,6 +474,7 @@ struct ec_app_mbox {
 	u8 rx_counter;
 	u8 tx_counter;
 	u32 writes;
+	bool toggle;
 	u8 emcy[EC_APP_EMCY][8];
 	u8 n_emcy;
 	struct ec_app_voe voe[EC_APP_VOE];

@@ -42,6 +42,7 @@ void ec_app_mbox_reset(struct ec_app *app)
 	m->last_len = 0;
 	m->out_in_sm = false;
 	m->rx_waits = false;
+	m->toggle = false;
 	m->rx_counter = 0;
 	m->tx_counter = 0;
 	m->n_emcy = 0;
@@ -527,12 +528,14 @@ void ec_app_mbox_activate(struct ec_app *app, u64 now)
 	struct ec_esc *esc = app->esc;
 	struct ec_sm *p = &esc->sm[1].page;
 	u16 len = min(p->len, m->cap);
+	bool request = p->activate & EC_SM_ACT_REPEAT;
 
 	if (!works(app) || !(app->model->dev.flags & EC_SII_FLAG_MBOX_DLL) ||
 	    ec_app_bug(app, EC_SIM_BUG_MBOX_REPEAT))
 		return;
-	if (!(p->activate & EC_SM_ACT_REPEAT) == !(p->pdi & EC_SM_PDI_REPEAT_ACK))
+	if (request == m->toggle)
 		return;
+	m->toggle = request;
 	if (m->last_len && len >= m->last_len) {
 		if (m->out_in_sm) {
 			/* taken back, it follows later */
@@ -544,7 +547,9 @@ void ec_app_mbox_activate(struct ec_app *app, u64 now)
 		memset(m->last + m->last_len, 0, (size_t)len - m->last_len);
 		ec_esc_pdi_write(esc, p->start, m->last, len, now);
 	}
-	p->pdi ^= EC_SM_PDI_REPEAT_ACK;
+	p->pdi &= (u8)~EC_SM_PDI_REPEAT_ACK;
+	if (request)
+		p->pdi |= EC_SM_PDI_REPEAT_ACK;
 	esc->mem[EC_REG_SM(1) + EC_SM_OFS_PDI] = p->pdi;
 }
 

@@ -84,6 +84,8 @@ struct ec_bus {
 	u64 mailboxes_ns;
 	/** @some_mailboxes_ns: last look at any */
 	u64 some_mailboxes_ns;
+	/** @vain_looks: in a row, at an event that was that of no mailbox */
+	unsigned int vain_looks;
 	/** @sii_bytes: memory of all EEPROM images */
 	atomic_long_t sii_bytes;
 

@@ -15,6 +15,7 @@
 
 #define ALL_NS		NSEC_PER_SEC		/* between looks at all mailboxes */
 #define SOME_NS		(60 * NSEC_PER_MSEC)	/* at those of slaves that show no event */
+#define VAIN		5			/* looks at an event, then at most every SOME_NS */
 #define UNSHOWN		3			/* messages without event, then it is one of them */
 
 const u8 ec_mailboxes_event[2] = { EC_ECAT_EVENT_SM(1), 0 };
@@ -23,7 +24,7 @@ const u8 ec_mailboxes_event[2] = { EC_ECAT_EVENT_SM(1), 0 };
 static bool is_candidate(struct ec_slave *s, bool all)
 {
 	return (all || s->unshown == UNSHOWN || s->mbox.strict) && ec_mbox_present(&s->mbox) &&
-	       !READ_ONCE(s->error) && !ec_slave_busy(s) && !work_pending(&s->fetch) &&
+	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) && !work_pending(&s->fetch) &&
 	       ktime_get_ns() >= ec_read64(&s->fetch_ns) &&
 	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
 	       !ec_mbox_in_use(&s->mbox);
@@ -37,9 +38,10 @@ static bool any_in_use(const struct ec_bus *bus)
 	return false;
 }
 
-/* Look at the mailboxes of the candidates; @shown: the event of one was seen. */
-static void look(struct ec_bus *bus, bool all, bool shown)
+/* Look at the mailboxes of the candidates; @shown: the event of one was seen. True: one is full. */
+static bool look(struct ec_bus *bus, bool all, bool shown)
 {
+	bool found = false;
 	struct ec_slave **of;
 	unsigned int i, n = 0, most = 0;
 	struct ec_dg *dg;
@@ -48,7 +50,7 @@ static void look(struct ec_bus *bus, bool all, bool shown)
 	ec_for_each_slave(s, bus)
 		most += is_candidate(s, all);
 	if (!most)
-		return;
+		return false;
 	dg = kvcalloc(most, sizeof(*dg), GFP_KERNEL);
 	of = kvcalloc(most, sizeof(*of), GFP_KERNEL);
 	status = kvzalloc(most, GFP_KERNEL);
@@ -66,14 +68,16 @@ static void look(struct ec_bus *bus, bool all, bool shown)
 		if (dg[i].err || dg[i].wkc != 1 || !(status[i] & EC_SM_ST_FULL))
 			continue;
 		/* a message may have come after @irq */
-		if (!shown && of[i]->unshown < UNSHOWN)
-			of[i]->unshown++;
+		if (of[i]->unshown < UNSHOWN)
+			of[i]->unshown = shown ? 0 : of[i]->unshown + 1;
+		found = true;
 		ec_slave_fetch(of[i]);
 	}
 out:
 	kvfree(dg);
 	kvfree(of);
 	kvfree(status);
+	return found;
 }
 
 /**
@@ -90,11 +94,13 @@ void ec_mailboxes_look(struct ec_bus *bus, u16 irq)
 	u64 now = ktime_get_ns();
 	bool all = now - bus->mailboxes_ns >= ALL_NS;
 
-	/* the event may be that of an answer */
-	if (!all && (!shown || any_in_use(bus)) && now - bus->some_mailboxes_ns < SOME_NS)
+	/* the event may be that of an answer, or of a slave that shows it without end */
+	if (!all && (!shown || bus->vain_looks >= VAIN || any_in_use(bus)) &&
+	    now - bus->some_mailboxes_ns < SOME_NS)
 		return;
 	bus->some_mailboxes_ns = now;
 	if (all)
 		bus->mailboxes_ns = now;
-	look(bus, shown || all, shown);
+	/* a rider's reply is old: the message may have been fetched already */
+	bus->vain_looks = look(bus, shown || all, shown) || !shown ? 0 : bus->vain_looks + 1;
 }

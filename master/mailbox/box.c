@@ -16,6 +16,7 @@
 #include "mailbox_int.h"
 
 #define ACK_POLLS	50	/* of a repeat request */
+#define UNSEEN_US	5000	/* for a repetition that the slave cannot acknowledge */
 #define ACK_FAILS	3	/* repeat requests without acknowledgement */
 
 /**
@@ -69,6 +70,7 @@ void ec_mbox_begin(struct ec_mbox *mb)
 	mb->seen = 0;
 	mb->counts = false;
 	mb->gap = false;
+	mb->asked = false;
 	mb->repeats = false;
 	mb->answered = false;
 }
@@ -144,8 +146,8 @@ int ec_mbox_full(struct ec_mbox *mb)
 	return ret ? ret : !!(status & EC_SM_ST_FULL);
 }
 
-/* Wait until the slave has acknowledged a repeat request of value @want. */
-static int acknowledged(struct ec_mbox *mb, u16 ado, bool want)
+/* Wait until the slave has acknowledged a repeat request. */
+static int acknowledged(struct ec_mbox *mb, u16 ado)
 {
 	unsigned int i;
 	int ret = 0;
@@ -153,7 +155,7 @@ static int acknowledged(struct ec_mbox *mb, u16 ado, bool want)
 
 	for (i = 0; i < ACK_POLLS && !ret; i++) {
 		ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
-		if (!ret && !!(b[1] & EC_SM_PDI_REPEAT_ACK) == want)
+		if (!ret && !!(b[1] & EC_SM_PDI_REPEAT_ACK) == mb->want)
 			return 0;
 		usleep_range(200, 400);
 	}
@@ -162,24 +164,30 @@ static int acknowledged(struct ec_mbox *mb, u16 ado, bool want)
 
 /*
  * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
- * 0x080E, 0x080F). The value follows from that of the acknowledgement, so that a request
- * which is sent once more after a lost frame is no second one.
+ * 0x080E, 0x080F). A request that is written once more after a lost frame is no second one.
  */
 static int repeat_request(struct ec_mbox *mb)
 {
 	u16 ado = EC_REG_SM(1) + EC_SM_OFS_ACTIVATE;
-	bool want;
 	u8 b[2];
 	int ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
 
+	ec_mbox_assert_locked(mb);
 	if (ret)
 		return ret;
-	want = !(b[1] & EC_SM_PDI_REPEAT_ACK);
+	if (!mb->asked) {
+		mb->asked = true;
+		mb->want = !(b[0] & EC_SM_ACT_REPEAT);
+		/* left from before INIT: the slave cannot show that it has done it */
+		mb->unseen = !!(b[1] & EC_SM_PDI_REPEAT_ACK) == mb->want;
+	}
 	b[0] &= ~EC_SM_ACT_REPEAT;
-	if (want)
+	if (mb->want)
 		b[0] |= EC_SM_ACT_REPEAT;
 	ret = ec_xfer_fpwr(mb->links, mb->station, ado, b, 1);
-	return ret ?: acknowledged(mb, ado, want);
+	if (!ret && mb->unseen)
+		usleep_range(UNSEEN_US, UNSEEN_US + 500);
+	return ret ?: acknowledged(mb, ado);
 }
 
 /* A message may be lost: get it again, if the slave can do that. */
@@ -193,6 +201,7 @@ static void close_gap(struct ec_mbox *mb)
 	ret = repeat_request(mb);
 	if (!ret) {
 		mb->gap = false;
+		mb->asked = false;
 		mb->repeats = true;
 		mb->ack_fails = 0;
 	} else if (ret == -ETIME && ++mb->ack_fails == ACK_FAILS) {

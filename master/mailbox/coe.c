@@ -40,6 +40,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 		.limit = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
+	u32 abort;
 	int ret;
 
 	if (IS_ERR(b))
@@ -53,10 +54,13 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 			ret = ec_mbox_request(mb, &req, b, ret);
 		req.first = false;
 	} while (ret == EC_MORE);
+	/* an abort of the master is none of the slave */
+	abort = s->abort;
 	if (ret)
 		ec_sdo_cancel(s);
 	if (s->send_abort)
 		send_abort(mb, s, b, cap);
+	s->abort = abort;
 	up(&mb->sdo_lock);
 out:
 	kfree(b);

@@ -14,6 +14,7 @@ struct transfer {
 	struct ec_mbox *mb;
 	u64 busy_ns;	/* since when the slave is busy without progress, 0: it is not */
 	u16 done;
+	u64 wait_ns;	/* since when it is busy before the first data, 0: it is not */
 };
 
 static int rx(void *ctx, const u8 *buf, size_t len)
@@ -21,8 +22,13 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 	struct transfer *t = ctx;
 	/* what a message of the slave can hold decides which one is the last */
 	size_t room = ec_mbox_room(ec_mbox_area(t->mb)->tx_size);
+	int ret = ec_foe_rx(t->f, buf, len, room > EC_FOE_HDR ? room - EC_FOE_HDR : 0);
 
-	return ec_foe_rx(t->f, buf, len, room > EC_FOE_HDR ? room - EC_FOE_HDR : 0);
+	/* busy before it has begun: one request, so nothing else ends it */
+	if (ret != EC_WAIT)
+		return ret;
+	t->wait_ns = t->wait_ns ?: ktime_get_ns();
+	return ktime_get_ns() - t->wait_ns > (u64)EC_FOE_BUSY_MS * NSEC_PER_MSEC ? -ETIMEDOUT : ret;
 }
 
 /* The slave has other things to do: time for them, but not for ever. */
@@ -67,8 +73,11 @@ static int step(struct transfer *t, const struct ec_foe_file *file, struct ec_mb
 			return ret;
 	}
 	/* the acknowledgement of the last data has no answer */
-	if (!f->write && f->last)
-		return ec_mbox_send(t->mb, EC_MBOX_FOE, b, len, &req->limit);
+	if (!f->write && f->last) {
+		ret = ec_mbox_send(t->mb, EC_MBOX_FOE, b, len, &req->limit);
+		/* the file is here */
+		return ret == -ENOTRECOVERABLE ? 0 : ret;
+	}
 	ret = ec_mbox_request(t->mb, req, b, len);
 	req->first = false;
 	if (ret < 0)

@@ -138,18 +138,18 @@ static bool read_at_once(const struct ec_mbox *mb)
 static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		const struct ec_mbox_until *until)
 {
-	struct ec_mbox_message m;
+	struct ec_mbox_message m = { .lost = false };
 	unsigned int us = 50;
 	int ret = ec_mbox_message(mb, &m, type, len);
 
 	while (!ret) {
 		ret = ec_mbox_put(mb, &m, b);
 		if (ret || m.sent)
-			return ret;
+			break;
 		ret = ec_mbox_over(mb, until) ?: ec_mbox_drain(mb, b);
 		ec_mbox_pause(&us);
 	}
-	return ret;
+	return (!ret || ret == -ETIMEDOUT) && m.lost ? -ENOTRECOVERABLE : ret;
 }
 
 /*
@@ -264,8 +264,8 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
  * @limit: when to give up
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED, or as
- * ec_xfer().
+ * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED; -ENOTRECOVERABLE when
+ * its frame was lost, so that the slave may have it or not; or as ec_xfer().
  */
 int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit)

@@ -59,6 +59,12 @@ struct ec_mbox {
 	bool can_repeat;
 	/** @gap: a message of the slave may have been lost */
 	bool gap;
+	/** @asked: it has been asked to repeat it, not acknowledged so far */
+	bool asked;
+	/** @want: value of that repeat request */
+	bool want;
+	/** @unseen: the acknowledgement had that value before */
+	bool unseen;
 	/** @repeats: the slave has been made to repeat its last message */
 	bool repeats;
 	/** @ack_fails: repeat requests without acknowledgement in a row */

@@ -7,6 +7,7 @@
 #include "emerg.h"
 #include "mailbox_int.h"
 
+#define FETCH_NS	(10 * NSEC_PER_MSEC)	/* a message is being fetched, at most */
 #define DRAIN	16	/* messages at most that no transfer expects */
 
 /* a message that waits for its reader */
@@ -129,6 +130,9 @@ static int drain(struct ec_mbox *mb, struct ec_mbox_buf *b)
 	for (i = 0; i < DRAIN; i++) {
 		int ret = ec_mbox_fetch(mb, b, &h, false);
 
+		/* one that is lost is asked for again */
+		if (!ret && mb->gap && mb->can_repeat)
+			continue;
 		if (!ret || (ret < 0 && ret != -EBADMSG))
 			return ret;
 		if (ret > 0)
@@ -227,7 +231,8 @@ static int poll_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind)
  * ec_mbox_wait_voe() - wait for a VoE message
  * @mb: mailbox that ec_mbox_check() has accepted
  * @b: the message is in @rx
- * @blind: one access to the mailbox without a look whether it is full, no wait
+ * @blind: one access to the mailbox without a look whether it is full, no wait but for a holder
+ *	of the lock that may fetch it just now
  * @limit: when to give up; @timeout_ms 0: no wait
  *
  * The message may have arrived earlier, during the exchange of another caller. Others can
@@ -242,7 +247,9 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		     const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_until until = ec_mbox_until(limit);
+	u64 blind_ns = ktime_get_ns() + FETCH_NS;
 	unsigned int us = 20;
+	bool looked = false;
 	int ret, end;
 
 	for (;;) {
@@ -251,12 +258,13 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		if (ret == -ENOMSG && !down_trylock(&mb->lock)) {
 			ec_mbox_begin(mb);
 			ret = ec_mbox_off(mb) ?: poll_voe(mb, b, blind);
+			looked = true;
 			up(&mb->lock);
 		}
-		if (ret != -ENOMSG || blind)
+		if (ret != -ENOMSG || (blind && (looked || ktime_get_ns() > blind_ns)))
 			return ret;
 		end = ec_mbox_over(mb, &until);
-		if (end)
+		if (end && !(blind && end == -ETIMEDOUT))
 			return end;
 		ec_mbox_pause(&us);
 	}

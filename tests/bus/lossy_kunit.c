@@ -190,6 +190,28 @@ static void lossy_each_frame(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, down.twice, 0u);
 }
 
+/* The slave forgets the repeat requests in INIT, its register with the last one does not. */
+static void lossy_after_init(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct sum up = { 0 }, down = { 0 };
+	u32 n;
+
+	for (n = 1; n <= 12; n++) {
+		lose(b, n, true, 0);
+		transfers(b, SURE, 10, &down, &up);
+		bus_request(b, SURE, EC_AL_INIT);
+		KUNIT_ASSERT_NE(test, bus_wait_al(b, SURE, EC_AL_INIT, 500), ~0ull);
+		bus_request(b, SURE, EC_AL_PREOP);
+		KUNIT_ASSERT_NE(test, bus_wait_al(b, SURE, EC_AL_PREOP, 500), ~0ull);
+		bus_idle(b);
+	}
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, SURE)->mbox.can_repeat);
+	KUNIT_EXPECT_EQ(test, down.done, 12u * 5);
+	KUNIT_EXPECT_EQ(test, up.done, 12u * 5);
+	KUNIT_EXPECT_EQ(test, down.twice, 0u);
+}
+
 /* Its EEPROM promises what it does not do: found out, then treated as the other kind. */
 static void lossy_false_promise(struct kunit *test)
 {
@@ -238,6 +260,7 @@ static struct kunit_case lossy_cases[] = {
 	KUNIT_CASE_PARAM(lossy_repeat, text_gen_params),
 	KUNIT_CASE_PARAM(lossy_no_repeat, text_gen_params),
 	KUNIT_CASE(lossy_each_frame),
+	KUNIT_CASE(lossy_after_init),
 	KUNIT_CASE(lossy_false_promise),
 	KUNIT_CASE(lossy_soe),
 	{}
