@@ -24,8 +24,8 @@ const u8 ec_mailboxes_event[2] = { EC_ECAT_EVENT_SM(1), 0 };
 static bool is_candidate(struct ec_slave *s, bool all)
 {
 	return (all || s->unshown == UNSHOWN || s->mbox.strict) && ec_mbox_present(&s->mbox) &&
-	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) && !work_pending(&s->fetch) &&
-	       ktime_get_ns() >= ec_read64(&s->fetch_ns) &&
+	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
+	       !work_pending(&s->fetch) && ktime_get_ns() >= ec_read64(&s->fetch_ns) &&
 	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
 	       !ec_mbox_in_use(&s->mbox);
 }
