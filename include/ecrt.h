@@ -528,7 +528,9 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused or failed, see @abort_code; %-EINVAL no such slave
  * or bad arguments; %-EPROTONOSUPPORT slave without CoE; %-ETIMEDOUT no
- * reply; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
+ * reply; %-ENOTRECOVERABLE a frame was lost and the slave does not repeat its
+ * messages, so it is not known whether it has written the value: it is not
+ * written again by itself; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
  * %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too small or larger
  * than a datagram; %-ECANCELED the slave was disconnected (while it is being
  * configured the call waits); %-EINTR; %-ENOMEM; for a mailbox error reply of
