@@ -38,7 +38,13 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 		return ret;
 	ret = ec_capture_create(l);
 	if (ret)
-		ec_slots_exit(&l->slots);
+		goto err_slots;
+	ret = ec_posts_init(l);
+	if (!ret)
+		return 0;
+	ec_capture_destroy(l);
+err_slots:
+	ec_slots_exit(&l->slots);
 	return ret;
 }
 
@@ -51,6 +57,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 void ec_links_exit(struct ec_links *l)
 {
 	ec_device_unregister(l);
+	ec_posts_exit(l);
 	ec_capture_destroy(l);
 	ec_slots_exit(&l->slots);
 }

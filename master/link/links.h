@@ -13,6 +13,7 @@
 #include "../base/limits.h"
 #include "access.h"
 #include "link.h"
+#include "post.h"
 #include "queue.h"
 #include "rider.h"
 #include "share.h"
@@ -61,6 +62,8 @@ struct ec_links {
 	struct ec_queues queues;
 	/** @riders: datagrams in frames of the cycle */
 	struct ec_riders riders;
+	/** @posts: acyclic datagrams that no thread waits for */
+	struct ec_posts posts;
 	/** @share: what a cyclic send carries of @queues */
 	struct ec_share share;
 	/** @monitor: thread whose frames overtake those of other callers, NULL: none */

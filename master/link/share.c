@@ -171,6 +171,8 @@ void ec_share_send_left(struct ec_links *l, u32 wire_ns)
 	unsigned int n, burst;
 	u32 frame_ns;
 
+	if (READ_ONCE(l->posts.n_ready))
+		ec_posts_fill(l);
 	/* one that comes at this moment has time until the next cycle */
 	if (!ec_queue_frames(&l->queues))
 		return;

@@ -48,7 +48,11 @@ struct half {
  */
 void ec_xfer_done(struct ec_xfer *x)
 {
-	if (atomic_dec_and_test(&x->pending))
+	if (!atomic_dec_and_test(&x->pending))
+		return;
+	if (x->notify)
+		x->notify(x);
+	else
 		complete(&x->done);
 }
 
@@ -238,6 +242,7 @@ static unsigned int send_half(struct ec_links *l, struct half *h, struct ec_dg *
 	unsigned int window = h->clock ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
 
 	init_completion(&h->x.done);
+	h->x.notify = NULL;
 	atomic_set(&h->x.pending, 1);
 	h->wait.polls = READ_ONCE(l->access.polls);
 	h->stop = false;

@@ -51,10 +51,12 @@ struct ec_dg {
  * struct ec_xfer - a caller that waits for frames
  * @pending: frames not back yet, plus one while the caller still sends
  * @done: completed when @pending is zero
+ * @notify: called instead; RT-safe, in the context that receives
  */
 struct ec_xfer {
 	atomic_t pending;
 	struct completion done;
+	void (*notify)(struct ec_xfer *x);
 };
 
 int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n);
