@@ -18,7 +18,7 @@ struct ec_stop {
 	bool interrupt;
 	/** @worker: thread that brings the slave to its state now, NULL: none */
 	const struct task_struct *worker;
-	/** @wake: the worker, when it waits for a time that one of these ends early */
+	/** @wake: callers that wait for what one of these ends early */
 	wait_queue_head_t wake;
 };
 

@@ -25,7 +25,6 @@ static bool is_candidate(struct ec_slave *s, bool all)
 {
 	return (all || s->unshown == UNSHOWN || s->mbox.strict) && ec_mbox_present(&s->mbox) &&
 	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
-	       !work_pending(&s->fetch) && ktime_get_ns() >= ec_read64(&s->fetch_ns) &&
 	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
 	       !ec_mbox_in_use(&s->mbox);
 }
@@ -71,7 +70,7 @@ static bool look(struct ec_bus *bus, bool all, bool shown)
 		if (of[i]->unshown < UNSHOWN)
 			of[i]->unshown = shown ? 0 : of[i]->unshown + 1;
 		found = true;
-		ec_slave_fetch(of[i]);
+		ec_mbox_fetch(&of[i]->mbox);
 	}
 out:
 	kvfree(dg);

@@ -209,10 +209,10 @@ void ec_names_read(struct ec_slave *s)
 
 	lockdep_assert_held(&s->lock);
 	if (a && b && !copy(&l, &s->names))
-		ret = ec_mbox_lock(&s->mbox, &s->mbox.sdo_lock, LIMIT_MS);
+		ret = ec_mbox_claim(&s->mbox, BIT(EC_MBOX_COE), LIMIT_MS);
 	if (!ret) {
 		ret = read_all(s, &l, a, b);
-		up(&s->mbox.sdo_lock);
+		ec_mbox_unclaim(&s->mbox, BIT(EC_MBOX_COE));
 		publish(s, &l);
 		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {

@@ -5,7 +5,6 @@
 #include "../base/once64.h"
 #include "slave.h"
 
-#define FLOOD_NS	(250 * NSEC_PER_MSEC)
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
 
 static void work(struct work_struct *w)
@@ -16,16 +15,6 @@ static void work(struct work_struct *w)
 		s->bus->ops->configure(s);
 	atomic_dec_return_release(&s->works);
 	ec_bus_settled(s->bus);
-	ec_slave_unref(s);
-}
-
-static void fetch(struct work_struct *w)
-{
-	struct ec_slave *s = container_of(w, struct ec_slave, fetch);
-
-	/* one that sends without end does not get all of the bus */
-	if (ec_mbox_poll(&s->mbox))
-		ec_write64(&s->fetch_ns, ktime_get_ns() + FLOOD_NS);
 	ec_slave_unref(s);
 }
 
@@ -59,7 +48,6 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->station = station;
 	s->requested = EC_AL_PREOP;
 	INIT_WORK(&s->work, work);
-	INIT_WORK(&s->fetch, fetch);
 	mutex_init(&s->lock);
 	raw_spin_lock_init(&s->note_lock);
 	ec_stop_init(&s->stop, bus->base);
@@ -85,7 +73,7 @@ static void release(struct kref *kref)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
 	ec_names_free(s);
-	ec_mbox_keep_voe(&s->mbox, false);
+	ec_mbox_exit(&s->mbox);
 	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
 	kvfree(s->sii);
 	kvfree(s->part);
@@ -364,19 +352,6 @@ void ec_slave_kick(struct ec_slave *slave)
 	/* the run that waits in the queue does it */
 	atomic_dec(&slave->works);
 	ec_slave_unref(slave);
-}
-
-/**
- * ec_slave_fetch() - let a worker fetch what the slave has sent without a request
- * @slave: slave with mailbox
- *
- * Context: Process.
- */
-void ec_slave_fetch(struct ec_slave *slave)
-{
-	ec_slave_ref(slave);
-	if (!queue_work(slave->bus->work, &slave->fetch))
-		ec_slave_unref(slave);
 }
 
 /**

@@ -85,9 +85,7 @@
  * @retry_ms: distance between the last two tries
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
  * @work: brings it to @requested
- * @fetch: fetches messages without a request
  * @works: runs of @work that are queued or in progress
- * @fetch_ns: not before that time (ktime)
  * @unshown: messages that did not show in the IRQ field; the monitor's
  * @lock: one worker or caller at a time changes its state
  * @read_pdos: read the PDOs when it is there
@@ -152,8 +150,6 @@ struct ec_slave {
 	u32 retry_ms;
 	u64 seen_ns;
 	struct work_struct work;
-	struct work_struct fetch;
-	u64 fetch_ns;
 	atomic_t works;
 	u8 unshown;
 	struct mutex lock;
@@ -178,7 +174,6 @@ struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
-void ec_slave_fetch(struct ec_slave *slave);
 bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);

@@ -101,13 +101,9 @@ static int set_state(struct ec_slave *s, u8 state)
  */
 static void hold_mailbox(struct ec_slave *s)
 {
-	if (ec_setup_of(s)->holds_mailbox || READ_ONCE(s->requested) < EC_AL_PREOP ||
-	    ec_mbox_lock(&s->mbox, &s->mbox.sdo_lock, HOLD_MS))
+	if (ec_setup_of(s)->holds_mailbox || READ_ONCE(s->requested) < EC_AL_PREOP)
 		return;
-	if (ec_mbox_lock(&s->mbox, &s->mbox.lock, HOLD_MS))
-		up(&s->mbox.sdo_lock);
-	else
-		ec_setup_of(s)->holds_mailbox = true;
+	ec_setup_of(s)->holds_mailbox = !ec_mbox_claim(&s->mbox, EC_MBOX_ALL, HOLD_MS);
 }
 
 static void release_mailbox(struct ec_slave *s)
@@ -115,8 +111,7 @@ static void release_mailbox(struct ec_slave *s)
 	if (!ec_setup_of(s)->holds_mailbox)
 		return;
 	ec_setup_of(s)->holds_mailbox = false;
-	up(&s->mbox.lock);
-	up(&s->mbox.sdo_lock);
+	ec_mbox_unclaim(&s->mbox, EC_MBOX_ALL);
 }
 
 static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)

@@ -1,180 +1,368 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The two mailboxes of a slave: who may use them, one message in, one message out.
+ * The two mailboxes of a slave: a machine that gives messages to the slave and reads those of
+ * the slave. It advances when its datagram is back, in the context that receives, so with a
+ * cycle its next datagram leaves with the send of the same cycle. It has one datagram on its way
+ * at most, and none while there is nothing to do.
  *
  * A slave with the repeat mechanism (EEPROM, general category) drops a message whose counter is
  * that of the one before, and puts its own last message into SM1 again when it is asked to. So
  * with it no lost frame loses a message or doubles it.
  */
 #include <linux/ktime.h>
-#include <linux/sched/signal.h>
 #include "../link/links.h"
-#include "../link/xfer.h"
 #include "../wire/al.h"
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
 #include "mailbox_int.h"
 
 #define ACK_POLLS	50	/* of a repeat request */
-#define UNSEEN_US	5000	/* for a repetition that the slave cannot acknowledge */
-#define ACK_FAILS	3	/* repeat requests without acknowledgement */
+#define ACK_NS		(300 * NSEC_PER_USEC)	/* between them */
+#define UNSEEN_NS	(5 * NSEC_PER_MSEC)	/* for one that the slave cannot acknowledge */
+#define POLL_SLACK_NS	(20 * NSEC_PER_USEC)	/* free in a cycle that carries polls at will */
+#define SHORT_NS	(200 * NSEC_PER_USEC)	/* most slaves reply within that time */
+#define PAUSE_MIN_NS	(10 * NSEC_PER_USEC)
+#define PAUSE_MAX_NS	(5 * NSEC_PER_MSEC)
 
 /**
- * ec_mbox_lock() - wait for one's turn
+ * ec_mbox_off() - is the slave in a state without mailbox?
  * @mb: mailbox of the slave
- * @lock: its @sdo_lock or @lock
- * @ms: the slave's worker waits at most so long; 0: as long as it takes
  *
- * Callers that come later than the worker let it in first, so that steady callers do not
- * keep it off.
- *
- * Context: Process. May sleep.
- * Return: 0; -EINTR; the slave's worker: -ECANCELED when it shall leave, -ETIMEDOUT.
+ * Context: Any. RT-safe.
+ * Return: whether it is in INIT.
  */
-int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms)
+bool ec_mbox_off(const struct ec_mbox *mb)
 {
-	u64 until = ktime_get_ns() + (u64)ms * NSEC_PER_MSEC;
-	int ret = 0;
-
-	if (READ_ONCE(mb->stop->worker) != current) {
-		ret = wait_event_interruptible(mb->turn, READ_ONCE(mb->awaits) != lock);
-		return ret ? -EINTR : down_interruptible(lock);
-	}
-	WRITE_ONCE(mb->awaits, lock);
-	while (!ret && down_timeout(lock, msecs_to_jiffies(20))) {
-		if (ec_stop_interrupted(mb->stop))
-			ret = -ECANCELED;
-		else if (ms && ktime_get_ns() > until)
-			ret = -ETIMEDOUT;
-	}
-	WRITE_ONCE(mb->awaits, NULL);
-	wake_up_all(&mb->turn);
-	return ret;
+	return (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP;
 }
 
-/**
- * ec_mbox_begin() - a new holder of the lock begins
- * @mb: mailbox of the slave, @lock held
- *
- * Context: Process.
- */
-void ec_mbox_begin(struct ec_mbox *mb)
+/* sending -------------------------------------------------------------------*/
+
+static void post(struct ec_mbox *mb, enum ec_mbox_step step, u8 cmd, u16 ado, void *data, u16 len,
+		 bool repeat)
 {
-	ec_mbox_assert_locked(mb);
-	/* what a slave without repetition has lost is of no use to the next */
-	mb->gap &= mb->can_repeat;
-	if (!READ_ONCE(mb->renew))
+	lockdep_assert_held(&mb->lock);
+	mb->step = step;
+	mb->post.dg = EC_DG(cmd, mb->station, ado, len, data);
+	mb->post.dg.repeat = repeat;
+	ec_post_send(&mb->post, mb->due_ns);
+}
+
+/*
+ * A piece of a mailbox. What does not fit beside the process data of a short cycle goes in
+ * pieces: the first byte opens the mailbox, the last byte hands it over (ETG.1000.4 clause
+ * 6.7.2). That one must not happen twice.
+ */
+static void post_piece(struct ec_mbox *mb, enum ec_mbox_step step, u16 offset, u8 *box)
+{
+	u16 n = min_t(u16, mb->size - mb->at, ec_access_room(mb->links));
+
+	post(mb, step, step == EC_MBOX_READ ? EC_CMD_FPRD : EC_CMD_FPWR, offset + mb->at,
+	     box + mb->at, n, mb->at + n < mb->size);
+}
+
+static void read_on(struct ec_mbox *mb)
+{
+	post_piece(mb, EC_MBOX_READ, ec_mbox_area(mb)->tx_offset, mb->rx);
+}
+
+static void write_on(struct ec_mbox *mb)
+{
+	post_piece(mb, EC_MBOX_WRITE, ec_mbox_area(mb)->rx_offset, mb->tx);
+}
+
+static void post_status(struct ec_mbox *mb)
+{
+	post(mb, EC_MBOX_STATUS, EC_CMD_FPRD, EC_REG_SM(1) + EC_SM_OFS_STATUS, mb->status, 1, true);
+}
+
+static void post_repeat(struct ec_mbox *mb, enum ec_mbox_step step)
+{
+	bool set = step == EC_MBOX_REPEAT_SET;
+
+	post(mb, step, set ? EC_CMD_FPWR : EC_CMD_FPRD, EC_REG_SM(1) + EC_SM_OFS_ACTIVATE,
+	     mb->status, set ? 1 : 2, true);
+}
+
+/* Something has happened: the next access is made at once. */
+static void progress(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->lock);
+	mb->since_ns = ktime_get_ns();
+	mb->due_ns = 0;
+}
+
+/*
+ * A slow slave is polled ever less often: at most an eighth of the time it has taken so far
+ * passes until the master sees its reply, or a millisecond. The polls of a cycle are rare enough,
+ * where there is wire time for them.
+ */
+static void pause(struct ec_mbox *mb)
+{
+	u64 now = ktime_get_ns(), took = now - mb->since_ns, ns = took / 8;
+
+	lockdep_assert_held(&mb->lock);
+	if (!ec_access_is_cyclic(&mb->links->access) ||
+	    ec_access_slack_ns(mb->links) < POLL_SLACK_NS)
+		ns = max(ns, took < SHORT_NS ? took / 4 : min_t(u64, took, NSEC_PER_MSEC));
+	mb->due_ns = now + clamp_t(u64, ns, PAUSE_MIN_NS, PAUSE_MAX_NS);
+}
+
+/* Most slaves take as long as last time: the first poll is not long before that. */
+static void expect_reply(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->lock);
+	if (!ec_access_is_cyclic(&mb->links->access))
+		mb->due_ns = mb->since_ns + min_t(u64, mb->took_ns / 4 * 3, SHORT_NS / 2);
+}
+
+static void has_message(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->lock);
+	mb->took_ns = ktime_get_ns() - mb->since_ns;
+	mb->due_ns = 0;
+}
+
+/*
+ * Beside a cycle each look takes a period. Where the mailbox has room on the wire it is
+ * read at once: an empty one gives nothing.
+ */
+static bool read_at_once(const struct ec_mbox *mb)
+{
+	u32 slack = ec_access_slack_ns(mb->links);
+	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
+				  ec_mbox_area(mb)->tx_size);
+
+	return mb->counts && slack != ~0u &&
+	       ec_links_acyclic_ns(mb->links) + ns <= slack / 2;
+}
+
+static void begin_read(struct ec_mbox *mb)
+{
+	u16 size = ec_mbox_area(mb)->tx_size;
+
+	if (size > EC_MBOX_MAX || size < EC_MBOX_HDR) {
+		ec_mbox_fail(mb, -EMSGSIZE);
 		return;
-	WRITE_ONCE(mb->renew, false);
+	}
+	mb->size = size;
+	mb->at = 0;
+	read_on(mb);
+}
+
+/* The message in @sending, as it is in SM0: the mailbox changes with the state. */
+static void begin_write(struct ec_mbox *mb)
+{
+	u16 size = ec_mbox_area(mb)->rx_size;
+
+	if (size > EC_MBOX_MAX || mb->sending.len + EC_MBOX_HDR > size) {
+		ec_mbox_finish(mb, mb->sending.user, -EMSGSIZE);
+		mb->sending.on = false;
+		ec_mbox_go(mb);
+		return;
+	}
+	memset(mb->tx + EC_MBOX_HDR + mb->sending.len, 0, size - EC_MBOX_HDR - mb->sending.len);
+	mb->size = size;
+	mb->at = 0;
+	write_on(mb);
+}
+
+static void renew(struct ec_mbox *mb)
+{
+	mb->renew = false;
 	mb->counter = 0;
 	mb->seen = 0;
 	mb->counts = false;
 	mb->gap = false;
+	mb->unread = false;
 	mb->asked = false;
 	mb->repeats = false;
 	mb->answered = false;
 }
 
-/**
- * ec_mbox_off() - is the slave in a state without mailbox?
- * @mb: mailbox of the slave, @lock held: a slave that only passes INIT is waited for
- *
- * Context: Process.
- * Return: 0, or -EAGAIN in INIT.
- */
-int ec_mbox_off(const struct ec_mbox *mb)
+/* The next message of the queue. */
+static void take_message(struct ec_mbox *mb)
 {
-	ec_mbox_assert_locked(mb);
-	return (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP ? -EAGAIN : 0;
+	struct ec_mbox_user *u = list_first_entry_or_null(&mb->queue, struct ec_mbox_user, list);
+	struct ec_mbox_hdr h;
+	struct ec_wbuf w;
+
+	lockdep_assert_held(&mb->lock);
+	if (!u || mb->sending.on)
+		return;
+	if (READ_ONCE(mb->renew))
+		renew(mb);
+	list_move_tail(&u->list, &mb->users);
+	u->phase = EC_MBOX_USER_SENDING;
+	/* a slave that only passes INIT is waited for: its worker claims the mailbox */
+	if (ec_mbox_off(mb)) {
+		ec_mbox_finish(mb, u, -EAGAIN);
+		take_message(mb);
+		return;
+	}
+	mb->sending = (struct ec_mbox_sending){
+		.on = true, .user = u, .type = u->type, .len = u->len, .discard = u->discard,
+		.emptying = u->discard || (u->first && !mb->answered),
+	};
+	progress(mb);
+	if (u->discard)
+		return;
+	mb->counter = ec_mbox_next_counter(mb->counter);
+	mb->sending.counter = mb->counter;
+	mb->answered = false;
+	h = (struct ec_mbox_hdr){ .len = u->len, .type = u->type, .counter = mb->counter };
+	w = ec_wbuf(mb->tx, EC_MBOX_HDR + u->len);
+	ec_mbox_hdr_encode(&w, &h);
+	ec_wbuf_bytes(&w, u->tx, u->len);
 }
 
 /**
- * ec_mbox_over() - why an exchange has to end now
- * @mb: mailbox of the slave
- * @u: when it has to, anyway
+ * ec_mbox_go() - send the next datagram, if there is anything to do
+ * @mb: mailbox of the slave, its lock held
  *
- * Context: Process.
- * Return: 0: go on; -ECANCELED, -EINTR, -ETIMEDOUT.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u)
+void ec_mbox_go(struct ec_mbox *mb)
 {
-	if (ec_stop_all(mb->stop) || ec_stop_interrupted(mb->stop) ||
-	    (u->cancel && READ_ONCE(*u->cancel)))
-		return -ECANCELED;
-	if (signal_pending(current))
-		return -EINTR;
-	return ktime_get_ns() > u->ns ? -ETIMEDOUT : 0;
+	struct ec_mbox_sending *s = &mb->sending;
+	bool read;
+
+	lockdep_assert_held(&mb->lock);
+	if (mb->step != EC_MBOX_REST || mb->dead || !mb->rx || mb->claimed == EC_MBOX_ALL)
+		return;
+	take_message(mb);
+	read = !mb->held && ((s->on && (s->emptying || s->blocked)) || ec_mbox_awaited(mb));
+	if (read && mb->gap && mb->can_repeat && !mb->failed)
+		post_repeat(mb, EC_MBOX_REPEAT_GET);
+	else if (s->on && !s->emptying && !s->blocked)
+		begin_write(mb);
+	else if (!read)
+		return;
+	else if (!ec_mbox_is_blind(mb) && (mb->unread || s->on || !read_at_once(mb)))
+		post_status(mb);
+	else
+		begin_read(mb);
 }
+
+/* results -------------------------------------------------------------------*/
 
 /*
- * One access to a mailbox: 0, or -EIO when the slave took no part. What does not
- * fit beside the process data of a short cycle goes in pieces: the first byte
- * opens the mailbox, the last byte hands it over (ETG.1000.4 clause 6.7.2).
- * That one must not happen twice.
+ * The frame that read a mailbox is lost. Was it read? It is full if not, or if the slave has
+ * put in the next one by now: then only a repetition shows which.
  */
-static int once(struct ec_mbox *mb, u8 cmd, u16 ado, void *data, u16 len)
+static void read_lost(struct ec_mbox *mb)
 {
-	u16 room = ec_access_room(mb->links), at, n;
-
-	for (at = 0; at < len; at += n) {
-		struct ec_dg dg;
-		int ret;
-
-		n = min_t(u16, len - at, room);
-		dg = EC_DG(cmd, mb->station, ado + at, n, data + at);
-		dg.repeat = at + n < len;
-		ret = ec_xfer(mb->links, &dg, 1);
-		if (ret || dg.wkc != 1)
-			return ret ?: -EIO;
-	}
-	return 0;
+	mb->gap = true;
+	mb->unread = !mb->can_repeat;
+	ec_mbox_mark_gap(mb, true);
+	ec_mbox_finish_once(mb);
 }
 
-/**
- * ec_mbox_full() - does the slave have a message for the master?
- * @mb: mailbox of the slave
- *
- * Context: Process. Waits for bus traffic.
- * Return: 1 or 0; -EIO when the slave takes no part, or as ec_xfer().
- */
-int ec_mbox_full(struct ec_mbox *mb)
+static void has_status(struct ec_mbox *mb, int ret)
 {
-	u8 status;
-	int ret = ec_xfer_fprd(mb->links, mb->station, EC_REG_SM(1) + EC_SM_OFS_STATUS,
-			       &status, 1);
+	bool full = mb->status[0] & EC_SM_ST_FULL;
 
-	return ret ? ret : !!(status & EC_SM_ST_FULL);
+	mb->failed = false;
+	if (ret == -ETIMEDOUT && !mb->sending.emptying) {
+		pause(mb);
+		return;
+	}
+	if (ret) {
+		ec_mbox_fail(mb, ret);
+		return;
+	}
+	if (mb->unread) {
+		mb->unread = false;
+		mb->gap = false;
+		if (full)
+			ec_mbox_mark_gap(mb, false);
+	}
+	if (full) {
+		has_message(mb);
+		begin_read(mb);
+		return;
+	}
+	pause(mb);
+	ec_mbox_found_empty(mb);
 }
 
-/* Wait until the slave has acknowledged a repeat request. */
-static int acknowledged(struct ec_mbox *mb, u16 ado)
+static void has_read(struct ec_mbox *mb, int ret)
 {
-	unsigned int i;
-	int ret = 0;
-	u8 b[2];
-
-	for (i = 0; i < ACK_POLLS && !ret; i++) {
-		ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
-		if (!ret && !!(b[1] & EC_SM_PDI_REPEAT_ACK) == mb->want)
-			return 0;
-		usleep_range(200, 400);
+	mb->failed = false;
+	if (!ret) {
+		mb->at += mb->post.dg.len;
+		if (mb->at < mb->size) {
+			read_on(mb);
+			return;
+		}
+		progress(mb);
+		mb->sending.blocked = false;
+		ec_mbox_received(mb);
+		return;
 	}
-	return ret ?: -ETIME;
+	pause(mb);
+	if (ret == -ETIMEDOUT)
+		read_lost(mb);
+	else if (ret == -EIO)
+		ec_mbox_found_empty(mb);
+	else
+		ec_mbox_fail(mb, ret);
+}
+
+/* It is in SM0, or may be and must not be sent again. */
+static void sent(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u = mb->sending.user;
+
+	lockdep_assert_held(&mb->lock);
+	mb->sending.on = false;
+	progress(mb);
+	if (!u)
+		return;
+	u->lost |= mb->sending.lost;
+	if (u->answer) {
+		u->phase = EC_MBOX_USER_WAITING;
+		expect_reply(mb);
+	} else {
+		ec_mbox_finish(mb, u, u->lost ? -ENOTRECOVERABLE : 0);
+	}
+}
+
+static void has_written(struct ec_mbox *mb, int ret)
+{
+	struct ec_mbox_sending *s = &mb->sending;
+
+	if (!ret) {
+		mb->at += mb->post.dg.len;
+		if (mb->at < mb->size) {
+			write_on(mb);
+			return;
+		}
+		s->lost = false;
+		sent(mb);
+	} else if (ret == -ETIMEDOUT) {
+		/* it may have it: with repetition it gets it again, until it has it */
+		s->lost = true;
+		if (!mb->can_repeat || !s->user)
+			sent(mb);
+	} else if (ret == -EIO) {
+		/* full, until its own message is read */
+		s->blocked = true;
+		s->on = s->user;
+		pause(mb);
+	} else {
+		ec_mbox_fail(mb, ret);
+	}
 }
 
 /*
  * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
  * 0x080E, 0x080F). A request that is written once more after a lost frame is no second one.
  */
-static int repeat_request(struct ec_mbox *mb)
+static void has_repeat(struct ec_mbox *mb)
 {
-	u16 ado = EC_REG_SM(1) + EC_SM_OFS_ACTIVATE;
-	u8 b[2];
-	int ret = ec_xfer_fprd(mb->links, mb->station, ado, b, 2);
+	u8 *b = mb->status;
 
-	ec_mbox_assert_locked(mb);
-	if (ret)
-		return ret;
 	if (!mb->asked) {
 		mb->asked = true;
 		mb->want = !(b[0] & EC_SM_ACT_REPEAT);
@@ -184,190 +372,89 @@ static int repeat_request(struct ec_mbox *mb)
 	b[0] &= ~EC_SM_ACT_REPEAT;
 	if (mb->want)
 		b[0] |= EC_SM_ACT_REPEAT;
-	ret = ec_xfer_fpwr(mb->links, mb->station, ado, b, 1);
-	if (!ret && mb->unseen)
-		usleep_range(UNSEEN_US, UNSEEN_US + 500);
-	return ret ?: acknowledged(mb, ado);
+	mb->acks = 0;
+	post_repeat(mb, EC_MBOX_REPEAT_SET);
 }
 
-/* A message may be lost: get it again, if the slave can do that. */
-static void close_gap(struct ec_mbox *mb)
+static void no_repetition(struct ec_mbox *mb, bool silent)
 {
-	int ret;
-
-	ec_mbox_assert_locked(mb);
-	if (!mb->gap || !mb->can_repeat)
+	mb->failed = true;
+	mb->due_ns = 0;
+	if (!silent || ++mb->ack_fails < EC_MBOX_ACK_FAILS)
 		return;
-	ret = repeat_request(mb);
-	if (!ret) {
+	mb->can_repeat = false;
+	mb->gap = false;
+	if (mb->sending.on && mb->sending.lost)
+		sent(mb);
+	/* for the log */
+	ec_post_call(&mb->post);
+}
+
+static void has_ack(struct ec_mbox *mb)
+{
+	if (!!(mb->status[1] & EC_SM_PDI_REPEAT_ACK) == mb->want) {
 		mb->gap = false;
 		mb->asked = false;
 		mb->repeats = true;
 		mb->ack_fails = 0;
-	} else if (ret == -ETIME && ++mb->ack_fails == ACK_FAILS) {
-		mb->can_repeat = false;
-		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
+		mb->due_ns = 0;
+		ec_mbox_mark_gap(mb, false);
+	} else if (++mb->acks < ACK_POLLS) {
+		mb->due_ns = ktime_get_ns() + ACK_NS;
+		post_repeat(mb, EC_MBOX_REPEAT_ACK);
+	} else {
+		no_repetition(mb, true);
 	}
 }
 
-/*
- * When a slave has repeated its last message although nothing was lost, the counter shows
- * that the message is not a new one.
- */
-static bool is_known(struct ec_mbox *mb, u8 counter)
+static void has_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
 {
-	bool again = mb->repeats && counter && counter == mb->seen;
-
-	ec_mbox_assert_locked(mb);
-	mb->repeats = false;
-	if (again)
-		return true;
-	mb->counts = counter && mb->seen && counter != mb->seen;
-	mb->seen = counter;
-	return false;
-}
-
-/*
- * The frame that read a mailbox is lost. Was it read? It is full if not, or if the slave has
- * put in the next one by now: then only a repetition shows which.
- */
-static int read_lost(struct ec_mbox *mb)
-{
-	int ret;
-
-	ec_mbox_assert_locked(mb);
-	mb->gap = true;
-	ret = mb->can_repeat ? 0 : ec_mbox_full(mb);
-	if (ret == 1)
-		mb->gap = false;
-	return ret < 0 ? ret : 0;
-}
-
-/**
- * ec_mbox_fetch() - take one message out of the slave's mailbox
- * @mb: mailbox of the slave, @lock held
- * @b: buffers; the message will be in @rx
- * @h: its header
- * @blind: without a look whether there is one
- *
- * Context: Process. Waits for bus traffic.
- * Return: bytes behind the header; 0: none, for now; -EBADMSG for a header that is wrong;
- * -EMSGSIZE for a mailbox larger than a datagram; or as ec_xfer().
- */
-int ec_mbox_fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind)
-{
-	const struct ec_sii_mbox *area = ec_mbox_area(mb);
-	u16 size = area->tx_size;
-	struct ec_rbuf r;
-	int ret;
-
-	ec_mbox_assert_locked(mb);
-	if (size > EC_MBOX_MAX)
-		return -EMSGSIZE;
-	close_gap(mb);
-	ret = blind ? 1 : ec_mbox_full(mb);
-	if (ret <= 0)
-		return ret;
-	ret = once(mb, EC_CMD_FPRD, area->tx_offset, b->raw, size);
-	if (ret == -ETIMEDOUT)
-		return read_lost(mb);
-	if (ret)
-		return ret == -EIO ? 0 : ret;
-	r = ec_rbuf(b->raw, size);
-	if (ec_mbox_hdr_decode(&r, h))
-		return -EBADMSG;
-	if (is_known(mb, h->counter))
-		return 0;
-	memcpy(b->rx, r.p, h->len);
-	return h->len;
-}
-
-static void encode(struct ec_mbox_buf *b, const struct ec_mbox_message *m, u16 size)
-{
-	struct ec_mbox_hdr h = { .len = m->len, .type = m->type, .counter = m->counter };
-	struct ec_wbuf w = ec_wbuf(b->raw, size);
-
-	ec_mbox_hdr_encode(&w, &h);
-	ec_wbuf_bytes(&w, b->tx, m->len);
-	ec_wbuf_zero(&w, w.end - w.p);
-}
-
-/**
- * ec_mbox_message() - a new message to the slave
- * @mb: mailbox of the slave, @lock held
- * @m: result
- * @type: enum ec_mbox_type
- * @len: bytes behind the header
- *
- * Context: Process.
- * Return: 0, -EMSGSIZE when it does not fit, or the mailbox not into a datagram.
- */
-int ec_mbox_message(struct ec_mbox *mb, struct ec_mbox_message *m, u8 type, size_t len)
-{
-	u16 size = ec_mbox_area(mb)->rx_size;
-
-	ec_mbox_assert_locked(mb);
-	if (size > EC_MBOX_MAX || len + EC_MBOX_HDR > size)
-		return -EMSGSIZE;
-	mb->counter = ec_mbox_next_counter(mb->counter);
-	*m = (struct ec_mbox_message){ .type = type, .counter = mb->counter, .len = len };
-	return 0;
-}
-
-/**
- * ec_mbox_put() - try to give a message to the slave
- * @mb: mailbox of the slave, @lock held
- * @m: message; @m->sent when there is nothing more to do
- * @b: buffers; the message is in @tx
- *
- * A full mailbox is no error. After a lost frame a slave with repetition gets the message
- * again, until it has it; another one may have it already.
- *
- * Context: Process. Waits for bus traffic.
- * Return: 0, or as ec_xfer().
- */
-int ec_mbox_put(struct ec_mbox *mb, struct ec_mbox_message *m, struct ec_mbox_buf *b)
-{
-	const struct ec_sii_mbox *area = ec_mbox_area(mb);
-	int ret;
-
-	ec_mbox_assert_locked(mb);
-	/* the slave has turned out not to repeat */
-	if (m->lost && !mb->can_repeat) {
-		m->sent = true;
-		return 0;
+	switch (step) {
+	case EC_MBOX_STATUS:
+		has_status(mb, ret);
+		break;
+	case EC_MBOX_READ:
+		has_read(mb, ret);
+		break;
+	case EC_MBOX_WRITE:
+		has_written(mb, ret);
+		break;
+	case EC_MBOX_REPEAT_GET:
+	case EC_MBOX_REPEAT_SET:
+	case EC_MBOX_REPEAT_ACK:
+		if (ret) {
+			no_repetition(mb, false);
+		} else if (step == EC_MBOX_REPEAT_GET) {
+			has_repeat(mb);
+		} else if (step == EC_MBOX_REPEAT_SET) {
+			mb->due_ns = mb->unseen ? ktime_get_ns() + UNSEEN_NS : 0;
+			post_repeat(mb, EC_MBOX_REPEAT_ACK);
+		} else {
+			has_ack(mb);
+		}
+		break;
+	case EC_MBOX_REST:
+		break;
 	}
-	/* the mailbox changes with the state */
-	if (m->len + EC_MBOX_HDR > area->rx_size || area->rx_size > EC_MBOX_MAX)
-		return -EMSGSIZE;
-	encode(b, m, area->rx_size);
-	ret = once(mb, EC_CMD_FPWR, area->rx_offset, b->raw, area->rx_size);
-	if (!ret) {
-		m->sent = true;
-		m->lost = false;
-	} else if (ret == -ETIMEDOUT) {
-		m->lost = true;
-		m->sent = !mb->can_repeat;
-	}
-	return ret == -EIO || ret == -ETIMEDOUT ? 0 : ret;
 }
 
 /**
- * ec_mbox_error_reply() - the errno of a mailbox error reply, which is logged
- * @mb: mailbox of the slave
- * @h: header of the message
- * @rx: message behind the header
+ * ec_mbox_done() - the datagram of a mailbox is back, or lost
+ * @post: in the mailbox
  *
- * Context: Process.
- * Return: -errno.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-int ec_mbox_error_reply(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
+void ec_mbox_done(struct ec_post *post)
 {
-	struct ec_rbuf r = ec_rbuf(rx, h->len);
-	u16 detail;
+	struct ec_mbox *mb = container_of(post, struct ec_mbox, post);
+	enum ec_mbox_step step;
+	unsigned long flags;
 
-	if (ec_mbox_error_decode(&r, &detail))
-		return -EBADMSG;
-	ec_mbox_warn(mb, "mailbox error reply 0x%04x (%s)\n", detail, ec_mbox_error_text(detail));
-	return ec_mbox_error_errno(detail);
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	step = mb->step;
+	mb->step = EC_MBOX_REST;
+	if (!mb->dead)
+		has_step(mb, step, post->dg.err ?: post->dg.wkc == 1 ? 0 : -EIO);
+	ec_mbox_go(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

@@ -45,7 +45,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_lock(mb, &mb->sdo_lock, 0);
+	ret = ec_mbox_claim(mb, BIT(EC_MBOX_COE), 0);
 	if (ret)
 		goto out;
 	do {
@@ -61,7 +61,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 	if (s->send_abort)
 		send_abort(mb, s, b, cap);
 	s->abort = abort;
-	up(&mb->sdo_lock);
+	ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));
 out:
 	kfree(b);
 	return ret;
@@ -161,7 +161,7 @@ static int info_rx(void *ctx, const u8 *buf, size_t len)
 
 /**
  * ec_coe_ask() - one request for SDO information
- * @mb: mailbox of the slave, @sdo_lock held
+ * @mb: mailbox of the slave, CoE claimed
  * @info: request, and its answer
  * @until_ns: when the last fragment must be here (ktime)
  * @limit: for each fragment
@@ -181,8 +181,6 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
 	const struct ec_sdoinfo again = *info;
 	int len, ret;
 
-	/* a semaphore has no owner: what can be checked is that there is a holder */
-	lockdep_assert(!READ_ONCE(mb->sdo_lock.count));
 	do {
 		*info = again;
 		len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
@@ -212,10 +210,10 @@ int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbo
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_lock(mb, &mb->sdo_lock, 0);
+	ret = ec_mbox_claim(mb, BIT(EC_MBOX_COE), 0);
 	if (!ret) {
 		ret = ec_coe_ask(mb, info, ktime_get_ns() + INFO_MS * (u64)NSEC_PER_MSEC, &l, b);
-		up(&mb->sdo_lock);
+		ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));
 	}
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "SDO information %u of 0x%04x:%02x, error 0x%08x, %zu byte(s)",

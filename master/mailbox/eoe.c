@@ -35,7 +35,13 @@ static int exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 re
 		.ctx = &a,
 	};
 
-	return ec_mbox_request(mb, &req, b, len) ?: a.len;
+	int ret = ec_mbox_claim(mb, BIT(EC_MBOX_EOE), 0);
+
+	if (ret)
+		return ret;
+	ret = ec_mbox_request(mb, &req, b, len) ?: a.len;
+	ec_mbox_unclaim(mb, BIT(EC_MBOX_EOE));
+	return ret;
 }
 
 /**

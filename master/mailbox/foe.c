@@ -135,6 +135,9 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	}
 	if (f->write)
 		f->size = file->size;
+	ret = ec_mbox_claim(mb, BIT(EC_MBOX_FOE), 0);
+	if (ret)
+		goto out;
 	do {
 		ret = wait_busy(&t) ?: step(&t, file, &req, b);
 	} while (ret == EC_MORE);
@@ -142,6 +145,8 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 		ret = ec_mbox_read_result(ret);
 	if (ret && ret != -EREMOTEIO && !req.first)
 		end_at_slave(&t, b);
+	ec_mbox_unclaim(mb, BIT(EC_MBOX_FOE));
+out:
 	clear_bit_unlock(EC_MBOX_FILE, &mb->flags);
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "FoE %s '%.*s', error 0x%08x, %llu byte(s)",

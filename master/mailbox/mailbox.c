@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
+/* Callers of the transport: requests and their answers. */
+#include <linux/sched/signal.h>
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../wire/fmmu.h"
 #include "mailbox_int.h"
 
-#define LAST_TRIES	50	/* one a millisecond */
+#define ONCE_MS	1000	/* for one look: as long as the slave passes INIT, say */
+#define LAST_NS		(75 * NSEC_PER_MSEC)	/* for a message that ends a transfer */
 
 /**
  * ec_mbox_init() - prepare the mailbox of a slave
@@ -14,11 +17,55 @@
  */
 void ec_mbox_init(struct ec_mbox *mb)
 {
-	sema_init(&mb->sdo_lock, 1);
-	sema_init(&mb->lock, 1);
-	init_waitqueue_head(&mb->turn);
+	raw_spin_lock_init(&mb->lock);
+	ec_post_init(&mb->post, mb->links, ec_mbox_done, ec_mbox_unasked);
+	INIT_LIST_HEAD(&mb->queue);
+	INIT_LIST_HEAD(&mb->users);
+	INIT_LIST_HEAD(&mb->claims);
 	spin_lock_init(&mb->unasked_lock);
 	INIT_LIST_HEAD(&mb->kept);
+}
+
+/**
+ * ec_mbox_exit() - the slave is being freed
+ * @mb: mailbox without users
+ *
+ * Context: Process. Waits for the datagram that may be on its way.
+ */
+void ec_mbox_exit(struct ec_mbox *mb)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	mb->dead = true;
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	ec_post_cancel(&mb->post);
+	ec_mbox_keep_voe(mb, false);
+	kfree(mb->tx);
+	kfree(mb->rx);
+}
+
+/* Memory of the mailboxes, when they are used first. The sizes may be anything. */
+static int get_memory(struct ec_mbox *mb)
+{
+	size_t tx = max(mb->sii->std.rx_size, mb->sii->boot.rx_size);
+	size_t rx = max(mb->sii->std.tx_size, mb->sii->boot.tx_size);
+	unsigned long flags;
+	u8 *t, *r;
+
+	if (READ_ONCE(mb->rx))
+		return 0;
+	t = kmalloc(clamp_t(size_t, tx, EC_MBOX_HDR, EC_MBOX_MAX), GFP_KERNEL);
+	r = kmalloc(clamp_t(size_t, rx, EC_MBOX_HDR, EC_MBOX_MAX), GFP_KERNEL);
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (t && r && !mb->rx) {
+		swap(mb->tx, t);
+		swap(mb->rx, r);
+	}
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	kfree(t);
+	kfree(r);
+	return READ_ONCE(mb->rx) ? 0 : -ENOMEM;
 }
 
 /**
@@ -32,6 +79,24 @@ void ec_mbox_init(struct ec_mbox *mb)
 void ec_mbox_reset(struct ec_mbox *mb)
 {
 	WRITE_ONCE(mb->renew, true);
+}
+
+/**
+ * ec_mbox_in_use() - does a caller exchange messages with the slave now?
+ * @mb: mailbox of the slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether one does; it gets all that the slave sends.
+ */
+bool ec_mbox_in_use(struct ec_mbox *mb)
+{
+	unsigned long flags;
+	bool in_use;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	in_use = !list_empty(&mb->queue) || !list_empty(&mb->users) || mb->step != EC_MBOX_REST;
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	return in_use;
 }
 
 /**
@@ -105,154 +170,144 @@ struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t
 	return b ?: ERR_PTR(-ENOMEM);
 }
 
-/*
- * A slow slave is polled ever less often: at most an eighth of the time it has taken so far
- * passes until the master sees its reply.
- */
-static void pause_longer(unsigned int *us)
+/* users ---------------------------------------------------------------------*/
+
+static void enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
-	unsigned int next = *us < 1000 ? *us * 2 : min(*us + *us / 8, 5000u);
+	unsigned long flags;
 
-	usleep_range(*us, *us + *us / 8 + 1);
-	*us = next;
-}
-
-/*
- * Beside a cycle each look takes one or two of its periods. Where the mailbox has room on
- * the wire it is read at once: an empty one gives nothing.
- */
-static bool read_at_once(const struct ec_mbox *mb)
-{
-	u32 slack = ec_access_slack_ns(mb->links);
-	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
-				  ec_mbox_area(mb)->tx_size);
-
-	return mb->counts && slack != ~0u &&
-	       ec_links_acyclic_ns(mb->links) + ns <= slack / 2;
-}
-
-/*
- * Give a message that has no answer to the slave, which may wait until its own message is
- * read.
- */
-static int send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
-		const struct ec_mbox_until *until)
-{
-	struct ec_mbox_message m = { .lost = false };
-	unsigned int us = 50;
-	int ret = ec_mbox_message(mb, &m, type, len);
-
-	while (!ret) {
-		ret = ec_mbox_put(mb, &m, b);
-		if (ret || m.sent)
-			break;
-		ret = ec_mbox_over(mb, until) ?: ec_mbox_drain(mb, b);
-		ec_mbox_pause(&us);
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	u->task = current;
+	if (u->len || u->discard) {
+		u->phase = EC_MBOX_USER_QUEUED;
+		list_add_tail(&u->list, &mb->queue);
+	} else {
+		u->phase = EC_MBOX_USER_WAITING;
+		list_add_tail(&u->list, &mb->users);
+		mb->since_ns = ktime_get_ns();
+		mb->due_ns = 0;
 	}
-	return (!ret || ret == -ETIMEDOUT) && m.lost ? -ENOTRECOVERABLE : ret;
+	ec_mbox_go(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }
 
-/*
- * Take in one message of the slave, the answer or not: what @r->rx returns; -ENOMSG: there is
- * none; EC_STALE: it is for another reader. Answers of other protocols are late and discarded,
- * since a requester holds the lock.
- */
-static int take(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
-		const struct ec_mbox_message *m)
+/* The message was not the one: wait for another. */
+static void wait_on(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
-	bool expected = m->sent || m->lost;
-	struct ec_mbox_hdr h;
-	int ret = ec_mbox_fetch(mb, b, &h, m->sent && read_at_once(mb));
+	unsigned long flags;
 
-	if (!ret || ret == -ETIMEDOUT)
-		return -ENOMSG;
-	/* no answer comes before the request has arrived */
-	if (ret == -EBADMSG && !expected)
-		return EC_STALE;
-	if (ret < 0)
-		return ret;
-	if (expected && h.type == EC_MBOX_ERR)
-		return ec_mbox_error_reply(mb, &h, b->rx);
-	if (ec_mbox_unasked(mb, &h, b->rx) || !expected || h.type != r->type)
-		return EC_STALE;
-	return r->rx(r->ctx, b->rx, ret);
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	u->phase = EC_MBOX_USER_WAITING;
+	mb->since_ns = ktime_get_ns();
+	ec_mbox_retry_held(mb);
+	ec_mbox_go(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }
 
-/* Has a frame been lost, with a request or an answer that was in it? */
-static bool unknown(const struct ec_mbox *mb, const struct ec_mbox_message *m)
+/* @answered: nothing of its exchange can come any more. */
+static void leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
 {
-	ec_mbox_assert_locked(mb);
-	return m->lost || mb->gap;
+	struct ec_mbox_sending *s = &mb->sending;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (s->user == u) {
+		u->lost |= s->on && s->lost;
+		s->user = NULL;
+		/* what is on its way goes on */
+		s->on &= mb->step == EC_MBOX_WRITE;
+	}
+	list_del(&u->list);
+	u->phase = EC_MBOX_USER_IDLE;
+	if (u->answer)
+		mb->answered = answered;
+	ec_mbox_retry_held(mb);
+	ec_mbox_go(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+}
+
+/* Until it is DONE: 0, or why not. The limit begins when its message has its turn. */
+static int wait_done(struct ec_mbox *mb, struct ec_mbox_user *u, const struct ec_mbox_limit *limit,
+		     struct ec_mbox_until *until)
+{
+	int ret;
+
+	for (;;) {
+		if (READ_ONCE(u->phase) == EC_MBOX_USER_QUEUED)
+			*until = ec_mbox_until(limit);
+		ret = ec_mbox_over(mb, until);
+		/* the result is there: see ec_mbox_finish() */
+		if (smp_load_acquire(&u->phase) == EC_MBOX_USER_DONE)
+			return ret == -ETIMEDOUT ? 0 : ret;
+		if (ret)
+			return ret;
+		ec_mbox_sleep(mb, &u->phase, EC_MBOX_USER_DONE, until);
+	}
+}
+
+static int answer(struct ec_mbox *mb, const struct ec_mbox_request *r,
+		  const struct ec_mbox_user *u)
+{
+	if (u->err)
+		return u->err;
+	if (u->got_type == EC_MBOX_ERR)
+		return ec_mbox_error_reply(mb, u->rx, u->got);
+	return r->rx(r->ctx, u->rx, u->got);
 }
 
 /* The request, until its answer is here or it is too late. */
-static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
-		    struct ec_mbox_message *m)
+static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_user *u)
 {
 	struct ec_mbox_until until = ec_mbox_until(&r->limit);
-	unsigned int us = 20;
+	int ret, end;
 
 	for (;;) {
-		int ret = 0, end;
-
-		if (!m->sent) {
-			ret = ec_mbox_put(mb, m, b);
-			us = m->sent ? 20 : us;
-		}
-		ret = ret ?: take(mb, r, b, m);
-		if (ret != EC_WAIT && ret != EC_STALE && ret != -ENOMSG)
+		ret = wait_done(mb, u, &r->limit, &until) ?: answer(mb, r, u);
+		if (ret != EC_WAIT && ret != EC_STALE)
 			return ret;
 		if (ret == EC_WAIT)
 			until = ec_mbox_until(&r->limit);
 		/* also a slave that sends messages without end has to answer in time */
 		end = ec_mbox_over(mb, &until);
 		if (end)
-			return end == -ETIMEDOUT && unknown(mb, m) ? -ENOTRECOVERABLE : end;
-		if (ret == -ENOMSG)
-			pause_longer(&us);
-		else
-			us = 20;
+			return end;
+		wait_on(mb, u);
 	}
 }
 
 /**
  * ec_mbox_request() - send one message, wait for the answer
  * @mb: mailbox that ec_mbox_check() has accepted
- * @r: request
+ * @r: request; its protocol is claimed
  * @b: message in @tx, the answer will be in @rx
  * @len: bytes of the message
  *
- * The mailbox is locked meanwhile. Emergencies and VoE messages that arrive before the
- * answer are kept. What a lost frame loses is repeated, if the slave can do that.
+ * Other protocols may be used meanwhile. What a lost frame loses is repeated, if the slave can
+ * do that.
  *
  * Context: Process. Waits for bus traffic.
  * Return: the last value of @r->rx; -EAGAIN in INIT; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
  * -ENOTRECOVERABLE when a lost frame was the reason, so that the slave may have done what was
  * requested; -EBADMSG for a message whose header is wrong; the errno of a mailbox error
- * reply; or as ec_xfer().
+ * reply; -ENOMEM; or as ec_xfer().
  */
 int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
 		    size_t len)
 {
 	struct ec_mbox_until now = { .ns = U64_MAX, .cancel = r->limit.cancel };
-	struct ec_mbox_message m;
-	int ret = ec_mbox_lock(mb, &mb->lock, 0);
+	struct ec_mbox_user u = {
+		.type = r->type, .answer = true, .first = r->first, .tx = b->tx, .len = len,
+		.rx = b->rx,
+	};
+	int ret = get_memory(mb) ?: ec_mbox_over(mb, &now);
 
+	lockdep_assert(ec_mbox_is_claimed(mb, BIT(r->type)));
 	if (ret)
 		return ret;
-	ec_mbox_begin(mb);
-	ret = ec_mbox_off(mb);
-	/* after an answer nothing of an earlier exchange can come any more */
-	if (!ret && r->first && !mb->answered)
-		ret = ec_mbox_drain(mb, b);
-	mb->answered = false;
-	/* also where a slave always has a message ready */
-	ret = ret ?: ec_mbox_over(mb, &now);
-	ret = ret ?: ec_mbox_message(mb, &m, r->type, len);
-	ret = ret ?: exchange(mb, r, b, &m);
-	mb->answered = ret >= 0;
-	up(&mb->lock);
-	return ret;
+	enter(mb, &u);
+	ret = exchange(mb, r, &u);
+	leave(mb, &u, ret >= 0);
+	return ret == -ETIMEDOUT && (u.lost || u.gap) ? -ENOTRECOVERABLE : ret;
 }
 
 /**
@@ -265,20 +320,21 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED; -ENOTRECOVERABLE when
- * its frame was lost, so that the slave may have it or not; or as ec_xfer().
+ * its frame was lost, so that the slave may have it or not; -ENOMEM; or as ec_xfer().
  */
 int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_until until = ec_mbox_until(limit);
-	int ret = ec_mbox_lock(mb, &mb->lock, 0);
+	struct ec_mbox_user u = { .type = type, .tx = b->tx, .len = len };
+	int ret = get_memory(mb) ?: ec_mbox_over(mb, &until);
 
 	if (ret)
 		return ret;
-	ec_mbox_begin(mb);
-	ret = ec_mbox_over(mb, &until) ?: ec_mbox_off(mb) ?: send(mb, type, b, len, &until);
-	up(&mb->lock);
-	return ret;
+	enter(mb, &u);
+	ret = wait_done(mb, &u, limit, &until) ?: u.err;
+	leave(mb, &u, false);
+	return ret == -ETIMEDOUT && u.lost ? -ENOTRECOVERABLE : ret;
 }
 
 /**
@@ -294,23 +350,123 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
  */
 void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len)
 {
-	struct ec_mbox_message m = { .len = 0 };
-	unsigned int i;
-	int ret = 0;
+	struct ec_mbox_user u = { .type = type, .tx = b->tx, .len = len };
+	u64 until = ktime_get_ns() + LAST_NS;
+	ktime_t at = ns_to_ktime(until);
 
-	for (i = 0; i < LAST_TRIES && !ret && !m.sent && !ec_stop_all(mb->stop); i++) {
-		if (!down_trylock(&mb->lock)) {
-			ec_mbox_begin(mb);
-			ret = ec_mbox_off(mb);
-			if (!ret && !m.len)
-				ret = ec_mbox_message(mb, &m, type, len);
-			ret = ret ?: ec_mbox_put(mb, &m, b);
-			/* it may be full until its own message is read */
-			if (!ret && !m.sent)
-				ec_mbox_drain(mb, b);
-			up(&mb->lock);
-		}
-		if (!m.sent)
-			usleep_range(1000, 1500);
+	if (get_memory(mb))
+		return;
+	enter(mb, &u);
+	while (!ec_stop_all(mb->stop) && ktime_get_ns() < until) {
+		set_current_state(TASK_UNINTERRUPTIBLE);
+		if (READ_ONCE(u.phase) == EC_MBOX_USER_DONE)
+			break;
+		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
 	}
+	__set_current_state(TASK_RUNNING);
+	leave(mb, &u, false);
+}
+
+/**
+ * ec_mbox_forget() - empty the mailbox for a new application
+ * @mb: mailbox of a slave with mailbox, in PREOP
+ *
+ * What the slave has sent before, emergencies and VoE messages too, is none of it. Answers
+ * that a caller waits for are delivered.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0; -ENOMEM; -ECANCELED; -EBUSY when it cannot be emptied; -EMSGSIZE when it is
+ * larger than a datagram; or as ec_xfer().
+ */
+int ec_mbox_forget(struct ec_mbox *mb)
+{
+	const struct ec_mbox_limit limit = { .timeout_ms = 10000 };
+	struct ec_mbox_until until = ec_mbox_until(&limit);
+	struct ec_mbox_user u = { .discard = true };
+	int ret = get_memory(mb);
+
+	if (ret)
+		return ret;
+	enter(mb, &u);
+	ret = wait_done(mb, &u, &limit, &until) ?: u.err;
+	leave(mb, &u, false);
+	ec_mbox_flush_kept(mb);
+	return ret;
+}
+
+/**
+ * ec_mbox_fetch() - let the slave's messages be read, although no caller waits for them
+ * @mb: mailbox of the slave
+ *
+ * Emergencies and VoE messages are kept. Returns at once.
+ *
+ * Context: Process. May sleep.
+ * Return: false: not now: the slave has no mailbox in its state, or sends without end.
+ */
+bool ec_mbox_fetch(struct ec_mbox *mb)
+{
+	unsigned long flags;
+
+	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || ec_mbox_off(mb) || get_memory(mb))
+		return false;
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (ktime_get_ns() < mb->flood_ns) {
+		raw_spin_unlock_irqrestore(&mb->lock, flags);
+		return false;
+	}
+	if (!mb->fetch) {
+		mb->fetch = true;
+		mb->since_ns = ktime_get_ns();
+		mb->due_ns = 0;
+		ec_mbox_go(mb);
+	}
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	return true;
+}
+
+/**
+ * ec_mbox_wait_voe() - wait for a VoE message
+ * @mb: mailbox that ec_mbox_check() has accepted
+ * @b: the message is in @rx
+ * @blind: one access to the mailbox without a look whether it is full
+ * @limit: when to give up; @timeout_ms 0: no wait
+ *
+ * The message may have arrived earlier. Others can use the mailbox meanwhile.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: bytes behind the mailbox header; -ENOMSG, when @blind and there is
+ * none; -ETIMEDOUT, -EINTR, -ECANCELED; -EBADMSG; the errno of a mailbox error
+ * reply; -EAGAIN in INIT; -ENOMEM; or as ec_xfer().
+ */
+int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
+		     const struct ec_mbox_limit *limit)
+{
+	const struct ec_mbox_limit now = { .timeout_ms = ONCE_MS, .cancel = limit->cancel };
+	struct ec_mbox_until until = ec_mbox_until(blind ? &now : limit);
+	struct ec_mbox_user u = { .type = EC_MBOX_VOE, .once = blind, .rx = b->rx };
+	int ret = get_memory(mb) ?: ec_mbox_take_kept(mb, b->rx), kept;
+
+	if (ret != -ENOMSG)
+		return ret;
+	enter(mb, &u);
+	do {
+		if (ec_mbox_off(mb))
+			ret = -EAGAIN;
+		else
+			ret = ec_mbox_over(mb, &until);
+		/* the result is there: see ec_mbox_finish() */
+		if (smp_load_acquire(&u.phase) == EC_MBOX_USER_DONE) {
+			ret = u.err ?: u.got_type == EC_MBOX_ERR ?
+			      ec_mbox_error_reply(mb, b->rx, u.got) : u.got;
+			break;
+		}
+		if (!ret)
+			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
+	} while (!ret);
+	leave(mb, &u, false);
+	if (ret != -ENOMSG && ret != -ETIMEDOUT)
+		return ret;
+	/* one that has come before this caller was one of the users */
+	kept = ec_mbox_take_kept(mb, b->rx);
+	return kept != -ENOMSG ? kept : blind ? -ENOMSG : ret;
 }

@@ -3,26 +3,66 @@
 #ifndef EC_MAILBOX_H
 #define EC_MAILBOX_H
 
+#include <linux/bits.h>
 #include <linux/list.h>
-#include <linux/semaphore.h>
 #include <linux/spinlock.h>
 #include <linux/types.h>
 #include <linux/wait.h>
 #include "ethercat.h"
 #include "../base/stop.h"
+#include "../link/post.h"
 #include "../wire/al.h"
 #include "../wire/mbox.h"
 #include "../wire/sii.h"
 
 struct ec_emerg;
 struct ec_links;
+struct ec_mbox_user;
 
 #define EC_MBOX_MAX	1486	/* one datagram */
 #define EC_MBOX_READ_TRIES	4	/* of what changes nothing, after lost frames */
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
+#define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
 
 enum ec_mbox_flag {
 	EC_MBOX_FILE,	/* a file is transferred */
+};
+
+/* datagram of the mailbox that is on its way */
+enum ec_mbox_step {
+	EC_MBOX_REST,		/* none */
+	EC_MBOX_STATUS,		/* is SM1 full? */
+	EC_MBOX_READ,		/* of SM1 */
+	EC_MBOX_WRITE,		/* of SM0 */
+	EC_MBOX_REPEAT_GET,	/* repeat request and acknowledgement, as they are */
+	EC_MBOX_REPEAT_SET,	/* repeat request */
+	EC_MBOX_REPEAT_ACK,	/* has the slave acknowledged it? */
+};
+
+/**
+ * struct ec_mbox_sending - the message that is given to the slave
+ * @user: whose message, NULL: the user has left
+ * @on: there is one
+ * @emptying: first SM1 is read until it is empty
+ * @blocked: SM0 is full: first the slave's own message is read
+ * @lost: a frame with it was lost, so it may be in SM0
+ * @discard: no message, but what the slave has in SM1 is discarded
+ * @type: enum ec_mbox_type
+ * @counter: its own; the slave drops another message with it
+ * @len: bytes behind the header
+ * @read: messages read while @emptying
+ */
+struct ec_mbox_sending {
+	struct ec_mbox_user *user;
+	bool on;
+	bool emptying;
+	bool blocked;
+	bool lost;
+	bool discard;
+	u8 type;
+	u8 counter;
+	u16 len;
+	u16 read;
 };
 
 /** struct ec_mbox - mailbox of a slave */
@@ -32,7 +72,7 @@ struct ec_mbox {
 	/** @links: way to the slave, immutable */
 	struct ec_links *links;
 	/** @stop: what ends exchanges, immutable */
-	const struct ec_stop *stop;
+	struct ec_stop *stop;
 	/** @sii: mailboxes and protocols that the slave has, immutable */
 	const struct ec_sii_info *sii;
 	/** @al_status: below PREOP there is no mailbox; pointer immutable */
@@ -45,10 +85,46 @@ struct ec_mbox {
 	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
 	bool strict;
 
-	/** @sdo_lock: one SDO transfer at a time; see ec_mbox_lock() */
-	struct semaphore sdo_lock;
-	/** @lock: one exchange at a time; protects the members up to @answered */
-	struct semaphore lock;
+	/** @lock: protects the members up to @flags; box.c has the machine that they are */
+	raw_spinlock_t lock;
+	/** @post: its datagram */
+	struct ec_post post;
+	/** @step: what @post is, enum ec_mbox_step */
+	u8 step;
+	/** @dead: nothing is sent any more */
+	bool dead;
+	/** @status: data of @post, unless that is a whole mailbox */
+	u8 status[2];
+	/** @tx: the message that is given to the slave, as it is in SM0 */
+	u8 *tx;
+	/** @rx: the message of the slave, as it is in SM1 */
+	u8 *rx;
+	/** @size: of SM0 or SM1, as the present access began */
+	u16 size;
+	/** @at: bytes of them before @post */
+	u16 at;
+	/** @held: @rx has a message that was not taken so far */
+	bool held;
+	/** @told: a thread was asked to take it */
+	bool told;
+	/** @sending: message to the slave */
+	struct ec_mbox_sending sending;
+	/** @queue: users whose message waits, the oldest first */
+	struct list_head queue;
+	/** @users: users that wait for messages, the oldest first */
+	struct list_head users;
+	/** @fetch: read SM1 until it is empty, although no user waits */
+	bool fetch;
+	/** @fetched: messages read so */
+	u16 fetched;
+	/** @flood_ns: no @fetch before that time (ktime): the slave sends without end */
+	u64 flood_ns;
+	/** @since_ns: last progress (ktime) */
+	u64 since_ns;
+	/** @took_ns: how long the slave took for its last message, with direct access */
+	u64 took_ns;
+	/** @due_ns: no access before that time (ktime) */
+	u64 due_ns;
 	/** @counter: of the last message sent */
 	u8 counter;
 	/** @seen: counter of the last message received */
@@ -59,28 +135,35 @@ struct ec_mbox {
 	bool can_repeat;
 	/** @gap: a message of the slave may have been lost */
 	bool gap;
+	/** @unread: the frame that read SM1 was lost; if it is full, SM1 was not read */
+	bool unread;
+	/** @failed: the last try to get a repetition has failed: first look without it */
+	bool failed;
 	/** @asked: it has been asked to repeat it, not acknowledged so far */
 	bool asked;
 	/** @want: value of that repeat request */
 	bool want;
 	/** @unseen: the acknowledgement had that value before */
 	bool unseen;
+	/** @acks: looks for the acknowledgement so far */
+	u8 acks;
 	/** @repeats: the slave has been made to repeat its last message */
 	bool repeats;
 	/** @ack_fails: repeat requests without acknowledgement in a row */
 	u8 ack_fails;
-	/** @answered: the last exchange has ended with its answer */
+	/** @logged: that it does not repeat although it should */
+	bool logged;
+	/** @answered: nothing of an earlier exchange can come any more */
 	bool answered;
-	/** @renew: the slave has been in INIT: the next holder of @lock resets these members */
+	/** @renew: the slave has been in INIT: the next message resets these members */
 	bool renew;
+	/** @claimed: BIT(enum ec_mbox_type) of the protocols in use; see ec_mbox_claim() */
+	u16 claimed;
+	/** @claims: callers that wait for a protocol, the oldest first */
+	struct list_head claims;
 
 	/** @flags: bits EC_MBOX_... */
 	unsigned long flags;
-
-	/** @awaits: lock that the slave's worker waits for, NULL: none */
-	const struct semaphore *awaits;
-	/** @turn: callers that wait until the worker has that lock */
-	wait_queue_head_t turn;
 
 	/** @unasked_lock: protects the members below and what @emerg points to */
 	spinlock_t unasked_lock;
@@ -102,12 +185,10 @@ struct ec_mbox {
  * struct ec_mbox_buf - buffers of one exchange
  * @tx: message behind the mailbox header
  * @rx: answer behind the mailbox header
- * @raw: a whole mailbox as the slave has it
  */
 struct ec_mbox_buf {
 	u8 tx[EC_MBOX_MAX];
 	u8 rx[EC_MBOX_MAX];
-	u8 raw[EC_MBOX_MAX];
 };
 
 /**
@@ -148,12 +229,6 @@ static inline bool ec_mbox_present(const struct ec_mbox *mb)
 	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
 }
 
-/* Does a caller exchange messages with the slave now? */
-static inline bool ec_mbox_in_use(const struct ec_mbox *mb)
-{
-	return !READ_ONCE(mb->lock.count);
-}
-
 /* The mailbox in use: BOOT has one of its own. */
 static inline const struct ec_sii_mbox *ec_mbox_area(const struct ec_mbox *mb)
 {
@@ -180,7 +255,8 @@ static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set
 void ec_mbox_init(struct ec_mbox *mb);
 unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page);
 void ec_mbox_reset(struct ec_mbox *mb);
-int ec_mbox_lock(struct ec_mbox *mb, struct semaphore *lock, u32 ms);
+void ec_mbox_exit(struct ec_mbox *mb);
+bool ec_mbox_in_use(struct ec_mbox *mb);
 int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message);
 struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t message);
 int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
@@ -188,9 +264,13 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
 void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len);
-int ec_mbox_drain(struct ec_mbox *mb, struct ec_mbox_buf *b);
 int ec_mbox_forget(struct ec_mbox *mb);
-bool ec_mbox_poll(struct ec_mbox *mb);
+bool ec_mbox_fetch(struct ec_mbox *mb);
+
+/* claim.c */
+int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms);
+void ec_mbox_unclaim(struct ec_mbox *mb, u16 types);
+bool ec_mbox_is_claimed(struct ec_mbox *mb, u16 types);
 
 /* VoE: messages without a request */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);

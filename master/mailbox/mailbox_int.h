@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Inside the transport: the mailboxes of a slave themselves, and messages without a request. */
+/* Inside the transport: its machine and the callers that use it. */
 #ifndef EC_MAILBOX_INT_H
 #define EC_MAILBOX_INT_H
 
-#include <linux/delay.h>
 #include <linux/ktime.h>
-#include <linux/minmax.h>
 #include "mailbox.h"
+
+/* Messages at most that no user waits for, read in a row. */
+#define EC_MBOX_DRAIN	16
+#define EC_MBOX_ACK_FAILS	3	/* repeat requests without acknowledgement */
+#define EC_MBOX_SLICE_MS	20	/* between looks whether a waiting caller has to leave */
 
 /** struct ec_mbox_until - when a waiting caller has to give up */
 struct ec_mbox_until {
@@ -23,44 +26,77 @@ static inline struct ec_mbox_until ec_mbox_until(const struct ec_mbox_limit *l)
 	};
 }
 
-/** struct ec_mbox_message - a message to the slave */
-struct ec_mbox_message {
-	/** @type: enum ec_mbox_type */
-	u8 type;
-	/** @counter: its own; the slave drops another message with it */
-	u8 counter;
-	/** @len: bytes behind the header, in ec_mbox_buf.tx */
-	u16 len;
-	/** @sent: it is in the slave's mailbox, or may be and must not be sent again */
-	bool sent;
-	/** @lost: a frame with it was lost, so it may be in the mailbox */
-	bool lost;
+enum ec_mbox_phase {
+	EC_MBOX_USER_IDLE,	/* out of all lists */
+	EC_MBOX_USER_QUEUED,	/* its message waits */
+	EC_MBOX_USER_SENDING,	/* its message is being given to the slave */
+	EC_MBOX_USER_WAITING,	/* for a message of its type */
+	EC_MBOX_USER_DONE,	/* @err, or the message is in @rx; another one has to wait */
 };
 
-/* Short waits first: most slaves answer within a few hundred microseconds. */
-static inline void ec_mbox_pause(unsigned int *us)
-{
-	usleep_range(*us, *us + *us / 4 + 1);
-	*us = min(*us * 2, 1000u);
-}
+/**
+ * struct ec_mbox_user - a caller that has a message for the slave, or waits for one
+ * @list: in the queue, or among the users
+ * @phase: enum ec_mbox_phase
+ * @type: enum ec_mbox_type
+ * @answer: its message has an answer
+ * @first: read SM1 until it is empty before, unless nothing can be there
+ * @discard: it has no message: what the slave has sent so far is discarded
+ * @once: one access to SM1, then -ENOMSG
+ * @lost: a frame with its message was lost
+ * @gap: a frame was lost that may have had its answer
+ * @err: result: 0 or -errno
+ * @tx: message behind the header
+ * @len: bytes of it
+ * @rx: result: message of the slave behind the header
+ * @got: bytes of it
+ * @got_type: its type: @type or EC_MBOX_ERR
+ * @task: woken when @phase is DONE
+ */
+struct ec_mbox_user {
+	struct list_head list;
+	u8 phase;
+	u8 type;
+	bool answer;
+	bool first;
+	bool discard;
+	bool once;
+	bool lost;
+	bool gap;
+	int err;
+	const u8 *tx;
+	u16 len;
+	u8 *rx;
+	u16 got;
+	u8 got_type;
+	struct task_struct *task;
+};
 
-/* box.c */
-void ec_mbox_begin(struct ec_mbox *mb);
-int ec_mbox_off(const struct ec_mbox *mb);
+/* claim.c */
 int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u);
-int ec_mbox_full(struct ec_mbox *mb);
-int ec_mbox_message(struct ec_mbox *mb, struct ec_mbox_message *m, u8 type, size_t len);
-int ec_mbox_put(struct ec_mbox *mb, struct ec_mbox_message *m, struct ec_mbox_buf *b);
-int ec_mbox_fetch(struct ec_mbox *mb, struct ec_mbox_buf *b, struct ec_mbox_hdr *h, bool blind);
-int ec_mbox_error_reply(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx);
+void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
+		   const struct ec_mbox_until *u);
+
+/* box.c: with the lock of the mailbox held */
+void ec_mbox_go(struct ec_mbox *mb);
+void ec_mbox_done(struct ec_post *post);
+bool ec_mbox_off(const struct ec_mbox *mb);
+
+/* inbox.c: with the lock of the mailbox held */
+void ec_mbox_received(struct ec_mbox *mb);
+void ec_mbox_finish(struct ec_mbox *mb, struct ec_mbox_user *u, int err);
+void ec_mbox_fail(struct ec_mbox *mb, int err);
+bool ec_mbox_awaited(const struct ec_mbox *mb);
+bool ec_mbox_is_blind(const struct ec_mbox *mb);
+void ec_mbox_found_empty(struct ec_mbox *mb);
+void ec_mbox_finish_once(struct ec_mbox *mb);
+void ec_mbox_mark_gap(struct ec_mbox *mb, bool gap);
+void ec_mbox_retry_held(struct ec_mbox *mb);
 
 /* unasked.c */
-bool ec_mbox_unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx);
-
-/* A semaphore has no owner: what can be checked is that there is a holder. */
-static inline void ec_mbox_assert_locked(const struct ec_mbox *mb)
-{
-	lockdep_assert(ec_mbox_in_use(mb));
-}
+void ec_mbox_unasked(struct ec_post *post);
+int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len);
+void ec_mbox_flush_kept(struct ec_mbox *mb);
+int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx);
 
 #endif

@@ -37,8 +37,15 @@ static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 	if (IS_ERR(b))
 		return PTR_ERR(b);
 	ret = ec_soe_tx(a, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
-	if (ret >= 0)
-		ret = ec_mbox_request(mb, &req, b, ret);
+	if (ret >= 0) {
+		size_t len = ret;
+
+		ret = ec_mbox_claim(mb, BIT(EC_MBOX_SOE), 0);
+		if (!ret) {
+			ret = ec_mbox_request(mb, &req, b, len);
+			ec_mbox_unclaim(mb, BIT(EC_MBOX_SOE));
+		}
+	}
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "%s %s of drive %u, error 0x%04x",
 			    a->write ? "write" : "read", ec_soe_idn_text(a->idn, name), a->drive,

@@ -496,8 +496,12 @@ void ec_requests_end(struct ec_session *s)
 		return;
 	WRITE_ONCE(rq->ended, true);
 	s->requests = NULL;
-	ec_for_each_config(c, &s->wanted)
+	ec_for_each_config(c, &s->wanted) {
 		ec_requests_attach(s, c);
+		/* callers of its mailbox see that they are cancelled */
+		if (c->slave)
+			wake_up_all(&c->slave->stop.wake);
+	}
 	put(rq);
 }
 

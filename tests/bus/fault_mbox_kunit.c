@@ -221,7 +221,7 @@ static void read_names(struct bus *b, u32 kind)
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, kind, 0);
 	ec_slave_kick(s);
 	msleep(5);
-	KUNIT_ASSERT_TRUE(b->test, READ_ONCE(s->mbox.sdo_lock.count) == 0);
+	KUNIT_ASSERT_TRUE(b->test, ec_mbox_is_claimed(&s->mbox, BIT(EC_MBOX_COE)));
 }
 
 /* As the monitor attaches it, which waits for nothing: not for names that never come either. */

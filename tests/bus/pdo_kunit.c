@@ -191,10 +191,10 @@ static void pdo_names_after_long_transfer(struct kunit *test)
 	KUNIT_ASSERT_GT(test, s->names.n, 0u);
 	ec_names_free(s);
 	s->names_done = false;
-	down(&s->mbox.sdo_lock);
+	KUNIT_ASSERT_EQ(test, ec_mbox_claim(&s->mbox, BIT(EC_MBOX_COE), 0), 0);
 	ec_slave_kick(s);
 	msleep(2000);
-	up(&s->mbox.sdo_lock);
+	ec_mbox_unclaim(&s->mbox, BIT(EC_MBOX_COE));
 	KUNIT_ASSERT_EQ(test, s->names.n, 0u);
 	ec_slave_kick(s);
 	bus_idle(b);

@@ -275,22 +275,13 @@ static void req_killed(struct kunit *test)
 	req_begin(c, a, 0x1018, 4, false, 0);
 }
 
-static bool taken(struct semaphore *lock)
-{
-	if (down_trylock(lock))
-		return true;
-	up(lock);
-	return false;
-}
-
 /* How long until the mailbox of slave 0 is free, ms; at most 5000. */
 static u64 until_free(struct bus *b)
 {
 	u64 t0 = ktime_get_ns();
 	u32 i;
 
-	for (i = 0; i < 50000 && (taken(&bus_slave(b, 0)->mbox.sdo_lock) ||
-				  taken(&bus_slave(b, 0)->mbox.lock)); i++)
+	for (i = 0; i < 50000 && ec_mbox_is_claimed(&bus_slave(b, 0)->mbox, EC_MBOX_ALL); i++)
 		usleep_range(100, 101);
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 }
@@ -307,7 +298,7 @@ static void req_cancelled(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	req_begin(c, a, 0x1018, 4, false, 0);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_TRUE(test, taken(&bus_slave(b, 0)->mbox.lock));
+	KUNIT_ASSERT_TRUE(test, ec_mbox_in_use(&bus_slave(b, 0)->mbox));
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 
@@ -323,7 +314,7 @@ static void req_cancelled(struct kunit *test)
 	memcpy(req_data(c, a), value, 1000);
 	req_begin(c, a, SCRATCH, 0, true, 1000);
 	cyc_run(c, 250);
-	KUNIT_ASSERT_TRUE(test, taken(&bus_slave(b, 0)->mbox.sdo_lock));
+	KUNIT_ASSERT_TRUE(test, ec_mbox_is_claimed(&bus_slave(b, 0)->mbox, BIT(EC_MBOX_COE)));
 	ec_session_end(&b->m->sessions, &b->app);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 }

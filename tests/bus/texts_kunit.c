@@ -152,9 +152,17 @@ static void texts_register(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -ETIMEDOUT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "no reply to register access 0x0130 at slave 1; check the cables");
+	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+}
+
+/* The slave is there and its mailbox is silent. */
+static void texts_silent_mailbox(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, BAD, 0, 1, 0);
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, "SDO 0x1018:01 of slave 1: no reply in time");
-	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
 }
 
 /* Without a link, and without a device: not the slave is to blame, and no cable behind it. */
@@ -315,6 +323,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(texts_startup_mailbox_error),
 	KUNIT_CASE(texts_dead),
 	KUNIT_CASE(texts_register),
+	KUNIT_CASE(texts_silent_mailbox),
 	KUNIT_CASE(texts_link),
 	KUNIT_CASE(texts_startup),
 	KUNIT_CASE(texts_startup_unknown_abort),

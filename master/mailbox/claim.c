@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Who may use a protocol of a slave's mailbox: one transfer of each at a time, several protocols
+ * side by side. The way through INIT claims all, so that it aborts no transfer.
+ */
+#include <linux/hrtimer.h>
+#include <linux/ktime.h>
+#include <linux/sched/signal.h>
+#include "mailbox_int.h"
+
+/* a caller that waits for protocols */
+struct claim {
+	struct list_head list;
+	u16 types;
+	u8 got;
+	struct task_struct *task;
+};
+
+/**
+ * ec_mbox_over() - why a wait has to end now
+ * @mb: mailbox of the slave
+ * @u: when it has to, anyway
+ *
+ * Context: Process.
+ * Return: 0: go on; -ECANCELED, -EINTR, -ETIMEDOUT.
+ */
+int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u)
+{
+	if (ec_stop_all(mb->stop) || ec_stop_interrupted(mb->stop) ||
+	    (u->cancel && READ_ONCE(*u->cancel)))
+		return -ECANCELED;
+	if (signal_pending(current))
+		return -EINTR;
+	return ktime_get_ns() > u->ns ? -ETIMEDOUT : 0;
+}
+
+/**
+ * ec_mbox_sleep() - sleep until something may have changed
+ * @mb: mailbox of the slave
+ * @state: has the value @end when the wait is over; wake_up_process() follows
+ * @end: value
+ * @u: when the wait has to end, anyway
+ *
+ * What ends the waits of callers wakes as well; a flag that another thread sets is seen after
+ * %EC_MBOX_SLICE_MS at most.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
+		   const struct ec_mbox_until *u)
+{
+	u64 slice = ktime_get_ns() + EC_MBOX_SLICE_MS * NSEC_PER_MSEC;
+	/* one more nanosecond: the time is over then */
+	ktime_t at = ns_to_ktime(min(slice, u->ns + 1));
+	wait_queue_head_t *wq = &mb->stop->wake;
+	DEFINE_WAIT(wait);
+
+	prepare_to_wait(wq, &wait, TASK_INTERRUPTIBLE);
+	/* pairs with the release of what it stands for */
+	if (smp_load_acquire(state) != end && !ec_mbox_over(mb, u))
+		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
+	finish_wait(wq, &wait);
+}
+
+/* Give free protocols to those who wait, in their order. */
+static void admit(struct ec_mbox *mb)
+{
+	struct claim *c, *next;
+	u16 taken = mb->claimed;
+
+	lockdep_assert_held(&mb->lock);
+	list_for_each_entry_safe(c, next, &mb->claims, list) {
+		if (!(taken & c->types)) {
+			list_del_init(&c->list);
+			mb->claimed |= c->types;
+			smp_store_release(&c->got, true);	/* see ec_mbox_sleep() */
+			wake_up_process(c->task);
+		}
+		/* later ones do not overtake */
+		taken |= c->types;
+	}
+}
+
+/**
+ * ec_mbox_claim() - wait for one's turn
+ * @mb: mailbox of the slave
+ * @types: BIT(enum ec_mbox_type), or EC_MBOX_ALL
+ * @ms: the wait ends after that time; 0: as long as it takes
+ *
+ * The slave's worker comes before other callers that wait.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; -EINTR; -ECANCELED when the caller has to leave; -ETIMEDOUT.
+ */
+int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms)
+{
+	struct ec_mbox_until until = {
+		.ns = ms ? ktime_get_ns() + (u64)ms * NSEC_PER_MSEC : U64_MAX - 1,
+	};
+	struct claim c = { .types = types, .task = current };
+	unsigned long flags;
+	int ret = 0;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (READ_ONCE(mb->stop->worker) == current)
+		list_add(&c.list, &mb->claims);
+	else
+		list_add_tail(&c.list, &mb->claims);
+	admit(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	/* the lock below orders all else */
+	while (!READ_ONCE(c.got)) {
+		ret = ec_mbox_over(mb, &until);
+		if (ret)
+			break;
+		ec_mbox_sleep(mb, &c.got, true, &until);
+	}
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (c.got) {
+		ret = 0;
+	} else {
+		list_del(&c.list);
+		admit(mb);
+	}
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	return ret;
+}
+
+/**
+ * ec_mbox_unclaim() - let others use protocols
+ * @mb: mailbox of the slave
+ * @types: of ec_mbox_claim()
+ *
+ * Context: Process.
+ */
+void ec_mbox_unclaim(struct ec_mbox *mb, u16 types)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	mb->claimed &= ~types;
+	admit(mb);
+	ec_mbox_go(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+}
+
+/**
+ * ec_mbox_is_claimed() - is a protocol in use?
+ * @mb: mailbox of the slave
+ * @types: BIT(enum ec_mbox_type)
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether one of them is.
+ */
+bool ec_mbox_is_claimed(struct ec_mbox *mb, u16 types)
+{
+	return READ_ONCE(mb->claimed) & types;
+}
