@@ -8,6 +8,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 passed=0 failed=0
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
@@ -31,9 +32,7 @@ run() {	# run KERNEL PROGRAMS FILE...
 
 # All lines at a time, so that no CPU waits for the last guest of a line; they share the
 # places that guests have.
-mkdir "$logs/places"
-for ((n = 1; n <= $(nproc); n++)); do touch "$logs/places/$n"; done
-export EC_PLACES=$logs/places
+places "$logs/places" 1024
 n=0
 while read -ra line; do
 	n=$((n + 1))

@@ -14,6 +14,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt}
 build=$PWD/build/system-$kernel
 cycles=10000 all=1
@@ -35,15 +36,19 @@ esac
 passed=0 failed=0 lenient=
 declare -A v
 
-tests/vm/kernels.sh fetch "$kernel" >&2 &&
-make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
-make -s -C lib O="$build/lib" all >&2 &&
-make -s -C tool O="$build/tool" >&2 &&
-make -s -C tool/sim O="$build/tool" >&2 &&
-make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 &&
-mkdir -p "$build/split" && cp -u tests/bench/cycle/split/* "$build/split" &&
-make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= modules >&2 ||
-	exit 1
+build() {
+	local kdir
+
+	kdir=$(tests/vm/kernels.sh kdir "$kernel")
+	make -s -j2 modules KDIR="$kdir" MODDIR="$build/modules" &&
+	make -s -C lib O="$build/lib" all &&
+	make -s -C tool O="$build/tool" &&
+	make -s -C tool/sim O="$build/tool" &&
+	make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" &&
+	mkdir -p "$build/split" && cp -u tests/bench/cycle/split/* "$build/split" &&
+	make -s -C "$kdir" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= modules
+}
+tests/vm/kernels.sh fetch "$kernel" >&2 && locked "$kernel" build >&2 || exit 1
 
 # A string copy counts once per byte with ERMS and once per word without. The
 # incumbent's figures grow by too little from 1 to 100 drives for the former.

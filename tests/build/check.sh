@@ -7,6 +7,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt}
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-build.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
@@ -32,7 +33,7 @@ KDIR=$(tests/vm/kernels.sh kdir "$kernel")
 release=$(tests/vm/kernels.sh release "$kernel")
 modules=$PWD/build/system-$kernel/modules
 prefix=/opt/ethercat
-top() { make -s KDIR="$KDIR" MODDIR="$modules" DESTDIR="$root" PREFIX=$prefix "$@"; }
+top() { locked "$kernel" make -s KDIR="$KDIR" MODDIR="$modules" DESTDIR="$root" PREFIX=$prefix "$@"; }
 
 # --- kernel ----------------------------------------------------------------------
 mkdir "$tmp/src"

@@ -15,6 +15,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 export CYCLES=${CYCLES:-10000} PERIOD_US=${PERIOD_US:-1000}
 kernel=${EC_KERNEL:-6.1-rt}
 host=0
@@ -80,7 +81,7 @@ build() {
 	make -s -C tool O="$EC_BUILD/tool" &&
 	make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all
 }
-build >"$out/build.log" 2>&1 || {
+locked "$kernel" build >"$out/build.log" 2>&1 || {
 	grep -E 'error|Error' "$out/build.log" | head -n 20 >&2
 	die "the build" "see $out/build.log"
 }

@@ -5,8 +5,9 @@
 # of this folder in it, one boot each.
 #
 # The guest's time is exact (--icount), so that a busy host fails no test and as many
-# run at a time as there are CPUs. A file with a line "# vm: OPTIONS" names its own
-# options of tests/vm/run.sh instead; without --icount it runs alone, after the others.
+# run at a time as there are CPUs, those with the longest time limit first. A file with a line
+# "# vm: OPTIONS" names its own options of tests/vm/run.sh instead; without --icount it runs
+# alone, after the others.
 #
 # EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set. With 6.1-kcsan each guest has
 # two CPUs that run at a time and real time, and a data race in a module fails the file; cases
@@ -18,12 +19,13 @@
 # EC_BINDS: how often native.bats binds the card, 100 if it is not set
 # EC_CYCLES: of the files in long, a million if it is not set; EC_SEED: of the times of flaps.bats
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
-# EC_PLACES: folder with a file for each guest that may run at a time (one for each CPU)
+# EC_PLACES: of tests/vm/places.sh
 #
 # usage: run.sh [FILE.bats...]
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt}
 modules=$PWD/build/system-$kernel/modules
 export EC_BUILD=$PWD/build/system-$kernel${EC_PROGRAMS:+-$EC_PROGRAMS}
@@ -55,13 +57,6 @@ case $kernel in
 *-kcsan) warn="W=1e KCFLAGS=-include$PWD/tests/kcsan/mem.h" ;;
 esac
 read -ra cross < <(tests/vm/kernels.sh cross "$kernel")
-# shellcheck disable=SC2086
-make -s -j2 mini ${cross[@]+"${cross[@]}"} $warn KDIR="$(tests/vm/kernels.sh kdir "$kernel")" \
-	MODDIR="$modules" MINIDIR="${modules%/*}/mini" >&2 || exit 1
-suspend=${modules%/*}/mini/suspend
-mkdir -p "$suspend" && cp -u tests/system/suspend/* "$suspend" &&
-make -s -C "$(tests/vm/kernels.sh kdir "$kernel")" ${cross[@]+"${cross[@]}"} M="$suspend" \
-	CONFIG_DEBUG_INFO_BTF_MODULES= modules >&2 || exit 1
 
 # compiler NAME: for all programs
 compiler() { export CC=$1gcc CXX=$1g++ AR=$1ar; }
@@ -75,15 +70,31 @@ i386)	compiler i686-linux-gnu-
 *)	echo "run.sh: EC_PROGRAMS=$EC_PROGRAMS: only i386" >&2
 	exit 1 ;;
 esac
-env -u LDFLAGS make -s -C lib O="$EC_BUILD/lib" all >&2 &&
-make -s -C tool O="$EC_BUILD/tool" >&2 &&
-make -s -C tool/sim O="$EC_BUILD/tool" >&2 &&
-make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" >&2 &&
-make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all >&2 &&
-make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all >&2 || exit 1
+
+# modules and programs
+build() {
+	local kdir suspend=${modules%/*}/mini/suspend
+
+	kdir=$(tests/vm/kernels.sh kdir "$kernel")
+	# shellcheck disable=SC2086
+	make -s -j2 mini ${cross[@]+"${cross[@]}"} $warn KDIR="$kdir" MODDIR="$modules" \
+		MINIDIR="${modules%/*}/mini" &&
+	mkdir -p "$suspend" && cp -u tests/system/suspend/* "$suspend" &&
+	make -s -C "$kdir" ${cross[@]+"${cross[@]}"} M="$suspend" \
+		CONFIG_DEBUG_INFO_BTF_MODULES= modules &&
+	env -u LDFLAGS make -s -C lib O="$EC_BUILD/lib" all &&
+	make -s -C tool O="$EC_BUILD/tool" &&
+	make -s -C tool/sim O="$EC_BUILD/tool" &&
+	make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" &&
+	make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all &&
+	make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all
+}
 
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
+places "$logs/places" "$mem"
+# a build beside guests takes a place as one of them
+one locked "$kernel" build >&2 || exit 1
 
 # what tests start, with the libraries of all that
 needed() {
@@ -165,38 +176,6 @@ report() {
 	echo "# $f: $(tail -n 1 "$out.time")"
 }
 
-# Places for guests are lock files, so that several of this script share them.
-if [ -z "${EC_PLACES:-}" ]; then
-	EC_PLACES=$logs/places
-	mkdir "$EC_PLACES"
-	# a guest, and QEMU
-	awk -v cpus="$(nproc)" -v kb=$((mem * 1000 + 500000)) '/^MemAvailable:/ { n = int($2 / kb) }
-		END { print n < 1 ? 1 : n < cpus ? n : cpus }' /proc/meminfo |
-		xargs seq | sed "s,^,$EC_PLACES/," | xargs touch
-fi
-places=("$EC_PLACES"/*)
-
-# one COMMAND...: in the first place that is free
-one() {
-	local p
-
-	while :; do
-		for p in "${places[@]}"; do
-			exec 9>"$p"
-			! flock -n 9 || { "$@"; exec 9>&-; return; }
-		done
-		sleep 0.3
-	done
-}
-
-# all COMMAND...: alone
-all() (
-	local p
-
-	for p in "${places[@]}"; do exec {fd}>"$p"; flock "$fd"; done
-	"$@"
-)
-
 # planted FOLDER MODULE ARGUMENT PATTERN TEXT: the module of tests/FOLDER, loaded with ARGUMENT,
 # fails a guest with a report that matches PATTERN; with an empty one the guest has no report
 planted() {
@@ -258,15 +237,30 @@ for f in ${*:-tests/system/*.bats}; do
 	fi
 	if [[ $(vm_options "$f") == *--icount* ]]; then side+=("$f"); else alone+=("$f"); fi
 done
-for f in ${side[@]+"${side[@]}"}; do
+
+# the longest time limit first: a long file that is the last keeps only one CPU busy
+by_limit() {
+	local f limit
+
+	for f; do
+		limit=$(vm_options "$f" | grep -oP -- '--timeout \K[0-9]+' | tail -n 1)
+		echo "${limit:-600} $f"
+	done | sort -s -k 1,1nr | cut -d' ' -f2-
+}
+
+for f in $(by_limit ${side[@]+"${side[@]}"}); do
 	while [ "$(jobs -rp | wc -l)" -ge ${#places[@]} ]; do wait -n; done
 	one run "$f" &
 done
 wait
 for f in ${side[@]+"${side[@]}"}; do report "$f"; done
-for f in ${alone[@]+"${alone[@]}"}; do
-	all run "$f"
-	report "$f"
-done
+# the places once for all of them: none of another script comes in between
+run_alone() {
+	local f
+
+	for f; do run "$f"; done
+}
+[ ${#alone[@]} = 0 ] || all run_alone "${alone[@]}"
+for f in ${alone[@]+"${alone[@]}"}; do report "$f"; done
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

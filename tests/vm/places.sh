@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# Places for guests that run at a time, one for each CPU. They are lock files in the folder
+# EC_PLACES, so several scripts share them. To be sourced in the top folder.
+
+# places FOLDER MB: makes them there, fewer where not all have MB of memory, unless EC_PLACES
+# names some already
+places() {
+	if [ -z "${EC_PLACES:-}" ]; then
+		export EC_PLACES=$1
+		mkdir "$EC_PLACES"
+		# a guest, and QEMU
+		awk -v cpus="$(nproc)" -v kb=$(($2 * 1000 + 500000)) '
+			/^MemAvailable:/ { n = int($2 / kb) }
+			END { print n < 1 ? 1 : n < cpus ? n : cpus }' /proc/meminfo |
+			xargs seq | sed "s,^,$EC_PLACES/," | xargs touch
+	fi
+	places=("$EC_PLACES"/*)
+}
+
+# one COMMAND...: in the first place that is free
+one() {
+	local p rc
+
+	while :; do
+		for p in "${places[@]}"; do
+			exec 9>"$p"
+			flock -n 9 || continue
+			"$@"
+			rc=$?
+			exec 9>&-
+			return $rc
+		done
+		sleep 0.3
+	done
+}
+
+# all COMMAND...: alone
+all() (
+	local p
+
+	for p in "${places[@]}"; do exec {fd}>"$p"; flock "$fd"; done
+	"$@"
+)
+
+# locked KERNEL COMMAND...: not while another script builds for this kernel
+locked() {
+	local lock=$PWD/build/.lock-$1
+
+	shift
+	mkdir -p build
+	{
+		flock 8
+		"$@" 8>&-
+	} 8>"$lock"
+}
