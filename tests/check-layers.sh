@@ -9,11 +9,13 @@
 
 set -eu
 cd "$(dirname "$0")/.."
+. tests/vm/places.sh
 [ $# = 0 ] || exec python3 tests/check-layers.py "$1"
 # where tests/system/run.sh looks for them
 modules=$PWD/build/system-6.1-rt/modules
 tests/vm/kernels.sh fetch 6.1-rt >&2
-make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir 6.1-rt)" MODDIR="$modules" W=1 >&2
+# without W=1, as they do: else each would build what the other has built
+locked 6.1-rt make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir 6.1-rt)" MODDIR="$modules" >&2
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT
 rc=0

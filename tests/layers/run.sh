@@ -10,6 +10,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 # from the bottom
 layers="wire base link mailbox bus clock config cycle session boundary"
 kernel=6.1-rt
@@ -19,7 +20,7 @@ passed=0 failed=0
 
 tests/vm/kernels.sh fetch $kernel >&2 || exit 1
 kdir=$(tests/vm/kernels.sh kdir $kernel)
-make -s -j2 modules KDIR="$kdir" MODDIR="$modules" W=1 >&2 || exit 1
+locked $kernel make -s -j2 modules KDIR="$kdir" MODDIR="$modules" >&2 || exit 1
 
 # into FOLDER SOURCE...: the objects of these files
 into() {
@@ -93,7 +94,7 @@ load='for l; do
 	insmod "$OUT/ec_alone_$l.ko" 2>&1 && rmmod "ec_alone_$l" 2>&1 || echo "alone: # $l"
 	dmesg -c | grep -o "alone: .*"
 done'
-OUT=$out tests/vm/run.sh --kernel $kernel --icount --timeout 60 --append oops=panic -- \
+OUT=$out tests/vm/run.sh --kernel $kernel --icount --timeout 600 --append oops=panic -- \
 	env OUT="$out" sh -c "dmesg -c >/dev/null; $load" sh \
 	${good[@]+"${good[@]}"} >"$out/log" 2>&1
 rc=$?
