@@ -94,7 +94,7 @@ level_system() { tests/system/run.sh; }
 level_guests() { tests/arch/guests.sh; }
 level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
-level_bench() { tests/bench/run.sh --gates cycle sim; }
+level_bench() { tests/bench/run.sh --gates cycle sim mailbox; }
 
 # run LEVEL: keeps its output, exit status and seconds
 run() {

@@ -11,6 +11,7 @@
 
 #define SLAVES_MAX	2000
 #define DOMAINS_MAX	64
+#define UPLOADS_MAX	1000
 
 /* what one cycle costs, in parts */
 enum part {
@@ -56,6 +57,7 @@ struct bench {
 	bool syscalls;	/* count them instead of instructions */
 	bool trace;	/* switch ftrace on while measuring */
 	bool floor;	/* measure nothing but cycles in which nothing is done */
+	unsigned int uploads;	/* slaves of which others upload an object meanwhile */
 	bool violate;	/* do what a cycle must not do, now and then */
 	enum mode mode;
 
@@ -77,6 +79,8 @@ struct bench {
 	unsigned int wc_errors;
 	unsigned int call_errors;
 	unsigned int requests_done;
+	unsigned int uploads_done;	/* while measured */
+	unsigned int upload_errors;
 	unsigned int overruns;
 	unsigned long long busy_ns;	/* all CPUs, while measured */
 	struct work {
@@ -113,6 +117,11 @@ int work_baseline(unsigned int ms);
 
 /* floor.c */
 int floor_measure(unsigned int cycles, unsigned int period_us);
+
+/* uploads.c */
+int uploads_start(struct bench *b);
+bool uploads_running(void);
+void uploads_join(struct bench *b);
 
 /* syscalls.c */
 int syscalls_run(int (*child)(void *), void *arg);

@@ -280,7 +280,12 @@ static int run(struct bench *b)
 		t = ticks() - t;
 		b->tick = t < b->tick ? (unsigned int)t : b->tick;
 	}
+	if (uploads_start(b))
+		return -1;
 	measure(b, &at);
+	while (uploads_running())
+		one_cycle(b, &at, cost);
+	uploads_join(b);
 	if (!syscalls && !b->trace)
 		lean_cycles(b, &at);
 	return 0;
@@ -302,6 +307,8 @@ static void report(struct bench *b)
 	printf("slaves %u\noperational %u\nimage_bytes %llu\ncycles %u\n",
 	       b->slaves, b->operational, (unsigned long long)b->image_bytes,
 	       b->cycles);
+	if (b->uploads)
+		printf("uploads_done %u\nupload_errors %u\n", b->uploads_done, b->upload_errors);
 	if (b->extras)
 		printf("requests_done %u\n", b->requests_done);
 	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
@@ -374,6 +381,7 @@ static void usage(FILE *out)
 		"                 waits for 1000\n"
 		"  --domains N    spread the slaves over N domains, default 1\n"
 		"  --extras       clocks, states, emergencies and requests, too\n"
+		"  --uploads N    meanwhile others upload an object of each of N slaves, again and again\n"
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
 		"                 wait (a system call), spin, timer (one of its own)\n"
 		"  --syscalls     count system calls instead of time\n"
@@ -415,6 +423,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "wait-s", required_argument, NULL, 'w' },
 		{ "ready", required_argument, NULL, 'r' },
 		{ "domains", required_argument, NULL, 'd' },
+		{ "uploads", required_argument, NULL, 'u' },
 		{ "extras", no_argument, NULL, 'e' },
 		{ "syscalls", no_argument, NULL, 's' },
 		{ "kernel", required_argument, NULL, 'k' },
@@ -432,10 +441,11 @@ static void parse(struct bench *b, int argc, char **argv)
 		value = c == 'm' ? &b->index : c == 'c' ? &b->cycles :
 			c == 'p' ? &b->period_us : c == 'w' ? &b->wait_s :
 			c == 'd' ? &b->n_domains : c == 'n' ? &b->work_cycles :
-			c == 'r' ? &b->ready : NULL;
+			c == 'r' ? &b->ready : c == 'u' ? &b->uploads : NULL;
 		if (value)
 			*value = number(options[at].name, optarg,
-					c == 'd' ? DOMAINS_MAX : 10000000);
+					c == 'd' ? DOMAINS_MAX :
+					c == 'u' ? UPLOADS_MAX : 10000000);
 		else if (c == 'e')
 			b->extras = true;
 		else if (c == 's')
