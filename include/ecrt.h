@@ -111,6 +111,8 @@
 #define EC_HAVE_DOMAIN_OPTIONS
 /* ecrt_domain_age(), ecrt_domain_set_max_age(): age of process data */
 #define EC_HAVE_DOMAIN_AGE
+/* ecrt_master_foe_read(), ecrt_master_foe_write(): files of slaves */
+#define EC_HAVE_FOE
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -1254,6 +1256,64 @@ EC_PUBLIC_API void ecrt_master_deactivate_slaves(ec_master_t *master);
 EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t *target,
 		size_t target_size, size_t *result_size, uint32_t *abort_code);
+#endif
+
+#ifdef EC_HAVE_FOE
+/* bytes of the name of a file on a slave, at most */
+#define EC_FOE_FILE_NAME_SIZE	64
+
+/**
+ * ecrt_master_foe_read() - read a file of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring; aliases have no effect
+ * @file_name: name on the slave, 1 to 64 printable characters
+ * @password: 0: none
+ * @target: out: content; on failure it may have a part of the file
+ * @target_size: buffer size, bytes
+ * @result_size: out: bytes of the file; on failure untouched in userspace, 0 in
+ *	the kernel
+ * @error_code: out, may be NULL: FoE error code (ETG.1000.6 5.8), 0 if the slave gave none
+ * @timeout: ms, for each message, at most 60000; 0: 10 s
+ *
+ * Extension (%EC_HAVE_FOE). File access over EtherCAT (ETG.1000.6 5.8). Other protocols use
+ * the mailbox between the messages. A slave in BOOT is accessed by its bootstrap mailbox. A
+ * transfer that ends early is also ended at the slave.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-EIO refused by the slave, see @error_code; %-EINVAL no such slave or bad
+ * arguments; %-ENOBUFS larger than @target_size; %-EBUSY another file of this slave is being
+ * transferred; %-EPROTONOSUPPORT slave without FoE; %-ETIMEDOUT no reply, or 60 s busy without
+ * progress; %-EAGAIN slave in INIT; %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too
+ * small; %-ECANCELED the slave was disconnected; %-EINTR; %-ENOMEM; a mailbox error reply as in
+ * ecrt_master_sdo_download().
+ */
+EC_PUBLIC_API int ecrt_master_foe_read(ec_master_t *master,
+		uint16_t slave_position, const char *file_name,
+		uint32_t password, uint8_t *target, size_t target_size,
+		size_t *result_size, uint32_t *error_code, uint32_t timeout);
+
+/**
+ * ecrt_master_foe_write() - write a file to a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @file_name: as in ecrt_master_foe_read()
+ * @password: 0: none
+ * @data: content; may be NULL when @data_size is 0
+ * @data_size: bytes
+ * @error_code: as in ecrt_master_foe_read()
+ * @timeout: as in ecrt_master_foe_read(); the first message may erase a flash memory
+ *
+ * Extension (%EC_HAVE_FOE). What a slave has of a file whose transfer failed depends on the
+ * slave.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ecrt_master_foe_read(); %-ENOTRECOVERABLE a frame was lost and the slave does not
+ * repeat its messages, so it is not known how much it has written.
+ */
+EC_PUBLIC_API int ecrt_master_foe_write(ec_master_t *master,
+		uint16_t slave_position, const char *file_name,
+		uint32_t password, const uint8_t *data, size_t data_size,
+		uint32_t *error_code, uint32_t timeout);
 #endif
 
 #ifdef EC_HAVE_REF_CLOCK_TIME_64

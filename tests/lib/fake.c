@@ -201,6 +201,8 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 			((struct ec_ioc_sdo *)arg)->abort_code = 0x06020000;
 		if (cmd == EC_IOC_SOE_READ || cmd == EC_IOC_SOE_WRITE)
 			((struct ec_ioc_soe *)arg)->error_code = 0x1001;
+		if (cmd == EC_IOC_FOE_READ || cmd == EC_IOC_FOE_WRITE)
+			((struct ec_ioc_foe *)arg)->error_code = 0x8001;
 		errno = fake.err;
 		return -1;
 	}
@@ -259,6 +261,10 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SOE_READ:
 		memcpy((void *)(uintptr_t)((struct ec_ioc_soe *)arg)->data, "\x34\x12", 2);
 		((struct ec_ioc_soe *)arg)->size = 2;
+		break;
+	case EC_IOC_FOE_READ:
+		memcpy((void *)(uintptr_t)((struct ec_ioc_foe *)arg)->data, "file", 4);
+		((struct ec_ioc_foe *)arg)->size = 4;
 		break;
 	case EC_IOC_ACTIVATE:
 		preset(arg);

@@ -497,6 +497,7 @@ int main(void)
 	failed_activation();
 	requests();
 	idns_and_vendor_messages();
+	files();
 	failures += kernel_cycle();
 	return failures != 0;
 }

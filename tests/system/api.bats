@@ -6,7 +6,7 @@ load helpers
 setup_file() {
 	{
 		printf '%s\n' "segment seed=6" "slave coupler EK1100" "slave out EL2008 alias=1001" \
-			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm soe=2 voe=0x4321" \
+			"slave in EL1008" "slave motor drive in=22 out=22 mapping=rewritable serial=77 drift=-100ppm soe=2 voe=0x4321 foe=64" \
 			"slave servo EL7201" "slave switch EL6614" "connect out.1 -> in.1" "connect out.2 -> in.2"
 		# an emergency every 0.2 s for 100 s, from its load on
 		for i in $(seq 500); do
@@ -49,6 +49,7 @@ group() {
 	wait_for 120 all_slaves_are PREOP 6
 	group request
 }
+@test "files of slaves" { group foe; }
 @test "IDNs, VoE messages, whole objects" {
 	group soe
 	# what it was told at startup, and by the tool

@@ -16,6 +16,7 @@ static const struct api_group groups[] = {
 	{ "null", null_cases }, { "access", access_cases },
 	{ "layout", layout_cases },
 	{ "extension", extension_cases },
+	{ "foe", foe_cases },
 	{ "lcec", lcec_cases }, { "ros2", ros2_cases }, { "beside", beside_cases },
 	{ "soe", soe_cases },
 	{ "syscalls", syscall_cases },

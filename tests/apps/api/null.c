@@ -58,6 +58,8 @@ static void master(void)
 	IS(ecrt_master_setup_domain_memory(NULL), -EINVAL);
 	ecrt_master_deactivate_slaves(NULL);
 	IS(ecrt_master_sdo_upload_complete(NULL, 0, 1, data, 4, &size, &time), -EINVAL);
+	IS(ecrt_master_foe_read(NULL, 0, "a", 0, data, 4, &size, &time, 0), -EINVAL);
+	IS(ecrt_master_foe_write(NULL, 0, "a", 0, data, 4, &time, 0), -EINVAL);
 	ecrt_master_64bit_reference_clock_time_queue(NULL);
 	IS(ecrt_master_64bit_reference_clock_time(NULL, &time64), -EINVAL);
 	IS(ecrt_master_reason(NULL, (char *)data, 4), -EINVAL);
