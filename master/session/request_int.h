@@ -3,10 +3,17 @@
 #ifndef EC_REQUEST_INT_H
 #define EC_REQUEST_INT_H
 
+#include <linux/kref.h>
 #include <linux/list.h>
+#include <linux/mutex.h>
 #include <linux/types.h>
+#include <linux/workqueue.h>
 #include "../include/uapi/ethercat.h"
+#include "../mailbox/emerg.h"
 
+struct ec_session;
+struct ec_sessions;
+struct ec_shared;
 struct ec_slave;
 
 enum ec_request_phase {
@@ -71,6 +78,57 @@ struct ec_request {
 	struct ec_request_result res;
 };
 
+/**
+ * struct ec_lane - requests done one after the other
+ * @work: does them
+ * @rq: all lanes
+ * @config: number of the configuration they belong to
+ * @requests: of this lane
+ * @emerg: ring of emergencies of the configuration
+ * @voe: the configuration has VoE handlers
+ *
+ * First one lane by configuration, with @emerg and @voe. Then one for each VoE
+ * handler, so that one that waits for a message does not hold up the others.
+ */
+struct ec_lane {
+	struct work_struct work;
+	struct ec_requests *rq;
+	u32 config;
+	struct list_head requests;
+	struct ec_emerg emerg;
+	bool voe;
+};
+
+/**
+ * struct ec_requests - all requests of an activation
+ * @kref: the session and each work that is queued or runs
+ * @sessions: of the master
+ * @shared: mapped memory, with a reference
+ * @lock: protects the requests; inside session lock
+ * @starts: the area's, when a cycle of the kernel last looked
+ * @kick: looks once
+ * @watch: looks again and again while anything waits
+ * @reqs: requests
+ * @bufs: private copies of all data, allocated by the application that activates, as its memory
+ * @lanes: see struct ec_lane
+ * @n_lanes: entries in @lanes
+ * @ended: the session has; transfers end, too
+ */
+struct ec_requests {
+	struct kref kref;
+	struct ec_sessions *sessions;
+	struct ec_shared *shared;
+	struct mutex lock;
+	u32 starts;
+	struct work_struct kick;
+	struct work_struct watch;
+	struct ec_request *reqs;
+	u8 *bufs;
+	struct ec_lane *lanes;
+	unsigned int n_lanes;
+	bool ended;
+};
+
 static inline bool ec_request_reads(const struct ec_request *r)
 {
 	return r->op != EC_REQUEST_OP_WRITE;
@@ -83,5 +141,9 @@ static inline bool ec_request_writes(const struct ec_request *r)
 
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
 void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel);
+
+/* request_layout.c */
+unsigned int ec_requests_lanes(const struct ec_session *s);
+void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq);
 
 #endif

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The memory of requests: what an application maps, and where each request has its part. */
+#include <linux/slab.h>
+#include "request.h"
+#include "request_int.h"
+#include "session.h"
+#include "../bus/slave.h"
+
+/**
+ * ec_requests_add() - one more request
+ * @s: session, not active
+ * @config: configuration in it
+ * @kind: EC_REQUEST_*
+ * @size: room for data, bytes
+ * @index: result: its number
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: 0, -ENOSPC, -ENOMEM.
+ */
+int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index)
+{
+	size_t bytes = s->request_bytes + ALIGN(size, 8);
+
+	lockdep_assert_held(s->wanted.lock);
+	if (s->n_specs >= EC_MAX_REQUESTS || bytes > EC_MAX_REQUEST_BYTES)
+		return -ENOSPC;
+	if (!s->specs)
+		s->specs = kvcalloc(EC_MAX_REQUESTS, sizeof(*s->specs), GFP_KERNEL_ACCOUNT);
+	if (!s->specs)
+		return -ENOMEM;
+	*index = s->n_specs;
+	s->specs[s->n_specs++] = (struct ec_request_spec){
+		.config = config, .kind = kind, .size = size,
+	};
+	s->request_bytes = bytes;
+	return 0;
+}
+
+static size_t rings_offset(const struct ec_session *s)
+{
+	return sizeof(struct ec_request_area) + s->n_specs * sizeof(struct ec_request_record);
+}
+
+static size_t data_offset(const struct ec_session *s)
+{
+	return ALIGN(rings_offset(s) + s->wanted.n_configs * sizeof(struct ec_emerg_ring), 8);
+}
+
+/**
+ * ec_requests_bytes() - size of the memory to map
+ * @s: session
+ *
+ * Context: Process, session lock held.
+ * Return: bytes; 0 without configuration.
+ */
+size_t ec_requests_bytes(const struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	return s->wanted.n_configs ? data_offset(s) + s->request_bytes : 0;
+}
+
+static void init(struct ec_requests *rq, struct ec_lane *lane, u32 config)
+{
+	lane->rq = rq;
+	lane->config = config;
+	INIT_LIST_HEAD(&lane->requests);
+}
+
+static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_emerg_ring *ring = (void *)(base + rings_offset(s));
+	size_t at = data_offset(s);
+	unsigned int i;
+
+	for (i = 0; i < s->wanted.n_configs; i++, ring++) {
+		init(rq, &rq->lanes[i], i);
+		rq->lanes[i].emerg = (struct ec_emerg){
+			.ring = ring, .data = base + at, .count = s->wanted.configs[i]->emergencies,
+		};
+		at += rq->lanes[i].emerg.count * EC_EMERG_BYTES;
+	}
+	return at;
+}
+
+/**
+ * ec_requests_describe() - write the layout of the mapped memory for the application
+ * @s: session with requests
+ *
+ * An application that takes over gets it anew: the previous one could write there.
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_requests_describe(const struct ec_session *s)
+{
+	struct ec_requests *rq = s->requests;
+	u8 *base = rq->shared->requests;
+	struct ec_request_area *area = (void *)base;
+	unsigned int i;
+
+	lockdep_assert_held(s->wanted.lock);
+	area->magic = EC_REQUEST_MAGIC;
+	area->request_count = s->n_specs;
+	area->requests = sizeof(*area);
+	area->ring_count = s->wanted.n_configs;
+	area->rings = rings_offset(s);
+	for (i = 0; i < s->wanted.n_configs; i++) {
+		struct ec_emerg *e = &rq->lanes[i].emerg;
+		struct ec_slave *slave = s->wanted.configs[i]->slave;
+
+		ec_emerg_describe(slave ? &slave->mbox : NULL, e, e->data - base);
+	}
+	mutex_lock(&rq->lock);
+	for (i = 0; i < s->n_specs; i++) {
+		const struct ec_request *r = &rq->reqs[i];
+
+		r->rec->data = r->data - base;
+		r->rec->op = r->op;
+		WRITE_ONCE(r->rec->start, r->seq);
+		WRITE_ONCE(r->rec->done, r->phase == EC_REQUEST_IDLE ? r->seq :
+								     r->seq - 1);
+	}
+	mutex_unlock(&rq->lock);
+}
+
+/**
+ * ec_requests_lay_out() - give each request its memory and its lane
+ * @s: session with @shared
+ * @rq: its requests; their works are initialized
+ *
+ * Context: Process, session lock held.
+ */
+void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq)
+{
+	u8 *base = rq->shared->requests;
+	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
+	struct ec_lane *own = &rq->lanes[s->wanted.n_configs];
+	size_t at = lay_out_rings(s, rq), first = at;
+	unsigned int i;
+
+	lockdep_assert_held(s->wanted.lock);
+	for (i = 0; i < s->n_specs; i++, rec++) {
+		const struct ec_request_spec *spec = &s->specs[i];
+		struct ec_lane *lane = &rq->lanes[spec->config];
+		struct ec_request *r = &rq->reqs[i];
+
+		if (spec->kind == EC_REQUEST_VOE) {
+			lane->voe = true;
+			lane = own++;
+			init(rq, lane, spec->config);
+		}
+		r->rec = rec;
+		r->kind = spec->kind;
+		r->cap = spec->size;
+		r->data = base + at;
+		r->buf = rq->bufs + (at - first);
+		list_add_tail(&r->list, &lane->requests);
+		at += ALIGN(spec->size, 8);
+	}
+}
+
+/**
+ * ec_requests_lanes() - how many lanes the requests need
+ * @s: session
+ *
+ * Context: Process, session lock held.
+ * Return: number.
+ */
+unsigned int ec_requests_lanes(const struct ec_session *s)
+{
+	unsigned int i, n = s->wanted.n_configs;
+
+	lockdep_assert_held(s->wanted.lock);
+	for (i = 0; i < s->n_specs; i++)
+		n += s->specs[i].kind == EC_REQUEST_VOE;
+	return n;
+}
