@@ -111,6 +111,8 @@
 #define EC_HAVE_DOMAIN_OPTIONS
 /* ecrt_domain_age(), ecrt_domain_set_max_age(): age of process data */
 #define EC_HAVE_DOMAIN_AGE
+/* ecrt_sdo_request_cancel(), ecrt_soe_request_cancel() */
+#define EC_HAVE_REQUEST_CANCEL
 /* ecrt_master_foe_read(), ecrt_master_foe_write(): files of slaves */
 #define EC_HAVE_FOE
 
@@ -2305,6 +2307,20 @@ EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
 
 /**
+ * ecrt_sdo_request_cancel() - end a request early
+ * @req: request of an active master
+ *
+ * Extension (%EC_HAVE_REQUEST_CANCEL). The next ecrt_master_send() notifies the master, which
+ * ends the wait or the transfer, also at the slave. The state stays BUSY until then, and becomes
+ * ERROR, or SUCCESS if the transfer was complete before. No effect when @req is not BUSY. It is
+ * not known whether the slave has written the value of a cancelled download.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_request_cancel(ec_sdo_request_t *req);
+
+/**
  * ecrt_soe_request_idn() - select another IDN
  * @req: request that is not BUSY
  * @drive_no: drive of the slave, 0 to 7
@@ -2382,6 +2398,17 @@ EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
+
+/**
+ * ecrt_soe_request_cancel() - end a request early
+ * @req: request of an active master
+ *
+ * Extension (%EC_HAVE_REQUEST_CANCEL). As ecrt_sdo_request_cancel().
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
 
 /**
  * ecrt_voe_handler_send_header() - set the header of the messages to send

@@ -34,8 +34,9 @@
 /*
  * One request. The application writes its fields, then changes @start and sets
  * EC_SEND_FLAG_REQUESTS in the next send; when the kernel runs the cycle, the application adds 1
- * to @starts of the area instead. The kernel writes the result, then @done. The data are at @data
- * in the area; from @start to @done only the kernel accesses them.
+ * to @starts of the area instead. To cancel a request it copies @start to @cancel and notifies the
+ * kernel in the same way. The kernel writes the result, then @done. The data are at @data in the
+ * area; from @start to @done only the kernel accesses them.
  */
 struct ec_request_record {
 	/* application */
@@ -56,7 +57,8 @@ struct ec_request_record {
 	__u32 got_vendor_id;	/* VoE: of the last received message */
 	__u16 got_type;
 	__u16 reserved;
-	__u32 reserved2[3];
+	__u32 cancel;		/* application: equal to @start: end this request */
+	__u32 reserved2[2];
 };
 
 /* Emergencies of one configuration; both counters wrap. */

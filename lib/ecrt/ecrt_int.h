@@ -110,6 +110,7 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg);
 void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size);
 ec_request_state_t ec_app_request_state(struct ec_app_request *r);
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);
+int ec_app_request_cancel(struct ec_app_request *r);
 int ec_app_requests_place(ec_master_t *m);
 void ec_app_requests_free(ec_master_t *m);
 

@@ -149,6 +149,26 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
 	return 0;
 }
 
+/**
+ * ec_app_request_cancel() - end a request; the next send notifies the master
+ * @r: request
+ *
+ * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; -EINVAL not active.
+ */
+int ec_app_request_cancel(struct ec_app_request *r)
+{
+	struct ec_request_record *rec = r->rec;
+
+	if (!rec)
+		return -EINVAL;
+	if (ec_app_request_state(r) != EC_REQUEST_BUSY)
+		return 0;
+	rec->cancel = r->start;
+	ec_request_started(r->master);
+	return 0;
+}
+
 /* what several kinds have; a handle may be NULL ------------------------------*/
 
 #define DEFINE_DATA(type, function) \
@@ -211,6 +231,16 @@ EXPORT_SYMBOL_GPL(function)
 
 DEFINE_TIMEOUT(ec_sdo_request_t *, ecrt_sdo_request_timeout);
 DEFINE_TIMEOUT(ec_soe_request_t *, ecrt_soe_request_timeout);
+
+#define DEFINE_CANCEL(type, function) \
+int function(type req) \
+{ \
+	return req ? ec_app_request_cancel(&req->r) : -EINVAL; \
+} \
+EXPORT_SYMBOL_GPL(function)
+
+DEFINE_CANCEL(ec_sdo_request_t *, ecrt_sdo_request_cancel);
+DEFINE_CANCEL(ec_soe_request_t *, ecrt_soe_request_cancel);
 
 /* registers ----------------------------------------------------------------*/
 

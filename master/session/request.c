@@ -78,6 +78,7 @@ static void pick_up(struct ec_request *r, u64 now)
 		return;
 	r->seq = start;
 	r->phase = EC_REQUEST_PENDING;
+	r->stop = false;
 	r->since_ns = now;
 	r->timeout_ms = READ_ONCE(r->rec->timeout_ms);
 	r->index = READ_ONCE(r->rec->index);
@@ -94,13 +95,23 @@ static void pick_up(struct ec_request *r, u64 now)
 		memcpy(r->buf, r->data, r->size);
 }
 
+/* @stop ends a transfer; what has not begun ends at once. */
+static void end_cancelled(struct ec_request *r)
+{
+	if (r->phase == EC_REQUEST_IDLE || READ_ONCE(r->rec->cancel) != r->seq)
+		return;
+	WRITE_ONCE(r->stop, true);
+	if (r->phase == EC_REQUEST_PENDING)
+		fail(r, -ECANCELED);
+}
+
 static bool expired(const struct ec_request *r, u64 now)
 {
 	return r->timeout_ms && now - r->since_ns > (u64)r->timeout_ms * NSEC_PER_MSEC;
 }
 
 /*
- * New starts, those that have waited too long, and work for the lanes. False
+ * New starts, those that are cancelled or have waited too long, and work for the lanes. False
  * when nothing has to be looked after any more.
  */
 static bool look(struct ec_requests *rq)
@@ -122,6 +133,7 @@ static bool look(struct ec_requests *rq)
 
 		list_for_each_entry(r, &lane->requests, list) {
 			pick_up(r, now);
+			end_cancelled(r);
 			if (r->phase != EC_REQUEST_PENDING)
 				continue;
 			if (r->kind == EC_REQUEST_VOE && !there)
@@ -220,7 +232,7 @@ static void lane_work(struct work_struct *work)
 	do {
 		r = take(lane, &slave);
 		if (r) {
-			ec_request_run(r, slave, &rq->ended);
+			ec_request_run(r, slave);
 			mutex_lock(&rq->lock);
 			finish(r);
 			mutex_unlock(&rq->lock);
@@ -286,11 +298,16 @@ int ec_requests_begin(struct ec_session *s)
 void ec_requests_end(struct ec_session *s)
 {
 	struct ec_requests *rq = s->requests;
+	struct ec_request *r;
+	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (!rq)
 		return;
-	WRITE_ONCE(rq->ended, true);
+	/* none begins any more: take() and look() find no session */
+	for (i = 0; i < rq->n_lanes; i++)
+		list_for_each_entry(r, &rq->lanes[i].requests, list)
+			WRITE_ONCE(r->stop, true);
 	s->requests = NULL;
 	ec_for_each_config(c, &s->wanted) {
 		ec_requests_attach(s, c);
@@ -302,7 +319,7 @@ void ec_requests_end(struct ec_session *s)
 }
 
 /**
- * ec_requests_kick() - the application has started a request
+ * ec_requests_kick() - the application has started or cancelled a request
  * @s: active session
  *
  * Context: Cycle owner. RT-safe.
@@ -316,10 +333,10 @@ void ec_requests_kick(struct ec_session *s)
 }
 
 /**
- * ec_requests_notice() - has the application started a request?
+ * ec_requests_notice() - has the application started or cancelled a request?
  * @c: cycle of an active session
  *
- * Without a send of its own it counts starts in mapped memory.
+ * Without a send of its own it counts them in mapped memory.
  *
  * Context: The thread that runs the cycle. RT-safe.
  */

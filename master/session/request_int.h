@@ -55,6 +55,7 @@ struct ec_request_result {
  * @complete: SDO: complete access
  * @vendor: VoE: vendor id
  * @size: bytes of @buf
+ * @stop: the application has cancelled it, or its session has ended
  * @buf: private copy of the data, as large as these may be
  * @res: result; of the worker while it is RUNNING
  */
@@ -74,6 +75,7 @@ struct ec_request {
 	bool complete;
 	u32 vendor;
 	u32 size;
+	bool stop;
 	u8 *buf;
 	struct ec_request_result res;
 };
@@ -112,7 +114,6 @@ struct ec_lane {
  * @bufs: private copies of all data, allocated by the application that activates, as its memory
  * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
- * @ended: the session has; transfers end, too
  */
 struct ec_requests {
 	struct kref kref;
@@ -126,7 +127,6 @@ struct ec_requests {
 	u8 *bufs;
 	struct ec_lane *lanes;
 	unsigned int n_lanes;
-	bool ended;
 };
 
 static inline bool ec_request_reads(const struct ec_request *r)
@@ -140,7 +140,7 @@ static inline bool ec_request_writes(const struct ec_request *r)
 }
 
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
-void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel);
+void ec_request_run(struct ec_request *r, struct ec_slave *s);
 
 /* request_layout.c */
 unsigned int ec_requests_lanes(const struct ec_session *s);

@@ -110,13 +110,12 @@ static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_lim
  * ec_request_run() - execute a request
  * @r: request that ec_request_accept() has accepted; @res is set
  * @s: its slave
- * @cancel: true ends it
  *
  * Context: Process. Waits for bus traffic.
  */
-void ec_request_run(struct ec_request *r, struct ec_slave *s, const bool *cancel)
+void ec_request_run(struct ec_request *r, struct ec_slave *s)
 {
-	struct ec_mbox_limit limit = { .cancel = cancel };
+	struct ec_mbox_limit limit = { .cancel = &r->stop };
 
 	r->res = (struct ec_request_result){ .err = -EINVAL };
 	switch (r->kind) {

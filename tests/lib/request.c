@@ -33,6 +33,8 @@ static void nobody(void)
 	CHECK(ecrt_sdo_request_read(NULL) == -EINVAL);
 	CHECK(ecrt_sdo_request_write(NULL) == -EINVAL);
 	CHECK(ecrt_sdo_request_state(NULL) == EC_REQUEST_ERROR);
+	CHECK(ecrt_sdo_request_cancel(NULL) == -EINVAL);
+	CHECK(ecrt_soe_request_cancel(NULL) == -EINVAL);
 	CHECK(ecrt_reg_request_read(NULL, 0, 1) == -EINVAL);
 	CHECK(ecrt_reg_request_write(NULL, 0, 1) == -EINVAL);
 	CHECK(ecrt_reg_request_readwrite(NULL, 0, 1) == -EINVAL);
@@ -119,6 +121,25 @@ static void complete(ec_sdo_request_t *r)
 	      rec->index == 0x1c13 && rec->flags == EC_SDO_FLAG_COMPLETE);
 }
 
+/* @r is of request 2 and BUSY */
+static void cancel(ec_master_t *m, ec_sdo_request_t *r)
+{
+	struct ec_request_record *rec = fake_request(fake.area, 2);
+	unsigned int calls;
+
+	CHECK(!ecrt_master_send(m) && fake.send_flags == EC_SEND_FLAG_REQUESTS);
+	calls = fake.calls;
+	CHECK(!ecrt_sdo_request_cancel(r) && rec->cancel == rec->start);
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_BUSY && fake.calls == calls);
+	CHECK(!ecrt_master_send(m) && fake.send_flags == EC_SEND_FLAG_REQUESTS);
+	done(rec, -ECANCELED, "");
+	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_ERROR);
+	/* nothing to cancel any more, and the next start is another one */
+	CHECK(!ecrt_sdo_request_cancel(r));
+	CHECK(!ecrt_master_send(m) && !fake.send_flags);
+	CHECK(!ecrt_sdo_request_read(r) && rec->cancel != rec->start);
+}
+
 static void reg(ec_reg_request_t *r)
 {
 	struct ec_request_record *rec = fake_request(fake.area, 1);
@@ -186,6 +207,7 @@ void requests(void)
 	CHECK(data && !EC_READ_U32(data));
 	CHECK(!ecrt_sdo_request_timeout(s, 500));
 	CHECK(ecrt_sdo_request_read(s) == -EINVAL);	/* not active */
+	CHECK(ecrt_sdo_request_cancel(s) == -EINVAL);
 	CHECK(ecrt_reg_request_read(r, 0, 2) == -EINVAL);
 	CHECK(!ecrt_slave_config_emerg_size(sc, 2));
 	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT);
@@ -200,6 +222,7 @@ void requests(void)
 	CHECK(ecrt_sdo_request_data(s) == data);
 	reg(r);
 	complete(c);
+	cancel(m, c);
 	emergencies(sc);
 	CHECK(!ecrt_master_deactivate(m));
 	ecrt_release_master(m);

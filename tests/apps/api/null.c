@@ -153,6 +153,7 @@ static void requests(void)
 	IS(ecrt_sdo_request_state(NULL), EC_REQUEST_ERROR);
 	IS(ecrt_sdo_request_write(NULL), -EINVAL);
 	IS(ecrt_sdo_request_read(NULL), -EINVAL);
+	IS(ecrt_sdo_request_cancel(NULL), -EINVAL);
 	YES(!ecrt_reg_request_data(NULL));
 	IS(ecrt_reg_request_state(NULL), EC_REQUEST_ERROR);
 	IS(ecrt_reg_request_write(NULL, 1, 1), -EINVAL);
@@ -167,6 +168,7 @@ static void requests(void)
 	IS(ecrt_soe_request_state(NULL), EC_REQUEST_ERROR);
 	IS(ecrt_soe_request_write(NULL), -EINVAL);
 	IS(ecrt_soe_request_read(NULL), -EINVAL);
+	IS(ecrt_soe_request_cancel(NULL), -EINVAL);
 	IS(ecrt_voe_handler_send_header(NULL, 1, 1), -EINVAL);
 	IS(ecrt_voe_handler_received_header(NULL, NULL, NULL), -EINVAL);
 	YES(!ecrt_voe_handler_data(NULL));

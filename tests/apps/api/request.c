@@ -93,6 +93,9 @@ static void sdo_requests(void)
 	IS(CALL(ecrt_sdo_request_data_size)(small), 2);
 	IS(CALL(ecrt_sdo_request_write)(small), 0);
 	IS(sdo_done(small), EC_REQUEST_ERROR);
+	/* nothing to cancel */
+	SILENT(CALL(ecrt_sdo_request_cancel)(small), 0);
+	IS(CALL(ecrt_sdo_request_state)(small), EC_REQUEST_ERROR);
 }
 
 /* A slave that is not there: busy, until the time that was given is over. */
@@ -102,6 +105,10 @@ static void absent(void)
 	IS(CALL(ecrt_sdo_request_read)(lost), 0);
 	bench_cycle(&b, 300);
 	IS(CALL(ecrt_sdo_request_state)(lost), EC_REQUEST_BUSY);
+	SILENT(CALL(ecrt_sdo_request_cancel)(lost), 0);
+	IS(sdo_done(lost), EC_REQUEST_ERROR);
+	IS(CALL(ecrt_sdo_request_read)(lost), 0);
+	bench_cycle(&b, 50);
 	bench_down(&b);
 	before();
 	NEED(b.data);

@@ -155,6 +155,10 @@ static void soe_requests(void)
 	IS(soe_done(small), EC_REQUEST_ERROR);
 	IS(CALL(ecrt_soe_request_read)(lost), 0);
 	IS(soe_done(lost), EC_REQUEST_ERROR);
+	IS(CALL(ecrt_soe_request_timeout)(lost, 0), 0);
+	IS(CALL(ecrt_soe_request_read)(lost), 0);
+	SILENT(CALL(ecrt_soe_request_cancel)(lost), 0);
+	IS(soe_done(lost), EC_REQUEST_ERROR);
 }
 
 /* the drive sends each message back, with a type of its own */
