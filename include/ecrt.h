@@ -115,6 +115,8 @@
 #define EC_HAVE_REQUEST_CANCEL
 /* ecrt_master_foe_read(), ecrt_master_foe_write(): files of slaves */
 #define EC_HAVE_FOE
+/* ecrt_slave_config_create_foe_request() and its requests */
+#define EC_HAVE_FOE_REQUESTS
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -155,6 +157,9 @@ typedef struct ec_sdo_request ec_sdo_request_t;
 
 struct ec_soe_request;
 typedef struct ec_soe_request ec_soe_request_t;
+
+struct ec_foe_request;
+typedef struct ec_foe_request ec_foe_request_t;
 
 struct ec_voe_handler;
 typedef struct ec_voe_handler ec_voe_handler_t;
@@ -1776,6 +1781,22 @@ EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
 		size_t size);
 
 /**
+ * ecrt_slave_config_create_foe_request() - create a request that reads and writes files
+ * @sc: slave configuration
+ * @size: buffer size, bytes, at most 15 MiB; set to 0. All requests of an application have
+ *	16 MiB together
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). It is freed with @sc. Select a file with
+ * ecrt_foe_request_file() before the first transfer. The files of a slave are transferred one
+ * after the other; other requests of the slave do not wait for them.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_foe_request_t *ecrt_slave_config_create_foe_request(
+		ec_slave_config_t *sc, size_t size);
+
+/**
  * ecrt_slave_config_create_voe_handler() - create a handler of vendor specific messages
  * @sc: slave configuration
  * @size: buffer size without the VoE header, bytes, at most 1474; set to 0
@@ -2409,6 +2430,144 @@ EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
  * Return: 0; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
+
+#ifdef EC_HAVE_FOE_REQUESTS
+/**
+ * ecrt_foe_request_file() - select the file on the slave
+ * @req: request that is not BUSY
+ * @file_name: 1 to 64 printable characters; copied
+ * @password: 0: none
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). A transfer with a character that is not printable ends
+ * with %-EINVAL.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL @file_name is NULL, empty or too long, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_foe_request_file(ec_foe_request_t *req,
+		const char *file_name, uint32_t password);
+
+/**
+ * ecrt_foe_request_timeout() - limit the time from start to transfer
+ * @req: request
+ * @timeout: as in ecrt_sdo_request_timeout()
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). The transfer has a timeout of 10 s per message, and of
+ * 60 s while the slave is busy without progress. ecrt_foe_request_cancel() ends it earlier.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_foe_request_timeout(ec_foe_request_t *req,
+		uint32_t timeout);
+
+/**
+ * ecrt_foe_request_data() - get the buffer of a request
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). Do not change it while the request is BUSY.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: the address, which does not change; NULL when @req is NULL.
+ */
+EC_PUBLIC_API uint8_t *ecrt_foe_request_data(const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_data_size() - get the size of the data in the buffer
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: the size of creation, of the last write, or of the file after a successful read.
+ */
+EC_PUBLIC_API size_t ecrt_foe_request_data_size(const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_state() - get the state of a request; call once per cycle while BUSY
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). Each call copies at most 16 KiB between the buffer and the
+ * memory that is shared with the kernel, so that large files do not delay the cycle: a write
+ * of more starts after its last part, a read is complete when all of it is in the buffer.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_foe_request_state(
+		const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_progress() - get the bytes that were transferred so far
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS).
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: bytes since the last start.
+ */
+EC_PUBLIC_API size_t ecrt_foe_request_progress(const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_result() - get the cause of an ERROR
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0 unless the state is ERROR; otherwise as ecrt_master_foe_read() and
+ * ecrt_master_foe_write(), and %-ECANCELED after ecrt_foe_request_cancel() or a disconnection.
+ */
+EC_PUBLIC_API int ecrt_foe_request_result(const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_error_code() - get the FoE error code of the slave
+ * @req: request
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: error code (ETG.1000.6 5.8) after %-EIO; 0: the slave gave none.
+ */
+EC_PUBLIC_API uint32_t ecrt_foe_request_error_code(const ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_write() - start writing the buffer to the file
+ * @req: request that is not BUSY, of an active master
+ * @size: bytes, from then on ecrt_foe_request_data_size()
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). Call ecrt_foe_request_state() in each cycle from now on.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL no file selected, not
+ * active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_foe_request_write(ec_foe_request_t *req, size_t size);
+
+/**
+ * ecrt_foe_request_read() - start reading the file
+ * @req: request that is not BUSY, of an active master
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). A file that is larger than the buffer gives ERROR with
+ * %-ENOBUFS.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL no file selected, not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_foe_request_read(ec_foe_request_t *req);
+
+/**
+ * ecrt_foe_request_cancel() - end a request early
+ * @req: request of an active master
+ *
+ * Extension (%EC_HAVE_FOE_REQUESTS). As ecrt_sdo_request_cancel(). What the slave has of a file
+ * whose write was cancelled depends on the slave.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_foe_request_cancel(ec_foe_request_t *req);
+#endif
 
 /**
  * ecrt_voe_handler_send_header() - set the header of the messages to send

@@ -548,6 +548,7 @@ struct ec_ioc_sc_timeout {
 #define EC_REQUEST_REG		1
 #define EC_REQUEST_SOE		2
 #define EC_REQUEST_VOE		3
+#define EC_REQUEST_FOE		4
 
 struct ec_ioc_sc_request {
 	__u32 flags;

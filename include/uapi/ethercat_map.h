@@ -36,7 +36,8 @@
  * EC_SEND_FLAG_REQUESTS in the next send; when the kernel runs the cycle, the application adds 1
  * to @starts of the area instead. To cancel a request it copies @start to @cancel and notifies the
  * kernel in the same way. The kernel writes the result, then @done. The data are at @data in the
- * area; from @start to @done only the kernel accesses them.
+ * area; from @start to @done only the kernel accesses them. FoE: the EC_FOE_NAME bytes before
+ * @data have the name of the file; it ends with them, or at a zero.
  */
 struct ec_request_record {
 	/* application */
@@ -47,18 +48,19 @@ struct ec_request_record {
 	__u8 subindex;		/* SoE: drive */
 	__u8 op;		/* EC_REQUEST_OP_* */
 	__u32 flags;		/* SDO: EC_SDO_FLAG_COMPLETE */
-	__u32 vendor_id;	/* VoE */
+	__u32 vendor_id;	/* VoE; FoE: password */
 	/* kernel */
 	__u32 done;		/* @start of the last finished request */
 	__s32 result;		/* 0 or -errno */
 	__u32 got;		/* bytes read */
-	__u32 abort_code;	/* of the slave: SDO abort code, SoE error code */
+	__u32 abort_code;	/* of the slave: SDO abort code, SoE or FoE error code */
 	__u32 data;		/* offset in the area */
 	__u32 got_vendor_id;	/* VoE: of the last received message */
 	__u16 got_type;
 	__u16 reserved;
 	__u32 cancel;		/* application: equal to @start: end this request */
-	__u32 reserved2[2];
+	__u32 progress;		/* FoE: bytes so far; the application sets 0 before @start */
+	__u32 reserved2;
 };
 
 /* Emergencies of one configuration; both counters wrap. */

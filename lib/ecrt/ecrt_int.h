@@ -36,7 +36,7 @@
  * @subindex: or drive
  * @op: EC_REQUEST_OP_* of the last start
  * @flags: EC_SDO_FLAG_COMPLETE
- * @vendor_id: of a VoE message
+ * @vendor_id: of a VoE message; password of a file
  * @got_vendor_id: of the VoE message read last
  * @got_type: likewise
  * @start: number of the last start
@@ -81,6 +81,24 @@ struct ec_voe_handler {
 	struct ec_app_request r;
 };
 
+/**
+ * struct ec_foe_request - a file of a slave
+ * @r: what it has in common with other requests
+ * @name: of the file on the slave; all bytes, or up to a zero
+ * @filling: a write whose content is not in shared memory yet
+ * @copied: bytes copied between buffer and shared memory
+ * @result: of the last transfer: 0 or -errno
+ * @error_code: of the slave
+ */
+struct ec_foe_request {
+	struct ec_app_request r;
+	char name[EC_FOE_NAME];
+	bool filling;
+	size_t copied;
+	int result;
+	__u32 error_code;
+};
+
 /*
  * ec_do() gives a command. When the command fails, one line reports @fmt, which is an
  * infinitive without "to", and the reason that the command left. ec_fail() reports a call
@@ -107,9 +125,11 @@ static inline __u32 ec_u32(size_t size)
 int ec_give(const ec_master_t *m, unsigned int cmd, void *arg);
 
 /* request.c: what all kinds of requests have in common */
-void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size);
+void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t object, size_t size);
 ec_request_state_t ec_app_request_state(struct ec_app_request *r);
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);
+void ec_app_request_give(struct ec_app_request *r, __u8 op, size_t size);
+void ec_app_request_stop(struct ec_app_request *r);
 int ec_app_request_cancel(struct ec_app_request *r);
 int ec_app_requests_place(ec_master_t *m);
 void ec_app_requests_free(ec_master_t *m);

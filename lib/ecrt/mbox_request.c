@@ -18,7 +18,7 @@ static int aim(struct ec_app_request *r, uint16_t index, uint8_t subindex, __u32
 static void *create(ec_slave_config_t *sc, __u32 kind, uint16_t index, uint8_t subindex,
 		    __u32 flags, size_t size)
 {
-	struct ec_app_request *r = ec_app_request_create(sc, kind, size);
+	struct ec_app_request *r = ec_app_request_create(sc, kind, sizeof(*r), size);
 
 	if (r)
 		aim(r, index, subindex, flags);
@@ -100,7 +100,7 @@ EXPORT_SYMBOL_GPL(ecrt_soe_request_write);
 
 ec_voe_handler_t *ecrt_slave_config_create_voe_handler(ec_slave_config_t *sc, size_t size)
 {
-	return ec_app_request_create(sc, EC_REQUEST_VOE, size);
+	return ec_app_request_create(sc, EC_REQUEST_VOE, sizeof(ec_voe_handler_t), size);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_create_voe_handler);
 

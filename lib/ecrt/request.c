@@ -11,12 +11,13 @@
  * ec_app_request_create() - a request and its buffer, set to 0
  * @sc: slave configuration
  * @kind: EC_REQUEST_*
+ * @object: bytes of the request, which begins with struct ec_app_request
  * @size: of the buffer
  *
  * Return: request, freed with the session, the first member of each kind; NULL with the
  * reason reported.
  */
-void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size)
+void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t object, size_t size)
 {
 	struct ec_ioc_sc_request arg = {
 		.kind = kind, .config = ec_sc_index(sc), .size = ec_u32(size),
@@ -26,7 +27,7 @@ void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t size)
 
 	if (!sc)
 		return ec_no_handle(-EINVAL);
-	r = ec_zalloc(sizeof(*r));
+	r = ec_zalloc(object);
 	if (r)
 		r->data = ec_zalloc(size ? size : 1);
 	ret = r && r->data ?
@@ -112,6 +113,35 @@ ec_request_state_t ec_app_request_state(struct ec_app_request *r)
 }
 
 /**
+ * ec_app_request_give() - pass a request with its data to the kernel
+ * @r: request that is not BUSY, of an active master; data to write are in shared memory
+ * @op: EC_REQUEST_OP_*
+ * @size: bytes to write; registers: to read, too
+ *
+ * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_request_give(struct ec_app_request *r, __u8 op, size_t size)
+{
+	struct ec_request_record *rec = r->rec;
+
+	rec->index = r->index16;
+	rec->subindex = r->subindex;
+	rec->op = op;
+	rec->flags = r->flags;
+	rec->vendor_id = r->vendor_id;
+	rec->size = (__u32)size;
+	rec->timeout_ms = r->timeout_ms;
+	rec->progress = 0;
+	r->op = op;
+	if (op == EC_REQUEST_OP_WRITE)
+		r->size = size;
+	r->start = r->start + 1 ? r->start + 1 : 1;
+	r->state = EC_REQUEST_BUSY;
+	ec_store_release(&rec->start, r->start);
+	ec_request_started(r->master);
+}
+
+/**
  * ec_app_request_start() - start a request; the next send notifies the master
  * @r: request
  * @op: EC_REQUEST_OP_*
@@ -122,31 +152,30 @@ ec_request_state_t ec_app_request_state(struct ec_app_request *r)
  */
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
 {
-	struct ec_request_record *rec = r->rec;
-
 	if (size > r->room)
 		return -ENOBUFS;
-	if (!rec)
+	if (!r->rec)
 		return -EINVAL;
 	if (ec_app_request_state(r) == EC_REQUEST_BUSY)
 		return -EBUSY;
 	if (op == EC_REQUEST_OP_WRITE || op == EC_REQUEST_OP_READWRITE)
 		memcpy(r->shared, r->data, size);
-	rec->index = r->index16;
-	rec->subindex = r->subindex;
-	rec->op = op;
-	rec->flags = r->flags;
-	rec->vendor_id = r->vendor_id;
-	rec->size = (__u32)size;
-	rec->timeout_ms = r->timeout_ms;
-	r->op = op;
-	if (op == EC_REQUEST_OP_WRITE)
-		r->size = size;
-	r->start = r->start + 1 ? r->start + 1 : 1;
-	r->state = EC_REQUEST_BUSY;
-	ec_store_release(&rec->start, r->start);
-	ec_request_started(r->master);
+	ec_app_request_give(r, op, size);
 	return 0;
+}
+
+/**
+ * ec_app_request_stop() - have the kernel end a request; the next send notifies the master
+ * @r: request that is BUSY
+ *
+ * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_request_stop(struct ec_app_request *r)
+{
+	struct ec_request_record *rec = r->rec;
+
+	rec->cancel = r->start;
+	ec_request_started(r->master);
 }
 
 /**
@@ -158,14 +187,10 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
  */
 int ec_app_request_cancel(struct ec_app_request *r)
 {
-	struct ec_request_record *rec = r->rec;
-
-	if (!rec)
+	if (!r->rec)
 		return -EINVAL;
-	if (ec_app_request_state(r) != EC_REQUEST_BUSY)
-		return 0;
-	rec->cancel = r->start;
-	ec_request_started(r->master);
+	if (ec_app_request_state(r) == EC_REQUEST_BUSY)
+		ec_app_request_stop(r);
 	return 0;
 }
 
@@ -182,6 +207,7 @@ DEFINE_DATA(const ec_reg_request_t *, ecrt_reg_request_data);
 DEFINE_DATA(const ec_sdo_request_t *, ecrt_sdo_request_data);
 DEFINE_DATA(const ec_soe_request_t *, ecrt_soe_request_data);
 DEFINE_DATA(const ec_voe_handler_t *, ecrt_voe_handler_data);
+DEFINE_DATA(const ec_foe_request_t *, ecrt_foe_request_data);
 
 #define DEFINE_SIZE(type, function) \
 size_t function(type req) \
@@ -193,6 +219,7 @@ EXPORT_SYMBOL_GPL(function)
 DEFINE_SIZE(const ec_sdo_request_t *, ecrt_sdo_request_data_size);
 DEFINE_SIZE(const ec_soe_request_t *, ecrt_soe_request_data_size);
 DEFINE_SIZE(const ec_voe_handler_t *, ecrt_voe_handler_data_size);
+DEFINE_SIZE(const ec_foe_request_t *, ecrt_foe_request_data_size);
 
 /* Some prototypes say const; what such a handle points to never is. */
 #define DEFINE_STATE(type, function) \
@@ -231,6 +258,7 @@ EXPORT_SYMBOL_GPL(function)
 
 DEFINE_TIMEOUT(ec_sdo_request_t *, ecrt_sdo_request_timeout);
 DEFINE_TIMEOUT(ec_soe_request_t *, ecrt_soe_request_timeout);
+DEFINE_TIMEOUT(ec_foe_request_t *, ecrt_foe_request_timeout);
 
 #define DEFINE_CANCEL(type, function) \
 int function(type req) \
@@ -246,7 +274,7 @@ DEFINE_CANCEL(ec_soe_request_t *, ecrt_soe_request_cancel);
 
 ec_reg_request_t *ecrt_slave_config_create_reg_request(ec_slave_config_t *sc, size_t size)
 {
-	return ec_app_request_create(sc, EC_REQUEST_REG, size);
+	return ec_app_request_create(sc, EC_REQUEST_REG, sizeof(ec_reg_request_t), size);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_create_reg_request);
 

@@ -91,18 +91,15 @@ static int transfer(struct ec_call *call, bool write)
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
 	struct ec_foe f = {
 		.write = write, .password = i->password, .name = i->name,
-		.name_len = strnlen(i->name, sizeof(i->name)),
+		.name_len = ec_foe_name_len(i->name, sizeof(i->name)),
 	};
 	struct ec_foe_file file = {
 		.size = i->size, .copy = write ? to_slave : from_slave, .progress = progress,
 		.ctx = call,
 	};
-	unsigned int n;
 	int ret;
 
-	for (n = 0; n < f.name_len && i->name[n] >= ' ' && i->name[n] <= '~'; n++)
-		;
-	if (!n || n < f.name_len)
+	if (!f.name_len)
 		return ec_refuse(call, -EINVAL,
 				 "the name of the file on the slave must be 1 to %u printable characters",
 				 EC_FOE_NAME);

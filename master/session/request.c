@@ -49,7 +49,7 @@ static void finish(struct ec_request *r)
 {
 	const struct ec_request_result *res = &r->res;
 
-	if (!res->err && ec_request_reads(r))
+	if (!res->err && ec_request_reads(r) && !ec_request_is_file(r))
 		memcpy(r->data, r->buf, res->got);
 	r->phase = EC_REQUEST_IDLE;
 	WRITE_ONCE(r->rec->result, res->err);
@@ -85,11 +85,15 @@ static void pick_up(struct ec_request *r, u64 now)
 	r->sub = READ_ONCE(r->rec->subindex);
 	r->op = READ_ONCE(r->rec->op);
 	r->vendor = READ_ONCE(r->rec->vendor_id);
+	if (ec_request_is_file(r))
+		memcpy(r->buf, r->data - EC_FOE_NAME, EC_FOE_NAME);
 	ret = ec_request_accept(r, READ_ONCE(r->rec->flags), READ_ONCE(r->rec->size));
 	if (ret) {
 		fail(r, ret);
 		return;
 	}
+	if (ec_request_is_file(r))
+		return;
 	memset(r->buf, 0, r->size);
 	if (ec_request_writes(r))
 		memcpy(r->buf, r->data, r->size);
@@ -272,7 +276,7 @@ int ec_requests_begin(struct ec_session *s)
 	rq->reqs = kvcalloc(s->n_specs + 1, sizeof(*rq->reqs), GFP_KERNEL_ACCOUNT);
 	rq->n_lanes = ec_requests_lanes(s);
 	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL_ACCOUNT);
-	rq->bufs = kvzalloc(max_t(size_t, s->request_bytes, 1), GFP_KERNEL_ACCOUNT);
+	rq->bufs = kvzalloc(max_t(size_t, ec_requests_buf_bytes(s), 1), GFP_KERNEL_ACCOUNT);
 	if (!rq->reqs || !rq->lanes || !rq->bufs) {
 		put(rq);
 		return -ENOMEM;

@@ -26,7 +26,7 @@ enum ec_request_phase {
  * struct ec_request_result - how a request has ended
  * @err: 0 or -errno
  * @got: bytes read
- * @code: of the slave: SDO abort code, SoE error code
+ * @code: of the slave: SDO abort code, SoE or FoE error code
  * @vendor: VoE: of the message read
  * @type: likewise
  */
@@ -53,10 +53,10 @@ struct ec_request_result {
  * @sub: subindex or drive
  * @op: EC_REQUEST_OP_*
  * @complete: SDO: complete access
- * @vendor: VoE: vendor id
- * @size: bytes of @buf
+ * @vendor: VoE: vendor id; FoE: password
+ * @size: bytes to transfer; of a read at most
  * @stop: the application has cancelled it, or its session has ended
- * @buf: private copy of the data, as large as these may be
+ * @buf: private copy of the data, as large as these may be; FoE: of the name
  * @res: result; of the worker while it is RUNNING
  */
 struct ec_request {
@@ -88,9 +88,11 @@ struct ec_request {
  * @requests: of this lane
  * @emerg: ring of emergencies of the configuration
  * @voe: the configuration has VoE handlers
+ * @files: lane of its files, or NULL
  *
- * First one lane by configuration, with @emerg and @voe. Then one for each VoE
- * handler, so that one that waits for a message does not hold up the others.
+ * First one lane by configuration, with @emerg, @voe and @files. Then one for each VoE
+ * handler, so that one that waits for a message does not hold up the others, and one for
+ * the files of each configuration, which take long.
  */
 struct ec_lane {
 	struct work_struct work;
@@ -99,6 +101,7 @@ struct ec_lane {
 	struct list_head requests;
 	struct ec_emerg emerg;
 	bool voe;
+	struct ec_lane *files;
 };
 
 /**
@@ -111,7 +114,7 @@ struct ec_lane {
  * @kick: looks once
  * @watch: looks again and again while anything waits
  * @reqs: requests
- * @bufs: private copies of all data, allocated by the application that activates, as its memory
+ * @bufs: private copies of all data but files, allocated by the application that activates, as its memory
  * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
  */
@@ -129,6 +132,12 @@ struct ec_requests {
 	unsigned int n_lanes;
 };
 
+/* A file goes between mapped memory and mailbox packet by packet; @buf has its name. */
+static inline bool ec_request_is_file(const struct ec_request *r)
+{
+	return r->kind == EC_REQUEST_FOE;
+}
+
 static inline bool ec_request_reads(const struct ec_request *r)
 {
 	return r->op != EC_REQUEST_OP_WRITE;
@@ -144,6 +153,7 @@ void ec_request_run(struct ec_request *r, struct ec_slave *s);
 
 /* request_layout.c */
 unsigned int ec_requests_lanes(const struct ec_session *s);
+size_t ec_requests_buf_bytes(const struct ec_session *s);
 void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq);
 
 #endif

@@ -6,6 +6,17 @@
 #include "session.h"
 #include "../bus/slave.h"
 
+/* Mapped bytes of the data of a request; the name of a file precedes it. */
+static size_t data_bytes(u32 kind, u32 size)
+{
+	return ALIGN(size, 8) + (kind == EC_REQUEST_FOE ? EC_FOE_NAME : 0);
+}
+
+static size_t buf_bytes(const struct ec_request_spec *spec)
+{
+	return spec->kind == EC_REQUEST_FOE ? EC_FOE_NAME : data_bytes(spec->kind, spec->size);
+}
+
 /**
  * ec_requests_add() - one more request
  * @s: session, not active
@@ -19,7 +30,7 @@
  */
 int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index)
 {
-	size_t bytes = s->request_bytes + ALIGN(size, 8);
+	size_t bytes = s->request_bytes + data_bytes(kind, size);
 
 	lockdep_assert_held(s->wanted.lock);
 	if (s->n_specs >= EC_MAX_REQUESTS || bytes > EC_MAX_REQUEST_BYTES)
@@ -135,7 +146,8 @@ void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq)
 	u8 *base = rq->shared->requests;
 	struct ec_request_record *rec = (void *)(base + sizeof(struct ec_request_area));
 	struct ec_lane *own = &rq->lanes[s->wanted.n_configs];
-	size_t at = lay_out_rings(s, rq), first = at;
+	size_t at = lay_out_rings(s, rq);
+	u8 *buf = rq->bufs;
 	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
@@ -144,23 +156,30 @@ void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq)
 		struct ec_lane *lane = &rq->lanes[spec->config];
 		struct ec_request *r = &rq->reqs[i];
 
-		if (spec->kind == EC_REQUEST_VOE) {
+		if (spec->kind == EC_REQUEST_VOE)
 			lane->voe = true;
+		if (spec->kind == EC_REQUEST_FOE && lane->files) {
+			lane = lane->files;
+		} else if (spec->kind == EC_REQUEST_VOE || spec->kind == EC_REQUEST_FOE) {
+			if (spec->kind == EC_REQUEST_FOE)
+				lane->files = own;
 			lane = own++;
 			init(rq, lane, spec->config);
 		}
 		r->rec = rec;
 		r->kind = spec->kind;
 		r->cap = spec->size;
-		r->data = base + at;
-		r->buf = rq->bufs + (at - first);
+		r->data = base + at + (data_bytes(r->kind, r->cap) - ALIGN(r->cap, 8));
+		r->buf = buf;
 		list_add_tail(&r->list, &lane->requests);
-		at += ALIGN(spec->size, 8);
+		at += data_bytes(r->kind, r->cap);
+		buf += buf_bytes(spec);
 	}
+	rq->n_lanes = own - rq->lanes;
 }
 
 /**
- * ec_requests_lanes() - how many lanes the requests need
+ * ec_requests_lanes() - how many lanes the requests need at most
  * @s: session
  *
  * Context: Process, session lock held.
@@ -172,6 +191,24 @@ unsigned int ec_requests_lanes(const struct ec_session *s)
 
 	lockdep_assert_held(s->wanted.lock);
 	for (i = 0; i < s->n_specs; i++)
-		n += s->specs[i].kind == EC_REQUEST_VOE;
+		n += s->specs[i].kind == EC_REQUEST_VOE || s->specs[i].kind == EC_REQUEST_FOE;
+	return n;
+}
+
+/**
+ * ec_requests_buf_bytes() - size of the private copies
+ * @s: session
+ *
+ * Context: Process, session lock held.
+ * Return: bytes.
+ */
+size_t ec_requests_buf_bytes(const struct ec_session *s)
+{
+	unsigned int i;
+	size_t n = 0;
+
+	lockdep_assert_held(s->wanted.lock);
+	for (i = 0; i < s->n_specs; i++)
+		n += buf_bytes(&s->specs[i]);
 	return n;
 }

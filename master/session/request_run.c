@@ -2,6 +2,7 @@
 /* What the kinds of requests differ in: which starts are possible, and the transfer. */
 #include <linux/ktime.h>
 #include "../mailbox/coe.h"
+#include "../mailbox/foe.h"
 #include "request_int.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
@@ -17,11 +18,12 @@ static const u8 ops[] = {
 	[EC_REQUEST_SOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
 	[EC_REQUEST_VOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE) |
 			   BIT(EC_REQUEST_OP_READ_NOW),
+	[EC_REQUEST_FOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
 };
 
 /**
  * ec_request_accept() - check a start of the application
- * @r: request with all fields of the record but these
+ * @r: request with all fields of the record but these, and the name of a file in @buf
  * @flags: of the record
  * @size: of the record; @r->size is set
  *
@@ -39,7 +41,10 @@ int ec_request_accept(struct ec_request *r, u32 flags, u32 size)
 		r->timeout_ms = EC_VOE_TIMEOUT_MS;
 	if (r->kind != EC_REQUEST_REG && !ec_request_writes(r))
 		size = r->cap;
-	else if (size > r->cap || (!size && r->kind != EC_REQUEST_VOE))
+	else if (size > r->cap ||
+		 (!size && r->kind != EC_REQUEST_VOE && r->kind != EC_REQUEST_FOE))
+		return -EINVAL;
+	if (ec_request_is_file(r) && !ec_foe_name_len((char *)r->buf, EC_FOE_NAME))
 		return -EINVAL;
 	r->size = size;
 	return 0;
@@ -106,6 +111,48 @@ static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_lim
 	r->res.type = h.type;
 }
 
+/* the memory of the application; its content is checked by no one */
+static int file_out(void *ctx, u64 at, u8 *buf, size_t n)
+{
+	const struct ec_request *r = ctx;
+
+	memcpy(buf, r->data + at, n);
+	return 0;
+}
+
+static int file_in(void *ctx, u64 at, u8 *buf, size_t n)
+{
+	const struct ec_request *r = ctx;
+
+	memcpy(r->data + at, buf, n);
+	return 0;
+}
+
+static void file_progress(void *ctx, u64 done)
+{
+	const struct ec_request *r = ctx;
+
+	/* the data before their number */
+	smp_store_release(&r->rec->progress, (u32)done);
+}
+
+static void run_foe(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
+{
+	struct ec_foe f = {
+		.write = ec_request_writes(r), .password = r->vendor, .name = (char *)r->buf,
+		.name_len = ec_foe_name_len((char *)r->buf, EC_FOE_NAME),
+	};
+	struct ec_foe_file file = {
+		.size = r->size, .copy = f.write ? file_out : file_in, .progress = file_progress,
+		.ctx = r,
+	};
+	int ret = ec_foe_transfer(&s->mbox, &f, &file, l);
+
+	r->res.err = ret == -EREMOTEIO ? -EIO : ret == -EALREADY ? -EBUSY : ret;
+	r->res.got = ret || f.write ? 0 : f.size;
+	r->res.code = f.error;
+}
+
 /**
  * ec_request_run() - execute a request
  * @r: request that ec_request_accept() has accepted; @res is set
@@ -130,6 +177,9 @@ void ec_request_run(struct ec_request *r, struct ec_slave *s)
 		break;
 	case EC_REQUEST_VOE:
 		run_voe(r, s, &limit);
+		break;
+	case EC_REQUEST_FOE:
+		run_foe(r, s, &limit);
 		break;
 	}
 }

@@ -202,3 +202,21 @@ const char *ec_foe_error_text(u32 code)
 
 	return ec_text_find(texts, ARRAY_SIZE(texts), code < 0x8000 ? code | 0x8000 : code);
 }
+
+/**
+ * ec_foe_name_len() - check the name of a file on a slave
+ * @name: all bytes, or up to a zero
+ * @cap: bytes at @name
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: its length; 0 when it is empty or has a character that cannot be printed.
+ */
+size_t ec_foe_name_len(const char *name, size_t cap)
+{
+	size_t n;
+
+	for (n = 0; n < cap && name[n]; n++)
+		if (name[n] < ' ' || name[n] > '~')
+			return 0;
+	return n;
+}

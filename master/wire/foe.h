@@ -86,5 +86,6 @@ int ec_foe_tx(struct ec_foe *f, u8 *tx, size_t cap);
 int ec_foe_rx(struct ec_foe *f, const u8 *rx, size_t len, size_t room);
 int ec_foe_error_encode(u8 *tx, size_t cap, u32 error, const char *text);
 const char *ec_foe_error_text(u32 code);
+size_t ec_foe_name_len(const char *name, size_t cap);
 
 #endif

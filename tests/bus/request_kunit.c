@@ -210,7 +210,7 @@ static void req_bounds(struct kunit *test)
 {
 	static const u32 sizes[] = { 0, 5, 4096, 0x7fffffff, ~0u };
 	struct ec_ioc_sc_request big = { .kind = EC_REQUEST_SDO, .size = EC_MAX_SDO_SIZE + 1 };
-	struct ec_ioc_sc_request kind = { .kind = 4 }, none = { .config = 3 };
+	struct ec_ioc_sc_request kind = { .kind = 99 }, none = { .config = 3 };
 	struct cyc *c = prepare(test);
 	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), r = req_add(c, 0, EC_REQUEST_REG, 4), i;
 	u32 guard = req_add(c, 1, EC_REQUEST_SDO, 8);

@@ -76,6 +76,8 @@ static void lay_out(unsigned char *p)
 		ring->count = 2;
 		ring->data = 3072 + 16 * i;
 	}
+	if (fake.large)
+		fake_request(p, 0)->data = PAGE + EC_FOE_NAME;
 	/* the application before has started the first one */
 	fake_request(p, 0)->start = fake.running;
 	fake.area = p;
@@ -270,7 +272,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		preset(arg);
 		((struct ec_ioc_activate *)arg)->image_size = fake.image_size;
 		((struct ec_ioc_activate *)arg)->status_size = STATUS_SIZE;
-		((struct ec_ioc_activate *)arg)->request_size = PAGE;
+		((struct ec_ioc_activate *)arg)->request_size = PAGE + fake.large;
 		((struct ec_ioc_activate *)arg)->exchange_size = fake.exchange_size;
 		((struct ec_ioc_activate *)arg)->taken_over = fake.running != 0;
 		break;

@@ -106,6 +106,7 @@ static void slave_config(void)
 	YES(!ecrt_slave_config_create_sdo_request_complete(NULL, 1, 4));
 	YES(!ecrt_slave_config_create_soe_request(NULL, 0, 1, 4));
 	YES(!ecrt_slave_config_create_voe_handler(NULL, 4));
+	YES(!ecrt_slave_config_create_foe_request(NULL, 4));
 	IS(ecrt_slave_config_idn(NULL, 0, 1, EC_AL_STATE_PREOP, data, 1), -EINVAL);
 	IS(ecrt_slave_config_state(NULL, &state), -EINVAL);
 	IS(ecrt_slave_config_flag(NULL, "a", 1), -EINVAL);
@@ -169,6 +170,17 @@ static void requests(void)
 	IS(ecrt_soe_request_write(NULL), -EINVAL);
 	IS(ecrt_soe_request_read(NULL), -EINVAL);
 	IS(ecrt_soe_request_cancel(NULL), -EINVAL);
+	IS(ecrt_foe_request_file(NULL, "a", 0), -EINVAL);
+	IS(ecrt_foe_request_timeout(NULL, 1), -EINVAL);
+	YES(!ecrt_foe_request_data(NULL));
+	IS(ecrt_foe_request_data_size(NULL), 0);
+	IS(ecrt_foe_request_state(NULL), EC_REQUEST_ERROR);
+	IS(ecrt_foe_request_progress(NULL), 0);
+	IS(ecrt_foe_request_result(NULL), -EINVAL);
+	IS(ecrt_foe_request_error_code(NULL), 0);
+	IS(ecrt_foe_request_write(NULL, 1), -EINVAL);
+	IS(ecrt_foe_request_read(NULL), -EINVAL);
+	IS(ecrt_foe_request_cancel(NULL), -EINVAL);
 	IS(ecrt_voe_handler_send_header(NULL, 1, 1), -EINVAL);
 	IS(ecrt_voe_handler_received_header(NULL, NULL, NULL), -EINVAL);
 	YES(!ecrt_voe_handler_data(NULL));
