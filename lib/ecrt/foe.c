@@ -2,6 +2,19 @@
 /* Files of slaves (FoE), read and written at once, and by requests beside a cycle. */
 #include "ecrt_int.h"
 
+/* Length of a name; 0 for one that no slave can have. */
+static size_t name_length(const char *name)
+{
+	size_t n = 0;
+
+	while (name && n <= EC_FOE_NAME && name[n]) {
+		if (name[n] < ' ' || name[n] > '~')
+			return 0;
+		n++;
+	}
+	return n > EC_FOE_NAME ? 0 : n;
+}
+
 /* at once --------------------------------------------------------------------*/
 
 /* @error_code: the slave's when it refuses, and 0 otherwise; may be NULL */
@@ -10,13 +23,13 @@ static int transfer(ec_master_t *master, unsigned int cmd, const char *name,
 {
 	bool read = cmd == EC_IOC_FOE_READ;
 	const char *verb = read ? "read" : "write", *way = read ? "of" : "to";
-	size_t len = name ? strlen(name) : 0;
+	size_t len = name_length(name);
 	int ret;
 
-	if (!len || len > sizeof(i->name))
+	if (!len)
 		return ec_fail(master, -EINVAL,
-			       "%s a file %s slave %u by a name of %zu characters, allowed 1 to %zu",
-			       verb, way, i->position, len, sizeof(i->name));
+			       "%s a file %s slave %u without a name of 1 to %d printable characters",
+			       verb, way, i->position, EC_FOE_NAME);
 	memcpy(i->name, name, len);
 	ret = ec_do(master, cmd, i, "%s file '%s' %s slave %u", verb, name, way, i->position);
 	if (ret == -EIO && error_code)
@@ -148,13 +161,9 @@ EXPORT_SYMBOL_GPL(ecrt_slave_config_create_foe_request);
 
 int ecrt_foe_request_file(ec_foe_request_t *req, const char *file_name, uint32_t password)
 {
-	size_t len = 0;
+	size_t len = name_length(file_name);
 
-	if (!req || !file_name)
-		return -EINVAL;
-	while (len <= sizeof(req->name) && file_name[len])
-		len++;
-	if (!len || len > sizeof(req->name))
+	if (!req || !len)
 		return -EINVAL;
 	if (poll_file(req) == EC_REQUEST_BUSY)
 		return -EBUSY;

@@ -34,6 +34,7 @@ static void read_at_once(ec_master_t *m)
 	CHECK(!memcmp(arg->name, longest, 64));
 	calls = fake.calls;
 	CHECK(ecrt_master_foe_read(m, 3, "", 0, b, 8, &n, &error, 0) == -EINVAL);
+	CHECK(ecrt_master_foe_read(m, 3, "a\nb", 0, b, 8, &n, &error, 0) == -EINVAL);
 	CHECK(ecrt_master_foe_read(m, 3, NULL, 0, b, 8, &n, &error, 0) == -EINVAL);
 	CHECK(ecrt_master_foe_read(m, 3, "a", 0, NULL, 8, &n, &error, 0) == -EINVAL);
 	CHECK(ecrt_master_foe_read(m, 3, "a", 0, b, 8, NULL, &error, 0) == -EINVAL);
@@ -96,6 +97,7 @@ static void names(ec_foe_request_t *r)
 {
 	CHECK(ecrt_foe_request_file(r, NULL, 0) == -EINVAL);
 	CHECK(ecrt_foe_request_file(r, "", 0) == -EINVAL);
+	CHECK(ecrt_foe_request_file(r, "a\177", 0) == -EINVAL);
 	CHECK(ecrt_foe_request_file(r, "0123456789abcdef0123456789abcdef0123456789abcdef"
 				    "0123456789abcdef0", 0) == -EINVAL);
 	CHECK(ecrt_foe_request_read(r) == -EINVAL);	/* none yet */
