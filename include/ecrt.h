@@ -113,6 +113,8 @@
 #define EC_HAVE_DOMAIN_AGE
 /* ecrt_sdo_request_cancel(), ecrt_soe_request_cancel() */
 #define EC_HAVE_REQUEST_CANCEL
+/* ecrt_master_sdo_info_*(), ec_sdo_info_request_t: object dictionary of slaves */
+#define EC_HAVE_SDO_INFO
 /* ecrt_master_foe_read(), ecrt_master_foe_write(): files of slaves */
 #define EC_HAVE_FOE
 /* ecrt_slave_config_create_foe_request() and its requests */
@@ -157,6 +159,9 @@ typedef struct ec_sdo_request ec_sdo_request_t;
 
 struct ec_soe_request;
 typedef struct ec_soe_request ec_soe_request_t;
+
+struct ec_sdo_info_request;
+typedef struct ec_sdo_info_request ec_sdo_info_request_t;
 
 struct ec_foe_request;
 typedef struct ec_foe_request ec_foe_request_t;
@@ -1265,6 +1270,100 @@ EC_PUBLIC_API int ecrt_master_sdo_upload_complete(ec_master_t *master,
 		size_t target_size, size_t *result_size, uint32_t *abort_code);
 #endif
 
+#ifdef EC_HAVE_SDO_INFO
+/**
+ * struct ec_sdo_object_info_t - description of an object (ETG.1000.6 5.6.3)
+ * @index: object
+ * @data_type: of a variable; CoE data type, for example 7: UDINT
+ * @max_subindex: highest subindex
+ * @object_code: 7 variable, 8 array, 9 record
+ * @name: with terminator, cut after 63 bytes; character set of the slave
+ */
+typedef struct {
+	uint16_t index;
+	uint16_t data_type;
+	uint8_t max_subindex;
+	uint8_t object_code;
+	char name[EC_MAX_STRING_LENGTH];
+} ec_sdo_object_info_t;
+
+/**
+ * struct ec_sdo_entry_info_t - description of an entry of an object (ETG.1000.6 5.6.3)
+ * @index: object
+ * @subindex: entry
+ * @data_type: CoE data type
+ * @bit_length: of the value
+ * @access: bits 0 to 2: may be read in PREOP, SAFEOP, OP; bits 3 to 5: may be written in these;
+ *	bit 6: may be mapped to an output, bit 7: to an input
+ * @name: with terminator, cut after 63 bytes; character set of the slave
+ */
+typedef struct {
+	uint16_t index;
+	uint8_t subindex;
+	uint16_t data_type;
+	uint16_t bit_length;
+	uint16_t access;
+	char name[EC_MAX_STRING_LENGTH];
+} ec_sdo_entry_info_t;
+
+/**
+ * ecrt_master_sdo_info_list() - read a list of the objects of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring; aliases have no effect
+ * @list_type: 1 all objects, 2 those for outputs, 3 for inputs, 4 for device replacement, 5 for
+ *	startup; 0: the number of objects in each of these five lists
+ * @target: out: indexes in the byte order of the machine
+ * @target_count: how many fit there
+ * @result_count: out: how many there are; on failure untouched in userspace, 0 in the kernel
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * Extension (%EC_HAVE_SDO_INFO). SDO information service of CoE (ETG.1000.6 5.6.3).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-ENOBUFS more than @target_count or than 32768, nothing is copied; otherwise as
+ * ecrt_master_sdo_download().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_info_list(ec_master_t *master,
+		uint16_t slave_position, uint8_t list_type, uint16_t *target,
+		size_t target_count, size_t *result_count, uint32_t *abort_code);
+
+/**
+ * ecrt_master_sdo_info_object() - read the description of an object of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @index: object
+ * @info: out; on failure untouched
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; %-ENOBUFS a description of more than 4096 bytes; otherwise as
+ * ecrt_master_sdo_download().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_info_object(ec_master_t *master,
+		uint16_t slave_position, uint16_t index,
+		ec_sdo_object_info_t *info, uint32_t *abort_code);
+
+/**
+ * ecrt_master_sdo_info_entry() - read the description of an entry of an object
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @index: object
+ * @subindex: entry; a gap between the subindexes gives %-EIO
+ * @info: out; on failure untouched
+ * @abort_code: as in ecrt_master_sdo_download()
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ecrt_master_sdo_info_object().
+ */
+EC_PUBLIC_API int ecrt_master_sdo_info_entry(ec_master_t *master,
+		uint16_t slave_position, uint16_t index, uint8_t subindex,
+		ec_sdo_entry_info_t *info, uint32_t *abort_code);
+#endif
+
 #ifdef EC_HAVE_FOE
 /* bytes of the name of a file on a slave, at most */
 #define EC_FOE_FILE_NAME_SIZE	64
@@ -1779,6 +1878,20 @@ ecrt_slave_config_create_sdo_request_complete(ec_slave_config_t *sc,
 EC_PUBLIC_API ec_soe_request_t *ecrt_slave_config_create_soe_request(
 		ec_slave_config_t *sc, uint8_t drive_no, uint16_t idn,
 		size_t size);
+
+/**
+ * ecrt_slave_config_create_sdo_info_request() - create a request for the object dictionary
+ * @sc: slave configuration
+ * @size: buffer size, bytes, at most 65536: 2 for each object of a list; 64 hold most
+ *	descriptions
+ *
+ * Extension (%EC_HAVE_SDO_INFO). It is freed with @sc.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: request; NULL on failure, with errno set.
+ */
+EC_PUBLIC_API ec_sdo_info_request_t *
+ecrt_slave_config_create_sdo_info_request(ec_slave_config_t *sc, size_t size);
 
 /**
  * ecrt_slave_config_create_foe_request() - create a request that reads and writes files
@@ -2431,6 +2544,147 @@ EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
  */
 EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
 
+#ifdef EC_HAVE_SDO_INFO
+/**
+ * ecrt_sdo_info_request_list() - start reading a list of objects
+ * @req: request that is not BUSY, of an active master
+ * @list_type: as in ecrt_master_sdo_info_list()
+ *
+ * Extension (%EC_HAVE_SDO_INFO). After SUCCESS the buffer has the indexes, 16 bits each,
+ * little-endian.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL unknown list, not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_list(ec_sdo_info_request_t *req,
+		uint8_t list_type);
+
+/**
+ * ecrt_sdo_info_request_object() - start reading the description of an object
+ * @req: request that is not BUSY, of an active master
+ * @index: object
+ *
+ * Extension (%EC_HAVE_SDO_INFO). ecrt_sdo_info_request_get_object() returns it.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_object(ec_sdo_info_request_t *req,
+		uint16_t index);
+
+/**
+ * ecrt_sdo_info_request_entry() - start reading the description of an entry
+ * @req: request that is not BUSY, of an active master
+ * @index: object
+ * @subindex: entry
+ *
+ * Extension (%EC_HAVE_SDO_INFO). ecrt_sdo_info_request_get_entry() returns it.
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: as ecrt_sdo_info_request_object().
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_entry(ec_sdo_info_request_t *req,
+		uint16_t index, uint8_t subindex);
+
+/**
+ * ecrt_sdo_info_request_timeout() - limit the time from start to transfer
+ * @req: request
+ * @timeout: as in ecrt_sdo_request_timeout()
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0; %-EINVAL @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_timeout(ec_sdo_info_request_t *req,
+		uint32_t timeout);
+
+/**
+ * ecrt_sdo_info_request_cancel() - end a request early
+ * @req: request of an active master
+ *
+ * Extension (%EC_HAVE_SDO_INFO). As ecrt_sdo_request_cancel().
+ *
+ * Context: The cycle owner. RT-safe, no system call.
+ * Return: 0; %-EINVAL not active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_cancel(ec_sdo_info_request_t *req);
+
+/**
+ * ecrt_sdo_info_request_data() - get the buffer of a request
+ * @req: request
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: the address, which does not change; NULL when @req is NULL.
+ */
+EC_PUBLIC_API uint8_t *ecrt_sdo_info_request_data(
+		const ec_sdo_info_request_t *req);
+
+/**
+ * ecrt_sdo_info_request_data_size() - get the size of the answer in the buffer
+ * @req: request
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: the size of creation, or, after SUCCESS, the bytes of the answer.
+ */
+EC_PUBLIC_API size_t ecrt_sdo_info_request_data_size(
+		const ec_sdo_info_request_t *req);
+
+/**
+ * ecrt_sdo_info_request_state() - get the state of a request
+ * @req: request
+ *
+ * Extension (%EC_HAVE_SDO_INFO). An answer that is larger than the buffer gives ERROR.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_sdo_info_request_state(
+		const ec_sdo_info_request_t *req);
+
+/**
+ * ecrt_sdo_info_request_get_object() - get the description of an object that was read
+ * @req: request whose state is SUCCESS after ecrt_sdo_info_request_object()
+ * @info: out
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0; %-EBADMSG the answer is too short; %-EINVAL @req has no such description.
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_get_object(
+		const ec_sdo_info_request_t *req, ec_sdo_object_info_t *info);
+
+/**
+ * ecrt_sdo_info_request_get_entry() - get the description of an entry that was read
+ * @req: request whose state is SUCCESS after ecrt_sdo_info_request_entry()
+ * @info: out
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: as ecrt_sdo_info_request_get_object().
+ */
+EC_PUBLIC_API int ecrt_sdo_info_request_get_entry(
+		const ec_sdo_info_request_t *req, ec_sdo_entry_info_t *info);
+
+/**
+ * ecrt_sdo_info_request_abort_code() - get the abort code of the slave
+ * @req: request
+ *
+ * Extension (%EC_HAVE_SDO_INFO).
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: abort code (ETG.1000.6 table 41) when the state is ERROR; 0: the slave gave none.
+ */
+EC_PUBLIC_API uint32_t ecrt_sdo_info_request_abort_code(
+		const ec_sdo_info_request_t *req);
+#endif
+
 #ifdef EC_HAVE_FOE_REQUESTS
 /**
  * ecrt_foe_request_file() - select the file on the slave
@@ -2438,11 +2692,10 @@ EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
  * @file_name: 1 to 64 printable characters; copied
  * @password: 0: none
  *
- * Extension (%EC_HAVE_FOE_REQUESTS). A transfer with a character that is not printable ends
- * with %-EINVAL.
+ * Extension (%EC_HAVE_FOE_REQUESTS).
  *
  * Context: One caller at a time. RT-safe, no system call.
- * Return: 0; %-EBUSY; %-EINVAL @file_name is NULL, empty or too long, or @req is NULL.
+ * Return: 0; %-EBUSY; %-EINVAL an invalid name, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_foe_request_file(ec_foe_request_t *req,
 		const char *file_name, uint32_t password);

@@ -549,6 +549,7 @@ struct ec_ioc_sc_timeout {
 #define EC_REQUEST_SOE		2
 #define EC_REQUEST_VOE		3
 #define EC_REQUEST_FOE		4
+#define EC_REQUEST_SDO_INFO	5
 
 struct ec_ioc_sc_request {
 	__u32 flags;

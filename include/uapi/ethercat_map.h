@@ -44,10 +44,10 @@ struct ec_request_record {
 	__u32 start;		/* differs from the last value, not 0 */
 	__u32 size;		/* bytes to write; registers: also to read */
 	__u32 timeout_ms;	/* limit of the start; 0: unlimited. Not for VoE */
-	__u16 index;		/* object; register address; IDN; VoE: type */
+	__u16 index;		/* object, or type of a list; register address; IDN; VoE: type */
 	__u8 subindex;		/* SoE: drive */
 	__u8 op;		/* EC_REQUEST_OP_* */
-	__u32 flags;		/* SDO: EC_SDO_FLAG_COMPLETE */
+	__u32 flags;		/* SDO: EC_SDO_FLAG_COMPLETE; SDO information: EC_SDO_INFO_* */
 	__u32 vendor_id;	/* VoE; FoE: password */
 	/* kernel */
 	__u32 done;		/* @start of the last finished request */

@@ -24,6 +24,7 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)
 	case EC_IOC_PDO_ENTRY:
 	case EC_IOC_SDO_UPLOAD:
 	case EC_IOC_SDO_DOWNLOAD:
+	case EC_IOC_SDO_INFO:
 	case EC_IOC_SOE_READ:
 	case EC_IOC_SOE_WRITE:
 	case EC_IOC_FOE_READ:

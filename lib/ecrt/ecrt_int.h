@@ -35,7 +35,7 @@
  * @index16: object, IDN, register, type of a VoE message
  * @subindex: or drive
  * @op: EC_REQUEST_OP_* of the last start
- * @flags: EC_SDO_FLAG_COMPLETE
+ * @flags: EC_SDO_FLAG_COMPLETE; of SDO information EC_SDO_INFO_*
  * @vendor_id: of a VoE message; password of a file
  * @got_vendor_id: of the VoE message read last
  * @got_type: likewise
@@ -74,6 +74,10 @@ struct ec_sdo_request {
 };
 
 struct ec_soe_request {
+	struct ec_app_request r;
+};
+
+struct ec_sdo_info_request {
 	struct ec_app_request r;
 };
 

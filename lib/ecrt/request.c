@@ -205,6 +205,7 @@ EXPORT_SYMBOL_GPL(function)
 
 DEFINE_DATA(const ec_reg_request_t *, ecrt_reg_request_data);
 DEFINE_DATA(const ec_sdo_request_t *, ecrt_sdo_request_data);
+DEFINE_DATA(const ec_sdo_info_request_t *, ecrt_sdo_info_request_data);
 DEFINE_DATA(const ec_soe_request_t *, ecrt_soe_request_data);
 DEFINE_DATA(const ec_voe_handler_t *, ecrt_voe_handler_data);
 DEFINE_DATA(const ec_foe_request_t *, ecrt_foe_request_data);
@@ -217,6 +218,7 @@ size_t function(type req) \
 EXPORT_SYMBOL_GPL(function)
 
 DEFINE_SIZE(const ec_sdo_request_t *, ecrt_sdo_request_data_size);
+DEFINE_SIZE(const ec_sdo_info_request_t *, ecrt_sdo_info_request_data_size);
 DEFINE_SIZE(const ec_soe_request_t *, ecrt_soe_request_data_size);
 DEFINE_SIZE(const ec_voe_handler_t *, ecrt_voe_handler_data_size);
 DEFINE_SIZE(const ec_foe_request_t *, ecrt_foe_request_data_size);
@@ -232,6 +234,7 @@ EXPORT_SYMBOL_GPL(function)
 DEFINE_STATE(const ec_reg_request_t *, ecrt_reg_request_state);
 DEFINE_STATE(EC_IN_KERNEL ec_sdo_request_t *, ecrt_sdo_request_state);
 DEFINE_STATE(EC_IN_KERNEL ec_soe_request_t *, ecrt_soe_request_state);
+DEFINE_STATE(const ec_sdo_info_request_t *, ecrt_sdo_info_request_state);
 DEFINE_STATE(ec_voe_handler_t *, ecrt_voe_handler_execute);
 
 #define DEFINE_READ(type, function, op) \
@@ -258,6 +261,7 @@ EXPORT_SYMBOL_GPL(function)
 
 DEFINE_TIMEOUT(ec_sdo_request_t *, ecrt_sdo_request_timeout);
 DEFINE_TIMEOUT(ec_soe_request_t *, ecrt_soe_request_timeout);
+DEFINE_TIMEOUT(ec_sdo_info_request_t *, ecrt_sdo_info_request_timeout);
 DEFINE_TIMEOUT(ec_foe_request_t *, ecrt_foe_request_timeout);
 
 #define DEFINE_CANCEL(type, function) \
@@ -269,6 +273,7 @@ EXPORT_SYMBOL_GPL(function)
 
 DEFINE_CANCEL(ec_sdo_request_t *, ecrt_sdo_request_cancel);
 DEFINE_CANCEL(ec_soe_request_t *, ecrt_soe_request_cancel);
+DEFINE_CANCEL(ec_sdo_info_request_t *, ecrt_sdo_info_request_cancel);
 
 /* registers ----------------------------------------------------------------*/
 

@@ -12,6 +12,7 @@ static const u32 limits[] = {
 	[EC_REQUEST_SOE] = EC_MAX_SOE_SIZE,
 	[EC_REQUEST_VOE] = EC_MAX_VOE_SIZE,
 	[EC_REQUEST_FOE] = EC_MAX_FOE_SIZE,
+	[EC_REQUEST_SDO_INFO] = EC_MAX_SDO_SIZE,
 };
 
 int ec_ioc_sc_request(struct ec_call *call)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * Requests of the application that run beside its cycle: SDOs, registers, IDNs,
- * VoE messages, files.
+ * VoE messages, files, the object dictionary.
  *
  * Their records lie in memory the application has mapped. It starts one there
  * and says so with its next send, or counts it there for a cycle of the kernel;

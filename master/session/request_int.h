@@ -53,6 +53,7 @@ struct ec_request_result {
  * @sub: subindex or drive
  * @op: EC_REQUEST_OP_*
  * @complete: SDO: complete access
+ * @what: SDO information: EC_SDO_INFO_*
  * @vendor: VoE: vendor id; FoE: password
  * @size: bytes to transfer; of a read at most
  * @stop: the application has cancelled it, or its session has ended
@@ -73,6 +74,7 @@ struct ec_request {
 	u8 sub;
 	u8 op;
 	bool complete;
+	u8 what;
 	u32 vendor;
 	u32 size;
 	bool stop;

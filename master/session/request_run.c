@@ -7,6 +7,7 @@
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
 #include "../mailbox/voe.h"
+#include "../wire/sdoinfo.h"
 #include "../wire/voe.h"
 #include "../link/xfer.h"
 
@@ -19,7 +20,26 @@ static const u8 ops[] = {
 	[EC_REQUEST_VOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE) |
 			   BIT(EC_REQUEST_OP_READ_NOW),
 	[EC_REQUEST_FOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
+	[EC_REQUEST_SDO_INFO] = BIT(EC_REQUEST_OP_READ),
 };
+
+/* The meaning of the flags depends on the kind. */
+static int accept_flags(struct ec_request *r, u32 flags)
+{
+	switch (r->kind) {
+	case EC_REQUEST_SDO:
+		r->complete = flags & EC_SDO_FLAG_COMPLETE;
+		return flags & ~EC_SDO_FLAG_COMPLETE ? -EOPNOTSUPP : 0;
+	case EC_REQUEST_SDO_INFO:
+		if (flags != EC_SDO_INFO_LIST && flags != EC_SDO_INFO_OBJECT &&
+		    flags != EC_SDO_INFO_ENTRY)
+			return -EINVAL;
+		r->what = flags;
+		return 0;
+	default:
+		return flags ? -EOPNOTSUPP : 0;
+	}
+}
 
 /**
  * ec_request_accept() - check a start of the application
@@ -32,11 +52,13 @@ static const u8 ops[] = {
  */
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size)
 {
+	int ret;
+
 	if (r->op > EC_REQUEST_OP_READ_NOW || !(ops[r->kind] & BIT(r->op)))
 		return -EINVAL;
-	if (flags & ~(r->kind == EC_REQUEST_SDO ? EC_SDO_FLAG_COMPLETE : 0))
-		return -EOPNOTSUPP;
-	r->complete = flags & EC_SDO_FLAG_COMPLETE;
+	ret = accept_flags(r, flags);
+	if (ret)
+		return ret;
 	if (r->kind == EC_REQUEST_VOE)	/* the whole operation has a limit */
 		r->timeout_ms = EC_VOE_TIMEOUT_MS;
 	if (r->kind != EC_REQUEST_REG && !ec_request_writes(r))
@@ -82,6 +104,16 @@ static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 	else
 		r->res.err = ec_coe_upload(&s->mbox, r->index, r->sub, r->complete, r->buf,
 					   r->size, &r->res.got, &r->res.code, l);
+}
+
+static void run_info(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
+{
+	struct ec_sdoinfo info;
+
+	ec_sdoinfo_init(&info, r->what, r->index, r->sub, r->buf, r->size);
+	r->res.err = ec_coe_info(&s->mbox, &info, l);
+	r->res.got = info.size;
+	r->res.code = info.abort;
 }
 
 static void run_soe(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
@@ -180,6 +212,9 @@ void ec_request_run(struct ec_request *r, struct ec_slave *s)
 		break;
 	case EC_REQUEST_FOE:
 		run_foe(r, s, &limit);
+		break;
+	case EC_REQUEST_SDO_INFO:
+		run_info(r, s, &limit);
 		break;
 	}
 }

@@ -149,8 +149,8 @@ kernel_declares_list() {
 library_works() {
 	$CC -std=gnu11 $warn -Wno-pedantic $san -D_GNU_SOURCE \
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close,--wrap=posix_fadvise \
-		-pthread -o "$o/session" session.c request.c soe.c foe.c eoe.c extension.c rules.c \
-		kernel_cycle.c fake.c \
+		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
+		extension.c rules.c kernel_cycle.c fake.c \
 		"$top"/lib/*.c "$top"/lib/ecrt/*.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }

@@ -128,6 +128,22 @@ static void answer_sdo(struct ec_ioc_sdo *sdo)
 	}
 }
 
+static void answer_info(struct ec_ioc_sdo_info *i)
+{
+	static const char *const answers[] = {
+		[EC_SDO_INFO_LIST] = "\0\x10\x18\x10",
+		[EC_SDO_INFO_OBJECT] = "\x18\x10\x23\0\4\x09" "Identity",
+		/* a unit precedes the name */
+		[EC_SDO_INFO_ENTRY] = "\x18\x10\1\x08\7\0\x20\0\7\0\x11\x22" "Vendor",
+	};
+	static const unsigned int sizes[] = {
+		[EC_SDO_INFO_LIST] = 4, [EC_SDO_INFO_OBJECT] = 14, [EC_SDO_INFO_ENTRY] = 18,
+	};
+
+	memcpy((void *)(uintptr_t)i->data, answers[i->what], sizes[i->what]);
+	i->size = fake.answer ? fake.answer : sizes[i->what];
+}
+
 static int reg_entry(struct ec_ioc_reg_entry *r)
 {
 	r->offset = r->entry_index == 0x7000 ? 3 : 8;
@@ -203,6 +219,8 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 			((struct ec_ioc_sdo *)arg)->abort_code = 0x06020000;
 		if (cmd == EC_IOC_SOE_READ || cmd == EC_IOC_SOE_WRITE)
 			((struct ec_ioc_soe *)arg)->error_code = 0x1001;
+		if (cmd == EC_IOC_SDO_INFO)
+			((struct ec_ioc_sdo_info *)arg)->abort_code = 0x06020000;
 		if (cmd == EC_IOC_FOE_READ || cmd == EC_IOC_FOE_WRITE)
 			((struct ec_ioc_foe *)arg)->error_code = 0x8001;
 		errno = fake.err;
@@ -255,6 +273,9 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		return reg_entry(arg);
 	case EC_IOC_SDO_UPLOAD:
 		answer_sdo(arg);
+		break;
+	case EC_IOC_SDO_INFO:
+		answer_info(arg);
 		break;
 	case EC_IOC_CONFIG_WHY:
 		strcpy(((struct ec_ioc_config_why *)arg)->text,

@@ -498,6 +498,7 @@ int main(void)
 	requests();
 	idns_and_vendor_messages();
 	files();
+	dictionary();
 	failures += kernel_cycle();
 	return failures != 0;
 }

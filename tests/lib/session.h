@@ -20,6 +20,7 @@ extern int failures;
 ec_master_t *start(void);
 void requests(void);
 void idns_and_vendor_messages(void);
+void dictionary(void);
 void files(void);
 void eoe(void);
 void extensions(void);

@@ -50,6 +50,7 @@ group() {
 	group request
 }
 @test "files of slaves" { group foe; }
+@test "object dictionary of slaves" { group dict; }
 @test "IDNs, VoE messages, whole objects" {
 	group soe
 	# what it was told at startup, and by the tool

@@ -66,7 +66,7 @@ struct api_group {
 extern const struct api_case open_cases[], info_cases[], config_cases[], pdo_cases[],
 	cycle_cases[], dc_cases[], request_cases[], kcycle_cases[], null_cases[], access_cases[],
 	after_cases[], layout_cases[], extension_cases[], lcec_cases[], ros2_cases[], beside_cases[],
-	soe_cases[], foe_cases[],
+	soe_cases[], foe_cases[], dict_cases[],
 	syscall_cases[];
 
 /* the segment, see tests/system/api.bats */

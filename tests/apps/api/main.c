@@ -17,6 +17,7 @@ static const struct api_group groups[] = {
 	{ "layout", layout_cases },
 	{ "extension", extension_cases },
 	{ "foe", foe_cases },
+	{ "dict", dict_cases },
 	{ "lcec", lcec_cases }, { "ros2", ros2_cases }, { "beside", beside_cases },
 	{ "soe", soe_cases },
 	{ "syscalls", syscall_cases },

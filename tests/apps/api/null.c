@@ -18,6 +18,9 @@ static void master(void)
 		ec_pdo_entry_info_t entry;
 		ec_cycle_config_t cycle;
 		ec_cycle_state_t cycle_state;
+		ec_sdo_object_info_t object;
+		ec_sdo_entry_info_t described;
+		uint16_t list[2];
 	} u;
 	uint8_t data[4] = { 0 };
 	uint64_t time64;
@@ -59,6 +62,9 @@ static void master(void)
 	ecrt_master_deactivate_slaves(NULL);
 	IS(ecrt_master_sdo_upload_complete(NULL, 0, 1, data, 4, &size, &time), -EINVAL);
 	IS(ecrt_master_foe_read(NULL, 0, "a", 0, data, 4, &size, &time, 0), -EINVAL);
+	IS(ecrt_master_sdo_info_list(NULL, 0, 1, u.list, 2, &size, &time), -EINVAL);
+	IS(ecrt_master_sdo_info_object(NULL, 0, 1, &u.object, &time), -EINVAL);
+	IS(ecrt_master_sdo_info_entry(NULL, 0, 1, 1, &u.described, &time), -EINVAL);
 	IS(ecrt_master_foe_write(NULL, 0, "a", 0, data, 4, &time, 0), -EINVAL);
 	ecrt_master_64bit_reference_clock_time_queue(NULL);
 	IS(ecrt_master_64bit_reference_clock_time(NULL, &time64), -EINVAL);
@@ -107,6 +113,7 @@ static void slave_config(void)
 	YES(!ecrt_slave_config_create_soe_request(NULL, 0, 1, 4));
 	YES(!ecrt_slave_config_create_voe_handler(NULL, 4));
 	YES(!ecrt_slave_config_create_foe_request(NULL, 4));
+	YES(!ecrt_slave_config_create_sdo_info_request(NULL, 4));
 	IS(ecrt_slave_config_idn(NULL, 0, 1, EC_AL_STATE_PREOP, data, 1), -EINVAL);
 	IS(ecrt_slave_config_state(NULL, &state), -EINVAL);
 	IS(ecrt_slave_config_flag(NULL, "a", 1), -EINVAL);
@@ -170,6 +177,17 @@ static void requests(void)
 	IS(ecrt_soe_request_write(NULL), -EINVAL);
 	IS(ecrt_soe_request_read(NULL), -EINVAL);
 	IS(ecrt_soe_request_cancel(NULL), -EINVAL);
+	IS(ecrt_sdo_info_request_list(NULL, 1), -EINVAL);
+	IS(ecrt_sdo_info_request_object(NULL, 1), -EINVAL);
+	IS(ecrt_sdo_info_request_entry(NULL, 1, 1), -EINVAL);
+	IS(ecrt_sdo_info_request_timeout(NULL, 1), -EINVAL);
+	IS(ecrt_sdo_info_request_cancel(NULL), -EINVAL);
+	YES(!ecrt_sdo_info_request_data(NULL));
+	IS(ecrt_sdo_info_request_data_size(NULL), 0);
+	IS(ecrt_sdo_info_request_state(NULL), EC_REQUEST_ERROR);
+	IS(ecrt_sdo_info_request_get_object(NULL, NULL), -EINVAL);
+	IS(ecrt_sdo_info_request_get_entry(NULL, NULL), -EINVAL);
+	IS(ecrt_sdo_info_request_abort_code(NULL), 0);
 	IS(ecrt_foe_request_file(NULL, "a", 0), -EINVAL);
 	IS(ecrt_foe_request_timeout(NULL, 1), -EINVAL);
 	YES(!ecrt_foe_request_data(NULL));
