@@ -1362,6 +1362,22 @@ EC_PUBLIC_API int ecrt_master_sdo_info_object(ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_sdo_info_entry(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
 		ec_sdo_entry_info_t *info, uint32_t *abort_code);
+
+/**
+ * ecrt_master_sdo_info_forget() - read the object dictionary of a slave again from now on
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ *
+ * Extension (%EC_HAVE_SDO_INFO). The master keeps answers about the dictionary, up to 64 KiB per
+ * slave, until the slave goes through INIT or BOOT; a second reading needs no bus traffic. Call
+ * this function after a change of the dictionary in another state, for example by an SDO download
+ * that configures modules.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL no such slave, or @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_sdo_info_forget(ec_master_t *master,
+		uint16_t slave_position);
 #endif
 
 #ifdef EC_HAVE_FOE

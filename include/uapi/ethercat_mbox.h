@@ -26,10 +26,12 @@ struct ec_ioc_sdo {
 #define EC_SDO_INFO_LIST	1
 #define EC_SDO_INFO_OBJECT	3
 #define EC_SDO_INFO_ENTRY	5
+#define EC_SDO_INFO_FORGET	0x80	/* drop the kept answers of the slave; no data */
 
 /*
  * Object dictionary of a slave, as it describes itself (SDO information). In data the answer of
  * ETG.1000.6 clause 5.6.3: indexes (of list 0: five counts), or the description with its index.
+ * The master keeps up to 64 KiB of answers per slave until the slave goes through INIT or BOOT.
  */
 struct ec_ioc_sdo_info {
 	__u32 flags;

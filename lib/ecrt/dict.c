@@ -159,6 +159,15 @@ int ecrt_master_sdo_info_entry(ec_master_t *master, uint16_t slave_position, uin
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_info_entry);
 
+int ecrt_master_sdo_info_forget(ec_master_t *master, uint16_t slave_position)
+{
+	struct ec_ioc_sdo_info i = { .position = slave_position, .what = EC_SDO_INFO_FORGET };
+
+	return ec_do(master, EC_IOC_SDO_INFO, &i, "forget the object dictionary of slave %u",
+		     slave_position);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_sdo_info_forget);
+
 /* requests -----------------------------------------------------------------*/
 
 ec_sdo_info_request_t *ecrt_slave_config_create_sdo_info_request(ec_slave_config_t *sc,

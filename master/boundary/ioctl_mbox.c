@@ -111,13 +111,18 @@ int ec_ioc_sdo_info(struct ec_call *call)
 	struct ec_sdoinfo info;
 	int ret;
 
+	if (i->what == EC_SDO_INFO_FORGET) {
+		ec_dict_forget(&call->slave->dict);
+		i->size = 0;
+		return 0;
+	}
 	if (i->what != EC_SDO_INFO_LIST && i->what != EC_SDO_INFO_OBJECT &&
 	    i->what != EC_SDO_INFO_ENTRY)
 		return ec_refuse(call, -EINVAL, "unknown kind of SDO information %u", i->what);
 	if (i->subindex && i->what != EC_SDO_INFO_ENTRY)
 		return ec_refuse(call, -EINVAL, "only entries have a subindex");
 	ec_sdoinfo_init(&info, i->what, i->index, i->subindex, call->data, call->size);
-	ret = ec_coe_info(&call->slave->mbox, &info, &limit);
+	ret = ec_dict_info(call->slave, &info, &limit);
 	i->abort_code = info.abort;
 	ret = info_failed(call, i, ret);
 	i->size = ret ? 0 : info.size;

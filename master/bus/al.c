@@ -101,16 +101,19 @@ int ec_al_ack(struct ec_slave *slave)
  */
 int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 {
+	u8 from = READ_ONCE(slave->al_status) & EC_AL_STATE_MASK;
 	u16 code;
 	u64 until;
 	int ret;
 
+	/* it may come back with another dictionary */
+	if (from < EC_AL_PREOP || from == EC_AL_BOOT || state < EC_AL_PREOP || state == EC_AL_BOOT)
+		ec_dict_forget(&slave->dict);
 	if (!timeout_ms)
-		timeout_ms = ec_al_timeout_ms(READ_ONCE(slave->al_status) & EC_AL_STATE_MASK,
-					      state);
+		timeout_ms = ec_al_timeout_ms(from, state);
 	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
 	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
-		     ec_al_state_name(READ_ONCE(slave->al_status) & EC_AL_STATE_MASK), timeout_ms);
+		     ec_al_state_name(from), timeout_ms);
 	ret = request(slave, state, until);
 	if (!ret)
 		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);

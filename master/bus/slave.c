@@ -59,6 +59,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->mbox.position = &s->position;
 	s->mbox.station = station;
 	ec_mbox_init(&s->mbox);
+	ec_dict_init(&s->dict);
 	for (p = 0; p < EC_MAX_PORT; p++)
 		s->next[p] = EC_UAPI_NONE16;
 	return s;
@@ -73,6 +74,7 @@ static void release(struct kref *kref)
 		ec_pdo_list_clear(&s->sm_pdos[i]);
 	ec_pdo_list_clear(&s->free_pdos);
 	ec_names_free(s);
+	ec_dict_forget(&s->dict);
 	ec_mbox_exit(&s->mbox);
 	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
 	kvfree(s->sii);

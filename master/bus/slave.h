@@ -9,6 +9,7 @@
 #include <linux/workqueue.h>
 #include "../mailbox/mailbox.h"
 #include "bus.h"
+#include "dict.h"
 #include "names.h"
 #include "pdo.h"
 #include "../wire/al.h"
@@ -69,6 +70,7 @@
  * @names_done: the slave was asked for those its EEPROM does not have
  *
  * Changing:
+ * @dict: answers about its object dictionary
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
  * @al_reads: how often a worker has read the two: what was asked for before
@@ -136,6 +138,7 @@ struct ec_slave {
 	struct ec_names names;
 	bool names_done;
 
+	struct ec_dict dict;
 	u16 al_status;
 	u16 al_code;
 	u32 al_reads;

@@ -111,7 +111,7 @@ static void run_info(struct ec_request *r, struct ec_slave *s, const struct ec_m
 	struct ec_sdoinfo info;
 
 	ec_sdoinfo_init(&info, r->what, r->index, r->sub, r->buf, r->size);
-	r->res.err = ec_coe_info(&s->mbox, &info, l);
+	r->res.err = ec_dict_info(s, &info, l);
 	r->res.got = info.size;
 	r->res.code = info.abort;
 }

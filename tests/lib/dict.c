@@ -15,6 +15,7 @@ static void nobody(void)
 	CHECK(ecrt_master_sdo_info_list(NULL, 0, 1, list, 2, &n, NULL) == -EINVAL);
 	CHECK(ecrt_master_sdo_info_object(NULL, 0, 1, &o, NULL) == -EINVAL);
 	CHECK(ecrt_master_sdo_info_entry(NULL, 0, 1, 1, &e, NULL) == -EINVAL);
+	CHECK(ecrt_master_sdo_info_forget(NULL, 0) == -EINVAL);
 	CHECK(!ecrt_slave_config_create_sdo_info_request(NULL, 4));
 	CHECK(ecrt_sdo_info_request_list(NULL, 1) == -EINVAL);
 	CHECK(ecrt_sdo_info_request_object(NULL, 1) == -EINVAL);
@@ -72,6 +73,8 @@ static void descriptions(ec_master_t *m)
 	      e.access == 7 && !strcmp(e.name, "Vendor"));
 	CHECK(ecrt_master_sdo_info_object(m, 2, 0x1018, NULL, &abort) == -EINVAL);
 	CHECK(ecrt_master_sdo_info_entry(m, 2, 0x1018, 1, NULL, &abort) == -EINVAL);
+	CHECK(!ecrt_master_sdo_info_forget(m, 7) && arg->position == 7);
+	CHECK(arg->what == EC_SDO_INFO_FORGET && !arg->size);
 	/* shorter than any answer, without a name, longer than a name may be */
 	fake.answer = 5;
 	CHECK(ecrt_master_sdo_info_object(m, 2, 0x1018, &o, &abort) == -EBADMSG);

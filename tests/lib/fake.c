@@ -275,7 +275,8 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		answer_sdo(arg);
 		break;
 	case EC_IOC_SDO_INFO:
-		answer_info(arg);
+		if (((struct ec_ioc_sdo_info *)arg)->what != EC_SDO_INFO_FORGET)
+			answer_info(arg);
 		break;
 	case EC_IOC_CONFIG_WHY:
 		strcpy(((struct ec_ioc_config_why *)arg)->text,

@@ -26,6 +26,8 @@ static void at_once(void)
 	IS(CALL(ecrt_master_sdo_info_object)(m, MOTOR, 0x1018, &object, &abort), 0);
 	IS(object.max_subindex, 4);
 	IS(object.object_code, 9);
+	IS(CALL(ecrt_master_sdo_info_forget)(m, MOTOR), 0);
+	SAYS(CALL(ecrt_master_sdo_info_forget)(m, NOWHERE), -EINVAL);
 	IS(CALL(ecrt_master_sdo_info_entry)(m, MOTOR, 0x1018, 4, &entry, &abort), 0);
 	IS(entry.bit_length, 32);
 	YES(*entry.name && *object.name);

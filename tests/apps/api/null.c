@@ -63,6 +63,7 @@ static void master(void)
 	IS(ecrt_master_sdo_upload_complete(NULL, 0, 1, data, 4, &size, &time), -EINVAL);
 	IS(ecrt_master_foe_read(NULL, 0, "a", 0, data, 4, &size, &time, 0), -EINVAL);
 	IS(ecrt_master_sdo_info_list(NULL, 0, 1, u.list, 2, &size, &time), -EINVAL);
+	IS(ecrt_master_sdo_info_forget(NULL, 0), -EINVAL);
 	IS(ecrt_master_sdo_info_object(NULL, 0, 1, &u.object, &time), -EINVAL);
 	IS(ecrt_master_sdo_info_entry(NULL, 0, 1, 1, &u.described, &time), -EINVAL);
 	IS(ecrt_master_foe_write(NULL, 0, "a", 0, data, 4, &time, 0), -EINVAL);
