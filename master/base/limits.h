@@ -27,10 +27,10 @@
 #define EC_MAX_REQUEST_BYTES	(16 * 1024 * 1024)	/* of one session, emergencies included */
 #define EC_MAX_EMERG		1024	/* emergencies kept per configuration */
 #define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
-#define EC_MAX_DICT_BYTES	(64 * 1024)	/* answers about the dictionary of a slave that are kept */
+#define EC_MAX_DICT_BYTES	(64 * 1024)	/* kept answers of a slave */
 #define EC_MAX_SDO_MS		60000u	/* others wait for the mailbox meanwhile */
 #define EC_MAX_SOE_SIZE		(64 * 1024)	/* bytes; the length of a list has 16 bits */
-#define EC_MAX_FOE_SIZE		(15 * 1024 * 1024)	/* file of a request, of EC_MAX_REQUEST_BYTES */
+#define EC_MAX_FOE_SIZE		(15 * 1024 * 1024)	/* file of a request */
 #define EC_MAX_VOE_SIZE		1474	/* bytes; one message in one datagram */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
 #define EC_MAX_SII_BYTES	(512 * 1024)	/* larger EEPROMs are cut */

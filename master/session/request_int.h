@@ -116,7 +116,8 @@ struct ec_lane {
  * @kick: looks once
  * @watch: looks again and again while anything waits
  * @reqs: requests
- * @bufs: private copies of all data but files, allocated by the application that activates, as its memory
+ * @bufs: private copies of all data but files, allocated by the application that activates, as its
+ *	memory
  * @lanes: see struct ec_lane
  * @n_lanes: entries in @lanes
  */
