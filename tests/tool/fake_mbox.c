@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Fake master: the mailboxes of its slaves. */
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "fake.h"
+
+static int abort_sdo(struct ec_ioc_sdo *x, __u32 code)
+{
+	x->abort_code = code;
+	return fake_fail(EIO, "SDO aborted");
+}
+
+static int upload(struct ec_ioc_sdo *x)
+{
+	static const struct {
+		__u16 index;
+		__u8 sub, size;
+		const char *data;
+	} dict[] = {
+		{ 0x1008, 0, 8, "EL7201\0\0" },
+		{ 0x1018, 1, 4, "\x02\0\0\0" },
+		{ 0x1018, 2, 3, "\1\2\3" },
+		{ 0x6041, 0, 2, "\x60\x80" },
+		{ 0x6060, 0, 1, "\xff" },
+		{ 0x2000, 0, 4, "\0\0\xc0\x3f" },
+		{ 0x2002, 0, 12, "a\033[2J\302\233b\n\0\0\0" },
+	};
+	__u8 *to = (__u8 *)(uintptr_t)x->data;
+
+	if (x->index == 0x3000) {
+		if (x->size < 65536)
+			return fake_fail(EOVERFLOW, "the object has 65536 bytes");
+		memset(to, 'x', 65536);
+		x->size = 65536;
+		return 0;
+	}
+	if (x->index == 0x4000)
+		return fake_fail(ETIMEDOUT, "slave 2 has not answered for 1000 ms");
+	if (x->flags & EC_SDO_FLAG_COMPLETE) {
+		memcpy(to, "\4\0\2\0", 4);
+		x->size = 4;
+		return 0;
+	}
+	for (size_t i = 0; i < LEN(dict); i++)
+		if (dict[i].index == x->index && dict[i].sub == x->subindex) {
+			memcpy(to, dict[i].data, dict[i].size);
+			x->size = dict[i].size;
+			return 0;
+		}
+	return abort_sdo(x, x->index == 0x5001 ? 0x12345678 : 0x06020000);
+}
+
+/* answers of SDO information: description, or 0 for what is refused */
+static const struct {
+	__u16 index;
+	__u8 sub, object;
+	__u8 size;
+	const char *data;
+} infos[] = {
+	/* index, type, highest subindex, object code, name */
+	{ 0x1018, 0, 1, 14, "\x18\x10\x23\0\3\x09Identity" },
+	{ 0x1018, 0, 0, 13, "\x18\x10\0\0\5\0\x08\0\7\0Num" },
+	/* index, subindex, value info, type, bits, access, name */
+	{ 0x1018, 1, 0, 16, "\x18\x10\1\0\7\0\x20\0\7\0Vendor" },
+	{ 0x1018, 2, 0, 10, "\x18\x10\2\0\7\0\x20\0\0\0" },
+	{ 0x6060, 0, 1, 16, "\x60\x60\2\0\0\7a\033[2J\302\233b\n" },
+	{ 0x6060, 0, 0, 14, "\x60\x60\0\0\2\0\x08\0\xff\0Mode" },
+	{ 0x2002, 0, 1, 12, "\2\x20\x09\0\0\7Serial" },
+	{ 0x2002, 0, 0, 16, "\2\x20\0\0\x09\0\x60\0\x3f\0Serial" },
+	{ 0x1008, 0, 1, 10, "\x08\x10\x0a\0\0\7Name" },
+	{ 0x1008, 0, 0, 14, "\x08\x10\0\0\x0a\0\x40\0\x3f\0Name" },
+	/* an entry of a type that has no name, and a description cut off */
+	{ 0x5001, 0, 1, 12, "\1\x50\xff\x7f\0\7Vendor" },
+	{ 0x5001, 0, 0, 13, "\1\x50\0\0\xff\x7f\3\0\x3f\0Odd" },
+	{ 0x5002, 0, 1, 3, "\2\x50\xff" },
+};
+
+static int sdo_info(struct ec_ioc_sdo_info *x)
+{
+	static const char list[] = "\x18\x10\x60\x60\2\x20\x08\x10\1\x50\2\x50\3\x50";
+	__u8 *to = (__u8 *)(uintptr_t)x->data;
+
+	if (fake_bus("gone") && x->index == 0x6060)
+		return fake_fail(ENODEV, "no slave at ring position 2");
+	if (x->what == EC_SDO_INFO_LIST) {
+		x->size = sizeof(list) - 1;
+		memcpy(to, list, x->size);
+		return 0;
+	}
+	for (size_t i = 0; i < LEN(infos); i++) {
+		if (infos[i].index != x->index || infos[i].sub != x->subindex ||
+		    infos[i].object != (x->what == EC_SDO_INFO_OBJECT))
+			continue;
+		memcpy(to, infos[i].data, infos[i].size);
+		x->size = infos[i].size;
+		return 0;
+	}
+	x->abort_code = 0x06090011;
+	return fake_fail(EIO, "SDO information aborted");
+}
+
+static int emergencies(struct ec_ioc_emergencies *x)
+{
+	const struct ec_emergency e = {
+		.time_ns = 1764000000012345678, .code = 0x8130, .error_register = 0x11,
+		.data = { 1, 2, 3, 4, 0xff },
+	};
+
+	if (x->position != 2)
+		return 0;
+	x->total = fake_bus("two") ? 70000 : 2;
+	x->count = fake_bus("two") ? EC_EMERGENCIES : 2;
+	for (__u32 i = 0; i < x->count; i++)
+		x->entry[i] = e;
+	x->entry[1].code = 0;
+	return 0;
+}
+
+static int download(struct ec_ioc_sdo *x)
+{
+	char what[64];
+
+	if (x->index == 0x1018)
+		return abort_sdo(x, 0x06010002);
+	snprintf(what, sizeof(what), "sdo %u 0x%04x:%02x%s ", x->position, x->index, x->subindex,
+		 x->flags ? " C" : "");
+	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
+	return 0;
+}
+
+static int soe_error(struct ec_ioc_soe *x, __u16 code)
+{
+	x->error_code = code;
+	return fake_fail(EIO, "the slave refuses");
+}
+
+static int soe_read(struct ec_ioc_soe *x)
+{
+	static const struct {
+		__u16 idn;
+		__u8 size;
+		const char *data;
+	} idns[] = {
+		{ 15, 2, "\7\0" },
+		{ 30, 11, "\7\0\x10\0SIM 1.0" },
+		{ 0x8096, 2, "\x34\x12" },
+	};
+
+	if (x->drive > 1)
+		return soe_error(x, 0x800a);
+	if (x->idn == 99)
+		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
+	for (size_t i = 0; i < LEN(idns); i++)
+		if (idns[i].idn == x->idn) {
+			memcpy((void *)(uintptr_t)x->data, idns[i].data, idns[i].size);
+			x->size = idns[i].size;
+			return 0;
+		}
+	return soe_error(x, x->idn == 100 ? 0x7fff : 0x1001);
+}
+
+static int soe_write(struct ec_ioc_soe *x)
+{
+	char what[64];
+
+	if (x->idn == 30)
+		return soe_error(x, 0x7004);
+	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->position, x->drive, x->idn);
+	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
+	return 0;
+}
+
+static int foe_error(struct ec_ioc_foe *x, __u32 code)
+{
+	x->error_code = code;
+	return fake_fail(EIO, "file: error");
+}
+
+/* file "slow" takes 1.5 s, with progress after 0.5 s */
+static int foe_read(struct ec_ioc_foe *x)
+{
+	static const char content[] = "\1\2binary\n";
+	volatile __u64 *done = (volatile __u64 *)(uintptr_t)x->done;
+
+	if (!strcmp(x->name, "none"))
+		return foe_error(x, 0x8001);
+	if (!strcmp(x->name, "strange"))
+		return foe_error(x, 0x9999);
+	if (!strcmp(x->name, "mute"))
+		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
+	if (!strcmp(x->name, "slow")) {
+		usleep(500000);
+		*done = 5;
+		usleep(1000000);
+	}
+	x->size = x->password == 7 ? 0 : sizeof(content) - 1;
+	memcpy((void *)(uintptr_t)x->data, content, x->size);
+	*done = x->size;
+	return 0;
+}
+
+static int foe_write(struct ec_ioc_foe *x)
+{
+	char what[128];
+
+	if (!strcmp(x->name, "full"))
+		return foe_error(x, 0x8003);
+	snprintf(what, sizeof(what), "foe %u %.64s 0x%08x ", x->position, x->name, x->password);
+	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
+	return 0;
+}
+
+const struct ec_ip_params fake_net = {
+	.which = EC_IP_MAC | EC_IP_ADDRESS | EC_IP_MASK | EC_IP_HOSTNAME,
+	.mac = { 2, 0, 0, 0xec, 1, 7 }, .ip = { 192, 168, 0, 17 },
+	.mask = { 255, 255, 255, 0 }, .name = "mixer",
+};
+
+/* slave 2 has EoE, slave 1 has none, slave 0 refuses */
+static int ip(struct ec_ioc_ip *x, bool write)
+{
+	const struct ec_ip_params *p = &x->params;
+
+	if (x->position == 1)
+		return fake_fail(EPROTONOSUPPORT, "slave 1 has no EoE mailbox");
+	if (!x->position) {
+		x->result = 0x0201;
+		return fake_fail(EIO, "slave 0: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
+	}
+	if (!write) {
+		x->params = fake_net;
+		if (fake_bus("evil"))
+			memcpy(x->params.name, "\033[2J\302\233bbbbbbbbbbbbbbbbbbbbbbbbbb", 32);
+		return 0;
+	}
+	fake_record("ip %u 0x%02x %.32s\n", x->position, p->which, p->name);
+	fake_hex("", p->mac, sizeof(p->mac));
+	fake_hex("", p->ip, sizeof(p->ip));
+	fake_hex("", p->mask, sizeof(p->mask));
+	fake_hex("", p->gateway, sizeof(p->gateway));
+	fake_hex("", p->dns, sizeof(p->dns));
+	return 0;
+}
+
+int fake_mbox(unsigned long request, void *arg)
+{
+	switch (request) {
+	case EC_IOC_IP_GET:
+	case EC_IOC_IP_SET:
+		return ip(arg, request == EC_IOC_IP_SET);
+	case EC_IOC_SDO_UPLOAD:
+		return upload(arg);
+	case EC_IOC_SDO_DOWNLOAD:
+		return download(arg);
+	case EC_IOC_EMERGENCIES:
+		return emergencies(arg);
+	case EC_IOC_SDO_INFO:
+		return sdo_info(arg);
+	case EC_IOC_SOE_READ:
+		return soe_read(arg);
+	case EC_IOC_SOE_WRITE:
+		return soe_write(arg);
+	case EC_IOC_FOE_READ:
+		return foe_read(arg);
+	case EC_IOC_FOE_WRITE:
+		return foe_write(arg);
+	default:
+		return FAKE_OTHER;
+	}
+}
