@@ -149,47 +149,30 @@ static void text(const struct dev *d, const struct ec_ioc_slave *s, const struct
 	syncs(s->position, l);
 }
 
-static int each(const struct tool *t, struct dev *d)
+static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
+		 const struct ec_ioc_slave *s, bool several)
 {
-	struct slaves sel;
-	int ret = 0;
+	struct layout l;
 
-	if (dev_select(d, t, &sel, NULL))
+	(void)w, (void)t, (void)several;
+	if (layout_read(d, s, &l))
 		return 1;
-	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_array("slaves");
-	for (size_t i = 0; i < sel.n; i++) {
-		const struct ec_ioc_slave *s = &sel.v[i];
-		struct layout l;
-
-		if (layout_read(d, s, &l)) {
-			ret = 1;
-			continue;
-		}
-		if (l.n) {
-			out_object(NULL);
-			json(s, &l);
-			text(d, s, &l);
-			out_end();
-		}
-		layout_free(&l);
+	if (l.n) {
+		out_object(NULL);
+		json(s, &l);
+		text(d, s, &l);
+		out_end();
 	}
-	out_end();
-	out_end();
-	slaves_free(&sel);
-	return ret;
+	layout_free(&l);
+	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	int ret;
+	static const struct slave_walk walk = { .slave = slave };
 
 	(void)argc, (void)argv;
-	out_array("masters");
-	ret = dev_each(t, false, each);
-	out_end();
-	return ret;
+	return dev_each_slave(t, &walk);
 }
 
 const struct cmd cmd_cstruct = {

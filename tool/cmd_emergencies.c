@@ -29,12 +29,20 @@ static void entry(u16 position, const struct ec_emergency *e)
 	out_end();
 }
 
-static int slave(struct dev *d, const struct ec_ioc_slave *s, bool *any)
+static bool has_coe(const struct ec_ioc_slave *s)
+{
+	return s->mbox_protocols & EC_SII_PROTO_COE;
+}
+
+static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
+		 const struct ec_ioc_slave *s, bool several)
 {
 	struct ec_ioc_emergencies i = { .position = s->position };
 	int err = dev_ioctl(d, EC_IOC_EMERGENCIES, &i);
 	unsigned int n = min(i.count, (u16)EC_EMERGENCIES);
+	bool *any = w->ctx;
 
+	(void)t, (void)several;
 	if (err)
 		return dev_fail(d, err, "Master%u slave %u: cannot read the emergencies",
 				d->master, s->position);
@@ -51,40 +59,26 @@ static int slave(struct dev *d, const struct ec_ioc_slave *s, bool *any)
 	*any |= n;
 	return 0;
 }
-
-static int each(const struct tool *t, struct dev *d)
+static int end(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected)
 {
-	bool any = false;
-	struct slaves sel;
-	int ret = 0;
+	bool *any = w->ctx;
 
-	if (dev_select(d, t, &sel, NULL))
-		return 1;
-	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_array("slaves");
-	if (d->selected > 1)
-		out_text("Master%u\n", d->master);
-	for (size_t i = 0; i < sel.n; i++)
-		if (sel.v[i].mbox_protocols & EC_SII_PROTO_COE)
-			ret |= slave(d, &sel.v[i], &any);
-	if (!any && !ret)
+	(void)d, (void)taken, (void)selected;
+	if (!*any)
 		out_text("None.\n");
-	out_end();
-	out_end();
-	slaves_free(&sel);
-	return ret;
+	*any = false;
+	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	int ret;
+	bool any = false;
+	const struct slave_walk w = {
+		.title = true, .takes = has_coe, .slave = slave, .end = end, .ctx = &any,
+	};
 
 	(void)argc, (void)argv;
-	out_array("masters");
-	ret = dev_each(t, false, each);
-	out_end();
-	return ret;
+	return dev_each_slave(t, &w);
 }
 
 const struct cmd cmd_emergencies = {

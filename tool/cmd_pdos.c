@@ -103,54 +103,38 @@ static void matlab(const struct ec_ioc_slave *s, const struct layout *l)
 	out_text("\nend\n\n");
 }
 
-static int each(const struct tool *t, struct dev *d)
+static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
+		 const struct ec_ioc_slave *s, bool several)
 {
 	bool etherlab = t->skin && !strcmp(t->skin, "etherlab") && !out_is_json();
-	struct slaves sel;
-	int ret = 0;
+	struct layout l;
 
-	if (dev_select(d, t, &sel, NULL))
+	(void)w;
+	if (layout_read(d, s, &l))
 		return 1;
 	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_array("slaves");
-	for (size_t i = 0; i < sel.n; i++) {
-		struct layout l;
-
-		if (layout_read(d, &sel.v[i], &l)) {
-			ret = 1;
-			continue;
-		}
-		out_object(NULL);
-		out_u("position", sel.v[i].position, NULL);
-		if (l.n && !etherlab && (sel.n > 1 || d->selected > 1))
-			out_text("=== Master %u, Slave %u ===\n", d->master, sel.v[i].position);
-		out_array("sync_managers");
-		if (l.n && etherlab)
-			matlab(&sel.v[i], &l);
-		else
-			show(&l, t->verbosity < 0);
-		out_end();
-		out_end();
-		layout_free(&l);
-	}
+	out_u("position", s->position, NULL);
+	if (l.n && !etherlab && several)
+		out_text("=== Master %u, Slave %u ===\n", d->master, s->position);
+	out_array("sync_managers");
+	if (l.n && etherlab)
+		matlab(s, &l);
+	else
+		show(&l, t->verbosity < 0);
 	out_end();
 	out_end();
-	slaves_free(&sel);
-	return ret;
+	layout_free(&l);
+	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	int ret;
+	static const struct slave_walk walk = { .slave = slave };
 
 	(void)argc, (void)argv;
 	if (t->skin && strcmp(t->skin, "default") && strcmp(t->skin, "etherlab"))
 		return usage_error("unknown skin '%s': expected default or etherlab", t->skin);
-	out_array("masters");
-	ret = dev_each(t, false, each);
-	out_end();
-	return ret;
+	return dev_each_slave(t, &walk);
 }
 
 const struct cmd cmd_pdos = {

@@ -228,18 +228,20 @@ static bool describes(const struct ec_ioc_slave *s)
 	       (!s->coe_details || s->coe_details & EC_SII_COE_SDO_INFO);
 }
 
-static int slave(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s, bool header)
+static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
+		 const struct ec_ioc_slave *s, bool several)
 {
 	struct dict x = {
 		.t = t, .d = d, .position = s->position, .begin = now_s(), .buf = malloc(ROOM + 1),
 	};
 	int ret;
 
+	(void)w;
 	if (!x.buf)
 		return fail("out of memory");
 	out_object(NULL);
 	out_u("position", s->position, NULL);
-	if (header)
+	if (several)
 		out_text("=== Master %u, Slave %u ===\n", d->master, s->position);
 	out_array("objects");
 	ret = dictionary(&x);
@@ -249,41 +251,23 @@ static int slave(const struct tool *t, struct dev *d, const struct ec_ioc_slave 
 	return ret;
 }
 
-static int each(const struct tool *t, struct dev *d)
+static int end(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected)
 {
-	struct slaves sel;
-	size_t n = 0;
-	int ret = 0;
-
-	if (dev_select(d, t, &sel, NULL))
-		return 1;
-	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_array("slaves");
-	for (size_t i = 0; i < sel.n; i++) {
-		if (!describes(&sel.v[i]))
-			continue;
-		n++;
-		ret |= slave(t, d, &sel.v[i], sel.n > 1 || d->selected > 1);
-	}
-	if (sel.n && !n)
-		ret = fail("Master%u: no selected slave has an object dictionary that can be read (CoE with SDO information)",
-			   d->master);
-	out_end();
-	out_end();
-	slaves_free(&sel);
-	return ret;
+	(void)w;
+	if (!selected || taken)
+		return 0;
+	return fail("Master%u: no selected slave has an object dictionary that can be read (CoE with SDO information)",
+		    d->master);
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	int ret;
+	static const struct slave_walk walk = {
+		.write = true, .takes = describes, .slave = slave, .end = end,
+	};
 
 	(void)argc, (void)argv;
-	out_array("masters");
-	ret = dev_each(t, true, each);
-	out_end();
-	return ret;
+	return dev_each_slave(t, &walk);
 }
 
 const struct cmd cmd_sdos = {

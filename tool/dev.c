@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "../master/wire/al.h"
+#include "out.h"
 #include "sys.h"
 #include "text.h"
 
@@ -141,7 +142,11 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write)
 	return ret;
 }
 
-int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d))
+static int walk_master(const struct slave_walk *w, const struct tool *t, struct dev *d);
+
+/* @fn or @w */
+static int each_master(const struct tool *t, bool write,
+		       int (*fn)(const struct tool *t, struct dev *d), const struct slave_walk *w)
 {
 	unsigned int count = master_count();
 	struct numbers m;
@@ -159,13 +164,18 @@ int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, s
 
 		if (!one) {
 			d.selected = (unsigned int)m.n;
-			one = fn(t, &d);
+			one = fn ? fn(t, &d) : walk_master(w, t, &d);
 			dev_close(&d);
 		}
 		ret = max(ret, one);
 	}
 	numbers_free(&m);
 	return ret;
+}
+
+int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d))
+{
+	return each_master(t, write, fn, NULL);
 }
 
 int dev_master(struct dev *d, struct ec_ioc_master *m)
@@ -282,6 +292,53 @@ int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, siz
 	numbers_free(&pos);
 	slaves_free(&bus);
 	return selected->v ? 0 : fail("out of memory");
+}
+
+/* masters[]: master, slaves[]: ... */
+static int walk_master(const struct slave_walk *w, const struct tool *t, struct dev *d)
+{
+	struct slaves sel;
+	size_t taken = 0;
+	int ret = 0;
+
+	if (dev_select(d, t, &sel, NULL))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_array("slaves");
+	if (w->title && d->selected > 1)
+		out_text("Master%u\n", d->master);
+	for (size_t i = 0; i < sel.n; i++) {
+		if (w->takes && !w->takes(&sel.v[i]))
+			continue;
+		taken++;
+		ret |= w->slave(w, t, d, &sel.v[i], sel.n > 1 || d->selected > 1);
+	}
+	out_end();
+	if (w->end && !ret)
+		ret |= w->end(w, d, taken, sel.n);
+	out_end();
+	slaves_free(&sel);
+	return ret;
+}
+
+/**
+ * dev_each_slave() - call a function for each selected slave of each selected master
+ * @t: command line
+ * @w: what to do
+ *
+ * In JSON, masters[] has for each master its index and slaves[].
+ *
+ * Return: the exit code.
+ */
+int dev_each_slave(const struct tool *t, const struct slave_walk *w)
+{
+	int ret;
+
+	out_array("masters");
+	ret = each_master(t, w->write, NULL, w);
+	out_end();
+	return ret;
 }
 
 void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size)

@@ -29,6 +29,28 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write);
 /* calls @fn for every selected master; its value is the largest returned */
 int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d));
 
+/**
+ * struct slave_walk - what a command does with the selected slaves of each master
+ * @write: for traffic or changes
+ * @title: a line with the master where there are several
+ * @takes: whether the command works on a slave, NULL: on all
+ * @slave: does it, @several slaves may follow each other; returns the exit code
+ * @end: behind the slaves of a master unless one has failed, with the number of slaves taken and
+ *	selected; may be NULL
+ * @ctx: of the command
+ */
+struct slave_walk {
+	bool write;
+	bool title;
+	bool (*takes)(const struct ec_ioc_slave *s);
+	int (*slave)(const struct slave_walk *w, const struct tool *t, struct dev *d,
+		     const struct ec_ioc_slave *s, bool several);
+	int (*end)(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected);
+	void *ctx;
+};
+
+int dev_each_slave(const struct tool *t, const struct slave_walk *w);
+
 int dev_master(struct dev *d, struct ec_ioc_master *m);
 int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s);
 int dev_slaves(struct dev *d, struct slaves *all);
