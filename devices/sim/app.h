@@ -262,6 +262,18 @@ struct ec_app_object {
 };
 
 /**
+ * struct ec_app_od_values - optional fields of the description of an entry
+ * @v: the fields
+ * @min: place of the minimum
+ * @max: place of the maximum
+ */
+struct ec_app_od_values {
+	struct ec_od_values v;
+	u8 min[4];
+	u8 max[4];
+};
+
+/**
  * struct ec_app_params - what a model may differ in from its device table
  * @vendor: identity, 0: as the table
  * @product: identity, 0: as the table
@@ -702,6 +714,10 @@ bool ec_app_od_in_list(const struct ec_app_model *m,
 size_t ec_app_od_name(const struct ec_app_model *m,
 		      const struct ec_app_entry *e, char buf[24],
 		      const char **name);
+
+/* slave_od_values.c */
+void ec_app_od_values(const struct ec_app_model *m, const struct ec_app_entry *e, u8 info,
+		      struct ec_app_od_values *v);
 
 /* slave_pdo.c */
 u16 ec_app_pdo_build(struct ec_app *app);

@@ -60,22 +60,34 @@ int ec_od_object_encode(u8 *buf, size_t cap, const struct ec_od_object *o)
  * ec_od_entry_encode() - write an entry description
  * @buf: body of the answer
  * @cap: bytes at @buf
- * @e: what to write; optional fields are never sent, so @e->info goes out
- *	without their bits
+ * @e: what to write, but none of the optional fields of @e->info
+ * @v: optional fields; NULL: none
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: bytes, -ENOBUFS when they do not fit.
  */
-int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e)
+int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e,
+		       const struct ec_od_values *v)
 {
 	struct ec_wbuf w = ec_wbuf(buf, cap);
+	u8 info = v ? v->info : 0;
 
 	ec_wbuf_le16(&w, e->index);
 	ec_wbuf_u8(&w, e->sub);
-	ec_wbuf_u8(&w, e->info & 0x07);
+	ec_wbuf_u8(&w, (e->info & 0x07) | info);
 	ec_wbuf_le16(&w, e->type);
 	ec_wbuf_le16(&w, e->bits);
 	ec_wbuf_le16(&w, e->access);
+	if (info & EC_OD_INFO_UNIT && v->unit_size == 2)
+		ec_wbuf_le16(&w, (u16)v->unit);
+	else if (info & EC_OD_INFO_UNIT)
+		ec_wbuf_le32(&w, v->unit);
+	if (info & EC_OD_INFO_DEFAULT)
+		ec_wbuf_bytes(&w, v->def, v->size);
+	if (info & EC_OD_INFO_MIN)
+		ec_wbuf_bytes(&w, v->min, v->size);
+	if (info & EC_OD_INFO_MAX)
+		ec_wbuf_bytes(&w, v->max, v->size);
 	ec_wbuf_bytes(&w, e->name, e->name_len);
 	return w.bad ? -ENOBUFS : (int)(w.p - buf);
 }

@@ -41,7 +41,8 @@ struct ec_sdoinfo_resp {
 
 int ec_sdoinfo_req_decode(const u8 *rx, size_t len, struct ec_sdoinfo_req *req);
 int ec_od_object_encode(u8 *buf, size_t cap, const struct ec_od_object *o);
-int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e);
+int ec_od_entry_encode(u8 *buf, size_t cap, const struct ec_od_entry *e,
+		       const struct ec_od_values *v);
 void ec_sdoinfo_resp_init(struct ec_sdoinfo_resp *r, u8 opcode, const u8 *data, size_t size);
 int ec_sdoinfo_resp_next(struct ec_sdoinfo_resp *r, u8 *tx, size_t cap);
 int ec_sdoinfo_error_encode(u8 *tx, size_t cap, u32 abort);

@@ -142,11 +142,12 @@ static u32 info_object(struct ec_app *app, u16 index)
 	return 0;
 }
 
-static u32 info_entry(struct ec_app *app, u16 index, u8 sub)
+static u32 info_entry(struct ec_app *app, u16 index, u8 sub, u8 info)
 {
 	const struct ec_app_object *o = ec_app_od_object(app->model, index);
 	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
 	struct ec_od_entry d;
+	struct ec_app_od_values v;
 	char buf[24];
 	int len;
 
@@ -160,7 +161,8 @@ static u32 info_entry(struct ec_app *app, u16 index, u8 sub)
 		.access = e->access,
 	};
 	d.name_len = ec_app_od_name(app->model, e, buf, &d.name);
-	len = ec_od_entry_encode(app->mbox.info_buf, app->mbox.info_cap, &d);
+	ec_app_od_values(app->model, e, info, &v);
+	len = ec_od_entry_encode(app->mbox.info_buf, app->mbox.info_cap, &d, &v.v);
 	if (len < 0)
 		return EC_ABORT_MEMORY;
 	info_begin(app, EC_SDOINFO_ENTRY_RESP, (size_t)len);
@@ -199,7 +201,7 @@ static void info_request(struct ec_app *app, const u8 *rx, size_t len, u64 due)
 	else if (req.opcode == EC_SDOINFO_OBJECT_REQ)
 		abort = info_object(app, req.index);
 	else if (req.opcode == EC_SDOINFO_ENTRY_REQ)
-		abort = info_entry(app, req.index, req.sub);
+		abort = info_entry(app, req.index, req.sub, req.info);
 	if (!abort) {
 		info_next(app, due);
 		return;

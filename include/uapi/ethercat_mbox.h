@@ -28,6 +28,13 @@ struct ec_ioc_sdo {
 #define EC_SDO_INFO_ENTRY	5
 #define EC_SDO_INFO_FORGET	0x80	/* drop the kept answers of the slave; no data */
 
+/* value info of ETG.1000.6: optional fields, which follow the description in this order */
+#define EC_SDO_VALUE_UNIT	0x08	/* 2 or 4 bytes */
+#define EC_SDO_VALUE_DEFAULT	0x10	/* the size of the entry, also minimum and maximum */
+#define EC_SDO_VALUE_MIN	0x20
+#define EC_SDO_VALUE_MAX	0x40
+#define EC_SDO_VALUE_ALL	0x78
+
 /*
  * Object dictionary of a slave, as it describes itself (SDO information). In data the answer of
  * ETG.1000.6 clause 5.6.3: indexes (of list 0: five counts), or the description with its index.
@@ -39,7 +46,8 @@ struct ec_ioc_sdo_info {
 	__u16 index;		/* in; of a list its type, 0..5 */
 	__u8 subindex;		/* in; 0 unless it is an entry */
 	__u8 what;		/* in: EC_SDO_INFO_* */
-	__u16 reserved;
+	__u8 value_info;	/* in, of an entry: EC_SDO_VALUE_*; what the slave sends it says */
+	__u8 reserved;
 	__u32 abort_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* in: buffer size; out: bytes */
 	__u32 timeout_ms;	/* in; 0: default */

@@ -121,7 +121,13 @@ int ec_ioc_sdo_info(struct ec_call *call)
 		return ec_refuse(call, -EINVAL, "unknown kind of SDO information %u", i->what);
 	if (i->subindex && i->what != EC_SDO_INFO_ENTRY)
 		return ec_refuse(call, -EINVAL, "only entries have a subindex");
+	if (i->value_info && i->what != EC_SDO_INFO_ENTRY)
+		return ec_refuse(call, -EINVAL, "only entries have value info");
+	if (i->value_info & ~EC_SDO_VALUE_ALL)
+		return ec_refuse(call, -EINVAL, "unknown bits of value info: 0x%02x, known: 0x%02x",
+				 i->value_info, EC_SDO_VALUE_ALL);
 	ec_sdoinfo_init(&info, i->what, i->index, i->subindex, call->data, call->size);
+	info.info = i->value_info;
 	ret = ec_dict_info(call->slave, &info, &limit);
 	i->abort_code = info.abort;
 	ret = info_failed(call, i, ret);

@@ -215,3 +215,47 @@ int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e)
 	e->name_len = get_name(&r, &e->name);
 	return 0;
 }
+
+/**
+ * ec_od_values_decode() - read the optional fields of an entry description
+ * @data: body of the answer with them
+ * @len: bytes at @data
+ * @plain: bytes of the same description without any optional field
+ * @v: result; the values point into @data
+ *
+ * The unit type has 2 bytes or 4, and a name of any length follows the fields: only what the same
+ * description has more than one without them tells the fields from the name.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is too short, -EBADMSG when the sizes of the fields, which the
+ * description says, do not add up to what it has more.
+ */
+int ec_od_values_decode(const u8 *data, size_t len, size_t plain, struct ec_od_values *v)
+{
+	struct ec_rbuf r = ec_rbuf(data, len);
+	struct ec_od_entry e;
+	size_t values, unit;
+
+	*v = (struct ec_od_values){ 0 };
+	if (ec_od_entry_decode(data, len, &e))
+		return -EMSGSIZE;
+	ec_rbuf_take(&r, EC_OD_ENTRY_HDR);
+	values = DIV_ROUND_UP((size_t)e.bits, 8) *
+		 (!!(e.info & EC_OD_INFO_DEFAULT) + !!(e.info & EC_OD_INFO_MIN) +
+		  !!(e.info & EC_OD_INFO_MAX));
+	if (plain < EC_OD_ENTRY_HDR || plain > len || len - plain < values)
+		return -EBADMSG;
+	unit = len - plain - values;
+	if (e.info & EC_OD_INFO_UNIT ? unit != 2 && unit != 4 : unit)
+		return -EBADMSG;
+
+	v->info = e.info & EC_OD_INFO_VALUES;
+	v->unit_size = (u8)unit;
+	v->size = DIV_ROUND_UP((size_t)e.bits, 8);
+	if (unit)
+		v->unit = unit == 2 ? ec_rbuf_le16(&r) : ec_rbuf_le32(&r);
+	v->def = v->info & EC_OD_INFO_DEFAULT ? ec_rbuf_take(&r, v->size) : NULL;
+	v->min = v->info & EC_OD_INFO_MIN ? ec_rbuf_take(&r, v->size) : NULL;
+	v->max = v->info & EC_OD_INFO_MAX ? ec_rbuf_take(&r, v->size) : NULL;
+	return r.bad ? -EBADMSG : 0;
+}

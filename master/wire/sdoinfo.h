@@ -10,6 +10,7 @@
 #include "coe.h"
 
 #define EC_SDOINFO_HDR		6	/* CoE header, opcode, reserved, fragments left */
+#define EC_OD_ENTRY_HDR		10	/* of an entry description, before optional fields and name */
 #define EC_SDOINFO_MIN		10	/* smallest mailbox content a CoE slave has */
 #define EC_SDOINFO_FRAGMENTS	4096	/* no answer has more */
 #define EC_SDOINFO_OPCODE_MASK	0x7F
@@ -30,6 +31,8 @@ enum ec_sdoinfo_opcode {
 #define EC_OD_INFO_DEFAULT	BIT(4)
 #define EC_OD_INFO_MIN		BIT(5)
 #define EC_OD_INFO_MAX		BIT(6)
+#define EC_OD_INFO_VALUES	(EC_OD_INFO_UNIT | EC_OD_INFO_DEFAULT | EC_OD_INFO_MIN | \
+				 EC_OD_INFO_MAX)
 
 /**
  * struct ec_od_object - object description
@@ -71,6 +74,26 @@ struct ec_od_entry {
 	size_t name_len;
 };
 
+/**
+ * struct ec_od_values - optional fields of an entry description
+ * @info: which of them there are: bits of EC_OD_INFO_VALUES
+ * @unit_size: bytes of the unit type: slaves send 2 or 4
+ * @unit: unit type
+ * @size: bytes of each value
+ * @def: default, little-endian
+ * @min: minimum
+ * @max: maximum
+ */
+struct ec_od_values {
+	u8 info;
+	u8 unit_size;
+	u32 unit;
+	size_t size;
+	const u8 *def;
+	const u8 *min;
+	const u8 *max;
+};
+
 enum ec_sdoinfo_state {
 	EC_SDOINFO_REQUEST,
 	EC_SDOINFO_FRAGMENT,
@@ -83,7 +106,7 @@ enum ec_sdoinfo_state {
  * @opcode: EC_SDOINFO_LIST_REQ, ..._OBJECT_REQ or ..._ENTRY_REQ
  * @index: object, or list type
  * @sub: subindex
- * @info: optional fields asked for; masters ask for none
+ * @info: optional fields asked for: bits of EC_OD_INFO_VALUES, 0 after ec_sdoinfo_init()
  * @data: where the answer goes; of a list only the indexes (or counts)
  * @cap: bytes at @data
  * @size: bytes received so far
@@ -112,5 +135,6 @@ int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len);
 
 int ec_od_object_decode(const u8 *data, size_t len, struct ec_od_object *o);
 int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e);
+int ec_od_values_decode(const u8 *data, size_t len, size_t plain, struct ec_od_values *v);
 
 #endif

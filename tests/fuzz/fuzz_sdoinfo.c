@@ -23,6 +23,7 @@ static void client(const uint8_t *p, size_t len, int kind, size_t cap)
 	struct ec_sdoinfo s;
 	struct ec_od_object o;
 	struct ec_od_entry e;
+	struct ec_od_values v;
 	int ret = EC_STALE;
 
 	if (kind == 0)
@@ -49,6 +50,9 @@ static void client(const uint8_t *p, size_t len, int kind, size_t cap)
 			MUST(o.name_len <= s.size - 6);
 		if (!ec_od_entry_decode(buf, s.size, &e))
 			MUST(e.name_len <= s.size - 10);
+		for (size_t plain = 0; plain < s.size + 2; plain++)
+			if (!ec_od_values_decode(buf, s.size, plain, &v))
+				MUST(!v.max || v.max + v.size <= buf + plain + s.size);
 	}
 	free(buf);
 }

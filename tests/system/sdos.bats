@@ -26,6 +26,10 @@ teardown_file() { stop; }
 	ethercat download -p16 -t int16 0x2001 3 0x4321
 	ethercat sdos -v -p16 >"$D/after"
 	grep -q '^  0x1008:00, .*, "[ -~]*"$' "$D/after"
+	# a setting has a default, whatever it is now
+	[ "$(grep -A 1 '^  0x2001:03' "$D/after" | tail -n 1)" = "    default 0x0000 0" ]
+	json '.masters[0].slaves[0].objects[] | select(.index == 8193).entries[] |
+		select(.subindex == 3) | .default.value == 0 and (has("unit") | not)' sdos -v -p16
 	# each entry that can be read in PREOP is given
 	[ "$(grep '^  0x....:.., r' "$D/after" | grep -c 'abort 0x')" = 0 ]
 	# one value has changed, by one line

@@ -55,7 +55,7 @@ static int upload(struct ec_ioc_sdo *x)
 /* answers of SDO information: description, or 0 for what is refused */
 static const struct {
 	__u16 index;
-	__u8 sub, object;
+	__u8 sub, kind;		/* 0: entry, 1: object, 2: entry with value info */
 	__u8 size;
 	const char *data;
 } infos[] = {
@@ -66,6 +66,9 @@ static const struct {
 	{ 0x1018, 1, 0, 16, "\x18\x10\1\0\7\0\x20\0\7\0Vendor" },
 	{ 0x1018, 2, 0, 10, "\x18\x10\2\0\7\0\x20\0\0\0" },
 	{ 0x6060, 0, 1, 16, "\x60\x60\2\0\0\7a\033[2J\302\233b\n" },
+	/* with value info: unit of 4 bytes, default, minimum, maximum; a byte too many */
+	{ 0x6060, 0, 2, 21, "\x60\x60\0\x78\2\0\x08\0\xff\0\3\xb5\0\0\x08\xff\x0aMode" },
+	{ 0x1018, 1, 2, 19, "\x18\x10\1\x10\7\0\x20\0\7\0\2\0\0Vendor" },
 	{ 0x6060, 0, 0, 14, "\x60\x60\0\0\2\0\x08\0\xff\0Mode" },
 	{ 0x2002, 0, 1, 12, "\2\x20\x09\0\0\7Serial" },
 	{ 0x2002, 0, 0, 16, "\2\x20\0\0\x09\0\x60\0\x3f\0Serial" },
@@ -91,7 +94,7 @@ static int sdo_info(struct ec_ioc_sdo_info *x)
 	}
 	for (size_t i = 0; i < LEN(infos); i++) {
 		if (infos[i].index != x->index || infos[i].sub != x->subindex ||
-		    infos[i].object != (x->what == EC_SDO_INFO_OBJECT))
+		    infos[i].kind != (x->value_info ? 2 : x->what == EC_SDO_INFO_OBJECT))
 			continue;
 		memcpy(to, infos[i].data, infos[i].size);
 		x->size = infos[i].size;

@@ -27,6 +27,14 @@ load common
 	[[ $output == *": No such device: no slave at ring position 2"* ]]
 }
 
+@test "sdos: default, limits and unit are shown unless their sizes are inconsistent" {
+	entries='[e for o in d["masters"][0]["slaves"][0]["objects"] for e in o["entries"]]'
+	out sdos -j -v -p2 |
+		json "[(e['default']['value'], e['minimum']['value'], e['maximum']['value'], e['unit']) for e in $entries if 'unit' in e] == [(8, -1, 10, 0xb503)]"
+	out sdos -j -v -p2 | json "len([e for e in $entries if 'default' in e]) == 1"
+	out sdos -j -p2 | json '"default" not in str(d)'
+}
+
 @test "sdos: a slave without dictionary" {
 	run ethercat sdos -p0
 	[ "$status" -eq 1 ]

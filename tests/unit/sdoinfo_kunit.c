@@ -86,7 +86,7 @@ static void sdoinfo_entry_description_survives_both_ways(struct kunit *test)
 	struct ec_od_entry in = { 0x1018, 1, 0x7F, 0x0007, 32, EC_OD_READ, "Vendor ID", 9 }, out;
 	struct ec_sdoinfo s;
 	struct ec_sdoinfo_resp resp;
-	int len = ec_od_entry_encode(body, sizeof(body), &in);
+	int len = ec_od_entry_encode(body, sizeof(body), &in, NULL);
 
 	KUNIT_ASSERT_EQ(test, len, 19);
 	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, got, sizeof(got));
@@ -120,6 +120,74 @@ static void sdoinfo_optional_fields_of_entry_are_skipped(struct kunit *test)
 	in[7] = 0xFF;
 	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(in, sizeof(in), &e), 0);
 	KUNIT_EXPECT_EQ(test, e.name_len, (size_t)0);
+}
+
+/* unit of @unit_size bytes and all values of @bits: what comes back */
+static void values_both_ways(struct kunit *test, u8 unit_size, u16 bits)
+{
+	static const u8 def[8] = { 1, 2, 3, 4 }, min[8] = { 5, 6 }, max[8] = { 7, 8, 9, 10, 11 };
+	struct ec_od_entry e = { 0x2000, 1, 0, 6, bits, EC_OD_READ, "Name", 4 };
+	struct ec_od_values in = {
+		.info = EC_OD_INFO_VALUES, .unit_size = unit_size, .unit = 0xB503,
+		.size = DIV_ROUND_UP(bits, 8), .def = def, .min = min, .max = max,
+	}, out;
+	int plain = ec_od_entry_encode(body, sizeof(body), &e, NULL);
+	int len = ec_od_entry_encode(body, sizeof(body), &e, &in);
+
+	KUNIT_ASSERT_EQ(test, plain, 14);
+	KUNIT_ASSERT_EQ(test, len, plain + unit_size + 3 * (int)in.size);
+	KUNIT_ASSERT_EQ(test, ec_od_values_decode(body, (size_t)len, (size_t)plain, &out), 0);
+	KUNIT_EXPECT_EQ(test, out.info, EC_OD_INFO_VALUES);
+	KUNIT_EXPECT_EQ(test, out.unit_size, unit_size);
+	KUNIT_EXPECT_EQ(test, out.unit, 0xB503u);
+	KUNIT_ASSERT_EQ(test, out.size, in.size);
+	KUNIT_EXPECT_MEMEQ(test, out.def, def, in.size);
+	KUNIT_EXPECT_MEMEQ(test, out.min, min, in.size);
+	KUNIT_EXPECT_MEMEQ(test, out.max, max, in.size);
+	/* neither a byte more nor one less */
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(body, (size_t)len + 1, (size_t)plain, &out),
+			-EBADMSG);
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(body, (size_t)len - 1, (size_t)plain, &out),
+			-EBADMSG);
+	KUNIT_EXPECT_EQ(test, out.info, 0);
+}
+
+static void sdoinfo_values_survive_both_ways(struct kunit *test)
+{
+	static const u16 bits[] = { 1, 8, 12, 16, 32, 64 };
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(bits); i++) {
+		values_both_ways(test, 2, bits[i]);
+		values_both_ways(test, 4, bits[i]);
+	}
+}
+
+static void sdoinfo_values_of_inconsistent_size_are_refused(struct kunit *test)
+{
+	/* only a maximum; the name has 2 characters */
+	u8 in[] = {
+		0x00, 0x20, 0x01, 0x40, 0x06, 0x00, 0x10, 0x00, 0x3F, 0x00, 7, 8, 'N', 'a',
+	};
+	struct ec_od_values v;
+
+	KUNIT_ASSERT_EQ(test, ec_od_values_decode(in, sizeof(in), 12, &v), 0);
+	KUNIT_EXPECT_EQ(test, v.info, EC_OD_INFO_MAX);
+	KUNIT_EXPECT_NULL(test, v.def);
+	KUNIT_EXPECT_NULL(test, v.min);
+	KUNIT_EXPECT_PTR_EQ(test, v.max, &in[10]);
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, 9, 12, &v), -EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 9, &v), -EBADMSG);
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 15, &v), -EBADMSG);
+	in[3] = 0x48;	/* unit without place for it */
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 12, &v), -EBADMSG);
+	in[3] = 0x00;	/* the bytes are announced by no bit */
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 12, &v), -EBADMSG);
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 14, &v), 0);
+	in[3] = 0x70;
+	in[6] = 0xFF;	/* values larger than the message */
+	in[7] = 0xFF;
+	KUNIT_EXPECT_EQ(test, ec_od_values_decode(in, sizeof(in), 12, &v), -EBADMSG);
 }
 
 static void sdoinfo_short_descriptions_are_refused(struct kunit *test)
@@ -274,6 +342,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sdoinfo_object_description_survives_both_ways),
 	KUNIT_CASE(sdoinfo_entry_description_survives_both_ways),
 	KUNIT_CASE(sdoinfo_optional_fields_of_entry_are_skipped),
+	KUNIT_CASE(sdoinfo_values_survive_both_ways),
+	KUNIT_CASE(sdoinfo_values_of_inconsistent_size_are_refused),
 	KUNIT_CASE(sdoinfo_short_descriptions_are_refused),
 	KUNIT_CASE(sdoinfo_answers_to_other_questions_are_stale),
 	KUNIT_CASE(sdoinfo_refusal_carries_its_abort_code),

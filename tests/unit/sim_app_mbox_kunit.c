@@ -197,6 +197,39 @@ static void sim_app_mbox_information(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, s.abort, EC_ABORT_NO_OBJECT);
 }
 
+/* A slave sends of the optional fields what it has and the master asks for. */
+static void sim_app_mbox_describes_values(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive mbox=64 mapping=rewritable\n", 64);
+	struct ec_od_values v;
+	struct ec_sdoinfo s;
+	size_t plain;
+
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x60FF, 0, x->buf, sizeof(x->buf));
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	plain = s.size;
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x60FF, 0, x->buf, sizeof(x->buf));
+	s.info = EC_OD_INFO_VALUES;
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_values_decode(x->buf, s.size, plain, &v), 0);
+	KUNIT_EXPECT_EQ(test, v.info, EC_OD_INFO_VALUES);
+	KUNIT_EXPECT_EQ(test, v.unit, 0xB503u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(v.def), 0u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(v.min), (u32)-2000000);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(v.max), 2000000u);
+
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x60FF, 0, x->buf, sizeof(x->buf));
+	s.info = EC_OD_INFO_MAX;
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_EXPECT_EQ(test, s.size, plain + 4);
+	/* an entry without any of them */
+	ec_sdoinfo_init(&s, EC_SDOINFO_ENTRY_REQ, 0x1018, 1, x->buf, sizeof(x->buf));
+	s.info = EC_OD_INFO_VALUES;
+	KUNIT_ASSERT_EQ(test, info(x, &s), 0);
+	KUNIT_ASSERT_EQ(test, ec_od_values_decode(x->buf, s.size, s.size, &v), 0);
+	KUNIT_EXPECT_EQ(test, v.info, 0);
+}
+
 static u16 error_of(struct mb *x)
 {
 	struct ec_mbox_hdr h;
@@ -423,6 +456,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_app_mbox_segmented),
 	KUNIT_CASE(sim_app_mbox_complete_access),
 	KUNIT_CASE(sim_app_mbox_information),
+	KUNIT_CASE(sim_app_mbox_describes_values),
 	KUNIT_CASE(sim_app_mbox_errors_are_reported),
 	KUNIT_CASE(sim_app_mbox_counter_and_repeat),
 	KUNIT_CASE(sim_app_mbox_replies_are_counted),

@@ -261,7 +261,7 @@ static void vectors_coe_sdo_information_of_slave(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, ec_od_object_encode(out, 64, &o), (int)sizeof(object));
 	KUNIT_EXPECT_MEMEQ(test, out, object, sizeof(object));
-	KUNIT_ASSERT_EQ(test, ec_od_entry_encode(out, 64, &e), (int)sizeof(entry));
+	KUNIT_ASSERT_EQ(test, ec_od_entry_encode(out, 64, &e, NULL), (int)sizeof(entry));
 	KUNIT_EXPECT_MEMEQ(test, out, entry, sizeof(entry));
 	KUNIT_ASSERT_EQ(test, ec_sdoinfo_error_encode(out, 64, 0x06020000), 10);
 	KUNIT_EXPECT_MEMEQ(test, out, error, 10);

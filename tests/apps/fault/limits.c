@@ -68,10 +68,18 @@ static void wrong_indexes(int fd)
 					       .data = (__u64)(unsigned long)arg };
 		struct ec_ioc_soe soe = { .drive = v, .size = 2,
 					  .data = (__u64)(unsigned long)arg };
+		struct ec_ioc_sdo_info info = { .position = 2, .index = 0x1018, .subindex = 1,
+						.what = EC_SDO_INFO_ENTRY, .value_info = v };
+		struct ec_ioc_sdo_info list = { .position = 2, .index = 1,
+						.what = EC_SDO_INFO_LIST, .value_info = v };
 		struct ec_ioc_sc_request kind = { .kind = v };
 		struct ec_ioc_sc_sync dir = { .dir = v }, wd = { .dir = 1, .watchdog = v };
 		struct ec_ioc_sc_pdo op = { .op = v };
 
+		if (v & ~EC_SDO_VALUE_ALL)
+			expect_errno(call(fd, EC_IOC_SDO_INFO, &info), EINVAL, "value info %u", v);
+		if (v)
+			expect_errno(call(fd, EC_IOC_SDO_INFO, &list), EINVAL, "list, info %u", v);
 		if (v != 1 && v != 2)
 			expect_errno(call(fd, EC_IOC_SC_SYNC, &dir), EINVAL, "direction %u", v);
 		if (v > 2)

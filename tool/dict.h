@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The object dictionary of a slave, read entry by entry; functions print errors. */
+#ifndef EC_TOOL_DICT_H
+#define EC_TOOL_DICT_H
+
+#include "../master/wire/sdoinfo.h"
+#include "dev.h"
+
+#define DICT_NAME	256
+
+/**
+ * struct dict_value - value of an entry
+ * @data: bytes, with room for one behind them; NULL: none was read
+ * @size: how many
+ * @abort: abort code of the slave, 0: none
+ * @err: errno of a transfer without answer, 0: none
+ */
+struct dict_value {
+	u8 *data;
+	size_t size;
+	u32 abort;
+	int err;
+};
+
+/**
+ * struct dict_entry - entry as the slave describes it
+ * @index: object
+ * @sub: subindex
+ * @type: data type
+ * @bits: length
+ * @access: EC_OD_READ_PREOP...
+ * @name: for a terminal
+ * @limits: unit, default, minimum and maximum; without them @limits.info is 0
+ * @value: now
+ */
+struct dict_entry {
+	u16 index;
+	u8 sub;
+	u16 type;
+	u16 bits;
+	u16 access;
+	char name[DICT_NAME];
+	struct ec_od_values limits;
+	struct dict_value value;
+};
+
+struct dict_object {
+	u16 index;
+	u16 type;
+	u8 max_sub;
+	u8 code;
+	char name[DICT_NAME];
+};
+
+/**
+ * struct dict_reader - what is done with the dictionary of a slave
+ * @entries: read the entries
+ * @values: read the values of the entries
+ * @limits: and their limits
+ * @object: called for each object
+ * @entry: for each entry of it; what it points to is gone afterwards
+ * @object_end: behind the entries of it, may be NULL
+ * @ctx: of the caller
+ */
+struct dict_reader {
+	bool entries;
+	bool values;
+	bool limits;
+	void (*object)(const struct dict_reader *r, const struct dict_object *o);
+	void (*entry)(const struct dict_reader *r, const struct dict_entry *e);
+	void (*object_end)(const struct dict_reader *r);
+	void *ctx;
+};
+
+bool dict_described(const struct ec_ioc_slave *s);
+int dict_read(const struct tool *t, struct dev *d, u16 position, const struct dict_reader *r);
+
+void dict_access_text(u16 access, char to[7]);
+void dict_type_text(u16 type, char *to, size_t size);
+char *dict_value_text(u16 type, u8 *data, size_t size);
+void dict_value_out(u16 type, u8 *data, size_t size);
+
+#endif
