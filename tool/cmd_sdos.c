@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "dict.h"
+#include "dict_image.h"
 #include "out.h"
 
 /* The value now; what the slave refuses has a code. */
@@ -132,6 +132,14 @@ static int run(struct tool *t, int argc, char **argv)
 	};
 
 	(void)argc, (void)argv;
+	if (!!t->save + !!t->compare + (t->compare_slave >= 0) > 1)
+		return usage_error("--save, --compare and --compare-slave exclude each other");
+	if (t->save && !strcmp(t->save, "-"))
+		return usage_error("--save needs the name of a file; -v --json writes to stdout");
+	if (t->save)
+		return dict_save(t);
+	if (t->compare || t->compare_slave >= 0)
+		return dict_compare(t);
 	return dev_each_slave(t, &walk);
 }
 
@@ -139,17 +147,30 @@ const struct cmd cmd_sdos = {
 	.name = "sdos",
 	.run = run,
 	.args = "",
-	.opts = "mapqv",
+	.opts = "mapqvSCL",
 	.summary = "Show the object dictionary of slaves",
 	.help = "Read from the slave at each call. An entry has access in PREOP, SAFEOP and OP (r: read,\n"
 		"w: write), data type, size and name. --quiet omits the entries, --verbose reads the\n"
 		"values of all that can be read: an entry that the slave does not give has its abort code.\n"
 		"A line below it has default, minimum, maximum and unit, as far as the slave tells them.\n"
 		"Slaves without CoE or without SDO information are skipped.\n"
-		"  ethercat sdos -p4 -v > before.txt     compare with diff\n",
+		"\n"
+		"--save writes all entries of one slave with their values to a file (JSON). --compare\n"
+		"compares the slave with such a file, --compare-slave with another slave of the master.\n"
+		"An entry is printed with both values if they differ, if one side lacks it, or if its value\n"
+		"could not be read; the last line has the number of each. Exit status: 0 all values that\n"
+		"both sides give are equal, 2 there are differences, 1 failure. A value that only one side\n"
+		"gives is a difference; one that both refuse is counted as unreadable.\n"
+		"  ethercat sdos -p4 --save axis4.json\n"
+		"  ethercat sdos -p4 --compare axis4.json\n"
+		"  ethercat sdos -p4 --compare-slave 5\n",
 	.json = "masters[]: master, slaves[]: position, objects[]: index, name, object_code,\n"
 		"type_code, max_subindex, entries[]: subindex, access, type, type_code, size_bits,\n"
 		"name, with --verbose value (type, size_bytes, value, data_hex), abort_code or\n"
-		"error, and default, minimum, maximum (as value), unit",
+		"error, and default, minimum, maximum (as value), unit. --save: master, slave,\n"
+		"output_file, entry_count, values, unreadable. --compare, --compare-slave: master, slave,\n"
+		"left, right, entries[]: kind (different, unreadable), index, subindex, access, type,\n"
+		"name, left and right (type, size_bytes, value, data_hex; abort_code; error;\n"
+		"missing; not_readable); equal, different, unreadable",
 	.flags = CMD_HISTORIC,
 };

@@ -21,6 +21,9 @@ const struct opt opts[] = {
 	{ 'v', "verbose", NULL, "more output" },
 	{ 'b', "boot", NULL, "for each start of the computer" },
 	{ 'w', "wait", "[SECONDS]", "wait for the end, at most SECONDS" },
+	{ 'S', "save", "FILE", "write the result to a file" },
+	{ 'C', "compare", "FILE", "compare with a file of --save; - for stdin" },
+	{ 'L', "compare-slave", "POSITION", "compare with another slave" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },
@@ -41,6 +44,9 @@ static const struct option longs[] = {
 	{ "verbose", no_argument, NULL, 'v' },
 	{ "boot", no_argument, NULL, 'b' },
 	{ "wait", optional_argument, NULL, 'w' },
+	{ "save", required_argument, NULL, 'S' },
+	{ "compare", required_argument, NULL, 'C' },
+	{ "compare-slave", required_argument, NULL, 'L' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
@@ -49,7 +55,7 @@ static const struct option longs[] = {
 /* else the letter is only for the tables */
 bool opt_is_short(const struct opt *o)
 {
-	return !strchr("bw", o->letter);
+	return !strchr("bwSCL", o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -72,6 +78,16 @@ static bool seconds(const char *text, double *s)
 		return false;
 	*s = strtod(text, &end);
 	return !*end;
+}
+
+static int position(const char *text, int *to)
+{
+	size_t n = strspn(text, "0123456789");
+
+	if (!n || n > 5 || text[n] || atoi(text) > 0xffff)
+		return usage_error("invalid position '%s': expected 0 to 65535", text);
+	*to = atoi(text);
+	return 0;
 }
 
 static int bad_option(char **argv, int c)
@@ -134,6 +150,14 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 	case 'b':
 		t->boot = true;
 		return 0;
+	case 'S':
+		t->save = optarg;
+		return 0;
+	case 'C':
+		t->compare = optarg;
+		return 0;
+	case 'L':
+		return position(optarg, &t->compare_slave);
 	case 'j':
 		t->json = true;
 		return 0;
@@ -172,7 +196,7 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 	size_t n = 0;
 	int c, ret;
 
-	*t = (struct tool){ .wait_s = -1 };
+	*t = (struct tool){ .wait_s = -1, .compare_slave = -1 };
 	*nargs = 0;
 	*help = false;
 	opterr = 0;

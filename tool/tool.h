@@ -35,6 +35,9 @@
  * @boot: --boot
  * @wait: --wait was given
  * @wait_s: its argument in seconds, negative: none
+ * @save: --save, NULL when not given
+ * @compare: --compare, NULL when not given
+ * @compare_slave: --compare-slave, negative when not given
  */
 struct tool {
 	struct list masters;
@@ -52,6 +55,9 @@ struct tool {
 	bool boot;
 	bool wait;
 	double wait_s;
+	const char *save;
+	const char *compare;
+	int compare_slave;
 };
 
 /**
@@ -59,7 +65,8 @@ struct tool {
  * @name: as typed
  * @run: does it; returns the exit code
  * @args: synopsis of the arguments
- * @opts: letters of the options it looks at; 'w' is --wait, 'b' --boot, -h and -j go unsaid
+ * @opts: letters of the options it looks at; those without a short form have letters of
+ *	options.c; -h and -j go unsaid
  * @summary: one line
  * @help: paragraphs, may be NULL
  * @json: keys of the JSON output

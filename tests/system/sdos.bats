@@ -51,3 +51,19 @@ teardown_file() { stop; }
 	refused 'the selection matches no slave' sdos -p99
 	refused "unexpected argument '0x1018'" sdos -p4 0x1018
 }
+
+@test "sdos --save and --compare find a parameter that was changed" {
+	cd "$BATS_TEST_TMPDIR"
+	ethercat sdos -p16 --save saved.json
+	[ "$(ethercat sdos -p16 --compare saved.json)" = \
+		"$(jq '[.entries[] | select(.data_hex)] | length' saved.json) equal, 0 different, 0 unreadable" ]
+	ethercat download -p16 -t int16 0x2001 3 77
+	run ethercat sdos -p16 --compare saved.json
+	[ "$status" = 2 ]
+	[[ ${lines[0]} == '  0x2001:03, rwrwrw, int16, '* ]]
+	[ "${lines[1]}" = "    slave 16: 0x004d 77" ]
+	[[ ${lines[3]} == *" equal, 1 different, 0 unreadable" ]]
+	run ethercat sdos -p16 --compare-slave 17
+	[ "$status" = 2 ]
+	grep -qx '    slave 17: 0x0000 0' <<<"$output"
+}

@@ -43,3 +43,89 @@ load common
 	[ "$status" -eq 1 ]
 	[[ $output == *"unexpected argument '0x1018'"* ]]
 }
+
+@test "sdos --save and --compare find each difference" {
+	local D=$BATS_TEST_TMPDIR
+
+	run ethercat sdos -p2 --save "$D/a.json"
+	[ "$status" -eq 0 ]
+	[[ $output == "2 value(s) refused by the slave: the file has their abort codes" ]]
+	json 'len(d["entries"]) == 7 and d["entries"][3]["data_hex"] == "ff"' <"$D/a.json"
+	run ethercat sdos -p2 --compare "$D/a.json"
+	[ "$status" -eq 0 ]
+	[ "${lines[-1]}" = "4 equal, 0 different, 2 unreadable" ]
+	# another value, an entry less, a value where the slave gives none
+	sed '/6060:00/d; s/"data_hex": "02000000"/"data_hex": "03000000"/
+		s/"abort_code": 305419896/"data_hex": "05"/' "$D/a.json" >"$D/b.json"
+	cd "$D"
+	run ethercat sdos -p2 --compare b.json
+	[ "$status" -eq 2 ]
+	diff "$HERE/golden/sdos_compare.txt" <(echo "$output")
+	run bash -c "'$HERE/build/fake/ethercat' sdos -p2 --compare - <b.json"
+	[ "$status" -eq 2 ]
+	out sdos -p2 --compare b.json -j |
+		json '[e["kind"] for e in d["entries"]] == ["unreadable"] + 3 * ["different"]'
+	out sdos -p2 --compare b.json -j |
+		json 'd["entries"][3]["right"] == {"missing": True} and d["different"] == 3'
+	[ "$(out sdos -p2 --compare-slave 2 | tail -n 1)" = "4 equal, 0 different, 2 unreadable" ]
+	sed -i 's/"vendor_id": 2/"vendor_id": 3/' a.json
+	[ "$(err sdos -p2 --compare a.json)" = "slave 2 is a device 0x00000002:0x1c213052, a.json a device 0x00000003:0x1c213052" ]
+}
+
+@test "sdos --compare refuses other files and names the mistake" {
+	cd "$BATS_TEST_TMPDIR"
+	ethercat sdos -p2 --save a.json 2>/dev/null
+	refuses() {	# CONTENT ERROR
+		printf "$1" >x.json
+		run ethercat sdos -p2 --compare x.json
+		[ "$status" -eq 1 ]
+		[[ $output == *"$2"* ]] || { echo "$1: $output"; return 1; }
+	}
+	refuses '' 'x.json is empty'
+	refuses 'text' "'x.json' is no dictionary: line 1: value expected"
+	refuses '{"a": [1,\n2' "line 2: ',' or ']' expected"
+	refuses '{"a": "\\u12"}' 'unknown escape'
+	refuses '{"a": "b' 'string without end'
+	refuses '{} {}' 'more than one value'
+	refuses '{a: 1}' 'key expected'
+	refuses '\0' 'binary file'
+	refuses "$(printf '[%.0s' {1..100})" 'too many levels'
+	refuses '[1, -2.5e3, true, null]' "expected a file of 'ethercat sdos --save'"
+	refuses '{"format": "ethercat sdos", "entries": [], "version": 2}' 'unknown version'
+	for wrong in 's/0x1018:01/0x1018:1z/' 's/"data_hex": "02/"data_hex": "2/' \
+		's/"data_hex": "02/"data_hex": "0g/' 's/"type_code": 7,/"type_code": 65536,/'; do
+		sed "$wrong" a.json >x.json
+		run ethercat sdos -p2 --compare x.json
+		[ "$status" -eq 1 ]
+		[ "$output" = "ethercat sdos: 'x.json': entry 2 of the list is invalid" ]
+	done
+	# every part of a file
+	for n in $(seq 1 17 $(($(wc -c <a.json) - 3))); do
+		head -c "$n" a.json >x.json
+		run ethercat sdos -p2 --compare x.json
+		[ "$status" -eq 1 ]
+		[[ $output == "ethercat sdos: 'x.json' is no dictionary: line "* ]]
+	done
+	run ethercat sdos -p2 --compare none.json
+	[[ $output == *"cannot open none.json"* ]]
+}
+
+@test "sdos --save keeps an older file until the new one is whole" {
+	cd "$BATS_TEST_TMPDIR"
+	echo old >a.json
+	FAKE_BUS=gone run ethercat sdos -p2 --save a.json
+	[ "$status" -eq 1 ]
+	[ "$(cat a.json)" = old ]
+	run ethercat sdos -p2 --save none/a.json
+	[[ $output == *"cannot write 'none/a.json.new': No such file or directory"* ]]
+	for wrong in "--save a --compare b" "--compare a --compare-slave 1" "--save -" \
+		"--compare-slave x" "--compare-slave 65536"; do
+		run ethercat sdos -p2 $wrong
+		[ "$status" -eq 1 ]
+	done
+	[[ $output == *"invalid position '65536': expected 0 to 65535"* ]]
+	run ethercat sdos --save a.json
+	[[ $output == *"the selection matches 3 of 3 slaves"* ]]
+	run ethercat sdos -p2 --compare-slave 0
+	[[ $output == *"slave 0: no object dictionary that can be read"* ]]
+}

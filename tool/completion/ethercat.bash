@@ -53,7 +53,7 @@ _ethercat()
 		case $w in
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
-		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin)
+		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|--compare|--compare-slave)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;
@@ -63,11 +63,12 @@ _ethercat()
 	case $prev in
 	-m|--master)	w=$(_ethercat_values master) ;;
 	-a|--alias)	w=$(_ethercat_values alias "$master") ;;
-	-p|--position)	w=$(_ethercat_values position "$master") ;;
+	-p|--position|--compare-slave)
+			w=$(_ethercat_values position "$master") ;;
 	-d|--domain)	w=$(_ethercat_values domain "$master") ;;
 	-t|--type)	w=$(_ethercat_values type) ;;
 	-s|--skin)	w="default etherlab" ;;
-	-o|--output-file)
+	-o|--output-file|--save|--compare)
 		COMPREPLY=($(compgen -f -- "$cur"))
 		return ;;
 	*)
