@@ -24,6 +24,8 @@ const struct opt opts[] = {
 	{ 'S', "save", "FILE", "write the result to a file" },
 	{ 'C', "compare", "FILE", "compare with a file of --save; - for stdin" },
 	{ 'L', "compare-slave", "POSITION", "compare with another slave" },
+	{ 'A', "acknowledge", NULL, "acknowledge the newest message" },
+	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },
@@ -47,6 +49,8 @@ static const struct option longs[] = {
 	{ "save", required_argument, NULL, 'S' },
 	{ "compare", required_argument, NULL, 'C' },
 	{ "compare-slave", required_argument, NULL, 'L' },
+	{ "acknowledge", no_argument, NULL, 'A' },
+	{ "texts", required_argument, NULL, 'T' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
@@ -55,7 +59,7 @@ static const struct option longs[] = {
 /* else the letter is only for the tables */
 bool opt_is_short(const struct opt *o)
 {
-	return !strchr("bwSCL", o->letter);
+	return !strchr("bwSCLAT", o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -100,7 +104,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrfb", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfbA", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -158,6 +162,12 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'L':
 		return position(optarg, &t->compare_slave);
+	case 'A':
+		t->acknowledge = true;
+		return 0;
+	case 'T':
+		t->texts = optarg;
+		return 0;
 	case 'j':
 		t->json = true;
 		return 0;

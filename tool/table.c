@@ -12,8 +12,8 @@
 	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
 
 extern const struct cmd cmd_config, cmd_crc, cmd_cstruct, cmd_cycle, cmd_data, cmd_debug,
-	cmd_device, cmd_devices, cmd_domains, cmd_download, cmd_emergencies, cmd_firmware,
-	cmd_foe_read, cmd_foe_write, cmd_graph, cmd_help, cmd_ip, cmd_latch, cmd_master, cmd_pdos,
+	cmd_device, cmd_devices, cmd_diag, cmd_domains, cmd_download, cmd_emergencies,
+	cmd_firmware, cmd_foe_read, cmd_foe_write, cmd_graph, cmd_help, cmd_ip, cmd_latch, cmd_master, cmd_pdos,
 	cmd_reg_read, cmd_reg_write, cmd_release, cmd_rescan, cmd_rtcheck, cmd_sdos, cmd_sii_read,
 	cmd_slaves, cmd_soe_read, cmd_soe_write, cmd_states, cmd_upload, cmd_version;
 
@@ -37,6 +37,7 @@ const struct cmd *const cmds[] = {
 	&cmd_debug,
 	&cmd_device,
 	&cmd_devices,
+	&cmd_diag,
 	&cmd_domains,
 	&cmd_download,
 	&cmd_eoe,

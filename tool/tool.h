@@ -38,6 +38,8 @@
  * @save: --save, NULL when not given
  * @compare: --compare, NULL when not given
  * @compare_slave: --compare-slave, negative when not given
+ * @acknowledge: --acknowledge
+ * @texts: --texts, NULL when not given
  */
 struct tool {
 	struct list masters;
@@ -58,6 +60,8 @@ struct tool {
 	const char *save;
 	const char *compare;
 	int compare_slave;
+	bool acknowledge;
+	const char *texts;
 };
 
 /**

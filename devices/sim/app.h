@@ -11,6 +11,7 @@
 #define EC_SIM_APP_H
 
 #include "../../master/wire/al.h"
+#include "../../master/wire/diag.h"
 #include "../../master/wire/eoe.h"
 #include "../../master/wire/foe.h"
 #include "../../master/wire/soe.h"
@@ -26,6 +27,8 @@
 #define EC_APP_SDO_BUF		2048	/* largest object, complete access too */
 #define EC_APP_EMCY		8	/* emergencies waiting */
 #define EC_APP_VOE		4	/* VoE messages waiting */
+#define EC_APP_DIAG_MAX		64	/* messages in 0x10F3 */
+#define EC_APP_DIAG_BYTES	33	/* of a message there */
 #define EC_APP_FOE_KIB		64	/* largest file of a slave without foe= */
 #define EC_APP_FOE_NAME		32	/* name of the file */
 #define EC_APP_ESC_ET1100	0x11
@@ -288,6 +291,7 @@ struct ec_app_od_values {
  * @voe: VoE with this type in the answers, 0: no VoE
  * @foe: KiB of a file, 0: EC_APP_FOE_KIB where the table or the image has FoE
  * @strict: the SyncManagers of the mailbox must have the usual control bytes, no other
+ * @diag: messages in the diagnosis history, 0: there is no 0x10F3
  * @no_repeat: neither repeats its messages nor sees that one of the master is repeated
  */
 struct ec_app_params {
@@ -303,6 +307,7 @@ struct ec_app_params {
 	u8 soe;
 	u16 voe;
 	u16 foe;
+	u8 diag;
 	bool no_repeat;
 	bool strict;
 };
@@ -718,6 +723,12 @@ size_t ec_app_od_name(const struct ec_app_model *m,
 /* slave_od_values.c */
 void ec_app_od_values(const struct ec_app_model *m, const struct ec_app_entry *e, u8 info,
 		      struct ec_app_od_values *v);
+
+/* slave_diag.c */
+void ec_app_diag_reset(struct ec_app *app, u64 now);
+void ec_app_diag_al(struct ec_app *app, u16 code, u64 now);
+void ec_app_diag_emergency(struct ec_app *app, u16 code, u8 reg, u64 now);
+u32 ec_app_diag_write(struct ec_app *app, const u8 *data, size_t len);
 
 /* slave_pdo.c */
 u16 ec_app_pdo_build(struct ec_app *app);

@@ -46,7 +46,7 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 {
 	s64 vendor = 0, product = 0, revision = 0, out = -1, in = -1, mbox = 0;
 	struct ec_desc_word w;
-	s64 id = 0, soe = 0, voe = 0, foe = 0;
+	s64 id = 0, soe = 0, voe = 0, foe = 0, diag = 0;
 	int ret;
 
 	ret = ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor);
@@ -68,6 +68,8 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 		ret = ec_desc_number(d, "voe", 0, 0xFFFF, &voe);
 	if (!ret)
 		ret = ec_desc_number(d, "foe", 0, 16384, &foe);
+	if (!ret)
+		ret = ec_desc_number(d, "diag", 0, EC_APP_DIAG_MAX, &diag);
 	if (ret)
 		return ret;
 	p->vendor = (u32)vendor;
@@ -80,6 +82,7 @@ static int params_read(struct ec_desc *d, struct ec_app_params *p)
 	p->soe = (u8)soe;
 	p->voe = (u16)voe;
 	p->foe = (u16)foe;
+	p->diag = (u8)diag;
 
 	w = ec_desc_value(d, "mapping");
 	if (ec_desc_is(&w, "fixed"))
@@ -178,7 +181,7 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->revision == b->revision && a->out == b->out &&
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
-	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe &&
+	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe && a->diag == b->diag &&
 	       a->no_repeat == b->no_repeat && a->strict == b->strict;
 }
 

@@ -95,6 +95,7 @@ void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now)
 		enter(app, state, now);
 	app->error = true;
 	app->code = code;
+	ec_app_diag_al(app, code, now);
 	show(app, now);
 }
 

@@ -30,6 +30,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 		app->next_event = app->next_event->next;
 	esc->late.ran_ns = now;
 	app->eep_due = EC_ESC_NEVER;
+	ec_app_diag_reset(app, now);
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
 	ec_app_soe_reset(app);

@@ -20,6 +20,9 @@ static u32 od_write(void *ctx, u16 index, u8 sub, bool complete,
 	struct ec_app *app = ctx;
 
 	app->mbox.writes++;
+	if (index == EC_DIAG_INDEX && sub == EC_DIAG_SUB_ACK && !complete &&
+	    app->model->params.diag)
+		return ec_app_diag_write(app, data, len);
 	return ec_app_od_write(ctx, index, sub, complete, data, len);
 }
 
@@ -607,6 +610,7 @@ void ec_app_emergency(struct ec_app *app, u16 code, u8 reg, const u8 data[5],
 	struct ec_app_mbox *m = &app->mbox;
 
 	ec_app_od_set(app, ec_app_od_entry(app->model, 0x1001, 0), reg);
+	ec_app_diag_emergency(app, code, reg, now);
 	if (!works(app) || m->n_emcy == EC_APP_EMCY ||
 	    !(app->model->dev.protocols & EC_SII_PROTO_COE))
 		return;

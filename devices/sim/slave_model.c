@@ -98,6 +98,21 @@ static void add(struct list *l, u16 index, u8 sub, u16 type, u16 bits,
 	};
 }
 
+static void add_diag(struct list *l, u8 messages)
+{
+	add(l, EC_DIAG_INDEX, EC_DIAG_SUB_MAX, EC_TYPE_UINT8, 8, EC_OD_READ, messages,
+	    "Maximum messages", "Diagnosis history");
+	add(l, EC_DIAG_INDEX, EC_DIAG_SUB_NEWEST, EC_TYPE_UINT8, 8, EC_OD_READ, 0,
+	    "Newest message", NULL);
+	add(l, EC_DIAG_INDEX, EC_DIAG_SUB_ACK, EC_TYPE_UINT8, 8, EC_APP_RW, 0,
+	    "Newest acknowledged message", NULL);
+	add(l, EC_DIAG_INDEX, 4, EC_TYPE_BOOL, 1, EC_OD_READ, 0, "New messages available", NULL);
+	add(l, EC_DIAG_INDEX, EC_DIAG_SUB_FLAGS, EC_TYPE_UINT16, 16, EC_APP_RW, 0, "Flags", NULL);
+	for (u8 i = 0; i < messages; i++)
+		add(l, EC_DIAG_INDEX, EC_DIAG_FIRST_SUB + i, EC_TYPE_OCTET_STRING,
+		    8 * EC_APP_DIAG_BYTES, EC_OD_READ, 0, "Diagnosis message", NULL);
+}
+
 static void add_standard(struct list *l, const struct ec_app_model *m)
 {
 	const struct ec_app_dev *d = &m->dev;
@@ -122,6 +137,8 @@ static void add_standard(struct list *l, const struct ec_app_model *m)
 	    "Local error reaction", "Error settings");
 	add(l, 0x10F1, 2, EC_TYPE_UINT16, 16, EC_APP_RW, 4,
 	    "Sync error counter limit", NULL);
+	if (m->params.diag)
+		add_diag(l, m->params.diag);
 	for (u8 i = 0; i < d->n_sms; i++)
 		add(l, 0x1C00, (u8)(i + 1), EC_TYPE_UINT8, 8, EC_OD_READ,
 		    d->sms[i].type, NULL, "SyncManager type");
@@ -356,7 +373,8 @@ static int take(struct ec_app_model *m, const struct list *l)
 static int build_od(struct ec_app_model *m)
 {
 	const struct ec_app_dev *d = &m->dev;
-	struct list l = { .cap = 64u + 2u * d->n_vars + d->n_pdos };
+	struct list l = { .cap = 64u + 2u * d->n_vars + d->n_pdos +
+			    (m->params.diag ? (u32)EC_DIAG_FIRST_SUB + m->params.diag : 0u) };
 	int ret = -ENOMEM;
 	struct item *tmp;
 
@@ -467,7 +485,8 @@ static u32 generic_revision(const struct ec_app_model *m)
 {
 	const struct ec_app_params *p = &m->params;
 	u64 other = p->voe | (u64)p->soe << 16 | (u64)p->cpu << 24 |
-		    (u64)!!p->id << 25 | (u64)!!p->foe << 30;
+		    (u64)!!p->id << 25 | (u64)!!p->foe << 30 |
+		    (u64)!!p->diag << 31;
 
 	if (m->dev.mapping != m->table->mapping)
 		other |= (u64)m->dev.mapping << 26;

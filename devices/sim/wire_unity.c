@@ -2,6 +2,7 @@
 /* ec_sim.ko carries its own wire codecs: nothing is exported between modules. */
 #include "../../master/wire/al.c"
 #include "../../master/wire/coe.c"
+#include "../../master/wire/diag.c"
 #include "../../master/wire/eoe.c"
 #include "../../master/wire/fmmu.c"
 #include "../../master/wire/foe.c"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Fake master: the mailboxes of its slaves. */
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -10,6 +11,49 @@ static int abort_sdo(struct ec_ioc_sdo *x, __u32 code)
 {
 	x->abort_code = code;
 	return fake_fail(EIO, "SDO aborted");
+}
+
+/*
+ * Diagnosis history of FAKE_DIAG: good (a ring of 4 that has wrapped), empty, newest (a wrong
+ * one), short (messages of any length), refuse (a message is gone)
+ */
+static const struct {
+	__u8 sub, size;
+	const char *data;
+} diag[] = {
+	{ 1, 1, "\4" }, { 2, 1, "\7" }, { 3, 1, "\x6" }, { 5, 2, "\x20\0" },
+	/* the oldest: DC time, text 0x10 with UINT16, INT8, text, text 0x11 and UINT8[2] */
+	{ 8, 40, "\0\xe8\x34\x12\2\5\x10\0\0\x80\xb5\x62\x15\x78\x83\x0b"
+		 "\6\0\x42\1" "\2\0\xff" "\7\x20" "a\033[2Jbc" "\0\x40\x11\0" "\2\x10\xab\xcd" },
+	{ 9, 16, "\x01\xe0\0\0\0\0\0\0\0\xca\x9a\x3b\0\0\0\0" },
+	/* unknown severity; a parameter of unknown size */
+	{ 6, 20, "\x02\xe0\0\0\x07\2\x12\0\1\0\0\0\0\0\0\0\5\0\7\xff" },
+	{ 7, 18, "\x03\xe0\0\0\1\xff\x13\0\1\0\0\0\0\0\0\0\x09\0" },
+};
+
+static int diag_upload(struct ec_ioc_sdo *x)
+{
+	const char *kind = getenv("FAKE_DIAG");
+	__u8 *to = (__u8 *)(uintptr_t)x->data;
+
+	if (!kind || x->position != 2)
+		return abort_sdo(x, 0x06020000);
+	for (size_t i = 0; i < LEN(diag); i++) {
+		if (diag[i].sub != x->subindex)
+			continue;
+		memcpy(to, diag[i].data, diag[i].size);
+		x->size = diag[i].size;
+		if (!strcmp(kind, "empty") && x->subindex == 2)
+			to[0] = 0;
+		if (!strcmp(kind, "newest") && x->subindex == 2)
+			to[0] = 0x0a;
+		if (!strncmp(kind, "short", 5) && x->subindex > 5 && x->size > (__u32)atoi(kind + 5))
+			x->size = (__u32)atoi(kind + 5);
+		if (!strcmp(kind, "refuse") && x->subindex > 5)
+			return abort_sdo(x, 0x08000020);
+		return 0;
+	}
+	return abort_sdo(x, 0x06090011);
 }
 
 static int upload(struct ec_ioc_sdo *x)
@@ -29,6 +73,8 @@ static int upload(struct ec_ioc_sdo *x)
 	};
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
+	if (x->index == 0x10f3)
+		return diag_upload(x);
 	if (x->index == 0x3000) {
 		if (x->size < 65536)
 			return fake_fail(EOVERFLOW, "the object has 65536 bytes");

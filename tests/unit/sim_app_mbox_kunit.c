@@ -230,6 +230,69 @@ static void sim_app_mbox_describes_values(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, v.info, 0);
 }
 
+/* newest message of the diagnosis history: 0 or what ec_diag_msg_decode() says */
+static int newest(struct mb *x, struct ec_diag_msg *m)
+{
+	u8 at = (u8)app_get(x->b, &x->m, EC_DIAG_INDEX, EC_DIAG_SUB_NEWEST);
+	u32 abort;
+	int len = app_upload(x->b, &x->m, EC_DIAG_INDEX, at, false, x->buf, sizeof(x->buf), &abort);
+
+	return len < 0 ? len : ec_diag_msg_decode(x->buf, (size_t)len, m);
+}
+
+static void sim_app_mbox_keeps_newest_diagnosis_messages(struct kunit *test)
+{
+	struct mb *x = mb_new(test, "slave d drive mbox=128 diag=3\n", 128);
+	struct ec_app *app = ec_sim_find(x->b->sim, "d");
+	struct ec_diag_param p;
+	struct ec_diag_msg m;
+	static const u8 none[5];
+	u8 value = 5;
+
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, EC_DIAG_INDEX, EC_DIAG_SUB_MAX), 3);
+	KUNIT_ASSERT_EQ(test, newest(x, &m), 0);
+	KUNIT_EXPECT_EQ(test, m.flags & 0xF, EC_DIAG_INFO);
+	KUNIT_EXPECT_EQ(test, m.params, 0);
+	for (u16 i = 1; i <= 4; i++) {
+		ec_app_diag_emergency(app, 0x8130 + i, 0x11, i);
+		KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, EC_DIAG_INDEX, EC_DIAG_SUB_NEWEST),
+				6u + i % 3);
+	}
+	KUNIT_ASSERT_EQ(test, newest(x, &m), 0);
+	KUNIT_EXPECT_EQ(test, m.code, 0x8134E800u);
+	KUNIT_EXPECT_EQ(test, m.flags & 0xF, EC_DIAG_WARNING);
+	KUNIT_EXPECT_EQ(test, m.time_ns, 4);
+	KUNIT_ASSERT_EQ(test, ec_diag_param_decode(&m, &p), 1);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(p.data), 0x8134);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, EC_DIAG_INDEX, 4), 1);
+
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, EC_DIAG_INDEX, 3, false, &value, 1),
+			EC_ABORT_TOO_LOW);
+	value = 9;
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, EC_DIAG_INDEX, 3, false, &value, 1),
+			EC_ABORT_TOO_HIGH);
+	value = 7;
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, EC_DIAG_INDEX, 3, false, &value, 1), 0u);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, EC_DIAG_INDEX, 4), 0);
+	KUNIT_EXPECT_EQ(test, app_download(x->b, &x->m, EC_DIAG_INDEX, 3, false, none, 1), 0u);
+	KUNIT_EXPECT_EQ(test, app_get(x->b, &x->m, EC_DIAG_INDEX, EC_DIAG_SUB_NEWEST), 0);
+	KUNIT_EXPECT_EQ(test, app_upload(x->b, &x->m, EC_DIAG_INDEX, 6, false, x->buf,
+					 sizeof(x->buf), (u32[1]){ 0 }), EC_APP_DIAG_BYTES);
+	KUNIT_EXPECT_EQ(test, ec_diag_msg_decode(x->buf, EC_APP_DIAG_BYTES, &m), -ENOMSG);
+	/* a fault adds the next one */
+	ec_app_al_fail(app, EC_AL_PREOP, 0x001D, 77);
+	KUNIT_ASSERT_EQ(test, newest(x, &m), 0);
+	KUNIT_EXPECT_EQ(test, m.flags & 0xF, EC_DIAG_ERROR);
+}
+
+static void sim_app_mbox_keeps_no_diagnosis_without_coe(struct kunit *test)
+{
+	struct ec_app *app = ec_sim_find(app_bed(test, "slave d io cpu=yes diag=3\n")->sim, "d");
+
+	ec_app_diag_emergency(app, 1, 1, 1);
+	KUNIT_EXPECT_NULL(test, ec_app_od_object(app->model, EC_DIAG_INDEX));
+}
+
 static u16 error_of(struct mb *x)
 {
 	struct ec_mbox_hdr h;
@@ -457,6 +520,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_app_mbox_complete_access),
 	KUNIT_CASE(sim_app_mbox_information),
 	KUNIT_CASE(sim_app_mbox_describes_values),
+	KUNIT_CASE(sim_app_mbox_keeps_newest_diagnosis_messages),
+	KUNIT_CASE(sim_app_mbox_keeps_no_diagnosis_without_coe),
 	KUNIT_CASE(sim_app_mbox_errors_are_reported),
 	KUNIT_CASE(sim_app_mbox_counter_and_repeat),
 	KUNIT_CASE(sim_app_mbox_replies_are_counted),

@@ -53,7 +53,7 @@ _ethercat()
 		case $w in
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
-		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|--compare|--compare-slave)
+		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|--compare|--compare-slave|--texts)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;
@@ -68,7 +68,7 @@ _ethercat()
 	-d|--domain)	w=$(_ethercat_values domain "$master") ;;
 	-t|--type)	w=$(_ethercat_values type) ;;
 	-s|--skin)	w="default etherlab" ;;
-	-o|--output-file|--save|--compare)
+	-o|--output-file|--save|--compare|--texts)
 		COMPREPLY=($(compgen -f -- "$cur"))
 		return ;;
 	*)
