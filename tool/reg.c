@@ -19,7 +19,9 @@ static int transfer(struct dev *d, unsigned long request, u32 flags, u16 positio
 		if (err)
 			return dev_fail(d, err, "Master%u slave %u: cannot %s register 0x%04x",
 					d->master, position,
-					request == EC_IOC_REG_READ ? "read" : "write", r.address);
+					request == EC_IOC_REG_READ ? "read" :
+					request == EC_IOC_REG_WRITE ? "write" : "exchange",
+					r.address);
 	}
 	return 0;
 }
@@ -34,4 +36,13 @@ int reg_write(struct dev *d, u16 position, u16 address, const u8 *data, size_t s
 {
 	return transfer(d, EC_IOC_REG_WRITE, emergency ? EC_REG_FLAG_EMERGENCY : 0, position,
 			address, (u8 *)(uintptr_t)data, size);
+}
+
+/* one datagram: @data is written, and what was there before is in it afterwards */
+int reg_rdwr(struct dev *d, u16 position, u16 address, u8 *data, size_t size)
+{
+	if (size > CHUNK)
+		return usage_error("invalid size %zu: one datagram takes 1 to %u bytes", size,
+				   CHUNK);
+	return transfer(d, EC_IOC_REG_RDWR, 0, position, address, data, size);
 }

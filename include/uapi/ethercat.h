@@ -718,6 +718,7 @@ struct ec_ioc_wait {
 #define EC_IOC_SDO_DOWNLOAD	EC_IOC_RW(0x21, struct ec_ioc_sdo)
 #define EC_IOC_REG_READ		EC_IOC_RW(0x22, struct ec_ioc_reg)
 #define EC_IOC_REG_WRITE	EC_IOC_RW(0x23, struct ec_ioc_reg)
+#define EC_IOC_REG_RDWR		EC_IOC_RW(0x32, struct ec_ioc_reg)	/* data: in, out */
 #define EC_IOC_STATE		EC_IOC_W(0x24, struct ec_ioc_state)
 #define EC_IOC_RESCAN		EC_IOC_N(0x25)
 #define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)

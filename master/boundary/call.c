@@ -212,13 +212,13 @@ static int get_buffer(struct ec_call *call, const struct ec_ioctl *op)
 	u64 address = *(u64 *)(call->arg + b->address);
 	u32 size = *(u32 *)(call->arg + b->size);
 
-	call->size = b->out ? min(size, b->most) : size;
+	call->size = b->in ? size : min(size, b->most);
 	if (!call->size || call->size > b->most)
 		return 0;
 	call->data = kvzalloc(call->size, GFP_KERNEL_ACCOUNT);
 	if (!call->data)
 		return -ENOMEM;
-	if (b->out)
+	if (!b->in)
 		return 0;
 	if (!call->user)
 		memcpy(call->data, (void *)(uintptr_t)address, call->size);

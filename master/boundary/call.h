@@ -29,6 +29,7 @@ struct ec_ioc_buffer {
 	u16 address;
 	u16 size;
 	u32 most;
+	bool in;
 	bool out;
 };
 

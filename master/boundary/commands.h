@@ -48,6 +48,7 @@ CMD(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE),
 	FLAGS(EC_REG_FLAG_EMERGENCY))
 CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
 	FLAGS(EC_REG_FLAG_EMERGENCY))
+CMD(EC_IOC_REG_RDWR, ec_ioc_reg_rdwr, F_WRITE, INOUT(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg))
 CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe, EC_MAX_SOE_SIZE),
 	RSV1(ec_ioc_soe))
 CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
@@ -90,7 +91,7 @@ CMD(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
 CMD(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, CONFIG(ec_ioc_sc_overlap),
 	RSV1(ec_ioc_sc_overlap))
 CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
-	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, false))
+	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, true, false))
 CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE, SESSION)
 CMD(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION)
 CMD(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE, SESSION)

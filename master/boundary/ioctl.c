@@ -27,10 +27,11 @@
 #define SHOW_DOMAIN(type) INDEX(EC_CLASS_SHOW_DOMAIN, type, index)
 #define SESSION .class = EC_CLASS_SESSION
 #define IDLE .class = EC_CLASS_IDLE
-#define BUFFER(type, d, s, m, o) .buffer = { .address = offsetof(struct type, d), \
-	.size = offsetof(struct type, s), .most = (m), .out = (o) }
-#define IN(type, most) BUFFER(type, data, size, most, false)
-#define OUT(type, most) BUFFER(type, data, size, most, true)
+#define BUFFER(type, d, s, m, i, o) .buffer = { .address = offsetof(struct type, d), \
+	.size = offsetof(struct type, s), .most = (m), .in = (i), .out = (o) }
+#define IN(type, most) BUFFER(type, data, size, most, true, false)
+#define OUT(type, most) BUFFER(type, data, size, most, false, true)
+#define INOUT(type, most) BUFFER(type, data, size, most, true, true)
 #define FLAGS(f) .known = (f)
 #define OLDEST(type, last) .min = offsetofend(struct type, last)
 #define CMD(c, f, fl, ...) [_IOC_NR(c)] = { .cmd = (c), .fn = (f), .flags = (fl) + \

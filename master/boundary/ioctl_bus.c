@@ -11,7 +11,7 @@ static int reg_access(struct ec_call *call, u8 cmd)
 	struct ec_master *m = call->master;
 	const struct ec_ioc_reg *i = call->arg;
 	struct ec_dg dg = { .ado = i->address, .len = i->size, .data = call->data };
-	bool write = cmd == EC_CMD_FPWR;
+	u16 expected = cmd == EC_CMD_FPRW ? 3 : 1;
 	int ret;
 
 	if (!i->size || i->size > EC_MAX_REG_SIZE || i->address + i->size > 0x10000)
@@ -19,7 +19,7 @@ static int reg_access(struct ec_call *call, u8 cmd)
 				 "size must be 1 to %u bytes and end below 0x10000, not %u at 0x%04x",
 				 EC_MAX_REG_SIZE, i->size, i->address);
 	if (i->flags & EC_REG_FLAG_EMERGENCY) {
-		dg.cmd = write ? EC_CMD_APWR : EC_CMD_APRD;
+		dg.cmd = cmd == EC_CMD_FPWR ? EC_CMD_APWR : EC_CMD_APRD;
 		dg.adp = -i->position;
 	} else {
 		ret = ec_ioc_get_slave(call, i->position);
@@ -47,10 +47,10 @@ static int reg_access(struct ec_call *call, u8 cmd)
 		return ec_refuse(call, ret, "register access 0x%04x at slave %u: cannot send (%pe)",
 				 i->address, i->position, ERR_PTR(ret));
 	}
-	if (dg.wkc != 1)
+	if (dg.wkc != expected)
 		return ec_refuse(call, -EIO,
-				 "slave %u did not execute access to 0x%04x: working counter %u, expected 1",
-				 i->position, i->address, dg.wkc);
+				 "slave %u did not execute access to 0x%04x: working counter %u, expected %u",
+				 i->position, i->address, dg.wkc, expected);
 	return 0;
 }
 
@@ -62,6 +62,12 @@ int ec_ioc_reg_read(struct ec_call *call)
 int ec_ioc_reg_write(struct ec_call *call)
 {
 	return reg_access(call, EC_CMD_FPWR);
+}
+
+/* One datagram reads before it writes: no count of a register that it clears is lost. */
+int ec_ioc_reg_rdwr(struct ec_call *call)
+{
+	return reg_access(call, EC_CMD_FPRW);
 }
 
 int ec_ioc_state(struct ec_call *call)

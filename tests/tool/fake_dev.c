@@ -392,6 +392,12 @@ static int reg_write(struct ec_ioc_reg *x)
 	return 0;
 }
 
+static int reg_rdwr(struct ec_ioc_reg *x)
+{
+	reg_write(x);
+	return reg_read(x);
+}
+
 static int sii(struct ec_ioc_sii *x)
 {
 	/* fixed area, then General (2 words) and the end */
@@ -450,6 +456,8 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		return reg_read(arg);
 	case EC_IOC_REG_WRITE:
 		return reg_write(arg);
+	case EC_IOC_REG_RDWR:
+		return reg_rdwr(arg);
 	case EC_IOC_STATE:
 		return request_state(arg);
 	case EC_IOC_RESCAN:

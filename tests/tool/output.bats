@@ -251,6 +251,27 @@ END
 	[ "$status" -eq 1 ]
 }
 
+@test "reg_rdwr writes and prints what was there before" {
+	[ "$(out reg_rdwr -p2 -t uint16 0x130 0x4321)" = "0x0012 18" ]
+	[ "$(log_of reg_rdwr -p2 -t uint16 0x130 0x4321 | tail -n 1)" = "reg 2 0x0130 2143" ]
+	[ "$(log_of reg_rdwr -p2 -t string 0x10 ab 4 | tail -n 1)" = "reg 2 0x0010 61620000" ]
+	[ "$(log_of reg_rdwr -p2 -t int8 0x10 -1 | tail -n 1)" = "reg 2 0x0010 ff" ]
+	out reg_rdwr -j -p2 -t uint8 0x130 0 | json 'd["value"] == 18 and d["address"] == 0x130'
+	refuses() {	# ERROR ARGUMENT...
+		local error=$1
+		shift
+		run ethercat reg_rdwr "$@"
+		[ "$status" -eq 1 ]
+		[[ $output == *"$error"* ]] || { echo "$output"; return 1; }
+	}
+	refuses 'missing option: --type' -p2 0 1
+	refuses 'the value has 2 byte(s), not 1' -p2 -t string 0 ab 1
+	refuses 'the value has 2 byte(s), not 4' -p2 -t uint16 0 1 4
+	refuses '2 bytes at 0xffff are too many' -p2 -t uint16 0xffff 1
+	refuses 'one datagram takes 1 to 1024 bytes' -p2 -t string 0 a 1025
+	refuses 'the selection matches 3 of 3 slaves' -t uint8 0 1
+}
+
 @test "reg_read and reg_write print registers" {
 	[ "$(out reg_read -p2 0x130 2)" = "0x12 0x00" ]
 	[ "$(out reg_read -p2 -t uint16 0x130)" = "0x0012 18" ]

@@ -30,6 +30,7 @@ static void no_such_slave(int fd, __u16 pos)
 		{ "SII", EC_IOC_SII, &sii }, { "SDO_UPLOAD", EC_IOC_SDO_UPLOAD, &sdo },
 		{ "SDO_DOWNLOAD", EC_IOC_SDO_DOWNLOAD, &sdo },
 		{ "REG_READ", EC_IOC_REG_READ, &reg }, { "REG_WRITE", EC_IOC_REG_WRITE, &reg },
+		{ "REG_RDWR", EC_IOC_REG_RDWR, &reg },
 		{ "STATE", EC_IOC_STATE, &state },
 	};
 
@@ -84,6 +85,8 @@ static void check_reg(int fd)
 		expect_errno(call(fd, EC_IOC_REG_READ, &r), EINVAL, "read %u bytes at 0x%04x",
 			     r.size, r.address);
 		expect_errno(call(fd, EC_IOC_REG_WRITE, &r), EINVAL, "write %u bytes at 0x%04x",
+			     r.size, r.address);
+		expect_errno(call(fd, EC_IOC_REG_RDWR, &r), EINVAL, "exchange %u bytes at 0x%04x",
 			     r.size, r.address);
 	}
 }

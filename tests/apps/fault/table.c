@@ -47,6 +47,7 @@ const struct cmd cmds[] = {
 	CMD(SDO_INFO, BUS, RSV1(ec_ioc_sdo_info), DATA(ec_ioc_sdo_info)),
 	CMD(REG_READ, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(REG_WRITE, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
+	CMD(REG_RDWR, BUS, RSV1(ec_ioc_reg), DATA(ec_ioc_reg)),
 	CMD(SOE_READ, BUS, RSV1(ec_ioc_soe), DATA(ec_ioc_soe)),
 	CMD(SOE_WRITE, BUS, RSV1(ec_ioc_soe), DATA(ec_ioc_soe)),
 	/* their data are not copied before the slave has been asked: check_foe() */
