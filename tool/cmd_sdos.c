@@ -99,7 +99,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 {
 	const struct dict_reader r = {
 		.entries = t->verbosity >= 0, .values = t->verbosity > 0,
-		.limits = t->verbosity > 0,
+		.limits = t->verbosity > 0, .listing = true,
 		.object = object, .entry = entry, .object_end = object_end,
 	};
 	int ret;

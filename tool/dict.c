@@ -9,20 +9,20 @@
 #include "../master/wire/sii.h"
 #include "io.h"
 #include "out.h"
+#include "progress.h"
 #include "text.h"
 
 #define ROOM		(64u << 10)	/* the largest answer the kernel passes on */
-#define PROGRESS_S	1.0		/* what is done sooner needs no progress */
 #define REFUSED		(-1)
 
 /* reading the dictionary of one slave */
 struct dict {
-	const struct tool *t;
 	const struct dict_reader *r;
 	struct dev *d;
 	u16 position;
-	double begin;
-	bool shown;	/* progress */
+	struct progress progress;
+	size_t done;	/* objects */
+	size_t all;
 	u8 *buf;	/* answers, then values */
 	u8 *limits;	/* descriptions with limits */
 };
@@ -58,15 +58,12 @@ static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool qu
 	return err;
 }
 
-static void progress(struct dict *x, size_t done, size_t all)
+static void progress(struct dict *x)
 {
-	if (x->t->json || x->t->verbosity < 0 || !isatty(STDERR_FILENO) ||
-	    isatty(STDOUT_FILENO) || now_s() - x->begin < PROGRESS_S)
-		return;
-	x->shown = true;
-	fprintf(stderr, "\rslave %u: %zu of %zu objects", x->position, done, all);
-	if (done == all)
-		fputc('\n', stderr);
+	char what[32];
+
+	snprintf(what, sizeof(what), "slave %u", x->position);
+	progress_step(&x->progress, what, x->done, x->all, "objects");
 }
 
 static void name_of(char to[DICT_NAME], const char *name, size_t len)
@@ -121,6 +118,7 @@ static void entry(struct dict *x, const struct ec_od_entry *d, size_t plain)
 	if (x->r->values && e.access & EC_OD_READ)
 		read_value(x, &e);
 	x->r->entry(x->r, &e);
+	progress(x);
 }
 
 static int entries(struct dict *x, u16 index, u8 max_sub)
@@ -165,7 +163,7 @@ static int object(struct dict *x, u16 index)
 
 static int dictionary(struct dict *x)
 {
-	size_t size, n;
+	size_t size;
 	int err = ask(x, EC_SDO_INFO_LIST, 1, 0, &size, false);
 	u8 *list;
 
@@ -175,13 +173,13 @@ static int dictionary(struct dict *x)
 	if (!list)
 		return fail("out of memory");
 	memcpy(list, x->buf, size);
-	n = size / 2;
-	for (size_t i = 0; i < n && !err; i++) {
-		err = object(x, get_unaligned_le16(list + 2 * i));
-		progress(x, i + 1, n);
+	x->all = size / 2;
+	while (x->done < x->all && !err) {
+		err = object(x, get_unaligned_le16(list + 2 * x->done));
+		x->done++;
+		progress(x);
 	}
-	if (err && x->shown)
-		fputc('\n', stderr);
+	progress_end(&x->progress);
 	free(list);
 	return err ? 1 : 0;
 }
@@ -200,11 +198,15 @@ static int dictionary(struct dict *x)
 int dict_read(const struct tool *t, struct dev *d, u16 position, const struct dict_reader *r)
 {
 	struct dict x = {
-		.t = t, .r = r, .d = d, .position = position, .begin = now_s(),
-		.buf = malloc(ROOM + 1), .limits = malloc(ROOM),
+		.r = r, .d = d, .position = position, .buf = malloc(ROOM + 1),
+		.limits = malloc(ROOM),
 	};
-	int ret = x.buf && x.limits ? dictionary(&x) : fail("out of memory");
+	int ret;
 
+	progress_begin(&x.progress, t);
+	if (r->listing && isatty(STDOUT_FILENO))
+		x.progress.wanted = false;
+	ret = x.buf && x.limits ? dictionary(&x) : fail("out of memory");
 	free(x.buf);
 	free(x.limits);
 	return ret;

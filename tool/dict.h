@@ -57,6 +57,7 @@ struct dict_object {
  * @entries: read the entries
  * @values: read the values of the entries
  * @limits: and their limits
+ * @listing: what it shows goes to stdout while it is read: no progress on the same terminal
  * @object: called for each object
  * @entry: for each entry of it; what it points to is gone afterwards
  * @object_end: behind the entries of it, may be NULL
@@ -66,6 +67,7 @@ struct dict_reader {
 	bool entries;
 	bool values;
 	bool limits;
+	bool listing;
 	void (*object)(const struct dict_reader *r, const struct dict_object *o);
 	void (*entry)(const struct dict_reader *r, const struct dict_entry *e);
 	void (*object_end)(const struct dict_reader *r);

@@ -4,16 +4,12 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "../master/wire/foe.h"
 #include "io.h"
 #include "out.h"
+#include "progress.h"
 #include "text.h"
-
-#define FIRST_MS	1000	/* what is done sooner needs no progress */
-#define NEXT_MS		200
-#define BAR		30	/* characters */
 
 /* what the thread shows that watches a transfer */
 struct watch {
@@ -40,28 +36,20 @@ static bool wait_ms(struct watch *w, long ms)
 
 static void show(struct watch *w)
 {
-	u64 done = __atomic_load_n(&w->done, __ATOMIC_RELAXED);
-	unsigned int n = w->f->size ? (unsigned int)(BAR * done / w->f->size) : 0;
-
 	w->shown = true;
+	fputc('\r', stderr);
 	/* how long the file is only a writer knows */
-	if (w->f->write)
-		fprintf(stderr, "\r[%.*s%*s] %3u %%, %llu of %u bytes", (int)min(n, BAR + 0u),
-			"##############################", (int)(BAR - min(n, BAR + 0u)), "",
-			w->f->size ? (unsigned int)(100 * done / w->f->size) : 0,
-			(unsigned long long)done, w->f->size);
-	else
-		fprintf(stderr, "\r%llu bytes", (unsigned long long)done);
-	fflush(stderr);
+	progress_bar(__atomic_load_n(&w->done, __ATOMIC_RELAXED), w->f->write ? w->f->size : 0,
+		     "bytes");
 }
 
 static void *watch_run(void *arg)
 {
 	struct watch *w = arg;
-	long ms = FIRST_MS;
+	long ms = PROGRESS_FIRST_MS;
 
 	pthread_mutex_lock(&w->lock);
-	for (; !wait_ms(w, ms); ms = NEXT_MS)
+	for (; !wait_ms(w, ms); ms = PROGRESS_NEXT_MS)
 		show(w);
 	pthread_mutex_unlock(&w->lock);
 	return NULL;
@@ -72,7 +60,7 @@ static bool watch_begin(struct watch *w, const struct tool *t, pthread_t *thread
 	pthread_condattr_t attr;
 	bool ok;
 
-	if (t->json || t->verbosity < 0 || !isatty(STDERR_FILENO))
+	if (!progress_wanted(t))
 		return false;
 	pthread_mutex_init(&w->lock, NULL);
 	pthread_condattr_init(&attr);

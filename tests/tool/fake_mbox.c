@@ -75,6 +75,8 @@ static int upload(struct ec_ioc_sdo *x)
 
 	if (x->index == 0x10f3)
 		return diag_upload(x);
+	if (getenv("FAKE_SLOW"))
+		usleep(300000);
 	if (x->index == 0x3000) {
 		if (x->size < 65536)
 			return fake_fail(EOVERFLOW, "the object has 65536 bytes");

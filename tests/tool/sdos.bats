@@ -129,3 +129,23 @@ load common
 	run ethercat sdos -p2 --compare-slave 0
 	[[ $output == *"slave 0: no object dictionary that can be read"* ]]
 }
+
+@test "sdos with values shows progress on a terminal when it takes longer than a second" {
+	local tool=$HERE/build/fake/ethercat
+
+	export FAKE_SLOW=1
+	cd "$BATS_TEST_TMPDIR"
+	run script -qec "$tool sdos -p2 --save a.json" /dev/null
+	[[ $output == *$'\rslave 2: ['*'] '*' of 7 objects'* ]]
+	# a listing on the same terminal, -q, --json and a file of errors have none
+	run script -qec "$tool sdos -v -p2" /dev/null
+	[[ $output != *" of 7 objects"* ]]
+	run script -qec "$tool sdos -v -p2 >list" /dev/null
+	[[ $output == *" of 7 objects"* ]]
+	run script -qec "$tool sdos -j -p2 --save a.json" /dev/null
+	[[ $output != *" of 7 objects"* ]]
+	[ "$(err sdos -p2 --save a.json | wc -l)" = 1 ]
+	unset FAKE_SLOW
+	run script -qec "$tool sdos -p2 --save a.json" /dev/null
+	[[ $output != *" of 7 objects"* ]]
+}
