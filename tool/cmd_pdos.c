@@ -3,6 +3,7 @@
 
 #include "layout.h"
 #include "out.h"
+#include "pdos_coe.h"
 
 static void entry(const struct ec_ioc_pdo_entry *e)
 {
@@ -127,28 +128,45 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 	return 0;
 }
 
+static int end(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected)
+{
+	(void)w;
+	if (!selected || taken)
+		return 0;
+	return fail("Master%u: no selected slave has CoE", d->master);
+}
+
 static int run(struct tool *t, int argc, char **argv)
 {
 	static const struct slave_walk walk = { .slave = slave };
+	static const struct slave_walk coe = {
+		.write = true, .takes = pdos_coe_has, .slave = pdos_coe, .end = end,
+	};
 
 	(void)argc, (void)argv;
 	if (t->skin && strcmp(t->skin, "default") && strcmp(t->skin, "etherlab"))
 		return usage_error("unknown skin '%s': expected default or etherlab", t->skin);
-	return dev_each_slave(t, &walk);
+	if (t->coe && t->skin)
+		return usage_error("--coe and --skin exclude each other");
+	return dev_each_slave(t, t->coe ? &coe : &walk);
 }
 
 const struct cmd cmd_pdos = {
 	.name = "pdos",
 	.run = run,
 	.args = "",
-	.opts = "mapsqv",
+	.opts = "mapsqvO",
 	.summary = "Show SyncManagers, PDOs and PDO entries",
 	.help = "The master writes RxPDOs and reads TxPDOs. An entry 0x0000:00 is a gap. Names are\n"
 		"those of the SII, otherwise of the object dictionary, which the command reads while\n"
 		"no application is active. --quiet omits the entries. The skin etherlab prints a\n"
-		"MATLAB function for each slave.\n",
+		"MATLAB function for each slave. --coe reads assignment (0x1c12...) and mapping (0x1600...,\n"
+		"0x1a00...) from the slave at this call, names from the SII, and marks a PDO whose\n"
+		"assignment or mapping is another in the SII.\n",
 	.json = "masters[]: master, slaves[]: position, sync_managers[]: index, address,\n"
 		"default_size_bytes, control, enable, pdos[]: direction (rx, tx), index, name,\n"
-		"entries[]: index, subindex, size_bits, name",
+		"entries[]: index, subindex, size_bits, name. --coe: sync_managers[]: index, object,\n"
+		"pdos[]: direction, index, name, sii (same, other_mapping, not_assigned, unknown;\n"
+		"only: the slave has not assigned it), entries[]",
 	.flags = CMD_HISTORIC,
 };

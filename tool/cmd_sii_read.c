@@ -5,6 +5,7 @@
 #include "../master/wire/sii.h"
 #include "dev.h"
 #include "out.h"
+#include "sii_image.h"
 
 static const char *category_name(unsigned int type)
 {
@@ -81,37 +82,6 @@ static void show(const struct tool *t, const u8 *img, size_t size)
 		categories(img, size);
 }
 
-/* whatever size the image has, the kernel may give it in pieces */
-static int get(struct dev *d, const struct ec_ioc_slave *s, u8 **img, size_t *size)
-{
-	size_t want = 2 * (size_t)s->sii_words;
-	u8 *buf = calloc(1, want + 1);
-
-	*size = 0;
-	if (!buf)
-		return fail("out of memory");
-	while (*size < want) {
-		struct ec_ioc_sii a = {
-			.position = s->position,
-			.offset = (u32)*size,
-			.size = (u32)(want - *size),
-			.data = (uintptr_t)(buf + *size),
-		};
-		int err = dev_ioctl(d, EC_IOC_SII, &a);
-
-		if (err) {
-			free(buf);
-			return dev_fail(d, err, "Master%u slave %u: cannot read the SII", d->master,
-					s->position);
-		}
-		if (!a.size)
-			break;
-		*size += min((size_t)a.size, want - *size);
-	}
-	*img = buf;
-	return 0;
-}
-
 static int run(struct tool *t, int argc, char **argv)
 {
 	struct ec_ioc_slave s;
@@ -126,7 +96,7 @@ static int run(struct tool *t, int argc, char **argv)
 		return 1;
 	if (dev_open_single(&d, t, false))
 		return 1;
-	ret = dev_select_single(&d, t, &s) || get(&d, &s, &img, &size);
+	ret = dev_select_single(&d, t, &s) || sii_load(&d, &s, &img, &size);
 	if (!ret && !size) {
 		ret = fail("Master%u slave %u: the SII has not been read%s%s", d.master, s.position,
 			   s.why[0] ? ": " : "", s.why);

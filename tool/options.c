@@ -25,6 +25,7 @@ const struct opt opts[] = {
 	{ 'C', "compare", "FILE", "compare with a file of --save; - for stdin" },
 	{ 'L', "compare-slave", "POSITION", "compare with another slave" },
 	{ 'A', "acknowledge", NULL, "acknowledge the newest message" },
+	{ 'O', "coe", NULL, "read from the slave over CoE, now" },
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
@@ -50,6 +51,7 @@ static const struct option longs[] = {
 	{ "compare", required_argument, NULL, 'C' },
 	{ "compare-slave", required_argument, NULL, 'L' },
 	{ "acknowledge", no_argument, NULL, 'A' },
+	{ "coe", no_argument, NULL, 'O' },
 	{ "texts", required_argument, NULL, 'T' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
@@ -59,7 +61,7 @@ static const struct option longs[] = {
 /* else the letter is only for the tables */
 bool opt_is_short(const struct opt *o)
 {
-	return !strchr("bwSCLAT", o->letter);
+	return !strchr("bwSCLATO", o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -104,7 +106,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrfbA", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfbAO", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -164,6 +166,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return position(optarg, &t->compare_slave);
 	case 'A':
 		t->acknowledge = true;
+		return 0;
+	case 'O':
+		t->coe = true;
 		return 0;
 	case 'T':
 		t->texts = optarg;

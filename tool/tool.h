@@ -39,6 +39,7 @@
  * @compare: --compare, NULL when not given
  * @compare_slave: --compare-slave, negative when not given
  * @acknowledge: --acknowledge
+ * @coe: --coe
  * @texts: --texts, NULL when not given
  */
 struct tool {
@@ -61,6 +62,7 @@ struct tool {
 	const char *compare;
 	int compare_slave;
 	bool acknowledge;
+	bool coe;
 	const char *texts;
 };
 

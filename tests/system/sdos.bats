@@ -42,6 +42,16 @@ teardown_file() { stop; }
 	json '[.masters[].slaves[].objects[].entries[] | has("value")] | any | not' sdos -p16
 }
 
+@test "pdos --coe reads the present PDOs of a slave" {
+	[ "$(ethercat pdos --coe -q -p4 | grep -c 'SII$')" = 0 ]
+	[ "$(ethercat pdos --coe -p4 | grep 'PDO ')" = "$(ethercat pdos -p4 | grep 'PDO ')" ]
+	ethercat pdos --coe -p16 | grep -q '^SM2: 0x1c12$'
+	ethercat download -p16 -t uint8 0x1c12 0 0
+	run ethercat pdos --coe -p16
+	[[ $output == *'  RxPDO 0x1600 "'*'", assigned in the SII only'* ]]
+	ethercat download -p16 -t uint8 0x1c12 0 1
+}
+
 @test "several slaves have a header, those without dictionary are left out" {
 	run ethercat sdos -q -p0,4-5
 	[ "$status" = 0 ]

@@ -6,7 +6,8 @@
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
  *   broken behind slave 1), two (two masters), foreign (not our interface),
- *   detached (its application is gone), waiting (no network interface), evil (names that attack the reader),
+ *   detached (its application is gone), waiting (no network interface), evil (names that attack
+ *   the reader),
  *   big (1000 slaves)
  * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
  * gets the number of ioctls.
@@ -276,6 +277,8 @@ static int slave(struct ec_ioc_slave *s)
 	if (!state[s->position].vendor_id)
 		state[s->position] = slaves[s->position];
 	*s = state[s->position];
+	if (getenv("FAKE_SII"))
+		s->sii_words = 0x80;
 	if (fake_bus("cut") && s->position == 2)
 		s->device_index = 1;
 	if (fake_bus("reversed"))
@@ -398,12 +401,37 @@ static int reg_rdwr(struct ec_ioc_reg *x)
 	return reg_read(x);
 }
 
+/* with PDOs, others than those the slave has: see fake_mbox.c */
+static int sii_pdos(struct ec_ioc_sii *x)
+{
+	static const char categories[] =
+		"\x0a\0\7\0" "\2\3DRV\7Control\0"
+		"\x33\0\x1c\0"
+		"\0\x16\1\2\0\1\0\0" "\x10\x70\1\2\6\x10\0\0"
+		"\1\x16\1\2\0\0\0\0" "\x10\x70\6\0\5\x08\0\0"
+		"\2\x16\2\xff\0\0\0\0" "\x10\x70\6\0\5\x08\0\0" "\0\0\0\0\0\x08\0\0"
+		"\x32\0\x0c\0"
+		"\0\x1a\2\3\0\0\0\0" "\0\x60\x11\0\7\x20\0\0" "\0\0\0\0\0\x10\0\0"
+		"\xff\xff";
+	__u8 image[0x100] = { 0 };
+
+	memcpy(image + 0x80, categories, sizeof(categories));
+	if (x->offset >= sizeof(image))
+		return fake_fail(EINVAL, "beyond the image");
+	if (x->size > sizeof(image) - x->offset)
+		x->size = (__u32)(sizeof(image) - x->offset);
+	memcpy((void *)(uintptr_t)x->data, image + x->offset, x->size);
+	return 0;
+}
+
 static int sii(struct ec_ioc_sii *x)
 {
 	/* fixed area, then General (2 words) and the end */
 	__u8 image[0xa0] = { [0x10] = 2, [0x80] = 0x1e, [0x82] = 2, [0x84] = 1, 2, 3, 4,
 			     [0x88] = 0xff, 0xff };
 
+	if (getenv("FAKE_SII"))
+		return sii_pdos(x);
 	if (x->offset >= sizeof(image))
 		return fake_fail(EINVAL, "beyond the image");
 	if (x->size > 64)

@@ -24,7 +24,8 @@ static const struct {
 	{ 1, 1, "\4" }, { 2, 1, "\7" }, { 3, 1, "\x6" }, { 5, 2, "\x20\0" },
 	/* the oldest: DC time, text 0x10 with UINT16, INT8, text, text 0x11 and UINT8[2] */
 	{ 8, 40, "\0\xe8\x34\x12\2\5\x10\0\0\x80\xb5\x62\x15\x78\x83\x0b"
-		 "\6\0\x42\1" "\2\0\xff" "\7\x20" "a\033[2Jbc" "\0\x40\x11\0" "\2\x10\xab\xcd" },
+		 "\6\0\x42\1" "\2\0\xff" "\7\x20" "a\033[2Jbc" "\0\x40\x11\0"
+		 "\2\x10\xab\xcd" },
 	{ 9, 16, "\x01\xe0\0\0\0\0\0\0\0\xca\x9a\x3b\0\0\0\0" },
 	/* unknown severity; a parameter of unknown size */
 	{ 6, 20, "\x02\xe0\0\0\x07\2\x12\0\1\0\0\0\0\0\0\0\5\0\7\xff" },
@@ -34,6 +35,7 @@ static const struct {
 static int diag_upload(struct ec_ioc_sdo *x)
 {
 	const char *kind = getenv("FAKE_DIAG");
+	__u32 most;
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
 	if (!kind || x->position != 2)
@@ -47,8 +49,9 @@ static int diag_upload(struct ec_ioc_sdo *x)
 			to[0] = 0;
 		if (!strcmp(kind, "newest") && x->subindex == 2)
 			to[0] = 0x0a;
-		if (!strncmp(kind, "short", 5) && x->subindex > 5 && x->size > (__u32)atoi(kind + 5))
-			x->size = (__u32)atoi(kind + 5);
+		most = strncmp(kind, "short", 5) || x->subindex <= 5 ? 64 : (__u32)atoi(kind + 5);
+		if (x->size > most)
+			x->size = most;
 		if (!strcmp(kind, "refuse") && x->subindex > 5)
 			return abort_sdo(x, 0x08000020);
 		return 0;
@@ -69,12 +72,31 @@ static int upload(struct ec_ioc_sdo *x)
 		{ 0x6041, 0, 2, "\x60\x80" },
 		{ 0x6060, 0, 1, "\xff" },
 		{ 0x2000, 0, 4, "\0\0\xc0\x3f" },
+		{ 0x1c12, 0, 1, "\2" },
+		{ 0x1c12, 1, 2, "\0\x16" },
+		{ 0x1c12, 2, 2, "\2\x16" },
+		{ 0x1600, 0, 1, "\1" },
+		{ 0x1600, 1, 4, "\x10\1\x10\x70" },
+		{ 0x1602, 0, 1, "\2" },
+		{ 0x1602, 1, 4, "\x08\6\x10\x70" },
+		{ 0x1602, 2, 4, "\x08\0\0\0" },
+		{ 0x1c13, 0, 1, "\2" },
+		{ 0x1c13, 2, 2, "\5\x1a" },
+		{ 0x1a05, 0, 1, "\0" },
+		{ 0x1c13, 1, 2, "\0\x1a" },
+		{ 0x1a00, 0, 1, "\1" },
+		{ 0x1a00, 1, 4, "\x20\x11\0\x60" },
 		{ 0x2002, 0, 12, "a\033[2J\302\233b\n\0\0\0" },
 	};
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
 	if (x->index == 0x10f3)
 		return diag_upload(x);
+	if (getenv("FAKE_COUNT_OF") && x->index == strtoul(getenv("FAKE_COUNT_OF"), NULL, 0)) {
+		memset(to, 0xff, 4);	/* more than a list can have */
+		x->size = 4;
+		return 0;
+	}
 	if (getenv("FAKE_SLOW"))
 		usleep(300000);
 	if (x->index == 0x3000) {

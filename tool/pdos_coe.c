@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* pdos --coe: assignment and mapping as the slave has them now, beside those of its SII. */
+#include "pdos_coe.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../master/wire/sii.h"
+#include "out.h"
+#include "sii_image.h"
+#include "text.h"
+
+#define NAME		256
+#define ASSIGN		0x1c10	/* of SyncManager 0 */
+#define FIRST_SM	2	/* those below are of the mailbox */
+#define CONTROL_WRITE	0x04	/* direction bit of the SM's control byte */
+#define NO_OBJECT	0x06020000u
+
+/* a PDO as the slave has it */
+struct live_pdo {
+	u16 index;
+	u8 n;
+	u32 map[255];	/* object 31-16, subindex 15-8, bits 7-0 */
+};
+
+/* one slave */
+struct reading {
+	struct dev *d;
+	u16 position;
+	u8 *img;
+	size_t size;
+	bool quiet;
+	bool output;	/* direction of the SyncManager */
+	u8 sm;
+	struct live_pdo pdo;
+	u16 assigned[255];
+	unsigned int n;
+};
+
+bool pdos_coe_has(const struct ec_ioc_slave *s)
+{
+	return s->mbox_protocols & EC_SII_PROTO_COE;
+}
+
+/* 0, errno after printing it; @abort not NULL: an abort code is stored there, not printed */
+static int upload(struct reading *r, u16 index, u8 sub, u32 *v, u32 *abort)
+{
+	u8 data[4] = { 0 };
+	struct ec_ioc_sdo s = {
+		.position = r->position, .index = index, .subindex = sub, .size = sizeof(data),
+		.data = (uintptr_t)data,
+	};
+	int err = dev_ioctl(r->d, EC_IOC_SDO_UPLOAD, &s);
+
+	*v = get_unaligned_le32(data);
+	if (!err)
+		return 0;
+	if (s.abort_code && abort)
+		*abort = s.abort_code;
+	else if (s.abort_code)
+		fail_full(err, NULL, s.abort_code, "Master%u slave %u: SDO upload 0x%04x:%02x",
+			  r->d->master, r->position, index, sub);
+	else
+		dev_fail(r->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x", r->d->master,
+			 r->position, index, sub);
+	return err;
+}
+
+/* The number of entries, which is subindex 0 of both kinds of objects. */
+static int count(struct reading *r, u16 index, unsigned int *n, u32 *abort)
+{
+	u32 v;
+	int err = upload(r, index, 0, &v, abort);
+
+	*n = err ? 0 : v;
+	if (err || v <= 255)
+		return err;
+	fail("Master%u slave %u: 0x%04x:00 is %u, expected at most 255", r->d->master,
+	     r->position, index, v);
+	return 1;
+}
+
+static int read_pdo(struct reading *r, u16 index)
+{
+	unsigned int n;
+	int err = count(r, index, &n, NULL);
+
+	r->pdo.index = index;
+	r->pdo.n = (u8)n;
+	for (unsigned int i = 0; i < n && !err; i++)
+		err = upload(r, index, (u8)(i + 1), &r->pdo.map[i], NULL);
+	return err;
+}
+
+static bool sii_next(struct reading *r, struct ec_sii_pdo_iter *it, struct ec_sii_pdo *p)
+{
+	if (!it->type)
+		ec_sii_pdo_iter_init(it, r->img, r->size,
+				     r->output ? EC_SII_CAT_RXPDO : EC_SII_CAT_TXPDO);
+	return ec_sii_pdo_iter_next(it, p) == 1;
+}
+
+static bool sii_find(struct reading *r, u16 index, struct ec_sii_pdo *p)
+{
+	struct ec_sii_pdo_iter it = { 0 };
+
+	while (sii_next(r, &it, p))
+		if (p->index == index)
+			return true;
+	return false;
+}
+
+static void sii_name(struct reading *r, u8 number, char *name)
+{
+	ec_sii_string(r->img, r->size, number, name, NAME);
+	string_clean(name, NAME);
+}
+
+/* of an entry, in any PDO of its direction */
+static void entry_name(struct reading *r, u16 index, u8 sub, char *name)
+{
+	struct ec_sii_pdo_iter it = { 0 };
+	struct ec_sii_pdo_entry e;
+	struct ec_sii_pdo p;
+
+	*name = 0;
+	while (index && !*name && sii_next(r, &it, &p))
+		for (unsigned int i = 0; i < p.entries && !ec_sii_pdo_entry(&p, i, &e); i++)
+			if (e.index == index && e.sub == sub) {
+				sii_name(r, e.name, name);
+				break;
+			}
+}
+
+static bool same_mapping(const struct live_pdo *l, const struct ec_sii_pdo *p)
+{
+	struct ec_sii_pdo_entry e;
+
+	for (unsigned int i = 0; i < l->n; i++)
+		if (ec_sii_pdo_entry(p, i, &e) ||
+		    l->map[i] != ((u32)e.index << 16 | (u32)e.sub << 8 | e.bits))
+			return false;
+	return l->n == p->entries;
+}
+
+static void show_entry(struct reading *r, u32 v)
+{
+	u16 index = (u16)(v >> 16);
+	u8 sub = (u8)(v >> 8), bits = (u8)v;
+	char name[NAME];
+
+	entry_name(r, index, sub, name);
+	out_object(NULL);
+	out_u("index", index, "    PDO entry 0x%04x", index);
+	out_u("subindex", sub, ":%02x", sub);
+	out_u("size_bits", bits, ", %2u bit", bits);
+	out_str("name", name, ", \"%s\"\n", name);
+	out_end();
+}
+
+static void show_pdo(struct reading *r, u16 index, const char *name, const char *sii,
+		     const char *remark)
+{
+	out_object(NULL);
+	out_str("direction", r->output ? "rx" : "tx", "  %cxPDO", r->output ? 'R' : 'T');
+	out_u("index", index, " 0x%04x", index);
+	out_str("name", name, " \"%s\"%s\n", name, remark);
+	out_str("sii", sii, NULL);
+}
+
+/* PDO @k of the list, with what the SII says about it */
+static int live_pdo(struct reading *r, unsigned int k)
+{
+	char name[NAME] = "";
+	struct ec_sii_pdo p;
+	int err = read_pdo(r, r->assigned[k]);
+
+	if (err)
+		return err;
+	if (!sii_find(r, r->assigned[k], &p)) {
+		show_pdo(r, r->assigned[k], name, "unknown", ", not in the SII");
+	} else {
+		sii_name(r, p.name, name);
+		if (!same_mapping(&r->pdo, &p))
+			show_pdo(r, p.index, name, "other_mapping", ", other mapping in the SII");
+		else if (p.sm != r->sm)
+			show_pdo(r, p.index, name, "not_assigned", ", not assigned in the SII");
+		else
+			show_pdo(r, p.index, name, "same", "");
+	}
+	out_array("entries");
+	for (unsigned int i = 0; i < r->pdo.n && !r->quiet; i++)
+		show_entry(r, r->pdo.map[i]);
+	out_end();
+	out_end();
+	return 0;
+}
+
+/* what only the SII assigns */
+static void sii_only(struct reading *r)
+{
+	struct ec_sii_pdo_iter it = { 0 };
+	struct ec_sii_pdo p;
+
+	while (sii_next(r, &it, &p)) {
+		bool live = p.sm != r->sm;
+		char name[NAME];
+
+		for (unsigned int k = 0; k < r->n; k++)
+			live |= r->assigned[k] == p.index;
+		if (live)
+			continue;
+		sii_name(r, p.name, name);
+		show_pdo(r, p.index, name, "only", ", assigned in the SII only");
+		out_end();
+	}
+}
+
+static int sync_manager(struct reading *r)
+{
+	u16 object = (u16)(ASSIGN + r->sm);
+	u32 abort = 0, v;
+	int err = count(r, object, &r->n, &abort);
+
+	if (err && abort == NO_OBJECT)
+		return 0;
+	if (err && abort)
+		return fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:00",
+				 r->d->master, r->position, object);
+	for (unsigned int k = 0; k < r->n && !err; k++) {
+		err = upload(r, object, (u8)(k + 1), &v, NULL);
+		r->assigned[k] = (u16)v;
+	}
+	if (err)
+		return err;
+	out_object(NULL);
+	out_u("index", r->sm, "SM%u", r->sm);
+	out_u("object", object, ": 0x%04x\n", object);
+	out_array("pdos");
+	for (unsigned int k = 0; k < r->n && !err; k++)
+		err = live_pdo(r, k);
+	if (!err)
+		sii_only(r);
+	out_end();
+	out_end();
+	return err;
+}
+
+static int sync_managers(struct reading *r, const struct ec_ioc_slave *s)
+{
+	int err = 0;
+
+	for (unsigned int i = FIRST_SM; i < s->sm_count && !err; i++) {
+		struct ec_ioc_sm sm = { .position = s->position, .sm = (u8)i };
+
+		err = dev_ioctl(r->d, EC_IOC_SM, &sm);
+		if (err)
+			return dev_fail(r->d, err, "Master%u slave %u: cannot read SM%u",
+					r->d->master, s->position, i);
+		r->sm = (u8)i;
+		r->output = sm.control & CONTROL_WRITE;
+		err = sync_manager(r);
+	}
+	return err;
+}
+
+/**
+ * pdos_coe() - show the PDOs that a slave has now
+ * @w: walk
+ * @t: command line
+ * @d: master, open for writing
+ * @s: slave
+ * @several: others may follow
+ *
+ * Return: 0, or 1 after printing what failed.
+ */
+int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,
+	     const struct ec_ioc_slave *s, bool several)
+{
+	struct reading *r = calloc(1, sizeof(*r));
+	int ret;
+
+	(void)w;
+	if (!r)
+		return fail("out of memory");
+	r->d = d;
+	r->position = s->position;
+	r->quiet = t->verbosity < 0;
+	ret = sii_load(d, s, &r->img, &r->size);
+	if (!ret) {
+		out_object(NULL);
+		out_u("position", s->position, NULL);
+		if (several)
+			out_text("=== Master %u, Slave %u ===\n", d->master, s->position);
+		out_array("sync_managers");
+		ret = sync_managers(r, s);
+		out_end();
+		out_end();
+	}
+	free(r->img);
+	free(r);
+	return ret ? 1 : 0;
+}

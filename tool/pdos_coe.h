@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+#ifndef EC_TOOL_PDOS_COE_H
+#define EC_TOOL_PDOS_COE_H
+
+#include "dev.h"
+
+bool pdos_coe_has(const struct ec_ioc_slave *s);
+int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,
+	     const struct ec_ioc_slave *s, bool several);
+
+#endif
