@@ -241,7 +241,8 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		out_u("acknowledged", h->ack, NULL);
 		out_u("flags", h->flags, NULL);
 		if (h->flags & 0x20)
-			out_text("%4u  older messages were overwritten or discarded\n", s->position);
+			out_text("%4u  older messages were overwritten or discarded\n",
+				 s->position);
 		if (!h->newest)
 			out_text("%4u  no messages\n", s->position);
 		out_array("messages");

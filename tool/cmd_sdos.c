@@ -152,7 +152,7 @@ const struct cmd cmd_sdos = {
 	.help = "Read from the slave at each call. An entry has access in PREOP, SAFEOP and OP (r: read,\n"
 		"w: write), data type, size and name. --quiet omits the entries, --verbose reads the\n"
 		"values of all that can be read: an entry that the slave does not give has its abort code.\n"
-		"A line below it has default, minimum, maximum and unit, as far as the slave tells them.\n"
+		"A line below it has default, minimum, maximum and unit, as far as the slave has them.\n"
 		"Slaves without CoE or without SDO information are skipped.\n"
 		"\n"
 		"--save writes all entries of one slave with their values to a file (JSON). --compare\n"

@@ -122,6 +122,19 @@ static int add(struct esi_texts *t, u16 id, const struct span *text)
 	return t->v[t->n].text ? !++t->n : 1;
 }
 
+static bool is_space(char c)
+{
+	return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
+static void trim(struct span *s)
+{
+	while (s->p < s->end && is_space(*s->p))
+		s->p++;
+	while (s->p < s->end && is_space(s->end[-1]))
+		s->end--;
+}
+
 /* English, otherwise the first language */
 static bool message_text(struct span message, struct span *text)
 {
@@ -137,6 +150,8 @@ static bool message_text(struct span message, struct span *text)
 		if (english)
 			break;
 	}
+	if (found)
+		trim(text);
 	return found;
 }
 

@@ -218,7 +218,7 @@ void help_roff(void)
 	     "Errors are one object on stderr: {\"error\": {\"command\", \"kind\" (usage or\n"
 	     "runtime), \"message\", \"errno\", \"errno_text\", \"reason\", \"abort_code\",\n"
 	     "\"abort_text\"}}.\n"
-	     ".SH EXIT STATUS\n0: success; 1: failure; 2: a comparison has found differences.\n"
+	     ".SH EXIT STATUS\n0: success; 1: failure; 2: --compare has found differences.\n"
 	     ".SH FILES\n.I /dev/EtherCAT*\n.br\n"
 	     ".I /etc/udev/rules.d/59\\-ethercat\\-*.rules\n.SH SEE ALSO\n.BR dot (1)");
 }

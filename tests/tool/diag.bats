@@ -10,10 +10,13 @@ setup() {
 	<Device><DiagMessages>
 	<DiagMessage><TextId>#x0010</TextId>
 	<MessageText LcId="1031"><![CDATA[Fehler %x]]></MessageText>
-	<MessageText LcId="1033"><![CDATA[AL code 0x%04x &amp; %d%%, in <%s>: %s, %s, none %d]]></MessageText>
+	<MessageText LcId="1033">
+	<![CDATA[AL code 0x%04x &amp; %d%%, in <%s>: %s, %s, none %d]]></MessageText>
 	</DiagMessage>
-	<DiagMessage><TextId>17</TextId><MessageText>over@[2Jtemperature</MessageText></DiagMessage>
-	<DiagMessage><TextId>#x0012</TextId><MessageText LcId="1033">%s %s %</MessageText></DiagMessage>
+	<DiagMessage><TextId>17</TextId>
+	<MessageText>over@[2Jtemperature</MessageText></DiagMessage>
+	<DiagMessage><TextId>#x0012</TextId><MessageText LcId="1033">%s %s %</MessageText>
+	</DiagMessage>
 	</DiagMessages></Device>
 	END
 	sed -i $'s/@/\033/' "$ESI"
@@ -77,7 +80,8 @@ setup() {
 }
 
 @test "diag --texts refuses a file without texts" {
-	for content in '' 'text' '<DiagMessage>' '<DiagMessage><TextId>#x10</TextId></DiagMessage>' \
+	for content in '' 'text' '<DiagMessage>' \
+		'<DiagMessage><TextId>#x10</TextId></DiagMessage>' \
 		'<DiagMessage><TextId>x</TextId><MessageText>a</MessageText></DiagMessage>' \
 		'<DiagMessage><TextId>65536</TextId><MessageText>a</MessageText></DiagMessage>'; do
 		printf '%s' "$content" >"$BATS_TEST_TMPDIR/x.xml"

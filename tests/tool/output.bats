@@ -251,7 +251,7 @@ END
 	[ "$status" -eq 1 ]
 }
 
-@test "reg_rdwr writes and prints what was there before" {
+@test "reg_rdwr writes a register and prints its old content" {
 	[ "$(out reg_rdwr -p2 -t uint16 0x130 0x4321)" = "0x0012 18" ]
 	[ "$(log_of reg_rdwr -p2 -t uint16 0x130 0x4321 | tail -n 1)" = "reg 2 0x0130 2143" ]
 	[ "$(log_of reg_rdwr -p2 -t string 0x10 ab 4 | tail -n 1)" = "reg 2 0x0010 61620000" ]

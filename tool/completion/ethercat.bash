@@ -53,7 +53,8 @@ _ethercat()
 		case $w in
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
-		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|--compare|--compare-slave|--texts)
+		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|\
+		--compare|--compare-slave|--texts)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;
