@@ -10,7 +10,7 @@
 #include "coe.h"
 
 #define EC_SDOINFO_HDR		6	/* CoE header, opcode, reserved, fragments left */
-#define EC_OD_ENTRY_HDR		10	/* of an entry description, before optional fields and name */
+#define EC_OD_ENTRY_HDR		10	/* of an entry, before optional fields and name */
 #define EC_SDOINFO_MIN		10	/* smallest mailbox content a CoE slave has */
 #define EC_SDOINFO_FRAGMENTS	4096	/* no answer has more */
 #define EC_SDOINFO_OPCODE_MASK	0x7F
