@@ -31,6 +31,7 @@
 #define EC_APP_DIAG_BYTES	33	/* of a message there */
 #define EC_APP_FOE_KIB		64	/* largest file of a slave without foe= */
 #define EC_APP_FOE_NAME		32	/* name of the file */
+#define EC_APP_FOE_HEADER	16	/* bytes of a file that are checked, at most */
 #define EC_APP_ESC_ET1100	0x11
 #define EC_APP_ESC_ET1200	0x12
 #define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
@@ -433,6 +434,11 @@ struct ec_app_soe {
  * @n: read: its bytes
  * @busy: BUSY answers after each page of flash
  * @left: of these, for the present page
+ * @page_ns: time to write a page
+ * @ready: when the present page is written
+ * @header: a file that is written must begin with it
+ * @header_len: bytes of it
+ * @boot: files are written in BOOT only
  * @password: of the last request
  * @writes: files written since power-on
  */
@@ -449,6 +455,11 @@ struct ec_app_foe {
 	u16 n;
 	u8 busy;
 	u8 left;
+	u64 page_ns;
+	u64 ready;
+	char header[EC_APP_FOE_HEADER];
+	u8 header_len;
+	bool boot;
 	u32 password;
 	u32 writes;
 };
@@ -464,6 +475,9 @@ struct ec_app_foe {
  * @last_len: bytes in @last
  * @out_due: when @out is ready
  * @out_in_sm: @out lies in SM1
+ * @out_wrong: a scripted fault concerns @out
+ * @out_again: @out has been sent before
+ * @now: when the message in @rx was taken
  * @rx_waits: SM0 is full and not fetched, @out is occupied
  * @rx_counter: counter of the last message accepted, 0: none yet
  * @tx_counter: counter of the last message sent
@@ -487,6 +501,9 @@ struct ec_app_mbox {
 	u16 last_len;
 	u64 out_due;
 	bool out_in_sm;
+	bool out_wrong;
+	bool out_again;
+	u64 now;
 	bool rx_waits;
 	u8 rx_counter;
 	u8 tx_counter;
@@ -617,6 +634,10 @@ struct ec_app {
  * @eeprom_emulated: its CPU stands in for the EEPROM
  * @no_ip: its EoE does not support IP
  * @foe_busy: BUSY answers of its FoE after each page of flash
+ * @foe_page_ns: its FoE is busy for so long after each page of flash
+ * @foe_header: file content its FoE accepts begins with it, not terminated
+ * @foe_header_len: bytes of it
+ * @foe_boot: its FoE accepts files in BOOT only
  * @clock_bits: of its clock, 64, 32, EC_APP_CLOCK_DELAY (receive times only) or
  *	EC_APP_NO_CLOCK; 0: as the model
  */
@@ -633,6 +654,10 @@ struct ec_app_config {
 	bool eeprom_emulated;
 	bool no_ip;
 	u8 foe_busy;
+	u64 foe_page_ns;
+	const char *foe_header;
+	u8 foe_header_len;
+	bool foe_boot;
 	u8 clock_bits;
 };
 
@@ -687,6 +712,11 @@ static inline bool ec_app_bug(const struct ec_app *app, enum ec_sim_bug bug)
 {
 	return ec_sim_has_bug(app->esc->sim, bug);
 }
+
+/* mbox_fault.c */
+u64 ec_app_mbox_late(const struct ec_app *app);
+bool ec_app_mbox_spoil(struct ec_app *app, u16 len);
+void ec_app_mbox_sent(struct ec_app *app);
 
 /* slave_soe.c, slave_voe.c */
 size_t ec_app_soe_bytes(void);

@@ -121,7 +121,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 {
 	u64 response = d->response_ns, transition = d->transition_ns;
 	u64 delay = 0, clock = 0, op_timeout = d->op_timeout_ns;
-	s64 alias = 0, serial = 0, drift = 0, foe_busy = 0;
+	s64 alias = 0, serial = 0, drift = 0;
 	struct ec_desc_word w;
 	int ret;
 
@@ -146,7 +146,7 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	if (!ret)
 		ret = ec_desc_time(d, "cable", 1000000, cable_ns);
 	if (!ret)
-		ret = ec_desc_number(d, "foe_busy", 0, 255, &foe_busy);
+		ret = ec_desc_foe(d, c);
 	if (ret)
 		return ret;
 	w = ec_desc_value(d, "eeprom");
@@ -171,7 +171,6 @@ static int config_read(struct ec_desc *d, struct ec_app_config *c,
 	c->response_ns = (u32)min(response, (u64)~0u);
 	c->transition_ns = (u32)min(transition, (u64)~0u);
 	c->op_timeout_ns = op_timeout;
-	c->foe_busy = (u8)foe_busy;
 	return 0;
 }
 

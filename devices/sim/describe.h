@@ -14,6 +14,8 @@
  *		in=N out=N mbox=N (drive: bytes)  in=N out=N cpu=yes|no (io: bits)
  *		soe=N (SoE with N drives)  voe=TYPE (VoE, type of the answers)
  *		foe=KIB (FoE, largest file)  foe_busy=N (BUSY answers after 4 KiB of a write)
+ *		foe_page=TIME (BUSY so long)  foe_header=TEXT (files begin so)
+ *		foe_boot=yes|no (writes in BOOT only)
  *		repeat=yes|no (mailbox messages)  strict=yes|no (mailbox SyncManagers)
  *	branch NAME PORT		the next slave hangs there
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
@@ -28,7 +30,10 @@
  *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
  *		wkc NAME add=N  errors NAME.PORT add=N
  *		mailbox NAME good|length|short|counter|type|babble|stale|fragments (its messages)
- *		mailbox NAME error|abort code=N (likewise)
+ *		mailbox NAME error|abort|deny code=N (likewise)
+ *		mailbox NAME delay by=TIME (likewise)
+ *		mailbox NAME busy|garbage|duplicate|lost|almost (likewise)
+ *		mailbox ... after=N (N more messages are right)
  *		latch NAME 0|1 [edge=rising|falling|pulse] (an input of its clock)
  *		error NAME code=N (AL status code; out of OP)
  *		eeprom NAME word=N value=N  input NAME.CHANNEL value=N

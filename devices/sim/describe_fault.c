@@ -66,28 +66,49 @@ static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+/* the number that a kind of mailbox fault has */
+static int mailbox_number(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	bool word = f->arg == EC_SIM_MAILBOX_ERROR;
+	u64 by = 10000000;
+	s64 code = 1;
+	int ret = 0;
+
+	switch (f->arg) {
+	case EC_SIM_MAILBOX_ERROR:
+	case EC_SIM_MAILBOX_ABORT:
+	case EC_SIM_MAILBOX_DENY:
+		ret = ec_desc_number(d, "code", 0, word ? 0xFFFF : 0xFFFFFFFF, &code);
+		f->arg2 = (u32)code;
+		break;
+	case EC_SIM_MAILBOX_DELAY:
+		ret = ec_desc_time(d, "by", 4000000000u, &by);
+		f->arg2 = (u32)by;
+		break;
+	}
+	return ret;
+}
+
 static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
 		"good", "length", "short", "counter", "type", "babble", "stale", "fragments",
-		"error", "abort",
+		"error", "abort", "delay", "busy", "deny", "garbage", "duplicate", "lost",
+		"almost",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
-	s64 code = 1;
+	s64 after = 0;
 
 	for (u32 i = 0; i < ARRAY_SIZE(kinds); i++) {
 		if (!ec_desc_is(w, kinds[i]))
 			continue;
 		f->arg = i;
-		if (i != EC_SIM_MAILBOX_ERROR && i != EC_SIM_MAILBOX_ABORT)
-			return 0;
-		if (ec_desc_number(d, "code", 0, i == EC_SIM_MAILBOX_ABORT ? 0xFFFFFFFF : 0xFFFF,
-				   &code))
+		if (mailbox_number(d, f) || ec_desc_number(d, "after", 0, 0xFFFFFFFF, &after))
 			return -EINVAL;
-		f->arg2 = (u32)code;
+		f->value = (u64)after;
 		return 0;
 	}
-	return ec_desc_fail(d, "invalid mailbox fault: expected good, length, short, counter, type, babble, stale, fragments, error code=N or abort code=N",
+	return ec_desc_fail(d, "invalid mailbox fault: expected good, length, short, counter, type, babble, garbage, almost, duplicate, lost, delay by=TIME, deny code=N...",
 			    NULL, "");
 }
 

@@ -103,6 +103,9 @@ int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 		  struct ec_desc_word *name, s64 *number);
 int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w);
 
+/* describe_foe.c */
+int ec_desc_foe(struct ec_desc *d, struct ec_app_config *c);
+
 /* describe_fault.c */
 int ec_desc_fault(struct ec_desc *d);
 

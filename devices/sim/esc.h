@@ -244,7 +244,8 @@ struct ec_esc_dc {
  * @al_code: AL status code to refuse with
  * @app_mute: the application answers no mailbox and no AL request
  * @mailbox: enum ec_sim_mailbox_fault
- * @mailbox_code: of EC_SIM_MAILBOX_ERROR and EC_SIM_MAILBOX_ABORT
+ * @mailbox_code: its @arg2, see enum ec_sim_mailbox_fault
+ * @mailbox_after: messages that are still right
  */
 struct ec_esc_fault {
 	bool dead;
@@ -257,6 +258,7 @@ struct ec_esc_fault {
 	bool app_mute;
 	u8 mailbox;
 	u32 mailbox_code;
+	u32 mailbox_after;
 };
 
 #define EC_ESC_NO_SM	0xff

@@ -194,6 +194,7 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_MAILBOX:
 		esc->fault.mailbox = (u8)f->arg;
 		esc->fault.mailbox_code = f->arg2;
+		esc->fault.mailbox_after = (u32)f->value;
 		break;
 	case EC_SIM_FAULT_LATCH:
 		if (f->arg2 & EC_SIM_EDGE_RISING)

@@ -47,7 +47,7 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_MUTE: the application does not answer while @arg is 1
  * @EC_SIM_FAULT_ERRORS: @arg is added to the error counters of @port
  * @EC_SIM_FAULT_MAILBOX: messages from the mailbox are wrong, @arg is an
- *                        enum ec_sim_mailbox_fault
+ *                        enum ec_sim_mailbox_fault; the next @value are right
  * @EC_SIM_FAULT_LATCH: no fault: an edge, EC_SIM_EDGE_* in @arg2, at latch input
  *                      @arg of its clock
  * @EC_SIM_FAULT_AL_ERROR: @slave leaves OP with AL status code @arg, or shows it
@@ -97,6 +97,13 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_FRAGMENTS: an SDO information reply never ends: empty fragments follow
  * @EC_SIM_MAILBOX_ERROR: each is a mailbox error reply with the code in @arg2
  * @EC_SIM_MAILBOX_ABORT: SDO requests that are aborted have the abort code @arg2
+ * @EC_SIM_MAILBOX_DELAY: each is sent @arg2 ns later
+ * @EC_SIM_MAILBOX_BUSY: FoE is busy without end; else a mailbox error reply: still at work
+ * @EC_SIM_MAILBOX_DENY: CoE, FoE and SoE refuse each request with the error code @arg2
+ * @EC_SIM_MAILBOX_GARBAGE: random bytes; in half of them the header is right
+ * @EC_SIM_MAILBOX_DUPLICATE: each is sent twice, with the same counter
+ * @EC_SIM_MAILBOX_LOST: requests are executed, replies are not sent
+ * @EC_SIM_MAILBOX_ALMOST: in half of them one field is wrong
  * @EC_SIM_MAILBOX_FAULTS: number of faults
  */
 enum ec_sim_mailbox_fault {
@@ -110,6 +117,13 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_FRAGMENTS,
 	EC_SIM_MAILBOX_ERROR,
 	EC_SIM_MAILBOX_ABORT,
+	EC_SIM_MAILBOX_DELAY,
+	EC_SIM_MAILBOX_BUSY,
+	EC_SIM_MAILBOX_DENY,
+	EC_SIM_MAILBOX_GARBAGE,
+	EC_SIM_MAILBOX_DUPLICATE,
+	EC_SIM_MAILBOX_LOST,
+	EC_SIM_MAILBOX_ALMOST,
 	EC_SIM_MAILBOX_FAULTS
 };
 

@@ -401,6 +401,11 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->ip.refuse = cfg->no_ip;
 	app->foe.busy = cfg->foe_busy;
+	app->foe.page_ns = cfg->foe_page_ns;
+	app->foe.boot = cfg->foe_boot;
+	app->foe.header_len = (u8)min_t(size_t, cfg->foe_header_len, EC_APP_FOE_HEADER);
+	if (app->foe.header_len)
+		memcpy(app->foe.header, cfg->foe_header, app->foe.header_len);
 
 	image = ec_sim_alloc(sim, model->eeprom_len);
 	if (!image) {

@@ -41,6 +41,7 @@ static u32 begin(struct ec_app_foe *f, const struct ec_foe_hdr *h, const struct 
 	f->at = 0;
 	f->n = 0;
 	f->left = 0;
+	f->ready = 0;
 	f->password = h->number;
 	if (!len || len > sizeof(f->name))
 		return EC_FOE_ERR_ILLEGAL;
@@ -56,16 +57,27 @@ static u32 begin(struct ec_app_foe *f, const struct ec_foe_hdr *h, const struct 
 	return 0;
 }
 
+/* Does a file begin as it must? Its first packet is @r. */
+static bool is_firmware(const struct ec_app_foe *f, const struct ec_rbuf *r)
+{
+	return f->at || (ec_rbuf_left(r) >= f->header_len &&
+			 !memcmp(r->p, f->header, f->header_len));
+}
+
 /* A packet of @room bytes is not the last one. */
-static u32 store(struct ec_app_foe *f, const struct ec_rbuf *r, size_t room)
+static u32 store(struct ec_app_foe *f, const struct ec_rbuf *r, size_t room, u64 now)
 {
 	size_t len = ec_rbuf_left(r);
 
+	if (f->header_len && !is_firmware(f, r))
+		return EC_FOE_ERR_PROGRAM;
 	if (len > f->cap - f->at)
 		return EC_FOE_ERR_FULL;
 	memcpy(f->flash + f->at, r->p, len);
-	if ((f->at + len) / PAGE != f->at / PAGE)
+	if ((f->at + len) / PAGE != f->at / PAGE) {
 		f->left = f->busy;
+		f->ready = now + f->page_ns;
+	}
 	f->at += (u32)len;
 	f->packet++;
 	if (len < room) {
@@ -89,23 +101,36 @@ static void send(struct ec_app_foe *f, struct ec_wbuf *w, size_t room)
 	ec_wbuf_bytes(w, f->flash + f->at, f->n);
 }
 
+/* How far the flash is with a page, as BUSY says it; false: it is done. */
+static bool is_busy(struct ec_app_foe *f, u64 now, u32 *progress)
+{
+	if (f->left) {
+		*progress = (u32)(f->busy - f->left) | (u32)f->busy << 16;
+		f->left--;
+		return true;
+	}
+	if (now >= f->ready)
+		return false;
+	*progress = (u32)(100 - div64_u64((f->ready - now) * 100, f->page_ns)) | 100u << 16;
+	return true;
+}
+
 /* The answer to DATA of a write. */
 static u32 receive(struct ec_app_foe *f, const struct ec_foe_hdr *h, const struct ec_rbuf *r,
-		   size_t room, struct ec_wbuf *w)
+		   size_t room, struct ec_wbuf *w, u64 now)
 {
 	struct ec_foe_hdr ack = { .opcode = EC_FOE_ACK, .number = h->number };
-	u32 error;
+	u32 error, progress;
 
 	if (h->number != f->packet + 1)
 		return EC_FOE_ERR_PACKET;
-	if (f->left) {
+	if (is_busy(f, now, &progress)) {
 		ack.opcode = EC_FOE_BUSY;
-		ack.number = (u32)(f->busy - f->left) | (u32)f->busy << 16;
-		f->left--;
+		ack.number = progress;
 		ec_foe_hdr_encode(w, &ack);
 		return 0;
 	}
-	error = store(f, r, room);
+	error = store(f, r, room, now);
 	if (!error)
 		ec_foe_hdr_encode(w, &ack);
 	return error;
@@ -124,6 +149,8 @@ static u32 execute(struct ec_app *app, const struct ec_foe_hdr *h, const struct 
 	switch (h->opcode) {
 	case EC_FOE_RRQ:
 	case EC_FOE_WRQ:
+		if (h->opcode == EC_FOE_WRQ && f->boot && app->state != EC_AL_BOOT)
+			return EC_FOE_ERR_BOOT_ONLY;
 		error = begin(f, h, r);
 		if (error)
 			return error;
@@ -133,7 +160,8 @@ static u32 execute(struct ec_app *app, const struct ec_foe_hdr *h, const struct 
 			ec_foe_hdr_encode(w, &ack);
 		return 0;
 	case EC_FOE_DATA:
-		return f->opcode == EC_FOE_WRQ ? receive(f, h, r, in, w) : EC_FOE_ERR_ILLEGAL;
+		return f->opcode == EC_FOE_WRQ ?
+			receive(f, h, r, in, w, app->mbox.now) : EC_FOE_ERR_ILLEGAL;
 	case EC_FOE_ACK:
 		if (f->opcode != EC_FOE_RRQ)
 			return EC_FOE_ERR_ILLEGAL;
@@ -175,7 +203,8 @@ int ec_app_foe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 		return -EMSGSIZE;
 	error = execute(app, &h, &r, &w);
 	if (error) {
-		const char *text = ec_foe_error_text(error);
+		const char *text = error == EC_FOE_ERR_PROGRAM ?
+			"not firmware of this device" : ec_foe_error_text(error);
 
 		app->foe.opcode = 0;
 		return ec_foe_error_encode(tx, cap, error, text ? text : "");

@@ -6,8 +6,6 @@
  */
 #include "app.h"
 
-#define FRAGMENT_NS	90000000	/* from one empty fragment to the next */
-
 static u32 od_read(void *ctx, u16 index, u8 sub, bool complete, u8 *buf,
 		   size_t cap, size_t *len)
 {
@@ -77,7 +75,7 @@ static void out_set(struct ec_app *app, u8 type, size_t len, u64 due)
 	h.counter = m->tx_counter;
 	ec_mbox_hdr_encode(&w, &h);
 	m->out_len = (u16)(EC_MBOX_HDR + len);
-	m->out_due = due;
+	m->out_due = due + ec_app_mbox_late(app);
 	m->out_in_sm = false;
 }
 
@@ -315,6 +313,7 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 	    !ec_app_bug(app, EC_SIM_BUG_MBOX_TWICE))
 		return;		/* sent twice, taken once */
 	m->rx_counter = h.counter;
+	m->now = now;
 	if (h.channel)
 		out_error(app, EC_MBOX_ERR_CHANNEL, due);
 	else if (!speaks(app, h.type))
@@ -329,66 +328,6 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		serve(app, EC_MBOX_VOE, ec_app_voe, r.p, h.len, due);
 	else
 		coe(app, r.p, h.len, now, due);
-}
-
-/* Let a message to the master be SDO information without data. */
-static void info_empty(u8 *h, u8 opcode)
-{
-	struct ec_wbuf w = ec_wbuf(h + EC_MBOX_HDR, EC_SDOINFO_HDR);
-
-	put_unaligned_le16(EC_SDOINFO_HDR, h);
-	h[5] = (u8)((h[5] & 0x70) | EC_MBOX_COE);
-	ec_sdoinfo_put_hdr(&w, opcode, 0);
-}
-
-static bool is_info(const u8 *h)
-{
-	return (h[5] & 0x0f) == EC_MBOX_COE && h[EC_MBOX_HDR + 1] >> 4 == EC_COE_SDO_INFO;
-}
-
-/* What the script wants to be wrong with a message to the master. */
-static void spoil(struct ec_app *app)
-{
-	u8 *h = app->mbox.out;
-
-	switch (app->esc->fault.mailbox) {
-	case EC_SIM_MAILBOX_LENGTH:
-		put_unaligned_le16(0xffff, h);
-		break;
-	case EC_SIM_MAILBOX_SHORT:
-		put_unaligned_le16(1, h);
-		break;
-	case EC_SIM_MAILBOX_COUNTER:
-		h[5] = (u8)((h[5] & 0x0f) | 1 << 4);
-		break;
-	case EC_SIM_MAILBOX_TYPE:
-	case EC_SIM_MAILBOX_BABBLE:
-		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_FOE);
-		break;
-	case EC_SIM_MAILBOX_STALE:
-		/* a list of objects without one */
-		info_empty(h, EC_SDOINFO_LIST_RESP);
-		put_unaligned_le16(EC_SDOINFO_HDR + 2, h);
-		put_unaligned_le16(1, h + EC_MBOX_HDR + EC_SDOINFO_HDR);
-		break;
-	case EC_SIM_MAILBOX_FRAGMENTS:
-		if (is_info(h))
-			h[EC_MBOX_HDR + EC_COE_HDR] |= EC_SDOINFO_INCOMPLETE;
-		break;
-	case EC_SIM_MAILBOX_ERROR:
-		put_unaligned_le16(EC_MBOX_ERR_BODY, h);
-		h[5] = (u8)((h[5] & 0x70) | EC_MBOX_ERR);
-		put_unaligned_le16(1, h + EC_MBOX_HDR);
-		put_unaligned_le16((u16)app->esc->fault.mailbox_code, h + EC_MBOX_HDR + 2);
-		break;
-	case EC_SIM_MAILBOX_ABORT:
-		if ((h[5] & 0x0f) == EC_MBOX_COE && h[EC_MBOX_HDR + EC_COE_HDR] == 0x80)
-			put_unaligned_le32(app->esc->fault.mailbox_code,
-					   h + EC_MBOX_HDR + EC_COE_HDR + 4);
-		break;
-	default:
-		break;
-	}
 }
 
 /* the oldest emergency into the out buffer */
@@ -438,9 +377,14 @@ static void step(struct ec_app *app, u64 now)
 				return;
 			/* the last byte hands the buffer over */
 			len = min(len, m->cap);
-			memset(m->out + m->out_len, 0, len - m->out_len);
+			/* the master may have made the mailbox smaller meanwhile */
+			if (len >= m->out_len)
+				memset(m->out + m->out_len, 0, (size_t)len - m->out_len);
+			if (len < m->out_len || !ec_app_mbox_spoil(app, len)) {
+				m->out_len = 0;
+				continue;
+			}
 			m->out_in_sm = true;
-			spoil(app);
 			if (ec_esc_pdi_write(esc, esc->sm[1].page.start, m->out,
 					     len, now) < 0)
 				m->out_len = 0;
@@ -506,13 +450,7 @@ void ec_app_mbox_read(struct ec_app *app, u64 now)
 		m->last_len = m->out_len;
 		m->out_in_sm = false;
 		m->out_due = now;
-		if (app->esc->fault.mailbox == EC_SIM_MAILBOX_FRAGMENTS && is_info(m->out)) {
-			info_empty(m->out, m->out[EC_MBOX_HDR + EC_COE_HDR]);
-			m->out_len = EC_MBOX_HDR + EC_SDOINFO_HDR;
-			m->out_due += FRAGMENT_NS;
-		} else if (app->esc->fault.mailbox != EC_SIM_MAILBOX_BABBLE) {
-			m->out_len = 0;
-		}
+		ec_app_mbox_sent(app);
 	}
 	step(app, now);
 }

@@ -115,6 +115,40 @@ static void sim_app_foe_is_busy_after_each_page(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, x->buf[9999], (u8)(9999 * 7 + 10000));
 }
 
+static void sim_app_foe_page_takes_its_time(struct kunit *test)
+{
+	struct files *x = files_new(test, "slave d drive foe=64 foe_page=20ms mbox=256\n");
+	u64 t0 = x->b->now;
+
+	KUNIT_EXPECT_EQ(test, put(x, "a", 4000), 0u);
+	KUNIT_EXPECT_EQ(test, x->busy, 0u);
+	KUNIT_EXPECT_LT(test, x->b->now - t0, 20000000ull);
+	t0 = x->b->now;
+	KUNIT_EXPECT_EQ(test, put(x, "a", 10000), 0u);
+	KUNIT_EXPECT_GT(test, x->busy, 2u);
+	KUNIT_EXPECT_GT(test, x->b->now - t0, 40000000ull);
+}
+
+static void sim_app_foe_other_header_or_state_is_refused(struct kunit *test)
+{
+	struct files *x = files_new(test, "slave d drive foe=64 foe_header=EC1 mbox=256\n"
+				    "slave e EL7201 foe_boot=yes\n");
+	struct ec_app *app = ec_sim_find(x->b->sim, "d");
+	u64 size;
+
+	KUNIT_EXPECT_EQ(test, put(x, "fw", 2), (u32)EC_FOE_ERR_PROGRAM);
+	KUNIT_EXPECT_EQ(test, put(x, "fw", 5000), (u32)EC_FOE_ERR_PROGRAM);
+	KUNIT_EXPECT_EQ(test, get(x, "fw", &size), (u32)EC_FOE_ERR_NOT_FOUND);
+	app->foe.header[0] = (char)(u8)(5000);	/* as put() writes them */
+	app->foe.header[1] = (char)(u8)(5007);
+	app->foe.header[2] = (char)(u8)(5014);
+	KUNIT_EXPECT_EQ(test, put(x, "fw", 5000), 0u);
+	app->foe.boot = true;
+	KUNIT_EXPECT_EQ(test, put(x, "fw", 5000), (u32)EC_FOE_ERR_BOOT_ONLY);
+	KUNIT_EXPECT_EQ(test, get(x, "fw", &size), 0u);
+	KUNIT_EXPECT_TRUE(test, ec_sim_find(x->b->sim, "e")->foe.boot);
+}
+
 /* sends one message, returns the error code in the answer; 0: none */
 static u32 raw(struct files *x, u8 opcode, u32 number, size_t n)
 {
@@ -153,6 +187,8 @@ static void sim_app_foe_wrong_order_is_refused(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_app_foe_file_is_kept_as_written),
 	KUNIT_CASE(sim_app_foe_is_busy_after_each_page),
+	KUNIT_CASE(sim_app_foe_page_takes_its_time),
+	KUNIT_CASE(sim_app_foe_other_header_or_state_is_refused),
 	KUNIT_CASE(sim_app_foe_wrong_order_is_refused),
 	{}
 };
