@@ -177,7 +177,8 @@ static void mutate(struct ec_sim *sim, u8 *p, u8 len)
 
 static void almost(struct ec_sim *sim, u8 *h)
 {
-	static const struct field header[] = { { 0, 2 }, { 5, 1 } };	/* length; type and counter */
+	/* length; type and counter */
+	static const struct field header[] = { { 0, 2 }, { 5, 1 } };
 	const struct field *f;
 	u32 n, i;
 
