@@ -86,6 +86,30 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 }
 
 /**
+ * ec_post_recall() - take a post back that was not sent so far
+ * @post: post in any state
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: it is IDLE, and @done is not called.
+ */
+bool ec_post_recall(struct ec_post *post)
+{
+	struct ec_posts *ps = &post->links->posts;
+	unsigned long flags;
+	bool ready;
+
+	raw_spin_lock_irqsave(&ps->lock, flags);
+	ready = post->state == EC_POST_READY;
+	if (ready) {
+		take_ready(ps, post);
+		post->state = EC_POST_IDLE;
+		post->tries = 0;
+	}
+	raw_spin_unlock_irqrestore(&ps->lock, flags);
+	return ready;
+}
+
+/**
  * ec_post_call() - let a thread of the master call @post->call once
  * @post: post in any state
  *

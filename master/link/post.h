@@ -89,6 +89,7 @@ void ec_posts_exit(struct ec_links *l);
 void ec_post_init(struct ec_post *post, struct ec_links *l, void (*done)(struct ec_post *post),
 		  void (*call)(struct ec_post *post));
 void ec_post_send(struct ec_post *post, u64 due_ns);
+bool ec_post_recall(struct ec_post *post);
 void ec_post_call(struct ec_post *post);
 void ec_post_cancel(struct ec_post *post);
 

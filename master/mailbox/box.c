@@ -172,6 +172,7 @@ static void renew(struct ec_mbox *mb)
 	mb->renew = false;
 	mb->counter = 0;
 	mb->seen = 0;
+	mb->in_order = 0;
 	mb->counts = false;
 	mb->gap = false;
 	mb->unread = false;
@@ -242,6 +243,20 @@ void ec_mbox_go(struct ec_mbox *mb)
 		post_status(mb);
 	else
 		begin_read(mb);
+}
+
+/**
+ * ec_mbox_hurry() - there is more to do: the next poll that waits for its time must not delay it
+ * @mb: mailbox of the slave, its lock held; ec_mbox_go() follows
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_mbox_hurry(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->lock);
+	if ((mb->step == EC_MBOX_STATUS || (mb->step == EC_MBOX_READ && !mb->at)) &&
+	    ec_post_recall(&mb->post))
+		mb->step = EC_MBOX_REST;
 }
 
 /* results -------------------------------------------------------------------*/

@@ -7,6 +7,8 @@
 
 #define FLOOD_NS	(250 * NSEC_PER_MSEC)	/* of a slave that sends without end */
 
+#define ORDERED		3	/* messages with the next counter in a row */
+
 #define for_each_user(mb, u) list_for_each_entry(u, &(mb)->users, list)
 
 /**
@@ -150,13 +152,32 @@ void ec_mbox_found_empty(struct ec_mbox *mb)
 	end_emptying(mb, 0);
 }
 
+/* Is the message in @rx the last one, from a slave that has counted well so far? */
+static bool is_twice(struct ec_mbox *mb, u8 counter)
+{
+	bool same = !memcmp(mb->begin, mb->rx, sizeof(mb->begin));
+
+	lockdep_assert_held(&mb->lock);
+	memcpy(mb->begin, mb->rx, sizeof(mb->begin));
+	if (counter == mb->seen) {
+		same &= mb->in_order >= ORDERED;
+		/* of a slave that stops counting one message is discarded, no more */
+		mb->in_order -= same;
+		return same;
+	}
+	mb->in_order = counter == ec_mbox_next_counter(mb->seen) ?
+		       min(mb->in_order + 1, ORDERED) : 0;
+	return false;
+}
+
 /*
  * When a slave has repeated its last message although nothing was lost, the counter shows
- * that the message is not a new one.
+ * that the message is not a new one; also when a slave sends a message twice.
  */
 static bool is_known(struct ec_mbox *mb, u8 counter)
 {
-	bool again = mb->repeats && counter && counter == mb->seen;
+	bool twice = is_twice(mb, counter);
+	bool again = counter && counter == mb->seen && (mb->repeats || twice);
 
 	lockdep_assert_held(&mb->lock);
 	mb->repeats = false;

@@ -56,7 +56,7 @@ static int get_memory(struct ec_mbox *mb)
 	if (READ_ONCE(mb->rx))
 		return 0;
 	t = kmalloc(clamp_t(size_t, tx, EC_MBOX_HDR, EC_MBOX_MAX), GFP_KERNEL);
-	r = kmalloc(clamp_t(size_t, rx, EC_MBOX_HDR, EC_MBOX_MAX), GFP_KERNEL);
+	r = kzalloc(clamp_t(size_t, rx, EC_MBOX_BEGIN, EC_MBOX_MAX), GFP_KERNEL);
 	raw_spin_lock_irqsave(&mb->lock, flags);
 	if (t && r && !mb->rx) {
 		swap(mb->tx, t);
@@ -187,6 +187,7 @@ static void enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 		mb->since_ns = ktime_get_ns();
 		mb->due_ns = 0;
 	}
+	ec_mbox_hurry(mb);
 	ec_mbox_go(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

@@ -22,6 +22,7 @@ struct ec_mbox_user;
 #define EC_MBOX_MAX	1486	/* one datagram */
 #define EC_MBOX_READ_TRIES	4	/* of what changes nothing, after lost frames */
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
+#define EC_MBOX_BEGIN	16	/* bytes in which two messages differ */
 #define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
 
 enum ec_mbox_flag {
@@ -129,6 +130,10 @@ struct ec_mbox {
 	u8 counter;
 	/** @seen: counter of the last message received */
 	u8 seen;
+	/** @in_order: messages in a row that had the next counter, up to some */
+	u8 in_order;
+	/** @begin: header and first bytes of that message */
+	u8 begin[EC_MBOX_BEGIN];
 	/** @counts: the slave counts its messages */
 	bool counts;
 	/** @can_repeat: what is lost can be repeated, both ways; set before there are users */

@@ -79,6 +79,7 @@ void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
 
 /* box.c: with the lock of the mailbox held */
 void ec_mbox_go(struct ec_mbox *mb);
+void ec_mbox_hurry(struct ec_mbox *mb);
 void ec_mbox_done(struct ec_post *post);
 bool ec_mbox_off(const struct ec_mbox *mb);
 

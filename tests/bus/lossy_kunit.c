@@ -54,6 +54,7 @@ static void lose(struct bus *b, u32 frame, bool back, u32 ppm)
 /* what became of many transfers */
 struct sum {
 	u32 done, unknown, late, wrong, twice;
+	int err;	/* the last other error */
 	u32 writes;	/* executed, after the last download */
 };
 
@@ -80,7 +81,7 @@ static void write(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, 
 	else if (ret == -ENOTRECOVERABLE)
 		sum->unknown++;
 	else
-		sum->late++;
+		sum->late++, sum->err = ret;
 }
 
 /* One upload: the value there is, or an error. */
@@ -99,7 +100,7 @@ static void read(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, s
 	else if (!ret)
 		sum->done++;
 	else
-		sum->late++;
+		sum->late++, sum->err = ret;
 }
 
 /* Half up, half down; one in ten has segments. */
@@ -123,8 +124,8 @@ static void transfers(struct bus *b, u32 slave, u32 n, struct sum *down, struct 
 
 static void print(const char *what, const struct sum *s)
 {
-	bus_figure("%s at 1 %% frame loss: %u done, %u outcome unknown, %u other errors, %u wrong, %u executed twice",
-		   what, s->done, s->unknown, s->late, s->wrong, s->twice);
+	bus_figure("%s at 1 %% frame loss: %u done, %u outcome unknown, %u other errors (the last: %d), %u wrong, %u executed twice",
+		   what, s->done, s->unknown, s->late, s->err, s->wrong, s->twice);
 }
 
 static void lossy(struct bus *b, bool on)

@@ -20,14 +20,14 @@
 
 /* what is reached today; the goals are in the rows */
 #define LATENCY_IDLE_US		400
-#define LATENCY_1_MEAN		345	/* 1/100 of a cycle */
-#define LATENCY_1_WORST		395
-#define LATENCY_100_MEAN	345
-#define LATENCY_100_WORST	395
-#define UPLOADS_IDLE		160	/* % */
-#define UPLOADS_CYCLE		150
-#define FOE_IDLE_1		150
-#define FOE_IDLE_20		115
+#define LATENCY_1_MEAN		250	/* 1/100 of a cycle */
+#define LATENCY_1_WORST		300
+#define LATENCY_100_MEAN	250
+#define LATENCY_100_WORST	300
+#define UPLOADS_IDLE		130	/* % */
+#define UPLOADS_CYCLE		125
+#define FOE_IDLE_1		120
+#define FOE_IDLE_20		112
 
 /* who has something for mailboxes, one after the other */
 struct client {
