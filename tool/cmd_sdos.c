@@ -149,7 +149,8 @@ const struct cmd cmd_sdos = {
 	.args = "",
 	.opts = "mapqvSCL",
 	.summary = "Show the object dictionary of slaves",
-	.help = "Read from the slave at each call. An entry has access in PREOP, SAFEOP and OP (r: read,\n"
+	.help = "The master keeps the descriptions until the slave goes through INIT or is disconnected;\n"
+		"values are read at each call. An entry has access in PREOP, SAFEOP and OP (r: read,\n"
 		"w: write), data type, size and name. --quiet omits the entries, --verbose reads the\n"
 		"values of all that can be read: an entry that the slave does not give has its abort code.\n"
 		"A line below it has default, minimum, maximum and unit, as far as the slave has them.\n"
