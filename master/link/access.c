@@ -117,6 +117,8 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 		}
 	}
 	rt_mutex_unlock(&l->access.lock);
+	if (change)
+		ec_posts_kick(l);
 	return change;
 }
 

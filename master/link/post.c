@@ -28,6 +28,17 @@ static void kick(struct ec_posts *ps)
 }
 
 /**
+ * ec_posts_kick() - the bus access has changed: the thread of the posts looks
+ * @l: links
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_posts_kick(struct ec_links *l)
+{
+	kick(&l->posts);
+}
+
+/**
  * ec_post_init() - prepare a post
  * @post: zeroed structure
  * @l: links

@@ -86,6 +86,7 @@ struct ec_posts {
 
 int ec_posts_init(struct ec_links *l);
 void ec_posts_exit(struct ec_links *l);
+void ec_posts_kick(struct ec_links *l);
 void ec_post_init(struct ec_post *post, struct ec_links *l, void (*done)(struct ec_post *post),
 		  void (*call)(struct ec_post *post));
 void ec_post_send(struct ec_post *post, u64 due_ns);

@@ -141,7 +141,7 @@ static void begin_read(struct ec_mbox *mb)
 {
 	u16 size = ec_mbox_area(mb)->tx_size;
 
-	if (size > EC_MBOX_MAX || size < EC_MBOX_HDR) {
+	if (size > mb->rx_room || size < EC_MBOX_HDR) {
 		ec_mbox_fail(mb, -EMSGSIZE);
 		return;
 	}
@@ -151,20 +151,20 @@ static void begin_read(struct ec_mbox *mb)
 }
 
 /* The message in @sending, as it is in SM0: the mailbox changes with the state. */
-static void begin_write(struct ec_mbox *mb)
+static bool begin_write(struct ec_mbox *mb)
 {
 	u16 size = ec_mbox_area(mb)->rx_size;
 
-	if (size > EC_MBOX_MAX || mb->sending.len + EC_MBOX_HDR > size) {
-		ec_mbox_finish(mb, mb->sending.user, -EMSGSIZE);
+	if (size > mb->tx_room || mb->sending.len + EC_MBOX_HDR > size) {
 		mb->sending.on = false;
-		ec_mbox_go(mb);
-		return;
+		ec_mbox_finish(mb, mb->sending.user, -EMSGSIZE);
+		return false;
 	}
 	memset(mb->tx + EC_MBOX_HDR + mb->sending.len, 0, size - EC_MBOX_HDR - mb->sending.len);
 	mb->size = size;
 	mb->at = 0;
 	write_on(mb);
+	return true;
 }
 
 static void renew(struct ec_mbox *mb)
@@ -181,26 +181,38 @@ static void renew(struct ec_mbox *mb)
 	mb->answered = false;
 }
 
+/* The user whose message is the next one; NULL: none. */
+static struct ec_mbox_user *next_user(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->lock);
+	while ((u = list_first_entry_or_null(&mb->queue, struct ec_mbox_user, list))) {
+		list_move_tail(&u->list, &mb->users);
+		u->phase = EC_MBOX_USER_SENDING;
+		/* a slave that only passes INIT is waited for: its worker claims the mailbox */
+		if (ec_mbox_off(mb))
+			ec_mbox_finish(mb, u, -EAGAIN);
+		else if (u->len + EC_MBOX_HDR > mb->tx_room && !u->discard)
+			ec_mbox_finish(mb, u, -EMSGSIZE);
+		else
+			break;
+	}
+	return u;
+}
+
 /* The next message of the queue. */
 static void take_message(struct ec_mbox *mb)
 {
-	struct ec_mbox_user *u = list_first_entry_or_null(&mb->queue, struct ec_mbox_user, list);
+	struct ec_mbox_user *u = mb->sending.on ? NULL : next_user(mb);
 	struct ec_mbox_hdr h;
 	struct ec_wbuf w;
 
 	lockdep_assert_held(&mb->lock);
-	if (!u || mb->sending.on)
+	if (!u)
 		return;
 	if (READ_ONCE(mb->renew))
 		renew(mb);
-	list_move_tail(&u->list, &mb->users);
-	u->phase = EC_MBOX_USER_SENDING;
-	/* a slave that only passes INIT is waited for: its worker claims the mailbox */
-	if (ec_mbox_off(mb)) {
-		ec_mbox_finish(mb, u, -EAGAIN);
-		take_message(mb);
-		return;
-	}
 	mb->sending = (struct ec_mbox_sending){
 		.on = true, .user = u, .type = u->type, .len = u->len, .discard = u->discard,
 		.emptying = u->discard || (u->first && !mb->answered),
@@ -217,6 +229,26 @@ static void take_message(struct ec_mbox *mb)
 	ec_wbuf_bytes(&w, u->tx, u->len);
 }
 
+/* One datagram; false: the message does not fit, and there may be another. */
+static bool send_step(struct ec_mbox *mb)
+{
+	struct ec_mbox_sending *s = &mb->sending;
+	bool read;
+
+	lockdep_assert_held(&mb->lock);
+	take_message(mb);
+	read = !mb->held && ((s->on && (s->emptying || s->blocked)) || ec_mbox_awaited(mb));
+	if (read && mb->gap && mb->can_repeat && !mb->failed)
+		post_repeat(mb, EC_MBOX_REPEAT_GET);
+	else if (s->on && !s->emptying && !s->blocked)
+		return begin_write(mb);
+	else if (read && !ec_mbox_is_blind(mb) && (mb->unread || s->on || !read_at_once(mb)))
+		post_status(mb);
+	else if (read)
+		begin_read(mb);
+	return true;
+}
+
 /**
  * ec_mbox_go() - send the next datagram, if there is anything to do
  * @mb: mailbox of the slave, its lock held
@@ -225,24 +257,11 @@ static void take_message(struct ec_mbox *mb)
  */
 void ec_mbox_go(struct ec_mbox *mb)
 {
-	struct ec_mbox_sending *s = &mb->sending;
-	bool read;
-
 	lockdep_assert_held(&mb->lock);
 	if (mb->step != EC_MBOX_REST || mb->dead || !mb->rx || mb->claimed == EC_MBOX_ALL)
 		return;
-	take_message(mb);
-	read = !mb->held && ((s->on && (s->emptying || s->blocked)) || ec_mbox_awaited(mb));
-	if (read && mb->gap && mb->can_repeat && !mb->failed)
-		post_repeat(mb, EC_MBOX_REPEAT_GET);
-	else if (s->on && !s->emptying && !s->blocked)
-		begin_write(mb);
-	else if (!read)
-		return;
-	else if (!ec_mbox_is_blind(mb) && (mb->unread || s->on || !read_at_once(mb)))
-		post_status(mb);
-	else
-		begin_read(mb);
+	while (!send_step(mb))
+		;
 }
 
 /**
@@ -269,7 +288,7 @@ static void read_lost(struct ec_mbox *mb)
 {
 	mb->gap = true;
 	mb->unread = !mb->can_repeat;
-	ec_mbox_mark_gap(mb, true);
+	ec_mbox_mark_gap(mb);
 	ec_mbox_finish_once(mb);
 }
 
@@ -289,8 +308,6 @@ static void has_status(struct ec_mbox *mb, int ret)
 	if (mb->unread) {
 		mb->unread = false;
 		mb->gap = false;
-		if (full)
-			ec_mbox_mark_gap(mb, false);
 	}
 	if (full) {
 		has_message(mb);
@@ -413,7 +430,6 @@ static void has_ack(struct ec_mbox *mb)
 		mb->repeats = true;
 		mb->ack_fails = 0;
 		mb->due_ns = 0;
-		ec_mbox_mark_gap(mb, false);
 	} else if (++mb->acks < ACK_POLLS) {
 		mb->due_ns = ktime_get_ns() + ACK_NS;
 		post_repeat(mb, EC_MBOX_REPEAT_ACK);

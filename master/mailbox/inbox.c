@@ -86,20 +86,21 @@ bool ec_mbox_is_blind(const struct ec_mbox *mb)
 }
 
 /**
- * ec_mbox_mark_gap() - a message of the slave may have been lost, or was not after all
+ * ec_mbox_mark_gap() - a frame was lost that may have had an answer
  * @mb: mailbox of the slave, its lock held
- * @gap: it may
+ *
+ * A caller that runs into the time limit after that does not know what the slave has done.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_mbox_mark_gap(struct ec_mbox *mb, bool gap)
+void ec_mbox_mark_gap(struct ec_mbox *mb)
 {
 	struct ec_mbox_user *u;
 
 	lockdep_assert_held(&mb->lock);
 	for_each_user(mb, u)
 		if (u->answer)
-			u->gap = gap;
+			u->gap = true;
 }
 
 /**

@@ -48,19 +48,23 @@ void ec_mbox_exit(struct ec_mbox *mb)
 /* Memory of the mailboxes, when they are used first. The sizes may be anything. */
 static int get_memory(struct ec_mbox *mb)
 {
-	size_t tx = max(mb->sii->std.rx_size, mb->sii->boot.rx_size);
-	size_t rx = max(mb->sii->std.tx_size, mb->sii->boot.tx_size);
+	u16 tx = clamp_t(u16, max(mb->sii->std.rx_size, mb->sii->boot.rx_size), EC_MBOX_HDR,
+			 EC_MBOX_MAX);
+	u16 rx = clamp_t(u16, max(mb->sii->std.tx_size, mb->sii->boot.tx_size), EC_MBOX_BEGIN,
+			 EC_MBOX_MAX);
 	unsigned long flags;
 	u8 *t, *r;
 
 	if (READ_ONCE(mb->rx))
 		return 0;
-	t = kmalloc(clamp_t(size_t, tx, EC_MBOX_HDR, EC_MBOX_MAX), GFP_KERNEL);
-	r = kzalloc(clamp_t(size_t, rx, EC_MBOX_BEGIN, EC_MBOX_MAX), GFP_KERNEL);
+	t = kmalloc(tx, GFP_KERNEL);
+	r = kzalloc(rx, GFP_KERNEL);
 	raw_spin_lock_irqsave(&mb->lock, flags);
 	if (t && r && !mb->rx) {
 		swap(mb->tx, t);
 		swap(mb->rx, r);
+		mb->tx_room = tx;
+		mb->rx_room = rx;
 	}
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 	kfree(t);

@@ -100,6 +100,10 @@ struct ec_mbox {
 	u8 *tx;
 	/** @rx: the message of the slave, as it is in SM1 */
 	u8 *rx;
+	/** @tx_room: bytes of @tx */
+	u16 tx_room;
+	/** @rx_room: bytes of @rx that a mailbox may have */
+	u16 rx_room;
 	/** @size: of SM0 or SM1, as the present access began */
 	u16 size;
 	/** @at: bytes of them before @post */

@@ -9,6 +9,7 @@ static const char text[] =
 	"slave b EL2008\nslave c drive in=8 out=8 mbox=128 serial=12 foe=256\n";
 
 #define FILE_BYTES	40000
+#define SMALLEST	10	/* request */
 #define WITHOUT		1	/* slave without mailbox */
 
 static u8 *content(struct kunit *test)
@@ -123,7 +124,7 @@ static int writes(struct kapp *k, ec_foe_request_t *r, const u8 *data, size_t si
 
 static int reads(struct kapp *k, ec_foe_request_t *r)
 {
-	memset(ecrt_foe_request_data(r), 0, 16);
+	memset(ecrt_foe_request_data(r), 0, SMALLEST);
 	KUNIT_EXPECT_EQ(k->b->test, ecrt_foe_request_read(r), 0);
 	ends(k, r);
 	return ecrt_foe_request_result(r);
@@ -166,9 +167,9 @@ static void kapi_foe_request_errors(struct kunit *test)
 	struct ec_slave *b = bus_slave(k->b, WITHOUT);
 	u8 *data = content(test);
 
-	absent = ecrt_slave_config_create_foe_request(sc, 10);
+	absent = ecrt_slave_config_create_foe_request(sc, SMALLEST);
 	sc = ecrt_master_slave_config(k->m, 0, WITHOUT, b->info.vendor, b->info.product);
-	without = ecrt_slave_config_create_foe_request(sc, 10);
+	without = ecrt_slave_config_create_foe_request(sc, SMALLEST);
 	KUNIT_ASSERT_NOT_NULL(test, absent);
 	KUNIT_ASSERT_NOT_NULL(test, without);
 	KUNIT_EXPECT_NULL(test, ecrt_slave_config_create_foe_request(k->sc[0], 16 << 20));

@@ -28,7 +28,7 @@ KUNIT_ARRAY_PARAM(text, texts, text_desc);
 
 enum { SURE, UNSURE };
 
-static const struct ec_mbox_limit limit = { .timeout_ms = 100 };
+static const struct ec_mbox_limit limit = { .timeout_ms = 200 };
 
 static struct bus *ready(struct kunit *test)
 {
