@@ -13,6 +13,9 @@
 #define TRIES		4	/* of a repeatable datagram */
 #define UNPLACED	16	/* posts that fly without a place at the link's gate */
 #define QUEUE_MAX	64	/* frames that wait for the cycle, then posts wait as well */
+#define RETRY_NS	(100 * NSEC_PER_USEC)	/* of a post for which there was no room */
+#define QUEUE_CYCLES	100	/* a frame that has not left by then may be too long */
+#define QUEUE_NS	(50 * NSEC_PER_MSEC)	/* or by then */
 #define FLIGHT_NS	(300 * NSEC_PER_USEC)	/* on the wire: later ones leave together */
 #define SLEEP_MIN_NS	(10 * NSEC_PER_USEC)
 #define RING_US		200	/* until there may be room in the transmit ring */
@@ -138,27 +141,56 @@ void ec_post_call(struct ec_post *post)
 	kick(ps);
 }
 
+static void leave_slot(struct ec_post *post)
+{
+	struct ec_link *link = &post->links->link[0];
+
+	if (post->placed)
+		ec_gate_leave(&link->acyclic);
+	atomic_sub(post->wire_ns, &link->acyclic_ns);
+	post->slot = NULL;
+}
+
+static void land(struct ec_posts *ps, struct ec_post *post)
+{
+	lockdep_assert_held(&ps->lock);
+	list_del_init(&post->list);
+	WRITE_ONCE(ps->n_flying, ps->n_flying - 1);
+	post->state = EC_POST_IDLE;
+	post->running++;
+}
+
 /**
  * ec_post_cancel() - wait until a post is IDLE and none of its calls is in progress
  * @post: post whose owner sends it no more; not the one whose call this is
  *
- * Context: Process. May sleep, as long as a frame may be on its way.
+ * Context: Process. May sleep, as long as the call takes.
  */
 void ec_post_cancel(struct ec_post *post)
 {
 	struct ec_posts *ps = &post->links->posts;
+	bool over, cancelled;
 	unsigned long flags;
-	bool over;
 
 	for (;;) {
 		raw_spin_lock_irqsave(&ps->lock, flags);
 		list_del_init(&post->called);
+		cancelled = false;
 		if (post->state == EC_POST_READY) {
 			take_ready(ps, post);
 			post->state = EC_POST_IDLE;
+		} else if (post->state == EC_POST_FLYING) {
+			/* the cycle owner may need long, or never come back */
+			cancelled = ec_slot_cancel(post->slot, ktime_get_ns());
+			if (cancelled) {
+				land(ps, post);
+				post->running--;
+			}
 		}
 		over = post->state == EC_POST_IDLE && !post->running;
 		raw_spin_unlock_irqrestore(&ps->lock, flags);
+		if (cancelled)
+			leave_slot(post);
 		if (over)
 			return;
 		usleep_range(200, 500);
@@ -177,25 +209,6 @@ static void call(struct ec_post *post, void (*fn)(struct ec_post *post))
 	raw_spin_lock_irqsave(&ps->lock, flags);
 	post->running--;
 	raw_spin_unlock_irqrestore(&ps->lock, flags);
-}
-
-static void leave_slot(struct ec_post *post)
-{
-	struct ec_link *link = &post->links->link[0];
-
-	if (post->placed)
-		ec_gate_leave(&link->acyclic);
-	atomic_sub(post->wire_ns, &link->acyclic_ns);
-	post->slot = NULL;
-}
-
-static void land(struct ec_posts *ps, struct ec_post *post)
-{
-	lockdep_assert_held(&ps->lock);
-	list_del_init(&post->list);
-	WRITE_ONCE(ps->n_flying, ps->n_flying - 1);
-	post->state = EC_POST_IDLE;
-	post->running++;
 }
 
 /* Its slot is back, in the context that receives. */
@@ -337,7 +350,8 @@ void ec_posts_fill(struct ec_links *l)
 	list_for_each_entry_safe(post, next, &ps->ready, list) {
 		if (post->due_ns > now)
 			continue;
-		if (!ec_access_is_cyclic(&l->access) && ec_links_acyclic_ns(l) >= FLIGHT_NS)
+		if (!ec_access_is_cyclic(&l->access) && ps->n_flying &&
+		    ec_links_acyclic_ns(l) >= FLIGHT_NS)
 			break;
 		if (used && used + post->dg.len + EC_DGRAM_OVERHEAD > bytes)
 			break;
@@ -396,19 +410,34 @@ static u64 limit_ns(const struct ec_links *l)
 	return max(ns, ns / 2 + SLOWEST * (u64)ec_links_acyclic_ns(l));
 }
 
-/* Has its frame been overdue for so long that it is lost? The machine may have stood still. */
-static bool is_lost(struct ec_links *l, struct ec_post *post, u64 now)
+/* In the queue, where it may not fit beside the cycle any more. */
+static bool is_stuck(struct ec_links *l, const struct ec_slot *slot, u64 now)
+{
+	u64 limit = ec_access_interval_us(&l->access) * (u64)NSEC_PER_USEC * QUEUE_CYCLES;
+
+	return atomic_read(&slot->state) == EC_SLOT_QUEUED &&
+	       (s64)(now - ec_read64(&slot->sent_ns)) > (s64)max(limit, (u64)QUEUE_NS);
+}
+
+/*
+ * What has become of its frame: -ETIMEDOUT: it has been overdue for so long that it is lost, the
+ * machine may have stood still; -EAGAIN: it has not left; 0: nothing so far.
+ */
+static int outcome(struct ec_links *l, struct ec_post *post, u64 now)
 {
 	u32 polls = READ_ONCE(l->access.polls);
 
 	lockdep_assert_held(&l->posts.lock);
+	if (is_stuck(l, post->slot, now))
+		return -EAGAIN;
 	if (atomic_read(&post->slot->state) != EC_SLOT_SENT ||
 	    (s64)(now - ec_read64(&post->slot->sent_ns)) <= (s64)limit_ns(l))
-		return false;
+		return 0;
 	if (ec_access_is_cyclic(&l->access) && polls == post->polls)
-		return false;
+		return 0;
 	post->polls = polls;
-	return post->overdue++;
+	l->posts.overdue = true;
+	return post->overdue++ ? -ETIMEDOUT : 0;
 }
 
 /* Take lost posts out of the list to @lost; also those that cannot leave any more. */
@@ -420,9 +449,13 @@ static void collect_lost(struct ec_links *l, int err, struct list_head *lost)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&ps->lock, flags);
+	ps->overdue = false;
 	list_for_each_entry_safe(post, next, &ps->flying, list) {
-		if ((err || is_lost(l, post, now)) && ec_slot_cancel(post->slot, now)) {
+		int ret = err ?: outcome(l, post, now);
+
+		if (ret && ec_slot_cancel(post->slot, now)) {
 			land(ps, post);
+			post->dg.err = ret;
 			list_add_tail(&post->list, lost);
 		}
 	}
@@ -432,6 +465,7 @@ static void collect_lost(struct ec_links *l, int err, struct list_head *lost)
 		take_ready(ps, post);
 		post->state = EC_POST_IDLE;
 		post->running++;
+		post->dg.err = err;
 		list_add_tail(&post->list, lost);
 	}
 	raw_spin_unlock_irqrestore(&ps->lock, flags);
@@ -442,10 +476,13 @@ static void find_lost(struct ec_links *l, int err)
 	struct ec_post *post, *next;
 	LIST_HEAD(lost);
 
+	/* have they arrived unnoticed? */
+	if (READ_ONCE(l->posts.overdue) && !err)
+		ec_access_poll(l);
 	collect_lost(l, err, &lost);
 	list_for_each_entry_safe(post, next, &lost, list) {
 		list_del_init(&post->list);
-		lose(post, err ?: -ETIMEDOUT);
+		lose(post, post->dg.err);
 	}
 }
 
@@ -475,20 +512,23 @@ static u64 idle_until(struct ec_links *l, u64 checked)
 {
 	bool direct = !ec_access_is_cyclic(&l->access);
 	struct ec_posts *ps = &l->posts;
+	u64 until = U64_MAX, now = ktime_get_ns();
 	struct ec_post *post;
 	unsigned long flags;
-	u64 until = U64_MAX;
 
 	raw_spin_lock_irqsave(&ps->lock, flags);
 	if (ps->n_flying || ps->n_ready)
-		until = ktime_get_ns() + REST_NS;
+		until = now + REST_NS;
 	list_for_each_entry(post, &ps->flying, list)
 		if (atomic_read(&post->slot->state) == EC_SLOT_SENT)
 			until = min(until, ec_read64(&post->slot->sent_ns) + limit_ns(l) + 1);
 	until = max(until, checked + CHECK_NS);
 	list_for_each_entry(post, &ps->ready, list)
 		if (direct)
-			until = min(until, post->due_ns);
+			until = min(until, post->due_ns > now ? post->due_ns : now + RETRY_NS);
+	/* the transmit ring was full */
+	if (direct && ec_queue_frames(&l->queues))
+		until = min(until, now + RETRY_NS);
 	raw_spin_unlock_irqrestore(&ps->lock, flags);
 	return until;
 }
@@ -507,6 +547,13 @@ static void sleep_until(struct ec_posts *ps, u64 until)
 	__set_current_state(TASK_RUNNING);
 }
 
+/* Also what the transmit ring had no room for. */
+static bool has_to_send(const struct ec_links *l)
+{
+	return READ_ONCE(l->posts.n_ready) ||
+	       (!ec_access_is_cyclic(&l->access) && ec_queue_frames(&l->queues));
+}
+
 static int link_error(const struct ec_links *l)
 {
 	return !ec_links_attached(l) ? -ENODEV : ec_links_is_up(l) ? 0 : -ENETDOWN;
@@ -522,7 +569,7 @@ static int run(void *data)
 		WRITE_ONCE(ps->kicked, false);
 		smp_mb();	/* before what it stands for is read */
 		make_calls(ps);
-		if (READ_ONCE(ps->n_ready) && !send_ready(l))
+		if (has_to_send(l) && !send_ready(l))
 			usleep_range(RING_US, 2 * RING_US);
 		if (ktime_get_ns() - checked >= CHECK_NS) {
 			checked = ktime_get_ns();

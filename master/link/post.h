@@ -76,6 +76,8 @@ struct ec_posts {
 	unsigned int n_ready;
 	/** @n_flying: entries in @flying */
 	unsigned int n_flying;
+	/** @overdue: a frame was overdue at the last look */
+	bool overdue;
 	/** @closed: nothing is sent any more */
 	bool closed;
 	/** @kicked: @thread has something to do */

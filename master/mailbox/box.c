@@ -211,8 +211,6 @@ static void take_message(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->lock);
 	if (!u)
 		return;
-	if (READ_ONCE(mb->renew))
-		renew(mb);
 	mb->sending = (struct ec_mbox_sending){
 		.on = true, .user = u, .type = u->type, .len = u->len, .discard = u->discard,
 		.emptying = u->discard || (u->first && !mb->answered),
@@ -236,6 +234,8 @@ static bool send_step(struct ec_mbox *mb)
 	bool read;
 
 	lockdep_assert_held(&mb->lock);
+	if (READ_ONCE(mb->renew) && !s->on)
+		renew(mb);
 	take_message(mb);
 	read = !mb->held && ((s->on && (s->emptying || s->blocked)) || ec_mbox_awaited(mb));
 	if (read && mb->gap && mb->can_repeat && !mb->failed)
@@ -329,15 +329,18 @@ static void has_read(struct ec_mbox *mb, int ret)
 		}
 		progress(mb);
 		mb->sending.blocked = false;
+		mb->rx_size = mb->size;
 		ec_mbox_received(mb);
 		return;
 	}
 	pause(mb);
-	if (ret == -ETIMEDOUT)
-		read_lost(mb);
-	else if (ret == -EIO)
+	if (ret == -EIO) {
 		ec_mbox_found_empty(mb);
-	else
+		return;
+	}
+	/* also when the link is down: it may have been read */
+	read_lost(mb);
+	if (ret != -ETIMEDOUT)
 		ec_mbox_fail(mb, ret);
 }
 
@@ -349,7 +352,8 @@ static void sent(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->lock);
 	mb->sending.on = false;
 	progress(mb);
-	if (!u)
+	/* its answer may have come before */
+	if (!u || u->phase != EC_MBOX_USER_SENDING)
 		return;
 	u->lost |= mb->sending.lost;
 	if (u->answer) {
@@ -364,6 +368,9 @@ static void has_written(struct ec_mbox *mb, int ret)
 {
 	struct ec_mbox_sending *s = &mb->sending;
 
+	/* its answer has come before */
+	if (!s->on)
+		return;
 	if (!ret) {
 		mb->at += mb->post.dg.len;
 		if (mb->at < mb->size) {
@@ -438,8 +445,23 @@ static void has_ack(struct ec_mbox *mb)
 	}
 }
 
+/* It has not left: the same again, which may be shorter now. */
+static void again(struct ec_mbox *mb, enum ec_mbox_step step)
+{
+	if (step == EC_MBOX_READ)
+		read_on(mb);
+	else if (step == EC_MBOX_WRITE && mb->sending.on)
+		write_on(mb);
+	else if (step >= EC_MBOX_REPEAT_GET)
+		post_repeat(mb, step);
+}
+
 static void has_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
 {
+	if (ret == -EAGAIN) {
+		again(mb, step);
+		return;
+	}
 	switch (step) {
 	case EC_MBOX_STATUS:
 		has_status(mb, ret);

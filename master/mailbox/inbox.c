@@ -206,6 +206,9 @@ static struct ec_mbox_user *find(struct ec_mbox *mb, u8 type)
 
 	lockdep_assert_held(&mb->lock);
 	for_each_user(mb, u) {
+		/* it only sends */
+		if (!u->rx)
+			continue;
 		if (type != EC_MBOX_ERR && u->type != type)
 			continue;
 		if (!may_have(mb, u) && !(u->phase == EC_MBOX_USER_DONE && u->answer))
@@ -274,7 +277,7 @@ static void count_unasked(struct ec_mbox *mb)
  */
 void ec_mbox_received(struct ec_mbox *mb)
 {
-	struct ec_rbuf r = ec_rbuf(mb->rx, mb->size);
+	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
 	struct ec_mbox_user *u;
 	struct ec_mbox_hdr h;
 
@@ -282,13 +285,38 @@ void ec_mbox_received(struct ec_mbox *mb)
 	mb->unread = false;
 	if (ec_mbox_hdr_decode(&r, &h)) {
 		u = find(mb, EC_MBOX_ERR);
-		if (u && u->phase != EC_MBOX_USER_DONE)
+		if (u && u->phase != EC_MBOX_USER_DONE) {
+			mb->sending.on &= mb->sending.user != u;
 			ec_mbox_finish(mb, u, -EBADMSG);
+		}
 	} else if (!is_known(mb, h.counter)) {
 		dispatch(mb, &h);
 	}
 	count_unasked(mb);
 	ec_mbox_finish_once(mb);
+}
+
+/**
+ * ec_mbox_has_reader() - a user has come for the message in @rx that none was there for
+ * @mb: mailbox of the slave, its lock held, @told
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: the user has it.
+ */
+bool ec_mbox_has_reader(struct ec_mbox *mb)
+{
+	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
+	struct ec_mbox_user *u;
+	struct ec_mbox_hdr h;
+
+	lockdep_assert_held(&mb->lock);
+	if (ec_mbox_hdr_decode(&r, &h) || h.type != EC_MBOX_VOE)
+		return false;
+	u = find(mb, EC_MBOX_VOE);
+	if (!u)
+		return false;
+	deliver(mb, u, &h);
+	return true;
 }
 
 /**
@@ -299,7 +327,7 @@ void ec_mbox_received(struct ec_mbox *mb)
  */
 void ec_mbox_retry_held(struct ec_mbox *mb)
 {
-	struct ec_rbuf r = ec_rbuf(mb->rx, mb->size);
+	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
 	struct ec_mbox_hdr h;
 
 	lockdep_assert_held(&mb->lock);

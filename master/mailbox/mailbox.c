@@ -465,6 +465,11 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 			      ec_mbox_error_reply(mb, b->rx, u.got) : u.got;
 			break;
 		}
+		kept = ec_mbox_take_kept(mb, b->rx);
+		if (kept != -ENOMSG) {
+			ret = kept;
+			break;
+		}
 		if (!ret)
 			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
 	} while (!ret);

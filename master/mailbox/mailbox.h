@@ -108,6 +108,8 @@ struct ec_mbox {
 	u16 size;
 	/** @at: bytes of them before @post */
 	u16 at;
+	/** @rx_size: of SM1, as @rx was read */
+	u16 rx_size;
 	/** @held: @rx has a message that was not taken so far */
 	bool held;
 	/** @told: a thread was asked to take it */

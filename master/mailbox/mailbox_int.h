@@ -92,6 +92,7 @@ bool ec_mbox_is_blind(const struct ec_mbox *mb);
 void ec_mbox_found_empty(struct ec_mbox *mb);
 void ec_mbox_finish_once(struct ec_mbox *mb);
 void ec_mbox_mark_gap(struct ec_mbox *mb);
+bool ec_mbox_has_reader(struct ec_mbox *mb);
 void ec_mbox_retry_held(struct ec_mbox *mb);
 
 /* unasked.c */

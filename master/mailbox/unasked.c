@@ -141,7 +141,7 @@ int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len)
 /* To its protocol; what no protocol wants is an answer that is too late. */
 static void take(struct ec_mbox *mb)
 {
-	struct ec_rbuf r = ec_rbuf(mb->rx, mb->size);
+	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
 	struct ec_mbox_hdr h;
 
 	if (ec_mbox_hdr_decode(&r, &h))
@@ -162,18 +162,27 @@ void ec_mbox_unasked(struct ec_post *post)
 {
 	struct ec_mbox *mb = container_of(post, struct ec_mbox, post);
 	unsigned long flags;
+	bool told;
 
 	if (mb->ack_fails >= EC_MBOX_ACK_FAILS && !mb->can_repeat && !mb->logged) {
 		mb->logged = true;
 		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
 	}
-	/* while it is told of, nothing else changes @rx */
-	if (!READ_ONCE(mb->told))
-		return;
-	take(mb);
 	raw_spin_lock_irqsave(&mb->lock, flags);
+	told = mb->told && !ec_mbox_has_reader(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	/* while it is told of, nothing else changes @rx */
+	if (told) {
+		take(mb);
+		/* a reader may have come meanwhile */
+		wake_up_all(&mb->stop->wake);
+	}
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (!mb->told)
+		goto out;
 	mb->told = false;
 	mb->held = false;
 	ec_mbox_go(mb);
+out:
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

@@ -130,6 +130,8 @@ teardown_file() { stop; }
 	wait "$pid" || rc=$?
 	[ "$rc" = 1 ]
 	[ "$(wc -l <"$BATS_TEST_TMPDIR/err")" = 1 ]
+	# the transfer ends before the master has noticed that the slave is absent
+	wait_for 20 all_slaves_are PREOP 2
 	echo 'on drive' >"$sim"
 	wait_for 20 all_slaves_are PREOP 3
 	ethercat foe_write -p2 "$f"
