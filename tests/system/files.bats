@@ -7,8 +7,8 @@ setup_file() {
 	local segment=$BATS_FILE_TMPDIR/files.seg
 
 	printf '%s\n' 'segment response=100us transition=1ms' \
-		'slave coupler EK1100' 'slave servo EL7201' \
-		'slave drive drive mbox=512 foe=128 foe_busy=3' >"$segment"
+		'slave coupler EK1100' 'slave servo EL7201 foe_page=100ms' \
+		'slave drive drive mbox=512 foe=128 foe_busy=3 foe_page=20ms' >"$segment"
 	start "$segment" 3
 	head -c 120000 /dev/urandom >"$BATS_FILE_TMPDIR/image.bin"
 	head -c 60000 /dev/urandom >"$BATS_FILE_TMPDIR/fw.efw"
