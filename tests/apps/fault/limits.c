@@ -84,10 +84,10 @@ static void wrong_indexes(int fd)
 			expect_errno(call(fd, EC_IOC_SC_SYNC, &dir), EINVAL, "direction %u", v);
 		if (v > 2)
 			expect_errno(call(fd, EC_IOC_SC_SYNC, &wd), EINVAL, "watchdog %u", v);
-		if (v > 3) {
+		if (v > 3)
 			expect_errno(call(fd, EC_IOC_SC_PDO, &op), EINVAL, "operation %u", v);
+		if (v > EC_REQUEST_SDO_INFO)
 			expect_errno(call(fd, EC_IOC_SC_REQUEST, &kind), EINVAL, "kind %u", v);
-		}
 		if (v != 2 && v != 4)
 			expect_errno(call(fd, EC_IOC_SC_IDN, &state), EINVAL, "IDN in state %u", v);
 		if (v > 7) {
