@@ -103,8 +103,8 @@ memory() {
 		[ "$n" != 1 ] || { one=${v[memory_kb]}; continue; }
 		bytes=$(((v[memory_kb] - one) * 1024 / (n - 1)))
 		row "$bytes" 30000 "bytes of memory of each of $n slaves, stacks of threads included"
-		gate "each of $n slaves takes $bytes bytes, at most 33000; goal 30000" \
-			"bytes > 0 && bytes <= 33000"
+		gate "each of $n slaves takes $bytes bytes, at most 40000; goal 30000" \
+			"bytes > 0 && bytes <= 40000"
 	done
 }
 
