@@ -267,7 +267,7 @@ struct ec_app_object {
 
 /**
  * struct ec_app_od_values - optional fields of the description of an entry
- * @v: the fields
+ * @v: value info
  * @min: place of the minimum
  * @max: place of the maximum
  */

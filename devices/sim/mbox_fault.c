@@ -111,7 +111,7 @@ static void garbage(struct ec_sim *sim, u8 *h, u16 len)
 		h[at] = (u8)ec_sim_random(sim);
 }
 
-/* the fields of a message behind its mailbox header */
+/* members of a message behind its mailbox header */
 static const struct field *body_fields(const u8 *h, u32 *n)
 {
 	static const struct field sdo[] = {

@@ -85,7 +85,7 @@ static bool make_space(struct ec_dict *d, size_t need)
 		size *= 2;
 	if (size == d->size)
 		return true;
-	/* whoever asks pays for it only as long as the slave does not change */
+	/* the memory is that of the caller, until the slave changes */
 	larger = kvmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_NOWARN);
 	if (!larger)
 		return false;

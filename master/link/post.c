@@ -227,15 +227,9 @@ static void back(struct ec_xfer *x)
 	raw_spin_unlock_irqrestore(&ps->lock, flags);
 	/* checked against what was sent when it was matched */
 	ec_frame_iter_init(&it, ec_slot_body(slot), slot->eth_len - EC_ETH_HDR);
-	dg->err = ec_frame_iter_next(&it, &d) == 1 ? 0 : -EIO;
-	if (!dg->err) {
-		dg->wkc = ec_dgram_wkc(&d);
-		dg->back = d.adp;
-		dg->irq = d.irq;
-		dg->sent_ns = slot->sent_ns;
-		if (ec_cmd_reads(d.cmd))
-			memcpy(dg->data, d.data, d.len);
-	}
+	dg->err = -EIO;
+	if (ec_frame_iter_next(&it, &d) == 1)
+		ec_dg_take(dg, &d, slot->sent_ns);
 	ec_slot_put(&post->links->slots, slot);
 	leave_slot(post);
 	post->tries = 0;
@@ -278,10 +272,7 @@ static void build(struct ec_links *l, struct ec_post *post)
 
 	ec_frame_begin(&fb, ec_slot_body(slot), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	p = ec_frame_add(&fb, dg->cmd, slot->index, dg->adp, dg->ado, dg->len);
-	if (ec_cmd_writes(dg->cmd))
-		memcpy(p, dg->data, dg->len);
-	else
-		memset(p, 0, dg->len);
+	ec_dg_fill(dg, p);
 	/* one that a slave never forwards must not take others with it twice */
 	slot->dgrams = post->tries ? 0 : 1;
 	slot->last = 0;

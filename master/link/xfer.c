@@ -79,10 +79,7 @@ static void build(struct ec_links *l, const struct half *h, struct batch_frame *
 		p = ec_frame_add(&fb, dg[i].cmd, slot->index, dg[i].adp, dg[i].ado, dg[i].len);
 		if (!p)
 			break;
-		if (ec_cmd_writes(dg[i].cmd) || dg[i].cmd == EC_CMD_NOP)
-			memcpy(p, dg[i].data, dg[i].len);
-		else
-			memset(p, 0, dg[i].len);
+		ec_dg_fill(&dg[i], p);
 	}
 	bf->first = first;
 	bf->count = i - first;
@@ -112,13 +109,7 @@ static void collect(struct batch_frame *bf, struct ec_dg *dg)
 			dg[i].err = -EIO;
 			continue;
 		}
-		dg[i].wkc = ec_dgram_wkc(&d);
-		dg[i].back = d.adp;
-		dg[i].irq = d.irq;
-		dg[i].sent_ns = bf->slot->sent_ns;
-		if (ec_cmd_reads(d.cmd))
-			memcpy(dg[i].data, d.data, d.len);
-		dg[i].err = 0;
+		ec_dg_take(&dg[i], &d, bf->slot->sent_ns);
 	}
 }
 

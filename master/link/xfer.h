@@ -47,6 +47,27 @@ struct ec_dg {
 #define EC_FPRD(a, o, l, d)	EC_DG(EC_CMD_FPRD, a, o, l, d)
 #define EC_FPWR(a, o, l, d)	EC_DG(EC_CMD_FPWR, a, o, l, (void *)(const void *)(d))
 
+/* The data of a datagram that is sent. */
+static inline void ec_dg_fill(const struct ec_dg *dg, u8 *p)
+{
+	if (ec_cmd_writes(dg->cmd) || dg->cmd == EC_CMD_NOP)
+		memcpy(p, dg->data, dg->len);
+	else
+		memset(p, 0, dg->len);
+}
+
+/* The result of a datagram that has returned. */
+static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u64 sent_ns)
+{
+	dg->wkc = ec_dgram_wkc(d);
+	dg->back = d->adp;
+	dg->irq = d->irq;
+	dg->sent_ns = sent_ns;
+	if (ec_cmd_reads(d->cmd))
+		memcpy(dg->data, d->data, d->len);
+	dg->err = 0;
+}
+
 /**
  * struct ec_xfer - a caller that waits for frames
  * @pending: frames not back yet, plus one while the caller still sends

@@ -252,7 +252,7 @@ static void dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 		deliver(mb, u, h);
 	} else if (!mb->sending.on || !mb->sending.discard) {
 		mb->held = true;
-		mb->told = true;
+		mb->handed_over = true;
 		ec_post_call(&mb->post);
 	}
 }
@@ -298,7 +298,7 @@ void ec_mbox_received(struct ec_mbox *mb)
 
 /**
  * ec_mbox_has_reader() - a user has come for the message in @rx that none was there for
- * @mb: mailbox of the slave, its lock held, @told
+ * @mb: mailbox of the slave, its lock held, @handed_over
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: true: the user has it.
@@ -331,7 +331,7 @@ void ec_mbox_retry_held(struct ec_mbox *mb)
 	struct ec_mbox_hdr h;
 
 	lockdep_assert_held(&mb->lock);
-	if (!mb->held || mb->told)
+	if (!mb->held || mb->handed_over)
 		return;
 	if (ec_mbox_hdr_decode(&r, &h))
 		mb->held = false;

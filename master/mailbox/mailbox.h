@@ -112,8 +112,8 @@ struct ec_mbox {
 	u16 rx_size;
 	/** @held: @rx has a message that was not taken so far */
 	bool held;
-	/** @told: a thread was asked to take it */
-	bool told;
+	/** @handed_over: the thread of the posts takes it */
+	bool handed_over;
 	/** @sending: message to the slave */
 	struct ec_mbox_sending sending;
 	/** @queue: users whose message waits, the oldest first */

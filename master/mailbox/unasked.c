@@ -162,25 +162,25 @@ void ec_mbox_unasked(struct ec_post *post)
 {
 	struct ec_mbox *mb = container_of(post, struct ec_mbox, post);
 	unsigned long flags;
-	bool told;
+	bool taken;
 
 	if (mb->ack_fails >= EC_MBOX_ACK_FAILS && !mb->can_repeat && !mb->logged) {
 		mb->logged = true;
 		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
 	}
 	raw_spin_lock_irqsave(&mb->lock, flags);
-	told = mb->told && !ec_mbox_has_reader(mb);
+	taken = !mb->handed_over || ec_mbox_has_reader(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	/* while it is told of, nothing else changes @rx */
-	if (told) {
+	/* a message that is handed over stays in @rx */
+	if (!taken) {
 		take(mb);
 		/* a reader may have come meanwhile */
 		wake_up_all(&mb->stop->wake);
 	}
 	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (!mb->told)
+	if (!mb->handed_over)
 		goto out;
-	mb->told = false;
+	mb->handed_over = false;
 	mb->held = false;
 	ec_mbox_go(mb);
 out:
