@@ -2,6 +2,7 @@
 /* The transport of mailboxes: several protocols at once, beside a cycle that begins and ends. */
 #include <linux/kthread.h>
 #include "cyc.h"
+#include "slow.h"
 #include "devices/sim/app.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
@@ -242,12 +243,49 @@ static void transport_rests(struct kunit *test)
 	KUNIT_EXPECT_LE(test, bus_frames(b) - before, 56ull);
 }
 
+/* A slave goes while its datagram waits for a cycle that stands still: it is freed nevertheless. */
+static void transport_slave_lost_beside_stalled_cycle(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct cyc *cyc = cyc_in_op(b, 0, 2);
+	struct caller *c = begin(b, read_on, 0);
+
+	cyc_run(cyc, 20);
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	WRITE_ONCE(c->stop, true);
+	msleep(600);
+	KUNIT_EXPECT_TRUE(test, completion_done(&c->end));
+	KUNIT_EXPECT_GE(test, atomic_read(&b->m->links.access.timeouts), 1);
+	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 1u);
+	KUNIT_EXPECT_EQ(test, b->m->links.posts.n_ready + b->m->links.posts.n_flying, 0u);
+}
+
+/* The device sends nothing for a while: what has waited in the queue leaves afterwards. */
+static void transport_full_ring_is_waited_for(struct kunit *test)
+{
+	struct bus *b = bus_new(test, text);
+	struct caller *c;
+
+	b->slow = slow_plug(b, 8, 1);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	slow_stop(b->slow, true);
+	c = begin(b, read_sdo, 0);
+	msleep(15);
+	slow_stop(b->slow, false);
+	wait_for_completion(&c->end);
+	KUNIT_EXPECT_EQ(test, c->ret, 0);
+	KUNIT_EXPECT_EQ(test, c->wrong, 0u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(transport_protocols_side_by_side),
 	KUNIT_CASE(transport_late_answer_beside_other_protocol),
 	KUNIT_CASE(transport_emergencies_beside_requests),
 	KUNIT_CASE(transport_cycles_begin_and_end),
 	KUNIT_CASE(transport_slave_lost_in_transfer),
+	KUNIT_CASE(transport_slave_lost_beside_stalled_cycle),
+	KUNIT_CASE(transport_full_ring_is_waited_for),
 	KUNIT_CASE(transport_rests),
 	{}
 };
