@@ -48,8 +48,12 @@ setup() {
 	[ "$(log_of diag --reset | tail -n 1)" = "sdo 2 0x10f3:03 00" ]
 	[ -z "$(log_of diag | grep sdo)" ]
 	[ -z "$(FAKE_DIAG=empty log_of diag --reset | grep sdo)" ]
-	FAKE_DIAG=refuse log_of diag --reset || true
+	export FAKE_LOG=$BATS_TEST_TMPDIR/refused FAKE_DIAG=refuse
+	: >"$FAKE_LOG"
+	run ethercat diag --reset
+	[ "$status" -eq 1 ]
 	[ ! -s "$FAKE_LOG" ]
+	unset FAKE_DIAG
 	run ethercat diag --acknowledge --reset
 	[[ $output == *"exclude each other"* ]]
 }

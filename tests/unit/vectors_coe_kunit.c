@@ -5,6 +5,7 @@
 #include "../../devices/sim/mbox_encode.h"
 #include "../../devices/sim/sdo_server.h"
 #include "../../devices/sim/sdoinfo_server.h"
+#include "../../master/wire/diag.h"
 #include "../../master/wire/sdo.h"
 
 static u8 out[128];
@@ -271,6 +272,50 @@ static void vectors_coe_sdo_information_of_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, s.abort, 0x06020000u);
 }
 
+/* 0x2000:01, UINT16, with unit, default, minimum and maximum, named "V" */
+static void vectors_coe_values_of_entry(struct kunit *test)
+{
+	static const u8 entry[] = {
+		0x00, 0x20, 0x01, 0x78, 0x06, 0x00, 0x10, 0x00, 0x3F, 0x00,
+		0x00, 0x00, 0x03, 0xB5, 0x64, 0x00, 0x0A, 0x00, 0xE8, 0x03, 'V',
+	};
+	struct ec_od_values v;
+	struct ec_od_entry e;
+
+	KUNIT_ASSERT_EQ(test, ec_od_entry_decode(entry, sizeof(entry), &e), 0);
+	KUNIT_EXPECT_EQ(test, e.bits, 16);
+	KUNIT_ASSERT_EQ(test, ec_od_values_decode(entry, sizeof(entry), 11, &v), 0);
+	KUNIT_EXPECT_EQ(test, v.unit, 0xB5030000u);
+	KUNIT_ASSERT_EQ(test, v.size, (size_t)2);
+	KUNIT_EXPECT_PTR_EQ(test, v.def, &entry[14]);
+	KUNIT_EXPECT_PTR_EQ(test, v.min, &entry[16]);
+	KUNIT_EXPECT_PTR_EQ(test, v.max, &entry[18]);
+}
+
+/* a warning with code 0x0000E000, text 0x1234, 1 ms, one parameter: UINT32 0x01020304 */
+static void vectors_coe_diagnosis_message(struct kunit *test)
+{
+	static const u8 msg[] = {
+		0x00, 0xE0, 0x00, 0x00, 0x01, 0x01, 0x34, 0x12,
+		0x40, 0x42, 0x0F, 0x00, 0x00, 0x00, 0x00, 0x00,
+		0x07, 0x00, 0x04, 0x03, 0x02, 0x01,
+	};
+	struct ec_diag_param p;
+	struct ec_diag_msg m;
+
+	KUNIT_ASSERT_EQ(test, ec_diag_msg_decode(msg, sizeof(msg), &m), 0);
+	KUNIT_EXPECT_EQ(test, m.code, 0xE000u);
+	KUNIT_EXPECT_EQ(test, m.flags & 0xF, EC_DIAG_WARNING);
+	KUNIT_EXPECT_EQ(test, m.text_id, 0x1234);
+	KUNIT_EXPECT_EQ(test, m.time_ns, 1000000ull);
+	KUNIT_ASSERT_EQ(test, ec_diag_param_decode(&m, &p), 1);
+	KUNIT_EXPECT_EQ(test, p.kind, EC_DIAG_VALUE);
+	KUNIT_EXPECT_EQ(test, p.type, 7);
+	KUNIT_EXPECT_PTR_EQ(test, p.data, &msg[18]);
+	KUNIT_EXPECT_EQ(test, p.size, (size_t)4);
+	KUNIT_EXPECT_EQ(test, ec_diag_param_decode(&m, &p), 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_coe_answers_of_sdo_server),
 	KUNIT_CASE(vectors_coe_downloads_into_sdo_server),
@@ -280,6 +325,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_coe_emergency),
 	KUNIT_CASE(vectors_coe_sdo_information),
 	KUNIT_CASE(vectors_coe_sdo_information_of_slave),
+	KUNIT_CASE(vectors_coe_values_of_entry),
+	KUNIT_CASE(vectors_coe_diagnosis_message),
 	{}
 };
 
