@@ -3,6 +3,8 @@
 #include "../link/links.h"
 #include "slave.h"
 
+#define MIN_WORKERS	64u
+
 /**
  * ec_bus_init() - no slaves yet
  * @bus: zeroed structure
@@ -21,10 +23,25 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	bus->ops = ops;
 	init_rwsem(&bus->topo);
 	init_waitqueue_head(&bus->settled);
-	/* So many workers run at once. What one waits for is in another queue. */
-	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
-				    base->index);
+	/* what one waits for is in another queue */
+	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, MIN_WORKERS, base->index);
 	return bus->work ? 0 : -ENOMEM;
+}
+
+/**
+ * ec_bus_set_workers() - as many workers at once as the slaves are worth
+ * @bus: bus, after the number of its slaves has changed
+ *
+ * A worker takes 28 KB and stays for minutes; one for every second slave is as fast as one for
+ * each.
+ *
+ * Context: The monitor thread. May sleep.
+ */
+void ec_bus_set_workers(struct ec_bus *bus)
+{
+	unsigned int n = clamp(bus->n_slaves / 2, MIN_WORKERS, (unsigned int)WQ_UNBOUND_MAX_ACTIVE);
+
+	workqueue_set_max_active(bus->work, (int)n);
 }
 
 /**

@@ -508,6 +508,7 @@ static void publish(struct scan *sc)
 	ec_show_change_end(&bus->base->show);
 	up_write(&bus->topo);
 	sc->slaves = NULL;
+	ec_bus_set_workers(bus);
 
 	for (i = 0; i < n_old; i++) {
 		/* at its place in the new list, or not on the bus any more */

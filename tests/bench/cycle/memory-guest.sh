@@ -10,14 +10,12 @@ build=$1 n=$2
 segment=$(mktemp)
 printf 'segment seed=3 response=100us transition=1ms\nrepeat %u slave d drive in=8 out=8\n' "$n" >"$segment"
 
-# All but free memory, page cache and memory of programs: slabs, pages, vmalloc, stacks.
+# What a slave is made of: slabs that cannot be reclaimed, vmalloc, where stacks are, and what there
+# is for each CPU. Free memory varies by more than 100 slaves take.
 kernel_kb() {
 	sync
 	echo 3 >/proc/sys/vm/drop_caches
-	echo 1 >/proc/sys/vm/compact_memory	# also empties the lists of free pages of CPUs
-	awk '/^MemTotal:/ { kb += $2 }
-		/^(MemFree|Buffers|Cached|AnonPages|PageTables):/ { kb -= $2 }
-		END { print kb }' /proc/meminfo
+	awk '/^(SUnreclaim|VmallocUsed|Percpu):/ { kb += $2 } END { print kb }' /proc/meminfo
 }
 
 workers() { pgrep -c kworker; }
