@@ -43,9 +43,16 @@ static const struct ec_bus_ops bus_ops = {
 	.wake = wake,
 };
 
+/* The monitor watches for it. */
+static void event(struct ec_links *l)
+{
+	ec_monitor_kick(container_of(l, struct ec_master, links));
+}
+
 static const struct ec_links_ops links_ops = {
 	.device = device,
 	.queued = queued,
+	.event = event,
 };
 
 /* Service kicks slaves. */

@@ -10,12 +10,14 @@
 #include "bus/slave.h"
 #include "link/xfer.h"
 #include "bus/scan.h"
+#include "wire/regs.h"
 
 #define PERIOD_MS	20
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define TRIES		2	/* of the look at all slaves */
+#define VAIN		5	/* looks at an AL event that stays, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
 /* what the monitor remembers between two looks */
@@ -33,6 +35,9 @@ struct watch {
 	bool riding;		/* the rider is on its way; its reply is for the next look */
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
+	u16 watched;		/* that shall wake it, until the next look */
+	bool told;		/* one of them has */
+	unsigned int vain;	/* times in a row, and the AL event stays */
 };
 
 static void check_links(struct watch *w)
@@ -289,11 +294,34 @@ static void ride(struct watch *w)
 static void count_slaves(struct watch *w)
 {
 	w->irq = 0;
+	if (w->told && w->riding) {
+		/* it may have passed before the event */
+		w->riding = false;
+		ec_rider_end(&w->m->rider);
+	}
 	if (!all_well(w))
 		ask_slaves(w);
+	w->vain = w->irq & EC_ECAT_EVENT_AL ? w->vain + w->told : 0;
 	ride(w);
 	if (w->scanned && w->link_up)
 		ec_mailboxes_look(&w->m->bus, w->irq);
+}
+
+/*
+ * An event in a frame of the cycle wakes the monitor, once between two looks in turn, so that a
+ * slave that shows one without end costs no more than another look.
+ */
+static void watch_events(struct watch *w)
+{
+	struct ec_master *m = w->m;
+
+	w->watched = 0;
+	if (w->scanned && w->link_up && !w->told) {
+		w->watched = ec_mailboxes_watch(&m->bus);
+		if (w->vain < VAIN)
+			w->watched |= EC_ECAT_EVENT_AL;
+	}
+	WRITE_ONCE(m->links.events, w->watched);
 }
 
 static bool is_due(const struct ec_slave *s, u64 now)
@@ -461,10 +489,12 @@ static int monitor(void *data)
 		ec_log_flush(m->base, false);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
+		watch_events(&w);
 		if (!kthread_should_stop() &&
 		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
+		w.told = w.watched && !READ_ONCE(m->links.events);
 	}
 	if (w.riding)
 		ec_rider_end(&m->rider);

@@ -18,7 +18,8 @@
 #define VAIN		5			/* looks at an event, then at most every SOME_NS */
 #define UNSHOWN		3			/* messages without event, then it is one of them */
 
-const u8 ec_mailboxes_event[2] = { EC_ECAT_EVENT_SM(1), 0 };
+const u8 ec_mailboxes_events[2] = { EC_ECAT_EVENT_AL | EC_ECAT_EVENT_SM(1) };
+const u8 ec_mailboxes_no_events[2] = { EC_ECAT_EVENT_AL };
 
 /* Is its mailbox worth a look? A caller that uses it fetches all there is. */
 static bool is_candidate(struct ec_slave *s, bool all)
@@ -77,6 +78,18 @@ out:
 	kvfree(of);
 	kvfree(status);
 	return found;
+}
+
+/**
+ * ec_mailboxes_watch() - which event of a frame of the cycle is worth a look at once
+ * @bus: bus, scanned
+ *
+ * Context: The monitor thread.
+ * Return: that of SM1, or 0 while it is that of an answer, or was in vain before.
+ */
+u16 ec_mailboxes_watch(const struct ec_bus *bus)
+{
+	return bus->vain_looks || any_in_use(bus) ? 0 : EC_ECAT_EVENT_SM(1);
 }
 
 /**

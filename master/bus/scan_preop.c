@@ -43,10 +43,10 @@ static void start(struct job *j)
 		unsigned int len = ec_mbox_present(&c->slave->mbox) ?
 				   ec_mbox_sms(&c->slave->mbox, false, c->page) : 0;
 
-		if (len) {
+		if (len)
 			j->dg[n++] = EC_FPWR(station, EC_REG_SM(0), len, c->page);
-			j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2, ec_mailboxes_event);
-		}
+		j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2,
+				     len ? ec_mailboxes_events : ec_mailboxes_no_events);
 		j->dg[n++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, pdi);
 		j->dg[n++] = EC_FPWR(station, EC_REG_AL_CONTROL, 2, preop);
 	}

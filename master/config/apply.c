@@ -193,8 +193,10 @@ static int enter(struct ec_slave *s, u8 state)
 	if (len && s->mbox.strict)
 		ret = activate_sm(s, 0, 0) ?: activate_sm(s, 1, 0);
 	if (len && !ret)
-		ret = write_reg(s, EC_REG_SM(0), page, len) ?:
-		      write_reg(s, EC_REG_ECAT_MASK, ec_mailboxes_event, 2);
+		ret = write_reg(s, EC_REG_SM(0), page, len);
+	if (!ret)
+		ret = write_reg(s, EC_REG_ECAT_MASK,
+				len ? ec_mailboxes_events : ec_mailboxes_no_events, 2);
 	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
 }
 

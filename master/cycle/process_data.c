@@ -85,23 +85,27 @@ static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 		take_inputs(c, d, f, data, wkc == d->expected);
 }
 
-static void take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
+/* Returns the events that the slaves have shown in the IRQ field. */
+static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
 	const struct ec_cyc_dgram *d = &c->dgrams[f->first];
 	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
+	u16 irq = 0;
 
 	if (f->dc)
 		data = ec_dc_datagrams_take(c, f, data);
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
+		irq |= get_unaligned_le16(data - 2);
 		take_dgram(c, d, f, data);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 	if (unlikely(f->riding.mask))
 		ec_riders_take(c->links, &f->riding, data - EC_DGRAM_HDR,
 			       f->slot->frame + f->slot->eth_len);
+	return irq;
 }
 
 /* How often a domain was sent after send number @send. */
@@ -187,6 +191,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 {
 	u64 now, limit = (u64)c->links->io_timeout_us * NSEC_PER_USEC;
 	unsigned int i, left = 0;
+	u16 irq = 0;
 
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
@@ -199,7 +204,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(c->links, late);
-			take_frame(c, f);
+			irq |= take_frame(c, f);
 			ec_slot_put(&c->links->slots, f->slot);
 		} else if (f->missed && now - f->slot->sent_ns > limit &&
 			   ec_slot_cancel(f->slot, now)) {
@@ -212,6 +217,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		}
 	}
 	c->n_flight = left;
+	ec_links_events(c->links, irq);
 	judge(c);
 	ec_status_begin(c->shared->status);
 	ec_dc_datagrams_judge(c);

@@ -30,6 +30,8 @@ struct ec_links_ops {
 	void (*device)(struct ec_links *l, const struct ec_link *link, bool attached);
 	/** @queued: an acyclic frame waits for the cycle; with the access lock held */
 	void (*queued)(struct ec_links *l);
+	/** @event: a frame of the cycle has brought an event that is watched for; RT-safe */
+	void (*event)(struct ec_links *l);
 };
 
 /** struct ec_links - links of a master and all that uses them */
@@ -66,6 +68,8 @@ struct ec_links {
 	struct ec_posts posts;
 	/** @share: what a cyclic send carries of @queues */
 	struct ec_share share;
+	/** @events: ECAT events that are reported at once, once; 0: none */
+	u16 events;
 	/** @monitor: thread whose frames overtake those of other callers, NULL: none */
 	const struct task_struct *monitor;
 	/** @max_datagrams: of a frame, immutable */
@@ -118,6 +122,16 @@ static inline unsigned int ec_links_n(const struct ec_links *l)
 static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsigned int i)
 {
 	return &l->link[i];
+}
+
+/* the events of all slaves that a frame of the cycle has brought; RT-safe */
+static inline void ec_links_events(struct ec_links *l, u16 events)
+{
+	if (likely(!(events & READ_ONCE(l->events))))
+		return;
+	WRITE_ONCE(l->events, 0);
+	if (l->ops->event)
+		l->ops->event(l);
 }
 
 /* deliver what the devices have received; the owner of the links, RT-safe */

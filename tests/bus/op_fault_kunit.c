@@ -2,6 +2,7 @@
 /* What happens in OP: cables, power, errors of slaves, the end of the session. */
 #include <linux/kmsg_dump.h>
 #include "cyc.h"
+#include "devices/sim/esc_int.h"
 #include "master/boundary/ioctl.h"
 
 /* outputs are wired to inputs in the same and in another slave */
@@ -138,6 +139,46 @@ static void op_slave_error(struct kunit *test)
 	KUNIT_EXPECT_LT(test, i, 100);
 	KUNIT_EXPECT_NE(test, recover(c, 1000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_slave(c->b, AI)->error, EC_SLAVE_OK);
+}
+
+/* The AL event in a frame of the cycle wakes the monitor: at any phase of its looks. */
+static void op_slave_error_shows_at_once(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	u32 i, k, most = 0;
+
+	for (k = 0; k < 10; k++) {
+		ec_app_al_fail(bus_app(c->b, "ai"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
+		for (i = 0; i < 100 && bus_slave(c->b, AI)->al_status == EC_AL_OP; i++)
+			cyc_run(c, 1);
+		most = max(most, i);
+		KUNIT_ASSERT_NE(test, recover(c, 1000), ~0ull);
+		cyc_run(c, 101 + k);
+	}
+	bus_figure("AL state of a slave lost in OP: seen after at most %u cycles", most);
+	KUNIT_EXPECT_LE(test, most, 8);
+}
+
+static void event_stays(struct cyc *c)
+{
+	ec_esc_event(c->ctx, EC_ECAT_EVENT_AL, 0);
+}
+
+static void op_event_that_stays_costs_nothing(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	unsigned long before, quiet;
+
+	cyc_run(c, 100);
+	before = c->b->m->monitor->nvcsw;
+	cyc_run(c, 1000);
+	quiet = c->b->m->monitor->nvcsw - before;
+	c->ctx = bus_esc(c->b, AI);
+	c->each = event_stays;
+	before = c->b->m->monitor->nvcsw;
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_LE(test, c->b->m->monitor->nvcsw - before, quiet + 30);
+	works(c);
 }
 
 /* A refused state does not keep the others from OP; the cause is kept. */
@@ -283,6 +324,8 @@ static struct kunit_case op_fault_cases[] = {
 	KUNIT_CASE(op_missing_in_domain),
 	KUNIT_CASE(op_cable_pulled),
 	KUNIT_CASE(op_slave_error),
+	KUNIT_CASE(op_slave_error_shows_at_once),
+	KUNIT_CASE(op_event_that_stays_costs_nothing),
 	KUNIT_CASE(op_refused),
 	KUNIT_CASE(op_session_ends),
 	KUNIT_CASE(op_application_stalls),
