@@ -32,6 +32,7 @@ struct watch {
 	u64 scanned_ns;
 	u64 rates_ns;
 	u64 alone_ns;		/* no rider before that time */
+	bool well;		/* all slaves were in the state they shall have */
 	bool riding;		/* the rider is on its way; its reply is for the next look */
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
@@ -238,7 +239,8 @@ static void ask_slaves(struct watch *w)
 	}
 	if (w->scanned && count && wkc >= replying(m))
 		m->bus.complete_ns = ktime_get_ns();
-	if (!w->scanned || as_wanted(m, ored, wkc) || check_slaves(m))
+	w->well = w->scanned && as_wanted(m, ored, wkc);
+	if (!w->scanned || w->well || check_slaves(m))
 		w->silent = 0;
 	else
 		w->silent++;
@@ -271,6 +273,7 @@ static bool all_well(struct watch *w)
 	set_present(m, w->count, ored & EC_AL_STATE_MASK);
 	m->bus.complete_ns = w->ride_ns;
 	w->irq = r->irq;
+	w->well = true;
 	return true;
 }
 
@@ -308,15 +311,15 @@ static void count_slaves(struct watch *w)
 }
 
 /*
- * An event in a frame of the cycle wakes the monitor, once between two looks in turn, so that a
- * slave that shows one without end costs no more than another look.
+ * While all is well, an event in a frame of the cycle wakes the monitor, once between two looks in
+ * turn: a slave that shows one without end costs no more than another look.
  */
 static void watch_events(struct watch *w)
 {
 	struct ec_master *m = w->m;
 
 	w->watched = 0;
-	if (w->scanned && w->link_up && !w->told) {
+	if (w->riding && w->well && !w->told) {
 		w->watched = ec_mailboxes_watch(&m->bus);
 		if (w->vain < VAIN)
 			w->watched |= EC_ECAT_EVENT_AL;

@@ -3,7 +3,7 @@
 #include "../link/links.h"
 #include "slave.h"
 
-#define MIN_WORKERS	64u
+#define WORKERS	64	/* at least */
 
 /**
  * ec_bus_init() - no slaves yet
@@ -24,24 +24,30 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	init_rwsem(&bus->topo);
 	init_waitqueue_head(&bus->settled);
 	/* what one waits for is in another queue */
-	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, MIN_WORKERS, base->index);
+	bus->workers = WORKERS;
+	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WORKERS, base->index);
 	return bus->work ? 0 : -ENOMEM;
 }
 
 /**
- * ec_bus_set_workers() - as many workers at once as the slaves are worth
- * @bus: bus, after the number of its slaves has changed
+ * ec_bus_need_workers() - so many workers at once from now on, if they were less
+ * @bus: bus
+ * @n: workers
  *
- * A worker takes 28 KB and stays for minutes; one for every second slave is as fast as one for
- * each.
+ * A worker takes 28 KB and stays for minutes. On the way to PREOP they wait for the wire, where
+ * one for every second slave is as fast as one for each; on the way to OP for their slaves.
  *
- * Context: The monitor thread. May sleep.
+ * Context: Process. May sleep.
  */
-void ec_bus_set_workers(struct ec_bus *bus)
+void ec_bus_need_workers(struct ec_bus *bus, unsigned int n)
 {
-	unsigned int n = clamp(bus->n_slaves / 2, MIN_WORKERS, (unsigned int)WQ_UNBOUND_MAX_ACTIVE);
-
-	workqueue_set_max_active(bus->work, (int)n);
+	n = min(n, (unsigned int)WQ_UNBOUND_MAX_ACTIVE);
+	down_write(&bus->topo);
+	if (n > bus->workers) {
+		bus->workers = n;
+		workqueue_set_max_active(bus->work, (int)n);
+	}
+	up_write(&bus->topo);
 }
 
 /**

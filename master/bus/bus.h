@@ -100,6 +100,8 @@ struct ec_bus {
 	atomic_t settles;
 	/** @work: workers that bring slaves to their state; they wait for clocks and cycles */
 	struct workqueue_struct *work;
+	/** @workers: of @work at once; under @topo */
+	unsigned int workers;
 };
 
 /* each slave of @bus: declares @s */
@@ -115,7 +117,7 @@ static inline void ec_bus_assert_stays(const struct ec_bus *bus)
 
 int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links,
 		const struct ec_bus_ops *ops);
-void ec_bus_set_workers(struct ec_bus *bus);
+void ec_bus_need_workers(struct ec_bus *bus, unsigned int n);
 void ec_bus_stop(struct ec_bus *bus);
 void ec_bus_exit(struct ec_bus *bus);
 struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position);

@@ -85,11 +85,11 @@ out:
  * @bus: bus, scanned
  *
  * Context: The monitor thread.
- * Return: that of SM1, or 0 while it is that of an answer, or was in vain before.
+ * Return: that of SM1, or 0 while it is that of an answer, or was in vain too often.
  */
 u16 ec_mailboxes_watch(const struct ec_bus *bus)
 {
-	return bus->vain_looks || any_in_use(bus) ? 0 : EC_ECAT_EVENT_SM(1);
+	return bus->vain_looks >= VAIN || any_in_use(bus) ? 0 : EC_ECAT_EVENT_SM(1);
 }
 
 /**

@@ -508,7 +508,7 @@ static void publish(struct scan *sc)
 	ec_show_change_end(&bus->base->show);
 	up_write(&bus->topo);
 	sc->slaves = NULL;
-	ec_bus_set_workers(bus);
+	ec_bus_need_workers(bus, sc->n / 2);
 
 	for (i = 0; i < n_old; i++) {
 		/* at its place in the new list, or not on the bus any more */

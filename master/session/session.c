@@ -566,6 +566,7 @@ int ec_session_activate(struct ec_session *s)
 	st->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
 	ec_session_fill_status(s);
 	ec_cycle_thread_start(&s->cycle);
+	ec_bus_need_workers(ss->bus, s->wanted.n_configs);
 	ec_for_each_config(c, &s->wanted)
 		if (c->slave)
 			ec_slave_request(c->slave, EC_AL_OP);
