@@ -26,7 +26,7 @@ CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
 	OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn))
 CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
 CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
-	RSV1(ec_ioc_config_why))
+	OLDEST(ec_ioc_config_why, text), RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
 CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),

@@ -249,6 +249,7 @@ static void not_mapped(struct ec_call *call, const struct ec_config *c,
 		       const struct ec_ioc_reg_entry *i)
 {
 	char entry[32], why[96];
+	struct ec_cause cause;
 
 	if (i->flags & EC_REG_ENTRY_BY_POS)
 		scnprintf(entry, sizeof(entry), "entry %u of PDO %u of SM%u", i->entry_pos,
@@ -262,7 +263,7 @@ static void not_mapped(struct ec_call *call, const struct ec_config *c,
 		return;
 	}
 	down_read(&call->master->bus.topo);
-	ec_config_why(c, why, sizeof(why));
+	ec_config_why(c, why, sizeof(why), &cause);
 	up_read(&call->master->bus.topo);
 	ec_refuse(call, -ENOENT,
 		  "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",

@@ -245,6 +245,6 @@ int ec_ioc_config_why(struct ec_call *call)
 {
 	struct ec_ioc_config_why *i = call->arg;
 
-	i->len = ec_config_why(call->config, i->text, sizeof(i->text));
+	i->len = ec_config_why(call->config, i->text, sizeof(i->text), &i->cause);
 	return 0;
 }

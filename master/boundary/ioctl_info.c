@@ -113,6 +113,7 @@ static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
 	i->domain_count = s->wanted.n_domains;
 	if (!s->wanted.active)
 		return;
+	i->no_cycle = !ec_access_is_cyclic(&s->cycle.links->access);
 	cycle_info(&s->cycle, i);
 	st = s->cycle.shared->status;
 	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));
@@ -295,6 +296,7 @@ int ec_ioc_slave(struct ec_call *call)
 	i->sii_words = s->sii_bytes / 2;
 	slave_general(s, i);
 	ec_slave_why(s, i->why, sizeof(i->why));
+	ec_slave_cause(s, &i->cause);
 	ec_slave_warning(s, i->warning, sizeof(i->warning));
 	slave_ports(call->master, s, i);
 	return slave_alias(call, i) ?: slave_config(call, i);

@@ -148,7 +148,7 @@ static int write_stations(struct scan *sc, unsigned int n)
 			continue;
 		if (!same_count(sc))
 			return -EAGAIN;
-		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED,
+		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
 	}
 	return ret;
@@ -230,6 +230,7 @@ static void take_failure(struct scan *sc, struct ec_slave *s)
 	if (!old)
 		return;
 	strscpy(s->why, old->why, sizeof(s->why));
+	s->cause = old->cause;
 	s->retry_ms = old->retry_ms;
 }
 
@@ -241,7 +242,7 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 	WRITE_ONCE(s->silent, true);
 	s->seen_ns = sc->bus->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
-	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(SILENT),
 		      "no reply from the slave, frames pass; waiting for a reply");
 	ec_slave_retry(s, EC_PROBE_MAX_MS);
 }
@@ -314,7 +315,7 @@ static void take_replies(struct scan *sc)
 
 		if (!is_known(sc, s)) {
 			if (sc->regs[i].partial)
-				ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+				ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
 					      "no reply to a register read, frames pass; check the cables");
 		} else if (sc->regs[i].there) {
 			set_answers(sc, s);
@@ -377,6 +378,7 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 			continue;
 		/* left by the one that could not be read */
 		fresh[i]->why[0] = '\0';
+		fresh[i]->cause = *EC_CAUSE(NONE);
 		fresh[i]->retry_ms = 0;
 	}
 }
@@ -407,7 +409,7 @@ static int read_new(struct scan *sc)
 			return -EAGAIN;
 		}
 		if (s->sii && ec_slave_parse_sii(s))
-			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
 				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);
 		else if (s->sii && !s->info.checksum_ok && s->flaw.kind != EC_SII_FLAW_BLANK)
@@ -476,6 +478,13 @@ static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int 
 		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
 			 s->parent_port, up, old[up]->order);
 	s->seen_ns = s->bus->complete_ns;
+	/* slaves that were lost together have the place where the first of them hung */
+	if (up < s->position && READ_ONCE(old[up]->stop.gone))
+		s->lost_at = old[up]->lost_at;
+	else
+		s->lost_at = (struct ec_break){
+			.station = up < n_old ? old[up]->station : 0, .port = s->parent_port,
+		};
 }
 
 /* One line each; without any slave the message about the link is enough. */

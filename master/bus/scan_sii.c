@@ -79,8 +79,8 @@ static void fail(struct reader *r, const char *what, const char *remedy)
 	struct ec_slave *s = r->slave;
 
 	is_done(r);
-	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, "SII read failed at word 0x%04zx: %s; %s",
-		      s->part_bytes / 2, what, remedy);
+	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
+		      "SII read failed at word 0x%04zx: %s; %s", s->part_bytes / 2, what, remedy);
 	kvfree(s->part);
 	s->part = NULL;
 	s->part_bytes = 0;
@@ -95,6 +95,7 @@ static void interrupt(struct reader *r)
 
 	is_done(r);
 	s->error = EC_SLAVE_SCAN_FAILED;
+	s->cause = *EC_CAUSE(EEPROM_PART);
 	snprintf(s->why, sizeof(s->why),
 		 "large EEPROM, 0x%04zx words read up to now, the rest follows",
 		 s->part_bytes / 2);

@@ -177,13 +177,15 @@ int ec_slave_parse_sii(struct ec_slave *slave)
  * ec_slave_fail() - note why a slave could not be scanned or configured
  * @slave: slave
  * @error: EC_SLAVE_SCAN_FAILED or EC_SLAVE_CONFIG_FAILED
+ * @cause: the same for programs, see EC_CAUSE()
  * @fmt: text: what was expected, what found, what to do
  *
  * The same cause is logged once.
  *
  * Context: Process. May sleep.
  */
-void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
+void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
+		   const char *fmt, ...)
 {
 	char text[EC_UAPI_REASON];
 	va_list args;
@@ -197,6 +199,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...)
 	if (slave->error != EC_SLAVE_SCAN_FAILED || error != EC_SLAVE_CONFIG_FAILED) {
 		WRITE_ONCE(slave->error, error);
 		other = strcmp(slave->why, text);
+		slave->cause = *cause;
 		if (other)
 			strscpy(slave->why, text, sizeof(slave->why));
 	}
@@ -222,6 +225,7 @@ bool ec_slave_set_ok(struct ec_slave *slave, bool replies)
 	if (ok) {
 		WRITE_ONCE(slave->error, EC_SLAVE_OK);
 		slave->why[0] = '\0';
+		slave->cause = (struct ec_cause){ .kind = EC_CAUSE_NONE };
 	}
 	raw_spin_unlock(&slave->note_lock);
 	return ok;
@@ -263,6 +267,20 @@ const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size)
 	strscpy(buf, slave->why, size);
 	raw_spin_unlock(&slave->note_lock);
 	return buf;
+}
+
+/**
+ * ec_slave_cause() - the cause of a slave's error, for programs
+ * @slave: slave
+ * @cause: result
+ *
+ * Context: Any.
+ */
+void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
+{
+	raw_spin_lock(&slave->note_lock);
+	*cause = slave->cause;
+	raw_spin_unlock(&slave->note_lock);
 }
 
 /**

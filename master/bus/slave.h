@@ -22,6 +22,16 @@
 #define EC_PROBE_MAX_MS		1000	/* of a slave that does not reply at all */
 
 /**
+ * struct ec_break - where the way to a lost slave breaks
+ * @station: address of the slave that is still there, 0: the main device
+ * @port: its port
+ */
+struct ec_break {
+	u16 station;
+	u8 port;
+};
+
+/**
  * struct ec_slave - one slave
  *
  * Fixed after the scan:
@@ -58,6 +68,7 @@
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
  * @parent: the slave it hung at when it was lost, in words
+ * @lost_at: where the way to it broke then
  * @parent_port: port of the slave it hangs at
  * @topology_inconsistent: open ports contradict the ring order, here or upstream
  *
@@ -76,10 +87,11 @@
  * @al_reads: how often a worker has read the two: what was asked for before
  *	is older
  * @requested: AL state it shall reach
- * @note_lock: protects @why and @warning, and @error where it changes; without
+ * @note_lock: protects @why, @cause and @warning, and @error where it changes; without
  *	@lock a caller copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
+ * @cause: the same for programs
  * @warning: what is not certain of its process data, empty: nothing
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
@@ -129,6 +141,7 @@ struct ec_slave {
 	u8 upstream;
 	u8 parent_port;
 	char parent[EC_UAPI_STRING];
+	struct ec_break lost_at;
 	bool topology_inconsistent;
 
 	struct ec_pdo_list sm_pdos[EC_MAX_SM];
@@ -146,6 +159,7 @@ struct ec_slave {
 	raw_spinlock_t note_lock;
 	u8 error;
 	char why[EC_UAPI_REASON];
+	struct ec_cause cause;
 	char warning[EC_UAPI_WARNING];
 	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
@@ -172,6 +186,10 @@ struct ec_slave {
 #define ec_slave_dbg_result(s, ret, fmt, ...) \
 	ec_dbg_slave_result((s)->bus->base, (s)->position, ret, fmt, ##__VA_ARGS__)
 
+/* of ec_slave_fail(): EC_CAUSE(REFUSED, .state = ...) */
+#define EC_CAUSE(kind_, ...) \
+	(&(const struct ec_cause){ .kind = EC_CAUSE_##kind_, ##__VA_ARGS__ })
+
 struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
@@ -179,10 +197,12 @@ int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
 bool ec_slave_busy(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
-void ec_slave_fail(struct ec_slave *slave, u8 error, const char *fmt, ...) __printf(3, 4);
+void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
+		   const char *fmt, ...) __printf(4, 5);
 bool ec_slave_set_ok(struct ec_slave *slave, bool replies);
 bool ec_slave_forgive(struct ec_slave *slave);
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
+void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause);
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...) __printf(2, 3);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);

@@ -258,7 +258,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 
 	lockdep_assert_held(&s->lock);
 	if (period < c->period[0] || !period) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
 			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
 			      c->period[0], c->period[1], c->assign);
 		return -ERANGE;
@@ -277,7 +277,7 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 			ret = -EAGAIN;
 	}
 	if (ret == -EAGAIN) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
 			      "SYNC0 start time had passed on arrival, %d attempts; configure fewer slaves at once or allow more delayed cycles",
 			      STARTS);
 		ret = -EOPNOTSUPP;
@@ -337,7 +337,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 			break;
 		}
 		if (try == CHECKS) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
 				      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
 				      status[0], c->assign);
 			return -EOPNOTSUPP;

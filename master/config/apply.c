@@ -22,28 +22,32 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 
 static int failed(struct ec_slave *s, u8 state, int ret)
 {
-	const char *refusal = ec_setup_of(s)->pdo_refusal;
+	const struct ec_setup *setup = ec_setup_of(s);
+	const char *refusal = setup->pdo_refusal;
 	u16 code = READ_ONCE(s->al_code);
 
 	if (ret == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
 		/* the first cause, not only what follows from it */
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, &setup->pdo_cause,
 			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", refusal,
 			      code, ec_al_code_text(code));
 	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%.170s; then PREOP %s", s->sii_flaw,
-			      ret == -ETIME ? "not reached in time" : "refused");
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(EEPROM, .state = state),
+			      "%.170s; then PREOP %s", s->sii_flaw, ret == -ETIME ? "not reached in time" : "refused");
 	else if (ret == -EPROTO)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s refused: AL status code 0x%04x (%s)",
-			      ec_al_state_name(state), code, ec_al_code_text(code));
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      EC_CAUSE(REFUSED, .state = state, .code = code),
+			      "%s refused: AL status code 0x%04x (%s)", ec_al_state_name(state),
+			      code, ec_al_code_text(code));
 	else if (ret == -ETIME)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s not reached in time, AL state %s",
-			      ec_al_state_name(state),
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SLOW, .state = state),
+			      "%s not reached in time, AL state %s", ec_al_state_name(state),
 			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
 		 ret != -EOVERFLOW && ret != -ERANGE)	/* reported already */
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "communication failed before %s (%pe)",
-			      ec_al_state_name(state), ERR_PTR(ret));
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(FRAMES, .state = state),
+			      "communication failed before %s (%pe)", ec_al_state_name(state),
+			      ERR_PTR(ret));
 	return ret;
 }
 
@@ -207,7 +211,7 @@ static int leave_init(struct ec_slave *s, u8 state)
 	int ret;
 
 	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
-		return ec_apply_fail(s, -EOPNOTSUPP,
+		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	ret = enter(s, state);
 	/* whatever code it has for that: without the event, then */

@@ -10,8 +10,8 @@ struct ec_pdo_list;
 struct ec_slave;
 
 /* Note why a slave cannot be configured: @ret, returned, and a text. */
-#define ec_apply_fail(s, ret, ...) \
-	({ ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, __VA_ARGS__); (ret); })
+#define ec_apply_fail(s, ret, cause, ...) \
+	({ ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, cause, __VA_ARGS__); (ret); })
 
 void ec_apply(struct ec_slave *s);
 

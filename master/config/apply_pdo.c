@@ -42,7 +42,8 @@ static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 }
 
 /* Many slaves have fixed lists: what they have instead decides, see check(). */
-static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret, u32 abort)
+static int note_refusal(struct ec_slave *s, unsigned int sm, u16 index, const char *what, int ret,
+			u32 abort)
 {
 	struct ec_setup *setup = ec_setup_of(s);
 	char text[sizeof(setup->pdo_refusal)], why[96];
@@ -56,13 +57,15 @@ static int note_refusal(struct ec_slave *s, u16 index, const char *what, int ret
 		scnprintf(text, sizeof(text), "%s 0x%04x not written: %s", what, index,
 			  ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	ec_slave_warn(s, "%s\n", text);
-	if (!setup->pdo_refusal[0])
+	if (!setup->pdo_refusal[0]) {
 		strscpy(setup->pdo_refusal, text, sizeof(setup->pdo_refusal));
+		setup->pdo_cause = *EC_CAUSE(PDO, .sm = sm, .object = index, .code = abort);
+	}
 	return REFUSED;
 }
 
 /* The CiA procedure: count 0, values, count. */
-static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
+static int write_list(struct ec_slave *s, unsigned int sm, u16 index, unsigned int n, u8 bytes,
 		      u32 (*value)(const void *ctx, unsigned int i), const void *ctx,
 		      const char *what)
 {
@@ -75,7 +78,7 @@ static int write_list(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
 		ret = sdo_u(s, index, i + 1, value(ctx, i), bytes, &abort);
 	if (!ret)
 		ret = sdo_u(s, index, 0, n, 1, &abort);
-	return note_refusal(s, index, what, ret, abort);
+	return note_refusal(s, sm, index, what, ret, abort);
 }
 
 static u32 map_value(const void *ctx, unsigned int i)
@@ -101,8 +104,9 @@ static bool mapped_already(struct ec_slave *s, const struct ec_pdo *p)
  * mailbox.md, PDO write procedure: a PDO must not be assigned while it is mapped. A
  * slave that does not let the assignment be changed may let the mapping.
  */
-static int write_sm_pdos(struct ec_slave *s, u16 assign, const struct ec_pdo_list *l)
+static int write_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l)
 {
+	u16 assign = 0x1c10 + sm;
 	unsigned int i, first;
 	bool refused = false;
 	u32 abort;
@@ -120,14 +124,14 @@ static int write_sm_pdos(struct ec_slave *s, u16 assign, const struct ec_pdo_lis
 
 		if (mapped_already(s, p))
 			continue;
-		ret = write_list(s, p->index, p->n_entries, 4, map_value, p, "PDO mapping");
+		ret = write_list(s, sm, p->index, p->n_entries, 4, map_value, p, "PDO mapping");
 		if (ret < 0)
 			return ret;
 		refused |= ret == REFUSED;
 	}
 	if (already(s, assign, l->n, 2, assign_value, l))
 		return refused ? REFUSED : 0;
-	ret = write_list(s, assign, l->n, 2, assign_value, l, "PDO assignment");
+	ret = write_list(s, sm, assign, l->n, 2, assign_value, l, "PDO assignment");
 	return ret ?: refused ? REFUSED : 0;
 }
 
@@ -178,6 +182,8 @@ static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int s
 {
 	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
 	const struct ec_pdo_entry *e, *h;
+	const struct ec_setup *setup = ec_setup_of(s);
+	bool refused = cause == setup->pdo_refusal;
 	char has[32] = "nothing";
 	u32 bit;
 
@@ -196,7 +202,9 @@ static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int s
 		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
 		return 0;
 	}
-	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "%s", s->warning);
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		      EC_CAUSE(PDO, .sm = sm, .object = refused ? setup->pdo_cause.object : 0,
+			       .code = refused ? setup->pdo_cause.code : 0), "%s", s->warning);
 	ec_slave_set_warning(s, "%s", "");
 	return -EOPNOTSUPP;
 }
@@ -286,7 +294,7 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 
 		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
 			continue;
-		ret = write_sm_pdos(s, 0x1c10 + sm, l);
+		ret = write_sm_pdos(s, sm, l);
 		if (!ret)
 			ec_slave_set_sm_pdos(s, sm, l);
 		else if (ret == REFUSED)

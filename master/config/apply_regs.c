@@ -69,7 +69,7 @@ static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *
 			continue;
 		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
 		if (bytes > EC_MAX_SM_BYTES)
-			return ec_apply_fail(s, -EOVERFLOW,
+			return ec_apply_fail(s, -EOVERFLOW, EC_CAUSE(LAYOUT),
 					     "SM%u needs %u bytes, limit %u; map fewer entries",
 					     sm, bytes, EC_MAX_SM_BYTES);
 		sm_page(s, c, sm, b->sm[sm]);
@@ -94,19 +94,19 @@ static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
 	unsigned int i;
 
 	if (c->n_fmmus > count_fmmus(s))
-		return ec_apply_fail(s, -ENOSPC,
+		return ec_apply_fail(s, -ENOSPC, EC_CAUSE(LAYOUT),
 				     "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
 				     c->n_fmmus, s->regs[EC_REG_FMMUS]);
 	if (c->lrw && ec_slave_no_lrw(s))
-		return ec_apply_fail(s, -EOPNOTSUPP,
+		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
 				     "slave without LRW support attached to a layout with LRW; restart the application");
 	if (c->in_ring && s->position != c->ring_position)
-		return ec_apply_fail(s, -EOPNOTSUPP,
+		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
 				     "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
 				     s->position, c->ring_position);
 	for (i = 0; i < c->n_fmmus; i++)
 		if (!holds_pdos(s, c->fmmus[i].sm))
-			return ec_apply_fail(s, -EOPNOTSUPP,
+			return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
 					     "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
 					     c->fmmus[i].sm);
 	return 0;

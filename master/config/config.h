@@ -100,7 +100,8 @@ struct ec_config_flag {
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @emergencies: how many to keep
  * @emerg_cleared: by an application in the kernel, of the lost ones
- * @lost: the slave that it had while active, in words, and when it was there last (ktime)
+ * @lost: the slave that it had while active, in words, when it was there last (ktime), where
+ *	the way to it broke, and the ring position of that place at the last search
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -129,6 +130,8 @@ struct ec_config {
 	struct {
 		char text[EC_UAPI_REASON / 2];
 		u64 seen_ns;
+		struct ec_break at;
+		u32 up_at;
 	} lost;
 	struct ec_slave *slave;
 };
@@ -149,6 +152,8 @@ struct ec_setup {
 	bool holds_mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
 	char pdo_refusal[EC_UAPI_REASON];
+	/** @pdo_cause: the same for programs, when @pdo_refusal is not empty */
+	struct ec_cause pdo_cause;
 };
 
 /* The slaves that a scan finds from now on have one. */

@@ -138,24 +138,27 @@ static void failed(struct ec_slave *s, const struct ec_startup *u, int ret, u32 
 	why(text, sizeof(text), u, ret, code);
 	if (u->type == EC_STARTUP_SDO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      EC_CAUSE(SDO, .object = u->index, .subindex = u->sub, .code = code),
 			      "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s", u->index, u->sub,
 			      u->size, text);
 	else if (u->type == EC_STARTUP_IDN)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+			      EC_CAUSE(IDN, .object = u->index, .subindex = u->sub, .code = code),
 			      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
 			      ec_soe_idn_text(u->index, name), u->sub, u->size, text);
 	else if (u->type == EC_STARTUP_REG)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "startup register 0x%04x failed: %s",
-			      u->index, text);
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(REGISTER, .object = u->index),
+			      "startup register 0x%04x failed: %s", u->index, text);
 	else if (ret == -EREMOTEIO)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP, .code = code),
 			      "IP parameters refused: EoE result 0x%04x (%s)", code,
 			      ec_eoe_result_text(code));
 	else if (ret == -EPROTONOSUPPORT)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP),
 			      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
 	else
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, "IP parameters failed: %s", text);
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP), "IP parameters failed: %s",
+			      text);
 }
 
 /**

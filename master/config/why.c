@@ -23,27 +23,44 @@ static bool place(const struct ec_config *c, unsigned int *pos)
 }
 
 /**
- * ec_config_find_alias() - look for the slave that has the alias of a configuration
+ * ec_config_locate() - look for the slaves by which the place of a configuration is known
  * @c: configuration
  *
- * Called for a new configuration, and when slaves were connected or disconnected: readers
- * of a configuration must not search all slaves.
+ * These are the slave that has its alias, and the one behind which its lost slave was. Called
+ * for a new configuration, and when slaves were connected or disconnected: readers of a
+ * configuration must not search all slaves.
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_config_find_alias(struct ec_config *c)
+void ec_config_locate(struct ec_config *c)
 {
 	struct ec_bus *bus = c->wanted->bus;
-	unsigned int i = 0;
+	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (!c->alias)
+	if (!c->alias && !c->lost.text[0])
 		return;
 	down_read(&bus->topo);
-	while (i < bus->n_slaves && bus->slaves[i]->alias != c->alias)
-		i++;
+	for (i = 0; c->alias && i < bus->n_slaves && bus->slaves[i]->alias != c->alias; i++)
+		;
 	c->alias_at = i;
+	for (i = 0; c->lost.text[0] && i < bus->n_slaves &&
+	     bus->slaves[i]->station != c->lost.at.station; i++)
+		;
+	c->lost.up_at = i;
 	up_read(&bus->topo);
+}
+
+/* Behind which port of which slave the lost one was; it may be lost as well by now. */
+static struct ec_cause lost_at(const struct ec_config *c)
+{
+	const struct ec_bus *bus = c->wanted->bus;
+	u32 up = c->lost.up_at;
+
+	ec_bus_assert_stays(bus);
+	if (up >= bus->n_slaves || bus->slaves[up]->station != c->lost.at.station)
+		up = EC_UAPI_NONE16;
+	return *EC_CAUSE(LOST, .position = up, .port = c->lost.at.port);
 }
 
 /* Do both name the slave at @pos, which is not only where another one has been? */
@@ -55,50 +72,59 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 }
 
 /* Without device or link there is no slave at all. */
-static size_t no_link(struct ec_links *l, char *buf, size_t size)
+static size_t no_link(struct ec_links *l, char *buf, size_t size, struct ec_cause *cause)
 {
 	char name[EC_UAPI_STRING];
 
 	if (ec_links_any_up(l))
 		return 0;
+	*cause = *EC_CAUSE(NO_DEVICE);
 	if (!ec_links_any_device(l))
 		return scnprintf(buf, size, "no network device: master %u waits for %s",
 				 l->base->index, ec_links_name(l, 0, name, sizeof(name)));
+	*cause = *EC_CAUSE(LINK_DOWN);
 	return scnprintf(buf, size, "link down: check the cable at the main device of master %u",
 			 l->base->index);
 }
 
 /* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */
-static size_t absent(const struct ec_config *c, char *buf, size_t size)
+static size_t absent(const struct ec_config *c, char *buf, size_t size, struct ec_cause *cause)
 {
 	const struct ec_bus *bus = c->wanted->bus;
 	const struct ec_config *has;
 	char why[EC_UAPI_REASON];
 	struct ec_slave *s;
 	unsigned int pos;
-	size_t len = no_link(c->wanted->links, buf, size);
+	size_t len = no_link(c->wanted->links, buf, size, cause);
 
 	ec_bus_assert_stays(c->wanted->bus);
 	if (len)
 		return len;
+	*cause = lost_at(c);
 	if (c->wanted->active && c->lost.text[0])
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
+	*cause = *EC_CAUSE(NO_ALIAS);
 	if (!place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 bus->n_slaves, c->alias);
+	*cause = *EC_CAUSE(NO_SLAVE, .position = min_t(u32, pos, EC_UAPI_NONE16));
 	if (pos >= bus->n_slaves)
 		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
 				 pos, bus->n_slaves);
 	s = bus->slaves[pos];
+	ec_slave_cause(s, cause);
+	cause->position = pos;
 	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos,
 				 ec_slave_why(s, why, sizeof(why)));
+	*cause = *EC_CAUSE(DIFFERENT, .position = pos);
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size,
 				 "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
 	has = ec_config_of(s);
+	*cause = *EC_CAUSE(TAKEN, .position = pos, .code = has ? has->index : 0);
 	if (has && c->wanted->active && !twice(has, pos))
 		return scnprintf(buf, size,
 				 "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
@@ -107,28 +133,36 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size)
 		return scnprintf(buf, size,
 				 "slave %u has another configuration, %u:%u; use one of the two",
 				 pos, has->alias, has->position);
+	*cause = *EC_CAUSE(UNATTACHED, .position = pos);
 	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
 
-static size_t present(struct ec_slave *s, char *buf, size_t size)
+static size_t present(struct ec_slave *s, char *buf, size_t size, struct ec_cause *cause)
 {
 	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
 	u8 want = READ_ONCE(s->requested);
 	const char *doing = READ_ONCE(ec_setup_of(s)->waits_for);
+	bool cyclic = ec_access_is_cyclic(&s->bus->links->access);
 
+	ec_slave_cause(s, cause);
 	if (READ_ONCE(s->error) != EC_SLAVE_OK)
 		return strlen(ec_slave_why(s, buf, size));
-	if (status & EC_AL_ERROR)
+	*cause = *EC_CAUSE(AL_ERROR, .state = status & EC_AL_STATE_MASK, .code = code);
+	/* without a cycle an expired watchdog is what follows from it */
+	if (status & EC_AL_ERROR && (cyclic || code != EC_AL_CODE_SM_WATCHDOG))
 		return scnprintf(buf, size, "AL state %s with error, AL status code 0x%04x (%s)",
 				 state, code,
 				 ec_al_code_text(code));
+	*cause = *EC_CAUSE(REQUESTED, .state = want);
 	if (want != EC_AL_OP)
 		return scnprintf(buf, size, "AL state %s, requested %s", state,
 				 ec_al_state_name(want));
-	if (!ec_access_is_cyclic(&s->bus->links->access))
+	*cause = *EC_CAUSE(NO_CYCLE);
+	if (!cyclic)
 		return scnprintf(buf, size,
 				 "AL state %s; cycle timeout: the application sends no cyclic frames", state);
+	*cause = *EC_CAUSE(UNDER_WAY);
 	if (doing)
 		return scnprintf(buf, size, "AL state %s on the way to OP, waiting for %s", state,
 				 doing);
@@ -221,6 +255,7 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 void ec_config_log_differences(const struct ec_wanted *w)
 {
 	char text[EC_UAPI_REASON];
+	struct ec_cause cause;
 	unsigned int n = 0;
 
 	lockdep_assert_held(w->lock);
@@ -233,7 +268,7 @@ void ec_config_log_differences(const struct ec_wanted *w)
 		if (c->slave)
 			ec_config_revision_text(c, c->slave, text, sizeof(text));
 		else
-			absent(c, text, sizeof(text));
+			absent(c, text, sizeof(text), &cause);
 		up_read(&w->bus->topo);
 		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
 			     c->position, text);
@@ -273,26 +308,24 @@ u8 ec_config_status(const struct ec_config *c)
  * @c: configuration
  * @buf: one line of text, empty when it is in OP
  * @size: of @buf
+ * @cause: result: the same for programs
  *
  * Context: Process; with lock of the configuration and topo held, or after ec_show_begin().
  * Return: length of the text.
  */
-size_t ec_config_why(const struct ec_config *c, char *buf, size_t size)
+size_t ec_config_why(const struct ec_config *c, char *buf, size_t size, struct ec_cause *cause)
 {
-	size_t len;
-
 	ec_wanted_assert_stays(c->wanted);
 	ec_bus_assert_stays(c->wanted->bus);
 	buf[0] = '\0';
 	if (!c->slave || READ_ONCE(c->slave->stop.gone))
-		len = absent(c, buf, size);
-	else if (ec_config_status(c) & EC_STATUS_SC_OP)
-		len = 0;
-	else if (!c->wanted->active)
-		len = scnprintf(buf, size, "AL state %s; the master is not active",
-				ec_al_state_name(READ_ONCE(c->slave->al_status) &
-						 EC_AL_STATE_MASK));
-	else
-		len = present(c->slave, buf, size);
-	return len;
+		return absent(c, buf, size, cause);
+	*cause = *EC_CAUSE(NONE);
+	if (ec_config_status(c) & EC_STATUS_SC_OP)
+		return 0;
+	if (c->wanted->active)
+		return present(c->slave, buf, size, cause);
+	*cause = *EC_CAUSE(INACTIVE);
+	return scnprintf(buf, size, "AL state %s; the master is not active",
+			 ec_al_state_name(READ_ONCE(c->slave->al_status) & EC_AL_STATE_MASK));
 }

@@ -5,14 +5,15 @@
 
 #include <linux/types.h>
 
+struct ec_cause;
 struct ec_config;
 struct ec_slave;
 struct ec_wanted;
 
-size_t ec_config_why(const struct ec_config *c, char *buf, size_t size);
+size_t ec_config_why(const struct ec_config *c, char *buf, size_t size, struct ec_cause *cause);
 const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     u16 alias, u16 distance, unsigned int *from);
-void ec_config_find_alias(struct ec_config *c);
+void ec_config_locate(struct ec_config *c);
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave);
 bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,
 			     size_t size);

@@ -115,6 +115,7 @@ static void note_loss(struct ec_config *c)
 {
 	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
 	c->lost.seen_ns = c->slave->seen_ns;
+	c->lost.at = c->slave->lost_at;
 }
 
 /**
@@ -133,7 +134,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	struct ec_slave *slave;
 
 	lockdep_assert_held(s->wanted.lock);
-	ec_config_find_alias(c);
+	ec_config_locate(c);
 	if (s->wanted.active && c->slave && !READ_ONCE(c->slave->stop.gone))
 		return;
 	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
@@ -144,8 +145,10 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	if (s->wanted.active && c->slave)
 		note_loss(c);
 	ec_session_detach(c);
-	if (!slave)
+	if (!slave) {
+		ec_config_locate(c);
 		return;
+	}
 	if (s == s->sessions->candidate) {	/* only to look at */
 		c->slave = slave;
 		return;
@@ -214,6 +217,6 @@ void ec_session_attach(struct ec_sessions *ss)
 			ec_session_attach_one(ss->session, c);
 	if (ss->candidate)
 		ec_for_each_config(c, &ss->candidate->wanted)
-			ec_config_find_alias(c);
+			ec_config_locate(c);
 	ec_sessions_unlock(ss);
 }
