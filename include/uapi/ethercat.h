@@ -161,7 +161,7 @@ struct ec_ioc_port {
  * the reason in words. Fields that a kind does not name are 0.
  */
 #define EC_CAUSE_NONE		0	/* none, or only in words */
-/* the slave of a configuration is not there */
+/* the slave of a configuration is absent */
 #define EC_CAUSE_NO_DEVICE	1	/* the master has no network device */
 #define EC_CAUSE_LINK_DOWN	2	/* at the main device */
 #define EC_CAUSE_LOST		3	/* disconnected while active: behind @port of @position */
@@ -170,7 +170,7 @@ struct ec_ioc_port {
 #define EC_CAUSE_DIFFERENT	6	/* the slave at @position has another identity */
 #define EC_CAUSE_TAKEN		7	/* the one at @position is that of configuration @code */
 #define EC_CAUSE_UNATTACHED	8	/* the one at @position matches and is not attached yet */
-/* it is there, and the cause is not its own */
+/* it is connected, and the cause is not its own */
 #define EC_CAUSE_INACTIVE	16	/* the application has not activated the master */
 #define EC_CAUSE_REQUESTED	17	/* @state is requested, not OP */
 #define EC_CAUSE_NO_CYCLE	18	/* the application sends no cyclic frames */
@@ -256,7 +256,7 @@ struct ec_ioc_slave {
 	__u32 config;		/* attached or different configuration: index + 1; 0: none */
 	__u32 differs;		/* identity differs from @config */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
-	struct ec_cause cause;	/* of @error */
+	struct ec_cause cause;	/* of @error; without one EC_CAUSE_EEPROM is that of @warning */
 };
 
 struct ec_ioc_sm {

@@ -412,10 +412,6 @@ static int read_new(struct scan *sc)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
 				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);
-		else if (s->sii && !s->info.checksum_ok && s->flaw.kind != EC_SII_FLAW_BLANK)
-			ec_slave_warn(s,
-				      "SII checksum 0x%02x, expected 0x%02x; content used anyway\n",
-				      s->info.checksum, s->info.checksum_calc);
 	}
 	ec_scan_preop(sc->bus, fresh, n, sc->fresh);
 	plan_retries(sc, fresh, n);

@@ -110,7 +110,12 @@ static void check_sii(struct ec_slave *s)
 	s->sii_flaw[0] = '\0';
 	switch (f->kind) {
 	case EC_SII_FLAW_NONE:
-		return;
+		if (s->info.checksum_ok)
+			return;
+		scnprintf(s->sii_flaw, size,
+			  "EEPROM checksum 0x%02x, expected 0x%02x; content used anyway",
+			  s->info.checksum, s->info.checksum_calc);
+		break;
 	case EC_SII_FLAW_BLANK:
 		scnprintf(s->sii_flaw, size,
 			  "EEPROM is blank (only 0x%02x): no identity, no mailbox; write an image",
@@ -270,7 +275,7 @@ const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size)
 }
 
 /**
- * ec_slave_cause() - the cause of a slave's error, for programs
+ * ec_slave_cause() - the cause of a slave's error, otherwise of its warning, for programs
  * @slave: slave
  * @cause: result
  *
@@ -280,6 +285,8 @@ void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
 {
 	raw_spin_lock(&slave->note_lock);
 	*cause = slave->cause;
+	if (!cause->kind && slave->sii_flaw[0] && !slave->warning[0])
+		cause->kind = EC_CAUSE_EEPROM;
 	raw_spin_unlock(&slave->note_lock);
 }
 

@@ -336,11 +336,14 @@ static void scan_mute(struct kunit *test)
 static void scan_bad_checksum(struct kunit *test)
 {
 	struct bus *b = prepare(test);
+	struct ec_cause cause;
 
 	/* found after power-on, so the slave itself goes on */
 	bus_esc(b, 5)->eep.data[14] ^= 0x55;
 	others_fine(b, N, 1000);
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 5)->info.checksum_ok);
+	ec_slave_cause(bus_slave(b, 5), &cause);
+	KUNIT_EXPECT_EQ(test, cause.kind, EC_CAUSE_EEPROM);
 }
 
 static void scan_blank(struct kunit *test)
