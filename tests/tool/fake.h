@@ -23,6 +23,8 @@ extern const struct ec_ip_params fake_net;
 int fake_app(unsigned long request, void *arg);
 int fake_mbox(unsigned long request, void *arg);
 
+void fake_why(unsigned long request, void *arg);
+
 /* of the application that runs */
 extern const unsigned int fake_configs, fake_domains;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Takes the place of tool/sys.c, with fake_app.c, fake_mbox.c and fake_sys.c: a master with an
- * EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is
+ * Takes the place of tool/sys.c, with fake_app.c, fake_mbox.c, fake_why.c and fake_sys.c: a master
+ * with an EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is
  * going on:
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
@@ -442,7 +442,7 @@ static int sii(struct ec_ioc_sii *x)
 	return 0;
 }
 
-int sys_ioctl(int fd, unsigned long request, void *arg)
+static int answer(int fd, unsigned long request, void *arg)
 {
 	unsigned int nr = _IOC_NR(request);
 	int ret;
@@ -513,4 +513,13 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 		errno = ENOTTY;
 		return -1;
 	}
+}
+
+int sys_ioctl(int fd, unsigned long request, void *arg)
+{
+	int ret = answer(fd, request, arg);
+
+	if (!ret)
+		fake_why(request, arg);
+	return ret;
 }

@@ -80,6 +80,7 @@ _ethercat()
 			"")	w=$(_ethercat_values command) ;;
 			states)	w="INIT PREOP BOOT SAFEOP OP" ;;
 			graph)	w="DC CRC" ;;
+			why)	w=$(_ethercat_values position "$master") ;;
 			crc)	w="reset" ;;
 			debug)	w="0 1 2" ;;
 			device)

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Fake master: what is wrong with it. FAKE_WHY names causes, separated by spaces: all slaves are
+ * in OP except for what these change.
+ */
+#include <stdlib.h>
+#include <string.h>
+
+#include "fake.h"
+
+static bool wrong(const char *name)
+{
+	const char *all = getenv("FAKE_WHY"), *at = all;
+	size_t n = strlen(name);
+
+	while (at && (at = strstr(at, name))) {
+		if ((at == all || at[-1] == ' ') && (!at[n] || at[n] == ' '))
+			return true;
+		at += n;
+	}
+	return false;
+}
+
+static void master(struct ec_ioc_master *m)
+{
+	m->no_cycle = wrong("no_cycle");
+	if (wrong("no_device"))
+		m->phase = EC_PHASE_WAITING;
+	if (wrong("link_down"))
+		m->devices[0].link_up = 0;
+	if (wrong("no_slaves"))
+		m->slave_count = m->slaves_responding = 0;
+	if (wrong("scan"))
+		m->scan_busy = 1;
+	if (wrong("lost_frames"))
+		m->devices[0].loss_rate[0] = m->devices[0].loss_rate[1] = 5;
+	else
+		memset(m->devices[0].loss_rate, 0, sizeof(m->devices[0].loss_rate));
+	if (wrong("cycle_too_short"))
+		m->cycle_wire_ns = 1500000;
+}
+
+static void slave(struct ec_ioc_slave *s)
+{
+	if (!s->position || fake_bus("app"))
+		s->al_status = s->al_requested = s->position ? 8 : 2;
+	s->al_code = 0;
+	s->error = 0;
+	s->why[0] = '\0';
+	s->config = s->position;
+	if (!fake_bus("app")) {
+		s->config = 0;
+		s->al_status = s->al_requested = 2;
+	}
+	s->dc_set = s->position == 2;
+	if (s->position == 2 && wrong("boot"))
+		s->al_requested = 3;
+	if (s->position == 2 && wrong("eeprom")) {
+		strcpy(s->warning, "EEPROM checksum 0x12, expected 0x34; content used anyway");
+		s->cause.kind = EC_CAUSE_EEPROM;
+	}
+	if (s->position == 2 && wrong("process_data"))
+		strcpy(s->warning, "process data of SM2 may belong to other objects");
+	if (s->position == 2 && wrong("clock_off"))
+		s->dc_diff = -4711;
+	if (s->position == 2 && wrong("clock_not_set"))
+		s->dc_set = 0;
+	if (s->position == 0 && wrong("unreadable")) {
+		s->error = 1;
+		strcpy(s->why, "SII read failed at word 0x0000: no acknowledgment; check the slave");
+		s->cause.kind = EC_CAUSE_EEPROM;
+	}
+}
+
+static void config(struct ec_ioc_config *c)
+{
+	bool absent = wrong("cable") || wrong("different") || wrong("wrong_place") ||
+		      wrong("missing") || wrong("no_alias") || wrong("older");
+
+	c->slave_position = c->index && absent ? -1 : (__s32)c->index + 1;
+	c->al_status = 8;
+	c->state = EC_STATUS_SC_OP | EC_STATUS_SC_ONLINE | 8;
+	if (wrong("wrong_place") && c->index)
+		c->product_code = 0x044c2c52;
+	if (wrong("missing") && c->index)
+		c->position = getenv("FAKE_FAR") ? 9 : 3;
+}
+
+static const struct {
+	const char *name;
+	struct ec_cause cause;
+	const char *text;
+} causes[] = {
+	{ "cable", { .kind = EC_CAUSE_LOST, .position = 1, .port = 1 },
+	  "slave 2 (EL7201) disconnected from port 1 of slave 1 (EL2008), last seen 3 s ago" },
+	{ "different", { .kind = EC_CAUSE_DIFFERENT, .position = 2 },
+	  "slave 2 is 0x00000002/0x1c213052, configured is 0x00000002/0x1c213053" },
+	{ "wrong_place", { .kind = EC_CAUSE_DIFFERENT, .position = 2 },
+	  "slave 2 is 0x00000002/0x1c213052, configured is 0x00000002/0x044c2c52" },
+	{ "missing", { .kind = EC_CAUSE_NO_SLAVE, .position = 3 },
+	  "no slave at ring position 3: 3 slave(s) connected" },
+	{ "no_alias", { .kind = EC_CAUSE_NO_ALIAS },
+	  "none of the 3 slave(s) on the bus has alias 0" },
+	{ "older", { .kind = EC_CAUSE_NONE }, "a reason of an older module" },
+	{ "no_cycle", { .kind = EC_CAUSE_NO_CYCLE },
+	  "AL state SAFEOP; cycle timeout: the application sends no cyclic frames" },
+	{ "not_requested", { .kind = EC_CAUSE_REQUESTED, .state = 2 },
+	  "AL state PREOP, requested PREOP" },
+	{ "under_way", { .kind = EC_CAUSE_UNDER_WAY },
+	  "AL state SAFEOP on the way to OP, waiting for two cycles of its domains" },
+	{ "boot", { .kind = EC_CAUSE_REQUESTED, .state = 3 }, "AL state BOOT, requested BOOT" },
+	{ "no_reply", { .kind = EC_CAUSE_SILENT },
+	  "no reply from the slave, frames pass; waiting for a reply" },
+	{ "sdo", { .kind = EC_CAUSE_SDO, .object = 0x8010, .subindex = 3, .code = 0x06020000 },
+	  "startup SDO 0x8010:03 (2 byte(s)) failed: abort 0x06020000: the object does not exist" },
+	{ "mailbox", { .kind = EC_CAUSE_SDO, .object = 0x8010, .subindex = 3 },
+	  "startup SDO 0x8010:03 (2 byte(s)) failed: no reply in the mailbox" },
+	{ "pdo", { .kind = EC_CAUSE_PDO, .sm = 2, .object = 0x1600, .code = 0x06010002 },
+	  "SM2 bit 0: registered 0x7010:01, 16 bit; slave has 0x7010:06, 16 bit; PDO mapping 0x1600 refused: abort 0x06010002 (read only)" },
+	{ "al_refused", { .kind = EC_CAUSE_REFUSED, .state = 4, .code = 0x001d },
+	  "SAFEOP refused: AL status code 0x001d (invalid output configuration)" },
+	{ "watchdog", { .kind = EC_CAUSE_AL_ERROR, .state = 4, .code = 0x001b },
+	  "AL state SAFEOP with error, AL status code 0x001b (watchdog)" },
+	{ "al_timeout", { .kind = EC_CAUSE_SLOW, .state = 4 },
+	  "SAFEOP not reached in time, AL state PREOP" },
+	{ "sync", { .kind = EC_CAUSE_SYNC },
+	  "SYNC signals started but not running (0x0984 = 0x01)" },
+};
+
+static void config_why(struct ec_ioc_config_why *x)
+{
+	x->text[0] = '\0';
+	for (size_t i = 0; x->index == 1 && i < LEN(causes); i++)
+		if (wrong(causes[i].name)) {
+			x->cause = causes[i].cause;
+			snprintf(x->text, sizeof(x->text), "%s", causes[i].text);
+		}
+}
+
+static void cycle(struct ec_ioc_cycle_stats *x)
+{
+	struct ec_status_cycle *st = (struct ec_status_cycle *)(uintptr_t)x->data;
+
+	if (x->size == sizeof(*st))
+		st->overruns = wrong("overruns") ? 500 : 3;
+}
+
+static void domain(struct ec_ioc_domain *x)
+{
+	if (wrong("working_counter") && x->index)
+		x->working_counter = 2;
+}
+
+/* Changes the reply to a command that was done. */
+void fake_why(unsigned long request, void *arg)
+{
+	if (!getenv("FAKE_WHY"))
+		return;
+	switch (request) {
+	case EC_IOC_MASTER:
+		master(arg);
+		break;
+	case EC_IOC_SLAVE:
+		slave(arg);
+		break;
+	case EC_IOC_CONFIG: {
+		struct ec_ioc_config_why w = { .index = ((struct ec_ioc_config *)arg)->index };
+
+		config(arg);
+		config_why(&w);
+		if (w.text[0])
+			((struct ec_ioc_config *)arg)->state = EC_STATUS_SC_ONLINE | 4;
+		break;
+	}
+	case EC_IOC_CONFIG_WHY:
+		config_why(arg);
+		break;
+	case EC_IOC_CYCLE_STATS:
+		cycle(arg);
+		break;
+	case EC_IOC_DOMAIN:
+		domain(arg);
+		break;
+	default:
+		break;
+	}
+}

@@ -1,0 +1,112 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+setup() { export FAKE_BUS=app FAKE_READONLY=1; }
+
+# causes WHY: names of the findings, in order
+causes() {
+	FAKE_WHY=$1 out why --json | python3 -c '
+import json, sys
+print(*[f["cause"] for f in json.load(sys.stdin)["masters"][0]["findings"]])'
+}
+
+# is WHY EXPRESSION: of its only finding f
+is() {
+	FAKE_WHY=$1 out why --json | json "(lambda f: $2)(d['masters'][0]['findings'][0])"
+}
+
+@test "why is silent and exits with 0 when all slaves are in OP" {
+	FAKE_WHY=well run ethercat why
+	[ "$status" -eq 0 ]
+	[ "$(wc -l <<<"$output")" = 2 ]
+	[[ $output == "All is well. Checked: link, cycle, 3 slave(s), 2 configuration(s), 2 of them in OP,"*"application active."* ]]
+	[[ $output == *"Not checked: error counters of the ports; reading them needs write access"* ]]
+	FAKE_WHY=well out why -j | json 'd["masters"][0]["well"] and d["masters"][0]["findings"] == []'
+}
+
+@test "why: a master without application is well" {
+	FAKE_BUS=idle FAKE_WHY=well run ethercat why
+	[ "$status" -eq 0 ]
+	[[ $output == "All is well."*"no application: no slave has to be in OP."* ]]
+}
+
+@test "why names each cause once and exits with 1" {
+	for c in no_device link_down no_slaves no_cycle cycle_too_short cable different wrong_place \
+		missing no_alias not_requested under_way boot no_reply sdo mailbox pdo al_refused \
+		watchdog al_timeout sync working_counter; do
+		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
+		FAKE_WHY=$c run ethercat why
+		[ "$status" -eq 1 ] || { echo "$c: $output"; false; }
+		[[ $output == "Fault: "*"  Remedy: "*"1 fault(s), 0 warning(s)."* ]]
+	done
+}
+
+@test "why: a warning stops no slave and exits with 0" {
+	for c in scan lost_frames overruns eeprom process_data clock_off; do
+		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
+		FAKE_WHY=$c run ethercat why
+		[ "$status" -eq 0 ] || { echo "$c: $output"; false; }
+		[[ $output == "Warning: "*"All is well except for the warnings."* ]]
+	done
+}
+
+@test "why gives place, code and the configurations that are affected" {
+	is cable '(f["slave"], f["port"], f["affected"]) == (1, 1, ["0:2"])'
+	is sdo '(f["slave"], f["config"], f["code"]) == (2, "0:2", 0x06020000)'
+	is pdo '"SM2 configured: 0x1600(7010:01/16); SM2 of the slave: 0x1600(7010:01/16)" in f["text"]'
+	is wrong_place '(f["slave"], f["config"]) == (0, "0:2")'
+	is different '(f["slave"], f["config"]) == (2, "0:2")'
+	is working_counter '(f["domain"], f["slave"]) == (1, None)'
+	is missing '(f["slave"], f["port"], f["config"]) == (2, 1, "0:3")'
+	# far behind the end of the ring
+	FAKE_FAR=1 is missing '(f["slave"], f["config"]) == (2, "0:9")'
+	is link_down '(f["slave"], f["affected"]) == (None, [])'
+	[[ $(FAKE_WHY=cable out why) == *"  Place: slave 1 (EL2008), port 1"$'\n'"  Affected: 0:2"* ]]
+}
+
+@test "why: what follows from another cause is not reported" {
+	[ "$(causes "link_down cable")" = link_down ]
+	[ "$(causes "no_cycle working_counter")" = no_cycle ]
+	[ "$(causes "cable working_counter")" = cable ]
+	[ "$(causes "sdo working_counter")" = sdo ]
+	[ "$(causes "no_reply lost_frames")" = no_reply ]
+	[ "$(causes "sdo eeprom")" = "sdo eeprom" ]
+}
+
+@test "why: a slave without configuration has a cause as well" {
+	FAKE_BUS=idle FAKE_WHY=unreadable run ethercat why
+	[ "$status" -eq 1 ]
+	[[ $output == "Fault: SII read failed"*"Place: slave 0 (EK1100)"* ]]
+}
+
+@test "why SLAVE shows what concerns this slave" {
+	[[ $(FAKE_WHY=sdo out why 2) == "Fault: startup SDO 0x8010:03"* ]]
+	[[ $(FAKE_WHY=sdo out why 0,1) == "All is well. "* ]]
+	[[ $(FAKE_WHY=sdo out why -p0) == "All is well. "* ]]
+	[[ $(FAKE_WHY=link_down out why 1) == "Fault: no link"* ]]
+	FAKE_WHY=well run ethercat why 77
+	[ "$status" -eq 1 ]
+	[[ $output == *"the selection matches no slave or configuration"* ]]
+	[[ $(err why y) == *"invalid slave 'y': expected N, N-M, N-, -M or -"* ]]
+	[[ $(err why 1 -p1) == *"SLAVE and --position exclude each other"* ]]
+	# a slave that is not there is chosen by its configuration
+	[[ $(FAKE_WHY=cable out why 2) == "Fault: no slave behind port 1"* ]]
+}
+
+@test "why reads error counters with write access only" {
+	[ -z "$(causes well)" ]
+	unset FAKE_READONLY
+	[ "$(causes well)" = link_errors ]
+	is well '(f["level"], f["slave"], f["port"]) == ("warning", 0, 1)'
+	FAKE_WHY=well run ethercat why
+	[ "$status" -eq 0 ]
+	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frames, "* ]]
+	[[ $output != *"Not checked"* ]]
+}
+
+@test "why: the reason of an older module is shown as it is" {
+	[ "$(causes older)" = not_in_op ]
+	[[ $(FAKE_WHY=older out why) == "Fault: a reason of an older module"* ]]
+}

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Configurations without slave: lost behind a cable, missing, different, at another position. */
+#include <stdio.h>
+
+#include "why.h"
+
+static bool absent(const struct why_config *c)
+{
+	return c->c.slave_position < 0 && !c->finding;
+}
+
+static bool same_device(const struct why_config *c, const struct ec_ioc_slave *s)
+{
+	return s->vendor_id == c->c.vendor_id && s->product_code == c->c.product_code;
+}
+
+/* Slaves that were lost together have the same place; one cable explains all of them. */
+static void lost_at(struct why *w, unsigned int position, unsigned int port, const char *text)
+{
+	const struct ec_ioc_slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
+	struct why_finding *f;
+	char name[96];
+
+	f = why_add(w, "cable",
+		    "check the cable or contact behind this port, and the power of the next slave",
+		    "no slave behind port %u of %s, link %s; lost: %s", port,
+		    why_slave_name(w, position, name, sizeof(name)),
+		    s && s->ports[port & 3].link_up ? "up" : "down", text);
+	f->slave = (int)position;
+	f->port = (int)port;
+	for (size_t i = 0; i < w->n_configs; i++) {
+		const struct ec_cause *cause = &w->configs[i].cause;
+
+		if (cause->kind == EC_CAUSE_LOST && cause->position == position &&
+		    cause->port == port)
+			why_explain(w, &w->configs[i]);
+	}
+}
+
+/* what was lost behind slaves that are lost as well follows from their cable */
+static void lost(struct why *w)
+{
+	size_t first = 0;
+
+	for (size_t i = 0; i < w->n_configs; i++) {
+		const struct why_config *c = &w->configs[i];
+
+		if (!absent(c) || c->cause.kind != EC_CAUSE_LOST ||
+		    c->cause.position == EC_UAPI_NONE16)
+			continue;
+		lost_at(w, c->cause.position, c->cause.port, c->text);
+		first = first ? first : w->n;
+	}
+	for (size_t i = 0; i < w->n_configs; i++) {
+		struct why_config *c = &w->configs[i];
+
+		if (!absent(c) || c->cause.kind != EC_CAUSE_LOST)
+			continue;
+		if (!first) {
+			why_add(w, "cable", "check cables and power up to the first lost slave",
+				"%s", c->text)->config = (int)i;
+			first = w->n;
+		}
+		c->finding = first;
+	}
+}
+
+static bool at_position(const struct why_config *c)
+{
+	return absent(c) && !c->c.alias && (c->cause.kind == EC_CAUSE_NO_SLAVE ||
+					    c->cause.kind == EC_CAUSE_DIFFERENT);
+}
+
+/* the configuration of the smallest ring position whose slave is not there, or NULL */
+static struct why_config *first_absent(struct why *w)
+{
+	struct why_config *first = NULL;
+
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (at_position(&w->configs[i]) &&
+		    (!first || w->configs[i].c.position < first->c.position))
+			first = &w->configs[i];
+	return first;
+}
+
+/*
+ * Do all slaves from @from on fit when they are looked for @gap positions earlier, but not all
+ * where they are configured? Then those in between are missing.
+ */
+static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
+{
+	bool any = from >= w->bus.n;
+
+	for (size_t i = 0; i < w->n_configs; i++) {
+		const struct why_config *c = &w->configs[i];
+		unsigned int at = c->c.position - gap;
+
+		if (c->c.alias || c->c.position < from + gap)
+			continue;
+		if (at >= w->bus.n || !same_device(c, &w->bus.v[at]))
+			return false;
+		any |= at_position(c);
+	}
+	return any;
+}
+
+static unsigned int last_position(const struct why *w)
+{
+	unsigned int last = 0;
+
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (!w->configs[i].c.alias)
+			last = max(last, w->configs[i].c.position);
+	return last;
+}
+
+/* The only port without link of the slave before @position, where the next one should be. */
+static int open_end(const struct why *w, unsigned int position)
+{
+	const struct ec_ioc_slave *s = position ? &w->bus.v[position - 1] : NULL;
+	int port = WHY_NONE;
+
+	for (int p = 0; s && p < EC_UAPI_PORTS; p++) {
+		if (s->ports[p].type < 2 || s->ports[p].link_up)
+			continue;
+		if (port != WHY_NONE)
+			return WHY_NONE;
+		port = p;
+	}
+	return port;
+}
+
+/* Slaves are missing at one place, so that all behind it have moved up. */
+static void missing(struct why *w)
+{
+	struct why_config *first = first_absent(w);
+	unsigned int from, gap, last = last_position(w);
+	unsigned int up;
+	struct why_finding *f;
+	char name[96];
+
+	if (!first)
+		return;
+	from = first->c.position;
+	up = min(from, (unsigned int)w->bus.n);
+	for (gap = 1; from + gap <= last && !shifted(w, from, gap); gap++)
+		;
+	/* all of the rest: only when nothing is there instead */
+	if (from + gap > last && from < w->bus.n)
+		return;
+	f = why_add(w, "missing",
+		    "check power and cable of the missing slaves, or correct the configuration",
+		    "%u slave(s) missing from position %u on: the bus has %zu, %s %s", gap, from,
+		    w->bus.n, up ? why_slave_name(w, up - 1, name, sizeof(name)) :
+		    "the main device", from < w->bus.n ?
+		    "is followed by slaves configured further downstream" : "is the last one");
+	f->config = (int)(first - w->configs);
+	f->slave = (int)up - 1;
+	f->port = open_end(w, up);
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (at_position(&w->configs[i]))
+			why_explain(w, &w->configs[i]);
+}
+
+/* a slave of that identity that no configuration has, or NULL */
+static const struct ec_ioc_slave *elsewhere(const struct why *w, const struct why_config *c)
+{
+	for (size_t i = 0; i < w->bus.n; i++)
+		if (same_device(c, &w->bus.v[i]) &&
+		    (!w->bus.v[i].config || w->bus.v[i].differs))
+			return &w->bus.v[i];
+	return NULL;
+}
+
+static void different(struct why *w, struct why_config *c)
+{
+	const struct ec_ioc_slave *s = elsewhere(w, c);
+	struct why_finding *f;
+
+	if (s)
+		f = why_add(w, "wrong_place",
+			    "connect the slaves in the configured order, or correct the position in the application",
+			    "the device configured at %u:%u is at position %u: %s", c->c.alias,
+			    c->c.position, s->position, c->text);
+	else
+		f = why_add(w, "different",
+			    "connect the configured device, or configure this one in the application",
+			    "another device than configured at %u:%u: %s", c->c.alias,
+			    c->c.position, c->text);
+	f->slave = s ? s->position : c->cause.position;
+	f->config = (int)(c - w->configs);
+	why_explain(w, c);
+}
+
+static void no_alias(struct why *w, struct why_config *c)
+{
+	const struct ec_ioc_slave *s = elsewhere(w, c);
+	char hint[96] = "", name[80];
+
+	if (s)
+		snprintf(hint, sizeof(hint), "; %s is such a device, alias %u",
+			 why_slave_name(w, s->position, name, sizeof(name)), s->alias);
+	why_add(w, "no_alias",
+		"set the alias in the EEPROM of the slave, or use the ring position",
+		"no slave has alias %u%s", c->c.alias, hint)->config = (int)(c - w->configs);
+	why_explain(w, c);
+}
+
+static void other(struct why *w, struct why_config *c)
+{
+	struct why_finding *f;
+
+	if (c->cause.kind == EC_CAUSE_NO_SLAVE)
+		f = why_add(w, "missing",
+			    "check power and cable of the missing slave, or correct the configuration",
+			    "%s", c->text);
+	else if (c->cause.kind == EC_CAUSE_UNATTACHED)
+		f = why_add(w, "attaching", "repeat the command", "%s", c->text);
+	else
+		f = why_add(w, "taken", "connect the missing slave or restart the application",
+			    "%s", c->text);
+	f->config = (int)(c - w->configs);
+	why_explain(w, c);
+}
+
+/**
+ * why_absent() - why configurations have no slave
+ * @w: what is known
+ */
+void why_absent(struct why *w)
+{
+	lost(w);
+	missing(w);
+	for (size_t i = 0; i < w->n_configs; i++) {
+		struct why_config *c = &w->configs[i];
+
+		if (!absent(c))
+			continue;
+		switch (c->cause.kind) {
+		case EC_CAUSE_DIFFERENT:
+			different(w, c);
+			break;
+		case EC_CAUSE_NO_ALIAS:
+			no_alias(w, c);
+			break;
+		case EC_CAUSE_NO_SLAVE:
+		case EC_CAUSE_TAKEN:
+		case EC_CAUSE_UNATTACHED:
+			other(w, c);
+			break;
+		default:	/* a slave that cannot be read, or an older module: why_slaves() */
+			break;
+		}
+	}
+}
