@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# 'ethercat why' names cause and place of faults that the simulator injects.
+
+load helpers
+
+setup_file() {
+	python3 "$BATS_TEST_DIRNAME/why.py" --segment >"$BATS_FILE_TMPDIR/segment"
+	start "$BATS_FILE_TMPDIR/segment" 12
+}
+teardown_file() { stop; }
+teardown() { [ -z "${app:-}" ] || kill "$app" 2>/dev/null || true; }
+
+@test "why names the cable that is cut, and what is behind it" {
+	"$EC_BUILD/apps/cyclic" 600 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 60 grep -q ': 12 of 12 in OP' "$BATS_TEST_TMPDIR/out"
+	# any user may run it, without reading a register
+	chmod 644 /dev/EtherCAT0
+	run setpriv --reuid nobody --clear-groups "$EC_BUILD/tool/ethercat" why
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ $output == "All is well."*"Not checked: error counters"* ]]
+	echo "cut s4.0" >/sys/kernel/debug/ec_sim/sim0
+	wait_for 10 cut_is_found
+	run ethercat why
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output == "Fault: no slave behind port 1 of slave 3 (drive), link down; lost: slave "* ]]
+	[[ $output == *"Affected: 0:4, 0:5, 0:6, 0:7, 0:8, 0:9"$'\n'* ]]
+	[[ $output == *$'\n'"1 fault(s), 0 warning(s). Checked: "* ]]
+	[[ $(ethercat why 4) == *"Place: slave 3 (drive), port 1"* ]]
+	echo "heal s4.0" >/sys/kernel/debug/ec_sim/sim0
+	kill $app
+	wait $app || true
+	app=
+	wait_for 60 all_slaves_are PREOP 12
+	ethercat crc reset
+}
+cut_is_found() { ethercat why | grep -q '0:8, 0:9$'; }
+
+@test "why names cause and place of 60 faults and is silent without one" {
+	cases python3 "$BATS_TEST_DIRNAME/why.py" "$EC_BUILD/tool/ethercat" \
+		"$EC_BUILD/lib/libethercat.so" /sys/kernel/debug/ec_sim/sim0 "${EC_SEED:-7}"
+}

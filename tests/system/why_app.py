@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-only
+"""The application of why.py: configures what the bus has, but for deliberate mistakes."""
+import ctypes as c
+
+PERIOD_NS = 2000000
+DOMAINS = 3
+SYNC_REFERENCE, SYNC_SLAVES = 2, 4      # EC_CYCLE_*
+PREOP, SAFEOP = 2, 4
+ONLINE = 1                              # of ec_slave_config_state_t
+
+
+class Cycle(c.Structure):
+    """ec_cycle_config_t"""
+    _fields_ = [("period_ns", c.c_uint32), ("phase_ns", c.c_uint32), ("cpu", c.c_int32),
+                ("priority", c.c_uint32), ("stall", c.c_int), ("stall_cycles", c.c_uint32),
+                ("dc", c.c_uint32), ("flags", c.c_uint32)]
+
+
+class Slave:
+    """What is configured for a slave; faults change it."""
+
+    def __init__(self, info, syncs):
+        self.position = info["position"]
+        self.alias = 0
+        self.vendor = info["vendor_id"]
+        self.product = info["product_code"]
+        self.syncs = syncs              # SyncManagers with PDOs
+        self.sdos = []                  # (index, subindex, value)
+        self.sync0 = None               # (AssignActivate, cycle time)
+        self.other_pdo = False
+        self.timeout_ms = 0
+
+    @property
+    def domain(self):
+        return self.position % DOMAINS
+
+
+class Application:
+    """The kernel runs its cycle, so that it needs no time of its own."""
+
+    def __init__(self, library):
+        self.lib = c.CDLL(library)
+        for name in ("ecrt_request_master", "ecrt_master_create_domain",
+                     "ecrt_master_slave_config"):
+            getattr(self.lib, name).restype = c.c_void_p
+        self.master = None
+
+    def call(self, name, *args):
+        """A function that returns 0 or more."""
+        if getattr(self.lib, name)(*args) < 0:
+            raise RuntimeError(f"{name} failed")
+
+    def start(self, slaves, cycle=True):
+        """Reserve, configure, activate; without @cycle nothing is ever sent."""
+        self.master = c.c_void_p(self.lib.ecrt_request_master(0))
+        if not self.master:
+            raise RuntimeError("master not reserved")
+        domains = [c.c_void_p(self.lib.ecrt_master_create_domain(self.master))
+                   for _ in range(DOMAINS)]
+        for s in slaves:
+            self.configure(s, domains[s.domain])
+        if cycle:
+            config = Cycle(period_ns=PERIOD_NS, cpu=-1, dc=SYNC_REFERENCE | SYNC_SLAVES)
+            self.call("ecrt_master_set_cycle", self.master, c.byref(config))
+        self.call("ecrt_master_activate", self.master)
+
+    def configure(self, s, domain):
+        """One slave."""
+        bit, state = c.c_uint(), c.c_uint()
+        config = c.c_void_p(self.lib.ecrt_master_slave_config(
+            self.master, s.alias, s.position, c.c_uint32(s.vendor), c.c_uint32(s.product)))
+        if not config:
+            raise RuntimeError(f"slave {s.position} not configured")
+        if s.other_pdo:
+            # the fixed drive has more entries, in another order
+            self.call("ecrt_slave_config_pdo_assign_clear", config, 2)
+            self.call("ecrt_slave_config_pdo_assign_add", config, 2, 0x1600)
+            self.call("ecrt_slave_config_pdo_mapping_clear", config, 0x1600)
+            self.call("ecrt_slave_config_pdo_mapping_add", config, 0x1600, 0x60ff, 0, 32)
+        # without a slave there are no PDOs to register by position
+        self.call("ecrt_slave_config_state", config, c.byref(state))
+        for sync in s.syncs if state.value & ONLINE else []:
+            self.call("ecrt_slave_config_reg_pdo_entry_pos", config, sync, 0, 0, domain,
+                      c.byref(bit))
+        for index, sub, value in s.sdos:
+            self.call("ecrt_slave_config_sdo32", config, index, sub, c.c_uint32(value))
+        if s.sync0:
+            self.call("ecrt_slave_config_dc", config, s.sync0[0], c.c_uint32(s.sync0[1]), 0, 0, 0)
+        if s.timeout_ms:
+            self.call("ecrt_slave_config_state_timeout", config, PREOP, SAFEOP, s.timeout_ms)
+
+    def stop(self):
+        """Release the master; its slaves go back to PREOP."""
+        if self.master:
+            self.lib.ecrt_release_master(self.master)
+        self.master = None
