@@ -14,6 +14,12 @@ static bool same_device(const struct why_config *c, const struct ec_ioc_slave *s
 	return s->vendor_id == c->c.vendor_id && s->product_code == c->c.product_code;
 }
 
+static bool at_position(const struct why_config *c)
+{
+	return absent(c) && !c->c.alias && (c->cause.kind == EC_CAUSE_NO_SLAVE ||
+					    c->cause.kind == EC_CAUSE_DIFFERENT);
+}
+
 /* Slaves that were lost together have the same place; one cable explains all of them. */
 static void lost_at(struct why *w, unsigned int position, unsigned int port, const char *text)
 {
@@ -35,6 +41,22 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 		    cause->port == port)
 			why_explain(w, &w->configs[i]);
 	}
+}
+
+/*
+ * Behind lost slaves the positions are not those that are configured: what another
+ * configuration finds there says nothing before the cable is repaired.
+ */
+static void moved_up(struct why *w, size_t cable)
+{
+	unsigned int from = ~0u;
+
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (w->configs[i].cause.kind == EC_CAUSE_LOST && !w->configs[i].c.alias)
+			from = min(from, w->configs[i].c.position);
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (at_position(&w->configs[i]) && w->configs[i].c.position > from)
+			w->configs[i].finding = cable;
 }
 
 /* what was lost behind slaves that are lost as well follows from their cable */
@@ -63,12 +85,8 @@ static void lost(struct why *w)
 		}
 		c->finding = first;
 	}
-}
-
-static bool at_position(const struct why_config *c)
-{
-	return absent(c) && !c->c.alias && (c->cause.kind == EC_CAUSE_NO_SLAVE ||
-					    c->cause.kind == EC_CAUSE_DIFFERENT);
+	if (first)
+		moved_up(w, first);
 }
 
 /* the configuration of the smallest ring position whose slave is not there, or NULL */
