@@ -10,7 +10,7 @@ setup_file() {
 teardown_file() { stop; }
 teardown() { [ -z "${app:-}" ] || kill "$app" 2>/dev/null || true; }
 
-@test "why names the cable that is cut, and what is behind it" {
+@test "why names the cable that is cut, and the slaves behind it" {
 	"$EC_BUILD/apps/cyclic" 600 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!
 	wait_for 60 grep -q ': 12 of 12 in OP' "$BATS_TEST_TMPDIR/out"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Takes the place of tool/sys.c, with fake_app.c, fake_mbox.c, fake_why.c and fake_sys.c: a master
- * with an EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is
- * going on:
+ * with an EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what
+ * else is going on:
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
  *   broken behind slave 1), two (two masters), foreign (not our interface),

@@ -21,9 +21,10 @@ is() {
 	FAKE_WHY=well run ethercat why
 	[ "$status" -eq 0 ]
 	[ "$(wc -l <<<"$output")" = 2 ]
-	[[ $output == "All is well. Checked: link, cycle, 3 slave(s), 2 configuration(s), 2 of them in OP,"*"application active."* ]]
-	[[ $output == *"Not checked: error counters of the ports; reading them needs write access"* ]]
-	FAKE_WHY=well out why -j | json 'd["masters"][0]["well"] and d["masters"][0]["findings"] == []'
+	[[ $output == "All is well. Checked: link, cycle, 3 slave(s), 2 configuration(s), 2 of "* ]]
+	[[ $output == *"application active."* ]]
+	[[ $output == *"Not checked: error counters of the ports; reading them needs write"* ]]
+	FAKE_WHY=well out why -j | json 'd["masters"][0]["well"] and not d["masters"][0]["findings"]'
 }
 
 @test "why: a master without application is well" {
@@ -33,9 +34,9 @@ is() {
 }
 
 @test "why names each cause once and exits with 1" {
-	for c in no_device link_down no_slaves no_cycle cycle_too_short cable different wrong_place \
-		missing no_alias not_requested under_way boot no_reply sdo mailbox pdo al_refused \
-		watchdog al_timeout sync working_counter; do
+	for c in no_device link_down no_slaves no_cycle cycle_too_short cable different \
+		wrong_place missing no_alias not_requested under_way boot no_reply sdo mailbox \
+		pdo al_refused watchdog al_timeout sync working_counter; do
 		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
 		FAKE_WHY=$c run ethercat why
 		[ "$status" -eq 1 ] || { echo "$c: $output"; false; }
@@ -66,7 +67,7 @@ is() {
 	[[ $(FAKE_WHY=cable out why) == *"  Place: slave 1 (EL2008), port 1"$'\n'"  Affected: 0:2"* ]]
 }
 
-@test "why: what follows from another cause is not reported" {
+@test "why reports no consequence of another cause" {
 	[ "$(causes "link_down cable")" = link_down ]
 	[ "$(causes "no_cycle working_counter")" = no_cycle ]
 	[ "$(causes "cable working_counter")" = cable ]
@@ -81,7 +82,7 @@ is() {
 	[[ $output == "Fault: SII read failed"*"Place: slave 0 (EK1100)"* ]]
 }
 
-@test "why SLAVE shows what concerns this slave" {
+@test "why SLAVE shows findings of this slave" {
 	[[ $(FAKE_WHY=sdo out why 2) == "Fault: startup SDO 0x8010:03"* ]]
 	[[ $(FAKE_WHY=sdo out why 0,1) == "All is well. "* ]]
 	[[ $(FAKE_WHY=sdo out why -p0) == "All is well. "* ]]
