@@ -181,7 +181,7 @@ struct ec_ioc_port {
 #define EC_CAUSE_EEPROM		34	/* not readable or invalid; @state: then refused */
 #define EC_CAUSE_EEPROM_PART	35	/* large, still being read */
 #define EC_CAUSE_SDO		36	/* startup SDO @object:@subindex, abort @code or 0 */
-#define EC_CAUSE_IDN		37	/* startup IDN @object of drive @subindex, SoE error @code */
+#define EC_CAUSE_IDN		37	/* startup IDN @object, drive @subindex, SoE error @code */
 #define EC_CAUSE_REGISTER	38	/* startup register @object */
 #define EC_CAUSE_IP		39	/* IP parameters, EoE result @code */
 #define EC_CAUSE_PDO		40	/* process data of @sm; PDO or list @object, abort @code */
@@ -256,7 +256,7 @@ struct ec_ioc_slave {
 	__u32 config;		/* attached or different configuration: index + 1; 0: none */
 	__u32 differs;		/* identity differs from @config */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
-	struct ec_cause cause;	/* of @error; without one EC_CAUSE_EEPROM is that of @warning */
+	struct ec_cause cause;	/* of @error; without one of @warning: EC_CAUSE_EEPROM */
 };
 
 struct ec_ioc_sm {
