@@ -3,6 +3,7 @@
 #include <strings.h>
 
 #include "errors.h"
+#include "graph_tree.h"
 #include "out.h"
 #include "slave_info.h"
 
@@ -129,7 +130,7 @@ static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_
 	out_text("}\n");
 }
 
-static int show(struct dev *d, enum info info)
+static int show(struct dev *d, enum info info, bool tree)
 {
 	u8 (*regs)[EC_ERRORS_SIZE];
 	struct slaves all;
@@ -144,7 +145,10 @@ static int show(struct dev *d, enum info info)
 		ret = reg_read(d, all.v[i].position, EC_REG_ERRORS, regs[i], sizeof(*regs));
 	if (!ret) {
 		out_u("master", d->master, NULL);
-		draw(&all, info, regs);
+		if (tree)
+			ret = graph_tree(d, &all, info == CRC ? regs : NULL);
+		else
+			draw(&all, info, regs);
 	}
 	free(regs);
 	slaves_free(&all);
@@ -165,7 +169,7 @@ static int run(struct tool *t, int argc, char **argv)
 		return usage_error("invalid argument '%s': expected DC, CRC or nothing", argv[0]);
 	if (dev_open_single(&d, t, info == CRC))
 		return 1;
-	ret = show(&d, info);
+	ret = show(&d, info, t->tree);
 	dev_close(&d);
 	return ret;
 }
@@ -174,13 +178,20 @@ const struct cmd cmd_graph = {
 	.name = "graph",
 	.run = run,
 	.args = "[DC | CRC]",
-	.opts = "m",
-	.summary = "Print the topology of the bus for Graphviz",
+	.opts = "mE",
+	.summary = "Print the topology of the bus for Graphviz or as a tree",
 	.help = "Draw it with: ethercat graph | dot -Tsvg > bus.svg\n"
 		"DC adds clocks and delays in ns. CRC adds the error counters of each port [invalid\n"
-		"frames/forwarded errors].\n",
+		"frames/forwarded errors].\n"
+		"--tree prints a tree of text instead. A line of slaves stays in one column, branches\n"
+		"are indented. Columns: position and name; port of the slave upstream > own port;\n"
+		"medium; AL state; open ports (-: no link, x: closed despite a link, ?: open without\n"
+		"communication); delay from the reference clock. CRC adds the counters that are not 0.\n",
 	.json = "master, slaves[] (position, alias, relative_position, order_number, dc_delay_ns),\n"
-		"links[] (from, to, medium, from_port, to_port)",
+		"links[] (from, to, medium, from_port, to_port); --tree: master, slaves[]: position,\n"
+		"name, upstream and upstream_port (null: the master), port, medium, state, ports[]\n"
+		"(type, link_up, loop_closed, signal; CRC: crc_errors, phy_errors, forwarded_errors,\n"
+		"lost_links), dc_delay_ns (or null)",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.max_args = 1,
 };

@@ -27,6 +27,8 @@ const struct opt opts[] = {
 	{ 'A', "acknowledge", NULL, "acknowledge the newest message" },
 	{ 'O', "coe", NULL, "read from the slave over CoE, now" },
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
+	{ 'W', "watch", "SECONDS", "repeat after SECONDS, 0.1 to 86400, and show what has grown" },
+	{ 'E', "tree", NULL, "tree of text" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },
@@ -53,6 +55,8 @@ static const struct option longs[] = {
 	{ "acknowledge", no_argument, NULL, 'A' },
 	{ "coe", no_argument, NULL, 'O' },
 	{ "texts", required_argument, NULL, 'T' },
+	{ "watch", required_argument, NULL, 'W' },
+	{ "tree", no_argument, NULL, 'E' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
@@ -61,7 +65,7 @@ static const struct option longs[] = {
 /* else the letter is only for the tables */
 bool opt_is_short(const struct opt *o)
 {
-	return !strchr("bwSCLATO", o->letter);
+	return !strchr("bwSCLATOWE", o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -96,6 +100,14 @@ static int position(const char *text, int *to)
 	return 0;
 }
 
+static int watch(const char *text, double *s)
+{
+	if (!seconds(text, s) || *s < 0.1 || *s > 86400)
+		return usage_error("invalid time '%s' for --watch: expected 0.1 to 86400 seconds",
+				   text);
+	return 0;
+}
+
 static int bad_option(char **argv, int c)
 {
 	const char *word = argv[optind - 1];
@@ -106,7 +118,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrfbAO", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfbAOE", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -172,6 +184,11 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'T':
 		t->texts = optarg;
+		return 0;
+	case 'W':
+		return watch(optarg, &t->watch_s);
+	case 'E':
+		t->tree = true;
 		return 0;
 	case 'j':
 		t->json = true;

@@ -11,7 +11,7 @@
 #define ALIAS(n, of) \
 	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
 
-extern const struct cmd cmd_config, cmd_crc, cmd_cstruct, cmd_cycle, cmd_data, cmd_debug,
+extern const struct cmd cmd_config, cmd_crc, cmd_cstruct, cmd_cycle, cmd_data, cmd_dc, cmd_debug,
 	cmd_device, cmd_devices, cmd_diag, cmd_domains, cmd_download, cmd_emergencies,
 	cmd_firmware, cmd_foe_read, cmd_foe_write, cmd_graph, cmd_help, cmd_ip, cmd_latch,
 	cmd_master, cmd_pdos, cmd_reg_rdwr, cmd_reg_read, cmd_reg_write, cmd_release, cmd_rescan,
@@ -35,6 +35,7 @@ const struct cmd *const cmds[] = {
 	&cmd_cstruct,
 	&cmd_cycle,
 	&cmd_data,
+	&cmd_dc,
 	&cmd_debug,
 	&cmd_device,
 	&cmd_devices,

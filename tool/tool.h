@@ -41,6 +41,8 @@
  * @acknowledge: --acknowledge
  * @coe: --coe
  * @texts: --texts, NULL when not given
+ * @tree: --tree
+ * @watch_s: argument of --watch in seconds, 0: not given
  */
 struct tool {
 	struct list masters;
@@ -64,6 +66,8 @@ struct tool {
 	bool acknowledge;
 	bool coe;
 	const char *texts;
+	bool tree;
+	double watch_s;
 };
 
 /**

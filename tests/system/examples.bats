@@ -145,12 +145,27 @@ moved() {
 	[ "$(awk '/^axis/ && $NF >= 90000 && $NF <= 110000' "$out" | wc -l)" = 2 ]
 }
 
-# the defaults, at the bench as it is built in
+# what "ethercat dc" says of the two axes while dc_motion runs
+clocks_are_shown() {
+	wait_for 60 json '[.masters[0].slaves[] | select(.sync[0].active)] | length == 2 and
+		all(.[]; .state == "synchronized" or .state == "reference clock")' dc
+	ethercat dc
+	json '.masters[0] | .largest_difference_ns != null and
+		all(.slaves[] | select(.sync[0].active);
+			.sync[0].cycle_ns == 1000000 and .offset_ns != null)' dc
+	# the registers hold what is configured
+	wait_for 60 json '[.masters[0].slaves[] | select(.sync[0].active) | .registers] |
+		length == 2 and all(.[]; .sync0_cycle_ns == 1000000 and
+			.assign_activate == 768)' dc -v -p4,5
+}
+
+# bench_moves [follow [CHECK]]: the defaults, at the built-in bench; CHECK while it runs
 bench_moves() {
 	stop
 	start bench 22
-	"$EC_BUILD/examples/dc_motion" "$@" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	"$EC_BUILD/examples/dc_motion" ${1:+"$1"} >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!
+	${2:-true}
 	wait_for 120 eval '[ "$(grep -c "axes at" "$BATS_TEST_TMPDIR/out")" -ge 8 ]'
 	kill -INT "$app"
 	wait "$app"
@@ -165,4 +180,6 @@ bench_moves() {
 }
 
 @test "dc_motion at the bench with its defaults" { bench_moves; }
-@test "dc_motion at the bench, follow" { bench_moves follow; }
+@test "dc_motion at the bench, follow: dc shows clocks and SYNC0" {
+	bench_moves follow clocks_are_shown
+}

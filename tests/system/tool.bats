@@ -247,6 +247,51 @@ teardown_file() { stop; }
 	json '.slaves | length == 22 and all(.[].ports[]; .crc_errors == 0)' crc
 }
 
+@test "graph --tree prints lines of slaves and their branches" {
+	run ethercat graph --tree
+	[ "$status" = 0 ]
+	[ "${#lines[@]}" = 23 ]
+	[[ "${lines[0]}" == "Master0: main device "*", link up" ]]
+	line='0    MII   PREOP  ports 0 1 2 -  0 ns'
+	[[ "${lines[1]}" =~ ^"├─  0  EK1100 Coupler "+"$line"$ ]]
+	line='  1>0  EBUS  PREOP  ports 0 1 - -  '
+	[[ "${lines[2]}" =~ ^"│  ├─  1  EL1859 ".*"$line"[0-9]+" ns"$ ]]
+	ethercat graph --tree | grep -qE '^├─ 15  .*  2>0  MII '
+	json '.slaves | length == 22 and .[15].upstream == 0 and .[15].upstream_port == 2 and
+		all(.[].ports[]; .crc_errors == 0)' graph crc --tree
+}
+
+# add: errors at port 0 of axis1, which is slave 4, until the command has ended
+add() {
+	while kill -0 "$1" 2>/dev/null; do
+		echo 'errors axis1.0 add=2' >/sys/kernel/debug/ec_sim/sim0
+		sleep 0.3
+	done
+}
+
+@test "crc --watch names the segment where errors grow" {
+	ethercat crc reset
+	run ethercat crc --watch 0.5 -q
+	[[ "$output" =~ ^"No error counter of a port has grown in 0.".*" s ("[0-9]+" frames)."$ ]]
+	ethercat crc --watch 2 >"$BATS_TEST_TMPDIR/out" 3>&- &
+	add $!
+	cat "$BATS_TEST_TMPDIR/out"
+	tail -n 1 "$BATS_TEST_TMPDIR/out" |
+		grep '^Errors grow between slave 3 port 1 and slave 4 port 0: '
+	ethercat crc reset
+}
+
+@test "dc shows the clocks, and their registers with --verbose" {
+	run ethercat dc
+	[ "$status" = 0 ]
+	[ "${#lines[@]}" = 24 ]
+	[[ "${lines[0]}" == "Master0: reference clock slave 0"* ]]
+	[[ "${lines[2]}" =~ ^"    0  64 bit "+"0 ".*"reference clock ".*EK1100 ]]
+	[ "$(ethercat dc -v -p0 | grep -c '^    registers: difference 0 ns, ')" = 1 ]
+	json '.masters[0] | .reference_clock == 0 and (.slaves | length == 22) and
+		.slaves[21].delay_ns > .slaves[1].delay_ns' dc
+}
+
 @test "without an application nothing is configured" {
 	for c in config "config -v" domains "domains -v" data; do
 		run ethercat $c
@@ -260,13 +305,15 @@ teardown_file() { stop; }
 
 @test "a user without write permission may look and change nothing" {
 	as_nobody() { setpriv --reuid=65534 --regid=65534 --clear-groups "$EC_BUILD/tool/ethercat" "$@"; }
-	for c in slaves master pdos "cstruct -p4" config domains "sii_read -p4 -v" graph states; do
+	for c in slaves master pdos "cstruct -p4" config domains "sii_read -p4 -v" graph states \
+		"graph --tree" dc; do
 		run as_nobody $c
 		[ "$status" = 0 ]
 	done
 	[ "$(as_nobody slaves)" = "$(ethercat slaves)" ]
 	for c in "upload -p4 0x1018 1" "reg_read -p4 0 1" "reg_write -p4 -t uint8 0 1" rescan \
-		"states OP" "debug 1" "download -p4 -t int8 0x6060 0 1" "crc reset"; do
+		"states OP" "debug 1" "download -p4 -t int8 0x6060 0 1" "crc reset" \
+		"crc --watch 1" "dc -v"; do
 		run as_nobody $c
 		[ "$status" = 1 ]
 		[[ "$output" == *"/dev/EtherCAT0: Permission denied"* ]]

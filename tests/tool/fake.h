@@ -24,6 +24,9 @@ int fake_app(unsigned long request, void *arg);
 int fake_mbox(unsigned long request, void *arg);
 
 void fake_why(unsigned long request, void *arg);
+/* fake_glance.c */
+void fake_glance_slave(struct ec_ioc_slave *s);
+void fake_glance_registers(const struct ec_ioc_reg *x, __u8 *to);
 
 /* of the application that runs */
 extern const unsigned int fake_configs, fake_domains;

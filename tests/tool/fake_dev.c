@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Takes the place of tool/sys.c, with fake_app.c, fake_mbox.c, fake_why.c and fake_sys.c: a master
- * with an EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what
- * else is going on:
+ * Takes the place of tool/sys.c, with the other files fake_*.c: a master with an
+ * EK1100, an EL2008 with alias 1001 and an EL7201, made of tables. FAKE_BUS chooses what else is
+ * going on:
  *   idle (default), app (an application runs), kcycle (with a cycle the kernel
  *   runs), empty, scanning, cut (ring
  *   broken behind slave 1), two (two masters), foreign (not our interface),
  *   detached (its application is gone), waiting (no network interface), evil (names that attack
  *   the reader),
- *   big (1000 slaves)
+ *   big (1000 slaves), shrinks (slaves are lost), noref (no reference clock); fake_glance.c has
+ *   more
  * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
  * gets the number of ioctls.
  */
@@ -190,7 +191,7 @@ static void fill_device(struct ec_ioc_device *d)
 
 static int master(struct ec_ioc_master *m, int index)
 {
-	bool app = fake_bus("app") || fake_bus("detached");
+	bool app = fake_bus("app") || fake_bus("detached") || fake_bus("dc");
 
 	*m = (struct ec_ioc_master){
 		.index = (__u32)index, .phase = app ? EC_PHASE_OPERATION : EC_PHASE_IDLE,
@@ -219,6 +220,8 @@ static int master(struct ec_ioc_master *m, int index)
 		m->late_per_s = 100;
 		m->late_cycles = 9;
 	}
+	if (fake_bus("noref"))
+		m->ref_clock = -1;
 	fill_device(&m->devices[0]);
 	if (fake_bus("cut")) {
 		m->device_count = 2;
@@ -229,6 +232,8 @@ static int master(struct ec_ioc_master *m, int index)
 		m->slave_count = 0;
 	if (fake_bus("big"))
 		m->slave_count = BIG;
+	if (fake_bus("shrinks") && polls++ > 4)
+		m->slave_count = 2;
 	if (fake_bus("waiting")) {
 		m->phase = EC_PHASE_WAITING;
 		m->devices[0].state = EC_DEVICE_WAITING;
@@ -283,6 +288,7 @@ static int slave(struct ec_ioc_slave *s)
 		s->device_index = 1;
 	if (fake_bus("reversed"))
 		reversed(s);
+	fake_glance_slave(s);
 	if (fake_bus("differs") && s->position == 1) {
 		s->config = 2;
 		s->differs = 1;
@@ -382,6 +388,7 @@ static int reg_read(struct ec_ioc_reg *x)
 		if (x->position == 2 && (a == 0x0980 || a == 0x09ae || a == 0x09b0 || a == 0x09a9))
 			to[i] = a == 0x0980 ? 0x20 : a == 0x09ae ? 5 : a == 0x09a9 ? 1 : 0x15;
 	}
+	fake_glance_registers(x, to);
 	return 0;
 }
 

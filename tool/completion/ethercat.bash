@@ -54,7 +54,7 @@ _ethercat()
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
 		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|\
-		--compare|--compare-slave|--texts)
+		--compare|--compare-slave|--texts|--watch)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;

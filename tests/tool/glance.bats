@@ -1,0 +1,120 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+# Clocks, topology and error counters at a glance.
+
+load common
+
+# watch BUS: the conclusion of crc --watch, in a line each
+watch() {
+	FAKE_BUS=$1 out crc --watch 0.1 --quiet
+}
+
+@test "dc: clocks without and beside an application" {
+	golden dc dc
+	FAKE_BUS=dc golden dc_app dc
+	FAKE_BUS=dc golden dc_v dc -v
+	[[ $(FAKE_BUS=noref out dc -p1) == "Master0: no reference clock"* ]]
+	[[ $(FAKE_BUS=reversed out dc) == *"delay unreliable"* ]]
+	[ "$(FAKE_BUS=empty out dc)" = "Master0: reference clock slave 0" ]
+	[ "$(FAKE_BUS=two out dc | grep -c '^Master[01]: ')" = 2 ]
+}
+
+@test "dc --json has numbers or null" {
+	slave='d["masters"][0]["slaves"][0]'
+	FAKE_BUS=dc out dc -j -p2 | json "$slave['offset_ns'] == -815000000123456789"
+	FAKE_BUS=dc out dc -j -p2 |
+		json "$slave['sync'][0] == {'active': True, 'cycle_ns': 1000000, 'shift_ns': -500}"
+	FAKE_BUS=dc out dc -j -p2 |
+		json "not $slave['sync'][1]['active'] and 'registers' not in $slave"
+	FAKE_BUS=dc out dc -j -v -p2 | json "$slave['registers']['difference_ns'] == -12"
+	FAKE_BUS=dc out dc -j -p0 |
+		json "$slave['reference'] and d['masters'][0]['largest_difference_ns'] is None"
+	out dc -j -p1 | json "$slave['clock'] == 'delay only' and $slave['difference_ns'] is None"
+}
+
+@test "dc reads registers only with --verbose, which needs write access" {
+	FAKE_READONLY=1 out dc | grep -q 'EL7201'
+	FAKE_READONLY=1 run ethercat dc -v
+	[ "$status" -eq 1 ]
+	[[ $output == *"Permission denied"* ]]
+}
+
+@test "graph --tree: lines, branches, ports and counters" {
+	golden graph_tree graph --tree
+	FAKE_BUS=tree golden graph_branch graph --tree
+	FAKE_READONLY=1 golden graph_tree graph --tree
+	[[ $(out graph crc --tree) == *"0 ns  port 1: CRC 3, FWD 1"* ]]
+	FAKE_READONLY=1 run ethercat graph crc --tree
+	[ "$status" -eq 1 ]
+	[ "$(FAKE_BUS=empty out graph --tree)" = "Master0: main device eth0, link up" ]
+}
+
+@test "graph --tree shows each slave once for ports that contradict each other" {
+	for b in idle tree loop reversed cut evil; do
+		FAKE_BUS=$b out graph --tree -j |
+			json 'sorted(s["position"] for s in d["slaves"]) == [0, 1, 2]'
+		[ "$(FAKE_BUS=$b out graph --tree | wc -l)" = 4 ]
+	done
+	FAKE_BUS=big out graph --tree -j | json 'len(d["slaves"]) == 1000'
+	FAKE_BUS=reversed out graph --tree -j |
+		json '[s["upstream"] for s in d["slaves"]] == [None, 2, 0]'
+	FAKE_BUS=tree out graph --tree -j | json 'd["slaves"][2]["upstream_port"] == 2'
+	FAKE_BUS=tree out graph --tree -j | json '"crc_errors" not in d["slaves"][0]["ports"][0]'
+	FAKE_BUS=tree out graph crc --tree -j | json 'd["slaves"][0]["ports"][1]["crc_errors"] == 3'
+}
+
+@test "crc --watch names the segment where errors grow" {
+	between="Errors grow between slave 1 port 1 and slave 2 port 0"
+	[ "$(watch noisy)" = "$between: 5 invalid frame(s), 9 receiver error(s), 1 lost link(s)" ]
+	[[ $(watch idle) == "No error counter of a port has grown in 0."* ]]
+	run watch noisy2
+	[[ ${lines[0]} == "Errors grow between the master and slave 0 port 0: 1 invalid "* ]]
+	[[ ${lines[1]} == "$between: 4 invalid frame(s), "* ]]
+	[[ ${lines[2]} == "Errors grow at slave 2 port 1, where no slave is connected: "* ]]
+	[[ ${lines[3]} == "Repair the first of these 3 segments first: "* ]]
+	[[ $(watch upstream) == "Only forwarded errors grow, first at slave 1 port 0: "* ]]
+}
+
+@test "crc --watch shows the counters before and after, of the selected slaves" {
+	run bash -c "FAKE_BUS=noisy '$HERE/build/fake/ethercat' crc --watch 0.1 -p2"
+	[ "${#lines[@]}" = 8 ]
+	[[ ${lines[2]} == "  2|  0   0   0   ↑|"* ]]
+	[[ ${lines[6]} == "  2|  4   9   0   ↑|"* ]]
+	[[ ${lines[7]} == "Errors grow between slave 1 port 1 and slave 2 port 0: "* ]]
+	watched() { FAKE_BUS=$1 out crc --watch 0.1 -j | json "$2"; }
+	watched noisy 'd["segments"] == [{"slave": 1, "port": 1, "to_slave": 2, "to_port": 0,
+		"invalid_frames": 5, "receiver_errors": 9, "lost_links": 1}]'
+	watched noisy 'd["begin"][2]["ports"][0]["crc_errors"] == 0'
+	watched noisy 'd["slaves"][2]["ports"][0]["crc_errors"] == 4'
+	watched noisy2 '[s["slave"] for s in d["segments"]] == [None, 1, 2]'
+	watched upstream 'd["forwarded_at"] == {"slave": 1, "port": 0} and not d["segments"]'
+}
+
+@test "crc --watch reports full and cleared counters and a changed bus" {
+	FAKE_BUS=full err crc --watch 0.1 | grep -q '^Master0 slave 1: a counter is at its limit'
+	FAKE_BUS=cleared err crc --watch 0.1 | grep -q '^Master0 slave 0: counters were cleared '
+	FAKE_BUS=shrinks run ethercat crc --watch 0.1
+	[ "$status" -eq 1 ]
+	[[ $output == *"Master0: 3 slave(s) before, 2 after; repeat the command" ]]
+	[[ $(FAKE_BUS=empty err crc --watch 0.1) == *"Master0: no slaves" ]]
+}
+
+@test "crc --watch: Ctrl-C ends it with the result" {
+	FAKE_BUS=noisy "$HERE/build/fake/ethercat" crc --watch 60 >"$BATS_TEST_TMPDIR/out" 3>&- &
+	pid=$!
+	until [ -s "$BATS_TEST_TMPDIR/out" ]; do sleep 0.1; done
+	kill -INT $pid
+	wait $pid
+	grep -q '^Errors grow between slave 1 port 1' "$BATS_TEST_TMPDIR/out"
+}
+
+@test "crc --watch refuses invalid times and reset" {
+	for s in 0 0.05 86401 x '' 1e3 -1; do
+		run ethercat crc --watch "$s"
+		[ "$status" -eq 1 ]
+		[[ $output == *"invalid time '$s' for --watch: expected 0.1 to 86400 seconds"* ]]
+	done
+	run ethercat crc reset --watch 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"'reset' and --watch exclude each other"* ]]
+}

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "crc_table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "out.h"
+
+static void cell(const struct ec_ioc_slave *s, const u8 *regs, unsigned int i)
+{
+	const struct ec_ioc_port *p = &s->ports[i];
+	char next[8] = "   ";
+
+	out_object(NULL);
+	out_bool("loop_closed", p->loop_closed, NULL);
+	out_u("crc_errors", err_rx(regs, i), NULL);
+	out_u("phy_errors", err_phy(regs, i), NULL);
+	out_u("forwarded_errors", err_fwd(regs, i), NULL);
+	out_u("lost_links", err_lost(regs, i), NULL);
+	if (p->next_slave == EC_UAPI_NONE16)
+		out_null("next_slave", NULL);
+	else
+		out_u("next_slave", p->next_slave, NULL);
+	out_end();
+	if (p->next_slave + 1u == s->position)
+		strcpy(next, "  \u2191");
+	else if (p->next_slave == s->position + 1u)
+		strcpy(next, "  \u2193");
+	else if (p->next_slave != EC_UAPI_NONE16)
+		snprintf(next, sizeof(next), "%3u", p->next_slave);
+	if (p->loop_closed)
+		out_text("%15s|", "");
+	else
+		out_text("%3u %3u %3u %s|", err_rx(regs, i), err_phy(regs, i), err_fwd(regs, i),
+			 next);
+}
+
+static void details(const u8 *regs)
+{
+	out_text("    lost links: %u %u %u %u, processing unit errors: %u, PDI errors: %u\n",
+		 err_lost(regs, 0), err_lost(regs, 1), err_lost(regs, 2), err_lost(regs, 3),
+		 regs[EC_REG_ERR_PU - EC_REG_ERRORS], regs[EC_REG_ERR_PDI - EC_REG_ERRORS]);
+}
+
+void crc_table_head(void)
+{
+	out_text("   |Port 0         |Port 1         |Port 2         |Port 3         |\n");
+	out_text("   |CRC PHY FWD NXT|CRC PHY FWD NXT|CRC PHY FWD NXT|CRC PHY FWD NXT|\n");
+}
+
+/**
+ * crc_table_row() - print the counters of a slave
+ * @t: command line
+ * @s: slave
+ * @regs: its registers EC_REG_ERRORS
+ */
+void crc_table_row(const struct tool *t, const struct ec_ioc_slave *s, const u8 *regs)
+{
+	char name[EC_UAPI_STRING];
+
+	slave_name(s, name, sizeof(name));
+	out_object(NULL);
+	out_u("position", s->position, "%3u|", s->position);
+	out_str("name", name, NULL);
+	out_array("ports");
+	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++)
+		cell(s, regs, i);
+	out_end();
+	out_text("%.11s\n", name);
+	out_u("processing_unit_errors", regs[EC_REG_ERR_PU - EC_REG_ERRORS], NULL);
+	out_u("pdi_errors", regs[EC_REG_ERR_PDI - EC_REG_ERRORS], NULL);
+	if (t->verbosity > 0)
+		details(regs);
+	out_end();
+}

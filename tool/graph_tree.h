@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+#ifndef EC_TOOL_GRAPH_TREE_H
+#define EC_TOOL_GRAPH_TREE_H
+
+#include "dev.h"
+#include "errors.h"
+
+int graph_tree(struct dev *d, const struct slaves *all, u8 (*errors)[EC_ERRORS_SIZE]);
+
+#endif
