@@ -28,14 +28,13 @@ static void types(void)
 static int run(struct tool *t, int argc, char **argv)
 {
 	const struct cmd *found[64];
+	bool man = t->skin && !strcmp(t->skin, "roff");
 	int n;
 
-	if (t->skin && !strcmp(t->skin, "roff")) {
-		help_roff();
-		return 0;
-	}
 	if (!argc) {
-		if (out_is_json())
+		if (man)
+			help_roff();
+		else if (out_is_json())
 			help_json(NULL);
 		else
 			help_all(false);
@@ -55,7 +54,9 @@ static int run(struct tool *t, int argc, char **argv)
 	if (!found[0]->run)
 		return usage_error("unknown command '%s': not part of version " EC_TOOL_VERSION,
 				   found[0]->name);
-	if (out_is_json())
+	if (man)
+		help_roff_cmd(found[0]);
+	else if (out_is_json())
 		help_json(found[0]);
 	else
 		help_cmd(found[0]);

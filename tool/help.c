@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Help and the man page, both made from the tables of commands and options. */
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -180,6 +181,71 @@ static void roff_cmd(const struct cmd *c)
 	}
 }
 
+static bool is_name_of(const struct cmd *a, const struct cmd *c)
+{
+	return a == c || (a->alias_of && !strcmp(a->alias_of, c->name));
+}
+
+static void roff_names(const struct cmd *c)
+{
+	puts(".SH NAME");
+	for (const struct cmd *const *a = cmds; *a; a++) {
+		if (!is_name_of(*a, c) || *a == c)
+			continue;
+		printf("ethercat\\-");
+		roff((*a)->name);
+		printf(", ");
+	}
+	printf("ethercat\\-");
+	roff(c->name);
+	printf(" \\- ");
+	roff(c->summary);
+	putchar('\n');
+}
+
+/* the man page of a command, which has the names of it all */
+void help_roff_cmd(const struct cmd *c)
+{
+	puts(".\\\" SPDX-License-Identifier: GPL-2.0-only\n"
+	     ".\\\" Made by 'make -C tool man' from the tables of the tool.");
+	printf(".TH ETHERCAT\\-");
+	for (const char *p = c->name; *p; p++)
+		putchar(toupper((unsigned char)*p));
+	puts(" 8 \"\" \"ethercat " EC_TOOL_VERSION "\"");
+	roff_names(c);
+	puts(".SH SYNOPSIS");
+	for (const struct cmd *const *a = cmds; *a; a++) {
+		if (!is_name_of(*a, c))
+			continue;
+		fputs(".B ethercat ", stdout);
+		roff((*a)->name);
+		printf("\n[OPTIONS] ");
+		roff(c->args);
+		puts("\n.br");
+	}
+	puts(".SH DESCRIPTION");
+	roff(c->summary);
+	puts(".");
+	if (c->flags & CMD_ONE_MASTER)
+		puts("Works on one master; with several,\n.B \\-m\nselects it.");
+	if (c->help) {
+		puts(".PP\n.nf");
+		roff(c->help);
+		puts(".fi");
+	}
+	puts(".SH OPTIONS");
+	for (const struct opt *o = opts; o->letter; o++)
+		if (uses(c, o))
+			roff_opt(o);
+	if (c->json) {
+		puts(".SH JSON");
+		roff(c->json);
+		putchar('\n');
+	}
+	puts(".SH SEE ALSO\n.BR ethercat (8)\n"
+	     "has the rules for numbers, lists, selection of slaves and exit status.");
+}
+
 /* the man page */
 void help_roff(void)
 {
@@ -220,5 +286,13 @@ void help_roff(void)
 	     "\"abort_text\"}}.\n"
 	     ".SH EXIT STATUS\n0: success; 1: failure; 2: --compare has found differences.\n"
 	     ".SH FILES\n.I /dev/EtherCAT*\n.br\n"
-	     ".I /etc/udev/rules.d/59\\-ethercat\\-*.rules\n.SH SEE ALSO\n.BR dot (1)");
+	     ".I /etc/udev/rules.d/59\\-ethercat\\-*.rules\n.SH SEE ALSO");
+	for (const struct cmd *const *c = cmds; *c; c++) {
+		if (!(*c)->run)
+			continue;
+		printf(".BR ethercat\\-");
+		roff((*c)->name);
+		puts(" (8),");
+	}
+	puts(".BR dot (1)");
 }

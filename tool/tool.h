@@ -125,6 +125,7 @@ void help_all(bool to_stderr);
 void help_cmd(const struct cmd *c);
 void help_json(const struct cmd *c);
 void help_roff(void);
+void help_roff_cmd(const struct cmd *c);
 
 /* error.c: both print to stderr, as JSON after --json, and return 1 */
 int usage_error(const char *fmt, ...) __attribute__((format(printf, 1, 2)));

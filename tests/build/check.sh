@@ -176,7 +176,17 @@ t "simulator without a warning" make -s -C tool/sim O="$tmp/sim" CFLAGS="$flags"
 t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CFLAGS="$flags" all
 
 # --- install ---------------------------------------------------------------------
+# a page for each command and each other name of one
+pages() {
+	"$tmp/tool/ethercat" help --json | python3 -c '
+import json, sys
+for c in json.load(sys.stdin)["commands"]:
+    for name in [c["name"]] + c["also"]:
+        print(f".{sys.argv[1]}/share/man/man8/ethercat-{name}.8")' "$prefix"
+}
+
 expected() {
+	pages
 	cat <<-END
 	./lib/modules/$release/updates/ethercat/Module.symvers
 	./lib/modules/$release/updates/ethercat/devices/ec_generic.ko

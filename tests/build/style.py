@@ -38,7 +38,7 @@ NO_SPDX = re.compile(r"^COPYING$|^LICENSES/|\.gitignore$|\.md$|\.lock$|\.seg$|\.
                      r"|^tests/tool/golden/|^tests/lib/prototypes|^tests/build/commands\.txt$"
                      r"|^tests/uml/skip\.list$")
 NO_WRAP = re.compile(r"^LICENSES/|\.lock$|^tests/tool/golden/|^tests/build/commands\.txt$"
-                     r"|^tests/lib/prototypes|^tool/ethercat\.8$")
+                     r"|^tests/lib/prototypes|^tool/(ethercat|man/.*)\.8$")
 
 USERSPACE = ("tool", "lib", "include", "examples")
 # type of checkpatch: folders (none: all), reason

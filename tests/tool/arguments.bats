@@ -112,6 +112,25 @@ ambiguous() {
 	diff -u "$HERE/../../tool/ethercat.8" <(real help -s roff)
 }
 
+@test "each command and each other name of it has a man page, made of the same tables" {
+	local dir=$HERE/../../tool/man c a n=0
+
+	for c in $(real help | awk '/^Options/ { exit } /^  [a-z]/ { print $1 }'); do
+		diff -u "$dir/ethercat-$c.8" <(real help -s roff "$c")
+		grep -q "^ethercat.*-$c .- " <(sed 's/\\\\//g' "$dir/ethercat-$c.8")
+		n=$((n + 1))
+		for a in $(real help "$c" | sed -n '/^Also: /{s///;s/,//g;p}'); do
+			[ "$(readlink "$dir/ethercat-$a.8")" = "ethercat-$c.8" ]
+			grep -q "^.B ethercat $a\$" "$dir/ethercat-$a.8"
+			n=$((n + 1))
+		done
+	done
+	[ "$(ls "$dir" | wc -l)" = $n ]
+	! command -v man >/dev/null || for f in "$dir"/*.8; do
+		[ -z "$(man --warnings -l "$f" 2>&1 >/dev/null)" ]
+	done
+}
+
 @test "the man page has every command, option and data type" {
 	man=$HERE/../../tool/ethercat.8
 	real help --json | python3 -c '
@@ -147,8 +166,12 @@ for o in d["options"]:
 @test "install and uninstall" {
 	d=$BATS_TEST_TMPDIR/root
 	make -s -C "$HERE/../../tool" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d" prefix=/usr install
-	[ "$(cd "$d" && find . -type f | sort | tr '\n' ' ')" = "./usr/bin/ethercat \
+	files=$(cd "$d" && find . -type f ! -name 'ethercat-*.8' | sort | tr '\n' ' ')
+	[ "$files" = "./usr/bin/ethercat \
 ./usr/share/bash-completion/completions/ethercat ./usr/share/man/man8/ethercat.8 " ]
+	[ "$(ls "$d/usr/share/man/man8" | grep -c '^ethercat-.*[.]8$')" = \
+		"$(ls "$HERE/../../tool/man" | wc -l)" ]
+	[ -f "$d/usr/share/man/man8/ethercat-sdo_upload.8" ]
 	"$d/usr/bin/ethercat" version
 	make -s -C "$HERE/../../tool" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d" prefix=/usr uninstall
 	[ -z "$(find "$d" -type f)" ]
