@@ -3,6 +3,7 @@
 # make                modules, library, tool, simulator, examples (KDIR= chooses the kernel)
 # make install        all of it (DESTDIR=, PREFIX=); make uninstall
 # make demo           the main job in a VM
+# make doc            documentation as HTML, with the reference of ecrt.h (build/doc/html)
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
 # make check-long     all system tests on all kernels (hours)
@@ -65,6 +66,25 @@ mini: modules
 	done
 	+$(MAKE) -C $(KDIR) M=$(MINIDIR) CONFIG_DEBUG_INFO_BTF_MODULES= ECRT=$(CURDIR)/include \
 		KBUILD_EXTRA_SYMBOLS=$(MODDIR)/Module.symvers modules
+
+# --- documentation -----------------------------------------------------------
+
+KERNELDOC ?= $(KDIR)/scripts/kernel-doc
+DOCDIR ?= $(BUILD)/doc
+NO_SPHINX = no sphinx-build: install python3-sphinx
+NO_KERNELDOC = no kernel-doc at $(KERNELDOC): install linux-headers-$(shell uname -r) or set KDIR=
+
+# in a copy, beside the pages that are generated
+doc:
+	@command -v sphinx-build >/dev/null || { echo "$(NO_SPHINX)" >&2; exit 1; }
+	@[ -e $(KERNELDOC) ] || { echo "$(NO_KERNELDOC)" >&2; exit 1; }
+	@rm -rf $(DOCDIR)/source && mkdir -p $(DOCDIR)/source
+	@cp -r Documentation/*.rst Documentation/pictures $(DOCDIR)/source
+	@Documentation/sphinx/api.py $(KERNELDOC) include/ecrt.h >$(DOCDIR)/source/api.rst
+	sphinx-build -q -W --keep-going -b html -c Documentation/sphinx $(DOCDIR)/source \
+		$(DOCDIR)/html
+
+.PHONY: doc
 
 # --- install -----------------------------------------------------------------
 

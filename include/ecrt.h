@@ -1036,7 +1036,7 @@ typedef struct {
  * domains to the next cycle. Both copy memory, without a system call. An image is
  * complete and from one cycle. The thread sets the application time and queues clock
  * datagrams: ecrt_master_application_time() and the calls that queue clock datagrams have no
- * effect.
+ * effect::
  *
  *   ecrt_master_set_cycle(master, &config);
  *   ecrt_master_activate(master);

@@ -120,7 +120,7 @@ report() {
 	echo "=== $name: $seconds s"
 }
 
-tests/install-deps.sh build vm capture uml json python cross || {
+tests/install-deps.sh build vm capture uml json python doc cross || {
 	echo "check: packages that the tests need are missing and could not be installed (see above)"
 	echo "0 passed, 1 failed"
 	exit 1

@@ -28,6 +28,7 @@ t() {	# t NAME COMMAND...
 	fi
 }
 
+tests/install-deps.sh doc >&2 || exit 1
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
 KDIR=$(tests/vm/kernels.sh kdir "$kernel")
 release=$(tests/vm/kernels.sh release "$kernel")
@@ -305,6 +306,22 @@ t "make uninstall" top uninstall
 own_rules_removed() { [ "$(ls "$rules")" = 59-ethercat-by-hand.rules ] && rm -r "$root/etc"; }
 t "it removes rules of 'ethercat device bind --boot', and no other" own_rules_removed
 t "it leaves no file" nothing_left
+
+# --- documentation ---------------------------------------------------------------
+t "make doc builds HTML without a warning" make -s KDIR="$KDIR" DOCDIR="$tmp/doc" doc
+t "it has the reference of ecrt.h" grep -q c.ecrt_master_activate "$tmp/doc/html/api.html"
+
+# else the check above could not fail
+doc_notices() {
+	mkdir -p "$tmp/docs/Documentation" "$tmp/docs/include" &&
+		cp -r Documentation/sphinx Documentation/pictures "$tmp/docs/Documentation" &&
+		cp Makefile "$tmp/docs" && cp include/ecrt.h "$tmp/docs/include" || return 1
+	printf 'Title\n=====\n\n:doc:`nowhere`\n\n.. toctree::\n   :glob:\n\n   *\n' \
+		>"$tmp/docs/Documentation/index.rst"
+	! make -s -C "$tmp/docs" KDIR="$KDIR" doc >"$tmp/doc.log" 2>&1 &&
+		grep "index.rst:4: WARNING: unknown document: 'nowhere'" "$tmp/doc.log"
+}
+t "a reference to a page that does not exist is noticed" doc_notices
 
 # no_headers TARGET: one line that says what to do, before anything else
 no_headers() {
