@@ -97,6 +97,41 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 	ethercat master | grep -q 'Main: 00:11:22:33:44:55 (waiting...)'
 }
 
+# The blocks of the tutorials are run as they are written, one after the other.
+@test "first-ten-minutes.rst: from the scan to a broken cable" {
+	local f=Documentation/first-ten-minutes.rst
+
+	doc $f 'insmod build/modules/master/ec_master.ko main_devices=sim0'
+	has_slaves 22
+	doc $f 'tool/build/ethercat graph --tree' >"$BATS_TEST_TMPDIR/look"
+	cat "$BATS_TEST_TMPDIR/look"
+	grep -q '^├─ 15  ' "$BATS_TEST_TMPDIR/look"
+	grep -qx '0x00000002 2' "$BATS_TEST_TMPDIR/look"
+	doc $f 'examples/build/dc_motion follow 4 5 5'
+	has_slaves 22
+	doc $f "(sleep 1; echo 'errors axis1.0 add=5' >/sys/kernel/debug/ec_sim/sim0) &" \
+		>"$BATS_TEST_TMPDIR/crc"
+	cat "$BATS_TEST_TMPDIR/crc"
+	# as the page shows it
+	tr '\n' ' ' <"$BATS_TEST_DIRNAME/../../$f" | grep -qF "$(tail -n 1 "$BATS_TEST_TMPDIR/crc")"
+	doc $f 'rmmod ec_sim ec_master'
+}
+
+@test "first-drive.rst: from the identity to a motion" {
+	local f=Documentation/first-drive.rst
+
+	doc $f 'insmod build/modules/master/ec_master.ko main_devices=sim0'
+	has_slaves 4
+	doc $f 'tool/build/ethercat slaves -v -p3' >"$BATS_TEST_TMPDIR/pdos"
+	grep -q 'PDO entry 0x607a:00' "$BATS_TEST_TMPDIR/pdos"
+	doc $f 'tool/build/ethercat upload -p3 -t uint16 0x6041 0'
+	doc $f 'tool/build/ethercat download -p3 -t int8 0x6060 0 8'
+	[ "$(ethercat upload -p3 -t int8 0x6060 0)" = "0x08 8" ]
+	doc $f 'examples/build/dc_motion follow 2 3 4' >"$BATS_TEST_TMPDIR/motion"
+	cat "$BATS_TEST_TMPDIR/motion"
+	[ "$(awk '/^axis/ && $NF >= 90000' "$BATS_TEST_TMPDIR/motion" | wc -l)" = 2 ]
+}
+
 # sources DEVICE: different source addresses of the next 20 EtherCAT frames that come to it
 sources() {
 	timeout 60 tcpdump -c 20 -i "$1" -Q in -w - ether proto 0x88a4 2>/dev/null |
