@@ -95,7 +95,7 @@ KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(UTSRELEASE) 2>/dev/
 MODINST = $(DESTDIR)/lib/modules/$(KREL)/updates
 UDEVDIR ?= $(PREFIX)/lib/udev/rules.d
 
-install: install-modules install-lib install-tool install-udev
+install: install-modules install-lib install-tool install-operation install-udev
 
 # Debian's headers request signed modules but have no key. They have no System.map either,
 # without which kbuild skips depmod.
@@ -114,6 +114,10 @@ install-tool:
 	$(MAKE) -C tool prefix=$(PREFIX) install
 	$(MAKE) -C tool/sim prefix=$(PREFIX) install
 
+# ethercatctl, its configuration and its unit
+install-operation:
+	$(MAKE) -C operation prefix=$(PREFIX) install
+
 install-udev:
 	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
@@ -130,6 +134,7 @@ uninstall:
 	$(MAKE) -C lib prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
+	$(MAKE) -C operation prefix=$(PREFIX) uninstall
 	rm -f $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	@for f in $(DESTDIR)/etc/udev/rules.d/59-ethercat-*.rules; do \
 		grep -qs "'ethercat device bind --boot'" $$f || continue; \
@@ -137,9 +142,10 @@ uninstall:
 	done
 	-@cd $(DESTDIR)$(PREFIX) 2>/dev/null && rmdir lib/udev/rules.d lib/udev \
 		share/bash-completion/completions share/bash-completion \
+		lib/modprobe.d lib/systemd/system lib/systemd share/ethercat \
 		lib/cmake/ethercat lib/cmake lib/pkgconfig 2>/dev/null || true
 
-.PHONY: install install-modules install-lib install-tool install-udev uninstall
+.PHONY: install install-modules install-lib install-tool install-operation install-udev uninstall
 
 clean:
 	rm -rf $(BUILD)

@@ -23,6 +23,7 @@ unit
 decoders
 lib
 tool
+operation
 bats
 fuzz
 data
@@ -38,7 +39,7 @@ tshark
 "
 # These use one CPU, build in folders of their own and measure no time: side by side, the long
 # ones first.
-side=" uml kernels arch witness build unit decoders lib tool bats fuzz data "
+side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
 # Of what these use, the others have built most. Their guests have exact time: in places that
 # they share. A level that does not take places itself holds one.
 guests=" system bench guests demo layers tshark "
@@ -80,6 +81,7 @@ level_tshark() { tests/tshark/run.sh; }
 level_uml() { EC_UML_TIMEOUT=900 tests/uml/run.sh; }
 level_lib() { make -s -C tests/lib check; }
 level_tool() { make -s -C tests/tool check; }
+level_operation() { tests/operation/check.sh; }
 level_bats() { tests/check-bats.sh; }
 level_fuzz() { make -s -C tests/fuzz check; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }

@@ -196,6 +196,12 @@ expected() {
 	./lib/modules/$release/updates/ethercat/master/ec_master.ko
 	.$prefix/bin/ethercat
 	.$prefix/bin/ethercat-sim
+	.$prefix/lib/modprobe.d/ethercat.conf
+	.$prefix/lib/systemd/system/ethercat.service
+	.$prefix/sbin/ethercatctl
+	.$prefix/share/ethercat/conf.sh
+	.$prefix/share/man/man8/ethercatctl.8
+	./etc/ethercat.conf
 	.$prefix/include/ecrt.h
 	.$prefix/lib/libethercat.a
 	.$prefix/lib/libethercat.so

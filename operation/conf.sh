@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# For ethercatctl: the configuration file. Its lines are read, never run.
+#
+# parse FILE sets: masters (their number), device_N and at_N (the line of it), modules, up
+# (interfaces), modprobe_flags, segments
+
+native_drivers="e1000 e1000e igb intel"
+other_drivers="generic sim igc r8169 e100 8139too r8152 cx2100 ccat genet dwmac-intel stmmac-pci"
+
+say() { echo "ethercatctl: $*"; }
+err() { echo "ethercatctl: $*" >&2; }
+die() {
+	err "$@"
+	exit 1
+}
+
+# of the present line
+bad() {
+	echo "$conf:$number: $*" >&2
+	wrong=1
+}
+warn() { echo "$conf:$number: $*" >&2; }
+
+# has WORD WORD...: one of the others is the first
+has() {
+	local w first=$1
+
+	shift
+	for w; do [ "$w" != "$first" ] || return 0; done
+	return 1
+}
+
+is_number() { case $1 in ''|*[!0-9]*|0?*) return 1 ;; esac; }
+
+hex='[0-9a-f]'
+is_mac() {
+	case $1 in $hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex) ;; *) return 1 ;; esac
+}
+is_pci() { case $1 in $hex$hex$hex$hex:$hex$hex:$hex$hex.[0-7]) ;; *) return 1 ;; esac; }
+is_sim() { case $1 in sim[0-9]) ;; *) return 1 ;; esac; }
+is_interface() {
+	case $1 in ''|.|..|-*|*[:/,]*|*[[:space:]]*) return 1 ;; esac
+	[ ${#1} -le 15 ]
+}
+
+# device INDEX VALUE
+set_device() {
+	local value
+
+	case $2 in *:*) value=$(echo "$2" | tr A-F a-f) ;; *) value=$2 ;; esac
+	case $value in
+	00:00:00:00:00:00) bad "MASTER$1_DEVICE=\"$2\": no card has this address; 'ethercat devices' lists the cards" ;;
+	ff:ff:ff:ff:ff:ff|'') ;;
+	?[13579bdf]:*:*:*:*:*) bad "MASTER$1_DEVICE=\"$2\" is a multicast address; 'ethercat devices' lists the cards" ;;
+	*)	is_mac "$value" || is_pci "$value" || is_interface "$value" ||
+			bad "MASTER$1_DEVICE=\"$2\" is neither a MAC address, as 00:11:22:33:44:55, nor an interface, a PCI address, as 0000:01:00.0, or sim0; 'ethercat devices' lists the cards" ;;
+	esac
+	eval "device_$1=\$value at_$1=\$number"
+}
+
+set_backup() {
+	[ -n "$2" ] || return 0
+	bad "MASTER$1_BACKUP=\"$2\": this version has no cable redundancy; remove the value and connect the slaves to one port"
+}
+
+set_master() {	# set_master NAME VALUE
+	local index=${1#MASTER}
+
+	index=${index%_*}
+	if ! is_number "$index" || [ ${#index} -gt 2 ] || [ "$index" -gt 31 ]; then
+		bad "$1: the masters are MASTER0 to MASTER31"
+		return
+	fi
+	case $1 in
+	*_DEVICE) set_device "$index" "$2" ;;
+	*)	set_backup "$index" "$2" ;;
+	esac
+}
+
+set_modules() {
+	local m
+
+	modules=
+	for m in $1; do
+		m=${m#ec_}
+		has "$m" $native_drivers $other_drivers ||
+			bad "DEVICE_MODULES: unknown driver '$m'; use generic, or one of $native_drivers for the native driver"
+		modules="$modules $m"
+	done
+}
+
+set_interfaces() {	# set_interfaces NAME VALUE
+	local i
+
+	for i in $2; do
+		is_interface "$i" || bad "$1: '$i' is not the name of an interface; separate names by blanks"
+		has "$i" $up || up="$up $i"
+	done
+}
+
+set_segments() {
+	case $1 in
+	*[[:space:]]*|,*|*,|*,,*) bad "SIM_SEGMENT=\"$1\": names or paths separated by commas, no blanks" ;;
+	esac
+	segments=$1
+}
+
+set_flags() {
+	local w
+
+	for w in $1; do
+		case $w in
+		-*) ;;
+		*) bad "MODPROBE_FLAGS: '$w' is not an option of modprobe; parameters belong into /etc/modprobe.d/ethercat.conf" ;;
+		esac
+	done
+	modprobe_flags=$1
+}
+
+set_variable() {	# set_variable NAME VALUE
+	case $1 in
+	MASTER*_DEVICE|MASTER*_BACKUP) set_master "$1" "$2" ;;
+	DEVICE_MODULES) set_modules "$2" ;;
+	UPDOWN_INTERFACES|LINK_DEVICES) set_interfaces "$1" "$2" ;;
+	MODPROBE_FLAGS) set_flags "$2" ;;
+	SIM_SEGMENT) set_segments "$2" ;;
+	EOE_INTERFACES|EOE_AUTOCREATE|PCAP_SIZE_MB|REBIND_NICS)
+		[ -z "$2" ] || warn "$1 has no effect in this version" ;;
+	*)	warn "unknown variable $1 has no effect; see 'man ethercatctl'" ;;
+	esac
+}
+
+trim() {
+	text=${text#"${text%%[![:space:]]*}"}
+	text=${text%"${text##*[![:space:]]}"}
+}
+
+# value TEXT: sets value; what follows it can only be a comment
+parse_value() {
+	text=$1
+	case $text in
+	\"*\"*) text=${text#\"} value=${text%%\"*} text=${text#*\"} ;;
+	\'*\'*)	text=${text#\'} value=${text%%\'*} text=${text#*\'} ;;
+	[\"\']*)
+		bad "the closing quote is missing; a value ends in its line"
+		return 1 ;;
+	*)	value=${text%%[[:space:]]*} text=${text#"$value"} ;;
+	esac
+	trim
+	case $text in
+	''|'#'*) ;;
+	*)	bad "'$text' follows the value; put values with blanks into quotes"
+		return 1 ;;
+	esac
+	case $value in
+	*[\$\`\\\;\&\|\<\>\(\)\"\']*)
+		bad "'$value': this file is not run as a shell script; write the value itself"
+		return 1 ;;
+	esac
+}
+
+parse_line() {
+	local name
+
+	text=$1
+	trim
+	case $text in
+	''|'#'*) return ;;
+	*=*) ;;
+	*)	bad "'$text' is no line NAME=\"value\""
+		return ;;
+	esac
+	name=${text%%=*}
+	case $name in
+	''|[0-9]*|*[!A-Za-z0-9_]*)
+		bad "'$name' is no name of a variable; write NAME=\"value\" without blanks beside ="
+		return ;;
+	esac
+	parse_value "${text#*=}" && set_variable "$name" "$value"
+}
+
+# the masters are those before the first gap; each has a device of its own
+check_masters() {
+	local i=0 k other
+
+	masters=0
+	while [ $i -lt 32 ]; do
+		eval "value=\${device_$i:-} number=\${at_$i:-0}"
+		if [ -n "$value" ] && [ $i -gt $masters ]; then
+			warn "MASTER${i}_DEVICE has no effect, since MASTER${masters}_DEVICE is empty"
+		elif [ -n "$value" ]; then
+			k=0
+			while [ $k -lt $i ]; do
+				eval "other=\$device_$k"
+				[ "$other" != "$value" ] || [ "$value" = ff:ff:ff:ff:ff:ff ] ||
+					bad "MASTER${i}_DEVICE=\"$value\" is the device of MASTER$k; each master needs its own"
+				k=$((k + 1))
+			done
+			masters=$((masters + 1))
+		fi
+		i=$((i + 1))
+	done
+}
+
+# sim2 needs three segments; without SIM_SEGMENT each is the bench
+check_segments() {
+	local i=0 d need=0 text
+
+	while [ $i -lt "$masters" ]; do
+		eval "d=\$device_$i"
+		if is_sim "$d" && [ "${d#sim}" -ge $need ]; then
+			need=$((${d#sim} + 1))
+			eval "number=\$at_$i"
+		fi
+		i=$((i + 1))
+	done
+	sims=$need
+	[ "$need" -gt 0 ] || return 0
+	[ "$need" -le 8 ] || bad "sim$((need - 1)): the simulator has sim0 to sim7"
+	text=$segments i=0
+	if [ -n "$text" ]; then
+		while [ -n "$text" ]; do
+			i=$((i + 1))
+			case $text in *,*) text=${text#*,} ;; *) text= ;; esac
+		done
+		[ $i -ge "$need" ] ||
+			bad "sim$((need - 1)) needs $need segments, SIM_SEGMENT names $i"
+	else
+		while [ $i -lt "$need" ]; do
+			segments=${segments:+$segments,}bench
+			i=$((i + 1))
+		done
+	fi
+}
+
+# parse FILE: exit code 6 if it cannot be read, 1 after messages with its lines
+parse() {
+	local line
+
+	conf=$1 number=0 wrong=0 modules= up= modprobe_flags= segments= sims=0
+	if [ ! -f "$conf" ] || [ ! -r "$conf" ]; then
+		if [ -e "$conf" ]; then
+			err "cannot read the configuration $conf: no file that you may read"
+		else
+			err "cannot read the configuration $conf: it does not exist"
+		fi
+		exit 6
+	fi
+	while IFS= read -r line || [ -n "$line" ]; do
+		number=$((number + 1))
+		parse_line "$line"
+	done <"$conf"
+	check_masters
+	check_segments
+	[ $wrong = 0 ] || exit 1
+}

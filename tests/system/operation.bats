@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# vm: --icount --nics --timeout 600
+# ethercatctl: the configurations of tests/operation/conf at network cards, and what goes wrong.
+
+load helpers
+
+CONF=$BATS_TEST_DIRNAME/../operation/conf
+CTL=$BATS_TEST_DIRNAME/../../operation/ethercatctl
+
+# a tree of our modules only: depmod of all others takes long
+setup_file() {
+	local tree=$BATS_FILE_TMPDIR/lib/modules/$(uname -r)
+
+	modprobe veth
+	modprobe e1000e
+	ip link set eth1 up
+	mkdir -p "$tree"
+	cp "$EC_BUILD"/modules/{master,devices,devices/sim,devices/intel}/*.ko "$tree"
+	depmod -b "$BATS_FILE_TMPDIR" "$(uname -r)"
+	mount --bind "$tree" "/lib/modules/$(uname -r)"
+	printf '%s\n' 'slave c EK1100' 'slave a EL3062' 'slave m drive in=8 out=8' \
+		>"$BATS_FILE_TMPDIR/segment"
+	export PATH=$EC_BUILD/tool:$PATH
+}
+
+teardown_file() { umount "/lib/modules/$(uname -r)"; }
+
+setup() {
+	unset -f ethercat
+	pid=
+	ip link add veth0 type veth peer name veth1
+	dmesg -C
+}
+
+teardown() {
+	[ -z "$pid" ] || kill "$pid" 2>/dev/null || true
+	rmmod ec_mini ec_sim ec_generic ec_intel ec_master 2>/dev/null || true
+	rm -f /run/ethercatctl
+	ip link del veth0 2>/dev/null || true
+}
+
+ctl() { "$CTL" -c "$CONF/$1.conf" "$2"; }
+
+# conf LINE...: a configuration of these lines
+conf() {
+	printf '%s\n' "$@" >"$BATS_TEST_TMPDIR/conf"
+}
+own() { "$CTL" -c "$BATS_TEST_TMPDIR/conf" "$1"; }
+
+none_loaded() {
+	[ -z "$(lsmod | grep -o '^ec_[a-z]*')" ]
+	[ ! -e /run/ethercatctl ]
+}
+
+# fails PATTERN COMMAND...: with one line
+fails() {
+	run "${@:2}"
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ ${#lines[@]} = 1 && $output =~ $1 ]]
+}
+
+is_up() { [[ $(cat "/sys/class/net/$1/flags") =~ [13579bdf]$ ]]; }
+
+slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
+
+@test "sim.conf: start reports each master, status follows, stop leaves nothing" {
+	run ctl sim start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ ${lines[0]} =~ ^"Master0: sim0 (attached), link up, " ]]
+	[[ ${lines[1]} =~ ^"Master1: sim1 (attached), link up, " ]]
+	[ ${#lines[@]} = 2 ]
+	wait_for 60 slaves_are 0 3
+	wait_for 60 slaves_are 1 2
+	run ctl sim status
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "Master0  running" ]
+	[ "${lines[1]}" = "  sim0 (attached), link up, slaves: 3 (3 PREOP)" ]
+	[ "${lines[2]}" = "Master1  running" ]
+	# a second start changes nothing
+	run ctl sim start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: ec_master is already loaded" ]
+	slaves_are 0 3
+	ctl sim restart
+	run ctl sim stop
+	[ "$status" = 0 ]
+	[ -z "$output" ]
+	none_loaded
+	run ctl sim status
+	[ "$status" = 1 ]
+	[ "$output" = "$(printf 'Master0  dead\nMaster1  dead')" ]
+	run ctl sim stop
+	[ "$status" = 0 ]
+	[ "$output" = "ethercatctl: ec_master is not loaded" ]
+}
+
+@test "a card without native driver, by its MAC address, uses ec_generic, reported in a line" {
+	ethercat-sim --segment "$BATS_FILE_TMPDIR/segment" eth1 3>&- &
+	pid=$!
+	conf 'MASTER0_DEVICE="52:54:00:EC:00:00"' 'DEVICE_MODULES="r8169"'
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: eth0 uses ec_generic: DEVICE_MODULES names no native driver of it" ]
+	[[ ${lines[1]} =~ ^"Master0: 52:54:00:ec:00:00 (attached), link " ]]
+	[ ${#lines[@]} = 2 ]
+	[ "$(lsmod | grep -o '^ec_[a-z]*' | sort | tr '\n' ' ')" = "ec_generic ec_master " ]
+	wait_for 60 slaves_are 0 3
+	own stop
+	none_loaded
+}
+
+@test "names.conf: two masters, interfaces up at start and down at stop" {
+	ip link set eth0 down
+	run ctl names start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ ${lines[0]} =~ ^"Master0: eth0 (attached), " && ${lines[1]} =~ ^"Master1: veth0 (attached), " ]]
+	is_up eth0
+	is_up veth0
+	ctl names stop
+	none_loaded
+	run is_up eth0
+	[ "$status" = 1 ]
+}
+
+@test "native.conf: the native driver gets the card, and gives it back at stop" {
+	ip addr add 192.0.2.1/24 dev eth0
+	run ctl native start
+	echo "$output"
+	[ "$status" = 0 ]
+	[ ${#lines[@]} = 2 ]
+	[[ ${lines[0]} =~ "eth0 has an IP address; no other program can use it while the master does" ]]
+	[[ ${lines[1]} =~ ^"Master0: eth0 (attached), link " ]]
+	[ ! -e /sys/class/net/eth0 ]
+	# the interface is absent now
+	ctl native start
+	ctl native stop
+	none_loaded
+	[ "$(cat /sys/class/net/eth0/address)" = 52:54:00:ec:00:00 ]
+}
+
+@test "modules.conf: each master gets the driver of its card" {
+	run ctl modules start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ $output =~ "Master0: 52:54:00:ec:00:00 (attached)" && $output =~ "Master1: veth0 (attached)" ]]
+	[ "$(lsmod | grep -o '^ec_[a-z]*' | sort | tr '\n' ' ')" = "ec_generic ec_intel ec_master " ]
+	ctl modules stop
+	none_loaded
+}
+
+@test "a start that fails names the cause and leaves nothing loaded" {
+	fails 'backup.conf:4: MASTER0_BACKUP=.* no cable redundancy' ctl backup start
+	none_loaded
+	conf '' 'MASTER0_DEVICE="eth9"'
+	fails 'conf:2: MASTER0_DEVICE="eth9": no such device after 10 s' own start
+	none_loaded
+	conf ''
+	fails 'names no master: set MASTER0_DEVICE to a MAC address' own start
+	conf 'MASTER0_DEVICE="sim0"' 'SIM_SEGMENT="bnech"'
+	fails 'cannot load ec_sim: ec_sim: segment=bnech: neither a built-in segment' own start
+	none_loaded
+	fails "'start' needs root" setpriv --reuid=65534 --clear-groups "$CTL" -c "$CONF/sim.conf" start
+	conf 'MASTER0_DEVICE="sim0"' 'MODPROBE_FLAGS="-d/nowhere"'
+	fails "cannot load ec_master: it is not installed for the kernel $(uname -r); install ethercat-dkms and linux-headers-$(uname -r), or run 'make install'" own start
+	none_loaded
+}
+
+@test "modules that are loaded already are used only with the same devices" {
+	modprobe ec_master main_devices=veth0
+	fails 'ec_master is already loaded with main_devices=veth0, but .* has sim0,sim1; run' \
+		ctl sim start
+	[ "$(lsmod | grep -o '^ec_[a-z]*')" = ec_master ]
+	conf 'MASTER0_DEVICE="veth0"'
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ ${lines[1]} =~ ^"Master0: veth0 (attached)" ]]
+	# the configuration may have become wrong since
+	conf 'MASTER0_DEVICE="a/b"'
+	run own stop
+	[ "$status" = 0 ]
+	none_loaded
+}
+
+@test "stop names the program or module that has a master" {
+	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
+	own start
+	wait_for 60 slaves_are 0 3
+	sleep 600 3>&- 4</dev/EtherCAT0 &
+	pid=$!
+	run own stop
+	echo "$output"
+	[ "$status" = 1 ]
+	[ "${lines[0]}" = "ethercatctl: a master is in use; end its users first:" ]
+	[ "${lines[1]}" = "EtherCAT0: process $pid (sleep)" ]
+	kill "$pid"
+	wait "$pid" || true	# killed
+	insmod "$EC_BUILD/mini/ec_mini.ko" position=2
+	run own stop
+	echo "$output"
+	[ "$status" = 1 ]
+	[ "${lines[1]}" = "ec_master: module ec_mini" ]
+	[ ${#lines[@]} = 2 ]
+	rmmod ec_mini
+	own stop
+	none_loaded
+}
+
+@test "stop takes slaves out of OP, and fails while one stays there" {
+	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
+	own start
+	wait_for 60 slaves_are 0 3
+	ethercat states -p1 SAFEOP --wait
+	ethercat states -p1 OP --wait
+	echo 'mute a' >/sys/kernel/debug/ec_sim/sim0
+	run own stop
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output =~ ^"ethercatctl: Master0: slaves stay in OP: 1; nothing is unloaded" ]]
+	[ -c /dev/EtherCAT0 ]
+	echo 'unmute a' >/sys/kernel/debug/ec_sim/sim0
+	ethercat states -p1 PREOP --wait
+	ethercat states -p1 SAFEOP --wait
+	ethercat states -p1 OP --wait
+	own stop
+	none_loaded
+}
