@@ -30,15 +30,7 @@ ln -sfn fd/1 /dev/stdout
 ln -sfn fd/2 /dev/stderr
 stty -F /dev/console -onlcr 2>/dev/null
 
-# A restart by sysrq skips the drivers' shutdown hooks: a module under test
-# that hangs there must not keep the result from being seen. QEMU is started
-# with -no-reboot and ends.
-off() {
-	sync
-	echo b >/proc/sysrq-trigger
-	sleep 60
-}
-
+. /guest-run.sh
 fail() {
 	echo "ec-vm: $*" >/dev/console
 	off
@@ -50,7 +42,7 @@ done </mod/order
 
 # cache=none for what the host reads: each write goes through at once.
 mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144,cache=none ctl /ctl || fail "no control directory"
-. /ctl/env	# release, modules, mark, rw (number of --rw directories), ro (likewise)
+. /ctl/env	# release, modules, mark, init, rw (number of --rw directories), ro (likewise)
 mount -t 9p -o ro,trans=virtio,version=9p2000.L,msize=512000,cache=loose host /host || fail "cannot mount the host's root"
 mount -t tmpfs -o mode=755 tmpfs /rw
 mkdir /rw/upper /rw/work
@@ -71,7 +63,9 @@ while [ "$i" -lt "$ro" ]; do
 	mount -t 9p -o "ro,trans=virtio,version=9p2000.L,msize=512000,cache=loose" "ro$i" "/n$d" || fail "cannot mount $d"
 	i=$((i + 1))
 done
-mount --bind "/n$modules" "/n/lib/modules/$release" || fail "no module tree at $modules"
+# a root with an init of its own has its own modules
+[ -n "$init" ] || mount --bind "/n$modules" "/n/lib/modules/$release" ||
+	fail "no module tree at $modules"
 i=0
 while [ "$i" -lt "$rw" ]; do
 	d=$(cat "/ctl/rw$i")
@@ -84,45 +78,20 @@ ifconfig lo 127.0.0.1 up
 echo "/sbin/modprobe" >/proc/sys/kernel/modprobe
 
 cp /ctl/cmd /n/run/ec-vm-cmd
-cut -d' ' -f1 /proc/uptime >/ctl/started
-# Everything in the log from here on belongs to the command.
-echo "ec-vm: the command starts" >/dev/kmsg
-
-# The command gets a pipe, not the console: programs then behave as in any
-# other log (no colours, no line editing), and /dev/stdout can be reopened.
-mkfifo /out
-# A virtio port, because the emulated UART is slow and its interrupt gets
-# switched off by an -rt kernel when much is written.
-port=/dev/console
-i=0
-while [ "$i" -lt 40 ]; do
-	for p in /dev/vport*p1; do [ ! -c "$p" ] || port=$p; done
-	[ $port = /dev/console ] || break
-	usleep 50000
-	i=$((i + 1))
-done
-cat /out >$port &
-exec 7>/out	# else the reader ends with the command, before the mark
-env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-	HOME=/root USER=root LOGNAME=root SHELL=/bin/sh TERM=dumb LANG=C.UTF-8 EC_VM=1 \
-	chroot /n /bin/sh /run/ec-vm-cmd </dev/null >/out 2>&1 7>&-
-rc=$?
-
-# All output must have reached the host before the restart throws away what is
-# queued. run.sh writes the file when the mark comes by. Waiting for the end of
-# the pipe would not do: a background process may hold it open.
-echo "$mark" >/out &
-i=0
-while [ ! -s /ctl/drained ] && [ "$i" -lt 600 ]; do
-	usleep 50000
-	i=$((i + 1))
-done
-
-# The raw log, because the command may have cleared what dmesg shows. The read
-# ends with an error when nothing is left. The path keeps busybox from taking
-# its own dd, which cannot do this.
-chroot /n /bin/dd if=/dev/kmsg bs=8192 iflag=nonblock 2>/dev/null >/rw/kmsg
-cp /rw/kmsg /ctl/kmsg
-echo $rc >/ctl/rc.tmp
-mv /ctl/rc.tmp /ctl/rc
-off
+if [ -n "$init" ]; then
+	# a unit runs the command when all others have started
+	v=/n/run/ec-vm units=/n/run/systemd/system
+	mkdir -p $v/ctl $units
+	cp /bin/busybox /guest-run.sh $v/
+	printf '%s\n' "mark=$mark ctl=/run/ec-vm/ctl in_root= kept=/run" \
+		'. /run/ec-vm/guest-run.sh' 'guest_run' >$v/run
+	printf '%s\n' '[Unit]' 'Requires=ec-vm.service' 'Wants=multi-user.target' \
+		>$units/ec-vm.target
+	printf '%s\n' '[Unit]' 'After=multi-user.target' '[Service]' 'Type=oneshot' \
+		'ExecStart=/run/ec-vm/busybox sh /run/ec-vm/run' >$units/ec-vm.service
+	mount --move /ctl $v/ctl || fail "cannot move the control directory"
+	exec switch_root /n "$init" --unit=ec-vm.target
+	fail "cannot start $init"
+fi
+ctl=/ctl in_root="chroot /n" kept=/rw
+guest_run

@@ -31,6 +31,8 @@ usage() {
 	                     commands, for example set_link nic0 off
 	  --rw DIR           DIR of the host is writable in the guest (may be repeated);
 	                     all other writes are lost at the end
+	  --init DIR         DIR is the root, and its systemd runs the command when all units of
+	                     multi-user.target have started; only its own modules are there
 	  --timeout SEC      for boot and command together (default 300)
 	  --append '...'     more kernel parameters, for example loglevel=7
 	  --qemu '...'       more QEMU options
@@ -49,7 +51,7 @@ usage() {
 die() { echo "run.sh: $*" >&2; exit 125; }
 
 kernel=6.1-rt smp=2 mem=1024 icount=0 nic= more= iommu=0 monitor=0 timeout=300
-append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0
+append= qemu_more= dmesg= allow_oops=0 verbose=0 probe=0 init=
 rw=()
 need() { [ $# -ge 2 ] || { echo "run.sh: $1 needs a value" >&2; usage; }; }
 while [ $# -gt 0 ]; do
@@ -64,6 +66,7 @@ while [ $# -gt 0 ]; do
 	--more-nics) need "$@"; more=$2; shift 2 ;;
 	--iommu) iommu=1; shift ;;
 	--rw) need "$@"; rw+=("$2"); shift 2 ;;
+	--init) need "$@"; init=$2; shift 2 ;;
 	--timeout) need "$@"; timeout=$2; shift 2 ;;
 	--append) need "$@"; append="$append $2"; shift 2 ;;
 	--qemu) need "$@"; qemu_more="$qemu_more $2"; shift 2 ;;
@@ -105,6 +108,11 @@ if [ "$arch" != amd64 ]; then
 	busybox=$root/bin/busybox
 	dirs+=("$(cd "$here/../.." && pwd -P)")
 fi
+if [ -n "$init" ]; then
+	[ -x "$init/lib/systemd/systemd" ] || die "--init: no systemd in $init"
+	root=$(cd "$init" && pwd -P)
+	init=/lib/systemd/systemd
+fi
 for p in /usr/bin/busybox /bin/busybox; do
 	[ -z "$busybox" ] || break
 	# One linked against libraries would not start in the initramfs.
@@ -128,7 +136,7 @@ trap 'exit 130' INT
 trap 'exit 143' HUP TERM
 
 # --- initramfs: once per kernel and init script --------------------------------
-hash=$({ cat "$here/guest-init.sh" "$here/run.sh" "$busybox"; stat -Lc '%s %Y' "$image"; } |
+hash=$({ cat "$here"/guest-{init,run}.sh "$here/run.sh" "$busybox"; stat -Lc '%s %Y' "$image"; } |
 	sha256sum | cut -c1-12)
 initrd=$cache/initramfs/$release-$hash.img
 
@@ -138,6 +146,7 @@ build_initrd() {
 	mkdir -p "$i/bin" "$i/mod" "$i/dev" "$i/proc"
 	cp "$busybox" "$i/bin/busybox"
 	install -m 755 "$here/guest-init.sh" "$i/init"
+	cp "$here/guest-run.sh" "$i/"
 	for m in virtio_pci virtio_console 9pnet_virtio 9p overlay; do
 		modprobe -d "${modules%/lib/modules/*}" -S "$release" --show-depends "$m" ||
 			die "the kernel $release has no module $m"
@@ -256,12 +265,12 @@ for d in ${dirs[@]+"${dirs[@]}"}; do
 	n=$((n + 1))
 done
 {
-	printf 'release=%q\nmodules=%q\nmark=%s\nrw=%d\nro=%d\n' "$release" "$modules" "$mark" \
-		"$rw_count" "$n"
+	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\nrw=%d\nro=%d\n' "$release" "$modules" \
+		"$mark" "$init" "$rw_count" "$n"
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
-	printf 'cd '; quote "$(pwd -P)"; printf '|| exit 126\nexec '
+	printf 'cd '; quote "$([ -n "$init" ] && echo / || pwd -P)"; printf '|| exit 126\nexec '
 	for a; do quote "$a"; done
 	echo
 } >"$ctl/cmd"
