@@ -187,6 +187,26 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	none_loaded
 }
 
+# as the udev rule of 'ethercat device bind --boot' leaves it
+@test "a card that ec_intel has already is used, and ec_master is loaded again for it" {
+	modprobe ec_intel
+	ethercat device bind eth0 --force
+	conf 'MASTER0_DEVICE="52:54:00:ec:00:00"'
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[ ${#lines[@]} = 1 ]
+	[[ $output =~ ^"Master0: 52:54:00:ec:00:00 (attached), link " ]]
+	own stop
+	none_loaded
+	# it is still reserved
+	[ ! -e /sys/class/net/eth0 ]
+	own start
+	ethercat device unbind 52:54:00:ec:00:00 --force
+	own stop
+	[ -e /sys/class/net/eth0 ]
+}
+
 @test "stop names the program or module that has a master" {
 	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
 	own start
