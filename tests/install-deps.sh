@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # Installs what building and testing need, and nothing that is there already.
-# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, doc, rust, cross)
+# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, doc, rust,
+# cross, packages)
 
 set -eu
 
 usage() {
-	echo "usage: ${0##*/} GROUP...   build vm capture uml python json doc rust cross" >&2
+	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json doc rust cross packages" >&2
 	exit 2
 }
 
@@ -42,6 +43,7 @@ for group; do
 		   libc6-dev-armhf-cross g++-aarch64-linux-gnu libc6-dev-arm64-cross
 		   g++-s390x-linux-gnu libc6-dev-s390x-cross qemu-user-static
 		   qemu-system-arm qemu-system-misc" ;;
+	packages) p="mmdebstrap" ;;
 	-h|--help) usage ;;
 	*)	echo "${0##*/}: unknown group '$group'" >&2; usage ;;
 	esac

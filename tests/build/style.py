@@ -36,7 +36,7 @@ LIMITS = {
 # files that cannot have a comment, and what was not written by hand
 NO_SPDX = re.compile(r"^COPYING$|^LICENSES/|\.gitignore$|\.md$|\.lock$|\.seg$|\.map$|\.pc\.in$"
                      r"|^tests/tool/golden/|^tests/lib/prototypes|^tests/build/commands\.txt$"
-                     r"|^tests/uml/skip\.list$")
+                     r"|^tests/uml/skip\.list$|^debian/(changelog|source/format)$")
 NO_WRAP = re.compile(r"^LICENSES/|\.lock$|^tests/tool/golden/|^tests/build/commands\.txt$"
                      r"|^tests/lib/prototypes|^tool/(ethercat|man/.*)\.8$")
 

@@ -20,7 +20,7 @@ usage() {
 	                                      architecture: i386, arm64, s390x
 	       kernels.sh qemu backports      print a folder with the programs of a newer QEMU,
 	                                      which has the network card igb
-	       kernels.sh sources SUITE       print apt's sources of bookworm or trixie
+	       kernels.sh sources SUITE       print apt's sources of bookworm
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
@@ -363,7 +363,6 @@ fi
 if [ "$cmd" = sources ]; then
 	case $* in
 	bookworm) sources '^bookworm(-updates|-security|/updates)?$' ;;
-	trixie)	sources '^bookworm$' trixie ;;
 	*)	usage ;;
 	esac
 	exit 0

@@ -1,0 +1,44 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# A minimal Debian 12 with what builds and tests packages, and the headers of the kernel that guests
+# boot. It is made once and kept in the cache; nobody writes to it (run.sh lays an overlay over it).
+#
+# usage: root.sh	prints the folder
+
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
+suite=bookworm
+# the first kernel is the one of the guests, the second one that of an update
+first=linux-headers-$(tests/vm/kernels.sh release 6.1-rt) second=linux-headers-amd64
+packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod lintian man-db pkg-config
+	systemd systemd-sysv udev $first"
+root=$cache/roots/packages-$suite
+layout="2 $packages $second"
+
+mkdir -p "$cache/roots"
+exec 9>"$cache/roots/.lock-$suite"
+flock 9
+if [ "$(cat "$root/.complete" 2>/dev/null || true)" != "$layout" ]; then
+	tests/install-deps.sh packages >&2
+	rm -rf --one-file-system "$root" "$root.new"
+	tmp=$(mktemp -d)
+	trap 'rm -rf --one-file-system "$tmp" "$root.new"' EXIT
+	tests/vm/kernels.sh sources "$suite" >"$tmp/sources"
+	# shellcheck disable=SC2086
+	mmdebstrap --variant=minbase --mode=root --include="$(echo $packages | tr ' ' ,)" \
+		--aptopt='Acquire::Retries "5"' \
+		--customize-hook='mkdir -p "$1/srv/second/partial"' \
+		--customize-hook="chroot \"\$1\" apt-get -qq -y --download-only \
+			-o Dir::Cache::Archives=/srv/second install $second" \
+		"$suite" "$root.new" - <"$tmp/sources" >"$tmp/log" 2>&1 || {
+		tail -n 20 "$tmp/log" >&2
+		echo "root.sh: cannot make a root of Debian $suite" >&2
+		exit 1
+	}
+	echo "$layout" >"$root.new/.complete"
+	mv -T "$root.new" "$root"
+fi
+exec 9>&-
+echo "$root"

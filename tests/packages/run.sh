@@ -1,0 +1,174 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# The Debian packages: built, checked by lintian, installed into a minimal Debian, with modules for
+# the kernel that is there and for one that comes later, started by systemd in a guest, upgraded,
+# removed, purged. Minutes; needs root. The last line is "N passed, N failed".
+
+set -u
+export LC_ALL=C
+cd "$(dirname "$0")/../.." || exit 1
+packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev ethercat-doc"
+passed=0 failed=0
+root=$(tests/packages/root.sh) || exit 1
+tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-packages.XXXXXX")
+trap 'rm -rf "$tmp"' EXIT
+
+t() {	# t NAME COMMAND...
+	local name=$1
+
+	shift
+	if "$@" >"$tmp/out" 2>&1; then
+		echo "ok $name"
+		passed=$((passed + 1))
+	else
+		echo "not ok $name"
+		tail -n 40 "$tmp/out" | sed 's/^/# /'
+		failed=$((failed + 1))
+	fi
+}
+
+# in_root SCRIPT: in the root, with what the scripts before have changed
+in_root() { tests/packages/enter.sh "$root" "$tmp/root" sh -euc "$1"; }
+
+# source VERSION: the clone at /src in the root
+source() {
+	local dir=$tmp/root/upper/src/ethercat-$1
+
+	mkdir -p "$dir"
+	# the clone may be another user's
+	git -c safe.directory='*' ls-files -z | xargs -0 cp --parents -t "$dir" &&
+		sed -i "1s/([^)]*)/($1)/" "$dir/debian/changelog"
+}
+
+build() {
+	source "$1" && in_root "cd /src/ethercat-$1 && dpkg-buildpackage -us -uc -b" &&
+		[ "$(cd "$tmp/root/upper/src" && ls ./*_"$1"_*.deb | grep -vc dbgsym)" = 5 ]
+}
+
+# warnings have to be read, too; ethercat-sim has --help
+lint() {
+	in_root 'cd /src && lintian --allow-root --fail-on error,warning \
+		--suppress-tags no-manual-page ethercat_0.1.0_*.changes'
+}
+
+install() {
+	in_root "cd /src && apt-get -y install \$(ls ./*_$1_*.deb | grep -v dbgsym)"
+}
+
+# has_modules VERSION: for all kernels whose headers are installed
+has_modules() {
+	in_root "
+		dkms status
+		n=0
+		for d in /lib/modules/*/build; do
+			k=\${d%/build} n=\$((n + 1))
+			dkms status | grep -q \"^ethercat/$1, \${k##*/}, .*: installed\"
+			for m in ec_master ec_generic ec_intel ec_sim; do
+				modinfo -k \${k##*/} \$m >/dev/null
+			done
+		done
+		[ \$n = $2 ]
+		[ \$(dkms status | grep -c ethercat) = $2 ]"
+}
+
+# everything but what each installation of packages changes, and the key that DKMS makes once
+list() {
+	in_root 'find / -xdev \( -path /src -o -path /proc -o -path /tmp -o -path /var/log -o \
+		-path /var/cache -o -path /usr/lib/modules -o -path /var/lib/apt -o \
+		-path /var/lib/dpkg -o -path "/var/lib/dkms/mok.*" -o -path /root \) \
+		-prune -o -print' | sort
+}
+
+# what Documentation/install.rst has for secure boot
+signed() {
+	in_root '
+		k=$(ls /lib/modules | tail -n 1) d=/tmp/sign
+		modinfo -k $k -F signer ec_master | grep "DKMS module signing key"
+		[ -s /var/lib/dkms/mok.pub ]
+		mkdir $d
+		cp "$(modinfo -k $k -n ec_sim)" $d/ec_sim.ko
+		openssl req -new -x509 -nodes -days 36500 -subj "/CN=EtherCAT modules" \
+			-newkey rsa:2048 -keyout $d/mok.key -outform DER -out $d/mok.pub
+		/lib/modules/$k/build/scripts/sign-file sha256 $d/mok.key $d/mok.pub $d/ec_sim.ko
+		modinfo -F signer $d/ec_sim.ko | grep "EtherCAT modules"
+		rm -r $d'
+}
+
+program_builds() {
+	in_root 'printf "%s\n" "#include <ecrt.h>" "int main(void) { return !ecrt_version_magic(); }" \
+		>/tmp/app.c
+		gcc -o /tmp/app /tmp/app.c $(pkg-config --cflags --libs libethercat)
+		/tmp/app
+		rm /tmp/app /tmp/app.c'
+}
+
+# two commands, the second one before the start; the guest then has systemd as its init
+boots() {
+	in_root 'systemctl enable ethercat' &&
+	tests/packages/enter.sh --mount "$root" "$tmp/root" sh -c \
+		'exec tests/vm/run.sh --init "$MERGED" --timeout 900 -- sh -euc "$1"' sh '
+		systemctl is-active ethercat
+		n=0
+		until [ "$(ethercat slaves | grep -c PREOP)" = 22 ]; do
+			n=$((n + 1))
+			[ $n -lt 100 ]
+			sleep 1
+		done
+		ethercat slaves | head -n 3
+		ethercatctl status
+		[ "$(stat -c "%G %a" /dev/EtherCAT0)" = "ethercat 664" ]
+		systemctl restart ethercat
+		systemctl stop ethercat
+		[ ! -e /dev/EtherCAT0 ]
+		[ ! -e /sys/module/ec_master ]
+		echo "MASTER0_DEVICE=eth9" >/etc/ethercat.conf
+		! systemctl start ethercat
+		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"' \
+		>"$tmp/guest" 2>&1 &&
+	grep -q 'Master0  running' "$tmp/guest"
+	local rc=$?
+
+	tail -n 30 "$tmp/guest"
+	return $rc
+}
+
+enabled() { in_root 'systemctl is-enabled ethercat && grep -q mine /etc/ethercat.conf'; }
+removed() {
+	in_root "apt-get -y remove $packages"'
+		[ -z "$(find /lib/modules -name "ec_*")" ]
+		[ ! -e /etc/udev/rules.d/59-ethercat-0000:01:00.0.rules ]
+		[ -z "$(dkms status)" ]
+		[ ! -e /usr/bin/ethercat ]
+		grep -q mine /etc/ethercat.conf'
+}
+
+purged() {
+	in_root "apt-get -y purge $packages" &&
+		list >"$tmp/after" && diff "$tmp/before" "$tmp/after"
+}
+
+t "dpkg-buildpackage builds five packages" build 0.1.0
+[ $failed = 0 ] || { echo "$passed passed, $failed failed"; exit 1; }
+t "lintian reports neither an error nor a warning" lint
+list >"$tmp/before"
+t "apt installs the packages" install 0.1.0
+t "DKMS has built the modules for the installed kernel" has_modules 0.1.0 1
+t "the modules are signed by DKMS, and can be signed by hand" signed
+t "a program builds against libethercat-dev" program_builds
+t "systemd starts the simulated bus in a guest, and stops it" boots
+t "the headers of another kernel are installed" in_root 'dpkg -i /srv/second/*.deb'
+t "DKMS has built the modules for the new kernel" has_modules 0.1.0 2
+in_root 'echo "# mine" >>/etc/ethercat.conf; systemctl enable ethercat
+	echo "# Written by '\''ethercat device bind --boot'\''." \
+		>/etc/udev/rules.d/59-ethercat-0000:01:00.0.rules' 2>/dev/null
+t "a newer version builds" build 0.1.1
+t "apt upgrades to it" install 0.1.1
+t "DKMS has the modules of the newer version only" has_modules 0.1.1 2
+t "an upgrade keeps the configuration, and whether the service is enabled" enabled
+t "remove leaves the configuration, no module and no rule" removed
+# the headers are not ours
+in_root 'dpkg -P $(dpkg-deb -W --showformat="\${Package}\n" /srv/second/*.deb)' >/dev/null 2>&1
+t "purge leaves nothing" purged
+echo "$passed passed, $failed failed"
+[ $failed = 0 ]
