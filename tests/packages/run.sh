@@ -144,7 +144,7 @@ removed() {
 }
 
 purged() {
-	in_root "apt-get -y purge $packages" &&
+	in_root "dpkg --purge $packages" &&
 		list >"$tmp/after" && diff "$tmp/before" "$tmp/after"
 }
 
