@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The ring of events, alone, and the texts of events. */
+#include "wire_kunit.h"
+#include "../../master/wire/event.h"
+#include "../../master/wire/event_ring.h"
+
+#ifndef __KERNEL__
+#include <pthread.h>
+#include <sched.h>
+#endif
+
+static struct ec_event_ring ring;
+
+/* events whose words all follow from their number */
+static void put(u64 n)
+{
+	struct ec_event e;
+	unsigned int i;
+
+	while (n--) {
+		u32 x = (u32)ec_event_ring_head(&ring);
+
+		e = (struct ec_event){
+			.time_ns = x, .wall_ns = ~(u64)x, .kind = EC_EVENT_DEBUG, .slave = (u16)x,
+		};
+		for (i = 0; i < EC_EVENT_ARGS; i++)
+			e.arg[i] = x * 2654435761u + i;
+		ec_event_ring_put(&ring, &e);
+	}
+}
+
+static bool is_whole(const struct ec_event *e)
+{
+	u32 x = (u32)e->number;
+	unsigned int i;
+
+	for (i = 0; i < EC_EVENT_ARGS; i++)
+		if (e->arg[i] != x * 2654435761u + i)
+			return false;
+	return e->kind == EC_EVENT_DEBUG && e->time_ns == x && e->wall_ns == ~(u64)x &&
+	       e->slave == (u16)x;
+}
+
+static u64 lost_by(const struct ec_event *e)
+{
+	return e->kind == EC_EVENT_MISSED ? (u64)e->arg[1] << 32 | e->arg[0] : 0;
+}
+
+static void event_empty_ring_has_no_event(struct kunit *test)
+{
+	struct ec_event e = { 0 };
+	u64 at = 0;
+
+	memset(&ring, 0, sizeof(ring));
+	KUNIT_EXPECT_FALSE(test, ec_event_ring_get(&ring, &at, &e));
+	KUNIT_EXPECT_EQ(test, at, 0ull);
+	/* one that waits for events to come */
+	put(1);
+	KUNIT_EXPECT_TRUE(test, ec_event_ring_get(&ring, &at, &e));
+	KUNIT_EXPECT_TRUE(test, is_whole(&e));
+	KUNIT_EXPECT_FALSE(test, ec_event_ring_get(&ring, &at, &e));
+}
+
+static void event_reader_gets_all_across_wraps(struct kunit *test)
+{
+	struct ec_event e = { 0 };
+	u64 at = 0, n = 0;
+	unsigned int i;
+
+	memset(&ring, 0, sizeof(ring));
+	for (i = 0; i < 7; i++) {
+		put(EC_EVENTS_KEPT - i);
+		while (ec_event_ring_get(&ring, &at, &e)) {
+			KUNIT_ASSERT_EQ(test, e.number, n);
+			KUNIT_ASSERT_TRUE(test, is_whole(&e));
+			n++;
+		}
+		KUNIT_EXPECT_EQ(test, n, ec_event_ring_head(&ring));
+	}
+}
+
+static void event_slow_reader_learns_exact_gap(struct kunit *test)
+{
+	static const u32 more[] = { 1, 2, EC_EVENTS_KEPT, EC_EVENTS_KEPT + 1, 100000 };
+	struct ec_event e = { .time_ns = 7, .wall_ns = 8 };
+	u64 at, n;
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(more); i++) {
+		memset(&ring, 0, sizeof(ring));
+		put(5);
+		at = 2;
+		put(EC_EVENTS_KEPT - 3 + more[i]);
+		e.time_ns = 7;
+		KUNIT_ASSERT_TRUE(test, ec_event_ring_get(&ring, &at, &e));
+		KUNIT_EXPECT_EQ(test, lost_by(&e), (u64)more[i]);
+		KUNIT_EXPECT_EQ_MSG(test, e.number, 2ull, "the first one that is lost");
+		KUNIT_EXPECT_EQ_MSG(test, e.time_ns, 7ull, "the caller's time");
+		for (n = 0; ec_event_ring_get(&ring, &at, &e); n++)
+			KUNIT_ASSERT_TRUE(test, is_whole(&e));
+		KUNIT_EXPECT_EQ(test, n, (u64)EC_EVENTS_KEPT);
+	}
+}
+
+static void event_oldest_number_is_of_kept_event(struct kunit *test)
+{
+	memset(&ring, 0, sizeof(ring));
+	KUNIT_EXPECT_EQ(test, ec_event_ring_oldest(&ring), 0ull);
+	put(EC_EVENTS_KEPT);
+	KUNIT_EXPECT_EQ(test, ec_event_ring_oldest(&ring), 0ull);
+	put(1);
+	KUNIT_EXPECT_EQ(test, ec_event_ring_oldest(&ring), 1ull);
+}
+
+#ifndef __KERNEL__
+#define STRESS	3000000
+
+static void *writer(void *arg)
+{
+	unsigned int *done = arg;
+	unsigned int i;
+
+	for (i = 0; i < STRESS; i++) {
+		put(1);
+		if (!(i % 100000))
+			sched_yield();
+	}
+	__atomic_store_n(done, 1, __ATOMIC_RELEASE);
+	return NULL;
+}
+
+/* Two of them, one that is often too slow: each event is whole or counted as lost, once. */
+static void *reader(void *arg)
+{
+	unsigned int *done = arg, last = 0;
+	struct ec_event e = { 0 };
+	u64 at = 0, sum = 0;
+	bool more;
+
+	while (!last) {
+		last = __atomic_load_n(done, __ATOMIC_ACQUIRE);
+		do {
+			u64 before = at;
+
+			more = ec_event_ring_get(&ring, &at, &e);
+			if (!more)
+				break;
+			if (e.number != before ||
+			    (lost_by(&e) ? at != before + lost_by(&e) : !is_whole(&e)))
+				return (void *)1;
+			sum += lost_by(&e) ?: 1;
+		} while (more);
+	}
+	return (void *)(uintptr_t)(sum == STRESS ? 0 : 2);
+}
+
+static void event_threads_read_whole_events_beside_writer(struct kunit *test)
+{
+	pthread_t w, r[2];
+	unsigned int done = 0, i;
+	void *ret;
+
+	memset(&ring, 0, sizeof(ring));
+	for (i = 0; i < 2; i++)
+		KUNIT_ASSERT_EQ(test, pthread_create(&r[i], NULL, reader, &done), 0);
+	KUNIT_ASSERT_EQ(test, pthread_create(&w, NULL, writer, &done), 0);
+	pthread_join(w, NULL);
+	for (i = 0; i < 2; i++) {
+		pthread_join(r[i], &ret);
+		KUNIT_EXPECT_EQ(test, (uintptr_t)ret, (uintptr_t)0);
+	}
+}
+#endif
+
+static void event_each_kind_has_text_and_unique_name(struct kunit *test)
+{
+	char text[200];
+	u32 kind, other, n = 0;
+
+	for (kind = 0; kind < 0x100; kind++) {
+		struct ec_event e = { .kind = kind, .slave = 3, .arg = { 1, 2, 3, 4, 5, 6 } };
+		const struct ec_event_kind *k = ec_event_kind(kind);
+		int len = ec_event_text(&e, text, sizeof(text));
+
+		KUNIT_EXPECT_EQ(test, (size_t)len, strlen(text));
+		KUNIT_EXPECT_GT_MSG(test, len, 0, "kind 0x%x", kind);
+		KUNIT_EXPECT_EQ_MSG(test, !k, !strncmp(text, "unknown event", 13), "kind 0x%x: %s",
+				    kind, text);
+		n += !!k;
+		for (other = 0; k && other < kind; other++)
+			if (ec_event_kind(other))
+				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
+	}
+	KUNIT_EXPECT_EQ(test, n, 39u);
+}
+
+/* A record of any content, a buffer of any size. */
+static void event_text_fits_any_buffer_for_any_record(struct kunit *test)
+{
+	struct ec_event e;
+	char text[210];
+	u32 kind, size, i;
+
+	for (kind = 0; kind < 0x80; kind++) {
+		memset(&e, 0xff, sizeof(e));
+		e.kind = kind;
+		for (i = 0; i < 2; i++) {
+			for (size = 0; size <= 200; size += size < 4 ? 1 : 49) {
+				memset(text, 'x', sizeof(text));
+				KUNIT_EXPECT_LT(test, ec_event_text(&e, text, size),
+						(int)max(size, 1u));
+				KUNIT_ASSERT_EQ(test, text[size], 'x');
+				KUNIT_ASSERT_TRUE(test, !size || memchr(text, 0, size));
+			}
+			memset(e.arg, 0x81, sizeof(e.arg));
+		}
+	}
+}
+
+static void expect(struct kunit *test, struct ec_event e, const char *want)
+{
+	char text[200];
+
+	ec_event_text(&e, text, sizeof(text));
+	KUNIT_EXPECT_STREQ(test, text, want);
+}
+
+#define E(k, s, ...) \
+	(struct ec_event){ .kind = EC_EVENT_##k, .slave = s, .arg = { __VA_ARGS__ } }
+
+static void event_texts_name_slave_and_values(struct kunit *test)
+{
+	expect(test, E(SLAVE_LOST, 5, 4, 1, 0, 2, 0x044c2c52, 20),
+	       "slave 5 (0x00000002/0x044c2c52) disconnected from port 1 of slave 4, last seen 20 ms ago");
+	expect(test, E(SLAVE_LOST, 0, EC_EVENT_NONE, 0, 1001, 2, 3, 4),
+	       "slave 0 (0x00000002/0x00000003, alias 1001) disconnected from the main device, last seen 4 ms ago");
+	expect(test, E(SLAVE_FOUND, 5, 4, 1, 0, 2, 3),
+	       "slave 5 (0x00000002/0x00000003) connected to port 1 of slave 4");
+	expect(test, E(AL_ERROR, 5, 4, 0x1b),
+	       "slave 5: AL state SAFEOP with error, AL status code 0x001b (SyncManager watchdog expired: no outputs came in time)");
+	expect(test, E(AL_LEFT, 5, 4, 8), "slave 5: AL state OP left without request, now SAFEOP");
+	expect(test, E(LINK_DOWN, EC_EVENT_NO_SLAVE, 0), "main link down");
+	expect(test, E(WKC, EC_EVENT_NO_SLAVE, 1, 2, 3, 3), "domain 1: working counter 2 of 3, before 3");
+	expect(test, E(WKC, EC_EVENT_NO_SLAVE, 1, 2, 3, 3, 9),
+	       "domain 1: working counter 2 of 3, before 3; 9 more change(s)");
+	expect(test, E(MISSED, EC_EVENT_NO_SLAVE, 1, 1),
+	       "4294967297 event(s) missed: the reader was too slow");
+	expect(test, E(LOCK, EC_EVENT_NO_SLAVE, 2, (u32)-12, (u32)-3),
+	       "kernel cycle locked: phase error -12 ns, rate -3 ppb");
+	expect(test, E(REF_CLOCK, EC_EVENT_NO_SLAVE, EC_EVENT_NONE, 1),
+	       "reference clock lost: clocks run free");
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(event_empty_ring_has_no_event),
+	KUNIT_CASE(event_reader_gets_all_across_wraps),
+	KUNIT_CASE(event_slow_reader_learns_exact_gap),
+	KUNIT_CASE(event_oldest_number_is_of_kept_event),
+#ifndef __KERNEL__
+	KUNIT_CASE(event_threads_read_whole_events_beside_writer),
+#endif
+	KUNIT_CASE(event_each_kind_has_text_and_unique_name),
+	KUNIT_CASE(event_text_fits_any_buffer_for_any_record),
+	KUNIT_CASE(event_texts_name_slave_and_values),
+	{}
+};
+
+static struct kunit_suite suite = { .name = "event", .test_cases = cases };
+kunit_test_suites(&suite);
+MODULE_LICENSE("GPL");
