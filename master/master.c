@@ -69,6 +69,7 @@ static void destroy(struct ec_master *m)
 	ec_api_between_stop(m);
 	ec_session_end(&m->sessions, NULL);
 	ec_monitor_stop(m);
+	ec_event_readers_exit(m);
 	ec_dc_exit(&m->dc);
 	queues_destroy(m);
 	ec_api_destroy(m);
@@ -87,6 +88,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	if (!m)
 		return ERR_PTR(-ENOMEM);
 	ec_base_init(m->base, index, debug);
+	ec_event_readers_init(m);
 	m->sessions.base = m->base;
 	m->sessions.links = &m->links;
 	m->sessions.bus = &m->bus;

@@ -54,16 +54,18 @@ static void check_links(struct watch *w)
 }
 
 /* The status of a slave has changed without its worker. */
-static void log_change(const struct ec_slave *s, u16 status, u16 code)
+static void note_change(struct ec_slave *s, u16 status, u16 code)
 {
 	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
+	bool left = state < before && before == READ_ONCE(s->requested);
 
 	if (status & EC_AL_ERROR && !(READ_ONCE(s->al_status) & EC_AL_ERROR))
 		ec_slave_warn(s, "AL state %s with error, AL status code 0x%04x (%s)\n",
 			      ec_al_state_name(state), code, ec_al_code_text(code));
-	else if (state < before && before == READ_ONCE(s->requested))
+	else if (left)
 		ec_slave_warn(s, "AL state %s left without request, now %s\n",
 			      ec_al_state_name(before), ec_al_state_name(state));
+	ec_slave_set_al(s, status, code, !left);
 }
 
 /*
@@ -100,11 +102,7 @@ static bool check_slaves(struct ec_master *m)
 		/* its worker knows better */
 		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != r[i].reads)
 			continue;
-		log_change(s, status, code);
-		if (status != READ_ONCE(s->al_status) || code != READ_ONCE(s->al_code)) {
-			WRITE_ONCE(s->al_status, status);
-			WRITE_ONCE(s->al_code, code);
-		}
+		note_change(s, status, code);
 		/* fallen back by itself: bring it up again */
 		if (!READ_ONCE(s->error) && (status & EC_AL_STATE_MASK) != READ_ONCE(s->requested))
 			ec_slave_kick(s);
@@ -229,8 +227,10 @@ static void ask_slaves(struct watch *w)
 	}
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
-		if (w->scanned)
+		if (w->scanned) {
 			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
+			ec_event(m->base, EC_EVENT_RESPONDING, count, w->count);
+		}
 		w->count = count;
 		w->same = 0;
 		w->scanned = false;
@@ -249,6 +249,7 @@ static void ask_slaves(struct watch *w)
 		ec_warn(m,
 			"a slave did not answer at its station address in %u polls; rescanning\n",
 			SILENT_LOOKS);
+		ec_event(m->base, EC_EVENT_NO_ANSWER, SILENT_LOOKS);
 		w->silent = 0;
 		scan_next(w);
 	}
@@ -490,6 +491,7 @@ static int monitor(void *data)
 		ec_bus_settled(&m->bus);
 		ec_session_status(&m->sessions, w.scanned);
 		ec_log_flush(m->base, false);
+		ec_event_readers_kick(m);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		watch_events(&w);

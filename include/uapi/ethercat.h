@@ -18,6 +18,7 @@
 
 #include <linux/ioctl.h>
 #include <linux/types.h>
+#include "ethercat_event.h"
 #include "ethercat_map.h"
 #include "ethercat_mbox.h"
 
@@ -38,6 +39,7 @@
 #define EC_FEATURE_SOE		(1ULL << 3)
 #define EC_FEATURE_VOE		(1ULL << 4)
 #define EC_FEATURE_FOE		(1ULL << 5)
+#define EC_FEATURE_EVENTS	(1ULL << 6)
 
 struct ec_ioc_version {
 	__u32 flags;
@@ -763,6 +765,7 @@ struct ec_ioc_wait {
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
 #define EC_IOC_EMERGENCIES	EC_IOC_RW(0x1a, struct ec_ioc_emergencies)
+#define EC_IOC_EVENTS		EC_IOC_RW(0x1b, struct ec_ioc_events)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)

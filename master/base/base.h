@@ -4,6 +4,7 @@
 #define EC_BASE_H
 
 #include <linux/err.h>
+#include "events.h"
 #include "log.h"
 #include "show.h"
 
@@ -17,6 +18,8 @@ struct ec_base {
 	bool stopping;
 	/** @log: what was logged lately */
 	struct ec_log log;
+	/** @events: what has happened, for readers of the device file */
+	struct ec_events events;
 	/** @show: readers of sessions and slaves, which take no lock, and changes of these */
 	struct ec_show show;
 };
@@ -26,6 +29,7 @@ static inline void ec_base_init(struct ec_base *b, unsigned int index, u32 debug
 	b->index = index;
 	b->debug = debug;
 	ec_log_init(&b->log);
+	ec_events_init(&b->events);
 	ec_show_init(&b->show);
 }
 

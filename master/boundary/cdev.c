@@ -99,6 +99,7 @@ static int ec_release(struct inode *inode, struct file *filp)
 	/* a read-only file has reserved nothing: no lock is needed */
 	if (f->writable)
 		ec_session_end(&m->sessions, f);
+	ec_event_reader_end(f);
 	put_device(&m->dev);
 	kfree_rcu(f, rcu);
 	return 0;
@@ -174,7 +175,7 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 }
 
 /**
- * ec_file_poll() - new inputs of a cycle that the kernel runs
+ * ec_file_poll() - new inputs of a cycle that the kernel runs, or new events
  * @f: open file
  * @filp: the same as the kernel knows it
  * @wait: argument of poll()
@@ -182,11 +183,16 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
  * Takes no lock of the master: a caller that is preempted here delays no other caller.
  *
  * Context: Process. May sleep to add an entry to the wait queue.
- * Return: as ec_cycle_thread_poll() for the owner of the cycle; EPOLLERR for every
- * other file, and when too many wait already.
+ * Return: as ec_event_reader_poll() for a reader of events; as ec_cycle_thread_poll() for the
+ * owner of the cycle; EPOLLERR for every other file, and when too many wait already.
  */
 __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait)
 {
+	/* pairs with smp_store_release() of it */
+	struct ec_event_reader *r = smp_load_acquire(&f->reader);
+
+	if (r)
+		return ec_event_reader_poll(r, filp, wait);
 	return ec_waiters_poll(&f->waiters, filp, wait) ?
 	       ec_cycle_thread_poll(&f->master->cycles, f) : EPOLLERR;
 }
@@ -196,8 +202,15 @@ static __poll_t ec_poll(struct file *filp, poll_table *wait)
 	return ec_file_poll(filp->private_data, filp, wait);
 }
 
+static ssize_t ec_read(struct file *filp, char __user *to, size_t size, loff_t *at)
+{
+	return ec_event_reader_read(filp->private_data, to, size,
+				    !(filp->f_flags & O_NONBLOCK));
+}
+
 static const struct file_operations ec_fops = {
 	.owner = THIS_MODULE,
+	.read = ec_read,
 	.open = ec_open,
 	.release = ec_release,
 	.mmap = ec_mmap,

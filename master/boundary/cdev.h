@@ -10,6 +10,7 @@
 #include "ethercat.h"
 #include "../cycle/waiters.h"
 
+struct ec_event_reader;
 struct ec_master;
 struct ec_session;
 
@@ -20,6 +21,7 @@ struct ec_session;
  * @reason: text of the last failure, under @lock
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
+ * @reader: NULL, or it reads events; set once
  * @rcu: frees it after the cycle thread has finished with @waiters
  */
 struct ec_file {
@@ -28,6 +30,7 @@ struct ec_file {
 	raw_spinlock_t lock;
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
+	struct ec_event_reader *reader;
 	struct rcu_head rcu;
 };
 

@@ -105,7 +105,8 @@ int ec_ioc_debug(struct ec_call *call)
 
 	if (i->level > 2)
 		return ec_refuse(call, -EINVAL, "debug level must be 0, 1 or 2, not %u", i->level);
-	WRITE_ONCE(call->master->base->debug, i->level);
+	if (xchg(&call->master->base->debug, i->level) != i->level)
+		ec_event(call->master->base, EC_EVENT_DEBUG, i->level);
 	return 0;
 }
 

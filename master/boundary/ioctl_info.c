@@ -26,7 +26,8 @@ int ec_ioc_version(struct ec_call *call)
 
 	v->abi = EC_UAPI_VERSION;
 	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
-		      EC_FEATURE_SOE | EC_FEATURE_VOE | EC_FEATURE_FOE;
+		      EC_FEATURE_SOE | EC_FEATURE_VOE | EC_FEATURE_FOE |
+		      EC_FEATURE_EVENTS;
 	v->master_count = ec_cdev_count();
 	v->ecrt = 0x0106;
 	strscpy(v->release, EC_RELEASE, sizeof(v->release));

@@ -12,6 +12,7 @@
 #include "../link/links.h"
 #include "../link/rider.h"
 #include "../session/session.h"
+#include "event_readers.h"
 
 struct ec_api;
 struct task_struct;
@@ -30,6 +31,8 @@ struct ec_master {
 	struct ec_cycles cycles;
 	/** @sessions: applications */
 	struct ec_sessions sessions;
+	/** @readers: open files that read events */
+	struct ec_event_readers readers;
 	/** @dev: device below the class */
 	struct device dev;
 	/** @cdev: character device */

@@ -17,8 +17,7 @@ int ec_al_read(struct ec_slave *slave)
 	int ret = ec_xfer_fprd(slave->bus->links, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
 
 	if (!ret) {
-		WRITE_ONCE(slave->al_status, get_unaligned_le16(b));
-		WRITE_ONCE(slave->al_code, get_unaligned_le16(b + 4));
+		ec_slave_set_al(slave, get_unaligned_le16(b), get_unaligned_le16(b + 4), true);
 		WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
 	}
 	return ret;

@@ -66,6 +66,8 @@ struct ec_bus {
 	bool freeze;
 	/** @scan_busy: slaves are being scanned */
 	bool scan_busy;
+	/** @scan_noted: the scan that begins now is an event already; the monitor's */
+	bool scan_noted;
 	/** @scan_slaves: how many slaves this scan has */
 	u32 scan_slaves;
 	/** @scan_index: how many of them have been read */

@@ -242,6 +242,7 @@ static void set_silent(struct scan *sc, struct ec_slave *s)
 	WRITE_ONCE(s->silent, true);
 	s->seen_ns = sc->bus->complete_ns;
 	WRITE_ONCE(s->al_status, 0);
+	ec_slave_event(s, EC_EVENT_SLAVE_SILENT);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(SILENT),
 		      "no reply from the slave, frames pass; waiting for a reply");
 	ec_slave_retry(s, EC_PROBE_MAX_MS);
@@ -257,6 +258,7 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 	s->retry_ms = 0;
 	ec_write64(&s->retry_ns, 0);
 	ec_slave_info(s, "slave replies again\n");
+	ec_slave_event(s, EC_EVENT_SLAVE_REPLIES);
 }
 
 /*
@@ -483,16 +485,44 @@ static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int 
 		};
 }
 
-/* One line each; without any slave the message about the link is enough. */
-static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int *n)
+/* @n: slaves there were then */
+static u32 upstream_of(const struct ec_slave *s, unsigned int n)
 {
+	u16 up = s->next[s->upstream];
+
+	return up < n ? up : EC_EVENT_NONE;
+}
+
+/* One line each; without any slave the message about the link is enough. */
+static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int n_old, unsigned int *n)
+{
+	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 	char text[128];
 
-	if (!sc->n || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || (*n)++ >= LOST_LINES)
+	if (!sc->n || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return;
+	ec_slave_event(s, EC_EVENT_SLAVE_LOST, upstream_of(s, n_old), s->parent_port, s->alias,
+		       s->info.vendor, s->info.product, ms);
+	if ((*n)++ >= LOST_LINES)
 		return;
 	ec_slave_lost_text(s, text, sizeof(text));
-	ec_warn_each(sc->bus, s->position + 1, "%s, last seen %llu ms ago\n", text,
-		     div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC));
+	ec_warn_each(sc->bus, s->position + 1, "%s, last seen %llu ms ago\n", text, ms);
+}
+
+/* Slaves beside known ones; of all of them, the end of the scan says enough. */
+static void note_found(struct scan *sc, unsigned int n_old)
+{
+	struct ec_bus *bus = sc->bus;
+	unsigned int i;
+
+	for (i = 0; n_old && i < bus->n_slaves; i++) {
+		const struct ec_slave *s = bus->slaves[i];
+
+		if (!is_known(sc, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
+			ec_slave_event(s, EC_EVENT_SLAVE_FOUND, upstream_of(s, bus->n_slaves),
+				       s->parent_port, s->alias, s->info.vendor,
+				       s->info.product);
+	}
 }
 
 /* The result becomes visible; slaves that are missing are gone. */
@@ -520,14 +550,18 @@ static void publish(struct scan *sc)
 		if (old[i]->position >= bus->n_slaves || bus->slaves[old[i]->position] != old[i]) {
 			note_parent(old[i], old, n_old);
 			ec_stop_gone(&old[i]->stop);
-			log_lost(sc, old[i], &lost);
+			log_lost(sc, old[i], n_old, &lost);
 		}
 	}
 	if (lost > LOST_LINES)
 		ec_warn(bus, "%u more slave(s) disconnected\n", lost - LOST_LINES);
-	if (!sc->n && n_old && READ_ONCE(bus->links->access.mode) != EC_ACCESS_DIRECT)
-		ec_warn(bus, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old,
-			div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC));
+	if (!sc->n && n_old && READ_ONCE(bus->links->access.mode) != EC_ACCESS_DIRECT) {
+		u64 ms = div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC);
+
+		ec_warn(bus, "all %u slave(s) disconnected, last seen %llu ms ago\n", n_old, ms);
+		ec_event(bus->base, EC_EVENT_ALL_LOST, n_old, ms);
+	}
+	note_found(sc, n_old);
 	for (i = 0; i < n_old; i++)
 		ec_slave_unref(old[i]);
 	kvfree(old);
@@ -558,6 +592,11 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 	sc.slaves = kvcalloc(count + 1, sizeof(*sc.slaves), GFP_KERNEL);
 	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
 	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
+	/* it may be begun again and again while a plug is pulled in */
+	if (count && !bus->scan_noted) {
+		bus->scan_noted = true;
+		ec_event(bus->base, EC_EVENT_SCAN_START, count);
+	}
 	if (sc.slaves && sc.regs && sc.dg && !index_known(&sc))
 		ret = count ? look(&sc) : 0;
 	if (!ret) {
@@ -569,6 +608,10 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 		if (sc.changed && count)
 			ec_info(bus, "scan complete: %u slave(s) in %u us, %llu frames\n", count,
 				bus->scan_us, bus->scan_frames);
+		if (bus->scan_noted)
+			ec_event(bus->base, EC_EVENT_SCAN_END, count, bus->scan_us,
+				 bus->scan_frames);
+		bus->scan_noted = false;
 	}
 	for (i = 0; sc.slaves && i < count; i++)
 		ec_slave_unref(sc.slaves[i]);

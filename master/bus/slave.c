@@ -209,8 +209,36 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 			strscpy(slave->why, text, sizeof(slave->why));
 	}
 	raw_spin_unlock(&slave->note_lock);
-	if (other)
-		ec_slave_warn(slave, "%s\n", text);
+	if (!other)
+		return;
+	ec_slave_warn(slave, "%s\n", text);
+	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code));
+}
+
+/**
+ * ec_slave_set_al() - the AL status was read; a change is an event
+ * @slave: slave
+ * @status: register 0x0130
+ * @code: register 0x0134
+ * @requested: a change is what its worker, or a caller, has requested
+ *
+ * Context: The slave's worker, or the monitor while that does not work.
+ */
+void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested)
+{
+	u16 before = READ_ONCE(slave->al_status);
+	u8 state = status & EC_AL_STATE_MASK, was = before & EC_AL_STATE_MASK;
+
+	if (status == before && code == READ_ONCE(slave->al_code))
+		return;
+	WRITE_ONCE(slave->al_status, status);
+	WRITE_ONCE(slave->al_code, code);
+	/* 0: not known before */
+	if (state != was && was)
+		ec_slave_event(slave, requested ? EC_EVENT_AL_STATE : EC_EVENT_AL_LEFT, state,
+			       was);
+	if (status & EC_AL_ERROR && !(before & EC_AL_ERROR))
+		ec_slave_event(slave, EC_EVENT_AL_ERROR, state, code);
 }
 
 /**

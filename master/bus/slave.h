@@ -181,6 +181,8 @@ struct ec_slave {
 	ec_log_event((s)->bus->base, (s)->position, 0, level, fmt, ##__VA_ARGS__)
 #define ec_slave_info(s, fmt, ...)	ec_slave_log(KERN_INFO, s, fmt, ##__VA_ARGS__)
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
+#define ec_slave_event(s, kind, ...) \
+	ec_event_slave((s)->bus->base, kind, (s)->position, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
 	ec_dbg_slave((s)->bus->base, (s)->position, lvl, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg_result(s, ret, fmt, ...) \
@@ -201,6 +203,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 		   const char *fmt, ...) __printf(4, 5);
 bool ec_slave_set_ok(struct ec_slave *slave, bool replies);
 bool ec_slave_forgive(struct ec_slave *slave);
+void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested);
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause);
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);

@@ -194,6 +194,8 @@ static void log_ref(const struct ec_dc_job *j, bool lost)
 		ec_warn(dc, "reference clock lost: slave %u is the new reference clock\n", at);
 	else
 		ec_info(dc, "slave %u is the new reference clock\n", at);
+	ec_event(dc->base, EC_EVENT_REF_CLOCK, now ? at : EC_EVENT_NONE,
+		 lost || !now || (choice != EC_DC_ANY && choice != now));
 }
 
 static void change_ref(struct ec_dc_job *j, bool found)
@@ -271,6 +273,23 @@ static int synchronize(struct ec_dc_job *j)
 	return ret;
 }
 
+static void log_result(const struct ec_dc_job *j, int ret, u64 t0)
+{
+	struct ec_dc *dc = j->dc;
+	u64 us = div_u64(ktime_get_ns() - t0, 1000);
+
+	if (!ret) {
+		ec_info(dc,
+			"distributed clocks synchronized in %llu us, reference clock: slave %u\n",
+			us, j->slaves[j->ref]->position);
+		ec_event(dc->base, EC_EVENT_DC_SET, us, j->slaves[j->ref]->position);
+	} else if (ret != -ENXIO && ret != -ECANCELED) {
+		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
+			is_transient(ret) ? "; retrying" : "");
+		ec_event(dc->base, EC_EVENT_DC_FAILED, -ret, is_transient(ret));
+	}
+}
+
 static void work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
@@ -298,13 +317,7 @@ static void work(struct work_struct *work)
 		return;
 	}
 	ret = synchronize(&j);
-	if (!ret)
-		ec_info(dc,
-			"distributed clocks synchronized in %llu us, reference clock: slave %u\n",
-			div_u64(ktime_get_ns() - t0, 1000), j.slaves[j.ref]->position);
-	else if (ret != -ENXIO && ret != -ECANCELED)
-		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
-			is_transient(ret) ? "; retrying" : "");
+	log_result(&j, ret, t0);
 	ec_dc_set_state(dc, !ret ? EC_DC_READY : is_transient(ret) ? EC_DC_RETRY_WAIT :
 						 EC_DC_FAILED);
 	/* pairs with the barrier in ec_dc_sync_start() */

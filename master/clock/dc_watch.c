@@ -82,6 +82,7 @@ static void log_window(struct ec_dc *dc)
 		return;
 	dc->window_logged = far;
 	dc->window_log_ns = now + LOG_NS;
+	ec_event(dc->base, EC_EVENT_DC_WINDOW, far, clocks, far ? worst : EC_EVENT_NONE, max);
 	max = DIV_ROUND_CLOSEST(max, 100);
 	if (far)
 		ec_warn(dc,

@@ -125,6 +125,9 @@ struct ec_cyc_flight {
  * @stale: age of the oldest stale data that came back, for the log
  * @stale_logged: the log has said so; only the monitor's
  * @image: what the offsets of its datagrams count from
+ * @seen: working counter of the last receive
+ * @noted: the one of the last event about it
+ * @rate: of these events
  */
 struct ec_cyc_domain {
 	u8 *image;
@@ -135,6 +138,9 @@ struct ec_cyc_domain {
 	u32 max_age;
 	u32 stale;
 	bool stale_logged;
+	u32 seen;
+	u32 noted;
+	struct ec_event_rate rate;
 };
 
 /**

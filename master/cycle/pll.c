@@ -142,6 +142,9 @@ void ec_pll_log(struct ec_cycle *c)
 	    (lock == EC_CYCLE_LOCK_HOLD && ec_dc_busy(c->dc)))
 		return;
 	c->lock_logged = lock;
+	if (lock != EC_CYCLE_LOCK_OFF)
+		ec_event(c->base, EC_EVENT_LOCK, lock, READ_ONCE(st->phase_error),
+			 READ_ONCE(st->rate_ppb));
 	if (lock == EC_CYCLE_LOCK_LOCKED)
 		ec_info(c, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
 			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));

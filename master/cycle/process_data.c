@@ -131,8 +131,22 @@ static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned
 	return d->age;
 }
 
+/* A change of the working counter is an event; of many in a second the first and the last. */
+static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc, u64 now)
+{
+	if (wkc != d->seen) {
+		d->seen = wkc;
+		d->rate.more++;
+	}
+	if (likely(!d->rate.more) || !ec_events_admit(&d->rate, now))
+		return;
+	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1);
+	d->noted = wkc;
+	d->rate.more = 0;
+}
+
 /* Domains that were sent or came back since the last receive. */
-static void judge(struct ec_cycle *c)
+static void judge(struct ec_cycle *c, u64 now)
 {
 	u64 left = c->sent | c->back;
 
@@ -144,6 +158,7 @@ static void judge(struct ec_cycle *c)
 		WRITE_ONCE(st->working_counter, wkc);
 		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == c->domains[i].expected ? 2 : 1);
 		WRITE_ONCE(st->age, judge_age(c, &c->domains[i], i));
+		note_wkc(c, &c->domains[i], i, wkc, now);
 	}
 	c->judged = c->send;
 	c->sent = 0;
@@ -173,6 +188,7 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 		ec_warn(c,
 			"domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
 			i, age, d->max_age);
+		ec_event(c->base, EC_EVENT_STALE, i, age, d->max_age);
 	}
 }
 
@@ -218,7 +234,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	}
 	c->n_flight = left;
 	ec_links_events(c->links, irq);
-	judge(c);
+	judge(c, now);
 	ec_status_begin(c->shared->status);
 	ec_dc_datagrams_judge(c);
 	WRITE_ONCE(c->shared->status->cycle, c->sends);

@@ -124,6 +124,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 	rt_mutex_unlock(&l->access.lock);
 	ec_info(l, "%s device %s attached (%s, %pM)\n", side_name(link), dev->name,
 		dev->ops->kind, dev->mac);
+	ec_event(l->base, EC_EVENT_DEVICE_ON, link->side);
 	report(link, true);
 }
 
@@ -142,6 +143,7 @@ static void withdraw(struct ec_link *link, struct ecdev *dev)
 		dev->ops->cycle(dev->priv, false);
 	report(link, false);
 	ec_info(l, "%s device %s detached\n", side_name(link), dev->name);
+	ec_event(l->base, EC_EVENT_DEVICE_OFF, link->side);
 }
 
 static void detach(struct ecdev *dev)

@@ -20,6 +20,8 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 		return false;
 	ec_mbox_warn(mb, "CoE emergency: code 0x%04x, error register 0x%02x (%s)\n", e.code,
 		     e.reg, ec_coe_emergency_text(e.code));
+	ec_event_slave(mb->base, EC_EVENT_EMERGENCY, *mb->position, e.code, e.reg,
+		       get_unaligned_le32(e.data), e.data[4]);
 	ec_emerg_push(mb, rx + EC_COE_HDR);
 	return true;
 }

@@ -172,6 +172,7 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		kvfree(s);
 		return ret;
 	}
+	ec_event(ss->base, EC_EVENT_RESERVED, task_tgid_nr(current));
 	if (READ_ONCE(ss->candidate) == s)
 		return 0;
 	ret = ec_bus_wait_slaves(ss->bus);
@@ -229,6 +230,7 @@ int ec_session_deactivate(struct ec_session *s)
 		return -EINVAL;
 	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
+	ec_session_note_counts(s, false, true);
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_late_end(&s->cycle);
 	s->wanted.active = false;
@@ -243,6 +245,7 @@ int ec_session_deactivate(struct ec_session *s)
 		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
 			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged);
 	ec_info(ss, "session deactivated\n");
+	ec_event(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
 	return 0;
 }
 
@@ -366,6 +369,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	s = ss->candidate;
 	if (s && (!owner || s->cycle.owner == owner)) {
 		WRITE_ONCE(ss->candidate, NULL);
+		ec_event(ss->base, EC_EVENT_RELEASED, s->owner_pid);
 		ec_session_free(s);
 	}
 	s = ss->session;
@@ -374,10 +378,14 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	if (s && owner && s->cycle.thread && !s->ending &&
 	    s->cycle.kernel.flags & EC_CYCLE_FLAG_DETACH) {
 		ec_cycle_set_owner(&s->cycle, NULL, NULL);
+		ec_event(ss->base, EC_EVENT_DETACHED, s->owner_pid);
 		ec_info(ss,
 			"application exited or released the master; session detached, kernel cycle continues\n");
 	} else if (s) {
+		pid_t pid = s->owner_pid;
+
 		end(ss);
+		ec_event(ss->base, EC_EVENT_RELEASED, pid);
 	}
 	ec_sessions_unlock(ss);
 }
@@ -555,6 +563,8 @@ int ec_session_activate(struct ec_session *s)
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
 	s->timeout_log.logged = atomic_read(&ss->links->access.timeouts);
+	s->notes = (struct ec_count_notes){ };
+	ec_session_note_counts(s, true, false);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	WRITE_ONCE(ss->bus->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
@@ -575,6 +585,8 @@ int ec_session_activate(struct ec_session *s)
 	ec_config_log_differences(&s->wanted);
 	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->wanted.n_domains, offset, s->cycle.n_dgrams);
+	ec_event(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, offset,
+		 s->cycle.n_dgrams);
 	return 0;
 }
 

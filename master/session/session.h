@@ -30,6 +30,22 @@ struct ec_timeout_log {
 };
 
 /**
+ * struct ec_count_notes - what the events have of counters; under sessions->lock
+ * @count: counters at the last look: cycles skipped, frames lost, frames late
+ * @more: since the last event, of each
+ * @next_ns: no other event before, of each
+ * @timeouts: cycle timeouts, as struct ec_timeout_log @logged
+ * @since_ns: last send before the timeout that is noted, 0: none is
+ */
+struct ec_count_notes {
+	u64 count[3];
+	u32 more[3];
+	u64 next_ns[3];
+	u32 timeouts;
+	u64 since_ns;
+};
+
+/**
  * struct ec_next - what a candidate has set, for the time when the master is its own
  * @interval_us: of its cycle, 0: not set
  * @phase: its first application time other than 0
@@ -89,6 +105,7 @@ struct ec_sessions {
  * @owner_comm: its command, printable
  * @wanted: slave configurations and domains
  * @timeout_log: cycle timeouts of the application in the log
+ * @notes: its counters in the events
  * @cycle: its cycle, and whose it is
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
@@ -108,6 +125,7 @@ struct ec_session {
 	char owner_comm[TASK_COMM_LEN];
 	struct ec_wanted wanted;
 	struct ec_timeout_log timeout_log;
+	struct ec_count_notes notes;
 	struct ec_cycle cycle;
 	u32 ref_config;
 	struct ec_request_spec *specs;
@@ -162,6 +180,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 				       u32 product);
 
 /* session_status.c */
+void ec_session_note_counts(struct ec_session *s, bool first, bool all);
 void ec_session_fill_status(struct ec_session *s);
 void ec_session_status(struct ec_sessions *ss, bool scanned);
 

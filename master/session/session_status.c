@@ -37,6 +37,64 @@ static void log_timeouts(struct ec_session *s, u64 now)
 	}
 }
 
+static void note_timeouts(struct ec_session *s, u64 now)
+{
+	struct ec_sessions *ss = s->sessions;
+	struct ec_count_notes *n = &s->notes;
+	u32 timeouts = atomic_read(&ss->links->access.timeouts);
+
+	if (timeouts != n->timeouts) {
+		n->since_ns = ec_read64(&ss->links->access.timeout_ns);
+		ec_event(ss->base, EC_EVENT_TIMEOUT, div_u64(now - n->since_ns, NSEC_PER_MSEC),
+			 timeouts - n->timeouts);
+		n->timeouts = timeouts;
+	}
+	if (n->since_ns && READ_ONCE(ss->links->access.mode) != EC_ACCESS_DIRECT) {
+		ec_event(ss->base, EC_EVENT_RESUMED, div_u64(now - n->since_ns, NSEC_PER_MSEC));
+		n->since_ns = 0;
+	}
+}
+
+/**
+ * ec_session_note_counts() - counters that have grown are events, at most one a second of each
+ * @s: active session
+ * @first: only from now on they count
+ * @all: also within the second
+ *
+ * So the cycle itself only counts.
+ *
+ * Context: Process, session lock held.
+ */
+void ec_session_note_counts(struct ec_session *s, bool first, bool all)
+{
+	static const u32 kinds[] = { EC_EVENT_OVERRUN, EC_EVENT_FRAMES_LOST, EC_EVENT_FRAMES_LATE };
+	const struct ec_link_stats *stats = &ec_links_at(s->sessions->links, 0)->stats;
+	struct ec_status *st = s->cycle.shared->status;
+	struct ec_count_notes *n = &s->notes;
+	u64 counts[3], now = ktime_get_ns();
+	unsigned int i;
+
+	lockdep_assert_held(s->wanted.lock);
+	ec_status_copy(st, &counts[0], &st->kernel.overruns, sizeof(counts[0]));
+	counts[1] = atomic64_read(&stats->lost);
+	counts[2] = atomic64_read(&stats->late);
+	for (i = 0; i < ARRAY_SIZE(counts); i++) {
+		/* less: a caller has reset it, or the device has changed */
+		n->more[i] += counts[i] - (counts[i] < n->count[i] ? 0 : n->count[i]);
+		n->count[i] = counts[i];
+		if (first)
+			n->more[i] = 0;
+		if (!n->more[i] || (!all && now < n->next_ns[i]))
+			continue;
+		ec_event(s->sessions->base, kinds[i], n->more[i]);
+		n->more[i] = 0;
+		n->next_ns[i] = now + NSEC_PER_SEC;
+	}
+	if (first)
+		n->timeouts = atomic_read(&s->sessions->links->access.timeouts);
+	note_timeouts(s, now);
+}
+
 static void status_links(struct ec_sessions *ss, struct ec_status *st)
 {
 	unsigned int i;
@@ -94,6 +152,7 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 	s = ss->session;
 	if (s && s->wanted.active) {
 		log_timeouts(s, ktime_get_ns());
+		ec_session_note_counts(s, false, false);
 		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
 		ec_dc_app_log(ss->dc);

@@ -240,6 +240,7 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 						     lockdep_is_held(&ss->lock)));
 	s->owner_pid = candidate->owner_pid;
 	memcpy(s->owner_comm, candidate->owner_comm, sizeof(s->owner_comm));
+	ec_event(ss->base, EC_EVENT_TAKEN_OVER, s->owner_pid);
 	/* the application before has no handles any more */
 	if (s->handles)
 		ec_session_free(s->handles);

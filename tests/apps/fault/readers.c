@@ -110,6 +110,9 @@ static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 	case EC_IOC_CONFIG_WHY:
 		((struct ec_ioc_config_why *)arg)->index = k % APP_CONFIGS;
 		break;
+	case EC_IOC_EVENTS:
+		((struct ec_ioc_events *)arg)->size = sizeof(struct ec_event);
+		break;
 	case EC_IOC_DOMAIN_FMMU:
 		((struct ec_ioc_domain_fmmu *)arg)->fmmu = k % 2;
 		break;
@@ -126,6 +129,7 @@ static int allowed(const struct cmd *c, int err)
 	case EC_IOC_REASON:
 	case EC_IOC_MASTER:
 	case EC_IOC_CYCLE_STATS:
+	case EC_IOC_EVENTS:
 		return !err;
 	case EC_IOC_SM:
 	case EC_IOC_PDO:

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What happens on the bus is in the ring of events, in its order. */
+#include "cyc.h"
+#include "master/boundary/ioctl.h"
+#include "master/wire/event.h"
+
+static const char line[] =
+	"segment seed=21 response=100us transition=1ms\n"
+	"slave coupler EK1100\nslave x EL1859\nslave drive drive\nslave last EL1859\n";
+
+#define N	4
+#define X	1
+#define DRIVE	2
+#define LAST	3
+
+/* a reader of the ring */
+struct log {
+	struct kunit *test;
+	const struct ec_event_ring *ring;
+	u64 at;
+	struct ec_event e;
+};
+
+static struct log *log_new(struct bus *b)
+{
+	struct log *l = kunit_kzalloc(b->test, sizeof(*l), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(b->test, l);
+	l->test = b->test;
+	l->ring = &b->m->base->events.ring;
+	l->at = ec_event_ring_head(l->ring);
+	return l;
+}
+
+/* The next event of this kind; those before it are passed over. */
+static bool next(struct log *l, u32 kind)
+{
+	u64 at = l->at;
+	char text[200];
+
+	while (ec_event_ring_get(l->ring, &l->at, &l->e))
+		if (l->e.kind == kind)
+			return true;
+	KUNIT_FAIL(l->test, "no event %s after number %llu", ec_event_kind(kind)->name, at);
+	for (l->at = at; ec_event_ring_get(l->ring, &l->at, &l->e);) {
+		ec_event_text(&l->e, text, sizeof(text));
+		kunit_info(l->test, "%llu: %s", l->e.number, text);
+	}
+	return false;
+}
+
+static void next_of(struct log *l, u32 kind, u16 slave)
+{
+	if (next(l, kind))
+		KUNIT_EXPECT_EQ_MSG(l->test, l->e.slave, slave, "slave of event %s",
+				    ec_event_kind(kind)->name);
+}
+
+/* How many of this kind came since @at. */
+static u32 count(const struct log *l, u64 at, u32 kind)
+{
+	struct ec_event e = { };
+	u32 n = 0;
+
+	while (ec_event_ring_get(l->ring, &at, &e))
+		n += e.kind == kind;
+	return n;
+}
+
+static struct cyc *in_op(struct kunit *test)
+{
+	struct bus *b = bus_up(test, line, N);
+	struct cyc *c;
+	u32 d;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	d = cyc_domain(c);
+	cyc_map_all(c, 0, LAST, 0);
+	cyc_map_all(c, LAST, 1, d);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	/* beyond the time in which changes of a working counter are counted together */
+	cyc_run(c, 1500);
+	return c;
+}
+
+/* cycles until @c is in OP and complete */
+static void recover(struct cyc *c)
+{
+	u32 i;
+
+	for (i = 0; i < 5000 && (!cyc_all_op(c) || cyc_state(c, 0)->wc_state != 2 ||
+				 cyc_state(c, 1)->wc_state != 2); i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_LT(c->b->test, i, 5000u);
+	cyc_run(c, 100);
+}
+
+static void events_start_has_scan_and_session_in_order(struct kunit *test)
+{
+	struct bus *b = bus_new(test, line);
+	struct log *l = log_new(b);
+	struct cyc *c;
+
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, N, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_run(c, 50);
+	cyc_release(c);
+	next(l, EC_EVENT_DEVICE_ON);
+	next(l, EC_EVENT_LINK_UP);
+	if (next(l, EC_EVENT_SCAN_START))
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)N);
+	if (next(l, EC_EVENT_SCAN_END))
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)N);
+	next(l, EC_EVENT_RESERVED);
+	if (next(l, EC_EVENT_ACTIVATED))
+		KUNIT_EXPECT_EQ(test, l->e.arg[1], 1u);
+	/* a slave takes part with its first FMMU */
+	if (next(l, EC_EVENT_WKC))
+		KUNIT_EXPECT_EQ(test, l->e.arg[2], 0u);
+	if (next(l, EC_EVENT_AL_STATE))
+		KUNIT_EXPECT_EQ_MSG(test, l->e.arg[0], (u32)EC_AL_SAFEOP, "from PREOP");
+	next(l, EC_EVENT_DEACTIVATED);
+	next(l, EC_EVENT_RELEASED);
+}
+
+static void events_unplugged_slave_is_lost_and_found(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+	u64 begin = l->at, begin_again;
+
+	bus_fault(c->b, EC_SIM_FAULT_CUT, DRIVE, 1, 0, 0);
+	cyc_run(c, 300);
+	if (next(l, EC_EVENT_WKC)) {
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], 1u);
+		KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], 0u, "working counter");
+		KUNIT_EXPECT_EQ_MSG(test, l->e.arg[2], l->e.arg[3], "it was complete");
+	}
+	if (next(l, EC_EVENT_RESPONDING)) {
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], N - 1u);
+		KUNIT_EXPECT_EQ(test, l->e.arg[1], (u32)N);
+	}
+	next_of(l, EC_EVENT_SLAVE_LOST, LAST);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[0], (u32)DRIVE, "slave upstream");
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], 1u, "its port");
+	KUNIT_EXPECT_LE_MSG(test, l->e.arg[5], 100u, "ms");
+	KUNIT_EXPECT_EQ(test, count(l, begin, EC_EVENT_SLAVE_LOST), 1u);
+
+	bus_fault(c->b, EC_SIM_FAULT_HEAL, DRIVE, 1, 0, 0);
+	recover(c);
+	next_of(l, EC_EVENT_SLAVE_FOUND, LAST);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)DRIVE);
+	begin_again = l->at;
+	next_of(l, EC_EVENT_AL_STATE, LAST);
+	next_of(l, EC_EVENT_SLAVE_BACK, LAST);
+	for (l->at = begin_again; count(l, l->at, EC_EVENT_WKC); next(l, EC_EVENT_WKC))
+		;
+	KUNIT_EXPECT_EQ_MSG(test, l->e.kind, (u32)EC_EVENT_WKC, "the last of them");
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], l->e.arg[3], "complete again");
+	KUNIT_EXPECT_EQ(test, count(l, begin, EC_EVENT_SLAVE_FOUND), 1u);
+}
+
+static void events_power_loss_of_slave_is_noticed_twice(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+
+	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, LAST, 0, 0, 0);
+	cyc_run(c, 300);
+	next_of(l, EC_EVENT_SLAVE_LOST, LAST);
+	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, LAST, 0, 0, 0);
+	recover(c);
+	next_of(l, EC_EVENT_SLAVE_FOUND, LAST);
+}
+
+static void events_al_error_has_code_and_return_to_op(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+
+	ec_app_al_fail(bus_app(c->b, "drive"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
+	cyc_run(c, 50);
+	recover(c);
+	next_of(l, EC_EVENT_AL_LEFT, DRIVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, l->e.arg[1], (u32)EC_AL_OP);
+	next_of(l, EC_EVENT_AL_ERROR, DRIVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, l->e.arg[1], 0x1bu);
+	do
+		next_of(l, EC_EVENT_AL_STATE, DRIVE);
+	while (l->e.kind == EC_EVENT_AL_STATE && l->e.arg[0] != EC_AL_OP);
+}
+
+static void events_link_down_ends_all_slaves(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+
+	bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	cyc_run(c, 400);
+	if (next(l, EC_EVENT_LINK_DOWN))
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], 0u);
+	if (next(l, EC_EVENT_ALL_LOST))
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)N);
+	bus_fault(c->b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+	recover(c);
+	next(l, EC_EVENT_LINK_UP);
+	next(l, EC_EVENT_SCAN_END);
+	next(l, EC_EVENT_WKC);
+}
+
+/* A slave that takes part in every second frame only: few records, and the last one is right. */
+static void events_flapping_working_counter_has_few_records(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+	u32 *wkc = &cyc_state(c, 1)->working_counter, before = *wkc, full = *wkc;
+	u32 i, more = 0, changes = 0, last = 0, n = 0;
+
+	for (i = 0; i < 4500; i++) {
+		if (i < 3000)
+			bus_fault(c->b, EC_SIM_FAULT_WKC, LAST, 0, ~i & 1, 0);
+		cyc_run(c, 1);
+		changes += *wkc != before;
+		before = *wkc;
+	}
+	while (count(l, l->at, EC_EVENT_WKC) && next(l, EC_EVENT_WKC)) {
+		if (l->e.arg[0] != 1)
+			continue;
+		n++;
+		more += l->e.arg[4];
+		last = l->e.arg[1];
+	}
+	bus_figure("%u changes of a working counter in 3 s: %u records", changes, n);
+	KUNIT_EXPECT_GT(test, changes, 2000u);
+	KUNIT_EXPECT_LE(test, n, 4u * EC_EVENT_RATE);
+	KUNIT_EXPECT_EQ_MSG(test, n + more, changes, "each change is counted");
+	KUNIT_EXPECT_EQ(test, last, full);
+}
+
+/* Nothing comes back for a while: one record a second, with all frames. */
+static void events_lost_frames_are_counted_in_few_records(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+	u64 lost = bus_lost(c->b);
+	u32 n = 0, sum = 0;
+
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	cyc_run(c, 2500);
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+	cyc_run(c, 1500);
+	while (count(l, l->at, EC_EVENT_FRAMES_LOST) && next(l, EC_EVENT_FRAMES_LOST)) {
+		n++;
+		sum += l->e.arg[0];
+	}
+	KUNIT_EXPECT_GE(test, n, 2u);
+	KUNIT_EXPECT_LE(test, n, 5u);
+	KUNIT_EXPECT_GT(test, sum, 1000u);
+	KUNIT_EXPECT_EQ(test, sum, (u32)(bus_lost(c->b) - lost));
+}
+
+static void events_emergency_has_code_and_data(struct kunit *test)
+{
+	static const u8 data[5] = { 1, 2, 3, 4, 5 };
+	struct bus *b = bus_up(test, line, N);
+	struct log *l;
+
+	bus_idle(b);
+	l = log_new(b);
+	ec_app_emergency(bus_app(b, "drive"), 0x3210, 0x04, data, ktime_get_ns());
+	msleep(300);
+	next_of(l, EC_EVENT_EMERGENCY, DRIVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], 0x3210u);
+	KUNIT_EXPECT_EQ(test, l->e.arg[1], 4u);
+	KUNIT_EXPECT_EQ(test, l->e.arg[2], 0x04030201u);
+	KUNIT_EXPECT_EQ(test, l->e.arg[3], 5u);
+}
+
+static void events_application_without_sends_times_out_and_resumes(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+
+	msleep(300);
+	c->next = ktime_get();
+	cyc_run(c, 100);
+	if (next(l, EC_EVENT_TIMEOUT)) {
+		KUNIT_EXPECT_GE(test, l->e.arg[0], 20u);
+		KUNIT_EXPECT_EQ(test, l->e.arg[1], 1u);
+	}
+	if (next(l, EC_EVENT_RESUMED))
+		KUNIT_EXPECT_GE(test, l->e.arg[0], 250u);
+}
+
+/* The file begins where it was told to; the number of the next event is the same for all. */
+static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
+{
+	struct ec_ioc_events arg = { .size = sizeof(struct ec_event) }, bad = { .size = 60 };
+	struct bus *b = bus_up(test, line, N);
+	struct ec_file *f = kunit_kzalloc(test, sizeof(*f), GFP_KERNEL);
+	u64 head = ec_event_ring_head(&b->m->base->events.ring);
+
+	KUNIT_ASSERT_NOT_NULL(test, f);
+	ec_file_init(f, b->m, false);
+	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &bad), -EINVAL);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(f->reason, "64 bytes, not 60"));
+	KUNIT_EXPECT_NULL_MSG(test, f->reader, "a refused file reads no events");
+	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), 0);
+	KUNIT_EXPECT_EQ(test, arg.first, 0ull);
+	KUNIT_EXPECT_EQ(test, arg.next, head);
+	KUNIT_EXPECT_TRUE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
+	arg.flags = EC_EVENTS_FLAG_NEW;
+	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), 0);
+	KUNIT_EXPECT_EQ(test, arg.first, head);
+	KUNIT_EXPECT_FALSE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
+	ec_event(b->m->base, EC_EVENT_DEBUG, 1);
+	KUNIT_EXPECT_TRUE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
+	KUNIT_EXPECT_EQ(test, b->m->readers.count, 1u);
+	ec_event_reader_end(f);
+	KUNIT_EXPECT_EQ(test, b->m->readers.count, 0u);
+	arg.flags = 2;
+	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), -EOPNOTSUPP);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(events_start_has_scan_and_session_in_order),
+	KUNIT_CASE(events_unplugged_slave_is_lost_and_found),
+	KUNIT_CASE(events_power_loss_of_slave_is_noticed_twice),
+	KUNIT_CASE(events_al_error_has_code_and_return_to_op),
+	KUNIT_CASE(events_link_down_ends_all_slaves),
+	KUNIT_CASE(events_flapping_working_counter_has_few_records),
+	KUNIT_CASE(events_lost_frames_are_counted_in_few_records),
+	KUNIT_CASE(events_emergency_has_code_and_data),
+	KUNIT_CASE(events_application_without_sends_times_out_and_resumes),
+	KUNIT_CASE(events_reader_begins_at_oldest_or_newest),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_events",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
