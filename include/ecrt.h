@@ -119,6 +119,10 @@
 #define EC_HAVE_FOE
 /* ecrt_slave_config_create_foe_request() and its requests */
 #define EC_HAVE_FOE_REQUESTS
+#ifndef __KERNEL__
+/* ecrt_open_events(): what has happened on the bus; in userspace */
+#define EC_HAVE_EVENTS
+#endif
 
 #ifndef EC_PUBLIC_API
 #if defined(ethercat_EXPORTS) && !defined(__KERNEL__)
@@ -1436,6 +1440,73 @@ EC_PUBLIC_API int ecrt_master_foe_write(ec_master_t *master,
 		uint16_t slave_position, const char *file_name,
 		uint32_t password, const uint8_t *data, size_t data_size,
 		uint32_t *error_code, uint32_t timeout);
+#endif
+
+#ifdef EC_HAVE_EVENTS
+#define EC_EVENT_ARGUMENTS	8
+
+/**
+ * struct ec_event_t - one event
+ * @number: of the event since the module was loaded, from 0
+ * @time_ns: CLOCK_MONOTONIC
+ * @wall_ns: CLOCK_REALTIME, ns since 1970, at that time
+ * @kind: see ecrt_event_name()
+ * @slave: ring position, 0xffff: not of one slave
+ * @reserved: 0
+ * @arg: values in the order of 'ethercat log --json'; 0xffffffff instead of a ring position:
+ *	no slave. Of the event "missed": lower and upper 32 bits of the number of lost events
+ */
+typedef struct {
+	uint64_t number;
+	uint64_t time_ns;
+	uint64_t wall_ns;
+	uint32_t kind;
+	uint16_t slave;
+	uint16_t reserved;
+	uint32_t arg[EC_EVENT_ARGUMENTS];
+} ec_event_t;
+
+/**
+ * ecrt_open_events() - open a file to read events from
+ * @master_index: index from 0 of /dev/EtherCAT<index>
+ * @only_new: nonzero: begin with the next event; 0: with the oldest that is kept
+ *
+ * Extension (%EC_HAVE_EVENTS). Needs read access only. read() returns whole ec_event_t and
+ * waits for one, unless the file has O_NONBLOCK (then EAGAIN); a buffer smaller than an event is
+ * EINVAL. poll() returns POLLIN when there is one, within 20 ms of the event. Each file has a
+ * position of its own: readers take nothing from others, and never delay the cycle. The master
+ * keeps the last 2047 events; a reader that is slower gets an event "missed" with the exact
+ * number of events it has lost. Close the file with close().
+ *
+ * Context: Process. May sleep.
+ * Return: file descriptor; %-ENOENT no such master, %-EACCES no access, %-ENOTTY the module has no
+ * events.
+ */
+EC_PUBLIC_API int ecrt_open_events(unsigned int master_index, int only_new);
+
+/**
+ * ecrt_event_name() - get the name of an event
+ * @kind: of ec_event_t
+ *
+ * Extension (%EC_HAVE_EVENTS). For example "slave_lost", as in 'ethercat log --json'.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: one word; "unknown": a newer module has this event.
+ */
+EC_PUBLIC_API const char *ecrt_event_name(uint32_t kind);
+
+/**
+ * ecrt_event_text() - write one line about an event
+ * @event: as read
+ * @buf: result, without line end
+ * @size: bytes of @buf; 200 are enough
+ *
+ * Extension (%EC_HAVE_EVENTS).
+ *
+ * Context: Process.
+ * Return: length of the text, cut to @size - 1; %-EINVAL an argument is NULL or @size is 0.
+ */
+EC_PUBLIC_API int ecrt_event_text(const ec_event_t *event, char *buf, size_t size);
 #endif
 
 #ifdef EC_HAVE_REF_CLOCK_TIME_64

@@ -150,8 +150,8 @@ library_works() {
 	$CC -std=gnu11 $warn -Wno-pedantic $san -D_GNU_SOURCE \
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close,--wrap=posix_fadvise \
 		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
-		extension.c rules.c kernel_cycle.c fake.c \
-		"$top"/lib/*.c "$top"/lib/ecrt/*.c &&
+		events.c extension.c rules.c kernel_cycle.c fake.c \
+		"$top"/lib/*.c "$top"/lib/ecrt/*.c "$top"/master/wire/{al,coe,event}.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
 

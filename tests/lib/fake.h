@@ -17,6 +17,7 @@ struct fake {
 	unsigned int calls;
 	unsigned int opens;
 	unsigned int closes;
+	int writable;		/* the last open */
 	unsigned int last;
 	unsigned int refuse;
 	int err;

@@ -487,6 +487,7 @@ int main(void)
 	objects();
 	configuration();
 	eoe();
+	events();
 	extensions();
 	rules();
 	foreign_domain();

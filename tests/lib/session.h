@@ -23,6 +23,7 @@ void idns_and_vendor_messages(void);
 void dictionary(void);
 void files(void);
 void eoe(void);
+void events(void);
 void extensions(void);
 void rules(void);
 

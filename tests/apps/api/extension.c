@@ -2,6 +2,10 @@
 /* Beyond ecrt: memory before activation, an orderly end, reasons, clocks. */
 #include "api.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 static void preset(void)
 {
 	unsigned int bit;
@@ -169,6 +173,49 @@ static void clocks(void)
 	bench_down(&b);
 }
 
+/* What this application does is in the events, for a reader that only reads. */
+static void events(void)
+{
+	int fd = CALL(ecrt_open_events)(0, 1), all = CALL(ecrt_open_events)(0, 0);
+	struct pollfd p = { .fd = fd, .events = POLLIN };
+	bool reserved = false, activated = false, released = false;
+	ec_event_t e[64];
+	struct bench b;
+	char text[200];
+	ssize_t n;
+
+	NEED(fd >= 0 && all >= 0);
+	SAYS(CALL(ecrt_open_events)(99, 0), -ENOENT);
+	IS(poll(&p, 1, 0), 0);
+	NEED(bench_request(&b) && bench_configure(&b) && bench_activate(&b));
+	bench_down(&b);
+	IS(poll(&p, 1, 1000), 1);
+	IS(p.revents, POLLIN);
+	errno = 0;
+	IS(read(fd, e, sizeof(e[0]) - 1), -1);
+	IS(errno, EINVAL);
+	IS(fcntl(fd, F_SETFL, O_NONBLOCK), 0);
+	while ((n = read(fd, e, sizeof(e))) > 0) {
+		IS(n % (ssize_t)sizeof(e[0]), 0);
+		for (size_t i = 0; i < (size_t)n / sizeof(e[0]); i++) {
+			const char *name = CALL(ecrt_event_name)(e[i].kind);
+
+			reserved |= !strcmp(name, "reserved") && e[i].arg[0] == (uint32_t)getpid();
+			activated |= reserved && !strcmp(name, "activated");
+			released |= activated && !strcmp(name, "released");
+			YES(CALL(ecrt_event_text)(&e[i], text, sizeof(text)) > 0);
+		}
+	}
+	IS(errno, EAGAIN);
+	YES(released);
+	/* the other reader has not lost the events of before */
+	IS(read(all, e, sizeof(e[0])), (long long)sizeof(e[0]));
+	IS(e[0].number, 0);
+	IS(CALL(ecrt_event_text)(NULL, text, sizeof(text)), -EINVAL);
+	close(fd);
+	close(all);
+}
+
 const struct api_case extension_cases[] = {
 	{ "memory before activation", preset },
 	{ "an orderly end", orderly },
@@ -176,5 +223,6 @@ const struct api_case extension_cases[] = {
 	{ "reasons", reasons },
 	{ "two configurations of one slave", twins },
 	{ "the whole time, the state of a clock", clocks },
+	{ "events of an application", events },
 	{ NULL, NULL },
 };
