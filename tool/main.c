@@ -63,7 +63,10 @@ static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 		return usage_error("missing argument: ethercat %s %s", c->name, c->args);
 	if (nargs > c->max_args)
 		return usage_error("unexpected argument '%s'", args[c->max_args]);
-	out_start(t->json);
+	if (t->follow && strchr(c->opts, 'F'))
+		out_start_lines(t->json);
+	else
+		out_start(t->json);
 	ret = c->run(t, nargs, args);
 	if (!ret)
 		ret = dev_nothing_selected();

@@ -29,6 +29,7 @@ const struct opt opts[] = {
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
 	{ 'W', "watch", "SECONDS", "repeat after SECONDS, 0.1 to 86400, and show what has grown" },
 	{ 'E', "tree", NULL, "tree of text" },
+	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },
@@ -57,6 +58,7 @@ static const struct option longs[] = {
 	{ "texts", required_argument, NULL, 'T' },
 	{ "watch", required_argument, NULL, 'W' },
 	{ "tree", no_argument, NULL, 'E' },
+	{ "follow", no_argument, NULL, 'F' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
@@ -66,6 +68,7 @@ static const struct option longs[] = {
 bool opt_is_short(const struct opt *o)
 {
 	return !strchr("bwSCLATOWE", o->letter);
+	return !strchr("bwSCLATOF", o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -119,6 +122,7 @@ static int bad_option(char **argv, int c)
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
 	if (strchr("eqvhjrfbAOE", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfbAOF", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -189,6 +193,8 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return watch(optarg, &t->watch_s);
 	case 'E':
 		t->tree = true;
+	case 'F':
+		t->follow = true;
 		return 0;
 	case 'j':
 		t->json = true;

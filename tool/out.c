@@ -13,6 +13,7 @@
 #define DEPTH 16
 
 static bool json;
+static bool lines;
 static char closing[DEPTH];	/* of the open containers */
 static unsigned int depth;
 static bool first;		/* in the innermost container */
@@ -20,10 +21,18 @@ static bool first;		/* in the innermost container */
 void out_start(bool as_json)
 {
 	json = as_json;
+	lines = false;
 	depth = 0;
 	first = true;
 	if (json)
 		out_object(NULL);
+}
+
+void out_start_lines(bool as_json)
+{
+	json = as_json;
+	lines = true;
+	depth = 0;
 }
 
 /* close what is open; Return: 0, or -errno when stdout did not take it all */
@@ -73,7 +82,9 @@ static bool lead(const char *key)
 
 	if (!json || (member && !key))
 		return false;
-	if (depth) {
+	if (depth && lines) {
+		fputs(first ? "" : ", ", stdout);
+	} else if (depth) {
 		fputs(first ? "\n" : ",\n", stdout);
 		printf("%*s", (int)(2 * depth), "");
 	}
@@ -109,7 +120,7 @@ void out_end(void)
 	if (!json || !depth)
 		return;
 	depth--;
-	if (!first)
+	if (!first && !lines)
 		printf("\n%*s", (int)(2 * depth), "");
 	putchar(closing[depth]);
 	first = false;

@@ -15,6 +15,8 @@
 #define OUT_FMT(n)	__attribute__((format(printf, n, (n) + 1)))
 
 void out_start(bool json);
+/* in JSON each object that is opened outside of any other is a line of its own */
+void out_start_lines(bool json);
 int out_finish(void);
 bool out_is_json(void);
 

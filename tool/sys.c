@@ -21,6 +21,11 @@ int sys_ioctl(int fd, unsigned long request, void *arg)
 	return ioctl(fd, request, arg);
 }
 
+long sys_read(int fd, void *buf, unsigned long size)
+{
+	return read(fd, buf, size);
+}
+
 void sys_close(int fd)
 {
 	close(fd);

@@ -4,6 +4,7 @@
 
 int sys_open(const char *path, int flags);
 int sys_ioctl(int fd, unsigned long request, void *arg);
+long sys_read(int fd, void *buf, unsigned long size);
 void sys_close(int fd);
 const char *sys_fs(void);	/* where sysfs is */
 const char *sys_proc(void);	/* where procfs is */

@@ -43,6 +43,7 @@
  * @texts: --texts, NULL when not given
  * @tree: --tree
  * @watch_s: argument of --watch in seconds, 0: not given
+ * @follow: --follow
  */
 struct tool {
 	struct list masters;
@@ -68,6 +69,7 @@ struct tool {
 	const char *texts;
 	bool tree;
 	double watch_s;
+	bool follow;
 };
 
 /**

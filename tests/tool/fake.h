@@ -22,6 +22,7 @@ extern const struct ec_ip_params fake_net;
 /* 0, -1 with errno, or FAKE_OTHER */
 int fake_app(unsigned long request, void *arg);
 int fake_mbox(unsigned long request, void *arg);
+int fake_events(unsigned long request, void *arg);
 
 void fake_why(unsigned long request, void *arg);
 /* fake_glance.c */

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "../master/wire/event.h"
+#include "dev.h"
+#include "out.h"
+#include "sys.h"
+
+#define BATCH	64
+
+static void argument(const char *key, enum ec_event_arg type, u32 v)
+{
+	if (type == EC_ARG_I)
+		out_i(key, (s32)v, NULL);
+	else if (type == EC_ARG_SLAVE && v == EC_EVENT_NONE)
+		out_null(key, NULL);
+	else
+		out_u(key, v, NULL);
+}
+
+static void arguments(const struct ec_event *e, const struct ec_event_kind *k)
+{
+	if (e->kind == EC_EVENT_MISSED) {
+		out_u("count", (u64)e->arg[1] << 32 | e->arg[0], NULL);
+		return;
+	}
+	for (unsigned int i = 0; k && i < EC_EVENT_ARGS && k->arg[i].name; i++)
+		argument(k->arg[i].name, k->arg[i].type, e->arg[i]);
+}
+
+static void event(const struct dev *d, bool with_master, const struct ec_event *e)
+{
+	const struct ec_event_kind *k = ec_event_kind(e->kind);
+	const time_t s = (time_t)(e->wall_ns / 1000000000);
+	char when[32] = "?", text[200];
+	struct tm tm;
+
+	if (gmtime_r(&s, &tm))
+		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
+	ec_event_text(e, text, sizeof(text));
+	out_object(NULL);
+	if (with_master)
+		out_u("master", d->master, NULL);
+	out_u("number", e->number, NULL);
+	out_text("%s.%06u UTC", when, (unsigned int)(e->wall_ns / 1000 % 1000000));
+	out_u("time_ns", e->wall_ns, NULL);
+	out_u("monotonic_ns", e->time_ns, "  [%6llu.%06llu]",
+	      (unsigned long long)(e->time_ns / 1000000000),
+	      (unsigned long long)(e->time_ns / 1000 % 1000000));
+	out_str("event", k ? k->name : "unknown", NULL);
+	if (e->slave != EC_EVENT_NO_SLAVE)
+		out_u("slave", e->slave, NULL);
+	arguments(e, k);
+	out_str("text", text, "  %s\n", text);
+	out_end();
+}
+
+/* read the next events; how many, 0: there will be none, negative: was reported */
+static int more(struct dev *d, struct ec_event *e)
+{
+	long n;
+
+	do
+		n = sys_read(d->fd, e, BATCH * sizeof(*e));
+	while (n < 0 && errno == EINTR);
+	if (n >= 0)
+		return (int)((size_t)n / sizeof(*e));
+	dev_fail(d, errno, "Master%u: cannot read events", d->master);
+	return -1;
+}
+
+/* events up to number @end, or for ever */
+static int print(struct dev *d, u64 at, u64 end, bool follow)
+{
+	struct ec_event e[BATCH];
+
+	while (follow || at < end) {
+		int n = more(d, e);
+
+		if (n <= 0)
+			return n < 0;
+		for (int i = 0; i < n && (follow || at < end); i++) {
+			event(d, follow, &e[i]);
+			at = e[i].number + 1;
+			if (e[i].kind == EC_EVENT_MISSED)
+				at += ((u64)e[i].arg[1] << 32 | e[i].arg[0]) - 1;
+		}
+		/* the end of the command reports why stdout takes no more */
+		if (follow && fflush(stdout))
+			return 0;
+	}
+	return 0;
+}
+
+static int begin(struct dev *d, struct ec_ioc_events *arg)
+{
+	int err;
+
+	*arg = (struct ec_ioc_events){ .size = sizeof(struct ec_event) };
+	err = dev_ioctl(d, EC_IOC_EVENTS, arg);
+	return err ? dev_fail(d, err, "Master%u: cannot read events", d->master) : 0;
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_events arg;
+	int ret = begin(d, &arg);
+
+	(void)t;
+	if (ret)
+		return ret;
+	if (d->selected > 1)
+		out_text("Master%u\n", d->master);
+	out_object(NULL);
+	out_u("master", d->master, NULL);
+	out_array("events");
+	ret = print(d, arg.first, arg.next, false);
+	out_end();
+	out_end();
+	return ret;
+}
+
+static int run(struct tool *t, int argc, char **argv)
+{
+	struct ec_ioc_events arg;
+	struct dev d;
+	int ret;
+
+	(void)argc, (void)argv;
+	if (!t->follow) {
+		out_array("masters");
+		ret = dev_each(t, false, each);
+		out_end();
+		return ret;
+	}
+	ret = dev_open_single(&d, t, false);
+	if (ret)
+		return ret;
+	ret = begin(&d, &arg) ?: print(&d, arg.first, 0, true);
+	dev_close(&d);
+	return ret;
+}
+
+const struct cmd cmd_log = {
+	.name = "log",
+	.run = run,
+	.args = "",
+	.opts = "mF",
+	.summary = "Show what has happened on the bus",
+	.help = "Links, slaves that connect or disconnect, AL states and errors, emergencies, working\n"
+		"counters, clocks, cycles, applications. The master keeps the last 2047 events since the\n"
+		"module was loaded; reading takes none away. Columns: time, time since the start of the\n"
+		"computer, event. With --follow the command also shows each event that comes later; with\n"
+		"several masters, -m selects one. A reader that is too slow gets the number of events\n"
+		"missed.\n",
+	.json = "masters[]: master, events[]: number, time_ns (since 1970), monotonic_ns, event, slave,\n"
+		"values of the event, text. With --follow each line is an object: master, and the same",
+};
