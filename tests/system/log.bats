@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# Events of the bus and of applications, for every user.
+
+load helpers
+load events
+
+setup_file() { start_events; }
+teardown_file() { stop; }
+teardown() {
+	end_events
+	echo 'heal s.1' >"$sim"
+	wait_for 60 all_slaves_are PREOP 2
+}
+
+nobody() { setpriv --reuid 65534 --regid 65534 --clear-groups "$@"; }
+log_has() {
+	nobody "$EC_BUILD/tool/ethercat" log >"$BATS_TEST_TMPDIR/log" &&
+		grep -q -- "$1" "$BATS_TEST_TMPDIR/log"
+}
+
+@test "log shows the start of the bus to every user" {
+	log_has 'main device attached$'
+	log_has 'main link up$'
+	log_has 'scan complete: 2 slave(s) in '
+	json '.masters[0].events[0].number == 0' log
+}
+
+@test "log --follow shows a slave that is unplugged, and its return" {
+	declare -gA readers=()
+	follow reader
+	echo 'cut s.1' >"$sim"
+	wait_for 60 grep -qE 'slave 1 .* from port 1 of slave 0, last seen [0-9]+ ms ago$' \
+		"$BATS_TEST_TMPDIR/reader"
+	grep -q 'slaves responding: 1, before: 2$' "$BATS_TEST_TMPDIR/reader"
+	echo 'heal s.1' >"$sim"
+	wait_for 60 grep -q 'slave 1 .* connected to port 1 of slave 0$' "$BATS_TEST_TMPDIR/reader"
+	# the same as for a reader that comes later
+	log_has 'slave 1 .* connected to port 1 of slave 0$'
+}
+
+@test "log shows an application with its process" {
+	application 100
+	log_has "application reserved the master, process $app\$"
+	log_has 'session activated: 1 domain(s), .*, process '"$app"
+	log_has 'domain 0: working counter [1-9][0-9]* of [1-9]'
+	kill -9 "$app"
+	wait_for 20 log_has "application exited or released the master, process $app\$"
+}
+
+@test "a reader changes nothing and needs a buffer for a whole event" {
+	nobody python3 - <<-'END'
+	import errno, fcntl, os, select, struct
+	fd = os.open("/dev/EtherCAT0", os.O_RDONLY | os.O_NONBLOCK)
+	def fails(error, *what):
+	    try:
+	        what[0](*what[1:])
+	    except OSError as e:
+	        assert e.errno == error, e
+	    else:
+	        raise AssertionError(what)
+	fails(errno.EINVAL, os.read, fd, 64)	# no reader of events yet
+	EVENTS = 3 << 30 | 24 << 16 | 0xec << 8 | 0x1b
+	fails(errno.EINVAL, fcntl.ioctl, fd, EVENTS, struct.pack("=IIQQ", 0, 63, 0, 0))
+	fails(errno.EOPNOTSUPP, fcntl.ioctl, fd, EVENTS, struct.pack("=IIQQ", 2, 64, 0, 0))
+	arg = fcntl.ioctl(fd, EVENTS, struct.pack("=IIQQ", 0, 64, 0, 0))
+	_, _, first, head = struct.unpack("=IIQQ", arg)
+	fails(errno.EINVAL, os.read, fd, 63)
+	assert select.select([fd], [], [], 0)[0]
+	got = 0
+	while got < head - first:
+	    data = os.read(fd, 1000)
+	    assert len(data) % 64 == 0 and len(data) <= 960
+	    got += len(data) // 64
+	fails(errno.EAGAIN, os.read, fd, 64)
+	assert not select.select([fd], [], [], 0)[0]
+	END
+}
