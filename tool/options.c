@@ -193,6 +193,7 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return watch(optarg, &t->watch_s);
 	case 'E':
 		t->tree = true;
+		return 0;
 	case 'F':
 		t->follow = true;
 		return 0;
