@@ -121,8 +121,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrfbAOE", optopt) || optopt == 'w')
-	if (strchr("eqvhjrfbAOF", optopt) || optopt == 'w')
+	if (strchr("eqvhjrfbAOEF", optopt) || optopt == 'w')
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }

@@ -41,7 +41,7 @@ bool ec_events_admit(struct ec_event_rate *r, u64 now);
 
 /* @base: struct ec_base; the arguments of @kind follow. RT-safe, in any context */
 #define ec_event_slave(base, kind, slave, ...) \
-	ec_events_put(&(base)->events, kind, slave, (const u32 [EC_EVENT_ARGS]){ __VA_ARGS__ })
+	ec_events_put(&(base)->events, kind, slave, (const u32 [EC_EVENT_ARGS]) { __VA_ARGS__ })
 #define ec_event(base, kind, ...) \
 	ec_event_slave(base, kind, EC_EVENT_NO_SLAVE, ##__VA_ARGS__)
 

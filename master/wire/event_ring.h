@@ -17,15 +17,17 @@
 /* accesses that other threads see; @head is 64 bits, also on a CPU of 32 */
 #ifdef __KERNEL__
 #include <linux/atomic.h>
-typedef atomic64_t ec_event_head_t;
+#define EC_EVENT_HEAD			atomic64_t
 #define ec_event_head_read(h)		((u64)atomic64_read(h))
 #define ec_event_head_set(h, v)		atomic64_set(h, (s64)(v))
 #define ec_event_load(p)		READ_ONCE(*(p))
 #define ec_event_store(p, v)		WRITE_ONCE(*(p), v)
+/* the data of a place and its @head */
 #define ec_event_rmb()			smp_rmb()
+/* likewise */
 #define ec_event_wmb()			smp_wmb()
 #else
-typedef u64 ec_event_head_t;
+#define EC_EVENT_HEAD			u64
 #define ec_event_head_read(h)		__atomic_load_n(h, __ATOMIC_RELAXED)
 #define ec_event_head_set(h, v)		__atomic_store_n(h, v, __ATOMIC_RELAXED)
 #define ec_event_load(p)		__atomic_load_n(p, __ATOMIC_RELAXED)
@@ -46,7 +48,7 @@ union ec_event_place {
  * @place: of event n: n modulo EC_EVENT_PLACES
  */
 struct ec_event_ring {
-	ec_event_head_t head;
+	EC_EVENT_HEAD head;
 	union ec_event_place place[EC_EVENT_PLACES];
 };
 
