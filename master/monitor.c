@@ -17,7 +17,7 @@
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define TRIES		2	/* of the look at all slaves */
-#define VAIN		5	/* looks at an AL event that stays, then it is not watched */
+#define STAYS		5	/* looks at an AL event that stays, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
 /* what the monitor remembers between two looks */
@@ -37,8 +37,8 @@ struct watch {
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
 	u16 watched;		/* that shall wake it, until the next look */
-	bool told;		/* one of them has */
-	unsigned int vain;	/* times in a row, and the AL event stays */
+	bool woken;		/* by one of them */
+	unsigned int stays;	/* looks in a row that did not clear the AL event */
 };
 
 static void check_links(struct watch *w)
@@ -298,14 +298,14 @@ static void ride(struct watch *w)
 static void count_slaves(struct watch *w)
 {
 	w->irq = 0;
-	if (w->told && w->riding) {
+	if (w->woken && w->riding) {
 		/* it may have passed before the event */
 		w->riding = false;
 		ec_rider_end(&w->m->rider);
 	}
 	if (!all_well(w))
 		ask_slaves(w);
-	w->vain = w->irq & EC_ECAT_EVENT_AL ? w->vain + w->told : 0;
+	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	ride(w);
 	if (w->scanned && w->link_up)
 		ec_mailboxes_look(&w->m->bus, w->irq);
@@ -320,9 +320,9 @@ static void watch_events(struct watch *w)
 	struct ec_master *m = w->m;
 
 	w->watched = 0;
-	if (w->riding && w->well && !w->told) {
+	if (w->riding && w->well && !w->woken) {
 		w->watched = ec_mailboxes_watch(&m->bus);
-		if (w->vain < VAIN)
+		if (w->stays < STAYS)
 			w->watched |= EC_ECAT_EVENT_AL;
 	}
 	WRITE_ONCE(m->links.events, w->watched);
@@ -499,7 +499,7 @@ static int monitor(void *data)
 		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
-		w.told = w.watched && !READ_ONCE(m->links.events);
+		w.woken = w.watched && !READ_ONCE(m->links.events);
 	}
 	if (w.riding)
 		ec_rider_end(&m->rider);

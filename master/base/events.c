@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Writers are in the cycle, in softirqs, in workers: they take a raw spinlock for one copy of
- * 64 bytes, allocate nothing and wake nobody. The monitor wakes readers.
+ * 64 bytes, allocate nothing and wake no reader: the monitor does.
  */
 #include <linux/ktime.h>
 #include <linux/string.h>

@@ -18,9 +18,6 @@
 #define VAIN		5			/* looks at an event, then at most every SOME_NS */
 #define UNSHOWN		3			/* messages without event, then it is one of them */
 
-const u8 ec_mailboxes_events[2] = { EC_ECAT_EVENT_AL | EC_ECAT_EVENT_SM(1) };
-const u8 ec_mailboxes_no_events[2] = { EC_ECAT_EVENT_AL };
-
 /* Is its mailbox worth a look? A caller that uses it fetches all there is. */
 static bool is_candidate(struct ec_slave *s, bool all)
 {
@@ -81,11 +78,27 @@ out:
 }
 
 /**
+ * ec_mailboxes_mask() - the ECAT events that a slave shall show
+ * @mailbox: its SM1 is a mailbox
+ *
+ * Context: Any.
+ * Return: two bytes for register 0x0200: AL status, and SM1 if that is a mailbox.
+ */
+const u8 *ec_mailboxes_mask(bool mailbox)
+{
+	static const u8 mask[][2] = {
+		{ EC_ECAT_EVENT_AL }, { EC_ECAT_EVENT_AL | EC_ECAT_EVENT_SM(1) },
+	};
+
+	return mask[mailbox];
+}
+
+/**
  * ec_mailboxes_watch() - which event of a frame of the cycle is worth a look at once
  * @bus: bus, scanned
  *
  * Context: The monitor thread.
- * Return: that of SM1, or 0 while it is that of an answer, or was in vain too often.
+ * Return: that of SM1; 0 while callers wait for answers, or when looks found no message.
  */
 u16 ec_mailboxes_watch(const struct ec_bus *bus)
 {

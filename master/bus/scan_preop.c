@@ -45,8 +45,7 @@ static void start(struct job *j)
 
 		if (len)
 			j->dg[n++] = EC_FPWR(station, EC_REG_SM(0), len, c->page);
-		j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2,
-				     len ? ec_mailboxes_events : ec_mailboxes_no_events);
+		j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2, ec_mailboxes_mask(len));
 		j->dg[n++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, pdi);
 		j->dg[n++] = EC_FPWR(station, EC_REG_AL_CONTROL, 2, preop);
 	}

@@ -33,7 +33,8 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 			      code, ec_al_code_text(code));
 	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(EEPROM, .state = state),
-			      "%.170s; then PREOP %s", s->sii_flaw, ret == -ETIME ? "not reached in time" : "refused");
+			      "%.170s; then PREOP %s", s->sii_flaw,
+			      ret == -ETIME ? "not reached in time" : "refused");
 	else if (ret == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      EC_CAUSE(REFUSED, .state = state, .code = code),
@@ -199,8 +200,7 @@ static int enter(struct ec_slave *s, u8 state)
 	if (len && !ret)
 		ret = write_reg(s, EC_REG_SM(0), page, len);
 	if (!ret)
-		ret = write_reg(s, EC_REG_ECAT_MASK,
-				len ? ec_mailboxes_events : ec_mailboxes_no_events, 2);
+		ret = write_reg(s, EC_REG_ECAT_MASK, ec_mailboxes_mask(len), 2);
 	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
 }
 

@@ -201,6 +201,23 @@ struct cyc *cyc_in_op(struct bus *b, u32 first, u32 n)
 	return c;
 }
 
+/* All of @n slaves in OP, the last one in a domain of its own. */
+struct cyc *cyc_two_domains(struct bus *b, u32 n)
+{
+	struct cyc *c;
+	u32 d;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	d = cyc_domain(c);
+	cyc_map_all(c, 0, n - 1, 0);
+	cyc_map_all(c, n - 1, 1, d);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 5000), ~0ull);
+	return c;
+}
+
 /* SYNC0 of the whole cycle at the slaves of the first @n configurations */
 void cyc_sync0(struct cyc *c, u32 n)
 {

@@ -49,6 +49,7 @@ void cyc_remap(struct cyc *c, u32 config);
 void cyc_activate(struct cyc *c);
 void cyc_run(struct cyc *c, u32 cycles);
 struct cyc *cyc_in_op(struct bus *b, u32 first, u32 n);
+struct cyc *cyc_two_domains(struct bus *b, u32 n);
 void cyc_sync0(struct cyc *c, u32 n);
 struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us);
 u64 cyc_wait_op(struct cyc *c, u32 limit_ms);

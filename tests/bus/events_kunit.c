@@ -69,18 +69,8 @@ static u32 count(const struct log *l, u64 at, u32 kind)
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, line, N);
-	struct cyc *c;
-	u32 d;
+	struct cyc *c = cyc_two_domains(bus_up(test, line, N), N);
 
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	d = cyc_domain(c);
-	cyc_map_all(c, 0, LAST, 0);
-	cyc_map_all(c, LAST, 1, d);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	/* beyond the time in which changes of a working counter are counted together */
 	cyc_run(c, 1500);
 	return c;
@@ -303,7 +293,7 @@ static void events_application_without_sends_times_out_and_resumes(struct kunit 
 		KUNIT_EXPECT_GE(test, l->e.arg[0], 250u);
 }
 
-/* The file begins where it was told to; the number of the next event is the same for all. */
+/* The file begins where its command says; the number of the next event is the same for all. */
 static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
 {
 	struct ec_ioc_events arg = { .size = sizeof(struct ec_event) }, bad = { .size = 60 };

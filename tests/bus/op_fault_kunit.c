@@ -19,19 +19,8 @@ static const char line[] =
 
 static struct cyc *in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, line, N);
-	struct cyc *c;
-	u32 d;
+	struct cyc *c = cyc_two_domains(bus_up(test, line, N), N);
 
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	/* the last slave has a domain of its own */
-	cyc_domain(c);
-	d = cyc_domain(c);
-	cyc_map_all(c, 0, LAST, 0);
-	cyc_map_all(c, LAST, 1, d);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 20);
 	KUNIT_ASSERT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_ASSERT_EQ(test, cyc_state(c, 1)->wc_state, 2);

@@ -15,19 +15,19 @@
 #define EVENT(ms, k, s, ...) { \
 	.time_ns = 5000000000ULL + (ms) * 1000000ULL, .wall_ns = WALL + (ms) * 1000000ULL, \
 	.kind = EC_EVENT_##k, .slave = (s), .arg = { __VA_ARGS__ } }
-#define NOBODY	EC_EVENT_NO_SLAVE
+#define NO_SLAVE	EC_EVENT_NO_SLAVE
 #define KEPT	9	/* the others come later */
 
 static const struct ec_event all[] = {
-	EVENT(0, LINK_UP, NOBODY, 0),
-	EVENT(3, SCAN_END, NOBODY, 3, 4100, 120),
-	EVENT(100, RESERVED, NOBODY, 4711),
-	EVENT(120, ACTIVATED, NOBODY, 4711, 1, 24, 2),
+	EVENT(0, LINK_UP, NO_SLAVE, 0),
+	EVENT(3, SCAN_END, NO_SLAVE, 3, 4100, 120),
+	EVENT(100, RESERVED, NO_SLAVE, 4711),
+	EVENT(120, ACTIVATED, NO_SLAVE, 4711, 1, 24, 2),
 	EVENT(150, AL_STATE, 2, 8, 4),
-	EVENT(151, WKC, NOBODY, 0, 3, 1, 3),
-	EVENT(1000, WKC, NOBODY, 0, 1, 3, 3, 2),
+	EVENT(151, WKC, NO_SLAVE, 0, 3, 1, 3),
+	EVENT(1000, WKC, NO_SLAVE, 0, 1, 3, 3, 2),
 	EVENT(1020, SLAVE_LOST, 2, 1, 1, 0, 2, 0x1c213052, 25),
-	EVENT(1021, LOCK, NOBODY, 3, (__u32)-12, (__u32)-8700),
+	EVENT(1021, LOCK, NO_SLAVE, 3, (__u32)-12, (__u32)-8700),
 	EVENT(2000, SLAVE_FOUND, 2, EC_EVENT_NONE, 0, 1001, 2, 0x1c213052),
 	EVENT(2100, AL_ERROR, 2, 4, 0x1b),
 };
@@ -72,7 +72,7 @@ long sys_read(int fd, void *buf, unsigned long size)
 		if (is("unknown") && at == 4)
 			e->kind = 0xabc;
 		if (is("gap") && at == 3) {
-			*e = (struct ec_event)EVENT(120, MISSED, NOBODY, 4);
+			*e = (struct ec_event)EVENT(120, MISSED, NO_SLAVE, 4);
 			e->number = 7 + at;
 			at += 3;
 		}
