@@ -247,6 +247,21 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	ethercat states -p1 PREOP --wait
 	ethercat states -p1 SAFEOP --wait
 	ethercat states -p1 OP --wait
+	# an error in OP is OP; states that are not known may be
+	mkdir "$BATS_TEST_TMPDIR/bin"
+	printf '%s\n' '#!/bin/sh' '[ "$1" = slaves ] && echo "1  0:1  OP+ERROR  E  x"' \
+		>"$BATS_TEST_TMPDIR/bin/ethercat"
+	chmod +x "$BATS_TEST_TMPDIR/bin/ethercat"
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH run own stop
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output =~ ^"ethercatctl: Master0: slaves stay in OP: 1; nothing is unloaded" ]]
+	sed -i '2s/.*/exit 1/' "$BATS_TEST_TMPDIR/bin/ethercat"
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH run own stop
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output =~ ^"ethercatctl: Master0: the states of its slaves are not known, nothing is unloaded" ]]
+	[ -c /dev/EtherCAT0 ]
 	own stop
 	none_loaded
 }
