@@ -9,6 +9,7 @@ set -u
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 kernel=${1:-6.1-rt}
+cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-selftest.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 failed=0 count=0
@@ -55,6 +56,9 @@ check "status 3, modules, --rw, read-only host, arguments" 3 "^args:a b|it's|\\\
 [ ! -e "$tmp/lost" ] || { echo "not ok - a write outside --rw reached the host"; failed=1; }
 
 check "--icount" 0 '^cpus 1' --icount --timeout 120 -- sh -c 'sleep 60; echo cpus $(nproc)'
+check "a parked guest goes on at the present time" 0 "^$(date -u +%Y-%m-%d)" --icount -- date -u +%F
+for p in "$cache"/parked/*; do [ ! -f "$p" ] || echo damaged >"$p"; done
+check "a damaged parked guest is started anew" 0 '^well$' --icount -- echo well
 check "timeout is 124" 124 'TIMEOUT' --timeout 15 -- sleep 1000
 check "panic is 125" 125 'without a result' --timeout 60 -- sh -c 'echo c >/proc/sysrq-trigger'
 check "no init: the guest is started twice, then 125" 125 'second start' --timeout 60 \
