@@ -28,7 +28,7 @@ ln -sfn /proc/self/fd /dev/fd
 ln -sfn fd/0 /dev/stdin
 ln -sfn fd/1 /dev/stdout
 ln -sfn fd/2 /dev/stderr
-stty -F /dev/console -onlcr 2>/dev/null
+stty -F /dev/console -onlcr -echo 2>/dev/null
 
 . /guest-run.sh
 fail() {
@@ -45,7 +45,6 @@ case " $(cat /proc/cmdline) " in
 *" ec_park "*)
 	echo "ec-vm: parked" >/dev/console
 	read -r now </dev/console
-	# of the input in front of the last @ some may be lost
 	date -u -s "@${now##*@}" >/dev/null ;;
 esac
 

@@ -375,9 +375,16 @@ touch -c "$parked" 2>/dev/null || true	# it is in use
 
 # one start of the guest; sets qemu_rc and sed_rc
 boot() {
+	local input=/dev/null
+
 	machine "$tmp/out"
+	if [ -n "$parked" ]; then
+		# of the input of one that waits some may be lost
+		input=$tmp/now
+		date +@@@@%s >"$input"
+	fi
 	[ ! -f "$parked" ] || qemu_args+=(-incoming "exec:cat $(printf %q "$parked")")
-	date +@@@@%s | timeout -k 5 "$timeout" "${qemu_args[@]}" -serial stdio >"$tmp/out" 2>"$tmp/qemu.err" &
+	timeout -k 5 "$timeout" "${qemu_args[@]}" -serial stdio <"$input" >"$tmp/out" 2>"$tmp/qemu.err" &
 	qemu_pid=$!
 	# The console adds a carriage return to each line of the kernel. The file tells
 	# the guest that all it wrote has arrived; sed holds back what it writes to any
