@@ -64,11 +64,12 @@ static const struct option longs[] = {
 	{ 0 },
 };
 
+static const char shorts[] = "-:m:a:p:d:t:o:s:efrqvjh0::1::2::3::4::5::6::7::8::9::.::";
+
 /* else the letter is only for the tables */
 bool opt_is_short(const struct opt *o)
 {
-	return !strchr("bwSCLATOWE", o->letter);
-	return !strchr("bwSCLATOF", o->letter);
+	return strchr(shorts, o->letter);
 }
 
 static int parse_list(struct list *l, char letter, const char *text)
@@ -121,7 +122,7 @@ static int bad_option(char **argv, int c)
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
 		return usage_error("unknown or ambiguous option '%s'", word);
-	if (strchr("eqvhjrfbAOEF", optopt) || optopt == 'w')
+	if (!strncmp(word, "--", 2) && strchr(word, '='))
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
 }
@@ -230,7 +231,6 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
 		  char *seen, size_t seen_size)
 {
-	static const char shorts[] = "-:m:a:p:d:t:o:s:efrqvjh0::1::2::3::4::5::6::7::8::9::.::";
 	size_t n = 0;
 	int c, ret;
 

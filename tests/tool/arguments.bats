@@ -225,6 +225,20 @@ for o in d["options"]:
 	done
 }
 
+@test "help shows a letter for an option if the letter works, and only then" {
+	local shown l
+	shown=$(real help | sed -n 's/^  -\([a-z]\), .*/\1/pI' | tr -d '\n')
+	for l in {a..z} {A..Z}; do
+		run real version "-$l" 0
+		if [[ $shown == *$l* ]]; then
+			[[ $output != *"option '-$l'"* ]]
+		else
+			[ "${lines[0]}" = "ethercat: unknown option '-$l'" ]
+		fi
+	done
+	[[ $(err slaves --verbose=1) == *"option '--verbose=1' takes no argument"* ]]
+}
+
 @test "options without effect only warn" {
 	run ethercat slaves -t int8 --force
 	[ "$status" -eq 0 ]
