@@ -136,31 +136,54 @@ static const char *application(const struct why *w)
 	}
 }
 
-/* Last: what was checked, so that silence means something. */
-static void summary(const struct why *w, size_t faults, size_t warnings)
+/* faults and warnings that were shown, and faults of what is not selected */
+struct count {
+	size_t faults;
+	size_t warnings;
+	size_t elsewhere;
+};
+
+static void checked(const struct why *w)
 {
 	size_t in_op = 0;
 
 	for (size_t i = 0; i < w->n_configs; i++)
 		in_op += why_in_op(&w->configs[i]);
-	out_bool("well", !faults, NULL);
-	out_str("application", application(w), NULL);
-	out_bool("error_counters_read", w->counters, NULL);
-	if (faults)
-		out_text("%zu fault(s), %zu warning(s). ", faults, warnings);
-	else
-		out_text("All is well%s. ", warnings ? " except for the warnings" : "");
 	out_text("Checked: link, cycle, %zu slave(s), %zu configuration(s), %zu of them in OP, %u domain(s), clocks%s; %s.\n",
 		 w->bus.n, w->n_configs, in_op, w->m.domain_count,
 		 w->counters ? ", error counters of the ports" : "", application(w));
 	if (!w->counters)
 		out_text("Not checked: error counters of the ports; reading them needs write access to %s.\n",
 			 w->d->path);
+	if (w->silent)
+		out_text("Not checked: error counters of %zu slave(s), which do not reply.\n",
+			 w->silent);
+}
+
+/* Last: what was checked, so that silence means something. */
+static void summary(const struct why *w, const struct count *n)
+{
+	out_bool("well", !n->faults, NULL);
+	out_u("faults_elsewhere", n->elsewhere, NULL);
+	out_str("application", application(w), NULL);
+	out_bool("error_counters_read", w->counters && !w->silent, NULL);
+	if (n->faults)
+		out_text("%zu fault(s), %zu warning(s). ", n->faults, n->warnings);
+	else
+		out_text("%s well%s. ", n->elsewhere ? "The selection is" : "All is",
+			 n->warnings ? " except for the warnings" : "");
+	if (n->elsewhere)
+		out_text("%zu fault(s) elsewhere: 'ethercat why'. ", n->elsewhere);
+	if (w->unreachable)
+		out_text("Checked: link; all else can be checked after the repair.\n");
+	else
+		checked(w);
 }
 
 static void rules(struct why *w)
 {
-	if (why_bus(w))
+	w->unreachable = why_bus(w);
+	if (w->unreachable)
 		return;
 	why_cycle(w);
 	why_absent(w);
@@ -188,8 +211,8 @@ static int choose(const struct tool *t, const struct why *w, struct chosen *c)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	size_t faults = 0, warnings = 0;
 	struct chosen c = { .all = true };
+	struct count n = { 0 };
 	struct why w;
 
 	if (why_read(&w, d) || choose(t, &w, &c)) {
@@ -205,19 +228,23 @@ static int each(const struct tool *t, struct dev *d)
 	/* faults first, as they explain more */
 	for (int warning = 0; warning < 2; warning++) {
 		for (size_t i = 0; i < w.n; i++) {
-			if (w.f[i].warning != warning || !shown(&w, &c, i))
+			if (w.f[i].warning != warning)
 				continue;
-			warning ? warnings++ : faults++;
+			if (!shown(&w, &c, i)) {
+				n.elsewhere += !warning;
+				continue;
+			}
+			warning ? n.warnings++ : n.faults++;
 			show(&w, i);
 		}
 	}
 	out_end();
-	summary(&w, faults, warnings);
+	summary(&w, &n);
 	out_end();
 	numbers_free(&c.slaves);
-	faults += w.failed;
+	n.faults += w.failed;
 	why_free(&w);
-	return faults ? 1 : 0;
+	return n.faults ? 1 : 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -252,6 +279,7 @@ const struct cmd cmd_why = {
 		"  ethercat why\n"
 		"  ethercat why 4\n",
 	.json = "masters[]: master, findings[] (level (fault, warning), cause, text, slave, port, domain,\n"
-		"config (null: none), code, affected[], remedy), well, application, error_counters_read",
+		"config (null: none), code, affected[], remedy), well, faults_elsewhere (not of SLAVE), application,\n"
+		"error_counters_read (of all slaves)",
 	.max_args = 1,
 };

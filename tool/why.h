@@ -58,7 +58,9 @@ struct why_finding {
  * @n_configs: entries in @configs
  * @f: findings
  * @n: entries in @f
- * @counters: the error counters of the ports were read
+ * @counters: the user may read the error counters of the ports
+ * @silent: slaves whose error counters could not be read
+ * @unreachable: no slave can be reached, so that only the link was checked
  * @failed: no memory, or an error that was printed
  */
 struct why {
@@ -70,6 +72,8 @@ struct why {
 	struct why_finding *f;
 	size_t n;
 	bool counters;
+	size_t silent;
+	bool unreachable;
 	bool failed;
 };
 

@@ -147,7 +147,7 @@ static void port_errors(struct why *w, const struct ec_ioc_slave *s, unsigned in
 
 /**
  * why_counters() - error counters of the ports, if the user may read registers
- * @w: what is known; @counters says whether they were read
+ * @w: what is known; @counters and @silent say what was read
  */
 void why_counters(struct why *w)
 {
@@ -165,9 +165,11 @@ void why_counters(struct why *w)
 			.data = (uintptr_t)regs,
 		};
 
-		/* one that does not reply has its own finding */
-		if (dev_ioctl(&d, EC_IOC_REG_READ, &r))
+		/* one that does not reply for long has its own finding */
+		if (dev_ioctl(&d, EC_IOC_REG_READ, &r)) {
+			w->silent++;
 			continue;
+		}
 		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++)
 			port_errors(w, s, p, regs);
 	}

@@ -8,8 +8,8 @@
  *   broken behind slave 1), two (two masters), foreign (not our interface),
  *   detached (its application is gone), waiting (no network interface), evil (names that attack
  *   the reader),
- *   big (1000 slaves), shrinks (slaves are lost), noref (no reference clock); fake_glance.c has
- *   more
+ *   big (1000 slaves), shrinks (slaves are lost), noref (no reference clock), mute (registers of
+ *   slave 1 are not readable); fake_glance.c has more
  * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
  * gets the number of ioctls.
  */
@@ -374,6 +374,8 @@ static int reg_read(struct ec_ioc_reg *x)
 
 	if (!x->size || x->size > 1024)
 		return fake_fail(EINVAL, "1 to 1024 bytes");
+	if (fake_bus("mute") && x->position == 1)
+		return fake_fail(ETIMEDOUT, "no reply to register access");
 	for (__u32 i = 0; i < x->size; i++) {
 		__u32 a = x->address + i;
 

@@ -84,8 +84,10 @@ is() {
 
 @test "why SLAVE shows findings of this slave" {
 	[[ $(FAKE_WHY=sdo out why 2) == "Fault: startup SDO 0x8010:03"* ]]
-	[[ $(FAKE_WHY=sdo out why 0,1) == "All is well. "* ]]
-	[[ $(FAKE_WHY=sdo out why -p0) == "All is well. "* ]]
+	[[ $(FAKE_WHY=sdo out why 0,1) == "The selection is well. 1 fault(s) elsewhere: "* ]]
+	[[ $(FAKE_WHY=sdo out why -p0) == "The selection is well. 1 fault(s) elsewhere: "* ]]
+	[[ $(FAKE_WHY=well out why 0,1) == "All is well. Checked: "* ]]
+	FAKE_WHY=sdo out why 0 -j | json "d['masters'][0]['faults_elsewhere'] == 1"
 	[[ $(FAKE_WHY=link_down out why 1) == "Fault: no link"* ]]
 	FAKE_WHY=well run ethercat why 77
 	[ "$status" -eq 1 ]
@@ -105,6 +107,17 @@ is() {
 	[ "$status" -eq 0 ]
 	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frames, "* ]]
 	[[ $output != *"Not checked"* ]]
+}
+
+@test "why claims no check that it has not done" {
+	unset FAKE_READONLY
+	for c in no_device link_down no_slaves; do
+		[[ $(FAKE_WHY=$c out why) == *$'\n'"1 fault(s), 0 warning(s). Checked: link; all else can be checked after the repair." ]]
+	done
+	[[ $(FAKE_BUS=mute FAKE_WHY=well out why) == *"Not checked: error counters of 1 slave(s), which do not reply." ]]
+	FAKE_BUS=mute FAKE_WHY=well out why -j |
+		json "not d['masters'][0]['error_counters_read']"
+	FAKE_WHY=well out why -j | json "d['masters'][0]['error_counters_read']"
 }
 
 @test "why: the reason of an older module is shown as it is" {
