@@ -153,14 +153,13 @@ static void missing(struct why *w)
 {
 	struct why_config *first = first_absent(w);
 	unsigned int from, gap, last = last_position(w);
-	unsigned int up;
 	struct why_finding *f;
 	char name[96];
 
 	if (!first)
 		return;
-	from = first->c.position;
-	up = min(from, (unsigned int)w->bus.n);
+	/* where the ring ends, slaves without configuration are missing as well */
+	from = min(first->c.position, (unsigned int)w->bus.n);
 	for (gap = 1; from + gap <= last && !shifted(w, from, gap); gap++)
 		;
 	/* all of the rest: only when nothing is there instead */
@@ -169,12 +168,12 @@ static void missing(struct why *w)
 	f = why_add(w, "missing",
 		    "check power and cable of the missing slaves, or correct the configuration",
 		    "%u slave(s) missing from position %u on: the bus has %zu, %s %s", gap, from,
-		    w->bus.n, up ? why_slave_name(w, up - 1, name, sizeof(name)) :
+		    w->bus.n, from ? why_slave_name(w, from - 1, name, sizeof(name)) :
 		    "the main device", from < w->bus.n ?
 		    "is followed by slaves configured further downstream" : "is the last one");
 	f->config = (int)(first - w->configs);
-	f->slave = (int)up - 1;
-	f->port = open_end(w, up);
+	f->slave = (int)from - 1;
+	f->port = open_end(w, from);
 	for (size_t i = 0; i < w->n_configs; i++)
 		if (at_position(&w->configs[i]))
 			why_explain(w, &w->configs[i]);

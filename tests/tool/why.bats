@@ -63,6 +63,7 @@ is() {
 	is missing '(f["slave"], f["port"], f["config"]) == (2, 1, "0:3")'
 	# far behind the end of the ring
 	FAKE_FAR=1 is missing '(f["slave"], f["config"]) == (2, "0:9")'
+	[[ $(FAKE_FAR=1 FAKE_WHY=missing out why) == "Fault: 7 slave(s) missing from position 3 on: the bus has 3, "* ]]
 	is link_down '(f["slave"], f["affected"]) == (None, [])'
 	[[ $(FAKE_WHY=cable out why) == *"  Place: slave 1 (EL2008), port 1"$'\n'"  Affected: 0:2"* ]]
 }
