@@ -189,7 +189,7 @@ static void unconfigured(struct why *w, const struct ec_ioc_slave *s)
 			 ec_al_state_name((u8)s->al_status), s->al_code,
 			 ec_al_code_text(s->al_code));
 		add(w, s->position, NULL, &cause, text);
-	} else if (s->al_status != s->al_requested) {
+	} else if ((s->al_status & EC_AL_STATE_MASK) != s->al_requested) {
 		cause = (struct ec_cause){ .kind = EC_CAUSE_UNDER_WAY };
 		snprintf(text, sizeof(text), "AL state %s, requested %s",
 			 ec_al_state_name((u8)s->al_status), ec_al_state_name(s->al_requested));

@@ -53,6 +53,8 @@ static void slave(struct ec_ioc_slave *s)
 		s->al_status = s->al_requested = 2;
 	}
 	s->dc_set = s->position == 2;
+	if (!s->position && wrong("id_loaded"))
+		s->al_status |= 0x20;	/* no part of the state */
 	if (s->position == 2 && wrong("boot"))
 		s->al_requested = 3;
 	if (s->position == 2 && wrong("eeprom")) {
