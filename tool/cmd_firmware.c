@@ -95,6 +95,8 @@ static int run(struct tool *t, int argc, char **argv)
 
 	if (foe_password(argc, argv, &f))
 		return 1;
+	if (!strcmp(argv[0], "-") && !t->output_file)
+		return usage_error("stdin has no name; add -o NAME, the file name on the slave");
 	f.name = t->output_file ? t->output_file : base_name(argv[0]);
 	if (foe_check_name(f.name) || io_read(argv[0], &f.data, &size))
 		return 1;

@@ -60,6 +60,9 @@ load common
 	[[ $output == *"Master0 slave 0: no FoE, so no firmware can be written"* ]]
 	run ethercat firmware -p2
 	[ "$status" -eq 1 ]
+	run ethercat firmware -p2 - <"$BATS_TEST_TMPDIR/fw.efw"
+	[ "$status" -eq 1 ]
+	[[ $output == *"stdin has no name; add -o NAME, the file name on the slave"* ]]
 }
 
 @test "FoE errors: code and text of the slave, and of the master" {
