@@ -100,3 +100,11 @@ load common
 	[ -z "$output" ]
 	[ -z "$(err foe_read -p2 slow)" ]
 }
+
+@test "completion offers the files that foe_write and firmware take" {
+	completion_of_fake
+	cd "$BATS_TEST_TMPDIR"
+	: >axis.efw
+	[ "$(complete_line ethercat firmware ax)" = axis.efw ]
+	[ "$(complete_line ethercat -p2 foe_write ax)" = axis.efw ]
+}

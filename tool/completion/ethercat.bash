@@ -90,7 +90,7 @@ _ethercat()
 				*)		w= ;;
 				esac ;;
 			help)	w="$(_ethercat_values command) types" ;;
-			reg_write)
+			reg_write|foe_write|firmware)
 				COMPREPLY=($(compgen -f -- "$cur"))
 				return ;;
 			*)	w= ;;
