@@ -126,3 +126,14 @@ is() {
 	[ "$(causes older)" = not_in_op ]
 	[[ $(FAKE_WHY=older out why) == "Fault: a reason of an older module"* ]]
 }
+
+@test "why.rst has each cause" {
+	local doc=$HERE/../../Documentation/why.rst n=0
+
+	for c in $(grep -ohE '(why_add\(w, |(true|false), )"[a-z_]+"' "$HERE"/../../tool/why_*.c |
+		cut -d'"' -f2); do
+		grep -Eq '^(``[a-z]+``, )*``'"$c"'``' "$doc" || { echo "$c"; false; }
+		n=$((n + 1))
+	done
+	[ $n -gt 30 ]
+}
