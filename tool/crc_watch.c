@@ -16,7 +16,8 @@
 /**
  * struct span - two readings of the counters
  * @all: slaves of the master
- * @shown: whether a slave is selected, by ring position
+ * @shown: whether a slave is selected and replies, by ring position
+ * @mute: whether its counters could not be read
  * @begin: registers EC_REG_ERRORS of each slave
  * @end: likewise, later
  * @seconds: between them
@@ -25,6 +26,7 @@
 struct span {
 	struct slaves all;
 	bool *shown;
+	bool *mute;
 	u8 (*begin)[EC_ERRORS_SIZE];
 	u8 (*end)[EC_ERRORS_SIZE];
 	double seconds;
@@ -53,6 +55,8 @@ static struct growth growth(const struct span *w, u32 slave, unsigned int port)
 {
 	const u8 *b = w->begin[slave], *e = w->end[slave];
 
+	if (w->mute[slave])
+		return (struct growth){ 0 };
 	return (struct growth){
 		.crc = grown(err_rx(b, port), err_rx(e, port)),
 		.phy = grown(err_phy(b, port), err_phy(e, port)),
@@ -190,6 +194,8 @@ static void doubts(const struct dev *d, const struct span *w)
 				   err_phy(w->end[i], p) < err_phy(w->begin[i], p) ||
 				   err_fwd(w->end[i], p) < err_fwd(w->begin[i], p);
 		}
+		if (w->mute[i])
+			continue;
 		if (cleared)
 			note("Master%u slave %zu: counters were cleared meanwhile and count from 0",
 			     d->master, i);
@@ -199,10 +205,26 @@ static void doubts(const struct dev *d, const struct span *w)
 	}
 }
 
-static int read_all(struct dev *d, const struct slaves *all, u8 (*regs)[EC_ERRORS_SIZE])
+/* One that does not reply may be what is wrong: the others count nevertheless. */
+static int read_all(struct dev *d, struct span *w, u8 (*regs)[EC_ERRORS_SIZE])
 {
-	for (size_t i = 0; i < all->n; i++)
-		if (reg_read(d, all->v[i].position, EC_REG_ERRORS, regs[i], EC_ERRORS_SIZE))
+	bool any = false;
+
+	for (size_t i = 0; i < w->all.n; i++) {
+		if (!w->mute[i] && reg_read(d, w->all.v[i].position, EC_REG_ERRORS, regs[i],
+					    EC_ERRORS_SIZE)) {
+			w->mute[i] = true;
+			w->shown[i] = false;
+		}
+		any |= !w->mute[i];
+	}
+	return any ? 0 : 1;
+}
+
+static int any_mute(const struct span *w)
+{
+	for (size_t i = 0; i < w->all.n; i++)
+		if (w->mute[i])
 			return 1;
 	return 0;
 }
@@ -276,12 +298,12 @@ static int measure(const struct tool *t, struct dev *d, struct span *w)
 	int ret;
 
 	sigaction(SIGINT, &act, NULL);
-	if (read_all(d, &w->all, w->begin))
+	if (read_all(d, w, w->begin))
 		return 1;
 	out_u("master", d->master, NULL);
 	table(t, w, "begin", w->begin);
 	fflush(stdout);
-	if (pass(d, t->watch_s, w) || unchanged(d, &w->all) || read_all(d, &w->all, w->end))
+	if (pass(d, t->watch_s, w) || unchanged(d, &w->all) || read_all(d, w, w->end))
 		return 1;
 	out_f("seconds", w->seconds, NULL);
 	out_u("frames", w->frames, NULL);
@@ -295,6 +317,7 @@ static int measure(const struct tool *t, struct dev *d, struct span *w)
 	if (!ret) {
 		verdict(w, &topo);
 		doubts(d, w);
+		ret = any_mute(w);
 	}
 	topo_free(&topo);
 	return ret;
@@ -322,12 +345,13 @@ int crc_watch(const struct tool *t, struct dev *d)
 		return 1;
 	}
 	w.shown = calloc(w.all.n + 1, sizeof(*w.shown));
+	w.mute = calloc(w.all.n + 1, sizeof(*w.mute));
 	w.begin = calloc(w.all.n + 1, sizeof(*w.begin));
 	w.end = calloc(w.all.n + 1, sizeof(*w.end));
 	for (size_t i = 0; w.shown && i < sel.n; i++)
 		if (sel.v[i].position < w.all.n)
 			w.shown[sel.v[i].position] = true;
-	if (!w.shown || !w.begin || !w.end)
+	if (!w.shown || !w.mute || !w.begin || !w.end)
 		ret = fail("out of memory");
 	else if (!w.all.n)
 		ret = dev_none_present(d);
@@ -336,6 +360,7 @@ int crc_watch(const struct tool *t, struct dev *d)
 	else
 		ret = measure(t, d, &w);
 	free(w.shown);
+	free(w.mute);
 	free(w.begin);
 	free(w.end);
 	slaves_free(&sel);

@@ -99,6 +99,14 @@ watch() {
 	[[ $(FAKE_BUS=empty err crc --watch 0.1) == *"Master0: no slaves" ]]
 }
 
+@test "crc --watch goes on without a slave that does not reply" {
+	FAKE_BUS=mute run ethercat crc --watch 0.1
+	[ "$status" -eq 1 ]
+	[ "$(grep -c 'Master0 slave 1: cannot read register 0x0300' <<<"$output")" = 1 ]
+	[ "$(grep -c '^  [02]|' <<<"$output")" = 4 ]
+	[[ ${lines[-1]} == "No error counter of a port has grown in "* ]]
+}
+
 @test "crc --watch: Ctrl-C ends it with the result" {
 	FAKE_BUS=noisy "$HERE/build/fake/ethercat" crc --watch 60 >"$BATS_TEST_TMPDIR/out" 3>&- &
 	pid=$!
