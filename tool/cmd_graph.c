@@ -44,13 +44,14 @@ static void node(const struct ec_ioc_slave *s, enum info info)
 	out_end();
 }
 
+/* @regs: NULL: not read */
 static void label(const char *attribute, const struct ec_ioc_slave *s, unsigned int port,
 		  enum info info, const u8 *regs)
 {
 	out_text(", %s=\"%u", attribute, port);
 	if (info == DC && slave_has_dc(s))
 		out_text(" [%u]", s->ports[port].delay_to_next_dc);
-	if (info == CRC)
+	if (regs)
 		out_text(" [%u/%u]", err_rx(regs, port), err_fwd(regs, port));
 	out_text("\"");
 }
@@ -62,7 +63,7 @@ static void medium(unsigned int type)
 }
 
 static void edge(const struct slaves *all, const struct ec_ioc_slave *s, unsigned int port,
-		 enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+		 enum info info, const u8 *const *regs)
 {
 	const struct ec_ioc_slave *to = &all->v[s->ports[port].next_slave];
 	unsigned int back;
@@ -84,7 +85,7 @@ static void edge(const struct slaves *all, const struct ec_ioc_slave *s, unsigne
 }
 
 /* The open port behind which nobody is; slave 0 is not there if it hangs at a later one. */
-static void to_master(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+static void to_master(const struct slaves *all, enum info info, const u8 *const *regs)
 {
 	unsigned int at = 0, port = 0;
 
@@ -104,7 +105,7 @@ static void to_master(const struct slaves *all, enum info info, u8 (*regs)[EC_ER
 	out_text("]\n");
 }
 
-static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_SIZE])
+static void draw(const struct slaves *all, enum info info, const u8 *const *regs)
 {
 	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
 	out_text("strict graph bus {\n\trankdir=\"LR\"\n\tranksep=0.8\n\tnodesep=0.8\n"
@@ -130,26 +131,35 @@ static void draw(const struct slaves *all, enum info info, u8 (*regs)[EC_ERRORS_
 	out_text("}\n");
 }
 
+/* One that does not reply is drawn without counters. */
 static int show(struct dev *d, enum info info, bool tree)
 {
 	u8 (*regs)[EC_ERRORS_SIZE];
+	const u8 **counters;
 	struct slaves all;
 	int ret = 0;
 
 	if (dev_slaves(d, &all))
 		return 1;
 	regs = calloc(all.n + 1, sizeof(*regs));
-	if (!regs)
+	counters = calloc(all.n + 1, sizeof(*counters));
+	if (!regs || !counters) {
 		ret = fail("out of memory");
-	for (size_t i = 0; i < all.n && info == CRC && !ret; i++)
-		ret = reg_read(d, all.v[i].position, EC_REG_ERRORS, regs[i], sizeof(*regs));
-	if (!ret) {
-		out_u("master", d->master, NULL);
-		if (tree)
-			ret = graph_tree(d, &all, info == CRC ? regs : NULL);
-		else
-			draw(&all, info, regs);
+		goto out;
 	}
+	for (size_t i = 0; i < all.n && info == CRC; i++) {
+		if (reg_read(d, all.v[i].position, EC_REG_ERRORS, regs[i], sizeof(*regs)))
+			ret = 1;
+		else
+			counters[i] = regs[i];
+	}
+	out_u("master", d->master, NULL);
+	if (tree)
+		ret |= graph_tree(d, &all, counters);
+	else
+		draw(&all, info, counters);
+out:
+	free(counters);
 	free(regs);
 	slaves_free(&all);
 	return ret;

@@ -169,11 +169,11 @@ static void heading(struct dev *d, const struct ec_ioc_master *m, bool backup)
  * graph_tree() - print the tree of a master
  * @d: open file of the master
  * @all: its slaves
- * @errors: registers EC_REG_ERRORS of each, NULL: without error counters
+ * @errors: registers EC_REG_ERRORS of each, or NULL: without error counters
  *
  * Return: 0, or 1 after printing an error.
  */
-int graph_tree(struct dev *d, const struct slaves *all, u8 (*errors)[EC_ERRORS_SIZE])
+int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors)
 {
 	struct ec_ioc_master m;
 	struct widths w;
@@ -195,7 +195,7 @@ int graph_tree(struct dev *d, const struct slaves *all, u8 (*errors)[EC_ERRORS_S
 
 		if (t.node[at].parent == TOPO_MASTER)
 			heading(d, &m, t.node[at].device);
-		row(&t, &all->v[at], w, errors ? errors[at] : NULL);
+		row(&t, &all->v[at], w, errors[at]);
 	}
 	out_end();
 out:

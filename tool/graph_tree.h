@@ -5,6 +5,6 @@
 #include "dev.h"
 #include "errors.h"
 
-int graph_tree(struct dev *d, const struct slaves *all, u8 (*errors)[EC_ERRORS_SIZE]);
+int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors);
 
 #endif

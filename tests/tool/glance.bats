@@ -63,6 +63,16 @@ watch() {
 	FAKE_BUS=tree out graph crc --tree -j | json 'd["slaves"][0]["ports"][1]["crc_errors"] == 3'
 }
 
+@test "graph CRC draws a slave that does not reply without counters" {
+	FAKE_BUS=mute run ethercat graph crc --tree
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"Master0 slave 1: cannot read register 0x0300"* ]]
+	[ "${#lines[@]}" = 5 ]
+	FAKE_BUS=mute out graph crc | grep -qF 'taillabel="1 [3/1]", headlabel="0"]'
+	FAKE_BUS=mute out graph crc --tree -j |
+		json '[len(s["ports"][0]) for s in d["slaves"]] == [8, 4, 8]'
+}
+
 @test "crc --watch names the segment where errors grow" {
 	between="Errors grow between slave 1 port 1 and slave 2 port 0"
 	[ "$(watch noisy)" = "$between: 5 invalid frame(s), 9 receiver error(s), 1 lost link(s)" ]
