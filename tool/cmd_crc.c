@@ -74,7 +74,7 @@ const struct cmd cmd_crc = {
 		"--watch reads the counters of all slaves twice, with this time between (Ctrl-C ends\n"
 		"it), and names the segments where invalid frames, receiver errors or lost links grow,\n"
 		"in the order in which a frame passes them. --quiet omits the tables. A slave that does\n"
-		"not reply is left out; the exit code is 1 then.\n"
+		"not reply is skipped; the exit code is 1 then.\n"
 		"  ethercat crc --watch 10\n",
 	.json = "master, slaves[]: position, name, ports[] (loop_closed, crc_errors, phy_errors,\n"
 		"forwarded_errors, lost_links, next_slave), processing_unit_errors, pdi_errors;\n"
