@@ -264,9 +264,11 @@ static bool has_coe(const struct ec_ioc_slave *s)
 static int end(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected)
 {
 	struct seen *seen = w->ctx;
+	bool any = seen->any;
 
 	(void)taken;
-	if (seen->any || !selected)
+	seen->any = false;	/* of the next master */
+	if (any || !selected)
 		return 0;
 	return fail("Master%u: no selected slave has a diagnosis history (object 0x10f3)",
 		    d->master);

@@ -73,6 +73,10 @@ setup() {
 	run ethercat diag
 	[ "$status" -eq 1 ]
 	[[ $output == *"Master0: no selected slave has a diagnosis history (object 0x10f3)" ]]
+	# only master 0 has one
+	FAKE_DIAG=good FAKE_BUS=two run ethercat diag
+	[ "$status" -eq 1 ]
+	[[ ${lines[-1]} == *"Master1: no selected slave has a diagnosis history (object 0x10f3)" ]]
 	export FAKE_DIAG=newest
 	run ethercat diag
 	[ "$status" -eq 1 ]

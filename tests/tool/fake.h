@@ -31,5 +31,6 @@ void fake_glance_registers(const struct ec_ioc_reg *x, __u8 *to);
 
 /* of the application that runs */
 extern const unsigned int fake_configs, fake_domains;
+extern unsigned int fake_index;	/* of the master */
 
 #endif

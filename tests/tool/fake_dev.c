@@ -27,6 +27,8 @@
 #define BIG	1000
 #define FD	100
 
+unsigned int fake_index;
+
 static bool writable[2];
 static char reason[EC_UAPI_REASON];
 static unsigned int polls, scans = 1, ioctls;
@@ -528,8 +530,10 @@ static int answer(int fd, unsigned long request, void *arg)
 
 int sys_ioctl(int fd, unsigned long request, void *arg)
 {
-	int ret = answer(fd, request, arg);
+	int ret;
 
+	fake_index = (unsigned int)(fd - FD);
+	ret = answer(fd, request, arg);
 	if (!ret)
 		fake_why(request, arg);
 	return ret;

@@ -38,7 +38,7 @@ static int diag_upload(struct ec_ioc_sdo *x)
 	__u32 most;
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
-	if (!kind || x->position != 2)
+	if (!kind || x->position != 2 || fake_index)
 		return abort_sdo(x, 0x06020000);
 	for (size_t i = 0; i < LEN(diag); i++) {
 		if (diag[i].sub != x->subindex)
