@@ -6,6 +6,7 @@
 
 #include "errors.h"
 #include "sys.h"
+#include "topology.h"
 #include "why.h"
 
 #define LOOKS		3	/* at a working counter before it counts as incomplete */
@@ -123,26 +124,64 @@ static bool is_cable(const struct why *w, unsigned int position, unsigned int po
 	return false;
 }
 
-static void port_errors(struct why *w, const struct ec_ioc_slave *s, unsigned int port,
-			const u8 *regs)
-{
-	unsigned int next = s->ports[port].next_slave;
-	struct why_finding *f;
-	char name[96], other[96] = "the main device or nothing";
+struct errors {
+	unsigned int rx, phy, lost;
+};
 
-	if (is_cable(w, s->position, port) ||
-	    !(err_rx(regs, port) | err_phy(regs, port) | err_lost(regs, port)))
+static struct errors errors_at(const u8 *regs, unsigned int port)
+{
+	return (struct errors){ err_rx(regs, port), err_phy(regs, port), err_lost(regs, port) };
+}
+
+static bool any(const struct errors *e)
+{
+	return e->rx || e->phy || e->lost;
+}
+
+/* Both ends of a cable may count its errors: it is reported once, at the upstream end. */
+static void port_errors(struct why *w, u8 (*regs)[EC_ERRORS_SIZE], unsigned int at,
+			unsigned int port)
+{
+	struct errors e = errors_at(regs[at], port), far = { 0 };
+	char name[96], other[96] = "the main device or nothing";
+	unsigned int peer_port;
+	struct why_finding *f;
+	u32 peer;
+
+	if (is_cable(w, at, port) || !any(&e))
 		return;
-	if (next != EC_UAPI_NONE16)
-		why_slave_name(w, next, other, sizeof(other));
+	if (topo_peer(&w->bus, at, port, &peer, &peer_port)) {
+		why_slave_name(w, peer, other, sizeof(other));
+		if (peer_port < EC_UAPI_PORTS)
+			far = errors_at(regs[peer], peer_port);
+		if (peer < at && any(&far))
+			return;
+	}
 	f = why_add(w, "link_errors",
 		    "check this cable and its plugs; then 'ethercat crc reset' and look again",
 		    "between port %u of %s and %s: %u invalid frames, %u receive errors, link lost %u times",
-		    port, why_slave_name(w, s->position, name, sizeof(name)), other,
-		    err_rx(regs, port), err_phy(regs, port), err_lost(regs, port));
+		    port, why_slave_name(w, at, name, sizeof(name)), other, e.rx + far.rx,
+		    e.phy + far.phy, e.lost + far.lost);
 	f->warning = true;
-	f->slave = s->position;
+	f->slave = (int)at;
 	f->port = (int)port;
+}
+
+/* 0, or 1 after an error that was printed */
+static int read_errors(struct why *w, struct dev *d, u8 (*regs)[EC_ERRORS_SIZE])
+{
+	if (!regs)
+		return fail("out of memory");
+	for (size_t i = 0; i < w->bus.n; i++) {
+		struct ec_ioc_reg r = {
+			.position = w->bus.v[i].position, .address = EC_REG_ERRORS,
+			.size = sizeof(*regs), .data = (uintptr_t)regs[i],
+		};
+
+		/* one that does not reply for long has its own finding */
+		w->silent += !!dev_ioctl(d, EC_IOC_REG_READ, &r);
+	}
+	return 0;
 }
 
 /**
@@ -151,27 +190,17 @@ static void port_errors(struct why *w, const struct ec_ioc_slave *s, unsigned in
  */
 void why_counters(struct why *w)
 {
+	u8 (*regs)[EC_ERRORS_SIZE] = calloc(w->bus.n + 1, sizeof(*regs));
 	struct dev d = *w->d;
 
 	d.fd = sys_open(d.path, O_RDWR);
-	if (d.fd < 0)
-		return;
-	w->counters = true;
-	for (size_t i = 0; i < w->bus.n; i++) {
-		const struct ec_ioc_slave *s = &w->bus.v[i];
-		u8 regs[EC_ERRORS_SIZE];
-		struct ec_ioc_reg r = {
-			.position = s->position, .address = EC_REG_ERRORS, .size = sizeof(regs),
-			.data = (uintptr_t)regs,
-		};
-
-		/* one that does not reply for long has its own finding */
-		if (dev_ioctl(&d, EC_IOC_REG_READ, &r)) {
-			w->silent++;
-			continue;
-		}
-		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++)
-			port_errors(w, s, p, regs);
+	if (d.fd >= 0) {
+		w->counters = true;
+		w->failed |= read_errors(w, &d, regs);
+		dev_close(&d);
 	}
-	dev_close(&d);
+	for (unsigned int i = 0; regs && i < w->bus.n; i++)
+		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++)
+			port_errors(w, regs, i, p);
+	free(regs);
 }

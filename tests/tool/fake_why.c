@@ -153,6 +153,12 @@ static void domain(struct ec_ioc_domain *x)
 		x->working_counter = 2;
 }
 
+static void counters(struct ec_ioc_reg *x)
+{
+	if (wrong("both_ends") && x->position == 1)
+		*(__u8 *)(uintptr_t)x->data = 2;	/* at port 0 */
+}
+
 /* Changes the reply to a command that was done. */
 void fake_why(unsigned long request, void *arg)
 {
@@ -182,6 +188,9 @@ void fake_why(unsigned long request, void *arg)
 		break;
 	case EC_IOC_DOMAIN:
 		domain(arg);
+		break;
+	case EC_IOC_REG_READ:
+		counters(arg);
 		break;
 	default:
 		break;

@@ -105,6 +105,8 @@ is() {
 	unset FAKE_READONLY
 	[ "$(causes well)" = link_errors ]
 	is well '(f["level"], f["slave"], f["port"]) == ("warning", 0, 1)'
+	is both_ends '(f["slave"], f["port"]) == (0, 1) and ": 5 invalid frames, " in f["text"]'
+	[ "$(causes both_ends)" = link_errors ]
 	FAKE_WHY=well run ethercat why
 	[ "$status" -eq 0 ]
 	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frames, "* ]]
