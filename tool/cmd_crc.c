@@ -8,7 +8,7 @@ static int row(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s
 {
 	u8 regs[EC_ERRORS_SIZE];
 
-	if (reg_read(d, s->position, EC_REG_ERRORS, regs, sizeof(regs)))
+	if (errors_read(d, s->position, regs))
 		return 1;
 	crc_table_row(t, s, regs);
 	return 0;

@@ -148,7 +148,7 @@ static int show(struct dev *d, enum info info, bool tree)
 		goto out;
 	}
 	for (size_t i = 0; i < all.n && info == CRC; i++) {
-		if (reg_read(d, all.v[i].position, EC_REG_ERRORS, regs[i], sizeof(*regs)))
+		if (errors_read(d, all.v[i].position, regs[i]))
 			ret = 1;
 		else
 			counters[i] = regs[i];

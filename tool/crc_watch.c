@@ -211,8 +211,7 @@ static int read_all(struct dev *d, struct span *w, u8 (*regs)[EC_ERRORS_SIZE])
 	bool any = false;
 
 	for (size_t i = 0; i < w->all.n; i++) {
-		if (!w->mute[i] && reg_read(d, w->all.v[i].position, EC_REG_ERRORS, regs[i],
-					    EC_ERRORS_SIZE)) {
+		if (!w->mute[i] && errors_read(d, w->all.v[i].position, regs[i])) {
 			w->mute[i] = true;
 			w->shown[i] = false;
 		}

@@ -6,6 +6,9 @@
 #include "../master/wire/regs.h"
 #include "reg.h"
 
+int errors_try(struct dev *d, u16 position, u8 *regs);
+int errors_read(struct dev *d, u16 position, u8 *regs);
+
 static inline u8 err_rx(const u8 *regs, unsigned int port)
 {
 	return regs[EC_REG_ERR_RX(port) - EC_REG_ERRORS];

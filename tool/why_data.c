@@ -172,15 +172,9 @@ static int read_errors(struct why *w, struct dev *d, u8 (*regs)[EC_ERRORS_SIZE])
 {
 	if (!regs)
 		return fail("out of memory");
-	for (size_t i = 0; i < w->bus.n; i++) {
-		struct ec_ioc_reg r = {
-			.position = w->bus.v[i].position, .address = EC_REG_ERRORS,
-			.size = sizeof(*regs), .data = (uintptr_t)regs[i],
-		};
-
-		/* one that does not reply for long has its own finding */
-		w->silent += !!dev_ioctl(d, EC_IOC_REG_READ, &r);
-	}
+	/* one that does not reply for long has its own finding */
+	for (size_t i = 0; i < w->bus.n; i++)
+		w->silent += !!errors_try(d, w->bus.v[i].position, regs[i]);
 	return 0;
 }
 

@@ -9,7 +9,8 @@
  *   detached (its application is gone), waiting (no network interface), evil (names that attack
  *   the reader),
  *   big (1000 slaves), shrinks (slaves are lost), noref (no reference clock), mute (registers of
- *   slave 1 are not readable); fake_glance.c has more
+ *   slave 1 are not readable), lossy (one read of registers in four succeeds);
+ *   fake_glance.c has more
  * FAKE_LOG names a file that gets a line for each change, FAKE_COUNT one that
  * gets the number of ioctls.
  */
@@ -373,10 +374,11 @@ void fake_hex(const char *what, const __u8 *data, __u32 n)
 static int reg_read(struct ec_ioc_reg *x)
 {
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
+	static unsigned int lost;
 
 	if (!x->size || x->size > 1024)
 		return fake_fail(EINVAL, "1 to 1024 bytes");
-	if (fake_bus("mute") && x->position == 1)
+	if ((fake_bus("mute") && x->position == 1) || (fake_bus("lossy") && lost++ % 4 != 3))
 		return fake_fail(ETIMEDOUT, "no reply to register access");
 	for (__u32 i = 0; i < x->size; i++) {
 		__u32 a = x->address + i;

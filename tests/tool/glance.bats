@@ -73,6 +73,17 @@ watch() {
 		json '[len(s["ports"][0]) for s in d["slaves"]] == [8, 4, 8]'
 }
 
+@test "a lost frame does not keep error counters from being read" {
+	for c in crc "crc --watch 0.1" "graph crc" "graph crc --tree"; do
+		diff <(out $c | sed 's/[0-9.]* s /T /') \
+			<(FAKE_BUS=lossy ethercat $c 2>&1 | sed 's/[0-9.]* s /T /')
+	done
+	FAKE_BUS=lossy out why -j | json "d['masters'][0]['error_counters_read']"
+	# a read may change other registers
+	FAKE_BUS=lossy run ethercat reg_read -p0 -t uint16 0x0130
+	[ "$status" -eq 1 ]
+}
+
 @test "crc --watch names the segment where errors grow" {
 	between="Errors grow between slave 1 port 1 and slave 2 port 0"
 	[ "$(watch noisy)" = "$between: 5 invalid frame(s), 9 receiver error(s), 1 lost link(s)" ]
