@@ -4,6 +4,7 @@
 #include "base/limits.h"
 #include "boundary/master.h"
 #include "monitor.h"
+#include "power.h"
 
 static char *main_devices[EC_MAX_MASTERS];
 static unsigned int n_main;
@@ -29,10 +30,15 @@ static int __init ec_init(void)
 	ret = ec_masters_create(main_devices, n_main, backup_devices, n_backup, debug_level);
 	if (ret)
 		goto err_class;
+	ret = ec_power_init();
+	if (ret)
+		goto err_masters;
 	if (!n_main)
 		pr_warn("EtherCAT: no master: load ec_master with main_devices=MAC, interface or sim0\n");
 	return 0;
 
+err_masters:
+	ec_masters_destroy();
 err_class:
 	ec_cdev_class_exit();
 	return ret;
@@ -40,6 +46,7 @@ err_class:
 
 static void __exit ec_exit(void)
 {
+	ec_power_exit();
 	ec_masters_destroy();
 	ec_cdev_class_exit();
 }

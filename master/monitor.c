@@ -465,6 +465,21 @@ static void no_slaves(struct ec_master *m)
 	ec_bus_settled(&m->bus);
 }
 
+/* The computer sleeps: no frame until it has resumed. */
+static void stand_still(struct ec_master *m)
+{
+	WRITE_ONCE(m->paused, true);
+	ec_bus_settled(&m->bus);
+	for (;;) {
+		set_current_state(TASK_IDLE);
+		if (kthread_should_stop() || !READ_ONCE(m->pause))
+			break;
+		schedule();
+	}
+	__set_current_state(TASK_RUNNING);
+	WRITE_ONCE(m->paused, false);
+}
+
 static int monitor(void *data)
 {
 	struct watch w = { .m = data };
@@ -474,6 +489,8 @@ static int monitor(void *data)
 	while (!kthread_should_stop()) {
 		ktime_t to;
 
+		if (READ_ONCE(m->pause))
+			stand_still(m);
 		check_links(&w);
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC &&
 		    ec_access_timed_out(&m->links))
@@ -495,7 +512,7 @@ static int monitor(void *data)
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		watch_events(&w);
-		if (!kthread_should_stop() &&
+		if (!kthread_should_stop() && !READ_ONCE(m->pause) &&
 		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);

@@ -21,11 +21,11 @@ int ec_ioc_refuse_reserved(struct ec_call *call)
 {
 	const struct ec_sessions *ss = &call->master->sessions;
 	unsigned int index = call->master->base->index;
+	const char *paused = READ_ONCE(ss->paused);
 	char who[64];
 
-	if (READ_ONCE(ss->paused))
-		return ec_refuse(call, -EBUSY,
-				 "master %u is about to use another device; try again", index);
+	if (paused)
+		return ec_refuse(call, -EBUSY, "master %u %s; try again", index, paused);
 	if (READ_ONCE(call->master->api->reserved))
 		return ec_refuse(call, -EBUSY,
 				 "master %u is reserved by an application in the kernel; remove its module, 'lsmod' shows the users of ec_master",

@@ -61,7 +61,7 @@ int ec_ioc_device_use(struct ec_call *call)
 	ret = check_name(call, i);
 	if (ret)
 		return ret;
-	if (ec_sessions_pause(&call->master->sessions))
+	if (ec_sessions_pause(&call->master->sessions, "is about to use another device"))
 		return ec_ioc_refuse_reserved(call);
 	ret = change(call, i->name);
 	ec_sessions_resume(&call->master->sessions);

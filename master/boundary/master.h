@@ -41,6 +41,10 @@ struct ec_master {
 	struct ec_api *api;
 	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */
 	struct task_struct *monitor;
+	/** @pause: it shall send nothing until this is cleared; power.c */
+	bool pause;
+	/** @paused: it does not; monitor.c */
+	bool paused;
 	/** @rider: its datagram in frames of the cycle */
 	struct ec_rider rider;
 };

@@ -62,6 +62,8 @@ struct ec_bus {
 	bool rescan;
 	/** @looked: the bus was scanned, or there is no link, since the device was attached */
 	bool looked;
+	/** @down: the computer reboots: no slave is brought beyond PREOP any more */
+	bool down;
 	/** @freeze: no scan while reserved and not active */
 	bool freeze;
 	/** @scan_busy: slaves are being scanned */

@@ -423,16 +423,34 @@ bool ec_slave_busy(const struct ec_slave *slave)
 	return atomic_read_acquire(&slave->works) > 0;
 }
 
+/* Nothing beyond PREOP while the computer reboots. */
+static u8 allowed(const struct ec_slave *slave, u8 state)
+{
+	return state & EC_AL_BEYOND_PREOP && READ_ONCE(slave->bus->down) ? EC_AL_PREOP : state;
+}
+
+/**
+ * ec_slave_wanted() - the state that the worker brings the slave to
+ * @slave: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: AL state: the requested one, or PREOP instead of a higher one while the computer reboots.
+ */
+u8 ec_slave_wanted(const struct ec_slave *slave)
+{
+	return allowed(slave, READ_ONCE(slave->requested));
+}
+
 /**
  * ec_slave_request() - let a worker bring the slave to a state
  * @slave: slave
- * @state: AL state
+ * @state: AL state; none beyond PREOP is reached while the computer reboots
  *
  * Context: Process.
  */
 void ec_slave_request(struct ec_slave *slave, u8 state)
 {
-	WRITE_ONCE(slave->requested, state);
+	WRITE_ONCE(slave->requested, allowed(slave, state));
 	wake_up_all(&slave->stop.wake);
 	ec_slave_kick(slave);
 }

@@ -198,6 +198,7 @@ void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
 bool ec_slave_busy(const struct ec_slave *slave);
+u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
 		   const char *fmt, ...) __printf(4, 5);

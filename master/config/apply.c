@@ -93,6 +93,9 @@ static int set_state(struct ec_slave *s, u8 state)
 {
 	int ret;
 
+	/* the computer reboots since the worker has begun this way */
+	if (state & EC_AL_BEYOND_PREOP && READ_ONCE(s->bus->down))
+		return -ECANCELED;
 	waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
 		     state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" : "the slave to change its state");
 	ret = ec_al_set(s, state, limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
@@ -422,7 +425,7 @@ static int start_clean(struct ec_slave *s)
 static int step(struct ec_slave *s)
 {
 	const struct ec_setup *setup = ec_setup_of(s);
-	u8 want = READ_ONCE(s->requested), cur;
+	u8 want = ec_slave_wanted(s), cur;
 	bool anew;
 	int ret = ec_al_read(s);
 

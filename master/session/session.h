@@ -87,8 +87,11 @@ struct ec_sessions {
 	struct ec_session *session;
 	/** @candidate: of another one that is to take over @session, which is detached */
 	struct ec_session *candidate;
-	/** @paused: no application may reserve the master, under @lock */
-	bool paused;
+	/**
+	 * @paused: no application may reserve the master, in words: the master "sleeps with the
+	 * computer"; NULL: one may. Under @lock
+	 */
+	const char *paused;
 	/** @next: of @candidate; its times have no lock */
 	struct ec_next next;
 	/**
@@ -195,7 +198,7 @@ u8 *ec_session_domain_data(const struct ec_domain *d);
 int ec_sessions_init(struct ec_sessions *ss);
 void ec_sessions_exit(struct ec_sessions *ss);
 void ec_sessions_lock(struct ec_sessions *ss);
-int ec_sessions_pause(struct ec_sessions *ss);
+int ec_sessions_pause(struct ec_sessions *ss, const char *why);
 void ec_sessions_resume(struct ec_sessions *ss);
 bool ec_sessions_trylock(struct ec_sessions *ss);
 void ec_sessions_unlock(struct ec_sessions *ss);

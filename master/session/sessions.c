@@ -66,12 +66,13 @@ void ec_sessions_unlock(struct ec_sessions *ss)
 /**
  * ec_sessions_pause() - let no application reserve the master
  * @ss: sessions of a master
+ * @why: the reason, see struct ec_sessions @paused
  *
  * Context: Process. May sleep.
  * Return: 0, then ec_sessions_resume() must follow; -EBUSY when there is a session, also one
  * without application, or another caller has paused them.
  */
-int ec_sessions_pause(struct ec_sessions *ss)
+int ec_sessions_pause(struct ec_sessions *ss, const char *why)
 {
 	int ret = 0;
 
@@ -79,7 +80,7 @@ int ec_sessions_pause(struct ec_sessions *ss)
 	if (ss->paused || ss->session || ss->candidate)
 		ret = -EBUSY;
 	else
-		WRITE_ONCE(ss->paused, true);
+		WRITE_ONCE(ss->paused, why);
 	mutex_unlock(&ss->lock);
 	return ret;
 }
@@ -93,7 +94,7 @@ int ec_sessions_pause(struct ec_sessions *ss)
 void ec_sessions_resume(struct ec_sessions *ss)
 {
 	mutex_lock(&ss->lock);
-	WRITE_ONCE(ss->paused, false);
+	WRITE_ONCE(ss->paused, NULL);
 	mutex_unlock(&ss->lock);
 }
 

@@ -13,6 +13,9 @@ enum ec_al_state {
 	EC_AL_OP = 8,
 };
 
+/* bits of these two states, and of no other */
+#define EC_AL_BEYOND_PREOP		(EC_AL_SAFEOP | EC_AL_OP)
+
 /* AL status codes that the master evaluates; texts exist for all */
 #define EC_AL_CODE_NO_OUTPUTS		0x0019
 #define EC_AL_CODE_SM_WATCHDOG		0x001B

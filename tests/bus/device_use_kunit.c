@@ -131,7 +131,7 @@ static void device_use_reserved(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), 0);
 
 	ec_file_init(&second, b->m, true);
-	KUNIT_ASSERT_EQ(test, ec_sessions_pause(ss), 0);
+	KUNIT_ASSERT_EQ(test, ec_sessions_pause(ss, "is about to use another device"), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&second, EC_IOC_RESERVE, NULL), -EBUSY);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(second.reason, "about to use another device"));
 	KUNIT_EXPECT_EQ(test, use(b, "bus1"), -EBUSY);
