@@ -52,6 +52,8 @@ struct intel {
 	bool started;
 	/** @ready: the rings run */
 	bool ready;
+	/** @shut: the computer goes down: they never run again */
+	bool shut;
 };
 
 static void poll(struct intel *n)
@@ -175,6 +177,8 @@ static int run(struct intel *n)
 	int ret;
 
 	lockdep_assert_held(&n->lock);
+	if (n->shut)
+		return -ESHUTDOWN;
 	ret = ec_nic_reset(&n->nic);
 	if (!ret) {
 		/* without it no descriptor is fetched */
@@ -379,10 +383,15 @@ static void remove(struct pci_dev *pdev)
 	ecdev_withdraw(n->dev);
 }
 
-/* another kernel may start in this memory */
+/* another kernel may start in this memory, so no command of a tool starts the rings again */
 static void shutdown(struct pci_dev *pdev)
 {
-	quiesce(pci_get_drvdata(pdev));
+	struct intel *n = pci_get_drvdata(pdev);
+
+	mutex_lock(&n->lock);
+	n->shut = true;
+	quiesce_locked(n);
+	mutex_unlock(&n->lock);
 }
 
 static void reset_prepare(struct pci_dev *pdev)
