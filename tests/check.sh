@@ -33,6 +33,7 @@ ethercrab
 system
 bench
 guests
+reboot
 demo
 layers
 tshark
@@ -42,7 +43,7 @@ tshark
 side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
 # Of what these use, the others have built most. Their guests have exact time: in places that
 # they share. A level that does not take places itself holds one.
-guests=" system bench guests demo layers tshark "
+guests=" system bench guests reboot demo layers tshark "
 own_places=" system guests "
 passed=0 failed=0
 log=$(mktemp -d)
@@ -94,6 +95,7 @@ level_layers() { tests/check-layers.sh; }
 level_build() { tests/build/check.sh; }
 level_system() { tests/system/run.sh; }
 level_guests() { tests/arch/guests.sh; }
+level_reboot() { tests/reboot/run.sh; }
 level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
 level_bench() { tests/bench/run.sh --gates cycle sim mailbox; }
