@@ -14,6 +14,7 @@
 #define EC_UAPI_ETHERCAT_EVENT_H
 
 #include <linux/types.h>
+#include "ethercat_cause.h"
 
 #define EC_EVENT_ARGS		8
 #define EC_EVENTS_KEPT		2047
@@ -44,9 +45,20 @@
 #define EC_EVENT_AL_LEFT	0x21	/* the same without request */
 #define EC_EVENT_AL_ERROR	0x22	/* AL state, AL status code */
 #define EC_EVENT_EMERGENCY	0x23	/* code, error register, data 0..3, data 4 */
-#define EC_EVENT_SLAVE_FAILED	0x24	/* EC_SLAVE_*_FAILED, AL status code */
+/*
+ * EC_SLAVE_*_FAILED, AL status code; of struct ec_cause: kind, code, object, subindex, SyncManager,
+ * AL state
+ */
+#define EC_EVENT_SLAVE_FAILED	0x24
+/* flaw of an EEPROM that is used anyway: 0 checksum, found, expected; otherwise its kind */
+#define EC_EVENT_EEPROM		0x25
+#define EC_EVENT_NO_CLOCK	0x26	/* SYNC signals configured, but no clock */
+#define EC_EVENT_REVISION	0x27	/* expected, found */
 
-/* domain, working counter, before, expected; changes before this one that have no record */
+/*
+ * domain, working counter, before, expected; changes before this one that have no record; 1: the
+ * application takes the slaves to PREOP
+ */
 #define EC_EVENT_WKC		0x30
 #define EC_EVENT_OVERRUN	0x31	/* cycles skipped since the last record */
 #define EC_EVENT_FRAMES_LOST	0x32	/* frames lost since the last record */
@@ -55,6 +67,8 @@
 #define EC_EVENT_TIMEOUT	0x34
 #define EC_EVENT_RESUMED	0x35	/* ms */
 #define EC_EVENT_STALE		0x36	/* domain, age in sends, limit */
+/* ns of the cyclic frames, of a cycle, free for acyclic frames, that one needs at least */
+#define EC_EVENT_WIRE_TIME	0x37
 
 /* slave, or EC_EVENT_NONE: clocks run free; 1: the reference clock before was lost */
 #define EC_EVENT_REF_CLOCK	0x40
@@ -73,6 +87,13 @@
 #define EC_EVENT_DETACHED	0x54	/* process that exited or released the master */
 #define EC_EVENT_TAKEN_OVER	0x55	/* process */
 #define EC_EVENT_DEBUG		0x56	/* debug level */
+
+/*
+ * On activation a configuration has no slave: alias, position, EC_CAUSE_*, vendor, product;
+ * vendor, product of the slave at its position
+ */
+#define EC_EVENT_CONFIG		0x60
+#define EC_EVENT_CONFIGS	0x61	/* more of them without record */
 
 /**
  * struct ec_event - one event

@@ -147,6 +147,7 @@ static void check_sii(struct ec_slave *s)
 		break;
 	}
 	ec_slave_warn(s, "%s\n", s->sii_flaw);
+	ec_slave_event(s, EC_EVENT_EEPROM, f->kind, s->info.checksum, s->info.checksum_calc);
 }
 
 /**
@@ -212,7 +213,8 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 	if (!other)
 		return;
 	ec_slave_warn(slave, "%s\n", text);
-	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code));
+	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code), cause->kind,
+		       cause->code, cause->object, cause->subindex, cause->sm, cause->state);
 }
 
 /**

@@ -250,6 +250,7 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		return 0;
 	if (!ec_slave_has_clock(s)) {
 		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
+		ec_slave_event(s, EC_EVENT_NO_CLOCK);
 		return 0;
 	}
 	ec_dc_sync_compare(s, &c->sync);

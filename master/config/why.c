@@ -7,6 +7,7 @@
 #include "why.h"
 
 #define LOG_MAX		32	/* lines per activation */
+#define EVENTS_MAX	256	/* events per activation: others stay in the ring */
 #define WALK		64	/* configurations to check without a pause */
 
 /* The ring position that @c names; false: no slave has its alias. @topo is held, or it is shown. */
@@ -246,6 +247,46 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 	return true;
 }
 
+/* A link that is down, or an absent device, is an event of its own. */
+static void note_absent(const struct ec_config *c, const struct ec_cause *cause)
+{
+	const struct ec_bus *bus = c->wanted->bus;
+	u32 vendor = 0, product = 0;
+	u16 at = EC_EVENT_NO_SLAVE;
+
+	ec_bus_assert_stays(bus);
+	if (cause->kind == EC_CAUSE_NO_DEVICE || cause->kind == EC_CAUSE_LINK_DOWN)
+		return;
+	if (cause->kind != EC_CAUSE_NO_ALIAS && cause->position < bus->n_slaves) {
+		at = cause->position;
+		vendor = bus->slaves[at]->info.vendor;
+		product = bus->slaves[at]->info.product;
+	}
+	ec_event_slave(c->wanted->base, EC_EVENT_CONFIG, at, c->alias, c->position, cause->kind,
+		       c->vendor, c->product, vendor, product);
+}
+
+static void log_difference(const struct ec_config *c, bool line)
+{
+	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
+	const struct ec_wanted *w = c->wanted;
+	char text[EC_UAPI_REASON];
+	struct ec_cause cause;
+
+	down_read(&w->bus->topo);
+	if (c->slave) {
+		ec_config_revision_text(c, c->slave, text, sizeof(text));
+		ec_slave_event(c->slave, EC_EVENT_REVISION, expected, c->slave->info.revision);
+	} else {
+		absent(c, text, sizeof(text), &cause);
+		note_absent(c, &cause);
+	}
+	up_read(&w->bus->topo);
+	if (line)
+		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
+			     c->position, text);
+}
+
 /**
  * ec_config_log_differences() - report what is missing or different
  * @w: of a session that has just been activated
@@ -254,25 +295,18 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
  */
 void ec_config_log_differences(const struct ec_wanted *w)
 {
-	char text[EC_UAPI_REASON];
-	struct ec_cause cause;
 	unsigned int n = 0;
 
 	lockdep_assert_held(w->lock);
 	ec_for_each_config(c, w) {
 		if (c->slave && !other_revision(c, c->slave))
 			continue;
-		if (n++ >= LOG_MAX)
-			continue;
-		down_read(&w->bus->topo);
-		if (c->slave)
-			ec_config_revision_text(c, c->slave, text, sizeof(text));
-		else
-			absent(c, text, sizeof(text), &cause);
-		up_read(&w->bus->topo);
-		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
-			     c->position, text);
+		if (n < EVENTS_MAX)
+			log_difference(c, n < LOG_MAX);
+		n++;
 	}
+	if (n > EVENTS_MAX)
+		ec_event(w->base, EC_EVENT_CONFIGS, n - EVENTS_MAX);
 	if (n > LOG_MAX)
 		ec_warn(w, "%u more configurations differ from the bus; see 'ethercat config -v'\n",
 			n - LOG_MAX);

@@ -347,6 +347,8 @@ static bool has_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
 	ec_warn(c,
 		"cyclic frames use %u ns of %llu ns; %u ns free for acyclic frames, minimum %u ns: lengthen the cycle or overlap PDOs\n",
 		wire_ns, interval_ns, slack, ec_cycle_need_ns());
+	ec_event(c->base, EC_EVENT_WIRE_TIME, wire_ns, min_t(u64, interval_ns, ~0u), slack,
+		 ec_cycle_need_ns());
 	return false;
 }
 

@@ -35,15 +35,20 @@ static const struct ec_event_kind kinds[] = {
 	KIND(AL_LEFT, "al_state_left", U("state"), U("before")),
 	KIND(AL_ERROR, "al_error", U("state"), U("al_code")),
 	KIND(EMERGENCY, "emergency", U("code"), U("error_register"), U("data"), U("data_4")),
-	KIND(SLAVE_FAILED, "slave_failed", U("error"), U("al_code")),
+	KIND(SLAVE_FAILED, "slave_failed", U("error"), U("al_code"), U("cause"), U("code"),
+	     U("object"), U("subindex"), U("sm"), U("state")),
+	KIND(EEPROM, "eeprom", U("flaw"), U("checksum"), U("expected")),
+	KIND(NO_CLOCK, "no_clock"),
+	KIND(REVISION, "revision", U("expected"), U("found")),
 	KIND(WKC, "working_counter", U("domain"), U("working_counter"), U("before"),
-	     U("expected"), U("more_changes")),
+	     U("expected"), U("more_changes"), U("slaves_down")),
 	KIND(OVERRUN, "overruns", U("cycles")),
 	KIND(FRAMES_LOST, "frames_lost", U("frames")),
 	KIND(FRAMES_LATE, "frames_late", U("frames")),
 	KIND(TIMEOUT, "cycle_timeout", U("ms"), U("timeouts")),
 	KIND(RESUMED, "cycle_resumed", U("ms")),
 	KIND(STALE, "stale_data", U("domain"), U("age"), U("limit")),
+	KIND(WIRE_TIME, "wire_time", U("cyclic_ns"), U("cycle_ns"), U("free_ns"), U("needed_ns")),
 	KIND(REF_CLOCK, "reference_clock", S("reference"), U("lost")),
 	KIND(DC_SET, "clocks_synchronized", U("us"), S("reference")),
 	KIND(DC_FAILED, "clocks_not_synchronized", U("errno"), U("retry")),
@@ -56,6 +61,9 @@ static const struct ec_event_kind kinds[] = {
 	KIND(DETACHED, "detached", U("pid")),
 	KIND(TAKEN_OVER, "taken_over", U("pid")),
 	KIND(DEBUG, "debug_level", U("level")),
+	KIND(CONFIG, "configuration", U("alias"), U("position"), U("cause"), U("vendor_id"),
+	     U("product_code"), U("found_vendor_id"), U("found_product_code")),
+	KIND(CONFIGS, "configurations", U("more")),
 };
 
 /**
@@ -159,15 +167,108 @@ static void about_bus(struct text *t, const struct ec_event *e)
 	}
 }
 
+/* a startup command with its code; without one the mailbox itself failed */
+static void startup(struct text *t, const u32 *a)
+{
+	if (a[2] == EC_CAUSE_IDN)
+		format(t, "startup IDN 0x%04x of drive %u, SoE error 0x%04x", a[4], a[5], a[3]);
+	else if (a[2] == EC_CAUSE_IP)
+		format(t, "IP parameters, EoE result 0x%04x", a[3]);
+	else if (a[2] == EC_CAUSE_REGISTER)
+		format(t, "startup register 0x%04x", a[4]);
+	else if (a[3])
+		format(t, "startup SDO 0x%04x:%02x, abort 0x%08x (%s)", a[4], a[5], a[3],
+		       ec_coe_abort_text(a[3]));
+	else
+		format(t, "startup SDO 0x%04x:%02x, mailbox failed", a[4], a[5]);
+}
+
+static void pdos(struct text *t, const u32 *a)
+{
+	if (a[3])
+		format(t, "PDOs of SM%u: 0x%04x refused, abort 0x%08x (%s)", a[6], a[4], a[3],
+		       ec_coe_abort_text(a[3]));
+	else
+		format(t, "PDOs of SM%u are not those of the slave", a[6]);
+}
+
+/* why a slave failed; nothing: only the AL status code says it */
+static void cause(struct text *t, const u32 *a)
+{
+	const char *state = ec_al_state_name((u8)a[7]);
+
+	switch (a[2]) {
+	case EC_CAUSE_SILENT:
+		format(t, "no reply, frames pass");
+		break;
+	case EC_CAUSE_REGISTERS:
+		format(t, "no reply at its registers or station address, frames pass");
+		break;
+	case EC_CAUSE_EEPROM:
+		format(t, "EEPROM not readable or invalid");
+		break;
+	case EC_CAUSE_SDO:
+	case EC_CAUSE_IDN:
+	case EC_CAUSE_REGISTER:
+	case EC_CAUSE_IP:
+		startup(t, a);
+		break;
+	case EC_CAUSE_PDO:
+		pdos(t, a);
+		break;
+	case EC_CAUSE_LAYOUT:
+		format(t, "it cannot serve the layout of the process data");
+		break;
+	case EC_CAUSE_SYNC:
+		format(t, "SYNC signals refused, not started or not running");
+		break;
+	case EC_CAUSE_SLOW:
+		format(t, "%s not reached in time", state);
+		break;
+	case EC_CAUSE_FRAMES:
+		format(t, "frames lost before %s", state);
+		break;
+	case EC_CAUSE_REFUSED:
+		format(t, "%s refused, AL status code 0x%04x (%s)", state, a[3],
+		       ec_al_code_text((u16)a[3]));
+		break;
+	default:
+		format(t, "AL status code 0x%04x (%s)", a[1], ec_al_code_text((u16)a[1]));
+	}
+}
+
+static void about_failure(struct text *t, const struct ec_event *e)
+{
+	char why[140] = "";
+	struct text w = { .buf = why, .size = sizeof(why) };
+
+	cause(&w, e->arg);
+	format(t, "%s of slave %u failed: %s", e->arg[0] == 1 ? "scan" : "configuration", e->slave,
+	       why);
+}
+
 static void about_slave(struct text *t, const struct ec_event *e)
 {
 	const char *state = ec_al_state_name((u8)e->arg[0]);
 
 	switch (e->kind) {
 	case EC_EVENT_SLAVE_FAILED:
-		format(t, "%s of slave %u failed, AL status code 0x%04x (%s); see 'ethercat slaves -v'",
-		       e->arg[0] == 1 ? "scan" : "configuration", e->slave, e->arg[1],
-		       ec_al_code_text((u16)e->arg[1]));
+		about_failure(t, e);
+		break;
+	case EC_EVENT_EEPROM:
+		if (e->arg[0])
+			format(t, "slave %u: EEPROM blank or malformed (flaw %u), the valid part is used",
+			       e->slave, e->arg[0]);
+		else
+			format(t, "slave %u: EEPROM checksum 0x%02x, expected 0x%02x; content used anyway",
+			       e->slave, e->arg[1], e->arg[2]);
+		break;
+	case EC_EVENT_NO_CLOCK:
+		format(t, "slave %u has no distributed clock; SYNC signals ignored", e->slave);
+		break;
+	case EC_EVENT_REVISION:
+		format(t, "slave %u has revision 0x%08x, expected 0x%08x", e->slave, e->arg[1],
+		       e->arg[0]);
 		break;
 	case EC_EVENT_AL_STATE:
 		format(t, "slave %u: AL state %s, before %s", e->slave, state,
@@ -223,6 +324,10 @@ static void about_cycle(struct text *t, const struct ec_event *e)
 	case EC_EVENT_STALE:
 		format(t, "domain %u receives stale process data: %u sends old, limit %u", a[0],
 		       a[1], a[2]);
+		break;
+	case EC_EVENT_WIRE_TIME:
+		format(t, "cyclic frames use %u ns of %u ns; %u ns free for acyclic frames, minimum %u ns",
+		       a[0], a[1], a[2], a[3]);
 		break;
 	}
 }
@@ -304,6 +409,28 @@ static void about_session(struct text *t, const struct ec_event *e)
 	}
 }
 
+/* what is there instead of the configured slave */
+static void about_config(struct text *t, const struct ec_event *e)
+{
+	const u32 *a = e->arg;
+
+	if (e->kind == EC_EVENT_CONFIGS)
+		format(t, "%u more configuration(s) without slave", a[0]);
+	else if (a[2] == EC_CAUSE_NO_ALIAS)
+		format(t, "configuration %u:%u: no slave has alias %u", a[0], a[1], a[0]);
+	else if (a[2] == EC_CAUSE_DIFFERENT)
+		format(t, "configuration %u:%u: slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
+		       a[0], a[1], e->slave, a[5], a[6], a[3], a[4]);
+	else if (a[2] == EC_CAUSE_TAKEN)
+		format(t, "configuration %u:%u: slave %u has another configuration", a[0], a[1],
+		       e->slave);
+	else if (e->slave != EC_EVENT_NO_SLAVE)
+		format(t, "configuration %u:%u: slave %u could not be read", a[0], a[1], e->slave);
+	else
+		format(t, "configuration %u:%u: no slave (0x%08x/0x%08x) at its position", a[0],
+		       a[1], a[3], a[4]);
+}
+
 /**
  * ec_event_text() - one line about an event
  * @e: event; nothing in it is trusted
@@ -316,6 +443,7 @@ int ec_event_text(const struct ec_event *e, char *buf, size_t size)
 {
 	static void (*const about[])(struct text *t, const struct ec_event *e) = {
 		about_link, about_bus, about_slave, about_cycle, about_clocks, about_session,
+		about_config,
 	};
 	struct text t = { .buf = buf, .size = size };
 

@@ -191,7 +191,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 			if (ec_event_kind(other))
 				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
 	}
-	KUNIT_EXPECT_EQ(test, n, 39u);
+	KUNIT_EXPECT_EQ(test, n, 45u);
 }
 
 /* A record of any content, a buffer of any size. */
@@ -251,6 +251,31 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "reference clock lost: clocks run free");
 }
 
+static void event_texts_name_cause_and_place(struct kunit *test)
+{
+	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SDO, 0x06020000, 0x5f07, 1),
+	       "configuration of slave 3 failed: startup SDO 0x5f07:01, abort 0x06020000 (object does not exist)");
+	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SDO, 0, 0x60ff),
+	       "configuration of slave 3 failed: startup SDO 0x60ff:00, mailbox failed");
+	expect(test, E(SLAVE_FAILED, 3, 2, 0x24, EC_CAUSE_REFUSED, 0x24, 0, 0, 0, 4),
+	       "configuration of slave 3 failed: SAFEOP refused, AL status code 0x0024 (input mapping invalid)");
+	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SLOW, 0, 0, 0, 0, 4),
+	       "configuration of slave 3 failed: SAFEOP not reached in time");
+	expect(test, E(SLAVE_FAILED, 3, 1, 0, EC_CAUSE_EEPROM),
+	       "scan of slave 3 failed: EEPROM not readable or invalid");
+	/* of an older module */
+	expect(test, E(SLAVE_FAILED, 3, 2, 0x1b),
+	       "configuration of slave 3 failed: AL status code 0x001b (SyncManager watchdog expired: no outputs came in time)");
+	expect(test, E(EEPROM, 3, 0, 0x12, 0x34),
+	       "slave 3: EEPROM checksum 0x12, expected 0x34; content used anyway");
+	expect(test, E(CONFIG, 3, 0, 3, EC_CAUSE_DIFFERENT, 2, 4, 2, 3),
+	       "configuration 0:3: slave 3 is 0x00000002/0x00000003, configured is 0x00000002/0x00000004");
+	expect(test, E(CONFIG, EC_EVENT_NO_SLAVE, 7, 0, EC_CAUSE_NO_ALIAS, 2, 4),
+	       "configuration 7:0: no slave has alias 7");
+	expect(test, E(CONFIG, EC_EVENT_NO_SLAVE, 0, 9, EC_CAUSE_NO_SLAVE, 2, 4),
+	       "configuration 0:9: no slave (0x00000002/0x00000004) at its position");
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(event_empty_ring_has_no_event),
 	KUNIT_CASE(event_reader_gets_all_across_wraps),
@@ -262,6 +287,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(event_each_kind_has_text_and_unique_name),
 	KUNIT_CASE(event_text_fits_any_buffer_for_any_record),
 	KUNIT_CASE(event_texts_name_slave_and_values),
+	KUNIT_CASE(event_texts_name_cause_and_place),
 	{}
 };
 
