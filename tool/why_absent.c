@@ -148,6 +148,16 @@ static int open_end(const struct why *w, unsigned int position)
 	return port;
 }
 
+/* a slave of that identity that no configuration has, or NULL */
+static const struct ec_ioc_slave *elsewhere(const struct why *w, const struct why_config *c)
+{
+	for (size_t i = 0; i < w->bus.n; i++)
+		if (same_device(c, &w->bus.v[i]) &&
+		    (!w->bus.v[i].config || w->bus.v[i].differs))
+			return &w->bus.v[i];
+	return NULL;
+}
+
 /* Slaves are missing at one place, so that all behind it have moved up. */
 static void missing(struct why *w)
 {
@@ -156,7 +166,8 @@ static void missing(struct why *w)
 	struct why_finding *f;
 	char name[96];
 
-	if (!first)
+	/* a device that stands elsewhere on a complete bus is at the wrong place, not missing */
+	if (!first || (w->bus.n > last && elsewhere(w, first)))
 		return;
 	/* where the ring ends, slaves without configuration are missing as well */
 	from = min(first->c.position, (unsigned int)w->bus.n);
@@ -177,16 +188,6 @@ static void missing(struct why *w)
 	for (size_t i = 0; i < w->n_configs; i++)
 		if (at_position(&w->configs[i]))
 			why_explain(w, &w->configs[i]);
-}
-
-/* a slave of that identity that no configuration has, or NULL */
-static const struct ec_ioc_slave *elsewhere(const struct why *w, const struct why_config *c)
-{
-	for (size_t i = 0; i < w->bus.n; i++)
-		if (same_device(c, &w->bus.v[i]) &&
-		    (!w->bus.v[i].config || w->bus.v[i].differs))
-			return &w->bus.v[i];
-	return NULL;
 }
 
 static void different(struct why *w, struct why_config *c)

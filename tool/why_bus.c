@@ -76,19 +76,22 @@ static void no_cycle(struct why *w)
 	}
 }
 
-static void too_short(struct why *w)
+/* Then cycles are skipped in any case. */
+static bool too_short(struct why *w)
 {
 	const struct ec_ioc_master *m = &w->m;
+	bool yes = m->cycle_interval_us && m->cycle_wire_ns > m->cycle_interval_us * 1000ull;
 
-	if (m->cycle_interval_us && m->cycle_wire_ns > m->cycle_interval_us * 1000ull)
+	if (yes)
 		why_add(w, "cycle_too_short",
 			"lengthen the cycle, or give domains of slow data a division",
 			"the frames of a cycle need %u us on the wire, the cycle is %u us",
 			m->cycle_wire_ns / 1000 + 1, m->cycle_interval_us);
+	return yes;
 }
 
 static void thread(struct why *w, const struct ec_ioc_cycle_stats *i,
-		   const struct ec_status_cycle *st)
+		   const struct ec_status_cycle *st, bool short_cycle)
 {
 	u64 cycles = st->late_count + st->overruns;
 
@@ -101,7 +104,7 @@ static void thread(struct why *w, const struct ec_ioc_cycle_stats *i,
 		why_add(w, "output_stall", "find out why the application gives no outputs",
 			"output stall: the application gives no outputs; the kernel holds or zeroes them")
 			->warning = true;
-	if (st->overruns * OVERRUN_SHARE > cycles)
+	if (!short_cycle && st->overruns * OVERRUN_SHARE > cycles)
 		why_add(w, "overruns",
 			"check the settings for real time: 'ethercat rtcheck'; see 'ethercat cycle -v'",
 			"%llu of %llu cycles skipped: the cycle owner was late by a period or more",
@@ -141,12 +144,13 @@ void why_cycle(struct why *w)
 {
 	struct ec_status_cycle st = { 0 };
 	struct ec_ioc_cycle_stats i = { .size = sizeof(st), .data = (uintptr_t)&st };
+	bool short_cycle;
 
 	if (!w->m.active)
 		return;
 	if (w->m.no_cycle)
 		no_cycle(w);
-	too_short(w);
+	short_cycle = too_short(w);
 	if (!dev_ioctl(w->d, EC_IOC_CYCLE_STATS, &i))
-		thread(w, &i, &st);
+		thread(w, &i, &st, short_cycle);
 }

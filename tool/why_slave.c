@@ -12,6 +12,7 @@ static const struct {
 	u16 code;
 	const char *remedy;
 } al_remedies[] = {
+	{ 0x0014, "load the firmware of the slave: 'ethercat firmware'" },
 	{ 0x0016, "write a matching image to the EEPROM: its mailbox is not that of the slave" },
 	{ 0x0019, "let the application send outputs before the slave is in OP" },
 	{ 0x001b, "let the application send in each cycle, or lengthen the watchdog: ecrt_slave_config_watchdog()" },

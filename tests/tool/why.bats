@@ -74,6 +74,7 @@ is() {
 	[ "$(causes "cable working_counter")" = cable ]
 	[ "$(causes "sdo working_counter")" = sdo ]
 	[ "$(causes "no_reply lost_frames")" = no_reply ]
+	[ "$(causes "cycle_too_short overruns")" = cycle_too_short ]
 	[ "$(causes "sdo eeprom")" = "sdo eeprom" ]
 }
 
