@@ -4,6 +4,7 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include "boundary/master.h"
+#include "event_log.h"
 #include "monitor.h"
 #include "base/once64.h"
 #include "bus/mailboxes.h"
@@ -39,6 +40,7 @@ struct watch {
 	u16 watched;		/* that shall wake it, until the next look */
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
+	u64 event;		/* number of the next one for the kernel log */
 };
 
 static void check_links(struct watch *w)
@@ -507,6 +509,7 @@ static int monitor(void *data)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
 		ec_session_status(&m->sessions, w.scanned);
+		ec_event_log(m->base, &w.event);
 		ec_log_flush(m->base, false);
 		ec_event_readers_kick(m);
 		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);

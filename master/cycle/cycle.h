@@ -266,6 +266,8 @@ struct ec_cycle {
 	u32 late_per_s;
 	/** @room_logged: the log says that acyclic frames do not fit */
 	bool room_logged;
+	/** @slaves_down: the application takes the slaves to PREOP: working counters go down */
+	bool slaves_down;
 	/** @lock_logged: EC_CYCLE_LOCK_* as the log knows it */
 	u32 lock_logged;
 	/** @copies: from inputs to outputs, before each send */

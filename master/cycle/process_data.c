@@ -140,7 +140,8 @@ static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i
 	}
 	if (likely(!d->rate.more) || !ec_events_admit(&d->rate, now))
 		return;
-	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1);
+	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1,
+		 READ_ONCE(c->slaves_down));
 	d->noted = wkc;
 	d->rate.more = 0;
 }

@@ -566,6 +566,7 @@ int ec_session_activate(struct ec_session *s)
 	s->notes = (struct ec_count_notes){ };
 	ec_session_note_counts(s, true, false);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
+	s->cycle.slaves_down = false;
 	WRITE_ONCE(ss->bus->freeze, false);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
@@ -606,6 +607,7 @@ int ec_session_slaves_down(struct ec_session *s)
 	if (!s->wanted.active)
 		return -EINVAL;
 	s->ending = true;
+	WRITE_ONCE(s->cycle.slaves_down, true);
 	ec_ref_clock_lower(s);
 	ec_for_each_config(c, &s->wanted)
 		if (c->slave)

@@ -260,6 +260,87 @@ static void events_lost_frames_are_counted_in_few_records(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, sum, (u32)(bus_lost(c->b) - lost));
 }
 
+/* One line of the kernel log for each loss of process data and its end; a stop is none. */
+static void events_working_counter_and_lost_frames_are_logged(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	u32 down = bus_log_lines("domain 1: working counter 0 of"), up, lost;
+	u32 others = bus_log_lines("domain 0: working counter");
+
+	bus_fault(c->b, EC_SIM_FAULT_CUT, DRIVE, 1, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("domain 1: working counter 0 of"), down + 1);
+	up = bus_log_lines("domain 1: working counter");
+	bus_fault(c->b, EC_SIM_FAULT_HEAL, DRIVE, 1, 0, 0);
+	recover(c);
+	cyc_run(c, 1000);
+	/* once more while it is configured */
+	KUNIT_EXPECT_GE(test, bus_log_lines("domain 1: working counter"), up + 1);
+	KUNIT_EXPECT_LE(test, bus_log_lines("domain 1: working counter"), up + 4);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("domain 0: working counter"), others);
+
+	lost = bus_log_lines("frame(s) lost");
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	cyc_run(c, 30);
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
+	recover(c);
+	cyc_run(c, 12000);
+	KUNIT_EXPECT_GE(test, bus_log_lines("frame(s) lost"), lost + 1);
+	KUNIT_EXPECT_LE(test, bus_log_lines("frame(s) lost"), lost + 3);
+	up = bus_log_lines("working counter");
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SLAVES_DOWN, NULL), 0);
+	cyc_run(c, 200);
+	cyc_release(c);
+	msleep(100);
+	KUNIT_EXPECT_EQ_MSG(test, bus_log_lines("working counter"), up, "the slaves are stopped");
+	KUNIT_EXPECT_GE(test, bus_log_lines("released the master, process"), 1u);
+}
+
+/* Each loss is in the ring, the kernel log has few lines of them. */
+static void events_flapping_working_counter_has_few_log_lines(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct log *l = log_new(c->b);
+	u32 lines, i;
+
+	cyc_run(c, 12000);
+	lines = bus_log_lines("domain 1: working counter");
+	for (i = 0; i < 9000; i++) {
+		bus_fault(c->b, EC_SIM_FAULT_WKC, LAST, 0, ~(i / 300) & 1, 0);
+		cyc_run(c, 1);
+	}
+	KUNIT_EXPECT_GE(test, count(l, l->at, EC_EVENT_WKC), 29u);
+	KUNIT_EXPECT_GE(test, bus_log_lines("domain 1: working counter"), lines + 2);
+	KUNIT_EXPECT_LE(test, bus_log_lines("domain 1: working counter"), lines + 6);
+}
+
+/* However many there are, they leave most of the ring to others. */
+static void events_absent_slaves_have_limited_records(struct kunit *test)
+{
+	struct ec_ioc_slave_config sc = { .vendor_id = 1, .product_code = 2 };
+	struct bus *b = bus_up(test, line, N);
+	struct cyc *c = cyc_new(b, 1000);
+	struct log *l = log_new(b);
+	u32 i;
+
+	cyc_domain(c);
+	cyc_map_all(c, 0, N, 0);
+	for (i = 0; i < 300; i++) {
+		sc.position = 1000 + i;
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
+	}
+	cyc_activate(c);
+	cyc_run(c, 50);
+	KUNIT_EXPECT_EQ(test, count(l, l->at, EC_EVENT_CONFIG), 256u);
+	next_of(l, EC_EVENT_CONFIG, EC_EVENT_NO_SLAVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[1], 1000u);
+	KUNIT_EXPECT_EQ(test, l->e.arg[2], (u32)EC_CAUSE_NO_SLAVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[4], 2u);
+	if (next(l, EC_EVENT_CONFIGS))
+		KUNIT_EXPECT_EQ(test, l->e.arg[0], 44u);
+	cyc_release(c);
+}
+
 static void events_emergency_has_code_and_data(struct kunit *test)
 {
 	static const u8 data[5] = { 1, 2, 3, 4, 5 };
@@ -331,6 +412,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(events_link_down_ends_all_slaves),
 	KUNIT_CASE(events_flapping_working_counter_has_few_records),
 	KUNIT_CASE(events_lost_frames_are_counted_in_few_records),
+	KUNIT_CASE(events_working_counter_and_lost_frames_are_logged),
+	KUNIT_CASE(events_flapping_working_counter_has_few_log_lines),
+	KUNIT_CASE(events_absent_slaves_have_limited_records),
 	KUNIT_CASE(events_emergency_has_code_and_data),
 	KUNIT_CASE(events_application_without_sends_times_out_and_resumes),
 	KUNIT_CASE(events_reader_begins_at_oldest_or_newest),
