@@ -39,7 +39,9 @@ teardown() { [ -z "${app:-}" ] || kill "$app" 2>/dev/null || true; }
 }
 cut_is_found() { ethercat why | grep -q '0:8, 0:9$'; }
 
-@test "why names cause and place of 60 faults and is silent without one" {
+@test "why and log name cause and place of 60 faults and are silent without one" {
 	cases python3 "$BATS_TEST_DIRNAME/why.py" "$EC_BUILD/tool/ethercat" \
-		"$EC_BUILD/lib/libethercat.so" /sys/kernel/debug/ec_sim/sim0 "${EC_SEED:-7}"
+		"$EC_BUILD/lib/libethercat.so" /sys/kernel/debug/ec_sim/sim0 "${EC_SEED:-7}" \
+		"$BATS_TEST_TMPDIR" insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" \
+		segment="$BATS_FILE_TMPDIR/segment"
 }

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Faults at random places of a simulated segment; does 'ethercat why' name cause and place?
 
-usage: why.py TOOL LIBRARY CONTROL SEED
+usage: why.py TOOL LIBRARY CONTROL SEED FOLDER LOAD...    LOAD...: command that loads the segment
 
 Each case injects one fault, or two at different places, runs an application and compares all
-findings with what was injected: a cause too many is as wrong as one too few. What is expected
-is derived from the kind of fault, its place and the topology. Cases without a fault must have
-no finding. Prints a TAP line for each group and the figures.
+findings, and all events of 'ethercat log', with what was injected: a cause too many is as wrong
+as one too few. What is expected is derived from the kind of fault, its place and the topology.
+Cases without a fault must have no finding and no event of trouble. Prints TAP lines and the
+figures.
 """
 import json
 import random
@@ -16,18 +17,22 @@ import sys
 import time
 
 from why_app import Application, Slave
-from why_faults import (KINDS, N, SETTLE_S, Alias, Counter, Different, NoCycle, behind,
-                        segment)
+from why_events import Log, judge
+from why_faults import N, SETTLE_S, Alias, Counter, Different, behind, segment
+from why_machine import KINDS
 
 SINGLE, DOUBLE, NONE = 48, 12, 10
+SCAN_S = 60
 
 
 class Bench:
     """Tool, simulator, application and what is configured in a case."""
 
-    def __init__(self, tool, library, control):
+    def __init__(self, tool, library, control, folder, load):
         self.tool = tool
         self.control = control
+        self.load_command = load
+        self.log = Log(tool, folder + "/log")
         self.app = Application(library)
         self.infos = self.ethercat_json("slaves")["masters"][0]["slaves"]
         pdos = self.ethercat_json("pdos")["masters"][0]["slaves"]
@@ -39,6 +44,17 @@ class Bench:
     def fresh(self):
         """What is on the bus is configured."""
         self.slaves = [Slave(i, s) for i, s in zip(self.infos, self.syncs)]
+        self.cycle = "kernel"
+
+    def load(self):
+        """The segment, with new slaves."""
+        subprocess.run(self.load_command, check=True)
+        end = time.monotonic() + SCAN_S
+        while time.monotonic() < end:
+            if self.ethercat("slaves").stdout.count(" PREOP ") == N:
+                return
+            time.sleep(0.1)
+        raise RuntimeError("the segment is not scanned")
 
     def sim(self, *statements):
         """Statements for the running segment."""
@@ -105,36 +121,53 @@ def draw_double(rng):
             return [a, b]
 
 
+def late_cuts(faults):
+    """Slaves that are cut off, with all behind them, while the application runs."""
+    return [f.gone() for f in faults if f.gone() is not None and not f.early]
+
+
+def position(i, cuts):
+    """The ring position of slave i behind these cuts."""
+    return i - sum(any(behind(k, c) for c in cuts) for k in range(i))
+
+
+def is_lost(fault, faults):
+    """Is the slave of a fault cut off by another fault?"""
+    own = fault.gone() if not fault.early else None
+    return any(behind(fault.slave, c) for c in late_cuts(faults) if c != own)
+
+
 def expected(faults):
     """What follows from the faults: a place that is cut off by another one says nothing."""
-    cuts = [f.gone() for f in faults if f.gone() is not None and not f.early]
-
-    def is_gone(i, but=None):
-        return any(behind(i, c) for c in cuts if c != but)
-
-    def position(i):
-        return i - sum(is_gone(k) for k in range(i))
-
+    cuts = late_cuts(faults)
     result = set()
     for f in faults:
-        own = f.gone() if not f.early else None
-        if is_gone(f.slave, own) and not isinstance(f, Alias):
+        if is_lost(f, faults) and not isinstance(f, Alias):
             continue
         # the position of its configuration means another slave then
-        if isinstance(f, Different) and any(is_gone(k) for k in range(f.slave)):
+        if isinstance(f, Different) and position(f.slave, cuts) != f.slave:
             continue
-        result |= f.expect(position)
+        result |= f.expect(lambda i: position(i, cuts))
     return result
 
 
+def events_wrong(faults, events):
+    """What the log has too much or too little."""
+    cuts = late_cuts(faults)
+    some = [[]] + [[c] for c in cuts] + [cuts]
+    return judge(events, faults, lambda i: {position(i, c) for c in some},
+                 lambda f: is_lost(f, faults))
+
+
 def run_case(bench, faults):
-    """Return: what was found and what was expected."""
+    """Return: what was found, what was expected, and what is wrong with the log."""
     bench.fresh()
+    begin = bench.log.next()
     for f in faults:
         if f.early:
             f.inject(bench)
     wanted = expected(faults) if all(f.early for f in faults) else None
-    bench.app.start(bench.slaves, not any(isinstance(f, NoCycle) for f in faults))
+    bench.app.start(bench.slaves, bench.cycle)
     if wanted is None:
         # the others have done what they do before a cable is cut
         bench.settled(expected([f for f in faults if f.early]))
@@ -143,10 +176,11 @@ def run_case(bench, faults):
                 f.inject(bench)
         wanted = expected(faults)
     found = bench.settled(wanted)
+    events = bench.log.between(begin, bench.log.next())
     bench.app.stop()
     for f in faults:
         f.heal(bench)
-    return found, wanted
+    return found, wanted, events_wrong(faults, events)
 
 
 def recover(bench):
@@ -164,41 +198,51 @@ def recover(bench):
 
 
 def run_group(bench, title, cases):
-    """A TAP line; Return: number of right answers."""
-    right = 0
+    """Return: numbers of right answers of why, of log, and of cases that the log can show."""
+    why = log = shown = 0
     for faults in cases:
         text = " and ".join(f"{type(f).__name__} {f.name}" for f in faults) or "no fault"
-        found, wanted = run_case(bench, faults)
-        right += found == wanted
+        found, wanted, wrong = run_case(bench, faults)
+        why += found == wanted
+        can_show = not faults or any(f.events() for f in faults)
+        shown += can_show
+        log += can_show and not wrong
         if found != wanted:
-            print(f"# {text}: found {sorted(map(str, found))}, expected "
+            print(f"# {text}: why found {sorted(map(str, found))}, expected "
                   f"{sorted(map(str, wanted))}")
+        for line in wrong:
+            print(f"# {text}: log: {line}")
         recover(bench)
-    print(f"# {title}: {right} of {len(cases)} right")
-    return right
+    print(f"# {title}: why {why} of {len(cases)}, log {log} of {shown} right")
+    return why, log, shown
 
 
 def main():
     """Return: the exit code."""
-    tool, library, control, seed = sys.argv[1:]
+    tool, library, control, seed, folder, *load = sys.argv[1:]
     rng = random.Random(int(seed))
     singles = [KINDS[i % len(KINDS)](rng) for i in range(SINGLE)]
     rng.shuffle(singles)
     doubles = [draw_double(rng) for _ in range(DOUBLE)]
-    bench = Bench(tool, library, control)
+    bench = Bench(tool, library, control, folder, load)
     begin = time.monotonic()
     recover(bench)
     silent = run_group(bench, "runs without a fault", [[]] * NONE)
-    right = run_group(bench, "single faults", [[f] for f in singles])
-    right += run_group(bench, "double faults", doubles)
+    groups = [run_group(bench, "single faults", [[f] for f in singles]),
+              run_group(bench, "double faults", doubles)]
+    bench.log.end()
+    why, log, shown = (sum(g[i] for g in groups) for i in range(3))
     total = SINGLE + DOUBLE
-    print(f"# seed {seed}: {right} of {total} faults named with cause and place, "
-          f"{100 * right / total:.1f} %; {silent} of {NONE} runs without a fault silent; "
-          f"{time.monotonic() - begin:.0f} s")
-    for ok, text in ((silent == NONE, "without a fault all is well"),
-                     (100 * right >= 95 * total, "95 % of the faults have the right cause")):
+    print(f"# seed {seed}: of {total} faults why names {why} with cause and place, "
+          f"{100 * why / total:.1f} %, log {log} of the {shown} that are events, "
+          f"{100 * log / shown:.1f} %; of {NONE} runs without a fault why is silent in "
+          f"{silent[0]}, log in {silent[1]}; {time.monotonic() - begin:.0f} s")
+    results = ((silent[:2] == (NONE, NONE), "without a fault why and log are silent"),
+               (100 * why >= 95 * total, "why names cause and place of 95 % of the faults"),
+               (100 * log >= 95 * shown, "log names cause and place of 95 % of the faults"))
+    for ok, text in results:
         print(f"{'ok' if ok else 'not ok'} - {text}")
-    return 0 if silent == NONE and 100 * right >= 95 * total else 1
+    return 0 if all(ok for ok, _ in results) else 1
 
 
 if __name__ == "__main__":

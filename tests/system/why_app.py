@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The application of why.py: configures what the bus has, but for deliberate mistakes."""
 import ctypes as c
+import os
+import threading
+import time
 
 PERIOD_NS = 2000000
+SHORT_US = 10                           # shorter than the frames of a cycle
 DOMAINS = 3
 SYNC_REFERENCE, SYNC_SLAVES = 2, 4      # EC_CYCLE_*
 PREOP, SAFEOP = 2, 4
@@ -29,6 +33,7 @@ class Slave:
         self.sync0 = None               # (AssignActivate, cycle time)
         self.other_pdo = False
         self.timeout_ms = 0
+        self.watchdog = 0               # units of 100 us
 
     @property
     def domain(self):
@@ -44,25 +49,43 @@ class Application:
                      "ecrt_master_slave_config"):
             getattr(self.lib, name).restype = c.c_void_p
         self.master = None
+        self.thread = None
 
     def call(self, name, *args):
         """A function that returns 0 or more."""
         if getattr(self.lib, name)(*args) < 0:
             raise RuntimeError(f"{name} failed")
 
-    def start(self, slaves, cycle=True):
-        """Reserve, configure, activate; without @cycle nothing is ever sent."""
+    def start(self, slaves, cycle):
+        """Reserve, configure, activate; @cycle: who runs it, "kernel", "short" or "none"."""
         self.master = c.c_void_p(self.lib.ecrt_request_master(0))
         if not self.master:
             raise RuntimeError("master not reserved")
-        domains = [c.c_void_p(self.lib.ecrt_master_create_domain(self.master))
-                   for _ in range(DOMAINS)]
+        self.domains = [c.c_void_p(self.lib.ecrt_master_create_domain(self.master))
+                        for _ in range(DOMAINS)]
         for s in slaves:
-            self.configure(s, domains[s.domain])
-        if cycle:
+            self.configure(s, self.domains[s.domain])
+        if cycle == "kernel":
             config = Cycle(period_ns=PERIOD_NS, cpu=-1, dc=SYNC_REFERENCE | SYNC_SLAVES)
             self.call("ecrt_master_set_cycle", self.master, c.byref(config))
+        if cycle == "short":
+            self.call("ecrt_master_set_send_interval", self.master, c.c_size_t(SHORT_US))
         self.call("ecrt_master_activate", self.master)
+        if cycle == "short":
+            self.thread = threading.Thread(target=self.run)
+            self.running = True
+            self.thread.start()
+
+    def run(self):
+        """A cycle of the application; it is slower than it says."""
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(50))
+        while self.running:
+            self.lib.ecrt_master_receive(self.master)
+            for d in self.domains:
+                self.lib.ecrt_domain_process(d)
+                self.lib.ecrt_domain_queue(d)
+            self.lib.ecrt_master_send(self.master)
+            time.sleep(PERIOD_NS / 1e9)
 
     def configure(self, s, domain):
         """One slave."""
@@ -86,11 +109,17 @@ class Application:
             self.call("ecrt_slave_config_sdo32", config, index, sub, c.c_uint32(value))
         if s.sync0:
             self.call("ecrt_slave_config_dc", config, s.sync0[0], c.c_uint32(s.sync0[1]), 0, 0, 0)
+        if s.watchdog:
+            self.call("ecrt_slave_config_watchdog", config, 2498, s.watchdog)
         if s.timeout_ms:
             self.call("ecrt_slave_config_state_timeout", config, PREOP, SAFEOP, s.timeout_ms)
 
     def stop(self):
         """Release the master; its slaves go back to PREOP."""
+        if self.thread:
+            self.running = False
+            self.thread.join()
+            self.thread = None
         if self.master:
             self.lib.ecrt_release_master(self.master)
         self.master = None

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The segment of why.py, and the faults that it injects with what follows from them."""
-import subprocess
 import time
+
+from why_events import Event
 
 # name, device, options, parent, port there; in ring order
 SEGMENT = [
     ("s0", "EK1100", "", None, 0),
-    ("s1", "EL2008", "", "s0", 1),
+    ("s1", "EL7201", "motor=AM8121", "s0", 1),
     ("s2", "EL3062", "", "s1", 1),
     ("s3", "drive", "in=8 out=8 mapping=fixed", "s2", 1),
     ("s4", "EL1008", "", "s3", 1),
     ("s5", "EL4002", "", "s4", 1),
     ("s6", "drive", "in=12 out=12 mapping=fixed", "s5", 1),
-    ("s7", "EL1859", "", "s6", 1),
+    ("s7", "EL7201", "motor=AM8121", "s6", 1),
     ("s8", "drive", "in=16 out=16 mapping=fixed", "s7", 1),
     ("s9", "EL1004", "dc=none", "s8", 1),
     ("s10", "EL2004", "dc=none", "s0", 2),
@@ -23,10 +24,14 @@ INDEX = {s[0]: i for i, s in enumerate(SEGMENT)}
 PARENT = [INDEX.get(s[3]) for s in SEGMENT]
 PORT = [s[4] for s in SEGMENT]
 DRIVES = [3, 6, 8, 11]
-COE = DRIVES + [2, 5]
+SERVOS = [1, 7]         # with a mailbox for BOOT
+COE = DRIVES + SERVOS + [2, 5]
 SAME_LINE = range(2, 10)        # a cut there takes slaves from the middle of the ring
 SETTLE_S = 5
 NO_OBJECT = 0x06020000
+NO_ALIAS, NO_SLAVE, DIFFERENT = 4, 5, 6                         # EC_CAUSE_*
+SILENT, EEPROM, SDO, PDO, SYNC, REFUSED, SLOW, AL_ERROR = 32, 34, 36, 40, 42, 43, 44, 46
+STATES = {"INIT": 1, "PREOP": 2, "BOOT": 3, "SAFEOP": 4, "OP": 8}
 
 
 def behind(i, top):
@@ -52,6 +57,7 @@ class Fault:
     alone = False               # concerns the whole bus, or moves positions beforehand
     places = range(N)
     undo = ()                   # statements for the simulator
+    related = ()                # events that may follow at its slave
 
     def __init__(self, rng):
         self.rng = rng
@@ -73,6 +79,18 @@ class Fault:
         """Findings; position gives the ring position of a slave that is there."""
         raise NotImplementedError
 
+    def events(self):
+        """Events that must be in the log; none: only registers of the slave show the fault."""
+        raise NotImplementedError
+
+    def follows(self):
+        """Events that may be there as well."""
+        return []
+
+    def failed(self, cause, **args):
+        """The event of a slave that could not be scanned or configured."""
+        return Event("slave_failed", self.slave, many=True, cause=cause, **args)
+
 
 class Cut(Fault):
     """A cable, from the slave's port 0 to its parent."""
@@ -89,6 +107,11 @@ class Cut(Fault):
 
     def expect(self, position):
         return {("cable", position(PARENT[self.slave]), PORT[self.slave])}
+
+    def events(self):
+        # each slave behind it, with the place where it was connected
+        return [Event("slave_lost", i, upstream=PARENT[i], port=PORT[i])
+                for i in range(N) if behind(i, self.slave)]
 
 
 class Off(Cut):
@@ -115,6 +138,15 @@ class Missing(Cut):
     def expect(self, position):
         return {("missing", f"0:{self.slave}")}
 
+    def events(self):
+        # the others have moved up: where they are another device is configured, or none is there
+        left = [i for i in range(N) if not behind(i, self.slave)]
+        return super().events() + [
+            Event("configuration", alias=0, position=i,
+                  cause=DIFFERENT if i < len(left) else NO_SLAVE)
+            for i in range(self.slave, N)
+            if i >= len(left) or SEGMENT[left[i]][1] != SEGMENT[i][1]]
+
 
 class Link(Cut):
     """The cable at the master."""
@@ -123,6 +155,9 @@ class Link(Cut):
 
     def expect(self, position):
         return {("link_down",)}
+
+    def events(self):
+        return [Event("link_down", device=0), Event("all_slaves_lost", slaves=N)]
 
 
 class Dead(Fault):
@@ -137,18 +172,26 @@ class Dead(Fault):
     def expect(self, position):
         return {("no_reply", position(self.slave))}
 
+    def events(self):
+        return [Event("slave_silent", self.slave), self.failed(SILENT)]
+
 
 class Refuse(Fault):
     """A state is refused with a code."""
+    related = ("al_error",)
     places = COE
     undo = ("allow {}",)
 
     def inject(self, bench):
         self.code = self.rng.choice([0x1d, 0x1e, 0x24, 0x2d, 0x30, 0x8001])
-        bench.sim(f"refuse {self.name} {self.rng.choice(['SAFEOP', 'OP'])} code={self.code}")
+        self.state = self.rng.choice(["SAFEOP", "OP"])
+        bench.sim(f"refuse {self.name} {self.state} code={self.code}")
 
     def expect(self, position):
         return {("al_refused", position(self.slave), self.code)}
+
+    def events(self):
+        return [self.failed(REFUSED, code=self.code, state=STATES[self.state])]
 
 
 class Mute(Fault):
@@ -163,16 +206,23 @@ class Mute(Fault):
     def expect(self, position):
         return {("al_timeout", position(self.slave))}
 
+    def events(self):
+        return [self.failed(SLOW, state=STATES["SAFEOP"])]
+
 
 class Sdo(Fault):
     """A startup SDO of an object that does not exist."""
     places = COE
 
     def inject(self, bench):
-        bench.slaves[self.slave].sdos.append((0x5f00 + self.rng.randrange(256), 1, 7))
+        self.index = 0x5f00 + self.rng.randrange(256)
+        bench.slaves[self.slave].sdos.append((self.index, 1, 7))
 
     def expect(self, position):
         return {("sdo", position(self.slave), NO_OBJECT)}
+
+    def events(self):
+        return [self.failed(SDO, code=NO_OBJECT, object=self.index, subindex=1)]
 
 
 class Mailbox(Fault):
@@ -187,6 +237,9 @@ class Mailbox(Fault):
     def expect(self, position):
         return {("mailbox", position(self.slave))}
 
+    def events(self):
+        return [self.failed(SDO, code=0, object=0x60ff)]
+
 
 class Pdo(Fault):
     """Other PDOs than the fixed ones of the slave."""
@@ -198,15 +251,23 @@ class Pdo(Fault):
     def expect(self, position):
         return {("pdo", position(self.slave), 0x06010002)}
 
+    def events(self):
+        return [self.failed(PDO, code=0x06010002, sm=2)]
+
 
 class Different(Fault):
     """Another device than the configured one."""
 
     def inject(self, bench):
+        self.product = bench.slaves[self.slave].product
         bench.slaves[self.slave].product += 0x1000
 
     def expect(self, position):
         return {("different", f"0:{self.slave}")}
+
+    def events(self):
+        return [Event("configuration", self.slave, alias=0, position=self.slave, cause=DIFFERENT,
+                      product_code=self.product + 0x1000, found_product_code=self.product)]
 
 
 class Swapped(Fault):
@@ -221,6 +282,10 @@ class Swapped(Fault):
     def expect(self, position):
         return {("wrong_place", f"0:{self.slave + i}") for i in range(2)}
 
+    def events(self):
+        return [Event("configuration", i, alias=0, position=i, cause=DIFFERENT)
+                for i in (self.slave, self.slave + 1)]
+
 
 class Alias(Fault):
     """No slave has the alias of a configuration."""
@@ -231,6 +296,10 @@ class Alias(Fault):
 
     def expect(self, position):
         return {("no_alias", self.config)}
+
+    def events(self):
+        return [Event("configuration", alias=700 + self.slave, position=self.slave,
+                      cause=NO_ALIAS)]
 
 
 class NoClock(Fault):
@@ -243,6 +312,9 @@ class NoClock(Fault):
     def expect(self, position):
         return {("no_clock", position(self.slave))}
 
+    def events(self):
+        return [Event("no_clock", self.slave, many=True)]
+
 
 class Sync(Fault):
     """SYNC signals without a cycle time."""
@@ -253,6 +325,9 @@ class Sync(Fault):
 
     def expect(self, position):
         return {("sync", position(self.slave))}
+
+    def events(self):
+        return [self.failed(SYNC)]
 
 
 class Counter(Fault):
@@ -268,6 +343,10 @@ class Counter(Fault):
     def expect(self, position):
         return {("working_counter", "domain", self.domain)}
 
+    def events(self):
+        return [Event("working_counter", many=True, domain=self.domain,
+                      wrong=lambda e: e["working_counter"] != e["expected"] == e["before"])]
+
 
 class Errors(Fault):
     """Frames with errors on a cable."""
@@ -280,6 +359,9 @@ class Errors(Fault):
     def expect(self, position):
         return {("link_errors", position(self.slave), 0)}
 
+    def events(self):
+        return []
+
 
 class Requested(Fault):
     """Another state than OP is requested with the tool."""
@@ -287,42 +369,11 @@ class Requested(Fault):
     places = range(1, N)
 
     def inject(self, bench):
-        bench.ethercat("states", self.rng.choice(["PREOP", "SAFEOP"]), "-p", str(self.slave))
+        self.state = self.rng.choice(["PREOP", "SAFEOP"])
+        bench.ethercat("states", self.state, "-p", str(self.slave))
 
     def expect(self, position):
         return {("not_requested", position(self.slave))}
 
-
-class NoCycle(Fault):
-    """The application activates the master and sends nothing."""
-    alone = True
-    places = [0]
-
-    def expect(self, position):
-        return {("no_cycle",)}
-
-
-class Eeprom(Fault):
-    """The checksum of an EEPROM is wrong, found by a scan."""
-    alone = True
-
-    def inject(self, bench):
-        image = subprocess.run([bench.tool, "sii_read", "-p", str(self.slave)],
-                               stdout=subprocess.PIPE, check=True).stdout
-        self.word = image[14] | image[15] << 8
-        self.write(bench, self.word ^ 0x55)
-
-    def write(self, bench, value):
-        """Word 7, and read it again."""
-        bench.sim(f"eeprom {self.name} word=7 value={value}")
-        bench.ethercat("rescan", "--wait")
-
-    def heal(self, bench):
-        self.write(bench, self.word)
-
-    def expect(self, position):
-        return {("eeprom", position(self.slave))}
-
-
-KINDS = [Cut, Off, Missing, Link, Dead, Refuse, Mute, Sdo, Mailbox, Pdo, Different, Swapped, Alias,
-         NoClock, Sync, Counter, Errors, Requested, NoCycle, Eeprom]
+    def events(self):
+        return [Event("al_state", self.slave, state=STATES[self.state], before=STATES["OP"])]
