@@ -47,6 +47,24 @@ log_has() {
 	wait_for 20 log_has "application exited or released the master, process $app\$"
 }
 
+@test "a reader that is stopped learns the exact number of events it missed" {
+	declare -gA readers=()
+	local gap
+
+	make_events
+	follow stopped --json
+	follow other --json
+	kill -STOP "${readers[stopped]}"
+	kill -USR1 "$busy"
+	sleep 6
+	kill -CONT "${readers[stopped]}"
+	wait_for 20 grep -q '"missed"' "$BATS_TEST_TMPDIR/stopped"
+	gap=$(whole stopped)
+	# 5000 and those of some seconds, less those that are kept
+	[ "$gap" -ge 2950 ] && [ "$gap" -le 3400 ]
+	[ -z "$(whole other)" ]
+}
+
 @test "a reader changes nothing and needs a buffer for a whole event" {
 	nobody python3 - <<-'END'
 	import errno, fcntl, os, select, struct
