@@ -424,6 +424,9 @@ static void about_config(struct text *t, const struct ec_event *e)
 	else if (a[2] == EC_CAUSE_TAKEN)
 		format(t, "configuration %u:%u: slave %u has another configuration", a[0], a[1],
 		       e->slave);
+	else if (a[2] == EC_CAUSE_UNATTACHED)
+		format(t, "configuration %u:%u: slave %u is not attached yet", a[0], a[1],
+		       e->slave);
 	else if (e->slave != EC_EVENT_NO_SLAVE)
 		format(t, "configuration %u:%u: slave %u could not be read", a[0], a[1], e->slave);
 	else
