@@ -213,6 +213,8 @@ def run_group(bench, title, cases):
         for line in wrong:
             print(f"# {text}: log: {line}")
         recover(bench)
+        for f in faults:
+            f.restore(bench)
     print(f"# {title}: why {why} of {len(cases)}, log {log} of {shown} right")
     return why, log, shown
 

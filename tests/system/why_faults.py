@@ -75,6 +75,9 @@ class Fault:
         """Undo it; the application has ended."""
         bench.sim(*[u.format(self.name) for u in self.undo])
 
+    def restore(self, bench):
+        """Undo what needs the slave at its position, once all slaves are back."""
+
     def expect(self, position):
         """Findings; position gives the ring position of a slave that is there."""
         raise NotImplementedError

@@ -48,7 +48,7 @@ class Watchdog(Fault):
     def inject(self, bench):
         bench.slaves[self.slave].watchdog = self.rng.randrange(2, 12)   # units of 100 us
 
-    def heal(self, bench):
+    def restore(self, bench):
         # it stays in the slave; the reset value
         bench.ethercat("reg_write", "-p", str(self.slave), "-t", "uint16", "0x0420", "1000")
 
