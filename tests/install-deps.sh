@@ -23,16 +23,21 @@ command -v dpkg-query >/dev/null 2>&1 || {
 	echo "${0##*/}: this is not a Debian system; install the packages listed in $0 by hand" >&2
 	exit 1
 }
+# shellcheck disable=SC1091
+release=$(. /etc/os-release && echo "${VERSION_ID:-}")
 
 want=
 for group; do
 	case $group in
-	build)	p="gcc g++ make libc6-dev pkg-config bc bison flex libelf-dev pahole
+	# gcc-12 as well: the headers of Debian 12's kernels ask for it by its name
+	build)	p="gcc gcc-12 g++ make libc6-dev pkg-config bc bison flex libelf-dev pahole
 		   sparse kmod cpio xz-utils zstd git" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils zstd bats tcpdump
 		   iproute2 ethtool tshark procps psmisc python3 xxd udev" ;;
 	capture) p="tcpdump iproute2 tshark" ;;
-	uml)	p="linux-source-6.1 xz-utils python3" ;;
+	# without the package kernels.sh fetches the source
+	uml)	p="xz-utils python3"
+		[ "$release" != 12 ] || p="$p linux-source-6.1" ;;
 	python)	p="python3-venv" ;;
 	json)	p="jq" ;;
 	doc)	p="python3-sphinx" ;;
@@ -41,7 +46,9 @@ for group; do
 		cargo --version 2>/dev/null | awk -F '[ .]' '{ ok = $2 > 1 || $3 >= 85 } END { exit !ok }' && p= ;;
 	cross)	p="g++-i686-linux-gnu libc6-dev-i386-cross gcc-arm-linux-gnueabihf
 		   libc6-dev-armhf-cross g++-aarch64-linux-gnu libc6-dev-arm64-cross
-		   g++-s390x-linux-gnu libc6-dev-s390x-cross qemu-user-static
+		   g++-s390x-linux-gnu libc6-dev-s390x-cross gcc-12-i686-linux-gnu
+		   gcc-12-arm-linux-gnueabihf gcc-12-aarch64-linux-gnu gcc-12-s390x-linux-gnu
+		   qemu-user-static
 		   qemu-system-arm qemu-system-misc" ;;
 	packages) p="mmdebstrap" ;;
 	-h|--help) usage ;;

@@ -11,13 +11,14 @@
 # --path:    only prints where it would be
 #
 # EC_CACHE      folder of the cache (default ~/.cache/ethercat)
-# EC_LINUX_TAR  kernel source (default: Debian's linux-source-6.1)
+# EC_LINUX_TAR  kernel source (default: linux-source-6.1 of Debian 12)
 set -euo pipefail
 
 die() { echo "source.sh: $*" >&2; exit 1; }
 
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ethercat}
-tarball=${EC_LINUX_TAR:-/usr/src/linux-source-6.1.tar.xz}
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
+tarball=${EC_LINUX_TAR:-$("$here/../vm/kernels.sh" source 6.1)} || exit 1
 preempt= pathonly=
 for a in "$@"; do
 	case $a in

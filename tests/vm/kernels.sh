@@ -20,11 +20,13 @@ usage() {
 	                                      architecture: i386, arm64, s390x
 	       kernels.sh qemu backports      print a folder with the programs of a newer QEMU,
 	                                      which has the network card igb
-	       kernels.sh sources SUITE       print apt's sources of bookworm
+	       kernels.sh source 6.1          print the path of the kernel's source, an archive
+	       kernels.sh sources SUITE       print apt's sources of bookworm or trixie
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
 	          6.1-armhf (headers only)    cache: $cache
+	          6.12-deb13-rt (of Debian 13; the others are of Debian 12)
 	          6.1-kcsan 6.1-kasan (built here from Debian's source, see detector.sh)
 	END
 	exit 2
@@ -58,7 +60,7 @@ flavour_of() {	# flavour_of FLAVOUR: sets base, arch, name
 }
 
 # Prints deb822 stanzas for the given suites with the addresses and keys that
-# the system's own apt configuration uses for Debian bookworm. --------------
+# the system's own apt configuration uses for them. --------------------------
 sources() {	# sources SUITE-REGEX [REPLACEMENT]
 	local f
 	for f in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
@@ -124,20 +126,39 @@ sources() {	# sources SUITE-REGEX [REPLACEMENT]
 	done
 }
 
+# suite_sources SUITE: with its updates. A system of another release has no such suite, but its
+# mirrors have.
+suite_sources() {
+	local s out
+
+	for s in "$1" bookworm trixie; do
+		out=$(sources "^$s(-updates|-security|/updates)?\$")
+		[ -n "$out" ] || continue
+		sed "/^Suites:/s/\<$s/$1/g" <<<"$out"
+		return
+	done
+}
+
+backports_sources() {
+	local s
+
+	for s in bookworm trixie; do sources "^$s\$" bookworm-backports; done
+}
+
 # The lists of packages live in the cache, so this works without root and sees
 # the same packages whatever suites the host itself has switched on.
 apt_opts=()
-apt_setup() {	# apt_setup base|backports [ARCHITECTURE]
+apt_setup() {	# apt_setup base|backports|trixie [ARCHITECTURE]
 	local arch=${2:-amd64} d
 	d=$cache/apt/$1
 	[ "$arch" = amd64 ] || d=$d-$arch
 	mkdir -p "$d/lists/partial" "$d/cache/archives/partial"
-	if [ "$1" = base ]; then
-		sources '^bookworm(-updates|-security|/updates)?$' >"$d/ec.sources"
-	else
-		sources '^bookworm$' bookworm-backports >"$d/ec.sources"
-	fi
-	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm 'main' found in /etc/apt/sources.list and" \
+	case $1 in
+	base)	suite_sources bookworm ;;
+	trixie)	suite_sources trixie ;;
+	*)	backports_sources ;;
+	esac >"$d/ec.sources"
+	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm or trixie, 'main', found in /etc/apt/sources.list and" \
 		"/etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
 	apt_opts=(-o "Dir::Etc::SourceList=$d/ec.sources" -o Dir::Etc::SourceParts=/dev/null
 		-o "Dir::State::lists=$d/lists" -o "Dir::Cache=$d/cache" -o APT::Sandbox::User=
@@ -165,7 +186,7 @@ depends() {	# depends PACKAGE REGEX: the names it depends on that match
 
 check_flavour() {
 	case ${1:-} in
-	6.1|6.1-rt|6.1-kcsan|6.1-kasan|6.12|6.12-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
+	6.1|6.1-rt|6.1-kcsan|6.1-kasan|6.12|6.12-rt|6.12-deb13-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
 	'') usage ;;
 	*) die "unknown flavour '$1' (see kernels.sh --help)" ;;
 	esac
@@ -193,7 +214,11 @@ download() {	# download SUITE ARCHITECTURE PACKAGE...: to $tmp/debs
 unpack() {	# unpack FLAVOUR
 	local fl=$1 base arch name suite=base image release headers pkgs kbuild p root final try f
 	flavour_of "$fl"
-	[ "$base" = 6.1 ] || suite=backports
+	case $fl in
+	6.1|6.1-*) ;;
+	*-deb13-*) suite=trixie ;;
+	*)	suite=backports ;;
+	esac
 	for p in apt-get dpkg-deb depmod flock; do
 		command -v $p >/dev/null || die "$p is missing (run tests/install-deps.sh build vm)"
 	done
@@ -202,8 +227,8 @@ unpack() {	# unpack FLAVOUR
 	for try in 1 2; do
 		apt_setup $suite "$arch"
 		image=$(depends "linux-image-$name" "^linux-image-${base//./\\.}\.[0-9].*-$name\$" | head -n 1)
-		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image-$name of" \
-			"bookworm$([ $suite = base ] || echo -backports)); see $cache/apt/$suite/update.log"
+		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image-$name)," \
+			"see $cache/apt/$suite/update.log"
 		release=${image#linux-image-}
 		headers=linux-headers-$release
 		kbuild=$(depends "$headers" '^linux-kbuild-')
@@ -345,6 +370,28 @@ fetch() {
 	exec 9>&-
 }
 
+# What Debian 12 installs as linux-source-6.1. Newer releases do not have it.
+fetch_source() {
+	local final=$cache/linux-source-6.1.tar.xz
+	[ ! -e "$final" ] || return 0
+	mkdir -p "$cache"
+	exec 9>"$final.lock"
+	flock 9
+	if [ ! -e "$final" ]; then
+		tmp=$(mktemp -d "$cache/source.XXXXXX")
+		mkdir "$tmp/debs"
+		say "downloading linux-source-6.1"
+		download base amd64 linux-source-6.1 ||
+			die "download failed; check the network, then run this again"
+		dpkg-deb --fsys-tarfile "$tmp"/debs/linux-source-6.1*.deb |
+			tar -xO --wildcards '*/linux-source-6.1.tar.xz' >"$tmp/tar"
+		mv "$tmp/tar" "$final"
+		rm -rf "$tmp"
+		tmp=
+	fi
+	exec 9>&-
+}
+
 cmd=${1:-}
 [ $# -ge 2 ] || usage
 shift
@@ -362,9 +409,16 @@ if [ "$cmd" = qemu ]; then
 fi
 if [ "$cmd" = sources ]; then
 	case $* in
-	bookworm) sources '^bookworm(-updates|-security|/updates)?$' ;;
+	bookworm|trixie) suite_sources "$1" ;;
 	*)	usage ;;
 	esac
+	exit 0
+fi
+if [ "$cmd" = source ]; then
+	[ "$*" = 6.1 ] || usage
+	f=/usr/src/linux-source-6.1.tar.xz
+	[ -r $f ] || { fetch_source; f=$cache/linux-source-6.1.tar.xz; }
+	echo "$f"
 	exit 0
 fi
 for fl; do check_flavour "$fl"; done
