@@ -5,11 +5,12 @@
 # all of tests/system on all kernels, among them one that reports data races and one that reports
 # wrong use of memory, locks and DMA; with a native network card of three models, also behind an
 # IOMMU, the files that the card matters to; a million cycles of it, also while its cable is
-# pulled; 600,000 cycles beside readers of events; the Debian packages; a reboot with both kinds of
-# device. The last line is "N passed, N failed"; results with their date are in
+# pulled; 600,000 cycles beside readers of events; the packages of Debian 12 and 13; a reboot with
+# both kinds of device. The last line is "N passed, N failed"; results with their date are in
 # Documentation/testing.rst.
 #
-# usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|packages|reboot|KERNEL...]
+# usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|packages|packages-13|
+#	reboot|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -33,6 +34,7 @@ run() {
 	iommu-*) EC_IOMMU=1 EC_NIC=${1#iommu-} native thin kcycle native iommu ;;
 	cycles|flaps|events) tests/system/run.sh "tests/system/long/$1.bats" ;;
 	packages) tests/packages/run.sh ;;
+	packages-13) tests/packages/run.sh trixie ;;
 	reboot) tests/reboot/run.sh generic native ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
@@ -41,7 +43,8 @@ run() {
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
 for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan 6.1-kasan \
-	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages reboot}; do
+	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
+	packages-13 reboot}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1

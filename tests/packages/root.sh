@@ -1,17 +1,27 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# A minimal Debian 12 with what builds and tests packages, and the headers of the kernel that guests
+# A minimal Debian with what builds and tests packages, and the headers of the kernel that guests
 # boot. It is made once and kept in the cache; nobody writes to it (run.sh lays an overlay over it).
 #
-# usage: root.sh	prints the folder
+# usage: root.sh bookworm|trixie	prints the folder
+#        root.sh bookworm|trixie kernel	prints what tests/vm calls the kernel of its guests
 
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
-suite=bookworm
+suite=${1:-}
+case $suite in
+bookworm) kernel=6.1-rt ;;
+trixie)	kernel=6.12-deb13-rt ;;
+*)	echo "usage: root.sh bookworm|trixie [kernel]" >&2; exit 2 ;;
+esac
+if [ "${2:-}" = kernel ]; then
+	echo $kernel
+	exit
+fi
 # the first kernel is the one of the guests, the second one that of an update
-first=linux-headers-$(tests/vm/kernels.sh release 6.1-rt) second=linux-headers-amd64
+first=linux-headers-$(tests/vm/kernels.sh release $kernel) second=linux-headers-amd64
 packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod lintian man-db pkg-config
 	systemd systemd-sysv udev $first"
 root=$cache/roots/packages-$suite
@@ -26,8 +36,10 @@ if [ "$(cat "$root/.complete" 2>/dev/null || true)" != "$layout" ]; then
 	tmp=$(mktemp -d)
 	trap 'rm -rf --one-file-system "$tmp" "$root.new"' EXIT
 	tests/vm/kernels.sh sources "$suite" >"$tmp/sources"
+	# its mounts end with it, however it ends
 	# shellcheck disable=SC2086
-	mmdebstrap --variant=minbase --mode=root --include="$(echo $packages | tr ' ' ,)" \
+	unshare -m --propagation private \
+		mmdebstrap --variant=minbase --mode=root --include="$(echo $packages | tr ' ' ,)" \
 		--aptopt='Acquire::Retries "5"' \
 		--customize-hook='mkdir -p "$1/srv/second/partial"' \
 		--customize-hook="chroot \"\$1\" apt-get -qq -y --download-only \

@@ -4,13 +4,16 @@
 # The Debian packages: built, checked by lintian, installed into a minimal Debian, with modules for
 # the kernel that is there and for one that comes later, started by systemd in a guest, upgraded,
 # removed, purged. Minutes; needs root. The last line is "N passed, N failed".
+#
+# usage: run.sh [bookworm|trixie]	default: bookworm
 
 set -u
 export LC_ALL=C
 cd "$(dirname "$0")/../.." || exit 1
 packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev ethercat-doc"
 passed=0 failed=0
-root=$(tests/packages/root.sh) || exit 1
+suite=${1:-bookworm}
+root=$(tests/packages/root.sh "$suite") && kernel=$(tests/packages/root.sh "$suite" kernel) || exit 1
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-packages.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 
@@ -87,7 +90,11 @@ signed() {
 		modinfo -k $k -F signer ec_master | grep "DKMS module signing key"
 		[ -s /var/lib/dkms/mok.pub ]
 		mkdir $d
-		cp "$(modinfo -k $k -n ec_sim)" $d/ec_sim.ko
+		f=$(modinfo -k $k -n ec_sim)
+		case $f in
+		*.xz) xz -dc $f >$d/ec_sim.ko ;;
+		*) cp $f $d ;;
+		esac
 		openssl req -new -x509 -nodes -days 36500 -subj "/CN=EtherCAT modules" \
 			-newkey rsa:2048 -keyout $d/mok.key -outform DER -out $d/mok.pub
 		/lib/modules/$k/build/scripts/sign-file sha256 $d/mok.key $d/mok.pub $d/ec_sim.ko
@@ -107,7 +114,7 @@ program_builds() {
 boots() {
 	in_root 'systemctl enable ethercat' &&
 	tests/packages/enter.sh --mount "$root" "$tmp/root" sh -c \
-		'exec tests/vm/run.sh --init "$MERGED" --timeout 900 -- sh -euc "$1"' sh '
+		'exec tests/vm/run.sh --kernel "$2" --init "$MERGED" --timeout 900 -- sh -euc "$1"' sh '
 		systemctl is-active ethercat
 		n=0
 		until [ "$(ethercat slaves | grep -c PREOP)" = 22 ]; do
@@ -125,7 +132,7 @@ boots() {
 		echo "MASTER0_DEVICE=eth9" >/etc/ethercat.conf
 		! systemctl start ethercat
 		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"' \
-		>"$tmp/guest" 2>&1 &&
+		"$kernel" >"$tmp/guest" 2>&1 &&
 	grep -q 'Master0  running' "$tmp/guest"
 	local rc=$?
 
