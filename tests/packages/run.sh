@@ -72,6 +72,7 @@ has_modules() {
 			done
 		done
 		[ \$n = $2 ]
+		[ \$(ls /lib/modules/*/updates/ethercat/Module.symvers | wc -l) = $2 ]
 		[ \$(dkms status | grep -c ethercat) = $2 ]"
 }
 
@@ -110,6 +111,20 @@ program_builds() {
 		rm /tmp/app /tmp/app.c'
 }
 
+# what Documentation/kernel-api.rst has; the guest loads it
+module_builds() {
+	in_root '
+		k=$(ls /lib/modules)
+		cp -r /usr/share/doc/ethercat-doc/examples/mini /srv/mini
+		cd /srv/mini
+		make -s -C /lib/modules/$k/build M=$PWD CONFIG_DEBUG_INFO_BTF_MODULES= W=1 \
+			ECRT=/usr/include \
+			KBUILD_EXTRA_SYMBOLS=/lib/modules/$k/updates/ethercat/Module.symvers \
+			modules >log 2>&1 || { cat log; exit 1; }
+		cat log
+		! grep -E "warning:|WARNING:" log'
+}
+
 # two commands, the second one before the start; the guest then has systemd as its init
 boots() {
 	in_root 'systemctl enable ethercat' &&
@@ -124,6 +139,8 @@ boots() {
 		done
 		ethercat slaves | head -n 3
 		ethercatctl status
+		insmod /srv/mini/ec_mini.ko position=16
+		rmmod ec_mini
 		[ "$(stat -c "%G %a" /dev/EtherCAT0)" = "ethercat 664" ]
 		systemctl restart ethercat
 		systemctl stop ethercat
@@ -144,6 +161,7 @@ enabled() { in_root 'systemctl is-enabled ethercat && grep -q mine /etc/ethercat
 removed() {
 	in_root "apt-get -y remove $packages"'
 		[ -z "$(find /lib/modules -name "ec_*")" ]
+		[ -z "$(find /lib/modules -path "*/updates*")" ]
 		[ ! -e /etc/udev/rules.d/59-ethercat-0000:01:00.0.rules ]
 		[ -z "$(dkms status)" ]
 		[ ! -e /usr/bin/ethercat ]
@@ -163,7 +181,9 @@ t "apt installs the packages" install 0.1.0
 t "DKMS has built the modules for the installed kernel" has_modules 0.1.0 1
 t "the modules are signed by DKMS, and can be signed by hand" signed
 t "a program builds against libethercat-dev" program_builds
+t "a kernel module builds against the modules that are installed" module_builds
 t "systemd starts the simulated bus in a guest, and stops it" boots
+in_root 'rm -r /srv/mini'
 t "the headers of another kernel are installed" in_root 'dpkg -i /srv/second/*.deb'
 t "DKMS has built the modules for the new kernel" has_modules 0.1.0 2
 in_root 'echo "# mine" >>/etc/ethercat.conf; systemctl enable ethercat
