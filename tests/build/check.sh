@@ -117,11 +117,12 @@ t "another term is noticed" words_noticed
 
 # the archive of the kernel's sources, as level uml; the headers lack the script
 checkpatch() {
-	local tar=${EC_LINUX_TAR:-/usr/src/linux-source-6.1.tar.xz} cache
+	local tar=${EC_LINUX_TAR:-} cache
 
 	cache=${EC_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/ethercat}
 	CHECKPATCH=$(find "$cache"/src/linux-*/scripts -name checkpatch.pl -print -quit 2>/dev/null)
 	[ -z "$CHECKPATCH" ] || return 0
+	[ -n "$tar" ] || tar=$(tests/vm/kernels.sh source 6.1) || return
 	tar xf "$tar" -C "$tmp" --strip-components=1 --wildcards '*/scripts/checkpatch.pl' \
 		'*/scripts/spelling.txt' '*/scripts/const_structs.checkpatch' &&
 		CHECKPATCH=$tmp/scripts/checkpatch.pl
@@ -200,6 +201,7 @@ expected() {
 	.$prefix/lib/systemd/system/ethercat.service
 	.$prefix/sbin/ethercatctl
 	.$prefix/share/ethercat/conf.sh
+	.$prefix/share/man/man8/ethercat-sim.8
 	.$prefix/share/man/man8/ethercatctl.8
 	./etc/ethercat.conf
 	.$prefix/include/ecrt.h
@@ -223,6 +225,15 @@ t "make install DESTDIR= PREFIX=" top install
 t "it installs these files and no other" diff <(expected | LC_ALL=C sort) <(installed)
 t "the tool that was installed runs" "$root$prefix/bin/ethercat" help
 t "the simulator that was installed runs" "$root$prefix/bin/ethercat-sim" --help
+# options TEXT-FILE: each once
+options() { grep -oE -- '(^|[ ,])--?[a-z][a-z-]*' "$1" | tr -d ' ,' | sort -u; }
+
+sim_page() {
+	"$root$prefix/bin/ethercat-sim" --help >"$tmp/sim.help" &&
+	sed 's/\\f.//g' tool/sim/ethercat-sim.8 >"$tmp/sim.page" &&
+		diff <(options "$tmp/sim.help") <(options "$tmp/sim.page")
+}
+t "the manual page of the simulator has its options and no other" sim_page
 t "the completion is a bash script" bash -n "$root$prefix/share/bash-completion/completions/ethercat"
 
 cat >"$tmp/app.c" <<'END'

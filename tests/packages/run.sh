@@ -49,10 +49,9 @@ build() {
 		[ "$(cd "$tmp/root/upper/src" && ls ./*_"$1"_*.deb | grep -vc dbgsym)" = 5 ]
 }
 
-# warnings have to be read, too; ethercat-sim has --help
+# warnings have to be read, too
 lint() {
-	in_root 'cd /src && lintian --allow-root --fail-on error,warning \
-		--suppress-tags no-manual-page ethercat_0.1.0_*.changes'
+	in_root 'cd /src && lintian --allow-root --fail-on error,warning ethercat_0.1.0_*.changes'
 }
 
 install() {
