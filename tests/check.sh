@@ -19,6 +19,7 @@ kernels
 arch
 witness
 build
+lintian
 unit
 decoders
 lib
@@ -40,7 +41,7 @@ tshark
 "
 # These use one CPU, build in folders of their own and measure no time: side by side, the long
 # ones first.
-side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
+side=" uml kernels arch witness build lintian unit decoders lib tool operation bats fuzz data "
 # Of what these use, the others have built most. Their guests have exact time: in places that
 # they share. A level that does not take places itself holds one.
 guests=" system bench guests reboot demo layers tshark "
@@ -93,6 +94,7 @@ level_arch() { tests/arch/run.sh; }
 level_kernels() { tests/check-kernels.sh; }
 level_layers() { tests/check-layers.sh; }
 level_build() { tests/build/check.sh; }
+level_lintian() { tests/packages/run.sh bookworm lint; }
 level_system() { tests/system/run.sh; }
 level_guests() { tests/arch/guests.sh; }
 level_reboot() { tests/reboot/run.sh; }
