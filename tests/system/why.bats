@@ -8,7 +8,10 @@ setup_file() {
 	start "$BATS_FILE_TMPDIR/segment" 12
 }
 teardown_file() { stop; }
-teardown() { [ -z "${app:-}" ] || kill "$app" 2>/dev/null || true; }
+teardown() {
+	[ -z "${app:-}" ] || kill "$app" 2>/dev/null || true
+	echo "heal s4.0" >/sys/kernel/debug/ec_sim/sim0
+}
 
 @test "why names the cable that is cut, and the slaves behind it" {
 	"$EC_BUILD/apps/cyclic" 600 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
