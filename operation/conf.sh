@@ -45,7 +45,7 @@ is_interface() {
 
 # device INDEX VALUE
 set_device() {
-	local value
+	local value old was
 
 	case $2 in *:*) value=$(echo "$2" | tr A-F a-f) ;; *) value=$2 ;; esac
 	case $value in
@@ -55,6 +55,9 @@ set_device() {
 	*)	is_mac "$value" || is_pci "$value" || is_interface "$value" ||
 			bad "MASTER$1_DEVICE=\"$2\" is neither a MAC address, as 00:11:22:33:44:55, nor an interface, a PCI address, as 0000:01:00.0, or sim0; 'ethercat devices' lists the cards" ;;
 	esac
+	eval "old=\${device_$1:-} was=\${at_$1:-}"
+	[ -z "$old" ] || [ "$old" = "$value" ] ||
+		warn "MASTER$1_DEVICE replaces the value \"$old\" of line $was"
 	eval "device_$1=\$value at_$1=\$number"
 }
 
@@ -235,8 +238,9 @@ check_segments() {
 
 # parse FILE: exit code 6 if it cannot be read, 1 after messages with its lines
 parse() {
-	local line
+	local line mark
 
+	mark=$(printf '\357\273\277')
 	conf=$1 number=0 wrong=0 modules= up= modprobe_flags= segments= sims=0
 	if [ ! -f "$conf" ] || [ ! -r "$conf" ]; then
 		if [ -e "$conf" ]; then
@@ -248,6 +252,8 @@ parse() {
 	fi
 	while IFS= read -r line || [ -n "$line" ]; do
 		number=$((number + 1))
+		# editors of other systems begin a file with this mark
+		[ $number != 1 ] || line=${line#"$mark"}
 		parse_line "$line"
 	done <"$conf"
 	check_masters

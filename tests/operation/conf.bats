@@ -62,7 +62,10 @@ accepted() {
 	accepted 'MASTER0_DEVICE=eth0' eth0
 	accepted "\t MASTER0_DEVICE='eth0'  # card" eth0
 	accepted 'MASTER0_DEVICE="eth0"#card\r' eth0
-	accepted 'MASTER0_DEVICE="eth0"\nMASTER0_DEVICE="eth1"' eth1
+	accepted '\xef\xbb\xbfMASTER0_DEVICE="eth0"\r\nDEVICE_MODULES="generic"\r' eth0
+	accepted 'MASTER0_DEVICE="eth0"\nMASTER0_DEVICE="eth0"' eth0
+	accepted 'MASTER0_DEVICE="eth0"\nMASTER0_DEVICE="eth1"' eth1 \
+		'2: MASTER0_DEVICE replaces the value "eth0" of line 1'
 	printf 'MASTER0_DEVICE=eth0' >"$BATS_TEST_TMPDIR/conf"
 	[ "$(ctl -c "$BATS_TEST_TMPDIR/conf" check | head -n 1)" = 'Master0: eth0' ]
 }
