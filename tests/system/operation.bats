@@ -170,6 +170,110 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	none_loaded
 }
 
+# stub NAME LINE...: a program that ethercatctl finds first
+stub() {
+	mkdir -p "$BATS_TEST_TMPDIR/bin"
+	printf '%s\n' '#!/bin/sh' "${@:2}" >"$BATS_TEST_TMPDIR/bin/$1"
+	chmod +x "$BATS_TEST_TMPDIR/bin/$1"
+}
+stubbed() { PATH=$BATS_TEST_TMPDIR/bin:$PATH own "$1"; }
+
+attached() { [[ $(ethercat master) =~ $1" (attached)" ]]; }
+
+@test "a card that appears after the start is used, by its MAC address" {
+	conf 'MASTER0_DEVICE="52:54:00:EC:0F:01"'
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ ${lines[0]} =~ conf:1:\ MASTER0_DEVICE=\"52:54:00:ec:0f:01\":\ no\ such\ device\ after\ 10\ s\;\ the\ master\ waits ]]
+	[[ ${lines[1]} =~ ^"Master0: 52:54:00:ec:0f:01 (waiting...)" ]]
+	[ ${#lines[@]} = 2 ]
+	ip link del veth0
+	ip link add veth0 address 52:54:00:ec:0f:01 type veth peer name veth1
+	wait_for 10 attached 52:54:00:ec:0f:01
+	own stop
+	none_loaded
+}
+
+@test "a name is that of the interface after udev has renamed it" {
+	local mac
+
+	read -r mac </sys/class/net/veth1/address
+	stub udevadm '[ ! -e /sys/class/net/veth1 ] || {' 'ip link set veth0 name lan0' \
+		'ip link set veth1 name veth0' '}'
+	conf 'MASTER0_DEVICE="veth0"'
+	stubbed start
+	attached "$mac"
+	own stop
+	none_loaded
+}
+
+@test "two interfaces of a master, or two masters of one interface, are reported with their line" {
+	local mac
+
+	read -r mac </sys/class/net/veth0/address
+	conf "MASTER0_DEVICE=$mac" 'MASTER1_DEVICE=veth0'
+	fails 'conf:2: MASTER1_DEVICE="veth0" is veth0, which another master has' own start
+	none_loaded
+	ip link set veth1 address "$mac"
+	conf '' "MASTER0_DEVICE=$mac"
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ ${lines[0]} =~ conf:2:.*": the address of several interfaces (veth0 veth1), the master uses one" ]]
+	own stop
+	none_loaded
+}
+
+@test "an interface that the network configuration manages is reported" {
+	local links=/run/systemd/netif/links index
+
+	read -r index </sys/class/net/veth0/ifindex
+	conf 'MASTER0_DEVICE="veth0"'
+	mkdir -p $links
+	echo 'ADMIN_STATE=configuring' >$links/"$index"
+	run stubbed start
+	echo "$output"
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = 'ethercatctl: warning: systemd-networkd configures veth0; exclude it there, see "Network configuration" in install.rst' ]
+	own stop
+	echo 'ADMIN_STATE=unmanaged' >$links/"$index"
+	stub nmcli '[ "$*" = "-g GENERAL.STATE device show veth0" ] && echo "30 (disconnected)"'
+	run stubbed start
+	echo "$output"
+	[[ ${lines[0]} =~ "warning: NetworkManager configures veth0; exclude it there" ]]
+	own stop
+	stub nmcli 'echo "10 (unmanaged)"'
+	run stubbed start
+	echo "$output"
+	[[ ${lines[0]} =~ ^"Master0: veth0 (attached)" ]]
+	own stop
+	rm -r $links
+}
+
+finished() { [[ $(cat "$BATS_TEST_TMPDIR/out") =~ ^"Master0: " ]]; }
+
+@test "a start waits for another ethercatctl, and a start that is ended unloads the modules" {
+	conf 'MASTER0_DEVICE="sim0"'
+	exec 8>>/run/ethercatctl.lock
+	flock 8
+	own start >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- 8>&- &
+	pid=$!
+	sleep 2
+	none_loaded
+	flock -u 8
+	wait_for 30 finished
+	own stop
+	none_loaded
+	stub modprobe '[ "$1" != ec_sim ] || sleep 5' 'exec /sbin/modprobe "$@"'
+	PATH=$BATS_TEST_TMPDIR/bin:$PATH "$CTL" -c "$BATS_TEST_TMPDIR/conf" start 3>&- 8>&- &
+	pid=$!
+	wait_for 10 test -e /sys/module/ec_master
+	kill "$pid"
+	wait "$pid" || true	# ended
+	none_loaded
+}
+
 @test "modules that are loaded already are used only with the same devices" {
 	modprobe ec_master main_devices=veth0
 	fails 'ec_master is already loaded with main_devices=veth0, but .* has sim0,sim1; run' \
