@@ -27,9 +27,13 @@ int ec_foe_hdr_decode(struct ec_rbuf *r, struct ec_foe_hdr *h)
  */
 void ec_foe_hdr_encode(struct ec_wbuf *w, const struct ec_foe_hdr *h)
 {
-	ec_wbuf_u8(w, h->opcode);
-	ec_wbuf_u8(w, 0);
-	ec_wbuf_le32(w, h->number);
+	u8 *p = ec_wbuf_take(w, EC_FOE_HDR);
+
+	if (!p)
+		return;
+	p[0] = h->opcode;
+	p[1] = 0;
+	put_unaligned_le32(h->number, p + 2);
 }
 
 /**
