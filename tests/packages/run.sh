@@ -13,7 +13,8 @@ cd "$(dirname "$0")/../.." || exit 1
 packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev ethercat-doc"
 passed=0 failed=0
 suite=${1:-bookworm}
-root=$(tests/packages/root.sh "$suite") && kernel=$(tests/packages/root.sh "$suite" kernel) || exit 1
+root=$(tests/packages/root.sh "$suite") || exit 1
+kernel=$(tests/packages/root.sh "$suite" kernel)
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-packages.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 
@@ -128,7 +129,8 @@ module_builds() {
 boots() {
 	in_root 'systemctl enable ethercat' &&
 	tests/packages/enter.sh --mount "$root" "$tmp/root" sh -c \
-		'exec tests/vm/run.sh --kernel "$2" --init "$MERGED" --timeout 900 -- sh -euc "$1"' sh '
+		'exec tests/vm/run.sh --kernel "$2" --init "$MERGED" --timeout 900 -- \
+			sh -euc "$1"' sh '
 		systemctl is-active ethercat
 		n=0
 		until [ "$(ethercat slaves | grep -c PREOP)" = 22 ]; do

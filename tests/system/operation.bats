@@ -185,7 +185,8 @@ attached() { [[ $(ethercat master) =~ $1" (attached)" ]]; }
 	run own start
 	echo "$output"
 	[ "$status" = 0 ]
-	[[ ${lines[0]} =~ conf:1:\ MASTER0_DEVICE=\"52:54:00:ec:0f:01\":\ no\ such\ device\ after\ 10\ s\;\ the\ master\ waits ]]
+	[[ ${lines[0]} =~ 'conf:1: MASTER0_DEVICE="52:54:00:ec:0f:01": no such device after 10 s' ]]
+	[[ ${lines[0]} =~ '; the master waits for it' ]]
 	[[ ${lines[1]} =~ ^"Master0: 52:54:00:ec:0f:01 (waiting...)" ]]
 	[ ${#lines[@]} = 2 ]
 	ip link del veth0
@@ -220,7 +221,7 @@ attached() { [[ $(ethercat master) =~ $1" (attached)" ]]; }
 	run own start
 	echo "$output"
 	[ "$status" = 0 ]
-	[[ ${lines[0]} =~ conf:2:.*": the address of several interfaces (veth0 veth1), the master uses one" ]]
+	[[ ${lines[0]} =~ conf:2:.*": the address of several interfaces (veth0 veth1)," ]]
 	own stop
 	none_loaded
 }
@@ -235,7 +236,7 @@ attached() { [[ $(ethercat master) =~ $1" (attached)" ]]; }
 	run stubbed start
 	echo "$output"
 	[ "$status" = 0 ]
-	[ "${lines[0]}" = 'ethercatctl: warning: systemd-networkd configures veth0; exclude it there, see "Network configuration" in install.rst' ]
+	[[ ${lines[0]} =~ ": warning: systemd-networkd configures veth0; exclude it there, see " ]]
 	own stop
 	echo 'ADMIN_STATE=unmanaged' >$links/"$index"
 	stub nmcli '[ "$*" = "-g GENERAL.STATE device show veth0" ] && echo "30 (disconnected)"'

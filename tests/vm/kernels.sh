@@ -158,8 +158,8 @@ apt_setup() {	# apt_setup base|backports|trixie [ARCHITECTURE]
 	trixie)	suite_sources trixie ;;
 	*)	backports_sources ;;
 	esac >"$d/ec.sources"
-	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm or trixie, 'main', found in /etc/apt/sources.list and" \
-		"/etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
+	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm or trixie, 'main', found in" \
+		"/etc/apt/sources.list and /etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
 	apt_opts=(-o "Dir::Etc::SourceList=$d/ec.sources" -o Dir::Etc::SourceParts=/dev/null
 		-o "Dir::State::lists=$d/lists" -o "Dir::Cache=$d/cache" -o APT::Sandbox::User=
 		-o "APT::Architecture=$arch" -o "APT::Architectures::=$arch"
@@ -186,7 +186,8 @@ depends() {	# depends PACKAGE REGEX: the names it depends on that match
 
 check_flavour() {
 	case ${1:-} in
-	6.1|6.1-rt|6.1-kcsan|6.1-kasan|6.12|6.12-rt|6.12-deb13-rt|6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
+	6.1|6.1-rt|6.1-kcsan|6.1-kasan|6.12|6.12-rt|6.12-deb13-rt) ;;
+	6.1-i386|6.1-arm64|6.1-armhf|6.1-s390x) ;;
 	'') usage ;;
 	*) die "unknown flavour '$1' (see kernels.sh --help)" ;;
 	esac
@@ -227,8 +228,8 @@ unpack() {	# unpack FLAVOUR
 	for try in 1 2; do
 		apt_setup $suite "$arch"
 		image=$(depends "linux-image-$name" "^linux-image-${base//./\\.}\.[0-9].*-$name\$" | head -n 1)
-		[ -n "$image" ] || die "Debian offers no kernel $base (wanted through linux-image-$name)," \
-			"see $cache/apt/$suite/update.log"
+		[ -n "$image" ] ||
+			die "Debian has no kernel $base (linux-image-$name); see $cache/apt/$suite/update.log"
 		release=${image#linux-image-}
 		headers=linux-headers-$release
 		kbuild=$(depends "$headers" '^linux-kbuild-')
