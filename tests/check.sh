@@ -19,7 +19,6 @@ kernels
 arch
 witness
 build
-lintian
 unit
 decoders
 lib
@@ -41,7 +40,7 @@ tshark
 "
 # These use one CPU, build in folders of their own and measure no time: side by side, the long
 # ones first.
-side=" uml kernels arch witness build lintian unit decoders lib tool operation bats fuzz data "
+side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
 # Of what these use, the others have built most. Their guests have exact time: in places that
 # they share. A level that does not take places itself holds one.
 guests=" system bench guests reboot demo layers tshark "

@@ -313,7 +313,8 @@ mkfifo "$tmp/out"
 machine() {
 	# shellcheck disable=SC2206
 	qemu_args=("${base[@]}" "${accel[@]}" -smp "$smp" -m "$mem" -initrd "$initrd"
-		-device virtio-serial -chardev "file,id=out,path=$1" -device virtserialport,chardev=out
+		-device virtio-serial -chardev "file,id=out,path=$1"
+		-device virtserialport,chardev=out
 		-virtfs "local,path=$ctl,mount_tag=ctl,security_model=none"
 		-virtfs "local,path=$root,mount_tag=host,security_model=none,readonly=on,multidevs=remap"
 		${opts[@]+"${opts[@]}"}
@@ -384,7 +385,8 @@ boot() {
 		date +@@@@%s >"$input"
 	fi
 	[ ! -f "$parked" ] || qemu_args+=(-incoming "exec:cat $(printf %q "$parked")")
-	timeout -k 5 "$timeout" "${qemu_args[@]}" -serial stdio <"$input" >"$tmp/out" 2>"$tmp/qemu.err" &
+	timeout -k 5 "$timeout" "${qemu_args[@]}" -serial stdio <"$input" >"$tmp/out" \
+		2>"$tmp/qemu.err" &
 	qemu_pid=$!
 	# The console adds a carriage return to each line of the kernel. The file tells
 	# the guest that all it wrote has arrived; sed holds back what it writes to any
