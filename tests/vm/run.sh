@@ -340,6 +340,7 @@ park() {
 	"${qemu_args[@]}" -serial "file:$tmp/console" -monitor stdio <"$tmp/monitor.in" \
 		>"$tmp/monitor.out" 2>&1 &
 	qemu_pid=$!
+	trap '' PIPE	# it may die at any moment
 	exec 8>"$tmp/monitor.in"
 	for ((i = 0; i < 1200; i++)); do
 		kill -0 $qemu_pid 2>/dev/null || break
@@ -349,7 +350,7 @@ park() {
 		fi
 		sleep 0.1
 	done
-	for ((i = 0; i < 300; i++)); do
+	for ((i = 0; i < 1200; i++)); do
 		kill -0 $qemu_pid 2>/dev/null || break
 		echo 'info migrate' >&8
 		grep -qE 'Migration status: (completed|failed)' "$tmp/monitor.out" && break
@@ -359,17 +360,19 @@ park() {
 	wait $qemu_pid
 	qemu_pid=
 	exec 8>&-
+	trap - PIPE
 	grep -q 'Migration status: completed' "$tmp/monitor.out" || return 1
 	mkdir -p "$cache/parked"
 	cp "$tmp/parked" "$parked.$$" && mv "$parked.$$" "$parked"
-	find "$cache/parked" ! -path "$parked" -type f -mtime +0 -delete
+	find "$cache/parked" ! -path "$parked" ! -name .lock -type f -mtime +0 -delete
 }
 
-if [ -n "$parked" ] && [ ! -f "$parked" ]; then
+if [ -n "$parked" ] && [ ! -f "$parked" ] && [ ! -f "$parked.no" ]; then
 	mkdir -p "$cache/parked"
 	exec 9>"$cache/parked/.lock"
 	flock 9
-	[ -f "$parked" ] || park || true
+	# a QEMU that cannot is not asked each time
+	[ -f "$parked" ] || park || touch "$parked.no"
 	exec 9>&-
 fi
 touch -c "$parked" 2>/dev/null || true	# it is in use
