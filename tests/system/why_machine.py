@@ -107,19 +107,26 @@ class Eeprom(Fault):
                       expected=self.word & 0xff)]
 
 
-class Unreadable(Fault):
-    """The EEPROM does not answer, found by a scan."""
+class Scanned(Fault):
+    """A command of the segment that only a scan finds; a scan ends it as well."""
     alone = True
-    related = ("configuration",)
-    undo = ("idle {}",)
 
     def inject(self, bench):
-        bench.sim(f"busy {self.name}")
+        bench.sim(self.command())
         bench.ethercat("rescan", "--wait")
 
     def heal(self, bench):
         super().heal(bench)
         bench.ethercat("rescan", "--wait")
+
+
+class Unreadable(Scanned):
+    """The EEPROM does not answer."""
+    related = ("configuration",)
+    undo = ("idle {}",)
+
+    def command(self):
+        return f"busy {self.name}"
 
     def expect(self, position):
         return {("eeprom", position(self.slave))}
@@ -128,20 +135,14 @@ class Unreadable(Fault):
         return [self.failed(EEPROM)]
 
 
-class NoFirmware(Fault):
+class NoFirmware(Scanned):
     """Without firmware a slave refuses PREOP; it was powered up before the application starts."""
-    alone = True
     places = COE
     undo = ("allow {}",)
     related = ("al_error",)
 
-    def inject(self, bench):
-        bench.sim(f"refuse {self.name} PREOP code={NO_FIRMWARE}")
-        bench.ethercat("rescan", "--wait")
-
-    def heal(self, bench):
-        super().heal(bench)
-        bench.ethercat("rescan", "--wait")
+    def command(self):
+        return f"refuse {self.name} PREOP code={NO_FIRMWARE}"
 
     def expect(self, position):
         return {("al_refused", position(self.slave), NO_FIRMWARE)}
