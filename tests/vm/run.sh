@@ -325,7 +325,8 @@ machine() {
 # Half of what a short guest costs is its start. Until it mounts folders of the host it is the
 # same each time: one with exact time is kept as it is then, and goes on from there.
 parked=
-if [ $icount = 1 ] && [ "$arch" = amd64 ] && [ $monitor = 0 ] && [ -z "$qemu_more${rw[*]+x}" ]; then
+if [ $icount = 1 ] && [ "$arch" = amd64 ] && [ $monitor = 0 ] && [ ${#rw[@]} = 0 ] &&
+   [ -z "$qemu_more" ]; then
 	append="$append ec_park"
 	machine out
 	parked=$cache/parked/$(printf '%s\n' "$(${qemu[0]} --version)" "${qemu_args[@]//"$tmp"/}" |
