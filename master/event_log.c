@@ -9,8 +9,8 @@
 #include "wire/event.h"
 
 /*
- * Of a working counter: complete or not any more. While slaves come, or are taken to PREOP by
- * their application, it changes as it should.
+ * Of a working counter: complete, or no longer. That it changes while slaves come, or are taken to
+ * PREOP by their application, is expected.
  */
 static const char *wkc_level(const u32 *a)
 {

@@ -48,7 +48,7 @@ struct stay {
 	u8 state;		/* AL state of it, 0: it does not reply */
 };
 
-/* Nobody brings a slave beyond PREOP from now on. Return: slaves that are. */
+/* Nobody brings a slave beyond PREOP from now on. Return: how many are beyond it. */
 static unsigned int request_preop(struct ec_master *m)
 {
 	unsigned int n = 0;
