@@ -109,6 +109,8 @@ run() {
 	echo "$? $((SECONDS - t0))" >"$log/$1.end"
 }
 
+# what failed, by level: the last lines, since some readers keep no others
+failed_names=
 report() {
 	local name=$1 rc seconds
 
@@ -121,6 +123,8 @@ report() {
 		failures "$log/$name"
 		tail -n 20 "$log/$name"
 		echo "=== $name failed (exit $rc)"
+		failed_names+=$(grep -E '^[ \t]*(not ok|FAILED:|demo: FAILED)' "$log/$name" |
+				head -n 20 | sed "s/^[ \t]*/$name: /")$'\n'
 	fi
 	echo "=== $name: $seconds s"
 }
@@ -159,5 +163,6 @@ for l in ${beside[@]+"${beside[@]}"}; do
 done
 wait
 for l in ${beside[@]+"${beside[@]}"}; do report "$l"; done
+printf '%s' "$failed_names"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
