@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# "reboot -f" in a guest with an application in OP: the wire, recorded outside the guest, shows
-# that all slaves leave OP and stay out of it. The last line is "N passed, N failed".
+# "reboot -f" in a guest with an application in OP, and kexec: the wire, recorded outside the
+# guest, shows that all slaves leave OP and stay out of it. The last line is "N passed, N failed".
 #
-# usage: run.sh [native|generic]...	device of the master; default: native
+# usage: run.sh [native|generic|native+kexec|generic+kexec]...
+#	device of the master, and how the guest ends; default: native native+kexec
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -39,21 +40,35 @@ t() {	# t NAME COMMAND...
 	fi
 }
 
-# reboot DEVICE: -no-reboot ends QEMU there, so run.sh has no result of the command
-reboot() {
+# ends DEVICE KEXEC: -no-reboot ends QEMU there, so run.sh has no result of the command. The
+# kernel that kexec starts has no root: it panics, and restarts.
+ends() {
 	tests/vm/run.sh --kernel "$kernel" --nics --icount --timeout 400 --append loglevel=7 \
 		--qemu "-object filter-dump,id=wire,netdev=h0,file=$tmp/wire.pcap" -- \
-		env EC_BUILD="$EC_BUILD" bash tests/reboot/guest.sh "$1" >"$tmp/out" 2>&1
-	[ $? = 125 ] && grep -q 'reboot: Restarting system' "$tmp/out"
+		env EC_BUILD="$EC_BUILD" bash tests/reboot/guest.sh "$1" \
+		${2:+"$(tests/vm/kernels.sh image "$kernel")"} >"$tmp/out" 2>&1
+	[ $? = 125 ] || return
+	if [ -n "$2" ]; then
+		grep -q 'kexec_core: Starting new kernel' "$tmp/out" &&
+			grep -q 'Command line: .*after=kexec' "$tmp/out"
+	else
+		grep -q 'reboot: Restarting system' "$tmp/out"
+	fi
 }
 
 logged() { grep -qE 'EtherCAT 0: reboot: 22 slave\(s\) taken out of SAFEOP and OP in [0-9]+ ms' "$tmp/out"; }
 
-for device in ${*:-native}; do
+for how in ${*:-native native+kexec}; do
+	device=${how%+kexec} kexec=
+	case $how in
+	native|generic) t=restarts ;;
+	native+kexec|generic+kexec) t="starts another kernel" kexec=1 ;;
+	*) echo "run.sh: $how: neither native nor generic, with or without +kexec" >&2; exit 2 ;;
+	esac
 	rm -f "$tmp/wire.pcap"
-	t "$device: a guest with 22 slaves in OP restarts" reboot "$device"
-	t "$device: the kernel log says that they left OP" logged
-	t "$device: the wire shows that they left OP, beside the cycle of the application" \
+	t "$how: a guest with 22 slaves in OP $t" ends "$device" "$kexec"
+	t "$how: the kernel log says that they left OP" logged
+	t "$how: the wire shows that they left OP, beside the cycle of the application" \
 		tests/reboot/wire.py "$tmp/wire.pcap" 22
 done
 echo "$passed passed, $failed failed"
