@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <errno.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/mman.h>
 
 #include "files.h"
 #include "out.h"
+#include "save.h"
 
-/* A file that cannot be written whole is no file. */
 static int save(const char *path, const u8 *data, size_t size)
 {
-	FILE *f = fopen(path, "wb");
-	size_t n;
+	struct save s;
 
-	if (!f)
-		return fail("cannot write '%s': %s", path, strerror(errno));
-	n = fwrite(data, 1, size, f);
-	if (fclose(f) || n != size)
-		return fail("cannot write '%s': %s", path, strerror(errno));
+	if (save_begin(&s, path))
+		return 1;
+	fwrite(data, 1, size, s.f);
+	if (save_end(&s))
+		return 1;
 	out_str("output_file", path, NULL);
 	return 0;
 }

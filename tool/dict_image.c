@@ -13,6 +13,7 @@
 #include "io.h"
 #include "json.h"
 #include "out.h"
+#include "save.h"
 #include "text.h"
 
 #define FORMAT		"ethercat sdos"
@@ -119,7 +120,7 @@ static void save_entry(FILE *f, const struct dict_entry *e)
 	fputc('}', f);
 }
 
-static void save(FILE *f, const struct dict_image *i)
+static void write_image(FILE *f, const struct dict_image *i)
 {
 	fprintf(f, "{\n\"format\": \"" FORMAT "\",\n\"version\": %u,\n", VERSION);
 	fprintf(f, "\"vendor_id\": %u,\n\"product_code\": %u,\n\"revision_number\": %u,\n",
@@ -134,36 +135,19 @@ static void save(FILE *f, const struct dict_image *i)
 
 /**
  * dict_image_save() - write a file
- * @path: name; a file of this name is replaced when the new one is whole
+ * @path: name
  * @i: content
  *
  * Return: 0, or 1 after printing what failed.
  */
 int dict_image_save(const char *path, const struct dict_image *i)
 {
-	size_t size = strlen(path) + 5;
-	char *part = malloc(size);
-	bool bad;
-	FILE *f;
+	struct save s;
 
-	if (!part)
-		return fail("out of memory");
-	snprintf(part, size, "%s.new", path);
-	f = fopen(part, "w");
-	if (!f) {
-		fail("cannot write '%s': %s", part, strerror(errno));
-		free(part);
+	if (save_begin(&s, path))
 		return 1;
-	}
-	save(f, i);
-	bad = ferror(f);
-	if (fclose(f) || bad || rename(part, path)) {
-		fail("cannot write '%s': %s", path, strerror(errno));
-		remove(part);
-		bad = true;
-	}
-	free(part);
-	return bad;
+	write_image(s.f, i);
+	return save_end(&s);
 }
 
 /* Hex digits to bytes; false: there is something else. */

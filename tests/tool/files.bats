@@ -26,6 +26,11 @@ load common
 	run ethercat foe_read -p2 -o /dev/full fw
 	[ "$status" -eq 1 ]
 	[[ $output == *"cannot write '/dev/full': No space left on device" ]]
+	cd "$BATS_TEST_TMPDIR"
+	run bash -c "trap '' XFSZ; ulimit -f 0; exec '$HERE/build/fake/ethercat' foe_read -p2 -o part fw"
+	[ "$status" -eq 1 ]
+	[[ $output == *"cannot write 'part': File too large" ]]
+	[ "$(echo part*)" = 'part*' ]
 }
 
 @test "foe_write: name, password, stdin, empty file" {

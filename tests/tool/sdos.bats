@@ -117,7 +117,25 @@ load common
 	[ "$status" -eq 1 ]
 	[ "$(cat a.json)" = old ]
 	run ethercat sdos -p2 --save none/a.json
-	[[ $output == *"cannot write 'none/a.json.new': No such file or directory"* ]]
+	[[ $output == *"cannot write 'none/a.json': No such file or directory"* ]]
+	# nothing fits: the write fails with EFBIG instead of ENOSPC
+	run bash -c "trap '' XFSZ; ulimit -f 0; exec '$HERE/build/fake/ethercat' sdos -p2 --save a.json"
+	[ "$status" -eq 1 ]
+	[[ $output == *"cannot write 'a.json': File too large"* ]]
+	[ "$(cat a.json)" = old ]
+	[ "$(echo a.json*)" = a.json ]
+	chmod 640 a.json
+	ethercat sdos -p2 --save a.json 2>/dev/null
+	[ "$(stat -c %a a.json)" = 640 ]
+	grep -q '"format"' a.json
+	(umask 027; ethercat sdos -p2 --save b.json 2>/dev/null)
+	[ "$(stat -c %a b.json)" = 640 ]
+	# neither a link nor a device is replaced by a file
+	ln -s b.json link
+	ethercat sdos -p2 --save link 2>/dev/null
+	[ -L link ]
+	[ "$(ethercat sdos -p2 --save /dev/stdout 2>/dev/null | grep -c '"format"')" = 1 ]
+	[ -L /dev/stdout ]
 	for wrong in "--save a --compare b" "--compare a --compare-slave 1" "--save -" \
 		"--compare-slave x" "--compare-slave 65536"; do
 		run ethercat sdos -p2 $wrong

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "save.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tool.h"
+
+/* A new file beside @path, with the permissions that @path has or would get. */
+static FILE *part_file(char *part, const struct stat *old)
+{
+	mode_t mask = umask(0);
+	int fd = mkstemp(part);
+	FILE *f;
+
+	umask(mask);
+	if (fd < 0)
+		return NULL;
+	f = fchmod(fd, old ? old->st_mode & 07777 : 0666 & ~mask) ? NULL : fdopen(fd, "wb");
+	if (!f) {
+		close(fd);
+		remove(part);
+	}
+	return f;
+}
+
+/**
+ * save_begin() - write a file; what it had stays until save_end()
+ * @s: result
+ * @path: name, valid until save_end(); a device, a pipe and a link are written themselves, so is
+ *	a file in a folder that takes no other
+ *
+ * Return: 0, or 1 after printing what failed.
+ */
+int save_begin(struct save *s, const char *path)
+{
+	size_t size = strlen(path) + sizeof(".XXXXXX");
+	struct stat st;
+	bool there = !lstat(path, &st);
+
+	*s = (struct save){ .path = path, .part = malloc(size) };
+	if (!s->part)
+		return fail("out of memory");
+	snprintf(s->part, size, "%s.XXXXXX", path);
+	if (!there || S_ISREG(st.st_mode))
+		s->f = part_file(s->part, there ? &st : NULL);
+	if (s->f)
+		return 0;
+	free(s->part);
+	s->part = NULL;
+	s->f = fopen(path, "wb");
+	return s->f ? 0 : fail("cannot write '%s': %s", path, strerror(errno));
+}
+
+/**
+ * save_end() - the file is whole
+ * @s: of save_begin(); its stream is closed
+ *
+ * Return: 0, or 1 after printing what failed: the file is then as it was before.
+ */
+int save_end(struct save *s)
+{
+	int err = fflush(s->f) || ferror(s->f) ? errno : 0;
+
+	if (fclose(s->f) && !err)
+		err = errno;
+	if (s->part && !err && rename(s->part, s->path))
+		err = errno;
+	if (s->part && err)
+		remove(s->part);
+	free(s->part);
+	return err ? fail("cannot write '%s': %s", s->path, strerror(err)) : 0;
+}
