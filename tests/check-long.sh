@@ -35,7 +35,7 @@ run() {
 	cycles|flaps|events) tests/system/run.sh "tests/system/long/$1.bats" ;;
 	packages) tests/packages/run.sh ;;
 	packages-13) tests/packages/run.sh trixie ;;
-	reboot) tests/reboot/run.sh generic native ;;
+	reboot) tests/reboot/run.sh generic native generic+kexec native+kexec ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac

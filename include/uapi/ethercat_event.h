@@ -79,7 +79,10 @@
 /* EC_CYCLE_LOCK_*, phase error in ns, rate in ppb; both signed */
 #define EC_EVENT_LOCK		0x44
 
-/* processes by their number in the initial PID namespace; 0: the kernel */
+/*
+ * processes by their number in the initial PID namespace; of an application in the kernel the
+ * process that called it, insmod for one
+ */
 #define EC_EVENT_RESERVED	0x50	/* process */
 #define EC_EVENT_ACTIVATED	0x51	/* process, domains, bytes, datagrams of a cycle */
 #define EC_EVENT_DEACTIVATED	0x52	/* process */

@@ -460,5 +460,5 @@ int ec_event_text(const struct ec_event *e, char *buf, size_t size)
 		about[e->kind >> 4](&t, e);
 	else
 		format(&t, "unknown event 0x%x; a newer module has it", e->kind);
-	return min(t.len, (int)size - 1);
+	return min_t(size_t, t.len, size - 1);
 }
