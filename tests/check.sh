@@ -134,6 +134,9 @@ tests/install-deps.sh build vm capture uml json python doc cross || {
 	echo "0 passed, 1 failed"
 	exit 1
 }
+# what was compiled before, also for another clone at this place, is taken from a cache
+export PATH=/usr/lib/ccache:$PATH CCACHE_MAXSIZE=2G
+export CCACHE_DIR=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}/ccache
 places "$log/places" 1024
 together=() beside=() apart=()
 for l in ${*:-$levels}; do

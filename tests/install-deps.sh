@@ -30,7 +30,7 @@ want=
 for group; do
 	case $group in
 	# gcc-12 as well: the headers of Debian 12's kernels ask for it by its name
-	build)	p="gcc gcc-12 g++ make libc6-dev pkg-config bc bison flex libelf-dev pahole
+	build)	p="gcc gcc-12 g++ ccache make libc6-dev pkg-config bc bison flex libelf-dev pahole
 		   sparse kmod cpio xz-utils zstd git" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils zstd bats tcpdump
 		   iproute2 ethtool tshark procps psmisc python3 xxd udev" ;;
