@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
  * dc_motion: two drives (CiA 402, or EL7201 terminals) move by a sine, with distributed clocks:
- * both accept their target positions at the same SYNC0, a third of a cycle after the frame. The
- * argument selects the time reference:
+ * both accept their target positions at the same SYNC0, a third of a cycle after the frame. When
+ * one leaves operation, by a fault or its enable input, both stop and the program ends: it resets
+ * faults only before the motion. The argument selects the time reference:
  *
  *   lead    this program: the reference clock is synchronized to it; for machines with a
  *           better clock than that of the drives
@@ -12,11 +13,11 @@
  * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the same as
  * "follow", see kcycle.c.)
  *
- * usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]
+ * usage: dc_motion [lead|follow [FIRST [SECOND|- [SECONDS]]]]
  *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 4 and 5, as in the
- *                  simulated segment "bench"
+ *                  simulated segment "bench". FIRST alone, or "-" as SECOND: one drive
  *   SECONDS        to run; default: until Ctrl-C
- * exit status: 0; 1 when a drive did not reach OP or the setup failed
+ * exit status: 0; 1 when a drive did not reach OP or left operation, or the setup failed
  */
 #include <ecrt.h>
 #include <math.h>
@@ -32,7 +33,8 @@
 #define PERIOD_NS	1000000
 #define SHIFT_NS	(PERIOD_NS / 3)	/* later than the frame */
 #define NS_PER_S	1000000000L
-#define AXES		2
+#define AXES		2		/* at most */
+#define STOP_CYCLES	1000		/* for a quick stop */
 #define AMPLITUDE	100000.0	/* counts, peak to peak */
 #define TURN_S		2.0		/* one period of the motion */
 #define TWO_PI		6.283185307179586
@@ -52,7 +54,8 @@ static ec_master_t *master;
 static ec_domain_t *domain;
 static uint8_t *data;
 static struct axis axes[AXES];
-static int follow, reached_op;
+static int n_axes, follow, reached_op;
+static int failed;	/* a drive left operation while it moved */
 
 static volatile sig_atomic_t stop;
 
@@ -139,16 +142,21 @@ static uint64_t ns(const struct timespec *t)
 }
 
 /* The library prints the reason of each failure on stderr. */
-static int setup(uint16_t first, uint16_t second)
+static int setup(const unsigned long *positions)
 {
+	int i;
+
 	master = ecrt_request_master(0);
 	if (!master)
 		return -1;
 	domain = ecrt_master_create_domain(master);
-	if (!domain || configure(&axes[0], first) || configure(&axes[1], second) ||
-	    ecrt_master_set_send_interval(master, PERIOD_NS / 1000))
+	if (!domain)
 		return -1;
-	if (ecrt_master_activate(master))
+	for (i = 0; i < n_axes; i++)
+		if (configure(&axes[i], (uint16_t)positions[i]))
+			return -1;
+	if (ecrt_master_set_send_interval(master, PERIOD_NS / 1000) ||
+	    ecrt_master_activate(master))
 		return -1;
 	data = ecrt_domain_data(domain);
 	return data ? 0 : -1;
@@ -246,12 +254,15 @@ static uint16_t next_control(uint16_t status, unsigned long n)
 	return (status & 0x6f) == 0x23 || (status & 0x6f) == 0x27 ? 0x0f : 0x00;
 }
 
-/* @t_s: time since the motion began; negative: not all are enabled */
-static void move(struct axis *a, unsigned long n, double t_s, int off)
+/* what a drive shall do */
+enum phase { ENABLE, MOVE, QUICK_STOP };
+
+/* @t_s: time since the motion began */
+static void move(struct axis *a, unsigned long n, enum phase phase, double t_s)
 {
 	int32_t at = EC_READ_S32(data + a->actual), target = at;
 
-	if (t_s >= 0) {
+	if (phase == MOVE) {
 		if (!a->moving)
 			a->origin = at;
 		a->moving = 1;
@@ -263,17 +274,23 @@ static void move(struct axis *a, unsigned long n, double t_s, int off)
 	}
 	EC_WRITE_S8(data + a->mode, MODE_CSP);
 	EC_WRITE_S32(data + a->target, target);
-	EC_WRITE_U16(data + a->control,
-		     off ? 0x06 : next_control(EC_READ_U16(data + a->status), n));
+	EC_WRITE_U16(data + a->control, phase == QUICK_STOP ? 0x02 :
+					next_control(EC_READ_U16(data + a->status), n));
+}
+
+/* How many drives have a status word that is @value in the bits of the state? */
+static int count(uint16_t value)
+{
+	int i, n = 0;
+
+	for (i = 0; i < n_axes; i++)
+		n += (EC_READ_U16(data + axes[i].status) & 0x6f) == value;
+	return n;
 }
 
 static int all_enabled(void)
 {
-	int i, enabled = 0;
-
-	for (i = 0; i < AXES; i++)
-		enabled += (EC_READ_U16(data + axes[i].status) & 0x6f) == 0x27;
-	return enabled == AXES;
+	return count(0x27) == n_axes;
 }
 
 /* cycle ----------------------------------------------------------------------*/
@@ -281,8 +298,8 @@ static int all_enabled(void)
 /* Returns the correction of the next period, ns. */
 static long cycle(unsigned long n, uint64_t app_time, int off)
 {
+	enum phase phase = ENABLE;
 	static uint64_t began;
-	double t_s = -1;
 	long correct;
 	int i;
 
@@ -291,10 +308,14 @@ static long cycle(unsigned long n, uint64_t app_time, int off)
 	correct = correction();
 	if (!began && all_enabled())
 		began = app_time;
-	if (began)
-		t_s = (double)(app_time - began) / NS_PER_S;
-	for (i = 0; i < AXES; i++)
-		move(&axes[i], n, t_s, off);
+	else if (began && !off && !all_enabled())
+		failed = 1;
+	if (off || failed)
+		phase = QUICK_STOP;
+	else if (began)
+		phase = MOVE;
+	for (i = 0; i < n_axes; i++)
+		move(&axes[i], n, phase, (double)(app_time - began) / NS_PER_S);
 
 	/* the same order at the same place in each cycle, DC last before send */
 	ecrt_domain_queue(domain);
@@ -316,7 +337,7 @@ static int not_in_op(void)
 	char reason[256];
 	int i, n = 0;
 
-	for (i = 0; i < AXES; i++) {
+	for (i = 0; i < n_axes; i++) {
 		if (!ecrt_slave_config_state(axes[i].config, &state) && state.operational)
 			continue;
 		n++;
@@ -328,6 +349,16 @@ static int not_in_op(void)
 	return n;
 }
 
+static void status_words(const char *text)
+{
+	int i;
+
+	printf("%s: status words", text);
+	for (i = 0; i < n_axes; i++)
+		printf(" 0x%04x", EC_READ_U16(data + axes[i].status));
+	printf("\n");
+}
+
 /*
  * Printing takes too long for a cycle: an application with hard limits prints in a thread
  * without real-time priority.
@@ -335,6 +366,7 @@ static int not_in_op(void)
 static void report(unsigned long n)
 {
 	uint32_t apart = ecrt_master_sync_monitor_process(master);
+	int i;
 
 	if (n % (NS_PER_S / PERIOD_NS))
 		return;
@@ -343,10 +375,25 @@ static void report(unsigned long n)
 	if (apart == 0xffffffff)
 		return;
 	if (!axes[0].moving)
-		printf("not moving yet: status words 0x%04x 0x%04x\n",
-		       EC_READ_U16(data + axes[0].status), EC_READ_U16(data + axes[1].status));
-	printf("reference clock %+d ns, slaves' clocks within %u ns of it, axes at %d %d\n",
-	       clock_state.error, apart, axes[0].last, axes[1].last);
+		status_words("not moving yet");
+	printf("reference clock %+d ns, slaves' clocks within %u ns of it, axes at",
+	       clock_state.error, apart);
+	for (i = 0; i < n_axes; i++)
+		printf(" %d", axes[i].last);
+	printf("\n");
+}
+
+/* Quick stop, before the last frame. */
+static void stop_drives(unsigned long n, struct timespec *next, uint64_t *app_time)
+{
+	int i;
+
+	if (failed)
+		status_words("a drive has left operation, all of them stop");
+	for (i = 0; i < STOP_CYCLES && (i < 10 || count(0x27) || count(0x07)); i++) {
+		wait_period(next, app_time, 0);
+		cycle(n + (unsigned long)i, *app_time, 1);
+	}
 }
 
 static void run(unsigned long cycles)
@@ -359,7 +406,7 @@ static void run(unsigned long cycles)
 
 	clock_gettime(CLOCK_MONOTONIC, &next);
 	app_time = ns(&next);
-	for (n = 0; !stop && (!cycles || n < cycles); n++) {
+	for (n = 0; !stop && !failed && (!cycles || n < cycles); n++) {
 		missed += wait_period(&next, &app_time, correct);
 		correct = cycle(n, app_time, 0);
 		report(n);
@@ -368,12 +415,9 @@ static void run(unsigned long cycles)
 		printf("ended without OP\n");
 	else
 		reached_op = 1;
-	for (i = 0; i < 10; i++) {	/* disable the drives before the last frame */
-		wait_period(&next, &app_time, 0);
-		cycle(n + 1 + (unsigned long)i, app_time, 1);
-	}
+	stop_drives(n, &next, &app_time);
 	printf("%lu cycles, %lu skipped\n", n, missed);
-	for (i = 0; i < AXES; i++)
+	for (i = 0; i < n_axes; i++)
 		printf("axis %d: from %d to %d\n", i, axes[i].low, axes[i].high);
 	if (follow && n)
 		printf("the reference clock runs %+.0f ppm faster than CLOCK_MONOTONIC\n",
@@ -388,13 +432,16 @@ int main(int argc, char **argv)
 	int i;
 
 	follow = argc > 1 && !strcmp(argv[1], "follow");
+	n_axes = argc == 3 || (argc > 3 && !strcmp(argv[3], "-")) ? 1 : AXES;
 	for (i = 2; i < argc && i <= 4; i++) {
+		if (i == 3 && n_axes == 1)
+			continue;
 		args[i - 2] = strtoul(argv[i], &end, 0);
 		if (end == argv[i] || *end || args[i - 2] > 0xffff)
 			break;
 	}
 	if (i < argc || (argc > 1 && !follow && strcmp(argv[1], "lead"))) {
-		fprintf(stderr, "usage: dc_motion [lead|follow [FIRST [SECOND [SECONDS]]]]\n");
+		fprintf(stderr, "usage: dc_motion [lead|follow [FIRST [SECOND|- [SECONDS]]]]\n");
 		return 2;
 	}
 	memset(&action, 0, sizeof(action));
@@ -402,7 +449,7 @@ int main(int argc, char **argv)
 	sigaction(SIGINT, &action, NULL);
 	sigaction(SIGTERM, &action, NULL);
 
-	if (setup((uint16_t)args[0], (uint16_t)args[1])) {
+	if (setup(args)) {
 		ecrt_release_master(master);
 		return 1;
 	}
@@ -410,5 +457,5 @@ int main(int argc, char **argv)
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
 	ecrt_release_master(master);	/* slaves go to PREOP */
-	return !reached_op;
+	return !reached_op || failed;
 }

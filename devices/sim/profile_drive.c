@@ -147,6 +147,9 @@ static enum drive_state next_state(const struct drive *d, u16 c)
 
 	if (d->state == FAULT)
 		return reset ? SWITCH_ON_DISABLED : FAULT;
+	/* the quick stop option code 0x605A is 2: standstill ends it */
+	if (d->state == QUICK_STOP && !d->vel)
+		return SWITCH_ON_DISABLED;
 	if (!(c & 0x02))
 		return SWITCH_ON_DISABLED;	/* disable voltage */
 	if (!(c & 0x04))			/* quick stop */
@@ -204,13 +207,16 @@ static void move(struct drive *d, u8 mode, u64 now)
 		steps = STEPS_MAX;
 	/* at rest without power there is nothing to compute */
 	if (d->state != ENABLED && !d->vel)
-		return;
+		steps = 0;
 	while (steps--) {
 		if (d->state == ENABLED && (mode == 8 || mode == 1))
 			step_position(d, pos);
 		else
 			step_velocity(d, d->state == ENABLED ? vel : 0);
 	}
+	/* less than a count a second is standstill */
+	if (d->state != ENABLED && d->vel > -(1 << FRAC) && d->vel < 1 << FRAC)
+		d->vel = 0;
 }
 
 /* filler entries of generic drives: inputs show what the outputs were */

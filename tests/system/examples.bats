@@ -140,6 +140,31 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "dc_motion: one drive" {
+	example dc_motion follow 4 - 4
+	wait "$app"
+	cat "$out"
+	[ "$(grep -c '^axis' "$out")" = 1 ]
+	awk '/^axis/ { exit !($NF >= 90000 && $NF <= 110000) }' "$out"
+	app=
+}
+
+@test "dc_motion: a fault while it moves stops both drives, and is not reset" {
+	example dc_motion follow 3 4
+	wait_for 60 grep -E 'axes at [0-9]{4}' "$out"
+	# any following error is a fault
+	ethercat download -p4 -t uint32 0x6065 0 1
+	rc=0
+	wait "$app" || rc=$?
+	cat "$out"
+	[ "$rc" = 1 ]
+	grep -E '^a drive has left operation, all of them stop: status words 0x[0-9a-f]{4} 0x..[04]8$' "$out"
+	[ $(($(ethercat upload -p3 -t uint16 0x6041 0 | cut -d ' ' -f 1) & 0x4f)) = $((0x40)) ]
+	[ $(($(ethercat upload -p4 -t uint16 0x6041 0 | cut -d ' ' -f 1) & 0x4f)) = $((0x08)) ]
+	ethercat download -p4 -t uint32 0x6065 0 0xffffffff
+	app=
+}
+
 # both axes to 100000 counts and back, in step
 moved() {
 	[ "$(awk '/^axis/ && $NF >= 90000 && $NF <= 110000' "$out" | wc -l)" = 2 ]

@@ -182,7 +182,7 @@ static void sim_app_pdo_position(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, pd_write(x, out, 8), 1);
 		KUNIT_EXPECT_EQ(test, status(x) & 0x6F, want[i] & 0x6F);
 	}
-	/* without voltage it is off, with a quick stop it stops and stays so */
+	/* without voltage it is off, with a quick stop as soon as it stands still */
 	out[0] = 0x0D;
 	pd_write(x, out, 8);
 	KUNIT_EXPECT_EQ(test, status(x) & 0x6F, 0x40);
@@ -193,6 +193,8 @@ static void sim_app_pdo_position(struct kunit *test)
 	out[0] = 0x0B;
 	pd_write(x, out, 8);
 	KUNIT_EXPECT_EQ(test, status(x) & 0x6F, 0x07);
+	pd_write(x, out, 8);
+	KUNIT_EXPECT_EQ(test, status(x) & 0x6F, 0x40);
 	out[0] = 0x0D;
 	pd_write(x, out, 8);
 	for (u32 i = 0; i < ARRAY_SIZE(steps); i++) {
