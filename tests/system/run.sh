@@ -16,7 +16,7 @@
 # EC_NIC=e1000|e1000e|igb: the segment of helpers.bash is at a network card of that model with
 # its native driver, not at the virtual device
 # EC_IOMMU=1: this card is behind an IOMMU
-# EC_BINDS: how often native.bats binds the card, 100 if it is not set
+# EC_BINDS: how often native.bats binds the card, 40 if it is not set
 # EC_CYCLES: of the files in long, a million if it is not set; EC_SEED: of the times of flaps.bats
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
 # EC_PLACES: of tests/vm/places.sh
