@@ -2446,8 +2446,8 @@ EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
  * @timeout: ms from ecrt_master_send() to the begin of the transfer; after this time the
  *	state is ERROR. 0 (initial): unlimited
  *
- * A request waits while the slave is absent, in INIT, or busy with another request. The
- * transfer has a timeout of 1 s per message.
+ * A request waits while the slave is absent, in INIT, or busy with another request or with a
+ * transfer of another program. The transfer has a timeout of 1 s per message.
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @req is NULL.

@@ -8,6 +8,8 @@
 #include <linux/sched/signal.h>
 #include "mailbox_int.h"
 
+#define EVER_NS	(U64_MAX - 1)	/* one more is a time as well */
+
 /* a caller that waits for protocols */
 struct claim {
 	struct list_head list;
@@ -81,6 +83,37 @@ static void admit(struct ec_mbox *mb)
 	}
 }
 
+static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *until)
+{
+	struct claim c = { .types = types, .task = current };
+	unsigned long flags;
+	int ret = 0;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (READ_ONCE(mb->stop->worker) == current)
+		list_add(&c.list, &mb->claims);
+	else
+		list_add_tail(&c.list, &mb->claims);
+	admit(mb);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	/* the lock below orders all else */
+	while (!READ_ONCE(c.got)) {
+		ret = ec_mbox_over(mb, until);
+		if (ret)
+			break;
+		ec_mbox_sleep(mb, &c.got, true, until);
+	}
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (c.got) {
+		ret = 0;
+	} else {
+		list_del(&c.list);
+		admit(mb);
+	}
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	return ret;
+}
+
 /**
  * ec_mbox_claim() - wait for one's turn
  * @mb: mailbox of the slave
@@ -95,35 +128,30 @@ static void admit(struct ec_mbox *mb)
 int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms)
 {
 	struct ec_mbox_until until = {
-		.ns = ms ? ktime_get_ns() + (u64)ms * NSEC_PER_MSEC : U64_MAX - 1,
+		.ns = ms ? ktime_get_ns() + (u64)ms * NSEC_PER_MSEC : EVER_NS,
 	};
-	struct claim c = { .types = types, .task = current };
-	unsigned long flags;
-	int ret = 0;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (READ_ONCE(mb->stop->worker) == current)
-		list_add(&c.list, &mb->claims);
-	else
-		list_add_tail(&c.list, &mb->claims);
-	admit(mb);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	/* the lock below orders all else */
-	while (!READ_ONCE(c.got)) {
-		ret = ec_mbox_over(mb, &until);
-		if (ret)
-			break;
-		ec_mbox_sleep(mb, &c.got, true, &until);
-	}
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (c.got) {
-		ret = 0;
-	} else {
-		list_del(&c.list);
-		admit(mb);
-	}
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	return ret;
+	return claim(mb, types, &until);
+}
+
+/**
+ * ec_mbox_claim_for() - wait for the turn of a transfer
+ * @mb: mailbox of the slave
+ * @type: enum ec_mbox_type
+ * @limit: of the transfer
+ *
+ * A protocol that is free is claimed even after @limit->begin_ns.
+ *
+ * Context: Process. May sleep.
+ * Return: as ec_mbox_claim(); -ECANCELED also for a transfer that is cancelled.
+ */
+int ec_mbox_claim_for(struct ec_mbox *mb, u8 type, const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_until until = {
+		.ns = limit->begin_ns ?: EVER_NS, .cancel = limit->cancel,
+	};
+
+	return claim(mb, BIT(type), &until);
 }
 
 /**

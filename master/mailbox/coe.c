@@ -45,7 +45,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_claim(mb, BIT(EC_MBOX_COE), 0);
+	ret = ec_mbox_claim_for(mb, EC_MBOX_COE, &req.limit);
 	if (ret)
 		goto out;
 	do {
@@ -210,7 +210,7 @@ int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbo
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_claim(mb, BIT(EC_MBOX_COE), 0);
+	ret = ec_mbox_claim_for(mb, EC_MBOX_COE, &l);
 	if (!ret) {
 		ret = ec_coe_ask(mb, info, ktime_get_ns() + INFO_MS * (u64)NSEC_PER_MSEC, &l, b);
 		ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));

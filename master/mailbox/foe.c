@@ -135,7 +135,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	}
 	if (f->write)
 		f->size = file->size;
-	ret = ec_mbox_claim(mb, BIT(EC_MBOX_FOE), 0);
+	ret = ec_mbox_claim_for(mb, EC_MBOX_FOE, &req.limit);
 	if (ret)
 		goto out;
 	do {

@@ -208,10 +208,12 @@ struct ec_mbox_buf {
  * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
 struct ec_mbox_limit {
+ * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
 	u32 timeout_ms;
 	const bool *cancel;
 };
 
+	u64 begin_ns;
 /**
  * struct ec_mbox_request - a message to the slave that has an answer
  * @type: enum ec_mbox_type
@@ -283,6 +285,7 @@ int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms);
 void ec_mbox_unclaim(struct ec_mbox *mb, u16 types);
 bool ec_mbox_is_claimed(struct ec_mbox *mb, u16 types);
 
+int ec_mbox_claim_for(struct ec_mbox *mb, u8 type, const struct ec_mbox_limit *limit);
 /* VoE: messages without a request */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,

@@ -40,7 +40,7 @@ static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 	if (ret >= 0) {
 		size_t len = ret;
 
-		ret = ec_mbox_claim(mb, BIT(EC_MBOX_SOE), 0);
+		ret = ec_mbox_claim_for(mb, EC_MBOX_SOE, &req.limit);
 		if (!ret) {
 			ret = ec_mbox_request(mb, &req, b, len);
 			ec_mbox_unclaim(mb, BIT(EC_MBOX_SOE));

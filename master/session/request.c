@@ -111,7 +111,9 @@ static void end_cancelled(struct ec_request *r)
 
 static bool expired(const struct ec_request *r, u64 now)
 {
-	return r->timeout_ms && now - r->since_ns > (u64)r->timeout_ms * NSEC_PER_MSEC;
+	u64 until = ec_request_begin_ns(r);
+
+	return until && now > until;
 }
 
 /*

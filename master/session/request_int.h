@@ -151,6 +151,12 @@ static inline bool ec_request_writes(const struct ec_request *r)
 	return r->op == EC_REQUEST_OP_WRITE || r->op == EC_REQUEST_OP_READWRITE;
 }
 
+/* Time (ktime) until which a request has to begin; 0: unlimited. */
+static inline u64 ec_request_begin_ns(const struct ec_request *r)
+{
+	return r->timeout_ms ? r->since_ns + (u64)r->timeout_ms * NSEC_PER_MSEC : 0;
+}
+
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
 void ec_request_run(struct ec_request *r, struct ec_slave *s);
 

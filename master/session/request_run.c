@@ -194,7 +194,7 @@ static void run_foe(struct ec_request *r, struct ec_slave *s, const struct ec_mb
  */
 void ec_request_run(struct ec_request *r, struct ec_slave *s)
 {
-	struct ec_mbox_limit limit = { .cancel = &r->stop };
+	struct ec_mbox_limit limit = { .begin_ns = ec_request_begin_ns(r), .cancel = &r->stop };
 
 	r->res = (struct ec_request_result){ .err = -EINVAL };
 	switch (r->kind) {
