@@ -189,7 +189,8 @@ static void wake_owner(struct ec_cycle *c)
 /* No more cycles; waiting callers return. */
 static void end_run(struct ec_cycle *c)
 {
-	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
+	/* pairs with ec_cycle_thread_ended() */
+	smp_store_release(&c->cycles->run, c->cycles->run + 1);
 	wake_owner(c);
 }
 
@@ -567,6 +568,21 @@ void ec_cycle_thread_stop(struct ec_cycle *c)
 		wake_owner(c);
 	free_thread(c->thread);
 	c->thread = NULL;
+}
+
+/**
+ * ec_cycle_thread_ended() - has a cycle run by the kernel stopped before its session?
+ * @c: active cycle
+ *
+ * The thread does nothing any more then.
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: whether it has; false when the application runs the cycle.
+ */
+bool ec_cycle_thread_ended(const struct ec_cycle *c)
+{
+	lockdep_assert_held(c->wanted->lock);
+	return c->thread && !(smp_load_acquire(&c->cycles->run) & 1);
 }
 
 /**

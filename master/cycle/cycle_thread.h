@@ -23,6 +23,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 void ec_cycle_thread_start(struct ec_cycle *c);
 struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c);
 void ec_cycle_thread_stop(struct ec_cycle *c);
+bool ec_cycle_thread_ended(const struct ec_cycle *c);
 int ec_cycle_thread_adopt(struct ec_cycle *c);
 void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size);
 __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner);

@@ -344,7 +344,7 @@ void ec_requests_kick(struct ec_session *s)
  *
  * Without a send of its own it counts them in mapped memory.
  *
- * Context: The thread that runs the cycle. RT-safe.
+ * Context: The thread that runs the cycle; when that has stopped, the monitor. RT-safe.
  */
 void ec_requests_notice(struct ec_cycle *c)
 {

@@ -112,7 +112,7 @@ struct ec_lane {
  * @sessions: of the master
  * @shared: mapped memory, with a reference
  * @lock: protects the requests; inside session lock
- * @starts: the area's, when a cycle of the kernel last looked
+ * @starts: the area's, as ec_requests_notice() last saw it
  * @kick: looks once
  * @watch: looks again and again while anything waits
  * @reqs: requests

@@ -4,6 +4,7 @@
 #include "../cycle/pll.h"
 #include "../cycle/cycle_thread.h"
 #include "../base/once64.h"
+#include "request.h"
 #include "session.h"
 #include "../bus/slave.h"
 
@@ -158,6 +159,8 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_dc_app_log(ss->dc);
 		ec_cycle_tell_room(&s->cycle);
 		ec_cycle_tell_stale(&s->cycle);
+		if (ec_cycle_thread_ended(&s->cycle))
+			ec_requests_notice(&s->cycle);
 		ec_session_fill_status(s);
 	}
 	mutex_unlock(&ss->lock);

@@ -135,11 +135,44 @@ static void cancel_in_cycle_of_kernel(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
+/* No cycle looks at the counter any more: the monitor does. */
+static void cancel_and_start_after_end_of_cycle(struct kunit *test)
+{
+	struct kapp *k = start(test);
+	ec_slave_config_t *absent = ecrt_master_slave_config(k->m, 0, 7, 1, 2);
+	ec_sdo_request_t *waits = ecrt_slave_config_create_sdo_request(absent, 0x1018, 4, 4);
+	ec_sdo_request_t *r = ecrt_slave_config_create_sdo_request(k->sc[0], 0x1018, 4, 4);
+	ec_cycle_state_t state;
+	u32 i;
+
+	KUNIT_ASSERT_NOT_NULL(test, waits);
+	KUNIT_ASSERT_NOT_NULL(test, r);
+	kapp_kernel_cycle(k, (ec_cycle_config_t){ .period_ns = NSEC_PER_MSEC,
+						  .stall = EC_CYCLE_STOP, .stall_cycles = 10 });
+	kapp_op(k);
+	msleep(50);
+	KUNIT_EXPECT_EQ(test, ecrt_master_cycle_state(k->m, &state), 0);
+	KUNIT_ASSERT_EQ(test, state.run, EC_CYCLE_STOPPED);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_read(r), 0);
+	for (i = 0; i < 1000 && ecrt_sdo_request_state(r) == EC_REQUEST_BUSY; i++)
+		usleep_range(1000, 1001);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_state(r), EC_REQUEST_SUCCESS);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_read(waits), 0);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_state(waits), EC_REQUEST_BUSY);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_cancel(waits), 0);
+	for (i = 0; i < 50 && ecrt_sdo_request_state(waits) == EC_REQUEST_BUSY; i++)
+		usleep_range(1000, 1001);
+	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_state(waits), EC_REQUEST_ERROR);
+	ecrt_release_master(k->m);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(cancel_of_waiting_request),
 	KUNIT_CASE(cancel_of_transfer_ends_it_at_slave),
 	KUNIT_CASE(cancel_of_idn),
 	KUNIT_CASE(cancel_in_cycle_of_kernel),
+	KUNIT_CASE(cancel_and_start_after_end_of_cycle),
 	{}
 };
 
