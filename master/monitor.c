@@ -403,7 +403,9 @@ static void maybe_scan(struct watch *w)
 	WRITE_ONCE(m->bus.scan_slaves, w->count);
 	/* a reader that sees the scan sees its numbers */
 	smp_wmb();
-	WRITE_ONCE(m->bus.scan_busy, true);
+	/* an application may have reserved the master just now */
+	if (!ec_bus_begin_scan(&m->bus))
+		return;
 	if (READ_ONCE(m->bus.rescan)) {
 		/*
 		 * Forget what is known, so that everything is read again; not while

@@ -22,6 +22,7 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	bus->links = links;
 	bus->ops = ops;
 	init_rwsem(&bus->topo);
+	spin_lock_init(&bus->scan_lock);
 	init_waitqueue_head(&bus->settled);
 	/* what one waits for is in another queue */
 	bus->workers = WORKERS;
@@ -130,10 +131,8 @@ static bool slaves_settled(struct ec_bus *bus)
 
 static bool settled(struct ec_bus *bus)
 {
-	if (READ_ONCE(bus->scan_busy) || READ_ONCE(bus->rescan) || !READ_ONCE(bus->looked))
-		return false;
 	/* a bus that answers is scanned first */
-	return slaves_settled(bus) && READ_ONCE(bus->n_slaves) == READ_ONCE(bus->responding);
+	return !ec_bus_scan_busy(bus) && READ_ONCE(bus->looked) && slaves_settled(bus);
 }
 
 /* @there takes a lock and may sleep, so the condition of the wait is the count of wake-ups. */
@@ -209,6 +208,45 @@ bool ec_bus_scan_busy(const struct ec_bus *bus)
 	smp_rmb();
 	return busy || READ_ONCE(bus->scan_busy) ||
 	       READ_ONCE(bus->n_slaves) != READ_ONCE(bus->responding);
+}
+
+/**
+ * ec_bus_begin_scan() - the monitor begins a scan, unless the slaves are frozen
+ * @bus: bus
+ *
+ * Context: The monitor. It clears @bus->scan_busy at the end.
+ * Return: whether the scan begins.
+ */
+bool ec_bus_begin_scan(struct ec_bus *bus)
+{
+	bool ok;
+
+	spin_lock(&bus->scan_lock);
+	ok = !bus->freeze;
+	if (ok)
+		WRITE_ONCE(bus->scan_busy, true);
+	spin_unlock(&bus->scan_lock);
+	return ok;
+}
+
+/**
+ * ec_bus_freeze() - let no scan begin
+ * @bus: bus
+ * @always: also during a scan
+ *
+ * Context: Process. @bus->freeze is cleared at the end.
+ * Return: false: a scan has begun or is requested, wait for its end.
+ */
+bool ec_bus_freeze(struct ec_bus *bus, bool always)
+{
+	bool ok;
+
+	spin_lock(&bus->scan_lock);
+	ok = always || !ec_bus_scan_busy(bus);
+	if (ok)
+		WRITE_ONCE(bus->freeze, true);
+	spin_unlock(&bus->scan_lock);
+	return ok;
 }
 
 /**

@@ -7,6 +7,7 @@
 #define EC_MASTER_BUS_H
 
 #include <linux/rwsem.h>
+#include <linux/spinlock.h>
 #include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "../base/base.h"
@@ -64,9 +65,11 @@ struct ec_bus {
 	bool looked;
 	/** @down: the computer reboots: no slave is brought beyond PREOP any more */
 	bool down;
-	/** @freeze: no scan while reserved and not active */
+	/** @scan_lock: no scan begins while an application reserves the master */
+	spinlock_t scan_lock;
+	/** @freeze: no scan while reserved and not active; set with @scan_lock held */
 	bool freeze;
-	/** @scan_busy: slaves are being scanned */
+	/** @scan_busy: slaves are being scanned; set with @scan_lock held */
 	bool scan_busy;
 	/** @scan_noted: the scan that begins now is an event already; the monitor's */
 	bool scan_noted;
@@ -129,6 +132,8 @@ int ec_bus_wait_scan(struct ec_bus *bus);
 int ec_bus_wait_slaves(struct ec_bus *bus);
 void ec_bus_wait_slave(struct ec_slave *slave);
 bool ec_bus_scan_busy(const struct ec_bus *bus);
+bool ec_bus_begin_scan(struct ec_bus *bus);
+bool ec_bus_freeze(struct ec_bus *bus, bool always);
 void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count);
 void ec_bus_rescan(struct ec_bus *bus);
 void ec_bus_settled(struct ec_bus *bus);

@@ -54,7 +54,8 @@ static void to_preop(struct ec_sessions *ss)
 	up_read(&ss->bus->topo);
 }
 
-static int begin(struct ec_sessions *ss, struct ec_session *s)
+/* -EAGAIN: a scan has begun since the wait for it, which has returned @waited. */
+static int begin(struct ec_sessions *ss, struct ec_session *s, int waited)
 {
 	int ret = 0;
 
@@ -65,9 +66,10 @@ static int begin(struct ec_sessions *ss, struct ec_session *s)
 		ss->next = (struct ec_next){ };
 		WRITE_ONCE(ss->candidate, s);
 		s->wanted.before = &ss->session->wanted;
+	} else if (!ec_bus_freeze(ss->bus, waited)) {
+		ret = -EAGAIN;
 	} else {
 		WRITE_ONCE(ss->session, s);
-		WRITE_ONCE(ss->bus->freeze, true);
 		to_preop(ss);
 	}
 	ec_sessions_unlock(ss);
@@ -167,7 +169,11 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 	RCU_INIT_POINTER(s->cycle.waiters, waiters);
 	note_process(s);
 	s->ref_config = EC_UAPI_NONE32;
-	ret = begin(ss, s);
+	while ((ret = begin(ss, s, ret)) == -EAGAIN) {
+		ret = ec_bus_wait_scan(ss->bus);
+		if (ret == -EINTR)
+			break;
+	}
 	if (ret) {
 		kvfree(s);
 		return ret;
@@ -327,9 +333,11 @@ static void inherit(struct ec_sessions *ss)
 
 	WRITE_ONCE(ss->candidate, NULL);
 	WRITE_ONCE(ss->session, s);
-	WRITE_ONCE(ss->bus->freeze, s != NULL);
-	if (!s)
+	if (!s) {
+		WRITE_ONCE(ss->bus->freeze, false);
 		return;
+	}
+	ec_bus_freeze(ss->bus, true);
 	s->wanted.before = NULL;
 	use_next(ss);
 	to_preop(ss);

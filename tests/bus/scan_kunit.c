@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The scan: who is on the bus, and what their EEPROMs say. */
+#include <linux/completion.h>
+#include <linux/kthread.h>
 #include <linux/slab.h>
 #include "bus.h"
 #include "master/boundary/ioctl.h"
@@ -212,6 +214,55 @@ static void scan_while_reserved(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
 }
 
+/* an application that reserves the master, and what it finds then */
+struct reservation {
+	struct bus *b;
+	struct completion done;
+	int ret;
+	bool busy;
+	u32 slaves;
+};
+
+static int reserve(void *arg)
+{
+	struct reservation *r = arg;
+
+	r->ret = ec_ioc(&r->b->app, EC_IOC_RESERVE, NULL);
+	r->busy = READ_ONCE(r->b->m->bus.scan_busy);
+	r->slaves = READ_ONCE(r->b->m->bus.n_slaves);
+	complete(&r->done);
+	return 0;
+}
+
+/* A scan that begins between the wait for scans and the reservation is waited for as well. */
+static void scan_before_reservation_is_waited_for(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	struct reservation r = { .b = b };
+	u32 i;
+
+	bus_idle(b);
+	init_completion(&r.done);
+	down_write(&b->m->bus.topo);
+	KUNIT_EXPECT_FALSE(test, IS_ERR(kthread_run(reserve, &r, "reserve")));
+	/* it is in its wait, whose result it gets without the session lock */
+	msleep(5);
+	KUNIT_EXPECT_TRUE(test, mutex_trylock(&b->m->sessions.lock));
+	up_write(&b->m->bus.topo);
+	msleep(5);
+	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
+	ec_bus_rescan(&b->m->bus);
+	for (i = 0; i < 1000 && !READ_ONCE(b->m->bus.scan_busy); i++)
+		usleep_range(100, 101);
+	KUNIT_EXPECT_TRUE(test, READ_ONCE(b->m->bus.scan_busy));
+	mutex_unlock(&b->m->sessions.lock);
+	wait_for_completion(&r.done);
+	KUNIT_EXPECT_EQ(test, r.ret, 0);
+	KUNIT_EXPECT_FALSE(test, r.busy);
+	KUNIT_EXPECT_EQ(test, r.slaves, (u32)ARRAY_SIZE(bench));
+	ec_session_end(&b->m->sessions, &b->app);
+}
+
 /* Module parameters that cannot be meant: no master at all, and no leak. */
 static void scan_device_names(struct kunit *test)
 {
@@ -234,6 +285,7 @@ static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_device_names),
 	KUNIT_CASE(scan_nothing),
 	KUNIT_CASE(scan_while_reserved),
+	KUNIT_CASE(scan_before_reservation_is_waited_for),
 	KUNIT_CASE(scan_bench_identity),
 	KUNIT_CASE(scan_bench_pdos),
 	KUNIT_CASE(scan_bench_topology),
