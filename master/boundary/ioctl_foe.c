@@ -71,7 +71,7 @@ static int failed(struct ec_call *call, const struct ec_foe *f, int ret)
 	switch (ret) {
 	case -EREMOTEIO:
 		return refused(call, f);
-	case -EALREADY:
+	case -EINPROGRESS:
 		return ec_refuse(call, -EBUSY,
 				 "another file of slave %u is transferred just now; try again later",
 				 i->position);

@@ -110,8 +110,8 @@ static void end_at_slave(struct transfer *t, struct ec_mbox_buf *b)
  * used. A transfer that ends early is ended at the slave as well.
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; -EREMOTEIO when the slave refuses, with @f->error; -EALREADY while another file of
- * this slave is transferred; -ENOBUFS for a file larger than there is room; -EPROTONOSUPPORT
+ * Return: 0; -EREMOTEIO when the slave refuses, with @f->error; -EINPROGRESS while another file
+ * of this slave is transferred; -ENOBUFS for a file larger than there is room; -EPROTONOSUPPORT
  * without FoE; -EMSGSIZE for a mailbox that is too small; -EAGAIN in INIT; -EBADMSG for a wrong
  * answer; -ETIMEDOUT; -ENOTRECOVERABLE when a lost frame ends a write; -EINTR; -ECANCELED;
  * -ENOMEM; what @file->copy returned.
@@ -131,7 +131,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 		return PTR_ERR(b);
 	if (test_and_set_bit(EC_MBOX_FILE, &mb->flags)) {
 		kfree(b);
-		return -EALREADY;
+		return -EINPROGRESS;
 	}
 	if (f->write)
 		f->size = file->size;

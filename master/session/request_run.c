@@ -180,7 +180,7 @@ static void run_foe(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 	};
 	int ret = ec_foe_transfer(&s->mbox, &f, &file, l);
 
-	r->res.err = ret == -EREMOTEIO ? -EIO : ret == -EALREADY ? -EBUSY : ret;
+	r->res.err = ret == -EREMOTEIO ? -EIO : ret == -EINPROGRESS ? -EBUSY : ret;
 	r->res.got = ret || f.write ? 0 : f.size;
 	r->res.code = f.error;
 }

@@ -258,7 +258,7 @@ static void foe_second_writer(struct kunit *test)
 	t = kthread_run(write_one, &w, "foe_writer");
 	KUNIT_ASSERT_FALSE(test, IS_ERR(t));
 	usleep_range(20000, 20001);
-	KUNIT_EXPECT_EQ(test, put(w.s, x, "data", 10, &f), -EALREADY);
+	KUNIT_EXPECT_EQ(test, put(w.s, x, "data", 10, &f), -EINPROGRESS);
 	/* another slave has a file of its own */
 	KUNIT_EXPECT_EQ(test, put(bus_slave(b, 1), x, "data", 10, &f), 0);
 	wait_for_completion(&w.done);

@@ -326,9 +326,30 @@ static void kapi_foe_request_session_ends(struct kunit *test)
 	ecrt_release_master(k->m);
 }
 
+/* The slave is at work on another request: no other file of this master. */
+static void kapi_foe_slave_at_work_is_no_other_file(struct kunit *test)
+{
+	struct kapp *k = start(test);
+	ec_foe_request_t *r = file(k, 0, "data", SMALLEST);
+	u8 data[SMALLEST] = { 0 };
+	char why[256];
+	u32 error;
+
+	kapp_op(k);
+	bus_fault(k->b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_ERROR, EC_MBOX_ERR_IN_WORK);
+	KUNIT_EXPECT_EQ(test, writes(k, r, data, SMALLEST), -EALREADY);
+	ecrt_master_deactivate(k->m);
+	KUNIT_EXPECT_EQ(test, ecrt_master_foe_write(k->m, 0, "data", 0, data, 1, &error, 0),
+			-EALREADY);
+	KUNIT_EXPECT_GT(test, ecrt_master_reason(k->m, why, sizeof(why)), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(why, "mailbox error reply 0x0009"), "%s", why);
+	ecrt_release_master(k->m);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_foe_file_written_and_read),
 	KUNIT_CASE(kapi_foe_refusal_has_code),
+	KUNIT_CASE(kapi_foe_slave_at_work_is_no_other_file),
 	KUNIT_CASE(kapi_foe_request_writes_and_reads),
 	KUNIT_CASE(kapi_foe_request_errors),
 	KUNIT_CASE(kapi_foe_request_beside_others),
