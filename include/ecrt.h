@@ -551,10 +551,10 @@ EC_PUBLIC_API int ecrt_master_get_pdo_entry(ec_master_t *master,
  * written again by itself; %-EAGAIN slave in INIT, where its mailbox is off; %-EPROTO,
  * %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too small or larger
  * than a datagram; %-ECANCELED the slave was disconnected (while it is being
- * configured the call waits); %-EINTR; %-ENOMEM; for a mailbox error reply of
- * the slave %-EBADE (code 1), %-EPFNOSUPPORT (2), %-ECHRNG (3), %-EBADRQC (4),
- * %-EBADR (5), %-ENODATA (6), %-EXFULL (7), %-EDOM (8), %-EALREADY (9) or
- * %-ECOMM (any other code).
+ * configured the call waits); %-ENODEV the master has no device, %-ENETDOWN no
+ * link; %-EINTR; %-ENOMEM; for a mailbox error reply of the slave %-EBADE (code
+ * 1), %-EPFNOSUPPORT (2), %-ECHRNG (3), %-EBADRQC (4), %-EBADR (5), %-ENODATA
+ * (6), %-EXFULL (7), %-EDOM (8), %-EALREADY (9) or %-ECOMM (any other code).
  */
 EC_PUBLIC_API int ecrt_master_sdo_download(ec_master_t *master,
 		uint16_t slave_position, uint16_t index, uint8_t subindex,
@@ -617,7 +617,9 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
  * large; %-ETIMEDOUT no reply; %-EAGAIN slave in INIT; %-EBADMSG an invalid
  * reply; %-ECANCELED the slave was disconnected (while it is being configured the
- * call waits); %-EINTR; %-ENOMEM.
+ * call waits); %-ENODEV the master has no device, %-ENETDOWN no link; %-EINTR;
+ * %-ENOMEM; %-ENOTRECOVERABLE and a mailbox error reply as in
+ * ecrt_master_sdo_download().
  */
 EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
@@ -637,7 +639,7 @@ EC_PUBLIC_API int ecrt_master_write_idn(ec_master_t *master,
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-ENOBUFS larger than @target_size or than 65536 bytes, nothing is
- * copied; else as ecrt_master_write_idn().
+ * copied; else as ecrt_master_write_idn(), without %-ENOTRECOVERABLE.
  */
 EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
@@ -1410,8 +1412,8 @@ EC_PUBLIC_API int ecrt_master_sdo_info_forget(ec_master_t *master,
  * arguments; %-ENOBUFS larger than @target_size; %-EBUSY another file of this slave is being
  * transferred; %-EPROTONOSUPPORT slave without FoE; %-ETIMEDOUT no reply, or 60 s busy without
  * progress; %-EAGAIN slave in INIT; %-EBADMSG an invalid reply; %-EMSGSIZE a mailbox that is too
- * small; %-ECANCELED the slave was disconnected; %-EINTR; %-ENOMEM; a mailbox error reply as in
- * ecrt_master_sdo_download().
+ * small; %-ECANCELED the slave was disconnected; %-ENODEV the master has no device, %-ENETDOWN no
+ * link; %-EINTR; %-ENOMEM; a mailbox error reply as in ecrt_master_sdo_download().
  */
 EC_PUBLIC_API int ecrt_master_foe_read(ec_master_t *master,
 		uint16_t slave_position, const char *file_name,
