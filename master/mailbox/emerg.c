@@ -52,14 +52,15 @@ void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 
 static void keep_last(struct ec_mbox *mb, const u8 *message)
 {
-	struct ec_emergency *e = &mb->last[mb->n_last % EC_EMERGENCIES];
+	struct ec_emergency e = {
+		.time_ns = ktime_get_real_ns(), .code = get_unaligned_le16(message),
+		.error_register = message[2],
+	};
 
-	lockdep_assert_held(&mb->unasked_lock);
-	mb->n_last++;
-	e->time_ns = ktime_get_real_ns();
-	e->code = get_unaligned_le16(message);
-	e->error_register = message[2];
-	memcpy(e->data, message + 3, sizeof(e->data));
+	memcpy(e.data, message + 3, sizeof(e.data));
+	raw_spin_lock(&mb->last_lock);
+	mb->last[mb->n_last++ % EC_EMERGENCIES] = e;
+	raw_spin_unlock(&mb->last_lock);
 }
 
 /**
@@ -68,6 +69,8 @@ static void keep_last(struct ec_mbox *mb, const u8 *message)
  * @entry: result, EC_EMERGENCIES of them, the oldest first
  * @total: result: emergencies since the slave was found
  *
+ * Readers of the master call this: no lock of the mailbox but one that is held for a copy alone.
+ *
  * Context: Process.
  * Return: how many are in @entry.
  */
@@ -75,12 +78,12 @@ unsigned int ec_emerg_last(struct ec_mbox *mb, struct ec_emergency *entry, u32 *
 {
 	u32 i, n;
 
-	spin_lock(&mb->unasked_lock);
+	raw_spin_lock(&mb->last_lock);
 	*total = mb->n_last;
 	n = min_t(u32, *total, EC_EMERGENCIES);
 	for (i = 0; i < n; i++)
 		entry[i] = mb->last[(*total - n + i) % EC_EMERGENCIES];
-	spin_unlock(&mb->unasked_lock);
+	raw_spin_unlock(&mb->last_lock);
 	return n;
 }
 
@@ -95,8 +98,8 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 {
 	struct ec_emerg *e;
 
-	spin_lock(&mb->unasked_lock);
 	keep_last(mb, message);
+	spin_lock(&mb->unasked_lock);
 	e = mb->emerg;
 	if (!e)
 		goto out;

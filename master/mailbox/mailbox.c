@@ -23,6 +23,7 @@ void ec_mbox_init(struct ec_mbox *mb)
 	INIT_LIST_HEAD(&mb->users);
 	INIT_LIST_HEAD(&mb->claims);
 	spin_lock_init(&mb->unasked_lock);
+	raw_spin_lock_init(&mb->last_lock);
 	INIT_LIST_HEAD(&mb->kept);
 }
 

@@ -180,16 +180,19 @@ struct ec_mbox {
 	spinlock_t unasked_lock;
 	/** @emerg: where emergencies go, NULL: only to the log */
 	struct ec_emerg *emerg;
-	/** @last: the last emergencies, entry n of them at n % EC_EMERGENCIES */
-	struct ec_emergency last[EC_EMERGENCIES];
-	/** @n_last: emergencies so far */
-	u32 n_last;
 	/** @kept: VoE messages, the oldest first */
 	struct list_head kept;
 	/** @n_kept: entries in @kept */
 	unsigned int n_kept;
 	/** @keep_voe: the application has VoE handlers */
 	bool keep_voe;
+
+	/** @last_lock: protects the members below, for one copy of them */
+	raw_spinlock_t last_lock;
+	/** @last: the last emergencies, entry n of them at n % EC_EMERGENCIES */
+	struct ec_emergency last[EC_EMERGENCIES];
+	/** @n_last: emergencies so far */
+	u32 n_last;
 };
 
 /**
@@ -205,15 +208,15 @@ struct ec_mbox_buf {
 /**
  * struct ec_mbox_limit - when a transfer has to give up
  * @timeout_ms: per message, 0: the protocol's default
+ * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
  * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
 struct ec_mbox_limit {
- * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
 	u32 timeout_ms;
+	u64 begin_ns;
 	const bool *cancel;
 };
 
-	u64 begin_ns;
 /**
  * struct ec_mbox_request - a message to the slave that has an answer
  * @type: enum ec_mbox_type
@@ -282,10 +285,10 @@ bool ec_mbox_fetch(struct ec_mbox *mb);
 
 /* claim.c */
 int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms);
+int ec_mbox_claim_for(struct ec_mbox *mb, u8 type, const struct ec_mbox_limit *limit);
 void ec_mbox_unclaim(struct ec_mbox *mb, u16 types);
 bool ec_mbox_is_claimed(struct ec_mbox *mb, u16 types);
 
-int ec_mbox_claim_for(struct ec_mbox *mb, u8 type, const struct ec_mbox_limit *limit);
 /* VoE: messages without a request */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on);
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,

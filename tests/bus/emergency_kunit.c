@@ -88,6 +88,22 @@ static void emergency_list(struct kunit *test)
 	}
 }
 
+/*
+ * Readers of the list take no lock that the mailbox holds for longer than a copy: with lockdep
+ * (run.sh --debug) a lock taken twice is a failure.
+ */
+static void emergency_list_read_without_lock_of_mailbox(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_mbox *mb = &bus_slave(b, DRIVE)->mbox;
+	struct ec_emergency e[EC_EMERGENCIES];
+	u32 total;
+
+	spin_lock(&mb->unasked_lock);
+	KUNIT_EXPECT_EQ(test, ec_emerg_last(mb, e, &total), 0u);
+	spin_unlock(&mb->unasked_lock);
+}
+
 /* emergencies of many slaves beside a cycle */
 struct storm {
 	struct ec_app *app[MANY];
@@ -211,6 +227,7 @@ static void emergency_flood(struct kunit *test)
 static struct kunit_case emergency_cases[] = {
 	KUNIT_CASE(emergency_in_each_state),
 	KUNIT_CASE(emergency_list),
+	KUNIT_CASE(emergency_list_read_without_lock_of_mailbox),
 	KUNIT_CASE(emergency_in_op),
 	KUNIT_CASE(emergency_strict),
 	KUNIT_CASE(emergency_unshown),
