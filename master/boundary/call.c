@@ -2,6 +2,7 @@
 /* Commands: lookup, locks and buffers by the table, in one place for all handlers. */
 #include <linux/mm.h>
 #include <linux/nospec.h>
+#include <linux/sched/signal.h>
 #include <linux/uaccess.h>
 #include "call.h"
 #include "../base/limits.h"
@@ -184,6 +185,9 @@ static int with_show(struct ec_call *call, const struct ec_ioctl *op)
 		ret = (call->slave ? 0 : show_session(call, op)) ?: op->fn(call);
 		if (call->showing)
 			ec_show_end(&call->master->base->show);
+		/* changes may come one after the other, and no wait looks at signals then */
+		if (ret == -EAGAIN && signal_pending(current))
+			ret = -ERESTARTSYS;
 	} while (ret == -EAGAIN);
 	return ret;
 }

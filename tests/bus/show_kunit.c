@@ -3,8 +3,12 @@
  * Readers that pause. Here is one CPU only, so the part of a changer on another CPU
  * that waits for a section is played by the case itself.
  */
+#include <linux/delay.h>
+#include <linux/kthread.h>
+#include <linux/sched/signal.h>
 #include <linux/workqueue.h>
 #include "bus.h"
+#include "master/boundary/call.h"
 #include "master/boundary/ioctl.h"
 #include "master/config/why.h"
 
@@ -109,11 +113,53 @@ static void show_slave_takes_no_alias_from_caller(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, i.alias_group, 0);
 }
 
+struct reader {
+	struct bus *b;
+	u32 looks;
+};
+
+static struct reader *reader;
+
+/* as if each look met a change that is over at once; a signal comes with the third */
+static int meet_change(struct ec_call *call)
+{
+	if (++reader->looks == 3)
+		send_sig(SIGUSR1, current, 1);
+	return reader->looks < 100 ? -EAGAIN : 0;
+}
+
+static int read_on(void *arg)
+{
+	static const struct ec_ioctl op = { .fn = meet_change, .class = EC_CLASS_SHOW_SLAVE };
+	u16 position = 0;
+
+	allow_signal(SIGUSR1);
+	return ec_call_run(&reader->b->app, &op, &position, false);
+}
+
+/* Changes one after the other do not keep a reader that has got a signal. */
+static void show_ends_on_signal_between_changes(struct kunit *test)
+{
+	struct reader r = { .b = ready(test) };
+	struct task_struct *t;
+
+	reader = &r;
+	t = kthread_create(read_on, NULL, "reader");
+	KUNIT_ASSERT_FALSE(test, IS_ERR(t));
+	get_task_struct(t);
+	wake_up_process(t);
+	msleep(20);
+	KUNIT_EXPECT_EQ(test, kthread_stop(t), -ERESTARTSYS);
+	put_task_struct(t);
+	KUNIT_EXPECT_EQ(test, r.looks, 3u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(show_pause_reports_change_that_waited),
 	KUNIT_CASE(show_pause_goes_on_without_change),
 	KUNIT_CASE(show_many_configs_in_pieces),
 	KUNIT_CASE(show_slave_takes_no_alias_from_caller),
+	KUNIT_CASE(show_ends_on_signal_between_changes),
 	{}
 };
 
