@@ -69,7 +69,7 @@ static void keep_last(struct ec_mbox *mb, const u8 *message)
  * @entry: result, EC_EMERGENCIES of them, the oldest first
  * @total: result: emergencies since the slave was found
  *
- * Readers of the master call this: no lock of the mailbox but one that is held for a copy alone.
+ * Readers of the master call this: the lock that it takes is for copies of the list alone.
  *
  * Context: Process.
  * Return: how many are in @entry.
