@@ -324,6 +324,19 @@ own_rules_removed() { [ "$(ls "$rules")" = 59-ethercat-by-hand.rules ] && rm -r 
 t "it removes rules of 'ethercat device bind --boot', and no other" own_rules_removed
 t "it leaves no file" nothing_left
 
+# the linker's cache has the library only after ldconfig, which is in /sbin and may be missing
+lib_make() { make -s -C lib O="$tmp/lib" CFLAGS="$flags" prefix="$tmp/here" "$@"; }
+ldconfig_runs() {	# HOW OFTEN MAKE-ARGUMENTS
+	mkdir -p "$tmp/fake" && printf '#!/bin/sh\necho >>"%s"\n' "$tmp/ldconfig.log" >"$tmp/fake/ldconfig" &&
+		chmod +x "$tmp/fake/ldconfig" && : >"$tmp/ldconfig.log" &&
+		PATH=$tmp/fake:$PATH lib_make "${@:2}" && [ "$(wc -l <"$tmp/ldconfig.log")" = "$1" ]
+}
+t "installing the library refreshes the linker's cache" ldconfig_runs 1 install
+t "removing it does as well" ldconfig_runs 1 uninstall
+t "with DESTDIR= the cache remains" ldconfig_runs 0 install DESTDIR="$tmp/there"
+t "a system without ldconfig has no cache" lib_make LDCONFIG=no-such-ldconfig install
+t "without root the installation goes on" lib_make LDCONFIG=false install
+
 # --- documentation ---------------------------------------------------------------
 t "make doc builds HTML without a warning" make -s KDIR="$KDIR" DOCDIR="$tmp/doc" doc
 t "it has the reference of ecrt.h" grep -q c.ecrt_master_activate "$tmp/doc/html/api.html"
