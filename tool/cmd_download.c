@@ -5,13 +5,27 @@
 #include "out.h"
 #include "sdo.h"
 
-static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a, u8 *data,
-		    size_t size)
+static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a,
+		    const struct ec_type *type, const char *text)
 {
 	struct ec_ioc_slave s;
+	size_t size;
+	u8 *data;
+	int ret;
 
-	if (dev_select_single(d, t, &s) || sdo_download(d, s.position, a, data, size))
+	if (dev_select_single(d, t, &s))
 		return 1;
+	if (!type)
+		type = sdo_described_type(d, &s, a);
+	if (!type)
+		return usage_error("the data type of %s is not known; give it with --type",
+				   a->text);
+	if (io_value(type, text, &data, &size))
+		return 1;
+	ret = sdo_download(d, s.position, a, data, size);
+	free(data);
+	if (ret)
+		return ret;
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	sdo_addr_out(a);
@@ -22,26 +36,23 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 static int run(struct tool *t, int argc, char **argv)
 {
 	const char *sub = argc > 2 ? argv[1] : NULL, *text = argv[argc - 1];
-	const struct ec_type *type;
+	const struct ec_type *type = NULL;
 	struct sdo_addr a;
 	struct dev d;
-	size_t size;
-	u8 *data;
 	int ret;
 
-	if (sdo_addr_parse(&a, argv[0], sub))
+	if (sdo_addr_parse(&a, argv[0], sub) || (t->type && io_type(t->type, &type)))
 		return 1;
-	if (!t->type && !a.complete)
-		return usage_error("the data type of %s is not known; give it with --type", a.text);
-	if (io_type(t->type ? t->type : "octet_string", &type) ||
-	    io_value(type, text, &data, &size))
+	/* a number behind a forgotten subindex is not written as text */
+	if (!type && a.complete && strcmp(text, "-"))
+		return usage_error("without a subindex all of %s is written: give the subindex, or --type of VALUE",
+				   a.text);
+	if (!type && a.complete)
+		type = ec_type_by_code(EC_TYPE_OCTET_STRING);
+	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = dev_open_single(&d, t, true);
-	if (!ret) {
-		ret = download(t, &d, &a, data, size);
-		dev_close(&d);
-	}
-	free(data);
+	ret = download(t, &d, &a, type, text);
+	dev_close(&d);
 	return ret;
 }
 
@@ -53,9 +64,11 @@ const struct cmd cmd_download = {
 	.summary = "Write an SDO to a slave",
 	.help = "INDEX := { 0 to 0xffff | INDEX:HH }     HH: subindex, two hex digits\n"
 		"SUBINDEX := { 0 to 0xff }\n"
-		"VALUE := { a value of the type given by --type | - for stdin }\n"
-		"Without a subindex the whole object is written (complete access), by default as\n"
-		"octet_string. Negative numbers need no '--' before them.\n",
+		"VALUE := { a value of the type of the object | - for stdin }\n"
+		"Without a subindex the whole object is written (complete access); VALUE needs --type\n"
+		"then, stdin is written as it is. With a subindex and without --type the type is that\n"
+		"of the slave's dictionary, which costs one more transfer; a slave that describes no\n"
+		"objects needs --type. Negative numbers need no '--' before them.\n",
 	.json = "master, slave, index, subindex, complete_access, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,

@@ -5,7 +5,7 @@
 #include "sdo.h"
 
 /*
- * Without a dictionary: three objects are strings by their definition, the
+ * Not described by the slave: three objects are strings by their definition, the
  * rest is an unsigned number if its size is one's.
  */
 static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
@@ -28,6 +28,15 @@ static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
 	}
 }
 
+/* NULL where the dictionary contradicts the data */
+static const struct ec_type *described(struct dev *d, const struct ec_ioc_slave *s,
+				       const struct sdo_addr *a, size_t size)
+{
+	const struct ec_type *type = sdo_described_type(d, s, a);
+
+	return type && (!value_bytes(type) || value_bytes(type) == size) ? type : NULL;
+}
+
 static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		  const struct ec_type *type)
 {
@@ -41,6 +50,8 @@ static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	sdo_addr_out(a);
+	if (!type)
+		type = described(d, &s, a, size);
 	out_bool("type_guessed", !type, NULL);
 	if (!type)
 		type = guess(a, size);
@@ -73,9 +84,12 @@ const struct cmd cmd_upload = {
 	.help = "INDEX := { 0 to 0xffff | INDEX:HH }     HH: subindex, two hex digits\n"
 		"SUBINDEX := { 0 to 0xff }\n"
 		"Without a subindex the whole object is read (complete access), by default as\n"
-		"octet_string. Without --type 0x1008 to 0x100a are strings; other data of 1, 2, 4\n"
-		"or 8 bytes are shown as unsigned numbers and the rest as hex bytes.\n",
-	.json = "master, slave, index, subindex, complete_access, type_guessed, type, size_bytes,\n"
+		"octet_string. With a subindex and without --type the type is that of the slave's\n"
+		"dictionary, which costs one more transfer. If the slave describes no objects, 0x1008\n"
+		"to 0x100a are strings; other data of 1, 2, 4 or 8 bytes are shown as unsigned numbers\n"
+		"and the rest as hex bytes.\n",
+	.json = "master, slave, index, subindex, complete_access, type_guessed (not from the\n"
+		"dictionary or --type), type, size_bytes,\n"
 		"value (not for bytes without a value form), data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,

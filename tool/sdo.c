@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../master/wire/sdoinfo.h"
+#include "../master/wire/sii.h"
 #include "out.h"
 
 #define ROOM	(64u << 10)	/* the largest object the kernel transfers */
@@ -59,6 +61,36 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
 				 d->master, s->position, verb, a->text);
 	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, s->position, verb,
 			a->text);
+}
+
+/**
+ * sdo_described_type() - read the data type of an entry from the dictionary of its slave
+ * @d: master, open for writing
+ * @s: slave
+ * @a: entry
+ *
+ * A slave whose EEPROM announces no SDO information gets no request: it might not answer.
+ *
+ * Return: type, or NULL without an error message: complete access, or the slave or this command
+ * has no type for it.
+ */
+const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slave *s,
+					 const struct sdo_addr *a)
+{
+	u8 *buf = malloc(ROOM);
+	struct ec_ioc_sdo_info i = {
+		.position = s->position, .index = a->index, .subindex = a->sub,
+		.what = EC_SDO_INFO_ENTRY, .size = ROOM, .data = (uintptr_t)buf,
+	};
+	const struct ec_type *type = NULL;
+	struct ec_od_entry e;
+
+	if (buf && !a->complete && s->mbox_protocols & EC_SII_PROTO_COE &&
+	    s->coe_details & EC_SII_COE_SDO_INFO && !dev_ioctl(d, EC_IOC_SDO_INFO, &i) &&
+	    !ec_od_entry_decode(buf, min(i.size, (u32)ROOM), &e))
+		type = ec_type_by_code(e.type);
+	free(buf);
+	return type;
 }
 
 /* @data is to be freed */

@@ -235,7 +235,8 @@ END
 	[ "$(log_of download -p2 -t raw 0x2001 0 "0x12 0x34")" = "sdo 2 0x2001:00 1234" ]
 	[ "$(log_of download -p2 -t int24 0x2001 0 -2)" = "sdo 2 0x2001:00 feffff" ]
 	[ "$(log_of download -p2 -t sm16 0x2001 0 -1)" = "sdo 2 0x2001:00 0180" ]
-	[ "$(log_of download -p2 0x2001 abc)" = "sdo 2 0x2001:00 C 616263" ]
+	[ "$(log_of download -p2 -t string 0x2001 abc)" = "sdo 2 0x2001:00 C 616263" ]
+	[ "$(printf abc | log_of download -p2 0x2001 -)" = "sdo 2 0x2001:00 C 616263" ]
 	[ "$(log_of sdo_write -p2 -t uint8 0x2001:0a 7)" = "sdo 2 0x2001:0a 07" ]
 	[ "$(printf 'a b\nc\0' | log_of download -p2 -t octet_string 0x2001 0 -)" = \
 		"sdo 2 0x2001:00 6120620a6300" ]
@@ -249,6 +250,40 @@ END
 	[[ $output == *"aborted with code 0x06010002"* ]]
 	run ethercat download -p2 -t uint8 0x2001 0 - </dev/null
 	[ "$status" -eq 1 ]
+}
+
+@test "download without subindex and type writes nothing" {
+	run log_of download -p2 0x1010 0x65766173
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat download: without a subindex all of 0x1010 is written: give the subindex, or --type of VALUE"$'\n'"Try 'ethercat download --help'." ]
+	[ ! -s "$BATS_TEST_TMPDIR/log" ]
+}
+
+@test "upload and download take the type of the slave's dictionary" {
+	[ "$(out upload -p2 0x6060 0)" = "0xff -1" ]
+	out upload -j -p2 0x6060 0 | json 'd["type"] == "int8" and not d["type_guessed"]'
+	[ "$(log_of download -p2 0x6060 0 -1)" = "sdo 2 0x6060:00 ff" ]
+	run ethercat download -p2 0x6060 0 200
+	[[ $output == *"invalid value '200' for type int8"* ]]
+	# the entry is refused or of a type without name, or has another size than its value
+	out upload -j -p2 0x6041 0 | json 'd["type"] == "uint16" and d["type_guessed"]'
+	out upload -j -p2 0x1018 2 | json 'd["type"] == "raw" and d["type_guessed"]'
+	for c in "0x6041 0 1" "0x5001 0 1"; do
+		run ethercat download -p2 $c
+		[ "$status" -eq 1 ]
+		[[ $output == *"the data type of 0x"*" is not known; give it with --type"* ]]
+	done
+	# one more transfer, and none where the EEPROM announces no SDO information
+	transfers() {
+		FAKE_COUNT=$BATS_TEST_TMPDIR/n out "$@" >/dev/null
+		cat "$BATS_TEST_TMPDIR/n"
+	}
+	[ "$(transfers upload -p2 0x6060 0)" = $(($(transfers upload -p2 -tint8 0x6060 0) + 1)) ]
+	[ "$(transfers upload -p1 0x6060 0)" = "$(transfers upload -p1 -tint8 0x6060 0)" ]
+	[ "$(out upload -p1 0x6060 0)" = "0xff 255" ]
+	out upload -j -p1 0x6060 0 | json 'd["type_guessed"]'
+	run ethercat download -p1 0x6060 0 1
+	[ "$output" = "ethercat download: the data type of 0x6060:00 is not known; give it with --type"$'\n'"Try 'ethercat download --help'." ]
 }
 
 @test "reg_rdwr writes a register and prints its old content" {
