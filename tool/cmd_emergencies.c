@@ -7,6 +7,11 @@
 #include "dev.h"
 #include "out.h"
 
+struct found {
+	bool any;		/* emergencies on this master */
+	bool narrowed;		/* by -a or -p */
+};
+
 static void entry(u16 position, const struct ec_emergency *e)
 {
 	const time_t s = (time_t)(e->time_ns / 1000000000);
@@ -40,7 +45,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 	struct ec_ioc_emergencies i = { .position = s->position };
 	int err = dev_ioctl(d, EC_IOC_EMERGENCIES, &i);
 	unsigned int n = min(i.count, (u16)EC_EMERGENCIES);
-	bool *any = w->ctx;
+	struct found *found = w->ctx;
 
 	(void)t, (void)several;
 	if (err)
@@ -56,25 +61,26 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		entry(s->position, &i.entry[k]);
 	out_end();
 	out_end();
-	*any |= n;
+	found->any |= n;
 	return 0;
 }
+
 static int end(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected)
 {
-	bool *any = w->ctx;
+	struct found *found = w->ctx;
 
-	(void)d, (void)taken, (void)selected;
-	if (!*any)
+	(void)d, (void)taken;
+	if (!found->any && (selected || !found->narrowed))
 		out_text("None.\n");
-	*any = false;
+	found->any = false;
 	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	bool any = false;
+	struct found found = { .narrowed = !list_all(&t->aliases) || !list_all(&t->positions) };
 	const struct slave_walk w = {
-		.title = true, .takes = has_coe, .slave = slave, .end = end, .ctx = &any,
+		.title = true, .takes = has_coe, .slave = slave, .end = end, .ctx = &found,
 	};
 
 	(void)argc, (void)argv;

@@ -141,6 +141,7 @@ struct count {
 	size_t faults;
 	size_t warnings;
 	size_t elsewhere;
+	bool nothing;		/* is selected here */
 };
 
 static void checked(const struct why *w)
@@ -163,10 +164,16 @@ static void checked(const struct why *w)
 /* Last: what was checked, so that silence means something. */
 static void summary(const struct why *w, const struct count *n)
 {
-	out_bool("well", !n->faults, NULL);
+	/* what does not exist is neither well nor faulty */
+	if (n->nothing && !n->faults)
+		out_null("well", NULL);
+	else
+		out_bool("well", !n->faults, NULL);
 	out_u("faults_elsewhere", n->elsewhere, NULL);
 	out_str("application", application(w), NULL);
 	out_bool("error_counters_read", w->counters && !w->silent, NULL);
+	if (n->nothing && !n->faults)
+		return;
 	if (n->faults)
 		out_text("%zu fault(s), %zu warning(s). ", n->faults, n->warnings);
 	else
@@ -194,7 +201,7 @@ static void rules(struct why *w)
 	why_frames(w);
 }
 
-static int choose(const struct tool *t, const struct why *w, struct chosen *c)
+static int choose(const struct tool *t, const struct why *w, struct chosen *c, struct count *count)
 {
 	size_t n;
 
@@ -206,6 +213,7 @@ static int choose(const struct tool *t, const struct why *w, struct chosen *c)
 	for (size_t i = 0; i < w->n_configs; i++)
 		n += config_chosen(c, &w->configs[i]);
 	dev_selected("slave or configuration", !c->all, n);
+	count->nothing = !c->all && !n;
 	return 0;
 }
 
@@ -215,7 +223,7 @@ static int each(const struct tool *t, struct dev *d)
 	struct count n = { 0 };
 	struct why w;
 
-	if (why_read(&w, d) || choose(t, &w, &c)) {
+	if (why_read(&w, d) || choose(t, &w, &c, &n)) {
 		why_free(&w);
 		return 1;
 	}
@@ -279,7 +287,8 @@ const struct cmd cmd_why = {
 		"  ethercat why\n"
 		"  ethercat why 4\n",
 	.json = "masters[]: master, findings[] (level (fault, warning), cause, text, slave, port, domain,\n"
-		"config (null: none), code, affected[], remedy), well, faults_elsewhere (not of SLAVE), application,\n"
+		"config (null: none), code, affected[], remedy),\n"
+		"well (null: nothing selected), faults_elsewhere (not of SLAVE), application,\n"
 		"error_counters_read (of all slaves)",
 	.max_args = 1,
 };

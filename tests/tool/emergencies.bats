@@ -6,6 +6,9 @@ load common
 @test "emergencies: one line each, and a line about older ones" {
 	golden emergencies emergencies
 	[ "$(out emergencies -p0)" = None. ]
+	run ethercat emergencies -p7
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat emergencies: the selection matches no slave" ]
 	export FAKE_BUS=two
 	[ "$(out emergencies -m0 -p2 | head -1)" = "   2  the last 16 of 70000" ]
 	[ "$(out emergencies -m0 -p2 | wc -l)" = 17 ]

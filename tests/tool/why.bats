@@ -94,7 +94,9 @@ is() {
 	[[ $(FAKE_WHY=link_down out why 1) == "Fault: no link"* ]]
 	FAKE_WHY=well run ethercat why 77
 	[ "$status" -eq 1 ]
-	[[ $output == *"the selection matches no slave or configuration"* ]]
+	[ "$output" = "ethercat why: the selection matches no slave or configuration" ]
+	FAKE_WHY=well out why 77 -j | json 'd["masters"][0]["well"] is None'
+	FAKE_WHY=link_down out why 77 -j | json 'd["masters"][0]["well"] is False'
 	[[ $(err why y) == *"invalid slave 'y': expected N, N-M, N-, -M or -"* ]]
 	[[ $(err why 1 -p1) == *"SLAVE and --position exclude each other"* ]]
 	# a slave that is not there is chosen by its configuration
