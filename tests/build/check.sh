@@ -337,6 +337,25 @@ t "with DESTDIR= the cache remains" ldconfig_runs 0 install DESTDIR="$tmp/there"
 t "a system without ldconfig has no cache" lib_make LDCONFIG=no-such-ldconfig install
 t "without root the installation goes on" lib_make LDCONFIG=false install
 
+# the commands of Documentation/coming-from-igh.rst, in a folder instead of /
+old_master_removed() {
+	local d old=$tmp/old
+
+	for d in usr/local usr/local/etherlab opt/etherlab; do
+		mkdir -p "$old/$d"/{bin,sbin,include,lib/pkgconfig} &&
+			touch "$old/$d"/bin/{ethercat,other} "$old/$d/sbin/ethercatctl" \
+				"$old/$d"/include/{ecrt.h,other.h} "$old/$d/lib/pkgconfig/libethercat.pc" \
+				"$old/$d"/lib/libethercat.{a,la,so,so.1,so.1.2.0} || return 1
+	done
+	mkdir -p "$old/etc/udev/rules.d" && touch "$old/etc/udev/rules.d/99-EtherCAT.rules" || return 1
+	tests/build/commands.py --block Documentation/coming-from-igh.rst \
+		'for d in /usr/local /usr/local/etherlab /opt/etherlab; do' >"$tmp/old.sh" &&
+		sed -i "s| /| $old/|g" "$tmp/old.sh" && : >"$tmp/ldconfig.log" &&
+		PATH=$tmp/fake:$PATH bash -e "$tmp/old.sh" && [ -s "$tmp/ldconfig.log" ] &&
+		[ "$(find "$old" -type f -printf '%f\n' | sort | uniq -c | xargs)" = "3 other 3 other.h" ]
+}
+t "the old master's files are removed as documented" old_master_removed
+
 # --- documentation ---------------------------------------------------------------
 t "make doc builds HTML without a warning" make -s KDIR="$KDIR" DOCDIR="$tmp/doc" doc
 t "it has the reference of ecrt.h" grep -q c.ecrt_master_activate "$tmp/doc/html/api.html"
