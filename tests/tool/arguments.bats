@@ -318,3 +318,19 @@ for o in d["options"]:
 	[[ " $(complete_line ethercat upload -t u) " == *" uint24 "* ]]
 	[ "$(FAKE_BUS=app complete_line ethercat data -d "")" = "0 1" ]
 }
+
+@test "completion keeps names with blanks whole and ends a folder with a slash" {
+	completion_of_fake
+	# of bash only inside of a completion: it quotes the names and marks the folders
+	compopt() { echo "$*" >"$BATS_TEST_TMPDIR/compopt"; }
+	cd "$BATS_TEST_TMPDIR"
+	mkdir "fold er"
+	touch "fo o.bin"
+	for line in firmware foe_write "reg_write 0x10" "sdos --save" "crc --texts"; do
+		rm -f compopt
+		complete_line ethercat $line fo
+		[ "${#COMPREPLY[@]}" = 2 ]
+		[ "$(printf '%s\n' "${COMPREPLY[@]}" | LC_ALL=C sort)" = "fo o.bin"$'\n'"fold er" ]
+		[ "$(cat compopt)" = "-o filenames" ]
+	done
+}

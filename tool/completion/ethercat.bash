@@ -41,6 +41,13 @@ _ethercat_values()
 	esac
 }
 
+# Names with blanks stay whole and get their quotes from bash, a folder gets its slash.
+_ethercat_files()
+{
+	compopt -o filenames
+	mapfile -t COMPREPLY < <(compgen -f -- "$cur")
+}
+
 _ethercat()
 {
 	local cur prev cmd= master= i w
@@ -70,7 +77,7 @@ _ethercat()
 	-t|--type)	w=$(_ethercat_values type) ;;
 	-s|--skin)	w="default etherlab" ;;
 	-o|--output-file|--save|--compare|--texts)
-		COMPREPLY=($(compgen -f -- "$cur"))
+		_ethercat_files
 		return ;;
 	*)
 		case $cur in
@@ -91,7 +98,7 @@ _ethercat()
 				esac ;;
 			help)	w="$(_ethercat_values command) types" ;;
 			reg_write|foe_write|firmware)
-				COMPREPLY=($(compgen -f -- "$cur"))
+				_ethercat_files
 				return ;;
 			*)	w= ;;
 			esac ;;
