@@ -50,6 +50,11 @@ static int parse_mac(u8 mac[6], const char *text)
 	}
 	if (*p)
 		goto bad;
+	if (v[0] & 1)
+		return usage_error("invalid MAC address '%s': broadcast or multicast, bit 0 of the first byte must be 0",
+				   text);
+	if (!memcmp(v, (u8[6]){ 0 }, 6))
+		return usage_error("invalid MAC address '%s': all bytes are 0", text);
 	memcpy(mac, v, 6);
 	return 0;
 bad:
@@ -78,7 +83,22 @@ static int parse_host(u8 addr[4], const char *text)
 	return 0;
 }
 
-/* ADDRESS or ADDRESS/PREFIX, which says the mask, too */
+/* ones, then zeros */
+static int parse_mask(u8 mask[4], const char *text)
+{
+	u32 zeros;
+
+	if (parse_host(mask, text))
+		return 1;
+	memcpy(&zeros, mask, 4);
+	zeros = ~ntohl(zeros);
+	if (zeros & (zeros + 1))
+		return usage_error("invalid subnet mask '%s': expected ones, then zeros, as 255.255.255.0",
+				   text);
+	return 0;
+}
+
+/* ADDRESS or ADDRESS/PREFIX, which also gives the mask */
 static int parse_address(struct ec_ip_params *p, const char *text)
 {
 	const char *slash = strchr(text, '/');
@@ -94,6 +114,8 @@ static int parse_address(struct ec_ip_params *p, const char *text)
 	bits = strtoul(slash + 1, &end, 10);
 	if (!isdigit((unsigned char)slash[1]) || *end || bits > 32)
 		return usage_error("invalid prefix '%s': expected 0 to 32", slash + 1);
+	if (p->which & EC_IP_MASK)
+		return usage_error("'%s' and subnet_mask exclude each other", text);
 	mask = bits ? htonl(~0u << (32 - bits)) : 0;
 	memcpy(p->mask, &mask, 4);
 	p->which |= EC_IP_MASK;
@@ -117,6 +139,8 @@ int ip_parse(struct ec_ip_params *p, const char *key, const char *value)
 	for (size_t i = 0; i < ARRAY_SIZE(words); i++)
 		if (!strcasecmp(words[i].word, key))
 			which = words[i].which;
+	if (p->which & which)
+		return usage_error("'%s': this parameter is given already", key);
 	p->which |= which;
 	switch (which) {
 	case EC_IP_MAC:
@@ -124,7 +148,7 @@ int ip_parse(struct ec_ip_params *p, const char *key, const char *value)
 	case EC_IP_ADDRESS:
 		return parse_address(p, value);
 	case EC_IP_MASK:
-		return parse_host(p->mask, value);
+		return parse_mask(p->mask, value);
 	case EC_IP_GATEWAY:
 		return parse_host(p->gateway, value);
 	case EC_IP_DNS:

@@ -34,11 +34,20 @@ ffffff00
 	for c in "name" "addr 1.2.3.4 name" "colour blue" "link 02:00:00:ec:01" "link 02:00:00:ec:01:0g" \
 		"link 02:00:00:ec:01:07:08" "link 02:00-00:ec:01:07" "link x" "addr 1.2.3" "addr 1.2.3.256" \
 		"addr 1.2.3.4/33" "addr 1.2.3.4/" "addr /8" "addr 1.2.3.4/8x" \
+		"mask 255.0.255.0" "mask 0.255.255.255" "link ff:ff:ff:ff:ff:ff" "link 03:00:00:ec:01:07" \
+		"link 00:00:00:00:00:00" "addr 10.0.0.1/24 mask 255.0.0.0" \
+		"mask 255.0.0.0 addr 10.0.0.1/24" "name a name b" "dns 1.2.3.4 dns_adress 1.2.3.4" \
 		"name a23456789b23456789c23456789d23456"; do
 		run ethercat ip -p2 $c
 		[ "$status" -eq 1 ]
 		[[ $output == *"--help"* ]]
 	done
+	[[ $(err ip -p2 mask 255.0.255.0) == *"invalid subnet mask '255.0.255.0': expected ones, "* ]]
+	[[ $(err ip -p2 link ff:ff:ff:ff:ff:ff) == *"broadcast or multicast, bit 0 of the first byte"* ]]
+	[[ $(err ip -p2 addr 1.2.3.4/8 mask 255.0.0.0) == *"'mask': this parameter is given already"* ]]
+	[[ $(err ip -p2 mask 255.0.0.0 addr 1.2.3.4/8) == *"'1.2.3.4/8' and subnet_mask exclude "* ]]
+	[ "$(log_of ip -p2 mask 255.255.255.255 | sed -n 4p)" = ffffffff ]
+	[ "$(log_of ip -p2 mask 0.0.0.0 | sed -n 4p)" = 00000000 ]
 	run ethercat ip -p2 name ""
 	[ "$status" -eq 1 ]
 	run ethercat ip -p2 addr no.such.host.invalid
