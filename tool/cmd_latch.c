@@ -46,9 +46,14 @@ static void edge(const struct latches *l, unsigned int i, unsigned int which)
 		out_null(key[which], ", %s none", text[which]);
 }
 
+static bool slave_owns(u8 owner, unsigned int i)
+{
+	return owner >> (4 + i) & 1;
+}
+
 static void input(const struct latches *l, unsigned int i)
 {
-	bool high = l->status[i] & 4, slave = l->owner >> (4 + i) & 1;
+	bool high = l->status[i] & 4, slave = slave_owns(l->owner, i);
 
 	out_object(NULL);
 	out_u("input", i, "Latch %u: ", i);
@@ -62,11 +67,27 @@ static void input(const struct latches *l, unsigned int i)
 	out_end();
 }
 
+/* The mode of an input that the slave's own CPU has is not ours to change. */
 static int set_mode(struct dev *d, u16 position, const char *mode)
 {
-	const u8 v = !strcmp(mode, "single") ? BOTH : 0, control[INPUTS] = { v, v };
+	const u8 v = !strcmp(mode, "single") ? BOTH : 0;
+	u8 owner;
+	int ret = 0;
 
-	return reg_write(d, position, EC_REG_DC_LATCH0_CTRL, control, INPUTS, false);
+	if (reg_read(d, position, EC_REG_DC_CUC, &owner, 1))
+		return 1;
+	if (slave_owns(owner, 0) && slave_owns(owner, 1))
+		return fail("slave %u: its own CPU controls both latch inputs; set their mode with its objects",
+			    position);
+	for (unsigned int i = 0; i < INPUTS && !ret; i++) {
+		if (slave_owns(owner, i))
+			note("slave %u: latch %u is controlled by the slave; mode unchanged", position,
+			     i);
+		else
+			ret = reg_write(d, position, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1,
+					false);
+	}
+	return ret;
 }
 
 static int show(const struct tool *t, struct dev *d, const char *mode)
@@ -113,7 +134,9 @@ const struct cmd cmd_latch = {
 	.opts = "map",
 	.summary = "Show the times of edges at the latch inputs of a slave's clock",
 	.help = "MODE := { single: the latch stores the first edge until its time is read;\n"
-		"          continuous: the latch stores the last edge }; sets both inputs\n"
+		"          continuous: the latch stores the last edge }\n"
+		"MODE is set for the inputs that the master controls. Inputs that the slave's own CPU\n"
+		"controls are named and do not change; if it controls both, the command fails.\n"
 		"Times are system times of the distributed clocks, ns. Reading a time re-arms the\n"
 		"latch.\n",
 	.json = "master, slave, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"

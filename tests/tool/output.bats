@@ -286,6 +286,17 @@ END
 	[ "$output" = "ethercat download: the data type of 0x6060:00 is not known; give it with --type"$'\n'"Try 'ethercat download --help'." ]
 }
 
+@test "latch sets the mode of the master's inputs only" {
+	[ "$(log_of latch -p0 single)" = "$(printf 'reg 0 0x09a8 03\nreg 0 0x09a9 03')" ]
+	[ "$(log_of latch -p2 single 2>/dev/null)" = "reg 2 0x09a8 03" ]
+	[ "$(log_of latch -p2 continuous 2>/dev/null)" = "reg 2 0x09a8 00" ]
+	[ "$(err latch -p2 single)" = "slave 2: latch 1 is controlled by the slave; mode unchanged" ]
+	FAKE_LATCHES=slave run log_of latch -p2 single
+	[ "$status" -eq 1 ]
+	[ "$output" = "ethercat latch: slave 2: its own CPU controls both latch inputs; set their mode with its objects" ]
+	[ ! -s "$BATS_TEST_TMPDIR/log" ]
+}
+
 @test "reg_rdwr writes a register and prints its old content" {
 	[ "$(out reg_rdwr -p2 -t uint16 0x130 0x4321)" = "0x0012 18" ]
 	[ "$(log_of reg_rdwr -p2 -t uint16 0x130 0x4321 | tail -n 1)" = "reg 2 0x0130 2143" ]
