@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "../master/wire/al.h"
 #include "../master/wire/event.h"
 #include "dev.h"
 #include "out.h"
@@ -11,14 +12,36 @@
 
 #define BATCH	64
 
+static void name_or_null(const char *key, const char *name)
+{
+	if (name)
+		out_str(key, name, NULL);
+	else
+		out_null(key, NULL);
+}
+
+/* by the names that the other commands have */
 static void argument(const char *key, enum ec_event_arg type, u32 v)
 {
-	if (type == EC_ARG_I)
+	switch (type) {
+	case EC_ARG_I:
 		out_i(key, (s32)v, NULL);
-	else if (type == EC_ARG_SLAVE && v == EC_EVENT_NONE)
-		out_null(key, NULL);
-	else
+		break;
+	case EC_ARG_AL:
+		name_or_null(key, v ? ec_al_state_name((u8)v) : NULL);
+		break;
+	case EC_ARG_LOCK:
+		name_or_null(key, cycle_lock_key(v));
+		break;
+	case EC_ARG_SLAVE:
+		if (v == EC_EVENT_NONE) {
+			out_null(key, NULL);
+			break;
+		}
+		/* fall through */
+	default:
 		out_u(key, v, NULL);
+	}
 }
 
 static void arguments(const struct ec_event *e, const struct ec_event_kind *k)
@@ -157,5 +180,25 @@ const struct cmd cmd_log = {
 		"several masters, -m selects one. A reader that is too slow gets the number of events\n"
 		"missed.\n",
 	.json = "masters[]: master, events[]: number, time_ns (since 1970), monotonic_ns, event, slave,\n"
-		"values of the event, text. With --follow each line is an object: master, and the same",
+		"values of the event, text. With --follow each line is an object: master, and the\n"
+		"same. AL states are names, cycle_lock is as of 'ethercat master'; null: none. Values\n"
+		"by event: missed (count), device_attached, device_detached, link_up, link_down\n"
+		"(device), slaves_responding (slaves, before), scan_start (slaves), scan_end (slaves,\n"
+		"duration_us, frames), slave_lost (upstream, port, alias, vendor_id, product_code,\n"
+		"age_ms), all_slaves_lost (slaves, age_ms), slave_found (upstream, port, alias,\n"
+		"vendor_id, product_code), slave_silent, slave_replies (none), slave_back\n"
+		"(absent_ms), no_answer (polls), al_state, al_state_left (state, before), al_error\n"
+		"(state, al_code), emergency (code, error_register, data, data_4), slave_failed\n"
+		"(error, al_code, cause, code, object, subindex, sm, state), eeprom (flaw, checksum,\n"
+		"expected), no_clock (none), revision (expected, found), working_counter (domain,\n"
+		"working_counter, before, expected, more_changes, slaves_down), overruns (cycles),\n"
+		"frames_lost, frames_late (frames), cycle_timeout (duration_ms, timeouts),\n"
+		"cycle_resumed (duration_ms), stale_data (domain, age_sends, limit_sends), wire_time\n"
+		"(cyclic_ns, cycle_ns, free_ns, needed_ns), reference_clock (reference, lost),\n"
+		"clocks_synchronized (duration_us, reference), clocks_not_synchronized (errno,\n"
+		"retry), sync_window (outside, clocks, worst, difference_ns), cycle_lock (cycle_lock,\n"
+		"phase_error_ns, rate_ppb), reserved (pid), activated (pid, domains, bytes,\n"
+		"datagrams), deactivated, released, detached, taken_over (pid), debug_level (level),\n"
+		"configuration (alias, position, cause, vendor_id, product_code, found_vendor_id,\n"
+		"found_product_code), configurations (more)",
 };

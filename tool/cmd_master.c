@@ -120,14 +120,13 @@ static void common(const struct ec_ioc_master *m)
 static void lock(const struct ec_ioc_master *m)
 {
 	static const char *const text[] = { "", "seeking", "locked", "holdover" };
-	static const char *const key[] = { "", "seeking", "locked", "holding" };
-	bool known = m->cycle_lock && m->cycle_lock < ARRAY_SIZE(text);
+	const char *key = cycle_lock_key(m->cycle_lock);
 
-	if (!known) {
+	if (!key) {
 		out_null("cycle_lock", NULL);
 		return;
 	}
-	out_str("cycle_lock", key[m->cycle_lock], "    Cycle lock:        %s, ",
+	out_str("cycle_lock", key, "    Cycle lock:        %s, ",
 		text[m->cycle_lock]);
 	out_i("phase_error_ns", m->phase_error, "phase error %d ns, ", m->phase_error);
 	out_i("rate_ppb", m->rate_ppb, "rate %+d ppb, ", m->rate_ppb);

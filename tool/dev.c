@@ -442,6 +442,14 @@ void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size)
 		snprintf(buf, size, "0x%08x:0x%08x", s->vendor_id, s->product_code);
 }
 
+/* as in JSON; NULL: not synchronized to the reference clock */
+const char *cycle_lock_key(u32 lock)
+{
+	static const char *const key[] = { NULL, "seeking", "locked", "holding" };
+
+	return lock < ARRAY_SIZE(key) ? key[lock] : NULL;
+}
+
 void al_state_text(unsigned int al_status, char *buf, size_t size)
 {
 	snprintf(buf, size, "%s%s", ec_al_state_name((u8)al_status),

@@ -73,6 +73,7 @@ void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size);
 int dev_wait_scan(struct dev *d, double timeout_s);
 
 void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size);
+const char *cycle_lock_key(u32 lock);
 void al_state_text(unsigned int al_status, char *buf, size_t size);
 unsigned int slave_alias_pos(const struct ec_ioc_slave *s);
 double now_s(void);

@@ -12,6 +12,8 @@ enum ec_event_arg {
 	EC_ARG_U,	/* unsigned */
 	EC_ARG_I,	/* signed */
 	EC_ARG_SLAVE,	/* ring position or EC_EVENT_NONE */
+	EC_ARG_AL,	/* AL state, 0: none */
+	EC_ARG_LOCK,	/* EC_CYCLE_LOCK_*, 0: not synchronized to the reference clock */
 };
 
 /**
@@ -19,7 +21,7 @@ enum ec_event_arg {
  * @kind: EC_EVENT_*
  * @name: one word
  * @arg: its arguments
- * @arg.name: one word, NULL behind the last
+ * @arg.name: one word with the unit, NULL behind the last
  * @arg.type: what it is
  */
 struct ec_event_kind {

@@ -39,11 +39,29 @@ assert eval(sys.argv[1]), d
 
 @test "log --json has the values of each event by name" {
 	out log -j | json "[e['number'] for e in $events] == list(range(7, 16))"
-	out log -j | json "$events[4] == {'number': 11, 'time_ns': 1764000000150000000, 'monotonic_ns': 5150000000, 'event': 'al_state', 'slave': 2, 'state': 8, 'before': 4, 'text': 'slave 2: AL state OP, before SAFEOP'}"
+	out log -j | json "$events[4] == {'number': 11, 'time_ns': 1764000000150000000, 'monotonic_ns': 5150000000, 'event': 'al_state', 'slave': 2, 'state': 'OP', 'before': 'SAFEOP', 'text': 'slave 2: AL state OP, before SAFEOP'}"
 	out log -j | json "'slave' not in $events[0] and $events[7]['upstream'] == 1"
-	out log -j | json "$events[8]['phase_error'] == -12 and $events[8]['rate_ppb'] == -8700"
+	out log -j | json "$events[8]['phase_error_ns'] == -12 and $events[8]['rate_ppb'] == -8700"
+	out log -j | json "$events[8]['cycle_lock'] == 'holding' and $events[1]['duration_us'] == 4100"
 	FAKE_EVENTS=none out log -j | json "$events == []"
 	FAKE_BUS=two out log -j | json 'len(d["masters"]) == 2'
+}
+
+@test "help log has the values of each event" {
+	python3 - <(out help log) "$HERE/../../master/wire/event.c" <<-'END'
+	import re, sys
+	text = " ".join(open(sys.argv[1]).read().split()).split("Values by event: ")[1]
+	listed = {}
+	for names, keys in re.findall(r"([a-z_, ]+) \(([^)]*)\)", text):
+	    for name in names.strip(", ").split(", "):
+	        listed[name] = [] if keys == "none" else keys.split(", ")
+	table = re.search(r"kinds\[\] = \{(.*?)\n\};", open(sys.argv[2]).read(), re.S)[1]
+	kinds = {}
+	for kind in table.split("KIND(")[1:]:
+	    name, *keys = re.findall(r'"(\w+)"', kind)
+	    kinds[name] = [k for k in keys if k != "count_high"]
+	assert len(kinds) > 40 and listed == kinds, (listed, kinds)
+	END
 }
 
 @test "log --follow --json: each line is an object" {
