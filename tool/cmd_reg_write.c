@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "io.h"
 #include "out.h"
@@ -58,6 +61,9 @@ static int run(struct tool *t, int argc, char **argv)
 	if (io_number("address", argv[0], REG_SPACE - 1, &address) ||
 	    (t->type && io_type(t->type, &type)))
 		return 1;
+	if (!t->type && strcmp(argv[1], "-") && access(argv[1], F_OK))
+		return fail("cannot open %s: %s; DATA without --type is a file, for a value give --type",
+			    argv[1], strerror(errno));
 	if (t->type ? io_value(type, argv[1], &data, &size) : io_read(argv[1], &data, &size))
 		return 1;
 	ret = put(t, (u16)address, data, size);

@@ -140,11 +140,15 @@ static void idn(const struct ec_ioc_config_idn *i, const u8 *data, const char *i
 		 i->idn & 0xfffu);
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
-	out_u("drive", i->drive, "%s  Drive %u ", in, i->drive);
+	out_u("drive", i->drive, "%s  Drive %u, ", in, i->drive);
 	out_u("idn", i->idn, NULL);
-	out_str("name", name, "%s", name);
-	out_str("state", ec_al_state_name(i->state), " in %s", ec_al_state_name(i->state));
-	out_u("size_bytes", i->size, ", %u byte\n", i->size);
+	out_str("name", name, "%s, ", name);
+	out_str("state", ec_al_state_name(i->state), NULL);
+	out_u("size_bytes", i->size, "%u byte", i->size);
+	/* scripts know the line of an IDN that is written in PREOP */
+	if (i->state != EC_AL_PREOP)
+		out_text(", in %s", ec_al_state_name(i->state));
+	out_text("\n");
 	out_hex("data_hex", data, min(i->size, (u32)SHOWN), indent);
 	if (i->size > SHOWN)
 		out_text("%s...\n", indent);

@@ -331,6 +331,8 @@ END
 	[ "$status" -eq 1 ]
 	run ethercat reg_write -p1 0x1000 "$BATS_TEST_TMPDIR/none"
 	[ "$status" -eq 1 ]
+	cd "$BATS_TEST_TMPDIR"
+	[ "$(err reg_write -p1 0x120 2)" = "ethercat reg_write: cannot open 2: No such file or directory; DATA without --type is a file, for a value give --type" ]
 	[ "$(log_of crc reset | wc -l)" -eq 3 ]
 	[ "$(log_of crc RESET -p1)" = "reg 1 0x0300 $(printf '0%.0s' {1..40})" ]
 }
