@@ -243,7 +243,7 @@ typedef struct {
 	uint8_t al_state;		/* low byte of register 0x0130 */
 	uint8_t error_flag;		/* the master could not configure it */
 	uint8_t sync_count;
-	uint16_t sdo_count;
+	uint16_t sdo_count;		/* always 0; use ecrt_master_sdo_info_list() */
 	char name[EC_MAX_STRING_LENGTH];
 } ec_slave_info_t;
 

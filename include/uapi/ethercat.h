@@ -195,7 +195,7 @@ struct ec_ioc_slave {
 	__u8 fmmu_count;
 	__u8 device_index;	/* 0 main, 1 backup */
 	__u16 dl_status;
-	__u16 sdo_count;
+	__u16 sdo_count;	/* always 0: the dictionary is read on request only */
 	__u16 features;		/* register 0x0008 */
 	__u32 transmission_delay;
 	__u32 sii_words;
