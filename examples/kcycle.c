@@ -5,8 +5,12 @@
  *
  * usage: kcycle [CYCLES [follow]]
  *
- * All slaves run with their default process data, at 1 kHz. The program increments the first
- * output byte of each slave and exits after CYCLES cycles (default 5000).
+ * WARNING: it switches outputs. Run it only where no output moves or heats anything.
+ *
+ * All slaves but drives run with their default process data, at 1 kHz. The program increments the
+ * first output byte of each slave with digital outputs, 0 stays in all other outputs, and it exits
+ * after CYCLES cycles (default 5000). It leaves out slaves with the control word of a drive (CiA
+ * 402, SoE) in their EEPROM, and names them; they stay in PREOP. See dc_motion.c for drives.
  *
  *   follow  the clocks of the slaves are synchronized, and the cycle is phase-locked to the
  *           reference clock: a frame passes this clock always at the same time after the
@@ -30,10 +34,62 @@
 
 static ec_master_t *master;
 static ec_domain_t *domain;
-static ec_slave_config_t *slaves[SLAVES_MAX];
-static int outputs[SLAVES_MAX];		/* first output byte in the domain, or -1 */
-static unsigned int n_slaves;
+static ec_slave_config_t *slaves[SLAVES_MAX];	/* NULL: left out */
+static int outputs[SLAVES_MAX];		/* byte of digital outputs in the domain, or -1 */
+static unsigned int n_slaves, n_configured;
 static int follow;
+
+/* Outputs of a slave by the entries of its PDOs. */
+enum outputs {
+	NO_OUTPUTS,
+	DIGITAL,		/* the first byte has single bits only */
+	OTHER,			/* a value of several bits, never changed here */
+	DRIVE,			/* control word of CiA 402 or SoE */
+};
+
+/* CiA 402 has an object for each of 8 axes, SoE the master control word S-0-0134. */
+static int is_control_word(const ec_pdo_entry_info_t *e)
+{
+	const uint16_t axis = (uint16_t)(e->index - 0x6040);
+
+	return e->bit_length == 16 && (e->index == 0x0086 ||
+				       (!e->subindex && axis < 0x4000 && axis % 0x0800 == 0));
+}
+
+static enum outputs outputs_of(uint16_t position, uint8_t sync_index, const ec_sync_info_t *sync)
+{
+	enum outputs found = NO_OUTPUTS;
+	unsigned int bits = 0;
+	ec_pdo_info_t pdo;
+	ec_pdo_entry_info_t entry;
+
+	for (uint16_t i = 0; i < sync->n_pdos; i++) {
+		if (ecrt_master_get_pdo(master, position, sync_index, i, &pdo))
+			return OTHER;
+		for (uint16_t k = 0; k < pdo.n_entries; k++) {
+			if (ecrt_master_get_pdo_entry(master, position, sync_index, i, k, &entry))
+				return OTHER;
+			if (is_control_word(&entry))
+				return DRIVE;
+			if (bits < 8 && found != OTHER)
+				found = entry.bit_length == 1 || !entry.index ? DIGITAL : OTHER;
+			bits += entry.bit_length;
+		}
+	}
+	return found;
+}
+
+/* The drives, as far as their EEPROMs say. */
+static int is_drive(uint16_t position, const ec_slave_info_t *info)
+{
+	ec_sync_info_t sync;
+
+	for (uint8_t i = 0; i < info->sync_count; i++)
+		if (!ecrt_master_get_sync_manager(master, position, i, &sync) &&
+		    sync.dir == EC_DIR_OUTPUT && outputs_of(position, i, &sync) == DRIVE)
+			return 1;
+	return 0;
+}
 
 /* Default process data of a slave: every SyncManager with PDOs goes into the domain. */
 static int add_slave(uint16_t position)
@@ -45,6 +101,10 @@ static int add_slave(uint16_t position)
 	outputs[position] = -1;
 	if (ecrt_master_get_slave(master, position, &info))
 		return -1;
+	if (is_drive(position, &info)) {
+		printf("slave %u left out: %s is a drive\n", position, info.name);
+		return 0;
+	}
 	slaves[position] = ecrt_master_slave_config(master, 0, position, info.vendor_id,
 						    info.product_code);
 	if (!slaves[position])
@@ -60,7 +120,8 @@ static int add_slave(uint16_t position)
 							     &bit);
 		if (offset < 0)
 			return -1;
-		if (sync.dir == EC_DIR_OUTPUT && outputs[position] < 0)
+		if (sync.dir == EC_DIR_OUTPUT && outputs[position] < 0 &&
+		    outputs_of(position, i, &sync) == DIGITAL)
 			outputs[position] = offset;
 	}
 	return 0;
@@ -91,9 +152,15 @@ static int configure(void)
 		fprintf(stderr, "%u slaves found, expected 1 to %u\n", n_slaves, SLAVES_MAX);
 		return -1;
 	}
-	for (unsigned int i = 0; i < n_slaves; i++)
+	for (unsigned int i = 0; i < n_slaves; i++) {
 		if (add_slave((uint16_t)i))
 			return -1;
+		n_configured += slaves[i] != NULL;
+	}
+	if (!n_configured) {
+		fprintf(stderr, "no slave but drives found\n");
+		return -1;
+	}
 	return ecrt_master_set_cycle(master, &cycle);
 }
 
@@ -145,7 +212,8 @@ static int in_op(void)
 	ec_slave_config_state_t state;
 
 	for (unsigned int i = 0; i < n_slaves; i++)
-		if (ecrt_slave_config_state(slaves[i], &state) || !state.operational)
+		if (slaves[i] &&
+		    (ecrt_slave_config_state(slaves[i], &state) || !state.operational))
 			return 0;
 	return 1;
 }
@@ -181,7 +249,7 @@ static int run(unsigned long cycles)
 		return -1;
 	}
 	ecrt_master_cycle_state(master, &state);
-	printf("%u slaves in OP%s\n", n_slaves, state.takeovers ? "; cycle taken over" : "");
+	printf("%u slaves in OP%s\n", n_configured, state.takeovers ? "; cycle taken over" : "");
 	for (unsigned long i = 0; i < cycles; i++) {
 		n = cycle(&domain_state);
 		if (n < 0) {

@@ -58,11 +58,18 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 
 @test "kcycle: values go out, the kernel keeps the cycle" {
 	example kcycle 20000
-	wait_for 60 grep -qx '5 slaves in OP' "$out"
+	wait_for 60 grep -qx '3 slaves in OP' "$out"
 	# a counter: no value comes twice in a row
 	one=$(outputs)
 	wait_for 60 eval '[ "$(outputs)" != "$one" ]'
 	kill -0 "$app"
+	# drives are named and left alone
+	[ "$(grep -c ' left out: .* is a drive$' "$out")" = 2 ]
+	for p in 3 4; do
+		grep -E "^slave $p left out: " "$out"
+		[ "$(ethercat upload -p$p -t uint16 0x6040 0)" = "0x0000 0" ]
+	done
+	all_slaves_are PREOP 2
 	wait "$app"
 	cat "$out"
 	grep -E '^20000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
@@ -87,17 +94,17 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 
 @test "kcycle: killed, the kernel goes on, and the next one takes over" {
 	example kcycle 1000000
-	wait_for 60 grep -qx '5 slaves in OP' "$out"
+	wait_for 60 grep -qx '3 slaves in OP' "$out"
 	kill -9 "$app"
 	wait "$app" || true
 	ethercat master | grep -q 'Session: detached'
 	one=$(outputs)
-	all_slaves_are OP 5
+	all_slaves_are OP 3
 	[ "$(outputs)" = "$one" ]
 	example kcycle 500
 	wait "$app"
 	cat "$out"
-	grep -qx '5 slaves in OP; cycle taken over' "$out"
+	grep -qx '3 slaves in OP; cycle taken over' "$out"
 	grep -E '^500 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	app=
 }
