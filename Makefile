@@ -118,9 +118,10 @@ install-tool:
 install-operation:
 	$(MAKE) -C operation prefix=$(PREFIX) install
 
+# udev reads a rule at once, and a group that does not exist yet would be left out
 install-udev:
-	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 	$(if $(DESTDIR),,getent group ethercat >/dev/null || groupadd --system ethercat)
+	install -D -m 644 master/60-ethercat.rules $(DESTDIR)$(UDEVDIR)/60-ethercat.rules
 
 # all kernels; the group remains, since files may belong to it. Rules of 'ethercat device bind
 # --boot' would leave their cards without driver.
