@@ -43,11 +43,14 @@ is_interface() {
 	[ ${#1} -le 15 ]
 }
 
+# lower DEVICES: addresses in lower case, names as they are
+lower() { echo "$1" | tr , '\n' | sed '/:/y/ABCDEF/abcdef/' | paste -sd,; }
+
 # device INDEX VALUE
 set_device() {
 	local value old was
 
-	case $2 in *:*) value=$(echo "$2" | tr A-F a-f) ;; *) value=$2 ;; esac
+	value=$(lower "$2")
 	case $value in
 	00:00:00:00:00:00) bad "MASTER$1_DEVICE=\"$2\": no card has this address; 'ethercat devices' lists the cards" ;;
 	ff:ff:ff:ff:ff:ff|'') ;;
@@ -259,4 +262,11 @@ parse() {
 	check_masters
 	check_segments
 	[ $wrong = 0 ] || exit 1
+}
+
+# as parse, for what needs a master
+read_masters() {
+	parse "$conf"
+	[ "$masters" -gt 0 ] ||
+		die "$conf names no master: set MASTER0_DEVICE to a MAC address, an interface or sim0; 'ethercat devices' lists the cards"
 }

@@ -70,6 +70,17 @@ accepted() {
 	[ "$(ctl -c "$BATS_TEST_TMPDIR/conf" check | head -n 1)" = 'Master0: eth0' ]
 }
 
+@test "a configuration without a master is refused as start does" {
+	local lines
+
+	for lines in '' 'MASTER0_DEVICE=""' 'MASTER1_DEVICE=eth0'; do
+		printf '%s\n' "$lines" >"$BATS_TEST_TMPDIR/conf"
+		run ctl -c "$BATS_TEST_TMPDIR/conf" check
+		[ "$status" = 1 ]
+		[[ $output =~ "conf names no master: set MASTER0_DEVICE to a MAC address" ]]
+	done
+}
+
 @test "a line that a shell would run is refused and not run" {
 	local mark=$BATS_TEST_TMPDIR/mark
 

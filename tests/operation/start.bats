@@ -1,0 +1,207 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+# Decisions of start and restart on a computer that files and stubs imitate: which modules get
+# loaded, when, and for which devices. tests/system/operation.bats does it with real modules.
+
+NIC=52:54:00:ec:00:01
+LATE=52:54:00:ec:00:02
+PCI=0000:01:00.0
+
+# stub NAME LINE...: a program that ethercatctl finds first
+stub() {
+	printf '%s\n' '#!/bin/sh' "root=$root" "${@:2}" >"$root/bin/$1"
+	chmod +x "$root/bin/$1"
+}
+
+setup() {
+	local here=$BATS_TEST_DIRNAME/../../operation
+
+	root=$BATS_TEST_TMPDIR/root
+	mkdir -p "$root"/{bin,sbin,run,dev,sys/module,sys/class/net,sys/bus/pci/{devices,drivers/ec_intel}}
+	sed "s,/\(sys\|run\|dev/E\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
+	chmod +x "$root/sbin/ethercatctl"
+	cp "$here/conf.sh" "$root/sbin"
+	stub id 'echo 0'
+	stub ip
+	stub dmesg
+	stub sleep
+	stub nmcli 'echo "10 (unmanaged)"'
+	# what udev does meanwhile, once
+	stub udevadm '[ ! -e $root/udev ] || { mv $root/udev $root/done; . $root/done; }'
+	stub rmmod 'rm -r $root/sys/module/$1' '[ $1 != ec_master ] || rm -f $root/dev/EtherCAT*'
+	stub modprobe 'm=$root/sys/module/$1' \
+		'[ ! -e $root/broken ] || ! grep -qx $1 $root/broken || { echo broken; exit 1; }' \
+		'[ $1 = ec_master ] || [ -e $root/sys/module/ec_master ] || modprobe ec_master' \
+		'mkdir -p $m/parameters' \
+		'[ $1 = ec_master ] || exit 0' \
+		'echo ${2#main_devices=} >$m/parameters/main_devices' \
+		'for d in $(echo ${2#main_devices=} | tr , " "); do' \
+		'	i=$((${i:--1} + 1))' '	ln -s /dev/null $root/dev/EtherCAT$i' 'done'
+	stub ethercat 'case "$1 $2" in' '"device bind") ;;' '*) exit ;;' 'esac' \
+		'[ ! -e $root/unknown ] || { echo "unknown chip"; exit 1; }' \
+		'pci=$(readlink -f $root/sys/class/net/$3/device)' \
+		'echo ec_intel >$pci/driver_override' \
+		'touch $root/sys/bus/pci/drivers/ec_intel/${pci##*/}' 'rm -r $root/sys/class/net/$3'
+	export PATH=$root/bin:$PATH
+}
+
+# nic NAME ADDRESS [PCI-ADDRESS DRIVER]: an interface
+nic() {
+	local dir=$root/sys/class/net/$1
+
+	mkdir -p "$dir"
+	echo "$2" >"$dir/address"
+	echo 2 >"$dir/ifindex"
+	[ $# = 4 ] || return 0
+	mkdir -p "$root/sys/bus/pci/devices/$3"
+	ln -s "$root/sys/bus/pci/devices/$3" "$dir/device"
+	ln -s "../drivers/$4" "$root/sys/bus/pci/devices/$3/driver"
+}
+
+# reserve PCI-ADDRESS: as 'ethercat device bind --boot' leaves the card
+reserve() {
+	mkdir -p "$root/sys/bus/pci/devices/$1"
+	echo ec_intel >"$root/sys/bus/pci/devices/$1/driver_override"
+}
+
+conf() { printf '%s\n' "$@" >"$BATS_TEST_TMPDIR/conf"; }
+ctl() {
+	run "$root/sbin/ethercatctl" -c "$BATS_TEST_TMPDIR/conf" "$1"
+	echo "$output"
+}
+loaded_are() { [ "$(cd "$root/sys/module" && echo *)" = "$1" ]; }
+main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$1" ]; }
+
+@test "a udev rule that loads ec_intel while start begins is waited for" {
+	reserve $PCI
+	conf "MASTER0_DEVICE=$PCI"
+	echo 'modprobe ec_intel' >"$root/udev"
+	ctl start
+	[ "$status" = 0 ]
+	main_is $PCI
+	loaded_are 'ec_intel ec_master'
+}
+
+@test "the rule of a card that appears while start waits for it does no harm" {
+	conf "MASTER0_DEVICE=$PCI"
+	stub sleep "mkdir -p \$root/sys/bus/pci/devices/$PCI" \
+		"echo ec_intel >\$root/sys/bus/pci/devices/$PCI/driver_override" \
+		'modprobe ec_intel'
+	ctl start
+	[ "$status" = 0 ]
+	main_is $PCI
+	loaded_are 'ec_intel ec_master'
+}
+
+@test "a MAC address that no interface has gets ec_generic also beside a card of ec_intel" {
+	reserve $PCI
+	conf "MASTER0_DEVICE=$LATE" "MASTER1_DEVICE=$PCI" 'DEVICE_MODULES=generic'
+	ctl start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "$BATS_TEST_TMPDIR/conf:1: MASTER0_DEVICE=\"$LATE\": no interface has this address, and ec_intel has too few cards after 10 s; the master waits for it, 'ethercat devices' lists the cards" ]
+	[ "$(grep -c -e waits -e uses <<<"$output")" = 1 ]
+	main_is "$LATE,$PCI"
+	loaded_are 'ec_generic ec_intel ec_master'
+}
+
+@test "a MAC address that may be that of a card of ec_intel is accepted at once, for both drivers" {
+	reserve $PCI
+	conf "MASTER0_DEVICE=$LATE" 'DEVICE_MODULES=intel'
+	stub sleep 'touch $root/slept'
+	ctl start
+	[ "$status" = 0 ]
+	[ "$(grep -c -e waits -e uses <<<"$output")" = 0 ]
+	[ ! -e "$root/slept" ]
+	loaded_are 'ec_generic ec_intel ec_master'
+}
+
+@test "restart refuses a configuration without a master before it stops anything" {
+	nic eth0 $NIC
+	conf 'MASTER0_DEVICE=eth0'
+	ctl start
+	[ "$status" = 0 ]
+	conf 'MASTER0_DEVICE=""'
+	ctl restart
+	[ "$status" = 1 ]
+	[[ $output =~ "conf names no master: set MASTER0_DEVICE to a MAC address" ]]
+	loaded_are 'ec_generic ec_master'
+}
+
+@test "ec_master that is loaded with an address in capitals is the same" {
+	nic eth0 $NIC
+	nic ETH1 $LATE
+	conf "MASTER0_DEVICE=$NIC" 'MASTER1_DEVICE=ETH1'
+	modprobe ec_master "main_devices=${NIC^^},ETH1"
+	ctl start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: ec_master is already loaded" ]
+	loaded_are 'ec_generic ec_master'
+	# names are as they are
+	ctl stop
+	modprobe ec_master "main_devices=$NIC,eth1"
+	ctl start
+	[ "$status" = 1 ]
+}
+
+@test "a start after one that failed, or after rmmod, loads what is missing" {
+	nic eth0 $NIC
+	conf 'MASTER0_DEVICE=eth0' 'DEVICE_MODULES=intel'
+	modprobe ec_master main_devices=eth0
+	echo ec_generic >"$root/broken"
+	ctl start
+	[ "$status" = 1 ]
+	ctl start
+	[ "$status" = 1 ]
+	[ "${lines[-1]}" = "ethercatctl: cannot load ec_generic: broken" ]
+	rm "$root/broken"
+	ctl start
+	[ "$status" = 0 ]
+	loaded_are 'ec_generic ec_master'
+	rmmod ec_generic
+	ctl start
+	[ "$status" = 0 ]
+	loaded_are 'ec_generic ec_master'
+	ctl stop
+	loaded_are '*'
+	[ ! -e "$root/run/ethercatctl" ]
+}
+
+@test "a second start leaves each card to the driver it has" {
+	local name
+
+	for name in eth0 $NIC; do
+		nic eth0 $NIC $PCI e1000e
+		conf "MASTER0_DEVICE=$name" 'DEVICE_MODULES=e1000e'
+		ctl start
+		[ "$status" = 0 ]
+		loaded_are 'ec_intel ec_master'
+		ctl start
+		[ "$status" = 0 ]
+		loaded_are 'ec_intel ec_master'
+		main_is $NIC
+		ctl stop
+		rm -r "$root/sys/bus/pci/devices/$PCI"
+		# ec_intel refuses the card: no second attempt while ec_generic has it
+		nic eth0 $NIC $PCI e1000e
+		touch "$root/unknown"
+		ctl start
+		[ "$status" = 0 ]
+		[ "${lines[0]}" = "ethercatctl: eth0 uses ec_generic: unknown chip" ]
+		rm "$root/unknown"
+		ctl start
+		[ "$status" = 0 ]
+		[ -e "$root/sys/class/net/eth0" ]
+		loaded_are 'ec_generic ec_intel ec_master'
+		ctl stop
+		# nor when the configuration names a native driver since
+		conf "MASTER0_DEVICE=$name" 'DEVICE_MODULES=generic'
+		ctl start
+		conf "MASTER0_DEVICE=$name" 'DEVICE_MODULES=e1000e'
+		ctl start
+		[ "$status" = 0 ]
+		[ -e "$root/sys/class/net/eth0" ]
+		loaded_are 'ec_generic ec_master'
+		ctl stop
+		rm -r "$root/sys/class/net/eth0" "$root/sys/bus/pci/devices/$PCI"
+	done
+}
