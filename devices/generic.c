@@ -472,6 +472,8 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 
 	if (g && what == NETDEV_CHANGEMTU)
 		return change_mtu(nd, ((struct netdev_notifier_info_ext *)ptr)->ext.mtu);
+	if (g && what == NETDEV_CHANGENAME)
+		ecdev_rename(g->dev, nd->name);
 	switch (what) {
 	case NETDEV_UNREGISTER:
 		if (!g)

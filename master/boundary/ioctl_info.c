@@ -64,7 +64,9 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 	d->state = dev ? EC_DEVICE_ATTACHED : EC_DEVICE_WAITING;
 	if (dev) {
 		ether_addr_copy(d->address, dev->mac);
+		raw_spin_lock(&link->links->main_lock);
 		strscpy(d->name, dev->name, sizeof(d->name));
+		raw_spin_unlock(&link->links->main_lock);
 	}
 	rcu_read_unlock();
 	d->link_up = READ_ONCE(link->up);

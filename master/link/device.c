@@ -379,6 +379,30 @@ void ecdev_withdraw(struct ecdev *dev)
 EXPORT_SYMBOL_GPL(ecdev_withdraw);
 
 /**
+ * ecdev_rename() - users call a device by another name now
+ * @dev: device
+ * @name: this name
+ *
+ * Its master keeps it, even if main_devices= has the previous name.
+ *
+ * Context: Process. May sleep.
+ */
+void ecdev_rename(struct ecdev *dev, const char *name)
+{
+	struct ec_link *link;
+
+	mutex_lock(&devices_lock);
+	link = rcu_dereference_protected(dev->link, lockdep_is_held(&devices_lock));
+	if (link)
+		raw_spin_lock(&link->links->main_lock);
+	strscpy(dev->name, name, sizeof(dev->name));
+	if (link)
+		raw_spin_unlock(&link->links->main_lock);
+	mutex_unlock(&devices_lock);
+}
+EXPORT_SYMBOL_GPL(ecdev_rename);
+
+/**
  * ecdev_receive() - deliver a received EtherCAT frame
  * @dev: device
  * @src: source MAC address

@@ -44,7 +44,7 @@ struct ec_links {
 	struct list_head list;
 	/** @main: name of the main device; changed with the device lock and @main_lock held */
 	char main[EC_UAPI_STRING];
-	/** @main_lock: for readers of @main, some of which cannot be preempted */
+	/** @main_lock: for readers of @main and of the name of an attached device */
 	raw_spinlock_t main_lock;
 	/** @backup: backup device as the module parameters name it, NULL: none; immutable */
 	const char *backup;

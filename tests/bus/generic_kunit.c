@@ -4,6 +4,7 @@
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include "bus.h"
+#include "master/link/device.h"
 
 /* private part of the network device */
 struct fake {
@@ -84,30 +85,77 @@ static void expect_result(struct bus *b, struct fake *o, const struct result *r)
 	KUNIT_EXPECT_EQ(b->test, errors(b) > bad, r->want != SENT);
 }
 
-static void generic_result_of_frame(struct kunit *test)
+/* the network device that the master waits for */
+static struct net_device *fake_new(struct bus *b)
 {
-	struct bus *b = bus_new(test, "slave a EK1100\n");
 	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER,
 					     fake_setup);
 	struct fake *o;
 	u32 i;
 
-	KUNIT_ASSERT_NOT_NULL(test, nd);
+	KUNIT_ASSERT_NOT_NULL(b->test, nd);
 	o = netdev_priv(nd);
 	o->result = NETDEV_TX_OK;
-	KUNIT_ASSERT_EQ(test, register_netdev(nd), 0);
+	KUNIT_ASSERT_EQ(b->test, register_netdev(nd), 0);
 	for (i = 0; i < 100 && !READ_ONCE(b->m->links.link[0].dev); i++)
 		msleep(1);
-	KUNIT_EXPECT_NOT_NULL(test, b->m->links.link[0].dev);
-	msleep(100);
-	expect_result(b, o, test->param_value);
+	KUNIT_EXPECT_NOT_NULL(b->test, b->m->links.link[0].dev);
+	return nd;
+}
+
+static void fake_free(struct bus *b, struct net_device *nd)
+{
 	unregister_netdev(nd);
-	KUNIT_EXPECT_NULL(test, b->m->links.link[0].dev);
+	KUNIT_EXPECT_NULL(b->test, b->m->links.link[0].dev);
 	free_netdev(nd);
+}
+
+static void generic_result_of_frame(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_new(b);
+
+	msleep(100);
+	expect_result(b, netdev_priv(nd), test->param_value);
+	fake_free(b, nd);
+}
+
+static void rename_to(struct kunit *test, struct net_device *nd, const char *name)
+{
+	struct ifreq r = {};
+	bool copy;
+
+	strscpy(r.ifr_name, nd->name, sizeof(r.ifr_name));
+	strscpy(r.ifr_newname, name, sizeof(r.ifr_newname));
+	/* some kernels refuse while it is up */
+	rtnl_lock();
+	dev_close(nd);
+	rtnl_unlock();
+	KUNIT_EXPECT_EQ(test, dev_ioctl(&init_net, SIOCSIFNAME, &r, NULL, &copy), 0);
+	rtnl_lock();
+	KUNIT_EXPECT_EQ(test, dev_open(nd, NULL), 0);
+	rtnl_unlock();
+}
+
+/* What commands show, and what a rival is recognized by; its master keeps it. */
+static void generic_rename_shown(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_new(b);
+	const struct ecdev *dev = b->m->links.link[0].dev;
+	unsigned int rival;
+
+	rename_to(test, nd, "lan7");
+	msleep(100);
+	KUNIT_EXPECT_PTR_EQ(test, (const struct ecdev *)b->m->links.link[0].dev, dev);
+	KUNIT_EXPECT_STREQ(test, dev->name, "lan7");
+	KUNIT_EXPECT_EQ(test, ec_device_release(&b->m->links, "lan7", &rival), -EEXIST);
+	fake_free(b, nd);
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(generic_result_of_frame, result_gen_params),
+	KUNIT_CASE(generic_rename_shown),
 	{ }
 };
 
