@@ -54,6 +54,7 @@ struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 			  const struct ecdev_ops *ops, void *priv);
 void ecdev_withdraw(struct ecdev *dev);
 void ecdev_rename(struct ecdev *dev, const char *name);
+bool ecdev_numbered(struct ecdev *dev);
 bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size);
 bool ecdev_wanted(const char *name, const u8 *mac);
 int ecdev_register_notifier(struct notifier_block *nb);

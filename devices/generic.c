@@ -193,6 +193,14 @@ static int check(const struct net_device *nd)
 	return 0;
 }
 
+/* It forgets them after minutes, which are hundreds of thousands of frames. */
+static void warn_bridge(const struct gen *g)
+{
+	if (netif_is_bridge_master(g->nd) && ecdev_numbered(g->dev))
+		pr_warn_ratelimited("ec_generic: %s: the bridge learns the address of each frame; load ec_master with frame_numbers=N, or set its ports to learning off\n",
+				    g->nd->name);
+}
+
 static int claim(struct gen *g)
 {
 	int ret;
@@ -201,6 +209,7 @@ static int claim(struct gen *g)
 	ret = check(g->nd);
 	if (ret)
 		return ret;
+	warn_bridge(g);
 	ret = dev_open(g->nd, NULL);
 	if (ret) {
 		pr_err_ratelimited("ec_generic: %s: cannot bring up the interface (%pe)\n",

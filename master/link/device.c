@@ -403,6 +403,26 @@ void ecdev_rename(struct ecdev *dev, const char *name)
 EXPORT_SYMBOL_GPL(ecdev_rename);
 
 /**
+ * ecdev_numbered() - does each frame have a source address of its own?
+ * @dev: device that a master has, or that starts for it
+ *
+ * Context: Process.
+ * Return: false with frame_numbers=N, and without a master.
+ */
+bool ecdev_numbered(struct ecdev *dev)
+{
+	struct ec_link *link;
+	bool numbered;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	numbered = link && link->links->slots.numbered;
+	rcu_read_unlock();
+	return numbered;
+}
+EXPORT_SYMBOL_GPL(ecdev_numbered);
+
+/**
  * ecdev_receive() - deliver a received EtherCAT frame
  * @dev: device
  * @src: source MAC address

@@ -81,7 +81,18 @@ not_taken() {
 	ip link set veth0 master main0
 	not_taken veth0 "in use by a bridge, bond, team or macvlan"
 	stop
+	dmesg -C
 	runs veth1
+	dmesg | grep -q 'ec_generic: main0: the bridge learns the address of each frame; load ec_master with frame_numbers=N'
+	learned=$(bridge fdb show br main0 | grep -c '02:00:')
+	[ "$learned" -gt 1000 ]
+	stop
+	dmesg -C
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=main0 frame_numbers=N
+	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	main_is attached
+	run grep 'the bridge learns' <(dmesg)
+	[ "$status" = 1 ]
 }
 
 @test "the port of a macvlan is refused" {
