@@ -351,6 +351,9 @@ static int gen_tx_send(void *priv, u8 *buf, size_t len)
 
 	if (!netif_running(g->nd) || !netif_carrier_ok(g->nd))
 		return -ENETDOWN;
+	/* else each attempt would be captured */
+	if (netif_xmit_frozen_or_drv_stopped(netdev_get_tx_queue(g->nd, 0)))
+		return -EBUSY;
 	skb->len = 0;
 	skb_reset_tail_pointer(skb);
 	skb_put(skb, len);

@@ -56,7 +56,9 @@ static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len
 
 	if (unlikely(READ_ONCE(link->links->base->debug) >= 2))
 		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
-	if (unlikely(!ec_capture_sent(link->links->capture, buf, len)))
+	/* while the link is down no frame leaves */
+	if (unlikely(link->links->capture) && dev->ops->link_up(dev->priv) &&
+	    !ec_capture_sent(link->links->capture, buf, len))
 		atomic64_inc(&link->stats.not_captured);
 	ret = dev->ops->tx_send(dev->priv, buf, len);
 	if (ret) {

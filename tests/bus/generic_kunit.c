@@ -153,9 +153,49 @@ static void generic_rename_shown(struct kunit *test)
 	fake_free(b, nd);
 }
 
+/* a capture program at the network device */
+struct program {
+	struct packet_type pt;
+	u32 sent;
+};
+
+static int get(struct sk_buff *skb, struct net_device *nd, struct packet_type *pt,
+	       struct net_device *orig)
+{
+	struct program *p = container_of(pt, struct program, pt);
+
+	p->sent += skb->pkt_type == PACKET_OUTGOING;
+	consume_skb(skb);
+	return NET_RX_SUCCESS;
+}
+
+static void generic_full_queue_not_captured(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_new(b);
+	struct program p = { .pt = { .type = htons(ETH_P_ALL), .dev = nd, .func = get } };
+	u32 shown;
+
+	dev_add_pack(&p.pt);
+	msleep(500);
+	KUNIT_EXPECT_GE(test, p.sent, 10u);
+	netif_stop_queue(nd);
+	msleep(10);
+	shown = p.sent;
+	/* what waits is tried again all the time */
+	msleep(500);
+	KUNIT_EXPECT_EQ(test, p.sent, shown);
+	netif_wake_queue(nd);
+	msleep(100);
+	KUNIT_EXPECT_GT(test, p.sent, shown);
+	dev_remove_pack(&p.pt);
+	fake_free(b, nd);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(generic_result_of_frame, result_gen_params),
 	KUNIT_CASE(generic_rename_shown),
+	KUNIT_CASE(generic_full_queue_not_captured),
 	{ }
 };
 

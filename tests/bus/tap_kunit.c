@@ -178,10 +178,32 @@ static void tap_without_program_not_used(struct kunit *test)
 	cyc_release(c);
 }
 
+/* What cannot leave is not shown as sent. */
+static void tap_without_link_shows_nothing(struct kunit *test)
+{
+	struct program p;
+	struct cyc *c = captured(test, &p);
+	struct ec_tap *t = &c->b->m->links.capture->tap;
+	u32 sent;
+
+	cyc_run(c, 10);
+	flush_work(&t->work);
+	KUNIT_EXPECT_GE(test, p.sent, 10u);
+	bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+	flush_work(&t->work);
+	sent = p.sent;
+	cyc_run(c, 100);
+	flush_work(&t->work);
+	KUNIT_EXPECT_EQ(test, p.sent, sent);
+	dev_remove_pack(&p.pt);
+	cyc_release(c);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(tap_worker_runs_all_captured),
 	KUNIT_CASE(tap_ring_full_drops_and_counts),
 	KUNIT_CASE(tap_without_program_not_used),
+	KUNIT_CASE(tap_without_link_shows_nothing),
 	{}
 };
 
