@@ -15,7 +15,8 @@ top=$BATS_TEST_DIRNAME/../..
 
 # postinst ACTION: what it does; debhelper's part makes the group
 postinst() {
-	sed 's/^#DEBHELPER#$/echo group/' "$top/debian/ethercat-tools.postinst" >"$BATS_TEST_TMPDIR/postinst"
+	sed 's/^#DEBHELPER#$/echo group/' "$top/debian/ethercat-tools.postinst" \
+		>"$BATS_TEST_TMPDIR/postinst"
 	run env PATH="$BATS_TEST_TMPDIR:/usr/bin:/bin" sh "$BATS_TEST_TMPDIR/postinst" "$1"
 	echo "$output"
 	[ "$status" = 0 ]

@@ -17,7 +17,8 @@ setup() {
 	local here=$BATS_TEST_DIRNAME/../../operation
 
 	root=$BATS_TEST_TMPDIR/root
-	mkdir -p "$root"/{bin,sbin,run,dev,sys/module,sys/class/net,sys/bus/pci/{devices,drivers/ec_intel}}
+	mkdir -p "$root"/{bin,sbin,run,dev} "$root"/sys/{module,class/net} \
+		"$root"/sys/bus/pci/{devices,drivers/ec_intel}
 	sed "s,/\(sys\|run\|dev/E\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
 	chmod +x "$root/sbin/ethercatctl"
 	cp "$here/conf.sh" "$root/sbin"
@@ -98,7 +99,8 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	conf "MASTER0_DEVICE=$LATE" "MASTER1_DEVICE=$PCI" 'DEVICE_MODULES=generic'
 	ctl start
 	[ "$status" = 0 ]
-	[ "${lines[0]}" = "$BATS_TEST_TMPDIR/conf:1: MASTER0_DEVICE=\"$LATE\": no interface has this address, and ec_intel has too few cards after 10 s; the master waits for it, 'ethercat devices' lists the cards" ]
+	[[ ${lines[0]} == *"conf:1: MASTER0_DEVICE=\"$LATE\": no interface has this address, and "* ]]
+	[[ ${lines[0]} == *"ec_intel has too few cards after 10 s; the master waits for it, "* ]]
 	[ "$(grep -c -e waits -e uses <<<"$output")" = 1 ]
 	main_is "$LATE,$PCI"
 	loaded_are 'ec_generic ec_intel ec_master'
@@ -143,7 +145,7 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	[ "$status" = 1 ]
 }
 
-@test "a start after one that failed, or after rmmod, loads what is missing" {
+@test "a start after one that failed, or after rmmod, loads the missing drivers" {
 	nic eth0 $NIC
 	conf 'MASTER0_DEVICE=eth0' 'DEVICE_MODULES=intel'
 	modprobe ec_master main_devices=eth0
