@@ -272,12 +272,13 @@ static void intel_stop(void *priv)
 	mutex_unlock(&n->lock);
 }
 
-/* after a reset of the function, or a suspend */
+/* after a reset, an error of the bus, or a suspend; what has restored the state has used it up */
 static int run_again(struct intel *n)
 {
 	int ret = 0;
 
 	mutex_lock(&n->lock);
+	pci_save_state(n->pdev);
 	if (n->started)
 		ret = run(n);
 	mutex_unlock(&n->lock);
@@ -367,6 +368,7 @@ static int probe(struct pci_dev *pdev, const struct pci_device_id *id)
 		return ret;
 	}
 	pci_set_drvdata(pdev, n);
+	pci_save_state(pdev);
 	pci_info(pdev, "%s (%s)%s, %pM\n", chip->name, chip->class->name,
 		 chip->tested ? "" : ", never tested", n->nic.mac);
 	dev = ecdev_offer(pci_name(pdev), n->nic.mac, &intel_ops, n);
@@ -408,6 +410,30 @@ static void reset_done(struct pci_dev *pdev)
 		pci_err(pdev, "does not start after a reset (%pe)\n", ERR_PTR(ret));
 }
 
+/*
+ * A card without these functions keeps the kernel from ending the errors of other functions behind
+ * the same port. Also after an error that needs no reset the descriptors may be wrong.
+ */
+static pci_ers_result_t error_detected(struct pci_dev *pdev, pci_channel_state_t state)
+{
+	quiesce(pci_get_drvdata(pdev));
+	switch (state) {
+	case pci_channel_io_normal:
+		return PCI_ERS_RESULT_CAN_RECOVER;
+	case pci_channel_io_frozen:
+		return PCI_ERS_RESULT_NEED_RESET;
+	default:
+		return PCI_ERS_RESULT_DISCONNECT;
+	}
+}
+
+/* It was never disabled: its registers answer again with the state. */
+static pci_ers_result_t slot_reset(struct pci_dev *pdev)
+{
+	pci_restore_state(pdev);
+	return PCI_ERS_RESULT_RECOVERED;
+}
+
 static int suspend(struct device *dev)
 {
 	quiesce(dev_get_drvdata(dev));
@@ -424,6 +450,9 @@ static DEFINE_SIMPLE_DEV_PM_OPS(pm_ops, suspend, resume);
 static const struct pci_error_handlers errors = {
 	.reset_prepare = reset_prepare,
 	.reset_done = reset_done,
+	.error_detected = error_detected,
+	.slot_reset = slot_reset,
+	.resume = reset_done,
 };
 
 /* none: only driver_override chooses a device, see pci_match_device() */

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics --iommu --timeout 600
-# The native device behind an IOMMU: a card reaches only memory of its driver.
+# vm: --icount --nics --iommu --monitor --timeout 600
+# The native device behind an IOMMU: a card reaches only memory of its driver. It is at a port of
+# PCIe as well, which reports errors of the bus.
 
 load helpers
 
@@ -65,6 +66,33 @@ planted() {
 		grep -x intact "$BATS_TEST_TMPDIR/dma"
 		faults "$at"
 	done
+	wait_for 120 all_slaves_are PREOP 22
+}
+
+# monitor COMMAND: of QEMU
+monitor() {
+	local port
+
+	port=$(grep -lx monitor /sys/class/virtio-ports/*/name)
+	echo "$*" >"/dev/$(basename "${port%/name}")"
+}
+
+recovered() { dmesg | grep -q 'AER: device recovery successful'; }
+
+# QEMU's cards report none, so the port does. After a fatal one the link of its port stays down.
+@test "an error of the bus that needs no reset is survived in OP" {
+	local app
+
+	LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000000 \
+		>"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	app=$!
+	wait_for 120 all_slaves_are OP 22
+	dmesg -C
+	monitor pcie_aer_inject_error p0 COMP_TIME
+	wait_for 60 recovered || { kill $app; dmesg; return 1; }
+	wait_for 120 all_slaves_are OP 22
+	kill $app
+	wait $app || true
 	wait_for 120 all_slaves_are PREOP 22
 }
 
