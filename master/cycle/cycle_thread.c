@@ -582,6 +582,7 @@ void ec_cycle_thread_stop(struct ec_cycle *c)
 bool ec_cycle_thread_ended(const struct ec_cycle *c)
 {
 	lockdep_assert_held(c->wanted->lock);
+	/* pairs with end_run() */
 	return c->thread && !(smp_load_acquire(&c->cycles->run) & 1);
 }
 
