@@ -254,7 +254,7 @@ static uint16_t next_control(uint16_t status, unsigned long n)
 	return (status & 0x6f) == 0x23 || (status & 0x6f) == 0x27 ? 0x0f : 0x00;
 }
 
-/* what a drive shall do */
+/* request to a drive */
 enum phase { ENABLE, MOVE, QUICK_STOP };
 
 /* @t_s: time since the motion began */

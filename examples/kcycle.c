@@ -34,7 +34,7 @@
 
 static ec_master_t *master;
 static ec_domain_t *domain;
-static ec_slave_config_t *slaves[SLAVES_MAX];	/* NULL: left out */
+static ec_slave_config_t *slaves[SLAVES_MAX];	/* NULL: a drive, skipped */
 static int outputs[SLAVES_MAX];		/* byte of digital outputs in the domain, or -1 */
 static unsigned int n_slaves, n_configured;
 static int follow;
@@ -102,7 +102,7 @@ static int add_slave(uint16_t position)
 	if (ecrt_master_get_slave(master, position, &info))
 		return -1;
 	if (is_drive(position, &info)) {
-		printf("slave %u left out: %s is a drive\n", position, info.name);
+		printf("slave %u skipped: %s is a drive\n", position, info.name);
 		return 0;
 	}
 	slaves[position] = ecrt_master_slave_config(master, 0, position, info.vendor_id,

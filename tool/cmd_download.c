@@ -66,7 +66,7 @@ const struct cmd cmd_download = {
 		"SUBINDEX := { 0 to 0xff }\n"
 		"VALUE := { a value of the type of the object | - for stdin }\n"
 		"Without a subindex the whole object is written (complete access); VALUE needs --type\n"
-		"then, stdin is written as it is. With a subindex and without --type the type is that\n"
+		"then, stdin is written unchanged. With a subindex and without --type the type is that\n"
 		"of the slave's dictionary, which costs one more transfer; a slave that describes no\n"
 		"objects needs --type. Negative numbers need no '--' before them.\n",
 	.json = "master, slave, index, subindex, complete_access, size_bytes",

@@ -77,12 +77,12 @@ static int set_mode(struct dev *d, u16 position, const char *mode)
 	if (reg_read(d, position, EC_REG_DC_CUC, &owner, 1))
 		return 1;
 	if (slave_owns(owner, 0) && slave_owns(owner, 1))
-		return fail("slave %u: its own CPU controls both latch inputs; set their mode with its objects",
+		return fail("slave %u controls both latch inputs itself; use its objects",
 			    position);
 	for (unsigned int i = 0; i < INPUTS && !ret; i++) {
 		if (slave_owns(owner, i))
-			note("slave %u: latch %u is controlled by the slave; mode unchanged", position,
-			     i);
+			note("slave %u: latch %u is controlled by the slave; mode unchanged",
+			     position, i);
 		else
 			ret = reg_write(d, position, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1,
 					false);

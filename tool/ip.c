@@ -53,7 +53,7 @@ static int parse_mac(u8 mac[6], const char *text)
 	if (v[0] & 1)
 		return usage_error("invalid MAC address '%s': broadcast or multicast, bit 0 of the first byte must be 0",
 				   text);
-	if (!memcmp(v, (u8[6]){ 0 }, 6))
+	if (!(v[0] | v[1] | v[2] | v[3] | v[4] | v[5]))
 		return usage_error("invalid MAC address '%s': all bytes are 0", text);
 	memcpy(mac, v, 6);
 	return 0;

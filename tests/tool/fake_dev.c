@@ -395,7 +395,8 @@ static int reg_read(struct ec_ioc_reg *x)
 		 * with FAKE_LATCHES both are
 		 */
 		if (x->position == 2 && (a == 0x0980 || a == 0x09ae || a == 0x09b0 || a == 0x09a9))
-			to[i] = a == 0x0980 ? getenv("FAKE_LATCHES") ? 0x30 : 0x20 : a == 0x09ae ? 5 : a == 0x09a9 ? 1 : 0x15;
+			to[i] = a == 0x0980 ? (getenv("FAKE_LATCHES") ? 0x30 : 0x20) :
+				a == 0x09ae ? 5 : a == 0x09a9 ? 1 : 0x15;
 	}
 	fake_glance_registers(x, to);
 	return 0;
