@@ -393,11 +393,13 @@ void ecdev_rename(struct ecdev *dev, const char *name)
 
 	mutex_lock(&devices_lock);
 	link = rcu_dereference_protected(dev->link, lockdep_is_held(&devices_lock));
-	if (link)
+	if (link) {
 		raw_spin_lock(&link->links->main_lock);
-	strscpy(dev->name, name, sizeof(dev->name));
-	if (link)
+		strscpy(dev->name, name, sizeof(dev->name));
 		raw_spin_unlock(&link->links->main_lock);
+	} else {
+		strscpy(dev->name, name, sizeof(dev->name));
+	}
 	mutex_unlock(&devices_lock);
 }
 EXPORT_SYMBOL_GPL(ecdev_rename);
