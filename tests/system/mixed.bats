@@ -128,6 +128,7 @@ ends() {
 	kill -0 $app
 	[ "$(lost 0)" = "$before" ]
 	ends
+	cat "$BATS_TEST_TMPDIR/demo"
 	grep 'Working counter errors: 0, ' "$BATS_TEST_TMPDIR/demo"
 	wait_for 60 slaves_are 0 PREOP 22
 }

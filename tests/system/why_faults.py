@@ -31,7 +31,6 @@ SETTLE_S = 5
 NO_OBJECT = 0x06020000
 NO_ALIAS, NO_SLAVE, DIFFERENT = 4, 5, 6                         # EC_CAUSE_*
 SILENT, EEPROM, SDO, PDO, SYNC, REFUSED, SLOW, AL_ERROR = 32, 34, 36, 40, 42, 43, 44, 46
-STATES = {"INIT": 1, "PREOP": 2, "BOOT": 3, "SAFEOP": 4, "OP": 8}
 
 
 def behind(i, top):
@@ -194,7 +193,7 @@ class Refuse(Fault):
         return {("al_refused", position(self.slave), self.code)}
 
     def events(self):
-        return [self.failed(REFUSED, code=self.code, state=STATES[self.state])]
+        return [self.failed(REFUSED, code=self.code, state=self.state)]
 
 
 class Mute(Fault):
@@ -210,7 +209,7 @@ class Mute(Fault):
         return {("al_timeout", position(self.slave))}
 
     def events(self):
-        return [self.failed(SLOW, state=STATES["SAFEOP"])]
+        return [self.failed(SLOW, state="SAFEOP")]
 
 
 class Sdo(Fault):
@@ -379,4 +378,4 @@ class Requested(Fault):
         return {("not_requested", position(self.slave))}
 
     def events(self):
-        return [Event("al_state", self.slave, state=STATES[self.state], before=STATES["OP"])]
+        return [Event("al_state", self.slave, state=self.state, before="OP")]

@@ -3,7 +3,7 @@
 import subprocess
 
 from why_events import Event
-from why_faults import (COE, DRIVES, EEPROM, REFUSED, STATES, Alias, Counter, Cut, Dead,
+from why_faults import (COE, DRIVES, EEPROM, REFUSED, Alias, Counter, Cut, Dead,
                         Different, Errors, Fault, Link, Mailbox, Missing, Mute, NoClock, Off, Pdo,
                         Refuse, Requested, SERVOS, Sdo, Swapped, Sync)
 
@@ -148,7 +148,7 @@ class NoFirmware(Scanned):
         return {("al_refused", position(self.slave), NO_FIRMWARE)}
 
     def events(self):
-        return [self.failed(REFUSED, code=NO_FIRMWARE, state=STATES["PREOP"])]
+        return [self.failed(REFUSED, code=NO_FIRMWARE, state="PREOP")]
 
 
 class Boot(Fault):
@@ -163,7 +163,7 @@ class Boot(Fault):
         return {("boot", position(self.slave))}
 
     def events(self):
-        return [Event("al_state", self.slave, state=STATES["BOOT"])]
+        return [Event("al_state", self.slave, state="BOOT")]
 
 
 KINDS = [Cut, Off, Missing, Link, Dead, Refuse, Mute, Sdo, Mailbox, Pdo, Different, Swapped, Alias,
