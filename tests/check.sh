@@ -112,7 +112,7 @@ run() {
 # what failed, by level: the last lines, since some readers keep no others
 failed_names=
 report() {
-	local name=$1 rc seconds
+	local name=$1 rc seconds names
 
 	echo "=== $name"
 	read -r rc seconds <"$log/$name.end"
@@ -123,8 +123,9 @@ report() {
 		failures "$log/$name"
 		tail -n 20 "$log/$name"
 		echo "=== $name failed (exit $rc)"
-		failed_names+=$(grep -E '^[ \t]*(not ok|FAILED:|demo: FAILED)' "$log/$name" |
-				head -n 20 | sed "s/^[ \t]*/$name: /")$'\n'
+		names=$(grep -E '^[[:space:]]*(not ok|FAILED:|demo: FAILED)' "$log/$name" |
+			head -n 20 | sed "s/^[[:space:]]*/$name: /")
+		failed_names+=${names:-"$name: ended with $rc"}$'\n'
 	fi
 	echo "=== $name: $seconds s"
 }

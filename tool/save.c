@@ -60,7 +60,7 @@ int save_begin(struct save *s, const char *path)
  * save_end() - the file is whole
  * @s: of save_begin(); its stream is closed
  *
- * Return: 0, or 1 after printing what failed: the file is then as it was before.
+ * Return: 0, or 1 after printing what failed: a file that is replaced is then as it was before.
  */
 int save_end(struct save *s)
 {
