@@ -9,6 +9,7 @@
 #include "../master/wire/sii.h"
 #include "out.h"
 
+#define DESCRIBE_MS	1000	/* for a type that can be given as well */
 #define ROOM	(64u << 10)	/* the largest object the kernel transfers */
 
 /**
@@ -81,6 +82,7 @@ const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slav
 	struct ec_ioc_sdo_info i = {
 		.position = s->position, .index = a->index, .subindex = a->sub,
 		.what = EC_SDO_INFO_ENTRY, .size = ROOM, .data = (uintptr_t)buf,
+		.timeout_ms = DESCRIBE_MS,
 	};
 	const struct ec_type *type = NULL;
 	struct ec_od_entry e;
