@@ -43,7 +43,8 @@ usage() {
 	exit status: the command's; 70 the kernel reported a fault, 124 timeout,
 	  125 the guest died or something is missing here
 	environment: EC_ACCEL=kvm or tcg (else found out), EC_CACHE; EC_KCSAN_SKIP=N: with KCSAN
-	  one of up to N accesses is watched (100)
+	  one of up to N accesses is watched (100); EC_BEGIN=SEC: a guest whose command has not
+	  begun by then, 240, is started again, once (not with --init)
 	END
 	exit 125
 }
@@ -378,6 +379,42 @@ if [ -n "$parked" ] && [ ! -f "$parked" ] && [ ! -f "$parked.no" ]; then
 fi
 touch -c "$parked" 2>/dev/null || true	# it is in use
 
+# where the CPUs of a guest that hangs are, three times
+where() {
+	python3 - "$tmp/hmp" <<-'END' || true
+	import re, socket, sys, time
+	s = socket.socket(socket.AF_UNIX)
+	s.settimeout(10)
+	s.connect(sys.argv[1])
+	for _ in range(3):
+	    text = b""
+	    s.sendall(b"info registers -a\ninfo status\n")
+	    while b"VM status" not in text:
+	        text += s.recv(65536)
+	    for line in re.findall(r"CPU#\d+|[ER]IP=.*|PC=.*|PSW=.*|VM status.*", text.decode("latin1")):
+	        print("#  ", line.strip())
+	    time.sleep(1)
+	END
+}
+
+# watch PID: ends the guest after the time it has, or long before when its command has not begun
+watch() {
+	local pid=$1 end=$timeout begin=${EC_BEGIN:-240} tick
+
+	[ -z "$init" ] || begin=$timeout
+	mkfifo "$tmp/tick.$pid"
+	exec {tick}<>"$tmp/tick.$pid"
+	SECONDS=0
+	while [ $SECONDS -lt "$end" ] && { [ -s "$ctl/started" ] || [ $SECONDS -lt "$begin" ]; }; do
+		read -rt 1 -u "$tick" || true	# no process that would outlive this one
+	done
+	echo "# run.sh: the guest hangs, $(sed 's/$/ s after its kernel the command began/' "$ctl/started" 2>/dev/null ||
+		echo before the command began)"
+	where
+	[ ! -s "$ctl/started" ] && [ $SECONDS -lt "$end" ] || : >"$tmp/late"
+	kill -9 "$pid"
+} >&2
+
 # one start of the guest; sets qemu_rc and sed_rc
 boot() {
 	local input=/dev/null
@@ -389,9 +426,11 @@ boot() {
 		date +@@@@%s >"$input"
 	fi
 	[ ! -f "$parked" ] || qemu_args+=(-incoming "exec:cat $(printf %q "$parked")")
-	timeout -k 5 "$timeout" "${qemu_args[@]}" -serial stdio <"$input" >"$tmp/out" \
-		2>"$tmp/qemu.err" &
+	"${qemu_args[@]}" -serial stdio -monitor "unix:$tmp/hmp,server=on,wait=off" <"$input" \
+		>"$tmp/out" 2>"$tmp/qemu.err" &
 	qemu_pid=$!
+	watch $qemu_pid &
+	local watch_pid=$!
 	# The console adds a carriage return to each line of the kernel. The file tells
 	# the guest that all it wrote has arrived; sed holds back what it writes to any
 	# other file than stderr. (sed -u would read byte by byte.)
@@ -403,8 +442,10 @@ boot() {
 	} &
 	local sed_pid=$!
 	qemu_rc=0
-	wait $qemu_pid || qemu_rc=$?
+	{ wait $qemu_pid || qemu_rc=$?; } 2>/dev/null	# not that it was killed
 	qemu_pid=
+	kill $watch_pid 2>/dev/null || true
+	wait $watch_pid 2>/dev/null || true
 	sed_rc=0
 	wait $sed_pid || sed_rc=$?
 }
@@ -412,7 +453,7 @@ boot() {
 boot
 # Before the command nothing of ours runs in the guest: a death there is QEMU's or the
 # kernel's, and rare. It is shown, and once pardoned.
-if [ ! -s "$ctl/started" ] && [ $qemu_rc != 124 ] && [ $qemu_rc != 137 ] && [ $sed_rc = 0 ]; then
+if [ ! -s "$ctl/started" ] && [ ! -e "$tmp/late" ] && [ $sed_rc = 0 ]; then
 	sed 's/^/# /' "$tmp/qemu.err" >&2
 	rm -f "$parked"
 	echo "# run.sh: the guest ended before its command began (QEMU: $qemu_rc); second start" >&2
@@ -434,7 +475,7 @@ if [ -f "$ctl/kmsg" ]; then
 fi
 
 if [ ! -s "$ctl/rc" ]; then
-	if [ $qemu_rc = 124 ] || [ $qemu_rc = 137 ]; then
+	if [ -e "$tmp/late" ]; then
 		echo "run.sh: TIMEOUT: not finished after $timeout s (--timeout)" >&2
 		exit 124
 	fi

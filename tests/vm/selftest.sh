@@ -69,6 +69,10 @@ printf '#!/bin/sh\n[ -e %s ] || { : >%s; echo "died early" >&2; exit 1; }\nexec 
 chmod +x "$tmp/qemu-system-x86_64"
 PATH=$tmp:$PATH EC_ACCEL=tcg check "the second start of a guest counts, the first one is shown" 7 \
 	'^# died early$' -- sh -c 'exit 7'
+printf '#!/bin/sh\n[ -e %s ] || { : >%s; exec "%s" "$@" -S; }\nexec %s "$@"\n' \
+	"$tmp/hung" "$tmp/hung" "$qemu" "$qemu" >"$tmp/qemu-system-x86_64"
+PATH=$tmp:$PATH EC_ACCEL=tcg EC_BEGIN=25 check "a guest that hangs at its start is started again" 7 \
+	'^# run.sh: the guest hangs, before the command began' -- sh -c 'exit 7'
 check "kernel warning is 70, even after dmesg -c" 70 'KERNEL FAULT' -- \
 	sh -c 'echo "<4>WARNING: CPU: made up" >/dev/kmsg; dmesg -c >/dev/null'
 check "--allow-oops" 5 '^$|^out' --allow-oops -- sh -c 'echo "<4>BUG: made up" >/dev/kmsg; echo out; exit 5'

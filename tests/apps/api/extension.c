@@ -173,10 +173,27 @@ static void clocks(void)
 	bench_down(&b);
 }
 
+/* A reader of new events only. The bus goes on with what the application before left to it, so
+ * some of them may come at any moment; one that began with the old ones would never be silent.
+ */
+static int open_silent(void)
+{
+	struct pollfd p = { .events = POLLIN };
+
+	for (int i = 0; i < 100; i++) {
+		p.fd = CALL(ecrt_open_events)(0, 1);
+		if (p.fd < 0 || poll(&p, 1, 0) == 0)
+			return p.fd;
+		close(p.fd);
+		usleep(50000);
+	}
+	return -1;
+}
+
 /* What this application does is in the events, for a reader that only reads. */
 static void events(void)
 {
-	int fd = CALL(ecrt_open_events)(0, 1), all = CALL(ecrt_open_events)(0, 0);
+	int fd = open_silent(), all = CALL(ecrt_open_events)(0, 0);
 	struct pollfd p = { .fd = fd, .events = POLLIN };
 	bool reserved = false, activated = false, released = false;
 	ec_event_t e[64];
@@ -186,7 +203,6 @@ static void events(void)
 
 	NEED(fd >= 0 && all >= 0);
 	SAYS(CALL(ecrt_open_events)(99, 0), -ENOENT);
-	IS(poll(&p, 1, 0), 0);
 	NEED(bench_request(&b) && bench_configure(&b) && bench_activate(&b));
 	bench_down(&b);
 	IS(poll(&p, 1, 1000), 1);
