@@ -117,6 +117,8 @@ report() {
 	echo "=== $name"
 	read -r rc seconds <"$log/$name.end"
 	count "$log/$name" "$rc"
+	# what to shorten when the whole takes too long
+	grep -E '^# .*: [0-9.]+ s, [0-9.]+ s of CPU$' "$log/$name" | sort -t: -k2 -nr | head -n 12
 	if [ "$rc" = 0 ]; then
 		tail -n 1 "$log/$name"
 	else
