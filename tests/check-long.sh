@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and
-# all of tests/system on all kernels, among them one that reports data races and one that reports
+# What takes too long for every check: all suites in a UML kernel with KASAN and lockdep, and all
+# of tests/system on all kernels, among them one that reports data races and one that reports
 # wrong use of memory, locks and DMA; with a native network card of three models, also behind an
 # IOMMU, the files that the card matters to; a million cycles of it, also while its cable is
-# pulled; 600,000 cycles beside readers of events; the packages of Debian 12 and 13; a reboot with
-# both kinds of device. The last line is "N passed, N failed"; results with their date are in
-# Documentation/testing.rst.
+# pulled; 600,000 cycles beside readers of events; the packages of Debian 12 and 13; a reboot and
+# a suspend with both kinds of device. The last line is "N passed, N failed"; results with their
+# date are in Documentation/testing.rst.
 #
 # usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|packages|packages-13|
 #	reboot|KERNEL...]
@@ -35,7 +35,7 @@ run() {
 	cycles|flaps|events) tests/system/run.sh "tests/system/long/$1.bats" ;;
 	packages) tests/packages/run.sh ;;
 	packages-13) tests/packages/run.sh trixie ;;
-	reboot) tests/reboot/run.sh generic native generic+kexec native+kexec ;;
+	reboot) tests/reboot/run.sh {generic,native}{,+kexec,+suspend} ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac

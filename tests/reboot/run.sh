@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # "reboot -f" in a guest with an application in OP, and kexec: the wire, recorded outside the
-# guest, shows that all slaves leave OP and stay out of it. The last line is "N passed, N failed".
+# guest, shows that all slaves leave OP and stay out of it. Suspend: an idle master sleeps with its
+# computer, and works afterwards. The last line is "N passed, N failed".
 #
-# usage: run.sh [native|generic|native+kexec|generic+kexec]...
-#	device of the master, and how the guest ends; default: native native+kexec
+# usage: run.sh [native|generic[+kexec|+suspend]]...
+#	device of the master, and what the guest does; default: native native+kexec
+#	native+suspend
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
@@ -56,14 +58,35 @@ ends() {
 	fi
 }
 
-logged() { grep -qE 'EtherCAT 0: reboot: 22 slave\(s\) taken out of SAFEOP and OP in [0-9]+ ms' "$tmp/out"; }
+# suspends DEVICE
+suspends() {
+	EC_KERNEL=$kernel tests/reboot/suspend.sh "$1" >"$tmp/out" 2>&1
+	grep -q 'suspend-init: works after resume 2' "$tmp/out" &&
+		[ "$(grep -c 'ACPI: PM: Waking up from system sleep state S3' "$tmp/out")" = 2 ]
+}
 
-for how in ${*:-native native+kexec}; do
-	device=${how%+kexec} kexec=
+# the lines of two suspends, in this order
+slept() {
+	local one=$'computer sleeps\nWaking up\ncomputer resumed\nscan complete: 22 slave'
+
+	grep -oE 'computer (sleeps|resumed)|Waking up|scan complete: 22 slave' "$tmp/out" |
+		diff - <(printf '%s\n' 'scan complete: 22 slave' "$one" "$one")
+}
+
+logged() {
+	grep -qE 'EtherCAT 0: reboot: 22 slave\(s\) taken out of SAFEOP and OP in [0-9]+ ms' "$tmp/out"
+}
+
+for how in ${*:-native native+kexec native+suspend}; do
+	device=${how%+*} kexec=
 	case $how in
+	native+suspend|generic+suspend)
+		t "$how: a computer that sleeps twice brings 22 slaves to OP each time" suspends "$device"
+		t "$how: the bus is scanned after each resume, not in between" slept
+		continue ;;
 	native|generic) t=restarts ;;
 	native+kexec|generic+kexec) t="starts another kernel" kexec=1 ;;
-	*) echo "run.sh: $how: neither native nor generic, with or without +kexec" >&2; exit 2 ;;
+	*) echo "run.sh: $how: not native or generic, with +kexec or +suspend" >&2; exit 2 ;;
 	esac
 	rm -f "$tmp/wire.pcap"
 	t "$how: a guest with 22 slaves in OP $t" ends "$device" "$kexec"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # vm: --icount --nics --timeout 900
-# The computer suspends as far as a guest can (suspend/ec_suspend.c): notifiers, freezer, and the
-# network card of the master in D3.
+# The computer suspends as far as a guest with folders of the host can (suspend/ec_suspend.c):
+# notifiers, freezer, and the network card of the master in D3. tests/reboot has a whole one.
 
 load helpers
 

@@ -408,8 +408,11 @@ watch() {
 	while [ $SECONDS -lt "$end" ] && { [ -s "$ctl/started" ] || [ $SECONDS -lt "$begin" ]; }; do
 		read -rt 1 -u "$tick" || true	# no process that would outlive this one
 	done
-	echo "# run.sh: the guest hangs, $(sed 's/$/ s after its kernel the command began/' "$ctl/started" 2>/dev/null ||
-		echo before the command began)"
+	if [ -s "$ctl/started" ]; then
+		echo "# run.sh: the guest hangs; the command began $(cat "$ctl/started") s after its kernel"
+	else
+		echo "# run.sh: the guest hangs, before the command began"
+	fi
 	where
 	[ ! -s "$ctl/started" ] && [ $SECONDS -lt "$end" ] || : >"$tmp/late"
 	kill -9 "$pid"
