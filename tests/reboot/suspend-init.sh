@@ -33,7 +33,9 @@ wait_for() {
 }
 
 must() { "$@" || { say "failed: $*"; end; }; }
-slaves_are() { [ "$("$build/tool/ethercat" slaves 2>/dev/null | awk -v s="$1" '$3 == s' | wc -l)" = 22 ]; }
+slaves_are() {
+	[ "$("$build/tool/ethercat" slaves 2>/dev/null | awk -v s="$1" '$3 == s' | wc -l)" = 22 ]
+}
 
 while read -r m; do must insmod "$m"; done </order
 must insmod "$build/modules/master/ec_master.ko" main_devices=52:54:00:ec:00:00
@@ -45,7 +47,10 @@ else
 	must insmod "$build/modules/devices/ec_generic.ko"
 fi
 # scanned TIMES: so often since the start, and the slaves are in PREOP
-scanned() { [ "$(dmesg | grep -c 'EtherCAT 0: scan complete: 22 slave(s)')" -ge "$1" ] && slaves_are PREOP; }
+scanned() {
+	[ "$(dmesg | grep -c 'EtherCAT 0: scan complete: 22 slave(s)')" -ge "$1" ] &&
+		slaves_are PREOP
+}
 
 wait_for 120 scanned 1
 for n in 1 2; do

@@ -33,5 +33,5 @@ timeout 300 qemu-system-x86_64 -nodefaults -no-user-config -no-reboot -display n
 	-icount shift=0,sleep=off -m 768 -serial stdio \
 	-netdev hubport,id=h0,hubid=0 -device e1000e,netdev=h0,mac=52:54:00:ec:00:00 \
 	-netdev hubport,id=h1,hubid=0 -device e1000e,netdev=h1,mac=52:54:00:ec:00:01 \
-	-append "console=ttyS0 loglevel=7 panic=-1 mitigations=off tsc=reliable net.ifnames=0 no_console_suspend" \
+	-append "console=ttyS0 loglevel=7 panic=-1 mitigations=off tsc=reliable net.ifnames=0" \
 	</dev/null
