@@ -8,21 +8,22 @@
 #include "../bus/slave.h"
 
 /* Start from the PDOs that the slave has. */
-static void slave_defaults(struct ec_config *c, const struct ec_slave *slave)
+static int slave_defaults(struct ec_config *c, const struct ec_slave *slave)
 {
 	unsigned int sm;
+	int ret = 0;
 
 	lockdep_assert_held(c->wanted->lock);
 	down_read(&slave->bus->topo);
-	for (sm = 0; sm < slave->n_sms; sm++) {
+	for (sm = 0; sm < slave->n_sms && !ret; sm++) {
 		if (c->sm[sm].dir || c->sm[sm].pdos.n)
 			continue;
 		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
 				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
-		if (ec_pdo_list_copy(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
-			break;
+		ret = ec_pdo_list_copy(&c->sm[sm].pdos, &slave->sm_pdos[sm]);
 	}
 	up_read(&slave->bus->topo);
+	return ret;
 }
 
 /* The configuration of the same slave in the session that is to be taken over, or NULL. */
@@ -37,16 +38,17 @@ static const struct ec_config *predecessor(const struct ec_config *c)
 }
 
 /* Start as that configuration did, whether the slave was connected then, or is now. */
-static void inherit_defaults(struct ec_config *c, const struct ec_config *from)
+static int inherit_defaults(struct ec_config *c, const struct ec_config *from)
 {
 	unsigned int sm;
+	int ret = 0;
 
-	for (sm = 0; sm < EC_MAX_SM; sm++) {
+	for (sm = 0; sm < EC_MAX_SM && !ret; sm++) {
 		c->sm[sm].dir = from->sm[sm].dir;
-		if (!from->sm[sm].explicit &&
-		    ec_pdo_list_copy(&c->sm[sm].pdos, &from->sm[sm].pdos))
-			return;
+		if (!from->sm[sm].explicit)
+			ret = ec_pdo_list_copy(&c->sm[sm].pdos, &from->sm[sm].pdos);
 	}
+	return ret;
 }
 
 /**
@@ -123,20 +125,41 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
  * They are those of the session that is to be taken over, or those that the slave has.
  *
  * Context: Process, lock of the session held. May sleep.
+ * Return: 0; -ENOMEM: a part of them is missing, which must not be written to the slave.
  */
-void ec_config_begin(struct ec_config *c)
+int ec_config_begin(struct ec_config *c)
 {
 	const struct ec_config *before = predecessor(c);
 	unsigned int i;
+	int ret = 0;
 
 	lockdep_assert_held(c->wanted->lock);
 	if (before)
-		inherit_defaults(c, before);
+		ret = inherit_defaults(c, before);
 	else if (c->slave)
-		slave_defaults(c, c->slave);
+		ret = slave_defaults(c, c->slave);
+	if (ret)
+		return ret;
 	/* as many as slaves have */
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_budget_add(&c->wanted->budget, ec_pdo_list_memory(&c->sm[i].pdos));
+	return 0;
+}
+
+/**
+ * ec_config_drop() - take back the configuration that was made last
+ * @c: configuration that could not begin, detached from its slave
+ *
+ * Context: Process, lock of the session held. May sleep.
+ */
+void ec_config_drop(struct ec_config *c)
+{
+	struct ec_wanted *w = c->wanted;
+
+	lockdep_assert_held(w->lock);
+	w->n_configs--;
+	ec_budget_release(&w->budget, sizeof(*c) + sizeof(*w->configs));
+	ec_config_free(c);
 }
 
 void ec_config_free(struct ec_config *c)

@@ -218,7 +218,8 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 				   u32 product);
 struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 position, u32 vendor,
 				 u32 product);
-void ec_config_begin(struct ec_config *c);
+int ec_config_begin(struct ec_config *c);
+void ec_config_drop(struct ec_config *c);
 void ec_config_free(struct ec_config *c);
 int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog);
 int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo);

@@ -191,6 +191,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 				       u32 product)
 {
 	struct ec_config *c = ec_config_find(&s->wanted, alias, position, vendor, product);
+	int ret;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (c)
@@ -199,8 +200,12 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 	if (IS_ERR(c))
 		return c;
 	ec_session_attach_one(s, c);
-	ec_config_begin(c);
-	return c;
+	ret = ec_config_begin(c);
+	if (!ret)
+		return c;
+	ec_session_detach(c);
+	ec_config_drop(c);
+	return ERR_PTR(ret);
 }
 
 /**
