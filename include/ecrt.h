@@ -1212,8 +1212,7 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
  * a tool has requested another state; none after ecrt_master_deactivate_slaves(). Retries
  * other slaves that could not be configured. Does not wait for the slaves.
  *
- * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
- * no allocation.
+ * Context: Any; may be called from the cycle. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-EINVAL @master is NULL.
  */
 EC_PUBLIC_API int ecrt_master_reset(ec_master_t *master);

@@ -4,8 +4,8 @@
 #include "../../lib/ecrt/ecrt_int.h"
 
 /*
- * What a cyclic call could not do itself: gives the links back to its cycle after a stall,
- * logs a call from a wrong context, tries failed slaves again.
+ * What a cyclic call could not do itself: gives the links back to its cycle after a stall, and
+ * logs a call from a wrong context.
  */
 static void work(struct work_struct *work)
 {
@@ -22,8 +22,6 @@ static void work(struct work_struct *work)
 		ec_err(m,
 		       "kernel API: the device needs a thread for ecrt_master_send() and ecrt_master_receive(), not an interrupt or a raw spinlock; call them from a kthread\n");
 	}
-	if (xchg(&api->reset, false))
-		ec_ioc(&api->file, EC_IOC_RESET, NULL);
 }
 
 /**

@@ -209,9 +209,7 @@ int ecrt_master_reset(ec_master_t *master)
 {
 	if (!master)
 		return -EINVAL;
-	/* slaves are locked for it, which the caller need not be able to wait for */
-	WRITE_ONCE(master->api->reset, true);
-	queue_work(master->sessions.service, &master->api->work);
+	ec_session_try_again(&master->sessions);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_reset);

@@ -110,37 +110,9 @@ int ec_ioc_debug(struct ec_call *call)
 	return 0;
 }
 
-/* An active session requests OP for its slaves, even after a tool has requested another state. */
-static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
-{
-	return session && session->wanted.active && !session->ending &&
-	       (ec_config_of(s) || s == session->raised);
-}
-
-static void try_again(const struct ec_session *session, struct ec_slave *s)
-{
-	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
-
-	if (ec_slave_forgive(s))
-		WRITE_ONCE(s->reconfigure, true);
-	else if (!op || READ_ONCE(s->requested) == EC_AL_OP)
-		return;
-	if (op)
-		ec_slave_request(s, EC_AL_OP);
-	else
-		ec_slave_kick(s);
-}
-
 int ec_ioc_reset(struct ec_call *call)
 {
-	struct ec_master *m = call->master;
-
-	mutex_lock(&m->sessions.lock);
-	down_read(&m->bus.topo);
-	ec_for_each_slave(s, &m->bus)
-		try_again(m->sessions.session, s);
-	up_read(&m->bus.topo);
-	mutex_unlock(&m->sessions.lock);
+	ec_session_try_again(&call->master->sessions);
 	return 0;
 }
 

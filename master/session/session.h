@@ -78,6 +78,8 @@ struct ec_sessions {
 	 * calls of an application in the kernel; immutable
 	 */
 	struct workqueue_struct *service;
+	/** @again: tries slaves again that have failed */
+	struct work_struct again;
 	/**
 	 * @lock: protects @session, @candidate and everything they own except the part of the
 	 * cyclic caller
@@ -181,6 +183,8 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 void ec_session_attach(struct ec_sessions *ss);
 struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 position, u32 vendor,
 				       u32 product);
+void ec_session_again(struct work_struct *work);
+void ec_session_try_again(struct ec_sessions *ss);
 
 /* session_status.c */
 void ec_session_note_counts(struct ec_session *s, bool first, bool all);

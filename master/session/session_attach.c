@@ -225,3 +225,56 @@ void ec_session_attach(struct ec_sessions *ss)
 			ec_config_locate(c);
 	ec_sessions_unlock(ss);
 }
+
+/* An active session requests OP for its slaves, even after a tool has requested another state. */
+static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
+{
+	return session && session->wanted.active && !session->ending &&
+	       (ec_config_of(s) || s == session->raised);
+}
+
+static void try_again(const struct ec_session *session, struct ec_slave *s)
+{
+	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+
+	if (ec_slave_forgive(s))
+		WRITE_ONCE(s->reconfigure, true);
+	else if (!op || READ_ONCE(s->requested) == EC_AL_OP)
+		return;
+	if (op)
+		ec_slave_request(s, EC_AL_OP);
+	else
+		ec_slave_kick(s);
+}
+
+/**
+ * ec_session_again() - slaves that failed begin anew
+ * @work: of struct ec_sessions
+ *
+ * Context: The service queue. May sleep.
+ */
+void ec_session_again(struct work_struct *work)
+{
+	struct ec_sessions *ss = container_of(work, struct ec_sessions, again);
+
+	mutex_lock(&ss->lock);
+	down_read(&ss->bus->topo);
+	ec_for_each_slave(s, ss->bus)
+		try_again(ss->session, s);
+	up_read(&ss->bus->topo);
+	mutex_unlock(&ss->lock);
+}
+
+/**
+ * ec_session_try_again() - let slaves that failed begin anew
+ * @ss: sessions of a master
+ *
+ * It does not wait for the lock of the sessions: its holder may wait for a frame that the
+ * caller, a cycle, would carry.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_session_try_again(struct ec_sessions *ss)
+{
+	queue_work(ss->service, &ss->again);
+}

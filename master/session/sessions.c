@@ -15,6 +15,7 @@
 int ec_sessions_init(struct ec_sessions *ss)
 {
 	mutex_init(&ss->lock);
+	INIT_WORK(&ss->again, ec_session_again);
 	/* what a request waits for is in another queue, see ec_bus_init() */
 	ss->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
 				    ss->base->index);

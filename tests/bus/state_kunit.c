@@ -171,6 +171,46 @@ static void state_reset(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_INIT);
 }
 
+struct reset {
+	struct work_struct work;
+	struct bus *b;
+	struct completion done;
+	int ret;
+};
+
+static void reset(struct work_struct *work)
+{
+	struct reset *r = container_of(work, struct reset, work);
+
+	r->ret = ec_ioc(&r->b->app, EC_IOC_RESET, NULL);
+	complete(&r->done);
+}
+
+/* The cycle resets while another caller has the lock of the sessions, and goes on. */
+static void state_reset_beside_lock(struct kunit *test)
+{
+	struct cyc *c = configure(test);
+	struct reset r = { .b = c->b, .ret = 1 };
+
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_ASSERT_TRUE(test, cyc_all_op(c));
+	bus_request(c->b, A, EC_AL_PREOP);
+	cyc_run(c, 200);
+	KUNIT_ASSERT_EQ(test, al(c->b, A), EC_AL_PREOP);
+	init_completion(&r.done);
+	INIT_WORK_ONSTACK(&r.work, reset);
+	mutex_lock(&c->b->m->sessions.lock);
+	schedule_work(&r.work);
+	KUNIT_EXPECT_NE(test, wait_for_completion_timeout(&r.done, msecs_to_jiffies(100)), 0ul);
+	mutex_unlock(&c->b->m->sessions.lock);
+	flush_work(&r.work);
+	destroy_work_on_stack(&r.work);
+	KUNIT_EXPECT_EQ(test, r.ret, 0);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, al(c->b, A), EC_AL_OP);
+}
+
 static void state_reset_kernel(struct kunit *test)
 {
 	struct bus *b = bus_up(test, line, N);
@@ -194,6 +234,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(state_at_once_kernel),
 	KUNIT_CASE(state_no_reference),
 	KUNIT_CASE(state_reset),
+	KUNIT_CASE(state_reset_beside_lock),
 	KUNIT_CASE(state_reset_kernel),
 	{}
 };
