@@ -440,7 +440,7 @@ EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
  *
  * Causes no bus traffic.
  *
- * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
+ * Context: Any. RT-safe: bounded, no sleep,
  * no allocation. In the cycle of a process call ecrt_master_state() instead.
  * Return: 0; %-EINVAL an argument is NULL.
  */
@@ -2336,7 +2336,8 @@ EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
  * @domain: of an active master
  *
  * Call between ecrt_master_receive() and ecrt_domain_queue(). Updates the result of
- * ecrt_domain_state() if the domain was sent. No system call.
+ * ecrt_domain_state() if the domain was sent or a reply has come back; a reply that only a
+ * second receive has found counts, too. No system call.
  *
  * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active.
@@ -2498,7 +2499,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_sdo_request_state(ec_sdo_request_t *req);
  *
  * The buffer is copied; the next ecrt_master_send() starts the transfer.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
@@ -2510,7 +2511,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write(ec_sdo_request_t *req);
  *
  * Extension (%EC_HAVE_SDO_REQUEST_COMPLETE).
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0,
  * not active, or @req is NULL.
  */
@@ -2523,7 +2524,7 @@ EC_PUBLIC_API int ecrt_sdo_request_write_with_size(ec_sdo_request_t *req,
  *
  * The next ecrt_master_send() starts the transfer.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
@@ -2537,7 +2538,7 @@ EC_PUBLIC_API int ecrt_sdo_request_read(ec_sdo_request_t *req);
  * ERROR, or SUCCESS if the transfer was complete before. No effect when @req is not BUSY. It is
  * not known whether the slave has written the value of a cancelled download.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_request_cancel(ec_sdo_request_t *req);
@@ -2607,7 +2608,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_soe_request_state(ec_soe_request_t *req);
  *
  * The buffer is copied; the next ecrt_master_send() starts the transfer.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL the size is 0, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
@@ -2616,7 +2617,7 @@ EC_PUBLIC_API int ecrt_soe_request_write(ec_soe_request_t *req);
  * ecrt_soe_request_read() - start reading the IDN
  * @req: request that is not BUSY, of an active master
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
@@ -2627,7 +2628,7 @@ EC_PUBLIC_API int ecrt_soe_request_read(ec_soe_request_t *req);
  *
  * Extension (%EC_HAVE_REQUEST_CANCEL). As ecrt_sdo_request_cancel().
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
@@ -2641,7 +2642,7 @@ EC_PUBLIC_API int ecrt_soe_request_cancel(ec_soe_request_t *req);
  * Extension (%EC_HAVE_SDO_INFO). After SUCCESS the buffer has the indexes, 16 bits each,
  * little-endian.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL unknown list, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_info_request_list(ec_sdo_info_request_t *req,
@@ -2654,7 +2655,7 @@ EC_PUBLIC_API int ecrt_sdo_info_request_list(ec_sdo_info_request_t *req,
  *
  * Extension (%EC_HAVE_SDO_INFO). ecrt_sdo_info_request_get_object() returns it.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_info_request_object(ec_sdo_info_request_t *req,
@@ -2668,7 +2669,7 @@ EC_PUBLIC_API int ecrt_sdo_info_request_object(ec_sdo_info_request_t *req,
  *
  * Extension (%EC_HAVE_SDO_INFO). ecrt_sdo_info_request_get_entry() returns it.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: as ecrt_sdo_info_request_object().
  */
 EC_PUBLIC_API int ecrt_sdo_info_request_entry(ec_sdo_info_request_t *req,
@@ -2693,7 +2694,7 @@ EC_PUBLIC_API int ecrt_sdo_info_request_timeout(ec_sdo_info_request_t *req,
  *
  * Extension (%EC_HAVE_SDO_INFO). As ecrt_sdo_request_cancel().
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_sdo_info_request_cancel(ec_sdo_info_request_t *req);
@@ -2879,7 +2880,7 @@ EC_PUBLIC_API uint32_t ecrt_foe_request_error_code(const ec_foe_request_t *req);
  *
  * Extension (%EC_HAVE_FOE_REQUESTS). Call ecrt_foe_request_state() in each cycle from now on.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL no file selected, not
  * active, or @req is NULL.
  */
@@ -2892,7 +2893,7 @@ EC_PUBLIC_API int ecrt_foe_request_write(ec_foe_request_t *req, size_t size);
  * Extension (%EC_HAVE_FOE_REQUESTS). A file that is larger than the buffer gives ERROR with
  * %-ENOBUFS.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL no file selected, not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_foe_request_read(ec_foe_request_t *req);
@@ -2904,7 +2905,7 @@ EC_PUBLIC_API int ecrt_foe_request_read(ec_foe_request_t *req);
  * Extension (%EC_HAVE_FOE_REQUESTS). As ecrt_sdo_request_cancel(). What the slave has of a file
  * whose write was cancelled depends on the slave.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL not active, or @req is NULL.
  */
 EC_PUBLIC_API int ecrt_foe_request_cancel(ec_foe_request_t *req);
@@ -2964,7 +2965,7 @@ EC_PUBLIC_API size_t ecrt_voe_handler_data_size(const ec_voe_handler_t *voe);
  * The buffer is copied; the next ecrt_master_send() starts the transfer. Then
  * ecrt_voe_handler_execute() returns its state; it takes 500 ms at most.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL not active, or
  * @voe is NULL.
  */
@@ -2977,7 +2978,7 @@ EC_PUBLIC_API int ecrt_voe_handler_write(ec_voe_handler_t *voe, size_t size);
  * The master polls the mailbox for a message; after 500 ms without one the state is ERROR.
  * A message that arrives while another exchange uses the mailbox is not lost.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-EINVAL not active, or @voe is NULL.
  */
 EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
@@ -2989,7 +2990,7 @@ EC_PUBLIC_API int ecrt_voe_handler_read(ec_voe_handler_t *voe);
  * Accesses the mailbox once, without reading its status before. If it has no message, the
  * state is ERROR.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: as ecrt_voe_handler_read().
  */
 EC_PUBLIC_API int ecrt_voe_handler_read_nosync(ec_voe_handler_t *voe);
@@ -3036,7 +3037,7 @@ EC_PUBLIC_API ec_request_state_t ecrt_reg_request_state(
  * @address: register
  * @size: bytes
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL @size is 0, not active,
  * or @req is NULL.
  */
@@ -3049,7 +3050,7 @@ EC_PUBLIC_API int ecrt_reg_request_write(ec_reg_request_t *req,
  * @address: register
  * @size: bytes
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: as ecrt_reg_request_write().
  */
 EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
@@ -3064,7 +3065,7 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
  * Extension (%EC_HAVE_REG_READWRITE). One datagram (FPRW); clears a counter without
  * losing a count. The old content is in the buffer after SUCCESS.
  *
- * Context: The cycle owner. RT-safe, no system call.
+ * Context: One caller at a time. RT-safe, no system call.
  * Return: as ecrt_reg_request_write().
  */
 EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,

@@ -246,11 +246,14 @@ static inline __u32 *ec_emerg_cleared(const struct ec_slave_config *sc)
 	return &((struct ec_slave_config *)sc)->overruns;
 }
 
-/* the next send notifies the master; a cycle that the kernel runs sees the counter */
+/*
+ * The next send notifies the master; a cycle that the kernel runs sees the counter. The caller
+ * need not be the thread that sends.
+ */
 static inline void ec_request_started(struct ec_master *m)
 {
-	m->cycle.next.flags |= EC_SEND_FLAG_REQUESTS;
 	__atomic_fetch_add(&m->area->starts, 1, __ATOMIC_RELEASE);
+	__atomic_store_n(&m->cycle.started, 1, __ATOMIC_RELEASE);
 }
 
 #endif

@@ -121,16 +121,17 @@ void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 
 {
 	size_t page = (size_t)sysconf(_SC_PAGESIZE), i;
 	int flags = MAP_SHARED | MAP_POPULATE | (at ? MAP_FIXED : 0);
-	volatile __u8 *p;
+	__u8 *p;
 
 	at = mmap(at, size, prot, flags, m->fd, (off_t)offset);
 	if (at == MAP_FAILED)
 		return NULL;
+	/* at once: a cycle of the kernel may already write there */
 	for (p = at, i = 0; i < size; i += page) {
-		__u8 byte = p[i];
-
 		if (prot & PROT_WRITE)
-			p[i] = byte;
+			__atomic_fetch_or(&p[i], 0, __ATOMIC_RELAXED);
+		else
+			(void)*(volatile __u8 *)&p[i];
 	}
 	return at;
 }
@@ -239,7 +240,7 @@ int ecrt_master_activate(ec_master_t *master)
 	}
 	master->cycle.next.queued = 0;
 	master->cycle.next.flags = 0;
-	master->cycle.sent = 0;
+	master->cycle.started = 0;
 	master->cycle.received = 0;
 	master->active = true;
 	return 0;
@@ -290,8 +291,12 @@ static int advise(struct ec_master *m, int advice, const struct ec_ioc_send *sen
 static int send_next(struct ec_master *m)
 {
 	struct ec_ioc_send *next = &m->cycle.next;
-	int ret = advise(m, EC_ADVICE_SEND | (int)next->flags, next);
+	int ret;
 
+	if (__atomic_load_n(&m->cycle.started, __ATOMIC_RELAXED) &&
+	    __atomic_exchange_n(&m->cycle.started, 0, __ATOMIC_ACQUIRE))
+		next->flags |= EC_SEND_FLAG_REQUESTS;
+	ret = advise(m, EC_ADVICE_SEND | (int)next->flags, next);
 	return ret > 0 ? ec_command(m, EC_IOC_SEND, next) : ret;
 }
 
@@ -306,7 +311,6 @@ int ecrt_master_send(ec_master_t *master)
 	if (a->exchange)
 		return ec_exchange_send(master, master->status);
 	ret = send_next(master);
-	a->sent |= a->next.queued;
 	a->next.queued = 0;
 	a->next.flags = 0;
 	return ret;
@@ -321,8 +325,6 @@ int ecrt_master_receive(ec_master_t *master)
 		return ec_inactive(master);
 	if (master->cycle.exchange)
 		return ec_exchange_receive(master, master->status);
-	master->cycle.received |= master->cycle.sent;
-	master->cycle.sent = 0;
 	ret = advise(master, EC_ADVICE_RECEIVE, &none);
 	return ret > 0 ? ec_command(master, EC_IOC_RECEIVE, NULL) : ret;
 }

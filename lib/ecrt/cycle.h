@@ -11,10 +11,10 @@
 #endif
 
 /**
- * struct ec_app_cycle - state of the cycle owner, which alone uses it
+ * struct ec_app_cycle - state of the cycle owner, which alone uses it but for @started
  * @next: what the next send does; its application time is the last one
- * @sent: domains sent since the last receive, bit n: domain n
- * @received: domains received and not processed
+ * @started: a request was started or cancelled since the last send, by any thread
+ * @received: domains not processed since the last exchange, bit n: domain n
  * @exchange: of a cycle that the kernel runs; NULL: the application runs its cycle
  * @stride: from one buffer of @exchange to the next, bytes
  * @out_back: output buffer that the application holds
@@ -25,7 +25,7 @@
  */
 struct ec_app_cycle {
 	struct ec_ioc_send next;
-	__u64 sent;
+	__u32 started;
 	__u64 received;
 	struct ec_exchange *exchange;
 	unsigned int stride;

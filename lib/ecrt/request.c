@@ -118,7 +118,7 @@ ec_request_state_t ec_app_request_state(struct ec_app_request *r)
  * @op: EC_REQUEST_OP_*
  * @size: bytes to write; registers: to read, too
  *
- * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Context: One caller at a time. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_app_request_give(struct ec_app_request *r, __u8 op, size_t size)
 {
@@ -147,7 +147,7 @@ void ec_app_request_give(struct ec_app_request *r, __u8 op, size_t size)
  * @op: EC_REQUEST_OP_*
  * @size: bytes to write; registers: to read, too
  *
- * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Context: One caller at a time. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; -ENOBUFS larger than the buffer; -EBUSY; -EINVAL not active.
  */
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
@@ -168,7 +168,7 @@ int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size)
  * ec_app_request_stop() - have the kernel end a request; the next send notifies the master
  * @r: request that is BUSY
  *
- * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Context: One caller at a time. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_app_request_stop(struct ec_app_request *r)
 {
@@ -182,7 +182,7 @@ void ec_app_request_stop(struct ec_app_request *r)
  * ec_app_request_cancel() - end a request; the next send notifies the master
  * @r: request
  *
- * Context: The cyclic caller. RT-safe: bounded, no sleep, no allocation.
+ * Context: One caller at a time. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; -EINVAL not active.
  */
 int ec_app_request_cancel(struct ec_app_request *r)

@@ -84,13 +84,13 @@ int ecrt_domain_process(ec_domain_t *domain)
 	if (!page)
 		return -EINVAL;
 	a = ec_app_cycle(m);
-	if (!(a->received >> domain->index & 1))
-		return 0;
-	a->received &= ~(1ULL << domain->index);
 	if (a->exchange) {
-		ec_exchange_process(domain);
+		if (a->received >> domain->index & 1)
+			ec_exchange_process(domain);
+		a->received &= ~(1ULL << domain->index);
 		return 0;
 	}
+	/* a frame may have come with a later receive than the first one behind its send */
 	st = &page->domains[domain->index];
 	domain->snap.working_counter = ec_status_read(st->working_counter);
 	domain->snap.wc_state = ec_status_read(st->wc_state);

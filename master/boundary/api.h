@@ -41,7 +41,6 @@ struct task_struct;
  * @work: what a cyclic call leaves to a thread that may sleep
  * @atomic: a call came where its device needs a thread
  * @warned: the log has the warning
- * @reset: slaves that failed shall be tried again
  * @send_cb: sends between two cycles, or NULL; see ecrt_master_callbacks()
  * @receive_cb: receives there, or NULL
  * @cb_data: for both
@@ -60,7 +59,6 @@ struct ec_api {
 	struct work_struct work;
 	bool atomic;
 	bool warned;
-	bool reset;
 	void (*send_cb)(void *cb_data);
 	void (*receive_cb)(void *cb_data);
 	void *cb_data;
@@ -221,10 +219,11 @@ static inline void ec_request_started(struct ec_master *m)
 {
 	struct ec_request_area *area = (void *)m->sessions.session->cycle.shared->requests;
 
-	m->api->cycle.next.flags |= EC_SEND_FLAG_REQUESTS;
 	/* the request before the number that announces it; see ec_requests_notice() */
 	smp_mb__before_atomic();
 	atomic_inc((atomic_t *)&area->starts);
+	/* pairs with xchg() of ecrt_master_send() */
+	smp_store_release(&m->api->cycle.started, 1);
 }
 
 #endif

@@ -91,17 +91,12 @@ int ecrt_master_receive(ec_master_t *master)
 	if (ec_run_by_kernel(master))
 		return exchange(master, ec_exchange_receive);
 	ret = enter(master, &s);
-	if (ret == -ENODEV)
-		/* what an application finds that does not look at this */
-		master->api->cycle.received = ~0ULL;
 	if (ret)
 		return ret;
 	if (ec_api_is_between(master->api)) {
 		/* for those who wait; process data belong to the cycle */
 		ec_links_poll(&master->links);
 	} else {
-		master->api->cycle.received |= master->api->cycle.sent;
-		master->api->cycle.sent = 0;
 		ret = ec_cycle_do_receive(&s->cycle);
 	}
 	ec_access_leave(&master->links);
@@ -121,10 +116,9 @@ int ecrt_master_send(ec_master_t *master)
 	if (ret)
 		return ret;
 	next = &master->api->cycle.next;
-	if (next->flags & EC_SEND_FLAG_REQUESTS)
+	if (READ_ONCE(master->api->cycle.started) && xchg(&master->api->cycle.started, 0))
 		ec_requests_kick(s);
 	ret = ec_cycle_take_request(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
-	master->api->cycle.sent |= next->queued;
 	next->queued = 0;
 	next->flags = 0;
 	ec_access_leave(&master->links);

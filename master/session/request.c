@@ -333,18 +333,23 @@ void ec_requests_end(struct ec_session *s)
 void ec_requests_kick(struct ec_session *s)
 {
 	struct ec_requests *rq = s->requests;
+	const struct ec_request_area *area;
 
-	if (rq)
-		queue(rq, rq->sessions->service, &rq->kick);
+	if (!rq)
+		return;
+	/* ec_requests_notice() need not look at these again */
+	area = (void *)rq->shared->requests;
+	WRITE_ONCE(rq->starts, smp_load_acquire(&area->starts));
+	queue(rq, rq->sessions->service, &rq->kick);
 }
 
 /**
  * ec_requests_notice() - has the application started or cancelled a request?
  * @c: cycle of an active session
  *
- * Without a send of its own it counts them in mapped memory.
+ * They are counted in mapped memory, also those of which no send has told.
  *
- * Context: The thread that runs the cycle; when that has stopped, the monitor. RT-safe.
+ * Context: The thread that runs the cycle; when there is none, the monitor. RT-safe.
  */
 void ec_requests_notice(struct ec_cycle *c)
 {
@@ -355,10 +360,10 @@ void ec_requests_notice(struct ec_cycle *c)
 	if (!rq)
 		return;
 	area = (void *)rq->shared->requests;
-	starts = READ_ONCE(area->starts);
-	if (starts == rq->starts)
+	starts = smp_load_acquire(&area->starts);
+	if (starts == READ_ONCE(rq->starts))
 		return;
-	rq->starts = starts;
+	WRITE_ONCE(rq->starts, starts);
 	queue(rq, rq->sessions->service, &rq->kick);
 }
 

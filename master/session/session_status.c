@@ -159,7 +159,7 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_dc_app_log(ss->dc);
 		ec_cycle_tell_room(&s->cycle);
 		ec_cycle_tell_stale(&s->cycle);
-		if (ec_cycle_thread_ended(&s->cycle))
+		if (!s->cycle.thread || ec_cycle_thread_ended(&s->cycle))
 			ec_requests_notice(&s->cycle);
 		ec_session_fill_status(s);
 	}

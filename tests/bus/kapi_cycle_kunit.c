@@ -379,6 +379,36 @@ static void kapi_emergencies(struct kunit *test)
 
 /* clocks ---------------------------------------------------------------------*/
 
+/* A frame that only a second receive finds counts with the next look at its domain. */
+static void kapi_late_frame(struct kunit *test)
+{
+	struct kapp *k = start(test, 1000);
+	ec_domain_state_t state;
+
+	kapp_op(k);
+	kapp_wait(k);
+	KUNIT_ASSERT_EQ(test, ecrt_master_receive(k->m), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_queue(k->d), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_master_send(k->m), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_master_receive(k->m), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_process(k->d), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_state(k->d, &state), 0);
+	KUNIT_ASSERT_EQ(test, (int)state.wc_state, (int)EC_WC_ZERO);
+	kapp_wait(k);
+	KUNIT_ASSERT_EQ(test, ecrt_master_receive(k->m), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_process(k->d), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_state(k->d, &state), 0);
+	KUNIT_EXPECT_EQ(test, (int)state.wc_state, (int)EC_WC_COMPLETE);
+	/* one that was not sent stays as it is */
+	KUNIT_ASSERT_EQ(test, ecrt_master_send(k->m), 0);
+	kapp_wait(k);
+	KUNIT_ASSERT_EQ(test, ecrt_master_receive(k->m), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_process(k->d), 0);
+	KUNIT_ASSERT_EQ(test, ecrt_domain_state(k->d, &state), 0);
+	KUNIT_EXPECT_EQ(test, (int)state.wc_state, (int)EC_WC_COMPLETE);
+	ecrt_release_master(k->m);
+}
+
 static void clocks_each(struct kapp *k)
 {
 	ecrt_master_application_time(k->m, ktime_get_ns());
@@ -720,6 +750,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kapi_idns),
 	KUNIT_CASE(kapi_voe),
 	KUNIT_CASE(kapi_emergencies),
+	KUNIT_CASE(kapi_late_frame),
 	KUNIT_CASE(kapi_clocks),
 	KUNIT_CASE(kapi_hardirq),
 	KUNIT_CASE(kapi_needs_thread),

@@ -445,6 +445,27 @@ static void req_emergencies(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ring(c, 1)->head, 0);
 }
 
+/* Of one that another thread starts beside a send, the send may not tell. */
+static void req_untold(struct kunit *test)
+{
+	struct cyc *c = prepare(test);
+	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4);
+	struct ec_request_record *r;
+	u32 n;
+
+	go(c);
+	for (n = 1; n < 4; n++) {
+		r = req_rec(c, a);
+		r->index = 0x1018;
+		r->subindex = 4;
+		smp_store_release(&r->start, r->start + 1);
+		atomic_inc((atomic_t *)&req_area(c)->starts);
+		KUNIT_EXPECT_EQ(test, req_end(c, a, 200), 0);
+		/* the usual way beside it: looked for once only */
+		KUNIT_EXPECT_EQ(test, upload(c, a, 0x1018, 4), 0);
+	}
+}
+
 /* Without room all are lost, but counted: those an SDO transfer meets. */
 static void req_emergency_without_room(struct kunit *test)
 {
@@ -476,6 +497,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(req_registers_of_failed_slave),
 	KUNIT_CASE(req_emergencies),
 	KUNIT_CASE(req_emergency_without_room),
+	KUNIT_CASE(req_untold),
 	{}
 };
 

@@ -314,6 +314,9 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SEND:
 		fake.sent = ((struct ec_ioc_send *)arg)->queued;
 		fake.send_flags = ((struct ec_ioc_send *)arg)->flags;
+		if (fake.beside)
+			fake.beside();
+		fake.beside = NULL;
 		break;
 	}
 	return 0;

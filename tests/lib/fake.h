@@ -45,6 +45,7 @@ struct fake {
 	unsigned int dc_odd;
 	unsigned int advised;	/* of @calls, by posix_fadvise() */
 	int no_advice;		/* errno that it returns */
+	void (*beside)(void);	/* what another thread does during a send, once */
 	unsigned int answer;	/* bytes of SDO information; 0: all */
 	unsigned int large;	/* bytes of memory for the first request, behind the others */
 	unsigned char running;	/* activation takes over; the image is of this */

@@ -48,6 +48,13 @@ static void nobody(void)
 	CHECK(ecrt_slave_config_emerg_overruns(NULL) == -EINVAL);
 }
 
+static ec_sdo_request_t *other;
+
+static void start_other(void)
+{
+	CHECK(!ecrt_sdo_request_read(other));
+}
+
 static void sdo(ec_master_t *m, ec_sdo_request_t *r)
 {
 	struct ec_request_record *rec = fake_request(fake.area, 0);
@@ -89,6 +96,15 @@ static void sdo(ec_master_t *m, ec_sdo_request_t *r)
 	CHECK(ecrt_sdo_request_state(r) == EC_REQUEST_SUCCESS);
 	CHECK(ecrt_sdo_request_write(r) == -EINVAL);	/* 0 bytes */
 	CHECK(fake.calls == calls);
+
+	/* the send that another thread is in does not tell of a start, the next one does */
+	CHECK(!ecrt_master_send(m));
+	other = r;
+	fake.beside = start_other;
+	CHECK(!ecrt_master_send(m) && !fake.send_flags);
+	CHECK(!ecrt_master_send(m) && fake.send_flags == EC_SEND_FLAG_REQUESTS);
+	CHECK(!ecrt_master_send(m) && !fake.send_flags);
+	done(rec, 0, "");
 }
 
 /* @r is of request 2, of a whole object */

@@ -314,11 +314,10 @@ static void cycle(void)
 	      !ecrt_domain_process(d1) && !ecrt_domain_queue(d1) &&
 	      !ecrt_master_send(m));
 	CHECK(fake.calls == calls + 2 && fake.sent == 2);
-	fake.status->domains[0].working_counter = 4;
+	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d1));	/* not back yet */
+	CHECK(!ecrt_domain_state(d1, &state) && !state.working_counter);
 	fake.status->domains[1].working_counter = 3;
 	fake.status->domains[1].wc_state = EC_WC_COMPLETE;
-	CHECK(!ecrt_domain_process(d1));	/* not received yet */
-	CHECK(!ecrt_domain_state(d1, &state) && !state.working_counter);
 	CHECK(!ecrt_master_receive(m) && !ecrt_domain_process(d0) &&
 	      !ecrt_domain_process(d1));
 	CHECK(!ecrt_domain_state(d0, &state) && !state.working_counter);
