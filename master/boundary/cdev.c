@@ -166,7 +166,9 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
 		return -EINVAL;
 	if (vma->vm_flags & VM_EXEC || !f->writable)
 		return -EPERM;
-	mutex_lock(&m->sessions.lock);
+	/* other threads of the process wait for this one: it must be possible to kill them */
+	if (mutex_lock_killable(&m->sessions.lock))
+		return -EINTR;
 	if (m->sessions.session && m->sessions.session->cycle.owner == f &&
 	    m->sessions.session->wanted.active)
 		ret = map_shared(m->sessions.session->cycle.shared, vma);
