@@ -15,7 +15,7 @@ trap 'rm -rf "$logs"' EXIT
 
 # kernel, programs (- those of the kernel's architecture), files of tests/system
 table="\
-6.12-rt - thin generic faults kcycle api
+6.12-rt - thin kcycle api
 6.12 - thin kcycle
 6.1-rt i386 thin api
 6.1-i386 - thin op
