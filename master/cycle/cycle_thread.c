@@ -491,11 +491,10 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 		goto err;
 	}
 	if (cpu >= 0) {
-		cpus_read_lock();
+		/* no lock: one that goes offline now is found as one that goes later */
 		ret = cpu < nr_cpu_ids && cpu_online(cpu) ? 0 : -ENODEV;
 		if (!ret)
 			kthread_bind(t->task, cpu);
-		cpus_read_unlock();
 	}
 	if (ret) {
 		kthread_stop(t->task);
