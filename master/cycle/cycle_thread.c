@@ -10,7 +10,6 @@
  * but those of ec_cycle_receive() and ec_cycle_send(), and the one of the wait
  * queue of the file that owns the cycle, when a caller waits there.
  */
-#include <linux/cpu.h>
 #include <linux/hrtimer.h>
 #include <linux/kthread.h>
 #include <linux/ktime.h>
