@@ -381,14 +381,9 @@ void ec_dc_begin(struct ec_dc *dc, u16 choice)
  */
 void ec_dc_end(struct ec_dc *dc)
 {
-	unsigned long flags;
-
 	stop(dc);
 	WRITE_ONCE(dc->mode, EC_DC_IDLE);
-	raw_spin_lock_irqsave(&dc->time_lock, flags);
-	dc->has_phase = false;
-	ec_write64(&dc->app_time, 0);
-	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+	ec_dc_app_forget(dc);
 	WRITE_ONCE(dc->choice, EC_DC_ANY);
 	WRITE_ONCE(dc->wanted, false);
 	ec_dc_app_set(dc, 0, false);

@@ -280,6 +280,7 @@ void ec_dc_end(struct ec_dc *dc);
 
 /* dc_app.c */
 void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns);
+void ec_dc_app_forget(struct ec_dc *dc);
 bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip);
 u64 ec_dc_phase(struct ec_dc *dc);
 u64 ec_dc_now(struct ec_dc *dc);

@@ -152,6 +152,24 @@ void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns)
 }
 
 /**
+ * ec_dc_app_forget() - forget the application time and the phase of SYNC
+ * @dc: clocks whose SYNC signals are not started
+ *
+ * At the end of a session, and before a cycle of the kernel, which has its own time.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_dc_app_forget(struct ec_dc *dc)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&dc->time_lock, flags);
+	dc->has_phase = false;
+	ec_write64(&dc->app_time, 0);
+	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
+}
+
+/**
  * ec_dc_update_app_time() - take the application time of a send
  * @dc: clocks
  * @what: flags (at least one of the times), @app_time and @sync_time; any value

@@ -583,6 +583,9 @@ int ec_session_activate(struct ec_session *s)
 	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
 	ec_cycle_set_active(ss->cycles, &s->cycle);
+	/* the grid of SYNC is that of the thread's own time, which it keeps its phase to */
+	if (s->cycle.thread)
+		ec_dc_app_forget(ss->dc);
 	if (begins_clocks(s))
 		ec_dc_begin(ss->dc, ref_choice(s));
 	st->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;

@@ -147,6 +147,27 @@ static void lock_keeps_phase(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
 }
 
+/* The application time of a program for another master, set before activation, has no effect. */
+static void lock_ignores_app_time_before_activation(struct kunit *test)
+{
+	struct bus *b = bus_up(test, two, 2);
+	struct ec_ioc_app_time early = { .app_time = 123456789 };
+	struct app a = { .cfg = {
+		.period_ns = PERIOD_NS, .phase_ns = 300000, .cpu = -1,
+		.dc = EC_SEND_FLAG_SYNC_SLAVES | EC_CYCLE_DC_FOLLOW,
+	} };
+
+	bus_idle(b);
+	configure(&a, b, 2);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &a.cfg), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &early), 0);
+	cyc_activate(a.c);
+	until_locked(&a);
+	msleep(1000);
+	KUNIT_EXPECT_LT(test, abs(mean(&a, 0, 300000, 100)), 200);
+	KUNIT_EXPECT_LT(test, abs(mean(&a, 1, 50000, 100)), 200);
+}
+
 /* A reference with 32 bits: it wraps each 4.3 s. */
 static void lock_to_short_clock(struct kunit *test)
 {
@@ -299,6 +320,7 @@ static void lock_cycle_count_wraps_time_continues(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(lock_keeps_phase),
+	KUNIT_CASE(lock_ignores_app_time_before_activation),
 	KUNIT_CASE(lock_to_short_clock),
 	KUNIT_CASE(lock_survives_lost_frames),
 	KUNIT_CASE(lock_same_phase_each_start),
