@@ -105,18 +105,20 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 	return flags;
 }
 
+#define PREDICT_US	(100ULL * 24 * 3600 * USEC_PER_SEC)	/* 1000 ppm of it fit in 64 bits */
+
 /*
  * Slaves upstream of the reference clock, and all when it does not reply, take the time that was
- * sent: a prediction from its last replies.
+ * sent: a prediction from its last replies, at its last rate as long as a cycle is in holdover.
  */
 static u64 predicted(const struct ec_cycle *c, u64 now)
 {
 	u64 since = now - c->dc_time_ns;
+	s64 us = min(div_u64(since, NSEC_PER_USEC), PREDICT_US);
 
 	if (!c->dc_time)
 		return ec_dc_clock_at(c->dc, now);
-	return c->dc_time + since +
-	       div_s64(min_t(s64, since, NSEC_PER_SEC) * c->dc_ppb, NSEC_PER_SEC);
+	return c->dc_time + since + div_s64(us * c->dc_ppb, USEC_PER_SEC);
 }
 
 #define RATE_NS	(100 * NSEC_PER_MSEC)

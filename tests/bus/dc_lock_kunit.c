@@ -207,6 +207,30 @@ static void lock_survives_lost_frames(struct kunit *test)
 }
 
 /*
+ * The reference clock is silent for longer than a second, and no scan replaces it: the other
+ * clocks continue at its rate, as the cycle does.
+ */
+static void lock_holdover_keeps_slaves_in_phase(struct kunit *test)
+{
+	struct app *a = start(test, two, 2, 300000);
+	struct bus *b = a->c->b;
+	s32 error;
+
+	until_locked(a);
+	msleep(2000);
+	WRITE_ONCE(b->m->bus.freeze, true);
+	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);
+	msleep(5000);
+	error = phase_error(a, 1, 50000);
+	KUNIT_EXPECT_EQ(test, status(a)->lock, EC_CYCLE_LOCK_HOLD);
+	bus_figure("reference clock silent for 5 s: SYNC0 of the other slave %d ns off", error);
+	KUNIT_EXPECT_LT(test, abs(error), 5000);
+	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 0, 0);
+	WRITE_ONCE(b->m->bus.freeze, false);
+	until_locked(a);
+}
+
+/*
  * A hundred starts, each at another moment and after clocks have drifted: the
  * phase of the frame to SYNC0 is always the same.
  */
@@ -323,6 +347,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(lock_ignores_app_time_before_activation),
 	KUNIT_CASE(lock_to_short_clock),
 	KUNIT_CASE(lock_survives_lost_frames),
+	KUNIT_CASE(lock_holdover_keeps_slaves_in_phase),
 	KUNIT_CASE(lock_same_phase_each_start),
 	KUNIT_CASE(lead_same_phase_each_start),
 	KUNIT_CASE(lock_refused),
