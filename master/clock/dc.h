@@ -252,7 +252,7 @@ struct ec_dc {
 	raw_spinlock_t time_lock;
 	/** @phase: first application time of the session, ns; SYNC starts on its grid */
 	u64 phase;
-	/** @has_phase: @phase is set */
+	/** @has_phase: @phase is set, with 0 if the clocks are set before that time has come */
 	bool has_phase;
 	/** @app_time: last application time, ns */
 	aligned_u64 app_time;

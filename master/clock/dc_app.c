@@ -192,7 +192,7 @@ bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64
 	if (what->flags & EC_SEND_FLAG_APP_TIME)
 		time = what->app_time;
 	else
-		time = dc->has_phase ? dc->app_time + (at_ns - dc->app_ktime) : what->sync_time;
+		time = dc->app_time ? dc->app_time + (at_ns - dc->app_ktime) : what->sync_time;
 	set_phase(dc, time);
 	dc->app_time_seen = true;
 	ec_write64(&dc->app_time, time);
@@ -216,7 +216,7 @@ bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64
  * @dc: clocks
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: first application time of the session, ns; 0 without one.
+ * Return: first application time of the session, ns; 0 without one when the clocks were set.
  */
 u64 ec_dc_phase(struct ec_dc *dc)
 {
@@ -236,7 +236,7 @@ u64 ec_dc_phase(struct ec_dc *dc)
  * Without its jumps since the clocks were set.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: ns; without an application the time since 2000-01-01.
+ * Return: ns; without an application time the time since 2000-01-01.
  */
 u64 ec_dc_now(struct ec_dc *dc)
 {
@@ -302,6 +302,10 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 		a->base = base;
 		a->base_ns = ktime_get_ns();
 		a->n_past = 0;	/* from now on follow() updates @base */
+		/* slaves that connect later start SYNC on the same grid, whatever time comes first */
+		if (!dc->has_phase)
+			dc->phase = 0;
+		dc->has_phase = true;
 	} else if (!set) {
 		a->n_past = 0;
 		a->skip = 0;

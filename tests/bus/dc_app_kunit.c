@@ -21,6 +21,7 @@
  * @once: another time for the next cycle, 0: none
  * @still: the same time again and again
  * @drift_ns: and later by so much with each cycle
+ * @mute: no application time
  * @late_us: two of five sends are so late
  * @late: which of them
  */
@@ -32,6 +33,7 @@ struct told {
 	u64 once;
 	bool still;
 	s64 drift_ns;
+	bool mute;
 	u32 late_us;
 	u32 late;
 };
@@ -43,6 +45,8 @@ static void each(struct cyc *c)
 	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
 	if (t->leads && (!t->every || c->cycles % t->every == 0))
 		c->flags |= EC_SEND_FLAG_SYNC_REF;
+	if (t->mute)
+		c->flags &= ~EC_SEND_FLAG_APP_TIME;
 	t->add += t->drift_ns;
 	if (!t->still)
 		c->app_time = ktime_to_ns(c->next) + t->add;
@@ -62,6 +66,8 @@ static const struct variant {
 	{ "follows", { .add = 123456789 }, "" },
 	{ "leads", { .leads = true, .add = 848584520973327310 }, "" },
 	{ "leads with 32 bits", { .leads = true, .narrow = true, .add = 848584520973327310 }, "" },
+	{ "leads without another time",
+	  { .leads = true, .mute = true, .add = 848584520973327310 }, "" },
 	{ "leads clocks of 32 bits", { .leads = true, .add = 848584520973327310 }, "dc=32" },
 };
 
@@ -205,32 +211,57 @@ static void app_is_off(struct kunit *test)
 	expect_steady(c, 1000, drift(&t, 1000), 1000, "a while later");
 }
 
-/* A slave that comes after a jump has its SYNC0 where the others have it. */
-static void app_jumps_then_slave(struct kunit *test)
+/* A slave that connects again has its SYNC0 where the others have it. */
+static void expect_one_grid(struct cyc *c)
 {
-	const struct variant *v = test->param_value;
-	struct told t = v->told;
-	struct cyc *c = start(test, &t, v->text);
 	struct bus *b = c->b;
 	u64 now;
 	u32 i;
 
-	cyc_run(c, 2000);
-	t.add -= 17 * NSEC_PER_SEC + 12345;
-	cyc_run(c, 1000);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
 	for (i = 0; i < 100 && b->m->bus.n_slaves != 1; i++)
 		cyc_run(c, 10);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	for (i = 0; i < 100 && b->m->bus.n_slaves != 2; i++)
 		cyc_run(c, 10);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
 	now = ktime_get_ns();
-	KUNIT_EXPECT_TRUE(test, bus_esc(b, 1)->dc.running);
+	KUNIT_EXPECT_TRUE(b->test, bus_esc(b, 1)->dc.running);
 	/* both at the same place of the period */
-	KUNIT_EXPECT_LT(test, abs(ec_dc_lock_wrap(since_start(b, 1, now) - since_start(b, 0, now),
-						  PERIOD_NS)), 2000);
+	KUNIT_EXPECT_LT(b->test,
+			abs(ec_dc_lock_wrap(since_start(b, 1, now) - since_start(b, 0, now),
+					    PERIOD_NS)), 2000);
+}
+
+/* So it is after a jump. */
+static void app_jumps_then_slave(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = v->told;
+	struct cyc *c = start(test, &t, v->text);
+
+	cyc_run(c, 2000);
+	t.add -= 17 * NSEC_PER_SEC + 12345;
+	cyc_run(c, 1000);
+	expect_one_grid(c);
+}
+
+/* And when the first application time comes after SYNC has started: it sets no other phase. */
+static void app_begins_then_slave(struct kunit *test)
+{
+	const struct variant *v = test->param_value;
+	struct told t = { .mute = true };
+	struct cyc *c = start(test, &t, v->text);
+	u64 next = ktime_to_ns(c->next);
+
+	cyc_run(c, 1000);
+	t = v->told;
+	/* 300 us behind the grid that SYNC has without an application */
+	t.add += 300000 - do_div(next, PERIOD_NS) - v->told.add % PERIOD_NS;
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_NE(test, c->b->m->dc.app_time, 0ull);
+	expect_one_grid(c);
 }
 
 /* Time of the reference clock less the application's when the clocks were just set. */
@@ -372,6 +403,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(app_jumps, variant_gen_params),
 	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
 	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
+	KUNIT_CASE_PARAM(app_begins_then_slave, variant_gen_params),
 	KUNIT_CASE_PARAM(app_drift_then_new_synchronization, variant_gen_params),
 	KUNIT_CASE(app_leads_rarely),
 	KUNIT_CASE(app_led_once),
