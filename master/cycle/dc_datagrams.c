@@ -83,7 +83,7 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
- * half how many more times the time goes to the slaves; 0 without reference clock.
+ * half how many more times the time goes to the slaves; 0: none.
  */
 u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 {
@@ -97,6 +97,8 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 		return 0;
 	if (c->dc_hold)
 		flags &= ~SYNC_REF;
+	if (!flags)
+		return 0;
 	if (flags & SYNC_SLAVES)
 		flags |= boost(c) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */

@@ -22,6 +22,7 @@
  * @still: the same time again and again
  * @drift_ns: and later by so much with each cycle
  * @mute: no application time
+ * @alone: nothing but the time for the reference clock
  * @late_us: two of five sends are so late
  * @late: which of them
  */
@@ -34,6 +35,7 @@ struct told {
 	bool still;
 	s64 drift_ns;
 	bool mute;
+	bool alone;
 	u32 late_us;
 	u32 late;
 };
@@ -47,6 +49,8 @@ static void each(struct cyc *c)
 		c->flags |= EC_SEND_FLAG_SYNC_REF;
 	if (t->mute)
 		c->flags &= ~EC_SEND_FLAG_APP_TIME;
+	if (t->alone)
+		c->flags &= ~EC_SEND_FLAG_SYNC_SLAVES;
 	t->add += t->drift_ns;
 	if (!t->still)
 		c->app_time = ktime_to_ns(c->next) + t->add;
@@ -264,6 +268,31 @@ static void app_begins_then_slave(struct kunit *test)
 	expect_one_grid(c);
 }
 
+/* While the time deviates it is not sent; a send with nothing else makes no frame. */
+static void app_jumps_in_send_without_data(struct kunit *test)
+{
+	struct told t = { .leads = true, .add = 123456789 };
+	struct cyc *c = start(test, &t, "");
+	u64 lost, frames;
+
+	cyc_run(c, 2000);
+	KUNIT_ASSERT_TRUE(test, c->b->m->dc.ref_wide);
+	lost = bus_lost(c->b);
+	t.alone = true;
+	c->queued = 0;
+	cyc_run(c, 2);
+	t.add += NSEC_PER_SEC;
+	frames = c->b->m->sessions.session->cycle.last.frames;
+	KUNIT_EXPECT_EQ(test, frames, 1ull);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_TRUE(test, c->b->m->sessions.session->cycle.dc_hold);
+	frames = c->b->m->sessions.session->cycle.last.frames;
+	KUNIT_EXPECT_EQ(test, frames, 0ull);
+	cyc_run(c, 30);
+	KUNIT_EXPECT_FALSE(test, c->b->m->sessions.session->cycle.dc_hold);
+	KUNIT_EXPECT_EQ(test, bus_lost(c->b), lost);
+}
+
 /* Time of the reference clock less the application's when the clocks were just set. */
 static s64 begin(struct cyc *c, const struct told *t)
 {
@@ -404,6 +433,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(app_is_off, variant_gen_params),
 	KUNIT_CASE_PARAM(app_jumps_then_slave, variant_gen_params),
 	KUNIT_CASE_PARAM(app_begins_then_slave, variant_gen_params),
+	KUNIT_CASE(app_jumps_in_send_without_data),
 	KUNIT_CASE_PARAM(app_drift_then_new_synchronization, variant_gen_params),
 	KUNIT_CASE(app_leads_rarely),
 	KUNIT_CASE(app_led_once),
