@@ -33,29 +33,12 @@ static u32 visited(const struct ec_dc_node *a, u8 port[EC_DC_PORTS])
 }
 
 /* How long a frame is at and behind the slave, from its arrival to its return. */
-static u32 stay(const struct ec_dc_node *a)
+static s32 stay(const struct ec_dc_node *a)
 {
 	u8 port[EC_DC_PORTS];
 	u32 n = visited(a, port);
 
 	return a->recv[port[n - 1]] - a->recv[a->entry];
-}
-
-/*
- * How long it takes from there to the processing unit. That is behind port 0, open or
- * not: with another entry the frame has been behind some ports by then.
- */
-static u32 to_unit(const struct ec_dc_node *a)
-{
-	u8 port[EC_DC_PORTS], last = a->entry;
-	u32 i, n = a->entry ? visited(a, port) : 0;
-
-	for (i = 1; i < n; i++) {
-		if (port[i] && place(port[i]) < place(a->entry))
-			break;
-		last = port[i];
-	}
-	return a->recv[last] - a->recv[a->entry];
 }
 
 /*
@@ -80,6 +63,8 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
 		b->next = EC_DC_NONE;
 		b->unreliable = false;
 		b->delay = 0;
+		b->behind = 0;
+		b->to_unit = 0;
 		if (!b->dc)
 			continue;
 		for (k = 0; k < n && a != EC_DC_NONE && !nodes[a].dc; k++) {
@@ -104,42 +89,56 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
 }
 
 /*
- * The slaves of a chain are reached one after the other. What the frame did
- * not stay at them it was on the way, in equal parts: there and back for one.
+ * The slaves of a chain are reached one after the other. What the frame did not stay at them it
+ * was on the way, in equal parts: there and back for one. Times that no frame can have count as
+ * 0: an error of some us, where they would make seconds of it for all slaves that follow.
+ * Returns @round, or 0 when it is one of those.
  */
-static void place_chain(struct ec_dc_node *nodes, s32 first, u32 start, u32 round, bool unreliable)
+static s32 place_chain(struct ec_dc_node *nodes, s32 first, u32 start, s32 round, bool unreliable)
 {
-	s32 way = round;
+	s64 way = round;
+	bool bad = false;
 	s32 parts = 1;
 	s32 b;
 
 	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
 		way -= stay(&nodes[b]);
+		bad |= stay(&nodes[b]) < -NOISE_NS;
 		parts++;
 	}
-	way /= parts;
-	unreliable |= way < -NOISE_NS || way > WAY_MAX_NS;
+	way = div_s64(way, max(parts, 2));
+	bad |= way < -NOISE_NS || way > WAY_MAX_NS;
 	/* noise of the receive times can make a short way negative */
-	way = way > 0 ? way : 0;
+	way = way > 0 && !bad ? way : 0;
 	for (b = first; b != EC_DC_NONE; b = nodes[b].next) {
-		nodes[b].unreliable = unreliable;
-		nodes[b].hop = way;
-		nodes[b].delay = start + way;
-		start = nodes[b].delay + stay(&nodes[b]);
+		nodes[b].unreliable = unreliable || bad;
+		nodes[b].hop = (u32)way;
+		nodes[b].delay = start + (u32)way;
+		start = nodes[b].delay + (bad ? 0 : stay(&nodes[b]));
 	}
+	return bad ? 0 : round;
 }
 
-/* Everything behind the ports of @a, which was placed; it goes behind @last, too. */
-static s32 place_behind(struct ec_dc_node *nodes, const struct ec_dc_node *a, s32 last)
+/*
+ * Everything behind the ports of @a, which was placed; it goes behind @last, too. The processing
+ * unit is behind port 0, open or not: with another entry the frame has been behind some ports by
+ * then.
+ */
+static s32 place_behind(struct ec_dc_node *nodes, struct ec_dc_node *a, s32 last)
 {
 	u8 port[EC_DC_PORTS];
 	u32 k, ports = visited(a, port);
+	bool before_unit = a->entry;
 
 	for (k = 1; k < ports; k++) {
 		s32 first = a->first[port[k]];
 
-		place_chain(nodes, first, a->delay + a->recv[port[k - 1]] - a->recv[a->entry],
-			    a->recv[port[k]] - a->recv[port[k - 1]], a->unreliable);
+		if (port[k] && place(port[k]) < place(a->entry))
+			before_unit = false;
+		a->behind += place_chain(nodes, first, a->delay + a->behind,
+					 a->recv[port[k]] - a->recv[port[k - 1]], a->unreliable);
+		if (before_unit)
+			a->to_unit = a->behind;
 		if (first == EC_DC_NONE)
 			continue;
 		nodes[last].next = first;
@@ -163,18 +162,21 @@ static s32 place_behind(struct ec_dc_node *nodes, const struct ec_dc_node *a, s3
 void ec_dc_delays(struct ec_dc_node *nodes, u32 n, u32 ref)
 {
 	u32 i, zero, at = 0;
-	s32 last, b, top = link_up(nodes, n, &last);
+	s32 last, b, top = link_up(nodes, n, &last), top_end = last;
+	bool at_top = true;
 
-	for (b = top; b != EC_DC_NONE; b = nodes[b].next) {
-		nodes[b].hop = 0;
-		nodes[b].delay = at;
-		at += stay(&nodes[b]);
-	}
 	/* so far when a frame comes in; the list grows on the way */
-	for (b = top; b != EC_DC_NONE; b = nodes[b].next)
+	for (b = top; b != EC_DC_NONE; b = nodes[b].next) {
+		if (at_top) {
+			nodes[b].hop = 0;
+			nodes[b].delay = at;
+		}
 		last = place_behind(nodes, &nodes[b], last);
+		at += nodes[b].behind;
+		at_top = at_top && b != top_end;
+	}
 	for (i = 0; i < n; i++)
-		nodes[i].delay += nodes[i].dc ? to_unit(&nodes[i]) : 0;
+		nodes[i].delay += nodes[i].to_unit;
 	zero = ref < n ? nodes[ref].delay : 0;
 	for (i = 0; i < n; i++)
 		nodes[i].delay = nodes[i].dc ? nodes[i].delay - zero : 0;

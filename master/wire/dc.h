@@ -22,7 +22,10 @@
  *	for register 0x0928; modulo 2^32, so that slaves in front of the
  *	reference have a negative one
  * @hop: result: way from the clock before it, ns
- * @unreliable: result: the receive times contradict the topology, and so do the two
+ * @unreliable: result: the receive times of the slave, or of one before it, contradict the
+ *	topology; ways that no frame can have taken are missing in @delay and @hop
+ * @behind: for ec_dc_delays(): how long a frame is behind the ports placed so far
+ * @to_unit: for ec_dc_delays(): how long it takes from the entry to the processing unit
  * @first: for ec_dc_delays(): first slave with a clock behind each port
  * @last: the last one
  * @next: the next behind the same port
@@ -37,6 +40,8 @@ struct ec_dc_node {
 	u32 delay;
 	u32 hop;
 	bool unreliable;
+	u32 behind;
+	u32 to_unit;
 	s32 first[EC_DC_PORTS];
 	s32 last[EC_DC_PORTS];
 	s32 next;

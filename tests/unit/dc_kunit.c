@@ -149,6 +149,74 @@ static void dc_impossible_times_are_inconsistent(struct kunit *test)
 	}
 }
 
+/* A broken slave in a line: those behind it get a delay of some us less, not of a second. */
+static void dc_impossible_times_do_not_spread(struct kunit *test)
+{
+	static const u32 broken[] = { 1 << 30, 3u << 30, 1u << 31 };
+	u32 i, k;
+
+	for (i = 0; i < ARRAY_SIZE(broken); i++) {
+		struct ec_dc_node n[] = {
+			{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true,
+			  .recv = { 0, 3000 } },
+			{ .parent = 0, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+			  .recv = { 7, 7 + broken[i] } },
+			{ .parent = 1, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+			  .recv = { 0, 1000 } },
+			{ .parent = 2, .parent_port = 1, .open = P(0), .dc = true },
+		};
+
+		ec_dc_delays(n, ARRAY_SIZE(n), 0);
+		KUNIT_EXPECT_FALSE(test, n[0].unreliable);
+		for (k = 1; k < ARRAY_SIZE(n); k++) {
+			KUNIT_EXPECT_TRUE(test, n[k].unreliable);
+			KUNIT_EXPECT_LT_MSG(test, n[k].delay, 1000000u, "%x, slave %u", broken[i],
+					    k);
+		}
+		/* what a healthy slave measures is kept */
+		KUNIT_EXPECT_EQ(test, n[3].hop, 500u);
+		KUNIT_EXPECT_EQ(test, n[3].delay - n[2].delay, 500u);
+	}
+}
+
+/* The same in front of slaves that are no part of its line, and for its own processing unit. */
+static void dc_impossible_times_do_not_spread_to_branches(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1) | P(2) },
+		{ .parent = 0, .parent_port = 1, .entry = 1, .open = P(1) | P(2) | P(3), .dc = true,
+		  .recv = { 0, 0, 1 << 30, (1 << 30) + 600 } },
+		{ .parent = 1, .parent_port = 2, .open = P(0), .dc = true },
+		{ .parent = 1, .parent_port = 3, .open = P(0), .dc = true },
+		{ .parent = 0, .parent_port = 2, .open = P(0), .dc = true },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 1);
+	KUNIT_EXPECT_TRUE(test, n[2].unreliable);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 0u);
+	KUNIT_EXPECT_EQ(test, n[3].delay, 300u);
+	KUNIT_EXPECT_EQ(test, n[4].delay, 600u);
+}
+
+/* Two broken slaves behind a coupler without clock, whose times add up to none. */
+static void dc_impossible_times_do_not_cancel(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 3000 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0) | P(1) | P(2) | P(3) },
+		{ .parent = 1, .parent_port = 3, .open = P(0) | P(1), .dc = true,
+		  .recv = { 0, 1 << 30 } },
+		{ .parent = 1, .parent_port = 1, .open = P(0) | P(1), .dc = true,
+		  .recv = { 0, 3u << 30 } },
+		{ .parent = 1, .parent_port = 2, .open = P(0), .dc = true },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_TRUE(test, n[4].unreliable);
+	KUNIT_EXPECT_LT(test, n[3].delay, 1000000u);
+	KUNIT_EXPECT_LT(test, n[4].delay, 1000000u);
+}
+
 static void dc_slaves_before_reference_have_negative_delay(struct kunit *test)
 {
 	struct ec_dc_node n[] = {
@@ -223,6 +291,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_of_reversed_end),
 	KUNIT_CASE(dc_delays_on_both_sides_of_unit),
 	KUNIT_CASE(dc_impossible_times_are_inconsistent),
+	KUNIT_CASE(dc_impossible_times_do_not_spread),
+	KUNIT_CASE(dc_impossible_times_do_not_spread_to_branches),
+	KUNIT_CASE(dc_impossible_times_do_not_cancel),
 	KUNIT_CASE(dc_slaves_before_reference_have_negative_delay),
 	KUNIT_CASE(dc_negative_distance_counts_as_zero),
 	KUNIT_CASE(dc_difference_has_sign_and_magnitude),
