@@ -290,6 +290,7 @@ void ec_dc_app_log(struct ec_dc *dc);
 
 /* dc_time.c */
 void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns);
+void ec_dc_clock_predict(struct ec_dc *dc, u64 time, u64 at_ns);
 u64 ec_dc_clock_at(struct ec_dc *dc, u64 at_ns);
 u64 ec_dc_clock_now(struct ec_dc *dc);
 u64 ec_dc_extend32(struct ec_dc *dc, u32 low, u64 at_ns);

@@ -17,6 +17,22 @@ void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns)
 }
 
 /**
+ * ec_dc_clock_predict() - take a predicted time while the reference clock does not reply
+ * @dc: clocks
+ * @time: from its last replies and its rate, ns
+ * @at_ns: when it will be that time (ktime)
+ *
+ * Ignores one that is far from the last time: the clocks were set anew since.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_dc_clock_predict(struct ec_dc *dc, u64 time, u64 at_ns)
+{
+	if (abs((s64)(time - ec_dc_clock_at(dc, at_ns))) < NSEC_PER_MSEC)
+		ec_dc_clock(dc, time, at_ns);
+}
+
+/**
  * ec_dc_clock_at() - time of the reference clock at a moment
  * @dc: clocks that are set
  * @at_ns: the moment (ktime)

@@ -208,9 +208,12 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
 		put_unaligned_le32((u32)(sync_time - c->dc_skip), p);
 	}
+	c->dc_sent = predicted(c, now);
+	/* clock frames of the worker carry it as well */
+	if (c->dc_silent)
+		ec_dc_clock_predict(c->dc, c->dc_sent, now);
 	/* some ns more, else an answer exactly as predicted would look like silence */
-	c->dc_sent = predicted(c, now) +
-			   (c->dc_silent ?: !c->dc_wkc) % 4;
+	c->dc_sent += (c->dc_silent ?: !c->dc_wkc) % 4;
 	put_unaligned_le64(c->dc_sent, t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));

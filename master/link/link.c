@@ -171,6 +171,8 @@ int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 			break;
 		}
 		len = ec_pack_write(p, tx[i].buf);
+		if (p->e[0].slot->clock)
+			ec_share_stamp(l, tx[i].buf + EC_ETH_HDR, len - EC_ETH_HDR, sent_ns);
 		tx[i].buf[7] |= i;
 	}
 	ec_pack_release(p, ret == -EBUSY ? EC_SLOT_QUEUED : EC_SLOT_SENT);

@@ -8,6 +8,7 @@
 #include <linux/minmax.h>
 #include <linux/module.h>
 #include "../base/once64.h"
+#include "../wire/regs.h"
 #include "device.h"
 #include "links.h"
 #include "pack.h"
@@ -209,4 +210,30 @@ void ec_share_send_between(struct ec_links *l)
 		ec_share_send_left(l, since);
 		ec_links_flush(l);
 	}
+}
+
+/**
+ * ec_share_stamp() - write the time of the reference clock into a clock frame that leaves
+ * @l: links
+ * @frame: EtherCAT header and datagrams
+ * @len: bytes
+ * @sent_ns: when it leaves (ktime)
+ *
+ * If the reference clock does not reply, the other clocks take the time that was sent with a
+ * drift compensation datagram: one that has waited in the queue would slow them down.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_share_stamp(const struct ec_links *l, u8 *frame, size_t len, u64 sent_ns)
+{
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+	u8 time[8];
+
+	if (!l->share.ref_minus_ktime || ec_frame_iter_init(&it, frame, len))
+		return;
+	put_unaligned_le64(atomic64_read(l->share.ref_minus_ktime) + sent_ns, time);
+	while (ec_frame_iter_next(&it, &d) == 1)
+		if (d.cmd == EC_CMD_FRMW && d.ado == EC_REG_DC_SYSTIME && d.len <= sizeof(time))
+			memcpy(d.data, time, d.len);
 }

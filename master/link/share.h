@@ -3,6 +3,7 @@
 #ifndef EC_SHARE_H
 #define EC_SHARE_H
 
+#include <linux/atomic.h>
 #include <linux/types.h>
 
 struct ec_links;
@@ -23,6 +24,8 @@ struct ec_share {
 	u64 late_next_ns;
 	/** @late_cycles: cycles they have delayed since activation */
 	u32 late_cycles;
+	/** @ref_minus_ktime: time of the reference clock less ktime, ns; NULL: no clocks; immutable */
+	const atomic64_t *ref_minus_ktime;
 };
 
 #define EC_SHARE_PER_MS		8	/* acyclic frames per millisecond of cycle */
@@ -34,5 +37,6 @@ u16 ec_share_clock_bytes(const struct ec_links *l);
 void ec_share_begin(struct ec_links *l);
 void ec_share_send_left(struct ec_links *l, u32 wire_ns);
 void ec_share_send_between(struct ec_links *l);
+void ec_share_stamp(const struct ec_links *l, u8 *frame, size_t len, u64 sent_ns);
 
 #endif

@@ -284,6 +284,36 @@ static void dc_start_link_flap(struct kunit *test)
 	bus_figure("link down for 10 ms while clocks are set: READY within %u ms", most);
 }
 
+/*
+ * The reference clock forwards but no longer replies while frames of the worker compensate
+ * beside slaves in OP: a time that has waited in the queue must not move their clocks.
+ */
+static void dc_start_reference_falls_silent(struct kunit *test)
+{
+	static const u32 periods_us[] = { 1000, 4000 };
+	u64 most = 0;
+	u32 p, k;
+
+	for (p = 0; p < ARRAY_SIZE(periods_us); p++) {
+		struct load l = { 0 };
+		struct cyc *c = configure(test, 3, periods_us[p], &l);
+
+		cyc_activate(c);
+		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+		KUNIT_ASSERT_EQ(test, c->b->m->dc.mode, (int)EC_DC_READ);
+		bus_fault(c->b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);
+		for (k = 0; k < 100; k++) {
+			cyc_run(c, 1);
+			most = max(most, worst(c->b));
+		}
+		bus_figure("cycle of %u us, reference clock silent while frames compensate: clocks within %llu ns",
+			   periods_us[p], most);
+		bus_down(c->b);
+		test->priv = NULL;
+	}
+	KUNIT_EXPECT_LT(test, most, 5000ull);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(dc_start_hundred_drives_reach_op, next_cycle),
 	KUNIT_CASE(dc_start_short_cycle),
@@ -291,6 +321,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_start_late_cycle),
 	KUNIT_CASE(dc_start_frames_lost),
 	KUNIT_CASE(dc_start_link_flap),
+	KUNIT_CASE(dc_start_reference_falls_silent),
 	{ }
 };
 
