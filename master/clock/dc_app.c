@@ -302,7 +302,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 		a->base = base;
 		a->base_ns = ktime_get_ns();
 		a->n_past = 0;	/* from now on follow() updates @base */
-		/* slaves that connect later start SYNC on the same grid, whatever time comes first */
+		/* slaves that connect later start SYNC on the same grid, whatever time comes */
 		if (!dc->has_phase)
 			dc->phase = 0;
 		dc->has_phase = true;

@@ -24,7 +24,7 @@ struct ec_share {
 	u64 late_next_ns;
 	/** @late_cycles: cycles they have delayed since activation */
 	u32 late_cycles;
-	/** @ref_minus_ktime: time of the reference clock less ktime, ns; NULL: no clocks; immutable */
+	/** @ref_minus_ktime: time of the reference clock less ktime, ns, or NULL; immutable */
 	const atomic64_t *ref_minus_ktime;
 };
 
