@@ -73,7 +73,8 @@ static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	struct ec_cyc_domain *dom = &c->domains[d->domain];
 	u16 wkc = get_unaligned_le16(data + d->len);
 
-	if ((s32)(f->send - dom->send) < 0)
+	/* by their ages: the numbers may be any distance apart after a pause */
+	if (c->send - f->send > c->send - dom->send)
 		return;
 	if (f->send != dom->send) {
 		dom->send = f->send;

@@ -199,6 +199,39 @@ static void exchange_age_of_lost(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("receives stale process data"), told);
 }
 
+static const u32 pauses[] = { 0x7fffff00, 0x80000010, 0xfffffff0 };
+
+static void pause_desc(const u32 *sends, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "%#x", *sends);
+}
+
+KUNIT_ARRAY_PARAM(pause, pauses, pause_desc);
+
+/* Many sends without a reply to the domain, as over days: the next reply counts. */
+static void exchange_reply_after_pause_is_taken(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
+	u32 i, seen;
+
+	c->each = NULL;
+	c->queued = 0;
+	cyc_run(c, 3);
+	KUNIT_ASSERT_EQ(test, cycle->n_flight, 0u);
+	cycle->send += *(const u32 *)test->param_value;
+	cycle->judged = cycle->send;
+	c->queued = BIT_ULL(0);
+	seen = get_unaligned_le32(cyc_pd(c, 0, 1));
+	for (i = 0; i < 10; i++) {
+		put_unaligned_le32(seen + 1, cyc_pd(c, 0, 0));
+		cyc_run(c, 1);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->age, 0);
+	}
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 0, 1)), seen + 1);
+}
+
 static int send(struct cyc *c)
 {
 	struct ec_ioc_send s = { .queued = c->queued };
@@ -328,6 +361,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(exchange_always_late),
 	KUNIT_CASE(exchange_old_data),
 	KUNIT_CASE(exchange_age_of_lost),
+	KUNIT_CASE_PARAM(exchange_reply_after_pause_is_taken, pause_gen_params),
 	KUNIT_CASE(exchange_send_twice),
 	KUNIT_CASE(exchange_receive_twice),
 	KUNIT_CASE(exchange_all_lost),
