@@ -16,12 +16,13 @@ struct ec_cycle_thread;
 struct ec_waiters;
 
 /**
- * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use
+ * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use but for @wrote
  * @domain: index
  * @cmd: LRD, LWR or LRW
  * @new_frame: shares no frame with the datagrams before
  * @holes: @n_copies areas do not cover it: clear it first
  * @solid: all of it lies in the image as it lies in the datagram
+ * @wrote: low half of the number of the last send before its inputs were last written
  * @logical: logical address
  * @len: bytes
  * @expected: working counter when every slave takes part
@@ -38,6 +39,7 @@ struct ec_cyc_dgram {
 	bool new_frame;
 	bool holes;
 	bool solid;
+	u16 wrote;
 	u32 logical;
 	u16 len;
 	u16 expected;

@@ -36,8 +36,18 @@ static bool from_image(const struct ec_cyc_dgram *d)
 	return d->cmd == EC_CMD_LRD;
 }
 
+/*
+ * May an incomplete reply give its inputs? One that was sent before they were last written
+ * would bring back what a missing slave had before.
+ */
+static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
+		       const struct ec_cyc_flight *f)
+{
+	return (u16)(c->send - f->send) < (u16)(c->send - d->wrote);
+}
+
 /* Inputs of a datagram in which at least one slave has taken part. */
-static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
+static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
 {
 	const struct ec_cyc_area *in = &c->areas[d->first_input];
@@ -45,17 +55,20 @@ static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	bool direct = f->direct && !from_image(d);
 	unsigned int i, n;
 
-	/* the outputs come back as well: those of the image are not needed now */
-	if (complete && d->solid && direct && c->direct) {
-		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
-		return;
-	}
 	/*
 	 * A missing slave's part comes back as sent: the last value, if it was sent
 	 * from the image. Where outputs were sent, or a part may be of another cycle,
 	 * all must have taken part.
 	 */
-	n = complete ? d->n_whole : direct ? 0 : d->n_plain;
+	if (unlikely(!complete) && (direct || !holds_last(c, d, f)))
+		return;
+	d->wrote = c->send;
+	/* the outputs come back as well: those of the image are not needed now */
+	if (complete && d->solid && direct && c->direct) {
+		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
+		return;
+	}
+	n = complete ? d->n_whole : d->n_plain;
 	for (i = 0; i < n; i++, in++)
 		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
 			     in->pos_stride, in->len, in->count);
@@ -67,7 +80,7 @@ static void take_inputs(struct ec_cycle *c, const struct ec_cyc_dgram *d,
  * Inputs and working counter of one datagram. A reply to an older send must not overwrite the
  * data of a newer one.
  */
-static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
+static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		       const struct ec_cyc_flight *f, const u8 *data)
 {
 	struct ec_cyc_domain *dom = &c->domains[d->domain];
@@ -89,7 +102,7 @@ static void take_dgram(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 /* Returns the events that the slaves have shown in the IRQ field. */
 static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
-	const struct ec_cyc_dgram *d = &c->dgrams[f->first];
+	struct ec_cyc_dgram *d = &c->dgrams[f->first];
 	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 	u16 irq = 0;

@@ -200,6 +200,11 @@ static void options_desc(const u32 *options, char *desc)
 
 KUNIT_ARRAY_PARAM(options, domain_options, options_desc);
 
+/* where the inputs of an incomplete datagram are taken */
+static const u32 apart_options[] = { 0, EC_DOMAIN_OPT_SEPARATE };
+
+KUNIT_ARRAY_PARAM(late_options, apart_options, options_desc);
+
 /* From now and then to always: frames that come with the next cycle, or with none. */
 static void source_frames_late(struct kunit *test)
 {
@@ -224,6 +229,28 @@ static void source_frames_late(struct kunit *test)
 	ec_sim_clear_faults(s->a->c->b->sim);
 	kcyc_wait_cycles(s->a, 5);
 	KUNIT_EXPECT_EQ(test, kcyc_output(s->a, "s1", 1), (s64)s->number);
+}
+
+/* The same with a slave missing: its inputs hold, and do not alternate between two values. */
+static void source_slave_silent_while_late(struct kunit *test)
+{
+	struct source *s = begin_with(test, (struct ec_ioc_cycle){ 0 },
+				      *(const u32 *)test->param_value);
+	u32 i;
+
+	frame_fault(s, EC_SIM_FAULT_DELAY, 0, 1200 * NSEC_PER_USEC);
+	steps(s, 50);
+	bus_fault(s->a->c->b, EC_SIM_FAULT_DEAD, 1, 0, 1, 0);
+	steps(s, 20);
+	steps(s, 50);
+	expect_right(test, s);
+	/* the first of the count is a change */
+	KUNIT_EXPECT_EQ(test, s->seen[1].held, 49u);
+	KUNIT_EXPECT_GT(test, s->seen[1].last, 40u);
+	for (i = 0; i < SLAVES; i += 2) {
+		KUNIT_EXPECT_LE(test, s->seen[i].held, 26u);
+		KUNIT_EXPECT_GE(test, s->seen[i].last + 6, s->number);
+	}
 }
 
 /* What is on its way must not bring back the outputs of before. */
@@ -271,6 +298,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(source_slave_flaky, options_gen_params),
 	KUNIT_CASE_PARAM(source_tool_sees, options_gen_params),
 	KUNIT_CASE(source_frames_late),
+	KUNIT_CASE_PARAM(source_slave_silent_while_late, late_options_gen_params),
 	KUNIT_CASE(source_zero_stays),
 	KUNIT_CASE(source_held),
 	{ }
