@@ -94,7 +94,7 @@ struct ec_request_area {
 /* working counter of one domain, as of the last receive */
 struct ec_status_domain {
 	__u32 working_counter;
-	__u32 wc_state;		/* 0 zero, 1 incomplete, 2 complete */
+	__u32 wc_state;		/* 0 zero, 1 incomplete, 2 all datagrams complete */
 	__u16 redundancy_active;
 	__u16 age;		/* sends of the domain since that of the newest received frame */
 	__u32 expected;

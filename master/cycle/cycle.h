@@ -122,6 +122,7 @@ struct ec_cyc_flight {
  * @expected: working counter when every slave takes part
  * @send: number of the newest send of which data were received
  * @wkc: sum of the working counters of that send
+ * @partial: one of them was not the expected one; others may make up for it in @wkc
  * @age: sends of the domain since that one
  * @max_age: data that are older are stale, 0: none are
  * @stale: age of the oldest stale data that came back, for the log
@@ -140,6 +141,7 @@ struct ec_cyc_domain {
 	u32 max_age;
 	u32 stale;
 	bool stale_logged;
+	bool partial;
 	u32 seen;
 	u32 noted;
 	struct ec_event_rate rate;

@@ -92,9 +92,12 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	if (f->send != dom->send) {
 		dom->send = f->send;
 		dom->wkc = 0;
+		dom->partial = false;
 	}
 	dom->wkc += wkc;
 	c->back |= BIT_ULL(d->domain);
+	if (unlikely(wkc != d->expected))
+		dom->partial = true;
 	if (wkc)
 		take_inputs(c, d, f, data, wkc == d->expected);
 }
@@ -168,12 +171,13 @@ static void judge(struct ec_cycle *c, u64 now)
 	for (; left; left &= left - 1) {
 		unsigned int i = __ffs64(left);
 		struct ec_status_domain *st = &c->shared->status->domains[i];
-		u32 wkc = c->back & BIT_ULL(i) ? c->domains[i].wkc : 0;
+		struct ec_cyc_domain *d = &c->domains[i];
+		u32 wkc = c->back & BIT_ULL(i) ? d->wkc : 0;
 
 		WRITE_ONCE(st->working_counter, wkc);
-		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == c->domains[i].expected ? 2 : 1);
-		WRITE_ONCE(st->age, judge_age(c, &c->domains[i], i));
-		note_wkc(c, &c->domains[i], i, wkc, now);
+		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == d->expected && !d->partial ? 2 : 1);
+		WRITE_ONCE(st->age, judge_age(c, d, i));
+		note_wkc(c, d, i, wkc, now);
 	}
 	c->judged = c->send;
 	c->sent = 0;

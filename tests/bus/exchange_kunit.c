@@ -199,6 +199,23 @@ static void exchange_age_of_lost(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("receives stale process data"), told);
 }
 
+/* One working counter is too low, another too high by as much: their sum hides it. */
+static void exchange_sum_hides_no_wrong_counter(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+
+	bus_fault(c->b, EC_SIM_FAULT_WKC, 0, 0, (u32)-1, 0);
+	bus_fault(c->b, EC_SIM_FAULT_WKC, N - 1, 0, 1, 0);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, cyc_state(c, 0)->expected);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 1);
+	KUNIT_EXPECT_GE(test, c->incomplete, 9ull);
+	bus_fault(c->b, EC_SIM_FAULT_WKC, 0, 0, 0, 0);
+	bus_fault(c->b, EC_SIM_FAULT_WKC, N - 1, 0, 0, 0);
+	cyc_run(c, 2);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
 static const u32 pauses[] = { 0x7fffff00, 0x80000010, 0xfffffff0 };
 
 static void pause_desc(const u32 *sends, char *desc)
@@ -361,6 +378,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(exchange_always_late),
 	KUNIT_CASE(exchange_old_data),
 	KUNIT_CASE(exchange_age_of_lost),
+	KUNIT_CASE(exchange_sum_hides_no_wrong_counter),
 	KUNIT_CASE_PARAM(exchange_reply_after_pause_is_taken, pause_gen_params),
 	KUNIT_CASE(exchange_send_twice),
 	KUNIT_CASE(exchange_receive_twice),
