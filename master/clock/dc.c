@@ -309,6 +309,7 @@ static void work(struct work_struct *work)
 		ec_dc_set_state(dc, EC_DC_RETRY_WAIT);
 		return;
 	}
+	j.worker = true;
 	j.first = first;
 	if (j.ref < j.n && !ec_clock_is_set(j.slaves[j.ref]))
 		await_time(dc, t0);

@@ -294,6 +294,12 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 	}
 }
 
+/* Only a job of the worker: that of the monitor needs no session. */
+static bool ended(const struct ec_dc_job *j)
+{
+	return j->worker && READ_ONCE(j->dc->stop);
+}
+
 /**
  * ec_dc_correct_between() - let the cycle compensate clocks that are set, for some cycles
  * @j: job
@@ -301,7 +307,7 @@ void ec_dc_leave_out(struct ec_dc_job *j)
  * @limit_ms: maximum time
  *
  * A clock that is being corrected runs too fast or too slow to be measured; without
- * correction, clocks that are set drift apart.
+ * correction, clocks that are set drift apart. Ends early when the worker is to stop.
  *
  * Context: Process. May sleep.
  */
@@ -312,7 +318,8 @@ void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_m
 
 	/* a poll: the cycle wakes no thread of the master */
 	WRITE_ONCE(j->dc->mode, j->compensated ? EC_DC_COMPENSATE : EC_DC_IDLE);
-	for (ms = 0; ms < limit_ms && READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
+	for (ms = 0; ms < limit_ms && !ended(j) &&
+	     READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(j->dc->mode, EC_DC_IDLE);
 }
@@ -388,6 +395,8 @@ static int measure(struct ec_dc_job *j)
 	memset(j->sum, 0, j->n * sizeof(*j->sum));
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
 	while (rounds < ROUNDS) {
+		if (ended(j))
+			return -ECANCELED;
 		n = latched ? ec_dc_add(j, 0, EC_DC_TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0),
 					sizeof(j->recv[0]), j->recv[0], sizeof(j->recv[0])) : 0;
 		n = add_latch(j, n);
@@ -434,7 +443,8 @@ static bool known(struct ec_dc_job *j, u32 scan)
  * They are measured once after each scan.
  *
  * Context: Process, dc.lock held. Waits for bus traffic.
- * Return: 0; -EAGAIN when slaves do not answer; or as ec_xfer().
+ * Return: 0; -EAGAIN when slaves do not answer; -ECANCELED when the worker is to stop; or as
+ * ec_xfer().
  */
 int ec_dc_get_delays(struct ec_dc_job *j)
 {

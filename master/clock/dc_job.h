@@ -28,6 +28,7 @@
  * @ref: index of the reference clock, @n: none
  * @latch_ns: when the last latch was sent (ktime)
  * @compensated: the cycle has compensated clocks until now
+ * @worker: a job of the worker, which ends with dc.stop
  * @first: all clocks are set for the first time in the session
  * @time: in frames that compensate
  */
@@ -46,6 +47,7 @@ struct ec_dc_job {
 	unsigned int ref;
 	u64 latch_ns;
 	bool compensated;
+	bool worker;
 	bool first;
 	u8 time[8];
 };

@@ -314,6 +314,46 @@ static void dc_start_reference_falls_silent(struct kunit *test)
 	KUNIT_EXPECT_LT(test, most, 5000ull);
 }
 
+static void each_clocks(struct cyc *c)
+{
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_APP_TIME;
+	c->app_time = ktime_get_ns();
+}
+
+/*
+ * The application exits while delays are measured and no frame returns. One timeout of the
+ * measurement is left, and those of the slaves that are being configured.
+ */
+static void dc_start_measurement_ends_with_session(struct kunit *test)
+{
+	struct cyc *c = configure(test, 4, 1000, NULL);
+	struct ec_dc *dc = &c->b->m->dc;
+	u64 t0, ms;
+	u32 i;
+
+	c->each = each_clocks;
+	/* as after slaves have connected */
+	for (i = 0; i < 4; i++)
+		ec_clock_of(bus_slave(c->b, i))->measured = 0;
+	cyc_activate(c);
+	for (i = 0; i < 3000 && !mutex_is_locked(&dc->lock); i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_TRUE(test, mutex_is_locked(&dc->lock));
+	bus_fault(c->b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
+	cyc_run(c, 3);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(dc->state), EC_DC_BUSY);
+	t0 = ktime_get_ns();
+	cyc_release(c);
+	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
+	bus_figure("a session ends within %llu ms while delays are measured and frames are lost",
+		   ms);
+	KUNIT_EXPECT_LT(test, ms, 400ull);
+	/* after the session they are measured as ever */
+	ec_sim_clear_faults(c->b->sim);
+	bus_idle(c->b);
+	KUNIT_EXPECT_EQ(test, ec_dc_measure(dc), 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(dc_start_hundred_drives_reach_op, next_cycle),
 	KUNIT_CASE(dc_start_short_cycle),
@@ -322,6 +362,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_start_frames_lost),
 	KUNIT_CASE(dc_start_link_flap),
 	KUNIT_CASE(dc_start_reference_falls_silent),
+	KUNIT_CASE(dc_start_measurement_ends_with_session),
 	{ }
 };
 
