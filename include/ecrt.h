@@ -2336,8 +2336,8 @@ EC_PUBLIC_API uint8_t *ecrt_domain_data(const ec_domain_t *domain);
  * @domain: of an active master
  *
  * Call between ecrt_master_receive() and ecrt_domain_queue(). Updates the result of
- * ecrt_domain_state() if the domain was sent or a reply has come back; a reply that only a
- * second receive has found counts, too. No system call.
+ * ecrt_domain_state() if the domain was sent or a reply was received; a reply that only a
+ * second receive has found also counts. No system call.
  *
  * Context: The cycle owner. RT-safe.
  * Return: 0; %-EINVAL not active.

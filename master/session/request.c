@@ -337,8 +337,8 @@ void ec_requests_kick(struct ec_session *s)
 
 	if (!rq)
 		return;
-	/* ec_requests_notice() need not look at these again */
 	area = (void *)rq->shared->requests;
+	/* ec_requests_notice() need not look at these again; pairs with ec_request_started() */
 	WRITE_ONCE(rq->starts, smp_load_acquire(&area->starts));
 	queue(rq, rq->sessions->service, &rq->kick);
 }
@@ -360,6 +360,7 @@ void ec_requests_notice(struct ec_cycle *c)
 	if (!rq)
 		return;
 	area = (void *)rq->shared->requests;
+	/* pairs with ec_request_started() */
 	starts = smp_load_acquire(&area->starts);
 	if (starts == READ_ONCE(rq->starts))
 		return;
