@@ -127,8 +127,9 @@ release=${modules##*/}
 [ "$arch" = amd64 ] || dirs+=("$modules")
 
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-vm.XXXXXX")
-qemu_pid=
+qemu_pid= watch_pid=
 cleanup() {
+	[ -z "$watch_pid" ] || kill "$watch_pid" 2>/dev/null || true
 	[ -z "$qemu_pid" ] || kill "$qemu_pid" 2>/dev/null || true
 	rm -rf "$tmp"
 }
@@ -397,9 +398,10 @@ where() {
 	END
 }
 
-# watch PID: ends the guest after the time it has, or long before when its command has not begun
+# watch PID BEGIN: ends the guest after the time it has, or when its command has not begun after
+# BEGIN seconds
 watch() {
-	local pid=$1 end=$timeout begin=${EC_BEGIN:-240} tick
+	local pid=$1 end=$timeout begin=$2 tick
 
 	[ -z "$init" ] || begin=$timeout
 	mkfifo "$tmp/tick.$pid"
@@ -418,7 +420,7 @@ watch() {
 	kill -9 "$pid"
 } >&2
 
-# one start of the guest; sets qemu_rc and sed_rc
+# boot BEGIN: one start of the guest, as watch(); sets qemu_rc and sed_rc
 boot() {
 	local input=/dev/null
 
@@ -432,8 +434,8 @@ boot() {
 	"${qemu_args[@]}" -serial stdio -monitor "unix:$tmp/hmp,server=on,wait=off" <"$input" \
 		>"$tmp/out" 2>"$tmp/qemu.err" &
 	qemu_pid=$!
-	watch $qemu_pid &
-	local watch_pid=$!
+	watch $qemu_pid "$1" &
+	watch_pid=$!
 	# The console adds a carriage return to each line of the kernel. The file tells
 	# the guest that all it wrote has arrived; sed holds back what it writes to any
 	# other file than stderr. (sed -u would read byte by byte.)
@@ -449,18 +451,19 @@ boot() {
 	qemu_pid=
 	kill $watch_pid 2>/dev/null || true
 	wait $watch_pid 2>/dev/null || true
+	watch_pid=
 	sed_rc=0
 	wait $sed_pid || sed_rc=$?
 }
 
-boot
+boot "${EC_BEGIN:-240}"
 # Before the command nothing of ours runs in the guest: a death there is QEMU's or the
 # kernel's, and rare. It is shown, and once pardoned.
 if [ ! -s "$ctl/started" ] && [ ! -e "$tmp/late" ] && [ $sed_rc = 0 ]; then
 	sed 's/^/# /' "$tmp/qemu.err" >&2
 	rm -f "$parked"
 	echo "# run.sh: the guest ended before its command began (QEMU: $qemu_rc); second start" >&2
-	boot
+	boot "$timeout"
 fi
 end=$(date +%s%N)
 
