@@ -17,12 +17,14 @@ struct ec_waiters;
 
 /**
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use but for @wrote
+ *	and @before
  * @domain: index
  * @cmd: LRD, LWR or LRW
  * @new_frame: shares no frame with the datagrams before
  * @holes: @n_copies areas do not cover it: clear it first
  * @solid: all of it lies in the image as it lies in the datagram
  * @wrote: low half of the number of the last send before its inputs were last written
+ * @before: the same without what incomplete replies of that receive have written
  * @logical: logical address
  * @len: bytes
  * @expected: working counter when every slave takes part
@@ -36,10 +38,11 @@ struct ec_waiters;
 struct ec_cyc_dgram {
 	u16 domain;
 	u8 cmd;
-	bool new_frame;
-	bool holes;
-	bool solid;
+	bool new_frame : 1;
+	bool holes : 1;
+	bool solid : 1;
 	u16 wrote;
+	u16 before;
 	u32 logical;
 	u16 len;
 	u16 expected;

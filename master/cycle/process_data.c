@@ -38,12 +38,15 @@ static bool from_image(const struct ec_cyc_dgram *d)
 
 /*
  * May an incomplete reply give its inputs? One that was sent before they were last written
- * would bring back what a missing slave had before.
+ * would bring back what a missing slave had before. An incomplete one of the same receive has
+ * left that as it was.
  */
 static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
 		       const struct ec_cyc_flight *f)
 {
-	return (u16)(c->send - f->send) < (u16)(c->send - d->wrote);
+	u16 wrote = d->wrote == (u16)c->send ? d->before : d->wrote;
+
+	return (u16)(c->send - f->send) < (u16)(c->send - wrote);
 }
 
 /* Inputs of a datagram in which at least one slave has taken part. */
@@ -62,6 +65,10 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	 */
 	if (unlikely(!complete) && (direct || !holds_last(c, d, f)))
 		return;
+	if (complete)
+		d->before = c->send;
+	else if (d->wrote != (u16)c->send)
+		d->before = d->wrote;
 	d->wrote = c->send;
 	/* the outputs come back as well: those of the image are not needed now */
 	if (complete && d->solid && direct && c->direct) {
