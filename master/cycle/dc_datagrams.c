@@ -125,16 +125,22 @@ static u64 predicted(const struct ec_cycle *c, u64 now)
 
 #define RATE_NS	(100 * NSEC_PER_MSEC)
 
-/* The rate of the reference over some time; a jump is none. */
+/*
+ * The rate of the reference over some time; a jump is none. Each has the jitter of two sends, and
+ * the mean may have to do for long.
+ */
 static void learn_rate(struct ec_cycle *c)
 {
 	u64 since = c->dc_time_ns - c->dc_then_ns;
 	s64 more = (s64)(c->dc_time - c->dc_then - since);
+	s32 ppb;
 
 	if (c->dc_then_ns && since < RATE_NS)
 		return;
-	if (c->dc_then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS)
-		c->dc_ppb = (s32)div64_s64(more * (s64)NSEC_PER_SEC, since);
+	if (c->dc_then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS) {
+		ppb = (s32)div64_s64(more * (s64)NSEC_PER_SEC, since);
+		c->dc_ppb = c->dc_ppb ? c->dc_ppb + (ppb - c->dc_ppb) / 8 : ppb;
+	}
 	c->dc_then = c->dc_time;
 	c->dc_then_ns = c->dc_time_ns;
 }
