@@ -1210,7 +1210,8 @@ EC_PUBLIC_API int ecrt_master_end_detached(ec_master_t *master);
  *
  * Configures each slave of an active application again that has not reached OP, or for which
  * a tool has requested another state; none after ecrt_master_deactivate_slaves(). Retries
- * other slaves that could not be configured. Does not wait for the slaves.
+ * other slaves that could not be configured. Does not wait for the slaves; a worker does it
+ * soon afterwards, so that an old error may still be shown when the call returns.
  *
  * Context: Any; may be called from the cycle. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; %-EINVAL @master is NULL.

@@ -231,7 +231,7 @@ struct ec_dc {
 	bool ref_wide;
 	/**
 	 * @clocks_upstream: there are clocks upstream of it: they take the time that the cycle
-	 * predicts, and none that waits in a queue
+	 * predicts
 	 */
 	bool clocks_upstream;
 	/** @ref_minus_ktime: time of the reference clock less ktime, when it is set, ns */

@@ -281,8 +281,8 @@ static int by_cycle(struct ec_dc *dc)
  * ec_dc_near() - compensate the drift until the clocks may be used
  * @j: job whose clocks are set
  *
- * With clocks upstream of the reference only the cycle compensates: a frame that waits in a
- * queue has an old time for them.
+ * With clocks upstream of the reference only the cycle compensates: they take the time that was
+ * sent, which it predicts.
  *
  * Context: Process, dc.lock held. Waits for bus traffic.
  * Return: 0; -ECANCELED; -ENOMEM; or as ec_xfer().
