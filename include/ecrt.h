@@ -677,7 +677,7 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
  *
  * Frees all domains and slave configurations. All handles and pointers obtained since the
  * reservation become invalid, except @master, which remains reserved and may be configured
- * again. Slaves go to PREOP. No scan starts until the next activation or release.
+ * again. Slaves go to PREOP.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL not active, nothing was freed.

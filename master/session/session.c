@@ -224,8 +224,6 @@ static void forget_times(struct ec_sessions *ss)
  * ec_session_deactivate() - stop process data, free what was configured
  * @s: session
  *
- * It may configure again: as before an activation, slaves stay at their positions.
- *
  * Context: Process, session lock held. May sleep.
  * Return: 0, or -EINVAL when it was not active.
  */
@@ -242,7 +240,6 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_late_end(&s->cycle);
 	s->wanted.active = false;
-	ec_bus_freeze(ss->bus, true);
 	s->timeout_log.open = false;
 	ec_requests_end(s);
 	clear(s);

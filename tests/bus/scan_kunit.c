@@ -3,7 +3,7 @@
 #include <linux/completion.h>
 #include <linux/kthread.h>
 #include <linux/slab.h>
-#include "cyc.h"
+#include "bus.h"
 #include "master/boundary/ioctl.h"
 #include "master/boundary/cdev.h"
 
@@ -214,30 +214,6 @@ static void scan_while_reserved(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
 }
 
-/* One that configures again after a deactivation finds its slaves where they were. */
-static void scan_while_configured_again(struct kunit *test)
-{
-	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
-	struct cyc *c;
-	u32 scans;
-
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 1, 2, 0);
-	cyc_activate(c);
-	cyc_run(c, 100);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
-	scans = b->m->bus.scan_count;
-	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), -EBUSY);
-	ec_bus_rescan(&b->m->bus);
-	msleep(1000);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
-	ec_session_end(&b->m->sessions, &b->app);
-	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
-}
-
 /* an application that reserves the master, and what it finds then */
 struct reservation {
 	struct bus *b;
@@ -309,7 +285,6 @@ static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_device_names),
 	KUNIT_CASE(scan_nothing),
 	KUNIT_CASE(scan_while_reserved),
-	KUNIT_CASE(scan_while_configured_again),
 	KUNIT_CASE(scan_before_reservation_is_waited_for),
 	KUNIT_CASE(scan_bench_identity),
 	KUNIT_CASE(scan_bench_pdos),
