@@ -277,6 +277,29 @@ static void exchange_send_twice(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
+/* A slave is missing, and two replies come with one receive: the inputs are of the newer one. */
+static void exchange_newest_incomplete_reply_is_taken(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	u32 i, k;
+
+	c->each = NULL;
+	bus_fault(c->b, EC_SIM_FAULT_DEAD, 1, 0, 1, 0);
+	cyc_run(c, 5);
+	for (i = 1000000; i < 1000020; i += 2) {
+		for (k = 0; k < 2; k++) {
+			put_unaligned_le32(i + k, cyc_pd(c, 0, 0));
+			KUNIT_ASSERT_EQ(test, send(c), 0);
+		}
+		msleep(1);
+		KUNIT_ASSERT_EQ(test, ec_ioc_receive(&c->b->app), 0);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 1);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->age, 0);
+		/* the second send brings what the first one has written */
+		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 0, 1)), i);
+	}
+}
+
 static void receive_more(struct cyc *c)
 {
 	u32 wkc = cyc_state(c, 0)->working_counter;
@@ -381,6 +404,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(exchange_sum_hides_no_wrong_counter),
 	KUNIT_CASE_PARAM(exchange_reply_after_pause_is_taken, pause_gen_params),
 	KUNIT_CASE(exchange_send_twice),
+	KUNIT_CASE(exchange_newest_incomplete_reply_is_taken),
 	KUNIT_CASE(exchange_receive_twice),
 	KUNIT_CASE(exchange_all_lost),
 	KUNIT_CASE(exchange_end_in_flight),
