@@ -440,7 +440,7 @@ EC_PUBLIC_API ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
  *
  * Causes no bus traffic.
  *
- * Context: Any. RT-safe: bounded, no sleep,
+ * Context: Process. May sleep. In the kernel: any; RT-safe: bounded, no sleep,
  * no allocation. In the cycle of a process call ecrt_master_state() instead.
  * Return: 0; %-EINVAL an argument is NULL.
  */
