@@ -347,7 +347,7 @@ void ec_requests_kick(struct ec_session *s)
  * ec_requests_notice() - has the application started or cancelled a request?
  * @c: cycle of an active session
  *
- * They are counted in mapped memory, also those of which no send has told.
+ * They are counted in mapped memory, also those without %EC_SEND_FLAG_REQUESTS.
  *
  * Context: The thread that runs the cycle; when there is none, the monitor. RT-safe.
  */

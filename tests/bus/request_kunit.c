@@ -445,8 +445,8 @@ static void req_emergencies(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ring(c, 1)->head, 0);
 }
 
-/* Of one that another thread starts beside a send, the send may not tell. */
-static void req_untold(struct kunit *test)
+/* One that another thread starts beside a send may miss the flag of that send. */
+static void req_without_flag(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
 	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4);
@@ -497,7 +497,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(req_registers_of_failed_slave),
 	KUNIT_CASE(req_emergencies),
 	KUNIT_CASE(req_emergency_without_room),
-	KUNIT_CASE(req_untold),
+	KUNIT_CASE(req_without_flag),
 	{}
 };
 

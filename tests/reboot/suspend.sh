@@ -23,9 +23,8 @@ modprobe -d "${modules%/lib/modules/*}" -S "${modules##*/}" --show-depends e1000
 {
 	cat "$tmp/root/order"
 	ldd "$EC_BUILD/tool/ethercat" "$EC_BUILD/apps/demo" | grep -oE '/[^ ):]+( |$)' | tr -d ' '
-	find "$EC_BUILD"/{modules/{master,devices},tool/ethercat,apps/demo,lib} -type f \
-		\( -perm -100 -o -name '*.ko' -o -name '*.so*' \)
-	find "$EC_BUILD/lib" -name '*.so*'
+	find "$EC_BUILD"/{modules/{master,devices},tool/ethercat,apps/demo,lib} \
+		-name '*.ko' -o -name '*.so*' -o -name ethercat -type f -o -name demo
 } | sort -u | tar -ch -T - 2>/dev/null | tar -x -C "$tmp/root"
 (cd "$tmp/root" && find . | cpio --quiet -o -H newc | gzip -1) >"$tmp/initrd"
 timeout 300 qemu-system-x86_64 -nodefaults -no-user-config -no-reboot -display none \

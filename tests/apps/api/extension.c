@@ -173,7 +173,8 @@ static void clocks(void)
 	bench_down(&b);
 }
 
-/* A reader of new events only. The bus goes on with what the application before left to it, so
+/*
+ * A reader of new events only. The bus goes on with what the application before left to it, so
  * some of them may come at any moment; one that began with the old ones would never be silent.
  */
 static int open_silent(void)
