@@ -60,7 +60,7 @@ static int enter(struct ec_master *m, struct ec_session **s)
 		ret = -EWOULDBLOCK;
 	if (!ret)
 		return 0;
-	ec_access_leave(&m->links);
+	ec_links_leave(&m->links);
 	if (ret == -EWOULDBLOCK && !READ_ONCE(api->atomic)) {
 		WRITE_ONCE(api->atomic, true);
 		leave_to_work(m);
@@ -99,7 +99,7 @@ int ecrt_master_receive(ec_master_t *master)
 	} else {
 		ret = ec_cycle_do_receive(&s->cycle);
 	}
-	ec_access_leave(&master->links);
+	ec_links_leave(&master->links);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_receive);
@@ -121,7 +121,7 @@ int ecrt_master_send(ec_master_t *master)
 	ret = ec_cycle_take_request(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
 	next->queued = 0;
 	next->flags = 0;
-	ec_access_leave(&master->links);
+	ec_links_leave(&master->links);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_send);
@@ -134,7 +134,7 @@ int ecrt_master_send_ext(ec_master_t *master)
 	if (ret)
 		return ret == -EBUSY ? -EAGAIN : ret;
 	ec_share_send_between(&master->links);
-	ec_access_leave(&master->links);
+	ec_links_leave(&master->links);
 	return 0;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_send_ext);

@@ -281,9 +281,9 @@ int ec_cycle_receive(struct ec_cycle *c)
 
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	ec_access_enter(c->links);
+	ec_links_enter(c->links);
 	ret = ec_cycle_do_receive(c);
-	ec_access_leave(c->links);
+	ec_links_leave(c->links);
 	return ret;
 }
 
@@ -497,8 +497,8 @@ int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	ec_access_enter(c->links);
+	ec_links_enter(c->links);
 	ret = ec_cycle_do_send(c, what);
-	ec_access_leave(c->links);
+	ec_links_leave(c->links);
 	return ret;
 }

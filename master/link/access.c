@@ -49,8 +49,6 @@ int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 
 {
 	int ret;
 
-	if (frame != slot->frame)
-		ec_slot_note(slot, frame);
 	ec_slot_arm(&l->slots, slot, frame, l->carry, now);
 	ret = ec_links_send(l, slot, frame);
 	/* a reply that came nevertheless makes it a frame as if it was sent */
@@ -105,7 +103,7 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 	if (change) {
 		ec_write64(&l->access.last_send_ns, ktime_get_ns());
 		WRITE_ONCE(l->access.mode, mode);
-		smp_mb();	/* mode before busy; pairs with ec_access_enter() */
+		smp_mb();	/* mode before busy; pairs with ec_access_enters() */
 		/* the cycle wakes no thread of the master */
 		while (mode == EC_ACCESS_DIRECT && atomic_read(&l->access.busy))
 			usleep_range(20, 50);
@@ -123,23 +121,17 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 }
 
 /**
- * ec_access_enter() - the cycle owner takes the links for one call
+ * ec_access_reenter() - take cyclic access again, and enter
  * @l: links
  *
- * Takes cyclic access again after a cycle timeout.
- *
- * Context: Cycle owner. Sleeps after a cycle timeout only.
+ * Context: Cycle owner. May sleep.
  */
-void ec_access_enter(struct ec_links *l)
+void ec_access_reenter(struct ec_links *l)
 {
-	for (;;) {
-		atomic_set(&l->access.busy, 1);
-		smp_mb();	/* busy before mode; pairs with ec_access_change() */
-		if (READ_ONCE(l->access.mode) == EC_ACCESS_CYCLIC)
-			return;
-		atomic_set(&l->access.busy, 0);
+	do {
+		ec_access_leave(&l->access);
 		ec_access_change(l, EC_ACCESS_CYCLIC);
-	}
+	} while (!ec_access_enters(&l->access));
 }
 
 /**
@@ -160,19 +152,8 @@ int ec_access_try_enter(struct ec_links *l)
 	smp_mb();	/* busy before mode; pairs with ec_access_change() */
 	if (READ_ONCE(l->access.mode) == EC_ACCESS_CYCLIC)
 		return 0;
-	ec_access_leave(l);
+	ec_access_leave(&l->access);
 	return -EAGAIN;
-}
-
-/**
- * ec_access_leave() - the cycle owner leaves the links
- * @l: links that it has entered
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_access_leave(struct ec_links *l)
-{
-	atomic_set_release(&l->access.busy, 0);
 }
 
 /**

@@ -52,15 +52,33 @@ void ec_access_timeout(struct ec_links *l);
 void ec_access_poll(struct ec_links *l);
 
 /* for the cycle owner */
-void ec_access_enter(struct ec_links *l);
+void ec_access_reenter(struct ec_links *l);
 int ec_access_try_enter(struct ec_links *l);
-void ec_access_leave(struct ec_links *l);
 int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now);
 
 /* free wire time beside a cycle */
 #define EC_ROOM_MIN	32	/* data bytes of a minimum Ethernet frame */
 u32 ec_access_slack_ns(const struct ec_links *l);
 u16 ec_access_room(const struct ec_links *l);
+
+/* Marks the links as used; false: access is direct, the mark is to be taken back. */
+static inline bool ec_access_enters(struct ec_access *a)
+{
+	atomic_set(&a->busy, 1);
+	smp_mb();	/* busy before mode; pairs with ec_access_change() */
+	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
+}
+
+/**
+ * ec_access_leave() - the cycle owner leaves the links
+ * @a: access to links that it has entered
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+static inline void ec_access_leave(struct ec_access *a)
+{
+	atomic_set_release(&a->busy, 0);
+}
 
 static inline bool ec_access_is_cyclic(const struct ec_access *a)
 {

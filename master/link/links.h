@@ -124,6 +124,25 @@ static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsign
 	return &l->link[i];
 }
 
+/**
+ * ec_links_enter() - the cycle owner takes the links for one call; ends with ec_links_leave()
+ * @l: links
+ *
+ * Takes cyclic access again after a cycle timeout.
+ *
+ * Context: Cycle owner. Sleeps after a cycle timeout only.
+ */
+static inline void ec_links_enter(struct ec_links *l)
+{
+	if (unlikely(!ec_access_enters(&l->access)))
+		ec_access_reenter(l);
+}
+
+static inline void ec_links_leave(struct ec_links *l)
+{
+	ec_access_leave(&l->access);
+}
+
 /* the events of all slaves that a frame of the cycle has brought; RT-safe */
 static inline void ec_links_events(struct ec_links *l, u16 events)
 {

@@ -231,21 +231,23 @@ static bool look_through(struct ec_slots *s, struct reply *r)
  * @src: source MAC address of the frame
  * @data: what follows the EtherType
  * @len: bytes there
- * @got: who waits for it; @n is 0 yet
+ * @got: result: who waits for it
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: what became of the frame.
  */
 enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
-			    struct ec_matched *got)
+			    struct ec_pack_matched *got)
 {
 	struct reply r = {
 		.data = data, .seq = get_unaligned_le32(src + 2), .side = src[1] & ~EC_PACKED,
 		.prev = NONE, .next = NONE,
 	};
+	struct ec_xfer *xfer;
 	unsigned int i;
 	bool ok;
 
+	got->n = 0;
 	/* the iterator only reads; it has no const form */
 	if (ec_frame_iter_init(&r.it, (u8 *)data, len))
 		return EC_MATCH_UNMATCHED;
@@ -254,10 +256,13 @@ enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, s
 	for (i = 0; i < r.n; i++) {
 		struct ec_slot *slot = r.held[i];
 
-		if (ok)
-			ec_slot_take(slot, r.side, data + slot->pack.at, got);
-		else
+		if (!ok) {
 			ec_slot_release(slot, EC_SLOT_SENT);
+			continue;
+		}
+		xfer = ec_slot_take(slot, r.side, data + slot->pack.at);
+		if (xfer)
+			got->xfer[got->n++] = xfer;
 	}
 	if (!ok)
 		return EC_MATCH_UNMATCHED;

@@ -33,7 +33,18 @@ void ec_pack_place(struct ec_slots *s, struct ec_pack *p, u64 sent_ns);
 size_t ec_pack_write(const struct ec_pack *p, u8 *buf);
 void ec_pack_release(struct ec_pack *p, enum ec_slot_state state);
 void ec_pack_move(struct ec_pack *p, enum ec_slot_state from, enum ec_slot_state to);
+
+/**
+ * struct ec_pack_matched - callers whose frames have come back as one
+ * @n: how many
+ * @xfer: the callers; their slots may be in use by others already
+ */
+struct ec_pack_matched {
+	unsigned int n;
+	struct ec_xfer *xfer[EC_PACK_MAX];
+};
+
 enum ec_match ec_pack_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
-			    struct ec_matched *got);
+			    struct ec_pack_matched *got);
 
 #endif

@@ -5,7 +5,6 @@
 #include <linux/module.h>
 #include <linux/vmalloc.h>
 #include "../base/once64.h"
-#include "pack.h"
 #include "slots.h"
 
 #define COPY_MAX	(EC_ETH_MAX - EC_ETH_HDR)	/* what follows the EtherType */
@@ -65,18 +64,22 @@ static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
 	       EC_SLOT_QUARANTINE;
 }
 
-static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
+static struct ec_slot *taken(struct ec_slot *slot)
+{
+	slot->xfer = NULL;
+	slot->dgrams = 0;
+	return slot;
+}
+
+static noinline struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
 {
 	unsigned int i, start = atomic_inc_return(&s->hint);
 
 	for (i = 0; i < EC_SLOTS; i++) {
 		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
 
-		if (take(slot, now_ns, quarantine_ns)) {
-			slot->xfer = NULL;
-			slot->dgrams = 0;
-			return slot;
-		}
+		if (take(slot, now_ns, quarantine_ns))
+			return taken(slot);
 	}
 	return NULL;
 }
@@ -92,8 +95,11 @@ static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
  */
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
 {
-	struct ec_slot *slot;
+	struct ec_slot *slot = &s->slot[(u32)atomic_inc_return(&s->hint) % EC_SLOTS];
 
+	/* mostly the next one is free */
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
+		return taken(slot);
 	slot = search(s, now_ns, EC_QUARANTINE_NS);
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
@@ -180,7 +186,7 @@ bool ec_slot_disarm(struct ec_slot *slot)
  * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
  * alone: one that callers share is recognized by its number.
  */
-static void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u64 now_ns)
+static __always_inline void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u64 now_ns)
 {
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
@@ -199,11 +205,25 @@ static void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u6
 		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
 }
 
+/* Keep the headers of the datagrams, with which the reply is compared. */
+static __always_inline void note(struct ec_slot *slot, const u8 *frame)
+{
+	unsigned int at = EC_ETH_HDR + EC_FRAME_HDR;
+	u16 len;
+
+	do {
+		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
+		len = get_unaligned_le16(frame + at + 6);
+		at += EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
+		/* the device may have written there, too */
+	} while (len & EC_DGRAM_MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
+}
+
 /**
  * ec_slot_arm() - write the Ethernet header and expect the reply from now on
  * @s: slots
  * @slot: in state BUILD, datagrams complete, @eth_len set
- * @frame: where its frame was built; elsewhere than in the slot: see ec_slot_note()
+ * @frame: where its frame was built; of one that is not in the slot only headers are kept there
  * @links: mask of the links on which it is sent
  * @now_ns: time
  *
@@ -211,6 +231,8 @@ static void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u6
  */
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns)
 {
+	if (frame != slot->frame)
+		note(slot, frame);
 	number(s, slot, frame, links, now_ns);
 	ec_slot_release(slot, EC_SLOT_SENT);
 }
@@ -251,30 +273,18 @@ bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq)
 }
 
 /**
- * ec_slot_awaits() - is the copy of a link still to come back?
- * @slot: slot in state FILL
- * @side: number of the link
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether it is.
- */
-bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
-{
-	return side < EC_MAX_LINKS && slot->links & ~slot->back & BIT(side);
-}
-
-/**
  * ec_slot_take() - take the copy of a link, and leave the state FILL
  * @slot: slot that awaits it
  * @side: number of the link
  * @data: datagrams, compared with what was sent
- * @got: is given who waits, with the last copy
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: who waits, with the last copy; NULL: the cycle, or a copy is still to come.
  */
-void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_matched *got)
+struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
 {
 	u8 *to = side ? slot->backup : ec_slot_body(slot);
+	struct ec_xfer *xfer = slot->xfer;
 
 	memcpy(to + EC_FRAME_HDR, data, slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
 	/* in a shared frame another caller's datagrams follow, here they end */
@@ -283,60 +293,25 @@ void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_match
 	slot->back |= BIT(side);
 	if (slot->back != slot->links) {
 		ec_slot_release(slot, EC_SLOT_SENT);
-		return;
+		return NULL;
 	}
-	if (slot->xfer)
-		got->xfer[got->n++] = slot->xfer;
 	ec_slot_release(slot, EC_SLOT_DONE);
+	return xfer;
 }
 
 /* commands whose address each slave counts up */
 #define COUNTED (BIT(EC_CMD_APRD) | BIT(EC_CMD_APWR) | BIT(EC_CMD_APRW) | BIT(EC_CMD_BRD) | \
 		 BIT(EC_CMD_BWR) | BIT(EC_CMD_BRW) | BIT(EC_CMD_ARMW))
-#define LEN_MASK	0x07ff
-#define MORE		0x8000
-
-/* Command, index, address and length; the rest of the header is the slaves'. */
+/* Command, index, address and length; the other bits of its 8 bytes are the slaves'. */
 static bool same_header(const u8 *sent, const u8 *got)
 {
 	bool counted = sent[0] < 32 && BIT(sent[0]) & COUNTED;
-	u32 first = get_unaligned_le32(sent) ^ get_unaligned_le32(got);
-	u32 second = get_unaligned_le32(sent + 4) ^ get_unaligned_le32(got + 4);
+	u64 ours = (u64)EC_DGRAM_LEN_MASK << 48 | (counted ? 0xffff0000ffff : 0xffffffffffff);
 
-	return !(counted ? first & 0xffff : first) && !(second & (LEN_MASK << 16 | 0xffff));
+	return !((get_unaligned_le64(sent) ^ get_unaligned_le64(got)) & ours);
 }
 
-/**
- * ec_slot_note() - keep what a reply is compared with
- * @slot: in state BUILD, @eth_len set
- * @frame: its frame, built by the caller
- *
- * These are the headers of the datagrams. Their data need no second copy.
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_slot_note(struct ec_slot *slot, const u8 *frame)
-{
-	unsigned int at = EC_ETH_HDR + EC_FRAME_HDR;
-	u16 len;
-
-	do {
-		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
-		len = get_unaligned_le16(frame + at + 6);
-		at += EC_DGRAM_OVERHEAD + (len & LEN_MASK);
-		/* the device may have written there, too */
-	} while (len & MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
-}
-
-/**
- * ec_slot_same() - check that a reply carries the datagrams of a slot
- * @slot: slot in state FILL
- * @reply: the reply, at the first of them; afterwards behind the last one
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether it does.
- */
-bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
+static __always_inline bool same_dgrams(struct ec_slot *slot, struct ec_frame_iter *reply)
 {
 	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
 	size_t left = slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR;
@@ -349,70 +324,83 @@ bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
 		    !same_header(sent, reply->p))
 			return false;
 		len = get_unaligned_le16(sent + 6);
-		size = EC_DGRAM_OVERHEAD + (len & LEN_MASK);
+		size = EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
 		if (left < size || replied < size)
 			return false;
-		reply->more = get_unaligned_le16(reply->p + 6) & MORE;
+		reply->more = get_unaligned_le16(reply->p + 6) & EC_DGRAM_MORE;
 		reply->p += size;
 		sent += size;
 		left -= size;
-	} while (len & MORE);
+	} while (len & EC_DGRAM_MORE);
 	return true;
 }
 
+/**
+ * ec_slot_same() - check that a reply carries the datagrams of a slot
+ * @slot: slot in state FILL
+ * @reply: the reply, at the first of them; afterwards behind the last one
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it does.
+ */
+bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
+{
+	return same_dgrams(slot, reply);
+}
+
 /* Does the reply carry the same datagrams as the frame that was sent, and no more? */
-static bool same(struct ec_slot *slot, u8 *reply, size_t len)
+static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 {
 	struct ec_frame_iter ri;
 
-	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
+	return !ec_frame_iter_init(&ri, reply, len) && same_dgrams(slot, &ri) &&
 	       !ri.more && ri.p == ri.end;
 }
 
+static struct ec_matched nothing(enum ec_match what)
+{
+	return (struct ec_matched){ .what = what };
+}
+
 /**
- * ec_slots_match() - find the slots a received frame belongs to and fill them
+ * ec_slots_match() - find the slot a received frame belongs to and fill it
  * @s: slots
- * @src: source MAC address of the frame
+ * @src: source MAC address of the frame, which callers do not share
  * @data: what follows the EtherType
  * @len: bytes there
- * @got: who waits for it
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: what became of the frame.
+ * Return: what became of the frame, and who waits for it.
  */
-enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
-			     size_t len, struct ec_matched *got)
+struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len)
 {
 	u32 seq = get_unaligned_le32(src + 2);
 	struct ec_slot *slot;
 	enum ec_slot_state state;
 	u8 side = src[1];
 
-	got->n = 0;
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
-		return EC_MATCH_UNMATCHED;
-	if (unlikely(side & EC_PACKED))
-		return ec_pack_match(s, src, data, len, got);
+		return nothing(EC_MATCH_UNMATCHED);
 	slot = &s->slot[data[EC_FRAME_HDR + 1]];
 	if (!s->numbered)
 		seq = READ_ONCE(slot->seq);
 	/* first: a frame of an earlier use must not hold the slot */
 	if (READ_ONCE(slot->seq) != seq) {
 		state = atomic_read(&slot->state);
-		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ? EC_MATCH_LATE :
-									  EC_MATCH_UNMATCHED;
+		return nothing(state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ?
+			       EC_MATCH_LATE : EC_MATCH_UNMATCHED);
 	}
 	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
-		return EC_MATCH_LATE;
+		return nothing(EC_MATCH_LATE);
 	if (!ec_slot_awaits(slot, side)) {
 		ec_slot_release(slot, EC_SLOT_SENT);
-		return EC_MATCH_LATE;
+		return nothing(EC_MATCH_LATE);
 	}
 	/* the iterator only reads; it has no const form */
 	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
 		ec_slot_release(slot, EC_SLOT_SENT);
-		return EC_MATCH_UNMATCHED;
+		return nothing(EC_MATCH_UNMATCHED);
 	}
-	ec_slot_take(slot, side, data + EC_FRAME_HDR, got);
-	return EC_MATCH_DONE;
+	return (struct ec_matched){ EC_MATCH_DONE,
+				    ec_slot_take(slot, side, data + EC_FRAME_HDR) };
 }

@@ -63,7 +63,7 @@ struct ec_packed {
  * @last: offset of the last one from the first one
  * @pack: how it shares a frame
  * @eth_len: bytes of the Ethernet frame without padding and FCS
- * @frame: Ethernet frame, or only headers of its datagrams, see ec_slot_note(); datagrams of
+ * @frame: Ethernet frame, or only headers of its datagrams, see ec_slot_arm(); datagrams of
  *	the copy of link 0 when that is back
  * @backup: behind the EtherType: the copy of link 1; NULL without such a link
  */
@@ -114,13 +114,13 @@ enum ec_match {
 };
 
 /**
- * struct ec_matched - callers whose frames have come back
- * @n: how many; the cycle counts as none
- * @xfer: the callers; their slots may be in use by others already
+ * struct ec_matched - what became of a frame, and who has waited for it
+ * @what: what became of it
+ * @xfer: the caller, whose slot may be in use by another already; NULL: none, or the cycle
  */
 struct ec_matched {
-	unsigned int n;
-	struct ec_xfer *xfer[EC_PACK_MAX];
+	enum ec_match what;
+	struct ec_xfer *xfer;
 };
 
 int ec_slots_init(struct ec_slots *s, bool backup);
@@ -130,14 +130,11 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s);
 void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_disarm(struct ec_slot *slot);
-void ec_slot_note(struct ec_slot *slot, const u8 *frame);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns);
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
 bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);
-bool ec_slot_awaits(const struct ec_slot *slot, u8 side);
-void ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, struct ec_matched *got);
-enum ec_match ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data,
-			     size_t len, struct ec_matched *got);
+struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
+struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len);
 bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
 
 /* end of the state FILL */
@@ -150,6 +147,19 @@ static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state stat
 static inline bool ec_slot_leads(const struct ec_slot *slot)
 {
 	return !slot->pack.len || slot->pack.prev == slot->index;
+}
+
+/**
+ * ec_slot_awaits() - is the copy of a link still to come back?
+ * @slot: slot in state FILL
+ * @side: number of the link
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is.
+ */
+static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
+{
+	return side < EC_MAX_LINKS && slot->links & ~slot->back & BIT(side);
 }
 
 static inline u8 *ec_slot_body(struct ec_slot *slot)

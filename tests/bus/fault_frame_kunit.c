@@ -37,8 +37,6 @@ static void expect_at(struct bus *b, struct expected *e, u8 *frame)
 	memset(ec_frame_add(&fb, EC_CMD_LRW, e->slot->index, 0x0000, 0x0001, 8), 0, 8);
 	e->len = ec_frame_end(&fb);
 	e->slot->eth_len = EC_ETH_HDR + e->len;
-	if (frame != e->slot->frame)
-		ec_slot_note(e->slot, frame);
 	ec_slot_arm(&b->m->links.slots, e->slot, frame, BIT(0), ktime_get_ns());
 	memcpy(e->src, frame + 6, 6);
 	e->src[0] |= 2;
@@ -137,14 +135,14 @@ static void frame_noted_within_its_length(struct kunit *test)
 	/* one datagram of 4 bytes; lengths and "more" of all behind it are the largest */
 	put_unaligned_le16(4 | 0x8000, buffer + EC_ETH_HDR + EC_FRAME_HDR + 6);
 	slot->eth_len = last + EC_DGRAM_OVERHEAD;
-	ec_slot_note(slot, buffer);
+	ec_slot_arm(&b->m->links.slots, slot, buffer, BIT(0), ktime_get_ns());
 	KUNIT_EXPECT_EQ(test, slot->frame[last + EC_DGRAM_HDR - 1], 0xff);
 	for (i = last + EC_DGRAM_HDR; i < sizeof(slot->frame); i++)
 		KUNIT_ASSERT_EQ(test, slot->frame[i], 0);
 	/* the frame itself ends where there is room for no header */
 	slot->eth_len = last + EC_DGRAM_OVERHEAD - 1;
 	memset(slot->frame, 0, sizeof(slot->frame));
-	ec_slot_note(slot, buffer);
+	ec_slot_arm(&b->m->links.slots, slot, buffer, BIT(0), ktime_get_ns());
 	KUNIT_EXPECT_EQ(test, slot->frame[last], 0);
 	ec_slot_put(&b->m->links.slots, slot);
 }

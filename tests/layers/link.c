@@ -236,11 +236,11 @@ static void cycle_sends_what_others_queue(void)
 	if (caller_begins(&c, b)) {
 		CHECK(alone_wait(queued, &b->links, 10));
 		CHECK_EQ(b->d.sent, 0);
-		ec_access_enter(&b->links);
+		ec_links_enter(&b->links);
 		ec_write64(&b->links.access.last_send_ns, ktime_get_ns());
 		ec_share_begin(&b->links);
 		ec_share_send_left(&b->links, 0);
-		ec_access_leave(&b->links);
+		ec_links_leave(&b->links);
 		wait_for_completion(&c.done);
 		CHECK_EQ(c.ret, 1);
 		CHECK_EQ(b->d.sent, 1);
