@@ -49,21 +49,6 @@ static long foreign_version(unsigned long arg)
 	return copy_to_user((void __user *)arg, v, sizeof(v)) ? -EFAULT : 0;
 }
 
-static long cyclic_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
-{
-	struct ec_ioc_send send;
-
-	if (_IOC_DIR(cmd) != _IOC_DIR(EC_IOC_SEND))
-		return -ENOTTY;
-	if (_IOC_SIZE(cmd) != sizeof(send))
-		return -EINVAL;
-	if (copy_from_user(&send, (void __user *)arg, sizeof(send)))
-		return -EFAULT;
-	if (send.flags & ~EC_SEND_FLAG_ALL || send.reserved)
-		return -EOPNOTSUPP;
-	return ec_ioc_send(f, &send);
-}
-
 /* May the caller give the command, and is the size of the argument valid? */
 static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd)
 {
@@ -199,33 +184,6 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 	if (cmd == EC_IOC_RECEIVE)
 		return ec_ioc_receive(f);
 	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && _IOC_NR(cmd) == _IOC_NR(EC_IOC_SEND))
-		return cyclic_send(f, cmd, arg);
+		return ec_ioc_send(f, cmd, arg);
 	return dispatch(f, cmd, arg);
-}
-
-/**
- * ec_ioctl_advise() - .fadvise of the character device: the commands of the cycle
- * @filp: open file
- * @offset: application time in ns, for EC_ADVICE_SEND
- * @len: domains to send, bit n queues domain n
- * @advice: EC_ADVICE_RECEIVE, or EC_ADVICE_SEND with EC_SEND_FLAG_*
- *
- * Security modules look at each ioctl(), and that costs more than the rest of the entry.
- *
- * Context: Process. RT-safe.
- * Return: as EC_IOC_RECEIVE and EC_IOC_SEND; for other advice as for any file.
- */
-int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice)
-{
-	struct ec_file *f = filp->private_data;
-	struct ec_ioc_send send = {
-		.flags = advice & EC_SEND_FLAG_ALL, .queued = len,
-		.app_time = offset, .sync_time = offset,
-	};
-
-	if (advice == EC_ADVICE_RECEIVE)
-		return ec_ioc_receive(f);
-	if ((advice & ~EC_SEND_FLAG_ALL) == EC_ADVICE_SEND)
-		return ec_ioc_send(f, &send);
-	return generic_fadvise(filp, offset, len, advice);
 }

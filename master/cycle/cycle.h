@@ -386,14 +386,69 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks);
 void ec_cycle_tell_room(struct ec_cycle *c);
 void ec_cycle_free(struct ec_cycle *c);
 
-/* process_data.c */
-void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
-int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_send *what);
+/* receive.c */
 int ec_cycle_do_receive(struct ec_cycle *c);
 void ec_cycle_tell_stale(struct ec_cycle *c);
+
+/* send.c */
+void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);
-int ec_cycle_receive(struct ec_cycle *c);
-int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what);
+
+/**
+ * ec_cycle_take_request() - what the application gives with a send, without requests
+ * @c: active cycle
+ * @what: its flags are known ones
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0; -ENOENT a domain is queued that there is not.
+ */
+static inline int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_send *what)
+{
+	unsigned int n = c->wanted->n_domains;
+
+	if (what->flags & (EC_SEND_FLAG_APP_TIME | EC_SEND_FLAG_SYNC_REF))
+		ec_cycle_app_time(c, what);
+	return n < 64 && what->queued >> n ? -ENOENT : 0;
+}
+
+/**
+ * ec_cycle_receive() - ec_cycle_do_receive(), links and all
+ * @c: active cycle
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
+ * Return: 0 or -ENODEV.
+ */
+static inline int ec_cycle_receive(struct ec_cycle *c)
+{
+	int ret;
+
+	if (!ec_links_attached(c->links))
+		return -ENODEV;
+	ec_links_enter(c->links);
+	ret = ec_cycle_do_receive(c);
+	ec_links_leave(c->links);
+	return ret;
+}
+
+/**
+ * ec_cycle_send() - ec_cycle_do_send(), links and all
+ * @c: active cycle
+ * @what: as there
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
+ * Return: 0 or -ENODEV.
+ */
+static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)
+{
+	int ret;
+
+	if (!ec_links_attached(c->links))
+		return -ENODEV;
+	ec_links_enter(c->links);
+	ret = ec_cycle_do_send(c, what);
+	ec_links_leave(c->links);
+	return ret;
+}
 
 /* dc_datagrams.c */
 u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c);

@@ -291,7 +291,6 @@ void ec_dc_datagrams_judge(struct ec_cycle *c)
 {
 	struct ec_status *st = c->shared->status;
 
-	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->dc_asked & SYNC_SLAVES) {
 		WRITE_ONCE(st->dc_time, c->dc_time);
 		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));

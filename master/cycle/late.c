@@ -52,26 +52,22 @@ static void forget(struct ec_status_cycle *st)
 	memset(st->late, 0, sizeof(st->late));
 }
 
-/**
- * ec_late_count() - count one send
- * @c: active cycle
- * @ns: distance from its schedule; negative counts as 0
- *
- * Context: The master's single cyclic caller. RT-safe.
- */
-void ec_late_count(struct ec_cycle *c, s64 ns)
+static noinline void reset(struct ec_cycle *c)
+{
+	ec_status_begin(c->shared->status);
+	forget(status(c));
+	ec_status_end(c->shared->status);
+	/* the figures are zero before a reader may read them again */
+	smp_store_release(&c->cycles->late_reset, false);
+}
+
+static __always_inline void count(struct ec_cycle *c, u32 late)
 {
 	struct ec_status_cycle *st = status(c);
-	u32 late = clamp_t(s64, ns, 0, U32_MAX);
 	unsigned int i = bucket(late);
 
-	if (unlikely(READ_ONCE(c->cycles->late_reset))) {
-		ec_status_begin(c->shared->status);
-		forget(st);
-		ec_status_end(c->shared->status);
-		/* the figures are zero before a reader may read them again */
-		smp_store_release(&c->cycles->late_reset, false);
-	}
+	if (unlikely(READ_ONCE(c->cycles->late_reset)))
+		reset(c);
 	ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->late[i], st->late[i] + 1);
 	WRITE_ONCE(st->late_sum, st->late_sum + late);
@@ -81,6 +77,18 @@ void ec_late_count(struct ec_cycle *c, s64 ns)
 		WRITE_ONCE(st->late_max, late);
 	WRITE_ONCE(st->late_count, st->late_count + 1);
 	ec_status_end(c->shared->status);
+}
+
+/**
+ * ec_late_count() - count one send
+ * @c: active cycle
+ * @ns: distance from its schedule; negative counts as 0
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_late_count(struct ec_cycle *c, s64 ns)
+{
+	count(c, clamp_t(s64, ns, 0, U32_MAX));
 }
 
 /* The median of the last gaps: single delayed sends do not change it. */
@@ -169,7 +177,7 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 	off = now - sc->due_ns;
 	if (unlikely(off < -(s64)(sc->interval_ns / 2)))
 		off = go_back(sc, off);
-	ec_late_count(c, abs(off));
+	count(c, min_t(u64, abs(off), U32_MAX));
 	if (unlikely(off >= sc->interval_ns))
 		off = skip(c, off);
 	step = (sc->interval_ns >> 10) + NSEC_PER_USEC;

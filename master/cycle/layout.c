@@ -404,7 +404,7 @@ static void forget_flights(struct ec_cycle *c)
 
 		while (!ec_slot_cancel(slot, ktime_get_ns())) {
 			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
-				ec_slot_put(&c->links->slots, slot);
+				ec_slot_put(slot);
 				break;
 			}
 			/* being copied at this moment */

@@ -179,6 +179,12 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 	return atomic_read(&l->link[0].acyclic_ns);
 }
 
+/* has anybody left acyclic frames for the next send? */
+static inline bool ec_links_have_left(const struct ec_links *l)
+{
+	return READ_ONCE(l->posts.n_ready) || ec_queue_frames(&l->queues);
+}
+
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);

@@ -230,7 +230,7 @@ static void back(struct ec_xfer *x)
 	dg->err = -EIO;
 	if (ec_frame_iter_next(&it, &d) == 1)
 		ec_dg_take(dg, &d, slot->sent_ns);
-	ec_slot_put(&post->links->slots, slot);
+	ec_slot_put(slot);
 	leave_slot(post);
 	post->tries = 0;
 	call(post, post->done);
@@ -314,7 +314,7 @@ static bool take_off(struct ec_links *l, struct ec_post *post, u64 now)
 	}
 	/* it has not left, so no reply can have been taken but a forged one */
 	if (ec_slot_disarm(post->slot))
-		ec_slot_put(&l->slots, post->slot);
+		ec_slot_put(post->slot);
 	leave_slot(post);
 	return false;
 }

@@ -129,16 +129,3 @@ void ec_queue_gather(struct ec_queues *qs, struct ec_queue *q, const struct ec_q
 		q->urgent = p->e[p->n - 1].urgent;
 	raw_spin_unlock_irqrestore(&qs->lock, flags);
 }
-
-/**
- * ec_queue_frames() - count the frames that wait
- * @qs: queues
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: how many, those included that have been sent since, or given up.
- */
-unsigned int ec_queue_frames(const struct ec_queues *qs)
-{
-	return READ_ONCE(qs->acyclic.head) - READ_ONCE(qs->acyclic.tail) +
-	       READ_ONCE(qs->clock.head) - READ_ONCE(qs->clock.tail);
-}

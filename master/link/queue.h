@@ -38,6 +38,18 @@ int ec_queue_push(struct ec_queues *qs, struct ec_slot *slot, bool urgent);
 bool ec_queue_peek(struct ec_queues *qs, struct ec_queue *q, struct ec_queued *next);
 void ec_queue_gather(struct ec_queues *qs, struct ec_queue *q, const struct ec_queued *first,
 		     const struct ec_pack_room *room, struct ec_pack *p);
-unsigned int ec_queue_frames(const struct ec_queues *qs);
+
+/**
+ * ec_queue_frames() - count the frames that wait
+ * @qs: queues
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: how many, those included that have been sent since, or given up.
+ */
+static inline unsigned int ec_queue_frames(const struct ec_queues *qs)
+{
+	return READ_ONCE(qs->acyclic.head) - READ_ONCE(qs->acyclic.tail) +
+	       READ_ONCE(qs->clock.head) - READ_ONCE(qs->clock.tail);
+}
 
 #endif

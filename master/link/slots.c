@@ -136,18 +136,6 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s)
 }
 
 /**
- * ec_slot_put() - give back a slot
- * @s: slots
- * @slot: in state BUILD or DONE, free afterwards
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_slot_put(struct ec_slots *s, struct ec_slot *slot)
-{
-	atomic_set_release(&slot->state, EC_SLOT_FREE);
-}
-
-/**
  * ec_slot_cancel() - stop waiting for a frame
  * @slot: slot that was armed or queued
  * @now_ns: time; the quarantine begins now, the frame may have left late

@@ -127,7 +127,6 @@ int ec_slots_init(struct ec_slots *s, bool backup);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
-void ec_slot_put(struct ec_slots *s, struct ec_slot *slot);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_disarm(struct ec_slot *slot);
 void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns);
@@ -141,6 +140,17 @@ bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
 static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state state)
 {
 	atomic_set_release(&slot->state, state);
+}
+
+/**
+ * ec_slot_put() - give back a slot
+ * @slot: in state BUILD or DONE, free afterwards
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+static inline void ec_slot_put(struct ec_slot *slot)
+{
+	ec_slot_release(slot, EC_SLOT_FREE);
 }
 
 /* Of the slots that share a frame one counts what becomes of it. */

@@ -166,7 +166,7 @@ static void put_slot(struct ec_links *l, const struct batch_frame *f)
 {
 	/* the slot of a cancelled frame may be in use by another already */
 	if (!f->cancelled)
-		ec_slot_put(&l->slots, f->slot);
+		ec_slot_put(f->slot);
 	if (f->placed)
 		ec_gate_leave(&l->link[0].acyclic);
 	if (f->wire_ns)

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 ALLOWED = {
-    "master/cycle/process_data.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
+    "master/cycle/receive.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
     "master/cycle/dc_datagrams.c:ec_dc_datagrams_judge": "its caller has called ec_status_begin()",
     "master/cycle/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
     "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",

@@ -119,7 +119,7 @@ static void frame_changed(struct kunit *test)
 	KUNIT_EXPECT_GE(test, unmatched(b) + late(b) - before, refused);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	ec_slot_put(&b->m->links.slots, e.slot);
+	ec_slot_put(e.slot);
 }
 
 /* A device that writes to the frame it is given: lengths from there do not leave the slot. */
@@ -144,7 +144,7 @@ static void frame_noted_within_its_length(struct kunit *test)
 	memset(slot->frame, 0, sizeof(slot->frame));
 	ec_slot_arm(&b->m->links.slots, slot, buffer, BIT(0), ktime_get_ns());
 	KUNIT_EXPECT_EQ(test, slot->frame[last], 0);
-	ec_slot_put(&b->m->links.slots, slot);
+	ec_slot_put(slot);
 }
 
 static void frame_truncated(struct kunit *test)
@@ -170,7 +170,7 @@ static void frame_truncated(struct kunit *test)
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 1);
-	ec_slot_put(&b->m->links.slots, e.slot);
+	ec_slot_put(e.slot);
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, late(b), before + 2);
 }
@@ -194,7 +194,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_SENT);
 	give(b, next.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&next), EC_SLOT_DONE);
-	ec_slot_put(&b->m->links.slots, next.slot);
+	ec_slot_put(next.slot);
 }
 
 /* Sent on two links: done when both copies are back, whichever is the first. */
@@ -226,7 +226,7 @@ static void frame_on_two_links_done_with_both_copies(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, e.slot->backup[EC_FRAME_HDR + EC_DGRAM_HDR], 0x11);
 	KUNIT_EXPECT_EQ(test, ec_slot_body(e.slot)[EC_FRAME_HDR + EC_DGRAM_HDR], 0x22);
 	e.slot->backup = NULL;
-	ec_slot_put(&b->m->links.slots, e.slot);
+	ec_slot_put(e.slot);
 }
 
 /* Bytes by chance, of every length, while the bus works. */
@@ -484,7 +484,7 @@ static void frame_source_locally_administered(struct kunit *test)
 	e.src[2]--;
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	ec_slot_put(&b->m->links.slots, e.slot);
+	ec_slot_put(e.slot);
 }
 
 /* a device that reads the source addresses of the frames it sends */

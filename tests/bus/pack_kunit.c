@@ -167,7 +167,7 @@ static void put(struct shared *s, u32 done)
 
 	for (k = 0; k < MEMBERS; k++)
 		if (done & BIT(k))
-			ec_slot_put(&s->b->m->links.slots, s->slot[k]);
+			ec_slot_put(s->slot[k]);
 }
 
 static void pack_dealt_out(struct kunit *test)

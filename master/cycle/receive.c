@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Receive of the cyclic caller. Nothing here allocates, prints or takes a lock that is
+ * contended while the cycle runs.
+ */
+#include <linux/bitops.h>
+#include <linux/ktime.h>
+#include "../base/bytes.h"
+#include "cycle.h"
+#include "../base/once64.h"
+
+/* Parts of inputs that are larger than a datagram; the last one completes them. */
+static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d, u32 send,
+		      const u8 *data)
+{
+	u8 *image = c->domains[d->domain].image;
+	unsigned int i;
+
+	for (i = d->n_whole; i < d->n_inputs; i++) {
+		const struct ec_cyc_area *in = &c->areas[d->first_input + i];
+		struct ec_cyc_cut *cut = &c->cuts[in->cut];
+
+		if (cut->send != send) {
+			cut->send = send;
+			cut->have = 0;
+		}
+		memcpy(c->stage + in->offset, data + in->pos, in->len);
+		if (++cut->have == cut->parts)
+			memcpy(image + cut->offset, c->stage + cut->offset, cut->len);
+	}
+}
+
+/* It has inputs only, and their last values are in the image. */
+static bool from_image(const struct ec_cyc_dgram *d)
+{
+	return d->cmd == EC_CMD_LRD;
+}
+
+/*
+ * May an incomplete reply give its inputs? One that was sent before they were last written
+ * would bring back what a missing slave had before. An incomplete one of the same receive has
+ * left that as it was.
+ */
+static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
+		       const struct ec_cyc_flight *f)
+{
+	u16 wrote = d->wrote == (u16)c->send ? d->before : d->wrote;
+
+	return (u16)(c->send - f->send) < (u16)(c->send - wrote);
+}
+
+/* Inputs of a datagram in which at least one slave has taken part. */
+static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
+			const struct ec_cyc_flight *f, const u8 *data, bool complete)
+{
+	const struct ec_cyc_area *in = &c->areas[d->first_input];
+	u8 *image = c->domains[d->domain].image;
+	bool direct = f->direct && !from_image(d);
+	unsigned int i, n;
+
+	/*
+	 * A missing slave's part comes back as sent: the last value, if it was sent
+	 * from the image. Where outputs were sent, or a part may be of another cycle,
+	 * all must have taken part.
+	 */
+	if (unlikely(!complete) && (direct || !holds_last(c, d, f)))
+		return;
+	if (complete)
+		d->before = c->send;
+	else if (d->wrote != (u16)c->send)
+		d->before = d->wrote;
+	d->wrote = c->send;
+	/* the outputs come back as well: those of the image are not needed now */
+	if (complete && d->solid && direct && c->direct) {
+		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
+		return;
+	}
+	n = complete ? d->n_whole : d->n_plain;
+	for (i = 0; i < n; i++, in++)
+		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
+			     in->pos_stride, in->len, in->count);
+	if (unlikely(d->n_inputs != d->n_whole) && complete)
+		take_cuts(c, d, f->send, data);
+}
+
+/*
+ * Inputs and working counter of one datagram. A reply to an older send must not overwrite the
+ * data of a newer one.
+ */
+static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
+		       const struct ec_cyc_flight *f, const u8 *data)
+{
+	struct ec_cyc_domain *dom = &c->domains[d->domain];
+	u16 wkc = get_unaligned_le16(data + d->len);
+
+	/* by their ages: the numbers may be any distance apart after a pause */
+	if (c->send - f->send > c->send - dom->send)
+		return;
+	if (f->send != dom->send) {
+		dom->send = f->send;
+		dom->wkc = 0;
+		dom->partial = false;
+	}
+	dom->wkc += wkc;
+	c->back |= BIT_ULL(d->domain);
+	if (unlikely(wkc != d->expected))
+		dom->partial = true;
+	if (wkc)
+		take_inputs(c, d, f, data, wkc == d->expected);
+}
+
+/* Returns the events that the slaves have shown in the IRQ field. */
+static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
+{
+	struct ec_cyc_dgram *d = &c->dgrams[f->first];
+	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
+	unsigned int i;
+	u16 irq = 0;
+
+	if (f->dc)
+		data = ec_dc_datagrams_take(c, f, data);
+	for (i = 0; i < f->count; i++, d++) {
+		if (!(f->queued & BIT_ULL(d->domain)))
+			continue;
+		irq |= get_unaligned_le16(data - 2);
+		take_dgram(c, d, f, data);
+		data += d->len + EC_DGRAM_OVERHEAD;
+	}
+	if (unlikely(f->riding.mask))
+		ec_riders_take(c->links, &f->riding, data - EC_DGRAM_HDR,
+			       f->slot->frame + f->slot->eth_len);
+	return irq;
+}
+
+/* How often a domain was sent after send number @send. */
+static u32 sends_since(const struct ec_cycle *c, unsigned int domain, u32 send)
+{
+	u32 n = min_t(u32, c->send - send, EC_CYC_SENDS), sends = 0;
+
+	while (n--)
+		sends += c->queued[(c->send - n) % EC_CYC_SENDS] >> domain & 1;
+	return sends;
+}
+
+/* Old data with a full working counter are no fault of a slave: they are judged apart. */
+static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i)
+{
+	if (c->back & BIT_ULL(i)) {
+		d->age = sends_since(c, i, d->send);
+		if (unlikely(d->max_age && d->age > d->max_age && d->age > d->stale))
+			WRITE_ONCE(d->stale, d->age);
+	} else {
+		d->age = min_t(u32, d->age + sends_since(c, i, c->judged), EC_CYC_SENDS);
+	}
+	return d->age;
+}
+
+/* A change of the working counter is an event; of many in a second the first and the last. */
+static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc, u64 now)
+{
+	if (wkc != d->seen) {
+		d->seen = wkc;
+		d->rate.more++;
+	}
+	if (likely(!d->rate.more) || !ec_events_admit(&d->rate, now))
+		return;
+	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1,
+		 READ_ONCE(c->slaves_down));
+	d->noted = wkc;
+	d->rate.more = 0;
+}
+
+/* Domains that were sent or came back since the last receive. */
+static void judge(struct ec_cycle *c, u64 now)
+{
+	u64 left = c->sent | c->back;
+
+	for (; left; left &= left - 1) {
+		unsigned int i = __ffs64(left);
+		struct ec_status_domain *st = &c->shared->status->domains[i];
+		struct ec_cyc_domain *d = &c->domains[i];
+		u32 wkc = c->back & BIT_ULL(i) ? d->wkc : 0;
+
+		WRITE_ONCE(st->working_counter, wkc);
+		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == d->expected && !d->partial ? 2 : 1);
+		WRITE_ONCE(st->age, judge_age(c, d, i));
+		note_wkc(c, d, i, wkc, now);
+	}
+	c->judged = c->send;
+	c->sent = 0;
+	c->back = 0;
+}
+
+/**
+ * ec_cycle_tell_stale() - log domains whose data came back too old, once each
+ * @c: active cycle
+ *
+ * The cycle itself prints nothing.
+ *
+ * Context: Process, lock of the configuration held.
+ */
+void ec_cycle_tell_stale(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	lockdep_assert_held(c->wanted->lock);
+	for (i = 0; i < c->wanted->n_domains; i++) {
+		struct ec_cyc_domain *d = &c->domains[i];
+		u32 age = READ_ONCE(d->stale);
+
+		if (!age || d->stale_logged)
+			continue;
+		d->stale_logged = true;
+		ec_warn(c,
+			"domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
+			i, age, d->max_age);
+		ec_event(c->base, EC_EVENT_STALE, i, age, d->max_age);
+	}
+}
+
+/* Is the frame given up? The machine may have stood still: it was looked for before. */
+static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 now)
+{
+	return f->missed &&
+	       now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
+	       ec_slot_cancel(f->slot, now);
+}
+
+/**
+ * ec_cycle_do_receive() - take what the last sends have brought back
+ * @c: active cycle; the links of its master are entered
+ *
+ * Inputs go to the image, working counters to the status page. Frames that
+ * are not back within the time limit are lost; one that comes only after the
+ * next send has brought data that are a cycle old, and is counted as late.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_do_receive(struct ec_cycle *c)
+{
+	struct ec_status *st = c->shared->status;
+	struct ec_links *l = c->links;
+	unsigned int i, left = 0;
+	u16 irq = 0;
+	u64 now;
+
+	if (!ec_links_attached(l))
+		return -ENODEV;
+	ec_links_poll(l);
+	WRITE_ONCE(l->access.polls, l->access.polls + 1);
+	now = ktime_get_ns();
+	for (i = 0; i < c->n_flight; i++) {
+		struct ec_cyc_flight *f = &c->flight[i];
+
+		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
+			if (unlikely(f->missed) && f->send != c->send)
+				ec_links_count(l, late);
+			irq |= take_frame(c, f);
+			ec_slot_put(f->slot);
+		} else if (is_lost(c, f, now)) {
+			ec_links_count(l, lost);
+		} else {
+			f->missed = true;
+			if (left++ != i)
+				c->flight[left - 1] = *f;
+		}
+	}
+	c->n_flight = left;
+	ec_links_events(l, irq);
+	judge(c, now);
+	ec_status_begin(st);
+	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
+	if (c->dc_asked | c->dc_back)
+		ec_dc_datagrams_judge(c);
+	WRITE_ONCE(st->cycle, c->sends);
+	ec_status_end(st);
+	return 0;
+}

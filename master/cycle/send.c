@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Send of the cyclic caller; as in receive.c nothing allocates, prints or waits. */
+#include <linux/bitops.h>
+#include <linux/ktime.h>
+#include "../base/bytes.h"
+#include "cycle.h"
+#include "../base/once64.h"
+
+/*
+ * Room for one more frame. When none has come back for long, the oldest is
+ * given up: a frame of now is worth more.
+ */
+static bool make_room(struct ec_cycle *c, u64 now)
+{
+	struct ec_slot *oldest;
+
+	if (c->n_flight < EC_CYC_FRAMES)
+		return true;
+	oldest = c->flight[0].slot;
+	if (ec_slot_cancel(oldest, now))
+		ec_links_count(c->links, lost);
+	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
+		ec_slot_put(oldest);
+	else
+		return false;	/* being copied at this moment */
+	c->n_flight--;
+	memmove(c->flight, c->flight + 1, c->n_flight * sizeof(c->flight[0]));
+	return true;
+}
+
+/* one send */
+struct send {
+	const struct ec_ioc_send *what;
+	u64 now;
+	u32 dc;		/* clock datagrams still to be sent */
+	struct ec_riding riding;	/* of the last frame */
+	struct ec_cyc_wire wire;
+};
+
+/* Outputs, and the last value of inputs. */
+static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u8 *data)
+{
+	const struct ec_cyc_area *a = &c->areas[d->first_copy];
+	const u8 *image = c->domains[d->domain].image;
+	unsigned int i;
+
+	/* an LRD has the last values of its inputs, which are in the image */
+	if (c->direct && d->cmd != EC_CMD_LRD)
+		image = c->direct;
+	if (d->solid) {
+		memcpy(data, image + a->offset, d->len);
+		return;
+	}
+	if (d->holes)
+		memset(data, 0, d->len);
+	for (i = 0; i < d->n_copies; i++, a++)
+		ec_bytes_run(data + a->pos, a->pos_stride, image + a->offset,
+			     a->offset_stride, a->len, a->count);
+}
+
+/* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
+static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
+			 struct send *send)
+{
+	const struct ec_cyc_dgram *d = &c->dgrams[g];
+	unsigned int room, dc, first = g;
+	u64 queued = send->what->queued;
+	struct ec_frame_buf fb;
+	u8 *p;
+
+	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	if (send->dc)
+		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->what->sync_time,
+				     send->now);
+	dc = fb.count;
+	room = max(c->links->max_datagrams, dc) - dc;
+	for (; g < c->n_dgrams && room; g++, d++) {
+		if (!(queued & BIT_ULL(d->domain)))
+			continue;
+		if (d->new_frame && fb.count > dc)
+			break;
+		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
+				 d->logical >> 16, d->len);
+		if (!p)
+			break;
+		fill_dgram(c, d, p);
+		room--;
+	}
+	send->riding.mask = 0;
+	if (unlikely(atomic_read(&c->links->riders.queued)))
+		ec_riders_add(c->links, &fb, slot->index, &send->riding);
+	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	return g - first;
+}
+
+static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
+			unsigned int count, const struct send *send)
+{
+	struct ec_cyc_flight *f = &c->flight[c->n_flight++];
+
+	f->slot = slot;
+	f->send = c->send;
+	f->first = g;
+	f->count = count;
+	f->queued = send->what->queued;
+	f->missed = false;
+	f->direct = c->direct;
+	f->dc = send->dc;
+	f->dc_sent = c->dc_sent;
+	f->riding = send->riding;
+}
+
+/* One frame from datagram @g on; returns the first datagram of the next. */
+static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
+{
+	struct ec_slot *slot = NULL;
+	unsigned int count;
+	u8 *frame;
+	int ret;
+
+	if (make_room(c, send->now))
+		slot = ec_slot_get(&c->links->slots, true, send->now);
+	if (!slot) {
+		ec_links_count(c->links, tx_errors);
+		send->dc = 0;
+		return c->n_dgrams;
+	}
+	/* one copy less than through the slot */
+	frame = ec_links_tx_get(c->links) ?: slot->frame;
+	count = fill(c, slot, frame, g, send);
+	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
+	send->wire.frames++;
+	ret = ec_access_transmit(c->links, slot, frame, send->now);
+	/* unlike an acyclic frame it cannot wait */
+	if (ret == -EBUSY)
+		ec_links_count(c->links, tx_errors);
+	if (!ret) {
+		note_flight(c, slot, g, count, send);
+	} else {
+		ec_slot_put(slot);
+		if (send->riding.mask)
+			ec_riders_return(c->links, &send->riding);
+	}
+	send->dc = 0;
+	return g + count;
+}
+
+/* What a send of all domains and clock datagrams takes at most. */
+static u32 wire_ns(const struct ec_cycle *c)
+{
+	if (!ec_dc_begun(c->dc))
+		return c->plain.ns;
+	return c->clocked.ns + ec_dc_datagrams_reserve_ns(c);
+}
+
+/**
+ * ec_cycle_app_time() - the application gives its time, or that of the reference clock
+ * @c: active cycle
+ * @what: its flags, one of APP_TIME and SYNC_REF among them, @app_time and @sync_time
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
+{
+	c->dc_hold = ec_dc_update_app_time(c->dc, what, &c->dc_skip);
+}
+
+/**
+ * ec_cycle_do_send() - send the queued domains, then what others have left
+ * @c: active cycle; the links of its master are entered
+ * @what: domains and clock datagrams; its flags are known ones
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
+ */
+int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
+{
+	struct send send = { .what = what, .now = ktime_get_ns() };
+	unsigned int g = 0;
+
+	if (!ec_links_attached(c->links))
+		return -ENODEV;
+	if (!c->thread)
+		ec_late_send(c, send.now);
+	ec_write64(&c->links->access.last_send_ns, send.now);
+	if (c->copying)
+		ec_copy_run(c);
+	c->send++;
+	c->queued[c->send % EC_CYC_SENDS] = what->queued;
+	c->sent |= what->queued;
+	send.dc = ec_dc_datagrams_wanted(c, what->flags);
+	while (g < c->n_dgrams || send.dc) {
+		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
+			g = send_frame(c, g, &send);
+		else
+			g++;
+	}
+	WRITE_ONCE(c->last.frames, send.wire.frames);
+	WRITE_ONCE(c->last.ns, send.wire.ns);
+	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
+	ec_share_begin(c->links);
+	if (unlikely(ec_links_have_left(c->links)))
+		ec_share_send_left(c->links, send.wire.ns);
+	ec_links_flush(c->links);
+	ec_write64(&c->sends, c->sends + 1);
+	return 0;
+}
