@@ -29,7 +29,9 @@ struct notifier_block;
  * @tx_flush: optional. No more frames follow at once: all that were sent leave now.
  *	Context as @tx_send
  * @poll: optional. Delivers received frames through ecdev_receive(). Also
- *	called with @cycle off when a frame is overdue
+ *	called with @cycle off when a frame is overdue. In an RCU read section
+ * @keeps: the frames that @poll has delivered stay as they are until it is called again, while
+ *	@cycle is on; and until a grace period has ended after the device has stopped by itself
  * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
  * @look: optional. Reads the state that @link_up returns. The master calls it about every
@@ -45,6 +47,7 @@ struct ecdev_ops {
 	int (*tx_send)(void *priv, u8 *buf, size_t len);
 	void (*tx_flush)(void *priv);
 	void (*poll)(void *priv);
+	bool keeps;
 	void (*cycle)(void *priv, bool on);
 	bool (*link_up)(void *priv);
 	void (*look)(void *priv);

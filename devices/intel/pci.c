@@ -56,27 +56,25 @@ struct intel {
 	bool shut;
 };
 
+/* In an RCU read section. */
 static void poll(struct intel *n)
 {
 	const u8 *frame;
 	size_t len;
-	unsigned int i;
 
-	rcu_read_lock();
 	/* the cycle begins while the timer's poll has not ended yet, or the reverse */
 	if (!READ_ONCE(n->ready) || test_and_set_bit_lock(BUSY_POLL, &n->busy))
-		goto out;
-	for (i = 0; i < INTEL_RX && (frame = ec_ring_rx_get(&n->nic, &n->rx, &len)); i++) {
+		return;
+	/* those of the poll before; of one poll there are at most as many as buffers */
+	ec_ring_rx_put(&n->nic, &n->rx);
+	while ((frame = ec_ring_rx_get(&n->nic, &n->rx, &len))) {
 		if (len >= EC_ETH_HDR && get_unaligned_be16(frame + 12) == EC_ETHERTYPE)
 			ecdev_receive(n->dev, frame + ETH_ALEN, frame + EC_ETH_HDR,
 				      len - EC_ETH_HDR);
 		else if (len)
 			ecdev_foreign(n->dev);
-		ec_ring_rx_put(&n->nic, &n->rx);
 	}
 	clear_bit_unlock(BUSY_POLL, &n->busy);
-out:
-	rcu_read_unlock();
 }
 
 /* Are there frames in flight that no cycle polls for? */
@@ -90,8 +88,10 @@ static enum hrtimer_restart poll_idle(struct hrtimer *timer)
 {
 	struct intel *n = container_of(timer, struct intel, idle);
 
+	rcu_read_lock();
 	if (!READ_ONCE(n->cycle))
 		poll(n);
+	rcu_read_unlock();
 	if (!waits(n)) {
 		clear_bit(BUSY_TIMER, &n->busy);
 		smp_mb__after_atomic();	/* the bit before the time; pairs with intel_tx_flush() */
@@ -295,6 +295,7 @@ static const struct ecdev_ops intel_ops = {
 	.tx_send = intel_tx_send,
 	.tx_flush = intel_tx_flush,
 	.poll = intel_poll,
+	.keeps = true,
 	.cycle = intel_cycle,
 	.link_up = intel_link_up,
 	.look = intel_look,

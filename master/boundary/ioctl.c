@@ -184,6 +184,6 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 	if (cmd == EC_IOC_RECEIVE)
 		return ec_ioc_receive(f);
 	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && _IOC_NR(cmd) == _IOC_NR(EC_IOC_SEND))
-		return ec_ioc_send(f, cmd, arg);
+		return ec_ioctl_send(f, cmd, arg);
 	return dispatch(f, cmd, arg);
 }

@@ -51,7 +51,8 @@ int ec_ioc_pause(struct ec_call *call);
 int ec_ioc_refuse_reserved(struct ec_call *call);
 
 int ec_ioc_receive(struct ec_file *f);
-long ec_ioc_send(struct ec_file *f, unsigned int cmd, unsigned long arg);
+int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what);
+long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg);
 int ec_ioc_mbox_failed(struct ec_call *call, int ret, u16 position, const char *protocol,
 		       const char *what);
 

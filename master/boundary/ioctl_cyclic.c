@@ -108,14 +108,26 @@ int ec_ioc_receive(struct ec_file *f)
 /**
  * ec_ioc_send() - EC_IOC_SEND
  * @f: open file
+ * @what: its argument, flags are known ones
+ *
+ * Context: Process. RT-safe.
+ * Return: as ec_ioc_receive(); -ENOENT a domain is queued that there is not.
+ */
+int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
+{
+	return send(f, what);
+}
+
+/**
+ * ec_ioctl_send() - EC_IOC_SEND of a program
+ * @f: open file
  * @cmd: the command, of this number
  * @arg: user pointer
  *
  * Context: Process. RT-safe.
- * Return: as ec_ioc_receive(); -ENOENT a domain is queued that there is not; -ENOTTY, -EINVAL,
- * -EFAULT, -EOPNOTSUPP as ec_ioctl().
+ * Return: as ec_ioc_send(); -ENOTTY, -EINVAL, -EFAULT, -EOPNOTSUPP as ec_ioctl().
  */
-long ec_ioc_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
+long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 {
 	struct ec_ioc_send what;
 

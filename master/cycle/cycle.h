@@ -451,6 +451,8 @@ static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *wh
 }
 
 /* dc_datagrams.c */
+#define EC_CYC_CLOCKS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
+			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME)	/* those make datagrams */
 u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c);
 u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags);
 void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,

@@ -87,9 +87,7 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
  */
 u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 {
-	flags &= SYNC_REF | SYNC_SLAVES | MONITOR | REF_TIME;
-	if (!flags)
-		return 0;
+	flags &= EC_CYC_CLOCKS;
 	c->dc_asked |= flags;
 	if (!READ_ONCE(c->dc->wanted))
 		WRITE_ONCE(c->dc->wanted, true);

@@ -110,7 +110,7 @@ static u32 median(const struct ec_schedule *sc)
  * single sends hardly change; the frames between two sends need to know soon what it
  * has become.
  */
-static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
+static noinline void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 {
 	s64 off = ns - sc->interval_ns;
 	s64 limit = sc->sends < MEASURE_SENDS ? NSEC_PER_SEC : sc->interval_ns >> OUTLIER_SHIFT;
@@ -129,7 +129,7 @@ static void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 }
 
 /* A whole interval late or more: what was due in between is left out. */
-static s64 skip(struct ec_cycle *c, s64 off)
+static noinline s64 skip(struct ec_cycle *c, s64 off)
 {
 	struct ec_schedule *sc = &c->schedule;
 	u64 n = div_u64(off, sc->interval_ns);
@@ -140,7 +140,7 @@ static s64 skip(struct ec_cycle *c, s64 off)
 }
 
 /* More than half an interval early: it was due before, perhaps left out. */
-static s64 go_back(struct ec_schedule *sc, s64 off)
+static noinline s64 go_back(struct ec_schedule *sc, s64 off)
 {
 	sc->due_ns -= div_u64(sc->interval_ns / 2 - off, sc->interval_ns) * sc->interval_ns;
 	return sc->last_ns - sc->due_ns;

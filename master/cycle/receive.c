@@ -5,6 +5,7 @@
  */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
+#include <linux/rcupdate.h>
 #include "../base/bytes.h"
 #include "cycle.h"
 #include "../base/once64.h"
@@ -113,7 +114,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
 	struct ec_cyc_dgram *d = &c->dgrams[f->first];
-	const u8 *data = ec_slot_body(f->slot) + EC_FRAME_HDR + EC_DGRAM_HDR;
+	const u8 *data = f->slot->reply + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 	u16 irq = 0;
 
@@ -128,7 +129,7 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 	}
 	if (unlikely(f->riding.mask))
 		ec_riders_take(c->links, &f->riding, data - EC_DGRAM_HDR,
-			       f->slot->frame + f->slot->eth_len);
+			       f->slot->reply + f->slot->eth_len - EC_ETH_HDR);
 	return irq;
 }
 
@@ -156,13 +157,9 @@ static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned
 }
 
 /* A change of the working counter is an event; of many in a second the first and the last. */
-static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc, u64 now)
+static noinline void tell_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc)
 {
-	if (wkc != d->seen) {
-		d->seen = wkc;
-		d->rate.more++;
-	}
-	if (likely(!d->rate.more) || !ec_events_admit(&d->rate, now))
+	if (!ec_events_admit(&d->rate, ktime_get_ns()))
 		return;
 	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1,
 		 READ_ONCE(c->slaves_down));
@@ -170,8 +167,18 @@ static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i
 	d->rate.more = 0;
 }
 
+static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc)
+{
+	if (wkc != d->seen) {
+		d->seen = wkc;
+		d->rate.more++;
+	}
+	if (unlikely(d->rate.more))
+		tell_wkc(c, d, i, wkc);
+}
+
 /* Domains that were sent or came back since the last receive. */
-static void judge(struct ec_cycle *c, u64 now)
+static void judge(struct ec_cycle *c)
 {
 	u64 left = c->sent | c->back;
 
@@ -184,7 +191,7 @@ static void judge(struct ec_cycle *c, u64 now)
 		WRITE_ONCE(st->working_counter, wkc);
 		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == d->expected && !d->partial ? 2 : 1);
 		WRITE_ONCE(st->age, judge_age(c, d, i));
-		note_wkc(c, d, i, wkc, now);
+		note_wkc(c, d, i, wkc);
 	}
 	c->judged = c->send;
 	c->sent = 0;
@@ -219,10 +226,14 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 }
 
 /* Is the frame given up? The machine may have stood still: it was looked for before. */
-static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 now)
+static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
-	return f->missed &&
-	       now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
+	u64 now;
+
+	if (!f->missed)
+		return false;
+	now = ktime_get_ns();
+	return now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
 	       ec_slot_cancel(f->slot, now);
 }
 
@@ -243,13 +254,13 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	struct ec_links *l = c->links;
 	unsigned int i, left = 0;
 	u16 irq = 0;
-	u64 now;
 
 	if (!ec_links_attached(l))
 		return -ENODEV;
-	ec_links_poll(l);
+	/* replies may stay in the device until they are taken below */
+	rcu_read_lock();
+	ec_links_poll_cycle(l);
 	WRITE_ONCE(l->access.polls, l->access.polls + 1);
-	now = ktime_get_ns();
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];
 
@@ -258,7 +269,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 				ec_links_count(l, late);
 			irq |= take_frame(c, f);
 			ec_slot_put(f->slot);
-		} else if (is_lost(c, f, now)) {
+		} else if (is_lost(c, f)) {
 			ec_links_count(l, lost);
 		} else {
 			f->missed = true;
@@ -266,9 +277,10 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 				c->flight[left - 1] = *f;
 		}
 	}
+	rcu_read_unlock();
 	c->n_flight = left;
 	ec_links_events(l, irq);
-	judge(c, now);
+	judge(c);
 	ec_status_begin(st);
 	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->dc_asked | c->dc_back)

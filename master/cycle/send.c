@@ -130,7 +130,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_access_transmit(c->links, slot, frame, send->now);
+	ret = ec_links_transmit(c->links, slot, frame, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(c->links, tx_errors);
@@ -188,7 +188,8 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
-	send.dc = ec_dc_datagrams_wanted(c, what->flags);
+	if (what->flags & EC_CYC_CLOCKS)
+		send.dc = ec_dc_datagrams_wanted(c, what->flags);
 	while (g < c->n_dgrams || send.dc) {
 		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
 			g = send_frame(c, g, &send);

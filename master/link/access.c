@@ -33,28 +33,6 @@ static void own_devices(struct ec_links *l, bool cycle)
 	}
 }
 
-/**
- * ec_access_transmit() - send a built frame
- * @l: links
- * @slot: the slot is back in BUILD on failure
- * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
- * @now: time
- *
- * ec_links_flush() must follow.
- *
- * Context: The owner of the links. RT-safe.
- * Return: as ec_links_send().
- */
-int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now)
-{
-	int ret;
-
-	ec_slot_arm(&l->slots, slot, frame, l->carry, now);
-	ret = ec_links_send(l, slot, frame);
-	/* a reply that came nevertheless makes it a frame as if it was sent */
-	return ret && ec_slot_disarm(slot) ? ret : 0;
-}
-
 /*
  * Frames in the queue are sent now. When a send fails their caller waits for its timeout:
  * the slot belongs to the caller.

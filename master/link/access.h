@@ -54,7 +54,6 @@ void ec_access_poll(struct ec_links *l);
 /* for the cycle owner */
 void ec_access_reenter(struct ec_links *l);
 int ec_access_try_enter(struct ec_links *l);
-int ec_access_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now);
 
 /* free wire time beside a cycle */
 #define EC_ROOM_MIN	32	/* data bytes of a minimum Ethernet frame */

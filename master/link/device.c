@@ -9,7 +9,6 @@
 #include "capture.h"
 #include "device.h"
 #include "links.h"
-#include "receive.h"
 #include "spec.h"
 
 /*
@@ -423,27 +422,6 @@ bool ecdev_numbered(struct ecdev *dev)
 	return numbered;
 }
 EXPORT_SYMBOL_GPL(ecdev_numbered);
-
-/**
- * ecdev_receive() - deliver a received EtherCAT frame
- * @dev: device
- * @src: source MAC address
- * @data: what follows the EtherType; not changed
- * @len: bytes there
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
-{
-	struct ec_link *link;
-
-	rcu_read_lock();
-	link = rcu_dereference(dev->link);
-	if (link)
-		ec_receive(link, src, data, len);
-	rcu_read_unlock();
-}
-EXPORT_SYMBOL_GPL(ecdev_receive);
 
 /**
  * ecdev_foreign() - count a received frame that is not EtherCAT

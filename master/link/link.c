@@ -78,26 +78,22 @@ static u8 *tx_get(struct ec_link *link, struct ecdev **dev)
 	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
 }
 
-/* Send the frame of an armed slot. */
-static int send(struct ec_link *link, struct ec_slot *slot, u8 *frame)
+static size_t padded(const struct ec_slot *slot)
 {
-	size_t len = max_t(size_t, slot->eth_len, EC_ETH_MIN);
-	struct ecdev *dev;
-	u8 *buf;
+	return max_t(size_t, slot->eth_len, EC_ETH_MIN);
+}
 
-	if (frame == slot->frame) {
-		buf = tx_get(link, &dev);
-		if (!buf)
-			return dev ? -EBUSY : -ENODEV;
-		memcpy(buf, frame, len);
-	} else {
-		buf = frame;
-		dev = READ_ONCE(link->dev);	/* withdrawn at the most, not another one */
-		if (!dev)
-			return -ENODEV;
-	}
+/* Send the frame of an armed slot. */
+static int send(struct ec_link *link, struct ec_slot *slot)
+{
+	struct ecdev *dev;
+	u8 *buf = tx_get(link, &dev);
+
+	if (!buf)
+		return dev ? -EBUSY : -ENODEV;
+	memcpy(buf, slot->frame, padded(slot));
 	buf[7] |= link->side;
-	return send_buf(link, dev, buf, len);
+	return send_buf(link, dev, buf, padded(slot));
 }
 
 /**
@@ -132,11 +128,21 @@ u8 *ec_links_tx_get(struct ec_links *l)
  */
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 *frame)
 {
-	unsigned long left;
+	unsigned long left = slot->links;
+	struct ec_link *link;
+	struct ecdev *dev;
 	int ret = 0;
 
-	for (left = slot->links; left && !ret; left &= left - 1)
-		ret = send(&l->link[__ffs(left)], slot, frame);
+	if (frame != slot->frame) {
+		link = &l->link[__ffs(left)];
+		dev = READ_ONCE(link->dev);	/* withdrawn at the most, not another one */
+		if (!dev)
+			return -ENODEV;
+		frame[7] |= link->side;
+		return send_buf(link, dev, frame, padded(slot));
+	}
+	for (; left && !ret; left &= left - 1)
+		ret = send(&l->link[__ffs(left)], slot);
 	return ret;
 }
 
@@ -234,10 +240,33 @@ void ec_link_set_places(struct ec_link *link, bool cycle)
  */
 void ec_link_poll(struct ec_link *link)
 {
-	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	struct ecdev *dev;
 
+	rcu_read_lock();
+	dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 	if (dev && dev->ops->poll)
 		dev->ops->poll(dev->priv);
+	rcu_read_unlock();
+}
+
+/**
+ * ec_links_poll_cycle() - the same on all links, for the cycle
+ * @l: links
+ *
+ * Replies to the cycle may stay in the memory of the device: they have to be taken before the
+ * links are left and before the RCU read section of the caller ends.
+ *
+ * Context: The cycle owner, in an RCU read section. RT-safe.
+ */
+void ec_links_poll_cycle(struct ec_links *l)
+{
+	struct ecdev *dev = READ_ONCE(l->link[0].dev);	/* may be withdrawn now */
+
+	if (!dev || !dev->ops->poll)
+		return;
+	l->slots.keep = dev->ops->keeps;
+	dev->ops->poll(dev->priv);
+	l->slots.keep = false;
 }
 
 /**

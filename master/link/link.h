@@ -88,6 +88,7 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 *frame);
 int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns);
 void ec_links_flush(struct ec_links *l);
 void ec_link_poll(struct ec_link *link);
+void ec_links_poll_cycle(struct ec_links *l);
 void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);
 bool ec_link_look(struct ec_link *link);

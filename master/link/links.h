@@ -179,6 +179,28 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 	return atomic_read(&l->link[0].acyclic_ns);
 }
 
+/**
+ * ec_links_transmit() - send a built frame
+ * @l: links
+ * @slot: the slot is back in BUILD on failure
+ * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
+ * @now: time
+ *
+ * ec_links_flush() must follow.
+ *
+ * Context: The owner of the links. RT-safe.
+ * Return: as ec_links_send().
+ */
+static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now)
+{
+	int ret;
+
+	ec_slot_arm(&l->slots, slot, frame, l->carry, now);
+	ret = ec_links_send(l, slot, frame);
+	/* a reply that came nevertheless makes it a frame as if it was sent */
+	return ret && ec_slot_disarm(slot) ? ret : 0;
+}
+
 /* has anybody left acyclic frames for the next send? */
 static inline bool ec_links_have_left(const struct ec_links *l)
 {

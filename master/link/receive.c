@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/export.h>
+#include <linux/rcupdate.h>
 #include "capture.h"
+#include "device.h"
 #include "links.h"
 #include "pack.h"
-#include "receive.h"
 #include "xfer.h"
 
 /* Apart, for its large result. */
@@ -17,16 +19,8 @@ static noinline enum ec_match receive_pack(struct ec_links *l, const u8 *src, co
 	return what;
 }
 
-/**
- * ec_receive() - a frame has arrived on a link
- * @link: link
- * @src: source MAC address
- * @data: what follows the EtherType
- * @len: bytes there
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_receive(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
+static __always_inline void receive(struct ec_link *link, const u8 *src, const u8 *data,
+				    size_t len)
 {
 	struct ec_links *l = link->links;
 	struct ec_matched got = { };
@@ -48,3 +42,24 @@ void ec_receive(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
 	else if (unlikely(got.what == EC_MATCH_UNMATCHED))
 		atomic64_inc(&link->stats.unmatched);
 }
+
+/**
+ * ecdev_receive() - deliver a received EtherCAT frame
+ * @dev: device
+ * @src: source MAC address
+ * @data: what follows the EtherType; not changed
+ * @len: bytes there
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		receive(link, src, data, len);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_receive);

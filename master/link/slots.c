@@ -274,6 +274,7 @@ struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
 	u8 *to = side ? slot->backup : ec_slot_body(slot);
 	struct ec_xfer *xfer = slot->xfer;
 
+	slot->reply = ec_slot_body(slot);
 	memcpy(to + EC_FRAME_HDR, data, slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
 	/* in a shared frame another caller's datagrams follow, here they end */
 	if (slot->pack.len)
@@ -388,6 +389,11 @@ struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *da
 	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
 		ec_slot_release(slot, EC_SLOT_SENT);
 		return nothing(EC_MATCH_UNMATCHED);
+	}
+	if (s->keep && !slot->xfer && slot->links == BIT(side)) {
+		slot->reply = data;
+		ec_slot_release(slot, EC_SLOT_DONE);
+		return nothing(EC_MATCH_DONE);
 	}
 	return (struct ec_matched){ EC_MATCH_DONE,
 				    ec_slot_take(slot, side, data + EC_FRAME_HDR) };

@@ -66,6 +66,8 @@ struct ec_packed {
  * @frame: Ethernet frame, or only headers of its datagrams, see ec_slot_arm(); datagrams of
  *	the copy of link 0 when that is back
  * @backup: behind the EtherType: the copy of link 1; NULL without such a link
+ * @reply: behind the EtherType: what has come back, in state DONE; in @frame, or for the cycle in
+ *	the device, see struct ec_slots.keep
  */
 struct ec_slot {
 	atomic_t state;
@@ -82,6 +84,7 @@ struct ec_slot {
 	u16 eth_len;
 	u8 frame[EC_ETH_MAX];
 	u8 *backup;
+	const u8 *reply;
 };
 
 /* a slot in a queue; only meant while it is QUEUED with this sequence number */
@@ -98,6 +101,8 @@ struct ec_queued {
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
  * @numbered: the source address of a frame has its number
+ * @keep: replies to the cycle stay where the device has them: it takes them in this call. Set by
+ *	the cycle owner while the device delivers
  */
 struct ec_slots {
 	struct ec_slot *slot;
@@ -105,6 +110,7 @@ struct ec_slots {
 	atomic_t hint;
 	atomic_t seq;
 	bool numbered;
+	bool keep;
 };
 
 enum ec_match {

@@ -518,7 +518,7 @@ static void frame_without_number_matched_by_index(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, e.src, source, sizeof(source));
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	ec_slot_put(s, e.slot);
+	ec_slot_put(e.slot);
 	watched.real = dev->ops;
 	watched.ops = *dev->ops;
 	watched.ops.tx_send = read_source;

@@ -266,6 +266,30 @@ static void unread_frames_stop_card(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, card_receives(c, 1, 60, DD | EOP));
 }
 
+/* What was taken stays until it is given back, however much comes meanwhile. */
+static void taken_frames_stay(struct kunit *test)
+{
+	struct card *c = card(test);
+	const u8 *frame[100];
+	unsigned int n, round;
+	size_t len;
+
+	for (round = 0; round < 20; round++) {
+		for (n = 0; n < ARRAY_SIZE(frame); n++) {
+			KUNIT_ASSERT_TRUE(test, card_receives(c, n, 60, DD | EOP));
+			frame[n] = ec_ring_rx_get(&c->nic, &c->rx, &len);
+			KUNIT_ASSERT_NOT_NULL(test, frame[n]);
+		}
+		while (card_receives(c, 0xee, 60, DD | EOP))
+			;
+		for (n = 0; n < ARRAY_SIZE(frame); n++)
+			KUNIT_ASSERT_EQ(test, frame[n][0], (u8)n);
+		while (ec_ring_rx_get(&c->nic, &c->rx, &len))
+			;
+		ec_ring_rx_put(&c->nic, &c->rx);
+	}
+}
+
 static void frame_with_error_is_skipped(struct kunit *test)
 {
 	static const struct {
@@ -321,6 +345,11 @@ static void garbage_stays_within_buffers(struct kunit *test)
 			}
 			flush(c);
 		}
+		/* all descriptors done: it ends nevertheless */
+		memset(c->rx.desc, 0xff, INTEL_RX * DESC);
+		for (i = 0; ec_ring_rx_get(&c->nic, &c->rx, &len); i++)
+			KUNIT_ASSERT_LT(test, i, (unsigned int)INTEL_RX);
+		ec_ring_rx_put(&c->nic, &c->rx);
 	}
 }
 
@@ -402,6 +431,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(start_drops_frames_of_before, chip_gen_params),
 	KUNIT_CASE_PARAM(frames_received_in_order, chip_gen_params),
 	KUNIT_CASE_PARAM(unread_frames_stop_card, chip_gen_params),
+	KUNIT_CASE_PARAM(taken_frames_stay, chip_gen_params),
 	KUNIT_CASE_PARAM(frame_with_error_is_skipped, chip_gen_params),
 	KUNIT_CASE_PARAM(garbage_stays_within_buffers, chip_gen_params),
 	KUNIT_CASE_PARAM(reset_refuses_card_that_does_not_work, chip_gen_params),

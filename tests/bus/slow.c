@@ -5,6 +5,7 @@
 #include "devices/ecdev.h"
 
 #define RING_MAX	64
+#define RX_MAX		64
 
 /* a transmit buffer */
 struct tx {
@@ -32,7 +33,8 @@ struct tx {
  * @refused_cmd: EC_CMD_*
  * @stopped: nothing leaves the ring
  * @tx: buffers
- * @rx: a changed reply
+ * @rx: received frames, which stay until the next poll
+ * @n_rx: how many were received
  */
 struct slow {
 	struct ec_sim_wire wire;
@@ -52,18 +54,19 @@ struct slow {
 	u8 refused_cmd;
 	bool stopped;
 	struct tx tx[RING_MAX];
-	u8 rx[EC_ETH_MAX];
+	u8 rx[RX_MAX][EC_ETH_MAX];
+	u32 n_rx;
 };
 
 static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct slow *s = container_of(w, struct slow, wire);
-	u8 *d = s->rx + EC_ETH_HDR + EC_FRAME_HDR;
+	u8 *rx = s->rx[s->n_rx++ % RX_MAX], *d = rx + EC_ETH_HDR + EC_FRAME_HDR;
 
-	memcpy(s->rx, eth, len);
+	memcpy(rx, eth, len);
 	if (s->claim && d[0] == EC_CMD_BRD)
 		put_unaligned_le16(s->claim, d + 2);
-	ecdev_receive(s->dev, s->rx + 6, s->rx + EC_ETH_HDR, len - EC_ETH_HDR);
+	ecdev_receive(s->dev, rx + 6, rx + EC_ETH_HDR, len - EC_ETH_HDR);
 }
 
 static struct tx *at(struct slow *s, u32 i)
@@ -160,6 +163,8 @@ static void poll(void *priv)
 {
 	struct slow *s = priv;
 
+	/* who reads those of the last poll now notices it */
+	memset(s->rx, 0xee, sizeof(s->rx));
 	ec_sim_wire_poll(&s->wire);
 }
 
@@ -186,6 +191,7 @@ static const struct ecdev_ops ops = {
 	.tx_send = tx_send,
 	.tx_flush = tx_flush,
 	.poll = poll,
+	.keeps = true,
 	.cycle = cycle,
 	.link_up = link_up,
 };

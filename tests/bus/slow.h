@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * A device with a transmit ring that drains slower than the CPU fills it. Nothing leaves
- * before the doorbell.
+ * before the doorbell. What it has received stays until its next poll, not longer.
  */
 #ifndef EC_SLOW_H
 #define EC_SLOW_H
