@@ -51,21 +51,36 @@ static __always_inline void ec_bytes_word(u8 *to, const u8 *from, unsigned int a
 	put_unaligned(get_unaligned((const u64 *)(from + at)), (u64 *)(to + at));
 }
 
+/* 2 to 4 words, the last one at @at_last */
+static __always_inline void ec_bytes_value(u8 *to, const u8 *from, unsigned int at_last,
+					   unsigned int words)
+{
+	ec_bytes_word(to, from, 0);
+	if (words > 2)
+		ec_bytes_word(to, from, 8);
+	if (words > 3)
+		ec_bytes_word(to, from, 16);
+	ec_bytes_word(to, from, at_last);
+}
+
 /* @count values of 2 to 4 @words; the last word of each may overlap those before. */
 static __always_inline void ec_bytes_words(u8 *to, unsigned int to_stride, const u8 *from,
 					   unsigned int from_stride, unsigned int len,
 					   unsigned int count, unsigned int words)
 {
 	const unsigned int at_last = len - 8;
+	unsigned long at = 0, end = (unsigned long)count * to_stride;
 
-	for (; count; count--, to += to_stride, from += from_stride) {
-		ec_bytes_word(to, from, 0);
-		if (words > 2)
-			ec_bytes_word(to, from, 8);
-		if (words > 3)
-			ec_bytes_word(to, from, 16);
-		ec_bytes_word(to, from, at_last);
+	/* an image that is as its datagrams: one distance to add. A single value may have none */
+	if (count && to_stride == from_stride) {
+		do {
+			ec_bytes_value(to + at, from + at, at_last, words);
+			at += to_stride;
+		} while (at != end);
+		return;
 	}
+	for (; count; count--, to += to_stride, from += from_stride)
+		ec_bytes_value(to, from, at_last, words);
 }
 
 /**

@@ -226,15 +226,15 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 }
 
 /* Is the frame given up? The machine may have stood still: it was looked for before. */
-static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f)
+static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
-	u64 now;
-
 	if (!f->missed)
 		return false;
-	now = ktime_get_ns();
-	return now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
-	       ec_slot_cancel(f->slot, now);
+	/* once in a receive, and mostly in none */
+	if (!*now)
+		*now = ktime_get_ns();
+	return *now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
+	       ec_slot_cancel(f->slot, *now);
 }
 
 /**
@@ -253,6 +253,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	struct ec_status *st = c->shared->status;
 	struct ec_links *l = c->links;
 	unsigned int i, left = 0;
+	u64 now = 0;
 	u16 irq = 0;
 
 	if (!ec_links_attached(l))
@@ -269,7 +270,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 				ec_links_count(l, late);
 			irq |= take_frame(c, f);
 			ec_slot_put(f->slot);
-		} else if (is_lost(c, f)) {
+		} else if (is_lost(c, f, &now)) {
 			ec_links_count(l, lost);
 		} else {
 			f->missed = true;
