@@ -155,6 +155,19 @@ static void check_swap(struct rt *r)
 		rt_find(r, "swap", RT_OK, NULL, "none");
 }
 
+/* a kernel that does not account for it has no such file */
+static void check_pressure(struct rt *r)
+{
+	char path[512];
+
+	attr_path(path, sizeof(path), "%s/pressure/cpu", sys_proc());
+	if (access(path, F_OK))
+		rt_find(r, "pressure", RT_OK, NULL, "the kernel does not account for it");
+	else
+		rt_find(r, "pressure", RT_WARNING, "kernel parameter psi=0",
+			"the kernel accounts for it at each switch to another task");
+}
+
 void rt_check_kernel(struct rt *r)
 {
 	check_preempt(r);
@@ -167,6 +180,7 @@ void rt_check_kernel(struct rt *r)
 	check_debug(r);
 	check_huge_pages(r);
 	check_swap(r);
+	check_pressure(r);
 }
 
 static void check_isolation(struct rt *r, unsigned int online)

@@ -75,9 +75,9 @@ int ec_ring_start(struct intel_nic *nic, struct intel_ring *tx, struct intel_rin
 	for (i = 0; i < INTEL_TX; i++) {
 		memset(&tx->desc[i], 0, sizeof(tx->desc[i]));
 		if (nic->class->advanced)
-			tx->desc[i].a.olinfo = cpu_to_le32(A_DONE);
+			tx->desc[i].a.olinfo = cpu_to_le32(INTEL_A_DONE);
 		else
-			tx->desc[i].l.status = L_DONE;
+			tx->desc[i].l.status = INTEL_L_DONE;
 	}
 	for (i = 0; i < INTEL_RX; i++)
 		ec_ring_free_rx(rx, i);

@@ -14,12 +14,12 @@
 #include "regs.h"
 
 #define INTEL_TX	256	/* buffers; more than a cycle and others send at once */
-#define INTEL_RX	256
+#define INTEL_RX	512	/* what two polls take, see ec_ring_rx_put(), and more */
 #define INTEL_BUF	2048
 #define INTEL_RX_BATCH	8
 
 /* legacy descriptor, transmit: data sheet of the 82574, 7.2.10.1; receive: 7.1.4 */
-struct legacy {
+struct intel_legacy {
 	__le64 addr;
 	__le16 len;
 	u8 tx_cso;
@@ -30,12 +30,12 @@ struct legacy {
 };
 
 /* legacy, receive: the checksum stands where cso and command of a transmit descriptor are */
-#define L_DONE		BIT(0)
-#define L_END		BIT(1)
-#define L_COMMAND	(BIT(0) | BIT(1) | BIT(3))	/* end of packet, add FCS, report */
+#define INTEL_L_DONE		BIT(0)
+#define INTEL_L_END		BIT(1)
+#define INTEL_L_COMMAND	(BIT(0) | BIT(1) | BIT(3))	/* end of packet, add FCS, report */
 
 /* advanced descriptor: data sheet of the 82576, 7.2.2.3 (transmit), 7.1.5 (receive) */
-struct advanced {
+struct intel_advanced {
 	union {
 		__le64 addr;
 		__le32 word[2];
@@ -44,16 +44,16 @@ struct advanced {
 	__le32 olinfo;		/* transmit: status; receive: length in the low half */
 };
 
-#define A_DONE		BIT(0)
-#define A_END		BIT(1)
-#define A_ERRORS	GENMASK(31, 24)
-/* data descriptor, otherwise as L_COMMAND */
-#define A_COMMAND	(3 << 20 | BIT(29) | BIT(24) | BIT(25) | BIT(27))
-#define A_PAYLOAD	14
+#define INTEL_A_DONE		BIT(0)
+#define INTEL_A_END		BIT(1)
+#define INTEL_A_ERRORS	GENMASK(31, 24)
+/* data descriptor, otherwise as INTEL_L_COMMAND */
+#define INTEL_A_COMMAND	(3 << 20 | BIT(29) | BIT(24) | BIT(25) | BIT(27))
+#define INTEL_A_PAYLOAD	14
 
 union intel_desc {
-	struct legacy l;
-	struct advanced a;
+	struct intel_legacy l;
+	struct intel_advanced a;
 };
 
 /**
@@ -87,8 +87,8 @@ static inline dma_addr_t ec_ring_buf_dma(const struct intel_ring *r, unsigned in
 static inline bool ec_ring_tx_done(const struct intel_nic *nic, const union intel_desc *d)
 {
 	if (nic->class->advanced)
-		return le32_to_cpu(READ_ONCE(d->a.olinfo)) & A_DONE;
-	return READ_ONCE(d->l.status) & L_DONE;
+		return le32_to_cpu(READ_ONCE(d->a.olinfo)) & INTEL_A_DONE;
+	return READ_ONCE(d->l.status) & INTEL_L_DONE;
 }
 
 /**
@@ -123,12 +123,12 @@ static inline void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring
 
 	d->a.addr = cpu_to_le64(ec_ring_buf_dma(tx, tx->next));
 	if (nic->class->advanced) {
-		d->a.command_status = cpu_to_le32(A_COMMAND | len);
-		d->a.olinfo = cpu_to_le32(len << A_PAYLOAD);
+		d->a.command_status = cpu_to_le32(INTEL_A_COMMAND | len);
+		d->a.olinfo = cpu_to_le32(len << INTEL_A_PAYLOAD);
 	} else {
 		d->l.len = cpu_to_le16(len);
 		d->l.tx_cso = 0;
-		d->l.tx_command = L_COMMAND;
+		d->l.tx_command = INTEL_L_COMMAND;
 		d->l.status = 0;
 	}
 	tx->next = (tx->next + 1) % INTEL_TX;
@@ -185,19 +185,19 @@ static inline const u8 *ec_ring_rx_get(const struct intel_nic *nic, struct intel
 	if (nic->class->advanced) {
 		u32 status = le32_to_cpu(READ_ONCE(d->a.command_status));
 
-		if (!(status & A_DONE))
+		if (!(status & INTEL_A_DONE))
 			return NULL;
 		dma_rmb();
-		good = status & A_END && !(status & A_ERRORS);
-		*len = le32_to_cpu(d->a.olinfo) & 0xffff;
+		good = status & INTEL_A_END && !(status & INTEL_A_ERRORS);
+		*len = le32_to_cpu(READ_ONCE(d->a.olinfo)) & 0xffff;
 	} else {
 		u8 status = READ_ONCE(d->l.status);
 
-		if (!(status & L_DONE))
+		if (!(status & INTEL_L_DONE))
 			return NULL;
 		dma_rmb();
-		good = status & L_END && !d->l.rx_errors;
-		*len = le16_to_cpu(d->l.len);
+		good = status & INTEL_L_END && !d->l.rx_errors;
+		*len = le16_to_cpu(READ_ONCE(d->l.len));
 	}
 	if (!good || *len > INTEL_BUF)
 		*len = 0;
@@ -207,7 +207,7 @@ static inline const u8 *ec_ring_rx_get(const struct intel_nic *nic, struct intel
 }
 
 /**
- * ec_ring_rx_put() - give back the buffers of all frames that were taken
+ * ec_ring_rx_put() - give back the buffers of all frames that were taken, before the next poll
  * @nic: controller
  * @rx: receive ring
  *

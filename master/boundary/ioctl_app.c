@@ -5,7 +5,6 @@
 #include "../config/domain.h"
 #include "ioctl.h"
 #include "master.h"
-#include "../session/request.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
 #include "../config/why.h"

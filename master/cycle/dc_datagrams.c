@@ -77,7 +77,7 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
 /**
  * ec_dc_datagrams_wanted() - clock datagrams of this send
  * @c: its cyclic layout
- * @flags: EC_SEND_FLAG_*
+ * @flags: EC_SEND_FLAG_*, at least one of EC_CYC_CLOCKS
  *
  * Datagrams that the application wants and the master does not send count as not returned.
  *

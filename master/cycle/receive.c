@@ -12,7 +12,7 @@
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
 static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d, u32 send,
-		      const u8 *data)
+			       const u8 *data)
 {
 	u8 *image = c->domains[d->domain].image;
 	unsigned int i;

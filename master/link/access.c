@@ -80,12 +80,16 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 	change = l->access.mode != mode;
 	if (change) {
 		ec_write64(&l->access.last_send_ns, ktime_get_ns());
+		/* no other poll may be under way when the owner of the cycle comes */
+		if (mode == EC_ACCESS_CYCLIC)
+			own_devices(l, true);
 		WRITE_ONCE(l->access.mode, mode);
 		smp_mb();	/* mode before busy; pairs with ec_access_enters() */
 		/* the cycle wakes no thread of the master */
 		while (mode == EC_ACCESS_DIRECT && atomic_read(&l->access.busy))
 			usleep_range(20, 50);
-		own_devices(l, mode == EC_ACCESS_CYCLIC);
+		if (mode == EC_ACCESS_DIRECT)
+			own_devices(l, false);
 		ec_link_set_places(&l->link[0], mode == EC_ACCESS_CYCLIC);
 		if (mode == EC_ACCESS_DIRECT) {
 			flush(l, &l->queues.acyclic);

@@ -43,7 +43,7 @@ bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
  */
 bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len)
 {
-	return !c || ec_tap_received(&c->tap, src, data, len);
+	return ec_tap_received(&c->tap, src, data, len);
 }
 
 /* Only capture programs take these frames. */

@@ -118,6 +118,8 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 	memset(&link->stats, 0, sizeof(link->stats));
 	memset(&link->rates, 0, sizeof(link->rates));
 	rt_mutex_lock(&l->access.lock);
+	if (ec_access_is_cyclic(&l->access) && dev->ops->cycle)
+		dev->ops->cycle(dev->priv, true);
 	WRITE_ONCE(link->dev, dev);
 	ec_link_set_places(link, ec_access_is_cyclic(&l->access));
 	rt_mutex_unlock(&l->access.lock);

@@ -250,7 +250,7 @@ void ec_link_poll(struct ec_link *link)
 }
 
 /**
- * ec_links_poll_cycle() - the same on all links, for the cycle
+ * ec_links_poll_cycle() - the same for the cycle
  * @l: links
  *
  * Replies to the cycle may stay in the memory of the device: they have to be taken before the
@@ -260,13 +260,14 @@ void ec_link_poll(struct ec_link *link)
  */
 void ec_links_poll_cycle(struct ec_links *l)
 {
-	struct ecdev *dev = READ_ONCE(l->link[0].dev);	/* may be withdrawn now */
+	struct ec_link *link = &l->link[0];
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 
 	if (!dev || !dev->ops->poll)
 		return;
-	l->slots.keep = dev->ops->keeps;
+	WRITE_ONCE(link->keep, dev->ops->keeps);
 	dev->ops->poll(dev->priv);
-	l->slots.keep = false;
+	WRITE_ONCE(link->keep, false);
 }
 
 /**

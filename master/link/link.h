@@ -61,6 +61,7 @@ struct ec_link_rates {
  * @acyclic: places for acyclic frames on their way, also those in the queue; who waits for them
  * @acyclic_ns: wire time of these frames
  * @ring_full: place of the caller that tries until there is room in the transmit ring
+ * @keep: the cycle owner polls the device, and takes replies to the cycle from its memory
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
  * @al_states: OR of their AL states
@@ -74,6 +75,7 @@ struct ec_link {
 	struct ec_gate acyclic;
 	atomic_t acyclic_ns;
 	struct ec_gate ring_full;
+	bool keep;
 	bool up;
 	u32 slaves;
 	u32 al_states;

@@ -34,7 +34,7 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
 	if (unlikely(src[1] & EC_PACKED))
 		got.what = receive_pack(l, src, data, len);
 	else
-		got = ec_slots_match(&l->slots, src, data, len);
+		got = ec_slots_match(&l->slots, src, data, len, READ_ONCE(link->keep));
 	if (got.xfer)
 		ec_xfer_done(got.xfer);
 	if (unlikely(got.what == EC_MATCH_LATE))

@@ -220,7 +220,7 @@ void ec_riders_return(struct ec_links *l, const struct ec_riding *riding)
  * @l: links
  * @riding: riders of the frame
  * @at: datagram behind the process data
- * @end: end of the frame; what is before was compared with what was sent
+ * @end: end of the frame
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
@@ -235,6 +235,9 @@ void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8
 	for (; left && ec_frame_iter_next(&it, &d) == 1; left &= left - 1) {
 		struct ec_rider *r = l->riders.rider[__ffs(left)];
 
+		/* in memory of the device it may have changed since it was compared */
+		if (d.len != r->len)
+			break;
 		if (!hold(r, riding->seq))
 			continue;	/* given up */
 		memcpy(r->data, d.data, r->len);

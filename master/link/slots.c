@@ -174,7 +174,8 @@ bool ec_slot_disarm(struct ec_slot *slot)
  * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
  * alone: one that callers share is recognized by its number.
  */
-static __always_inline void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links, u64 now_ns)
+static __always_inline void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links,
+				    u64 now_ns)
 {
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
@@ -357,11 +358,13 @@ static struct ec_matched nothing(enum ec_match what)
  * @src: source MAC address of the frame, which callers do not share
  * @data: what follows the EtherType
  * @len: bytes there
+ * @keep: a reply to the cycle may stay where it is: the cycle owner takes it in this call
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: what became of the frame, and who waits for it.
  */
-struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len)
+struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
+				 bool keep)
 {
 	u32 seq = get_unaligned_le32(src + 2);
 	struct ec_slot *slot;
@@ -390,7 +393,7 @@ struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *da
 		ec_slot_release(slot, EC_SLOT_SENT);
 		return nothing(EC_MATCH_UNMATCHED);
 	}
-	if (s->keep && !slot->xfer && slot->links == BIT(side)) {
+	if (keep && !slot->xfer && slot->links == BIT(side)) {
 		slot->reply = data;
 		ec_slot_release(slot, EC_SLOT_DONE);
 		return nothing(EC_MATCH_DONE);

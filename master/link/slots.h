@@ -67,7 +67,7 @@ struct ec_packed {
  *	the copy of link 0 when that is back
  * @backup: behind the EtherType: the copy of link 1; NULL without such a link
  * @reply: behind the EtherType: what has come back, in state DONE; in @frame, or for the cycle in
- *	the device, see struct ec_slots.keep
+ *	the device, see struct ec_link.keep
  */
 struct ec_slot {
 	atomic_t state;
@@ -101,8 +101,6 @@ struct ec_queued {
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
  * @numbered: the source address of a frame has its number
- * @keep: replies to the cycle stay where the device has them: it takes them in this call. Set by
- *	the cycle owner while the device delivers
  */
 struct ec_slots {
 	struct ec_slot *slot;
@@ -110,7 +108,6 @@ struct ec_slots {
 	atomic_t hint;
 	atomic_t seq;
 	bool numbered;
-	bool keep;
 };
 
 enum ec_match {
@@ -139,7 +136,8 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, 
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
 bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);
 struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
-struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len);
+struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
+				 bool keep);
 bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
 
 /* end of the state FILL */

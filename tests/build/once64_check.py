@@ -14,7 +14,7 @@ from pathlib import Path
 ALLOWED = {
     "master/cycle/receive.c:ec_cycle_do_receive": "between ec_status_begin() and ec_status_end()",
     "master/cycle/dc_datagrams.c:ec_dc_datagrams_judge": "its caller has called ec_status_begin()",
-    "master/cycle/late.c:ec_late_count": "between ec_status_begin() and ec_status_end()",
+    "master/cycle/late.c:count": "between ec_status_begin() and ec_status_end()",
     "master/cycle/late.c:ec_late_work": "between ec_status_begin() and ec_status_end()",
     "master/cycle/cycle_thread.c:publish": "between ec_status_begin() and ec_status_end()",
 }

@@ -290,6 +290,24 @@ static void taken_frames_stay(struct kunit *test)
 	}
 }
 
+/* A poll gives back only at its begin: what came with the one before is still taken. */
+static void two_polls_fit(struct kunit *test)
+{
+	struct card *c = card(test);
+	unsigned int n, round;
+	size_t len;
+
+	for (round = 0; round < 50; round++) {
+		/* 192 acyclic frames and those of a cycle, INTEL_TX at most are sent between */
+		for (n = 0; n < 240; n++)
+			KUNIT_ASSERT_TRUE(test, card_receives(c, n, 60, DD | EOP));
+		ec_ring_rx_put(&c->nic, &c->rx);
+		for (n = 0; ec_ring_rx_get(&c->nic, &c->rx, &len); n++)
+			;
+		KUNIT_ASSERT_EQ(test, n, 240u);
+	}
+}
+
 static void frame_with_error_is_skipped(struct kunit *test)
 {
 	static const struct {
@@ -432,6 +450,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(frames_received_in_order, chip_gen_params),
 	KUNIT_CASE_PARAM(unread_frames_stop_card, chip_gen_params),
 	KUNIT_CASE_PARAM(taken_frames_stay, chip_gen_params),
+	KUNIT_CASE_PARAM(two_polls_fit, chip_gen_params),
 	KUNIT_CASE_PARAM(frame_with_error_is_skipped, chip_gen_params),
 	KUNIT_CASE_PARAM(garbage_stays_within_buffers, chip_gen_params),
 	KUNIT_CASE_PARAM(reset_refuses_card_that_does_not_work, chip_gen_params),

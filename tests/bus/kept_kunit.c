@@ -68,13 +68,18 @@ static void kept_in_device(struct kunit *test)
 static void kept_not_between_calls(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
+	struct ec_link *link = &c->b->m->links.link[0];
+	u64 frames, between = 0;
 	u32 i;
 
 	for (i = 0; i < 200; i++) {
 		cyc_run(c, 1);
 		usleep_range(700, 701);
-		ec_link_poll(&c->b->m->links.link[0]);
+		frames = atomic64_read(&link->stats.rx_frames);
+		ec_link_poll(link);
+		between += atomic64_read(&link->stats.rx_frames) - frames;
 	}
+	KUNIT_EXPECT_GE(test, between, 200 * 3ull);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }

@@ -34,7 +34,8 @@ struct tx {
  * @stopped: nothing leaves the ring
  * @tx: buffers
  * @rx: received frames, which stay until the next poll
- * @n_rx: how many were received
+ * @n_rx: how many were received since then
+ * @polled: by the cycle
  */
 struct slow {
 	struct ec_sim_wire wire;
@@ -56,13 +57,18 @@ struct slow {
 	struct tx tx[RING_MAX];
 	u8 rx[RX_MAX][EC_ETH_MAX];
 	u32 n_rx;
+	bool polled;
 };
 
 static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct slow *s = container_of(w, struct slow, wire);
-	u8 *rx = s->rx[s->n_rx++ % RX_MAX], *d = rx + EC_ETH_HDR + EC_FRAME_HDR;
+	u8 *rx = s->rx[s->n_rx % RX_MAX], *d = rx + EC_ETH_HDR + EC_FRAME_HDR;
 
+	/* as a card whose ring is full */
+	if (s->polled && s->n_rx == RX_MAX)
+		return;
+	s->n_rx++;
 	memcpy(rx, eth, len);
 	if (s->claim && d[0] == EC_CMD_BRD)
 		put_unaligned_le16(s->claim, d + 2);
@@ -165,6 +171,7 @@ static void poll(void *priv)
 
 	/* who reads those of the last poll now notices it */
 	memset(s->rx, 0xee, sizeof(s->rx));
+	s->n_rx = 0;
 	ec_sim_wire_poll(&s->wire);
 }
 
@@ -172,6 +179,7 @@ static void cycle(void *priv, bool on)
 {
 	struct slow *s = priv;
 
+	s->polled = on;
 	ec_sim_wire_set_polled(&s->wire, on);
 }
 

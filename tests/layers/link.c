@@ -27,6 +27,9 @@ struct test_device {
 	u8 tx[EC_ETH_MAX];
 	u8 held[EC_ETH_MAX];
 	struct ecdev *dev;
+	const struct ec_links *links;
+	bool cyclic;
+	int mode;		/* of the access when the device heard of it */
 };
 
 /* the held frame comes back */
@@ -86,9 +89,17 @@ static bool link_up(void *priv)
 	return READ_ONCE(d->up);
 }
 
+static void cycle(void *priv, bool on)
+{
+	struct test_device *d = priv;
+
+	d->cyclic = on;
+	d->mode = READ_ONCE(d->links->access.mode);
+}
+
 static const struct ecdev_ops device_ops = {
 	.kind = "test", .atomic = true, .start = start, .stop = stop, .tx_get = tx_get,
-	.tx_send = tx_send, .link_up = link_up,
+	.tx_send = tx_send, .cycle = cycle, .link_up = link_up,
 };
 
 /* links of a master that has nothing else */
@@ -116,6 +127,7 @@ static struct bench *bench_new(enum behaviour does)
 	ec_base_init(&b->base, 0, 0);
 	b->d.does = does;
 	b->d.up = true;
+	b->d.links = &b->links;
 	if (!CHECK_EQ(ec_links_init(&b->links, &b->base, NULL, "test0", NULL), 0)) {
 		kvfree(b);
 		return NULL;
@@ -249,6 +261,30 @@ static void cycle_sends_what_others_queue(void)
 	bench_free(b);
 }
 
+/* The owner of the cycle is the only one that polls: the device hears of it before the owner may. */
+static void device_hears_of_cycle_first(void)
+{
+	struct bench *b = bench_new(ANSWERS);
+
+	if (!b)
+		return;
+	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_CYCLIC), true);
+	CHECK_EQ(b->d.cyclic, true);
+	CHECK_EQ(b->d.mode, EC_ACCESS_DIRECT);
+	/* one that comes while there is a cycle */
+	ecdev_withdraw(b->dev);
+	CHECK_EQ(b->d.cyclic, false);
+	ec_access_change(&b->links, EC_ACCESS_CYCLIC);
+	b->dev = ecdev_offer("test0", mac, &device_ops, &b->d);
+	if (CHECK(!IS_ERR(b->dev)))
+		CHECK_EQ(b->d.cyclic, true);
+	else
+		b->dev = NULL;
+	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_DIRECT), true);
+	CHECK_EQ(b->d.cyclic, false);
+	bench_free(b);
+}
+
 /* with ops NULL: no one hears of it but the caller */
 static void withdrawn_device_ends_calls(void)
 {
@@ -296,6 +332,7 @@ const struct alone_test alone_tests[] = {
 	TEST(lost_frames_time_out),
 	TEST(late_and_unknown_frames_are_only_counted),
 	TEST(cycle_sends_what_others_queue),
+	TEST(device_hears_of_cycle_first),
 	TEST(withdrawn_device_ends_calls),
 	TEST(link_down_ends_calls_at_once),
 	{ }

@@ -69,7 +69,7 @@ wrong() {
 	grep -q "^$1 * $2 .*$3" <<<"$output"
 	[ -z "${4:-}" ] || grep -qF "set: $4" <<<"$output"
 }
-all=22
+all=23
 
 @test "rtcheck finds nothing on a computer with the right settings" {
 	run ethercat rtcheck
@@ -118,6 +118,11 @@ all=22
 @test "rtcheck finds swap" {
 	echo "/dev/sda2 partition 999420 0 -2" >>"$FAKE_PROC/swaps"
 	wrong warning swap "may be on a disk" "swapoff -a"
+}
+
+@test "rtcheck finds that the kernel accounts for pressure" {
+	put "$FAKE_PROC/pressure/cpu" "some avg10=0.00 avg60=0.00 avg300=0.00 total=0"
+	wrong warning pressure "each switch" "kernel parameter psi=0"
 }
 
 @test "rtcheck finds a reserved CPU with a tick" {
@@ -231,7 +236,7 @@ all=22
 
 @test "rtcheck: JSON" {
 	put "$(cpu smt/active)" 1
-	out rtcheck -j | json 'len(d["checks"]) == 22 and d["warnings"] == 1 and d["errors"] == 0'
+	out rtcheck -j | json 'len(d["checks"]) == 23 and d["warnings"] == 1 and d["errors"] == 0'
 	out rtcheck -j | json 'd["checks"][0] == {"level": "ok", "check": "kernel",
 		"found": "6.1.0-rt, PREEMPT_RT", "fix": ""}'
 	out rtcheck -j | json '[c["fix"] for c in d["checks"] if c["level"] != "ok"] == ["kernel parameter nosmt"]'
