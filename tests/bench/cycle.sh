@@ -219,8 +219,8 @@ generic_cost() {
 		all_work $n
 		reliable "generic device"
 		# The mean has the cycles in it that send a frame of the monitor, too.
-		limit=$(((n == 1 ? 5300 : 11300) * slack / 100))
-		median=$(((n == 1 ? 5200 : 11100) * slack / 100))
+		limit=$(((n == 1 ? 4850 : 9900) * slack / 100))
+		median=$(((n == 1 ? 4750 : 9700) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, mean: $n drive(s)"
 		row "${v[total_median]}" $median "the same, median"
 		gate "$n slave(s): ${v[total_mean]} instructions of the calls on the mean, at most $limit; median ${v[total_median]}, at most $median" \
@@ -254,12 +254,12 @@ native_cost() {
 		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
 		work wait_ 4 "kernel's cycle, the application waits for it"
 		floors "$own" "$work"
-		limit=$(((n == 1 ? 3100 : 8100) * slack / 100))
+		limit=$(((n == 1 ? 2600 : 6000) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
 			"${v[total_mean]} <= limit"
-		# of one tree, by what the host does beside it: 14.7k to 15.2k, 20.8k to 24.0k
-		limit=$((n == 1 ? 16000 : 26000))
+		# of one tree, by what the host does beside it: up to 3 % and 15 % more
+		limit=$((n == 1 ? 15500 : 22500))
 		row "$own" $limit "all instructions of a cycle of an application, native device: $n drive(s)"
 		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
 			"$own <= limit"

@@ -261,7 +261,7 @@ static void cycle_sends_what_others_queue(void)
 	bench_free(b);
 }
 
-/* The owner of the cycle is the only one that polls: the device hears of it before the owner may. */
+/* The owner of the cycle is the only one that polls: the device hears of it before it may. */
 static void device_hears_of_cycle_first(void)
 {
 	struct bench *b = bench_new(ANSWERS);

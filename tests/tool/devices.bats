@@ -268,7 +268,12 @@ is_silent() {
 
 # in_read_only_etc COMMAND...
 in_read_only_etc() {
-	unshare -rm sh -c 'mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" || exit 9
+	local as_root=-r
+
+	# in a chroot nobody may have a user name space of his own
+	[ "$(id -u)" != 0 ] || as_root=
+	# shellcheck disable=SC2086
+	unshare $as_root -m sh -c 'mount --bind "$1" "$1" && mount -o remount,bind,ro "$1" || exit 9
 		shift; "$@"' sh "$FAKE_ETC" "$HERE/build/fake/ethercat" "$@"
 }
 
