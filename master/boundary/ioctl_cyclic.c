@@ -67,32 +67,6 @@ int ec_ioc_app_time(struct ec_call *call)
 	return 0;
 }
 
-static int receive(struct ec_file *f)
-{
-	struct ec_cycle *c = enter(f);
-	int ret;
-
-	if (IS_ERR(c))
-		return PTR_ERR(c);
-	ret = ec_cycle_receive(c);
-	leave(f);
-	return ret;
-}
-
-static int send(struct ec_file *f, const struct ec_ioc_send *arg)
-{
-	struct ec_cycle *c = enter(f);
-	int ret;
-
-	if (IS_ERR(c))
-		return PTR_ERR(c);
-	if (arg->flags & EC_SEND_FLAG_REQUESTS)
-		ec_requests_kick(ec_cycle_session(c));
-	ret = ec_cycle_take_request(c, arg) ?: ec_cycle_send(c, arg);
-	leave(f);
-	return ret;
-}
-
 /**
  * ec_ioc_receive() - EC_IOC_RECEIVE
  * @f: open file
@@ -102,7 +76,14 @@ static int send(struct ec_file *f, const struct ec_ioc_send *arg)
  */
 int ec_ioc_receive(struct ec_file *f)
 {
-	return receive(f);
+	struct ec_cycle *c = enter(f);
+	int ret;
+
+	if (IS_ERR(c))
+		return PTR_ERR(c);
+	ret = ec_cycle_receive(c);
+	leave(f);
+	return ret;
 }
 
 /**
@@ -115,7 +96,16 @@ int ec_ioc_receive(struct ec_file *f)
  */
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
 {
-	return send(f, what);
+	struct ec_cycle *c = enter(f);
+	int ret;
+
+	if (IS_ERR(c))
+		return PTR_ERR(c);
+	if (what->flags & EC_SEND_FLAG_REQUESTS)
+		ec_requests_kick(ec_cycle_session(c));
+	ret = ec_cycle_take_request(c, what) ?: ec_cycle_send(c, what);
+	leave(f);
+	return ret;
 }
 
 /**
@@ -139,7 +129,7 @@ long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 		return -EFAULT;
 	if (what.flags & ~EC_SEND_FLAG_ALL || what.reserved)
 		return -EOPNOTSUPP;
-	return send(f, &what);
+	return ec_ioc_send(f, &what);
 }
 
 /**
@@ -160,13 +150,13 @@ int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice)
 	struct ec_ioc_send what;
 
 	if (advice == EC_ADVICE_RECEIVE)
-		return receive(f);
+		return ec_ioc_receive(f);
 	if ((advice & ~EC_SEND_FLAG_ALL) == EC_ADVICE_SEND) {
 		what = (struct ec_ioc_send){
 			.flags = advice & EC_SEND_FLAG_ALL, .queued = len,
 			.app_time = offset, .sync_time = offset,
 		};
-		return send(f, &what);
+		return ec_ioc_send(f, &what);
 	}
 	return generic_fadvise(filp, offset, len, advice);
 }

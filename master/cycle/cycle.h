@@ -54,6 +54,12 @@ struct ec_cyc_dgram {
 	u32 first_input;
 };
 
+/* It has inputs only, and their last values are in the image. */
+static inline bool ec_cyc_from_image(const struct ec_cyc_dgram *d)
+{
+	return d->cmd == EC_CMD_LRD;
+}
+
 /**
  * struct ec_cyc_area - process data to copy into or out of a datagram: values of one
  *	size at equal distances, as slaves of a kind in a row have them

@@ -31,12 +31,6 @@ static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	}
 }
 
-/* It has inputs only, and their last values are in the image. */
-static bool from_image(const struct ec_cyc_dgram *d)
-{
-	return d->cmd == EC_CMD_LRD;
-}
-
 /*
  * May an incomplete reply give its inputs? One that was sent before they were last written
  * would bring back what a missing slave had before. An incomplete one of the same receive has
@@ -56,7 +50,7 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 {
 	const struct ec_cyc_area *in = &c->areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
-	bool direct = f->direct && !from_image(d);
+	bool direct = f->direct && !ec_cyc_from_image(d);
 	unsigned int i, n;
 
 	/*

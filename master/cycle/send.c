@@ -44,8 +44,7 @@ static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u
 	const u8 *image = c->domains[d->domain].image;
 	unsigned int i;
 
-	/* an LRD has the last values of its inputs, which are in the image */
-	if (c->direct && d->cmd != EC_CMD_LRD)
+	if (c->direct && !ec_cyc_from_image(d))
 		image = c->direct;
 	if (d->solid) {
 		memcpy(data, image + a->offset, d->len);
