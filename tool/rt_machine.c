@@ -108,17 +108,23 @@ static void check_sysctl(struct rt *r, const char *check, const char *name, long
 		rt_find(r, check, RT_WARNING, fix, "kernel.%s is %s: %s", name, text, what);
 }
 
-/* other debug options leave no trace that every user may see */
-static void check_debug(struct rt *r)
+/* does the kernel have a file in /proc? */
+static bool has_proc(const char *name)
 {
 	char path[512];
 
-	attr_path(path, sizeof(path), "%s/lockdep_stats", sys_proc());
-	if (access(path, F_OK))
-		rt_find(r, "debugging", RT_OK, NULL, "the kernel does not check its locks");
-	else
+	attr_path(path, sizeof(path), "%s/%s", sys_proc(), name);
+	return !access(path, F_OK);
+}
+
+/* other debug options leave no trace that every user may see */
+static void check_debug(struct rt *r)
+{
+	if (has_proc("lockdep_stats"))
 		rt_find(r, "debugging", RT_ERROR, "boot a kernel without CONFIG_LOCKDEP",
 			"the kernel checks its locks: each takes many times longer");
+	else
+		rt_find(r, "debugging", RT_OK, NULL, "the kernel does not check its locks");
 }
 
 /* a kernel with PREEMPT_RT has none */
@@ -155,17 +161,13 @@ static void check_swap(struct rt *r)
 		rt_find(r, "swap", RT_OK, NULL, "none");
 }
 
-/* a kernel that does not account for it has no such file */
 static void check_pressure(struct rt *r)
 {
-	char path[512];
-
-	attr_path(path, sizeof(path), "%s/pressure/cpu", sys_proc());
-	if (access(path, F_OK))
-		rt_find(r, "pressure", RT_OK, NULL, "the kernel does not account for it");
-	else
+	if (has_proc("pressure/cpu"))
 		rt_find(r, "pressure", RT_WARNING, "kernel parameter psi=0",
 			"the kernel accounts for it at each switch to another task");
+	else
+		rt_find(r, "pressure", RT_OK, NULL, "the kernel does not account for it");
 }
 
 void rt_check_kernel(struct rt *r)
