@@ -9,6 +9,7 @@
 #include "base/once64.h"
 #include "bus/mailboxes.h"
 #include "bus/slave.h"
+#include "bus/survey.h"
 #include "link/xfer.h"
 #include "bus/scan.h"
 #include "wire/regs.h"
@@ -33,7 +34,8 @@ struct watch {
 	u64 scanned_ns;
 	u64 rates_ns;
 	u64 alone_ns;		/* no rider before that time */
-	bool well;		/* all slaves were in the state they shall have */
+	bool well;		/* all slaves are in the state they shall have */
+	struct ec_survey survey;	/* if so, of all slaves then */
 	bool riding;		/* the rider is on its way; its reply is for the next look */
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
@@ -115,29 +117,10 @@ out:
 	return all;
 }
 
-/* How many slaves have to reply. */
-static unsigned int replying(const struct ec_master *m)
-{
-	unsigned int n = 0;
-
-	ec_for_each_slave(s, &m->bus)
-		n += READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
-	return n;
-}
-
 /* All slaves in the state they shall have, none with an error, all of them replied? */
-static bool as_wanted(const struct ec_master *m, u16 ored, u16 wkc)
+static bool as_wanted(const struct ec_survey *sv, u16 ored, u16 wkc)
 {
-	u8 want = 0;
-
-	ec_for_each_slave(s, &m->bus) {
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-			continue;
-		want = want ?: READ_ONCE(s->requested);
-		if (READ_ONCE(s->requested) != want || READ_ONCE(s->al_status) != want)
-			return false;
-	}
-	return ored == want && wkc >= replying(m);
+	return !sv->differ && ored == sv->state && wkc >= sv->replying;
 }
 
 /* A claim that is not believed; as long as it is the same it is logged once. */
@@ -239,9 +222,10 @@ static void ask_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
-	if (w->scanned && count && wkc >= replying(m))
+	ec_survey(&m->bus, &w->survey);
+	if (w->scanned && count && wkc >= w->survey.replying)
 		m->bus.complete_ns = ktime_get_ns();
-	w->well = w->scanned && as_wanted(m, ored, wkc);
+	w->well = w->scanned && as_wanted(&w->survey, ored, wkc);
 	if (!w->scanned || w->well || check_slaves(m))
 		w->silent = 0;
 	else
@@ -270,7 +254,8 @@ static bool all_well(struct watch *w)
 	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count)
 		return false;
 	ored = get_unaligned_le16(r->data);
-	if (!as_wanted(m, ored, r->wkc))
+	ec_survey(&m->bus, &w->survey);
+	if (!as_wanted(&w->survey, ored, r->wkc))
 		return false;
 	/* the last slave may have come to its state since the last look */
 	set_present(m, w->count, ored & EC_AL_STATE_MASK);
@@ -300,6 +285,7 @@ static void ride(struct watch *w)
 static void count_slaves(struct watch *w)
 {
 	w->irq = 0;
+	w->well = false;
 	if (w->woken && w->riding) {
 		/* it may have passed before the event */
 		w->riding = false;
@@ -323,18 +309,11 @@ static void watch_events(struct watch *w)
 
 	w->watched = 0;
 	if (w->riding && w->well && !w->woken) {
-		w->watched = ec_mailboxes_watch(&m->bus);
+		w->watched = ec_mailboxes_watch(&m->bus, w->survey.exchange);
 		if (w->stays < STAYS)
 			w->watched |= EC_ECAT_EVENT_AL;
 	}
 	WRITE_ONCE(m->links.events, w->watched);
-}
-
-static bool is_due(const struct ec_slave *s, u64 now)
-{
-	u64 at = ec_read64(&s->retry_ns);
-
-	return (READ_ONCE(s->error) || READ_ONCE(s->silent)) && at && now >= at;
 }
 
 /*
@@ -355,7 +334,7 @@ static void try_again(struct watch *w)
 	ec_for_each_slave(s, &m->bus) {
 		if (n == ARRAY_SIZE(due))
 			break;
-		if (!is_due(s, now))
+		if (!ec_survey_is_due(s, now))
 			continue;
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
 			dg[n] = EC_DG(EC_CMD_APRD, (u16)-s->position, EC_REG_STATION, 2, b[n]);
@@ -488,6 +467,7 @@ static int monitor(void *data)
 {
 	struct watch w = { .m = data };
 	struct ec_master *m = w.m;
+	bool idle;
 
 	WRITE_ONCE(m->links.monitor, current);
 	while (!kthread_should_stop()) {
@@ -501,9 +481,12 @@ static int monitor(void *data)
 			ec_access_timeout(&m->links);
 		if (w.link_up || m->bus.n_slaves) {
 			count_slaves(&w);
-			try_again(&w);
+			idle = w.well && !w.survey.chores;
+			if (!idle)
+				try_again(&w);
 			maybe_scan(&w);
-			read_pdos(&w);
+			if (!idle)
+				read_pdos(&w);
 		} else {
 			no_slaves(m);
 		}

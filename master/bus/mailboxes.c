@@ -96,13 +96,14 @@ const u8 *ec_mailboxes_mask(bool mailbox)
 /**
  * ec_mailboxes_watch() - which event of a frame of the cycle is worth a look at once
  * @bus: bus, scanned
+ * @exchange: callers wait for answers
  *
  * Context: The monitor thread.
- * Return: that of SM1; 0 while callers wait for answers, or when looks found no message.
+ * Return: that of SM1; 0 for @exchange, or when looks found no message.
  */
-u16 ec_mailboxes_watch(const struct ec_bus *bus)
+u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange)
 {
-	return bus->vain_looks >= VAIN || any_in_use(bus) ? 0 : EC_ECAT_EVENT_SM(1);
+	return bus->vain_looks >= VAIN || exchange ? 0 : EC_ECAT_EVENT_SM(1);
 }
 
 /**

@@ -8,7 +8,7 @@
 struct ec_bus;
 
 const u8 *ec_mailboxes_mask(bool mailbox);
-u16 ec_mailboxes_watch(const struct ec_bus *bus);
+u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange);
 void ec_mailboxes_look(struct ec_bus *bus, u16 irq);
 
 #endif

@@ -141,22 +141,6 @@ void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_p
 }
 
 /**
- * ec_slave_pdos_pending() - shall the PDOs be read over CoE?
- * @s: slave
- *
- * Context: Any.
- * Return: false also when that was done or is not possible now.
- */
-bool ec_slave_pdos_pending(const struct ec_slave *s)
-{
-	u16 al = READ_ONCE(s->al_status);
-
-	return !READ_ONCE(s->pdos_known) && READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
-	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
-	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
-}
-
-/**
  * ec_slave_clear_warning() - forget what was not certain of a configuration
  * @s: slave, @lock held
  *

@@ -411,20 +411,6 @@ void ec_slave_kick(struct ec_slave *slave)
 	ec_slave_unref(slave);
 }
 
-/**
- * ec_slave_busy() - is the worker bringing the slave to a state, or about to?
- * @slave: slave
- *
- * When it is not, what the worker has written is visible to the caller.
- *
- * Context: Any. RT-safe.
- * Return: whether it is.
- */
-bool ec_slave_busy(const struct ec_slave *slave)
-{
-	return atomic_read_acquire(&slave->works) > 0;
-}
-
 /* Nothing beyond PREOP while the computer reboots. */
 static u8 allowed(const struct ec_slave *slave, u8 state)
 {

@@ -197,7 +197,6 @@ struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
-bool ec_slave_busy(const struct ec_slave *slave);
 u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
@@ -218,7 +217,6 @@ void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
 const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
 
 /* pdo_coe.c */
-bool ec_slave_pdos_pending(const struct ec_slave *s);
 void ec_slave_clear_warning(struct ec_slave *s);
 void ec_slave_read_coe_pdos(struct ec_slave *s);
 int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
@@ -228,6 +226,36 @@ void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_p
 int ec_al_read(struct ec_slave *slave);
 int ec_al_ack(struct ec_slave *slave);
 int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
+
+/**
+ * ec_slave_busy() - is the worker bringing the slave to a state, or about to?
+ * @slave: slave
+ *
+ * When it is not, what the worker has written is visible to the caller.
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it is.
+ */
+static inline bool ec_slave_busy(const struct ec_slave *slave)
+{
+	return atomic_read_acquire(&slave->works) > 0;
+}
+
+/**
+ * ec_slave_pdos_pending() - shall the PDOs be read over CoE?
+ * @s: slave
+ *
+ * Context: Any.
+ * Return: false also when that was done or is not possible now.
+ */
+static inline bool ec_slave_pdos_pending(const struct ec_slave *s)
+{
+	u16 al = READ_ONCE(s->al_status);
+
+	return !READ_ONCE(s->pdos_known) && READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
+	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
+	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
+}
 
 static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)
 {

@@ -42,7 +42,7 @@ static void post(struct ec_mbox *mb, enum ec_mbox_step step, u8 cmd, u16 ado, vo
 		 bool repeat)
 {
 	lockdep_assert_held(&mb->lock);
-	mb->step = step;
+	WRITE_ONCE(mb->step, step);
 	mb->post.dg = EC_DG(cmd, mb->station, ado, len, data);
 	mb->post.dg.repeat = repeat;
 	ec_post_send(&mb->post, mb->due_ns);
@@ -275,7 +275,7 @@ void ec_mbox_hurry(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->lock);
 	if ((mb->step == EC_MBOX_STATUS || (mb->step == EC_MBOX_READ && !mb->at)) &&
 	    ec_post_recall(&mb->post))
-		mb->step = EC_MBOX_REST;
+		WRITE_ONCE(mb->step, EC_MBOX_REST);
 }
 
 /* results -------------------------------------------------------------------*/
@@ -505,7 +505,7 @@ void ec_mbox_done(struct ec_post *post)
 
 	raw_spin_lock_irqsave(&mb->lock, flags);
 	step = mb->step;
-	mb->step = EC_MBOX_REST;
+	WRITE_ONCE(mb->step, EC_MBOX_REST);
 	if (!mb->dead)
 		has_step(mb, step, post->dg.err ?: post->dg.wkc == 1 ? 0 : -EIO);
 	ec_mbox_go(mb);

@@ -91,17 +91,13 @@ void ec_mbox_reset(struct ec_mbox *mb)
  * @mb: mailbox of the slave
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether one does; it gets all that the slave sends.
+ * Return: whether one does; it gets all that the slave sends. One that begins or changes its
+ * queue just now may be missed.
  */
-bool ec_mbox_in_use(struct ec_mbox *mb)
+bool ec_mbox_in_use(const struct ec_mbox *mb)
 {
-	unsigned long flags;
-	bool in_use;
-
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	in_use = !list_empty(&mb->queue) || !list_empty(&mb->users) || mb->step != EC_MBOX_REST;
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	return in_use;
+	return !list_empty(&mb->queue) || !list_empty(&mb->users) ||
+	       READ_ONCE(mb->step) != EC_MBOX_REST;
 }
 
 /**

@@ -272,7 +272,7 @@ void ec_mbox_init(struct ec_mbox *mb);
 unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page);
 void ec_mbox_reset(struct ec_mbox *mb);
 void ec_mbox_exit(struct ec_mbox *mb);
-bool ec_mbox_in_use(struct ec_mbox *mb);
+bool ec_mbox_in_use(const struct ec_mbox *mb);
 int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message);
 struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t message);
 int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include "../base/once64.h"
+#include "slave.h"
+#include "survey.h"
+
+/**
+ * ec_survey_is_due() - shall a slave that failed be tried again?
+ * @s: slave
+ * @now: time (ktime), ns
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it shall.
+ */
+bool ec_survey_is_due(const struct ec_slave *s, u64 now)
+{
+	u64 at;
+
+	if (!READ_ONCE(s->error) && !READ_ONCE(s->silent))
+		return false;
+	at = ec_read64(&s->retry_ns);
+	return at && now >= at;
+}
+
+/**
+ * ec_survey() - look at all slaves
+ * @bus: bus
+ * @survey: result
+ *
+ * What changes during the pass is seen by the next one.
+ *
+ * Context: The monitor thread.
+ */
+void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
+{
+	u64 now = ktime_get_ns();
+
+	*survey = (struct ec_survey){ 0 };
+	ec_for_each_slave(s, bus) {
+		u8 want = READ_ONCE(s->requested);
+
+		survey->chores |= ec_slave_busy(s) || ec_survey_is_due(s, now) ||
+				  ec_slave_pdos_pending(s);
+		survey->exchange |= ec_mbox_in_use(&s->mbox);
+		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+			continue;
+		survey->state = survey->state ?: want;
+		survey->differ |= want != survey->state || READ_ONCE(s->al_status) != want;
+		survey->replying++;
+	}
+}
