@@ -198,7 +198,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
-	ec_share_begin(c->links);
+	ec_share_begin(&c->links->share, ec_access_interval_us(&c->links->access));
 	if (unlikely(ec_links_have_left(c->links)))
 		ec_share_send_left(c->links, send.wire.ns);
 	ec_links_flush(c->links);

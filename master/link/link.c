@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/bitops.h>
 #include <linux/errno.h>
-#include <linux/log2.h>
 #include <linux/math64.h>
 #include <linux/ratelimit.h>
 #include <linux/rcupdate.h>
@@ -49,8 +48,17 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 		       data);
 }
 
-/* Send a frame that was written to a buffer of the device. */
-static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
+/**
+ * ec_link_send_buf() - send a frame that was written to a buffer of the device
+ * @link: link
+ * @dev: its device
+ * @buf: the buffer
+ * @len: bytes of the frame, with padding
+ *
+ * Context: The owner of the link. RT-safe.
+ * Return: as ec_links_send().
+ */
+int ec_link_send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
 {
 	int ret;
 
@@ -71,53 +79,23 @@ static int send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len
 	return 0;
 }
 
-/* the device and its next transmit buffer; NULL without one */
-static u8 *tx_get(struct ec_link *link, struct ecdev **dev)
-{
-	*dev = READ_ONCE(link->dev);	/* may be withdrawn now */
-	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
-}
-
-static size_t padded(const struct ec_slot *slot)
-{
-	return max_t(size_t, slot->eth_len, EC_ETH_MIN);
-}
-
 /* Send the frame of an armed slot. */
 static int send(struct ec_link *link, struct ec_slot *slot)
 {
 	struct ecdev *dev;
-	u8 *buf = tx_get(link, &dev);
+	u8 *buf = ec_link_tx_get(link, &dev);
 
 	if (!buf)
 		return dev ? -EBUSY : -ENODEV;
-	memcpy(buf, slot->frame, padded(slot));
+	memcpy(buf, slot->frame, ec_slot_padded(slot));
 	buf[7] |= link->side;
-	return send_buf(link, dev, buf, padded(slot));
-}
-
-/**
- * ec_links_tx_get() - a transmit buffer in which a frame may be built
- * @l: links
- *
- * The next frame that is sent has to be this one.
- *
- * Context: The owner of the links. RT-safe.
- * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
- * absent: the frame is built in its slot, and ec_links_send() finds out.
- */
-u8 *ec_links_tx_get(struct ec_links *l)
-{
-	struct ecdev *dev;
-
-	return is_power_of_2(l->carry) ? tx_get(&l->link[__ffs(l->carry)], &dev) : NULL;
+	return ec_link_send_buf(link, dev, buf, ec_slot_padded(slot));
 }
 
 /**
  * ec_links_send() - send the frame of an armed slot on its links
  * @l: links
- * @slot: slot in state SENT
- * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
+ * @slot: slot in state SENT, which holds the frame
  *
  * ec_links_flush() must follow.
  *
@@ -126,21 +104,11 @@ u8 *ec_links_tx_get(struct ec_links *l)
  * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
  * is down. The first link that fails ends it.
  */
-int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 *frame)
+int ec_links_send(struct ec_links *l, struct ec_slot *slot)
 {
 	unsigned long left = slot->links;
-	struct ec_link *link;
-	struct ecdev *dev;
 	int ret = 0;
 
-	if (frame != slot->frame) {
-		link = &l->link[__ffs(left)];
-		dev = READ_ONCE(link->dev);	/* withdrawn at the most, not another one */
-		if (!dev)
-			return -ENODEV;
-		frame[7] |= link->side;
-		return send_buf(link, dev, frame, padded(slot));
-	}
 	for (; left && !ret; left &= left - 1)
 		ret = send(&l->link[__ffs(left)], slot);
 	return ret;
@@ -171,7 +139,7 @@ int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 	for (left = links; left && !ret; left &= left - 1) {
 		unsigned int i = __ffs(left);
 
-		tx[i].buf = tx_get(&l->link[i], &tx[i].dev);
+		tx[i].buf = ec_link_tx_get(&l->link[i], &tx[i].dev);
 		if (!tx[i].buf) {
 			ret = tx[i].dev ? -EBUSY : -ENODEV;
 			break;
@@ -185,32 +153,11 @@ int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
 	if (ret)
 		return ret;
 	for (left = links; left && !ret; left &= left - 1)
-		ret = send_buf(&l->link[__ffs(left)], tx[__ffs(left)].dev, tx[__ffs(left)].buf,
-			       len);
+		ret = ec_link_send_buf(&l->link[__ffs(left)], tx[__ffs(left)].dev,
+				       tx[__ffs(left)].buf, len);
 	if (ret == -EBUSY)
 		ec_pack_move(p, EC_SLOT_SENT, EC_SLOT_QUEUED);
 	return ret;
-}
-
-/**
- * ec_links_flush() - a batch of frames has ended: let the devices send them
- * @l: links
- *
- * One doorbell for all frames of a cycle. Must follow each batch, also when its last frame
- * failed.
- *
- * Context: The owner of the links. RT-safe.
- */
-void ec_links_flush(struct ec_links *l)
-{
-	unsigned int i;
-
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
-
-		if (dev && dev->ops->tx_flush)
-			dev->ops->tx_flush(dev->priv);
-	}
 }
 
 /**

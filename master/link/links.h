@@ -7,11 +7,13 @@
 #define EC_LINKS_H
 
 #include <linux/list.h>
+#include <linux/log2.h>
 #include <linux/spinlock.h>
 #include "ethercat.h"
 #include "../base/base.h"
 #include "../base/limits.h"
 #include "access.h"
+#include "device.h"
 #include "link.h"
 #include "post.h"
 #include "queue.h"
@@ -21,7 +23,6 @@
 
 struct ec_capture;
 struct ec_links;
-struct ecdev_ops;
 struct task_struct;
 
 /** struct ec_links_ops - what the layer reports to higher ones; each may be NULL */
@@ -159,6 +160,30 @@ static inline void ec_links_poll(struct ec_links *l)
 	ec_link_poll(&l->link[0]);
 }
 
+/* the device and its next transmit buffer; NULL without one; the owner of the link, RT-safe */
+static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
+{
+	*dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
+}
+
+/**
+ * ec_links_tx_get() - a transmit buffer in which a frame may be built
+ * @l: links
+ *
+ * The next frame that is sent has to be this one.
+ *
+ * Context: The owner of the links. RT-safe.
+ * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
+ * absent: the frame is built in its slot, and ec_links_transmit() finds out.
+ */
+static inline u8 *ec_links_tx_get(const struct ec_links *l)
+{
+	struct ecdev *dev;
+
+	return is_power_of_2(l->carry) ? ec_link_tx_get(&l->link[__ffs(l->carry)], &dev) : NULL;
+}
+
 /* count a frame of the cycle: lost, late, or tx_errors */
 #define ec_links_count(l, what)	atomic64_inc(&(l)->link[0].stats.what)
 
@@ -196,9 +221,39 @@ static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8
 	int ret;
 
 	ec_slot_arm(&l->slots, slot, frame, l->carry, now);
-	ret = ec_links_send(l, slot, frame);
+	if (frame == slot->frame) {
+		ret = ec_links_send(l, slot);
+	} else {
+		struct ec_link *link = &l->link[__ffs(l->carry)];
+		struct ecdev *dev = READ_ONCE(link->dev);
+
+		/* withdrawn at the most, not another one */
+		frame[7] |= link->side;
+		ret = dev ? ec_link_send_buf(link, dev, frame, ec_slot_padded(slot)) : -ENODEV;
+	}
 	/* a reply that came nevertheless makes it a frame as if it was sent */
 	return ret && ec_slot_disarm(slot) ? ret : 0;
+}
+
+/**
+ * ec_links_flush() - a batch of frames has ended: let the devices send them
+ * @l: links
+ *
+ * One doorbell for all frames of a cycle. Must follow each batch, also when its last frame
+ * failed.
+ *
+ * Context: The owner of the links. RT-safe.
+ */
+static inline void ec_links_flush(struct ec_links *l)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
+
+		if (dev && dev->ops->tx_flush)
+			dev->ops->tx_flush(dev->priv);
+	}
 }
 
 /* has anybody left acyclic frames for the next send? */

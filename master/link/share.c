@@ -45,23 +45,6 @@ u16 ec_share_clock_bytes(const struct ec_links *l)
 	return min_t(u32, bytes, EC_FRAME_BODY_MAX);
 }
 
-/**
- * ec_share_begin() - a cyclic send begins: it may carry acyclic frames again
- * @l: links
- *
- * Short cycles carry a clock frame only now and then.
- *
- * Context: The master's single cyclic caller. RT-safe.
- */
-void ec_share_begin(struct ec_links *l)
-{
-	u32 more = ec_access_interval_us(&l->access) * EC_SHARE_CLOCKS_PER_MS;
-
-	l->share.frames = 0;
-	l->share.wire_ns = 0;
-	l->share.clock_credit = min(l->share.clock_credit + more, max(more, 1000u));
-}
-
 /*
  * The queue of the frame to send next, NULL: none may be sent. Clock frames and others take
  * turns, as long as there is credit for clocks.

@@ -33,8 +33,25 @@ struct ec_share {
 
 extern unsigned int ec_share_max;	/* acyclic frames of one send: max_acyclic of the module */
 
+/**
+ * ec_share_begin() - a cyclic send begins: it may carry acyclic frames again
+ * @share: of the links
+ * @interval_us: of the cycle
+ *
+ * Short cycles carry a clock frame only now and then.
+ *
+ * Context: The master's single cyclic caller. RT-safe.
+ */
+static inline void ec_share_begin(struct ec_share *share, u32 interval_us)
+{
+	u32 more = interval_us * EC_SHARE_CLOCKS_PER_MS;
+
+	share->frames = 0;
+	share->wire_ns = 0;
+	share->clock_credit = min(share->clock_credit + more, max(more, 1000u));
+}
+
 u16 ec_share_clock_bytes(const struct ec_links *l);
-void ec_share_begin(struct ec_links *l);
 void ec_share_send_left(struct ec_links *l, u32 wire_ns);
 void ec_share_send_between(struct ec_links *l);
 void ec_share_stamp(const struct ec_links *l, u8 *frame, size_t len, u64 sent_ns);

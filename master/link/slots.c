@@ -64,14 +64,7 @@ static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
 	       EC_SLOT_QUARANTINE;
 }
 
-static struct ec_slot *taken(struct ec_slot *slot)
-{
-	slot->xfer = NULL;
-	slot->dgrams = 0;
-	return slot;
-}
-
-static noinline struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
+static struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quarantine_ns)
 {
 	unsigned int i, start = atomic_inc_return(&s->hint);
 
@@ -79,28 +72,24 @@ static noinline struct ec_slot *search(struct ec_slots *s, u64 now_ns, s64 quara
 		struct ec_slot *slot = &s->slot[(start + i) % EC_SLOTS];
 
 		if (take(slot, now_ns, quarantine_ns))
-			return taken(slot);
+			return ec_slot_taken(slot);
 	}
 	return NULL;
 }
 
 /**
- * ec_slot_get() - take a free slot
+ * ec_slot_search() - ec_slot_get() when the next slot is in use
  * @s: slots
- * @cyclic: for the cycle, or the monitor; others have a place at the link's gate
- * @now_ns: time, to release slots from quarantine
+ * @cyclic: as there
+ * @now_ns: as there
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: the slot in state BUILD, or NULL when none is free.
+ * Return: as there.
  */
-struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
+struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns)
 {
-	struct ec_slot *slot = &s->slot[(u32)atomic_inc_return(&s->hint) % EC_SLOTS];
+	struct ec_slot *slot = search(s, now_ns, EC_QUARANTINE_NS);
 
-	/* mostly the next one is free */
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
-		return taken(slot);
-	slot = search(s, now_ns, EC_QUARANTINE_NS);
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
 	 * quarantine frees them; sequence numbers distinguish the frames, too.

@@ -128,7 +128,7 @@ struct ec_matched {
 
 int ec_slots_init(struct ec_slots *s, bool backup);
 void ec_slots_exit(struct ec_slots *s);
-struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns);
+struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_disarm(struct ec_slot *slot);
@@ -139,6 +139,33 @@ struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
 struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
 				 bool keep);
 bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
+
+/* to a slot that was just taken */
+static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
+{
+	slot->xfer = NULL;
+	slot->dgrams = 0;
+	return slot;
+}
+
+/**
+ * ec_slot_get() - take a free slot
+ * @s: slots
+ * @cyclic: for the cycle, or the monitor; others have a place at the link's gate
+ * @now_ns: time, to release slots from quarantine
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the slot in state BUILD, or NULL when none is free.
+ */
+static inline struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 now_ns)
+{
+	struct ec_slot *slot = &s->slot[(u32)atomic_inc_return(&s->hint) % EC_SLOTS];
+
+	/* mostly the next one is free */
+	if (likely(atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE))
+		return ec_slot_taken(slot);
+	return ec_slot_search(s, cyclic, now_ns);
+}
 
 /* end of the state FILL */
 static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state state)
@@ -174,6 +201,12 @@ static inline bool ec_slot_leads(const struct ec_slot *slot)
 static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
 {
 	return side < EC_MAX_LINKS && slot->links & ~slot->back & BIT(side);
+}
+
+/* bytes of the frame on the wire, without FCS */
+static inline size_t ec_slot_padded(const struct ec_slot *slot)
+{
+	return max_t(size_t, slot->eth_len, EC_ETH_MIN);
 }
 
 static inline u8 *ec_slot_body(struct ec_slot *slot)

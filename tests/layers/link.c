@@ -250,7 +250,7 @@ static void cycle_sends_what_others_queue(void)
 		CHECK_EQ(b->d.sent, 0);
 		ec_links_enter(&b->links);
 		ec_write64(&b->links.access.last_send_ns, ktime_get_ns());
-		ec_share_begin(&b->links);
+		ec_share_begin(&b->links.share, ec_access_interval_us(&b->links.access));
 		ec_share_send_left(&b->links, 0);
 		ec_links_leave(&b->links);
 		wait_for_completion(&c.done);
