@@ -228,32 +228,33 @@ generic_cost() {
 	done
 }
 
-# floors OWN WAIT: what the machine needs for a cycle in which nothing is done
+# floors MS OWN WAIT: what the machine needs for a cycle of MS milliseconds in which nothing is
+# done. A longer one has more of the clock tick in it, and idles deeper.
 floors() {
 	local sleep wake
 
-	sleep=$((v[floor_sleep_own] + v[floor_sleep_rest] - 4 * v[baseline_per_ms]))
-	wake=$((v[floor_wake_own] + v[floor_wake_rest] - 4 * v[baseline_per_ms]))
+	sleep=$((v[floor$1_sleep_own] + v[floor$1_sleep_rest] - $1 * v[baseline_per_ms]))
+	wake=$((v[floor$1_wake_own] + v[floor$1_wake_rest] - $1 * v[baseline_per_ms]))
 	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake"
-	echo "# above it: application's cycle $(($1 - sleep)), kernel's with a waiting application $(($2 - wake))"
+	echo "# above it: application's cycle $(($2 - sleep)), kernel's with a waiting application $(($3 - wake))"
 }
 
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
-	local n own limit
+	local ms=$1 n own limit
 
-	echo "# instructions per cycle, native device on e1000e"
+	echo "# instructions per cycle of $ms ms, native device on e1000e"
 	for n in 1 100; do
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
-			--period-us 4000 + kernel --cycles 300 --period-us 4000 --kernel timer \
-			+ wait --cycles 300 --period-us 4000 --kernel wait || return
+			--period-us ${ms}000 + kernel --cycles 300 --period-us ${ms}000 --kernel timer \
+			+ wait --cycles 300 --period-us ${ms}000 --kernel wait || return
 		cost native
 		kernel_cost
-		work "" 4 "application's cycle"; own=$work
-		work kernel_ 4 "kernel's cycle, the application sleeps by itself"
-		work wait_ 4 "kernel's cycle, the application waits for it"
-		floors "$own" "$work"
+		work "" $ms "application's cycle"; own=$work
+		work kernel_ $ms "kernel's cycle, the application sleeps by itself"
+		work wait_ $ms "kernel's cycle, the application waits for it"
+		floors $ms "$own" "$work"
 		limit=$(((n == 1 ? 2600 : 6000) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
@@ -353,7 +354,8 @@ real_time() {
 
 long_run
 generic_cost
-native_cost
+native_cost 4
+native_cost 1
 [ -z "$all" ] || { unit_costs generic; unit_costs native; }
 [ -z "$all" ] || virtual_cost
 system_calls
