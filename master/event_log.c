@@ -14,7 +14,7 @@
  */
 static const char *wkc_level(const u32 *a)
 {
-	bool before = a[2] == a[3], now = a[1] == a[3];
+	bool now = !a[6], before = !a[7];
 
 	if (before == now)
 		return NULL;

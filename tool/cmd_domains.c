@@ -100,7 +100,11 @@ static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain 
 	out_u("size_bytes", dom->size, ", Size %3u", dom->size);
 	out_u("working_counter", dom->working_counter, ", WorkingCounter %u",
 	      dom->working_counter);
-	out_u("expected_working_counter", dom->expected, "/%u\n", dom->expected);
+	out_u("expected_working_counter", dom->expected, "/%u%s\n", dom->expected,
+	      dom->wc_state == EC_STATUS_WC_INCOMPLETE &&
+	      dom->working_counter == dom->expected ? " in sum, not of each datagram" : "");
+	out_str("working_counter_state", dom->wc_state == EC_STATUS_WC_COMPLETE ? "complete" :
+		dom->wc_state == EC_STATUS_WC_INCOMPLETE ? "incomplete" : "zero", NULL);
 	age(t, in, dom);
 	layout(t, in, dom);
 	if (t->verbosity > 0) {
@@ -148,13 +152,15 @@ const struct cmd cmd_domains = {
 	.opts = "mdv",
 	.summary = "Show the domains of the application",
 	.help = "WorkingCounter: of the last cycle / expected; equal when every slave exchanged its\n"
-		"data. --verbose adds the options of the domain (overlap: inputs at logical addresses\n"
-		"of outputs; separate: LRD and LWR; own frame), its datagrams, and the share of each\n"
-		"slave configuration. 'ethercat master -v' shows the wire time of a cycle. Age of\n"
-		"process data: sends of the domain since the send of the newest received frame; shown\n"
-		"with --verbose, and when it exceeds its limit (stale).\n",
+		"data. Wrong counters of datagrams may cancel each other: then it is equal 'in sum, not\n"
+		"of each datagram'. --verbose adds the options of the domain (overlap: inputs at\n"
+		"logical addresses of outputs; separate: LRD and LWR; own frame), its datagrams, and the\n"
+		"share of each slave configuration. 'ethercat master -v' shows the wire time of a\n"
+		"cycle. Age of process data: sends of the domain since the send of the newest received\n"
+		"frame; shown with --verbose, and when it exceeds its limit (stale).\n",
 	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
-		"working_counter, expected_working_counter, age_sends, max_age_sends (0: no limit),\n"
+		"working_counter, expected_working_counter, working_counter_state (zero, incomplete,\n"
+		"complete: each datagram has its counter), age_sends, max_age_sends (0: no limit),\n"
 		"stale, options[] (overlap, separate, own_frame),\n"
 		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, position,\n"
 		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",

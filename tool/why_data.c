@@ -41,8 +41,8 @@ static bool incomplete(struct why *w, struct ec_ioc_domain *dom)
 {
 	for (int i = 0; i < LOOKS; i++) {
 		*dom = (struct ec_ioc_domain){ .index = dom->index };
-		if (dev_ioctl(w->d, EC_IOC_DOMAIN, dom) ||
-		    dom->working_counter == dom->expected)
+		if (dev_ioctl(w->d, EC_IOC_DOMAIN, dom) || !dom->expected ||
+		    dom->wc_state == EC_STATUS_WC_COMPLETE)
 			return false;
 		sleep_ms(i + 1 < LOOKS ? LOOK_MS : 0);
 	}
@@ -64,8 +64,10 @@ void why_domains(struct why *w)
 			continue;
 		why_add(w, "working_counter",
 			"compare the slaves of the domain: 'ethercat domains -v'; power-cycle the one whose data do not change",
-			"domain %u: working counter %u, expected %u, although all its slaves are in OP",
-			i, dom.working_counter, dom.expected)->domain = (int)i;
+			"domain %u: working counter %u, expected %u%s, although all its slaves are in OP",
+			i, dom.working_counter, dom.expected,
+			dom.working_counter == dom.expected ?
+				" in sum, but not of each datagram" : "")->domain = (int)i;
 	}
 }
 

@@ -91,10 +91,15 @@ struct ec_request_area {
 #define EC_STATUS_DOMAINS	64
 #define EC_STATUS_CONFIGS	4096
 
+/* of a working counter: no slave has taken part, some, or all in each datagram */
+#define EC_STATUS_WC_ZERO	0
+#define EC_STATUS_WC_INCOMPLETE	1
+#define EC_STATUS_WC_COMPLETE	2
+
 /* working counter of one domain, as of the last receive */
 struct ec_status_domain {
 	__u32 working_counter;
-	__u32 wc_state;		/* 0 zero, 1 incomplete, 2 all datagrams complete */
+	__u32 wc_state;		/* EC_STATUS_WC_* */
 	__u16 redundancy_active;
 	__u16 age;		/* sends of the domain since that of the newest received frame */
 	__u32 expected;

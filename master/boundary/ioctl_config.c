@@ -195,6 +195,7 @@ int ec_ioc_domain(struct ec_call *call)
 		i->datagram_bytes = d->dgram_bytes;
 		i->working_counter = READ_ONCE(st->domains[d->index].working_counter);
 		i->age = READ_ONCE(st->domains[d->index].age);
+		i->wc_state = READ_ONCE(st->domains[d->index].wc_state);
 	}
 	return 0;
 }

@@ -176,7 +176,7 @@ void ec_copy_run(struct ec_cycle *c)
 	for (i = 0; i < k->n; i++) {
 		const struct step *p = &k->steps[i];
 
-		if (st->domains[p->domain].wc_state == 2)
+		if (st->domains[p->domain].wc_state == EC_STATUS_WC_COMPLETE)
 			copy_bits(k->last + p->last, 0, c->domains[p->domain].image, p->from,
 				  p->bits);
 		copy_bits(c->domains[p->to_domain].image, p->to, k->last + p->last, 0, p->bits);

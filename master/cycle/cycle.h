@@ -137,8 +137,9 @@ struct ec_cyc_flight {
  * @stale: age of the oldest stale data that came back, for the log
  * @stale_logged: the log has said so; only the monitor's
  * @image: what the offsets of its datagrams count from
- * @seen: working counter of the last receive
- * @noted: the one of the last event about it
+ * @seen: working counter and its state of the last receive
+ * @noted: the counter of the last event about it
+ * @noted_state: its state
  * @rate: of these events
  */
 struct ec_cyc_domain {
@@ -153,6 +154,7 @@ struct ec_cyc_domain {
 	bool partial;
 	u32 seen;
 	u32 noted;
+	u32 noted_state;
 	struct ec_event_rate rate;
 };
 

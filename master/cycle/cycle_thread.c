@@ -149,7 +149,7 @@ static bool all_take_part(const struct ec_cycle *c)
 	const struct ec_status_domain *st = c->shared->status->domains;
 
 	ec_for_each_domain(d, c->wanted)
-		if (d->expected && READ_ONCE(st[d->index].wc_state) != 2)
+		if (d->expected && READ_ONCE(st[d->index].wc_state) != EC_STATUS_WC_COMPLETE)
 			return false;
 	return true;
 }

@@ -151,24 +151,30 @@ static u32 judge_age(const struct ec_cycle *c, struct ec_cyc_domain *d, unsigned
 }
 
 /* A change of the working counter is an event; of many in a second the first and the last. */
-static noinline void tell_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc)
+static noinline void tell_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc,
+			      u32 state)
 {
 	if (!ec_events_admit(&d->rate, ktime_get_ns()))
 		return;
 	ec_event(c->base, EC_EVENT_WKC, i, wkc, d->noted, d->expected, d->rate.more - 1,
-		 READ_ONCE(c->slaves_down));
+		 READ_ONCE(c->slaves_down), state != EC_STATUS_WC_COMPLETE,
+		 d->noted_state != EC_STATUS_WC_COMPLETE);
 	d->noted = wkc;
+	d->noted_state = state;
 	d->rate.more = 0;
 }
 
-static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc)
+static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i, u32 wkc,
+		     u32 state)
 {
-	if (wkc != d->seen) {
-		d->seen = wkc;
+	u32 seen = wkc << 2 | state;
+
+	if (seen != d->seen) {
+		d->seen = seen;
 		d->rate.more++;
 	}
 	if (unlikely(d->rate.more))
-		tell_wkc(c, d, i, wkc);
+		tell_wkc(c, d, i, wkc, state);
 }
 
 /* Domains that were sent or came back since the last receive. */
@@ -181,11 +187,14 @@ static void judge(struct ec_cycle *c)
 		struct ec_status_domain *st = &c->shared->status->domains[i];
 		struct ec_cyc_domain *d = &c->domains[i];
 		u32 wkc = c->back & BIT_ULL(i) ? d->wkc : 0;
+		u32 state = !wkc ? EC_STATUS_WC_ZERO :
+			    wkc == d->expected && !d->partial ? EC_STATUS_WC_COMPLETE :
+								EC_STATUS_WC_INCOMPLETE;
 
 		WRITE_ONCE(st->working_counter, wkc);
-		WRITE_ONCE(st->wc_state, !wkc ? 0 : wkc == d->expected && !d->partial ? 2 : 1);
+		WRITE_ONCE(st->wc_state, state);
 		WRITE_ONCE(st->age, judge_age(c, d, i));
-		note_wkc(c, d, i, wkc);
+		note_wkc(c, d, i, wkc, state);
 	}
 	c->judged = c->send;
 	c->sent = 0;

@@ -43,7 +43,8 @@ static const struct ec_event_kind kinds[] = {
 	KIND(NO_CLOCK, "no_clock"),
 	KIND(REVISION, "revision", U("expected"), U("found")),
 	KIND(WKC, "working_counter", U("domain"), U("working_counter"), U("before"),
-	     U("expected"), U("more_changes"), U("slaves_down")),
+	     U("expected"), U("more_changes"), U("slaves_down"), U("incomplete"),
+	     U("incomplete_before")),
 	KIND(OVERRUN, "overruns", U("cycles")),
 	KIND(FRAMES_LOST, "frames_lost", U("frames")),
 	KIND(FRAMES_LATE, "frames_late", U("frames")),
@@ -293,11 +294,15 @@ static void about_slave(struct text *t, const struct ec_event *e)
 
 static void about_wkc(struct text *t, const u32 *a)
 {
+	/* one datagram has too much, another too little */
+	const char *sum = a[6] && a[1] == a[3] ? " in sum, not of each datagram" : "";
+
 	if (a[4])
-		format(t, "domain %u: working counter %u of %u, before %u; %u more change(s)",
-		       a[0], a[1], a[3], a[2], a[4]);
+		format(t, "domain %u: working counter %u of %u%s, before %u; %u more change(s)",
+		       a[0], a[1], a[3], sum, a[2], a[4]);
 	else
-		format(t, "domain %u: working counter %u of %u, before %u", a[0], a[1], a[3], a[2]);
+		format(t, "domain %u: working counter %u of %u%s, before %u", a[0], a[1], a[3],
+		       sum, a[2]);
 }
 
 static void about_cycle(struct text *t, const struct ec_event *e)

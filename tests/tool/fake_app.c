@@ -16,8 +16,10 @@ static const struct ec_ioc_config configs[] = {
 
 static const struct ec_ioc_domain domains[] = {
 	{ .index = 0, .size = 1, .logical = 0, .working_counter = 1, .expected = 1,
+	  .wc_state = EC_STATUS_WC_COMPLETE,
 	  .fmmu_count = 1, .datagram_count = 1, .datagram_bytes = 13, .age = 1, .max_age = 2 },
 	{ .index = 1, .size = 6, .logical = 1, .working_counter = 3, .expected = 3,
+	  .wc_state = EC_STATUS_WC_COMPLETE,
 	  .fmmu_count = 1, .options = EC_DOMAIN_OPT_OVERLAP | EC_DOMAIN_OPT_OWN_FRAME,
 	  .datagram_count = 2, .datagram_bytes = 30, .age = 3, .max_age = 2 },
 };

@@ -149,8 +149,12 @@ static void cycle(struct ec_ioc_cycle_stats *x)
 
 static void domain(struct ec_ioc_domain *x)
 {
-	if (wrong("working_counter") && x->index)
-		x->working_counter = 2;
+	if (wrong("cancelled") && x->index)
+		x->wc_state = EC_STATUS_WC_INCOMPLETE;
+	if (!wrong("working_counter") || !x->index)
+		return;
+	x->working_counter = 2;
+	x->wc_state = EC_STATUS_WC_INCOMPLETE;
 }
 
 static void counters(struct ec_ioc_reg *x)
