@@ -231,24 +231,25 @@ generic_cost() {
 # floors MS OWN WAIT: what the machine needs for a cycle of MS milliseconds in which nothing is
 # done. A longer one has more of the clock tick in it, and idles deeper.
 floors() {
-	local sleep wake
+	local sleep wake above
 
 	sleep=$((v[floor$1_sleep_own] + v[floor$1_sleep_rest] - $1 * v[baseline_per_ms]))
 	wake=$((v[floor$1_wake_own] + v[floor$1_wake_rest] - $1 * v[baseline_per_ms]))
 	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake"
-	echo "# above it: application's cycle $(($2 - sleep)), kernel's with a waiting application $(($3 - wake))"
+	above="application's cycle $(($2 - sleep)), kernel's with a waiting application $(($3 - wake))"
+	echo "# above it: $above"
 }
 
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
-	local ms=$1 n own limit
+	local ms=$1 us=${1}000 n own limit
 
 	echo "# instructions per cycle of $ms ms, native device on e1000e"
 	for n in 1 100; do
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
-			--period-us ${ms}000 + kernel --cycles 300 --period-us ${ms}000 --kernel timer \
-			+ wait --cycles 300 --period-us ${ms}000 --kernel wait || return
+			--period-us $us + kernel --cycles 300 --period-us $us --kernel timer \
+			+ wait --cycles 300 --period-us $us --kernel wait || return
 		cost native
 		kernel_cost
 		work "" $ms "application's cycle"; own=$work

@@ -29,8 +29,8 @@ generic|native)
 	if [ "$(nproc)" = 1 ]; then
 		"$build/bench/cycle-bench" --baseline 1000 || exit 1
 		for ms in 1 4; do
-			floor=$("$build/bench/cycle-bench" --floor --cycles 300 --period-us ${ms}000) ||
-				exit 1
+			floor=$("$build/bench/cycle-bench" --floor --cycles 300 \
+				--period-us ${ms}000) || exit 1
 			echo "$floor" | sed "s/^floor/floor$ms/"
 		done
 	fi
