@@ -296,7 +296,7 @@ static void count_slaves(struct watch *w)
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	ride(w);
 	if (w->scanned && w->link_up)
-		ec_mailboxes_look(&w->m->bus, w->irq);
+		w->survey.exchange |= ec_mailboxes_look(&w->m->bus, w->irq);
 }
 
 /*

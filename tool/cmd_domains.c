@@ -89,6 +89,9 @@ static void age(const struct tool *t, const char *in, const struct ec_ioc_domain
 
 static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
 {
+	/* by wrong working counters of datagrams; an older module does not know that */
+	bool cancelled = dom->working_counter == dom->expected &&
+			 dom->wc_state == EC_STATUS_WC_INCOMPLETE;
 	const char *in = d->selected > 1 ? "  " : "";
 	u8 *data = NULL;
 	size_t size = 0;
@@ -101,10 +104,10 @@ static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain 
 	out_u("working_counter", dom->working_counter, ", WorkingCounter %u",
 	      dom->working_counter);
 	out_u("expected_working_counter", dom->expected, "/%u%s\n", dom->expected,
-	      dom->wc_state == EC_STATUS_WC_INCOMPLETE &&
-	      dom->working_counter == dom->expected ? " in sum, not of each datagram" : "");
-	out_str("working_counter_state", dom->wc_state == EC_STATUS_WC_COMPLETE ? "complete" :
-		dom->wc_state == EC_STATUS_WC_INCOMPLETE ? "incomplete" : "zero", NULL);
+	      cancelled ? " in sum, not of each datagram" : "");
+	out_str("working_counter_state", !dom->working_counter ? "zero" :
+		dom->working_counter != dom->expected || cancelled ? "incomplete" : "complete",
+		NULL);
 	age(t, in, dom);
 	layout(t, in, dom);
 	if (t->verbosity > 0) {

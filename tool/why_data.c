@@ -36,13 +36,15 @@ static bool all_in_op(struct why *w, const struct ec_ioc_domain *dom)
 	return true;
 }
 
-/* incomplete in each of some looks: one lost frame is no fault of a slave */
+/* of some looks each is incomplete: one lost frame is no fault of a slave */
 static bool incomplete(struct why *w, struct ec_ioc_domain *dom)
 {
 	for (int i = 0; i < LOOKS; i++) {
 		*dom = (struct ec_ioc_domain){ .index = dom->index };
-		if (dev_ioctl(w->d, EC_IOC_DOMAIN, dom) || !dom->expected ||
-		    dom->wc_state == EC_STATUS_WC_COMPLETE)
+		/* an older module does not know the state */
+		if (dev_ioctl(w->d, EC_IOC_DOMAIN, dom) ||
+		    (dom->working_counter == dom->expected &&
+		     dom->wc_state != EC_STATUS_WC_INCOMPLETE))
 			return false;
 		sleep_ms(i + 1 < LOOKS ? LOOK_MS : 0);
 	}

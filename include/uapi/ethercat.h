@@ -384,7 +384,6 @@ struct ec_ioc_domain {
 	__u32 datagram_bytes;	/* their headers and working counters included */
 	__u32 age;		/* sends since that of the data, while active */
 	__u32 wc_state;		/* EC_STATUS_WC_*, while active */
-	__u32 reserved;
 };
 
 struct ec_ioc_domain_fmmu {

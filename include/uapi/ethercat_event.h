@@ -57,7 +57,8 @@
 
 /*
  * domain, working counter, before, expected; changes before this one that have no record; 1: the
- * application takes the slaves to PREOP
+ * application takes the slaves to PREOP; 1: not that of each datagram is complete; 1: nor was it
+ * before. It is also a change when only that changes.
  */
 #define EC_EVENT_WKC		0x30
 #define EC_EVENT_OVERRUN	0x31	/* cycles skipped since the last record */

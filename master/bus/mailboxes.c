@@ -113,20 +113,23 @@ u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange)
  *
  * Context: The monitor thread. Waits for bus traffic when there is a message, and once a
  * second.
+ * Return: whether there was one, which is being fetched.
  */
-void ec_mailboxes_look(struct ec_bus *bus, u16 irq)
+bool ec_mailboxes_look(struct ec_bus *bus, u16 irq)
 {
 	bool shown = irq & EC_ECAT_EVENT_SM(1);
 	u64 now = ktime_get_ns();
-	bool all = now - bus->mailboxes_ns >= ALL_NS;
+	bool all = now - bus->mailboxes_ns >= ALL_NS, found;
 
 	/* the event may be that of an answer, or of a slave that shows it without end */
 	if (!all && (!shown || bus->vain_looks >= VAIN || any_in_use(bus)) &&
 	    now - bus->some_mailboxes_ns < SOME_NS)
-		return;
+		return false;
 	bus->some_mailboxes_ns = now;
 	if (all)
 		bus->mailboxes_ns = now;
 	/* a rider's reply is old: the message may have been fetched already */
-	bus->vain_looks = look(bus, shown || all, shown) || !shown ? 0 : bus->vain_looks + 1;
+	found = look(bus, shown || all, shown);
+	bus->vain_looks = found || !shown ? 0 : bus->vain_looks + 1;
+	return found;
 }

@@ -9,6 +9,6 @@ struct ec_bus;
 
 const u8 *ec_mailboxes_mask(bool mailbox);
 u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange);
-void ec_mailboxes_look(struct ec_bus *bus, u16 irq);
+bool ec_mailboxes_look(struct ec_bus *bus, u16 irq);
 
 #endif

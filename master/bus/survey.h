@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* All slaves at one moment, by one pass over them. */
+/* All slaves, by one pass over them. */
 #ifndef EC_MASTER_SURVEY_H
 #define EC_MASTER_SURVEY_H
 

@@ -106,7 +106,7 @@ static void nothing_back(struct ec_cycle *c)
 
 	for (i = 0; i < c->wanted->n_domains; i++) {
 		WRITE_ONCE(st->domains[i].working_counter, 0);
-		WRITE_ONCE(st->domains[i].wc_state, 0);
+		WRITE_ONCE(st->domains[i].wc_state, EC_STATUS_WC_ZERO);
 	}
 	WRITE_ONCE(st->dc_time_valid, 0);
 	WRITE_ONCE(st->dc_time64_valid, 0);

@@ -225,9 +225,8 @@ static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8
 		ret = ec_links_send(l, slot);
 	} else {
 		struct ec_link *link = &l->link[__ffs(l->carry)];
-		struct ecdev *dev = READ_ONCE(link->dev);
+		struct ecdev *dev = READ_ONCE(link->dev);	/* withdrawn at the most */
 
-		/* withdrawn at the most, not another one */
 		frame[7] |= link->side;
 		ret = dev ? ec_link_send_buf(link, dev, frame, ec_slot_padded(slot)) : -ENODEV;
 	}

@@ -92,7 +92,7 @@ void ec_mbox_reset(struct ec_mbox *mb)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether one does; it gets all that the slave sends. One that begins or changes its
- * queue just now may be missed.
+ * queue just now, or whose datagram is just back, may be missed.
  */
 bool ec_mbox_in_use(const struct ec_mbox *mb)
 {

@@ -86,7 +86,10 @@ struct ec_mbox {
 	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
 	bool strict;
 
-	/** @lock: protects the members up to @flags; box.c has the machine that they are */
+	/**
+	 * @lock: protects the members up to @flags; box.c has the machine that they are.
+	 * ec_mbox_in_use() reads some without it
+	 */
 	raw_spinlock_t lock;
 	/** @post: its datagram */
 	struct ec_post post;

@@ -30,7 +30,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_SDO, RSV2(ec_ioc_config_sdo), DATA(ec_ioc_config_sdo),
 	    .flags = EC_SDO_FLAG_COMPLETE),
 	CMD(CONFIG_IDN, RSV1(ec_ioc_config_idn), DATA(ec_ioc_config_idn)),
-	CMD(DOMAIN),
+	CMD(DOMAIN, .min = offsetof(struct ec_ioc_domain, age) + 4),
 	CMD(DOMAIN_FMMU, RSV1(ec_ioc_domain_fmmu)),
 	CMD(DOMAIN_DATA, RSV1(ec_ioc_domain_data), DATA(ec_ioc_domain_data)),
 	CMD(CONFIG_FLAG),
