@@ -68,6 +68,8 @@ static const struct {
 	  "check that the application of the slave runs: LEDs, 'ethercat diag'; or allow more time: ecrt_slave_config_state_timeout()" },
 	{ EC_CAUSE_FRAMES, false, "frames",
 	  "look for the cable with errors: 'ethercat crc'" },
+	{ EC_CAUSE_MEMORY, false, "memory",
+	  "free memory of this computer; the master tries again" },
 };
 
 static struct why_finding *by_table(struct why *w, const struct ec_cause *cause, const char *text)

@@ -176,7 +176,8 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 		if (ret && ret != -ENOENT)
 			break;
 	}
-	if (ret == -ECANCELED || ret == -EINTR)
+	/* then the monitor lets it begin again */
+	if (ret == -ECANCELED || ret == -EINTR || ret == -ENOMEM)
 		return;
 	s->pdos_unread = ret && ret != -ENOENT;
 	ec_slave_clear_warning(s);

@@ -390,6 +390,7 @@ static int read_new(struct scan *sc)
 {
 	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
 	unsigned int i, n = 0;
+	int ret;
 
 	if (!fresh)
 		return -ENOMEM;
@@ -410,7 +411,12 @@ static int read_new(struct scan *sc)
 			kvfree(fresh);
 			return -EAGAIN;
 		}
-		if (s->sii && ec_slave_parse_sii(s))
+		ret = s->sii ? ec_slave_parse_sii(s) : 0;
+		if (ret == -ENOMEM) {
+			kvfree(fresh);
+			return ret;
+		}
+		if (ret)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
 				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);

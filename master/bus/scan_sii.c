@@ -230,7 +230,7 @@ static void command(u8 *c, u32 word)
  * Take the EEPROM interface away from the PDI (0x0500). The address is set to one that is never
  * read, so that the data of a slave that misses the first command are not taken for word 0.
  */
-static void take_over(struct job *j, struct reader **rds, unsigned int n)
+static int take_over(struct job *j, struct reader **rds, unsigned int n)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	static const u8 nowhere[4] = { 0xff, 0xff, 0xff, 0xff };
@@ -244,7 +244,7 @@ static void take_over(struct job *j, struct reader **rds, unsigned int n)
 		*dg++ = EC_FPWR(station, EC_REG_EEP_OWNER, 1, zero);
 		*dg++ = EC_FPWR(station, EC_REG_EEP_ADDRESS, 4, nowhere);
 	}
-	ec_xfer(j->bus->links, j->dg, dg - j->dg);
+	return ec_xfer(j->bus->links, j->dg, dg - j->dg);
 }
 
 /* FPRD 0x0502 of @n readers */
@@ -439,7 +439,9 @@ static void run(struct job *j)
 	u32 word;
 
 	n = waiting(j, &word);
-	take_over(j, j->rds, n);
+	/* no fault of a slave: the scan begins anew */
+	if (take_over(j, j->rds, n) == -ENOMEM)
+		return;
 	for (; n && go_on(j->bus); n = waiting(j, &word)) {
 		step(j, j->rds, n, word);
 		interrupt_long(j);

@@ -155,7 +155,7 @@ static void check_sii(struct ec_slave *s)
  * @slave: slave with @sii, @sii_bytes set
  *
  * Context: Process. May sleep.
- * Return: 0, -ENOMEM, or -EBADMSG when the fixed area is missing.
+ * Return: 0, -ENOMEM; -EBADMSG when the fixed area is missing, -ENOSPC a PDO is too large.
  */
 int ec_slave_parse_sii(struct ec_slave *slave)
 {

@@ -190,11 +190,12 @@ bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
  * @slave: slave with EEPROM image
  *
  * Context: Process. May sleep.
- * Return: 0 or -ENOMEM.
+ * Return: 0, -ENOMEM, or -ENOSPC beyond 255 entries.
  */
 int ec_slave_read_pdos(struct ec_slave *slave)
 {
 	unsigned int t, i;
+	int ret;
 
 	for (t = 0; t < ARRAY_SIZE(types); t++) {
 		struct ec_sii_pdo_iter it;
@@ -218,8 +219,9 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 				entry.sub = e.sub;
 				entry.bits = e.bits;
 				entry.name = e.name;
-				if (ec_pdo_add_entry(p, &entry))
-					return -ENOMEM;
+				ret = ec_pdo_add_entry(p, &entry);
+				if (ret)
+					return ret;
 			}
 		}
 	}

@@ -44,6 +44,10 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SLOW, .state = state),
 			      "%s not reached in time, AL state %s", ec_al_state_name(state),
 			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
+	else if (ret == -ENOMEM)
+		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(MEMORY, .state = state),
+			      "no memory before %s; free memory of this computer, it is tried again",
+			      ec_al_state_name(state));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
 		 ret != -EOVERFLOW && ret != -ERANGE)	/* reported already */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(FRAMES, .state = state),
@@ -53,8 +57,8 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 }
 
 /*
- * Frames were lost, the device hung, or the slave needs more time than usual: worth another
- * try. A refusal is not, unless the slave missed the outputs.
+ * Frames were lost, the device hung, memory ran out, or the slave needs more time than usual:
+ * worth another try. A refusal is not, unless the slave missed the outputs.
  */
 static bool is_transient(const struct ec_slave *s, int ret)
 {
@@ -63,7 +67,7 @@ static bool is_transient(const struct ec_slave *s, int ret)
 	if (ret == -EPROTO)
 		return code == EC_AL_CODE_NO_OUTPUTS || code == EC_AL_CODE_SM_WATCHDOG;
 	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
-	       ret == -EBUSY || ret == -ENOTRECOVERABLE;
+	       ret == -EBUSY || ret == -ENOTRECOVERABLE || ret == -ENOMEM;
 }
 
 /*

@@ -231,6 +231,9 @@ static void cause(struct text *t, const u32 *a)
 	case EC_CAUSE_FRAMES:
 		format(t, "frames lost before %s", state);
 		break;
+	case EC_CAUSE_MEMORY:
+		format(t, "no memory before %s", state);
+		break;
 	case EC_CAUSE_REFUSED:
 		format(t, "%s refused, AL status code 0x%04x (%s)", state, a[3],
 		       ec_al_code_text((u16)a[3]));
