@@ -231,13 +231,13 @@ generic_cost() {
 # floors MS OWN WAIT: what the machine needs for a cycle of MS milliseconds in which nothing is
 # done. A longer one has more of the clock tick in it, and idles deeper.
 floors() {
-	local sleep wake above
+	local sleep wake
 
 	sleep=$((v[floor$1_sleep_own] + v[floor$1_sleep_rest] - $1 * v[baseline_per_ms]))
 	wake=$((v[floor$1_wake_own] + v[floor$1_wake_rest] - $1 * v[baseline_per_ms]))
 	echo "# floor of the same run: a thread that only sleeps $sleep, one that wakes another $wake"
-	above="application's cycle $(($2 - sleep)), kernel's with a waiting application $(($3 - wake))"
-	echo "# above it: $above"
+	echo "# above it: application's cycle $(($2 - sleep))"
+	echo "# above it: kernel's with a waiting application $(($3 - wake))"
 }
 
 # The same card without interrupts. What an application waits for is its own sleep or the
