@@ -103,8 +103,11 @@ static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel
 {
 	unsigned int next = (tx->next + 1) % INTEL_TX;
 
-	/* the one behind it, too: a tail that meets the head would mean an empty ring */
-	if (!ec_ring_tx_done(nic, &tx->desc[tx->next]) || !ec_ring_tx_done(nic, &tx->desc[next]))
+	/*
+	 * The one behind it, which is done later: a tail that meets the head would mean an empty
+	 * ring.
+	 */
+	if (!ec_ring_tx_done(nic, &tx->desc[next]))
 		return NULL;
 	return tx->buf + tx->next * INTEL_BUF;
 }

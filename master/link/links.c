@@ -26,6 +26,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	raw_spin_lock_init(&l->main_lock);
 	l->backup = backup;
 	l->carry = BIT(0);
+	l->only = &l->link[0];
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
 	for (i = 0; i < EC_MAX_LINKS; i++)

@@ -7,7 +7,6 @@
 #define EC_LINKS_H
 
 #include <linux/list.h>
-#include <linux/log2.h>
 #include <linux/spinlock.h>
 #include "ethercat.h"
 #include "../base/base.h"
@@ -57,6 +56,8 @@ struct ec_links {
 	struct ec_capture *capture;
 	/** @carry: mask of the links that carry frames, immutable */
 	u8 carry;
+	/** @only: the link that carries all of them, NULL: several; immutable */
+	struct ec_link *only;
 	/** @slots: frame slots */
 	struct ec_slots slots;
 	/** @access: bus access */
@@ -181,7 +182,7 @@ static inline u8 *ec_links_tx_get(const struct ec_links *l)
 {
 	struct ecdev *dev;
 
-	return is_power_of_2(l->carry) ? ec_link_tx_get(&l->link[__ffs(l->carry)], &dev) : NULL;
+	return l->only ? ec_link_tx_get(l->only, &dev) : NULL;
 }
 
 /* count a frame of the cycle: lost, late, or tx_errors */
@@ -224,11 +225,10 @@ static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8
 	if (frame == slot->frame) {
 		ret = ec_links_send(l, slot);
 	} else {
-		struct ec_link *link = &l->link[__ffs(l->carry)];
-		struct ecdev *dev = READ_ONCE(link->dev);	/* withdrawn at the most */
+		struct ecdev *dev = READ_ONCE(l->only->dev);	/* withdrawn at the most */
 
-		frame[7] |= link->side;
-		ret = dev ? ec_link_send_buf(link, dev, frame, ec_slot_padded(slot)) : -ENODEV;
+		frame[7] |= l->only->side;
+		ret = dev ? ec_link_send_buf(l->only, dev, frame, ec_slot_padded(slot)) : -ENODEV;
 	}
 	/* a reply that came nevertheless makes it a frame as if it was sent */
 	return ret && ec_slot_disarm(slot) ? ret : 0;
