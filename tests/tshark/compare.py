@@ -37,6 +37,9 @@ def tshark(pcap):
 
 
 def num(text, base=0):
+    """flags are words in newer versions"""
+    if text in ("True", "False"):
+        return int(text == "True")
     return int(text, base) if text else None
 
 

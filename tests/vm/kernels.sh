@@ -285,6 +285,24 @@ unpack() {	# unpack FLAVOUR
 root_packages="base-files base-passwd bash bats busybox-static coreutils dash diffutils findutils gawk grep hostname
 	iproute2 jq kmod libc-bin procps psmisc python3-minimal sed tcpdump util-linux xxd"
 
+# Our programs are linked with the C library of this system's cross compiler. Those of the packages
+# run with a newer one, too.
+newer_libc() {	# newer_libc ARCHITECTURE: its version, when it is not that of the packages
+	grep -q '^VERSION_CODENAME=bookworm' /etc/os-release ||
+		dpkg-query -W -f '${Version}' "libc6-$1-cross"
+}
+
+put_libc() {	# put_libc ARCHITECTURE ROOT
+	local from=$1 to=$1
+
+	case $1 in
+	i386)	from=i686 ;;
+	arm64)	from=aarch64 to=aarch64 ;;
+	esac
+	find "/usr/$from-linux-gnu/lib" -maxdepth 1 -name '*.so.[0-9]*' \
+		-exec cp -a -t "$2/usr/lib/$to-linux-gnu" {} +
+}
+
 unpack_root() {	# unpack_root ARCHITECTURE
 	local arch=$1 final=$cache/roots/$1 f d
 	command -v dpkg-deb >/dev/null || die "dpkg-deb is missing"
@@ -302,19 +320,27 @@ unpack_root() {	# unpack_root ARCHITECTURE
 	for f in "$tmp"/cache/archives/*.deb; do
 		dpkg-deb --fsys-tarfile "$f" | tar -x --keep-directory-symlink -C "$tmp/root"
 	done
+	[ -z "$(newer_libc "$arch")" ] || put_libc "$arch" "$tmp/root"
 	ln -sfn gawk "$tmp/root/usr/bin/awk"
 	[ -e "$tmp/root/usr/bin/sh" ] || ln -sn dash "$tmp/root/usr/bin/sh"
 	for f in group passwd; do cp "$tmp/root/usr/share/base-passwd/$f.master" "$tmp/root/etc/$f"; done
 	mkdir -p "$tmp/root"/{dev,proc,sys,run,tmp,root}
-	echo "$layout $root_packages" >"$tmp/root/.complete"
+	root_stamp "$arch" >"$tmp/root/.complete"
 	rm -rf "$final"
 	mv -T "$tmp/root" "$final"
 	rm -rf "$tmp"
 	tmp=
 }
 
+root_stamp() {	# root_stamp ARCHITECTURE
+	local libc
+
+	libc=$(newer_libc "$1")
+	echo "$layout $root_packages${libc:+ $libc}"
+}
+
 root_complete() {
-	[ "$(cat "$cache/roots/$1/.complete" 2>/dev/null || true)" = "$layout $root_packages" ]
+	[ "$(cat "$cache/roots/$1/.complete" 2>/dev/null || true)" = "$(root_stamp "$1")" ]
 }
 
 fetch_root() {
