@@ -412,11 +412,13 @@ static int read_new(struct scan *sc)
 			return -EAGAIN;
 		}
 		ret = s->sii ? ec_slave_parse_sii(s) : 0;
-		if (ret == -ENOMEM) {
-			kvfree(fresh);
-			return ret;
-		}
-		if (ret)
+		/* it is tried again; a large EEPROM of one slave must not hold up the others */
+		if (ret == -ENOMEM)
+			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
+				      EC_CAUSE(MEMORY, .state = EC_AL_PREOP),
+				      "no memory for the SII content (%zu bytes); free memory of this computer",
+				      s->sii_bytes);
+		else if (ret)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
 				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);

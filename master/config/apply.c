@@ -46,7 +46,7 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
 	else if (ret == -ENOMEM)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(MEMORY, .state = state),
-			      "no memory before %s; free memory of this computer, it is tried again",
+			      "no memory before %s, the master tries again; free memory of this computer",
 			      ec_al_state_name(state));
 	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
 		 ret != -EOVERFLOW && ret != -ERANGE)	/* reported already */

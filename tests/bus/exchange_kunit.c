@@ -202,7 +202,7 @@ static void exchange_age_of_lost(struct kunit *test)
 /* One working counter is too low, another too high by as much: their sum hides it. */
 static void exchange_sum_hides_no_wrong_counter(struct kunit *test)
 {
-	u32 told = bus_log_lines("in sum, not of each datagram");
+	u32 logged = bus_log_lines("in sum, not of each datagram");
 	struct ec_ioc_domain d = { };
 	struct cyc *c = in_op(test);
 
@@ -215,7 +215,7 @@ static void exchange_sum_hides_no_wrong_counter(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_DOMAIN, &d), 0);
 	KUNIT_EXPECT_EQ(test, d.working_counter, d.expected);
 	KUNIT_EXPECT_EQ(test, d.wc_state, EC_STATUS_WC_INCOMPLETE);
-	KUNIT_EXPECT_EQ(test, bus_log_lines("in sum, not of each datagram"), told + 1);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("in sum, not of each datagram"), logged + 1);
 	bus_fault(c->b, EC_SIM_FAULT_WKC, 0, 0, 0, 0);
 	bus_fault(c->b, EC_SIM_FAULT_WKC, N - 1, 0, 0, 0);
 	cyc_run(c, 2);

@@ -82,7 +82,7 @@ static void say(struct kunit *test, const char *what, u32 n)
 
 static void oom_scan(struct kunit *test)
 {
-	u32 told = bus_log_lines("check the slave") + bus_log_lines("content invalid");
+	u32 logged = bus_log_lines("check the slave") + bus_log_lines("content invalid");
 	struct bus *b = bus_up(test, line, N);
 	bool failed = true;
 	u32 n, scans;
@@ -99,7 +99,7 @@ static void oom_scan(struct kunit *test)
 	}
 	say(test, "a scan", n);
 	KUNIT_EXPECT_EQ_MSG(test, bus_log_lines("check the slave") +
-			    bus_log_lines("content invalid"), told, "no slave is blamed");
+			    bus_log_lines("content invalid"), logged, "no slave is reported as faulty");
 }
 
 /* an application, each step of which may fail */
