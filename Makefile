@@ -93,7 +93,9 @@ UTSRELEASE = $(KDIR)/include/generated/utsrelease.h
 KREL = $(or $(shell sed -n 's/.*UTS_RELEASE "\(.*\)"/\1/p' $(UTSRELEASE) 2>/dev/null), \
 	$(error $(NO_HEADERS)))
 MODINST = $(DESTDIR)/lib/modules/$(KREL)/updates
-UDEVDIR ?= $(PREFIX)/lib/udev/rules.d
+# systemd, udev and modprobe look nowhere else
+SYSLIB = $(if $(filter /usr,$(PREFIX)),/usr,/usr/local)/lib
+UDEVDIR ?= $(SYSLIB)/udev/rules.d
 
 install: install-modules install-lib install-tool install-operation install-udev
 
@@ -141,10 +143,11 @@ uninstall:
 		grep -qs "'ethercat device bind --boot'" $$f || continue; \
 		echo "rm -f $$f"; rm -f $$f; \
 	done
-	-@cd $(DESTDIR)$(PREFIX) 2>/dev/null && rmdir lib/udev/rules.d lib/udev \
-		share/bash-completion/completions share/bash-completion \
-		lib/modprobe.d lib/systemd/system lib/systemd share/ethercat \
-		lib/cmake/ethercat lib/cmake lib/pkgconfig 2>/dev/null || true
+	-@cd $(DESTDIR)$(SYSLIB) 2>/dev/null && rmdir udev/rules.d udev modprobe.d \
+		systemd/system systemd 2>/dev/null || true
+	-@cd $(DESTDIR)$(PREFIX) 2>/dev/null && rmdir share/bash-completion/completions \
+		share/bash-completion share/ethercat lib/cmake/ethercat lib/cmake \
+		lib/pkgconfig 2>/dev/null || true
 
 .PHONY: install install-modules install-lib install-tool install-operation install-udev uninstall
 

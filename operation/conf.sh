@@ -34,8 +34,10 @@ is_number() { case $1 in ''|*[!0-9]*|0?*) return 1 ;; esac; }
 
 hex='[0-9a-f]'
 is_mac() {
+	case $1 in ff:ff:ff:ff:ff:ff) return 1 ;; esac
 	case $1 in $hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex) ;; *) return 1 ;; esac
 }
+is_any() { [ "$1" = ff:ff:ff:ff:ff:ff ]; }
 is_pci() { case $1 in $hex$hex$hex$hex:$hex$hex:$hex$hex.[0-7]) ;; *) return 1 ;; esac; }
 is_sim() { case $1 in sim[0-9]) ;; *) return 1 ;; esac; }
 is_interface() {

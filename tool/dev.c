@@ -36,7 +36,7 @@ static int open_error(struct dev *d, int err)
 	const char *hint = NULL;
 
 	if (err == ENOENT || err == ENXIO || err == ENODEV)
-		hint = "load the module (modprobe ec_master, or insmod ec_master.ko)";
+		hint = "start the masters: 'ethercatctl start', or 'modprobe ec_master main_devices=...' with the address of the card";
 	else if (err == EACCES || err == EPERM)
 		hint = "members of the group that owns the file may use it (see ls -l)";
 	return fail_full(err, hint, 0, "Failed to open %s", d->path);

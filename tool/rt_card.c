@@ -141,16 +141,31 @@ static bool ask(struct rt *r, const struct nic *n, const char *check, void *ques
 	return !ret;
 }
 
+/* Their 1 to 3 select a rate by load: at 100 Mbit/s up to 250 us between two interrupts. */
+static bool adapts(const struct nic *n, u32 usecs)
+{
+	static const char *const drivers[] = { "e1000", "e1000e", "igb", "igc" };
+
+	for (size_t i = 0; usecs && usecs <= 3 && i < ARRAY_SIZE(drivers); i++)
+		if (!strcmp(n->driver, drivers[i]))
+			return true;
+	return false;
+}
+
 static void check_coalescing(struct rt *r, const struct nic *n)
 {
 	struct ethtool_coalesce c = { .cmd = ETHTOOL_GCOALESCE };
 	char fix[96];
 
-	attr_path(fix, sizeof(fix), "ethtool -C %s rx-usecs 0 tx-usecs 0", n->name);
+	attr_path(fix, sizeof(fix), "ethtool -C %s rx-usecs 0", n->name);
 	if (!ask(r, n, "coalescing", &c))
 		return;
-	/* 1 is off for some drivers */
-	if (c.rx_coalesce_usecs > 1 || c.use_adaptive_rx_coalesce)
+	/* 1 is off for other drivers */
+	if (adapts(n, c.rx_coalesce_usecs))
+		rt_find(r, "coalescing", RT_ERROR, fix,
+			"%s: received frames wait by load (rx-usecs %u), up to 250 us", n->name,
+			c.rx_coalesce_usecs);
+	else if (c.rx_coalesce_usecs > 1 || c.use_adaptive_rx_coalesce)
 		rt_find(r, "coalescing", RT_ERROR, fix, "%s: received frames wait %u us%s", n->name,
 			c.rx_coalesce_usecs, c.use_adaptive_rx_coalesce ? ", adaptive" : "");
 	else
@@ -204,14 +219,16 @@ static void check_power(struct rt *r, const struct nic *n)
 
 static void check_card(struct rt *r, const struct nic *n)
 {
-	char fix[96];
+	char fix[128];
 
 	if (!strcmp(n->driver, NIC_NATIVE)) {
 		rt_find(r, "card", RT_OK, NULL, "%s: %s with the native driver, no interrupt",
 			n->by, n->pci);
 		return;
 	}
-	attr_path(fix, sizeof(fix), "ethercat device bind %s", n->name);
+	attr_path(fix, sizeof(fix),
+		  "DEVICE_MODULES=\"%s\" in /etc/ethercat.conf, then 'ethercatctl restart'",
+		  n->driver);
 	if (*n->why_not)
 		rt_find(r, "card", RT_OK, NULL, "%s: %s with the driver %s (native: %s)", n->by,
 			n->name, n->driver, n->why_not);

@@ -219,7 +219,7 @@ static void no_alias(struct why *w, struct why_config *c)
 		snprintf(hint, sizeof(hint), "; %s is such a device, alias %u",
 			 why_slave_name(w, s->position, name, sizeof(name)), s->alias);
 	why_add(w, "no_alias",
-		"set the alias in the EEPROM of the slave, or use the ring position",
+		"use the ring position, or set the alias with the tool of the manufacturer (this version writes no EEPROM)",
 		"no slave has alias %u%s", c->c.alias, hint)->config = (int)(c - w->configs);
 	why_explain(w, c);
 }

@@ -7,18 +7,22 @@
 
 #define CODE_WATCHDOG	0x001b
 
+/* this version writes no EEPROM */
+#define EEPROM_REMEDY \
+	"repair the EEPROM with the tool of the manufacturer, or replace the slave; its content: 'ethercat sii_read -v'"
+
 /* what to do about an AL status code; others have a general remedy */
 static const struct {
 	u16 code;
 	const char *remedy;
 } al_remedies[] = {
 	{ 0x0014, "load the firmware of the slave: 'ethercat firmware'" },
-	{ 0x0016, "write a matching image to the EEPROM: its mailbox is not that of the slave" },
+	{ 0x0016, "power-cycle the slave; if it stays, its EEPROM belongs to another slave: compare 'ethercat sii_read -v' with the manual, ask the manufacturer" },
 	{ 0x0019, "let the application send outputs before the slave is in OP" },
 	{ 0x001b, "let the application send in each cycle, or lengthen the watchdog: ecrt_slave_config_watchdog()" },
 	{ 0x001d, "compare the outputs that are configured with those of the slave: 'ethercat config -v', 'ethercat pdos'" },
 	{ 0x001e, "compare the inputs that are configured with those of the slave: 'ethercat config -v', 'ethercat pdos'" },
-	{ 0x001f, "lengthen the watchdog: ecrt_slave_config_watchdog()" },
+	{ 0x001f, "correct the watchdog, or leave that of the slave: ecrt_slave_config_watchdog()" },
 	{ 0x0024, "map inputs that the slave has: 'ethercat pdos'" },
 	{ 0x0025, "map outputs that the slave has: 'ethercat pdos'" },
 	{ 0x002c, "check AssignActivate and cycle times against the ESI: ecrt_slave_config_dc()" },
@@ -51,7 +55,7 @@ static const struct {
 	{ EC_CAUSE_REGISTERS, false, "no_reply",
 	  "check the cables of the slave; power-cycle or replace it" },
 	{ EC_CAUSE_EEPROM, false, "eeprom",
-	  "write a valid image to the EEPROM of the slave; compare: 'ethercat sii_read -v'" },
+	  EEPROM_REMEDY },
 	{ EC_CAUSE_EEPROM_PART, true, "eeprom_reading",
 	  "wait until the EEPROM has been read" },
 	{ EC_CAUSE_IDN, false, "idn",
@@ -113,7 +117,7 @@ static struct why_finding *pdo(struct why *w, const struct why_config *c,
 	if (c)
 		why_pdo_lists(w, c, cause->sm, lists, sizeof(lists));
 	f = why_add(w, "pdo",
-		    "configure the PDOs that the slave has ('ethercat cstruct' writes them), or set flag AcceptOtherPdos",
+		    "configure the PDOs that the slave has ('ethercat cstruct' writes them), or set flag AcceptOtherPdos, but only if its manual says that these are the same objects at the same offsets",
 		    "%.220s; %s", text, lists);
 	f->code = cause->code;
 	return f;
@@ -226,8 +230,7 @@ static void warnings(struct why *w, const struct ec_ioc_slave *s)
 	if (!s->warning[0] || s->error)
 		return;
 	if (s->cause.kind == EC_CAUSE_EEPROM)
-		f = why_add(w, "eeprom", "write a valid image to the EEPROM of the slave", "%s",
-			    s->warning);
+		f = why_add(w, "eeprom", EEPROM_REMEDY, "%s", s->warning);
 	else if (s->differs)
 		f = why_add(w, "revision",
 			    "connect a slave of that revision, or correct flag ExpectedRevision",

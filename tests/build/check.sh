@@ -197,8 +197,8 @@ expected() {
 	./lib/modules/$release/updates/ethercat/master/ec_master.ko
 	.$prefix/bin/ethercat
 	.$prefix/bin/ethercat-sim
-	.$prefix/lib/modprobe.d/ethercat.conf
-	.$prefix/lib/systemd/system/ethercat.service
+	./usr/local/lib/modprobe.d/ethercat.conf
+	./usr/local/lib/systemd/system/ethercat.service
 	.$prefix/sbin/ethercatctl
 	.$prefix/share/ethercat/conf.sh
 	.$prefix/share/man/man8/ethercat-sim.8
@@ -212,7 +212,7 @@ expected() {
 	.$prefix/lib/cmake/ethercat/ethercat-config-version.cmake
 	.$prefix/lib/cmake/ethercat/ethercat-config.cmake
 	.$prefix/lib/pkgconfig/libethercat.pc
-	.$prefix/lib/udev/rules.d/60-ethercat.rules
+	./usr/local/lib/udev/rules.d/60-ethercat.rules
 	.$prefix/share/bash-completion/completions/ethercat
 	.$prefix/share/man/man8/ethercat.8
 	END
@@ -309,7 +309,8 @@ t "a kernel application against what was installed" kernel_app_builds
 # but for folders that every system has
 nothing_left() {
 	[ -z "$(installed)" ] || { installed; return 1; }
-	[ -z "$(cd "$root" && find . -type d | grep -vE "^\.(/lib(/modules(/$release)?)?|/opt)?$" |
+	[ -z "$(cd "$root" && find . -type d |
+		grep -vE "^\.(/lib(/modules(/$release)?)?|/opt|/usr(/local(/lib)?)?)?$" |
 		grep -vE "^\.$prefix(/bin|/lib|/include|/share(/man(/man8)?)?)?$" | tee /dev/stderr)" ]
 }
 
@@ -329,7 +330,8 @@ lib_make() { make -s -C lib O="$tmp/lib" CFLAGS="$flags" prefix="$tmp/here" "$@"
 ldconfig_runs() {	# HOW OFTEN MAKE-ARGUMENTS
 	mkdir -p "$tmp/fake" &&
 		printf '#!/bin/sh\necho >>"%s"\n' "$tmp/ldconfig.log" >"$tmp/fake/ldconfig" &&
-		chmod +x "$tmp/fake/ldconfig" && : >"$tmp/ldconfig.log" &&
+		printf '#!/bin/sh\n' >"$tmp/fake/systemctl" && chmod +x "$tmp"/fake/* &&
+		: >"$tmp/ldconfig.log" &&
 		PATH=$tmp/fake:$PATH lib_make "${@:2}" && [ "$(wc -l <"$tmp/ldconfig.log")" = "$1" ]
 }
 t "installing the library refreshes the linker's cache" ldconfig_runs 1 install
@@ -349,7 +351,9 @@ old_removed() {
 				"$old/$d"/lib/{pkgconfig/libethercat.pc,libethercat.{a,so,so.1}} ||
 			return 1
 	done
-	mkdir -p "$old/etc/udev/rules.d" && touch "$old/etc/udev/rules.d/99-EtherCAT.rules" &&
+	mkdir -p "$old"/etc/{init.d,udev/rules.d,systemd/system/ethercat.service.d} &&
+	touch "$old"/etc/udev/rules.d/99-{EtherCAT,ethercat}.rules "$old/etc/init.d/ethercat" \
+		"$old"/etc/systemd/system/ethercat.service{,.d/x.conf} &&
 	tests/build/commands.py --block Documentation/coming-from-igh.rst \
 		'for d in /usr/local /usr/local/etherlab /opt/etherlab; do' >"$tmp/old.sh" &&
 		sed -i "s| /| $old/|g" "$tmp/old.sh" && : >"$tmp/ldconfig.log" &&

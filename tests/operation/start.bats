@@ -19,7 +19,7 @@ setup() {
 	root=$BATS_TEST_TMPDIR/root
 	mkdir -p "$root"/{bin,sbin,run,dev} "$root"/sys/{module,class/net} \
 		"$root"/sys/bus/pci/{devices,drivers/ec_intel}
-	sed "s,/\(sys\|run\|dev/E\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
+	sed "s,/\(sys\|run\|dev/E\|etc/mod\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
 	chmod +x "$root/sbin/ethercatctl"
 	cp "$here/conf.sh" "$root/sbin"
 	stub id 'echo 0'
@@ -206,4 +206,107 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 		ctl stop
 		rm -r "$root/sys/class/net/eth0" "$root/sys/bus/pci/devices/$PCI"
 	done
+}
+
+@test "ff:ff:ff:ff:ff:ff is the only free card, as its address" {
+	nic eth0 $NIC 0000:00:01.0 r8169
+	nic eth1 $LATE $PCI e1000e
+	nic docker0 02:42:00:00:00:01
+	conf 'MASTER0_DEVICE=FF:FF:FF:FF:FF:FF' 'DEVICE_MODULES="r8169"'
+	ctl start
+	[ "$status" = 0 ]
+	main_is $NIC
+	loaded_are 'ec_generic ec_master'
+	# the network of this computer has its address now
+	stub ip 'echo 2: eth0 inet 10.0.0.1'
+	ctl start
+	[ "$status" = 0 ]
+	[[ ${lines[0]} == "ethercatctl: warning: eth0 has an IP address; no other program can"* ]]
+	ctl stop
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ conf:1:.*"no card is free (with one of the drivers r8169" ]]
+	loaded_are '*'
+}
+
+@test "ff:ff:ff:ff:ff:ff gets the native driver that DEVICE_MODULES names, also at a second start" {
+	nic eth0 $NIC 0000:00:01.0 r8169
+	nic eth1 $LATE $PCI e1000e
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff' 'DEVICE_MODULES="e1000e generic"'
+	ctl start
+	[ "$status" = 0 ]
+	main_is $LATE
+	loaded_are 'ec_intel ec_master'
+	ctl start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: ec_master is already loaded" ]
+	loaded_are 'ec_intel ec_master'
+}
+
+@test "ff:ff:ff:ff:ff:ff that may be several cards is refused, unless UPDOWN_INTERFACES names one" {
+	nic eth0 $NIC 0000:00:01.0 r8169
+	nic eth1 $LATE $PCI e1000e
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff'
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ conf:1:.*"may be each of: eth0 eth1; write the MAC" ]]
+	loaded_are '*'
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff' 'UPDOWN_INTERFACES=eth1'
+	ctl start
+	[ "$status" = 0 ]
+	main_is $LATE
+	ctl stop
+	# a card that another master has, a port of a bridge
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff' 'MASTER1_DEVICE=eth0'
+	ctl start
+	[ "$status" = 0 ]
+	main_is "$LATE,eth0"
+	ctl stop
+	touch "$root/sys/class/net/eth0/master"
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff'
+	ctl start
+	[ "$status" = 0 ]
+	main_is $LATE
+}
+
+@test "a card that a running master has already stays with its driver" {
+	nic eth0 $NIC $PCI e1000e
+	conf "MASTER0_DEVICE=$NIC" 'DEVICE_MODULES=e1000e'
+	modprobe ec_master main_devices=$NIC
+	modprobe ec_generic
+	stub ethercat '[ "$1" != device ] || touch $root/bound' '[ "$1" = master ] || exit 0' \
+		"echo '  Main: $NIC (attached)'"
+	ctl start
+	[ "$status" = 0 ]
+	[ ! -e "$root/bound" ]
+	loaded_are 'ec_generic ec_master'
+}
+
+@test "a start after a refused stop fails once, as systemctl restart makes it" {
+	nic eth0 $NIC
+	conf 'MASTER0_DEVICE=eth0'
+	ctl start
+	[ "$status" = 0 ]
+	stub rmmod 'echo "rmmod: ERROR: Module $1 is in use"' 'exit 1'
+	ctl stop
+	[ "$status" = 1 ]
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ "the masters run as before, since the last stop was refused" ]]
+	ctl start
+	[ "$status" = 0 ]
+}
+
+@test "other devices than those of a file in modprobe.d are refused with its name" {
+	nic eth0 $NIC
+	conf 'MASTER0_DEVICE=eth0'
+	modprobe ec_master main_devices=$LATE
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ "has eth0; run 'ethercatctl restart'" ]]
+	mkdir -p "$root/etc/modprobe.d"
+	echo "options ec_master main_devices=$LATE" >"$root/etc/modprobe.d/ethercat.conf"
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ "has eth0; remove 'main_devices' from $root/etc/modprobe.d, then run" ]]
 }

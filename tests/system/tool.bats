@@ -363,7 +363,7 @@ add() {
 
 @test "without the module the error names the remedy" {
 	stop
-	refused '/dev/EtherCAT0: No such file or directory: load the module' slaves
+	refused '/dev/EtherCAT0: No such file or directory: start the masters' slaves
 	refused 'modprobe ec_master' upload -p1 0x1018 1
 	ethercat version
 	ethercat help >/dev/null

@@ -191,8 +191,11 @@ all=23
 
 @test "rtcheck finds settings of the card that delay frames" {
 	FAKE_ETHTOOL="3 0 0" wrong error coalescing "eth0: received frames wait 3 us" \
-		"ethtool -C eth0 rx-usecs 0 tx-usecs 0"
+		"ethtool -C eth0 rx-usecs 0"
 	FAKE_ETHTOOL="1 0 0" ethercat rtcheck
+	ln -sfn "$FAKE_SYS/bus/pci/drivers/igb" "$FAKE_SYS/bus/pci/devices/0000:06:00.0/driver"
+	FAKE_ETHTOOL="1 0 0" wrong error coalescing "eth0: received frames wait by load (rx-usecs 1)" \
+		"ethtool -C eth0 rx-usecs 0"
 	FAKE_ETHTOOL="0 1 0" wrong warning energy "eth0: the link falls asleep" \
 		"ethtool --set-eee eth0 eee off"
 	FAKE_ETHTOOL="0 0 1" wrong warning "pause frames" "eth0: they" \
@@ -214,7 +217,8 @@ all=23
 
 	put "$d/vendor" 0x8086
 	put "$d/device" 0x10d3
-	wrong warning card "Master0 main: eth0" "ethercat device bind eth0"
+	wrong warning card "Master0 main: eth0" \
+		"DEVICE_MODULES=\"r8169\" in /etc/ethercat.conf, then 'ethercatctl restart'"
 	mkdir "$FAKE_SYS/bus/pci/drivers/ec_intel"
 	ln -sfn "$FAKE_SYS/bus/pci/drivers/ec_intel" "$d/driver"
 	run ethercat rtcheck
