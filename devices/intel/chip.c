@@ -30,9 +30,34 @@ static const struct intel_class c82574 = {
 	.bits = bits_82574,
 };
 
+#define ADVANCED \
+	.rx = 0xc000, .tx = 0xe000, .advanced = true, .queue_enable = true, .pcie = true, \
+	.phy_sync = true
+
 static const struct intel_class c82576 = {
-	.name = "82576", .rx = 0xc000, .tx = 0xe000, .advanced = true, .queue_enable = true,
-	.pcie = true,
+	.name = "82576", ADVANCED,
+};
+
+/* Images of the NVM may keep the link off until a driver comes. */
+static const struct intel_bits bits_82580[] = {
+	{ R_PHPM, PHPM_GO_LINKD, 0 },
+	{}
+};
+
+static const struct intel_class c82580 = {
+	.name = "82580", .bits = bits_82580, ADVANCED,
+};
+
+/* A link that falls asleep between two frames needs many microseconds to wake. */
+static const struct intel_bits bits_i350[] = {
+	{ R_PHPM, PHPM_GO_LINKD, 0 },
+	{ R_IPCNFG, IPCNFG_EEE, 0 },
+	{ R_EEER, EEER_ALL, 0 },
+	{}
+};
+
+static const struct intel_class ci350 = {
+	.name = "I350", .bits = bits_i350, ADVANCED,
 };
 
 static const struct intel_chip chips[] = {

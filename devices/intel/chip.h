@@ -37,6 +37,8 @@ struct intel_class {
 	const struct intel_bits *bits;
 	/** @phy_owner: software takes the MDIO interface before it uses it (EXTCNF_CTRL) */
 	bool phy_owner;
+	/** @phy_sync: software shares the PHY with firmware by a semaphore (SW_FW_SYNC) */
+	bool phy_sync;
 };
 
 /**

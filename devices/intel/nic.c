@@ -5,12 +5,11 @@
 #include <linux/iopoll.h>
 #include "master/wire/compat.h"
 #include "nic.h"
+#include "phy.h"
 #include "regs.h"
 
 #define MASTER_US	80000	/* until pending requests are done (82574, 5.2.3.1: 80 ms) */
 #define RESET_US	20000
-#define MDIC_US		2000
-#define PHY_TRIES	10	/* to get the MDIO interface from the hardware */
 
 static void mask_interrupts(const struct intel_nic *nic)
 {
@@ -31,6 +30,8 @@ void ec_nic_quiet(struct intel_nic *nic)
 	u32 status;
 
 	mask_interrupts(nic);
+	if (nic->class->pcie)
+		ec_nic_write(nic, R_CTRL_EXT, ec_nic_read(nic, R_CTRL_EXT) & ~CTRL_EXT_DRV_LOAD);
 	ec_nic_write(nic, R_RCTL, 0);
 	ec_nic_write(nic, R_TCTL, TCTL_PSP);
 	ec_nic_read(nic, R_STATUS);
@@ -61,7 +62,7 @@ static void set_mac(const struct intel_nic *nic)
  *
  * Context: Process. May sleep.
  * Return: 0, -ENODEV when it does not answer, -EIO when it does not end its reset,
- * -EADDRNOTAVAIL without a valid MAC address.
+ * -EMEDIUMTYPE when its NVM selects fibre or SGMII, -EADDRNOTAVAIL without a valid MAC address.
  */
 int ec_nic_reset(struct intel_nic *nic)
 {
@@ -80,6 +81,8 @@ int ec_nic_reset(struct intel_nic *nic)
 	if (readl_poll_timeout(nic->regs + R_CTRL, ctrl, !(ctrl & CTRL_RST), 1000, RESET_US))
 		return -EIO;
 	mask_interrupts(nic);
+	if (nic->class->advanced && ec_nic_read(nic, R_CTRL_EXT) & CTRL_EXT_LINK_MODE)
+		return -EMEDIUMTYPE;
 	for (b = nic->class->bits; b && (b->clear | b->set); b++)
 		ec_nic_write(nic, b->reg, (ec_nic_read(nic, b->reg) & ~b->clear) | b->set);
 	if (!is_valid_ether_addr(nic->mac))
@@ -96,79 +99,34 @@ int ec_nic_reset(struct intel_nic *nic)
 	return 0;
 }
 
-static int mdic(const struct intel_nic *nic, u32 command)
-{
-	u32 v;
-
-	ec_nic_write(nic, R_MDIC, command | MDIC_PHY_1);
-	if (readl_poll_timeout(nic->regs + R_MDIC, v, v & MDIC_READY, 50, MDIC_US))
-		return -ETIMEDOUT;
-	return v & MDIC_ERROR ? -EIO : v & 0xffff;
-}
-
-static bool own_phy(const struct intel_nic *nic)
-{
-	unsigned int i;
-
-	if (!nic->class->phy_owner)
-		return true;
-	for (i = 0; i < PHY_TRIES; i++) {
-		ec_nic_write(nic, R_EXTCNF_CTRL,
-			     ec_nic_read(nic, R_EXTCNF_CTRL) | EXTCNF_MDIO_OWNER);
-		/* the bit stays clear while the hardware owns it */
-		if (ec_nic_read(nic, R_EXTCNF_CTRL) & EXTCNF_MDIO_OWNER)
-			return true;
-		usleep_range(1000, 2000);
-	}
-	return false;
-}
-
-static void leave_phy(const struct intel_nic *nic)
-{
-	if (nic->class->phy_owner)
-		ec_nic_write(nic, R_EXTCNF_CTRL,
-			     ec_nic_read(nic, R_EXTCNF_CTRL) & ~EXTCNF_MDIO_OWNER);
-}
-
-/*
- * The stock driver switches the PHY off with its interface, and some chips do not negotiate by
- * themselves after a reset. A link that is up stays: a new negotiation takes seconds.
- */
-static void wake_phy(const struct intel_nic *nic)
-{
-	int bmcr;
-
-	if (!own_phy(nic))
-		return;
-	bmcr = mdic(nic, MDIC_READ | PHY_BMCR << MDIC_REG);
-	if (bmcr >= 0 && (bmcr & BMCR_POWER_DOWN || !(ec_nic_read(nic, R_STATUS) & STATUS_LU))) {
-		bmcr &= ~BMCR_POWER_DOWN;
-		mdic(nic, MDIC_WRITE | PHY_BMCR << MDIC_REG | bmcr | BMCR_AUTONEG);
-	}
-	leave_phy(nic);
-}
-
 /**
  * ec_nic_connect() - bring the link up and let frames pass, once the rings are set
  * @nic: controller after ec_nic_reset()
  *
  * Context: Process. May sleep.
+ * Return: as ec_phy_wake(); frames pass all the same if there is a link.
  */
-void ec_nic_connect(struct intel_nic *nic)
+int ec_nic_connect(struct intel_nic *nic)
 {
 	u32 ctrl = ec_nic_read(nic, R_CTRL);
+	int ret;
 
-	ctrl &= ~(CTRL_FORCE_SPEED | CTRL_FORCE_DUPLEX | CTRL_GIO_DISABLE);
+	/* a pause frame would stop the cycle for up to 335 ms */
+	ctrl &= ~(CTRL_FORCE_SPEED | CTRL_FORCE_DUPLEX | CTRL_GIO_DISABLE | CTRL_PAUSE);
 	/* the speed is the one the PHY reports, as with the drivers of the system */
 	ctrl |= CTRL_SLU | CTRL_FD;
 	ec_nic_write(nic, R_CTRL, ctrl);
+	/* management firmware leaves the link to a driver that is there */
+	if (nic->class->pcie)
+		ec_nic_write(nic, R_CTRL_EXT, ec_nic_read(nic, R_CTRL_EXT) | CTRL_EXT_DRV_LOAD);
 	/* after its reset the chip sets its PHY up */
 	usleep_range(25000, 26000);
-	wake_phy(nic);
+	ret = ec_phy_wake(nic, true);
 	ec_nic_write(nic, R_TIPG, TIPG_COPPER);
 	ec_nic_write(nic, R_TCTL, TCTL_EN | TCTL_PSP | TCTL_COLLISIONS);
 	/* EtherCAT slaves change the source address only, but other frames are counted too */
 	ec_nic_write(nic, R_RCTL, RCTL_EN | RCTL_UPE | RCTL_MPE | RCTL_BAM | RCTL_SECRC);
+	return ret;
 }
 
 /**
@@ -183,10 +141,7 @@ void ec_nic_look(struct intel_nic *nic)
 {
 	u32 status = ec_nic_read(nic, R_STATUS);
 
-	if (status == ~0u) {
-		WRITE_ONCE(nic->gone, true);
-		WRITE_ONCE(nic->up, false);
-		return;
-	}
-	WRITE_ONCE(nic->up, !!(status & STATUS_LU));
+	nic->gone = status == ~0u;
+	nic->slow = !(status & STATUS_FD) || !(status & STATUS_SPEED);
+	WRITE_ONCE(nic->up, !nic->gone && status & STATUS_LU);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Reset, PHY, link and counters of an Intel network controller. */
+/* Reset and link of an Intel network controller. */
 #ifndef EC_INTEL_NIC_H
 #define EC_INTEL_NIC_H
 
@@ -19,8 +19,10 @@ struct intel_nic {
 	u8 mac[ETH_ALEN];
 	/** @up: link state when it was last read */
 	bool up;
-	/** @gone: it answers no longer: unplugged */
+	/** @gone: it does not answer: unplugged */
 	bool gone;
+	/** @slow: half duplex or 10 Mbit/s, when @up */
+	bool slow;
 };
 
 static inline u32 ec_nic_read(const struct intel_nic *nic, u32 reg)
@@ -35,7 +37,7 @@ static inline void ec_nic_write(const struct intel_nic *nic, u32 reg, u32 value)
 
 int ec_nic_reset(struct intel_nic *nic);
 void ec_nic_quiet(struct intel_nic *nic);
-void ec_nic_connect(struct intel_nic *nic);
+int ec_nic_connect(struct intel_nic *nic);
 void ec_nic_look(struct intel_nic *nic);
 
 #endif

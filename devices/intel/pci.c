@@ -2,304 +2,13 @@
 /*
  * Native device: an Intel network controller that the master has for itself, without interrupts.
  * The driver binds to devices whose driver_override names it, and to no other: a network card
- * in use by the system is never taken. While no cycle polls the ring a timer does, and only
- * while frames are on their way.
+ * in use by the system is never taken.
  */
-#include <linux/hrtimer.h>
 #include <linux/module.h>
-#include <linux/mutex.h>
 #include <linux/pci.h>
-#include "devices/ecdev.h"
-#include "master/wire/compat.h"
-#include "master/wire/frame.h"
-#include "nic.h"
-#include "ring.h"
+#include "card.h"
 
 #define NAME		"ec_intel"
-#define IDLE_NS		(50 * NSEC_PER_USEC)	/* between two polls without a cycle */
-#define OUT_NS		(20 * NSEC_PER_MSEC)	/* a frame that is on its way longer is lost */
-
-#define BUSY_POLL	0	/* a poll runs */
-#define BUSY_TIMER	1	/* the timer is started, or its function runs */
-
-/**
- * struct intel - one network controller
- */
-struct intel {
-	/** @pdev: PCI function */
-	struct pci_dev *pdev;
-	/** @chip: what it is */
-	const struct intel_chip *chip;
-	/** @nic: its registers */
-	struct intel_nic nic;
-	/** @tx: transmit ring; one sender at a time */
-	struct intel_ring tx;
-	/** @rx: receive ring; only in a poll */
-	struct intel_ring rx;
-	/** @dev: receives the frames; set before the first one can arrive */
-	struct ecdev *dev;
-	/** @lock: while the rings start, run or end they are those of one caller */
-	struct mutex lock;
-	/** @idle: polls while no cycle does */
-	struct hrtimer idle;
-	/** @sent_ns: when the last frame was sent without a cycle (ktime) */
-	atomic64_t sent_ns;
-	/** @busy: bits BUSY_* */
-	unsigned long busy;
-	/** @cycle: the cycle polls */
-	bool cycle;
-	/** @started: a master uses it */
-	bool started;
-	/** @ready: the rings run */
-	bool ready;
-	/** @shut: the computer goes down: they never run again */
-	bool shut;
-};
-
-/* In an RCU read section. */
-static void poll(struct intel *n)
-{
-	const u8 *frame;
-	size_t len;
-
-	/* the cycle begins while the timer's poll has not ended yet, or the reverse */
-	if (!READ_ONCE(n->ready) || test_and_set_bit_lock(BUSY_POLL, &n->busy))
-		return;
-	/* those of the poll before; of one poll there are at most as many as buffers */
-	ec_ring_rx_put(&n->nic, &n->rx);
-	while ((frame = ec_ring_rx_get(&n->nic, &n->rx, &len))) {
-		if (len >= EC_ETH_HDR && get_unaligned_be16(frame + 12) == EC_ETHERTYPE)
-			ecdev_receive(n->dev, frame + ETH_ALEN, frame + EC_ETH_HDR,
-				      len - EC_ETH_HDR);
-		else if (len)
-			ecdev_foreign(n->dev);
-	}
-	clear_bit_unlock(BUSY_POLL, &n->busy);
-}
-
-/* Are there frames in flight that no cycle polls for? */
-static bool waits(struct intel *n)
-{
-	return READ_ONCE(n->ready) && !READ_ONCE(n->cycle) &&
-	       ktime_get_ns() - atomic64_read(&n->sent_ns) <= OUT_NS;
-}
-
-static enum hrtimer_restart poll_idle(struct hrtimer *timer)
-{
-	struct intel *n = container_of(timer, struct intel, idle);
-
-	rcu_read_lock();
-	if (!READ_ONCE(n->cycle))
-		poll(n);
-	rcu_read_unlock();
-	if (!waits(n)) {
-		clear_bit(BUSY_TIMER, &n->busy);
-		smp_mb__after_atomic();	/* the bit before the time; pairs with intel_tx_flush() */
-		/* a sender that comes now starts the timer again, unless this function continues */
-		if (!waits(n) || test_and_set_bit(BUSY_TIMER, &n->busy))
-			return HRTIMER_NORESTART;
-	}
-	hrtimer_forward_now(timer, ns_to_ktime(IDLE_NS));
-	return HRTIMER_RESTART;
-}
-
-static u8 *intel_tx_get(void *priv)
-{
-	struct intel *n = priv;
-
-	return READ_ONCE(n->ready) ? ec_ring_tx_get(&n->nic, &n->tx) : NULL;
-}
-
-static int intel_tx_send(void *priv, u8 *buf, size_t len)
-{
-	struct intel *n = priv;
-
-	int ret = -ENETDOWN;
-
-	rcu_read_lock();
-	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up)) {
-		ec_ring_tx_put(&n->nic, &n->tx, len);
-		ret = 0;
-	}
-	rcu_read_unlock();
-	return ret;
-}
-
-static void intel_tx_flush(void *priv)
-{
-	struct intel *n = priv;
-
-	bool sent;
-
-	rcu_read_lock();
-	sent = READ_ONCE(n->ready) && ec_ring_tx_flush(&n->nic, &n->tx);
-	rcu_read_unlock();
-	if (!sent || READ_ONCE(n->cycle))
-		return;
-	atomic64_set(&n->sent_ns, ktime_get_ns());
-	/* the time before the bit; pairs with poll_idle() */
-	if (!test_and_set_bit(BUSY_TIMER, &n->busy))
-		hrtimer_start(&n->idle, ns_to_ktime(IDLE_NS), HRTIMER_MODE_REL_SOFT);
-}
-
-static void intel_poll(void *priv)
-{
-	struct intel *n = priv;
-
-	poll(n);
-}
-
-/* no sender may come meanwhile */
-static void stop_timer(struct intel *n)
-{
-	hrtimer_cancel(&n->idle);
-	clear_bit(BUSY_TIMER, &n->busy);
-}
-
-static void intel_cycle(void *priv, bool on)
-{
-	struct intel *n = priv;
-
-	WRITE_ONCE(n->cycle, on);
-	if (on)
-		stop_timer(n);
-}
-
-static bool intel_link_up(void *priv)
-{
-	struct intel *n = priv;
-
-	return READ_ONCE(n->nic.up);
-}
-
-static int run(struct intel *n)
-{
-	int ret;
-
-	lockdep_assert_held(&n->lock);
-	if (n->shut)
-		return -ESHUTDOWN;
-	ret = ec_nic_reset(&n->nic);
-	if (!ret) {
-		/* without it no descriptor is fetched */
-		pci_set_master(n->pdev);
-		ret = ec_ring_start(&n->nic, &n->tx, &n->rx);
-	}
-	if (ret) {
-		pci_clear_master(n->pdev);
-		return ret;
-	}
-	ec_nic_connect(&n->nic);
-	n->nic.gone = false;
-	WRITE_ONCE(n->ready, true);
-	return 0;
-}
-
-/* No frame, no DMA, no caller in the rings: senders are stopped by the master. */
-static void quiesce_locked(struct intel *n)
-{
-	lockdep_assert_held(&n->lock);
-	if (!n->ready)
-		return;
-	WRITE_ONCE(n->nic.up, false);
-	WRITE_ONCE(n->ready, false);
-	/* a caller in the rings leaves */
-	synchronize_rcu();
-	stop_timer(n);
-	ec_nic_quiet(&n->nic);
-	pci_clear_master(n->pdev);
-}
-
-static void quiesce(struct intel *n)
-{
-	mutex_lock(&n->lock);
-	quiesce_locked(n);
-	mutex_unlock(&n->lock);
-}
-
-/* Frames in the ring of a lost link would leave when it returns: old outputs. */
-static void start_anew(struct intel *n)
-{
-	int ret;
-
-	quiesce_locked(n);
-	ret = run(n);
-	if (ret)
-		pci_err(n->pdev,
-			"does not start after a loss of the link (%pe); unbind and bind it\n",
-			ERR_PTR(ret));
-}
-
-static void intel_look(void *priv)
-{
-	struct intel *n = priv;
-	bool was_up, was_gone;
-
-	/* the rings start or end now: look next time */
-	if (!mutex_trylock(&n->lock))
-		return;
-	was_up = n->nic.up;
-	was_gone = n->nic.gone;
-	if (n->ready)
-		ec_nic_look(&n->nic);
-	if (n->nic.gone && !was_gone)
-		pci_warn(n->pdev, "does not answer: unplugged?\n");
-	else if (was_up && !n->nic.up)
-		start_anew(n);
-	mutex_unlock(&n->lock);
-}
-
-static int intel_start(void *priv, struct ecdev *dev)
-{
-	struct intel *n = priv;
-	int ret;
-
-	n->dev = dev;
-	mutex_lock(&n->lock);
-	ret = run(n);
-	n->started = !ret;
-	mutex_unlock(&n->lock);
-	return ret;
-}
-
-static void intel_stop(void *priv)
-{
-	struct intel *n = priv;
-
-	mutex_lock(&n->lock);
-	quiesce_locked(n);
-	n->started = false;
-	mutex_unlock(&n->lock);
-}
-
-/* after a reset, an error of the bus, or a suspend; what has restored the state has used it up */
-static int run_again(struct intel *n)
-{
-	int ret = 0;
-
-	mutex_lock(&n->lock);
-	pci_save_state(n->pdev);
-	if (n->started)
-		ret = run(n);
-	mutex_unlock(&n->lock);
-	return ret;
-}
-
-static const struct ecdev_ops intel_ops = {
-	.kind = "native",
-	.atomic = true,
-	.burst = INTEL_TX - INTEL_TX / 4,
-	.start = intel_start,
-	.stop = intel_stop,
-	.tx_get = intel_tx_get,
-	.tx_send = intel_tx_send,
-	.tx_flush = intel_tx_flush,
-	.poll = intel_poll,
-	.keeps = true,
-	.cycle = intel_cycle,
-	.link_up = intel_link_up,
-	.look = intel_look,
-};
 
 static int check(struct pci_dev *pdev, const struct intel_chip *chip)
 {
@@ -312,6 +21,25 @@ static int check(struct pci_dev *pdev, const struct intel_chip *chip)
 	else
 		return 0;
 	return -ENODEV;
+}
+
+/*
+ * Leaving a power saving state takes longer than a frame. The kernel leaves the link to firmware
+ * that wants it so; the device comes before the port above it (PCIe, 5.4.1).
+ */
+static void keep_awake(struct pci_dev *pdev)
+{
+	struct pci_dev *port = pci_upstream_bridge(pdev);
+	u16 control = 0;
+
+	pci_disable_link_state(pdev, PCIE_LINK_STATE_L0S | PCIE_LINK_STATE_L1);
+	pcie_capability_read_word(pdev, PCI_EXP_LNKCTL, &control);
+	if (!(control & PCI_EXP_LNKCTL_ASPMC))
+		return;
+	pci_info(pdev, "power saving of its PCIe link is off\n");
+	pcie_capability_clear_word(pdev, PCI_EXP_LNKCTL, PCI_EXP_LNKCTL_ASPMC);
+	if (port)
+		pcie_capability_clear_word(port, PCI_EXP_LNKCTL, PCI_EXP_LNKCTL_ASPMC);
 }
 
 static int map(struct intel *n)
@@ -336,8 +64,7 @@ static int map(struct intel *n)
 	ret = n->chip->class->pcie ? dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(64)) : -EIO;
 	if (ret)
 		ret = dma_set_mask_and_coherent(&pdev->dev, DMA_BIT_MASK(32));
-	/* leaving a power saving state takes longer than a frame */
-	pci_disable_link_state(pdev, PCIE_LINK_STATE_L0S | PCIE_LINK_STATE_L1);
+	keep_awake(pdev);
 	pci_intx(pdev, 0);
 	return ret ?: ec_ring_alloc(&pdev->dev, &n->tx, &n->rx);
 }
@@ -356,23 +83,23 @@ static int probe(struct pci_dev *pdev, const struct pci_device_id *id)
 		return -ENOMEM;
 	n->pdev = pdev;
 	n->chip = chip;
-	mutex_init(&n->lock);
-	hrtimer_init(&n->idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
-	n->idle.function = poll_idle;
+	ec_card_init(n);
 	ret = map(n);
 	if (ret)
 		return ret;
 	/* the address is known after it, and the controller is quiet until a master wants it */
 	ret = ec_nic_reset(&n->nic);
 	if (ret) {
-		pci_err(pdev, "cannot reset the controller (%pe)\n", ERR_PTR(ret));
+		pci_err(pdev, "%s (%pe)\n", ret == -EMEDIUMTYPE ?
+			"is set up for fibre or SGMII; use the generic device" :
+			"cannot reset the controller", ERR_PTR(ret));
 		return ret;
 	}
 	pci_set_drvdata(pdev, n);
 	pci_save_state(pdev);
 	pci_info(pdev, "%s (%s)%s, %pM\n", chip->name, chip->class->name,
 		 chip->tested ? "" : ", never tested", n->nic.mac);
-	dev = ecdev_offer(pci_name(pdev), n->nic.mac, &intel_ops, n);
+	dev = ecdev_offer(pci_name(pdev), n->nic.mac, &ec_card_ops, n);
 	if (IS_ERR(dev))
 		return PTR_ERR(dev);
 	n->dev = dev;
@@ -386,26 +113,20 @@ static void remove(struct pci_dev *pdev)
 	ecdev_withdraw(n->dev);
 }
 
-/* another kernel may start in this memory, so no command of a tool starts the rings again */
 static void shutdown(struct pci_dev *pdev)
 {
-	struct intel *n = pci_get_drvdata(pdev);
-
-	mutex_lock(&n->lock);
-	n->shut = true;
-	quiesce_locked(n);
-	mutex_unlock(&n->lock);
+	ec_card_shut(pci_get_drvdata(pdev));
 }
 
 static void reset_prepare(struct pci_dev *pdev)
 {
-	quiesce(pci_get_drvdata(pdev));
+	ec_card_quiesce(pci_get_drvdata(pdev));
 }
 
 static void reset_done(struct pci_dev *pdev)
 {
 	struct intel *n = pci_get_drvdata(pdev);
-	int ret = run_again(n);
+	int ret = ec_card_run_again(n);
 
 	if (ret)
 		pci_err(pdev, "does not start after a reset (%pe)\n", ERR_PTR(ret));
@@ -417,7 +138,7 @@ static void reset_done(struct pci_dev *pdev)
  */
 static pci_ers_result_t error_detected(struct pci_dev *pdev, pci_channel_state_t state)
 {
-	quiesce(pci_get_drvdata(pdev));
+	ec_card_quiesce(pci_get_drvdata(pdev));
 	switch (state) {
 	case pci_channel_io_normal:
 		return PCI_ERS_RESULT_CAN_RECOVER;
@@ -437,13 +158,13 @@ static pci_ers_result_t slot_reset(struct pci_dev *pdev)
 
 static int suspend(struct device *dev)
 {
-	quiesce(dev_get_drvdata(dev));
+	ec_card_quiesce(dev_get_drvdata(dev));
 	return 0;
 }
 
 static int resume(struct device *dev)
 {
-	return run_again(dev_get_drvdata(dev));
+	return ec_card_run_again(dev_get_drvdata(dev));
 }
 
 static DEFINE_SIMPLE_DEV_PM_OPS(pm_ops, suspend, resume);

@@ -12,10 +12,16 @@
 #define  CTRL_FORCE_SPEED	BIT(11)
 #define  CTRL_FORCE_DUPLEX	BIT(12)
 #define  CTRL_RST		BIT(26)
+#define  CTRL_PAUSE		(BIT(27) | BIT(28))	/* obey and send pause frames */
 #define R_STATUS	0x0008
+#define  STATUS_FD		BIT(0)
 #define  STATUS_LU		BIT(1)
+#define  STATUS_FUNCTION	GENMASK(3, 2)
+#define  STATUS_SPEED		GENMASK(7, 6)	/* 0: 10 Mbit/s */
 #define  STATUS_GIO_ENABLED	BIT(19)
 #define R_CTRL_EXT	0x0018
+#define  CTRL_EXT_LINK_MODE	GENMASK(23, 22)	/* advanced: 0 is copper */
+#define  CTRL_EXT_DRV_LOAD	BIT(28)
 #define R_MDIC		0x0020
 #define  MDIC_REG		16
 #define  MDIC_PHY_1		(1 << 21)
@@ -37,11 +43,20 @@
 #define  TCTL_COLLISIONS	(0x0f << 4 | 0x40 << 12)
 #define R_TIPG		0x0410
 #define  TIPG_COPPER		(8 | 8 << 10 | 6 << 20)
+#define R_PHPM		0x0e14
+#define  PHPM_GO_LINKD		BIT(5)
+#define R_EEER		0x0e30
+#define  EEER_ALL		GENMASK(18, 16)
+#define R_IPCNFG	0x0e38
+#define  IPCNFG_EEE		GENMASK(3, 2)
 #define R_EXTCNF_CTRL	0x0f00
 #define  EXTCNF_MDIO_OWNER	BIT(5)
 #define R_EIMC		0x1528
 #define R_TXDCTL	0x3828
 #define R_TARC0		0x3840
+#define R_CRCERRS	0x4000		/* counters: 0 after they are read */
+#define R_RXERRC	0x400c
+#define R_MPC		0x4010
 #define R_RFCTL		0x5008
 #define R_MTA		0x5200
 #define R_RAL0		0x5400
@@ -49,6 +64,11 @@
 #define  RAH_VALID		BIT(31)
 #define R_MRQC		0x5818
 #define R_GCR		0x5b00
+#define R_SWSM		0x5b50
+#define  SWSM_SMBI		BIT(0)		/* set by a read that finds it clear */
+#define  SWSM_SWESMBI		BIT(1)
+#define R_SW_FW_SYNC	0x5b5c
+#define  SYNC_FIRMWARE		16		/* its bits, beside those of the software */
 #define R_GCR2		0x5b64
 
 /* of a queue, behind the offsets of struct intel_class */

@@ -149,7 +149,7 @@ static inline bool ec_ring_tx_flush(const struct intel_nic *nic, struct intel_ri
 {
 	if (tx->tail == tx->next)
 		return false;
-	tx->tail = tx->next;
+	WRITE_ONCE(tx->tail, tx->next);
 	/* writel() orders the descriptors before it */
 	ec_nic_write(nic, nic->class->tx + Q_TAIL, tx->tail);
 	return true;

@@ -8,6 +8,8 @@
 #include <linux/etherdevice.h>
 #include <linux/prandom.h>
 #include <linux/workqueue.h>
+#include "devices/intel/health.h"
+#include "devices/intel/phy.h"
 #include "devices/intel/regs.h"
 #include "devices/intel/ring.h"
 #include "master/wire/compat.h"
@@ -15,6 +17,8 @@
 #define BAR		0x10000
 #define DESC		16
 #define FRAME_MAX	1514
+#define I82574		0x10d3
+#define I350		0x1521
 #define LOG		512	/* frames the card remembers */
 
 /* receive status and errors of both formats */
@@ -394,6 +398,7 @@ static int reset_that_ends(struct card *c, unsigned int ms)
 static void reset_refuses_card_that_does_not_work(struct kunit *test)
 {
 	static const u8 mac[] = { 0x52, 0x54, 0x00, 0x01, 0x02, 0x03 };
+	const u16 *id = test->param_value;
 	struct card *c = card(test);
 
 	/* it is absent */
@@ -414,15 +419,28 @@ static void reset_refuses_card_that_does_not_work(struct kunit *test)
 	set_reg(c, R_RCTL, ~0u);
 	set_reg(c, R_TCTL, ~0u);
 	set_reg(c, R_CTRL, BIT(29));
-	set_reg(c, 0x0018, BIT(23));
 	set_reg(c, 0x3840, BIT(30));
+	if (!c->nic.class->advanced)
+		set_reg(c, 0x0018, BIT(23));
+	/* the link stays off until a driver comes, and falls asleep */
+	set_reg(c, 0x0e14, ~0u);
+	set_reg(c, 0x0e30, ~0u);
+	set_reg(c, 0x0e38, ~0u);
 	KUNIT_EXPECT_EQ(test, reset_that_ends(c, 25), 0);
 	KUNIT_EXPECT_TRUE(test, ether_addr_equal(c->nic.mac, mac));
 	KUNIT_EXPECT_EQ(test, reg(c, R_IMC), ~0u);
 	KUNIT_EXPECT_EQ(test, reg(c, R_RAH0), get_unaligned_le16(mac + 4) | BIT(31));
 	KUNIT_EXPECT_EQ(test, reg(c, R_RCTL), 0u);
 	KUNIT_EXPECT_EQ(test, reg(c, R_TCTL) & TCTL_EN, 0u);
-	if (!c->nic.class->bits)
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0e14), *id == I350 ? ~BIT(5) : ~0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0e30), *id == I350 ? ~(7u << 16) : ~0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0e38), *id == I350 ? ~(3u << 2) : ~0u);
+	if (c->nic.class->advanced) {
+		/* SGMII */
+		set_reg(c, 0x0018, 2 << 22);
+		KUNIT_EXPECT_EQ(test, reset_that_ends(c, 25), -EMEDIUMTYPE);
+	}
+	if (*id != I82574)
 		return;
 	/* errata of the 82574, and reserved bits that have to be 1 */
 	KUNIT_EXPECT_EQ(test, reg(c, R_CTRL) & BIT(29), 0u);
@@ -433,8 +451,116 @@ static void reset_refuses_card_that_does_not_work(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, reg(c, 0x3840), 0x04000000u);
 }
 
+static void put_frames(struct kunit *test, struct card *c, unsigned int n)
+{
+	while (n--)
+		KUNIT_ASSERT_TRUE(test, put(c, 1, 60));
+	KUNIT_ASSERT_TRUE(test, flush(c));
+}
+
+/* A frame that does not leave while there is a link: the controller hangs. */
+static void hang_of_card_is_noticed(struct kunit *test)
+{
+	struct card *c = card(test);
+	struct intel_health h = { };
+	unsigned int i;
+	u64 now = 0;
+
+	c->nic.up = true;
+	/* it has nothing to send, and then it sends */
+	for (i = 0; i < 100; i++, now += 20 * NSEC_PER_MSEC) {
+		KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+		if (i >= 50) {
+			put_frames(test, c, 3);
+			KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+			card_sends(test, c, 3);
+		}
+	}
+	/* not without a link */
+	put_frames(test, c, 3);
+	c->nic.up = false;
+	for (i = 0; i < 100; i++, now += 20 * NSEC_PER_MSEC)
+		KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+	/* it sends two of three: the last one is what counts */
+	c->nic.up = true;
+	card_sends(test, c, 2);
+	for (i = 0; i < 25; i++, now += 20 * NSEC_PER_MSEC)
+		KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+	KUNIT_EXPECT_TRUE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+	KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+	/* few looks in a long time say nothing */
+	h.looks = 0;
+	KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now));
+	KUNIT_EXPECT_FALSE(test, ec_health_stuck(&h, &c->nic, &c->tx, now + NSEC_PER_SEC));
+}
+
+static void faults_of_frames_are_counted(struct kunit *test)
+{
+	struct card *c = card(test);
+	struct intel_health h = { };
+
+	KUNIT_EXPECT_FALSE(test, ec_health_count(&h, &c->nic));
+	set_reg(c, 0x4000, 2);
+	set_reg(c, 0x400c, 3);
+	set_reg(c, 0x4010, 4);
+	KUNIT_EXPECT_TRUE(test, ec_health_count(&h, &c->nic));
+	KUNIT_EXPECT_EQ(test, h.damaged, 5u);
+	KUNIT_EXPECT_EQ(test, h.missed, 4u);
+	KUNIT_EXPECT_FALSE(test, ec_health_second(&h, NSEC_PER_SEC - 1));
+	KUNIT_EXPECT_TRUE(test, ec_health_second(&h, NSEC_PER_SEC));
+	KUNIT_EXPECT_FALSE(test, ec_health_second(&h, NSEC_PER_SEC + 1));
+}
+
+static void link_is_read(struct kunit *test)
+{
+	static const struct {
+		u32 status;
+		bool up, gone, slow;
+	} v[] = {
+		{ 0, false, false, true }, { 0x43, true, false, false },
+		{ 0x83, true, false, false }, { 0x42, true, false, true },
+		{ 0x03, true, false, true }, { ~0u, false, true, false },
+		{ 0x43, true, false, false },
+	};
+	struct card *c = card(test);
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(v); i++) {
+		set_reg(c, 0x0008, v[i].status);
+		ec_nic_look(&c->nic);
+		KUNIT_EXPECT_EQ(test, c->nic.up, v[i].up);
+		KUNIT_EXPECT_EQ(test, c->nic.gone, v[i].gone);
+		KUNIT_EXPECT_EQ(test, c->nic.slow, v[i].slow);
+	}
+}
+
+/* The firmware has the PHY, then nobody; it does not answer here. No pause frames either way. */
+static void phy_is_shared_with_firmware(struct kunit *test)
+{
+	struct card *c = card(test);
+	const struct intel_class *class = c->nic.class;
+
+	set_reg(c, 0x0000, 3 << 27);
+	set_reg(c, 0x0008, 1 << 2);	/* the second function */
+	set_reg(c, 0x5b5c, BIT(2) << 16);
+	KUNIT_EXPECT_EQ(test, ec_nic_connect(&c->nic), class->phy_sync ? -EBUSY : -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x5b5c), BIT(2) << 16);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0000) & 3 << 27, 0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0018) & BIT(28), class->pcie ? BIT(28) : 0u);
+	/* that of the first function is another one; software has left its semaphore behind */
+	set_reg(c, 0x5b5c, BIT(1) << 16);
+	set_reg(c, 0x5b50, BIT(0));
+	KUNIT_EXPECT_EQ(test, ec_phy_wake(&c->nic, true), -ETIMEDOUT);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x5b5c), BIT(1) << 16);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x5b50) & 3, class->phy_sync ? 0u : 1u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0f00) & BIT(5), 0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0020) & 0xffe00000, BIT(21) | BIT(27));
+	ec_nic_quiet(&c->nic);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0018) & BIT(28), 0u);
+}
+
 /* one chip of each class */
-static const u16 chips[] = { 0x100e, 0x10d3, 0x10c9 };
+static const u16 chips[] = { 0x100e, I82574, 0x10c9, 0x150e, I350 };
 
 static void chip_desc(const u16 *id, char *desc)
 {
@@ -453,6 +579,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(two_polls_fit, chip_gen_params),
 	KUNIT_CASE_PARAM(frame_with_error_is_skipped, chip_gen_params),
 	KUNIT_CASE_PARAM(garbage_stays_within_buffers, chip_gen_params),
+	KUNIT_CASE_PARAM(hang_of_card_is_noticed, chip_gen_params),
+	KUNIT_CASE_PARAM(faults_of_frames_are_counted, chip_gen_params),
+	KUNIT_CASE_PARAM(link_is_read, chip_gen_params),
+	KUNIT_CASE_PARAM(phy_is_shared_with_firmware, chip_gen_params),
 	KUNIT_CASE_PARAM(reset_refuses_card_that_does_not_work, chip_gen_params),
 	{}
 };

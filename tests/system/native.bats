@@ -307,6 +307,17 @@ used_kib() {
 	demo_ends
 }
 
+@test "a card that sends nothing any more is started again" {
+	demo_runs
+	dmesg -C
+	insmod "$EC_BUILD/mini/suspend/ec_hang.ko" function="$pci0"
+	rmmod ec_hang
+	wait_for 60 eval 'dmesg | grep -q "has sent no frame for 500 ms: started again"'
+	wait_for 120 all_slaves_are OP 22
+	demo_ends
+	[ "$(dmesg | grep -c 'has sent no frame')" = 1 ]
+}
+
 @test "a suspend of the card is survived, idle and in OP" {
 	suspend="$EC_BUILD/mini/suspend/ec_suspend.ko"
 	insmod "$suspend" function="$pci0"
