@@ -351,7 +351,8 @@ static bool wait_half(struct ec_links *l, struct half *h)
 	for (n = 0; n < WAITS; n++) {
 		if (wait_once(l, h))
 			return true;
-		if (!ec_link_is_up(&l->link[0]) || !ec_submit_wait_more(l, &h->wait))
+		/* it is late: some devices know only by a look that their link is down */
+		if (!ec_link_look(&l->link[0]) || !ec_submit_wait_more(l, &h->wait))
 			break;
 	}
 	ec_access_poll(l);

@@ -21,6 +21,7 @@ enum behaviour {
 struct test_device {
 	enum behaviour does;
 	bool up;
+	bool seen;		/* the last look has found it up */
 	bool started;
 	unsigned int sent;
 	size_t len;
@@ -97,9 +98,29 @@ static void cycle(void *priv, bool on)
 	d->mode = READ_ONCE(d->links->access.mode);
 }
 
+static void look(void *priv)
+{
+	struct test_device *d = priv;
+
+	WRITE_ONCE(d->seen, READ_ONCE(d->up));
+}
+
+static bool link_seen(void *priv)
+{
+	const struct test_device *d = priv;
+
+	return READ_ONCE(d->seen);
+}
+
 static const struct ecdev_ops device_ops = {
 	.kind = "test", .atomic = true, .start = start, .stop = stop, .tx_get = tx_get,
 	.tx_send = tx_send, .cycle = cycle, .link_up = link_up,
+};
+
+/* as a network card without interrupts */
+static const struct ecdev_ops looking_ops = {
+	.kind = "test", .atomic = true, .start = start, .stop = stop, .tx_get = tx_get,
+	.tx_send = tx_send, .cycle = cycle, .link_up = link_seen, .look = look,
 };
 
 /* links of a master that has nothing else */
@@ -327,6 +348,26 @@ static void link_down_ends_calls_at_once(void)
 	bench_free(b);
 }
 
+/* the monitor, which looks, waits for the frame itself */
+static void late_frame_makes_device_look(void)
+{
+	struct bench *b = bench_new(HOLDS);
+	u8 x[4];
+
+	if (!b)
+		return;
+	ecdev_withdraw(b->dev);
+	b->dev = ecdev_offer("test0", mac, &looking_ops, &b->d);
+	if (CHECK(!IS_ERR(b->dev)) && CHECK_EQ(ec_links_look(&b->links), true)) {
+		WRITE_ONCE(b->d.up, false);
+		CHECK_EQ(ec_xfer_one(&b->links, EC_CMD_BRD, 0, 0, x, 1), -ENETDOWN);
+		CHECK_EQ(b->d.seen, false);
+	} else if (IS_ERR(b->dev)) {
+		b->dev = NULL;
+	}
+	bench_free(b);
+}
+
 const struct alone_test alone_tests[] = {
 	TEST(replies_reach_their_callers),
 	TEST(lost_frames_time_out),
@@ -335,5 +376,6 @@ const struct alone_test alone_tests[] = {
 	TEST(device_hears_of_cycle_first),
 	TEST(withdrawn_device_ends_calls),
 	TEST(link_down_ends_calls_at_once),
+	TEST(late_frame_makes_device_look),
 	{ }
 };
