@@ -5,6 +5,7 @@
  */
 #include <linux/etherdevice.h>
 #include <linux/if_arp.h>
+#include <linux/inetdevice.h>
 #include <linux/module.h>
 #include <linux/netdevice.h>
 #include <linux/netfilter.h>
@@ -316,7 +317,8 @@ static u8 *gen_tx_get(void *priv)
 
 static netdev_tx_t start_xmit(struct net_device *nd, struct netdev_queue *txq, struct sk_buff *skb)
 {
-	if (netif_xmit_frozen_or_drv_stopped(txq))
+	/* again: on PREEMPT_RT the caller may have waited, and dev_close() waits for this only */
+	if (!netif_running(nd) || netif_xmit_frozen_or_drv_stopped(txq))
 		return NETDEV_TX_BUSY;
 	return netdev_start_xmit(skb, nd, txq, false);
 }
@@ -413,11 +415,21 @@ static void withdraw(struct gen *g)
 	kfree(g);
 }
 
+/* The broadcast address does not mean the network of this computer, or a part of a bridge. */
+static bool is_free(struct net_device *nd)
+{
+	const struct in_device *in = __in_dev_get_rtnl(nd);
+
+	ASSERT_RTNL();
+	return !netdev_master_upper_dev_get(nd) && !(in && rtnl_dereference(in->ifa_list));
+}
+
 /* Other namespaces have names and addresses of their own. */
-static bool wanted(const struct net_device *nd)
+static bool wanted(struct net_device *nd)
 {
 	return nd->type == ARPHRD_ETHER && nd->reg_state == NETREG_REGISTERED &&
-	       net_eq(dev_net(nd), &init_net) && ecdev_wanted(nd->name, nd->dev_addr);
+	       net_eq(dev_net(nd), &init_net) &&
+	       ecdev_wanted(nd->name, nd->dev_addr, is_free(nd));
 }
 
 static void offer(struct net_device *nd)

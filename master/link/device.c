@@ -34,11 +34,12 @@ static const char *name_of(const struct ec_links *l, unsigned int side)
  * ecdev_wanted() - is there a master configured for this device?
  * @name: device name
  * @mac: its address
+ * @any: the broadcast address may mean it as well
  *
  * Context: Process. May sleep.
  * Return: true when one is.
  */
-bool ecdev_wanted(const char *name, const u8 *mac)
+bool ecdev_wanted(const char *name, const u8 *mac, bool any)
 {
 	const struct ec_links *l;
 	bool wanted = false;
@@ -50,8 +51,12 @@ bool ecdev_wanted(const char *name, const u8 *mac)
 			wanted = false;
 			break;
 		}
-		for (side = 0; side < EC_MAX_LINKS; side++)
-			wanted |= ec_spec_matches(name_of(l, side), name, mac);
+		for (side = 0; side < EC_MAX_LINKS; side++) {
+			const char *spec = name_of(l, side);
+
+			wanted |= (any || !spec || !ec_spec_is_any(spec)) &&
+				  ec_spec_matches(spec, name, mac);
+		}
 	}
 	mutex_unlock(&devices_lock);
 	return wanted;

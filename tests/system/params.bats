@@ -93,6 +93,22 @@ no_insmod() {
 	one_line 'main device'
 }
 
+@test "the broadcast address is no interface with an IP address, and no port of a bridge" {
+	ip link add veth0 type veth peer name veth1
+	ip link add veth2 type veth peer name veth3
+	ip link add br0 type bridge
+	ip link set veth1 master br0
+	ip address add 10.1.0.1/24 dev br0
+	ip address add 10.2.0.1/24 dev veth0
+	ip address add 10.3.0.1/24 dev veth2
+	master main_devices=ff:ff:ff:ff:ff:ff
+	generic
+	wait_for 60 eval 'ethercat master | grep -q "(attached)"'
+	dmesg | grep -q 'main device .*veth3.* attached'
+	ip link delete br0
+	ip link delete veth2
+}
+
 @test "the broadcast address means the first device that is offered" {
 	ip link add veth0 type veth peer name veth1
 	ip link set veth0 address 02:00:00:00:12:01
