@@ -169,7 +169,7 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	fails "'start' needs root" setpriv --reuid=65534 --clear-groups /run/ctl/ethercatctl \
 		-c /run/ctl/sim.conf start
 	conf 'MASTER0_DEVICE="sim0"' 'MODPROBE_FLAGS="-d/nowhere"'
-	fails "cannot load ec_master: it is not installed for the kernel $(uname -r); install ethercat-dkms and linux-headers-$(uname -r), or run 'make install'" own start
+	fails "cannot load ec_master: it is not installed for the kernel $(uname -r) .6.1 to 6.12 can have it.; install ethercat-dkms and linux-headers-$(uname -r), or run 'make install'" own start
 	none_loaded
 }
 
