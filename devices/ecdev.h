@@ -34,8 +34,8 @@ struct notifier_block;
  *	@cycle is on; and until a grace period has ended after the device has stopped by itself
  * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
- * @look: optional. Reads the state that @link_up returns. The master calls it about every
- *	20 ms. Process context, may sleep
+ * @look: optional. Reads the state that @link_up returns. Called about every 20 ms, and by
+ *	those whose frame is late, one at a time. Process context, may sleep
  */
 struct ecdev_ops {
 	const char *kind;

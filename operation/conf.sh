@@ -200,7 +200,7 @@ check_masters() {
 			k=0
 			while [ $k -lt $i ]; do
 				eval "other=\$device_$k"
-				[ "$other" != "$value" ] || [ "$value" = ff:ff:ff:ff:ff:ff ] ||
+				[ "$other" != "$value" ] ||
 					bad "MASTER${i}_DEVICE=\"$value\" is the device of MASTER$k; each master needs its own"
 				k=$((k + 1))
 			done

@@ -131,7 +131,8 @@ static bool intel_link_up(void *priv)
 
 static void note_phy(struct intel *n, int ret)
 {
-	if (ret && __ratelimit(&n->limit))
+	n->negotiate = ret;
+	if (ret && __ratelimit(&n->faults))
 		pci_warn(n->pdev, "cannot switch its PHY on (%pe); tried again while there is no link\n",
 			 ERR_PTR(ret));
 }
@@ -157,6 +158,8 @@ static int run(struct intel *n)
 	n->nic.gone = false;
 	n->failed = false;
 	n->health.looks = 0;
+	/* what was counted before is nobody's fault */
+	ec_health_clear(&n->health, &n->nic);
 	WRITE_ONCE(n->ready, true);
 	return 0;
 }
@@ -207,8 +210,8 @@ static void look_each_second(struct intel *n)
 {
 	lockdep_assert_held(&n->lock);
 	if (!n->nic.up)
-		note_phy(n, ec_phy_wake(&n->nic, false));
-	if (!ec_health_count(&n->health, &n->nic) || !__ratelimit(&n->limit))
+		note_phy(n, ec_phy_wake(&n->nic, n->negotiate));
+	if (!ec_health_count(&n->health, &n->nic) || !__ratelimit(&n->faults))
 		return;
 	if (n->health.damaged)
 		pci_warn(n->pdev, "has received %u damaged frame(s): check the cable between this card and the slaves\n",
@@ -229,7 +232,7 @@ static void look_running(struct intel *n, bool second)
 	if (was_gone && !second)
 		return;
 	ec_nic_look(&n->nic);
-	if (n->nic.gone && !was_gone)
+	if (n->nic.gone && !was_gone && __ratelimit(&n->restarts))
 		pci_warn(n->pdev, "does not answer: unplugged?\n");
 	if (n->nic.gone)
 		return;
@@ -238,12 +241,15 @@ static void look_running(struct intel *n, bool second)
 		return;
 	}
 	if (ec_health_stuck(&n->health, &n->nic, &n->tx, ktime_get_ns())) {
-		if (__ratelimit(&n->limit))
+		if (__ratelimit(&n->restarts))
 			pci_warn(n->pdev, "has sent no frame for 500 ms: started again\n");
 		start_anew(n);
 		return;
 	}
-	if (n->nic.up && !was_up && n->nic.slow && __ratelimit(&n->limit))
+	/* of errors while a cable is plugged in */
+	if (n->nic.up && !was_up)
+		ec_health_clear(&n->health, &n->nic);
+	if (n->nic.up && !was_up && n->nic.slow && __ratelimit(&n->restarts))
 		pci_warn(n->pdev, "the link has 10 Mbit/s or half duplex; EtherCAT needs 100 Mbit/s, full duplex: check the device at the other end\n");
 	if (second)
 		look_each_second(n);
@@ -348,7 +354,10 @@ void ec_card_shut(struct intel *n)
 void ec_card_init(struct intel *n)
 {
 	mutex_init(&n->lock);
-	ratelimit_state_init(&n->limit, 60 * HZ, 3);
+	ratelimit_state_init(&n->faults, 60 * HZ, 3);
+	ratelimit_state_init(&n->restarts, 60 * HZ, 3);
+	ratelimit_set_flags(&n->faults, RATELIMIT_MSG_ON_RELEASE);
+	ratelimit_set_flags(&n->restarts, RATELIMIT_MSG_ON_RELEASE);
 	hrtimer_init(&n->idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
 	n->idle.function = poll_idle;
 }

@@ -48,8 +48,12 @@ struct intel {
 	bool shut;
 	/** @health: with @lock held */
 	struct intel_health health;
-	/** @limit: of lines about faults that come again and again */
-	struct ratelimit_state limit;
+	/** @negotiate: the PHY was not asked to negotiate after the reset */
+	bool negotiate;
+	/** @faults: limit of lines about the link */
+	struct ratelimit_state faults;
+	/** @restarts: limit of lines about starts */
+	struct ratelimit_state restarts;
 };
 
 extern const struct ecdev_ops ec_card_ops;

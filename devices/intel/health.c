@@ -54,6 +54,14 @@ bool ec_health_stuck(struct intel_health *h, const struct intel_nic *nic,
 	return true;
 }
 
+/* one that is gone counts nothing */
+static u32 counter(const struct intel_nic *nic, u32 reg)
+{
+	u32 v = ec_nic_read(nic, reg);
+
+	return v == ~0u ? 0 : v;
+}
+
 /**
  * ec_health_count() - add the counters of faults, which begin at 0 again
  * @h: health of the controller
@@ -64,7 +72,21 @@ bool ec_health_stuck(struct intel_health *h, const struct intel_nic *nic,
  */
 bool ec_health_count(struct intel_health *h, const struct intel_nic *nic)
 {
-	h->damaged += ec_nic_read(nic, R_CRCERRS) + ec_nic_read(nic, R_RXERRC);
-	h->missed += ec_nic_read(nic, R_MPC);
+	h->damaged += counter(nic, R_CRCERRS) + counter(nic, R_RXERRC);
+	h->missed += counter(nic, R_MPC);
 	return h->damaged || h->missed;
+}
+
+/**
+ * ec_health_clear() - forget what was counted so far
+ * @h: health of the controller
+ * @nic: controller
+ *
+ * Context: Process, one caller at a time.
+ */
+void ec_health_clear(struct intel_health *h, const struct intel_nic *nic)
+{
+	ec_health_count(h, nic);
+	h->damaged = 0;
+	h->missed = 0;
 }

@@ -28,5 +28,6 @@ bool ec_health_second(struct intel_health *h, u64 now);
 bool ec_health_stuck(struct intel_health *h, const struct intel_nic *nic,
 		     const struct intel_ring *tx, u64 now);
 bool ec_health_count(struct intel_health *h, const struct intel_nic *nic);
+void ec_health_clear(struct intel_health *h, const struct intel_nic *nic);
 
 #endif

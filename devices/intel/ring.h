@@ -127,12 +127,12 @@ static inline void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring
 	d->a.addr = cpu_to_le64(ec_ring_buf_dma(tx, tx->next));
 	if (nic->class->advanced) {
 		d->a.command_status = cpu_to_le32(INTEL_A_COMMAND | len);
-		d->a.olinfo = cpu_to_le32(len << INTEL_A_PAYLOAD);
+		WRITE_ONCE(d->a.olinfo, cpu_to_le32(len << INTEL_A_PAYLOAD));
 	} else {
 		d->l.len = cpu_to_le16(len);
 		d->l.tx_cso = 0;
 		d->l.tx_command = INTEL_L_COMMAND;
-		d->l.status = 0;
+		WRITE_ONCE(d->l.status, 0);
 	}
 	tx->next = (tx->next + 1) % INTEL_TX;
 }

@@ -166,20 +166,32 @@ static void detach(struct ecdev *dev)
 	synchronize_rcu();
 }
 
+static bool waits_for(const struct ec_links *l, unsigned int side, const struct ecdev *dev,
+		      bool any)
+{
+	const char *spec = name_of(l, side);
+
+	lockdep_assert_held(&devices_lock);
+	return spec && ec_spec_is_any(spec) == any && !l->link[side].dev &&
+	       !READ_ONCE(l->base->stopping) && ec_spec_matches(spec, dev->name, dev->mac);
+}
+
 /* Give @dev to the first master that waits for it. */
 static void match_locked(struct ecdev *dev)
 {
 	struct ec_links *l;
 	unsigned int side;
+	int any;
 
 	lockdep_assert_held(&devices_lock);
-	list_for_each_entry(l, &masters, list)
-		for (side = 0; side < EC_MAX_LINKS; side++)
-			if (!l->link[side].dev && !READ_ONCE(l->base->stopping) &&
-			    ec_spec_matches(name_of(l, side), dev->name, dev->mac)) {
-				attach(dev, &l->link[side]);
-				return;
-			}
+	/* one that names it comes before one that takes any */
+	for (any = 0; any < 2; any++)
+		list_for_each_entry(l, &masters, list)
+			for (side = 0; side < EC_MAX_LINKS; side++)
+				if (waits_for(l, side, dev, any)) {
+					attach(dev, &l->link[side]);
+					return;
+				}
 }
 
 /**

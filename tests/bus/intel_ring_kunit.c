@@ -18,6 +18,7 @@
 #define DESC		16
 #define FRAME_MAX	1514
 #define I82574		0x10d3
+#define I82580		0x150e
 #define I350		0x1521
 #define LOG		512	/* frames the card remembers */
 
@@ -432,7 +433,7 @@ static void reset_refuses_card_that_does_not_work(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, reg(c, R_RAH0), get_unaligned_le16(mac + 4) | BIT(31));
 	KUNIT_EXPECT_EQ(test, reg(c, R_RCTL), 0u);
 	KUNIT_EXPECT_EQ(test, reg(c, R_TCTL) & TCTL_EN, 0u);
-	KUNIT_EXPECT_EQ(test, reg(c, 0x0e14), *id == I350 ? ~BIT(5) : ~0u);
+	KUNIT_EXPECT_EQ(test, reg(c, 0x0e14), *id == I350 || *id == I82580 ? ~(1u << 5) : ~0u);
 	KUNIT_EXPECT_EQ(test, reg(c, 0x0e30), *id == I350 ? ~(7u << 16) : ~0u);
 	KUNIT_EXPECT_EQ(test, reg(c, 0x0e38), *id == I350 ? ~(3u << 2) : ~0u);
 	if (c->nic.class->advanced) {
@@ -506,6 +507,10 @@ static void faults_of_frames_are_counted(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, ec_health_count(&h, &c->nic));
 	KUNIT_EXPECT_EQ(test, h.damaged, 5u);
 	KUNIT_EXPECT_EQ(test, h.missed, 4u);
+	set_reg(c, 0x4010, ~0u);
+	KUNIT_EXPECT_TRUE(test, ec_health_count(&h, &c->nic));
+	ec_health_clear(&h, &c->nic);
+	KUNIT_EXPECT_EQ(test, h.damaged + h.missed, 0u);
 	KUNIT_EXPECT_FALSE(test, ec_health_second(&h, NSEC_PER_SEC - 1));
 	KUNIT_EXPECT_TRUE(test, ec_health_second(&h, NSEC_PER_SEC));
 	KUNIT_EXPECT_FALSE(test, ec_health_second(&h, NSEC_PER_SEC + 1));
@@ -560,7 +565,7 @@ static void phy_is_shared_with_firmware(struct kunit *test)
 }
 
 /* one chip of each class */
-static const u16 chips[] = { 0x100e, I82574, 0x10c9, 0x150e, I350 };
+static const u16 chips[] = { 0x100e, I82574, 0x10c9, I82580, I350 };
 
 static void chip_desc(const u16 *id, char *desc)
 {

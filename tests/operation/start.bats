@@ -269,9 +269,20 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	main_is $LATE
 }
 
+@test "ff:ff:ff:ff:ff:ff is the card that is reserved for a master, if there is one" {
+	reserve $PCI
+	nic eth0 $NIC 0000:00:01.0 e1000e
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff' 'DEVICE_MODULES=intel'
+	ctl start
+	[ "$status" = 0 ]
+	main_is ff:ff:ff:ff:ff:ff
+	loaded_are 'ec_intel ec_master'
+	[ -e "$root/sys/class/net/eth0" ]
+}
+
 @test "a card that a running master has already stays with its driver" {
 	nic eth0 $NIC $PCI e1000e
-	conf "MASTER0_DEVICE=$NIC" 'DEVICE_MODULES=e1000e'
+	conf "MASTER0_DEVICE=eth0" 'DEVICE_MODULES=e1000e'
 	modprobe ec_master main_devices=$NIC
 	modprobe ec_generic
 	stub ethercat '[ "$1" != device ] || touch $root/bound' '[ "$1" = master ] || exit 0' \
@@ -287,9 +298,10 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	conf 'MASTER0_DEVICE=eth0'
 	ctl start
 	[ "$status" = 0 ]
-	stub rmmod 'echo "rmmod: ERROR: Module $1 is in use"' 'exit 1'
+	mkdir -p "$root/sys/module/ec_master/holders/app"
 	ctl stop
 	[ "$status" = 1 ]
+	[[ $output =~ "module app" ]]
 	ctl start
 	[ "$status" = 1 ]
 	[[ $output =~ "the masters run as before, since the last stop was refused" ]]
