@@ -4,9 +4,14 @@
 
 load helpers
 
-setup_file() { modprobe veth; }
+setup_file() { modprobe -a veth bridge; }
 setup() { dmesg -C; }
-teardown() { stop; ip link del veth0 2>/dev/null || true; }
+teardown() {
+	local name
+
+	stop
+	for name in veth0 veth2 br0; do ip link del $name 2>/dev/null || true; done
+}
 
 master() { insmod "$EC_BUILD/modules/master/ec_master.ko" "$@"; }
 generic() { insmod "$EC_BUILD/modules/devices/ec_generic.ko"; }
@@ -105,8 +110,6 @@ no_insmod() {
 	generic
 	wait_for 60 eval 'ethercat master | grep -q "(attached)"'
 	dmesg | grep -q 'main device .*veth3.* attached'
-	ip link delete br0
-	ip link delete veth2
 }
 
 @test "the broadcast address means the first device that is offered" {
