@@ -35,7 +35,7 @@ teardown_file() { stop; }
 	run ethercat rtcheck
 	echo "$output"
 	[[ $output == *"card "*"Master0 main: eth0 with the driver e1000e and its interrupts"* ]]
-	[[ $output == *"eth0: received frames wait 3 us"* ]]
+	[[ $output == *"eth0: received frames wait by load (rx-usecs 3)"* ]]
 	[ "$status" = 1 ]
 	ethtool -C eth0 rx-usecs 0
 	run ethercat rtcheck
