@@ -34,7 +34,7 @@ is_number() { case $1 in ''|*[!0-9]*|0?*) return 1 ;; esac; }
 
 hex='[0-9a-f]'
 is_mac() {
-	case $1 in ff:ff:ff:ff:ff:ff) return 1 ;; esac
+	! is_any "$1" || return 1
 	case $1 in $hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex:$hex$hex) ;; *) return 1 ;; esac
 }
 is_any() { [ "$1" = ff:ff:ff:ff:ff:ff ]; }

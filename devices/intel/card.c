@@ -158,7 +158,7 @@ static int run(struct intel *n)
 	n->nic.gone = false;
 	n->failed = false;
 	n->health.looks = 0;
-	/* what was counted before is nobody's fault */
+	/* counts of before the start have another cause */
 	ec_health_clear(&n->health, &n->nic);
 	WRITE_ONCE(n->ready, true);
 	return 0;
@@ -202,7 +202,7 @@ static void start_anew(struct intel *n)
 	quiesce_locked(n);
 	ret = run(n);
 	n->failed = ret;
-	if (ret && !again)
+	if (ret && !again && __ratelimit(&n->restarts))
 		pci_err(n->pdev, "does not start again (%pe); tried each second\n", ERR_PTR(ret));
 }
 

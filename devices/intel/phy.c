@@ -97,7 +97,7 @@ static void leave_phy(const struct intel_nic *nic)
 		return;
 	for (i = 0; i < TRIES && !begin_swsm(nic); i++)
 		usleep_range(1000, 2000);
-	/* also without the semaphore: it is our bit, and nobody else would clear it */
+	/* also without the semaphore: it is our bit, and nothing else clears it */
 	ec_nic_write(nic, R_SW_FW_SYNC, ec_nic_read(nic, R_SW_FW_SYNC) & ~sync_bit(nic));
 	end_swsm(nic);
 }

@@ -539,7 +539,7 @@ static void link_is_read(struct kunit *test)
 	}
 }
 
-/* The firmware has the PHY, then nobody; it does not answer here. No pause frames either way. */
+/* The firmware has the PHY, then it is free; it does not answer here. No pause frames. */
 static void phy_is_shared_with_firmware(struct kunit *test)
 {
 	struct card *c = card(test);

@@ -280,6 +280,15 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	[ -e "$root/sys/class/net/eth0" ]
 }
 
+@test "ff:ff:ff:ff:ff:ff does not mean the simulated segment that is loaded" {
+	nic eth0 $NIC $PCI e1000e
+	modprobe ec_master main_devices=sim0
+	conf 'MASTER0_DEVICE=ff:ff:ff:ff:ff:ff'
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output =~ "is already loaded with main_devices=sim0" ]]
+}
+
 @test "a card that a running master has already stays with its driver" {
 	nic eth0 $NIC $PCI e1000e
 	conf "MASTER0_DEVICE=eth0" 'DEVICE_MODULES=e1000e'
