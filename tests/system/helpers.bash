@@ -58,13 +58,26 @@ stop() {
 	rmmod ec_master 2>/dev/null || true
 }
 
+# what a wait that timed out may have waited for
+standstill() {
+	local p
+
+	for p in $(pgrep '^EtherCAT'); do
+		echo "$(</proc/"$p"/comm):$(sed -n 's/^State:\t/ /p' /proc/"$p"/status)"
+		cat /proc/"$p"/stack
+	done
+	ethercat master | grep -E '^ *(Link|Slaves|Phase|Active)' || true
+	grep -H . /sys/class/net/eth*/{carrier,operstate} || true
+	dmesg | tail -n 12
+} 2>/dev/null
+
 # wait_for SECONDS COMMAND...
 wait_for() {
 	local end=$((SECONDS + $1))
 
 	shift
 	until "$@"; do
-		[ $SECONDS -lt $end ] || { echo "timed out: $*"; return 1; }
+		[ $SECONDS -lt $end ] || { echo "timed out: $*"; standstill; return 1; }
 		sleep 0.1
 	done
 }
