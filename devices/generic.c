@@ -519,6 +519,17 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 
 static struct notifier_block notifier = { .notifier_call = event };
 
+/* An interface without its last address may be free now, see is_free(). */
+static int address_event(struct notifier_block *nb, unsigned long what, void *ptr)
+{
+	ASSERT_RTNL();
+	if (what == NETDEV_DOWN && !leaving)
+		schedule_work(&look_work);
+	return NOTIFY_DONE;
+}
+
+static struct notifier_block address_notifier = { .notifier_call = address_event };
+
 /* The caller waits for what comes of it. */
 static int wishes(struct notifier_block *nb, unsigned long what, void *ptr)
 {
@@ -577,6 +588,17 @@ static void __init report_waiting(void)
 	}
 }
 
+/* No device is offered any more, all are withdrawn. */
+static void unhear(void)
+{
+	rtnl_lock();
+	leaving = true;
+	rtnl_unlock();
+	/* replays UNREGISTER for every device */
+	unregister_netdevice_notifier(&notifier);
+	cancel_work_sync(&look_work);
+}
+
 static int __init gen_init(void)
 {
 	int ret = ecdev_register_notifier(&wishes_notifier);
@@ -584,25 +606,27 @@ static int __init gen_init(void)
 	if (ret)
 		return ret;
 	ret = register_netdevice_notifier(&notifier);
+	if (ret)
+		goto unwish;
+	ret = register_inetaddr_notifier(&address_notifier);
 	if (ret) {
-		ecdev_unregister_notifier(&wishes_notifier);
-		return ret;
+		unhear();
+		goto unwish;
 	}
 	/* it has reported all devices there are */
 	flush_work(&look_work);
 	report_waiting();
 	return 0;
+unwish:
+	ecdev_unregister_notifier(&wishes_notifier);
+	return ret;
 }
 
 static void __exit gen_exit(void)
 {
 	ecdev_unregister_notifier(&wishes_notifier);
-	rtnl_lock();
-	leaving = true;
-	rtnl_unlock();
-	/* replays UNREGISTER for every device */
-	unregister_netdevice_notifier(&notifier);
-	cancel_work_sync(&look_work);
+	unregister_inetaddr_notifier(&address_notifier);
+	unhear();
 }
 
 module_init(gen_init);

@@ -112,6 +112,22 @@ no_insmod() {
 	dmesg | grep -q 'main device .*veth3.* attached'
 }
 
+@test "an interface whose last IP address is removed is free for the broadcast address" {
+	ip link add veth0 type veth peer name veth1
+	ip link add br0 type bridge
+	ip link set veth1 master br0
+	ip address add 10.1.0.1/24 dev br0
+	ip address add 10.2.0.1/24 dev veth0
+	ip address add 10.3.0.1/24 dev veth0
+	master main_devices=ff:ff:ff:ff:ff:ff
+	generic
+	ip address del 10.2.0.1/24 dev veth0
+	sleep 1
+	ethercat master | grep -q '(waiting...)'
+	ip address del 10.3.0.1/24 dev veth0
+	wait_for 60 eval 'ethercat master | grep -q "(attached)"'
+}
+
 @test "the broadcast address means the first device that is offered" {
 	ip link add veth0 type veth peer name veth1
 	ip link set veth0 address 02:00:00:00:12:01
