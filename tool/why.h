@@ -10,6 +10,7 @@
 #include "dev.h"
 
 #define WHY_NONE	(-1)
+#define WHY_TEXT	2048	/* two lists of some 60 PDO entries each fit */
 
 /**
  * struct why_config - a slave configuration
@@ -45,7 +46,7 @@ struct why_finding {
 	int config;
 	int domain;
 	u32 code;
-	char what[512];
+	char what[WHY_TEXT];
 	const char *remedy;
 };
 

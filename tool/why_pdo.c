@@ -6,25 +6,32 @@
 
 #include "why.h"
 
+#define MORE	" ..."
+
 /* a text that grows up to its buffer */
 struct line {
 	char *buf;
 	size_t size;
 	size_t len;
+	bool full;
 };
 
 static void put(struct line *l, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
+/* What does not fit is left out as a whole: a part of an entry would be another entry. */
 static void put(struct line *l, const char *fmt, ...)
 {
+	char part[64];
 	va_list ap;
 	int n;
 
 	va_start(ap, fmt);
-	n = vsnprintf(l->buf + l->len, l->size - l->len, fmt, ap);
+	n = vsnprintf(part, sizeof(part), fmt, ap);
 	va_end(ap);
-	if (n > 0)
-		l->len = min(l->len + (size_t)n, l->size - 1);
+	if (l->full || n < 0)
+		return;
+	l->full = l->len + (size_t)n + sizeof(MORE) > l->size;
+	l->len += (size_t)snprintf(l->buf + l->len, l->size - l->len, "%s", l->full ? MORE : part);
 }
 
 static void wanted(struct why *w, const struct why_config *c, unsigned int sm, struct line *l)
@@ -33,7 +40,7 @@ static void wanted(struct why *w, const struct why_config *c, unsigned int sm, s
 
 	if (dev_ioctl(w->d, EC_IOC_CONFIG_SM, &s))
 		return;
-	for (u32 p = 0; p < s.pdo_count; p++) {
+	for (u32 p = 0; p < s.pdo_count && !l->full; p++) {
 		struct ec_ioc_config_pdo pdo = {
 			.index = c->c.index, .sm = (__u8)sm, .pdo_pos = p,
 		};
@@ -41,7 +48,7 @@ static void wanted(struct why *w, const struct why_config *c, unsigned int sm, s
 		if (dev_ioctl(w->d, EC_IOC_CONFIG_PDO, &pdo))
 			return;
 		put(l, " 0x%04x", pdo.pdo_index);
-		for (u32 e = 0; e < pdo.entry_count; e++) {
+		for (u32 e = 0; e < pdo.entry_count && !l->full; e++) {
 			struct ec_ioc_config_entry entry = {
 				.index = c->c.index, .sm = (__u8)sm, .pdo_pos = p, .entry_pos = e,
 			};
@@ -61,13 +68,13 @@ static void offered(struct why *w, u16 position, unsigned int sm, struct line *l
 
 	if (dev_ioctl(w->d, EC_IOC_SM, &s))
 		return;
-	for (u16 p = 0; p < s.pdo_count; p++) {
+	for (u16 p = 0; p < s.pdo_count && !l->full; p++) {
 		struct ec_ioc_pdo pdo = { .position = position, .sm = (__u8)sm, .pdo_pos = p };
 
 		if (dev_ioctl(w->d, EC_IOC_PDO, &pdo))
 			return;
 		put(l, " 0x%04x", pdo.index);
-		for (u16 e = 0; e < pdo.entry_count; e++) {
+		for (u16 e = 0; e < pdo.entry_count && !l->full; e++) {
 			struct ec_ioc_pdo_entry entry = {
 				.position = position, .sm = (__u8)sm, .pdo_pos = p, .entry_pos = e,
 			};
@@ -86,17 +93,17 @@ static void offered(struct why *w, u16 position, unsigned int sm, struct line *l
  * @w: what is known
  * @c: configuration with a slave
  * @sm: SyncManager
- * @buf: result; what does not fit is left out
+ * @buf: result; each list has half of it, and ends with "..." if it does not fit
  * @size: of @buf
  */
 void why_pdo_lists(struct why *w, const struct why_config *c, unsigned int sm, char *buf,
 		   size_t size)
 {
-	struct line want = { buf, size / 2, 0 }, have;
+	struct line want = { .buf = buf, .size = size / 2 }, have;
 
 	put(&want, "SM%u configured:", sm);
 	wanted(w, c, sm, &want);
-	have = (struct line){ buf + want.len, size - want.len, 0 };
+	have = (struct line){ .buf = buf + want.len, .size = size - want.len };
 	put(&have, "; SM%u of the slave:", sm);
 	offered(w, (u16)c->c.slave_position, sm, &have);
 }

@@ -112,13 +112,13 @@ static struct why_finding *pdo(struct why *w, const struct why_config *c,
 			       const struct ec_cause *cause, const char *text)
 {
 	struct why_finding *f;
-	char lists[256] = "";
+	char lists[WHY_TEXT - EC_UAPI_REASON] = "";
 
 	if (c)
 		why_pdo_lists(w, c, cause->sm, lists, sizeof(lists));
 	f = why_add(w, "pdo",
 		    "configure the PDOs that the slave has ('ethercat cstruct' writes them), or set flag AcceptOtherPdos, but only if its manual says that these are the same objects at the same offsets",
-		    "%.220s; %s", text, lists);
+		    "%s; %s", text, lists);
 	f->code = cause->code;
 	return f;
 }

@@ -40,7 +40,7 @@ log_of() {
 
 json() {
 	python3 -c '
-import json, sys
+import json, re, sys
 d = json.load(sys.stdin)
 assert eval(sys.argv[1]), d
 ' "$1"

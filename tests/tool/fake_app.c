@@ -71,11 +71,14 @@ static int config_flag(struct ec_ioc_config_flag *x)
 	return 0;
 }
 
+/* FAKE_PDOS: of SM2 of the second configuration */
 static int config_sm(struct ec_ioc_config_sm *x)
 {
+	const char *pdos = getenv("FAKE_PDOS");
+
 	if (x->sm == 2 && x->index == 1) {
 		x->dir = 1;
-		x->pdo_count = 1;
+		x->pdo_count = pdos ? (__u8)atoi(pdos) : 1;
 	}
 	return 0;
 }
@@ -158,7 +161,7 @@ static int config_entry(struct ec_ioc_config_entry *x)
 
 static int config_pdo(struct ec_ioc_config_pdo *x)
 {
-	x->pdo_index = 0x1600;
+	x->pdo_index = (__u16)(0x1600 + x->pdo_pos);
 	x->entry_count = 1;
 	return 0;
 }

@@ -72,6 +72,14 @@ is() {
 	[[ $(FAKE_WHY=cable out why) == *"  Place: slave 1 (EL2008), port 1"$'\n'"  Affected: 0:2"* ]]
 }
 
+@test "why has all PDOs of both lists, or says that there are more" {
+	local one='( 0x16..\(7010:01/16\))' slave='SM2 of the slave: 0x1600\(7010:01/16\)$'
+	local text='f["text"]) is not None'
+
+	FAKE_PDOS=16 is pdo "re.search(r'SM2 configured:$one{16}; $slave', $text"
+	FAKE_PDOS=200 is pdo "re.search(r'SM2 configured:$one{30,}( 0x16..)? [.]{3}; $slave', $text"
+}
+
 @test "why reports no consequence of another cause" {
 	[ "$(causes "link_down cable")" = link_down ]
 	[ "$(causes "no_cycle working_counter")" = no_cycle ]
