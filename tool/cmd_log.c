@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "../master/wire/al.h"
 #include "../master/wire/event.h"
@@ -81,6 +82,18 @@ static void event(const struct dev *d, bool with_master, const struct ec_event *
 	out_end();
 }
 
+/* Wait for an event; false: stdout was closed, which no write shows while nothing happens. */
+static bool wait_event(const struct dev *d)
+{
+	struct pollfd p[] = { { .fd = d->fd, .events = POLLIN }, { .fd = STDOUT_FILENO } };
+	int n;
+
+	do
+		n = sys_poll(p, 2);
+	while (n < 0 && errno == EINTR);
+	return n < 0 || !(p[1].revents & POLLERR);
+}
+
 /* read the next events; how many, 0: there will be none, negative: was reported */
 static int more(struct dev *d, struct ec_event *e)
 {
@@ -101,7 +114,7 @@ static int print(struct dev *d, u64 at, u64 end, bool follow)
 	struct ec_event e[BATCH];
 
 	while (follow || at < end) {
-		int n = more(d, e);
+		int n = !follow || wait_event(d) ? more(d, e) : 0;
 
 		if (n <= 0)
 			return n < 0;

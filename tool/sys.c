@@ -26,6 +26,11 @@ long sys_read(int fd, void *buf, unsigned long size)
 	return read(fd, buf, size);
 }
 
+int sys_poll(struct pollfd *p, unsigned int n)
+{
+	return poll(p, n, -1);
+}
+
 void sys_close(int fd)
 {
 	close(fd);

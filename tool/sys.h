@@ -2,9 +2,12 @@
 #ifndef EC_TOOL_SYS_H
 #define EC_TOOL_SYS_H
 
+#include <poll.h>
+
 int sys_open(const char *path, int flags);
 int sys_ioctl(int fd, unsigned long request, void *arg);
 long sys_read(int fd, void *buf, unsigned long size);
+int sys_poll(struct pollfd *p, unsigned int n);	/* without a time limit */
 void sys_close(int fd);
 const char *sys_fs(void);	/* where sysfs is */
 const char *sys_proc(void);	/* where procfs is */

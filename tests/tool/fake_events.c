@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Events of the fake master. FAKE_EVENTS=gap: some are lost while they are read, =unknown: one is
- * of a newer module, =none: nothing has happened, =old: the module has no events. The end of
- * those that come later is the end of the file.
+ * of a newer module, =none: nothing has happened, =quiet: none comes later, =old: the module
+ * has no events. The end of those that come later is the end of the file.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -57,6 +57,15 @@ int fake_events(unsigned long request, void *arg)
 	i->first = 7;
 	i->next = is("none") ? 7 : 7 + KEPT;
 	return 0;
+}
+
+int sys_poll(struct pollfd *p, unsigned int n)
+{
+	p->revents = 0;
+	if (is("quiet") && at >= KEPT)
+		return poll(p + 1, n - 1, -1);
+	p->revents = POLLIN;
+	return 1 + poll(p + 1, n - 1, 0);
 }
 
 /* three at a time */

@@ -85,6 +85,10 @@ assert eval(sys.argv[1]), d
 	FAKE_READONLY=1 ethercat log >/dev/null
 	run bash -c "set -o pipefail; '$HERE/build/fake/ethercat' log --follow | head -n 0"
 	[ "$status" = 141 ] || [ "$status" = 0 ]
+	# also while nothing happens
+	FAKE_EVENTS=quiet run timeout 20 bash -c "'$HERE/build/fake/ethercat' log --follow | head -n 1"
+	[ "$status" = 0 ]
+	[[ $output == *"main link up" ]]
 	run bash -c "'$HERE/build/fake/ethercat' log --follow >/dev/full"
 	[ "$status" = 1 ]
 	[[ $output == *"cannot write the output: No space left on device" ]]
