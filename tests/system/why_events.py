@@ -22,7 +22,7 @@ BLAMING = {"device_detached", "link_down", "slave_lost", "all_slaves_lost", "sla
            "wire_time", "stale_data", "missed"}
 # without a fault neither these
 TROUBLE = BLAMING | {"no_answer", "frames_lost", "frames_late", "slaves_responding",
-                     "reference_clock"}
+                     "reference_clock", "overruns", "sync_window", "clocks_not_synchronized"}
 
 
 class Event:
