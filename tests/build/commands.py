@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Every command of README.md, CONTRIBUTING.md, Documentation/ is run by a test or marked.
 
-Takes the literal blocks, and the inline commands that begin with make, ethercat,
-ethercat-sim or tests/. Each must be in commands.txt, as
+Takes the literal blocks, and the inline commands that begin with make, ethercat, ethercatctl,
+systemctl, ethercat-sim or tests/. Each must be in commands.txt, as
 
     TEST       : TEXT : COMMAND      the file TEST contains TEXT, which runs the command
     level NAME : TEXT : COMMAND      tests/check.sh runs that level by default, with TEXT
@@ -20,7 +20,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-INLINE = re.compile(r"^((\w+=\S+ )*(make|ethercat|ethercat-sim)( |$)|tests/\S+\.sh)")
+PROGRAMS = ("make", "ethercat", "ethercat-sim", "ethercatctl", "systemctl")
+INLINE = re.compile(rf"^((\w+=\S+ )*({'|'.join(PROGRAMS)})( |$)|tests/\S+\.sh)")
 
 
 def blocks(path):
@@ -44,7 +45,7 @@ def inline(path):
     mark = "``" if path.suffix == ".rst" else "`"
     text = path.read_text().replace("\n", " ")
     for span in re.findall(mark + "([^`]+)" + mark, text):
-        if INLINE.match(span) and span not in ("make", "ethercat", "ethercat-sim"):
+        if INLINE.match(span) and span not in PROGRAMS:
             yield span
 
 

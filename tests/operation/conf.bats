@@ -154,6 +154,9 @@ accepted() {
 		-c "$BATS_TEST_TMPDIR/conf" status
 	[ "$status" = 1 ]
 	[ "$output" = "Master0  dead" ]
+	# without a master nothing runs
 	: >"$BATS_TEST_TMPDIR/conf"
-	ctl -c "$BATS_TEST_TMPDIR/conf" status
+	run ctl -c "$BATS_TEST_TMPDIR/conf" status
+	[ "$status" != 0 ]
+	[[ $output == *"names no master: set MASTER0_DEVICE "* ]]
 }

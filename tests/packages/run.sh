@@ -125,36 +125,78 @@ module_builds() {
 		! grep -E "warning:|WARNING:" log'
 }
 
-# two commands, the second one before the start; the guest then has systemd as its init
+# The service starts with the guest, which has systemd as its init; an application with the unit
+# of Documentation/install.rst; stops that are refused; removal while masters run.
 boots() {
-	in_root 'systemctl enable ethercat' &&
+	in_root 'systemctl enable ethercat
+		gcc -o /srv/mirror /usr/share/doc/ethercat-doc/examples/mirror.c \
+			$(pkg-config --cflags --libs libethercat) -pthread' &&
+	sed -n '/^    \[Unit\]/,/^    Restart/s/^    //p' Documentation/install.rst \
+		>"$tmp/root/upper/srv/app.service" &&
 	tests/packages/enter.sh --mount "$root" "$tmp/root" sh -c \
 		'exec tests/vm/run.sh --kernel "$2" --init "$MERGED" --timeout 900 -- \
-			sh -euc "$1"' sh '
+			sh -euxc "$1"' sh '
+		wait_until() {
+			n=0
+			until eval "$1"; do
+				n=$((n + 1))
+				[ $n -lt 100 ]
+				sleep 1
+			done
+		}
+		slaves() { [ "$(ethercat slaves | grep -cw $1)" = $2 ]; }
+		position() { ethercat slaves | grep -m 1 $1 | { read -r n rest; echo $n; }; }
+		unloaded() { [ ! -e /dev/EtherCAT0 ] && [ ! -e /sys/module/ec_master ]; }
+		refused() { if "$@"; then exit 1; fi; }
 		systemctl is-active ethercat
-		n=0
-		until [ "$(ethercat slaves | grep -c PREOP)" = 22 ]; do
-			n=$((n + 1))
-			[ $n -lt 100 ]
-			sleep 1
-		done
+		wait_until "slaves PREOP 22"
 		ethercat slaves | head -n 3
 		ethercatctl status
 		insmod /srv/mini/ec_mini.ko position=16
 		rmmod ec_mini
 		[ "$(stat -c "%G %a" /dev/EtherCAT0)" = "ethercat 664" ]
+		in=$(position EL1008) out=$(position EL2008)
+		{ cat /srv/app.service; echo "ExecStart=/srv/mirror $in $out"; } \
+			>/etc/systemd/system/app.service
+		systemctl daemon-reload
+		systemctl start app
+		wait_until "slaves OP 3"
+		systemctl restart ethercat
+		systemctl is-active app
+		wait_until "slaves OP 3"
+		systemctl disable --now ethercat
+		refused systemctl is-active app
+		unloaded
+		systemctl enable --now ethercat
+		wait_until "slaves PREOP 22"
+		/srv/mirror $in $out &
+		app=$!
+		wait_until "slaves OP 3"
+		systemctl stop ethercat || true
+		systemctl is-failed ethercat
+		refused systemctl restart ethercat
+		slaves OP 3
+		kill $app
+		wait $app || true
+		ethercatctl stop
+		unloaded
 		systemctl restart ethercat
 		systemctl stop ethercat
-		[ ! -e /dev/EtherCAT0 ]
-		[ ! -e /sys/module/ec_master ]
+		unloaded
+		cp /etc/ethercat.conf /tmp/conf
 		echo "MASTER0_DEVICE=eth9" >/etc/ethercat.conf
-		! systemctl start ethercat
-		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"' \
+		refused systemctl start ethercat
+		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"
+		cp /tmp/conf /etc/ethercat.conf
+		ethercatctl start
+		refused unloaded
+		dpkg --remove --no-triggers --force-depends ethercat-tools
+		unloaded' \
 		"$kernel" >"$tmp/guest" 2>&1 &&
 	grep -q 'Master0  running' "$tmp/guest"
 	local rc=$?
 
-	tail -n 30 "$tmp/guest"
+	tail -n 40 "$tmp/guest"
 	return $rc
 }
 
@@ -187,8 +229,8 @@ t "DKMS has built the modules for the installed kernel" has_modules 0.1.0 1
 t "the modules are signed by DKMS, and can be signed by hand" signed
 t "a program builds against libethercat-dev" program_builds
 t "a kernel module builds against the modules that are installed" module_builds
-t "systemd starts the simulated bus in a guest, and stops it" boots
-in_root 'rm -r /srv/mini'
+t "systemd starts the simulated bus and an application in a guest, and stops them" boots
+in_root 'rm -r /srv/mini /srv/mirror /srv/app.service'
 t "the headers of another kernel are installed" in_root 'dpkg -i /srv/second/*.deb'
 t "DKMS has built the modules for the new kernel" has_modules 0.1.0 2
 in_root 'echo "# mine" >>/etc/ethercat.conf; systemctl enable ethercat
