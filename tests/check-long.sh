@@ -6,11 +6,12 @@
 # wrong use of memory, locks and DMA; with a native network card of three models, also behind an
 # IOMMU, the files that the card matters to; a million cycles of it, also while its cable is
 # pulled; 600,000 cycles beside readers of events; the packages of Debian 12 and 13; README's two
-# commands in a fresh root of Debian 13; a reboot and a suspend with both kinds of device. The last
-# line is "N passed, N failed"; results with their date are in Documentation/testing.rst.
+# commands in a fresh root of Debian 13; a reboot and a suspend with both kinds of device; all
+# benchmarks, the cycle also with the legacy interrupt of the card. The last line is "N passed,
+# N failed"; results with their date are in Documentation/testing.rst.
 #
 # usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|packages|packages-13|
-#	check-13|reboot|KERNEL...]
+#	check-13|reboot|bench|bench-legacy|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -36,7 +37,9 @@ run() {
 	packages) tests/packages/run.sh ;;
 	packages-13) tests/packages/run.sh trixie ;;
 	check-13) tests/packages/whole.sh trixie ;;
-	reboot) tests/reboot/run.sh {generic,native}{,+kexec,+suspend} ;;
+	bench) tests/bench/run.sh ;;
+	bench-legacy) EC_INTERRUPT=legacy tests/bench/cycle.sh ;;
+	reboot) tests/reboot/run.sh {generic,native}{,+off,+kexec,+suspend} ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac
@@ -45,7 +48,7 @@ run() {
 tests/install-deps.sh build vm capture uml json cross || exit 1
 for k in ${*:-uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan 6.1-kasan \
 	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
-	packages-13 check-13 reboot}; do
+	packages-13 check-13 reboot bench bench-legacy}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1

@@ -99,7 +99,7 @@ level_guests() { tests/arch/guests.sh; }
 level_reboot() { tests/reboot/run.sh; }
 level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
-level_bench() { tests/bench/run.sh --gates cycle sim mailbox; }
+level_bench() { tests/bench/run.sh --gates cycle sim mailbox trip; }
 
 # run LEVEL: keeps its output, exit status and seconds
 run() {

@@ -3,7 +3,7 @@
 #
 # In the guest of run.sh: slaves in OP by an application, then a reboot that stops nothing.
 #
-# usage: guest.sh native|generic [KERNEL]	kexec starts KERNEL
+# usage: guest.sh native|generic reboot|off|kexec KERNEL	kexec starts KERNEL
 
 set -eu
 . tests/system/helpers.bash
@@ -20,9 +20,9 @@ fi
 LD_LIBRARY_PATH="$EC_BUILD/lib" "$EC_BUILD/apps/demo" --cycles 1000000 >/dev/null 2>&1 &
 wait_for 120 all_slaves_are OP 22
 sleep 1
-if [ -n "${2:-}" ]; then
-	tests/reboot/kexec.py "$2" "console=ttyS0 loglevel=7 panic=-1 after=kexec"
-else
-	busybox reboot -f
-fi
+case $2 in
+reboot)	busybox reboot -f ;;
+off)	busybox poweroff -f ;;
+kexec)	tests/reboot/kexec.py "$3" "console=ttyS0 loglevel=7 panic=-1 after=kexec" ;;
+esac
 sleep 60

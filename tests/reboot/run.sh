@@ -5,8 +5,8 @@
 # guest, shows that all slaves leave OP and stay out of it. Suspend: an idle master sleeps with its
 # computer, and works afterwards. The last line is "N passed, N failed".
 #
-# usage: run.sh [native|generic[+kexec|+suspend]]...
-#	device of the master, and what the guest does; default: native native+kexec
+# usage: run.sh [native|generic[+off|+kexec|+suspend]]...
+#	device of the master, and what the guest does; default: native generic+off native+kexec
 #	native+suspend
 
 set -u
@@ -42,20 +42,20 @@ t() {	# t NAME COMMAND...
 	fi
 }
 
-# ends DEVICE KEXEC: -no-reboot ends QEMU there, so run.sh has no result of the command. The
+# ends DEVICE HOW: -no-reboot ends QEMU there, so run.sh has no result of the command. The
 # kernel that kexec starts has no root: it panics, and restarts.
 ends() {
 	tests/vm/run.sh --kernel "$kernel" --nics --icount --timeout 400 --append loglevel=7 \
 		--qemu "-object filter-dump,id=wire,netdev=h0,file=$tmp/wire.pcap" -- \
-		env EC_BUILD="$EC_BUILD" bash tests/reboot/guest.sh "$1" \
-		${2:+"$(tests/vm/kernels.sh image "$kernel")"} >"$tmp/out" 2>&1
+		env EC_BUILD="$EC_BUILD" bash tests/reboot/guest.sh "$1" "$2" \
+		"$(tests/vm/kernels.sh image "$kernel")" >"$tmp/out" 2>&1
 	[ $? = 125 ] || return
-	if [ -n "$2" ]; then
-		grep -q 'kexec_core: Starting new kernel' "$tmp/out" &&
-			grep -q 'Command line: .*after=kexec' "$tmp/out"
-	else
-		grep -q 'reboot: Restarting system' "$tmp/out"
-	fi
+	case $2 in
+	kexec)	grep -q 'kexec_core: Starting new kernel' "$tmp/out" &&
+			grep -q 'Command line: .*after=kexec' "$tmp/out" ;;
+	off)	grep -q 'reboot: Power down' "$tmp/out" ;;
+	*)	grep -q 'reboot: Restarting system' "$tmp/out" ;;
+	esac
 }
 
 # suspends DEVICE
@@ -73,24 +73,29 @@ slept() {
 		diff - <(printf '%s\n' 'scan complete: 22 slave' "$one" "$one")
 }
 
+# logged HOW
 logged() {
-	grep -qE 'EtherCAT 0: reboot: 22 slave\(s\) taken out of SAFEOP and OP in [0-9]+ ms' "$tmp/out"
+	local name=reboot
+
+	[ "$1" != off ] || name=power-off
+	grep -qE "EtherCAT 0: $name: 22 slave\(s\) taken out of SAFEOP and OP in [0-9]+ ms" "$tmp/out"
 }
 
-for how in ${*:-native native+kexec native+suspend}; do
-	device=${how%+*} kexec=
+for how in ${*:-native generic+off native+kexec native+suspend}; do
+	device=${how%+*}
 	case $how in
 	native+suspend|generic+suspend)
 		t "$how: a computer that sleeps twice brings 22 slaves to OP each time" suspends "$device"
 		t "$how: the bus is scanned after each resume, not in between" slept
 		continue ;;
-	native|generic) t=restarts ;;
-	native+kexec|generic+kexec) t="starts another kernel" kexec=1 ;;
-	*) echo "run.sh: $how: not native or generic, with +kexec or +suspend" >&2; exit 2 ;;
+	native|generic) end=reboot t=restarts ;;
+	native+off|generic+off) end=off t="switches itself off" ;;
+	native+kexec|generic+kexec) end=kexec t="starts another kernel" ;;
+	*) echo "run.sh: $how: not native or generic, with +off, +kexec or +suspend" >&2; exit 2 ;;
 	esac
 	rm -f "$tmp/wire.pcap"
-	t "$how: a guest with 22 slaves in OP $t" ends "$device" "$kexec"
-	t "$how: the kernel log says that they left OP" logged
+	t "$how: a guest with 22 slaves in OP $t" ends "$device" $end
+	t "$how: the kernel log says that they left OP" logged $end
 	t "$how: the wire shows that they left OP, beside the cycle of the application" \
 		tests/reboot/wire.py "$tmp/wire.pcap" 22
 done
