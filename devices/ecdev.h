@@ -34,6 +34,7 @@ struct notifier_block;
  *	@cycle is on; and until a grace period has ended after the device has stopped by itself
  * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
+ * @speed: optional. Mbit/s of the link when it is up, as @link_up knows it
  * @look: optional. Reads the state that @link_up returns. Called about every 20 ms, and by
  *	those whose frame is late, one at a time. Process context, may sleep
  */
@@ -50,6 +51,7 @@ struct ecdev_ops {
 	bool keeps;
 	void (*cycle)(void *priv, bool on);
 	bool (*link_up)(void *priv);
+	unsigned int (*speed)(void *priv);
 	void (*look)(void *priv);
 };
 
@@ -63,6 +65,7 @@ bool ecdev_wanted(const char *name, const u8 *mac, bool any);
 int ecdev_register_notifier(struct notifier_block *nb);
 void ecdev_unregister_notifier(struct notifier_block *nb);
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
+bool ecdev_awaits(struct ecdev *dev);
 void ecdev_foreign(struct ecdev *dev);
 void ecdev_not_captured(struct ecdev *dev);
 

@@ -10,14 +10,13 @@
 static const char *native(const struct nic *n, char *buf, size_t size)
 {
 	const char *boot = n->boot == BOOT_SET ? ", at boot" : "";
+	const char *run = n->tested ? "run in QEMU only" : "never tested";
 
-	if (!strcmp(n->driver, NIC_NATIVE))
-		snprintf(buf, size, "in use%s", boot);
-	else if (*n->why_not)
+	if (*n->why_not)
 		snprintf(buf, size, "no: %s%s", n->why_not, boot);
 	else
-		snprintf(buf, size, "yes: %s%s%s", n->chip, n->tested ? "" : ", never tested",
-			 boot);
+		snprintf(buf, size, "%s: %s, %s%s",
+			 strcmp(n->driver, NIC_NATIVE) ? "yes" : "in use", n->chip, run, boot);
 	return buf;
 }
 
@@ -54,7 +53,10 @@ static void show(const struct nic *n)
 	out_str("used_by", n->by, "%-15s  ", or_none(n->by));
 	out_bool("native", !*n->why_not, "%s\n", native(n, kind, sizeof(kind)));
 	out_str("chip", n->chip, NULL);
-	out_bool("tested", n->tested, NULL);
+	if (n->tested)
+		out_str("tested", "QEMU", NULL);
+	else
+		out_null("tested", NULL);
 	out_str("why_not", n->why_not, NULL);
 	out_bool("boot", n->boot == BOOT_SET, NULL);
 	out_end();
@@ -86,9 +88,10 @@ const struct cmd cmd_devices = {
 	.opts = "",
 	.summary = "List the network cards and their users",
 	.help = "NATIVE says whether ec_intel can drive the card ('ethercat device bind'), or why not;\n"
-		"the generic device takes any of them. Cards that no test has run with ec_intel are\n"
-		"marked as never tested. 'at boot': 'ethercat device bind --boot' was given. The\n"
-		"link is unknown while the interface is down. Needs no master.\n",
+		"the generic device takes any of them. 'run in QEMU only': tests run this chip with\n"
+		"ec_intel, but no real card; 'never tested': not even that. 'at boot': 'ethercat\n"
+		"device bind --boot' was given. The link is unknown while the interface is down.\n"
+		"Needs no master.\n",
 	.json = "devices[]: interface, pci, mac, driver, link_up (null: unknown), speed_mbit_s,\n"
-		"used_by, native, chip, tested, why_not, boot",
+		"used_by, native, chip, tested (QEMU or null: never), why_not, boot",
 };

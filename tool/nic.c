@@ -207,6 +207,8 @@ static void claim(struct nics *all, unsigned int master, unsigned int side,
 		n->master = true;
 		n->link_known = true;
 		n->link_up = d->link_up;
+		if (d->speed)
+			n->speed = d->speed;
 	}
 }
 

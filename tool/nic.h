@@ -21,7 +21,7 @@
  * @by: who uses it, "" for no one
  * @master: of a master; else of the system, if @by is not ""
  * @kept: only the native driver may have it, which is not loaded
- * @tested: tests run the chip with the native driver
+ * @tested: tests run the chip with the native driver, in QEMU
  * @link_known: @link_up is known
  * @link_up: the cable is plugged in
  * @speed: Mbit/s, 0 when unknown

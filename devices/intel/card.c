@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * While no cycle polls the rings a timer does, and only while frames are on their way.
+ * While no cycle polls the rings a timer does, and only while replies are awaited.
  */
 #include "card.h"
 #include "master/wire/compat.h"
@@ -8,7 +8,7 @@
 #include "phy.h"
 
 #define IDLE_NS		(50 * NSEC_PER_USEC)	/* between two polls without a cycle */
-#define OUT_NS		(20 * NSEC_PER_MSEC)	/* a frame that is on its way longer is lost */
+#define OUT_NS		(20 * NSEC_PER_MSEC)	/* a later reply waits for another poll */
 
 #define BUSY_POLL	0	/* a poll runs */
 #define BUSY_TIMER	1	/* the timer is started, or its function runs */
@@ -34,10 +34,10 @@ static void poll(struct intel *n)
 	clear_bit_unlock(BUSY_POLL, &n->busy);
 }
 
-/* Are there frames in flight that no cycle polls for? */
+/* Are there replies to come that no cycle polls for? */
 static bool waits(struct intel *n)
 {
-	return READ_ONCE(n->ready) && !READ_ONCE(n->cycle) &&
+	return READ_ONCE(n->ready) && !READ_ONCE(n->cycle) && ecdev_awaits(n->dev) &&
 	       ktime_get_ns() - atomic64_read(&n->sent_ns) <= OUT_NS;
 }
 
@@ -70,11 +70,11 @@ static u8 *intel_tx_get(void *priv)
 static int intel_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct intel *n = priv;
-
 	int ret = -ENETDOWN;
 
 	rcu_read_lock();
-	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up)) {
+	/* not the buffer of before a start: another one would leave, with what it had then */
+	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up) && buf == ec_ring_tx_buf(&n->tx)) {
 		ec_ring_tx_put(&n->nic, &n->tx, len);
 		ret = 0;
 	}
@@ -85,7 +85,6 @@ static int intel_tx_send(void *priv, u8 *buf, size_t len)
 static void intel_tx_flush(void *priv)
 {
 	struct intel *n = priv;
-
 	bool sent;
 
 	rcu_read_lock();
@@ -129,6 +128,13 @@ static bool intel_link_up(void *priv)
 	return READ_ONCE(n->nic.up);
 }
 
+static unsigned int intel_speed(void *priv)
+{
+	struct intel *n = priv;
+
+	return READ_ONCE(n->nic.speed);
+}
+
 static void note_phy(struct intel *n, int ret)
 {
 	n->negotiate = ret;
@@ -164,7 +170,7 @@ static int run(struct intel *n)
 	return 0;
 }
 
-/* No frame, no DMA, no caller in the rings: senders are stopped by the master. */
+/* No frame, no DMA, no caller in the rings. */
 static void quiesce_locked(struct intel *n)
 {
 	lockdep_assert_held(&n->lock);
@@ -307,6 +313,8 @@ int ec_card_run_again(struct intel *n)
 	int ret = 0;
 
 	mutex_lock(&n->lock);
+	/* a master may have started it meanwhile */
+	quiesce_locked(n);
 	pci_save_state(n->pdev);
 	if (n->started)
 		ret = run(n);
@@ -328,6 +336,7 @@ const struct ecdev_ops ec_card_ops = {
 	.keeps = true,
 	.cycle = intel_cycle,
 	.link_up = intel_link_up,
+	.speed = intel_speed,
 	.look = intel_look,
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/bitfield.h>
 #include <linux/delay.h>
 #include <linux/errno.h>
 #include <linux/etherdevice.h>
@@ -139,9 +140,11 @@ int ec_nic_connect(struct intel_nic *nic)
  */
 void ec_nic_look(struct intel_nic *nic)
 {
+	static const u16 speeds[] = { 10, 100, 1000, 1000 };
 	u32 status = ec_nic_read(nic, R_STATUS);
 
 	nic->gone = status == ~0u;
-	nic->slow = !(status & STATUS_FD) || !(status & STATUS_SPEED);
+	WRITE_ONCE(nic->speed, speeds[FIELD_GET(STATUS_SPEED, status)]);
+	nic->slow = !(status & STATUS_FD) || nic->speed < 100;
 	WRITE_ONCE(nic->up, !nic->gone && status & STATUS_LU);
 }

@@ -21,6 +21,8 @@ struct intel_nic {
 	bool up;
 	/** @gone: it does not answer: unplugged */
 	bool gone;
+	/** @speed: Mbit/s, when @up */
+	u16 speed;
 	/** @slow: half duplex or 10 Mbit/s, when @up */
 	bool slow;
 };

@@ -97,8 +97,8 @@ static int probe(struct pci_dev *pdev, const struct pci_device_id *id)
 	}
 	pci_set_drvdata(pdev, n);
 	pci_save_state(pdev);
-	pci_info(pdev, "%s (%s)%s, %pM\n", chip->name, chip->class->name,
-		 chip->tested ? "" : ", never tested", n->nic.mac);
+	pci_info(pdev, "%s (%s), %s, %pM\n", chip->name, chip->class->name,
+		 chip->tested ? "run in QEMU only" : "never tested", n->nic.mac);
 	dev = ecdev_offer(pci_name(pdev), n->nic.mac, &ec_card_ops, n);
 	if (IS_ERR(dev))
 		return PTR_ERR(dev);

@@ -17,7 +17,7 @@
 #define  STATUS_FD		BIT(0)
 #define  STATUS_LU		BIT(1)
 #define  STATUS_FUNCTION	GENMASK(3, 2)
-#define  STATUS_SPEED		GENMASK(7, 6)	/* 0: 10 Mbit/s */
+#define  STATUS_SPEED		GENMASK(7, 6)	/* 0: 10, 1: 100, others: 1000 Mbit/s */
 #define  STATUS_GIO_ENABLED	BIT(19)
 #define R_CTRL_EXT	0x0018
 #define  CTRL_EXT_LINK_MODE	GENMASK(23, 22)	/* advanced: 0 is copper */

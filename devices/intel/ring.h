@@ -91,6 +91,11 @@ static inline bool ec_ring_tx_done(const struct intel_nic *nic, const union inte
 	return READ_ONCE(d->l.status) & INTEL_L_DONE;
 }
 
+static inline u8 *ec_ring_tx_buf(const struct intel_ring *tx)
+{
+	return tx->buf + tx->next * INTEL_BUF;
+}
+
 /**
  * ec_ring_tx_get() - the buffer that is next in turn
  * @nic: controller
@@ -109,7 +114,7 @@ static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel
 	 */
 	if (!ec_ring_tx_done(nic, &tx->desc[next]))
 		return NULL;
-	return tx->buf + tx->next * INTEL_BUF;
+	return ec_ring_tx_buf(tx);
 }
 
 /**

@@ -67,7 +67,7 @@ struct ec_ioc_device {
 	__u8 link_up;
 	__u32 slaves;		/* slaves that responded to the last broadcast */
 	char name[EC_UAPI_STRING];
-	__u32 reserved;
+	__u32 speed;		/* of a native device with link, Mbit/s; 0: not known here */
 	__u64 tx_frames;
 	__u64 tx_bytes;
 	__u64 rx_frames;

@@ -67,9 +67,13 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 		raw_spin_lock(&link->links->main_lock);
 		strscpy(d->name, dev->name, sizeof(d->name));
 		raw_spin_unlock(&link->links->main_lock);
+		if (dev->ops->speed)
+			d->speed = dev->ops->speed(dev->priv);
 	}
 	rcu_read_unlock();
 	d->link_up = READ_ONCE(link->up);
+	if (!d->link_up)
+		d->speed = 0;
 	d->slaves = READ_ONCE(link->slaves);
 	d->al_states = READ_ONCE(link->al_states);
 	d->tx_frames = atomic64_read(&link->stats.tx_frames);

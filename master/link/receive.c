@@ -63,3 +63,26 @@ void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
 	rcu_read_unlock();
 }
 EXPORT_SYMBOL_GPL(ecdev_receive);
+
+/**
+ * ecdev_awaits() - are replies to frames awaited that do not belong to the cycle?
+ * @dev: device
+ *
+ * A device without interrupts polls for them while nobody runs a cycle. A frame counts from
+ * before it is sent until its sender has the reply or has given it up.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether they are.
+ */
+bool ecdev_awaits(struct ecdev *dev)
+{
+	const struct ec_link *link;
+	bool ret;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	ret = link && ec_links_acyclic_ns(link->links);
+	rcu_read_unlock();
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecdev_awaits);

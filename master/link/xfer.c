@@ -213,14 +213,12 @@ static int submit_later(struct ec_links *l, struct ec_slot *slot, bool urgent)
 static void submit(struct ec_links *l, const struct half *h, struct batch_frame *f)
 {
 	f->cancelled = false;
-	f->wire_ns = 0;
+	f->wire_ns = ec_frame_wire_ns(f->slot->eth_len);
+	/* before it leaves, see ecdev_awaits() */
+	atomic_add(f->wire_ns, &l->link[0].acyclic_ns);
 	f->err = ec_submit(l, f->slot, h->urgent);
 	if (f->err == -EBUSY)
 		f->err = submit_later(l, f->slot, h->urgent);
-	if (f->err)
-		return;
-	f->wire_ns = ec_frame_wire_ns(f->slot->eth_len);
-	atomic_add(f->wire_ns, &l->link[0].acyclic_ns);
 }
 
 /*

@@ -520,12 +520,13 @@ static void link_is_read(struct kunit *test)
 {
 	static const struct {
 		u32 status;
+		u16 speed;
 		bool up, gone, slow;
 	} v[] = {
-		{ 0, false, false, true }, { 0x43, true, false, false },
-		{ 0x83, true, false, false }, { 0x42, true, false, true },
-		{ 0x03, true, false, true }, { ~0u, false, true, false },
-		{ 0x43, true, false, false },
+		{ 0, 10, false, false, true }, { 0x43, 100, true, false, false },
+		{ 0x83, 1000, true, false, false }, { 0x42, 100, true, false, true },
+		{ 0x03, 10, true, false, true }, { ~0u, 1000, false, true, false },
+		{ 0x43, 100, true, false, false },
 	};
 	struct card *c = card(test);
 	unsigned int i;
@@ -536,6 +537,7 @@ static void link_is_read(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, c->nic.up, v[i].up);
 		KUNIT_EXPECT_EQ(test, c->nic.gone, v[i].gone);
 		KUNIT_EXPECT_EQ(test, c->nic.slow, v[i].slow);
+		KUNIT_EXPECT_EQ(test, c->nic.speed, v[i].speed);
 	}
 }
 

@@ -64,11 +64,30 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 	[ "$(says 'Tx errors')" = 0 ]
 }
 
-# an interrupt of the card would be counted
+# /proc/interrupts counts those for which there is a handler
 @test "the card causes no interrupt" {
+	local command status
+
 	[ -z "$(ls "/sys/bus/pci/devices/$pci0/msi_irqs" 2>/dev/null)" ]
+	read -r command status < <(od -An -t u2 -j 4 -N 4 "/sys/bus/pci/devices/$pci0/config")
+	[ $((command & 1 << 10)) != 0 ]		# INTx is off,
+	[ $((status & 1 << 3)) = 0 ]		# and not wanted
 	run grep -E "eth0|$pci0|ec_intel" /proc/interrupts
 	[ "$status" = 1 ]
+}
+
+@test "without a cycle the card is polled only while replies are awaited" {
+	local t=/sys/kernel/tracing polls
+
+	[ -e $t/events ] || mount -t tracefs tracefs $t
+	echo 1 >$t/events/timer/hrtimer_expire_entry/enable
+	: >$t/trace
+	sleep 1
+	echo 0 >$t/events/timer/hrtimer_expire_entry/enable
+	polls=$(grep -c 'function=poll_idle' $t/trace)
+	echo "# polls in a second, with 50 looks of the monitor: $polls" >&3
+	[ "$polls" -ge 25 ]
+	[ "$polls" -lt 500 ]
 }
 
 @test "the cable is unplugged and plugged in again" {
@@ -98,6 +117,7 @@ listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$
 	[ "$(listed driver "$pci0")" = ec_intel ]
 	[ "$(listed used_by "$pci0")" = "Master0 main" ]
 	[ "$(listed link_up "$pci0")" = true ]
+	[ "$(listed speed_mbit_s "$pci0")" = 1000 ]
 	[ "$(listed driver "$pci1")" = "$EC_NIC" ]
 	[ "$(listed native "$pci1")" = true ]
 	refused "$pci0 is used by Master0 main" device unbind "$pci0"
@@ -301,6 +321,9 @@ used_kib() {
 		[ ! -e "/sys/bus/pci/devices/$pci0/reset" ]
 		return
 	fi
+	method=$(cat "/sys/bus/pci/devices/$pci0/reset_method")
+	echo "# reset method: $method" >&3
+	[ "$EC_NIC" != igb ] || [[ $method == *flr* ]]
 	demo_runs
 	echo 1 >"/sys/bus/pci/devices/$pci0/reset"
 	wait_for 120 all_slaves_are OP 22
@@ -359,8 +382,10 @@ used_kib() {
 	dmesg | grep -q "ec_intel 0000:00:00.0: 8086:$(sed 's/0x//' $bridge/device) is not in the list of chips"
 }
 
-@test "the card disappears" {
+@test "the card disappears while the application runs" {
+	demo_runs
 	monitor device_del nic0
 	wait_for 60 test ! -e "/sys/bus/pci/devices/$pci0"
 	waits
+	kill -0 $app
 }

@@ -72,7 +72,7 @@ native_driver() {
 	out devices -j | json 'd["devices"][0] == {
 		"interface": "enp1s0", "pci": "0000:01:00.0", "mac": "02:00:00:00:00:01",
 		"driver": "e1000e", "link_up": None, "speed_mbit_s": 0, "used_by": "",
-		"native": True, "chip": "82574L", "tested": True, "why_not": "", "boot": False}'
+		"native": True, "chip": "82574L", "tested": "QEMU", "why_not": "", "boot": False}'
 }
 
 @test "devices without a network card prints nothing" {
@@ -365,11 +365,11 @@ in_read_only_etc() {
 	sed 's/0000:01:00.0/0000:04:00.0/' "$rule" >"$rules/59-ethercat-0000:04:00.0.rules"
 	out devices -j | json '[x["pci"] for x in d["devices"] if x["boot"]] == ["0000:01:00.0"]'
 	run out devices
-	[[ ${lines[1]} == *"  yes: 82574L, at boot" ]]
+	[[ ${lines[1]} == *"  yes: 82574L, run in QEMU only, at boot" ]]
 	[[ ${lines[4]} == *"  yes: I210, never tested" ]]
 	is_bound
 	run out devices
-	[[ ${lines[1]} == *"  in use, at boot" ]]
+	[[ ${lines[1]} == *"  in use: 82574L, run in QEMU only, at boot" ]]
 	run err devices
 	echo "$output"
 	[ "${#lines[@]}" -eq 2 ]
