@@ -81,8 +81,8 @@ if [ -n "$cpu" ]; then
 	taskset -c "$cpu" true 2>/dev/null || refuse "--cpu $cpu: no such CPU is online"
 fi
 cycles=$((time * 1000000 / period))
-[ "$cycles" -ge 1 ] && [ "$cycles" -le 10000000 ] ||
-	refuse "--time $time with --period $period: $cycles cycles, 1 to 10000000 are possible"
+[ "$cycles" -ge 1 ] && [ "$cycles" -le 20000000 ] ||
+	refuse "--time $time with --period $period: $cycles cycles, 1 to 20000000 are possible"
 out=${out:-jitter-$(date +%Y%m%d-%H%M%S).txt}
 [ "$(id -u)" = 0 ] || stop "run it as root: it loads kernel modules"
 [ ! -e /sys/module/ec_master ] ||
@@ -98,7 +98,7 @@ if [ -z "${EC_BUILD:-}" ]; then
 fi
 tool=$EC_BUILD/tool/ethercat
 tmp=$(mktemp -d) || exit 1
-loads=() loaded=() bound=''
+loads=() loaded=() bound='' down=''
 
 undo() {
 	local p m
@@ -107,10 +107,13 @@ undo() {
 		kill -KILL -- "-$p" 2>/dev/null
 		wait "$p" 2>/dev/null
 	done
-	[ -z "$bound" ] || "$tool" device unbind "$bound" >&2
+	# the master still has it
+	[ -z "$bound" ] || "$tool" device unbind --force "$bound" >&2
 	for m in ${loaded[@]+"${loaded[@]}"}; do
 		rmmod "$m" || echo "$me: cannot unload $m" >&2
 	done
+	# ec_generic has set it up
+	[ -z "$down" ] || ip link set "$down" down
 	rm -rf "$tmp"
 }
 trap undo EXIT
@@ -123,11 +126,22 @@ insert() {
 	loaded=("${1%.ko}" ${loaded[@]+"${loaded[@]}"})
 }
 
+# is_down DEVICE: prints the name of an interface that is down
+is_down() {
+	local d
+
+	for d in /sys/class/net/*; do
+		[ "${d##*/}" = "$1" ] || grep -qix "$1" "$d/address" || continue
+		(($(<"$d/flags") & 1)) || { echo "${d##*/}"; return; }
+	done
+}
+
 load_modules() {
 	case $kind in
 	sim)	insert master/ec_master.ko main_devices=sim0
 		insert devices/sim/ec_sim.ko segment="$PWD/tests/segments/drive10.seg" ;;
-	generic) insert master/ec_master.ko main_devices="$device"
+	generic) down=$(is_down "$device")
+		insert master/ec_master.ko main_devices="$device"
 		insert devices/ec_generic.ko ;;
 	native)	insert master/ec_master.ko main_devices="$device"
 		insert devices/intel/ec_intel.ko

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
+# vm: --icount --nics
 # tests/bench/jitter.sh with the simulated segment: report, verdict, and nothing is left.
 
 load helpers
@@ -87,4 +88,25 @@ nothing_is_left() {
 	[ "$status" -eq 1 ]
 	[[ $output == *"ec_master is loaded"* ]]
 	[ -e /sys/module/ec_master ]
+}
+
+@test "jitter.sh gives a network card back to its driver" {
+	stop
+	modprobe e1000e
+	pci0=$(pci eth0)
+	ip link set eth1 up
+	# above the programs whose frames it answers: there is one CPU
+	chrt -f 95 "$EC_BUILD/tool/ethercat-sim" --segment tests/segments/drive10.seg eth1 \
+		>"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
+	sim=$!
+	wait_for 60 grep -q 'slave(s), at ' "$BATS_TEST_TMPDIR/sim"
+	for device in eth0 52:54:00:EC:00:00 "$pci0"; do
+		jitter --time 1 --limit 1000000 --device "$device"
+		[[ $(head -n 1 "$report") == "Verdict: "* ]]
+		grep "device $device" "$report"
+		nothing_is_left
+		wait_for 60 test -e /sys/class/net/eth0
+		[ "$(basename "$(readlink "/sys/bus/pci/devices/$pci0/driver")")" = e1000e ]
+	done
+	kill $sim
 }
