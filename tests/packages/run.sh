@@ -162,8 +162,7 @@ boots() {
 		systemctl start app
 		wait_until "slaves OP 3"
 		systemctl restart ethercat
-		systemctl is-active app
-		wait_until "slaves OP 3"
+		wait_until "systemctl is-active app && slaves OP 3"
 		systemctl disable --now ethercat
 		refused systemctl is-active app
 		unloaded
