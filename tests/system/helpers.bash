@@ -66,8 +66,10 @@ standstill() {
 		echo "$(</proc/"$p"/comm):$(sed -n 's/^State:\t/ /p' /proc/"$p"/status)"
 		cat /proc/"$p"/stack
 	done
-	ethercat master | grep -E '^ *(Link|Slaves|Phase|Active)' || true
-	grep -H . /sys/class/net/eth*/{carrier,operstate} || true
+	ethercat master | sed -nE '/^ *(Link|Slaves|Phase|Active)/p'
+	for p in /sys/class/net/*; do
+		echo "${p##*/}: $(cat "$p/operstate" "$p/carrier" | xargs)"
+	done
 	dmesg | tail -n 12
 } 2>/dev/null
 
