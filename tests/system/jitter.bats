@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics
+# vm: --icount --nics --timeout 900
 # tests/bench/jitter.sh with the simulated segment: report, verdict, and nothing is left.
 
 load helpers

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
+# vm: --icount --timeout 900
 # 'ethercat why' names cause and place of faults that the simulator injects.
 
 load helpers
