@@ -522,8 +522,11 @@ static struct notifier_block notifier = { .notifier_call = event };
 /* An interface without its last address may be free now, see is_free(). */
 static int address_event(struct notifier_block *nb, unsigned long what, void *ptr)
 {
+	const struct in_ifaddr *a = ptr;
+
 	ASSERT_RTNL();
-	if (what == NETDEV_DOWN && !leaving)
+	/* any user has the addresses of a namespace of their own */
+	if (what == NETDEV_DOWN && !leaving && net_eq(dev_net(a->ifa_dev->dev), &init_net))
 		schedule_work(&look_work);
 	return NOTIFY_DONE;
 }

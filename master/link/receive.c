@@ -68,7 +68,7 @@ EXPORT_SYMBOL_GPL(ecdev_receive);
  * ecdev_awaits() - are replies to frames awaited that do not belong to the cycle?
  * @dev: device
  *
- * A device without interrupts polls for them while nobody runs a cycle. A frame counts from
+ * A device without interrupts polls for them while no cycle runs. A frame counts from
  * before it is sent until its sender has the reply or has given it up.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.

@@ -98,12 +98,17 @@ no_insmod() {
 	one_line 'main device'
 }
 
-@test "the broadcast address is no interface with an IP address, and no port of a bridge" {
-	ip link add veth0 type veth peer name veth1
-	ip link add veth2 type veth peer name veth3
+# neither veth1 nor the bridge is free
+bridged() {
 	ip link add br0 type bridge
 	ip link set veth1 master br0
 	ip address add 10.1.0.1/24 dev br0
+}
+
+@test "the broadcast address is no interface with an IP address, and no port of a bridge" {
+	ip link add veth0 type veth peer name veth1
+	ip link add veth2 type veth peer name veth3
+	bridged
 	ip address add 10.2.0.1/24 dev veth0
 	ip address add 10.3.0.1/24 dev veth2
 	master main_devices=ff:ff:ff:ff:ff:ff
@@ -114,9 +119,7 @@ no_insmod() {
 
 @test "an interface whose last IP address is removed is free for the broadcast address" {
 	ip link add veth0 type veth peer name veth1
-	ip link add br0 type bridge
-	ip link set veth1 master br0
-	ip address add 10.1.0.1/24 dev br0
+	bridged
 	ip address add 10.2.0.1/24 dev veth0
 	ip address add 10.3.0.1/24 dev veth0
 	master main_devices=ff:ff:ff:ff:ff:ff
