@@ -367,6 +367,5 @@ void ec_card_init(struct intel *n)
 	ratelimit_state_init(&n->restarts, 60 * HZ, 3);
 	ratelimit_set_flags(&n->faults, RATELIMIT_MSG_ON_RELEASE);
 	ratelimit_set_flags(&n->restarts, RATELIMIT_MSG_ON_RELEASE);
-	hrtimer_init(&n->idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
-	n->idle.function = poll_idle;
+	hrtimer_setup(&n->idle, poll_idle, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
 }

@@ -5,6 +5,7 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "describe.h"
+#include "master/wire/compat.h"
 #include "sim_wire.h"
 
 #define FRAMES	320	/* on their way at once; a master has 256 slots */
@@ -275,8 +276,7 @@ int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 	w->start_ns = start_ns;
 	w->deliver = deliver;
 	raw_spin_lock_init(&w->lock);
-	hrtimer_init(&w->timer, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);
-	w->timer.function = timeout;
+	hrtimer_setup(&w->timer, timeout, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);
 	INIT_LIST_HEAD(&w->flying);
 	INIT_LIST_HEAD(&w->free);
 	for (i = 0; i < FRAMES; i++)

@@ -20,6 +20,7 @@
 #include <linux/kthread.h>
 #include <linux/module.h>
 #include <linux/sched.h>
+#include <linux/version.h>
 #include <ecrt.h>
 
 #define PERIOD_US	1000
@@ -181,8 +182,12 @@ static int __init ec_mini_init(void)
 	if (ret)
 		goto err;
 	if (in_interrupt) {
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 13, 0)
 		hrtimer_init(&timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
 		timer.function = tick;
+#else
+		hrtimer_setup(&timer, tick, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
+#endif
 		hrtimer_start(&timer, period, HRTIMER_MODE_REL_HARD);
 		return 0;
 	}

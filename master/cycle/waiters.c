@@ -45,7 +45,8 @@ bool ec_waiters_poll(struct ec_waiters *w, struct file *filp, poll_table *table)
 {
 	bool ok;
 
-	if (poll_does_not_wait(table))
+	/* poll_wait() would do nothing; newer kernels have no name for it */
+	if (!table || !table->_qproc)
 		return true;
 	/* an entry is counted here until it is in the queue, so the limit is exact */
 	ok = has_place(w, atomic_inc_return(&w->adding));

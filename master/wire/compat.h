@@ -18,7 +18,12 @@
 #else
 #include <linux/unaligned.h>
 #endif
+/* mac_pton(), which is elsewhere in 6.1 */
+#if LINUX_VERSION_CODE >= KERNEL_VERSION(6, 12, 0)
+#include <linux/hex.h>
+#endif
 #include <linux/device.h>
+#include <linux/hrtimer.h>
 #include <linux/mm.h>
 
 /* class_create() lost its owner argument in 6.4 */
@@ -47,6 +52,17 @@ static inline void ec_vma_flags(struct vm_area_struct *vma, unsigned long set, u
 	vm_flags_mod(vma, set, clear);
 #endif
 }
+
+/* took the place of hrtimer_init() in 6.13 */
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 13, 0)
+static inline void hrtimer_setup(struct hrtimer *timer,
+				 enum hrtimer_restart (*function)(struct hrtimer *),
+				 clockid_t clock, enum hrtimer_mode mode)
+{
+	hrtimer_init(timer, clock, mode);
+	timer->function = function;
+}
+#endif
 
 /* does the driver lock its transmit queue itself? A feature bit before 6.12 */
 #if LINUX_VERSION_CODE < KERNEL_VERSION(6, 12, 0)

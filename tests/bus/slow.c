@@ -3,6 +3,7 @@
 #include <linux/hrtimer.h>
 #include "slow.h"
 #include "devices/ecdev.h"
+#include "master/wire/compat.h"
 
 #define RING_MAX	64
 #define RX_MAX		64
@@ -223,8 +224,7 @@ struct slow *slow_plug(struct bus *b, u32 ring, u32 slowness)
 	s->ring = ring;
 	s->slowness = slowness;
 	raw_spin_lock_init(&s->lock);
-	hrtimer_init(&s->timer, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
-	s->timer.function = has_left;
+	hrtimer_setup(&s->timer, has_left, CLOCK_MONOTONIC, HRTIMER_MODE_REL_SOFT);
 	KUNIT_ASSERT_EQ(b->test, ec_sim_wire_init(&s->wire, b->sim, 0, deliver), 0);
 	b->t0 = ktime_get_ns();
 	dev = ecdev_offer("bus0", mac, &ops, s);

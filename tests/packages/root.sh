@@ -12,16 +12,18 @@ cd "$(dirname "$0")/../.."
 cache=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}
 suite=${1:-}
 case $suite in
-bookworm) kernel=6.1-rt ;;
-trixie)	kernel=6.12-deb13-rt ;;
+bookworm) kernel=6.1-rt backports= ;;
+trixie)	kernel=6.12-deb13-rt backports=trixie-backports ;;
 *)	echo "usage: root.sh bookworm|trixie [kernel]" >&2; exit 2 ;;
 esac
 if [ "${2:-}" = kernel ]; then
 	echo $kernel
 	exit
 fi
-# the first kernel is the one of the guests, the second one that of an update
-first=linux-headers-$(tests/vm/kernels.sh release $kernel) second=linux-headers-amd64
+# the first kernel is the one of the guests, the second one that of an update: in Debian 13 the
+# newest one of its backports
+first=linux-headers-$(tests/vm/kernels.sh release $kernel)
+second="${backports:+-t $backports }linux-headers-amd64"
 packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod lintian man-db pkg-config
 	systemd systemd-sysv udev $first"
 root=$cache/roots/packages-$suite
@@ -35,7 +37,7 @@ if [ "$(cat "$root/.complete" 2>/dev/null || true)" != "$layout" ]; then
 	rm -rf --one-file-system "$root" "$root.new"
 	tmp=$(mktemp -d)
 	trap 'rm -rf --one-file-system "$tmp" "$root.new"' EXIT
-	tests/vm/kernels.sh sources "$suite" >"$tmp/sources"
+	for s in $suite $backports; do tests/vm/kernels.sh sources "$s"; done >"$tmp/sources"
 	# its mounts end with it, however it ends
 	# shellcheck disable=SC2086
 	unshare -m --propagation private \

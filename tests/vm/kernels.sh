@@ -21,7 +21,8 @@ usage() {
 	       kernels.sh qemu backports      print a folder with the programs of a newer QEMU,
 	                                      which has the network card igb
 	       kernels.sh source 6.1          print the path of the kernel's source, an archive
-	       kernels.sh sources SUITE       print apt's sources of bookworm or trixie
+	       kernels.sh sources SUITE       print apt's sources of bookworm, trixie or
+	                                      trixie-backports
 	       kernels.sh drop FLAVOUR...     remove from the cache (the next fetch
 	                                      takes the newest version)
 	flavours: 6.1 6.1-rt 6.12 6.12-rt 6.1-i386 6.1-arm64 6.1-s390x
@@ -139,10 +140,10 @@ suite_sources() {
 	done
 }
 
-backports_sources() {
+backports_sources() {	# backports_sources SUITE
 	local s
 
-	for s in bookworm trixie; do sources "^$s\$" bookworm-backports; done
+	for s in bookworm trixie; do sources "^$s\$" "$1-backports"; done
 }
 
 # The lists of packages live in the cache, so this works without root and sees
@@ -156,7 +157,7 @@ apt_setup() {	# apt_setup base|backports|trixie [ARCHITECTURE]
 	case $1 in
 	base)	suite_sources bookworm ;;
 	trixie)	suite_sources trixie ;;
-	*)	backports_sources ;;
+	*)	backports_sources bookworm ;;
 	esac >"$d/ec.sources"
 	[ -s "$d/ec.sources" ] || die "no source for Debian bookworm or trixie, 'main', found in" \
 		"/etc/apt/sources.list and /etc/apt/sources.list.d; add one, or copy a filled cache to $cache"
@@ -437,6 +438,7 @@ fi
 if [ "$cmd" = sources ]; then
 	case $* in
 	bookworm|trixie) suite_sources "$1" ;;
+	trixie-backports) backports_sources trixie ;;
 	*)	usage ;;
 	esac
 	exit 0
