@@ -161,6 +161,24 @@ cost() {
 		"${v[queue_mean]}" "${v[send_mean]}" "${v[total_mean]}" "${v[entry]}"
 }
 
+# What the kernel's cycle of 1 ms takes from an application that never sleeps: its thread, what
+# wakes it, and both switches, without the clock tick, which comes anyway.
+spinning() {
+	local floor limit spins what
+
+	what="a cycle of the kernel, the application spins, native device, ${v[slaves]} drive(s)"
+	floor=$((v[floor1_spin_rest] - v[spinning_per_ms]))
+	spins=$((v[spin_card_work] + v[spin_master_work] + v[spin_rest_work]))
+	spins=$((spins - v[spinning_per_ms]))
+	echo "# kernel's cycle, the application spins: $spins"
+	echo "# floor of the same: a thread that only sleeps $floor; above it: $((spins - floor))"
+	gate "$what: ${v[spin_lost]} frames lost, ${v[spin_wc_errors]} working-counter errors" \
+		"${v[spin_lost]} == 0 && ${v[spin_wc_errors]} == 0 && ${v[spin_call_errors]} == 0"
+	limit=$(((v[slaves] == 1 ? 7600 : 11500) * slack / 100))
+	row $spins $limit "all instructions of $what"
+	gate "$what: $spins instructions, at most $limit" "spins > floor && spins <= limit"
+}
+
 # work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
 # interrupts, threads, monitor, wake-ups; without the simulator, its network card and the
 # interrupts of both, and without what this machine executes in such a time before there is a
@@ -243,19 +261,23 @@ floors() {
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
-	local ms=$1 us=${1}000 n own limit
+	local ms=$1 us=${1}000 n own limit spin=()
 
+	# one of 4 ms begins with the clock tick, and only one of them is the cycle's
+	[ "$ms" != 1 ] || spin=(+ spin --cycles 50 --work 100 --period-us $us --kernel spin)
 	echo "# instructions per cycle of $ms ms, native device on e1000e"
 	for n in 1 100; do
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
 			--period-us $us + kernel --cycles 300 --period-us $us --kernel timer \
-			+ wait --cycles 300 --period-us $us --kernel wait || return
+			+ wait --cycles 300 --period-us $us --kernel wait \
+			${spin[@]+"${spin[@]}"} || return
 		cost native
 		kernel_cost
 		work "" $ms "application's cycle"; own=$work
 		work kernel_ $ms "kernel's cycle, the application sleeps by itself"
 		work wait_ $ms "kernel's cycle, the application waits for it"
 		floors $ms "$own" "$work"
+		[ "$ms" != 1 ] || spinning
 		limit=$(((n == 1 ? 2600 : 6000) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \

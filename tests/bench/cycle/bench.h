@@ -111,7 +111,7 @@ void trace_switch(bool on);
 void trace_violate(struct bench *b, unsigned int cycle);
 
 /* work.c */
-bool work_begin(struct work *w);
+bool work_begin(struct work *w, bool spins);
 void work_end(struct work *w);
 int work_baseline(unsigned int ms);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
  * The floor of a cycle: what the CPU executes when nothing is done in it. A real-time thread that
- * only sleeps until the next period, and one that wakes another each time.
+ * only sleeps until the next period, one that wakes another each time, and one that interrupts
+ * another which never sleeps. Of the last, that other one does not count.
  */
 #include "bench.h"
 
@@ -9,6 +10,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -20,6 +22,8 @@ struct floor {
 	unsigned int cycles;
 	unsigned int period_us;
 	sem_t *wake;	/* NULL: there is no other thread */
+	bool spins;	/* the other never sleeps */
+	atomic_bool done;
 	struct work work;
 	bool worked;
 };
@@ -41,29 +45,34 @@ static void *sleeper(void *arg)
 	struct timespec t;
 	unsigned int i;
 
+	if (f->spins)
+		pthread_setname_np(pthread_self(), "sleeper");
 	clock_gettime(CLOCK_MONOTONIC, &t);
 	for (i = 0; i < SETTLE + f->cycles; i++) {
 		if (i == SETTLE)
-			f->worked = work_begin(&f->work);
+			f->worked = work_begin(&f->work, f->spins);
 		sleep_until(&t, f->period_us);
 		if (f->wake)
 			sem_post(f->wake);
 	}
 	if (f->worked)
 		work_end(&f->work);
+	f->done = true;
 	return NULL;
 }
 
 /* sleeper() in a thread of higher priority than the caller */
 static int measure(struct floor *f)
 {
-	struct sched_param own = { .sched_priority = PRIORITY },
+	struct sched_param own = { .sched_priority = f->spins ? 0 : PRIORITY },
 			   higher = { .sched_priority = PRIORITY + 1 };
 	pthread_attr_t attr;
 	pthread_t thread;
 	unsigned int i;
 
-	if (mlockall(MCL_CURRENT | MCL_FUTURE) || sched_setscheduler(0, SCHED_FIFO, &own))
+	f->done = false;
+	if (mlockall(MCL_CURRENT | MCL_FUTURE) ||
+	    sched_setscheduler(0, f->spins ? SCHED_OTHER : SCHED_FIFO, &own))
 		return errno;
 	pthread_attr_init(&attr);
 	pthread_attr_setinheritsched(&attr, PTHREAD_EXPLICIT_SCHED);
@@ -74,6 +83,8 @@ static int measure(struct floor *f)
 	for (i = 0; f->wake && i < SETTLE + f->cycles; i++)
 		while (sem_wait(f->wake))
 			;
+	while (f->spins && !f->done)
+		;
 	return pthread_join(thread, NULL);
 }
 
@@ -88,6 +99,7 @@ static void report(const struct floor *f, const char *name)
 	       (all - own) / f->cycles);
 }
 
+/* cycles without and with another thread, which sleeps or spins */
 int floor_measure(unsigned int cycles, unsigned int period_us)
 {
 	struct floor f = { .cycles = cycles, .period_us = period_us };
@@ -101,6 +113,12 @@ int floor_measure(unsigned int cycles, unsigned int period_us)
 		f.wake = &wake;
 		ret = measure(&f);
 		report(&f, "floor_wake");
+	}
+	if (!ret && f.worked) {
+		f.wake = NULL;
+		f.spins = true;
+		ret = measure(&f);
+		report(&f, "floor_spin");
 	}
 	if (ret || !f.worked)
 		fprintf(stderr, "cycle-bench: %s\n",

@@ -188,7 +188,7 @@ static void lean_cycles(struct bench *b, long long *at)
 	b->seen = 0;
 	for (k = 0; k < SETTLE + b->work_cycles; k++) {
 		if (k == SETTLE)
-			b->worked = work_begin(&b->work);
+			b->worked = work_begin(&b->work, b->mode == MODE_SPIN);
 		if (b->mode == MODE_OWN)
 			sleep_until(b, at);
 		else
@@ -338,12 +338,13 @@ static void report(struct bench *b)
 
 /* process -------------------------------------------------------------------*/
 
-static void become_realtime(void)
+/* One that spins on the only CPU leaves none to the simulator if it has a priority. */
+static void become_realtime(const struct bench *b)
 {
 	struct sched_param param = { .sched_priority = PRIORITY };
 
 	if (mlockall(MCL_CURRENT | MCL_FUTURE) ||
-	    sched_setscheduler(0, SCHED_FIFO, &param))
+	    (b->mode != MODE_SPIN && sched_setscheduler(0, SCHED_FIFO, &param)))
 		perror("cycle-bench: not real-time");
 }
 
@@ -355,7 +356,7 @@ static int bench(void *arg)
 	b->master = ecrt_request_master(b->index);
 	if (!b->master)
 		return 1;
-	become_realtime();
+	become_realtime(b);
 	ret = setup(b);
 	b->entry = syscall_entry(b);
 	if (!ret)
@@ -386,7 +387,8 @@ static void usage(FILE *out)
 		"                 wait (a system call), spin, timer (one of its own)\n"
 		"  --syscalls     count system calls instead of time\n"
 		"  --trace        switch ftrace on while measuring\n"
-		"  --baseline MS  only measure what the machine does by itself in a millisecond\n"
+		"  --baseline MS  only measure what the machine does by itself in a millisecond,\n"
+		"                 idle and while a process computes\n"
 		"  --floor        only measure cycles in which nothing is done\n"
 		"  --violate      sleep, fault and print in the cycle, now and then\n"
 		"Exit code 0: no frame lost, no working-counter error; 1: not; 2: usage.\n");

@@ -49,15 +49,16 @@ static long long now_ns(void)
 	return t.tv_sec * 1000000000LL + t.tv_nsec;
 }
 
-/* false: bench_split.ko is not loaded, nothing is counted */
-bool work_begin(struct work *w)
+/* @spins: a process computes all the time. false: bench_split.ko does not count */
+bool work_begin(struct work *w, bool spins)
 {
+	const char *way = spins ? "spin" : "1";
 	int fd = open(PARAMETERS "clear", O_WRONLY | O_CLOEXEC);
 	bool ok;
 
 	w->idle = idle_ns();
 	w->begin = now_ns();
-	ok = fd >= 0 && write(fd, "1", 1) == 1;
+	ok = fd >= 0 && write(fd, way, strlen(way)) == (ssize_t)strlen(way);
 	if (fd >= 0)
 		close(fd);
 	return ok;
@@ -80,15 +81,19 @@ void work_end(struct work *w)
 		w->by[worker(name)] += ns;
 }
 
-/* What the machine does while nobody wants anything of it, in @ms milliseconds. */
+/*
+ * What the machine does while no one wants anything of it, in @ms milliseconds; and while a
+ * process computes, without what that executes: then the clock ticks.
+ */
 int work_baseline(unsigned int ms)
 {
 	struct timespec t = { .tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L };
-	unsigned long long sum = 0;
+	unsigned long long sum = 0, spinning = 0;
 	struct work w;
+	long long end;
 
 	nanosleep(&t, NULL);
-	if (!work_begin(&w)) {
+	if (!work_begin(&w, false)) {
 		fprintf(stderr, "cycle-bench: bench_split.ko is not loaded\n");
 		return 1;
 	}
@@ -96,6 +101,14 @@ int work_baseline(unsigned int ms)
 	work_end(&w);
 	for (unsigned int i = 0; i < WORKERS; i++)
 		sum += w.by[i];
-	printf("baseline_per_ms %llu\n", sum / ms);
+	if (!work_begin(&w, true))
+		perror("cycle-bench: bench_split.ko");
+	end = now_ns() + ms * 1000000LL;
+	while (now_ns() < end)
+		;
+	work_end(&w);
+	for (unsigned int i = 0; i < WORKERS; i++)
+		spinning += i == WORKER_APPLICATION ? 0 : w.by[i];
+	printf("baseline_per_ms %llu\nspinning_per_ms %llu\n", sum / ms, spinning / ms);
 	return 0;
 }

@@ -6,9 +6,15 @@
  * interrupt counts for the task it comes in; what is executed in the idle task, where most
  * interrupts come, for the task that runs next: the one that was woken.
  *
- * Parameters: clear (written: all are 0), tasks (lines "NAME ns", until now).
+ * A task that never sleeps and has no priority is interrupted all the time. What wakes another
+ * one then counts for that one, with the switch to it, and the clock tick for "timer". That
+ * needs more looks, which themselves cost a little: only on request.
+ *
+ * Parameters: clear (written: all are 0; "spin": the second way), tasks (lines "NAME ns",
+ * until now; the first way from now on).
  */
 #include <linux/cpumask.h>
+#include <linux/interrupt.h>
 #include <linux/math64.h>
 #include <linux/module.h>
 #include <linux/sched.h>
@@ -27,9 +33,12 @@ static struct task_work {
 static unsigned int n_tasks;
 static u64 last_ns;	/* end of the last look */
 static u64 idle_us;	/* idle time until then */
-static struct tracepoint *switches;
 
-static struct task_work *find(struct task_struct *task)
+static bool spins;
+static const struct task_struct *woken;	/* by the interrupt of the timer */
+
+/* @task NULL: the interrupt of the timer */
+static struct task_work *find(const struct task_struct *task)
 {
 	struct task_work *t;
 
@@ -42,39 +51,112 @@ static struct task_work *find(struct task_struct *task)
 	t->task = task;
 	t->ns = 0;
 	/* get_task_comm() may sleep on PREEMPT_RT */
-	strscpy(t->name, task->comm, sizeof(t->name));
+	strscpy(t->name, task ? task->comm : "timer", sizeof(t->name));
 	return t;
 }
 
 /* with interrupts off; the work of this call counts for no thread */
-static void charge(struct task_struct *prev, struct task_struct *next)
+static void charge(const struct task_struct *to)
 {
 	u64 work = ktime_get_mono_fast_ns() - last_ns;
 
-	if (is_idle_task(prev)) {
+	if (is_idle_task(current)) {
 		u64 idle = get_cpu_idle_time_us(0, NULL);
 
 		work -= (idle - idle_us) * NSEC_PER_USEC;
 		idle_us = idle;
 	}
-	find(is_idle_task(prev) ? next : prev)->ns += work;
+	find(to)->ns += work;
 	last_ns = ktime_get_mono_fast_ns();
 }
 
 static void on_switch(void *data, bool preempt, struct task_struct *prev,
 		      struct task_struct *next, unsigned int prev_state)
 {
-	charge(prev, next);
+	bool displaced = spins && preempt && prev->policy == SCHED_NORMAL;
+
+	charge(displaced || is_idle_task(prev) ? next : prev);
+}
+
+static void look_at_current(void)
+{
+	if (!is_idle_task(current))
+		charge(current);
+}
+
+static void on_timer(void *data, int vector)
+{
+	look_at_current();
+	woken = NULL;
+}
+
+static void on_wake(void *data, struct task_struct *task)
+{
+	woken = task;
+}
+
+static void on_timer_done(void *data, int vector)
+{
+	if (!is_idle_task(current))
+		charge(woken);
+}
+
+static void on_interrupt(void *data, int irq, struct irqaction *action)
+{
+	look_at_current();
+}
+
+static struct probe {
+	const char *name;
+	void *call;
+	struct tracepoint *at;
+} probes[] = {
+	{ "sched_switch", on_switch },
+	{ "sched_waking", on_wake },
+	{ "irq_handler_entry", on_interrupt },
+	{ "local_timer_entry", on_timer },
+	{ "local_timer_exit", on_timer_done },
+};
+
+static void look(struct tracepoint *tp, void *data)
+{
+	struct probe *p;
+
+	for (p = probes; p < probes + ARRAY_SIZE(probes); p++)
+		if (!strcmp(tp->name, p->name))
+			p->at = tp;
+}
+
+static unsigned int watched;	/* probes that are registered */
+
+static int watch_until(unsigned int n)
+{
+	int ret = 0;
+
+	while (watched < n && !ret) {
+		struct probe *p = &probes[watched];
+
+		ret = p->at ? tracepoint_probe_register(p->at, p->call, NULL) : -ENOENT;
+		watched += !ret;
+	}
+	while (watched > n) {
+		watched--;
+		tracepoint_probe_unregister(probes[watched].at, probes[watched].call, NULL);
+	}
+	spins = watched == ARRAY_SIZE(probes);
+	return ret;
 }
 
 static int clear(const char *value, const struct kernel_param *kp)
 {
+	int ret = watch_until(sysfs_streq(value, "spin") ? ARRAY_SIZE(probes) : 1);
+
 	local_irq_disable();
 	n_tasks = 0;
 	idle_us = get_cpu_idle_time_us(0, NULL);
 	last_ns = ktime_get_mono_fast_ns();
 	local_irq_enable();
-	return 0;
+	return ret;
 }
 
 static int get_tasks(char *buffer, const struct kernel_param *kp)
@@ -83,8 +165,9 @@ static int get_tasks(char *buffer, const struct kernel_param *kp)
 	int n = 0;
 
 	local_irq_disable();
-	charge(current, current);
+	charge(current);
 	local_irq_enable();
+	watch_until(1);
 	for (t = tasks; t < tasks + n_tasks; t++)
 		n += scnprintf(buffer + n, PAGE_SIZE - n, "%s %llu\n", t->name, t->ns);
 	return n;
@@ -96,26 +179,19 @@ static const struct kernel_param_ops tasks_ops = { .get = get_tasks };
 module_param_cb(clear, &clear_ops, NULL, 0200);
 module_param_cb(tasks, &tasks_ops, NULL, 0400);
 
-static void look(struct tracepoint *tp, void *data)
+static void split_exit(void)
 {
-	if (!strcmp(tp->name, "sched_switch"))
-		switches = tp;
+	watch_until(0);
+	tracepoint_synchronize_unregister();
 }
 
 static int __init split_init(void)
 {
 	for_each_kernel_tracepoint(look, NULL);
-	if (!switches || num_possible_cpus() != 1) {
-		pr_err("bench_split: needs the tracepoint sched_switch and one CPU\n");
-		return -EINVAL;
-	}
-	return tracepoint_probe_register(switches, on_switch, NULL);
-}
-
-static void __exit split_exit(void)
-{
-	tracepoint_probe_unregister(switches, on_switch, NULL);
-	tracepoint_synchronize_unregister();
+	if (num_possible_cpus() == 1 && !watch_until(1))
+		return 0;
+	pr_err("bench_split: needs the tracepoint sched_switch and one CPU\n");
+	return -EINVAL;
 }
 
 module_init(split_init);
