@@ -37,7 +37,9 @@ if [ "$(cat "$root/.complete" 2>/dev/null || true)" != "$layout" ]; then
 	rm -rf --one-file-system "$root" "$root.new"
 	tmp=$(mktemp -d)
 	trap 'rm -rf --one-file-system "$tmp" "$root.new"' EXIT
-	for s in $suite $backports; do tests/vm/kernels.sh sources "$s"; done >"$tmp/sources"
+	for s in $suite $backports; do
+		tests/vm/kernels.sh sources "$s" && echo
+	done >"$tmp/sources"
 	# its mounts end with it, however it ends
 	# shellcheck disable=SC2086
 	unshare -m --propagation private \
@@ -45,7 +47,8 @@ if [ "$(cat "$root/.complete" 2>/dev/null || true)" != "$layout" ]; then
 		--aptopt='Acquire::Retries "5"' \
 		--customize-hook='mkdir -p "$1/srv/second/partial"' \
 		--customize-hook="chroot \"\$1\" apt-get -qq -y --download-only \
-			-o Dir::Cache::Archives=/srv/second install $second" \
+			-o Dir::Cache::Archives=/srv/second install $second &&
+			rm -f \"\$1\"/srv/second/linux-libc-dev_*" \
 		"$suite" "$root.new" - <"$tmp/sources" >"$tmp/log" 2>&1 || {
 		tail -n 20 "$tmp/log" >&2
 		echo "root.sh: cannot make a root of Debian $suite" >&2

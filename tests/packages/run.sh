@@ -67,8 +67,9 @@ has_modules() {
 		for d in /lib/modules/*/build; do
 			k=\${d%/build} n=\$((n + 1))
 			dkms status | grep -q \"^ethercat/$1, \${k##*/}, .*: installed\"
+			# by file: without the kernel itself DKMS runs no depmod
 			for m in ec_master ec_generic ec_intel ec_sim; do
-				modinfo -k \${k##*/} \$m >/dev/null
+				modinfo \$(find \$k/updates -name \$m.ko\*) >/dev/null
 			done
 		done
 		[ \$n = $2 ]
