@@ -101,8 +101,10 @@ int work_baseline(unsigned int ms)
 	work_end(&w);
 	for (unsigned int i = 0; i < WORKERS; i++)
 		sum += w.by[i];
-	if (!work_begin(&w, true))
+	if (!work_begin(&w, true)) {
 		perror("cycle-bench: bench_split.ko");
+		return 1;
+	}
 	end = now_ns() + ms * 1000000LL;
 	while (now_ns() < end)
 		;
