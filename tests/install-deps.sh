@@ -39,7 +39,7 @@ for group; do
 	uml)	p="xz-utils python3"
 		[ "$release" != 12 ] || p="$p linux-source-6.1" ;;
 	python)	p="python3-venv" ;;
-	json)	p="jq" ;;
+	json)	p="gojq" ;;
 	doc)	p="python3-sphinx" ;;
 	# any cargo does that is new enough, Debian's "cargo" is not
 	rust)	p="cargo-web"

@@ -29,7 +29,7 @@ teardown() {
 }
 
 use() { ethercat device use -m0 "$@"; }
-device() { ethercat master -m0 --json | jq -r '.masters[0].devices[0].interface'; }
+device() { ethercat master -m0 --json | gojq -r '.masters[0].devices[0].interface'; }
 # slaves_are NAME: of the second one of two, both in PREOP
 slaves_are() {
 	[ "$(ethercat slaves -m0 | awk '$3 == "PREOP"' | wc -l)" = 2 ] &&

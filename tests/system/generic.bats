@@ -69,7 +69,7 @@ arp() { python3 "$BATS_TEST_DIRNAME/arp.py" "$@"; }
 main_is() { [[ "$(says Main)" == *"($1)" ]]; }
 link_is() { [ "$(says Link)" = "$1" ]; }
 foreign_are() { [ "$(foreign)" -ge "$1" ]; }
-foreign() { ethercat master --json | jq '[.. | .foreign_frames? // empty] | max'; }
+foreign() { ethercat master --json | gojq '[.. | .foreign_frames? // empty] | max'; }
 
 @test "veth and ec_sim: all slaves to OP, no frame lost" {
 	master veth0

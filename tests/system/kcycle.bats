@@ -37,8 +37,8 @@ die() {
 	wait_for 60 is_detached
 }
 is_detached() { ethercat master | grep -q 'Session: detached'; }
-cycle_is() { [ "$(ethercat cycle --json | jq -r '.masters[0].state')" = "$1" ]; }
-frames() { ethercat master --json | jq '.masters[0].common.tx_frames'; }
+cycle_is() { [ "$(ethercat cycle --json | gojq -r '.masters[0].state')" = "$1" ]; }
+frames() { ethercat master --json | gojq '.masters[0].common.tx_frames'; }
 sent() { [ "$(frames)" -ge "$1" ]; }
 
 @test "10000 cycles at 1 kHz, none lost, no working counter error" {

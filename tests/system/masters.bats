@@ -29,7 +29,7 @@ teardown() {
 	wait_for 60 all_slaves_are PREOP 25
 }
 
-lost() { ethercat master -m "$1" --json | jq '.masters[0].common.lost_frames'; }
+lost() { ethercat master -m "$1" --json | gojq '.masters[0].common.lost_frames'; }
 
 @test "each has its device and its slaves" {
 	json '.masters | length == 2' master

@@ -56,7 +56,7 @@ slaves_are() {
 
 # waits MASTER: for its device
 waits() { ethercat master -m "$1" | grep -q 'Waiting for device'; }
-lost() { ethercat master -m "$1" --json | jq '.masters[0].common.lost_frames'; }
+lost() { ethercat master -m "$1" --json | gojq '.masters[0].common.lost_frames'; }
 reattached() { ethercat master -m "$1" | grep -q '(attached)'; }
 
 # runs PROGRAM ARG...: in the background

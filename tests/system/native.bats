@@ -109,7 +109,7 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 }
 
 # devices KEY PCI: of the list
-listed() { ethercat devices -j | jq -r ".devices[] | select(.pci == \"$2\") | .$1"; }
+listed() { ethercat devices -j | gojq -r ".devices[] | select(.pci == \"$2\") | .$1"; }
 
 # load_master and load_segment did what 'modprobe ec_intel' and 'ethercat device bind' do;
 # now the commands

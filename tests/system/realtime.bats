@@ -123,7 +123,7 @@ captured() {
 	wait "$app" || return
 	app=
 	[ "$(sed -n 's/^frames //p' "$BATS_TEST_TMPDIR/idle")" -ge "$1" ] &&
-		[ "$(ethercat master --json | jq '.masters[0].frames_not_captured')" = 0 ]
+		[ "$(ethercat master --json | gojq '.masters[0].frames_not_captured')" = 0 ]
 }
 
 @test "on a network card with a capture program: its copies cost no allocation and no wait" {
@@ -170,7 +170,7 @@ captured() {
 	wait_for 120 json '.masters[0].sends > 15000' cycle
 	ethercat cycle --reset >/dev/null
 	json '.masters[0].sends < 15000' cycle
-	sends=$(ethercat cycle --json | jq '.masters[0].sends')
+	sends=$(ethercat cycle --json | gojq '.masters[0].sends')
 	wait_for 60 json ".masters[0].sends > $sends" cycle
 	kill -9 $app
 	wait $app || true

@@ -66,7 +66,7 @@ teardown_file() { stop; }
 	cd "$BATS_TEST_TMPDIR"
 	ethercat sdos -p16 --save saved.json
 	[ "$(ethercat sdos -p16 --compare saved.json)" = \
-		"$(jq '[.entries[] | select(.data_hex)] | length' saved.json) equal, 0 different, 0 unreadable" ]
+		"$(gojq '[.entries[] | select(.data_hex)] | length' saved.json) equal, 0 different, 0 unreadable" ]
 	ethercat download -p16 -t int16 0x2001 3 77
 	run ethercat sdos -p16 --compare saved.json
 	[ "$status" = 2 ]

@@ -150,7 +150,7 @@ give_file() { echo "$*" >/sys/kernel/debug/ec_sim/sim0; }
 
 logged() { dmesg | grep "$1" >/dev/null; }
 al_status() { ethercat reg_read -p"$1" -t uint16 0x0130; }
-responding() { [ "$(ethercat master --json | jq '.masters[0].slaves_responding')" = "$1" ]; }
+responding() { [ "$(ethercat master --json | gojq '.masters[0].slaves_responding')" = "$1" ]; }
 
 power_and_eeprom() {
 	wait_for 60 all_slaves_are PREOP 3

@@ -124,7 +124,7 @@ teardown_file() { stop; }
 	rc=0
 	ethercat upload -j -p17 0x9999 0 2>"$BATS_TEST_TMPDIR/err" >/dev/null || rc=$?
 	[ "$rc" = 1 ]
-	jq -e '.error | .abort_code == 100794368 and .command == "upload"' "$BATS_TEST_TMPDIR/err"
+	gojq -e '.error | .abort_code == 100794368 and .command == "upload"' "$BATS_TEST_TMPDIR/err"
 }
 
 @test "states requests and shows AL states" {
@@ -154,7 +154,7 @@ teardown_file() { stop; }
 }
 
 @test "sii_read writes the EEPROM image" {
-	words=$(ethercat slaves -p4 -j | jq '.masters[0].slaves[0].sii_words')
+	words=$(ethercat slaves -p4 -j | gojq '.masters[0].slaves[0].sii_words')
 	ethercat sii_read -p4 >"$BATS_TEST_TMPDIR/sii"
 	[ "$(wc -c <"$BATS_TEST_TMPDIR/sii")" = $((2 * words)) ]
 	# vendor and product at word 8
@@ -206,11 +206,11 @@ teardown_file() { stop; }
 }
 
 @test "rescan starts a scan and waits for its end" {
-	before=$(ethercat master -j | jq '.masters[0].scans')
+	before=$(ethercat master -j | gojq '.masters[0].scans')
 	run ethercat rescan --wait
 	[ "$status" = 0 ]
 	[ -z "$output" ]
-	after=$(ethercat master -j | jq '.masters[0].scans')
+	after=$(ethercat master -j | gojq '.masters[0].scans')
 	[ "$after" -gt "$before" ]
 	wait_for 120 all_slaves_are PREOP 22
 	json '.masters == [{"master": 0}]' rescan
@@ -327,7 +327,7 @@ add() {
 	ethercat master | grep -q 'Phase: Waiting for device(s)...'
 	refused 'no slaves: no network interface yet, waiting for sim0' upload 0x1018 1
 	for c in slaves pdos cstruct config domains data graph; do
-		ethercat $c -j 2>/dev/null | jq -e . >/dev/null
+		ethercat $c -j 2>/dev/null | gojq -e . >/dev/null
 	done
 }
 

@@ -41,7 +41,7 @@ all_exchanged() {
 @test "cstruct: the arrays configure the whole bench to OP" {
 	dir=$BATS_TEST_TMPDIR
 	ethercat cstruct >"$dir/pdos.h"
-	ethercat cstruct --json | jq -r '.masters[].slaves[] |
+	ethercat cstruct --json | gojq -r '.masters[].slaves[] |
 		"X(\(.position), \(.vendor_id), \(.product_code))"' >"$dir/slaves.h"
 	[ "$(wc -l <"$dir/slaves.h")" = 18 ]
 	cc -std=gnu11 -Wall -Wextra -Werror -Wno-missing-field-initializers -I"$TREE/include" \
@@ -75,7 +75,7 @@ all_exchanged() {
 	json '.masters[0].domains[0] | .working_counter == .expected_working_counter and
 		.size_bytes == (.fmmus | map(.size_bytes) | add) and
 		all(.fmmus[]; (.data_hex | length) == 2 * .size_bytes)' domains -v
-	size=$(ethercat domains -j | jq '.masters[0].domains[0].size_bytes')
+	size=$(ethercat domains -j | gojq '.masters[0].domains[0].size_bytes')
 	[ "$(ethercat data | wc -c)" = "$size" ]
 	[ "$(ethercat data -d1 | wc -c)" = 0 ]
 	json ".masters[0].domains[0] | .size_bytes == $size" data
@@ -113,7 +113,7 @@ not_in_op() { "$EC_BUILD/tool/ethercat" "$@" -v | sed -n 's/^ *Not in OP: //p'; 
 @test "another product or revision than configured: marked, with one reason everywhere" {
 	local product want='slave 4 is 0x00000002/0x1c213052, configured is 0x00000002/0x12345678'
 
-	product=$(ethercat slaves -p1 --json | jq '.masters[0].slaves[0].product_code')
+	product=$(ethercat slaves -p1 --json | gojq '.masters[0].slaves[0].product_code')
 	dmesg -C
 	"$BATS_TEST_DIRNAME/wrong_app.py" "$EC_BUILD/lib/libethercat.so.1" 4 0x12345678 1 "$product" \
 		>"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &

@@ -284,7 +284,7 @@ unpack() {	# unpack FLAVOUR
 # What guests of another architecture run: the programs of tests/system, unpacked from
 # their packages and those they depend on. No script of a package runs.
 root_packages="base-files base-passwd bash bats busybox-static coreutils dash diffutils findutils gawk grep hostname
-	iproute2 jq kmod libc-bin procps psmisc python3-minimal sed tcpdump util-linux xxd"
+	iproute2 gojq kmod libc-bin procps psmisc python3-minimal sed tcpdump util-linux xxd"
 
 # Our programs are linked with the C library of this system's cross compiler. Those of the packages
 # run with a newer one, too.

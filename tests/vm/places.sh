@@ -17,8 +17,8 @@ places() {
 	places=("$EC_PLACES"/*)
 }
 
-# one COMMAND...: in the first place that is free
-one() {
+# place COMMAND...: in the first place that is free
+place() {
 	local p rc
 
 	while :; do
@@ -34,13 +34,25 @@ one() {
 	done
 }
 
-# all COMMAND...: alone
-all() (
-	local p
-
-	for p in "${places[@]}"; do exec {fd}>"$p"; flock "$fd"; done
+gently() (
+	renice -n 10 -p "$BASHPID" >/dev/null
 	"$@"
 )
+
+# one COMMAND...: in a place; its guests have exact time, and give way to those of real time
+one() { place gently "$@"; }
+
+# real_time COMMAND...: in a place, too, one at a time
+real_time() {
+	local rc
+
+	exec 7>"$EC_PLACES.real_time"
+	flock 7
+	place "$@"
+	rc=$?
+	exec 7>&-
+	return $rc
+}
 
 # locked KERNEL COMMAND...: not while another script builds for this kernel
 locked() {

@@ -96,7 +96,8 @@ done
 root=/ dirs=() busybox=
 arch=$("$here/kernels.sh" arch "$kernel") || exit 125
 case $arch in
-amd64|i386) qemu=(qemu-system-x86_64) cpu=max console=ttyS0 ;;
+# a string instruction with ERMS is emulated byte by byte
+amd64|i386) qemu=(qemu-system-x86_64) cpu=max,-erms,-fsrm console=ttyS0 ;;
 arm64)	qemu=(qemu-system-aarch64 -M virt) cpu=cortex-a57 console=ttyAMA0 ;;
 s390x)	qemu=(qemu-system-s390x) cpu=max console=ttysclp0 ;;
 *)	die "no guest for $arch" ;;

@@ -30,7 +30,7 @@ measure() {
 	echo "= $1"
 	"$build/bench/cycle-bench" --cycles "$cycles" "${@:2}" >/tmp/bench || true
 	"$tool" cycle
-	echo "counted ${1/, /-} $("$tool" cycle --json | jq '.masters[0].sends')"
+	echo "counted ${1/, /-} $("$tool" cycle --json | gojq '.masters[0].sends')"
 }
 
 measure "application, idle"

@@ -25,7 +25,7 @@ measure() {
 }
 
 # figure NAME KEY: of a measurement, rounded
-figure() { jq ".masters[0].$2 | round" "$BATS_TEST_TMPDIR/$1"; }
+figure() { gojq ".masters[0].$2 | round" "$BATS_TEST_TMPDIR/$1"; }
 
 # alike KEY PERMILLE: beside readers at most so much more than without
 alike() {

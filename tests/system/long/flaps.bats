@@ -39,7 +39,7 @@ begin_load() {
 
 # counters of the device, in one look
 look() {
-	ethercat master --json | jq -r '.masters[0].devices[0] |
+	ethercat master --json | gojq -r '.masters[0].devices[0] |
 		"\(.tx_frames) \(.rx_frames) \(.lost_frames) \(.tx_errors)"'
 }
 
