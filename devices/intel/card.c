@@ -73,11 +73,9 @@ static int intel_tx_send(void *priv, u8 *buf, size_t len)
 	int ret = -ENETDOWN;
 
 	rcu_read_lock();
-	/* not the buffer of before a start: another one would leave, with what it had then */
-	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up) && buf == ec_ring_tx_buf(&n->tx)) {
-		ec_ring_tx_put(&n->nic, &n->tx, len);
+	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up) &&
+	    ec_ring_tx_put(&n->nic, &n->tx, buf, len))
 		ret = 0;
-	}
 	rcu_read_unlock();
 	return ret;
 }

@@ -118,17 +118,23 @@ static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel
 }
 
 /**
- * ec_ring_tx_put() - give the buffer to the controller with the next ec_ring_tx_flush()
+ * ec_ring_tx_put() - give a buffer to the controller with the next ec_ring_tx_flush()
  * @nic: controller
  * @tx: transmit ring
+ * @buf: of ec_ring_tx_get()
  * @len: bytes of the frame without FCS
  *
  * Context: One sender at a time. RT-safe.
+ * Return: false: the ring was started since, and another buffer is next in turn, with what it had
+ * then.
  */
-static inline void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx, size_t len)
+static inline bool ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx,
+				  const u8 *buf, size_t len)
 {
 	union intel_desc *d = &tx->desc[tx->next];
 
+	if (buf != ec_ring_tx_buf(tx))
+		return false;
 	d->a.addr = cpu_to_le64(ec_ring_buf_dma(tx, tx->next));
 	if (nic->class->advanced) {
 		d->a.command_status = cpu_to_le32(INTEL_A_COMMAND | len);
@@ -140,6 +146,7 @@ static inline void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring
 		WRITE_ONCE(d->l.status, 0);
 	}
 	tx->next = (tx->next + 1) % INTEL_TX;
+	return true;
 }
 
 /**
