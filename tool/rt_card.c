@@ -13,7 +13,7 @@
 #include "rt.h"
 #include "sys.h"
 
-#define SHOWN	4	/* interrupts that a finding names */
+#define SHOWN	4
 
 /* what an interrupt is for: the kernel makes a folder for each of its actions */
 static bool action(const char *dir, char *name, size_t size)
@@ -43,8 +43,7 @@ static bool is_card(const struct nics *all, const char *name)
 	return false;
 }
 
-/* Does it come to a reserved CPU? */
-static bool disturbs(const struct rt *r, const char *dir)
+static bool comes_to_reserved(const struct rt *r, const char *dir)
 {
 	char list[128];
 	bool cpus[RT_CPUS];
@@ -58,37 +57,61 @@ static bool disturbs(const struct rt *r, const char *dir)
 	return false;
 }
 
+/* interrupts, SHOWN of them by name */
+struct irqs {
+	unsigned int n;
+	char text[192];
+};
+
+static void add_irq(struct irqs *q, const char *irq, const char *name)
+{
+	size_t len = strlen(q->text);
+
+	if (q->n++ < SHOWN)
+		attr_path(q->text + len, sizeof(q->text) - len, "%s%s (%s)", len ? ", " : "", irq,
+			  name);
+}
+
 static void check_affinity(struct rt *r, const struct nics *all)
 {
-	char path[512], dir[800], name[64], found[192] = "";
-	unsigned int n = 0, seen = 0;
+	char path[512], dir[800], name[64];
+	struct irqs others = { 0 }, away = { 0 };
+	unsigned int seen = 0, cards = 0;
 	struct dirent *e;
 	DIR *d;
 
 	attr_path(path, sizeof(path), "%s/irq", sys_proc());
 	d = opendir(path);
 	while (d && (e = readdir(d))) {
+		bool card;
+
 		attr_path(dir, sizeof(dir), "%s/%s", path, e->d_name);
 		if (!isdigit((unsigned char)*e->d_name) || !action(dir, name, sizeof(name)))
 			continue;
 		seen++;
-		if (is_card(all, name) || !disturbs(r, dir))
-			continue;
-		if (n++ < SHOWN)
-			attr_path(found + strlen(found), sizeof(found) - strlen(found), "%s%s (%s)",
-				  n > 1 ? ", " : "", e->d_name, name);
+		card = is_card(all, name);
+		cards += card;
+		if (card != comes_to_reserved(r, dir))
+			add_irq(card ? &away : &others, e->d_name, name);
 	}
 	if (d)
 		closedir(d);
 	if (!seen)
 		rt_find(r, "interrupts", RT_UNKNOWN, NULL, "%s cannot be read", path);
-	else if (n)
+	else if (others.n)
 		rt_find(r, "interrupts", RT_ERROR,
 			"kernel parameter irqaffinity=, or echo LIST > /proc/irq/N/smp_affinity_list",
-			"%u come to a reserved CPU: %s", n, found);
+			"%u come to a reserved CPU: %s", others.n, others.text);
 	else
 		rt_find(r, "interrupts", RT_OK, NULL, "none but the master's comes to CPU %s",
 			r->list);
+	if (cards && !away.n)
+		rt_find(r, "card", RT_OK, NULL, "its interrupts come to CPU %s", r->list);
+	else if (cards)
+		rt_find(r, "card", RT_WARNING,
+			"echo LIST > /proc/irq/N/smp_affinity_list, with a CPU of LIST that is reserved",
+			"%u of its interrupts come to a CPU with other load, which delays frames: %s",
+			away.n, away.text);
 }
 
 static bool runs(const char *program)

@@ -69,7 +69,7 @@ wrong() {
 	grep -q "^$1 * $2 .*$3" <<<"$output"
 	[ -z "${4:-}" ] || grep -qF "set: $4" <<<"$output"
 }
-all=23
+all=24
 
 @test "rtcheck finds nothing on a computer with the right settings" {
 	run ethercat rtcheck
@@ -176,6 +176,17 @@ all=23
 	[ "$status" = 0 ]
 }
 
+@test "rtcheck finds an interrupt of the card that comes to a CPU with other load" {
+	put "$FAKE_PROC/irq/24/smp_affinity_list" 0-2
+	mkdir -p "$FAKE_PROC/irq/25/eth0-tx-0"
+	put "$FAKE_PROC/irq/25/smp_affinity_list" 2-3
+	put "$FAKE_PROC/irq/25/effective_affinity_list" 3
+	wrong warning card "1 of its interrupts come to a CPU with other load.*: 24 (eth0-rx-0)" \
+		"echo LIST > /proc/irq/N/smp_affinity_list"
+	put "$FAKE_PROC/irq/24/effective_affinity_list" 3
+	ethercat rtcheck | grep "^ok * card .*its interrupts come to CPU 3"
+}
+
 @test "rtcheck finds limits of an ordinary user" {
 	put "$FAKE_PROC/self/status" "CapEff:	0"
 	ulimit -l 64
@@ -240,7 +251,7 @@ all=23
 
 @test "rtcheck: JSON" {
 	put "$(cpu smt/active)" 1
-	out rtcheck -j | json 'len(d["checks"]) == 23 and d["warnings"] == 1 and d["errors"] == 0'
+	out rtcheck -j | json 'len(d["checks"]) == 24 and d["warnings"] == 1 and d["errors"] == 0'
 	out rtcheck -j | json 'd["checks"][0] == {"level": "ok", "check": "kernel",
 		"found": "6.1.0-rt, PREEMPT_RT", "fix": ""}'
 	out rtcheck -j | json '[c["fix"] for c in d["checks"] if c["level"] != "ok"] == ["kernel parameter nosmt"]'
