@@ -41,11 +41,10 @@ tshark
 # These use one CPU, build in folders of their own and measure no time: side by side, the long
 # ones first.
 side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
-# Of what these use, the others have built most. Most of their guests have exact time: in places
-# that they share. A level that does not take places itself holds one.
+# Of what these use, the others have built most. Their guests are in places that they share. A
+# level that does not take places itself holds one.
 guests=" system bench guests reboot demo layers tshark "
 own_places=" system guests "
-real_time=" demo "
 passed=0 failed=0
 log=$(mktemp -d)
 trap 'rm -rf "$log"' EXIT
@@ -167,7 +166,6 @@ done
 for l in ${beside[@]+"${beside[@]}"}; do
 	in=one
 	[[ $own_places != *" $l "* ]] || in=
-	[[ $real_time != *" $l "* ]] || in=real_time
 	$in run "$l" &
 	sleep 0.1	# in this order, where places are free
 done

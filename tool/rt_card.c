@@ -37,7 +37,18 @@ static bool is_card(const struct nics *all, const char *name)
 		size_t len = strlen(all->v[i].name);
 
 		if (all->v[i].master && len && !strncmp(name, all->v[i].name, len) &&
-		    (!name[len] || name[len] == '-'))
+		    (!name[len] || name[len] == '-' || name[len] == ':'))
+			return true;
+	}
+	return false;
+}
+
+static bool has_generic(const struct nics *all)
+{
+	for (size_t i = 0; i < all->n; i++) {
+		const struct nic *n = &all->v[i];
+
+		if (n->master && *n->name && *n->pci && strcmp(n->driver, NIC_NATIVE))
 			return true;
 	}
 	return false;
@@ -105,13 +116,17 @@ static void check_affinity(struct rt *r, const struct nics *all)
 	else
 		rt_find(r, "interrupts", RT_OK, NULL, "none but the master's comes to CPU %s",
 			r->list);
-	if (cards && !away.n)
-		rt_find(r, "card", RT_OK, NULL, "its interrupts come to CPU %s", r->list);
-	else if (cards)
+	if (away.n)
 		rt_find(r, "card", RT_WARNING,
-			"echo LIST > /proc/irq/N/smp_affinity_list, with a CPU of LIST that is reserved",
-			"%u of its interrupts come to a CPU with other load, which delays frames: %s",
+			"echo CPU > /proc/irq/N/smp_affinity_list, with a reserved CPU",
+			"%u interrupts of a master's card come to no reserved CPU: other load may delay frames: %s",
 			away.n, away.text);
+	else if (cards)
+		rt_find(r, "card", RT_OK, NULL, "interrupts of the masters' cards come to CPU %s",
+			r->list);
+	else if (has_generic(all))
+		rt_find(r, "card", RT_UNKNOWN, NULL,
+			"no interrupt has the name of a master's card: see /proc/interrupts");
 }
 
 static bool runs(const char *program)

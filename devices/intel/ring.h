@@ -125,8 +125,7 @@ static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel
  * @len: bytes of the frame without FCS
  *
  * Context: One sender at a time. RT-safe.
- * Return: false: the ring was started since, and another buffer is next in turn, with what it had
- * then.
+ * Return: false: the ring was started since, and its next buffer is another one, with old content.
  */
 static inline bool ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx,
 				  const u8 *buf, size_t len)

@@ -370,7 +370,7 @@ together_real_time() {
 		"${v[host_thread_ns]} < cycles * 1000000 && ${v[lost]} == 0"
 }
 
-real_time() {
+in_real_time() {
 	run "real time" --smp 2 -- virtual bench --cycles 5000 || return
 	echo "# real time, not gated: ${v[cycles]} cycles: ${v[lost]} frames lost, ${v[wc_errors]} working-counter errors, ${v[overruns]} overruns"
 	echo "# lateness: median ${v[late_ns_median]} ns, 99.9 % ${v[late_ns_p999]} ns, max ${v[late_ns_max]} ns"
@@ -386,7 +386,7 @@ system_calls
 together io1000.seg "1000 slaves of one byte, 1000 frames/s" 240000
 together drive100.seg "100 drives, 3000 frames/s" 240000
 if [ -n "$all" ]; then
-	real_time
+	in_real_time
 	accel=$(tests/vm/run.sh --probe)
 	together_real_time io1000.seg "1000 slaves of one byte, 1000 frames/s"
 	together_real_time drive100.seg "100 drives, 3000 frames/s"

@@ -58,8 +58,9 @@ teardown_file() { stop; }
 		firmware -p1 "$BATS_TEST_TMPDIR/v1"
 	[ "$(ethercat foe_read -p1 v1)" = x ]
 	"$EC_BUILD/tool/ethercat" firmware -p1 "$f" &
+	pid=$!
 	wait_for 20 in_boot 1
-	kill -9 $!
+	kill -9 "$pid"
 	in_boot 1
 	# the next attempt recovers
 	ethercat firmware -p1 "$f"

@@ -5,13 +5,15 @@ ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
 
 # Bats 1.8 calls this before each command, to name the line of a failure. Its own takes a million
 # instructions, most of the time of many tests; a failure inside a helper names the line
-# that called it.
+# that called it. A helper must not exit: the line would be that of the command before it.
+tracing=$(shopt -s extdebug; declare -F bats_error_trap) tracing=${tracing#* * }
 if [[ $(declare -f bats_debug_trap) == *BATS_DEBUG_LASTLAST_STACK_TRACE* ]]; then
 bats_debug_trap() {
 	case $1 in "$BATS_ROOT"/*|*/helpers.bash) return 0 ;; esac
 	BATS_DEBUG_LASTLAST_STACK_TRACE=("${BATS_DEBUG_LAST_STACK_TRACE[@]}")
 	BATS_DEBUG_LAST_LINENO=("${BASH_LINENO[@]}")
-	BATS_DEBUG_LAST_SOURCE=("${BASH_SOURCE[@]}")
+	# bats compares it with what its other functions find there
+	BATS_DEBUG_LAST_SOURCE=("$tracing" "${BASH_SOURCE[@]:1}")
 	bats_capture_stack_trace
 }
 fi
@@ -87,9 +89,9 @@ standstill() {
 } 2>/dev/null
 
 # nap SECONDS: sleep without a process
+exec {nap_fd}<> <(:)
 nap() {
-	[ -n "${nap_fd:-}" ] || exec {nap_fd}<> <(:)
-	if read -rt "$1" -u "$nap_fd"; then return; fi	# nothing ever comes
+	if read -rt "$1" -u "$nap_fd"; then return; fi	# no process writes to this pipe
 }
 
 # wait_for SECONDS COMMAND...

@@ -91,7 +91,7 @@ build() {
 }
 
 logs=$(mktemp -d)
-trap 'rm -rf "$logs"' EXIT
+trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$logs"' EXIT
 places "$logs/places" "$mem"
 # a build beside guests takes a place as one of them
 one locked "$kernel" build >&2 || exit 1

@@ -178,13 +178,19 @@ all=24
 
 @test "rtcheck finds an interrupt of the card that comes to a CPU with other load" {
 	put "$FAKE_PROC/irq/24/smp_affinity_list" 0-2
-	mkdir -p "$FAKE_PROC/irq/25/eth0-tx-0"
+	mkdir -p "$FAKE_PROC/irq/25/eth0:tx-0"
 	put "$FAKE_PROC/irq/25/smp_affinity_list" 2-3
 	put "$FAKE_PROC/irq/25/effective_affinity_list" 3
-	wrong warning card "1 of its interrupts come to a CPU with other load.*: 24 (eth0-rx-0)" \
-		"echo LIST > /proc/irq/N/smp_affinity_list"
+	wrong warning card "1 interrupts of a master.s card come to no reserved CPU.*: 24 (eth0-rx-0)" \
+		"echo CPU > /proc/irq/N/smp_affinity_list"
 	put "$FAKE_PROC/irq/24/effective_affinity_list" 3
-	ethercat rtcheck | grep "^ok * card .*its interrupts come to CPU 3"
+	rm -r "$FAKE_PROC/irq/25"
+	mv "$FAKE_PROC/irq/24/eth0-rx-0" "$FAKE_PROC/irq/24/virtio0-input.0"
+	put "$FAKE_PROC/irq/24/effective_affinity_list" 0
+	wrong unknown card "no interrupt has the name of a master.s card"
+	mv "$FAKE_PROC/irq/24/virtio0-input.0" "$FAKE_PROC/irq/24/eth0"
+	put "$FAKE_PROC/irq/24/effective_affinity_list" 3
+	ethercat rtcheck | grep "^ok * card .*interrupts of the masters' cards come to CPU 3"
 }
 
 @test "rtcheck finds limits of an ordinary user" {

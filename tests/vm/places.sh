@@ -23,7 +23,7 @@ place() {
 
 	while :; do
 		for p in "${places[@]}"; do
-			exec 9>"$p"
+			exec 9>"$p" || exit 1	# the folder is removed when a check is ended
 			flock -n 9 || continue
 			"$@"
 			rc=$?
@@ -35,7 +35,7 @@ place() {
 }
 
 gently() (
-	renice -n 10 -p "$BASHPID" >/dev/null
+	renice -n $(($(nice) + 5)) -p "$BASHPID" >/dev/null
 	"$@"
 )
 
@@ -46,7 +46,7 @@ one() { place gently "$@"; }
 real_time() {
 	local rc
 
-	exec 7>"$EC_PLACES.real_time"
+	exec 7>"$EC_PLACES.real_time" || exit 1
 	flock 7
 	place "$@"
 	rc=$?
