@@ -115,7 +115,9 @@ teardown_file() { stop; }
 
 	ethercat foe_write -p2 "$f" &
 	pid=$!
-	wait_for 5 refused 'another file of slave 2' foe_write -p2 -o b "$BATS_FILE_TMPDIR/fw.efw"
+	# it begins first
+	sleep 0.05
+	refused 'another file of slave 2' foe_write -p2 -o b "$BATS_FILE_TMPDIR/fw.efw"
 	wait "$pid"
 	ethercat foe_read -p2 image.bin | cmp - "$f"
 }
