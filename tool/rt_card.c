@@ -119,7 +119,7 @@ static void check_affinity(struct rt *r, const struct nics *all)
 	if (away.n)
 		rt_find(r, "card", RT_WARNING,
 			"echo CPU > /proc/irq/N/smp_affinity_list, with a reserved CPU",
-			"%u interrupts of a master's card come to no reserved CPU: other load may delay frames: %s",
+			"%u interrupt(s) of a master's card come to no reserved CPU, other load may delay them: %s",
 			away.n, away.text);
 	else if (cards)
 		rt_find(r, "card", RT_OK, NULL, "interrupts of the masters' cards come to CPU %s",

@@ -206,6 +206,19 @@ static void full_ring_refuses_until_frame_left(struct kunit *test)
 	}
 }
 
+/* after a start */
+static void only_new_frame_leaves(struct kunit *test, struct card *c)
+{
+	KUNIT_EXPECT_FALSE(test, flush(c));
+	card_sends(test, c, LOG);
+	KUNIT_EXPECT_EQ(test, c->n_sent, 0u);
+	put(c, 1, 64);
+	flush(c);
+	card_sends(test, c, LOG);
+	KUNIT_ASSERT_EQ(test, c->n_sent, 1u);
+	expect_sent(test, c, 0, 1, 64);
+}
+
 /* Outputs of before a loss of the link must not leave when it returns. */
 static void start_drops_frames_of_before(struct kunit *test)
 {
@@ -218,14 +231,7 @@ static void start_drops_frames_of_before(struct kunit *test)
 	card_sends(test, c, 3);
 	put(c, 0xee, 60);
 	start(test, c);
-	KUNIT_EXPECT_FALSE(test, flush(c));
-	card_sends(test, c, LOG);
-	KUNIT_EXPECT_EQ(test, c->n_sent, 0u);
-	put(c, 1, 64);
-	flush(c);
-	card_sends(test, c, LOG);
-	KUNIT_ASSERT_EQ(test, c->n_sent, 1u);
-	expect_sent(test, c, 0, 1, 64);
+	only_new_frame_leaves(test, c);
 }
 
 /* A sender that holds a buffer meanwhile: no other one leaves in its place. */
@@ -241,14 +247,7 @@ static void start_drops_buffer_that_is_held(struct kunit *test)
 	memset(held, 0xee, 60);
 	start(test, c);
 	KUNIT_EXPECT_FALSE(test, ec_ring_tx_put(&c->nic, &c->tx, held, 60));
-	KUNIT_EXPECT_FALSE(test, flush(c));
-	card_sends(test, c, LOG);
-	KUNIT_EXPECT_EQ(test, c->n_sent, 0u);
-	put(c, 1, 64);
-	flush(c);
-	card_sends(test, c, LOG);
-	KUNIT_ASSERT_EQ(test, c->n_sent, 1u);
-	expect_sent(test, c, 0, 1, 64);
+	only_new_frame_leaves(test, c);
 }
 
 static void frames_received_in_order(struct kunit *test)

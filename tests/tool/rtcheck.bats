@@ -181,7 +181,7 @@ all=24
 	mkdir -p "$FAKE_PROC/irq/25/eth0:tx-0"
 	put "$FAKE_PROC/irq/25/smp_affinity_list" 2-3
 	put "$FAKE_PROC/irq/25/effective_affinity_list" 3
-	wrong warning card "1 interrupts of a master.s card come to no reserved CPU.*: 24 (eth0-rx-0)" \
+	wrong warning card "1 interrupt(s) of a master.s card come to no reserved CPU.*: 24 (eth0-rx-0)" \
 		"echo CPU > /proc/irq/N/smp_affinity_list"
 	put "$FAKE_PROC/irq/24/effective_affinity_list" 3
 	rm -r "$FAKE_PROC/irq/25"
