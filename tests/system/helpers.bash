@@ -6,8 +6,8 @@ ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
 # Bats 1.8 calls this before each command, to name the line of a failure. Its own takes a million
 # instructions, most of the time of many tests; a failure inside a helper names the line
 # that called it. A helper must not exit: the line would be that of the command before it.
-tracing=$(shopt -s extdebug; declare -F bats_error_trap) tracing=${tracing#* * }
 if [[ $(declare -f bats_debug_trap) == *BATS_DEBUG_LASTLAST_STACK_TRACE* ]]; then
+tracing=$(shopt -s extdebug; declare -F bats_error_trap) tracing=${tracing#* * }
 bats_debug_trap() {
 	case $1 in "$BATS_ROOT"/*|*/helpers.bash) return 0 ;; esac
 	BATS_DEBUG_LASTLAST_STACK_TRACE=("${BATS_DEBUG_LAST_STACK_TRACE[@]}")

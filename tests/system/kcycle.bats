@@ -198,7 +198,8 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	run "$EC_BUILD/apps/cyclic" 1
 	[ "$status" = 1 ]
 	all_slaves_are OP 3
-	# the policy has zeroed the outputs meanwhile
+	# then the policy has zeroed the outputs
+	wait_for 60 cycle_is stalled
 	run kcycle cycles=100 flags=1 stall=1 stall_cycles=50
 	echo "$output"
 	[[ "$output" == *"takeovers: 1, output: 0, "* ]]
