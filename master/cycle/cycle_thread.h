@@ -26,6 +26,8 @@ void ec_cycle_thread_stop(struct ec_cycle *c);
 bool ec_cycle_thread_ended(const struct ec_cycle *c);
 int ec_cycle_thread_adopt(struct ec_cycle *c);
 void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size);
+
+/* cycle_wait.c */
 __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner);
 int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
 			 u64 *cycle, u32 timeout_us);

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * One cycle that the kernel runs. Application and cycle exchange whole images through
+ * three buffers each way (struct ec_exchange), so neither ever waits for the
+ * other. The application can write all of that memory: nothing that is read
+ * there is more than data or a number of a buffer, and that is cut to 0..2.
+ *
+ * Nothing here allocates, prints or takes a lock but those of ec_cycle_receive() and
+ * ec_cycle_send(), and the one of the wait queue of the file that owns the cycle, when a caller
+ * waits there.
+ */
+#include <linux/ktime.h>
+#include <linux/rcupdate.h>
+#include "../base/bytes.h"
+#include "../base/once64.h"
+#include "../config/domain.h"
+#include "cycle_run.h"
+#include "cycle_thread.h"
+#include "waiters.h"
+
+#define INDEX_MASK	3
+#define STEADY		1000	/* cycles in which all take part, before that is relied on */
+
+/* A number from memory of the application. */
+static u8 buffer_index(u32 word)
+{
+	return min_t(u32, word & INDEX_MASK, EC_EXCHANGE_BUFFERS - 1);
+}
+
+/* Takes the newest outputs, or returns false when there are none since the last time. */
+static bool take_outputs(struct ec_cycle_thread *t)
+{
+	struct ec_exchange *x = ec_cycle_run_exchange(t);
+
+	if (!(READ_ONCE(x->outputs) & EC_EXCHANGE_NEW))
+		return false;
+	t->front = buffer_index(xchg(&x->outputs, t->front));
+	t->given = true;
+	t->ahead = true;
+	return true;
+}
+
+/* From now on the image is what is sent: its outputs are the newest ones. */
+static void use_image(struct ec_cycle_thread *t)
+{
+	u8 *image = t->cycle->shared->image;
+	const u8 *data = (const u8 *)(ec_cycle_run_buffer(t, t->front) + 1);
+	unsigned int i;
+
+	for (i = 0; t->ahead && i < t->n_outputs; i++)
+		ec_bytes_copy(image + t->outputs[i].offset, data + t->outputs[i].offset,
+			t->outputs[i].len);
+	t->ahead = false;
+	/* a reader that sees NULL finds these in the image */
+	smp_store_release(&t->cycle->direct, NULL);
+}
+
+/* Did all slaves take part when their domain was sent last? */
+static bool all_take_part(const struct ec_cycle *c)
+{
+	const struct ec_status_domain *st = c->shared->status->domains;
+
+	ec_for_each_domain(d, c->wanted)
+		if (d->expected && READ_ONCE(st[d->index].wc_state) != EC_STATUS_WC_COMPLETE)
+			return false;
+	return true;
+}
+
+/*
+ * The buffer of the application is sent as it is, which spares a copy of each
+ * slave's outputs, and of its inputs when they are back. The inputs in it are no
+ * last values that a missing slave could leave: then and for a while after it, and
+ * where the kernel itself writes outputs, the image is sent.
+ */
+static void choose_source(struct ec_cycle_thread *t)
+{
+	struct ec_cycle *c = t->cycle;
+
+	t->steady = all_take_part(c) ? min(t->steady + 1, STEADY) : 0;
+	if (!t->given || c->copying || t->steady < STEADY) {
+		use_image(t);
+		return;
+	}
+	t->ahead = true;
+	c->direct = (const u8 *)(ec_cycle_run_buffer(t, t->front) + 1);
+}
+
+/**
+ * ec_cycle_run_wake() - wake the callers of the file that owns a cycle
+ * @c: cycle that the kernel runs
+ *
+ * No other file adds work to it.
+ *
+ * Context: Process. RT-safe: bounded by %EC_MAX_WAITERS.
+ */
+void ec_cycle_run_wake(struct ec_cycle *c)
+{
+	struct ec_waiters *w;
+
+	rcu_read_lock();
+	w = rcu_dereference(c->waiters);
+	if (w)
+		ec_waiters_wake(w);
+	rcu_read_unlock();
+}
+
+/**
+ * ec_cycle_run_end() - no more cycles; waiting callers return
+ * @c: cycle that the kernel runs
+ *
+ * Context: Process. RT-safe: bounded by %EC_MAX_WAITERS.
+ */
+void ec_cycle_run_end(struct ec_cycle *c)
+{
+	/* pairs with ec_cycle_thread_ended() */
+	smp_store_release(&c->cycles->run, c->cycles->run + 1);
+	ec_cycle_run_wake(c);
+}
+
+/* The application has given no outputs for too long. */
+static void stop_outputs(struct ec_cycle_thread *t)
+{
+	u8 *image = t->cycle->shared->image;
+	struct ec_status_cycle *st = ec_cycle_run_status(t);
+	unsigned int i;
+
+	switch (t->cycle->kernel.stall) {
+	case EC_STALL_STOP:
+		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
+		return;
+	case EC_STALL_ZERO:
+		t->given = false;
+		t->ahead = false;
+		for (i = 0; i < t->n_outputs; i++)
+			memset(image + t->outputs[i].offset, 0, t->outputs[i].len);
+		break;
+	}
+	WRITE_ONCE(st->state, EC_CYCLE_STATE_STALLED);
+}
+
+/* Outputs of this cycle, new ones or what the policy says. */
+static void feed(struct ec_cycle_thread *t)
+{
+	struct ec_status_cycle *st = ec_cycle_run_status(t);
+	u32 limit = t->cycle->kernel.stall_cycles;
+
+	if (take_outputs(t)) {
+		t->fed = true;
+		t->unfed = 0;
+		if (st->state != EC_CYCLE_STATE_RUNNING)
+			WRITE_ONCE(st->state, EC_CYCLE_STATE_RUNNING);
+		return;
+	}
+	if (!t->fed)
+		return;
+	ec_status_add(t->cycle->shared->status, &st->missed, 1);
+	if (!limit || t->unfed == limit)
+		return;
+	if (++t->unfed == limit)
+		stop_outputs(t);
+}
+
+/**
+ * ec_cycle_run_deal() - an application gets the buffers after those of the cycle
+ * @t: cycle
+ *
+ * Its outputs begin with the image.
+ *
+ * Context: The cycle thread, or before it starts. RT-safe.
+ */
+void ec_cycle_run_deal(struct ec_cycle_thread *t)
+{
+	unsigned int n = (t->front + 1) % EC_EXCHANGE_BUFFERS;
+	struct ec_exchange *x = ec_cycle_run_exchange(t);
+
+	x->stride = t->stride;
+	x->app_output = n;
+	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
+	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
+	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
+	if (t->bytes)
+		memcpy(ec_cycle_run_buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
+}
+
+/* The previous application may have exited at any point: the next one begins anew. */
+static void adopt(struct ec_cycle_thread *t)
+{
+	use_image(t);
+	t->given = false;
+	ec_cycle_run_deal(t);
+	/* the buffers are dealt before the application sees it */
+	smp_store_release(&t->adopt, false);
+	complete(&t->adopted);
+}
+
+/* Receive and send of the application answer without a system call. */
+static void tell_device(const struct ec_cycle *c)
+{
+	u32 *no_device = &c->shared->status->no_device;
+	bool gone = !ec_links_attached(c->links);
+
+	if (unlikely(*no_device != gone))
+		WRITE_ONCE(*no_device, gone);
+}
+
+/* Inputs and working counters of this cycle for the application. */
+static void publish(struct ec_cycle_thread *t)
+{
+	struct ec_cycle *c = t->cycle;
+	struct ec_exchange_buffer *b = ec_cycle_run_buffer(t, EC_EXCHANGE_BUFFERS + t->back);
+	struct ec_status_cycle *st = ec_cycle_run_status(t);
+	u64 cycle = st->cycle + 1;
+	unsigned int i;
+
+	if (unlikely(READ_ONCE(t->adopt)))
+		adopt(t);
+	b->cycle = cycle;
+	b->time_ns = t->next_ns;
+	for (i = 0; i < c->wanted->n_domains; i++)
+		b->domains[i] = c->shared->status->domains[i];
+	tell_device(c);
+	memcpy(b + 1, c->shared->image, t->bytes);
+	t->back = buffer_index(xchg(&ec_cycle_run_exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
+	/* the application that sees the number finds the inputs */
+	ec_status_begin(c->shared->status);
+	WRITE_ONCE(st->cycle, cycle);
+	ec_status_end(c->shared->status);
+	ec_write64(&c->cycles->number, cycle);
+	ec_cycle_run_wake(c);
+}
+
+/* Cycles whose time has passed are left out, so that the phase stays; how many. */
+static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
+{
+	u32 period = t->cycle->kernel.period_ns;
+	s64 late = now - t->next_ns;
+	u64 skipped;
+
+	if (late < period)
+		return 0;
+	skipped = div_u64(late, period);
+	ec_status_add(t->cycle->shared->status, &ec_cycle_run_status(t)->overruns, skipped);
+	t->next_ns += skipped * period;
+	return skipped;
+}
+
+/* Domains of this cycle; those whose turn was left out go now, then as before. */
+static u64 turn(struct ec_cycle_thread *t, u64 skipped)
+{
+	u64 domains = t->always;
+	unsigned int i;
+
+	for (i = 0; i < t->n_slow; i++) {
+		struct ec_cycle_slow *w = &t->slow[i];
+
+		w->left -= min_t(u64, skipped, S32_MAX / 2);
+		if (w->left <= 0) {
+			domains |= BIT_ULL(w->domain);
+			w->left = w->division - -w->left % w->division;
+		}
+		w->left--;
+	}
+	return domains;
+}
+
+/**
+ * ec_cycle_run_once() - one cycle
+ * @t: cycle; its schedule is that of the next one afterwards
+ *
+ * Context: The cycle thread. RT-safe; sleeps after a cycle timeout only.
+ * Return: false: it was the last one.
+ */
+bool ec_cycle_run_once(struct ec_cycle_thread *t)
+{
+	struct ec_cycle *c = t->cycle;
+	struct ec_ioc_send send = { .flags = c->kernel.dc };
+	u64 due = t->next_ns, now = ktime_get_ns();
+	s32 correction;
+
+	send.queued = turn(t, skip_missed(t, now));
+	/* before the first frame the links are not ours */
+	if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
+		ec_cycle_receive(c);
+	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
+	send.sync_time = t->lock.time;
+	feed(t);
+	choose_source(t);
+	if (t->ops && t->ops->cycle)
+		t->ops->cycle(c);
+	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {
+		if (!ec_cycle_send(c, &send))
+			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
+	}
+	publish(t);
+	ec_late_work(c, ktime_get_ns() - now);
+	t->next_ns += c->kernel.period_ns + correction;
+	return ec_cycle_run_status(t)->state != EC_CYCLE_STATE_STOPPED;
+}

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* A cycle that the kernel runs, as the files that run it see it. */
+#ifndef EC_CYCLE_RUN_H
+#define EC_CYCLE_RUN_H
+
+#include <linux/completion.h>
+#include <linux/types.h>
+#include "cycle.h"
+#include "pll.h"
+
+struct ec_cycle_ops;
+struct task_struct;
+
+/* outputs side by side in the image */
+struct ec_cycle_area {
+	u32 offset;
+	u32 len;
+};
+
+/* a domain that is not sent in each cycle */
+struct ec_cycle_slow {
+	u32 domain;
+	s32 left;	/* cycles until its turn */
+	s32 division;
+};
+
+/**
+ * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable, the
+ *	rest is the thread's
+ * @cycle: active cycle; its session ends the thread before it goes away
+ * @ops: reports to higher layers
+ * @task: thread
+ * @outputs: areas that are taken from the application
+ * @n_outputs: entries in @outputs
+ * @always: domains of each cycle, bit n: domain n
+ * @slow: the others
+ * @n_slow: entries in @slow
+ * @bytes: of the image of all domains
+ * @stride: distance of two buffers in the exchange
+ * @next_ns: schedule of the next cycle (ktime)
+ * @epoch_ns: what makes ktime an application time
+ * @lock: application time; lets the cycle follow the reference clock
+ * @front: output buffer it holds
+ * @given: the application has given that buffer, and its outputs are still valid
+ * @ahead: outputs of that buffer are not in the image
+ * @steady: cycles in which all slaves took part in a row, up to STEADY
+ * @back: input buffer it holds
+ * @fed: there were outputs at least once
+ * @unfed: cycles without new outputs in a row, up to the limit
+ * @adopt: another application shall get the buffers; cleared when it has them
+ * @adopted: that has happened
+ */
+struct ec_cycle_thread {
+	struct ec_cycle *cycle;
+	const struct ec_cycle_ops *ops;
+	struct task_struct *task;
+	struct ec_cycle_area *outputs;
+	unsigned int n_outputs;
+	u64 always;
+	struct ec_cycle_slow slow[EC_MAX_DOMAINS];
+	unsigned int n_slow;
+	u32 bytes;
+	u32 stride;
+	u64 next_ns;
+	u64 epoch_ns;
+	struct ec_pll lock;
+	u8 front;
+	bool given;
+	bool ahead;
+	u32 steady;
+	u8 back;
+	bool fed;
+	u32 unfed;
+	bool adopt;
+	struct completion adopted;
+};
+
+static inline struct ec_status_cycle *ec_cycle_run_status(const struct ec_cycle_thread *t)
+{
+	return &t->cycle->shared->status->kernel;
+}
+
+static inline struct ec_exchange *ec_cycle_run_exchange(const struct ec_cycle_thread *t)
+{
+	return t->cycle->shared->exchange;
+}
+
+static inline struct ec_exchange_buffer *ec_cycle_run_buffer(const struct ec_cycle_thread *t,
+							     unsigned int n)
+{
+	return t->cycle->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
+}
+
+void ec_cycle_run_deal(struct ec_cycle_thread *t);
+bool ec_cycle_run_once(struct ec_cycle_thread *t);
+void ec_cycle_run_wake(struct ec_cycle *c);
+void ec_cycle_run_end(struct ec_cycle *c);
+
+#endif
