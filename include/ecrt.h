@@ -923,6 +923,7 @@ typedef enum {
 #define EC_CYCLE_DETACH		1U	/* continues when the application exits */
 #define EC_CYCLE_WAIT_OUTPUTS	2U	/* the first frame waits for outputs */
 #define EC_CYCLE_BIND_CPU	4U	/* the thread runs on @cpu only */
+#define EC_CYCLE_INTERRUPT	8U	/* in the interrupt of its timer, where possible */
 
 /* ec_cycle_config_t.dc: clock datagrams of every cycle */
 #define EC_CYCLE_SYNC_REFERENCE	2U	/* write its time to the reference clock */
@@ -964,6 +965,12 @@ typedef enum {
  *	%EC_CYCLE_WAIT_OUTPUTS: the kernel counts cycles and the application can wait for
  *	them, but no frame is sent until the first ecrt_master_send() with a queued domain.
  *	Without this flag the first cycle sends a frame, with zeros as outputs.
+ *	%EC_CYCLE_INTERRUPT: the cycle runs in the interrupt of its timer. No thread has to
+ *	wake up for it and none delays it, at any priority; the cycle delays all
+ *	threads of that CPU. It needs native devices, and CAP_SYS_NICE or RLIMIT_RTPRIO 99.
+ *	Otherwise, and for 1000 cycles after one that took more than half of the period, the
+ *	thread runs the cycle. The kernel log and 'ethercat cycle' report the place and the
+ *	reason.
  */
 typedef struct {
 	uint32_t period_ns;

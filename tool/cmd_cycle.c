@@ -157,6 +157,28 @@ static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle
 	out_bool("interval_configured", i->interval_set, "%s)\n", i->interval_set ? "configured" : "measured");
 }
 
+/* of a cycle run by the kernel: where, if it shall be an interrupt */
+static void place(const struct ec_ioc_cycle_stats *i)
+{
+	static const char *const text[] = {
+		[EC_CYCLE_PLACE_THREAD] = "thread",
+		[EC_CYCLE_PLACE_INTERRUPT] = "interrupt",
+		[EC_CYCLE_PLACE_RIGHT] = "thread; interrupt not permitted",
+		[EC_CYCLE_PLACE_DEVICE] = "thread; a device needs it",
+		[EC_CYCLE_PLACE_LONG] = "thread; a cycle took more than half of its period",
+		[EC_CYCLE_PLACE_CPU] = "thread; the CPU is offline",
+		[EC_CYCLE_PLACE_BEGIN] = "thread; no frames in the interrupt yet",
+	};
+	const char *is = i->flags < ARRAY_SIZE(text) ? text[i->flags] : "unknown";
+
+	if (!i->active)
+		return;
+	out_bool("interrupt", i->flags == EC_CYCLE_PLACE_INTERRUPT, NULL);
+	out_str("place", is, NULL);
+	if (i->flags != EC_CYCLE_PLACE_THREAD)
+		out_text("  Runs in: %s\n", is);
+}
+
 /* of a cycle run by the kernel */
 static void thread(const struct ec_ioc_cycle_stats *i)
 {
@@ -188,8 +210,10 @@ static int show(const struct tool *t, struct dev *d)
 	out_object(NULL);
 	out_u("master", d->master, "Master%u\n", d->master);
 	who(&info, &st);
-	if (info.kind == EC_CYCLE_BY_KERNEL)
+	if (info.kind == EC_CYCLE_BY_KERNEL) {
 		thread(&info);
+		place(&info);
+	}
 	if (info.kind != EC_CYCLE_BY_NOBODY) {
 		figures(&st);
 		work(&st);
@@ -230,5 +254,7 @@ const struct cmd cmd_cycle = {
 		"late_p999_ns, late_max_ns (send deviation), work_mean_ns, work_max_ns (execution time\n"
 		"of a cycle of the kernel), histogram[] (from_ns, to_ns, sends; without empty ranges).\n"
 		"Only by kernel: priority (SCHED_FIFO; 0: SCHED_OTHER), priority_wanted (configured),\n"
-		"cpu (-1: any), cpu_losses (times the CPU went offline). By nobody: only master and by",
+		"cpu (-1: any), cpu_losses (times the CPU went offline); while it runs, interrupt (it\n"
+		"runs in the interrupt of its timer), place (where, and why). By nobody: only master and\n"
+		"by",
 };

@@ -413,9 +413,18 @@ struct ec_ioc_domain_data {
 #define EC_CYCLE_BY_APP		1
 #define EC_CYCLE_BY_KERNEL	2
 
+/* struct ec_ioc_cycle_stats.flags, out: where a cycle of the kernel runs, if not there why */
+#define EC_CYCLE_PLACE_THREAD	0	/* in its thread, as configured */
+#define EC_CYCLE_PLACE_INTERRUPT 1	/* in the interrupt of its timer */
+#define EC_CYCLE_PLACE_RIGHT	2	/* CAP_SYS_NICE or RLIMIT_RTPRIO 99 is missing */
+#define EC_CYCLE_PLACE_DEVICE	3	/* a device needs a thread */
+#define EC_CYCLE_PLACE_LONG	4	/* a cycle took more than half of its period */
+#define EC_CYCLE_PLACE_CPU	5	/* its CPU is offline */
+#define EC_CYCLE_PLACE_BEGIN	6	/* it begins, has stopped, or has no device */
+
 /* statistics of the running cycle, otherwise of the last one */
 struct ec_ioc_cycle_stats {
-	__u32 flags;
+	__u32 flags;		/* in: 0; out: EC_CYCLE_PLACE_* */
 	__u32 kind;
 	__u32 active;		/* the cycle runs */
 	__u32 interval_set;	/* interval was configured, not measured */
@@ -645,7 +654,8 @@ struct ec_ioc_ref_clock {
 /* flags of struct ec_ioc_cycle */
 #define EC_CYCLE_FLAG_DETACH	1	/* detach the session when the application exits */
 #define EC_CYCLE_FLAG_WAIT	2	/* the first frame waits for outputs */
-#define EC_CYCLE_FLAG_ALL	3
+#define EC_CYCLE_FLAG_INTERRUPT	8	/* in the interrupt of its timer, where possible */
+#define EC_CYCLE_FLAG_ALL	11
 
 /* the kernel runs the cycle of the next activation; period_ns 0: the application */
 struct ec_ioc_cycle {

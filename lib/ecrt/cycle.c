@@ -13,6 +13,7 @@
 _Static_assert((int)EC_CYCLE_WAITING == EC_CYCLE_STATE_WAITING, "state");
 _Static_assert(EC_CYCLE_DETACH == EC_CYCLE_FLAG_DETACH, "flags");
 _Static_assert(EC_CYCLE_WAIT_OUTPUTS == EC_CYCLE_FLAG_WAIT, "flags");
+_Static_assert(EC_CYCLE_INTERRUPT == EC_CYCLE_FLAG_INTERRUPT, "flags");
 _Static_assert(!(EC_CYCLE_BIND_CPU & EC_CYCLE_FLAG_ALL), "flags");	/* the library's own */
 _Static_assert((int)EC_CYCLE_STOP == EC_STALL_STOP, "stall");
 _Static_assert(EC_CYCLE_SYNC_REFERENCE == EC_SEND_FLAG_SYNC_REF, "clock flags");

@@ -8,10 +8,10 @@
 #include "../../lib/ecrt/ecrt_int.h"
 #include "../link/device.h"
 
-/* May @ops be used here? */
-static bool place_is_right(const struct ecdev_ops *ops)
+/* May the devices be used here? */
+static bool place_is_right(const struct ec_links *l)
 {
-	if (ops->atomic)
+	if (!ec_links_need_thread(l))
 		return true;
 	if (IS_ENABLED(CONFIG_PREEMPT_RT))
 		return preemptible();
@@ -29,7 +29,6 @@ static void leave_to_work(struct ec_master *m)
  */
 static int enter(struct ec_master *m, struct ec_session **s)
 {
-	const struct ecdev_ops *ops;
 	struct ec_api *api;
 	int ret;
 
@@ -51,12 +50,11 @@ static int enter(struct ec_master *m, struct ec_session **s)
 			leave_to_work(m);
 		return ret;
 	}
-	ops = ec_links_device_ops(&m->links);
-	if (!ops)
+	if (!ec_links_attached(&m->links))
 		ret = -ENODEV;
 	else if (READ_ONCE(m->cycles.active) != &(*s)->cycle)
 		ret = -EINVAL;
-	else if (!place_is_right(ops))
+	else if (!place_is_right(&m->links))
 		ret = -EWOULDBLOCK;
 	if (!ret)
 		return 0;

@@ -12,6 +12,7 @@
 #define PERIOD_MIN_NS	10000
 #define PERIOD_MAX_NS	((u32)NSEC_PER_SEC)
 #define PRIORITY_MAX	98	/* above are the kernel's own */
+#define PRIORITY_ALL	99	/* an interrupt is before all threads */
 #define DC_FLAGS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
 			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME | EC_CYCLE_DC_FOLLOW)
 
@@ -67,6 +68,7 @@ int ec_ioc_cycle(struct ec_call *call)
 		return ret;
 	call->session->cycle.kernel = *i;
 	call->session->cycle.priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
+	call->session->cycle.may_interrupt = permitted(PRIORITY_ALL) == PRIORITY_ALL;
 	return 0;
 }
 

@@ -55,6 +55,7 @@ void ec_cycle_clear(struct ec_cycle *c)
 	c->late_per_s = EC_LATE_PER_S;
 	memset(&c->kernel, 0, sizeof(c->kernel));
 	c->priority = 0;
+	c->may_interrupt = false;
 	c->cpu_lost = false;
 	c->cpu_losses = 0;
 }

@@ -271,6 +271,12 @@ struct ec_cycle {
 	 * 0: none
 	 */
 	u32 priority;
+	/** @may_interrupt: likewise: the cycle may run in an interrupt, before all threads */
+	bool may_interrupt;
+	/** @place: EC_CYCLE_PLACE_*, where the last cycle ran */
+	u32 place;
+	/** @places_logged: bit n: the log says that it was place n */
+	u32 places_logged;
 	/** @cpu_lost: the CPU of the cycle is offline */
 	bool cpu_lost;
 	/** @cpu_losses: how often it went offline */

@@ -11,6 +11,7 @@
  */
 #include <linux/ktime.h>
 #include <linux/rcupdate.h>
+#include <linux/sched.h>
 #include "../base/bytes.h"
 #include "../base/once64.h"
 #include "../config/domain.h"
@@ -102,6 +103,25 @@ void ec_cycle_run_wake(struct ec_cycle *c)
 	if (w)
 		ec_waiters_wake(w);
 	rcu_read_unlock();
+}
+
+/* The same in a hard interrupt, which leaves those in poll() to the thread. */
+static void wake_atomic(struct ec_cycle_thread *t)
+{
+	struct ec_waiters *w;
+	bool polled = false;
+
+	rcu_read_lock();
+	w = rcu_dereference(t->cycle->waiters);
+	if (w) {
+		ec_waiters_wake_sleepers(w);
+		polled = ec_waiters_polled(w);
+	}
+	rcu_read_unlock();
+	if (polled) {
+		WRITE_ONCE(t->polled, true);
+		wake_up_process(t->task);
+	}
 }
 
 /**
@@ -203,7 +223,7 @@ static void tell_device(const struct ec_cycle *c)
 		WRITE_ONCE(*no_device, gone);
 }
 
-/* Inputs and working counters of this cycle for the application. */
+/* Inputs and working counters of this cycle for the application, which is to be woken then. */
 static void publish(struct ec_cycle_thread *t)
 {
 	struct ec_cycle *c = t->cycle;
@@ -226,7 +246,6 @@ static void publish(struct ec_cycle_thread *t)
 	WRITE_ONCE(st->cycle, cycle);
 	ec_status_end(c->shared->status);
 	ec_write64(&c->cycles->number, cycle);
-	ec_cycle_run_wake(c);
 }
 
 /* Cycles whose time has passed are left out, so that the phase stays; how many. */
@@ -266,20 +285,25 @@ static u64 turn(struct ec_cycle_thread *t, u64 skipped)
 /**
  * ec_cycle_run_once() - one cycle
  * @t: cycle; its schedule is that of the next one afterwards
+ * @entered: the links are entered, and nothing may sleep
  *
- * Context: The cycle thread. RT-safe; sleeps after a cycle timeout only.
+ * Context: The cycle thread, or with @entered its timer. RT-safe; sleeps after a cycle timeout
+ * only.
  * Return: false: it was the last one.
  */
-bool ec_cycle_run_once(struct ec_cycle_thread *t)
+bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 {
 	struct ec_cycle *c = t->cycle;
 	struct ec_ioc_send send = { .flags = c->kernel.dc };
 	u64 due = t->next_ns, now = ktime_get_ns();
 	s32 correction;
+	int ret;
 
 	send.queued = turn(t, skip_missed(t, now));
 	/* before the first frame the links are not ours */
-	if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
+	if (entered)
+		ec_cycle_do_receive(c);
+	else if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
 		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
@@ -288,10 +312,15 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t)
 	if (t->ops && t->ops->cycle)
 		t->ops->cycle(c);
 	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {
-		if (!ec_cycle_send(c, &send))
+		ret = entered ? ec_cycle_do_send(c, &send) : ec_cycle_send(c, &send);
+		if (!ret)
 			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
 	}
 	publish(t);
+	if (entered)
+		wake_atomic(t);
+	else
+		ec_cycle_run_wake(c);
 	ec_late_work(c, ktime_get_ns() - now);
 	t->next_ns += c->kernel.period_ns + correction;
 	return ec_cycle_run_status(t)->state != EC_CYCLE_STATE_STOPPED;

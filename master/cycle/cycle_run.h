@@ -4,12 +4,13 @@
 #define EC_CYCLE_RUN_H
 
 #include <linux/completion.h>
+#include <linux/hrtimer.h>
 #include <linux/types.h>
 #include "cycle.h"
 #include "pll.h"
 
-struct ec_cycle_ops;
 struct task_struct;
+struct ec_cycle_ops;
 
 /* outputs side by side in the image */
 struct ec_cycle_area {
@@ -25,8 +26,8 @@ struct ec_cycle_slow {
 };
 
 /**
- * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable, the
- *	rest is the thread's
+ * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable; from @next_ns to @unfed all
+ *	belongs to the thread, or to the interrupt while @timed
  * @cycle: active cycle; its session ends the thread before it goes away
  * @ops: reports to higher layers
  * @task: thread
@@ -49,6 +50,11 @@ struct ec_cycle_slow {
  * @unfed: cycles without new outputs in a row, up to the limit
  * @adopt: another application shall get the buffers; cleared when it has them
  * @adopted: that has happened
+ * @timer: runs cycles in its interrupt
+ * @timed: it does; until it is false the thread does not touch what a cycle uses
+ * @polled: the interrupt asks the thread to wake callers of poll()
+ * @ended: its cycle was the last one
+ * @in_thread: cycles that have to run in the thread
  */
 struct ec_cycle_thread {
 	struct ec_cycle *cycle;
@@ -73,6 +79,11 @@ struct ec_cycle_thread {
 	u32 unfed;
 	bool adopt;
 	struct completion adopted;
+	struct hrtimer timer;
+	bool timed;
+	bool polled;
+	bool ended;
+	u32 in_thread;
 };
 
 static inline struct ec_status_cycle *ec_cycle_run_status(const struct ec_cycle_thread *t)
@@ -92,8 +103,12 @@ static inline struct ec_exchange_buffer *ec_cycle_run_buffer(const struct ec_cyc
 }
 
 void ec_cycle_run_deal(struct ec_cycle_thread *t);
-bool ec_cycle_run_once(struct ec_cycle_thread *t);
+bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered);
 void ec_cycle_run_wake(struct ec_cycle *c);
 void ec_cycle_run_end(struct ec_cycle *c);
+
+/* cycle_timer.c */
+void ec_cycle_timer_init(struct ec_cycle_thread *t);
+bool ec_cycle_timer_run(struct ec_cycle_thread *t);
 
 #endif

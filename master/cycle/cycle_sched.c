@@ -51,19 +51,51 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 }
 
 /**
- * ec_cycle_thread_inherit() - the cycle gets the priority that its new owner may use
+ * ec_cycle_sched_log_place() - log where the cycle runs, when it shall run in an interrupt
+ * @c: active cycle
+ *
+ * Each place once: a cycle that is too long now and then does not fill the log.
+ *
+ * Context: Process, lock of the configuration held.
+ */
+void ec_cycle_sched_log_place(struct ec_cycle *c)
+{
+	static const char *const why[] = {
+		[EC_CYCLE_PLACE_RIGHT] = "EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99 of the application (/etc/security/limits.d)",
+		[EC_CYCLE_PLACE_DEVICE] = "a device needs it; use native devices only, see 'ethercat device'",
+		[EC_CYCLE_PLACE_LONG] = "a cycle took more than half of its period in the interrupt; set a longer period",
+	};
+	u32 place = READ_ONCE(c->place);
+
+	lockdep_assert_held(c->wanted->lock);
+	if (c->places_logged & BIT(place))
+		return;
+	c->places_logged |= BIT(place);
+	if (place == EC_CYCLE_PLACE_INTERRUPT)
+		ec_info(c, "kernel cycle runs in the interrupt of its timer\n");
+	else if (place < ARRAY_SIZE(why) && why[place])
+		ec_warn(c, "kernel cycle runs in its thread: %s\n", why[place]);
+}
+
+/**
+ * ec_cycle_thread_inherit() - the cycle gets the rights of its new owner
  * @c: active cycle, taken over; without a thread nothing happens
  * @priority: SCHED_FIFO priority that the new application may use; 0: SCHED_OTHER
+ * @may_interrupt: it may have the cycle run in an interrupt
  *
  * Otherwise a cycle would keep a right that its owner does not have, or lack one.
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
-void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority)
+void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrupt)
 {
 	struct task_struct *task = ec_cycle_thread_task(c);
 
 	lockdep_assert_held(c->wanted->lock);
+	if (task && c->may_interrupt != may_interrupt) {
+		WRITE_ONCE(c->may_interrupt, may_interrupt);
+		c->places_logged = 0;
+	}
 	if (!task || c->priority == priority)
 		return;
 	c->priority = priority;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * The kernel runs the cycle: a real-time thread on an absolute timer is the
- * master's cyclic caller. Once it runs, it does nothing but cycles.
+ * master's cyclic caller, or that timer itself (cycle_timer.c).
  */
 #include <linux/hrtimer.h>
 #include <linux/kthread.h>
@@ -59,12 +59,20 @@ static int run(void *data)
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
 	ec_pll_init(&t->lock, t->cycle);
 	t->next_ns = (div_u64(now, k->period_ns) + 1) * k->period_ns + k->phase_ns;
-	while (sleep(t))
-		if (!ec_cycle_run_once(t)) {
+	while (1) {
+		bool more = ec_cycle_timer_run(t);
+
+		if (more) {
+			if (!sleep(t))
+				break;
+			more = ec_cycle_run_once(t, false);
+		}
+		if (!more) {
 			ec_cycle_run_end(t->cycle);
 			/* no more cycles, until the thread is stopped */
 			t->next_ns = KTIME_MAX;
 		}
+	}
 	return 0;
 }
 
@@ -136,6 +144,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 	t->cycle = c;
 	t->ops = ops;
 	init_completion(&t->adopted);
+	ec_cycle_timer_init(t);
 	t->bytes = image_bytes;
 	find_turns(t);
 	ret = alloc_exchange(t) ?: find_outputs(t);
@@ -189,6 +198,8 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	if (!c->thread)
 		return;
 	ec_cycle_sched_log(c);
+	c->places_logged = 0;
+	c->place = EC_CYCLE_PLACE_THREAD;
 	WRITE_ONCE(c->links->access.interval_us, max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC));
 	c->links->access.interval_set = true;
 	WRITE_ONCE(ec_cycle_run_status(c->thread)->state, c->kernel.flags & EC_CYCLE_FLAG_WAIT ?

@@ -35,7 +35,8 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 /* cycle_sched.c */
 void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task);
 void ec_cycle_sched_log(const struct ec_cycle *c);
-void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority);
+void ec_cycle_sched_log_place(struct ec_cycle *c);
+void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrupt);
 void ec_cycle_thread_check_cpu(struct ec_cycle *c);
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The application waits for the cycle that the kernel runs. */
+#include <linux/hrtimer.h>
 #include <linux/rcupdate.h>
-#include <linux/wait.h>
+#include <linux/sched/signal.h>
 #include "../base/once64.h"
 #include "cycle_run.h"
 #include "cycle_thread.h"
@@ -42,11 +43,49 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 	return mask;
 }
 
+/* what a caller of ec_cycle_thread_wait() waits for */
+struct wanted {
+	const struct ec_cycles *cycles;
+	const void *owner;
+	u64 cycle;	/* a newer one */
+	u32 run;	/* of this run */
+};
+
+static bool is_over(const struct wanted *w)
+{
+	return !(w->run & 1) || READ_ONCE(w->cycles->run) != w->run ||
+	       READ_ONCE(w->cycles->owner) != w->owner;
+}
+
+/*
+ * Not by a wait queue: under PREEMPT_RT a hard interrupt cannot wake one. Returns 0,
+ * -ETIMEDOUT or -ERESTARTNOHAND.
+ */
+static int sleep(const struct wanted *w, u32 timeout_us)
+{
+	ktime_t until = timeout_us ? ktime_add_us(ktime_get(), timeout_us) : KTIME_MAX;
+	bool expired = false;
+	int ret = 0;
+
+	while (1) {
+		set_current_state(TASK_INTERRUPTIBLE);
+		if (is_over(w) || ec_read64(&w->cycles->number) > w->cycle)
+			break;
+		/* a signal handler runs first, and ends it; kthread_stop() in the same way */
+		ret = expired ? -ETIMEDOUT : signal_pending(current) ? -ERESTARTNOHAND : 0;
+		if (ret)
+			break;
+		expired = !schedule_hrtimeout(timeout_us ? &until : NULL, HRTIMER_MODE_ABS);
+	}
+	__set_current_state(TASK_RUNNING);
+	return ret;
+}
+
 /**
  * ec_cycle_thread_wait() - wait for the next cycle
  * @cycles: of the master
  * @owner: open file that asks
- * @w: its wait queue
+ * @w: its callers
  * @cycle: in: the last cycle the caller has seen; out: a newer one
  * @timeout_us: limit, 0: none
  *
@@ -58,33 +97,25 @@ __poll_t ec_cycle_thread_poll(const struct ec_cycles *cycles, const void *owner)
 int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_waiters *w,
 			 u64 *cycle, u32 timeout_us)
 {
-	ktime_t limit = timeout_us ? ns_to_ktime((u64)timeout_us * NSEC_PER_USEC) : KTIME_MAX;
+	struct wanted wanted = { .cycles = cycles, .owner = owner, .cycle = *cycle };
+	struct ec_sleeper me;
 	bool ours;
-	u32 run;
 	int ret;
 
 	rcu_read_lock();
 	ours = owned_by(cycles, owner);
-	run = READ_ONCE(cycles->run);
+	wanted.run = READ_ONCE(cycles->run);
 	rcu_read_unlock();
 	if (!ours)
 		return -EPERM;
-	if (!ec_waiters_enter(w))
+	if (!ec_waiters_join(w, &me))
 		return -EBUSY;
-	ret = wait_event_interruptible_hrtimeout(w->wq,
-						 READ_ONCE(cycles->run) != run || !(run & 1) ||
-						 READ_ONCE(cycles->owner) != owner ||
-						 ec_read64(&cycles->number) > *cycle, limit);
-	ec_waiters_leave(w);
-	if (ret == -ETIME)
-		return -ETIMEDOUT;
-	/* a signal handler runs first, and ends it; kthread_stop() ends the wait in the same way */
+	ret = sleep(&wanted, timeout_us);
+	ec_waiters_part(w, &me);
 	if (ret)
-		return -ERESTARTNOHAND;
-	if (!(run & 1) || READ_ONCE(cycles->run) != run || READ_ONCE(cycles->owner) != owner)
+		return ret;
+	if (is_over(&wanted))
 		return -ECANCELED;
-	if (ec_read64(&cycles->number) <= *cycle)
-		return -ERESTARTNOHAND;
 	*cycle = ec_read64(&cycles->number);
 	return 0;
 }

@@ -211,6 +211,7 @@ static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 	bool kernel = c->kernel.period_ns;
 
 	info->active = 1;
+	info->flags = READ_ONCE(c->place);
 	info->kind = kernel ? EC_CYCLE_BY_KERNEL : EC_CYCLE_BY_APP;
 	info->interval_set = kernel || c->links->access.interval_set;
 	info->interval_ns = kernel ? c->kernel.period_ns :

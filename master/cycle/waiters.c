@@ -3,6 +3,7 @@
  * Each open file has a wait queue of its own. So a file that does not own the cycle
  * adds no work to the cycle thread, and an epoll entry never outlives its queue.
  */
+#include <linux/sched.h>
 #include "waiters.h"
 
 /**
@@ -16,6 +17,8 @@ void ec_waiters_init(struct ec_waiters *w)
 	init_waitqueue_head(&w->wq);
 	atomic_set(&w->adding, 0);
 	atomic_set(&w->sleeping, 0);
+	raw_spin_lock_init(&w->lock);
+	INIT_LIST_HEAD(&w->sleepers);
 }
 
 /* Is there a place for entry number @more besides those in the queue? */
@@ -81,4 +84,60 @@ bool ec_waiters_enter(struct ec_waiters *w)
 void ec_waiters_leave(struct ec_waiters *w)
 {
 	atomic_dec(&w->sleeping);
+}
+
+/**
+ * ec_waiters_join() - the caller wants to be woken by the cycle
+ * @w: callers of a file
+ * @s: on the stack of the caller
+ *
+ * Context: Process.
+ * Return: as ec_waiters_enter(); ec_waiters_part() must follow then.
+ */
+bool ec_waiters_join(struct ec_waiters *w, struct ec_sleeper *s)
+{
+	unsigned long flags;
+
+	if (!ec_waiters_enter(w))
+		return false;
+	s->task = current;
+	raw_spin_lock_irqsave(&w->lock, flags);
+	list_add_tail(&s->list, &w->sleepers);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	return true;
+}
+
+/**
+ * ec_waiters_part() - the caller sleeps no more
+ * @w: callers of a file
+ * @s: as for ec_waiters_join()
+ *
+ * Context: Process.
+ */
+void ec_waiters_part(struct ec_waiters *w, struct ec_sleeper *s)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	list_del(&s->list);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	ec_waiters_leave(w);
+}
+
+/**
+ * ec_waiters_rouse() - ec_waiters_wake_sleepers() when there are some
+ * @w: callers of a file
+ *
+ * Context: As there.
+ */
+void ec_waiters_rouse(struct ec_waiters *w)
+{
+	struct ec_sleeper *s;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	/* one that parts waits for the lock: its task stays */
+	list_for_each_entry(s, &w->sleepers, list)
+		wake_up_process(s->task);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
 }

@@ -86,17 +86,23 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 }
 
 /**
- * ec_links_device_ops() - how the device that sends frames wants to be used
+ * ec_links_need_thread() - has one a device that cannot be used in a hard interrupt?
  * @l: links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: operations of its driver, NULL without device.
+ * Return: whether one has.
  */
-const struct ecdev_ops *ec_links_device_ops(const struct ec_links *l)
+bool ec_links_need_thread(const struct ec_links *l)
 {
-	const struct ecdev *dev = READ_ONCE(l->link[0].dev);	/* may be withdrawn now */
+	unsigned int i;
 
-	return dev ? dev->ops : NULL;
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		const struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
+
+		if (dev && !dev->ops->atomic)
+			return true;
+	}
+	return false;
 }
 
 /**

@@ -265,7 +265,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);
 const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size);
-const struct ecdev_ops *ec_links_device_ops(const struct ec_links *l);
+bool ec_links_need_thread(const struct ec_links *l);
 bool ec_links_look(struct ec_links *l);
 void ec_links_update_rates(struct ec_links *l);
 void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states);

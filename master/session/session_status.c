@@ -156,6 +156,7 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_session_note_counts(s, false, false);
 		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
+		ec_cycle_sched_log_place(&s->cycle);
 		ec_dc_app_log(ss->dc);
 		ec_cycle_tell_room(&s->cycle);
 		ec_cycle_tell_stale(&s->cycle);

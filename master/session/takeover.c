@@ -232,7 +232,8 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 	if (s->requests)
 		ec_requests_describe(s);
 	adopt_late(s, candidate->cycle.late_per_s);
-	ec_cycle_thread_inherit(&s->cycle, candidate->cycle.priority);
+	ec_cycle_thread_inherit(&s->cycle, candidate->cycle.priority,
+				candidate->cycle.may_interrupt);
 	WRITE_ONCE(ss->candidate, NULL);
 	ec_session_fill_status(s);
 	ec_cycle_set_owner(&s->cycle, candidate->cycle.owner,

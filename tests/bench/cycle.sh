@@ -163,20 +163,21 @@ cost() {
 
 # What the kernel's cycle of 1 ms takes from an application that never sleeps: its thread, what
 # wakes it, and both switches, without the clock tick, which comes anyway.
+# spinning PREFIX PLACE LIMIT1 LIMIT100
 spinning() {
-	local floor limit spins what
+	local floor limit spins what p=$1
 
-	what="a cycle of the kernel, the application spins, native device, ${v[slaves]} drive(s)"
+	what="a cycle of the kernel in $2, the application spins, native device, ${v[slaves]} drive(s)"
 	floor=$((v[floor1_spin_rest] - v[spinning_per_ms]))
-	spins=$((v[spin_card_work] + v[spin_master_work] + v[spin_rest_work]))
+	spins=$((v[${p}card_work] + v[${p}master_work] + v[${p}rest_work]))
 	spins=$((spins - v[spinning_per_ms]))
-	echo "# kernel's cycle, the application spins: $spins"
+	echo "# kernel's cycle in $2, the application spins: $spins"
 	echo "# floor of the same: a thread that only sleeps $floor; above it: $((spins - floor))"
-	gate "$what: ${v[spin_lost]} frames lost, ${v[spin_wc_errors]} working-counter errors" \
-		"${v[spin_lost]} == 0 && ${v[spin_wc_errors]} == 0 && ${v[spin_call_errors]} == 0"
-	limit=$(((v[slaves] == 1 ? 7600 : 11500) * slack / 100))
+	gate "$what: ${v[${p}lost]} frames lost, ${v[${p}wc_errors]} working-counter errors" \
+		"${v[${p}lost]} == 0 && ${v[${p}wc_errors]} == 0 && ${v[${p}call_errors]} == 0"
+	limit=$(((v[slaves] == 1 ? $3 : $4) * slack / 100))
 	row $spins $limit "all instructions of $what"
-	gate "$what: $spins instructions, at most $limit" "spins > floor && spins <= limit"
+	gate "$what: $spins instructions, at most $limit" "spins > 0 && spins <= limit"
 }
 
 # work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
@@ -258,6 +259,20 @@ floors() {
 	echo "# above it: kernel's with a waiting application $(($3 - wake))"
 }
 
+# interrupted MS OWN: the kernel's cycle in the interrupt of its timer, the application waits
+interrupted() {
+	local limit
+
+	work iwait_ "$1" "kernel's cycle in an interrupt, the application waits for it"
+	# above it are the clock tick and the monitor, of longer cycles
+	limit=$((((v[slaves] == 1 ? 11500 : 17000) + ($1 - 1) * 2000) * slack / 100))
+	row $work $limit "all instructions of the kernel's cycle in an interrupt, an application waits: ${v[slaves]} drive(s), $1 ms"
+	gate "${v[slaves]} drive(s), an interrupt for $1 ms: $work instructions, at most $limit; $(ratio "$work" "$2") of an application's cycle" \
+		"${v[iwait_interrupted]} == 1 && work > 0 && work <= limit"
+	gate "the same: ${v[iwait_cycles]} cycles: ${v[iwait_lost]} frames lost, ${v[iwait_wc_errors]} working-counter errors" \
+		"${v[iwait_lost]} == 0 && ${v[iwait_wc_errors]} == 0 && ${v[iwait_call_errors]} == 0"
+}
+
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
@@ -265,12 +280,15 @@ native_cost() {
 
 	# one of 4 ms begins with the clock tick, and only one of them is the cycle's; what the
 	# machine does by itself varies by 100,000 instructions from one run to another
-	[ "$ms" != 1 ] || spin=(+ spin --cycles 50 --work 500 --period-us $us --kernel spin)
+	[ "$ms" != 1 ] ||
+		spin=(+ spin --cycles 50 --work 500 --period-us $us --kernel spin
+		      + ispin --cycles 50 --work 500 --period-us $us --kernel spin --interrupt)
 	echo "# instructions per cycle of $ms ms, native device on e1000e"
 	for n in 1 100; do
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
 			--period-us $us + kernel --cycles 300 --period-us $us --kernel timer \
 			+ wait --cycles 300 --period-us $us --kernel wait \
+			+ iwait --cycles 300 --period-us $us --kernel wait --interrupt \
 			${spin[@]+"${spin[@]}"} || return
 		cost native
 		kernel_cost
@@ -278,7 +296,11 @@ native_cost() {
 		work kernel_ $ms "kernel's cycle, the application sleeps by itself"
 		work wait_ $ms "kernel's cycle, the application waits for it"
 		floors $ms "$own" "$work"
-		[ "$ms" != 1 ] || spinning
+		interrupted $ms "$own"
+		if [ "$ms" = 1 ]; then
+			spinning spin_ "its thread" 7600 11500
+			spinning ispin_ "an interrupt" 3700 8000
+		fi
 		limit=$(((n == 1 ? 2600 : 6000) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \

@@ -474,7 +474,7 @@ static void session_without_thread_inherits(struct kunit *test)
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	ec_sessions_lock(&b->m->sessions);
-	ec_cycle_thread_inherit(&b->m->sessions.session->cycle, 7);
+	ec_cycle_thread_inherit(&b->m->sessions.session->cycle, 7, true);
 	ec_sessions_unlock(&b->m->sessions);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 }

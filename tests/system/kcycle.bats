@@ -53,6 +53,53 @@ sent() { [ "$(frames)" -ge "$1" ]; }
 	[ "$(lost_frames)" = "$before" ]
 }
 
+@test "the same in the interrupt of the timer, its thread sleeps" {
+	before=$(lost_frames)
+	background flags=8
+	json '.masters[0] | .interrupt and .place == "interrupt"' cycle
+	[[ "$(ethercat cycle)" == *"Runs in: interrupt"* ]]
+	thread=$(pgrep -x 'EtherCAT0-cyc')
+	switches=$(switches)
+	from=$(frames)
+	wait_for 60 sent $((from + 5000))
+	[ "$(switches)" = "$switches" ]
+	json '.masters[0].overruns == 0' cycle
+	dmesg | grep -q 'EtherCAT 0: kernel cycle runs in the interrupt of its timer'
+	kill -9 $app
+	wait $app || true
+	app=
+	wait_for 60 all_slaves_are PREOP 3
+	# each way to wait; what sleeps in poll() is woken by the thread
+	for spin in 0 1 2 3; do
+		run kcycle cycles=1000 flags=8 spin=$spin
+		echo "$output"
+		[ "$status" = 0 ]
+		[[ "$output" == *"cycles: 1000, working counter errors: 0, "* ]]
+		[[ "$output" == *"kernel: running, "*"overruns: 0, "* ]]
+	done
+	[ "$(lost_frames)" = "$before" ]
+}
+
+switches() { awk '/ctxt_switches/ { n += $2 } END { print n }' "/proc/$thread/status"; }
+
+@test "killed and taken over, stalled and stopped in the interrupt" {
+	before=$(lost_frames)
+	background flags=9 stall=1 stall_cycles=50 value=4711
+	die
+	wait_for 60 cycle_is stalled
+	json '.masters[0].interrupt' cycle
+	run kcycle cycles=500 flags=9 stall=1 stall_cycles=50
+	echo "$output"
+	[[ "$output" == *"takeovers: 1, output: 0, "* ]]
+	[[ "$output" == *"cycles: 500, working counter errors: 0, "* ]]
+	[ "$(lost_frames)" = "$before" ]
+	ethercat release
+	background flags=8 stall=2 stall_cycles=20
+	kill -STOP $app
+	wait_for 60 cycle_is stopped
+	kill -CONT $app
+}
+
 @test "the thread is real-time, of the priority asked for, on its CPU" {
 	"$EC_BUILD/apps/kcycle" cycles=100000 priority=77 cpu=0 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
 	app=$!

@@ -96,6 +96,29 @@ killed() {
 	ethercat release
 }
 
+@test "only an application that may have priority 99 gets the interrupt, also by a takeover" {
+	chmod o+rw /dev/EtherCAT0
+	run_as prlimit --rtprio=98 "${group[@]}" -- flags=9
+	json '.masters[0].place == "thread; interrupt not permitted"' cycle
+	wait_for 10 logged 'EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99'
+	killed
+	run_as prlimit --rtprio=99 "${group[@]}" -- flags=9
+	wait_for 60 json '.masters[0].interrupt' cycle
+	killed
+	run_as prlimit --rtprio=98 "${group[@]}" -- flags=9
+	wait_for 10 json '.masters[0].interrupt == false' cycle
+	killed
+	ethercat release
+}
+logged() { dmesg | grep -qF "$1"; }
+
+@test "no image is torn while the interrupt copies" {
+	run "$EC_BUILD/apps/kcycle" cycles=5000 loop=1 spin=1 cpu=1 flags=8
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"cycles: 5000, "*", torn: 0"* ]]
+}
+
 @test "the thread returns to its CPU after that was offline" {
 	run_as -- cpu=1
 	[ "$(allowed)" = 1 ]
@@ -111,4 +134,20 @@ killed() {
 	done
 	[[ "$(ethercat cycle)" == *"Thread: SCHED_FIFO 50, CPU 1, offline 2 time(s)"* ]]
 	json '.masters[0].state == "running"' cycle
+}
+
+@test "an interrupt moves to the thread and back when its CPU goes offline" {
+	# the host may stop this guest for more than half of a short period
+	run_as -- cpu=1 flags=8 period=20000
+	wait_for 60 json '.masters[0].interrupt' cycle
+	for _ in 1 2; do
+		echo 0 >/sys/devices/system/cpu/cpu1/online
+		wait_for 10 json '.masters[0] | .interrupt == false and .state == "running"' cycle
+		[ "$(says 'Active')" = yes ]
+		echo 1 >/sys/devices/system/cpu/cpu1/online
+		wait_for 60 json '.masters[0].interrupt' cycle
+	done
+	# no thread of this CPU may be kept from running
+	run timeout 10 taskset -c 1 true
+	[ "$status" = 0 ]
 }

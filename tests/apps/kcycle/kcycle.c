@@ -14,7 +14,8 @@
  *   dc=0           1: keep the clocks of the slaves in step; 2: and follow them
  *   spin=0         how to wait: 0 one system call, 1 spin, 2 poll(), 3 epoll
  *   pause=0        ms without outputs, in the middle
- *   flags=0        1: the cycle survives this program, 2: it waits for outputs
+ *   flags=0        1: the cycle survives this program, 2: it waits for outputs,
+ *                  8: it runs in an interrupt
  *   value=0        number in the first 32 bits of every slave's outputs; with 0
  *                  they stay as they are
  *   loop=0         1: the first and last 32 bits of the image of every slave's

@@ -60,6 +60,8 @@ struct bench {
 	unsigned int uploads;	/* slaves of which others upload an object meanwhile */
 	bool violate;	/* do what a cycle must not do, now and then */
 	enum mode mode;
+	bool interrupt;	/* the kernel runs the cycle in the interrupt of its timer */
+	bool interrupted;	/* that is where the last cycle was */
 
 	ec_master_t *master;
 	ec_domain_t *domains[DOMAINS_MAX];
@@ -99,6 +101,7 @@ int setup(struct bench *b);
 void frame_counters(const struct bench *b, unsigned long long *lost,
 		    unsigned long long *late);
 uint32_t syscall_entry(const struct bench *b);
+bool in_interrupt(const struct bench *b);
 
 /* extras.c */
 int extras_setup(struct bench *b);

@@ -253,6 +253,7 @@ static void measure(struct bench *b, long long *at)
 	b->lost -= lost;
 	b->late -= late;
 	b->operational = count_operational(b);
+	b->interrupted = in_interrupt(b);
 }
 
 static int run(struct bench *b)
@@ -313,6 +314,7 @@ static void report(struct bench *b)
 		printf("requests_done %u\n", b->requests_done);
 	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
 	       b->lost, b->late, b->wc_errors, b->call_errors, b->overruns);
+	printf("interrupted %u\n", b->interrupted);
 	if (b->syscalls)
 		return;
 	printf("entry %u\nbusy_ns_per_cycle %llu\n", b->entry,
@@ -385,6 +387,7 @@ static void usage(FILE *out)
 		"  --uploads N    meanwhile others upload an object of each of N slaves, again and again\n"
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
 		"                 wait (a system call), spin, timer (one of its own)\n"
+		"  --interrupt    and runs it in the interrupt of its timer\n"
 		"  --syscalls     count system calls instead of time\n"
 		"  --trace        switch ftrace on while measuring\n"
 		"  --baseline MS  only measure what the machine does by itself in a millisecond,\n"
@@ -433,6 +436,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "violate", no_argument, NULL, 'v' },
 		{ "baseline", required_argument, NULL, 'b' },
 		{ "floor", no_argument, NULL, 'f' },
+		{ "interrupt", no_argument, NULL, 'i' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -458,6 +462,8 @@ static void parse(struct bench *b, int argc, char **argv)
 			b->violate = true;
 		else if (c == 'f')
 			b->floor = true;
+		else if (c == 'i')
+			b->interrupt = true;
 		else if (c == 'b')
 			exit(work_baseline(number("baseline", optarg, 60000) ?: 1));
 		else if (c == 'k' && kernel_mode(optarg) > 0)

@@ -60,6 +60,7 @@ static int kernel_cycle(struct bench *b)
 		.period_ns = b->period_us * 1000, .priority = 90,
 		.dc = b->extras ? EC_CYCLE_SYNC_REFERENCE | EC_CYCLE_SYNC_SLAVES |
 				  EC_CYCLE_SYNC_MONITOR : 0,
+		.flags = b->interrupt ? EC_CYCLE_INTERRUPT : 0,
 	};
 
 	return ecrt_master_set_cycle(b->master, &config);
@@ -140,4 +141,20 @@ uint32_t syscall_entry(const struct bench *b)
 	if (fd >= 0)
 		close(fd);
 	return best;
+}
+
+/* Where the kernel ran the last cycle. */
+bool in_interrupt(const struct bench *b)
+{
+	struct ec_ioc_cycle_stats info;
+	int fd = open_master(b);
+	bool is = false;
+
+	memset(&info, 0, sizeof(info));
+	if (fd >= 0) {
+		is = !ioctl(fd, EC_IOC_CYCLE_STATS, &info) &&
+		     info.flags == EC_CYCLE_PLACE_INTERRUPT;
+		close(fd);
+	}
+	return is;
 }

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The cycle in the interrupt of its timer, for devices that need no thread. The thread of the
+ * cycle sleeps meanwhile. At any time one of both has the cycle: the thread gives it to the timer,
+ * and an interrupt that cannot go on gives it back, since only a thread may sleep.
+ */
+#include <linux/kthread.h>
+#include <linux/sched.h>
+#include <linux/smp.h>
+#include "../wire/compat.h"
+#include "cycle_run.h"
+#include "cycle_thread.h"
+#include "waiters.h"
+
+#define LONG_CYCLES	1000	/* in the thread, after one of more than half of the period */
+
+/*
+ * Enters the links where the cycle may run in an interrupt of this CPU, and says so by
+ * EC_CYCLE_PLACE_INTERRUPT. All other places are in the thread.
+ */
+static u32 enter(const struct ec_cycle_thread *t)
+{
+	struct ec_cycle *c = t->cycle;
+
+	if (!READ_ONCE(c->may_interrupt))
+		return EC_CYCLE_PLACE_RIGHT;
+	if (c->kernel.cpu >= 0 && c->kernel.cpu != raw_smp_processor_id())
+		return EC_CYCLE_PLACE_CPU;
+	if (t->in_thread)
+		return EC_CYCLE_PLACE_LONG;
+	if (ec_cycle_run_status(t)->state > EC_CYCLE_STATE_STALLED ||
+	    !ec_links_attached(c->links) || ec_access_try_enter(c->links))
+		return EC_CYCLE_PLACE_BEGIN;
+	if (!ec_links_need_thread(c->links))
+		return EC_CYCLE_PLACE_INTERRUPT;
+	ec_links_leave(c->links);
+	return EC_CYCLE_PLACE_DEVICE;
+}
+
+/* The thread has the cycle from now on; @place says why. */
+static enum hrtimer_restart give_back(struct ec_cycle_thread *t, u32 place)
+{
+	WRITE_ONCE(t->cycle->place, place);
+	/* all that the interrupt has done; pairs with ec_cycle_timer_run() */
+	smp_store_release(&t->timed, false);
+	wake_up_process(t->task);	/* it waits for the end of this function */
+	return HRTIMER_NORESTART;
+}
+
+static enum hrtimer_restart tick(struct hrtimer *timer)
+{
+	struct ec_cycle_thread *t = container_of(timer, struct ec_cycle_thread, timer);
+	u32 place = enter(t);
+
+	if (unlikely(place != EC_CYCLE_PLACE_INTERRUPT))
+		return give_back(t, place);
+	t->ended = !ec_cycle_run_once(t, true);
+	ec_links_leave(t->cycle->links);
+	if (unlikely(t->ended))
+		return give_back(t, EC_CYCLE_PLACE_BEGIN);
+	/* no thread of this CPU would run if it went on like that */
+	if (unlikely(ec_cycle_run_status(t)->work_ns > t->cycle->kernel.period_ns / 2)) {
+		t->in_thread = LONG_CYCLES;
+		return give_back(t, EC_CYCLE_PLACE_LONG);
+	}
+	hrtimer_set_expires(timer, ns_to_ktime(t->next_ns));
+	return HRTIMER_RESTART;
+}
+
+/**
+ * ec_cycle_timer_init() - prepare the timer of a cycle
+ * @t: cycle
+ *
+ * Context: Any.
+ */
+void ec_cycle_timer_init(struct ec_cycle_thread *t)
+{
+	hrtimer_setup(&t->timer, tick, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_PINNED_HARD);
+}
+
+/* Until the interrupt gives the cycle back, or the thread shall end. */
+static void wait_for_cycle(struct ec_cycle_thread *t)
+{
+	while (1) {
+		set_current_state(TASK_IDLE);
+		/* pairs with give_back() */
+		if (!smp_load_acquire(&t->timed) || kthread_should_stop())
+			break;
+		if (!READ_ONCE(t->polled)) {
+			schedule();
+			continue;
+		}
+		__set_current_state(TASK_RUNNING);
+		WRITE_ONCE(t->polled, false);
+		ec_cycle_run_wake(t->cycle);
+	}
+	__set_current_state(TASK_RUNNING);
+}
+
+/**
+ * ec_cycle_timer_run() - run cycles in the interrupt of the timer while that is possible
+ * @t: cycle; its schedule is that of the next cycle afterwards
+ *
+ * Returns at once when the next cycle has to run in the thread.
+ *
+ * Context: The cycle thread. Sleeps.
+ * Return: false: the last cycle was run.
+ */
+bool ec_cycle_timer_run(struct ec_cycle_thread *t)
+{
+	u32 place;
+
+	if (likely(!(t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)))
+		return true;
+	place = enter(t);
+	WRITE_ONCE(t->cycle->place, place);
+	if (t->in_thread)
+		t->in_thread--;
+	if (place != EC_CYCLE_PLACE_INTERRUPT)
+		return true;
+	ec_links_leave(t->cycle->links);
+	t->timed = true;
+	hrtimer_start(&t->timer, ns_to_ktime(t->next_ns), HRTIMER_MODE_ABS_PINNED_HARD);
+	wait_for_cycle(t);
+	hrtimer_cancel(&t->timer);
+	return !t->ended;
+}

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The kernel's cycle in the interrupt of its timer, and when its thread has to take it. */
+#include <linux/delay.h>
+#include "kcyc.h"
+#include "master/link/device.h"
+
+static const struct ec_ioc_cycle interrupt = { .flags = EC_CYCLE_FLAG_INTERRUPT };
+
+/* a device that looks at its callers */
+static struct {
+	const struct ecdev_ops *real;
+	struct ecdev_ops ops;
+	u32 hard;
+	u32 thread;
+	u32 delay_us;	/* of the next call */
+} spy;
+
+static u8 *spy_tx_get(void *priv)
+{
+	if (in_hardirq() && irqs_disabled())
+		spy.hard++;
+	else
+		spy.thread++;
+	udelay(spy.delay_us);
+	spy.delay_us = 0;
+	return spy.real->tx_get(priv);
+}
+
+static struct kcyc *watched(struct kunit *test, struct ec_ioc_cycle cfg)
+{
+	struct kcyc *a = kcyc_start(test, cfg);
+	struct ecdev *dev = a->c->b->m->links.link[0].dev;
+
+	memset(&spy, 0, sizeof(spy));
+	spy.real = dev->ops;
+	spy.ops = *dev->ops;
+	spy.ops.tx_get = spy_tx_get;
+	dev->ops = &spy.ops;
+	return a;
+}
+
+static void unwatch(struct kcyc *a)
+{
+	a->c->b->m->links.link[0].dev->ops = spy.real;
+}
+
+static u32 place(struct kcyc *a)
+{
+	struct ec_ioc_cycle_stats info = { 0 };
+
+	KUNIT_EXPECT_EQ(a->c->b->test, ec_ioc(&a->c->b->app, EC_IOC_CYCLE_STATS, &info), 0);
+	return info.flags;
+}
+
+static void timer_runs_all_cycles(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	struct bus *b = a->c->b;
+	u32 i;
+
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	for (i = 1; i <= 1000; i++) {
+		kcyc_write(a, i);
+		kcyc_give(a);
+		kcyc_wait_cycles(a, 2);
+		KUNIT_ASSERT_EQ(test, kcyc_output(a, "s1", 1), (s64)i);
+		KUNIT_ASSERT_NOT_NULL(test, kcyc_take(a));
+	}
+	KUNIT_EXPECT_GE(test, spy.hard, 2000u);
+	KUNIT_EXPECT_EQ(test, spy.thread, 0u);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	unwatch(a);
+}
+
+/* Without the flag nothing of this happens. */
+static void timer_is_asked_for(struct kunit *test)
+{
+	struct kcyc *a = watched(test, (struct ec_ioc_cycle){ 0 });
+
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_THREAD);
+	KUNIT_EXPECT_EQ(test, spy.hard, 0u);
+	KUNIT_EXPECT_GE(test, spy.thread, 100u);
+	unwatch(a);
+}
+
+/* Another device comes that needs a thread, and goes: no cycle is left out. */
+static void timer_not_for_each_device(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	struct ec_link *backup = &a->c->b->m->links.link[1];
+	struct ecdev_ops ops = { .atomic = false };
+	struct ecdev dev = { .ops = &ops };
+	u32 hard;
+
+	kcyc_wait_cycles(a, 10);
+	spy.ops.atomic = false;
+	kcyc_wait_cycles(a, 2);
+	hard = spy.hard;
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_DEVICE);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	spy.ops.atomic = true;
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	KUNIT_EXPECT_GE(test, spy.hard, hard + 97);
+	/* the other one of a ring; nothing is sent there */
+	WRITE_ONCE(backup->dev, &dev);
+	KUNIT_EXPECT_TRUE(test, ec_links_need_thread(&a->c->b->m->links));
+	WRITE_ONCE(backup->dev, NULL);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
+	unwatch(a);
+}
+
+/* One cycle of more than half of the period: threads get their time for the next 1000. */
+static void timer_leaves_time(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	u32 hard;
+
+	kcyc_wait_cycles(a, 10);
+	spy.delay_us = KCYC_PERIOD_NS / NSEC_PER_USEC * 6 / 10;
+	kcyc_wait_cycles(a, 2);
+	hard = spy.hard;
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_LONG);
+	kcyc_wait_cycles(a, 990);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	KUNIT_EXPECT_GE(test, spy.thread, 990u);
+	kcyc_wait_cycles(a, 20);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	KUNIT_EXPECT_GE(test, spy.hard, hard + 5);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
+	unwatch(a);
+}
+
+/* Whoever takes the cycle over may not have the right. */
+static void timer_needs_right(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	struct ec_sessions *ss = &a->c->b->m->sessions;
+	struct ec_cycle *c = &ss->session->cycle;
+	u32 hard;
+
+	ec_sessions_lock(ss);
+	ec_cycle_thread_inherit(c, c->priority, false);
+	ec_sessions_unlock(ss);
+	kcyc_wait_cycles(a, 2);
+	hard = spy.hard;
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_RIGHT);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	ec_sessions_lock(ss);
+	ec_cycle_thread_inherit(c, c->priority, true);
+	ec_sessions_unlock(ss);
+	kcyc_wait_cycles(a, 2);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
+	unwatch(a);
+}
+
+/* The last cycle of the policy "stop" is one of the interrupt; its caller returns. */
+static void timer_stops(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_INTERRUPT,
+		.stall = EC_STALL_STOP, .stall_cycles = 20 });
+	int ret = 0;
+	u32 i;
+
+	kcyc_give(a);
+	for (i = 0; i < 100 && !ret; i++)
+		ret = kcyc_wait(a, 100000);
+	KUNIT_EXPECT_EQ(test, ret, -ECANCELED);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, (u32)EC_CYCLE_STATE_STOPPED);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&a->c->b->app, EC_IOC_DEACTIVATE, NULL), 0);
+}
+
+/* A time limit of the caller, and the device goes away under the interrupt. */
+static void timer_without_device(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, interrupt);
+	struct ec_ioc_wait w = { .cycle = U64_MAX - 1, .timeout_us = 5000 };
+	struct bus *b = a->c->b;
+	u64 before = ktime_get_ns();
+
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_WAIT, &w), -ETIMEDOUT);
+	KUNIT_EXPECT_GE(test, ktime_get_ns() - before, 5000000ull);
+	ec_device_release(&b->m->links, "none", NULL);
+	a->seen = kcyc_status(a)->cycle;
+	kcyc_wait_cycles(a, 500);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_BEGIN);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(timer_runs_all_cycles),
+	KUNIT_CASE(timer_is_asked_for),
+	KUNIT_CASE(timer_not_for_each_device),
+	KUNIT_CASE(timer_leaves_time),
+	KUNIT_CASE(timer_needs_right),
+	KUNIT_CASE(timer_stops),
+	KUNIT_CASE(timer_without_device),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_kcyc_timer", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
