@@ -83,8 +83,9 @@ standstill() {
 	done
 	ethercat master | sed -nE '/^ *(Link|Slaves|Phase|Active)/p'
 	for p in /sys/class/net/*; do
-		echo "${p##*/}: $(cat "$p/operstate" "$p/carrier" | xargs)"
+		echo "${p##*/}: $(cat "$p/operstate" "$p/carrier" "$p"/statistics/[rt]x_packets | xargs)"
 	done
+	grep eth /proc/interrupts
 	dmesg | tail -n 12
 } 2>/dev/null
 
@@ -94,13 +95,16 @@ nap() {
 	if read -rt "$1" -u "$nap_fd"; then return; fi	# no process writes to this pipe
 }
 
-# wait_for SECONDS COMMAND...
+# wait_for SECONDS COMMAND...: for so long and so often, since exact time may leap a minute while
+# the host is busy, and what is waited for has done nothing
 wait_for() {
-	local end=$((SECONDS + $1))
+	local end=$((SECONDS + $1)) times=$((2 * $1))
 
 	shift
 	until "$@"; do
-		[ $SECONDS -lt $end ] || { echo "timed out: $*"; standstill; return 1; }
+		[ $SECONDS -lt $end ] || [ $times -gt 0 ] ||
+			{ echo "timed out: $*"; standstill; return 1; }
+		times=$((times - 1))
 		nap 0.1
 	done
 }
