@@ -967,10 +967,10 @@ typedef enum {
  *	Without this flag the first cycle sends a frame, with zeros as outputs.
  *	%EC_CYCLE_INTERRUPT: the cycle runs in the interrupt of its timer. No thread has to
  *	wake up for it and none delays it, at any priority; the cycle delays all
- *	threads of that CPU. It needs native devices, and CAP_SYS_NICE or RLIMIT_RTPRIO 99.
- *	Otherwise, and for 1000 cycles after one that took more than half of the period, the
- *	thread runs the cycle. The kernel log and 'ethercat cycle' report the place and the
- *	reason.
+ *	threads of that CPU. It needs a native device, and CAP_SYS_NICE or RLIMIT_RTPRIO 99.
+ *	Otherwise, and for 1000 cycles after the interrupt left too little time to those
+ *	threads, the thread of the cycle runs it. 'ethercat cycle' reports the place and the
+ *	reason, the kernel log reasons that can be mended.
  */
 typedef struct {
 	uint32_t period_ns;

@@ -164,18 +164,19 @@ static void place(const struct ec_ioc_cycle_stats *i)
 		[EC_CYCLE_PLACE_THREAD] = "thread",
 		[EC_CYCLE_PLACE_INTERRUPT] = "interrupt",
 		[EC_CYCLE_PLACE_RIGHT] = "thread; interrupt not permitted",
-		[EC_CYCLE_PLACE_DEVICE] = "thread; a device needs it",
-		[EC_CYCLE_PLACE_LONG] = "thread; a cycle took more than half of its period",
+		[EC_CYCLE_PLACE_DEVICE] = "thread; the device needs it",
+		[EC_CYCLE_PLACE_LONG] = "thread; the interrupt left too little time to others",
 		[EC_CYCLE_PLACE_CPU] = "thread; the CPU is offline",
-		[EC_CYCLE_PLACE_BEGIN] = "thread; no frames in the interrupt yet",
+		[EC_CYCLE_PLACE_DEBUG] = "thread; frames are printed",
+		[EC_CYCLE_PLACE_QUIET] = "thread; no frames are sent",
 	};
-	const char *is = i->flags < ARRAY_SIZE(text) ? text[i->flags] : "unknown";
+	const char *is = i->place < ARRAY_SIZE(text) ? text[i->place] : "unknown";
 
 	if (!i->active)
 		return;
-	out_bool("interrupt", i->flags == EC_CYCLE_PLACE_INTERRUPT, NULL);
+	out_bool("interrupt", i->place == EC_CYCLE_PLACE_INTERRUPT, NULL);
 	out_str("place", is, NULL);
-	if (i->flags != EC_CYCLE_PLACE_THREAD)
+	if (i->place != EC_CYCLE_PLACE_THREAD)
 		out_text("  Runs in: %s\n", is);
 }
 

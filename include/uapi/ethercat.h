@@ -413,18 +413,22 @@ struct ec_ioc_domain_data {
 #define EC_CYCLE_BY_APP		1
 #define EC_CYCLE_BY_KERNEL	2
 
-/* struct ec_ioc_cycle_stats.flags, out: where a cycle of the kernel runs, if not there why */
-#define EC_CYCLE_PLACE_THREAD	0	/* in its thread, as configured */
+/*
+ * struct ec_ioc_cycle_stats.place: where a cycle of the kernel runs. With EC_CYCLE_FLAG_INTERRUPT
+ * all but EC_CYCLE_PLACE_INTERRUPT are reasons why its thread runs it.
+ */
+#define EC_CYCLE_PLACE_THREAD	0	/* as configured */
 #define EC_CYCLE_PLACE_INTERRUPT 1	/* in the interrupt of its timer */
 #define EC_CYCLE_PLACE_RIGHT	2	/* CAP_SYS_NICE or RLIMIT_RTPRIO 99 is missing */
-#define EC_CYCLE_PLACE_DEVICE	3	/* a device needs a thread */
-#define EC_CYCLE_PLACE_LONG	4	/* a cycle took more than half of its period */
+#define EC_CYCLE_PLACE_DEVICE	3	/* the device needs a thread */
+#define EC_CYCLE_PLACE_LONG	4	/* it left too little time to the threads of its CPU */
 #define EC_CYCLE_PLACE_CPU	5	/* its CPU is offline */
-#define EC_CYCLE_PLACE_BEGIN	6	/* it begins, has stopped, or has no device */
+#define EC_CYCLE_PLACE_DEBUG	6	/* frames are printed: EC_IOC_DEBUG */
+#define EC_CYCLE_PLACE_QUIET	7	/* it sends no frames */
 
 /* statistics of the running cycle, otherwise of the last one */
 struct ec_ioc_cycle_stats {
-	__u32 flags;		/* in: 0; out: EC_CYCLE_PLACE_* */
+	__u32 flags;
 	__u32 kind;
 	__u32 active;		/* the cycle runs */
 	__u32 interval_set;	/* interval was configured, not measured */
@@ -436,6 +440,8 @@ struct ec_ioc_cycle_stats {
 	__u32 cpu_losses;	/* times this CPU went offline */
 	__u32 priority;		/* SCHED_FIFO; 0: SCHED_OTHER */
 	__u32 priority_wanted;	/* as configured */
+	__u32 place;		/* EC_CYCLE_PLACE_* */
+	__u32 reserved;
 };
 
 /* application ---------------------------------------------------------------*/

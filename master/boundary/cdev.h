@@ -22,7 +22,7 @@ struct ec_session;
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
  * @reader: NULL, or it reads events; set once
- * @rcu: frees it after the cycle thread has finished with @waiters
+ * @rcu: frees it after the cycle has finished with @waiters
  */
 struct ec_file {
 	struct ec_master *master;

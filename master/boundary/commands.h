@@ -38,7 +38,8 @@ CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
-	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
+	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)),
+	OLDEST(ec_ioc_cycle_stats, priority_wanted))
 CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
 	OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, SLAVE(ec_ioc_sdo),

@@ -56,6 +56,7 @@ void ec_cycle_clear(struct ec_cycle *c)
 	memset(&c->kernel, 0, sizeof(c->kernel));
 	c->priority = 0;
 	c->may_interrupt = false;
+	c->place = EC_CYCLE_PLACE_THREAD;
 	c->cpu_lost = false;
 	c->cpu_losses = 0;
 }

@@ -258,7 +258,7 @@ struct ec_cycle {
 	/** @owner: open file of the application; NULL: it has exited, the cycle continues */
 	const void *owner;
 	/**
-	 * @waiters: callers of @owner that wait for a cycle, or NULL; the cycle thread
+	 * @waiters: callers of @owner that wait for a cycle, or NULL; who runs the cycle
 	 * reads it under RCU
 	 */
 	struct ec_waiters __rcu *waiters;
@@ -275,7 +275,9 @@ struct ec_cycle {
 	bool may_interrupt;
 	/** @place: EC_CYCLE_PLACE_*, where the last cycle ran */
 	u32 place;
-	/** @places_logged: bit n: the log says that it was place n */
+	/** @places: where cycles have run, bit n: place n */
+	u32 places;
+	/** @places_logged: the same, as the log knows it */
 	u32 places_logged;
 	/** @cpu_lost: the CPU of the cycle is offline */
 	bool cpu_lost;

@@ -6,8 +6,7 @@
  * there is more than data or a number of a buffer, and that is cut to 0..2.
  *
  * Nothing here allocates, prints or takes a lock but those of ec_cycle_receive() and
- * ec_cycle_send(), and the one of the wait queue of the file that owns the cycle, when a caller
- * waits there.
+ * ec_cycle_send(), and those of the callers of the file that owns the cycle, when some wait.
  */
 #include <linux/ktime.h>
 #include <linux/rcupdate.h>
@@ -321,7 +320,8 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 		wake_atomic(t);
 	else
 		ec_cycle_run_wake(c);
-	ec_late_work(c, ktime_get_ns() - now);
+	t->end_ns = ktime_get_ns();
+	ec_late_work(c, t->end_ns - now);
 	t->next_ns += c->kernel.period_ns + correction;
 	return ec_cycle_run_status(t)->state != EC_CYCLE_STATE_STOPPED;
 }

@@ -5,6 +5,7 @@
 
 #include <linux/completion.h>
 #include <linux/hrtimer.h>
+#include <linux/notifier.h>
 #include <linux/types.h>
 #include "cycle.h"
 #include "pll.h"
@@ -54,7 +55,11 @@ struct ec_cycle_slow {
  * @timed: it does; until it is false the thread does not touch what a cycle uses
  * @polled: the interrupt asks the thread to wake callers of poll()
  * @ended: its cycle was the last one
+ * @stopped: by @panic
+ * @end_ns: end of the last cycle (ktime)
+ * @tight: cycles in a row that ended in the second half of their period
  * @in_thread: cycles that have to run in the thread
+ * @panic: of the kernel: the timer stops
  */
 struct ec_cycle_thread {
 	struct ec_cycle *cycle;
@@ -83,7 +88,11 @@ struct ec_cycle_thread {
 	bool timed;
 	bool polled;
 	bool ended;
+	bool stopped;
+	u64 end_ns;
+	u32 tight;
 	u32 in_thread;
+	struct notifier_block panic;
 };
 
 static inline struct ec_status_cycle *ec_cycle_run_status(const struct ec_cycle_thread *t)
@@ -109,6 +118,7 @@ void ec_cycle_run_end(struct ec_cycle *c);
 
 /* cycle_timer.c */
 void ec_cycle_timer_init(struct ec_cycle_thread *t);
+void ec_cycle_timer_exit(struct ec_cycle_thread *t);
 bool ec_cycle_timer_run(struct ec_cycle_thread *t);
 
 #endif

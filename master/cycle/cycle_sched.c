@@ -50,8 +50,11 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 			c->priority, wanted);
 }
 
+#define NO_RIGHT \
+	"EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99 of the application (/etc/security/limits.d)"
+
 /**
- * ec_cycle_sched_log_place() - log where the cycle runs, when it shall run in an interrupt
+ * ec_cycle_sched_log_place() - log where cycles have run, when they shall run in an interrupt
  * @c: active cycle
  *
  * Each place once: a cycle that is too long now and then does not fill the log.
@@ -61,20 +64,32 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 void ec_cycle_sched_log_place(struct ec_cycle *c)
 {
 	static const char *const why[] = {
-		[EC_CYCLE_PLACE_RIGHT] = "EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99 of the application (/etc/security/limits.d)",
-		[EC_CYCLE_PLACE_DEVICE] = "a device needs it; use native devices only, see 'ethercat device'",
-		[EC_CYCLE_PLACE_LONG] = "a cycle took more than half of its period in the interrupt; set a longer period",
+		[EC_CYCLE_PLACE_RIGHT] = NO_RIGHT,
+		[EC_CYCLE_PLACE_DEVICE] = "the device needs it; use a native device, see 'ethercat devices'",
+		[EC_CYCLE_PLACE_LONG] = "the interrupt left too little time to other threads of its CPU; set a longer period",
+		[EC_CYCLE_PLACE_DEBUG] = "debug level 2 prints frames",
 	};
-	u32 place = READ_ONCE(c->place);
+	u32 fresh = READ_ONCE(c->places) & ~c->places_logged;
+	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (c->places_logged & BIT(place))
-		return;
-	c->places_logged |= BIT(place);
-	if (place == EC_CYCLE_PLACE_INTERRUPT)
+	c->places_logged |= fresh;
+	if (fresh & BIT(EC_CYCLE_PLACE_INTERRUPT))
 		ec_info(c, "kernel cycle runs in the interrupt of its timer\n");
-	else if (place < ARRAY_SIZE(why) && why[place])
-		ec_warn(c, "kernel cycle runs in its thread: %s\n", why[place]);
+	for (i = 0; i < ARRAY_SIZE(why); i++)
+		if (fresh & BIT(i) && why[i])
+			ec_warn(c, "kernel cycle runs in its thread: %s\n", why[i]);
+}
+
+/* What a takeover has changed. */
+static void log_right(const struct ec_cycle *c)
+{
+	if (!(c->kernel.flags & EC_CYCLE_FLAG_INTERRUPT))
+		return;
+	if (c->may_interrupt)
+		ec_info(c, "kernel cycle runs in the interrupt of its timer, as the new application permits\n");
+	else
+		ec_warn(c, "kernel cycle runs in its thread: %s\n", NO_RIGHT);
 }
 
 /**
@@ -94,7 +109,9 @@ void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrup
 	lockdep_assert_held(c->wanted->lock);
 	if (task && c->may_interrupt != may_interrupt) {
 		WRITE_ONCE(c->may_interrupt, may_interrupt);
-		c->places_logged = 0;
+		/* else the monitor repeats it */
+		c->places_logged |= BIT(EC_CYCLE_PLACE_RIGHT) | BIT(EC_CYCLE_PLACE_INTERRUPT);
+		log_right(c);
 	}
 	if (!task || c->priority == priority)
 		return;

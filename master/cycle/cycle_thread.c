@@ -117,6 +117,7 @@ static int alloc_exchange(struct ec_cycle_thread *t)
 
 static void free_thread(struct ec_cycle_thread *t)
 {
+	ec_cycle_timer_exit(t);
 	kvfree(t->outputs);
 	kfree(t);
 }
@@ -198,8 +199,9 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	if (!c->thread)
 		return;
 	ec_cycle_sched_log(c);
-	c->places_logged = 0;
 	c->place = EC_CYCLE_PLACE_THREAD;
+	c->places = 0;
+	c->places_logged = 0;
 	WRITE_ONCE(c->links->access.interval_us, max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC));
 	c->links->access.interval_set = true;
 	WRITE_ONCE(ec_cycle_run_status(c->thread)->state, c->kernel.flags & EC_CYCLE_FLAG_WAIT ?

@@ -15,7 +15,7 @@ struct task_struct;
 
 /** struct ec_cycle_ops - what the thread reports to higher layers; each may be NULL */
 struct ec_cycle_ops {
-	/** @cycle: a cycle begins; RT-safe */
+	/** @cycle: a cycle begins; RT-safe, also in hard interrupt */
 	void (*cycle)(struct ec_cycle *c);
 };
 

@@ -5,6 +5,7 @@
  * and an interrupt that cannot go on gives it back, since only a thread may sleep.
  */
 #include <linux/kthread.h>
+#include <linux/panic_notifier.h>
 #include <linux/sched.h>
 #include <linux/smp.h>
 #include "../wire/compat.h"
@@ -12,7 +13,9 @@
 #include "cycle_thread.h"
 #include "waiters.h"
 
-#define LONG_CYCLES	1000	/* in the thread, after one of more than half of the period */
+#define LONG_CYCLES	1000	/* in the thread, after those that left it no time */
+#define LONG_NS		NSEC_PER_MSEC	/* more than that, or half of the period, is too long */
+#define TIGHT_CYCLES	4	/* that many in a row may end in the second half of their period */
 
 /*
  * Enters the links where the cycle may run in an interrupt of this CPU, and says so by
@@ -28,19 +31,42 @@ static u32 enter(const struct ec_cycle_thread *t)
 		return EC_CYCLE_PLACE_CPU;
 	if (t->in_thread)
 		return EC_CYCLE_PLACE_LONG;
+	/* the console may be slow */
+	if (unlikely(READ_ONCE(c->base->debug) >= 2))
+		return EC_CYCLE_PLACE_DEBUG;
 	if (ec_cycle_run_status(t)->state > EC_CYCLE_STATE_STALLED ||
 	    !ec_links_attached(c->links) || ec_access_try_enter(c->links))
-		return EC_CYCLE_PLACE_BEGIN;
+		return EC_CYCLE_PLACE_QUIET;
 	if (!ec_links_need_thread(c->links))
 		return EC_CYCLE_PLACE_INTERRUPT;
 	ec_links_leave(c->links);
 	return EC_CYCLE_PLACE_DEVICE;
 }
 
+/* For readers, and for the log of the monitor. */
+static void note_place(struct ec_cycle *c, u32 place)
+{
+	WRITE_ONCE(c->place, place);
+	WRITE_ONCE(c->places, c->places | BIT(place));
+}
+
+/*
+ * Does the interrupt leave time to the threads of its CPU? If it and what else comes before
+ * them take all of it, each cycle begins later than the one before.
+ */
+static bool leaves_time(struct ec_cycle_thread *t)
+{
+	u32 half = t->cycle->kernel.period_ns / 2;
+
+	t->tight = t->end_ns + half > t->next_ns ? t->tight + 1 : 0;
+	return ec_cycle_run_status(t)->work_ns <= min_t(u32, half, LONG_NS) &&
+	       t->tight < TIGHT_CYCLES;
+}
+
 /* The thread has the cycle from now on; @place says why. */
 static enum hrtimer_restart give_back(struct ec_cycle_thread *t, u32 place)
 {
-	WRITE_ONCE(t->cycle->place, place);
+	note_place(t->cycle, place);
 	/* all that the interrupt has done; pairs with ec_cycle_timer_run() */
 	smp_store_release(&t->timed, false);
 	wake_up_process(t->task);	/* it waits for the end of this function */
@@ -50,16 +76,20 @@ static enum hrtimer_restart give_back(struct ec_cycle_thread *t, u32 place)
 static enum hrtimer_restart tick(struct hrtimer *timer)
 {
 	struct ec_cycle_thread *t = container_of(timer, struct ec_cycle_thread, timer);
-	u32 place = enter(t);
+	u32 place;
 
+	/* where a panic lets timers go on, outputs would never end */
+	if (unlikely(READ_ONCE(t->stopped)))
+		return HRTIMER_NORESTART;
+	place = enter(t);
 	if (unlikely(place != EC_CYCLE_PLACE_INTERRUPT))
 		return give_back(t, place);
 	t->ended = !ec_cycle_run_once(t, true);
 	ec_links_leave(t->cycle->links);
 	if (unlikely(t->ended))
-		return give_back(t, EC_CYCLE_PLACE_BEGIN);
-	/* no thread of this CPU would run if it went on like that */
-	if (unlikely(ec_cycle_run_status(t)->work_ns > t->cycle->kernel.period_ns / 2)) {
+		return give_back(t, EC_CYCLE_PLACE_QUIET);
+	if (unlikely(!leaves_time(t))) {
+		t->tight = 0;
 		t->in_thread = LONG_CYCLES;
 		return give_back(t, EC_CYCLE_PLACE_LONG);
 	}
@@ -67,15 +97,46 @@ static enum hrtimer_restart tick(struct hrtimer *timer)
 	return HRTIMER_RESTART;
 }
 
+static int on_panic(struct notifier_block *nb, unsigned long event, void *data)
+{
+	struct ec_cycle_thread *t = container_of(nb, struct ec_cycle_thread, panic);
+
+	WRITE_ONCE(t->stopped, true);
+	return NOTIFY_DONE;
+}
+
 /**
  * ec_cycle_timer_init() - prepare the timer of a cycle
- * @t: cycle
+ * @t: cycle; ec_cycle_timer_exit() must follow
  *
  * Context: Any.
  */
 void ec_cycle_timer_init(struct ec_cycle_thread *t)
 {
 	hrtimer_setup(&t->timer, tick, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_PINNED_HARD);
+	t->panic.notifier_call = on_panic;
+	if (t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
+		atomic_notifier_chain_register(&panic_notifier_list, &t->panic);
+}
+
+/**
+ * ec_cycle_timer_exit() - end of the timer of a cycle
+ * @t: cycle whose thread has ended
+ *
+ * Context: Process. May sleep.
+ */
+void ec_cycle_timer_exit(struct ec_cycle_thread *t)
+{
+	if (t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
+		atomic_notifier_chain_unregister(&panic_notifier_list, &t->panic);
+}
+
+static void wake_polled(struct ec_cycle_thread *t)
+{
+	if (!READ_ONCE(t->polled))
+		return;
+	WRITE_ONCE(t->polled, false);
+	ec_cycle_run_wake(t->cycle);
 }
 
 /* Until the interrupt gives the cycle back, or the thread shall end. */
@@ -91,8 +152,7 @@ static void wait_for_cycle(struct ec_cycle_thread *t)
 			continue;
 		}
 		__set_current_state(TASK_RUNNING);
-		WRITE_ONCE(t->polled, false);
-		ec_cycle_run_wake(t->cycle);
+		wake_polled(t);
 	}
 	__set_current_state(TASK_RUNNING);
 }
@@ -113,7 +173,7 @@ bool ec_cycle_timer_run(struct ec_cycle_thread *t)
 	if (likely(!(t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)))
 		return true;
 	place = enter(t);
-	WRITE_ONCE(t->cycle->place, place);
+	note_place(t->cycle, place);
 	if (t->in_thread)
 		t->in_thread--;
 	if (place != EC_CYCLE_PLACE_INTERRUPT)
@@ -123,5 +183,6 @@ bool ec_cycle_timer_run(struct ec_cycle_thread *t)
 	hrtimer_start(&t->timer, ns_to_ktime(t->next_ns), HRTIMER_MODE_ABS_PINNED_HARD);
 	wait_for_cycle(t);
 	hrtimer_cancel(&t->timer);
+	wake_polled(t);	/* of the last cycle */
 	return !t->ended;
 }

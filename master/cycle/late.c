@@ -187,9 +187,9 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 /**
  * ec_late_work() - count how long a cycle of the kernel took
  * @c: active cycle
- * @ns: from the wake-up of the thread until it goes to sleep
+ * @ns: from its begin until the callers are woken
  *
- * Context: The thread that runs the cycle. RT-safe.
+ * Context: Who runs the cycle, also in hard interrupt. RT-safe.
  */
 void ec_late_work(struct ec_cycle *c, s64 ns)
 {
@@ -211,12 +211,12 @@ static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 	bool kernel = c->kernel.period_ns;
 
 	info->active = 1;
-	info->flags = READ_ONCE(c->place);
 	info->kind = kernel ? EC_CYCLE_BY_KERNEL : EC_CYCLE_BY_APP;
 	info->interval_set = kernel || c->links->access.interval_set;
 	info->interval_ns = kernel ? c->kernel.period_ns :
 				     READ_ONCE(c->schedule.interval_ns);
 	info->cpu = kernel ? c->kernel.cpu : -1;
+	info->place = kernel ? READ_ONCE(c->place) : EC_CYCLE_PLACE_THREAD;
 	info->cpu_losses = c->cpu_losses;
 	info->priority = kernel ? c->priority : 0;
 	info->priority_wanted = kernel ? c->kernel.priority ?: EC_CYCLE_PRIORITY : 0;

@@ -86,11 +86,11 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 }
 
 /**
- * ec_links_need_thread() - has one a device that cannot be used in a hard interrupt?
+ * ec_links_need_thread() - is there a device for frames that cannot be used in a hard interrupt?
  * @l: links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether one has.
+ * Return: whether there is.
  */
 bool ec_links_need_thread(const struct ec_links *l)
 {
@@ -99,7 +99,7 @@ bool ec_links_need_thread(const struct ec_links *l)
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		const struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
 
-		if (dev && !dev->ops->atomic)
+		if (l->carry & BIT(i) && dev && !dev->ops->atomic)
 			return true;
 	}
 	return false;

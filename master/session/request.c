@@ -349,7 +349,7 @@ void ec_requests_kick(struct ec_session *s)
  *
  * They are counted in mapped memory, also those without %EC_SEND_FLAG_REQUESTS.
  *
- * Context: The thread that runs the cycle; when there is none, the monitor. RT-safe.
+ * Context: Who runs the cycle, also in hard interrupt; when there is none, the monitor. RT-safe.
  */
 void ec_requests_notice(struct ec_cycle *c)
 {

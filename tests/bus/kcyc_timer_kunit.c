@@ -2,6 +2,7 @@
 /* The kernel's cycle in the interrupt of its timer, and when its thread has to take it. */
 #include <linux/delay.h>
 #include "kcyc.h"
+#include "master/cycle/cycle_run.h"
 #include "master/link/device.h"
 
 static const struct ec_ioc_cycle interrupt = { .flags = EC_CYCLE_FLAG_INTERRUPT };
@@ -13,6 +14,7 @@ static struct {
 	u32 hard;
 	u32 thread;
 	u32 delay_us;	/* of the next call */
+	bool stays;	/* and of all others */
 } spy;
 
 static u8 *spy_tx_get(void *priv)
@@ -22,7 +24,8 @@ static u8 *spy_tx_get(void *priv)
 	else
 		spy.thread++;
 	udelay(spy.delay_us);
-	spy.delay_us = 0;
+	if (!spy.stays)
+		spy.delay_us = 0;
 	return spy.real->tx_get(priv);
 }
 
@@ -49,7 +52,7 @@ static u32 place(struct kcyc *a)
 	struct ec_ioc_cycle_stats info = { 0 };
 
 	KUNIT_EXPECT_EQ(a->c->b->test, ec_ioc(&a->c->b->app, EC_IOC_CYCLE_STATS, &info), 0);
-	return info.flags;
+	return info.place;
 }
 
 static void timer_runs_all_cycles(struct kunit *test)
@@ -85,7 +88,7 @@ static void timer_is_asked_for(struct kunit *test)
 	unwatch(a);
 }
 
-/* Another device comes that needs a thread, and goes: no cycle is left out. */
+/* The device needs a thread now and then: no cycle is left out. */
 static void timer_not_for_each_device(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
@@ -105,9 +108,10 @@ static void timer_not_for_each_device(struct kunit *test)
 	kcyc_wait_cycles(a, 100);
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	KUNIT_EXPECT_GE(test, spy.hard, hard + 97);
-	/* the other one of a ring; nothing is sent there */
+	/* no frame of the cycle goes to the backup device */
 	WRITE_ONCE(backup->dev, &dev);
-	KUNIT_EXPECT_TRUE(test, ec_links_need_thread(&a->c->b->m->links));
+	kcyc_wait_cycles(a, 10);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	WRITE_ONCE(backup->dev, NULL);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
@@ -133,6 +137,106 @@ static void timer_leaves_time(struct kunit *test)
 	KUNIT_EXPECT_GE(test, spy.hard, hard + 5);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
+	unwatch(a);
+}
+
+/* Each cycle takes less than half of the period, but begins late: what is left becomes less. */
+static void timer_is_late(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	u32 i, hard;
+
+	/* it has four frames */
+	spy.delay_us = KCYC_PERIOD_NS / NSEC_PER_USEC / 10;
+	spy.stays = true;
+	kcyc_wait_cycles(a, 100);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	for (i = 0; i < 6; i++) {
+		local_irq_disable();
+		udelay(KCYC_PERIOD_NS / NSEC_PER_USEC * 95 / 100);
+		local_irq_enable();
+	}
+	kcyc_wait_cycles(a, 2);
+	hard = spy.hard;
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_LONG);
+	kcyc_wait_cycles(a, 900);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	unwatch(a);
+}
+
+static u32 woken;
+
+static int wake(struct wait_queue_entry *entry, unsigned int mode, int flags, void *key)
+{
+	woken++;
+	return 0;
+}
+
+static struct wait_queue_entry entry;
+static wait_queue_head_t *queue;
+
+static void add_entry(struct file *filp, wait_queue_head_t *wq, poll_table *table)
+{
+	init_waitqueue_func_entry(&entry, wake);
+	add_wait_queue(wq, &entry);
+	queue = wq;
+}
+
+/* poll() is woken for each cycle, also for the last one of the interrupt. */
+static void timer_wakes_poll(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	poll_table table;
+	u32 i, before;
+
+	init_poll_funcptr(&table, add_entry);
+	KUNIT_EXPECT_FALSE(test, ec_file_poll(&a->c->b->app, (struct file *)&table, &table) &
+				 EPOLLERR);
+	kcyc_wait_cycles(a, 1);
+	for (i = 0; i < 100; i++) {
+		before = woken;
+		/* one of them is too long: the thread has the next ones */
+		spy.delay_us = i == 50 ? KCYC_PERIOD_NS / NSEC_PER_USEC * 6 / 10 : 0;
+		kcyc_wait_cycles(a, 1);
+		/* the thread has a priority: it was before this one */
+		KUNIT_EXPECT_GT_MSG(test, woken, before, "cycle %u", i);
+	}
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_LONG);
+	remove_wait_queue(queue, &entry);
+	unwatch(a);
+}
+
+/* A kernel that panics may not disable its timers: no frame goes on for ever. */
+static void timer_ends_with_panic(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	struct notifier_block *nb = &a->c->b->m->sessions.session->cycle.thread->panic;
+	u32 hard;
+
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
+	nb->notifier_call(nb, 0, NULL);
+	hard = spy.hard;
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	KUNIT_EXPECT_EQ(test, spy.thread, 0u);
+	unwatch(a);
+}
+
+/* Printed frames may take any time. */
+static void timer_not_while_printing(struct kunit *test)
+{
+	struct kcyc *a = watched(test, interrupt);
+	u32 *debug = &a->c->b->m->base->debug, before = *debug, hard;
+
+	WRITE_ONCE(*debug, 2);
+	kcyc_wait_cycles(a, 2);
+	hard = spy.hard;
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_DEBUG);
+	KUNIT_EXPECT_EQ(test, spy.hard, hard);
+	WRITE_ONCE(*debug, before);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	unwatch(a);
 }
 
@@ -169,6 +273,7 @@ static void timer_stops(struct kunit *test)
 	int ret = 0;
 	u32 i;
 
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	kcyc_give(a);
 	for (i = 0; i < 100 && !ret; i++)
 		ret = kcyc_wait(a, 100000);
@@ -185,12 +290,13 @@ static void timer_without_device(struct kunit *test)
 	struct bus *b = a->c->b;
 	u64 before = ktime_get_ns();
 
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_WAIT, &w), -ETIMEDOUT);
 	KUNIT_EXPECT_GE(test, ktime_get_ns() - before, 5000000ull);
 	ec_device_release(&b->m->links, "none", NULL);
 	a->seen = kcyc_status(a)->cycle;
 	kcyc_wait_cycles(a, 500);
-	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_BEGIN);
+	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_QUIET);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
 }
@@ -200,6 +306,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(timer_is_asked_for),
 	KUNIT_CASE(timer_not_for_each_device),
 	KUNIT_CASE(timer_leaves_time),
+	KUNIT_CASE(timer_is_late),
+	KUNIT_CASE(timer_wakes_poll),
+	KUNIT_CASE(timer_ends_with_panic),
+	KUNIT_CASE(timer_not_while_printing),
 	KUNIT_CASE(timer_needs_right),
 	KUNIT_CASE(timer_stops),
 	KUNIT_CASE(timer_without_device),

@@ -95,6 +95,7 @@ switches() { awk '/ctxt_switches/ { n += $2 } END { print n }' "/proc/$thread/st
 	[ "$(lost_frames)" = "$before" ]
 	ethercat release
 	background flags=8 stall=2 stall_cycles=20
+	json '.masters[0].interrupt' cycle
 	kill -STOP $app
 	wait_for 60 cycle_is stopped
 	kill -CONT $app

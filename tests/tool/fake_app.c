@@ -135,7 +135,7 @@ static int cycle_stats(struct ec_ioc_cycle_stats *x)
 		st.missed = 3;
 		x->cpu = 2;
 		x->cpu_losses = 1;
-		x->flags = EC_CYCLE_PLACE_RIGHT;
+		x->place = EC_CYCLE_PLACE_RIGHT;
 		x->priority = 40;
 		x->priority_wanted = 80;
 	}

@@ -153,7 +153,7 @@ bool in_interrupt(const struct bench *b)
 	memset(&info, 0, sizeof(info));
 	if (fd >= 0) {
 		is = !ioctl(fd, EC_IOC_CYCLE_STATS, &info) &&
-		     info.flags == EC_CYCLE_PLACE_INTERRUPT;
+		     info.place == EC_CYCLE_PLACE_INTERRUPT;
 		close(fd);
 	}
 	return is;
