@@ -3,7 +3,7 @@
  * Example: the kernel runs the cycle, this program only reads inputs and writes outputs. It
  * needs no real-time priority: the frames are punctual in any case.
  *
- * usage: kcycle [CYCLES [follow]]
+ * usage: kcycle [CYCLES [follow|interrupt]...]
  *
  * WARNING: it switches outputs. Run it only where no output moves or heats anything.
  *
@@ -15,6 +15,7 @@
  *   follow  the clocks of the slaves are synchronized, and the cycle is phase-locked to the
  *           reference clock: a frame passes this clock always at the same time after the
  *           SYNC signals. (ecrt_slave_config_dc() configures such signals, see dc_motion.c.)
+ *   interrupt  the cycle runs in the interrupt of its timer, with a native device and as root
  *
  * When the program is killed, the kernel continues the cycle; a new start continues counting.
  * 'ethercat release' ends the session of a killed program.
@@ -37,7 +38,7 @@ static ec_domain_t *domain;
 static ec_slave_config_t *slaves[SLAVES_MAX];	/* NULL: a drive, skipped */
 static int outputs[SLAVES_MAX];		/* byte of digital outputs in the domain, or -1 */
 static unsigned int n_slaves, n_configured;
-static int follow;
+static int follow, interrupt;
 
 /* Outputs of a slave by the entries of its PDOs. */
 enum outputs {
@@ -136,7 +137,7 @@ static int configure(void)
 	ec_cycle_config_t cycle = {
 		.period_ns = PERIOD_NS,
 		.stall = EC_CYCLE_HOLD,
-		.flags = EC_CYCLE_DETACH,
+		.flags = EC_CYCLE_DETACH | (interrupt ? EC_CYCLE_INTERRUPT : 0),
 	};
 	ec_master_info_t info;
 
@@ -272,7 +273,16 @@ int main(int argc, char **argv)
 	unsigned long cycles = argc > 1 ? strtoul(argv[1], NULL, 0) : 5000;
 	int ret = -1;
 
-	follow = argc > 2 && !strcmp(argv[2], "follow");
+	for (int i = 2; i < argc; i++) {
+		if (!strcmp(argv[i], "follow")) {
+			follow = 1;
+		} else if (!strcmp(argv[i], "interrupt")) {
+			interrupt = 1;
+		} else {
+			fprintf(stderr, "usage: kcycle [CYCLES [follow|interrupt]...]\n");
+			return 1;
+		}
+	}
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	master = ecrt_request_master(0);
 	if (!master)

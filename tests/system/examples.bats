@@ -92,6 +92,21 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "kcycle: the cycle runs in an interrupt, and follows the reference clock there" {
+	example kcycle 10000 follow interrupt
+	wait_for 60 grep -qx '3 slaves in OP' "$out"
+	json '.masters[0].interrupt' cycle
+	wait "$app"
+	cat "$out"
+	grep -E '^10000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
+	grep -E '^kernel: [0-9]+ cycles, 0 overruns, ' "$out"
+	grep -E '^reference clock: runs \+[0-9]+ ppb, .* lost 0 times$' "$out"
+	run "$EC_BUILD/examples/kcycle" 3000 fast
+	[ "$status" = 1 ]
+	[[ "$output" == usage:* ]]
+	app=
+}
+
 @test "kcycle: killed, the kernel goes on, and the next one takes over" {
 	example kcycle 1000000
 	wait_for 60 grep -qx '3 slaves in OP' "$out"
