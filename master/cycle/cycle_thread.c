@@ -199,7 +199,7 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	if (!c->thread)
 		return;
 	ec_cycle_sched_log(c);
-	c->place = EC_CYCLE_PLACE_THREAD;
+	WRITE_ONCE(c->place, EC_CYCLE_PLACE_THREAD);
 	c->places = 0;
 	c->places_logged = 0;
 	WRITE_ONCE(c->links->access.interval_us, max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC));

@@ -96,6 +96,8 @@ killed() {
 	ethercat release
 }
 
+# What the log says once is seen, where a look may not: when the host stops this guest for a
+# millisecond, the thread has the next 1000 cycles.
 @test "only an application that may have priority 99 gets the interrupt, also by a takeover" {
 	chmod o+rw /dev/EtherCAT0
 	run_as prlimit --rtprio=98 "${group[@]}" -- flags=9
@@ -103,12 +105,14 @@ killed() {
 	wait_for 10 logged 'EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99'
 	killed
 	run_as prlimit --rtprio=99 "${group[@]}" -- flags=9
-	wait_for 60 json '.masters[0].interrupt' cycle
+	wait_for 60 logged 'runs in the interrupt of its timer, as the new application permits'
 	killed
 	run_as prlimit --rtprio=98 "${group[@]}" -- flags=9
-	wait_for 10 json '.masters[0].interrupt == false' cycle
+	wait_for 10 json '.masters[0].place == "thread; interrupt not permitted"' cycle
 	killed
 	ethercat release
+	run_as prlimit --rtprio=99 "${group[@]}" -- flags=8
+	wait_for 60 logged 'kernel cycle runs in the interrupt of its timer'
 }
 logged() { dmesg | grep -qF "$1"; }
 
@@ -139,16 +143,17 @@ logged() { dmesg | grep -qF "$1"; }
 }
 
 @test "an interrupt moves to the thread and back when its CPU goes offline" {
-	# the host may stop this guest for more than half of a short period
-	run_as -- cpu=1 flags=8 period=20000
-	wait_for 60 json '.masters[0].interrupt' cycle
+	run_as -- cpu=1 flags=8
+	wait_for 60 logged 'kernel cycle runs in the interrupt of its timer'
 	for _ in 1 2; do
 		echo 0 >/sys/devices/system/cpu/cpu1/online
-		wait_for 10 json '.masters[0] | .interrupt == false and .state == "running"' cycle
+		wait_for 10 json '.masters[0].place == "thread; the CPU is offline"' cycle
+		json '.masters[0].state == "running"' cycle
 		[ "$(says 'Active')" = yes ]
 		echo 1 >/sys/devices/system/cpu/cpu1/online
-		wait_for 60 json '.masters[0].interrupt' cycle
+		wait_for 10 json '.masters[0].place != "thread; the CPU is offline"' cycle
 	done
+	json '.masters[0].state == "running"' cycle
 }
 
 @test "a cycle that needs its whole period leaves time to the threads of its CPU" {

@@ -340,6 +340,8 @@ park() {
 	local i
 
 	machine /dev/null
+	# it is stopped then: nothing changes while it is written; a copy runs at once nevertheless
+	qemu_args+=(-global migration.store-global-state=off)
 	mkfifo "$tmp/monitor.in"
 	"${qemu_args[@]}" -serial "file:$tmp/console" -monitor stdio <"$tmp/monitor.in" \
 		>"$tmp/monitor.out" 2>&1 &
@@ -349,7 +351,7 @@ park() {
 	for ((i = 0; i < 1200; i++)); do
 		kill -0 $qemu_pid 2>/dev/null || break
 		if grep -q 'ec-vm: parked' "$tmp/console" 2>/dev/null; then
-			printf 'migrate "exec:cat >%s"\n' "$tmp/parked" >&8
+			printf 'stop\nmigrate "exec:cat >%s"\n' "$tmp/parked" >&8
 			break
 		fi
 		sleep 0.1
