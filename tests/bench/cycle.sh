@@ -163,9 +163,9 @@ cost() {
 
 # What the kernel's cycle of 1 ms takes from an application that never sleeps: its thread, what
 # wakes it, and both switches, without the clock tick, which comes anyway.
-# spinning PREFIX PLACE LIMIT1 LIMIT100
+# spinning PREFIX PLACE INTERRUPTED LIMIT1 LIMIT100
 spinning() {
-	local floor limit spins what p=$1
+	local floor least limit spins what p=$1
 
 	what="a cycle of the kernel in $2, the application spins, native device, ${v[slaves]} drive(s)"
 	floor=$((v[floor1_spin_rest] - v[spinning_per_ms]))
@@ -175,9 +175,12 @@ spinning() {
 	echo "# floor of the same: a thread that only sleeps $floor; above it: $((spins - floor))"
 	gate "$what: ${v[${p}lost]} frames lost, ${v[${p}wc_errors]} working-counter errors" \
 		"${v[${p}lost]} == 0 && ${v[${p}wc_errors]} == 0 && ${v[${p}call_errors]} == 0"
-	limit=$(((v[slaves] == 1 ? $3 : $4) * slack / 100))
+	# an interrupt spares the switch to a thread, which the floor contains
+	least=$(($3 ? 0 : floor))
+	limit=$(((v[slaves] == 1 ? $4 : $5) * slack / 100))
 	row $spins $limit "all instructions of $what"
-	gate "$what: $spins instructions, at most $limit" "spins > 0 && spins <= limit"
+	gate "$what: $spins instructions, at most $limit" \
+		"spins > least && spins <= limit && ${v[${p}interrupted]} == $3"
 }
 
 # work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
@@ -298,8 +301,8 @@ native_cost() {
 		floors $ms "$own" "$work"
 		interrupted $ms "$own"
 		if [ "$ms" = 1 ]; then
-			spinning spin_ "its thread" 7600 11500
-			spinning ispin_ "an interrupt" 3700 8000
+			spinning spin_ "its thread" 0 7600 11500
+			spinning ispin_ "an interrupt" 1 3700 8000
 		fi
 		limit=$(((n == 1 ? 2600 : 6000) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
