@@ -88,38 +88,29 @@ static void choose_source(struct ec_cycle_thread *t)
 /**
  * ec_cycle_run_wake() - wake the callers of the file that owns a cycle
  * @c: cycle that the kernel runs
+ * @atomic: in a hard interrupt, which leaves those in poll() to the thread
  *
  * No other file adds work to it.
  *
- * Context: Process. RT-safe: bounded by %EC_MAX_WAITERS.
+ * Context: Process; with @atomic any. RT-safe: bounded by %EC_MAX_WAITERS.
  */
-void ec_cycle_run_wake(struct ec_cycle *c)
-{
-	struct ec_waiters *w;
-
-	rcu_read_lock();
-	w = rcu_dereference(c->waiters);
-	if (w)
-		ec_waiters_wake(w);
-	rcu_read_unlock();
-}
-
-/* The same in a hard interrupt, which leaves those in poll() to the thread. */
-static void wake_atomic(struct ec_cycle_thread *t)
+void ec_cycle_run_wake(struct ec_cycle *c, bool atomic)
 {
 	struct ec_waiters *w;
 	bool polled = false;
 
 	rcu_read_lock();
-	w = rcu_dereference(t->cycle->waiters);
-	if (w) {
+	w = rcu_dereference(c->waiters);
+	if (w && atomic) {
 		ec_waiters_wake_sleepers(w);
 		polled = ec_waiters_polled(w);
+	} else if (w) {
+		ec_waiters_wake(w);
 	}
 	rcu_read_unlock();
 	if (polled) {
-		WRITE_ONCE(t->polled, true);
-		wake_up_process(t->task);
+		WRITE_ONCE(c->thread->polled, true);
+		wake_up_process(c->thread->task);
 	}
 }
 
@@ -133,7 +124,7 @@ void ec_cycle_run_end(struct ec_cycle *c)
 {
 	/* pairs with ec_cycle_thread_ended() */
 	smp_store_release(&c->cycles->run, c->cycles->run + 1);
-	ec_cycle_run_wake(c);
+	ec_cycle_run_wake(c, false);
 }
 
 /* The application has given no outputs for too long. */
@@ -316,10 +307,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
 	}
 	publish(t);
-	if (entered)
-		wake_atomic(t);
-	else
-		ec_cycle_run_wake(c);
+	ec_cycle_run_wake(c, entered);
 	t->end_ns = ktime_get_ns();
 	ec_late_work(c, t->end_ns - now);
 	t->next_ns += c->kernel.period_ns + correction;

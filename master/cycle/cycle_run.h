@@ -27,7 +27,7 @@ struct ec_cycle_slow {
 };
 
 /**
- * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable; from @next_ns to @unfed all
+ * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable; what a cycle changes
  *	belongs to the thread, or to the interrupt while @timed
  * @cycle: active cycle; its session ends the thread before it goes away
  * @ops: reports to higher layers
@@ -113,7 +113,7 @@ static inline struct ec_exchange_buffer *ec_cycle_run_buffer(const struct ec_cyc
 
 void ec_cycle_run_deal(struct ec_cycle_thread *t);
 bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered);
-void ec_cycle_run_wake(struct ec_cycle *c);
+void ec_cycle_run_wake(struct ec_cycle *c, bool atomic);
 void ec_cycle_run_end(struct ec_cycle *c);
 
 /* cycle_timer.c */

@@ -234,7 +234,7 @@ void ec_cycle_thread_stop(struct ec_cycle *c)
 	if (c->cycles->run & 1)
 		ec_cycle_run_end(c);
 	else
-		ec_cycle_run_wake(c);
+		ec_cycle_run_wake(c, false);
 	free_thread(c->thread);
 	c->thread = NULL;
 }

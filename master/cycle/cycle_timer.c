@@ -136,7 +136,7 @@ static void wake_polled(struct ec_cycle_thread *t)
 	if (!READ_ONCE(t->polled))
 		return;
 	WRITE_ONCE(t->polled, false);
-	ec_cycle_run_wake(t->cycle);
+	ec_cycle_run_wake(t->cycle, false);
 }
 
 /* Until the interrupt gives the cycle back, or the thread shall end. */

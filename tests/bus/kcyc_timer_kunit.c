@@ -240,7 +240,7 @@ static void timer_not_while_printing(struct kunit *test)
 	unwatch(a);
 }
 
-/* Whoever takes the cycle over may not have the right. */
+/* The application that takes the cycle over may not have the right. */
 static void timer_needs_right(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
