@@ -68,11 +68,13 @@ count() {
 	[ "$2" != 0 ] || [ "${p:-0}" != 0 ] || failed=$((failed + 1))
 }
 
-# failures OUTPUT: the failed cases of a level, each with what it said: 12 lines, or 40 of comment
+# failures OUTPUT [LINES [ALL]]: the failed cases of a level, each with what it said: 12 lines, or
+# LINES (40) of comment; at most ALL lines (200)
 failures() {
-	awk '/^[ \t]*(not ok|FAILED:|demo: FAILED)/ { n = 0; max = 40; print; next }
-		max == 40 && !/^#/ { max = 12 }
-		n++ < max' "$1" | head -n 200
+	awk -v most="${2:-40}" '
+		/^[ \t]*(not ok|FAILED:|demo: FAILED)/ { n = 0; max = most; print; next }
+		max > 12 && !/^#/ { max = 12 }
+		n++ < max' "$1" | head -n "${3:-200}"
 }
 
 level_unit() { make -s -C tests/unit; }
@@ -109,8 +111,8 @@ run() {
 	echo "$? $((SECONDS - t0))" >"$log/$1.end"
 }
 
-# what failed, by level: the last lines, since some readers keep no others
-failed_names=
+# what failed, by level: the last lines, since some readers keep no others; they keep some 50
+failed_names= why=
 report() {
 	local name=$1 rc seconds names
 
@@ -128,6 +130,7 @@ report() {
 		names=$(grep -E '^[[:space:]]*(not ok|FAILED:|demo: FAILED)' "$log/$name" |
 			head -n 20 | sed "s/^[[:space:]]*/$name: /")
 		failed_names+=${names:-"$name: ended with $rc"}$'\n'
+		why+=${why:+$'\n'}$(failures "$log/$name" 12 26 | sed "s/^/$name: /")
 	fi
 	echo "=== $name: $seconds s"
 }
@@ -171,6 +174,7 @@ for l in ${beside[@]+"${beside[@]}"}; do
 done
 wait
 for l in ${beside[@]+"${beside[@]}"}; do report "$l"; done
+[ -z "$why" ] || head -n 40 <<<"$why"
 printf '%s' "$failed_names"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

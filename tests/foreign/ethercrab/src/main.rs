@@ -231,8 +231,11 @@ fn main() {
         let m = MainDevice::new(
             pdu_loop,
             Timeouts {
+                // a busy host stops both ends for longer than the defaults (EEPROM: 10 ms)
                 pdu: Duration::from_millis(200),
+                eeprom: Duration::from_secs(2),
                 wait_loop_delay: Duration::from_millis(1),
+                mailbox_echo: Duration::from_secs(2),
                 mailbox_response: Duration::from_secs(2),
                 state_transition: Duration::from_secs(10),
                 ..Default::default()
