@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The simulated segment as a virtual device a master can use: "sim0". */
 #include <linux/err.h>
+#include <linux/rcupdate.h>
 #include <linux/slab.h>
 #include "devices/ecdev.h"
 #include "describe.h"
@@ -23,8 +24,11 @@ static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct ec_sim_link *l = container_of(w, struct ec_sim_link, wire);
 
-	if (!port)
-		ecdev_receive(l->dev, eth + 6, eth + EC_ETH_HDR, len - EC_ETH_HDR);
+	if (port)
+		return;
+	rcu_read_lock();
+	ecdev_receive(l->dev, eth + 6, eth + EC_ETH_HDR, len - EC_ETH_HDR);
+	rcu_read_unlock();
 }
 
 static int link_start(void *priv, struct ecdev *dev)

@@ -50,17 +50,14 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
  * @data: what follows the EtherType; not changed
  * @len: bytes there
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
  */
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
 {
-	struct ec_link *link;
+	struct ec_link *link = rcu_dereference(dev->link);
 
-	rcu_read_lock();
-	link = rcu_dereference(dev->link);
 	if (link)
 		receive(link, src, data, len);
-	rcu_read_unlock();
 }
 EXPORT_SYMBOL_GPL(ecdev_receive);
 

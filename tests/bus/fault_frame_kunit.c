@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Frames that nobody sent, that are cut, changed, doubled, late or lost. */
 #include <linux/etherdevice.h>
+#include <linux/rcupdate.h>
 #include "cyc.h"
 #include "devices/ecdev.h"
 #include "master/link/device.h"
@@ -50,7 +51,9 @@ static void expect(struct bus *b, struct expected *e)
 
 static void give(struct bus *b, const u8 *src, const u8 *data, size_t len)
 {
+	rcu_read_lock();
 	ecdev_receive(b->m->links.link[0].dev, src, data, len);
+	rcu_read_unlock();
 }
 
 static u64 unmatched(const struct bus *b)
@@ -384,7 +387,9 @@ static int forge(void *priv, u8 *buf, size_t len)
 	reply[6] |= 2;
 	memset(d.data, 0x5a, d.len);
 	ec_dgram_set_wkc(&d, forger.wkc);
+	rcu_read_lock();
 	ecdev_receive(forger.dev, reply + 6, reply + EC_ETH_HDR, len - EC_ETH_HDR);
+	rcu_read_unlock();
 	return -EBUSY;
 }
 

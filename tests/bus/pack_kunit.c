@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Frames of several callers that leave as one: each has its own back, or none has. */
+#include <linux/rcupdate.h>
 #include "bus.h"
 #include "devices/ecdev.h"
 #include "master/link/pack.h"
@@ -97,7 +98,9 @@ static struct shared *shared(struct kunit *test)
 
 static void give(struct shared *s, const u8 *data, size_t len)
 {
+	rcu_read_lock();
 	ecdev_receive(s->b->m->links.link[0].dev, s->frame + 6, data, len);
+	rcu_read_unlock();
 }
 
 static u64 refused(const struct shared *s)
@@ -466,7 +469,9 @@ static void pack_reused(struct kunit *test)
 	arm(s, 3);
 	leave(s);
 	before = refused(s);
+	rcu_read_lock();
 	ecdev_receive(s->b->m->links.link[0].dev, old + 6, old + EC_ETH_HDR, s->len);
+	rcu_read_unlock();
 	expect(s, 0, 0);
 	KUNIT_EXPECT_EQ(test, refused(s), before + 1);
 	answer(s);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/err.h>
 #include <linux/hrtimer.h>
+#include <linux/rcupdate.h>
 #include "slow.h"
 #include "devices/ecdev.h"
 #include "master/wire/compat.h"
@@ -73,7 +74,9 @@ static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 	memcpy(rx, eth, len);
 	if (s->claim && d[0] == EC_CMD_BRD)
 		put_unaligned_le16(s->claim, d + 2);
+	rcu_read_lock();
 	ecdev_receive(s->dev, rx + 6, rx + EC_ETH_HDR, len - EC_ETH_HDR);
+	rcu_read_unlock();
 }
 
 static struct tx *at(struct slow *s, u32 i)

@@ -2,6 +2,7 @@
 /* The layer "link" with a device that behaves as a test says; there is no slave. */
 #include <linux/delay.h>
 #include <linux/kthread.h>
+#include <linux/rcupdate.h>
 #include <linux/slab.h>
 #include "alone.h"
 #include "devices/ecdev.h"
@@ -45,7 +46,9 @@ static void deliver(struct test_device *d)
 		memset(dg.data, 0xa5, dg.len);
 		ec_dgram_set_wkc(&dg, ec_dgram_wkc(&dg) + 1);
 	}
+	rcu_read_lock();
 	ecdev_receive(d->dev, d->held + ETH_ALEN, body, d->len - EC_ETH_HDR);
+	rcu_read_unlock();
 }
 
 static int start(void *priv, struct ecdev *dev)
