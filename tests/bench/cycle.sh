@@ -183,6 +183,24 @@ spinning() {
 		"spins > least && spins <= limit && ${v[${p}interrupted]} == $3"
 }
 
+# A CPU that has other work does not idle between two cycles: what one of an application takes from
+# a process that computes, without the clock tick.
+beside() {
+	local floor own limit what="an application's cycle beside a process that computes"
+
+	what+=", native device, ${v[slaves]} drive(s)"
+	floor=$((v[floor1_spin_rest] - v[spinning_per_ms]))
+	own=$((v[beside_application_work] + v[beside_card_work] + v[beside_master_work]))
+	own=$((own + v[beside_rest_work] - v[spinning_per_ms]))
+	echo "# floor of the same: a thread that only sleeps $floor; above it: $((own - floor))"
+	limit=$(((v[slaves] == 1 ? 9000 : 13000) * slack / 100))
+	row $own $limit "all instructions of $what"
+	gate "$what: ${v[beside_lost]} frames lost, $own instructions, at most $limit" \
+		"own > floor && own <= limit && ${v[beside_lost]} == 0 &&
+		 ${v[beside_wc_errors]} == 0 && ${v[beside_call_errors]} == 0 &&
+		 ${v[beside_other_work]} > 500000"
+}
+
 # work PREFIX MS WHO: all instructions of a cycle of MS milliseconds in $work: application,
 # interrupts, threads, monitor, wake-ups; without the simulator, its network card and the
 # interrupts of both, and without what this machine executes in such a time before there is a
@@ -284,7 +302,8 @@ native_cost() {
 	# one of 4 ms begins with the clock tick, and only one of them is the cycle's; what the
 	# machine does by itself varies by 100,000 instructions from one run to another
 	[ "$ms" != 1 ] ||
-		spin=(+ spin --cycles 50 --work 500 --period-us $us --kernel spin
+		spin=(+ beside --cycles 50 --work 500 --period-us $us --beside
+		      + spin --cycles 50 --work 500 --period-us $us --kernel spin
 		      + ispin --cycles 50 --work 500 --period-us $us --kernel spin --interrupt)
 	echo "# instructions per cycle of $ms ms, native device on e1000e"
 	for n in 1 100; do
@@ -301,6 +320,7 @@ native_cost() {
 		floors $ms "$own" "$work"
 		interrupted $ms "$own"
 		if [ "$ms" = 1 ]; then
+			beside
 			spinning spin_ "its thread" 0 7600 11500
 			spinning ispin_ "an interrupt" 1 3700 8000
 		fi

@@ -10,7 +10,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 2
 me=jitter.sh
-time=60 period=1000 load=none command='' device=sim cpu='' out='' limit=100
+time=60 period=1000 load=none command='' device=sim by=application cpu='' out='' limit=100
 
 usage() {
 	cat <<-END
@@ -20,6 +20,8 @@ usage() {
 	  --load LOAD    none, cpu, memory, io, net, or: command 'CMD'; default none
 	  --device DEV   sim (the simulated segment), or the card of the slaves: interface or
 	                 MAC address (generic device), PCI address (native device); default sim
+	  --by WHO       who runs the cycle: application, thread (of the kernel) or interrupt
+	                 (of the kernel's timer; native device or sim); default application
 	  --cpu N        CPU of the cycle, default any
 	  --limit US     longest deviation of a send that passes, default 100
 	  --out FILE     report, default jitter-DATE.txt
@@ -38,7 +40,7 @@ number() {
 
 while [ $# -gt 0 ]; do
 	case $1 in
-	--time|--period|--load|--device|--cpu|--out|--limit)
+	--time|--period|--load|--device|--by|--cpu|--out|--limit)
 		[ $# -gt 1 ] && [ -n "$2" ] || refuse "$1 needs an argument"
 		declare "${1#--}=$2"
 		if [ "$1 $2" = "--load command" ]; then
@@ -58,6 +60,12 @@ case $load in
 none|cpu|memory|io|command) ;;
 net) command -v python3 >/dev/null || refuse "--load net needs python3" ;;
 *) refuse "--load '$load': none, cpu, memory, io, net or command 'CMD' is needed" ;;
+esac
+case $by in
+application) how=() ;;
+thread) how=(--kernel wait) ;;
+interrupt) how=(--kernel wait --interrupt) ;;
+*) refuse "--by '$by': application, thread or interrupt is needed" ;;
 esac
 pci='^([0-9a-f]{4}:)?[0-9a-f]{2}:[0-9a-f]{2}\.[0-7]$'
 mac='^([0-9a-f]{2}:){5}[0-9a-f]{2}$'
@@ -201,6 +209,8 @@ judge() {
 	[ "$lost" = 0 ] || echo "failed: $lost lost frame(s)"
 	[ "$late" -le "$worst" ] || worst=$late
 	echo "worst case: $worst ns, limit $((limit * 1000)) ns"
+	[ "$by" != interrupt ] || [ "$(figure interrupted)" = 1 ] ||
+		echo "failed: the cycle has run in its thread; the kernel log has the reason"
 	[ "$worst" -le $((limit * 1000)) ] || echo "failed: the worst case exceeds the limit"
 	[ "$time" -ge 3600 ] ||
 		echo "remark: $time s are too short for a statement; measure 3600 s or longer"
@@ -215,8 +225,9 @@ begin_load
 "$tool" devices >"$tmp/devices" 2>&1
 pin=()
 [ -z "$cpu" ] || pin=(taskset -c "$cpu")
+[ -z "$cpu" ] || [ "$by" = application ] || how+=(--cpu "$cpu")
 ${pin[@]+"${pin[@]}"} "$EC_BUILD/bench/cycle-bench" --cycles "$cycles" --period-us "$period" \
-	>"$tmp/bench" 2>"$tmp/errors"
+	${how[@]+"${how[@]}"} >"$tmp/bench" 2>"$tmp/errors"
 rc=$?
 "$tool" cycle --json >"$tmp/cycle"
 judge >"$tmp/verdict"
@@ -225,8 +236,8 @@ verdict=passed
 {
 	echo "Verdict: $verdict"
 	sed 's/^/  /' "$tmp/verdict"
-	printf '\nRun: %s s, period %s us, load %s, device %s, CPU %s\n' "$time" "$period" \
-		"$load${command:+ '$command'}" "$device ($kind)" "${cpu:-any}"
+	printf '\nRun: %s s, period %s us, load %s, device %s, CPU %s, by %s\n' "$time" "$period" \
+		"$load${command:+ '$command'}" "$device ($kind)" "${cpu:-any}" "$by"
 	echo "Kernel: $(uname -srvm)"
 	grep -m 1 'model name' /proc/cpuinfo
 	printf '\nHistogram (since activation)\n'

@@ -39,6 +39,20 @@ nothing_is_left() {
 	nothing_is_left
 }
 
+@test "jitter.sh measures a cycle of the kernel, in its thread and in the interrupt" {
+	for by in thread interrupt; do
+		jitter --time 1 --cpu 0 --limit 20000 --by $by
+		[ "$status" -eq 0 ]
+		grep "CPU 0, by $by" "$report"
+		if [ $by = thread ]; then
+			grep "^interrupted 0" "$report"
+		else
+			grep "^interrupted 1" "$report"
+		fi
+		nothing_is_left
+	done
+}
+
 @test "jitter.sh ends its load" {
 	jitter --time 1 --limit 20000 --load command "touch $BATS_TEST_TMPDIR/began; sleep 98765; :"
 	[ "$status" -eq 0 ]
@@ -72,6 +86,7 @@ nothing_is_left() {
 		none, cpu, memory|--load heavy
 		needs a command|--load command
 		no interface nix0|--device nix0
+		application, thread|--by task
 		no PCI device|--device 0000:ff:1f.7
 		no interface has|--device 02:ff:ff:ff:ff:ff
 		no such CPU|--cpu 4000
@@ -101,8 +116,15 @@ nothing_is_left() {
 	sim=$!
 	wait_for 60 grep -q 'slave(s), at ' "$BATS_TEST_TMPDIR/sim"
 	for device in eth0 52:54:00:EC:00:00 "$pci0"; do
-		jitter --time 1 --limit 1000000 --device "$device"
+		jitter --time 1 --limit 1000000 --device "$device" --by interrupt
 		[[ $(head -n 1 "$report") == "Verdict: "* ]]
+		# a generic device needs the thread
+		if [ "$device" = "$pci0" ]; then
+			grep "^interrupted 1" "$report"
+		else
+			[ "$status" -eq 1 ]
+			grep "failed: the cycle has run in its thread" "$report"
+		fi
 		grep "device $device" "$report"
 		nothing_is_left
 		wait_for 60 test -e /sys/class/net/eth0

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/types.h>
 #include <time.h>
 
 #include <ecrt.h>
@@ -40,6 +41,7 @@ enum worker {
 	WORKER_MASTER,		/* its threads: monitor, the kernel's cycle */
 	WORKER_REST,
 	WORKER_SIMULATOR,	/* and its network card */
+	WORKER_OTHER,		/* a process that computes beside the cycle */
 	WORKERS,
 };
 
@@ -60,7 +62,9 @@ struct bench {
 	unsigned int uploads;	/* slaves of which others upload an object meanwhile */
 	bool violate;	/* do what a cycle must not do, now and then */
 	enum mode mode;
+	bool beside;	/* all work is counted while another process computes */
 	bool interrupt;	/* the kernel runs the cycle in the interrupt of its timer */
+	int cpu;		/* of the kernel's cycle, -1: any */
 	bool interrupted;	/* that is where the last cycle was */
 
 	ec_master_t *master;
@@ -115,6 +119,7 @@ void trace_violate(struct bench *b, unsigned int cycle);
 
 /* work.c */
 bool work_begin(struct work *w, bool spins);
+pid_t work_beside(void);
 void work_end(struct work *w);
 int work_baseline(unsigned int ms);
 

@@ -8,10 +8,12 @@
 #include <errno.h>
 #include <getopt.h>
 #include <sched.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 
 #define NS_PER_S	1000000000LL
 #define PRIORITY	80
@@ -22,7 +24,7 @@ static const char * const part_names[PARTS] = {
 };
 
 static const char * const worker_names[WORKERS] = {
-	"application", "card", "master", "rest", "simulator",
+	"application", "card", "master", "rest", "simulator", "other",
 };
 
 static long long now_ns(void)
@@ -182,13 +184,15 @@ static void mark(const char *at)
 static void lean_cycles(struct bench *b, long long *at)
 {
 	unsigned int overruns = b->overruns, i, k;
+	bool computes = b->beside || b->mode == MODE_SPIN;
+	pid_t other = b->beside ? work_beside() : -1;
 
 	mark("begin");
 	*at = now_ns();
 	b->seen = 0;
 	for (k = 0; k < SETTLE + b->work_cycles; k++) {
 		if (k == SETTLE)
-			b->worked = work_begin(&b->work, b->mode == MODE_SPIN);
+			b->worked = work_begin(&b->work, computes);
 		if (b->mode == MODE_OWN)
 			sleep_until(b, at);
 		else
@@ -203,6 +207,10 @@ static void lean_cycles(struct bench *b, long long *at)
 	if (b->worked)
 		work_end(&b->work);
 	mark("end");
+	if (other > 0) {
+		kill(other, SIGKILL);
+		waitpid(other, NULL, 0);
+	}
 	b->overruns = overruns;
 }
 
@@ -388,6 +396,8 @@ static void usage(FILE *out)
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
 		"                 wait (a system call), spin, timer (one of its own)\n"
 		"  --interrupt    and runs it in the interrupt of its timer\n"
+		"  --cpu N        on that CPU, else on any\n"
+		"  --beside       count all work while another process computes\n"
 		"  --syscalls     count system calls instead of time\n"
 		"  --trace        switch ftrace on while measuring\n"
 		"  --baseline MS  only measure what the machine does by itself in a millisecond,\n"
@@ -437,6 +447,8 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "baseline", required_argument, NULL, 'b' },
 		{ "floor", no_argument, NULL, 'f' },
 		{ "interrupt", no_argument, NULL, 'i' },
+		{ "cpu", required_argument, NULL, 'C' },
+		{ "beside", no_argument, NULL, 'B' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -464,6 +476,10 @@ static void parse(struct bench *b, int argc, char **argv)
 			b->floor = true;
 		else if (c == 'i')
 			b->interrupt = true;
+		else if (c == 'C')
+			b->cpu = (int)number("cpu", optarg, 4095);
+		else if (c == 'B')
+			b->beside = true;
 		else if (c == 'b')
 			exit(work_baseline(number("baseline", optarg, 60000) ?: 1));
 		else if (c == 'k' && kernel_mode(optarg) > 0)
@@ -480,7 +496,8 @@ static void parse(struct bench *b, int argc, char **argv)
 int main(int argc, char **argv)
 {
 	static struct bench b = { .cycles = 1000, .period_us = 1000,
-				  .wait_s = 60, .n_domains = 1, .work_cycles = 300, .ready = 1100 };
+				  .wait_s = 60, .n_domains = 1, .work_cycles = 300, .ready = 1100,
+				  .cpu = -1 };
 	unsigned int p;
 
 	parse(&b, argc, argv);

@@ -60,7 +60,9 @@ static int kernel_cycle(struct bench *b)
 		.period_ns = b->period_us * 1000, .priority = 90,
 		.dc = b->extras ? EC_CYCLE_SYNC_REFERENCE | EC_CYCLE_SYNC_SLAVES |
 				  EC_CYCLE_SYNC_MONITOR : 0,
-		.flags = b->interrupt ? EC_CYCLE_INTERRUPT : 0,
+		.flags = (b->interrupt ? EC_CYCLE_INTERRUPT : 0) |
+			 (b->cpu >= 0 ? EC_CYCLE_BIND_CPU : 0),
+		.cpu = b->cpu,
 	};
 
 	return ecrt_master_set_cycle(b->master, &config);

@@ -8,11 +8,15 @@
 #include "bench.h"
 
 #include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
 
+#define BESIDE		"beside"
 #define PARAMETERS	"/sys/module/bench_split/parameters/"
 
 static enum worker worker(const char *name)
@@ -23,6 +27,8 @@ static enum worker worker(const char *name)
 		return WORKER_APPLICATION;
 	if (!strncmp(name, "irq/", 4) && strstr(name, "eth0"))
 		return WORKER_CARD;
+	if (!strcmp(name, BESIDE))
+		return WORKER_OTHER;
 	return !strncmp(name, "EtherCAT", 8) ? WORKER_MASTER : WORKER_REST;
 }
 
@@ -79,6 +85,22 @@ void work_end(struct work *w)
 	memset(w->by, 0, sizeof(w->by));
 	for (; sscanf(p, "%63s %llu %n", name, &ns, &len) == 2; p += len)
 		w->by[worker(name)] += ns;
+}
+
+/* A process without priority that computes until it is killed; returns its PID, or -1. */
+pid_t work_beside(void)
+{
+	struct sched_param none = { 0 };
+	pid_t pid = fork();
+
+	if (pid)
+		return pid;
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	prctl(PR_SET_NAME, BESIDE);
+	if (sched_setscheduler(0, SCHED_OTHER, &none))
+		_exit(1);
+	while (1)
+		;
 }
 
 /*
