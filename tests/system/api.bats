@@ -21,8 +21,13 @@ teardown_file() { stop; }
 # the segment from its begin: its emergencies come now
 reload() {
 	rmmod ec_sim
+	# a card keeps its link: the master might not notice, and still know the slaves of before
+	wait_for 60 responding 0
 	load_segment "$BATS_FILE_TMPDIR/segment"
+	[ -z "${EC_NIC:-}" ] || wait_for 60 responding 6
 }
+
+responding() { [ "$(ethercat master --json | gojq '.masters[0].slaves_responding')" = "$1" ]; }
 
 # group NAME: all cases of it pass; each is a line of its own
 group() {
