@@ -273,8 +273,11 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
 	lockdep_assert_held(c->wanted->lock);
 	reinit_completion(&t->adopted);
 	WRITE_ONCE(t->adopt, true);
-	if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
-		return -ETIMEDOUT;
+	do {
+		if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
+			return -ETIMEDOUT;
+		/* set: that was the end of one that has timed out before */
+	} while (smp_load_acquire(&t->adopt));
 	WRITE_ONCE(ec_cycle_run_status(t)->takeovers, ec_cycle_run_status(t)->takeovers + 1);
 	return 0;
 }

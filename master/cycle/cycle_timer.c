@@ -54,11 +54,12 @@ static void note_place(struct ec_cycle *c, u32 place)
  * Does the interrupt leave time to the threads of its CPU? If it and what else comes before
  * them take all of it, each cycle begins later than the one before.
  */
-static bool leaves_time(struct ec_cycle_thread *t)
+static bool leaves_time(struct ec_cycle_thread *t, u64 due)
 {
 	u32 half = t->cycle->kernel.period_ns / 2;
 
-	t->tight = t->end_ns + half > t->next_ns ? t->tight + 1 : 0;
+	/* by when it was due: one that came after its period has left out others */
+	t->tight = t->end_ns > due + half ? t->tight + 1 : 0;
 	return ec_cycle_run_status(t)->work_ns <= min_t(u32, half, LONG_NS) &&
 	       t->tight < TIGHT_CYCLES;
 }
@@ -76,6 +77,7 @@ static enum hrtimer_restart give_back(struct ec_cycle_thread *t, u32 place)
 static enum hrtimer_restart tick(struct hrtimer *timer)
 {
 	struct ec_cycle_thread *t = container_of(timer, struct ec_cycle_thread, timer);
+	u64 due = t->next_ns;
 	u32 place;
 
 	/* where a panic lets timers go on, outputs would never end */
@@ -88,8 +90,7 @@ static enum hrtimer_restart tick(struct hrtimer *timer)
 	ec_links_leave(t->cycle->links);
 	if (unlikely(t->ended))
 		return give_back(t, EC_CYCLE_PLACE_QUIET);
-	if (unlikely(!leaves_time(t))) {
-		t->tight = 0;
+	if (unlikely(!leaves_time(t, due))) {
 		t->in_thread = LONG_CYCLES;
 		return give_back(t, EC_CYCLE_PLACE_LONG);
 	}
@@ -179,6 +180,7 @@ bool ec_cycle_timer_run(struct ec_cycle_thread *t)
 	if (place != EC_CYCLE_PLACE_INTERRUPT)
 		return true;
 	ec_links_leave(t->cycle->links);
+	t->tight = 0;
 	t->timed = true;
 	hrtimer_start(&t->timer, ns_to_ktime(t->next_ns), HRTIMER_MODE_ABS_PINNED_HARD);
 	wait_for_cycle(t);

@@ -86,7 +86,7 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 		WRITE_ONCE(l->access.mode, mode);
 		smp_mb();	/* mode before busy; pairs with ec_access_enters() */
 		/* the cycle wakes no thread of the master */
-		while (mode == EC_ACCESS_DIRECT && atomic_read(&l->access.busy))
+		while (mode == EC_ACCESS_DIRECT && atomic_read_acquire(&l->access.busy))
 			usleep_range(20, 50);
 		if (mode == EC_ACCESS_DIRECT)
 			own_devices(l, false);
