@@ -343,8 +343,10 @@ used_kib() {
 
 @test "a suspend of the card is survived, idle and in OP" {
 	suspend="$EC_BUILD/mini/suspend/ec_suspend.ko"
+	state=D3
+	[ "${EC_NIC:-}" != e1000 ] || state=D5	# unknown: QEMU's has no power management
 	insmod "$suspend" function="$pci0"
-	dmesg | grep -q "ec_intel $pci0: suspended (0), in D3"
+	dmesg | grep -q "ec_intel $pci0: suspended (0), in $state"
 	wait_for 60 link_is DOWN
 	rmmod ec_suspend
 	wait_for 120 all_slaves_are PREOP 22
