@@ -36,6 +36,12 @@ static uint8_t *data;
 static unsigned int in_byte[CHANNELS], in_bit[CHANNELS];
 static unsigned int out_byte[CHANNELS], out_bit[CHANNELS];
 
+/* inputs, outputs */
+static struct {
+	ec_slave_config_t *config;
+	uint16_t position;
+} slaves[2];
+
 static volatile sig_atomic_t stop;
 
 static void on_signal(int number)
@@ -63,6 +69,7 @@ static int configure(uint16_t position, uint32_t product, ec_direction_t dir,
 	ec_slave_config_t *sc;
 	unsigned int i;
 
+	slaves[dir == EC_DIR_OUTPUT].position = position;
 	memset(regs, 0, sizeof(regs));	/* an index of 0 ends the list */
 	for (i = 0; i < CHANNELS; i++) {
 		entries[i].index = (uint16_t)(object + 0x10 * i);
@@ -83,6 +90,7 @@ static int configure(uint16_t position, uint32_t product, ec_direction_t dir,
 	sc = ecrt_master_slave_config(master, 0, position, BECKHOFF, product);
 	if (!sc || ecrt_slave_config_pdos(sc, EC_END, syncs))
 		return -1;
+	slaves[dir == EC_DIR_OUTPUT].config = sc;
 	return ecrt_domain_reg_pdo_entry_list(domain, regs);
 }
 
@@ -200,12 +208,31 @@ static void run(unsigned long cycles)
 	printf("%lu cycles, %lu skipped\n", n, missed);
 }
 
+/* Prints why; returns how many of the slaves are not in OP. */
+static int not_in_op(void)
+{
+	ec_slave_config_state_t state;
+	char reason[256];
+	int i, n = 0;
+
+	for (i = 0; i < 2; i++) {
+		if (!ecrt_slave_config_state(slaves[i].config, &state) && state.operational)
+			continue;
+		n++;
+		if (ecrt_slave_config_reason(slaves[i].config, reason, sizeof(reason)) <= 0)
+			reason[0] = 0;
+		printf("slave %u is not in OP: %s\n", slaves[i].position,
+		       reason[0] ? reason : "see 'ethercat why'");
+	}
+	return n;
+}
+
 int main(int argc, char **argv)
 {
 	unsigned long args[3] = { 1, 2, 0 };
 	struct sigaction action;
 	char *end;
-	int i;
+	int i, failed;
 
 	for (i = 1; i < argc && i <= 3; i++) {
 		args[i - 1] = strtoul(argv[i], &end, 0);
@@ -228,6 +255,7 @@ int main(int argc, char **argv)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
+	failed = not_in_op();
 	ecrt_release_master(master);	/* slaves go to PREOP */
-	return 0;
+	return failed ? 1 : 0;
 }

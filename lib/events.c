@@ -22,7 +22,7 @@ int ecrt_open_events(unsigned int master_index, int only_new)
 	snprintf(path, sizeof(path), "/dev/EtherCAT%u", master_index);
 	m.fd = open(path, O_RDONLY | O_CLOEXEC);
 	if (m.fd < 0)
-		return ec_fail(NULL, -errno, "open %s", path);
+		return ec_cannot_open(path);
 	ret = ec_do(&m, EC_IOC_EVENTS, &arg, "read events of master %u", master_index);
 	if (!ret)
 		return m.fd;

@@ -115,6 +115,7 @@ static inline void ec_write64(__u64 *v, __u64 to)
 
 /* ioctl.c: what the sources in ecrt/ need of a process */
 int ec_command(const struct ec_master *m, unsigned int cmd, void *arg);
+int ec_cannot_open(const char *path);
 int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
 		bool with_reason, const char *fmt, ...)
 	__attribute__((format(printf, 5, 6)));

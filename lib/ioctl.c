@@ -10,6 +10,21 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 	return ioctl(m->fd, cmd, arg) < 0 ? -errno : 0;
 }
 
+/* A device file was not opened, errno says why: a line on stderr that says what to do. */
+int ec_cannot_open(const char *path)
+{
+	const char *hint = "";
+	int err = errno;
+
+	if (err == ENOENT || err == ENXIO || err == ENODEV)
+		hint = ": start the masters: 'ethercatctl start', or load ec_master with main_devices=...";
+	else if (err == EACCES || err == EPERM)
+		hint = ": members of the group that owns the file may use it";
+	fprintf(stderr, "Failed to open %s: %m%s\n", path, hint);
+	errno = err;
+	return -err;
+}
+
 /* A line on stderr; it ends with the reason of a command that failed. */
 int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
 		bool with_reason, const char *fmt, ...)

@@ -40,7 +40,7 @@ ec_master_t *ecrt_open_master(unsigned int master_index)
 	snprintf(path, sizeof(path), "/dev/EtherCAT%u", master_index);
 	m->fd = open(path, O_RDWR | O_CLOEXEC);
 	if (m->fd < 0) {
-		err = ec_fail(NULL, -errno, "open %s", path);
+		err = ec_cannot_open(path);
 		goto err_free;
 	}
 	err = check_version(m, path);

@@ -5,10 +5,15 @@
 #include "out.h"
 #include "sdo.h"
 
+/* abort codes of ETG.1000.6 */
+#define NO_OBJECT	0x06020000
+#define NO_SUBINDEX	0x06090011
+
 static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		    const struct ec_type *type, const char *text)
 {
 	struct ec_ioc_slave s;
+	u32 abort = 0;
 	size_t size;
 	u8 *data;
 	int ret;
@@ -16,7 +21,10 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 	if (dev_select_single(d, t, &s))
 		return 1;
 	if (!type)
-		type = sdo_described_type(d, &s, a);
+		type = sdo_described_type(d, &s, a, &abort);
+	if (!type && (abort == NO_OBJECT || abort == NO_SUBINDEX))
+		return usage_error("%s is absent in the dictionary of slave %u; if the slave has it nevertheless, give --type",
+				   a->text, s.position);
 	if (!type)
 		return usage_error("the data type of %s is not known; give it with --type",
 				   a->text);

@@ -46,7 +46,7 @@ static int run(struct tool *t, int argc, char **argv)
 	}
 	n = cmd_lookup(argv[0], found);
 	if (n > 1)
-		return usage_error("'%s' is ambiguous", argv[0]);
+		return cmd_ambiguous(argv[0], found, n);
 	if (!n)
 		return usage_error("unknown command '%s'", argv[0]);
 	if (found[0]->alias_of)

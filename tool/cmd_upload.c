@@ -32,7 +32,8 @@ static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
 static const struct ec_type *described(struct dev *d, const struct ec_ioc_slave *s,
 				       const struct sdo_addr *a, size_t size)
 {
-	const struct ec_type *type = sdo_described_type(d, s, a);
+	u32 abort;
+	const struct ec_type *type = sdo_described_type(d, s, a, &abort);
 
 	return type && (!value_bytes(type) || value_bytes(type) == size) ? type : NULL;
 }

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "../master/wire/al.h"
 #include "out.h"
@@ -35,7 +36,9 @@ static int open_error(struct dev *d, int err)
 {
 	const char *hint = NULL;
 
-	if (err == ENOENT || err == ENXIO || err == ENODEV)
+	if ((err == ENOENT || err == ENXIO) && !access("/sys/module/ec_master", F_OK))
+		hint = "ec_master is loaded without this master: 'ethercatctl restart', or 'rmmod ec_master' and load it with main_devices=...";
+	else if (err == ENOENT || err == ENXIO || err == ENODEV)
 		hint = "start the masters: 'ethercatctl start', or 'modprobe ec_master main_devices=...' with the address of the card";
 	else if (err == EACCES || err == EPERM)
 		hint = "members of the group that owns the file may use it (see ls -l)";

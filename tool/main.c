@@ -12,24 +12,13 @@
 
 #define MAX_CMDS	64
 
-static int ambiguous(const char *text, const struct cmd **found, int n)
-{
-	char names[512] = "";
-
-	for (int i = 0; i < n; i++) {
-		strncat(names, i ? ", " : "", sizeof(names) - strlen(names) - 1);
-		strncat(names, found[i]->name, sizeof(names) - strlen(names) - 1);
-	}
-	return usage_error("'%s' is ambiguous: %s", text, names);
-}
-
 static const struct cmd *find(const char *text)
 {
 	const struct cmd *found[MAX_CMDS];
 	int n = cmd_lookup(text, found);
 
 	if (n > 1)
-		ambiguous(text, found, n);
+		cmd_ambiguous(text, found, n);
 	else if (!n)
 		usage_error("unknown command '%s'", text);
 	return n == 1 ? found[0] : NULL;

@@ -2,6 +2,7 @@
 /* Command names and their abbreviations. */
 #include <string.h>
 
+#include "out.h"
 #include "tool.h"
 
 /* the letters of @text in order; a repeated letter may match the same one */
@@ -59,4 +60,16 @@ int cmd_lookup(const char *text, const struct cmd **found)
 			    matches((*c)->name, text, !(stage % 2)))
 				found[n++] = *c;
 	return n;
+}
+
+/* Prints which commands @text may be; returns 1. */
+int cmd_ambiguous(const char *text, const struct cmd **found, int n)
+{
+	char names[512] = "";
+
+	for (int i = 0; i < n; i++) {
+		strncat(names, i ? ", " : "", sizeof(names) - strlen(names) - 1);
+		strncat(names, found[i]->name, sizeof(names) - strlen(names) - 1);
+	}
+	return usage_error("'%s' is ambiguous: %s", text, names);
 }

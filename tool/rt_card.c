@@ -294,7 +294,7 @@ int rt_check_cards(struct rt *r)
 	}
 	if (!ret && !n)
 		rt_find(r, "card", RT_UNKNOWN, NULL,
-			"no master has a network card; load ec_master with main_devices= and check again");
+			"no master uses a network card; give ec_master one with main_devices= and check again");
 	nics_free(&all);
 	return ret;
 }

@@ -69,6 +69,7 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
  * @d: master, open for writing
  * @s: slave
  * @a: entry
+ * @abort: set to the abort code of the slave, 0: there is none
  *
  * A slave whose EEPROM announces no SDO information gets no request: it might not answer.
  *
@@ -76,7 +77,7 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
  * has no type for it.
  */
 const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slave *s,
-					 const struct sdo_addr *a)
+					 const struct sdo_addr *a, u32 *abort)
 {
 	u8 *buf = malloc(ROOM);
 	struct ec_ioc_sdo_info i = {
@@ -92,6 +93,7 @@ const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slav
 	    !ec_od_entry_decode(buf, min(i.size, (u32)ROOM), &e))
 		type = ec_type_by_code(e.type);
 	free(buf);
+	*abort = i.abort_code;
 	return type;
 }
 

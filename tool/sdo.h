@@ -15,7 +15,7 @@ struct sdo_addr {
 int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub);
 void sdo_addr_out(const struct sdo_addr *a);
 const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slave *s,
-					 const struct sdo_addr *a);
+					 const struct sdo_addr *a, u32 *abort);
 int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data, size_t *size);
 int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data, size_t size);
 

@@ -31,6 +31,13 @@ static void scanning(struct why *w)
 		m->scan_slaves)->warning = true;
 }
 
+static const char *no_device_remedy(const char *name)
+{
+	if (!strncmp(name, "sim", 3))
+		return "load the simulated segment: 'modprobe ec_sim segment=bench'; for a network card give ec_master its address, see 'ethercat devices'";
+	return "load the driver of the network card and ec_generic, or bind its native driver: 'ethercat device bind'; or select another card: 'ethercat devices', 'ethercat device use'";
+}
+
 /**
  * why_bus() - no device, no link, no slaves
  * @w: what is known
@@ -42,9 +49,7 @@ bool why_bus(struct why *w)
 	const struct ec_ioc_master *m = &w->m;
 
 	if (m->phase == EC_PHASE_WAITING)
-		why_add(w, "no_device",
-			"load the driver of the network card, or select another one: 'ethercat devices', 'ethercat device use'",
-			"no network device: master %u waits for %s", w->d->master,
+		why_add(w, "no_device", no_device_remedy(m->devices[0].name), "no network device: master %u waits for %s", w->d->master,
 			m->devices[0].name);
 	else if (!link_up(m))
 		why_add(w, "link_down",

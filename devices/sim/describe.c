@@ -522,6 +522,26 @@ static int do_source(struct ec_desc *d, enum ec_app_source_kind kind)
 	return 0;
 }
 
+static int unknown(struct ec_desc *d, const struct ec_desc_word *w)
+{
+	return ec_desc_fail(d, "unknown statement '", w,
+			    "': expected segment, slave, repeat, branch, wire, connect, const, ramp, sine, fault");
+}
+
+static bool is_statement(const struct ec_desc_word *w)
+{
+	static const char *const words[] = {
+		"segment", "slave", "repeat", "branch", "wire", "connect", "const", "ramp",
+		"sine", "fault",
+	};
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(words); i++)
+		if (ec_desc_is(w, words[i]))
+			return true;
+	return false;
+}
+
 static int statement(struct ec_desc *d)
 {
 	struct ec_desc_word *w = ec_desc_next(d);
@@ -548,8 +568,7 @@ static int statement(struct ec_desc *d)
 	else if (ec_desc_is(w, "fault"))
 		ret = ec_desc_fault(d);
 	else
-		return ec_desc_fail(d, "unknown statement '", w ? w : &d->w[0],
-			"': expected segment, slave, repeat, branch, wire, connect, const, ramp, sine, fault");
+		return unknown(d, w ? w : &d->w[0]);
 	return ret ? ret : ec_desc_end(d);
 }
 
@@ -563,6 +582,9 @@ static int count(struct ec_desc *d, const char *p, const char *end)
 			return -EINVAL;
 		if (!d->n)
 			continue;
+		/* a misspelled slave is none */
+		if (!is_statement(&d->w[0]))
+			return unknown(d, &d->w[0]);
 		if (ec_desc_is(&d->w[0], "segment")) {
 			n = 0;
 			if (ec_desc_number(d, "seed", 0, (s64)(1ULL << 62), &n))

@@ -328,7 +328,7 @@ int ec_desc_fault(struct ec_desc *d)
 			v = &verbs[i];
 	if (!v)
 		return ec_desc_fail(d, "unknown fault '", w ? w : &d->w[0],
-			"': expected cut, heal, off, on, lose, refuse, mute... (see describe.h)");
+			"': expected cut, heal, off, on, lose, refuse, mute... (see simulator.rst)");
 	f.type = v->type;
 	f.arg = v->arg;
 	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);

@@ -369,5 +369,5 @@ int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w)
 	for (u32 i = d->n_nodes; i--; )
 		if (ec_desc_is(w, d->node[i].app->name))
 			return (int)i;
-	return ec_desc_fail(d, "unknown slave '", w, "'; define it above this line");
+	return ec_desc_fail(d, "unknown slave '", w, "'; a line 'slave NAME ...' above has to define it");
 }

@@ -93,7 +93,8 @@ static struct ec_sim *build(const char *name)
 	if (n < 0) {
 		pr_err("ec_sim: segment=%s: neither a built-in segment (thin, three, bench, line100, line1000) nor a readable file (%pe)\n",
 		       name, ERR_PTR(n));
-		sim = ERR_PTR(n);
+		/* insmod calls ENOENT an unknown symbol */
+		sim = ERR_PTR(n == -ENOENT ? -EINVAL : n);
 	} else {
 		sim = describe(name, buf, n);
 	}

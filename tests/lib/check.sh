@@ -158,6 +158,8 @@ library_works() {
 says_why() {	# needs library_works
 	grep -qx 'Failed to reserve master 0: Device or resource busy: owned by somebody' \
 		"$o/session.err" &&
+	grep -q "^Failed to open /dev/EtherCAT7: No such file or directory: start the masters: " \
+		"$o/session.err" &&
 	grep -q "^Failed to register 0x6000:01 of slave 0:1: No such file or directory" \
 		"$o/session.err"
 }

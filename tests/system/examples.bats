@@ -49,10 +49,12 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 
 @test "mirror: an absent slave is reported" {
 	example mirror 1 9 2
-	wait "$app"
+	! wait "$app" || return 1
 	cat "$out"
 	grep -qx 'working counter: 1, not complete' "$out"
 	grep -E '^2000 cycles, ' "$out"
+	grep '^slave 9 is not in OP: no slave at ring position 9' "$out"
+	[ "$(grep -c 'is not in OP' "$out")" = 1 ]
 	app=
 }
 

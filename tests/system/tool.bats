@@ -365,6 +365,13 @@ add() {
 	stop
 	refused '/dev/EtherCAT0: No such file or directory: start the masters' slaves
 	refused 'modprobe ec_master' upload -p1 0x1018 1
+	# loaded without a master: to load it once more does nothing
+	insmod "$EC_BUILD/modules/master/ec_master.ko"
+	refused 'ec_master is loaded without this master: ' slaves
+	rmmod ec_master
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0
+	ethercat why | grep "Remedy: load the simulated segment: 'modprobe ec_sim"
+	rmmod ec_master
 	ethercat version
 	ethercat help >/dev/null
 }

@@ -80,6 +80,9 @@ ambiguous() {
 	run real sdo_
 	[ "$status" -eq 1 ]
 	[[ $output == *"'sdo_' is ambiguous: sdo_download, sdo_read, sdo_upload, sdo_write"* ]]
+	run real help sdo_
+	[ "$status" -eq 1 ]
+	[[ $output == *"'sdo_' is ambiguous: sdo_download, sdo_read, sdo_upload, sdo_write"* ]]
 }
 
 @test "unknown command, no command, help" {

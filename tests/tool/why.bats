@@ -139,6 +139,10 @@ is() {
 	FAKE_WHY=well out why -j | json "d['masters'][0]['error_counters_read']"
 }
 
+@test "why names the module that a waiting master needs" {
+	is no_device "'ec_generic' in f['remedy'] and 'ethercat device bind' in f['remedy']"
+}
+
 @test "why: the reason of an older module is shown as it is" {
 	[ "$(causes older)" = not_in_op ]
 	[[ $(FAKE_WHY=older out why) == "Fault: a reason of an older module"* ]]

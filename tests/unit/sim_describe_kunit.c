@@ -77,6 +77,7 @@ static const struct {
 	{ "slave a drive eeprom=none", 1, "chip or emulated" },
 	{ "slave a EL2008 eeprom=emulated", 1, "no CPU" },
 	{ "slave a file=x.bin", 1, "files cannot be read here" },
+	{ "# as the only one\nslvae a EL2008\n", 2, "unknown statement 'slvae'" },
 	{ "# nothing\n\nslave a EL2008\nfoo\n", 4, "unknown statement 'foo'" },
 	{ "slave a EL2008\nbranch b 1", 2, "unknown slave 'b'" },
 	{ "slave a EL2008\nbranch a 7", 2, "'7' is out of range" },
