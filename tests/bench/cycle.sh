@@ -7,6 +7,7 @@
 # working counter, instructions and system calls per cycle, and master and
 # simulator together at 1 kHz. The lateness of a run in real time depends on the
 # host and is printed only; the CPU time of the host that it needs is gated.
+# profile.sh shows in which functions the instructions are.
 #
 # usage: cycle.sh [--gates] [--cycles N]
 #   --gates   what has a limit only, and each limit once: for make check
