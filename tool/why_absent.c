@@ -109,6 +109,9 @@ static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
 {
 	bool any = from >= w->bus.n;
 
+	/* more than the whole bus has: a match is chance */
+	if (!any && gap > w->bus.n)
+		return false;
 	for (size_t i = 0; i < w->n_configs; i++) {
 		const struct why_config *c = &w->configs[i];
 		unsigned int at = c->c.position - gap;

@@ -58,6 +58,19 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	app=
 }
 
+@test "why: two wrong positions are two causes, and no gap of the bus" {
+	example mirror 2 99 10
+	wait_for 60 eval 'ethercat slaves 2>&1 | grep -q "position 99"'
+	run ethercat why
+	echo "$output"
+	[[ $output == *"the device configured at 0:2 is at position 1"* ]]
+	[[ $output == *"no slave at ring position 99"* ]]
+	[[ $output != *"slave(s) missing from"* ]]
+	kill -INT "$app"
+	! wait "$app" || return 1
+	app=
+}
+
 @test "kcycle: values go out, the kernel keeps the cycle" {
 	example kcycle 20000
 	wait_for 60 grep -qx '3 slaves in OP' "$out"
