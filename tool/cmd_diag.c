@@ -9,8 +9,6 @@
 #include "out.h"
 #include "sdo.h"
 
-#define NO_OBJECT	0x06020000u
-#define NO_SUB		0x06090011u
 #define ROOM		4096	/* bytes of a message; ETG.1020 has less */
 #define MAX_MESSAGES	250	/* subindexes from 6 to 255 */
 
@@ -78,7 +76,7 @@ static int read_head(struct history *h)
 	u32 abort;
 	int err = read_sub(h, EC_DIAG_SUB_MAX, &size, &abort);
 
-	if (err && (abort == NO_OBJECT || abort == NO_SUB))
+	if (err && (abort == SDO_NO_OBJECT || abort == SDO_NO_SUBINDEX))
 		return 2;
 	if (err)
 		return failed(h, err, abort, EC_DIAG_SUB_MAX);
@@ -106,7 +104,7 @@ static int find_messages(struct history *h)
 		u32 abort;
 		int err = read_sub(h, (u8)sub, &size, &abort);
 
-		if (err && abort != NO_SUB)
+		if (err && abort != SDO_NO_SUBINDEX)
 			return failed(h, err, abort, (u8)sub);
 		if (err || ec_diag_msg_decode(h->buf, size, &m) == -ENOMSG)
 			break;

@@ -5,10 +5,6 @@
 #include "out.h"
 #include "sdo.h"
 
-/* abort codes of ETG.1000.6 */
-#define NO_OBJECT	0x06020000
-#define NO_SUBINDEX	0x06090011
-
 static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		    const struct ec_type *type, const char *text)
 {
@@ -22,7 +18,7 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 		return 1;
 	if (!type)
 		type = sdo_described_type(d, &s, a, &abort);
-	if (!type && (abort == NO_OBJECT || abort == NO_SUBINDEX))
+	if (!type && (abort == SDO_NO_OBJECT || abort == SDO_NO_SUBINDEX))
 		return usage_error("%s is absent in the dictionary of slave %u; if the slave has it nevertheless, give --type",
 				   a->text, s.position);
 	if (!type)

@@ -7,6 +7,7 @@
 
 #include "../master/wire/sii.h"
 #include "out.h"
+#include "sdo.h"
 #include "sii_image.h"
 #include "text.h"
 
@@ -14,7 +15,6 @@
 #define ASSIGN		0x1c10	/* of SyncManager 0 */
 #define FIRST_SM	2	/* those below are of the mailbox */
 #define CONTROL_WRITE	0x04	/* direction bit of the SM's control byte */
-#define NO_OBJECT	0x06020000u
 
 /* a PDO as the slave has it */
 struct live_pdo {
@@ -222,7 +222,7 @@ static int sync_manager(struct reading *r)
 	u32 abort = 0, v;
 	int err = count(r, object, &r->n, &abort);
 
-	if (err && abort == NO_OBJECT)
+	if (err && abort == SDO_NO_OBJECT)
 		return 0;
 	if (err && abort)
 		return fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:00",

@@ -5,6 +5,10 @@
 #include "dev.h"
 #include "io.h"
 
+/* abort codes of ETG.1000.6 */
+#define SDO_NO_OBJECT		0x06020000u
+#define SDO_NO_SUBINDEX		0x06090011u
+
 struct sdo_addr {
 	u16 index;
 	u8 sub;

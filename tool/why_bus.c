@@ -49,7 +49,8 @@ bool why_bus(struct why *w)
 	const struct ec_ioc_master *m = &w->m;
 
 	if (m->phase == EC_PHASE_WAITING)
-		why_add(w, "no_device", no_device_remedy(m->devices[0].name), "no network device: master %u waits for %s", w->d->master,
+		why_add(w, "no_device", no_device_remedy(m->devices[0].name),
+			"no network device: master %u waits for %s", w->d->master,
 			m->devices[0].name);
 	else if (!link_up(m))
 		why_add(w, "link_down",
