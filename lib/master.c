@@ -273,30 +273,30 @@ int ecrt_master_deactivate(ec_master_t *master)
 /* cycle --------------------------------------------------------------------*/
 
 /*
- * A command of the cycle on the short way: 0, its error, or 1: give it by ioctl(). That has a place
- * for both times, and says why when an old module or a filter of system calls refuses the advice.
+ * What a command of the cycle on the short way has returned: 0, its error, or 1: give it by
+ * ioctl(). That says why when an old module or a filter of system calls refuses the advice.
  */
-static int advise(struct ec_master *m, int advice, const struct ec_ioc_send *send)
+static inline int advised(struct ec_master *m, int err)
 {
-	int err;
-
-	if (m->no_advice || (send->flags & EC_SEND_FLAG_SYNC_REF &&
-			     send->sync_time != send->app_time))
-		return 1;
-	err = posix_fadvise(m->fd, (off_t)send->app_time, (off_t)send->queued, advice);
+	if (!err)
+		return 0;
 	m->no_advice = err == EINVAL;
-	return err && err != ENODEV && err != ENOENT ? 1 : -err;
+	return err == ENODEV || err == ENOENT ? -err : 1;
 }
 
 static int send_next(struct ec_master *m)
 {
 	struct ec_ioc_send *next = &m->cycle.next;
-	int ret;
+	int ret = 1;
 
 	if (__atomic_load_n(&m->cycle.started, __ATOMIC_RELAXED) &&
 	    __atomic_exchange_n(&m->cycle.started, 0, __ATOMIC_ACQUIRE))
 		next->flags |= EC_SEND_FLAG_REQUESTS;
-	ret = advise(m, EC_ADVICE_SEND | (int)next->flags, next);
+	/* an ioctl() has a place for both times */
+	if (!m->no_advice && (!(next->flags & EC_SEND_FLAG_SYNC_REF) ||
+			      next->sync_time == next->app_time))
+		ret = advised(m, posix_fadvise(m->fd, (off_t)next->app_time, (off_t)next->queued,
+					       EC_ADVICE_SEND | (int)next->flags));
 	return ret > 0 ? ec_command(m, EC_IOC_SEND, next) : ret;
 }
 
@@ -318,14 +318,14 @@ int ecrt_master_send(ec_master_t *master)
 
 int ecrt_master_receive(ec_master_t *master)
 {
-	static const struct ec_ioc_send none;
-	int ret;
+	int ret = 1;
 
 	if (!master || !master->active)
 		return ec_inactive(master);
 	if (master->cycle.exchange)
 		return ec_exchange_receive(master, master->status);
-	ret = advise(master, EC_ADVICE_RECEIVE, &none);
+	if (!master->no_advice)
+		ret = advised(master, posix_fadvise(master->fd, 0, 0, EC_ADVICE_RECEIVE));
 	return ret > 0 ? ec_command(master, EC_IOC_RECEIVE, NULL) : ret;
 }
 

@@ -74,6 +74,15 @@ int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends)
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_set_max_age);
 
+/* Apart, so that a cycle of the application saves no registers for it. */
+static noinline int take_exchanged(ec_domain_t *domain, struct ec_app_cycle *a)
+{
+	if (a->received >> domain->index & 1)
+		ec_exchange_process(domain);
+	a->received &= ~(1ULL << domain->index);
+	return 0;
+}
+
 int ecrt_domain_process(ec_domain_t *domain)
 {
 	const ec_master_t *m = domain ? ec_domain_master(domain) : NULL;
@@ -84,12 +93,8 @@ int ecrt_domain_process(ec_domain_t *domain)
 	if (!page)
 		return -EINVAL;
 	a = ec_app_cycle(m);
-	if (a->exchange) {
-		if (a->received >> domain->index & 1)
-			ec_exchange_process(domain);
-		a->received &= ~(1ULL << domain->index);
-		return 0;
-	}
+	if (a->exchange)
+		return take_exchanged(domain, a);
 	/* a frame may have come with a later receive than the first one behind its send */
 	st = &page->domains[domain->index];
 	domain->snap.working_counter = ec_status_read(st->working_counter);
@@ -100,6 +105,14 @@ int ecrt_domain_process(ec_domain_t *domain)
 }
 EXPORT_SYMBOL_GPL(ecrt_domain_process);
 
+/* Apart, as take_exchanged(). */
+static noinline int queue_exchanged(ec_domain_t *domain, struct ec_app_cycle *a)
+{
+	ec_exchange_queue(domain);
+	a->next.queued |= 1ULL << domain->index;
+	return 0;
+}
+
 int ecrt_domain_queue(ec_domain_t *domain)
 {
 	const ec_master_t *m = domain ? ec_domain_master(domain) : NULL;
@@ -109,7 +122,7 @@ int ecrt_domain_queue(ec_domain_t *domain)
 		return -EINVAL;
 	a = ec_app_cycle(m);
 	if (a->exchange)
-		ec_exchange_queue(domain);
+		return queue_exchanged(domain, a);
 	a->next.queued |= 1ULL << domain->index;
 	return 0;
 }
