@@ -22,10 +22,10 @@ struct notifier_block;
  *	for ecdev_receive(). Process context, may sleep. Return: 0 or -errno
  * @stop: mandatory. Releases the device; no frame is delivered after the return
  * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
- *	when the hardware still owns all of them
+ *	when the hardware still owns all of them. In an RCU read section
  * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
  *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent). With @tx_flush
- *	it may leave only then
+ *	it may leave only then. In the same RCU read section as @tx_get and @tx_flush
  * @tx_flush: optional. No more frames follow at once: all that were sent leave now.
  *	Context as @tx_send
  * @poll: optional. Delivers received frames through ecdev_receive(). Also

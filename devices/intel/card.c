@@ -60,6 +60,7 @@ static enum hrtimer_restart poll_idle(struct hrtimer *timer)
 	return HRTIMER_RESTART;
 }
 
+/* The functions that use the rings are called in an RCU read section. */
 static u8 *intel_tx_get(void *priv)
 {
 	struct intel *n = priv;
@@ -70,25 +71,16 @@ static u8 *intel_tx_get(void *priv)
 static int intel_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct intel *n = priv;
-	int ret = -ENETDOWN;
 
-	rcu_read_lock();
-	if (READ_ONCE(n->ready) && READ_ONCE(n->nic.up) &&
-	    ec_ring_tx_put(&n->nic, &n->tx, buf, len))
-		ret = 0;
-	rcu_read_unlock();
-	return ret;
+	return READ_ONCE(n->ready) && READ_ONCE(n->nic.up) &&
+	       ec_ring_tx_put(&n->nic, &n->tx, buf, len) ? 0 : -ENETDOWN;
 }
 
 static void intel_tx_flush(void *priv)
 {
 	struct intel *n = priv;
-	bool sent;
 
-	rcu_read_lock();
-	sent = READ_ONCE(n->ready) && ec_ring_tx_flush(&n->nic, &n->tx);
-	rcu_read_unlock();
-	if (!sent || READ_ONCE(n->cycle))
+	if (!READ_ONCE(n->ready) || !ec_ring_tx_flush(&n->nic, &n->tx) || READ_ONCE(n->cycle))
 		return;
 	atomic64_set(&n->sent_ns, ktime_get_ns());
 	/* the time before the bit; pairs with poll_idle() */

@@ -51,7 +51,7 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	const struct ec_cyc_area *in = &c->areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
 	bool direct = f->direct && !ec_cyc_from_image(d);
-	unsigned int i, n;
+	const struct ec_cyc_area *end;
 
 	/*
 	 * A missing slave's part comes back as sent: the last value, if it was sent
@@ -70,8 +70,8 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
 		return;
 	}
-	n = complete ? d->n_whole : d->n_plain;
-	for (i = 0; i < n; i++, in++)
+	end = in + (complete ? d->n_whole : d->n_plain);
+	for (; in != end; in++)
 		ec_bytes_run(image + in->offset, in->offset_stride, data + in->pos,
 			     in->pos_stride, in->len, in->count);
 	if (unlikely(d->n_inputs != d->n_whole) && complete)
@@ -177,6 +177,15 @@ static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i
 		tell_wkc(c, d, i, wkc, state);
 }
 
+/* Complete and of the last send, which the status page says, and no event is to come. */
+static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
+		      const struct ec_status_domain *st, u32 wkc)
+{
+	return wkc == d->expected && d->send == c->send && !d->partial &&
+	       READ_ONCE(st->working_counter) == wkc &&
+	       READ_ONCE(st->wc_state) == EC_STATUS_WC_COMPLETE && !d->age && !d->rate.more;
+}
+
 /* Domains that were sent or came back since the last receive. */
 static void judge(struct ec_cycle *c)
 {
@@ -187,10 +196,13 @@ static void judge(struct ec_cycle *c)
 		struct ec_status_domain *st = &c->shared->status->domains[i];
 		struct ec_cyc_domain *d = &c->domains[i];
 		u32 wkc = c->back & BIT_ULL(i) ? d->wkc : 0;
-		u32 state = !wkc ? EC_STATUS_WC_ZERO :
-			    wkc == d->expected && !d->partial ? EC_STATUS_WC_COMPLETE :
-								EC_STATUS_WC_INCOMPLETE;
+		u32 state;
 
+		if (likely(is_steady(c, d, st, wkc)))
+			continue;
+		state = !wkc ? EC_STATUS_WC_ZERO :
+			wkc == d->expected && !d->partial ? EC_STATUS_WC_COMPLETE :
+							    EC_STATUS_WC_INCOMPLETE;
 		WRITE_ONCE(st->working_counter, wkc);
 		WRITE_ONCE(st->wc_state, state);
 		WRITE_ONCE(st->age, judge_age(c, d, i));
@@ -242,16 +254,15 @@ static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64
 
 /**
  * ec_cycle_do_receive() - take what the last sends have brought back
- * @c: active cycle; the links of its master are entered
+ * @c: active cycle; the links of its master are entered, with a device just now
  *
  * Inputs go to the image, working counters to the status page. Frames that
  * are not back within the time limit are lost; one that comes only after the
  * next send has brought data that are a cycle old, and is counted as late.
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0 or -ENODEV.
  */
-int ec_cycle_do_receive(struct ec_cycle *c)
+void ec_cycle_do_receive(struct ec_cycle *c)
 {
 	struct ec_status *st = c->shared->status;
 	struct ec_links *l = c->links;
@@ -259,8 +270,6 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	u64 now = 0;
 	u16 irq = 0;
 
-	if (!ec_links_attached(l))
-		return -ENODEV;
 	/* replies may stay in the device until they are taken below */
 	rcu_read_lock();
 	ec_links_poll_cycle(l);
@@ -291,5 +300,4 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		ec_dc_datagrams_judge(c);
 	WRITE_ONCE(st->cycle, c->sends);
 	ec_status_end(st);
-	return 0;
 }

@@ -2,6 +2,7 @@
 /* Send of the cyclic caller; as in receive.c nothing allocates, prints or waits. */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
+#include <linux/rcupdate.h>
 #include "../base/bytes.h"
 #include "cycle.h"
 #include "../base/once64.h"
@@ -166,19 +167,16 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 
 /**
  * ec_cycle_do_send() - send the queued domains, then what others have left
- * @c: active cycle; the links of its master are entered
+ * @c: active cycle; the links of its master are entered, with a device just now
  * @what: domains and clock datagrams; its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
- * Return: 0 or -ENODEV.
  */
-int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
+void ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
-	if (!ec_links_attached(c->links))
-		return -ENODEV;
 	if (!c->thread)
 		ec_late_send(c, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
@@ -189,6 +187,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	c->sent |= what->queued;
 	if (what->flags & EC_CYC_CLOCKS)
 		send.dc = ec_dc_datagrams_wanted(c, what->flags);
+	rcu_read_lock();
 	while (g < c->n_dgrams || send.dc) {
 		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
 			g = send_frame(c, g, &send);
@@ -202,6 +201,6 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (unlikely(ec_links_have_left(c->links)))
 		ec_share_send_left(c->links, send.wire.ns);
 	ec_links_flush(c->links);
+	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);
-	return 0;
 }

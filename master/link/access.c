@@ -50,8 +50,10 @@ static void flush(struct ec_links *l, struct ec_queue *q)
 		ec_queue_gather(&l->queues, q, &next, &none, &pack);
 		if (!pack.n)
 			continue;
+		rcu_read_lock();
 		ret = ec_links_send_pack(l, &pack, ktime_get_ns());
 		ec_links_flush(l);
+		rcu_read_unlock();
 		if (ret != -EBUSY)
 			continue;
 		if (waits++ < FLUSH_WAITS)

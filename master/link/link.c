@@ -49,34 +49,23 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 }
 
 /**
- * ec_link_send_buf() - send a frame that was written to a buffer of the device
+ * ec_link_show() - show a frame that leaves to those who watch
  * @link: link
  * @dev: its device
- * @buf: the buffer
- * @len: bytes of the frame, with padding
+ * @frame: the frame
+ * @len: its bytes, with padding
  *
  * Context: The owner of the link. RT-safe.
- * Return: as ec_links_send().
  */
-int ec_link_send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
+void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len)
 {
-	int ret;
+	struct ec_capture *capture = link->links->capture;
 
-	if (unlikely(READ_ONCE(link->links->base->debug) >= 2))
-		ec_link_trace(link, "sent", buf + EC_ETH_HDR, len - EC_ETH_HDR);
+	if (READ_ONCE(link->links->base->debug) >= 2)
+		ec_link_trace(link, "sent", frame + EC_ETH_HDR, len - EC_ETH_HDR);
 	/* while the link is down no frame leaves */
-	if (unlikely(link->links->capture) && dev->ops->link_up(dev->priv) &&
-	    !ec_capture_sent(link->links->capture, buf, len))
+	if (capture && dev->ops->link_up(dev->priv) && !ec_capture_sent(capture, frame, len))
 		atomic64_inc(&link->stats.not_captured);
-	ret = dev->ops->tx_send(dev->priv, buf, len);
-	if (ret) {
-		if (ret != -EBUSY)
-			atomic64_inc(&link->stats.tx_errors);
-		return ret;
-	}
-	atomic64_inc(&link->stats.tx_frames);
-	atomic64_add(len, &link->stats.tx_bytes);
-	return 0;
 }
 
 /* Send the frame of an armed slot. */
@@ -99,7 +88,7 @@ static int send(struct ec_link *link, struct ec_slot *slot)
  *
  * ec_links_flush() must follow.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the links, in an RCU read section. RT-safe.
  * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
  * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
  * is down. The first link that fails ends it.
@@ -122,7 +111,7 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot)
  *
  * ec_links_flush() must follow.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the links, in an RCU read section. RT-safe.
  * Return: as ec_links_send(). The frames stay in the queue when it is -EBUSY.
  */
 int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)

@@ -7,6 +7,7 @@
 #define EC_LINKS_H
 
 #include <linux/list.h>
+#include <linux/rcupdate.h>
 #include <linux/spinlock.h>
 #include "ethercat.h"
 #include "../base/base.h"
@@ -174,7 +175,7 @@ static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
  *
  * The next frame that is sent has to be this one.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the links, in an RCU read section. RT-safe.
  * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
  * absent: the frame is built in its slot, and ec_links_transmit() finds out.
  */
@@ -206,6 +207,35 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 }
 
 /**
+ * ec_link_send_buf() - send a frame that was written to a buffer of the device
+ * @link: link
+ * @dev: its device
+ * @buf: the buffer
+ * @len: bytes of the frame, with padding
+ *
+ * Context: The owner of the link, in an RCU read section. RT-safe.
+ * Return: as ec_links_send().
+ */
+static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf,
+					    size_t len)
+{
+	const struct ec_links *l = link->links;
+	int ret;
+
+	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frame sent outside of an RCU read section");
+	if (unlikely(READ_ONCE(l->base->debug) >= 2 || l->capture))
+		ec_link_show(link, dev, buf, len);
+	ret = dev->ops->tx_send(dev->priv, buf, len);
+	if (likely(!ret)) {
+		atomic64_inc(&link->stats.tx_frames);
+		atomic64_add(len, &link->stats.tx_bytes);
+	} else if (ret != -EBUSY) {
+		atomic64_inc(&link->stats.tx_errors);
+	}
+	return ret;
+}
+
+/**
  * ec_links_transmit() - send a built frame
  * @l: links
  * @slot: the slot is back in BUILD on failure
@@ -214,7 +244,7 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
  *
  * ec_links_flush() must follow.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the links, in an RCU read section. RT-safe.
  * Return: as ec_links_send().
  */
 static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now)
@@ -241,12 +271,14 @@ static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8
  * One doorbell for all frames of a cycle. Must follow each batch, also when its last frame
  * failed.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the links, in an RCU read section that has begun before the first frame.
+ * RT-safe.
  */
 static inline void ec_links_flush(struct ec_links *l)
 {
 	unsigned int i;
 
+	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frames flushed outside of an RCU read section");
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
 

@@ -13,6 +13,7 @@
 #include <linux/string.h>
 #include "../base/once64.h"
 #include "pack.h"
+#include "same.h"
 
 #define NONE	-1	/* a datagram of a slot that waits no longer */
 #define END	256	/* behind the last datagram */

@@ -364,12 +364,14 @@ static bool send_queue(struct ec_links *l)
 	int ret = 0;
 
 	lockdep_assert_held(&l->access.lock);
+	rcu_read_lock();
 	while (ret != -EBUSY && ec_queue_peek(&l->queues, &l->queues.acyclic, &next)) {
 		ec_queue_gather(&l->queues, &l->queues.acyclic, &next, &room, &pack);
 		if (pack.n)
 			ret = ec_links_send_pack(l, &pack, ktime_get_ns());
 	}
 	ec_links_flush(l);
+	rcu_read_unlock();
 	return ret != -EBUSY;
 }
 

@@ -1,11 +1,66 @@
 // SPDX-License-Identifier: GPL-2.0-only
+/* A frame has come: whose is it? */
 #include <linux/export.h>
 #include <linux/rcupdate.h>
 #include "capture.h"
 #include "device.h"
 #include "links.h"
 #include "pack.h"
+#include "same.h"
 #include "xfer.h"
+
+/* Does the reply carry the same datagrams as the frame that was sent, and no more? */
+static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
+{
+	struct ec_frame_iter ri;
+
+	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
+	       !ri.more && ri.p == ri.end;
+}
+
+/*
+ * Find the slot a frame belongs to and fill it. With @keep a reply to the cycle stays where it is:
+ * the cycle owner takes it in this call. @xfer: who waits, whose slot may be in use by another
+ * already; untouched: nobody, or the cycle.
+ */
+static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, const u8 *data,
+					   size_t len, bool keep, struct ec_xfer **xfer)
+{
+	u32 seq = get_unaligned_le32(src + 2);
+	struct ec_slot *slot;
+	enum ec_slot_state state;
+	u8 side = src[1];
+
+	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
+		return EC_MATCH_UNMATCHED;
+	slot = &s->slot[data[EC_FRAME_HDR + 1]];
+	if (!s->numbered)
+		seq = READ_ONCE(slot->seq);
+	/* first: a frame of an earlier use must not hold the slot */
+	if (READ_ONCE(slot->seq) != seq) {
+		state = atomic_read(&slot->state);
+		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ?
+		       EC_MATCH_LATE : EC_MATCH_UNMATCHED;
+	}
+	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
+		return EC_MATCH_LATE;
+	if (!ec_slot_awaits(slot, side)) {
+		ec_slot_release(slot, EC_SLOT_SENT);
+		return EC_MATCH_LATE;
+	}
+	/* the iterator only reads; it has no const form */
+	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
+		ec_slot_release(slot, EC_SLOT_SENT);
+		return EC_MATCH_UNMATCHED;
+	}
+	if (keep && !slot->xfer && slot->links == BIT(side)) {
+		slot->reply = data;
+		ec_slot_release(slot, EC_SLOT_DONE);
+	} else {
+		*xfer = ec_slot_take(slot, side, data + EC_FRAME_HDR);
+	}
+	return EC_MATCH_DONE;
+}
 
 /* Apart, for its large result. */
 static noinline enum ec_match receive_pack(struct ec_links *l, const u8 *src, const u8 *data,
@@ -23,7 +78,8 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
 				    size_t len)
 {
 	struct ec_links *l = link->links;
-	struct ec_matched got = { };
+	struct ec_xfer *xfer = NULL;
+	enum ec_match what;
 
 	atomic64_inc(&link->stats.rx_frames);
 	atomic64_add(len + EC_ETH_HDR, &link->stats.rx_bytes);
@@ -32,14 +88,14 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
 	if (unlikely(l->capture) && !ec_capture_received(l->capture, src, data, len))
 		atomic64_inc(&link->stats.not_captured);
 	if (unlikely(src[1] & EC_PACKED))
-		got.what = receive_pack(l, src, data, len);
+		what = receive_pack(l, src, data, len);
 	else
-		got = ec_slots_match(&l->slots, src, data, len, READ_ONCE(link->keep));
-	if (got.xfer)
-		ec_xfer_done(got.xfer);
-	if (unlikely(got.what == EC_MATCH_LATE))
+		what = match(&l->slots, src, data, len, READ_ONCE(link->keep), &xfer);
+	if (xfer)
+		ec_xfer_done(xfer);
+	if (unlikely(what == EC_MATCH_LATE))
 		atomic64_inc(&link->stats.late);
-	else if (unlikely(got.what == EC_MATCH_UNMATCHED))
+	else if (unlikely(what == EC_MATCH_UNMATCHED))
 		atomic64_inc(&link->stats.unmatched);
 }
 

@@ -145,7 +145,7 @@ static u32 send_next(struct ec_links *l, struct ec_queue *q, const struct ec_que
  * @l: links; ec_links_flush() must follow
  * @wire_ns: wire time this cycle has used
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The master's single cyclic caller, in an RCU read section. RT-safe.
  */
 void ec_share_send_left(struct ec_links *l, u32 wire_ns)
 {
@@ -190,8 +190,10 @@ void ec_share_send_between(struct ec_links *l)
 	u64 since = ktime_get_ns() - ec_read64(&l->access.last_send_ns);
 
 	if (since + ec_frame_wire_ns(EC_ETH_MAX) < ec_access_interval_us(&l->access) * 900ULL) {
+		rcu_read_lock();
 		ec_share_send_left(l, since);
 		ec_links_flush(l);
+		rcu_read_unlock();
 	}
 }
 

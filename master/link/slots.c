@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
-#include <linux/etherdevice.h>
 #include <linux/ktime.h>
 #include <linux/module.h>
 #include <linux/vmalloc.h>
@@ -158,63 +157,6 @@ bool ec_slot_disarm(struct ec_slot *slot)
 	       atomic_cmpxchg(&slot->state, EC_SLOT_QUEUED, EC_SLOT_BUILD) == EC_SLOT_QUEUED;
 }
 
-/*
- * The source address is locally administered: slaves set that bit, too. It carries the side,
- * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
- * alone: one that callers share is recognized by its number.
- */
-static __always_inline void number(struct ec_slots *s, struct ec_slot *slot, u8 *f, u8 links,
-				    u64 now_ns)
-{
-	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
-	ec_write64(&slot->sent_ns, now_ns);
-	slot->links = links;
-	slot->back = 0;
-	slot->pack.len = 0;
-	eth_broadcast_addr(f);
-	f[6] = 0x02;
-	f[7] = 0;
-	put_unaligned_le32(s->numbered ? slot->seq : 0, f + 8);
-	if (!s->numbered)
-		slot->dgrams = 0;
-	f[12] = EC_ETHERTYPE >> 8;
-	f[13] = EC_ETHERTYPE & 0xff;
-	if (slot->eth_len < EC_ETH_MIN)
-		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
-}
-
-/* Keep the headers of the datagrams, with which the reply is compared. */
-static __always_inline void note(struct ec_slot *slot, const u8 *frame)
-{
-	unsigned int at = EC_ETH_HDR + EC_FRAME_HDR;
-	u16 len;
-
-	do {
-		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
-		len = get_unaligned_le16(frame + at + 6);
-		at += EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
-		/* the device may have written there, too */
-	} while (len & EC_DGRAM_MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
-}
-
-/**
- * ec_slot_arm() - write the Ethernet header and expect the reply from now on
- * @s: slots
- * @slot: in state BUILD, datagrams complete, @eth_len set
- * @frame: where its frame was built; of one that is not in the slot only headers are kept there
- * @links: mask of the links on which it is sent
- * @now_ns: time
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns)
-{
-	if (frame != slot->frame)
-		note(slot, frame);
-	number(s, slot, frame, links, now_ns);
-	ec_slot_release(slot, EC_SLOT_SENT);
-}
-
 /**
  * ec_slot_queue() - write the Ethernet header; the frame leaves with the cycle
  * @s: slots
@@ -226,28 +168,8 @@ void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, 
  */
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
 {
-	number(s, slot, slot->frame, links, now_ns);
+	ec_slot_number(s, slot, slot->frame, links, now_ns);
 	ec_slot_release(slot, EC_SLOT_QUEUED);
-}
-
-/**
- * ec_slot_hold() - enter the state FILL, so that no other thread changes the slot
- * @slot: slot, perhaps of another caller by now
- * @state: state in which it has to be
- * @seq: sequence number that it has to have
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: the caller ends it by ec_slot_release(); false: the slot is as it was.
- */
-bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq)
-{
-	if (atomic_cmpxchg(&slot->state, state, EC_SLOT_FILL) != state)
-		return false;
-	/* it may have been given up and be in use again since; now it stays */
-	if (READ_ONCE(slot->seq) == seq)
-		return true;
-	ec_slot_release(slot, state);
-	return false;
 }
 
 /**
@@ -276,117 +198,4 @@ struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
 	}
 	ec_slot_release(slot, EC_SLOT_DONE);
 	return xfer;
-}
-
-/* commands whose address each slave counts up */
-#define COUNTED (BIT(EC_CMD_APRD) | BIT(EC_CMD_APWR) | BIT(EC_CMD_APRW) | BIT(EC_CMD_BRD) | \
-		 BIT(EC_CMD_BWR) | BIT(EC_CMD_BRW) | BIT(EC_CMD_ARMW))
-/* Command, index, address and length; the other bits of its 8 bytes are the slaves'. */
-static bool same_header(const u8 *sent, const u8 *got)
-{
-	bool counted = sent[0] < 32 && BIT(sent[0]) & COUNTED;
-	u64 ours = (u64)EC_DGRAM_LEN_MASK << 48 | (counted ? 0xffff0000ffff : 0xffffffffffff);
-
-	return !((get_unaligned_le64(sent) ^ get_unaligned_le64(got)) & ours);
-}
-
-static __always_inline bool same_dgrams(struct ec_slot *slot, struct ec_frame_iter *reply)
-{
-	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
-	size_t left = slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR;
-	u16 len;
-
-	do {
-		size_t replied = reply->end - reply->p, size;
-
-		if (left < EC_DGRAM_OVERHEAD || replied < EC_DGRAM_OVERHEAD || !reply->more ||
-		    !same_header(sent, reply->p))
-			return false;
-		len = get_unaligned_le16(sent + 6);
-		size = EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
-		if (left < size || replied < size)
-			return false;
-		reply->more = get_unaligned_le16(reply->p + 6) & EC_DGRAM_MORE;
-		reply->p += size;
-		sent += size;
-		left -= size;
-	} while (len & EC_DGRAM_MORE);
-	return true;
-}
-
-/**
- * ec_slot_same() - check that a reply carries the datagrams of a slot
- * @slot: slot in state FILL
- * @reply: the reply, at the first of them; afterwards behind the last one
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether it does.
- */
-bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
-{
-	return same_dgrams(slot, reply);
-}
-
-/* Does the reply carry the same datagrams as the frame that was sent, and no more? */
-static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
-{
-	struct ec_frame_iter ri;
-
-	return !ec_frame_iter_init(&ri, reply, len) && same_dgrams(slot, &ri) &&
-	       !ri.more && ri.p == ri.end;
-}
-
-static struct ec_matched nothing(enum ec_match what)
-{
-	return (struct ec_matched){ .what = what };
-}
-
-/**
- * ec_slots_match() - find the slot a received frame belongs to and fill it
- * @s: slots
- * @src: source MAC address of the frame, which callers do not share
- * @data: what follows the EtherType
- * @len: bytes there
- * @keep: a reply to the cycle may stay where it is: the cycle owner takes it in this call
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: what became of the frame, and who waits for it.
- */
-struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
-				 bool keep)
-{
-	u32 seq = get_unaligned_le32(src + 2);
-	struct ec_slot *slot;
-	enum ec_slot_state state;
-	u8 side = src[1];
-
-	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
-		return nothing(EC_MATCH_UNMATCHED);
-	slot = &s->slot[data[EC_FRAME_HDR + 1]];
-	if (!s->numbered)
-		seq = READ_ONCE(slot->seq);
-	/* first: a frame of an earlier use must not hold the slot */
-	if (READ_ONCE(slot->seq) != seq) {
-		state = atomic_read(&slot->state);
-		return nothing(state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ?
-			       EC_MATCH_LATE : EC_MATCH_UNMATCHED);
-	}
-	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
-		return nothing(EC_MATCH_LATE);
-	if (!ec_slot_awaits(slot, side)) {
-		ec_slot_release(slot, EC_SLOT_SENT);
-		return nothing(EC_MATCH_LATE);
-	}
-	/* the iterator only reads; it has no const form */
-	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
-		ec_slot_release(slot, EC_SLOT_SENT);
-		return nothing(EC_MATCH_UNMATCHED);
-	}
-	if (keep && !slot->xfer && slot->links == BIT(side)) {
-		slot->reply = data;
-		ec_slot_release(slot, EC_SLOT_DONE);
-		return nothing(EC_MATCH_DONE);
-	}
-	return (struct ec_matched){ EC_MATCH_DONE,
-				    ec_slot_take(slot, side, data + EC_FRAME_HDR) };
 }

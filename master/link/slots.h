@@ -17,8 +17,10 @@
 #define EC_SLOTS_H
 
 #include <linux/atomic.h>
+#include <linux/etherdevice.h>
 #include <linux/types.h>
 #include "../base/limits.h"
+#include "../base/once64.h"
 #include "../wire/frame.h"
 
 struct ec_xfer;
@@ -116,29 +118,14 @@ enum ec_match {
 	EC_MATCH_UNMATCHED,	/* nothing of this kind is out, or mangled */
 };
 
-/**
- * struct ec_matched - what became of a frame, and who has waited for it
- * @what: what became of it
- * @xfer: the caller, whose slot may be in use by another already; NULL: none, or the cycle
- */
-struct ec_matched {
-	enum ec_match what;
-	struct ec_xfer *xfer;
-};
-
 int ec_slots_init(struct ec_slots *s, bool backup);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns);
 struct ec_slot *ec_slot_wait(struct ec_slots *s);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_disarm(struct ec_slot *slot);
-void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame, u8 links, u64 now_ns);
 void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
-bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq);
 struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
-struct ec_matched ec_slots_match(struct ec_slots *s, const u8 *src, const u8 *data, size_t len,
-				 bool keep);
-bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply);
 
 /* to a slot that was just taken */
 static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
@@ -171,6 +158,26 @@ static inline struct ec_slot *ec_slot_get(struct ec_slots *s, bool cyclic, u64 n
 static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state state)
 {
 	atomic_set_release(&slot->state, state);
+}
+
+/**
+ * ec_slot_hold() - enter the state FILL, so that no other thread changes the slot
+ * @slot: slot, perhaps of another caller by now
+ * @state: state in which it has to be
+ * @seq: sequence number that it has to have
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: the caller ends it by ec_slot_release(); false: the slot is as it was.
+ */
+static inline bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq)
+{
+	if (atomic_cmpxchg(&slot->state, state, EC_SLOT_FILL) != state)
+		return false;
+	/* it may have been given up and be in use again since; now it stays */
+	if (READ_ONCE(slot->seq) == seq)
+		return true;
+	ec_slot_release(slot, state);
+	return false;
 }
 
 /**
@@ -212,6 +219,64 @@ static inline size_t ec_slot_padded(const struct ec_slot *slot)
 static inline u8 *ec_slot_body(struct ec_slot *slot)
 {
 	return slot->frame + EC_ETH_HDR;
+}
+
+/*
+ * The source address is locally administered: slaves set that bit, too. It carries the side,
+ * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
+ * alone: one that callers share is recognized by its number.
+ */
+static __always_inline void ec_slot_number(struct ec_slots *s, struct ec_slot *slot, u8 *f,
+					   u8 links, u64 now_ns)
+{
+	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
+	ec_write64(&slot->sent_ns, now_ns);
+	slot->links = links;
+	slot->back = 0;
+	slot->pack.len = 0;
+	eth_broadcast_addr(f);
+	f[6] = 0x02;
+	f[7] = 0;
+	put_unaligned_le32(s->numbered ? slot->seq : 0, f + 8);
+	if (!s->numbered)
+		slot->dgrams = 0;
+	f[12] = EC_ETHERTYPE >> 8;
+	f[13] = EC_ETHERTYPE & 0xff;
+	if (slot->eth_len < EC_ETH_MIN)
+		memset(f + slot->eth_len, 0, EC_ETH_MIN - slot->eth_len);
+}
+
+/* Keep the headers of the datagrams, with which the reply is compared. */
+static __always_inline void ec_slot_note(struct ec_slot *slot, const u8 *frame)
+{
+	unsigned int at = EC_ETH_HDR + EC_FRAME_HDR;
+	u16 len;
+
+	do {
+		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
+		len = get_unaligned_le16(frame + at + 6);
+		at += EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
+		/* the device may have written there, too */
+	} while (len & EC_DGRAM_MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
+}
+
+/**
+ * ec_slot_arm() - write the Ethernet header and expect the reply from now on
+ * @s: slots
+ * @slot: in state BUILD, datagrams complete, @eth_len set
+ * @frame: where its frame was built; of one that is not in the slot only headers are kept there
+ * @links: mask of the links on which it is sent
+ * @now_ns: time
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+static __always_inline void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame,
+					u8 links, u64 now_ns)
+{
+	if (frame != slot->frame)
+		ec_slot_note(slot, frame);
+	ec_slot_number(s, slot, frame, links, now_ns);
+	ec_slot_release(slot, EC_SLOT_SENT);
 }
 
 #endif

@@ -25,8 +25,10 @@ int ec_submit(struct ec_links *l, struct ec_slot *slot, bool urgent)
 
 	rt_mutex_lock(&l->access.lock);
 	if (READ_ONCE(l->access.mode) == EC_ACCESS_DIRECT) {
+		rcu_read_lock();
 		ret = ec_links_transmit(l, slot, slot->frame, now);
 		ec_links_flush(l);
+		rcu_read_unlock();
 	} else if (!ec_link_is_up(&l->link[0])) {
 		ret = -ENETDOWN;
 	} else {
