@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-CALLS = {"ec_ioc_receive": "receive", "ec_ioc_send": "send"}
+CALLS = {"ec_cycle_do_receive": "receive", "ec_cycle_do_send": "send"}
 MODULES = {"ec_master": "master/ec_master.ko", "ec_intel": "devices/intel/ec_intel.ko"}
 
 
