@@ -15,7 +15,8 @@ struct notifier_block;
  * struct ecdev_ops - functions of a device driver
  * @kind: "generic", "virtual", "e1000e"... for messages
  * @atomic: mandatory. @tx_get, @tx_send and @poll may be called with
- *	preemption or interrupts off (native, virtual); otherwise thread only
+ *	preemption or interrupts off (native, virtual); otherwise in a thread only, where nothing
+ *	may sleep either but in a spinlock of PREEMPT_RT
  * @burst: frames that may be sent in a row so that buffers are left for the
  *	next cycle, 0: any number
  * @start: mandatory. Takes the device for the master, brings it up; @dev is

@@ -72,8 +72,10 @@ static int intel_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct intel *n = priv;
 
-	return READ_ONCE(n->ready) && READ_ONCE(n->nic.up) &&
-	       ec_ring_tx_put(&n->nic, &n->tx, buf, len) ? 0 : -ENETDOWN;
+	if (!READ_ONCE(n->ready) || !READ_ONCE(n->nic.up))
+		return -ENETDOWN;
+	ec_ring_tx_put(&n->nic, &n->tx, len);
+	return 0;
 }
 
 static void intel_tx_flush(void *priv)

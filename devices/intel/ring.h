@@ -101,7 +101,8 @@ static inline u8 *ec_ring_tx_buf(const struct intel_ring *tx)
  * @nic: controller
  * @tx: transmit ring
  *
- * Context: One sender at a time. RT-safe.
+ * Context: One sender at a time, in an RCU read section, for which a start of the ring waits: it
+ * would make the buffer another one's. RT-safe.
  * Return: buffer of INTEL_BUF bytes, or NULL while the controller owns it.
  */
 static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel_ring *tx)
@@ -121,19 +122,14 @@ static inline u8 *ec_ring_tx_get(const struct intel_nic *nic, const struct intel
  * ec_ring_tx_put() - give a buffer to the controller with the next ec_ring_tx_flush()
  * @nic: controller
  * @tx: transmit ring
- * @buf: of ec_ring_tx_get()
- * @len: bytes of the frame without FCS
+ * @len: bytes of the frame without FCS, in the buffer of ec_ring_tx_get()
  *
- * Context: One sender at a time. RT-safe.
- * Return: false: the ring was started since, and its next buffer is another one, with old content.
+ * Context: One sender at a time, in the RCU read section of ec_ring_tx_get(). RT-safe.
  */
-static inline bool ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx,
-				  const u8 *buf, size_t len)
+static inline void ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring *tx, size_t len)
 {
 	union intel_desc *d = &tx->desc[tx->next];
 
-	if (buf != ec_ring_tx_buf(tx))
-		return false;
 	d->a.addr = cpu_to_le64(ec_ring_buf_dma(tx, tx->next));
 	if (nic->class->advanced) {
 		d->a.command_status = cpu_to_le32(INTEL_A_COMMAND | len);
@@ -145,7 +141,6 @@ static inline bool ec_ring_tx_put(const struct intel_nic *nic, struct intel_ring
 		WRITE_ONCE(d->l.status, 0);
 	}
 	tx->next = (tx->next + 1) % INTEL_TX;
-	return true;
 }
 
 /**

@@ -95,7 +95,7 @@ int ecrt_master_receive(ec_master_t *master)
 		/* for those who wait; process data belong to the cycle */
 		ec_links_poll(&master->links);
 	} else {
-		ec_cycle_do_receive(&s->cycle);
+		ret = ec_cycle_do_receive(&s->cycle);
 	}
 	ec_links_leave(&master->links);
 	return ret;
@@ -116,9 +116,7 @@ int ecrt_master_send(ec_master_t *master)
 	next = &master->api->cycle.next;
 	if (READ_ONCE(master->api->cycle.started) && xchg(&master->api->cycle.started, 0))
 		ec_requests_kick(s);
-	ret = ec_cycle_take_request(&s->cycle, next);
-	if (!ret)
-		ec_cycle_do_send(&s->cycle, next);
+	ret = ec_cycle_take_request(&s->cycle, next) ?: ec_cycle_do_send(&s->cycle, next);
 	next->queued = 0;
 	next->flags = 0;
 	ec_links_leave(&master->links);

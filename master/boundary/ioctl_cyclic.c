@@ -75,7 +75,7 @@ static __always_inline int receive(struct ec_file *f)
 
 	if (IS_ERR(c))
 		return PTR_ERR(c);
-	ret = ec_cycle_receive(c, false);
+	ret = ec_cycle_receive(c);
 	leave(f);
 	return ret;
 }
@@ -89,7 +89,7 @@ static __always_inline int send(struct ec_file *f, const struct ec_ioc_send *wha
 		return PTR_ERR(c);
 	if (what->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(ec_cycle_session(c));
-	ret = ec_cycle_take_request(c, what) ?: ec_cycle_send(c, what, false);
+	ret = ec_cycle_take_request(c, what) ?: ec_cycle_send(c, what);
 	leave(f);
 	return ret;
 }

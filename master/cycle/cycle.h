@@ -403,12 +403,12 @@ void ec_cycle_tell_room(struct ec_cycle *c);
 void ec_cycle_free(struct ec_cycle *c);
 
 /* receive.c */
-void ec_cycle_do_receive(struct ec_cycle *c);
+int ec_cycle_do_receive(struct ec_cycle *c);
 void ec_cycle_tell_stale(struct ec_cycle *c);
 
 /* send.c */
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
-void ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);
+int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);
 
 /**
  * ec_cycle_take_request() - what the application gives with a send, without requests
@@ -430,42 +430,40 @@ static inline int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_
 /**
  * ec_cycle_receive() - ec_cycle_do_receive(), links and all
  * @c: active cycle
- * @entered: the links of its master are
  *
  * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
-static inline int ec_cycle_receive(struct ec_cycle *c, bool entered)
+static inline int ec_cycle_receive(struct ec_cycle *c)
 {
+	int ret;
+
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	if (!entered)
-		ec_links_enter(c->links);
-	ec_cycle_do_receive(c);
-	if (!entered)
-		ec_links_leave(c->links);
-	return 0;
+	ec_links_enter(c->links);
+	ret = ec_cycle_do_receive(c);
+	ec_links_leave(c->links);
+	return ret;
 }
 
 /**
  * ec_cycle_send() - ec_cycle_do_send(), links and all
  * @c: active cycle
  * @what: as there
- * @entered: the links of its master are
  *
  * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
-static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what, bool entered)
+static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
+	int ret;
+
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
-	if (!entered)
-		ec_links_enter(c->links);
-	ec_cycle_do_send(c, what);
-	if (!entered)
-		ec_links_leave(c->links);
-	return 0;
+	ec_links_enter(c->links);
+	ret = ec_cycle_do_send(c, what);
+	ec_links_leave(c->links);
+	return ret;
 }
 
 /* dc_datagrams.c */

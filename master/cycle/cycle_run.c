@@ -291,8 +291,10 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 
 	send.queued = turn(t, skip_missed(t, now));
 	/* before the first frame the links are not ours */
-	if (entered || ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
-		ec_cycle_receive(c, entered);
+	if (entered)
+		ec_cycle_do_receive(c);
+	else if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
+		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	send.sync_time = t->lock.time;
 	feed(t);
@@ -300,7 +302,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	if (t->ops && t->ops->cycle)
 		t->ops->cycle(c);
 	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {
-		ret = ec_cycle_send(c, &send, entered);
+		ret = entered ? ec_cycle_do_send(c, &send) : ec_cycle_send(c, &send);
 		if (!ret)
 			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
 	}

@@ -254,15 +254,16 @@ static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64
 
 /**
  * ec_cycle_do_receive() - take what the last sends have brought back
- * @c: active cycle; the links of its master are entered, with a device just now
+ * @c: active cycle; the links of its master are entered
  *
  * Inputs go to the image, working counters to the status page. Frames that
  * are not back within the time limit are lost; one that comes only after the
  * next send has brought data that are a cycle old, and is counted as late.
  *
  * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
  */
-void ec_cycle_do_receive(struct ec_cycle *c)
+int ec_cycle_do_receive(struct ec_cycle *c)
 {
 	struct ec_status *st = c->shared->status;
 	struct ec_links *l = c->links;
@@ -270,6 +271,8 @@ void ec_cycle_do_receive(struct ec_cycle *c)
 	u64 now = 0;
 	u16 irq = 0;
 
+	if (!ec_links_attached(l))
+		return -ENODEV;
 	/* replies may stay in the device until they are taken below */
 	rcu_read_lock();
 	ec_links_poll_cycle(l);
@@ -300,4 +303,5 @@ void ec_cycle_do_receive(struct ec_cycle *c)
 		ec_dc_datagrams_judge(c);
 	WRITE_ONCE(st->cycle, c->sends);
 	ec_status_end(st);
+	return 0;
 }

@@ -167,16 +167,19 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 
 /**
  * ec_cycle_do_send() - send the queued domains, then what others have left
- * @c: active cycle; the links of its master are entered, with a device just now
+ * @c: active cycle; the links of its master are entered
  * @what: domains and clock datagrams; its flags are known ones
  *
  * Context: The master's single cyclic caller. RT-safe.
+ * Return: 0 or -ENODEV.
  */
-void ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
+int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	struct send send = { .what = what, .now = ktime_get_ns() };
 	unsigned int g = 0;
 
+	if (!ec_links_attached(c->links))
+		return -ENODEV;
 	if (!c->thread)
 		ec_late_send(c, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
@@ -203,4 +206,5 @@ void ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	ec_links_flush(c->links);
 	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);
+	return 0;
 }

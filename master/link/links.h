@@ -165,6 +165,7 @@ static inline void ec_links_poll(struct ec_links *l)
 /* the device and its next transmit buffer; NULL without one; the owner of the link, RT-safe */
 static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 {
+	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frame built outside of an RCU read section");
 	*dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
 }
@@ -222,7 +223,6 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
 	const struct ec_links *l = link->links;
 	int ret;
 
-	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frame sent outside of an RCU read section");
 	if (unlikely(READ_ONCE(l->base->debug) >= 2 || l->capture))
 		ec_link_show(link, dev, buf, len);
 	ret = dev->ops->tx_send(dev->priv, buf, len);

@@ -137,9 +137,9 @@ static void rt_receive_send(struct kunit *test)
 			bus_request(c->b, 1, EC_AL_SAFEOP);
 		send.sync_time = ktime_to_ns(c->next);
 		enter(&v, true);
-		KUNIT_ASSERT_EQ(test, ec_cycle_receive(&s->cycle, false), 0);
+		KUNIT_ASSERT_EQ(test, ec_cycle_receive(&s->cycle), 0);
 		ec_dc_app_time(&c->b->m->dc, send.sync_time, send.sync_time);
-		KUNIT_ASSERT_EQ(test, ec_cycle_send(&s->cycle, &send, false), 0);
+		KUNIT_ASSERT_EQ(test, ec_cycle_send(&s->cycle, &send), 0);
 		leave(&v, true);
 	}
 	expect_nothing(test, &v);

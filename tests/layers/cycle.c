@@ -103,8 +103,8 @@ static int cycle_owner(void *arg)
 	struct bench *b = arg;
 
 	while (!kthread_should_stop()) {
-		ec_cycle_receive(&b->cycle, false);
-		ec_cycle_send(&b->cycle, &all, false);
+		ec_cycle_receive(&b->cycle);
+		ec_cycle_send(&b->cycle, &all);
 		usleep_range(1000, 1001);
 	}
 	return 0;
@@ -198,13 +198,13 @@ static void cycle_ends_without_device(void)
 	if (!b)
 		return;
 	activate(b);
-	CHECK_EQ(ec_cycle_receive(&b->cycle, false), 0);
-	CHECK_EQ(ec_cycle_send(&b->cycle, &all, false), 0);
+	CHECK_EQ(ec_cycle_receive(&b->cycle), 0);
+	CHECK_EQ(ec_cycle_send(&b->cycle, &all), 0);
 	usleep_range(1000, 1100);
-	CHECK_EQ(ec_cycle_receive(&b->cycle, false), 0);
+	CHECK_EQ(ec_cycle_receive(&b->cycle), 0);
 	b->cycle.shared->status->domains[0].working_counter = 3;
 	ec_device_release(&b->p.s.seg.links, "none", NULL);
-	CHECK_EQ(ec_cycle_send(&b->cycle, &all, false), -ENODEV);
+	CHECK_EQ(ec_cycle_send(&b->cycle, &all), -ENODEV);
 	ec_cycles_nothing_back(&b->cycles);
 	CHECK_EQ(b->cycle.shared->status->domains[0].working_counter, 0);
 	bench_free(b);

@@ -275,7 +275,10 @@ static void cycle_sends_what_others_queue(void)
 		ec_links_enter(&b->links);
 		ec_write64(&b->links.access.last_send_ns, ktime_get_ns());
 		ec_share_begin(&b->links.share, ec_access_interval_us(&b->links.access));
+		rcu_read_lock();
 		ec_share_send_left(&b->links, 0);
+		ec_links_flush(&b->links);
+		rcu_read_unlock();
 		ec_links_leave(&b->links);
 		wait_for_completion(&c.done);
 		CHECK_EQ(c.ret, 1);

@@ -113,8 +113,8 @@ static int cycle_owner(void *arg)
 	struct ec_cycle *c = arg;
 
 	while (!kthread_should_stop()) {
-		ec_cycle_receive(c, false);
-		ec_cycle_send(c, &all, false);
+		ec_cycle_receive(c);
+		ec_cycle_send(c, &all);
 		usleep_range(1000, 1001);
 	}
 	return 0;
