@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-2.0-only
+"""How long the slave and its card need for a frame, as the wire shows it.
+
+Reads a pcap file with both directions of a card (times of the guest, in us): a frame with process
+data leaves, and comes back with the same number in its source address. Prints "wire_ns N", the
+median of the last TRIPS of them.
+
+usage: trip.py FILE.pcap TRIPS
+"""
+import statistics
+import struct
+import sys
+
+LOGICAL = (10, 11, 12)
+
+
+def frames(path):
+    """(time in us, frame)"""
+    with open(path, "rb") as f:
+        data = f.read()
+    at = 24
+    while at + 16 <= len(data):
+        seconds, us, size = struct.unpack_from("<III", data, at)
+        yield seconds * 1000000 + us, data[at + 16:at + 16 + size]
+        at += 16 + size
+
+
+def main():
+    path, trips = sys.argv[1], int(sys.argv[2])
+    left, took = {}, []
+    for time, frame in frames(path):
+        if frame[12:14] != b"\x88\xa4" or frame[16] not in LOGICAL:
+            continue
+        number = frame[8:12]
+        if number in left:
+            took.append(time - left.pop(number))
+        else:
+            left[number] = time
+    if len(took) < trips:
+        sys.exit(f"trip.py: {len(took)} frames came back, not {trips}")
+    print(f"wire_ns {statistics.median(took[-trips:]) * 1000:.0f}")
+
+
+main()
