@@ -152,7 +152,7 @@ no_thread() { ! pgrep -x 'EtherCAT0-cyc'; }
 	echo "$output"
 	[ "$status" = 0 ]
 	[[ "$output" =~ ', torn: 0 of '([0-9]+) ]]
-	(( BASH_REMATCH[1] > 0 ))
+	((BASH_REMATCH[1] > 0))
 }
 
 @test "a pause of the application: frames go on" {

@@ -43,7 +43,8 @@ group=(setpriv --reuid 65534 --regid 65534 --clear-groups)
 	run "$EC_BUILD/apps/kcycle" cycles=5000 loop=1 spin=1 cpu=1
 	echo "$output"
 	[ "$status" = 0 ]
-	[[ "$output" == *"cycles: 5000, "*", torn: 0"* ]]
+	[[ "$output" =~ 'cycles: 5000, '.*', torn: 0 of '([0-9]+) ]]
+	((BASH_REMATCH[1] > 1000))
 }
 
 @test "a member of the group without RLIMIT_RTPRIO gets a cycle without real-time priority" {
@@ -122,7 +123,8 @@ logged() { dmesg | grep -qF "$1"; }
 	echo "$output"
 	[ "$status" = 0 ]
 	logged 'kernel cycle runs in the interrupt of its timer'
-	[[ "$output" == *"cycles: 5000, "*", torn: 0"* ]]
+	[[ "$output" =~ 'cycles: 5000, '.*', torn: 0 of '([0-9]+) ]]
+	((BASH_REMATCH[1] > 1000))
 }
 
 @test "the thread returns to its CPU after that was offline" {
