@@ -20,8 +20,8 @@ static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 
 /*
  * Find the slot a frame belongs to and fill it. With @keep a reply to the cycle stays where it is:
- * the cycle owner takes it in this call. @xfer: who waits, whose slot may be in use by another
- * already; untouched: none, or the cycle.
+ * the cycle owner takes it in this call. @xfer: the caller that waits, whose slot may be in use by
+ * another already; untouched: none, or the cycle.
  */
 static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, const u8 *data,
 					   size_t len, bool keep, struct ec_xfer **xfer)

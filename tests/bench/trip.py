@@ -8,22 +8,14 @@ median of the last TRIPS of them.
 
 usage: trip.py FILE.pcap TRIPS
 """
+import os
 import statistics
-import struct
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "vm"))
+from pcap import frames  # noqa: E402
+
 LOGICAL = (10, 11, 12)
-
-
-def frames(path):
-    """(time in us, frame)"""
-    with open(path, "rb") as f:
-        data = f.read()
-    at = 24
-    while at + 16 <= len(data):
-        seconds, us, size = struct.unpack_from("<III", data, at)
-        yield seconds * 1000000 + us, data[at + 16:at + 16 + size]
-        at += 16 + size
 
 
 def main():

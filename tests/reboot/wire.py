@@ -9,22 +9,16 @@ process data follow the last one with OP: the slaves left it beside the cycle, n
 
 usage: wire.py FILE.pcap SLAVES
 """
+import os
 import struct
 import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "vm"))
+from pcap import frames  # noqa: E402
 
 BRD, LOGICAL = 7, (10, 11, 12)
 OP = 8
 BEYOND_PREOP = 0x0c     # bits of SAFEOP and OP
-
-
-def frames(path):
-    with open(path, "rb") as f:
-        data = f.read()
-    at = 24
-    while at + 16 <= len(data):
-        size = struct.unpack_from("<I", data, at + 8)[0]
-        yield data[at + 16:at + 16 + size]
-        at += 16 + size
 
 
 def datagrams(frame):
@@ -48,7 +42,7 @@ def datagrams(frame):
 def main():
     path, slaves = sys.argv[1], int(sys.argv[2])
     states, cycles = [], 0
-    for frame in frames(path):
+    for _, frame in frames(path):
         for command, register, data, counter in datagrams(frame):
             if command == BRD and register == 0x130 and counter == slaves:
                 state = data[0] & 0x0f
