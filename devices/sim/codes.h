@@ -44,6 +44,7 @@
 #define EC_AL_CODE_DC_CONFIG		0x0030
 #define EC_AL_CODE_PLL			0x0032
 #define EC_AL_CODE_DC_TIMEOUT		0x0034
+#define EC_AL_CODE_NO_EEPROM		0x0050
 
 /* SDO abort codes */
 #define EC_ABORT_TIMEOUT	0x05040000u

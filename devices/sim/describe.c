@@ -3,7 +3,6 @@
 #include "describe_int.h"
 
 #define IMAGE_MAX	(512 * 1024u)
-#define TIME_MAX	(3600ull * 1000000000ull)
 #define DEVICE_ALIASES	"WAGO750-354"
 
 static int no_memory(struct ec_desc *d)
@@ -20,11 +19,11 @@ static int do_segment(struct ec_desc *d)
 	/* the seed itself was taken before anything was built */
 	ret = ec_desc_number(d, "seed", 0, (s64)(1ULL << 62), &seed);
 	if (!ret)
-		ret = ec_desc_time(d, "response", TIME_MAX, &d->response_ns);
+		ret = ec_desc_time(d, "response", EC_DESC_TIME_MAX, &d->response_ns);
 	if (!ret)
-		ret = ec_desc_time(d, "transition", TIME_MAX, &d->transition_ns);
+		ret = ec_desc_time(d, "transition", EC_DESC_TIME_MAX, &d->transition_ns);
 	if (!ret)
-		ret = ec_desc_time(d, "op_timeout", TIME_MAX, &d->op_timeout_ns);
+		ret = ec_desc_time(d, "op_timeout", EC_DESC_TIME_MAX, &d->op_timeout_ns);
 	return ret;
 }
 
@@ -42,138 +41,6 @@ static bool name_ok(const struct ec_desc_word *w)
 	return true;
 }
 
-static int params_read(struct ec_desc *d, struct ec_app_params *p)
-{
-	s64 vendor = 0, product = 0, revision = 0, out = -1, in = -1, mbox = 0;
-	struct ec_desc_word w;
-	s64 id = 0, soe = 0, voe = 0, foe = 0, diag = 0;
-	int ret;
-
-	ret = ec_desc_number(d, "vendor", 0, 0xFFFFFFFFll, &vendor);
-	if (!ret)
-		ret = ec_desc_number(d, "product", 0, 0xFFFFFFFFll, &product);
-	if (!ret)
-		ret = ec_desc_number(d, "revision", 0, 0xFFFFFFFFll, &revision);
-	if (!ret)
-		ret = ec_desc_number(d, "out", 0, 32768, &out);
-	if (!ret)
-		ret = ec_desc_number(d, "in", 0, 32768, &in);
-	if (!ret)
-		ret = ec_desc_number(d, "mbox", 32, 1486, &mbox);
-	if (!ret)
-		ret = ec_desc_number(d, "id", 0, 0xFFFF, &id);
-	if (!ret)
-		ret = ec_desc_number(d, "soe", 0, EC_SOE_DRIVES, &soe);
-	if (!ret)
-		ret = ec_desc_number(d, "voe", 0, 0xFFFF, &voe);
-	if (!ret)
-		ret = ec_desc_number(d, "foe", 0, 16384, &foe);
-	if (!ret)
-		ret = ec_desc_number(d, "diag", 0, EC_APP_DIAG_MAX, &diag);
-	if (ret)
-		return ret;
-	p->vendor = (u32)vendor;
-	p->product = (u32)product;
-	p->revision = (u32)revision;
-	p->out = out < 0 ? 8 : (u32)out;
-	p->in = in < 0 ? 8 : (u32)in;
-	p->mbox = (u16)mbox;
-	p->id = (u16)id;
-	p->soe = (u8)soe;
-	p->voe = (u16)voe;
-	p->foe = (u16)foe;
-	p->diag = (u8)diag;
-
-	w = ec_desc_value(d, "mapping");
-	if (ec_desc_is(&w, "fixed"))
-		p->mapping = EC_APP_MAP_FIXED;
-	else if (ec_desc_is(&w, "assign"))
-		p->mapping = EC_APP_MAP_ASSIGN;
-	else if (ec_desc_is(&w, "rewritable"))
-		p->mapping = EC_APP_MAP_FULL;
-	else if (ec_desc_is(&w, "lenient"))
-		p->mapping = EC_APP_MAP_LENIENT;
-	else if (w.s)
-		return ec_desc_fail(d, "invalid mapping '", &w,
-				    "': expected fixed, assign, rewritable or lenient");
-	w = ec_desc_value(d, "cpu");
-	if (ec_desc_is(&w, "yes"))
-		p->cpu = true;
-	else if (w.s && !ec_desc_is(&w, "no"))
-		return ec_desc_fail(d, "invalid cpu '", &w, "': expected yes or no");
-	w = ec_desc_value(d, "strict");
-	p->strict = ec_desc_is(&w, "yes");
-	if (w.s && !p->strict && !ec_desc_is(&w, "no"))
-		return ec_desc_fail(d, "invalid strict '", &w, "': expected yes or no");
-	w = ec_desc_value(d, "repeat");
-	p->no_repeat = ec_desc_is(&w, "no");
-	if (w.s && !p->no_repeat && !ec_desc_is(&w, "yes"))
-		return ec_desc_fail(d, "invalid repeat '", &w, "': expected yes or no");
-	w = ec_desc_value(d, "motor");
-	if (w.s && !ec_desc_is(&w, "AM8121"))
-		return ec_desc_fail(d, "unknown motor '", &w,
-				    "': expected AM8121");
-	return 0;
-}
-
-static int config_read(struct ec_desc *d, struct ec_app_config *c,
-		       u64 *cable_ns)
-{
-	u64 response = d->response_ns, transition = d->transition_ns;
-	u64 delay = 0, clock = 0, op_timeout = d->op_timeout_ns;
-	s64 alias = 0, serial = 0, drift = 0;
-	struct ec_desc_word w;
-	int ret;
-
-	/* no two slaves are switched on at the same instant */
-	clock = (u64)ec_sim_random(d->sim) << 4;
-	*cable_ns = 0;
-	ret = ec_desc_number(d, "alias", 0, 65535, &alias);
-	if (!ret)
-		ret = ec_desc_number(d, "serial", 0, 0xFFFFFFFFll, &serial);
-	if (!ret)
-		ret = ec_desc_time(d, "delay", 1000000, &delay);
-	if (!ret)
-		ret = ec_desc_rate(d, "drift", 1000000, &drift);
-	if (!ret)
-		ret = ec_desc_time(d, "clock", ~0ULL >> 2, &clock);
-	if (!ret)
-		ret = ec_desc_time(d, "response", TIME_MAX, &response);
-	if (!ret)
-		ret = ec_desc_time(d, "transition", TIME_MAX, &transition);
-	if (!ret)
-		ret = ec_desc_time(d, "op_timeout", TIME_MAX, &op_timeout);
-	if (!ret)
-		ret = ec_desc_time(d, "cable", 1000000, cable_ns);
-	if (!ret)
-		ret = ec_desc_foe(d, c);
-	if (ret)
-		return ret;
-	w = ec_desc_value(d, "eeprom");
-	c->eeprom_emulated = ec_desc_is(&w, "emulated");
-	if (w.s && !c->eeprom_emulated && !ec_desc_is(&w, "chip"))
-		return ec_desc_fail(d, "invalid eeprom '", &w, "': expected chip or emulated");
-	w = ec_desc_value(d, "ip");
-	c->no_ip = ec_desc_is(&w, "no");
-	if (w.s && !c->no_ip && !ec_desc_is(&w, "yes"))
-		return ec_desc_fail(d, "invalid ip '", &w, "': expected yes or no");
-	w = ec_desc_value(d, "dc");
-	c->clock_bits = ec_desc_is(&w, "64") ? 64 : ec_desc_is(&w, "32") ? 32 :
-			ec_desc_is(&w, "delay") ? EC_APP_CLOCK_DELAY :
-			ec_desc_is(&w, "none") ? EC_APP_NO_CLOCK : 0;
-	if (w.s && !c->clock_bits)
-		return ec_desc_fail(d, "invalid dc '", &w, "': expected 64, 32, delay or none");
-	c->alias = (u16)alias;
-	c->serial = (u32)serial;
-	c->process_ns = (u32)delay;
-	c->drift_ppb = (s32)drift;
-	c->clock_start = clock;
-	c->response_ns = (u32)min(response, (u64)~0u);
-	c->transition_ns = (u32)min(transition, (u64)~0u);
-	c->op_timeout_ns = op_timeout;
-	return 0;
-}
-
 static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 {
 	return a->vendor == b->vendor && a->product == b->product &&
@@ -181,7 +48,8 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
 	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe && a->diag == b->diag &&
-	       a->no_repeat == b->no_repeat && a->strict == b->strict;
+	       a->no_repeat == b->no_repeat && a->strict == b->strict &&
+	       !a->quirks.any && !b->quirks.any;
 }
 
 static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
@@ -268,7 +136,7 @@ static int make_name(char *buf, const struct ec_desc_word *w, u32 number)
 
 static int add_slave(struct ec_desc *d, const struct ec_desc_word *name,
 		     u32 number, struct ec_app_model *m,
-		     struct ec_app_config *c, u64 cable_ns)
+		     struct ec_app_config *c, const struct ec_desc_cable *cable)
 {
 	struct ec_desc_node *n = &d->node[d->n_nodes];
 	char buf[EC_APP_NAME];
@@ -286,10 +154,10 @@ static int add_slave(struct ec_desc *d, const struct ec_desc_word *name,
 	n->line = d->line;
 	n->parent = d->at;
 	n->parent_port = d->at_port;
-	n->child_port = 0;
-	n->cable_ns = (u32)cable_ns;
+	n->child_port = cable->swapped;
+	n->cable_ns = (u32)cable->ns;
 	d->at = (int)d->n_nodes++;
-	d->at_port = 1;
+	d->at_port = !cable->swapped;
 	return 0;
 }
 
@@ -299,7 +167,7 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	struct ec_app_params p = { .out = 0 };
 	struct ec_app_config c = { .name = NULL };
 	struct ec_app_model *m = NULL;
-	u64 cable = 0;
+	struct ec_desc_cable cable = { .ns = 0 };
 	int ret;
 
 	if (!name || !name_ok(name))
@@ -312,9 +180,9 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	if (!file.s && !device)
 		return ec_desc_fail(d, "slave '", name,
 				    "' has neither device nor EEPROM image; add EL2008 or file=IMAGE");
-	ret = params_read(d, &p);
+	ret = ec_desc_params(d, &p);
 	if (!ret)
-		ret = config_read(d, &c, &cable);
+		ret = ec_desc_config(d, &c, &cable);
 	if (!ret)
 		ret = ec_desc_end(d);
 	if (ret)
@@ -326,10 +194,15 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 				   "' has no CPU to emulate an EEPROM; remove eeprom=");
 	if (!ret && (p.soe || p.voe || p.foe) && (m->emulation || !m->dev.std.rx_len))
 		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe=, voe= and foe=");
+	if (!ret)
+		ret = ec_desc_quirks_fit(d, name, m, &c);
+	if (!ret && (c.alias + count - 1 > 0xFFFF || c.serial > 0xFFFFFFFF - (count - 1)))
+		ret = ec_desc_fail(d, "the last '", name,
+				   "' has no alias or serial number left; begin with smaller ones");
 	for (u32 i = 0; i < count && !ret; i++) {
 		if (i)
 			c.clock_start = (u64)ec_sim_random(d->sim) << 4;
-		ret = add_slave(d, name, numbered ? i + 1 : 0, m, &c, cable);
+		ret = add_slave(d, name, numbered ? i + 1 : 0, m, &c, &cable);
 		if (c.alias)
 			c.alias++;
 		if (c.serial)
@@ -512,7 +385,7 @@ static int do_source(struct ec_desc *d, enum ec_app_source_kind kind)
 		ret = ec_desc_number(d, "amplitude", -0x80000000ll,
 				     0xFFFFFFFFll, &src.amplitude);
 	if (!ret && kind != EC_APP_SRC_CONST)
-		ret = ec_desc_time(d, "period", 24 * TIME_MAX, &src.period_ns);
+		ret = ec_desc_time(d, "period", 24 * EC_DESC_TIME_MAX, &src.period_ns);
 	if (ret)
 		return ret;
 	if (kind != EC_APP_SRC_CONST && (!src.period_ns || !src.amplitude))
@@ -641,6 +514,26 @@ static int wire_all(struct ec_desc *d)
 	return 0;
 }
 
+/* a frame passes each cable and each slave once a port: its times have 32 bits */
+static int check_delay(struct ec_desc *d)
+{
+	u64 ns = 0;
+
+	for (u32 i = 0; i < d->n_nodes; i++) {
+		const struct ec_esc *esc = ec_sim_at(d->sim, i);
+
+		for (int p = 0; p < EC_MAX_PORT; p++)
+			if (esc->port[p].peer != -1)
+				ns += 2ull * esc->port[p].cable_ns +
+				      max(esc->cfg.process_ns, esc->cfg.forward_ns);
+		d->line = d->node[i].line;
+		if (ns > ~0u)
+			return ec_desc_fail(d, "frames take more than 4.29 s from here on; shorten delay= and cable=",
+					    NULL, "");
+	}
+	return 0;
+}
+
 /* slave @i hangs at something that is reached */
 static void reach(struct ec_desc *d, int i, int *todo)
 {
@@ -691,6 +584,8 @@ static int build(struct ec_desc *d, const char *p, const char *end)
 			return ret;
 	}
 	ret = wire_all(d);
+	if (!ret)
+		ret = check_delay(d);
 	return ret ? ret : find_islands(d);
 }
 

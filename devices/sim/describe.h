@@ -17,6 +17,10 @@
  *		foe_page=TIME (BUSY so long)  foe_header=TEXT (files begin so)
  *		foe_boot=yes|no (writes in BOOT only)
  *		repeat=yes|no (mailbox messages)  strict=yes|no (mailbox SyncManagers)
+ *		mbox_words=no mbox_protocols=no (what its EEPROM says of the mailbox)
+ *		assign_out=N,N...|none assign_in=N,N...|none (0x1C1x at power-on)
+ *		transition_preop|boot|safeop|op=TIME (steps towards OP)
+ *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
  *	branch NAME PORT		the next slave hangs there
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
  *	connect NAME.CHANNEL -> NAME.CHANNEL	an output to an input

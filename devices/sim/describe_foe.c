@@ -30,9 +30,5 @@ int ec_desc_foe(struct ec_desc *d, struct ec_app_config *c)
 				    "': expected 1 to 16 characters");
 	c->foe_header = w.s;
 	c->foe_header_len = (u8)(w.s ? w.n : 0);
-	w = ec_desc_value(d, "foe_boot");
-	c->foe_boot = ec_desc_is(&w, "yes");
-	if (w.s && !c->foe_boot && !ec_desc_is(&w, "no"))
-		return ec_desc_fail(d, "invalid foe_boot '", &w, "': expected yes or no");
-	return 0;
+	return ec_desc_yes(d, "foe_boot", &c->foe_boot);
 }

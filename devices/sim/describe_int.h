@@ -6,6 +6,7 @@
 #include "describe.h"
 
 #define EC_DESC_WORDS	32
+#define EC_DESC_TIME_MAX	(3600ull * 1000000000ull)
 
 /* a word of a statement, in the text, not terminated */
 struct ec_desc_word {
@@ -25,6 +26,12 @@ struct ec_desc_node {
 	bool wired;	/* by a wire statement */
 	bool reached;	/* from a master */
 	int todo;	/* next one whose neighbours are looked at, -1: none */
+};
+
+/* the cable of a slave to the one before */
+struct ec_desc_cable {
+	u64 ns;
+	bool swapped;	/* in port 1, the next slave is at port 0 */
 };
 
 /* a wire between slaves that both hang elsewhere already, or back to a master */
@@ -97,11 +104,22 @@ int ec_desc_number(struct ec_desc *d, const char *key, s64 min, s64 max,
 		   s64 *v);
 int ec_desc_time(struct ec_desc *d, const char *key, u64 max, u64 *v);
 int ec_desc_rate(struct ec_desc *d, const char *key, s64 max_ppb, s64 *ppb);
+int ec_desc_yes(struct ec_desc *d, const char *key, bool *v);
 int ec_desc_parse_number(struct ec_desc *d, const struct ec_desc_word *w,
 			 s64 min, s64 max, s64 *v);
 int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 		  struct ec_desc_word *name, s64 *number);
 int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w);
+
+/* describe_slave.c */
+int ec_desc_params(struct ec_desc *d, struct ec_app_params *p);
+int ec_desc_config(struct ec_desc *d, struct ec_app_config *c, struct ec_desc_cable *cable);
+
+/* describe_quirk.c */
+int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q);
+int ec_desc_steps(struct ec_desc *d, struct ec_app_config *c);
+int ec_desc_quirks_fit(struct ec_desc *d, const struct ec_desc_word *name,
+		       const struct ec_app_model *m, const struct ec_app_config *c);
 
 /* describe_foe.c */
 int ec_desc_foe(struct ec_desc *d, struct ec_app_config *c);

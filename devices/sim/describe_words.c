@@ -304,6 +304,29 @@ int ec_desc_time(struct ec_desc *d, const char *key, u64 max, u64 *v)
 }
 
 /**
+ * ec_desc_yes() - option that is yes or no
+ * @d: description
+ * @key: its name
+ * @v: result, unchanged where the option is not given
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_yes(struct ec_desc *d, const char *key, bool *v)
+{
+	struct ec_desc_word w = ec_desc_value(d, key);
+
+	if (!w.s)
+		return 0;
+	*v = ec_desc_is(&w, "yes");
+	if (*v || ec_desc_is(&w, "no"))
+		return 0;
+	w.s -= strlen(key) + 1;
+	w.n += strlen(key) + 1;
+	return ec_desc_fail(d, "invalid '", &w, "': expected yes or no");
+}
+
+/**
  * ec_desc_rate() - option with a rate
  * @d: description
  * @key: its name

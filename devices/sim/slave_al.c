@@ -117,9 +117,12 @@ static bool mbox_sm_ok(const struct ec_app *app, int n, u16 start, u16 len)
 	       (sm->page.control & (EC_SM_MODE_MASK | EC_SM_DIR_MASK)) == control;
 }
 
-/* SM0 and SM1 against the mailbox areas at @word of the EEPROM */
-static bool mboxes_ok(const struct ec_app *app, u32 word)
+/* SM0 and SM1 against the mailbox areas at @word of the EEPROM; where there are none, @own */
+static bool mboxes_ok(const struct ec_app *app, u32 word, const struct ec_app_mbox_area *own)
 {
+	if (!sii_word(app, word + 1) && !sii_word(app, word + 3))
+		return mbox_sm_ok(app, 0, own->rx, own->rx_len) &&
+		       mbox_sm_ok(app, 1, own->tx, own->tx_len);
 	return mbox_sm_ok(app, 0, sii_word(app, word), sii_word(app, word + 1)) &&
 	       mbox_sm_ok(app, 1, sii_word(app, word + 2), sii_word(app, word + 3));
 }
@@ -219,13 +222,16 @@ static u16 check(struct ec_app *app, u8 to)
 		return 0;
 	switch (to) {
 	case EC_AL_PREOP:
-		return app->state == EC_AL_INIT && d->std.rx_len &&
-		       !mboxes_ok(app, EC_SII_W_STD_MBOX) ?
+		if (app->state != EC_AL_INIT)
+			return 0;
+		if (app->own_eeprom && !(app->esc->mem[EC_REG_EEP_OWNER] & 1))
+			return EC_AL_CODE_NO_EEPROM;
+		return d->std.rx_len && !mboxes_ok(app, EC_SII_W_STD_MBOX, &d->std) ?
 		       EC_AL_CODE_MBOX_PREOP : 0;
 	case EC_AL_BOOT:
 		if (!d->boot.rx_len)
 			return EC_AL_CODE_NO_BOOT;
-		return mboxes_ok(app, EC_SII_W_BOOT_MBOX) ? 0 :
+		return mboxes_ok(app, EC_SII_W_BOOT_MBOX, &d->boot) ? 0 :
 							    EC_AL_CODE_MBOX_BOOT;
 	case EC_AL_SAFEOP:
 		code = ec_app_pdo_build(app);
@@ -328,6 +334,31 @@ bool ec_app_al_legal(u8 from, u8 to)
 	}
 }
 
+/* time that the change to @to takes */
+static u64 step_ns(const struct ec_app *app, u8 to)
+{
+	if (to < app->state)
+		return app->transition_ns;
+	switch (to) {
+	case EC_AL_PREOP:
+		return app->step_ns[EC_APP_STEP_PREOP];
+	case EC_AL_BOOT:
+		return app->step_ns[EC_APP_STEP_BOOT];
+	case EC_AL_SAFEOP:
+		return app->step_ns[EC_APP_STEP_SAFEOP];
+	default:
+		return app->step_ns[EC_APP_STEP_OP];
+	}
+}
+
+/* is an error indication gone by @control */
+static bool clears_error(const struct ec_app *app, u16 control)
+{
+	if ((control & EC_AL_STATE_MASK) == EC_AL_INIT || ec_app_bug(app, EC_SIM_BUG_AL_NO_ACK))
+		return true;
+	return control & EC_AL_ERROR && !app->no_ack;
+}
+
 /**
  * ec_app_al_control() - the master wrote AL control
  * @app: slave
@@ -348,8 +379,7 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 
 	/* an error not acknowledged: nothing but INIT is heard */
 	if (app->error) {
-		if (!(control & EC_AL_ERROR) && to != EC_AL_INIT &&
-		    !ec_app_bug(app, EC_SIM_BUG_AL_NO_ACK))
+		if (!clears_error(app, control))
 			return;
 		app->error = false;
 		app->code = 0;
@@ -371,8 +401,8 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 	}
 	app->al_to = to;
 	app->al_waits = false;
-	app->al_due = now + app->transition_ns;
+	app->al_due = now + step_ns(app, to);
 	show(app, now);	/* the acknowledge shows at once */
-	if (!app->transition_ns)
+	if (app->al_due == now)
 		finish(app, now);
 }

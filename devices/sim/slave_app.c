@@ -397,6 +397,9 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->serial = cfg->serial ? cfg->serial :
 		get_unaligned_le32(model->eeprom + 2 * EC_SII_W_SERIAL);
 	app->transition_ns = cfg->transition_ns;
+	memcpy(app->step_ns, cfg->step_ns, sizeof(app->step_ns));
+	app->no_ack = cfg->no_ack;
+	app->own_eeprom = cfg->own_eeprom;
 	app->response_ns = cfg->response_ns;
 	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->ip.refuse = cfg->no_ip;
@@ -426,7 +429,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec.sms = d->esc_type == EC_APP_ESC_ET1200 ? 4 : 8;
 	ec.ram_kib = ram_kib(model);
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
-	ec.features = d->features;
+	ec.features = d->features | (cfg->no_lrw ? EC_FEAT_NO_LRW : 0);
 	ec.dc_delay_only = cfg->clock_bits ? cfg->clock_bits == EC_APP_CLOCK_DELAY :
 					     d->dc_delay_only;
 	if (cfg->clock_bits && !ec.dc_delay_only) {

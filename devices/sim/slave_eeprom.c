@@ -3,6 +3,8 @@
 #include "app_int.h"
 
 #define IMAGE_CAP	32768u
+#define MBOX_MIN	16u
+#define MBOX_MAX	1486u
 #define IMAGE_STEP	2048u	/* EEPROMs come in these sizes */
 
 /* strings of an image, each of them once */
@@ -199,6 +201,20 @@ out:
 	return ret;
 }
 
+/**
+ * ec_app_model_hide() - take out of an EEPROM what it does not say about the mailbox
+ * @m: model with its EEPROM
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_model_hide(struct ec_app_model *m)
+{
+	if (m->params.quirks.no_mbox_words)
+		memset(m->eeprom + 2 * EC_SII_W_STD_MBOX, 0, 8);
+	if (m->params.quirks.no_protocols)
+		memset(m->eeprom + 2 * EC_SII_W_PROTOCOLS, 0, 2);
+}
+
 static const char *take_string(struct ec_app_model *m, u8 index)
 {
 	char buf[256], *s;
@@ -309,6 +325,27 @@ static void take_sms(struct ec_app_dev *d, const u8 *img, size_t len)
 	}
 }
 
+/* SM0 and SM1 as the mailbox, where the header of the image has none */
+static void take_mbox(struct ec_app_dev *d)
+{
+	const struct ec_app_sm *out = &d->sms[0], *in = &d->sms[1];
+
+	if (d->std.rx_len || d->std.tx_len || d->n_sms < 2 ||
+	    out->type != EC_SII_SM_MBOX_OUT || in->type != EC_SII_SM_MBOX_IN ||
+	    out->len < MBOX_MIN || out->len > MBOX_MAX || in->len < MBOX_MIN || in->len > MBOX_MAX)
+		return;
+	d->std = (struct ec_app_mbox_area){ out->start, out->len, in->start, in->len };
+}
+
+/* a mailbox without a word on its protocols: as the general category says */
+static void take_protocols(struct ec_app_dev *d, const struct ec_sii_general *g)
+{
+	if (d->protocols || !d->std.rx_len)
+		return;
+	d->protocols = (g->coe ? EC_SII_PROTO_COE : 0) | (g->foe ? EC_SII_PROTO_FOE : 0) |
+		       (g->eoe ? EC_SII_PROTO_EOE : 0);
+}
+
 /* room for the process data ends where the next SM begins */
 static void take_max(struct ec_app_dev *d)
 {
@@ -372,8 +409,8 @@ int ec_app_model_parse(struct ec_app_model *m, const u8 *eeprom, size_t len)
 		info.boot.tx_offset, info.boot.tx_size,
 	};
 	/* an EEPROM with wrong contents makes a slave without mailbox */
-	if (d->std.rx_len > 1486 || d->std.tx_len > 1486 ||
-	    d->boot.rx_len > 1486 || d->boot.tx_len > 1486) {
+	if (d->std.rx_len > MBOX_MAX || d->std.tx_len > MBOX_MAX ||
+	    d->boot.rx_len > MBOX_MAX || d->boot.tx_len > MBOX_MAX) {
 		memset(&d->std, 0, sizeof(d->std));
 		memset(&d->boot, 0, sizeof(d->boot));
 		d->protocols = 0;
@@ -405,6 +442,8 @@ int ec_app_model_parse(struct ec_app_model *m, const u8 *eeprom, size_t len)
 	d->fmmus = 8;
 	d->n_dc = (u8)ec_sii_decode_dcs(eeprom, len, dc, ARRAY_SIZE(dc));
 	take_sms(d, eeprom, len);
+	take_mbox(d);
+	take_protocols(d, &g);
 	take_max(d);
 	return take_pdos(m);
 }

@@ -221,6 +221,7 @@ static void add_assign(struct list *l, const struct ec_app_model *m,
 		       enum ec_app_dir dir)
 {
 	u16 index = (u16)(0x1C10 + m->pd_sm[dir]), access = EC_OD_READ;
+	const struct ec_app_list *list = &m->params.quirks.assign[dir];
 	u8 n = 0, cap = 0;
 
 	if (m->pd_sm[dir] < 0)
@@ -233,10 +234,12 @@ static void add_assign(struct list *l, const struct ec_app_model *m,
 		if (pdo_dir(p) != dir)
 			continue;
 		cap++;
-		if (p->sm == m->pd_sm[dir])
+		if (!list->given && p->sm == m->pd_sm[dir])
 			add(l, index, ++n, EC_TYPE_UINT16, 16, access, p->index,
 			    NULL, NULL);
 	}
+	for (; n < list->n; n++)
+		add(l, index, (u8)(n + 1), EC_TYPE_UINT16, 16, access, list->v[n], NULL, NULL);
 	add(l, index, 0, EC_TYPE_UINT8, 8, access, n, NULL,
 	    dir == EC_APP_OUT ? "RxPDO assign" : "TxPDO assign");
 	while (n < cap)
@@ -373,7 +376,7 @@ static int take(struct ec_app_model *m, const struct list *l)
 static int build_od(struct ec_app_model *m)
 {
 	const struct ec_app_dev *d = &m->dev;
-	struct list l = { .cap = 64u + 2u * d->n_vars + d->n_pdos +
+	struct list l = { .cap = 64u + 2u * EC_APP_LIST + 2u * d->n_vars + d->n_pdos +
 			    (m->params.diag ? (u32)EC_DIAG_FIRST_SUB + m->params.diag : 0u) };
 	int ret = -ENOMEM;
 	struct item *tmp;
@@ -473,6 +476,8 @@ static int finish(struct ec_app_model *m)
 		ret = find_channels(m);
 	if (!ret && !m->eeprom)
 		ret = ec_app_model_eeprom(m);
+	if (!ret)
+		ec_app_model_hide(m);
 	return ret;
 }
 
@@ -486,7 +491,8 @@ static u32 generic_revision(const struct ec_app_model *m)
 	const struct ec_app_params *p = &m->params;
 	u64 other = p->voe | (u64)p->soe << 16 | (u64)p->cpu << 24 |
 		    (u64)!!p->id << 25 | (u64)!!p->foe << 30 |
-		    (u64)!!p->diag << 31;
+		    (u64)!!p->diag << 31 | (u64)p->quirks.no_mbox_words << 48 |
+		    (u64)p->quirks.no_protocols << 49;
 
 	if (m->dev.mapping != m->table->mapping)
 		other |= (u64)m->dev.mapping << 26;

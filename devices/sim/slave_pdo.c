@@ -63,6 +63,17 @@ static u32 pdo_bits(const struct ec_app *app, u16 pdo)
 	return bits;
 }
 
+/* may @pdo be assigned: it exists, or the slave itself had such an entry at power-on */
+static bool assignable(const struct ec_app_model *m, enum ec_app_dir dir, u16 pdo)
+{
+	const struct ec_app_list *list = &m->params.quirks.assign[dir];
+
+	for (u32 i = 0; i < list->n; i++)
+		if (list->v[i] == pdo)
+			return true;
+	return is_pdo(pdo, dir) && ec_app_od_object(m, pdo);
+}
+
 /* a value about to be written to an assignment */
 static u32 check_assign(const struct ec_app *app, const struct ec_app_entry *e,
 			u64 value)
@@ -77,15 +88,14 @@ static u32 check_assign(const struct ec_app *app, const struct ec_app_entry *e,
 			return EC_ABORT_SUB0_FIRST;
 		if (!value)
 			return 0;
-		return is_pdo((u16)value, dir) &&
-		       ec_app_od_object(m, (u16)value) ? 0 : EC_ABORT_RANGE;
+		return assignable(m, dir, (u16)value) ? 0 : EC_ABORT_RANGE;
 	}
 	if (value > o->max_sub)
 		return EC_ABORT_TOO_HIGH;
 	for (u32 i = 1; i <= value; i++) {
 		u16 pdo = (u16)list_at(app, o, i);
 
-		if (!pdo)
+		if (!pdo && !assignable(m, dir, 0))
 			return EC_ABORT_RANGE;
 		for (u32 k = 1; k < i; k++)
 			if (list_at(app, o, k) == pdo)

@@ -18,6 +18,9 @@ const struct fuzz_seed fuzz_seeds[] = {
 	     "fault emergency d code=0x8130 register=1\nfault duplicate frame=2 copies=2\n"
 	     "fault delay frame=1 by=3us\n"),
 	SEED("slave x file=image.bin\n"),
+	SEED("slave a drive mbox_words=no mbox_protocols=no assign_out=none assign_in=0,0x1A00 ack=no\n"
+	     "slave b drive transition=1ms transition_safeop=5s transition_op=1min own_eeprom=yes\n"
+	     "slave c drive lrw=no swap=yes\nslave d io swap=yes\n"),
 	{ NULL, 0 }
 };
 

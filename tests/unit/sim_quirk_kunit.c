@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Slaves that are unlike others: what registers and protocols show of them. */
+#include "sim_app_kunit.h"
+
+#define S	STATION(0)
+#define MBOX	256
+
+static struct ec_app *app_of(struct bed *b, const char *name)
+{
+	return ec_sim_find(b->sim, name);
+}
+
+static u16 eeprom_word(struct bed *b, u32 word)
+{
+	return get_unaligned_le16(ec_sim_at(b->sim, 0)->eep.data + 2 * word);
+}
+
+static struct app_mbox *mbox_new(struct kunit *test, u16 station)
+{
+	struct app_mbox *m = kunit_kzalloc(test, sizeof(*m), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, m);
+	m->station = station;
+	m->size = MBOX;
+	return m;
+}
+
+static u32 to_preop(struct bed *b, u16 station)
+{
+	app_mbox_sms(b, station, MBOX);
+	return app_al(b, station, EC_AL_PREOP, 1);
+}
+
+/* process data of a drive with 8 bytes each way */
+static void drive_sms(struct bed *b, u16 station, u16 out, u16 in)
+{
+	const struct ec_app_sm *sm = app_of(b, "d")->model->dev.sms;
+
+	bed_sm(b, station, 2, sm[2].start, out, out ? 0x64 : 0);
+	bed_sm(b, station, 3, sm[3].start, in, in ? 0x20 : 0);
+}
+
+/* longer than 32 bits of nanoseconds */
+static void sim_quirk_long_times_hold(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "segment response=2min transition=5s\n"
+				"slave d drive\nslave e drive transition=0s\n");
+	struct app_mbox *m = mbox_new(test, STATION(1));
+	u64 from = b->now;
+	struct ec_mbox_hdr h;
+
+	app_mbox_sms(b, S, MBOX);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 4999), (u32)EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 5001), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_GE(test, b->now - from, 5000000000ull);
+
+	KUNIT_EXPECT_EQ(test, to_preop(b, STATION(1)), (u32)EC_AL_PREOP);
+	memset(m->tx, 0, sizeof(m->tx));
+	m->tx[7] = 0x20;			/* SDO request */
+	m->tx[8] = 0x40;			/* upload */
+	put_unaligned_le16(0x1000, m->tx + 9);
+	KUNIT_EXPECT_EQ(test, app_send(b, m, EC_MBOX_COE, EC_COE_HDR + 8), 1);
+	KUNIT_EXPECT_EQ_MSG(test, app_recv(b, m, &h, 119000), -1, "after 119 s");
+	KUNIT_EXPECT_EQ_MSG(test, app_recv(b, m, &h, 1100), EC_COE_HDR + 8, "after 120.1 s");
+}
+
+/* one step is slow, those around it are not */
+static void sim_quirk_single_step_is_slow(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive transition_safeop=6s\n");
+
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 5990), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 6010), (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, EC_AL_PREOP, 1), (u32)EC_AL_PREOP, "down");
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_INIT, 1), (u32)EC_AL_INIT);
+
+	ec_sim_free(b->sim);
+	b = app_bed(test, "slave d drive transition=20ms transition_boot=1ms\n");
+	app_mbox_sms(b, S, MBOX);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 19), (u32)EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 2), (u32)EC_AL_INIT);
+	b->now += 20000000;
+	KUNIT_EXPECT_EQ(test, app_al_status(b, S), (u32)EC_AL_PREOP);
+	app_al(b, S, EC_AL_INIT, 30);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_BOOT, 2), (u32)EC_AL_BOOT);
+}
+
+/* whatever the EEPROM says, the slave has its mailbox */
+static void sim_quirk_eeprom_hides_mailbox(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive mbox_words=no mbox_protocols=no\n");
+	struct ec_esc *esc = ec_sim_at(b->sim, 0);
+	struct app_mbox *m = mbox_new(test, S);
+	struct ec_sii_sm sm[4];
+
+	for (u32 w = 0x18; w <= 0x1C; w++)
+		KUNIT_EXPECT_EQ_MSG(test, eeprom_word(b, w), 0, "word 0x%x", w);
+	KUNIT_EXPECT_EQ(test, esc->eep.data[14], ec_sii_crc(esc->eep.data));
+	KUNIT_ASSERT_EQ(test, ec_sii_decode_sms(esc->eep.data, esc->eep.len, sm, 4), 4);
+	KUNIT_EXPECT_EQ(test, sm[0].type, EC_SII_SM_MBOX_OUT);
+	KUNIT_EXPECT_EQ(test, sm[0].start, 0x1000);
+	KUNIT_EXPECT_EQ(test, sm[1].type, EC_SII_SM_MBOX_IN);
+	KUNIT_EXPECT_EQ(test, sm[1].len, MBOX);
+
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 1), 0x00160011u);
+	app_mbox_sms(b, S, 128);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), 0x00160011u);
+	app_mbox_sms(b, S, MBOX);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1018, 1), app_of(b, "d")->model->dev.vendor);
+}
+
+struct image {
+	u8 *data;
+	size_t len;
+};
+
+static int load(void *ctx, const char *name, u8 *buf, size_t cap)
+{
+	const struct image *img = ctx;
+
+	if (img->len > cap)
+		return -EFBIG;
+	memcpy(buf, img->data, img->len);
+	return (int)img->len;
+}
+
+/* the same from an image: SM0 and SM1 of category 41 are the mailbox */
+static void sim_quirk_mailbox_of_category_41(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive mbox_words=no mbox_protocols=no\n");
+	static const char text[] = "slave d file=x\n";
+	const struct ec_app_model *drive = app_of(b, "d")->model;
+	struct image img = { .len = drive->eeprom_len };
+	struct ec_sim_loader loader = { .load = load, .ctx = &img };
+	struct app_mbox *m = mbox_new(test, S);
+	struct ec_sim_error err;
+
+	img.data = kunit_kmalloc(test, img.len, GFP_KERNEL);
+	KUNIT_ASSERT_NOT_NULL(test, img.data);
+	memcpy(img.data, drive->eeprom, img.len);
+	ec_sim_free(b->sim);
+	b->sim = NULL;
+	KUNIT_ASSERT_EQ(test, ec_sim_describe(&b->sim, &bed_ops, text, strlen(text), &loader,
+					      &err), 0);
+	b->now = 1000000;
+	bed_station(b, 0, S);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_PREOP, 1), 0x00160011u);
+	app_mbox_sms(b, S, MBOX);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), (u32)EC_AL_PREOP);
+	/* CoE, as the details of the general category say */
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C12, 0), 1);
+}
+
+/* the acknowledge changes nothing, INIT does, with and without its bit */
+static void sim_quirk_only_init_clears_error(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive ack=no\nfault at=1s error d code=0x1b\n"
+				"fault at=2s error d code=0x1b\n");
+
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP);
+	b->now = 1000000000;
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x14, 1), 0x001B0014u);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), 0x001B0014u);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_INIT, 1), (u32)EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_OP, 1), 0x00110011u);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), 0x00110011u);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x11, 1), (u32)EC_AL_INIT);
+}
+
+/* 0x1C1x at power-on: nothing, index 0, PDOs that are not there */
+static void sim_quirk_assignment_at_power_on(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive assign_out=none assign_in=0\n");
+	struct app_mbox *m = mbox_new(test, S);
+
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C12, 0), 0);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C13, 0), 1);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C13, 1), 0);
+	/* no process data: a length is wrong */
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), 0x001D0012u);
+	drive_sms(b, S, 0, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x14, 1), 0x001E0012u);
+	drive_sms(b, S, 0, 0);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x14, 1), (u32)EC_AL_SAFEOP);
+	app_al(b, S, EC_AL_PREOP, 1);
+	/* the entry can be written back as it was; another slave refuses it */
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 0, 1), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 1, 0, 2), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 1, 1), 0);
+	/* and what startup SDOs assign counts */
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C12, 1, 0x1600, 2), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C12, 0, 1, 1), 0);
+	drive_sms(b, S, 8, 0);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP);
+
+	ec_sim_free(b->sim);
+	b = app_bed(test, "slave d drive assign_in=0x1A00,0x1A7F\n");
+	m->counter = 0;
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C13, 2), 0x1A7F);
+	KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1A7F, 0), ~0ull);
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP);
+
+	ec_sim_free(b->sim);
+	b = app_bed(test, "slave d drive\n");
+	m->counter = 0;
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 0, 1), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 1, 0, 2), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 1, 1), EC_ABORT_RANGE);
+}
+
+/* a slave that reads its own EEPROM on the way to PREOP */
+static void sim_quirk_eeprom_must_be_assigned(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive own_eeprom=yes\n");
+
+	bed_put(b, S, EC_REG_EEP_OWNER, 0, 1);
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), 0x00500011u);
+	bed_put(b, S, EC_REG_EEP_OWNER, 1, 1);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x12, 1), (u32)EC_AL_PREOP);
+	bed_put(b, S, EC_REG_EEP_OWNER, 0, 1);
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP,
+			    "asked for on the way to PREOP only");
+}
+
+/* LRW passes, LRD and LWR do not */
+static void sim_quirk_lrw_is_not_processed(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive lrw=no\n");
+	const struct ec_app_sm *sm = app_of(b, "d")->model->dev.sms;
+	u8 data[16] = { 0 };
+
+	KUNIT_EXPECT_TRUE(test, bed_get(b, S, EC_REG_FEATURES, 2) & EC_FEAT_NO_LRW);
+	to_preop(b, S);
+	drive_sms(b, S, 8, 8);
+	for (u8 i = 0; i < 2; i++)
+		bed_fmmu(b, S, i, (struct ec_fmmu){
+			.logical = 0x1000 + 8u * i, .len = 8, .lbit_stop = 7,
+			.phys = sm[2 + i].start, .type = i ? EC_FMMU_READ : EC_FMMU_WRITE,
+			.enable = true,
+		});
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LRW, 0x1000, 0, data, 16), 0);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LWR, 0x1000, 0, data, 8), 1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LRD, 0x1008, 0, data, 8), 1);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LRW, 0x1000, 0, data, 16), 0);
+}
+
+/* IN and OUT of the second slave are exchanged: it is processed on the way back */
+static void sim_quirk_swapped_slave_comes_later(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a drive product=1\nslave d drive product=2 swap=yes\n"
+				"slave c drive product=3\nslave e drive product=4\n");
+	static const u32 want[] = { 1, 3, 4, 2 };
+
+	for (u16 i = 0; i < 4; i++) {
+		u8 cmd[6] = { 0x00, 0x01, EC_SII_W_PRODUCT };
+
+		bed_tx(b, EC_CMD_APWR, (u16)-i, EC_REG_EEP_CONTROL, cmd, 6);
+		b->now += 5000000;
+		KUNIT_EXPECT_EQ(test, bed_get(b, STATION(i), EC_REG_EEP_DATA, 4), want[i]);
+	}
+	/* ports 0 and 1 have a link, the frame came in at port 1 */
+	KUNIT_EXPECT_EQ(test, app_of(b, "d")->esc->port[1].peer, 0);
+	KUNIT_EXPECT_EQ(test, app_of(b, "d")->esc->port[0].peer, 2);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(sim_quirk_long_times_hold),
+	KUNIT_CASE(sim_quirk_single_step_is_slow),
+	KUNIT_CASE(sim_quirk_eeprom_hides_mailbox),
+	KUNIT_CASE(sim_quirk_mailbox_of_category_41),
+	KUNIT_CASE(sim_quirk_only_init_clears_error),
+	KUNIT_CASE(sim_quirk_assignment_at_power_on),
+	KUNIT_CASE(sim_quirk_eeprom_must_be_assigned),
+	KUNIT_CASE(sim_quirk_lrw_is_not_processed),
+	KUNIT_CASE(sim_quirk_swapped_slave_comes_later),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "sim_quirk",
+	.exit = bed_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
