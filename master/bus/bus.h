@@ -85,6 +85,10 @@ struct ec_bus {
 	aligned_u64 scan_frames;
 	/** @next_station: station address given last; the monitor's */
 	u16 next_station;
+	/** @listed_station: of these, given last when the list of slaves changed; the monitor's */
+	u16 listed_station;
+	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */
+	unsigned int thrown_away;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */
 	u64 complete_ns;
 	/** @mailboxes_ns: last look at all mailboxes (ktime); the monitor's */

@@ -6,36 +6,10 @@
 #include "../base/limits.h"
 #include "../link/links.h"
 #include "../base/once64.h"
-#include "slave.h"
 #include "../link/xfer.h"
-#include "scan.h"
+#include "scan_int.h"
 
 #define LOST_LINES	16	/* in the log, per scan */
-
-/* registers read from every slave in each scan */
-struct regs {
-	u8 info[EC_INFO_SIZE];
-	u8 station[4];		/* 0x0010 station, 0x0012 alias */
-	u8 dl[2];
-	u8 al[6];
-	u8 recv[16];
-	u8 delay[4];
-	bool delay_only;
-	bool there;		/* it answered when its address was read */
-	bool partial;		/* and not to each read after that */
-};
-
-struct scan {
-	struct ec_bus *bus;
-	unsigned int n;
-	struct ec_slave **slaves;
-	struct regs *regs;
-	struct ec_dg *dg;
-	struct ec_slave **known;	/* slaves of the last scan by station address */
-	u8 *claims;			/* slaves that have the address now, up to 2 */
-	bool changed;	/* other slaves than before */
-	bool fresh;	/* no slave was known before: broadcasts are allowed */
-};
 
 static void bwr(struct ec_bus *bus, u16 ado, const void *data, u16 len)
 {
@@ -57,56 +31,17 @@ static void reset_bus(struct ec_bus *bus)
 	bwr(bus, EC_REG_DL_ALIAS, zero, 1);
 }
 
-/* Read @len bytes at @ado of all slaves by position into regs + @ofs. */
+/*
+ * Read @len bytes at @ado of all slaves into regs + @ofs: by station address, so that they are
+ * of this slave even when a contact opens or closes meanwhile.
+ */
 static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 {
 	unsigned int i;
 
 	for (i = 0; i < sc->n; i++)
-		sc->dg[i] = EC_DG(EC_CMD_APRD, (u16)-i, ado, len, (u8 *)&sc->regs[i] + ofs);
+		sc->dg[i] = EC_FPRD(sc->slaves[i]->station, ado, len, (u8 *)&sc->regs[i] + ofs);
 	return ec_xfer(sc->bus->links, sc->dg, sc->n);
-}
-
-/* Addresses of all; a slave that does not answer may be a known one that fell silent. */
-static int read_stations(struct scan *sc)
-{
-	unsigned int i;
-	int ret = read_all(sc, EC_REG_STATION, offsetof(struct regs, station), 4);
-
-	for (i = 0; i < sc->n && !ret; i++)
-		sc->regs[i].there = sc->dg[i].wkc == 1;
-	return ret;
-}
-
-static int index_known(struct scan *sc)
-{
-	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
-	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
-	if (!sc->known || !sc->claims)
-		return -ENOMEM;
-	ec_for_each_slave(s, sc->bus)
-		sc->known[s->station] = s;
-	return 0;
-}
-
-/**
- * ec_scan_station() - find a station address that no slave has
- * @last: address found last
- * @known: slaves of the last scan by address
- * @claims: for each address, how many slaves have it now
- *
- * Context: Any.
- * Return: the address, or 0 when all are in use.
- */
-u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
-{
-	u32 i;
-
-	for (i = 0; i <= EC_MAX_SLAVES; i++)
-		/* the clocks use 0xffff for "no slave" */
-		if (++last && last != 0xffff && !known[last] && !claims[last])
-			return last;
-	return 0;
 }
 
 /**
@@ -126,34 +61,6 @@ unsigned int ec_scan_limit(void)
 		       EC_MAX_SLAVES);
 }
 
-/* Is the number of slaves still the one the scan began with? */
-static bool same_count(struct scan *sc)
-{
-	u8 type[1] = { 0 };
-	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
-
-	return !ec_xfer(sc->bus->links, &dg, 1) && dg.back == (u16)sc->n;
-}
-
-/* New slaves get their address; one that does not accept it is marked as failed. */
-static int write_stations(struct scan *sc, unsigned int n)
-{
-	unsigned int i;
-	int ret = ec_xfer(sc->bus->links, sc->dg, n);
-
-	for (i = 0; i < n && !ret; i++) {
-		unsigned int pos = (u16)-sc->dg[i].adp;
-
-		if (sc->dg[i].wkc == 1)
-			continue;
-		if (!same_count(sc))
-			return -EAGAIN;
-		ec_slave_fail(sc->slaves[pos], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
-			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
-	}
-	return ret;
-}
-
 /* What every slave has: one that does not answer now has lost the contact for a moment. */
 static int read_each(struct scan *sc, u16 ado, size_t ofs, u16 len)
 {
@@ -165,73 +72,7 @@ static int read_each(struct scan *sc, u16 ado, size_t ofs, u16 len)
 		sc->regs[i].partial |= sc->regs[i].there && sc->dg[i].wkc != 1;
 		missing |= sc->regs[i].partial;
 	}
-	return missing && !same_count(sc) ? -EAGAIN : ret;
-}
-
-/* How many slaves have each address now, up to 2. */
-static void count_claims(struct scan *sc)
-{
-	unsigned int i;
-
-	for (i = 0; i < sc->n; i++) {
-		u8 *c = &sc->claims[get_unaligned_le16(sc->regs[i].station)];
-
-		if (sc->regs[i].there)
-			*c = min(*c + 1, 2);
-	}
-}
-
-/* One that failed in the scan is read anew; one that refused a state is the same. */
-static bool is_usable(const struct ec_slave *s)
-{
-	u8 error = READ_ONCE(s->error);
-
-	return s->sii && (!error || READ_ONCE(s->silent) ||
-			  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
-			   s->bus->ops->attached && s->bus->ops->attached(s)));
-}
-
-/*
- * The known slave that is at @i without an answer: what is in front of it is what was
- * there before, and its address is nowhere else.
- */
-static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
-{
-	struct ec_slave *s = i < sc->bus->n_slaves ? sc->bus->slaves[i] : NULL;
-
-	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
-		return NULL;
-	return READ_ONCE(s->silent) ||
-	       (s->sii && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) ? s : NULL;
-}
-
-/* The slave that could not be read when it was at @i, or NULL. */
-static const struct ec_slave *unreadable(const struct ec_bus *bus, unsigned int i)
-{
-	const struct ec_slave *s = i < bus->n_slaves ? bus->slaves[i] : NULL;
-
-	return s && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent) ? s : NULL;
-}
-
-/* What was read of the EEPROM by the scan before. */
-static void take_part(struct ec_slave *s, struct ec_slave *old)
-{
-	swap(s->part, old->part);
-	swap(s->part_bytes, old->part_bytes);
-	if (s->part)
-		swap(s->sii_counted, old->sii_counted);
-}
-
-/* The one that could not be read here before: its cause is logged once, its tries go on. */
-static void take_failure(struct scan *sc, struct ec_slave *s)
-{
-	const struct ec_slave *old = unreadable(sc->bus, s->position);
-
-	if (!old)
-		return;
-	strscpy(s->why, old->why, sizeof(s->why));
-	s->cause = old->cause;
-	s->retry_ms = old->retry_ms;
+	return missing && !ec_scan_same_count(sc->bus, sc->n) ? -EAGAIN : ret;
 }
 
 static void set_silent(struct scan *sc, struct ec_slave *s)
@@ -261,70 +102,31 @@ static void set_answers(struct scan *sc, struct ec_slave *s)
 	ec_slave_event(s, EC_EVENT_SLAVE_REPLIES);
 }
 
-/*
- * A slave that has kept the address of this master is a known one; others get an address. Of two
- * slaves with one address, one was at another master, and it is unknown which: both are new.
- */
-static int assign(struct scan *sc)
-{
-	unsigned int i, n = 0;
-	bool same_before = true;
-
-	count_claims(sc);
-	for (i = 0; i < sc->n; i++) {
-		u16 station = get_unaligned_le16(sc->regs[i].station);
-		struct ec_slave *s = sc->known[station], *silent = fell_silent(sc, i, same_before);
-
-		if (silent) {
-			sc->slaves[i] = ec_slave_ref(silent);
-			continue;
-		}
-		if (s && is_usable(s) && sc->regs[i].there && sc->claims[station] == 1) {
-			sc->slaves[i] = ec_slave_ref(s);
-			same_before &= i < sc->bus->n_slaves && sc->bus->slaves[i] == s;
-			continue;
-		}
-		same_before &= unreadable(sc->bus, i) != NULL;
-		station = ec_scan_station(sc->bus->next_station, sc->known, sc->claims);
-		if (!station)
-			return -ENOSPC;
-		sc->bus->next_station = station;
-		sc->slaves[i] = ec_slave_alloc(sc->bus, station);
-		if (!sc->slaves[i])
-			return -ENOMEM;
-		sc->slaves[i]->position = i;
-		take_failure(sc, sc->slaves[i]);
-		/* by its address it is the same */
-		if (s && sc->regs[i].there && sc->claims[s->station] == 1)
-			take_part(sc->slaves[i], s);
-		put_unaligned_le16(sc->slaves[i]->station, sc->regs[i].station);
-		sc->dg[n++] = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->regs[i].station);
-	}
-	return write_stations(sc, n);
-}
-
-static bool is_known(const struct scan *sc, const struct ec_slave *s)
-{
-	return sc->known[s->station] == s;
-}
-
-static void take_replies(struct scan *sc)
+/* Known slaves that reply again, or not any more. */
+static void note_replies(struct scan *sc)
 {
 	unsigned int i;
 
 	for (i = 0; i < sc->n; i++) {
 		struct ec_slave *s = sc->slaves[i];
 
-		if (!is_known(sc, s)) {
-			if (sc->regs[i].partial)
-				ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
-					      "no reply to a register read, frames pass; check the cables");
-		} else if (sc->regs[i].there) {
+		if (!ec_scan_is_known(sc, s))
+			continue;
+		if (sc->regs[i].there)
 			set_answers(sc, s);
-		} else {
+		else
 			set_silent(sc, s);
-		}
 	}
+}
+
+static void fail_partial(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		if (sc->regs[i].partial && !ec_scan_is_known(sc, sc->slaves[i]))
+			ec_slave_fail(sc->slaves[i], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
+				      "no reply to a register read, frames pass; check the cables");
 }
 
 /* Registers of the new slaves, or of the @known ones: others see those. */
@@ -337,7 +139,7 @@ static void take_regs(struct scan *sc, bool known)
 		struct ec_slave *s = sc->slaves[i];
 		struct regs *r = &sc->regs[i];
 
-		if (is_known(sc, s) != known)
+		if (ec_scan_is_known(sc, s) != known)
 			continue;
 		s->position = i;
 		if (known && (!r->there || r->partial))
@@ -398,7 +200,7 @@ static int read_new(struct scan *sc)
 		if (!sc->slaves[i]->sii && !READ_ONCE(sc->slaves[i]->error))
 			fresh[n++] = sc->slaves[i];
 	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
-	ec_scan_sii(sc->bus, fresh, n, sc->fresh);
+	ec_scan_sii(sc->bus, fresh, n, sc->n, sc->fresh);
 	if (!ec_links_is_up(sc->bus->links)) {
 		kvfree(fresh);
 		return -ENETDOWN;
@@ -437,8 +239,7 @@ static int look(struct scan *sc)
 
 	if (sc->fresh)
 		reset_bus(sc->bus);
-	ret = read_stations(sc) ?:
-	      assign(sc) ?:
+	ret = ec_scan_stations(sc) ?:
 	      read_each(sc, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
 	      read_each(sc, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
 	      read_each(sc, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
@@ -453,7 +254,7 @@ static int look(struct scan *sc)
 		sc->regs[i].delay_only &= !sc->dg[i].err && !sc->dg[i].wkc;
 	if (ret)
 		return ret;
-	take_replies(sc);
+	fail_partial(sc);
 	take_regs(sc, false);
 	return read_new(sc);
 }
@@ -467,7 +268,7 @@ static bool differs(const struct scan *sc)
 		return true;
 	for (i = 0; i < sc->n; i++)
 		if (sc->slaves[i] != sc->bus->slaves[i] &&
-		    !(unreadable(sc->bus, i) &&
+		    !(ec_scan_unreadable(sc->bus, i) &&
 		      READ_ONCE(sc->slaves[i]->error) == EC_SLAVE_SCAN_FAILED))
 			return true;
 	return false;
@@ -526,7 +327,7 @@ static void note_found(struct scan *sc, unsigned int n_old)
 	for (i = 0; n_old && i < bus->n_slaves; i++) {
 		const struct ec_slave *s = bus->slaves[i];
 
-		if (!is_known(sc, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
+		if (!ec_scan_is_known(sc, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
 			ec_slave_event(s, EC_EVENT_SLAVE_FOUND, upstream_of(s, bus->n_slaves),
 				       s->parent_port, s->alias, s->info.vendor,
 				       s->info.product);
@@ -552,6 +353,9 @@ static void publish(struct scan *sc)
 	up_write(&bus->topo);
 	sc->slaves = NULL;
 	ec_bus_need_workers(bus, sc->n / 2);
+	ec_for_each_slave(s, bus)
+		if (!s->listed)
+			ec_slave_list(s);
 
 	for (i = 0; i < n_old; i++) {
 		/* at its place in the new list, or not on the bus any more */
@@ -599,17 +403,20 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 
 	sc.slaves = kvcalloc(count + 1, sizeof(*sc.slaves), GFP_KERNEL);
 	sc.regs = kvcalloc(count + 1, sizeof(*sc.regs), GFP_KERNEL);
-	sc.dg = kvcalloc(count + 1, sizeof(*sc.dg), GFP_KERNEL);
+	sc.dg = kvcalloc(2 * count + 1, sizeof(*sc.dg), GFP_KERNEL);
 	/* it may be begun again and again while a plug is pulled in */
 	if (count && !bus->scan_noted) {
 		bus->scan_noted = true;
 		ec_event(bus->base, EC_EVENT_SCAN_START, count);
 	}
-	if (sc.slaves && sc.regs && sc.dg && !index_known(&sc))
+	if (sc.slaves && sc.regs && sc.dg)
 		ret = count ? look(&sc) : 0;
+	ret = ret ?: ec_scan_proof(&sc);
 	if (!ret) {
+		note_replies(&sc);
 		sc.changed = differs(&sc);
 		publish(&sc);
+		bus->listed_station = bus->next_station;
 		*changed = sc.changed;
 		WRITE_ONCE(bus->scan_us, (u32)div_u64(ktime_get_ns() - t0, 1000));
 		ec_write64(&bus->scan_frames, ec_links_sent(bus->links) - frames);

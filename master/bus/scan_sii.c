@@ -12,9 +12,8 @@
 #include <linux/slab.h>
 #include "../base/limits.h"
 #include "../link/links.h"
-#include "slave.h"
 #include "../link/xfer.h"
-#include "scan.h"
+#include "scan_int.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
@@ -38,6 +37,7 @@ struct reader {
 	u8 tries;
 	u8 len;		/* bytes of @reg that are of interest */
 	bool alone;	/* left the lockstep */
+	bool unheard;	/* no reply to the last read */
 	bool done;
 	u8 reg[14];	/* 0x0502-0x050F */
 };
@@ -46,6 +46,8 @@ struct job {
 	struct ec_bus *bus;
 	struct reader *rd;
 	unsigned int n;
+	unsigned int count;	/* slaves on the bus */
+	bool changed;	/* their number has changed, so no reader has failed */
 	struct ec_dg *dg;
 	u8 (*cmd)[6];
 	struct reader **rds;
@@ -214,10 +216,10 @@ static bool take(struct reader *r)
 	return true;
 }
 
-/* Without link no slave is to blame: the scan ends and fails as a whole. */
-static bool go_on(const struct ec_bus *bus)
+/* Without link, or with other slaves, none is to blame: the scan ends and fails as a whole. */
+static bool go_on(const struct job *j)
 {
-	return !READ_ONCE(bus->base->stopping) && ec_links_is_up(bus->links);
+	return !j->changed && !READ_ONCE(j->bus->base->stopping) && ec_links_is_up(j->bus->links);
 }
 
 static void command(u8 *c, u32 word)
@@ -256,9 +258,22 @@ static void collect(struct job *j, struct reader **rds, unsigned int n)
 		j->dg[i] = EC_FPRD(rds[i]->slave->station, EC_REG_EEP_CONTROL, rds[i]->len,
 				   rds[i]->reg);
 	ec_xfer(j->bus->links, j->dg, n);
-	for (i = 0; i < n; i++)
-		if (j->dg[i].err || j->dg[i].wkc != 1)
+	for (i = 0; i < n; i++) {
+		rds[i]->unheard = j->dg[i].err || j->dg[i].wkc != 1;
+		if (rds[i]->unheard)
 			put_unaligned_le16(EC_EEP_BUSY, rds[i]->reg);
+	}
+}
+
+/* A slave that does not reply may have been disconnected. */
+static void check_count(struct job *j, struct reader **rds, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n && !rds[i]->unheard; i++)
+		;
+	if (i < n)
+		j->changed = !ec_scan_same_count(j->bus, j->count);
 }
 
 /* Start the same read in all of @rds; broadcast where all slaves are meant. */
@@ -340,7 +355,8 @@ static void step(struct job *j, struct reader **rds, unsigned int n, u32 word)
 			ready = looked;
 		if (!left)
 			break;
-		if (!go_on(j->bus))
+		check_count(j, rds, left);
+		if (!go_on(j))
 			return;
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
@@ -386,8 +402,8 @@ static unsigned int apart(struct job *j, struct reader **rds)
 		if (r->done)
 			continue;
 		if (r->tries++ >= RETRIES)
-			fail(r, refused(r) ? "no acknowledge" : "busy too long",
-			     "check the slave, then rescan");
+			fail(r, r->unheard ? "no reply" : refused(r) ? "no acknowledge" :
+			     "busy too long", "check the slave, then rescan");
 		else
 			rds[n++] = r;
 	}
@@ -403,12 +419,13 @@ static void read_apart(struct job *j)
 	unsigned int n, left;
 	u64 t0;
 
-	for (; go_on(j->bus) && (n = apart(j, j->rds)); interrupt_long(j)) {
+	for (; go_on(j) && (n = apart(j, j->rds)); interrupt_long(j)) {
 		start_apart(j, j->rds, n);
 		t0 = ktime_get_ns();
-		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j->bus);) {
+		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j);) {
 			usleep_range(300, 400);
 			left = look(j, j->rds, left, left);
+			check_count(j, j->rds, left);
 		}
 	}
 }
@@ -442,7 +459,7 @@ static void run(struct job *j)
 	/* no fault of a slave: the scan begins anew */
 	if (take_over(j, j->rds, n) == -ENOMEM)
 		return;
-	for (; n && go_on(j->bus); n = waiting(j, &word)) {
+	for (; n && go_on(j); n = waiting(j, &word)) {
 		step(j, j->rds, n, word);
 		interrupt_long(j);
 	}
@@ -455,14 +472,18 @@ static void run(struct job *j)
  * @slaves: slaves with station addresses; @sii is set where it worked, @part where more
  *	is to be read, the others are marked as failed unless the link went down meanwhile
  * @n: how many
+ * @count: slaves on the bus; when their number changes, the rest is neither read nor marked
  * @all: these are all slaves of the segment and no process data run, so
  *	broadcasts are allowed
  *
  * Context: Process. Waits for bus traffic.
  */
-void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool all)
+void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
+		 unsigned int count, bool all)
 {
-	struct job j = { .bus = bus, .n = n, .broadcast = all, .began_ns = ktime_get_ns() };
+	struct job j = {
+		.bus = bus, .n = n, .count = count, .broadcast = all, .began_ns = ktime_get_ns(),
+	};
 	unsigned int i;
 
 	j.rd = kvcalloc(n, sizeof(*j.rd), GFP_KERNEL);

@@ -146,8 +146,6 @@ static void check_sii(struct ec_slave *s)
 			  f->type, f->offset / 2);
 		break;
 	}
-	ec_slave_warn(s, "%s\n", s->sii_flaw);
-	ec_slave_event(s, EC_EVENT_EEPROM, f->kind, s->info.checksum, s->info.checksum_calc);
 }
 
 /**
@@ -179,6 +177,14 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 	return ec_slave_read_pdos(slave);
 }
 
+static void report_failure(struct ec_slave *slave, const char *text, u8 error,
+			   const struct ec_cause *cause)
+{
+	ec_slave_warn(slave, "%s\n", text);
+	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code), cause->kind,
+		       cause->code, cause->object, cause->subindex, cause->sm, cause->state);
+}
+
 /**
  * ec_slave_fail() - note why a slave could not be scanned or configured
  * @slave: slave
@@ -186,7 +192,8 @@ int ec_slave_parse_sii(struct ec_slave *slave)
  * @cause: the same for programs, see EC_CAUSE()
  * @fmt: text: what was expected, what found, what to do
  *
- * The same cause is logged once.
+ * The same cause is logged once; that of a slave which is not in the list yet when it comes there,
+ * since the scan may be thrown away.
  *
  * Context: Process. May sleep.
  */
@@ -209,12 +216,36 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 		if (other)
 			strscpy(slave->why, text, sizeof(slave->why));
 	}
+	slave->unreported |= other && !slave->listed;
+	other = other && slave->listed;
 	raw_spin_unlock(&slave->note_lock);
-	if (!other)
-		return;
-	ec_slave_warn(slave, "%s\n", text);
-	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code), cause->kind,
-		       cause->code, cause->object, cause->subindex, cause->sm, cause->state);
+	if (other)
+		report_failure(slave, text, error, cause);
+}
+
+/**
+ * ec_slave_list() - report what the scan has noted of a slave that comes into the list
+ * @slave: new slave
+ *
+ * Context: The monitor thread.
+ */
+void ec_slave_list(struct ec_slave *slave)
+{
+	bool unreported;
+
+	raw_spin_lock(&slave->note_lock);
+	unreported = slave->unreported;
+	slave->unreported = false;
+	slave->listed = true;
+	raw_spin_unlock(&slave->note_lock);
+	if (slave->sii_flaw[0]) {
+		ec_slave_warn(slave, "%s\n", slave->sii_flaw);
+		ec_slave_event(slave, EC_EVENT_EEPROM, slave->flaw.kind, slave->info.checksum,
+			       slave->info.checksum_calc);
+	}
+	/* no other thread has failed with it so far */
+	if (unreported)
+		report_failure(slave, slave->why, slave->error, &slave->cause);
 }
 
 /**

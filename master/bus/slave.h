@@ -93,6 +93,8 @@ struct ec_break {
  * @why: cause of @error
  * @cause: the same for programs
  * @warning: what is not certain of its process data, empty: nothing
+ * @listed: it is in the list of the bus; what fails before is reported when it comes there
+ * @unreported: @why is to be reported then
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
  * @retry_ns: when to try again what failed (ktime), 0: never
@@ -161,6 +163,8 @@ struct ec_slave {
 	char why[EC_UAPI_REASON];
 	struct ec_cause cause;
 	char warning[EC_UAPI_WARNING];
+	bool listed;
+	bool unreported;
 	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
 	aligned_u64 retry_ns;
@@ -201,6 +205,7 @@ u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
 		   const char *fmt, ...) __printf(4, 5);
+void ec_slave_list(struct ec_slave *slave);
 bool ec_slave_set_ok(struct ec_slave *slave, bool replies);
 bool ec_slave_forgive(struct ec_slave *slave);
 void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested);

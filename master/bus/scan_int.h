@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the files of the scan share. */
+#ifndef EC_SCAN_INT_H
+#define EC_SCAN_INT_H
+
+#include "../wire/regs.h"
+#include "slave.h"
+#include "scan.h"
+
+struct ec_dg;
+
+/* registers read from every slave in each scan */
+struct regs {
+	u8 info[EC_INFO_SIZE];
+	u8 station[4];		/* 0x0010 station, 0x0012 alias */
+	u8 dl[2];
+	u8 al[6];
+	u8 recv[16];
+	u8 delay[4];
+	bool delay_only;
+	bool there;		/* it answered when its address was read */
+	bool partial;		/* and not to each read after that */
+};
+
+struct scan {
+	struct ec_bus *bus;
+	unsigned int n;
+	struct ec_slave **slaves;
+	struct regs *regs;
+	struct ec_dg *dg;		/* two for each slave */
+	struct ec_slave **known;	/* slaves of the last scan by station address */
+	u8 *claims;			/* slaves that have the address now, up to 2 */
+	bool changed;	/* other slaves than before */
+	bool fresh;	/* no slave was known before: broadcasts are allowed */
+};
+
+static inline u16 ec_scan_address(const struct scan *sc, unsigned int i)
+{
+	return get_unaligned_le16(sc->regs[i].station);
+}
+
+static inline bool ec_scan_is_known(const struct scan *sc, const struct ec_slave *s)
+{
+	return sc->known[s->station] == s;
+}
+
+/* scan_station.c */
+int ec_scan_stations(struct scan *sc);
+const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int i);
+
+/* scan_proof.c */
+bool ec_scan_same_count(struct ec_bus *bus, unsigned int n);
+int ec_scan_proof(struct scan *sc);
+
+#endif

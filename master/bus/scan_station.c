@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Station addresses: which of the slaves on the bus are known, and addresses for the others. What
+ * goes to a ring position may reach another slave when a contact opens or closes, so the only write
+ * by position is that of an address, and a known slave that got it gets its own back.
+ */
+#include <linux/slab.h>
+#include "../link/links.h"
+#include "../link/xfer.h"
+#include "scan_int.h"
+
+#define NO_STATION	0xffff	/* the clocks use it for "no slave" */
+
+/**
+ * struct rows - where the known slaves are in the ring, seen from both ends
+ * @front: from the first position on, slaves with the addresses of the last scan
+ * @back: likewise up to the last position
+ */
+struct rows {
+	unsigned int front;
+	unsigned int back;
+};
+
+/* Addresses of all; a slave that does not answer may be a known one that fell silent. */
+static int read_stations(struct scan *sc)
+{
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < sc->n; i++)
+		sc->dg[i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 4, sc->regs[i].station);
+	ret = ec_xfer(sc->bus->links, sc->dg, sc->n);
+	for (i = 0; i < sc->n && !ret; i++)
+		sc->regs[i].there = sc->dg[i].wkc == 1;
+	return ret;
+}
+
+static int index_known(struct scan *sc)
+{
+	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
+	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
+	if (!sc->known || !sc->claims)
+		return -ENOMEM;
+	ec_for_each_slave(s, sc->bus)
+		sc->known[s->station] = s;
+	return 0;
+}
+
+/**
+ * ec_scan_station() - find a station address that no slave has
+ * @last: address found last
+ * @known: slaves of the last scan by address
+ * @claims: for each address, how many slaves have it now
+ *
+ * Context: Any.
+ * Return: the address, or 0 when all are in use.
+ */
+u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
+{
+	u32 i;
+
+	for (i = 0; i <= EC_MAX_SLAVES; i++)
+		if (++last && last != NO_STATION && !known[last] && !claims[last])
+			return last;
+	return 0;
+}
+
+/* How many slaves have each address now, up to 2. */
+static void count_claims(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		u8 *c = &sc->claims[ec_scan_address(sc, i)];
+
+		if (sc->regs[i].there)
+			*c = min(*c + 1, 2);
+	}
+}
+
+static bool is_at(const struct scan *sc, unsigned int i, const struct ec_slave *s)
+{
+	return sc->regs[i].there && ec_scan_address(sc, i) == s->station;
+}
+
+static struct rows find_rows(const struct scan *sc)
+{
+	const struct ec_bus *bus = sc->bus;
+	unsigned int n = min(sc->n, bus->n_slaves);
+	struct rows r = { 0 };
+
+	while (r.front < n && is_at(sc, r.front, bus->slaves[r.front]))
+		r.front++;
+	while (r.back < n &&
+	       is_at(sc, sc->n - 1 - r.back, bus->slaves[bus->n_slaves - 1 - r.back]))
+		r.back++;
+	return r;
+}
+
+/* The known slave that is at @i if only slaves after it were connected or disconnected. */
+static struct ec_slave *from_front(const struct scan *sc, unsigned int i)
+{
+	return i < sc->bus->n_slaves ? sc->bus->slaves[i] : NULL;
+}
+
+/* Likewise, slaves before it. */
+static struct ec_slave *from_back(const struct scan *sc, unsigned int i)
+{
+	unsigned int after = sc->n - i;
+
+	return after <= sc->bus->n_slaves ? sc->bus->slaves[sc->bus->n_slaves - after] : NULL;
+}
+
+/* Does the slave at @i show the AL state that @s has, as far as the master knows? */
+static bool same_state(const struct scan *sc, unsigned int i, const struct ec_slave *s)
+{
+	u8 al[2];
+	struct ec_dg dg = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_AL_STATUS, 2, al);
+
+	return !ec_xfer(sc->bus->links, &dg, 1) && dg.wkc == 1 &&
+	       get_unaligned_le16(al) == READ_ONCE(s->al_status);
+}
+
+/*
+ * Of two slaves with the address of @s one was at another master. It is not the one at @i if that
+ * is in the place of @s, seen from one end. Seen from either end another one is in its place when
+ * the two are neighbors; then the AL state decides.
+ */
+static bool owns_station(const struct scan *sc, unsigned int i, const struct ec_slave *s,
+			 const struct rows *r)
+{
+	bool front = i < r->front && from_front(sc, i) == s;
+	bool back = sc->n - i <= r->back && from_back(sc, i) == s;
+	bool other;
+
+	if (sc->claims[s->station] == 1)
+		return true;
+	if (!front && !back)
+		return false;
+	if (front && back)
+		return true;
+	other = front ? sc->bus->n_slaves - s->position <= r->back : s->position < r->front;
+	if (!other)
+		return true;
+	return same_state(sc, i, s) &&
+	       !same_state(sc, front ? sc->n - (sc->bus->n_slaves - s->position) : s->position, s);
+}
+
+/* One that failed in the scan is read anew; one that refused a state is the same. */
+static bool is_usable(const struct ec_slave *s)
+{
+	u8 error = READ_ONCE(s->error);
+
+	return s->sii && (!error || READ_ONCE(s->silent) ||
+			  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
+			   s->bus->ops->attached && s->bus->ops->attached(s)));
+}
+
+/*
+ * The known slave that is at @i without an answer: what is in front of it is what was
+ * there before, and its address is nowhere else.
+ */
+static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
+{
+	struct ec_slave *s = from_front(sc, i);
+
+	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
+		return NULL;
+	return READ_ONCE(s->silent) ||
+	       (s->sii && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) ? s : NULL;
+}
+
+/**
+ * ec_scan_unreadable() - find the slave that could not be read where it was
+ * @bus: bus
+ * @i: ring position
+ *
+ * Context: The monitor thread.
+ * Return: that slave, or NULL.
+ */
+const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int i)
+{
+	const struct ec_slave *s = i < bus->n_slaves ? bus->slaves[i] : NULL;
+
+	return s && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent) ? s : NULL;
+}
+
+/* What was read of the EEPROM by the scan before. */
+static void take_part(struct ec_slave *s, struct ec_slave *old)
+{
+	swap(s->part, old->part);
+	swap(s->part_bytes, old->part_bytes);
+	if (s->part)
+		swap(s->sii_counted, old->sii_counted);
+}
+
+/* The one that could not be read here before: its cause is logged once, its tries go on. */
+static void take_failure(struct scan *sc, struct ec_slave *s)
+{
+	const struct ec_slave *old = ec_scan_unreadable(sc->bus, s->position);
+
+	if (!old)
+		return;
+	strscpy(s->why, old->why, sizeof(s->why));
+	s->cause = old->cause;
+	s->retry_ms = old->retry_ms;
+}
+
+/* Given by a scan that was thrown away. */
+static bool was_tried(const struct ec_bus *bus, u16 station)
+{
+	return (u16)(station - bus->listed_station - 1) <
+	       (u16)(bus->next_station - bus->listed_station);
+}
+
+/* Is the slave at @i, with an address that was meant for another one, @s by its state? */
+static bool may_be(const struct scan *sc, unsigned int i, const struct ec_slave *s)
+{
+	return s && !sc->claims[s->station] && is_usable(s) &&
+	       READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s);
+}
+
+/*
+ * A known slave has got the address of another one in a scan that was thrown away. It gets its own
+ * back if it is in its place, seen from @end, and in a state that no new slave has.
+ */
+static bool restore(struct scan *sc, unsigned int i, struct ec_slave *end, struct ec_slave *other)
+{
+	u16 station = ec_scan_address(sc, i);
+
+	if (!sc->regs[i].there || sc->claims[station] != 1 || sc->known[station] ||
+	    !was_tried(sc->bus, station) || !may_be(sc, i, end) ||
+	    (other && other != end && may_be(sc, i, other)))
+		return false;
+	put_unaligned_le16(end->station, sc->regs[i].station);
+	sc->claims[end->station] = 1;
+	return !ec_xfer_fpwr(sc->bus->links, station, EC_REG_STATION, sc->regs[i].station, 2);
+}
+
+/* From both ends up to the first slave that is not where it was. */
+static struct rows restore_rows(struct scan *sc)
+{
+	struct rows r = find_rows(sc);
+	unsigned int i;
+
+	for (i = r.front; i < sc->n; i = r.front) {
+		if (!restore(sc, i, from_front(sc, i),
+			     r.back + i + 1 == sc->n ? from_back(sc, i) : NULL))
+			break;
+		r = find_rows(sc);
+	}
+	while (r.front + r.back < sc->n) {
+		i = sc->n - 1 - r.back;
+		if (!restore(sc, i, from_back(sc, i), r.front == i ? from_front(sc, i) : NULL))
+			break;
+		r = find_rows(sc);
+	}
+	return r;
+}
+
+/* The slave at @i has an address of its own, at which it could be read up to now. */
+static bool is_addressed(const struct scan *sc, unsigned int i)
+{
+	u16 station = ec_scan_address(sc, i);
+
+	return !sc->fresh && sc->regs[i].there && station && station != NO_STATION &&
+	       sc->claims[station] == 1 && !ec_scan_unreadable(sc->bus, i);
+}
+
+/* An unknown slave: it keeps its address if no slave has had that. The datagram to write one. */
+static int add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
+{
+	u16 station = ec_scan_address(sc, i), old = station;
+	struct ec_slave *known = sc->known[old], *s;
+	bool addressed = is_addressed(sc, i);
+
+	*write = !addressed || known;
+	if (*write) {
+		station = ec_scan_station(sc->bus->next_station, sc->known, sc->claims);
+		if (!station)
+			return -ENOSPC;
+		sc->bus->next_station = station;
+	}
+	s = ec_slave_alloc(sc->bus, station);
+	if (!s)
+		return -ENOMEM;
+	sc->slaves[i] = s;
+	s->position = i;
+	take_failure(sc, s);
+	/* by its address it is the same */
+	if (known && sc->regs[i].there && sc->claims[old] == 1)
+		take_part(s, known);
+	put_unaligned_le16(station, sc->regs[i].station);
+	if (addressed)
+		*dg = EC_FPWR(old, EC_REG_STATION, 2, sc->regs[i].station);
+	else
+		*dg = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->regs[i].station);
+	return 0;
+}
+
+/* New slaves get their address; one that does not accept it is marked as failed. */
+static int write_stations(struct scan *sc, const u16 *at, unsigned int n)
+{
+	unsigned int i;
+	int ret = ec_xfer(sc->bus->links, sc->dg, n);
+
+	for (i = 0; i < n && !ret; i++) {
+		if (sc->dg[i].wkc == 1)
+			continue;
+		if (!ec_scan_same_count(sc->bus, sc->n))
+			return -EAGAIN;
+		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
+			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
+	}
+	return ret;
+}
+
+static int assign(struct scan *sc, u16 *at)
+{
+	struct rows r = restore_rows(sc);
+	bool same_before = true, write;
+	unsigned int i, n = 0;
+	int ret;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = fell_silent(sc, i, same_before);
+
+		if (s) {
+			sc->slaves[i] = ec_slave_ref(s);
+			continue;
+		}
+		s = sc->known[ec_scan_address(sc, i)];
+		if (s && is_usable(s) && sc->regs[i].there && owns_station(sc, i, s, &r)) {
+			sc->slaves[i] = ec_slave_ref(s);
+			same_before &= from_front(sc, i) == s;
+			continue;
+		}
+		same_before &= ec_scan_unreadable(sc->bus, i) != NULL;
+		ret = add(sc, i, &sc->dg[n], &write);
+		if (ret)
+			return ret;
+		at[n] = i;
+		n += write;
+	}
+	return write_stations(sc, at, n);
+}
+
+/**
+ * ec_scan_stations() - find the known slaves, give addresses to the others
+ * @sc: scan; @slaves, @known and @claims are set
+ *
+ * A slave that has kept the address of this master is a known one.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 0; -EAGAIN when the bus changed meanwhile; -ENOSPC without a free address; -ENOMEM; or
+ * as ec_xfer().
+ */
+int ec_scan_stations(struct scan *sc)
+{
+	u16 *at = kvcalloc(sc->n, sizeof(*at), GFP_KERNEL);
+	int ret = at ? index_known(sc) : -ENOMEM;
+
+	ret = ret ?: read_stations(sc);
+	if (!ret) {
+		count_claims(sc);
+		ret = assign(sc, at);
+	}
+	kvfree(at);
+	return ret;
+}
