@@ -268,17 +268,29 @@ struct ec_app_list {
 	u16 v[EC_APP_LIST];
 };
 
+static inline bool ec_app_listed(const struct ec_app_list *l, u16 v)
+{
+	for (u32 i = 0; i < l->n; i++)
+		if (l->v[i] == v)
+			return true;
+	return false;
+}
+
 /**
  * struct ec_app_quirks - what is odd about a model
  * @any: something is
  * @no_mbox_words: words 0x18 to 0x1B of its EEPROM are 0, category 41 has the mailbox
  * @no_protocols: word 0x1C of its EEPROM is 0
+ * @dc_modes: AssignActivate of its operation modes; no other activation is accepted
+ * @fixed: assignments and mappings that cannot be written
  * @assign: PDOs that are assigned at power-on; may be 0, or PDOs which it has not
  */
 struct ec_app_quirks {
 	bool any;
 	bool no_mbox_words;
 	bool no_protocols;
+	struct ec_app_list dc_modes;
+	struct ec_app_list fixed;
 	struct ec_app_list assign[EC_APP_DIRS];
 };
 

@@ -7,6 +7,7 @@
 
 /* slave_eeprom.c */
 int ec_app_model_eeprom(struct ec_app_model *m);
+int ec_app_model_modes(struct ec_app_model *m);
 void ec_app_model_hide(struct ec_app_model *m);
 int ec_app_model_parse(struct ec_app_model *m, const u8 *eeprom, size_t len);
 

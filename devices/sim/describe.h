@@ -19,6 +19,7 @@
  *		repeat=yes|no (mailbox messages)  strict=yes|no (mailbox SyncManagers)
  *		mbox_words=no mbox_protocols=no (what its EEPROM says of the mailbox)
  *		assign_out=N,N...|none assign_in=N,N...|none (0x1C1x at power-on)
+ *		fixed=N,N... (PDOs and assignments)  dc_modes=N,N... (AssignActivate)
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
  *	branch NAME PORT		the next slave hangs there
@@ -39,6 +40,7 @@
  *		mailbox NAME busy|garbage|duplicate|lost|almost (likewise)
  *		mailbox ... after=N (N more messages are right)
  *		latch NAME 0|1 [edge=rising|falling|pulse] (an input of its clock)
+ *		jump NAME by=TIME (its clock; by=-TIME: back)
  *		error NAME code=N (AL status code; out of OP)
  *		eeprom NAME word=N value=N  input NAME.CHANNEL value=N
  *		emergency NAME code=N [register=N]

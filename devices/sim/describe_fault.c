@@ -32,6 +32,7 @@ static const struct verb {
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
 	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
+	{ "jump", SLAVE, EC_SIM_FAULT_JUMP, 0 },
 	{ "error", SLAVE, EC_SIM_FAULT_AL_ERROR, 0 },
 	{ "eeprom", SLAVE, EC_SIM_FAULT_EEPROM, 0 },
 	{ "input", CHANNEL, EC_SIM_FAULT_INPUT, 0 },
@@ -276,6 +277,21 @@ static int value(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+/* by what a clock jumps */
+static int jump(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	s64 by = 0;
+
+	if (ec_desc_jump(d, "by", NEVER_MAX >> 1, &by))
+		return -EINVAL;
+	if (!by)
+		return ec_desc_fail(d, "missing time: expected fault jump NAME by=-1ms", NULL, "");
+	if (!(ec_sim_at(d->sim, (u32)f->slave)->cfg.features & EC_FEAT_DC))
+		return ec_desc_fail(d, "the slave has no clock", NULL, "");
+	f->value = (u64)by;
+	return 0;
+}
+
 /* what a verb wants to know beside its target */
 static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault *f)
 {
@@ -286,6 +302,8 @@ static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault 
 		return mailbox(d, f);
 	case EC_SIM_FAULT_LATCH:
 		return latch(d, f);
+	case EC_SIM_FAULT_JUMP:
+		return jump(d, f);
 	case EC_SIM_FAULT_EEPROM_NOACK:
 		return option(d, f, "count", 0, 0xFFFFFFFFll);
 	case EC_SIM_FAULT_WKC:

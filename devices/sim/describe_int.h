@@ -104,6 +104,7 @@ int ec_desc_number(struct ec_desc *d, const char *key, s64 min, s64 max,
 		   s64 *v);
 int ec_desc_time(struct ec_desc *d, const char *key, u64 max, u64 *v);
 int ec_desc_rate(struct ec_desc *d, const char *key, s64 max_ppb, s64 *ppb);
+int ec_desc_jump(struct ec_desc *d, const char *key, u64 max, s64 *v);
 int ec_desc_yes(struct ec_desc *d, const char *key, bool *v);
 int ec_desc_parse_number(struct ec_desc *d, const struct ec_desc_word *w,
 			 s64 min, s64 max, s64 *v);

@@ -48,10 +48,14 @@ int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q)
 		ret = list(d, "assign_out", &q->assign[EC_APP_OUT]);
 	if (!ret)
 		ret = list(d, "assign_in", &q->assign[EC_APP_IN]);
+	if (!ret)
+		ret = list(d, "dc_modes", &q->dc_modes);
+	if (!ret)
+		ret = list(d, "fixed", &q->fixed);
 	q->no_mbox_words = !words;
 	q->no_protocols = !protocols;
 	q->any = q->no_mbox_words || q->no_protocols || q->assign[EC_APP_OUT].given ||
-		 q->assign[EC_APP_IN].given;
+		 q->assign[EC_APP_IN].given || q->dc_modes.given || q->fixed.given;
 	return ret;
 }
 
@@ -115,5 +119,13 @@ int ec_desc_quirks_fit(struct ec_desc *d, const struct ec_desc_word *name,
 		    (m->pd_sm[dir] < 0 || !(m->dev.protocols & EC_SII_PROTO_COE)))
 			return ec_desc_fail(d, "'", name,
 				"' has no CoE or no such process data; remove assign_out= and assign_in=");
+	if (q->dc_modes.given && m->emulation)
+		return ec_desc_fail(d, "'", name,
+				    "' has no CPU that knows operation modes; remove dc_modes=");
+	for (u32 i = 0; i < q->fixed.n; i++)
+		if (!ec_app_pdo_is_config(q->fixed.v[i]) ||
+		    !ec_app_od_object(m, q->fixed.v[i]))
+			return ec_desc_fail(d, "'", name,
+				"' has no such PDO or assignment; expected for example fixed=0x1600,0x1C13");
 	return 0;
 }

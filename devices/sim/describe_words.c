@@ -304,6 +304,29 @@ int ec_desc_time(struct ec_desc *d, const char *key, u64 max, u64 *v)
 }
 
 /**
+ * ec_desc_jump() - option with a time forward or, with a minus, back
+ * @d: description
+ * @key: its name
+ * @max: largest magnitude allowed, ns
+ * @v: result in ns, unchanged where the option is not given
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_jump(struct ec_desc *d, const char *key, u64 max, s64 *v)
+{
+	struct ec_desc_word w = ec_desc_value(d, key);
+
+	if (!w.s)
+		return 0;
+	if (!scaled(&w, times, v))
+		return ec_desc_fail(d, "'", &w, "' is not a time: expected 600ns, -10us, 1.5ms or 2s");
+	if (*v > (s64)max || *v < -(s64)max)
+		return ec_desc_fail(d, "'", &w, "' is too long here");
+	return 0;
+}
+
+/**
  * ec_desc_yes() - option that is yes or no
  * @d: description
  * @key: its name

@@ -478,6 +478,7 @@ void ec_esc_settle(struct ec_esc *esc);
 u64 ec_esc_local_time(const struct ec_esc *esc, u64 now);
 u64 ec_esc_system_time(const struct ec_esc *esc, u64 now);
 bool ec_esc_dc_sync_ran(const struct ec_esc *esc, u64 now);
+void ec_esc_dc_jump(struct ec_esc *esc, s64 by, u64 now);
 void ec_esc_latch(struct ec_esc *esc, int channel, bool rising, u64 now);
 u8 ec_esc_eeprom_crc(const u8 *data);
 

@@ -129,6 +129,22 @@ static void rebase(struct ec_esc *esc, u64 now)
 	dc->slew -= done;
 }
 
+/**
+ * ec_esc_dc_jump() - the local clock jumps
+ * @esc: slave controller
+ * @by: how far, ns; back when negative
+ * @now: simulation time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_esc_dc_jump(struct ec_esc *esc, s64 by, u64 now)
+{
+	rebase(esc, now);
+	esc->dc.base_local += (u64)by;
+	esc->dc.have_cmp = false;
+	ec_esc_dc_schedule(esc, now);
+}
+
 void ec_esc_dc_reset(struct ec_esc *esc, u64 now)
 {
 	memset(&esc->dc, 0, sizeof(esc->dc));

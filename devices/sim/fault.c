@@ -25,6 +25,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_EEPROM] = "eeprom",
 	[EC_SIM_FAULT_INPUT] = "input",
 	[EC_SIM_FAULT_EMERGENCY] = "emergency",
+	[EC_SIM_FAULT_JUMP] = "jump",
 };
 
 /**
@@ -201,6 +202,9 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 			ec_esc_latch(esc, (int)f->arg, true, now);
 		if (f->arg2 & EC_SIM_EDGE_FALLING)
 			ec_esc_latch(esc, (int)f->arg, false, now);
+		break;
+	case EC_SIM_FAULT_JUMP:
+		ec_esc_dc_jump(esc, (s64)f->value, now);
 		break;
 	case EC_SIM_FAULT_ERRORS:
 		count = esc->mem + EC_REG_ERR_RX(f->port);

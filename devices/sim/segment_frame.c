@@ -266,6 +266,22 @@ static void datagram(const struct pass *ps, struct ec_dgram *d)
 }
 
 /*
+ * An ESC processes while the frame passes: it goes by the headers of the datagrams
+ * and their "more" bits up to the end of the frame, never by the length in the
+ * EtherCAT header. Returns false: not of the type that is processed.
+ */
+static bool datagrams(struct ec_frame_iter *it, u8 *frame, size_t len)
+{
+	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD ||
+	    get_unaligned_le16(frame) >> 12 != EC_FRAME_TYPE_DGRAM)
+		return false;
+	it->p = frame + EC_FRAME_HDR;
+	it->end = frame + len;
+	it->more = true;
+	return true;
+}
+
+/*
  * Circulating bit: an ESC without upstream link sets it, and destroys a frame
  * that has it. Returns false if this frame ends there.
  */
@@ -276,9 +292,9 @@ static bool circulating(struct pass *ps, u8 *frame, size_t len)
 	bool had = false;
 
 	if (ps->r->circ < 0 || ps->sim->bug == EC_SIM_BUG_CIRCULATING ||
-	    ec_frame_iter_init(&it, frame, len))
+	    !datagrams(&it, frame, len))
 		return true;
-	while (ec_frame_iter_next(&it, &d) > 0) {
+	while (it.more && ec_frame_iter_next(&it, &d) > 0) {
 		had |= d.circulating;
 		d.hdr[7] |= LEN_CIRCULATING;
 	}
@@ -291,11 +307,11 @@ static void process(struct pass *ps, u8 *frame, size_t len)
 {
 	struct ec_frame_iter it;
 	struct ec_dgram d;
-	int ret;
+	int ret = 1;
 
-	if (ec_frame_iter_init(&it, frame, len))
+	if (!datagrams(&it, frame, len))
 		return;				/* forwarded as it is */
-	while ((ret = ec_frame_iter_next(&it, &d)) > 0)
+	while (it.more && (ret = ec_frame_iter_next(&it, &d)) > 0)
 		datagram(ps, &d);
 	if (ret < 0 && ps->steps) {
 		u8 *count = ps->r->step[0].esc->mem + EC_REG_ERR_PU;

@@ -54,6 +54,7 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_EEPROM: word @arg of its EEPROM becomes @arg2
  * @EC_SIM_FAULT_INPUT: no fault: input channel @arg (from 0) becomes (s64)@value
  * @EC_SIM_FAULT_EMERGENCY: CoE emergency, error code @arg, error register @arg2
+ * @EC_SIM_FAULT_JUMP: the clock of @slave jumps by (s64)@value ns
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -79,6 +80,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_EEPROM,
 	EC_SIM_FAULT_INPUT,
 	EC_SIM_FAULT_EMERGENCY,
+	EC_SIM_FAULT_JUMP,
 	EC_SIM_FAULT_TYPES
 };
 

@@ -188,11 +188,25 @@ static u16 check_watchdog(const struct ec_app *app)
 	return ns && ns < WD_MIN_NS ? EC_AL_CODE_WD_CONFIG : 0;
 }
 
+/* 0x0981 @act starts the SYNC signals of one of @modes; 0 in the list: none */
+static bool is_mode(const struct ec_app_list *modes, u8 act)
+{
+	u8 sync = act & 1 ? act & 7 : 0;
+
+	for (u32 i = 0; i < modes->n; i++)
+		if ((modes->v[i] >> 8 & 7) == sync)
+			return true;
+	return false;
+}
+
 static u16 check_dc(const struct ec_app *app)
 {
+	const struct ec_app_list *modes = &app->model->params.quirks.dc_modes;
 	u8 act = app->esc->mem[EC_REG_DC_ACTIVATION];
 	u32 cycle = get_unaligned_le32(app->esc->mem + EC_REG_DC_CYCLE0);
 
+	if (modes->given)
+		return is_mode(modes, act) ? 0 : EC_AL_CODE_DC_CONFIG;
 	if (!(act & 1))
 		return 0;
 	if (!app->model->dev.n_dc || !(act & 2))

@@ -125,7 +125,7 @@ static void build_sms(struct ec_sii_builder *b, const struct ec_app_dev *d)
 static void build_dcs(struct ec_sii_builder *b, const struct names *n,
 		      const struct ec_app_dev *d)
 {
-	struct ec_sii_dc dc[4];
+	struct ec_sii_dc dc[EC_APP_LIST];
 
 	for (u32 i = 0; i < d->n_dc && i < ARRAY_SIZE(dc); i++)
 		dc[i] = (struct ec_sii_dc){
@@ -134,7 +134,7 @@ static void build_dcs(struct ec_sii_builder *b, const struct names *n,
 			.name = name_find(n, d->dc[i].name),
 		};
 	if (d->n_dc)
-		ec_sii_build_dcs(b, dc, d->n_dc);
+		ec_sii_build_dcs(b, dc, min_t(u32, d->n_dc, ARRAY_SIZE(dc)));
 }
 
 struct work {
@@ -199,6 +199,38 @@ int ec_app_model_eeprom(struct ec_app_model *m)
 out:
 	ec_sim_release(m->sim, w);
 	return ret;
+}
+
+/**
+ * ec_app_model_modes() - operation modes as the description lists them
+ * @m: model
+ *
+ * Context: Process. May sleep.
+ * Return: 0, or -ENOMEM.
+ */
+int ec_app_model_modes(struct ec_app_model *m)
+{
+	static const char digits[] = "0123456789ABCDEF";
+	const struct ec_app_list *l = &m->params.quirks.dc_modes;
+	struct ec_app_dc_mode *mode;
+	char (*name)[8];
+
+	if (!l->given)
+		return 0;
+	mode = ec_app_model_alloc(m, (l->n + 1u) * (sizeof(*mode) + sizeof(*name)));
+	if (!mode)
+		return -ENOMEM;
+	name = (void *)(mode + l->n);
+	for (u32 i = 0; i < l->n; i++) {
+		memcpy(name[i], "DC ", 3);
+		for (int k = 0; k < 4; k++)
+			name[i][3 + k] = digits[l->v[i] >> (12 - 4 * k) & 15];
+		mode[i].name = name[i];
+		mode[i].assign_activate = l->v[i];
+	}
+	m->dev.dc = mode;
+	m->dev.n_dc = l->n;
+	return 0;
 }
 
 /**

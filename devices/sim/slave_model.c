@@ -199,7 +199,8 @@ static void add_pdo(struct list *l, const struct ec_app_model *m,
 	u16 access = EC_OD_READ;
 	u32 cap = pdo_cap(m, p);
 
-	if (m->dev.mapping >= EC_APP_MAP_FULL)
+	if (m->dev.mapping >= EC_APP_MAP_FULL &&
+	    !ec_app_listed(&m->params.quirks.fixed, p->index))
 		access |= EC_OD_WRITE_PREOP;
 	add(l, p->index, 0, EC_TYPE_UINT8, 8, access, p->count, NULL, p->name);
 	for (u32 i = 0; i < cap; i++) {
@@ -226,7 +227,8 @@ static void add_assign(struct list *l, const struct ec_app_model *m,
 
 	if (m->pd_sm[dir] < 0)
 		return;
-	if (m->dev.mapping >= EC_APP_MAP_ASSIGN)
+	if (m->dev.mapping >= EC_APP_MAP_ASSIGN &&
+	    !ec_app_listed(&m->params.quirks.fixed, index))
 		access |= EC_OD_WRITE_PREOP;
 	for (u32 i = 0; i < m->dev.n_pdos; i++) {
 		const struct ec_app_pdo *p = &m->dev.pdos[i];
@@ -494,6 +496,9 @@ static u32 generic_revision(const struct ec_app_model *m)
 		    (u64)!!p->diag << 31 | (u64)p->quirks.no_mbox_words << 48 |
 		    (u64)p->quirks.no_protocols << 49;
 
+	for (u32 i = 0; i < p->quirks.dc_modes.n; i++)
+		other = (other << 7 | other >> 57) ^ (p->quirks.dc_modes.v[i] + 1u);
+
 	if (m->dev.mapping != m->table->mapping)
 		other |= (u64)m->dev.mapping << 26;
 	if (m->dev.std.rx_len && m->dev.std.rx_len != EC_APP_GENERIC_MBOX)
@@ -558,6 +563,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 			m->dev.coe |= EC_SII_COE_PDO_CONFIG;
 	}
 	if (!*err)
+		*err = ec_app_model_modes(m);
+	if (!*err)
 		*err = finish(m);
 	if (!*err)
 		return m;
@@ -593,6 +600,8 @@ struct ec_app_model *ec_app_model_file(struct ec_sim *sim, const u8 *eeprom,
 	m->refs = 1;
 	m->params = *params;
 	*err = ec_app_model_parse(m, eeprom, len);
+	if (!*err)
+		*err = ec_app_model_modes(m);
 	if (!*err)
 		*err = finish(m);
 	if (!*err)

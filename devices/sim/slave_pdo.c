@@ -66,12 +66,8 @@ static u32 pdo_bits(const struct ec_app *app, u16 pdo)
 /* may @pdo be assigned: it exists, or the slave itself had such an entry at power-on */
 static bool assignable(const struct ec_app_model *m, enum ec_app_dir dir, u16 pdo)
 {
-	const struct ec_app_list *list = &m->params.quirks.assign[dir];
-
-	for (u32 i = 0; i < list->n; i++)
-		if (list->v[i] == pdo)
-			return true;
-	return is_pdo(pdo, dir) && ec_app_od_object(m, pdo);
+	return ec_app_listed(&m->params.quirks.assign[dir], pdo) ||
+	       (is_pdo(pdo, dir) && ec_app_od_object(m, pdo));
 }
 
 /* a value about to be written to an assignment */

@@ -275,6 +275,89 @@ static void sim_quirk_swapped_slave_comes_later(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_of(b, "d")->esc->port[0].peer, 2);
 }
 
+/* forward and back; what the clock is compared with does not follow */
+static void sim_quirk_clock_jumps(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive clock=1s\nfault at=2s jump d by=5ms\n"
+				"fault at=3s jump d by=-1.5s\n");
+	struct ec_esc *esc = ec_sim_at(b->sim, 0);
+	u64 before, from;
+
+	b->now = 1999000000;
+	from = b->now;
+	before = bed_get(b, S, EC_REG_DC_SYSTIME, 8);
+	KUNIT_EXPECT_EQ(test, before / 1000000, 2999ull);
+	b->now = 2001000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, S, EC_REG_DC_SYSTIME, 8) - before,
+			2001000000 - from + 5000000);
+	b->now = 3001000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, S, EC_REG_DC_SYSTIME, 8) - before,
+			3001000000 - from + 5000000 - 1500000000);
+	KUNIT_EXPECT_EQ(test, ec_esc_local_time(esc, 4000000000), 3505000000ull);
+}
+
+static void start_sync(struct bed *b, u8 act)
+{
+	bed_put(b, S, EC_REG_DC_ACTIVATION, 0, 1);
+	bed_put(b, S, EC_REG_DC_CYCLE0, 1000000, 4);
+	bed_put(b, S, EC_REG_DC_CYCLE1, 0, 4);
+	bed_put(b, S, EC_REG_DC_START, bed_get(b, S, EC_REG_DC_SYSTIME, 8) + 1000000, 8);
+	bed_put(b, S, EC_REG_DC_ACTIVATION, act, 1);
+}
+
+/* SYNC1 alone, and only what the modes say */
+static void sim_quirk_operation_modes(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive dc_modes=0x0500,0x0700\n");
+	const struct ec_esc *esc = ec_sim_at(b->sim, 0);
+	struct ec_sii_dc dc[4];
+	char name[16];
+	u8 out[8] = { 0 };
+
+	KUNIT_ASSERT_EQ(test, ec_sii_decode_dcs(esc->eep.data, esc->eep.len, dc, 4), 2);
+	KUNIT_EXPECT_EQ(test, dc[0].assign, 0x0500);
+	KUNIT_EXPECT_EQ(test, dc[1].assign, 0x0700);
+	ec_sii_string(esc->eep.data, esc->eep.len, dc[0].name, name, sizeof(name));
+	KUNIT_EXPECT_STREQ(test, name, "DC 0500");
+
+	to_preop(b, S);
+	drive_sms(b, S, 8, 8);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, EC_AL_SAFEOP, 1), 0x00300012u, "no SYNC");
+	start_sync(b, 3);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, 0x14, 1), 0x00300012u, "SYNC0 alone");
+	start_sync(b, 7);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, 0x14, 1), (u32)EC_AL_SAFEOP, "both");
+	app_al(b, S, EC_AL_PREOP, 1);
+	start_sync(b, 5);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, EC_AL_SAFEOP, 1), (u32)EC_AL_SAFEOP, "SYNC1");
+	bed_tx(b, EC_CMD_FPWR, S, app_of(b, "d")->model->dev.sms[2].start, out, 8);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_OP, 1), (u32)EC_AL_SAFEOP);
+	b->now += 3000000;
+	bed_tx(b, EC_CMD_FPWR, S, app_of(b, "d")->model->dev.sms[2].start, out, 8);
+	KUNIT_EXPECT_EQ_MSG(test, app_al_status(b, S), (u32)EC_AL_OP, "SYNC1 has begun");
+
+	ec_sim_free(b->sim);
+	b = app_bed(test, "slave d drive\n");
+	to_preop(b, S);
+	drive_sms(b, S, 8, 8);
+	start_sync(b, 5);
+	KUNIT_EXPECT_EQ_MSG(test, app_al(b, S, EC_AL_SAFEOP, 1), 0x00300012u, "as others do");
+}
+
+/* one mapping and one assignment are read-only, the others are not */
+static void sim_quirk_single_objects_are_fixed(struct kunit *test)
+{
+	struct bed *b = app_bed(test,
+				"slave d drive mapping=lenient fixed=0x1A00,0x1C12\n");
+	struct app_mbox *m = mbox_new(test, S);
+
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1A00, 0, 0, 1), EC_ABORT_READ_ONLY);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1600, 0, 0, 1), 0);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C12, 0, 0, 1), EC_ABORT_READ_ONLY);
+	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 0, 1), 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quirk_long_times_hold),
 	KUNIT_CASE(sim_quirk_single_step_is_slow),
@@ -285,6 +368,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quirk_eeprom_must_be_assigned),
 	KUNIT_CASE(sim_quirk_lrw_is_not_processed),
 	KUNIT_CASE(sim_quirk_swapped_slave_comes_later),
+	KUNIT_CASE(sim_quirk_clock_jumps),
+	KUNIT_CASE(sim_quirk_operation_modes),
+	KUNIT_CASE(sim_quirk_single_objects_are_fixed),
 	{}
 };
 

@@ -58,6 +58,36 @@ static void sim_segment_foreign_frames_pass_unchanged(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1001, 0x30c, 1), 1ull);
 }
 
+/* slaves go by the datagrams and their "more" bits, whatever the header says */
+static void sim_segment_header_length_is_ignored(struct kunit *test)
+{
+	struct bed *b = bed_new(test, 3, 2);
+	static const u16 say[] = { 0, 1, 12, 14, 15, 28, 46, 0x7FF };
+
+	for (u32 i = 0; i < ARRAY_SIZE(say); i++) {
+		u8 f[64] = {
+			0, 0, EC_CMD_BRD, 1, 0, 0, 0x30, 1, 2, 0x80, 0, 0, 0, 0, 0, 0,
+			EC_CMD_APRD, 1, 0xFF, 0xFF, 0x10, 0, 2, 0, 0, 0, 0, 0, 0, 0,
+			EC_CMD_BRD, 1, 0, 0, 0x30, 1, 2, 0, 0, 0, 0, 0, 0, 0,
+		};
+
+		put_unaligned_le16(0x1000 | say[i], f);
+		KUNIT_EXPECT_GT(test, ec_sim_frame(b->sim, 0, f, 60, b->now), (s64)0);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le16(f), 0x1000 | say[i]);
+		KUNIT_EXPECT_EQ_MSG(test, get_unaligned_le16(f + 14), 2, "length %u", say[i]);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le16(f + 26), 1002);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le16(f + 28), 1);
+		KUNIT_EXPECT_EQ_MSG(test, get_unaligned_le16(f + 42), 0, "behind the last one");
+		/* cut in the second one: the first counts, slave 1 counts an error */
+		put_unaligned_le16(0, f + 14);
+		put_unaligned_le16(0, f + 28);
+		KUNIT_EXPECT_GT(test, ec_sim_frame(b->sim, 0, f, 29, b->now), (s64)0);
+		KUNIT_EXPECT_EQ(test, get_unaligned_le16(f + 14), 2);
+		KUNIT_EXPECT_EQ(test, f[28], 0);
+		KUNIT_EXPECT_EQ(test, bed_get(b, 1001, EC_REG_ERR_PU, 1), i + 1);
+	}
+}
+
 static void sim_segment_dl_status_shows_links_and_loops(struct kunit *test)
 {
 	struct bed *b = bed_new(test, 3, 2);
@@ -545,6 +575,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_segment_frame_takes_its_time),
 	KUNIT_CASE(sim_segment_without_slaves_there_is_no_link),
 	KUNIT_CASE(sim_segment_foreign_frames_pass_unchanged),
+	KUNIT_CASE(sim_segment_header_length_is_ignored),
 	KUNIT_CASE(sim_segment_dl_status_shows_links_and_loops),
 	KUNIT_CASE(sim_segment_loop_setting_may_be_temporary),
 	KUNIT_CASE(sim_segment_slaves_with_same_address_both_answer),
