@@ -41,8 +41,9 @@
  * @chan: entries which are channels, by number - 1
  * @n_chan: how many per direction
  * @map_cap: largest number of mapped entries per direction
- * @max_bytes: largest process image per direction
- * @pd_sm: SyncManager of a direction, -1: none
+ * @max_bytes: largest process image of a SyncManager per direction
+ * @n_areas: SyncManagers of process data per direction
+ * @area: their numbers
  * @emulation: device emulation: no AL software
  * @eeprom: image without alias and serial number
  * @eeprom_len: bytes in it
@@ -64,7 +65,8 @@ struct ec_app_model {
 	u16 n_chan[EC_APP_DIRS];
 	u32 map_cap[EC_APP_DIRS];
 	u16 max_bytes[EC_APP_DIRS];
-	int pd_sm[EC_APP_DIRS];
+	u8 n_areas[EC_APP_DIRS];
+	u8 area[EC_APP_DIRS][EC_APP_SMS];
 	bool emulation;
 	u8 *eeprom;
 	size_t eeprom_len;
@@ -100,7 +102,7 @@ struct ec_app_source {
 /**
  * struct ec_app_copy - a run of bits between process image and dictionary
  * @off: byte in the data of the slave
- * @pos: bit in the image
+ * @pos: bit in the image of the SyncManager
  * @bits: how many
  */
 struct ec_app_copy {
@@ -279,10 +281,12 @@ struct ec_app_event {
  * @al_due: when it is reached
  * @al_deadline: when the wait for outputs ends
  * @al_waits: waits for outputs
- * @outputs_seen: outputs came since SAFEOP
+ * @outputs_seen: SyncManagers (bits, by area) whose outputs came since SAFEOP
  * @map: runs of mapped entries
  * @n_map: how many
+ * @map_end: how many up to the end of each area
  * @bytes: size of the process image
+ * @area_bytes: the same of each area
  * @image: scratch for it
  * @inputs: the inputs of an application that never changes them
  * @src: sources of the input channels
@@ -318,10 +322,12 @@ struct ec_app {
 	u64 al_due;
 	u64 al_deadline;
 	bool al_waits;
-	bool outputs_seen;
+	u16 outputs_seen;
 	struct ec_app_copy *map[EC_APP_DIRS];
 	u32 n_map[EC_APP_DIRS];
+	u32 map_end[EC_APP_DIRS][EC_APP_SMS];
 	u16 bytes[EC_APP_DIRS];
+	u16 area_bytes[EC_APP_DIRS][EC_APP_SMS];
 	u8 *image;
 	u8 *inputs;
 	struct ec_app_source *src;
@@ -486,6 +492,8 @@ void ec_app_diag_emergency(struct ec_app *app, u16 code, u8 reg, u64 now);
 u32 ec_app_diag_write(struct ec_app *app, const u8 *data, size_t len);
 
 /* slave_pdo.c */
+int ec_app_area(const struct ec_app_model *m, enum ec_app_dir dir, int sm);
+bool ec_app_outputs_complete(const struct ec_app *app);
 u16 ec_app_pdo_build(struct ec_app *app);
 u32 ec_app_pdo_check_write(const struct ec_app *app,
 			   const struct ec_app_entry *e, u64 value);
@@ -493,7 +501,7 @@ void ec_app_set_source(struct ec_app *app, u16 chan, const struct ec_app_source 
 void ec_app_outputs_use(struct ec_app *app, const u8 *image);
 void ec_app_may_wait(struct ec_app *app);
 bool ec_app_pdo_is_config(u16 index);
-void ec_app_outputs(struct ec_app *app, u64 now);
+void ec_app_outputs(struct ec_app *app, int sm, u64 now);
 void ec_app_outputs_clear(struct ec_app *app);
 void ec_app_inputs(struct ec_app *app, u64 now);
 void ec_app_run(struct ec_app *app, u64 now);

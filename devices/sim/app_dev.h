@@ -20,6 +20,8 @@
 #define EC_APP_RW		(EC_OD_READ | EC_OD_WRITE)
 #define EC_APP_GENERIC_MBOX	256	/* mailbox of a "drive" without mbox= */
 #define EC_APP_LIST		16	/* numbers of an option that is a list */
+#define EC_APP_SMS		16	/* SyncManagers of a slave */
+#define EC_APP_SMS_MAX		7	/* of them for one direction, of a generic device */
 #define EC_APP_MAP_CAP		32	/* entries of a mapping object one may write */
 
 struct ec_app;
@@ -162,7 +164,7 @@ extern const struct ec_app_profile ec_app_profile_drive;
  * @n_fmmu_use: bytes in it
  * @sms: SyncManagers in use
  * @n_sms: how many
- * @max_bytes: largest process image per direction, 0: the default one
+ * @max_bytes: largest process image of a SyncManager per direction, 0: the default one
  * @mapping: what the master may change
  * @pdos: all PDOs
  * @n_pdos: how many
@@ -195,7 +197,7 @@ struct ec_app_dev {
 	u8 fmmus;
 	u8 fmmu_use[4];
 	u8 n_fmmu_use;
-	struct ec_app_sm sms[4];
+	struct ec_app_sm sms[EC_APP_SMS];
 	u8 n_sms;
 	u16 max_bytes[EC_APP_DIRS];
 	enum ec_app_mapping mapping;
@@ -283,12 +285,14 @@ static inline bool ec_app_listed(const struct ec_app_list *l, u16 v)
  * @no_protocols: word 0x1C of its EEPROM is 0
  * @dc_modes: AssignActivate of its operation modes; no other activation is accepted
  * @fixed: assignments and mappings that cannot be written
- * @assign: PDOs that are assigned at power-on; may be 0, or PDOs which it has not
+ * @sms: generic devices: SyncManagers of a direction, 0: one
+ * @assign: PDOs that the first of them has at power-on; may be 0, or PDOs which it has not
  */
 struct ec_app_quirks {
 	bool any;
 	bool no_mbox_words;
 	bool no_protocols;
+	u8 sms[EC_APP_DIRS];
 	struct ec_app_list dc_modes;
 	struct ec_app_list fixed;
 	struct ec_app_list assign[EC_APP_DIRS];

@@ -19,6 +19,7 @@
  *		repeat=yes|no (mailbox messages)  strict=yes|no (mailbox SyncManagers)
  *		mbox_words=no mbox_protocols=no (what its EEPROM says of the mailbox)
  *		assign_out=N,N...|none assign_in=N,N...|none (0x1C1x at power-on)
+ *		sm_out=N sm_in=N (SyncManagers of a drive or io)
  *		fixed=N,N... (PDOs and assignments)  dc_modes=N,N... (AssignActivate)
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)

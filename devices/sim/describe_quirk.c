@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Options of the slave statement for slaves that are unlike others. */
+#include "app_int.h"
 #include "describe_int.h"
 
 /* "0x1600,0x1601" or "none" */
@@ -39,6 +40,7 @@ static int list(struct ec_desc *d, const char *key, struct ec_app_list *l)
 int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q)
 {
 	bool words = true, protocols = true;
+	s64 out = 0, in = 0;
 	int ret;
 
 	ret = ec_desc_yes(d, "mbox_words", &words);
@@ -52,10 +54,17 @@ int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q)
 		ret = list(d, "dc_modes", &q->dc_modes);
 	if (!ret)
 		ret = list(d, "fixed", &q->fixed);
+	if (!ret)
+		ret = ec_desc_number(d, "sm_out", 1, EC_APP_SMS_MAX, &out);
+	if (!ret)
+		ret = ec_desc_number(d, "sm_in", 1, EC_APP_SMS_MAX, &in);
+	q->sms[EC_APP_OUT] = (u8)out;
+	q->sms[EC_APP_IN] = (u8)in;
 	q->no_mbox_words = !words;
 	q->no_protocols = !protocols;
 	q->any = q->no_mbox_words || q->no_protocols || q->assign[EC_APP_OUT].given ||
-		 q->assign[EC_APP_IN].given || q->dc_modes.given || q->fixed.given;
+		 q->assign[EC_APP_IN].given || q->dc_modes.given || q->fixed.given ||
+		 out > 1 || in > 1;
 	return ret;
 }
 
@@ -116,12 +125,16 @@ int ec_desc_quirks_fit(struct ec_desc *d, const struct ec_desc_word *name,
 				    "' has no mailbox; remove mbox_words= and mbox_protocols=");
 	for (int dir = 0; dir < EC_APP_DIRS; dir++)
 		if (q->assign[dir].given &&
-		    (m->pd_sm[dir] < 0 || !(m->dev.protocols & EC_SII_PROTO_COE)))
+		    (!m->n_areas[dir] || !(m->dev.protocols & EC_SII_PROTO_COE)))
 			return ec_desc_fail(d, "'", name,
 				"' has no CoE or no such process data; remove assign_out= and assign_in=");
 	if (q->dc_modes.given && m->emulation)
 		return ec_desc_fail(d, "'", name,
 				    "' has no CPU that knows operation modes; remove dc_modes=");
+	if ((q->sms[EC_APP_OUT] || q->sms[EC_APP_IN]) &&
+	    (!m->table || !ec_app_dev_is_generic(m->table)))
+		return ec_desc_fail(d, "'", name,
+				    "' has its own SyncManagers; remove sm_out= and sm_in=");
 	for (u32 i = 0; i < q->fixed.n; i++)
 		if (!ec_app_pdo_is_config(q->fixed.v[i]) ||
 		    !ec_app_od_object(m, q->fixed.v[i]))

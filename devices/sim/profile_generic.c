@@ -36,6 +36,12 @@ static void filler(struct ec_app_pdo_entry *e, u16 base, u32 n, u8 bits)
 	e->object = "Process data";
 }
 
+/* SyncManagers of a direction */
+static u32 sms_of(const struct ec_app_model *m, enum ec_app_dir dir)
+{
+	return max_t(u32, m->params.quirks.sms[dir], 1);
+}
+
 /*
  * PDOs of one direction: first those of @known that fit, then fillers of
  * @width bits and less. Returns the number of PDOs, or -ENOMEM.
@@ -46,11 +52,14 @@ static int make_pdos(struct ec_app_model *m, struct ec_app_pdo *pdos,
 {
 	u16 index = dir == EC_APP_OUT ? 0x1600 : 0x1A00;
 	u16 base = dir == EC_APP_OUT ? 0x2100 : 0x2200;
-	u32 cap = n_known + bits / width + 8, n = 0, first = 0, fill = 0;
+	u32 cap = n_known + bits / width + 8, n = 0, first = 0, fill = 0, per;
+	u32 sms = sms_of(m, dir), first_sm = m->dev.n_sms - sms_of(m, EC_APP_IN);
 	struct ec_app_pdo_entry *e;
 	int n_pdos = 0;
 	u8 chan = 0;
 
+	if (dir == EC_APP_OUT)
+		first_sm -= sms;
 	e = ec_app_model_alloc(m, cap * sizeof(*e));
 	if (!e)
 		return -ENOMEM;
@@ -73,12 +82,13 @@ static int make_pdos(struct ec_app_model *m, struct ec_app_pdo *pdos,
 		bits -= w;
 		n++;
 	}
+	per = min_t(u32, PDO_ENTRIES, DIV_ROUND_UP(n, sms));
 	for (u32 i = 0; i < n; i++) {
-		if (i + 1 < n && i + 1 - first < PDO_ENTRIES)
+		if (i + 1 < n && i + 1 - first < per)
 			continue;
 		pdos[n_pdos] = (struct ec_app_pdo){
 			.index = (u16)(index + n_pdos),
-			.sm = (u8)(m->dev.n_sms + dir - EC_APP_DIRS),
+			.sm = (u8)(first_sm + first / per * sms / DIV_ROUND_UP(n, per)),
 			.count = (u16)(i + 1 - first),
 			.entries = &e[first],
 			.name = dir == EC_APP_OUT ? "Outputs" : "Inputs",
@@ -89,9 +99,10 @@ static int make_pdos(struct ec_app_model *m, struct ec_app_pdo *pdos,
 	return n_pdos;
 }
 
-/* SyncManagers: mailboxes, then three buffers of outputs, then inputs */
-static void place(struct ec_app_dev *d, u16 mbox, u32 out, u32 in)
+/* SyncManagers: mailboxes, then three buffers of outputs, then inputs; false: no room */
+static bool place(struct ec_app_model *m, u16 mbox)
 {
+	struct ec_app_dev *d = &m->dev;
 	u32 at = EC_REG_RAM;
 	u8 n = 0;
 
@@ -108,15 +119,34 @@ static void place(struct ec_app_dev *d, u16 mbox, u32 out, u32 in)
 		};
 		at += 2u * mbox;
 	}
-	d->sms[n++] = (struct ec_app_sm){
-		(u16)at, (u16)out, 0x64, out ? 1 : 0, EC_SII_SM_OUTPUTS,
-	};
-	at += 3 * d->max_bytes[EC_APP_OUT];
-	at = (at + 3) & ~3u;
-	d->sms[n++] = (struct ec_app_sm){
-		(u16)at, (u16)in, 0x20, in ? 1 : 0, EC_SII_SM_INPUTS,
-	};
+	for (int dir = 0; dir < EC_APP_DIRS; dir++) {
+		for (u32 k = 0; k < sms_of(m, dir); k++) {
+			d->sms[n++] = (struct ec_app_sm){
+				(u16)at, 0, dir == EC_APP_OUT ? 0x64 : 0x20, 0,
+				dir == EC_APP_OUT ? EC_SII_SM_OUTPUTS : EC_SII_SM_INPUTS,
+			};
+			at += 3 * d->max_bytes[dir];
+			at = (at + 3) & ~3u;
+		}
+	}
 	d->n_sms = n;
+	return at <= 0x10000;
+}
+
+/* lengths of the SyncManagers, as the PDOs at power-on give them */
+static void set_lengths(struct ec_app_dev *d)
+{
+	for (u32 n = 0; n < d->n_sms; n++) {
+		u32 bits = 0;
+
+		if (d->sms[n].type != EC_SII_SM_OUTPUTS && d->sms[n].type != EC_SII_SM_INPUTS)
+			continue;
+		for (u32 i = 0; i < d->n_pdos; i++)
+			for (u32 k = 0; d->pdos[i].sm == n && k < d->pdos[i].count; k++)
+				bits += d->pdos[i].entries[k].bits;
+		d->sms[n].len = (u16)((bits + 7) / 8);
+		d->sms[n].enable = !!bits;
+	}
 }
 
 /**
@@ -154,7 +184,8 @@ int ec_app_dev_generic(struct ec_app_model *m)
 	} else if (p->cpu) {
 		d->pdi_control = 0x0005;
 	}
-	place(d, mbox, bytes[EC_APP_OUT], bytes[EC_APP_IN]);
+	if (!place(m, mbox))
+		return -ERANGE;
 
 	pdos = ec_app_model_alloc(m, 2 * (8 * MAX_BYTES / 32 / PDO_ENTRIES + 8) *
 				     sizeof(*pdos));
@@ -175,5 +206,6 @@ int ec_app_dev_generic(struct ec_app_model *m)
 	}
 	d->pdos = pdos;
 	d->n_pdos = (u16)n;
+	set_lengths(d);
 	return 0;
 }

@@ -35,7 +35,7 @@ void ec_app_al_reset(struct ec_app *app, u64 now)
 	app->identify = false;
 	app->al_to = 0;
 	app->al_waits = false;
-	app->outputs_seen = false;
+	app->outputs_seen = 0;
 	show(app, now);
 }
 
@@ -47,8 +47,9 @@ static void cycle_time(struct ec_app *app)
 	if (!(app->esc->mem[EC_REG_DC_ACTIVATION] & 1) || !cycle)
 		return;
 	for (int dir = 0; dir < EC_APP_DIRS; dir++)
-		ec_app_od_set(app, ec_app_od_entry(app->model,
-				(u16)(0x1C30 + app->model->pd_sm[dir]), 2), cycle);
+		for (int k = 0; k < app->model->n_areas[dir]; k++)
+			ec_app_od_set(app, ec_app_od_entry(app->model,
+					(u16)(0x1C30 + app->model->area[dir][k]), 2), cycle);
 }
 
 /* what has to happen whenever @app->state gets a new value */
@@ -65,11 +66,11 @@ static void enter(struct ec_app *app, u8 state, u64 now)
 	if (from == EC_AL_INIT)
 		ec_app_mbox_reset(app);
 	if (state == EC_AL_SAFEOP && from == EC_AL_PREOP) {
-		app->outputs_seen = false;
+		app->outputs_seen = 0;
 		ec_app_inputs(app, now);
 	} else if (state == EC_AL_OP) {
 		/* the last outputs of SAFEOP were kept in their buffer */
-		ec_app_outputs(app, now);
+		ec_app_outputs(app, -1, now);
 		ec_app_inputs(app, now);
 	}
 }
@@ -127,17 +128,15 @@ static bool mboxes_ok(const struct ec_app *app, u32 word, const struct ec_app_mb
 	       mbox_sm_ok(app, 1, sii_word(app, word + 2), sii_word(app, word + 3));
 }
 
-/* SyncManager of a direction against the mapped process data */
-static u16 check_pd_sm(const struct ec_app *app, enum ec_app_dir dir)
+/* a SyncManager of a direction against the mapped process data */
+static u16 check_area(const struct ec_app *app, enum ec_app_dir dir, int k)
 {
 	u16 bad = dir == EC_APP_OUT ? EC_AL_CODE_OUTPUT_CONFIG :
 				      EC_AL_CODE_INPUT_CONFIG;
-	int n = app->model->pd_sm[dir];
+	int n = app->model->area[dir][k];
 	const struct ec_sm *p;
-	u16 bytes = app->bytes[dir];
+	u16 bytes = app->area_bytes[dir][k];
 
-	if (n < 0 || ec_app_bug(app, EC_SIM_BUG_SM_UNCHECKED))
-		return 0;
 	p = &app->esc->sm[n].page;
 	if (!bytes)
 		return p->activate & EC_SM_ACT_ENABLE && p->len ? bad : 0;
@@ -171,6 +170,17 @@ static u16 check_pd_sm(const struct ec_app *app, enum ec_app_dir dir)
 	return 0;
 }
 
+static u16 check_pd_sms(const struct ec_app *app, enum ec_app_dir dir)
+{
+	u16 code = 0;
+
+	if (ec_app_bug(app, EC_SIM_BUG_SM_UNCHECKED))
+		return 0;
+	for (int k = 0; k < app->model->n_areas[dir] && !code; k++)
+		code = check_area(app, dir, k);
+	return code;
+}
+
 static u16 reg16(const struct ec_app *app, u16 reg)
 {
 	return get_unaligned_le16(app->esc->mem + reg);
@@ -178,10 +188,12 @@ static u16 reg16(const struct ec_app *app, u16 reg)
 
 static u16 check_watchdog(const struct ec_app *app)
 {
-	int n = app->model->pd_sm[EC_APP_OUT];
+	bool on = false;
 	u64 ns;
 
-	if (n < 0 || !(app->esc->sm[n].page.control & EC_SM_WATCHDOG))
+	for (int k = 0; k < app->model->n_areas[EC_APP_OUT]; k++)
+		on |= app->esc->sm[app->model->area[EC_APP_OUT][k]].page.control & EC_SM_WATCHDOG;
+	if (!on)
 		return 0;
 	ns = (reg16(app, EC_REG_WD_DIVIDER) + 2ull) * 40 *
 	     reg16(app, EC_REG_WD_SM);
@@ -217,7 +229,7 @@ static u16 check_dc(const struct ec_app *app)
 /* What SAFEOP still waits for on the way to OP: outputs, SYNC signals; 0: nothing. */
 static u16 missing(const struct ec_app *app, u64 now)
 {
-	if (app->bytes[EC_APP_OUT] && !app->outputs_seen)
+	if (app->bytes[EC_APP_OUT] && !ec_app_outputs_complete(app))
 		return EC_AL_CODE_NO_OUTPUTS;
 	if (app->esc->mem[EC_REG_DC_ACTIVATION] & 1 && !ec_esc_dc_sync_ran(app->esc, now))
 		return EC_AL_CODE_NO_SYNC;
@@ -250,9 +262,9 @@ static u16 check(struct ec_app *app, u8 to)
 	case EC_AL_SAFEOP:
 		code = ec_app_pdo_build(app);
 		if (!code)
-			code = check_pd_sm(app, EC_APP_OUT);
+			code = check_pd_sms(app, EC_APP_OUT);
 		if (!code)
-			code = check_pd_sm(app, EC_APP_IN);
+			code = check_pd_sms(app, EC_APP_IN);
 		if (!code)
 			code = check_watchdog(app);
 		return code ? code : check_dc(app);

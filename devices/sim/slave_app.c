@@ -73,10 +73,10 @@ static void sm_written(struct ec_esc *esc, int sm, u64 now)
 	struct ec_app *app = esc->app;
 	const struct ec_app_model *m = app->model;
 
-	if (sm == m->pd_sm[EC_APP_OUT]) {
+	if (ec_app_area(m, EC_APP_OUT, sm) >= 0) {
 		bool waits = app->al_waits;
 
-		ec_app_outputs(app, now);
+		ec_app_outputs(app, sm, now);
 		if (waits)
 			ec_app_al_outputs(app, now);
 		if (ec_app_state(app) == EC_AL_OP)
@@ -100,7 +100,7 @@ static void sm_read(struct ec_esc *esc, int sm, u64 now)
 	struct ec_app *app = esc->app;
 	const struct ec_app_model *m = app->model;
 
-	if (sm == m->pd_sm[EC_APP_IN]) {
+	if (ec_app_area(m, EC_APP_IN, sm) >= 0) {
 		/* with outputs in OP their writing sets the pace */
 		if (!app->bytes[EC_APP_OUT] || ec_app_state(app) != EC_AL_OP ||
 		    now - esc->late.ran_ns > 2000000)
@@ -123,7 +123,7 @@ static void sm_activate(struct ec_esc *esc, int sm, u64 now)
 	struct ec_app *app = esc->app;
 	const struct ec_app_model *m = app->model;
 
-	if (sm == m->pd_sm[EC_APP_IN]) {
+	if (ec_app_area(m, EC_APP_IN, sm) >= 0) {
 		if (m->emulation && esc->sm[sm].active)
 			ec_app_inputs(app, now);
 		return;
@@ -360,9 +360,9 @@ static u8 ram_kib(const struct ec_app_model *m)
 		const struct ec_app_sm *sm = &m->dev.sms[i];
 		u32 len = sm->len;
 
-		if ((int)i == m->pd_sm[EC_APP_OUT])
+		if (ec_app_area(m, EC_APP_OUT, (int)i) >= 0)
 			len = 3u * m->max_bytes[EC_APP_OUT];
-		else if ((int)i == m->pd_sm[EC_APP_IN])
+		else if (ec_app_area(m, EC_APP_IN, (int)i) >= 0)
 			len = 3u * m->max_bytes[EC_APP_IN];
 		end = max(end, sm->start + len);
 	}
@@ -426,7 +426,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec_esc_config_init(&ec);
 	ec.type = d->esc_type;
 	ec.fmmus = d->fmmus;
-	ec.sms = d->esc_type == EC_APP_ESC_ET1200 ? 4 : 8;
+	ec.sms = max_t(u8, d->n_sms, d->esc_type == EC_APP_ESC_ET1200 ? 4 : 8);
 	ec.ram_kib = ram_kib(model);
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
 	ec.features = d->features | (cfg->no_lrw ? EC_FEAT_NO_LRW : 0);

@@ -108,7 +108,7 @@ static void build_names(struct ec_sii_builder *b, struct names *n,
 
 static void build_sms(struct ec_sii_builder *b, const struct ec_app_dev *d)
 {
-	struct ec_sii_sm sm[4];
+	struct ec_sii_sm sm[EC_APP_SMS];
 
 	for (u32 i = 0; i < d->n_sms; i++)
 		sm[i] = (struct ec_sii_sm){
@@ -384,6 +384,7 @@ static void take_max(struct ec_app_dev *d)
 	for (u32 i = 0; i < d->n_sms; i++) {
 		bool out = d->sms[i].type == EC_SII_SM_OUTPUTS;
 		u32 room = 0;
+		u16 *max;
 
 		if (!out && d->sms[i].type != EC_SII_SM_INPUTS)
 			continue;
@@ -394,8 +395,9 @@ static void take_max(struct ec_app_dev *d)
 			    (!room || gap < room))
 				room = gap;
 		}
-		d->max_bytes[out ? EC_APP_OUT : EC_APP_IN] =
-			(u16)min_t(u32, room ? room : 512, 1486);
+		room = min_t(u32, room ? room : 512, MBOX_MAX);
+		max = &d->max_bytes[out ? EC_APP_OUT : EC_APP_IN];
+		*max = max_t(u16, *max, (u16)room);
 	}
 }
 

@@ -142,10 +142,10 @@ static void add_standard(struct list *l, const struct ec_app_model *m)
 	for (u8 i = 0; i < d->n_sms; i++)
 		add(l, 0x1C00, (u8)(i + 1), EC_TYPE_UINT8, 8, EC_OD_READ,
 		    d->sms[i].type, NULL, "SyncManager type");
-	for (int dir = 0; dir < EC_APP_DIRS; dir++) {
-		u16 index = (u16)(0x1C30 + m->pd_sm[dir]);
+	for (u16 sm = 0; sm < d->n_sms; sm++) {
+		u16 index = 0x1C30 + sm;
 
-		if (m->pd_sm[dir] < 0)
+		if (ec_app_area(m, EC_APP_OUT, sm) < 0 && ec_app_area(m, EC_APP_IN, sm) < 0)
 			continue;
 		add(l, index, 1, EC_TYPE_UINT16, 16, EC_APP_RW, 1,
 		    "Synchronization type", sync);
@@ -218,15 +218,15 @@ static void add_pdo(struct list *l, const struct ec_app_model *m,
 	}
 }
 
+/* of the @k-th SyncManager; only the first has the @list of the description */
 static void add_assign(struct list *l, const struct ec_app_model *m,
-		       enum ec_app_dir dir)
+		       enum ec_app_dir dir, int k)
 {
-	u16 index = (u16)(0x1C10 + m->pd_sm[dir]), access = EC_OD_READ;
-	const struct ec_app_list *list = &m->params.quirks.assign[dir];
+	static const struct ec_app_list none;
+	const struct ec_app_list *list = k ? &none : &m->params.quirks.assign[dir];
+	u16 index = (u16)(0x1C10 + m->area[dir][k]), access = EC_OD_READ;
 	u8 n = 0, cap = 0;
 
-	if (m->pd_sm[dir] < 0)
-		return;
 	if (m->dev.mapping >= EC_APP_MAP_ASSIGN &&
 	    !ec_app_listed(&m->params.quirks.fixed, index))
 		access |= EC_OD_WRITE_PREOP;
@@ -236,7 +236,7 @@ static void add_assign(struct list *l, const struct ec_app_model *m,
 		if (pdo_dir(p) != dir)
 			continue;
 		cap++;
-		if (!list->given && p->sm == m->pd_sm[dir])
+		if (!list->given && p->sm == m->area[dir][k])
 			add(l, index, ++n, EC_TYPE_UINT16, 16, access, p->index,
 			    NULL, NULL);
 	}
@@ -380,9 +380,12 @@ static int build_od(struct ec_app_model *m)
 	const struct ec_app_dev *d = &m->dev;
 	struct list l = { .cap = 64u + 2u * EC_APP_LIST + 2u * d->n_vars + d->n_pdos +
 			    (m->params.diag ? (u32)EC_DIAG_FIRST_SUB + m->params.diag : 0u) };
+	u32 areas = (u32)m->n_areas[EC_APP_OUT] + m->n_areas[EC_APP_IN];
 	int ret = -ENOMEM;
 	struct item *tmp;
 
+	if (areas > EC_APP_DIRS)
+		l.cap += (areas - EC_APP_DIRS) * (16u + d->n_pdos);
 	for (u32 i = 0; i < d->n_pdos; i++)
 		l.cap += 2 + pdo_cap(m, &d->pdos[i]) + 2u * d->pdos[i].count;
 	l.item = ec_sim_alloc(m->sim, l.cap * sizeof(*l.item));
@@ -400,8 +403,9 @@ static int build_od(struct ec_app_model *m)
 	}
 	for (u32 i = 0; i < d->n_pdos; i++)
 		add_pdo(&l, m, &d->pdos[i]);
-	add_assign(&l, m, EC_APP_OUT);
-	add_assign(&l, m, EC_APP_IN);
+	for (int dir = 0; dir < EC_APP_DIRS; dir++)
+		for (int k = 0; k < m->n_areas[dir]; k++)
+			add_assign(&l, m, dir, k);
 	sort(l.item, tmp, l.n);
 	drop_doubles(&l);
 	add_counts(&l);
@@ -454,15 +458,11 @@ static int finish(struct ec_app_model *m)
 	int ret;
 
 	m->emulation = d->pdi_control & 0x0100;
-	m->pd_sm[EC_APP_OUT] = -1;
-	m->pd_sm[EC_APP_IN] = -1;
-	for (int i = 0; i < d->n_sms; i++) {
-		if (d->sms[i].type == EC_SII_SM_OUTPUTS &&
-		    m->pd_sm[EC_APP_OUT] < 0)
-			m->pd_sm[EC_APP_OUT] = i;
-		if (d->sms[i].type == EC_SII_SM_INPUTS &&
-		    m->pd_sm[EC_APP_IN] < 0)
-			m->pd_sm[EC_APP_IN] = i;
+	for (u8 i = 0; i < d->n_sms; i++) {
+		if (d->sms[i].type == EC_SII_SM_OUTPUTS)
+			m->area[EC_APP_OUT][m->n_areas[EC_APP_OUT]++] = i;
+		if (d->sms[i].type == EC_SII_SM_INPUTS)
+			m->area[EC_APP_IN][m->n_areas[EC_APP_IN]++] = i;
 	}
 	for (u32 i = 0; i < d->n_pdos; i++) {
 		enum ec_app_dir dir = pdo_dir(&d->pdos[i]);
@@ -494,7 +494,8 @@ static u32 generic_revision(const struct ec_app_model *m)
 	u64 other = p->voe | (u64)p->soe << 16 | (u64)p->cpu << 24 |
 		    (u64)!!p->id << 25 | (u64)!!p->foe << 30 |
 		    (u64)!!p->diag << 31 | (u64)p->quirks.no_mbox_words << 48 |
-		    (u64)p->quirks.no_protocols << 49;
+		    (u64)p->quirks.no_protocols << 49 |
+		    (u64)p->quirks.sms[EC_APP_OUT] << 50 | (u64)p->quirks.sms[EC_APP_IN] << 54;
 
 	for (u32 i = 0; i < p->quirks.dc_modes.n; i++)
 		other = (other << 7 | other >> 57) ^ (p->quirks.dc_modes.v[i] + 1u);

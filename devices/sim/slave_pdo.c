@@ -26,11 +26,33 @@ bool ec_app_pdo_is_config(u16 index)
 	       is_pdo(index, EC_APP_IN);
 }
 
+/**
+ * ec_app_area() - which process data does a SyncManager have
+ * @m: model
+ * @dir: outputs or inputs
+ * @sm: SyncManager
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: its number among those of the direction, -1: it is none of them.
+ */
+int ec_app_area(const struct ec_app_model *m, enum ec_app_dir dir, int sm)
+{
+	for (int k = 0; k < m->n_areas[dir]; k++)
+		if (m->area[dir][k] == sm)
+			return k;
+	return -1;
+}
+
+static const struct ec_app_object *assignment(const struct ec_app_model *m, enum ec_app_dir dir,
+					      int k)
+{
+	return ec_app_od_object(m, (u16)(0x1C10 + m->area[dir][k]));
+}
+
 static enum ec_app_dir dir_of(const struct ec_app_model *m, u16 index)
 {
 	if (is_assign(index))
-		return index == 0x1C10 + m->pd_sm[EC_APP_OUT] ? EC_APP_OUT :
-								EC_APP_IN;
+		return ec_app_area(m, EC_APP_OUT, index - 0x1C10) >= 0 ? EC_APP_OUT : EC_APP_IN;
 	return is_pdo(index, EC_APP_OUT) ? EC_APP_OUT : EC_APP_IN;
 }
 
@@ -103,13 +125,14 @@ static u32 check_assign(const struct ec_app *app, const struct ec_app_entry *e,
 
 static bool assigned(const struct ec_app *app, enum ec_app_dir dir, u16 pdo)
 {
-	const struct ec_app_object *o =
-		ec_app_od_object(app->model, (u16)(0x1C10 + app->model->pd_sm[dir]));
-	u32 n = o ? list_len(app, o) : 0;
+	for (int k = 0; k < app->model->n_areas[dir]; k++) {
+		const struct ec_app_object *o = assignment(app->model, dir, k);
+		u32 n = list_len(app, o);
 
-	for (u32 i = 1; i <= n; i++)
-		if (list_at(app, o, i) == pdo)
-			return true;
+		for (u32 i = 1; i <= n; i++)
+			if (list_at(app, o, i) == pdo)
+				return true;
+	}
 	return false;
 }
 
@@ -163,14 +186,15 @@ u32 ec_app_pdo_check_write(const struct ec_app *app,
 	return 0;
 }
 
-static void map_add(struct ec_app *app, enum ec_app_dir dir,
+/* @first: of this SyncManager */
+static void map_add(struct ec_app *app, enum ec_app_dir dir, u32 first,
 		    const struct ec_app_entry *e, u32 pos)
 {
 	u32 n = app->n_map[dir];
 	struct ec_app_copy *c = app->map[dir] + n;
 
 	/* whole bytes behind each other in both places are one run */
-	if (n && !((c[-1].pos | c[-1].bits | e->bits) & 7) &&
+	if (n > first && !((c[-1].pos | c[-1].bits | e->bits) & 7) &&
 	    c[-1].pos + c[-1].bits == pos &&
 	    c[-1].off + c[-1].bits / 8 == e->off) {
 		c[-1].bits += e->bits;
@@ -180,37 +204,49 @@ static void map_add(struct ec_app *app, enum ec_app_dir dir,
 	app->n_map[dir]++;
 }
 
-static bool build(struct ec_app *app, enum ec_app_dir dir)
+/* the @k-th SyncManager of a direction */
+static bool build_area(struct ec_app *app, enum ec_app_dir dir, int k)
 {
 	const struct ec_app_model *m = app->model;
-	const struct ec_app_object *assign;
-	u32 pos = 0, n;
+	const struct ec_app_object *assign = assignment(m, dir, k);
+	u32 pos = 0, n = list_len(app, assign), first = app->n_map[dir];
 
-	app->n_map[dir] = 0;
-	app->bytes[dir] = 0;
-	if (m->pd_sm[dir] < 0)
-		return true;
-	assign = ec_app_od_object(m, (u16)(0x1C10 + m->pd_sm[dir]));
-	n = list_len(app, assign);
 	for (u32 i = 1; i <= n; i++) {
 		u16 index = (u16)list_at(app, assign, i);
 		const struct ec_app_object *pdo = ec_app_od_object(m, index);
 		u32 entries = list_len(app, pdo);
 
-		for (u32 k = 1; k <= entries; k++) {
-			u32 v = list_at(app, pdo, k);
+		for (u32 j = 1; j <= entries; j++) {
+			u32 v = list_at(app, pdo, j);
 			const struct ec_app_entry *e;
 
 			if (pos + (v & 0xFF) > m->max_bytes[dir] * 8u)
 				return false;
 			e = ec_app_od_entry(m, (u16)(v >> 16), (u8)(v >> 8));
 			if (v >> 16 && e && app->n_map[dir] < m->map_cap[dir])
-				map_add(app, dir, e, pos);
+				map_add(app, dir, first, e, pos);
 			pos += v & 0xFF;
 		}
 	}
-	app->bytes[dir] = (u16)((pos + 7) / 8);
+	app->area_bytes[dir][k] = (u16)((pos + 7) / 8);
 	return true;
+}
+
+static bool build(struct ec_app *app, enum ec_app_dir dir)
+{
+	bool ok = true;
+
+	app->n_map[dir] = 0;
+	app->bytes[dir] = 0;
+	memset(app->area_bytes[dir], 0, sizeof(app->area_bytes[dir]));
+	for (int k = 0; k < app->model->n_areas[dir]; k++) {
+		ok = ok && build_area(app, dir, k);
+		app->map_end[dir][k] = app->n_map[dir];
+		app->bytes[dir] = (u16)(app->bytes[dir] + app->area_bytes[dir][k]);
+	}
+	if (!ok)
+		app->bytes[dir] = 0;
+	return ok;
 }
 
 /**
@@ -234,12 +270,17 @@ u16 ec_app_pdo_build(struct ec_app *app)
 	return in ? 0 : 0x0024;
 }
 
-static int sm_start(const struct ec_app *app, enum ec_app_dir dir)
+static int sm_start(const struct ec_app *app, enum ec_app_dir dir, int k)
 {
-	int sm = app->model->pd_sm[dir];
+	const struct ec_esc_sm *sm = &app->esc->sm[app->model->area[dir][k]];
 
-	return sm < 0 || !app->bytes[dir] || !app->esc->sm[sm].active ? -1 :
-		app->esc->sm[sm].page.start;
+	return !app->bytes[dir] || !app->area_bytes[dir][k] || !sm->active ? -1 : sm->page.start;
+}
+
+/* the first run of the @k-th SyncManager */
+static u32 map_begin(const struct ec_app *app, enum ec_app_dir dir, int k)
+{
+	return k ? app->map_end[dir][k - 1] : 0;
 }
 
 /* as ec_bits_copy(), without a call for the common sizes */
@@ -258,16 +299,9 @@ static void copy_run(u8 *dst, u32 dst_bit, const u8 *src, u32 src_bit, u32 bits)
 			*dst++ = *src++;
 }
 
-/**
- * ec_app_outputs_use() - outputs take effect
- * @app: slave
- * @image: their process image
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_app_outputs_use(struct ec_app *app, const u8 *image)
+static void outputs_use(struct ec_app *app, int k, const u8 *image)
 {
-	for (u32 i = 0; i < app->n_map[EC_APP_OUT]; i++) {
+	for (u32 i = map_begin(app, EC_APP_OUT, k); i < app->map_end[EC_APP_OUT][k]; i++) {
 		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
 
 		copy_run(app->data + c->off, 0, image, c->pos, c->bits);
@@ -275,34 +309,69 @@ void ec_app_outputs_use(struct ec_app *app, const u8 *image)
 }
 
 /**
- * ec_app_outputs() - the master wrote the output SyncManager
+ * ec_app_outputs_use() - outputs take effect, of a slave with one SyncManager for them
  * @app: slave
+ * @image: their process image
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_outputs_use(struct ec_app *app, const u8 *image)
+{
+	outputs_use(app, 0, image);
+}
+
+/* the @k-th output SyncManager */
+static void outputs(struct ec_app *app, int k, u64 now)
+{
+	int start = sm_start(app, EC_APP_OUT, k);
+	u16 bytes = app->area_bytes[EC_APP_OUT][k];
+	const u8 *src;
+
+	if (start < 0)
+		return;
+	src = ec_esc_pdi_take(app->esc, app->model->area[EC_APP_OUT][k], bytes, now);
+	if (!src) {
+		if (ec_esc_pdi_read(app->esc, (u16)start, app->image, bytes, now) < 0)
+			return;
+		src = app->image;
+	}
+	app->outputs_seen |= (u16)BIT(k);
+	if (ec_app_state(app) != EC_AL_OP &&
+	    !ec_app_bug(app, EC_SIM_BUG_OUTPUTS_EARLY))
+		return;
+	outputs_use(app, k, src);
+}
+
+/**
+ * ec_app_outputs() - the master wrote an output SyncManager
+ * @app: slave
+ * @sm: which, -1: all are looked at
  * @now: time, ns
  *
  * Outside OP the buffer is fetched, its content is not used.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_app_outputs(struct ec_app *app, u64 now)
+void ec_app_outputs(struct ec_app *app, int sm, u64 now)
 {
-	int start = sm_start(app, EC_APP_OUT);
-	const u8 *src;
+	for (int k = 0; k < app->model->n_areas[EC_APP_OUT]; k++)
+		if (sm < 0 || app->model->area[EC_APP_OUT][k] == sm)
+			outputs(app, k, now);
+}
 
-	if (start < 0)
-		return;
-	src = ec_esc_pdi_take(app->esc, app->model->pd_sm[EC_APP_OUT],
-			      app->bytes[EC_APP_OUT], now);
-	if (!src) {
-		if (ec_esc_pdi_read(app->esc, (u16)start, app->image,
-				    app->bytes[EC_APP_OUT], now) < 0)
-			return;
-		src = app->image;
-	}
-	app->outputs_seen = true;
-	if (ec_app_state(app) != EC_AL_OP &&
-	    !ec_app_bug(app, EC_SIM_BUG_OUTPUTS_EARLY))
-		return;
-	ec_app_outputs_use(app, src);
+/**
+ * ec_app_outputs_complete() - did outputs come in all SyncManagers since SAFEOP?
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether they did; true where there are none.
+ */
+bool ec_app_outputs_complete(const struct ec_app *app)
+{
+	for (int k = 0; k < app->model->n_areas[EC_APP_OUT]; k++)
+		if (app->area_bytes[EC_APP_OUT][k] && !(app->outputs_seen & BIT(k)))
+			return false;
+	return true;
 }
 
 /**
@@ -326,15 +395,19 @@ void ec_app_outputs_clear(struct ec_app *app)
  */
 static void outputs_direct(struct ec_app *app)
 {
-	int sm = app->model->pd_sm[EC_APP_OUT];
-	u32 start = sm < 0 ? EC_REG_RAM : app->model->dev.sms[sm].start;
+	const struct ec_app_model *m = app->model;
 
-	for (u32 i = 0; start < EC_REG_RAM && i < app->n_map[EC_APP_OUT]; i++) {
-		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+	for (int k = 0; k < m->n_areas[EC_APP_OUT]; k++) {
+		u32 start = m->dev.sms[m->area[EC_APP_OUT][k]].start;
+		u32 i = map_begin(app, EC_APP_OUT, k);
 
-		if (start * 8 + c->pos + c->bits <= EC_REG_RAM * 8)
-			ec_bits_copy(app->data + c->off, 0, app->esc->mem,
-				     start * 8 + c->pos, c->bits);
+		for (; start < EC_REG_RAM && i < app->map_end[EC_APP_OUT][k]; i++) {
+			const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
+
+			if (start * 8 + c->pos + c->bits <= EC_REG_RAM * 8)
+				ec_bits_copy(app->data + c->off, 0, app->esc->mem,
+					     start * 8 + c->pos, c->bits);
+		}
 	}
 }
 
@@ -383,19 +456,34 @@ void ec_app_run(struct ec_app *app, u64 now)
 	app->esc->late.ran_ns = now;
 }
 
-/* process image of the inputs */
-static void build_inputs(const struct ec_app *app, u8 *dst)
+/* process image of the @k-th input SyncManager */
+static void build_inputs(const struct ec_app *app, int k, u8 *dst)
 {
-	memset(dst, 0, app->bytes[EC_APP_IN]);
-	for (u32 i = 0; i < app->n_map[EC_APP_IN]; i++) {
+	memset(dst, 0, app->area_bytes[EC_APP_IN][k]);
+	for (u32 i = map_begin(app, EC_APP_IN, k); i < app->map_end[EC_APP_IN][k]; i++) {
 		const struct ec_app_copy *c = &app->map[EC_APP_IN][i];
 
 		copy_run(dst, c->pos, app->data + c->off, 0, c->bits);
 	}
 }
 
+/* hands them over */
+static void give_inputs(struct ec_app *app, int k, u64 now)
+{
+	int start = sm_start(app, EC_APP_IN, k);
+	u16 bytes = app->area_bytes[EC_APP_IN][k];
+	u8 *dst;
+
+	if (start < 0)
+		return;
+	dst = ec_esc_pdi_give(app->esc, app->model->area[EC_APP_IN][k], bytes, now);
+	build_inputs(app, k, dst ? dst : app->image);
+	if (!dst)
+		ec_esc_pdi_write(app->esc, (u16)start, app->image, bytes, now);
+}
+
 /**
- * ec_app_inputs() - compute the inputs and hand them to the SyncManager
+ * ec_app_inputs() - compute the inputs and hand them to the SyncManagers
  * @app: slave
  * @now: time, ns
  *
@@ -403,18 +491,15 @@ static void build_inputs(const struct ec_app *app, u8 *dst)
  */
 void ec_app_inputs(struct ec_app *app, u64 now)
 {
-	int start = sm_start(app, EC_APP_IN);
-	u8 *dst;
-
 	ec_app_run(app, now);
-	if (start < 0)
-		return;
-	dst = ec_esc_pdi_give(app->esc, app->model->pd_sm[EC_APP_IN],
-			      app->bytes[EC_APP_IN], now);
-	build_inputs(app, dst ? dst : app->image);
-	if (!dst)
-		ec_esc_pdi_write(app->esc, (u16)start, app->image,
-				 app->bytes[EC_APP_IN], now);
+	for (int k = 0; k < app->model->n_areas[EC_APP_IN]; k++)
+		give_inputs(app, k, now);
+}
+
+/* the SyncManager of a direction that has at most one */
+static int only(const struct ec_app_model *m, enum ec_app_dir dir)
+{
+	return m->n_areas[dir] ? m->area[dir][0] : -1;
 }
 
 /**
@@ -427,12 +512,15 @@ void ec_app_may_wait(struct ec_app *app)
 {
 	const struct ec_app_model *m = app->model;
 
+	if (m->n_areas[EC_APP_OUT] > 1 || m->n_areas[EC_APP_IN] > 1)
+		return;
 	if (m->dev.profile || app->n_src || app->is_source || app->al_to ||
 	    ec_app_state(app) != EC_AL_OP)
 		return;
-	if (ec_esc_pdi_may_wait(app->esc, m->pd_sm[EC_APP_OUT], app->bytes[EC_APP_OUT],
-				m->pd_sm[EC_APP_IN], app->bytes[EC_APP_IN], app->inputs))
-		build_inputs(app, app->inputs);
+	if (ec_esc_pdi_may_wait(app->esc, only(m, EC_APP_OUT), app->bytes[EC_APP_OUT],
+				only(m, EC_APP_IN), app->bytes[EC_APP_IN], app->inputs) &&
+	    m->n_areas[EC_APP_IN])
+		build_inputs(app, 0, app->inputs);
 }
 
 /**

@@ -358,6 +358,61 @@ static void sim_quirk_single_objects_are_fixed(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, app_put(b, m, 0x1C13, 0, 0, 1), 0);
 }
 
+/* outputs in SM2 and SM3, inputs in SM4 to SM6 */
+static void sim_quirk_several_sync_managers(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave d drive out=16 in=24 sm_out=2 sm_in=3\n");
+	struct ec_app *app = app_of(b, "d");
+	const struct ec_app_sm *sm = app->model->dev.sms;
+	struct app_mbox *m = mbox_new(test, S);
+	struct ec_sii_sm sii[16];
+	u8 data[32] = { 0 };
+	u16 sum[2] = { 0, 0 };
+
+	KUNIT_ASSERT_EQ(test, ec_sii_decode_sms(app->esc->eep.data, app->esc->eep.len, sii, 16), 7);
+	KUNIT_EXPECT_EQ(test, to_preop(b, S), (u32)EC_AL_PREOP);
+	for (int i = 2; i < 7; i++) {
+		KUNIT_EXPECT_EQ(test, sii[i].type, i < 4 ? EC_SII_SM_OUTPUTS : EC_SII_SM_INPUTS);
+		KUNIT_EXPECT_EQ(test, app_get(b, m, 0x1C00, (u8)(i + 1)), sii[i].type);
+		KUNIT_EXPECT_EQ_MSG(test, app_get(b, m, (u16)(0x1C10 + i), 0), 1, "SM%d", i);
+		KUNIT_EXPECT_EQ(test, app_get(b, m, (u16)(0x1C10 + i), 1),
+				(u64)(i < 4 ? 0x15FE + i : 0x19FC + i));
+		KUNIT_EXPECT_GT(test, sii[i].len, 0);
+		sum[i >= 4] += sii[i].len;
+	}
+	KUNIT_EXPECT_EQ(test, sum[0], 16);
+	KUNIT_EXPECT_EQ(test, sum[1], 24);
+
+	for (int i = 2; i < 7; i++)
+		bed_sm(b, S, i, sm[i].start, sm[i].len, i < 4 ? 0x64 : 0x20);
+	bed_sm(b, S, 3, sm[3].start, (u16)(sm[3].len - 1), 0x64);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_SAFEOP, 1), 0x001D0012u);
+	bed_sm(b, S, 3, sm[3].start, sm[3].len, 0x64);
+	bed_sm(b, S, 6, sm[6].start, (u16)(sm[6].len + 1), 0x20);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x14, 1), 0x001E0012u);
+	bed_sm(b, S, 6, sm[6].start, sm[6].len, 0x20);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, 0x14, 1), (u32)EC_AL_SAFEOP);
+
+	/* OP needs the outputs of both */
+	memset(data, 0x5A, sizeof(data));
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, S, sm[2].start, data, sm[2].len), 1);
+	KUNIT_EXPECT_EQ(test, app_al(b, S, EC_AL_OP, 1), (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FPWR, S, sm[3].start, data, sm[3].len), 1);
+	KUNIT_EXPECT_EQ(test, app_al_status(b, S), (u32)EC_AL_OP);
+	for (u16 c = 0; c < app->model->n_chan[EC_APP_OUT]; c++)
+		KUNIT_EXPECT_EQ_MSG(test, ec_app_channel(app, EC_APP_OUT, c) & 0xFF, 0x5A,
+				    "channel %u", c);
+	/* one of them alone changes its own */
+	memset(data, 0x11, sizeof(data));
+	bed_tx(b, EC_CMD_FPWR, S, sm[3].start, data, sm[3].len);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(app, EC_APP_OUT, 0) & 0xFF, 0x5A);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(app, EC_APP_OUT,
+					     app->model->n_chan[EC_APP_OUT] - 1) & 0xFF, 0x11);
+	/* inputs of all three come from the slave */
+	for (int i = 4; i < 7; i++)
+		KUNIT_EXPECT_EQ(test, bed_rd(b, S, sm[i].start, data, sm[i].len), 1);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quirk_long_times_hold),
 	KUNIT_CASE(sim_quirk_single_step_is_slow),
@@ -371,6 +426,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quirk_clock_jumps),
 	KUNIT_CASE(sim_quirk_operation_modes),
 	KUNIT_CASE(sim_quirk_single_objects_are_fixed),
+	KUNIT_CASE(sim_quirk_several_sync_managers),
 	{}
 };
 
