@@ -148,6 +148,18 @@ void cyc_activate(struct cyc *c)
 	c->next = ktime_get();
 }
 
+/* How late this cycle wakes up, ns. */
+static u64 wake_late(struct cyc *c)
+{
+	struct cyc_jitter *j = &c->jitter;
+
+	if (!j->ns)
+		return 0;
+	if (j->late_every && prandom_u32_state(&j->random) % j->late_every == 0)
+		return j->late_ns;
+	return prandom_u32_state(&j->random) % (2 * j->ns + 1);
+}
+
 /**
  * cyc_run() - some cycles: wait, receive, work, send
  * @c: active application
@@ -161,10 +173,12 @@ void cyc_run(struct cyc *c, u32 cycles)
 
 	for (i = 0; i < cycles; i++) {
 		bool whole = true;
+		ktime_t at;
 
 		c->next = ktime_add_ns(c->next, c->period_ns);
+		at = ktime_add_ns(c->next, wake_late(c));
 		set_current_state(TASK_UNINTERRUPTIBLE);
-		schedule_hrtimeout(&c->next, HRTIMER_MODE_ABS);
+		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_receive(&c->b->app), 0);
 		for (d = 0; d < s->wanted.n_domains; d++)
 			whole &= s->cycle.shared->status->domains[d].wc_state == 2;
@@ -232,8 +246,22 @@ void cyc_sync0(struct cyc *c, u32 n)
 	}
 }
 
+/**
+ * cyc_shake() - let an application wake up late from now on, as on a computer
+ * @c: application
+ * @ns: by 0 to twice as much in most cycles
+ * @late_every: in one of so many cycles by half a cycle, 0: never
+ */
+void cyc_shake(struct cyc *c, u32 ns, u32 late_every)
+{
+	c->jitter = (struct cyc_jitter){
+		.ns = ns, .late_every = late_every, .late_ns = c->period_ns / 2,
+	};
+	prandom_seed_state(&c->jitter.random, 5);
+}
+
 /* Drives whose clocks differ in time and rate, always the same ones. */
-static char *describe_drives(struct kunit *test, u32 n)
+static char *describe_drives(struct kunit *test, u32 n, s32 host_ppb)
 {
 	size_t size = 16384, len;
 	char *text = kunit_kzalloc(test, size, GFP_KERNEL);
@@ -244,7 +272,7 @@ static char *describe_drives(struct kunit *test, u32 n)
 	prandom_seed_state(&r, 33);
 	len = scnprintf(text, size, "segment seed=33 response=100us transition=1ms\n");
 	for (i = 0; i < n; i++) {
-		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000;
+		int ppb = (int)(prandom_u32_state(&r) % 200001) - 100000 - host_ppb;
 
 		len += scnprintf(text + len, size - len,
 				 "slave s%u drive in=8 out=8 drift=%dppb clock=%ums\n", i, ppb,
@@ -254,16 +282,17 @@ static char *describe_drives(struct kunit *test, u32 n)
 }
 
 /**
- * cyc_drives() - an application with SYNC0 of its cycle at drives, not active yet
+ * cyc_drives_of() - an application with SYNC0 of its cycle at drives, not active yet
  * @test: case
  * @n: drives, whose clocks differ
  * @period_us: of its cycle
+ * @host_ppb: how much faster the computer's clock is than the mean of theirs
  *
  * Return: application.
  */
-struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us)
+struct cyc *cyc_drives_of(struct kunit *test, u32 n, u32 period_us, s32 host_ppb)
 {
-	struct bus *b = bus_up(test, describe_drives(test, n), n);
+	struct bus *b = bus_up(test, describe_drives(test, n, host_ppb), n);
 	struct cyc *c;
 
 	bus_idle(b);

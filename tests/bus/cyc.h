@@ -3,9 +3,24 @@
 #ifndef EC_CYC_H
 #define EC_CYC_H
 
+#include <linux/prandom.h>
 #include "bus.h"
 #include "master/config/config.h"
 #include "master/config/domain.h"
+
+/**
+ * struct cyc_jitter - how late its cycles wake up, see cyc_shake()
+ * @ns: half of the most, 0: never
+ * @late_every: one of so many cycles wakes up at @late_ns, 0: none
+ * @late_ns: after its time
+ * @random: state
+ */
+struct cyc_jitter {
+	u32 ns;
+	u32 late_every;
+	u64 late_ns;
+	struct rnd_state random;
+};
 
 /**
  * struct cyc - an application
@@ -20,6 +35,7 @@
  * @sync_time: for it, ns
  * @incomplete: cycles in which a domain was not complete
  * @cycles: cycles so far
+ * @jitter: of its wake-ups
  */
 struct cyc {
 	struct bus *b;
@@ -33,6 +49,7 @@ struct cyc {
 	u64 sync_time;
 	u64 incomplete;
 	u64 cycles;
+	struct cyc_jitter jitter;
 };
 
 /* mapping of a drive after cyc_remap() */
@@ -51,7 +68,14 @@ void cyc_run(struct cyc *c, u32 cycles);
 struct cyc *cyc_in_op(struct bus *b, u32 first, u32 n);
 struct cyc *cyc_two_domains(struct bus *b, u32 n);
 void cyc_sync0(struct cyc *c, u32 n);
-struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us);
+void cyc_shake(struct cyc *c, u32 ns, u32 late_every);
+struct cyc *cyc_drives_of(struct kunit *test, u32 n, u32 period_us, s32 host_ppb);
+
+static inline struct cyc *cyc_drives(struct kunit *test, u32 n, u32 period_us)
+{
+	return cyc_drives_of(test, n, period_us, 0);
+}
+
 u64 cyc_wait_op(struct cyc *c, u32 limit_ms);
 bool cyc_all_op(struct cyc *c);
 u8 cyc_config_status(struct bus *b, u32 config);
