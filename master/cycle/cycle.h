@@ -176,9 +176,15 @@ struct ec_cyc_wire {
  * @due_ns: when the last send was due (ktime)
  * @last_ns: when it was
  * @interval_ns: distance of two sends, set or measured
- * @sends: sends so far, up to the end of the first measurement
- * @gaps: the last times between two sends, ns
+ * @sends: sends so far, up to the end of the measurement
+ * @gaps: the last times between two sends while it is measured, ns
  * @n_gaps: such times so far
+ * @block_ns: begin of the sends whose mean is checked next (ktime)
+ * @before_ns: begin of those before, 0: none
+ * @n_block: sends since @block_ns
+ * @far: gaps in a row that are far from @interval_ns, to the same side
+ * @far_side: 1: longer, -1: shorter
+ * @mean_side: the same of the last mean, 0: near
  */
 struct ec_schedule {
 	u64 due_ns;
@@ -186,6 +192,12 @@ struct ec_schedule {
 	u32 interval_ns;
 	u32 sends;
 	u32 gaps[EC_SCHEDULE_GAPS];
+	u64 block_ns;
+	u64 before_ns;
+	u32 n_block;
+	u8 far;
+	s8 far_side;
+	s8 mean_side;
 	u32 n_gaps;
 };
 

@@ -18,9 +18,10 @@
 #include "cycle_thread.h"
 #include "../base/once64.h"
 
-#define MEASURE_SENDS	64	/* to measure the interval that is not set */
+#define MEASURE_SENDS	64	/* to measure the interval that is not set, then to check it */
 #define GAPS_MIN	4	/* gaps after which a new median is worth it */
-#define OUTLIER_SHIFT	6	/* one send changes a measured interval by 1/64 of 1/16 */
+#define FAR_GAPS	4	/* in a row: the interval has changed */
+#define FAR_SHIFT	2	/* by more than a quarter of it each */
 
 static struct ec_status_cycle *status(const struct ec_cycle *c)
 {
@@ -105,15 +106,25 @@ static u32 median(const struct ec_schedule *sc)
 	return sorted[n / 2];
 }
 
+/* How far the schedule can follow each send, ns. */
+static u32 step_ns(const struct ec_schedule *sc)
+{
+	return (sc->interval_ns >> 10) + NSEC_PER_USEC;
+}
+
+static void set_interval_us(struct ec_cycle *c, u32 ns)
+{
+	WRITE_ONCE(c->links->access.interval_us,
+		   max_t(u32, 1, DIV_ROUND_CLOSEST(ns, NSEC_PER_USEC)));
+}
+
 /*
- * The interval, when the application has not set it. The schedule needs a mean that
- * single sends hardly change; the frames between two sends need to know soon what it
- * has become.
+ * The interval, when the application has not set it: for the first sends a mean that
+ * follows quickly. The frames between two sends need to know it soon.
  */
 static noinline void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 {
-	s64 off = ns - sc->interval_ns;
-	s64 limit = sc->sends < MEASURE_SENDS ? NSEC_PER_SEC : sc->interval_ns >> OUTLIER_SHIFT;
+	s64 off = ns - sc->interval_ns, limit = NSEC_PER_SEC;
 
 	if (sc->sends < 2)
 		sc->interval_ns = min_t(u64, ns, NSEC_PER_SEC);
@@ -123,9 +134,70 @@ static noinline void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 	if (ns >= NSEC_PER_SEC)
 		return;
 	sc->gaps[sc->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
-	if (sc->n_gaps >= GAPS_MIN && (sc->n_gaps < MEASURE_SENDS || !(sc->n_gaps % GAPS_MIN)))
-		WRITE_ONCE(c->links->access.interval_us,
-			   max_t(u32, 1, DIV_ROUND_CLOSEST(median(sc), NSEC_PER_USEC)));
+	if (sc->n_gaps >= GAPS_MIN)
+		set_interval_us(c, median(sc));
+}
+
+/* A mean that the schedule cannot follow, twice in a row to the same side. */
+static void check_mean(struct ec_cycle *c, struct ec_schedule *sc, u64 now)
+{
+	u64 mean = min_t(u64, div_u64(now - sc->block_ns, MEASURE_SENDS), NSEC_PER_SEC);
+	s64 off = mean - sc->interval_ns;
+	s8 side = abs(off) <= step_ns(sc) + NSEC_PER_USEC / 2 ? 0 : off > 0 ? 1 : -1;
+
+	if (!sc->before_ns) {
+		sc->interval_ns = mean;
+		side = 0;
+	} else if (side && side == sc->mean_side) {
+		mean = div_u64(now - sc->before_ns, 2 * MEASURE_SENDS);
+		sc->interval_ns = min_t(u64, mean, NSEC_PER_SEC);
+		sc->due_ns = now - sc->interval_ns;
+		set_interval_us(c, sc->interval_ns);
+		side = 0;
+	}
+	sc->mean_side = side;
+	sc->before_ns = sc->block_ns;
+	sc->block_ns = now;
+	sc->n_block = 0;
+}
+
+/* The interval that was measured may have changed: a little, or so that it is measured again. */
+static noinline void check(struct ec_cycle *c, struct ec_schedule *sc, u64 now, s64 off)
+{
+	s8 side = abs(off) <= sc->interval_ns >> FAR_SHIFT ? 0 : off > 0 ? 1 : -1;
+
+	sc->far = side && side == sc->far_side ? sc->far + 1 : !!side;
+	sc->far_side = side;
+	if (sc->far == FAR_GAPS) {
+		sc->sends = 0;
+		sc->n_gaps = 0;
+	} else if (sc->n_block >= MEASURE_SENDS) {
+		check_mean(c, sc, now);
+	}
+}
+
+/* Without a set interval: measure it, and then see whether it is still the same. */
+static void learn(struct ec_cycle *c, struct ec_schedule *sc, u64 now)
+{
+	u64 ns = now - ec_read64(&c->links->access.last_send_ns);
+	s64 off = ns - sc->interval_ns;
+
+	sc->n_block++;
+	if (sc->sends < MEASURE_SENDS)
+		measure(c, sc, ns);
+	else if (unlikely(sc->far || sc->n_block >= MEASURE_SENDS ||
+			  abs(off) > sc->interval_ns >> FAR_SHIFT))
+		check(c, sc, now, off);
+}
+
+/* The first send, or the first one of another interval. */
+static void begin(struct ec_schedule *sc, u64 now)
+{
+	sc->block_ns = now;
+	sc->before_ns = 0;
+	sc->n_block = 0;
+	sc->far = 0;
+	sc->mean_side = 0;
 }
 
 /* A whole interval late or more: what was due in between is left out. */
@@ -152,7 +224,7 @@ static noinline s64 go_back(struct ec_schedule *sc, s64 off)
  * @now: time of the send (ktime, ns); @last_send_ns is still that of the one before
  *
  * The first send only begins the schedule; without a set interval so do the
- * first %MEASURE_SENDS.
+ * first %MEASURE_SENDS, also of an interval that differs from the one before.
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
@@ -160,16 +232,18 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 {
 	struct ec_schedule *sc = &c->schedule;
 	bool set = READ_ONCE(c->links->access.interval_set);
-	s64 off, step;
+	s32 step;
+	s64 off;
 
 	if (set)
 		sc->interval_ns = ec_access_interval_us(&c->links->access) *
 				 (u32)NSEC_PER_USEC;
 	else if (sc->sends)
-		measure(c, sc, now - ec_read64(&c->links->access.last_send_ns));
+		learn(c, sc, now);
 	sc->last_ns = now;
 	if (unlikely(sc->sends < (set ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
-		sc->sends++;
+		if (!sc->sends++)
+			begin(sc, now);
 		sc->due_ns = now;
 		return;
 	}
@@ -180,8 +254,8 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 	count(c, min_t(u64, abs(off), U32_MAX));
 	if (unlikely(off >= sc->interval_ns))
 		off = skip(c, off);
-	step = (sc->interval_ns >> 10) + NSEC_PER_USEC;
-	sc->due_ns += clamp(off, -step, step);
+	step = step_ns(sc);
+	sc->due_ns += clamp_t(s64, off, -step, step);
 }
 
 /**

@@ -106,6 +106,78 @@ static void late_measured(struct kunit *test)
 	KUNIT_EXPECT_LT(test, info.interval_ns, 1001000u);
 }
 
+static const struct ec_schedule *plan(const struct cyc *c)
+{
+	return &c->b->m->sessions.session->cycle.schedule;
+}
+
+/* An interval that is known is not measured again, although sends are late; nothing is lost. */
+static void late_known_interval_needs_no_measurement(struct kunit *test)
+{
+	struct cyc *c = start(test, false);
+	u32 gaps = plan(c)->n_gaps;
+
+	cyc_shake(c, 50000, 500);
+	cyc_run(c, 5000);
+	bus_figure("of 5000 sends of a known interval %u were measured; interval %u ns, %llu sends counted",
+		   plan(c)->n_gaps - gaps, plan(c)->interval_ns, status(c)->late_count);
+	KUNIT_EXPECT_EQ(test, plan(c)->n_gaps, gaps);
+	KUNIT_EXPECT_EQ(test, status(c)->late_count, 5001ull);
+	KUNIT_EXPECT_EQ(test, status(c)->overruns, 0ull);
+	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 1000u);
+}
+
+/* How many sends of an interval are needed until it is known. */
+static u32 until_known(struct cyc *c, u32 us)
+{
+	u32 n;
+
+	c->period_ns = us * NSEC_PER_USEC;
+	for (n = 0; n < 1000; n++) {
+		cyc_run(c, 1);
+		if (abs((s32)(c->b->m->links.access.interval_us - us)) <= 2 &&
+		    abs((s32)(plan(c)->interval_ns - c->period_ns)) <= 2000)
+			break;
+	}
+	return n + 1;
+}
+
+/* One that really changes is noticed, by much soon, and by little. */
+static void late_changed_interval_is_noticed(struct kunit *test)
+{
+	static const struct {
+		u32 us, sends;
+	} steps[] = { { 2000, 80 }, { 1000, 80 }, { 1030, 256 }, { 990, 256 }, { 250, 80 },
+		      { 20000, 80 }, { 1000, 80 } };
+	struct cyc *c = start(test, false);
+	u32 i, n;
+
+	for (i = 0; i < ARRAY_SIZE(steps); i++) {
+		n = until_known(c, steps[i].us);
+		bus_figure("interval changed to %u us: known after %u sends", steps[i].us, n);
+		KUNIT_EXPECT_LE(test, n, steps[i].sends);
+		cyc_run(c, 100);
+		KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
+		cyc_run(c, 300);
+		KUNIT_EXPECT_EQ(test, status(c)->late_count, 300ull);
+		KUNIT_EXPECT_LT(test, status(c)->late_max, 2 * NOISE_NS);
+		KUNIT_EXPECT_EQ(test, status(c)->overruns, 0ull);
+	}
+}
+
+/* And soon enough for the frames between two sends. */
+static void late_changed_interval_limits_frames_soon(struct kunit *test)
+{
+	struct cyc *c = start(test, false);
+
+	c->period_ns = 4 * NSEC_PER_MSEC;
+	cyc_run(c, 12);
+	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 4000u);
+	c->period_ns = 500 * NSEC_PER_USEC;
+	cyc_run(c, 12);
+	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 500u);
+}
+
 /* An interval that was rounded, or another clock: the schedule follows. */
 static void late_drift(struct kunit *test)
 {
@@ -213,6 +285,9 @@ static void late_reset_pending(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(late_uses_configured_interval),
 	KUNIT_CASE(late_measured),
+	KUNIT_CASE(late_known_interval_needs_no_measurement),
+	KUNIT_CASE(late_changed_interval_is_noticed),
+	KUNIT_CASE(late_changed_interval_limits_frames_soon),
 	KUNIT_CASE(late_drift),
 	KUNIT_CASE(late_overrun),
 	KUNIT_CASE(late_buckets),
