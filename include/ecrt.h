@@ -827,9 +827,10 @@ EC_PUBLIC_API int ecrt_master_select_reference_clock(ec_master_t *master,
  * ecrt_master_sync_reference_clock() - queue a write of the application time to the reference clock
  * @master: an active master
  *
- * The next send writes the low 32 bits of the last application time to the reference
- * clock (register 0x0910), less the jumps of that time since the clocks were
- * synchronized. While a time is inconsistent with the earlier ones, none is written.
+ * The next send writes the low 32 bits of the application time to the reference clock (register
+ * 0x0910): that of the send, by the mean of the last 512 application times, less their jumps
+ * since the clocks were synchronized. While a time is inconsistent with the earlier ones, and
+ * until all clocks are near each other after activation, none is written.
  *
  * Context: The cycle owner. RT-safe.
  * Return: 0; %-ENXIO no reference clock; %-EINVAL not active.

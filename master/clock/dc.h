@@ -150,6 +150,16 @@ struct ec_dc_app {
 	u64 base;
 	/** @base_ns: when it was that (ktime) */
 	u64 base_ns;
+	/** @mean: the same, a mean of many cycles, which the reference clock is given */
+	u64 mean;
+	/** @mean_part: fraction of it, 2^-16 ns */
+	s64 mean_part;
+	/** @mean_rate: its change with each of them, 2^-16 ns */
+	s64 mean_rate;
+	/** @n_mean: how many they are */
+	u32 n_mean;
+	/** @spread: their mean deviation from it, ns */
+	s32 spread;
 	/** @off: deviation of the last time, ns */
 	s64 off;
 	/** @skip: all jumps since the clocks are set, ns */
@@ -281,7 +291,7 @@ void ec_dc_end(struct ec_dc *dc);
 /* dc_app.c */
 void ec_dc_app_time(struct ec_dc *dc, u64 app_time, u64 at_ns);
 void ec_dc_app_forget(struct ec_dc *dc);
-bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip);
+bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *lead);
 u64 ec_dc_phase(struct ec_dc *dc);
 u64 ec_dc_now(struct ec_dc *dc);
 u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns);

@@ -10,6 +10,7 @@
  * are logged.
  */
 #include <linux/ktime.h>
+#include <linux/log2.h>
 #include <linux/math64.h>
 #include <linux/minmax.h>
 #include <linux/sort.h>
@@ -24,6 +25,9 @@
 #define ERROR_NS	(100 * (s64)NSEC_PER_MSEC)	/* no cycle is that late */
 #define LOG_NS		(10 * (u64)NSEC_PER_SEC)
 #define HELD_NS		((u64)NSEC_PER_SEC)	/* a longer error is logged */
+#define MEAN_SENDS	512	/* times whose mean the reference clock is given */
+#define SPREAD_SENDS	64	/* for their usual deviation */
+#define PART_BITS	16	/* of a ns */
 #define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without its time: it leads no longer */
 
 /* A larger deviation is no late cycle, and would move SYNC to another cycle. */
@@ -66,6 +70,27 @@ static void approach(struct ec_dc_app *a, s64 dev, u64 at_ns, s64 lim)
 	a->base_ns = at_ns;
 }
 
+/*
+ * The mean of many cycles, and the rate: the reference clock is given this time, so that
+ * neither the jitter of the application nor single late cycles move it, and all slaves with
+ * it. It is quick at first. A deviation counts as four times the usual one at most.
+ */
+static void smooth(struct ec_dc_app *a, s64 dev)
+{
+	s64 limit = 4 * (s64)a->spread + NSEC_PER_USEC, total;
+	unsigned int shift;
+
+	if (a->n_mean < MEAN_SENDS)
+		a->n_mean++;
+	shift = ilog2(a->n_mean);
+	dev = clamp_t(s64, dev + a->base - a->mean, -limit, limit);
+	a->spread += (s32)(min_t(s64, abs(dev), S32_MAX) - a->spread) / SPREAD_SENDS;
+	total = a->mean_part + (dev << PART_BITS >> shift) + a->mean_rate;
+	a->mean += total >> PART_BITS;
+	a->mean_part = total & (BIT(PART_BITS) - 1);
+	a->mean_rate += dev << PART_BITS >> (2 * shift + 2);
+}
+
 /* An application time after the clocks are set; false: it must not be used. */
 static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 {
@@ -73,6 +98,7 @@ static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 
 	a->off = dev;
 	if (abs(dev) <= lim + drift(a->base_ns, at_ns)) {
+		smooth(a, dev);
 		approach(a, dev, at_ns, lim);
 		a->deviating = 0;
 		return true;
@@ -173,17 +199,18 @@ void ec_dc_app_forget(struct ec_dc *dc)
  * ec_dc_update_app_time() - take the application time of a send
  * @dc: clocks
  * @what: flags (at least one of the times), @app_time and @sync_time; any value
- * @skip: result: jumps of that time, to be subtracted
+ * @lead: result: the time for the reference clock less ktime: the mean of that time, without jumps
  *
  * If the application is the time reference, the time to be written is valid; its other time
  * only has the upper half.
  *
  * Context: Cycle owner. RT-safe.
- * Return: true when the time deviates: it must not be written to the reference clock.
+ * Return: true when the time deviates, or the clocks are not set: it must not be written to the
+ * reference clock.
  */
-bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *skip)
+bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64 *lead)
 {
-	bool leads = what->flags & EC_SEND_FLAG_SYNC_REF, good = true;
+	bool leads = what->flags & EC_SEND_FLAG_SYNC_REF, good;
 	unsigned long flags;
 	u64 time, at_ns;
 
@@ -200,13 +227,14 @@ bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64
 	if (leads)
 		time += (s32)((u32)what->sync_time - (u32)time);
 	/* the written time is valid, even if it comes less often */
+	good = dc->app.set;
 	if (leading(dc, leads, at_ns) == leads) {
 		if (dc->app.set)
 			good = follow(&dc->app, time, at_ns, limit(dc));
 		else
 			note(&dc->app, time, at_ns);
 	}
-	*skip = dc->app.skip;
+	*lead = dc->app.mean;
 	raw_spin_unlock_irqrestore(&dc->time_lock, flags);
 	return leads && !good;
 }
@@ -281,6 +309,7 @@ u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns)
 	if (!n)
 		return ec_dc_now(dc) - (ktime_get_ns() - at_ns);
 	sort(past, n, sizeof(*past), later, NULL);
+	WRITE_ONCE(a->spread, min_t(u64, past[n * 3 / 4] - past[n / 4], S32_MAX));
 	return past[n / 2] + at_ns;
 }
 
@@ -301,6 +330,10 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 	if (set && !a->set) {
 		a->base = base;
 		a->base_ns = ktime_get_ns();
+		a->mean = base;
+		a->mean_part = 0;
+		a->mean_rate = 0;
+		a->n_mean = min_t(u32, a->n_past, EC_DC_APP_PAST);
 		a->n_past = 0;	/* from now on follow() updates @base */
 		/* slaves that connect later start SYNC on the same grid, whatever time comes */
 		if (!dc->has_phase)
@@ -308,6 +341,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 		dc->has_phase = true;
 	} else if (!set) {
 		a->n_past = 0;
+		a->spread = 0;
 		a->skip = 0;
 		a->deviating = 0;
 		a->jumps = 0;

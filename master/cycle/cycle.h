@@ -388,8 +388,8 @@ struct ec_cycle {
 	u32 dc_diff;
 	/** @dc_hold: the time for the reference clock is wrong: it is not sent */
 	bool dc_hold;
-	/** @dc_skip: jumps of that time, ns; they are subtracted */
-	u64 dc_skip;
+	/** @dc_lead: that time less ktime, ns */
+	u64 dc_lead;
 };
 
 /* @c may be NULL. What a master has of its cycle is under the lock of the one that is active. */
@@ -484,7 +484,7 @@ static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *wh
 u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c);
 u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags);
 void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,
-			  u64 sync_time, u64 now);
+			  u64 now);
 const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data);
 void ec_dc_datagrams_judge(struct ec_cycle *c);
 

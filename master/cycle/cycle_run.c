@@ -296,7 +296,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	else if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
 		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
-	send.sync_time = t->lock.time;
+	c->dc_lead = t->lock.time - t->next_ns;
 	feed(t);
 	choose_source(t);
 	if (t->ops && t->ops->cycle)

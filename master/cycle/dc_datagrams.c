@@ -93,7 +93,8 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
 		WRITE_ONCE(c->dc->wanted, true);
 	if (READ_ONCE(c->dc->mode) == EC_DC_IDLE)
 		return 0;
-	if (c->dc_hold)
+	/* a clock that moves cannot be approached by others: first they become near each other */
+	if (c->dc_hold || (READ_ONCE(c->dc->mode) == EC_DC_READ && ec_dc_busy(c->dc)))
 		flags &= ~SYNC_REF;
 	if (!flags)
 		return 0;
@@ -190,7 +191,6 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  * @fb: frame
  * @index: of its slot
  * @dc: as from ec_dc_datagrams_wanted()
- * @sync_time: for the reference clock, ns
  * @now: time of the send (ktime)
  *
  * Registers 0x0910, 0x092C.
@@ -198,7 +198,7 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  * Context: The master's single cyclic caller. RT-safe.
  */
 void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,
-			  u64 sync_time, u64 now)
+			  u64 now)
 {
 	u16 ref = READ_ONCE(c->dc->ref_station);
 	/* the slaves in front must not get a time that is unknown */
@@ -210,7 +210,7 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 
 	for (i = 0; i < refs(dc); i++) {
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)(sync_time - c->dc_skip), p);
+		put_unaligned_le32((u32)(now + c->dc_lead), p);
 	}
 	c->dc_sent = predicted(c, now);
 	/* clock frames of the worker carry it as well */

@@ -70,8 +70,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 
 	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
-		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->what->sync_time,
-				     send->now);
+		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
 	room = max(c->links->max_datagrams, dc) - dc;
 	for (; g < c->n_dgrams && room; g++, d++) {
@@ -162,7 +161,7 @@ static u32 wire_ns(const struct ec_cycle *c)
  */
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	c->dc_hold = ec_dc_update_app_time(c->dc, what, &c->dc_skip);
+	c->dc_hold = ec_dc_update_app_time(c->dc, what, &c->dc_lead);
 }
 
 /**
