@@ -67,6 +67,7 @@ int ecdev_register_notifier(struct notifier_block *nb);
 void ecdev_unregister_notifier(struct notifier_block *nb);
 void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len);
 bool ecdev_awaits(struct ecdev *dev);
+bool ecdev_in_cycle(struct ecdev *dev);
 void ecdev_foreign(struct ecdev *dev);
 void ecdev_not_captured(struct ecdev *dev);
 

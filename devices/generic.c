@@ -479,6 +479,34 @@ static void look(struct work_struct *work)
 	rtnl_unlock();
 }
 
+/* Do frames of a cycle pass @nd, which may be below the device of a master? */
+static bool carries_cycle(struct net_device *nd)
+{
+	const struct gen *g;
+	bool carries = false;
+
+	ASSERT_RTNL();
+	rcu_read_lock();
+	list_for_each_entry(g, &devices, list)
+		carries |= (g->nd == nd || netdev_has_upper_dev_all_rcu(nd, g->nd)) &&
+			   ecdev_in_cycle(g->dev);
+	rcu_read_unlock();
+	return carries;
+}
+
+/*
+ * Many drivers reset themselves for another MTU, and only then the kernel says what it is to be.
+ * So there is no change at all while process data run.
+ */
+static int prepare_mtu(struct net_device *nd)
+{
+	if (!carries_cycle(nd))
+		return NOTIFY_DONE;
+	pr_warn_ratelimited("ec_generic: %s: MTU change refused while process data run\n",
+			    nd->name);
+	return notifier_from_errno(-EBUSY);
+}
+
 /* Not below what frames need; @was: MTU before, or the refused one on its way back */
 static int change_mtu(const struct net_device *nd, u32 was)
 {
@@ -492,8 +520,14 @@ static int change_mtu(const struct net_device *nd, u32 was)
 static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 {
 	struct net_device *nd = netdev_notifier_info_to_dev(ptr);
-	struct gen *g = find(nd);
+	struct gen *g;
 
+	/* any user may change devices of a namespace of their own, as often as they want */
+	if (!net_eq(dev_net(nd), &init_net))
+		return NOTIFY_DONE;
+	g = find(nd);
+	if (what == NETDEV_PRECHANGEMTU)
+		return prepare_mtu(nd);
 	if (g && what == NETDEV_CHANGEMTU)
 		return change_mtu(nd, ((struct netdev_notifier_info_ext *)ptr)->ext.mtu);
 	if (g && what == NETDEV_CHANGENAME)

@@ -443,6 +443,26 @@ bool ecdev_numbered(struct ecdev *dev)
 EXPORT_SYMBOL_GPL(ecdev_numbered);
 
 /**
+ * ecdev_in_cycle() - does a cycle own the bus access?
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false without a master.
+ */
+bool ecdev_in_cycle(struct ecdev *dev)
+{
+	struct ec_link *link;
+	bool ret;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	ret = link && ec_access_is_cyclic(&link->links->access);
+	rcu_read_unlock();
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecdev_in_cycle);
+
+/**
  * ecdev_foreign() - count a received frame that is not EtherCAT
  * @dev: device
  *

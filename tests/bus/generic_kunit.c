@@ -10,6 +10,9 @@
 struct fake {
 	int result;
 	u32 frames;
+	u32 resets;	/* for another MTU */
+	u32 refused;	/* to come up, -EIO with @broken */
+	bool broken;
 };
 
 static netdev_tx_t fake_xmit(struct sk_buff *skb, struct net_device *nd)
@@ -22,13 +25,49 @@ static netdev_tx_t fake_xmit(struct sk_buff *skb, struct net_device *nd)
 	return o->result;
 }
 
-static const struct net_device_ops fake_ops = { .ndo_start_xmit = fake_xmit };
+static int fake_open(struct net_device *nd)
+{
+	struct fake *o = netdev_priv(nd);
+
+	if (!o->broken)
+		return 0;
+	o->refused++;
+	return -EIO;
+}
+
+static int fake_change_mtu(struct net_device *nd, int mtu)
+{
+	struct fake *o = netdev_priv(nd);
+
+	o->resets++;
+	nd->mtu = mtu;
+	return 0;
+}
+
+static const struct net_device_ops fake_ops = {
+	.ndo_start_xmit = fake_xmit,
+	.ndo_open = fake_open,
+	.ndo_change_mtu = fake_change_mtu,
+};
 
 static void fake_setup(struct net_device *nd)
 {
 	ether_setup(nd);
 	nd->netdev_ops = &fake_ops;
+	nd->max_mtu = ETH_MAX_MTU;
 	eth_hw_addr_random(nd);
+}
+
+static struct net_device *fake_alloc(struct bus *b, const char *name)
+{
+	struct net_device *nd = alloc_netdev(sizeof(struct fake), name, NET_NAME_USER,
+					     fake_setup);
+	struct fake *o;
+
+	KUNIT_ASSERT_NOT_NULL(b->test, nd);
+	o = netdev_priv(nd);
+	o->result = NETDEV_TX_OK;
+	return nd;
 }
 
 /* what a device says of a frame, and what the frame is then */
@@ -88,14 +127,9 @@ static void expect_result(struct bus *b, struct fake *o, const struct result *r)
 /* the network device that the master waits for */
 static struct net_device *fake_new(struct bus *b)
 {
-	struct net_device *nd = alloc_netdev(sizeof(struct fake), "bus0", NET_NAME_USER,
-					     fake_setup);
-	struct fake *o;
+	struct net_device *nd = fake_alloc(b, "bus0");
 	u32 i;
 
-	KUNIT_ASSERT_NOT_NULL(b->test, nd);
-	o = netdev_priv(nd);
-	o->result = NETDEV_TX_OK;
 	KUNIT_ASSERT_EQ(b->test, register_netdev(nd), 0);
 	for (i = 0; i < 100 && !READ_ONCE(b->m->links.link[0].dev); i++)
 		msleep(1);
@@ -192,10 +226,86 @@ static void generic_full_queue_not_captured(struct kunit *test)
 	fake_free(b, nd);
 }
 
+static int set_mtu(struct net_device *nd, int mtu)
+{
+	int ret;
+
+	rtnl_lock();
+	ret = dev_set_mtu(nd, mtu);
+	rtnl_unlock();
+	return ret;
+}
+
+/* The driver would reset itself first, also that of a device below. */
+static void generic_mtu_in_cycle_refused_before_driver(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_new(b), *low = fake_alloc(b, "low0");
+	struct fake *o = netdev_priv(nd), *below = netdev_priv(low);
+
+	KUNIT_ASSERT_EQ(test, register_netdev(low), 0);
+	rtnl_lock();
+	KUNIT_EXPECT_EQ(test, netdev_upper_dev_link(low, nd, NULL), 0);
+	rtnl_unlock();
+	ec_access_change(&b->m->links, EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, set_mtu(nd, 600), -EBUSY);
+	KUNIT_EXPECT_EQ(test, set_mtu(nd, 2000), -EBUSY);
+	KUNIT_EXPECT_EQ(test, set_mtu(low, 600), -EBUSY);
+	KUNIT_EXPECT_EQ(test, o->resets + below->resets, 0u);
+	KUNIT_EXPECT_EQ(test, nd->mtu, (u32)ETH_DATA_LEN);
+	ec_access_change(&b->m->links, EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, set_mtu(nd, 2000), 0);
+	KUNIT_EXPECT_EQ(test, set_mtu(low, 600), 0);
+	KUNIT_EXPECT_EQ(test, set_mtu(nd, 600), -EBUSY);
+	KUNIT_EXPECT_EQ(test, nd->mtu, 2000u);
+	rtnl_lock();
+	netdev_upper_dev_unlink(low, nd);
+	rtnl_unlock();
+	unregister_netdev(low);
+	free_netdev(low);
+	fake_free(b, nd);
+}
+
+/* Each look for a device tries to bring up the one that is wanted. */
+static void generic_change_in_foreign_namespace_ignored(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_alloc(b, "bus0"), *other = fake_alloc(b, "other0");
+	struct net *net = copy_net_ns(CLONE_NEWNET, &init_user_ns, &init_net);
+	struct fake *o = netdev_priv(nd);
+	u32 refused;
+
+	KUNIT_ASSERT_FALSE(test, IS_ERR(net));
+	o->broken = true;
+	KUNIT_ASSERT_EQ(test, register_netdev(nd), 0);
+	msleep(100);
+	refused = o->refused;
+	KUNIT_EXPECT_GE(test, refused, 1u);
+	dev_net_set(other, net);
+	KUNIT_ASSERT_EQ(test, register_netdev(other), 0);
+	rtnl_lock();
+	KUNIT_EXPECT_EQ(test, dev_open(other, NULL), 0);
+	rtnl_unlock();
+	KUNIT_EXPECT_EQ(test, set_mtu(other, 600), 0);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, o->refused, refused);
+	unregister_netdev(other);
+	free_netdev(other);
+	put_net(net);
+	/* a change in its own one is a reason to look */
+	KUNIT_EXPECT_EQ(test, set_mtu(nd, 2000), 0);
+	msleep(100);
+	KUNIT_EXPECT_GT(test, o->refused, refused);
+	unregister_netdev(nd);
+	free_netdev(nd);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(generic_result_of_frame, result_gen_params),
 	KUNIT_CASE(generic_rename_shown),
 	KUNIT_CASE(generic_full_queue_not_captured),
+	KUNIT_CASE(generic_mtu_in_cycle_refused_before_driver),
+	KUNIT_CASE(generic_change_in_foreign_namespace_ignored),
 	{ }
 };
 
