@@ -9,7 +9,7 @@
 
 #include <linux/atomic.h>
 #include <linux/compiler.h>
-#include <linux/preempt.h>
+#include <linux/irqflags.h>
 #include <linux/processor.h>
 #include <linux/string.h>
 #include <linux/types.h>
@@ -48,31 +48,37 @@ static inline void ec_write64(u64 *v, u64 to)
  * ec_status_begin() - write 64-bit values of the status page from now on
  * @st: status page of an active session
  *
- * Readers that read such a value in two parts try again until ec_status_end(). One of
- * a higher priority must not do so on our CPU, so we are not preempted.
+ * Readers that read such a value in two parts try again until ec_status_end(). None may do
+ * so on this CPU, where it would wait for ever: no thread of a higher priority, and no
+ * interrupt.
  *
  * Context: The master's single cyclic caller. RT-safe.
+ * Return: for ec_status_end().
  */
-static inline void ec_status_begin(struct ec_status *st)
+static inline unsigned long ec_status_begin(struct ec_status *st)
 {
-	preempt_disable();
+	unsigned long flags;
+
+	local_irq_save(flags);
 	WRITE_ONCE(st->sequence, st->sequence + 1);
 	/* the uneven number before the data, as in ec_status_copy() */
 	smp_wmb();
+	return flags;
 }
 
 /**
  * ec_status_end() - the values are written
  * @st: as for ec_status_begin()
+ * @flags: from there
  *
  * Context: As ec_status_begin().
  */
-static inline void ec_status_end(struct ec_status *st)
+static inline void ec_status_end(struct ec_status *st, unsigned long flags)
 {
 	/* the data before the even number, as in ec_status_copy() */
 	smp_wmb();
 	WRITE_ONCE(st->sequence, st->sequence + 1);
-	preempt_enable();
+	local_irq_restore(flags);
 }
 
 /**
@@ -85,9 +91,10 @@ static inline void ec_status_end(struct ec_status *st)
  */
 static inline void ec_status_add(struct ec_status *st, __u64 *v, u64 n)
 {
-	ec_status_begin(st);
+	unsigned long flags = ec_status_begin(st);
+
 	WRITE_ONCE(*v, *v + n);
-	ec_status_end(st);
+	ec_status_end(st, flags);
 }
 
 /**

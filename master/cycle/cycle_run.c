@@ -220,6 +220,7 @@ static void publish(struct ec_cycle_thread *t)
 	struct ec_exchange_buffer *b = ec_cycle_run_buffer(t, EC_EXCHANGE_BUFFERS + t->back);
 	struct ec_status_cycle *st = ec_cycle_run_status(t);
 	u64 cycle = st->cycle + 1;
+	unsigned long flags;
 	unsigned int i;
 
 	if (unlikely(READ_ONCE(t->adopt)))
@@ -232,9 +233,9 @@ static void publish(struct ec_cycle_thread *t)
 	memcpy(b + 1, c->shared->image, t->bytes);
 	t->back = buffer_index(xchg(&ec_cycle_run_exchange(t)->inputs, t->back | EC_EXCHANGE_NEW));
 	/* the application that sees the number finds the inputs */
-	ec_status_begin(c->shared->status);
+	flags = ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->cycle, cycle);
-	ec_status_end(c->shared->status);
+	ec_status_end(c->shared->status, flags);
 	ec_write64(&c->cycles->number, cycle);
 }
 

@@ -55,9 +55,10 @@ static void forget(struct ec_status_cycle *st)
 
 static noinline void reset(struct ec_cycle *c)
 {
-	ec_status_begin(c->shared->status);
+	unsigned long flags = ec_status_begin(c->shared->status);
+
 	forget(status(c));
-	ec_status_end(c->shared->status);
+	ec_status_end(c->shared->status, flags);
 	/* the figures are zero before a reader may read them again */
 	smp_store_release(&c->cycles->late_reset, false);
 }
@@ -66,10 +67,11 @@ static __always_inline void count(struct ec_cycle *c, u32 late)
 {
 	struct ec_status_cycle *st = status(c);
 	unsigned int i = bucket(late);
+	unsigned long flags;
 
 	if (unlikely(READ_ONCE(c->cycles->late_reset)))
 		reset(c);
-	ec_status_begin(c->shared->status);
+	flags = ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->late[i], st->late[i] + 1);
 	WRITE_ONCE(st->late_sum, st->late_sum + late);
 	if (!st->late_count || late < st->late_min)
@@ -77,7 +79,7 @@ static __always_inline void count(struct ec_cycle *c, u32 late)
 	if (late > st->late_max)
 		WRITE_ONCE(st->late_max, late);
 	WRITE_ONCE(st->late_count, st->late_count + 1);
-	ec_status_end(c->shared->status);
+	ec_status_end(c->shared->status, flags);
 }
 
 /**
@@ -269,14 +271,15 @@ void ec_late_work(struct ec_cycle *c, s64 ns)
 {
 	struct ec_status_cycle *st = status(c);
 	u32 work = clamp_t(s64, ns, 0, U32_MAX);
+	unsigned long flags;
 
-	ec_status_begin(c->shared->status);
+	flags = ec_status_begin(c->shared->status);
 	WRITE_ONCE(st->work_ns, work);
 	WRITE_ONCE(st->work_sum, st->work_sum + work);
 	WRITE_ONCE(st->work_count, st->work_count + 1);
 	if (work > st->work_max)
 		WRITE_ONCE(st->work_max, work);
-	ec_status_end(c->shared->status);
+	ec_status_end(c->shared->status, flags);
 }
 
 /* Facts of a cycle beside its figures. */

@@ -268,6 +268,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	struct ec_status *st = c->shared->status;
 	struct ec_links *l = c->links;
 	unsigned int i, left = 0;
+	unsigned long flags;
 	u64 now = 0;
 	u16 irq = 0;
 
@@ -297,11 +298,11 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	c->n_flight = left;
 	ec_links_events(l, irq);
 	judge(c);
-	ec_status_begin(st);
+	flags = ec_status_begin(st);
 	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->dc_asked | c->dc_back)
 		ec_dc_datagrams_judge(c);
 	WRITE_ONCE(st->cycle, c->sends);
-	ec_status_end(st);
+	ec_status_end(st, flags);
 	return 0;
 }

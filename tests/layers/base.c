@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What all layers use: the log, and readers that take no lock. */
 #include <linux/delay.h>
+#include <linux/hrtimer.h>
 #include <linux/kthread.h>
 #include <linux/slab.h>
 #include "alone.h"
 #include "master/base/budget.h"
 #include "master/base/grow.h"
+#include "master/base/once64.h"
+#include "master/wire/compat.h"
 
 static struct ec_base *base_new(void)
 {
@@ -138,11 +141,65 @@ static void arrays_grow_and_keep_their_entries(void)
 	kvfree(array);
 }
 
+/* reads the status page in an interrupt of the CPU that writes there */
+struct status_reader {
+	struct hrtimer timer;
+	struct ec_status *st;
+	u32 interrupts;
+	u32 hits;	/* of the writer: the reader would wait for ever */
+	u32 torn;
+};
+
+static enum hrtimer_restart read_status(struct hrtimer *timer)
+{
+	struct status_reader *r = container_of(timer, struct status_reader, timer);
+	u32 copy[2];
+
+	r->interrupts++;
+	if (READ_ONCE(r->st->sequence) & 1) {
+		r->hits++;
+		return HRTIMER_NORESTART;
+	}
+	ec_status_copy(r->st, copy, &r->st->dc_time64, sizeof(copy));
+	r->torn += copy[0] != copy[1];
+	hrtimer_forward_now(timer, ns_to_ktime(20 * NSEC_PER_USEC));
+	return r->interrupts < 1000 ? HRTIMER_RESTART : HRTIMER_NORESTART;
+}
+
+static void interrupt_never_hits_writer_of_status(void)
+{
+	struct status_reader r = { .st = kvzalloc(sizeof(*r.st), GFP_KERNEL) };
+	u32 n, *half = (u32 *)&r.st->dc_time64;
+	u64 end = ktime_get_ns() + 5 * (u64)NSEC_PER_SEC;
+	unsigned long flags;
+
+	if (!CHECK(r.st))
+		return;
+	hrtimer_setup(&r.timer, read_status, CLOCK_MONOTONIC, HRTIMER_MODE_REL_PINNED_HARD);
+	hrtimer_start(&r.timer, ns_to_ktime(20 * NSEC_PER_USEC), HRTIMER_MODE_REL_PINNED_HARD);
+	for (n = 0; READ_ONCE(r.interrupts) < 1000 && ktime_get_ns() < end; n++) {
+		flags = ec_status_begin(r.st);
+		/* in two parts, as a kernel of 32 bits does, and slowly */
+		WRITE_ONCE(half[0], n);
+		ndelay(500);
+		WRITE_ONCE(half[1], n);
+		ec_status_end(r.st, flags);
+		if (READ_ONCE(r.hits))
+			break;
+	}
+	hrtimer_cancel(&r.timer);
+	CHECK_EQ(r.hits, 0);
+	CHECK_EQ(r.torn, 0);
+	CHECK_EQ(r.interrupts, 1000);
+	kvfree(r.st);
+}
+
 const struct alone_test alone_tests[] = {
 	TEST(repeated_lines_are_counted),
 	TEST(reader_waits_for_change),
 	TEST(pause_reports_change),
 	TEST(memory_beyond_limit_is_refused),
 	TEST(arrays_grow_and_keep_their_entries),
+	TEST(interrupt_never_hits_writer_of_status),
 	{ }
 };
