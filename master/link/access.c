@@ -6,6 +6,7 @@
 #include "links.h"
 #include "pack.h"
 
+#define SHUT_TRIES	1000	/* to find the cycle owner outside of the links */
 #define FLUSH_WAITS	200	/* for room in the transmit ring: 20 ms at least */
 
 /**
@@ -86,7 +87,8 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 		if (mode == EC_ACCESS_CYCLIC)
 			own_devices(l, true);
 		WRITE_ONCE(l->access.mode, mode);
-		smp_mb();	/* mode before busy; pairs with ec_access_enters() */
+		WRITE_ONCE(l->access.open, mode == EC_ACCESS_CYCLIC);
+		smp_mb();	/* open before busy; pairs with ec_access_enters() */
 		/* the cycle wakes no thread of the master */
 		while (mode == EC_ACCESS_DIRECT && atomic_read_acquire(&l->access.busy))
 			usleep_range(20, 50);
@@ -102,6 +104,45 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 	if (change)
 		ec_posts_kick(l);
 	return change;
+}
+
+/**
+ * ec_access_shut() - keep the cycle owner out of the links for a moment, whatever the access
+ * @l: links
+ *
+ * Shuts only while the owner is outside, so that it does not lose the time of our sleep. If it
+ * comes now, it waits for the lock, or its call returns -EAGAIN.
+ *
+ * Context: Process, with the access lock held; ec_access_reopen() must follow, soon. May sleep.
+ */
+void ec_access_shut(struct ec_links *l)
+{
+	unsigned int tries = 0;
+
+	lockdep_assert_held(&l->access.lock);
+	while (1) {
+		WRITE_ONCE(l->access.open, false);
+		smp_mb();	/* open before busy; pairs with ec_access_enters() */
+		if (!atomic_read_acquire(&l->access.busy))
+			return;
+		/* it is hardly ever outside: now it waits */
+		if (tries++ < SHUT_TRIES)
+			WRITE_ONCE(l->access.open, l->access.mode == EC_ACCESS_CYCLIC);
+		usleep_range(20, 50);
+	}
+}
+
+/**
+ * ec_access_reopen() - the cycle owner may enter the links again
+ * @l: links
+ *
+ * Context: Process, after ec_access_shut() with the access lock still held.
+ */
+void ec_access_reopen(struct ec_links *l)
+{
+	lockdep_assert_held(&l->access.lock);
+	/* what was changed meanwhile before it enters; pairs with ec_access_enters() */
+	smp_store_release(&l->access.open, l->access.mode == EC_ACCESS_CYCLIC);
 }
 
 /**
@@ -127,14 +168,16 @@ void ec_access_reenter(struct ec_links *l)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0; -EBUSY another caller is in them; -EAGAIN access is direct after a cycle
- * timeout: a thread that may sleep has to call ec_access_change().
+ * timeout, or a device is being attached: a thread that may sleep has to call
+ * ec_access_change().
  */
 int ec_access_try_enter(struct ec_links *l)
 {
 	if (atomic_cmpxchg(&l->access.busy, 0, 1))
 		return -EBUSY;
-	smp_mb();	/* busy before mode; pairs with ec_access_change() */
-	if (READ_ONCE(l->access.mode) == EC_ACCESS_CYCLIC)
+	smp_mb();	/* busy before open; pairs with ec_access_change() */
+	/* pairs with ec_access_reopen() */
+	if (smp_load_acquire(&l->access.open))
 		return 0;
 	ec_access_leave(&l->access);
 	return -EAGAIN;

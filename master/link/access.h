@@ -27,6 +27,8 @@ struct ec_access {
 	struct rt_mutex lock;
 	/** @mode: enum ec_access_mode; see ec_access_change() */
 	int mode;
+	/** @open: the cycle owner may enter: with cyclic access, but see ec_access_shut() */
+	bool open;
 	/** @busy: the cycle owner is using the links */
 	atomic_t busy;
 	/** @last_send_ns: time of the last cyclic send (ktime) */
@@ -50,6 +52,8 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode);
 bool ec_access_timed_out(struct ec_links *l);
 void ec_access_timeout(struct ec_links *l);
 void ec_access_poll(struct ec_links *l);
+void ec_access_shut(struct ec_links *l);
+void ec_access_reopen(struct ec_links *l);
 
 /* for the cycle owner */
 void ec_access_reenter(struct ec_links *l);
@@ -60,12 +64,13 @@ int ec_access_try_enter(struct ec_links *l);
 u32 ec_access_slack_ns(const struct ec_links *l);
 u16 ec_access_room(const struct ec_links *l);
 
-/* Marks the links as used; false: access is direct, the mark is to be taken back. */
+/* Marks the links as used; false: the owner may not enter, the mark is to be taken back. */
 static inline bool ec_access_enters(struct ec_access *a)
 {
 	atomic_set(&a->busy, 1);
-	smp_mb();	/* busy before mode; pairs with ec_access_change() */
-	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
+	smp_mb();	/* busy before open; pairs with ec_access_change() */
+	/* pairs with ec_access_reopen() */
+	return smp_load_acquire(&a->open);
 }
 
 /**

@@ -106,12 +106,43 @@ static void report(struct ec_link *link, bool attached)
 		l->ops->device(l, link, attached);
 }
 
+/* The call of a cycle that is under way finds the same device from its begin to its end. */
+static void publish(struct ecdev *dev, struct ec_link *link)
+{
+	struct ec_links *l = link->links;
+	bool cyclic;
+
+	lockdep_assert_held(&devices_lock);
+	rt_mutex_lock(&l->access.lock);
+	cyclic = ec_access_is_cyclic(&l->access);
+	if (cyclic && dev->ops->cycle)
+		dev->ops->cycle(dev->priv, true);
+	ec_access_shut(l);
+	WRITE_ONCE(link->dev, dev);
+	ec_link_set_places(link, cyclic);
+	ec_access_reopen(l);
+	rt_mutex_unlock(&l->access.lock);
+}
+
+/* Before the device delivers frames; a cycle that counts does so before or afterwards. */
+static void clear_counters(struct ec_link *link)
+{
+	struct ec_links *l = link->links;
+
+	rt_mutex_lock(&l->access.lock);
+	ec_access_shut(l);
+	ec_link_clear_counters(link);
+	ec_access_reopen(l);
+	rt_mutex_unlock(&l->access.lock);
+}
+
 static void attach(struct ecdev *dev, struct ec_link *link)
 {
 	struct ec_links *l = link->links;
 	int ret;
 
 	lockdep_assert_held(&devices_lock);
+	clear_counters(link);
 	rcu_assign_pointer(dev->link, link);
 	ret = dev->ops->start(dev->priv, dev);
 	if (ret) {
@@ -120,14 +151,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 		synchronize_rcu();
 		return;
 	}
-	memset(&link->stats, 0, sizeof(link->stats));
-	memset(&link->rates, 0, sizeof(link->rates));
-	rt_mutex_lock(&l->access.lock);
-	if (ec_access_is_cyclic(&l->access) && dev->ops->cycle)
-		dev->ops->cycle(dev->priv, true);
-	WRITE_ONCE(link->dev, dev);
-	ec_link_set_places(link, ec_access_is_cyclic(&l->access));
-	rt_mutex_unlock(&l->access.lock);
+	publish(dev, link);
 	ec_info(l, "%s device %s attached (%s, %pM)\n", side_name(link), dev->name,
 		dev->ops->kind, dev->mac);
 	ec_event(l->base, EC_EVENT_DEVICE_ON, link->side);
@@ -441,59 +465,3 @@ bool ecdev_numbered(struct ecdev *dev)
 	return numbered;
 }
 EXPORT_SYMBOL_GPL(ecdev_numbered);
-
-/**
- * ecdev_in_cycle() - does a cycle own the bus access?
- * @dev: device
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: false without a master.
- */
-bool ecdev_in_cycle(struct ecdev *dev)
-{
-	struct ec_link *link;
-	bool ret;
-
-	rcu_read_lock();
-	link = rcu_dereference(dev->link);
-	ret = link && ec_access_is_cyclic(&link->links->access);
-	rcu_read_unlock();
-	return ret;
-}
-EXPORT_SYMBOL_GPL(ecdev_in_cycle);
-
-/**
- * ecdev_foreign() - count a received frame that is not EtherCAT
- * @dev: device
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ecdev_foreign(struct ecdev *dev)
-{
-	struct ec_link *link;
-
-	rcu_read_lock();
-	link = rcu_dereference(dev->link);
-	if (link)
-		atomic64_inc(&link->stats.foreign);
-	rcu_read_unlock();
-}
-EXPORT_SYMBOL_GPL(ecdev_foreign);
-
-/**
- * ecdev_not_captured() - count a frame that capture programs did not see
- * @dev: device
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ecdev_not_captured(struct ecdev *dev)
-{
-	struct ec_link *link;
-
-	rcu_read_lock();
-	link = rcu_dereference(dev->link);
-	if (link)
-		atomic64_inc(&link->stats.not_captured);
-	rcu_read_unlock();
-}
-EXPORT_SYMBOL_GPL(ecdev_not_captured);

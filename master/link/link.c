@@ -246,6 +246,39 @@ bool ec_link_look(struct ec_link *link)
 }
 
 /**
+ * ec_link_clear_counters() - count from 0 again
+ * @link: link; its counters do not change meanwhile
+ *
+ * The averages follow with the next ec_link_rates_update().
+ *
+ * Context: Any.
+ */
+void ec_link_clear_counters(struct ec_link *link)
+{
+	atomic64_t *counter = (atomic64_t *)&link->stats;
+	unsigned int i;
+
+	/* others may read them at this moment */
+	for (i = 0; i < sizeof(link->stats) / sizeof(*counter); i++)
+		atomic64_set(&counter[i], 0);
+	/* the counters before it; pairs with ec_link_rates_update() */
+	smp_store_release(&link->rates.restart, true);
+}
+
+static void restart_rates(struct ec_link_rates *r)
+{
+	unsigned int i, j;
+
+	WRITE_ONCE(r->restart, false);
+	/* before the counters are read: if they are cleared after that, there is a next time */
+	smp_mb();
+	memset(r->last, 0, sizeof(r->last));
+	for (i = 0; i < ARRAY_SIZE(r->rate); i++)
+		for (j = 0; j < EC_UAPI_RATES; j++)
+			WRITE_ONCE(r->rate[i][j], 0);
+}
+
+/**
  * ec_link_rates_update() - update the averages; called once a second
  * @link: link
  *
@@ -254,18 +287,21 @@ bool ec_link_look(struct ec_link *link)
 void ec_link_rates_update(struct ec_link *link)
 {
 	static const s32 span[EC_UAPI_RATES] = { 1, 10, 60 };
+	const struct ec_link_stats *stats = &link->stats;
 	struct ec_link_rates *r = &link->rates;
-	u64 now[5] = {
-		atomic64_read(&link->stats.tx_frames),
-		atomic64_read(&link->stats.rx_frames),
-		atomic64_read(&link->stats.tx_bytes),
-		atomic64_read(&link->stats.rx_bytes),
-		atomic64_read(&link->stats.lost),
+	const atomic64_t *counter[5] = {
+		&stats->tx_frames, &stats->rx_frames, &stats->tx_bytes, &stats->rx_bytes,
+		&stats->lost,
 	};
 	unsigned int i, j;
 
-	for (i = 0; i < ARRAY_SIZE(now); i++) {
-		u32 d = (u32)(now[i] - r->last[i]);
+	/* pairs with ec_link_clear_counters() */
+	if (smp_load_acquire(&r->restart))
+		restart_rates(r);
+
+	for (i = 0; i < ARRAY_SIZE(counter); i++) {
+		u64 now = atomic64_read(counter[i]);
+		u32 d = (u32)(now - r->last[i]);
 
 		for (j = 0; j < EC_UAPI_RATES; j++) {
 			s64 diff = (s64)d - r->rate[i][j];
@@ -274,6 +310,6 @@ void ec_link_rates_update(struct ec_link *link)
 			diff = div_s64(diff, span[j]) ?: diff > 0 ? 1 : diff < 0 ? -1 : 0;
 			WRITE_ONCE(r->rate[i][j], r->rate[i][j] + diff);
 		}
-		r->last[i] = now[i];
+		r->last[i] = now;
 	}
 }

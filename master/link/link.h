@@ -46,10 +46,12 @@ struct ec_link_stats {
  * struct ec_link_rates - averages, kept by the monitor
  * @last: counters one second ago: tx frames, rx frames, tx bytes, rx bytes, lost
  * @rate: per second, averaged over 1, 10, 60 s
+ * @restart: the counters have been cleared
  */
 struct ec_link_rates {
 	u64 last[5];
 	u32 rate[5][EC_UAPI_RATES];
+	bool restart;
 };
 
 /**
@@ -93,6 +95,7 @@ void ec_links_poll_cycle(struct ec_links *l);
 void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);
 bool ec_link_look(struct ec_link *link);
+void ec_link_clear_counters(struct ec_link *link);
 void ec_link_rates_update(struct ec_link *link);
 
 #endif

@@ -139,3 +139,59 @@ bool ecdev_awaits(struct ecdev *dev)
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecdev_awaits);
+
+/**
+ * ecdev_in_cycle() - does a cycle own the bus access?
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: false without a master.
+ */
+bool ecdev_in_cycle(struct ecdev *dev)
+{
+	struct ec_link *link;
+	bool ret;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	ret = link && ec_access_is_cyclic(&link->links->access);
+	rcu_read_unlock();
+	return ret;
+}
+EXPORT_SYMBOL_GPL(ecdev_in_cycle);
+
+/**
+ * ecdev_foreign() - count a received frame that is not EtherCAT
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_foreign(struct ecdev *dev)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		atomic64_inc(&link->stats.foreign);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_foreign);
+
+/**
+ * ecdev_not_captured() - count a frame that capture programs did not see
+ * @dev: device
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ecdev_not_captured(struct ecdev *dev)
+{
+	struct ec_link *link;
+
+	rcu_read_lock();
+	link = rcu_dereference(dev->link);
+	if (link)
+		atomic64_inc(&link->stats.not_captured);
+	rcu_read_unlock();
+}
+EXPORT_SYMBOL_GPL(ecdev_not_captured);

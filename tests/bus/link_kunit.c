@@ -361,6 +361,59 @@ static void link_station_search_ends(struct kunit *test)
 	kvfree(claims);
 }
 
+/* offers a device in a thread of its own */
+struct offer {
+	struct ec_sim *sim;
+	struct ec_sim_link *link;
+	struct completion done;
+};
+
+static int offer(void *arg)
+{
+	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x78 };
+	struct offer *o = arg;
+
+	o->link = ec_sim_link_create("bus1", mac, o->sim, 0);
+	complete(&o->done);
+	return 0;
+}
+
+/* Neither the device nor its counters change under a call of the cycle. */
+static void link_device_beside_cycle_waits_for_its_call(struct kunit *test)
+{
+	static const char one[] = "slave a EK1100\n";
+	struct bus *b = bus_up(test, one, 1);
+	struct ec_links *l = &b->m->links;
+	struct ec_link *link = &l->link[1];
+	struct ec_sim_error err = { 0 };
+	struct offer o = {};
+
+	KUNIT_ASSERT_EQ(test, ec_sim_describe(&o.sim, &ec_sim_kernel_ops, one, strlen(one), NULL,
+					      &err), 0);
+	init_completion(&o.done);
+	l->backup = "bus1";
+	atomic64_set(&link->stats.rx_frames, 7);
+	ec_access_change(l, EC_ACCESS_CYCLIC);
+	KUNIT_ASSERT_TRUE(test, ec_access_enters(&l->access));
+	KUNIT_ASSERT_FALSE(test, IS_ERR(kthread_run(offer, &o, "offer")));
+	msleep(10);
+	KUNIT_EXPECT_FALSE(test, completion_done(&o.done));
+	KUNIT_EXPECT_NULL(test, link->dev);
+	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&link->stats.rx_frames), 7ull);
+	ec_access_leave(&l->access);
+	wait_for_completion(&o.done);
+	KUNIT_ASSERT_FALSE(test, IS_ERR(o.link));
+	KUNIT_EXPECT_NOT_NULL(test, link->dev);
+	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&link->stats.rx_frames), 0ull);
+	/* the cycle goes on */
+	KUNIT_EXPECT_EQ(test, ec_access_try_enter(l), 0);
+	ec_access_leave(&l->access);
+	KUNIT_EXPECT_EQ(test, atomic_read(&l->access.timeouts), 0);
+	ec_access_change(l, EC_ACCESS_DIRECT);
+	ec_sim_link_destroy(o.link);
+	l->backup = NULL;
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(link_full_transmit_ring_delays_only),
 	KUNIT_CASE(link_hanging_device_ends_in_error),
@@ -372,6 +425,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(link_loss_ends_waiting_beside_slow_cycle),
 	KUNIT_CASE(link_claims_beyond_memory_refused),
 	KUNIT_CASE(link_station_search_ends),
+	KUNIT_CASE(link_device_beside_cycle_waits_for_its_call),
 	{}
 };
 
