@@ -61,7 +61,8 @@ static void check_links(struct watch *w)
 static void note_change(struct ec_slave *s, u16 status, u16 code)
 {
 	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
-	bool left = state < before && before == READ_ONCE(s->requested);
+	bool left = state < before && before == READ_ONCE(s->requested) &&
+		    state != READ_ONCE(s->awaited);
 
 	if (status & EC_AL_ERROR && !(READ_ONCE(s->al_status) & EC_AL_ERROR))
 		ec_slave_warn(s, "AL state %s with error, AL status code 0x%04x (%s)\n",
@@ -98,6 +99,7 @@ static bool check_slaves(struct ec_master *m)
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
 		u16 status = get_unaligned_le16(r[i].al), code = get_unaligned_le16(r[i].al + 4);
+		u8 state;
 
 		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
@@ -107,8 +109,10 @@ static bool check_slaves(struct ec_master *m)
 		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != r[i].reads)
 			continue;
 		note_change(s, status, code);
-		/* fallen back by itself: bring it up again */
-		if (!READ_ONCE(s->error) && (status & EC_AL_STATE_MASK) != READ_ONCE(s->requested))
+		/* what was asked for comes late, or it has fallen back by itself: bring it up */
+		state = status & EC_AL_STATE_MASK;
+		if (READ_ONCE(s->error) ? state == READ_ONCE(s->awaited) :
+					  state != READ_ONCE(s->requested))
 			ec_slave_kick(s);
 	}
 out:

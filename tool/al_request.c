@@ -21,9 +21,11 @@ void al_reason(const struct ec_ioc_slave *s, char *buf, size_t size)
 		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
 }
 
-int al_request(struct dev *d, u16 position, u8 state)
+int al_request(struct dev *d, u16 position, u8 state, u32 timeout_ms)
 {
-	struct ec_ioc_state req = { .position = position, .state = state };
+	struct ec_ioc_state req = {
+		.position = position, .state = state, .timeout_ms = timeout_ms,
+	};
 	int err = dev_ioctl(d, EC_IOC_STATE, &req);
 
 	return err ? dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master, position,

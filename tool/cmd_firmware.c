@@ -43,7 +43,7 @@ static int to_state(const struct tool *t, struct dev *d, const struct ec_ioc_sla
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
 	struct ec_ioc_slave s;
 
-	return same_slave(d, of, &s) || al_request(d, of->position, state) ||
+	return same_slave(d, of, &s) || al_request(d, of->position, state, 0) ||
 	       al_wait(d, &s, state, end);
 }
 

@@ -56,7 +56,7 @@ static void show_slave(const struct ec_ioc_slave *s, const char *indent, const i
 
 static int each(const struct tool *t, struct dev *d)
 {
-	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
+	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S + t->timeout_ms / 1e3);
 	struct slaves sel;
 	int w[4] = { 0 };
 	int ret = 0;
@@ -73,7 +73,7 @@ static int each(const struct tool *t, struct dev *d)
 		out_text("Master%u\n", d->master);
 	out_array("slaves");
 	for (size_t i = 0; i < sel.n && wanted; i++)
-		ret |= al_request(d, sel.v[i].position, wanted);
+		ret |= al_request(d, sel.v[i].position, wanted, t->timeout_ms);
 	for (size_t i = 0; i < sel.n && wanted && t->wait; i++)
 		ret |= al_wait(d, &sel.v[i], wanted, end);
 	measure(&sel, w);
@@ -108,13 +108,17 @@ const struct cmd cmd_states = {
 	.name = "states",
 	.run = run,
 	.args = "[STATE]",
-	.opts = "mapw",
+	.opts = "mapwI",
 	.summary = "Request an AL state for slaves, or show the states",
 	.help = "STATE := { INIT | PREOP | BOOT | SAFEOP | OP }, in any case.\n"
 		"Without --wait the command returns when the master has accepted the request. With\n"
 		"--wait it fails and shows the AL status code when a slave refuses the state or does\n"
-		"not reach it in time (default 10 s). The slave keeps this state until it reconnects or an application\n"
-		"reserves, activates, resets or deactivates the master.\n"
+		"not reach it in time (default 10 s, with --timeout as much more). The slave keeps this\n"
+		"state until it reconnects or an application reserves, activates, resets or deactivates\n"
+		"the master.\n"
+		"--timeout is the time limit of each transition on the way to STATE, instead of that of the\n"
+		"application, of the module parameter state_timeout_ms, and of 0.2 to 10 s by transition.\n"
+		"A slave that is late has failed, but its state is taken when it comes.\n"
 		"Without STATE: position, alias:relative position, state, and the cause of an error.\n",
 	.json = "masters[]: master, slaves[] (position, alias, relative_position, state, al_error,\n"
 		"al_status_code, al_status_text, flag_error, cause); empty after a request without --wait",

@@ -21,6 +21,7 @@ const struct opt opts[] = {
 	{ 'v', "verbose", NULL, "more output" },
 	{ 'b', "boot", NULL, "for each start of the computer" },
 	{ 'w', "wait", "[SECONDS]", "wait for the end, at most SECONDS" },
+	{ 'I', "timeout", "SECONDS", "time limit of the slave, 0.001 to 600" },
 	{ 'S', "save", "FILE", "write the result to a file" },
 	{ 'C', "compare", "FILE", "compare with a file of --save; - for stdin" },
 	{ 'L', "compare-slave", "POSITION", "compare with another slave" },
@@ -50,6 +51,7 @@ static const struct option longs[] = {
 	{ "verbose", no_argument, NULL, 'v' },
 	{ "boot", no_argument, NULL, 'b' },
 	{ "wait", optional_argument, NULL, 'w' },
+	{ "timeout", required_argument, NULL, 'I' },
 	{ "save", required_argument, NULL, 'S' },
 	{ "compare", required_argument, NULL, 'C' },
 	{ "compare-slave", required_argument, NULL, 'L' },
@@ -109,6 +111,17 @@ static int watch(const char *text, double *s)
 	if (!seconds(text, s) || *s < 0.1 || *s > 86400)
 		return usage_error("invalid time '%s' for --watch: expected 0.1 to 86400 seconds",
 				   text);
+	return 0;
+}
+
+static int timeout(const char *text, u32 *ms)
+{
+	double s;
+
+	if (!seconds(text, &s) || s < 0.001 || s > 600)
+		return usage_error("invalid time '%s' for --timeout: expected 0.001 to 600 seconds",
+				   text);
+	*ms = (u32)(s * 1000 + 0.5);
 	return 0;
 }
 
@@ -191,6 +204,8 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'W':
 		return watch(optarg, &t->watch_s);
+	case 'I':
+		return timeout(optarg, &t->timeout_ms);
 	case 'E':
 		t->tree = true;
 		return 0;

@@ -35,6 +35,7 @@
  * @boot: --boot
  * @wait: --wait was given
  * @wait_s: its argument in seconds, negative: none
+ * @timeout_ms: argument of --timeout, 0: not given
  * @save: --save, NULL when not given
  * @compare: --compare, NULL when not given
  * @compare_slave: --compare-slave, negative when not given
@@ -61,6 +62,7 @@ struct tool {
 	bool boot;
 	bool wait;
 	double wait_s;
+	u32 timeout_ms;
 	const char *save;
 	const char *compare;
 	int compare_slave;

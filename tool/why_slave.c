@@ -69,7 +69,7 @@ static const struct {
 	{ EC_CAUSE_SYNC, false, "sync",
 	  "correct the SYNC signals in the application: ecrt_slave_config_dc(); compare with the ESI" },
 	{ EC_CAUSE_SLOW, false, "al_timeout",
-	  "check that the application of the slave runs: LEDs, 'ethercat diag'; or allow more time: ecrt_slave_config_state_timeout()" },
+	  "check that the application of the slave runs: LEDs, 'ethercat diag'; or allow more time: ecrt_slave_config_state_timeout(), state_timeout_ms of ec_master" },
 	{ EC_CAUSE_FRAMES, false, "frames",
 	  "look for the cable with errors: 'ethercat crc'" },
 	{ EC_CAUSE_MEMORY, false, "memory",

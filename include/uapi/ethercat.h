@@ -279,6 +279,7 @@ struct ec_ioc_state {
 	__u16 position;		/* in */
 	__u8 state;		/* in: 1, 2, 3, 4, 8 */
 	__u8 reserved;
+	__u32 timeout_ms;	/* in: of each transition on the way to it, 0: the usual limits */
 };
 
 struct ec_ioc_debug {

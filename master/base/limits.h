@@ -29,6 +29,7 @@
 #define EC_MAX_SDO_SIZE		(64 * 1024)	/* bytes; field tools use 64 KiB */
 #define EC_MAX_DICT_BYTES	(64 * 1024)	/* kept answers of a slave */
 #define EC_MAX_SDO_MS		60000u	/* others wait for the mailbox meanwhile */
+#define EC_MAX_AL_MS	600000u	/* of a transition: some slaves load a program meanwhile */
 #define EC_MAX_SOE_SIZE		(64 * 1024)	/* bytes; the length of a list has 16 bits */
 #define EC_MAX_FOE_SIZE		(15 * 1024 * 1024)	/* file of a request */
 #define EC_MAX_VOE_SIZE		1474	/* bytes; one message in one datagram */

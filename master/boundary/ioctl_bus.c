@@ -80,11 +80,15 @@ int ec_ioc_state(struct ec_call *call)
 		return ec_refuse(call, -EINVAL,
 				 "%u is no AL state; use INIT, PREOP, BOOT, SAFEOP or OP",
 				 i->state);
+	if (i->timeout_ms > EC_MAX_AL_MS)
+		return ec_refuse(call, -EINVAL,
+				 "a transition may take at most %u ms, not %u", EC_MAX_AL_MS,
+				 i->timeout_ms);
 	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", i->position,
 				 ec_slave_why(s, why, sizeof(why)));
 	ec_slave_forgive(s);
-	ec_slave_request(s, i->state);
+	ec_slave_request_within(s, i->state, i->timeout_ms);
 	return 0;
 }
 

@@ -1,8 +1,26 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include <linux/moduleparam.h>
+#include "../base/limits.h"
 #include "slave.h"
 #include "../link/xfer.h"
+
+unsigned int ec_al_timeout;
+
+static int set_timeout(const char *value, const struct kernel_param *kp)
+{
+	return param_set_uint_minmax(value, kp, 0, EC_MAX_AL_MS);
+}
+
+static const struct kernel_param_ops timeout_ops = {
+	.set = set_timeout,
+	.get = param_get_uint,
+};
+
+module_param_cb(state_timeout_ms, &timeout_ops, &ec_al_timeout, 0644);
+MODULE_PARM_DESC(state_timeout_ms,
+		 "Time limit of each AL state transition, up to 600000 ms; 0: 200 ms to 10 s by transition (0)");
 
 /**
  * ec_al_read() - read AL status and code, registers 0x0130-0x0135
@@ -86,15 +104,22 @@ int ec_al_ack(struct ec_slave *slave)
 	return ret ? ret : poll(slave, EC_AL_ERROR, 0, false, until);
 }
 
+/* The request of a tool comes first, then what the application allows. */
+static u32 limit_ms(const struct ec_slave *s, u8 from, u8 to, u32 configured_ms)
+{
+	return READ_ONCE(s->limit_ms) ?: configured_ms ?: READ_ONCE(ec_al_timeout) ?:
+	       ec_al_timeout_ms(from, to);
+}
+
 /**
  * ec_al_set() - bring a slave to a neighbouring AL state and wait for it
  * @slave: slave
- * @state: wanted state
- * @timeout_ms: limit, 0: default of the transition
+ * @state: wanted state; @awaited until it is reached or refused, or another one is asked for
+ * @timeout_ms: limit that the application has configured, 0: none
  *
  * ETG.1000.6 clause 6.4.1.
  *
- * Context: Process. Waits for bus traffic, at most @timeout_ms.
+ * Context: Process. Waits for bus traffic, until the time limit.
  * Return: 0; -EPROTO when the slave refused (al_code says why; the error is
  * acknowledged already); -ETIME; -EIO when it does not answer; -ECANCELED.
  */
@@ -108,8 +133,9 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	/* it may come back with another dictionary */
 	if (from < EC_AL_PREOP || from == EC_AL_BOOT || state < EC_AL_PREOP || state == EC_AL_BOOT)
 		ec_dict_forget(&slave->dict);
-	if (!timeout_ms)
-		timeout_ms = ec_al_timeout_ms(from, state);
+	timeout_ms = limit_ms(slave, from, state, timeout_ms);
+	slave->awaited_ms = timeout_ms;
+	WRITE_ONCE(slave->awaited, state);
 	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
 	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
 		     ec_al_state_name(from), timeout_ms);
@@ -118,6 +144,8 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
 	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x",
 			    READ_ONCE(slave->al_status), READ_ONCE(slave->al_code));
+	if (!ret || ret == -EPROTO)
+		WRITE_ONCE(slave->awaited, 0);
 	if (ret == -EPROTO) {
 		code = READ_ONCE(slave->al_code);
 		ec_al_ack(slave);

@@ -19,6 +19,8 @@
 /* one slave on its way */
 struct climber {
 	struct ec_slave *slave;
+	unsigned int first;	/* of its datagrams */
+	unsigned int writes;
 	u8 page[2 * EC_SM_PAGE];
 	u8 al[6];
 };
@@ -30,6 +32,15 @@ struct job {
 	bool clean;
 	struct ec_dg *dg;
 };
+
+/* Has each of the @n datagrams reached its slave? */
+static bool all_taken(const struct ec_dg *dg, unsigned int n)
+{
+	while (n--)
+		if (dg[n].err || dg[n].wkc != 1)
+			return false;
+	return true;
+}
 
 /* Mailbox SyncManagers, EEPROM to the PDI, state: state-machine.md 4.2. */
 static void start(struct job *j)
@@ -43,13 +54,23 @@ static void start(struct job *j)
 		unsigned int len = ec_mbox_present(&c->slave->mbox) ?
 				   ec_mbox_sms(&c->slave->mbox, false, c->page) : 0;
 
+		c->first = n;
 		if (len)
 			j->dg[n++] = EC_FPWR(station, EC_REG_SM(0), len, c->page);
 		j->dg[n++] = EC_FPWR(station, EC_REG_ECAT_MASK, 2, ec_mailboxes_mask(len));
 		j->dg[n++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, pdi);
 		j->dg[n++] = EC_FPWR(station, EC_REG_AL_CONTROL, 2, preop);
+		c->writes = n - c->first;
 	}
 	ec_xfer(j->bus->links, j->dg, n);
+	for (i = 0; i < j->n; i++) {
+		struct climber *c = &j->c[i];
+
+		c->slave->clean = j->clean;
+		/* it may come late, then its worker takes it */
+		if (all_taken(&j->dg[c->first], c->writes))
+			WRITE_ONCE(c->slave->awaited, EC_AL_PREOP);
+	}
 }
 
 /* Poll the AL status; those that are there or have an error are done. */
@@ -68,12 +89,13 @@ static void look(struct job *j)
 			c->slave->al_code = get_unaligned_le16(c->al + 4);
 			if (READ_ONCE(c->slave->al_status) == EC_AL_PREOP) {
 				c->slave->ours = true;
-				c->slave->clean = j->clean;
+				WRITE_ONCE(c->slave->awaited, 0);
 				continue;
 			}
 			/* its worker tries again, without the event */
 			if (READ_ONCE(c->slave->al_status) & EC_AL_ERROR) {
 				c->slave->mbox.strict = true;
+				WRITE_ONCE(c->slave->awaited, 0);
 				continue;
 			}
 		}

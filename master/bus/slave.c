@@ -469,6 +469,20 @@ u8 ec_slave_wanted(const struct ec_slave *slave)
  */
 void ec_slave_request(struct ec_slave *slave, u8 state)
 {
+	ec_slave_request_within(slave, state, 0);
+}
+
+/**
+ * ec_slave_request_within() - the same with a time limit
+ * @slave: slave
+ * @state: AL state; none beyond PREOP is reached while the computer reboots
+ * @limit_ms: for each transition on the way to it, until the next request; 0: the usual ones
+ *
+ * Context: Process.
+ */
+void ec_slave_request_within(struct ec_slave *slave, u8 state, u32 limit_ms)
+{
+	WRITE_ONCE(slave->limit_ms, limit_ms);
 	WRITE_ONCE(slave->requested, allowed(slave, state));
 	wake_up_all(&slave->stop.wake);
 	ec_slave_kick(slave);

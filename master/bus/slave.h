@@ -87,6 +87,10 @@ struct ec_break {
  * @al_reads: how often a worker has read the two: what was asked for before
  *	is older
  * @requested: AL state it shall reach
+ * @limit_ms: time limit of each transition to it, 0: the usual ones
+ * @awaited: AL state that was asked for and is not reached so far, 0: none. It is taken when it
+ *	comes after its time limit
+ * @awaited_ms: that limit
  * @note_lock: protects @why, @cause and @warning, and @error where it changes; without
  *	@lock a caller copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
@@ -106,7 +110,7 @@ struct ec_break {
  * @lock: one worker or caller at a time changes its state
  * @read_pdos: read the PDOs when it is there
  * @reconfigure: go through INIT and configure again
- * @clean: in PREOP, and nothing of a configuration is left in its registers
+ * @clean: nothing of a configuration is left in its registers
  * @ours: has gone from INIT to PREOP or BOOT by our hand, not by an earlier master's
  */
 struct ec_slave {
@@ -158,6 +162,9 @@ struct ec_slave {
 	u16 al_code;
 	u32 al_reads;
 	u8 requested;
+	u32 limit_ms;
+	u8 awaited;
+	u32 awaited_ms;
 	raw_spinlock_t note_lock;
 	u8 error;
 	char why[EC_UAPI_REASON];
@@ -203,6 +210,7 @@ int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
 u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
+void ec_slave_request_within(struct ec_slave *slave, u8 state, u32 limit_ms);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
 		   const char *fmt, ...) __printf(4, 5);
 void ec_slave_list(struct ec_slave *slave);
@@ -228,6 +236,7 @@ int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
 void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
 
 /* al.c */
+extern unsigned int ec_al_timeout;	/* ms, 0: by transition: state_timeout_ms of the module */
 int ec_al_read(struct ec_slave *slave);
 int ec_al_ack(struct ec_slave *slave);
 int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);

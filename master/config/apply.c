@@ -169,10 +169,26 @@ static int op_only_off(struct ec_slave *s)
 	return 0;
 }
 
+/* It has reached INIT: nothing of a configuration is left. */
+static void in_init(struct ec_slave *s)
+{
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
+	int ret = ec_apply_clear(s);
+
+	write_reg(s, EC_REG_EEP_OWNER, force, 1);
+	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
+	if (ec_slave_has_clock(s))
+		ret = ec_dc_sync_stop(s) ?: ret;
+	ec_mbox_reset(&s->mbox);
+	ec_setup_of(s)->op_only = 0;
+	WRITE_ONCE(s->reconfigure, false);
+	s->ours = false;
+	s->clean = !ret;
+}
+
 /* state-machine.md 4.1 */
 static int to_init(struct ec_slave *s)
 {
-	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	int ret;
 
 	hold_mailbox(s);
@@ -180,16 +196,7 @@ static int to_init(struct ec_slave *s)
 	ret = set_state(s, EC_AL_INIT);
 	if (ret)
 		return failed(s, EC_AL_INIT, ret);
-	ec_apply_clear(s);
-	write_reg(s, EC_REG_EEP_OWNER, force, 1);
-	write_reg(s, EC_REG_EEP_OWNER, zero, 1);
-	if (ec_slave_has_clock(s))
-		ec_dc_sync_stop(s);
-	ec_mbox_reset(&s->mbox);
-	ec_setup_of(s)->op_only = 0;
-	WRITE_ONCE(s->reconfigure, false);
-	s->ours = false;
-	s->clean = false;
+	in_init(s);
 	return 0;
 }
 
@@ -211,6 +218,14 @@ static int enter(struct ec_slave *s, u8 state)
 	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
 }
 
+/* It has gone from INIT to @state by our hand. */
+static void has_left_init(struct ec_slave *s, u8 state)
+{
+	s->ours = true;
+	if (state == EC_AL_PREOP)
+		release_mailbox(s);
+}
+
 /* From INIT to PREOP or BOOT with the mailbox of that state. */
 static int leave_init(struct ec_slave *s, u8 state)
 {
@@ -220,17 +235,17 @@ static int leave_init(struct ec_slave *s, u8 state)
 	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
 		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				     "BOOT not possible: no bootstrap mailbox in the SII");
+	s->ours = false;
 	ret = enter(s, state);
 	/* whatever code it has for that: without the event, then */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
 		s->mbox.strict = true;
 		ret = set_state(s, EC_AL_INIT) ?: enter(s, state);
 	}
-	s->ours = !ret;
-	if (!boot) {
-		s->clean = !ret;
+	if (!ret)
+		has_left_init(s, state);
+	else if (!boot)
 		release_mailbox(s);
-	}
 	return ret ? failed(s, state, ret) : 0;
 }
 
@@ -381,17 +396,34 @@ static int to_op(struct ec_slave *s)
  * In PREOP a slave has no use for SYNC signals and process data. Without them the next
  * application need not take it through INIT.
  */
+static void back_in_preop(struct ec_slave *s)
+{
+	int ret = ec_slave_has_clock(s) ? ec_dc_sync_stop(s) : 0;
+
+	s->clean = !ec_apply_clear_pdos(s) && !ret;
+}
+
 static int step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
 	if (ret)
 		return failed(s, want, ret);
-	if (want == EC_AL_PREOP) {
-		if (ec_slave_has_clock(s))
-			ret = ec_dc_sync_stop(s);
-		s->clean = !ec_apply_clear_pdos(s) && !ret;
-	}
+	if (want == EC_AL_PREOP)
+		back_in_preop(s);
+	return 0;
+}
+
+/* What was asked for has come after its time limit: the rest of that step. */
+static int arrived(struct ec_slave *s, u8 state)
+{
+	WRITE_ONCE(s->awaited, 0);
+	if (state == EC_AL_INIT)
+		in_init(s);
+	else if (!s->ours)
+		has_left_init(s, state);
+	else if (state == EC_AL_PREOP)
+		back_in_preop(s);
 	return 0;
 }
 
@@ -443,6 +475,8 @@ static int step(struct ec_slave *s)
 			return failed(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, ret);
 	}
 	cur = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
+	if (cur == READ_ONCE(s->awaited))
+		return arrived(s, cur);
 	anew = READ_ONCE(s->reconfigure) && want > EC_AL_PREOP;
 	if (cur == EC_AL_PREOP && s->clean && s->ours && anew)
 		return start_clean(s);
@@ -510,8 +544,12 @@ void ec_apply(struct ec_slave *s)
 		log_return(s);
 	}
 	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
-	    (is_transient(s, ret) || is_undecided(s, ret)))
+	    (is_transient(s, ret) || is_undecided(s, ret))) {
+		/* it has that time once more: a request anew may set it back */
+		if (ret == -ETIME && READ_ONCE(s->awaited))
+			s->retry_ms = max(s->retry_ms, s->awaited_ms / 2);
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
+	}
 	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_names_pending(s))

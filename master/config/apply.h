@@ -19,7 +19,7 @@ void ec_apply(struct ec_slave *s);
 int ec_apply_regs(struct ec_slave *s, const struct ec_config *c);
 int ec_apply_clear_fmmus(struct ec_slave *s);
 int ec_apply_clear_pdos(struct ec_slave *s);
-void ec_apply_clear(struct ec_slave *s);
+int ec_apply_clear(struct ec_slave *s);
 
 /* apply_pdo.c */
 int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c);

@@ -212,11 +212,16 @@ int ec_apply_clear_pdos(struct ec_slave *s)
  * @s: slave in INIT
  *
  * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0, -EIO, or as ec_xfer().
  */
-void ec_apply_clear(struct ec_slave *s)
+int ec_apply_clear(struct ec_slave *s)
 {
+	unsigned int n = min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM);
+	int ret = ec_apply_clear_fmmus(s);
+
 	lockdep_assert_held(&s->lock);
-	ec_apply_clear_fmmus(s);
-	ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(0), zero,
-		     EC_SM_PAGE * min_t(u8, s->regs[EC_REG_SMS], EC_MAX_SM));
+	if (n)
+		ret = ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(0), zero,
+				   EC_SM_PAGE * n) ?: ret;
+	return ret;
 }

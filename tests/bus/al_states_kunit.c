@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* AL states on request, refusals, errors, and who notices them when. */
 #include "bus.h"
+#include "master/base/limits.h"
+#include "master/boundary/ioctl.h"
 #include "master/wire/al.h"
 
 #define N	4
@@ -100,6 +102,90 @@ static const struct refusal {
 	{ EC_AL_PREOP, EC_AL_SAFEOP, 0x001e },
 	{ EC_AL_SAFEOP, EC_AL_OP, 0x001f },
 };
+
+/* The first of these that is set counts: of the request, of the module, of the transition. */
+static const struct limit {
+	u32 request_ms;
+	u32 module_ms;
+	u32 ms;
+} limits[] = {
+	{ 0, 0, 3000 }, { 0, 700, 700 }, { 900, 700, 900 }, { 900, 0, 900 }, { 0, 8000, 8000 },
+};
+
+static void limit_desc(const struct limit *l, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "request %u ms, module %u ms", l->request_ms,
+		 l->module_ms);
+}
+KUNIT_ARRAY_PARAM(al_limit, limits, limit_desc);
+
+static u32 failed_after(struct bus *b, u32 position)
+{
+	u64 t0 = ktime_get_ns();
+	u32 i;
+
+	for (i = 0; i < 20000 && bus_slave(b, position)->error == EC_SLAVE_OK; i++)
+		usleep_range(1000, 1001);
+	return div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
+}
+
+static void al_time_limit_without_application(struct kunit *test)
+{
+	const struct limit *l = test->param_value;
+	struct ec_ioc_state req = {
+		.position = AI, .state = EC_AL_PREOP, .timeout_ms = l->request_ms,
+	};
+	struct bus *b = bus_up(test, line, N);
+	u32 ms;
+
+	bus_request(b, AI, EC_AL_INIT);
+	bus_idle(b);
+	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 1, 0);
+	WRITE_ONCE(ec_al_timeout, l->module_ms);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &req), 0);
+	ms = failed_after(b, AI);
+	WRITE_ONCE(ec_al_timeout, 0);
+	KUNIT_EXPECT_GE(test, ms, l->ms);
+	KUNIT_EXPECT_LE(test, ms, l->ms + 50);
+	/* of that request only */
+	if (l->request_ms && !l->module_ms) {
+		bus_request(b, AI, EC_AL_PREOP);
+		KUNIT_EXPECT_GE(test, failed_after(b, AI), 3000u);
+	}
+	req.timeout_ms = EC_MAX_AL_MS + 1;
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &req), -EINVAL);
+}
+
+/*
+ * A slave that takes 4 s for each transition: up, and down as a user asks, each of them without
+ * a way back. What it reached late is what a later request goes on from.
+ */
+static void al_late_states_taken(struct kunit *test)
+{
+	static const char slow[] = "segment seed=6\nslave a io in=8 out=8 cpu=yes transition=4s\n";
+	struct bus *b = bus_new(test, slow);
+	u32 lines = bus_log_lines("left without request");
+	static const u8 way[] = { EC_AL_INIT, EC_AL_PREOP, EC_AL_INIT };
+	u32 i, k;
+
+	bus_plug(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 4100), ~0ull);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	for (i = 0; i < ARRAY_SIZE(way); i++) {
+		struct ec_ioc_state req = { .state = way[i], .timeout_ms = 500 };
+
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &req), 0);
+		msleep(1500);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+		for (k = 0; k < 40000 && bus_slave(b, 0)->error; k++)
+			usleep_range(1000, 1001);
+		KUNIT_EXPECT_LT_MSG(test, k, 20000u, "step %u", i);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, way[i]);
+		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "a")), way[i]);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("left without request"), lines);
+}
 
 static void refusal_desc(const struct refusal *r, char *desc)
 {
@@ -225,6 +311,8 @@ static struct kunit_case al_cases[] = {
 	KUNIT_CASE(al_boot_stays),
 	KUNIT_CASE(al_no_boot),
 	KUNIT_CASE_PARAM(al_refused, al_gen_params),
+	KUNIT_CASE_PARAM(al_time_limit_without_application, al_limit_gen_params),
+	KUNIT_CASE(al_late_states_taken),
 	KUNIT_CASE(al_falls_back),
 	KUNIT_CASE(al_kicked),
 	KUNIT_CASE(al_disappears_and_returns),

@@ -139,6 +139,79 @@ static void apply_op_only_late(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
+/* How often the slave @name, with @ms for each transition, begins one, and where to. */
+struct begun {
+	struct ec_app *app;
+	u32 to[9];
+	u64 due;
+};
+
+static void note_transition(struct cyc *c)
+{
+	struct begun *n = c->ctx;
+
+	if (n->app->al_to && n->app->al_due != n->due) {
+		n->due = n->app->al_due;
+		n->to[n->app->al_to]++;
+	}
+}
+
+static const struct late {
+	u32 ms;		/* a transition takes */
+	u32 limit_ms;	/* set by the application, 0: none */
+	u32 op_ms;	/* OP is reached by then */
+} lates[] = {
+	{ 2500, 0, 8000 },	/* within the limits */
+	{ 3500, 0, 12000 },	/* over that of PREOP */
+	{ 4000, 0, 13500 },
+	{ 4200, 0, 14000 },
+	{ 300, 200, 1500 },	/* over all of them, up to PREOP and from there */
+	{ 300, 40, 4500 },
+};
+
+static void late_desc(const struct late *l, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "%u ms, limit %u ms", l->ms, l->limit_ms);
+}
+KUNIT_ARRAY_PARAM(late, lates, late_desc);
+
+/* What comes after its time limit is taken: the slave goes up and never back. */
+static void apply_late_states_taken(struct kunit *test)
+{
+	const struct late *l = test->param_value;
+	struct begun begun = { 0 };
+	char text[96];
+	struct bus *b;
+	struct cyc *c;
+	u8 from, to;
+	u64 us;
+
+	snprintf(text, sizeof(text), "segment seed=17\nslave a io in=8 out=8 cpu=yes transition=%ums\n",
+		 l->ms);
+	b = bus_new(test, text);
+	bus_plug(b);
+	while (READ_ONCE(b->m->bus.n_slaves) != 1)
+		usleep_range(1000, 1001);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	for (from = EC_AL_INIT; from <= EC_AL_OP; from *= 2)
+		for (to = EC_AL_INIT; to <= EC_AL_OP; to *= 2)
+			b->m->sessions.session->wanted.configs[0]->timeout_ms[from][to] =
+				l->limit_ms;
+	cyc_activate(c);
+	begun.app = bus_app(b, "a");
+	c->each = note_transition;
+	c->ctx = &begun;
+	us = cyc_wait_op(c, 60000);
+	bus_figure("transitions of %u ms, limit %u ms: OP after %llu us", l->ms, l->limit_ms, us);
+	KUNIT_EXPECT_LE_MSG(test, us, l->op_ms * 1000ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_LE(test, begun.to[EC_AL_INIT], 0u);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
 /* The mapping that was found is not the slave's any more after its power was off. */
 static void apply_found_pdos(struct kunit *test)
 {
@@ -341,6 +414,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_op_only),
 	KUNIT_CASE(apply_op_only_pause),
 	KUNIT_CASE(apply_op_only_late),
+	KUNIT_CASE_PARAM(apply_late_states_taken, late_gen_params),
 	KUNIT_CASE(apply_found_pdos),
 	KUNIT_CASE(apply_second_round),
 	KUNIT_CASE(apply_changes_meanwhile),
