@@ -13,6 +13,7 @@
 #include "apply.h"
 
 #define FLAG_MAX_MS	60000	/* upper limit of the flag */
+#define ACKS		3	/* of an error, before INIT is requested */
 #define HOLD_MS		1000	/* a transfer that takes longer is cut off */
 
 static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
@@ -218,6 +219,28 @@ static int enter(struct ec_slave *s, u8 state)
 	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
 }
 
+/* An error that stays in spite of acknowledges: INIT ends it, as a slave obeys that always. */
+static int acknowledge(struct ec_slave *s)
+{
+	u8 state = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
+	u16 code = READ_ONCE(s->al_code);
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < ACKS; i++) {
+		waits_for(s, "the slave to take the acknowledge of its error");
+		ret = ec_al_ack(s);
+		waits_for(s, NULL);
+		if (ret != -ETIME)
+			return ret ? failed(s, state, ret) : 0;
+	}
+	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
+		      EC_CAUSE(AL_ERROR, .state = state, .code = code),
+		      "AL state %s with error, AL status code 0x%04x (%s): %u acknowledges without effect; INIT follows",
+		      ec_al_state_name(state), code, ec_al_code_text(code), ACKS);
+	return to_init(s);
+}
+
 /* It has gone from INIT to @state by our hand. */
 static void has_left_init(struct ec_slave *s, u8 state)
 {
@@ -407,6 +430,13 @@ static int step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
+	if (ret == -EPROTO) {
+		/* the stronger step; the way up from there leads to @want */
+		ec_slave_warn(s, "%s refused: AL status code 0x%04x (%s); INIT follows\n",
+			      ec_al_state_name(want), READ_ONCE(s->al_code),
+			      ec_al_code_text(READ_ONCE(s->al_code)));
+		return to_init(s);
+	}
 	if (ret)
 		return failed(s, want, ret);
 	if (want == EC_AL_PREOP)
@@ -470,9 +500,9 @@ static int step(struct ec_slave *s)
 	if (ret)
 		return ret;
 	if (READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation) {
-		ret = ec_al_ack(s);
+		ret = acknowledge(s);
 		if (ret)
-			return failed(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, ret);
+			return ret;
 	}
 	cur = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
 	if (cur == READ_ONCE(s->awaited))

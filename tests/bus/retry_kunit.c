@@ -296,6 +296,33 @@ static void retry_not_after_refusal(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_reads, tries);
 }
 
+/* SAFEOP with an error that only INIT clears: INIT, and OP again; the text names the acknowledge. */
+static void retry_error_without_acknowledge_goes_through_init(struct kunit *test)
+{
+	static const char ignored[] =
+		"AL state SAFEOP with error, AL status code 0x001b (SyncManager watchdog expired: no outputs came in time): 3 acknowledges without effect; INIT follows";
+	struct bus *b = bus_up(test, "segment seed=17\nslave a io in=8 out=8 cpu=yes ack=no\n", 1);
+	u32 lines = bus_log_lines(ignored);
+	struct cyc *c;
+	u64 us;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	ec_app_al_fail(bus_app(b, "a"), EC_AL_SAFEOP, EC_AL_CODE_SM_WATCHDOG, ktime_get_ns());
+	cyc_run(c, 3300);
+	us = cyc_wait_op(c, 10000);
+	bus_figure("an error that only INIT clears: OP after %llu us", us + 3300000);
+	KUNIT_EXPECT_NE_MSG(test, us, ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(ignored), lines + 1);
+	cyc_run(c, 20);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+}
+
 static struct kunit_case retry_cases[] = {
 	KUNIT_CASE(retry_silent_slave_returns_to_op),
 	KUNIT_CASE(retry_long_silent_slave_returns_to_op),
@@ -309,6 +336,7 @@ static struct kunit_case retry_cases[] = {
 	KUNIT_CASE(retry_interrupted),
 	KUNIT_CASE(retry_frames_lost_during_start),
 	KUNIT_CASE(retry_not_after_refusal),
+	KUNIT_CASE(retry_error_without_acknowledge_goes_through_init),
 	{}
 };
 
