@@ -120,7 +120,7 @@ static void mailboxes(const struct ec_ioc_slave *s)
 	static const char *const name[] = { "AoE", "EoE", "CoE", "FoE", "SoE", "VoE" };
 	const char *sep = "";
 
-	if (!s->mbox_protocols)
+	if (!s->mbox_protocols && !s->std_rx_size)
 		return;
 	out_object("mailboxes");
 	out_text("Mailboxes:\n");

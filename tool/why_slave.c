@@ -17,7 +17,7 @@ static const struct {
 	const char *remedy;
 } al_remedies[] = {
 	{ 0x0014, "load the firmware of the slave: 'ethercat firmware'" },
-	{ 0x0016, "power-cycle the slave; if it stays, its EEPROM belongs to another slave: compare 'ethercat sii_read -v' with the manual, ask the manufacturer" },
+	{ 0x0016, "power-cycle the slave; if it stays, compare its mailbox ('ethercat slaves -v') with the manual, ask the manufacturer" },
 	{ 0x0019, "let the application send outputs before the slave is in OP" },
 	{ 0x001b, "let the application send in each cycle, or lengthen the watchdog: ecrt_slave_config_watchdog()" },
 	{ 0x001d, "compare the outputs that are configured with those of the slave: 'ethercat config -v', 'ethercat pdos'" },
@@ -231,6 +231,10 @@ static void warnings(struct why *w, const struct ec_ioc_slave *s)
 		return;
 	if (s->cause.kind == EC_CAUSE_EEPROM)
 		f = why_add(w, "eeprom", EEPROM_REMEDY, "%s", s->warning);
+	else if (s->cause.kind == EC_CAUSE_MAILBOX)
+		f = why_add(w, "mailbox",
+			    "nothing while the slave works; if it refuses PREOP or SAFEOP with 0x0016, or SDOs fail, compare its mailbox ('ethercat slaves -v') with the manual",
+			    "%s", s->warning);
 	else if (s->differs)
 		f = why_add(w, "revision",
 			    "connect a slave of that revision, or correct flag ExpectedRevision",

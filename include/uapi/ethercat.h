@@ -212,7 +212,7 @@ struct ec_ioc_slave {
 	__u32 config;		/* attached or different configuration: index + 1; 0: none */
 	__u32 differs;		/* identity differs from @config */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
-	struct ec_cause cause;	/* of @error; without one of @warning: EC_CAUSE_EEPROM */
+	struct ec_cause cause;	/* of @error; without one of @warning */
 };
 
 struct ec_ioc_sm {

@@ -161,7 +161,7 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 
 	if (ret)
 		return ret;
-	slave->emulation = slave->info.pdi_control & BIT(8);
+	slave->emulation = slave->info.pdi_control & EC_SII_PDI_EMULATION;
 	slave->alias = slave->info.alias;
 	check_sii(slave);
 	slave->has_general = !ec_sii_decode_general(slave->sii, slave->sii_bytes, &slave->general);
@@ -174,6 +174,7 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 	slave->mbox.can_repeat = slave->has_general && slave->general.flags & EC_SII_FLAG_MBOX_DLL;
 	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
 	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
+	ec_slave_settle_mbox(slave);
 	return ec_slave_read_pdos(slave);
 }
 
@@ -346,13 +347,14 @@ void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
 {
 	raw_spin_lock(&slave->note_lock);
 	*cause = slave->cause;
-	if (!cause->kind && slave->sii_flaw[0] && !slave->warning[0])
-		cause->kind = EC_CAUSE_EEPROM;
+	if (!cause->kind && !slave->warning[0])
+		cause->kind = slave->sii_flaw[0] ? EC_CAUSE_EEPROM :
+			      slave->mbox_doubt ? EC_CAUSE_MAILBOX : EC_CAUSE_NONE;
 	raw_spin_unlock(&slave->note_lock);
 }
 
 /**
- * ec_slave_warning() - what is not certain of a slave's process data, or wrong with its EEPROM
+ * ec_slave_warning() - what is not certain of a slave's process data, EEPROM or mailbox
  * @slave: slave
  * @buf: result, empty: nothing
  * @size: of @buf
@@ -364,6 +366,8 @@ void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size)
 	raw_spin_lock(&slave->note_lock);
 	strscpy(buf, slave->warning[0] ? slave->warning : slave->sii_flaw, size);
 	raw_spin_unlock(&slave->note_lock);
+	if (!buf[0])
+		ec_slave_mbox_text(slave, buf, size);
 }
 
 /**

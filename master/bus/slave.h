@@ -81,6 +81,7 @@ struct ec_break {
  * @names_done: the slave was asked for those its EEPROM does not have
  *
  * Changing:
+ * @mbox_doubt: in what its EEPROM is inconsistent about the mailbox, enum ec_sii_mbox_doubt
  * @dict: answers about its object dictionary
  * @al_status: last AL status seen
  * @al_code: AL status code that belongs to it
@@ -127,6 +128,7 @@ struct ec_slave {
 	size_t part_bytes;
 	struct ec_sii_flaw flaw;
 	struct ec_sii_info info;
+	u8 mbox_doubt;
 	struct ec_sii_general general;
 	bool has_general;
 	struct ec_sii_sm sms[EC_MAX_SM];
@@ -228,6 +230,10 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
 int ec_slave_read_pdos(struct ec_slave *slave);
 void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
 const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
+
+/* slave_mbox.c */
+void ec_slave_settle_mbox(struct ec_slave *s);
+void ec_slave_mbox_text(const struct ec_slave *s, char *buf, size_t size);
 
 /* pdo_coe.c */
 void ec_slave_clear_warning(struct ec_slave *s);

@@ -242,10 +242,10 @@ struct ec_mbox_request {
 #define ec_mbox_dbg_result(mb, ret, fmt, ...) \
 	ec_dbg_slave_result((mb)->base, *(mb)->position, ret, fmt, ##__VA_ARGS__)
 
-/* Does the slave have a mailbox? */
+/* Does the slave have a mailbox? ec_sii_settle_mbox() has decided it, once for all states. */
 static inline bool ec_mbox_present(const struct ec_mbox *mb)
 {
-	return mb->sii->protocols && mb->sii->std.rx_size && mb->sii->std.tx_size;
+	return mb->sii->std.rx_size && mb->sii->std.tx_size;
 }
 
 /* The mailbox in use: BOOT has one of its own. */

@@ -29,6 +29,8 @@
 #define EC_SII_W_VERSION	0x3F
 #define EC_SII_W_CATEGORIES	0x40
 
+#define EC_SII_PDI_EMULATION	BIT(8)	/* of word 0: no software answers */
+
 /* word 0x1C */
 #define EC_SII_PROTO_AOE	BIT(0)
 #define EC_SII_PROTO_EOE	BIT(1)
@@ -355,6 +357,26 @@ struct ec_sii_flaw {
 };
 
 enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw *f);
+
+/**
+ * enum ec_sii_mbox_doubt - what an image contradicts itself in about the mailbox
+ * @EC_SII_MBOX_SURE: nothing
+ * @EC_SII_MBOX_NO_PROTOCOL: there is one, and word 0x1C names no protocol
+ * @EC_SII_MBOX_NO_WORDS: only category 41 has one
+ * @EC_SII_MBOX_DIFFERS: that of category 41 is another one than that of the words
+ * @EC_SII_MBOX_NONE: word 0x1C names protocols, and there is none
+ */
+enum ec_sii_mbox_doubt {
+	EC_SII_MBOX_SURE,
+	EC_SII_MBOX_NO_PROTOCOL,
+	EC_SII_MBOX_NO_WORDS,
+	EC_SII_MBOX_DIFFERS,
+	EC_SII_MBOX_NONE,
+};
+
+bool ec_sii_mbox_of_sms(const struct ec_sii_sm *sm, unsigned int n, struct ec_sii_mbox *m);
+enum ec_sii_mbox_doubt ec_sii_settle_mbox(struct ec_sii_info *info, const struct ec_sii_sm *sm,
+					  unsigned int n);
 
 int ec_sii_text(char *buf, size_t cap, const u8 *s, size_t len);
 int ec_sii_string(const u8 *img, size_t len, u8 index, char *buf, size_t cap);

@@ -101,3 +101,57 @@ enum ec_sii_flaw_kind ec_sii_check(const u8 *img, size_t len, struct ec_sii_flaw
 		return f->kind = EC_SII_FLAW_BEYOND;
 	return f->kind = misfit ? EC_SII_FLAW_ENTRY : EC_SII_FLAW_NONE;
 }
+
+/**
+ * ec_sii_mbox_of_sms() - the mailbox that category 41 describes
+ * @sm: SyncManagers of category 41
+ * @n: how many
+ * @m: result
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it describes one: SM0 to the slave, SM1 from it.
+ */
+bool ec_sii_mbox_of_sms(const struct ec_sii_sm *sm, unsigned int n, struct ec_sii_mbox *m)
+{
+	if (n < 2 || sm[0].type != EC_SII_SM_MBOX_OUT || sm[1].type != EC_SII_SM_MBOX_IN ||
+	    !sm[0].len || !sm[1].len)
+		return false;
+	*m = (struct ec_sii_mbox){
+		.rx_offset = sm[0].start, .rx_size = sm[0].len,
+		.tx_offset = sm[1].start, .tx_size = sm[1].len,
+	};
+	return true;
+}
+
+/**
+ * ec_sii_settle_mbox() - decide whether a slave has a mailbox, and which one
+ * @info: fixed area; its @std becomes what is used in PREOP and above, sizes 0: no mailbox
+ * @sm: SyncManagers of category 41
+ * @n: how many
+ *
+ * Words 0x18 to 0x1B say it, category 41 where these do not. The protocols of word 0x1C only say
+ * what a mailbox is good for, except that a slave without software has none without them.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: in what the image contradicts itself.
+ */
+enum ec_sii_mbox_doubt ec_sii_settle_mbox(struct ec_sii_info *info, const struct ec_sii_sm *sm,
+					  unsigned int n)
+{
+	bool emulation = info->pdi_control & EC_SII_PDI_EMULATION;
+	struct ec_sii_mbox *std = &info->std, m;
+	bool in_sms = ec_sii_mbox_of_sms(sm, n, &m);
+	bool in_words = std->rx_size && std->tx_size;
+
+	if (!in_words && in_sms)
+		*std = m;
+	if (!(in_words || in_sms) || (emulation && !info->protocols)) {
+		memset(std, 0, sizeof(*std));
+		return info->protocols ? EC_SII_MBOX_NONE : EC_SII_MBOX_SURE;
+	}
+	if (!info->protocols)
+		return EC_SII_MBOX_NO_PROTOCOL;
+	if (!in_words)
+		return EC_SII_MBOX_NO_WORDS;
+	return in_sms && memcmp(std, &m, sizeof(m)) ? EC_SII_MBOX_DIFFERS : EC_SII_MBOX_SURE;
+}

@@ -296,7 +296,7 @@ static void retry_not_after_refusal(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_reads, tries);
 }
 
-/* SAFEOP with an error that only INIT clears: INIT, and OP again; the text names the acknowledge. */
+/* An error in SAFEOP that only INIT clears: INIT, then OP; the text names the acknowledge. */
 static void retry_error_without_acknowledge_goes_through_init(struct kunit *test)
 {
 	static const char ignored[] =

@@ -608,6 +608,48 @@ static void sii_rest_of_built_image_is_blank(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, img[2048], 0);
 }
 
+/* Three places say whether there is a mailbox; one function has the answer. */
+static void sii_mailbox_is_settled_from_three_places(struct kunit *test)
+{
+	static const struct ec_sii_mbox words = { 0x1000, 128, 0x1080, 128 }, none = { 0 };
+	static const struct ec_sii_mbox other = { 0x1000, 256, 0x1100, 256 };
+	static const struct {
+		const char *what;
+		struct ec_sii_mbox words;
+		u16 protocols, pdi;
+		unsigned int n;	/* of @sms */
+		struct ec_sii_mbox used;
+		enum ec_sii_mbox_doubt doubt;
+	} t[] = {
+		{ "all agree", words, 4, 5, 4, words, EC_SII_MBOX_SURE },
+		{ "no category 41", words, 4, 5, 0, words, EC_SII_MBOX_SURE },
+		{ "no protocol", words, 0, 5, 4, words, EC_SII_MBOX_NO_PROTOCOL },
+		{ "no protocol, no category 41", words, 0, 5, 0, words, EC_SII_MBOX_NO_PROTOCOL },
+		{ "no words", none, 4, 5, 4, words, EC_SII_MBOX_NO_WORDS },
+		{ "half of the words", { 0x1000, 128, 0, 0 }, 4, 5, 4, words,
+		  EC_SII_MBOX_NO_WORDS },
+		{ "only category 41", none, 0, 5, 4, words, EC_SII_MBOX_NO_PROTOCOL },
+		{ "other words", other, 4, 5, 4, other, EC_SII_MBOX_DIFFERS },
+		{ "only protocols", none, 4, 5, 0, none, EC_SII_MBOX_NONE },
+		{ "SM0 alone", none, 4, 5, 1, none, EC_SII_MBOX_NONE },
+		{ "none", none, 0, 5, 0, none, EC_SII_MBOX_SURE },
+		{ "device emulation", words, 0, 0x0380, 4, none, EC_SII_MBOX_SURE },
+		{ "device emulation, protocols", words, 4, 0x0380, 4, words, EC_SII_MBOX_SURE },
+	};
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(t); i++) {
+		struct ec_sii_info v = {
+			.std = t[i].words, .protocols = t[i].protocols, .pdi_control = t[i].pdi,
+		};
+
+		KUNIT_EXPECT_EQ_MSG(test, ec_sii_settle_mbox(&v, sms, t[i].n), t[i].doubt, "%s",
+				    t[i].what);
+		KUNIT_EXPECT_EQ_MSG(test, memcmp(&v.std, &t[i].used, sizeof(v.std)), 0, "%s",
+				    t[i].what);
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sii_fixed_area_is_read_back),
 	KUNIT_CASE(sii_wrong_checksum_is_reported),
@@ -635,6 +677,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sii_garbage_category_ends_walk),
 	KUNIT_CASE(sii_nothing_lies_behind_512_kib),
 	KUNIT_CASE(sii_every_flaw_is_found),
+	KUNIT_CASE(sii_mailbox_is_settled_from_three_places),
 	KUNIT_CASE(sii_builder_reports_full_buffer),
 	KUNIT_CASE(sii_too_many_or_too_long_strings_are_refused),
 	KUNIT_CASE(sii_rest_of_built_image_is_blank),
