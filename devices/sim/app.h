@@ -72,6 +72,23 @@ struct ec_app_model {
 	size_t eeprom_len;
 };
 
+/**
+ * ec_app_area() - which process data does a SyncManager have
+ * @m: model
+ * @dir: outputs or inputs
+ * @sm: SyncManager
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: its number among those of the direction, -1: it is none of them.
+ */
+static inline int ec_app_area(const struct ec_app_model *m, enum ec_app_dir dir, int sm)
+{
+	for (int k = 0; k < m->n_areas[dir]; k++)
+		if (m->area[dir][k] == sm)
+			return k;
+	return -1;
+}
+
 /* where the value of an input channel comes from */
 enum ec_app_source_kind {
 	EC_APP_SRC_NONE,
@@ -492,7 +509,6 @@ void ec_app_diag_emergency(struct ec_app *app, u16 code, u8 reg, u64 now);
 u32 ec_app_diag_write(struct ec_app *app, const u8 *data, size_t len);
 
 /* slave_pdo.c */
-int ec_app_area(const struct ec_app_model *m, enum ec_app_dir dir, int sm);
 bool ec_app_outputs_complete(const struct ec_app *app);
 u16 ec_app_pdo_build(struct ec_app *app);
 u32 ec_app_pdo_check_write(const struct ec_app *app,

@@ -26,23 +26,6 @@ bool ec_app_pdo_is_config(u16 index)
 	       is_pdo(index, EC_APP_IN);
 }
 
-/**
- * ec_app_area() - which process data does a SyncManager have
- * @m: model
- * @dir: outputs or inputs
- * @sm: SyncManager
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: its number among those of the direction, -1: it is none of them.
- */
-int ec_app_area(const struct ec_app_model *m, enum ec_app_dir dir, int sm)
-{
-	for (int k = 0; k < m->n_areas[dir]; k++)
-		if (m->area[dir][k] == sm)
-			return k;
-	return -1;
-}
-
 static const struct ec_app_object *assignment(const struct ec_app_model *m, enum ec_app_dir dir,
 					      int k)
 {
@@ -270,7 +253,7 @@ u16 ec_app_pdo_build(struct ec_app *app)
 	return in ? 0 : 0x0024;
 }
 
-static int sm_start(const struct ec_app *app, enum ec_app_dir dir, int k)
+static inline int sm_start(const struct ec_app *app, enum ec_app_dir dir, int k)
 {
 	const struct ec_esc_sm *sm = &app->esc->sm[app->model->area[dir][k]];
 
@@ -278,7 +261,7 @@ static int sm_start(const struct ec_app *app, enum ec_app_dir dir, int k)
 }
 
 /* the first run of the @k-th SyncManager */
-static u32 map_begin(const struct ec_app *app, enum ec_app_dir dir, int k)
+static inline u32 map_begin(const struct ec_app *app, enum ec_app_dir dir, int k)
 {
 	return k ? app->map_end[dir][k - 1] : 0;
 }
@@ -299,7 +282,7 @@ static void copy_run(u8 *dst, u32 dst_bit, const u8 *src, u32 src_bit, u32 bits)
 			*dst++ = *src++;
 }
 
-static void outputs_use(struct ec_app *app, int k, const u8 *image)
+static inline void outputs_use(struct ec_app *app, int k, const u8 *image)
 {
 	for (u32 i = map_begin(app, EC_APP_OUT, k); i < app->map_end[EC_APP_OUT][k]; i++) {
 		const struct ec_app_copy *c = &app->map[EC_APP_OUT][i];
@@ -321,7 +304,7 @@ void ec_app_outputs_use(struct ec_app *app, const u8 *image)
 }
 
 /* the @k-th output SyncManager */
-static void outputs(struct ec_app *app, int k, u64 now)
+static inline void outputs(struct ec_app *app, int k, u64 now)
 {
 	int start = sm_start(app, EC_APP_OUT, k);
 	u16 bytes = app->area_bytes[EC_APP_OUT][k];
@@ -457,7 +440,7 @@ void ec_app_run(struct ec_app *app, u64 now)
 }
 
 /* process image of the @k-th input SyncManager */
-static void build_inputs(const struct ec_app *app, int k, u8 *dst)
+static inline void build_inputs(const struct ec_app *app, int k, u8 *dst)
 {
 	memset(dst, 0, app->area_bytes[EC_APP_IN][k]);
 	for (u32 i = map_begin(app, EC_APP_IN, k); i < app->map_end[EC_APP_IN][k]; i++) {
@@ -468,7 +451,7 @@ static void build_inputs(const struct ec_app *app, int k, u8 *dst)
 }
 
 /* hands them over */
-static void give_inputs(struct ec_app *app, int k, u64 now)
+static inline void give_inputs(struct ec_app *app, int k, u64 now)
 {
 	int start = sm_start(app, EC_APP_IN, k);
 	u16 bytes = app->area_bytes[EC_APP_IN][k];
