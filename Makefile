@@ -7,6 +7,7 @@
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
 # make check-long     all system tests on all kernels (hours)
+# make check-debug    all tests under detectors, file by file (hours; FILES=thin)
 
 KDIR ?= /lib/modules/$(shell uname -r)/build
 PREFIX ?= /usr/local
@@ -174,6 +175,10 @@ check-kernels:
 check-long:
 	tests/check-long.sh
 
+# hours; continues where it was ended, results in Documentation/detectors.rst
+check-debug:
+	tests/check-debug.sh $(FILES)
+
 # figures, some with a limit
 bench:
 	tests/bench/run.sh
@@ -182,4 +187,4 @@ bench:
 check-witness:
 	tests/witness/run.sh
 
-.PHONY: demo bench check check-kernels check-long check-witness
+.PHONY: demo bench check check-kernels check-long check-debug check-witness

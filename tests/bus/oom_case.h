@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What the suites about failing allocations have in common; oom.h is before the master's sources. */
+/* What the suites about failing allocations share; oom.h stands before the master's sources. */
 #ifndef EC_OOM_CASE_H
 #define EC_OOM_CASE_H
 
