@@ -638,24 +638,28 @@ static void unhear(void)
 
 static int __init gen_init(void)
 {
-	int ret = ecdev_register_notifier(&wishes_notifier);
+	int ret = register_netdevice_notifier(&notifier);
 
 	if (ret)
-		return ret;
-	ret = register_netdevice_notifier(&notifier);
-	if (ret)
-		goto unwish;
+		goto err;
 	ret = register_inetaddr_notifier(&address_notifier);
-	if (ret) {
-		unhear();
-		goto unwish;
-	}
-	/* it has reported all devices there are */
-	flush_work(&look_work);
+	if (ret)
+		goto err_netdevices;
+	/* the last one: a master that wants a device meanwhile calls into this module */
+	ret = ecdev_register_notifier(&wishes_notifier);
+	if (ret)
+		goto err_addresses;
+	/* the first one has reported all devices there are */
+	look(NULL);
 	report_waiting();
 	return 0;
-unwish:
-	ecdev_unregister_notifier(&wishes_notifier);
+
+err_addresses:
+	unregister_inetaddr_notifier(&address_notifier);
+err_netdevices:
+	unhear();
+err:
+	cancel_work_sync(&look_work);
 	return ret;
 }
 

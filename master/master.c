@@ -65,7 +65,6 @@ static void queues_destroy(struct ec_master *m)
 static void destroy(struct ec_master *m)
 {
 	WRITE_ONCE(m->base->stopping, true);
-	ec_cdev_exit(m);
 	ec_api_between_stop(m);
 	ec_session_end(&m->sessions, NULL);
 	ec_monitor_stop(m);
@@ -76,7 +75,7 @@ static void destroy(struct ec_master *m)
 	ec_links_exit(&m->links);
 	ec_bus_exit(&m->bus);
 	ec_log_flush(m->base, true);
-	ec_cdev_put(m);
+	kvfree(m);
 }
 
 static struct ec_master *create(unsigned int index, const char *main, const char *backup,
@@ -105,7 +104,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		goto err;
 	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
-	ret = ec_api_create(m) ?: ec_cdev_init(m);
+	ret = ec_api_create(m);
 	if (ret)
 		goto err;
 	ret = ec_monitor_start(m);
@@ -142,8 +141,8 @@ static int check_name(const char *spec, unsigned int index)
 }
 
 /*
- * Checked before the first master is created, as an application may open that at once. A name
- * that can never work is refused: a master would wait for its device for ever.
+ * A name that can never work is refused before the first master is created: it would wait for its
+ * device for ever.
  */
 static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
 {
@@ -204,7 +203,7 @@ int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned 
 			ec_masters_destroy();
 			return PTR_ERR(m);
 		}
-		ec_cdev_publish(m);
+		ec_cdev_add(m);
 		ec_device_register(&m->links);
 	}
 	return 0;
@@ -219,6 +218,6 @@ void ec_masters_destroy(void)
 {
 	struct ec_master *m;
 
-	while ((m = ec_cdev_unpublish()))
+	while ((m = ec_cdev_remove()))
 		destroy(m);
 }

@@ -23,32 +23,39 @@ MODULE_PARM_DESC(debug_level, "0 quiet, 1 more, 2 every frame");
 
 static int __init ec_init(void)
 {
-	int ret = ec_cdev_class_init();
+	int ret = ec_cdev_init();
 
 	if (ret)
 		return ret;
 	ret = ec_masters_create(main_devices, n_main, backup_devices, n_backup, debug_level);
 	if (ret)
-		goto err_class;
+		goto err_cdev;
 	ret = ec_power_init();
 	if (ret)
 		goto err_masters;
+	/* the last step, see there */
+	ret = ec_cdev_publish();
+	if (ret)
+		goto err_power;
 	if (!n_main)
 		pr_warn("EtherCAT: no master: load ec_master with main_devices=MAC, interface or sim0\n");
 	return 0;
 
+err_power:
+	ec_power_exit();
 err_masters:
 	ec_masters_destroy();
-err_class:
-	ec_cdev_class_exit();
+err_cdev:
+	ec_cdev_exit();
 	return ret;
 }
 
 static void __exit ec_exit(void)
 {
+	ec_cdev_unpublish();
 	ec_power_exit();
 	ec_masters_destroy();
-	ec_cdev_class_exit();
+	ec_cdev_exit();
 }
 
 module_init(ec_init);

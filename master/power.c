@@ -360,6 +360,15 @@ static int on_suspend(struct notifier_block *nb, unsigned long event, void *unus
 static struct notifier_block reboot_nb = { .notifier_call = on_reboot };
 static struct notifier_block suspend_nb = { .notifier_call = on_suspend };
 
+static void unhear_reboot(void)
+{
+	unsigned int i;
+
+	unregister_reboot_notifier(&reboot_nb);
+	for (i = 0; i < EC_MAX_MASTERS; i++)
+		flush_work(&descents[i].work);
+}
+
 /**
  * ec_power_init() - hear of reboots and suspends
  *
@@ -378,7 +387,7 @@ int ec_power_init(void)
 		return ret;
 	ret = register_pm_notifier(&suspend_nb);
 	if (ret)
-		unregister_reboot_notifier(&reboot_nb);
+		unhear_reboot();
 	return ret;
 }
 
@@ -391,10 +400,6 @@ int ec_power_init(void)
  */
 void ec_power_exit(void)
 {
-	unsigned int i;
-
 	unregister_pm_notifier(&suspend_nb);
-	unregister_reboot_notifier(&reboot_nb);
-	for (i = 0; i < EC_MAX_MASTERS; i++)
-		flush_work(&descents[i].work);
+	unhear_reboot();
 }

@@ -119,7 +119,6 @@ static int offer(unsigned int i)
 		return PTR_ERR(l);
 	}
 	sim_link[i] = l;
-	ec_sim_control_add(name, ec_sim_link_wire(l));
 	return 0;
 }
 
@@ -135,10 +134,8 @@ static int respond(void)
 	if (IS_ERR(sim))
 		return PTR_ERR(sim);
 	responder = ec_sim_responder_create(netdev, n_netdev, sim);
-	if (!IS_ERR(responder)) {
-		ec_sim_control_add(netdev[0], ec_sim_responder_wire(responder));
+	if (!IS_ERR(responder))
 		return 0;
-	}
 	ec_sim_free(sim);
 	return PTR_ERR(responder);
 }
@@ -147,10 +144,27 @@ static void withdraw(void)
 {
 	unsigned int i;
 
-	ec_sim_control_exit();
 	for (i = 0; i < SEGMENTS; i++)
 		if (sim_link[i])
 			ec_sim_link_destroy(sim_link[i]);
+}
+
+/*
+ * Last: an open file of a module whose load fails would outlive it, as debugfs keeps the pointer
+ * to its functions.
+ */
+static void __init add_controls(void)
+{
+	char name[8];
+	unsigned int i;
+
+	ec_sim_control_init();
+	if (n_netdev)
+		ec_sim_control_add(netdev[0], ec_sim_responder_wire(responder));
+	for (i = 0; i < SEGMENTS && sim_link[i]; i++) {
+		snprintf(name, sizeof(name), "sim%u", i);
+		ec_sim_control_add(name, ec_sim_link_wire(sim_link[i]));
+	}
 }
 
 /* sim7 of main_devices= is never offered when there is one segment. */
@@ -170,30 +184,27 @@ static int __init sim_init(void)
 	unsigned int i, n = max(n_segment, 1u);
 	int ret = 0;
 
-	ec_sim_control_init();
-	if (n_netdev) {
+	if (n_netdev)
 		ret = respond();
-		if (ret)
-			ec_sim_control_exit();
+	for (i = 0; i < n && !n_netdev && !ret; i++)
+		ret = offer(i);
+	if (ret) {
+		withdraw();
 		return ret;
 	}
-	for (i = 0; i < n && !ret; i++)
-		ret = offer(i);
-	if (ret)
-		withdraw();
-	else
+	add_controls();
+	if (!n_netdev)
 		report_waiting(n);
-	return ret;
+	return 0;
 }
 
 static void __exit sim_exit(void)
 {
-	if (n_netdev) {
-		ec_sim_control_exit();
+	ec_sim_control_exit();
+	if (n_netdev)
 		ec_sim_responder_destroy(responder);
-	} else {
+	else
 		withdraw();
-	}
 }
 
 module_init(sim_init);

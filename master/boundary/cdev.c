@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/cdev.h>
+#include <linux/device.h>
 #include <linux/mm.h>
 #include <linux/module.h>
 #include <linux/poll.h>
@@ -11,8 +13,10 @@
 
 static struct class *ec_class;
 static dev_t first_dev;
+static struct cdev *cdev;	/* of all masters */
+static unsigned int n_published;
 
-/* changed while the module is loaded or removed only */
+/* changed while the module is loaded or removed only, and never while a file can be opened */
 static struct ec_master *masters[EC_MAX_MASTERS];
 static unsigned int n_masters;
 
@@ -40,23 +44,23 @@ struct ec_master *ec_cdev_master(unsigned int index)
 }
 
 /**
- * ec_cdev_publish() - let applications request a master
+ * ec_cdev_add() - give a master its number
  * @m: master that is complete; its number is the next one
  *
- * Context: Process.
+ * Context: Process, while the module is loaded.
  */
-void ec_cdev_publish(struct ec_master *m)
+void ec_cdev_add(struct ec_master *m)
 {
 	masters[n_masters++] = m;
 }
 
 /**
- * ec_cdev_unpublish() - let applications request the last master no more
+ * ec_cdev_remove() - take the last master away
  *
- * Context: Process.
+ * Context: Process, without open files.
  * Return: that master, or NULL: there is none left.
  */
-struct ec_master *ec_cdev_unpublish(void)
+struct ec_master *ec_cdev_remove(void)
 {
 	return n_masters ? masters[--n_masters] : NULL;
 }
@@ -79,13 +83,15 @@ void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable)
 
 static int ec_open(struct inode *inode, struct file *filp)
 {
-	struct ec_master *m = container_of(inode->i_cdev, struct ec_master, cdev);
-	struct ec_file *f = kzalloc(sizeof(*f), GFP_KERNEL_ACCOUNT);
+	unsigned int index = iminor(inode) - MINOR(first_dev);
+	struct ec_file *f;
 
+	if (index >= n_masters)
+		return -ENXIO;
+	f = kzalloc(sizeof(*f), GFP_KERNEL_ACCOUNT);
 	if (!f)
 		return -ENOMEM;
-	get_device(&m->dev);
-	ec_file_init(f, m, filp->f_mode & FMODE_WRITE);
+	ec_file_init(f, masters[index], filp->f_mode & FMODE_WRITE);
 	filp->private_data = f;
 	return nonseekable_open(inode, filp);
 }
@@ -100,7 +106,6 @@ static int ec_release(struct inode *inode, struct file *filp)
 	if (f->writable)
 		ec_session_end(&m->sessions, f);
 	ec_event_reader_end(f);
-	put_device(&m->dev);
 	kfree_rcu(f, rcu);
 	return 0;
 }
@@ -222,11 +227,6 @@ static const struct file_operations ec_fops = {
 	.compat_ioctl = compat_ptr_ioctl,
 };
 
-static void dev_release(struct device *dev)
-{
-	kvfree(container_of(dev, struct ec_master, dev));
-}
-
 /* Every user may read: a read-only file causes no bus traffic and changes nothing. */
 static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
 {
@@ -235,66 +235,102 @@ static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
 	return NULL;
 }
 
+/* Udev makes nodes of them. Whoever knows the numbers needs none. */
+static void make_nodes(void)
+{
+	struct device *dev;
+	unsigned int i;
+
+	for (i = 0; i < n_published; i++) {
+		dev = device_create(ec_class, NULL, first_dev + i, NULL, "EtherCAT%u", i);
+		if (IS_ERR(dev))
+			pr_err("EtherCAT %u: cannot make its device node (%pe); make it with \"mknod /dev/EtherCAT%u c %u %u\"\n",
+			       i, dev, i, MAJOR(first_dev), MINOR(first_dev) + i);
+	}
+}
+
 /**
- * ec_cdev_init() - make the character device of a master
- * @m: master
+ * ec_cdev_publish() - let programs open the devices of all masters
  *
- * From now on ec_cdev_put() frees the master.
+ * The last step of the load. The memory of a module whose load fails is freed while a program
+ * has its device open, so nothing that can fail may come after it.
  *
  * Context: Process. May sleep.
- * Return: 0 or -errno; on failure nothing is left and the caller frees.
+ * Return: 0 or -errno; on failure no program has been able to open anything.
  */
-int ec_cdev_init(struct ec_master *m)
+int ec_cdev_publish(void)
 {
-	int ret;
+	int ret = n_masters ? cdev_add(cdev, first_dev, n_masters) : 0;
 
-	device_initialize(&m->dev);
-	m->dev.class = ec_class;
-	m->dev.devt = first_dev + m->base->index;
-	m->dev.release = dev_release;
-	ret = dev_set_name(&m->dev, "EtherCAT%u", m->base->index);
 	if (ret)
-		goto err;
-	cdev_init(&m->cdev, &ec_fops);
-	m->cdev.owner = THIS_MODULE;
-	ret = cdev_device_add(&m->cdev, &m->dev);
-	if (ret)
-		goto err;
+		return ret;
+	n_published = n_masters;
+	make_nodes();
 	return 0;
-err:
-	/* the caller frees the master itself */
-	m->dev.release = NULL;
-	kfree_const(m->dev.kobj.name);
-	return ret;
 }
 
-void ec_cdev_exit(struct ec_master *m)
+/**
+ * ec_cdev_unpublish() - no program opens a device any more
+ *
+ * Context: Process, at module exit, so no file is open. May sleep.
+ */
+void ec_cdev_unpublish(void)
 {
-	cdev_device_del(&m->cdev, &m->dev);
+	unsigned int i;
+
+	if (!n_published)
+		return;
+	for (i = 0; i < n_published; i++)
+		device_destroy(ec_class, first_dev + i);
+	n_published = 0;
+	cdev_del(cdev);
+	cdev = NULL;
 }
 
-void ec_cdev_put(struct ec_master *m)
-{
-	put_device(&m->dev);
-}
-
-int ec_cdev_class_init(void)
+/**
+ * ec_cdev_init() - prepare the devices of masters
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno.
+ */
+int ec_cdev_init(void)
 {
 	int ret = alloc_chrdev_region(&first_dev, 0, EC_MAX_MASTERS, "EtherCAT");
 
 	if (ret)
 		return ret;
 	ec_class = ec_class_create("EtherCAT");
-	if (IS_ERR(ec_class)) {
-		unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
-		return PTR_ERR(ec_class);
-	}
+	ret = PTR_ERR_OR_ZERO(ec_class);
+	if (ret)
+		goto err_region;
 	ec_class->devnode = devnode;
+	/* not in the memory of this module: the kernel lets go of it at its leisure */
+	cdev = cdev_alloc();
+	if (!cdev) {
+		ret = -ENOMEM;
+		goto err_class;
+	}
+	cdev->ops = &ec_fops;
+	cdev->owner = THIS_MODULE;
 	return 0;
+
+err_class:
+	class_destroy(ec_class);
+err_region:
+	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
+	return ret;
 }
 
-void ec_cdev_class_exit(void)
+/**
+ * ec_cdev_exit() - end that
+ *
+ * Context: Process. May sleep.
+ */
+void ec_cdev_exit(void)
 {
+	if (cdev)
+		kobject_put(&cdev->kobj);
+	cdev = NULL;
 	class_destroy(ec_class);
 	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
 }

@@ -16,7 +16,7 @@ struct ec_session;
 
 /**
  * struct ec_file - one open file
- * @master: with a reference to its device
+ * @master: stays while a file is open, as the module does
  * @writable: opened for writing
  * @reason: text of the last failure, under @lock
  * @lock: protects @reason
@@ -37,15 +37,14 @@ struct ec_file {
 void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable);
 __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait);
 
-int ec_cdev_class_init(void);
-void ec_cdev_class_exit(void);
+int ec_cdev_init(void);
+void ec_cdev_exit(void);
 unsigned int ec_cdev_count(void);
 struct ec_master *ec_cdev_master(unsigned int index);
-void ec_cdev_publish(struct ec_master *m);
-struct ec_master *ec_cdev_unpublish(void);
-int ec_cdev_init(struct ec_master *m);
-void ec_cdev_exit(struct ec_master *m);
-void ec_cdev_put(struct ec_master *m);
+void ec_cdev_add(struct ec_master *m);
+struct ec_master *ec_cdev_remove(void);
+int ec_cdev_publish(void);
+void ec_cdev_unpublish(void);
 
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);
 int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice);

@@ -3,8 +3,6 @@
 #ifndef EC_MASTER_H
 #define EC_MASTER_H
 
-#include <linux/cdev.h>
-#include <linux/device.h>
 #include "../base/base.h"
 #include "../bus/bus.h"
 #include "../clock/dc.h"
@@ -33,10 +31,6 @@ struct ec_master {
 	struct ec_sessions sessions;
 	/** @readers: open files that read events */
 	struct ec_event_readers readers;
-	/** @dev: device below the class */
-	struct device dev;
-	/** @cdev: character device */
-	struct cdev cdev;
 	/** @api: for applications in the kernel, immutable */
 	struct ec_api *api;
 	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */

@@ -11,6 +11,7 @@
 #include <linux/skbuff.h>
 #include "capture.h"
 #include "links.h"
+#include "../base/log.h"
 #include "../base/once64.h"
 
 bool ec_capture;
@@ -120,6 +121,7 @@ int ec_capture_create(struct ec_links *l)
 	c->nd = nd;
 	ret = ec_tap_init(&c->tap, nd) ?: register_netdev(nd);
 	if (ret) {
+		ec_err(l, "cannot make the interface %s (%pe)\n", name, ERR_PTR(ret));
 		ec_tap_exit(&c->tap);
 		free_netdev(nd);
 		return ret;

@@ -59,12 +59,12 @@ static int compose(struct ec_master *m)
 	      ec_sessions_init(&m->sessions);
 	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
-	ret = ret ?: ec_api_create(m) ?: ec_cdev_class_init() ?: ec_cdev_init(m);
+	ret = ret ?: ec_api_create(m) ?: ec_cdev_init();
 	if (ret)
 		return ret;
-	ec_cdev_publish(m);
+	ec_cdev_add(m);
 	ec_device_register(&m->links);
-	return 0;
+	return ec_cdev_publish();
 }
 
 static void bench_free(struct bench *b)
@@ -73,7 +73,7 @@ static void bench_free(struct bench *b)
 
 	WRITE_ONCE(m->base->stopping, true);
 	ec_cdev_unpublish();
-	ec_cdev_exit(m);
+	ec_cdev_remove();
 	ec_session_end(&m->sessions, NULL);
 	ec_dc_exit(&m->dc);
 	ec_sessions_exit(&m->sessions);
@@ -81,8 +81,8 @@ static void bench_free(struct bench *b)
 	ec_api_destroy(m);
 	ec_links_exit(&m->links);
 	ec_bus_exit(&m->bus);
-	ec_cdev_put(m);
-	ec_cdev_class_exit();
+	kvfree(m);
+	ec_cdev_exit();
 	if (b->device)
 		ec_sim_link_destroy(b->device);
 	kfree(b);

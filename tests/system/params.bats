@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # Module parameters: what can never work is refused, what is likely mistyped reported,
-# each in one line of the log.
+# each in one line of the log. A load that fails at any step leaves nothing behind.
 
 load helpers
 
@@ -9,7 +9,9 @@ setup() { dmesg -C; }
 teardown() {
 	local name
 
+	[ -z "${opener:-}" ] || kill $opener 2>/dev/null || true
 	stop
+	rmmod ec_fail 2>/dev/null || true
 	for name in veth0 veth2 br0; do ip link del $name 2>/dev/null || true; done
 }
 
@@ -177,4 +179,114 @@ bridged() {
 		[ "$status" != 0 ]
 	done
 	[ "$(cat $p)" = 192 ]
+}
+
+# opened LETTERS: how many of these files could be opened so far
+opened() { tr -cd "$1" <"$BATS_TEST_TMPDIR/opened" | wc -c; }
+
+# open_often FILE...: a process of any user opens them all the time, more urgent than insmod
+open_often() {
+	chrt -f 20 setpriv --reuid=65534 --regid=65534 --clear-groups \
+		"$EC_BUILD/apps/opener" "$@" >"$BATS_TEST_TMPDIR/opened" &
+	opener=$!
+}
+
+# gone MODULE: its load failed; else it is removed as soon as nobody has its files open
+gone() {
+	local i rc=1
+
+	grep -q "^$1 " /proc/modules || return 0
+	kill -USR1 $opener
+	for i in $(seq 100); do
+		! rmmod "$1" 2>/dev/null || { rc=0; break; }
+		sleep 0.01
+	done
+	kill -USR1 $opener
+	return $rc
+}
+
+# fail_each MODULE COMMAND...: the load fails at one step after the other, or with stride=N at
+# each N-th, the last one among them
+fail_each() {
+	local p=/sys/module/ec_fail/parameters steps i before loaded=0 failed=0
+
+	insmod "$EC_BUILD/mini/load/ec_fail.ko" module="$1"
+	"${@:2}"
+	steps=$(cat $p/steps)
+	sleep 0.01
+	gone "$1"
+	for i in $(seq "$steps" "-${stride:-1}" 1); do
+		failed=$((failed + 1))
+		echo "$i" >$p/at
+		before=$(opened abcdefgh)
+		if "${@:2}" 2>/dev/null; then
+			loaded=$((loaded + 1))
+			sleep 0.01
+		else
+			# also not for a moment
+			[ "$(opened abcdefgh)" = "$before" ] || return 1
+		fi
+		sleep 0.002
+		gone "$1" || { echo "$1 stays after step $i"; return 1; }
+	done
+	echo 0 >$p/at
+	rmmod ec_fail
+	echo "# ${*/*\//}: $failed of $steps step(s) failed, $loaded of them without harm to the load" >&3
+	[ "$steps" -gt 0 ]
+}
+
+# by name and by number, of one master and of the second one
+open_masters() {
+	local i major
+
+	master main_devices=sim0
+	major=$(awk '$2 == "EtherCAT" { print $1 }' /proc/devices)
+	rmmod ec_master
+	for i in 0 1; do
+		rm -f /dev/number$i
+		mknod -m 666 /dev/number$i c "$major" $i
+	done
+	open_often /dev/EtherCAT0 /dev/EtherCAT1 /dev/number0 /dev/number1
+}
+
+@test "a load of ec_master that fails at any step lets no program open a device for a moment" {
+	open_masters
+	fail_each ec_master master main_devices=sim0 capture=1
+	fail_each ec_master master main_devices=sim0,sim1 capture=1
+	# the opener can do it, each way
+	for letter in a b c d; do [ "$(opened $letter)" -gt 0 ]; done
+	[ ! -e /dev/EtherCAT0 ]
+}
+
+@test "a load of ec_master that fails as the second interface exists lets no program open the first device" {
+	ip link add eccap1 type veth peer name veth1
+	open_masters
+	dmesg -C
+	for i in $(seq 10); do
+		run master main_devices=sim0,sim1 capture=1
+		[ "$status" != 0 ]
+		sleep 0.002
+	done
+	ip link del eccap1
+	[ "$(opened abcd)" = 0 ]
+	dmesg | grep -q 'cannot make the interface eccap1'
+}
+
+@test "loads of the devices that fail at any step leave nothing behind" {
+	ip link add veth0 type veth peer name veth1
+	"$EC_BUILD/apps/opener" /sys/kernel/debug/ec_sim/sim0 /sys/kernel/debug/ec_sim/sim1 \
+		>"$BATS_TEST_TMPDIR/opened" &
+	opener=$!
+	chrt -f -p 20 $opener
+	master main_devices=veth0,sim0,sim1
+	# nearly all steps make the model, of which nobody knows yet
+	stride=5 fail_each ec_sim sim segment=thin,thin
+	stride=3 fail_each ec_sim sim segment=thin netdev=veth1
+	fail_each ec_generic generic
+	fail_each ec_intel insmod "$EC_BUILD/modules/devices/intel/ec_intel.ko"
+	for letter in a b; do [ "$(opened $letter)" -gt 0 ]; done
+	# nothing is missing afterwards
+	sim segment=thin netdev=veth1
+	generic
+	wait_for 60 eval '[ "$(ethercat slaves -m0 | wc -l)" = 2 ]'
 }
