@@ -67,10 +67,13 @@ static void foe_reply(u8 *h, u8 opcode, u32 number)
 	put_unaligned_le32(number, h + BODY + 2);
 }
 
+/* Its progress goes up and down. */
 static void busy(u8 *h)
 {
+	u8 counter = h[5] >> 4;
+
 	if (type_of(h) == EC_MBOX_FOE)
-		foe_reply(h, EC_FOE_BUSY, 1u | 100u << 16);
+		foe_reply(h, EC_FOE_BUSY, (1u + (counter & 1)) | 100u << 16);
 	else
 		error_reply(h, EC_MBOX_ERR_IN_WORK);
 }

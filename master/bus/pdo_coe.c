@@ -3,35 +3,39 @@
  * The PDOs a CoE slave uses at this moment, from its object dictionary. The
  * EEPROM only has those it is delivered with.
  */
+#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../mailbox/coe.h"
 #include "slave.h"
 
+#define WHOLE_MS	300000	/* for the PDOs of a SyncManager: up to 65,000 objects */
+
 /* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */
-static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value)
+static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value, u64 end_ns)
 {
+	const struct ec_mbox_limit limit = { .end_ns = end_ns };
 	u8 b[4] = { 0 };
 	size_t got;
 	u32 abort;
-	int ret = ec_coe_upload(&s->mbox, index, sub, false, b, sizeof(b), &got, &abort, NULL);
+	int ret = ec_coe_upload(&s->mbox, index, sub, false, b, sizeof(b), &got, &abort, &limit);
 
 	*value = get_unaligned_le32(b);
 	return ret == -EIO && abort ? -ENOENT : ret;
 }
 
 /* Objects 0x1600..., 0x1A00...: mapping (ETG.1000.6 clause 5.6.7.4.7) */
-static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo)
+static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo, u64 end_ns)
 {
 	u32 n, v;
 	unsigned int i;
-	int ret = upload(s, pdo->index, 0, &n);
+	int ret = upload(s, pdo->index, 0, &n, end_ns);
 
 	if (!ret && n > 255)
 		return -EBADMSG;
 	for (i = 1; i <= n && !ret; i++) {
 		struct ec_pdo_entry e;
 
-		ret = upload(s, pdo->index, i, &v);
+		ret = upload(s, pdo->index, i, &v, end_ns);
 		e = (struct ec_pdo_entry){ .index = v >> 16, .sub = v >> 8, .bits = v };
 		if (!ret)
 			ret = ec_pdo_add_entry(pdo, &e);
@@ -42,20 +46,21 @@ static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo)
 /* Objects 0x1C10...: assignment (ETG.1000.6 clause 5.6.7.4.9) */
 static int read_assignment(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 {
+	u64 end_ns = ktime_get_ns() + (u64)WHOLE_MS * NSEC_PER_MSEC;
 	u32 n, index;
 	unsigned int i;
-	int ret = upload(s, 0x1c10 + sm, 0, &n);
+	int ret = upload(s, 0x1c10 + sm, 0, &n, end_ns);
 
 	if (!ret && n > 255)
 		return -EBADMSG;
 	for (i = 1; i <= n && !ret; i++) {
 		struct ec_pdo *p;
 
-		ret = upload(s, 0x1c10 + sm, i, &index);
+		ret = upload(s, 0x1c10 + sm, i, &index, end_ns);
 		if (ret)
 			break;
 		p = ec_pdo_add(l, index, 0);
-		ret = p ? read_mapping(s, p) : -ENOMEM;
+		ret = p ? read_mapping(s, p, end_ns) : -ENOMEM;
 	}
 	ec_slave_name_pdos(s, l);
 	return ret;

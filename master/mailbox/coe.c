@@ -8,6 +8,7 @@
 #include "../wire/sdoinfo.h"
 
 #define INFO_MS	30000	/* for all fragments of one answer */
+#define WHOLE_MS	60000	/* for all messages of an SDO transfer, besides its bytes */
 
 /* The reply is too short; the mailbox is large enough. */
 static int rx_result(int ret)
@@ -28,6 +29,11 @@ static void send_abort(struct ec_mbox *mb, struct ec_sdo *s, struct ec_mbox_buf 
 		ec_mbox_send_last(mb, EC_MBOX_COE, b, len);
 }
 
+static size_t moved(const struct ec_sdo *s)
+{
+	return s->down ? s->sent : s->size;
+}
+
 /*
  * Other protocols may use the mailbox between the messages of a transfer, another
  * SDO transfer may not.
@@ -40,6 +46,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 		.limit = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
+	u64 begin, end = req.limit.end_ns ?: U64_MAX;
 	u32 abort;
 	int ret;
 
@@ -48,7 +55,9 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 	ret = ec_mbox_claim_for(mb, EC_MBOX_COE, &req.limit);
 	if (ret)
 		goto out;
+	begin = ktime_get_ns();
 	do {
+		req.limit.end_ns = min(end, ec_mbox_end_ns(begin, WHOLE_MS, moved(s)));
 		ret = ec_sdo_tx(s, b->tx, cap);
 		if (ret >= 0)
 			ret = ec_mbox_request(mb, &req, b, ret);

@@ -7,13 +7,15 @@
 #include "../wire/mbox.h"
 
 #define PAUSE_US	2000	/* before a message is sent again to a slave that is busy */
+#define WHOLE_MS	900000	/* for all messages of a file, besides its bytes: an erase, say */
 
 /* a transfer on its way */
 struct transfer {
 	struct ec_foe *f;
 	struct ec_mbox *mb;
+	u64 begin_ns;
 	u64 busy_ns;	/* since when the slave is busy without progress, 0: it is not */
-	u16 done;
+	u16 done;	/* the highest value since then: one that goes up and down is none */
 	u64 wait_ns;	/* since when it is busy before the first data, 0: it is not */
 };
 
@@ -40,7 +42,7 @@ static int wait_busy(struct transfer *t)
 		t->busy_ns = 0;
 		return 0;
 	}
-	if (!t->busy_ns || t->done != t->f->done) {
+	if (!t->busy_ns || t->f->done > t->done) {
 		t->busy_ns = now;
 		t->done = t->f->done;
 	}
@@ -78,6 +80,7 @@ static int step(struct transfer *t, const struct ec_foe_file *file, struct ec_mb
 		/* the file is here */
 		return ret == -ENOTRECOVERABLE ? 0 : ret;
 	}
+	req->limit.end_ns = ec_mbox_end_ns(t->begin_ns, WHOLE_MS, f->write ? f->at : f->size);
 	ret = ec_mbox_request(t->mb, req, b, len);
 	req->first = false;
 	if (ret < 0)
@@ -138,6 +141,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	ret = ec_mbox_claim_for(mb, EC_MBOX_FOE, &req.limit);
 	if (ret)
 		goto out;
+	t.begin_ns = ktime_get_ns();
 	do {
 		ret = wait_busy(&t) ?: step(&t, file, &req, b);
 	} while (ret == EC_MORE);

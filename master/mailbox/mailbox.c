@@ -134,6 +134,8 @@ unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page)
  * @protocol: EC_SII_PROTO_*
  * @message: bytes behind the mailbox header it needs at least
  *
+ * The reply needs less than some requests, but not nothing: it has at least a header.
+ *
  * Context: Process.
  * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EAGAIN in BOOT, unless it is
  * FoE; -EMSGSIZE for a mailbox that is too small or larger than a datagram.
@@ -149,6 +151,7 @@ int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 		return -EAGAIN;
 	/* the EEPROM may say anything; a message is one datagram */
 	if (area->rx_size < EC_MBOX_HDR + message || area->rx_size > EC_MBOX_MAX ||
+	    area->tx_size < EC_MBOX_HDR + min_t(size_t, message, EC_MBOX_REPLY) ||
 	    area->tx_size > EC_MBOX_MAX)
 		return -EMSGSIZE;
 	return 0;

@@ -24,6 +24,8 @@ struct ec_mbox_user;
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
 #define EC_MBOX_BEGIN	16	/* bytes in which two messages differ */
 #define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
+#define EC_MBOX_REPLY	10	/* bytes behind the header that a reply has at most, at least */
+#define EC_MBOX_KIB_MS	4000	/* for a KiB of a transfer: its rate must not be lower */
 
 enum ec_mbox_flag {
 	EC_MBOX_FILE,	/* a file is transferred */
@@ -212,11 +214,13 @@ struct ec_mbox_buf {
  * struct ec_mbox_limit - when a transfer has to give up
  * @timeout_ms: per message, 0: the protocol's default
  * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
+ * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
  * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
 struct ec_mbox_limit {
 	u32 timeout_ms;
 	u64 begin_ns;
+	u64 end_ns;
 	const bool *cancel;
 };
 
@@ -269,6 +273,15 @@ static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set
 
 	limit.timeout_ms = limit.timeout_ms ?: timeout_ms;
 	return limit;
+}
+
+/*
+ * The end of a transfer that has moved @bytes since @begin_ns: a slave that replies within the
+ * time limit of each message, with next to nothing in it, would go on for hours.
+ */
+static inline u64 ec_mbox_end_ns(u64 begin_ns, u32 ms, u64 bytes)
+{
+	return begin_ns + (ms + (bytes * EC_MBOX_KIB_MS >> 10)) * NSEC_PER_MSEC;
 }
 
 void ec_mbox_init(struct ec_mbox *mb);

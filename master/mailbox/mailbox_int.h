@@ -21,9 +21,9 @@ struct ec_mbox_until {
 
 static inline struct ec_mbox_until ec_mbox_until(const struct ec_mbox_limit *l)
 {
-	return (struct ec_mbox_until){
-		ktime_get_ns() + (u64)l->timeout_ms * NSEC_PER_MSEC, l->cancel,
-	};
+	u64 ns = ktime_get_ns() + (u64)l->timeout_ms * NSEC_PER_MSEC;
+
+	return (struct ec_mbox_until){ l->end_ns ? min(ns, l->end_ns) : ns, l->cancel };
 }
 
 enum ec_mbox_phase {

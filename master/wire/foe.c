@@ -130,7 +130,8 @@ static int received(struct ec_foe *f, u32 number, size_t len, size_t room)
 {
 	if (number != f->packet + 1)
 		return EC_STALE;
-	if (len > room)
+	/* messages without room for data would go on for ever */
+	if (len > room || !room)
 		return -EBADMSG;
 	f->begun = true;
 	f->packet = number;

@@ -100,6 +100,22 @@ static void expect_content(struct kunit *test, const struct side *x, u64 size)
 	KUNIT_EXPECT_EQ(test, i, size);
 }
 
+/* A mailbox that holds a header and no data: a read would get nothing for ever. */
+static void foe_mailbox_without_room_refused(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, 3);
+	struct ec_slave *s = bus_slave(b, 0);
+	struct side *x = side_new(test);
+	const u16 tx_size = s->info.std.tx_size;
+	struct ec_foe f;
+
+	KUNIT_ASSERT_EQ(test, put(s, x, "data.bin", 1000, &f), 0);
+	s->info.std.tx_size = EC_MBOX_HDR + EC_FOE_HDR;
+	KUNIT_EXPECT_EQ(test, get(s, x, "data.bin", MOST, &f), -EMSGSIZE);
+	s->info.std.tx_size = tx_size;
+	KUNIT_EXPECT_EQ(test, get(s, x, "data.bin", MOST, &f), 0);
+}
+
 static void foe_files(struct kunit *test)
 {
 	static const u32 sizes[] = { 0, 1, 115, 116, 117, 100000, MOST };
@@ -287,6 +303,7 @@ static void foe_silence(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
+	KUNIT_CASE(foe_mailbox_without_room_refused),
 	KUNIT_CASE(foe_files),
 	KUNIT_CASE(foe_refused),
 	KUNIT_CASE(foe_boot),

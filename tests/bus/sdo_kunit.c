@@ -5,6 +5,7 @@
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
 #include "master/wire/coe.h"
+#include "master/wire/sdo.h"
 #include "master/wire/sdoinfo.h"
 
 #define RESPONSE_US	500
@@ -224,6 +225,52 @@ static void sdo_emergency(struct kunit *test)
 	there_and_back(b, 0, "small", TYPES, 8, 4);
 }
 
+/* The mailboxes of an EEPROM hold no reply: no transfer begins. */
+static void sdo_mailbox_without_room_refused(struct kunit *test)
+{
+	struct bus *b = ready(test);
+	struct ec_slave *s = bus_slave(b, 0);
+	const u16 tx_size = s->info.std.tx_size;
+	u8 v[4];
+	size_t got;
+	u32 abort;
+
+	s->info.std.tx_size = EC_MBOX_HDR + EC_SDO_MSG - 1;
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(&s->mbox, TYPES, 8, false, v, 4, &got, &abort, NULL),
+			-EMSGSIZE);
+	s->info.std.tx_size = tx_size;
+	there_and_back(b, 0, "small", TYPES, 8, 4);
+}
+
+/* Each segment comes just in time, and there are many of them. */
+static void sdo_slow_segments_end_transfer(struct kunit *test)
+{
+	const struct ec_mbox_limit limit = { .timeout_ms = 5000 };
+	struct bus *b = ready(test);
+	struct ec_mbox *small = &bus_slave(b, 0)->mbox;
+	u8 *v = kunit_kzalloc(test, 1000, GFP_KERNEL);
+	u64 t0 = ktime_get_ns(), up, down;
+	size_t got;
+	u32 abort;
+
+	KUNIT_ASSERT_NOT_NULL(test, v);
+	bus_app(b, "small")->response_ns = 4u * NSEC_PER_SEC;
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(small, SCRATCH, 0, false, v, 1000, &got, &abort,
+					    &limit), -ETIMEDOUT);
+	up = ktime_get_ns() - t0;
+	t0 += up;
+	KUNIT_EXPECT_EQ(test, ec_coe_download(small, SCRATCH, 0, false, v, 1000, &abort, &limit),
+			-ETIMEDOUT);
+	down = ktime_get_ns() - t0;
+	bus_figure("1000 bytes at 4 s a segment: upload ends after %llu ms, download after %llu ms",
+		   div_u64(up, NSEC_PER_MSEC), div_u64(down, NSEC_PER_MSEC));
+	KUNIT_EXPECT_GE(test, up, 60 * NSEC_PER_SEC);
+	KUNIT_EXPECT_LE(test, max(up, down), 70 * NSEC_PER_SEC);
+	bus_app(b, "small")->response_ns = 0;
+	msleep(10000);
+	there_and_back(b, 0, "small", SCRATCH, 0, 1000);
+}
+
 /*
  * The tick of this kernel is 10 ms: were anything bound to it, an upload would
  * take at least that long.
@@ -330,6 +377,8 @@ static struct kunit_case sdo_cases[] = {
 	KUNIT_CASE(sdo_errors),
 	KUNIT_CASE(sdo_information),
 	KUNIT_CASE(sdo_huge_mailbox),
+	KUNIT_CASE(sdo_mailbox_without_room_refused),
+	KUNIT_CASE(sdo_slow_segments_end_transfer),
 	KUNIT_CASE(sdo_mute),
 	KUNIT_CASE(sdo_emergency),
 	KUNIT_CASE(sdo_lost_frames),

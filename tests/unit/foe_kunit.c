@@ -47,6 +47,13 @@ static void foe_messages_match_protocol_table(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, tx, "\5\0\3\x80\0\0no room, n", 16);
 }
 
+static void foe_read_without_room_for_data_fails(struct kunit *test)
+{
+	struct ec_foe r = read_of();
+
+	KUNIT_EXPECT_EQ(test, ec_foe_rx(&r, (const u8 *)"\3\0\1\0\0\0", 6, 0), -EBADMSG);
+}
+
 /* a multiple of the packet size ends with a packet without data */
 static void foe_write_ends_with_short_packet(struct kunit *test)
 {
@@ -163,6 +170,7 @@ static void foe_small_mailboxes_are_refused(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(foe_messages_match_protocol_table),
+	KUNIT_CASE(foe_read_without_room_for_data_fails),
 	KUNIT_CASE(foe_write_ends_with_short_packet),
 	KUNIT_CASE(foe_busy_repeats_packet),
 	KUNIT_CASE(foe_late_packets_change_nothing),
