@@ -119,6 +119,8 @@
 #define EC_HAVE_FOE
 /* ecrt_slave_config_create_foe_request() and its requests */
 #define EC_HAVE_FOE_REQUESTS
+/* ecrt_slave_config_sdo_timeout(): limit of replies to SDOs */
+#define EC_HAVE_SDO_TIMEOUT
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -2166,6 +2168,25 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
 		ec_al_state_t from_state, ec_al_state_t to_state,
 		unsigned int timeout_ms);
 
+#ifdef EC_HAVE_SDO_TIMEOUT
+/**
+ * ecrt_slave_config_sdo_timeout() - configure the timeout of replies to SDOs and IDNs
+ * @sc: slave configuration
+ * @timeout_ms: milliseconds for each message, at most 60000; 0: default, 5 s
+ *
+ * Extension (%EC_HAVE_SDO_TIMEOUT). Valid for startup commands, requests, and calls and commands
+ * that set no timeout of their own, as long as the slave has this configuration. After this time
+ * a startup command waits 30 s more if the slave has accepted it. Other transfers end; the next
+ * one of this protocol waits for the late reply, at most 30 s. An SDO transfer as a whole has
+ * 60 s more, and 4 s for each KiB.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @sc is NULL or the time too long; %-EBUSY after ecrt_master_activate().
+ */
+EC_PUBLIC_API int ecrt_slave_config_sdo_timeout(ec_slave_config_t *sc,
+		unsigned int timeout_ms);
+#endif
+
 #ifdef EC_HAVE_LATE_CYCLES
 /**
  * ecrt_master_set_late_cycles() - limit the cycles that acyclic frames delay
@@ -2458,7 +2479,8 @@ EC_PUBLIC_API int ecrt_sdo_request_index_complete(ec_sdo_request_t *req,
  *	state is ERROR. 0 (initial): unlimited
  *
  * A request waits while the slave is absent, in INIT, or busy with another request or with a
- * transfer of another program. The transfer has a timeout of 1 s per message.
+ * transfer of another program. The transfer has a timeout of 5 s per message, or
+ * that of ecrt_slave_config_sdo_timeout().
  *
  * Context: One caller at a time. RT-safe, no system call.
  * Return: 0; %-EINVAL @req is NULL.

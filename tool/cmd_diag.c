@@ -209,7 +209,7 @@ static int finish(const struct tool *t, struct history *h)
 
 	if (!h->newest || !(t->reset || t->acknowledge))
 		return 0;
-	return sdo_download(h->d, h->position, &a, &value, 1);
+	return sdo_download(h->d, h->position, &a, 0, &value, 1);
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,

@@ -17,7 +17,7 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 	if (dev_select_single(d, t, &s))
 		return 1;
 	if (!type)
-		type = sdo_described_type(d, &s, a, &abort);
+		type = sdo_described_type(d, &s, a, t->timeout_ms, &abort);
 	if (!type && (abort == SDO_NO_OBJECT || abort == SDO_NO_SUBINDEX))
 		return usage_error("%s is absent in the dictionary of slave %u; if the slave has it nevertheless, give --type",
 				   a->text, s.position);
@@ -26,7 +26,7 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 				   a->text);
 	if (io_value(type, text, &data, &size))
 		return 1;
-	ret = sdo_download(d, s.position, a, data, size);
+	ret = sdo_download(d, s.position, a, t->timeout_ms, data, size);
 	free(data);
 	if (ret)
 		return ret;
@@ -45,7 +45,8 @@ static int run(struct tool *t, int argc, char **argv)
 	struct dev d;
 	int ret;
 
-	if (sdo_addr_parse(&a, argv[0], sub) || (t->type && io_type(t->type, &type)))
+	if (sdo_addr_parse(&a, argv[0], sub) ||
+	    (t->type && io_type(t->type, &type)) || sdo_timeout_check(t))
 		return 1;
 	/* a number behind a forgotten subindex is not written as text */
 	if (!type && a.complete && strcmp(text, "-"))
@@ -64,7 +65,7 @@ const struct cmd cmd_download = {
 	.name = "download",
 	.run = run,
 	.args = "INDEX [SUBINDEX] VALUE",
-	.opts = "mapt",
+	.opts = "maptI",
 	.summary = "Write an SDO to a slave",
 	.help = "INDEX := { 0 to 0xffff | INDEX:HH }     HH: subindex, two hex digits\n"
 		"SUBINDEX := { 0 to 0xff }\n"
@@ -72,7 +73,10 @@ const struct cmd cmd_download = {
 		"Without a subindex the whole object is written (complete access); VALUE needs --type\n"
 		"then, stdin is written unchanged. With a subindex and without --type the type is that\n"
 		"of the slave's dictionary, which costs one more transfer; a slave that describes no\n"
-		"objects needs --type. Negative numbers need no '--' before them.\n",
+		"objects needs --type. --timeout is the time limit of each reply, at most 60 s, by\n"
+		"default 5 s or that of the application. After that the slave may still write the\n"
+		"value: the next SDO waits for its reply, at most 30 s. Negative\n"
+		"numbers need no '--' before them.\n",
 	.json = "master, slave, index, subindex, complete_access, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "out.h"
 #include "idn.h"
+#include "sdo.h"
 
 static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *a,
 		    const struct ec_type *type)
@@ -8,6 +9,7 @@ static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *
 	static u8 data[65536];
 	struct ec_ioc_soe soe = {
 		.idn = a->idn, .drive = a->drive, .size = sizeof(data), .data = (uintptr_t)data,
+		.timeout_ms = t->timeout_ms,
 	};
 	struct ec_ioc_slave s;
 	const u8 *from = data;
@@ -38,7 +40,7 @@ static int run(struct tool *t, int argc, char **argv)
 	struct dev d;
 	int ret;
 
-	if (soe_addr_parse(&a, argc > 1 ? argv[0] : NULL, argv[argc - 1]) ||
+	if (sdo_timeout_check(t) || soe_addr_parse(&a, argc > 1 ? argv[0] : NULL, argv[argc - 1]) ||
 	    io_type(t->type ? t->type : "raw", &type) || dev_open_single(&d, t, true))
 		return 1;
 	ret = soe_read(t, &d, &a, type);
@@ -50,7 +52,7 @@ const struct cmd cmd_soe_read = {
 	.name = "soe_read",
 	.run = run,
 	.args = "[DRIVE] IDN",
-	.opts = "mapt",
+	.opts = "maptI",
 	.summary = "Read an IDN of a servo drive (SoE)",
 	.help = "DRIVE := { 0 to 7 }, default 0\n"
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"

@@ -4,6 +4,7 @@
 
 #include "out.h"
 #include "idn.h"
+#include "sdo.h"
 
 /* A text becomes a list: its length, the same as the largest one, the characters. */
 static int as_list(u8 **data, size_t *size)
@@ -29,6 +30,7 @@ static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr 
 {
 	struct ec_ioc_soe soe = {
 		.idn = a->idn, .drive = a->drive, .size = (u32)size, .data = (uintptr_t)data,
+		.timeout_ms = t->timeout_ms,
 	};
 	struct ec_ioc_slave s;
 	int err;
@@ -55,7 +57,7 @@ static int run(struct tool *t, int argc, char **argv)
 	u8 *data;
 	int ret;
 
-	if (soe_addr_parse(&a, argc > 2 ? argv[0] : NULL, argv[argc - 2]))
+	if (sdo_timeout_check(t) || soe_addr_parse(&a, argc > 2 ? argv[0] : NULL, argv[argc - 2]))
 		return 1;
 	if (!t->type)
 		return usage_error("the data type of %s is not known; give it with --type", a.text);
@@ -74,7 +76,7 @@ const struct cmd cmd_soe_write = {
 	.name = "soe_write",
 	.run = run,
 	.args = "[DRIVE] IDN VALUE",
-	.opts = "mapt",
+	.opts = "maptI",
 	.summary = "Write an IDN of a servo drive (SoE)",
 	.help = "DRIVE := { 0 to 7 }, default 0\n"
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"

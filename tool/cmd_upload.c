@@ -30,10 +30,10 @@ static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
 
 /* NULL where the dictionary contradicts the data */
 static const struct ec_type *described(struct dev *d, const struct ec_ioc_slave *s,
-				       const struct sdo_addr *a, size_t size)
+				       const struct sdo_addr *a, u32 timeout_ms, size_t size)
 {
 	u32 abort;
-	const struct ec_type *type = sdo_described_type(d, s, a, &abort);
+	const struct ec_type *type = sdo_described_type(d, s, a, timeout_ms, &abort);
 
 	return type && (!value_bytes(type) || value_bytes(type) == size) ? type : NULL;
 }
@@ -46,13 +46,14 @@ static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 	u8 *data;
 	int ret;
 
-	if (dev_select_single(d, t, &s) || sdo_upload(d, s.position, a, &data, &size))
+	if (dev_select_single(d, t, &s) ||
+	    sdo_upload(d, s.position, a, t->timeout_ms, &data, &size))
 		return 1;
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	sdo_addr_out(a);
 	if (!type)
-		type = described(d, &s, a, size);
+		type = described(d, &s, a, t->timeout_ms, size);
 	out_bool("type_guessed", !type, NULL);
 	if (!type)
 		type = guess(a, size);
@@ -69,7 +70,8 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	if (sdo_addr_parse(&a, argv[0], argc > 1 ? argv[1] : NULL) ||
-	    (t->type && io_type(t->type, &type)) || dev_open_single(&d, t, true))
+	    (t->type && io_type(t->type, &type)) || sdo_timeout_check(t) ||
+	    dev_open_single(&d, t, true))
 		return 1;
 	ret = upload(t, &d, &a, type);
 	dev_close(&d);
@@ -80,7 +82,7 @@ const struct cmd cmd_upload = {
 	.name = "upload",
 	.run = run,
 	.args = "INDEX [SUBINDEX]",
-	.opts = "mapt",
+	.opts = "maptI",
 	.summary = "Read an SDO from a slave",
 	.help = "INDEX := { 0 to 0xffff | INDEX:HH }     HH: subindex, two hex digits\n"
 		"SUBINDEX := { 0 to 0xff }\n"
@@ -88,7 +90,8 @@ const struct cmd cmd_upload = {
 		"octet_string. With a subindex and without --type the type is that of the slave's\n"
 		"dictionary, which costs one more transfer. If the slave describes no objects, 0x1008\n"
 		"to 0x100a are strings; other data of 1, 2, 4 or 8 bytes are shown as unsigned numbers\n"
-		"and the rest as hex bytes.\n",
+		"and the rest as hex bytes. --timeout is the time limit of each reply, at most 60 s,\n"
+		"by default 5 s or that of the application.\n",
 	.json = "master, slave, index, subindex, complete_access, type_guessed (not from the\n"
 		"dictionary or --type), type, size_bytes,\n"
 		"value (not for bytes without a value form), data_hex",

@@ -10,6 +10,7 @@
 #include "out.h"
 
 #define DESCRIBE_MS	1000	/* for a type that can be given as well */
+#define MOST_MS	60000u
 #define ROOM	(64u << 10)	/* the largest object the kernel transfers */
 
 /**
@@ -54,6 +55,14 @@ void sdo_addr_out(const struct sdo_addr *a)
 	out_bool("complete_access", a->complete, NULL);
 }
 
+int sdo_timeout_check(const struct tool *t)
+{
+	if (t->timeout_ms > MOST_MS)
+		return usage_error("--timeout of a mailbox reply is at most %u seconds",
+				   MOST_MS / 1000);
+	return 0;
+}
+
 static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const struct sdo_addr *a,
 		  const char *verb)
 {
@@ -69,6 +78,7 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
  * @d: master, open for writing
  * @s: slave
  * @a: entry
+ * @timeout_ms: of each reply, 0: default
  * @abort: set to the abort code of the slave, 0: there is none
  *
  * A slave whose EEPROM announces no SDO information gets no request: it might not answer.
@@ -77,13 +87,13 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
  * has no type for it.
  */
 const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slave *s,
-					 const struct sdo_addr *a, u32 *abort)
+					 const struct sdo_addr *a, u32 timeout_ms, u32 *abort)
 {
 	u8 *buf = malloc(ROOM);
 	struct ec_ioc_sdo_info i = {
 		.position = s->position, .index = a->index, .subindex = a->sub,
 		.what = EC_SDO_INFO_ENTRY, .size = ROOM, .data = (uintptr_t)buf,
-		.timeout_ms = DESCRIBE_MS,
+		.timeout_ms = timeout_ms ?: DESCRIBE_MS,
 	};
 	const struct ec_type *type = NULL;
 	struct ec_od_entry e;
@@ -98,7 +108,8 @@ const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slav
 }
 
 /* @data is to be freed */
-int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data, size_t *size)
+int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u32 timeout_ms, u8 **data,
+	       size_t *size)
 {
 	u8 *buf = malloc(ROOM);
 	struct ec_ioc_sdo s = {
@@ -107,6 +118,7 @@ int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data,
 		.index = a->index,
 		.subindex = a->sub,
 		.size = ROOM,
+		.timeout_ms = timeout_ms,
 		.data = (uintptr_t)buf,
 	};
 	int err;
@@ -123,7 +135,8 @@ int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u8 **data,
 	return 0;
 }
 
-int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data, size_t size)
+int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u32 timeout_ms, u8 *data,
+		 size_t size)
 {
 	struct ec_ioc_sdo s = {
 		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
@@ -131,6 +144,7 @@ int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u8 *data
 		.index = a->index,
 		.subindex = a->sub,
 		.size = (u32)size,
+		.timeout_ms = timeout_ms,
 		.data = (uintptr_t)data,
 	};
 	int err = dev_ioctl(d, EC_IOC_SDO_DOWNLOAD, &s);

@@ -87,6 +87,16 @@ int ecrt_slave_config_state_timeout(ec_slave_config_t *sc, ec_al_state_t from_st
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_state_timeout);
 
+int ecrt_slave_config_sdo_timeout(ec_slave_config_t *sc, unsigned int timeout_ms)
+{
+	struct ec_ioc_sc_timeout arg = {
+		.flags = EC_SC_TIMEOUT_REPLY, .config = ec_sc_index(sc), .timeout_ms = timeout_ms,
+	};
+
+	return ec_do_sc(sc, EC_IOC_SC_TIMEOUT, &arg, "set timeout of replies");
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_sdo_timeout);
+
 /* startup SDOs and IDNs ------------------------------------------------------*/
 
 static int add_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, uint32_t flags,

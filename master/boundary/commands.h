@@ -85,7 +85,7 @@ CMD(EC_IOC_REG_ENTRY, ec_ioc_reg_entry, F_WRITE, CONFIG(ec_ioc_reg_entry),
 CMD(EC_IOC_SC_DC, ec_ioc_sc_dc, F_WRITE, CONFIG(ec_ioc_sc_dc), RSV2(ec_ioc_sc_dc))
 CMD(EC_IOC_SC_FLAG, ec_ioc_sc_flag, F_WRITE, CONFIG(ec_ioc_sc_flag), RSV1(ec_ioc_sc_flag))
 CMD(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, CONFIG(ec_ioc_sc_timeout),
-	RSV1(ec_ioc_sc_timeout))
+	RSV1(ec_ioc_sc_timeout), FLAGS(EC_SC_TIMEOUT_REPLY))
 CMD(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, CONFIG(ec_ioc_sc_request),
 	RSV1(ec_ioc_sc_request))
 CMD(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, CONFIG(ec_ioc_sc_emerg), RSV1(ec_ioc_sc_emerg))

@@ -334,10 +334,25 @@ int ec_ioc_sc_flag(struct ec_call *call)
 	return ec_ioc_limit(call, ret);
 }
 
+static int reply_timeout(struct ec_call *call, u32 ms)
+{
+	struct ec_config *c = call->config;
+
+	if (ms > EC_MAX_SDO_MS)
+		return ec_refuse(call, -EINVAL, "a reply timeout is at most %u ms, not %u",
+				 EC_MAX_SDO_MS, ms);
+	c->reply_ms = ms;
+	if (ec_session_owns(c))
+		WRITE_ONCE(c->slave->mbox.reply_ms, ms);
+	return 0;
+}
+
 int ec_ioc_sc_timeout(struct ec_call *call)
 {
 	struct ec_ioc_sc_timeout *i = call->arg;
 
+	if (i->flags & EC_SC_TIMEOUT_REPLY)
+		return reply_timeout(call, i->timeout_ms);
 	if (!ec_al_state_valid(i->from) || !ec_al_state_valid(i->to) || i->from == EC_AL_BOOT ||
 	    i->to == EC_AL_BOOT)
 		return ec_refuse(call, -EINVAL, "AL states are 1, 2, 4, 8, not %u and %u", i->from,

@@ -47,6 +47,12 @@ int ec_ioc_mbox_failed(struct ec_call *call, int ret, u16 position, const char *
 
 /* SDOs -----------------------------------------------------------------------*/
 
+/* what holds without a limit of the caller */
+static u32 sdo_ms(const struct ec_call *call)
+{
+	return READ_ONCE(call->slave->mbox.reply_ms) ?: EC_SDO_TIMEOUT_MS;
+}
+
 static int sdo_failed(struct ec_call *call, const struct ec_ioc_sdo *i, int ret)
 {
 	char what[24];
@@ -57,6 +63,10 @@ static int sdo_failed(struct ec_call *call, const struct ec_ioc_sdo *i, int ret)
 				 ec_coe_abort_text(i->abort_code) ?: "unknown code");
 	if (ret == -ENOBUFS)
 		return ec_refuse(call, ret, "%s is larger than %u bytes", what, i->size);
+	if (ret == -ETIMEDOUT)
+		return ec_refuse(call, ret,
+				 "%s of slave %u: no reply in time, limit %u ms; if the slave needs longer, allow more: --timeout, ecrt_slave_config_sdo_timeout()",
+				 what, i->position, i->timeout_ms ?: sdo_ms(call));
 	return ec_ioc_mbox_failed(call, ret, i->position, "CoE", what);
 }
 

@@ -98,6 +98,7 @@ struct ec_config_flag {
  * @ring_position: when it was activated
  * @sync: SYNC signals
  * @timeout_ms: of AL transitions, by from and to state, 0: default
+ * @reply_ms: limit of its replies to SDOs and IDNs, 0: default
  * @emergencies: how many to keep
  * @emerg_cleared: by an application in the kernel, of the lost ones
  * @lost: the slave that it had while active, in words, when it was there last (ktime), where
@@ -125,6 +126,7 @@ struct ec_config {
 	u32 ring_position;
 	struct ec_dc_sync sync;
 	u32 timeout_ms[9][9];
+	u32 reply_ms;
 	u32 emergencies;
 	u32 emerg_cleared;
 	struct {

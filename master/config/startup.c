@@ -96,15 +96,18 @@ void ec_startup_del(struct ec_config *c, struct ec_startup *u)
 /* What a command does; @code: the slave's own error number, 0: none */
 static int run(struct ec_slave *s, const struct ec_startup *u, u32 *code)
 {
+	/* a slave that goes through INIT instead would only begin again to store it */
+	static const struct ec_mbox_limit limit = { .patient = true };
 	u16 error = 0;
 	int ret;
 
 	switch (u->type) {
 	case EC_STARTUP_SDO:
 		return ec_coe_download(&s->mbox, u->index, u->sub, u->complete, u->data, u->size,
-				       code, NULL);
+				       code, &limit);
 	case EC_STARTUP_IDN:
-		ret = ec_soe_write(&s->mbox, u->sub, u->index, u->data, u->size, &error, NULL);
+		ret = ec_soe_write(&s->mbox, u->sub, u->index, u->data, u->size, &error,
+				   &limit);
 		break;
 	case EC_STARTUP_IP:
 		ret = ec_eoe_set_ip(&s->mbox, (const void *)u->data, &error);

@@ -179,6 +179,8 @@ static void renew(struct ec_mbox *mb)
 	mb->asked = false;
 	mb->repeats = false;
 	mb->answered = false;
+	mb->late = 0;
+	mb->never_late = false;
 }
 
 /* The user whose message is the next one; NULL: none. */

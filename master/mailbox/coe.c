@@ -42,11 +42,12 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 {
 	size_t cap = mb->sii->std.rx_size - EC_MBOX_HDR;
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_COE, .first = true, .rx = rx, .ctx = s,
-		.limit = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS),
+		.type = EC_MBOX_COE, .first = true, .late = true, .rx = rx, .ctx = s,
+		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SDO_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
 	u64 begin, end = req.limit.end_ns ?: U64_MAX;
+	u32 whole = WHOLE_MS + req.limit.timeout_ms;
 	u32 abort;
 	int ret;
 
@@ -57,7 +58,7 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 		goto out;
 	begin = ktime_get_ns();
 	do {
-		req.limit.end_ns = min(end, ec_mbox_end_ns(begin, WHOLE_MS, moved(s)));
+		req.limit.end_ns = min(end, ec_mbox_end_ns(begin, whole, moved(s)));
 		ret = ec_sdo_tx(s, b->tx, cap);
 		if (ret >= 0)
 			ret = ec_mbox_request(mb, &req, b, ret);
@@ -67,8 +68,10 @@ static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit 
 	abort = s->abort;
 	if (ret)
 		ec_sdo_cancel(s);
-	if (s->send_abort)
+	if (s->send_abort) {
 		send_abort(mb, s, b, cap);
+		ec_mbox_forget_late(mb, BIT(EC_MBOX_COE));
+	}
 	s->abort = abort;
 	ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));
 out:
@@ -213,7 +216,7 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
  */
 int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbox_limit *limit)
 {
-	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_SDO_TIMEOUT_MS);
+	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_SDOINFO_TIMEOUT_MS);
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDOINFO_MIN);
 	int ret;
 

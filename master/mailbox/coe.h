@@ -10,7 +10,8 @@ struct ec_mbox_limit;
 struct ec_mbox;
 struct ec_sdoinfo;
 
-#define EC_SDO_TIMEOUT_MS	1000
+#define EC_SDO_TIMEOUT_MS	5000	/* some drives store parameters that long */
+#define EC_SDOINFO_TIMEOUT_MS	1000	/* nothing is stored */
 
 int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data, size_t cap,
 		  size_t *size, u32 *abort, const struct ec_mbox_limit *limit);

@@ -4,7 +4,7 @@
 #include "mailbox.h"
 #include "../wire/mbox.h"
 
-#define TIMEOUT_MS	1000
+#define TIMEOUT_MS	5000	/* as that of an SDO */
 
 /* the answer that is waited for */
 struct answer {

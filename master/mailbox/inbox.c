@@ -226,6 +226,8 @@ static void deliver(struct ec_mbox *mb, struct ec_mbox_user *u, const struct ec_
 	u->got = h->len;
 	u->got_type = h->type;
 	memcpy(u->rx, mb->rx + EC_MBOX_HDR, h->len);
+	if (u->answer)
+		mb->never_late = false;
 	/* its message has arrived, whatever became of the frame */
 	if (mb->sending.on && mb->sending.user == u)
 		mb->sending.on = false;
@@ -239,13 +241,27 @@ static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 	return h->type == EC_MBOX_COE && !ec_coe_emergency_decode(mb->rx + EC_MBOX_HDR, h->len, &e);
 }
 
+/* A message that nothing waits for: who waits for a reply gets it before such, or never. */
+static void mark_heard(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->lock);
+	for_each_user(mb, u)
+		if (u->answer && u->phase == EC_MBOX_USER_WAITING)
+			u->heard = true;
+}
+
 /* Whose message is it? It stays in @rx until it is taken. */
 static void dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
-	struct ec_mbox_user *u = is_emergency(mb, h) ? NULL : find(mb, h->type);
+	bool emergency = is_emergency(mb, h);
+	struct ec_mbox_user *u = emergency ? NULL : find(mb, h->type);
 
 	lockdep_assert_held(&mb->lock);
 	mb->held = false;
+	if (!u && !emergency && h->type != EC_MBOX_VOE && h->type != EC_MBOX_EOE)
+		mark_heard(mb);
 	if (u && u->phase == EC_MBOX_USER_DONE) {
 		mb->held = true;
 	} else if (u) {
@@ -291,6 +307,8 @@ void ec_mbox_received(struct ec_mbox *mb)
 		}
 	} else if (!is_known(mb, h.counter)) {
 		dispatch(mb, &h);
+	} else {
+		mark_heard(mb);
 	}
 	count_unasked(mb);
 	ec_mbox_finish_once(mb);

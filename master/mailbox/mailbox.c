@@ -176,7 +176,14 @@ struct ec_mbox_buf *ec_mbox_alloc(const struct ec_mbox *mb, u16 protocol, size_t
 
 /* users ---------------------------------------------------------------------*/
 
-static void enter(struct ec_mbox *mb, struct ec_mbox_user *u)
+/**
+ * ec_mbox_enter() - a caller has a message for the slave, or waits for one
+ * @mb: mailbox of the slave, with memory
+ * @u: caller
+ *
+ * Context: Process.
+ */
+void ec_mbox_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
 	unsigned long flags;
 
@@ -209,8 +216,15 @@ static void wait_on(struct ec_mbox *mb, struct ec_mbox_user *u)
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }
 
-/* @answered: nothing of its exchange can come any more. */
-static void leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
+/**
+ * ec_mbox_leave() - a caller has its result, or has given up
+ * @mb: mailbox of the slave
+ * @u: caller that has entered
+ * @answered: nothing of its exchange can come any more
+ *
+ * Context: Process.
+ */
+void ec_mbox_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
 {
 	struct ec_mbox_sending *s = &mb->sending;
 	unsigned long flags;
@@ -261,15 +275,17 @@ static int answer(struct ec_mbox *mb, const struct ec_mbox_request *r,
 }
 
 /* The request, until its answer is here or it is too late. */
-static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_user *u)
+static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
+		    const struct ec_mbox_limit *limit, struct ec_mbox_user *u)
 {
-	struct ec_mbox_until until = ec_mbox_until(&r->limit);
+	struct ec_mbox_until until = ec_mbox_until(limit);
 	int ret, end;
 
 	for (;;) {
-		ret = wait_done(mb, u, &r->limit, &until) ?: answer(mb, r, u);
+		ret = wait_done(mb, u, limit, &until) ?: answer(mb, r, u);
 		if (ret != EC_WAIT && ret != EC_STALE)
 			return ret;
+		u->heard = true;
 		if (ret == EC_WAIT)
 			until = ec_mbox_until(&r->limit);
 		/* also a slave that sends messages without end has to answer in time */
@@ -280,6 +296,22 @@ static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 	}
 }
 
+/* The slave has the request, and its reply is late. It may come just now. */
+static int go_on(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_user *u)
+{
+	struct ec_mbox_limit more = r->limit;
+	int ret;
+
+	more.timeout_ms = r->limit.patient ? EC_MBOX_LATE_MS : 0;
+	if (r->limit.patient)
+		ec_mbox_warn(mb, "no reply within %u ms to a request that the slave has accepted; waiting %u s more\n",
+			      r->limit.timeout_ms, EC_MBOX_LATE_MS / 1000);
+	ret = exchange(mb, r, &more, u);
+	if (ret == -ETIMEDOUT && !r->limit.patient)
+		ec_mbox_mark_late(mb, u);
+	return ret;
+}
+
 /**
  * ec_mbox_request() - send one message, wait for the answer
  * @mb: mailbox that ec_mbox_check() has accepted
@@ -288,7 +320,8 @@ static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
  * @len: bytes of the message
  *
  * Other protocols may be used meanwhile. What a lost frame loses is repeated, if the slave can
- * do that.
+ * do that. With @r->late the request first waits for the reply that an earlier one did not get
+ * in time, as long as the slave may be working on that.
  *
  * Context: Process. Waits for bus traffic.
  * Return: the last value of @r->rx; -EAGAIN in INIT; -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED;
@@ -307,11 +340,15 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 	int ret = get_memory(mb) ?: ec_mbox_over(mb, &now);
 
 	lockdep_assert(ec_mbox_is_claimed(mb, BIT(r->type)));
+	if (!ret && r->late && r->first)
+		ret = ec_mbox_await_late(mb, r, b);
 	if (ret)
 		return ret;
-	enter(mb, &u);
-	ret = exchange(mb, r, &u);
-	leave(mb, &u, ret >= 0);
+	ec_mbox_enter(mb, &u);
+	ret = exchange(mb, r, &r->limit, &u);
+	if (ret == -ETIMEDOUT && r->late && ec_mbox_is_late(mb, &u))
+		ret = go_on(mb, r, &u);
+	ec_mbox_leave(mb, &u, ret >= 0);
 	return ret == -ETIMEDOUT && (u.lost || u.gap) ? -ENOTRECOVERABLE : ret;
 }
 
@@ -336,9 +373,9 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 
 	if (ret)
 		return ret;
-	enter(mb, &u);
+	ec_mbox_enter(mb, &u);
 	ret = wait_done(mb, &u, limit, &until) ?: u.err;
-	leave(mb, &u, false);
+	ec_mbox_leave(mb, &u, false);
 	return ret == -ETIMEDOUT && u.lost ? -ENOTRECOVERABLE : ret;
 }
 
@@ -361,7 +398,7 @@ void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_
 
 	if (get_memory(mb))
 		return;
-	enter(mb, &u);
+	ec_mbox_enter(mb, &u);
 	while (!ec_stop_all(mb->stop) && ktime_get_ns() < until) {
 		set_current_state(TASK_UNINTERRUPTIBLE);
 		if (READ_ONCE(u.phase) == EC_MBOX_USER_DONE)
@@ -369,7 +406,7 @@ void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_
 		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
 	}
 	__set_current_state(TASK_RUNNING);
-	leave(mb, &u, false);
+	ec_mbox_leave(mb, &u, false);
 }
 
 /**
@@ -392,9 +429,9 @@ int ec_mbox_forget(struct ec_mbox *mb)
 
 	if (ret)
 		return ret;
-	enter(mb, &u);
+	ec_mbox_enter(mb, &u);
 	ret = wait_done(mb, &u, &limit, &until) ?: u.err;
-	leave(mb, &u, false);
+	ec_mbox_leave(mb, &u, false);
 	ec_mbox_flush_kept(mb);
 	return ret;
 }
@@ -453,7 +490,7 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 
 	if (ret != -ENOMSG)
 		return ret;
-	enter(mb, &u);
+	ec_mbox_enter(mb, &u);
 	do {
 		if (ec_mbox_off(mb))
 			ret = -EAGAIN;
@@ -473,7 +510,7 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 		if (!ret)
 			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
 	} while (!ret);
-	leave(mb, &u, false);
+	ec_mbox_leave(mb, &u, false);
 	if (ret != -ENOMSG && ret != -ETIMEDOUT)
 		return ret;
 	/* one that has come before this caller was one of the users */

@@ -25,6 +25,7 @@ struct ec_mbox_user;
 #define EC_MBOX_BEGIN	16	/* bytes in which two messages differ */
 #define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
 #define EC_MBOX_REPLY	10	/* bytes behind the header that a reply has at most, at least */
+#define EC_MBOX_LATE_MS	30000	/* so long a reply is waited for after its time limit */
 #define EC_MBOX_KIB_MS	4000	/* for a KiB of a transfer: its rate must not be lower */
 
 enum ec_mbox_flag {
@@ -85,6 +86,8 @@ struct ec_mbox {
 	/** @station: station address, immutable */
 	u16 station;
 
+	/** @reply_ms: limit of SDO and SoE replies that its configuration has, 0: the default */
+	u32 reply_ms;
 	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
 	bool strict;
 
@@ -173,6 +176,12 @@ struct ec_mbox {
 	bool answered;
 	/** @renew: the slave has been in INIT: the next message resets these members */
 	bool renew;
+	/** @late: BIT(enum ec_mbox_type): the slave has a request whose reply is late */
+	u16 late;
+	/** @late_ns: nothing waits for that reply after this time (ktime) */
+	u64 late_ns;
+	/** @never_late: the last late reply did not come; the next one is not waited for */
+	bool never_late;
 	/** @claimed: BIT(enum ec_mbox_type) of the protocols in use; see ec_mbox_claim() */
 	u16 claimed;
 	/** @claims: callers that wait for a protocol, the oldest first */
@@ -215,10 +224,12 @@ struct ec_mbox_buf {
  * @timeout_ms: per message, 0: the protocol's default
  * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
  * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
+ * @patient: a reply that is late is waited for as well, %EC_MBOX_LATE_MS more
  * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
 struct ec_mbox_limit {
 	u32 timeout_ms;
+	bool patient;
 	u64 begin_ns;
 	u64 end_ns;
 	const bool *cancel;
@@ -228,6 +239,7 @@ struct ec_mbox_limit {
  * struct ec_mbox_request - a message to the slave that has an answer
  * @type: enum ec_mbox_type
  * @first: of a transfer: replies to earlier ones are discarded
+ * @late: the next transfer begins when the reply to this message has come, however late
  * @limit: for the answer; @timeout_ms is not 0
  * @rx: takes each message of @type: 0 and EC_MORE end the wait, EC_STALE
  *	goes on, EC_WAIT goes on with a new time limit, or -errno
@@ -236,6 +248,7 @@ struct ec_mbox_limit {
 struct ec_mbox_request {
 	u8 type;
 	bool first;
+	bool late;
 	struct ec_mbox_limit limit;
 	int (*rx)(void *ctx, const u8 *rx, size_t len);
 	void *ctx;
@@ -298,6 +311,9 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len);
 int ec_mbox_forget(struct ec_mbox *mb);
 bool ec_mbox_fetch(struct ec_mbox *mb);
+
+/* late.c */
+void ec_mbox_forget_late(struct ec_mbox *mb, u16 types);
 
 /* claim.c */
 int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms);

@@ -45,6 +45,7 @@ enum ec_mbox_phase {
  * @once: one access to SM1, then -ENOMSG
  * @lost: a frame with its message was lost
  * @gap: a frame was lost that may have had its answer
+ * @heard: the slave has sent something else meanwhile: it is not busy with the request
  * @err: result: 0 or -errno
  * @tx: message behind the header
  * @len: bytes of it
@@ -63,6 +64,7 @@ struct ec_mbox_user {
 	bool once;
 	bool lost;
 	bool gap;
+	bool heard;
 	int err;
 	const u8 *tx;
 	u16 len;
@@ -71,6 +73,16 @@ struct ec_mbox_user {
 	u8 got_type;
 	struct task_struct *task;
 };
+
+/* mailbox.c */
+void ec_mbox_enter(struct ec_mbox *mb, struct ec_mbox_user *u);
+void ec_mbox_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered);
+
+/* late.c */
+bool ec_mbox_is_late(struct ec_mbox *mb, const struct ec_mbox_user *u);
+void ec_mbox_mark_late(struct ec_mbox *mb, const struct ec_mbox_user *u);
+void ec_mbox_took_late(struct ec_mbox *mb, u8 type);
+int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b);
 
 /* claim.c */
 int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u);

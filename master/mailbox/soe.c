@@ -27,8 +27,8 @@ static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 		    const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_SOE, .first = true, .rx = rx, .ctx = a,
-		.limit = ec_mbox_limit(limit, EC_SOE_TIMEOUT_MS),
+		.type = EC_MBOX_SOE, .first = true, .late = true, .rx = rx, .ctx = a,
+		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SOE_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
 	char name[12];

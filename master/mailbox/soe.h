@@ -8,7 +8,7 @@
 struct ec_mbox_limit;
 struct ec_mbox;
 
-#define EC_SOE_TIMEOUT_MS	1000
+#define EC_SOE_TIMEOUT_MS	5000	/* as that of an SDO */
 
 int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, size_t *size,
 		u16 *error, const struct ec_mbox_limit *limit);

@@ -150,8 +150,8 @@ static void take(struct ec_mbox *mb)
 		return;
 	if (h.type == EC_MBOX_VOE)
 		keep(mb, r.p, h.len);
-	else
-		emergency(mb, &h, r.p);
+	else if (!emergency(mb, &h, r.p))
+		ec_mbox_took_late(mb, h.type);
 }
 
 /**

@@ -44,6 +44,7 @@ void ec_session_detach(struct ec_config *c)
 	setup = ec_setup_of(slave);
 	ec_emerg_set(&slave->mbox, NULL);
 	ec_mbox_keep_voe(&slave->mbox, false);
+	WRITE_ONCE(slave->mbox.reply_ms, 0);
 	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
 	for (sm = 0; sm < EC_MAX_SM; sm++)
@@ -168,6 +169,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	slave->seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
+	WRITE_ONCE(slave->mbox.reply_ms, c->reply_ms);
 	ec_requests_attach(s, c);
 	if (s->wanted.active && !s->ending)
 		ec_slave_request(slave, EC_AL_OP);

@@ -132,6 +132,7 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 	       CONTENT(sync.period, "slave %u:%u, distributed clock", SLAVE(a)) ||
 	       CONTENT(sync.shift, "slave %u:%u, distributed clock", SLAVE(a)) ||
 	       CONTENT(timeout_ms, "slave %u:%u, time limits of its states", SLAVE(a)) ||
+	       NUMBER(reply_ms, "slave %u:%u has %u ms for a reply, not %u", SLAVE(a)) ||
 	       NUMBER(emergencies, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a));
 }
 

@@ -95,6 +95,9 @@ static void codes_config(ec_slave_config_t *sc)
 	CODE(ecrt_slave_config_eoe_mac_address(sc, NULL), -EINVAL);
 	CODE(ecrt_slave_config_eoe_hostname(sc, NULL), -EINVAL);
 	CODE(ecrt_slave_config_emerg_size(sc, 1 << 20), -ENOMEM);
+	CODE(ecrt_slave_config_sdo_timeout(sc, 60001), -EINVAL);
+	CODE(ecrt_slave_config_sdo_timeout(sc, 60000), 0);
+	CODE(ecrt_slave_config_sdo_timeout(sc, 0), 0);
 	CODE(ecrt_slave_config_overlapping_pdos(sc, 7), 0);
 	CODE(ecrt_slave_config_overlapping_pdos(sc, 0), 0);
 }

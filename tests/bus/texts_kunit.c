@@ -162,7 +162,8 @@ static void texts_silent_mailbox(struct kunit *test)
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, BAD, 0, 1, 0);
 	KUNIT_EXPECT_EQ(test, upload(b, BAD, 0x1018), -ETIMEDOUT);
-	KUNIT_EXPECT_STREQ(test, b->app.reason, "SDO 0x1018:01 of slave 1: no reply in time");
+	KUNIT_EXPECT_STREQ(test, b->app.reason,
+			   "SDO 0x1018:01 of slave 1: no reply in time, limit 100 ms; if the slave needs longer, allow more: --timeout, ecrt_slave_config_sdo_timeout()");
 }
 
 /* Without a link, and without a device: not the slave is to blame, and no cable behind it. */

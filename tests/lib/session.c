@@ -71,6 +71,7 @@ static void null_arguments(void)
 	CHECK(ecrt_slave_config_flag(sc, "a", 0) == -EINVAL);
 	CHECK(ecrt_slave_config_state_timeout(sc, EC_AL_STATE_INIT,
 					      EC_AL_STATE_OP, 1) == -EINVAL);
+	CHECK(ecrt_slave_config_sdo_timeout(sc, 1) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_mac_address(sc, &byte) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_ip_address(sc, addr) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_subnet_mask(sc, addr) == -EINVAL);
@@ -268,6 +269,9 @@ static void configuration(void)
 					       EC_AL_STATE_PREOP, 10));
 	CHECK(ecrt_slave_config_state_timeout(sc, EC_AL_STATE_INIT,
 					      (ec_al_state_t)3, 1) == -EINVAL);
+	CHECK(!ecrt_slave_config_sdo_timeout(sc, 20000));
+	CHECK(((struct ec_ioc_sc_timeout *)fake.arg)->flags == EC_SC_TIMEOUT_REPLY &&
+	      ((struct ec_ioc_sc_timeout *)fake.arg)->timeout_ms == 20000);
 	CHECK(!ecrt_slave_config_state(sc, &state) && state.online &&
 	      !state.operational && state.al_state == 2);
 	CHECK(!ecrt_master_set_send_interval(m, 1000));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Fake master: the mailboxes of its slaves. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -317,8 +318,26 @@ static int ip(struct ec_ioc_ip *x, bool write)
 	return 0;
 }
 
+/* to the file FAKE_CALLS: requests to a slave and their time limits */
+static void note_call(unsigned long request, const void *arg)
+{
+	const char *path = getenv("FAKE_CALLS");
+	FILE *f = path ? fopen(path, "a") : NULL;
+
+	if (f && request == EC_IOC_SDO_INFO)
+		fprintf(f, "info %u\n", ((const struct ec_ioc_sdo_info *)arg)->timeout_ms);
+	else if (f && (request == EC_IOC_SDO_UPLOAD || request == EC_IOC_SDO_DOWNLOAD))
+		fprintf(f, "%s %u\n", request == EC_IOC_SDO_UPLOAD ? "upload" : "download",
+			((const struct ec_ioc_sdo *)arg)->timeout_ms);
+	else if (f && (request == EC_IOC_SOE_READ || request == EC_IOC_SOE_WRITE))
+		fprintf(f, "soe %u\n", ((const struct ec_ioc_soe *)arg)->timeout_ms);
+	if (f)
+		fclose(f);
+}
+
 int fake_mbox(unsigned long request, void *arg)
 {
+	note_call(request, arg);
 	switch (request) {
 	case EC_IOC_IP_GET:
 	case EC_IOC_IP_SET:

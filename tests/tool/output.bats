@@ -259,6 +259,26 @@ END
 	[ ! -s "$BATS_TEST_TMPDIR/log" ]
 }
 
+@test "download without type makes two requests, and --timeout is the limit of each" {
+	calls() {
+		rm -f "$BATS_TEST_TMPDIR/calls"
+		FAKE_CALLS=$BATS_TEST_TMPDIR/calls ethercat "$@" >/dev/null
+		tr '\n' ' ' <"$BATS_TEST_TMPDIR/calls"
+	}
+	[ "$(calls download -p2 0x6060 0 -1)" = "info 1000 download 0 " ]
+	[ "$(calls download -p2 -t int8 0x6060 0 -1)" = "download 0 " ]
+	[ "$(calls sdo_download -p2 --timeout=20 0x6060 0 -1)" = "info 20000 download 20000 " ]
+	[ "$(calls download -p2 -t int8 --timeout 0.25 0x6060 0 -1)" = "download 250 " ]
+	[ "$(calls sdo_upload -p2 --timeout 60 -t uint32 0x1018 1)" = "upload 60000 " ]
+	[ "$(calls upload -p2 0x1018 1 --timeout 2)" = "upload 2000 info 2000 " ]
+	[ "$(calls soe_read -p2 --timeout 3 S-0-15)" = "soe 3000 " ]
+	for s in 0 61 x 1s -1; do
+		run ethercat upload -p2 "--timeout=$s" 0x1018 1
+		[ "$status" -eq 1 ]
+		[[ $output == *"--timeout"* ]]
+	done
+}
+
 @test "upload and download take the type of the slave's dictionary" {
 	[ "$(out upload -p2 0x6060 0)" = "0xff -1" ]
 	out upload -j -p2 0x6060 0 | json 'd["type"] == "int8" and not d["type_guessed"]'

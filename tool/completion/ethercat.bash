@@ -61,7 +61,7 @@ _ethercat()
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
 		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|\
-		--compare|--compare-slave|--texts|--watch)
+		--compare|--compare-slave|--texts|--watch|--timeout)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;

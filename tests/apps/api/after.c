@@ -60,6 +60,7 @@ static void slave(void)
 	SAYS(CALL(ecrt_slave_config_flag)(b.motor, "AssignToPdi", 1), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_state_timeout)(b.motor, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP, 1),
 	     -EBUSY);
+	SAYS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 1), -EBUSY);
 	errno = 0;
 	SAYS(CALL(ecrt_slave_config_idn)(b.motor, 0, 15, EC_AL_STATE_PREOP, data, 2), -EBUSY);
 	YES(!CALL(ecrt_slave_config_create_sdo_request)(b.motor, 0x2001, 8, 4));

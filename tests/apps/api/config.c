@@ -153,6 +153,9 @@ static void settings(void)
 	SAYS(CALL(ecrt_slave_config_state_timeout)(b.motor, EC_AL_STATE_PREOP, (ec_al_state_t)0, 5),
 	     -EINVAL);
 
+	IS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 20000), 0);
+	SAYS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 60001), -EINVAL);
+	IS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 0), 0);
 	IS(CALL(ecrt_slave_config_emerg_size)(b.motor, 4), 0);
 	IS(CALL(ecrt_slave_config_emerg_size)(b.motor, 8), 0);
 	SAYS(CALL(ecrt_slave_config_emerg_size)(b.motor, (size_t)1 << 30), -ENOMEM);

@@ -126,6 +126,7 @@ static void slave_config(void)
 	IS(ecrt_slave_config_eoe_dns_address(NULL, ip), -EINVAL);
 	IS(ecrt_slave_config_eoe_hostname(NULL, "a"), -EINVAL);
 	IS(ecrt_slave_config_overlapping_pdos(NULL, 1), -EINVAL);
+	IS(ecrt_slave_config_sdo_timeout(NULL, 1), -EINVAL);
 	IS(ecrt_slave_config_reason(NULL, (char *)data, 8), -EINVAL);
 	IS(ecrt_slave_config_dc_state(NULL, &dc), -EINVAL);
 	IS(api_lines(), 0);

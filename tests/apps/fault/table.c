@@ -75,7 +75,7 @@ const struct cmd cmds[] = {
 	CMD(REG_ENTRY, APP, .flags = EC_REG_ENTRY_BY_POS | EC_REG_ENTRY_ALIGNED),
 	CMD(SC_DC, APP, RSV2(ec_ioc_sc_dc)),
 	CMD(SC_FLAG, APP, RSV1(ec_ioc_sc_flag)),
-	CMD(SC_TIMEOUT, APP, RSV1(ec_ioc_sc_timeout)),
+	CMD(SC_TIMEOUT, APP, RSV1(ec_ioc_sc_timeout), .flags = EC_SC_TIMEOUT_REPLY),
 	CMD(ACTIVATE, APP, .data = offsetof(struct ec_ioc_activate, preset),
 	    .size = offsetof(struct ec_ioc_activate, preset_size)),
 	CMD(DEACTIVATE, APP),

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Replies after their time limit. A slave that stores parameters has accepted a request and
+ * replies many seconds later. Until then it takes no other request of that protocol, and its
+ * reply must not pass for that of another request.
+ */
+#include <linux/ktime.h>
+#include "../link/xfer.h"
+#include "../wire/fmmu.h"
+#include "../wire/regs.h"
+#include "mailbox_int.h"
+
+/**
+ * ec_mbox_is_late() - has the slave accepted a request that it has not replied to?
+ * @mb: mailbox of the slave
+ * @u: user with the request, among the users
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: false also where it is not known: a lost frame may have had the request or reply.
+ */
+bool ec_mbox_is_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
+{
+	u8 status = EC_SM_ST_FULL;
+	unsigned long flags;
+	bool waits;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	waits = u->phase == EC_MBOX_USER_WAITING && !u->lost && !u->gap && !u->heard;
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	return waits && !ec_mbox_off(mb) &&
+	       !ec_xfer_fprd(mb->links, mb->station, EC_REG_SM(0) + EC_SM_OFS_STATUS, &status, 1) &&
+	       !(status & EC_SM_ST_FULL);
+}
+
+/**
+ * ec_mbox_mark_late() - let the next request of a protocol wait for a late reply
+ * @mb: mailbox of the slave
+ * @u: user with the request, among the users
+ *
+ * Context: Process.
+ */
+void ec_mbox_mark_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (u->phase == EC_MBOX_USER_WAITING && !mb->never_late) {
+		mb->late |= BIT(u->type);
+		mb->late_ns = ktime_get_ns() + (u64)EC_MBOX_LATE_MS * NSEC_PER_MSEC;
+	}
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+}
+
+static bool is_awaited(struct ec_mbox *mb, u16 types)
+{
+	return READ_ONCE(mb->late) & types && !READ_ONCE(mb->renew) && !ec_mbox_off(mb);
+}
+
+/**
+ * ec_mbox_forget_late() - wait for no late reply any more
+ * @mb: mailbox of the slave
+ * @types: BIT(enum ec_mbox_type)
+ *
+ * Context: Any.
+ */
+void ec_mbox_forget_late(struct ec_mbox *mb, u16 types)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	mb->late &= ~types;
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+}
+
+/**
+ * ec_mbox_took_late() - a message has come that no request waits for
+ * @mb: mailbox of the slave
+ * @type: enum ec_mbox_type
+ *
+ * Context: Process.
+ */
+void ec_mbox_took_late(struct ec_mbox *mb, u8 type)
+{
+	u16 types = type == EC_MBOX_ERR ? EC_MBOX_ALL : BIT(type);
+	u64 ms = EC_MBOX_LATE_MS, now = ktime_get_ns();
+	unsigned long flags;
+	bool late;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	late = mb->late & types;
+	mb->late &= ~types;
+	if (late && now < mb->late_ns)
+		ms -= div_u64(mb->late_ns - now, NSEC_PER_MSEC);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	if (late)
+		ec_mbox_warn(mb, "mailbox reply %llu ms after its time limit discarded; allow more time: --timeout, ecrt_slave_config_sdo_timeout()\n",
+			      ms);
+}
+
+/* None has come: this slave may just not reply to some requests. */
+static void give_up(struct ec_mbox *mb, u8 type)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	if (mb->late & BIT(type))
+		mb->never_late = true;
+	mb->late &= ~BIT(type);
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+}
+
+/**
+ * ec_mbox_await_late() - before a request: wait for the late reply to an earlier one
+ * @mb: mailbox of the slave
+ * @r: request; its protocol is claimed
+ * @b: its reply is in @rx, to be discarded
+ *
+ * Other protocols use the mailbox meanwhile.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0: there is none to wait for (any more); -EINTR; -ECANCELED; -ETIMEDOUT when the
+ * request cannot begin in time.
+ */
+int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b)
+{
+	const struct ec_mbox_limit *l = &r->limit;
+	u64 begin = min(l->begin_ns ?: U64_MAX - 1, l->end_ns ?: U64_MAX - 1), last;
+	struct ec_mbox_user u = { .type = r->type, .rx = b->rx };
+	struct ec_mbox_until until = { .cancel = l->cancel };
+	unsigned long flags;
+	int ret = 0;
+
+	if (!is_awaited(mb, BIT(r->type)))
+		return 0;
+	raw_spin_lock_irqsave(&mb->lock, flags);
+	last = mb->late_ns;
+	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	until.ns = min(begin, last);
+	ec_mbox_enter(mb, &u);
+	while (!ret && is_awaited(mb, BIT(r->type))) {
+		ret = ec_mbox_over(mb, &until);
+		/* the result is there: see ec_mbox_finish() */
+		if (smp_load_acquire(&u.phase) == EC_MBOX_USER_DONE)
+			break;
+		if (!ret)
+			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
+	}
+	ec_mbox_leave(mb, &u, false);
+	/* also an error of the bus: the request gets it itself */
+	if (u.got)
+		ec_mbox_took_late(mb, u.got_type);
+	else if (ret == -ETIMEDOUT && last <= begin)
+		give_up(mb, r->type);
+	else if (ret)
+		return ret;
+	else
+		ec_mbox_forget_late(mb, BIT(r->type));
+	return 0;
+}
