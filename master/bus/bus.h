@@ -87,6 +87,8 @@ struct ec_bus {
 	u16 next_station;
 	/** @listed_station: of these, given last when the list of slaves changed; the monitor's */
 	u16 listed_station;
+	/** @lists: how often the list of slaves has changed; the monitor's */
+	u32 lists;
 	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */
 	unsigned int thrown_away;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */

@@ -334,6 +334,25 @@ static void note_found(struct scan *sc, unsigned int n_old)
 	}
 }
 
+/* Aliases that more than one slave has. */
+static void note_aliases(struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		struct ec_slave *s = sc->slaves[i];
+		u16 *first = &sc->aliases[s->alias];
+
+		WRITE_ONCE(s->alias_first, 0);
+		if (s->alias && *first) {
+			WRITE_ONCE(s->alias_first, *first);
+			WRITE_ONCE(sc->slaves[*first - 1]->alias_first, *first);
+		} else {
+			*first = i + 1;
+		}
+	}
+}
+
 /* The result becomes visible; slaves that are missing are gone. */
 static void publish(struct scan *sc)
 {
@@ -344,6 +363,10 @@ static void publish(struct scan *sc)
 	down_write(&bus->topo);
 	ec_show_change_begin(&bus->base->show);
 	take_regs(sc, true);
+	note_aliases(sc);
+	WRITE_ONCE(bus->lists, bus->lists + 1);
+	for (i = 0; i < sc->n; i++)
+		sc->slaves[i]->found = sc->slaves[i]->found ?: bus->lists;
 	ec_topology_build(sc->slaves, sc->n);
 	old = bus->slaves;
 	n_old = bus->n_slaves;
@@ -435,5 +458,6 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 	kvfree(sc.dg);
 	kvfree(sc.known);
 	kvfree(sc.claims);
+	kvfree(sc.aliases);
 	return ret;
 }

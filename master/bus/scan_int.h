@@ -30,6 +30,7 @@ struct scan {
 	struct ec_dg *dg;		/* two for each slave */
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
+	u16 *aliases;			/* first slave with each alias, ring position + 1 */
 	bool changed;	/* other slaves than before */
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 };

@@ -39,7 +39,8 @@ static int index_known(struct scan *sc)
 {
 	sc->known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->known), GFP_KERNEL);
 	sc->claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
-	if (!sc->known || !sc->claims)
+	sc->aliases = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*sc->aliases), GFP_KERNEL);
+	if (!sc->known || !sc->claims || !sc->aliases)
 		return -ENOMEM;
 	ec_for_each_slave(s, sc->bus)
 		sc->known[s->station] = s;
@@ -288,8 +289,10 @@ static int add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
 	s->position = i;
 	take_failure(sc, s);
 	/* by its address it is the same */
-	if (known && sc->regs[i].there && sc->claims[old] == 1)
+	if (known && sc->regs[i].there && sc->claims[old] == 1) {
 		take_part(s, known);
+		s->found = known->sii ? known->found : 0;
+	}
 	put_unaligned_le16(station, sc->regs[i].station);
 	if (addressed)
 		*dg = EC_FPWR(old, EC_REG_STATION, 2, sc->regs[i].station);

@@ -348,7 +348,8 @@ void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
 	raw_spin_lock(&slave->note_lock);
 	*cause = slave->cause;
 	if (!cause->kind && !slave->warning[0])
-		cause->kind = slave->sii_flaw[0] ? EC_CAUSE_EEPROM :
+		cause->kind = slave->sii_flaw[0] || READ_ONCE(slave->alias_first) ?
+			      EC_CAUSE_EEPROM :
 			      slave->mbox_doubt ? EC_CAUSE_MAILBOX : EC_CAUSE_NONE;
 	raw_spin_unlock(&slave->note_lock);
 }
@@ -363,9 +364,15 @@ void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
  */
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size)
 {
+	unsigned int first = READ_ONCE(slave->alias_first);
+
 	raw_spin_lock(&slave->note_lock);
 	strscpy(buf, slave->warning[0] ? slave->warning : slave->sii_flaw, size);
 	raw_spin_unlock(&slave->note_lock);
+	if (!buf[0] && first)
+		scnprintf(buf, size,
+			  "EEPROM: alias %u is not unique; configurations use slave %u, the first one",
+			  slave->alias, first - 1);
 	if (!buf[0])
 		ec_slave_mbox_text(slave, buf, size);
 }

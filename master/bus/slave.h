@@ -63,6 +63,7 @@ struct ec_break {
  * @regs: registers 0x0000-0x0009
  * @dl_status: register 0x0110
  * @alias: effective alias
+ * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
  * @delay_only: it has receive times, but no other register of a clock (0x0928)
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
@@ -98,6 +99,7 @@ struct ec_break {
  * @why: cause of @error
  * @cause: the same for programs
  * @warning: what is not certain of its process data, empty: nothing
+ * @found: the list that it was in first, counted by bus->lists
  * @listed: it is in the list of the bus; what fails before is reported when it comes there
  * @unreported: @why is to be reported then
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
@@ -143,6 +145,7 @@ struct ec_slave {
 	u8 regs[EC_INFO_SIZE];
 	u16 dl_status;
 	u16 alias;
+	u16 alias_first;
 	u32 recv[EC_MAX_PORT];
 	bool delay_only;
 	u16 next[EC_MAX_PORT];
@@ -172,6 +175,7 @@ struct ec_slave {
 	char why[EC_UAPI_REASON];
 	struct ec_cause cause;
 	char warning[EC_UAPI_WARNING];
+	u32 found;
 	bool listed;
 	bool unreported;
 	char sii_flaw[EC_UAPI_WARNING];

@@ -102,7 +102,9 @@ struct ec_config_flag {
  * @emergencies: how many to keep
  * @emerg_cleared: by an application in the kernel, of the lost ones
  * @lost: the slave that it had while active, in words, when it was there last (ktime), where
- *	the way to it broke, and the ring position of that place at the last search
+ *	the way to it broke, and the ring position of that place at the last search; its
+ *	station address and serial number; the first list of slaves (bus->lists) whose new
+ *	slaves may be attached instead; it is lost, and only its place can bring a slave back
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -134,6 +136,10 @@ struct ec_config {
 		u64 seen_ns;
 		struct ec_break at;
 		u32 up_at;
+		u16 station;
+		u32 serial;
+		u32 list;
+		bool waits;
 	} lost;
 	struct ec_slave *slave;
 };

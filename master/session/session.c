@@ -595,6 +595,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_ref_clock_raise(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
+	ec_session_begin_active(s);
 	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->wanted.n_domains, offset, s->cycle.n_dgrams);
 	ec_event(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, offset,

@@ -117,43 +117,14 @@ static void note_loss(struct ec_config *c)
 	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
 	c->lost.seen_ns = c->slave->seen_ns;
 	c->lost.at = c->slave->lost_at;
+	c->lost.station = c->slave->station;
+	c->lost.serial = c->slave->info.serial;
+	c->lost.list = READ_ONCE(c->wanted->bus->lists);
 }
 
-/**
- * ec_session_attach_one() - connect a configuration with its slave
- * @s: session
- * @c: configuration
- *
- * An active session keeps a slave as long as it is
- * there: when one upstream is disconnected its position changes, but its outputs must not be
- * those of another.
- *
- * Context: Process, session lock held. May sleep.
- */
-void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
+/* Give @slave, with the caller's reference, to @c; false: another configuration has it. */
+static bool give(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
 {
-	struct ec_slave *slave;
-
-	lockdep_assert_held(s->wanted.lock);
-	ec_config_locate(c);
-	if (s->wanted.active && c->slave && !READ_ONCE(c->slave->stop.gone))
-		return;
-	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
-	if (slave == c->slave) {
-		ec_slave_unref(slave);
-		return;
-	}
-	if (s->wanted.active && c->slave)
-		note_loss(c);
-	ec_session_detach(c);
-	if (!slave) {
-		ec_config_locate(c);
-		return;
-	}
-	if (s == s->sessions->candidate) {	/* only to look at */
-		c->slave = slave;
-		return;
-	}
 	/* the monitor must not wait for what its worker waits for */
 	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
@@ -162,7 +133,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		log_taken(s, c, slave);
 		mutex_unlock(&slave->lock);
 		ec_slave_unref(slave);
-		return;
+		return false;
 	}
 	WRITE_ONCE(ec_setup_of(slave)->config, c);
 	WRITE_ONCE(slave->reconfigure, true);
@@ -175,6 +146,134 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		ec_slave_request(slave, EC_AL_OP);
 	else
 		ec_slave_kick(slave);
+	return true;
+}
+
+/**
+ * ec_session_attach_one() - connect a configuration with the slave at its place
+ * @s: session, not active
+ * @c: configuration
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
+{
+	struct ec_slave *slave;
+
+	lockdep_assert_held(s->wanted.lock);
+	ec_config_locate(c);
+	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
+	if (slave == c->slave) {
+		ec_slave_unref(slave);
+		return;
+	}
+	ec_session_detach(c);
+	if (slave && s == s->sessions->candidate)	/* only to look at */
+		c->slave = slave;
+	else if (slave)
+		give(s, c, slave);
+}
+
+/* The device that @c had: it has kept its station address, or has a serial number. */
+static struct ec_slave *find_same(const struct ec_session *s, const struct ec_config *c)
+{
+	struct ec_bus *bus = s->sessions->bus;
+	struct ec_slave *found = NULL;
+
+	down_read(&bus->topo);
+	ec_for_each_slave(x, bus) {
+		if (found || x->info.vendor != c->vendor || x->info.product != c->product ||
+		    x->info.serial != c->lost.serial || READ_ONCE(x->stop.gone) || ec_config_of(x))
+			continue;
+		if (x->station == c->lost.station || x->info.serial)
+			found = ec_slave_ref(x);
+	}
+	up_read(&bus->topo);
+	return found;
+}
+
+/* The slave at the place of @c, if it was not on the bus when @c lost its own. */
+static struct ec_slave *find_new(const struct ec_session *s, const struct ec_config *c)
+{
+	struct ec_slave *x = ec_session_find(s->sessions, c->alias, c->position, c->vendor,
+					     c->product);
+
+	if (!x || x->found >= c->lost.list || ec_config_of(x))
+		return x;
+	ec_slave_unref(x);
+	return NULL;
+}
+
+/* Is there another lost slave like that of @c, so that only the place tells which one came back? */
+static bool has_alike(const struct ec_session *s, const struct ec_config *c)
+{
+	ec_for_each_config(x, &s->wanted)
+		if (x != c && x->lost.waits && x->vendor == c->vendor && x->product == c->product)
+			return true;
+	return false;
+}
+
+/*
+ * An active session keeps a slave as long as it is there: when one upstream is disconnected its
+ * position changes, but its outputs must not be those of another. One that was lost comes back
+ * wherever it is now, or a new one at its place is used instead. A slave that was there all the
+ * time never gets the outputs of another one.
+ */
+static void reattach(struct ec_session *s)
+{
+	struct ec_slave *slave;
+	unsigned int alike = 0;
+
+	ec_for_each_config(c, &s->wanted) {
+		if (c->slave && READ_ONCE(c->slave->stop.gone)) {
+			note_loss(c);
+			ec_session_detach(c);
+		}
+		ec_config_locate(c);
+	}
+	ec_for_each_config(c, &s->wanted) {
+		slave = !c->slave && c->lost.text[0] ? find_same(s, c) : NULL;
+		if (slave)
+			give(s, c, slave);
+	}
+	ec_for_each_config(c, &s->wanted)
+		c->lost.waits = !c->slave && c->lost.text[0];
+	ec_for_each_config(c, &s->wanted) {
+		slave = c->slave ? NULL : find_new(s, c);
+		if (slave && give(s, c, slave) && c->lost.waits)
+			alike += has_alike(s, c);
+	}
+	if (alike)
+		ec_warn(s->sessions,
+			"%u of identical slaves that were disconnected attached by position or alias: same serial number, station address not kept; check the cables\n",
+			alike);
+}
+
+/**
+ * ec_session_begin_active() - note what decides from now on which slave is attached
+ * @s: session that has just been activated
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_begin_active(struct ec_session *s)
+{
+	struct ec_bus *bus = s->sessions->bus;
+	const struct ec_slave *first;
+
+	lockdep_assert_held(s->wanted.lock);
+	down_read(&bus->topo);
+	ec_for_each_config(c, &s->wanted) {
+		/* one that was there before is not the one that is missing */
+		c->lost.list = bus->lists + 1;
+		if (!c->alias || c->alias_at >= bus->n_slaves)
+			continue;
+		first = bus->slaves[c->alias_at];
+		if (first->alias == c->alias && first->alias_first)
+			ec_warn_each(s->sessions, c->index + 1,
+				     "configuration %u:%u: alias %u is not unique; slave %u, the first one, is used\n",
+				     c->alias, c->position, c->alias, first->position);
+	}
+	up_read(&bus->topo);
 }
 
 /**
@@ -219,7 +318,9 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 void ec_session_attach(struct ec_sessions *ss)
 {
 	ec_sessions_lock(ss);
-	if (ss->session)
+	if (ss->session && ss->session->wanted.active)
+		reattach(ss->session);
+	else if (ss->session)
 		ec_for_each_config(c, &ss->session->wanted)
 			ec_session_attach_one(ss->session, c);
 	if (ss->candidate)

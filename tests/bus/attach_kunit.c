@@ -135,7 +135,114 @@ static void attach_next_application(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, output(c, "s3"), 53ll);
 }
 
+/* one behind port 1 of the hub precedes its twins behind port 2; none has a serial number */
+static const char twins[] =
+	"segment seed=41 response=100us transition=1ms\n"
+	"slave hub EK1100\nslave a io in=512 out=512 cpu=yes alias=5\n"
+	"branch hub 2\nslave b io in=512 out=512 cpu=yes alias=5\n"
+	"slave x io in=512 out=512 cpu=yes\n"
+	"connect a.1 -> a.1\nconnect b.1 -> b.1\nconnect x.1 -> x.1\n";
+
+enum { HUB, A, B, X };
+
+/* Configurations of the slave with the alias and, with @both, of the one at position 2. */
+static struct cyc *twins_in_op(struct kunit *test, bool both)
+{
+	struct bus *b = bus_up(test, twins, 4);
+	struct ec_slave *s = bus_slave(b, A);
+	struct ec_ioc_slave_config sc = {
+		.alias = 5, .vendor_id = s->info.vendor, .product_code = s->info.product,
+	};
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
+	cyc_map(c, sc.index, 0, 0);
+	if (both)
+		cyc_map(c, cyc_config(c, B), 0, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	cyc_data(c, 0)[0] = 10;
+	if (both)
+		*cyc_pd(c, B, 0) = 20;
+	cyc_run(c, 20);
+	KUNIT_ASSERT_EQ(test, output(c, "a"), 10ll);
+	KUNIT_ASSERT_EQ(test, output(c, "b"), both ? 20ll : 0ll);
+	return c;
+}
+
+/* The twin, which was there all the time, takes over neither by its alias nor by its position. */
+static void attach_twin_keeps_off(struct kunit *test)
+{
+	u32 lines = bus_log_lines("configuration 5:0: alias 5 is not unique");
+	struct cyc *c = twins_in_op(test, false);
+	struct bus *b = c->b;
+	char text[EC_UAPI_WARNING];
+
+	KUNIT_EXPECT_EQ(test, bus_log_lines("configuration 5:0: alias 5 is not unique"), lines + 1);
+	ec_slave_warning(bus_slave(b, B), text, sizeof(text));
+	KUNIT_EXPECT_STREQ(test, text,
+			   "EEPROM: alias 5 is not unique; configurations use slave 1, the first one");
+	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 1, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 3u);
+	KUNIT_EXPECT_NULL(test, ec_setup_of(bus_slave(b, 1))->config);
+	KUNIT_EXPECT_EQ(test, output(c, "b"), 0ll);
+	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 1, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, output(c, "a"), 10ll);
+	KUNIT_EXPECT_EQ(test, output(c, "b"), 0ll);
+}
+
+/* Both are cut off, the second one comes back first: by its station address it is itself. */
+static void attach_same_device_elsewhere(struct kunit *test)
+{
+	struct cyc *c = twins_in_op(test, true);
+	struct bus *b = c->b;
+
+	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 1, 0, 0);
+	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 2, 0, 0);
+	cyc_run(c, 500);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
+	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 2, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, output(c, "b"), 20ll);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 1, 0, 0);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, output(c, "a"), 10ll);
+	KUNIT_EXPECT_EQ(test, output(c, "b"), 20ll);
+}
+
+/* All were without power at once: position and alias decide, with one line in the log. */
+static void attach_alike_by_place(struct kunit *test)
+{
+	u32 lines = bus_log_lines("of identical slaves that were disconnected"), i;
+	struct cyc *c = twins_in_op(test, true);
+	struct bus *b = c->b;
+
+	for (i = A; i <= X; i++)
+		bus_fault(b, EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
+	cyc_run(c, 500);
+	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
+	for (i = A; i <= X; i++)
+		bus_fault(b, EC_SIM_FAULT_POWER_ON, i, 0, 0, 0);
+	cyc_run(c, 2000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
+	KUNIT_EXPECT_EQ(test, output(c, "a"), 10ll);
+	KUNIT_EXPECT_EQ(test, output(c, "b"), 20ll);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("of identical slaves that were disconnected"),
+			lines + 1);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(attach_twin_keeps_off),
+	KUNIT_CASE(attach_same_device_elsewhere),
+	KUNIT_CASE(attach_alike_by_place),
 	KUNIT_CASE(attach_one_pulled),
 	KUNIT_CASE(attach_failed_one),
 	KUNIT_CASE(attach_next_application),
