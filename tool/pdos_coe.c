@@ -20,6 +20,7 @@
 struct live_pdo {
 	u16 index;
 	u8 n;
+	bool absent;	/* assigned, and the slave does not have it */
 	u32 map[255];	/* object 31-16, subindex 15-8, bits 7-0 */
 };
 
@@ -80,12 +81,20 @@ static int count(struct reading *r, u16 index, unsigned int *n, u32 *abort)
 	return 1;
 }
 
+/* an entry of 0 is not in use */
 static int read_pdo(struct reading *r, u16 index)
 {
-	unsigned int n;
-	int err = count(r, index, &n, NULL);
+	unsigned int n = 0;
+	u32 abort = 0;
+	int err = index ? count(r, index, &n, &abort) : 0;
 
 	r->pdo.index = index;
+	r->pdo.absent = err && abort == SDO_NO_OBJECT;
+	if (r->pdo.absent)
+		err = 0;
+	if (err && abort)
+		fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:00",
+			  r->d->master, r->position, index);
 	r->pdo.n = (u8)n;
 	for (unsigned int i = 0; i < n && !err; i++)
 		err = upload(r, index, (u8)(i + 1), &r->pdo.map[i], NULL);
@@ -177,7 +186,10 @@ static int live_pdo(struct reading *r, unsigned int k)
 
 	if (err)
 		return err;
-	if (!sii_find(r, r->assigned[k], &p)) {
+	if (!r->assigned[k] || r->pdo.absent) {
+		show_pdo(r, r->assigned[k], name, "unknown",
+			 r->pdo.absent ? ", the slave does not have it" : ", entry not in use");
+	} else if (!sii_find(r, r->assigned[k], &p)) {
 		show_pdo(r, r->assigned[k], name, "unknown", ", not in the SII");
 	} else {
 		sii_name(r, p.name, name);

@@ -5,6 +5,25 @@
 
 #include <linux/types.h>
 
+/* objects (ETG.1000.6 clause 5.6.7.4): PDOs of a SyncManager; modules that a slave shall have */
+#define EC_PDO_ASSIGN		0x1c10
+#define EC_PDO_MODULES		0xf030
+
+static inline bool ec_pdo_is_assign(u16 index)
+{
+	return index >= EC_PDO_ASSIGN && index < EC_PDO_ASSIGN + 32;
+}
+
+static inline bool ec_pdo_is_output(u16 index)
+{
+	return index >= 0x1600 && index < 0x1800;
+}
+
+static inline bool ec_pdo_is_mapping(u16 index)
+{
+	return ec_pdo_is_output(index) || (index >= 0x1a00 && index < 0x1c00);
+}
+
 /**
  * struct ec_pdo_entry - one mapped object
  * @index: object, 0: gap
@@ -20,6 +39,12 @@ struct ec_pdo_entry {
 	u8 name;
 	bool registered;
 };
+
+/* the value of an entry in a mapping object */
+static inline u32 ec_pdo_entry_value(const struct ec_pdo_entry *e)
+{
+	return (u32)e->index << 16 | e->sub << 8 | e->bits;
+}
 
 /**
  * struct ec_pdo - one PDO

@@ -8,9 +8,10 @@
 #include "../mailbox/coe.h"
 #include "slave.h"
 
+#define NO_OBJECT	0x06020000	/* abort code */
 #define WHOLE_MS	300000	/* for the PDOs of a SyncManager: up to 65,000 objects */
 
-/* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it. */
+/* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it; -ENXIO: it has none. */
 static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value, u64 end_ns)
 {
 	const struct ec_mbox_limit limit = { .end_ns = end_ns };
@@ -20,16 +21,39 @@ static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value, u64 end_ns)
 	int ret = ec_coe_upload(&s->mbox, index, sub, false, b, sizeof(b), &got, &abort, &limit);
 
 	*value = get_unaligned_le32(b);
-	return ret == -EIO && abort ? -ENOENT : ret;
+	if (ret != -EIO || !abort)
+		return ret;
+	return abort == NO_OBJECT ? -ENXIO : -ENOENT;
 }
 
-/* Objects 0x1600..., 0x1A00...: mapping (ETG.1000.6 clause 5.6.7.4.7) */
+/* What is known of a PDO, from the EEPROM for example; 1: nothing. */
+static int known_mapping(struct ec_slave *s, struct ec_pdo *pdo)
+{
+	const struct ec_pdo *known;
+	int ret;
+
+	down_read(&s->bus->topo);
+	known = ec_slave_find_pdo(s, pdo->index);
+	ret = known ? ec_pdo_copy_entries(pdo, known) : 1;
+	up_read(&s->bus->topo);
+	return ret;
+}
+
+/*
+ * Objects 0x1600..., 0x1A00...: mapping (ETG.1000.6 clause 5.6.7.4.7). One that is assigned and
+ * does not exist has no data.
+ */
 static int read_mapping(struct ec_slave *s, struct ec_pdo *pdo, u64 end_ns)
 {
 	u32 n, v;
 	unsigned int i;
 	int ret = upload(s, pdo->index, 0, &n, end_ns);
 
+	if (ret == -ENOENT || ret == -ENXIO) {
+		int known = known_mapping(s, pdo);
+
+		return known <= 0 ? known : ret == -ENXIO ? 0 : ret;
+	}
 	if (!ret && n > 255)
 		return -EBADMSG;
 	for (i = 1; i <= n && !ret; i++) {
@@ -49,16 +73,18 @@ static int read_assignment(struct ec_slave *s, unsigned int sm, struct ec_pdo_li
 	u64 end_ns = ktime_get_ns() + (u64)WHOLE_MS * NSEC_PER_MSEC;
 	u32 n, index;
 	unsigned int i;
-	int ret = upload(s, 0x1c10 + sm, 0, &n, end_ns);
+	int ret = upload(s, EC_PDO_ASSIGN + sm, 0, &n, end_ns);
 
 	if (!ret && n > 255)
 		return -EBADMSG;
 	for (i = 1; i <= n && !ret; i++) {
 		struct ec_pdo *p;
 
-		ret = upload(s, 0x1c10 + sm, i, &index, end_ns);
+		ret = upload(s, EC_PDO_ASSIGN + sm, i, &index, end_ns);
 		if (ret)
 			break;
+		if (!index)	/* an entry that is not in use */
+			continue;
 		p = ec_pdo_add(l, index, 0);
 		ret = p ? read_mapping(s, p, end_ns) : -ENOMEM;
 	}
@@ -115,6 +141,8 @@ int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm)
 
 	lockdep_assert_held(&s->lock);
 	ret = read_assignment(s, sm, &l);
+	if (ret == -ENXIO)
+		ret = -ENOENT;
 	if (!ret)
 		replace(s, sm, &l);
 	else

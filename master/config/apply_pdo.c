@@ -20,27 +20,6 @@ static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32
 	return ec_coe_download(&s->mbox, index, sub, false, b, bytes, abort, NULL);
 }
 
-/* Does the object hold @n values of @bytes bytes, as @value says? */
-static bool already(struct ec_slave *s, u16 index, unsigned int n, u8 bytes,
-		    u32 (*value)(const void *ctx, unsigned int i), const void *ctx)
-{
-	unsigned int i;
-	u32 abort;
-	size_t got;
-	u8 b[4] = { 0 };
-
-	if (ec_coe_upload(&s->mbox, index, 0, false, b, sizeof(b), &got, &abort, NULL) || b[0] != n)
-		return false;
-	for (i = 0; i < n; i++) {
-		memset(b, 0, sizeof(b));
-		if (ec_coe_upload(&s->mbox, index, i + 1, false, b, sizeof(b), &got, &abort,
-				  NULL) ||
-		    got != bytes || get_unaligned_le32(b) != value(ctx, i))
-			return false;
-	}
-	return true;
-}
-
 /* Many slaves have fixed lists: what they have instead decides, see check(). */
 static int note_refusal(struct ec_slave *s, unsigned int sm, u16 index, const char *what, int ret,
 			u32 abort)
@@ -85,7 +64,7 @@ static u32 map_value(const void *ctx, unsigned int i)
 {
 	const struct ec_pdo *pdo = ctx;
 
-	return (u32)pdo->entries[i].index << 16 | pdo->entries[i].sub << 8 | pdo->entries[i].bits;
+	return ec_pdo_entry_value(&pdo->entries[i]);
 }
 
 static u32 assign_value(const void *ctx, unsigned int i)
@@ -95,9 +74,49 @@ static u32 assign_value(const void *ctx, unsigned int i)
 	return l->pdos[i].index;
 }
 
+/* Value @i of a list, which has @bytes; the one at 0, their number, may have more. */
+static bool read_value(struct ec_slave *s, u16 index, u8 i, u8 bytes, u32 *value)
+{
+	u8 b[4] = { 0 };
+	size_t got;
+	u32 abort;
+
+	if (ec_coe_upload(&s->mbox, index, i, false, b, sizeof(b), &got, &abort, NULL))
+		return false;
+	*value = get_unaligned_le32(b);
+	return !i || got == bytes;
+}
+
 static bool mapped_already(struct ec_slave *s, const struct ec_pdo *p)
 {
-	return !p->n_entries || already(s, p->index, p->n_entries, 4, map_value, p);
+	unsigned int i;
+	u32 v;
+
+	if (!p->n_entries)
+		return true;
+	if (!read_value(s, p->index, 0, 1, &v) || v != p->n_entries)
+		return false;
+	for (i = 0; i < p->n_entries; i++)
+		if (!read_value(s, p->index, i + 1, 4, &v) || v != map_value(p, i))
+			return false;
+	return true;
+}
+
+/* An assignment may have entries of 0, which are not in use. */
+static bool assigned_already(struct ec_slave *s, u16 index, const struct ec_pdo_list *l)
+{
+	unsigned int i, used = 0;
+	u32 n, v;
+
+	if (!read_value(s, index, 0, 1, &n) || n > 255 || n < l->n)
+		return false;
+	for (i = 1; i <= n; i++) {
+		if (!read_value(s, index, i, 2, &v))
+			return false;
+		if (v && (used == l->n || l->pdos[used++].index != v))
+			return false;
+	}
+	return used == l->n;
 }
 
 /*
@@ -106,7 +125,7 @@ static bool mapped_already(struct ec_slave *s, const struct ec_pdo *p)
  */
 static int write_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l)
 {
-	u16 assign = 0x1c10 + sm;
+	u16 assign = EC_PDO_ASSIGN + sm;
 	unsigned int i, first;
 	bool refused = false;
 	u32 abort;
@@ -129,7 +148,7 @@ static int write_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pd
 			return ret;
 		refused |= ret == REFUSED;
 	}
-	if (already(s, assign, l->n, 2, assign_value, l))
+	if (assigned_already(s, assign, l))
 		return refused ? REFUSED : 0;
 	ret = write_list(s, sm, assign, l->n, 2, assign_value, l, "PDO assignment");
 	return ret ?: refused ? REFUSED : 0;

@@ -98,6 +98,13 @@ static int upload(struct ec_ioc_sdo *x)
 		x->size = 4;
 		return 0;
 	}
+	if (getenv("FAKE_FIRST_TX") && x->index == 0x1c13 && x->subindex == 1) {
+		__u16 pdo = (__u16)strtoul(getenv("FAKE_FIRST_TX"), NULL, 0);
+
+		memcpy(to, &pdo, sizeof(pdo));
+		x->size = sizeof(pdo);
+		return 0;
+	}
 	if (getenv("FAKE_SLOW"))
 		usleep(300000);
 	if (x->index == 0x3000) {

@@ -14,6 +14,11 @@ setup() { export FAKE_SII=1; }
 	out pdos --coe -j | json "$pdos[1]['entries'][1]['size_bits'] == 8"
 }
 
+@test "pdos --coe: an assigned PDO that does not exist, and an entry that is not in use" {
+	[[ $(FAKE_FIRST_TX=0x1a77 out pdos --coe -p2) == *'TxPDO 0x1a77 "", the slave does not have it'* ]]
+	[[ $(FAKE_FIRST_TX=0 out pdos --coe -p2) == *'TxPDO 0x0000 "", entry not in use'* ]]
+}
+
 @test "pdos --coe: without SII, without CoE, with wrong lists" {
 	unset FAKE_SII
 	[ "$(out pdos --coe -p2 | grep -c 'not in the SII$')" = 4 ]
