@@ -1798,12 +1798,16 @@ EC_PUBLIC_API int ecrt_slave_config_dc(ec_slave_config_t *sc,
 /**
  * ecrt_slave_config_sdo() - write an object each time the slave is configured
  * @sc: slave configuration
- * @index: of the object; not one of the PDO objects 0x1c1x, 0x16xx, 0x1axx
+ * @index: of the object
  * @subindex: of the object
  * @data: little-endian; copied
  * @size: bytes, 1 to 65536
  *
- * Written in PREOP, in the order of the calls, before the PDO objects.
+ * Written in PREOP, in the order of the calls, before PDOs that the application configures. A
+ * SyncManager without such PDOs has those that startup SDOs to 0x1c1x, 0x16xx and 0x1axx make:
+ * call this before entries of that SyncManager are registered. After these SDOs, and after one
+ * to 0xf030, the master reads its PDOs again; if the layout does not fit any more, the slave
+ * stays in PREOP, and the reason names the SDO.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL no data, or too much; %-ENOSPC more than 1024; %-ENOMEM.

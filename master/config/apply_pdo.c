@@ -252,6 +252,47 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	return 0;
 }
 
+/* Do the PDOs that startup SDOs have made still fit the layout? The last one is @u. */
+static int check_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+		      const struct ec_startup *u)
+{
+	u32 bytes = ec_pdo_list_bytes(&s->sm_pdos[sm]);
+	char sdo[80];
+	unsigned int i;
+	int ret;
+
+	snprintf(sdo, sizeof(sdo), "startup SDO 0x%04x:%02x changes it; register entries after all startup SDOs",
+		 u->index, u->sub);
+	ret = compare(s, c, sm, sdo);
+	for (i = 0; i < c->n_fmmus && !ret; i++)
+		if (c->fmmus[i].sm == sm && c->fmmus[i].size != bytes)
+			ret = ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT, .sm = sm),
+					    "SM%u registered with %u byte(s), slave has %u; %s",
+					    sm, c->fmmus[i].size, bytes, sdo);
+	return ret;
+}
+
+/* The application lets startup SDOs make the PDOs of a SyncManager: what are they now? */
+static int take_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+		     const struct ec_startup *u)
+{
+	char text[160], why[96];
+	int ret = ec_slave_read_sm_pdos(s, sm);
+
+	if (ret == -ECANCELED || ret == -EINTR)
+		return ret;
+	if (!ret) {
+		ret = check_made(s, c, sm, u);
+		if (!ret)
+			ec_setup_of(s)->made |= BIT(sm);
+		return ret;
+	}
+	snprintf(text, sizeof(text), "startup SDO 0x%04x:%02x changes it; its PDOs cannot be read (%s)",
+		 u->index, u->sub, ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	not_certain(s, sm, text);
+	return 0;
+}
+
 /* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
 static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 {
@@ -278,13 +319,16 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
  * @sm: SyncManager
  *
  * Context: The slave's worker.
- * Return: PDOs as configured, or as the slave has them.
+ * Return: PDOs as configured, or as the slave has them: if nobody named any, and if startup
+ * SDOs have made them.
  */
 const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
 					   unsigned int sm)
 {
 	lockdep_assert_held(&s->lock);
-	return c && (c->sm[sm].explicit || c->sm[sm].pdos.n) ? &c->sm[sm].pdos : &s->sm_pdos[sm];
+	if (!c || ec_setup_of(s)->made & BIT(sm))
+		return &s->sm_pdos[sm];
+	return c->sm[sm].explicit || c->sm[sm].pdos.n ? &c->sm[sm].pdos : &s->sm_pdos[sm];
 }
 
 /**
@@ -293,7 +337,8 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
  * @c: its configuration
  *
  * The slave may have other PDOs by now than when the application started: they are written
- * in that case as well. When a slave refuses, or has no CoE, the registered entries must
+ * in that case as well, but not where startup SDOs have changed them: there the slave's are read
+ * again. When a slave refuses, or has no CoE, the registered entries must
  * still be in their place. In a SoE drive the IDNs decide.
  *
  * Context: The slave's worker. Waits for bus traffic.
@@ -308,9 +353,16 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 	lockdep_assert_held(&s->lock);
 	if (!ec_mbox_present(&s->mbox) || !(s->info.protocols & EC_SII_PROTO_COE))
 		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
+	ec_setup_of(s)->made = 0;
 	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
 		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);
+		const struct ec_startup *u =
+			c->sm[sm].explicit || sm >= s->n_sms ? NULL : ec_startup_changes(c, s, sm);
 
+		if (u) {
+			ret = take_made(s, c, sm, u);
+			continue;
+		}
 		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
 			continue;
 		ret = write_sm_pdos(s, sm, l);

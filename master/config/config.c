@@ -7,50 +7,6 @@
 #include "../base/limits.h"
 #include "../bus/slave.h"
 
-/* Start from the PDOs that the slave has. */
-static int slave_defaults(struct ec_config *c, const struct ec_slave *slave)
-{
-	unsigned int sm;
-	int ret = 0;
-
-	lockdep_assert_held(c->wanted->lock);
-	down_read(&slave->bus->topo);
-	for (sm = 0; sm < slave->n_sms && !ret; sm++) {
-		if (c->sm[sm].dir || c->sm[sm].pdos.n)
-			continue;
-		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
-				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
-		ret = ec_pdo_list_copy(&c->sm[sm].pdos, &slave->sm_pdos[sm]);
-	}
-	up_read(&slave->bus->topo);
-	return ret;
-}
-
-/* The configuration of the same slave in the session that is to be taken over, or NULL. */
-static const struct ec_config *predecessor(const struct ec_config *c)
-{
-	const struct ec_wanted *w = c->wanted->before;
-	const struct ec_config *p;
-
-	lockdep_assert_held(c->wanted->lock);
-	p = w ? ec_config_find(w, c->alias, c->position, c->vendor, c->product) : NULL;
-	return IS_ERR(p) ? NULL : p;
-}
-
-/* Start as that configuration did, whether the slave was connected then, or is now. */
-static int inherit_defaults(struct ec_config *c, const struct ec_config *from)
-{
-	unsigned int sm;
-	int ret = 0;
-
-	for (sm = 0; sm < EC_MAX_SM && !ret; sm++) {
-		c->sm[sm].dir = from->sm[sm].dir;
-		if (!from->sm[sm].explicit)
-			ret = ec_pdo_list_copy(&c->sm[sm].pdos, &from->sm[sm].pdos);
-	}
-	return ret;
-}
-
 /**
  * ec_config_find() - the configuration of a slave
  * @w: what an application configures
@@ -119,34 +75,6 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 }
 
 /**
- * ec_config_begin() - give a new configuration the PDOs that it starts with
- * @c: configuration, attached to its slave if that is there
- *
- * They are those of the session that is to be taken over, or those that the slave has.
- *
- * Context: Process, lock of the session held. May sleep.
- * Return: 0; -ENOMEM: a part of them is missing, which must not be written to the slave.
- */
-int ec_config_begin(struct ec_config *c)
-{
-	const struct ec_config *before = predecessor(c);
-	unsigned int i;
-	int ret = 0;
-
-	lockdep_assert_held(c->wanted->lock);
-	if (before)
-		ret = inherit_defaults(c, before);
-	else if (c->slave)
-		ret = slave_defaults(c, c->slave);
-	if (ret)
-		return ret;
-	/* as many as slaves have */
-	for (i = 0; i < EC_MAX_SM; i++)
-		ec_budget_add(&c->wanted->budget, ec_pdo_list_memory(&c->sm[i].pdos));
-	return 0;
-}
-
-/**
  * ec_config_drop() - take back the configuration that was made last
  * @c: configuration that could not begin, detached from its slave
  *
@@ -189,29 +117,6 @@ int ec_config_sync(struct ec_config *c, u8 sm, u8 dir, u8 watchdog)
 	return 0;
 }
 
-/* The mapping the slave has for this PDO, as a start. */
-static int known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p)
-{
-	const struct ec_config *before = predecessor(c);
-	const struct ec_slave *slave = c->slave;
-	const struct ec_pdo *known;
-	unsigned int sm;
-	int ret;
-
-	for (sm = 0; before && sm < EC_MAX_SM; sm++) {
-		known = ec_pdo_find(&before->sm[sm].pdos, index);
-		if (known)
-			return ec_pdo_copy_entries(p, known);
-	}
-	if (!slave)
-		return 0;
-	down_read(&slave->bus->topo);
-	known = ec_slave_find_pdo(slave, index);
-	ret = known ? ec_pdo_copy_entries(p, known) : 0;
-	up_read(&slave->bus->topo);
-	return ret;
-}
-
 int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 {
 	struct ec_pdo *p;
@@ -231,7 +136,7 @@ int ec_config_assign_add(struct ec_config *c, u8 sm, u16 pdo)
 		return -ENOMEM;
 	}
 	c->sm[sm].explicit = true;
-	ret = known_entries(c, pdo, p);
+	ret = ec_config_known_entries(c, pdo, p);
 	ec_budget_add(&c->wanted->budget, p->n_entries * sizeof(*p->entries));
 	return ret;
 }
@@ -325,10 +230,16 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 		.type = EC_STARTUP_SDO, .transition = EC_TRANSITION_PS, .index = index,
 		.sub = sub, .complete = complete, .size = size,
 	};
-	int ret = PTR_ERR_OR_ZERO(ec_startup_add(c, &u, data));
+	struct ec_startup *added = ec_startup_add(c, &u, data);
+	int ret;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (!ret && c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
+	if (IS_ERR(added))
+		return PTR_ERR(added);
+	ret = ec_config_follow_sdo(c, index);
+	if (ret)
+		ec_startup_del(c, added);
+	else if (c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
 		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n",
 			      index,
 			      sub);

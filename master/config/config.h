@@ -156,6 +156,8 @@ struct ec_setup {
 	u16 op_only;
 	/** @mapped: its FMMUs are set */
 	bool mapped;
+	/** @made: SyncManagers whose PDOs the startup SDOs have made, and were read, a bit each */
+	u16 made;
 	/** @holds_mailbox: the worker has both locks of the mailbox */
 	bool holds_mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
@@ -241,6 +243,8 @@ s32 ec_config_flag(const struct ec_config *c, const char *key);
 int ec_config_flag_set(struct ec_config *c, const char *key, s32 value);
 int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
 int ec_config_reg(struct ec_config *c, u16 reg, u16 value);
+int ec_config_follow_sdo(struct ec_config *c, u16 index);
+int ec_config_known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p);
 void *ec_config_alloc(struct ec_config *c, size_t size);
 bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,

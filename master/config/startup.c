@@ -93,6 +93,36 @@ void ec_startup_del(struct ec_config *c, struct ec_startup *u)
 	kvfree(u);
 }
 
+/* May a SDO for @index change the PDOs of a SyncManager? */
+static bool changes(u16 index, unsigned int sm, const struct ec_pdo_list *a,
+		    const struct ec_pdo_list *b)
+{
+	return index == EC_PDO_ASSIGN + sm || index == EC_PDO_MODULES ||
+	       (ec_pdo_is_mapping(index) && (ec_pdo_find(a, index) || ec_pdo_find(b, index)));
+}
+
+/**
+ * ec_startup_changes() - the startup SDO that may change the PDOs of a SyncManager
+ * @c: configuration
+ * @s: its slave
+ * @sm: SyncManager
+ *
+ * Context: The slave's worker.
+ * Return: the last one, or NULL.
+ */
+const struct ec_startup *ec_startup_changes(const struct ec_config *c, const struct ec_slave *s,
+					    unsigned int sm)
+{
+	const struct ec_startup *u, *last = NULL;
+
+	lockdep_assert_held(&s->lock);
+	list_for_each_entry(u, &c->startup, list)
+		if (u->type == EC_STARTUP_SDO &&
+		    changes(u->index, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]))
+			last = u;
+	return last;
+}
+
 /* What a command does; @code: the slave's own error number, 0: none */
 static int run(struct ec_slave *s, const struct ec_startup *u, u32 *code)
 {

@@ -51,6 +51,8 @@ struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *
 				  const void *data);
 struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index);
 void ec_startup_del(struct ec_config *c, struct ec_startup *u);
+const struct ec_startup *ec_startup_changes(const struct ec_config *c, const struct ec_slave *s,
+					    unsigned int sm);
 int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
 
 #endif
