@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "../master/wire/al.h"
+#include "../master/wire/sii.h"
 #include "why.h"
 
 #define CODE_WATCHDOG	0x001b
@@ -241,7 +242,9 @@ static void warnings(struct why *w, const struct ec_ioc_slave *s)
 			    "%s", s->warning);
 	else
 		f = why_add(w, "process_data",
-			    "compare 'ethercat pdos --coe' with the configuration: 'ethercat config -v'",
+			    s->mbox_protocols & EC_SII_PROTO_COE ?
+			    "compare 'ethercat pdos --coe' with the configuration: 'ethercat config -v'" :
+			    "compare 'ethercat pdos' with the configuration: 'ethercat config -v'; 'ethercat cstruct' writes the names of the slave",
 			    "%s", s->warning);
 	f->slave = s->position;
 	f->warning = true;

@@ -293,6 +293,69 @@ static int take_made(struct ec_slave *s, const struct ec_config *c, unsigned int
 	return 0;
 }
 
+static bool has_entry(const struct ec_pdo_list *l, const struct ec_pdo_entry *e)
+{
+	unsigned int i, k;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++)
+			if (l->pdos[i].entries[k].index == e->index &&
+			    l->pdos[i].entries[k].sub == e->sub)
+				return true;
+	return false;
+}
+
+/*
+ * Are the registered entries in the places of entries of the same length, which are only called
+ * otherwise? One that the slave has in another place is not.
+ */
+static bool names_differ(const struct ec_pdo_list *want, const struct ec_pdo_list *have)
+{
+	unsigned int i, k;
+	u32 bit = 0;
+
+	if (ec_pdo_list_bytes(want) != ec_pdo_list_bytes(have))
+		return false;
+	for (i = 0; i < want->n; i++)
+		for (k = 0; k < want->pdos[i].n_entries; k++) {
+			const struct ec_pdo_entry *e = &want->pdos[i].entries[k];
+			const struct ec_pdo_entry *h = ec_pdo_list_at(have, bit);
+
+			bit += e->bits;
+			if (!e->registered || !e->index)
+				continue;
+			if (!h || !h->index || h->bits != e->bits)
+				return false;
+			if ((h->index != e->index || h->sub != e->sub) && has_entry(have, e))
+				return false;
+		}
+	return true;
+}
+
+static bool same_direction(const struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+{
+	u8 dir = s->sms[sm].control & EC_SM_DIR_WRITE ? EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
+
+	return c->sm[sm].dir == dir;
+}
+
+/* Objects that no service can reach are labels. The first one is reported. */
+static void note_names(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *want,
+		       const struct ec_pdo_list *have)
+{
+	const struct ec_pdo_entry *e, *h;
+	u32 bit;
+
+	lockdep_assert_held(&s->lock);
+	e = first_wrong(want, have, &bit);
+	h = e ? ec_pdo_list_at(have, bit) : NULL;
+	if (!h || s->warning[0])
+		return;
+	ec_slave_set_warning(s, "SM%u bit %u: registered as 0x%04x:%02x, named 0x%04x:%02x in the EEPROM; same layout, and without CoE only the name differs",
+			     sm, bit, e->index, e->sub, h->index, h->sub);
+	ec_slave_warn(s, "%s\n", s->warning);
+}
+
 /* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
 static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 {
@@ -304,7 +367,10 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 	for (sm = 0; sm < s->n_sms && !ret; sm++) {
 		if (!c->sm[sm].explicit || !first_wrong(&c->sm[sm].pdos, &nothing, &bit))
 			continue;
-		if (s->sm_pdos[sm].n)
+		if (s->sm_pdos[sm].n && same_direction(s, c, sm) &&
+		    names_differ(&c->sm[sm].pdos, &s->sm_pdos[sm]))
+			note_names(s, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]);
+		else if (s->sm_pdos[sm].n)
 			ret = compare(s, c, sm, "without CoE its PDOs cannot be changed");
 		else
 			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");

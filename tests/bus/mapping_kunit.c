@@ -136,8 +136,8 @@ static void mapping_unreadable_stays_visible(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, i.warning, "");
 }
 
-/* Terminals without mailbox: the entry is another one at @wrong; 99: at none. */
-static struct cyc *terminal(struct kunit *test, struct bus *b, u32 wrong)
+/* Terminals without mailbox: the entry is @entry at @wrong; 99: at none. */
+static struct cyc *terminal(struct kunit *test, struct bus *b, u32 wrong, u32 entry)
 {
 	u32 i, config, sm = 0;
 	struct ec_slave *s;
@@ -154,7 +154,7 @@ static struct cyc *terminal(struct kunit *test, struct bus *b, u32 wrong)
 		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, sm, 0x1600 + i, 0);
 		cyc_pdo(c, config, EC_SC_PDO_MAP_CLEAR, sm, 0x1600 + i, 0);
 		cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, sm, 0x1600 + i,
-			(0x7000 + 0x10 * i) << 16 | (i == wrong ? 2 : 1) << 8 | 1);
+			i == wrong ? entry : (0x7000 + 0x10 * i) << 16 | 1 << 8 | 1);
 	}
 	cyc_map(c, config, sm, 0);
 	return c;
@@ -165,25 +165,60 @@ static void mapping_without_mailbox_is_compared(struct kunit *test)
 	struct bus *b = bus_up(test, "slave o EL2008\n", 1);
 	struct ec_ioc_sc_flag f = { .config = 0, .value = 1, .key = EC_FLAG_ANY_PDOS };
 	struct ec_ioc_slave i = { 0 };
-	struct cyc *c = terminal(test, b, 0);
+	struct cyc *c = terminal(test, b, 0, 0x70100101);	/* that of another place */
 
 	cyc_activate(c);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
-	expect_why(b, 0, "registered 0x7000:02, 1 bit; slave has 0x7000:01, 1 bit");
+	expect_why(b, 0, "registered 0x7010:01, 1 bit; slave has 0x7000:01, 1 bit");
+	cyc_release(c);
+	c = terminal(test, b, 0, 0x30010102);	/* another length */
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	expect_why(b, 0, "registered 0x3001:01, 2 bit; slave has 0x7000:01, 1 bit");
 	cyc_release(c);
 	/* an entry that is not registered, as cyc_map() takes the first one */
-	c = terminal(test, b, 3);
+	c = terminal(test, b, 3, 0x70000201);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->warning, "");
 	cyc_release(c);
-	c = terminal(test, b, 0);
+	c = terminal(test, b, 0, 0x70100101);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x7000:02"), "%s", i.warning);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x7010:01"), "%s", i.warning);
+}
+
+/* What no service can reach may have any name, as in the examples of other masters. */
+static void mapping_without_mailbox_names_are_labels(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave o EL2008\n", 1);
+	struct cyc *c = terminal(test, b, 0, 0x30010101);
+	struct ec_ioc_slave i = { 0 };
+	struct kmsg_dump_iter it;
+
+	kmsg_dump_rewind(&it);
+	logged(&it, "");
+	cyc_activate(c);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	cyc_run(c, 10);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
+	KUNIT_EXPECT_EQ(test, logged(&it, "EtherCAT 0-0: "), 1u);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_EXPECT_NOT_NULL_MSG(test,
+				  strstr(i.warning, "registered as 0x3001:01, named 0x7000:01"),
+				  "%s", i.warning);
+	/* a direction is no name */
+	cyc_release(c);
+	c = terminal(test, b, 0, 0x30010101);
+	b->m->sessions.session->wanted.configs[0]->sm[0].dir = EC_CFG_DIR_INPUT;
+	b->m->sessions.session->wanted.configs[0]->fmmus[0].dir = EC_CFG_DIR_INPUT;
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	expect_why(b, 0, "registered 0x3001:01, 1 bit; slave has 0x7000:01, 1 bit");
 }
 
 /* Nobody can tell what the slave has. */
@@ -202,7 +237,7 @@ static void mapping_without_knowledge_stays_visible(struct kunit *test)
 			put_unaligned_le16(0x0900, (u8 *)cat.data - 4);
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
-	c = terminal(test, b, 99);
+	c = terminal(test, b, 99, 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
@@ -298,6 +333,7 @@ static struct kunit_case mapping_cases[] = {
 	KUNIT_CASE(mapping_unregistered_entry_does_not_matter),
 	KUNIT_CASE(mapping_unreadable_stays_visible),
 	KUNIT_CASE(mapping_without_mailbox_is_compared),
+	KUNIT_CASE(mapping_without_mailbox_names_are_labels),
 	KUNIT_CASE(mapping_without_knowledge_stays_visible),
 	KUNIT_CASE(mapping_found_unreadable_stays_visible),
 	KUNIT_CASE(mapping_first_cause_is_kept),
