@@ -1,77 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Causes beyond AL states: working counters, clocks, error counters of the ports. */
+/* Causes beyond AL states: clocks, error counters of the ports. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../master/wire/dc.h"
 #include "errors.h"
 #include "sys.h"
 #include "topology.h"
 #include "why.h"
-
-#define LOOKS		3	/* at a working counter before it counts as incomplete */
-#define LOOK_MS		20
-
-static const struct why_config *config_at(const struct why *w, u16 alias, u16 position)
-{
-	for (size_t i = 0; i < w->n_configs; i++)
-		if (w->configs[i].c.alias == alias && w->configs[i].c.position == position)
-			return &w->configs[i];
-	return NULL;
-}
-
-/* A slave that is not in OP has its own cause, and the working counter follows from it. */
-static bool all_in_op(struct why *w, const struct ec_ioc_domain *dom)
-{
-	for (u32 i = 0; i < dom->fmmu_count; i++) {
-		struct ec_ioc_domain_fmmu f = { .index = dom->index, .fmmu = i };
-		const struct why_config *c;
-
-		if (dev_ioctl(w->d, EC_IOC_DOMAIN_FMMU, &f))
-			return false;
-		c = config_at(w, f.alias, f.position);
-		if (!c || !why_in_op(c))
-			return false;
-	}
-	return true;
-}
-
-/* of some looks each is incomplete: one lost frame is no fault of a slave */
-static bool incomplete(struct why *w, struct ec_ioc_domain *dom)
-{
-	for (int i = 0; i < LOOKS; i++) {
-		*dom = (struct ec_ioc_domain){ .index = dom->index };
-		/* an older module does not know the state */
-		if (dev_ioctl(w->d, EC_IOC_DOMAIN, dom) ||
-		    (dom->working_counter == dom->expected &&
-		     dom->wc_state != EC_STATUS_WC_INCOMPLETE))
-			return false;
-		sleep_ms(i + 1 < LOOKS ? LOOK_MS : 0);
-	}
-	return true;
-}
-
-/**
- * why_domains() - process data that are not exchanged although all slaves are in OP
- * @w: what is known
- */
-void why_domains(struct why *w)
-{
-	if (!w->m.active || w->m.no_cycle)
-		return;
-	for (u32 i = 0; i < w->m.domain_count; i++) {
-		struct ec_ioc_domain dom = { .index = i };
-
-		if (!incomplete(w, &dom) || !all_in_op(w, &dom))
-			continue;
-		why_add(w, "working_counter",
-			"compare the slaves of the domain: 'ethercat domains -v'; power-cycle the one whose data do not change",
-			"domain %u: working counter %u, expected %u%s, although all its slaves are in OP",
-			i, dom.working_counter, dom.expected,
-			dom.working_counter == dom.expected ?
-				" in sum, but not of each datagram" : "")->domain = (int)i;
-	}
-}
 
 static void clock_of(struct why *w, const struct why_config *c, const struct ec_ioc_slave *s)
 {
@@ -91,6 +28,12 @@ static void clock_of(struct why *w, const struct why_config *c, const struct ec_
 			    "queue drift compensation in each cycle: ecrt_master_sync_slave_clocks()",
 			    "the clock differs by %d ns from the reference clock, limit %d ns",
 			    s->dc_diff, EC_UAPI_DC_WINDOW_NS);
+	else if (c->c.dc_cycle[0] &&
+		 !ec_dc_sync_fits(c->c.dc_cycle[0], w->m.cycle_interval_us * 1000))
+		f = why_add(w, "sync_cycle",
+			    "set the SYNC0 time of ecrt_slave_config_dc() to the cycle time, a whole part or a multiple of it; see 'ethercat cycle'",
+			    "SYNC0 time %u ns and cycle of %u us: neither divides the other, so outputs and SYNC0 drift through each other",
+			    c->c.dc_cycle[0], w->m.cycle_interval_us);
 	else
 		return;
 	f->warning = true;

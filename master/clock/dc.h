@@ -317,6 +317,7 @@ int ec_dc_wait(struct ec_slave *s);
 void ec_dc_sync_again(struct ec_slave *s);
 int ec_dc_sync_stop(struct ec_slave *s);
 void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c);
+void ec_dc_sync_compare_cycle(struct ec_slave *s, const struct ec_dc_sync *c);
 int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c);
 int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c);
 

@@ -238,6 +238,24 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 }
 
 /**
+ * ec_dc_sync_compare_cycle() - warn about SYNC0 signals at ever other places of the cycle
+ * @s: slave with a clock, @lock held
+ * @c: its configuration with @dc_assign
+ *
+ * Context: Process. May sleep.
+ */
+void ec_dc_sync_compare_cycle(struct ec_slave *s, const struct ec_dc_sync *c)
+{
+	u32 cycle_us = ec_access_interval_us(&s->bus->links->access);
+
+	lockdep_assert_held(&s->lock);
+	if (c->assign & SYNC0 && !ec_dc_sync_fits(c->period[0], cycle_us * NSEC_PER_USEC))
+		ec_slave_warn(s,
+			      "SYNC0 time %u ns does not divide the cycle of %u us; set it to the cycle time or a whole part of it: ecrt_slave_config_dc()\n",
+			      c->period[0], cycle_us);
+}
+
+/**
  * ec_dc_sync_start() - program and start SYNC0 and SYNC1
  * @s: slave whose clock is set, @lock held
  * @c: its configuration with @dc_assign

@@ -305,6 +305,8 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
 			      ec_clock_is_set(s) ? "inside the sync window yet" :
 						     "synchronized", ERR_PTR(ret));
+	/* a cycle that is measured is known by now */
+	ec_dc_sync_compare_cycle(s, &c->sync);
 	return ec_dc_sync_start(s, &c->sync);
 }
 

@@ -235,3 +235,21 @@ u64 ec_dc_start(u64 earliest, u64 phase, u32 period, s32 shift)
 
 	return earliest + (want >= now ? want - now : want + period - now);
 }
+
+/**
+ * ec_dc_sync_fits() - is one of two times a multiple of the other
+ * @sync0: time of SYNC0, ns
+ * @cycle: cycle time, ns; if it was measured it differs a little from what it should be
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it is, within 2 % of the shorter or 1 % of the longer one; true for a time of 0.
+ */
+bool ec_dc_sync_fits(u32 sync0, u32 cycle)
+{
+	u32 longer = max(sync0, cycle), shorter = min(sync0, cycle), rest;
+
+	if (!shorter)
+		return true;
+	rest = longer % shorter;
+	return min(rest, shorter - rest) <= max(shorter / 50, longer / 100);
+}

@@ -50,6 +50,7 @@ struct ec_dc_node {
 void ec_dc_delays(struct ec_dc_node *nodes, u32 n, u32 ref);
 u64 ec_dc_offset(u64 ref_time, u32 delay, u64 local);
 s32 ec_dc_diff(u32 value);
+bool ec_dc_sync_fits(u32 sync0, u32 cycle);
 u64 ec_dc_start(u64 earliest, u64 phase, u32 period, s32 shift);
 
 #endif

@@ -299,13 +299,14 @@ static void about_wkc(struct text *t, const u32 *a)
 {
 	/* one datagram has too much, another too little */
 	const char *sum = a[6] && a[1] == a[3] ? " in sum, not of each datagram" : "";
+	const char *more = a[1] > a[3] ? ": more slaves answer than it has, see 'ethercat why'" : "";
 
 	if (a[4])
-		format(t, "domain %u: working counter %u of %u%s, before %u; %u more change(s)",
-		       a[0], a[1], a[3], sum, a[2], a[4]);
+		format(t, "domain %u: working counter %u of %u%s, before %u%s; %u more change(s)",
+		       a[0], a[1], a[3], sum, a[2], more, a[4]);
 	else
-		format(t, "domain %u: working counter %u of %u%s, before %u", a[0], a[1], a[3],
-		       sum, a[2]);
+		format(t, "domain %u: working counter %u of %u%s, before %u%s", a[0], a[1], a[3],
+		       sum, a[2], more);
 }
 
 static void about_cycle(struct text *t, const struct ec_event *e)

@@ -188,11 +188,35 @@ static void dc_log_warns_about_assign_activate(struct kunit *test)
 	}
 }
 
+/* A SYNC0 time beside the cycle: one line names slave, both times and the call. */
+static void dc_log_warns_about_sync0_beside_cycle(struct kunit *test)
+{
+	static const char line[] =
+		"EtherCAT 0-0: SYNC0 time 300000 ns does not divide the cycle of 1000 us";
+	struct cyc *c = configure(test, 1, 1000);
+	u32 before = bus_log_lines(line), all = bus_log_lines("does not divide");
+	struct ec_ioc_sc_dc dc = { .assign_activate = 0x0300, .cycle0 = 300000 };
+
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(line) - before, 1u);
+	bus_down(c->b);
+	test->priv = NULL;
+	c = configure(test, 1, 1000);
+	dc.cycle0 = 500000;
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_DC, &dc), 0);
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("does not divide") - all, 1u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_log_delay_only),
 	KUNIT_CASE(dc_log_interval_ignores_outliers),
 	KUNIT_CASE(dc_log_window_has_one_line),
 	KUNIT_CASE(dc_log_warns_about_assign_activate),
+	KUNIT_CASE(dc_log_warns_about_sync0_beside_cycle),
 	{ }
 };
 

@@ -36,6 +36,8 @@ static void master(struct ec_ioc_master *m)
 		m->devices[0].loss_rate[0] = m->devices[0].loss_rate[1] = 5;
 	else
 		memset(m->devices[0].loss_rate, 0, sizeof(m->devices[0].loss_rate));
+	if (wrong("sync_cycle"))
+		m->cycle_interval_us = 1300;
 	if (wrong("cycle_too_short"))
 		m->cycle_wire_ns = 1500000;
 }
@@ -151,14 +153,17 @@ static void domain(struct ec_ioc_domain *x)
 {
 	if (wrong("cancelled") && x->index)
 		x->wc_state = EC_STATUS_WC_INCOMPLETE;
-	if (!wrong("working_counter") || !x->index)
+	if (!(wrong("working_counter") || wrong("too_high")) || !x->index)
 		return;
-	x->working_counter = 2;
+	x->working_counter = wrong("too_high") ? 4 : 2;
 	x->wc_state = EC_STATUS_WC_INCOMPLETE;
 }
 
 static void counters(struct ec_ioc_reg *x)
 {
+	/* slave 0 has an FMMU in domain 1, slave 2 that of its configuration */
+	if (x->address == 0x0600 && wrong("too_high") && x->position != 1)
+		memcpy((__u8 *)(uintptr_t)x->data, "\1\0\0\0\6\0\0\7\0\x11\0\1\1", 13);
 	if (wrong("both_ends") && x->position == 1)
 		*(__u8 *)(uintptr_t)x->data = 2;	/* at port 0 */
 }

@@ -45,7 +45,7 @@ is() {
 }
 
 @test "why: a warning stops no slave and exits with 0" {
-	for c in scan lost_frames overruns eeprom process_data clock_off; do
+	for c in scan lost_frames overruns eeprom process_data clock_off sync_cycle; do
 		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
 		FAKE_WHY=$c run ethercat why
 		[ "$status" -eq 0 ] || { echo "$c: $output"; false; }
@@ -64,6 +64,10 @@ is() {
 	FAKE_WHY=cancelled run ethercat why
 	[ "$status" -eq 1 ]
 	[[ $output == "Fault: domain 1: working counter 3, expected 3 in sum, but not of each "* ]]
+	is sync_cycle '(f["slave"], f["config"]) == (2, "0:2") and "SYNC0 time 1000000 ns and cycle of 1300 us" in f["text"]'
+	is too_high '(f["cause"], f["domain"], f["slave"]) == ("working_counter", 1, None)'
+	is too_high '"working counter 4, expected 3: more slaves answer" in f["text"]'
+	is too_high '"as a user with access to registers" in f["remedy"]'
 	is missing '(f["slave"], f["port"], f["config"]) == (2, 1, "0:3")'
 	# far behind the end of the ring
 	FAKE_FAR=1 is missing '(f["slave"], f["config"]) == (2, "0:9")'
@@ -126,6 +130,12 @@ is() {
 	[ "$status" -eq 0 ]
 	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frames, "* ]]
 	[[ $output != *"Not checked"* ]]
+}
+
+@test "why names the slave that answers in a domain without being in it" {
+	unset FAKE_READONLY
+	is too_high '(f["cause"], f["domain"], f["slave"]) == ("working_counter", 1, 0)'
+	is too_high '"slave 0 (EK1100) answers too" in f["text"] and "states INIT" in f["remedy"]'
 }
 
 @test "why claims no check that it has not done" {

@@ -282,6 +282,25 @@ static void dc_start_is_on_grid_far_away(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, (phase - start) % 1000000, 1ull);
 }
 
+static void dc_sync_fits_multiples(struct kunit *test)
+{
+	static const struct {
+		u32 sync0, cycle;
+		bool fits;
+	} t[] = {
+		{ 1000000, 1000000, true }, { 500000, 1000000, true }, { 2000000, 1000000, true },
+		{ 62500, 1000000, true }, { 333333, 1000000, true }, { 0, 1000000, true },
+		{ 1000000, 0, true }, { 1000000, 998000, true }, { 250000, 1003000, true },
+		{ 300000, 1000000, false }, { 750000, 1000000, false }, { 1500000, 1000000, false },
+		{ 1000000, 1100000, false }, { 4000000000u, 1500000000, false },
+	};
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(t); i++)
+		KUNIT_EXPECT_EQ_MSG(test, ec_dc_sync_fits(t[i].sync0, t[i].cycle), t[i].fits,
+				    "%u in %u", t[i].sync0, t[i].cycle);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_of_tree),
 	KUNIT_CASE(dc_delays_across_wrap),
@@ -299,6 +318,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_difference_has_sign_and_magnitude),
 	KUNIT_CASE(dc_start_is_on_grid),
 	KUNIT_CASE(dc_start_is_on_grid_far_away),
+	KUNIT_CASE(dc_sync_fits_multiples),
 	{ }
 };
 

@@ -245,6 +245,8 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "domain 1: working counter 2 of 3, before 3; 9 more change(s)");
 	expect(test, E(WKC, EC_EVENT_NO_SLAVE, 1, 3, 3, 3, 0, 0, 1),
 	       "domain 1: working counter 3 of 3 in sum, not of each datagram, before 3");
+	expect(test, E(WKC, EC_EVENT_NO_SLAVE, 1, 4, 3, 3, 0, 0, 1),
+	       "domain 1: working counter 4 of 3, before 3: more slaves answer than it has, see 'ethercat why'");
 	expect(test, E(MISSED, EC_EVENT_NO_SLAVE, 1, 1),
 	       "4294967297 event(s) missed: the reader was too slow");
 	expect(test, E(LOCK, EC_EVENT_NO_SLAVE, 2, (u32)-12, (u32)-3),
