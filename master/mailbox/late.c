@@ -147,13 +147,14 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 	}
 	ec_mbox_leave(mb, &u, false);
 	/* also an error of the bus: the request gets it itself */
+	if (!u.got && ret == -ETIMEDOUT && last <= begin) {
+		give_up(mb, r->type);
+		return 0;
+	}
+	if (!u.got && ret)
+		return ret;
 	if (u.got)
 		ec_mbox_took_late(mb, u.got_type);
-	else if (ret == -ETIMEDOUT && last <= begin)
-		give_up(mb, r->type);
-	else if (ret)
-		return ret;
-	else
-		ec_mbox_forget_late(mb, BIT(r->type));
+	ec_mbox_forget_late(mb, BIT(r->type));
 	return 0;
 }
