@@ -2181,8 +2181,8 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
  * Extension (%EC_HAVE_SDO_TIMEOUT). Valid for startup commands, requests, and calls and commands
  * that set no timeout of their own, as long as the slave has this configuration. After this time
  * a startup command waits 30 s more if the slave has accepted it. Other transfers end; the next
- * one of this protocol waits for the late reply, at most 30 s. An SDO transfer as a whole has
- * 60 s more, and 4 s for each KiB.
+ * one of this protocol waits for the late reply, at most 30 s and not longer than its own timeout.
+ * An SDO transfer as a whole has 60 s more, and 4 s for each KiB.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @sc is NULL or the time too long; %-EBUSY after ecrt_master_activate().

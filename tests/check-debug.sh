@@ -101,18 +101,20 @@ tree() {
 # note ITEM TREE PASSED FAILED SECONDS: the rows stay sorted
 note() {
 	local new rule='======= ======================= ========== ======== ====== ====== ======='
+	local form='%-7s %-23s %-10s %-8s %6s %6s %7s\n' k=${1%%:*} n=${1#*:}
 
 	new=$(mktemp)
 	{
 		sed '/^======= /,$d' "$page"
 		echo "$rule"
-		printf '%-7s %-23s %-10s %-8s %6s %6s %7s\n' kernel file date tree passed failed seconds
+		# shellcheck disable=SC2059
+		printf "$form" kernel file date tree passed failed seconds
 		echo "$rule"
 		{
-			awk -v k="${1%%:*}" -v n="${1#*:}" \
-				'/^======= / { t++; next } t == 2 && NF == 7 && !($1 == k && $2 == n)' "$page"
-			printf '%-7s %-23s %-10s %-8s %6s %6s %7s\n' "${1%%:*}" "${1#*:}" "$(date +%F)" \
-				"${@:2}"
+			awk -v k="$k" -v n="$n" '/^======= / { t++; next }
+				t == 2 && NF == 7 && !($1 == k && $2 == n)' "$page"
+			# shellcheck disable=SC2059
+			printf "$form" "$k" "$n" "$(date +%F)" "${@:2}"
 		} | sort -k 1,1 -k 2,2
 		echo "$rule"
 	} >"$new"

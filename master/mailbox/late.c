@@ -115,7 +115,7 @@ static void give_up(struct ec_mbox *mb, u8 type)
  * @r: request; its protocol is claimed
  * @b: its reply is in @rx, to be discarded
  *
- * Other protocols use the mailbox meanwhile.
+ * It waits as long as for a reply of its own. Other protocols use the mailbox meanwhile.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0: there is none to wait for (any more); -EINTR; -ECANCELED; -ETIMEDOUT when the
@@ -135,7 +135,8 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 	raw_spin_lock_irqsave(&mb->lock, flags);
 	last = mb->late_ns;
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	until.ns = min(begin, last);
+	/* a caller waits no longer than it allows for a reply */
+	until.ns = min3(begin, last, ktime_get_ns() + (u64)l->timeout_ms * NSEC_PER_MSEC);
 	ec_mbox_enter(mb, &u);
 	while (!ret && is_awaited(mb, BIT(r->type))) {
 		ret = ec_mbox_over(mb, &until);
@@ -146,15 +147,15 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
 	}
 	ec_mbox_leave(mb, &u, false);
-	/* also an error of the bus: the request gets it itself */
-	if (!u.got && ret == -ETIMEDOUT && last <= begin) {
+	if (u.got) {
+		ec_mbox_took_late(mb, u.got_type);
+	} else if (ret == -ETIMEDOUT && until.ns == last) {
 		give_up(mb, r->type);
 		return 0;
-	}
-	if (!u.got && ret)
+	} else if (ret && (ret != -ETIMEDOUT || until.ns == begin)) {
 		return ret;
-	if (u.got)
-		ec_mbox_took_late(mb, u.got_type);
+	}
+	/* also an error of the bus: the request gets it itself */
 	ec_mbox_forget_late(mb, BIT(r->type));
 	return 0;
 }

@@ -162,7 +162,8 @@ t "sparse notices a wrong byte order" sparse_notices
 # listed PAGE-TREE: would check-debug run thin, which has a result of that tree?
 listed() {
 	printf '%s\n' '======= =' x '======= =' "kasan thin 2026-01-01 $1 1 0 1" >"$tmp/page"
-	EC_PAGE=$tmp/page EC_PRODUCT=COPYING tests/check-debug.sh --list kasan:thin | grep -x kasan:thin
+	EC_PAGE=$tmp/page EC_PRODUCT=COPYING tests/check-debug.sh --list kasan:thin |
+		grep -x kasan:thin
 }
 tree=$(git -c safe.directory='*' rev-parse --short=7 HEAD)
 t "check-debug repeats no result of this tree" eval '! listed "$tree"'

@@ -144,11 +144,13 @@ static void req_restart_busy(struct kunit *test)
 /* The application of the slave says nothing: an error, the other slave goes on. */
 static void req_mute(struct kunit *test)
 {
+	struct ec_ioc_sc_timeout reply = { .flags = EC_SC_TIMEOUT_REPLY, .timeout_ms = 1000 };
 	struct cyc *c = prepare(test);
 	u32 a = req_add(c, 0, EC_REQUEST_SDO, 4), a2 = req_add(c, 0, EC_REQUEST_SDO, 4);
 	u32 b = req_add(c, 1, EC_REQUEST_SDO, 4);
 	u64 t0;
 
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_TIMEOUT, &reply), 0);
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	t0 = ktime_get_ns();

@@ -231,7 +231,7 @@ fail_each() {
 	done
 	echo 0 >$p/at
 	rmmod ec_fail
-	echo "# ${*/*\//}: $failed of $steps step(s) failed, $loaded of them without harm to the load" >&3
+	echo "# ${*/*\//}: $failed of $steps step(s) failed, $loaded of them without harm" >&3
 	[ "$steps" -gt 0 ]
 }
 
@@ -258,7 +258,7 @@ open_masters() {
 	[ ! -e /dev/EtherCAT0 ]
 }
 
-@test "a load of ec_master that fails as the second interface exists lets no program open the first device" {
+@test "a load of ec_master that fails at the second interface lets no program open the device" {
 	ip link add eccap1 type veth peer name veth1
 	open_masters
 	dmesg -C

@@ -15,7 +15,8 @@ setup() { export FAKE_SII=1; }
 }
 
 @test "pdos --coe: an assigned PDO that does not exist, and an entry that is not in use" {
-	[[ $(FAKE_FIRST_TX=0x1a77 out pdos --coe -p2) == *'TxPDO 0x1a77 "", the slave does not have it'* ]]
+	[[ $(FAKE_FIRST_TX=0x1a77 out pdos --coe -p2) == \
+		*'TxPDO 0x1a77 "", the slave does not have it'* ]]
 	[[ $(FAKE_FIRST_TX=0 out pdos --coe -p2) == *'TxPDO 0x0000 "", entry not in use'* ]]
 }
 
