@@ -98,7 +98,9 @@ bool oom_becomes_whole(struct bus *b)
 int oom_configure(struct bus *b, struct cyc *c, bool kernel)
 {
 	struct ec_ioc_cycle by_kernel = { .period_ns = NSEC_PER_MSEC, .cpu = -1 };
-	struct ec_ioc_sc_request request = { .config = OOM_DRIVE, .kind = EC_REQUEST_SDO, .size = 100 };
+	struct ec_ioc_sc_request request = {
+		.config = OOM_DRIVE, .kind = EC_REQUEST_SDO, .size = 100,
+	};
 	struct ec_ioc_create_domain d = { 0 };
 	struct ec_ioc_activate a = { 0 };
 	u32 i, value = 1, sm;

@@ -71,7 +71,7 @@ static void oom_two_allocations_fail(struct kunit *test)
 		both += oom_place != first;
 		ends(b, memory, n, m);
 	}
-	bus_figure("%u pairs of failing allocations, seed %lu: %u refused, %u with the second one later",
+	bus_figure("%u pairs of failing allocations, seed %lu: %u refused, %u failed later again",
 		   pairs, seed, refused, both);
 	KUNIT_EXPECT_GT(test, refused, 0u);
 	KUNIT_EXPECT_GT(test, both, 0u);

@@ -164,7 +164,7 @@ bridged() {
 	no_insmod 'lo is not an Ethernet device' sim segment=thin netdev=lo
 }
 
-@test "the limit of acyclic frames is refused outside its range, and changes while the module is loaded" {
+@test "the limit of acyclic frames is refused outside its range, and can change while loaded" {
 	local p=/sys/module/ec_master/parameters/max_acyclic n
 
 	for n in 0 193 many; do
