@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * More than one allocation fails: two of them by chance, or all from one on until memory is there
- * again; and one while a master is created, an application in the kernel runs, or events are read.
+ * again. One fails while a master is created, an application in the kernel runs, a session is
+ * taken over, or a reader of events begins.
  */
 #include <linux/moduleparam.h>
 #include <linux/prandom.h>
@@ -243,8 +244,8 @@ static void oom_takeover_is_refused_or_done(struct kunit *test)
 		oom_fail(n);
 		ret = kcyc_activate(a);
 		failed = oom_has_failed();
-		KUNIT_ASSERT_TRUE_MSG(test, !ret || (ret == -ENOMEM && failed), "%u: %d: %s", n, ret,
-				      b->app.reason);
+		KUNIT_ASSERT_TRUE_MSG(test, !ret || (ret == -ENOMEM && failed), "%u: %d: %s", n,
+				      ret, b->app.reason);
 		if (ret) {
 			ec_session_end(&b->m->sessions, &b->app);
 			a = kcyc_configure(b, hold);

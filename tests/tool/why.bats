@@ -64,7 +64,8 @@ is() {
 	FAKE_WHY=cancelled run ethercat why
 	[ "$status" -eq 1 ]
 	[[ $output == "Fault: domain 1: working counter 3, expected 3 in sum, but not of each "* ]]
-	is sync_cycle '(f["slave"], f["config"]) == (2, "0:2") and "SYNC0 time 1000000 ns and cycle of 1300 us" in f["text"]'
+	is sync_cycle '(f["slave"], f["config"]) == (2, "0:2") and
+		"SYNC0 time 1000000 ns and cycle of 1300 us" in f["text"]'
 	is too_high '(f["cause"], f["domain"], f["slave"]) == ("working_counter", 1, None)'
 	is too_high '"working counter 4, expected 3: more slaves answer" in f["text"]'
 	is too_high '"as a user with access to registers" in f["remedy"]'
