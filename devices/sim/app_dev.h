@@ -279,7 +279,7 @@ static inline bool ec_app_listed(const struct ec_app_list *l, u16 v)
 }
 
 /**
- * struct ec_app_quirks - what is odd about a model
+ * struct ec_app_quirks - what is unusual in a model
  * @any: something is
  * @no_mbox_words: words 0x18 to 0x1B of its EEPROM are 0, category 41 has the mailbox
  * @no_protocols: word 0x1C of its EEPROM is 0
@@ -315,7 +315,7 @@ struct ec_app_quirks {
  * @strict: the SyncManagers of the mailbox must have the usual control bytes, no other
  * @diag: messages in the diagnosis history, 0: there is no 0x10F3
  * @no_repeat: neither repeats its messages nor sees that one of the master is repeated
- * @quirks: what is odd about it
+ * @quirks: what is unusual in it
  */
 struct ec_app_params {
 	u32 vendor;

@@ -30,7 +30,7 @@ static int list(struct ec_desc *d, const char *key, struct ec_app_list *l)
 }
 
 /**
- * ec_desc_quirks() - what is odd about the EEPROM and the dictionary of a slave
+ * ec_desc_quirks() - what is unusual in the EEPROM and the dictionary of a slave
  * @d: description, a slave statement
  * @q: result
  *

@@ -560,7 +560,6 @@ struct ec_ioc_sc_flag {
 
 /* struct ec_ioc_sc_timeout.flags: of replies to SDOs and IDNs, not of a state */
 #define EC_SC_TIMEOUT_REPLY	1
-
 struct ec_ioc_sc_timeout {
 	__u32 flags;
 	__u32 config;

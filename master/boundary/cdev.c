@@ -235,7 +235,7 @@ static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
 	return NULL;
 }
 
-/* Udev makes nodes of them. Whoever knows the numbers needs none. */
+/* Udev makes nodes of them; a program that knows the numbers needs none. */
 static void make_nodes(void)
 {
 	struct device *dev;

@@ -385,8 +385,8 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
  * @sm: SyncManager
  *
  * Context: The slave's worker.
- * Return: PDOs as configured, or as the slave has them: if nobody named any, and if startup
- * SDOs have made them.
+ * Return: PDOs as configured, or as the slave has them: if the application named none, and if
+ * startup SDOs have made them.
  */
 const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struct ec_config *c,
 					   unsigned int sm)

@@ -241,7 +241,7 @@ static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 	return h->type == EC_MBOX_COE && !ec_coe_emergency_decode(mb->rx + EC_MBOX_HDR, h->len, &e);
 }
 
-/* A message that nothing waits for: who waits for a reply gets it before such, or never. */
+/* A message without a waiting request: a request gets its reply before such, or never. */
 static void mark_heard(struct ec_mbox *mb)
 {
 	struct ec_mbox_user *u;

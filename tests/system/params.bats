@@ -181,6 +181,21 @@ bridged() {
 	[ "$(cat $p)" = 192 ]
 }
 
+@test "the time limit of AL states is refused outside its range, and can change while loaded" {
+	local p=/sys/module/ec_master/parameters/state_timeout_ms n
+
+	for n in 600001 -1 4s; do
+		run master main_devices=sim0 state_timeout_ms=$n
+		[ "$status" != 0 ]
+	done
+	master main_devices=sim0 state_timeout_ms=4000
+	[ "$(cat $p)" = 4000 ]
+	run sh -c "echo 600001 >$p"
+	[ "$status" != 0 ]
+	echo 0 >$p
+	[ "$(cat $p)" = 0 ]
+}
+
 # opened LETTERS: how many of these files could be opened so far
 opened() { tr -cd "$1" <"$BATS_TEST_TMPDIR/opened" | wc -c; }
 

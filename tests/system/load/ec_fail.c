@@ -120,7 +120,7 @@ static int enter(struct kprobe *p, struct pt_regs *regs)
 	if (++steps != at)
 		return 0;
 	pr_info("ec_fail: step %u: %s\n", steps, place->name);
-	/* who waits for a moment to open something runs before the failure is seen */
+	/* a program that waits for a moment to open something runs before the failure is seen */
 	mdelay(1);
 	regs->ax = place->result;
 	instruction_pointer_set(regs, (unsigned long)ec_fail_return);
