@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* PDOs that the application did not name: those of the slave, and what startup SDOs make of them. */
+/* PDOs that the application did not name: those of the slave, or of its startup SDOs. */
 #include <linux/err.h>
 #include <linux/sched.h>
 #include <linux/slab.h>
