@@ -9,6 +9,7 @@
 # EC_CACHE      folder of the cache (default ~/.cache/ethercat)
 # EC_LINUX_TAR  kernel source, see source.sh
 # EC_UML_SKIP   more files to leave out, e.g. 'master/broken.c tests/bus/%'
+# EC_UML_OUT    kernel's objects (a copy of the cache's, for builds of two clones at a time)
 # EC_JOBS       parallel jobs (default: number of CPUs)
 set -euo pipefail
 
@@ -42,7 +43,7 @@ frags=("$here/kunit.config")
 [ $variant = plain ] || frags+=("$here/debug.config")
 key=$( { echo "$srckey"; gcc --version | head -n1; cat "${frags[@]}"; } |
 	sha256sum | cut -c1-12)
-out=$cache/uml/$variant-$key
+out=${EC_UML_OUT:-$cache/uml/$variant-$key}
 # Objects of one clone live apart from those of another: two clones share the
 # kernel's objects but never a source of ours.
 clone=$cache/uml/clone-$(echo "$repo" | sha256sum | cut -c1-12)/$variant-$key
