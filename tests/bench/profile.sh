@@ -4,6 +4,7 @@
 # Where the instructions of a cycle are: QEMU executes some cycles of an application step by step
 # (native device, 6.1-rt, as cycle.sh measures them) and lists each address. profile.py counts the
 # receive and the send of the cycle by function; with a function it counts that one by line.
+# It takes what DEBUG_INFO=y tests/bench/cycle.sh --gates has built.
 #
 # usage: profile.sh [DRIVES [receive|send FUNCTION]]	default: 1; 1 or 100 drives
 
@@ -44,7 +45,7 @@ case ${1:-1} in
 *) sed -n 's/^# usage: /usage: /p' "$0" >&2; exit 2 ;;
 esac
 [ -e "$build/bench/cycle-bench" ] || {
-	echo "profile.sh: run tests/bench/cycle.sh --gates first"
+	echo "profile.sh: run DEBUG_INFO=y tests/bench/cycle.sh --gates first"
 	exit 1
 }
 tmp=$(mktemp -d) || exit 1

@@ -48,7 +48,7 @@ done
 rm -f "$out"/*.ko
 # unresolved symbols of one module keep no other from being tested
 make -s -k -j2 -C "$kdir" M="$out" TOP="$PWD" LAYERS="$layers" KBUILD_MODPOST_WARN=1 \
-	CONFIG_DEBUG_INFO_BTF_MODULES= W=1 modules \
+	CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= W=1 modules \
 	>"$out/log" 2>&1
 
 result() {	# result ok|"not ok" TEXT

@@ -51,7 +51,7 @@ preload='xargs -d "\n" touch -c -a <"$2"
 
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
 # as tests/check-kernels.sh, else each would build what the other has built
-warn='W=1 KCFLAGS=-Werror CONFIG_DEBUG_INFO='
+warn='W=1 KCFLAGS=-Werror'
 case $kernel in
 6.1-rt)	warn= ;;
 *-kcsan) warn="W=1e KCFLAGS=-include$PWD/tests/kcsan/mem.h" ;;
@@ -85,7 +85,7 @@ build() {
 		folder=${modules%/*}/mini/$helper
 		mkdir -p "$folder" && cp -u tests/system/$helper/* "$folder" &&
 		make -s -C "$kdir" ${cross[@]+"${cross[@]}"} M="$folder" \
-			CONFIG_DEBUG_INFO_BTF_MODULES= modules || return
+			CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= modules || return
 	done &&
 	env -u LDFLAGS make -s -C lib O="$EC_BUILD/lib" all &&
 	make -s -C tool O="$EC_BUILD/tool" &&
