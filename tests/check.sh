@@ -103,21 +103,22 @@ level_demo() { tests/demo/check.sh; }
 # the bus figures are gates of the level uml
 level_bench() { tests/bench/run.sh --gates cycle sim mailbox trip; }
 
-# run LEVEL: keeps its output, exit status and seconds
+# run LEVEL: keeps its output, exit status, seconds, and seconds of CPU: user and system
 run() {
-	local t0=$SECONDS
+	local t0=$SECONDS rc TIMEFORMAT='%0U %0S'
 
-	"level_$1" >"$log/$1" 2>&1
-	echo "$? $((SECONDS - t0))" >"$log/$1.end"
+	{ time "level_$1" >"$log/$1" 2>&1; } 2>"$log/$1.cpu"
+	rc=$?
+	echo "$rc $((SECONDS - t0)) $(<"$log/$1.cpu")" >"$log/$1.end"
 }
 
 # what failed, by level: the last lines, since some readers keep no others; they keep some 50
-failed_names= why=
+failed_names= why= costs=
 report() {
-	local name=$1 rc seconds names
+	local name=$1 rc seconds user sys names
 
 	echo "=== $name"
-	read -r rc seconds <"$log/$name.end"
+	read -r rc seconds user sys <"$log/$name.end"
 	count "$log/$name" "$rc"
 	# what to shorten when the whole takes too long
 	grep -E '^# .*: [0-9.]+ s, [0-9.]+ s of CPU$' "$log/$name" | sort -t: -k2 -nr | head -n 12
@@ -132,7 +133,8 @@ report() {
 		failed_names+=${names:-"$name: ended with $rc"}$'\n'
 		why+=${why:+$'\n'}$(failures "$log/$name" 12 26 | sed "s/^/$name: /")
 	fi
-	echo "=== $name: $seconds s"
+	echo "=== $name: $seconds s, $((user + sys)) s of CPU"
+	costs+="$name $seconds/$((user + sys)), "
 }
 
 tests/install-deps.sh build vm capture uml json python doc cross || {
@@ -176,5 +178,6 @@ wait
 for l in ${beside[@]+"${beside[@]}"}; do report "$l"; done
 [ -z "$why" ] || head -n 40 <<<"$why"
 printf '%s' "$failed_names"
+fold -s -w 100 <<<"seconds/of CPU: ${costs%, }; all: $SECONDS"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

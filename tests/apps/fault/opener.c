@@ -47,7 +47,7 @@ static void end_all(void)
 
 int main(int argc, char **argv)
 {
-	const struct timespec round = { .tv_nsec = 100000 };
+	const struct timespec round = { .tv_nsec = 500000 };
 	int i, k;
 
 	if (argc < 2 || argc > FILES + 1) {
