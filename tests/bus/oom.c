@@ -7,7 +7,7 @@
 const char oom_line[] =
 	"segment seed=8 response=100us transition=200us\n"
 	"slave small drive mbox=64\nslave large drive mbox=512 soe=1 voe=0x4321 foe=16\n"
-	"slave digital EL2008\n";
+	"slave digital EL2008\nslave switch EL6614\n";
 
 unsigned long oom_place;
 

@@ -5,8 +5,9 @@
 
 #include "cyc.h"
 
-#define OOM_SLAVES	3
+#define OOM_SLAVES	4
 #define OOM_DRIVE	1
+#define OOM_SWITCH	3
 
 extern const char oom_line[];
 extern unsigned long oom_place;	/* of the last allocation that failed */

@@ -6,6 +6,7 @@
 #include "cyc.h"
 #include "oom_case.h"
 #include "talk.h"
+#include "master/mailbox/eoe.h"
 #include "master/mailbox/soe.h"
 #include "master/mailbox/voe.h"
 #include "master/wire/voe.h"
@@ -141,12 +142,22 @@ static int voe(void)
 	       ec_voe_read(&talk->s->mbox, false, &h, data, sizeof(data), &talk->got, &limit);
 }
 
+static int eoe(void)
+{
+	struct ec_eoe_ip p = { .which = EC_EOE_IP, .ip = { 10, 0, 0, 1 } };
+	u16 result;
+
+	return ec_eoe_set_ip(&talk->s->mbox, &p, &result) ?:
+	       ec_eoe_get_ip(&talk->s->mbox, &p, &result);
+}
+
 static const struct service {
 	const char *name;
 	int (*run)(void);
 } services[] = {
 	{ "upload", upload }, { "download", download }, { "list", list },
 	{ "foe", foe }, { "soe_read", soe_read }, { "soe_write", soe_write }, { "voe", voe },
+	{ "eoe", eoe },
 };
 
 static void service_desc(const struct service *s, char *desc)
@@ -165,7 +176,7 @@ static void oom_mailbox(struct kunit *test)
 	int ret;
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
-	talk = talk_new(b, OOM_DRIVE, 1000);
+	talk = talk_new(b, s->run == eoe ? OOM_SWITCH : OOM_DRIVE, 1000);
 	for (n = 1; failed && n < MOST; n++) {
 		oom_fail(n);
 		ret = s->run();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Activation and the cycle. */
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -201,6 +202,47 @@ static void reset(void)
 	bench_down(&b);
 }
 
+/* Lets the process map @pages more, or as many as it likes. */
+static bool room(long pages)
+{
+	struct rlimit limit = { RLIM_INFINITY, RLIM_INFINITY };
+	unsigned long size;
+	FILE *f;
+
+	if (pages >= 0) {
+		f = fopen("/proc/self/statm", "r");
+		if (!f || fscanf(f, "%lu", &size) != 1)
+			return YES(!"the size of the process");
+		fclose(f);
+		limit.rlim_cur = (size + (unsigned long)pages) * (unsigned long)sysconf(_SC_PAGESIZE);
+	}
+	return IS(setrlimit(RLIMIT_AS, &limit), 0);
+}
+
+/* Each of the mappings fails; then the master is free, and the next activation gets all. */
+static void no_room(void)
+{
+	long pages, failed = 0;
+	int ret = -ENOMEM;
+	struct bench b;
+
+	for (pages = 0; ret && pages < 200; pages++) {
+		NEED(bench_request(&b) && bench_configure(&b) && room(pages));
+		ret = ecrt_master_activate(b.m);
+		NEED(room(-1));
+		failed += ret == -ENOMEM;
+		YES(!ret || (ret == -ENOMEM && !ecrt_domain_data(b.d)));
+		if (ret)
+			bench_down(&b);
+	}
+	printf("# activations without room: %ld\n", failed);
+	YES(failed > 1);
+	NEED(IS(ret, 0));
+	b.data = ecrt_domain_data(b.d);
+	NEED(YES(b.data != NULL) && bench_op(&b));
+	bench_down(&b);
+}
+
 const struct api_case cycle_cases[] = {
 	{ "activation, states, deactivation", activation },
 	{ "process data", process_data },
@@ -209,5 +251,6 @@ const struct api_case cycle_cases[] = {
 	{ "no process data", nothing },
 	{ "states after activation", no_flicker },
 	{ "reset", reset },
+	{ "no room for the process data", no_room },
 	{ NULL, NULL },
 };
