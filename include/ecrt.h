@@ -471,7 +471,7 @@ EC_PUBLIC_API int ecrt_master_scan_progress(ec_master_t *master,
  * Causes no bus traffic.
  *
  * Context: Process. May sleep.
- * Return: 0; %-EINVAL no such slave;
+ * Return: 0; %-EINVAL no such slave, in the kernel %-ENOENT;
  * %-EINTR; %-EINVAL an argument is NULL.
  */
 EC_PUBLIC_API int ecrt_master_get_slave(ec_master_t *master,

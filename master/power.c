@@ -16,6 +16,7 @@
 #include "boundary/master.h"
 #include "bus/slave.h"
 #include "link/xfer.h"
+#include "mailbox/foe.h"
 #include "monitor.h"
 #include "power.h"
 
@@ -23,6 +24,8 @@
 #define INIT_MS		500	/* for slaves that have not followed them */
 #define NAMES_MS	500	/* to find the slaves that stay */
 #define LIMIT_MS	4000	/* for all masters, also on a broken bus */
+#define FILE_MS		30000	/* more, for files that are written to slaves */
+#define FILE_POLL_MS	10
 #define PAUSE_MS	10000	/* until the monitor has ended a scan */
 
 #define MISSING		BIT(8)	/* besides AL states: a slave does not reply */
@@ -35,6 +38,7 @@ struct descent {
 	struct work_struct work;
 	struct ec_master *m;
 	const char *what;
+	bool file;	/* all is done but for files that are written to slaves */
 };
 
 static struct descent descents[EC_MAX_MASTERS];
@@ -112,6 +116,35 @@ static void broadcast_init(struct ec_master *m)
 	ec_xfer_urgent(&m->links, &dg, 1);
 }
 
+/* How many slaves a file is written to; @position: of the first one. */
+static unsigned int written(struct ec_master *m, unsigned int *position)
+{
+	unsigned int n = 0;
+
+	down_read(&m->bus.topo);
+	ec_for_each_slave(s, &m->bus)
+		if (ec_foe_writes(&s->mbox) && !n++)
+			*position = s->position;
+	up_read(&m->bus.topo);
+	return n;
+}
+
+/* INIT would end a file that is written to a slave, and leave it without firmware. */
+static void init_others(struct ec_master *m)
+{
+	u64 end = ktime_get_ns() + INIT_MS * (u64)NSEC_PER_MSEC;
+	u8 control[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
+	struct ec_slave *s;
+	unsigned int i;
+
+	for (i = 0; ktime_get_ns() < end && (s = ec_bus_slave(&m->bus, i)); i++) {
+		if (READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP && !ec_foe_writes(&s->mbox))
+			ec_xfer_fpwr(s->bus->links, s->station, EC_REG_AL_CONTROL, control,
+				     sizeof(control));
+		ec_slave_unref(s);
+	}
+}
+
 /* AL state of a slave that was beyond PREOP; PREOP also when it is not worth a message. */
 static u8 state_of(struct ec_slave *s)
 {
@@ -165,11 +198,14 @@ static void report_stays(struct ec_master *m, const char *what, unsigned int sta
 static void take_down(struct ec_master *m, const char *what)
 {
 	u64 t0 = ktime_get_ns();
-	unsigned int n = request_preop(m), states;
+	unsigned int n = request_preop(m), states, position;
 
 	states = ec_links_is_up(&m->links) ? wait_down(m, PREOP_MS) : 0;
 	if (states & EC_AL_BEYOND_PREOP && ec_links_is_up(&m->links)) {
-		broadcast_init(m);
+		if (written(m, &position))
+			init_others(m);
+		else
+			broadcast_init(m);
 		states = wait_down(m, INIT_MS);
 	}
 	if (!ec_links_is_up(&m->links) && n)
@@ -184,6 +220,33 @@ static void take_down(struct ec_master *m, const char *what)
 		ec_info(m, "%s: no slave in SAFEOP or OP\n", what);
 }
 
+/* Slaves that a file is written to stay in their state meanwhile. */
+static void await_files(struct descent *d)
+{
+	struct ec_master *m = READ_ONCE(d->m);
+	const char *what = READ_ONCE(d->what);
+	unsigned int position, n = written(m, &position);
+	u64 t0 = ktime_get_ns(), end = t0 + FILE_MS * (u64)NSEC_PER_MSEC;
+
+	if (!n)
+		return;
+	WRITE_ONCE(d->file, true);
+	ec_warn(m, "%s: waiting up to %u s for the file that is written to slave %u, %u slave(s) in all; do not switch off\n",
+		what, FILE_MS / 1000, position, n);
+	while ((n = written(m, &position)) && ktime_get_ns() < end)
+		msleep(FILE_POLL_MS);
+	if (n)
+		ec_warn(m, "%s: file of slave %u not complete after %u s, %u slave(s) in all; write it again, since firmware may be incomplete\n",
+			what, position, FILE_MS / 1000, n);
+	else
+		ec_info(m, "%s: no file is written any more after %llu ms\n", what,
+			div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC));
+	/* init_others() has left them out, and slaves that were not scanned */
+	if (ec_links_is_up(&m->links) && beyond_preop(m) & EC_AL_BEYOND_PREOP)
+		broadcast_init(m);
+	WRITE_ONCE(d->file, false);
+}
+
 static void descent_ends(void)
 {
 	if (atomic_dec_and_test(&n_descents))
@@ -195,17 +258,33 @@ static void descend(struct work_struct *work)
 	struct descent *d = container_of(work, struct descent, work);
 
 	take_down(READ_ONCE(d->m), READ_ONCE(d->what));
+	await_files(d);
 	descent_ends();
+}
+
+static bool wait_over(unsigned int ms)
+{
+	return wait_event_timeout(over, !atomic_read(&n_descents), msecs_to_jiffies(ms));
+}
+
+static bool any_file(void)
+{
+	unsigned int i;
+
+	for (i = 0; i < ec_cdev_count(); i++)
+		if (READ_ONCE(descents[i].file))
+			return true;
+	return false;
 }
 
 /**
  * ec_power_down() - take all slaves of all masters out of SAFEOP and OP, for good
  * @what: word for the log, such as "reboot"; stays
  *
- * Applications go on with their cycles, but no slave gets beyond PREOP any more. May be called
- * again, also at the same time.
+ * Applications go on with their cycles, but no slave gets beyond PREOP any more. Files that are
+ * written to slaves have time to end. May be called again, also at the same time.
  *
- * Context: Process. Sleeps, at most 4 s for all masters.
+ * Context: Process. Sleeps, at most 4 s for all masters, and 30 s more for files.
  */
 void ec_power_down(const char *what)
 {
@@ -220,7 +299,7 @@ void ec_power_down(const char *what)
 		if (!queue_work(system_unbound_wq, &d->work))
 			descent_ends();
 	}
-	if (wait_event_timeout(over, !atomic_read(&n_descents), msecs_to_jiffies(LIMIT_MS)))
+	if (wait_over(LIMIT_MS) || (any_file() && wait_over(FILE_MS + INIT_MS)))
 		return;
 	for (i = 0; i < ec_cdev_count(); i++)
 		if (work_busy(&descents[i].work))
@@ -262,6 +341,17 @@ static bool in_boot(struct ec_master *m)
 	return found;
 }
 
+static bool file_written(struct ec_master *m)
+{
+	unsigned int position;
+
+	if (!written(m, &position))
+		return false;
+	ec_warn(m, "suspend refused: a file is written to slave %u; wait for its end\n",
+		position);
+	return true;
+}
+
 static void resume(struct ec_master *m)
 {
 	WRITE_ONCE(m->pause, false);
@@ -276,7 +366,7 @@ static int put_to_sleep(struct ec_master *m)
 		return -EBUSY;
 	}
 	/* a slave that is slow is no reason to refuse: all of them are read again */
-	if (in_boot(m) || ec_bus_wait_scan(&m->bus) == -EINTR) {
+	if (file_written(m) || in_boot(m) || ec_bus_wait_scan(&m->bus) == -EINTR) {
 		ec_sessions_resume(&m->sessions);
 		return -EBUSY;
 	}

@@ -9,7 +9,7 @@
  * @arg: its argument
  *
  * Return: as the command; -EINVAL without a master, or when the slave is not there: a
- * command returns -ENOENT then.
+ * command returns -ENOENT then, as EC_IOC_SLAVE does in the kernel.
  */
 int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)
 {
@@ -19,6 +19,7 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)
 		return ret;
 	switch (cmd) {
 	case EC_IOC_SLAVE:
+		return EC_NO_SLAVE;
 	case EC_IOC_SM:
 	case EC_IOC_PDO:
 	case EC_IOC_PDO_ENTRY:

@@ -14,10 +14,12 @@
 #ifdef __KERNEL__
 #include "../../master/boundary/api.h"
 #define EC_IN_KERNEL const	/* of a parameter whose prototype differs */
+#define EC_NO_SLAVE (-ENOENT)	/* ecrt_master_get_slave() of an empty position */
 #define ec_no_result(size) (*(size) = 0)
 #else
 #include "../internal.h"
 #define EC_IN_KERNEL
+#define EC_NO_SLAVE (-EINVAL)
 #define ec_no_result(size) ((void)(size))	/* untouched */
 #endif
 

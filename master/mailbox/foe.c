@@ -103,6 +103,28 @@ static void end_at_slave(struct transfer *t, struct ec_mbox_buf *b)
 }
 
 /**
+ * ec_foe_writes() - is a file written to the slave?
+ * @mb: mailbox of the slave
+ *
+ * It may be firmware, and without the rest of it the slave has none.
+ *
+ * Context: Any.
+ * Return: true while it is.
+ */
+bool ec_foe_writes(const struct ec_mbox *mb)
+{
+	return test_bit(EC_MBOX_FILE_WRITE, &mb->flags);
+}
+
+/* The caller may have been killed as the computer shuts down, and report nothing. */
+static void report_end(const struct ec_mbox *mb, const struct ec_foe *f, int ret)
+{
+	if (f->write && (ret == -EINTR || ret == -ECANCELED))
+		ec_mbox_warn(mb, "FoE write of '%.*s' ended early (%pe) after %llu of %llu bytes; write the file again, since firmware may be incomplete\n",
+			     (int)f->name_len, f->name, ERR_PTR(ret), f->at, f->size);
+}
+
+/**
  * ec_foe_transfer() - read or write a file of a slave
  * @mb: mailbox of the slave
  * @f: transfer: direction, name, password; a write has its size. Then progress and error
@@ -142,13 +164,18 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	if (ret)
 		goto out;
 	t.begin_ns = ktime_get_ns();
+	if (f->write)
+		set_bit(EC_MBOX_FILE_WRITE, &mb->flags);
 	do {
 		ret = wait_busy(&t) ?: step(&t, file, &req, b);
 	} while (ret == EC_MORE);
 	if (!f->write)
 		ret = ec_mbox_read_result(ret);
-	if (ret && ret != -EREMOTEIO && !req.first)
+	if (ret && ret != -EREMOTEIO && !req.first) {
 		end_at_slave(&t, b);
+		report_end(mb, f, ret);
+	}
+	clear_bit(EC_MBOX_FILE_WRITE, &mb->flags);
 	ec_mbox_unclaim(mb, BIT(EC_MBOX_FOE));
 out:
 	clear_bit_unlock(EC_MBOX_FILE, &mb->flags);

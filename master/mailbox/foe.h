@@ -27,6 +27,7 @@ struct ec_foe_file {
 	void *ctx;
 };
 
+bool ec_foe_writes(const struct ec_mbox *mb);
 int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_file *file,
 		    const struct ec_mbox_limit *limit);
 

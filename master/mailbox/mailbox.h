@@ -30,6 +30,7 @@ struct ec_mbox_user;
 
 enum ec_mbox_flag {
 	EC_MBOX_FILE,	/* a file is transferred */
+	EC_MBOX_FILE_WRITE,	/* a file is written, firmware perhaps */
 };
 
 /* datagram of the mailbox that is on its way */

@@ -318,6 +318,20 @@ kernel_app_builds() {
 
 t "a kernel application against what was installed" kernel_app_builds
 
+# a module that wants the structures of another master, with the sources as DKMS has them
+structures_refused() {
+	mkdir -p "$tmp/foreign" && echo "obj-m += foreign.o" >"$tmp/foreign/Kbuild" &&
+		echo '#include "master/slave_config.h"' >"$tmp/foreign/foreign.c" || return 1
+	! make -s -C "$KDIR" M="$tmp/foreign" CONFIG_DEBUG_INFO_BTF_MODULES= \
+		KCFLAGS="-I$tmp/src" modules >"$tmp/foreign.log" 2>&1 &&
+		grep -F 'this is not the IgH EtherCAT Master' "$tmp/foreign.log" &&
+		grep -o 'ecrt_[a-z_]*(' "$tmp/foreign.log" | sort -u >"$tmp/instead" &&
+		[ -s "$tmp/instead" ] &&
+		! grep -vxFf <(grep -o 'ecrt_[a-z0-9_]*(' tests/lib/prototypes_kernel.txt) \
+			"$tmp/instead"
+}
+t "a module that includes master/slave_config.h reads what to use instead" structures_refused
+
 # but for folders that every system has
 nothing_left() {
 	[ -z "$(installed)" ] || { installed; return 1; }

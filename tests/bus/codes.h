@@ -2,8 +2,9 @@
 /*
  * What the functions of ecrt.h return that are written once for userspace and kernel: one list,
  * which tests/apps/api runs through /dev/EtherCAT0 and bus_kapi_codes with the exported
- * functions. CODE(have, want) and MISSING(pointer) come from there. So do the codes of a
- * running cycle, which need a configured application (codes_cycle_runs()).
+ * functions. CODE(have, want), MISSING(pointer) and CODES_NO_SLAVE, the one code that differs,
+ * come from there. So do the codes of a running cycle, which need a configured application
+ * (codes_cycle_runs()).
  */
 #ifndef EC_CODES_H
 #define EC_CODES_H
@@ -21,7 +22,7 @@ static void codes_slaves(ec_master_t *m, uint16_t coe, uint16_t plain)
 	ec_pdo_info_t pdo;
 	size_t size;
 
-	CODE(ecrt_master_get_slave(m, CODES_NOWHERE, &slave), -EINVAL);
+	CODE(ecrt_master_get_slave(m, CODES_NOWHERE, &slave), CODES_NO_SLAVE);
 	CODE(ecrt_master_get_slave(m, coe, NULL), -EINVAL);
 	CODE(ecrt_master_get_sync_manager(m, coe, 2, &sync), 0);
 	CODE(ecrt_master_get_sync_manager(m, coe, 16, &sync), -ENOENT);

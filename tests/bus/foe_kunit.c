@@ -195,11 +195,14 @@ static void foe_ended(struct kunit *test)
 	struct bus *b = bus_up(test, text, 3);
 	struct ec_slave *s = bus_slave(b, 0);
 	struct ec_app *app = bus_app(b, "a");
+	u32 lines = bus_log_lines("0-0: FoE write of 'data' ended early");
 	struct side *x = side_new(test);
 	struct ec_foe f;
 
 	x->cancel_at = 5000;
 	KUNIT_EXPECT_EQ(test, put(s, x, "data", 20000, &f), -ECANCELED);
+	/* the log has the slave, its file may be firmware */
+	KUNIT_EXPECT_EQ(test, bus_log_lines("0-0: FoE write of 'data' ended early"), lines + 1);
 	KUNIT_EXPECT_EQ(test, app->foe.opcode, 0);
 	KUNIT_EXPECT_FALSE(test, app->foe.valid);
 	x->cancel_at = 0;

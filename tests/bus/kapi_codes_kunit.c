@@ -6,6 +6,7 @@ static struct kunit *test;
 
 #define CODE(have, want) KUNIT_EXPECT_EQ(test, (s64)(have), (s64)(want))
 #define MISSING(pointer) KUNIT_EXPECT_NULL(test, pointer)
+#define CODES_NO_SLAVE (-ENOENT)
 #include "codes.h"
 
 static void kapi_codes_equal_userspace(struct kunit *t)

@@ -4,6 +4,7 @@
 #include <linux/notifier.h>
 #include <linux/reboot.h>
 #include "kcyc.h"
+#include "talk.h"
 #include "devices/sim/app.h"
 #include "master/boundary/ioctl.h"
 #include "master/link/device.h"
@@ -313,6 +314,125 @@ static void reboot_several_masters(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, ec_cdev_master(0)->bus.down);
 }
 
+/* a file on its way to the first slave, which has a page of 4 KiB */
+struct writing {
+	struct bus *b;
+	struct talk *talk;
+	struct task_struct *thread;
+	bool cancel;
+	u8 other;	/* state of the second slave, when it has ended */
+};
+
+static int write_file(void *data)
+{
+	struct writing *w = data;
+	int ret = talk_put(w->talk, "firmware", TALK_MAX);
+
+	w->other = esc_state(w->b, 1);
+	return ret;
+}
+
+/* The first slave of @text gets a file in its @state, the second one is in SAFEOP. */
+static struct writing *writing_begin(struct kunit *test, const char *text, u8 state)
+{
+	struct writing *w = kunit_kzalloc(test, sizeof(*w), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, w);
+	w->b = bus_up(test, text, 2);
+	bus_idle(w->b);
+	w->talk = talk_new(w->b, 0, 1000);
+	w->talk->limit.cancel = &w->cancel;
+	talk_fill(w->talk, TALK_MAX);
+	bus_request(w->b, 0, state);
+	bus_request(w->b, 1, EC_AL_SAFEOP);
+	KUNIT_ASSERT_NE(test, bus_wait_al(w->b, 0, state, 2000), ~0ull);
+	KUNIT_ASSERT_NE(test, bus_wait_al(w->b, 1, EC_AL_SAFEOP, 2000), ~0ull);
+	w->thread = kthread_create(write_file, w, "writer");
+	KUNIT_ASSERT_FALSE(test, IS_ERR(w->thread));
+	get_task_struct(w->thread);
+	wake_up_process(w->thread);
+	msleep(500);
+	return w;
+}
+
+static int writing_end(struct writing *w)
+{
+	int ret = kthread_stop(w->thread);
+
+	put_task_struct(w->thread);
+	return ret;
+}
+
+#define WAITS "reboot: waiting up to 30 s for the file that is written to slave 0, 1 slave(s) in all"
+
+/* Its firmware is complete, and the other slave has not waited for that. */
+static void expect_written(struct kunit *test, struct writing *w, u32 waits, u8 other)
+{
+	u64 us = reboot();
+
+	bus_figure("reboot: firmware of four pages of 3 s awaited for %llu ms",
+		   div_u64(us, USEC_PER_MSEC));
+	KUNIT_EXPECT_GT(test, us, 8ull * USEC_PER_SEC);
+	KUNIT_EXPECT_EQ(test, writing_end(w), 0);
+	KUNIT_EXPECT_TRUE(test, bus_app(w->b, "a")->foe.valid);
+	KUNIT_EXPECT_EQ(test, w->other, other);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(WAITS), waits + 1);
+	/* nothing more to wait for */
+	KUNIT_EXPECT_LT(test, reboot(), (u64)LIMIT_US);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(WAITS), waits + 1);
+}
+
+#define FIRMWARE "slave a drive serial=5 mbox=128 foe=64 foe_page=3s foe_boot=yes\nslave b drive\n"
+
+static void reboot_firmware_is_awaited(struct kunit *test)
+{
+	u32 waits = bus_log_lines(WAITS);
+	struct writing *w = writing_begin(test, FIRMWARE, EC_AL_BOOT);
+
+	expect_written(test, w, waits, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, esc_state(w->b, 0), EC_AL_BOOT);
+}
+
+/* A slave that needs INIT does not take it to the one with the file. */
+static void reboot_firmware_beside_init_is_awaited(struct kunit *test)
+{
+	u32 waits = bus_log_lines(WAITS);
+	struct writing *w = writing_begin(test, FIRMWARE, EC_AL_BOOT);
+
+	bus_fault(w->b, EC_SIM_FAULT_REFUSE_AL, 1, 0, EC_AL_PREOP, 0x0011);
+	expect_written(test, w, waits, EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, esc_state(w->b, 0), EC_AL_BOOT);
+}
+
+/* Its mailbox works in PREOP as well. */
+static void reboot_file_in_safeop_is_awaited(struct kunit *test)
+{
+	u32 waits = bus_log_lines(WAITS);
+	struct writing *w = writing_begin(test, "slave a drive serial=5 mbox=128 foe=64 foe_page=3s\n"
+					  "slave b drive\n", EC_AL_SAFEOP);
+
+	expect_written(test, w, waits, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, esc_state(w->b, 0), EC_AL_PREOP);
+}
+
+static void reboot_firmware_without_end_is_named(struct kunit *test)
+{
+	static const char named[] = "reboot: file of slave 0 not complete after 30 s, 1 slave(s) in all";
+	u32 lines = bus_log_lines(named), early = bus_log_lines("FoE write of 'firmware' ended early");
+	struct writing *w = writing_begin(test, "slave a drive serial=5 mbox=128 foe=64 foe_page=20s "
+					  "foe_boot=yes\nslave b drive\n", EC_AL_BOOT);
+	u64 us = reboot();
+
+	KUNIT_EXPECT_GE(test, us, 30ull * USEC_PER_SEC);
+	KUNIT_EXPECT_LT(test, us, 30ull * USEC_PER_SEC + LIMIT_US);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(named), lines + 1);
+	expect_states(w->b, EC_AL_BOOT, EC_AL_PREOP);
+	/* what ends the programs ends it before */
+	WRITE_ONCE(w->cancel, true);
+	KUNIT_EXPECT_EQ(test, writing_end(w), -ECANCELED);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("FoE write of 'firmware' ended early"), early + 1);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(reboot_application_active_slaves_in_preop),
 	KUNIT_CASE(reboot_application_hangs_slaves_in_preop),
@@ -327,6 +447,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(reboot_device_vanishes_returns),
 	KUNIT_CASE(reboot_twice_and_unload_beside),
 	KUNIT_CASE(reboot_several_masters),
+	KUNIT_CASE(reboot_firmware_is_awaited),
+	KUNIT_CASE(reboot_firmware_beside_init_is_awaited),
+	KUNIT_CASE(reboot_file_in_safeop_is_awaited),
+	KUNIT_CASE(reboot_firmware_without_end_is_named),
 	{ }
 };
 

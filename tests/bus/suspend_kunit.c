@@ -3,7 +3,10 @@
  * A suspend is refused while a master is in use; an idle master is silent until the computer
  * resumes. This kernel has no suspend, so the cases call what the notifier calls.
  */
+#include <linux/kthread.h>
 #include "kcyc.h"
+#include "talk.h"
+#include "devices/sim/app.h"
 #include "master/boundary/ioctl.h"
 #include "master/power.h"
 
@@ -181,11 +184,44 @@ static void suspend_several_masters(struct kunit *test)
 	bus_exit(test);
 }
 
+static int write_file(void *talk)
+{
+	return talk_put(talk, "file", 10000);
+}
+
+static void suspend_file_write_refused(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive serial=5 mbox=128 foe=64 foe_page=2s\n", 1);
+	u32 lines = bus_log_lines("suspend refused: a file is written to slave 0");
+	struct talk *t = talk_new(b, 0, 1000);
+	u64 end = ktime_get_ns() + 10 * NSEC_PER_SEC;
+	struct task_struct *thread;
+
+	bus_idle(b);
+	thread = kthread_create(write_file, t, "writer");
+	KUNIT_ASSERT_FALSE(test, IS_ERR(thread));
+	get_task_struct(thread);
+	wake_up_process(thread);
+	msleep(500);
+	KUNIT_EXPECT_EQ(test, ec_power_sleep(), -EBUSY);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("suspend refused: a file is written to slave 0"),
+			lines + 1);
+	/* kthread_stop() would end it */
+	while (!bus_app(b, "a")->foe.valid && (s64)(end - ktime_get_ns()) > 0)
+		msleep(10);
+	msleep(10);
+	KUNIT_EXPECT_EQ(test, kthread_stop(thread), 0);
+	put_task_struct(thread);
+	KUNIT_EXPECT_EQ(test, ec_power_sleep(), 0);
+	ec_power_resume();
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(suspend_idle_silent_then_rescan),
 	KUNIT_CASE(suspend_link_returns_late),
 	KUNIT_CASE(suspend_in_use_refused),
 	KUNIT_CASE(suspend_firmware_update_refused),
+	KUNIT_CASE(suspend_file_write_refused),
 	KUNIT_CASE(suspend_scan_under_way_waits),
 	KUNIT_CASE(suspend_calls_without_pair),
 	KUNIT_CASE(suspend_several_masters),

@@ -313,7 +313,7 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	[[ $output =~ "module app" ]]
 	ctl start
 	[ "$status" = 1 ]
-	[[ $output =~ "the masters run as before, since the last stop was refused" ]]
+	[[ $output =~ "the masters are still loaded, since the last stop was refused" ]]
 	ctl start
 	[ "$status" = 0 ]
 }

@@ -315,25 +315,58 @@ finished() { [[ $(cat "$BATS_TEST_TMPDIR/out") =~ ^"Master0: " ]]; }
 	[ -e /sys/class/net/eth0 ]
 }
 
-@test "stop names the program or module that has a master" {
+up_to_op() {	# up_to_op POSITION
+	ethercat states -p"$1" SAFEOP --wait
+	ethercat states -p"$1" OP --wait
+}
+
+in_state() { ethercat slaves -p"$1" | grep -E "^$1 +[^ ]+ +$2 "; }
+
+@test "a reader keeps stop from unloading, which names it, and not slaves in OP" {
 	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
 	own start
 	wait_for 60 slaves_are 0 3
+	up_to_op 1
 	sleep 600 3>&- 4</dev/EtherCAT0 &
 	pid=$!
 	run own stop
 	echo "$output"
 	[ "$status" = 1 ]
-	[ "${lines[0]}" = "ethercatctl: a master is in use; end its users first:" ]
+	[[ ${lines[0]} =~ ^"ethercatctl: slaves have left OP; to unload" ]]
 	[ "${lines[1]}" = "EtherCAT0: process $pid (sleep)" ]
+	[ ${#lines[@]} = 2 ]
+	in_state 1 PREOP
+	# the kernel refuses before the module can do anything
+	up_to_op 1
+	run rmmod ec_master
+	echo "$output"
+	[ "$status" = 1 ]
+	in_state 1 OP
+	# the master can be used as before, once a start has reported the refusal
+	run own stop
+	[ "$status" = 1 ]
+	fails 'since the last stop was refused' own start
+	own start
+	up_to_op 1
 	kill "$pid"
 	wait "$pid" || true	# killed
+	own stop
+	none_loaded
+}
+
+@test "stop names the module that has a master" {
+	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
+	own start
+	wait_for 60 slaves_are 0 3
 	insmod "$EC_BUILD/mini/ec_mini.ko" position=2
+	wait_for 60 in_state 2 OP
 	run own stop
 	echo "$output"
 	[ "$status" = 1 ]
+	[ "${lines[0]}" = "ethercatctl: a master is in use; end its users first:" ]
 	[ "${lines[1]}" = "ec_master: module ec_mini" ]
 	[ ${#lines[@]} = 2 ]
+	in_state 2 OP
 	rmmod ec_mini
 	own stop
 	none_loaded
@@ -343,8 +376,7 @@ finished() { [[ $(cat "$BATS_TEST_TMPDIR/out") =~ ^"Master0: " ]]; }
 	conf 'MASTER0_DEVICE="sim0"' "SIM_SEGMENT=\"$BATS_FILE_TMPDIR/segment\""
 	own start
 	wait_for 60 slaves_are 0 3
-	ethercat states -p1 SAFEOP --wait
-	ethercat states -p1 OP --wait
+	up_to_op 1
 	echo 'mute a' >/sys/kernel/debug/ec_sim/sim0
 	run own stop
 	echo "$output"
@@ -353,8 +385,7 @@ finished() { [[ $(cat "$BATS_TEST_TMPDIR/out") =~ ^"Master0: " ]]; }
 	[ -c /dev/EtherCAT0 ]
 	echo 'unmute a' >/sys/kernel/debug/ec_sim/sim0
 	ethercat states -p1 PREOP --wait
-	ethercat states -p1 SAFEOP --wait
-	ethercat states -p1 OP --wait
+	up_to_op 1
 	# an error in OP is OP; states that are not known may be
 	mkdir "$BATS_TEST_TMPDIR/bin"
 	printf '%s\n' '#!/bin/sh' '[ "$1" = slaves ] && echo "1  0:1  OP+ERROR  E  x"' \

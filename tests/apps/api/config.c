@@ -4,6 +4,7 @@
 
 #define CODE(have, want) IS(have, want)
 #define MISSING(pointer) YES(!(pointer))
+#define CODES_NO_SLAVE (-EINVAL)
 #include "../../bus/codes.h"
 
 static void slave_config(void)
