@@ -333,7 +333,7 @@ static void try_again(struct watch *w)
 	u64 now = ktime_get_ns();
 	unsigned int i, n = 0;
 
-	if (!w->scanned || READ_ONCE(m->bus.freeze))
+	if (!w->scanned || READ_ONCE(m->bus.held))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (n == ARRAY_SIZE(due))
@@ -376,7 +376,7 @@ static void maybe_scan(struct watch *w)
 	bool changed = false;
 
 	/* also one that is asked for then has to wait */
-	if (READ_ONCE(m->bus.freeze))
+	if (READ_ONCE(m->bus.held))
 		return;
 	if (READ_ONCE(m->bus.rescan))
 		scan_next(w);
@@ -444,7 +444,7 @@ static void read_pdos(struct watch *w)
 static void no_slaves(struct ec_master *m)
 {
 	set_present(m, 0, 0);
-	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
+	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.held))
 		return;
 	WRITE_ONCE(m->bus.rescan, false);
 	WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
@@ -505,7 +505,7 @@ static int monitor(void *data)
 		set_current_state(TASK_IDLE);
 		watch_events(&w);
 		if (!kthread_should_stop() && !READ_ONCE(m->pause) &&
-		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
+		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.held)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 		w.woken = w.watched && !READ_ONCE(m->links.events);

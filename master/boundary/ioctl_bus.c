@@ -96,7 +96,7 @@ int ec_ioc_rescan(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
 
-	if (READ_ONCE(m->bus.freeze))
+	if (READ_ONCE(m->bus.held))
 		return ec_refuse(call, -EBUSY,
 				 "an application has reserved the master; it must activate or release it first");
 	ec_bus_rescan(&m->bus);

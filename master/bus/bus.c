@@ -211,7 +211,7 @@ bool ec_bus_scan_busy(const struct ec_bus *bus)
 }
 
 /**
- * ec_bus_begin_scan() - the monitor begins a scan, unless the slaves are frozen
+ * ec_bus_begin_scan() - the monitor begins a scan, unless the list of slaves is held
  * @bus: bus
  *
  * Context: The monitor. It clears @bus->scan_busy at the end.
@@ -222,7 +222,7 @@ bool ec_bus_begin_scan(struct ec_bus *bus)
 	bool ok;
 
 	spin_lock(&bus->scan_lock);
-	ok = !bus->freeze;
+	ok = !bus->held;
 	if (ok)
 		WRITE_ONCE(bus->scan_busy, true);
 	spin_unlock(&bus->scan_lock);
@@ -230,21 +230,21 @@ bool ec_bus_begin_scan(struct ec_bus *bus)
 }
 
 /**
- * ec_bus_freeze() - let no scan begin
+ * ec_bus_hold() - hold the list of slaves: let no scan begin
  * @bus: bus
  * @always: also during a scan
  *
- * Context: Process. @bus->freeze is cleared at the end.
+ * Context: Process. @bus->held is cleared at the end.
  * Return: false: a scan has begun or is requested, wait for its end.
  */
-bool ec_bus_freeze(struct ec_bus *bus, bool always)
+bool ec_bus_hold(struct ec_bus *bus, bool always)
 {
 	bool ok;
 
 	spin_lock(&bus->scan_lock);
 	ok = always || !ec_bus_scan_busy(bus);
 	if (ok)
-		WRITE_ONCE(bus->freeze, true);
+		WRITE_ONCE(bus->held, true);
 	spin_unlock(&bus->scan_lock);
 	return ok;
 }

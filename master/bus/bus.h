@@ -67,8 +67,8 @@ struct ec_bus {
 	bool down;
 	/** @scan_lock: no scan begins while an application reserves the master */
 	spinlock_t scan_lock;
-	/** @freeze: no scan while reserved and not active; set with @scan_lock held */
-	bool freeze;
+	/** @held: no scan while reserved and not active; set with @scan_lock held */
+	bool held;
 	/** @scan_busy: slaves are being scanned; set with @scan_lock held */
 	bool scan_busy;
 	/** @scan_noted: the scan that begins now is an event already; the monitor's */
@@ -139,7 +139,7 @@ int ec_bus_wait_slaves(struct ec_bus *bus);
 void ec_bus_wait_slave(struct ec_slave *slave);
 bool ec_bus_scan_busy(const struct ec_bus *bus);
 bool ec_bus_begin_scan(struct ec_bus *bus);
-bool ec_bus_freeze(struct ec_bus *bus, bool always);
+bool ec_bus_hold(struct ec_bus *bus, bool always);
 void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count);
 void ec_bus_rescan(struct ec_bus *bus);
 void ec_bus_settled(struct ec_bus *bus);

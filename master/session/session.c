@@ -66,7 +66,7 @@ static int begin(struct ec_sessions *ss, struct ec_session *s, int waited)
 		ss->next = (struct ec_next){ };
 		WRITE_ONCE(ss->candidate, s);
 		s->wanted.before = &ss->session->wanted;
-	} else if (!ec_bus_freeze(ss->bus, waited)) {
+	} else if (!ec_bus_hold(ss->bus, waited)) {
 		ret = -EAGAIN;
 	} else {
 		WRITE_ONCE(ss->session, s);
@@ -132,7 +132,7 @@ static const struct ec_cycle_ops cycle_ops = {
  * @owner: its open file
  * @waiters: wait queue of that file; freed after an RCU grace period
  *
- * Waits for a scan in progress, then the list of slaves is frozen until
+ * Waits for a scan in progress, then the list of slaves is held until
  * activation and all go to PREOP; this waits for them. While a detached session runs, the new
  * one is the candidate: it touches no slave until activation.
  *
@@ -334,10 +334,10 @@ static void inherit(struct ec_sessions *ss)
 	WRITE_ONCE(ss->candidate, NULL);
 	WRITE_ONCE(ss->session, s);
 	if (!s) {
-		WRITE_ONCE(ss->bus->freeze, false);
+		WRITE_ONCE(ss->bus->held, false);
 		return;
 	}
-	ec_bus_freeze(ss->bus, true);
+	ec_bus_hold(ss->bus, true);
 	s->wanted.before = NULL;
 	use_next(ss);
 	to_preop(ss);
@@ -575,7 +575,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_session_note_counts(s, true, false);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	s->cycle.slaves_down = false;
-	WRITE_ONCE(ss->bus->freeze, false);
+	WRITE_ONCE(ss->bus->held, false);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
