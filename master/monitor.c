@@ -381,8 +381,8 @@ static void watch_events(struct watch *w)
 
 /*
  * What failed is tried again with growing distance. One that replies to its ring position
- * is scanned; one that was lost on its way to its state is brought there. While the list is
- * held, another slave may be at that position.
+ * is scanned, unless the list is held: another slave may be there then. One that was lost on
+ * its way to its state is brought there.
  */
 static void try_again(struct watch *w)
 {
@@ -393,7 +393,7 @@ static void try_again(struct watch *w)
 	u64 now = ktime_get_ns();
 	unsigned int i, n = 0;
 
-	if (!w->scanned || READ_ONCE(m->bus.held))
+	if (!is_listed(w))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (n == ARRAY_SIZE(due))
@@ -401,6 +401,8 @@ static void try_again(struct watch *w)
 		if (!ec_survey_is_due(s, now))
 			continue;
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
+			if (w->held)
+				continue;
 			dg[n] = EC_DG(EC_CMD_APRD, (u16)-s->position, EC_REG_STATION, 2, b[n]);
 			due[n++] = s;
 		} else if (!ec_slave_busy(s)) {

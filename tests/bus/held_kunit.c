@@ -305,6 +305,26 @@ static void held_station_address_twice(struct kunit *test)
 	expect_found(b);
 }
 
+/* A slave that was slow on its way to a state is brought there, also while the list is held. */
+static void held_slave_is_tried_again(struct kunit *test)
+{
+	struct bus *b = before(test);
+	u32 i;
+
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	bus_fault(b, EC_SIM_FAULT_MUTE, A, 0, 1, 0);
+	bus_request(b, 1, EC_AL_INIT);
+	for (i = 0; i < 20000 && !READ_ONCE(bus_slave(b, 1)->error); i++)
+		usleep_range(1000, 1001);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_CONFIG_FAILED);
+	bus_fault(b, EC_SIM_FAULT_MUTE, A, 0, 0, 0);
+	/* the request has got lost: the state does not come late */
+	bus_esc(b, A)->mem[EC_REG_AL_CONTROL] = EC_AL_PREOP;
+	msleep(20000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_INIT);
+}
+
 /* No reply at all, as the cable of the master is cut: all are lost, and all return. */
 static void held_without_link(struct kunit *test)
 {
@@ -441,6 +461,7 @@ static struct kunit_case held_cases[] = {
 	KUNIT_CASE(held_lost_slaves),
 	KUNIT_CASE(held_power_cycled_slave),
 	KUNIT_CASE(held_station_address_twice),
+	KUNIT_CASE(held_slave_is_tried_again),
 	KUNIT_CASE(held_without_link),
 	KUNIT_CASE(held_after_due_scan),
 	KUNIT_CASE(held_although_scans_do_not_end),
