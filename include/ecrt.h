@@ -344,8 +344,8 @@ EC_PUBLIC_API unsigned int ecrt_version_magic(void);
  * ecrt_request_master() - open a master and reserve it
  * @master_index: index, from 0
  *
- * ecrt_open_master() and ecrt_master_reserve() in one call: waits until a running scan
- * ends, starts no other scan until activation, and requests PREOP of all slaves.
+ * ecrt_open_master() and ecrt_master_reserve() in one call: waits for a scan that is in progress
+ * or due, holds the list of slaves until activation, and requests PREOP of all slaves.
  *
  * Context: Process. Waits for bus traffic.
  * Return: the master, or NULL: no such master (%-ENOENT), no access
@@ -386,10 +386,13 @@ EC_PUBLIC_API void ecrt_release_master(ec_master_t *master);
  * ecrt_master_reserve() - reserve an opened master for this application
  * @master: from ecrt_open_master()
  *
- * Waits until a running scan ends and starts no other scan until activation. Requests PREOP
- * of all slaves and waits for it, at most 10 s; a slave that has failed to reach PREOP
- * before is not changed. While a detached session exists (%EC_CYCLE_DETACH), the call
- * changes no slave. Userspace only, as is ecrt_open_master().
+ * Waits for a scan that is in progress or due, at most 30 s. From then on the list of slaves is
+ * held until activation or release: no scan changes it, so a ring position means the same device
+ * all the time. Meanwhile a slave that does not reply at its station address is lost, and calls
+ * for it fail with %-EIO; a new slave is not in the list. Requests PREOP of all slaves and waits
+ * for it, at most 10 s; a slave that has failed to reach PREOP before is not changed. While a
+ * detached session exists (%EC_CYCLE_DETACH), the call changes no slave, and the list is not held
+ * before that session has ended. Userspace only, as is ecrt_open_master().
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EBUSY reserved by another application, %-ENODEV the master has no device, %-EPERM
@@ -654,7 +657,8 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
  *
  * Lays out the frames of the cycle and the process image, which starts with zeros, and
  * returns at once. The master configures the slaves and requests OP while the application
- * runs its cycle. In userspace the image is mapped with all its pages, so the cycle causes no
+ * runs its cycle. The list of slaves is no longer held: a scan that is due runs now. In userspace
+ * the image is mapped with all its pages, so the cycle causes no
  * page fault; an image of 0 bytes is valid. After a failure call ecrt_release_master(); after
  * %-EEXIST the application may also call ecrt_master_end_detached() and then this function
  * again. If a detached cycle of the kernel runs (%EC_CYCLE_DETACH), the application takes it
@@ -679,9 +683,11 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
  *
  * Frees all domains and slave configurations. All handles and pointers obtained since the
  * reservation become invalid, except @master, which remains reserved and may be configured
- * again. Slaves go to PREOP.
+ * again. Slaves go to PREOP. From now on the list of slaves is held as by
+ * ecrt_master_reserve(), until the next activation or release. A scan that is in progress or due
+ * runs first: the call waits for it at most 30 s, or until a signal, then holds the list as it is.
  *
- * Context: Process. May sleep.
+ * Context: Process. May sleep, at most 30 s.
  * Return: 0; %-EINVAL not active, nothing was freed.
  */
 EC_PUBLIC_API int ecrt_master_deactivate(ec_master_t *master);

@@ -22,6 +22,11 @@
 #define STAYS		5	/* looks at an AL event that stays, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
+static const char lost[] =
+	"no reply, list of slaves held; check cable and power: a slave that was switched off is found again at activation or release of the master";
+static const char doubled[] =
+	"another slave replies at the same station address, list of slaves held; disconnect the other slave, or activate or release the master";
+
 /* what the monitor remembers between two looks */
 struct watch {
 	struct ec_master *m;
@@ -29,6 +34,7 @@ struct watch {
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	bool scanned;		/* @count slaves are scanned */
+	bool held;		/* the list is held: no scan now, also if not @scanned */
 	unsigned int silent;	/* looks in which a slave did not answer to its address */
 	unsigned int too_many;	/* slaves of the last reply, more than a scan takes on */
 	u64 scanned_ns;
@@ -73,12 +79,46 @@ static void note_change(struct ec_slave *s, u16 status, u16 code)
 	ec_slave_set_al(s, status, code, !left);
 }
 
+/* The next pass of the monitor starts a scan, unless the list is held. */
+static void scan_next(struct watch *w)
+{
+	w->scanned = false;
+	w->same = STABLE_LOOKS;
+}
+
+/* The list is held: a slave that does not reply is lost, and stays in its place. */
+static void note_reply(struct watch *w, struct ec_slave *s, const struct ec_dg *dg)
+{
+	/* a lost frame says nothing of a slave, unless all are lost */
+	bool missing = dg->err ? !w->count : dg->wkc != 1;
+
+	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent))
+		return;
+	if (!missing && !dg->err) {
+		s->missed = 0;
+		/* a loose contact must not fill the log */
+		if (!ec_survey_is_due(s, ktime_get_ns()) || !ec_slave_set_replies(s))
+			return;
+		ec_slave_kick(s);
+	} else if (missing && ++s->missed >= SILENT_LOOKS) {
+		s->missed = SILENT_LOOKS;
+		if (!ec_slave_set_silent(s, !dg->err && dg->wkc ? doubled : lost))
+			return;
+		WRITE_ONCE(w->m->bus.due, true);
+		scan_next(w);
+	} else {
+		return;
+	}
+	WRITE_ONCE(w->m->dc.changed, true);
+}
+
 /*
  * AL status of every slave; used when the broadcast is not one plain state.
  * Returns false when one did not answer although all are there.
  */
-static bool check_slaves(struct ec_master *m)
+static bool check_slaves(struct watch *w)
 {
+	struct ec_master *m = w->m;
 	bool all = true;
 	struct ec_dg *dg;
 	struct {
@@ -103,6 +143,8 @@ static bool check_slaves(struct ec_master *m)
 
 		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
+		if (w->held)
+			note_reply(w, s, &dg[i]);
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
 		/* its worker knows better */
@@ -185,13 +227,6 @@ static void set_present(struct ec_master *m, unsigned int count, u32 al_states)
 	ec_links_saw(&m->links, count, al_states);
 }
 
-/* The next pass of the monitor starts a scan. */
-static void scan_next(struct watch *w)
-{
-	w->scanned = false;
-	w->same = STABLE_LOOKS;
-}
-
 static void ask_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -230,7 +265,14 @@ static void ask_slaves(struct watch *w)
 	if (w->scanned && count && wkc >= w->survey.replying)
 		m->bus.complete_ns = ktime_get_ns();
 	w->well = w->scanned && as_wanted(&w->survey, ored, wkc);
-	if (!w->scanned || w->well || check_slaves(m))
+	if (w->held) {
+		w->silent = 0;
+		w->well = w->well && !w->survey.silent;
+		if (!w->well)
+			check_slaves(w);
+		return;
+	}
+	if (!w->scanned || w->well || check_slaves(w))
 		w->silent = 0;
 	else
 		w->silent++;
@@ -286,8 +328,25 @@ static void ride(struct watch *w)
 	w->riding = true;
 }
 
+/* Are the slaves of the list those that the monitor looks after now? */
+static bool is_listed(const struct watch *w)
+{
+	return w->scanned || w->held;
+}
+
+static void note_held(struct watch *w)
+{
+	bool held = READ_ONCE(w->m->bus.held);
+
+	if (held && !w->held)
+		ec_for_each_slave(s, &w->m->bus)
+			s->missed = 0;
+	w->held = held;
+}
+
 static void count_slaves(struct watch *w)
 {
+	note_held(w);
 	w->irq = 0;
 	w->well = false;
 	if (w->woken && w->riding) {
@@ -299,7 +358,7 @@ static void count_slaves(struct watch *w)
 		ask_slaves(w);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	ride(w);
-	if (w->scanned && w->link_up)
+	if (is_listed(w) && w->link_up)
 		w->survey.exchange |= ec_mailboxes_look(&w->m->bus, w->irq);
 }
 
@@ -322,7 +381,8 @@ static void watch_events(struct watch *w)
 
 /*
  * What failed is tried again with growing distance. One that replies to its ring position
- * is scanned; one that was lost on its way to its state is brought there.
+ * is scanned, unless the list is held: another slave may be there then. One that was lost on
+ * its way to its state is brought there.
  */
 static void try_again(struct watch *w)
 {
@@ -333,7 +393,7 @@ static void try_again(struct watch *w)
 	u64 now = ktime_get_ns();
 	unsigned int i, n = 0;
 
-	if (!w->scanned || READ_ONCE(m->bus.freeze))
+	if (!is_listed(w))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (n == ARRAY_SIZE(due))
@@ -341,6 +401,8 @@ static void try_again(struct watch *w)
 		if (!ec_survey_is_due(s, now))
 			continue;
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
+			if (w->held)
+				continue;
 			dg[n] = EC_DG(EC_CMD_APRD, (u16)-s->position, EC_REG_STATION, 2, b[n]);
 			due[n++] = s;
 		} else if (!ec_slave_busy(s)) {
@@ -375,8 +437,8 @@ static void maybe_scan(struct watch *w)
 	struct ec_master *m = w->m;
 	bool changed = false;
 
-	/* also one that is asked for then has to wait */
-	if (READ_ONCE(m->bus.freeze))
+	/* one that is due, or asked for, has to wait */
+	if (READ_ONCE(m->bus.held))
 		return;
 	if (READ_ONCE(m->bus.rescan))
 		scan_next(w);
@@ -403,6 +465,7 @@ static void maybe_scan(struct watch *w)
 	}
 	if (!ec_scan(&m->bus, w->count, &changed)) {
 		w->scanned = true;
+		WRITE_ONCE(m->bus.due, false);
 		WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
 		/* before their workers ask for their clocks */
@@ -430,7 +493,7 @@ static void read_pdos(struct watch *w)
 
 	ec_for_each_slave(s, &m->bus)
 		busy |= ec_slave_busy(s);
-	if (!w->scanned || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
+	if (!is_listed(w) || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (!ec_slave_pdos_pending(s) || ec_slave_busy(s))
@@ -444,7 +507,7 @@ static void read_pdos(struct watch *w)
 static void no_slaves(struct ec_master *m)
 {
 	set_present(m, 0, 0);
-	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze))
+	if (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.held))
 		return;
 	WRITE_ONCE(m->bus.rescan, false);
 	WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
@@ -505,7 +568,7 @@ static int monitor(void *data)
 		set_current_state(TASK_IDLE);
 		watch_events(&w);
 		if (!kthread_should_stop() && !READ_ONCE(m->pause) &&
-		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.freeze)))
+		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.held)))
 			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
 		__set_current_state(TASK_RUNNING);
 		w.woken = w.watched && !READ_ONCE(m->links.events);

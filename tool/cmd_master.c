@@ -221,6 +221,11 @@ static int show(const struct tool *t, struct dev *d)
 	cycle(t, &m);
 	out_u("slaves_responding", m.slaves_responding, NULL);
 	out_bool("scan_busy", m.scan_busy, NULL);
+	out_bool("list_held", m.held, NULL);
+	if (*m.owner)
+		out_str("owner", m.owner, NULL);
+	else
+		out_null("owner", NULL);
 	out_u("scans", m.scan_count, NULL);
 	out_u("scan_duration_us", m.scan_us, NULL);
 	out_u("scan_frames", m.scan_frames, NULL);
@@ -284,7 +289,8 @@ const struct cmd cmd_master = {
 		"rate_ppb, lock_losses (with cycle_lock), reference_time_ns,\n"
 		"application_time_ns), cycle (interval_us, datagrams, frames, wire_ns, last_frames,\n"
 		"last_wire_ns, acyclic_slack_ns, acyclic_need_ns, late_cycles, late_cycles_per_s),\n"
-		"frames_not_captured, slaves_responding, scan_busy, scans,\n"
+		"frames_not_captured, slaves_responding, scan_busy, list_held, owner (the application,\n"
+		"or null), scans,\n"
 		"scan_duration_us, scan_frames, max_acyclic_frames (of a send), sii_bytes (EEPROM\n"
 		"images in memory), max_sii_bytes, debug_level, configs, domains, module_release",
 	.flags = CMD_HISTORIC,

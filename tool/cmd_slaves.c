@@ -19,7 +19,7 @@ static void row(const struct ec_ioc_slave *s, const char *indent, const int *w)
 {
 	char state[16], name[EC_UAPI_STRING];
 
-	al_state_text(s->al_status, state, sizeof(state));
+	slave_state_text(s, state, sizeof(state));
 	slave_name(s, name, sizeof(name));
 	out_text("%s%*u  %*u:%-*u  %-*s  %c  %s\n", indent, w[0], s->position, w[1], s->alias_group,
 		 w[2], slave_alias_pos(s), w[3], state, slave_flag(s), name);
@@ -32,7 +32,7 @@ static void table(const struct ec_ioc_slave *s, size_t n, const char *indent)
 	char state[16];
 
 	for (size_t i = 0; i < n; i++) {
-		al_state_text(s[i].al_status, state, sizeof(state));
+		slave_state_text(&s[i], state, sizeof(state));
 		w[0] = max(w[0], digits(s[i].position));
 		w[1] = max(w[1], digits(s[i].alias_group));
 		w[2] = max(w[2], digits(slave_alias_pos(&s[i])));
@@ -63,10 +63,17 @@ static size_t sort_once(struct slaves *s)
 	return n;
 }
 
-/* on stderr: what makes the list shorter than the bus */
+/* on stderr: what makes the list another one than the bus */
 static void remark(const struct dev *d, const struct ec_ioc_master *m)
 {
-	char why[160];
+	char why[160] = "";
+
+	if (m->held && m->slaves_responding != m->slave_count)
+		snprintf(why, sizeof(why), "; slaves responding: %u, in the list: %u",
+			 m->slaves_responding, m->slave_count);
+	if (m->held)
+		note("Master%u: the list of slaves is held until %s activates or releases the master%s",
+		     d->master, *m->owner ? m->owner : "the application", why);
 
 	dev_why_empty(m, why, sizeof(why));
 	if (m->scan_busy)
@@ -111,6 +118,8 @@ static int each(const struct tool *t, struct dev *d)
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	out_bool("scan_busy", m.scan_busy, NULL);
+	out_bool("list_held", m.held, NULL);
+	out_u("slaves_responding", m.slaves_responding, NULL);
 	out_array("slaves");
 	if (t->verbosity <= 0)
 		sel.n = sort_once(&sel);
@@ -146,12 +155,16 @@ const struct cmd cmd_slaves = {
 	.opts = "mapvw",
 	.summary = "Show the slaves on the bus",
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
-		"'+ERROR' after the state: the slave reports an error. Flag 'E': scan or configuration\n"
-		"of the slave failed; '!': another slave than configured by the application. Configured\n"
-		"slaves that are absent are listed on stderr. 'xxx LINK FAILURE xxx' marks the break of\n"
-		"a redundant ring. --verbose shows all data of the slaves. --wait waits until no bus\n"
-		"scan is running (default at most 60 s).\n",
-	.json = "masters[]: master, scan_busy, slaves[] (position, alias, relative_position, device,\n"
+		"'+ERROR' after the state: the slave reports an error; state LOST: it does not reply.\n"
+		"Flag 'E': scan or configuration of the slave failed; '!': another slave than configured\n"
+		"by the application. Configured slaves that are absent are listed on stderr.\n"
+		"'xxx LINK FAILURE xxx' marks the break of a redundant ring.\n"
+		"From its reservation of the master to activation, and after deactivation, an application\n"
+		"has the list of slaves held: no scan changes it, and stderr shows which process that is.\n"
+		"--verbose shows all data of the slaves. --wait waits until no bus scan is running\n"
+		"(default at most 60 s).\n",
+	.json = "masters[]: master, scan_busy, list_held, slaves_responding,\n"
+		"slaves[] (position, alias, relative_position, device,\n"
 		"state, al_error, flag_error, cause, warning, differs,\n"
 		"not_in_op (or null), name, vendor_id, product_code, revision_number,\n"
 		"serial_number, own_alias, station_address, al_status, al_status_code,\n"

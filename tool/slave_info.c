@@ -236,11 +236,25 @@ static void reason(struct dev *d, const struct ec_ioc_slave *s)
 		out_null("not_in_op", NULL);
 }
 
+static bool is_lost(const struct ec_ioc_slave *s)
+{
+	return s->cause.kind == EC_CAUSE_SILENT;
+}
+
+/* a slave that was lost has no AL state */
+void slave_state_text(const struct ec_ioc_slave *s, char *buf, size_t size)
+{
+	if (is_lost(s))
+		snprintf(buf, size, "LOST");
+	else
+		al_state_text(s->al_status, buf, size);
+}
+
 void slave_info(struct dev *d, const struct ec_ioc_slave *s)
 {
 	char state[16], name[EC_UAPI_STRING];
 
-	al_state_text(s->al_status, state, sizeof(state));
+	slave_state_text(s, state, sizeof(state));
 	slave_name(s, name, sizeof(name));
 	out_object(NULL);
 	out_u("position", s->position, "=== Master %u, Slave %u ===\n", d->master, s->position);
@@ -251,7 +265,8 @@ void slave_info(struct dev *d, const struct ec_ioc_slave *s)
 		out_text("Alias: %u\n", s->alias);
 	out_str("device", s->device_index ? "backup" : "main", "Device: %s\n",
 		s->device_index ? "Backup" : "Main");
-	out_str("state", ec_al_state_name((u8)s->al_status), "State: %s\n", state);
+	out_str("state", is_lost(s) ? state : ec_al_state_name((u8)s->al_status), "State: %s\n",
+		state);
 	out_bool("al_error", s->al_status & EC_AL_ERROR, NULL);
 	out_bool("flag_error", s->error, "Flag: %c\n", slave_flag(s));
 	identity(s);

@@ -139,7 +139,8 @@ struct ec_ioc_master {
 	__u32 sii_limit;	/* bytes of EEPROM images, at most */
 	__u64 sii_bytes;	/* of all slaves */
 	__u32 no_cycle;		/* active, but the application sends no cyclic frames */
-	__u32 reserved;
+	__u32 held;		/* the list of slaves is held, see ecrt_master_reserve() */
+	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
 };
 
 struct ec_ioc_port {

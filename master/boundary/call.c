@@ -173,6 +173,29 @@ int ec_ioc_get_slave(struct ec_call *call, u16 position)
 			 position, m->bus.n_slaves);
 }
 
+/* A command that only shows what is known of a slave also works for one that was lost. */
+static int check_lost(struct ec_call *call, const struct ec_ioctl *op, int ret)
+{
+	char why[EC_UAPI_REASON];
+
+	if (!(op->flags & F_WRITE) || !READ_ONCE(call->slave->silent))
+		return ret;
+	return ec_refuse(call, ret ?: -EIO, "slave %u: %.200s", call->slave->position,
+			 ec_slave_why(call->slave, why, sizeof(why)));
+}
+
+static int with_slave(struct ec_call *call, const struct ec_ioctl *op)
+{
+	int ret = ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at));
+
+	ret = ret ?: check_lost(call, op, 0);
+	if (ret)
+		return ret;
+	ret = op->fn(call);
+	/* lost meanwhile: that is the cause */
+	return ret == -EAGAIN || ret == -ETIMEDOUT ? check_lost(call, op, ret) : ret;
+}
+
 static int with_show(struct ec_call *call, const struct ec_ioctl *op)
 {
 	int ret;
@@ -198,7 +221,7 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 	case EC_CLASS_MASTER:
 		return op->fn(call);
 	case EC_CLASS_SLAVE:
-		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: op->fn(call);
+		return with_slave(call, op);
 	case EC_CLASS_SHOW_SLAVE:
 		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: with_show(call, op);
 	case EC_CLASS_SHOW_CONFIG:

@@ -5,6 +5,8 @@
 
 #include "ioctl.h"
 
+#define F_WRITE	1	/* needs a descriptor opened for writing */
+
 /* bytes of an argument that must be zero */
 struct ec_reserved {
 	u16 offset;

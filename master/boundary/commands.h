@@ -95,7 +95,7 @@ CMD(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, CONFIG(ec_ioc_sc_overlap),
 	RSV1(ec_ioc_sc_overlap))
 CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
 	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, true, false))
-CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE, SESSION)
+CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE)
 CMD(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION)
 CMD(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE, SESSION)
 CMD(EC_IOC_INTERVAL, ec_ioc_interval, F_WRITE, IDLE)

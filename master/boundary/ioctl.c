@@ -9,8 +9,6 @@
 
 #define MAX_ARG	896	/* on the stack: a 32-bit kernel warns above 1024 in all */
 
-#define F_WRITE	1	/* needs a descriptor opened for writing */
-
 #define FIELD(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
 #define RSV(...) .reserved = { __VA_ARGS__ }
 #define RSV1(type) RSV(FIELD(type, reserved))

@@ -60,13 +60,22 @@ int ec_ioc_reserve(struct ec_call *call)
 	}
 }
 
-int ec_ioc_release(struct ec_call *call)
+/* Has this file reserved the master? What follows takes the lock itself. */
+static int check_reserved(struct ec_call *call)
 {
 	int ret = ec_ioc_lock_session(call);
 
+	if (!ret)
+		ec_sessions_unlock(&call->master->sessions);
+	return ret;
+}
+
+int ec_ioc_release(struct ec_call *call)
+{
+	int ret = check_reserved(call);
+
 	if (ret)
 		return ret;
-	ec_sessions_unlock(&call->master->sessions);
 	ec_session_end(&call->master->sessions, call->file);
 	return 0;
 }
@@ -459,7 +468,7 @@ int ec_ioc_activate(struct ec_call *call)
 
 int ec_ioc_deactivate(struct ec_call *call)
 {
-	return ec_session_deactivate(call->session);
+	return check_reserved(call) ?: ec_session_stop(&call->master->sessions, call->file);
 }
 
 int ec_ioc_domain_offset(struct ec_call *call)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that cause bus traffic or change the state of slaves. */
+#include "api.h"
 #include "ioctl.h"
 #include "master.h"
 #include "../session/session.h"
@@ -95,10 +96,16 @@ int ec_ioc_state(struct ec_call *call)
 int ec_ioc_rescan(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
+	char who[EC_UAPI_STRING];
 
-	if (READ_ONCE(m->bus.freeze))
+	if (READ_ONCE(m->bus.held)) {
+		if (READ_ONCE(m->api->reserved) ||
+		    !ec_session_owner_text(&m->sessions, who, sizeof(who)))
+			strscpy(who, "an application", sizeof(who));
 		return ec_refuse(call, -EBUSY,
-				 "an application has reserved the master; it must activate or release it first");
+				 "the list of slaves is held: %s has reserved the master and must activate or release it first",
+				 who);
+	}
 	ec_bus_rescan(&m->bus);
 	return 0;
 }

@@ -3,6 +3,7 @@
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
+#include "api.h"
 #include "cdev.h"
 #include "../config/config.h"
 #include "../link/device.h"
@@ -109,10 +110,15 @@ static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 }
 
 /* What the session adds. */
-static void session_info(const struct ec_session *s, struct ec_ioc_master *i)
+static void session_info(struct ec_call *call, const struct ec_session *s, struct ec_ioc_master *i)
 {
 	const struct ec_status *st;
 
+	/* a name of the process that loaded it says nothing of an application in the kernel */
+	if (s->cycle.owner == &call->master->api->file)
+		strscpy(i->owner, "an application in the kernel", sizeof(i->owner));
+	else
+		ec_session_process(s, i->owner, sizeof(i->owner));
 	i->active = s->wanted.active;
 	i->session = !s->cycle.owner ? EC_SESSION_DETACHED :
 		     s->wanted.active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
@@ -142,6 +148,7 @@ int ec_ioc_master(struct ec_call *call)
 	i->slaves_responding = READ_ONCE(m->bus.responding);
 	i->al_states = READ_ONCE(m->bus.al_states);
 	i->scan_busy = ec_bus_scan_busy(&m->bus);
+	i->held = READ_ONCE(m->bus.held);
 	ec_bus_scan_progress(&m->bus, &i->scan_index, &i->scan_slaves);
 	i->scan_count = READ_ONCE(m->bus.scan_count);
 	i->debug_level = READ_ONCE(m->base->debug);
@@ -158,7 +165,7 @@ int ec_ioc_master(struct ec_call *call)
 	i->ref_clock = m->dc.ref && !READ_ONCE(m->dc.ref->stop.gone) &&
 		       READ_ONCE(m->dc.ref_station) ? m->dc.ref->position : -1;
 	if (m->sessions.session)
-		session_info(m->sessions.session, i);
+		session_info(call, m->sessions.session, i);
 	ec_show_end(&m->base->show);
 	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;

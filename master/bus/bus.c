@@ -161,7 +161,25 @@ static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
  */
 int ec_bus_wait_scan(struct ec_bus *bus)
 {
-	return wait_until(bus, settled, 30000);
+	return wait_until(bus, settled, EC_SCAN_WAIT_MS);
+}
+
+static bool no_scan(struct ec_bus *bus)
+{
+	return !ec_bus_scan_busy(bus);
+}
+
+/**
+ * ec_bus_wait_due() - wait until no scan is in progress or due
+ * @bus: bus
+ * @ms: limit, ms
+ *
+ * Context: Process. May sleep, at most @ms.
+ * Return: 0, -EINTR, or -ETIMEDOUT.
+ */
+int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms)
+{
+	return wait_until(bus, no_scan, ms);
 }
 
 /**
@@ -197,21 +215,23 @@ void ec_bus_wait_slave(struct ec_slave *slave)
  * ec_bus_scan_busy() - is the bus scanned, or about to be?
  * @bus: bus
  *
+ * While the list of slaves is held, a scan that is due is not about to run.
+ *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether it is.
  */
 bool ec_bus_scan_busy(const struct ec_bus *bus)
 {
-	bool busy = READ_ONCE(bus->rescan);
+	bool due = READ_ONCE(bus->rescan) || READ_ONCE(bus->due);
 
 	/* in this order: a request disappears only after @scan_busy is set */
 	smp_rmb();
-	return busy || READ_ONCE(bus->scan_busy) ||
-	       READ_ONCE(bus->n_slaves) != READ_ONCE(bus->responding);
+	due |= READ_ONCE(bus->n_slaves) != READ_ONCE(bus->responding);
+	return READ_ONCE(bus->scan_busy) || (due && !READ_ONCE(bus->held));
 }
 
 /**
- * ec_bus_begin_scan() - the monitor begins a scan, unless the slaves are frozen
+ * ec_bus_begin_scan() - the monitor begins a scan, unless the list of slaves is held
  * @bus: bus
  *
  * Context: The monitor. It clears @bus->scan_busy at the end.
@@ -222,7 +242,7 @@ bool ec_bus_begin_scan(struct ec_bus *bus)
 	bool ok;
 
 	spin_lock(&bus->scan_lock);
-	ok = !bus->freeze;
+	ok = !bus->held;
 	if (ok)
 		WRITE_ONCE(bus->scan_busy, true);
 	spin_unlock(&bus->scan_lock);
@@ -230,23 +250,41 @@ bool ec_bus_begin_scan(struct ec_bus *bus)
 }
 
 /**
- * ec_bus_freeze() - let no scan begin
+ * ec_bus_hold() - hold the list of slaves: no scan changes it
  * @bus: bus
- * @always: also during a scan
+ * @always: also during a scan, whose result is thrown away
  *
- * Context: Process. @bus->freeze is cleared at the end.
- * Return: false: a scan has begun or is requested, wait for its end.
+ * Meanwhile the monitor counts slaves and notes which slaves of the list do not reply.
+ *
+ * Context: Process. May sleep. ec_bus_unhold() follows.
+ * Return: false: a scan is in progress or due, wait for its end.
  */
-bool ec_bus_freeze(struct ec_bus *bus, bool always)
+bool ec_bus_hold(struct ec_bus *bus, bool always)
 {
 	bool ok;
 
+	/* a scan that has ended already shows its result first */
+	down_write(&bus->topo);
 	spin_lock(&bus->scan_lock);
 	ok = always || !ec_bus_scan_busy(bus);
 	if (ok)
-		WRITE_ONCE(bus->freeze, true);
+		WRITE_ONCE(bus->held, true);
 	spin_unlock(&bus->scan_lock);
+	up_write(&bus->topo);
 	return ok;
+}
+
+/**
+ * ec_bus_unhold() - the list of slaves may change again
+ * @bus: bus
+ *
+ * A scan that is due begins with the next poll of the monitor; ec_bus_scan_busy() at once.
+ *
+ * Context: Process.
+ */
+void ec_bus_unhold(struct ec_bus *bus)
+{
+	WRITE_ONCE(bus->held, false);
 }
 
 /**

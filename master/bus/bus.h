@@ -12,6 +12,8 @@
 #include <linux/workqueue.h>
 #include "../base/base.h"
 
+#define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the list of slaves is used as it is */
+
 struct ec_bus;
 struct ec_links;
 struct ec_slave;
@@ -59,7 +61,7 @@ struct ec_bus {
 	/** @n_slaves: entries in @slaves */
 	unsigned int n_slaves;
 
-	/** @rescan: a scan is requested */
+	/** @rescan: a scan is requested; it waits while @held */
 	bool rescan;
 	/** @looked: the bus was scanned, or there is no link, since the device was attached */
 	bool looked;
@@ -67,8 +69,13 @@ struct ec_bus {
 	bool down;
 	/** @scan_lock: no scan begins while an application reserves the master */
 	spinlock_t scan_lock;
-	/** @freeze: no scan while reserved and not active; set with @scan_lock held */
-	bool freeze;
+	/**
+	 * @held: no scan changes the list of slaves: an application has reserved the master and
+	 * is not active; set with @topo and @scan_lock held
+	 */
+	bool held;
+	/** @due: a slave was lost while @held, so a scan follows; the monitor's */
+	bool due;
 	/** @scan_busy: slaves are being scanned; set with @scan_lock held */
 	bool scan_busy;
 	/** @scan_noted: the scan that begins now is an event already; the monitor's */
@@ -135,11 +142,13 @@ void ec_bus_stop(struct ec_bus *bus);
 void ec_bus_exit(struct ec_bus *bus);
 struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position);
 int ec_bus_wait_scan(struct ec_bus *bus);
+int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms);
 int ec_bus_wait_slaves(struct ec_bus *bus);
 void ec_bus_wait_slave(struct ec_slave *slave);
 bool ec_bus_scan_busy(const struct ec_bus *bus);
 bool ec_bus_begin_scan(struct ec_bus *bus);
-bool ec_bus_freeze(struct ec_bus *bus, bool always);
+bool ec_bus_hold(struct ec_bus *bus, bool always);
+void ec_bus_unhold(struct ec_bus *bus);
 void ec_bus_scan_progress(const struct ec_bus *bus, u32 *index, u32 *count);
 void ec_bus_rescan(struct ec_bus *bus);
 void ec_bus_settled(struct ec_bus *bus);

@@ -75,33 +75,6 @@ static int read_each(struct scan *sc, u16 ado, size_t ofs, u16 len)
 	return missing && !ec_scan_same_count(sc->bus, sc->n) ? -EAGAIN : ret;
 }
 
-static void set_silent(struct scan *sc, struct ec_slave *s)
-{
-	if (READ_ONCE(s->silent))
-		return;
-	sc->changed = true;
-	WRITE_ONCE(s->silent, true);
-	s->seen_ns = sc->bus->complete_ns;
-	WRITE_ONCE(s->al_status, 0);
-	ec_slave_event(s, EC_EVENT_SLAVE_SILENT);
-	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(SILENT),
-		      "no reply from the slave, frames pass; waiting for a reply");
-	ec_slave_retry(s, EC_PROBE_MAX_MS);
-}
-
-static void set_answers(struct scan *sc, struct ec_slave *s)
-{
-	if (!READ_ONCE(s->silent))
-		return;
-	sc->changed = true;
-	WRITE_ONCE(s->silent, false);
-	ec_slave_set_ok(s, true);
-	s->retry_ms = 0;
-	ec_write64(&s->retry_ns, 0);
-	ec_slave_info(s, "slave replies again\n");
-	ec_slave_event(s, EC_EVENT_SLAVE_REPLIES);
-}
-
 /* Known slaves that reply again, or not any more. */
 static void note_replies(struct scan *sc)
 {
@@ -113,9 +86,10 @@ static void note_replies(struct scan *sc)
 		if (!ec_scan_is_known(sc, s))
 			continue;
 		if (sc->regs[i].there)
-			set_answers(sc, s);
+			sc->changed |= ec_slave_set_replies(s);
 		else
-			set_silent(sc, s);
+			sc->changed |= ec_slave_set_silent(s,
+				"no reply from the slave, frames pass; waiting for a reply");
 	}
 }
 
@@ -353,14 +327,20 @@ static void note_aliases(struct scan *sc)
 	}
 }
 
-/* The result becomes visible; slaves that are missing are gone. */
-static void publish(struct scan *sc)
+/* The result becomes visible, unless the list is held by now; slaves that are missing are gone. */
+static bool publish(struct scan *sc)
 {
 	struct ec_bus *bus = sc->bus;
 	struct ec_slave **old;
 	unsigned int i, n_old, lost = 0;
 
 	down_write(&bus->topo);
+	if (bus->held) {
+		up_write(&bus->topo);
+		return false;
+	}
+	note_replies(sc);
+	sc->changed = differs(sc);
 	ec_show_change_begin(&bus->base->show);
 	take_regs(sc, true);
 	note_aliases(sc);
@@ -400,6 +380,7 @@ static void publish(struct scan *sc)
 	for (i = 0; i < n_old; i++)
 		ec_slave_unref(old[i]);
 	kvfree(old);
+	return true;
 }
 
 /**
@@ -411,8 +392,8 @@ static void publish(struct scan *sc)
  * Slaves that are known already keep their objects; only new ones are read.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: 0; -EAGAIN when the bus changed meanwhile; -ENETDOWN when the link went down;
- * -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
+ * Return: 0; -EAGAIN when the bus changed meanwhile, or the list is held; -ENETDOWN when the
+ * link went down; -ENOMEM; -ENOSPC without a free station address; or as ec_xfer().
  */
 int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 {
@@ -435,10 +416,9 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 	if (sc.slaves && sc.regs && sc.dg)
 		ret = count ? look(&sc) : 0;
 	ret = ret ?: ec_scan_proof(&sc);
+	if (!ret && !publish(&sc))
+		ret = -EAGAIN;
 	if (!ret) {
-		note_replies(&sc);
-		sc.changed = differs(&sc);
-		publish(&sc);
 		bus->listed_station = bus->next_station;
 		*changed = sc.changed;
 		WRITE_ONCE(bus->scan_us, (u32)div_u64(ktime_get_ns() - t0, 1000));

@@ -104,6 +104,7 @@ struct ec_break {
  * @unreported: @why is to be reported then
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
  * @silent: @error because it does not answer any more; it is in its place until it does
+ * @missed: polls in a row without its reply, while the list is held; the monitor's
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
@@ -180,6 +181,7 @@ struct ec_slave {
 	bool unreported;
 	char sii_flaw[EC_UAPI_WARNING];
 	bool silent;
+	u8 missed;
 	aligned_u64 retry_ns;
 	u32 retry_ms;
 	u64 seen_ns;
@@ -229,6 +231,10 @@ void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...) __printf(2, 3);
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
 size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
+
+/* silent.c */
+bool ec_slave_set_silent(struct ec_slave *s, const char *why);
+bool ec_slave_set_replies(struct ec_slave *s);
 
 /* slave_pdo.c */
 int ec_slave_read_pdos(struct ec_slave *slave);

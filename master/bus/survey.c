@@ -42,6 +42,7 @@ void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
 		survey->chores |= ec_slave_busy(s) || ec_survey_is_due(s, now) ||
 				  ec_slave_pdos_pending(s);
 		survey->exchange |= ec_mbox_in_use(&s->mbox);
+		survey->silent |= READ_ONCE(s->silent);
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		survey->state = survey->state ?: want;

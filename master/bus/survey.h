@@ -13,6 +13,8 @@ struct ec_survey {
 	u8 state;
 	/** @differ: not one state for all, or not all are in the state they shall have */
 	bool differ;
+	/** @silent: one does not reply any more */
+	bool silent;
 	/** @chores: one is busy, shall be tried again, or its PDOs are not read yet */
 	bool chores;
 	/** @exchange: a caller exchanges messages with one */

@@ -66,7 +66,7 @@ static int begin(struct ec_sessions *ss, struct ec_session *s, int waited)
 		ss->next = (struct ec_next){ };
 		WRITE_ONCE(ss->candidate, s);
 		s->wanted.before = &ss->session->wanted;
-	} else if (!ec_bus_freeze(ss->bus, waited)) {
+	} else if (!ec_bus_hold(ss->bus, waited)) {
 		ret = -EAGAIN;
 	} else {
 		WRITE_ONCE(ss->session, s);
@@ -89,35 +89,47 @@ static void note_process(struct ec_session *s)
 }
 
 /**
- * ec_session_owner_text() - the process that has reserved the master
- * @ss: sessions of a master
+ * ec_session_process() - the process that has reserved the master for a session
+ * @s: session, or NULL
  * @buf: result, such as "process 123 (demo)"
  * @size: of @buf
  *
  * The number is that of the caller's PID namespace.
+ *
+ * Context: Process, session lock held or after ec_show_begin().
+ * Return: length of the text; 0: there is none.
+ */
+size_t ec_session_process(const struct ec_session *s, char *buf, size_t size)
+{
+	pid_t nr;
+
+	buf[0] = '\0';
+	if (!s || !s->cycle.owner)
+		return 0;
+	rcu_read_lock();
+	nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
+	rcu_read_unlock();
+	/* it has left its file to a child, or is in another namespace */
+	if (nr)
+		return scnprintf(buf, size, "process %d (%s)", nr, s->owner_comm);
+	return scnprintf(buf, size, "another process (%s)", s->owner_comm);
+}
+
+/**
+ * ec_session_owner_text() - the process that has reserved the master
+ * @ss: sessions of a master
+ * @buf: result, as of ec_session_process()
+ * @size: of @buf
  *
  * Context: Process. May sleep.
  * Return: length of the text; 0: no process has reserved it.
  */
 size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size)
 {
-	const struct ec_session *s;
-	size_t len = 0;
-	pid_t nr;
+	size_t len;
 
-	buf[0] = '\0';
 	ec_sessions_lock(ss);
-	s = ss->candidate ?: ss->session;
-	if (s && s->cycle.owner) {
-		rcu_read_lock();
-		nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
-		rcu_read_unlock();
-		/* it has left its file to a child, or is in another namespace */
-		if (nr)
-			len = scnprintf(buf, size, "process %d (%s)", nr, s->owner_comm);
-		else
-			len = scnprintf(buf, size, "another process (%s)", s->owner_comm);
-	}
+	len = ec_session_process(ss->candidate ?: ss->session, buf, size);
 	ec_sessions_unlock(ss);
 	return len;
 }
@@ -132,9 +144,9 @@ static const struct ec_cycle_ops cycle_ops = {
  * @owner: its open file
  * @waiters: wait queue of that file; freed after an RCU grace period
  *
- * Waits for a scan in progress, then the list of slaves is frozen until
- * activation and all go to PREOP; this waits for them. While a detached session runs, the new
- * one is the candidate: it touches no slave until activation.
+ * Waits for a scan that is in progress or due, at most EC_SCAN_WAIT_MS, then the list of slaves
+ * is held until activation and all go to PREOP; this waits for them. While a detached session
+ * runs, the new one is the candidate: it touches no slave until activation.
  *
  * Context: Process. May sleep.
  * Return: 0, -EBUSY when another application has it, -ENODEV without device,
@@ -224,6 +236,8 @@ static void forget_times(struct ec_sessions *ss)
  * ec_session_deactivate() - stop process data, free what was configured
  * @s: session
  *
+ * The caller ends the session, or holds the list of slaves.
+ *
  * Context: Process, session lock held. May sleep.
  * Return: 0, or -EINVAL when it was not active.
  */
@@ -253,6 +267,54 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_info(ss, "session deactivated\n");
 	ec_event(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
 	return 0;
+}
+
+/* Without the lock, which the scan needs. True: no longer, @end_ns (ktime) or a signal has come. */
+static bool wait_scan(struct ec_sessions *ss, u64 end_ns)
+{
+	u64 now = ktime_get_ns(), left = end_ns > now ? end_ns - now : 0;
+	int ret;
+
+	ec_sessions_unlock(ss);
+	ret = ec_bus_wait_due(ss->bus, div_u64(left, NSEC_PER_MSEC));
+	ec_sessions_lock(ss);
+	return ret || !left;
+}
+
+/* The session may have ended or be active again. False: a scan runs first. */
+static bool hold(struct ec_sessions *ss, const void *owner, bool always)
+{
+	const struct ec_session *s = ec_session_of(ss, owner);
+
+	return !s || s != ss->session || s->wanted.active || ec_bus_hold(ss->bus, always);
+}
+
+/**
+ * ec_session_stop() - the application deactivates its session and keeps the master
+ * @ss: sessions of a master
+ * @owner: its open file
+ *
+ * The list of slaves is held from now on, until the next activation or the end of the session. A
+ * scan that is in progress or due runs first; this waits for it, at most EC_SCAN_WAIT_MS or
+ * until a signal. Then the list is held as it is, and the result of that scan is thrown away.
+ *
+ * Context: Process. May sleep.
+ * Return: 0, -EINVAL when it was not active, -EPERM without session.
+ */
+int ec_session_stop(struct ec_sessions *ss, const void *owner)
+{
+	u64 end = ktime_get_ns() + EC_SCAN_WAIT_MS * (u64)NSEC_PER_MSEC;
+	struct ec_session *s;
+	bool always = false;
+	int ret;
+
+	ec_sessions_lock(ss);
+	s = ec_session_of(ss, owner);
+	ret = s ? ec_session_deactivate(s) : -EPERM;
+	while (!ret && !hold(ss, owner, always))
+		always = wait_scan(ss, end);
+	ec_sessions_unlock(ss);
+	return ret;
 }
 
 /**
@@ -334,10 +396,10 @@ static void inherit(struct ec_sessions *ss)
 	WRITE_ONCE(ss->candidate, NULL);
 	WRITE_ONCE(ss->session, s);
 	if (!s) {
-		WRITE_ONCE(ss->bus->freeze, false);
+		ec_bus_unhold(ss->bus);
 		return;
 	}
-	ec_bus_freeze(ss->bus, true);
+	ec_bus_hold(ss->bus, true);
 	s->wanted.before = NULL;
 	use_next(ss);
 	to_preop(ss);
@@ -402,21 +464,27 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
  * ec_session_end_detached() - end the cycle of an application that has exited
  * @ss: sessions of a master
  *
- * Slaves go to PREOP. An application that waits for a takeover gets the master.
+ * Slaves go to PREOP. An application that waits for a takeover gets the master, with the list of
+ * slaves held: a scan that is in progress or due runs first, while the cycle continues. This waits
+ * for it as ec_session_stop().
  *
  * Context: Process. May sleep.
  * Return: 0; -ENOENT nothing is active; -EBUSY its application is there.
  */
 int ec_session_end_detached(struct ec_sessions *ss)
 {
-	int ret = 0;
+	u64 until = ktime_get_ns() + EC_SCAN_WAIT_MS * (u64)NSEC_PER_MSEC;
+	bool always = false;
+	int ret;
 
 	ec_sessions_lock(ss);
-	if (!ss->session)
-		ret = -ENOENT;
-	else if (ss->session->cycle.owner)
-		ret = -EBUSY;
-	else
+	for (;;) {
+		ret = !ss->session ? -ENOENT : ss->session->cycle.owner ? -EBUSY : 0;
+		if (ret || !ss->candidate || ec_bus_hold(ss->bus, always))
+			break;
+		always = wait_scan(ss, until);
+	}
+	if (!ret)
 		end(ss);
 	ec_sessions_unlock(ss);
 	return ret;
@@ -575,7 +643,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_session_note_counts(s, true, false);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
 	s->cycle.slaves_down = false;
-	WRITE_ONCE(ss->bus->freeze, false);
+	ec_bus_unhold(ss->bus);
 	/* one that waits for outputs takes the links with its first frame */
 	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);

@@ -158,6 +158,7 @@ static inline struct ec_session *ec_domain_session(const struct ec_domain *d)
 	return container_of(d->wanted, struct ec_session, wanted);
 }
 
+size_t ec_session_process(const struct ec_session *s, char *buf, size_t size);
 size_t ec_session_owner_text(struct ec_sessions *ss, char *buf, size_t size);
 int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiters *waiters);
 void ec_session_end(struct ec_sessions *ss, const void *owner);
@@ -171,6 +172,7 @@ int ec_session_slaves_down(struct ec_session *s);
 void ec_ref_clock_raise(struct ec_session *s);
 void ec_ref_clock_lower(struct ec_session *s);
 int ec_session_deactivate(struct ec_session *s);
+int ec_session_stop(struct ec_sessions *ss, const void *owner);
 
 void ec_session_clocks(struct ec_sessions *ss);
 

@@ -218,7 +218,7 @@ static void lock_holdover_keeps_slaves_in_phase(struct kunit *test)
 
 	until_locked(a);
 	msleep(2000);
-	WRITE_ONCE(b->m->bus.freeze, true);
+	WRITE_ONCE(b->m->bus.held, true);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);
 	msleep(5000);
 	error = phase_error(a, 1, 50000);
@@ -226,7 +226,7 @@ static void lock_holdover_keeps_slaves_in_phase(struct kunit *test)
 	bus_figure("reference clock silent for 5 s: SYNC0 of the other slave %d ns off", error);
 	KUNIT_EXPECT_LT(test, abs(error), 5000);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 0, 0);
-	WRITE_ONCE(b->m->bus.freeze, false);
+	WRITE_ONCE(b->m->bus.held, false);
 	until_locked(a);
 }
 

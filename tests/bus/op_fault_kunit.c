@@ -213,7 +213,7 @@ static void op_session_ends(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_TRUE(test, outputs_off(b));
-	KUNIT_EXPECT_FALSE(test, b->m->bus.freeze);
+	KUNIT_EXPECT_FALSE(test, b->m->bus.held);
 	/* and the next one may begin */
 	bus_idle(b);
 	c = cyc_new(b, 1000);

@@ -84,14 +84,14 @@ static void master_has_one_application_at_a_time(void)
 	if (!b)
 		return;
 	CHECK_EQ(ec_session_begin(&b->ss, &owner[0], NULL), 0);
-	CHECK_EQ(b->s.bus.freeze, true);
+	CHECK_EQ(b->s.bus.held, true);
 	CHECK_EQ(ec_session_begin(&b->ss, &owner[1], NULL), -EBUSY);
 	/* it is not that one's to end */
 	ec_session_end(&b->ss, &owner[1]);
 	CHECK(b->ss.session);
 	ec_session_end(&b->ss, &owner[0]);
 	CHECK(!b->ss.session);
-	CHECK_EQ(b->s.bus.freeze, false);
+	CHECK_EQ(b->s.bus.held, false);
 	ec_device_release(&b->s.seg.links, "none", NULL);
 	CHECK_EQ(ec_session_begin(&b->ss, &owner[0], NULL), -ENODEV);
 	bench_free(b);

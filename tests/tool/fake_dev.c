@@ -223,6 +223,12 @@ static int master(struct ec_ioc_master *m, int index)
 		m->late_per_s = 100;
 		m->late_cycles = 9;
 	}
+	if (fake_bus("held") || fake_bus("held_same")) {
+		m->held = 1;
+		m->session = EC_SESSION_RESERVED;
+		strcpy(m->owner, "process 123 (demo)");
+		m->slaves_responding += fake_bus("held");
+	}
 	if (fake_bus("noref"))
 		m->ref_clock = -1;
 	fill_device(&m->devices[0]);
@@ -296,6 +302,11 @@ static int slave(struct ec_ioc_slave *s)
 		s->config = 2;
 		s->differs = 1;
 		strcpy(s->warning, "process data of SM2 may belong to other objects");
+	}
+	if (fake_bus("held") && s->position == 1) {
+		s->al_status = 0;
+		s->error = EC_SLAVE_SCAN_FAILED;
+		s->cause.kind = EC_CAUSE_SILENT;
 	}
 	if (fake_bus("evil") && s->position == 2) {
 		snprintf(s->name, sizeof(s->name), "%s", "\033[2J\302\233H\2341m\342\200\256 Gr\303\266\337e\r\n\177");

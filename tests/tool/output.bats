@@ -45,6 +45,23 @@ load common
 	FAKE_BUS=two golden slaves_two slaves
 }
 
+@test "slaves: list held, by which process, lost slave, slaves outside of the list" {
+	local held="Master0: the list of slaves is held until process 123 (demo) activates or"
+
+	FAKE_BUS=held golden slaves_held slaves
+	[ "$(FAKE_BUS=held err slaves)" = \
+		"$held releases the master; slaves responding: 4, in the list: 3" ]
+	[ "$(FAKE_BUS=held_same err slaves)" = "$held releases the master" ]
+	FAKE_BUS=held out slaves -j >"$BATS_TEST_TMPDIR/json"
+	json '(lambda m: m["list_held"] and not m["scan_busy"])(d["masters"][0])' \
+		<"$BATS_TEST_TMPDIR/json"
+	json 'd["masters"][0]["slaves_responding"] == 4' <"$BATS_TEST_TMPDIR/json"
+	json 'd["masters"][0]["slaves"][1]["state"] == "LOST"' <"$BATS_TEST_TMPDIR/json"
+	FAKE_BUS=held out master -j | json 'd["masters"][0]["list_held"]'
+	FAKE_BUS=held out master -j | json 'd["masters"][0]["owner"] == "process 123 (demo)"'
+	out master -j | json '[d["masters"][0][k] for k in ("list_held", "owner")] == [False, None]'
+}
+
 @test "commands without data print nothing" {
 	for c in slaves "slaves -v" pdos cstruct crc config domains data; do
 		FAKE_BUS=empty run ethercat $c
