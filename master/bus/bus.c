@@ -4,6 +4,7 @@
 #include "slave.h"
 
 #define WORKERS	64	/* at least */
+#define SLAVES_PER_WORKER	16	/* while nothing is to be done */
 
 /**
  * ec_bus_init() - no slaves yet
@@ -24,10 +25,8 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	init_rwsem(&bus->topo);
 	spin_lock_init(&bus->scan_lock);
 	init_waitqueue_head(&bus->settled);
-	/* what one waits for is in another queue */
-	bus->workers = WORKERS;
-	bus->work = alloc_workqueue("ethercat%u", WQ_UNBOUND, WORKERS, base->index);
-	return bus->work ? 0 : -ENOMEM;
+	/* what one waits for is not done by another one */
+	return ec_workers_init(&bus->workers, base);
 }
 
 /**
@@ -35,20 +34,15 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
  * @bus: bus
  * @n: workers
  *
- * A worker takes 28 KB and stays for minutes. On the way to PREOP they wait for the wire, where
- * one for every second slave is as fast as one for each; on the way to OP for their slaves.
+ * A worker takes 33 KB. On the way to PREOP they wait for the wire, where one for every second
+ * slave is as fast as one for each; on the way to OP for their slaves. One for 16 slaves stays.
  *
- * Context: Process. May sleep.
+ * Context: Process.
  */
 void ec_bus_need_workers(struct ec_bus *bus, unsigned int n)
 {
-	n = min(n, (unsigned int)WQ_UNBOUND_MAX_ACTIVE);
-	down_write(&bus->topo);
-	if (n > bus->workers) {
-		bus->workers = n;
-		workqueue_set_max_active(bus->work, (int)n);
-	}
-	up_write(&bus->topo);
+	ec_workers_need(&bus->workers, max_t(unsigned int, n, WORKERS),
+			DIV_ROUND_UP(READ_ONCE(bus->n_slaves), SLAVES_PER_WORKER));
 }
 
 /**
@@ -59,9 +53,7 @@ void ec_bus_need_workers(struct ec_bus *bus, unsigned int n)
  */
 void ec_bus_stop(struct ec_bus *bus)
 {
-	if (bus->work)
-		destroy_workqueue(bus->work);
-	bus->work = NULL;
+	ec_workers_exit(&bus->workers);
 }
 
 /**

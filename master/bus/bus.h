@@ -9,8 +9,8 @@
 #include <linux/rwsem.h>
 #include <linux/spinlock.h>
 #include <linux/wait.h>
-#include <linux/workqueue.h>
 #include "../base/base.h"
+#include "workers.h"
 
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the list of slaves is used as it is */
 
@@ -118,10 +118,8 @@ struct ec_bus {
 	wait_queue_head_t settled;
 	/** @settles: how often it was woken; wraps */
 	atomic_t settles;
-	/** @work: workers that bring slaves to their state; they wait for clocks and cycles */
-	struct workqueue_struct *work;
-	/** @workers: of @work at once; under @topo */
-	unsigned int workers;
+	/** @workers: threads that bring slaves to their state; they wait for clocks and cycles */
+	struct ec_workers workers;
 };
 
 /* each slave of @bus: declares @s */

@@ -111,14 +111,14 @@ static void look(struct job *j)
  * @n: how many
  * @clean: their SyncManagers, FMMUs and SYNC units have been reset
  *
- * Context: The monitor thread. Waits for bus traffic, at most some 20 ms for
+ * Context: The monitor thread. Waits for bus traffic, and then at most some 20 ms for
  * slaves that are slow.
  */
 void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool clean)
 {
 	struct job j = { .bus = bus, .clean = clean };
-	u64 until = ktime_get_ns() + WAIT_NS;
 	unsigned int i, us = 100;
+	u64 until;
 
 	j.c = kvcalloc(n, sizeof(*j.c), GFP_KERNEL);
 	j.dg = kvcalloc(n, WRITES * sizeof(*j.dg), GFP_KERNEL);
@@ -130,6 +130,8 @@ void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 			j.c[j.n++].slave = slaves[i];
 	if (j.n)
 		start(&j);
+	/* the frames of a thousand slaves may take as long: none would be polled */
+	until = ktime_get_ns() + WAIT_NS;
 	while (j.n && !READ_ONCE(bus->base->stopping) && ktime_get_ns() < until) {
 		usleep_range(us, us + us / 4);
 		us = min(us * 2, 2000u);

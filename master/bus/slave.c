@@ -7,12 +7,18 @@
 
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
 
-static void work(struct work_struct *w)
+static void run_job(struct ec_job *job)
 {
-	struct ec_slave *s = container_of(w, struct ec_slave, work);
+	struct ec_slave *s = container_of(job, struct ec_slave, job);
 
 	if (s->bus->ops && s->bus->ops->configure)
 		s->bus->ops->configure(s);
+}
+
+static void end_job(struct ec_job *job)
+{
+	struct ec_slave *s = container_of(job, struct ec_slave, job);
+
 	atomic_dec_return_release(&s->works);
 	ec_bus_settled(s->bus);
 	ec_slave_unref(s);
@@ -47,7 +53,8 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->bus = bus;
 	s->station = station;
 	s->requested = EC_AL_PREOP;
-	INIT_WORK(&s->work, work);
+	s->job.run = run_job;
+	s->job.end = end_job;
 	mutex_init(&s->lock);
 	raw_spin_lock_init(&s->note_lock);
 	ec_stop_init(&s->stop, bus->base);
@@ -446,7 +453,7 @@ void ec_slave_kick(struct ec_slave *slave)
 {
 	ec_slave_ref(slave);
 	atomic_inc(&slave->works);
-	if (queue_work(slave->bus->work, &slave->work))
+	if (ec_workers_queue(&slave->bus->workers, &slave->job))
 		return;
 	/* the run that waits in the queue does it */
 	atomic_dec(&slave->works);

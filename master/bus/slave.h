@@ -6,7 +6,6 @@
 #include <linux/kref.h>
 #include <linux/mutex.h>
 #include <linux/spinlock.h>
-#include <linux/workqueue.h>
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "dict.h"
@@ -108,8 +107,8 @@ struct ec_break {
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
  * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
- * @work: brings it to @requested
- * @works: runs of @work that are queued or in progress
+ * @job: brings it to @requested
+ * @works: runs of @job that are queued or in progress
  * @unshown: messages that did not show in the IRQ field; the monitor's
  * @lock: one worker or caller at a time changes its state
  * @read_pdos: read the PDOs when it is there
@@ -185,7 +184,7 @@ struct ec_slave {
 	aligned_u64 retry_ns;
 	u32 retry_ms;
 	u64 seen_ns;
-	struct work_struct work;
+	struct ec_job job;
 	atomic_t works;
 	u8 unshown;
 	struct mutex lock;

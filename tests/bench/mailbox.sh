@@ -92,26 +92,34 @@ cycle() {
 	unchanged 9000 late_ns_max "largest lateness in ns"
 }
 
-# memory_of N: KiB with N slaves in kb; 1 if the guest does not run
+# memory_of N: KiB with N slaves in kb, 2 s after all are in PREOP in start_kb; 1 if the guest does
+# not run
 memory_of() {
 	guest "memory, $1 slaves" --timeout 1200 -- tests/bench/cycle/memory-guest.sh \
 		"$build" "$1" || return
 	kb=${v[memory_kb]}
-	echo "# with $1 slave(s): $kb KiB of the kernel and ${v[workers]} worker threads more"
+	start_kb=${v[start_kb]}
+	echo "# with $1 slave(s): $start_kb KiB of the kernel and ${v[start_workers]} threads of slaves" \
+		"after the start, $kb KiB and ${v[workers]} threads a minute later"
 }
 
 # The module, a device and the rest are in the memory with one slave.
 memory() {
-	local n one bytes
+	local n one start_one bytes most
 
 	memory_of 1 || return
-	one=$kb
+	one=$kb start_one=$start_kb
 	for n in 100 ${all:+1000}; do
 		memory_of "$n" || return
 		bytes=$(((kb - one) * 1024 / (n - 1)))
-		row "$bytes" 30000 "bytes of memory of each of $n slaves, stacks of threads included"
-		gate "each of $n slaves takes $bytes bytes, at most 30000" \
-			"bytes > 0 && bytes <= 30000"
+		most=$(((start_kb - start_one) * 1024 / (n - 1)))
+		row "$bytes" 20000 "bytes of memory of each of $n slaves, stacks of threads included"
+		gate "each of $n slaves takes $bytes bytes, at most 20000" \
+			"bytes > 0 && bytes <= 20000"
+		gate "each of $n slaves takes $most bytes after the start, at most 30000" \
+			"most > 0 && most <= 30000"
+		gate "${v[workers]} threads stay for $n slaves, one for 16 of them" \
+			"v[workers] == (n + 15) / 16"
 	done
 }
 

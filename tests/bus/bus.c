@@ -108,7 +108,7 @@ bool bus_settled(struct bus *b)
 	if (READ_ONCE(b->m->bus.scan_busy) || READ_ONCE(b->m->bus.rescan))
 		return false;
 	for (i = 0; i < b->m->bus.n_slaves; i++)
-		if (work_busy(&b->m->bus.slaves[i]->work))
+		if (ec_slave_busy(b->m->bus.slaves[i]))
 			return false;
 	return true;
 }
@@ -148,15 +148,25 @@ void bus_idle(struct bus *b)
 
 struct bus_crowd {
 	struct completion leave;
+	struct completion gone;
+	atomic_t there;
 	struct bus_guest {
-		struct work_struct work;
+		struct ec_job job;
 		struct bus_crowd *crowd;
 	} guests[];
 };
 
-static void stay(struct work_struct *work)
+static void stay(struct ec_job *job)
 {
-	wait_for_completion(&container_of(work, struct bus_guest, work)->crowd->leave);
+	wait_for_completion(&container_of(job, struct bus_guest, job)->crowd->leave);
+}
+
+static void go(struct ec_job *job)
+{
+	struct bus_crowd *crowd = container_of(job, struct bus_guest, job)->crowd;
+
+	if (atomic_dec_and_test(&crowd->there))
+		complete(&crowd->gone);
 }
 
 /**
@@ -165,15 +175,17 @@ static void stay(struct work_struct *work)
  */
 void bus_crowd(struct bus *b)
 {
-	u32 i, n = WQ_UNBOUND_MAX_ACTIVE;
+	u32 i, n = EC_MAX_WORKERS;
 
 	b->crowd = kvzalloc(struct_size(b->crowd, guests, n), GFP_KERNEL);
 	KUNIT_ASSERT_NOT_NULL(b->test, b->crowd);
 	init_completion(&b->crowd->leave);
+	init_completion(&b->crowd->gone);
+	atomic_set(&b->crowd->there, n);
 	for (i = 0; i < n; i++) {
 		b->crowd->guests[i].crowd = b->crowd;
-		INIT_WORK(&b->crowd->guests[i].work, stay);
-		queue_work(b->m->bus.work, &b->crowd->guests[i].work);
+		b->crowd->guests[i].job = (struct ec_job){ .run = stay, .end = go };
+		ec_workers_queue(&b->m->bus.workers, &b->crowd->guests[i].job);
 	}
 	msleep(20);
 }
@@ -184,13 +196,10 @@ void bus_crowd(struct bus *b)
  */
 void bus_crowd_leaves(struct bus *b)
 {
-	u32 i;
-
 	if (!b->crowd)
 		return;
 	complete_all(&b->crowd->leave);
-	for (i = 0; i < WQ_UNBOUND_MAX_ACTIVE; i++)
-		flush_work(&b->crowd->guests[i].work);
+	wait_for_completion(&b->crowd->gone);
 	kvfree(b->crowd);
 	b->crowd = NULL;
 }

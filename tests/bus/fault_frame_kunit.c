@@ -260,16 +260,16 @@ static void frame_foreign(struct kunit *test)
 
 /* one read in a thread of its own */
 struct reader {
-	struct work_struct work;
+	struct ec_job job;
 	struct bus *b;
 	u16 station;
 	int ret;
 	bool done;
 };
 
-static void read_type(struct work_struct *work)
+static void read_type(struct ec_job *job)
 {
-	struct reader *r = container_of(work, struct reader, work);
+	struct reader *r = container_of(job, struct reader, job);
 	u8 type[2];
 
 	r->ret = ec_xfer_fprd(&r->b->m->links, r->station, EC_REG_TYPE, type, 2);
@@ -297,9 +297,10 @@ static void frame_compared(struct kunit *test)
 
 	bus_idle(b);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 1000000);
-	r = (struct reader){ .b = b, .station = bus_slave(b, 1)->station };
-	INIT_WORK(&r.work, read_type);
-	queue_work(b->m->bus.work, &r.work);
+	r = (struct reader){
+		.job.run = read_type, .b = b, .station = bus_slave(b, 1)->station,
+	};
+	ec_workers_queue(&b->m->bus.workers, &r.job);
 	for (ms = 0; ms < 60; ms++) {
 		held += change_slots(b, EC_SLOT_SENT, EC_SLOT_FILL);
 		usleep_range(1000, 1001);

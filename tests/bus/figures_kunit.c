@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Figures in bus time, printed and held to their limits. */
 #include "cyc.h"
+#include "slow.h"
 
 /* a scan of @n slaves with @bytes of EEPROM each, 1 us of delay a slave */
 static struct bus *scan(struct kunit *test, u32 n, size_t bytes, bool eight)
@@ -68,6 +69,56 @@ static void figures_scan_frames(struct kunit *test)
 	KUNIT_EXPECT_LE(test, b->m->bus.scan_frames, 2200ull);
 }
 
+/* Frames for each of @n slaves until all are in PREOP, in hundredths. */
+static u64 frames_to_preop(struct kunit *test, u32 n, const char *transition, u32 slowness)
+{
+	char text[160];
+	struct bus *b;
+	u64 us, frames;
+	u32 whole, rest;
+
+	snprintf(text, sizeof(text),
+		 "segment seed=7 transition=%s\nrepeat %u slave d drive in=8 out=8\n", transition, n);
+	b = bus_new(test, text);
+	if (slowness)
+		slow_plug(b, 64, slowness);
+	else
+		bus_plug(b);
+	us = bus_wait(b, n, EC_AL_PREOP, 60000);
+	KUNIT_ASSERT_NE(test, us, ~0ull);
+	frames = ec_links_sent(&b->m->links);
+	frames = div_u64(100 * frames, n);
+	whole = (u32)div_u64_rem(frames, 100, &rest);
+	bus_figure("frames to PREOP, %u slaves, transition of %s%s: %u.%02u a slave, %llu us",
+		   n, transition, slowness ? ", 25 Mbit/s" : "", whole, rest, us);
+	bus_exit(test);
+	return frames;
+}
+
+/* More slaves need no more frames each, however long a transition and a frame take. */
+static void figures_frames_each(struct kunit *test)
+{
+	static const struct {
+		const char *transition;
+		u32 slowness;
+	} segments[] = { { "1ms", 0 }, { "15ms", 0 }, { "1ms", 4 }, { "15ms", 4 } };
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(segments); i++) {
+		const char *t = segments[i].transition;
+		u32 slowness = segments[i].slowness;
+		u64 some, many;
+
+		frames_to_preop(test, 100, t, slowness);
+		some = frames_to_preop(test, 500, t, slowness);
+		many = frames_to_preop(test, 1000, t, slowness);
+		bus_row(div64_u64(100 * many, some), 110,
+			"%% of the frames each of 500 slaves needs to PREOP: each of 1000, transition of %s%s",
+			t, slowness ? ", 25 Mbit/s" : "");
+		KUNIT_EXPECT_LE(test, 100 * many, 110 * some);
+	}
+}
+
 #define RESPONSE_US	100
 #define TRANSITION_US	1000
 
@@ -130,6 +181,7 @@ static struct kunit_case figures_cases[] = {
 	KUNIT_CASE(figures_scan_1000),
 	KUNIT_CASE(figures_scan_1000_4byte),
 	KUNIT_CASE(figures_scan_frames),
+	KUNIT_CASE(figures_frames_each),
 	KUNIT_CASE(figures_activate_100),
 	KUNIT_CASE(figures_activate_1000),
 	{}

@@ -255,8 +255,11 @@ static void life_device_gone_in_send(struct kunit *test)
 	times = 0;
 	ops.tx_send = gone_tx_send;
 	dev->ops = &ops;
-	for (i = 0; i < 1000 && !times; i++)
+	for (i = 0; i < 1000 && !times; i++) {
+		/* its worker reads the AL status */
+		ec_slave_kick(bus_slave(b, 0));
 		kcyc_wait_cycles(a, 1);
+	}
 	KUNIT_EXPECT_EQ(test, times, 1u);
 	dev->ops = real_ops;
 	kcyc_wait_cycles(a, 10);

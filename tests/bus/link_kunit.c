@@ -396,7 +396,8 @@ static void link_device_beside_cycle_waits_for_its_call(struct kunit *test)
 	ec_access_change(l, EC_ACCESS_CYCLIC);
 	KUNIT_ASSERT_TRUE(test, ec_access_enters(&l->access));
 	KUNIT_ASSERT_FALSE(test, IS_ERR(kthread_run(offer, &o, "offer")));
-	msleep(10);
+	/* not the two ticks that msleep() may take: the cycle times out then */
+	usleep_range(10000, 10001);
 	KUNIT_EXPECT_FALSE(test, completion_done(&o.done));
 	KUNIT_EXPECT_NULL(test, link->dev);
 	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&link->stats.rx_frames), 7ull);

@@ -219,11 +219,11 @@ static void retry_interrupted(struct kunit *test)
 	msleep(20000);
 	s = bus_slave(b, AI);
 	KUNIT_ASSERT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
-	for (i = 0; i < 70000 && (!work_busy(&s->work) || !READ_ONCE(s->stop.worker)); i++)
+	for (i = 0; i < 70000 && (!ec_slave_busy(s) || !READ_ONCE(s->stop.worker)); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 70000u);
 	ec_stop_interrupt(&s->stop, true);
-	for (i = 0; i < 1000 && work_busy(&s->work); i++)
+	for (i = 0; i < 1000 && ec_slave_busy(s); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 1000u);
 	ec_stop_interrupt(&s->stop, false);

@@ -99,7 +99,8 @@ static bool scan(struct ec_master *m)
 	WRITE_ONCE(m->bus.looked, true);
 	WRITE_ONCE(m->bus.slaves[AXIS]->read_pdos, true);
 	ec_slave_kick(m->bus.slaves[AXIS]);
-	flush_work(&m->bus.slaves[AXIS]->work);
+	while (ec_slave_busy(m->bus.slaves[AXIS]))
+		usleep_range(100, 200);
 	return true;
 }
 

@@ -79,7 +79,7 @@ static void requests_without_higher_layers_do_nothing(void)
 	if (!b)
 		return;
 	ec_slave_request(b->bus.slaves[1], EC_AL_OP);
-	flush_work(&b->bus.slaves[1]->work);
+	scanned_wait(b->bus.slaves[1]);
 	CHECK(!ec_slave_busy(b->bus.slaves[1]));
 	CHECK_EQ(b->bus.slaves[1]->al_status, EC_AL_PREOP);
 	ec_bus_rescan(&b->bus);

@@ -3,6 +3,7 @@
 #ifndef EC_SCANNED_H
 #define EC_SCANNED_H
 
+#include <linux/delay.h>
 #include "master/bus/bus.h"
 #include "master/bus/scan.h"
 #include "master/bus/slave.h"
@@ -47,6 +48,12 @@ static inline bool scanned_scan(struct scanned *s, unsigned int slaves)
 	WRITE_ONCE(s->bus.responding, slaves);
 	WRITE_ONCE(s->bus.looked, true);
 	return true;
+}
+
+static inline void scanned_wait(const struct ec_slave *s)
+{
+	while (ec_slave_busy(s))
+		usleep_range(100, 200);
 }
 
 #endif

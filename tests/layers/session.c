@@ -69,7 +69,7 @@ static struct bench *bench_new(void)
 		if (scanned_scan(&b->s, SLAVES)) {
 			b->s.bus.slaves[AXIS]->read_pdos = true;
 			ec_slave_kick(b->s.bus.slaves[AXIS]);
-			flush_work(&b->s.bus.slaves[AXIS]->work);
+			scanned_wait(b->s.bus.slaves[AXIS]);
 			return b;
 		}
 	}

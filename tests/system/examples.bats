@@ -245,3 +245,51 @@ bench_moves() {
 @test "dc_motion at the bench, follow: dc shows clocks and SYNC0" {
 	bench_moves follow clocks_are_shown
 }
+
+# us from the last activation until the last of the two drives was in OP; the reference clock goes
+# there as well, since it is not configured
+op_us() {
+	ethercat log --json | gojq '.masters[0].events | (map(.event) | rindex("activated")) as $at |
+		.[$at].monotonic_ns as $began | .[$at:] |
+		map(select(.event == "al_state" and .state == "OP" and .slave >= 3)) |
+		map(.monotonic_ns - $began) |
+		if length == 2 then max / 1000 | floor else error("\(length) in OP") end'
+}
+
+# soon WITH WITHOUT TEXT: 1.2 times the time and 0.1 s, as that of the VM may leap
+soon() {
+	echo "# $3: OP after $1 us with the reference clock synchronized to the application," \
+		"$2 us without: $((100 * $1 / $2)) %" | tee -a /dev/stderr >&3
+	[ "$1" -le $(($2 * 6 / 5 + 100000)) ]
+}
+
+@test "dc_motion: in OP as soon with lead as with follow" {
+	for reference in follow lead; do
+		example dc_motion $reference 3 4 3
+		wait "$app"
+		eval "$reference=$(op_us)"
+	done
+	app=
+	soon "$lead" "$follow" "dc_motion, 2 drives, cycle of 1000 us"
+}
+
+# other segments: at the end of this file
+@test "drives are in OP as soon with ecrt_master_sync_reference_clock() as without" {
+	for drives in 1 10 100; do
+		stop
+		printf '%s\n' "segment seed=12" "repeat $drives slave d drive in=8 out=8 drift=100ppm" \
+			>"$BATS_TEST_TMPDIR/segment"
+		start "$BATS_TEST_TMPDIR/segment" $drives
+		for period in 1000 4000; do
+			# a millisecond is little for 100 drives of the simulator and their master
+			[ "$drives $period" != "100 1000" ] || continue
+			out=$("$EC_BUILD/apps/dc_start" $drives $period 2)
+			soon "$(sed -n 's/^with_us //p' <<<"$out")" \
+				"$(sed -n 's/^without_us //p' <<<"$out")" \
+				"$drives drive(s), cycle of $period us"
+			wait_for 60 all_slaves_are PREOP $drives
+		done
+	done
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 5
+}

@@ -18,7 +18,7 @@ kernel_kb() {
 	awk '/^(SUnreclaim|VmallocUsed|Percpu):/ { kb += $2 } END { print kb }' /proc/meminfo
 }
 
-workers() { pgrep -c kworker; }
+workers() { pgrep -c '^EtherCAT.*-slv'; }
 
 preop() {
 	"$build/tool/ethercat" slaves 2>/dev/null |
@@ -28,7 +28,7 @@ preop() {
 modprobe veth && ip link add veth0 type veth peer name veth1 && ip link set veth1 up || exit 1
 chrt -f 1 "$build/tool/ethercat-sim" --segment "$segment" veth1 >/dev/null &
 sleep 2
-before=$(kernel_kb) workers=$(workers)
+before=$(kernel_kb)
 insmod "$build/modules/master/ec_master.ko" main_devices=veth0 &&
 	insmod "$build/modules/devices/ec_generic.ko" || exit 1
 for _ in {1..600}; do
@@ -37,7 +37,9 @@ for _ in {1..600}; do
 done
 preop || { "$build/tool/ethercat" master; "$build/tool/ethercat" slaves | tail -n 3; exit 1; }
 sleep 2
+echo "start_kb $(($(kernel_kb) - before))"
+echo "start_workers $(workers)"
+# idle ones end
+sleep 60
 echo "memory_kb $(($(kernel_kb) - before))"
-# one that was idle may have ended meanwhile
-workers=$(($(workers) - workers))
-echo "workers $((workers > 0 ? workers : 0))"
+echo "workers $(workers)"
