@@ -244,6 +244,11 @@ void ec_workers_exit(struct ec_workers *ws)
 		kfree(w);
 	}
 	INIT_LIST_HEAD(&ws->all);
+	/* a thread that is ended before it has run once does nothing */
+	spin_lock(&ws->lock);
+	while (ws->queued)
+		run_first(ws);
+	spin_unlock(&ws->lock);
 }
 
 /**
