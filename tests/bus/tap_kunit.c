@@ -210,7 +210,7 @@ static void tap_other_namespace_not_used(struct kunit *test)
 }
 
 /* The worker looks as long as a program captures, and no longer. */
-static void tap_worker_ends_with_the_program(struct kunit *test)
+static void tap_worker_ends_with_program(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
@@ -260,7 +260,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(tap_ring_full_drops_and_counts),
 	KUNIT_CASE(tap_without_program_not_used),
 	KUNIT_CASE(tap_other_namespace_not_used),
-	KUNIT_CASE(tap_worker_ends_with_the_program),
+	KUNIT_CASE(tap_worker_ends_with_program),
 	KUNIT_CASE(tap_without_link_shows_nothing),
 	{}
 };
