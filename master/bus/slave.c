@@ -14,6 +14,7 @@ static void work(struct work_struct *w)
 	if (s->bus->ops && s->bus->ops->configure)
 		s->bus->ops->configure(s);
 	atomic_dec_return_release(&s->works);
+	ec_slave_changed(s);
 	ec_bus_settled(s->bus);
 	ec_slave_unref(s);
 }
@@ -56,6 +57,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->mbox.stop = &s->stop;
 	s->mbox.sii = &s->info;
 	s->mbox.al_status = &s->al_status;
+	s->mbox.changes = &bus->changes;
 	s->mbox.position = &s->position;
 	s->mbox.station = station;
 	ec_mbox_init(&s->mbox);
@@ -220,6 +222,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 	slave->unreported |= other && !slave->listed;
 	other = other && slave->listed;
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	if (other)
 		report_failure(slave, text, error, cause);
 }
@@ -267,6 +270,7 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 		return;
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
+	ec_slave_changed(slave);
 	/* 0: not known before */
 	if (state != was && was)
 		ec_slave_event(slave, requested ? EC_EVENT_AL_STATE : EC_EVENT_AL_LEFT, state,
@@ -295,6 +299,7 @@ bool ec_slave_set_ok(struct ec_slave *slave, bool replies)
 		slave->cause = (struct ec_cause){ .kind = EC_CAUSE_NONE };
 	}
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	return ok;
 }
 
@@ -316,6 +321,7 @@ bool ec_slave_forgive(struct ec_slave *slave)
 	if (failed)
 		WRITE_ONCE(slave->error, EC_SLAVE_OK);
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	return failed;
 }
 
@@ -446,6 +452,7 @@ void ec_slave_kick(struct ec_slave *slave)
 {
 	ec_slave_ref(slave);
 	atomic_inc(&slave->works);
+	ec_slave_changed(slave);
 	if (queue_work(slave->bus->work, &slave->work))
 		return;
 	/* the run that waits in the queue does it */

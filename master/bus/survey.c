@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
 #include "../base/once64.h"
+#include "mailboxes.h"
 #include "slave.h"
 #include "survey.h"
 
@@ -23,6 +24,18 @@ bool ec_survey_is_due(const struct ec_slave *s, u64 now)
 }
 
 /**
+ * ec_survey_lasts() - is a survey true until @bus->changes counts?
+ * @survey: result of ec_survey()
+ *
+ * Context: The monitor thread.
+ * Return: false when time alone may change it, or the end of what is going on now.
+ */
+bool ec_survey_lasts(const struct ec_survey *survey)
+{
+	return !survey->chores && !survey->exchange && !survey->failed;
+}
+
+/**
  * ec_survey() - look at all slaves
  * @bus: bus
  * @survey: result
@@ -42,6 +55,8 @@ void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
 		survey->chores |= ec_slave_busy(s) || ec_survey_is_due(s, now) ||
 				  ec_slave_pdos_pending(s);
 		survey->exchange |= ec_mbox_in_use(&s->mbox);
+		survey->polled |= ec_mailboxes_polled(s);
+		survey->failed |= READ_ONCE(s->error) || READ_ONCE(s->silent);
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		survey->state = survey->state ?: want;
