@@ -225,7 +225,7 @@ static void rider_full_frame_carries_none(struct kunit *test)
 }
 
 /*
- * While all is well the interrupt of a timer looks at the rider, and the monitor at each fifth only;
+ * While all is well the interrupt of a timer looks at the rider, and the monitor at each fifth;
  * what changes wakes it as soon as it would look.
  */
 static void rider_monitor_sleeps_while_all_is_well(struct kunit *test)
