@@ -6,6 +6,7 @@
 #include "boundary/master.h"
 #include "event_log.h"
 #include "monitor.h"
+#include "quiet.h"
 #include "base/once64.h"
 #include "bus/mailboxes.h"
 #include "bus/slave.h"
@@ -15,6 +16,7 @@
 #include "wire/regs.h"
 
 #define PERIOD_MS	20
+#define SLACK_MS	4	/* by which a look may be earlier while all is well */
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
@@ -41,7 +43,9 @@ struct watch {
 	u64 rates_ns;
 	u64 alone_ns;		/* no rider before that time */
 	bool well;		/* all slaves are in the state they shall have */
-	struct ec_survey survey;	/* if so, of all slaves then */
+	struct ec_survey survey;	/* of all slaves */
+	u32 changes;		/* of them before it */
+	u64 survey_ns;		/* when; 0: anew */
 	bool riding;		/* the rider is on its way; its reply is for the next look */
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
@@ -49,6 +53,7 @@ struct watch {
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
 	u64 event;		/* number of the next one for the kernel log */
+	struct ec_quiet quiet;	/* looks of the timer */
 };
 
 static void check_links(struct watch *w)
@@ -195,6 +200,21 @@ static void set_rider(struct ec_rider *r, const struct ec_dg *dg)
 	memset(r->data, 0, dg->len);
 }
 
+/* Slaves that have not changed need no look. */
+static void survey(struct watch *w)
+{
+	/* the count before the slaves */
+	u32 changes = atomic_read_acquire(&w->m->bus.changes);
+	u64 now = ktime_get_ns();
+
+	if (w->survey_ns && changes == w->changes && ec_survey_lasts(&w->survey) &&
+	    now - w->survey_ns < EC_SURVEY_NS)
+		return;
+	w->changes = changes;
+	w->survey_ns = now;
+	ec_survey(&w->m->bus, &w->survey);
+}
+
 /*
  * AL status of all slaves and their number. The first try goes with the cycle if that carries
  * it; only a frame of its own decides that no slave is there.
@@ -261,7 +281,7 @@ static void ask_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
-	ec_survey(&m->bus, &w->survey);
+	survey(w);
 	if (w->scanned && count && wkc >= w->survey.replying)
 		m->bus.complete_ns = ktime_get_ns();
 	w->well = w->scanned && as_wanted(&w->survey, ored, wkc);
@@ -300,7 +320,7 @@ static bool all_well(struct watch *w)
 	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count)
 		return false;
 	ored = get_unaligned_le16(r->data);
-	ec_survey(&m->bus, &w->survey);
+	survey(w);
 	if (!as_wanted(&w->survey, ored, r->wkc))
 		return false;
 	/* the last slave may have come to its state since the last look */
@@ -478,6 +498,7 @@ static void maybe_scan(struct watch *w)
 	} else {
 		w->same = 0;
 	}
+	w->survey_ns = 0;
 	WRITE_ONCE(m->bus.scan_busy, false);
 	ec_bus_settled(&m->bus);
 }
@@ -530,16 +551,42 @@ static void stand_still(struct ec_master *m)
 	WRITE_ONCE(m->paused, false);
 }
 
+/*
+ * Until the next look, or what wakes the monitor. While all is well the timer may expire together
+ * with that of the cycle: an interrupt of its own costs as much as a look.
+ */
+static void quiet_sleep(struct watch *w)
+{
+	struct ec_quiet *q = &w->quiet;
+	bool quiet = w->riding && w->well && !w->woken;
+	unsigned int ms = w->same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS;
+
+	if (quiet) {
+		q->count = w->count;
+		q->survey = &w->survey;
+		q->changes = w->changes;
+		q->event = w->event;
+		/* an AL event that stays is no news */
+		q->events = EC_ECAT_EVENT_SM(1) | (w->watched & EC_ECAT_EVENT_AL);
+		q->until_ns = w->rates_ns + NSEC_PER_SEC;
+		q->ride_ns = w->ride_ns;
+		ms -= SLACK_MS;
+		ec_quiet_allow(q);
+	}
+	ec_quiet_sleep(q, ms_to_ktime(ms), quiet ? SLACK_MS * NSEC_PER_MSEC : 0);
+	if (quiet)
+		w->ride_ns = q->ride_ns;
+}
+
 static int monitor(void *data)
 {
 	struct watch w = { .m = data };
 	struct ec_master *m = w.m;
 	bool idle;
 
+	ec_quiet_init(&w.quiet, m);
 	WRITE_ONCE(m->links.monitor, current);
 	while (!kthread_should_stop()) {
-		ktime_t to;
-
 		if (READ_ONCE(m->pause))
 			stand_still(m);
 		check_links(&w);
@@ -564,17 +611,17 @@ static int monitor(void *data)
 		ec_event_log(m->base, &w.event);
 		ec_log_flush(m->base, false);
 		ec_event_readers_kick(m);
-		to = ms_to_ktime(w.same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS);
 		set_current_state(TASK_IDLE);
 		watch_events(&w);
 		if (!kthread_should_stop() && !READ_ONCE(m->pause) &&
 		    (!READ_ONCE(m->bus.rescan) || READ_ONCE(m->bus.held)))
-			schedule_hrtimeout(&to, HRTIMER_MODE_REL);
+			quiet_sleep(&w);
 		__set_current_state(TASK_RUNNING);
 		w.woken = w.watched && !READ_ONCE(m->links.events);
 	}
 	if (w.riding)
 		ec_rider_end(&m->rider);
+	ec_quiet_exit(&w.quiet);
 	return 0;
 }
 

@@ -114,6 +114,11 @@ struct ec_bus {
 	/** @al_states: OR of AL states, as in struct ec_ioc_master */
 	u32 al_states;
 
+	/**
+	 * @changes: of the slaves, as far as ec_survey() or the status of an application shows
+	 * them; see ec_slave_changed(); wraps
+	 */
+	atomic_t changes;
 	/** @settled: woken when a scan has ended or a slave has settled */
 	wait_queue_head_t settled;
 	/** @settles: how often it was woken; wraps */

@@ -18,10 +18,22 @@
 #define VAIN		5			/* looks at an event, then at most every SOME_NS */
 #define UNSHOWN		3			/* messages without event, then it is one of them */
 
+/**
+ * ec_mailboxes_polled() - does a full mailbox of the slave show as no event?
+ * @s: slave
+ *
+ * Context: The monitor thread.
+ * Return: true, then ec_mailboxes_look() has to be called often.
+ */
+bool ec_mailboxes_polled(const struct ec_slave *s)
+{
+	return s->unshown == UNSHOWN || s->mbox.strict;
+}
+
 /* Is its mailbox worth a look? A caller that uses it fetches all there is. */
 static bool is_candidate(struct ec_slave *s, bool all)
 {
-	return (all || s->unshown == UNSHOWN || s->mbox.strict) && ec_mbox_present(&s->mbox) &&
+	return (all || ec_mailboxes_polled(s)) && ec_mbox_present(&s->mbox) &&
 	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
 	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
 	       !ec_mbox_in_use(&s->mbox);

@@ -6,8 +6,10 @@
 #include <linux/types.h>
 
 struct ec_bus;
+struct ec_slave;
 
 const u8 *ec_mailboxes_mask(bool mailbox);
+bool ec_mailboxes_polled(const struct ec_slave *s);
 u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange);
 bool ec_mailboxes_look(struct ec_bus *bus, u16 irq);
 

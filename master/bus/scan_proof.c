@@ -67,8 +67,9 @@ static enum doubt check(const struct scan *sc, unsigned int i, const struct ec_d
 
 	if (known && !sc->regs[i].there)
 		return dg[1].wkc ? KNOWN : NONE;
+	/* unless it failed because it has lost its address: power was off for a moment */
 	if (!known && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-		return NONE;
+		return dg[0].wkc == 1 && get_unaligned_le16(r->station) != s->station ? NEW : NONE;
 	if (dg[0].wkc != 1 || get_unaligned_le16(r->station) != s->station || dg[1].wkc != 1)
 		return known ? KNOWN : NEW;
 	return changed & PORTS ? NEW : NONE;

@@ -20,6 +20,7 @@ static void end_job(struct ec_job *job)
 	struct ec_slave *s = container_of(job, struct ec_slave, job);
 
 	atomic_dec_return_release(&s->works);
+	ec_slave_changed(s);
 	ec_bus_settled(s->bus);
 	ec_slave_unref(s);
 }
@@ -63,6 +64,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->mbox.stop = &s->stop;
 	s->mbox.sii = &s->info;
 	s->mbox.al_status = &s->al_status;
+	s->mbox.changes = &bus->changes;
 	s->mbox.position = &s->position;
 	s->mbox.station = station;
 	ec_mbox_init(&s->mbox);
@@ -227,6 +229,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 	slave->unreported |= other && !slave->listed;
 	other = other && slave->listed;
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	if (other)
 		report_failure(slave, text, error, cause);
 }
@@ -274,6 +277,7 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 		return;
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
+	ec_slave_changed(slave);
 	/* 0: not known before */
 	if (state != was && was)
 		ec_slave_event(slave, requested ? EC_EVENT_AL_STATE : EC_EVENT_AL_LEFT, state,
@@ -302,6 +306,7 @@ bool ec_slave_set_ok(struct ec_slave *slave, bool replies)
 		slave->cause = (struct ec_cause){ .kind = EC_CAUSE_NONE };
 	}
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	return ok;
 }
 
@@ -323,6 +328,7 @@ bool ec_slave_forgive(struct ec_slave *slave)
 	if (failed)
 		WRITE_ONCE(slave->error, EC_SLAVE_OK);
 	raw_spin_unlock(&slave->note_lock);
+	ec_slave_changed(slave);
 	return failed;
 }
 
@@ -453,6 +459,7 @@ void ec_slave_kick(struct ec_slave *slave)
 {
 	ec_slave_ref(slave);
 	atomic_inc(&slave->works);
+	ec_slave_changed(slave);
 	if (ec_workers_queue(&slave->bus->workers, &slave->job))
 		return;
 	/* the run that waits in the queue does it */

@@ -257,6 +257,20 @@ int ec_al_ack(struct ec_slave *slave);
 int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
 
 /**
+ * ec_slave_changed() - what ec_survey() or ec_config_status() reads of a slave was written
+ * @slave: slave
+ *
+ * A reader of @bus->changes that then reads the slave misses no change.
+ *
+ * Context: Any. RT-safe.
+ */
+static inline void ec_slave_changed(struct ec_slave *slave)
+{
+	/* what was written before the count */
+	atomic_inc_return_release(&slave->bus->changes);
+}
+
+/**
  * ec_slave_busy() - is the worker bringing the slave to a state, or about to?
  * @slave: slave
  *

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
 #include "../base/once64.h"
+#include "mailboxes.h"
 #include "slave.h"
 #include "survey.h"
 
@@ -20,6 +21,18 @@ bool ec_survey_is_due(const struct ec_slave *s, u64 now)
 		return false;
 	at = ec_read64(&s->retry_ns);
 	return at && now >= at;
+}
+
+/**
+ * ec_survey_lasts() - is a survey true until @bus->changes counts?
+ * @survey: result of ec_survey()
+ *
+ * Context: The monitor thread.
+ * Return: false when time alone may change it, or the end of what is going on now.
+ */
+bool ec_survey_lasts(const struct ec_survey *survey)
+{
+	return !survey->chores && !survey->exchange && !survey->failed;
 }
 
 /**
@@ -43,6 +56,8 @@ void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
 				  ec_slave_pdos_pending(s);
 		survey->exchange |= ec_mbox_in_use(&s->mbox);
 		survey->silent |= READ_ONCE(s->silent);
+		survey->polled |= ec_mailboxes_polled(s);
+		survey->failed |= READ_ONCE(s->error) || READ_ONCE(s->silent);
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		survey->state = survey->state ?: want;

@@ -5,6 +5,9 @@
 
 #include "bus.h"
 
+/* slaves that have not changed are looked at so often: there may be a change that does not count */
+#define EC_SURVEY_NS	NSEC_PER_SEC
+
 /** struct ec_survey - what the monitor has to know of all slaves */
 struct ec_survey {
 	/** @replying: slaves that have to reply */
@@ -19,9 +22,14 @@ struct ec_survey {
 	bool chores;
 	/** @exchange: a caller exchanges messages with one */
 	bool exchange;
+	/** @polled: the mailbox of one has to be looked at often */
+	bool polled;
+	/** @failed: one has failed or does not reply, and will be tried again */
+	bool failed;
 };
 
 bool ec_survey_is_due(const struct ec_slave *s, u64 now);
+bool ec_survey_lasts(const struct ec_survey *survey);
 void ec_survey(const struct ec_bus *bus, struct ec_survey *survey);
 
 #endif

@@ -24,7 +24,7 @@ MODULE_PARM_DESC(capture, "1: an interface eccap<N> per master shows its frames 
  * @frame: from its destination address
  * @len: bytes there
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
  * Return: false when a program wants the frame and there is no room for it.
  */
 bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
@@ -39,7 +39,7 @@ bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
  * @data: what follows the EtherType
  * @len: bytes there
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
  * Return: false when a program wants the frame and there is no room for it.
  */
 bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len)

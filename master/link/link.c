@@ -55,7 +55,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
  * @frame: the frame
  * @len: its bytes, with padding
  *
- * Context: The owner of the link. RT-safe.
+ * Context: The owner of the link, in an RCU read section. RT-safe.
  */
 void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len)
 {
@@ -64,7 +64,8 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
 	if (READ_ONCE(link->links->base->debug) >= 2)
 		ec_link_trace(link, "sent", frame + EC_ETH_HDR, len - EC_ETH_HDR);
 	/* while the link is down no frame leaves */
-	if (capture && dev->ops->link_up(dev->priv) && !ec_capture_sent(capture, frame, len))
+	if (capture && ec_tap_wanted(&capture->tap) && dev->ops->link_up(dev->priv) &&
+	    !ec_capture_sent(capture, frame, len))
 		atomic64_inc(&link->stats.not_captured);
 }
 

@@ -70,6 +70,31 @@ void ec_rider_begin(struct ec_links *l, struct ec_rider *r)
 }
 
 /**
+ * ec_rider_is_back() - has the rider come back?
+ * @r: rider after ec_rider_begin()
+ *
+ * Context: Any; the owner of @r. RT-safe.
+ * Return: true, then its results are in @r.
+ */
+bool ec_rider_is_back(const struct ec_rider *r)
+{
+	return atomic_read_acquire(&r->state) == EC_RIDER_BACK;
+}
+
+/**
+ * ec_rider_again() - let the next frame of the cycle carry it again
+ * @l: links
+ * @r: rider that is back; its data are 0 again
+ *
+ * Context: Any; the owner of @r. RT-safe.
+ */
+void ec_rider_again(struct ec_links *l, struct ec_rider *r)
+{
+	memset(r->data, 0, r->len);
+	queue(l, r);
+}
+
+/**
  * ec_rider_end() - take a rider back, whatever has become of it
  * @r: rider after ec_rider_begin()
  *

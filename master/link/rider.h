@@ -81,6 +81,8 @@ struct ec_riding {
 
 int ec_rider_register(struct ec_links *l, struct ec_rider *r);
 void ec_rider_begin(struct ec_links *l, struct ec_rider *r);
+bool ec_rider_is_back(const struct ec_rider *r);
+void ec_rider_again(struct ec_links *l, struct ec_rider *r);
 int ec_rider_end(struct ec_rider *r);
 int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
 void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,

@@ -2,9 +2,11 @@
 /*
  * What capture programs see. The cycle only copies a frame into a ring, and only
  * while a program captures; a worker makes socket buffers of the copies. So no
- * program holds a buffer of the cycle, however long it does not read.
+ * program holds a buffer of the cycle, however long it does not read. The first frame
+ * wakes the worker, which then looks by itself as long as a program captures.
  */
 #include <linux/etherdevice.h>
+#include <linux/jiffies.h>
 #include <linux/module.h>
 #include <linux/netdevice.h>
 #include <linux/skbuff.h>
@@ -27,11 +29,6 @@ struct ec_tap_frame {
 	u8 data[EC_ETH_MAX];
 };
 
-static bool wanted(const struct ec_tap *t)
-{
-	return netif_running(t->nd) && dev_nit_active(t->nd);
-}
-
 /* the next free entry, until publish() */
 static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 {
@@ -53,7 +50,11 @@ static void publish(struct ec_tap *t)
 	lockdep_assert_held(&t->lock);
 	/* the frame before the head */
 	smp_store_release(&t->head, t->head + 1);
-	queue_work(system_highpri_wq, &t->work);
+	if (unlikely(!t->awake)) {
+		t->awake = true;
+		/* unbound: not on the CPU of the cycle */
+		queue_delayed_work(system_unbound_wq, &t->work, 0);
+	}
 }
 
 /**
@@ -62,7 +63,7 @@ static void publish(struct ec_tap *t)
  * @frame: from its destination address
  * @len: bytes there
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
  * Return: false when a program wants the frame and the ring is full.
  */
 bool ec_tap_sent(struct ec_tap *t, const u8 *frame, size_t len)
@@ -70,7 +71,7 @@ bool ec_tap_sent(struct ec_tap *t, const u8 *frame, size_t len)
 	struct ec_tap_frame *f;
 	unsigned long flags;
 
-	if (!wanted(t) || len > EC_ETH_MAX)
+	if (!ec_tap_wanted(t) || len > EC_ETH_MAX)
 		return true;
 	raw_spin_lock_irqsave(&t->lock, flags);
 	f = reserve(t, true);
@@ -91,7 +92,7 @@ EXPORT_SYMBOL_GPL(ec_tap_sent);
  * @data: what follows the EtherType
  * @len: bytes there
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
  * Return: false when a program wants the frame and the ring is full.
  */
 bool ec_tap_received(struct ec_tap *t, const u8 *src, const u8 *data, size_t len)
@@ -99,7 +100,7 @@ bool ec_tap_received(struct ec_tap *t, const u8 *src, const u8 *data, size_t len
 	struct ec_tap_frame *f;
 	unsigned long flags;
 
-	if (!wanted(t) || len > EC_ETH_MAX - EC_ETH_HDR)
+	if (!ec_tap_wanted(t) || len > EC_ETH_MAX - EC_ETH_HDR)
 		return true;
 	raw_spin_lock_irqsave(&t->lock, flags);
 	f = reserve(t, false);
@@ -138,9 +139,25 @@ static void show(struct ec_tap *t, const struct ec_tap_frame *f)
 	local_bh_enable();
 }
 
+/* May the worker sleep until the next frame wakes it? */
+static bool is_over(struct ec_tap *t)
+{
+	unsigned long flags;
+	bool over;
+
+	rcu_read_lock();
+	raw_spin_lock_irqsave(&t->lock, flags);
+	over = t->tail == t->head && !ec_tap_wanted(t);
+	if (over)
+		t->awake = false;
+	raw_spin_unlock_irqrestore(&t->lock, flags);
+	rcu_read_unlock();
+	return over;
+}
+
 static void worker(struct work_struct *w)
 {
-	struct ec_tap *t = container_of(w, struct ec_tap, work);
+	struct ec_tap *t = container_of(w, struct ec_tap, work.work);
 
 	/* the head before the frame */
 	while (t->tail != smp_load_acquire(&t->head)) {
@@ -149,6 +166,8 @@ static void worker(struct work_struct *w)
 		smp_store_release(&t->tail, t->tail + 1);
 		cond_resched();
 	}
+	if (!is_over(t))
+		queue_delayed_work(system_unbound_wq, &t->work, msecs_to_jiffies(EC_TAP_MS));
 }
 
 /**
@@ -164,7 +183,7 @@ int ec_tap_init(struct ec_tap *t, struct net_device *nd)
 {
 	*t = (struct ec_tap){ .nd = nd };
 	raw_spin_lock_init(&t->lock);
-	INIT_WORK(&t->work, worker);
+	INIT_DELAYED_WORK(&t->work, worker);
 	t->ring = vzalloc(array_size(EC_TAP_RING, sizeof(*t->ring)));
 	return t->ring ? 0 : -ENOMEM;
 }
@@ -180,7 +199,7 @@ void ec_tap_exit(struct ec_tap *t)
 {
 	if (!t->ring)
 		return;
-	cancel_work_sync(&t->work);
+	cancel_delayed_work_sync(&t->work);
 	vfree(t->ring);
 	t->ring = NULL;
 }

@@ -3,25 +3,29 @@
 #ifndef EC_TAP_H
 #define EC_TAP_H
 
+#include <linux/netdevice.h>
+#include <linux/rculist.h>
 #include <linux/spinlock.h>
 #include <linux/types.h>
 #include <linux/workqueue.h>
+#include <net/net_namespace.h>
 
 #define EC_TAP_RING	512	/* frames; power of 2 */
+#define EC_TAP_MS	8	/* between two looks of the worker; the timer adds a tick */
 
 struct ec_tap_frame;
-struct net_device;
 
 /**
  * struct ec_tap - frames on their way to the capture programs of an interface
  * @nd: the interface
- * @lock: protects @head and @dropped
+ * @lock: protects @head, @awake and @dropped
  * @head: next to be filled, by the sender or receiver of the frame
  * @tail: next to be shown, by the worker
  * @shown: frames shown
  * @bytes: of these
  * @dropped: frames that found the ring full, or no memory
- * @work: shows the content of the ring
+ * @awake: @work runs or waits for its time
+ * @work: shows the content of the ring, again and again while a program captures
  * @ring: frames
  */
 struct ec_tap {
@@ -32,9 +36,31 @@ struct ec_tap {
 	aligned_u64 shown;
 	aligned_u64 bytes;
 	aligned_u64 dropped;
-	struct work_struct work;
+	bool awake;
+	struct delayed_work work;
 	struct ec_tap_frame *ring;
 };
+
+/**
+ * ec_tap_wanted() - may a program capture at the interface?
+ * @t: tap
+ *
+ * dev_nit_active() is true for a packet socket in any network namespace. Every user can have
+ * one in a namespace of his own, which gets no frame from here. So only a handler at this
+ * interface or a packet socket in the namespace of the interface costs more than this look.
+ *
+ * Context: Any, in an RCU read section. RT-safe.
+ * Return: false when no program does.
+ */
+static __always_inline bool ec_tap_wanted(const struct ec_tap *t)
+{
+	struct net_device *nd = t->nd;
+
+	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "the namespace may go away");
+	if (likely(list_empty(&nd->ptype_all) && hlist_empty(&dev_net(nd)->packet.sklist)))
+		return false;
+	return netif_running(nd) && dev_nit_active(nd);
+}
 
 int ec_tap_init(struct ec_tap *t, struct net_device *nd);
 void ec_tap_exit(struct ec_tap *t);

@@ -201,6 +201,9 @@ void ec_mbox_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 	ec_mbox_hurry(mb);
 	ec_mbox_go(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	/* the caller before the count */
+	if (mb->changes)
+		atomic_inc_return_release(mb->changes);
 }
 
 /* The message was not the one: wait for another. */

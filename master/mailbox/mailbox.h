@@ -82,6 +82,8 @@ struct ec_mbox {
 	const struct ec_sii_info *sii;
 	/** @al_status: below PREOP there is no mailbox; pointer immutable */
 	const u16 *al_status;
+	/** @changes: counts callers that come; NULL: nobody wants to know; pointer immutable */
+	atomic_t *changes;
 	/** @position: ring position, for the log; pointer immutable */
 	const u16 *position;
 	/** @station: station address, immutable */

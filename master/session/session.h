@@ -111,6 +111,8 @@ struct ec_sessions {
  * @wanted: slave configurations and domains
  * @timeout_log: cycle timeouts of the application in the log
  * @notes: its counters in the events
+ * @configs_seen: changes of the slaves before the status of the configurations was written
+ * @configs_ns: when that was (ktime)
  * @cycle: its cycle, and whose it is
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
@@ -131,6 +133,8 @@ struct ec_session {
 	struct ec_wanted wanted;
 	struct ec_timeout_log timeout_log;
 	struct ec_count_notes notes;
+	u32 configs_seen;
+	u64 configs_ns;
 	struct ec_cycle cycle;
 	u32 ref_config;
 	struct ec_request_spec *specs;

@@ -41,6 +41,7 @@ void ec_session_detach(struct ec_config *c)
 		return;
 	}
 	c->slave = NULL;
+	ec_slave_changed(slave);
 	setup = ec_setup_of(slave);
 	ec_emerg_set(&slave->mbox, NULL);
 	ec_mbox_keep_voe(&slave->mbox, false);

@@ -7,6 +7,7 @@
 #include "request.h"
 #include "session.h"
 #include "../bus/slave.h"
+#include "../bus/survey.h"
 
 /*
  * A timeout and its end are two lines, at most once in 10 s: on a busy host a cycle may time out
@@ -111,6 +112,29 @@ static void status_links(struct ec_sessions *ss, struct ec_status *st)
 	WRITE_ONCE(st->link_count, i);
 }
 
+static void status_bus(struct ec_session *s)
+{
+	struct ec_status *st = s->cycle.shared->status;
+	struct ec_sessions *ss = s->sessions;
+
+	WRITE_ONCE(st->slaves_responding, READ_ONCE(ss->bus->responding));
+	WRITE_ONCE(st->al_states, READ_ONCE(ss->bus->al_states));
+	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
+	status_links(ss, st);
+}
+
+static void status_configs(struct ec_session *s)
+{
+	struct ec_status *st = s->cycle.shared->status;
+
+	lockdep_assert_held(s->wanted.lock);
+	/* the count before the slaves */
+	s->configs_seen = atomic_read_acquire(&s->sessions->bus->changes);
+	s->configs_ns = ktime_get_ns();
+	ec_for_each_config(c, &s->wanted)
+		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
+}
+
 /**
  * ec_session_fill_status() - write the state of the bus to the status page
  * @s: active session, or one that is about to be
@@ -122,16 +146,8 @@ static void status_links(struct ec_sessions *ss, struct ec_status *st)
  */
 void ec_session_fill_status(struct ec_session *s)
 {
-	struct ec_status *st = s->cycle.shared->status;
-	struct ec_sessions *ss = s->sessions;
-
-	lockdep_assert_held(s->wanted.lock);
-	WRITE_ONCE(st->slaves_responding, READ_ONCE(ss->bus->responding));
-	WRITE_ONCE(st->al_states, READ_ONCE(ss->bus->al_states));
-	WRITE_ONCE(st->link_up, ec_links_any_up(ss->links));
-	status_links(ss, st);
-	ec_for_each_config(c, &s->wanted)
-		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
+	status_bus(s);
+	status_configs(s);
 }
 
 /**
@@ -144,6 +160,7 @@ void ec_session_fill_status(struct ec_session *s)
 void ec_session_status(struct ec_sessions *ss, bool scanned)
 {
 	struct ec_session *s;
+	u64 now;
 
 	/* held by an activation: next time then */
 	if (!ec_sessions_trylock(ss))
@@ -152,7 +169,8 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_session_clocks(ss);
 	s = ss->session;
 	if (s && s->wanted.active) {
-		log_timeouts(s, ktime_get_ns());
+		now = ktime_get_ns();
+		log_timeouts(s, now);
 		ec_session_note_counts(s, false, false);
 		ec_pll_log(&s->cycle);
 		ec_cycle_thread_check_cpu(&s->cycle);
@@ -162,7 +180,10 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_cycle_tell_stale(&s->cycle);
 		if (!s->cycle.thread || ec_cycle_thread_ended(&s->cycle))
 			ec_requests_notice(&s->cycle);
-		ec_session_fill_status(s);
+		status_bus(s);
+		if (s->configs_seen != (u32)atomic_read(&ss->bus->changes) ||
+		    now - s->configs_ns >= EC_SURVEY_NS)
+			status_configs(s);
 	}
 	mutex_unlock(&ss->lock);
 }

@@ -224,6 +224,44 @@ static void rider_full_frame_carries_none(struct kunit *test)
 	cyc_release(c);
 }
 
+/*
+ * While all is well the interrupt of a timer looks at the rider, and the monitor at each fifth;
+ * what changes wakes it as soon as it would look.
+ */
+static void rider_monitor_sleeps_while_all_is_well(struct kunit *test)
+{
+	struct cyc *c = start(test, text, N);
+	struct ec_master *m = c->b->m;
+	unsigned long looks;
+	u32 rides;
+	u64 t;
+
+	/* now it is in step */
+	cyc_run(c, 200);
+	looks = READ_ONCE(m->monitor->nvcsw);
+	rides = riders(c)->seq;
+	t = ktime_get_ns();
+	while (ktime_get_ns() - t < 2 * NSEC_PER_SEC) {
+		cyc_run(c, 1);
+		KUNIT_EXPECT_LE(test, seen_us(c), 50000ull);
+	}
+	looks = READ_ONCE(m->monitor->nvcsw) - looks;
+	rides = riders(c)->seq - rides;
+	bus_figure("2 s in OP: %u riders, the monitor has slept %lu times", rides, looks);
+	KUNIT_EXPECT_GE(test, rides, 80u);
+	KUNIT_EXPECT_LE(test, looks, 30ul);
+	/* it still looks by itself */
+	KUNIT_EXPECT_GE(test, looks, 15ul);
+	bus_fault(c->b, EC_SIM_FAULT_CUT, N - 2, 1, 0, 0);
+	t = ktime_get_ns();
+	while (READ_ONCE(m->bus.responding) == N && ktime_get_ns() - t < NSEC_PER_SEC)
+		cyc_run(c, 1);
+	t = ktime_get_ns() - t;
+	bus_figure("a slave is cut off: known after %llu us", div_u64(t, NSEC_PER_USEC));
+	KUNIT_EXPECT_LE(test, t, 50 * NSEC_PER_MSEC);
+	cyc_release(c);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(rider_beside_process_data_not_counted),
 	KUNIT_CASE(rider_in_kernel_cycle_not_counted),
@@ -231,6 +269,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(rider_without_cycle_monitor_continues),
 	KUNIT_CASE(rider_without_wire_time_waits),
 	KUNIT_CASE(rider_full_frame_carries_none),
+	KUNIT_CASE(rider_monitor_sleeps_while_all_is_well),
 	{}
 };
 

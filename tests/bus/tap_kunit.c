@@ -3,6 +3,7 @@
  * A capture program gets its frames through a ring which the cycle fills. When nothing
  * empties it, frames are dropped and counted, and the cycle does not notice.
  */
+#include <linux/net.h>
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include "cyc.h"
@@ -71,15 +72,16 @@ static struct cyc *captured(struct kunit *test, struct program *p)
 /* A work that counts as queued is not queued again: so the worker does not run. */
 static void hold_worker(struct ec_tap *t)
 {
-	flush_work(&t->work);
-	set_bit(WORK_STRUCT_PENDING_BIT, work_data_bits(&t->work));
+	flush_delayed_work(&t->work);
+	cancel_delayed_work_sync(&t->work);
+	set_bit(WORK_STRUCT_PENDING_BIT, work_data_bits(&t->work.work));
 }
 
 static void release_worker(struct ec_tap *t)
 {
-	clear_bit(WORK_STRUCT_PENDING_BIT, work_data_bits(&t->work));
-	queue_work(system_highpri_wq, &t->work);
-	flush_work(&t->work);
+	clear_bit(WORK_STRUCT_PENDING_BIT, work_data_bits(&t->work.work));
+	queue_delayed_work(system_unbound_wq, &t->work, 0);
+	flush_delayed_work(&t->work);
 }
 
 static u32 not_captured(struct bus *b)
@@ -103,7 +105,7 @@ static void tap_worker_runs_all_captured(struct kunit *test)
 	u64 frames = bus_frames(c->b);
 
 	cyc_run(c, 1000);
-	flush_work(&c->b->m->links.capture->tap.work);
+	flush_delayed_work(&c->b->m->links.capture->tap.work);
 	frames = bus_frames(c->b) - frames;
 	dev_remove_pack(&p.pt);
 	KUNIT_EXPECT_EQ(test, p.bad, 0u);
@@ -153,6 +155,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 	release_worker(t);
 	KUNIT_EXPECT_EQ(test, p.sent + p.received - had, (u32)EC_TAP_RING);
 	cyc_run(c, 510);
+	flush_delayed_work(&t->work);
 	KUNIT_EXPECT_EQ(test, not_captured(c->b), dropped);
 	KUNIT_EXPECT_GE(test, p.sent + p.received - had, EC_TAP_RING + 1000u);
 	KUNIT_EXPECT_EQ(test, p.bad, 0u);
@@ -178,6 +181,59 @@ static void tap_without_program_not_used(struct kunit *test)
 	cyc_release(c);
 }
 
+/*
+ * A socket of another namespace is a handler for all devices, and so is this one: nothing is copied
+ * for it until there is a packet socket in the namespace of the interface.
+ */
+static void tap_other_namespace_not_used(struct kunit *test)
+{
+	struct program p, other = { .pt = { .type = htons(ETH_P_ALL), .func = get } };
+	struct cyc *c = captured(test, &p);
+	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct socket *own;
+	u32 head;
+
+	dev_remove_pack(&p.pt);
+	dev_add_pack(&other.pt);
+	hold_worker(t);
+	head = t->head;
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, t->head, head);
+	release_worker(t);
+	KUNIT_ASSERT_EQ(test, sock_create_kern(&init_net, AF_PACKET, SOCK_RAW, htons(ETH_P_ALL),
+					       &own), 0);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_GE(test, t->head, head + 200);
+	sock_release(own);
+	dev_remove_pack(&other.pt);
+	cyc_release(c);
+}
+
+/* The worker looks as long as a program captures, and no longer. */
+static void tap_worker_ends_with_program(struct kunit *test)
+{
+	struct program p;
+	struct cyc *c = captured(test, &p);
+	struct ec_tap *t = &c->b->m->links.capture->tap;
+
+	cyc_run(c, 100);
+	flush_delayed_work(&t->work);
+	KUNIT_EXPECT_TRUE(test, t->awake);
+	KUNIT_EXPECT_TRUE(test, delayed_work_pending(&t->work));
+	dev_remove_pack(&p.pt);
+	flush_delayed_work(&t->work);
+	KUNIT_EXPECT_FALSE(test, t->awake);
+	KUNIT_EXPECT_FALSE(test, delayed_work_pending(&t->work));
+	KUNIT_EXPECT_EQ(test, t->head, READ_ONCE(t->tail));
+	/* the next one wakes it */
+	dev_add_pack(&p.pt);
+	cyc_run(c, 100);
+	flush_delayed_work(&t->work);
+	KUNIT_EXPECT_GE(test, p.sent, 200u);
+	dev_remove_pack(&p.pt);
+	cyc_release(c);
+}
+
 /* What cannot leave is not shown as sent. */
 static void tap_without_link_shows_nothing(struct kunit *test)
 {
@@ -187,13 +243,13 @@ static void tap_without_link_shows_nothing(struct kunit *test)
 	u32 sent;
 
 	cyc_run(c, 10);
-	flush_work(&t->work);
+	flush_delayed_work(&t->work);
 	KUNIT_EXPECT_GE(test, p.sent, 10u);
 	bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
-	flush_work(&t->work);
+	flush_delayed_work(&t->work);
 	sent = p.sent;
 	cyc_run(c, 100);
-	flush_work(&t->work);
+	flush_delayed_work(&t->work);
 	KUNIT_EXPECT_EQ(test, p.sent, sent);
 	dev_remove_pack(&p.pt);
 	cyc_release(c);
@@ -203,6 +259,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(tap_worker_runs_all_captured),
 	KUNIT_CASE(tap_ring_full_drops_and_counts),
 	KUNIT_CASE(tap_without_program_not_used),
+	KUNIT_CASE(tap_other_namespace_not_used),
+	KUNIT_CASE(tap_worker_ends_with_program),
 	KUNIT_CASE(tap_without_link_shows_nothing),
 	{}
 };

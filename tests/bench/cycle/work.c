@@ -83,8 +83,13 @@ void work_end(struct work *w)
 	w->all -= idle_ns() - w->idle;
 	text[n > 0 ? n : 0] = '\0';
 	memset(w->by, 0, sizeof(w->by));
-	for (; sscanf(p, "%63s %llu %n", name, &ns, &len) == 2; p += len)
-		w->by[worker(name)] += ns;
+	for (; sscanf(p, "%63s %llu %n", name, &ns, &len) == 2; p += len) {
+		/* in the kernel's idle time, but executed */
+		if (!strcmp(name, "idling"))
+			w->all += ns;
+		else
+			w->by[worker(name)] += ns;
+	}
 }
 
 /* A process without priority that computes until it is killed; returns its PID, or -1. */

@@ -2,16 +2,19 @@
 /*
  * What the CPU executes, split by task, for tests/bench/cycle. Under -icount an instruction
  * takes a nanosecond while idle time passes at once, so work is the time that
- * has passed less the idle time. It is looked at whenever the scheduler switches. An
- * interrupt counts for the task it comes in; what is executed in the idle task, where most
- * interrupts come, for the task that runs next: the one that was woken.
+ * has passed less that in which the CPU halts. It is looked at whenever the scheduler switches. An
+ * interrupt counts for the task it comes in; what is executed in the idle task before the CPU
+ * halts for the task before, what is executed then, where most interrupts come, for the task that
+ * runs next: the one that was woken. The kernel's idle time also has the way to the halt and back
+ * in it, which are instructions as others; "idling" says how many of all these are. Between the
+ * tracepoint and the halt, and between the interrupt and the end of the idle time, they are missed.
  *
  * A task that never sleeps and has no priority is interrupted all the time. What wakes another
  * one then counts for that one, with the switch to it, and the clock tick for "timer". That
  * needs more looks, which themselves cost a little: only on request.
  *
- * Parameters: clear (written: all are 0; "spin": the second way), tasks (lines "NAME ns",
- * until now; the first way from now on).
+ * Parameters: clear (written: all are 0; "spin": the second way), tasks (lines "NAME ns", the
+ * last one "idling ns", until now; the first way from now on).
  */
 #include <linux/cpumask.h>
 #include <linux/interrupt.h>
@@ -22,6 +25,7 @@
 #include <linux/tick.h>
 #include <linux/timekeeping.h>
 #include <linux/tracepoint.h>
+#include <trace/events/power.h>
 
 #define TASKS	64	/* those of a cycle are some ten */
 
@@ -32,7 +36,11 @@ static struct task_work {
 } tasks[TASKS];
 static unsigned int n_tasks;
 static u64 last_ns;	/* end of the last look */
-static u64 idle_us;	/* idle time until then */
+static u64 idle_us;	/* the kernel's idle time until then */
+static u64 idling_us;	/* of it the CPU did not halt */
+static u64 woken_ns;	/* executed in the idle task after its first halt */
+static bool halts;	/* between the tracepoints around a halt */
+static const struct task_struct *before;	/* the idle task, until its first halt */
 
 static bool spins;
 static const struct task_struct *woken;	/* by the interrupt of the timer */
@@ -55,18 +63,40 @@ static struct task_work *find(const struct task_struct *task)
 	return t;
 }
 
-/* with interrupts off; the work of this call counts for no thread */
-static void charge(const struct task_struct *to)
+/* with interrupts off; executed since the last look. The work of this call counts for no thread */
+static u64 executed(void)
 {
-	u64 work = ktime_get_mono_fast_ns() - last_ns;
+	u64 work = ktime_get_mono_fast_ns() - last_ns, idle;
 
 	if (is_idle_task(current)) {
-		u64 idle = get_cpu_idle_time_us(0, NULL);
-
-		work -= (idle - idle_us) * NSEC_PER_USEC;
+		idle = get_cpu_idle_time_us(0, NULL);
+		if (halts)
+			work -= (idle - idle_us) * NSEC_PER_USEC;
+		else
+			idling_us += idle - idle_us;
 		idle_us = idle;
 	}
-	find(to)->ns += work;
+	return work;
+}
+
+static void charge(const struct task_struct *to)
+{
+	find(to)->ns += executed() + woken_ns;
+	woken_ns = 0;
+	last_ns = ktime_get_mono_fast_ns();
+}
+
+/* The idle task lets the CPU halt, or has. */
+static void on_idle(void *data, unsigned int state, unsigned int cpu)
+{
+	u64 work = executed();
+
+	if (before)
+		find(before)->ns += work;
+	else
+		woken_ns += work;
+	before = NULL;
+	halts = state != PWR_EVENT_EXIT;
 	last_ns = ktime_get_mono_fast_ns();
 }
 
@@ -76,6 +106,7 @@ static void on_switch(void *data, bool preempt, struct task_struct *prev,
 	bool displaced = spins && preempt && prev->policy == SCHED_NORMAL;
 
 	charge(displaced || is_idle_task(prev) ? next : prev);
+	before = is_idle_task(next) ? prev : NULL;
 }
 
 static void look_at_current(void)
@@ -112,6 +143,7 @@ static struct probe {
 	struct tracepoint *at;
 } probes[] = {
 	{ "sched_switch", on_switch },
+	{ "cpu_idle", on_idle },
 	{ "sched_waking", on_wake },
 	{ "irq_handler_entry", on_interrupt },
 	{ "local_timer_entry", on_timer },
@@ -126,6 +158,8 @@ static void look(struct tracepoint *tp, void *data)
 		if (!strcmp(tp->name, p->name))
 			p->at = tp;
 }
+
+#define ALWAYS	2	/* the first ones */
 
 static unsigned int watched;	/* probes that are registered */
 
@@ -149,10 +183,12 @@ static int watch_until(unsigned int n)
 
 static int clear(const char *value, const struct kernel_param *kp)
 {
-	int ret = watch_until(sysfs_streq(value, "spin") ? ARRAY_SIZE(probes) : 1);
+	int ret = watch_until(sysfs_streq(value, "spin") ? ARRAY_SIZE(probes) : ALWAYS);
 
 	local_irq_disable();
 	n_tasks = 0;
+	idling_us = 0;
+	woken_ns = 0;
 	idle_us = get_cpu_idle_time_us(0, NULL);
 	last_ns = ktime_get_mono_fast_ns();
 	local_irq_enable();
@@ -167,10 +203,11 @@ static int get_tasks(char *buffer, const struct kernel_param *kp)
 	local_irq_disable();
 	charge(current);
 	local_irq_enable();
-	watch_until(1);
+	watch_until(ALWAYS);
 	for (t = tasks; t < tasks + n_tasks; t++)
 		n += scnprintf(buffer + n, PAGE_SIZE - n, "%s %llu\n", t->name, t->ns);
-	return n;
+	return n + scnprintf(buffer + n, PAGE_SIZE - n, "idling %llu\n",
+			     idling_us * NSEC_PER_USEC);
 }
 
 static const struct kernel_param_ops clear_ops = { .set = clear };
@@ -188,9 +225,9 @@ static void split_exit(void)
 static int __init split_init(void)
 {
 	for_each_kernel_tracepoint(look, NULL);
-	if (num_possible_cpus() == 1 && !watch_until(1))
+	if (num_possible_cpus() == 1 && !watch_until(ALWAYS))
 		return 0;
-	pr_err("bench_split: needs the tracepoint sched_switch and one CPU\n");
+	pr_err("bench_split: needs the tracepoints sched_switch and cpu_idle, and one CPU\n");
 	return -EINVAL;
 }
 
