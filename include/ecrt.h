@@ -685,7 +685,7 @@ EC_PUBLIC_API int ecrt_master_activate(ec_master_t *master);
  * reservation become invalid, except @master, which remains reserved and may be configured
  * again. Slaves go to PREOP. From now on the list of slaves is held as by
  * ecrt_master_reserve(), until the next activation or release. A scan that is in progress or due
- * runs first: the call waits for it at most 30 s, or until a signal, then holds the list as it is.
+ * runs first: the call waits for it at most 30 s, or until a signal, then holds the list unchanged.
  *
  * Context: Process. May sleep, at most 30 s.
  * Return: 0; %-EINVAL not active, nothing was freed.

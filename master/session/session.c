@@ -106,6 +106,8 @@ size_t ec_session_process(const struct ec_session *s, char *buf, size_t size)
 	buf[0] = '\0';
 	if (!s || !s->cycle.owner)
 		return 0;
+	lockdep_assert(lockdep_is_held(&s->sessions->lock) ||
+		       ec_show_begun(&s->sessions->base->show));
 	rcu_read_lock();
 	nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
 	rcu_read_unlock();
@@ -296,7 +298,7 @@ static bool hold(struct ec_sessions *ss, const void *owner, bool always)
  *
  * The list of slaves is held from now on, until the next activation or the end of the session. A
  * scan that is in progress or due runs first; this waits for it, at most EC_SCAN_WAIT_MS or
- * until a signal. Then the list is held as it is, and the result of that scan is thrown away.
+ * until a signal. Then the list is held unchanged, and the result of that scan is thrown away.
  *
  * Context: Process. May sleep.
  * Return: 0, -EINVAL when it was not active, -EPERM without session.

@@ -146,6 +146,7 @@ static void status_configs(struct ec_session *s)
  */
 void ec_session_fill_status(struct ec_session *s)
 {
+	lockdep_assert_held(s->wanted.lock);
 	status_bus(s);
 	status_configs(s);
 }

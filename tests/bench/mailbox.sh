@@ -27,7 +27,8 @@ build() {
 	make -s -C tool/sim O="$build/tool" &&
 	make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" &&
 	mkdir -p "$build/split" && cp -u tests/bench/cycle/split/* "$build/split" &&
-	make -s -C "$kdir" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= modules
+	make -s -C "$kdir" M="$build/split" CONFIG_DEBUG_INFO_BTF_MODULES= \
+		CONFIG_DEBUG_INFO= modules
 }
 tests/vm/kernels.sh fetch "$kernel" >&2 && locked "$kernel" build >&2 || exit 1
 

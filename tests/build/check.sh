@@ -69,7 +69,8 @@ sparse_notices() {
 	u16 bad(__le16 x) { return x; }
 	MODULE_LICENSE("GPL");
 	END
-	make -C "$KDIR" M="$tmp/bad" CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= C=2 CF=-D__CHECK_ENDIAN__ modules 2>&1 |
+	make -C "$KDIR" M="$tmp/bad" CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= \
+		C=2 CF=-D__CHECK_ENDIAN__ modules 2>&1 |
 		grep -E "^$tmp/bad/bad.c:3:.*warning: incorrect type"
 }
 
@@ -309,7 +310,8 @@ t "the examples with pkg-config, outside of the tree" examples_build
 # what Documentation/kernel-api.rst says, with what was installed
 kernel_app_builds() {
 	cp -r examples/mini "$tmp/mini" &&
-	make -s -C "$KDIR" M="$tmp/mini" CONFIG_DEBUG_INFO_BTF_MODULES= CONFIG_DEBUG_INFO= W=1 ECRT="$root$prefix/include" \
+	make -s -C "$KDIR" M="$tmp/mini" CONFIG_DEBUG_INFO_BTF_MODULES= \
+		CONFIG_DEBUG_INFO= W=1 ECRT="$root$prefix/include" \
 		KBUILD_EXTRA_SYMBOLS="$root/lib/modules/$release/updates/ethercat/Module.symvers" \
 		modules >"$tmp/mini.log" 2>&1 || { cat "$tmp/mini.log"; return 1; }
 	! grep -E 'warning:|WARNING:' "$tmp/mini.log" &&

@@ -56,7 +56,7 @@ measure() {
 	wait_for 200 has_lines $(($(lines) + 1))
 	copied=$(($(copies) - before))
 	wait_for 200 has_lines $(($(lines) + 1))
-	grep incomplete "$BATS_TEST_TMPDIR/app" | tail -n 1 >"$BATS_TEST_TMPDIR/last"
+	tac "$BATS_TEST_TMPDIR/app" | grep -m 1 incomplete >"$BATS_TEST_TMPDIR/last"
 	grep -q 'incomplete 0$' "$BATS_TEST_TMPDIR/last"
 	mean=$(grep -o "\<$1 [0-9]*" "$BATS_TEST_TMPDIR/last" | cut -d' ' -f2)
 }
@@ -67,7 +67,7 @@ runs_of_work() {
 	echo 1 >$TRACING/events/workqueue/workqueue_execute_start/enable
 	sleep 1
 	echo 0 >$TRACING/events/workqueue/workqueue_execute_start/enable
-	grep -c 'function worker.*\[ec_master\]' $TRACING/trace || true
+	awk '/function worker.*\[ec_master\]/ { n++ } END { print n + 0 }' $TRACING/trace
 }
 
 # costs PART: a socket in another namespace nothing, one at the interface at most 300 instructions
@@ -90,8 +90,8 @@ costs() {
 	measure "$1"
 	reader=$mean
 	runs=$(runs_of_work)
-	echo "# $1: one at eccap0 $reader, $copied copies of $CYCLES cycles, $runs runs of the work a second" |
-		tee /dev/fd/3
+	echo "# $1: one at eccap0 $reader, $copied copies of $CYCLES cycles," \
+		"$runs runs of the work a second" | tee /dev/fd/3
 	[ "$copied" -ge $CYCLES ]
 	[ $((reader - nobody)) -ge 100 ] && [ $((reader - nobody)) -le $((2 * 300)) ]
 	[ "$runs" -ge 50 ] && [ "$runs" -le 250 ]

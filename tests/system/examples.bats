@@ -249,7 +249,8 @@ bench_moves() {
 # us from the last activation until the last of the two drives was in OP; the reference clock goes
 # there as well, since it is not configured
 op_us() {
-	ethercat log --json | gojq '.masters[0].events | (map(.event) | rindex("activated")) as $at |
+	ethercat log --json | gojq '.masters[0].events |
+		(map(.event) | rindex("activated")) as $at |
 		.[$at].monotonic_ns as $began | .[$at:] |
 		map(select(.event == "al_state" and .state == "OP" and .slave >= 3)) |
 		map(.monotonic_ns - $began) |

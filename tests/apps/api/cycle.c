@@ -206,7 +206,7 @@ static void reset(void)
 static bool room(long pages)
 {
 	struct rlimit limit = { RLIM_INFINITY, RLIM_INFINITY };
-	unsigned long size;
+	unsigned long size, page = (unsigned long)sysconf(_SC_PAGESIZE);
 	FILE *f;
 
 	if (pages >= 0) {
@@ -214,7 +214,7 @@ static bool room(long pages)
 		if (!f || fscanf(f, "%lu", &size) != 1)
 			return YES(!"the size of the process");
 		fclose(f);
-		limit.rlim_cur = (size + (unsigned long)pages) * (unsigned long)sysconf(_SC_PAGESIZE);
+		limit.rlim_cur = (size + (unsigned long)pages) * page;
 	}
 	return IS(setrlimit(RLIMIT_AS, &limit), 0);
 }
