@@ -2,13 +2,12 @@
 /*
  * Interface between /dev/EtherCAT<n> and its users.
  *
- * Rules: fixed-width types only; pointers are passed as __u64; no padding by the compiler, so
- * that structures are the same for programs of 32 and 64 bits. Every structure starts with a
- * flags word, whose unknown bits are refused (-EOPNOTSUPP). It may grow at its end: the kernel
- * takes the size from the command number, zero-fills fields that an older program does not
- * have, and refuses (-E2BIG) an unknown tail that is not zero. Reserved fields are zero,
- * otherwise -EOPNOTSUPP. A structure shorter than its first version is refused (-EINVAL).
- * Numbers are never reused.
+ * Rules: fixed-width types only; pointers are passed as __u64; no padding by the compiler, so that
+ * structures are the same for programs of 32 and 64 bits. Every structure starts with a flags word,
+ * whose unknown bits are refused (-EOPNOTSUPP). It may grow at its end: the kernel takes the size
+ * from the command number, zero-fills fields that an older program does not have, and refuses
+ * (-E2BIG) an unknown tail that is not zero. Reserved fields are zero, otherwise -EOPNOTSUPP. A
+ * structure shorter than its first version is refused (-EINVAL). Numbers are never reused.
  *
  * When a command fails, EC_IOC_REASON on the same open file returns one line of text with the
  * cause and the remedy.
