@@ -120,7 +120,7 @@ bool ec_foe_writes(const struct ec_mbox *mb)
 static void report_end(const struct ec_mbox *mb, const struct ec_foe *f, int ret)
 {
 	if (f->write && (ret == -EINTR || ret == -ECANCELED))
-		ec_mbox_warn(mb, "FoE write of '%.*s' ended early (%pe) after %llu of %llu bytes; write the file again, since firmware may be incomplete\n",
+		ec_mbox_warn(mb, "FoE write of '%*pE' ended early (%pe) after %llu of %llu bytes; write the file again, since firmware may be incomplete\n",
 			     (int)f->name_len, f->name, ERR_PTR(ret), f->at, f->size);
 }
 
@@ -180,7 +180,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 out:
 	clear_bit_unlock(EC_MBOX_FILE, &mb->flags);
 	kfree(b);
-	ec_mbox_dbg_result(mb, ret, "FoE %s '%.*s', error 0x%08x, %llu byte(s)",
+	ec_mbox_dbg_result(mb, ret, "FoE %s '%*pE', error 0x%08x, %llu byte(s)",
 			   f->write ? "write" : "read", (int)f->name_len, f->name, f->error,
 			   f->size);
 	return ret;

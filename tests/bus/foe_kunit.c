@@ -205,6 +205,12 @@ static void foe_ended(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("0-0: FoE write of 'data' ended early"), lines + 1);
 	KUNIT_EXPECT_EQ(test, app->foe.opcode, 0);
 	KUNIT_EXPECT_FALSE(test, app->foe.valid);
+	/* and no line that a name pretends */
+	lines = bus_log_lines("FoE write of 'a\\nEtherCAT 0: b' ended early");
+	x->cancel = false;
+	KUNIT_EXPECT_EQ(test, put(s, x, "a\nEtherCAT 0: b", 20000, &f), -ECANCELED);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("FoE write of 'a\\nEtherCAT 0: b' ended early"),
+			lines + 1);
 	x->cancel_at = 0;
 	x->cancel = false;
 	x->fail_at = 7000;
