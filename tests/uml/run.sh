@@ -48,8 +48,8 @@ start=$(date +%s.%N)
 # The subshell swallows bash's remark on how it ended.
 ulimit -c 0
 (
-	timeout -s KILL "$limit" "$dir/vmlinux" mem=512M log_buf_len=4M \
-		time-travel=inf-cpu kunit.filter_glob="$filter" \
+	timeout -s KILL "$limit" setarch -R "$dir/vmlinux" mem=512M log_buf_len=4M \
+		time-travel=inf-cpu time-travel-start=1800000000 kunit.filter_glob="$filter" \
 		kunit_shutdown=halt kmemleak.verbose=1 uml_dir="$dir/" \
 		con=null con0=fd:0,fd:1 panic=-1 loglevel=8 \
 		${EC_UML_ARGS-} </dev/null >"$log" 2>&1
