@@ -349,7 +349,7 @@ static void ride(struct watch *w)
 }
 
 /* Are the slaves of the list those that the monitor looks after now? */
-static bool is_listed(const struct watch *w)
+static bool looks_after_list(const struct watch *w)
 {
 	return w->scanned || w->held;
 }
@@ -378,7 +378,7 @@ static void count_slaves(struct watch *w)
 		ask_slaves(w);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	ride(w);
-	if (is_listed(w) && w->link_up)
+	if (looks_after_list(w) && w->link_up)
 		w->survey.exchange |= ec_mailboxes_look(&w->m->bus, w->irq);
 }
 
@@ -413,7 +413,7 @@ static void try_again(struct watch *w)
 	u64 now = ktime_get_ns();
 	unsigned int i, n = 0;
 
-	if (!is_listed(w))
+	if (!looks_after_list(w))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (n == ARRAY_SIZE(due))
@@ -514,7 +514,7 @@ static void read_pdos(struct watch *w)
 
 	ec_for_each_slave(s, &m->bus)
 		busy |= ec_slave_busy(s);
-	if (!is_listed(w) || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
+	if (!looks_after_list(w) || (busy && ktime_get_ns() - w->scanned_ns < NSEC_PER_SEC))
 		return;
 	ec_for_each_slave(s, &m->bus) {
 		if (!ec_slave_pdos_pending(s) || ec_slave_busy(s))

@@ -14,7 +14,7 @@
 
 #define LOOKS	4	/* of the timer, between two of the monitor */
 
-static u64 missed(const struct ec_links *l)
+static u64 frames_missed(const struct ec_links *l)
 {
 	const struct ec_link_stats *stats = &ec_links_at(l, 0)->stats;
 
@@ -37,11 +37,11 @@ static bool is_quiet(struct ec_quiet *q)
 	return ktime_get_ns() < q->until_ns && is_reply_as_before(q) &&
 	       (u32)atomic_read(&m->bus.changes) == q->changes &&
 	       ec_event_ring_head(&m->base->events.ring) == q->event &&
-	       missed(&m->links) == q->missed && !ec_dc_due(&m->dc) &&
+	       frames_missed(&m->links) == q->missed && !ec_dc_due(&m->dc) &&
 	       ec_access_is_cyclic(&m->links.access) && !ec_access_timed_out(&m->links);
 }
 
-static enum hrtimer_restart look(struct hrtimer *timer)
+static enum hrtimer_restart timer_looks(struct hrtimer *timer)
 {
 	struct ec_quiet *q = container_of(timer, struct ec_quiet, timer);
 
@@ -69,7 +69,7 @@ void ec_quiet_init(struct ec_quiet *q, struct ec_master *m)
 {
 	q->m = m;
 	q->task = current;
-	hrtimer_setup_on_stack(&q->timer, look, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
+	hrtimer_setup_on_stack(&q->timer, timer_looks, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
 }
 
 /**
@@ -94,7 +94,7 @@ void ec_quiet_exit(struct ec_quiet *q)
  */
 void ec_quiet_allow(struct ec_quiet *q)
 {
-	q->missed = missed(&q->m->links);
+	q->missed = frames_missed(&q->m->links);
 	if (ec_links_n(&q->m->links) == 1 && !q->survey->polled && ec_survey_lasts(q->survey))
 		q->looks = LOOKS;
 }

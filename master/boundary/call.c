@@ -174,7 +174,7 @@ int ec_ioc_get_slave(struct ec_call *call, u16 position)
 }
 
 /* A command that only shows what is known of a slave also works for one that was lost. */
-static int check_lost(struct ec_call *call, const struct ec_ioctl *op, int ret)
+static int refuse_lost(struct ec_call *call, const struct ec_ioctl *op, int ret)
 {
 	char why[EC_UAPI_REASON];
 
@@ -188,12 +188,12 @@ static int with_slave(struct ec_call *call, const struct ec_ioctl *op)
 {
 	int ret = ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at));
 
-	ret = ret ?: check_lost(call, op, 0);
+	ret = ret ?: refuse_lost(call, op, 0);
 	if (ret)
 		return ret;
 	ret = op->fn(call);
 	/* lost meanwhile: that is the cause */
-	return ret == -EAGAIN || ret == -ETIMEDOUT ? check_lost(call, op, ret) : ret;
+	return ret == -EAGAIN || ret == -ETIMEDOUT ? refuse_lost(call, op, ret) : ret;
 }
 
 static int with_show(struct ec_call *call, const struct ec_ioctl *op)

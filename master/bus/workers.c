@@ -41,7 +41,7 @@ static bool need_more(const struct ec_workers *ws)
 }
 
 /* Wake a worker for what was appended, or let one be created. */
-static void call(struct ec_workers *ws)
+static void call_worker(struct ec_workers *ws)
 {
 	struct worker *w = list_first_entry_or_null(&ws->idle, struct worker, idle);
 
@@ -105,7 +105,7 @@ static bool be_idle(struct ec_workers *ws, struct worker *w)
 	return !w->ends;
 }
 
-static int run(void *arg)
+static int worker_main(void *arg)
 {
 	struct worker *w = arg;
 	struct ec_workers *ws = w->ws;
@@ -121,7 +121,7 @@ static int run(void *arg)
 }
 
 /* One more, which @coming and @n count already. */
-static int create(struct ec_workers *ws)
+static int create_worker(struct ec_workers *ws)
 {
 	struct worker *w = kzalloc(sizeof(*w), GFP_KERNEL);
 
@@ -129,7 +129,7 @@ static int create(struct ec_workers *ws)
 		return -ENOMEM;
 	w->ws = ws;
 	INIT_LIST_HEAD(&w->idle);
-	w->task = kthread_create(run, w, "EtherCAT%u-slv", ws->base->index);
+	w->task = kthread_create(worker_main, w, "EtherCAT%u-slv", ws->base->index);
 	if (IS_ERR(w->task)) {
 		kfree(w);
 		return -ENOMEM;
@@ -151,7 +151,7 @@ static bool create_all(struct ec_workers *ws)
 		ws->n++;
 		ws->coming++;
 		spin_unlock(&ws->lock);
-		ok = !create(ws);
+		ok = !create_worker(ws);
 		spin_lock(&ws->lock);
 		if (!ok) {
 			ws->n--;
@@ -219,7 +219,7 @@ int ec_workers_init(struct ec_workers *ws, struct ec_base *base)
 	ws->keep = 1;
 	ws->n = 1;
 	ws->coming = 1;
-	return create(ws);
+	return create_worker(ws);
 }
 
 /**
@@ -288,7 +288,7 @@ bool ec_workers_queue(struct ec_workers *ws, struct ec_job *job)
 	job->queued = true;
 	if (added && !job->running) {
 		append(ws, job);
-		call(ws);
+		call_worker(ws);
 	}
 	spin_unlock(&ws->lock);
 	return added;

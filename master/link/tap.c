@@ -140,7 +140,7 @@ static void show(struct ec_tap *t, const struct ec_tap_frame *f)
 }
 
 /* May the worker sleep until the next frame wakes it? */
-static bool is_over(struct ec_tap *t)
+static bool capture_is_over(struct ec_tap *t)
 {
 	unsigned long flags;
 	bool over;
@@ -166,7 +166,7 @@ static void worker(struct work_struct *w)
 		smp_store_release(&t->tail, t->tail + 1);
 		cond_resched();
 	}
-	if (!is_over(t))
+	if (!capture_is_over(t))
 		queue_delayed_work(system_unbound_wq, &t->work, msecs_to_jiffies(EC_TAP_MS));
 }
 

@@ -284,7 +284,7 @@ static bool wait_scan(struct ec_sessions *ss, u64 end_ns)
 }
 
 /* The session may have ended or be active again. False: a scan runs first. */
-static bool hold(struct ec_sessions *ss, const void *owner, bool always)
+static bool hold_list(struct ec_sessions *ss, const void *owner, bool always)
 {
 	const struct ec_session *s = ec_session_of(ss, owner);
 
@@ -313,7 +313,7 @@ int ec_session_stop(struct ec_sessions *ss, const void *owner)
 	ec_sessions_lock(ss);
 	s = ec_session_of(ss, owner);
 	ret = s ? ec_session_deactivate(s) : -EPERM;
-	while (!ret && !hold(ss, owner, always))
+	while (!ret && !hold_list(ss, owner, always))
 		always = wait_scan(ss, end);
 	ec_sessions_unlock(ss);
 	return ret;
