@@ -142,8 +142,9 @@ tests/install-deps.sh build vm capture uml json python doc cross || {
 	echo "0 passed, 1 failed"
 	exit 1
 }
-# what was compiled before, also for another clone at this place, is taken from a cache
-export PATH=/usr/lib/ccache:$PATH CCACHE_MAXSIZE=2G
+# What was compiled before, also for another clone at this place, is taken from a cache; what was
+# not costs no run of the preprocessor.
+export PATH=/usr/lib/ccache:$PATH CCACHE_MAXSIZE=2G CCACHE_DEPEND=1
 export CCACHE_DIR=${EC_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/ethercat}/ccache
 places "$log/places" 1024
 together=() beside=() apart=()

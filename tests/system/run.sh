@@ -10,9 +10,9 @@
 # runs at a time, and the others give way to it.
 #
 # EC_KERNEL: of tests/vm/kernels.sh, 6.1-rt if it is not set. With 6.1-kcsan each guest has
-# two CPUs that run at a time and real time, and a data race in a module fails the file; cases
-# of tests/kcsan/exact-time.list are shown but do not count. With 6.1-kasan a wrong access to
-# memory and wrong use of locks, timers or DMA fails the file.
+# two CPUs that run at a time and real time, and a data race in a module fails the file. With
+# 6.1-kasan a wrong access to memory and wrong use of locks, timers or DMA fails the file. Cases
+# of tests/kcsan/exact-time.list and tests/kasan/exact-time.list are shown but do not count there.
 # EC_NIC=e1000|e1000e|igb: the segment of helpers.bash is at a network card of that model with
 # its native driver, not at the virtual device
 # EC_IOMMU=1: this card is behind an IOMMU
@@ -95,6 +95,8 @@ build() {
 	make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all
 }
 
+inexact=
+[[ $kernel != *-k[ca]san ]] || inexact=tests/${kernel##*-}/exact-time.list
 logs=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$logs"' EXIT
 places "$logs/places" "$mem"
@@ -153,7 +155,7 @@ pardon() {
 	while IFS='|' read -r file name _; do
 		[ "$file" = "${1##*/}" ] || continue
 		sed -i -E "s/^not ok (([0-9]+|-) $name)/# not counted: \\1/" "$out"
-	done < <(grep -v '^#' tests/kcsan/exact-time.list)
+	done < <(grep -v '^#' "$inexact")
 	rc=$(awk -v rc="$rc" '/^not ok/ { bad = 1 } END { print rc == 1 && !bad ? 0 : rc }' "$out")
 }
 
@@ -165,7 +167,7 @@ report() {
 	echo "# $f"
 	# cases of a C program, see cases() of helpers.bash
 	sed -i -E 's/^# (ok|not ok) /\1 /' "$out"
-	[[ $kernel != *-kcsan ]] || pardon "$f"
+	[ -z "$inexact" ] || pardon "$f"
 	grep -E '^(ok|not ok|#)' "$out"
 	p=$(grep -c '^ok' "$out")
 	n=$(grep -c '^not ok' "$out")
@@ -236,8 +238,8 @@ fi
 
 side=() alone=()
 for f in ${*:-tests/system/*.bats}; do
-	if [[ $kernel == *-kcsan ]] && grep -q "^${f##*/}|not run|" tests/kcsan/exact-time.list; then
-		echo "# $f: not run: $(sed -n "s/^${f##*/}|not run|//p" tests/kcsan/exact-time.list)"
+	if [ "$inexact" ] && grep -q "^${f##*/}|not run|" "$inexact"; then
+		echo "# $f: not run: $(sed -n "s/^${f##*/}|not run|//p" "$inexact")"
 		continue
 	fi
 	if [[ $(vm_options "$f") == *--icount* ]]; then side+=("$f"); else alone+=("$f"); fi
