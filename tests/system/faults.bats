@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --smp 2
+# vm: --icount --timeout 900
 # Faulty segments: one slave does wrong, the others work and it is said why.
 
 load helpers

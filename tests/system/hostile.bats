@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # Slaves whose mailbox answers random bytes, or right messages with one wrong field.
-# vm: --smp 2 --timeout 1800
+# vm: --icount --timeout 900
 
 load helpers
 
