@@ -106,6 +106,9 @@ int ec_ioc_rescan(struct ec_call *call)
 				 "the list of slaves is held: %s has reserved the master and must activate or release it first",
 				 who);
 	}
+	if (ec_bus_scan_awaited(&m->bus))
+		return ec_refuse(call, -EBUSY,
+				 "the bus is scanned, and a program waits for the end to use the master; try again later");
 	ec_bus_rescan(&m->bus);
 	return 0;
 }

@@ -144,6 +144,29 @@ static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
 	}
 }
 
+/* Else who asks for scans all the time keeps the others waiting. */
+static int wait_scans(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
+{
+	int ret;
+
+	atomic_inc(&bus->awaited);
+	ret = wait_until(bus, there, ms);
+	atomic_dec(&bus->awaited);
+	return ret;
+}
+
+/**
+ * ec_bus_scan_awaited() - does somebody wait for the end of scans?
+ * @bus: bus
+ *
+ * Context: Any.
+ * Return: whether somebody does.
+ */
+bool ec_bus_scan_awaited(const struct ec_bus *bus)
+{
+	return atomic_read(&bus->awaited);
+}
+
 /**
  * ec_bus_wait_scan() - wait until the bus is scanned and has settled
  * @bus: bus
@@ -153,7 +176,7 @@ static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
  */
 int ec_bus_wait_scan(struct ec_bus *bus)
 {
-	return wait_until(bus, settled, EC_SCAN_WAIT_MS);
+	return wait_scans(bus, settled, EC_SCAN_WAIT_MS);
 }
 
 static bool no_scan(struct ec_bus *bus)
@@ -171,7 +194,7 @@ static bool no_scan(struct ec_bus *bus)
  */
 int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms)
 {
-	return wait_until(bus, no_scan, ms);
+	return wait_scans(bus, no_scan, ms);
 }
 
 /**

@@ -74,6 +74,8 @@ struct ec_bus {
 	 * is not active; set with @topo and @scan_lock held
 	 */
 	bool held;
+	/** @awaited: who waits for the end of scans; meanwhile no other is asked for by a user */
+	atomic_t awaited;
 	/** @due: a slave was lost while @held, so a scan follows; the monitor's */
 	bool due;
 	/** @scan_busy: slaves are being scanned; set with @scan_lock held */
@@ -146,6 +148,7 @@ void ec_bus_exit(struct ec_bus *bus);
 struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position);
 int ec_bus_wait_scan(struct ec_bus *bus);
 int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms);
+bool ec_bus_scan_awaited(const struct ec_bus *bus);
 int ec_bus_wait_slaves(struct ec_bus *bus);
 void ec_bus_wait_slave(struct ec_slave *slave);
 bool ec_bus_scan_busy(const struct ec_bus *bus);

@@ -183,6 +183,38 @@ static void scan_nothing(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_wait(b, ARRAY_SIZE(bench), EC_AL_PREOP, 10000), ~0ull);
 }
 
+/* A user's program that asks for a scan whenever it may keeps no application waiting. */
+static int ask_for_scans(void *arg)
+{
+	struct bus *b = arg;
+	struct ec_file other = { };
+	int ret, refused = 0;
+
+	ec_file_init(&other, b->m, true);
+	while (!kthread_should_stop()) {
+		ret = ec_ioc(&other, EC_IOC_RESCAN, NULL);
+		refused += ret == -EBUSY && strstr(other.reason, "a program waits for the end");
+		msleep(1);
+	}
+	return refused;
+}
+
+static void scan_asked_all_the_time(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
+	struct task_struct *t;
+	u64 t0;
+
+	bus_idle(b);
+	t = kthread_run(ask_for_scans, b, "asker");
+	KUNIT_ASSERT_NOT_ERR_OR_NULL(test, t);
+	msleep(50);
+	t0 = ktime_get_ns();
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 1000000000ull);
+	KUNIT_EXPECT_GT(test, kthread_stop(t), 0);
+}
+
 /* One that is too late for a reservation waits for its end; the bus is watched as ever. */
 static void scan_while_reserved(struct kunit *test)
 {
@@ -284,6 +316,7 @@ static void scan_device_names(struct kunit *test)
 static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_device_names),
 	KUNIT_CASE(scan_nothing),
+	KUNIT_CASE(scan_asked_all_the_time),
 	KUNIT_CASE(scan_while_reserved),
 	KUNIT_CASE(scan_before_reservation_is_waited_for),
 	KUNIT_CASE(scan_bench_identity),
