@@ -199,7 +199,7 @@ static int ask_for_scans(void *arg)
 	return refused;
 }
 
-static void scan_asked_all_the_time(struct kunit *test)
+static void scan_asked_without_pause(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
 	struct task_struct *t;
@@ -316,7 +316,7 @@ static void scan_device_names(struct kunit *test)
 static struct kunit_case scan_cases[] = {
 	KUNIT_CASE(scan_device_names),
 	KUNIT_CASE(scan_nothing),
-	KUNIT_CASE(scan_asked_all_the_time),
+	KUNIT_CASE(scan_asked_without_pause),
 	KUNIT_CASE(scan_while_reserved),
 	KUNIT_CASE(scan_before_reservation_is_waited_for),
 	KUNIT_CASE(scan_bench_identity),
