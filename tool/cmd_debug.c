@@ -20,12 +20,31 @@ static int each(const struct tool *t, struct dev *d)
 	return 0;
 }
 
+static int show(const struct tool *t, struct dev *d)
+{
+	struct ec_ioc_master m;
+
+	(void)t;
+	if (dev_master(d, &m))
+		return 1;
+	out_object(NULL);
+	out_u("master", d->master, "Master%u: ", d->master);
+	out_u("debug_level", m.debug_level, "debug level %u\n", m.debug_level);
+	out_end();
+	return 0;
+}
+
 static int run(struct tool *t, int argc, char **argv)
 {
 	u64 v;
 	int ret;
 
-	(void)argc;
+	if (!argc) {
+		out_array("masters");
+		ret = dev_each(t, false, show);
+		out_end();
+		return ret;
+	}
 	if (io_number("level", argv[0], 2, &v))
 		return 1;
 	level = (u32)v;
@@ -38,12 +57,12 @@ static int run(struct tool *t, int argc, char **argv)
 const struct cmd cmd_debug = {
 	.name = "debug",
 	.run = run,
-	.args = "LEVEL",
+	.args = "[LEVEL]",
 	.opts = "m",
-	.summary = "Set how much the master writes to the kernel log",
-	.help = "LEVEL := { 0: normal | 1: more events | 2: also the content of all frames }\n",
+	.summary = "Set or show how much the master writes to the kernel log",
+	.help = "LEVEL := { 0: normal | 1: more events | 2: also the content of all frames }\n"
+		"Without LEVEL it is shown.\n",
 	.json = "masters[]: master, debug_level",
 	.flags = CMD_HISTORIC,
-	.min_args = 1,
 	.max_args = 1,
 };

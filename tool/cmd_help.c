@@ -48,7 +48,7 @@ static int run(struct tool *t, int argc, char **argv)
 	if (n > 1)
 		return cmd_ambiguous(argv[0], found, n);
 	if (!n)
-		return usage_error("unknown command '%s'", argv[0]);
+		return cmd_unknown(argv[0]);
 	if (found[0]->alias_of)
 		found[0] = cmd_exact(found[0]->alias_of);
 	if (!found[0]->run)

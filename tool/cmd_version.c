@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <string.h>
+
 #include "out.h"
 #include "tool.h"
 
@@ -8,9 +10,12 @@
 
 static int run(struct tool *t, int argc, char **argv)
 {
+	/* that of a package begins with the version */
+	bool both = strncmp(EC_TOOL_REVISION, EC_TOOL_VERSION, strlen(EC_TOOL_VERSION));
+
 	(void)t, (void)argc, (void)argv;
 	out_str("name", "EtherCAT master", "EtherCAT master ");
-	out_str("version", EC_TOOL_VERSION, "%s ", EC_TOOL_VERSION);
+	out_str("version", EC_TOOL_VERSION, both ? "%s " : NULL, EC_TOOL_VERSION);
 	out_str("revision", EC_TOOL_REVISION, "%s\n", EC_TOOL_REVISION);
 	out_u("abi", EC_UAPI_VERSION, NULL);
 	return 0;

@@ -262,7 +262,7 @@ static int run(struct tool *t, int argc, char **argv)
 
 	if (argc && t->positions.given)
 		return usage_error("SLAVE and --position exclude each other");
-	if (argc && list_parse(&t->positions, argv[0], &why))
+	if (argc && position_parse(&t->aliases, &t->positions, argv[0], &why))
 		return usage_error("invalid slave '%s': %s", argv[0], why);
 	out_array("masters");
 	ret = dev_each(t, false, each);

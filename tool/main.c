@@ -20,7 +20,7 @@ static const struct cmd *find(const char *text)
 	if (n > 1)
 		cmd_ambiguous(text, found, n);
 	else if (!n)
-		usage_error("unknown command '%s'", text);
+		cmd_unknown(text);
 	return n == 1 ? found[0] : NULL;
 }
 

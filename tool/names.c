@@ -62,6 +62,49 @@ int cmd_lookup(const char *text, const struct cmd **found)
 	return n;
 }
 
+/* letters that differ, are missing, too many, or exchanged with the next one */
+static size_t distance(const char *a, const char *b)
+{
+	enum { MOST = 32 };
+	size_t rows[3][MOST + 1], n = strlen(b);
+
+	if (strlen(a) > MOST || n > MOST)
+		return MOST;
+	for (size_t j = 0; j <= n; j++)
+		rows[0][j] = j;
+	for (size_t i = 1; a[i - 1]; i++) {
+		size_t *row = rows[i % 3], *up = rows[(i - 1) % 3];
+
+		row[0] = i;
+		for (size_t j = 1; j <= n; j++) {
+			row[j] = min(min(up[j], row[j - 1]) + 1, up[j - 1] + (a[i - 1] != b[j - 1]));
+			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+				row[j] = min(row[j], rows[(i - 2) % 3][j - 2] + 1);
+		}
+	}
+	return rows[strlen(a) % 3][n];
+}
+
+/* Prints that no command is called @text, and which one is nearly; returns 1. */
+int cmd_unknown(const char *text)
+{
+	/* one slip in up to 5 letters, two in more */
+	size_t least = strlen(text) < 3 ? 0 : strlen(text) < 6 ? 1 : 2;
+	const char *nearest = NULL;
+
+	for (const struct cmd *const *c = cmds; *c; c++) {
+		size_t n = distance(text, (*c)->name);
+
+		if (exists(*c) && n <= least && (!nearest || n < least)) {
+			least = n;
+			nearest = (*c)->name;
+		}
+	}
+	if (!nearest)
+		return usage_error("unknown command '%s'", text);
+	return usage_error("unknown command '%s'; did you mean '%s'?", text, nearest);
+}
+
 /* Prints which commands @text may be; returns 1. */
 int cmd_ambiguous(const char *text, const struct cmd **found, int n)
 {

@@ -9,7 +9,7 @@
 const struct opt opts[] = {
 	{ 'm', "master", "LIST", "master indices, decimal; default all" },
 	{ 'a', "alias", "LIST", "alias addresses, decimal; default any" },
-	{ 'p', "position", "LIST", "ring positions, or positions relative to the alias; default any" },
+	{ 'p', "position", "LIST", "ring positions, positions relative to --alias, or ALIAS:LIST; default any" },
 	{ 'd', "domain", "LIST", "domain indices; default all" },
 	{ 't', "type", "NAME", "data type of the value, see 'ethercat help types'" },
 	{ 'o', "output-file", "FILE", "foe_read: file to write to; foe_write: file name on the slave" },
@@ -86,6 +86,15 @@ static int parse_list(struct list *l, char letter, const char *text)
 	return 1;
 }
 
+static int parse_positions(struct tool *t, const char *text)
+{
+	const char *why;
+
+	if (!position_parse(&t->aliases, &t->positions, text, &why))
+		return 0;
+	return usage_error("invalid list '%s' for --position: %s", text, why);
+}
+
 static bool seconds(const char *text, double *s)
 {
 	char *end;
@@ -155,7 +164,7 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 	case 'a':
 		return parse_list(&t->aliases, 'a', optarg);
 	case 'p':
-		return parse_list(&t->positions, 'p', optarg);
+		return parse_positions(t, optarg);
 	case 'd':
 		return parse_list(&t->domains, 'd', optarg);
 	case 't':

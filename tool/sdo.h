@@ -13,6 +13,7 @@ struct sdo_addr {
 	u16 index;
 	u8 sub;
 	bool complete;
+	bool decimal;		/* typed as 1018 */
 	char text[16];		/* "0x1018:01" or "0x1018" */
 };
 

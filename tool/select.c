@@ -74,6 +74,32 @@ int list_parse(struct list *l, const char *text, const char **why)
 	return 0;
 }
 
+/**
+ * position_parse() - parse ring positions, or "1001:1" as listings show it
+ * @aliases: set if @text has an alias that is not 0
+ * @positions: result
+ * @text: as typed
+ * @why: set to what is wrong with it
+ *
+ * Return: 0, or -EINVAL.
+ */
+int position_parse(struct list *aliases, struct list *positions, const char *text,
+		   const char **why)
+{
+	const char *at = text;
+	unsigned int alias;
+
+	if (!number(&at, &alias) || *at != ':')
+		return list_parse(positions, text, why);
+	if (alias > 0xffff) {
+		*why = "an alias is at most 65535";
+		return -EINVAL;
+	}
+	if (alias)
+		*aliases = (struct list){ .given = true, .n = 1, .item = { { alias, alias } } };
+	return list_parse(positions, at + 1, why);
+}
+
 /* true if the list does not narrow anything down */
 bool list_all(const struct list *l)
 {

@@ -35,6 +35,8 @@ struct numbers {
 };
 
 int list_parse(struct list *l, const char *text, const char **why);
+int position_parse(struct list *aliases, struct list *positions, const char *text,
+		   const char **why);
 bool list_all(const struct list *l);
 int list_expand(const struct list *l, unsigned int count, struct numbers *out);
 bool list_single(const struct list *l, unsigned int *value);

@@ -123,6 +123,7 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 /* names.c */
 const struct cmd *cmd_exact(const char *name);
 int cmd_lookup(const char *text, const struct cmd **found);
+int cmd_unknown(const char *text);
 int cmd_ambiguous(const char *text, const struct cmd **found, int n);
 
 /* help.c */

@@ -88,7 +88,12 @@ ambiguous() {
 @test "unknown command, no command, help" {
 	run real nonsense
 	[ "$status" -eq 1 ]
-	[[ $output == *"unknown command 'nonsense'"* ]]
+	[[ ${lines[0]} == *"unknown command 'nonsense'" ]]
+	for c in slvaes sdo_uplaod salves masters resacn vresion; do
+		[[ $(real $c 2>&1) == "ethercat: unknown command '$c'; did you mean '"*"'?"* ]]
+		[ "$(real help $c 2>&1 | head -n 1 | cut -d: -f2-)" = "$(real $c 2>&1 | head -n 1 | cut -d: -f2-)" ]
+	done
+	[[ $(real slvaes 2>&1) == *"did you mean 'slaves'?"* ]]
 	[[ $output == *"Try 'ethercat --help'"* ]]
 	run real ""
 	[ "$status" -eq 1 ]
@@ -216,7 +221,7 @@ for o in d["options"]:
 @test "wrong options and arguments are usage errors" {
 	for c in "slaves --bogus" "slaves -x" "slaves -p" "slaves --position" "slaves extra" \
 		"upload" "upload 1 2 3" "download 1" "slaves -vx" "slaves --verbose=1" \
-		"debug" "debug 3" "debug x" "states NONE" "graph XY" "crc clear" \
+		"debug 3" "debug x" "states NONE" "graph XY" "crc clear" \
 		"pdos -s nope" "upload -p2 -t nope 0x1018 1" "slaves --wait=x" "slaves -v5" \
 		"-5" "help nope" "reg_read 0x10000 1" "reg_read 0 0" "reg_read 0" \
 		"reg_read -p0 0xffff 2" "reg_read -p0 -tuint16 0 3" "help re"; do

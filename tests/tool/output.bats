@@ -115,6 +115,12 @@ load common
 	[ "$(out slaves -p-1 | wc -l)" -eq 2 ]
 	[ "$(out slaves -a1001 | wc -l)" -eq 2 ]
 	[ "$(out slaves -a1001 -p1 | awk '{ print $2 }')" = 1001:1 ]
+	# as it stands in that column, for each slave of the list
+	out slaves | while read -r position name _; do
+		[ "$(out slaves -p"$name" | cut -d' ' -f1)" = "$position" ]
+	done
+	[ "$(out slaves -p1001:0- | wc -l)" = "$(out slaves -a1001 | wc -l)" ]
+	[[ $(ethercat slaves -p70000:1 2>&1) == *"invalid list '70000:1' for --position: an alias is at most 65535"* ]]
 	[ "$(out slaves -a- -p- | wc -l)" -eq 3 ]
 	[ "$(out slaves -v -p2,1,2 | grep -c ===)" -eq 3 ]
 	[ "$(out pdos -p2 | head -c3)" = SM0 ]
@@ -230,6 +236,10 @@ END
 }
 
 @test "upload failures name cause and slave" {
+	# an index that looks as if typed without 0x
+	[[ $(err upload -p2 5000 0) != *"did you mean"* ]]
+	[[ $(err upload -p2 1019 1) == *"upload 0x03fb:01, in decimal 1019 (did you mean 0x1019?)"* ]]
+	[[ $(err upload -p2 0x3fb 1) != *"did you mean"* ]]
 	run ethercat upload -p2 0x5000 0
 	[ "$status" -eq 1 ]
 	[[ $output == *"aborted with code 0x06020000: "* ]]
@@ -433,6 +443,8 @@ END
 	[ "$status" -eq 1 ]
 	[[ $output == *"has not finished after 0 s"* ]]
 	[ "$(FAKE_BUS=two log_of debug 2)" = $'debug 0 2\ndebug 1 2' ]
+	[ "$(out debug)" = "Master0: debug level 0" ]
+	FAKE_READONLY=1 out debug --json | json 'd["masters"] == [{"master": 0, "debug_level": 0}]'
 	FAKE_READONLY=1 run ethercat rescan
 	[ "$status" -eq 1 ]
 	[ "$(FAKE_BUS=detached log_of release)" = "release 0" ]
