@@ -2,12 +2,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "dev.h"
 #include "out.h"
 #include "slave_info.h"
 
 #define WAIT_S	60.0
+#define FIRST_S	2.0		/* for the first scan, where a person looks */
 #define MISSING_LINES	16
 
 static int digits(unsigned int v)
@@ -104,11 +106,32 @@ static void missing(struct dev *d, unsigned int configs)
 		     d->master, n - MISSING_LINES);
 }
 
+/* A person who has just loaded the modules wants to see slaves, not that there are none yet. */
+static int wait_first(struct dev *d)
+{
+	double end = now_s() + FIRST_S;
+	struct ec_ioc_master m;
+	char why[160];
+
+	if (out_is_json() || !isatty(STDOUT_FILENO))
+		return 0;
+	for (;;) {
+		if (dev_master(d, &m))
+			return 1;
+		dev_why_empty(&m, why, sizeof(why));
+		if (m.scan_count || (*why && !m.scan_busy) || now_s() >= end)
+			return 0;
+		sleep_ms(20);
+	}
+}
+
 static int each(const struct tool *t, struct dev *d)
 {
 	struct ec_ioc_master m;
 	struct slaves sel;
 
+	if (!t->wait && wait_first(d))
+		return 1;
 	if (t->wait && dev_wait_scan(d, t->wait_s >= 0 ? t->wait_s : WAIT_S))
 		return 1;
 	if (dev_master(d, &m) || dev_select(d, t, &sel, NULL))
@@ -162,7 +185,7 @@ const struct cmd cmd_slaves = {
 		"From its reservation of the master to activation, and after deactivation, an application\n"
 		"has the list of slaves held: no scan changes it, and stderr shows which process that is.\n"
 		"--verbose shows all data of the slaves. --wait waits until no bus scan is running\n"
-		"(default at most 60 s).\n",
+		"(default at most 60 s); without it, on a terminal, at most 2 s for the first scan.\n",
 	.json = "masters[]: master, scan_busy, list_held, slaves_responding,\n"
 		"slaves[] (position, alias, relative_position, device,\n"
 		"state, al_error, flag_error, cause, warning, differs,\n"

@@ -165,7 +165,7 @@ int io_print(const struct ec_type *t, const u8 *data, size_t size)
 		out_hex("data_hex", data, size, "");
 		return 0;
 	}
-	if (value_is_text(t)) {
+	if (value_is_text(t) && !(t->kind == EC_KIND_OCTETS && out_would_hide(data, size))) {
 		/* slaves fill a string up with NULs */
 		while (t->kind == EC_KIND_STRING && len && !data[len - 1])
 			len--;
@@ -177,7 +177,7 @@ int io_print(const struct ec_type *t, const u8 *data, size_t size)
 	text = malloc(cap);
 	if (!text)
 		return fail("out of memory");
-	value_format(t, data, size, text, cap);
+	value_format(value_is_text(t) ? ec_type_by_code(EC_TYPE_RAW) : t, data, size, text, cap);
 	out_text("%s\n", text);
 	free(text);
 	return 0;

@@ -224,6 +224,21 @@ void out_text_bytes(const u8 *data, size_t size)
 	}
 }
 
+/* Return: whether out_text_bytes() would not show all of it, as for a terminal */
+bool out_would_hide(const u8 *data, size_t size)
+{
+	size_t step;
+
+	for (size_t i = 0; isatty(STDOUT_FILENO) && i < size; i += step) {
+		int n = utf8_len(data + i, size - i);
+
+		step = n ? (size_t)n : 1;
+		if (data[i] != '\n' && data[i] != '\t' && !text_harmless(data + i, n))
+			return true;
+	}
+	return false;
+}
+
 /* Return: 0, or 1 after printing why binary data are not written */
 int out_binary_allowed(const char *instead)
 {

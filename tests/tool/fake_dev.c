@@ -250,6 +250,12 @@ static int master(struct ec_ioc_master *m, int index)
 	}
 	if (scans % 2 == 0 && polls++ < 4)
 		m->scan_busy = 1;	/* after a request */
+	/* modules that were loaded just now; FAKE_BUS=unread: and stay so */
+	if (fake_bus("unread") || (fake_bus("fresh") && polls++ < 4)) {
+		m->scan_count = 0;
+		m->slave_count = 0;
+		m->scan_busy = polls > 2;
+	}
 	/* a scan that ends after a while */
 	if (fake_bus("scanning") && polls++ < 4) {
 		m->scan_busy = 1;

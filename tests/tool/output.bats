@@ -233,6 +233,9 @@ END
 	[ "$(out upload -p2 -t string 0x1008 0 | tr -d '\0')" = EL7201 ]
 	[ "$(out upload -p2 -t octet_string 0x1008 0 | wc -c)" -eq 8 ]
 	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 65536 ]
+	# on a terminal each byte can be read
+	[[ $(script -qec "$HERE/build/fake/ethercat upload -p2 0x1018" /dev/null) == "0x04 0x00 0x02 0x00"* ]]
+	[[ $(script -qec "$HERE/build/fake/ethercat upload -p2 -t octet_string 0x2000 0" /dev/null) == "0x00 0x00 0xc0 0x3f"* ]]
 }
 
 @test "upload failures name cause and slave" {
@@ -417,6 +420,19 @@ END
 
 @test "a running scan is noted on stderr" {
 	[[ $(FAKE_BUS=scanning err slaves) == *"scan is running"* ]]
+	# on a terminal at most 2 s for the first one
+	[ -z "$(FAKE_BUS=fresh out slaves)" ]
+	FAKE_BUS=fresh run script -qec "$HERE/build/fake/ethercat slaves" /dev/null
+	[ "$status" -eq 0 ]
+	[ "$(tr -d '\r' <<<"$output")" = "$(out slaves)" ]
+	SECONDS=0
+	FAKE_BUS=unread run script -qec "$HERE/build/fake/ethercat slaves" /dev/null
+	[ "$status" -eq 0 ]
+	[ "$SECONDS" -ge 1 ]
+	[ "$SECONDS" -le 20 ]
+	SECONDS=0
+	FAKE_BUS=waiting run script -qec "$HERE/build/fake/ethercat slaves" /dev/null
+	[ "$SECONDS" -le 1 ]
 	[ "$(FAKE_BUS=scanning out slaves | wc -l)" -eq 1 ]
 	[ "$(FAKE_BUS=scanning out slaves --wait | wc -l)" -eq 3 ]
 	[ -z "$(FAKE_BUS=scanning err slaves --wait 5)" ]
