@@ -135,7 +135,10 @@ run() {
 			EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug "$s" || rc=1
 		done
 		return $rc ;;
-	*) EC_KERNEL=6.1-${1%%:*} tests/system/run.sh "$(file "$1")" ;;
+	*)	# the detectors are tried with the first file on each kernel
+		EC_PLANTED=${tried[${1%%:*}]-} EC_KERNEL=6.1-${1%%:*} \
+			tests/system/run.sh "$(file "$1")" || return
+		tried[${1%%:*}]=no ;;
 	esac
 }
 
@@ -153,6 +156,7 @@ tests/install-deps.sh build vm capture uml json >&2 || exit 1
 export PATH=/usr/lib/ccache:$PATH
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+declare -A tried
 passed=0 failed=0
 for i in ${todo[@]+"${todo[@]}"}; do
 	began=$SECONDS at=$(tree)
