@@ -11,7 +11,7 @@ static void entry(const struct ec_ioc_pdo_entry *e)
 	out_u("index", e->index, "    PDO entry 0x%04x", e->index);
 	out_u("subindex", e->subindex, ":%02x", e->subindex);
 	out_u("size_bits", e->bits, ", %2u bit", e->bits);
-	out_str("name", e->name, ", \"%s\"\n", e->name);
+	out_str("name", e->name, ", \"%s\"\n", pdo_entry_text(e->index, e->name));
 	out_end();
 }
 

@@ -38,6 +38,11 @@ struct reading {
 	unsigned int n;
 };
 
+const char *pdo_entry_text(u16 index, const char *name)
+{
+	return index || *name ? name : "Gap";
+}
+
 bool pdos_coe_has(const struct ec_ioc_slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
@@ -163,7 +168,7 @@ static void show_entry(struct reading *r, u32 v)
 	out_u("index", index, "    PDO entry 0x%04x", index);
 	out_u("subindex", sub, ":%02x", sub);
 	out_u("size_bits", bits, ", %2u bit", bits);
-	out_str("name", name, ", \"%s\"\n", name);
+	out_str("name", name, ", \"%s\"\n", pdo_entry_text(index, name));
 	out_end();
 }
 

@@ -267,6 +267,8 @@ static int foe_read(struct ec_ioc_foe *x)
 
 	if (!strcmp(x->name, "none"))
 		return foe_error(x, 0x8001);
+	if (!strcmp(x->name, "boot"))
+		return foe_error(x, 0x8009);
 	if (!strcmp(x->name, "strange"))
 		return foe_error(x, 0x9999);
 	if (!strcmp(x->name, "mute"))

@@ -74,6 +74,7 @@ load common
 	run ethercat foe_read -p2 none
 	[ "$status" -eq 1 ]
 	[[ $output == *"Master0 slave 2: cannot read file 'none': 0x00008001: file not found"* ]]
+	[[ $(err foe_read -p2 boot) == *"0x00008009: not possible in BOOT; some slaves mean: only "* ]]
 	run ethercat foe_read -p2 strange
 	[[ $output == *"cannot read file 'strange': 0x00009999: unknown code"* ]]
 	run ethercat foe_read -p2 mute
