@@ -166,8 +166,8 @@ report() {
 
 	read -r rc <"$out.end"
 	echo "# $f"
-	# cases of a C program, see cases() of helpers.bash; what a failed case shows of a program that
-	# writes "ok" too is none
+	# cases of a C program, see cases() of helpers.bash; a program's own "ok" that a failed case
+	# shows is none
 	sed -i -E 's/^# (ok|not ok) ([0-9]+|-) /\1 \2 /' "$out"
 	[ -z "$inexact" ] || pardon "$f"
 	grep -E '^(ok|not ok|#)' "$out"
