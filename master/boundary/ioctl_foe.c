@@ -57,7 +57,7 @@ static int refused(struct ec_call *call, const struct ec_foe *f)
 	const char *meaning = ec_foe_error_text(f->error) ?: "unknown code";
 	const struct ec_ioc_foe *i = call->arg;
 
-	return ec_refuse(call, -EIO, "file '%.*s' of slave %u: error 0x%08x: %s%s%s",
+	return ec_refuse(call, -EIO, "file '%*pE' of slave %u: error 0x%08x: %s%s%s",
 			 (int)f->name_len, f->name, i->position, f->error, meaning,
 			 f->text[0] ? "; text of the slave: " : "", f->text);
 }
@@ -67,7 +67,7 @@ static int failed(struct ec_call *call, const struct ec_foe *f, int ret)
 	const struct ec_ioc_foe *i = call->arg;
 	char what[EC_FOE_NAME + 10];
 
-	scnprintf(what, sizeof(what), "file '%.*s'", (int)f->name_len, f->name);
+	scnprintf(what, sizeof(what), "file '%*pE'", (int)f->name_len, f->name);
 	switch (ret) {
 	case -EREMOTEIO:
 		return refused(call, f);
