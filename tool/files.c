@@ -102,9 +102,6 @@ static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write
 
 	memcpy(name, i->name, EC_FOE_NAME);
 	string_clean(name, sizeof(name));
-	/* "not bootstrap" can be read both ways, and is */
-	if (i->error_code == 0x8009)
-		text = "not possible in BOOT; some slaves mean: only possible in BOOT";
 	if (i->error_code && !text)
 		text = "unknown code";
 	if (text && i->error_code)

@@ -199,7 +199,9 @@ const char *ec_foe_error_text(u32 code)
 		{ EC_FOE_ERR_EXISTS, "file exists" },
 		{ EC_FOE_ERR_NO_USER, "no user" },
 		{ EC_FOE_ERR_BOOT_ONLY, "only possible in BOOT" },
-		{ EC_FOE_ERR_NOT_BOOT, "not possible in BOOT" },
+		/* ETG.1000.6 "not bootstrap" can be read both ways, and is */
+		{ EC_FOE_ERR_NOT_BOOT,
+		  "not possible in BOOT; some slaves mean: only possible in BOOT" },
 		{ EC_FOE_ERR_NO_RIGHTS, "no access rights" },
 		{ EC_FOE_ERR_PROGRAM, "program error" },
 		{ EC_FOE_ERR_CHECKSUM, "wrong checksum" },
