@@ -108,7 +108,7 @@ int ec_ioc_rescan(struct ec_call *call)
 	}
 	if (ec_bus_scan_awaited(&m->bus))
 		return ec_refuse(call, -EBUSY,
-				 "the bus is scanned, and a program waits for the end to use the master; try again later");
+				 "another program waits until scans have ended and slaves have settled; try again later");
 	ec_bus_rescan(&m->bus);
 	return 0;
 }

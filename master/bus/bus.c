@@ -144,7 +144,7 @@ static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
 	}
 }
 
-/* Else who asks for scans all the time keeps the others waiting. */
+/* A program that asks for scans all the time must not keep these callers waiting. */
 static int wait_scans(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
 {
 	int ret;
@@ -156,11 +156,11 @@ static int wait_scans(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
 }
 
 /**
- * ec_bus_scan_awaited() - does somebody wait for the end of scans?
+ * ec_bus_scan_awaited() - does a caller wait for the end of scans?
  * @bus: bus
  *
  * Context: Any.
- * Return: whether somebody does.
+ * Return: whether one does.
  */
 bool ec_bus_scan_awaited(const struct ec_bus *bus)
 {

@@ -74,7 +74,7 @@ struct ec_bus {
 	 * is not active; set with @topo and @scan_lock held
 	 */
 	bool held;
-	/** @awaited: who waits for the end of scans; meanwhile no other is asked for by a user */
+	/** @awaited: callers that wait for the end of scans; users may ask for none meanwhile */
 	atomic_t awaited;
 	/** @due: a slave was lost while @held, so a scan follows; the monitor's */
 	bool due;

@@ -193,7 +193,7 @@ static int ask_for_scans(void *arg)
 	ec_file_init(&other, b->m, true);
 	while (!kthread_should_stop()) {
 		ret = ec_ioc(&other, EC_IOC_RESCAN, NULL);
-		refused += ret == -EBUSY && strstr(other.reason, "a program waits for the end");
+		refused += ret == -EBUSY && strstr(other.reason, "waits until scans have ended");
 		msleep(1);
 	}
 	return refused;
