@@ -9,7 +9,7 @@
 #include "slave_info.h"
 
 #define WAIT_S	60.0
-#define FIRST_S	2.0		/* for the first scan, where a person looks */
+#define FIRST_S	2.0		/* for the first scan, on a terminal */
 #define MISSING_LINES	16
 
 static int digits(unsigned int v)
@@ -106,7 +106,7 @@ static void missing(struct dev *d, unsigned int configs)
 		     d->master, n - MISSING_LINES);
 }
 
-/* A person who has just loaded the modules wants to see slaves, not that there are none yet. */
+/* Just after the load of the modules a user wants to see slaves, not that there are none yet. */
 static int wait_first(struct dev *d)
 {
 	double end = now_s() + FIRST_S;

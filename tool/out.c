@@ -203,6 +203,15 @@ void out_hex(const char *key, const u8 *data, size_t size, const char *indent)
 	putchar('"');
 }
 
+/* may the character at @at go to a terminal? @step: its bytes */
+static bool is_shown(const u8 *at, size_t size, size_t *step)
+{
+	int n = utf8_len(at, size);
+
+	*step = n ? (size_t)n : 1;
+	return *at == '\n' || *at == '\t' || text_harmless(at, n);
+}
+
 void out_text_bytes(const u8 *data, size_t size)
 {
 	size_t step;
@@ -214,28 +223,21 @@ void out_text_bytes(const u8 *data, size_t size)
 		return;
 	}
 	for (size_t i = 0; i < size; i += step) {
-		int n = utf8_len(data + i, size - i);
-
-		step = n ? (size_t)n : 1;
-		if (data[i] == '\n' || data[i] == '\t' || text_harmless(data + i, n))
+		if (is_shown(data + i, size - i, &step))
 			fwrite(data + i, 1, step, stdout);
 		else if (data[i])
 			putchar('?');
 	}
 }
 
-/* Return: whether out_text_bytes() would not show all of it, as for a terminal */
+/* Return: whether out_text_bytes() would leave out or replace some, as on a terminal */
 bool out_would_hide(const u8 *data, size_t size)
 {
 	size_t step;
 
-	for (size_t i = 0; isatty(STDOUT_FILENO) && i < size; i += step) {
-		int n = utf8_len(data + i, size - i);
-
-		step = n ? (size_t)n : 1;
-		if (data[i] != '\n' && data[i] != '\t' && !text_harmless(data + i, n))
+	for (size_t i = 0; isatty(STDOUT_FILENO) && i < size; i += step)
+		if (!is_shown(data + i, size - i, &step))
 			return true;
-	}
 	return false;
 }
 

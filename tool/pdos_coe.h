@@ -4,7 +4,7 @@
 
 #include "dev.h"
 
-/* a name for people: entries without object fill up a PDO */
+/* a name for text output: entries without object fill up a PDO */
 const char *pdo_entry_text(u16 index, const char *name);
 bool pdos_coe_has(const struct ec_ioc_slave *s);
 int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,

@@ -68,13 +68,14 @@ int sdo_timeout_check(const struct tool *t)
 static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const struct sdo_addr *a,
 		  const char *verb)
 {
+	char hint[48] = "";
+
 	if (s->abort_code == SDO_NO_OBJECT && *a->meant)
-		return fail_full(err, NULL, s->abort_code,
-				 "Master%u slave %u: SDO %s %s, in decimal %u (did you mean %s?)",
-				 d->master, s->position, verb, a->text, a->index, a->meant);
+		snprintf(hint, sizeof(hint), ", in decimal %u (did you mean %s?)", a->index,
+			 a->meant);
 	if (s->abort_code)
-		return fail_full(err, NULL, s->abort_code, "Master%u slave %u: SDO %s %s",
-				 d->master, s->position, verb, a->text);
+		return fail_full(err, NULL, s->abort_code, "Master%u slave %u: SDO %s %s%s",
+				 d->master, s->position, verb, a->text, hint);
 	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, s->position, verb,
 			a->text);
 }
