@@ -3,8 +3,8 @@
 #
 # The tests under detectors, one file at a time: tests/system on 6.1-kasan (memory, locks, DMA)
 # and on 6.1-kcsan (data races), the KUnit suites in a UML kernel with KASAN, lockdep and kmemleak.
-# Each result is a row of Documentation/detectors.rst with its date and tree. A file that has a
-# result and has not changed since, nor what it tests, does not run again: a run that was ended
+# Each result is a row of Documentation/detectors.rst with its date and tree. A file that has
+# passed and has not changed since, nor what it tests, does not run again: a run that was ended
 # continues with the next file.
 #
 # usage: check-debug.sh [--again] [NAME...]
@@ -86,7 +86,7 @@ row() { awk -v k="${1%%:*}" -v n="${1#*:}" '$1 == k && $2 == n' "$page"; }
 is_done() {
 	local tree
 
-	tree=$(row "$1" | awk '{ print $4 }')
+	tree=$(row "$1" | awk '$6 == 0 { print $4 }')
 	[ -n "$tree" ] && [[ $tree != *+ ]] || return 1
 	# shellcheck disable=SC2046,SC2086
 	git diff --quiet "$tree" -- $product $(file "$1") 2>/dev/null
@@ -136,9 +136,9 @@ run() {
 		done
 		return $rc ;;
 	*)	# the detectors are tried with the first file on each kernel
-		EC_PLANTED=${tried[${1%%:*}]-} EC_KERNEL=6.1-${1%%:*} \
-			tests/system/run.sh "$(file "$1")" || return
-		tried[${1%%:*}]=no ;;
+		s=${tried[${1%%:*}]-}
+		tried[${1%%:*}]=no
+		EC_PLANTED=$s EC_KERNEL=6.1-${1%%:*} tests/system/run.sh "$(file "$1")" ;;
 	esac
 }
 

@@ -157,15 +157,16 @@ t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE
 t "sparse notices a wrong byte order" sparse_notices
 
-# listed PAGE-TREE: would check-debug run thin, which has a result of that tree?
+# listed PAGE-TREE [FAILED]: would check-debug run thin, which has a result of that tree?
 listed() {
-	printf '%s\n' '======= =' x '======= =' "kasan thin 2026-01-01 $1 1 0 1" >"$tmp/page"
+	printf '%s\n' '======= =' x '======= =' "kasan thin 2026-01-01 $1 1 ${2:-0} 1" >"$tmp/page"
 	EC_PAGE=$tmp/page EC_PRODUCT=COPYING tests/check-debug.sh --list kasan:thin |
 		grep -x kasan:thin
 }
 tree=$(git -c safe.directory='*' rev-parse --short=7 HEAD)
 t "check-debug repeats no result of this tree" eval '! listed "$tree"'
 t "a result of changed files does not count" listed "$tree+"
+t "a result with a failure does not count" listed "$tree" 1
 unknown_refused() { tests/check-debug.sh --list nosuch 2>&1 >/dev/null | grep "no test 'nosuch'"; }
 t "check-debug refuses a name that is no test" unknown_refused
 t "ec_sim and ec_generic load after ec_master" eval \
