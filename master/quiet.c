@@ -12,7 +12,7 @@
 #include "wire/compat.h"
 #include "wire/event_ring.h"
 
-#define LOOKS	4	/* of the timer, between two of the monitor */
+#define LOOKS	9	/* of the timer, between two of the monitor */
 
 static u64 frames_missed(const struct ec_links *l)
 {

@@ -88,12 +88,18 @@ static void timer_is_asked_for(struct kunit *test)
 	unwatch(a);
 }
 
+static bool no_link(void *priv)
+{
+	return false;
+}
+
 /* The device needs a thread now and then: no cycle is left out. */
 static void timer_not_for_each_device(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
 	struct ec_link *backup = &a->c->b->m->links.link[1];
-	struct ecdev_ops ops = { .atomic = false };
+	/* the monitor asks it, too */
+	struct ecdev_ops ops = { .atomic = false, .link_up = no_link };
 	struct ecdev dev = { .ops = &ops };
 	u32 hard;
 

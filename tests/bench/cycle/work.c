@@ -2,8 +2,8 @@
 /*
  * All work of a cycle: what the CPU executes in N cycles, of every thread and interrupt, as
  * bench_split.ko counts it. The simulator's part is apart: its thread, the threads of its
- * network card (eth1) and the interrupts that wake them. As a check of that, all of it is
- * also the time that has passed less the idle time.
+ * network card (eth1), the work that its driver puts off, and the interrupts that wake them. As a
+ * check of that, all of it is also the time that has passed less the idle time.
  */
 #include "bench.h"
 
@@ -22,6 +22,9 @@
 static enum worker worker(const char *name)
 {
 	if (!strcmp(name, "ethercat-sim") || (!strncmp(name, "irq/", 4) && strstr(name, "eth1")))
+		return WORKER_SIMULATOR;
+	/* with the generic device it may be of either card */
+	if (!strcmp(name, "e1000e") && access("/sys/class/net/eth0", F_OK))
 		return WORKER_SIMULATOR;
 	if (!strcmp(name, "cycle-bench"))
 		return WORKER_APPLICATION;

@@ -13,6 +13,8 @@
  * one then counts for that one, with the switch to it, and the clock tick for "timer". That
  * needs more looks, which themselves cost a little: only on request.
  *
+ * Work that the driver e1000e has put off is "e1000e", and not that of the thread which does it.
+ *
  * Parameters: clear (written: all are 0; "spin": the second way), tasks (lines "NAME ns", the
  * last one "idling ns", until now; the first way from now on).
  */
@@ -25,12 +27,13 @@
 #include <linux/tick.h>
 #include <linux/timekeeping.h>
 #include <linux/tracepoint.h>
+#include <linux/workqueue.h>
 #include <trace/events/power.h>
 
 #define TASKS	64	/* those of a cycle are some ten */
 
 static struct task_work {
-	const struct task_struct *task;
+	const void *who;
 	char name[TASK_COMM_LEN];
 	u64 ns;
 } tasks[TASKS];
@@ -45,22 +48,27 @@ static const struct task_struct *before;	/* the idle task, until its first halt 
 static bool spins;
 static const struct task_struct *woken;	/* by the interrupt of the timer */
 
-/* @task NULL: the interrupt of the timer */
-static struct task_work *find(const struct task_struct *task)
+static struct task_work *find(const void *who, const char *name)
 {
 	struct task_work *t;
 
 	for (t = tasks; t < tasks + n_tasks; t++)
-		if (t->task == task)
+		if (t->who == who)
 			return t;
 	if (n_tasks == TASKS)
 		return &tasks[TASKS - 1];
 	n_tasks++;
-	t->task = task;
+	t->who = who;
 	t->ns = 0;
-	/* get_task_comm() may sleep on PREEMPT_RT */
-	strscpy(t->name, task ? task->comm : "timer", sizeof(t->name));
+	strscpy(t->name, name, sizeof(t->name));
 	return t;
+}
+
+/* @task NULL: the interrupt of the timer */
+static struct task_work *find_task(const struct task_struct *task)
+{
+	/* get_task_comm() may sleep on PREEMPT_RT */
+	return find(task, task ? task->comm : "timer");
 }
 
 /* with interrupts off; executed since the last look. The work of this call counts for no thread */
@@ -79,11 +87,16 @@ static u64 executed(void)
 	return work;
 }
 
-static void charge(const struct task_struct *to)
+static void charge_to(struct task_work *t)
 {
-	find(to)->ns += executed() + woken_ns;
+	t->ns += executed() + woken_ns;
 	woken_ns = 0;
 	last_ns = ktime_get_mono_fast_ns();
+}
+
+static void charge(const struct task_struct *to)
+{
+	charge_to(find_task(to));
 }
 
 /* The idle task lets the CPU halt, or has. */
@@ -92,7 +105,7 @@ static void on_idle(void *data, unsigned int state, unsigned int cpu)
 	u64 work = executed();
 
 	if (before)
-		find(before)->ns += work;
+		find_task(before)->ns += work;
 	else
 		woken_ns += work;
 	before = NULL;
@@ -107,6 +120,27 @@ static void on_switch(void *data, bool preempt, struct task_struct *prev,
 
 	charge(displaced || is_idle_task(prev) ? next : prev);
 	before = is_idle_task(next) ? prev : NULL;
+}
+
+/* the rest that is put off counts for its thread */
+static void on_work(void *data, struct work_struct *work)
+{
+	local_irq_disable();
+	charge(current);
+	local_irq_enable();
+}
+
+static void on_work_done(void *data, struct work_struct *work, work_func_t function)
+{
+	char name[64];
+
+	snprintf(name, sizeof(name), "%ps", function);
+	local_irq_disable();
+	if (strstr(name, "[e1000e]"))
+		charge_to(find(tasks, "e1000e"));
+	else
+		charge(current);
+	local_irq_enable();
 }
 
 static void look_at_current(void)
@@ -144,6 +178,8 @@ static struct probe {
 } probes[] = {
 	{ "sched_switch", on_switch },
 	{ "cpu_idle", on_idle },
+	{ "workqueue_execute_start", on_work },
+	{ "workqueue_execute_end", on_work_done },
 	{ "sched_waking", on_wake },
 	{ "irq_handler_entry", on_interrupt },
 	{ "local_timer_entry", on_timer },
@@ -159,7 +195,7 @@ static void look(struct tracepoint *tp, void *data)
 			p->at = tp;
 }
 
-#define ALWAYS	2	/* the first ones */
+#define ALWAYS	4	/* the first ones */
 
 static unsigned int watched;	/* probes that are registered */
 
@@ -227,7 +263,7 @@ static int __init split_init(void)
 	for_each_kernel_tracepoint(look, NULL);
 	if (num_possible_cpus() == 1 && !watch_until(ALWAYS))
 		return 0;
-	pr_err("bench_split: needs the tracepoints sched_switch and cpu_idle, and one CPU\n");
+	pr_err("bench_split: needs its tracepoints and one CPU\n");
 	return -EINVAL;
 }
 
