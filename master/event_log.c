@@ -26,10 +26,12 @@ static const char *level(const struct ec_event *e)
 {
 	switch (e->kind) {
 	case EC_EVENT_SLAVE_FOUND:
+	case EC_EVENT_OUTPUTS:
 	case EC_EVENT_RESERVED:
 	case EC_EVENT_RELEASED:
 	case EC_EVENT_DEBUG:
 		return KERN_INFO;
+	case EC_EVENT_STALL:
 	case EC_EVENT_OVERRUN:
 	case EC_EVENT_FRAMES_LOST:
 	case EC_EVENT_FRAMES_LATE:

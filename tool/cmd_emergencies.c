@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "../master/wire/coe.h"
+#include "../master/wire/emergency.h"
 #include "../master/wire/sii.h"
 #include "dev.h"
 #include "out.h"
@@ -12,10 +12,10 @@ struct found {
 	bool narrowed;		/* by -a or -p */
 };
 
-static void entry(u16 position, const struct ec_emergency *e)
+static void entry(u16 position, const struct ec_emergency *e, u32 profile)
 {
 	const time_t s = (time_t)(e->time_ns / 1000000000);
-	const char *about = ec_coe_emergency_text(e->code);
+	const char *about = ec_emergency_text(e->code, profile);
 	char when[32] = "?";
 	struct tm tm;
 
@@ -58,7 +58,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		out_text("%4u  the last %u of %u\n", s->position, n, i.total);
 	out_array("emergencies");
 	for (unsigned int k = 0; k < n; k++)
-		entry(s->position, &i.entry[k]);
+		entry(s->position, &i.entry[k], i.profile);
 	out_end();
 	out_end();
 	found->any |= n;
@@ -95,7 +95,7 @@ const struct cmd cmd_emergencies = {
 	.summary = "Show the last CoE emergencies of slaves",
 	.help = "The master fetches them in PREOP and above, and keeps the last 16 of each slave. Columns:\n"
 		"position, time at which the master has fetched it, error code, error register,\n"
-		"manufacturer's data, group of the code. Code 0x0000: the error is over.\n",
+		"manufacturer's data, text of the code. Code 0x0000: the error is over.\n",
 	.json = "masters[]: master, slaves[]: position, total, emergencies[]: time_ns (since 1970),\n"
 		"code, error_register, data_hex, text",
 };

@@ -21,6 +21,14 @@ static void name_or_null(const char *key, const char *name)
 		out_null(key, NULL);
 }
 
+/* as EC_CYCLE_* of ecrt.h */
+static const char *stall_key(u32 policy)
+{
+	static const char *const key[] = { "hold", "zero", "stop" };
+
+	return policy < ARRAY_SIZE(key) ? key[policy] : NULL;
+}
+
 /* by the names that the other commands have */
 static void argument(const char *key, enum ec_event_arg type, u32 v)
 {
@@ -30,6 +38,9 @@ static void argument(const char *key, enum ec_event_arg type, u32 v)
 		break;
 	case EC_ARG_AL:
 		name_or_null(key, v ? ec_al_state_name((u8)v) : NULL);
+		break;
+	case EC_ARG_STALL:
+		name_or_null(key, stall_key(v));
 		break;
 	case EC_ARG_LOCK:
 		name_or_null(key, cycle_lock_key(v));
@@ -194,21 +205,23 @@ const struct cmd cmd_log = {
 		"missed.\n",
 	.json = "masters[]: master, events[]: number, time_ns (since 1970), monotonic_ns, event, slave,\n"
 		"values of the event, text. With --follow each line is an object: master, and the\n"
-		"same. AL states are names, cycle_lock is as of 'ethercat master'; null: none. Values\n"
+		"same. AL states are names, cycle_lock is as of 'ethercat master', policy is hold, zero\n"
+		"or stop; null: none. Values\n"
 		"by event: missed (count), device_attached, device_detached, link_up, link_down\n"
 		"(device), slaves_responding (slaves, before), scan_start (slaves), scan_end (slaves,\n"
 		"duration_us, frames), slave_lost (upstream, port, alias, vendor_id, product_code,\n"
 		"age_ms), all_slaves_lost (slaves, age_ms), slave_found (upstream, port, alias,\n"
 		"vendor_id, product_code), slave_silent, slave_replies (none), slave_back\n"
 		"(absent_ms), no_answer (polls), al_state, al_state_left (state, before), al_error\n"
-		"(state, al_code), emergency (code, error_register, data, data_4), slave_failed\n"
-		"(error, al_code, cause, code, object, subindex, sm, state), eeprom (flaw, checksum,\n"
+		"(state, al_code), emergency (code, error_register, data, data_4, profile),\n"
+		"slave_failed (error, al_code, cause, code, object, subindex, sm, state), eeprom (flaw, checksum,\n"
 		"expected), no_clock (none), revision (expected, found), working_counter (domain,\n"
 		"working_counter, before, expected, more_changes, slaves_down, incomplete,\n"
 		"incomplete_before), overruns (cycles), frames_lost, frames_late (frames),\n"
 		"cycle_timeout (duration_ms, timeouts),\n"
-		"cycle_resumed (duration_ms), stale_data (domain, age_sends, limit_sends), wire_time\n"
-		"(cyclic_ns, cycle_ns, free_ns, needed_ns), reference_clock (reference, lost),\n"
+		"cycle_resumed (duration_ms), stale_data (domain, age_sends, limit_sends),\n"
+		"output_stall (policy, cycles, more_stalls), outputs_again (cycles),\n"
+		"wire_time (cyclic_ns, cycle_ns, free_ns, needed_ns), reference_clock (reference, lost),\n"
 		"clocks_synchronized (duration_us, reference), clocks_not_synchronized (errno,\n"
 		"retry), sync_window (outside, clocks, worst, difference_ns), cycle_lock (cycle_lock,\n"
 		"phase_error_ns, rate_ppb), reserved (pid), activated (pid, domains, bytes,\n"

@@ -442,7 +442,7 @@ struct ec_ioc_cycle_stats {
 	__u32 priority;		/* SCHED_FIFO; 0: SCHED_OTHER */
 	__u32 priority_wanted;	/* as configured */
 	__u32 place;		/* EC_CYCLE_PLACE_* */
-	__u32 reserved;
+	__u32 stall;		/* EC_STALL_* */
 };
 
 /* application ---------------------------------------------------------------*/

@@ -44,7 +44,8 @@
 #define EC_EVENT_AL_STATE	0x20	/* AL state, before */
 #define EC_EVENT_AL_LEFT	0x21	/* the same without request */
 #define EC_EVENT_AL_ERROR	0x22	/* AL state, AL status code */
-#define EC_EVENT_EMERGENCY	0x23	/* code, error register, data 0..3, data 4 */
+/* code, error register, data 0..3, data 4, profile: 402 drive, 0 not known */
+#define EC_EVENT_EMERGENCY	0x23
 /*
  * EC_SLAVE_*_FAILED, AL status code; of struct ec_cause: kind, code, object, subindex, SyncManager,
  * AL state
@@ -70,6 +71,9 @@
 #define EC_EVENT_STALE		0x36	/* domain, age in sends, limit */
 /* ns of the cyclic frames, of a cycle, free for acyclic frames, that one needs at least */
 #define EC_EVENT_WIRE_TIME	0x37
+/* EC_STALL_*, cycles of the kernel without new outputs; stalls before without record */
+#define EC_EVENT_STALL		0x38
+#define EC_EVENT_OUTPUTS	0x39	/* there are new ones: cycles without */
 
 /* slave, or EC_EVENT_NONE: clocks run free; 1: the reference clock before was lost */
 #define EC_EVENT_REF_CLOCK	0x40

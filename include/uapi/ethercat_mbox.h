@@ -70,7 +70,7 @@ struct ec_ioc_emergencies {
 	__u16 position;		/* in */
 	__u16 count;		/* out: entries */
 	__u32 total;		/* out: of this slave since it was found */
-	__u32 reserved;
+	__u32 profile;		/* out: of the slave, 402: a drive; 0: not known */
 	struct ec_emergency entry[EC_EMERGENCIES];
 };
 

@@ -29,8 +29,7 @@ CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
 	OLDEST(ec_ioc_config_why, text), RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
-CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),
-	RSV1(ec_ioc_emergencies))
+CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies))
 CMD(EC_IOC_EVENTS, ec_ioc_events, 0, FLAGS(EC_EVENTS_FLAG_NEW))
 CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain), OLDEST(ec_ioc_domain, age))
 CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),

@@ -149,6 +149,7 @@ int ec_ioc_emergencies(struct ec_call *call)
 {
 	struct ec_ioc_emergencies *i = call->arg;
 
+	i->profile = READ_ONCE(call->slave->mbox.profile);
 	i->count = ec_emerg_last(&call->slave->mbox, i->entry, &i->total);
 	return 0;
 }

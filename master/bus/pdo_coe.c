@@ -121,6 +121,7 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 	old = s->sm_pdos[sm];
 	s->sm_pdos[sm] = *l;
 	keep_unassigned(s, &old);
+	ec_slave_note_profile(s);
 	ec_show_change_end(&s->bus->base->show);
 	up_write(&s->bus->topo);
 	ec_pdo_list_clear(&old);

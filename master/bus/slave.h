@@ -237,6 +237,7 @@ bool ec_slave_set_replies(struct ec_slave *s);
 
 /* slave_pdo.c */
 int ec_slave_read_pdos(struct ec_slave *slave);
+void ec_slave_note_profile(struct ec_slave *slave);
 void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
 const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
 

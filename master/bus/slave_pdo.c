@@ -3,7 +3,10 @@
 #include <linux/sort.h>
 #include "../base/grow.h"
 #include "../base/limits.h"
+#include "../wire/emergency.h"
 #include "slave.h"
+
+#define STATUSWORD	0x6041	/* each drive has it, and maps it */
 
 /* categories of the EEPROM that have PDOs */
 static const u16 types[] = { EC_SII_CAT_RXPDO, EC_SII_CAT_TXPDO };
@@ -185,6 +188,35 @@ bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
 	return true;
 }
 
+static bool has_object(const struct ec_pdo_list *l, u16 index)
+{
+	unsigned int i, k;
+
+	for (i = 0; i < l->n; i++)
+		for (k = 0; k < l->pdos[i].n_entries; k++)
+			if (l->pdos[i].entries[k].index == index)
+				return true;
+	return false;
+}
+
+/**
+ * ec_slave_note_profile() - what kind of device a slave is, by its PDOs
+ * @slave: slave whose PDOs are known or have changed
+ *
+ * Object 0x1000 says it as well, but to read it takes a mailbox exchange.
+ *
+ * Context: Process; PDOs do not change meanwhile.
+ */
+void ec_slave_note_profile(struct ec_slave *slave)
+{
+	bool drive = has_object(&slave->free_pdos, STATUSWORD);
+	unsigned int sm;
+
+	for (sm = 0; sm < ARRAY_SIZE(slave->sm_pdos); sm++)
+		drive |= has_object(&slave->sm_pdos[sm], STATUSWORD);
+	WRITE_ONCE(slave->mbox.profile, drive ? EC_PROFILE_DRIVE : 0);
+}
+
 /**
  * ec_slave_read_pdos() - take the PDOs of a slave from its EEPROM
  * @slave: slave with EEPROM image
@@ -225,6 +257,7 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 			}
 		}
 	}
+	ec_slave_note_profile(slave);
 	return 0;
 }
 

@@ -127,6 +127,17 @@ void ec_cycle_run_end(struct ec_cycle *c)
 	ec_cycle_run_wake(c, false);
 }
 
+/* An output stall is an event, and its end as well; of many in a second the first ones. */
+static noinline void tell_stall(struct ec_cycle_thread *t)
+{
+	t->stall_told = ec_events_admit(&t->stalls, ktime_get_ns());
+	if (!t->stall_told)
+		return;
+	ec_event(t->cycle->base, EC_EVENT_STALL, t->cycle->kernel.stall, t->unfed,
+		 t->stalls.more - 1);
+	t->stalls.more = 0;
+}
+
 /* The application has given no outputs for too long. */
 static void stop_outputs(struct ec_cycle_thread *t)
 {
@@ -155,6 +166,9 @@ static void feed(struct ec_cycle_thread *t)
 	u32 limit = t->cycle->kernel.stall_cycles;
 
 	if (take_outputs(t)) {
+		if (unlikely(t->stall_told))
+			ec_event(t->cycle->base, EC_EVENT_OUTPUTS, t->unfed);
+		t->stall_told = false;
 		t->fed = true;
 		t->unfed = 0;
 		if (st->state != EC_CYCLE_STATE_RUNNING)
@@ -164,10 +178,14 @@ static void feed(struct ec_cycle_thread *t)
 	if (!t->fed)
 		return;
 	ec_status_add(t->cycle->shared->status, &st->missed, 1);
-	if (!limit || t->unfed == limit)
+	if (!limit || t->unfed == ~0u || ++t->unfed < limit)
 		return;
-	if (++t->unfed == limit)
+	if (t->unfed == limit) {
 		stop_outputs(t);
+		t->stalls.more++;
+	}
+	if (unlikely(!t->stall_told))
+		tell_stall(t);
 }
 
 /**

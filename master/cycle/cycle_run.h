@@ -48,7 +48,9 @@ struct ec_cycle_slow {
  * @steady: cycles in which all slaves took part in a row, up to STEADY
  * @back: input buffer it holds
  * @fed: there were outputs at least once
- * @unfed: cycles without new outputs in a row, up to the limit
+ * @unfed: cycles without new outputs in a row
+ * @stalls: output stalls as events
+ * @stall_told: the present one is one
  * @adopt: another application shall get the buffers; cleared when it has them
  * @adopted: that has happened
  * @timer: runs cycles in its interrupt
@@ -82,6 +84,8 @@ struct ec_cycle_thread {
 	u8 back;
 	bool fed;
 	u32 unfed;
+	struct ec_event_rate stalls;
+	bool stall_told;
 	bool adopt;
 	struct completion adopted;
 	struct hrtimer timer;

@@ -296,6 +296,7 @@ static void describe(const struct ec_cycle *c, struct ec_ioc_cycle_stats *info)
 	info->place = kernel ? READ_ONCE(c->place) : EC_CYCLE_PLACE_THREAD;
 	info->cpu_losses = c->cpu_losses;
 	info->priority = kernel ? c->priority : 0;
+	info->stall = kernel ? c->kernel.stall : 0;
 	info->priority_wanted = kernel ? c->kernel.priority ?: EC_CYCLE_PRIORITY : 0;
 }
 

@@ -91,6 +91,8 @@ struct ec_mbox {
 
 	/** @reply_ms: limit of SDO and SoE replies that its configuration has, 0: the default */
 	u32 reply_ms;
+	/** @profile: of the device, 402: a drive; 0: not known. Written by the bus */
+	u32 profile;
 	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
 	bool strict;
 

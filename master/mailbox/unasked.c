@@ -2,6 +2,7 @@
 /* Messages that a slave sends without a request: emergencies, VoE. */
 #include <linux/slab.h>
 #include "../wire/coe.h"
+#include "../wire/emergency.h"
 #include "emerg.h"
 #include "mailbox_int.h"
 
@@ -15,13 +16,14 @@ struct kept {
 static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
 {
 	struct ec_coe_emergency e;
+	u32 profile = READ_ONCE(mb->profile);
 
 	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
 		return false;
-	ec_mbox_warn(mb, "CoE emergency: code 0x%04x, error register 0x%02x (%s)\n", e.code,
-		     e.reg, ec_coe_emergency_text(e.code));
+	ec_mbox_warn(mb, "CoE emergency: code 0x%04x (%s), error register 0x%02x\n", e.code,
+		     ec_emergency_text(e.code, profile), e.reg);
 	ec_event_slave(mb->base, EC_EVENT_EMERGENCY, *mb->position, e.code, e.reg,
-		       get_unaligned_le32(e.data), e.data[4]);
+		       get_unaligned_le32(e.data), e.data[4], profile);
 	ec_emerg_push(mb, rx + EC_COE_HDR);
 	return true;
 }

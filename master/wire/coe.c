@@ -31,57 +31,6 @@ void ec_coe_hdr_encode(struct ec_wbuf *w, u8 service)
 	ec_wbuf_le16(w, (u16)(service << 12));
 }
 
-/* CiA 301 table 26; what has a finer group comes first */
-static const struct {
-	u16 mask;
-	u16 code;
-	const char *text;
-} emergencies[] = {
-	{ 0xFF00, 0x0000, "no error any more" },
-	{ 0xFF00, 0x2100, "current, input side" },
-	{ 0xFF00, 0x2200, "current inside the device" },
-	{ 0xFF00, 0x2300, "current, output side" },
-	{ 0xFF00, 0x3100, "mains voltage" },
-	{ 0xFF00, 0x3200, "voltage inside the device" },
-	{ 0xFF00, 0x3300, "output voltage" },
-	{ 0xFF00, 0x4100, "ambient temperature" },
-	{ 0xFF00, 0x4200, "device temperature" },
-	{ 0xFF00, 0x6100, "internal software" },
-	{ 0xFF00, 0x6200, "user software" },
-	{ 0xFF00, 0x6300, "data set" },
-	{ 0xFF00, 0x8100, "communication" },
-	{ 0xFF00, 0x8200, "protocol error" },
-	{ 0xFF00, 0xA000, "AL state change" },
-	{ 0xFF00, 0xFF00, "device specific" },
-	{ 0xF000, 0x1000, "generic error" },
-	{ 0xF000, 0x2000, "current" },
-	{ 0xF000, 0x3000, "voltage" },
-	{ 0xF000, 0x4000, "temperature" },
-	{ 0xF000, 0x5000, "device hardware" },
-	{ 0xF000, 0x6000, "device software" },
-	{ 0xF000, 0x7000, "additional modules" },
-	{ 0xF000, 0x8000, "monitoring" },
-	{ 0xF000, 0x9000, "external error" },
-	{ 0xF000, 0xF000, "additional functions" },
-};
-
-/**
- * ec_coe_emergency_text() - what the code of an emergency is about
- * @code: error code
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: text of its group, never NULL.
- */
-const char *ec_coe_emergency_text(u16 code)
-{
-	size_t i;
-
-	for (i = 0; i < ARRAY_SIZE(emergencies); i++)
-		if ((code & emergencies[i].mask) == emergencies[i].code)
-			return emergencies[i].text;
-	return "unknown group";
-}
-
 /**
  * ec_coe_emergency_decode() - read an emergency
  * @rx: message behind the mailbox header

@@ -50,7 +50,6 @@ struct ec_coe_emergency {
 int ec_coe_hdr_decode(struct ec_rbuf *r, struct ec_coe_hdr *h);
 void ec_coe_hdr_encode(struct ec_wbuf *w, u8 service);
 
-const char *ec_coe_emergency_text(u16 code);
 int ec_coe_emergency_decode(const u8 *rx, size_t len, struct ec_coe_emergency *e);
 
 const char *ec_coe_abort_text(u32 code);

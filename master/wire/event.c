@@ -3,6 +3,7 @@
 #include "event.h"
 #include "al.h"
 #include "coe.h"
+#include "emergency.h"
 
 #ifndef __KERNEL__
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #define S(n)	{ n, EC_ARG_SLAVE }
 #define AL(n)	{ n, EC_ARG_AL }
 #define L(n)	{ n, EC_ARG_LOCK }
+#define P(n)	{ n, EC_ARG_STALL }
 #define KIND(k, n, ...)	{ EC_EVENT_##k, n, { __VA_ARGS__ } }
 
 static const struct ec_event_kind kinds[] = {
@@ -36,7 +38,8 @@ static const struct ec_event_kind kinds[] = {
 	KIND(AL_STATE, "al_state", AL("state"), AL("before")),
 	KIND(AL_LEFT, "al_state_left", AL("state"), AL("before")),
 	KIND(AL_ERROR, "al_error", AL("state"), U("al_code")),
-	KIND(EMERGENCY, "emergency", U("code"), U("error_register"), U("data"), U("data_4")),
+	KIND(EMERGENCY, "emergency", U("code"), U("error_register"), U("data"), U("data_4"),
+	     U("profile")),
 	KIND(SLAVE_FAILED, "slave_failed", U("error"), U("al_code"), U("cause"), U("code"),
 	     U("object"), U("subindex"), U("sm"), AL("state")),
 	KIND(EEPROM, "eeprom", U("flaw"), U("checksum"), U("expected")),
@@ -51,6 +54,8 @@ static const struct ec_event_kind kinds[] = {
 	KIND(TIMEOUT, "cycle_timeout", U("duration_ms"), U("timeouts")),
 	KIND(RESUMED, "cycle_resumed", U("duration_ms")),
 	KIND(STALE, "stale_data", U("domain"), U("age_sends"), U("limit_sends")),
+	KIND(STALL, "output_stall", P("policy"), U("cycles"), U("more_stalls")),
+	KIND(OUTPUTS, "outputs_again", U("cycles")),
 	KIND(WIRE_TIME, "wire_time", U("cyclic_ns"), U("cycle_ns"), U("free_ns"), U("needed_ns")),
 	KIND(REF_CLOCK, "reference_clock", S("reference"), U("lost")),
 	KIND(DC_SET, "clocks_synchronized", U("duration_us"), S("reference")),
@@ -289,8 +294,9 @@ static void about_slave(struct text *t, const struct ec_event *e)
 		       state, e->arg[1], ec_al_code_text((u16)e->arg[1]));
 		break;
 	case EC_EVENT_EMERGENCY:
-		format(t, "slave %u: CoE emergency: code 0x%04x, error register 0x%02x (%s)",
-		       e->slave, e->arg[0], e->arg[1], ec_coe_emergency_text((u16)e->arg[0]));
+		format(t, "slave %u: CoE emergency: code 0x%04x (%s), error register 0x%02x",
+		       e->slave, e->arg[0], ec_emergency_text((u16)e->arg[0], e->arg[4]),
+		       e->arg[1]);
 		break;
 	}
 }
@@ -307,6 +313,21 @@ static void about_wkc(struct text *t, const u32 *a)
 	else
 		format(t, "domain %u: working counter %u of %u%s, before %u%s", a[0], a[1], a[3],
 		       sum, a[2], more);
+}
+
+static void about_stall(struct text *t, const u32 *a)
+{
+	/* EC_STALL_* */
+	static const char *const done[] = {
+		"the last outputs are held", "outputs are zero", "the cycle is stopped",
+	};
+	const char *what = a[0] < ARRAY_SIZE(done) ? done[a[0]] : "?";
+
+	if (a[2])
+		format(t, "output stall: no new outputs for %u cycle(s); %s; %u more stall(s) before",
+		       a[1], what, a[2]);
+	else
+		format(t, "output stall: no new outputs for %u cycle(s); %s", a[1], what);
 }
 
 static void about_cycle(struct text *t, const struct ec_event *e)
@@ -335,6 +356,12 @@ static void about_cycle(struct text *t, const struct ec_event *e)
 	case EC_EVENT_STALE:
 		format(t, "domain %u receives stale process data: %u sends old, limit %u", a[0],
 		       a[1], a[2]);
+		break;
+	case EC_EVENT_STALL:
+		about_stall(t, a);
+		break;
+	case EC_EVENT_OUTPUTS:
+		format(t, "new outputs after %u cycle(s) without", a[0]);
 		break;
 	case EC_EVENT_WIRE_TIME:
 		format(t, "cyclic frames use %u ns of %u ns; %u ns free for acyclic frames, minimum %u ns",

@@ -13,6 +13,7 @@ enum ec_event_arg {
 	EC_ARG_I,	/* signed */
 	EC_ARG_SLAVE,	/* ring position or EC_EVENT_NONE */
 	EC_ARG_AL,	/* AL state, 0: none */
+	EC_ARG_STALL,	/* EC_STALL_* */
 	EC_ARG_LOCK,	/* EC_CYCLE_LOCK_*, 0: not synchronized to the reference clock */
 };
 

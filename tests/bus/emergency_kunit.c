@@ -62,6 +62,18 @@ static void emergency_in_each_state(struct kunit *test)
 	}
 }
 
+/* A drive is known by its PDOs: then the codes of CiA 402 hold. */
+static void emergency_of_drive(struct kunit *test)
+{
+	struct bus *b = ready(test);
+
+	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->mbox.profile, 402u);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.profile, 0u);
+	ec_app_emergency(bus_app(b, "drive"), 0x7305, 0x21, (u8[5]){ 0 }, ktime_get_ns());
+	msleep(2 * SOON_MS);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("CoE emergency: code 0x7305 (fault of encoder 1), error register 0x21"), 1u);
+}
+
 /* The last ones stay, the oldest first. */
 static void emergency_list(struct kunit *test)
 {
@@ -226,6 +238,7 @@ static void emergency_flood(struct kunit *test)
 
 static struct kunit_case emergency_cases[] = {
 	KUNIT_CASE(emergency_in_each_state),
+	KUNIT_CASE(emergency_of_drive),
 	KUNIT_CASE(emergency_list),
 	KUNIT_CASE(emergency_list_read_without_lock_of_mailbox),
 	KUNIT_CASE(emergency_in_op),

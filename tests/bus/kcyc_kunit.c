@@ -89,6 +89,18 @@ static void kcyc_newest_wins(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 109ll);
 }
 
+/* events of this kind with these first arguments */
+static u32 events(struct kcyc *a, u32 kind, u32 first, u32 second)
+{
+	struct ec_event e = { };
+	u64 at = 0;
+	u32 n = 0;
+
+	while (ec_event_ring_get(&a->c->b->m->base->events.ring, &at, &e))
+		n += e.kind == kind && e.arg[0] == first && e.arg[1] == second;
+	return n;
+}
+
 static void kcyc_stall_hold(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
@@ -107,9 +119,11 @@ static void kcyc_stall_hold(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 25ull);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
+	KUNIT_EXPECT_EQ(test, events(a, EC_EVENT_STALL, EC_STALL_HOLD, 5), 1u);
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 1);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
+	KUNIT_EXPECT_EQ(test, events(a, EC_EVENT_OUTPUTS, 25, 0), 1u);
 }
 
 static void kcyc_stall_zero(struct kunit *test)
@@ -125,10 +139,34 @@ static void kcyc_stall_zero(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 0ll);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
+	KUNIT_EXPECT_EQ(test, events(a, EC_EVENT_STALL, EC_STALL_ZERO, 5), 1u);
 	kcyc_write(a, 43);
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 3);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 43ll);
+}
+
+/* One in each sixth cycle, as an application that is too slow: few events, and none is forgotten. */
+static void kcyc_stall_again_and_again(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){
+		.stall = EC_STALL_HOLD, .stall_cycles = 5 });
+	struct ec_event e = { };
+	u64 at = 0, stalls = 0;
+	u32 i, n = 0;
+
+	for (i = 0; i < 500; i++) {
+		kcyc_give(a);
+		kcyc_wait_cycles(a, 6);
+	}
+	/* the last one stands, and is told when a second is over */
+	kcyc_wait_cycles(a, 1000);
+	while (ec_event_ring_get(&a->c->b->m->base->events.ring, &at, &e)) {
+		n += e.kind == EC_EVENT_STALL || e.kind == EC_EVENT_OUTPUTS;
+		stalls += e.kind == EC_EVENT_STALL ? 1 + e.arg[2] : 0;
+	}
+	KUNIT_EXPECT_EQ(test, stalls, 500ull);
+	KUNIT_EXPECT_LE(test, n, 5u * 2 * EC_EVENT_RATE);
 }
 
 static void kcyc_stall_stop(struct kunit *test)
@@ -143,6 +181,7 @@ static void kcyc_stall_stop(struct kunit *test)
 		;
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STOPPED);
+	KUNIT_EXPECT_EQ(test, events(a, EC_EVENT_STALL, EC_STALL_STOP, 5), 1u);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 5ull);
 	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(&a->c->b->m->cycles, &a->c->b->app) &
 			  EPOLLHUP);
@@ -314,6 +353,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(kcyc_newest_wins),
 	KUNIT_CASE(kcyc_stall_hold),
 	KUNIT_CASE(kcyc_stall_zero),
+	KUNIT_CASE(kcyc_stall_again_and_again),
 	KUNIT_CASE(kcyc_stall_stop),
 	KUNIT_CASE(kcyc_overrun),
 	KUNIT_CASE(kcyc_clocks),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "wire_kunit.h"
 #include "../../devices/sim/mbox_encode.h"
+#include "../../master/wire/emergency.h"
 
 static void coe_header_survives_both_ways(struct kunit *test)
 {
@@ -39,6 +40,30 @@ static void coe_emergency_survives_both_ways(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_coe_emergency_decode(msg, 10, &out), -ENOMSG);
 }
 
+static void coe_emergency_text_is_of_code_profile_and_group(struct kunit *test)
+{
+	static const struct {
+		u16 code;
+		u32 profile;
+		const char *text;
+	} e[] = {
+		{ 0x7305, EC_PROFILE_DRIVE, "fault of encoder 1" },
+		{ 0x7305, 0, "additional modules" },
+		{ 0x2312, EC_PROFILE_DRIVE, "continuous overcurrent, motor side" },
+		{ 0x2312, 401, "current, output side" },
+		/* no code of drives: the group of all devices */
+		{ 0x1001, EC_PROFILE_DRIVE, "generic error" },
+		{ 0x0000, EC_PROFILE_DRIVE, "no error any more" },
+		{ 0x8130, 0, "heartbeat missing" },
+		{ 0x8131, 0, "communication" },
+		{ 0xb000, 0, "unknown group" },
+	};
+	size_t i;
+
+	for (i = 0; i < ARRAY_SIZE(e); i++)
+		KUNIT_EXPECT_STREQ(test, ec_emergency_text(e[i].code, e[i].profile), e[i].text);
+}
+
 static void coe_every_known_abort_code_has_text(struct kunit *test)
 {
 	static const u32 known[] = {
@@ -62,6 +87,7 @@ static void coe_every_known_abort_code_has_text(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(coe_header_survives_both_ways),
 	KUNIT_CASE(coe_emergency_survives_both_ways),
+	KUNIT_CASE(coe_emergency_text_is_of_code_profile_and_group),
 	KUNIT_CASE(coe_every_known_abort_code_has_text),
 	{}
 };

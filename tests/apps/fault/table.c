@@ -39,7 +39,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_IP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),
 	CMD(CONFIG_WHY, RSV1(ec_ioc_config_why),
 	    .min = offsetof(struct ec_ioc_config_why, text) + EC_UAPI_REASON),
-	CMD(EMERGENCIES, RSV1(ec_ioc_emergencies)),
+	CMD(EMERGENCIES),
 	CMD(EVENTS, .flags = EC_EVENTS_FLAG_NEW),
 	CMD(SLAVES_DOWN, APP),
 	CMD(IP_GET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved) }),
