@@ -6,6 +6,8 @@
 #include "out.h"
 #include "why.h"
 
+#define S(n)	((n) == 1 ? "" : "s")
+
 /* what -a, -p or SLAVE leave; nothing given: everything */
 struct chosen {
 	bool all;
@@ -104,12 +106,23 @@ static void affected(const struct why *w, size_t i)
 		out_text("\n");
 }
 
+/* in the order in which they are shown: faults first, as they explain more */
+enum level { FAULT, WAIT, WARNING, LEVELS };
+
+static const char *const level_keys[] = { "fault", "under_way", "warning" };
+static const char *const level_names[] = { "Fault", "Under way", "Warning" };
+
+static enum level level_of(const struct why_finding *f)
+{
+	return f->wait ? WAIT : f->warning ? WARNING : FAULT;
+}
+
 static void show(const struct why *w, size_t i)
 {
 	const struct why_finding *f = &w->f[i];
 
 	out_object(NULL);
-	out_str("level", f->warning ? "warning" : "fault", "%s: ", f->warning ? "Warning" : "Fault");
+	out_str("level", level_keys[level_of(f)], "%s: ", level_names[level_of(f)]);
 	out_str("cause", f->cause, NULL);
 	out_str("text", f->what, "%s\n", f->what);
 	place(w, f);
@@ -136,13 +149,19 @@ static const char *application(const struct why *w)
 	}
 }
 
-/* faults and warnings that were shown, and faults of what is not selected */
+/* findings that were shown, and faults of what is not selected */
 struct count {
-	size_t faults;
-	size_t warnings;
+	size_t n[LEVELS];
 	size_t elsewhere;
 	bool nothing;		/* is selected here */
 };
+
+/* "2 faults"; nothing for 0 unless it is the first */
+static void number(size_t n, const char *one, const char *more, const char *before)
+{
+	if (n)
+		out_text("%s%zu %s", before, n, n == 1 ? one : more);
+}
 
 static void checked(const struct why *w)
 {
@@ -150,37 +169,44 @@ static void checked(const struct why *w)
 
 	for (size_t i = 0; i < w->n_configs; i++)
 		in_op += why_in_op(&w->configs[i]);
-	out_text("Checked: link, cycle, %zu slave(s), %zu configuration(s), %zu of them in OP, %u domain(s), clocks%s; %s.\n",
-		 w->bus.n, w->n_configs, in_op, w->m.domain_count,
+	out_text("Checked: link, cycle, %zu slave%s, %zu configuration%s, %zu of them in OP, %u domain%s, emergencies, clocks%s; %s.\n",
+		 w->bus.n, S(w->bus.n), w->n_configs, S(w->n_configs), in_op, w->m.domain_count,
+		 S(w->m.domain_count),
 		 w->counters ? ", error counters of the ports" : "", application(w));
 	if (!w->counters)
 		out_text("Not checked: error counters of the ports; reading them needs write access to %s.\n",
 			 w->d->path);
 	if (w->silent)
-		out_text("Not checked: error counters of %zu slave(s), which do not reply.\n",
-			 w->silent);
+		out_text("Not checked: error counters of %zu slave%s without reply.\n",
+			 w->silent, S(w->silent));
 }
 
 /* Last: what was checked, so that silence means something. */
 static void summary(const struct why *w, const struct count *n)
 {
+	bool well = !n->n[FAULT] && !n->n[WAIT];
+
 	/* what does not exist is neither well nor faulty */
-	if (n->nothing && !n->faults)
+	if (n->nothing && well)
 		out_null("well", NULL);
 	else
-		out_bool("well", !n->faults, NULL);
+		out_bool("well", well, NULL);
 	out_u("faults_elsewhere", n->elsewhere, NULL);
 	out_str("application", application(w), NULL);
 	out_bool("error_counters_read", w->counters && !w->silent, NULL);
-	if (n->nothing && !n->faults)
+	if (n->nothing && well)
 		return;
-	if (n->faults)
-		out_text("%zu fault(s), %zu warning(s). ", n->faults, n->warnings);
-	else
+	if (!well) {
+		number(n->n[FAULT], "fault", "faults", "");
+		number(n->n[WAIT], "under way", "under way", n->n[FAULT] ? ", " : "No fault, ");
+		number(n->n[WARNING], "warning", "warnings", ", ");
+		out_text(". ");
+	} else {
 		out_text("%s well%s. ", n->elsewhere ? "The selection is" : "All is",
-			 n->warnings ? " except for the warnings" : "");
-	if (n->elsewhere)
-		out_text("%zu fault(s) elsewhere: 'ethercat why'. ", n->elsewhere);
+			 n->n[WARNING] ? " except for the warnings" : "");
+	}
+	number(n->elsewhere, "fault elsewhere: 'ethercat why'. ",
+	       "faults elsewhere: 'ethercat why'. ", "");
 	if (w->unreachable)
 		out_text("Checked: link; all else can be checked after the repair.\n");
 	else
@@ -193,12 +219,14 @@ static void rules(struct why *w)
 	if (w->unreachable)
 		return;
 	why_cycle(w);
+	why_late_frames(w);
 	why_absent(w);
 	why_slaves(w);
 	why_domains(w);
 	why_clocks(w);
 	why_counters(w);
-	why_frames(w);
+	why_emergencies(w);
+	why_lost_frames(w);
 }
 
 static int choose(const struct tool *t, const struct why *w, struct chosen *c, struct count *count)
@@ -233,16 +261,15 @@ static int each(const struct tool *t, struct dev *d)
 	if (d->selected > 1)
 		out_text("Master%u\n", d->master);
 	out_array("findings");
-	/* faults first, as they explain more */
-	for (int warning = 0; warning < 2; warning++) {
+	for (enum level level = FAULT; level < LEVELS; level++) {
 		for (size_t i = 0; i < w.n; i++) {
-			if (w.f[i].warning != warning)
+			if (level_of(&w.f[i]) != level)
 				continue;
 			if (!shown(&w, &c, i)) {
-				n.elsewhere += !warning;
+				n.elsewhere += level == FAULT;
 				continue;
 			}
-			warning ? n.warnings++ : n.faults++;
+			n.n[level]++;
 			show(&w, i);
 		}
 	}
@@ -250,9 +277,9 @@ static int each(const struct tool *t, struct dev *d)
 	summary(&w, &n);
 	out_end();
 	numbers_free(&c.slaves);
-	n.faults += w.failed;
+	n.n[FAULT] += w.failed;
 	why_free(&w);
-	return n.faults ? 1 : 0;
+	return n.n[FAULT] || n.n[WAIT] ? 1 : 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -279,14 +306,15 @@ const struct cmd cmd_why = {
 	.help = "Goes from the symptoms to the causes: device, link, cycle, missing and different slaves,\n"
 		"PDOs, SDOs, AL status codes, clocks, working counters, EEPROMs, error counters. Each fault\n"
 		"has its place, the configurations affected by it (alias:position), and a remedy. A fault\n"
-		"that stops ten slaves is reported once. Warnings stop no slave. SLAVE is a list of ring\n"
+		"that stops ten slaves is reported once. Warnings stop no slave;\n"
+		"what is under way has not failed so far. SLAVE is a list of ring\n"
 		"positions, as of --position.\n"
 		"Reads what the master knows, without bus traffic, so any user may run it; only the error\n"
 		"counters of the ports are read from the slaves, with write access. Exit code: 0 all is\n"
-		"well, 1 there is a fault, or the command failed. A master without application is well.\n"
+		"well, 1 there is a fault or something is under way, or the command failed. A master without application is well.\n"
 		"  ethercat why\n"
 		"  ethercat why 4\n",
-	.json = "masters[]: master, findings[] (level (fault, warning), cause, text, slave, port, domain,\n"
+	.json = "masters[]: master, findings[] (level (fault, under_way, warning), cause, text, slave, port, domain,\n"
 		"config (null: none), code, affected[], remedy),\n"
 		"well (null: nothing selected), faults_elsewhere (not of SLAVE), application,\n"
 		"error_counters_read (of all slaves)",

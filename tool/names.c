@@ -63,7 +63,7 @@ int cmd_lookup(const char *text, const struct cmd **found)
 }
 
 /* letters that differ, are missing, too many, or exchanged with the next one */
-static size_t distance(const char *a, const char *b)
+size_t typing_errors(const char *a, const char *b)
 {
 	enum { MOST = 32 };
 	size_t rows[3][MOST + 1], n = strlen(b);
@@ -94,7 +94,7 @@ int cmd_unknown(const char *text)
 	const char *nearest = NULL;
 
 	for (const struct cmd *const *c = cmds; *c; c++) {
-		size_t n = distance(text, (*c)->name);
+		size_t n = typing_errors(text, (*c)->name);
 
 		if (exists(*c) && n <= least && (!nearest || n < least)) {
 			least = n;

@@ -91,12 +91,27 @@ struct why_finding *why_add(struct why *w, const char *cause, const char *remedy
 	f = f ? &f[w->n++] : &lost;
 	*f = (struct why_finding){
 		.cause = cause, .slave = WHY_NONE, .port = WHY_NONE, .config = WHY_NONE,
-		.domain = WHY_NONE, .remedy = remedy,
+		.domain = WHY_NONE,
 	};
+	snprintf(f->remedy, sizeof(f->remedy), "%s", remedy);
 	va_start(ap, fmt);
 	vsnprintf(f->what, sizeof(f->what), fmt, ap);
 	va_end(ap);
 	return f;
+}
+
+/**
+ * why_remedy() - what to do, with the place in it
+ * @f: finding
+ * @fmt: text
+ */
+void why_remedy(struct why_finding *f, const char *fmt, ...)
+{
+	va_list ap;
+
+	va_start(ap, fmt);
+	vsnprintf(f->remedy, sizeof(f->remedy), fmt, ap);
+	va_end(ap);
 }
 
 /* the newest finding explains why the slave of @c is not in OP */

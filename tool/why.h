@@ -10,6 +10,7 @@
 #include "dev.h"
 
 #define WHY_NONE	(-1)
+#define WHY_REMEDY	400
 #define WHY_TEXT	2048	/* two lists of some 60 PDO entries each fit */
 
 /**
@@ -30,6 +31,7 @@ struct why_config {
  * struct why_finding - one cause
  * @cause: its name, for programs
  * @warning: nothing stands still because of it
+ * @wait: nothing has failed so far
  * @slave: ring position, or %WHY_NONE
  * @port: of @slave, or %WHY_NONE
  * @config: the configuration it is about, or %WHY_NONE
@@ -41,13 +43,14 @@ struct why_config {
 struct why_finding {
 	const char *cause;
 	bool warning;
+	bool wait;
 	int slave;
 	int port;
 	int config;
 	int domain;
 	u32 code;
 	char what[WHY_TEXT];
-	const char *remedy;
+	char remedy[WHY_REMEDY];
 };
 
 /**
@@ -62,6 +65,7 @@ struct why_finding {
  * @counters: the user may read the error counters of the ports
  * @silent: slaves whose error counters could not be read
  * @unreachable: no slave can be reached, so that only the link was checked
+ * @late: frames return too late, so that working counters say nothing of slaves
  * @failed: no memory, or an error that was printed
  */
 struct why {
@@ -75,6 +79,7 @@ struct why {
 	bool counters;
 	size_t silent;
 	bool unreachable;
+	bool late;
 	bool failed;
 };
 
@@ -83,9 +88,13 @@ int why_read(struct why *w, struct dev *d);
 void why_free(struct why *w);
 struct why_finding *why_add(struct why *w, const char *cause, const char *remedy,
 			    const char *fmt, ...) __attribute__((format(printf, 4, 5)));
+void why_remedy(struct why_finding *f, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void why_explain(struct why *w, struct why_config *c);
 bool why_in_op(const struct why_config *c);
 const char *why_slave_name(const struct why *w, unsigned int position, char *buf, size_t size);
+
+/* why_bus.c */
+struct why_finding *why_scan(struct why *w);
 
 /* rules: each adds what it finds; true: nothing else can be known */
 bool why_bus(struct why *w);
@@ -95,7 +104,9 @@ void why_slaves(struct why *w);
 void why_domains(struct why *w);
 void why_clocks(struct why *w);
 void why_counters(struct why *w);
-void why_frames(struct why *w);
+void why_emergencies(struct why *w);
+void why_late_frames(struct why *w);
+void why_lost_frames(struct why *w);
 
 /* why_pdo.c: " configured 0x1600: ...; slave has ..." behind a text */
 void why_pdo_lists(struct why *w, const struct why_config *c, unsigned int sm, char *buf,

@@ -24,14 +24,23 @@ static bool at_position(const struct why_config *c)
 static void lost_at(struct why *w, unsigned int position, unsigned int port, const char *text)
 {
 	const struct ec_ioc_slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
+	bool up = s && s->ports[port & 3].link_up;
 	struct why_finding *f;
 	char name[96];
 
-	f = why_add(w, "cable",
-		    "check the cable or contact behind this port, and the power of the next slave",
-		    "no slave behind port %u of %s, link %s; lost: %s", port,
-		    why_slave_name(w, position, name, sizeof(name)),
-		    s && s->ports[port & 3].link_up ? "up" : "down", text);
+	why_slave_name(w, position, name, sizeof(name));
+	if (w->m.scan_busy || w->m.slaves_responding > w->bus.n) {
+		f = why_scan(w);
+		snprintf(f->what, sizeof(f->what),
+			 "more slaves reply again behind port %u of %s: %u of %u slaves are read; lost before: %s",
+			 port, name, w->m.scan_index, w->m.scan_slaves, text);
+		f->wait = true;
+	} else {
+		f = why_add(w, "cable",
+			    "check the cable or contact behind this port, and the power of the next slave",
+			    "no slave behind port %u of %s, link %s; lost: %s", port, name,
+			    up ? "up" : "down", text);
+	}
 	f->slave = (int)position;
 	f->port = (int)port;
 	for (size_t i = 0; i < w->n_configs; i++) {
@@ -39,7 +48,7 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 
 		if (cause->kind == EC_CAUSE_LOST && cause->position == position &&
 		    cause->port == port)
-			why_explain(w, &w->configs[i]);
+			w->configs[i].finding = (size_t)(f - w->f) + 1;
 	}
 }
 
@@ -71,7 +80,7 @@ static void lost(struct why *w)
 		    c->cause.position == EC_UAPI_NONE16)
 			continue;
 		lost_at(w, c->cause.position, c->cause.port, c->text);
-		first = first ? first : w->n;
+		first = first ? first : w->configs[i].finding;
 	}
 	for (size_t i = 0; i < w->n_configs; i++) {
 		struct why_config *c = &w->configs[i];
@@ -181,8 +190,8 @@ static void missing(struct why *w)
 		return;
 	f = why_add(w, "missing",
 		    "check power and cable of the missing slaves, or correct the configuration",
-		    "%u slave(s) missing from position %u on: the bus has %zu, %s %s", gap, from,
-		    w->bus.n, from ? why_slave_name(w, from - 1, name, sizeof(name)) :
+		    "%u %s missing from position %u on: the bus has %zu, %s %s", gap,
+		    gap == 1 ? "slave" : "slaves", from, w->bus.n, from ? why_slave_name(w, from - 1, name, sizeof(name)) :
 		    "the main device", from < w->bus.n ?
 		    "is followed by slaves configured further downstream" : "is the last one");
 	f->config = (int)(first - w->configs);
@@ -193,38 +202,98 @@ static void missing(struct why *w)
 			why_explain(w, &w->configs[i]);
 }
 
+/* "EL3102, 0x00000002/0x0c1e3052": the name is that of a slave of the same identity */
+static void identity(const struct why *w, u32 vendor, u32 product, char *buf, size_t size)
+{
+	for (size_t i = 0; i < w->bus.n; i++) {
+		const struct ec_ioc_slave *s = &w->bus.v[i];
+
+		if (s->vendor_id == vendor && s->product_code == product && s->order[0]) {
+			snprintf(buf, size, "%s, 0x%08x/0x%08x", s->order, vendor, product);
+			return;
+		}
+	}
+	snprintf(buf, size, "0x%08x/0x%08x", vendor, product);
+}
+
+/* what is at the position of a configuration, and what is configured */
+static void both(const struct why *w, const struct why_config *c, char *buf, size_t size)
+{
+	const struct ec_ioc_slave *s = c->cause.position < w->bus.n ?
+				       &w->bus.v[c->cause.position] : NULL;
+	char is[96], shall[96];
+
+	if (!s) {
+		snprintf(buf, size, "%s", c->text);
+		return;
+	}
+	identity(w, s->vendor_id, s->product_code, is, sizeof(is));
+	identity(w, c->c.vendor_id, c->c.product_code, shall, sizeof(shall));
+	snprintf(buf, size, "slave %u is %s, configured is %s", s->position, is, shall);
+}
+
 static void different(struct why *w, struct why_config *c)
 {
+	char text[256];
 	const struct ec_ioc_slave *s = elsewhere(w, c);
 	struct why_finding *f;
 
+	both(w, c, text, sizeof(text));
 	if (s)
 		f = why_add(w, "wrong_place",
 			    "connect the slaves in the configured order, or correct the position in the application",
 			    "the device configured at %u:%u is at position %u: %s", c->c.alias,
-			    c->c.position, s->position, c->text);
+			    c->c.position, s->position, text);
 	else
 		f = why_add(w, "different",
 			    "connect the configured device, or configure this one in the application",
 			    "another device than configured at %u:%u: %s", c->c.alias,
-			    c->c.position, c->text);
+			    c->c.position, text);
 	f->slave = s ? s->position : c->cause.position;
 	f->config = (int)(c - w->configs);
 	why_explain(w, c);
 }
 
+/* a slave whose alias is the configured one but for a typing error, of that device if possible */
+static const struct ec_ioc_slave *meant(const struct why *w, const struct why_config *c)
+{
+	const struct ec_ioc_slave *other = NULL;
+	char wanted[8], alias[8];
+
+	snprintf(wanted, sizeof(wanted), "%u", c->c.alias);
+	for (size_t i = 0; i < w->bus.n; i++) {
+		const struct ec_ioc_slave *s = &w->bus.v[i];
+
+		snprintf(alias, sizeof(alias), "%u", s->alias);
+		if (!s->alias || (s->config && !s->differs) || typing_errors(wanted, alias) > 1)
+			continue;
+		if (same_device(c, s))
+			return s;
+		other = s;
+	}
+	return other;
+}
+
 static void no_alias(struct why *w, struct why_config *c)
 {
-	const struct ec_ioc_slave *s = elsewhere(w, c);
-	char hint[96] = "", name[80];
+	const struct ec_ioc_slave *s = meant(w, c);
+	struct why_finding *f;
+	char name[80];
 
-	if (s)
-		snprintf(hint, sizeof(hint), "; %s is such a device, alias %u",
-			 why_slave_name(w, s->position, name, sizeof(name)), s->alias);
-	why_add(w, "no_alias",
-		"use the ring position, or set the alias with the tool of the manufacturer (this version writes no EEPROM)",
-		"no slave has alias %u%s", c->c.alias, hint)->config = (int)(c - w->configs);
+	f = why_add(w, "no_alias",
+		    "use the ring position, or set the alias with the tool of the manufacturer (this version writes no EEPROM)",
+		    "no slave has alias %u", c->c.alias);
+	f->config = (int)(c - w->configs);
 	why_explain(w, c);
+	if (s) {
+		why_remedy(f, "correct the alias in the application to %u, if %s is meant",
+			   s->alias, why_slave_name(w, s->position, name, sizeof(name)));
+		return;
+	}
+	s = elsewhere(w, c);
+	if (s)
+		snprintf(f->what, sizeof(f->what), "no slave has alias %u; %s is such a device, alias %u",
+			 c->c.alias, why_slave_name(w, s->position, name, sizeof(name)), s->alias);
 }
 
 static void other(struct why *w, struct why_config *c)
@@ -240,6 +309,7 @@ static void other(struct why *w, struct why_config *c)
 	else
 		f = why_add(w, "taken", "connect the missing slave or restart the application",
 			    "%s", c->text);
+	f->wait = c->cause.kind == EC_CAUSE_UNATTACHED;
 	f->config = (int)(c - w->configs);
 	why_explain(w, c);
 }

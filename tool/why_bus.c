@@ -22,13 +22,24 @@ static bool link_up(const struct ec_ioc_master *m)
 	return false;
 }
 
-static void scanning(struct why *w)
+/**
+ * why_scan() - a bus scan is due or in progress
+ * @w: what is known
+ *
+ * Return: its only finding, a warning.
+ */
+struct why_finding *why_scan(struct why *w)
 {
 	const struct ec_ioc_master *m = &w->m;
+	struct why_finding *f;
 
-	why_add(w, "scan", "repeat the command when the scan is complete",
-		"bus scan in progress: %u of %u slaves read", m->scan_index,
-		m->scan_slaves)->warning = true;
+	for (size_t i = 0; i < w->n; i++)
+		if (!strcmp(w->f[i].cause, "scan"))
+			return &w->f[i];
+	f = why_add(w, "scan", "repeat the command when the scan is complete",
+		    "bus scan in progress: %u of %u slaves read", m->scan_index, m->scan_slaves);
+	f->warning = true;
+	return f;
 }
 
 static const char *no_device_remedy(const char *name)
@@ -61,18 +72,16 @@ bool why_bus(struct why *w)
 			"check that the cable leads to the input (port 0) of an EtherCAT slave, without a switch in between",
 			"link up at the main device %s, but no slave replies", m->devices[0].name);
 	else if (m->scan_busy)
-		return scanning(w), false;
+		return why_scan(w), false;
 	else
 		return false;
 	explain_all(w);
 	return true;
 }
 
-static void no_cycle(struct why *w)
+/* slaves that cannot be in OP without a cycle follow from the newest finding */
+static void explain_cycle(struct why *w)
 {
-	why_add(w, "no_cycle",
-		"let the application call ecrt_master_receive() and ecrt_master_send() in each cycle, or let the kernel run the cycle: ecrt_master_set_cycle()",
-		"the application is active but sends no cyclic frames");
 	for (size_t i = 0; i < w->n_configs; i++) {
 		const struct why_config *c = &w->configs[i];
 
@@ -80,6 +89,14 @@ static void no_cycle(struct why *w)
 		    (c->cause.kind == EC_CAUSE_REFUSED && c->cause.state == 8))
 			why_explain(w, &w->configs[i]);
 	}
+}
+
+static void no_cycle(struct why *w)
+{
+	why_add(w, "no_cycle",
+		"let the application call ecrt_master_receive() and ecrt_master_send() in each cycle, or let the kernel run the cycle: ecrt_master_set_cycle()",
+		"the application is active but sends no cyclic frames");
+	explain_cycle(w);
 }
 
 /* Then cycles are skipped in any case. */
@@ -96,50 +113,37 @@ static bool too_short(struct why *w)
 	return yes;
 }
 
+/* The kernel runs the cycle, and has done with the outputs what the application has chosen. */
+static void stalled(struct why *w, u32 stall, u32 state)
+{
+	if (state == EC_CYCLE_STATE_STOPPED) {
+		why_add(w, "output_stall",
+			"find out why the application gave no outputs, then restart it",
+			"output stall: the application gave no outputs, and the kernel has stopped the cycle (EC_CYCLE_STOP)");
+		explain_cycle(w);
+	} else if (state == EC_CYCLE_STATE_STALLED) {
+		why_add(w, "output_stall",
+			"find out why the application gives no outputs: does it still run, does it wait for something?",
+			"output stall: the application gives no outputs; %s",
+			stall == EC_STALL_ZERO ?
+			"the kernel sends zeros (EC_CYCLE_ZERO)" :
+			"the kernel holds the last ones (EC_CYCLE_HOLD)");
+	}
+}
+
 static void thread(struct why *w, const struct ec_ioc_cycle_stats *i,
 		   const struct ec_status_cycle *st, bool short_cycle)
 {
 	u64 cycles = st->late_count + st->overruns;
 
-	if (i->kind == EC_CYCLE_BY_KERNEL && st->state == EC_CYCLE_STATE_STOPPED)
-		why_add(w, "output_stall",
-			"find out why the application gives no outputs, then restart it",
-			"the kernel has stopped the cycle: the application gave no outputs");
-	else if (i->kind == EC_CYCLE_BY_KERNEL && st->state == EC_CYCLE_STATE_STALLED &&
-		 w->m.session != EC_SESSION_DETACHED)
-		why_add(w, "output_stall", "find out why the application gives no outputs",
-			"output stall: the application gives no outputs; the kernel holds or zeroes them")
-			->warning = true;
+	if (i->kind == EC_CYCLE_BY_KERNEL && w->m.session != EC_SESSION_DETACHED)
+		stalled(w, i->stall, st->state);
 	if (!short_cycle && st->overruns * OVERRUN_SHARE > cycles)
 		why_add(w, "overruns",
 			"check the settings for real time: 'ethercat rtcheck'; see 'ethercat cycle -v'",
 			"%llu of %llu cycles skipped: the cycle owner was late by a period or more",
 			(unsigned long long)st->overruns, (unsigned long long)cycles)
 			->warning = true;
-}
-
-/**
- * why_frames() - frames that do not return although no cable or slave has failed
- * @w: what is known, all other findings included
- */
-void why_frames(struct why *w)
-{
-	if (!w->m.active || w->m.no_cycle)
-		return;
-	for (size_t i = 0; i < w->n; i++)
-		if (!strcmp(w->f[i].cause, "cable") || !strcmp(w->f[i].cause, "no_reply") ||
-		    !strcmp(w->f[i].cause, "missing"))
-			return;
-	for (u32 i = 0; i < w->m.device_count; i++) {
-		const struct ec_ioc_device *d = &w->m.devices[i];
-
-		/* still now, and for some time */
-		if (d->loss_rate[0] && d->loss_rate[1])
-			why_add(w, "lost_frames",
-				"look for the cable with errors: 'ethercat crc'; check the network card: 'ethercat rtcheck'",
-				"%s loses %u frames per second (average over 10 s)", d->name,
-				d->loss_rate[1])->warning = true;
-	}
 }
 
 /**
@@ -154,9 +158,9 @@ void why_cycle(struct why *w)
 
 	if (!w->m.active)
 		return;
-	if (w->m.no_cycle)
-		no_cycle(w);
 	short_cycle = too_short(w);
 	if (!dev_ioctl(w->d, EC_IOC_CYCLE_STATS, &i))
 		thread(w, &i, &st, short_cycle);
+	if (w->m.no_cycle && !(i.kind == EC_CYCLE_BY_KERNEL && st.state == EC_CYCLE_STATE_STOPPED))
+		no_cycle(w);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Causes of slaves that are there: one function or one row for each kind. */
 #include <stdio.h>
+#include <string.h>
 
 #include "../master/wire/al.h"
 #include "../master/wire/sii.h"
@@ -48,7 +49,7 @@ static const struct {
 	const char *remedy;
 } kinds[] = {
 	{ EC_CAUSE_REQUESTED, false, "not_requested",
-	  "the tool or an error has requested this state: 'ethercat states OP -p', or restart the application" },
+	  "" },
 	{ EC_CAUSE_UNDER_WAY, false, "under_way",
 	  "repeat the command; nothing has failed so far" },
 	{ EC_CAUSE_SILENT, false, "no_reply",
@@ -86,6 +87,7 @@ static struct why_finding *by_table(struct why *w, const struct ec_cause *cause,
 			continue;
 		f = why_add(w, kinds[i].cause, kinds[i].remedy, "%s", text);
 		f->warning = kinds[i].warning;
+		f->wait = cause->kind == EC_CAUSE_UNDER_WAY;
 		return f;
 	}
 	/* an older module, or a cause that is new to this tool */
@@ -134,6 +136,25 @@ static struct why_finding *al(struct why *w, const struct ec_cause *cause, const
 	return f;
 }
 
+/* what it takes to begin anew, with the place */
+static void again(struct why_finding *f, const struct ec_cause *cause)
+{
+	size_t len = strlen(f->remedy);
+
+	switch (cause->kind) {
+	case EC_CAUSE_REQUESTED:
+		why_remedy(f, "the tool or an error has requested this state: 'ethercat states OP -p %d', or restart the application",
+			   f->slave);
+		break;
+	case EC_CAUSE_REFUSED:
+	case EC_CAUSE_SLOW:
+		snprintf(f->remedy + len, sizeof(f->remedy) - len,
+			 "; the master tries again by itself, at once with 'ethercat states %s -p %d'",
+			 cause->state == EC_AL_PREOP ? "PREOP" : "OP", f->slave);
+		break;
+	}
+}
+
 static void add(struct why *w, int position, struct why_config *c, const struct ec_cause *cause,
 		const char *text)
 {
@@ -155,6 +176,7 @@ static void add(struct why *w, int position, struct why_config *c, const struct 
 		break;
 	}
 	f->slave = position;
+	again(f, cause);
 	if (!c)
 		return;
 	f->config = (int)(c - w->configs);
@@ -168,11 +190,12 @@ static bool in_boot(struct why *w, const struct ec_ioc_slave *s, struct why_conf
 
 	if (s->al_requested != EC_AL_BOOT)
 		return false;
-	f = why_add(w, "boot",
-		    "wait for the end of the firmware update, then 'ethercat states PREOP -p'",
+	f = why_add(w, "boot", "",
 		    "state BOOT is requested, as for a firmware update; AL state %s",
 		    ec_al_state_name((u8)s->al_status));
 	f->slave = s->position;
+	why_remedy(f, "wait for the end of the firmware update, then 'ethercat states PREOP -p %u'",
+		   s->position);
 	f->warning = !c;
 	if (!c)
 		return true;
@@ -232,6 +255,10 @@ static void warnings(struct why *w, const struct ec_ioc_slave *s)
 		return;
 	if (s->cause.kind == EC_CAUSE_EEPROM)
 		f = why_add(w, "eeprom", EEPROM_REMEDY, "%s", s->warning);
+	else if (s->cause.kind == EC_CAUSE_ALIAS_TWICE)
+		f = why_add(w, "alias_twice",
+			    "set another alias with the tool of the manufacturer (this version writes no EEPROM), or use ring positions",
+			    "%s", s->warning);
 	else if (s->cause.kind == EC_CAUSE_MAILBOX)
 		f = why_add(w, "mailbox",
 			    "nothing while the slave works; if it refuses PREOP or SAFEOP with 0x0016, or SDOs fail, compare its mailbox ('ethercat slaves -v') with the manual",

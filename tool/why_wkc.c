@@ -135,7 +135,7 @@ void why_domains(struct why *w)
 	for (u32 i = 0; i < w->m.domain_count; i++) {
 		struct ec_ioc_domain dom = { .index = i };
 
-		if (!incomplete(w, &dom))
+		if (!incomplete(w, &dom) || (w->late && dom.working_counter <= dom.expected))
 			continue;
 		if (dom.working_counter > dom.expected) {
 			too_high(w, &dom);

@@ -42,6 +42,7 @@
 #define EC_CAUSE_AL_ERROR	46	/* @state with error, AL status code @code */
 #define EC_CAUSE_MEMORY		47	/* this computer ran out of memory before @state */
 #define EC_CAUSE_MAILBOX	48	/* a warning: sizes and protocols are inconsistent */
+#define EC_CAUSE_ALIAS_TWICE	49	/* a warning: the slave at @position has the same alias */
 
 struct ec_cause {
 	__u32 kind;		/* EC_CAUSE_* */

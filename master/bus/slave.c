@@ -358,12 +358,18 @@ const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size)
  */
 void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
 {
+	unsigned int first = READ_ONCE(slave->alias_first);
+
 	raw_spin_lock(&slave->note_lock);
 	*cause = slave->cause;
-	if (!cause->kind && !slave->warning[0])
-		cause->kind = slave->sii_flaw[0] || READ_ONCE(slave->alias_first) ?
-			      EC_CAUSE_EEPROM :
-			      slave->mbox_doubt ? EC_CAUSE_MAILBOX : EC_CAUSE_NONE;
+	if (cause->kind || slave->warning[0])
+		;
+	else if (slave->sii_flaw[0])
+		cause->kind = EC_CAUSE_EEPROM;
+	else if (first)
+		*cause = *EC_CAUSE(ALIAS_TWICE, .position = first - 1);
+	else
+		cause->kind = slave->mbox_doubt ? EC_CAUSE_MAILBOX : EC_CAUSE_NONE;
 	raw_spin_unlock(&slave->note_lock);
 }
 
@@ -384,7 +390,7 @@ void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size)
 	raw_spin_unlock(&slave->note_lock);
 	if (!buf[0] && first)
 		scnprintf(buf, size,
-			  "EEPROM: alias %u is not unique; configurations use slave %u, the first one",
+			  "alias %u is not unique; configurations use slave %u, the first one",
 			  slave->alias, first - 1);
 	if (!buf[0])
 		ec_slave_mbox_text(slave, buf, size);

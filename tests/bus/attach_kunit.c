@@ -184,7 +184,7 @@ static void attach_twin_keeps_off(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("configuration 5:0: alias 5 is not unique"), lines + 1);
 	ec_slave_warning(bus_slave(b, B), text, sizeof(text));
 	KUNIT_EXPECT_STREQ(test, text,
-			   "EEPROM: alias 5 is not unique; configurations use slave 1, the first one");
+			   "alias 5 is not unique; configurations use slave 1, the first one");
 	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 1, 0, 0);
 	cyc_run(c, 1000);
 	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 3u);

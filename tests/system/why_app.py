@@ -9,6 +9,9 @@ PERIOD_NS = 2000000
 SHORT_US = 10                           # shorter than the frames of a cycle
 DOMAINS = 3
 SYNC_REFERENCE, SYNC_SLAVES = 2, 4      # EC_CYCLE_*
+STALLS = ("hold", "zero", "stop")       # in the order of EC_CYCLE_HOLD...
+OWN = ("short", "own", "late")
+GIVEN = 2000                            # cycles with outputs before an output stall
 PREOP, SAFEOP = 2, 4
 ONLINE = 1                              # of ec_slave_config_state_t
 
@@ -33,6 +36,8 @@ class Slave:
         self.sync0 = None               # (AssignActivate, cycle time)
         self.other_pdo = False
         self.timeout_ms = 0
+        self.sdo_timeout_ms = 0
+        self.offset = None              # behind the slave with the alias; None: as without
         self.watchdog = 0               # units of 100 us
 
     @property
@@ -57,7 +62,13 @@ class Application:
             raise RuntimeError(f"{name} failed")
 
     def start(self, slaves, cycle):
-        """Reserve, configure, activate; @cycle: who runs it, "kernel", "short" or "none"."""
+        """Reserve, configure, activate.
+
+        cycle: "kernel": it runs the cycle; "hold", "zero", "stop": it does, the application gives
+        outputs for a moment only, and the kernel does this then; "short": the application, with an
+        interval that is too short; "own": the application; "late": it misses cycles; "none": no
+        cycle.
+        """
         self.master = c.c_void_p(self.lib.ecrt_request_master(0))
         if not self.master:
             raise RuntimeError("master not reserved")
@@ -65,33 +76,47 @@ class Application:
                         for _ in range(DOMAINS)]
         for s in slaves:
             self.configure(s, self.domains[s.domain])
-        if cycle == "kernel":
+        if cycle in ("kernel", *STALLS):
             config = Cycle(period_ns=PERIOD_NS, cpu=-1, dc=SYNC_REFERENCE | SYNC_SLAVES)
+            if cycle in STALLS:
+                config.stall, config.stall_cycles = STALLS.index(cycle), 10
             self.call("ecrt_master_set_cycle", self.master, c.byref(config))
-        if cycle == "short":
-            self.call("ecrt_master_set_send_interval", self.master, c.c_size_t(SHORT_US))
+        if cycle in OWN:
+            self.call("ecrt_master_set_send_interval", self.master,
+                      c.c_size_t(SHORT_US if cycle == "short" else PERIOD_NS // 1000))
         self.call("ecrt_master_activate", self.master)
-        if cycle == "short":
-            self.thread = threading.Thread(target=self.run)
+        if cycle in OWN + STALLS:
             self.running = True
+            self.thread = threading.Thread(target=self.run, args=(cycle,))
             self.thread.start()
 
-    def run(self):
-        """A cycle of the application; it is slower than it says."""
+    def run(self, cycle):
+        """A cycle of the application, or outputs for that of the kernel."""
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(50))
+        n = 0
+        due = time.clock_gettime(time.CLOCK_MONOTONIC)
         while self.running:
             self.lib.ecrt_master_receive(self.master)
             for d in self.domains:
                 self.lib.ecrt_domain_process(d)
                 self.lib.ecrt_domain_queue(d)
             self.lib.ecrt_master_send(self.master)
-            time.sleep(PERIOD_NS / 1e9)
+            n += 1
+            if cycle in STALLS and n == GIVEN:
+                break
+            due += PERIOD_NS / 1e9 * (6 if cycle == "late" and not n % 20 else 1)
+            time.sleep(max(0, due - time.clock_gettime(time.CLOCK_MONOTONIC)))
+
+    def pause(self):
+        """No more frames."""
+        self.running = False
+        self.thread.join()
 
     def configure(self, s, domain):
         """One slave."""
         bit, state = c.c_uint(), c.c_uint()
         config = c.c_void_p(self.lib.ecrt_master_slave_config(
-            self.master, s.alias, s.position, c.c_uint32(s.vendor), c.c_uint32(s.product)))
+            self.master, s.alias, s.position if s.offset is None else s.offset, c.c_uint32(s.vendor), c.c_uint32(s.product)))
         if not config:
             raise RuntimeError(f"slave {s.position} not configured")
         if s.other_pdo:
@@ -111,6 +136,8 @@ class Application:
             self.call("ecrt_slave_config_dc", config, s.sync0[0], c.c_uint32(s.sync0[1]), 0, 0, 0)
         if s.watchdog:
             self.call("ecrt_slave_config_watchdog", config, 2498, s.watchdog)
+        if s.sdo_timeout_ms:
+            self.call("ecrt_slave_config_sdo_timeout", config, s.sdo_timeout_ms)
         if s.timeout_ms:
             self.call("ecrt_slave_config_state_timeout", config, PREOP, SAFEOP, s.timeout_ms)
 

@@ -89,6 +89,14 @@ class Fault:
         """Events that may be there as well."""
         return []
 
+    def words(self):
+        """What the texts of the findings must have."""
+        return []
+
+    def meanwhile_wrong(self):
+        """What was wrong before the last state."""
+        return []
+
     def failed(self, cause, **args):
         """The event of a slave that could not be scanned or configured."""
         return Event("slave_failed", self.slave, many=True, cause=cause, **args)

@@ -23,6 +23,8 @@ static bool wrong(const char *name)
 
 static void master(struct ec_ioc_master *m)
 {
+	static __u64 late;
+
 	m->no_cycle = wrong("no_cycle");
 	if (wrong("no_device"))
 		m->phase = EC_PHASE_WAITING;
@@ -36,6 +38,9 @@ static void master(struct ec_ioc_master *m)
 		m->devices[0].loss_rate[0] = m->devices[0].loss_rate[1] = 5;
 	else
 		memset(m->devices[0].loss_rate, 0, sizeof(m->devices[0].loss_rate));
+	/* one more each time */
+	if (wrong("late_frames"))
+		m->devices[0].late = ++late;
 	if (wrong("sync_cycle"))
 		m->cycle_interval_us = 1300;
 	if (wrong("cycle_too_short"))
@@ -62,6 +67,10 @@ static void slave(struct ec_ioc_slave *s)
 	if (s->position == 2 && wrong("eeprom")) {
 		strcpy(s->warning, "EEPROM checksum 0x12, expected 0x34; content used anyway");
 		s->cause.kind = EC_CAUSE_EEPROM;
+	}
+	if (s->position == 2 && wrong("alias_twice")) {
+		strcpy(s->warning, "alias 5 is not unique; configurations use slave 1, the first one");
+		s->cause.kind = EC_CAUSE_ALIAS_TWICE;
 	}
 	if (s->position == 2 && wrong("process_data"))
 		strcpy(s->warning, "process data of SM2 may belong to other objects");
@@ -145,8 +154,14 @@ static void cycle(struct ec_ioc_cycle_stats *x)
 {
 	struct ec_status_cycle *st = (struct ec_status_cycle *)(uintptr_t)x->data;
 
-	if (x->size == sizeof(*st))
-		st->overruns = wrong("overruns") ? 500 : 3;
+	if (x->size != sizeof(*st))
+		return;
+	st->overruns = wrong("overruns") ? 500 : 3;
+	if (wrong("stall_zero") || wrong("stall_stop")) {
+		x->kind = EC_CYCLE_BY_KERNEL;
+		x->stall = wrong("stall_zero") ? EC_STALL_ZERO : EC_STALL_STOP;
+		st->state = wrong("stall_zero") ? EC_CYCLE_STATE_STALLED : EC_CYCLE_STATE_STOPPED;
+	}
 }
 
 static void domain(struct ec_ioc_domain *x)
@@ -166,6 +181,14 @@ static void counters(struct ec_ioc_reg *x)
 		memcpy((__u8 *)(uintptr_t)x->data, "\1\0\0\0\6\0\0\7\0\x11\0\1\1", 13);
 	if (wrong("both_ends") && x->position == 1)
 		*(__u8 *)(uintptr_t)x->data = 2;	/* at port 0 */
+}
+
+static void emergency(struct ec_ioc_emergencies *x)
+{
+	if (!wrong("emergency") || x->position != 2)
+		return;
+	x->profile = 402;
+	x->entry[x->count - 1].code = 0x7305;
 }
 
 /* Changes the reply to a command that was done. */
@@ -197,6 +220,9 @@ void fake_why(unsigned long request, void *arg)
 		break;
 	case EC_IOC_DOMAIN:
 		domain(arg);
+		break;
+	case EC_IOC_EMERGENCIES:
+		emergency(arg);
 		break;
 	case EC_IOC_REG_READ:
 		counters(arg);
