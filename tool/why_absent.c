@@ -191,8 +191,9 @@ static void missing(struct why *w)
 	f = why_add(w, "missing",
 		    "check power and cable of the missing slaves, or correct the configuration",
 		    "%u %s missing from position %u on: the bus has %zu, %s %s", gap,
-		    gap == 1 ? "slave" : "slaves", from, w->bus.n, from ? why_slave_name(w, from - 1, name, sizeof(name)) :
-		    "the main device", from < w->bus.n ?
+		    gap == 1 ? "slave" : "slaves", from, w->bus.n,
+		    from ? why_slave_name(w, from - 1, name, sizeof(name)) : "the main device",
+		    from < w->bus.n ?
 		    "is followed by slaves configured further downstream" : "is the last one");
 	f->config = (int)(first - w->configs);
 	f->slave = (int)from - 1;
@@ -292,8 +293,9 @@ static void no_alias(struct why *w, struct why_config *c)
 	}
 	s = elsewhere(w, c);
 	if (s)
-		snprintf(f->what, sizeof(f->what), "no slave has alias %u; %s is such a device, alias %u",
-			 c->c.alias, why_slave_name(w, s->position, name, sizeof(name)), s->alias);
+		snprintf(f->what, sizeof(f->what),
+			 "no slave has alias %u; %s is such a device, alias %u", c->c.alias,
+			 why_slave_name(w, s->position, name, sizeof(name)), s->alias);
 }
 
 static void other(struct why *w, struct why_config *c)

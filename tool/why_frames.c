@@ -29,10 +29,10 @@ static void late_place(struct why *w, struct why_finding *f)
 		return;
 	us = st.late_max / 1000;
 	if (st.late_max > i.interval_ns / 4)
-		why_remedy(f, "look at the CPU of the cycle first, which sent up to %u us late: 'ethercat rtcheck', 'ethercat cycle -v'; then at the interrupt of the network card %s",
+		why_remedy(f, "check the CPU of the cycle first, which sent up to %u us late: 'ethercat rtcheck', 'ethercat cycle -v'; then the interrupt of the network card %s",
 			   us, card);
 	else
-		why_remedy(f, "look at the network card %s: delay of its interrupts (ethtool -C, rx-usecs 0), priority and CPU of its interrupt thread: 'ethercat rtcheck'; the sends were in time, at most %u us late",
+		why_remedy(f, "check the network card %s: delay of its interrupts (ethtool -C, rx-usecs 0), priority and CPU of its interrupt thread: 'ethercat rtcheck'; the sends were in time, at most %u us late",
 			   card, us);
 }
 
@@ -58,7 +58,7 @@ void why_late_frames(struct why *w)
 		return;
 	w->late = true;
 	f = why_add(w, "late_frames",
-		    "look at the CPU of the cycle and at the interrupt of the network card: 'ethercat rtcheck', 'ethercat cycle -v'",
+		    "check the CPU of the cycle and the interrupt of the network card: 'ethercat rtcheck', 'ethercat cycle -v'",
 		    "%llu %s in %u ms returned after the next cycle had begun: working counters are incomplete then, and no slave or cable is at fault",
 		    (unsigned long long)n, n == 1 ? "frame" : "frames", LATE_MS);
 	f->warning = true;
@@ -95,10 +95,10 @@ void why_lost_frames(struct why *w)
 		if (any(w, "link_errors"))
 			why_remedy(f, "repair the cables whose ports count errors, see there");
 		else if (w->counters && !w->silent)
-			why_remedy(f, "no port of a slave counts an error, so look at the network card %s, its driver and the plug there: 'ethtool -S', 'ethercat rtcheck'",
+			why_remedy(f, "no port of a slave counts an error, so check the network card %s, its driver and the plug there: 'ethtool -S', 'ethercat rtcheck'",
 				   d->name);
 		else
-			why_remedy(f, "see whether the ports of slaves count errors: 'ethercat crc'; if not, look at the network card %s and its driver: 'ethercat rtcheck'",
+			why_remedy(f, "see whether the ports of slaves count errors: 'ethercat crc'; if not, check the network card %s and its driver: 'ethercat rtcheck'",
 				   d->name);
 	}
 }

@@ -71,7 +71,7 @@ static void emergency_of_drive(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.profile, 0u);
 	ec_app_emergency(bus_app(b, "drive"), 0x7305, 0x21, (u8[5]){ 0 }, ktime_get_ns());
 	msleep(2 * SOON_MS);
-	KUNIT_EXPECT_EQ(test, bus_log_lines("CoE emergency: code 0x7305 (fault of encoder 1), error register 0x21"), 1u);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("code 0x7305 (fault of encoder 1), error"), 1u);
 }
 
 /* The last ones stay, the oldest first. */

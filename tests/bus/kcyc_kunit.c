@@ -146,7 +146,7 @@ static void kcyc_stall_zero(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 43ll);
 }
 
-/* One in each sixth cycle, as an application that is too slow: few events, and none is forgotten. */
+/* One in each sixth cycle, as of a slow application: few events, and none is forgotten. */
 static void kcyc_stall_again_and_again(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){

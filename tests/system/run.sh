@@ -17,7 +17,8 @@
 # its native driver, not at the virtual device
 # EC_IOMMU=1: this card is behind an IOMMU
 # EC_BINDS: how often native.bats binds the card, 40 if it is not set
-# EC_CYCLES: of the files in long, a million if it is not set; EC_SEED: of the times of flaps.bats, of the faults of why.bats; EC_FAULTS: kinds of these
+# EC_CYCLES: of the files in long, a million if it is not set; EC_SEED: of the times of flaps.bats,
+# of the faults of why.bats; EC_FAULTS: kinds of these
 # EC_PROGRAMS=i386: programs of 32 bits, on a kernel of 64
 # EC_PLANTED=no: the detectors themselves are not tried
 # EC_PLACES: of tests/vm/places.sh
@@ -144,7 +145,8 @@ run() {
 	read -ra options < <(vm_options "$f")
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_BINDS="${EC_BINDS:-}" \
-		EC_CYCLES="${EC_CYCLES:-}" EC_SEED="${EC_SEED:-}" EC_FAULTS="${EC_FAULTS:-}" EC_WARN="$warn" \
+		EC_CYCLES="${EC_CYCLES:-}" EC_SEED="${EC_SEED:-}" EC_FAULTS="${EC_FAULTS:-}" \
+		EC_WARN="$warn" \
 		sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }

@@ -6,9 +6,9 @@ usage: why.py TOOL LIBRARY CONTROL SEED FOLDER LOAD...    LOAD...: command that 
 
 Each case injects one fault, or two at different places, runs an application and compares all
 findings, and all events of 'ethercat log', with what was injected: a cause too many is as wrong
-as one too few. EC_FAULTS="Cut Late": only these kinds. What is expected is derived from the kind of fault, its place and the topology.
-Cases without a fault must have no finding and no event of trouble. Prints TAP lines and the
-figures.
+as one too few. What is expected is derived from the kind of fault, its place and the topology.
+EC_FAULTS="Cut Late": only these kinds. Cases without a fault must have no finding and no event of
+trouble. Prints TAP lines and the figures.
 """
 import json
 import os

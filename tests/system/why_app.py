@@ -116,7 +116,8 @@ class Application:
         """One slave."""
         bit, state = c.c_uint(), c.c_uint()
         config = c.c_void_p(self.lib.ecrt_master_slave_config(
-            self.master, s.alias, s.position if s.offset is None else s.offset, c.c_uint32(s.vendor), c.c_uint32(s.product)))
+            self.master, s.alias, s.position if s.offset is None else s.offset,
+            c.c_uint32(s.vendor), c.c_uint32(s.product)))
         if not config:
             raise RuntimeError(f"slave {s.position} not configured")
         if s.other_pdo:

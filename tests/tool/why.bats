@@ -46,11 +46,11 @@ is() {
 	[[ $(FAKE_WHY="cancelled stall_zero" out why) == *"2 faults. Checked: "* ]]
 }
 
-@test "why: what is under way is no fault, and exits with 1" {
+@test "why: under way is no fault, and exits with 1" {
 	is under_way 'f["level"] == "under_way"'
 	FAKE_WHY=under_way run ethercat why
 	[ "$status" -eq 1 ]
-	[[ $output == "Under way: AL state SAFEOP on the way to OP, "*"No fault, 1 under way. Checked: "* ]]
+	[[ $output == "Under way: AL state SAFEOP on the way to OP"*"No fault, 1 under way. "* ]]
 	# a link that is up again is not named as cut
 	FAKE_WHY="cable scan" run ethercat why
 	[ "$status" -eq 1 ]
@@ -64,17 +64,20 @@ is() {
 	is al_refused '"tries again by itself, at once with \x27ethercat states OP -p 2" in f["remedy"]'
 	is stall_zero '(f["cause"], "the kernel sends zeros" in f["text"]) == ("output_stall", True)'
 	is stall_stop '(f["cause"], "has stopped the cycle" in f["text"]) == ("output_stall", True)'
-	is emergency '(f["slave"], f["code"], "(fault of encoder 1), error" in f["text"]) == (2, 0x7305, True)'
-	is late_frames '"no slave or cable is at fault" in f["text"] and "cable" not in f["remedy"]'
+	is emergency '(f["slave"], f["code"]) == (2, 0x7305)'
+	is emergency '"code 0x7305 (fault of encoder 1), error register" in f["text"]'
+	is late_frames '"no slave or cable is at fault" in f["text"]'
+	is late_frames '"cable" not in f["remedy"]'
 	is lost_frames '"cable" not in f["remedy"]'
 	# names, where a slave on the bus has them
-	is wrong_place '"slave 2 is EL7201, 0x00000002/0x1c213052, configured is EK1100, 0x00000002/0x044c2c52" in f["text"]'
+	is wrong_place '"slave 2 is EL7201, 0x00000002/0x1c213052, configured is EK1100, " in f["text"]'
 	# a frame that is late leaves counters incomplete, and blames no slave
 	[ "$(causes "late_frames working_counter")" = late_frames ]
 }
 
 @test "why: a warning stops no slave and exits with 0" {
-	for c in scan late_frames lost_frames emergency alias_twice overruns eeprom process_data clock_off sync_cycle; do
+	for c in scan late_frames lost_frames emergency alias_twice overruns eeprom process_data \
+		clock_off sync_cycle; do
 		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
 		FAKE_WHY=$c run ethercat why
 		[ "$status" -eq 0 ] || { echo "$c: $output"; false; }
