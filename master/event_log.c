@@ -27,8 +27,6 @@ static const char *level(const struct ec_event *e)
 	switch (e->kind) {
 	case EC_EVENT_SLAVE_FOUND:
 	case EC_EVENT_OUTPUTS:
-	case EC_EVENT_RESERVED:
-	case EC_EVENT_RELEASED:
 	case EC_EVENT_DEBUG:
 		return KERN_INFO;
 	case EC_EVENT_STALL:

@@ -4,6 +4,7 @@
  * what repeats is counted, and logged once more at the end of its window.
  */
 #include <linux/ktime.h>
+#include <linux/math64.h>
 #include <linux/ratelimit.h>
 #include <linux/string.h>
 #include "base.h"
@@ -14,6 +15,7 @@ struct line {
 	int slave;
 	u32 id;
 	u32 more;
+	u32 age_ms;	/* so long ago it was, 0: now */
 	char text[EC_LOG_TEXT];
 };
 
@@ -30,7 +32,7 @@ void ec_log_init(struct ec_log *l)
 
 static void print(const struct ec_base *b, const struct line *line)
 {
-	char who[24], more[40] = "";
+	char who[24], more[40] = "", ago[32] = "";
 
 	if (line->slave == EC_LOG_ANY)
 		scnprintf(who, sizeof(who), "%u", b->index);
@@ -38,7 +40,10 @@ static void print(const struct ec_base *b, const struct line *line)
 		scnprintf(who, sizeof(who), "%u-%d", b->index, line->slave);
 	if (line->more)
 		scnprintf(more, sizeof(more), " (%u more in the last 10 s)", line->more);
-	printk("%sEtherCAT %s: %s%s\n", line->level, who, line->text, more);
+	if (line->age_ms >= 100)
+		scnprintf(ago, sizeof(ago), ", %u.%u s ago", line->age_ms / 1000,
+			  line->age_ms / 100 % 10);
+	printk("%sEtherCAT %s: %s%s%s\n", line->level, who, line->text, ago, more);
 }
 
 static bool over(const struct ec_log_event *e, u64 now)
@@ -111,6 +116,7 @@ static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
 		l->pending = true;
 	}
 	strscpy(e->text, line->text, sizeof(e->text));
+	e->last = now;
 	return yes;
 }
 
@@ -166,6 +172,7 @@ static bool take(struct ec_log *l, unsigned int *i, struct line *line, u64 now, 
 		line->level = e->level;
 		line->slave = e->slave;
 		line->more = e->missed - 1;
+		line->age_ms = div_u64(now - e->last, NSEC_PER_MSEC);
 		strscpy(line->text, e->text, sizeof(line->text));
 		e->since = now;
 		e->lines = EC_LOG_CHANGES;

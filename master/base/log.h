@@ -26,6 +26,7 @@
  * @lines: logged in this window
  * @missed: counted only; the last of them is @text
  * @text: last text
+ * @last: when that was, ktime
  */
 struct ec_log_event {
 	const char *fmt;
@@ -36,6 +37,7 @@ struct ec_log_event {
 	u32 lines;
 	u32 missed;
 	char text[EC_LOG_TEXT];
+	u64 last;
 };
 
 /**

@@ -193,6 +193,7 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		return ret;
 	}
 	ec_event(ss->base, EC_EVENT_RESERVED, task_tgid_nr(current));
+	ec_info(ss, "application reserved the master, process %d\n", task_tgid_nr(current));
 	if (READ_ONCE(ss->candidate) == s)
 		return 0;
 	ret = ec_bus_wait_slaves(ss->bus);
@@ -423,6 +424,12 @@ static void end(struct ec_sessions *ss)
 	inherit(ss);
 }
 
+static void released(struct ec_sessions *ss, pid_t pid)
+{
+	ec_event(ss->base, EC_EVENT_RELEASED, pid);
+	ec_info(ss, "application exited or released the master, process %d\n", pid);
+}
+
 /**
  * ec_session_end() - the application has exited or releases the master
  * @ss: sessions of a master
@@ -441,7 +448,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	s = ss->candidate;
 	if (s && (!owner || s->cycle.owner == owner)) {
 		WRITE_ONCE(ss->candidate, NULL);
-		ec_event(ss->base, EC_EVENT_RELEASED, s->owner_pid);
+		released(ss, s->owner_pid);
 		ec_session_free(s);
 	}
 	s = ss->session;
@@ -457,7 +464,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 		pid_t pid = s->owner_pid;
 
 		end(ss);
-		ec_event(ss->base, EC_EVENT_RELEASED, pid);
+		released(ss, pid);
 	}
 	ec_sessions_unlock(ss);
 }

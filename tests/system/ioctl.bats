@@ -40,7 +40,7 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 	[ "$(dmesg | wc -l)" -le 40 ]
 	dmesg | grep -q 'PDO 0x1700 is not assigned'
 	# what was counted comes at the end of the ten seconds
-	wait_for 30 eval 'dmesg | grep -q "not assigned.* more in the last 10 s"'
+	wait_for 30 eval 'dmesg | grep -q "not assigned.*, [0-9]*[.][0-9] s ago (.* more in the last 10 s"'
 	[ "$(dmesg | wc -l)" -le 60 ]
 }
 

@@ -43,6 +43,8 @@ log_has() {
 	log_has "application reserved the master, process $app\$"
 	log_has 'session activated: 1 domain(s), .*, process '"$app"
 	log_has 'domain 0: working counter [1-9][0-9]* of [1-9]'
+	# lines of the kernel log stand in the order of events
+	[[ $(dmesg) == *"reserved the master, process $app"*"session activated: "* ]]
 	kill -9 "$app"
 	wait_for 20 log_has "application exited or released the master, process $app\$"
 }
