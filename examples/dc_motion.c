@@ -3,7 +3,7 @@
  * dc_motion: two drives (CiA 402, or EL7201 terminals) move by a sine, with distributed clocks:
  * both accept their target positions at the same SYNC0, a third of a cycle after the frame. When
  * one leaves operation, by a fault or its enable input, both stop and the program ends: it resets
- * faults only before the motion. The argument selects the time reference:
+ * faults only before the motion. usage() has the arguments. The time reference is
  *
  *   lead    this program: the reference clock is synchronized to it; for machines with a
  *           better clock than that of the drives
@@ -12,12 +12,6 @@
  *
  * (With ecrt_master_set_cycle() and EC_CYCLE_FOLLOW_REFERENCE the kernel does the same as
  * "follow", see kcycle.c.)
- *
- * usage: dc_motion [lead|follow [FIRST [SECOND|- [SECONDS]]]]
- *   FIRST, SECOND  ring positions of the drives, see "ethercat slaves"; 4 and 5, as in the
- *                  simulated segment "bench". FIRST alone, or "-" as SECOND: one drive
- *   SECONDS        to run; default: until Ctrl-C
- * exit status: 0; 1 when a drive did not reach OP or left operation, or the setup failed
  */
 #include <ecrt.h>
 #include <math.h>
@@ -58,6 +52,55 @@ static int n_axes, follow, reached_op;
 static int failed;	/* a drive left operation while it moved */
 
 static volatile sig_atomic_t stop;
+
+static void usage(FILE *file)
+{
+	fprintf(file, "usage: dc_motion [lead|follow [FIRST [SECOND|- [SECONDS]]]]\n"
+		"One or two drives move by a sine. WARNING: by %d counts, check that nothing is\n"
+		"in the way.\n"
+		"  lead           this program is the time reference (default)\n"
+		"  follow         the reference clock is\n"
+		"  FIRST, SECOND  ring positions of the drives, see 'ethercat slaves'; default 4\n"
+		"                 and 5, as in the simulated segment 'bench'. FIRST alone, or '-'\n"
+		"                 as SECOND: one drive\n"
+		"  SECONDS        to run, 1 to 65535; default: until Ctrl-C\n"
+		"exit status: 0 ended by time or Ctrl-C after all drives moved; 1 failure, or a\n"
+		"drive did not move or left operation; 2 invalid argument\n", (int)AMPLITUDE);
+}
+
+/* Exits for --help and for invalid arguments. @values: defaults of FIRST, SECOND, SECONDS. */
+static void parse(int argc, char **argv, unsigned long values[3])
+{
+	unsigned long value;
+	char *end;
+	int i;
+
+	n_axes = argc == 3 || (argc > 3 && !strcmp(argv[3], "-")) ? 1 : AXES;
+	for (i = 1; i < argc; i++) {
+		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
+			usage(stdout);
+			exit(0);
+		}
+		if (i == 1 && (!strcmp(argv[1], "follow") || !strcmp(argv[1], "lead"))) {
+			follow = argv[1][0] == 'f';
+			continue;
+		}
+		if (i == 3 && n_axes == 1)
+			continue;
+		value = strtoul(argv[i], &end, 10);
+		if (i == 1 || i > 4 || *argv[i] < '0' || *argv[i] > '9' || *end ||
+		    value > 0xffff || (i == 4 && !value)) {
+			fprintf(stderr, "dc_motion: invalid argument '%s'\n", argv[i]);
+			usage(stderr);
+			exit(2);
+		}
+		values[i - 2] = value;
+	}
+	if (n_axes > 1 && values[0] == values[1]) {
+		fprintf(stderr, "dc_motion: FIRST and SECOND are both %lu\n", values[0]);
+		exit(2);
+	}
+}
 
 static void on_signal(int number)
 {
@@ -343,7 +386,7 @@ static int not_in_op(void)
 		n++;
 		if (ecrt_slave_config_reason(axes[i].config, reason, sizeof(reason)) <= 0)
 			reason[0] = 0;
-		printf("slave %u has not reached OP: %s\n", axes[i].position,
+		printf("slave %u is not in OP: %s\n", axes[i].position,
 		       reason[0] ? reason : "no reason known yet");
 	}
 	return n;
@@ -388,8 +431,6 @@ static void stop_drives(unsigned long n, struct timespec *next, uint64_t *app_ti
 {
 	int i;
 
-	if (failed)
-		status_words("a drive has left operation, all of them stop");
 	for (i = 0; i < STOP_CYCLES && (i < 10 || count(0x27) || count(0x07)); i++) {
 		wait_period(next, app_time, 0);
 		cycle(n + (unsigned long)i, *app_time, 1);
@@ -411,10 +452,15 @@ static void run(unsigned long cycles)
 		correct = cycle(n, app_time, 0);
 		report(n);
 	}
-	if (!reached_op && not_in_op())
+	reached_op = !not_in_op();
+	if (!reached_op)
 		printf("ended without OP\n");
+	else if (failed)
+		status_words("ended: a drive has left operation, all of them stop");
+	else if (!axes[0].moving)
+		status_words("ended: not all drives reached operation");
 	else
-		reached_op = 1;
+		printf("ended %s\n", stop ? "by a signal" : "after the given time");
 	stop_drives(n, &next, &app_time);
 	printf("%lu cycles, %lu skipped\n", n, missed);
 	for (i = 0; i < n_axes; i++)
@@ -428,22 +474,8 @@ int main(int argc, char **argv)
 {
 	unsigned long args[3] = { 4, 5, 0 };
 	struct sigaction action;
-	char *end;
-	int i;
 
-	follow = argc > 1 && !strcmp(argv[1], "follow");
-	n_axes = argc == 3 || (argc > 3 && !strcmp(argv[3], "-")) ? 1 : AXES;
-	for (i = 2; i < argc && i <= 4; i++) {
-		if (i == 3 && n_axes == 1)
-			continue;
-		args[i - 2] = strtoul(argv[i], &end, 0);
-		if (end == argv[i] || *end || args[i - 2] > 0xffff)
-			break;
-	}
-	if (i < argc || (argc > 1 && !follow && strcmp(argv[1], "lead"))) {
-		fprintf(stderr, "usage: dc_motion [lead|follow [FIRST [SECOND|- [SECONDS]]]]\n");
-		return 2;
-	}
+	parse(argc, argv, args);
 	memset(&action, 0, sizeof(action));
 	action.sa_handler = on_signal;
 	sigaction(SIGINT, &action, NULL);
@@ -457,5 +489,5 @@ int main(int argc, char **argv)
 	become_realtime();
 	run(args[2] * (unsigned long)(NS_PER_S / PERIOD_NS));
 	ecrt_release_master(master);	/* slaves go to PREOP */
-	return !reached_op || failed;
+	return !reached_op || failed || !axes[0].moving;
 }

@@ -1,44 +1,94 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
  * Example: the kernel runs the cycle, this program only reads inputs and writes outputs. It
- * needs no real-time priority: the frames are punctual in any case.
- *
- * usage: kcycle [CYCLES [follow|interrupt]...]
+ * needs no real-time priority: the frames are punctual in any case. usage() has the arguments.
  *
  * WARNING: it switches outputs. Run it only where no output moves or heats anything.
  *
- * All slaves but drives run with their default process data, at 1 kHz. The program increments the
- * first output byte of each slave with digital outputs, 0 stays in all other outputs, and it exits
- * after CYCLES cycles (default 5000). It leaves out slaves with the control word of a drive (CiA
- * 402, SoE) in their EEPROM, and names them; they stay in PREOP. See dc_motion.c for drives.
+ * The program increments the first output byte of each slave with digital outputs; 0 stays in all
+ * other outputs. It leaves out slaves with the control word of a drive (CiA 402, SoE) in their
+ * EEPROM, and names them; they stay in PREOP. See dc_motion.c for drives.
  *
- *   follow  the clocks of the slaves are synchronized, and the cycle is phase-locked to the
- *           reference clock: a frame passes this clock always at the same time after the
- *           SYNC signals. (ecrt_slave_config_dc() configures such signals, see dc_motion.c.)
- *   interrupt  the cycle runs in the interrupt of its timer, with a native device and as root
+ * With "follow" a frame passes the reference clock always at the same time after the SYNC
+ * signals. (ecrt_slave_config_dc() configures such signals, see dc_motion.c.)
  *
- * When the program is killed, the kernel continues the cycle; a new start continues counting.
- * 'ethercat release' ends the session of a killed program.
+ * When the program exits before its last cycle, by a signal or kill -9, the kernel continues the
+ * cycle; a new start with the same options continues counting. 'ethercat release' ends the session.
  * See Documentation/kernel-cycle.rst.
  */
 #include <ecrt.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #define SLAVES_MAX	128
-#define PERIOD_NS	1000000
-#define PHASE_NS	250000		/* of the frame, after SYNC0 */
+#define PERIOD_NS	1000000U
+#define PHASE_NS	250000U		/* of the frame, after SYNC0 */
 #define OP_TIMEOUT_S	60
+#define CYCLES		5000
+#define CYCLES_MAX	1000000000UL
 
 static ec_master_t *master;
 static ec_domain_t *domain;
 static ec_slave_config_t *slaves[SLAVES_MAX];	/* NULL: a drive, skipped */
 static int outputs[SLAVES_MAX];		/* byte of digital outputs in the domain, or -1 */
 static unsigned int n_slaves, n_configured;
+static unsigned long cycles = CYCLES;
 static int follow, interrupt;
+static volatile sig_atomic_t stop;
+
+static void usage(FILE *file)
+{
+	fprintf(file, "usage: kcycle [CYCLES] [follow] [interrupt]\n"
+		"The kernel runs a cycle of 1 ms with the default process data of all slaves but\n"
+		"drives. The program increments the first output byte of each slave with digital\n"
+		"outputs. WARNING: run it only where no output moves or heats anything.\n"
+		"  CYCLES     cycles after all slaves are in OP, 1 to %lu; default %d\n"
+		"  follow     synchronize the clocks of the slaves, and lock the cycle to the\n"
+		"             reference clock\n"
+		"  interrupt  run the cycle in the interrupt of its timer: native device, root\n"
+		"After Ctrl-C the kernel continues the cycle; 'ethercat release' ends it.\n"
+		"exit status: 0 all cycles done, or Ctrl-C; 1 failure; 2 invalid argument\n",
+		CYCLES_MAX, CYCLES);
+}
+
+/* Exits for --help and for invalid arguments. */
+static void parse(int argc, char **argv)
+{
+	int n_numbers = 0;
+	char *end;
+
+	for (int i = 1; i < argc; i++) {
+		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
+			usage(stdout);
+			exit(0);
+		}
+		if (!strcmp(argv[i], "follow")) {
+			follow = 1;
+			continue;
+		}
+		if (!strcmp(argv[i], "interrupt")) {
+			interrupt = 1;
+			continue;
+		}
+		cycles = strtoul(argv[i], &end, 10);
+		if (n_numbers++ || *argv[i] < '0' || *argv[i] > '9' || *end || !cycles ||
+		    cycles > CYCLES_MAX) {
+			fprintf(stderr, "kcycle: invalid argument '%s'\n", argv[i]);
+			usage(stderr);
+			exit(2);
+		}
+	}
+}
+
+static void on_signal(int number)
+{
+	(void)number;
+	stop = 1;
+}
 
 /* Outputs of a slave by the entries of its PDOs. */
 enum outputs {
@@ -131,26 +181,29 @@ static int add_slave(uint16_t position)
 static int configure(void)
 {
 	/*
-	 * Without outputs the slaves get the last ones, also when we are dead. Any CPU
-	 * may run it; to name one: .flags = EC_CYCLE_BIND_CPU, .cpu = 1.
+	 * Any CPU may run the cycle; to name one: EC_CYCLE_BIND_CPU and .cpu = 1. Without outputs
+	 * of this program, also after its exit, the slaves get the last ones. All members, in the
+	 * order of ecrt.h, so that this is C++20 as well.
 	 */
 	ec_cycle_config_t cycle = {
 		.period_ns = PERIOD_NS,
+		.phase_ns = follow ? PHASE_NS : 0U,
+		.cpu = 0,
+		.priority = 0,
 		.stall = EC_CYCLE_HOLD,
-		.flags = EC_CYCLE_DETACH | (interrupt ? EC_CYCLE_INTERRUPT : 0),
+		.stall_cycles = 0,
+		.dc = follow ? EC_CYCLE_SYNC_SLAVES | EC_CYCLE_FOLLOW_REFERENCE : 0U,
+		.flags = EC_CYCLE_DETACH | (interrupt ? EC_CYCLE_INTERRUPT : 0U),
 	};
 	ec_master_info_t info;
 
-	if (follow) {
-		cycle.dc = EC_CYCLE_SYNC_SLAVES | EC_CYCLE_FOLLOW_REFERENCE;
-		cycle.phase_ns = PHASE_NS;
-	}
 	domain = ecrt_master_create_domain(master);
 	if (!domain || ecrt_master(master, &info))
 		return -1;
 	n_slaves = info.slave_count;
 	if (!n_slaves || n_slaves > SLAVES_MAX) {
-		fprintf(stderr, "%u slaves found, expected 1 to %u\n", n_slaves, SLAVES_MAX);
+		fprintf(stderr, "kcycle: %u slaves found, expected 1 to %u\n", n_slaves,
+			SLAVES_MAX);
 		return -1;
 	}
 	for (unsigned int i = 0; i < n_slaves; i++) {
@@ -159,7 +212,7 @@ static int configure(void)
 		n_configured += slaves[i] != NULL;
 	}
 	if (!n_configured) {
-		fprintf(stderr, "no slave but drives found\n");
+		fprintf(stderr, "kcycle: no slave but drives found\n");
 		return -1;
 	}
 	return ecrt_master_set_cycle(master, &cycle);
@@ -208,15 +261,25 @@ static int locked(void)
 			   state.lock == EC_CYCLE_LOCKED);
 }
 
-static int in_op(void)
+/* Returns whether all slaves are in OP; @name: prints the reason of each one that is not. */
+static int in_op(int name)
 {
 	ec_slave_config_state_t state;
+	char reason[256];
+	int all = 1;
 
-	for (unsigned int i = 0; i < n_slaves; i++)
-		if (slaves[i] &&
-		    (ecrt_slave_config_state(slaves[i], &state) || !state.operational))
-			return 0;
-	return 1;
+	for (unsigned int i = 0; i < n_slaves; i++) {
+		if (!slaves[i] ||
+		    (!ecrt_slave_config_state(slaves[i], &state) && state.operational))
+			continue;
+		all = 0;
+		if (!name)
+			break;
+		if (ecrt_slave_config_reason(slaves[i], reason, sizeof(reason)) <= 0)
+			strcpy(reason, "run 'ethercat why'");
+		fprintf(stderr, "kcycle: slave %u is not in OP: %s\n", i, reason);
+	}
+	return all;
 }
 
 static void report(int64_t oldest)
@@ -233,30 +296,56 @@ static void report(int64_t oldest)
 		       state.lock_losses);
 }
 
-static int run(unsigned long cycles)
+/* The reason why cycle() returned @n below 0. */
+static int ended(int n)
+{
+	if (stop) {
+		printf("ended by a signal: the kernel continues the cycle\n");
+		printf("'ethercat release' ends the session\n");
+		return 0;
+	}
+	fprintf(stderr, "kcycle: the cycle ended: %s\n", strerror(-n));
+	return -1;
+}
+
+/* Returns 1 when all slaves are in OP and the cycle is locked, else the result of run(). */
+static int start(void)
+{
+	time_t end = time(NULL) + OP_TIMEOUT_S;
+	ec_domain_state_t domain_state;
+	int n;
+
+	while (!(in_op(0) && locked())) {
+		n = stop ? -1 : cycle(&domain_state);
+		if (n < 0)
+			return ended(n);
+		if (time(NULL) < end)
+			continue;
+		if (in_op(1))
+			fprintf(stderr, "kcycle: cycle not locked after %d s, see 'ethercat dc'\n",
+				OP_TIMEOUT_S);
+		return -1;
+	}
+	return 1;
+}
+
+/* Returns 0: all cycles done; -1: failure. */
+static int run(void)
 {
 	unsigned long skipped = 0, incomplete = 0;
 	int64_t oldest = 0, ns;
-	time_t end = time(NULL) + OP_TIMEOUT_S;
 	ec_domain_state_t domain_state;
 	ec_cycle_state_t state;
-	int n = 0;
+	int n = start();
 
-	while (!(in_op() && locked()) && n >= 0 && time(NULL) < end)
-		n = cycle(&domain_state);
-	if (!in_op() || !locked()) {
-		fprintf(stderr, "not all slaves are in OP, or the cycle is not phase-locked\n");
-		fprintf(stderr, "run 'ethercat slaves' and 'ethercat master' to find the cause\n");
-		return -1;
-	}
+	if (n <= 0)
+		return n;
 	ecrt_master_cycle_state(master, &state);
 	printf("%u slaves in OP%s\n", n_configured, state.takeovers ? "; cycle taken over" : "");
 	for (unsigned long i = 0; i < cycles; i++) {
-		n = cycle(&domain_state);
-		if (n < 0) {
-			fprintf(stderr, "the cycle ended: %s\n", strerror(-n));
-			return -1;
-		}
+		n = stop ? -1 : cycle(&domain_state);
+		if (n < 0)
+			return ended(n);
 		/* cycles that this program missed; the kernel has sent their frames */
 		skipped += (unsigned long)n - 1;
 		incomplete += domain_state.wc_state != EC_WC_COMPLETE;
@@ -265,32 +354,30 @@ static int run(unsigned long cycles)
 	}
 	printf("%lu cycles, %lu skipped, %lu incomplete\n", cycles, skipped, incomplete);
 	report(oldest);
+	printf("ended after %lu cycles\n", cycles);
 	return 0;
 }
 
 int main(int argc, char **argv)
 {
-	unsigned long cycles = argc > 1 ? strtoul(argv[1], NULL, 0) : 5000;
+	struct sigaction action;
 	int ret = -1;
 
-	for (int i = 2; i < argc; i++) {
-		if (!strcmp(argv[i], "follow")) {
-			follow = 1;
-		} else if (!strcmp(argv[i], "interrupt")) {
-			interrupt = 1;
-		} else {
-			fprintf(stderr, "usage: kcycle [CYCLES [follow|interrupt]...]\n");
-			return 1;
-		}
-	}
+	parse(argc, argv);
+	memset(&action, 0, sizeof(action));
+	action.sa_handler = on_signal;
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
 	setvbuf(stdout, NULL, _IOLBF, 0);
+	/* the library prints the reason of each failure on stderr */
 	master = ecrt_request_master(0);
 	if (!master)
 		return 1;
 	if (!configure() && !ecrt_master_activate(master)) {
-		ret = run(cycles);
-		/* otherwise the kernel continues the cycle */
-		ecrt_master_deactivate(master);
+		ret = run();
+		/* without this call the kernel continues the cycle */
+		if (!stop)
+			ecrt_master_deactivate(master);
 	}
 	ecrt_release_master(master);
 	return ret ? 1 : 0;

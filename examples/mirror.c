@@ -2,12 +2,7 @@
 /*
  * mirror: eight digital inputs switch eight digital outputs, 1000 times a
  * second. The smallest complete application: configure, activate, run the
- * cycle in a real-time thread, stop cleanly.
- *
- * usage: mirror [INPUTS [OUTPUTS [SECONDS]]]
- *   INPUTS, OUTPUTS  ring positions of an EL1008 and an EL2008, see
- *                    "ethercat slaves"; default 1 and 2
- *   SECONDS          to run; default: until Ctrl-C
+ * cycle in a real-time thread, stop cleanly. usage() has the arguments.
  *
  * For other slaves: "ethercat cstruct" prints the tables to insert here.
  */
@@ -43,6 +38,41 @@ static struct {
 } slaves[2];
 
 static volatile sig_atomic_t stop;
+
+static void usage(FILE *file)
+{
+	fprintf(file, "usage: mirror [INPUTS [OUTPUTS [SECONDS]]]\n"
+		"Eight digital inputs switch eight digital outputs, 1000 times a second.\n"
+		"WARNING: run it only where no output moves or heats anything.\n"
+		"  INPUTS, OUTPUTS  ring positions of an EL1008 and an EL2008, see 'ethercat\n"
+		"                   slaves'; default 1 and 2\n"
+		"  SECONDS          to run, 1 to 65535; default: until Ctrl-C\n"
+		"exit status: 0 ended by time or Ctrl-C, both slaves in OP; 1 failure, or a\n"
+		"slave not in OP at the end; 2 invalid argument\n");
+}
+
+/* Exits for --help and for invalid arguments. @values: their defaults. */
+static void parse(int argc, char **argv, unsigned long values[3])
+{
+	unsigned long value;
+	char *end;
+	int i;
+
+	for (i = 1; i < argc; i++) {
+		if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
+			usage(stdout);
+			exit(0);
+		}
+		value = strtoul(argv[i], &end, 10);
+		if (i > 3 || *argv[i] < '0' || *argv[i] > '9' || *end || value > 0xffff ||
+		    (i == 3 && !value)) {
+			fprintf(stderr, "mirror: invalid argument '%s'\n", argv[i]);
+			usage(stderr);
+			exit(2);
+		}
+		values[i - 1] = value;
+	}
+}
 
 static void on_signal(int number)
 {
@@ -206,6 +236,10 @@ static void run(unsigned long cycles)
 		cycle(1);
 	}
 	printf("%lu cycles, %lu skipped\n", n, missed);
+	if (stop)
+		printf("ended by a signal\n");
+	else
+		printf("ended after %lu s\n", n / (unsigned long)(NS_PER_S / PERIOD_NS));
 }
 
 /* Prints why; returns how many of the slaves are not in OP. */
@@ -231,18 +265,9 @@ int main(int argc, char **argv)
 {
 	unsigned long args[3] = { 1, 2, 0 };
 	struct sigaction action;
-	char *end;
-	int i, failed;
+	int failed;
 
-	for (i = 1; i < argc && i <= 3; i++) {
-		args[i - 1] = strtoul(argv[i], &end, 0);
-		if (end == argv[i] || *end || args[i - 1] > 0xffff)
-			break;
-	}
-	if (i < argc) {
-		fprintf(stderr, "usage: mirror [INPUTS [OUTPUTS [SECONDS]]]\n");
-		return 2;
-	}
+	parse(argc, argv, args);
 	memset(&action, 0, sizeof(action));
 	action.sa_handler = on_signal;
 	sigaction(SIGINT, &action, NULL);

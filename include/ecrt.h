@@ -980,6 +980,8 @@ typedef enum {
  *	Otherwise, and for 1000 cycles after the interrupt left too little time to those
  *	threads, the thread of the cycle runs it. 'ethercat cycle' reports the place and the
  *	reason, the kernel log reasons that can be mended.
+ *
+ * C++20 accepts designated initializers in this order only.
  */
 typedef struct {
 	uint32_t period_ns;

@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 #
 # Installs what building and testing need, and nothing that is there already.
-# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, doc, rust,
-# cross, packages)
+# usage: tests/install-deps.sh GROUP...    (build, vm, capture, uml, python, json, doc, cmake,
+# rust, cross, packages)
 
 set -eu
 
 usage() {
-	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json doc rust cross packages" >&2
+	echo "usage: ${0##*/} GROUP...   groups: build vm capture uml python json doc cmake rust" \
+		"cross packages" >&2
 	exit 2
 }
 
@@ -41,6 +42,7 @@ for group; do
 	python)	p="python3-venv" ;;
 	json)	p="gojq" ;;
 	doc)	p="python3-sphinx" ;;
+	cmake)	p="cmake" ;;
 	# any cargo does that is new enough, Debian's "cargo" is not
 	rust)	p="cargo-web"
 		cargo --version 2>/dev/null | awk -F '[ .]' '{ ok = $2 > 1 || $3 >= 85 } END { exit !ok }' && p= ;;

@@ -3,6 +3,8 @@
 #include "describe_int.h"
 
 #define IMAGE_MAX	(512 * 1024u)
+#define PATH_SIZE	128	/* of an image, with the zero */
+#define PATH_LIMIT	"127"
 #define DEVICE_ALIASES	"WAGO750-354"
 
 static int no_memory(struct ec_desc *d)
@@ -56,16 +58,18 @@ static int model_from_file(struct ec_desc *d, const struct ec_desc_word *file,
 			   const struct ec_app_params *p,
 			   struct ec_app_model **m)
 {
-	char name[128];
+	char name[PATH_SIZE];
 	int len, ret;
 	u8 *buf;
 
 	if (!d->loader || !d->loader->load)
 		return ec_desc_fail(d, "'", file,
 			"': files cannot be read here; use a device of the catalogue");
-	if (!file->n || file->n >= sizeof(name))
-		return ec_desc_fail(d, "invalid file name: empty or too long", NULL,
-				    "");
+	if (!file->n)
+		return ec_desc_fail(d, "no path behind file=", NULL, "");
+	if (file->n >= sizeof(name))
+		return ec_desc_fail(d, "path '", file,
+				    "...' too long, limit " PATH_LIMIT " characters");
 	memcpy(name, file->s, file->n);
 	name[file->n] = '\0';
 	buf = ec_sim_alloc(d->sim, IMAGE_MAX);

@@ -82,6 +82,7 @@ int ec_sim_describe(struct ec_sim **out, const struct ec_sim_ops *ops,
 		    struct ec_sim_error *err);
 int ec_sim_command(struct ec_sim *sim, const struct ec_sim_ops *ops, const char *text,
 		   size_t len, struct ec_sim_fault *f, struct ec_sim_error *err);
+void ec_sim_show(const struct ec_sim *sim, u32 index, char *buf, size_t size);
 struct ec_app *ec_sim_find(struct ec_sim *sim, const char *name);
 const char *ec_sim_builtin(const char *name);
 const char *ec_sim_builtin_at(u32 n);

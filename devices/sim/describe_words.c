@@ -400,6 +400,34 @@ int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 	return ec_desc_parse_number(d, &n, 0, 65535, number);
 }
 
+/* Names of the segment, as many as fit into a report: a running one has no lines to look at. */
+static int unknown_in_segment(struct ec_desc *d, const struct ec_desc_word *w)
+{
+	char names[64];
+	size_t at = 0;
+	u32 i;
+
+	for (i = 0; i < d->n_nodes; i++) {
+		const char *name = d->node[i].app->name;
+		size_t n = strlen(name);
+
+		/* ", " and "..." */
+		if (at + n + 6 > sizeof(names))
+			break;
+		if (i) {
+			memcpy(names + at, ", ", 2);
+			at += 2;
+		}
+		memcpy(names + at, name, n);
+		at += n;
+	}
+	memcpy(names + at, i < d->n_nodes ? "..." : "", i < d->n_nodes ? 4 : 1);
+	ec_desc_fail(d, "unknown slave '", w, "'; the segment has ");
+	at = strlen(d->err->text);
+	append(d->err, &at, names, strlen(names));
+	return -EINVAL;
+}
+
 /**
  * ec_desc_slave() - slave of a name
  * @d: description
@@ -415,5 +443,7 @@ int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w)
 	for (u32 i = d->n_nodes; i--; )
 		if (ec_desc_is(w, d->node[i].app->name))
 			return (int)i;
+	if (d->command)
+		return unknown_in_segment(d, w);
 	return ec_desc_fail(d, "unknown slave '", w, "'; a line 'slave NAME ...' above has to define it");
 }

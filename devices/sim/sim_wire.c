@@ -236,6 +236,26 @@ int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f)
 }
 
 /**
+ * ec_sim_wire_show() - describe a slave in one line, as it is now
+ * @w: wire
+ * @index: slave, below ec_sim_count()
+ * @buf: out: see ec_sim_show()
+ * @size: of @buf, above 0
+ *
+ * Context: Any.
+ */
+void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	/* faults whose time has come */
+	ec_sim_advance(w->sim, now_ns(w));
+	ec_sim_show(w->sim, index, buf, size);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+}
+
+/**
  * ec_sim_wire_up() - is there a cable at the first master port now
  * @w: wire
  *

@@ -48,6 +48,7 @@ void ec_sim_wire_run(struct ec_sim_wire *w, bool on);
 void ec_sim_wire_set_polled(struct ec_sim_wire *w, bool on);
 void ec_sim_wire_poll(struct ec_sim_wire *w);
 int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len);
+void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size);
 int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f);
 bool ec_sim_wire_up(struct ec_sim_wire *w);
 

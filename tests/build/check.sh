@@ -28,7 +28,7 @@ t() {	# t NAME COMMAND...
 	fi
 }
 
-tests/install-deps.sh doc >&2 || exit 1
+tests/install-deps.sh doc cmake >&2 || exit 1
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1
 KDIR=$(tests/vm/kernels.sh kdir "$kernel")
 release=$(tests/vm/kernels.sh release "$kernel")
@@ -271,6 +271,19 @@ app_runs() {
 
 t "an application in C99 with pkg-config" app_runs gcc c99 c
 t "an application in C++11 with pkg-config" app_runs g++ c++11 c++
+t "examples and snippets of the documentation compile as C99 and C++20" tests/build/snippets.py
+
+# snippet_noticed TEXT FINDING: else the check above could not fail
+snippet_noticed() {
+	printf 'Title\n=====\n\n::\n\n%b' "$1" >"$tmp/page.rst"
+	! tests/build/snippets.py "$tmp/page.rst" >"$tmp/snippets.log" &&
+		grep "$2" "$tmp/snippets.log"
+}
+t "a snippet that is not C++20 is noticed" snippet_noticed \
+	'    ec_cycle_config_t cycle = {\n        .cpu = 1,\n        .period_ns = 1,\n    };\n' \
+	"page.rst: ec_cycle_config_t cycle = {: no C++20"
+t "a snippet that is marked as something else is noticed" snippet_noticed \
+	'    ecrt_master_receive(master);\n    ecrt_domain_process(domain);\n' "looks like C"
 
 # find_package() in a project of its own; without cmake what the files say
 cmake_app() {
@@ -305,6 +318,15 @@ examples_build() {
 }
 t "the examples with pkg-config, outside of the tree" examples_build
 
+examples_cmake() {
+	command -v cmake >/dev/null || { echo "no cmake"; return 1; }
+	cmake -S "$tmp/examples" -B "$tmp/examples/cmake" -DCMAKE_PREFIX_PATH="$root$prefix" \
+		-DCMAKE_C_FLAGS=-Werror && cmake --build "$tmp/examples/cmake" &&
+		diff <(cd examples && ls ./*.c | sed 's/\.c$//') \
+			<(cd "$tmp/examples/cmake" && find . -maxdepth 1 -type f -perm -100 | sort)
+}
+t "the examples with cmake, outside of the tree" examples_cmake
+
 # what Documentation/kernel-api.rst says, with what was installed
 kernel_app_builds() {
 	cp -r examples/mini "$tmp/mini" &&
@@ -317,6 +339,16 @@ kernel_app_builds() {
 }
 
 t "a kernel application against what was installed" kernel_app_builds
+
+kernel_snippets() {
+	mkdir -p "$tmp/snippets" && tests/build/snippets.py --kernel "$tmp/snippets" &&
+	make -s -C "$KDIR" M="$tmp/snippets" CONFIG_DEBUG_INFO_BTF_MODULES= \
+		CONFIG_DEBUG_INFO= KCFLAGS="-Werror -Wno-unused-function" \
+		ECRT="$root$prefix/include" \
+		KBUILD_EXTRA_SYMBOLS="$root/lib/modules/$release/updates/ethercat/Module.symvers" \
+		modules
+}
+t "the kernel snippets of the documentation compile" kernel_snippets
 
 # a module that wants the structures of another master, with the sources as DKMS has them
 structures_refused() {

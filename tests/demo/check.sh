@@ -7,7 +7,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 out=$(mktemp)
-trap 'rm -f "$out"' EXIT
+trap 'rm -f "$out" "$out.x"' EXIT
 passed=0 failed=0
 
 t() {	# t NAME COMMAND...
@@ -43,6 +43,16 @@ t "both axes follow" [ "$(grep -cE '^Axis at slave .* correlation (1\.000|0\.9)'
 t "no check failed" [ "$(grep -c FAILED "$out")" = 0 ]
 t "the capture has all cycles and nothing malformed" says '^tshark: [0-9]{4,} packets, .* malformed: 0$'
 t "the capture is where it says" [ -s "$(sed -n 's/^capture: //p' "$out")" ]
+for name in install kernel build:\ {modules,library,tool,application}; do
+	t "the step '$name' has its seconds" says "^\[ *[0-9]+ s\] $name: done in [0-9]+ s$"
+done
+slow_step() {
+	bash -c '. tests/demo/steps.sh; tick=1; on "build: x" sleep 3' |
+		grep -qE '^\[ *[0-9]+ s\] build: x: still running, [12] s$'
+}
+t "a step that takes long is not silent" slow_step
+failed_step() { bash -c '. tests/demo/steps.sh; on x false' >"$out.x"; [ $? = 1 ] && [ ! -s "$out.x" ]; }
+t "a step that fails is not called done" failed_step
 t "steps have a time" [ "$(grep -c '^\[ *[0-9]* s\]' "$out")" -ge 8 ]
 t "a wrong number of cycles is refused" refused many
 t "the exact usage is asked for" [ "$(tests/demo/demo.sh --nonsense 2>&1 | grep -c '^usage')" = 1 ]

@@ -16,6 +16,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 . tests/vm/places.sh
+. tests/demo/steps.sh
 export CYCLES=${CYCLES:-10000} PERIOD_US=${PERIOD_US:-1000}
 kernel=${EC_KERNEL:-6.1-rt}
 host=0
@@ -27,8 +28,6 @@ esac
 out=$PWD/build/demo
 DEMO_START=$(date +%s)
 export DEMO_START
-
-step() { printf '[%3d s] %s\n' $SECONDS "$*"; }
 
 # die WHAT WHAT-TO-DO
 die() {
@@ -56,9 +55,8 @@ export EC_BUILD
 
 # --- install -------------------------------------------------------------------
 # shellcheck disable=SC2086
-message=$(tests/install-deps.sh $groups 2>&1) ||
-	die "$message" "install the packages named above, then run this again"
-step "install: ${message##*install-deps: }"
+on install tests/install-deps.sh $groups ||
+	die "the installation" "install the packages named above, then run this again"
 if [ $host = 1 ]; then
 	[ "$(id -u)" = 0 ] || die "HOST=1 loads modules" "run it as root, or without HOST=1 for a VM"
 	[ -e "$KDIR/Makefile" ] || die "no kernel headers at $KDIR" \
@@ -66,7 +64,7 @@ if [ $host = 1 ]; then
 	lsmod | grep -qE '^ec_(master|sim) ' && die "ec_master is loaded already" \
 		"stop what uses it, then: rmmod ec_sim ec_generic ec_master"
 else
-	tests/vm/kernels.sh fetch "$kernel" ||
+	on kernel tests/vm/kernels.sh fetch "$kernel" ||
 		die "no kernel $kernel" "see above; a network with Debian packages is needed the first time"
 	KDIR=$(tests/vm/kernels.sh kdir "$kernel")
 	step "kernel: $(tests/vm/kernels.sh release "$kernel")"
@@ -75,17 +73,20 @@ fi
 # --- build -----------------------------------------------------------------------
 mkdir -p "$out" "$EC_BUILD"
 rm -f "$out"/demo.pcap "$out"/*.log
+logged() { "$@" >>"$out/build.log" 2>&1; }
 build() {
-	make -s -j"$(nproc)" modules KDIR="$KDIR" MODDIR="$EC_BUILD/modules" &&
-	make -s -C lib O="$EC_BUILD/lib" all &&
-	make -s -C tool O="$EC_BUILD/tool" &&
-	make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all
+	on "build: modules" logged make -s -j"$(nproc)" modules KDIR="$KDIR" \
+		MODDIR="$EC_BUILD/modules" &&
+	on "build: library" logged make -s -C lib O="$EC_BUILD/lib" all &&
+	on "build: tool" logged make -s -C tool O="$EC_BUILD/tool" &&
+	on "build: application" logged make -s -C tests/apps O="$EC_BUILD/apps" \
+		LIB="$EC_BUILD/lib" "$EC_BUILD/apps/demo"
 }
-locked "$kernel" build >"$out/build.log" 2>&1 || {
+locked "$kernel" build || {
 	grep -E 'error|Error' "$out/build.log" | head -n 20 >&2
 	die "the build" "see $out/build.log"
 }
-step "build: modules, library, tool and application are in $EC_BUILD"
+step "build: all of it is in $EC_BUILD"
 
 # --- run -------------------------------------------------------------------------
 if [ $host = 1 ]; then

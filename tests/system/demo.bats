@@ -13,7 +13,8 @@ demo() {
 	make -s demo HOST=1 EC_BUILD="$EC_BUILD" ${EC_WARN:-} "$@"
 }
 
-# what of it comes after building, on a segment of four slaves with $1 as well
+# on_segment LINES [SLAVES]: what of it comes after building, on a segment of four slaves, or more
+# in LINES
 on_segment() {
 	cat >"$BATS_TEST_TMPDIR/some.seg" <<-END
 	segment seed=1
@@ -26,7 +27,7 @@ on_segment() {
 	sine ai.1 amplitude=10000 period=1s
 	$1
 	END
-	CYCLES=1000 PERIOD_US=2000 SEGMENT=$BATS_TEST_TMPDIR/some.seg SLAVES=4 \
+	CYCLES=1000 PERIOD_US=2000 SEGMENT=$BATS_TEST_TMPDIR/some.seg SLAVES=${2:-4} \
 		run tests/demo/bench.sh "$BATS_TEST_TMPDIR"
 	echo "$output"
 }
@@ -79,6 +80,76 @@ on_segment() {
 	[ "$status" = 1 ]
 	[[ "$output" == *"ok     digital input comes back from the output"* ]]
 	[[ "$output" == *"FAILED analog input comes back from the output"* ]]
+}
+
+# in_op SLAVES COMMAND...: in the background, half a second after all of them are in OP
+in_op() {
+	(
+		set +e
+		until [ "$("$EC_BUILD/tool/ethercat" slaves 2>/dev/null | grep -c ' OP ')" = "$1" ]; do
+			sleep 0.1
+		done
+		sleep 0.5
+		"${@:2}"
+	) >"$BATS_TEST_TMPDIR/in_op" 2>&1 3>&- &
+}
+
+still() { insmod "$EC_BUILD/mini/load/ec_still.ko"; }
+
+fault() {
+	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
+	# sim0, or an interface with EC_NIC
+	echo "$*" | tee /sys/kernel/debug/ec_sim/*
+}
+
+# above the priority of the cycle, for 0.3 s
+hog() {
+	chrt -f 90 bash -c 'e=$((${EPOCHREALTIME/./} + 300000))
+		while [ ${EPOCHREALTIME/./} -lt $e ]; do :; done'
+}
+
+# some cycles with a wrong working counter
+wrong_counter() {
+	fault wkc dio add=1
+	sleep 0.05
+	fault wkc dio add=0
+}
+
+still_then_off() { still; fault lose frame=1; fault off axis; }
+wrong_then_still() { wrong_counter; sleep 0.1; still; }
+hog_then_wrong() { hog; wrong_counter; }
+
+# a frame is lost meanwhile, and a drive leaves OP and is not back yet
+@test "a machine that stands still is no failure of the master, and the text says so" {
+	in_op 5 still_then_off
+	on_segment "connect ao.1 -> ai.2
+	slave axis EL7201 motor=AM8121" 5
+	rmmod ec_still
+	[ "$status" = 0 ]
+	local check
+	for check in "all slaves in OP" "no frame lost, no call failed" "no working counter error"; do
+		grep -qx "still  $check" <<<"$output" || { echo "not said: $check"; return 1; }
+	done
+	[[ "$output" =~ "The machine stood still "[0-9]+" time(s), for up to 1"[67][0-9]" ms:" ]]
+	[[ "$output" == *" check(s), marked 'still', missed"*"no failure"*"of the master"* ]]
+	[[ "$output" != *FAILED* ]]
+}
+
+@test "an error before the machine stands still is a failure" {
+	in_op 4 wrong_then_still
+	on_segment "connect ao.1 -> ai.2"
+	rmmod ec_still
+	[ "$status" = 1 ]
+	[[ "$output" == *$'\nFAILED no working counter error\n'* ]]
+	[[ "$output" == *"The machine stood still "* && "$output" != *$'\nstill '* ]]
+}
+
+@test "a program that keeps the CPU is no machine that stands still" {
+	in_op 4 hog_then_wrong
+	on_segment "connect ao.1 -> ai.2"
+	[ "$status" = 1 ]
+	[[ "$output" == *$'\nFAILED no working counter error\n'* ]]
+	[[ "$output" != *"stood still"* && "$output" != *$'\nstill '* ]]
 }
 
 @test "a capture with a mangled frame is noticed" {

@@ -26,6 +26,48 @@ example() {
 	app=$!
 }
 
+# refused ARG...: exit code 2, the last argument is named, then the usage
+refused() {
+	run "$EC_BUILD/examples/$1" "${@:2}"
+	echo "$output"
+	[ "$status" = 2 ]
+	[[ ${lines[0]} == "$1: invalid argument '${*: -1}'" ]]
+	[[ ${lines[1]} == "usage: $1 "* ]]
+	[ "$("$EC_BUILD/examples/$1" "${@:2}" 2>/dev/null | wc -c)" = 0 ]
+}
+
+@test "each example has a usage, and refuses invalid arguments" {
+	for f in "$EC_BUILD"/examples/*; do
+		[[ $f != *.d ]] || continue
+		run "$f" --help
+		echo "$output"
+		[ "$status" = 0 ]
+		[[ ${lines[0]} == "usage: ${f##*/} "* && $output == *"exit status: 0 "* ]]
+		[ "$("$f" --help 2>&1 >/dev/null | wc -c)" = 0 ]
+		refused "${f##*/}" fast
+		refused "${f##*/}" -1
+	done
+	refused mirror 1 2 0
+	refused mirror 1 2x
+	refused mirror 65536
+	refused mirror 1 2 3 4
+	refused analog 2 3 0
+	refused analog 2 3 4 5
+	refused kcycle 0
+	refused kcycle 5 follow 6
+	refused dc_motion 4
+	refused dc_motion lead 4 5 0
+	refused dc_motion lead 4 5 6 7
+	refused sdo_requests 1 2
+	run "$EC_BUILD/examples/dc_motion" lead 3 3
+	[ "$status:$output" = "2:dc_motion: FIRST and SECOND are both 3" ]
+	run "$EC_BUILD/examples/sdo_requests"
+	[ "$status:${lines[0]}" = "2:sdo_requests: POSITION is missing" ]
+	# not one of them has changed a slave
+	all_slaves_are PREOP 5
+	ethercat master | grep -q 'Active: no'
+}
+
 # the byte the terminal switches its outputs by
 outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 
@@ -44,6 +86,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	wait "$app"
 	[ "$(outputs)" = 0x00 ]
 	grep -E '^[0-9]+ cycles, 0 skipped$' "$out"
+	[ "$(tail -n 1 "$out")" = "ended by a signal" ]
 	app=
 }
 
@@ -53,6 +96,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	cat "$out"
 	grep -qx 'working counter: 1, not complete' "$out"
 	grep -E '^2000 cycles, ' "$out"
+	grep -qx 'ended after 2 s' "$out"
 	grep '^slave 9 is not in OP: no slave at ring position 9' "$out"
 	[ "$(grep -c 'is not in OP' "$out")" = 1 ]
 	app=
@@ -89,14 +133,15 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	cat "$out"
 	grep -E '^20000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	grep -E '^kernel: [0-9]+ cycles, 0 overruns, ' "$out"
+	[ "$(tail -n 1 "$out")" = "ended after 20000 cycles" ]
 	app=
 }
 
 @test "kcycle: the kernel's cycle follows the reference clock" {
-	example kcycle 3000 follow
+	example kcycle follow
 	wait "$app"
 	cat "$out"
-	grep -E '^3000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
+	grep -E '^5000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	grep -E '^inputs taken up to [0-9]+ ns after their cycle began$' "$out"
 	# that clock is 500 ppm too fast
 	ppb=$(sed -n 's/^reference clock: runs +\([0-9]*\) ppb, .* lost 0 times$/\1/p' "$out")
@@ -116,9 +161,19 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	grep -E '^10000 cycles, [0-9]+ skipped, 0 incomplete$' "$out"
 	grep -E '^kernel: [0-9]+ cycles, 0 overruns, ' "$out"
 	grep -E '^reference clock: runs \+[0-9]+ ppb, .* lost 0 times$' "$out"
-	run "$EC_BUILD/examples/kcycle" 3000 fast
-	[ "$status" = 1 ]
-	[[ "$output" == usage:* ]]
+	app=
+}
+
+@test "kcycle: after a signal the kernel goes on, and the example says so" {
+	example kcycle 1000000
+	wait_for 60 grep -qx '3 slaves in OP' "$out"
+	kill -INT "$app"
+	wait "$app"
+	cat "$out"
+	grep -qx 'ended by a signal: the kernel continues the cycle' "$out"
+	ethercat master | grep -q 'Session: detached'
+	all_slaves_are OP 3
+	ethercat release
 	app=
 }
 
@@ -146,7 +201,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	wait "$app" || rc=$?
 	cat "$out"
 	[ "$rc" = 1 ]
-	grep -E '^slave 1 has not reached OP: .' "$out"
+	grep -E '^slave 1 is not in OP: .' "$out"
 	grep -qx 'ended without OP' "$out"
 	app=
 }
@@ -182,6 +237,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	wait "$app"
 	cat "$out"
 	[ "$(grep -c '^axis' "$out")" = 1 ]
+	grep -qx 'ended after the given time' "$out"
 	awk '/^axis/ { exit !($NF >= 90000 && $NF <= 110000) }' "$out"
 	app=
 }
@@ -195,7 +251,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	wait "$app" || rc=$?
 	cat "$out"
 	[ "$rc" = 1 ]
-	grep -E '^a drive has left operation, all .* stop: status words 0x[0-9a-f]+ 0x..[04]8$' "$out"
+	grep -E '^ended: a drive has left operation, .* words 0x[0-9a-f]+ 0x..[04]8$' "$out"
 	[ $(($(ethercat upload -p3 -t uint16 0x6041 0 | cut -d ' ' -f 1) & 0x4f)) = $((0x40)) ]
 	[ $(($(ethercat upload -p4 -t uint16 0x6041 0 | cut -d ' ' -f 1) & 0x4f)) = $((0x08)) ]
 	ethercat download -p4 -t uint32 0x6065 0 0xffffffff
@@ -291,6 +347,42 @@ soon() {
 			wait_for 60 all_slaves_are PREOP $drives
 		done
 	done
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 5
+}
+
+@test "analog: an output follows an input, with filter and SYNC0" {
+	stop
+	printf '%s\n' "slave coupler EK1100" "slave ai EL3062" "slave ao EL4002" \
+		"const ai.1 value=20000" "connect ao.1 -> ai.2" >"$BATS_TEST_TMPDIR/segment"
+	start "$BATS_TEST_TMPDIR/segment" 3
+	example analog 1 2 4
+	wait_for 60 json '.masters[0].slaves[] | select(.position == 2) |
+		.sync[0].active and .sync[0].cycle_ns == 1000000' dc
+	[ "$(ethercat upload -p1 -t uint16 0x8000 0x15)" = "0x0002 2" ]
+	ethercat upload -p1 -t int16 0x6010 0x11
+	wait_for 60 eval '[ "$(ethercat upload -p1 -t int16 0x6010 0x11)" = "0x2710 10000" ]'
+	wait "$app"
+	cat "$out"
+	grep -qx 'input 6.10 V, output 3.05 V' "$out"
+	[ "$(tail -n 1 "$out")" = "ended after the given time" ]
+	# an output terminal is no input terminal
+	run "$EC_BUILD/examples/analog" 2 1
+	echo "$output"
+	[ "$status" = 1 ]
+	[ -n "$output" ]
+
+	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
+	echo 'refuse ai OP code=0x1d' >/sys/kernel/debug/ec_sim/sim0
+	run "$EC_BUILD/examples/analog" 1 2 3
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ ${lines[-1]} == "slave 1 is not in OP: "*0x001d* ]]
+	run "$EC_BUILD/examples/kcycle"
+	echo "$output"
+	[ "$status" = 1 ]
+	[ "$(grep '^kcycle: slave . is not in OP: ' <<<"$output" | cut -c 9-15)" = "slave 1" ]
+	app=
 	stop
 	start "$BATS_FILE_TMPDIR/segment" 5
 }

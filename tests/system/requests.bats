@@ -28,5 +28,12 @@ says() { grep -qxF "$1" <<<"$output" || { echo "not said: $1"; echo "$output"; r
 	says "absent slave: ERROR"
 	says "emergency: 0x8110 register 0x11"
 	says "dropped emergencies: 0"
+	says "ended: each step had the expected result"
 	[ "$(ethercat upload -p1 -t uint32 0x2001 8 | awk '{ print $1 }')" = 0x1234abcd ]
+}
+
+@test "sdo_requests: a slave without mailbox is not asked, exit code 1" {
+	run timeout 100 "$EC_BUILD/examples/sdo_requests" 0
+	echo "$output"
+	[ "$status" = 1 ]
 }

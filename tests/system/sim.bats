@@ -44,7 +44,7 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	tell fault input io.3 value=1
 	run tell off nobody
 	[ "$status" = 1 ]
-	[[ $output == *"unknown slave 'nobody'"* ]]
+	[[ $output == *"unknown slave 'nobody'; the segment has io, axis" ]]
 	run tell
 	[ "$status" = 1 ]
 	[[ $output == *'no fault given'* ]]
@@ -66,14 +66,18 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	program
 }
 
-@test "ec_sim takes faults at its file in debugfs, which only root may write" {
+@test "ec_sim takes faults at its file in debugfs and shows its segment, for root only" {
 	local file=/sys/kernel/debug/ec_sim/sim0
 
 	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
 	start "$SEG" 2
-	[ "$(stat -c '%a %U' "$file")" = '200 root' ]
+	[ "$(stat -c '%a %U' "$file")" = '600 root' ]
 	echo 'off axis' >"$file"
 	wait_for 30 all_slaves_are PREOP 1
+	run cat "$file"
+	echo "$output"
+	[[ ${lines[0]} == "# 2 slave(s); "* ]]
+	[ "${lines[1]}/${lines[2]}" = "0 io EL1008 at master.0/1 axis drive at io.1: off" ]
 	echo 'fault on axis' >"$file"
 	wait_for 30 all_slaves_are PREOP 2
 	echo 'eeprom io word=4 value=77' >"$file"
@@ -81,8 +85,13 @@ tell() { "$EC_BUILD/tool/ethercat-sim" --tell "$SOCK" "$@"; }
 	[ "$(ethercat sii_read -p0 | od -An -tu2 -j8 -N2 | tr -d ' ')" = 77 ]
 	run bash -c "echo 'off nobody' >$file"
 	[ "$status" != 0 ]
-	dmesg | grep -q "ec_sim: sim0: unknown slave 'nobody'"
+	dmesg | grep -q "ec_sim: sim0: unknown slave 'nobody'; the segment has io, axis$"
+	run bash -c "printf '%600s' >$file"
+	[ "$status" != 0 ]
+	dmesg | grep -q 'ec_sim: sim0: fault of 600 characters, limit 512$'
 	run setpriv --reuid 65534 --clear-groups bash -c "echo 'off axis' >$file"
+	[ "$status" != 0 ]
+	run setpriv --reuid 65534 --clear-groups cat "$file"
 	[ "$status" != 0 ]
 }
 

@@ -345,6 +345,16 @@ static void sim_describe_from_file(struct kunit *test)
 					      "slave a file=other", 18, &loader,
 					      &err), -ENOENT);
 	KUNIT_EXPECT_TRUE(test, strstr(err.text, "cannot read 'other'"));
+	for (size_t n = 127; n <= 128; n++) {
+		char longest[14 + 128 + 1] = "slave a file=/";
+
+		memset(longest + 14, 'x', n - 1);
+		KUNIT_EXPECT_EQ(test, ec_sim_describe(&b->sim, &bed_ops, longest,
+						      strlen(longest), &loader, &err),
+				n < 128 ? -ENOENT : -EINVAL);
+		KUNIT_EXPECT_EQ(test, n < 128,
+				!strstr(err.text, "too long, limit 127 characters"));
+	}
 	/* any bytes at all are taken or refused */
 	for (u32 i = 0; i < 2000; i++) {
 		struct ec_sim *sim;
@@ -402,7 +412,7 @@ static void sim_describe_commands(struct kunit *test)
 		const char *text, *want;
 	} bad[] = {
 		{ "", "no fault given" },
-		{ "off b", "unknown slave 'b'" },
+		{ "off b", "unknown slave 'b'; the segment has a, m" },
 		{ "off a\noff m", "expected one fault" },
 		{ "off a now", "'now' is unknown" },
 		{ "input a.9 value=1", "no input channel" },
@@ -449,6 +459,49 @@ static void sim_describe_commands(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_TYPE, 1), ~0ull);
 }
 
+/* A report has place for some of many names, and is one line all the same. */
+static void sim_describe_commands_many_slaves(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "repeat 100 slave terminal io\n");
+	struct ec_sim_error err;
+
+	KUNIT_EXPECT_EQ(test, command(b, "off b", &err), -EINVAL);
+	KUNIT_EXPECT_STREQ(test, err.text, "unknown slave 'b'; the segment has "
+			   "terminal1, terminal2, terminal3, terminal4, terminal5...");
+}
+
+/* a line of each slave: where it hangs, and the faults that last */
+static void sim_describe_shows_segment(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave o EL2008\nslave m drive\n"
+				"branch a 2\nslave x drive swap=yes\nslave y EL1008\n");
+	static const struct {
+		const char *fault, *want;
+		u32 slave;
+	} lines[] = {
+		{ "on a", "0 a EK1100 at master.0", 0 },
+		{ "on a", "2 m drive at o.1", 2 },
+		{ "on a", "3 x drive at a.2", 3 },
+		{ "cut a.1", "0 a EK1100 at master.0: cut .1", 0 },
+		{ "heal o.0", "0 a EK1100 at master.0", 0 },
+		{ "off o", "1 o EL2008 at a.1: off", 1 },
+		{ "dead m", "2 m drive at o.1: dead", 2 },
+		{ "refuse m OP", "2 m drive at o.1: dead, refuse", 2 },
+		{ "mailbox m short", "2 m drive at o.1: dead, refuse, mailbox", 2 },
+	};
+	struct ec_sim_error err;
+	char line[160];
+
+	for (u32 i = 0; i < ARRAY_SIZE(lines); i++) {
+		KUNIT_EXPECT_EQ(test, command(b, lines[i].fault, &err), 0);
+		ec_sim_advance(b->sim, ++b->now);
+		ec_sim_show(b->sim, lines[i].slave, line, sizeof(line));
+		KUNIT_EXPECT_STREQ(test, line, lines[i].want);
+	}
+	ec_sim_show(b->sim, 4, line, 8);
+	KUNIT_EXPECT_STREQ(test, line, "4 y EL1");
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_describe_no_memory),
 	KUNIT_CASE(sim_describe_builtin_segments_are_valid),
@@ -459,6 +512,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_describe_wiring),
 	KUNIT_CASE(sim_describe_faults),
 	KUNIT_CASE(sim_describe_commands),
+	KUNIT_CASE(sim_describe_commands_many_slaves),
+	KUNIT_CASE(sim_describe_shows_segment),
 	KUNIT_CASE(sim_describe_images),
 	KUNIT_CASE(sim_describe_from_file),
 	{}

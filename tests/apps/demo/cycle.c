@@ -37,7 +37,7 @@ static bool bit_get(const struct point *p, const uint8_t *data)
 	return EC_READ_BIT(data + p->byte, p->bit);
 }
 
-static void copy_bits(struct demo *d, uint8_t *data, bool measure)
+static void copy_bits(struct demo *d, uint8_t *data, bool measure, bool still)
 {
 	static bool in[BITS_MAX];
 	static bool valid;
@@ -56,10 +56,10 @@ static void copy_bits(struct demo *d, uint8_t *data, bool measure)
 	}
 	valid = true;
 	if (measure && d->wired)
-		trace_add(&d->digital, in[0], bit_get(&d->di[DI_BACK], data));
+		trace_add(&d->digital, in[0], bit_get(&d->di[DI_BACK], data), still);
 }
 
-static void copy_analog(struct demo *d, uint8_t *data, bool measure)
+static void copy_analog(struct demo *d, uint8_t *data, bool measure, bool still)
 {
 	static int16_t last;
 	static bool valid;
@@ -79,7 +79,7 @@ static void copy_analog(struct demo *d, uint8_t *data, bool measure)
 		if (d->ao.bits && valid)
 			d->ao_mismatches += out != last;
 		trace_add(&d->analog, in, d->wired ?
-			  EC_READ_S16(data + d->ai_back.byte) : out);
+			  EC_READ_S16(data + d->ai_back.byte) : out, still);
 	}
 	last = in;
 	valid = true;
@@ -93,16 +93,19 @@ static void exchange(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 {
 	double dt = d->period_us / 1e6, run = d->cycles * dt;
 	double turn = run / 2 > 1 ? run / 2 : 1;
+	bool still = d->excuse && still_lately(now_ns());
+	unsigned int i, errors = d->call_errors;
 	ec_domain_state_t state;
-	unsigned int i;
 
 	d->call_errors += !!ecrt_master_receive(m);
 	d->call_errors += !!ecrt_domain_process(domain);
 	ecrt_domain_state(domain, &state);
-	if (phase == RUN)
-		d->wc_errors += state.wc_state != EC_WC_COMPLETE;
-	copy_bits(d, data, phase == RUN);
-	copy_analog(d, data, phase == RUN);
+	if (phase == RUN && state.wc_state != EC_WC_COMPLETE) {
+		d->wc_errors++;
+		d->wc_still += still;
+	}
+	copy_bits(d, data, phase == RUN, still);
+	copy_analog(d, data, phase == RUN, still);
 	for (i = 0; i < d->n_axes; i++)
 		axis_cycle(&d->axes[i], data,
 			   phase != STOP && d->operational == d->slaves,
@@ -111,6 +114,8 @@ static void exchange(struct demo *d, ec_master_t *m, ec_domain_t *domain,
 		d->done++;
 	d->call_errors += !!ecrt_domain_queue(domain);
 	d->call_errors += !!ecrt_master_send(m);
+	if (still)
+		d->call_still += d->call_errors - errors;
 }
 
 /* time ----------------------------------------------------------------------*/
@@ -232,6 +237,7 @@ static enum phase next_phase(struct demo *d, enum phase phase, long long begin)
 	if (phase != STOP) {
 		d->all_op = all_operational(d);
 		d->axes_enabled = all_enabled(d);
+		d->end_still = d->excuse && still_lately(now_ns());
 	}
 	if (phase == RUN) {
 		d->lost_known &= frames_lost(d, &now);

@@ -105,25 +105,39 @@ struct readback {
 
 bool readback_start(struct readback *rb, pthread_t *thread);
 
+/* still.c: when the machine itself ran no thread ----------------------------*/
+
+#define STILL_MS	10	/* threads of the highest priority that run later than this */
+#define STILL_AFTER_MS	2000	/* slaves that left OP meanwhile are back by then */
+
+bool still_watch(void);
+void still_end(void);
+bool still_lately(long long now_ns);
+unsigned int still_count(void);
+double still_longest_ms(void);
+
 /* trace.c: an output that is wired back to an input ------------------------*/
 
 /*
  * @sent, @seen: what was written to the output and what the input showed, one
- * value per measured cycle; @lag, @off, @worst: see trace_judge()
+ * value per measured cycle, and whether the machine stood still shortly before; @lag, @off,
+ * @off_still, @worst: see trace_judge()
  */
 struct trace {
 	int16_t *sent, *seen;
+	bool *still;
 	unsigned int count;
 	int min, max;
 	unsigned int lag;
 	unsigned int off;
+	unsigned int off_still;
 	unsigned int worst;
 };
 
 int trace_alloc(struct trace *t, unsigned int cycles);
-void trace_add(struct trace *t, int16_t sent, int16_t seen);
+void trace_add(struct trace *t, int16_t sent, int16_t seen, bool still);
 void trace_judge(struct trace *t);
-bool trace_followed(const struct trace *t);
+bool trace_followed(const struct trace *t, bool excuse);
 
 /* all of it -----------------------------------------------------------------*/
 
@@ -135,6 +149,7 @@ struct demo {
 	unsigned int wait_s;
 	bool json;
 	bool wired;
+	bool excuse;			/* what a machine that stood still explains */
 
 	/* segment */
 	unsigned int slaves;
@@ -156,6 +171,9 @@ struct demo {
 	unsigned int wc_errors;
 	unsigned int overruns;		/* cycles left out */
 	unsigned int call_errors;
+	unsigned int wc_still;		/* of these, those soon after a standstill */
+	unsigned int call_still;
+	bool end_still;			/* the last state is from soon after one */
 	unsigned long long lost;
 	bool lost_known;
 	unsigned int buckets[BUCKETS];	/* 0: below 1 us; n: below 2^n us */

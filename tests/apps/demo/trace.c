@@ -20,14 +20,16 @@ int trace_alloc(struct trace *t, unsigned int cycles)
 {
 	t->sent = calloc(cycles, sizeof(*t->sent));
 	t->seen = calloc(cycles, sizeof(*t->seen));
+	t->still = calloc(cycles, sizeof(*t->still));
 	t->min = INT16_MAX;
 	t->max = INT16_MIN;
-	return t->sent && t->seen ? 0 : -1;
+	return t->sent && t->seen && t->still ? 0 : -1;
 }
 
 /* RT-safe; at most as often as trace_alloc() was told */
-void trace_add(struct trace *t, int16_t sent, int16_t seen)
+void trace_add(struct trace *t, int16_t sent, int16_t seen, bool still)
 {
+	t->still[t->count] = still;
 	t->sent[t->count] = sent;
 	t->seen[t->count++] = seen;
 	t->min = sent < t->min ? sent : t->min;
@@ -65,12 +67,14 @@ static unsigned int difference(const struct trace *t, unsigned int i)
 
 /*
  * @lag: cycles the input is behind; @off: values that differ by more than 2 %
- * of the span, taking that into account; @worst: largest difference
+ * of the span, taking that into account; @off_still: of these, those soon after a standstill of
+ * the machine; @worst: largest difference
  */
 void trace_judge(struct trace *t)
 {
 	unsigned long long best = ~0ULL, now;
 	unsigned int i, diff;
+	bool off;
 
 	for (i = 0; i + JITTER <= LAG_MAX; i++) {
 		now = distance(t, i);
@@ -82,12 +86,16 @@ void trace_judge(struct trace *t)
 	for (i = LAG_MAX; i < t->count; i++) {
 		diff = difference(t, i);
 		t->worst = diff > t->worst ? diff : t->worst;
-		t->off += diff * TOLERANCE > (unsigned int)(t->max - t->min);
+		off = diff * TOLERANCE > (unsigned int)(t->max - t->min);
+		t->off += off;
+		t->off_still += off && t->still[i];
 	}
 }
 
-/* A value that never changes proves nothing. */
-bool trace_followed(const struct trace *t)
+/* A value that never changes proves nothing. @excuse: without those soon after a standstill. */
+bool trace_followed(const struct trace *t, bool excuse)
 {
-	return t->count > LAG_MAX && t->max > t->min && t->off <= t->count / RARE;
+	unsigned int off = excuse ? t->off - t->off_still : t->off;
+
+	return t->count > LAG_MAX && t->max > t->min && off <= t->count / RARE;
 }
