@@ -432,6 +432,9 @@ static int step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
+	/* process data have ended before a slow slave was down: it did not refuse anything */
+	if (ret == -EPROTO && READ_ONCE(s->al_code) == EC_AL_CODE_SM_WATCHDOG)
+		ret = set_state(s, want);
 	if (ret == -EPROTO) {
 		/* the stronger step; the way up from there leads to @want */
 		ec_slave_warn(s, "%s refused: AL status code 0x%04x (%s); INIT follows\n",

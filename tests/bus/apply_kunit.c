@@ -212,6 +212,26 @@ static void apply_late_states_taken(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
+/* The application ends; the slave takes longer to leave OP than its watchdog. It refuses nothing. */
+static void apply_slow_end(struct kunit *test)
+{
+	struct cyc *c = reserve(test, "segment seed=17 transition=400ms\n"
+				      "slave a io in=8 out=8 cpu=yes\n", 1);
+	struct bus *b = c->b;
+	u32 lines;
+
+	cyc_map_all(c, 0, 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 10000), ~0ull);
+	cyc_run(c, 500);
+	lines = bus_log_lines("refused");
+	cyc_release(c);
+	KUNIT_EXPECT_NE(test, bus_wait_al(b, 0, EC_AL_PREOP, 10000), ~0ull);
+	msleep(1000);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("refused"), lines);
+}
+
 /* The mapping that was found is not the slave's any more after its power was off. */
 static void apply_found_pdos(struct kunit *test)
 {
@@ -415,6 +435,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_op_only_pause),
 	KUNIT_CASE(apply_op_only_late),
 	KUNIT_CASE_PARAM(apply_late_states_taken, late_gen_params),
+	KUNIT_CASE(apply_slow_end),
 	KUNIT_CASE(apply_found_pdos),
 	KUNIT_CASE(apply_second_round),
 	KUNIT_CASE(apply_changes_meanwhile),
