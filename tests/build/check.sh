@@ -403,6 +403,17 @@ doc_notices() {
 		grep "index.rst:4: WARNING: unknown document: 'nowhere'" "$tmp/doc.log"
 }
 t "a reference to a page that does not exist is noticed" doc_notices
+t "no block or table scrolls sideways at 1200 px" tests/build/width.py "$tmp/doc/html"
+# else the check above could not fail
+wide_noticed() {
+	mkdir -p "$tmp/wide/_static" &&
+		cp Documentation/sphinx/static/pages.css "$tmp/wide/_static" &&
+		printf '<link href="_static/pages.css"><pre>%100s</pre><ul><li><pre>%100s</pre></li></ul>' \
+			x y >"$tmp/wide/a.html" || return 1
+	! tests/build/width.py "$tmp/wide" >"$tmp/wide/out" && cat "$tmp/wide/out" &&
+		[ "$(grep -c '^a.html: ' "$tmp/wide/out")" = 1 ] && grep 'y$' "$tmp/wide/out"
+}
+t "a block that scrolls sideways is noticed" wide_noticed
 
 # no_headers TARGET: one line that says what to do, before anything else
 no_headers() {
