@@ -85,6 +85,7 @@ doc:
 	@rm -rf $(DOCDIR)/source && mkdir -p $(DOCDIR)/source
 	@cp -r Documentation/*.rst Documentation/pictures $(DOCDIR)/source
 	@Documentation/sphinx/api.py $(KERNELDOC) include/ecrt.h >$(DOCDIR)/source/api.rst
+	@Documentation/sphinx/codes.py . >$(DOCDIR)/source/codes.rst
 	sphinx-build -q -W --keep-going -b html -c Documentation/sphinx $(DOCDIR)/source \
 		$(DOCDIR)/html
 

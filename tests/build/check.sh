@@ -392,10 +392,28 @@ t "the old master's files are removed as documented" old_removed
 t "make doc builds HTML without a warning" make -s KDIR="$KDIR" DOCDIR="$tmp/doc" doc
 t "it has the reference of ecrt.h" grep -q c.ecrt_master_activate "$tmp/doc/html/api.html"
 
+# codes_notice FILE SED FINDING: a change of a table or of the remedies is an error of "make doc"
+codes_notice() {
+	local out
+
+	mkdir -p "$tmp/codes" &&
+		cp --parents master/wire/*.[ch] tool/why_slave.c \
+			Documentation/sphinx/{codes.py,remedies.txt} "$tmp/codes" && sed -i "$2" "$tmp/codes/$1" || return 1
+	out=$("$tmp/codes/Documentation/sphinx/codes.py" "$tmp/codes" 2>&1) && return 1
+	grep -F "$3" <<<"$out"
+}
+t "an AL status code without remedy is noticed" codes_notice master/wire/al.c \
+	's/{ 0x00F0, /{ 0x00EE, "new" },\n&/' 'no remedy of al 0x00ee (new)'
+t "a remedy without code is noticed" codes_notice Documentation/sphinx/remedies.txt \
+	'$aabort 0x12345678 none' "'abort 0x12345678' matches no code"
+t "a table that is not found is noticed" codes_notice master/wire/mbox.c \
+	's/^} errors\[\]/} renamed[]/' "no table 'errors' in master/wire/mbox*.c"
+
 # else the check above could not fail
 doc_notices() {
 	mkdir -p "$tmp/docs/Documentation" "$tmp/docs/include" &&
 		cp -r Documentation/sphinx Documentation/pictures "$tmp/docs/Documentation" &&
+		cp --parents master/wire/*.[ch] tool/why_slave.c "$tmp/docs" &&
 		cp Makefile "$tmp/docs" && cp include/ecrt.h "$tmp/docs/include" || return 1
 	printf 'Title\n=====\n\n:doc:`nowhere`\n\n.. toctree::\n   :glob:\n\n   *\n' \
 		>"$tmp/docs/Documentation/index.rst"
@@ -408,8 +426,8 @@ t "no block or table scrolls sideways at 1200 px" tests/build/width.py "$tmp/doc
 wide_noticed() {
 	mkdir -p "$tmp/wide/_static" &&
 		cp Documentation/sphinx/static/pages.css "$tmp/wide/_static" &&
-		printf '<link href="_static/pages.css"><pre>%100s</pre><ul><li><pre>%100s</pre></li></ul>' \
-			x y >"$tmp/wide/a.html" || return 1
+		printf '<link href="_static/pages.css"><pre>%100s</pre>%s<pre>%100s</pre></li></ul>' \
+			x '<ul><li>' y >"$tmp/wide/a.html" || return 1
 	! tests/build/width.py "$tmp/wide" >"$tmp/wide/out" && cat "$tmp/wide/out" &&
 		[ "$(grep -c '^a.html: ' "$tmp/wide/out")" = 1 ] && grep 'y$' "$tmp/wide/out"
 }

@@ -205,6 +205,15 @@ sources() {
 	ethercat latch -p 2
 	ethercat latch -p 2 single
 	ethercat latch -p 2 continuous
+	# "make doc" has these on its page of codes
+	ethercat states INIT
+	wait_for 60 all_slaves_are INIT 3
+	ethercat states PREOP
+	wait_for 60 all_slaves_are PREOP 3
+	ethercat states SAFEOP
+	wait_for 60 all_slaves_are SAFEOP 3
+	ethercat states PREOP
+	ethercat sii_read -v -p2 | grep -q '^SII Area'
 	ethercat-sim --check /tmp/segment
 	# there is no session
 	run ethercat release
