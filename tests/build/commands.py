@@ -11,13 +11,15 @@ commands.txt, as
     by hand    : WHY  : COMMAND      no test runs it; its script and make target exist
     -          : WHY  : FIRST LINE   the whole block is no command
 
-and each line there must be used. A block that begins with "$ COMMAND" is output: docs.bats has the
-line "screen FILE '$ COMMAND'", which compares it with what the command prints now; "..." in it
-stands for anything. That TEXT runs the command with these words, and that
+and each line there must be used. That TEXT runs the command with these words, and that
 TEST is run, is not proved here: tests/system/docs.bats reads its commands from the
 documents, all other rows are for the reader to follow.
+
+A block that begins with "$ COMMAND" is output: docs.bats has the line "screen FILE '$ COMMAND'",
+which compares it with what the command prints now; "..." in it stands for anything. With "like
+FILE '$ COMMAND'" the values of numbers do not count.
 usage: commands.py [--block FILE FIRST_LINE]    the commands of a block
-       commands.py --screen FILE FIRST_LINE     is the output on stdin that of the block?
+       commands.py --screen|--like FILE FIRST_LINE      is the output on stdin that of the block?
 """
 import difflib
 import re
@@ -109,17 +111,25 @@ def show(path, first):
     return 1
 
 
-def screen(path, first):
+def folded(line):
+    """A line without the values of its numbers, which also change its blanks."""
+    number = r"(?<![\w.])[-+]?(0x)?[0-9a-f]*[0-9.+][0-9a-f.+:]*(?![\w])|\b[0-9a-f]{2}\b"
+    return re.sub(r"\s+", " ", re.sub(number, "#", line))
+
+
+def screen(fold, path, first):
     """Does stdin equal a block, but for its first line and for "..."?"""
-    printed = [line.rstrip() for line in sys.stdin.read().rstrip("\n").split("\n")]
+    printed = [fold(line.rstrip()) for line in sys.stdin.read().rstrip("\n").split("\n")]
     for block in blocks(ROOT / path):
         if block[0] == first:
-            pattern = "".join(".*(?:\n.*)*?\n" if line == "..." else
-                              ".*".join(map(re.escape, line.rstrip().split("..."))) + "\n"
-                              for line in block[1:])
+            block = [line if line == "..." else "...".join(map(fold, line.rstrip().split("...")))
+                     for line in block[1:]]
+            pattern = "".join("(?:.*\n)*?" if line == "..." else
+                              ".*".join(map(re.escape, line.split("..."))) + "\n"
+                              for line in block)
             if re.fullmatch(pattern, "\n".join(printed) + "\n"):
                 return 0
-            print("\n".join(difflib.unified_diff(block[1:], printed, path, "printed", lineterm="")))
+            print("\n".join(difflib.unified_diff(block, printed, path, "printed", lineterm="")))
             return 1
     print(f"{path} has no block '{first}'")
     return 1
@@ -135,8 +145,8 @@ def codes():
 def main():
     if sys.argv[1:2] == ["--block"]:
         return show(*sys.argv[2:])
-    if sys.argv[1:2] == ["--screen"]:
-        return screen(*sys.argv[2:])
+    if sys.argv[1:2] in (["--screen"], ["--like"]):
+        return screen(folded if sys.argv[1] == "--like" else str, *sys.argv[2:])
     rows, used, bad, count = table(), set(), [], 0
     shown = (ROOT / "tests/system/docs.bats").read_text()
 
@@ -158,7 +168,8 @@ def main():
                 continue
             if first.startswith("$ "):
                 count += 1
-                if f"screen {name} '{first}'" not in shown:
+                test = rf"\b(screen|like) {name}[\s\\]+['\"]{re.escape(first)}['\"]"
+                if not re.search(test, shown):
                     bad.append(f"{name}: docs.bats has no: screen {name} '{first}'")
                 continue
             for line in block:
