@@ -159,8 +159,10 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 
 # those of first-ten-minutes.rst, if its test has not run
 has_examples() {
+	local f=Documentation/first-ten-minutes.rst
+
 	[ -x ~/examples/build/dc_motion ] ||
-		doc Documentation/first-ten-minutes.rst 'cp -r /usr/share/doc/ethercat-doc/examples ~'
+		doc $f 'cp -r /usr/share/doc/ethercat-doc/examples ~'
 }
 
 # motion SECONDS: a simulated bench whose axes move
