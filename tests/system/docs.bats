@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics --timeout 600
+# vm: --icount --nics --timeout 900
 # The commands of README and Documentation, as they are written there. Which test runs
 # which: tests/build/commands.txt.
 
