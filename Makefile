@@ -82,7 +82,8 @@ doc:
 	@command -v sphinx-build >/dev/null || { echo "$(NO_SPHINX)" >&2; exit 1; }
 	@rm -rf $(DOCDIR)/source && mkdir -p $(DOCDIR)/source
 	@cp -r Documentation/*.rst Documentation/pictures $(DOCDIR)/source
-	@PYTHONDONTWRITEBYTECODE=1 Documentation/sphinx/api.py include/ecrt.h >$(DOCDIR)/source/api.rst
+	@PYTHONDONTWRITEBYTECODE=1 Documentation/sphinx/api.py include/ecrt.h \
+		>$(DOCDIR)/source/api.rst
 	@Documentation/sphinx/codes.py . >$(DOCDIR)/source/codes.rst
 	sphinx-build -q $(SPHINXFLAGS) -b html -d $(DOCDIR)/doctrees -c Documentation/sphinx \
 		$(DOCDIR)/source $(DOCDIR)/html
